@@ -1,0 +1,114 @@
+/* velo/base.h: the ground every other public header stands on: results, errors, the context (allocator, log,
+ * threads, instruction set), small value types.
+ *
+ * Conventions of the whole library
+ *   - Functions that can fail return a vlResult; those that read files also fill an optional vlError.
+ *   - Description structs ("defs") come from vl_default_*_def(); a cookie catches a def that skipped it.
+ *   - In defs, zero is a value. A double that is not given is VL_UNSET (a NaN); an id that is not given has index 0.
+ *   - Matrices are row-major double[16] acting on column vectors: p' = M p; `a_from_b` maps b to a.
+ *   - Units inside: metres, seconds, radians. World right-handed. Camera x right, y down, z forward. First pixel's
+ *     centre at (0.5, 0.5), rows counted from the top.
+ *   - The library never exits, aborts or prints. Warnings go to the context's log callback. */
+#ifndef VELO_BASE_H
+#define VELO_BASE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(VL_BUILD_SHARED) && defined(__GNUC__)
+#define VL_API __attribute__((visibility("default")))
+#else
+#define VL_API
+#endif
+
+#define VL_VERSION_MAJOR 0
+#define VL_VERSION_MINOR 1
+#define VL_VERSION_PATCH 0
+
+/* What a fallible call returns. The numbers are stable. */
+typedef enum vlResult {
+  VL_OK = 0,
+  VL_ERROR_ARGUMENT = 1,  /* the caller broke the contract: null, def without cookie, value out of range */
+  VL_ERROR_MEMORY = 2,    /* the allocator said no; the object is as before the call */
+  VL_ERROR_SCENE = 3,     /* a file or scene is wrong: the error names the place */
+  VL_ERROR_MISSING = 4,   /* a file that the scene names does not exist */
+  VL_ERROR_IO = 5,        /* reading or writing failed: no such folder, disk full, permission */
+  VL_ERROR_UNSUPPORTED = 6, /* understood as valid, not implemented */
+  VL_CANCELLED = 7        /* the caller's callback asked to stop; what was rendered is kept */
+} vlResult;
+
+VL_API const char *vl_result_name(vlResult result);
+
+/* Filled by calls that read or build; all strings are zero-terminated and truncated when too long.
+ * file is empty and line 0 when the place is not known; line and column count from 1. */
+typedef struct vlError {
+  vlResult code;
+  uint32_t line;
+  uint32_t column;
+  char file[512];
+  char message[512];
+} vlError;
+
+typedef struct vlVec2 {
+  float x, y;
+} vlVec2;
+typedef struct vlVec3 {
+  float x, y, z;
+} vlVec3;
+
+typedef enum vlLogLevel { VL_LOG_ERROR = 0, VL_LOG_WARNING = 1, VL_LOG_INFO = 2, VL_LOG_DEBUG = 3 } vlLogLevel;
+
+/* A warning or note. `where` is null or carries file, line and column (its message is not used). Called from any
+ * thread, never from two at once. */
+typedef void vlLogFn(void *user, vlLogLevel level, const vlError *where, const char *message);
+
+/* All memory of the library goes through this. realloc with size 0 is never called. Thread-safe. */
+typedef struct vlAllocator {
+  void *user;
+  void *(*allocate)(void *user, size_t size); /* aligned as malloc */
+  void *(*reallocate)(void *user, void *block, size_t size);
+  void (*release)(void *user, void *block);
+} vlAllocator;
+
+/* Runs body(body_user, index, worker) for each index in [0, count); worker < worker_count passed to the context. */
+typedef void vlParallelBody(void *body_user, uint32_t index, uint32_t worker);
+typedef void vlParallelForFn(void *user, uint32_t count, vlParallelBody *body, void *body_user);
+
+/* Instruction sets of the hot loops. Every one gives the same bits. */
+typedef enum vlIsa { VL_ISA_AUTO = 0, VL_ISA_V2 = 2, VL_ISA_V3 = 3, VL_ISA_V4 = 4 } vlIsa;
+
+typedef struct vlContext vlContext;
+
+typedef struct vlContextDef {
+  uint32_t cookie;
+  vlAllocator allocator;
+  vlLogFn *log;
+  void *log_user;
+  uint32_t threads;              /* workers; default: the machine's */
+  vlIsa isa;                     /* default VL_ISA_AUTO; the environment variable VELO_ISA=v2|v3|v4 overrides AUTO */
+  vlParallelForFn *parallel_for; /* null: the built-in pool */
+  void *parallel_for_user;
+} vlContextDef;
+
+VL_API vlContextDef vl_default_context_def(void);
+/* Fails with ARGUMENT, MEMORY or UNSUPPORTED (an isa that this machine lacks). */
+VL_API vlResult vl_context_create(const vlContextDef *def, vlContext **context);
+/* All objects made from the context must be gone. Null is allowed. */
+VL_API void vl_context_destroy(vlContext *context);
+VL_API vlIsa vl_context_isa(const vlContext *context);
+VL_API uint32_t vl_context_threads(const vlContext *context);
+/* Bytes held now and at most, as counted by the allocator. */
+VL_API size_t vl_context_memory(const vlContext *context, size_t *peak);
+
+/* "Not given" for a double in a def. */
+#define VL_UNSET ((double)__builtin_nanf(""))
+
+#ifdef __cplusplus
+}
+#endif
+#endif

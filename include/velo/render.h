@@ -1,0 +1,106 @@
+/* velo/render.h: world (compiled, constant), film (what the light adds up in), and the one call where world, camera and
+ * film meet. */
+#ifndef VELO_RENDER_H
+#define VELO_RENDER_H
+
+#include "velo/base.h"
+#include "velo/camera.h"
+#include "velo/image.h"
+#include "velo/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- world ------------------------------------------------------------------------------------------------------ */
+
+typedef struct vlWorld vlWorld;
+typedef struct vlBuildDef {
+  uint32_t cookie;
+  vlColorMode color;             /* spectral (default) or RGB; fixed at build */
+  vlLightSampler light_sampler;
+  bool permissive;
+} vlBuildDef;
+VL_API vlBuildDef vl_default_build_def(void);
+/* Compiles the scene. The scene may be destroyed afterwards. The world is constant: any number of threads and renders
+ * may share it. Errors: SCENE (with the place), MISSING (textures), MEMORY. */
+VL_API vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **world, vlError *error);
+VL_API void vl_world_destroy(vlWorld *world);
+typedef struct vlWorldInfo {
+  uint64_t triangles, primitives, instances, lights, texture_bytes, bytes;
+  float bounds_min[3], bounds_max[3];
+  double build_seconds;
+} vlWorldInfo;
+VL_API void vl_world_info(const vlWorld *world, vlWorldInfo *info);
+
+/* ---- film ------------------------------------------------------------------------------------------------------- */
+
+typedef struct vlFilm vlFilm;
+typedef struct vlFilmDef {
+  uint32_t cookie;
+  uint32_t width, height; /* the whole picture */
+  uint32_t crop[4];       /* x0, y0, x1, y1, exclusive; the pixels that are rendered */
+  vlPixelFilter filter;
+  vlColorSpace space;     /* of the developed picture */
+} vlFilmDef;
+VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);
+VL_API vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film);
+VL_API void vl_film_destroy(vlFilm *film);
+/* Samples that each pixel has (whole passes). */
+VL_API uint32_t vl_film_spp(const vlFilm *film);
+typedef struct vlDevelopDef {
+  uint32_t cookie;
+  float exposure; /* factor on the linear values; default 1 */
+} vlDevelopDef;
+VL_API vlDevelopDef vl_default_develop_def(void);
+/* New float picture R G B A of the crop window, linear. Not while a render runs, except from its callback. */
+VL_API vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **image);
+
+/* ---- render ----------------------------------------------------------------------------------------------------- */
+
+/* Called after each pass, on the thread that called vl_render; the film may be read in it. */
+typedef struct vlProgress {
+  uint32_t spp_done, spp_total;
+  double elapsed, remaining;  /* seconds; remaining is an estimate */
+  double fraction;            /* of the work, 0 to 1; also between passes */
+  uint64_t paths, rays;
+  bool pass_done;             /* false: just a sign of life from inside a pass; the film must not be read */
+} vlProgress;
+/* Return false to stop: after a pass at once; inside a pass the pass is given up and its samples are not counted. */
+typedef bool vlProgressFn(void *user, const vlProgress *progress);
+
+typedef struct vlRenderDef {
+  uint32_t cookie;
+  vlTracer tracer;
+  vlSamplerKind sampler;
+  uint32_t spp;               /* samples each pixel shall have in the end */
+  uint32_t seed;
+  uint32_t max_depth;         /* bounces */
+  float ao_distance;
+  bool ao_cosine;
+  double time_limit;          /* seconds, 0: none; ends after the pass in which it passes */
+  vlProgressFn *progress;
+  void *progress_user;
+} vlRenderDef;
+VL_API vlRenderDef vl_default_render_def(void);
+
+typedef struct vlRenderStats {
+  uint32_t spp;
+  uint64_t paths, camera_rays, bounce_rays, shadow_rays;
+  uint64_t not_finite;        /* samples dropped since not finite or negative: counted, never hidden */
+  double seconds;
+  uint32_t worst_x, worst_y;  /* a pixel where the first such sample was found */
+} vlRenderStats;
+/* Adds samples until each pixel has def->spp. The same bits for any number of threads, crop and split of the passes.
+ * VL_CANCELLED when the callback stopped it: the film holds whole passes. stats may be null. */
+VL_API vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
+                          vlRenderStats *stats, vlError *error);
+
+/* Def from the scene file's own settings. */
+VL_API vlRenderDef vl_scene_render_def(const vlScene *scene);
+VL_API vlFilmDef vl_scene_film_def(const vlScene *scene);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,268 @@
+/* velo/scene.h: the description of a world, editable: what a scene file says, or what a program adds by hand.
+ * Everything added is copied. The scene is sticky: it remembers its first error and further adds return id 0; ask with
+ * vl_scene_result(). Not thread-safe. */
+#ifndef VELO_SCENE_H
+#define VELO_SCENE_H
+
+#include "velo/base.h"
+#include "velo/camera.h"
+#include "velo/image.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct vlScene vlScene;
+
+/* Typed ids; index 0 is "none", the first object has index 1. */
+typedef struct vlTextureId { uint32_t index; } vlTextureId;
+typedef struct vlMaterialId { uint32_t index; } vlMaterialId;
+typedef struct vlEmissionId { uint32_t index; } vlEmissionId;
+typedef struct vlLightId { uint32_t index; } vlLightId;
+typedef struct vlShapeId { uint32_t index; } vlShapeId;
+typedef struct vlGroupId { uint32_t index; } vlGroupId; /* 0: the world itself */
+
+/* Where in a file something was said; for errors found later. file may be null. Copied. */
+typedef struct vlSource { const char *file; uint32_t line, column; } vlSource;
+
+typedef enum vlColorSpace { VL_SPACE_SRGB, VL_SPACE_DCI_P3, VL_SPACE_REC2020, VL_SPACE_ACES2065_1 } vlColorSpace;
+
+typedef enum vlSpectrumKind {
+  VL_SPECTRUM_CONSTANT,  /* value at every wavelength */
+  VL_SPECTRUM_RGB,       /* rgb in space, made a spectrum by the role of the place it stands in */
+  VL_SPECTRUM_BLACKBODY, /* kelvin, normalised to maximum 1 */
+  VL_SPECTRUM_SAMPLED,   /* count pairs (nm ascending, value), linear between, 0 outside... see count */
+  VL_SPECTRUM_NAMED      /* "metal-Au-eta", "glass-BK7", "stdillum-D65", ... see vl_spectrum_names */
+} vlSpectrumKind;
+/* A spectrum by value. All are multiplied by scale. Sampled: constant beyond the ends is NOT assumed: 0 outside. */
+typedef struct vlSpectrum {
+  vlSpectrumKind kind;
+  float scale;
+  float value;
+  float rgb[3];
+  vlColorSpace space;
+  float kelvin;
+  uint32_t count;
+  const float *wavelengths, *values;
+  const char *name;
+} vlSpectrum;
+VL_API vlSpectrum vl_spectrum_constant(float value);
+VL_API vlSpectrum vl_spectrum_rgb(float r, float g, float b);
+VL_API vlSpectrum vl_spectrum_blackbody(float kelvin);
+VL_API vlSpectrum vl_spectrum_named(const char *name);
+/* Known names, index from 0; null past the end. */
+VL_API const char *vl_spectrum_name(uint32_t index);
+
+/* A parameter that may be textured: the texture where its index is not 0, else the value. */
+typedef struct vlFloatInput { vlTextureId texture; float value; } vlFloatInput;
+typedef struct vlSpectrumInput { vlTextureId texture; vlSpectrum value; } vlSpectrumInput;
+VL_API vlFloatInput vl_float_input(float value);
+VL_API vlSpectrumInput vl_spectrum_input(vlSpectrum value);
+
+/* ---- textures -------------------------------------------------------------------------------------------------- */
+
+typedef enum vlTextureKind {
+  VL_TEXTURE_CONSTANT, VL_TEXTURE_SCALE, VL_TEXTURE_MIX, VL_TEXTURE_CHECKERBOARD, VL_TEXTURE_IMAGE,
+  VL_TEXTURE_DIRECTION_MIX, VL_TEXTURE_BILERP
+} vlTextureKind;
+typedef enum vlWrap { VL_WRAP_REPEAT, VL_WRAP_BLACK, VL_WRAP_CLAMP, VL_WRAP_OCTAHEDRAL } vlWrap;
+typedef enum vlTextureFilter { VL_FILTER_POINT, VL_FILTER_BILINEAR, VL_FILTER_TRILINEAR, VL_FILTER_EWA } vlTextureFilter;
+typedef enum vlMapping { VL_MAPPING_UV, VL_MAPPING_SPHERICAL, VL_MAPPING_CYLINDRICAL, VL_MAPPING_PLANAR, VL_MAPPING_3D } vlMapping;
+
+typedef struct vlTextureDef {
+  uint32_t cookie;
+  const char *name;      /* may be null */
+  vlSource source;
+  vlTextureKind kind;
+  bool spectrum;         /* a colour texture; else a float texture. Inputs below: the matching half is read */
+  vlFloatInput float_a, float_b, float_c, float_d;         /* constant value; scale: tex = a; mix: a, b; checkerboard: a, b */
+  vlSpectrumInput spectrum_a, spectrum_b, spectrum_c, spectrum_d;
+  vlFloatInput amount;   /* scale's scale, mix's amount */
+  float direction[3];    /* direction mix */
+  uint32_t dimension;    /* checkerboard: 2 or 3 */
+  /* image */
+  const char *path;      /* read when the world is built (once per path); or */
+  const vlImage *image;  /* given directly, copied */
+  vlWrap wrap;
+  vlTextureFilter filter;
+  bool encoding_given;   /* else the file's own (8-bit: sRGB) */
+  vlEncoding encoding;
+  float gamma;
+  float scale;           /* factor on image values */
+  bool invert;
+  vlColorSpace space;
+  /* mapping: (s, t) = (su u + du, sv v + dv); others map through texture_from_world */
+  vlMapping mapping;
+  float su, sv, du, dv;
+  float planar_v1[3], planar_v2[3];
+  double texture_from_world[16];
+} vlTextureDef;
+VL_API vlTextureDef vl_default_texture_def(vlTextureKind kind, bool spectrum);
+VL_API vlTextureId vl_scene_add_texture(vlScene *scene, const vlTextureDef *def);
+
+/* ---- materials ------------------------------------------------------------------------------------------------- */
+
+typedef enum vlMaterialKind {
+  VL_MATERIAL_DIFFUSE, VL_MATERIAL_COATED_DIFFUSE, VL_MATERIAL_CONDUCTOR, VL_MATERIAL_DIELECTRIC,
+  VL_MATERIAL_THIN_DIELECTRIC, VL_MATERIAL_MIX, VL_MATERIAL_INTERFACE
+} vlMaterialKind;
+
+/* One flat struct; the defaults of vl_default_material_def(kind) are pbrt-v4's. */
+typedef struct vlMaterialDef {
+  uint32_t cookie;
+  const char *name;
+  vlSource source;
+  vlMaterialKind kind;
+  vlSpectrumInput reflectance;        /* diffuse, coated diffuse; conductor when use_reflectance */
+  bool use_reflectance;
+  vlFloatInput u_roughness, v_roughness;
+  bool remap_roughness;               /* alpha = sqrt(roughness), pbrt book 9.6 */
+  vlSpectrumInput eta, k;             /* conductor: both; dielectrics and coat: eta (no texture) */
+  vlFloatInput thickness, g;          /* coat */
+  vlSpectrumInput albedo;             /* coat's medium */
+  uint32_t max_depth, samples;        /* coat's walk */
+  vlFloatInput amount;                /* mix: share of the second */
+  vlMaterialId materials[2];
+  vlFloatInput displacement;          /* bump map; texture index 0: none */
+  const char *normal_map;             /* path, null: none; linear, tangent space */
+} vlMaterialDef;
+VL_API vlMaterialDef vl_default_material_def(vlMaterialKind kind);
+VL_API vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def);
+
+/* ---- lights ---------------------------------------------------------------------------------------------------- */
+
+/* Light that surfaces give out. Radiance = scale * L normalised so that its luminance Y is 1 for L of Y = 1 (pbrt's
+ * SpectrumToPhotometric convention, book 12.1: named, blackbody and sampled spectra are divided by their own Y). */
+typedef struct vlEmissionDef {
+  uint32_t cookie;
+  vlSource source;
+  vlSpectrum radiance;
+  float scale;
+  double power;       /* watts (pbrt's "power"); VL_UNSET: from radiance */
+  bool two_sided;
+  const char *image;  /* emission picture over uv, null: none */
+} vlEmissionDef;
+VL_API vlEmissionDef vl_default_emission_def(void);
+VL_API vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def);
+
+typedef enum vlLightKind { VL_LIGHT_POINT, VL_LIGHT_SPOT, VL_LIGHT_DISTANT, VL_LIGHT_INFINITE } vlLightKind;
+typedef struct vlLightDef {
+  uint32_t cookie;
+  vlSource source;
+  vlLightKind kind;
+  vlSpectrum color;          /* intensity I (point, spot) or radiance L (distant, infinite) */
+  float scale;
+  double power;              /* point, spot: total watts; VL_UNSET */
+  double illuminance;        /* distant, infinite: lux; VL_UNSET */
+  double world_from_light[16];
+  float from[3], to[3];      /* light space: point's position is from; spot and distant shine from -> to */
+  float cone_angle, cone_delta; /* spot, radians */
+  const char *path;          /* infinite: equal-area octahedral picture (pbrt book 3.8.3), square; null: uniform */
+  const vlImage *image;      /* or given directly, copied */
+  bool image_is_radiance;    /* true: colour is ignored, the picture holds RGB radiance */
+  vlColorSpace space;
+} vlLightDef;
+VL_API vlLightDef vl_default_light_def(vlLightKind kind);
+VL_API vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def);
+
+/* ---- shapes ---------------------------------------------------------------------------------------------------- */
+
+typedef enum vlShapeKind {
+  VL_SHAPE_TRIANGLES, VL_SHAPE_BILINEAR, VL_SHAPE_SPHERE, VL_SHAPE_DISK, VL_SHAPE_CYLINDER
+} vlShapeKind;
+
+typedef struct vlShapeDef {
+  uint32_t cookie;
+  vlSource source;
+  vlShapeKind kind;
+  vlGroupId group;                   /* 0: the world; else part of a group that instances place */
+  double group_from_shape[16];       /* shape space to group (or world) space */
+  bool reverse_orientation;          /* pbrt's: flips the normal; also flipped where the transform mirrors */
+  vlMaterialId material;             /* 0: a default diffuse 0.5 */
+  vlFloatInput alpha;                /* coverage; value 1: opaque */
+  vlEmissionId emission;             /* 0: none */
+  /* triangles: 3 indices a face; bilinear: 4 (pbrt's order p00 p10 p01 p11). Shape space. normals, tangents, uvs may
+   * be null. */
+  uint32_t vertices, faces;
+  const float *positions;            /* 3 a vertex */
+  const float *normals;              /* 3 a vertex */
+  const float *tangents;             /* 3 a vertex, pbrt's S */
+  const float *uvs;                  /* 2 a vertex */
+  const uint32_t *indices;
+  /* sphere, disk, cylinder: pbrt's, z axis, book 6.2-6.4; angles in radians */
+  float radius, inner_radius, z_min, z_max, height, phi_max;
+} vlShapeDef;
+VL_API vlShapeDef vl_default_shape_def(vlShapeKind kind);
+/* Errors (sticky): index out of range, position or normal that is not finite (the vertex is named), radius <= 0 ... */
+VL_API vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def);
+
+VL_API vlGroupId vl_scene_add_group(vlScene *scene, const char *name);
+/* Places a group in the world (groups do not nest). */
+VL_API void vl_scene_add_instance(vlScene *scene, vlGroupId group, const double world_from_group[16], vlSource source);
+
+/* ---- how the picture is to be taken: the scene file's own choices, defaults otherwise ---------------------------- */
+
+typedef enum vlTracer { VL_TRACER_PATH, VL_TRACER_RAYCAST, VL_TRACER_AMBIENT_OCCLUSION } vlTracer;
+typedef enum vlSamplerKind {
+  VL_SAMPLER_INDEPENDENT, VL_SAMPLER_REGULAR, VL_SAMPLER_STRATIFIED, VL_SAMPLER_NROOKS, VL_SAMPLER_MULTI_JITTERED,
+  VL_SAMPLER_HAMMERSLEY, VL_SAMPLER_HALTON, VL_SAMPLER_SOBOL, VL_SAMPLER_ZSOBOL
+} vlSamplerKind;
+typedef enum vlPixelFilterKind {
+  VL_PIXEL_FILTER_BOX, VL_PIXEL_FILTER_TRIANGLE, VL_PIXEL_FILTER_GAUSSIAN, VL_PIXEL_FILTER_MITCHELL,
+  VL_PIXEL_FILTER_LANCZOS, VL_PIXEL_FILTER_BLACKMAN_HARRIS
+} vlPixelFilterKind;
+typedef struct vlPixelFilter {
+  vlPixelFilterKind kind;
+  float radius_x, radius_y; /* pixels */
+  float sigma;              /* gaussian */
+  float b, c;               /* Mitchell */
+  float tau;                /* Lanczos */
+} vlPixelFilter;
+VL_API vlPixelFilter vl_default_pixel_filter(vlPixelFilterKind kind); /* pbrt-v4's default sizes */
+typedef enum vlColorMode { VL_COLOR_SPECTRAL, VL_COLOR_RGB } vlColorMode;
+typedef enum vlLightSampler { VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER, VL_LIGHT_SAMPLER_UNIFORM } vlLightSampler;
+
+typedef struct vlSceneSettings {
+  vlCameraDef camera;
+  uint32_t width, height;
+  uint32_t crop[4];            /* x0, y0, x1, y1 in pixels (x1, y1 exclusive) */
+  char output[512];            /* file name the scene asks for; may be empty */
+  float exposure;              /* sensor: imaging ratio, ISO etc. folded; default 1 */
+  vlColorSpace space;          /* of the output picture */
+  vlPixelFilter filter;
+  vlSamplerKind sampler;
+  uint32_t spp;
+  uint32_t sampler_seed;
+  vlTracer tracer;
+  uint32_t max_depth;          /* bounces; pbrt default 5 */
+  float ao_distance;           /* ambient occlusion: reach in scene units; infinity default */
+  bool ao_cosine;
+  vlLightSampler light_sampler;
+  vlColorMode color;
+} vlSceneSettings;
+/* Never null; may be changed. */
+VL_API vlSceneSettings *vl_scene_settings(vlScene *scene);
+
+VL_API vlResult vl_scene_create(vlContext *context, vlScene **scene);
+VL_API void vl_scene_destroy(vlScene *scene);
+/* The first error, VL_OK if none. error may be null. */
+VL_API vlResult vl_scene_result(const vlScene *scene, vlError *error);
+
+typedef struct vlLoadDef {
+  uint32_t cookie;
+  bool permissive; /* what is not understood yet is a warning, not an error */
+} vlLoadDef;
+VL_API vlLoadDef vl_default_load_def(void);
+/* Adds what a file says. The format is chosen by suffix (.pbrt, .pbrt.gz); relative names are relative to the
+ * file. Errors: SCENE, MISSING, IO, MEMORY, UNSUPPORTED (as SCENE with a clear message). def may be null. */
+VL_API vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
+
+typedef struct vlSceneInfo {
+  uint64_t shapes, triangles, vertices, textures, materials, lights, emissive_shapes, groups, instances;
+} vlSceneInfo;
+VL_API void vl_scene_info(const vlScene *scene, vlSceneInfo *info);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

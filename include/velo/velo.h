@@ -1,0 +1,11 @@
+/* velo/velo.h: everything. A program reads: load, build, make, render, develop, write. */
+#ifndef VELO_VELO_H
+#define VELO_VELO_H
+
+#include "velo/base.h"
+#include "velo/camera.h"
+#include "velo/image.h"
+#include "velo/render.h"
+#include "velo/scene.h"
+
+#endif

@@ -1,0 +1,23 @@
+/* base/array.h: a growable array of any type, by macros. `VL_ARRAY(T)` is the type, zero is empty.
+ *   VL_ARRAY(int) a = {0};  int *p = VL_PUSH(ctx, &a);  if (p) *p = 3;  for (size_t i = 0; i < a.count; i++) ... */
+#ifndef BASE_ARRAY_H
+#define BASE_ARRAY_H
+
+#include "base/context.h"
+
+#define VL_ARRAY(T) struct { T *items; size_t count, capacity; }
+
+/* Pointer to a new zeroed element at the end, or null when memory is out (the array is as before). */
+#define VL_PUSH(context, array)                                                                                        \
+  ((vl_array_grow((context), (void **)&(array)->items, &(array)->capacity, (array)->count, sizeof *(array)->items, 1)) \
+       ? &(array)->items[(array)->count++]                                                                             \
+       : NULL)
+/* Room for n more; bool. */
+#define VL_RESERVE(context, array, n) \
+  vl_array_grow((context), (void **)&(array)->items, &(array)->capacity, (array)->count, sizeof *(array)->items, (n))
+#define VL_ARRAY_FREE(context, array) \
+  (vl_free((context), (array)->items), (array)->items = NULL, (array)->count = (array)->capacity = 0)
+
+bool vl_array_grow(vlContext *context, void **items, size_t *capacity, size_t count, size_t size, size_t more);
+
+#endif

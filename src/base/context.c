@@ -1,0 +1,280 @@
+/* base/context.c: allocator with count, log, worker pool. See context.h. */
+#include "base/context.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/cookie.h"
+#include "base/isa.h"
+
+typedef struct Pool {
+  pthread_mutex_t mutex;
+  pthread_cond_t wake, done;
+  pthread_t *threads;
+  uint32_t thread_count; /* besides the caller */
+  bool stop;
+  uint64_t generation;
+  uint32_t running;
+  vlParallelBody *body;
+  void *body_user;
+  uint32_t count;
+  atomic_uint next;
+} Pool;
+
+struct vlContext {
+  vlContextDef def;
+  vlIsa isa;
+  atomic_size_t held, peak;
+  pthread_mutex_t log_mutex, run_mutex;
+  Pool pool;
+};
+
+typedef struct PoolSlot {
+  Pool *pool;
+  uint32_t worker;
+} PoolSlot;
+
+/* ---- memory: a header of 64 bytes before each block keeps its size, so that the count is exact --------------------- */
+
+enum { HEADER = 64 };
+typedef struct BlockHeader {
+  size_t size;   /* of the user part */
+  void *raw;     /* what the allocator returned */
+} BlockHeader;
+
+static void *default_allocate(void *user, size_t size) {
+  (void)user;
+  return malloc(size);
+}
+static void *default_reallocate(void *user, void *block, size_t size) {
+  (void)user;
+  return realloc(block, size);
+}
+static void default_release(void *user, void *block) {
+  (void)user;
+  free(block);
+}
+
+static BlockHeader *header_of(void *block) {
+  return (BlockHeader *)(void *)((char *)block - sizeof(BlockHeader));
+}
+
+static void count_memory(vlContext *context, size_t add, size_t sub) {
+  size_t now = atomic_fetch_add(&context->held, add - sub) + (add - sub);
+  size_t peak = atomic_load(&context->peak);
+  while (now > peak && !atomic_compare_exchange_weak(&context->peak, &peak, now)) {}
+}
+
+/* Every block is 64-byte aligned: one rule, and vector loads are always welcome. */
+void *vl_alloc(vlContext *context, size_t size) {
+  if (size > SIZE_MAX / 2) return NULL;
+  char *raw = context->def.allocator.allocate(context->def.allocator.user, size + 2 * HEADER);
+  if (!raw) return NULL;
+  char *block = (char *)(((uintptr_t)raw + sizeof(BlockHeader) + HEADER - 1) & ~(uintptr_t)(HEADER - 1));
+  *header_of(block) = (BlockHeader){size, raw};
+  count_memory(context, size, 0);
+  return block;
+}
+
+void *vl_alloc_array(vlContext *context, size_t count, size_t size) {
+  if (size && count > SIZE_MAX / 2 / size) return NULL;
+  return vl_alloc(context, count * size);
+}
+
+void *vl_alloc_aligned(vlContext *context, size_t count, size_t size) {
+  return vl_alloc_array(context, count, size);
+}
+
+void *vl_alloc_zero(vlContext *context, size_t count, size_t size) {
+  void *block = vl_alloc_array(context, count, size);
+  if (block) memset(block, 0, count * size);
+  return block;
+}
+
+void *vl_realloc_array(vlContext *context, void *block, size_t count, size_t size) {
+  if (!block) return vl_alloc_array(context, count, size);
+  void *fresh = vl_alloc_array(context, count, size);
+  if (!fresh) return NULL;
+  size_t old = header_of(block)->size;
+  memcpy(fresh, block, old < count * size ? old : count * size);
+  vl_free(context, block);
+  return fresh;
+}
+
+void vl_free(vlContext *context, void *block) {
+  if (!block) return;
+  BlockHeader header = *header_of(block);
+  count_memory(context, 0, header.size);
+  context->def.allocator.release(context->def.allocator.user, header.raw);
+}
+
+char *vl_strdup(vlContext *context, const char *text) {
+  if (!text) return NULL;
+  size_t size = strlen(text) + 1;
+  char *copy = vl_alloc(context, size);
+  if (copy) memcpy(copy, text, size);
+  return copy;
+}
+
+size_t vl_context_memory(const vlContext *context, size_t *peak) {
+  if (peak) *peak = atomic_load(&context->peak);
+  return atomic_load(&context->held);
+}
+
+/* ---- log ---------------------------------------------------------------------------------------------------------- */
+
+void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const char *format, ...) {
+  if (!context->def.log) return;
+  char text[1024];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  pthread_mutex_lock(&context->log_mutex);
+  context->def.log(context->def.log_user, level, where, text);
+  pthread_mutex_unlock(&context->log_mutex);
+}
+
+/* ---- workers ------------------------------------------------------------------------------------------------------ */
+
+static void pool_work(Pool *pool, uint32_t worker) {
+  for (;;) {
+    uint32_t index = atomic_fetch_add(&pool->next, 1);
+    if (index >= pool->count) return;
+    pool->body(pool->body_user, index, worker);
+  }
+}
+
+static void *pool_thread(void *argument) {
+  PoolSlot slot = *(PoolSlot *)argument;
+  free(argument);
+  Pool *pool = slot.pool;
+  uint64_t seen = 0;
+  pthread_mutex_lock(&pool->mutex);
+  for (;;) {
+    while (!pool->stop && pool->generation == seen) pthread_cond_wait(&pool->wake, &pool->mutex);
+    if (pool->stop) break;
+    seen = pool->generation;
+    pthread_mutex_unlock(&pool->mutex);
+    pool_work(pool, slot.worker);
+    pthread_mutex_lock(&pool->mutex);
+    if (--pool->running == 0) pthread_cond_signal(&pool->done);
+  }
+  pthread_mutex_unlock(&pool->mutex);
+  return NULL;
+}
+
+static void pool_stop(Pool *pool) {
+  pthread_mutex_lock(&pool->mutex);
+  pool->stop = true;
+  pthread_cond_broadcast(&pool->wake);
+  pthread_mutex_unlock(&pool->mutex);
+  for (uint32_t i = 0; i < pool->thread_count; i++) pthread_join(pool->threads[i], NULL);
+  free(pool->threads);
+  pthread_mutex_destroy(&pool->mutex);
+  pthread_cond_destroy(&pool->wake);
+  pthread_cond_destroy(&pool->done);
+}
+
+static vlResult pool_start(Pool *pool, uint32_t threads) {
+  pthread_mutex_init(&pool->mutex, NULL);
+  pthread_cond_init(&pool->wake, NULL);
+  pthread_cond_init(&pool->done, NULL);
+  pool->threads = threads > 1 ? calloc(threads - 1, sizeof *pool->threads) : NULL;
+  if (threads > 1 && !pool->threads) return VL_ERROR_MEMORY;
+  for (uint32_t i = 1; i < threads; i++) {
+    PoolSlot *slot = malloc(sizeof *slot);
+    if (slot) {
+      *slot = (PoolSlot){pool, i};
+      if (pthread_create(&pool->threads[pool->thread_count], NULL, pool_thread, slot) == 0) {
+        pool->thread_count++;
+        continue;
+      }
+      free(slot);
+    }
+    pool_stop(pool);
+    return VL_ERROR_MEMORY;
+  }
+  return VL_OK;
+}
+
+void vl_parallel_for(vlContext *context, uint32_t count, vlParallelBody *body, void *body_user) {
+  if (count == 0) return;
+  if (context->def.parallel_for) {
+    context->def.parallel_for(context->def.parallel_for_user, count, body, body_user);
+    return;
+  }
+  Pool *pool = &context->pool;
+  pthread_mutex_lock(&context->run_mutex); /* one loop at a time, whoever calls */
+  pthread_mutex_lock(&pool->mutex);
+  pool->body = body;
+  pool->body_user = body_user;
+  pool->count = count;
+  atomic_store(&pool->next, 0);
+  pool->running = pool->thread_count;
+  pool->generation++;
+  pthread_cond_broadcast(&pool->wake);
+  pthread_mutex_unlock(&pool->mutex);
+  pool_work(pool, 0);
+  pthread_mutex_lock(&pool->mutex);
+  while (pool->running > 0) pthread_cond_wait(&pool->done, &pool->mutex);
+  pthread_mutex_unlock(&pool->mutex);
+  pthread_mutex_unlock(&context->run_mutex);
+}
+
+/* ---- life ---------------------------------------------------------------------------------------------------------- */
+
+vlContextDef vl_default_context_def(void) {
+  long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  return (vlContextDef){
+      .cookie = VL_COOKIE_CONTEXT,
+      .allocator = {NULL, default_allocate, default_reallocate, default_release},
+      .threads = cores > 0 ? (uint32_t)cores : 1,
+      .isa = VL_ISA_AUTO,
+  };
+}
+
+vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
+  if (!result) return VL_ERROR_ARGUMENT;
+  *result = NULL;
+  vlContextDef d = def ? *def : vl_default_context_def();
+  if (d.cookie != VL_COOKIE_CONTEXT || !d.allocator.allocate || !d.allocator.release || d.threads == 0 || d.threads > 4096)
+    return VL_ERROR_ARGUMENT;
+  vlIsa isa = VL_ISA_V2;
+  vlResult r = vl_isa_choose(d.isa, &isa);
+  if (r != VL_OK) return r;
+  vlContext *context = d.allocator.allocate(d.allocator.user, sizeof *context);
+  if (!context) return VL_ERROR_MEMORY;
+  memset(context, 0, sizeof *context);
+  context->def = d;
+  context->isa = isa;
+  pthread_mutex_init(&context->log_mutex, NULL);
+  pthread_mutex_init(&context->run_mutex, NULL);
+  r = d.parallel_for ? VL_OK : pool_start(&context->pool, d.threads);
+  if (r != VL_OK) {
+    d.allocator.release(d.allocator.user, context);
+    return r;
+  }
+  *result = context;
+  return VL_OK;
+}
+
+void vl_context_destroy(vlContext *context) {
+  if (!context) return;
+  if (!context->def.parallel_for) pool_stop(&context->pool);
+  pthread_mutex_destroy(&context->log_mutex);
+  pthread_mutex_destroy(&context->run_mutex);
+  context->def.allocator.release(context->def.allocator.user, context);
+}
+
+vlIsa vl_context_isa(const vlContext *context) {
+  return context->isa;
+}
+
+uint32_t vl_context_threads(const vlContext *context) {
+  return context->def.threads;
+}

@@ -1,0 +1,29 @@
+/* base/context.h: what every object holds on to: the allocator with its count, the log, the workers.
+ * Internal to the library; the public face is velo/base.h. */
+#ifndef BASE_CONTEXT_H
+#define BASE_CONTEXT_H
+
+#include <stdarg.h>
+
+#include "velo/base.h"
+
+/* Counted allocation through the context. Null on failure or when size overflows; zeroed where said. All blocks must be
+ * released with vl_free, realloc keeps the content. count*size is checked. Thread-safe. */
+void *vl_alloc(vlContext *context, size_t size);
+void *vl_alloc_zero(vlContext *context, size_t count, size_t size);
+void *vl_alloc_array(vlContext *context, size_t count, size_t size);
+/* 64-byte aligned (for vector loads); release with vl_free as any other. */
+void *vl_alloc_aligned(vlContext *context, size_t count, size_t size);
+void *vl_realloc_array(vlContext *context, void *block, size_t count, size_t size);
+void vl_free(vlContext *context, void *block);
+char *vl_strdup(vlContext *context, const char *text); /* null for null or on failure */
+
+/* Log a warning/info; where may be null. printf-like. */
+void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* Runs body for each index in [0, count) on the context's workers (or the caller's parallel_for). Returns when all are
+ * done. Not from inside a body. */
+void vl_parallel_for(vlContext *context, uint32_t count, vlParallelBody *body, void *body_user);
+
+#endif

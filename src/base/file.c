@@ -1,0 +1,217 @@
+/* base/file.c: see file.h. */
+#include "base/file.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include "base/error.h"
+#include "base/text.h"
+
+double vl_seconds(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* The name in the folder of `path` that is nearest to its last part; empty when none is near. */
+static void nearest_file(const char *path, char *result, size_t size) {
+  result[0] = 0;
+  char folder[4096];
+  const char *slash = strrchr(path, '/');
+  const char *name = slash ? slash + 1 : path;
+  int n = slash ? snprintf(folder, sizeof folder, "%.*s/", (int)(slash - path), path) : snprintf(folder, sizeof folder, ".");
+  if (n < 0 || (size_t)n >= sizeof folder) return;
+  DIR *directory = opendir(folder);
+  if (!directory) return;
+  uint32_t best = (uint32_t)strlen(name) / 3 + 1;
+  struct dirent *entry;
+  for (int seen = 0; seen < 20000 && (entry = readdir(directory)); seen++) {
+    if (entry->d_name[0] == '.') continue;
+    uint32_t d = vl_edit_distance(name, entry->d_name);
+    if (d < best || (d == best && result[0] && strcmp(entry->d_name, result) < 0)) {
+      best = d;
+      snprintf(result, size, "%s", entry->d_name);
+    }
+  }
+  closedir(directory);
+}
+
+static vlResult fail_open(const char *path, int code, vlError *error) {
+  if (code == ENOENT || code == ENOTDIR) {
+    char near[256];
+    nearest_file(path, near, sizeof near);
+    if (near[0]) return vl_fail(error, VL_ERROR_MISSING, "no such file: %s (did you mean \"%s\"?)", path, near);
+    return vl_fail(error, VL_ERROR_MISSING, "no such file: %s", path);
+  }
+  return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(code));
+}
+
+static vlResult gunzip_all(vlContext *context, const char *path, char **data, size_t *size, vlError *error) {
+  z_stream z;
+  memset(&z, 0, sizeof z);
+  if (inflateInit2(&z, 15 + 16) != Z_OK) return vl_fail_memory(error);
+  size_t capacity = *size * 4 + 65536, used = 0;
+  char *out = vl_alloc(context, capacity + 1);
+  z.next_in = (Bytef *)*data;
+  size_t left = *size;
+  int status = out ? Z_OK : Z_MEM_ERROR;
+  while (status == Z_OK) {
+    if (z.avail_in == 0) {
+      z.avail_in = left > 1u << 30 ? 1u << 30 : (uInt)left;
+      left -= z.avail_in;
+    }
+    if (capacity == used) {
+      char *more = vl_realloc_array(context, out, capacity * 2 + 1, 1);
+      if (!more) {
+        status = Z_MEM_ERROR;
+        break;
+      }
+      out = more;
+      capacity *= 2;
+    }
+    size_t room = capacity - used > 1u << 30 ? 1u << 30 : capacity - used;
+    z.next_out = (Bytef *)out + used;
+    z.avail_out = (uInt)room;
+    uInt before_in = z.avail_in;
+    status = inflate(&z, Z_NO_FLUSH);
+    used += room - z.avail_out;
+    if (status == Z_STREAM_END && (z.avail_in || left)) { /* gzip files may be several members, one after the other */
+      status = inflateReset2(&z, 15 + 16);
+    } else if (status == Z_BUF_ERROR || (status == Z_OK && before_in == 0 && left == 0 && room == z.avail_out)) {
+      status = Z_DATA_ERROR; /* ended too early */
+    }
+  }
+  inflateEnd(&z);
+  if (status != Z_STREAM_END) {
+    vl_free(context, out);
+    if (status == Z_MEM_ERROR) return vl_fail_memory(error);
+    return vl_fail(error, VL_ERROR_SCENE, "%s: broken gzip file", path);
+  }
+  out[used] = 0;
+  vl_free(context, *data);
+  *data = out;
+  *size = used;
+  return VL_OK;
+}
+
+vlResult vl_file_read(vlContext *context, const char *path, bool gunzip, char **data, size_t *size, vlError *error) {
+  *data = NULL;
+  *size = 0;
+  int fd = open(path, O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return fail_open(path, errno, error);
+  struct stat info;
+  if (fstat(fd, &info) != 0 || S_ISDIR(info.st_mode)) {
+    close(fd);
+    return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, S_ISDIR(info.st_mode) ? "is a folder" : strerror(errno));
+  }
+  size_t capacity = info.st_size > 0 ? (size_t)info.st_size : 65536, used = 0;
+  char *block = vl_alloc(context, capacity + 1);
+  vlResult result = block ? VL_OK : vl_fail_memory(error);
+  while (result == VL_OK) {
+    ssize_t got = read(fd, block + used, capacity - used);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) {
+      result = vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(errno));
+    } else if (got == 0) {
+      break;
+    } else if ((used += (size_t)got) == capacity) { /* pipes tell no size; a full block may have more to come */
+      char probe;
+      ssize_t more = read(fd, &probe, 1);
+      if (more <= 0) break;
+      char *grown = vl_realloc_array(context, block, capacity * 2 + 1, 1);
+      if (!grown) {
+        result = vl_fail_memory(error);
+      } else {
+        block = grown;
+        capacity *= 2;
+        block[used++] = probe;
+      }
+    }
+  }
+  close(fd);
+  if (result == VL_OK) {
+    block[used] = 0;
+    if (gunzip && used >= 2 && (unsigned char)block[0] == 0x1f && (unsigned char)block[1] == 0x8b)
+      result = gunzip_all(context, path, &block, &used, error);
+  }
+  if (result != VL_OK) {
+    vl_free(context, block);
+    return result;
+  }
+  *data = block;
+  *size = used;
+  return VL_OK;
+}
+
+vlResult vl_file_open_write(vlFileWriter *writer, const char *path, vlError *error) {
+  writer->failed_errno = 0;
+  writer->descriptor = -1;
+  int n = snprintf(writer->path, sizeof writer->path, "%s", path);
+  if (n < 0 || (size_t)n >= sizeof writer->path) return vl_fail(error, VL_ERROR_IO, "cannot write: path too long");
+  struct stat info;
+  if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) { /* a device or pipe cannot be replaced, only written to */
+    writer->temporary[0] = 0;
+    writer->descriptor = S_ISDIR(info.st_mode) ? (errno = EISDIR, -1) : open(path, O_WRONLY | O_CLOEXEC);
+    if (writer->descriptor >= 0) return VL_OK;
+    return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(errno));
+  }
+  for (unsigned i = 0; i < 100; i++) {
+    snprintf(writer->temporary, sizeof writer->temporary, "%s.%ld.%u.tmp", path, (long)getpid(), i);
+    writer->descriptor = open(writer->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (writer->descriptor >= 0) return VL_OK;
+    if (errno != EEXIST) break;
+  }
+  return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(errno));
+}
+
+void vl_file_write(vlFileWriter *writer, const void *data, size_t size) {
+  const char *bytes = data;
+  while (size && !writer->failed_errno) {
+    ssize_t n = write(writer->descriptor, bytes, size);
+    if (n < 0) {
+      if (errno != EINTR) writer->failed_errno = errno;
+    } else {
+      bytes += n;
+      size -= (size_t)n;
+    }
+  }
+}
+
+void vl_file_write_at(vlFileWriter *writer, const void *data, size_t size, uint64_t offset) {
+  const char *bytes = data;
+  while (size && !writer->failed_errno) {
+    ssize_t n = pwrite(writer->descriptor, bytes, size, (off_t)offset);
+    if (n < 0) {
+      if (errno != EINTR) writer->failed_errno = errno;
+    } else {
+      bytes += n;
+      offset += (uint64_t)n;
+      size -= (size_t)n;
+    }
+  }
+}
+
+vlResult vl_file_commit(vlFileWriter *writer, vlError *error) {
+  if (!writer->failed_errno && fsync(writer->descriptor) != 0 && errno != EINVAL && errno != EROFS)
+    writer->failed_errno = errno;
+  if (close(writer->descriptor) != 0 && !writer->failed_errno) writer->failed_errno = errno;
+  writer->descriptor = -1;
+  if (!writer->failed_errno && writer->temporary[0] && rename(writer->temporary, writer->path) != 0) writer->failed_errno = errno;
+  if (!writer->failed_errno) return VL_OK;
+  if (writer->temporary[0]) unlink(writer->temporary);
+  return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", writer->path, strerror(writer->failed_errno));
+}
+
+void vl_file_abandon(vlFileWriter *writer) {
+  if (writer->descriptor < 0) return;
+  close(writer->descriptor);
+  writer->descriptor = -1;
+  if (writer->temporary[0]) unlink(writer->temporary);
+}

@@ -1,0 +1,28 @@
+/* math/hash.h: integer hashing, for random numbers that depend on (seed, pixel, sample, dimension) alone. All 32-bit,
+ * so that the loops vectorise on every instruction set. */
+#ifndef MATH_HASH_H
+#define MATH_HASH_H
+
+#include <stdint.h>
+
+/* Low-bias 32-bit mixer (found by search, Wellons 2018, "lowbias32"). */
+static inline uint32_t vl_hash(uint32_t x) {
+  x ^= x >> 16;
+  x *= 0x7feb352du;
+  x ^= x >> 15;
+  x *= 0x846ca68bu;
+  x ^= x >> 16;
+  return x;
+}
+static inline uint32_t vl_hash2(uint32_t a, uint32_t b) {
+  return vl_hash(a ^ (vl_hash(b) + 0x9e3779b9u + (a << 6) + (a >> 2)));
+}
+static inline uint32_t vl_hash3(uint32_t a, uint32_t b, uint32_t c) {
+  return vl_hash2(vl_hash2(a, b), c);
+}
+/* 24 random bits to [0, 1). */
+static inline float vl_unit_float(uint32_t bits) {
+  return (float)(bits >> 8) * 0x1p-24f;
+}
+
+#endif

@@ -1,0 +1,78 @@
+/* math/vec.h: vec3 by value. Everything inline: the hot loops are made of these. No FMA, no reassociation: the order
+ * of operations written here is the order of the bits. */
+#ifndef MATH_VEC_H
+#define MATH_VEC_H
+
+#include "velo/base.h"
+
+static inline vlVec3 vl_vec3(float x, float y, float z) {
+  return (vlVec3){x, y, z};
+}
+static inline vlVec3 vl_add(vlVec3 a, vlVec3 b) {
+  return vl_vec3(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+static inline vlVec3 vl_sub(vlVec3 a, vlVec3 b) {
+  return vl_vec3(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+static inline vlVec3 vl_mul(vlVec3 a, float s) {
+  return vl_vec3(a.x * s, a.y * s, a.z * s);
+}
+static inline vlVec3 vl_neg(vlVec3 a) {
+  return vl_vec3(-a.x, -a.y, -a.z);
+}
+static inline float vl_dot(vlVec3 a, vlVec3 b) {
+  return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+static inline vlVec3 vl_cross(vlVec3 a, vlVec3 b) {
+  return vl_vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+static inline float vl_length2(vlVec3 a) {
+  return vl_dot(a, a);
+}
+static inline float vl_length(vlVec3 a) {
+  return __builtin_sqrtf(vl_dot(a, a));
+}
+/* The zero vector stays zero. */
+static inline vlVec3 vl_normalize(vlVec3 a) {
+  float l = vl_dot(a, a);
+  float s = l > 0.0f ? 1.0f / __builtin_sqrtf(l) : 0.0f;
+  return vl_mul(a, s);
+}
+static inline float vl_min(float a, float b) {
+  return a < b ? a : b;
+}
+static inline float vl_max(float a, float b) {
+  return a > b ? a : b;
+}
+static inline float vl_clamp(float x, float low, float high) {
+  return x < low ? low : x > high ? high : x;
+}
+static inline float vl_abs(float x) {
+  return __builtin_fabsf(x);
+}
+static inline float vl_lerp(float t, float a, float b) {
+  return (1.0f - t) * a + t * b;
+}
+/* Largest float below 1. */
+#define VL_ONE_MINUS_EPSILON 0x1.fffffep-1f
+#define VL_PI 3.14159265358979323846f
+#define VL_INV_PI 0.31830988618379067154f
+#define VL_INFINITY __builtin_inff()
+
+/* Orthonormal basis around unit n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited"). */
+typedef struct vlFrame {
+  vlVec3 x, y, z;
+} vlFrame;
+static inline vlFrame vl_frame_from_z(vlVec3 n) {
+  float sign = __builtin_copysignf(1.0f, n.z);
+  float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
+  return (vlFrame){{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+}
+static inline vlVec3 vl_to_local(vlFrame f, vlVec3 v) {
+  return vl_vec3(vl_dot(v, f.x), vl_dot(v, f.y), vl_dot(v, f.z));
+}
+static inline vlVec3 vl_from_local(vlFrame f, vlVec3 v) {
+  return vl_add(vl_add(vl_mul(f.x, v.x), vl_mul(f.y, v.y)), vl_mul(f.z, v.z));
+}
+
+#endif

@@ -1,0 +1,45 @@
+/* camera/compile.c: vlCamera (the value the public face hands out) to vlCameraCompiled (what the batches read). */
+#include <math.h>
+
+#include "camera/rays.h"
+
+const vlCameraKernels *vl_camera_kernels(vlIsa isa) {
+  switch (isa) {
+    case VL_ISA_V4: return &vl_camera_kernels_v4;
+    case VL_ISA_V3: return &vl_camera_kernels_v3;
+    default: return &vl_camera_kernels_v2;
+  }
+}
+
+void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
+  const double *m = camera->world_from_camera;
+  *c = (vlCameraCompiled){
+      .projection = camera->projection,
+      .has_lens = camera->lens_radius > 0.0,
+      .cx = camera->cx,
+      .cy = camera->cy,
+      .skew_ratio = camera->skew / camera->fy,
+      .aspect = camera->fx / camera->fy,
+      .focal = camera->fx,
+      .inv_fx = 1.0 / camera->fx,
+      .inv_fy = 1.0 / camera->fy,
+      /* + 0.0 turns -0 into 0, so that an axis that plays no part leaves no sign behind */
+      .rotation = {m[0] + 0.0, m[1] + 0.0, m[2] + 0.0, m[4] + 0.0, m[5] + 0.0, m[6] + 0.0, m[8] + 0.0, m[9] + 0.0,
+                   m[10] + 0.0},
+      .position = {m[3] + 0.0, m[7] + 0.0, m[11] + 0.0},
+      .lens_radius = camera->lens_radius,
+      .inv_focus = 1.0 / camera->focus_distance,
+      .shutter_open = camera->shutter_open,
+      .shutter_time = camera->shutter_close - camera->shutter_open,
+      .near_plane = camera->near_plane,
+      .far_plane = camera->far_plane,
+  };
+  double size = 1.0 / sqrt(camera->fx * camera->fy); /* a pixel's side at z = 1, or its width in camera units */
+  if (camera->projection == VL_PROJECTION_PERSPECTIVE) {
+    c->pixel_spread = (float)size;
+  } else {
+    double det =
+        m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+    c->pixel_width = (float)(size * cbrt(fabs(det)));
+  }
+}

@@ -1,0 +1,42 @@
+/* camera/lens.h: the thin lens, applied once after the projection, the same for all of them. A disk in the plane z = 0:
+ * whatever point of it a ray starts from, it meets the others in the plane of focus z = focus distance (pbrt
+ * book 5.2.3). */
+#ifndef CAMERA_LENS_H
+#define CAMERA_LENS_H
+
+#include "camera/local.h"
+#include "camera/rays.h"
+
+typedef struct vlLensPoint {
+  float x, y;
+} vlLensPoint;
+
+/* [0,1)^2 to the unit disk, area-preserving, square rings to circles (Shirley and Chiu, "A low distortion map between
+ * disk and square", 1997). The angle inside a quarter stays within pi/4, so short Taylor polynomials serve for sine and
+ * cosine (error below 4e-7 of the radius) and no branch is needed. */
+static inline vlLensPoint vl_lens_disk(float u, float v) {
+  float a = 2.0f * u - 1.0f, b = 2.0f * v - 1.0f;
+  float aa = a < 0.0f ? -a : a, bb = b < 0.0f ? -b : b;
+  int wide = aa > bb;
+  float radius = wide ? a : b, other = wide ? b : a;
+  float divisor = radius == 0.0f ? 1.0f : radius;
+  float angle = 0.785398163f * (other / divisor);
+  float q = angle * angle;
+  float sine = angle * (1.0f + q * (-1.66666667e-1f + q * (8.33333333e-3f + q * -1.98412698e-4f)));
+  float cosine = 1.0f + q * (-0.5f + q * (4.16666667e-2f + q * (-1.38888889e-3f + q * 2.48015873e-5f)));
+  float along = radius * cosine, across = radius * sine;
+  return (vlLensPoint){wide ? along : across, wide ? across : along};
+}
+
+/* With r = o + s d and the point of focus at z = F: start at o + l, aim at o + d F/dz. */
+static inline vlCameraLocal vl_lens_apply(const vlCameraCompiled *c, vlCameraLocal r, vlLensPoint disk) {
+  double lx = c->lens_radius * (double)disk.x, ly = c->lens_radius * (double)disk.y;
+  double bend = r.dz * c->inv_focus;
+  r.ox += lx;
+  r.oy += ly;
+  r.dx -= lx * bend;
+  r.dy -= ly * bend;
+  return r;
+}
+
+#endif

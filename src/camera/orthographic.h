@@ -1,0 +1,24 @@
+/* camera/orthographic.h: the orthographic projection, both directions: projectors are parallel to the view axis and
+ * size does not depend on distance. fx, fy are pixels per scene unit. */
+#ifndef CAMERA_ORTHOGRAPHIC_H
+#define CAMERA_ORTHOGRAPHIC_H
+
+#include "camera/local.h"
+#include "camera/rays.h"
+
+/* x, y: pixels from the principal point. */
+static inline vlCameraLocal vl_orthographic_unproject(const vlCameraCompiled *c, double x, double y) {
+  vlCameraLocal r;
+  r.ox = (x - c->skew_ratio * y) * c->inv_fx;
+  r.oy = y * c->inv_fy;
+  r.dx = 0.0;
+  r.dy = 0.0;
+  r.dz = 1.0;
+  return r;
+}
+
+static inline vlFilmPoint vl_orthographic_project(const vlCamera *c, vlCameraPoint p) {
+  return (vlFilmPoint){c->fx * p.x + c->skew * p.y + c->cx, c->fy * p.y + c->cy};
+}
+
+#endif

@@ -1,0 +1,27 @@
+/* camera/perspective.h: the perspective projection, both directions: all projectors meet in the centre of projection,
+ * the view plane is flat. (The lecture's "pinhole camera"; Suffern, Ray Tracing from the Ground Up, ch. 8 and 9.) */
+#ifndef CAMERA_PERSPECTIVE_H
+#define CAMERA_PERSPECTIVE_H
+
+#include "camera/local.h"
+#include "camera/rays.h"
+
+/* x, y: pixels from the principal point. The direction keeps the lecture's form, with the view plane at the distance fx
+ * and pixels of size 1: (x_v, y_v, d), not divided by d; so no rounding stands between it and the slides. */
+static inline vlCameraLocal vl_perspective_unproject(const vlCameraCompiled *c, double x, double y) {
+  vlCameraLocal r;
+  r.ox = 0.0;
+  r.oy = 0.0;
+  r.dx = x - c->skew_ratio * y;
+  r.dy = y * c->aspect;
+  r.dz = c->focal;
+  return r;
+}
+
+/* p in camera space, p.z > 0. */
+static inline vlFilmPoint vl_perspective_project(const vlCamera *c, vlCameraPoint p) {
+  double x = p.x / p.z, y = p.y / p.z;
+  return (vlFilmPoint){c->fx * x + c->skew * y + c->cx, c->fy * y + c->cy};
+}
+
+#endif

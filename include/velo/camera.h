@@ -20,7 +20,10 @@ typedef enum vlFovAxis {
  *
  * Focal length, any of: fov + fov_axis; view_distance d, zoom, pixel_size s (f_px = zoom d / s, the lecture);
  * focal_mm + sensor_width_mm; fx, fy in pixels. Principal point cx, cy in pixels from the window's top left corner;
- * default the centre. Orthographic: pixel_size (scene units per pixel) with zoom, or screen_* in scene units.
+ * default the centre. fov is that of a centred window. With no way given: fov 90 degrees across the smaller side. zoom and
+ * pixel_size act on d only: given without it they are an error. fx alone or fy alone, focal_mm: square pixels.
+ * Orthographic: fx, fy (pixels per scene unit); pixel_size (scene units per pixel) with zoom; or screen_* in scene units;
+ * default -1 to 1 across the smaller side.
  *
  * Pose: eye, lookat, up, roll (the lecture); or world_from_camera (then eye, lookat, up are ignored). */
 typedef struct vlCameraDef {

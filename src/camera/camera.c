@@ -1,0 +1,155 @@
+/* camera/camera.c: the public face of the room: def to camera, another resolution, pixels to rays and points to pixels.
+ */
+#include <math.h>
+
+#include "base/cookie.h"
+#include "base/error.h"
+#include "camera/orthographic.h"
+#include "camera/parts.h"
+#include "camera/perspective.h"
+#include "camera/place.h"
+#include "camera/rays.h"
+
+vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height) {
+  return (vlCameraDef){
+      .cookie = VL_COOKIE_CAMERA,
+      .projection = VL_PROJECTION_PERSPECTIVE,
+      .width = width,
+      .height = height,
+      .fov = VL_UNSET,
+      .fov_axis = VL_FOV_SMALLER,
+      .view_distance = VL_UNSET,
+      .zoom = VL_UNSET,
+      .pixel_size = VL_UNSET,
+      .focal_mm = VL_UNSET,
+      .sensor_width_mm = VL_UNSET,
+      .fx = VL_UNSET,
+      .fy = VL_UNSET,
+      .skew = VL_UNSET,
+      .cx = VL_UNSET,
+      .cy = VL_UNSET,
+      .screen_min_x = VL_UNSET,
+      .screen_max_x = VL_UNSET,
+      .screen_min_y = VL_UNSET,
+      .screen_max_y = VL_UNSET,
+      .lookat = {0.0, 0.0, -1.0},
+      .up = {0.0, 1.0, 0.0},
+      .world_from_camera = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+      .focus_distance = VL_UNSET,
+      .shutter_close = 1.0,
+      .exposure_time = 1.0,
+      .far_plane = INFINITY,
+  };
+}
+
+static vlResult check_vector(const char *name, const double v[3], vlError *error) {
+  for (int i = 0; i < 3; i++)
+    if (!isfinite(v[i]))
+      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is (%g %g %g); it must be finite", name, v[0], v[1], v[2]);
+  return VL_OK;
+}
+
+/* All that is neither intrinsics nor pose. */
+static vlResult check_rest(const vlCameraDef *d, vlError *error) {
+  if ((uint32_t)d->projection > VL_PROJECTION_ORTHOGRAPHIC)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown projection %d", (int)d->projection);
+  if ((uint32_t)d->fov_axis > VL_FOV_LARGER)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown field-of-view axis %d", (int)d->fov_axis);
+  if (d->width == 0 || d->height == 0 || d->width > 1u << 24 || d->height > 1u << 24)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a picture of %u x %u pixels; each side must be 1 to 16777216",
+                   d->width, d->height);
+  if (!d->has_matrix) {
+    vlResult result = check_vector("eye", d->eye, error);
+    if (result == VL_OK) result = check_vector("lookat", d->lookat, error);
+    if (result == VL_OK) result = check_vector("up", d->up, error);
+    if (result != VL_OK) return result;
+  }
+  if (!isfinite(d->roll)) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: roll is %g; it must be finite", d->roll);
+  if (!(d->lens_radius >= 0.0) || isinf(d->lens_radius))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: lens radius is %g; it must be 0 (a pinhole) or above",
+                   d->lens_radius);
+  if (d->focus_distance <= 0.0)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focus distance is %g; it must be above zero", d->focus_distance);
+  if (!isfinite(d->shutter_open) || !isfinite(d->shutter_close) || d->shutter_close < d->shutter_open)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the shutter opens at %g and closes at %g", d->shutter_open,
+                   d->shutter_close);
+  if (!(d->exposure_time > 0.0) || isinf(d->exposure_time))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: exposure time is %g; it must be above zero", d->exposure_time);
+  if (!(d->near_plane >= 0.0) || !(d->far_plane > d->near_plane))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: near plane %g and far plane %g; needed is 0 <= near < far",
+                   d->near_plane, d->far_plane);
+  return VL_OK;
+}
+
+vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error) {
+  vl_error_clear(error);
+  if (warning) *warning = NULL;
+  if (!def || !camera) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: null argument");
+  if (def->cookie != VL_COOKIE_CAMERA)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the def was not made by vl_default_camera_def");
+  vlCamera made = {
+      .projection = def->projection,
+      .width = def->width,
+      .height = def->height,
+      .lens_radius = def->lens_radius,
+      .focus_distance = vl_is_unset(def->focus_distance) ? INFINITY : def->focus_distance,
+      .shutter_open = def->shutter_open,
+      .shutter_close = def->shutter_close,
+      .exposure_time = def->exposure_time,
+      .near_plane = def->near_plane,
+      .far_plane = def->far_plane,
+  };
+  vlResult result = check_rest(def, error);
+  if (result == VL_OK) result = vl_camera_intrinsics(def, &made, error);
+  if (result == VL_OK) result = vl_camera_pose(def, &made, warning, error);
+  if (result == VL_OK) *camera = made;
+  return result;
+}
+
+vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t height, vlCamera *result) {
+  if (!camera || !result || width == 0 || height == 0 || width > 1u << 24 || height > 1u << 24)
+    return VL_ERROR_ARGUMENT;
+  double before = camera->width < camera->height ? camera->width : camera->height;
+  double scale = (width < height ? width : height) / before;
+  vlCamera resized = *camera;
+  resized.width = width;
+  resized.height = height;
+  resized.fx *= scale;
+  resized.fy *= scale;
+  resized.skew *= scale;
+  /* the principal point keeps its place relative to the centre */
+  resized.cx = 0.5 * width + (camera->cx - 0.5 * camera->width) * scale;
+  resized.cy = 0.5 * height + (camera->cy - 0.5 * camera->height) * scale;
+  *result = resized;
+  return VL_OK;
+}
+
+bool vl_camera_unproject(const vlCamera *camera, double x, double y, double origin[3], double direction[3]) {
+  if (!camera || !isfinite(x) || !isfinite(y)) return false;
+  vlCameraCompiled c;
+  vl_camera_compile(camera, &c);
+  double px = x - c.cx, py = y - c.cy;
+  vlCameraLocal r = c.projection == VL_PROJECTION_ORTHOGRAPHIC ? vl_orthographic_unproject(&c, px, py)
+                                                               : vl_perspective_unproject(&c, px, py);
+  vlWorldRay w = vl_camera_place(&c, r);
+  origin[0] = w.ox, origin[1] = w.oy, origin[2] = w.oz;
+  direction[0] = w.dx * w.inv_length, direction[1] = w.dy * w.inv_length, direction[2] = w.dz * w.inv_length;
+  return isfinite(direction[0]) && isfinite(direction[1]) && isfinite(direction[2]);
+}
+
+bool vl_camera_project(const vlCamera *camera, const double point[3], double pixel[2], double *z) {
+  if (!camera) return false;
+  const double *m = camera->camera_from_world;
+  vlCameraPoint p = {m[0] * point[0] + m[1] * point[1] + m[2] * point[2] + m[3],
+                     m[4] * point[0] + m[5] * point[1] + m[6] * point[2] + m[7],
+                     m[8] * point[0] + m[9] * point[1] + m[10] * point[2] + m[11]};
+  bool orthographic = camera->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  /* a perspective camera sees nothing in its own plane; an orthographic one stands in it. NaN fails too. */
+  if (!(orthographic ? p.z >= 0.0 : p.z > 0.0)) return false;
+  vlFilmPoint f = orthographic ? vl_orthographic_project(camera, p) : vl_perspective_project(camera, p);
+  if (!isfinite(f.x) || !isfinite(f.y)) return false;
+  pixel[0] = f.x;
+  pixel[1] = f.y;
+  if (z) *z = p.z;
+  return true;
+}

@@ -1,0 +1,214 @@
+/* camera/intrinsics.c: the many spellings of a focal length and a principal point, brought to one: fx, fy, skew, cx, cy
+ * in pixels. */
+#include <math.h>
+#include <stdio.h>
+
+#include "base/error.h"
+#include "camera/parts.h"
+
+static const double pi = 3.14159265358979323846;
+static const double agreement = 1e-6; /* relative; the same number written with 7 digits passes */
+
+/* What the ways given so far say about one quantity: the first value and the words for where it came from. */
+typedef struct {
+  const char *what; /* "focal length fx" */
+  double value;     /* unset until the first way */
+  char from[160];
+} Quantity;
+
+/* Takes one more way's value; an error naming both when it disagrees with what is known. */
+static vlResult take(Quantity *q, double value, const char *from, vlError *error) {
+  if (vl_is_unset(value) || isinf(value))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s gives no finite %s", from, q->what);
+  if (vl_is_unset(q->value)) {
+    q->value = value;
+    snprintf(q->from, sizeof q->from, "%s", from);
+    return VL_OK;
+  }
+  double largest = fmax(fabs(value), fabs(q->value));
+  if (fabs(value - q->value) > agreement * largest)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s gives a %s of %.9g, but %s gives %.9g; give one of them",
+                   q->from, q->what, q->value, from, value);
+  return VL_OK;
+}
+
+/* A given value must be finite and, where said, above zero. */
+static vlResult check(const char *name, double value, bool positive, vlError *error) {
+  if (vl_is_unset(value)) return VL_OK;
+  if (isinf(value)) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is infinite", name);
+  if (positive && value <= 0.0)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is %g; it must be above zero", name, value);
+  return VL_OK;
+}
+
+static vlResult check_all(const vlCameraDef *d, vlError *error) {
+  const struct {
+    const char *name;
+    double value;
+    bool positive;
+  } values[] = {
+      {"fov", d->fov, true},
+      {"view distance d", d->view_distance, true},
+      {"zoom", d->zoom, true},
+      {"pixel size s", d->pixel_size, true},
+      {"focal_mm", d->focal_mm, true},
+      {"sensor_width_mm", d->sensor_width_mm, true},
+      {"fx", d->fx, true},
+      {"fy", d->fy, true},
+      {"skew", d->skew, false},
+      {"cx", d->cx, false},
+      {"cy", d->cy, false},
+      {"screen_min_x", d->screen_min_x, false},
+      {"screen_max_x", d->screen_max_x, false},
+      {"screen_min_y", d->screen_min_y, false},
+      {"screen_max_y", d->screen_max_y, false},
+  };
+  for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
+    vlResult result = check(values[i].name, values[i].value, values[i].positive, error);
+    if (result != VL_OK) return result;
+  }
+  if (d->fov >= pi)
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: fov is %g radians (%g degrees); a flat view plane needs less than 180 degrees", d->fov,
+                   d->fov * 180.0 / pi);
+  return VL_OK;
+}
+
+/* Half the window in pixels along the axis on which the field of view is measured. *horizontal, *vertical: which focal
+ * lengths that says (both on the diagonal: square pixels). */
+static double half_window(const vlCameraDef *d, bool *horizontal, bool *vertical) {
+  double w = d->width, h = d->height;
+  vlFovAxis axis = d->fov_axis;
+  if (axis == VL_FOV_SMALLER) axis = w < h ? VL_FOV_HORIZONTAL : VL_FOV_VERTICAL;
+  if (axis == VL_FOV_LARGER) axis = w < h ? VL_FOV_VERTICAL : VL_FOV_HORIZONTAL;
+  *horizontal = axis != VL_FOV_VERTICAL;
+  *vertical = axis != VL_FOV_HORIZONTAL;
+  return 0.5 * (axis == VL_FOV_DIAGONAL ? sqrt(w * w + h * h) : axis == VL_FOV_VERTICAL ? h : w);
+}
+
+/* The four sides of the screen window, all or none. */
+static vlResult screen_given(const vlCameraDef *d, bool *given, vlError *error) {
+  int sides = !vl_is_unset(d->screen_min_x) + !vl_is_unset(d->screen_max_x) + !vl_is_unset(d->screen_min_y) +
+              !vl_is_unset(d->screen_max_y);
+  *given = sides == 4;
+  if (sides != 0 && sides != 4)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the screen window has %d of its 4 sides", sides);
+  if (sides == 4 && !(d->screen_min_x < d->screen_max_x && d->screen_min_y < d->screen_max_y))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the screen window x %g to %g, y %g to %g is empty",
+                   d->screen_min_x, d->screen_max_x, d->screen_min_y, d->screen_max_y);
+  return VL_OK;
+}
+
+typedef struct {
+  Quantity fx, fy, cx, cy;
+} Gathered;
+
+#define TRY(call)                               \
+  do {                                          \
+    vlResult try_result = (call);               \
+    if (try_result != VL_OK) return try_result; \
+  } while (0)
+
+/* screen window (pbrt's): what the film covers, y up, on a plane at distance 1, stretched by tan(fov / 2). */
+static vlResult take_screen(const vlCameraDef *d, double tangent, const char *from, Gathered *g, vlError *error) {
+  double across = d->screen_max_x - d->screen_min_x, down = d->screen_max_y - d->screen_min_y;
+  TRY(take(&g->fx, d->width / across / tangent, from, error));
+  TRY(take(&g->fy, d->height / down / tangent, from, error));
+  TRY(take(&g->cx, -d->screen_min_x / across * d->width, "the screen window", error));
+  return take(&g->cy, d->screen_max_y / down * d->height, "the screen window", error);
+}
+
+static vlResult gather_perspective(const vlCameraDef *d, bool screen, Gathered *g, vlError *error) {
+  char from[160];
+  bool has_fov = !vl_is_unset(d->fov), has_d = !vl_is_unset(d->view_distance), has_mm = !vl_is_unset(d->focal_mm);
+  double zoom = vl_is_unset(d->zoom) ? 1.0 : d->zoom, size = vl_is_unset(d->pixel_size) ? 1.0 : d->pixel_size;
+  if (screen) {
+    double fov = has_fov ? d->fov : 0.5 * pi;
+    snprintf(from, sizeof from, "the screen window with fov %.9g degrees%s", fov * 180.0 / pi,
+             has_fov ? "" : " (the default)");
+    TRY(take_screen(d, tan(0.5 * fov), from, g, error));
+  } else if (has_fov) {
+    static const char *const axes[] = {"vertical", "horizontal", "diagonal", "smaller side", "larger side"};
+    bool horizontal, vertical;
+    double f = half_window(d, &horizontal, &vertical) / tan(0.5 * d->fov);
+    snprintf(from, sizeof from, "fov %.9g degrees (%s)", d->fov * 180.0 / pi, axes[d->fov_axis]);
+    if (horizontal) TRY(take(&g->fx, f, from, error));
+    if (vertical) TRY(take(&g->fy, f, from, error));
+  }
+  if (has_d) {
+    double f = zoom * d->view_distance / size;
+    snprintf(from, sizeof from, "d %.9g with zoom %.9g and pixel size %.9g", d->view_distance, zoom, size);
+    TRY(take(&g->fx, f, from, error));
+    TRY(take(&g->fy, f, from, error));
+  } else if (zoom != 1.0) {
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: zoom %g is given without the view distance d that it acts on",
+                   zoom);
+  } else if (size != 1.0) {
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: pixel size %g is given without the view distance d that it divides", size);
+  }
+  if (has_mm != !vl_is_unset(d->sensor_width_mm))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is given without %s", has_mm ? "focal_mm" : "sensor_width_mm",
+                   has_mm ? "sensor_width_mm" : "focal_mm");
+  if (has_mm) {
+    snprintf(from, sizeof from, "focal_mm %.9g on sensor_width_mm %.9g", d->focal_mm, d->sensor_width_mm);
+    TRY(take(&g->fx, d->focal_mm / d->sensor_width_mm * d->width, from, error));
+  }
+  return VL_OK;
+}
+
+static vlResult gather_orthographic(const vlCameraDef *d, bool screen, Gathered *g, vlError *error) {
+  char from[160];
+  const struct {
+    const char *name;
+    double value;
+  } foreign[] = {{"fov", d->fov},
+                 {"view distance d", d->view_distance},
+                 {"focal_mm", d->focal_mm},
+                 {"sensor_width_mm", d->sensor_width_mm}};
+  for (size_t i = 0; i < sizeof foreign / sizeof foreign[0]; i++)
+    if (!vl_is_unset(foreign[i].value))
+      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s %g has no meaning for an orthographic camera",
+                     foreign[i].name, foreign[i].value);
+  if (screen) TRY(take_screen(d, 1.0, "the screen window", g, error));
+  if (!vl_is_unset(d->pixel_size)) {
+    double zoom = vl_is_unset(d->zoom) ? 1.0 : d->zoom;
+    snprintf(from, sizeof from, "pixel size %.9g with zoom %.9g", d->pixel_size, zoom);
+    TRY(take(&g->fx, zoom / d->pixel_size, from, error));
+    TRY(take(&g->fy, zoom / d->pixel_size, from, error));
+  } else if (!vl_is_unset(d->zoom) && d->zoom != 1.0) {
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: zoom %g is given without the pixel size that it divides",
+                   d->zoom);
+  }
+  return VL_OK;
+}
+
+vlResult vl_camera_intrinsics(const vlCameraDef *d, vlCamera *camera, vlError *error) {
+  Gathered g = {{"focal length fx", VL_UNSET, ""},
+                {"focal length fy", VL_UNSET, ""},
+                {"principal point cx", VL_UNSET, ""},
+                {"principal point cy", VL_UNSET, ""}};
+  bool perspective = d->projection == VL_PROJECTION_PERSPECTIVE, screen;
+  TRY(check_all(d, error));
+  TRY(screen_given(d, &screen, error));
+  if (!vl_is_unset(d->fx)) TRY(take(&g.fx, d->fx, "fx", error));
+  if (!vl_is_unset(d->fy)) TRY(take(&g.fy, d->fy, "fy", error));
+  if (!vl_is_unset(d->cx)) TRY(take(&g.cx, d->cx, "cx", error));
+  if (!vl_is_unset(d->cy)) TRY(take(&g.cy, d->cy, "cy", error));
+  TRY(perspective ? gather_perspective(d, screen, &g, error) : gather_orthographic(d, screen, &g, error));
+
+  /* Nothing said: 90 degrees across the smaller side; orthographic: -1 to 1 across it. Both are half of it in pixels.
+   * One focal length said: square pixels. */
+  double half = 0.5 * (d->width < d->height ? d->width : d->height);
+  if (vl_is_unset(g.fx.value) && vl_is_unset(g.fy.value)) g.fx.value = g.fy.value = half;
+  camera->fx = vl_is_unset(g.fx.value) ? g.fy.value : g.fx.value;
+  camera->fy = vl_is_unset(g.fy.value) ? g.fx.value : g.fy.value;
+  camera->skew = vl_is_unset(d->skew) ? 0.0 : d->skew;
+  camera->cx = vl_is_unset(g.cx.value) ? 0.5 * d->width : g.cx.value;
+  camera->cy = vl_is_unset(g.cy.value) ? 0.5 * d->height : g.cy.value;
+  /* beyond these the arithmetic of the rays, and of their squares, would leave the numbers */
+  if (camera->fx > 1e30 || camera->fy > 1e30 || camera->fx < 1e-30 || camera->fy < 1e-30)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focal lengths of %g and %g pixels are out of range", camera->fx,
+                   camera->fy);
+  return VL_OK;
+}

@@ -1,0 +1,18 @@
+/* camera/parts.h: the two halves that vl_camera_make joins: intrinsics (which pixel looks where, in camera space) and
+ * pose (where camera space lies in the world). Internal to the room. */
+#ifndef CAMERA_PARTS_H
+#define CAMERA_PARTS_H
+
+#include "velo/camera.h"
+
+/* A value of a def that is not given (VL_UNSET). */
+static inline bool vl_is_unset(double value) {
+  return value != value;
+}
+
+/* Fills fx, fy, skew, cx, cy from all the ways a def may say them; disagreeing ways are an error that names both. */
+vlResult vl_camera_intrinsics(const vlCameraDef *def, vlCamera *camera, vlError *error);
+/* Fills world_from_camera and camera_from_world. */
+vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error);
+
+#endif

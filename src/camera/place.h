@@ -1,0 +1,29 @@
+/* camera/place.h: the pose, last of the four factors: from camera space into the world. */
+#ifndef CAMERA_PLACE_H
+#define CAMERA_PLACE_H
+
+#include "camera/local.h"
+#include "camera/rays.h"
+
+/* A world-space ray in double, its direction not yet normalised. */
+typedef struct vlWorldRay {
+  double ox, oy, oz, dx, dy, dz;
+  double inv_length; /* 1 / |d| */
+  double length;     /* |d|; divided by d's depth in camera space: distance along the ray per depth */
+} vlWorldRay;
+
+static inline vlWorldRay vl_camera_place(const vlCameraCompiled *c, vlCameraLocal r) {
+  const double *m = c->rotation;
+  vlWorldRay w;
+  w.ox = c->position[0] + (m[0] * r.ox + m[1] * r.oy);
+  w.oy = c->position[1] + (m[3] * r.ox + m[4] * r.oy);
+  w.oz = c->position[2] + (m[6] * r.ox + m[7] * r.oy);
+  w.dx = m[0] * r.dx + m[1] * r.dy + m[2] * r.dz;
+  w.dy = m[3] * r.dx + m[4] * r.dy + m[5] * r.dz;
+  w.dz = m[6] * r.dx + m[7] * r.dy + m[8] * r.dz;
+  w.length = __builtin_sqrt(w.dx * w.dx + w.dy * w.dy + w.dz * w.dz);
+  w.inv_length = 1.0 / w.length;
+  return w;
+}
+
+#endif

@@ -1,0 +1,128 @@
+/* camera/pose.c: where the camera stands and how it is turned: eye, lookat, up and roll (the lecture's compute_uvw), or
+ * a matrix. */
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "camera/parts.h"
+#include "math/transform.h"
+
+typedef struct {
+  double x, y, z;
+} Vec;
+
+static Vec vec(const double a[3]) {
+  return (Vec){a[0], a[1], a[2]};
+}
+
+static double dot(Vec a, Vec b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static Vec cross(Vec a, Vec b) {
+  return (Vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static double largest(Vec a) {
+  return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
+}
+
+/* Scaled first, so that very long and very short vectors neither overflow nor vanish. A vector along an axis keeps
+ * exact zeros and ones. */
+static Vec normalized(Vec a) {
+  double scale = largest(a);
+  a = (Vec){a.x / scale, a.y / scale, a.z / scale};
+  double length = sqrt(dot(a, a));
+  return (Vec){a.x / length, a.y / length, a.z / length};
+}
+
+/* Below this sine between up and the view direction their cross product is mostly rounding. */
+static const double parallel_sine = 1e-9;
+
+/* u to the right, v up, w backwards, against the view direction: the lecture's viewing coordinates. */
+typedef struct {
+  Vec u, v, w;
+} Basis;
+
+static vlResult basis_from_lookat(const vlCameraDef *def, Basis *basis, const char **warning, vlError *error) {
+  Vec e = vec(def->eye), l = vec(def->lookat), up = vec(def->up);
+  Vec back = {e.x - l.x, e.y - l.y, e.z - l.z};
+  if (largest(back) == 0.0)
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: eye and lookat are the same point (%g %g %g); there is no direction to look in", e.x, e.y,
+                   e.z);
+  if (!isfinite(largest(back)))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: eye and lookat are too far apart to be told as numbers");
+  if (largest(up) == 0.0) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: up is the zero vector");
+
+  Vec w = normalized(back);
+  Vec right = cross(normalized(up), w);
+  if (sqrt(dot(right, right)) < parallel_sine) {
+    if (warning)
+      *warning =
+          "camera: up is parallel to the view direction; the picture's right is taken along the world's x axis (z when "
+          "looking along x)";
+    /* x, or z where w is near x; its part across w. Looking straight down, the top of the picture is -z, as on a map.
+     */
+    Vec axis = fabs(w.x) > 0.9 ? (Vec){0.0, 0.0, 1.0} : (Vec){1.0, 0.0, 0.0};
+    double along = dot(axis, w);
+    right = (Vec){axis.x - along * w.x, axis.y - along * w.y, axis.z - along * w.z};
+  }
+  basis->w = w;
+  basis->u = normalized(right);
+  basis->v = cross(w, basis->u);
+  return VL_OK;
+}
+
+static vlResult check_matrix(const vlMat4 *m, vlError *error) {
+  if (!vl_mat4_is_finite(*m))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: world_from_camera holds a value that is not finite");
+  const double *a = m->m;
+  if (a[12] != 0.0 || a[13] != 0.0 || a[14] != 0.0 || a[15] != 1.0)
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: the last row of world_from_camera is %g %g %g %g; a pose has 0 0 0 1", a[12], a[13], a[14],
+                   a[15]);
+  /* The volume of the three axes after each is brought to length 1: 0 when they lie in a plane. */
+  Vec x = {a[0], a[4], a[8]}, y = {a[1], a[5], a[9]}, z = {a[2], a[6], a[10]};
+  double volume = 0.0;
+  if (largest(x) > 0.0 && largest(y) > 0.0 && largest(z) > 0.0)
+    volume = fabs(dot(normalized(x), cross(normalized(y), normalized(z))));
+  if (!(volume > 1e-9))
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: world_from_camera is singular; its three axes lie in a plane or one is zero");
+  return VL_OK;
+}
+
+vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error) {
+  vlMat4 m = vl_mat4_identity();
+  vlResult result;
+  if (def->has_matrix) {
+    m = vl_mat4_load(def->world_from_camera);
+    result = check_matrix(&m, error);
+    if (result != VL_OK) return result;
+  } else {
+    Basis b = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    result = basis_from_lookat(def, &b, warning, error);
+    if (result != VL_OK) return result;
+    /* x = u, y = -v (down), z = -w (forward); 0 - v rather than -v keeps -0 out of the matrix */
+    m.m[0] = b.u.x, m.m[1] = 0.0 - b.v.x, m.m[2] = 0.0 - b.w.x, m.m[3] = def->eye[0];
+    m.m[4] = b.u.y, m.m[5] = 0.0 - b.v.y, m.m[6] = 0.0 - b.w.y, m.m[7] = def->eye[1];
+    m.m[8] = b.u.z, m.m[9] = 0.0 - b.v.z, m.m[10] = 0.0 - b.w.z, m.m[11] = def->eye[2];
+  }
+  if (def->roll != 0.0) {
+    /* about z, from x (right) towards y (down): clockwise as seen from behind the camera */
+    vlMat4 turn = vl_mat4_identity();
+    double s = sin(def->roll), c = cos(def->roll);
+    turn.m[0] = c, turn.m[1] = -s;
+    turn.m[4] = s, turn.m[5] = c;
+    m = vl_mat4_multiply(m, turn);
+  }
+  vlMat4 inverse;
+  if (!vl_mat4_inverse(m, &inverse) || !vl_mat4_is_finite(inverse))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: world_from_camera cannot be inverted; its scale is too extreme");
+  for (int i = 0; i < 16; i++) {
+    camera->world_from_camera[i] = m.m[i] + 0.0;
+    camera->camera_from_world[i] = inverse.m[i] + 0.0;
+  }
+  return VL_OK;
+}

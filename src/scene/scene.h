@@ -1,6 +1,7 @@
-/* scene/scene.h: the description as it is stored: plain arrays of the public defs, each a deep copy whose pointers belong
- * to the scene. The object with id index i is items[i - 1] of its array. `world` walks these arrays; `import` fills them
- * through the vl_scene_add_* functions. Data flows in only; nothing here is compiled or looked up in files. */
+/* scene/scene.h: the description as it is stored: plain arrays of the public defs, each a deep copy whose pointers
+ * belong to the scene. The object with id index i is items[i - 1] of its array. `world` walks these arrays; `import`
+ * fills them through the vl_scene_add_* functions. Data flows in only; nothing here is compiled or looked up in files.
+ */
 #ifndef SCENE_SCENE_H
 #define SCENE_SCENE_H
 
@@ -10,8 +11,8 @@
 #include "velo/scene.h"
 
 typedef struct vlSceneGroup {
-  const char *name;       /* never null, may be empty */
-  uint32_t shape_count;   /* shapes whose group this is */
+  const char *name;     /* never null, may be empty */
+  uint32_t shape_count; /* shapes whose group this is */
   uint32_t instance_count;
 } vlSceneGroup;
 
@@ -43,8 +44,9 @@ struct vlScene {
 vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* The arrays of a mesh that may change hands instead of being copied: blocks of the scene's context (vl_alloc*), or null.
- * On success they belong to the scene, on failure they are freed. The pointers of def that equal them are the ones taken. */
+/* The arrays of a mesh that may change hands instead of being copied: blocks of the scene's context (vl_alloc*), or
+ * null. On success they belong to the scene, on failure they are freed. The pointers of def that equal them are the
+ * ones taken. */
 vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def);
 
 /* Internal copying, in scene/copy.c. All return false after vl_scene_fail(MEMORY ...). */

@@ -1,0 +1,155 @@
+/* scene/copy.c: deep copies of what a def points at. Every block is noted in scene->blocks, so that destroying the
+ * scene frees it; on failure nothing is left behind that is not noted. */
+#include <math.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "color/named.h"
+#include "scene/scene.h"
+
+static const vlSource nowhere = {NULL, 0, 0};
+
+/* The block belongs to the scene from here on, also when this fails (then it is freed). */
+bool vl_scene_own(vlScene *scene, void *block) {
+  if (!block) return true;
+  void **slot = VL_PUSH(scene->context, &scene->blocks);
+  if (!slot) {
+    vl_free(scene->context, block);
+    vl_scene_fail(scene, VL_ERROR_MEMORY, nowhere, "out of memory");
+    return false;
+  }
+  *slot = block;
+  return true;
+}
+
+/* result_pointer is the address of the pointer that shall point at the copy; null for null or nothing. */
+bool vl_scene_copy_block(vlScene *scene, const void *data, size_t count, size_t size, void *result_pointer) {
+  void *copy = NULL;
+  if (data && count) {
+    copy = vl_alloc_array(scene->context, count, size);
+    if (!copy) {
+      vl_scene_fail(scene, VL_ERROR_MEMORY, nowhere, "out of memory");
+      return false;
+    }
+    memcpy(copy, data, count * size);
+    if (!vl_scene_own(scene, copy)) return false;
+  }
+  memcpy(result_pointer, &copy, sizeof copy);
+  return true;
+}
+
+bool vl_scene_copy_string(vlScene *scene, const char **text) {
+  return !*text || vl_scene_copy_block(scene, *text, strlen(*text) + 1, 1, text);
+}
+
+/* File names come again and again: the last ones are looked at first, so a scene of many objects keeps few names. */
+bool vl_scene_copy_source(vlScene *scene, vlSource *source) {
+  if (!source->file) return true;
+  for (size_t i = scene->files.count; i > 0 && i + 16 > scene->files.count; i--) {
+    if (strcmp(scene->files.items[i - 1], source->file) == 0) {
+      source->file = scene->files.items[i - 1];
+      return true;
+    }
+  }
+  if (!vl_scene_copy_string(scene, &source->file)) return false;
+  const char **slot = VL_PUSH(scene->context, &scene->files);
+  if (slot) *slot = source->file; /* without a slot the copy is still owned, only not shared */
+  return true;
+}
+
+static bool check_name(vlScene *scene, const char *name, vlSource source, const char *what) {
+  const char *names[512];
+  unsigned count = 0;
+  for (const char *known; count < 512 && (known = vl_named_spectrum_name(count)); count++) {
+    if (strcmp(known, name) == 0) return true;
+    names[count] = known;
+  }
+  const char *near = vl_nearest_name(name, names, count);
+  vl_scene_fail(scene, VL_ERROR_SCENE, source,
+                near ? "%s: no spectrum is named \"%s\" (did you mean \"%s\"?)" : "%s: no spectrum is named \"%s\"",
+                what, name, near);
+  return false;
+}
+
+bool vl_scene_copy_spectrum(vlScene *scene, vlSpectrum *s, vlSource source, const char *what) {
+  const char *bad = NULL;
+  if (!isfinite(s->scale)) bad = "scale is not finite";
+  switch (s->kind) {
+    case VL_SPECTRUM_CONSTANT:
+      if (!isfinite(s->value)) bad = "value is not finite";
+      break;
+    case VL_SPECTRUM_RGB:
+      for (int i = 0; i < 3; i++)
+        if (!isfinite(s->rgb[i])) bad = "rgb value is not finite";
+      for (int i = 0; i < 3 && !bad; i++)
+        if (s->rgb[i] < 0.0f) bad = "rgb value is negative";
+      break;
+    case VL_SPECTRUM_BLACKBODY:
+      if (!(s->kelvin > 0.0f) || !isfinite(s->kelvin)) bad = "blackbody temperature must be above 0 kelvin";
+      break;
+    case VL_SPECTRUM_SAMPLED:
+      if (s->count == 0 || !s->wavelengths || !s->values) bad = "sampled spectrum has no samples";
+      for (uint32_t i = 0; i < s->count && !bad; i++) {
+        if (!isfinite(s->wavelengths[i]) || !isfinite(s->values[i]))
+          bad = "sampled spectrum has a value that is not finite";
+        else if (i && !(s->wavelengths[i] > s->wavelengths[i - 1]))
+          bad = "wavelengths of the sampled spectrum are not ascending";
+      }
+      break;
+    case VL_SPECTRUM_NAMED:
+      if (!s->name)
+        bad = "spectrum has no name";
+      else if (!check_name(scene, s->name, source, what))
+        return false;
+      break;
+    default: bad = "unknown kind of spectrum"; break;
+  }
+  if (bad) {
+    vl_scene_fail(scene, VL_ERROR_SCENE, source, "%s: %s", what, bad);
+    return false;
+  }
+  if (s->kind == VL_SPECTRUM_SAMPLED)
+    return vl_scene_copy_block(scene, s->wavelengths, s->count, sizeof(float), &s->wavelengths) &&
+           vl_scene_copy_block(scene, s->values, s->count, sizeof(float), &s->values);
+  s->wavelengths = s->values = NULL;
+  s->count = 0;
+  if (s->kind != VL_SPECTRUM_NAMED) s->name = NULL;
+  return vl_scene_copy_string(scene, &s->name);
+}
+
+static size_t pixel_size(vlPixelType type) {
+  switch (type) {
+    case VL_PIXEL_U8: return 1;
+    case VL_PIXEL_U16:
+    case VL_PIXEL_F16: return 2;
+    default: return 4;
+  }
+}
+
+bool vl_scene_copy_image(vlScene *scene, const vlImage **image) {
+  if (!*image) return true;
+  const vlImage *from = *image;
+  uint32_t channels = vl_image_channels(from);
+  vlImageDef def = vl_default_image_def(vl_image_width(from), vl_image_height(from), channels);
+  const char **names = vl_alloc_array(scene->context, channels, sizeof *names);
+  vlImage **slot = names ? VL_PUSH(scene->context, &scene->images) : NULL;
+  vlResult result = VL_ERROR_MEMORY;
+  if (slot) {
+    for (uint32_t i = 0; i < channels; i++) names[i] = vl_image_channel_name(from, i);
+    def.names = names;
+    def.type = vl_image_type(from);
+    def.encoding = vl_image_encoding(from);
+    result = vl_image_create(scene->context, &def, slot);
+    if (result != VL_OK) {
+      scene->images.count--;
+    } else {
+      size_t bytes = (size_t)def.width * def.height * channels * pixel_size(def.type);
+      memcpy(vl_image_pixels(*slot), vl_image_const_pixels(from), bytes);
+      *image = *slot;
+    }
+  }
+  vl_free(scene->context, names);
+  if (result == VL_OK) return true;
+  vl_scene_fail(scene, result, nowhere, result == VL_ERROR_MEMORY ? "out of memory" : "picture cannot be copied");
+  return false;
+}

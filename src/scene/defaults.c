@@ -1,0 +1,144 @@
+/* scene/defaults.c: the vl_default_*_def of the scene: pbrt-v4's defaults, since its scene files are the ones that
+ * leave most unsaid. */
+#include <string.h>
+
+#include "base/cookie.h"
+#include "color/named.h"
+#include "velo/scene.h"
+
+static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+vlSpectrum vl_spectrum_constant(float value) {
+  return (vlSpectrum){.kind = VL_SPECTRUM_CONSTANT, .scale = 1.0f, .value = value};
+}
+vlSpectrum vl_spectrum_rgb(float r, float g, float b) {
+  return (vlSpectrum){.kind = VL_SPECTRUM_RGB, .scale = 1.0f, .rgb = {r, g, b}};
+}
+vlSpectrum vl_spectrum_blackbody(float kelvin) {
+  return (vlSpectrum){.kind = VL_SPECTRUM_BLACKBODY, .scale = 1.0f, .kelvin = kelvin};
+}
+vlSpectrum vl_spectrum_named(const char *name) {
+  return (vlSpectrum){.kind = VL_SPECTRUM_NAMED, .scale = 1.0f, .name = name};
+}
+const char *vl_spectrum_name(uint32_t index) {
+  return vl_named_spectrum_name(index);
+}
+
+vlFloatInput vl_float_input(float value) {
+  return (vlFloatInput){{0}, value};
+}
+vlSpectrumInput vl_spectrum_input(vlSpectrum value) {
+  return (vlSpectrumInput){{0}, value};
+}
+
+vlTextureDef vl_default_texture_def(vlTextureKind kind, bool spectrum) {
+  vlTextureDef def = {
+      .cookie = VL_COOKIE_TEXTURE,
+      .kind = kind,
+      .spectrum = spectrum,
+      .direction = {0, 1, 0},
+      .dimension = 2,
+      .wrap = VL_WRAP_REPEAT,
+      .filter = VL_FILTER_BILINEAR,
+      .encoding = VL_ENCODING_SRGB,
+      .gamma = 2.2f,
+      .scale = 1.0f,
+      .space = VL_SPACE_SRGB,
+      .mapping = VL_MAPPING_UV,
+      .su = 1.0f,
+      .sv = 1.0f,
+      .planar_v1 = {1, 0, 0},
+      .planar_v2 = {0, 1, 0},
+  };
+  memcpy(def.texture_from_world, identity, sizeof identity);
+  /* What the inputs hold when nothing is said: value 1; tex 1; tex1 0, tex2 1; tex1 1, tex2 0; v00 0, v01 1, v10 0,
+   * v11 1. */
+  float v[4] = {1, 1, 0, 0};
+  if (kind == VL_TEXTURE_MIX || kind == VL_TEXTURE_DIRECTION_MIX) v[0] = 0, v[1] = 1;
+  if (kind == VL_TEXTURE_CHECKERBOARD) v[0] = 1, v[1] = 0;
+  if (kind == VL_TEXTURE_BILERP) v[0] = 0, v[1] = 1, v[2] = 0, v[3] = 1;
+  vlFloatInput *floats[4] = {&def.float_a, &def.float_b, &def.float_c, &def.float_d};
+  vlSpectrumInput *spectra[4] = {&def.spectrum_a, &def.spectrum_b, &def.spectrum_c, &def.spectrum_d};
+  for (int i = 0; i < 4; i++) {
+    *floats[i] = vl_float_input(v[i]);
+    *spectra[i] = vl_spectrum_input(vl_spectrum_constant(v[i]));
+  }
+  def.amount = vl_float_input(kind == VL_TEXTURE_MIX ? 0.5f : 1.0f);
+  return def;
+}
+
+vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
+  vlMaterialDef def = {
+      .cookie = VL_COOKIE_MATERIAL,
+      .kind = kind,
+      .reflectance = vl_spectrum_input(vl_spectrum_constant(0.5f)),
+      .remap_roughness = true,
+      .eta = vl_spectrum_input(vl_spectrum_constant(1.5f)),
+      .k = vl_spectrum_input(vl_spectrum_constant(0.0f)),
+      .thickness = vl_float_input(0.01f),
+      .albedo = vl_spectrum_input(vl_spectrum_constant(0.0f)),
+      .max_depth = 10,
+      .samples = 1,
+      .amount = vl_float_input(0.5f),
+  };
+  if (kind == VL_MATERIAL_CONDUCTOR) {
+    def.eta = vl_spectrum_input(vl_spectrum_named("metal-Cu-eta"));
+    def.k = vl_spectrum_input(vl_spectrum_named("metal-Cu-k"));
+  }
+  return def;
+}
+
+vlEmissionDef vl_default_emission_def(void) {
+  return (vlEmissionDef){
+      .cookie = VL_COOKIE_EMISSION, .radiance = vl_spectrum_rgb(1, 1, 1), .scale = 1.0f, .power = VL_UNSET};
+}
+
+vlLightDef vl_default_light_def(vlLightKind kind) {
+  vlLightDef def = {
+      .cookie = VL_COOKIE_LIGHT,
+      .kind = kind,
+      .color = vl_spectrum_rgb(1, 1, 1),
+      .scale = 1.0f,
+      .power = VL_UNSET,
+      .illuminance = VL_UNSET,
+      .to = {0, 0, 1},
+      .cone_angle = 30.0f * 3.14159265358979f / 180.0f,
+      .cone_delta = 5.0f * 3.14159265358979f / 180.0f,
+      .image_is_radiance = true,
+  };
+  memcpy(def.world_from_light, identity, sizeof identity);
+  return def;
+}
+
+vlShapeDef vl_default_shape_def(vlShapeKind kind) {
+  vlShapeDef def = {
+      .cookie = VL_COOKIE_SHAPE,
+      .kind = kind,
+      .alpha = vl_float_input(1.0f),
+      .radius = 1.0f,
+      .z_min = -1.0f,
+      .z_max = 1.0f,
+      .phi_max = 2.0f * 3.14159265358979f,
+  };
+  memcpy(def.group_from_shape, identity, sizeof identity);
+  return def;
+}
+
+vlPixelFilter vl_default_pixel_filter(vlPixelFilterKind kind) {
+  vlPixelFilter f = {.kind = kind, .sigma = 0.5f, .b = 1.0f / 3.0f, .c = 1.0f / 3.0f, .tau = 3.0f};
+  float radius = 0.5f;
+  switch (kind) {
+    case VL_PIXEL_FILTER_BOX: radius = 0.5f; break;
+    case VL_PIXEL_FILTER_TRIANGLE: radius = 2.0f; break;
+    case VL_PIXEL_FILTER_GAUSSIAN: radius = 1.5f; break;
+    case VL_PIXEL_FILTER_MITCHELL: radius = 2.0f; break;
+    case VL_PIXEL_FILTER_LANCZOS: radius = 4.0f; break;
+    case VL_PIXEL_FILTER_BLACKMAN_HARRIS: radius = 2.0f; break; /* not one of pbrt's */
+  }
+  f.radius_x = f.radius_y = radius;
+  return f;
+}
+
+vlLoadDef vl_default_load_def(void) {
+  return (vlLoadDef){.cookie = VL_COOKIE_LOAD};
+}

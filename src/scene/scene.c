@@ -1,0 +1,93 @@
+/* scene/scene.c: life of a scene: creating, destroying, its sticky error, its settings and its counts. */
+#include "scene/scene.h"
+
+#include <stdio.h>
+#include <string.h>
+
+vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...) {
+  if (scene->error.code != VL_OK) return scene->error.code;
+  char text[sizeof scene->error.message];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  return vl_fail_at(&scene->error, code, source.file, source.line, source.column, "%s", text);
+}
+
+static vlSceneSettings default_settings(void) {
+  vlSceneSettings s = {
+      .width = 1280, /* pbrt's film */
+      .height = 720,
+      .exposure = 1.0f,
+      .space = VL_SPACE_SRGB,
+      .filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN),
+      .sampler = VL_SAMPLER_ZSOBOL,
+      .spp = 16,
+      .tracer = VL_TRACER_PATH,
+      .max_depth = 5,
+      .ao_distance = __builtin_inff(),
+      .ao_cosine = true,
+      .light_sampler = VL_LIGHT_SAMPLER_BVH,
+      .color = VL_COLOR_SPECTRAL,
+  };
+  s.crop[2] = s.width;
+  s.crop[3] = s.height;
+  s.camera = vl_default_camera_def(s.width, s.height);
+  return s;
+}
+
+vlResult vl_scene_create(vlContext *context, vlScene **result) {
+  if (!context || !result) return VL_ERROR_ARGUMENT;
+  *result = NULL;
+  vlScene *scene = vl_alloc_zero(context, 1, sizeof *scene);
+  if (!scene) return VL_ERROR_MEMORY;
+  scene->context = context;
+  scene->settings = default_settings();
+  *result = scene;
+  return VL_OK;
+}
+
+void vl_scene_destroy(vlScene *scene) {
+  if (!scene) return;
+  vlContext *context = scene->context;
+  for (size_t i = 0; i < scene->blocks.count; i++) vl_free(context, scene->blocks.items[i]);
+  for (size_t i = 0; i < scene->images.count; i++) vl_image_destroy(scene->images.items[i]);
+  VL_ARRAY_FREE(context, &scene->textures);
+  VL_ARRAY_FREE(context, &scene->materials);
+  VL_ARRAY_FREE(context, &scene->emissions);
+  VL_ARRAY_FREE(context, &scene->lights);
+  VL_ARRAY_FREE(context, &scene->shapes);
+  VL_ARRAY_FREE(context, &scene->groups);
+  VL_ARRAY_FREE(context, &scene->instances);
+  VL_ARRAY_FREE(context, &scene->blocks);
+  VL_ARRAY_FREE(context, &scene->images);
+  VL_ARRAY_FREE(context, &scene->files);
+  vl_free(context, scene);
+}
+
+vlResult vl_scene_result(const vlScene *scene, vlError *error) {
+  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "no scene");
+  if (error) *error = scene->error;
+  return scene->error.code;
+}
+
+vlSceneSettings *vl_scene_settings(vlScene *scene) {
+  return &scene->settings;
+}
+
+void vl_scene_info(const vlScene *scene, vlSceneInfo *info) {
+  *info = (vlSceneInfo){
+      .shapes = scene->shapes.count,
+      .textures = scene->textures.count,
+      .materials = scene->materials.count,
+      .lights = scene->lights.count,
+      .groups = scene->groups.count,
+      .instances = scene->instances.count,
+  };
+  for (size_t i = 0; i < scene->shapes.count; i++) {
+    const vlShapeDef *shape = &scene->shapes.items[i];
+    info->vertices += shape->vertices;
+    if (shape->kind == VL_SHAPE_TRIANGLES) info->triangles += shape->faces;
+    if (shape->emission.index) info->emissive_shapes++;
+  }
+}

@@ -1,0 +1,193 @@
+/* scene/shape.c: shapes, groups and instances come in. Meshes may be large: one pass over positions, one over indices.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "base/cookie.h"
+#include "scene/scene.h"
+
+static vlResult bad(vlScene *scene, const vlShapeDef *d, const char *why) {
+  return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s", why);
+}
+
+/* First element that is not finite, or count. x - x is 0 for every finite x and NaN otherwise; sums of such zeros let
+ * the search go in blocks, so that a good mesh costs one vector loop. */
+static size_t first_not_finite(const float *v, size_t count) {
+  enum { BLOCK = 1024 };
+  for (size_t start = 0; start < count; start += BLOCK) {
+    size_t end = count - start < BLOCK ? count : start + BLOCK;
+    uint32_t wrong = 0;
+    for (size_t i = start; i < end; i++) {
+      uint32_t bits;
+      memcpy(&bits, &v[i], sizeof bits);
+      wrong |= (bits & 0x7f800000u) == 0x7f800000u;
+    }
+    if (!wrong) continue;
+    for (size_t i = start; i < end; i++)
+      if (!isfinite(v[i])) return i;
+  }
+  return count;
+}
+
+static bool check_floats(vlScene *scene, const vlShapeDef *d, const float *v, size_t per, const char *what) {
+  if (!v) return true;
+  size_t count = (size_t)d->vertices * per, i = first_not_finite(v, count);
+  if (i == count) return true;
+  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s of vertex %zu is not finite (%c is %f)", what, i / per,
+                per == 2 ? "uv"[i % per] : "xyz"[i % per], (double)v[i]);
+  return false;
+}
+
+static bool check_mesh(vlScene *scene, const vlShapeDef *d) {
+  size_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
+  const char *face = per == 3 ? "triangle" : "patch";
+  if (d->vertices == 0 || !d->positions) return bad(scene, d, "mesh has no vertices"), false;
+  if (d->faces == 0 || !d->indices) return bad(scene, d, "mesh has no faces"), false;
+  size_t count = (size_t)d->faces * per;
+  uint32_t top = 0;
+  for (size_t i = 0; i < count; i++) top = d->indices[i] > top ? d->indices[i] : top;
+  if (top >= d->vertices) {
+    size_t i = 0;
+    while (d->indices[i] < d->vertices) i++;
+    vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s %zu names vertex %u, but there are only %u vertices (0 to %u)",
+                  face, i / per, d->indices[i], d->vertices, d->vertices - 1);
+    return false;
+  }
+  return check_floats(scene, d, d->positions, 3, "position") && check_floats(scene, d, d->normals, 3, "normal") &&
+         check_floats(scene, d, d->tangents, 3, "tangent") && check_floats(scene, d, d->uvs, 2, "uv");
+}
+
+static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
+  const float numbers[] = {d->radius, d->inner_radius, d->z_min, d->z_max, d->height, d->phi_max};
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+    if (!isfinite(numbers[i])) return bad(scene, d, "a number of the shape is not finite"), false;
+  if (!(d->radius > 0.0f))
+    return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "radius must be above 0, it is %g", (double)d->radius),
+           false;
+  if (!(d->phi_max > 0.0f)) return bad(scene, d, "phimax must be above 0"), false;
+  if (d->kind == VL_SHAPE_DISK && (d->inner_radius < 0.0f || d->inner_radius >= d->radius))
+    return bad(scene, d, "inner radius must lie between 0 and the radius"), false;
+  if (d->kind != VL_SHAPE_DISK && !(d->z_min < d->z_max)) return bad(scene, d, "zmin must be below zmax"), false;
+  if (d->kind == VL_SHAPE_SPHERE && (d->z_min >= d->radius || d->z_max <= -d->radius))
+    return bad(scene, d, "zmin and zmax leave nothing of the sphere"), false;
+  return true;
+}
+
+static bool check_shape(vlScene *scene, const vlShapeDef *d) {
+  if (d->group.index > scene->groups.count) return bad(scene, d, "there is no such group"), false;
+  if (d->material.index > scene->materials.count) return bad(scene, d, "there is no such material"), false;
+  if (d->emission.index > scene->emissions.count) return bad(scene, d, "there is no such emission"), false;
+  if (d->alpha.texture.index > scene->textures.count) return bad(scene, d, "alpha: there is no such texture"), false;
+  if (d->alpha.texture.index && scene->textures.items[d->alpha.texture.index - 1].spectrum)
+    return bad(scene, d, "alpha needs a float texture, this is a spectrum texture"), false;
+  if (!d->alpha.texture.index && !isfinite(d->alpha.value)) return bad(scene, d, "alpha is not finite"), false;
+  const double *m = d->group_from_shape;
+  for (int i = 0; i < 16; i++)
+    if (!isfinite(m[i])) return bad(scene, d, "transform of the shape is not finite"), false;
+  double det =
+      m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+  if (det == 0.0 || !isfinite(det))
+    return bad(scene, d, "transform of the shape is singular: it flattens the shape"), false;
+  switch (d->kind) {
+    case VL_SHAPE_TRIANGLES:
+    case VL_SHAPE_BILINEAR: return check_mesh(scene, d);
+    case VL_SHAPE_SPHERE:
+    case VL_SHAPE_DISK:
+    case VL_SHAPE_CYLINDER: return check_quadric(scene, d);
+  }
+  return bad(scene, d, "unknown kind of shape"), false;
+}
+
+/* The def's arrays are owned by the scene or absent from here on. */
+static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
+  vlShapeDef *slot = scene->shapes.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->shapes) : NULL;
+  if (!slot) {
+    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+    return (vlShapeId){0};
+  }
+  *slot = *d;
+  if (d->group.index) scene->groups.items[d->group.index - 1].shape_count++;
+  return (vlShapeId){(uint32_t)scene->shapes.count};
+}
+
+static void drop_unused(vlShapeDef *d) {
+  if (d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR) return;
+  d->vertices = d->faces = 0;
+  d->positions = d->normals = d->tangents = d->uvs = NULL;
+  d->indices = NULL;
+}
+
+vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
+  const vlShapeId none = {0};
+  if (scene->error.code != VL_OK) return none;
+  if (!def || def->cookie != VL_COOKIE_SHAPE) {
+    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "shape: the def does not come from vl_default_shape_def()");
+    return none;
+  }
+  vlShapeDef d = *def;
+  drop_unused(&d);
+  if (!vl_scene_copy_source(scene, &d.source) || !check_shape(scene, &d)) return none;
+  size_t v = d.vertices, per = d.kind == VL_SHAPE_TRIANGLES ? 3 : 4;
+  if (!vl_scene_copy_block(scene, d.positions, v, 3 * sizeof(float), &d.positions) ||
+      !vl_scene_copy_block(scene, d.normals, v, 3 * sizeof(float), &d.normals) ||
+      !vl_scene_copy_block(scene, d.tangents, v, 3 * sizeof(float), &d.tangents) ||
+      !vl_scene_copy_block(scene, d.uvs, v, 2 * sizeof(float), &d.uvs) ||
+      !vl_scene_copy_block(scene, d.indices, d.faces, per * sizeof(uint32_t), &d.indices))
+    return none;
+  return push_shape(scene, &d);
+}
+
+vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def) {
+  vlShapeDef d = *def;
+  bool fine = scene->error.code == VL_OK && d.cookie == VL_COOKIE_SHAPE && vl_scene_copy_source(scene, &d.source) &&
+              check_shape(scene, &d);
+  const void *blocks[5] = {d.positions, d.normals, d.tangents, d.uvs, d.indices};
+  for (int i = 0; i < 5; i++) {
+    void *block;
+    memcpy(&block, &blocks[i],
+           sizeof block); /* the const of a def's pointers is a promise to callers, not to the owner */
+    if (fine)
+      fine = vl_scene_own(scene, block);
+    else
+      vl_free(scene->context, block);
+  }
+  return fine ? push_shape(scene, &d) : (vlShapeId){0};
+}
+
+vlGroupId vl_scene_add_group(vlScene *scene, const char *name) {
+  const vlGroupId none = {0};
+  if (scene->error.code != VL_OK) return none;
+  if (!name) name = "";
+  if (!vl_scene_copy_string(scene, &name)) return none;
+  vlSceneGroup *slot = scene->groups.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->groups) : NULL;
+  if (!slot) {
+    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+    return none;
+  }
+  slot->name = name;
+  return (vlGroupId){(uint32_t)scene->groups.count};
+}
+
+void vl_scene_add_instance(vlScene *scene, vlGroupId group, const double world_from_group[16], vlSource source) {
+  if (scene->error.code != VL_OK) return;
+  if (group.index == 0 || group.index > scene->groups.count) {
+    vl_scene_fail(scene, VL_ERROR_SCENE, source, "instance: there is no such group");
+    return;
+  }
+  for (int i = 0; i < 16; i++) {
+    if (!world_from_group || !isfinite(world_from_group[i])) {
+      vl_scene_fail(scene, VL_ERROR_SCENE, source, "instance: transform is not finite");
+      return;
+    }
+  }
+  if (!vl_scene_copy_source(scene, &source)) return;
+  vlSceneInstance *slot = VL_PUSH(scene->context, &scene->instances);
+  if (!slot) {
+    vl_scene_fail(scene, VL_ERROR_MEMORY, source, "out of memory");
+    return;
+  }
+  slot->group = group;
+  slot->source = source;
+  memcpy(slot->world_from_group, world_from_group, sizeof slot->world_from_group);
+  scene->groups.items[group.index - 1].instance_count++;
+}

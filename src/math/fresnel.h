@@ -1,0 +1,52 @@
+/* math/fresnel.h: share of light that a smooth interface reflects, unpolarised. By value, no branches: the hot loops
+ * inline these. Cosines are taken against the (micro)normal on the side the light comes from, so >= 0.
+ * Source: pbrt book 9.3.6 (dielectric: Fresnel's equations with Snell's law) and 9.3.7 (conductor: complex index; the
+ * form without complex numbers is Born and Wolf, Principles of Optics, 14.2, as in Lagarde's memo on Fresnel equations). */
+#ifndef MATH_FRESNEL_H
+#define MATH_FRESNEL_H
+
+typedef struct vlFresnel {
+  float reflected; /* share in [0, 1]; 1 in total internal reflection */
+  float cos_t;     /* cosine of the refracted direction, 0 in total internal reflection */
+} vlFresnel;
+
+/* eta: index beyond the interface over the index on the side of the light, > 0. cos_i in [0, 1]. */
+static inline vlFresnel vl_fresnel_dielectric(float cos_i, float eta) {
+  float c = cos_i > 1.0f ? 1.0f : cos_i;
+  float sin2_t = (1.0f - c * c) / (eta * eta);
+  float inside = 1.0f - sin2_t;
+  float cos_t = __builtin_sqrtf(inside > 0.0f ? inside : 0.0f);
+  float pc = eta * c, sc = eta * cos_t;
+  float p = (pc - cos_t) / (pc + cos_t), s = (c - sc) / (c + sc);
+  float r = 0.5f * (p * p + s * s);
+  /* with cos_t = 0 both quotients are 1 already; the select is for cos_i = 0 (0/0) */
+  return (vlFresnel){inside > 0.0f ? r : 1.0f, cos_t};
+}
+
+/* Index eta + i k over vacuum, for one channel. Values past 1e6 count as 1e6 (their squares' squares would overflow). */
+static inline float vl_fresnel_conductor(float cos_i, float eta, float k) {
+  float c = cos_i > 1.0f ? 1.0f : cos_i;
+  float n = 1e6f < eta ? 1e6f : eta, m = 1e6f < k ? 1e6f : k;
+  float c2 = c * c, s2 = 1.0f - c2;
+  float n2 = n * n, m2 = m * m;
+  float t0 = n2 - m2 - s2;
+  float ab = __builtin_sqrtf(t0 * t0 + 4.0f * n2 * m2); /* a^2 + b^2 */
+  float a2 = 0.5f * (ab + t0);
+  float t2 = 2.0f * c * __builtin_sqrtf(a2 > 0.0f ? a2 : 0.0f);
+  float t1 = ab + c2;
+  float t3 = c2 * ab + s2 * s2, t4 = t2 * s2;
+  float down_s = t1 + t2, down_p = t3 + t4;
+  float s = (t1 - t2) / (down_s > 0.0f ? down_s : 1.0f);
+  float p = s * ((t3 - t4) / (down_p > 0.0f ? down_p : 1.0f));
+  /* eta = k = 0 at normal incidence: no p term to divide; both polarisations are one there */
+  p = down_p > 0.0f ? p : s;
+  return 0.5f * (s + p);
+}
+
+/* A slab of two parallel interfaces with light going back and forth between them: R + T^2 R + T^2 R^3 ... = 2R/(1+R)
+ * for T = 1 - R (pbrt book 9.5.1). */
+static inline float vl_fresnel_slab(float reflected) {
+  return 2.0f * reflected / (1.0f + reflected);
+}
+
+#endif

@@ -1,0 +1,64 @@
+/* math/ggx.h: Trowbridge-Reitz (GGX) microfacets, anisotropic, sampled by visible normals. By value, no branches.
+ * All directions have z >= 0 (mirror the others first: the distribution is even in z) and unit length.
+ *
+ * With L(w) = |(alpha_x w.x, alpha_y w.y, w.z)| Smith's functions become short, and finite at grazing angles:
+ *   1 + Lambda(w) = (L + z) / 2z,  G1 = 2z / (L + z),  G(o, i) = 1 / (1 + Lambda_o + Lambda_i) = 2 zo zi / (Lo zi + Li zo)
+ * (height-correlated; pbrt book 9.6.3). From it, with D the density of normals:
+ *   reflection:  f cos_i = F D zi / (2 (Lo zi + Li zo)),  pdf(wi) = D / (2 (Lo + zo)),  f cos_i / pdf = F G/G1
+ * References: Walter et al. 2007; Heitz 2014, 2018; Dupuy and Benyoub 2023 (spherical caps); pbrt book 9.6. */
+#ifndef MATH_GGX_H
+#define MATH_GGX_H
+
+#include "math/approx.h"
+#include "math/vec.h"
+
+/* Below this in both directions the surface counts as a mirror (as pbrt's EffectivelySmooth). */
+#define VL_GGX_SMOOTH 1e-3f
+static inline int vl_ggx_is_smooth(float alpha_x, float alpha_y) {
+  return (alpha_x < VL_GGX_SMOOTH) & (alpha_y < VL_GGX_SMOOTH);
+}
+/* A rough surface's narrow axis is not narrower than this. */
+static inline float vl_ggx_alpha(float alpha) {
+  return alpha > 1e-4f ? alpha : 1e-4f;
+}
+
+/* L(w), see above. */
+static inline float vl_ggx_length(vlVec3 w, float alpha_x, float alpha_y) {
+  float x = alpha_x * w.x, y = alpha_y * w.y;
+  return __builtin_sqrtf(x * x + y * y + w.z * w.z);
+}
+
+/* Density of microfacet normals, per solid angle and per area of the surface. */
+static inline float vl_ggx_density(vlVec3 h, float alpha_x, float alpha_y) {
+  float x = h.x / alpha_x, y = h.y / alpha_y;
+  float e = x * x + y * y + h.z * h.z;
+  return VL_INV_PI / (alpha_x * alpha_y * (e * e));
+}
+
+/* G(wo, wi) / G1(wo): what a sample drawn by visible normals is worth, Fresnel apart. zo, zi > 0. */
+static inline float vl_ggx_shadowing(float zo, float lo, float zi, float li) {
+  float down = lo * zi + li * zo;
+  return zi * (lo + zo) / (down > 0.0f ? down : 1.0f);
+}
+
+/* Normal with density D(h) G1(w) (w.h) / w.z. u, v in [0, 1). In the space where the surface is a unit hemisphere a
+ * direction uniform on the cap that w lights, plus w, is the normal. Its z is the cap's z plus w's: no cancellation. */
+static inline vlVec3 vl_ggx_sample(vlVec3 w, float alpha_x, float alpha_y, float u, float v) {
+  float wx = alpha_x * w.x, wy = alpha_y * w.y, wz = w.z;
+  float l2 = wx * wx + wy * wy + wz * wz;
+  float s = l2 > 0.0f ? 1.0f / __builtin_sqrtf(l2) : 0.0f;
+  wx = wx * s;
+  wy = wy * s;
+  wz = wz * s;
+  vlSinCos phi = vl_sincos_turn(u);
+  float hz = (1.0f - v) * (1.0f + wz);
+  hz = hz > 1e-7f ? hz : 1e-7f;
+  float cz = hz - wz;
+  float r2 = 1.0f - cz * cz;
+  float r = __builtin_sqrtf(r2 > 0.0f ? r2 : 0.0f);
+  float hx = alpha_x * (r * phi.cos + wx), hy = alpha_y * (r * phi.sin + wy);
+  float n = 1.0f / __builtin_sqrtf(hx * hx + hy * hy + hz * hz);
+  return vl_vec3(hx * n, hy * n, hz * n);
+}
+
+#endif

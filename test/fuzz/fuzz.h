@@ -1,0 +1,49 @@
+/* test/fuzz/fuzz.h: what the fuzz targets share: a quiet context, the input as a file, the bound on memory. */
+#ifndef TEST_FUZZ_H
+#define TEST_FUZZ_H
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "velo/velo.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+/* A file from a stranger may ask for memory in proportion to its size; a gzip stream unpacks to a thousand times its
+ * own at most. Past this the target stops, which counts as a crash. */
+enum { FUZZ_MEMORY = 1 << 28, FUZZ_LEFT = 1 << 16 /* the context's own */ };
+
+static inline vlContext *fuzz_context(void) {
+  vlContextDef def = vl_default_context_def();
+  def.threads = 1;
+  vlContext *context = NULL;
+  if (vl_context_create(&def, &context) != VL_OK) exit(1);
+  return context;
+}
+
+static inline void fuzz_end(vlContext *context) {
+  size_t peak = 0, left = vl_context_memory(context, &peak);
+  if (left > FUZZ_LEFT || peak > FUZZ_MEMORY) {
+    fprintf(stderr, "%zu bytes left, peak of %zu bytes\n", left, peak);
+    abort();
+  }
+  vl_context_destroy(context);
+}
+
+/* The input as a file of that name in a folder of this process; the path lives until the next call. */
+static inline const char *fuzz_file(const char *name, const uint8_t *data, size_t size) {
+  static char folder[64], path[128];
+  if (!folder[0]) {
+    snprintf(folder, sizeof folder, "%s/velo-fuzz-XXXXXX", access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
+    if (!mkdtemp(folder)) exit(1);
+  }
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *file = fopen(path, "wb");
+  if (!file || fwrite(data, 1, size, file) != size) exit(1);
+  fclose(file);
+  return path;
+}
+
+#endif

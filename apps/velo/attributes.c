@@ -1,0 +1,128 @@
+/* attributes.c: see attributes.h. Names and meanings are OpenEXR's standard attributes (openexr.com, "Standard
+ * Attributes") where it has one, else begin with "velo.". */
+#include "attributes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct Header {
+  vlImage *image;
+  vlResult result; /* of the first that failed */
+} Header;
+
+static void set(Header *header, const char *name, vlAttributeType type, const double *numbers, int count,
+                const char *text) {
+  vlAttribute attribute = {.name = name, .type = type, .string = text};
+  for (int i = 0; i < count; i++) attribute.numbers[i] = numbers[i] + 0.0; /* no negative zeros */
+  if (header->result == VL_OK) header->result = vl_image_set_attribute(header->image, &attribute);
+}
+
+static void set_int(Header *header, const char *name, uint32_t value) {
+  double number = value;
+  set(header, name, VL_ATTRIBUTE_INT, &number, 1, NULL);
+}
+static void set_float(Header *header, const char *name, double value) {
+  set(header, name, VL_ATTRIBUTE_FLOAT, &value, 1, NULL);
+}
+static void set_v2(Header *header, const char *name, double x, double y) {
+  set(header, name, VL_ATTRIBUTE_V2F, (double[]){x, y}, 2, NULL);
+}
+static void set_text(Header *header, const char *name, const char *text) {
+  set(header, name, VL_ATTRIBUTE_STRING, NULL, 0, text);
+}
+/* Corner pixels, both inclusive. */
+static void set_window(Header *header, const char *name, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1) {
+  set(header, name, VL_ATTRIBUTE_BOX2I, (double[]){x0, y0, x1 - 1.0, y1 - 1.0}, 4, NULL);
+}
+
+/* CIE 1931 xy of red, green, blue, white: ITU-R BT.709, SMPTE RP 431-2 primaries with D65, ITU-R BT.2020, ACES
+ * TB-2014-004. */
+static const double chromaticities[][8] = {
+    [VL_SPACE_SRGB] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290},
+    [VL_SPACE_DCI_P3] = {0.680, 0.320, 0.265, 0.690, 0.150, 0.060, 0.3127, 0.3290},
+    [VL_SPACE_REC2020] = {0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290},
+    [VL_SPACE_ACES2065_1] = {0.7347, 0.2653, 0, 1, 0.0001, -0.0770, 0.32168, 0.33767},
+};
+
+/* OpenEXR multiplies row vectors from the left, p' = p M: the transpose of a matrix for columns. */
+static void set_matrix(Header *header, const char *name, const double m[16]) {
+  double transposed[16];
+  for (int row = 0; row < 4; row++)
+    for (int column = 0; column < 4; column++) transposed[4 * column + row] = m[4 * row + column];
+  set(header, name, VL_ATTRIBUTE_M44F, transposed, 16, NULL);
+}
+
+static void multiply(const double a[16], const double b[16], double result[16]) {
+  for (int row = 0; row < 4; row++)
+    for (int column = 0; column < 4; column++) {
+      double sum = 0;
+      for (int k = 0; k < 4; k++) sum += a[4 * row + k] * b[4 * k + column];
+      result[4 * row + column] = sum;
+    }
+}
+
+/* worldToCamera: to x right, y up, z forward. worldToNDC: to the display window's upper left (0, 0) and lower right
+ * (1, 1) corner after division by w; its third row is 1/z (perspective) or z, so that the matrix can be inverted. */
+static void set_camera_matrices(Header *header, const vlCamera *c) {
+  static const double up_from_down[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  double m[16], w = c->width, h = c->height;
+  multiply(up_from_down, c->camera_from_world, m);
+  set_matrix(header, "worldToCamera", m);
+  const double perspective[16] = {c->fx / w, c->skew / w, c->cx / w, 0, 0, c->fy / h, c->cy / h, 0,
+                                  0,         0,           0,         1, 0, 0,         1,         0};
+  const double orthographic[16] = {c->fx / w, c->skew / w, 0, c->cx / w, 0, c->fy / h, 0, c->cy / h,
+                                   0,         0,           1, 0,         0, 0,         0, 1};
+  multiply(c->projection == VL_PROJECTION_PERSPECTIVE ? perspective : orthographic, c->camera_from_world, m);
+  set_matrix(header, "worldToNDC", m);
+}
+
+/* The camera's lens and sensor in millimetres. A virtual camera has no sensor: where the scene names no width it is
+ * given full frame's 36 mm, which fixes the scale and nothing else. */
+static void set_camera(Header *header, const Job *job) {
+  const vlCamera *c = &job->camera;
+  set_camera_matrices(header, c);
+  if (c->projection == VL_PROJECTION_PERSPECTIVE) {
+    double sensor = job->settings->camera.sensor_width_mm;
+    double mm = (sensor > 0 ? sensor : 36.0) / c->width;
+    set_float(header, "pinholeFocalLength", c->fx * mm);
+    set_v2(header, "sensorOverallDimensions", c->width * mm, c->height * mm);
+    set_v2(header, "sensorCenterOffset", (0.5 * c->width - c->cx) * mm, (0.5 * c->height - c->cy) * mm);
+  }
+  set_v2(header, "velo.focalPixels", c->fx, c->fy);
+  set_v2(header, "velo.principalPoint", c->cx, c->cy);
+  set_float(header, "velo.skew", c->skew);
+  set_text(header, "velo.projection", c->projection == VL_PROJECTION_PERSPECTIVE ? "perspective" : "orthographic");
+  set_float(header, "velo.lensRadius", c->lens_radius);
+  if (isfinite(c->focus_distance)) set_float(header, "focus", c->focus_distance);
+  set_v2(header, "velo.shutter", c->shutter_open, c->shutter_close);
+  set_float(header, "velo.exposureTime", c->exposure_time);
+}
+
+vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
+  Header header = {.image = image, .result = VL_OK};
+  const uint32_t *crop = job->film.crop;
+  const vlCamera *c = &job->camera;
+  char software[32];
+  snprintf(software, sizeof software, "velo %d.%d.%d", VL_VERSION_MAJOR, VL_VERSION_MINOR, VL_VERSION_PATCH);
+  set_text(&header, "software", software);
+  set(&header, "chromaticities", VL_ATTRIBUTE_CHROMATICITIES, chromaticities[job->film.space], 8, NULL);
+  set_window(&header, "displayWindow", 0, 0, c->width, c->height);
+  set_window(&header, "dataWindow", crop[0], crop[1], crop[2], crop[3]);
+  set_window(&header, "originalDataWindow", 0, 0, c->width, c->height);
+  set_camera(&header, job);
+
+  const char *slash = strrchr(job->path, '/');
+  set_text(&header, "velo.scene", slash ? slash + 1 : job->path);
+  set_int(&header, "samplesPerPixel", spp);
+  set_text(&header, "velo.sampler", choice_name(sampler_choices, (int)job->render.sampler));
+  double seed = job->render.seed; /* unsigned: does not fit EXR's int */
+  set(&header, "velo.seed", VL_ATTRIBUTE_DOUBLE, &seed, 1, NULL);
+  set_text(&header, "velo.filter", choice_name(filter_choices, (int)job->film.filter.kind));
+  set_v2(&header, "velo.filterRadius", job->film.filter.radius_x, job->film.filter.radius_y);
+  set_text(&header, "velo.tracer", choice_name(tracer_choices, (int)job->render.tracer));
+  set_int(&header, "velo.maxDepth", job->render.max_depth);
+  set_text(&header, "velo.color", choice_name(color_choices, (int)job->settings->color));
+  set_text(&header, "velo.lightSampler", choice_name(light_sampler_choices, (int)job->settings->light_sampler));
+  return header.result;
+}

@@ -1,0 +1,9 @@
+/* commands.h: the commands of the program, one table entry each; main.c lists them. */
+#ifndef APP_COMMANDS_H
+#define APP_COMMANDS_H
+
+#include "options.h"
+
+extern const Command render_command, image_info_command, image_diff_command, image_convert_command;
+
+#endif

@@ -1,0 +1,183 @@
+/* job.c: see job.h. Scene file's settings + command line → camera and defs of the render. */
+#include "job.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "report.h"
+
+const Choice tracer_choices[] = {{"path", VL_TRACER_PATH},
+                                 {"raycast", VL_TRACER_RAYCAST},
+                                 {"ambientocclusion", VL_TRACER_AMBIENT_OCCLUSION},
+                                 {"ao", VL_TRACER_AMBIENT_OCCLUSION},
+                                 {NULL, 0}};
+const Choice sampler_choices[] = {{"zsobol", VL_SAMPLER_ZSOBOL},
+                                  {"sobol", VL_SAMPLER_SOBOL},
+                                  {"halton", VL_SAMPLER_HALTON},
+                                  {"hammersley", VL_SAMPLER_HAMMERSLEY},
+                                  {"multijittered", VL_SAMPLER_MULTI_JITTERED},
+                                  {"multi-jittered", VL_SAMPLER_MULTI_JITTERED},
+                                  {"nrooks", VL_SAMPLER_NROOKS},
+                                  {"n-rooks", VL_SAMPLER_NROOKS},
+                                  {"stratified", VL_SAMPLER_STRATIFIED},
+                                  {"jittered", VL_SAMPLER_STRATIFIED},
+                                  {"regular", VL_SAMPLER_REGULAR},
+                                  {"independent", VL_SAMPLER_INDEPENDENT},
+                                  {"random", VL_SAMPLER_INDEPENDENT},
+                                  {NULL, 0}};
+const Choice filter_choices[] = {{"box", VL_PIXEL_FILTER_BOX},
+                                 {"triangle", VL_PIXEL_FILTER_TRIANGLE},
+                                 {"gaussian", VL_PIXEL_FILTER_GAUSSIAN},
+                                 {"mitchell", VL_PIXEL_FILTER_MITCHELL},
+                                 {"lanczos", VL_PIXEL_FILTER_LANCZOS},
+                                 {"sinc", VL_PIXEL_FILTER_LANCZOS},
+                                 {"blackmanharris", VL_PIXEL_FILTER_BLACKMAN_HARRIS},
+                                 {"blackman-harris", VL_PIXEL_FILTER_BLACKMAN_HARRIS},
+                                 {NULL, 0}};
+const Choice light_sampler_choices[] = {
+    {"bvh", VL_LIGHT_SAMPLER_BVH}, {"power", VL_LIGHT_SAMPLER_POWER}, {"uniform", VL_LIGHT_SAMPLER_UNIFORM}, {NULL, 0}};
+const Choice color_choices[] = {{"spectral", VL_COLOR_SPECTRAL}, {"rgb", VL_COLOR_RGB}, {NULL, 0}};
+const Choice view_choices[] = {{"standard", VL_VIEW_STANDARD},
+                               {"neutral", VL_VIEW_KHRONOS_NEUTRAL},
+                               {"agx", VL_VIEW_AGX},
+                               {"raw", VL_VIEW_RAW},
+                               {NULL, 0}};
+const Choice isa_choices[] = {{"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {NULL, 0}};
+
+/* ---- overrides -----------------------------------------------------------------------------------------------------
+ */
+
+/* Camera and picture size of another scene file. The camera def holds no pointers, so it outlives that scene. */
+static int take_camera(vlContext *context, vlSceneSettings *settings, const char *path, bool permissive) {
+  vlScene *other = NULL;
+  vlError error = {0};
+  vlResult result = vl_scene_create(context, &other);
+  vlLoadDef load = vl_default_load_def();
+  load.permissive = permissive;
+  if (result == VL_OK) result = vl_scene_load(other, path, &load, &error);
+  if (result == VL_OK) {
+    const vlSceneSettings *from = vl_scene_settings(other);
+    settings->camera = from->camera;
+    settings->width = from->width;
+    settings->height = from->height;
+    memcpy(settings->crop, from->crop, sizeof settings->crop);
+  }
+  int status = result == VL_OK ? -1 : report_error(&error, result, path);
+  vl_scene_destroy(other);
+  return status;
+}
+
+/* The first pixel whose left edge is at or right of the fraction: pbrt's ceil(resolution * fraction). */
+static uint32_t crop_pixel(uint32_t size, double fraction) {
+  double pixel = ceil(size * fraction);
+  return pixel < size ? (uint32_t)pixel : size;
+}
+
+static int override_crop(vlSceneSettings *settings, const Arguments *arguments) {
+  const OptionValue *crop = &arguments->values[RENDER_CROP], *window = &arguments->values[RENDER_CROPWINDOW];
+  uint32_t width = settings->width, height = settings->height;
+  if (crop->given && window->given) return report_usage("--crop and --cropwindow exclude each other");
+  if (crop->given) {
+    if (crop->integers[2] > width || crop->integers[3] > height)
+      return report_usage("--crop \"%s\": the picture has only %u x %u pixels", crop->text, width, height);
+    for (int i = 0; i < 4; i++) settings->crop[i] = (uint32_t)crop->integers[i];
+  } else if (window->given) {
+    settings->crop[0] = crop_pixel(width, window->numbers[0]);
+    settings->crop[2] = crop_pixel(width, window->numbers[1]);
+    settings->crop[1] = crop_pixel(height, window->numbers[2]);
+    settings->crop[3] = crop_pixel(height, window->numbers[3]);
+    if (settings->crop[0] >= settings->crop[2] || settings->crop[1] >= settings->crop[3])
+      return report_usage("--cropwindow \"%s\": holds no pixel of %u x %u", window->text, width, height);
+  }
+  return -1;
+}
+
+/* Keeps the scene's own crop window at the same fractions of the picture. */
+static void override_size(vlSceneSettings *settings, uint32_t width, uint32_t height) {
+  double sx = (double)width / settings->width, sy = (double)height / settings->height;
+  uint32_t *crop = settings->crop;
+  for (int i = 0; i < 4; i++) {
+    uint32_t limit = i & 1 ? height : width;
+    double pixel = ceil(crop[i] * (i & 1 ? sy : sx) - 1e-6);
+    crop[i] = pixel < limit ? (uint32_t)pixel : limit;
+  }
+  if (crop[0] == crop[2]) crop[crop[0] ? 0 : 2] += crop[0] ? (uint32_t)-1 : 1u;
+  if (crop[1] == crop[3]) crop[crop[1] ? 1 : 3] += crop[1] ? (uint32_t)-1 : 1u;
+  settings->width = width;
+  settings->height = height;
+}
+
+/* Samplers that lay out a fixed number of samples over the pixel cannot go on without end. */
+static bool sampler_is_open(vlSamplerKind kind) {
+  return kind == VL_SAMPLER_INDEPENDENT || kind == VL_SAMPLER_HALTON || kind == VL_SAMPLER_SOBOL ||
+         kind == VL_SAMPLER_ZSOBOL;
+}
+
+static void override_sampling(vlSceneSettings *settings, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  if (v[RENDER_TRACER].given) settings->tracer = (vlTracer)v[RENDER_TRACER].integer;
+  if (v[RENDER_SAMPLER].given) settings->sampler = (vlSamplerKind)v[RENDER_SAMPLER].integer;
+  if (v[RENDER_FILTER].given) settings->filter = vl_default_pixel_filter((vlPixelFilterKind)v[RENDER_FILTER].integer);
+  if (v[RENDER_LIGHT_SAMPLER].given) settings->light_sampler = (vlLightSampler)v[RENDER_LIGHT_SAMPLER].integer;
+  if (v[RENDER_COLOR].given) settings->color = (vlColorMode)v[RENDER_COLOR].integer;
+  if (v[RENDER_MAX_DEPTH].given) settings->max_depth = (uint32_t)v[RENDER_MAX_DEPTH].integer;
+  if (v[RENDER_SEED].given) settings->sampler_seed = (uint32_t)v[RENDER_SEED].integer;
+  if (v[RENDER_SPP].given) {
+    settings->spp = (uint32_t)v[RENDER_SPP].integer;
+  } else if (v[RENDER_TIME].given) {
+    if (sampler_is_open(settings->sampler))
+      settings->spp = 65536;
+    else
+      report_warning(
+          "the sampler %s lays out a fixed number of samples: ends at %u spp even if --time is not over; give --spp",
+          choice_name(sampler_choices, (int)settings->sampler), settings->spp);
+  }
+}
+
+static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t height) {
+  const char *warning = NULL;
+  vlError error = {0};
+  vlCamera camera;
+  vlResult result = vl_camera_make(&def, &camera, &warning, &error);
+  if (result != VL_OK) return report_error(&error, result, job->path);
+  if (warning) report_warning("%s: camera: %s", job->path, warning);
+  if (camera.width == width && camera.height == height) {
+    job->camera = camera;
+    return -1;
+  }
+  result = vl_camera_resize(&camera, width, height, &job->camera);
+  return result == VL_OK ? -1 : report_error(NULL, result, job->path);
+}
+
+int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  vlSceneSettings *settings = vl_scene_settings(scene);
+  job->path = path;
+  job->settings = settings;
+  if (v[RENDER_CAMERA].given) {
+    int status = take_camera(context, settings, v[RENDER_CAMERA].text, v[RENDER_PERMISSIVE].given);
+    if (status >= 0) return status;
+    job->path = v[RENDER_CAMERA].text; /* where errors of the camera are */
+  }
+  /* The camera is made at the size it was described for and then resized, which keeps the framing. */
+  vlCameraDef camera = settings->camera;
+  camera.width = settings->width;
+  camera.height = settings->height;
+  if (v[RENDER_RESOLUTION].given)
+    override_size(settings, (uint32_t)v[RENDER_RESOLUTION].integers[0], (uint32_t)v[RENDER_RESOLUTION].integers[1]);
+  int status = override_crop(settings, arguments);
+  if (status < 0) status = make_camera(job, camera, settings->width, settings->height);
+  if (status >= 0) return status;
+  job->path = path;
+  override_sampling(settings, arguments);
+
+  job->film = vl_scene_film_def(scene);
+  job->render = vl_scene_render_def(scene);
+  if (v[RENDER_TIME].given) job->render.time_limit = v[RENDER_TIME].number;
+  job->build = vl_default_build_def();
+  job->build.color = settings->color;
+  job->build.light_sampler = settings->light_sampler;
+  job->build.permissive = v[RENDER_PERMISSIVE].given;
+  return -1;
+}

@@ -1,0 +1,55 @@
+/* job.h: one render as it will be done: what the scene file says, overridden by the command line. */
+#ifndef APP_JOB_H
+#define APP_JOB_H
+
+#include "options.h"
+#include "velo/velo.h"
+
+/* Options of `velo render`, indices into Arguments.values. */
+enum {
+  RENDER_OUTPUT,
+  RENDER_THREADS,
+  RENDER_SPP,
+  RENDER_TIME,
+  RENDER_RESOLUTION,
+  RENDER_CROP,
+  RENDER_CROPWINDOW,
+  RENDER_SEED,
+  RENDER_CAMERA,
+  RENDER_TRACER,
+  RENDER_SAMPLER,
+  RENDER_FILTER,
+  RENDER_LIGHT_SAMPLER,
+  RENDER_MAX_DEPTH,
+  RENDER_COLOR,
+  RENDER_VIEW,
+  RENDER_EXPOSURE,
+  RENDER_HALF,
+  RENDER_DRY_RUN,
+  RENDER_PERMISSIVE,
+  RENDER_QUIET,
+  RENDER_LOG_JSON,
+  RENDER_VERBOSE,
+  RENDER_ISA
+};
+
+extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[], color_choices[],
+    view_choices[], isa_choices[];
+
+typedef struct Job {
+  const char *path;                /* of the scene file */
+  const vlSceneSettings *settings; /* resolved; live in the scene */
+  vlCamera camera;
+  vlFilmDef film;
+  vlBuildDef build;
+  vlRenderDef render;
+} Job;
+
+/* Overrides the scene's settings and makes camera and defs. -1: go on; else the exit code, all has been said. */
+int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments);
+
+/* What would be rendered, on stdout (or as a JSON line). */
+void job_describe(const Job *job, vlContext *context, const vlScene *scene, const vlWorld *world,
+                  const char *const *outputs, int output_count);
+
+#endif

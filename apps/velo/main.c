@@ -1,0 +1,132 @@
+/* main.c: the program: finds the command, reads its options, runs it. */
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "commands.h"
+#include "report.h"
+#include "signals.h"
+
+/* Names of two words come last: "image diff" is found by its first and second word. */
+static const Command *const commands[] = {&render_command, &image_info_command, &image_diff_command,
+                                          &image_convert_command};
+enum { COMMANDS = sizeof commands / sizeof *commands };
+
+static void print_overview(void) {
+  printf("velo, a photorealistic renderer\n\nusage: velo COMMAND ...\n\n");
+  for (int i = 0; i < COMMANDS; i++) printf("  %-15s  %s\n", commands[i]->name, commands[i]->summary);
+  printf("  %-15s  %s\n", "help COMMAND", "the options of a command");
+  printf("  %-15s  %s\n\n", "--version", "the version");
+  printf(
+      "exit codes: 0 done, 1 image diff over a threshold or out of memory, 2 wrong command line,\n"
+      "3 wrong scene or picture, 4 missing file, 5 reading or writing failed, 130 and 143 stopped by a signal\n");
+}
+
+/* How many words of argv the command's name takes; 0: another command. */
+static int name_words(const Command *command, int argc, char **argv) {
+  const char *space = strchr(command->name, ' ');
+  if (!space) return argc >= 1 && strcmp(argv[0], command->name) == 0 ? 1 : 0;
+  size_t n = (size_t)(space - command->name);
+  return argc >= 2 && strlen(argv[0]) == n && strncmp(argv[0], command->name, n) == 0 && strcmp(argv[1], space + 1) == 0
+             ? 2
+             : 0;
+}
+
+/* Does the word begin commands of two words? Prints or lists them. */
+static bool is_family(const char *word, const char *names[COMMANDS], int *count) {
+  *count = 0;
+  size_t n = strlen(word);
+  for (int i = 0; i < COMMANDS; i++)
+    if (strncmp(commands[i]->name, word, n) == 0 && commands[i]->name[n] == ' ')
+      names[(*count)++] = commands[i]->name + n + 1;
+  return *count > 0;
+}
+
+static const Command *find_command(int argc, char **argv, int *words) {
+  for (int i = 0; i < COMMANDS; i++)
+    if ((*words = name_words(commands[i], argc, argv))) return commands[i];
+  return NULL;
+}
+
+static int unknown_command(int argc, char **argv) {
+  const char *names[COMMANDS + 1];
+  int count;
+  if (is_family(argv[0], names, &count)) {
+    char list[200] = "";
+    for (int i = 0; i < count; i++) {
+      size_t n = strlen(list);
+      snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
+    }
+    if (argc < 2) return report_usage("%s: which of %s?", argv[0], list);
+    const char *near = did_you_mean("", argv[1], names, count);
+    if (*near) return report_usage("%s: unknown command \"%s\"%s", argv[0], argv[1], near);
+    return report_usage("%s: unknown command \"%s\"; there are %s", argv[0], argv[1], list);
+  }
+  char first_words[COMMANDS][40];
+  for (int i = 0; i < COMMANDS; i++) {
+    snprintf(first_words[i], sizeof first_words[i], "%.*s", (int)strcspn(commands[i]->name, " "), commands[i]->name);
+    names[i] = first_words[i];
+  }
+  names[COMMANDS] = "help";
+  const char *near = did_you_mean("", argv[0], names, COMMANDS + 1);
+  return report_usage("unknown %s \"%s\"%s", argv[0][0] == '-' ? "option" : "command", argv[0],
+                      *near ? near : "; \"velo help\" lists the commands");
+}
+
+static int help(int argc, char **argv) {
+  int words, count;
+  const char *names[COMMANDS];
+  const Command *command = find_command(argc, argv, &words);
+  if (command) {
+    options_print_help(command);
+  } else if (argc == 0) {
+    print_overview();
+  } else if (argc == 1 && is_family(argv[0], names, &count)) {
+    for (int i = 0; i < COMMANDS; i++) {
+      if (strncmp(commands[i]->name, argv[0], strlen(argv[0])) != 0) continue;
+      if (count-- < (int)(sizeof names / sizeof *names)) options_print_help(commands[i]);
+      if (count) printf("\n");
+    }
+  } else {
+    return unknown_command(argc, argv);
+  }
+  return STATUS_OK;
+}
+
+static int run(int argc, char **argv) {
+  if (argc < 2) {
+    print_overview();
+    return STATUS_USAGE;
+  }
+  const char *first = argv[1];
+  if (strcmp(first, "--version") == 0) {
+    printf("velo %d.%d.%d\n", VL_VERSION_MAJOR, VL_VERSION_MINOR, VL_VERSION_PATCH);
+    return STATUS_OK;
+  }
+  if (strcmp(first, "help") == 0) return help(argc - 2, argv + 2);
+  if (strcmp(first, "--help") == 0 || strcmp(first, "-h") == 0) return help(argc - 2, argv + 2);
+  int words;
+  const Command *command = find_command(argc - 1, argv + 1, &words);
+  if (!command && argc == 3 && (strcmp(argv[2], "--help") == 0 || strcmp(argv[2], "-h") == 0)) return help(1, argv + 1);
+  if (!command) return unknown_command(argc - 1, argv + 1);
+  static Arguments arguments;
+  int status = options_parse(command, argc - 1 - words, argv + 1 + words, &arguments);
+  return status >= 0 ? status : command->run(command, &arguments);
+}
+
+int main(int argc, char **argv) {
+  /* A picture must never be opened as descriptor 0, 1 or 2 and then be written into by messages. */
+  for (int fd = 0; fd <= 2; fd++)
+    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0) return STATUS_IO;
+  signal(SIGPIPE, SIG_IGN); /* a reader that went away must not end a render */
+  signals_install();
+  bool json = false;
+  for (int i = 1; i < argc; i++) json |= strcmp(argv[i], "--log-json") == 0;
+  report_setup(json, REPORT_NORMAL);
+  int status = run(argc, argv);
+  if ((fflush(stdout) != 0 || ferror(stdout)) && status == STATUS_OK)
+    status = report_failure(STATUS_IO, "cannot write to stdout");
+  return status;
+}

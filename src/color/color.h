@@ -65,7 +65,7 @@ static inline float vl_dense_at(const float *dense, float lambda) {
  * 4.5.4). u in [0,1). */
 static inline float vl_visible_lambda(float u) {
   float t = 0.85691062f - 1.82750197f * u;
-  float atanh_t = 0.5f * vl_log((1.0f + t) / (1.0f - t));
+  float atanh_t = 0.5f * vl_ln((1.0f + t) / (1.0f - t));
   return 538.0f - 138.888889f * atanh_t;
 }
 static inline float vl_visible_pdf(float lambda) {

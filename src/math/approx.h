@@ -60,7 +60,7 @@ static inline float vl_exp(float x) {
 }
 
 /* Natural logarithm; relative error < 2e-7 for normal x > 0; -inf at 0 and for denormals below, NaN for x < 0. */
-static inline float vl_log(float x) {
+static inline float vl_ln(float x) {
   uint32_t u = vl_float_bits(x);
   int32_t e = (int32_t)(u >> 23) - 126;
   float m = vl_bits_float((u & 0x007fffffu) | 0x3f000000u); /* [0.5, 1) */
@@ -82,7 +82,7 @@ static inline float vl_log(float x) {
 
 /* x^y for x >= 0; relative error about 3e-7 (1 + |y ln x|). 0^y = 0 for y > 0. */
 static inline float vl_pow(float x, float y) {
-  float result = vl_exp(y * vl_log(x));
+  float result = vl_exp(y * vl_ln(x));
   return x <= 0.0f ? (y == 0.0f ? 1.0f : 0.0f) : result;
 }
 

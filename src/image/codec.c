@@ -1,0 +1,164 @@
+/* image/codec.c: the table of formats, reading by content, writing by suffix. */
+#include "image/codec.h"
+
+#include <string.h>
+
+#include "base/cookie.h"
+#include "base/text.h"
+#include "image/pixel.h"
+
+/* In probing order: TGA has no mark of its own and comes last. */
+const vlCodec vl_codecs[] = {
+    {"OpenEXR", {".exr"}, vl_exr_probe, vl_exr_read, vl_exr_write},
+    {"PNG", {".png"}, vl_png_probe, vl_png_read, vl_png_write},
+    {"JPEG", {".jpg", ".jpeg"}, vl_jpeg_probe, vl_jpeg_read, vl_jpeg_write},
+    {"Radiance HDR", {".hdr"}, vl_hdr_probe, vl_hdr_read, vl_hdr_write},
+    {"PFM", {".pfm"}, vl_pfm_probe, vl_pfm_read, vl_pfm_write},
+    {"PNM", {NULL}, vl_pnm_probe, vl_pnm_read, NULL},
+    {"BMP", {NULL}, vl_bmp_probe, vl_bmp_read, NULL},
+    {"GIF", {NULL}, vl_gif_probe, vl_gif_read, NULL},
+    {"QOI", {NULL}, vl_qoi_probe, vl_qoi_read, NULL},
+    {"TGA", {".tga"}, vl_tga_probe, vl_tga_read, vl_tga_write},
+};
+const uint32_t vl_codec_count = sizeof vl_codecs / sizeof *vl_codecs;
+
+vlResult vl_codec_broken(const vlImageFile *file, const char *format, const char *what) {
+  return vl_fail(file->error, VL_ERROR_SCENE, "%s: broken %s file: %s", file->name, format, what);
+}
+
+vlResult vl_codec_unsupported(const vlImageFile *file, const char *format, const char *what) {
+  return vl_fail(file->error, VL_ERROR_UNSUPPORTED, "%s: %s file with %s is not supported", file->name, format, what);
+}
+
+vlResult vl_codec_promise(const vlImageFile *file, const char *format, uint64_t width, uint64_t height, double need,
+                          double ratio) {
+  if (width == 0 || height == 0) return vl_codec_broken(file, format, "its picture is empty");
+  if (need <= ratio * (double)file->size) return VL_OK;
+  return vl_fail(file->error, VL_ERROR_SCENE,
+                 "%s: broken %s file: promises %llux%llu pixels, more than its %zu bytes can hold", file->name, format,
+                 (unsigned long long)width, (unsigned long long)height, file->size);
+}
+
+vlResult vl_codec_create(const vlImageFile *file, uint32_t width, uint32_t height, uint32_t channels, vlPixelType type,
+                         vlEncoding encoding, vlImage **image) {
+  vlImageDef def = vl_default_image_def(width, height, channels);
+  def.type = type;
+  def.encoding = encoding;
+  vlResult result = vl_image_create(file->context, &def, image);
+  if (result == VL_ERROR_MEMORY) return vl_fail_memory(file->error);
+  if (result != VL_OK)
+    return vl_fail(file->error, result, "%s: a picture of %ux%u pixels is not possible", file->name, width, height);
+  return VL_OK;
+}
+
+vlResult vl_codec_color(const vlImage *image, const char *format, uint32_t channel[4], uint32_t *count,
+                        vlError *error) {
+  *count = vl_image_color(image, channel);
+  if (*count) return VL_OK;
+  return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write as %s: the picture has no channels R, G, B or Y", format);
+}
+
+static void row_8bit_from_16(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count,
+                             uint8_t *result) {
+  const uint16_t *row = vl_image_const_row(image, y);
+  for (uint32_t x = 0; x < image->width; x++)
+    for (uint32_t c = 0; c < count; c++)
+      result[(size_t)x * count + c] =
+          (uint8_t)((row[(size_t)x * image->channels + channel[c]] * 255u + 32767u) / 65535u);
+}
+
+void vl_codec_row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count, float *scratch,
+                       uint8_t *result) {
+  if (image->type == VL_PIXEL_U8) {
+    const uint8_t *row = vl_image_const_row(image, y);
+    for (uint32_t x = 0; x < image->width; x++)
+      for (uint32_t c = 0; c < count; c++)
+        result[(size_t)x * count + c] = row[(size_t)x * image->channels + channel[c]];
+    return;
+  }
+  if (image->type == VL_PIXEL_U16) {
+    row_8bit_from_16(image, y, channel, count, result);
+    return;
+  }
+  vl_image_row_to_float(image, y, channel, count, scratch);
+  uint32_t alpha = count == 2 || count == 4 ? count - 1 : count;
+  for (uint32_t x = 0; x < image->width; x++)
+    for (uint32_t c = 0; c < count; c++) {
+      float v = scratch[(size_t)x * count + c];
+      result[(size_t)x * count + c] = c == alpha ? vl_linear_to_unorm8(v) : vl_linear_to_srgb8(v);
+    }
+}
+
+/* ---- reading -------------------------------------------------------------------------------------------------------
+ */
+
+vlResult vl_image_read_memory(vlContext *context, const char *name, const void *data, size_t size, vlImage **image,
+                              vlError *error) {
+  *image = NULL;
+  vlImageFile file = {context, name, data, size, error};
+  for (uint32_t i = 0; i < vl_codec_count; i++) {
+    if (!vl_codecs[i].probe(file.data, size)) continue;
+    vlResult result = vl_codecs[i].read(&file, image);
+    if (result != VL_OK) {
+      vl_image_destroy(*image);
+      *image = NULL;
+    }
+    return result;
+  }
+  if (size == 0) return vl_fail(error, VL_ERROR_SCENE, "%s: empty file, not a picture", name);
+  return vl_fail(error, VL_ERROR_SCENE,
+                 "%s: not a picture (known are OpenEXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM and QOI)", name);
+}
+
+vlResult vl_image_read(vlContext *context, const char *path, vlImage **image, vlError *error) {
+  if (image) *image = NULL;
+  if (!context || !path || !image) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_read: null argument");
+  vl_error_clear(error);
+  char *data;
+  size_t size;
+  vlResult result = vl_file_read(context, path, false, &data, &size, error);
+  if (result != VL_OK) return result;
+  result = vl_image_read_memory(context, path, data, size, image, error);
+  vl_free(context, data);
+  return result;
+}
+
+/* ---- writing --------------------------------------------------------------------------------------------------------
+ */
+
+vlWriteDef vl_default_write_def(void) {
+  return (vlWriteDef){.cookie = VL_COOKIE_WRITE, .half = false, .compression = 1, .quality = 95};
+}
+
+static const vlCodec *codec_of_suffix(const char *path) {
+  for (uint32_t i = 0; i < vl_codec_count; i++)
+    for (uint32_t s = 0; s < 4 && vl_codecs[i].suffixes[s] && vl_codecs[i].write; s++)
+      if (vl_ends_with(path, vl_codecs[i].suffixes[s])) return &vl_codecs[i];
+  return NULL;
+}
+
+vlResult vl_image_write(const vlImage *image, const char *path, const vlWriteDef *write, vlError *error) {
+  vlWriteDef def = write ? *write : vl_default_write_def();
+  if (!image || !path || def.cookie != VL_COOKIE_WRITE)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_write: null argument, or a def not from vl_default_write_def");
+  if (def.compression < 0 || def.compression > 1 || def.quality < 1 || def.quality > 100)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_write: compression is 0 or 1, quality 1 to 100");
+  vl_error_clear(error);
+  const vlCodec *codec = codec_of_suffix(path);
+  if (!codec) {
+    const char *names[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr", ".pfm", ".tga"};
+    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+    const char *near = dot && (!slash || dot > slash) ? vl_nearest_name(dot, names, 7) : NULL;
+    if (near)
+      return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write %s: unknown suffix (did you mean %s?)", path, near);
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "cannot write %s: the suffix must be .exr .png .jpg .jpeg .hdr .pfm or .tga", path);
+  }
+  vlFileWriter writer;
+  vlResult result = vl_file_open_write(&writer, path, error);
+  if (result != VL_OK) return result;
+  result = codec->write(image, &def, &writer, error);
+  if (result == VL_OK || writer.failed_errno) return vl_file_commit(&writer, error); /* commit reports a failed write */
+  vl_file_abandon(&writer);
+  return result;
+}

@@ -1,0 +1,78 @@
+/* image/codec.h: file formats behind one table. Reading goes from bytes in memory to a picture, writing from a picture
+ * to a vlFileWriter. Messages start with the file's name. */
+#ifndef IMAGE_CODEC_H
+#define IMAGE_CODEC_H
+
+#include "base/error.h"
+#include "base/file.h"
+#include "image/image.h"
+
+/* A file being read: all a decoder needs. */
+typedef struct vlImageFile {
+  vlContext *context;
+  const char *name;
+  const uint8_t *data; /* one zero byte follows */
+  size_t size;
+  vlError *error;
+} vlImageFile;
+
+typedef struct vlCodec {
+  const char *name;        /* as in messages: "PNG" */
+  const char *suffixes[4]; /* with the dot, for writing; null ends */
+  bool (*probe)(const uint8_t *data, size_t size);
+  vlResult (*read)(const vlImageFile *file, vlImage **image);
+  vlResult (*write)(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer,
+                    vlError *error); /* null: reads only */
+} vlCodec;
+
+extern const vlCodec vl_codecs[];
+extern const uint32_t vl_codec_count;
+
+/* SCENE: "name: broken PNG file: <what>". */
+vlResult vl_codec_broken(const vlImageFile *file, const char *format, const char *what);
+/* UNSUPPORTED: "name: PNG file with <what> is not supported". */
+vlResult vl_codec_unsupported(const vlImageFile *file, const char *format, const char *what);
+/* OK when the file is large enough for `need` bytes of pixels when each byte of it can stand for at most `ratio` of
+ * them; else SCENE, "promises WxH pixels, more than its N bytes can hold". Also refuses empty pictures. */
+vlResult vl_codec_promise(const vlImageFile *file, const char *format, uint64_t width, uint64_t height, double need,
+                          double ratio);
+/* Default names; fills the error. */
+vlResult vl_codec_create(const vlImageFile *file, uint32_t width, uint32_t height, uint32_t channels, vlPixelType type,
+                         vlEncoding encoding, vlImage **image);
+
+/* The colour channels for a format that holds only these; ARGUMENT with a message when there are none. count: 1 to 4.
+ */
+vlResult vl_codec_color(const vlImage *image, const char *format, uint32_t channel[4], uint32_t *count, vlError *error);
+/* Row y of those channels as 8 bits: 8-bit pictures as they are, 16-bit ones rounded, others through sRGB's curve
+ * (alpha without). scratch: width*count floats. */
+void vl_codec_row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count, float *scratch,
+                       uint8_t *result);
+
+vlResult vl_exr_read(const vlImageFile *file, vlImage **image);
+vlResult vl_exr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
+bool vl_exr_probe(const uint8_t *data, size_t size);
+vlResult vl_png_read(const vlImageFile *file, vlImage **image);
+vlResult vl_png_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
+bool vl_png_probe(const uint8_t *data, size_t size);
+vlResult vl_jpeg_read(const vlImageFile *file, vlImage **image);
+vlResult vl_jpeg_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
+bool vl_jpeg_probe(const uint8_t *data, size_t size);
+vlResult vl_hdr_read(const vlImageFile *file, vlImage **image);
+vlResult vl_hdr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
+bool vl_hdr_probe(const uint8_t *data, size_t size);
+vlResult vl_pfm_read(const vlImageFile *file, vlImage **image);
+vlResult vl_pfm_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
+bool vl_pfm_probe(const uint8_t *data, size_t size);
+vlResult vl_tga_read(const vlImageFile *file, vlImage **image);
+vlResult vl_tga_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
+bool vl_tga_probe(const uint8_t *data, size_t size);
+vlResult vl_bmp_read(const vlImageFile *file, vlImage **image);
+bool vl_bmp_probe(const uint8_t *data, size_t size);
+vlResult vl_gif_read(const vlImageFile *file, vlImage **image);
+bool vl_gif_probe(const uint8_t *data, size_t size);
+vlResult vl_pnm_read(const vlImageFile *file, vlImage **image);
+bool vl_pnm_probe(const uint8_t *data, size_t size);
+vlResult vl_qoi_read(const vlImageFile *file, vlImage **image);
+bool vl_qoi_probe(const uint8_t *data, size_t size);
+
+#endif

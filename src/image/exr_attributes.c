@@ -1,0 +1,208 @@
+/* image/exr_attributes.c: attributes between vlImage and OpenEXR headers. */
+#include <stdio.h>
+#include <string.h>
+
+#include "image/exr.h"
+
+void vl_exr_on_error(exr_const_context_t context, exr_result_t code, const char *message) {
+  void *user = NULL;
+  (void)code;
+  if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user) return;
+  vlExr *x = user;
+  if (!x->message[0]) snprintf(x->message, sizeof x->message, "%s", message ? message : "");
+}
+
+/* What the file's layout says; made anew when writing. */
+static const char *const LAYOUT[] = {"channels",          "compression", "lineOrder", "tiles",   "type",
+                                     "version",           "chunkCount",  "name",      "preview", "dwaCompressionLevel",
+                                     "maxSamplesPerPixel"};
+
+static bool is_layout(const char *name) {
+  for (size_t i = 0; i < sizeof LAYOUT / sizeof *LAYOUT; i++)
+    if (strcmp(name, LAYOUT[i]) == 0) return true;
+  return false;
+}
+
+static void copy_floats(vlAttribute *to, vlAttributeType type, const float *from, int count) {
+  to->type = type;
+  for (int i = 0; i < count; i++) to->numbers[i] = from[i];
+}
+
+static void copy_box(vlAttribute *to, const exr_attr_box2i_t *box) {
+  to->type = VL_ATTRIBUTE_BOX2I;
+  to->numbers[0] = box->min.x;
+  to->numbers[1] = box->min.y;
+  to->numbers[2] = box->max.x;
+  to->numbers[3] = box->max.y;
+}
+
+/* false: a type that vlAttribute does not hold. */
+static bool convert(const exr_attribute_t *from, vlAttribute *to) {
+  memset(to, 0, sizeof *to);
+  to->name = from->name;
+  switch (from->type) {
+    case EXR_ATTR_FLOAT:
+      to->type = VL_ATTRIBUTE_FLOAT;
+      to->numbers[0] = from->f;
+      return true;
+    case EXR_ATTR_DOUBLE:
+      to->type = VL_ATTRIBUTE_DOUBLE;
+      to->numbers[0] = from->d;
+      return true;
+    case EXR_ATTR_INT:
+      to->type = VL_ATTRIBUTE_INT;
+      to->numbers[0] = from->i;
+      return true;
+    case EXR_ATTR_STRING:
+      to->type = VL_ATTRIBUTE_STRING;
+      to->string = from->string->str ? from->string->str : "";
+      return true;
+    case EXR_ATTR_V2F: copy_floats(to, VL_ATTRIBUTE_V2F, from->v2f->arr, 2); return true;
+    case EXR_ATTR_V3F: copy_floats(to, VL_ATTRIBUTE_V3F, from->v3f->arr, 3); return true;
+    case EXR_ATTR_M33F: copy_floats(to, VL_ATTRIBUTE_M33F, from->m33f->m, 9); return true;
+    case EXR_ATTR_M44F: copy_floats(to, VL_ATTRIBUTE_M44F, from->m44f->m, 16); return true;
+    case EXR_ATTR_M44D:
+      to->type = VL_ATTRIBUTE_M44D;
+      memcpy(to->numbers, from->m44d->m, sizeof to->numbers);
+      return true;
+    case EXR_ATTR_CHROMATICITIES: {
+      const exr_attr_chromaticities_t *c = from->chromaticities;
+      const float xy[8] = {c->red_x, c->red_y, c->green_x, c->green_y, c->blue_x, c->blue_y, c->white_x, c->white_y};
+      copy_floats(to, VL_ATTRIBUTE_CHROMATICITIES, xy, 8);
+      return true;
+    }
+    case EXR_ATTR_BOX2I: copy_box(to, from->box2i); return true;
+    default: return false;
+  }
+}
+
+/* Every header carries these; they are kept only where they say more than the default. */
+static bool is_default(const vlAttribute *a, const vlImage *image) {
+  if (strcmp(a->name, "pixelAspectRatio") == 0 || strcmp(a->name, "screenWindowWidth") == 0)
+    return a->numbers[0] == 1.0;
+  if (strcmp(a->name, "screenWindowCenter") == 0) return a->numbers[0] == 0.0 && a->numbers[1] == 0.0;
+  if (strcmp(a->name, "dataWindow") == 0 || strcmp(a->name, "displayWindow") == 0)
+    return a->numbers[0] == 0.0 && a->numbers[1] == 0.0 && a->numbers[2] == image->width - 1.0 &&
+           a->numbers[3] == image->height - 1.0;
+  return false;
+}
+
+vlResult vl_exr_attributes_in(exr_const_context_t exr, vlImage *image) {
+  int32_t count = 0;
+  exr_get_attribute_count(exr, 0, &count);
+  vlAttribute windows[2];
+  uint32_t plain = 0;
+  for (int32_t i = 0; i < count; i++) {
+    const exr_attribute_t *from;
+    vlAttribute to;
+    if (exr_get_attribute_by_index(exr, 0, EXR_ATTR_LIST_FILE_ORDER, i, &from) != EXR_ERR_SUCCESS) continue;
+    if (!from->name || !from->name[0] || is_layout(from->name) || !convert(from, &to)) continue;
+    if (strcmp(to.name, "dataWindow") == 0 || strcmp(to.name, "displayWindow") == 0) {
+      windows[to.name[1] == 'a' ? 0 : 1] = to;
+      plain += is_default(&to, image);
+      continue;
+    }
+    if (is_default(&to, image)) continue;
+    vlResult result = vl_image_set_attribute(image, &to);
+    if (result == VL_ERROR_MEMORY) return result;
+  }
+  if (plain == 2) return VL_OK; /* both windows are the picture itself */
+  for (int i = 0; i < 2; i++)
+    if (vl_image_set_attribute(image, &windows[i]) == VL_ERROR_MEMORY) return VL_ERROR_MEMORY;
+  return VL_OK;
+}
+
+static exr_attr_box2i_t box_of(const double n[16]) {
+  exr_attr_box2i_t box;
+  box.min.x = (int32_t)n[0];
+  box.min.y = (int32_t)n[1];
+  box.max.x = (int32_t)n[2];
+  box.max.y = (int32_t)n[3];
+  return box;
+}
+
+static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) {
+  const double *n = a->numbers;
+  float f[16];
+  for (int i = 0; i < 16; i++) f[i] = (float)n[i];
+  switch (a->type) {
+    case VL_ATTRIBUTE_FLOAT:
+      if (strcmp(a->name, "pixelAspectRatio") == 0) return exr_set_pixel_aspect_ratio(exr, 0, f[0]);
+      if (strcmp(a->name, "screenWindowWidth") == 0) return exr_set_screen_window_width(exr, 0, f[0]);
+      return exr_attr_set_float(exr, 0, a->name, f[0]);
+    case VL_ATTRIBUTE_DOUBLE: return exr_attr_set_double(exr, 0, a->name, n[0]);
+    case VL_ATTRIBUTE_INT: return exr_attr_set_int(exr, 0, a->name, (int32_t)n[0]);
+    case VL_ATTRIBUTE_STRING: return exr_attr_set_string(exr, 0, a->name, a->string);
+    case VL_ATTRIBUTE_V2F: {
+      exr_attr_v2f_t v;
+      memcpy(v.arr, f, sizeof v.arr);
+      if (strcmp(a->name, "screenWindowCenter") == 0) return exr_set_screen_window_center(exr, 0, &v);
+      return exr_attr_set_v2f(exr, 0, a->name, &v);
+    }
+    case VL_ATTRIBUTE_V3F: {
+      exr_attr_v3f_t v;
+      memcpy(v.arr, f, sizeof v.arr);
+      return exr_attr_set_v3f(exr, 0, a->name, &v);
+    }
+    case VL_ATTRIBUTE_M33F: {
+      exr_attr_m33f_t m;
+      memcpy(m.m, f, sizeof m.m);
+      return exr_attr_set_m33f(exr, 0, a->name, &m);
+    }
+    case VL_ATTRIBUTE_M44F: {
+      exr_attr_m44f_t m;
+      memcpy(m.m, f, sizeof m.m);
+      return exr_attr_set_m44f(exr, 0, a->name, &m);
+    }
+    case VL_ATTRIBUTE_M44D: {
+      exr_attr_m44d_t m;
+      memcpy(m.m, n, sizeof m.m);
+      return exr_attr_set_m44d(exr, 0, a->name, &m);
+    }
+    case VL_ATTRIBUTE_CHROMATICITIES: {
+      const exr_attr_chromaticities_t c = {f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7]};
+      return exr_attr_set_chromaticities(exr, 0, a->name, &c);
+    }
+    case VL_ATTRIBUTE_BOX2I: {
+      const exr_attr_box2i_t box = box_of(n);
+      if (strcmp(a->name, "displayWindow") == 0) return exr_set_display_window(exr, 0, &box);
+      if (strcmp(a->name, "dataWindow") == 0) return exr_set_data_window(exr, 0, &box);
+      return exr_attr_set_box2i(exr, 0, a->name, &box);
+    }
+  }
+  return EXR_ERR_INVALID_ARGUMENT;
+}
+
+static bool fits_int(const double *n, int count) {
+  for (int i = 0; i < count; i++)
+    if (!(n[i] >= INT32_MIN && n[i] <= INT32_MAX)) return false;
+  return true;
+}
+
+vlResult vl_exr_attributes_out(exr_context_t exr, const vlImage *image, vlError *error) {
+  static const struct {
+    const char *name;
+    vlAttributeType type;
+  } FIXED[] = {{"pixelAspectRatio", VL_ATTRIBUTE_FLOAT},
+               {"screenWindowWidth", VL_ATTRIBUTE_FLOAT},
+               {"screenWindowCenter", VL_ATTRIBUTE_V2F},
+               {"displayWindow", VL_ATTRIBUTE_BOX2I},
+               {"dataWindow", VL_ATTRIBUTE_BOX2I}};
+  for (size_t i = 0; i < image->attributes.count; i++) {
+    const vlImageAttribute *a = &image->attributes.items[i];
+    if (is_layout(a->name)) continue;
+    bool ok = true;
+    for (size_t k = 0; k < sizeof FIXED / sizeof *FIXED; k++)
+      if (strcmp(a->name, FIXED[k].name) == 0 && a->type != FIXED[k].type) ok = false;
+    if (a->type == VL_ATTRIBUTE_BOX2I) ok = ok && fits_int(a->numbers, 4);
+    if (a->type == VL_ATTRIBUTE_INT) ok = ok && fits_int(a->numbers, 1);
+    if (ok && strcmp(a->name, "dataWindow") == 0)
+      ok = a->numbers[2] - a->numbers[0] + 1.0 == image->width && a->numbers[3] - a->numbers[1] + 1.0 == image->height;
+    exr_result_t code = ok ? set_attribute(exr, a) : EXR_ERR_INVALID_ATTR;
+    if (code == EXR_ERR_OUT_OF_MEMORY) return vl_fail_memory(error);
+    if (code != EXR_ERR_SUCCESS)
+      return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write the attribute \"%s\": %s", a->name,
+                     ok ? exr_get_default_error_message(code) : "its type or values do not suit its name");
+  }
+  return VL_OK;
+}

@@ -1,0 +1,231 @@
+/* image/exr_read.c: OpenEXR through OpenEXRCore: the first part, scanlines or tiles (their finest level), all
+ * compressions. The picture is the data window; where it is not the display window both are kept as attributes.
+ *
+ * Channel order: R G B A (Y A) first, then the others as in the file (alphabetical). One type for all: halves stay
+ * halves and ids stay integers when all channels are so, any mixture becomes float. */
+#include <limits.h>
+#include <string.h>
+
+#include "image/exr.h"
+
+typedef struct Reader {
+  vlExr base;
+  exr_context_t exr;
+  const exr_attr_chlist_t *list;
+  exr_attr_box2i_t window;
+  exr_compression_t compression;
+  uint32_t width, height;
+  uint32_t *place; /* channel of the image for each channel of the file */
+  int user_type, user_size;
+  vlImage *image;
+  exr_decode_pipeline_t pipeline;
+  bool started;
+  /* the grid of chunks: rows of `lines`, or tiles */
+  bool tiled;
+  int32_t lines, tile_width, tile_height;
+} Reader;
+
+bool vl_exr_probe(const uint8_t *data, size_t size) {
+  return size >= 4 && memcmp(data, "\x76\x2f\x31\x01", 4) == 0;
+}
+
+static int64_t on_read(exr_const_context_t exr, void *user, void *buffer, uint64_t size, uint64_t offset,
+                       exr_stream_error_func_ptr_t fail) {
+  const vlImageFile *file = ((vlExr *)user)->file;
+  (void)exr;
+  (void)fail;
+  if (offset >= file->size) return 0;
+  uint64_t left = file->size - offset;
+  if (size > left) size = left;
+  memcpy(buffer, file->data + offset, size);
+  return (int64_t)size;
+}
+
+static int64_t on_size(exr_const_context_t exr, void *user) {
+  (void)exr;
+  return (int64_t)((vlExr *)user)->file->size;
+}
+
+static vlResult fail(Reader *r, exr_result_t code) {
+  if (code == EXR_ERR_OUT_OF_MEMORY) return vl_fail_memory(r->base.file->error);
+  return vl_codec_broken(r->base.file, "OpenEXR",
+                         r->base.message[0] ? r->base.message : exr_get_default_error_message(code));
+}
+
+/* Rank of a channel in our order: the colours in front. */
+static uint32_t rank(const char *name) {
+  static const char *const FRONT[] = {"R", "G", "B", "Y", "A"};
+  for (uint32_t i = 0; i < 5; i++)
+    if (strcmp(name, FRONT[i]) == 0) return i;
+  return 5;
+}
+
+static vlResult layout(Reader *r) {
+  const vlImageFile *file = r->base.file;
+  exr_storage_t storage;
+  exr_result_t code = exr_get_storage(r->exr, 0, &storage);
+  if (code == EXR_ERR_SUCCESS) code = exr_get_data_window(r->exr, 0, &r->window);
+  if (code == EXR_ERR_SUCCESS) code = exr_get_compression(r->exr, 0, &r->compression);
+  if (code == EXR_ERR_SUCCESS) code = exr_get_channels(r->exr, 0, &r->list);
+  if (code != EXR_ERR_SUCCESS) return fail(r, code);
+  if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
+    return vl_codec_unsupported(file, "OpenEXR", "deep pixels");
+  r->tiled = storage == EXR_STORAGE_TILED;
+  if ((unsigned)r->compression >= EXR_COMPRESSION_LAST_TYPE)
+    return vl_codec_broken(file, "OpenEXR", "unknown compression");
+  if (r->list->num_channels < 1) return vl_codec_broken(file, "OpenEXR", "no channels");
+  if (r->list->num_channels > 1024) return vl_codec_unsupported(file, "OpenEXR", "more than 1024 channels");
+
+  uint32_t bytes = 0, halves = 0, integers = 0, count = (uint32_t)r->list->num_channels;
+  for (uint32_t i = 0; i < count; i++) {
+    const exr_attr_chlist_entry_t *c = &r->list->entries[i];
+    if (c->x_sampling != 1 || c->y_sampling != 1) return vl_codec_unsupported(file, "OpenEXR", "subsampled channels");
+    if (!c->name.str || !c->name.str[0] || c->name.length > 255)
+      return vl_codec_broken(file, "OpenEXR", "a channel without a name");
+    if ((unsigned)c->pixel_type >= EXR_PIXEL_LAST_TYPE) return vl_codec_broken(file, "OpenEXR", "unknown pixel type");
+    bytes += c->pixel_type == EXR_PIXEL_HALF ? 2 : 4;
+    halves += c->pixel_type == EXR_PIXEL_HALF;
+    integers += c->pixel_type == EXR_PIXEL_UINT;
+  }
+  r->user_type = halves == count ? EXR_PIXEL_HALF : integers == count ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+  r->user_size = halves == count ? 2 : 4;
+
+  int64_t width = (int64_t)r->window.max.x - r->window.min.x + 1,
+          height = (int64_t)r->window.max.y - r->window.min.y + 1;
+  if (width < 1 || height < 1) return vl_codec_broken(file, "OpenEXR", "its data window is empty");
+  if (width > INT32_MAX / (r->user_size * (int64_t)count) || height > INT32_MAX)
+    return vl_codec_unsupported(file, "OpenEXR", "rows of more than 2^31 bytes");
+  /* The tightest codings: deflate 1032:1, and DWA's run lengths under deflate. Chunks are judged one by one below. */
+  bool dwa = r->compression == EXR_COMPRESSION_DWAA || r->compression == EXR_COMPRESSION_DWAB;
+  vlResult result = vl_codec_promise(file, "OpenEXR", (uint64_t)width, (uint64_t)height,
+                                     (double)width * (double)height * bytes, dwa ? 66000.0 : 1032.0);
+  if (result != VL_OK) return result;
+  int32_t chunks;
+  code = exr_get_chunk_count(r->exr, 0, &chunks);
+  if (code != EXR_ERR_SUCCESS) return fail(r, code);
+  if (chunks < 1 || (uint64_t)chunks * 8 > file->size)
+    return vl_codec_promise(file, "OpenEXR", (uint64_t)width, (uint64_t)height, 8.0 * chunks, 0.0);
+  if (r->tiled)
+    code = exr_get_tile_sizes(r->exr, 0, 0, 0, &r->tile_width, &r->tile_height);
+  else
+    code = exr_get_scanlines_per_chunk(r->exr, 0, &r->lines);
+  if (code != EXR_ERR_SUCCESS) return fail(r, code);
+  if (r->tiled ? r->tile_width < 1 || r->tile_height < 1 : r->lines < 1)
+    return vl_codec_broken(file, "OpenEXR", "empty chunks");
+  r->width = (uint32_t)width;
+  r->height = (uint32_t)height;
+  return VL_OK;
+}
+
+/* The chunk at column and row of the grid; checks that it lies in the file and is not blown up beyond its coding. */
+static vlResult find_chunk(Reader *r, uint32_t column, uint32_t row, exr_chunk_info_t *chunk) {
+  exr_result_t code = r->tiled ? exr_read_tile_chunk_info(r->exr, 0, (int)column, (int)row, 0, 0, chunk)
+                               : exr_read_scanline_chunk_info(r->exr, 0, r->window.min.y + (int)row * r->lines, chunk);
+  if (code != EXR_ERR_SUCCESS) return fail(r, code);
+  const vlImageFile *file = r->base.file;
+  bool dwa = r->compression == EXR_COMPRESSION_DWAA || r->compression == EXR_COMPRESSION_DWAB;
+  if (chunk->data_offset > file->size || chunk->packed_size > file->size - chunk->data_offset ||
+      chunk->packed_size == 0)
+    return vl_codec_broken(file, "OpenEXR", "a chunk lies outside the file");
+  if ((double)chunk->unpacked_size > (double)chunk->packed_size * (dwa ? 66000.0 : 1032.0) + 64.0)
+    return vl_codec_broken(file, "OpenEXR", "a chunk is too small for its pixels");
+  int64_t left = (int64_t)r->width - (r->tiled ? (int64_t)column * r->tile_width : 0);
+  int64_t below = (int64_t)r->height - (int64_t)row * (r->tiled ? r->tile_height : r->lines);
+  if (chunk->width < 1 || chunk->width > left || chunk->height < 1 || chunk->height > below)
+    return vl_codec_broken(file, "OpenEXR", "a chunk of the wrong size");
+  return VL_OK;
+}
+
+static vlResult decode_chunk(Reader *r, uint32_t column, uint32_t row) {
+  exr_chunk_info_t chunk;
+  vlResult result = find_chunk(r, column, row, &chunk);
+  if (result != VL_OK) return result;
+  exr_decode_pipeline_t *p = &r->pipeline;
+  exr_result_t code =
+      r->started ? exr_decoding_update(r->exr, 0, &chunk, p) : exr_decoding_initialize(r->exr, 0, &chunk, p);
+  if (code != EXR_ERR_SUCCESS) return fail(r, code);
+  size_t pixel = (size_t)r->user_size * r->image->channels, line = pixel * r->width;
+  char *origin = (char *)r->image->pixels +
+                 (r->tiled ? row * (size_t)r->tile_height * line + column * (size_t)r->tile_width * pixel
+                           : row * (size_t)r->lines * line);
+  for (int i = 0; i < p->channel_count; i++) {
+    exr_coding_channel_info_t *c = &p->channels[i];
+    c->decode_to_ptr = (uint8_t *)origin + (size_t)r->user_size * r->place[i];
+    c->user_bytes_per_element = (int16_t)r->user_size;
+    c->user_data_type = (uint16_t)r->user_type;
+    c->user_pixel_stride = (int32_t)pixel;
+    c->user_line_stride = (int32_t)line;
+  }
+  if (!r->started) {
+    r->started = true;
+    code = exr_decoding_choose_default_routines(r->exr, 0, p);
+    if (code != EXR_ERR_SUCCESS) return fail(r, code);
+  }
+  code = exr_decoding_run(r->exr, 0, p);
+  return code == EXR_ERR_SUCCESS ? VL_OK : fail(r, code);
+}
+
+static vlResult create(Reader *r) {
+  vlContext *context = r->base.file->context;
+  uint32_t count = (uint32_t)r->list->num_channels, next = 0;
+  r->place = vl_alloc_array(context, count, sizeof *r->place);
+  const char **names = vl_alloc_array(context, count, sizeof *names);
+  vlResult result = r->place && names ? VL_OK : VL_ERROR_MEMORY;
+  for (uint32_t k = 0; result == VL_OK && k <= 5; k++)
+    for (uint32_t i = 0; i < count; i++) {
+      if (rank(r->list->entries[i].name.str) != k || next >= count) continue;
+      names[next] = r->list->entries[i].name.str;
+      r->place[i] = next++;
+    }
+  if (result == VL_OK) {
+    vlImageDef def = vl_default_image_def(r->width, r->height, count);
+    def.names = names;
+    def.type = r->user_type == EXR_PIXEL_HALF   ? VL_PIXEL_F16
+               : r->user_type == EXR_PIXEL_UINT ? VL_PIXEL_U32
+                                                : VL_PIXEL_F32;
+    result = vl_image_create(context, &def, &r->image);
+  }
+  vl_free(context, names);
+  if (result == VL_OK) result = vl_exr_attributes_in(r->exr, r->image);
+  if (result == VL_ERROR_MEMORY) return vl_fail_memory(r->base.file->error);
+  return result == VL_OK ? VL_OK : vl_codec_broken(r->base.file, "OpenEXR", "its channels are not possible");
+}
+
+static vlResult read_all(Reader *r) {
+  vlResult result = layout(r);
+  uint32_t step_x = r->tiled ? (uint32_t)r->tile_width : r->width,
+           step_y = (uint32_t)(r->tiled ? r->tile_height : r->lines);
+  /* All chunks must be there before memory is taken for the pixels. */
+  for (uint32_t pass = 0; pass < 2 && result == VL_OK; pass++) {
+    if (pass == 1) result = create(r);
+    for (uint64_t y = 0, row = 0; y < r->height && result == VL_OK; y += step_y, row++)
+      for (uint64_t x = 0, column = 0; x < r->width && result == VL_OK; x += step_x, column++) {
+        exr_chunk_info_t chunk;
+        result = pass ? decode_chunk(r, (uint32_t)column, (uint32_t)row)
+                      : find_chunk(r, (uint32_t)column, (uint32_t)row, &chunk);
+      }
+  }
+  return result;
+}
+
+vlResult vl_exr_read(const vlImageFile *file, vlImage **image) {
+  Reader r;
+  memset(&r, 0, sizeof r);
+  r.base.file = file;
+  exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  start.error_handler_fn = vl_exr_on_error;
+  start.user_data = &r.base;
+  start.read_fn = on_read;
+  start.size_fn = on_size;
+  start.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
+  exr_result_t code = exr_start_read(&r.exr, file->name, &start);
+  vlResult result = code == EXR_ERR_SUCCESS ? read_all(&r) : fail(&r, code);
+  if (r.started) exr_decoding_destroy(r.exr, &r.pipeline);
+  exr_finish(&r.exr);
+  vl_free(file->context, r.place);
+  if (result == VL_OK)
+    *image = r.image;
+  else
+    vl_image_destroy(r.image);
+  return result;
+}

@@ -1,0 +1,162 @@
+/* image/exr_write.c: OpenEXR through OpenEXRCore: one part of scanlines, ZIP or uncompressed. One thread, fixed level
+ * of compression, no time stamp: the same picture gives the same bytes. Halves for pictures of halves, or for the
+ * colours (R G B A Y, also of layers: "diffuse.R") when asked; 8 and 16-bit pictures are written as light. */
+#include <limits.h>
+#include <string.h>
+
+#include "image/exr.h"
+#include "image/pixel.h"
+
+typedef struct Writer {
+  vlExr base;
+  const vlImage *image;
+  exr_context_t exr;
+  exr_encode_pipeline_t pipeline;
+  bool started;
+  exr_pixel_type_t *types; /* per channel of the image */
+  char *lines;             /* one chunk: each channel's rows on their own, in the type of the file */
+  float *row;              /* one channel's row */
+  int32_t lines_per_chunk;
+} Writer;
+
+static int64_t on_write(exr_const_context_t exr, void *user, const void *buffer, uint64_t size, uint64_t offset,
+                        exr_stream_error_func_ptr_t fail) {
+  vlFileWriter *writer = ((vlExr *)user)->writer;
+  (void)exr;
+  (void)fail;
+  vl_file_write_at(writer, buffer, size, offset);
+  return writer->failed_errno ? -1 : (int64_t)size;
+}
+
+static vlResult fail(Writer *w, exr_result_t code, vlError *error) {
+  if (code == EXR_ERR_OUT_OF_MEMORY) return vl_fail_memory(error);
+  return vl_fail(error, w->base.writer->failed_errno ? VL_ERROR_IO : VL_ERROR_ARGUMENT, "cannot write %s: %s",
+                 w->base.writer->path, w->base.message[0] ? w->base.message : exr_get_default_error_message(code));
+}
+
+static bool is_color(const char *name) {
+  const char *dot = strrchr(name, '.'), *last = dot ? dot + 1 : name;
+  return last[0] && strchr("RGBAY", last[0]) && !last[1];
+}
+
+/* A finite value too large for a half stays finite. */
+static uint16_t to_half(float v) {
+  if (v > 65504.0f && v <= 3.4028235e38f) v = 65504.0f;
+  if (v < -65504.0f && v >= -3.4028235e38f) v = -65504.0f;
+  return vl_float_to_half(v);
+}
+
+static vlResult header(Writer *w, const vlWriteDef *def, vlError *error) {
+  const vlImage *image = w->image;
+  if (image->width > INT32_MAX / 4 || image->height > INT32_MAX / 2)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write %s: too large for OpenEXR", w->base.writer->path);
+  int part;
+  exr_result_t code = exr_add_part(w->exr, NULL, EXR_STORAGE_SCANLINE, &part);
+  if (code == EXR_ERR_SUCCESS)
+    code = exr_initialize_required_attr_simple(w->exr, 0, (int32_t)image->width, (int32_t)image->height,
+                                               def->compression ? EXR_COMPRESSION_ZIP : EXR_COMPRESSION_NONE);
+  bool long_names = false;
+  for (uint32_t i = 0; i < image->channels; i++) long_names |= strlen(image->names[i]) > 31;
+  for (size_t i = 0; i < image->attributes.count; i++) long_names |= strlen(image->attributes.items[i].name) > 31;
+  if (code == EXR_ERR_SUCCESS && long_names) code = exr_set_longname_support(w->exr, 1);
+  for (uint32_t i = 0; i < image->channels && code == EXR_ERR_SUCCESS; i++) {
+    bool half = image->type == VL_PIXEL_F16 || (def->half && image->type != VL_PIXEL_U32 && is_color(image->names[i]));
+    w->types[i] = image->type == VL_PIXEL_U32 ? EXR_PIXEL_UINT : half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
+    code = exr_add_channel(w->exr, 0, image->names[i], w->types[i], EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+  }
+  if (code != EXR_ERR_SUCCESS) return fail(w, code, error);
+  vlResult result = vl_exr_attributes_out(w->exr, image, error);
+  if (result != VL_OK) return result;
+  code = exr_write_header(w->exr);
+  if (code == EXR_ERR_SUCCESS) code = exr_get_scanlines_per_chunk(w->exr, 0, &w->lines_per_chunk);
+  return code == EXR_ERR_SUCCESS ? VL_OK : fail(w, code, error);
+}
+
+/* One channel's row in the type of the file. */
+static void fill_row(Writer *w, uint32_t channel, uint32_t y, char *to) {
+  const vlImage *image = w->image;
+  uint32_t n = image->width, step = image->channels;
+  if (image->type == VL_PIXEL_U32) {
+    const uint32_t *from = (const uint32_t *)vl_image_const_row(image, y) + channel;
+    uint32_t *out = (uint32_t *)(void *)to;
+    for (uint32_t x = 0; x < n; x++) out[x] = from[(size_t)x * step];
+  } else if (image->type == VL_PIXEL_F16) {
+    const uint16_t *from = (const uint16_t *)vl_image_const_row(image, y) + channel;
+    uint16_t *out = (uint16_t *)(void *)to;
+    for (uint32_t x = 0; x < n; x++) out[x] = from[(size_t)x * step];
+  } else if (w->types[channel] == EXR_PIXEL_HALF) {
+    uint16_t *out = (uint16_t *)(void *)to;
+    vl_image_row_to_float(image, y, &channel, 1, w->row);
+    for (uint32_t x = 0; x < n; x++) out[x] = to_half(w->row[x]);
+  } else {
+    vl_image_row_to_float(image, y, &channel, 1, (float *)(void *)to);
+  }
+}
+
+static exr_result_t encode_chunk(Writer *w, uint32_t first, int32_t y) {
+  exr_chunk_info_t chunk;
+  exr_encode_pipeline_t *p = &w->pipeline;
+  exr_result_t code = exr_write_scanline_chunk_info(w->exr, 0, y, &chunk);
+  if (code != EXR_ERR_SUCCESS) return code;
+  code = w->started ? exr_encoding_update(w->exr, 0, &chunk, p) : exr_encoding_initialize(w->exr, 0, &chunk, p);
+  if (code != EXR_ERR_SUCCESS) return code;
+  size_t line = (size_t)w->image->width * 4;
+  for (int i = 0; i < p->channel_count; i++) {
+    exr_coding_channel_info_t *c = &p->channels[i];
+    int channel = vl_image_find_channel(w->image, c->channel_name);
+    if (channel < 0) return EXR_ERR_INVALID_ARGUMENT;
+    char *at = w->lines + (size_t)i * (size_t)w->lines_per_chunk * line;
+    for (int32_t k = 0; k < chunk.height; k++)
+      fill_row(w, (uint32_t)channel, first + (uint32_t)k, at + (size_t)k * line);
+    c->encode_from_ptr = (const uint8_t *)at;
+    c->user_pixel_stride = c->bytes_per_element;
+    c->user_line_stride = (int32_t)line;
+    c->user_bytes_per_element = c->bytes_per_element;
+    c->user_data_type = c->data_type;
+  }
+  if (!w->started) {
+    w->started = true;
+    code = exr_encoding_choose_default_routines(w->exr, 0, p);
+    if (code != EXR_ERR_SUCCESS) return code;
+  }
+  return exr_encoding_run(w->exr, 0, p);
+}
+
+static vlResult write_all(Writer *w, const vlWriteDef *def, vlError *error) {
+  vlResult result = header(w, def, error);
+  if (result != VL_OK) return result;
+  const vlImage *image = w->image;
+  w->lines = vl_alloc_array(image->context, (size_t)w->lines_per_chunk * image->channels, (size_t)image->width * 4);
+  w->row = vl_alloc_array(image->context, image->width, sizeof *w->row);
+  if (!w->lines || !w->row) return vl_fail_memory(error);
+  exr_attr_box2i_t window;
+  exr_result_t code = exr_get_data_window(w->exr, 0, &window);
+  for (uint32_t y = 0; y < image->height && code == EXR_ERR_SUCCESS; y += (uint32_t)w->lines_per_chunk)
+    code = encode_chunk(w, y, window.min.y + (int32_t)y);
+  return code == EXR_ERR_SUCCESS ? VL_OK : fail(w, code, error);
+}
+
+vlResult vl_exr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error) {
+  Writer w;
+  memset(&w, 0, sizeof w);
+  w.base.writer = writer;
+  w.image = image;
+  w.types = vl_alloc_array(image->context, image->channels, sizeof *w.types);
+  if (!w.types) return vl_fail_memory(error);
+  exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  start.error_handler_fn = vl_exr_on_error;
+  start.user_data = &w.base;
+  start.write_fn = on_write;
+  start.zip_level = 4;
+  exr_result_t code = exr_start_write(&w.exr, writer->path, EXR_WRITE_FILE_DIRECTLY, &start);
+  vlResult result = code == EXR_ERR_SUCCESS ? write_all(&w, def, error) : fail(&w, code, error);
+  if (w.started) exr_encoding_destroy(w.exr, &w.pipeline);
+  if (w.exr) {
+    code = exr_finish(&w.exr); /* writes the table of chunks */
+    if (result == VL_OK && code != EXR_ERR_SUCCESS) result = fail(&w, code, error);
+  }
+  vl_free(image->context, w.types);
+  vl_free(image->context, w.lines);
+  vl_free(image->context, w.row);
+  return result;
+}

@@ -1,0 +1,331 @@
+/* test/base/test_base.c: the ground floor: counted memory, arrays, names, errors, files that are whole or not there,
+ * instruction sets. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+/* cmocka wants these four before it */
+#include <cmocka.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include "base/array.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/isa.h"
+#include "base/text.h"
+#include "failing_allocator.h"
+
+static char folder[256];
+
+static vlContext *make_context(failAllocator *state) {
+  vlContextDef def = vl_default_context_def();
+  def.threads = 1;
+  if (state) def.allocator = fail_allocator(state);
+  vlContext *context = NULL;
+  assert_int_equal(vl_context_create(&def, &context), VL_OK);
+  return context;
+}
+
+static const char *in_folder(const char *name) {
+  static char path[512];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  return path;
+}
+
+static void put_file(const char *path, const void *data, size_t size) {
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  assert_int_equal(fwrite(data, 1, size, file), size);
+  fclose(file);
+}
+
+static int count_entries(void) {
+  char command[400];
+  snprintf(command, sizeof command, "ls -A '%s' | wc -l", folder);
+  FILE *pipe = popen(command, "r");
+  int count = -1;
+  assert_int_equal(fscanf(pipe, "%d", &count), 1);
+  pclose(pipe);
+  return count;
+}
+
+static void memory_is_counted(void **state) {
+  (void)state;
+  failAllocator allocator = {0};
+  vlContext *context = make_context(&allocator);
+  size_t before = vl_context_memory(context, NULL);
+  char *a = vl_alloc(context, 1000);
+  double *b = vl_alloc_zero(context, 100, sizeof *b);
+  assert_int_equal((uintptr_t)a % 64, 0);
+  assert_int_equal((uintptr_t)b % 64, 0);
+  for (int i = 0; i < 100; i++) assert_true(b[i] == 0);
+  assert_int_equal(vl_context_memory(context, NULL) - before, 1800);
+  memset(a, 7, 1000);
+  a = vl_realloc_array(context, a, 5, 1000);
+  for (int i = 0; i < 1000; i++) assert_int_equal(a[i], 7);
+  size_t peak = 0;
+  vl_free(context, a);
+  vl_free(context, b);
+  vl_free(context, NULL);
+  assert_int_equal(vl_context_memory(context, &peak), before);
+  assert_true(peak >= before + 5800);
+  /* sizes that do not fit */
+  assert_null(vl_alloc_array(context, SIZE_MAX / 2, 3));
+  assert_null(vl_alloc_zero(context, SIZE_MAX, 2));
+  assert_null(vl_alloc(context, SIZE_MAX));
+  vl_context_destroy(context);
+  assert_int_equal(allocator.blocks, 0);
+}
+
+static void arrays_grow_and_survive_refusal(void **state) {
+  (void)state;
+  failAllocator allocator = {0};
+  vlContext *context = make_context(&allocator);
+  VL_ARRAY(int) numbers = {0};
+  for (int i = 0; i < 1000; i++) {
+    int *slot = VL_PUSH(context, &numbers);
+    assert_non_null(slot);
+    assert_int_equal(*slot, 0);
+    *slot = i;
+  }
+  allocator.fail_at = allocator.calls + 1;
+  assert_false(VL_RESERVE(context, &numbers, 100000));
+  assert_int_equal(numbers.count, 1000);
+  for (int i = 0; i < 1000; i++) assert_int_equal(numbers.items[i], i);
+  assert_false(VL_RESERVE(context, &numbers, SIZE_MAX / 8));
+  VL_ARRAY_FREE(context, &numbers);
+  assert_null(numbers.items);
+  vl_context_destroy(context);
+  assert_int_equal(allocator.blocks, 0);
+}
+
+static void contexts_check_their_def(void **state) {
+  (void)state;
+  vlContext *context = NULL;
+  vlContextDef bare;
+  memset(&bare, 0, sizeof bare);
+  assert_int_equal(vl_context_create(&bare, &context), VL_ERROR_ARGUMENT);
+  assert_null(context);
+  vlContextDef def = vl_default_context_def();
+  assert_int_equal(vl_context_create(&def, NULL), VL_ERROR_ARGUMENT);
+  def.threads = 0;
+  assert_int_equal(vl_context_create(&def, &context), VL_ERROR_ARGUMENT);
+  failAllocator allocator = {.fail_at = 1};
+  def = vl_default_context_def();
+  def.allocator = fail_allocator(&allocator);
+  assert_int_equal(vl_context_create(&def, &context), VL_ERROR_MEMORY);
+  assert_int_equal(allocator.blocks, 0);
+  vl_context_destroy(NULL);
+}
+
+static void nearest_names(void **state) {
+  (void)state;
+  static const char *const names[] = {"diffuse", "coateddiffuse", "conductor", "dielectric", "thindielectric"};
+  assert_string_equal(vl_nearest_name("difuse", names, 5), "diffuse");
+  assert_string_equal(vl_nearest_name("Dielectirc", names, 5), "dielectric");
+  assert_string_equal(vl_nearest_name("condutcor", names, 5), "conductor");
+  assert_null(vl_nearest_name("banana", names, 5));
+  assert_null(vl_nearest_name("x", names, 0));
+  assert_int_equal(vl_edit_distance("abc", "acb"), 1);
+  assert_int_equal(vl_edit_distance("", "four"), 4);
+  assert_int_equal(vl_edit_distance("kitten", "sitting"), 3);
+  /* a name of any length is safe */
+  char *endless = malloc(100001);
+  memset(endless, 'a', 100000);
+  endless[100000] = 0;
+  assert_null(vl_nearest_name(endless, names, 5));
+  free(endless);
+  assert_true(vl_ends_with("PICTURE.EXR", ".exr"));
+  assert_false(vl_ends_with("exr", ".exr"));
+}
+
+static void paths_join(void **state) {
+  (void)state;
+  char path[32];
+  assert_true(vl_path_join("a/b.pbrt", "c.ply", path, sizeof path));
+  assert_string_equal(path, "a/c.ply");
+  assert_true(vl_path_join("b.pbrt", "c.ply", path, sizeof path));
+  assert_string_equal(path, "c.ply");
+  assert_true(vl_path_join("a/b.pbrt", "/c.ply", path, sizeof path));
+  assert_string_equal(path, "/c.ply");
+  assert_true(vl_path_join(NULL, "c.ply", path, sizeof path));
+  assert_false(vl_path_join("a/b.pbrt", "a-name-that-is-longer-than-its-room.ply", path, sizeof path));
+}
+
+static void errors_are_cut_not_overrun(void **state) {
+  (void)state;
+  vlError error;
+  memset(&error, 0x55, sizeof error);
+  char *text = malloc(5001);
+  memset(text, 'x', 5000);
+  text[5000] = 0;
+  assert_int_equal(vl_fail_at(&error, VL_ERROR_SCENE, text, 3, 4, "%s", text), VL_ERROR_SCENE);
+  assert_int_equal(strlen(error.file), sizeof error.file - 1);
+  assert_int_equal(strlen(error.message), sizeof error.message - 1);
+  assert_int_equal(error.line, 3);
+  assert_int_equal(error.column, 4);
+  assert_int_equal(vl_fail(NULL, VL_ERROR_IO, "nobody asks"), VL_ERROR_IO);
+  assert_int_equal(vl_fail(&error, VL_ERROR_IO, "%d", 7), VL_ERROR_IO);
+  assert_string_equal(error.message, "7");
+  assert_int_equal(error.line, 0);
+  free(text);
+  for (int result = VL_OK; result <= VL_CANCELLED; result++)
+    assert_string_not_equal(vl_result_name((vlResult)result), vl_result_name((vlResult)99));
+}
+
+static void files_are_read_whole(void **state) {
+  (void)state;
+  vlContext *context = make_context(NULL);
+  size_t empty = vl_context_memory(context, NULL);
+  char *data = NULL;
+  size_t size = 0;
+  vlError error;
+  put_file(in_folder("scene.pbrt"), "WorldBegin", 10);
+  assert_int_equal(vl_file_read(context, in_folder("scene.pbrt"), true, &data, &size, &error), VL_OK);
+  assert_int_equal(size, 10);
+  assert_string_equal(data, "WorldBegin");
+  vl_free(context, data);
+
+  assert_int_equal(vl_file_read(context, in_folder("scnee.pbrt"), true, &data, &size, &error), VL_ERROR_MISSING);
+  assert_non_null(strstr(error.message, "scene.pbrt")); /* the nearest name in that folder */
+  assert_int_equal(vl_file_read(context, folder, true, &data, &size, &error), VL_ERROR_IO);
+  assert_int_equal(vl_file_read(context, in_folder("scene.pbrt/x"), true, &data, &size, &error), VL_ERROR_MISSING);
+
+  put_file(in_folder("empty"), "", 0);
+  assert_int_equal(vl_file_read(context, in_folder("empty"), true, &data, &size, &error), VL_OK);
+  assert_int_equal(size, 0);
+  vl_free(context, data);
+  /* a file that tells no size */
+  assert_int_equal(vl_file_read(context, "/proc/self/maps", false, &data, &size, &error), VL_OK);
+  assert_true(size > 100);
+  vl_free(context, data);
+  assert_int_equal(vl_context_memory(context, NULL), empty);
+  vl_context_destroy(context);
+}
+
+static void gzip_is_unpacked(void **state) {
+  (void)state;
+  vlContext *context = make_context(NULL);
+  size_t empty = vl_context_memory(context, NULL);
+  enum { LENGTH = 300000 };
+  char *text = malloc(LENGTH);
+  for (int i = 0; i < LENGTH; i++) text[i] = (char)('a' + i % 17);
+  gzFile file = gzopen(in_folder("a.gz"), "wb");
+  assert_int_equal(gzwrite(file, text, LENGTH), LENGTH);
+  gzclose(file);
+  file = gzopen(in_folder("a.gz"), "ab"); /* a second member */
+  gzwrite(file, "end", 3);
+  gzclose(file);
+
+  char *data = NULL, *packed = NULL;
+  size_t size = 0, packed_size = 0;
+  vlError error;
+  assert_int_equal(vl_file_read(context, in_folder("a.gz"), true, &data, &size, &error), VL_OK);
+  assert_int_equal(size, LENGTH + 3);
+  assert_memory_equal(data, text, LENGTH);
+  assert_string_equal(data + LENGTH, "end");
+  vl_free(context, data);
+
+  /* cut off or damaged at any place: an error, never a loop, never half a file */
+  assert_int_equal(vl_file_read(context, in_folder("a.gz"), false, &packed, &packed_size, &error), VL_OK);
+  for (size_t cut = 2; cut < packed_size; cut += 1 + packed_size / 40) {
+    put_file(in_folder("b.gz"), packed, cut);
+    vlResult result = vl_file_read(context, in_folder("b.gz"), true, &data, &size, &error);
+    /* a cut between the two members leaves a whole file */
+    if (result == VL_OK) {
+      assert_int_equal(size, LENGTH);
+      vl_free(context, data);
+    } else {
+      assert_int_equal(result, VL_ERROR_SCENE);
+      assert_non_null(strstr(error.message, "b.gz"));
+    }
+  }
+  vl_free(context, packed);
+  free(text);
+  assert_int_equal(vl_context_memory(context, NULL), empty);
+  vl_context_destroy(context);
+}
+
+static void files_are_written_whole_or_not_at_all(void **state) {
+  (void)state;
+  vlFileWriter writer;
+  vlError error;
+  put_file(in_folder("target"), "before", 6);
+  int entries = count_entries();
+  assert_int_equal(vl_file_open_write(&writer, in_folder("target"), &error), VL_OK);
+  vl_file_write(&writer, "after!", 6);
+  vl_file_abandon(&writer);
+  assert_int_equal(count_entries(), entries);
+  struct stat info;
+  assert_int_equal(stat(in_folder("target"), &info), 0);
+  assert_int_equal(info.st_size, 6);
+
+  assert_int_equal(vl_file_open_write(&writer, in_folder("target"), &error), VL_OK);
+  vl_file_write(&writer, "after", 5);
+  vl_file_write_at(&writer, "A", 1, 0);
+  assert_int_equal(vl_file_commit(&writer, &error), VL_OK);
+  assert_int_equal(count_entries(), entries);
+  char text[8] = {0};
+  FILE *file = fopen(in_folder("target"), "rb");
+  assert_int_equal(fread(text, 1, 7, file), 5);
+  fclose(file);
+  assert_string_equal(text, "After");
+
+  assert_int_equal(vl_file_open_write(&writer, in_folder("none/target"), &error), VL_ERROR_IO);
+  assert_int_equal(vl_file_open_write(&writer, folder, &error), VL_ERROR_IO);
+  /* a full disk: what was written cannot be kept, and commit says so */
+  if (access("/dev/full", W_OK) == 0) {
+    assert_int_equal(vl_file_open_write(&writer, "/dev/full", &error), VL_OK);
+    vl_file_write(&writer, "x", 1);
+    assert_int_equal(vl_file_commit(&writer, &error), VL_ERROR_IO);
+    assert_non_null(strstr(error.message, "/dev/full"));
+  }
+}
+
+static void instruction_sets(void **state) {
+  (void)state;
+  vlIsa isa = VL_ISA_AUTO;
+  unsetenv("VELO_ISA");
+  assert_int_equal(vl_isa_choose(VL_ISA_AUTO, &isa), VL_OK);
+  assert_int_equal(isa, vl_isa_best());
+  assert_int_equal(vl_isa_choose(VL_ISA_V2, &isa), VL_OK);
+  assert_int_equal(isa, VL_ISA_V2);
+  setenv("VELO_ISA", "v2", 1);
+  assert_int_equal(vl_isa_choose(VL_ISA_AUTO, &isa), VL_OK);
+  assert_int_equal(isa, VL_ISA_V2);
+  assert_int_equal(vl_isa_choose(vl_isa_best(), &isa), VL_OK); /* a wish is above the environment */
+  assert_int_equal(isa, vl_isa_best());
+  setenv("VELO_ISA", "v9", 1);
+  assert_int_equal(vl_isa_choose(VL_ISA_AUTO, &isa), VL_ERROR_ARGUMENT);
+  unsetenv("VELO_ISA");
+  assert_int_equal(vl_isa_choose((vlIsa)77, &isa), VL_ERROR_ARGUMENT);
+}
+
+int main(void) {
+  const char *temporary = getenv("TMPDIR");
+  snprintf(folder, sizeof folder, "%s/velo-base-XXXXXX", temporary ? temporary : "/tmp");
+  if (!mkdtemp(folder)) return 1;
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(memory_is_counted),
+      cmocka_unit_test(arrays_grow_and_survive_refusal),
+      cmocka_unit_test(contexts_check_their_def),
+      cmocka_unit_test(nearest_names),
+      cmocka_unit_test(paths_join),
+      cmocka_unit_test(errors_are_cut_not_overrun),
+      cmocka_unit_test(files_are_read_whole),
+      cmocka_unit_test(gzip_is_unpacked),
+      cmocka_unit_test(files_are_written_whole_or_not_at_all),
+      cmocka_unit_test(instruction_sets),
+  };
+  int result = cmocka_run_group_tests(tests, NULL, NULL);
+  char command[300];
+  snprintf(command, sizeof command, "rm -rf '%s'", folder);
+  if (system(command) != 0) return 1;
+  return result;
+}

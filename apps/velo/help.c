@@ -4,7 +4,7 @@
 
 #include "options.h"
 
-enum { HELP_COLUMN = 27, HELP_WIDTH = 100 };
+enum { HELP_COLUMN = 32, HELP_WIDTH = 100 };
 
 /* The text with its own line breaks, each line indented to the help column; *column says where the first one starts. */
 static void print_indented(const char *text, int column) {

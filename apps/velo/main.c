@@ -51,7 +51,7 @@ static const Command *find_command(int argc, char **argv, int *words) {
 }
 
 static int unknown_command(int argc, char **argv) {
-  const char *names[COMMANDS + 1];
+  const char *names[COMMANDS + 3];
   int count;
   if (is_family(argv[0], names, &count)) {
     char list[200] = "";
@@ -70,7 +70,9 @@ static int unknown_command(int argc, char **argv) {
     names[i] = first_words[i];
   }
   names[COMMANDS] = "help";
-  const char *near = did_you_mean("", argv[0], names, COMMANDS + 1);
+  names[COMMANDS + 1] = "--version";
+  names[COMMANDS + 2] = "--help";
+  const char *near = did_you_mean("", argv[0], names, COMMANDS + 3);
   return report_usage("unknown %s \"%s\"%s", argv[0][0] == '-' ? "option" : "command", argv[0],
                       *near ? near : "; \"velo help\" lists the commands");
 }
@@ -120,7 +122,8 @@ int main(int argc, char **argv) {
   /* A picture must never be opened as descriptor 0, 1 or 2 and then be written into by messages. */
   for (int fd = 0; fd <= 2; fd++)
     if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0) return STATUS_IO;
-  signal(SIGPIPE, SIG_IGN); /* a reader that went away must not end a render */
+  signal(SIGPIPE, SIG_IGN); /* a reader that went away must not end a render, */
+  signal(SIGXFSZ, SIG_IGN); /* and a file that grows too large is an error like a full disk */
   signals_install();
   bool json = false;
   for (int i = 1; i < argc; i++) json |= strcmp(argv[i], "--log-json") == 0;

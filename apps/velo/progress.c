@@ -55,10 +55,10 @@ static void estimate(const Progress *progress, const vlProgress *now, double *fr
   }
 }
 
-static void draw_bar(const vlProgress *now, double fraction, const char *text) {
+static void draw_bar(double fraction, const char *text) {
   char line[512], bar[64];
   int columns = report_terminal_columns();
-  int room = columns - (int)strlen(text) - 10;
+  int room = columns - 1 - (int)strlen(text) - 10;
   int width = room > 40 ? 40 : room < 0 ? 0 : room;
   int full = (int)(fraction * width);
   for (int i = 0; i < width; i++) bar[i] = i < full ? '=' : i == full ? '>' : ' ';
@@ -66,7 +66,6 @@ static void draw_bar(const vlProgress *now, double fraction, const char *text) {
   int n = width >= 8 ? snprintf(line, sizeof line, "[%s] %3.0f %%  %s", bar, 100 * fraction, text)
                      : snprintf(line, sizeof line, "%3.0f %%  %s", 100 * fraction, text);
   if (n >= columns && columns > 1 && columns < (int)sizeof line) line[columns - 1] = 0;
-  (void)now;
   report_status_line(line);
 }
 
@@ -109,7 +108,7 @@ void progress_show(Progress *progress, const vlProgress *now) {
   snprintf(text, sizeof text, "%u/%u spp  %s paths/s  %s elapsed  %s left", now->spp_done, now->spp_total, speed,
            elapsed, left);
   if (report_is_terminal())
-    draw_bar(now, fraction, text);
+    draw_bar(fraction, text);
   else
     report_note("%3.0f %%  %s", 100 * fraction, text);
 }

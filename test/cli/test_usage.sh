@@ -1,0 +1,89 @@
+#!/usr/bin/env bash
+# The command line: what is refused, with which words and exit code 2; help and version.
+. "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
+. "$VELO_SOURCE_DIR/test/cli/common.sh"
+cd "$work" || exit 1
+write_scene scene.pbrt
+
+# usage NAME TEXT ARGUMENTS...: exit code 2, one line on stderr that holds TEXT, nothing on stdout.
+usage() {
+  local name=$1 text=$2
+  shift 2
+  run "$VELO" "$@"
+  if [ "$code" = 2 ] && [ "$(printf '%s\n' "$err" | wc -l)" = 1 ] && [ -z "$out" ] && [[ $err == "velo: "*"$text"* ]]; then
+    pass "$name"
+  else
+    fail "$name (wanted exit code 2 and one line with: $text)"
+    show "velo $*"
+  fi
+}
+
+usage unknown_command 'did you mean "render"?' rendr scene.pbrt
+usage unknown_image_command 'did you mean "diff"?' image dif a b
+usage image_without_command 'info, diff, convert' image
+usage no_scene 'too few arguments' render
+usage two_scenes 'too many: "b"' render scene.pbrt b
+usage unknown_option 'did you mean "--spp"?' render scene.pbrt --ssp 4
+usage abbreviated_option 'did you mean "--resolution"?' render scene.pbrt --res 10x10
+usage unknown_letter 'unknown option "-x"' render scene.pbrt -x
+usage option_without_value 'needs a value' render scene.pbrt --spp
+usage flag_with_value 'takes no value' render scene.pbrt --quiet=1
+usage spp_zero 'from 1 to' render scene.pbrt --spp 0
+usage spp_negative 'from 1 to' render scene.pbrt --spp -4
+usage spp_with_rest '"12x"' render scene.pbrt --spp 12x
+usage spp_fraction '"1.5"' render scene.pbrt --spp 1.5
+usage spp_huge 'from 1 to' render scene.pbrt --spp 99999999999999999999
+usage spp_empty 'from 1 to' render scene.pbrt --spp=
+usage threads_zero 'from 1 to' render scene.pbrt -t 0
+usage resolution 'WIDTHxHEIGHT' render scene.pbrt --resolution 64
+usage resolution_zero 'WIDTHxHEIGHT' render scene.pbrt --resolution 0x64
+usage crop_three_numbers 'x0,y0,x1,y1' render scene.pbrt --crop 1,2,3
+usage crop_empty 'x0 < x1' render scene.pbrt --crop 5,5,5,9
+usage crop_outside '64 x 48' render scene.pbrt --crop 0,0,65,48
+usage cropwindow 'fractions' render scene.pbrt --cropwindow 0,2,0,1
+usage crop_twice 'exclude' render scene.pbrt --crop 0,0,4,4 --cropwindow 0,1,0,1
+usage time_unit '1h30m' render scene.pbrt --time 5d
+usage time_zero 'above 0' render scene.pbrt --time 0
+usage exposure '"nan"' render scene.pbrt --exposure nan
+usage sampler 'did you mean "sobol"?' render scene.pbrt --sampler sobool
+usage sampler_list 'zsobol, sobol, halton' render scene.pbrt --sampler q
+usage tracer 'did you mean "raycast"?' render scene.pbrt --tracer raycats
+usage view 'standard, neutral, agx, raw' render scene.pbrt --view q
+usage isa 'v2, v3, v4' render scene.pbrt --isa avx
+usage suffix 'did you mean ".exr"?' render scene.pbrt -o a.exrr
+usage no_suffix '.exr, .png' render scene.pbrt -o picture
+usage same_output_twice 'given twice' render scene.pbrt -o a.exr -o a.exr
+usage quiet_and_verbose 'exclude' render scene.pbrt --quiet -v
+usage threshold 'NAME=VALUE' image diff a.exr b.exr --threshold 3
+usage threshold_name 'did you mean "flip"?' image diff a.exr b.exr --threshold flp=3
+usage threshold_value 'must be a number' image diff a.exr b.exr --threshold flip=x
+
+expect_code 2 nothing_at_all "$VELO"
+check help "$VELO" help
+check help_render "$VELO" help render
+expect_text help_render_lists_options "--cropwindow"
+check render_help "$VELO" render --help
+check help_image "$VELO" help image
+check help_image_diff "$VELO" help image diff
+check version "$VELO" --version
+expect_text version_text "velo 0."
+
+# Every name and alias is accepted.
+for name in independent random regular stratified jittered nrooks n-rooks multijittered multi-jittered hammersley halton sobol zsobol; do
+  check "sampler_$name" "$VELO" render scene.pbrt --sampler "$name" --spp 1 --quiet -o sampler.pfm
+done
+for name in box triangle gaussian mitchell lanczos sinc blackmanharris blackman-harris; do
+  check "filter_$name" "$VELO" render scene.pbrt --filter "$name" --spp 1 --quiet -o filter.pfm
+done
+for name in path raycast ambientocclusion ao; do
+  check "tracer_$name" "$VELO" render scene.pbrt --tracer "$name" --spp 1 --quiet -o tracer.pfm
+done
+for name in bvh power uniform; do
+  check "light_sampler_$name" "$VELO" render scene.pbrt --light-sampler "$name" --spp 1 --quiet -o light.pfm
+done
+for name in standard neutral agx raw; do
+  check "view_$name" "$VELO" render scene.pbrt --view "$name" --exposure -0.5 --spp 1 --quiet -o view.png
+done
+check color_rgb "$VELO" render scene.pbrt --color rgb --spp=1 --quiet -o color.exr --half
+check options_before_the_scene "$VELO" render -t2 --seed 7 --max-depth 1 --quiet --spp 1 -o before.exr -- scene.pbrt
+finish

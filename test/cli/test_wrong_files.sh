@@ -1,0 +1,121 @@
+#!/usr/bin/env bash
+# Wrong files: each gives one clear line with its place and the right exit code, at once and in little memory.
+. "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
+. "$VELO_SOURCE_DIR/test/cli/common.sh"
+cd "$work" || exit 1
+
+# wrong CODE NAME PATTERN FILE: exit code, one line on stderr that matches the extended regular expression, no picture,
+# less than a second and 300 megabytes.
+wrong() {
+  local wanted=$1 name=$2 pattern=$3 file=$4 problem=
+  run_measured "$VELO" render "$file" -o wrong.exr --quiet
+  [ "$code" = "$wanted" ] || problem="exit code $code, not $wanted"
+  [ "$(printf '%s\n' "$err" | wc -l)" = 1 ] || problem="not one line"
+  printf '%s\n' "$err" | grep -q -E "^velo: $pattern" || problem="${problem:-the line does not match $pattern}"
+  [ ! -e wrong.exr ] || problem="wrote a picture"
+  if is_plain_build; then
+    [ "$milliseconds" -lt 1000 ] || problem="$milliseconds ms"
+    [ "$kilobytes" -lt 300000 ] || problem="$kilobytes KB"
+  fi
+  rm -f wrong.exr
+  if [ -z "$problem" ]; then pass "$name"; else fail "$name ($problem)"; show "velo render $file"; fi
+}
+
+# scene FILE LINES...: line 1 is the camera, line 2 WorldBegin, the given ones begin at 3.
+scene() {
+  local file=$1
+  shift
+  printf '%s\n' 'Camera "perspective"' 'WorldBegin' "$@" >"$file"
+}
+sphere='Shape "sphere"'
+
+wrong 4 missing_scene 'no such file: none\.pbrt' none.pbrt
+scene near.pbrt "$sphere"
+wrong 4 missing_scene_near_name '.*did you mean "near\.pbrt"' naer.pbrt
+wrong 5 scene_is_a_folder '.*is a folder' .
+mkdir folder.pbrt
+wrong 5 scene_is_a_folder_by_name '.*is a folder' folder.pbrt
+
+scene texture.pbrt 'Texture "t" "spectrum" "imagemap" "string filename" "none.png"' \
+  'Material "diffuse" "texture reflectance" "t"' "$sphere"
+wrong 4 missing_texture 'texture\.pbrt:3:[0-9]+: .*none\.png' texture.pbrt
+printf 'not a picture' >broken.png
+scene broken_texture.pbrt 'Texture "t" "spectrum" "imagemap" "string filename" "broken.png"' \
+  'Material "diffuse" "texture reflectance" "t"' "$sphere"
+wrong 3 broken_texture '.*broken\.png' broken_texture.pbrt
+scene include.pbrt 'Include "nowhere.pbrt"'
+wrong 4 missing_include 'include\.pbrt:3:[0-9]+: .*nowhere\.pbrt' include.pbrt
+scene ply.pbrt 'Shape "plymesh" "string filename" "none.ply"'
+wrong 4 missing_ply 'ply\.pbrt:3:[0-9]+: .*none\.ply' ply.pbrt
+
+scene material.pbrt "$sphere" 'Material "difuse"'
+wrong 3 unknown_material 'material\.pbrt:4:[0-9]+: .*difuse.*"diffuse"' material.pbrt
+scene named_material.pbrt 'MakeNamedMaterial "walls" "string type" "diffuse"' 'NamedMaterial "wals"' "$sphere"
+wrong 3 unknown_named_material 'named_material\.pbrt:4:[0-9]+: .*wals.*"walls"' named_material.pbrt
+scene parameter.pbrt '' 'Material "diffuse" "rgb reflectence" [0.5 0.5 0.5]' "$sphere"
+wrong 3 misspelt_parameter 'parameter\.pbrt:4:[0-9]+: .*reflectence.*"reflectance"' parameter.pbrt
+scene directive.pbrt 'Matrial "diffuse"'
+wrong 3 misspelt_directive 'directive\.pbrt:3:1: .*Matrial.*"?Material"?' directive.pbrt
+scene string.pbrt 'Material "diffuse' "$sphere"
+wrong 3 unclosed_string 'string\.pbrt:3:10: ' string.pbrt
+scene list.pbrt 'Shape "sphere" "float radius" [ 1 2'
+wrong 3 unclosed_list 'list\.pbrt:[34]:[0-9]+: ' list.pbrt
+scene count.pbrt 'Shape "trianglemesh" "point3 P" [0 0 0  1 0 0  0 1] "integer indices" [0 1 2]'
+wrong 3 incomplete_point 'count\.pbrt:3:[0-9]+: ' count.pbrt
+scene index.pbrt 'Shape "trianglemesh" "point3 P" [0 0 0  1 0 0  0 1 0] "integer indices" [0 1 3]'
+wrong 3 index_out_of_range 'index\.pbrt:3:[0-9]+: ' index.pbrt
+scene end.pbrt 'AttributeBegin' "$sphere"
+wrong 3 attribute_left_open 'end\.pbrt:[0-9]+:[0-9]+: ' end.pbrt
+
+scene self.pbrt 'Include "self.pbrt"'
+wrong 3 includes_itself '.*self\.pbrt:3:[0-9]+: ' self.pbrt
+scene one.pbrt 'Include "two.pbrt"'
+printf 'Include "one.pbrt"\n' >two.pbrt
+wrong 3 include_in_a_circle '.*(one|two)\.pbrt:[0-9]+:[0-9]+: ' one.pbrt
+scene import_self.pbrt 'Import "import_self.pbrt"'
+wrong 3 imports_itself '.*import_self\.pbrt:3:[0-9]+: ' import_self.pbrt
+
+printf 'ply\nformat binary_little_endian 1.0\nelement vertex 2147483648\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n' >huge.ply
+scene huge.pbrt 'Shape "plymesh" "string filename" "huge.ply"'
+wrong 3 ply_promises_two_billion_vertices '.*huge\.p(ly|brt)' huge.pbrt
+sed 's/binary_little_endian/ascii/' huge.ply >huge_ascii.ply
+scene huge_ascii.pbrt 'Shape "plymesh" "string filename" "huge_ascii.ply"'
+wrong 3 ascii_ply_promises_two_billion_vertices '.*huge_ascii\.p(ly|brt)' huge_ascii.pbrt
+sed 's/element vertex 2147483648/element vertex 3/; s/element face 1/element face 4000000000/' huge_ascii.ply >faces.ply
+printf '0 0 0\n1 0 0\n0 1 0\n' >>faces.ply
+scene faces.pbrt 'Shape "plymesh" "string filename" "faces.ply"'
+wrong 3 ply_promises_four_billion_faces '.*faces\.p(ly|brt)' faces.pbrt
+
+{
+  printf 'ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n'
+  printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\300\177\0\0\0\0\0\0\0\0\0\0\200\077\0\0\0\0'
+  printf '\003\0\0\0\0\001\0\0\0\002\0\0\0'
+} >nan.ply
+scene nan.pbrt 'Shape "plymesh" "string filename" "nan.ply"'
+wrong 3 nan_vertex_in_ply '.*nan\.p(ly|brt)' nan.pbrt
+scene nan_text.pbrt 'Shape "trianglemesh" "point3 P" [0 0 0  1 nan 0  0 1 0] "integer indices" [0 1 2]'
+wrong 3 nan_vertex 'nan_text\.pbrt:3:[0-9]+: ' nan_text.pbrt
+scene overflow.pbrt 'Shape "trianglemesh" "point3 P" [0 0 0  1 1e999 0  0 1 0] "integer indices" [0 1 2]'
+wrong 3 infinite_vertex 'overflow\.pbrt:3:[0-9]+: ' overflow.pbrt
+
+printf '%s\n' 'LookAt 1 2 3  1 2 3  0 1 0' 'Camera "perspective"' 'WorldBegin' "$sphere" >eye.pbrt
+wrong 3 eye_is_lookat 'eye\.pbrt:1:1: ' eye.pbrt
+printf '%s\n' '' 'Camera "pinhole" "point3 eye" [1 2 3] "point3 lookat" [1 2 3]' 'WorldBegin' "$sphere" >pinhole.pbrt
+wrong 3 pinhole_eye_is_lookat 'pinhole\.pbrt:2:[0-9]+: ' pinhole.pbrt
+printf '%s\n' 'Camera "perspective" "float fov" [200]' 'WorldBegin' "$sphere" >fov.pbrt
+wrong 3 fov_too_wide 'fov\.pbrt:1:[0-9]+: ' fov.pbrt
+printf '%s\n' 'Film "rgb" "integer xresolution" [0]' 'Camera "perspective"' 'WorldBegin' "$sphere" >film.pbrt
+wrong 3 film_of_no_pixels 'film\.pbrt:1:[0-9]+: ' film.pbrt
+printf '\037\213\010\0broken' >broken.pbrt.gz
+wrong 3 broken_gzip '.*broken\.pbrt\.gz' broken.pbrt.gz
+head -c 4096 /dev/urandom >noise.pbrt
+wrong 3 noise '.*noise\.pbrt:[0-9]+:[0-9]+: ' noise.pbrt
+printf '%s\n' 'format unknown' >scene.obj2
+wrong 3 unknown_suffix '.*scene\.obj2' scene.obj2
+
+# What is not there yet: an error with its place, or a warning.
+scene medium.pbrt 'Shape "curve" "point3 P" [0 0 0 1 0 0 2 0 0 3 0 0]' "$sphere"
+wrong 3 not_there_yet 'medium\.pbrt:3:[0-9]+: .*curve' medium.pbrt
+check permissive "$VELO" render medium.pbrt --permissive --spp 1 --resolution 16x16 -o permissive.exr
+expect_text permissive_warns "velo: warning: medium.pbrt:3:"
+finish

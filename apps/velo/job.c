@@ -45,11 +45,18 @@ const Choice view_choices[] = {{"standard", VL_VIEW_STANDARD},
                                {NULL, 0}};
 const Choice isa_choices[] = {{"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {NULL, 0}};
 
-/* ---- overrides -----------------------------------------------------------------------------------------------------
- */
+/* ---- overrides --------------------------------------------------------------------------------------------------- */
+
+/* Where the settings' camera stands, copied: the source's string dies with its scene. */
+static vlError camera_place(const vlSceneSettings *settings, const char *path) {
+  vlSource source = settings->camera_source;
+  vlError place = {.line = source.file ? source.line : 0, .column = source.file ? source.column : 0};
+  snprintf(place.file, sizeof place.file, "%s", source.file ? source.file : path);
+  return place;
+}
 
 /* Camera and picture size of another scene file. The camera def holds no pointers, so it outlives that scene. */
-static int take_camera(vlContext *context, vlSceneSettings *settings, const char *path, bool permissive) {
+static int take_camera(Job *job, vlContext *context, vlSceneSettings *settings, const char *path, bool permissive) {
   vlScene *other = NULL;
   vlError error = {0};
   vlResult result = vl_scene_create(context, &other);
@@ -59,6 +66,7 @@ static int take_camera(vlContext *context, vlSceneSettings *settings, const char
   if (result == VL_OK) {
     const vlSceneSettings *from = vl_scene_settings(other);
     settings->camera = from->camera;
+    job->camera_place = camera_place(from, path);
     settings->width = from->width;
     settings->height = from->height;
     memcpy(settings->crop, from->crop, sizeof settings->crop);
@@ -140,8 +148,12 @@ static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t heigh
   vlError error = {0};
   vlCamera camera;
   vlResult result = vl_camera_make(&def, &camera, &warning, &error);
-  if (result != VL_OK) return report_error(&error, result, job->path);
-  if (warning) report_warning("%s: camera: %s", job->path, warning);
+  if (result != VL_OK) {
+    snprintf(job->camera_place.message, sizeof job->camera_place.message, "%s",
+             error.message[0] ? error.message : vl_result_name(result));
+    return report_error(error.file[0] ? &error : &job->camera_place, result, NULL);
+  }
+  if (warning) report_log(NULL, VL_LOG_WARNING, &job->camera_place, warning);
   if (camera.width == width && camera.height == height) {
     job->camera = camera;
     return -1;
@@ -155,10 +167,10 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   vlSceneSettings *settings = vl_scene_settings(scene);
   job->path = path;
   job->settings = settings;
+  job->camera_place = camera_place(settings, path);
   if (v[RENDER_CAMERA].given) {
-    int status = take_camera(context, settings, v[RENDER_CAMERA].text, v[RENDER_PERMISSIVE].given);
+    int status = take_camera(job, context, settings, v[RENDER_CAMERA].text, v[RENDER_PERMISSIVE].given);
     if (status >= 0) return status;
-    job->path = v[RENDER_CAMERA].text; /* where errors of the camera are */
   }
   /* The camera is made at the size it was described for and then resized, which keeps the framing. */
   vlCameraDef camera = settings->camera;
@@ -169,7 +181,6 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   int status = override_crop(settings, arguments);
   if (status < 0) status = make_camera(job, camera, settings->width, settings->height);
   if (status >= 0) return status;
-  job->path = path;
   override_sampling(settings, arguments);
 
   job->film = vl_scene_film_def(scene);

@@ -39,6 +39,7 @@ extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light
 typedef struct Job {
   const char *path;                /* of the scene file */
   const vlSceneSettings *settings; /* resolved; live in the scene */
+  vlError camera_place;            /* where the camera stands in its file; only file, line and column are used */
   vlCamera camera;
   vlFilmDef film;
   vlBuildDef build;

@@ -10,8 +10,7 @@
 
 #include "report.h"
 
-/* ---- the nearest name ----------------------------------------------------------------------------------------------
- */
+/* ---- the nearest name -------------------------------------------------------------------------------------------- */
 
 enum { LONGEST_NAME = 40 };
 
@@ -68,8 +67,7 @@ const char *choice_name(const Choice *choices, int value) {
   return "?";
 }
 
-/* ---- values --------------------------------------------------------------------------------------------------------
- */
+/* ---- values ------------------------------------------------------------------------------------------------------ */
 
 /* A plain decimal number and nothing after it up to `end` (null: the end of the text). No hexadecimals, inf or nan. */
 static bool read_number(const char *text, const char *end, double *number) {
@@ -204,8 +202,7 @@ static int read_value(const Option *option, const char *text, Arguments *argumen
   return -1;
 }
 
-/* ---- the line ------------------------------------------------------------------------------------------------------
- */
+/* ---- the line ---------------------------------------------------------------------------------------------------- */
 
 static const Option *find_option(const Command *command, const char *name, size_t length, char letter) {
   for (const Option *o = command->options; o->name; o++)

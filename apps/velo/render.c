@@ -29,8 +29,7 @@ typedef struct Render {
   double last_write, write_cost;
 } Render;
 
-/* ---- files ---------------------------------------------------------------------------------------------------------
- */
+/* ---- files ------------------------------------------------------------------------------------------------------- */
 
 static int write_picture(Render *render, bool progress) {
   vlDevelopDef develop = vl_default_develop_def();

@@ -224,6 +224,7 @@ typedef enum vlLightSampler { VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER, VL_L
 
 typedef struct vlSceneSettings {
   vlCameraDef camera;
+  vlSource camera_source;      /* where the file says so, for errors of vl_camera_make; file may be null */
   uint32_t width, height;
   uint32_t crop[4];            /* x0, y0, x1, y1 in pixels (x1, y1 exclusive) */
   char output[512];            /* file name the scene asks for; may be empty */

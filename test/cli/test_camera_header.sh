@@ -2,9 +2,9 @@
 # The EXR header's camera, as OpenEXR defines it: row vectors, left-handed camera space, NDC from the upper left corner.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 cd "$work" || exit 1
-# Eye (0, 0, 5) looking along -z, 40 x 20 pixels, f = d / s = 10 pixels.
+# Eye (0, 0, 5) looking along -z, 40 x 20 pixels, f = d / pixelsize = 10 pixels.
 cat >scene.pbrt <<'SCENE'
-Camera "pinhole" "point3 eye" [0 0 5] "point3 lookat" [0 0 0] "vector3 up" [0 1 0] "float d" [10] "float s" [1]
+Camera "pinhole" "point3 eye" [0 0 5] "point3 lookat" [0 0 0] "vector3 up" [0 1 0] "float d" [10] "float pixelsize" [1]
 Film "rgb" "integer xresolution" [40] "integer yresolution" [20]
 Sampler "independent" "integer pixelsamples" [1]
 WorldBegin

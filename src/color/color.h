@@ -50,15 +50,17 @@ void vl_xyz_from_rgb(vlColorSpace space, float m[9]);
 /* r_x r_y g_x g_y b_x b_y w_x w_y */
 void vl_space_chromaticities(vlColorSpace space, float xy[8]);
 
-/* Linear interpolation in a dense spectrum; 0 outside. */
+/* Linear interpolation in a dense spectrum; 0 outside. (The index is clamped as an integer: clamped as a float it keeps
+ * gcc from making a gather of it.) */
 static inline float vl_dense_at(const float *dense, float lambda) {
   float x = lambda - 360.0f;
-  float y = x < 0.0f ? 0.0f : x > 470.0f ? 470.0f : x;
-  int i = (int)y;
-  i = i > 469 ? 469 : i;
-  float t = y - (float)i;
-  float value = dense[i] + t * (dense[i + 1] - dense[i]);
-  return x < 0.0f || x > 470.0f ? 0.0f : value;
+  int i = (int)x;
+  i = i < VL_LAMBDA_COUNT - 2 ? i : VL_LAMBDA_COUNT - 2;
+  i = i > 0 ? i : 0;
+  float a = dense[i], b = dense[i + 1];
+  float value = a + (x - (float)i) * (b - a);
+  value = x >= 0.0f ? value : 0.0f;
+  return x <= 470.0f ? value : 0.0f;
 }
 
 /* Hero wavelengths: lambda with density proportional to the observer's sensitivity (Radziszewski et al. 2009, pbrt book

@@ -77,7 +77,7 @@ static inline float vl_ln(float x) {
   float inf = __builtin_inff();
   result = x >= inf ? x : result;
   result = x < 1.17549435e-38f ? -inf : result;
-  return x < 0.0f || x != x ? __builtin_nanf("") : result;
+  return x >= 0.0f ? result : __builtin_nanf(""); /* so written, gcc vectorises it */
 }
 
 /* x^y for x >= 0; relative error about 3e-7 (1 + |y ln x|). 0^y = 0 for y > 0. */

@@ -1,0 +1,170 @@
+/* color/kernels.hot.c: spectra and colour over batches of paths (color/kernels.h). Compiled once per instruction set. */
+#include "color/kernels.h"
+
+/* The four hero wavelengths are u turned by quarters, so that they stratify the range together. The density is that of
+ * vl_visible_pdf: there 1 / cosh^2(atanh t) = 1 - t^2. */
+static void visible_wavelengths(uint32_t n, const float *u, float *const lambda[4], float *const inv_pdf[4]) {
+  uint32_t count = VL_PAD(n);
+  for (int c = 0; c < 4; c++) {
+    float shift = 0.25f * (float)c, *l = lambda[c], *p = inv_pdf[c];
+    /* must vectorise */
+    VL_SIMD for (uint32_t i = 0; i < count; i++) {
+      float v = u[i] + shift;
+      v = v >= 1.0f ? v - 1.0f : v;
+      float t = 0.85691062f - 1.82750197f * v;
+      float x = 538.0f - 69.4444445f * vl_ln((1.0f + t) / (1.0f - t));
+      /* rounding may leave the range by a hair */
+      x = x > 360.0f ? x : 360.0f;
+      l[i] = x < 830.0f ? x : 830.0f;
+      p[i] = 253.819720f / (1.0f - t * t);
+    }
+  }
+}
+
+typedef struct xyz {
+  float x, y, z;
+} xyz;
+
+static inline xyz add_wavelength(xyz s, float radiance, float lambda, float inv_pdf) {
+  float p = lambda - 360.0f;
+  int j = (int)p;
+  j = j < VL_LAMBDA_COUNT - 2 ? j : VL_LAMBDA_COUNT - 2;
+  j = j > 0 ? j : 0;
+  float t = p - (float)j, w = radiance * inv_pdf;
+  j = 4 * j;
+  float x = vl_cie_xyz0[j], y = vl_cie_xyz0[j + 1], z = vl_cie_xyz0[j + 2];
+  s.x = s.x + w * (x + t * (vl_cie_xyz0[j + 4] - x));
+  s.y = s.y + w * (y + t * (vl_cie_xyz0[j + 5] - y));
+  s.z = s.z + w * (z + t * (vl_cie_xyz0[j + 6] - z));
+  return s;
+}
+
+static void rgb_from_radiance(const float m[9], uint32_t n, const float *const radiance[4],
+                              const float *const lambda[4], const float *const inv_pdf[4], float *r, float *g,
+                              float *b) {
+  uint32_t count = VL_PAD(n);
+  float q[9];
+  for (int i = 0; i < 9; i++) q[i] = 0.25f * m[i];
+  const float *l0 = radiance[0], *l1 = radiance[1], *l2 = radiance[2], *l3 = radiance[3];
+  const float *w0 = lambda[0], *w1 = lambda[1], *w2 = lambda[2], *w3 = lambda[3];
+  const float *p0 = inv_pdf[0], *p1 = inv_pdf[1], *p2 = inv_pdf[2], *p3 = inv_pdf[3];
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    xyz s = {0.0f, 0.0f, 0.0f};
+    s = add_wavelength(s, l0[i], w0[i], p0[i]);
+    s = add_wavelength(s, l1[i], w1[i], p1[i]);
+    s = add_wavelength(s, l2[i], w2[i], p2[i]);
+    s = add_wavelength(s, l3[i], w3[i], p3[i]);
+    r[i] = q[0] * s.x + q[1] * s.y + q[2] * s.z;
+    g[i] = q[3] * s.x + q[4] * s.y + q[5] * s.z;
+    b[i] = q[6] * s.x + q[7] * s.y + q[8] * s.z;
+  }
+}
+
+static void sigmoid_eval(uint32_t n, const float *c0, const float *c1, const float *c2, const float *scale,
+                         const float *const lambda[4], float *const out[4]) {
+  uint32_t count = VL_PAD(n);
+  for (int c = 0; c < 4; c++) {
+    const float *l = lambda[c];
+    float *o = out[c];
+    if (scale) {
+      /* must vectorise */
+      VL_SIMD for (uint32_t i = 0; i < count; i++) {
+        o[i] = scale[i] * vl_sigmoid((vlSigmoid){c0[i], c1[i], c2[i]}, l[i]);
+      }
+    } else {
+      /* must vectorise */
+      VL_SIMD for (uint32_t i = 0; i < count; i++) {
+        o[i] = vl_sigmoid((vlSigmoid){c0[i], c1[i], c2[i]}, l[i]);
+      }
+    }
+  }
+}
+
+static void light_eval(uint32_t n, const float *c0, const float *c1, const float *c2, const float *scale,
+                       const float *dense, const float *const lambda[4], float *const out[4]) {
+  uint32_t count = VL_PAD(n);
+  for (int c = 0; c < 4; c++) {
+    const float *l = lambda[c];
+    float *o = out[c];
+    if (scale) {
+      /* must vectorise */
+      VL_SIMD for (uint32_t i = 0; i < count; i++) {
+        o[i] = scale[i] * vl_sigmoid((vlSigmoid){c0[i], c1[i], c2[i]}, l[i]) * vl_dense_at(dense, l[i]);
+      }
+    } else {
+      /* must vectorise */
+      VL_SIMD for (uint32_t i = 0; i < count; i++) {
+        o[i] = vl_sigmoid((vlSigmoid){c0[i], c1[i], c2[i]}, l[i]) * vl_dense_at(dense, l[i]);
+      }
+    }
+  }
+}
+
+static void dense_eval(uint32_t n, const float *dense, const float *const lambda[4], float *const out[4]) {
+  uint32_t count = VL_PAD(n);
+  for (int c = 0; c < 4; c++) {
+    const float *l = lambda[c];
+    float *o = out[c];
+    /* must vectorise */
+    VL_SIMD for (uint32_t i = 0; i < count; i++) o[i] = vl_dense_at(dense, l[i]);
+  }
+}
+
+static void dense_gather(uint32_t n, const float *dense, const uint32_t *offset, const float *const lambda[4],
+                         float *const out[4]) {
+  uint32_t count = VL_PAD(n);
+  for (int c = 0; c < 4; c++) {
+    const float *l = lambda[c];
+    float *o = out[c];
+    /* must vectorise */
+    VL_SIMD for (uint32_t i = 0; i < count; i++) {
+      float x = l[i] - 360.0f;
+      int j = (int)x;
+      j = j < VL_LAMBDA_COUNT - 2 ? j : VL_LAMBDA_COUNT - 2;
+      j = j > 0 ? j : 0;
+      float t = x - (float)j;
+      j = j + (int)offset[i];
+      float a = dense[j], b = dense[j + 1], value = a + t * (b - a);
+      value = x >= 0.0f ? value : 0.0f;
+      o[i] = x <= 470.0f ? value : 0.0f;
+    }
+  }
+}
+
+static void sigmoid_from_rgb(const vlRgbTable *table, uint32_t n, const float *r, const float *g, const float *b,
+                             float *c0, float *c1, float *c2) {
+  uint32_t count = VL_PAD(n);
+  vlRgbTable t = *table;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    vlSigmoid s = vl_rgb_table_lookup(&t, r[i], g[i], b[i]);
+    c0[i] = s.c0;
+    c1[i] = s.c1;
+    c2[i] = s.c2;
+  }
+}
+
+static void sigmoid_from_light(const vlRgbTable *table, uint32_t n, const float *r, const float *g, const float *b,
+                               float *scale, float *c0, float *c1, float *c2) {
+  uint32_t count = VL_PAD(n);
+  vlRgbTable t = *table;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    float high = r[i] > g[i] ? r[i] : g[i];
+    high = high > b[i] ? high : b[i];
+    float m = high > 0.0f ? 2.0f * high : 0.0f;
+    float inv = high > 0.0f ? 1.0f / m : 0.0f;
+    vlSigmoid s = vl_rgb_table_lookup(&t, r[i] * inv, g[i] * inv, b[i] * inv);
+    scale[i] = m;
+    c0[i] = s.c0;
+    c1[i] = s.c1;
+    c2[i] = s.c2;
+  }
+}
+
+extern const vlColorKernels VL_HOT(vl_color_kernels);
+const vlColorKernels VL_HOT(vl_color_kernels) = {
+    visible_wavelengths, rgb_from_radiance, sigmoid_eval,     light_eval,
+    dense_eval,          dense_gather,      sigmoid_from_rgb, sigmoid_from_light,
+};

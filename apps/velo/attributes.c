@@ -25,6 +25,9 @@ static void set_int(Header *header, const char *name, uint32_t value) {
 static void set_float(Header *header, const char *name, double value) {
   set(header, name, VL_ATTRIBUTE_FLOAT, &value, 1, NULL);
 }
+static void set_double(Header *header, const char *name, double value) {
+  set(header, name, VL_ATTRIBUTE_DOUBLE, &value, 1, NULL);
+}
 static void set_v2(Header *header, const char *name, double x, double y) {
   set(header, name, VL_ATTRIBUTE_V2F, (double[]){x, y}, 2, NULL);
 }
@@ -46,11 +49,11 @@ static const double chromaticities[][8] = {
 };
 
 /* OpenEXR multiplies row vectors from the left, p' = p M: the transpose of a matrix for columns. */
-static void set_matrix(Header *header, const char *name, const double m[16]) {
+static void set_matrix(Header *header, const char *name, vlAttributeType type, const double m[16]) {
   double transposed[16];
   for (int row = 0; row < 4; row++)
     for (int column = 0; column < 4; column++) transposed[4 * column + row] = m[4 * row + column];
-  set(header, name, VL_ATTRIBUTE_M44F, transposed, 16, NULL);
+  set(header, name, type, transposed, 16, NULL);
 }
 
 static void multiply(const double a[16], const double b[16], double result[16]) {
@@ -68,16 +71,17 @@ static void set_camera_matrices(Header *header, const vlCamera *c) {
   static const double up_from_down[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   double m[16], w = c->width, h = c->height;
   multiply(up_from_down, c->camera_from_world, m);
-  set_matrix(header, "worldToCamera", m);
+  set_matrix(header, "worldToCamera", VL_ATTRIBUTE_M44F, m);
   const double perspective[16] = {c->fx / w, c->skew / w, c->cx / w, 0, 0, c->fy / h, c->cy / h, 0,
                                   0,         0,           0,         1, 0, 0,         1,         0};
   const double orthographic[16] = {c->fx / w, c->skew / w, 0, c->cx / w, 0, c->fy / h, 0, c->cy / h,
                                    0,         0,           1, 0,         0, 0,         0, 1};
   multiply(c->projection == VL_PROJECTION_PERSPECTIVE ? perspective : orthographic, c->camera_from_world, m);
-  set_matrix(header, "worldToNDC", m);
+  set_matrix(header, "worldToNDC", VL_ATTRIBUTE_M44F, m);
 }
 
-/* The camera's lens and sensor in millimetres. A virtual camera has no sensor: where the scene names no width it is
+/* The camera in full: OpenEXR's words in single precision, velo's own in double (camera x right, y down, z forward).
+ * Lens and sensor are in millimetres. A virtual camera has no sensor: where the scene names no width it is
  * given full frame's 36 mm, which fixes the scale and nothing else. */
 static void set_camera(Header *header, const Job *job) {
   const vlCamera *c = &job->camera;
@@ -89,9 +93,12 @@ static void set_camera(Header *header, const Job *job) {
     set_v2(header, "sensorOverallDimensions", c->width * mm, c->height * mm);
     set_v2(header, "sensorCenterOffset", (0.5 * c->width - c->cx) * mm, (0.5 * c->height - c->cy) * mm);
   }
-  set_v2(header, "velo.focalPixels", c->fx, c->fy);
-  set_v2(header, "velo.principalPoint", c->cx, c->cy);
-  set_float(header, "velo.skew", c->skew);
+  set_double(header, "velo.fx", c->fx);
+  set_double(header, "velo.fy", c->fy);
+  set_double(header, "velo.skew", c->skew);
+  set_double(header, "velo.cx", c->cx);
+  set_double(header, "velo.cy", c->cy);
+  set_matrix(header, "velo.worldFromCamera", VL_ATTRIBUTE_M44D, c->world_from_camera);
   set_text(header, "velo.projection", c->projection == VL_PROJECTION_PERSPECTIVE ? "perspective" : "orthographic");
   set_float(header, "velo.lensRadius", c->lens_radius);
   if (isfinite(c->focus_distance)) set_float(header, "focus", c->focus_distance);
@@ -116,8 +123,7 @@ vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
   set_text(&header, "velo.scene", slash ? slash + 1 : job->path);
   set_int(&header, "samplesPerPixel", spp);
   set_text(&header, "velo.sampler", choice_name(sampler_choices, (int)job->render.sampler));
-  double seed = job->render.seed; /* unsigned: does not fit EXR's int */
-  set(&header, "velo.seed", VL_ATTRIBUTE_DOUBLE, &seed, 1, NULL);
+  set_double(&header, "velo.seed", job->render.seed); /* unsigned: does not fit EXR's int */
   set_text(&header, "velo.filter", choice_name(filter_choices, (int)job->film.filter.kind));
   set_v2(&header, "velo.filterRadius", job->film.filter.radius_x, job->film.filter.radius_y);
   set_text(&header, "velo.tracer", choice_name(tracer_choices, (int)job->render.tracer));

@@ -1,11 +1,14 @@
 /* world/coat.h: directional transmittance of a dielectric coat with an absorbing layer, tabulated when the world is built.
  *
- * A coat (dielectric interface of roughness alpha, relative index eta) lies over a Lambertian base of albedo rho, between them
- * a layer of optical thickness tau (pbrt's coateddiffuse: thickness times 1, no scattering). Since the base forgets direction, the random
- * walk between the two (pbrt book 14.3) has a closed form:
+ * A coat (dielectric interface of roughness alpha, relative index eta) lies over a Lambertian base of albedo rho, between
+ * them a layer of optical thickness tau that absorbs and does not scatter (pbrt's coateddiffuse with albedo 0). Since the
+ * base forgets where light came from, the random walk between the two (pbrt book 14.3) has a closed form:
  *   f(wo, wi) = f_coat(wo, wi) + T(wo) T(wi) rho / (pi eta^2) * sum_{k < K} (rho R)^k
- * T(w): energy that comes down to the base from direction w (transmission times exp(-tau/cos) inside), R: share of the base's
- * cosine-weighted light that the coat sends back to it (twice through the layer), K bounces from max_depth. */
+ * T(w) = int f_t(w, w') |cos w'| exp(-tau/|cos w'|) dw', f_t without radiance's 1/eta^2: share of a beam from w that
+ * reaches the base. R: share of the base's cosine-weighted light that the coat sends back to it, through the layer
+ * twice. K: how often light meets the base. pbrt's walk of max_depth steps alternates base and coat, beginning at the base:
+ * K = ceil(max_depth / 2). The layer's two passages need no change for a rough coat: f_t and f_r inside are those of a
+ * rough dielectric, single scattering, so T, R and what the microfacets lose add up to less than 1. */
 #ifndef WORLD_COAT_H
 #define WORLD_COAT_H
 
@@ -15,16 +18,39 @@ enum { VL_COAT_COS = 64, VL_COAT_ALPHA = 32 };
 
 typedef struct vlCoatTable {
   float eta, tau;
-  uint32_t bounces;        /* K */
-  uint32_t alphas;         /* 1: alpha_min only; else VL_COAT_ALPHA rows from alpha_min to alpha_max (equal steps in sqrt(alpha)) */
+  uint32_t bounces; /* K, at most 255 */
+  uint32_t alphas;  /* 1: alpha_min only; else VL_COAT_ALPHA rows, equal steps in sqrt(alpha) from alpha_min to alpha_max */
   float alpha_min, alpha_max;
-  float transmittance[VL_COAT_ALPHA][VL_COAT_COS]; /* T at cos = (i + 0.5)/64-like nodes, see coat.c */
+  float row_start, row_scale;                      /* row = (sqrt(alpha) - row_start) * row_scale */
+  float transmittance[VL_COAT_ALPHA][VL_COAT_COS]; /* T at cos = (i / (VL_COAT_COS - 1))^4; cubic between */
   float back[VL_COAT_ALPHA];                       /* R */
+  float escape[VL_COAT_ALPHA];                     /* share of the base's light that leaves at once: int T 2cos dcos / eta^2 */
 } vlCoatTable;
 
-/* Isotropic alpha between alpha_min and alpha_max (equal for untextured roughness). Deterministic quadrature. */
+/* Isotropic alpha between alpha_min and alpha_max (equal for untextured roughness; of an anisotropic coat the geometric
+ * mean). Below VL_GGX_SMOOTH (math/ggx.h) the interface is smooth. Deterministic quadrature: T and R good to 1e-4. */
 vlResult vl_coat_build(vlContext *context, float eta, float tau, uint32_t max_depth, float alpha_min, float alpha_max,
                        vlCoatTable **table);
 void vl_coat_free(vlContext *context, vlCoatTable *table);
+
+/* Where T(cos) lies: four nodes from `first` on, at place t in [0, 3] among them. */
+typedef struct vlCoatPlace {
+  int32_t first;
+  float t;
+} vlCoatPlace;
+static inline vlCoatPlace vl_coat_place(float cosine) {
+  float c = cosine > 0.0f ? cosine : 0.0f;
+  c = c < 1.0f ? c : 1.0f;
+  float x = __builtin_sqrtf(__builtin_sqrtf(c)) * (float)(VL_COAT_COS - 1);
+  int32_t first = (int32_t)x - 1;
+  first = first > 0 ? first : 0;
+  first = first < VL_COAT_COS - 4 ? first : VL_COAT_COS - 4;
+  return (vlCoatPlace){first, x - (float)first};
+}
+/* Lagrange's cubic through four equally spaced values. */
+static inline float vl_coat_cubic(float q0, float q1, float q2, float q3, float t) {
+  float a = t - 1.0f, b = t - 2.0f, c = t - 3.0f;
+  return 0.5f * ((q1 * t - q0 * a * (1.0f / 3.0f)) * b * c + (q3 * b * (1.0f / 3.0f) - q2 * c) * t * a);
+}
 
 #endif

@@ -11,19 +11,17 @@ extern "C" {
 
 typedef enum vlProjection { VL_PROJECTION_PERSPECTIVE, VL_PROJECTION_ORTHOGRAPHIC } vlProjection;
 
-typedef enum vlFovAxis {
-  VL_FOV_VERTICAL, VL_FOV_HORIZONTAL, VL_FOV_DIAGONAL, VL_FOV_SMALLER, VL_FOV_LARGER
-} vlFovAxis;
+typedef enum vlFovAxis { VL_FOV_VERTICAL, VL_FOV_HORIZONTAL, VL_FOV_DIAGONAL, VL_FOV_SMALLER, VL_FOV_LARGER } vlFovAxis;
 
 /* Several equivalent ways in, one compiled form out. Everything optional is VL_UNSET. Ways that are given together must
  * agree (1e-6 relative), else ARGUMENT with both values named in the error.
  *
  * Focal length, any of: fov + fov_axis; view_distance d, zoom, pixel_size s (f_px = zoom d / s, the lecture);
  * focal_mm + sensor_width_mm; fx, fy in pixels. Principal point cx, cy in pixels from the window's top left corner;
- * default the centre. fov is that of a centred window. With no way given: fov 90 degrees across the smaller side. zoom and
- * pixel_size act on d only: given without it they are an error. fx alone or fy alone, focal_mm: square pixels.
- * Orthographic: fx, fy (pixels per scene unit); pixel_size (scene units per pixel) with zoom; or screen_* in scene units;
- * default -1 to 1 across the smaller side.
+ * default the centre. fov is that of a centred window. With no way given: fov 90 degrees across the smaller side. zoom
+ * and pixel_size act on d only: given without it they are an error. fx alone or fy alone, focal_mm: square pixels.
+ * Orthographic: fx, fy (pixels per scene unit); pixel_size (scene units per pixel) with zoom; or screen_* in scene
+ * units; default -1 to 1 across the smaller side.
  *
  * Pose: eye, lookat, up, roll (the lecture); or world_from_camera (then eye, lookat, up are ignored). */
 typedef struct vlCameraDef {
@@ -36,17 +34,18 @@ typedef struct vlCameraDef {
   double view_distance, zoom, pixel_size; /* d, zoom (unset: 1), s (unset: 1) of the lecture */
   double focal_mm, sensor_width_mm;
   double fx, fy, skew, cx, cy;
-  double screen_min_x, screen_max_x, screen_min_y, screen_max_y; /* pbrt's screenwindow (y up, at distance 1, before fov) */
+  double screen_min_x, screen_max_x, screen_min_y,
+      screen_max_y; /* pbrt's screenwindow (y up, at distance 1, before fov) */
 
   double eye[3], lookat[3], up[3];
   double roll; /* radians about the view direction; positive turns the camera clockwise as seen from behind it */
   bool has_matrix;
   double world_from_camera[16]; /* camera x right, y down, z forward; may mirror or scale */
 
-  double lens_radius;    /* scene units; 0 pinhole */
-  double focus_distance; /* z of the plane in focus, scene units; unset: infinity */
+  double lens_radius;                 /* scene units; 0 pinhole */
+  double focus_distance;              /* z of the plane in focus, scene units; unset: infinity */
   double shutter_open, shutter_close; /* seconds; default 0, 1 */
-  double exposure_time;  /* a factor on radiance, as in the lecture; default 1 */
+  double exposure_time;               /* a factor on radiance, as in the lecture; default 1 */
   double near_plane, far_plane; /* z in camera space; default 0, infinity. Cut what the camera sees, nothing else */
 } vlCameraDef;
 

@@ -42,12 +42,14 @@ static Slice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t first) {
                  n - first < count ? n - first : count};
 }
 
-/* T at the cosines z; with the tables' constants too where asked. Returns the highest K then. */
-static int32_t look_up(const Slice *s, const float *z, Lanes *lanes, float *through, int constants) {
+enum { OF_WO, OF_WI, OF_LIGHT }; /* light: a wi that was not sampled here */
+
+/* T at the cosines z; for wo the tables' constants too. Returns the highest K then. */
+static int32_t look_up(const Slice *s, const float *z, Lanes *lanes, float *through, int of) {
   int32_t place[CHUNK];             /* first of four nodes of T */
   float at[CHUNK];                  /* place among them */
   float nodes[CHUNK][4];            /* T there */
-  uint32_t count = s->count & ~15u; /* known to be whole vectors */
+  uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlCoatPlace p = vl_coat_place(vl_abs(z[i]));
@@ -68,9 +70,10 @@ static int32_t look_up(const Slice *s, const float *z, Lanes *lanes, float *thro
       t = row - (float)low;
       t = t < 1.0f ? t : 1.0f;
     }
-    const float *a = table->transmittance[low] + place[i], *b = table->transmittance[high] + place[i];
+    const float(*rows)[VL_COAT_COS] = of == OF_LIGHT && table->imitate ? table->imitation : table->transmittance;
+    const float *a = rows[low] + place[i], *b = rows[high] + place[i];
     for (int k = 0; k < 4; k++) nodes[i][k] = a[k] + t * (b[k] - a[k]);
-    if (constants) {
+    if (of == OF_WO) {
       lanes->back[i] = table->back[low] + t * (table->back[high] - table->back[low]);
       lanes->escape[i] = table->escape[low] + t * (table->escape[high] - table->escape[low]);
       lanes->bounces[i] = (int32_t)table->bounces;
@@ -103,7 +106,7 @@ static inline __attribute__((always_inline)) void weigh_loop(const Slice *s, con
   const int32_t *bounces = lanes->bounces;
   float *b0 = lanes->base[0], *b1 = lanes->base[1], *b2 = lanes->base[2], *b3 = lanes->base[3];
   float *share = lanes->coat_share, *fresnel = lanes->fresnel;
-  uint32_t count = s->count & ~15u; /* known to be whole vectors */
+  uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     float t = through[i], r = back[i], e = eta[i];
@@ -156,7 +159,7 @@ PASS combine(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, vlBsdfDire
   const float *b0 = lanes->base[0], *b1 = lanes->base[1], *b2 = lanes->base[2], *b3 = lanes->base[3];
   float *v0 = value[0] + first, *v1 = value[1] + first, *v2 = value[2] + first, *v3 = value[3] + first;
   float *pdf = density + first;
-  uint32_t count = s->count & ~15u;
+  uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     int valid = ((oz[i] > 0.0f) & (iz[i] > 0.0f)) | ((oz[i] < 0.0f) & (iz[i] < 0.0f));
@@ -183,8 +186,8 @@ void VL_HOT(vl_bsdf_coat_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDir
   Lanes lanes;
   for (uint32_t first = 0; first < n; first += CHUNK) {
     Slice s = slice_of(params, n, first);
-    weigh(&s, wo.z + first, &lanes, look_up(&s, wo.z + first, &lanes, lanes.through_o, 1));
-    look_up(&s, wi.z + first, &lanes, lanes.through_i, 0);
+    weigh(&s, wo.z + first, &lanes, look_up(&s, wo.z + first, &lanes, lanes.through_o, OF_WO));
+    look_up(&s, wi.z + first, &lanes, lanes.through_i, OF_LIGHT);
     combine(&s, &lanes, wo, wi, value, pdf, first);
   }
 }
@@ -196,7 +199,7 @@ PASS choose(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
   const float *lobe = u_lobe + first, *uu = u + first, *vv = v + first;
   float *ix = wi.x + first, *iy = wi.y + first, *iz = wi.z + first;
   const float *ax = s->ax, *ay = s->ay, *eta = s->eta, *share = lanes->coat_share;
-  uint32_t count = s->count & ~15u;
+  uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlVec3 o = vl_vec3(ox[i], oy[i], vl_abs(oz[i]));
@@ -224,7 +227,7 @@ PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
   float *w0 = weight[0] + first, *w1 = weight[1] + first, *w2 = weight[2] + first, *w3 = weight[3] + first;
   float *pdf = density + first;
   uint32_t *flag = flags + first;
-  uint32_t count = s->count & ~15u;
+  uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     float xo = ox[i], yo = oy[i], zo = vl_abs(oz[i]), xi = ix[i], yi = iy[i], zi = iz[i];
@@ -258,9 +261,9 @@ void VL_HOT(vl_bsdf_coat_sample)(uint32_t n, const vlBsdfParams *params, vlBsdfD
   Lanes lanes;
   for (uint32_t first = 0; first < n; first += CHUNK) {
     Slice s = slice_of(params, n, first);
-    weigh(&s, wo.z + first, &lanes, look_up(&s, wo.z + first, &lanes, lanes.through_o, 1));
+    weigh(&s, wo.z + first, &lanes, look_up(&s, wo.z + first, &lanes, lanes.through_o, OF_WO));
     choose(&s, &lanes, wo, u_lobe, u, v, wi, first);
-    look_up(&s, wi.z + first, &lanes, lanes.through_i, 0);
+    look_up(&s, wi.z + first, &lanes, lanes.through_i, OF_WI);
     settle(&s, &lanes, wo, u_lobe, wi, weight, pdf, flags, first);
     for (uint32_t i = 0; i < s.count; i++) eta_scale[first + i] = 1.0f;
   }

@@ -12,6 +12,11 @@
 #include "math/ggx.h"
 #include "trace/bsdf.h"
 
+/* A count of whole vectors, so that the compiler sees it and makes no remainder loop. */
+#ifndef VL_WHOLE
+#define VL_WHOLE(count) ((count) & ~15u)
+#endif
+
 #define VL_BSDF_DECLARE(kind)                                                                                          \
   void VL_HOT(vl_bsdf_##kind##_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi, \
                                      float *const value[4], float *pdf);                                               \

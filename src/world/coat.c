@@ -8,12 +8,16 @@
 #include "math/ggx.h"
 
 /* Azimuths by midpoints (half a turn: symmetric), elevations by Gauss-Legendre with v = 1 - s^2, denser at the long
- * tail of grazing microfacets; outer cosines for R. */
-enum { TURNS = 12, HEIGHTS = 24, GRID = TURNS * HEIGHTS, OUTER = 24 };
+ * tail of grazing microfacets. R has a kink at the critical angle inside and needs more of both; outer: its cosines. */
+enum { TURNS = 12, HEIGHTS = 24, TURNS_BACK = 24, HEIGHTS_BACK = 40, GRID = TURNS_BACK * HEIGHTS_BACK, OUTER = 32 };
 
 typedef struct {
+  int count;
   float u[GRID], v[GRID];
   double weight[GRID];
+} Grid;
+typedef struct {
+  Grid out, back;            /* for T, for R */
   double x[OUTER], w[OUTER]; /* Gauss-Legendre on [0, 1] */
 } Rules;
 
@@ -36,17 +40,23 @@ static void gauss_legendre(int n, double *x, double *w) {
   }
 }
 
-static void make_rules(Rules *rules) {
-  double s[HEIGHTS], w[HEIGHTS];
-  gauss_legendre(HEIGHTS, s, w);
-  gauss_legendre(OUTER, rules->x, rules->w);
-  for (int i = 0; i < HEIGHTS; i++)
-    for (int j = 0; j < TURNS; j++) {
-      int k = i * TURNS + j;
-      rules->u[k] = (float)((j + 0.5) / (2.0 * TURNS));
-      rules->v[k] = (float)(1.0 - s[i] * s[i]);
-      rules->weight[k] = 2.0 * s[i] * w[i] / TURNS;
+static void make_grid(Grid *grid, int turns, int heights) {
+  double s[HEIGHTS_BACK], w[HEIGHTS_BACK];
+  gauss_legendre(heights, s, w);
+  grid->count = turns * heights;
+  for (int i = 0; i < heights; i++)
+    for (int j = 0; j < turns; j++) {
+      int k = i * turns + j;
+      grid->u[k] = (float)((j + 0.5) / (2.0 * turns));
+      grid->v[k] = (float)(1.0 - s[i] * s[i]);
+      grid->weight[k] = 2.0 * s[i] * w[i] / turns;
     }
+}
+
+static void make_rules(Rules *rules) {
+  gauss_legendre(OUTER, rules->x, rules->w);
+  make_grid(&rules->out, TURNS, HEIGHTS);
+  make_grid(&rules->back, TURNS_BACK, HEIGHTS_BACK);
 }
 
 static inline float layer(float tau, float c) {
@@ -55,40 +65,53 @@ static inline float layer(float tau, float c) {
 }
 
 /* Mean over the visible normals of direction cosine c: light that goes through the rough interface (transmit) or is
- * mirrored by it, then through the layer. eta: far side over near side. */
-static double interface_mean(const Rules *rules, int transmit, float c, float eta, float alpha, float tau) {
-  float part[GRID];
+ * mirrored by it, then through the layer. eta: far side over near side. imitation (may be null): the same with the sum
+ * of the two weights that pbrt-v4 gives a direction found by both its samplers, see coat.h. */
+static double interface_mean(const Grid *grid, int transmit, float c, float eta, float alpha, float tau,
+                             double *imitation) {
+  float part[GRID], excess[GRID];
   vlVec3 o = vl_vec3(__builtin_sqrtf(c < 1.0f ? 1.0f - c * c : 0.0f), 0.0f, c);
   float lo = vl_ggx_length(o, alpha, alpha);
-  VL_SIMD for (int i = 0; i < GRID; i++) {
-    vlVec3 h = vl_ggx_sample(o, alpha, alpha, rules->u[i], rules->v[i]);
+  int count = grid->count;
+  VL_SIMD for (int i = 0; i < count; i++) {
+    vlVec3 h = vl_ggx_sample(o, alpha, alpha, grid->u[i], grid->v[i]);
     float oh = vl_dot(o, h);
     vlFresnel f = vl_fresnel_dielectric(oh, eta);
-    float a = transmit ? oh / eta - f.cos_t : 2.0f * oh, b = transmit ? 1.0f / eta : 1.0f;
+    float t = oh / eta - f.cos_t;
+    float a = transmit ? t : 2.0f * oh, b = transmit ? 1.0f / eta : 1.0f;
     vlVec3 w = vl_vec3(a * h.x - b * o.x, a * h.y - b * o.y, a * h.z - b * o.z);
     w.z = transmit ? -w.z : w.z;
     float li = vl_ggx_length(w, alpha, alpha);
     float g = vl_ggx_shadowing(o.z, lo, w.z, li) * layer(tau, w.z);
     float share = transmit ? 1.0f - f.reflected : f.reflected;
     part[i] = (oh > 0.0f) & (w.z > 0.0f) ? share * g : 0.0f;
+    /* densities of w: through the interface from outside, by the base's cosine, through the interface from inside */
+    float p = vl_ggx_density(h, alpha, alpha) * 2.0f / (lo + o.z) * oh * f.cos_t / (t * t > 1e-30f ? t * t : 1e-30f);
+    float q = p * (lo + o.z) / ((li + w.z) * eta * eta), d = w.z * VL_INV_PI;
+    float base2 = d * d;
+    excess[i] = part[i] * (base2 / (base2 + q * q + 1e-30f) - base2 / (base2 + p * p + 1e-30f));
   }
-  double sum = 0.0;
-  for (int i = 0; i < GRID; i++) sum += (double)part[i] * rules->weight[i];
+  double sum = 0.0, more = 0.0;
+  for (int i = 0; i < count; i++) {
+    sum += (double)part[i] * grid->weight[i];
+    more += (double)excess[i] * grid->weight[i];
+  }
+  if (imitation) *imitation = sum + more;
   return sum;
 }
 
-static double transmittance(const Rules *rules, float c, float eta, float alpha, float tau) {
-  if (alpha >= VL_GGX_SMOOTH && eta != 1.0f) return interface_mean(rules, 1, c, eta, alpha, tau);
-  if (eta == 1.0f) return c > 0.0f ? layer(tau, c) : 0.0f;
+static double transmittance(const Rules *rules, float c, float eta, float alpha, float tau, double *imitation) {
+  if (alpha >= VL_GGX_SMOOTH && eta != 1.0f) return interface_mean(&rules->out, 1, c, eta, alpha, tau, imitation);
   vlFresnel f = vl_fresnel_dielectric(c, eta);
-  return (1.0f - f.reflected) * layer(tau, f.cos_t);
+  double t = eta == 1.0f ? (c > 0.0f ? layer(tau, c) : 0.0f) : (1.0f - f.reflected) * layer(tau, f.cos_t);
+  return *imitation = t;
 }
 
 /* From inside; what came up through the layer at cosine c. */
 static double reflectance_inside(const Rules *rules, float c, float eta, float alpha, float tau) {
   if (eta == 1.0f) return 0.0;
-  if (alpha >= VL_GGX_SMOOTH) return (double)layer(tau, c) * interface_mean(rules, 0, c, 1.0f / eta, alpha, tau);
   float l = layer(tau, c);
+  if (alpha >= VL_GGX_SMOOTH) return (double)l * interface_mean(&rules->back, 0, c, 1.0f / eta, alpha, tau, NULL);
   return (double)(vl_fresnel_dielectric(c, 1.0f / eta).reflected * l * l);
 }
 
@@ -109,7 +132,9 @@ static void build_row(const Rules *rules, vlCoatTable *table, uint32_t row, floa
   float *t = table->transmittance[row];
   for (int i = 0; i < VL_COAT_COS; i++) {
     float x = (float)i / (float)(VL_COAT_COS - 1);
-    t[i] = (float)transmittance(rules, x * x * x * x, table->eta, alpha, table->tau);
+    double imitation;
+    t[i] = (float)transmittance(rules, x * x * x * x, table->eta, alpha, table->tau, &imitation);
+    table->imitation[row][i] = (float)imitation;
   }
   table->back[row] = (float)back_share(rules, table->eta, alpha, table->tau);
   double sum = 0.0;

@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "color/named.h"
+#include "image/image.h"
 #include "scene/scene.h"
 
 static const vlSource nowhere = {NULL, 0, 0};
@@ -117,15 +118,6 @@ bool vl_scene_copy_spectrum(vlScene *scene, vlSpectrum *s, vlSource source, cons
   return vl_scene_copy_string(scene, &s->name);
 }
 
-static size_t pixel_size(vlPixelType type) {
-  switch (type) {
-    case VL_PIXEL_U8: return 1;
-    case VL_PIXEL_U16:
-    case VL_PIXEL_F16: return 2;
-    default: return 4;
-  }
-}
-
 bool vl_scene_copy_image(vlScene *scene, const vlImage **image) {
   if (!*image) return true;
   const vlImage *from = *image;
@@ -138,13 +130,13 @@ bool vl_scene_copy_image(vlScene *scene, const vlImage **image) {
     for (uint32_t i = 0; i < channels; i++) names[i] = vl_image_channel_name(from, i);
     def.names = names;
     def.type = vl_image_type(from);
-    def.encoding = vl_image_encoding(from);
+    def.encoding = from->encoding;
+    def.gamma = from->gamma;
     result = vl_image_create(scene->context, &def, slot);
     if (result != VL_OK) {
       scene->images.count--;
     } else {
-      size_t bytes = (size_t)def.width * def.height * channels * pixel_size(def.type);
-      memcpy(vl_image_pixels(*slot), vl_image_const_pixels(from), bytes);
+      memcpy((*slot)->pixels, from->pixels, vl_image_row_size(from) * from->height);
       *image = *slot;
     }
   }

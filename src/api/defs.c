@@ -1,0 +1,27 @@
+/* api/defs.c: what a scene says about its picture, as the defs of render and film. */
+#include <string.h>
+
+#include "scene/scene.h"
+#include "velo/render.h"
+
+vlRenderDef vl_scene_render_def(const vlScene *scene) {
+  const vlSceneSettings *s = &scene->settings;
+  vlRenderDef def = vl_default_render_def();
+  def.tracer = s->tracer;
+  def.sampler = s->sampler;
+  def.spp = s->spp;
+  def.seed = s->sampler_seed;
+  def.max_depth = s->max_depth;
+  def.ao_distance = s->ao_distance;
+  def.ao_cosine = s->ao_cosine;
+  return def;
+}
+
+vlFilmDef vl_scene_film_def(const vlScene *scene) {
+  const vlSceneSettings *s = &scene->settings;
+  vlFilmDef def = vl_default_film_def(s->width, s->height);
+  memcpy(def.crop, s->crop, sizeof def.crop);
+  def.filter = s->filter;
+  def.space = s->space;
+  return def;
+}

@@ -1,0 +1,24 @@
+/* api/load.c: vl_scene_load: the kind of a scene file by its name. */
+#include <sys/stat.h>
+
+#include "base/cookie.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/text.h"
+#include "import/import.h"
+#include "scene/scene.h"
+
+vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
+  vl_error_clear(error);
+  if (!scene || !path) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_load needs a scene and a path");
+  if (def && def->cookie != VL_COOKIE_LOAD)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "the def does not come from vl_default_load_def()");
+  if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
+  struct stat info;
+  bool readable = stat(path, &info) == 0 && !S_ISDIR(info.st_mode);
+  if (!readable || vl_ends_with(path, ".pbrt") || vl_ends_with(path, ".pbrt.gz"))
+    return vl_import_pbrt(scene, path, def, error);
+  vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){0}, "%.300s: unknown kind of scene file (known: .pbrt, .pbrt.gz)",
+                path);
+  return vl_scene_result(scene, error);
+}

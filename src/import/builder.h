@@ -1,0 +1,175 @@
+/* import/builder.h: what the files of this room that turn pbrt statements into a scene share. Statements come in file
+ * order; camera, film and the like are settled at WorldBegin; textures and materials wait until everything is read,
+ * since pbrt allows to name a material before it is made, and shapes are told their materials then. */
+#ifndef IMPORT_BUILDER_H
+#define IMPORT_BUILDER_H
+
+#include "import/parse.h"
+#include "math/transform.h"
+#include "scene/scene.h"
+
+typedef enum vlAttributeTarget {
+  VL_ATTR_SHAPE,
+  VL_ATTR_LIGHT,
+  VL_ATTR_MATERIAL,
+  VL_ATTR_MEDIUM,
+  VL_ATTR_TEXTURE,
+  VL_ATTR_TARGETS
+} vlAttributeTarget;
+
+typedef struct vlGraphicsState {
+  vlMat4 ctm[2];   /* at the start and the end of the shutter */
+  uint32_t active; /* bit 0 start, bit 1 end */
+  bool reverse_orientation;
+  vlColorSpace space;
+  uint32_t material;         /* 1 + index in import->materials, 0: default; or */
+  const char *material_name; /* a named material, resolved at the end */
+  vlSource material_place;
+  vlEmissionId emission;
+  bool emission_given;
+  const char *inside, *outside;       /* media */
+  size_t attributes[VL_ATTR_TARGETS]; /* how many of import->attributes[target] apply */
+} vlGraphicsState;
+
+typedef struct vlStackEntry {
+  char kind; /* 'a' attribute, 't' transform, 'o' object, 'i' import */
+  vlSource place;
+  vlGraphicsState state;
+} vlStackEntry;
+
+typedef struct vlNamed {
+  const char *name;
+  uint32_t index;
+} vlNamed;
+
+/* Small open hash of strings to indices; strings belong to someone else. */
+typedef struct vlNameTable {
+  vlNamed *slots;
+  uint32_t capacity, count;
+} vlNameTable;
+bool vl_names_add(vlContext *context, vlNameTable *table, const char *name, uint32_t index); /* false: out of memory */
+bool vl_names_find(const vlNameTable *table, const char *name, uint32_t *index);
+const char *vl_names_nearest(const vlNameTable *table, const char *name);
+
+/* A texture or material that waits. */
+typedef enum vlPendingState { VL_PENDING, VL_IN_PROGRESS, VL_DONE } vlPendingState;
+typedef struct vlPending {
+  const char *name; /* may be null (plain materials) */
+  const char *kind; /* null: parameter "type" says it (MakeNamedMaterial) */
+  bool spectrum;    /* textures */
+  vlSource place;
+  vlColorSpace space;
+  vlMat4 ctm; /* textures */
+  vlParamList params;
+  vlPendingState state;
+  uint32_t id; /* in the scene, when done; 0: skipped */
+  bool is_interface;
+} vlPending;
+
+/* What a shape will be told at the end. */
+typedef struct vlShapeLink {
+  uint32_t shape; /* index in scene->shapes */
+  uint32_t material;
+  const char *material_name;
+  vlSource material_place;
+  const char *alpha; /* float texture */
+  vlSource alpha_place;
+} vlShapeLink;
+
+typedef struct vlObject {
+  const char *name;
+  vlGroupId group;
+  bool defined;
+  vlSource place; /* where it was first named */
+} vlObject;
+
+/* A directive before WorldBegin, kept until then. */
+typedef struct vlChoice {
+  bool given;
+  const char *kind;
+  vlSource place;
+  vlColorSpace space;
+  vlParamList params;
+} vlChoice;
+
+struct vlImport {
+  vlContext *context;
+  vlScene *scene;
+  bool permissive;
+  const char *first; /* path of the first file */
+  bool in_world;
+  vlGraphicsState state;
+  VL_ARRAY(vlStackEntry) stack;
+  vlParamList attributes[VL_ATTR_TARGETS]; /* a stack, cut when the state that added to it ends */
+  vlNameTable coordinate_systems;          /* to index in matrices */
+  VL_ARRAY(vlMat4) matrices;
+  VL_ARRAY(vlPending) textures;
+  VL_ARRAY(vlPending) materials;
+  vlNameTable float_textures, spectrum_textures, named_materials, objects;
+  VL_ARRAY(vlObject) object_list;
+  VL_ARRAY(vlShapeLink) links;
+  VL_ARRAY(char *) strings; /* kept until the end */
+  bool in_object;           /* between ObjectBegin and ObjectEnd */
+  vlGroupId object;
+  vlChoice camera, film, sampler, integrator, filter, accelerator;
+  vlMat4 camera_from_world;
+  vlNameTable media;
+  const char *medium_name; /* the first one that something lies in; null: none */
+  vlSource medium_place;
+  bool animation_told;
+  uint32_t depth; /* of textures or materials that resolve each other */
+};
+enum { VL_IMPORT_DEPTH = 200 };
+
+/* ---- errors, warnings (builder.c) ---- */
+bool vl_import_fail(vlImport *import, vlResult code, vlSource place, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+bool vl_import_fail_memory(vlImport *import);
+void vl_import_warn(vlImport *import, vlLogLevel level, vlSource place, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/* Valid pbrt that velo does not understand: an error, or a warning and true when permissive. */
+bool vl_import_unsupported(vlImport *import, vlSource place, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Name of a kind of thing that is not among `known`: `later` holds pbrt's names that are not understood yet. */
+bool vl_import_unknown(vlImport *import, vlSource place, const char *thing, const char *name, const char *const *known,
+                       size_t known_count, const char *const *later, size_t later_count);
+const char *vl_import_keep(vlImport *import,
+                           const char *text); /* copy that lives until the end; null when out of memory */
+vlDict vl_import_dict(vlImport *import, const char *what, vlSource place, vlColorSpace space, const vlParamList *own,
+                      const vlParamList *attributes);
+/* Path of the file that a string parameter names; false and an error when it cannot be read or is too long. */
+bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t size);
+bool vl_import_color_space(const char *name, vlColorSpace *space);
+
+/* Copies of the parameters, marked optional, at the end of `to`. */
+bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamList *to);
+/* What applies to this kind of directive now. */
+const vlParamList *vl_import_attributes(vlImport *import, vlAttributeTarget target);
+/* The current transform; an error (or warning, once) where start and end differ. */
+bool vl_import_ctm(vlImport *import, vlSource place, vlMat4 *ctm);
+
+/* ---- parts ---- */
+bool vl_import_camera(vlImport *import); /* the choices made before WorldBegin, to scene settings; camera after film */
+bool vl_import_film(vlImport *import);
+bool vl_import_sampling(vlImport *import); /* sampler, filter, integrator */
+bool vl_import_option(vlImport *import, const vlStatement *s);
+
+/* The spectrum of a parameter (rgb, spectrum, blackbody); sampled values belong to the import's strings. */
+bool vl_import_spectrum(vlImport *import, vlParam *param, vlSpectrum *spectrum);
+/* Radiance or intensity parameter of a light. */
+bool vl_import_light_spectrum(vlDict *dict, const char *name, vlSpectrum *spectrum, bool *given);
+/* A number or a float texture; a spectrum or a spectrum texture. given may be null. false after an error. */
+bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, bool *given);
+bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input, bool albedo, bool *given);
+
+bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource place, vlTextureId *id);
+bool vl_import_finish_texture(vlImport *import, uint32_t index); /* resolves what it refers to first */
+bool vl_import_finish_material(vlImport *import, uint32_t index);
+bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface);
+
+bool vl_import_light(vlImport *import, const vlStatement *s);
+bool vl_import_area_light(vlImport *import, const vlStatement *s);
+bool vl_import_shape(vlImport *import, const vlStatement *s);
+bool vl_import_medium(vlImport *import, const vlStatement *s);
+
+#endif

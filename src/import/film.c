@@ -1,0 +1,171 @@
+/* import/film.c: Film, Option and media. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "import/builder.h"
+#include "import/token.h"
+
+enum { MAX_SIDE = 1 << 20 };
+
+/* pbrt: pixelbounds x0 x1 y0 y1 in pixels; cropwindow the same in fractions, rounded up, and it wins. */
+static bool read_crop(vlDict *dict, vlSceneSettings *s) {
+  vlImport *import = dict->import;
+  double w = s->width, h = s->height, box[4] = {0, w, 0, h}, crop[4];
+  vlParam *pixels = vl_dict_find(dict, "pixelbounds", 1u << VL_PARAM_INTEGER);
+  vlSource place = dict->place;
+  if (pixels) {
+    place = pixels->place;
+    if (pixels->integers.count != 4)
+      return vl_import_fail(import, VL_ERROR_SCENE, place, "%s: parameter \"pixelbounds\" takes 4 values, found %zu",
+                            dict->what, pixels->integers.count);
+    for (int i = 0; i < 4; i++) {
+      double v = pixels->integers.items[i], top = i < 2 ? w : h;
+      box[i] = v < 0 ? 0 : v > top ? top : v;
+    }
+  }
+  if (vl_dict_floats(dict, "cropwindow", 4, crop)) {
+    for (int i = 0; i < 4; i += 2) {
+      double size = i ? h : w, a = crop[i] < crop[i + 1] ? crop[i] : crop[i + 1],
+             b = crop[i] < crop[i + 1] ? crop[i + 1] : crop[i];
+      a = a < 0 ? 0 : a > 1 ? 1 : a;
+      b = b < 0 ? 0 : b > 1 ? 1 : b;
+      /* in single precision as pbrt computes it, so that the same pixels come out */
+      box[i] = ceilf((float)size * (float)a);
+      box[i + 1] = ceilf((float)size * (float)b);
+    }
+  }
+  if (!(box[0] < box[1] && box[2] < box[3]))
+    return vl_import_fail(import, VL_ERROR_SCENE, place, "%s: the crop window holds no pixel", dict->what);
+  s->crop[0] = (uint32_t)box[0];
+  s->crop[2] = (uint32_t)box[1];
+  s->crop[1] = (uint32_t)box[2];
+  s->crop[3] = (uint32_t)box[3];
+  return import->scene->error.code == VL_OK;
+}
+
+/* What changes the picture and is not there yet. */
+static bool read_refused(vlDict *dict) {
+  vlImport *import = dict->import;
+  const char *sensor = "cie1931";
+  double white = 0.0, top = INFINITY;
+  vlParam *p = vl_dict_find(dict, "sensor", 1u << VL_PARAM_STRING);
+  vl_dict_string(dict, "sensor", &sensor);
+  if (strcmp(sensor, "cie1931") != 0 &&
+      !vl_import_unsupported(import, p->place, "%s: sensor \"%.40s\" is not understood yet (known: cie1931)",
+                             dict->what, sensor))
+    return false;
+  if (vl_dict_double(dict, "whitebalance", &white) && white != 0.0 &&
+      !vl_import_unsupported(import, vl_dict_find(dict, "whitebalance", VL_BIT_FLOAT)->place,
+                             "%s: \"whitebalance\" is not understood yet", dict->what))
+    return false;
+  if (vl_dict_double(dict, "maxcomponentvalue", &top) && isfinite(top) && top < 1e30 &&
+      !vl_import_unsupported(import, vl_dict_find(dict, "maxcomponentvalue", VL_BIT_FLOAT)->place,
+                             "%s: \"maxcomponentvalue\" is not understood yet", dict->what))
+    return false;
+  return import->scene->error.code == VL_OK;
+}
+
+bool vl_import_film(vlImport *import) {
+  static const char *const kinds[] = {"rgb"};
+  static const char *const later[] = {"gbuffer", "spectral"};
+  vlSceneSettings *s = vl_scene_settings(import->scene);
+  const vlChoice *choice = &import->film;
+  char what[96];
+  snprintf(what, sizeof what, "Film \"%.60s\"", choice->given ? choice->kind : "rgb");
+  vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
+  bool known = !choice->given || strcmp(choice->kind, "rgb") == 0;
+  if (!known && !vl_import_unknown(import, choice->place, "film", choice->kind, kinds, 1, later, 2)) return false;
+  s->width = 1280;
+  s->height = 720;
+  s->space = choice->given ? choice->space : VL_SPACE_SRGB;
+  double iso = 100.0, time = 1.0, ratio = 1.0, ignored = 35.0;
+  bool half = true;
+  const char *output = "";
+  vlParam *file = vl_dict_find(&dict, "filename", 1u << VL_PARAM_STRING);
+  vl_dict_count(&dict, "xresolution", 1, &s->width);
+  vl_dict_count(&dict, "yresolution", 1, &s->height);
+  vl_dict_string(&dict, "filename", &output);
+  vl_dict_double(&dict, "diagonal", &ignored); /* matters to realistic cameras only */
+  vl_dict_bool(&dict, "savefp16", &half);      /* how the file is written: the program's business */
+  vl_dict_double(&dict, "iso", &iso);
+  vl_dict_double(&dict, "exposuretime", &time);
+  vl_dict_double(&dict, "imagingratio", &ratio);
+  if (import->scene->error.code != VL_OK) return false;
+  if (s->width > MAX_SIDE || s->height > MAX_SIDE)
+    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: %u x %u pixels are too many", what, s->width,
+                          s->height);
+  if (strlen(output) >= sizeof s->output)
+    return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: the file name is too long", what);
+  snprintf(s->output, sizeof s->output, "%s", output);
+  s->exposure = (float)(iso / 100.0 * time * ratio);
+  if (!(s->exposure >= 0.0f) || !isfinite(s->exposure))
+    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: the exposure is negative or not finite", what);
+  if (!read_crop(&dict, s) || !read_refused(&dict)) return false;
+  if (!known) vl_dict_skip(&dict);
+  return vl_dict_done(&dict);
+}
+
+/* ---- options
+ * --------------------------------------------------------------------------------------------------------- */
+
+/* pbrt compares option names without case, blanks, dashes and underscores. */
+static void normalise(const char *name, char *result, size_t size) {
+  size_t n = 0;
+  for (; *name && n + 1 < size; name++)
+    if (*name != '-' && *name != '_') result[n++] = *name >= 'A' && *name <= 'Z' ? (char)(*name - 'A' + 'a') : *name;
+  result[n] = 0;
+}
+
+bool vl_import_option(vlImport *import, const vlStatement *s) {
+  /* these change the picture, and velo has nothing of the kind */
+  static const char *const refused[] = {"disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter",
+                                        "forcediffuse"};
+  static const char *const harmless[] = {"msereferenceimage", "msereferenceout",       "pixelstats",
+                                         "wavefront",         "displacementedgescale", "rendercoordsys"};
+  char name[64];
+  const char *value = s->names[1];
+  normalise(s->names[0], name, sizeof name);
+  if (strcmp(name, "seed") == 0) {
+    double seed;
+    if (!vl_number_parse(value, strlen(value), &seed) || seed != floor(seed) || fabs(seed) > 4294967295.0)
+      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"seed\": \"%.40s\" is not an integer", value);
+    vl_scene_settings(import->scene)->sampler_seed = (uint32_t)(int64_t)seed;
+    return true;
+  }
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+    if (strcmp(name, refused[i]) != 0) continue;
+    if (strcmp(value, "false") == 0) return true;
+    if (strcmp(value, "true") != 0)
+      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": expected true or false, found \"%.40s\"",
+                            refused[i], value);
+    return vl_import_unsupported(import, s->place, "Option \"%s\" is not understood yet", refused[i]);
+  }
+  for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++)
+    if (strcmp(name, harmless[i]) == 0) return true;
+  static const char *const known[] = {"seed"};
+  return vl_import_unknown(import, s->place, "option", s->names[0], known, 1, refused,
+                           sizeof refused / sizeof *refused);
+}
+
+/* ---- media
+ * ------------------------------------------------------------------------------------------------------------- */
+
+/* Only their names are kept: a medium that nothing lies in does not matter. */
+bool vl_import_medium(vlImport *import, const vlStatement *s) {
+  uint32_t index;
+  if (vl_names_find(&import->media, s->names[0], &index))
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "medium \"%.80s\" is made a second time", s->names[0]);
+  char what[96];
+  const char *type = NULL;
+  snprintf(what, sizeof what, "MakeNamedMedium \"%.60s\"", s->names[0]);
+  vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
+                               vl_import_attributes(import, VL_ATTR_MEDIUM));
+  if (!vl_dict_string(&dict, "type", &type)) {
+    if (import->scene->error.code != VL_OK) return false;
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s: \"string type\" is missing", what);
+  }
+  const char *name = vl_import_keep(import, s->names[0]);
+  if (!name) return false;
+  return vl_names_add(import->context, &import->media, name, 1) || vl_import_fail_memory(import);
+}

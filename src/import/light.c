@@ -1,0 +1,128 @@
+/* import/light.c: LightSource and AreaLightSource, as pbrt-v4 means them; what scale, power and illuminance do to the
+ * light itself is the world's business. */
+#include <stdio.h>
+#include <string.h>
+
+#include "import/builder.h"
+
+static const double degrees = 0.017453292519943295;
+
+static void read_points(vlDict *dict, vlLightDef *def, bool aims) {
+  double v[3];
+  if (vl_dict_vector(dict, "from", VL_PARAM_POINT3, v))
+    for (int i = 0; i < 3; i++) def->from[i] = (float)v[i];
+  if (aims && vl_dict_vector(dict, "to", VL_PARAM_POINT3, v))
+    for (int i = 0; i < 3; i++) def->to[i] = (float)v[i];
+}
+
+/* pbrt: a value that is not above zero counts as not given. */
+static void read_target(vlDict *dict, const char *name, double *value) {
+  double v;
+  if (vl_dict_double(dict, name, &v) && v > 0.0) *value = v;
+}
+
+static bool read_infinite(vlDict *dict, vlLightDef *def, bool has_color) {
+  vlImport *import = dict->import;
+  vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
+  vlParam *portal = vl_dict_find(dict, "portal", 1u << VL_PARAM_POINT3);
+  read_target(dict, "illuminance", &def->illuminance);
+  if (portal && !vl_import_unsupported(import, portal->place, "%s: \"portal\" is not understood yet", dict->what))
+    return false;
+  if (!file) return true;
+  if (has_color)
+    return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: give either \"L\" or \"filename\", not both",
+                          dict->what);
+  char path[4096];
+  if (!vl_dict_done(dict) || !vl_import_path(import, file, path, sizeof path)) return false;
+  def->path = vl_import_keep(import, path);
+  def->image_is_radiance = true;
+  return def->path != NULL;
+}
+
+static bool read_light(vlDict *dict, vlLightDef *def) {
+  bool given;
+  bool intensity = def->kind == VL_LIGHT_POINT || def->kind == VL_LIGHT_SPOT;
+  if (!vl_import_light_spectrum(dict, intensity ? "I" : "L", &def->color, &given)) return false;
+  vl_dict_float(dict, "scale", &def->scale);
+  switch (def->kind) {
+    case VL_LIGHT_POINT:
+      read_points(dict, def, false);
+      read_target(dict, "power", &def->power);
+      break;
+    case VL_LIGHT_SPOT: {
+      double angle = 30.0, delta = 5.0;
+      read_points(dict, def, true);
+      read_target(dict, "power", &def->power);
+      vl_dict_double(dict, "coneangle", &angle);
+      vl_dict_double(dict, "conedeltaangle", &delta);
+      def->cone_angle = (float)(angle * degrees);
+      def->cone_delta = (float)(delta * degrees);
+      break;
+    }
+    case VL_LIGHT_DISTANT:
+      read_points(dict, def, true);
+      read_target(dict, "illuminance", &def->illuminance);
+      break;
+    case VL_LIGHT_INFINITE:
+      if (!read_infinite(dict, def, given)) return false;
+      break;
+  }
+  return vl_dict_done(dict);
+}
+
+static void note_medium(vlImport *import, vlSource place) {
+  if (import->medium_name || !import->state.outside || !import->state.outside[0]) return;
+  import->medium_name = import->state.outside;
+  import->medium_place = place;
+  vl_scene_copy_source(import->scene, &import->medium_place);
+}
+
+bool vl_import_light(vlImport *import, const vlStatement *s) {
+  static const char *const kinds[] = {"point", "spot", "distant", "infinite"};
+  static const char *const later[] = {"goniometric", "projection"};
+  char what[96];
+  snprintf(what, sizeof what, "LightSource \"%.60s\"", s->names[0]);
+  vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
+                               vl_import_attributes(import, VL_ATTR_LIGHT));
+  int kind = -1;
+  for (int i = 0; i < 4; i++)
+    if (strcmp(s->names[0], kinds[i]) == 0) kind = i;
+  if (kind < 0)
+    return vl_import_unknown(import, s->place, "light", s->names[0], kinds, 4, later, 2); /* permissive: left out */
+  vlLightDef def = vl_default_light_def((vlLightKind)kind);
+  vlMat4 ctm;
+  def.source = s->place;
+  def.space = import->state.space;
+  if (!vl_import_ctm(import, s->place, &ctm) || !read_light(&dict, &def)) return false;
+  memcpy(def.world_from_light, ctm.m, sizeof def.world_from_light);
+  if (kind < 2) note_medium(import, s->place);
+  return vl_scene_add_light(import->scene, &def).index != 0;
+}
+
+bool vl_import_area_light(vlImport *import, const vlStatement *s) {
+  static const char *const kinds[] = {"diffuse"};
+  char what[96];
+  snprintf(what, sizeof what, "AreaLightSource \"%.60s\"", s->names[0]);
+  vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
+                               vl_import_attributes(import, VL_ATTR_LIGHT));
+  import->state.emission = (vlEmissionId){0};
+  if (s->names[0][0] == 0) return true; /* pbrt: no area light from here on */
+  if (strcmp(s->names[0], "diffuse") != 0)
+    return vl_import_unknown(import, s->place, "area light", s->names[0], kinds, 1, NULL, 0);
+  vlEmissionDef def = vl_default_emission_def();
+  def.source = s->place;
+  bool given;
+  if (!vl_import_light_spectrum(&dict, "L", &def.radiance, &given)) return false;
+  vl_dict_float(&dict, "scale", &def.scale);
+  vl_dict_bool(&dict, "twosided", &def.two_sided);
+  read_target(&dict, "power", &def.power);
+  vlParam *file = vl_dict_find(&dict, "filename", 1u << VL_PARAM_STRING);
+  if (!vl_dict_done(&dict)) return false;
+  if (file && given)
+    return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: give either \"L\" or \"filename\", not both", what);
+  char path[4096];
+  if (file && !vl_import_path(import, file, path, sizeof path)) return false;
+  if (file) def.image = path;
+  import->state.emission = vl_scene_add_emission(import->scene, &def);
+  return import->state.emission.index != 0;
+}

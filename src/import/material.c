@@ -1,0 +1,186 @@
+/* import/material.c: Material and MakeNamedMaterial entities to the scene, a mix after its parts. Parameters and
+ * defaults are pbrt-v4's. */
+#include <stdio.h>
+#include <string.h>
+
+#include "import/builder.h"
+
+static const char *const kinds[] = {"diffuse", "coateddiffuse", "conductor", "dielectric", "thindielectric",
+                                    "mix",     "interface",     "",          "none"};
+static const vlMaterialKind kind_values[] = {
+    VL_MATERIAL_DIFFUSE,    VL_MATERIAL_COATED_DIFFUSE,  VL_MATERIAL_CONDUCTOR,
+    VL_MATERIAL_DIELECTRIC, VL_MATERIAL_THIN_DIELECTRIC, VL_MATERIAL_MIX,
+    VL_MATERIAL_INTERFACE,  VL_MATERIAL_INTERFACE,       VL_MATERIAL_INTERFACE};
+static const char *const later[] = {"coatedconductor", "diffusetransmission", "hair", "measured", "subsurface"};
+enum { KINDS = sizeof kinds / sizeof *kinds, NAMES = 7, LATER = sizeof later / sizeof *later };
+
+bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface) {
+  uint32_t index;
+  if (!vl_names_find(&import->named_materials, name, &index)) {
+    const char *near = vl_names_nearest(&import->named_materials, name);
+    if (near)
+      return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no material \"%.80s\" (did you mean \"%s\"?)",
+                            name, near);
+    return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no material \"%.80s\"", name);
+  }
+  if (import->materials.items[index].state == VL_IN_PROGRESS)
+    return vl_import_fail(import, VL_ERROR_SCENE, place, "material \"%.80s\" is mixed of itself", name);
+  if (!vl_import_finish_material(import, index)) return false;
+  id->index = import->materials.items[index].id;
+  *is_interface = import->materials.items[index].is_interface;
+  return true;
+}
+
+/* uroughness and vroughness, each falling back on roughness. */
+static bool read_roughness(vlDict *dict, vlMaterialDef *def) {
+  vlFloatInput both = vl_float_input(0.0f);
+  bool u = false, v = false;
+  if (!vl_import_float_input(dict, "uroughness", &def->u_roughness, &u) ||
+      !vl_import_float_input(dict, "vroughness", &def->v_roughness, &v) ||
+      !vl_import_float_input(dict, "roughness", &both, NULL))
+    return false;
+  if (!u) def->u_roughness = both;
+  if (!v) def->v_roughness = both;
+  vl_dict_bool(dict, "remaproughness", &def->remap_roughness);
+  return true;
+}
+
+/* An index of refraction: a number or a spectrum, not a texture. */
+static bool read_eta(vlDict *dict, vlMaterialDef *def) {
+  vlParam *p = vl_dict_find(dict, "eta", VL_BIT_FLOAT | VL_BITS_SPECTRUM);
+  if (!p) return dict->import->scene->error.code == VL_OK;
+  def->eta = (vlSpectrumInput){0};
+  if (p->type != VL_PARAM_FLOAT) return vl_import_spectrum(dict->import, p, &def->eta.value);
+  float eta = 1.5f;
+  bool given = vl_dict_float(dict, "eta", &eta);
+  def->eta.value = vl_spectrum_constant(eta);
+  return given;
+}
+
+static bool read_conductor(vlDict *dict, vlMaterialDef *def) {
+  bool eta, k;
+  if (!vl_import_spectrum_input(dict, "eta", &def->eta, false, &eta) ||
+      !vl_import_spectrum_input(dict, "k", &def->k, false, &k) ||
+      !vl_import_spectrum_input(dict, "reflectance", &def->reflectance, true, &def->use_reflectance))
+    return false;
+  if (def->use_reflectance && (eta || k))
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
+                          "%s: give either \"reflectance\" or \"eta\" and \"k\", not both", dict->what);
+  return read_roughness(dict, def);
+}
+
+static bool read_mix(vlDict *dict, vlMaterialDef *def) {
+  vlImport *import = dict->import;
+  vlParam *p = vl_dict_find(dict, "materials", 1u << VL_PARAM_STRING);
+  if (!vl_import_float_input(dict, "amount", &def->amount, NULL)) return false;
+  if (!p) {
+    if (!vl_dict_done(dict)) return false;
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string materials\" (two names) is missing",
+                          dict->what);
+  }
+  if (p->strings.count != 2)
+    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: parameter \"materials\" takes 2 values, found %zu",
+                          dict->what, p->strings.count);
+  for (int i = 0; i < 2; i++) {
+    bool is_interface;
+    if (!vl_import_material_id(import, p->strings.items[i], p->place, &def->materials[i], &is_interface)) return false;
+  }
+  return true;
+}
+
+static bool read_coat(vlDict *dict, vlMaterialDef *def) {
+  return vl_import_spectrum_input(dict, "reflectance", &def->reflectance, true, NULL) && read_roughness(dict, def) &&
+         vl_import_float_input(dict, "thickness", &def->thickness, NULL) && read_eta(dict, def) &&
+         vl_import_float_input(dict, "g", &def->g, NULL) &&
+         vl_import_spectrum_input(dict, "albedo", &def->albedo, true, NULL) &&
+         (vl_dict_count(dict, "maxdepth", 1, &def->max_depth), vl_dict_count(dict, "nsamples", 1, &def->samples),
+          dict->import->scene->error.code == VL_OK);
+}
+
+/* Bumps: what every surface but a mix may have. */
+static bool read_relief(vlDict *dict, vlMaterialDef *def) {
+  vlImport *import = dict->import;
+  if (!vl_import_float_input(dict, "displacement", &def->displacement, NULL)) return false;
+  vlParam *p = vl_dict_find(dict, "normalmap", 1u << VL_PARAM_STRING);
+  if (!p) return import->scene->error.code == VL_OK;
+  char path[4096];
+  if (p->strings.items[0][0] == 0) return true;
+  if (!vl_import_path(import, p, path, sizeof path)) return false;
+  def->normal_map = vl_import_keep(import, path);
+  return def->normal_map != NULL;
+}
+
+static bool read_material(vlDict *dict, vlMaterialDef *def) {
+  switch (def->kind) {
+    case VL_MATERIAL_DIFFUSE:
+      if (!vl_import_spectrum_input(dict, "reflectance", &def->reflectance, true, NULL)) return false;
+      break;
+    case VL_MATERIAL_COATED_DIFFUSE:
+      if (!read_coat(dict, def)) return false;
+      break;
+    case VL_MATERIAL_CONDUCTOR:
+      if (!read_conductor(dict, def)) return false;
+      break;
+    case VL_MATERIAL_DIELECTRIC:
+      if (!read_eta(dict, def) || !read_roughness(dict, def)) return false;
+      break;
+    case VL_MATERIAL_THIN_DIELECTRIC:
+      if (!read_eta(dict, def)) return false;
+      break;
+    case VL_MATERIAL_MIX:
+      if (!read_mix(dict, def)) return false;
+      break;
+    case VL_MATERIAL_INTERFACE: break;
+  }
+  if (def->kind != VL_MATERIAL_MIX && def->kind != VL_MATERIAL_INTERFACE && !read_relief(dict, def)) return false;
+  return vl_dict_done(dict);
+}
+
+static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict, int *kind) {
+  const char *type = pending->kind;
+  if (!type) { /* MakeNamedMaterial */
+    if (!vl_dict_string(dict, "type", &type)) {
+      if (import->scene->error.code != VL_OK) return false;
+      return vl_import_fail(import, VL_ERROR_SCENE, pending->place,
+                            "MakeNamedMaterial \"%.60s\": \"string type\" is missing", pending->name);
+    }
+  }
+  *kind = -1;
+  for (int i = 0; i < KINDS; i++)
+    if (strcmp(type, kinds[i]) == 0) *kind = i;
+  vlSource place = pending->place;
+  if (*kind < 0 && !pending->kind) place = vl_dict_find(dict, "type", 1u << VL_PARAM_STRING)->place;
+  return *kind >= 0 || vl_import_unknown(import, place, "material", type, kinds, NAMES, later, LATER);
+}
+
+static bool finish(vlImport *import, uint32_t index) {
+  vlPending *pending = &import->materials.items[index]; /* the array does not grow any more */
+  char what[128];
+  if (pending->kind)
+    snprintf(what, sizeof what, "Material \"%.60s\"", pending->kind);
+  else
+    snprintf(what, sizeof what, "MakeNamedMaterial \"%.60s\"", pending->name);
+  vlDict dict = vl_import_dict(import, what, pending->place, pending->space, &pending->params, NULL);
+  int kind = -1;
+  if (!find_kind(import, pending, &dict, &kind)) return false;
+  vlMaterialDef def = vl_default_material_def(kind < 0 ? VL_MATERIAL_DIFFUSE : kind_values[kind]);
+  def.name = pending->name;
+  def.source = pending->place;
+  if (kind >= 0 && !read_material(&dict, &def)) return false;
+  pending->is_interface = def.kind == VL_MATERIAL_INTERFACE;
+  pending->id = vl_scene_add_material(import->scene, &def).index;
+  return pending->id != 0;
+}
+
+bool vl_import_finish_material(vlImport *import, uint32_t index) {
+  vlPending *pending = &import->materials.items[index];
+  if (pending->state == VL_DONE) return true;
+  if (++import->depth > VL_IMPORT_DEPTH)
+    return vl_import_fail(import, VL_ERROR_SCENE, pending->place, "materials are mixed of each other more than %d deep",
+                          VL_IMPORT_DEPTH);
+  pending->state = VL_IN_PROGRESS;
+  if (!finish(import, index)) return false;
+  import->depth--;
+  pending->state = VL_DONE;
+  return true;
+}

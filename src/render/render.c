@@ -1,0 +1,378 @@
+/* render/render.c: where world, camera and film meet: passes over tiles, samples into rays, radiance into the film.
+ *
+ *   tile x samples -> film positions (filter) -> camera rays -> trace -> RGB -> film sums
+ *
+ * A batch is a tile of 16 x 16 pixels times up to 4 samples, pixels in Morton order so that 16 neighbours make a
+ * packet. What a sample is depends on (seed, pixel, index) alone, and the film adds exactly: no grouping shows in the
+ * picture. */
+#include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "base/cookie.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "camera/rays.h"
+#include "color/kernels.h"
+#include "film/film.h"
+#include "trace/trace.h"
+#include "velo/render.h"
+
+enum { TILE = 16, TILE_PIXELS = TILE * TILE, MAX_PASS = 16 };
+
+typedef struct Worker {
+  vlTraceScratch *scratch;
+  float *rows; /* ROWS arrays of VL_BATCH */
+  uint64_t paths, bounce_rays, shadow_rays, not_finite;
+  int32_t bad_x, bad_y;
+} Worker;
+
+enum Row {
+  FILM_U,
+  FILM_V,
+  FILM_X,
+  FILM_Y,
+  WEIGHT,
+  TIME,
+  LENS_U,
+  LENS_V,
+  WAVE,
+  OX,
+  OY,
+  OZ,
+  DX,
+  DY,
+  DZ,
+  T_MIN,
+  T_MAX,
+  RAY_TIME,
+  LAMBDA,
+  INV_PDF = LAMBDA + 4,
+  RADIANCE = INV_PDF + 4,
+  ALPHA = RADIANCE + 4,
+  RED,
+  GREEN,
+  BLUE,
+  PIXEL_X,
+  PIXEL_Y,
+  INDEX,
+  ROWS
+};
+
+typedef struct Render {
+  const vlWorld *world;
+  vlFilm *film;
+  const vlRenderDef *def;
+  vlCameraCompiled camera;
+  float exposure_time;
+  vlSampler sampler;
+  vlTraceDef trace;
+  const vlCameraKernels *camera_kernels;
+  const vlSamplerKernels *sampler_kernels;
+  const vlFilterKernels *filter_kernels;
+  const vlColorKernels *color_kernels;
+  const vlTraceKernels *trace_kernels;
+  float rgb_from_xyz[9], out_from_srgb[9];
+  bool rgb_mode, lens;
+  uint32_t crop[4];
+  uint32_t tiles_x, tiles_y, tile_x0, tile_y0;
+  uint32_t first_sample, pass_samples;
+  Worker *workers;
+  atomic_uint tiles_done;
+  atomic_bool cancelled;
+  pthread_t caller;
+  double start, last_sign;
+  uint32_t spp_before;
+  uint64_t paths_before, rays_before;
+} Render;
+
+static float *row(Worker *w, enum Row r) {
+  return w->rows + (size_t)r * VL_BATCH;
+}
+
+/* Every second bit of a Morton index. */
+static uint32_t morton_half(uint32_t m) {
+  m &= 0x55555555u;
+  m = (m | m >> 1) & 0x33333333u;
+  m = (m | m >> 2) & 0x0f0f0f0fu;
+  return (m | m >> 4) & 0x00ff00ffu;
+}
+
+/* Pixels of the tile inside the crop window, times the samples of this batch. Returns the number of lanes. */
+static uint32_t list_samples(const Render *r, Worker *w, uint32_t tile, uint32_t first, uint32_t count) {
+  int32_t *px = (int32_t *)(void *)row(w, PIXEL_X), *py = (int32_t *)(void *)row(w, PIXEL_Y);
+  uint32_t *index = (uint32_t *)(void *)row(w, INDEX), n = 0;
+  uint32_t x0 = (r->tile_x0 + tile % r->tiles_x) * TILE, y0 = (r->tile_y0 + tile / r->tiles_x) * TILE;
+  for (uint32_t s = first; s < first + count; s++)
+    for (uint32_t m = 0; m < TILE_PIXELS; m++) {
+      uint32_t x = x0 + morton_half(m), y = y0 + morton_half(m >> 1);
+      if (x < r->crop[0] || y < r->crop[1] || x >= r->crop[2] || y >= r->crop[3]) continue;
+      px[n] = (int32_t)x, py[n] = (int32_t)y, index[n] = s;
+      n++;
+    }
+  for (uint32_t i = n; n > 0 && i < VL_PAD(n); i++) px[i] = px[n - 1], py[i] = py[n - 1], index[i] = index[n - 1];
+  return n;
+}
+
+static void render_batch(const Render *r, Worker *w, uint32_t n) {
+  const int32_t *px = (int32_t *)(void *)row(w, PIXEL_X), *py = (int32_t *)(void *)row(w, PIXEL_Y);
+  const uint32_t *index = (uint32_t *)(void *)row(w, INDEX);
+  const vlSamplerKernels *k = r->sampler_kernels;
+  float *fx = row(w, FILM_X), *fy = row(w, FILM_Y);
+  k->get_2d(&r->sampler, n, px, py, index, VL_DIM_FILM, row(w, FILM_U), row(w, FILM_V));
+  r->filter_kernels->sample(vl_film_filter(r->film), n, row(w, FILM_U), row(w, FILM_V), fx, fy, row(w, WEIGHT));
+  for (uint32_t i = 0; i < VL_PAD(n); i++) fx[i] += 0.5f, fy[i] += 0.5f;
+  k->get_1d(&r->sampler, n, px, py, index, VL_DIM_TIME, row(w, TIME));
+  if (r->lens) k->get_2d(&r->sampler, n, px, py, index, VL_DIM_LENS, row(w, LENS_U), row(w, LENS_V));
+  vlCameraSamples samples = {fx, fy, px, py, row(w, LENS_U), row(w, LENS_V), row(w, TIME)};
+  vlCameraRays rays = {row(w, OX), row(w, OY),    row(w, OZ),    row(w, DX),      row(w, DY),
+                       row(w, DZ), row(w, T_MIN), row(w, T_MAX), row(w, RAY_TIME)};
+  r->camera_kernels->rays(&r->camera, n, &samples, &rays);
+  float *const lambda[4] = {row(w, LAMBDA), row(w, LAMBDA + 1), row(w, LAMBDA + 2), row(w, LAMBDA + 3)};
+  float *const inv_pdf[4] = {row(w, INV_PDF), row(w, INV_PDF + 1), row(w, INV_PDF + 2), row(w, INV_PDF + 3)};
+  if (!r->rgb_mode) {
+    k->get_1d(&r->sampler, n, px, py, index, VL_DIM_WAVELENGTH, row(w, WAVE));
+    r->color_kernels->visible_wavelengths(n, row(w, WAVE), lambda, inv_pdf);
+  }
+  vlTraceBatch batch = {
+      .n = n,
+      .ox = rays.ox,
+      .oy = rays.oy,
+      .oz = rays.oz,
+      .dx = rays.dx,
+      .dy = rays.dy,
+      .dz = rays.dz,
+      .t_min = rays.t_min,
+      .t_max = rays.t_max,
+      .px = px,
+      .py = py,
+      .index = index,
+      .lambda = {lambda[0], lambda[1], lambda[2], lambda[3]},
+      .radiance = {row(w, RADIANCE), row(w, RADIANCE + 1), row(w, RADIANCE + 2), row(w, RADIANCE + 3)},
+      .alpha = row(w, ALPHA)};
+  r->trace_kernels->trace(r->world, &r->trace, w->scratch, &batch);
+  float *red = row(w, RED), *green = row(w, GREEN), *blue = row(w, BLUE);
+  if (r->rgb_mode) {
+    const float *m = r->out_from_srgb;
+    const float *a = batch.radiance[0], *b = batch.radiance[1], *c = batch.radiance[2];
+    for (uint32_t i = 0; i < VL_PAD(n); i++) {
+      red[i] = m[0] * a[i] + m[1] * b[i] + m[2] * c[i];
+      green[i] = m[3] * a[i] + m[4] * b[i] + m[5] * c[i];
+      blue[i] = m[6] * a[i] + m[7] * b[i] + m[8] * c[i];
+    }
+  } else {
+    const float *const radiance[4] = {batch.radiance[0], batch.radiance[1], batch.radiance[2], batch.radiance[3]};
+    const float *const wave[4] = {lambda[0], lambda[1], lambda[2], lambda[3]};
+    const float *const inv[4] = {inv_pdf[0], inv_pdf[1], inv_pdf[2], inv_pdf[3]};
+    r->color_kernels->rgb_from_radiance(r->rgb_from_xyz, n, radiance, wave, inv, red, green, blue);
+  }
+  float e = r->exposure_time;
+  if (e != 1.0f)
+    for (uint32_t i = 0; i < n; i++) red[i] *= e, green[i] *= e, blue[i] *= e;
+  vlFilmSamples add = {n, px, py, red, green, blue, batch.alpha, row(w, WEIGHT)};
+  int32_t bad_x = 0, bad_y = 0;
+  uint32_t bad = vl_film_add(r->film, &add, &bad_x, &bad_y);
+  if (bad && !w->not_finite) w->bad_x = bad_x, w->bad_y = bad_y;
+  w->not_finite += bad;
+  w->paths += n;
+  w->bounce_rays += batch.bounce_rays;
+  w->shadow_rays += batch.shadow_rays;
+}
+
+static void count_rays(const Render *r, uint64_t *paths, uint64_t *rays) {
+  *paths = *rays = 0;
+  for (uint32_t i = 0; i < vl_context_threads(r->world->context); i++) {
+    const Worker *w = &r->workers[i];
+    *paths += w->paths;
+    *rays += w->paths + w->bounce_rays + w->shadow_rays;
+  }
+}
+
+static bool report(Render *r, bool pass_done, double done_samples) {
+  if (!r->def->progress) return true;
+  vlProgress p;
+  memset(&p, 0, sizeof p);
+  double total = r->def->spp - r->spp_before;
+  p.spp_done = vl_film_spp(r->film);
+  p.spp_total = r->def->spp;
+  p.elapsed = vl_seconds() - r->start;
+  p.fraction = total > 0 ? (done_samples - r->spp_before) / total : 1;
+  p.remaining = p.fraction > 0 ? p.elapsed * (1 - p.fraction) / p.fraction : 0;
+  if (r->def->time_limit > 0 && p.elapsed + p.remaining > r->def->time_limit) {
+    p.remaining = fmax(0, r->def->time_limit - p.elapsed);
+    p.fraction = fmax(p.fraction, fmin(1, p.elapsed / r->def->time_limit));
+  }
+  p.pass_done = pass_done;
+  count_rays(r, &p.paths, &p.rays);
+  return r->def->progress(r->def->progress_user, &p);
+}
+
+static void render_tile(void *user, uint32_t tile, uint32_t worker) {
+  Render *r = user;
+  Worker *w = &r->workers[worker];
+  if (atomic_load(&r->cancelled)) return;
+  unsigned state = vl_accel_enter();
+  uint32_t end = r->first_sample + r->pass_samples;
+  for (uint32_t s = r->first_sample; s < end && !atomic_load(&r->cancelled);) {
+    uint32_t count = end - s < VL_BATCH / TILE_PIXELS ? end - s : VL_BATCH / TILE_PIXELS;
+    uint32_t n = list_samples(r, w, tile, s, count);
+    if (n) render_batch(r, w, n);
+    s += count;
+    if (worker == 0 && pthread_equal(pthread_self(), r->caller) && vl_seconds() - r->last_sign > 0.1) {
+      vl_accel_leave(state);
+      r->last_sign = vl_seconds();
+      double share = (double)atomic_load(&r->tiles_done) / ((double)r->tiles_x * r->tiles_y);
+      if (!report(r, false, r->first_sample + share * r->pass_samples)) atomic_store(&r->cancelled, true);
+      state = vl_accel_enter();
+    }
+  }
+  vl_accel_leave(state);
+  atomic_fetch_add(&r->tiles_done, 1);
+}
+
+static vlResult check_arguments(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
+                                vlError *error) {
+  if (!world || !camera || !film || !def) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: null argument");
+  if (def->cookie != VL_COOKIE_RENDER)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: the def was not made by vl_default_render_def");
+  const vlFilmDef *f = vl_film_def(film);
+  if (camera->width != f->width || camera->height != f->height)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: camera (%u x %u) and film (%u x %u) differ", camera->width,
+                   camera->height, f->width, f->height);
+  if (def->max_depth > 4096)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: max_depth %u is above 4096", def->max_depth);
+  return VL_OK;
+}
+
+static void free_workers(Render *r, vlContext *context) {
+  for (uint32_t i = 0; r->workers && i < vl_context_threads(context); i++) {
+    vl_free(context, r->workers[i].scratch);
+    vl_free(context, r->workers[i].rows);
+  }
+  vl_free(context, r->workers);
+}
+
+static vlResult make_workers(Render *r, vlContext *context, vlError *error) {
+  uint32_t threads = vl_context_threads(context);
+  r->workers = vl_alloc_zero(context, threads, sizeof *r->workers);
+  for (uint32_t i = 0; r->workers && i < threads; i++) {
+    r->workers[i].scratch = vl_alloc_zero(context, 1, vl_trace_scratch_size());
+    r->workers[i].rows = vl_alloc_zero(context, (size_t)ROWS * VL_BATCH, sizeof(float));
+    if (!r->workers[i].scratch || !r->workers[i].rows) return vl_fail_memory(error);
+  }
+  return r->workers ? VL_OK : vl_fail_memory(error);
+}
+
+static void multiply3(const float a[9], const float b[9], float c[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) c[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+}
+
+static void prepare(Render *r, const vlCamera *camera) {
+  const vlWorld *world = r->world;
+  const vlFilmDef *f = vl_film_def(r->film);
+  vlIsa isa = vl_context_isa(world->context);
+  vl_camera_compile(camera, &r->camera);
+  r->exposure_time = (float)camera->exposure_time;
+  r->lens = camera->lens_radius > 0;
+  vl_sampler_init(&r->sampler, r->def->sampler, r->def->seed, f->width, f->height, r->def->spp);
+  r->camera_kernels = vl_camera_kernels(isa);
+  r->sampler_kernels = vl_sampler_kernels(isa);
+  r->filter_kernels = vl_filter_kernels(isa);
+  r->color_kernels = vl_color_kernels(isa);
+  r->trace_kernels = vl_trace_kernels(isa);
+  r->rgb_mode = world->def.color == VL_COLOR_RGB;
+  vl_rgb_from_xyz(f->space, r->rgb_from_xyz);
+  float xyz_from_srgb[9];
+  vl_xyz_from_rgb(VL_SPACE_SRGB, xyz_from_srgb);
+  multiply3(r->rgb_from_xyz, xyz_from_srgb, r->out_from_srgb);
+  if (f->space == VL_SPACE_SRGB)
+    for (int i = 0; i < 9; i++) r->out_from_srgb[i] = i % 4 == 0;
+  /* Footprints shrink with the samples of a pixel (pbrt book 10.1.3 scales by 1/sqrt(spp), at least 1/8); a fixed
+   * share, so that more samples continue the same picture. */
+  const float footprint = 0.25f;
+  r->trace = (vlTraceDef){.tracer = r->def->tracer,
+                          .sampler = &r->sampler,
+                          .isa = isa,
+                          .max_depth = r->def->max_depth,
+                          .ao_distance = r->def->ao_distance,
+                          .ao_cosine = r->def->ao_cosine,
+                          .pixel_spread = footprint * r->camera.pixel_spread,
+                          .pixel_width = footprint * r->camera.pixel_width};
+  memcpy(r->crop, f->crop, sizeof r->crop);
+  r->tile_x0 = r->crop[0] / TILE, r->tile_y0 = r->crop[1] / TILE;
+  r->tiles_x = (r->crop[2] + TILE - 1) / TILE - r->tile_x0;
+  r->tiles_y = (r->crop[3] + TILE - 1) / TILE - r->tile_y0;
+}
+
+/* Passes of 1, 1, 2, 4, ... samples: a first picture at once, then fewer interruptions. */
+static uint32_t pass_size(uint32_t done, uint32_t total) {
+  uint32_t size = done == 0 ? 1 : done < MAX_PASS ? done : MAX_PASS;
+  return size < total - done ? size : total - done;
+}
+
+static void fill_stats(const Render *r, vlRenderStats *stats) {
+  memset(stats, 0, sizeof *stats);
+  stats->spp = vl_film_spp(r->film);
+  stats->seconds = vl_seconds() - r->start;
+  for (uint32_t i = 0; i < vl_context_threads(r->world->context); i++) {
+    const Worker *w = &r->workers[i];
+    if (w->not_finite && !stats->not_finite) stats->worst_x = (uint32_t)w->bad_x, stats->worst_y = (uint32_t)w->bad_y;
+    stats->not_finite += w->not_finite;
+    stats->paths += w->paths;
+    stats->bounce_rays += w->bounce_rays;
+    stats->shadow_rays += w->shadow_rays;
+  }
+  stats->camera_rays = stats->paths;
+}
+
+vlRenderDef vl_default_render_def(void) {
+  return (vlRenderDef){.cookie = VL_COOKIE_RENDER,
+                       .tracer = VL_TRACER_PATH,
+                       .sampler = VL_SAMPLER_ZSOBOL,
+                       .spp = 16,
+                       .max_depth = 5,
+                       .ao_distance = INFINITY,
+                       .ao_cosine = true};
+}
+
+vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
+                   vlRenderStats *stats, vlError *error) {
+  vl_error_clear(error);
+  vlResult result = check_arguments(world, camera, film, def, error);
+  if (result != VL_OK) return result;
+  Render render, *r = &render;
+  memset(r, 0, sizeof *r);
+  r->world = world;
+  r->film = film;
+  r->def = def;
+  r->caller = pthread_self();
+  r->start = r->last_sign = vl_seconds();
+  r->spp_before = vl_film_spp(film);
+  prepare(r, camera);
+  result = make_workers(r, world->context, error);
+  while (result == VL_OK && vl_film_spp(film) < def->spp) {
+    if ((result = vl_film_begin_pass(film)) != VL_OK) {
+      vl_fail_memory(error);
+      break;
+    }
+    r->first_sample = vl_film_spp(film);
+    r->pass_samples = pass_size(r->first_sample, def->spp);
+    atomic_store(&r->tiles_done, 0);
+    vl_parallel_for(world->context, r->tiles_x * r->tiles_y, render_tile, r);
+    if (atomic_load(&r->cancelled)) {
+      vl_film_abandon_pass(film);
+      result = vl_fail(error, VL_CANCELLED, "stopped");
+      break;
+    }
+    vl_film_commit_pass(film);
+    vl_film_set_spp(film, r->first_sample + r->pass_samples);
+    if (!report(r, true, vl_film_spp(film)) && vl_film_spp(film) < def->spp)
+      result = vl_fail(error, VL_CANCELLED, "stopped");
+    if (def->time_limit > 0 && vl_seconds() - r->start >= def->time_limit) break;
+  }
+  if (stats && r->workers) fill_stats(r, stats);
+  free_workers(r, world->context);
+  return result;
+}

@@ -1,0 +1,304 @@
+/* trace/light.hot.c: choosing a light and a point on it, and the densities that multiple importance sampling asks for
+ * (pbrt book 12). Scalar per lane: the tree walk and the kinds of lights diverge. */
+#include "math/octahedral.h"
+#include "trace/stages.h"
+#include "world/surface_point.h"
+#include "world/texture_lookup.h"
+
+void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *e, const float lambda[4], float s, float t, bool sky,
+                           float out[4]) {
+  if (e->image < 0) {
+    for (int c = 0; c < 4; c++) out[c] = vl_spectral_at(&e->spectrum, c, lambda[c]);
+    return;
+  }
+  const vlMipmap *mip = world->images.items[e->image].mipmap;
+  vlTexel x = sky ? vl_nearest(mip, 0, s, t, VL_WRAP_OCTAHEDRAL) : vl_bilinear(mip, 0, s, t, VL_WRAP_REPEAT);
+  float rgb[3];
+  for (int k = 0; k < 3; k++) {
+    float y = e->image_scale * x.c[mip->channels < 3 ? 0 : k];
+    rgb[k] = y > 0.0f ? y : 0.0f;
+  }
+  if (world->def.color == VL_COLOR_RGB) {
+    for (int c = 0; c < 4; c++) out[c] = c < 3 ? rgb[c] * e->spectrum.scale : 0.0f;
+    return;
+  }
+  float scale = 2.0f * vl_max(rgb[0], vl_max(rgb[1], rgb[2])), inv = scale > 0.0f ? 1.0f / scale : 0.0f;
+  vlSigmoid sigmoid = vl_rgb_table_lookup(vl_rgb_table(e->space), rgb[0] * inv, rgb[1] * inv, rgb[2] * inv);
+  for (int c = 0; c < 4; c++)
+    out[c] = scale * vl_sigmoid(sigmoid, lambda[c]) * vl_spectral_at(&e->spectrum, c, lambda[c]);
+}
+
+/* ---- the sky --------------------------------------------------------------------------------------------------------
+ */
+
+static vlVec3 turn(const float m[9], vlVec3 d) {
+  return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
+                 m[6] * d.x + m[7] * d.y + m[8] * d.z);
+}
+
+void VL_HOT(vl_infinite_at)(const vlWorld *world, const vlWorldLight *light, vlVec3 d, const float lambda[4],
+                            float out[4]) {
+  vlVec2 st = {0, 0};
+  if (light->environment != VL_NONE)
+    st = vl_octahedral_encode(vl_normalize(turn(world->environments.items[light->environment].light_from_world, d)));
+  VL_HOT(vl_emitted_at)(world, &world->emitted.items[light->emitted], lambda, st.x, st.y, true, out);
+}
+
+float VL_HOT(vl_infinite_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 d) {
+  if (light->environment == VL_NONE) return 0.25f * VL_INV_PI;
+  const vlEnvironment *env = &world->environments.items[light->environment];
+  vlVec2 st = vl_octahedral_encode(vl_normalize(turn(env->light_from_world, d)));
+  uint32_t x = (uint32_t)(st.x * (float)env->size), y = (uint32_t)(st.y * (float)env->size);
+  x = x < env->size ? x : env->size - 1, y = y < env->size ? y : env->size - 1;
+  return env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
+}
+
+/* Cell [i, i+1) of a cdf of n cells in which u falls, and where in it. */
+static inline uint32_t find_cell(const float *cdf, uint32_t n, float u, float *within) {
+  uint32_t low = 0, high = n;
+  while (high - low > 1) {
+    uint32_t mid = (low + high) / 2;
+    if (cdf[mid] <= u)
+      low = mid;
+    else
+      high = mid;
+  }
+  float width = cdf[low + 1] - cdf[low];
+  *within = width > 0.0f ? vl_min((u - cdf[low]) / width, VL_ONE_MINUS_EPSILON) : 0.5f;
+  return low;
+}
+
+/* ---- area lights
+ * -------------------------------------------------------------------------------------------------------- */
+
+typedef struct Sample {
+  vlVec3 p, n; /* on the light */
+  float pdf;   /* per solid angle */
+  float u, v;
+} Sample;
+
+/* Centre and radius of a whole sphere under a similarity, or false. */
+static bool whole_sphere(const vlWorldShape *s, vlVec3 *center, float *radius) {
+  if (s->kind != VL_SHAPE_SPHERE || s->z_min > -s->radius || s->z_max < s->radius || s->phi_max < 6.2831f) return false;
+  const double *m = s->from_shape;
+  double l[3];
+  for (int i = 0; i < 3; i++) l[i] = m[i] * m[i] + m[4 + i] * m[4 + i] + m[8 + i] * m[8 + i];
+  if (l[1] > l[0] * 1.0001 || l[1] < l[0] * 0.9999 || l[2] > l[0] * 1.0001 || l[2] < l[0] * 0.9999) return false;
+  *center = vl_vec3((float)m[3], (float)m[7], (float)m[11]);
+  *radius = s->radius * (float)__builtin_sqrt(l[0]);
+  return true;
+}
+
+/* 1 - cos of the half angle of a sphere seen from outside, without cancellation. */
+static inline float one_minus_cos_cone(float sin2) {
+  return sin2 / (1.0f + __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2)));
+}
+
+static Sample sample_cone(vlVec3 center, float radius, bool inside_out, vlVec3 from, float u, float v) {
+  vlVec3 to = vl_sub(center, from);
+  float d2 = vl_length2(to), d = __builtin_sqrtf(d2);
+  float sin2_max = radius * radius / d2, span = one_minus_cos_cone(sin2_max);
+  float one_minus_cos = span * u, cos_t = 1.0f - one_minus_cos;
+  float sin2_t = vl_max(0.0f, one_minus_cos * (2.0f - one_minus_cos));
+  /* Angle at the centre between the axis and the point (pbrt book 6.2.4). */
+  float sin_max = __builtin_sqrtf(sin2_max);
+  float cos_a = sin2_t / sin_max + cos_t * __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2_t / sin2_max));
+  float sin_a = __builtin_sqrtf(vl_max(0.0f, 1.0f - cos_a * cos_a));
+  vlSinCos phi = vl_sincos_turn(v);
+  vlFrame frame = vl_frame_from_z(vl_mul(to, -1.0f / d));
+  vlVec3 n = vl_from_local(frame, vl_vec3(sin_a * phi.cos, sin_a * phi.sin, cos_a));
+  Sample s = {vl_add(center, vl_mul(n, radius)), inside_out ? vl_neg(n) : n, 1.0f / (2.0f * VL_PI * span), 0, 0};
+  return s;
+}
+
+static float solid_pdf(float pdf_area, vlVec3 from, vlVec3 p, vlVec3 n) {
+  vlVec3 to = vl_sub(p, from);
+  float d2 = vl_length2(to), cosine = vl_abs(vl_dot(n, to));
+  return cosine > 0.0f ? pdf_area * d2 * __builtin_sqrtf(d2) / cosine : 0.0f;
+}
+
+static bool reversed(const vlWorldShape *s) {
+  const double *m = s->from_shape;
+  double det =
+      m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+  return s->flip != (det < 0);
+}
+
+static Sample sample_triangle(const vlWorldShape *s, uint32_t prim, float area, vlVec3 from, float u, float v) {
+  static const float unit[6] = {0, 0, 1, 0, 1, 1};
+  const uint32_t *f = s->indices + 3 * (size_t)prim;
+  vlVec3 p[3], ns = vl_vec3(0, 0, 0);
+  for (int k = 0; k < 3; k++)
+    p[k] =
+        vl_vec3(s->positions[3 * (size_t)f[k]], s->positions[3 * (size_t)f[k] + 1], s->positions[3 * (size_t)f[k] + 2]);
+  /* Low-distortion map of the square (Heitz 2019). */
+  float b0 = u < v ? u * 0.5f : u - v * 0.5f, b1 = u < v ? v - u * 0.5f : v * 0.5f;
+  float b[3] = {b0, b1, 1.0f - b0 - b1};
+  Sample r;
+  r.p = vl_add(vl_add(vl_mul(p[0], b[0]), vl_mul(p[1], b[1])), vl_mul(p[2], b[2]));
+  vlVec3 n = vl_normalize(vl_cross(vl_sub(p[1], p[0]), vl_sub(p[2], p[0])));
+  for (int k = 0; s->normals && k < 3; k++) {
+    const float *x = s->normals + 3 * (size_t)f[k];
+    ns = vl_add(ns, vl_mul(vl_vec3(x[0], x[1], x[2]), b[k]));
+  }
+  bool flip = vl_length2(ns) > 0.0f ? vl_dot(n, ns) < 0.0f : s->flip;
+  r.n = flip ? vl_neg(n) : n;
+  r.u = r.v = 0;
+  for (int k = 0; k < 3; k++) {
+    const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
+    r.u += b[k] * t[0], r.v += b[k] * t[1];
+  }
+  r.pdf = area > 0.0f ? solid_pdf(1.0f / area, from, r.p, n) : 0.0f;
+  return r;
+}
+
+static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec3 from, float u, float v) {
+  const vlWorldShape *s = &world->shapes.items[light->shape];
+  if (s->kind == VL_SHAPE_TRIANGLES) return sample_triangle(s, light->prim, light->area, from, u, v);
+  vlVec3 center;
+  float radius;
+  if (whole_sphere(s, &center, &radius)) {
+    vlVec3 to = vl_sub(center, from);
+    if (vl_length2(to) > radius * radius * 1.0001f) {
+      Sample r = sample_cone(center, radius, reversed(s), from, u, v);
+      if (world->emitted.items[light->emitted].image >= 0) { /* uv by way of the shape */
+        vlShapeHit hit = {0, 0, 0, {0, 0, 0}};
+        vlSurfacePoint point;
+        for (int i = 0; i < 3; i++)
+          hit.p[i] = s->to_shape[4 * i] * r.p.x + s->to_shape[4 * i + 1] * r.p.y + s->to_shape[4 * i + 2] * r.p.z +
+                     s->to_shape[4 * i + 3];
+        vl_shape_point(s, light->prim, &hit, &point);
+        r.u = point.uv[0], r.v = point.uv[1];
+      }
+      return r;
+    }
+  }
+  vlSurfacePoint point;
+  double pdf;
+  vl_shape_sample(s, light->prim, u, v, &point, &pdf);
+  Sample r;
+  r.p = vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]);
+  r.n = vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]);
+  r.u = point.uv[0], r.v = point.uv[1];
+  r.pdf = solid_pdf((float)pdf, from, r.p, r.n);
+  return r;
+}
+
+float VL_HOT(vl_area_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at) {
+  const vlWorldShape *s = &world->shapes.items[light->shape];
+  if (s->kind == VL_SHAPE_TRIANGLES)
+    return light->area > 0.0f ? solid_pdf(1.0f / light->area, from, at->p, at->g) : 0.0f;
+  vlVec3 center;
+  float radius;
+  if (whole_sphere(s, &center, &radius)) {
+    float d2 = vl_length2(vl_sub(center, from));
+    if (d2 > radius * radius * 1.0001f) return 1.0f / (2.0f * VL_PI * one_minus_cos_cone(radius * radius / d2));
+  }
+  vlSurfacePoint point;
+  point.p[0] = at->p.x, point.p[1] = at->p.y, point.p[2] = at->p.z;
+  return solid_pdf((float)vl_shape_pdf(s, light->prim, &point), from, at->p, at->g);
+}
+
+/* ---- one sample a lane
+ * ------------------------------------------------------------------------------------------------- */
+
+static float smooth_step(float x, float a, float b) {
+  if (a == b) return x < a ? 0.0f : 1.0f;
+  float t = vl_clamp((x - a) / (b - a), 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
+
+static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, vlVec3 p, vlVec3 n, float choice,
+                       float u, float v, vlLightSamples *out) {
+  out->pdf[i] = 0.0f;
+  out->wx[i] = out->wy[i] = out->wz[i] = 0.0f;
+  vlLightChoice chosen = vl_light_choose(&world->tree, p, n, choice);
+  if (chosen.light == VL_INNER || !(chosen.pmf > 0.0f)) return;
+  const vlWorldLight *light = &world->lights.items[chosen.light];
+  const vlEmitted *e = &world->emitted.items[light->emitted];
+  float lambda[4] = {paths->lambda[0][i], paths->lambda[1][i], paths->lambda[2][i], paths->lambda[3][i]}, radiance[4];
+  vlVec3 w, target;
+  float pdf = 0.0f;
+  out->delta[i] = 0;
+  out->distant[i] = 0;
+  switch (light->kind) {
+    case VL_WL_POINT:
+    case VL_WL_SPOT: {
+      target = vl_vec3(light->position[0], light->position[1], light->position[2]);
+      vlVec3 to = vl_sub(target, p);
+      float d2 = vl_length2(to);
+      w = vl_normalize(to);
+      float factor = d2 > 0.0f ? 1.0f / d2 : 0.0f;
+      if (light->kind == VL_WL_SPOT) {
+        float c = -vl_dot(w, vl_vec3(light->direction[0], light->direction[1], light->direction[2]));
+        factor *= smooth_step(c, light->cos_end, light->cos_start);
+      }
+      VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, false, radiance);
+      for (int c = 0; c < 4; c++) radiance[c] *= factor;
+      pdf = 1.0f;
+      out->delta[i] = 1;
+      break;
+    }
+    case VL_WL_DISTANT:
+      w = target = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
+      VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, false, radiance);
+      pdf = 1.0f;
+      out->delta[i] = 1;
+      out->distant[i] = 1;
+      break;
+    case VL_WL_INFINITE: {
+      out->distant[i] = 1;
+      if (light->environment == VL_NONE) {
+        float z = 1.0f - 2.0f * u, r = __builtin_sqrtf(vl_max(0.0f, 1.0f - z * z));
+        vlSinCos phi = vl_sincos_turn(v);
+        w = vl_vec3(r * phi.cos, r * phi.sin, z);
+        pdf = 0.25f * VL_INV_PI;
+        VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, true, radiance);
+      } else {
+        const vlEnvironment *env = &world->environments.items[light->environment];
+        float dx, dy;
+        uint32_t y = find_cell(env->marginal_cdf, env->size, v, &dy);
+        uint32_t x = find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
+        float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
+        w = vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
+        pdf = env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
+        VL_HOT(vl_emitted_at)(world, e, lambda, s, t, true, radiance);
+      }
+      target = w;
+      break;
+    }
+    default: {
+      Sample q = sample_area(world, light, p, u, v);
+      w = vl_normalize(vl_sub(q.p, p));
+      target = q.p;
+      pdf = q.pdf;
+      float facing = -vl_dot(w, q.n);
+      if (!(facing > 0.0f) && !(e->two_sided && facing < 0.0f)) pdf = 0.0f;
+      if (!(pdf > 0.0f)) return;
+      VL_HOT(vl_emitted_at)(world, e, lambda, q.u, 1.0f - q.v, false, radiance);
+      const vlWorldShape *shape = &world->shapes.items[light->shape];
+      if (shape->alpha >= 0) {
+        float at[3] = {q.p.x, q.p.y, q.p.z};
+        float cover = vl_clamp(vl_texture_float_at(world, shape->alpha, q.u, q.v, at), 0.0f, 1.0f);
+        for (int c = 0; c < 4; c++) radiance[c] *= cover;
+      }
+      /* The end of the shadow ray is moved off the light by the bound of the rounding error of its points. */
+      float size = vl_abs(q.p.x) + vl_abs(q.p.y) + vl_abs(q.p.z);
+      target = vl_offset_origin(q.p, facing < 0.0f ? vl_neg(q.n) : q.n, 16.0f * 0x1p-24f * size, vl_neg(w));
+      break;
+    }
+  }
+  if (!(pdf > 0.0f) || !(pdf < VL_INFINITY)) return;
+  float total = pdf * chosen.pmf, inv = 1.0f / total;
+  out->pdf[i] = total;
+  out->wx[i] = w.x, out->wy[i] = w.y, out->wz[i] = w.z;
+  out->tx[i] = target.x, out->ty[i] = target.y, out->tz[i] = target.z;
+  for (int c = 0; c < 4; c++) out->radiance[c][i] = radiance[c] * inv;
+}
+
+void VL_HOT(vl_stage_lights)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *f,
+                             const float *u_choice, const float *u, const float *v, vlLightSamples *out) {
+  for (uint32_t i = 0; i < n; i++)
+    sample_one(world, i, paths, vl_vec3(f->px[i], f->py[i], f->pz[i]), vl_vec3(f->nx[i], f->ny[i], f->nz[i]),
+               u_choice[i], u[i], v[i], out);
+}

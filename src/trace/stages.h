@@ -1,0 +1,169 @@
+/* trace/stages.h: the stages of a bounce and the arrays that run between them; private to the hot files of trace.
+ *
+ *   vlPaths (rays) -> ids -> sorted by material -> vlSurface -> vlShade (frame, wo, BSDF parameters)
+ *          -> light samples -> shadow rays -> radiance;  BSDF samples -> vlPaths of the next bounce
+ *
+ * Every array has VL_BATCH elements. Elements past n are stale but harmless (finite, indices valid). */
+#ifndef TRACE_STAGES_H
+#define TRACE_STAGES_H
+
+#include "color/kernels.h"
+#include "trace/bsdf.h"
+#include "trace/trace.h"
+
+#define VL_ROW __attribute__((aligned(64)))
+
+/* Paths under way: the ray, what it carries, and what the next hit needs for multiple importance sampling. */
+typedef struct vlPaths {
+  VL_ROW float ox[VL_BATCH], oy[VL_BATCH], oz[VL_BATCH];
+  VL_ROW float dx[VL_BATCH], dy[VL_BATCH], dz[VL_BATCH];
+  VL_ROW float beta[4][VL_BATCH];
+  VL_ROW float lambda[4][VL_BATCH];
+  VL_ROW float pdf[VL_BATCH]; /* of the direction, by the BSDF */
+  VL_ROW float from_nx[VL_BATCH], from_ny[VL_BATCH],
+      from_nz[VL_BATCH]; /* normal where the ray starts, for the light tree */
+  VL_ROW float eta_scale[VL_BATCH];
+  VL_ROW float cone[VL_BATCH];        /* width of the footprint at the ray's start */
+  VL_ROW uint32_t specular[VL_BATCH]; /* the ray came from the camera or a delta: no light sample competes */
+  VL_ROW int32_t px[VL_BATCH], py[VL_BATCH];
+  VL_ROW uint32_t index[VL_BATCH];
+  VL_ROW uint32_t lane[VL_BATCH]; /* which element of the batch */
+} vlPaths;
+
+typedef struct vlHits {
+  VL_ROW uint32_t shape[VL_BATCH], prim[VL_BATCH], instance[VL_BATCH], material[VL_BATCH];
+} vlHits;
+
+typedef struct vlSurface {
+  VL_ROW float px[VL_BATCH], py[VL_BATCH], pz[VL_BATCH];
+  VL_ROW float t[VL_BATCH];
+  VL_ROW float gx[VL_BATCH], gy[VL_BATCH], gz[VL_BATCH]; /* geometric normal, unit */
+  VL_ROW float nx[VL_BATCH], ny[VL_BATCH], nz[VL_BATCH]; /* shading normal, unit */
+  VL_ROW float ux[VL_BATCH], uy[VL_BATCH], uz[VL_BATCH]; /* dpdu */
+  VL_ROW float vx[VL_BATCH], vy[VL_BATCH], vz[VL_BATCH]; /* dpdv */
+  VL_ROW float u[VL_BATCH], v[VL_BATCH];
+  VL_ROW float
+      offset[VL_BATCH]; /* how far along the geometric normal a new ray must start to be clear of the surface */
+  VL_ROW float uv_scale[VL_BATCH]; /* uv per world length */
+  VL_ROW float width[VL_BATCH];    /* of the footprint, world units */
+} vlSurface;
+
+/* Corners of the triangles of a batch, gathered. */
+typedef struct vlCorners {
+  VL_ROW float p[9][VL_BATCH]; /* x y z of corner 0, 1, 2; world space */
+  VL_ROW float n[9][VL_BATCH]; /* vertex normals, zero without */
+  VL_ROW float uv[6][VL_BATCH];
+  VL_ROW float error[VL_BATCH]; /* bound of the rounding error that instancing put on the corners */
+  VL_ROW float flip[VL_BATCH];  /* 1 or -1 */
+} vlCorners;
+
+typedef struct vlShade {
+  VL_ROW float tx[VL_BATCH], ty[VL_BATCH], tz[VL_BATCH]; /* frame: tangent; bitangent = n x t */
+  VL_ROW float bx[VL_BATCH], by[VL_BATCH], bz[VL_BATCH];
+  VL_ROW float wo[3][VL_BATCH]; /* local */
+  VL_ROW float wi[3][VL_BATCH]; /* local: of the light, then of the BSDF sample */
+  VL_ROW float reflectance[4][VL_BATCH], eta[4][VL_BATCH], k[4][VL_BATCH];
+  VL_ROW float alpha_x[VL_BATCH], alpha_y[VL_BATCH], eta_s[VL_BATCH];
+  const vlCoatTable *coat[VL_BATCH];
+  VL_ROW float value[4][VL_BATCH], pdf[VL_BATCH], eta_scale[VL_BATCH];
+  VL_ROW uint32_t flags[VL_BATCH];
+  VL_ROW float u0[VL_BATCH], u1[VL_BATCH], u2[VL_BATCH];
+} vlShade;
+
+typedef struct vlLightSamples {
+  VL_ROW float wx[VL_BATCH], wy[VL_BATCH], wz[VL_BATCH]; /* towards the light, unit */
+  VL_ROW float tx[VL_BATCH], ty[VL_BATCH], tz[VL_BATCH]; /* point that must be visible */
+  VL_ROW float radiance[4][VL_BATCH];                    /* already divided by the pdf */
+  VL_ROW float pdf[VL_BATCH];                            /* solid angle, choice included; 0: no sample */
+  VL_ROW uint32_t delta[VL_BATCH];                       /* a BSDF sample could not find it */
+  VL_ROW uint32_t distant[VL_BATCH];                     /* the target is infinitely far: t holds the direction */
+} vlLightSamples;
+
+typedef struct vlShadowRays {
+  VL_ROW float ox[VL_BATCH], oy[VL_BATCH], oz[VL_BATCH], dx[VL_BATCH], dy[VL_BATCH], dz[VL_BATCH], t_max[VL_BATCH];
+  VL_ROW float radiance[4][VL_BATCH];
+  VL_ROW uint32_t lane[VL_BATCH];
+  uint8_t occluded[VL_BATCH];
+} vlShadowRays;
+
+enum { VL_TEXTURE_ROWS = 64 };
+
+struct vlTraceScratch {
+  vlPaths a, b;
+  vlHits hits_a, hits_b;
+  vlSurface surface;
+  vlCorners corners;
+  vlShade shade;
+  vlLightSamples light;
+  vlShadowRays shadow;
+  VL_ROW float rows[VL_TEXTURE_ROWS][VL_BATCH]; /* a stack for nested textures */
+  VL_ROW uint32_t order[VL_BATCH];
+  VL_ROW uint32_t slot[VL_BATCH]; /* shading lanes of one material, ... */
+};
+
+#ifdef VL_ISA_SUFFIX
+/* ---- stages
+ * ----------------------------------------------------------------------------------------------------------- */
+
+/* The surfaces that paths->o, d meet, from ids alone. */
+void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits,
+                              vlCorners *corners, vlSurface *surface, const vlTraceDef *def);
+/* Textures, bump and normal maps, frames, wo, parameters; runs: lanes [first, last) of one material. */
+void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material,
+                               vlTraceScratch *s);
+void VL_HOT(vl_stage_frames)(uint32_t n, const vlPaths *paths, const vlSurface *surface, vlShade *shade);
+/* One light sample for each lane. */
+void VL_HOT(vl_stage_lights)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *surface,
+                             const float *u_choice, const float *u, const float *v, vlLightSamples *light);
+
+/* One surface point in scalar, for the few lanes that need it alone (hit lights, mixed materials). */
+typedef struct vlPoint {
+  vlVec3 p, g, n; /* geometric, shading normal */
+  float u, v, t, offset;
+} vlPoint;
+vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim, uint32_t instance);
+
+/* Emitted radiance at 4 channels: of a light's colour (image: at s, t of its picture). */
+void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *emitted, const float lambda[4], float s, float t,
+                           bool sky, float out[4]);
+/* Radiance of a light that a ray in direction d misses everything to see; and the density of sampling it. */
+void VL_HOT(vl_infinite_at)(const vlWorld *world, const vlWorldLight *light, vlVec3 d, const float lambda[4],
+                            float out[4]);
+float VL_HOT(vl_infinite_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 d);
+/* Density, per solid angle from `from`, of sampling this point of an area light (choice not included). */
+float VL_HOT(vl_area_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at);
+
+#endif
+
+/* ---- small common pieces
+ * -------------------------------------------------------------------------------------------------- */
+
+static inline vlSpectral vl_no_spectral(void) {
+  vlSpectral s = {VL_SPECTRAL_CONSTANT, 0, {0, 0, 0}, 0, {0, 0, 0}};
+  return s;
+}
+
+static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambda) {
+  switch (s->kind) {
+    case VL_SPECTRAL_SIGMOID: return s->scale * vl_sigmoid(s->sigmoid, lambda);
+    case VL_SPECTRAL_DENSE: return s->scale * vl_dense_at(s->dense, lambda);
+    case VL_SPECTRAL_RGB: return channel < 3 ? s->scale * s->rgb[channel] : 0.0f;
+    default: return s->scale;
+  }
+}
+
+/* One float further from zero side given by d's sign: x rounded towards +inf (d > 0) or -inf (d < 0). */
+static inline float vl_nudge(float x, float d) {
+  int32_t i = (int32_t)vl_float_bits(x);
+  int32_t step = (d > 0.0f) == (i >= 0) ? 1 : -1;
+  int32_t j = x == 0.0f ? (int32_t)(d > 0.0f ? 1u : 0x80000001u) : i + step;
+  return d != 0.0f ? vl_bits_float((uint32_t)j) : x;
+}
+/* Start of a ray from p that leaves to the side of w (pbrt book 6.8.6). */
+static inline vlVec3 vl_offset_origin(vlVec3 p, vlVec3 g, float offset, vlVec3 w) {
+  float side = vl_dot(w, g) < 0.0f ? -offset : offset;
+  vlVec3 d = vl_mul(g, side);
+  return vl_vec3(vl_nudge(p.x + d.x, d.x), vl_nudge(p.y + d.y, d.y), vl_nudge(p.z + d.z, d.z));
+}
+
+#endif

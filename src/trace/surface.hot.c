@@ -1,0 +1,277 @@
+/* trace/surface.hot.c: from ids to surface points, in our own arithmetic (Embree's t, u, v differ between its
+ * instruction sets). Triangles: gather the corners, then one vector loop. Other shapes: world/surface_point.c, one by
+ * one. */
+#include "math/transform.h"
+#include "trace/stages.h"
+#include "world/surface_point.h"
+
+/* gamma_n = n eps / (1 - n eps), the bound of n roundings (pbrt book 6.8.1). */
+#define GAMMA(n) ((n)*0x1p-24f / (1.0f - (n)*0x1p-24f))
+
+typedef struct Corner {
+  vlVec3 p;
+  float error;
+} Corner;
+
+static inline Corner move_corner(const float m[12], const float *x) {
+  vlVec3 p = vl_vec3(m[0] * x[0] + m[1] * x[1] + m[2] * x[2] + m[3], m[4] * x[0] + m[5] * x[1] + m[6] * x[2] + m[7],
+                     m[8] * x[0] + m[9] * x[1] + m[10] * x[2] + m[11]);
+  float e = 0;
+  for (int i = 0; i < 3; i++) {
+    float sum =
+        vl_abs(m[4 * i] * x[0]) + vl_abs(m[4 * i + 1] * x[1]) + vl_abs(m[4 * i + 2] * x[2]) + vl_abs(m[4 * i + 3]);
+    e = sum > e ? sum : e;
+  }
+  return (Corner){p, e * GAMMA(4)};
+}
+/* Normals by the inverse transpose: rows of to_group are columns here. */
+static inline vlVec3 move_normal(const float inverse[12], const float *n) {
+  return vl_vec3(inverse[0] * n[0] + inverse[4] * n[1] + inverse[8] * n[2],
+                 inverse[1] * n[0] + inverse[5] * n[1] + inverse[9] * n[2],
+                 inverse[2] * n[0] + inverse[6] * n[1] + inverse[10] * n[2]);
+}
+
+static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uint32_t i, vlCorners *c) {
+  const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+  const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
+  uint32_t instance = hits->instance[i];
+  static const float unit[6] = {0, 0, 1, 0, 1, 1};
+  c->error[i] = 0;
+  c->flip[i] = s->flip ? -1.0f : 1.0f;
+  for (int k = 0; k < 3; k++) {
+    const float *x = s->positions + 3 * (size_t)f[k];
+    const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
+    for (int j = 0; j < 3; j++) c->p[3 * k + j][i] = x[j];
+    c->uv[2 * k][i] = t[0];
+    c->uv[2 * k + 1][i] = t[1];
+    for (int j = 0; j < 3; j++) c->n[3 * k + j][i] = s->normals ? s->normals[3 * (size_t)f[k] + j] : 0.0f;
+  }
+  if (instance == VL_NONE) return;
+  const vlWorldInstance *q = &world->instances.items[instance];
+  c->flip[i] = s->flip != q->mirrored ? -1.0f : 1.0f;
+  for (int k = 0; k < 3; k++) {
+    Corner moved = move_corner(q->from_group, s->positions + 3 * (size_t)f[k]);
+    c->p[3 * k][i] = moved.p.x, c->p[3 * k + 1][i] = moved.p.y, c->p[3 * k + 2][i] = moved.p.z;
+    c->error[i] = moved.error > c->error[i] ? moved.error : c->error[i];
+    if (s->normals) {
+      vlVec3 n = move_normal(q->to_group, s->normals + 3 * (size_t)f[k]);
+      c->n[3 * k][i] = n.x, c->n[3 * k + 1][i] = n.y, c->n[3 * k + 2][i] = n.z;
+    }
+  }
+}
+
+typedef struct Triangle {
+  vlVec3 p, g, n, u, v;
+  float s, t, dist, offset, uv_scale;
+} Triangle;
+
+/* The point of a triangle that a ray meets. Barycentric coordinates are ratios of volumes spanned with the ray
+ * (signs as in Woop et al. 2013); what falls outside by rounding is put on the edge. */
+static inline Triangle triangle_point(vlVec3 o, vlVec3 d, vlVec3 p0, vlVec3 p1, vlVec3 p2, vlVec3 n0, vlVec3 n1,
+                                      vlVec3 n2, const float uv[6], float corner_error, float flip) {
+  vlVec3 a = vl_sub(p0, o), b = vl_sub(p1, o), c = vl_sub(p2, o);
+  float b0 = vl_dot(d, vl_cross(b, c)), b1 = vl_dot(d, vl_cross(c, a)), b2 = vl_dot(d, vl_cross(a, b));
+  float sum = b0 + b1 + b2;
+  float sign = sum < 0.0f ? -1.0f : 1.0f;
+  b0 = vl_max(b0 * sign, 0.0f), b1 = vl_max(b1 * sign, 0.0f), b2 = vl_max(b2 * sign, 0.0f);
+  sum = b0 + b1 + b2;
+  float inv = sum > 0.0f ? 1.0f / sum : 0.0f;
+  b0 = sum > 0.0f ? b0 * inv : 1.0f, b1 = b1 * inv, b2 = b2 * inv;
+  Triangle r;
+  r.p = vl_add(vl_add(vl_mul(p0, b0), vl_mul(p1, b1)), vl_mul(p2, b2));
+  float ex = vl_abs(b0 * p0.x) + vl_abs(b1 * p1.x) + vl_abs(b2 * p2.x);
+  float ey = vl_abs(b0 * p0.y) + vl_abs(b1 * p1.y) + vl_abs(b2 * p2.y);
+  float ez = vl_abs(b0 * p0.z) + vl_abs(b1 * p1.z) + vl_abs(b2 * p2.z);
+  vlVec3 e02 = vl_sub(p0, p2), e12 = vl_sub(p1, p2);
+  vlVec3 cross = vl_cross(e02, e12);
+  vlVec3 g = vl_normalize(cross);
+  /* pbrt's bound of the point's error, projected on the normal, twice: Embree rounds too. */
+  r.offset = 2.0f * (GAMMA(7) * (vl_abs(g.x) * ex + vl_abs(g.y) * ey + vl_abs(g.z) * ez) +
+                     corner_error * (vl_abs(g.x) + vl_abs(g.y) + vl_abs(g.z)));
+  r.dist = vl_dot(vl_sub(r.p, o), d);
+  vlVec3 ns = vl_add(vl_add(vl_mul(n0, b0), vl_mul(n1, b1)), vl_mul(n2, b2));
+  float has_n = vl_length2(ns) > 0.0f ? 1.0f : 0.0f;
+  ns = vl_normalize(ns);
+  /* With vertex normals the geometric one goes to their side; without, the face order and flip decide. */
+  float side = has_n > 0.0f ? (vl_dot(g, ns) < 0.0f ? -1.0f : 1.0f) : flip;
+  r.g = vl_mul(g, side);
+  r.n = has_n > 0.0f ? ns : r.g;
+  r.s = b0 * uv[0] + b1 * uv[2] + b2 * uv[4];
+  r.t = b0 * uv[1] + b1 * uv[3] + b2 * uv[5];
+  float u02 = uv[0] - uv[4], v02 = uv[1] - uv[5], u12 = uv[2] - uv[4], v12 = uv[3] - uv[5];
+  float det = u02 * v12 - v02 * u12;
+  float area2 = vl_length(cross);
+  float inv_det = vl_abs(det) > 1e-30f ? 1.0f / det : 0.0f;
+  vlVec3 du = vl_mul(vl_sub(vl_mul(e02, v12), vl_mul(e12, v02)), inv_det);
+  vlVec3 dv = vl_mul(vl_sub(vl_mul(e12, u02), vl_mul(e02, u12)), inv_det);
+  vlFrame frame = vl_frame_from_z(r.n);
+  float ok = vl_length2(du) > 0.0f ? 1.0f : 0.0f;
+  r.u = ok > 0.0f ? du : frame.x;
+  r.v = ok > 0.0f ? dv : frame.y;
+  r.uv_scale = area2 > 0.0f ? __builtin_sqrtf(vl_abs(det) / area2) : 0.0f;
+  return r;
+}
+
+static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, vlVec3 o, vlVec3 d) {
+  out->px[i] = (float)q->p[0], out->py[i] = (float)q->p[1], out->pz[i] = (float)q->p[2];
+  out->gx[i] = (float)q->n[0], out->gy[i] = (float)q->n[1], out->gz[i] = (float)q->n[2];
+  out->nx[i] = (float)q->ns[0], out->ny[i] = (float)q->ns[1], out->nz[i] = (float)q->ns[2];
+  out->ux[i] = (float)q->dpdu[0], out->uy[i] = (float)q->dpdu[1], out->uz[i] = (float)q->dpdu[2];
+  vlVec3 v = vl_cross(vl_vec3(out->nx[i], out->ny[i], out->nz[i]), vl_vec3(out->ux[i], out->uy[i], out->uz[i]));
+  out->vx[i] = v.x, out->vy[i] = v.y, out->vz[i] = v.z;
+  out->u[i] = q->uv[0], out->v[i] = q->uv[1];
+  vlVec3 p = vl_vec3(out->px[i], out->py[i], out->pz[i]);
+  out->t[i] = vl_dot(vl_sub(p, o), d);
+  out->offset[i] = 2.0f * GAMMA(7) * (vl_abs(out->gx[i] * p.x) + vl_abs(out->gy[i] * p.y) + vl_abs(out->gz[i] * p.z));
+  float l = vl_length(vl_vec3(out->ux[i], out->uy[i], out->uz[i]));
+  out->uv_scale[i] = l > 0.0f ? 1.0f / l : 0.0f;
+}
+
+/* A sphere, disk, cylinder or patch: meet it again in group space, bring the point to the world. */
+static vlSurfacePoint other_point(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
+                                  uint32_t instance) {
+  const vlWorldShape *s = &world->shapes.items[shape];
+  double go[3] = {o.x, o.y, o.z}, gd[3] = {d.x, d.y, d.z};
+  const vlWorldInstance *q = instance == VL_NONE ? NULL : &world->instances.items[instance];
+  if (q) {
+    const float *m = q->to_group;
+    for (int i = 0; i < 3; i++) {
+      go[i] = (double)m[4 * i] * o.x + (double)m[4 * i + 1] * o.y + (double)m[4 * i + 2] * o.z + m[4 * i + 3];
+      gd[i] = (double)m[4 * i] * d.x + (double)m[4 * i + 1] * d.y + (double)m[4 * i + 2] * d.z;
+    }
+  }
+  vlShapeHit hit;
+  vlSurfacePoint point;
+  if (!vl_shape_intersect(s, prim, go, gd, 0, (double)VL_INFINITY, &hit)) {
+    /* Embree saw it through a float more or less: take the parameters' middle, the point on the ray's own line is lost.
+     */
+    double pdf;
+    vl_shape_sample(s, prim, 0.5f, 0.5f, &point, &pdf);
+  } else {
+    vl_shape_point(s, prim, &hit, &point);
+  }
+  if (!q) return point;
+  const float *m = q->from_group, *w = q->to_group;
+  vlSurfacePoint r = point;
+  for (int i = 0; i < 3; i++) {
+    r.p[i] = (double)m[4 * i] * point.p[0] + (double)m[4 * i + 1] * point.p[1] + (double)m[4 * i + 2] * point.p[2] +
+             m[4 * i + 3];
+    r.dpdu[i] =
+        (double)m[4 * i] * point.dpdu[0] + (double)m[4 * i + 1] * point.dpdu[1] + (double)m[4 * i + 2] * point.dpdu[2];
+    r.n[i] = (double)w[i] * point.n[0] + (double)w[4 + i] * point.n[1] + (double)w[8 + i] * point.n[2];
+    r.ns[i] = (double)w[i] * point.ns[0] + (double)w[4 + i] * point.ns[1] + (double)w[8 + i] * point.ns[2];
+  }
+  double ln = __builtin_sqrt(r.n[0] * r.n[0] + r.n[1] * r.n[1] + r.n[2] * r.n[2]);
+  double ls = __builtin_sqrt(r.ns[0] * r.ns[0] + r.ns[1] * r.ns[1] + r.ns[2] * r.ns[2]);
+  for (int i = 0; i < 3; i++) r.n[i] /= ln > 0 ? ln : 1, r.ns[i] /= ls > 0 ? ls : 1;
+  return r;
+}
+
+/* Vertex tangents (pbrt's S), interpolated. */
+static void apply_tangents(const vlWorld *world, const vlHits *hits, uint32_t i, const vlCorners *c, vlSurface *out) {
+  const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+  const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
+  vlVec3 p = vl_vec3(out->px[i], out->py[i], out->pz[i]), k[3];
+  for (int j = 0; j < 3; j++) k[j] = vl_vec3(c->p[3 * j][i], c->p[3 * j + 1][i], c->p[3 * j + 2][i]);
+  vlVec3 g = vl_cross(vl_sub(k[1], k[0]), vl_sub(k[2], k[0]));
+  float total = vl_length2(g);
+  if (!(total > 0.0f)) return;
+  float b1 = vl_dot(vl_cross(vl_sub(p, k[0]), vl_sub(k[2], k[0])), g) / total;
+  float b2 = vl_dot(vl_cross(vl_sub(k[1], k[0]), vl_sub(p, k[0])), g) / total;
+  float w[3] = {1.0f - b1 - b2, b1, b2};
+  vlVec3 t = vl_vec3(0, 0, 0);
+  for (int j = 0; j < 3; j++) {
+    const float *x = s->tangents + 3 * (size_t)f[j];
+    t = vl_add(t, vl_mul(vl_vec3(x[0], x[1], x[2]), w[j]));
+  }
+  if (hits->instance[i] != VL_NONE) {
+    const float *m = world->instances.items[hits->instance[i]].from_group;
+    t = vl_vec3(m[0] * t.x + m[1] * t.y + m[2] * t.z, m[4] * t.x + m[5] * t.y + m[6] * t.z,
+                m[8] * t.x + m[9] * t.y + m[10] * t.z);
+  }
+  if (!(vl_length2(t) > 0.0f)) return;
+  vlVec3 v = vl_cross(vl_vec3(out->nx[i], out->ny[i], out->nz[i]), t);
+  out->ux[i] = t.x, out->uy[i] = t.y, out->uz[i] = t.z;
+  out->vx[i] = v.x, out->vy[i] = v.y, out->vz[i] = v.z;
+}
+
+void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits, vlCorners *c,
+                              vlSurface *out, const vlTraceDef *def) {
+  bool others = false;
+  for (uint32_t i = 0; i < n; i++) {
+    const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+    if (s->kind == VL_SHAPE_TRIANGLES) gather_triangle(world, hits, i, c);
+    others = others || s->kind != VL_SHAPE_TRIANGLES || s->tangents;
+  }
+  uint32_t padded = VL_PAD(n);
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]), d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
+    float uv[6] = {c->uv[0][i], c->uv[1][i], c->uv[2][i], c->uv[3][i], c->uv[4][i], c->uv[5][i]};
+    Triangle r =
+        triangle_point(o, d, vl_vec3(c->p[0][i], c->p[1][i], c->p[2][i]), vl_vec3(c->p[3][i], c->p[4][i], c->p[5][i]),
+                       vl_vec3(c->p[6][i], c->p[7][i], c->p[8][i]), vl_vec3(c->n[0][i], c->n[1][i], c->n[2][i]),
+                       vl_vec3(c->n[3][i], c->n[4][i], c->n[5][i]), vl_vec3(c->n[6][i], c->n[7][i], c->n[8][i]), uv,
+                       c->error[i], c->flip[i]);
+    out->px[i] = r.p.x, out->py[i] = r.p.y, out->pz[i] = r.p.z;
+    out->gx[i] = r.g.x, out->gy[i] = r.g.y, out->gz[i] = r.g.z;
+    out->nx[i] = r.n.x, out->ny[i] = r.n.y, out->nz[i] = r.n.z;
+    out->ux[i] = r.u.x, out->uy[i] = r.u.y, out->uz[i] = r.u.z;
+    out->vx[i] = r.v.x, out->vy[i] = r.v.y, out->vz[i] = r.v.z;
+    out->u[i] = r.s, out->v[i] = r.t;
+    out->t[i] = r.dist;
+    out->offset[i] = r.offset;
+    out->uv_scale[i] = r.uv_scale;
+  }
+  for (uint32_t i = 0; others && i < n; i++) {
+    const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+    vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]), d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
+    if (s->kind != VL_SHAPE_TRIANGLES) {
+      vlSurfacePoint q = other_point(world, o, d, hits->shape[i], hits->prim[i], hits->instance[i]);
+      store_point(out, i, &q, o, d);
+    } else if (s->tangents) {
+      apply_tangents(world, hits, i, c, out);
+    }
+  }
+  for (uint32_t i = 0; i < padded; i++) out->width[i] = paths->cone[i] + def->pixel_spread * out->t[i];
+}
+
+vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
+                            uint32_t instance) {
+  const vlWorldShape *s = &world->shapes.items[shape];
+  vlPoint r;
+  if (s->kind == VL_SHAPE_TRIANGLES) {
+    static const float unit[6] = {0, 0, 1, 0, 1, 1};
+    const uint32_t *f = s->indices + 3 * (size_t)prim;
+    const vlWorldInstance *q = instance == VL_NONE ? NULL : &world->instances.items[instance];
+    vlVec3 p[3], nn[3];
+    float uv[6], error = 0;
+    for (int k = 0; k < 3; k++) {
+      const float *x = s->positions + 3 * (size_t)f[k];
+      p[k] = vl_vec3(x[0], x[1], x[2]);
+      nn[k] = vl_vec3(0, 0, 0);
+      if (q) {
+        Corner moved = move_corner(q->from_group, x);
+        p[k] = moved.p;
+        error = vl_max(error, moved.error);
+      }
+      if (s->normals) {
+        const float *y = s->normals + 3 * (size_t)f[k];
+        nn[k] = q ? move_normal(q->to_group, y) : vl_vec3(y[0], y[1], y[2]);
+      }
+      for (int j = 0; j < 2; j++) uv[2 * k + j] = s->uvs ? s->uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
+    }
+    Triangle t = triangle_point(o, d, p[0], p[1], p[2], nn[0], nn[1], nn[2], uv, error,
+                                s->flip != (q && q->mirrored) ? -1.0f : 1.0f);
+    return (vlPoint){t.p, t.g, t.n, t.s, t.t, t.dist, t.offset};
+  }
+  vlSurfacePoint q = other_point(world, o, d, shape, prim, instance);
+  r.p = vl_vec3((float)q.p[0], (float)q.p[1], (float)q.p[2]);
+  r.g = vl_vec3((float)q.n[0], (float)q.n[1], (float)q.n[2]);
+  r.n = vl_vec3((float)q.ns[0], (float)q.ns[1], (float)q.ns[2]);
+  r.u = q.uv[0], r.v = q.uv[1];
+  r.t = vl_dot(vl_sub(r.p, o), d);
+  r.offset = 2.0f * GAMMA(7) * (vl_abs(r.g.x * r.p.x) + vl_abs(r.g.y * r.p.y) + vl_abs(r.g.z * r.p.z));
+  return r;
+}

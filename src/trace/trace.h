@@ -1,0 +1,62 @@
+/* trace/trace.h: rays in, radiance out, a batch at a time. Knows neither camera nor film.
+ *
+ * A batch is at most VL_BATCH paths; all working memory is one vlTraceScratch per worker (some 800 KB, inside L2), so
+ * nothing is allocated while rendering. Paths are independent of each other: the same path gives the same bits in any
+ * batch. */
+#ifndef TRACE_TRACE_H
+#define TRACE_TRACE_H
+
+#include "base/isa.h"
+#include "trace/sampler.h"
+#include "world/world.h"
+
+enum { VL_BATCH = 1024 };
+
+/* Dimensions of the sampler: the render loop uses those before VL_DIM_BOUNCE, bounce b starts at
+ * VL_DIM_BOUNCE + b * VL_DIM_STRIDE. */
+enum {
+  VL_DIM_FILM = 0,       /* 2 */
+  VL_DIM_WAVELENGTH = 2, /* 1 */
+  VL_DIM_TIME = 3,       /* 1 */
+  VL_DIM_LENS = 4,       /* 2 */
+  VL_DIM_BOUNCE = 6,
+  VL_DIM_LIGHT = 0,    /* 1: which */
+  VL_DIM_LIGHT_UV = 1, /* 2: where */
+  VL_DIM_LOBE = 3,     /* 1 */
+  VL_DIM_BSDF_UV = 4,  /* 2 */
+  VL_DIM_ROULETTE = 6, /* 1 */
+  VL_DIM_STRIDE = 8
+};
+
+typedef struct vlTraceDef {
+  vlTracer tracer;
+  const vlSampler *sampler;
+  vlIsa isa;
+  uint32_t max_depth;
+  float ao_distance;
+  bool ao_cosine;
+  float pixel_spread, pixel_width; /* footprint of a camera ray: width + spread * t */
+} vlTraceDef;
+
+/* Rays of the camera, world space, d of unit length, and what comes back. Arrays of VL_PAD(n), n <= VL_BATCH. */
+typedef struct vlTraceBatch {
+  uint32_t n;
+  const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;
+  const int32_t *px, *py;
+  const uint32_t *index;
+  float *lambda[4];                  /* spectral: wavelengths; RGB mode: ignored */
+  float *radiance[4];                /* out; spectral: per wavelength; RGB mode: r, g, b, 0 */
+  float *alpha;                      /* out: 1 where the ray meets a surface */
+  uint64_t bounce_rays, shadow_rays; /* added to */
+} vlTraceBatch;
+
+typedef struct vlTraceScratch vlTraceScratch;
+size_t vl_trace_scratch_size(void); /* allocate 64-byte aligned, zeroed */
+
+typedef struct vlTraceKernels {
+  void (*trace)(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTraceBatch *batch);
+} vlTraceKernels;
+extern const vlTraceKernels vl_trace_kernels_v2, vl_trace_kernels_v3, vl_trace_kernels_v4;
+const vlTraceKernels *vl_trace_kernels(vlIsa isa);
+
+#endif

@@ -1,0 +1,369 @@
+/* world/accel.c: the one file that knows Embree (3.13 or 4). Triangles are Embree's; other shapes are user geometry
+ * intersected by surface_point.c. Alpha and interface surfaces are decided in filters, by a hash of ray and primitive,
+ * so that the order of traversal does not matter. */
+#include "world/accel.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "math/hash.h"
+#include "world/surface_point.h"
+#include "world/world.h"
+
+#if VELO_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+/* Embree's accessors of packets of any size are C++ only; this is the layout that its manual gives: row k of N values.
+ */
+enum { ORG = 0, TNEAR = 3, DIR = 4, TFAR = 8, PRIM = 5, GEOM = 6, INST = 7, HIT = 12 };
+static inline float *ray_row(void *ray, unsigned n, int row, unsigned i) {
+  return (float *)ray + (size_t)row * n + i;
+}
+static inline unsigned *hit_row(void *hit, unsigned n, int row, unsigned i) {
+  return (unsigned *)hit + (size_t)row * n + i;
+}
+static inline void load_ray(void *ray, unsigned n, unsigned i, float o[3], float d[3]) {
+  for (int k = 0; k < 3; k++) {
+    o[k] = *ray_row(ray, n, ORG + k, i);
+    d[k] = *ray_row(ray, n, DIR + k, i);
+  }
+}
+
+typedef struct AccelGeometry {
+  const vlWorld *world;
+  const vlWorldShape *shape;
+} AccelGeometry;
+
+unsigned vl_accel_enter(void) {
+#if defined(__SSE__)
+  unsigned state = _mm_getcsr();
+  _mm_setcsr(state | 0x8040u); /* flush to zero, denormals are zero */
+  return state;
+#else
+  return 0;
+#endif
+}
+
+void vl_accel_leave(unsigned state) {
+#if defined(__SSE__)
+  _mm_setcsr(state);
+#else
+  (void)state;
+#endif
+}
+
+/* ---- alpha
+ * ------------------------------------------------------------------------------------------------------------ */
+
+static float ray_hash(const float o[3], const float d[3], uint32_t shape, uint32_t prim) {
+  uint32_t h = vl_hash2(shape, prim);
+  for (int i = 0; i < 3; i++) h = vl_hash2(h, vl_float_bits(o[i])), h = vl_hash2(h, vl_float_bits(d[i]));
+  return vl_unit_float(h);
+}
+
+static bool alpha_passes(const AccelGeometry *g, const float o[3], const float d[3], uint32_t prim, float u, float v,
+                         const float p[3]) {
+  float alpha = vl_texture_float_at(g->world, g->shape->alpha, u, v, p);
+  return ray_hash(o, d, (uint32_t)(g->shape - g->world->shapes.items), prim) >= alpha;
+}
+
+/* uv and position where the ray meets triangle prim, in our own arithmetic. */
+static void triangle_uv(const vlWorldShape *s, uint32_t prim, const float o[3], const float d[3], float uv[2],
+                        float p[3]) {
+  const uint32_t *f = s->indices + 3 * (size_t)prim;
+  vlVec3 ray_o = vl_vec3(o[0], o[1], o[2]), ray_d = vl_vec3(d[0], d[1], d[2]), c[3];
+  for (int k = 0; k < 3; k++) {
+    const float *x = s->positions + 3 * (size_t)f[k];
+    c[k] = vl_sub(vl_vec3(x[0], x[1], x[2]), ray_o);
+  }
+  float b0 = vl_dot(ray_d, vl_cross(c[1], c[2])), b1 = vl_dot(ray_d, vl_cross(c[2], c[0])),
+        b2 = vl_dot(ray_d, vl_cross(c[0], c[1]));
+  float sum = b0 + b1 + b2, inv = sum != 0 ? 1 / sum : 0;
+  b0 *= inv, b1 *= inv, b2 *= inv;
+  static const float unit[6] = {0, 0, 1, 0, 1, 1};
+  float b[3] = {b0, b1, b2};
+  uv[0] = uv[1] = 0;
+  for (int k = 0; k < 3; k++) {
+    const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
+    uv[0] += b[k] * t[0];
+    uv[1] += b[k] * t[1];
+  }
+  for (int i = 0; i < 3; i++)
+    p[i] = b0 * s->positions[3 * (size_t)f[0] + i] + b1 * s->positions[3 * (size_t)f[1] + i] +
+           b2 * s->positions[3 * (size_t)f[2] + i];
+}
+
+static bool filter_rejects(const AccelGeometry *g, const struct RTCFilterFunctionNArguments *args, unsigned i,
+                           bool shadow) {
+  if (shadow && g->shape->pass_shadow) return true;
+  if (g->shape->alpha < 0) return false;
+  float o[3], d[3], uv[2], p[3];
+  load_ray(args->ray, args->N, i, o, d);
+  uint32_t prim = *hit_row(args->hit, args->N, PRIM, i);
+  triangle_uv(g->shape, prim, o, d, uv, p);
+  return alpha_passes(g, o, d, prim, uv[0], uv[1], p);
+}
+
+static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
+  for (unsigned i = 0; i < args->N; i++)
+    if (args->valid[i] == -1 && filter_rejects(args->geometryUserPtr, args, i, false)) args->valid[i] = 0;
+}
+
+static void filter_occluded(const struct RTCFilterFunctionNArguments *args) {
+  for (unsigned i = 0; i < args->N; i++)
+    if (args->valid[i] == -1 && filter_rejects(args->geometryUserPtr, args, i, true)) args->valid[i] = 0;
+}
+
+/* ---- user geometry
+ * ------------------------------------------------------------------------------------------------------ */
+
+static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
+  const AccelGeometry *g = args->geometryUserPtr;
+  float low[3], high[3];
+  vl_world_prim_bounds(g->shape, args->primID, low, high);
+  args->bounds_o->lower_x = low[0], args->bounds_o->lower_y = low[1], args->bounds_o->lower_z = low[2];
+  args->bounds_o->upper_x = high[0], args->bounds_o->upper_y = high[1], args->bounds_o->upper_z = high[2];
+}
+
+static bool user_hit(const AccelGeometry *g, void *ray, unsigned n, unsigned i, uint32_t prim, double *t) {
+  float of[3], df[3];
+  load_ray(ray, n, i, of, df);
+  double o[3] = {of[0], of[1], of[2]}, d[3] = {df[0], df[1], df[2]};
+  double t_min = *ray_row(ray, n, TNEAR, i), t_max = *ray_row(ray, n, TFAR, i);
+  vlShapeHit hit;
+  while (vl_shape_intersect(g->shape, prim, o, d, t_min, t_max, &hit)) {
+    if (g->shape->alpha >= 0) {
+      vlSurfacePoint point;
+      vl_shape_point(g->shape, prim, &hit, &point);
+      float p[3] = {(float)point.p[0], (float)point.p[1], (float)point.p[2]};
+      if (alpha_passes(g, of, df, prim, point.uv[0], point.uv[1], p)) {
+        t_min = hit.t * (1 + 1e-12);
+        continue;
+      }
+    }
+    *t = hit.t;
+    return true;
+  }
+  return false;
+}
+
+static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
+  const AccelGeometry *g = args->geometryUserPtr;
+  void *ray = args->rayhit, *hit = ray_row(ray, args->N, HIT, 0);
+  for (unsigned i = 0; i < args->N; i++) {
+    double t;
+    if (args->valid[i] != -1 || !user_hit(g, ray, args->N, i, args->primID, &t)) continue;
+    *ray_row(ray, args->N, TFAR, i) = (float)t;
+    *hit_row(hit, args->N, GEOM, i) = args->geomID;
+    *hit_row(hit, args->N, PRIM, i) = args->primID;
+    *hit_row(hit, args->N, INST, i) = args->context->instID[0];
+  }
+}
+
+static void user_occluded(const struct RTCOccludedFunctionNArguments *args) {
+  const AccelGeometry *g = args->geometryUserPtr;
+  if (g->shape->pass_shadow) return;
+  for (unsigned i = 0; i < args->N; i++) {
+    double t;
+    if (args->valid[i] == -1 && user_hit(g, args->ray, args->N, i, args->primID, &t))
+      *ray_row(args->ray, args->N, TFAR, i) = -INFINITY;
+  }
+}
+
+/* ---- building
+ * ------------------------------------------------------------------------------------------------------------ */
+
+static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, AccelGeometry *g, vlError *error) {
+  const vlWorldShape *s = g->shape;
+  bool triangles = s->kind == VL_SHAPE_TRIANGLES;
+  RTCGeometry geometry = rtcNewGeometry(device, triangles ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_USER);
+  if (!geometry) return vl_fail_memory(error);
+  rtcSetGeometryUserData(geometry, g);
+  if (triangles) {
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s->positions, 0, 12,
+                               s->vertices);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s->indices, 0, 12, s->faces);
+    if (s->alpha >= 0) rtcSetGeometryIntersectFilterFunction(geometry, filter_closest);
+    if (s->alpha >= 0 || s->pass_shadow) rtcSetGeometryOccludedFilterFunction(geometry, filter_occluded);
+  } else {
+    rtcSetGeometryUserPrimitiveCount(geometry, s->kind == VL_SHAPE_BILINEAR ? s->faces : 1);
+    rtcSetGeometryBoundsFunction(geometry, user_bounds, NULL);
+    rtcSetGeometryIntersectFunction(geometry, user_intersect);
+    rtcSetGeometryOccludedFunction(geometry, user_occluded);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+  return VL_OK;
+}
+
+static vlResult attach_instance(RTCDevice device, RTCScene scene, RTCScene target, unsigned id, const float m[12],
+                                vlError *error) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  if (!geometry) return vl_fail_memory(error);
+  rtcSetGeometryInstancedScene(geometry, target);
+  rtcSetGeometryTimeStepCount(geometry, 1);
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, m);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+  return VL_OK;
+}
+
+static RTCScene new_scene(RTCDevice device) {
+  RTCScene scene = rtcNewScene(device);
+  if (scene) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  return scene;
+}
+
+vlResult vl_accel_build(vlWorld *world, vlError *error) {
+  vlAccel *a = &world->accel;
+  char config[64];
+  snprintf(config, sizeof config, "threads=%u", vl_context_threads(world->context));
+  RTCDevice device = rtcNewDevice(config);
+  if (!device)
+    return vl_fail(error, VL_ERROR_MEMORY, "Embree gives no device (error %d)", (int)rtcGetDeviceError(NULL));
+  a->device = device;
+  AccelGeometry *geometries = vl_alloc_array(world->context, world->shapes.count + 1, sizeof *geometries);
+  a->groups = vl_alloc_zero(world->context, world->groups.count, sizeof *a->groups);
+  a->user_data = geometries;
+  if (!geometries || !a->groups) return vl_fail_memory(error);
+  a->group_count = (uint32_t)world->groups.count;
+  for (size_t i = 0; i < world->shapes.count; i++) geometries[i] = (AccelGeometry){world, &world->shapes.items[i]};
+  for (size_t k = world->groups.count; k-- > 0;) { /* the world itself, group 0, comes last */
+    const vlWorldGroup *group = &world->groups.items[k];
+    RTCScene scene = new_scene(device);
+    if (!scene) return vl_fail_memory(error);
+    a->groups[k] = scene;
+    vlResult r = VL_OK;
+    for (uint32_t i = 0; r == VL_OK && i < group->count; i++)
+      r = attach_shape(device, scene, i, &geometries[group->shapes[i]], error);
+    for (size_t i = 0; k == 0 && r == VL_OK && i < world->instances.count; i++) {
+      const vlWorldInstance *instance = &world->instances.items[i];
+      r = attach_instance(device, scene, a->groups[instance->group], group->count + (unsigned)i, instance->from_group,
+                          error);
+    }
+    if (r != VL_OK) return r;
+    rtcCommitScene(scene);
+  }
+  a->scene = a->groups[0];
+  enum RTCError code = rtcGetDeviceError(device);
+  if (code == RTC_ERROR_OUT_OF_MEMORY) return vl_fail_memory(error);
+  if (code != RTC_ERROR_NONE) return vl_fail(error, VL_ERROR_SCENE, "Embree refuses the scene (error %d)", (int)code);
+  return VL_OK;
+}
+
+void vl_accel_destroy(vlContext *context, vlAccel *a) {
+  for (uint32_t k = 0; k < a->group_count; k++)
+    if (a->groups[k]) rtcReleaseScene(a->groups[k]);
+  if (a->device) rtcReleaseDevice(a->device);
+  vl_free(context, a->groups);
+  vl_free(context, a->user_data);
+  memset(a, 0, sizeof *a);
+}
+
+/* ---- tracing
+ * ---------------------------------------------------------------------------------------------------------------- */
+
+#if VELO_EMBREE_MAJOR >= 4
+#define INTERSECT1(scene, ray) rtcIntersect1((scene), (ray), NULL)
+#define OCCLUDED1(scene, ray) rtcOccluded1((scene), (ray), NULL)
+#define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), (ray), NULL)
+#else
+#define INTERSECT1(scene, ray) rtcIntersect1((scene), &context, (ray))
+#define OCCLUDED1(scene, ray) rtcOccluded1((scene), &context, (ray))
+#define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), &context, (ray))
+#endif
+
+static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsigned inst, uint32_t *shape,
+                      uint32_t *prim_out, uint32_t *instance) {
+  if (geom == RTC_INVALID_GEOMETRY_ID) {
+    *shape = *prim_out = *instance = VL_NONE;
+    return;
+  }
+  uint32_t group = 0;
+  *instance = VL_NONE;
+  if (inst != RTC_INVALID_GEOMETRY_ID) {
+    *instance = inst - world->groups.items[0].count;
+    group = world->instances.items[*instance].group;
+  }
+  *shape = world->groups.items[group].shapes[geom];
+  *prim_out = prim;
+}
+
+static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32_t *shape, uint32_t *prim,
+                       uint32_t *instance) {
+#if VELO_EMBREE_MAJOR < 4
+  struct RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+#endif
+  for (uint32_t first = 0; first < n; first += 16) {
+    struct RTCRayHit16 q;
+    int valid[16] __attribute__((aligned(64)));
+    for (uint32_t k = 0; k < 16; k++) {
+      uint32_t i = first + k < n ? first + k : n - 1;
+      valid[k] = first + k < n ? -1 : 0;
+      q.ray.org_x[k] = r->ox[i], q.ray.org_y[k] = r->oy[i], q.ray.org_z[k] = r->oz[i];
+      q.ray.dir_x[k] = r->dx[i], q.ray.dir_y[k] = r->dy[i], q.ray.dir_z[k] = r->dz[i];
+      q.ray.tnear[k] = r->t_min ? r->t_min[i] : 0.0f;
+      q.ray.tfar[k] = r->t_max ? r->t_max[i] : INFINITY;
+      q.ray.time[k] = 0, q.ray.mask[k] = (unsigned)-1, q.ray.id[k] = 0, q.ray.flags[k] = 0;
+      q.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+      q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
+    INTERSECT16(valid, world->accel.scene, &q);
+    for (uint32_t k = 0; k < 16 && first + k < n; k++)
+      store_ids(world, q.hit.geomID[k], q.hit.primID[k], q.hit.instID[0][k], &shape[first + k], &prim[first + k],
+                &instance[first + k]);
+  }
+}
+
+static void fill_ray(struct RTCRay *q, const vlRays *r, uint32_t i) {
+  q->org_x = r->ox[i], q->org_y = r->oy[i], q->org_z = r->oz[i];
+  q->dir_x = r->dx[i], q->dir_y = r->dy[i], q->dir_z = r->dz[i];
+  q->tnear = r->t_min ? r->t_min[i] : 0.0f;
+  q->tfar = r->t_max ? r->t_max[i] : INFINITY;
+  q->time = 0, q->mask = (unsigned)-1, q->id = 0, q->flags = 0;
+}
+
+void vl_accel_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
+                      uint32_t *prim, uint32_t *instance) {
+  if (coherent) {
+    closest_16(world, n, rays, shape, prim, instance);
+    return;
+  }
+#if VELO_EMBREE_MAJOR < 4
+  struct RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+#endif
+  for (uint32_t i = 0; i < n; i++) {
+    struct RTCRayHit q;
+    fill_ray(&q.ray, rays, i);
+    q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    INTERSECT1(world->accel.scene, &q);
+    store_ids(world, q.hit.geomID, q.hit.primID, q.hit.instID[0], &shape[i], &prim[i], &instance[i]);
+  }
+}
+
+void vl_accel_occluded(const vlWorld *world, uint32_t n, const vlRays *rays, uint8_t *occluded) {
+#if VELO_EMBREE_MAJOR < 4
+  struct RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+#endif
+  for (uint32_t i = 0; i < n; i++) {
+    struct RTCRay q;
+    fill_ray(&q, rays, i);
+    OCCLUDED1(world->accel.scene, &q);
+    occluded[i] = q.tfar < 0;
+  }
+}

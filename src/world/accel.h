@@ -1,0 +1,40 @@
+/* world/accel.h: who is hit first, who is hit at all. Only accel.c knows Embree. Out come ids alone: t, u, v are
+ * computed again in our own arithmetic, since Embree's differ between its instruction sets. */
+#ifndef WORLD_ACCEL_H
+#define WORLD_ACCEL_H
+
+#include "base/context.h"
+
+#define VL_NONE 0xffffffffu
+
+struct vlWorld;
+
+typedef struct vlAccel {
+  void *device;  /* RTCDevice */
+  void *scene;   /* RTCScene: the world */
+  void **groups; /* RTCScene of each group with index >= 1 */
+  uint32_t group_count;
+  void *user_data; /* blocks of AccelGeometry */
+  bool robust;
+} vlAccel;
+
+/* World-space rays, structure of arrays. */
+typedef struct vlRays {
+  const float *ox, *oy, *oz, *dx, *dy, *dz;
+  const float *t_min, *t_max; /* null: 0, infinity */
+} vlRays;
+
+vlResult vl_accel_build(struct vlWorld *world, vlError *error);
+void vl_accel_destroy(vlContext *context, vlAccel *accel);
+
+/* Ids of the nearest hit of rays [0, n); shape VL_NONE where nothing is hit. coherent: neighbours go the same way
+ * (camera rays), traced in packets. */
+void vl_accel_closest(const struct vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
+                      uint32_t *prim, uint32_t *instance);
+/* occluded[i] = 1 where something lies in (t_min, t_max). */
+void vl_accel_occluded(const struct vlWorld *world, uint32_t n, const vlRays *rays, uint8_t *occluded);
+/* Called by each thread before it traces: flush-to-zero, as Embree wants; returns the old state to give back. */
+unsigned vl_accel_enter(void);
+void vl_accel_leave(unsigned state);
+
+#endif

@@ -1,0 +1,73 @@
+/* world/build.c: scene in, constant world out: materials (with their textures), shapes, lights, accelerator. */
+#include <string.h>
+
+#include "base/cookie.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "scene/scene.h"
+#include "world/world.h"
+
+vlBuildDef vl_default_build_def(void) {
+  return (vlBuildDef){.cookie = VL_COOKIE_BUILD, .color = VL_COLOR_SPECTRAL, .light_sampler = VL_LIGHT_SAMPLER_BVH};
+}
+
+vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **result, vlError *error) {
+  vl_error_clear(error);
+  if (!result) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_world_build: null argument");
+  *result = NULL;
+  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_world_build: null argument");
+  vlBuildDef d = def ? *def : vl_default_build_def();
+  if (d.cookie != VL_COOKIE_BUILD)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_world_build: the def was not made by vl_default_build_def");
+  vlResult r = vl_scene_result(scene, error);
+  if (r != VL_OK) return r;
+  double start = vl_seconds();
+  vlWorld *world = vl_alloc_zero(scene->context, 1, sizeof *world);
+  if (!world) return vl_fail_memory(error);
+  world->context = scene->context;
+  world->def = d;
+  vlError local;
+  vl_error_clear(&local);
+  r = vl_world_add_materials(world, scene, &local);
+  if (r == VL_OK) r = vl_world_add_shapes(world, scene, &local);
+  if (r == VL_OK) r = vl_world_add_lights(world, scene, &local);
+  if (r == VL_OK) r = vl_accel_build(world, &local);
+  world->texture_memo = NULL;
+  if (r != VL_OK) {
+    if (error) *error = local;
+    vl_world_destroy(world);
+    return r;
+  }
+  for (int i = 0; i < 3; i++)
+    world->info.bounds_min[i] = world->bounds_min[i], world->info.bounds_max[i] = world->bounds_max[i];
+  world->info.build_seconds = vl_seconds() - start;
+  world->info.bytes = vl_context_memory(world->context, NULL);
+  *result = world;
+  return VL_OK;
+}
+
+void vl_world_destroy(vlWorld *world) {
+  if (!world) return;
+  vlContext *c = world->context;
+  vl_accel_destroy(c, &world->accel);
+  for (size_t i = 0; i < world->materials.count; i++)
+    if (world->materials.items[i].owns_coat) vl_coat_free(c, world->materials.items[i].coat);
+  for (size_t i = 0; i < world->images.count; i++) vl_mipmap_destroy(world->images.items[i].mipmap);
+  for (size_t i = 0; i < world->blocks.count; i++) vl_free(c, world->blocks.items[i]);
+  VL_ARRAY_FREE(c, &world->blocks);
+  VL_ARRAY_FREE(c, &world->shapes);
+  VL_ARRAY_FREE(c, &world->groups);
+  VL_ARRAY_FREE(c, &world->instances);
+  VL_ARRAY_FREE(c, &world->materials);
+  VL_ARRAY_FREE(c, &world->nodes);
+  VL_ARRAY_FREE(c, &world->images);
+  VL_ARRAY_FREE(c, &world->emitted);
+  VL_ARRAY_FREE(c, &world->lights);
+  VL_ARRAY_FREE(c, &world->infinite_lights);
+  VL_ARRAY_FREE(c, &world->environments);
+  vl_free(c, world);
+}
+
+void vl_world_info(const vlWorld *world, vlWorldInfo *info) {
+  *info = world->info;
+}

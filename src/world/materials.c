@@ -1,0 +1,148 @@
+/* world/materials.c: scene materials -> world materials. Index 0 is the default, a diffuse grey. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "scene/scene.h"
+#include "world/world.h"
+
+static vlResult fail(const vlMaterialDef *def, vlError *error, const char *what) {
+  return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+                    "material \"%s\": %s", def->name ? def->name : "", what);
+}
+
+/* An error found deeper without a place gets the material's. */
+static vlResult placed(const vlMaterialDef *def, vlError *error, vlResult r) {
+  if (r == VL_OK || r == VL_ERROR_MEMORY || !error || error->line) return r;
+  char message[sizeof error->message];
+  snprintf(message, sizeof message, "%s", error->message);
+  return vl_fail_at(error, r, def->source.file, def->source.line, def->source.column, "%s", message);
+}
+
+static float alpha_of(float roughness, bool remap) {
+  return remap ? sqrtf(roughness > 0 ? roughness : 0) : roughness;
+}
+
+/* The coat's table: shared between materials with the same numbers. */
+static vlResult coat_of(vlWorld *world, const vlMaterialDef *def, vlWorldMaterial *m, vlError *error) {
+  float thickness = def->thickness.value, low, high;
+  if (def->thickness.texture.index) return fail(def, error, "a textured thickness of the coat is not supported");
+  const vlTextureNode *u = &world->nodes.items[m->u_roughness], *v = &world->nodes.items[m->v_roughness];
+  if (u->kind == VL_NODE_FLOAT && v->kind == VL_NODE_FLOAT) {
+    low = high = sqrtf(alpha_of(u->value, m->remap) * alpha_of(v->value, m->remap));
+  } else {
+    low = 0, high = 1;
+  }
+  for (size_t i = 0; i < world->materials.count; i++) {
+    vlCoatTable *t = world->materials.items[i].coat;
+    if (t && t->eta == m->eta_s && t->tau == thickness && world->materials.items[i].coat_depth == def->max_depth &&
+        t->alpha_min == low && t->alpha_max == high) {
+      m->coat_depth = def->max_depth;
+      m->coat = t;
+      return VL_OK;
+    }
+  }
+  vlResult r = vl_coat_build(world->context, m->eta_s, thickness, def->max_depth, low, high, &m->coat);
+  if (r != VL_OK) return vl_fail_memory(error);
+  m->owns_coat = true;
+  m->coat_depth = def->max_depth;
+  return VL_OK;
+}
+
+static vlResult dielectric_eta(vlWorld *world, const vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
+                               vlError *error) {
+  if (def->eta.texture.index) return fail(def, error, "a textured index of refraction is not supported");
+  float value;
+  if (vl_spectrum_is_constant(&def->eta.value, &value)) {
+    if (!(value > 0) || !isfinite(value)) return fail(def, error, "the index of refraction must be a positive number");
+    m->eta_s = value;
+    return VL_OK;
+  }
+  if (def->kind == VL_MATERIAL_COATED_DIFFUSE || def->kind == VL_MATERIAL_THIN_DIELECTRIC ||
+      world->def.color == VL_COLOR_RGB) {
+    /* One number stands for the glass: the index at the sodium line, as catalogues give it. */
+    float dense[VL_LAMBDA_COUNT];
+    vlResult r = vl_spectrum_dense(&def->eta.value, VL_ROLE_UNBOUNDED, dense, error);
+    if (r != VL_OK) return r;
+    m->eta_s = vl_dense_at(dense, 589.3f);
+    if (!(m->eta_s > 0)) return fail(def, error, "the index of refraction must be positive");
+    if (world->def.color != VL_COLOR_RGB)
+      vl_log(world->context, VL_LOG_WARNING, NULL,
+             "material \"%s\": dispersion of this kind is not supported, the index at 589.3 nm is used",
+             def->name ? def->name : "");
+    return VL_OK;
+  }
+  m->dispersive = true;
+  m->eta_s = 1.5f;
+  return vl_world_spectrum_node(world, scene, def->eta, VL_ROLE_UNBOUNDED, &m->eta, error);
+}
+
+static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMaterialDef *def, vlError *error) {
+  vlWorldMaterial material, *m = &material;
+  memset(m, 0, sizeof *m);
+  m->kind = def->kind;
+  m->reflectance = m->eta = m->k = m->u_roughness = m->v_roughness = m->amount = m->displacement = m->normal_map = -1;
+  m->remap = def->remap_roughness;
+  m->eta_s = 1.5f;
+  vlResult r = VL_OK;
+  bool rough = def->kind == VL_MATERIAL_CONDUCTOR || def->kind == VL_MATERIAL_DIELECTRIC ||
+               def->kind == VL_MATERIAL_COATED_DIFFUSE;
+  if (def->kind == VL_MATERIAL_DIFFUSE || def->kind == VL_MATERIAL_COATED_DIFFUSE ||
+      (def->kind == VL_MATERIAL_CONDUCTOR && def->use_reflectance))
+    r = vl_world_spectrum_node(world, scene, def->reflectance, VL_ROLE_ALBEDO, &m->reflectance, error);
+  m->use_reflectance = def->use_reflectance;
+  if (r == VL_OK && rough) r = vl_world_float_node(world, scene, def->u_roughness, &m->u_roughness, error);
+  if (r == VL_OK && rough) r = vl_world_float_node(world, scene, def->v_roughness, &m->v_roughness, error);
+  if (r == VL_OK && def->kind == VL_MATERIAL_CONDUCTOR && !def->use_reflectance) {
+    r = vl_world_spectrum_node(world, scene, def->eta, VL_ROLE_UNBOUNDED, &m->eta, error);
+    if (r == VL_OK) r = vl_world_spectrum_node(world, scene, def->k, VL_ROLE_UNBOUNDED, &m->k, error);
+  }
+  if (r == VL_OK && (def->kind == VL_MATERIAL_DIELECTRIC || def->kind == VL_MATERIAL_THIN_DIELECTRIC ||
+                     def->kind == VL_MATERIAL_COATED_DIFFUSE))
+    r = dielectric_eta(world, scene, def, m, error);
+  if (r == VL_OK && def->kind == VL_MATERIAL_COATED_DIFFUSE) {
+    float albedo = 0;
+    if (def->albedo.texture.index || !vl_spectrum_is_constant(&def->albedo.value, &albedo) || albedo != 0)
+      if (!(def->albedo.value.kind == VL_SPECTRUM_RGB && def->albedo.value.rgb[0] == 0 &&
+            def->albedo.value.rgb[1] == 0 && def->albedo.value.rgb[2] == 0))
+        return fail(def, error, "a scattering layer in the coat (albedo above 0) is not understood yet");
+    r = coat_of(world, def, m, error);
+  }
+  if (r == VL_OK && def->kind == VL_MATERIAL_MIX) {
+    m->mix[0] = def->materials[0].index, m->mix[1] = def->materials[1].index;
+    r = vl_world_float_node(world, scene, def->amount, &m->amount, error);
+  }
+  if (r == VL_OK && def->displacement.texture.index)
+    r = vl_world_float_node(world, scene, def->displacement, &m->displacement, error);
+  if (r == VL_OK && def->normal_map) {
+    vlEncoding linear = VL_ENCODING_LINEAR;
+    m->normal_map = vl_world_add_image(world, def->normal_map, NULL, &linear, 1, false, error);
+    if (m->normal_map < 0) r = error && error->code ? error->code : VL_ERROR_SCENE;
+  }
+  if (r == VL_OK) {
+    vlWorldMaterial *slot = VL_PUSH(world->context, &world->materials);
+    if (slot)
+      *slot = *m;
+    else
+      r = vl_fail_memory(error);
+  }
+  if (r != VL_OK && m->owns_coat) vl_coat_free(world->context, m->coat);
+  return placed(def, error, r);
+}
+
+vlResult vl_world_add_materials(vlWorld *world, const vlScene *scene, vlError *error) {
+  vlMaterialDef grey = vl_default_material_def(VL_MATERIAL_DIFFUSE);
+  vlResult r = add_material(world, scene, &grey, error);
+  for (size_t i = 0; r == VL_OK && i < scene->materials.count; i++)
+    r = add_material(world, scene, &scene->materials.items[i], error);
+  if (r == VL_OK && !(world->rank = vl_world_block(world, world->materials.count, sizeof(uint32_t))))
+    return vl_fail_memory(error);
+  uint32_t next = 0;
+  for (int kind = 0; r == VL_OK && kind <= VL_MATERIAL_INTERFACE; kind++)
+    for (size_t i = 0; i < world->materials.count; i++)
+      if ((int)world->materials.items[i].kind == kind) world->rank[i] = next++;
+  for (size_t i = 0; i < world->materials.count; i++)
+    world->has_interfaces = world->has_interfaces || world->materials.items[i].kind == VL_MATERIAL_INTERFACE;
+  return r;
+}

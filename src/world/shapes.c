@@ -1,0 +1,200 @@
+/* world/shapes.c: scene shapes -> world shapes: vertices moved to group space, groups and instances laid out, bounds.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "math/transform.h"
+#include "scene/scene.h"
+#include "world/surface_point.h"
+#include "world/world.h"
+
+void *vl_world_block(vlWorld *world, size_t count, size_t size) {
+  void **slot = VL_PUSH(world->context, &world->blocks);
+  if (!slot) return NULL;
+  *slot = vl_alloc_array(world->context, count ? count : 1, size);
+  return *slot;
+}
+
+static void store_affine_f(const vlMat4 *m, float r[12]) {
+  for (int i = 0; i < 12; i++) r[i] = (float)m->m[i];
+}
+static void store_affine_d(const vlMat4 *m, double r[12]) {
+  for (int i = 0; i < 12; i++) r[i] = m->m[i];
+}
+
+static vlResult fail_shape(const vlShapeDef *def, vlError *error, const char *what) {
+  return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column, "%s", what);
+}
+
+static bool is_identity(const vlMat4 *m) {
+  vlMat4 e = vl_mat4_identity();
+  return memcmp(e.m, m->m, sizeof e.m) == 0;
+}
+
+static vlResult move_mesh(vlWorld *world, const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse,
+                          vlWorldShape *s, vlError *error) {
+  size_t n = def->vertices, corners = def->kind == VL_SHAPE_BILINEAR ? 4 : 3;
+  bool same = is_identity(m);
+  s->vertices = def->vertices;
+  s->faces = def->faces;
+  s->positions = vl_world_block(world, 3 * n + 4, sizeof(float));
+  s->indices = vl_world_block(world, corners * def->faces + 4, sizeof(uint32_t));
+  if (!s->positions || !s->indices) return vl_fail_memory(error);
+  memset(s->positions + 3 * n, 0, 4 * sizeof(float));
+  memcpy(s->indices, def->indices, corners * def->faces * sizeof(uint32_t));
+  if (def->normals && !(s->normals = vl_world_block(world, 3 * n, sizeof(float)))) return vl_fail_memory(error);
+  if (def->tangents && !(s->tangents = vl_world_block(world, 3 * n, sizeof(float)))) return vl_fail_memory(error);
+  if (def->uvs) {
+    if (!(s->uvs = vl_world_block(world, 2 * n, sizeof(float)))) return vl_fail_memory(error);
+    memcpy(s->uvs, def->uvs, 2 * n * sizeof(float));
+  }
+  if (same) memcpy(s->positions, def->positions, 3 * n * sizeof(float));
+  for (size_t i = 0; i < n && !same; i++) {
+    double p[3] = {def->positions[3 * i], def->positions[3 * i + 1], def->positions[3 * i + 2]}, q[3];
+    vl_mat4_point(m, p, q);
+    for (int k = 0; k < 3; k++) {
+      s->positions[3 * i + k] = (float)q[k];
+      if (!isfinite((float)q[k]))
+        return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");
+    }
+  }
+  for (size_t i = 0; def->normals && i < n; i++) {
+    double p[3] = {def->normals[3 * i], def->normals[3 * i + 1], def->normals[3 * i + 2]}, q[3];
+    vl_mat4_normal(inverse, p, q);
+    double l = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]), f = l > 0 ? 1 / l : 0;
+    if (def->reverse_orientation) f = -f;
+    for (int k = 0; k < 3; k++) s->normals[3 * i + k] = (float)(q[k] * f);
+  }
+  for (size_t i = 0; def->tangents && i < n; i++) {
+    double p[3] = {def->tangents[3 * i], def->tangents[3 * i + 1], def->tangents[3 * i + 2]}, q[3];
+    vl_mat4_vector(m, p, q);
+    for (int k = 0; k < 3; k++) s->tangents[3 * i + k] = (float)q[k];
+  }
+  return VL_OK;
+}
+
+static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef *def, vlWorldShape *s,
+                          vlError *error) {
+  vlMat4 m = vl_mat4_load(def->group_from_shape), inverse;
+  if (!vl_mat4_inverse(m, &inverse)) return fail_shape(def, error, "the shape's transform is singular");
+  bool mirrored = vl_mat4_determinant3(m) < 0;
+  memset(s, 0, sizeof *s);
+  s->kind = def->kind;
+  s->material = def->material.index; /* 0 is the default material */
+  s->first_light = VL_NONE;
+  s->flip = def->reverse_orientation != mirrored;
+  s->alpha = -1; /* opaque */
+  if (def->alpha.texture.index || def->alpha.value < 1) {
+    vlResult r = vl_world_float_node(world, scene, def->alpha, &s->alpha, error);
+    if (r != VL_OK) return r;
+  }
+  s->pass_shadow = world->materials.items[s->material].kind == VL_MATERIAL_INTERFACE;
+  s->radius = def->radius, s->inner_radius = def->inner_radius, s->height = def->height, s->phi_max = def->phi_max;
+  s->z_min = def->z_min < def->z_max ? def->z_min : def->z_max;
+  s->z_max = def->z_min < def->z_max ? def->z_max : def->z_min;
+  if (def->kind == VL_SHAPE_SPHERE) {
+    s->z_min = s->z_min < -s->radius ? -s->radius : s->z_min;
+    s->z_max = s->z_max > s->radius ? s->radius : s->z_max;
+  }
+  s->faces = 1;
+  store_affine_d(&m, s->from_shape);
+  store_affine_d(&inverse, s->to_shape);
+  if (def->kind == VL_SHAPE_TRIANGLES || def->kind == VL_SHAPE_BILINEAR)
+    return move_mesh(world, def, &m, &inverse, s, error);
+  return VL_OK;
+}
+
+static void grow_bounds(float low[3], float high[3], const float p[3]) {
+  for (int i = 0; i < 3; i++) {
+    low[i] = p[i] < low[i] ? p[i] : low[i];
+    high[i] = p[i] > high[i] ? p[i] : high[i];
+  }
+}
+
+static void shape_bounds(const vlWorldShape *s, float low[3], float high[3]) {
+  if (s->positions) {
+    for (size_t i = 0; i < s->vertices; i++) grow_bounds(low, high, s->positions + 3 * i);
+  } else {
+    float a[3], b[3];
+    vl_world_prim_bounds(s, 0, a, b);
+    grow_bounds(low, high, a);
+    grow_bounds(low, high, b);
+  }
+}
+
+static void set_world_bounds(vlWorld *world) {
+  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  const vlWorldGroup *root = &world->groups.items[0];
+  for (uint32_t i = 0; i < root->count; i++) shape_bounds(&world->shapes.items[root->shapes[i]], low, high);
+  for (size_t k = 0; k < world->instances.count; k++) {
+    const vlWorldInstance *instance = &world->instances.items[k];
+    const vlWorldGroup *group = &world->groups.items[instance->group];
+    float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < group->count; i++) shape_bounds(&world->shapes.items[group->shapes[i]], a, b);
+    for (int c = 0; group->count && c < 8; c++) {
+      float p[3] = {c & 1 ? a[0] : b[0], c & 2 ? a[1] : b[1], c & 4 ? a[2] : b[2]}, q[3];
+      const float *m = instance->from_group;
+      for (int i = 0; i < 3; i++) q[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+      grow_bounds(low, high, q);
+    }
+  }
+  for (int i = 0; i < 3; i++) {
+    if (low[i] > high[i]) low[i] = high[i] = 0;
+    world->bounds_min[i] = low[i], world->bounds_max[i] = high[i];
+    world->center[i] = 0.5f * (low[i] + high[i]);
+  }
+  float d[3] = {high[0] - world->center[0], high[1] - world->center[1], high[2] - world->center[2]};
+  world->radius = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+}
+
+static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *error) {
+  for (size_t i = 0; i < scene->instances.count; i++) {
+    const vlSceneInstance *source = &scene->instances.items[i];
+    if (world->groups.items[source->group.index].count == 0) continue;
+    vlWorldInstance *instance = VL_PUSH(world->context, &world->instances);
+    if (!instance) return vl_fail_memory(error);
+    vlMat4 m = vl_mat4_load(source->world_from_group), inverse;
+    if (!vl_mat4_inverse(m, &inverse))
+      return vl_fail_at(error, VL_ERROR_SCENE, source->source.file, source->source.line, source->source.column,
+                        "the instance's transform is singular");
+    instance->group = source->group.index;
+    instance->mirrored = vl_mat4_determinant3(m) < 0;
+    store_affine_f(&m, instance->from_group);
+    store_affine_f(&inverse, instance->to_group);
+  }
+  return VL_OK;
+}
+
+vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *error) {
+  size_t group_count = scene->groups.count + 1;
+  if (!VL_RESERVE(world->context, &world->shapes, scene->shapes.count) ||
+      !VL_RESERVE(world->context, &world->groups, group_count))
+    return vl_fail_memory(error);
+  world->groups.count = group_count;
+  for (size_t i = 0; i < scene->shapes.count; i++) {
+    const vlShapeDef *def = &scene->shapes.items[i];
+    vlResult r = add_shape(world, scene, def, &world->shapes.items[i], error);
+    if (r != VL_OK) return r;
+    world->shapes.count = i + 1;
+    if (def->faces || (def->kind != VL_SHAPE_TRIANGLES && def->kind != VL_SHAPE_BILINEAR))
+      world->groups.items[def->group.index].count++;
+    world->info.primitives += world->shapes.items[i].faces;
+    if (def->kind == VL_SHAPE_TRIANGLES) world->info.triangles += def->faces;
+  }
+  for (size_t k = 0; k < group_count; k++) {
+    vlWorldGroup *group = &world->groups.items[k];
+    if (!(group->shapes = vl_world_block(world, group->count, sizeof(uint32_t)))) return vl_fail_memory(error);
+    group->count = 0;
+  }
+  for (size_t i = 0; i < scene->shapes.count; i++) {
+    const vlShapeDef *def = &scene->shapes.items[i];
+    if (!def->faces && (def->kind == VL_SHAPE_TRIANGLES || def->kind == VL_SHAPE_BILINEAR)) continue;
+    vlWorldGroup *group = &world->groups.items[def->group.index];
+    group->shapes[group->count++] = (uint32_t)i;
+  }
+  vlResult r = add_instances(world, scene, error);
+  if (r == VL_OK) set_world_bounds(world);
+  world->info.instances = world->instances.count;
+  return r;
+}

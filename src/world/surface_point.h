@@ -1,0 +1,34 @@
+/* world/surface_point.h: sphere, disk, cylinder and bilinear patch: where a ray meets them, what the surface is like
+ * there, and points spread over them by area. Double inside; scalar: such shapes are few. Triangles live in trace
+ * (batches). Conventions (parametrisation, normals): pbrt book 6.2-6.4 and 6.6. */
+#ifndef WORLD_SURFACE_POINT_H
+#define WORLD_SURFACE_POINT_H
+
+#include "world/world.h"
+
+typedef struct vlShapeHit {
+  double t;    /* along the (not normalised) ray */
+  double a, b; /* bilinear: patch parameters; else unused */
+  double p[3]; /* shape space */
+} vlShapeHit;
+
+/* Nearest hit in (t_min, t_max) of a ray in group space. */
+bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3], const double d[3], double t_min,
+                        double t_max, vlShapeHit *hit);
+
+/* All in group space; n is unit, oriented as pbrt orients it (flip applied); uv as textures see it. */
+typedef struct vlSurfacePoint {
+  double p[3];
+  double n[3];  /* geometric normal */
+  double ns[3]; /* shading normal: vertex normals interpolated, else n */
+  double dpdu[3];
+  float uv[2];
+} vlSurfacePoint;
+void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point);
+
+/* A point spread uniformly over the parameters, with its density per unit area in group space. */
+void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf);
+/* The density that vl_shape_sample gives to a point already found. */
+double vl_shape_pdf(const vlWorldShape *shape, uint32_t prim, const vlSurfacePoint *point);
+
+#endif

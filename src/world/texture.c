@@ -1,0 +1,303 @@
+/* world/texture.c: scene textures -> nodes; pictures read once per file; the one-point evaluation that alpha needs. */
+#include "world/texture.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "scene/scene.h"
+#include "world/texture_lookup.h"
+#include "world/world.h"
+
+enum { MAX_NESTING = 12, ROLES = 4, ROLE_FLOAT = 3 };
+
+/* ---- constant spectra ----------------------------------------------------------------------------------------------
+ */
+
+vlResult vl_spectral_compile(vlWorld *world, const vlSpectrum *spectrum, vlSpectrumRole role, vlSpectral *result,
+                             vlError *error) {
+  memset(result, 0, sizeof *result);
+  result->scale = 1;
+  if (world->def.color == VL_COLOR_RGB) {
+    result->kind = VL_SPECTRAL_RGB;
+    return vl_spectrum_to_rgb(spectrum, role, VL_SPACE_SRGB, result->rgb, error);
+  }
+  float value;
+  if (role != VL_ROLE_ILLUMINANT && vl_spectrum_is_constant(spectrum, &value)) {
+    result->kind = VL_SPECTRAL_CONSTANT;
+    result->scale = value;
+    return VL_OK;
+  }
+  if (spectrum->kind == VL_SPECTRUM_RGB && role == VL_ROLE_ALBEDO) {
+    result->kind = VL_SPECTRAL_SIGMOID;
+    result->scale = spectrum->scale;
+    result->sigmoid = vl_sigmoid_from_rgb(spectrum->space, spectrum->rgb[0], spectrum->rgb[1], spectrum->rgb[2]);
+    return VL_OK;
+  }
+  float *dense = vl_world_block(world, VL_LAMBDA_COUNT, sizeof(float));
+  if (!dense) return vl_fail_memory(error);
+  result->kind = VL_SPECTRAL_DENSE;
+  result->dense = dense;
+  return vl_spectrum_dense(spectrum, role, dense, error);
+}
+
+/* ---- pictures
+ * -------------------------------------------------------------------------------------------------------- */
+
+static bool same_image(const vlWorldImage *a, const vlTextureDef *def) {
+  return a->path && def->path && strcmp(a->path, def->path) == 0 && a->encoding_given == def->encoding_given &&
+         (!a->encoding_given || (a->encoding == def->encoding && a->gamma == def->gamma));
+}
+
+/* Colour and, where it is not 1 everywhere, coverage; grey without. Names decide (EXR sorts its channels). */
+static void choose_channels(const vlImage *image, vlMipmapDef *mip) {
+  int r = vl_image_find_channel(image, "R"), g = vl_image_find_channel(image, "G"),
+      b = vl_image_find_channel(image, "B");
+  int a = vl_image_find_channel(image, "A");
+  if (r < 0 || g < 0 || b < 0) {
+    mip->count = 1;
+    int y = vl_image_find_channel(image, "Y");
+    mip->channel[0] = y < 0 ? 0 : (uint32_t)y;
+    return;
+  }
+  bool covered = true;
+  for (uint32_t y = 0; a >= 0 && covered && y < vl_image_height(image); y++)
+    for (uint32_t x = 0; covered && x < vl_image_width(image); x++)
+      covered = vl_image_get(image, x, y, (uint32_t)a) >= 1.0f;
+  uint32_t channels[4] = {(uint32_t)r, (uint32_t)g, (uint32_t)b, (uint32_t)(a < 0 ? 0 : a)};
+  mip->count = a >= 0 && !covered ? 4 : 3;
+  memcpy(mip->channel, channels, sizeof channels);
+}
+
+int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
+                           float gamma, bool pyramid, vlError *error) {
+  vlImage *image = NULL;
+  if (!given) {
+    if (vl_image_read(world->context, path, &image, error) != VL_OK) return -1;
+    given = image;
+  }
+  vlWorldImage *entry = VL_PUSH(world->context, &world->images);
+  vlResult r = VL_OK;
+  if (!entry) {
+    r = vl_fail_memory(error);
+  } else {
+    vlMipmapDef mip;
+    memset(&mip, 0, sizeof mip);
+    choose_channels(given, &mip);
+    mip.only_finest = !pyramid;
+    mip.own_encoding = encoding != NULL;
+    mip.encoding = encoding ? *encoding : VL_ENCODING_LINEAR;
+    mip.gamma = gamma;
+    if ((r = vl_mipmap_create(given, &mip, &entry->mipmap)) == VL_ERROR_MEMORY)
+      vl_fail_memory(error);
+    else if (r != VL_OK)
+      vl_fail(error, r, "%s: cannot be used as a texture", path ? path : "image");
+  }
+  vl_image_destroy(image);
+  return r == VL_OK ? (int32_t)world->images.count - 1 : -1;
+}
+
+static int32_t image_of(vlWorld *world, const vlTextureDef *def, vlError *error) {
+  for (size_t i = 0; i < world->images.count; i++)
+    if (same_image(&world->images.items[i], def)) return (int32_t)i;
+  vlError inner;
+  vl_error_clear(&inner);
+  int32_t index = vl_world_add_image(world, def->path, def->path ? NULL : def->image,
+                                     def->encoding_given ? &def->encoding : NULL, def->gamma, true, &inner);
+  if (index < 0) {
+    vl_fail_at(error, inner.code ? inner.code : VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+               "%s", inner.message);
+    return -1;
+  }
+  vlWorldImage *entry = &world->images.items[index];
+  entry->encoding = def->encoding;
+  entry->encoding_given = def->encoding_given;
+  entry->gamma = def->gamma;
+  if (def->path) {
+    char *copy = vl_world_block(world, strlen(def->path) + 1, 1);
+    if (!copy) {
+      vl_fail_memory(error);
+      return -1;
+    }
+    entry->path = strcpy(copy, def->path);
+  }
+  return index;
+}
+
+/* ---- nodes
+ * ------------------------------------------------------------------------------------------------------------ */
+
+typedef struct Compile {
+  vlWorld *world;
+  const vlScene *scene;
+  int32_t *memo; /* scene texture * ROLES -> node + 1 */
+  vlError *error;
+} Compile;
+
+static int32_t push_node(vlWorld *world, const vlTextureNode *node) {
+  vlTextureNode *slot = VL_PUSH(world->context, &world->nodes);
+  if (!slot) return VL_TEXTURE_NO_MEMORY;
+  *slot = *node;
+  return (int32_t)world->nodes.count - 1;
+}
+
+static vlTextureNode empty_node(vlNodeKind kind) {
+  vlTextureNode node;
+  memset(&node, 0, sizeof node);
+  node.kind = kind;
+  node.a = node.b = node.c = node.d = node.amount = node.image = -1;
+  return node;
+}
+
+static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting);
+
+static int32_t compile_float(Compile *c, vlFloatInput input, int nesting) {
+  if (input.texture.index) return compile_texture(c, input.texture.index, ROLE_FLOAT, nesting + 1);
+  vlTextureNode node = empty_node(VL_NODE_FLOAT);
+  node.value = input.value;
+  int32_t n = push_node(c->world, &node);
+  if (n == VL_TEXTURE_NO_MEMORY) vl_fail_memory(c->error);
+  return n;
+}
+
+static int32_t compile_spectrum(Compile *c, vlSpectrumInput input, int role, int nesting) {
+  if (input.texture.index) return compile_texture(c, input.texture.index, role, nesting + 1);
+  vlTextureNode node = empty_node(VL_NODE_SPECTRUM);
+  node.is_spectrum = true;
+  node.role = (vlSpectrumRole)role;
+  if (vl_spectral_compile(c->world, &input.value, (vlSpectrumRole)role, &node.spectrum, c->error) != VL_OK) return -1;
+  int32_t n = push_node(c->world, &node);
+  if (n == VL_TEXTURE_NO_MEMORY) vl_fail_memory(c->error);
+  return n;
+}
+
+static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f, vlSpectrumInput s, int role,
+                             int nesting) {
+  return def->spectrum ? compile_spectrum(c, s, role, nesting) : compile_float(c, f, nesting);
+}
+
+static vlResult image_spectrum(vlWorld *world, vlTextureNode *node, vlError *error) {
+  node->spectrum.scale = 1;
+  if (node->role != VL_ROLE_ILLUMINANT || world->def.color == VL_COLOR_RGB) return VL_OK;
+  node->spectrum.kind = VL_SPECTRAL_DENSE;
+  node->spectrum.dense = vl_space_illuminant(node->space);
+  (void)error;
+  return VL_OK;
+}
+
+static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting) {
+  const vlTextureDef *def = &c->scene->textures.items[index - 1];
+  if (!def->spectrum) role = ROLE_FLOAT;
+  int32_t *memo = &c->memo[(index - 1) * ROLES + (uint32_t)role];
+  if (*memo) return *memo - 1;
+  if (nesting > MAX_NESTING) {
+    vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+               "textures are nested more than %d deep", MAX_NESTING);
+    return -1;
+  }
+  vlTextureNode node = empty_node(VL_NODE_FLOAT);
+  node.is_spectrum = def->spectrum;
+  node.role = def->spectrum ? (vlSpectrumRole)role : VL_ROLE_UNBOUNDED;
+  node.space = def->space;
+  node.mapping = def->mapping;
+  node.su = def->su, node.sv = def->sv, node.du = def->du, node.dv = def->dv;
+  memcpy(node.v1, def->planar_v1, sizeof node.v1);
+  memcpy(node.v2, def->planar_v2, sizeof node.v2);
+  for (int i = 0; i < 12; i++) node.texture_from_world[i] = (float)def->texture_from_world[i];
+  node.dimension = def->dimension;
+  memcpy(node.direction, def->direction, sizeof node.direction);
+  node.wrap = def->wrap, node.filter = def->filter, node.scale = def->scale, node.invert = def->invert;
+  int inputs = 0;
+  bool amount = false;
+  switch (def->kind) {
+    case VL_TEXTURE_CONSTANT: {
+      int32_t n = compile_input(c, def, def->float_a, def->spectrum_a, role, nesting);
+      if (n >= 0) *memo = n + 1;
+      return n;
+    }
+    case VL_TEXTURE_SCALE: node.kind = VL_NODE_SCALE, inputs = 1, amount = true; break;
+    case VL_TEXTURE_MIX: node.kind = VL_NODE_MIX, inputs = 2, amount = true; break;
+    case VL_TEXTURE_DIRECTION_MIX: node.kind = VL_NODE_DIRECTION_MIX, inputs = 2; break;
+    case VL_TEXTURE_CHECKERBOARD: node.kind = VL_NODE_CHECKERBOARD, inputs = 2; break;
+    case VL_TEXTURE_BILERP: node.kind = VL_NODE_BILERP, inputs = 4; break;
+    case VL_TEXTURE_IMAGE: node.kind = VL_NODE_IMAGE; break;
+  }
+  int32_t *slots[4] = {&node.a, &node.b, &node.c, &node.d};
+  vlFloatInput floats[4] = {def->float_a, def->float_b, def->float_c, def->float_d};
+  vlSpectrumInput spectra[4] = {def->spectrum_a, def->spectrum_b, def->spectrum_c, def->spectrum_d};
+  for (int i = 0; i < inputs; i++)
+    if ((*slots[i] = compile_input(c, def, floats[i], spectra[i], role, nesting)) < 0) return *slots[i];
+  if (amount && (node.amount = compile_float(c, def->amount, nesting)) < 0) return node.amount;
+  if (node.kind == VL_NODE_IMAGE) {
+    if ((node.image = image_of(c->world, def, c->error)) < 0) return -1;
+    if (def->spectrum && image_spectrum(c->world, &node, c->error) != VL_OK) return -1;
+  }
+  int32_t n = push_node(c->world, &node);
+  if (n == VL_TEXTURE_NO_MEMORY)
+    vl_fail_memory(c->error);
+  else
+    *memo = n + 1;
+  return n;
+}
+
+/* The memo lives as long as the build. */
+static vlResult with_compile(vlWorld *world, const vlScene *scene, Compile *c, vlError *error) {
+  if (!world->texture_memo) {
+    world->texture_memo = vl_world_block(world, (scene->textures.count + 1) * ROLES, sizeof(int32_t));
+    if (!world->texture_memo) return vl_fail_memory(error);
+    memset(world->texture_memo, 0, (scene->textures.count + 1) * ROLES * sizeof(int32_t));
+  }
+  *c = (Compile){world, scene, world->texture_memo, error};
+  return VL_OK;
+}
+
+vlResult vl_world_float_node(vlWorld *world, const vlScene *scene, vlFloatInput input, int32_t *node, vlError *error) {
+  Compile c;
+  vlError inner;
+  vl_error_clear(&inner);
+  vlResult r = with_compile(world, scene, &c, &inner);
+  if (r == VL_OK && (*node = compile_float(&c, input, 0)) < 0) r = inner.code ? inner.code : VL_ERROR_SCENE;
+  if (r != VL_OK && error) *error = inner;
+  return r;
+}
+
+vlResult vl_world_spectrum_node(vlWorld *world, const vlScene *scene, vlSpectrumInput input, vlSpectrumRole role,
+                                int32_t *node, vlError *error) {
+  Compile c;
+  vlError inner;
+  vl_error_clear(&inner);
+  vlResult r = with_compile(world, scene, &c, &inner);
+  if (r == VL_OK && (*node = compile_spectrum(&c, input, (int)role, 0)) < 0)
+    r = inner.code ? inner.code : VL_ERROR_SCENE;
+  if (r != VL_OK && error) *error = inner;
+  return r;
+}
+
+/* ---- one point, for alpha
+ * ------------------------------------------------------------------------------------------------ */
+
+float vl_texture_float_at(const vlWorld *world, int32_t index, float u, float v, const float p[3]) {
+  const vlTextureNode *node = &world->nodes.items[index];
+  vlTexturePoint at = {u, v, vl_vec3(p[0], p[1], p[2]), vl_vec3(0, 0, 1), 0, 0};
+  switch (node->kind) {
+    case VL_NODE_FLOAT: return node->value;
+    case VL_NODE_SCALE:
+      return vl_texture_float_at(world, node->a, u, v, p) * vl_texture_float_at(world, node->amount, u, v, p);
+    case VL_NODE_MIX: {
+      float t = vl_texture_float_at(world, node->amount, u, v, p);
+      return (1 - t) * vl_texture_float_at(world, node->a, u, v, p) + t * vl_texture_float_at(world, node->b, u, v, p);
+    }
+    case VL_NODE_CHECKERBOARD: {
+      float t = vl_texture_checker(node, at);
+      return (1 - t) * vl_texture_float_at(world, node->a, u, v, p) + t * vl_texture_float_at(world, node->b, u, v, p);
+    }
+    case VL_NODE_BILERP: {
+      vlVec2 st = vl_texture_st(node, at);
+      float a = vl_texture_float_at(world, node->a, u, v, p), b = vl_texture_float_at(world, node->b, u, v, p);
+      float c = vl_texture_float_at(world, node->c, u, v, p), d = vl_texture_float_at(world, node->d, u, v, p);
+      return (1 - st.x) * (1 - st.y) * a + (1 - st.x) * st.y * b + st.x * (1 - st.y) * c + st.x * st.y * d;
+    }
+    case VL_NODE_IMAGE: return vl_texture_image_float(node, world->images.items[node->image].mipmap, at);
+    default: return vl_texture_float_at(world, node->a, u, v, p);
+  }
+}

@@ -1,0 +1,73 @@
+/* world/texture.h: compiled textures: a flat list of nodes, inputs by index (always lower than the node's own). Spectra
+ * are compiled for the place they stand in: an RGB albedo is another spectrum than an RGB illuminant. */
+#ifndef WORLD_TEXTURE_H
+#define WORLD_TEXTURE_H
+
+#include "color/color.h"
+#include "image/mipmap.h"
+
+/* A constant spectrum, ready for 4 channels. In RGB mode kind is always VL_SPECTRAL_RGB. */
+typedef enum vlSpectralKind {
+  VL_SPECTRAL_CONSTANT,
+  VL_SPECTRAL_SIGMOID,
+  VL_SPECTRAL_DENSE,
+  VL_SPECTRAL_RGB
+} vlSpectralKind;
+typedef struct vlSpectral {
+  vlSpectralKind kind;
+  float scale; /* factor on all kinds */
+  vlSigmoid sigmoid;
+  const float *dense; /* VL_LAMBDA_COUNT */
+  float rgb[3];
+} vlSpectral;
+
+typedef enum vlNodeKind {
+  VL_NODE_FLOAT,
+  VL_NODE_SPECTRUM,
+  VL_NODE_SCALE,
+  VL_NODE_MIX,
+  VL_NODE_CHECKERBOARD,
+  VL_NODE_IMAGE,
+  VL_NODE_DIRECTION_MIX,
+  VL_NODE_BILERP
+} vlNodeKind;
+
+typedef struct vlTextureNode {
+  vlNodeKind kind;
+  bool is_spectrum;
+  vlSpectrumRole role;
+  float value;                /* VL_NODE_FLOAT */
+  vlSpectral spectrum;        /* VL_NODE_SPECTRUM; VL_NODE_IMAGE: dense = illuminant of the space for that role */
+  int32_t a, b, c, d, amount; /* inputs, -1 none */
+  float direction[3];
+  uint32_t dimension;
+  int32_t image;
+  vlWrap wrap;
+  vlTextureFilter filter;
+  float scale;
+  bool invert;
+  vlColorSpace space;
+  vlMapping mapping;
+  float su, sv, du, dv;
+  float v1[3], v2[3];
+  float texture_from_world[12];
+} vlTextureNode;
+
+typedef struct vlWorldImage {
+  vlMipmap *mipmap;
+  const char *path; /* with the choices that change the pixels, for reading each file once */
+  vlEncoding encoding;
+  bool encoding_given;
+  float gamma;
+} vlWorldImage;
+
+struct vlWorld;
+/* What push gives when memory is out. */
+enum { VL_TEXTURE_NO_MEMORY = -2 };
+/* Compiles a spectrum for its role; errors as vl_spectrum_dense. */
+vlResult vl_spectral_compile(struct vlWorld *world, const vlSpectrum *spectrum, vlSpectrumRole role, vlSpectral *result,
+                             vlError *error);
+/* A float texture at one point, for alpha (called from the accelerator): uv, world position. Unfiltered. */
+float vl_texture_float_at(const struct vlWorld *world, int32_t node, float u, float v, const float p[3]);
+
+#endif

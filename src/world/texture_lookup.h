@@ -1,0 +1,164 @@
+/* world/texture_lookup.h: one texture point: coordinates, checkerboard, picture with filter. Inline, by value: the
+ * batch evaluator of trace and the alpha test share it. pbrt book 10.2-10.4. */
+#ifndef WORLD_TEXTURE_LOOKUP_H
+#define WORLD_TEXTURE_LOOKUP_H
+
+#include "world/texture.h"
+
+/* Where a texture is asked for: uv, world position and normal, and the footprint: how far uv moves over the width of a
+ * pixel (the larger axis), and that width itself in world units. */
+typedef struct vlTexturePoint {
+  float u, v;
+  vlVec3 p, n;
+  float uv_width;
+  float width;
+} vlTexturePoint;
+
+static inline vlVec3 vl_texture_space(const vlTextureNode *node, vlVec3 p) {
+  const float *m = node->texture_from_world;
+  return vl_vec3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+                 m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]);
+}
+
+static inline vlVec2 vl_texture_st(const vlTextureNode *node, vlTexturePoint at) {
+  if (node->mapping == VL_MAPPING_UV) return (vlVec2){node->su * at.u + node->du, node->sv * at.v + node->dv};
+  vlVec3 q = vl_texture_space(node, at.p);
+  if (node->mapping == VL_MAPPING_PLANAR)
+    return (vlVec2){node->du + q.x * node->v1[0] + q.y * node->v1[1] + q.z * node->v1[2],
+                    node->dv + q.x * node->v2[0] + q.y * node->v2[1] + q.z * node->v2[2]};
+  float phi = vl_atan2(q.y, q.x);
+  phi = phi < 0 ? phi + 2 * VL_PI : phi;
+  if (node->mapping == VL_MAPPING_CYLINDRICAL) return (vlVec2){(VL_PI + phi) * (0.5f * VL_INV_PI), q.z};
+  vlVec3 d = vl_normalize(q);
+  return (vlVec2){vl_acos(vl_clamp(d.z, -1, 1)) * VL_INV_PI, phi * (0.5f * VL_INV_PI)};
+}
+
+/* Width of the footprint in (s, t). */
+static inline float vl_texture_st_width(const vlTextureNode *node, vlTexturePoint at) {
+  float scale = vl_max(vl_abs(node->su), vl_abs(node->sv));
+  if (node->mapping == VL_MAPPING_UV) return at.uv_width * scale;
+  if (node->mapping == VL_MAPPING_PLANAR) {
+    float a = node->v1[0] * node->v1[0] + node->v1[1] * node->v1[1] + node->v1[2] * node->v1[2];
+    float b = node->v2[0] * node->v2[0] + node->v2[1] * node->v2[1] + node->v2[2] * node->v2[2];
+    return at.width * __builtin_sqrtf(vl_max(a, b));
+  }
+  return 0;
+}
+
+/* Share of the second texture, 0 or 1 (pbrt filters checks only over ray differentials; the samples of a pixel do it
+ * here). */
+static inline float vl_texture_checker(const vlTextureNode *node, vlTexturePoint at) {
+  if (node->dimension == 3) {
+    vlVec3 q = vl_texture_space(node, at.p);
+    int64_t sum = (int64_t)__builtin_floorf(q.x) + (int64_t)__builtin_floorf(q.y) + (int64_t)__builtin_floorf(q.z);
+    return sum & 1 ? 1.0f : 0.0f;
+  }
+  vlVec2 st = vl_texture_st(node, at);
+  int64_t sum = (int64_t)__builtin_floorf(st.x) + (int64_t)__builtin_floorf(st.y);
+  return sum & 1 ? 1.0f : 0.0f;
+}
+
+/* ---- pictures ------------------------------------------------------------------------------------------------------
+ */
+
+/* Maps an integer texel coordinate by the wrap mode; -1: outside (black). */
+static inline int32_t vl_wrap_index(int32_t i, int32_t n, vlWrap wrap) {
+  if (i >= 0 && i < n) return i;
+  if (wrap == VL_WRAP_CLAMP) return i < 0 ? 0 : n - 1;
+  if (wrap == VL_WRAP_BLACK) return -1;
+  int32_t m = i % n;
+  return m < 0 ? m + n : m;
+}
+
+typedef struct vlTexel {
+  float c[4];
+} vlTexel;
+
+static inline vlTexel vl_texel(const vlMipmap *mip, uint32_t level, int32_t x, int32_t y, vlWrap wrap) {
+  int32_t w = (int32_t)mip->levels[level].width, h = (int32_t)mip->levels[level].height;
+  if (wrap == VL_WRAP_OCTAHEDRAL) { /* the square's edges fold onto themselves (pbrt book 3.8.3) */
+    if (x < 0)
+      x = -x - 1, y = h - 1 - y;
+    else if (x >= w)
+      x = 2 * w - 1 - x, y = h - 1 - y;
+    if (y < 0)
+      x = w - 1 - x, y = -y - 1;
+    else if (y >= h)
+      x = w - 1 - x, y = 2 * h - 1 - y;
+    wrap = VL_WRAP_CLAMP;
+  }
+  x = vl_wrap_index(x, w, wrap);
+  y = vl_wrap_index(y, h, wrap);
+  vlTexel black = {{0, 0, 0, 0}};
+  if (x < 0 || y < 0) return black;
+  vlTexel t = black;
+  for (uint32_t i = 0; i < mip->channels; i++) t.c[i] = vl_mip_texel(mip, level, (uint32_t)x, (uint32_t)y, i);
+  return t;
+}
+
+static inline int32_t vl_to_index(float x) { /* floor, safe for any float */
+  float f = __builtin_floorf(x);
+  f = f > 1e9f ? 1e9f : f;
+  f = f < -1e9f ? -1e9f : f;
+  return f == f ? (int32_t)f : 0;
+}
+
+/* s, t with (0, 0) the top left corner of the picture. */
+static inline vlTexel vl_bilinear(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap) {
+  float x = s * (float)mip->levels[level].width - 0.5f, y = t * (float)mip->levels[level].height - 0.5f;
+  int32_t xi = vl_to_index(x), yi = vl_to_index(y);
+  float dx = x - (float)xi, dy = y - (float)yi;
+  vlTexel a = vl_texel(mip, level, xi, yi, wrap), b = vl_texel(mip, level, xi + 1, yi, wrap);
+  vlTexel c = vl_texel(mip, level, xi, yi + 1, wrap), d = vl_texel(mip, level, xi + 1, yi + 1, wrap), r;
+  for (int i = 0; i < 4; i++)
+    r.c[i] = (1 - dx) * (1 - dy) * a.c[i] + dx * (1 - dy) * b.c[i] + (1 - dx) * dy * c.c[i] + dx * dy * d.c[i];
+  return r;
+}
+
+static inline vlTexel vl_nearest(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap) {
+  return vl_texel(mip, level, vl_to_index(s * (float)mip->levels[level].width),
+                  vl_to_index(t * (float)mip->levels[level].height), wrap);
+}
+
+/* log2 of a positive float to about 1e-3, for choosing a level. */
+static inline float vl_log2_rough(float x) {
+  return vl_ln(x) * 1.44269504f;
+}
+
+/* A picture texture: t of the texture counts from the bottom, rows from the top. Filter by footprint: point and
+ * bilinear take the finer level (as pbrt), trilinear (and EWA, which is isotropic here) blend two. */
+static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  vlVec2 st = vl_texture_st(node, at);
+  float s = st.x, t = 1.0f - st.y;
+  float width = vl_texture_st_width(node, at);
+  uint32_t last = mip->level_count - 1;
+  float level = (float)last + vl_log2_rough(vl_max(width, 1e-8f));
+  vlTexel r;
+  if (node->filter == VL_FILTER_POINT) {
+    uint32_t l = level <= 0 ? 0 : level >= (float)last ? last : (uint32_t)level;
+    r = vl_nearest(mip, l, s, t, node->wrap);
+  } else if (node->filter == VL_FILTER_BILINEAR || level <= 0 || level >= (float)last) {
+    uint32_t l = level <= 0 ? 0 : level >= (float)last ? last : (uint32_t)level;
+    r = vl_bilinear(mip, l, s, t, node->wrap);
+  } else {
+    uint32_t l = (uint32_t)level;
+    float f = level - (float)l;
+    vlTexel a = vl_bilinear(mip, l, s, t, node->wrap), b = vl_bilinear(mip, l + 1, s, t, node->wrap);
+    for (int i = 0; i < 4; i++) r.c[i] = (1 - f) * a.c[i] + f * b.c[i];
+  }
+  for (int i = 0; i < 4; i++) {
+    float x = r.c[i] * node->scale;
+    x = node->invert ? 1.0f - x : x;
+    r.c[i] = x < 0.0f ? 0.0f : x;
+  }
+  return r;
+}
+
+/* Float from a picture: grey as it is, colour by its mean, four channels by their alpha (pbrt's rule). */
+static inline float vl_texture_image_float(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  vlTexel t = vl_texture_image(node, mip, at);
+  uint32_t channels = mip->channels;
+  return channels == 1 ? t.c[0] : channels == 4 ? t.c[3] : (t.c[0] + t.c[1] + t.c[2]) * (1.0f / 3.0f);
+}
+
+#endif

@@ -1,0 +1,147 @@
+/* world/world.h: the compiled world: flat, constant, index-based. Built from a scene (build.c), read by trace. Nothing
+ * here changes while rendering.
+ *
+ * A surface point is named by (shape, prim, instance): shape indexes world->shapes, prim the face in it, instance
+ * world->instances or VL_NONE. Shapes of the world itself hold world-space vertices; shapes of groups hold group space.
+ */
+#ifndef WORLD_WORLD_H
+#define WORLD_WORLD_H
+
+#include "base/array.h"
+#include "color/color.h"
+#include "velo/render.h"
+#include "world/accel.h"
+#include "world/coat.h"
+#include "world/texture.h"
+
+/* ---- shapes --------------------------------------------------------------------------------------------------------
+ */
+
+typedef struct vlWorldShape {
+  vlShapeKind kind;
+  uint32_t material;    /* index into materials */
+  uint32_t first_light; /* light of prim 0; prim i has first_light + i; VL_NONE */
+  int32_t alpha;        /* texture node, -1: opaque */
+  bool flip;            /* the geometric normal of face order is to be flipped (reverse orientation xor mirrored) */
+  bool pass_shadow;     /* interface material: shadow rays pass */
+  /* triangles (3 indices a face) and bilinear patches (4): positions end in 16 spare bytes for Embree */
+  uint32_t vertices, faces;
+  float *positions, *normals, *tangents, *uvs;
+  uint32_t *indices;
+  /* sphere, disk, cylinder: parameters as in vlShapeDef, and the affine maps, row-major 3x4 */
+  float radius, inner_radius, z_min, z_max, phi_max, height;
+  double from_shape[12], to_shape[12]; /* group space <-> shape space */
+} vlWorldShape;
+
+typedef struct vlWorldGroup {
+  uint32_t *shapes; /* world shape index of each Embree geometry id */
+  uint32_t count;
+} vlWorldGroup;
+
+typedef struct vlWorldInstance {
+  uint32_t group;
+  bool mirrored;
+  float from_group[12], to_group[12];
+} vlWorldInstance;
+
+/* ---- materials -----------------------------------------------------------------------------------------------------
+ */
+
+typedef struct vlWorldMaterial {
+  vlMaterialKind kind;
+  int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
+  int32_t u_roughness, v_roughness, amount; /* float nodes */
+  uint32_t mix[2];
+  bool remap, use_reflectance;
+  bool dispersive;      /* dielectrics: eta varies with wavelength */
+  float eta_s;          /* dielectrics with one eta */
+  int32_t displacement; /* float node, -1 */
+  int32_t normal_map;   /* image index, -1 */
+  vlCoatTable *coat;    /* may be shared; the owner frees it */
+  bool owns_coat;
+  uint32_t coat_depth;
+} vlWorldMaterial;
+
+/* ---- lights --------------------------------------------------------------------------------------------------------
+ */
+
+typedef struct vlEmitted {
+  vlSpectral spectrum; /* normalised and scaled */
+  int32_t image; /* over uv (area) or directions (infinite), -1; then spectrum is the illuminant's normalised shape */
+  float image_scale;
+  vlColorSpace space;
+  bool two_sided;
+} vlEmitted;
+
+typedef enum vlWorldLightKind { VL_WL_POINT, VL_WL_SPOT, VL_WL_DISTANT, VL_WL_INFINITE, VL_WL_AREA } vlWorldLightKind;
+
+typedef struct vlWorldLight {
+  vlWorldLightKind kind;
+  uint32_t emitted;         /* index into emitted */
+  uint32_t shape, prim;     /* area */
+  float area;               /* area: of the primitive, in the world */
+  float position[3];        /* point, spot */
+  float direction[3];       /* spot: axis away from the light; distant: towards the light */
+  float cos_start, cos_end; /* spot: full inside start, nothing outside end */
+  uint32_t environment;     /* infinite with a picture: index; VL_NONE: uniform */
+  float power;              /* for choosing: watts-like, luminance */
+} vlWorldLight;
+
+/* A picture of the sky in pbrt's equal-area octahedral square, with a distribution over its texels. */
+typedef struct vlEnvironment {
+  int32_t image;
+  uint32_t size;                                  /* of the distribution: size x size cells */
+  float *conditional_cdf;                         /* size rows of size + 1 */
+  float *marginal_cdf;                            /* size + 1 */
+  float *pdf;                                     /* size * size: density over the unit square */
+  float light_from_world[9], world_from_light[9]; /* rotations, row-major */
+} vlEnvironment;
+
+#include "world/light_tree.h"
+
+/* ---- the whole ------------------------------------------------------------------------------------------------------
+ */
+
+struct vlWorld {
+  vlContext *context;
+  vlBuildDef def;
+  VL_ARRAY(vlWorldShape) shapes;
+  VL_ARRAY(vlWorldGroup) groups; /* 0: the world itself */
+  VL_ARRAY(vlWorldInstance) instances;
+  VL_ARRAY(vlWorldMaterial) materials;
+  VL_ARRAY(vlTextureNode) nodes;
+  VL_ARRAY(vlWorldImage) images;
+  VL_ARRAY(vlEmitted) emitted;
+  VL_ARRAY(vlWorldLight) lights;
+  VL_ARRAY(uint32_t) infinite_lights; /* indices of lights that a missing ray sees */
+  VL_ARRAY(vlEnvironment) environments;
+  VL_ARRAY(void *) blocks; /* dense spectra and the like */
+  int32_t *texture_memo;   /* while building: scene texture and role -> node */
+  uint32_t *rank;          /* of materials: those of one kind together */
+  bool has_interfaces;
+  vlSpectral white; /* radiance that shows as white */
+  vlLightTree tree;
+  vlAccel accel;
+  float bounds_min[3], bounds_max[3], center[3], radius; /* of all surfaces; a sphere round them */
+  vlWorldInfo info;
+};
+
+/* The compiled form of a build in progress; each adds to the world and fails with the place. */
+vlResult vl_world_float_node(vlWorld *world, const struct vlScene *scene, vlFloatInput input, int32_t *node,
+                             vlError *error);
+vlResult vl_world_spectrum_node(vlWorld *world, const struct vlScene *scene, vlSpectrumInput input, vlSpectrumRole role,
+                                int32_t *node, vlError *error);
+/* Reads a picture (or takes the one given); encoding null: the file's own. Index, or -1 with the error set. */
+int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
+                           float gamma, bool pyramid, vlError *error);
+vlResult vl_world_add_materials(vlWorld *world, const struct vlScene *scene, vlError *error);
+vlResult vl_world_add_shapes(vlWorld *world, const struct vlScene *scene, vlError *error);
+vlResult vl_world_add_lights(vlWorld *world, const struct vlScene *scene, vlError *error);
+
+/* Area of one primitive in the space its vertices are in (with from_group where an instance places it). */
+float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim);
+void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3], float high[3]);
+/* A new block owned by the world, or null. */
+void *vl_world_block(vlWorld *world, size_t count, size_t size);
+
+#endif

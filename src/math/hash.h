@@ -22,7 +22,7 @@ static inline uint32_t vl_hash3(uint32_t a, uint32_t b, uint32_t c) {
 }
 /* 24 random bits to [0, 1). */
 static inline float vl_unit_float(uint32_t bits) {
-  return (float)(bits >> 8) * 0x1p-24f;
+  return (float)(int32_t)(bits >> 8) * 0x1p-24f; /* signed: one instruction on every set */
 }
 
 #endif

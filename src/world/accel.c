@@ -337,6 +337,7 @@ static void fill_ray(struct RTCRay *q, const vlRays *r, uint32_t i) {
 
 void vl_accel_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
                       uint32_t *prim, uint32_t *instance) {
+  if (world->accel.log) world->accel.log(world->accel.log_user, coherent ? 0 : 1, n, rays);
   if (coherent) {
     closest_16(world, n, rays, shape, prim, instance);
     return;
@@ -356,6 +357,7 @@ void vl_accel_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool
 }
 
 void vl_accel_occluded(const vlWorld *world, uint32_t n, const vlRays *rays, uint8_t *occluded) {
+  if (world->accel.log) world->accel.log(world->accel.log_user, 2, n, rays);
 #if VELO_EMBREE_MAJOR < 4
   struct RTCIntersectContext context;
   rtcInitIntersectContext(&context);

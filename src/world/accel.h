@@ -9,20 +9,24 @@
 
 struct vlWorld;
 
+/* World-space rays, structure of arrays. */
+typedef struct vlRays {
+  const float *ox, *oy, *oz, *dx, *dy, *dz;
+  const float *t_min, *t_max; /* null: 0, infinity */
+} vlRays;
+
+/* For benchmarks: told of every batch of rays before it is traced. kind: 0 coherent closest, 1 closest, 2 occluded. */
+typedef void vlRayLogFn(void *user, int kind, uint32_t n, const vlRays *rays);
+
 typedef struct vlAccel {
   void *device;  /* RTCDevice */
   void *scene;   /* RTCScene: the world */
   void **groups; /* RTCScene of each group with index >= 1 */
   uint32_t group_count;
   void *user_data; /* blocks of AccelGeometry */
-  bool robust;
+  vlRayLogFn *log; /* null but in benchmarks */
+  void *log_user;
 } vlAccel;
-
-/* World-space rays, structure of arrays. */
-typedef struct vlRays {
-  const float *ox, *oy, *oz, *dx, *dy, *dz;
-  const float *t_min, *t_max; /* null: 0, infinity */
-} vlRays;
 
 vlResult vl_accel_build(struct vlWorld *world, vlError *error);
 void vl_accel_destroy(vlContext *context, vlAccel *accel);

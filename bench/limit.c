@@ -1,0 +1,298 @@
+/* bench/limit.c: how near the renderer comes to what Embree allows. A diffuse scene of a million triangles is rendered
+ * with every ray recorded; then the same rays go through bare Embree calls (packets for camera rays, single calls for
+ * the others, as the renderer does); then the renderer is timed. B = traced rays a second / Embree's rays a second,
+ * both on all threads, medians of several rounds taken in turn. */
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#if VELO_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include "base/context.h"
+#include "base/file.h"
+#include "math/hash.h"
+#include "velo/velo.h"
+#include "world/world.h"
+
+enum { ROUNDS = 5, SPHERES = 64, RINGS = 88, SEGMENTS = 90, SIZE = 512 };
+
+/* ---- the scene: lumpy spheres in a room with a lamp
+ * ------------------------------------------------------------------- */
+
+static vlMaterialId diffuse(vlScene *scene, float r, float g, float b) {
+  vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
+  def.reflectance = vl_spectrum_input(vl_spectrum_rgb(r, g, b));
+  return vl_scene_add_material(scene, &def);
+}
+
+static void add_sphere(vlScene *scene, int which, vlMaterialId material) {
+  static float positions[(RINGS + 1) * (SEGMENTS + 1) * 3];
+  static uint32_t indices[RINGS * SEGMENTS * 6];
+  float cx = (float)(which % 4) * 2.2f - 3.3f, cy = (float)(which / 4 % 4) * 2.2f - 3.3f,
+        cz = (float)(which / 16) * 2.2f - 3.3f;
+  uint32_t v = 0, t = 0;
+  for (int i = 0; i <= RINGS; i++)
+    for (int j = 0; j <= SEGMENTS; j++) {
+      float theta = (float)M_PI * (float)i / RINGS, phi = 2 * (float)M_PI * (float)(j % SEGMENTS) / SEGMENTS;
+      float r = 0.8f + 0.1f * sinf(7 * theta + (float)which) * cosf(9 * phi) +
+                0.02f * vl_unit_float(vl_hash3((uint32_t)i, (uint32_t)(j % SEGMENTS), (uint32_t)which));
+      positions[v++] = cx + r * sinf(theta) * cosf(phi);
+      positions[v++] = cy + r * sinf(theta) * sinf(phi);
+      positions[v++] = cz + r * cosf(theta);
+    }
+  for (uint32_t i = 0; i < RINGS; i++)
+    for (uint32_t j = 0; j < SEGMENTS; j++) {
+      uint32_t a = i * (SEGMENTS + 1) + j, b = a + SEGMENTS + 1;
+      uint32_t f[6] = {a, b, a + 1, a + 1, b, b + 1};
+      memcpy(indices + t, f, sizeof f);
+      t += 6;
+    }
+  vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  shape.material = material;
+  shape.vertices = (RINGS + 1) * (SEGMENTS + 1);
+  shape.faces = t / 3;
+  shape.positions = positions;
+  shape.indices = indices;
+  vl_scene_add_shape(scene, &shape);
+}
+
+static void add_quad(vlScene *scene, const float p[12], vlMaterialId material, vlEmissionId emission) {
+  static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+  vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  shape.material = material;
+  shape.emission = emission;
+  shape.vertices = 4;
+  shape.faces = 2;
+  shape.positions = p;
+  shape.indices = indices;
+  vl_scene_add_shape(scene, &shape);
+}
+
+static void build_scene(vlScene *scene) {
+  vlMaterialId grey = diffuse(scene, 0.7f, 0.7f, 0.7f), red = diffuse(scene, 0.6f, 0.2f, 0.15f),
+               blue = diffuse(scene, 0.2f, 0.3f, 0.6f);
+  for (int i = 0; i < SPHERES; i++) add_sphere(scene, i, i % 3 == 0 ? grey : i % 3 == 1 ? red : blue);
+  vlEmissionDef lamp = vl_default_emission_def();
+  lamp.radiance = vl_spectrum_rgb(12, 12, 12);
+  vlEmissionId glow = vl_scene_add_emission(scene, &lamp), none = {0};
+  const float w = 5.5f;
+  const float walls[5][12] = {{-w, -w, -w, w, -w, -w, w, -w, w, -w, -w, w},
+                              {-w, w, -w, -w, w, w, w, w, w, w, w, -w},
+                              {-w, -w, -w, -w, -w, w, -w, w, w, -w, w, -w},
+                              {w, -w, -w, w, w, -w, w, w, w, w, -w, w},
+                              {-w, -w, -w, -w, w, -w, w, w, -w, w, -w, -w}};
+  for (int i = 0; i < 5; i++) add_quad(scene, walls[i], i == 2 ? red : i == 3 ? blue : grey, none);
+  const float top[12] = {-2, 5.4f, -2, 2, 5.4f, -2, 2, 5.4f, 2, -2, 5.4f, 2};
+  add_quad(scene, top, grey, glow);
+}
+
+/* ---- the record
+ * --------------------------------------------------------------------------------------------------------- */
+
+typedef struct Chunk {
+  int kind;
+  uint32_t n;
+  float *ray[8]; /* o, d, t_min, t_max */
+} Chunk;
+
+typedef struct Record {
+  pthread_mutex_t mutex;
+  Chunk *chunks;
+  size_t count, capacity;
+  uint64_t rays[3];
+} Record;
+
+static void record(void *user, int kind, uint32_t n, const vlRays *rays) {
+  Record *r = user;
+  if (n == 0) return;
+  Chunk c = {kind, n, {NULL}};
+  const float *source[8] = {rays->ox, rays->oy, rays->oz, rays->dx, rays->dy, rays->dz, rays->t_min, rays->t_max};
+  for (int k = 0; k < 8; k++) {
+    c.ray[k] = malloc(n * sizeof(float));
+    for (uint32_t i = 0; i < n; i++) c.ray[k][i] = source[k] ? source[k][i] : k == 6 ? 0.0f : INFINITY;
+  }
+  pthread_mutex_lock(&r->mutex);
+  if (r->count == r->capacity)
+    r->chunks = realloc(r->chunks, (r->capacity = 2 * r->capacity + 1024) * sizeof *r->chunks);
+  r->chunks[r->count++] = c;
+  r->rays[kind] += n;
+  pthread_mutex_unlock(&r->mutex);
+}
+
+/* ---- bare Embree
+ * ----------------------------------------------------------------------------------------------------------- */
+
+typedef struct Bare {
+  const Record *record;
+  RTCScene scene;
+  int only; /* kind, -1: all */
+  uint64_t sum[64];
+} Bare;
+
+#if VELO_EMBREE_MAJOR >= 4
+#define CONTEXT
+#define ARGUMENT(ray) , (ray), NULL
+#else
+#define CONTEXT                       \
+  struct RTCIntersectContext context; \
+  rtcInitIntersectContext(&context);
+#define ARGUMENT(ray) , &context, (ray)
+#endif
+
+static uint64_t bare_packets(RTCScene scene, const Chunk *c) {
+  CONTEXT
+#if VELO_EMBREE_MAJOR < 4
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+#endif
+  uint64_t sum = 0;
+  for (uint32_t first = 0; first < c->n; first += 16) {
+    struct RTCRayHit16 q;
+    int valid[16] __attribute__((aligned(64)));
+    for (uint32_t k = 0; k < 16; k++) {
+      uint32_t i = first + k < c->n ? first + k : c->n - 1;
+      valid[k] = first + k < c->n ? -1 : 0;
+      q.ray.org_x[k] = c->ray[0][i], q.ray.org_y[k] = c->ray[1][i], q.ray.org_z[k] = c->ray[2][i];
+      q.ray.dir_x[k] = c->ray[3][i], q.ray.dir_y[k] = c->ray[4][i], q.ray.dir_z[k] = c->ray[5][i];
+      q.ray.tnear[k] = c->ray[6][i], q.ray.tfar[k] = c->ray[7][i];
+      q.ray.time[k] = 0, q.ray.mask[k] = (unsigned)-1, q.ray.flags[k] = 0;
+      q.hit.geomID[k] = q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect16(valid, scene ARGUMENT(&q));
+    for (uint32_t k = 0; k < 16; k++) sum += q.hit.primID[k];
+  }
+  return sum;
+}
+
+static uint64_t bare_single(RTCScene scene, const Chunk *c) {
+  CONTEXT
+  uint64_t sum = 0;
+  for (uint32_t i = 0; i < c->n; i++) {
+    struct RTCRayHit q;
+    q.ray.org_x = c->ray[0][i], q.ray.org_y = c->ray[1][i], q.ray.org_z = c->ray[2][i];
+    q.ray.dir_x = c->ray[3][i], q.ray.dir_y = c->ray[4][i], q.ray.dir_z = c->ray[5][i];
+    q.ray.tnear = c->ray[6][i], q.ray.tfar = c->ray[7][i];
+    q.ray.time = 0, q.ray.mask = (unsigned)-1, q.ray.id = 0, q.ray.flags = 0;
+    q.hit.geomID = q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    if (c->kind == 2) {
+      rtcOccluded1(scene ARGUMENT(&q.ray));
+      sum += q.ray.tfar < 0;
+    } else {
+      rtcIntersect1(scene ARGUMENT(&q));
+      sum += q.hit.primID;
+    }
+  }
+  return sum;
+}
+
+static void bare_chunk(void *user, uint32_t index, uint32_t worker) {
+  Bare *b = user;
+  const Chunk *c = &b->record->chunks[index];
+  if (b->only >= 0 && c->kind != b->only) return;
+  unsigned state = vl_accel_enter();
+  b->sum[worker & 63] += c->kind == 0 ? bare_packets(b->scene, c) : bare_single(b->scene, c);
+  vl_accel_leave(state);
+}
+
+static double time_bare(vlContext *context, const Record *r, RTCScene scene, int only) {
+  Bare b = {r, scene, only, {0}};
+  double start = vl_seconds();
+  vl_parallel_for(context, (uint32_t)r->count, bare_chunk, &b);
+  return vl_seconds() - start;
+}
+
+/* ---- the renderer
+ * ------------------------------------------------------------------------------------------------------------ */
+
+static vlRenderStats render_once(vlContext *context, const vlWorld *world, const vlCamera *camera, uint32_t spp) {
+  vlFilmDef film_def = vl_default_film_def(camera->width, camera->height);
+  vlFilm *film = NULL;
+  vlRenderStats stats;
+  memset(&stats, 0, sizeof stats);
+  if (vl_film_create(context, &film_def, &film) != VL_OK) exit(1);
+  vlRenderDef def = vl_default_render_def();
+  def.spp = spp;
+  def.max_depth = 8;
+  if (vl_render(world, camera, film, &def, &stats, NULL) != VL_OK) exit(1);
+  vl_film_destroy(film);
+  return stats;
+}
+
+static int compare(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return x < y ? -1 : x > y;
+}
+static double median(double *x, int n) {
+  qsort(x, (size_t)n, sizeof *x, compare);
+  return x[n / 2];
+}
+
+int main(int argc, char **argv) {
+  uint32_t spp = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 4;
+  vlContext *context = NULL;
+  vlScene *scene = NULL;
+  vlWorld *world = NULL;
+  vlError error;
+  vlContextDef context_def = vl_default_context_def();
+  if (getenv("THREADS")) context_def.threads = (uint32_t)strtoul(getenv("THREADS"), NULL, 10);
+  if (vl_context_create(&context_def, &context) != VL_OK || vl_scene_create(context, &scene) != VL_OK) return 1;
+  build_scene(scene);
+  if (vl_world_build(scene, NULL, &world, &error) != VL_OK) {
+    fprintf(stderr, "limit: %s\n", error.message);
+    return 1;
+  }
+  vlCameraDef camera_def = vl_default_camera_def(SIZE, SIZE);
+  double eye[3] = {0, 0.5, 16}, lookat[3] = {0, 0, 0};
+  memcpy(camera_def.eye, eye, sizeof eye);
+  memcpy(camera_def.lookat, lookat, sizeof lookat);
+  camera_def.fov = 0.7;
+  vlCamera camera;
+  if (vl_camera_make(&camera_def, &camera, NULL, &error) != VL_OK) {
+    fprintf(stderr, "limit: %s\n", error.message);
+    return 1;
+  }
+  vlWorldInfo info;
+  vl_world_info(world, &info);
+  static const char *const names[3] = {"camera, in sixteens", "bounce", "shadow"};
+  Record log = {.mutex = PTHREAD_MUTEX_INITIALIZER};
+  world->accel.log = record;
+  world->accel.log_user = &log;
+  vlRenderStats first = render_once(context, world, &camera, spp);
+  world->accel.log = NULL;
+  uint64_t rays = log.rays[0] + log.rays[1] + log.rays[2];
+  printf("%llu triangles, %u x %u pixels, %u spp, %u threads: %.2f M paths, %.2f rays a path\n",
+         (unsigned long long)info.triangles, SIZE, SIZE, spp, vl_context_threads(context), 1e-6 * (double)first.paths,
+         (double)rays / (double)first.paths);
+  double bare[ROUNDS], ours[ROUNDS];
+  for (int i = 0; i < ROUNDS; i++) {
+    bare[i] = time_bare(context, &log, world->accel.scene, -1);
+    ours[i] = render_once(context, world, &camera, spp).seconds;
+  }
+  double b = median(bare, ROUNDS), o = median(ours, ROUNDS);
+  for (int kind = 0; kind < 3; kind++) {
+    double t[3];
+    for (int i = 0; i < 3; i++) t[i] = time_bare(context, &log, world->accel.scene, kind);
+    double m = median(t, 3);
+    printf("Embree %-20s %9.3f M rays %8.3f s %8.2f M rays/s %5.1f %% of the render's time\n", names[kind],
+           1e-6 * (double)log.rays[kind], m, 1e-6 * (double)log.rays[kind] / m, 100 * m / o);
+  }
+  printf("Embree %-20s %9.3f M rays %8.3f s %8.2f M rays/s\n", "all", 1e-6 * (double)rays, b, 1e-6 * (double)rays / b);
+  printf(
+      "velo   %-20s %9.3f M rays %8.3f s %8.2f M rays/s %8.2f M paths/s; shading and all else %.0f ns a ray and "
+      "thread\n",
+      "all", 1e-6 * (double)rays, o, 1e-6 * (double)rays / o, 1e-6 * (double)first.paths / o,
+      1e9 * (o - b) * vl_context_threads(context) / (double)rays);
+  printf("B = %.2f\n", b / o);
+  vl_world_destroy(world);
+  vl_scene_destroy(scene);
+  for (size_t i = 0; i < log.count; i++)
+    for (int k = 0; k < 8; k++) free(log.chunks[i].ray[k]);
+  free(log.chunks);
+  vl_context_destroy(context);
+  return 0;
+}

@@ -702,6 +702,16 @@ static bool finish(vlImport *import) {
   if (import->medium_name && !vl_names_find(&import->media, import->medium_name, &index))
     return vl_import_fail(import, VL_ERROR_SCENE, import->medium_place, "there is no medium \"%.80s\"",
                           import->medium_name);
+  /* pbrt's surface integrators do as if there were no media, and warn. */
+  const vlChoice *integrator = &import->integrator;
+  if (import->medium_name && integrator->given &&
+      (strcmp(integrator->kind, "path") == 0 || strcmp(integrator->kind, "simplepath") == 0 ||
+       strcmp(integrator->kind, "raycast") == 0 || strcmp(integrator->kind, "ambientocclusion") == 0)) {
+    vl_import_warn(import, VL_LOG_WARNING, import->medium_place,
+                   "integrator \"%s\" looks past participating media (here \"%.60s\"), as in pbrt", integrator->kind,
+                   import->medium_name);
+    return true;
+  }
   if (import->medium_name)
     return vl_import_unsupported(import, import->medium_place,
                                  "participating media (here \"%.60s\") are not understood yet", import->medium_name);

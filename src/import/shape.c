@@ -3,12 +3,14 @@
 #include <string.h>
 
 #include "import/builder.h"
+#include "import/loop.h"
 #include "import/ply.h"
 
 static const double degrees = 0.017453292519943295;
-static const char *const kinds[] = {"trianglemesh", "bilinearmesh", "plymesh", "sphere", "disk", "cylinder"};
-static const char *const later[] = {"curve", "loopsubdiv"};
-enum { KINDS = 6, LATER = 2, TRIANGLES = 0, BILINEAR = 1, PLY = 2, SPHERE = 3, DISK = 4, CYLINDER = 5 };
+static const char *const kinds[] = {"trianglemesh", "bilinearmesh", "plymesh",   "sphere",
+                                    "disk",         "cylinder",     "loopsubdiv"};
+static const char *const later[] = {"curve"};
+enum { KINDS = 7, LATER = 1, TRIANGLES = 0, BILINEAR = 1, PLY = 2, SPHERE = 3, DISK = 4, CYLINDER = 5, LOOP = 6 };
 
 /* Takes the array out of the parameter: a block of the context without slack. */
 static bool take_floats(vlImport *import, vlParam *p, const float **result) {
@@ -98,6 +100,38 @@ static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
          vl_import_unsupported(import, emission->place, "%s: \"emissionfilename\" is not understood yet", dict->what);
 }
 
+static void free_arrays(vlImport *import, const vlShapeDef *def) {
+  const void *blocks[5] = {def->positions, def->normals, def->tangents, def->uvs, def->indices};
+  for (int i = 0; i < 5; i++) {
+    void *block;
+    memcpy(&block, &blocks[i], sizeof block);
+    vl_free(import->context, block);
+  }
+}
+
+/* A control mesh, subdivided to its limit. */
+static bool read_loop(vlDict *dict, vlShapeDef *def) {
+  vlImport *import = dict->import;
+  uint32_t levels = 3;
+  const char *scheme = "loop";
+  vl_dict_count(dict, "levels", 0, &levels);
+  vl_dict_string(dict, "scheme", &scheme); /* pbrt reads it, too, and knows one only */
+  if (!read_mesh(dict, def, 3)) return false;
+  vlLoopMesh mesh;
+  vlError error = {0};
+  vlResult result = vl_loop_subdivide(import->context, def->vertices, def->positions, def->faces, def->indices, levels,
+                                      &mesh, &error);
+  if (result != VL_OK) return vl_import_fail(import, result, dict->place, "%s: %s", dict->what, error.message);
+  free_arrays(import, def);
+  def->uvs = def->tangents = NULL;
+  def->vertices = mesh.vertices;
+  def->faces = mesh.faces;
+  def->positions = mesh.positions;
+  def->normals = mesh.normals;
+  def->indices = mesh.indices;
+  return true;
+}
+
 static bool read_quadric(vlDict *dict, vlShapeDef *def, int kind) {
   double phi_max = 360.0;
   vl_dict_float(dict, "radius", &def->radius);
@@ -122,15 +156,6 @@ static bool read_quadric(vlDict *dict, vlShapeDef *def, int kind) {
 
 /* ---- shapes enter
  * ---------------------------------------------------------------------------------------------------- */
-
-static void free_arrays(vlImport *import, const vlShapeDef *def) {
-  const void *blocks[5] = {def->positions, def->normals, def->tangents, def->uvs, def->indices};
-  for (int i = 0; i < 5; i++) {
-    void *block;
-    memcpy(&block, &blocks[i], sizeof block);
-    vl_free(import->context, block);
-  }
-}
 
 /* The def's arrays are given away. */
 static bool add(vlImport *import, const vlShapeDef *def, const vlShapeLink *link) {
@@ -231,7 +256,8 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
     return vl_import_unknown(import, s->place, "shape", s->names[0], kinds, KINDS, later,
                              LATER); /* permissive: left out */
   static const vlShapeKind shape_kinds[KINDS] = {VL_SHAPE_TRIANGLES, VL_SHAPE_BILINEAR, VL_SHAPE_TRIANGLES,
-                                                 VL_SHAPE_SPHERE,    VL_SHAPE_DISK,     VL_SHAPE_CYLINDER};
+                                                 VL_SHAPE_SPHERE,    VL_SHAPE_DISK,     VL_SHAPE_CYLINDER,
+                                                 VL_SHAPE_TRIANGLES};
   vlShapeDef def = vl_default_shape_def(shape_kinds[kind]);
   vlShapeLink link = {.material = import->state.material,
                       .material_name = import->state.material_name,
@@ -252,8 +278,9 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
     vlPlyMesh mesh = {0};
     return read_ply(&dict, &mesh) && add_ply(import, &mesh, &def, &link);
   }
-  bool fine = kind == TRIANGLES || kind == BILINEAR ? read_mesh(&dict, &def, kind == TRIANGLES ? 3 : 4)
-                                                    : read_quadric(&dict, &def, kind);
+  bool fine = kind == LOOP     ? read_loop(&dict, &def)
+              : kind >= SPHERE ? read_quadric(&dict, &def, kind)
+                               : read_mesh(&dict, &def, kind == TRIANGLES ? 3 : 4);
   fine = fine && vl_dict_done(&dict);
   if (fine) return add(import, &def, &link);
   free_arrays(import, &def);

@@ -1,0 +1,65 @@
+/* test/api/test_threads.c: one world shared by renders on several threads of the caller, each with workers of its own:
+ * for the thread sanitizer, and the bits must not care. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+/* cmocka wants these four before it */
+#include <cmocka.h>
+#include <pthread.h>
+
+#include "api/small_world.h"
+
+typedef struct Job {
+  vlContext *context;
+  const vlWorld *world;
+  vlImage *image;
+} Job;
+
+static void *render_one(void *argument) {
+  Job *job = argument;
+  vlCamera camera;
+  vlFilm *film = NULL;
+  vlFilmDef film_def = vl_default_film_def(SMALL_WIDTH, SMALL_HEIGHT);
+  vlDevelopDef develop = vl_default_develop_def();
+  vlRenderDef render = vl_default_render_def();
+  render.spp = 2;
+  if (small_camera(&camera) == VL_OK && vl_film_create(job->context, &film_def, &film) == VL_OK &&
+      vl_render(job->world, &camera, film, &render, NULL, NULL) == VL_OK)
+    vl_film_develop(film, &develop, &job->image);
+  vl_film_destroy(film);
+  return NULL;
+}
+
+static void a_world_is_shared(void **state) {
+  (void)state;
+  vlContextDef def = vl_default_context_def();
+  def.threads = 3;
+  vlContext *context = NULL;
+  assert_int_equal(vl_context_create(&def, &context), VL_OK);
+  vlBuildDef build = vl_default_build_def();
+  vlScene *scene = NULL;
+  vlWorld *world = NULL;
+  vlError error;
+  assert_int_equal(vl_scene_create(context, &scene), VL_OK);
+  small_scene(scene);
+  assert_int_equal(vl_world_build(scene, &build, &world, &error), VL_OK);
+  vl_scene_destroy(scene);
+  Job jobs[2] = {{context, world, NULL}, {context, world, NULL}};
+  pthread_t threads[2];
+  for (int i = 0; i < 2; i++) assert_int_equal(pthread_create(&threads[i], NULL, render_one, &jobs[i]), 0);
+  for (int i = 0; i < 2; i++) pthread_join(threads[i], NULL);
+  assert_non_null(jobs[0].image);
+  assert_non_null(jobs[1].image);
+  assert_memory_equal(vl_image_const_pixels(jobs[0].image), vl_image_const_pixels(jobs[1].image),
+                      (size_t)SMALL_WIDTH * SMALL_HEIGHT * vl_image_channels(jobs[0].image) * sizeof(float));
+  for (int i = 0; i < 2; i++) vl_image_destroy(jobs[i].image);
+  vl_world_destroy(world);
+  assert_int_equal(vl_context_memory(context, NULL), 0);
+  vl_context_destroy(context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_world_is_shared)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

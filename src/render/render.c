@@ -23,7 +23,7 @@ enum { TILE = 16, TILE_PIXELS = TILE * TILE, MAX_PASS = 16 };
 
 typedef struct Worker {
   vlTraceScratch *scratch;
-  float *rows; /* ROWS arrays of VL_BATCH */
+  float *rows; /* ROWS arrays of VL_ROW_SIZE */
   uint64_t paths, bounce_rays, shadow_rays, not_finite;
   int32_t bad_x, bad_y;
 } Worker;
@@ -88,7 +88,7 @@ typedef struct Render {
 } Render;
 
 static float *row(Worker *w, enum Row r) {
-  return w->rows + (size_t)r * VL_BATCH;
+  return w->rows + (size_t)r * VL_ROW_SIZE;
 }
 
 /* Every second bit of a Morton index. */
@@ -258,7 +258,7 @@ static vlResult make_workers(Render *r, vlContext *context, vlError *error) {
   r->workers = vl_alloc_zero(context, threads, sizeof *r->workers);
   for (uint32_t i = 0; r->workers && i < threads; i++) {
     r->workers[i].scratch = vl_alloc_zero(context, 1, vl_trace_scratch_size());
-    r->workers[i].rows = vl_alloc_zero(context, (size_t)ROWS * VL_BATCH, sizeof(float));
+    r->workers[i].rows = vl_alloc_zero(context, (size_t)ROWS * VL_ROW_SIZE, sizeof(float));
     if (!r->workers[i].scratch || !r->workers[i].rows) return vl_fail_memory(error);
   }
   return r->workers ? VL_OK : vl_fail_memory(error);

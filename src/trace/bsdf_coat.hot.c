@@ -46,9 +46,9 @@ enum { OF_WO, OF_WI, OF_LIGHT }; /* light: a wi that was not sampled here */
 
 /* T at the cosines z; for wo the tables' constants too. Returns the highest K then. */
 static int32_t look_up(const Slice *s, const float *z, Lanes *lanes, float *through, int of) {
-  int32_t place[CHUNK];             /* first of four nodes of T */
-  float at[CHUNK];                  /* place among them */
-  float nodes[CHUNK][4];            /* T there */
+  int32_t place[CHUNK];  /* first of four nodes of T */
+  float at[CHUNK];       /* place among them */
+  float nodes[CHUNK][4]; /* T there */
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {

@@ -254,7 +254,7 @@ static void roughness(Run *r, const vlWorldMaterial *m, int32_t node, float *alp
   }
 }
 
-static void spectrum_rows(Run *r, int32_t node, float rows[4][VL_BATCH]) {
+static void spectrum_rows(Run *r, int32_t node, float rows[4][VL_ROW_SIZE]) {
   float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
   eval_spectrum(r, node, out);
 }

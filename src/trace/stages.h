@@ -3,7 +3,7 @@
  *   vlPaths (rays) -> ids -> sorted by material -> vlSurface -> vlShade (frame, wo, BSDF parameters)
  *          -> light samples -> shadow rays -> radiance;  BSDF samples -> vlPaths of the next bounce
  *
- * Every array has VL_BATCH elements. Elements past n are stale but harmless (finite, indices valid). */
+ * Every array has VL_ROW_SIZE elements. Elements past n are stale but harmless (finite, indices valid). */
 #ifndef TRACE_STAGES_H
 #define TRACE_STAGES_H
 
@@ -15,75 +15,76 @@
 
 /* Paths under way: the ray, what it carries, and what the next hit needs for multiple importance sampling. */
 typedef struct vlPaths {
-  VL_ROW float ox[VL_BATCH], oy[VL_BATCH], oz[VL_BATCH];
-  VL_ROW float dx[VL_BATCH], dy[VL_BATCH], dz[VL_BATCH];
-  VL_ROW float beta[4][VL_BATCH];
-  VL_ROW float lambda[4][VL_BATCH];
-  VL_ROW float pdf[VL_BATCH]; /* of the direction, by the BSDF */
-  VL_ROW float from_nx[VL_BATCH], from_ny[VL_BATCH],
-      from_nz[VL_BATCH]; /* normal where the ray starts, for the light tree */
-  VL_ROW float eta_scale[VL_BATCH];
-  VL_ROW float cone[VL_BATCH];        /* width of the footprint at the ray's start */
-  VL_ROW uint32_t specular[VL_BATCH]; /* the ray came from the camera or a delta: no light sample competes */
-  VL_ROW int32_t px[VL_BATCH], py[VL_BATCH];
-  VL_ROW uint32_t index[VL_BATCH];
-  VL_ROW uint32_t lane[VL_BATCH]; /* which element of the batch */
+  VL_ROW float ox[VL_ROW_SIZE], oy[VL_ROW_SIZE], oz[VL_ROW_SIZE];
+  VL_ROW float dx[VL_ROW_SIZE], dy[VL_ROW_SIZE], dz[VL_ROW_SIZE];
+  VL_ROW float beta[4][VL_ROW_SIZE];
+  VL_ROW float lambda[4][VL_ROW_SIZE];
+  VL_ROW float pdf[VL_ROW_SIZE]; /* of the direction, by the BSDF */
+  VL_ROW float from_nx[VL_ROW_SIZE], from_ny[VL_ROW_SIZE],
+      from_nz[VL_ROW_SIZE]; /* normal where the ray starts, for the light tree */
+  VL_ROW float eta_scale[VL_ROW_SIZE];
+  VL_ROW float cone[VL_ROW_SIZE];        /* width of the footprint at the ray's start */
+  VL_ROW uint32_t specular[VL_ROW_SIZE]; /* the ray came from the camera or a delta: no light sample competes */
+  VL_ROW int32_t px[VL_ROW_SIZE], py[VL_ROW_SIZE];
+  VL_ROW uint32_t index[VL_ROW_SIZE];
+  VL_ROW uint32_t lane[VL_ROW_SIZE]; /* which element of the batch */
 } vlPaths;
 
 typedef struct vlHits {
-  VL_ROW uint32_t shape[VL_BATCH], prim[VL_BATCH], instance[VL_BATCH], material[VL_BATCH];
+  VL_ROW uint32_t shape[VL_ROW_SIZE], prim[VL_ROW_SIZE], instance[VL_ROW_SIZE], material[VL_ROW_SIZE];
 } vlHits;
 
 typedef struct vlSurface {
-  VL_ROW float px[VL_BATCH], py[VL_BATCH], pz[VL_BATCH];
-  VL_ROW float t[VL_BATCH];
-  VL_ROW float gx[VL_BATCH], gy[VL_BATCH], gz[VL_BATCH]; /* geometric normal, unit */
-  VL_ROW float nx[VL_BATCH], ny[VL_BATCH], nz[VL_BATCH]; /* shading normal, unit */
-  VL_ROW float ux[VL_BATCH], uy[VL_BATCH], uz[VL_BATCH]; /* dpdu */
-  VL_ROW float vx[VL_BATCH], vy[VL_BATCH], vz[VL_BATCH]; /* dpdv */
-  VL_ROW float u[VL_BATCH], v[VL_BATCH];
+  VL_ROW float px[VL_ROW_SIZE], py[VL_ROW_SIZE], pz[VL_ROW_SIZE];
+  VL_ROW float t[VL_ROW_SIZE];
+  VL_ROW float gx[VL_ROW_SIZE], gy[VL_ROW_SIZE], gz[VL_ROW_SIZE]; /* geometric normal, unit */
+  VL_ROW float nx[VL_ROW_SIZE], ny[VL_ROW_SIZE], nz[VL_ROW_SIZE]; /* shading normal, unit */
+  VL_ROW float ux[VL_ROW_SIZE], uy[VL_ROW_SIZE], uz[VL_ROW_SIZE]; /* dpdu */
+  VL_ROW float vx[VL_ROW_SIZE], vy[VL_ROW_SIZE], vz[VL_ROW_SIZE]; /* dpdv */
+  VL_ROW float u[VL_ROW_SIZE], v[VL_ROW_SIZE];
   VL_ROW float
-      offset[VL_BATCH]; /* how far along the geometric normal a new ray must start to be clear of the surface */
-  VL_ROW float uv_scale[VL_BATCH]; /* uv per world length */
-  VL_ROW float width[VL_BATCH];    /* of the footprint, world units */
+      offset[VL_ROW_SIZE]; /* how far along the geometric normal a new ray must start to be clear of the surface */
+  VL_ROW float uv_scale[VL_ROW_SIZE]; /* uv per world length */
+  VL_ROW float width[VL_ROW_SIZE];    /* of the footprint, world units */
 } vlSurface;
 
 /* Corners of the triangles of a batch, gathered. */
 typedef struct vlCorners {
-  VL_ROW float p[9][VL_BATCH]; /* x y z of corner 0, 1, 2; world space */
-  VL_ROW float n[9][VL_BATCH]; /* vertex normals, zero without */
-  VL_ROW float uv[6][VL_BATCH];
-  VL_ROW float error[VL_BATCH]; /* bound of the rounding error that instancing put on the corners */
-  VL_ROW float flip[VL_BATCH];  /* 1 or -1 */
+  VL_ROW float p[9][VL_ROW_SIZE]; /* x y z of corner 0, 1, 2; world space */
+  VL_ROW float n[9][VL_ROW_SIZE]; /* vertex normals, zero without */
+  VL_ROW float uv[6][VL_ROW_SIZE];
+  VL_ROW float error[VL_ROW_SIZE]; /* bound of the rounding error that instancing put on the corners */
+  VL_ROW float flip[VL_ROW_SIZE];  /* 1 or -1 */
 } vlCorners;
 
 typedef struct vlShade {
-  VL_ROW float tx[VL_BATCH], ty[VL_BATCH], tz[VL_BATCH]; /* frame: tangent; bitangent = n x t */
-  VL_ROW float bx[VL_BATCH], by[VL_BATCH], bz[VL_BATCH];
-  VL_ROW float wo[3][VL_BATCH]; /* local */
-  VL_ROW float wi[3][VL_BATCH]; /* local: of the light, then of the BSDF sample */
-  VL_ROW float reflectance[4][VL_BATCH], eta[4][VL_BATCH], k[4][VL_BATCH];
-  VL_ROW float alpha_x[VL_BATCH], alpha_y[VL_BATCH], eta_s[VL_BATCH];
-  const vlCoatTable *coat[VL_BATCH];
-  VL_ROW float value[4][VL_BATCH], pdf[VL_BATCH], eta_scale[VL_BATCH];
-  VL_ROW uint32_t flags[VL_BATCH];
-  VL_ROW float u0[VL_BATCH], u1[VL_BATCH], u2[VL_BATCH];
+  VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE], tz[VL_ROW_SIZE]; /* frame: tangent; bitangent = n x t */
+  VL_ROW float bx[VL_ROW_SIZE], by[VL_ROW_SIZE], bz[VL_ROW_SIZE];
+  VL_ROW float wo[3][VL_ROW_SIZE]; /* local */
+  VL_ROW float wi[3][VL_ROW_SIZE]; /* local: of the light, then of the BSDF sample */
+  VL_ROW float reflectance[4][VL_ROW_SIZE], eta[4][VL_ROW_SIZE], k[4][VL_ROW_SIZE];
+  VL_ROW float alpha_x[VL_ROW_SIZE], alpha_y[VL_ROW_SIZE], eta_s[VL_ROW_SIZE];
+  const vlCoatTable *coat[VL_ROW_SIZE];
+  VL_ROW float value[4][VL_ROW_SIZE], pdf[VL_ROW_SIZE], eta_scale[VL_ROW_SIZE];
+  VL_ROW uint32_t flags[VL_ROW_SIZE];
+  VL_ROW float u0[VL_ROW_SIZE], u1[VL_ROW_SIZE], u2[VL_ROW_SIZE];
 } vlShade;
 
 typedef struct vlLightSamples {
-  VL_ROW float wx[VL_BATCH], wy[VL_BATCH], wz[VL_BATCH]; /* towards the light, unit */
-  VL_ROW float tx[VL_BATCH], ty[VL_BATCH], tz[VL_BATCH]; /* point that must be visible */
-  VL_ROW float radiance[4][VL_BATCH];                    /* already divided by the pdf */
-  VL_ROW float pdf[VL_BATCH];                            /* solid angle, choice included; 0: no sample */
-  VL_ROW uint32_t delta[VL_BATCH];                       /* a BSDF sample could not find it */
-  VL_ROW uint32_t distant[VL_BATCH];                     /* the target is infinitely far: t holds the direction */
+  VL_ROW float wx[VL_ROW_SIZE], wy[VL_ROW_SIZE], wz[VL_ROW_SIZE]; /* towards the light, unit */
+  VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE], tz[VL_ROW_SIZE]; /* point that must be visible */
+  VL_ROW float radiance[4][VL_ROW_SIZE];                          /* already divided by the pdf */
+  VL_ROW float pdf[VL_ROW_SIZE];                                  /* solid angle, choice included; 0: no sample */
+  VL_ROW uint32_t delta[VL_ROW_SIZE];                             /* a BSDF sample could not find it */
+  VL_ROW uint32_t distant[VL_ROW_SIZE]; /* the target is infinitely far: t holds the direction */
 } vlLightSamples;
 
 typedef struct vlShadowRays {
-  VL_ROW float ox[VL_BATCH], oy[VL_BATCH], oz[VL_BATCH], dx[VL_BATCH], dy[VL_BATCH], dz[VL_BATCH], t_max[VL_BATCH];
-  VL_ROW float radiance[4][VL_BATCH];
-  VL_ROW uint32_t lane[VL_BATCH];
-  uint8_t occluded[VL_BATCH];
+  VL_ROW float ox[VL_ROW_SIZE], oy[VL_ROW_SIZE], oz[VL_ROW_SIZE], dx[VL_ROW_SIZE], dy[VL_ROW_SIZE], dz[VL_ROW_SIZE],
+      t_max[VL_ROW_SIZE];
+  VL_ROW float radiance[4][VL_ROW_SIZE];
+  VL_ROW uint32_t lane[VL_ROW_SIZE];
+  uint8_t occluded[VL_ROW_SIZE];
 } vlShadowRays;
 
 enum { VL_TEXTURE_ROWS = 64 };
@@ -96,9 +97,9 @@ struct vlTraceScratch {
   vlShade shade;
   vlLightSamples light;
   vlShadowRays shadow;
-  VL_ROW float rows[VL_TEXTURE_ROWS][VL_BATCH]; /* a stack for nested textures */
-  VL_ROW uint32_t order[VL_BATCH];
-  VL_ROW uint32_t slot[VL_BATCH]; /* shading lanes of one material, ... */
+  VL_ROW float rows[VL_TEXTURE_ROWS][VL_ROW_SIZE]; /* a stack for nested textures */
+  VL_ROW uint32_t order[VL_ROW_SIZE];
+  VL_ROW uint32_t slot[VL_ROW_SIZE]; /* shading lanes of one material, ... */
 };
 
 #ifdef VL_ISA_SUFFIX

@@ -60,6 +60,10 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
   }
 }
 
+typedef struct TriangleUv {
+  float u0, v0, u1, v1, u2, v2;
+} TriangleUv;
+
 typedef struct Triangle {
   vlVec3 p, g, n, u, v;
   float s, t, dist, offset, uv_scale;
@@ -67,8 +71,9 @@ typedef struct Triangle {
 
 /* The point of a triangle that a ray meets. Barycentric coordinates are ratios of volumes spanned with the ray
  * (signs as in Woop et al. 2013); what falls outside by rounding is put on the edge. */
-static inline Triangle triangle_point(vlVec3 o, vlVec3 d, vlVec3 p0, vlVec3 p1, vlVec3 p2, vlVec3 n0, vlVec3 n1,
-                                      vlVec3 n2, const float uv[6], float corner_error, float flip) {
+static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, vlVec3 d, vlVec3 p0, vlVec3 p1,
+                                                                     vlVec3 p2, vlVec3 n0, vlVec3 n1, vlVec3 n2,
+                                                                     TriangleUv uv, float corner_error, float flip) {
   vlVec3 a = vl_sub(p0, o), b = vl_sub(p1, o), c = vl_sub(p2, o);
   float b0 = vl_dot(d, vl_cross(b, c)), b1 = vl_dot(d, vl_cross(c, a)), b2 = vl_dot(d, vl_cross(a, b));
   float sum = b0 + b1 + b2;
@@ -96,9 +101,9 @@ static inline Triangle triangle_point(vlVec3 o, vlVec3 d, vlVec3 p0, vlVec3 p1, 
   float side = has_n > 0.0f ? (vl_dot(g, ns) < 0.0f ? -1.0f : 1.0f) : flip;
   r.g = vl_mul(g, side);
   r.n = has_n > 0.0f ? ns : r.g;
-  r.s = b0 * uv[0] + b1 * uv[2] + b2 * uv[4];
-  r.t = b0 * uv[1] + b1 * uv[3] + b2 * uv[5];
-  float u02 = uv[0] - uv[4], v02 = uv[1] - uv[5], u12 = uv[2] - uv[4], v12 = uv[3] - uv[5];
+  r.s = b0 * uv.u0 + b1 * uv.u1 + b2 * uv.u2;
+  r.t = b0 * uv.v0 + b1 * uv.v1 + b2 * uv.v2;
+  float u02 = uv.u0 - uv.u2, v02 = uv.v0 - uv.v2, u12 = uv.u1 - uv.u2, v12 = uv.v1 - uv.v2;
   float det = u02 * v12 - v02 * u12;
   float area2 = vl_length(cross);
   float inv_det = vl_abs(det) > 1e-30f ? 1.0f / det : 0.0f;
@@ -208,7 +213,7 @@ void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *p
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
     vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]), d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
-    float uv[6] = {c->uv[0][i], c->uv[1][i], c->uv[2][i], c->uv[3][i], c->uv[4][i], c->uv[5][i]};
+    TriangleUv uv = {c->uv[0][i], c->uv[1][i], c->uv[2][i], c->uv[3][i], c->uv[4][i], c->uv[5][i]};
     Triangle r =
         triangle_point(o, d, vl_vec3(c->p[0][i], c->p[1][i], c->p[2][i]), vl_vec3(c->p[3][i], c->p[4][i], c->p[5][i]),
                        vl_vec3(c->p[6][i], c->p[7][i], c->p[8][i]), vl_vec3(c->n[0][i], c->n[1][i], c->n[2][i]),
@@ -246,7 +251,8 @@ vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t s
     const uint32_t *f = s->indices + 3 * (size_t)prim;
     const vlWorldInstance *q = instance == VL_NONE ? NULL : &world->instances.items[instance];
     vlVec3 p[3], nn[3];
-    float uv[6], error = 0;
+    float uv[6];
+    float error = 0;
     for (int k = 0; k < 3; k++) {
       const float *x = s->positions + 3 * (size_t)f[k];
       p[k] = vl_vec3(x[0], x[1], x[2]);
@@ -262,7 +268,8 @@ vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t s
       }
       for (int j = 0; j < 2; j++) uv[2 * k + j] = s->uvs ? s->uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
     }
-    Triangle t = triangle_point(o, d, p[0], p[1], p[2], nn[0], nn[1], nn[2], uv, error,
+    Triangle t = triangle_point(o, d, p[0], p[1], p[2], nn[0], nn[1], nn[2],
+                                (TriangleUv){uv[0], uv[1], uv[2], uv[3], uv[4], uv[5]}, error,
                                 s->flip != (q && q->mirrored) ? -1.0f : 1.0f);
     return (vlPoint){t.p, t.g, t.n, t.s, t.t, t.dist, t.offset};
   }

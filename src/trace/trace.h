@@ -12,6 +12,10 @@
 
 enum { VL_BATCH = 1024 };
 
+/* Elements of an array of a batch: one cache line more than the batch, so that element i of different arrays falls into
+ * different sets of the first-level cache (rows of 4096 bytes would all fight for the same ones). */
+enum { VL_ROW_SIZE = VL_BATCH + 16 };
+
 /* Dimensions of the sampler: the render loop uses those before VL_DIM_BOUNCE, bounce b starts at
  * VL_DIM_BOUNCE + b * VL_DIM_STRIDE. */
 enum {

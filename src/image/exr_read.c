@@ -73,6 +73,8 @@ static vlResult layout(Reader *r) {
   r->tiled = storage == EXR_STORAGE_TILED;
   if ((unsigned)r->compression >= EXR_COMPRESSION_LAST_TYPE)
     return vl_codec_broken(file, "OpenEXR", "unknown compression");
+  if (r->compression == EXR_COMPRESSION_DWAA || r->compression == EXR_COMPRESSION_DWAB)
+    return vl_codec_unsupported(file, "OpenEXR", "DWA compression"); /* OpenEXRCore 3.1 cannot unpack it */
   if (r->list->num_channels < 1) return vl_codec_broken(file, "OpenEXR", "no channels");
   if (r->list->num_channels > 1024) return vl_codec_unsupported(file, "OpenEXR", "more than 1024 channels");
 
@@ -95,10 +97,9 @@ static vlResult layout(Reader *r) {
   if (width < 1 || height < 1) return vl_codec_broken(file, "OpenEXR", "its data window is empty");
   if (width > INT32_MAX / (r->user_size * (int64_t)count) || height > INT32_MAX)
     return vl_codec_unsupported(file, "OpenEXR", "rows of more than 2^31 bytes");
-  /* The tightest codings: deflate 1032:1, and DWA's run lengths under deflate. Chunks are judged one by one below. */
-  bool dwa = r->compression == EXR_COMPRESSION_DWAA || r->compression == EXR_COMPRESSION_DWAB;
+  /* The tightest coding is deflate's, 1032:1. Chunks are judged one by one below. */
   vlResult result = vl_codec_promise(file, "OpenEXR", (uint64_t)width, (uint64_t)height,
-                                     (double)width * (double)height * bytes, dwa ? 66000.0 : 1032.0);
+                                     (double)width * (double)height * bytes, 1032.0);
   if (result != VL_OK) return result;
   int32_t chunks;
   code = exr_get_chunk_count(r->exr, 0, &chunks);
@@ -123,11 +124,10 @@ static vlResult find_chunk(Reader *r, uint32_t column, uint32_t row, exr_chunk_i
                                : exr_read_scanline_chunk_info(r->exr, 0, r->window.min.y + (int)row * r->lines, chunk);
   if (code != EXR_ERR_SUCCESS) return fail(r, code);
   const vlImageFile *file = r->base.file;
-  bool dwa = r->compression == EXR_COMPRESSION_DWAA || r->compression == EXR_COMPRESSION_DWAB;
   if (chunk->data_offset > file->size || chunk->packed_size > file->size - chunk->data_offset ||
       chunk->packed_size == 0)
     return vl_codec_broken(file, "OpenEXR", "a chunk lies outside the file");
-  if ((double)chunk->unpacked_size > (double)chunk->packed_size * (dwa ? 66000.0 : 1032.0) + 64.0)
+  if ((double)chunk->unpacked_size > (double)chunk->packed_size * 1032.0 + 64.0)
     return vl_codec_broken(file, "OpenEXR", "a chunk is too small for its pixels");
   int64_t left = (int64_t)r->width - (r->tiled ? (int64_t)column * r->tile_width : 0);
   int64_t below = (int64_t)r->height - (int64_t)row * (r->tiled ? r->tile_height : r->lines);

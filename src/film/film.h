@@ -1,40 +1,51 @@
-/* film/film.h: inside of the film. Sums are exact (128-bit fixed point): adding is associative, so no grouping of samples
- * into tiles, passes, threads or machines changes a bit. Filter importance sampling: a sample touches one pixel. */
+/* film/film.h: inside of the film. Sums are exact (128-bit fixed point): adding is associative, so no grouping of
+ * samples into tiles, passes, threads or machines changes a bit (docs/decisions/0002-exact-film-sums.md). Filter
+ * importance sampling: a sample touches one pixel. Data flows samples -> sums -> picture. */
 #ifndef FILM_FILM_H
 #define FILM_FILM_H
 
 #include "base/isa.h"
 #include "velo/render.h"
 
-/* What a batch of samples adds. Channels are linear Rec.709... of film space: red, green, blue, alpha. Pixel coordinates
- * are of the whole picture, inside the crop window. Samples with a value that is not finite add nothing and are counted. */
+/* What a batch of samples adds. Channels are linear, in the film's colour space: red, green, blue, alpha. Pixel
+ * coordinates are of the whole picture, inside the crop window.
+ *
+ * A sample whose colour, alpha or weight is not finite, or too large for the sums (colour 2^40, weight 16), adds
+ * nothing and is counted. Negative colours are added: a few wavelengths of a spectrum are often outside the colour
+ * space, and only their mean is inside. Alpha is clamped to [0, 1]. */
 typedef struct vlFilmSamples {
   uint32_t n;
   const int32_t *px, *py;
   const float *r, *g, *b, *a;
-  const float *weight; /* of the pixel filter: filter value / pdf, may be negative */
+  const float *weight; /* of the pixel filter: filter value / pdf, may be negative; taken to the nearest 2^-24 */
 } vlFilmSamples;
 
-/* Returns how many were dropped; *bad_x, *bad_y the first of them (may be null). Concurrent calls must touch different
- * pixels. */
+/* Between begin_pass and commit_pass. Returns how many were dropped; *bad_x, *bad_y the first of them (may be null).
+ * Concurrent calls must touch different pixels. Up to 2^31 samples a pixel. */
 uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *samples, int32_t *bad_x, int32_t *bad_y);
 
 const vlFilmDef *vl_film_def(const vlFilm *film);
 vlContext *vl_film_context(const vlFilm *film);
 void vl_film_set_spp(vlFilm *film, uint32_t spp); /* called by render after each whole pass */
 
-/* A pass that is given up must leave no trace: begin_pass remembers (cheaply) what end/rollback need. Keep it simple: a pass
- * adds to a second set of sums that commit adds to the first, or a copy; memory is counted. */
+/* A pass that is given up leaves no trace. Two sets of sums take turns: a pixel's first sample in a pass copies its
+ * sums from one set to the other, the rest adds there; commit swaps the sets, abandon forgets the second. Both cost
+ * nothing but a look at each pixel's mark. begin_pass: MEMORY (the sets are made when first needed). */
 vlResult vl_film_begin_pass(vlFilm *film);
 void vl_film_commit_pass(vlFilm *film);
 void vl_film_abandon_pass(vlFilm *film);
 
-/* Pixel filter sampling: u, v in [0,1)^2 to an offset (dx, dy) from the pixel centre and the weight f/pdf (constant sign for
- * positive filters = 1). Batch, hot. */
+/* Adds the sums and the sample count of another film of the same size and crop: the same bytes as if all samples had
+ * gone into one. Not inside a pass. ARGUMENT when they do not fit, MEMORY. */
+vlResult vl_film_merge(vlFilm *film, const vlFilm *other);
+
+/* Pixel filter sampling: u, v in [0,1)^2 to an offset (dx, dy) from the pixel centre, monotone in u and v, and the
+ * weight f/pdf: 1 for filters without negative lobes, else plus or minus a constant; its mean is 1. Batch, hot. */
 typedef struct vlFilterTable vlFilterTable; /* compiled from vlPixelFilter; owned by the film */
 const vlFilterTable *vl_film_filter(const vlFilm *film);
 typedef struct vlFilterKernels {
-  void (*sample)(const vlFilterTable *filter, uint32_t n, const float *u, const float *v, float *dx, float *dy, float *weight);
+  void (*sample)(const vlFilterTable *filter, uint32_t n, const float *u, const float *v, float *dx, float *dy,
+                 float *weight);
 } vlFilterKernels;
 extern const vlFilterKernels vl_filter_kernels_v2, vl_filter_kernels_v3, vl_filter_kernels_v4;
 const vlFilterKernels *vl_filter_kernels(vlIsa isa);

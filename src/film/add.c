@@ -1,0 +1,61 @@
+/* film/add.c: samples into the exact sums. Integers only: the float's mantissa times the weight's is exact, and goes to
+ * its place in the 128-bit sum by one multiplication. No branch hangs on the values. */
+#include "film/sums.h"
+#include "math/approx.h"
+
+enum {
+  COLOR_LIMIT = (127 + 40) << 23, /* bits of 2^40; infinities and NaNs lie above, too */
+  WEIGHT_LIMIT = (127 + 4) << 23
+};
+
+/* value * weight, rounded to the nearest unit of the sum. |value| < 2^40, |weight| <= 2^28 (units of 2^-24). */
+static inline vlInt128 product(float value, int64_t weight) {
+  uint32_t bits = vl_float_bits(value);
+  int32_t field = (int32_t)(bits >> 23 & 255), exponent = field > 0 ? field : 1;
+  int64_t mantissa = (int64_t)(bits & 0x7fffffu) | (int64_t)(field > 0) << 23; /* value = mantissa 2^(exponent - 150) */
+  int64_t p = (bits >> 31 ? -mantissa : mantissa) * weight;
+  int32_t shift = exponent - 150 - VL_WEIGHT_BITS + VL_COLOR_BITS;
+  int32_t left = shift > 0 ? shift : 0, right = shift < 0 ? -shift : 0;
+  right = right < 62 ? right : 62;
+  p = (p + ((INT64_C(1) << right) >> 1)) >> right;
+  return (vlInt128)p * (INT64_C(1) << left);
+}
+
+uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *s, int32_t *bad_x, int32_t *bad_y) {
+  static const vlFilmPixel zero = {{0, 0, 0}, 0, 0};
+  uint32_t bad = 0, width = film->width, pass = film->pass, x0 = film->def.crop[0], y0 = film->def.crop[1];
+  vlFilmPixel *back = film->back;
+  const vlFilmPixel *front = film->front;
+  uint32_t *stamp = film->stamp;
+  for (uint32_t i = 0; i < s->n; i++) {
+    uint32_t x = (uint32_t)s->px[i] - x0, y = (uint32_t)s->py[i] - y0;
+    float a = s->a[i], w = s->weight[i];
+    uint32_t r = vl_float_bits(s->r[i]) & 0x7fffffffu, g = vl_float_bits(s->g[i]) & 0x7fffffffu;
+    uint32_t b = vl_float_bits(s->b[i]) & 0x7fffffffu, largest = r > g ? r : g;
+    largest = largest > b ? largest : b;
+    bool fits = largest < COLOR_LIMIT && (vl_float_bits(w) & 0x7fffffffu) < WEIGHT_LIMIT && a - a == 0.0f &&
+                x < width && y < film->height && film->in_pass;
+    if (!fits) {
+      if (bad++ == 0) {
+        if (bad_x) *bad_x = s->px[i];
+        if (bad_y) *bad_y = s->py[i];
+      }
+      continue;
+    }
+    size_t at = (size_t)y * width + x;
+    vlFilmPixel *p = back + at;
+    if (stamp[at] != pass) {
+      stamp[at] = pass;
+      *p = front ? front[at] : zero;
+    }
+    int64_t weight = (int64_t)((double)w * (1 << VL_WEIGHT_BITS) + (w < 0.0f ? -0.5 : 0.5));
+    p->color[0] += product(s->r[i], weight);
+    p->color[1] += product(s->g[i], weight);
+    p->color[2] += product(s->b[i], weight);
+    a = a > 0.0f ? (a < 1.0f ? a : 1.0f) : 0.0f;
+    int64_t alpha = (int64_t)(a * 0x1p24f) * weight; /* units of 2^-48 */
+    p->alpha += (alpha + (INT64_C(1) << 19)) >> 20;
+    p->weight += weight;
+  }
+  return bad;
+}

@@ -1,0 +1,127 @@
+/* film/film.c: making films, passes, merging. */
+#include "base/cookie.h"
+#include "film/sums.h"
+
+#include <string.h>
+
+enum { SIZE_MAX_PIXELS = 65536 };
+
+vlFilmDef vl_default_film_def(uint32_t width, uint32_t height) {
+  return (vlFilmDef){.cookie = VL_COOKIE_FILM,
+                     .width = width,
+                     .height = height,
+                     .crop = {0, 0, width, height},
+                     .filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN),
+                     .space = (vlColorSpace)0};
+}
+
+vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film) {
+  if (!film) return VL_ERROR_ARGUMENT;
+  *film = NULL;
+  if (!context || !def || def->cookie != VL_COOKIE_FILM) return VL_ERROR_ARGUMENT;
+  const uint32_t *c = def->crop;
+  if (def->width == 0 || def->height == 0 || def->width > SIZE_MAX_PIXELS || def->height > SIZE_MAX_PIXELS)
+    return VL_ERROR_ARGUMENT;
+  if (c[0] >= c[2] || c[1] >= c[3] || c[2] > def->width || c[3] > def->height) return VL_ERROR_ARGUMENT;
+  vlFilm *made = vl_alloc_zero(context, 1, sizeof *made);
+  if (!made) return VL_ERROR_MEMORY;
+  made->context = context;
+  made->def = *def;
+  made->width = c[2] - c[0];
+  made->height = c[3] - c[1];
+  made->pass = 1;
+  if (!vl_filter_compile(&def->filter, &made->filter)) {
+    vl_free(context, made);
+    return VL_ERROR_ARGUMENT;
+  }
+  *film = made;
+  return VL_OK;
+}
+
+void vl_film_destroy(vlFilm *film) {
+  if (!film) return;
+  vlContext *context = film->context;
+  vl_free(context, film->front);
+  vl_free(context, film->back);
+  vl_free(context, film->stamp);
+  vl_free(context, film);
+}
+
+uint32_t vl_film_spp(const vlFilm *film) {
+  return film->spp;
+}
+void vl_film_set_spp(vlFilm *film, uint32_t spp) {
+  film->spp = spp;
+}
+const vlFilmDef *vl_film_def(const vlFilm *film) {
+  return &film->def;
+}
+vlContext *vl_film_context(const vlFilm *film) {
+  return film->context;
+}
+const vlFilterTable *vl_film_filter(const vlFilm *film) {
+  return &film->filter;
+}
+
+vlResult vl_film_begin_pass(vlFilm *film) {
+  if (film->in_pass) return VL_ERROR_ARGUMENT;
+  size_t count = vl_film_pixels(film);
+  if (!film->stamp) film->stamp = vl_alloc_zero(film->context, count, sizeof *film->stamp);
+  if (!film->back) film->back = vl_alloc_array(film->context, count, sizeof *film->back);
+  if (!film->stamp || !film->back) return VL_ERROR_MEMORY;
+  film->in_pass = true;
+  return VL_OK;
+}
+
+/* A later pass must not take an old stamp for its own. */
+static void next_pass(vlFilm *film) {
+  film->in_pass = false;
+  if (++film->pass == 0) {
+    memset(film->stamp, 0, vl_film_pixels(film) * sizeof *film->stamp);
+    film->pass = 1;
+  }
+}
+
+void vl_film_commit_pass(vlFilm *film) {
+  if (!film->in_pass) return;
+  size_t count = vl_film_pixels(film);
+  static const vlFilmPixel zero = {{0, 0, 0}, 0, 0};
+  for (size_t i = 0; i < count; i++)
+    if (film->stamp[i] != film->pass) film->back[i] = film->front ? film->front[i] : zero;
+  vlFilmPixel *front = film->front;
+  film->front = film->back;
+  film->back = front;
+  next_pass(film);
+}
+
+void vl_film_abandon_pass(vlFilm *film) {
+  if (film->in_pass) next_pass(film);
+}
+
+vlResult vl_film_merge(vlFilm *film, const vlFilm *other) {
+  if (!film || !other || film == other || film->in_pass || other->in_pass) return VL_ERROR_ARGUMENT;
+  if (film->def.width != other->def.width || film->def.height != other->def.height ||
+      memcmp(film->def.crop, other->def.crop, sizeof film->def.crop) != 0 || film->def.space != other->def.space ||
+      film->spp > UINT32_MAX - other->spp)
+    return VL_ERROR_ARGUMENT;
+  if (other->front) {
+    size_t count = vl_film_pixels(film);
+    if (!film->front) film->front = vl_alloc_zero(film->context, count, sizeof *film->front);
+    if (!film->front) return VL_ERROR_MEMORY;
+    for (size_t i = 0; i < count; i++) {
+      for (int c = 0; c < 3; c++) film->front[i].color[c] += other->front[i].color[c];
+      film->front[i].alpha += other->front[i].alpha;
+      film->front[i].weight += other->front[i].weight;
+    }
+  }
+  film->spp += other->spp;
+  return VL_OK;
+}
+
+const vlFilterKernels *vl_filter_kernels(vlIsa isa) {
+  switch (isa) {
+    case VL_ISA_V4: return &vl_filter_kernels_v4;
+    case VL_ISA_V3: return &vl_filter_kernels_v3;
+    default: return &vl_filter_kernels_v2;
+  }
+}

@@ -1,0 +1,224 @@
+/* film/filter.c: the pixel filters' shapes (pbrt book 8.8, Mitchell and Netravali 1988, Harris 1978) and their tables
+ * for sampling. All in double with own elementary functions: the tables are the same on every machine. */
+#include "film/filter.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- elementary functions by their series: + - * / only
+ * -------------------------------------------------------------- */
+
+static double series_exp(double x) { /* x <= 0 */
+  if (x < -700.0) return 0.0;
+  int n = (int)(x * 1.4426950408889634 - 0.5);
+  double r = (x - n * 0.693147180369123816490) - n * 1.90821492927058770002e-10, sum = 1.0;
+  for (int k = 20; k > 0; k--) sum = 1.0 + sum * r / k;
+  for (; n < 0; n++) sum *= 0.5;
+  return sum;
+}
+/* sin(pi x); exactly 0 at whole numbers. */
+static double series_sin_pi(double x) {
+  double n = floor(x + 0.5), r = (x - n) * 3.14159265358979323846, r2 = r * r, sum = 1.0;
+  for (int k = 24; k > 0; k -= 2) sum = 1.0 - sum * r2 / (k * (k + 1));
+  sum *= r;
+  return n * 0.5 == floor(n * 0.5) ? sum : -sum;
+}
+static double sinc(double x) {
+  return fabs(x) < 1e-9 ? 1.0 : series_sin_pi(x) / (3.14159265358979323846 * x);
+}
+
+/* ---- shapes
+ * ---------------------------------------------------------------------------------------------------------- */
+
+static double mitchell(double b, double c, double x) { /* on [0, 2] */
+  if (x < 1.0) return (((12 - 9 * b - 6 * c) * x + (-18 + 12 * b + 6 * c)) * x * x + (6 - 2 * b)) / 6.0;
+  return ((((-b - 6 * c) * x + (6 * b + 30 * c)) * x + (-12 * b - 48 * c)) * x + (8 * b + 24 * c)) / 6.0;
+}
+
+double vl_filter_value(const vlPixelFilter *filter, int axis, double x) {
+  double radius = axis ? filter->radius_y : filter->radius_x;
+  x = fabs(x);
+  if (x > radius) return 0.0;
+  double t = x / radius;
+  switch (filter->kind) {
+    case VL_PIXEL_FILTER_BOX: return 1.0;
+    case VL_PIXEL_FILTER_TRIANGLE: return 1.0 - t;
+    case VL_PIXEL_FILTER_GAUSSIAN: { /* less its value at the radius */
+      double s = 0.5 / ((double)filter->sigma * filter->sigma);
+      return series_exp(-s * x * x) - series_exp(-s * radius * radius);
+    }
+    case VL_PIXEL_FILTER_MITCHELL: return mitchell(filter->b, filter->c, 2.0 * t);
+    case VL_PIXEL_FILTER_LANCZOS: return sinc(x) * sinc(x / filter->tau);
+    case VL_PIXEL_FILTER_BLACKMAN_HARRIS:
+      return 0.35875 + 0.48829 * series_sin_pi(t + 0.5) + 0.14128 * series_sin_pi(2 * t + 0.5) +
+             0.01168 * series_sin_pi(3 * t + 0.5);
+  }
+  return 0.0;
+}
+
+/* ---- tables
+ * ---------------------------------------------------------------------------------------------------------- */
+
+typedef struct Shape {
+  const vlPixelFilter *filter;
+  int axis;
+} Shape;
+
+static double magnitude(Shape s, double x) {
+  return fabs(vl_filter_value(s.filter, s.axis, x));
+}
+/* Integral of |f| over [a, b], where f has one sign: Gauss-Legendre, 4 points. */
+static double mass_between(Shape s, double a, double b) {
+  double c = 0.5 * (a + b), h = 0.5 * (b - a);
+  return h *
+         (0.3478548451374538 * (magnitude(s, c - h * 0.8611363115940526) + magnitude(s, c + h * 0.8611363115940526)) +
+          0.6521451548625461 * (magnitude(s, c - h * 0.3399810435848563) + magnitude(s, c + h * 0.3399810435848563)));
+}
+
+enum { STEPS = 256, LOBES = VL_FILTER_SEGMENTS - 2 };
+typedef struct Lobe {
+  double a, b, sign;
+  double sum[STEPS + 1]; /* mass up to a + (b - a) k / STEPS */
+} Lobe;
+
+static void lobe_integrate(Shape s, Lobe *lobe) {
+  double step = (lobe->b - lobe->a) / STEPS;
+  lobe->sum[0] = 0.0;
+  for (int k = 0; k < STEPS; k++)
+    lobe->sum[k + 1] = lobe->sum[k] + mass_between(s, lobe->a + step * k, lobe->a + step * (k + 1));
+}
+/* Where the lobe's mass reaches m: the step by search, then Newton kept inside the step. */
+static double lobe_invert(Shape s, const Lobe *lobe, double m) {
+  int low = 0, high = STEPS;
+  while (high - low > 1) {
+    int mid = (low + high) / 2;
+    if (lobe->sum[mid] <= m)
+      low = mid;
+    else
+      high = mid;
+  }
+  double step = (lobe->b - lobe->a) / STEPS, x0 = lobe->a + step * low, left = x0, right = x0 + step;
+  double whole = lobe->sum[low + 1] - lobe->sum[low], want = m - lobe->sum[low];
+  double x = whole > 0.0 ? x0 + step * (want / whole) : x0;
+  for (int k = 0; k < 12; k++) {
+    double error = mass_between(s, x0, x) - want, slope = magnitude(s, x);
+    if (error > 0.0)
+      right = x;
+    else
+      left = x;
+    double next = slope > 0.0 ? x - error / slope : left;
+    next = next > left && next < right ? next : 0.5 * (left + right);
+    if (fabs(next - x) <= 1e-12 * lobe->b) return next;
+    x = next;
+  }
+  return x;
+}
+
+/* The lobes of [0, radius]: between changes of sign, found on a grid and then by halving. 0: too many. */
+static int find_lobes(Shape s, double radius, Lobe *lobes) {
+  enum { GRID = 1024 };
+  int count = 0;
+  double sign = 1.0, last = 0.0, start = 0.0;
+  for (int k = 1; k <= GRID; k++) {
+    double x = radius * k / GRID, f = vl_filter_value(s.filter, s.axis, x);
+    if (fabs(f) < 1e-12) continue; /* touches zero: no side taken */
+    if (f * sign < 0.0) {
+      if (count == 0 && last == 0.0 && vl_filter_value(s.filter, s.axis, 0.0) <= 0.0) return 0;
+      double a = last, b = x;
+      for (int i = 0; i < 60; i++) {
+        double mid = 0.5 * (a + b);
+        if (vl_filter_value(s.filter, s.axis, mid) * sign > 0.0)
+          a = mid;
+        else
+          b = mid;
+      }
+      if (count == LOBES - 1) return 0;
+      lobes[count++] = (Lobe){.a = start, .b = b, .sign = sign};
+      start = b;
+      sign = -sign;
+    }
+    last = x;
+  }
+  lobes[count++] = (Lobe){.a = start, .b = radius, .sign = sign};
+  return count;
+}
+
+/* One more segment: bins of equal mass between m0 and m1 of the lobe. */
+static void add_segment(Shape s, vlFilterAxis *axis, const Lobe *lobe, double m0, double m1, double before,
+                        double total, uint32_t bins, double weight) {
+  uint32_t k = axis->segments++;
+  axis->start[k] = (float)((before + m0) / total);
+  axis->scale[k] = (float)(bins * total / (m1 - m0));
+  axis->sign[k] = (float)weight;
+  axis->base[k] = (int32_t)axis->edges;
+  axis->last[k] = (int32_t)bins - 1;
+  double end = lobe->sum[STEPS];
+  for (uint32_t i = 0; i <= bins; i++) {
+    double m = m0 + (m1 - m0) * i / bins;
+    double x = i == 0 && m0 <= 0.0 ? lobe->a : i == bins && m1 >= end ? lobe->b : lobe_invert(s, lobe, m);
+    axis->x[axis->edges] = (float)x;
+    axis->f[axis->edges++] = (float)magnitude(s, x);
+  }
+}
+
+static bool compile_axis(const vlPixelFilter *filter, int which, vlFilterAxis *axis) {
+  enum { BINS = 512, TAIL_BINS = 64, LEAST_BINS = 8 };
+  double radius = which ? filter->radius_y : filter->radius_x;
+  memset(axis, 0, sizeof *axis);
+  axis->radius = (float)radius;
+  if (filter->kind == VL_PIXEL_FILTER_BOX || filter->kind == VL_PIXEL_FILTER_TRIANGLE) return true;
+  if (filter->kind == VL_PIXEL_FILTER_GAUSSIAN && radius > 8.0 * filter->sigma) radius = 8.0 * filter->sigma;
+  Shape s = {filter, which};
+  static const Lobe none;
+  Lobe lobes[LOBES];
+  for (int i = 0; i < LOBES; i++) lobes[i] = none;
+  int count = find_lobes(s, radius, lobes);
+  double total = 0.0, integral = 0.0, before = 0.0;
+  for (int i = 0; i < count; i++) {
+    lobe_integrate(s, &lobes[i]);
+    total += lobes[i].sum[STEPS];
+    integral += lobes[i].sign * lobes[i].sum[STEPS];
+  }
+  if (count == 0 || !(integral > 0.1 * total) || !(total < 1e30)) return false;
+  double ratio = count == 1 ? 1.0 : total / integral;
+  for (int i = 0; i < count; i++) {
+    double mass = lobes[i].sum[STEPS], weight = lobes[i].sign * ratio;
+    uint32_t bins = (uint32_t)(BINS * mass / total);
+    bins = bins < LEAST_BINS ? LEAST_BINS : bins;
+    if (!(mass > 1e-9 * total)) { /* nothing to sample */
+      before += mass;
+      continue;
+    }
+    if (i == count - 1) {
+      double cut1 = mass * (1.0 - 0x1p-6), cut2 = mass * (1.0 - 0x1p-12);
+      add_segment(s, axis, &lobes[i], 0.0, cut1, before, total, bins, weight);
+      add_segment(s, axis, &lobes[i], cut1, cut2, before, total, TAIL_BINS, weight);
+      add_segment(s, axis, &lobes[i], cut2, mass, before, total, TAIL_BINS, weight);
+    } else {
+      add_segment(s, axis, &lobes[i], 0.0, mass, before, total, bins, weight);
+    }
+    before += mass;
+  }
+  return true;
+}
+
+static bool in_range(float x, float low, float high) {
+  return x > low && x <= high; /* false for NaN */
+}
+
+bool vl_filter_compile(const vlPixelFilter *filter, vlFilterTable *table) {
+  if ((unsigned)filter->kind > VL_PIXEL_FILTER_BLACKMAN_HARRIS) return false;
+  if (!in_range(filter->radius_x, 0, VL_FILTER_RADIUS_MAX) || !in_range(filter->radius_y, 0, VL_FILTER_RADIUS_MAX))
+    return false;
+  if (filter->kind == VL_PIXEL_FILTER_GAUSSIAN && !in_range(filter->sigma, 0, 1e6f)) return false;
+  if (filter->kind == VL_PIXEL_FILTER_LANCZOS && !in_range(filter->tau, 0, 1e6f)) return false;
+  if (filter->kind == VL_PIXEL_FILTER_MITCHELL && (!in_range(filter->b, -10, 10) || !in_range(filter->c, -10, 10)))
+    return false;
+  table->kind = filter->kind;
+  if (!compile_axis(filter, 0, &table->axis[0])) return false;
+  if (filter->radius_x == filter->radius_y) {
+    table->axis[1] = table->axis[0];
+    return true;
+  }
+  return compile_axis(filter, 1, &table->axis[1]);
+}

@@ -1,0 +1,34 @@
+/* film/filter.h: a pixel filter compiled for sampling. Filters are products f(x) f(y) and even; half an axis is
+ * described by the inverse of the cumulated |f|. It is cut in segments: the lobes (f's sign is constant in each), the
+ * outermost one with two extra cuts near its end, where f is flat and small. A segment is cut in bins of equal mass;
+ * within a bin the density goes linearly from f at one edge to f at the other. */
+#ifndef FILM_FILTER_H
+#define FILM_FILTER_H
+
+#include "film/film.h"
+
+enum { VL_FILTER_SEGMENTS = 48, VL_FILTER_EDGES = 2048, VL_FILTER_RADIUS_MAX = 32 };
+
+typedef struct vlFilterAxis {
+  float radius;
+  uint32_t segments, edges;         /* none for the analytic filters */
+  float start[VL_FILTER_SEGMENTS];  /* mass before the segment, of 1 for the half axis */
+  float scale[VL_FILTER_SEGMENTS];  /* bins per mass */
+  float sign[VL_FILTER_SEGMENTS];   /* the weight: +- integral of |f| / integral of f */
+  int32_t base[VL_FILTER_SEGMENTS]; /* first edge */
+  int32_t last[VL_FILTER_SEGMENTS]; /* last bin, counted in the segment */
+  float x[VL_FILTER_EDGES];
+  float f[VL_FILTER_EDGES]; /* |f(x)|, any scale */
+} vlFilterAxis;
+
+struct vlFilterTable {
+  vlPixelFilterKind kind;
+  vlFilterAxis axis[2];
+};
+
+/* false when the parameters make no filter: not finite, radius not in (0, 32], no mass. */
+bool vl_filter_compile(const vlPixelFilter *filter, vlFilterTable *table);
+/* f of one axis, not normalised; 0 outside the radius. */
+double vl_filter_value(const vlPixelFilter *filter, int axis, double x);
+
+#endif

@@ -1,0 +1,164 @@
+/* Pixel filters: sampled as their shape says, weights of mean 1, monotone, the same bits on every instruction set. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include "film/filter.h"
+#include "statistics.h"
+
+enum { KINDS = VL_PIXEL_FILTER_BLACKMAN_HARRIS + 1, BATCH = 4096, TESTS = KINDS * 3 * 2 };
+static const char *const NAMES[KINDS] = {"box", "triangle", "gaussian", "mitchell", "lanczos", "blackman-harris"};
+
+static float u_[BATCH], v_[BATCH], dx_[BATCH], dy_[BATCH], w_[BATCH];
+static vlFilterTable table_;
+
+/* Default, a smaller one of unequal radii, a wide one. */
+static vlPixelFilter variant(int kind, int k) {
+  vlPixelFilter f = vl_default_pixel_filter((vlPixelFilterKind)kind);
+  if (k == 1) f.radius_x *= 0.75f, f.radius_y *= 0.6f, f.sigma = 0.3f, f.b = 0, f.c = 0.5f, f.tau = 2;
+  if (k == 2) f.radius_x = f.radius_y = 7.5f, f.sigma = 4, f.b = 1, f.c = 0, f.tau = 8;
+  return f;
+}
+
+typedef struct Density {
+  const vlPixelFilter *filter;
+  double scale;
+} Density;
+static double density(void *user, double x, double y) {
+  const Density *d = user;
+  return fabs(vl_filter_value(d->filter, 0, x) * vl_filter_value(d->filter, 1, y)) * d->scale;
+}
+
+static void test_shape(void **state) {
+  (void)state;
+  for (int kind = 0; kind < KINDS; kind++)
+    for (int k = 0; k < 3; k++) {
+      vlPixelFilter f = variant(kind, k);
+      assert_true(vl_filter_compile(&f, &table_));
+      statRng rng = stat_rng(100 + (uint64_t)kind * 3 + (uint64_t)k);
+      statGrid *grid = stat_grid_new(60, 52, -f.radius_x, f.radius_x, -f.radius_y, f.radius_y);
+      double sum = 0, magnitude = 0, mean_x = 0;
+      int batches = 150;
+      for (int b = 0; b < batches; b++) {
+        for (int i = 0; i < BATCH; i++) u_[i] = stat_float(&rng), v_[i] = stat_float(&rng);
+        vl_filter_kernels(vl_isa_best())->sample(&table_, BATCH, u_, v_, dx_, dy_, w_);
+        for (int i = 0; i < BATCH; i++) {
+          stat_grid_add(grid, dx_[i], dy_[i]);
+          sum += w_[i];
+          mean_x += w_[i] * dx_[i];
+          magnitude = fmax(magnitude, fabs(w_[i]));
+          double value = vl_filter_value(&f, 0, dx_[i]) * vl_filter_value(&f, 1, dy_[i]);
+          if (fabs(value) > 1e-4) assert_true((value < 0) == (w_[i] < 0));
+        }
+      }
+      double n = (double)batches * BATCH;
+      assert_int_equal(grid->rejected, 0);
+      /* normalise |f| by its integral over the square */
+      double area = 0;
+      for (int i = 0; i < 512; i++)
+        for (int j = 0; j < 512; j++)
+          area += fabs(vl_filter_value(&f, 0, f.radius_x * (i + 0.5) / 512) *
+                       vl_filter_value(&f, 1, f.radius_y * (j + 0.5) / 512));
+      area *= 4.0 * f.radius_x * f.radius_y / (512.0 * 512.0);
+      Density d = {&f, 1.0 / area};
+      statResult r = stat_grid_test(grid, density, &d, 1e-6);
+      if (!stat_accept(r, TESTS)) fail_msg("%s, variant %d", NAMES[kind], k);
+      assert_true(fabs(r.integral - 1) < 2e-4);
+      bool negative = kind == VL_PIXEL_FILTER_LANCZOS || (kind == VL_PIXEL_FILTER_MITCHELL && k != 2);
+      if (negative) {
+        assert_true(magnitude > 1.0 && magnitude < 4.0);
+        assert_true(fabs(sum / n - 1) < 4 * magnitude / sqrt(n));
+      } else {
+        assert_true(magnitude == 1.0 && sum == n);
+      }
+      assert_true(fabs(mean_x / n) < 4 * magnitude * f.radius_x / sqrt(n));
+    }
+}
+
+/* Stratified u: the mean weight is 1 to the precision of the strata; offsets rise with u and are odd around its middle.
+ */
+static void test_order(void **state) {
+  (void)state;
+  for (int kind = 0; kind < KINDS; kind++)
+    for (int k = 0; k < 3; k++) {
+      vlPixelFilter f = variant(kind, k);
+      assert_true(vl_filter_compile(&f, &table_));
+      double sum = 0;
+      float before = -100;
+      for (int b = 0; b < 64; b++) {
+        for (int i = 0; i < BATCH; i++) u_[i] = ((float)(b * BATCH + i) + 0.5f) / (64 * BATCH), v_[i] = 0.5f;
+        vl_filter_kernels(vl_isa_best())->sample(&table_, BATCH, u_, v_, dx_, dy_, w_);
+        for (int i = 0; i < BATCH; i++) {
+          assert_true(dx_[i] >= before && fabsf(dx_[i]) <= f.radius_x);
+          before = dx_[i];
+          sum += w_[i];
+        }
+      }
+      double middle = w_[0];
+      u_[0] = 0.5f;
+      vl_filter_kernels(vl_isa_best())->sample(&table_, 1, u_, v_, dx_, dy_, w_);
+      middle = w_[0] / sqrt(fabs(w_[0])); /* one axis */
+      assert_true(fabs(sum / (64.0 * BATCH) - middle) < 1e-4 * middle + 1e-9 || kind == VL_PIXEL_FILTER_BOX);
+      for (int i = 0; i < 64; i++) u_[i] = (float)i / 128, u_[64 + i] = 1 - u_[i], v_[i] = v_[64 + i] = 0.25f;
+      vl_filter_kernels(vl_isa_best())->sample(&table_, 128, u_, v_, dx_, dy_, w_);
+      for (int i = 0; i < 64; i++) assert_true(dx_[i] == -dx_[64 + i] && w_[i] == w_[64 + i]);
+    }
+}
+
+static void test_bits(void **state) {
+  (void)state;
+  static float rx[BATCH], ry[BATCH], rw[BATCH];
+  statRng rng = stat_rng(3);
+  for (int i = 0; i < BATCH; i++) u_[i] = stat_float(&rng), v_[i] = stat_float(&rng);
+  u_[0] = 0, v_[1] = 0, u_[2] = 0x1.fffffep-1f, v_[3] = 0x1.fffffep-1f, u_[4] = 0.5f, v_[5] = 0.5f;
+  for (int kind = 0; kind < KINDS; kind++)
+    for (int k = 0; k < 3; k++) {
+      vlPixelFilter f = variant(kind, k);
+      assert_true(vl_filter_compile(&f, &table_));
+      vl_filter_kernels_v2.sample(&table_, BATCH, u_, v_, rx, ry, rw);
+      for (vlIsa isa = VL_ISA_V2; isa <= vl_isa_best(); isa++) {
+        vl_filter_kernels(isa)->sample(&table_, BATCH, u_, v_, dx_, dy_, w_);
+        assert_memory_equal(rx, dx_, sizeof rx);
+        assert_memory_equal(ry, dy_, sizeof ry);
+        assert_memory_equal(rw, w_, sizeof rw);
+      }
+      for (int i = 0; i < BATCH; i++)
+        assert_true(fabsf(rx[i]) <= f.radius_x && fabsf(ry[i]) <= f.radius_y && fabsf(rw[i]) < 16);
+    }
+}
+
+static void test_refusals(void **state) {
+  (void)state;
+  for (int kind = 0; kind < KINDS; kind++)
+    for (int k = 0; k < 6; k++) {
+      vlPixelFilter f = vl_default_pixel_filter((vlPixelFilterKind)kind);
+      float bad[6] = {0, -1, NAN, INFINITY, 33, 1e30f};
+      f.radius_y = bad[k];
+      assert_false(vl_filter_compile(&f, &table_));
+    }
+  vlPixelFilter f = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
+  f.sigma = 0;
+  assert_false(vl_filter_compile(&f, &table_));
+  f.sigma = 1e-3f; /* far smaller than the radius */
+  assert_true(vl_filter_compile(&f, &table_));
+  f = vl_default_pixel_filter(VL_PIXEL_FILTER_MITCHELL);
+  f.b = -9, f.c = 9; /* more below zero than above */
+  assert_false(vl_filter_compile(&f, &table_));
+  f = vl_default_pixel_filter(VL_PIXEL_FILTER_LANCZOS);
+  f.radius_x = f.radius_y = 32;
+  assert_true(vl_filter_compile(&f, &table_));
+  f.kind = (vlPixelFilterKind)17;
+  assert_false(vl_filter_compile(&f, &table_));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_shape),
+      cmocka_unit_test(test_order),
+      cmocka_unit_test(test_bits),
+      cmocka_unit_test(test_refusals),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

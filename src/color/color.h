@@ -1,7 +1,8 @@
 /* color/color.h: spectra, colour spaces, and the way between spectra and RGB.
  *
- * Wavelengths in nm, 360 to 830. A dense spectrum is 471 floats, one a nm, linear between. RGB reflectances become smooth
- * spectra s(l) = sigmoid(c0 l^2 + c1 l + c2) (Jakob and Hanika 2019), looked up in a table made at build time. */
+ * Wavelengths in nm, 360 to 830. A dense spectrum is 471 floats, one a nm, linear between. RGB reflectances become
+ * smooth spectra s(l) = sigmoid(c0 l^2 + c1 l + c2) (Jakob and Hanika 2019), looked up in a table made at build time.
+ */
 #ifndef COLOR_COLOR_H
 #define COLOR_COLOR_H
 
@@ -18,7 +19,7 @@ typedef struct vlSigmoid {
 static inline float vl_sigmoid(vlSigmoid s, float lambda) {
   float t = (lambda - 360.0f) * (1.0f / 470.0f);
   float x = (s.c0 * t + s.c1) * t + s.c2;
-  return 0.5f + x * (0.5f / __builtin_sqrtf(1.0f + x * x));
+  return 0.5f + 0.5f * (x / __builtin_sqrtf(1.0f + x * x)); /* never outside [0,1]: the root is never below |x| */
 }
 /* rgb in [0,1] of the space, clamped. Exact black and white and greys are constant spectra. */
 vlSigmoid vl_sigmoid_from_rgb(vlColorSpace space, float r, float g, float b);
@@ -37,12 +38,14 @@ typedef enum vlSpectrumRole { VL_ROLE_ALBEDO, VL_ROLE_UNBOUNDED, VL_ROLE_ILLUMIN
 vlResult vl_spectrum_dense(const vlSpectrum *spectrum, vlSpectrumRole role, float *dense, vlError *error);
 /* true when the spectrum has one value at all wavelengths (then *value). */
 bool vl_spectrum_is_constant(const vlSpectrum *spectrum, float *value);
-/* Integral of Y times s (for RGB illuminants: of the space's illuminant alone), pbrt's SpectrumToPhotometric: lights are
- * divided by it so that an RGB light of (1,1,1) has luminance 1. */
+/* Integral of Y times s (for RGB illuminants: of the space's illuminant alone), pbrt's SpectrumToPhotometric: lights
+ * are divided by it so that an RGB light of (1,1,1) has luminance 1. */
 double vl_spectrum_photometric(const vlSpectrum *spectrum, vlError *error);
-/* Linear RGB of the space for VL_COLOR_RGB mode. Albedo/unbounded: under the space's illuminant (RGB kinds: exact, converted
- * between spaces); illuminant: the light's own colour, luminance as in spectral mode after the photometric division. */
-vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlColorSpace space, float rgb[3], vlError *error);
+/* Linear RGB of the space for VL_COLOR_RGB mode. Albedo/unbounded: under the space's illuminant (RGB kinds: exact,
+ * converted between spaces); illuminant: the light's own colour, luminance as in spectral mode after the photometric
+ * division. */
+vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlColorSpace space, float rgb[3],
+                            vlError *error);
 
 /* Row-major 3x3. */
 void vl_rgb_from_xyz(vlColorSpace space, float m[9]);

@@ -1,7 +1,8 @@
 /* color/kernels.h: batches of the colour room: wavelengths, spectra at the wavelengths of each path, radiance to RGB.
  *
  * Channel c of path i is at [c][i]. All arrays hold VL_PAD(n) elements; padding lanes are computed too, so they must
- * hold finite numbers (index arrays: valid offsets). Same bits on every instruction set. Sources: pbrt book 4.5, 4.6. */
+ * hold finite numbers (index arrays: valid offsets). Same bits on every instruction set. Sources: pbrt book 4.5, 4.6.
+ */
 #ifndef COLOR_KERNELS_H
 #define COLOR_KERNELS_H
 

@@ -1,4 +1,5 @@
-/* color/kernels.hot.c: spectra and colour over batches of paths (color/kernels.h). Compiled once per instruction set. */
+/* color/kernels.hot.c: spectra and colour over batches of paths (color/kernels.h). Compiled once per instruction set.
+ */
 #include "color/kernels.h"
 
 /* The four hero wavelengths are u turned by quarters, so that they stratify the range together. The density is that of

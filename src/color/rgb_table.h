@@ -1,55 +1,95 @@
-/* color/rgb_table.h: lookup of the RGB to spectrum table (Jakob and Hanika 2019), for hot loops: branch-free, vectorises
- * with gathers, the same bits everywhere. The tables are constant data made by tools/rgb_table.c when velo is built. */
+/* color/rgb_table.h: lookup of the RGB to spectrum table (Jakob and Hanika 2019), for hot loops: branch-free,
+ * vectorises with gathers, the same bits everywhere. The tables are constant data made by tools/color_tables when velo
+ * is built.
+ *
+ * Three things differ from the paper and make a small table exact to 1e-3:
+ *   - light colours use the complement: sigmoid(-x) = 1 - sigmoid(x), so the table of dark colours serves both ends and
+ *     its resolution goes to black, where few spectra have most of the curvature;
+ *   - what is stored is c sqrt(m (1 - m)), m the mean of r, g, b: near black c grows as m^-1/2, this stays smooth, and
+ *     along the greys it is linear, so that greys come out as constants;
+ *   - axes whose nodes crowd towards both ends (2 u^2), with weights linear in the colour itself. */
 #ifndef COLOR_RGB_TABLE_H
 #define COLOR_RGB_TABLE_H
 
 #include "color/color.h"
 
-enum { VL_RGB_TABLE_SIZE = 32 };
+enum { VL_RGB_TABLE_XY = 40, VL_RGB_TABLE_Z = 48 };
 
 typedef struct vlRgbTable {
-  const float *coefficients; /* [largest component 3][z][y][x][3] */
+  const float *coefficients; /* [largest component 3][z][y][x][3]; z the largest, x and y the next two over it */
 } vlRgbTable;
 /* Lives forever. */
 const vlRgbTable *vl_rgb_table(vlColorSpace space);
 
-/* Position of v in [0,1] on an axis whose nodes crowd towards 0 and 1: v = 8 u^4 below one half, mirrored above. */
-static inline float vl_rgb_table_axis(float v) {
-  float near = v < 0.5f ? v : 1.0f - v;
-  float u = __builtin_sqrtf(__builtin_sqrtf(near * 0.125f));
-  return (v < 0.5f ? u : 1.0f - u) * (float)(VL_RGB_TABLE_SIZE - 1);
+/* Position u in [0,1] of v in [0,1] on an axis, and the way back. */
+static inline float vl_rgb_axis(float v) {
+  float w = 1.0f - v, near = v < w ? v : w;
+  float u = __builtin_sqrtf(0.5f * near);
+  return v < 0.5f ? u : 1.0f - u;
 }
-static inline float vl_rgb_table_mix(float t, float a, float b) {
-  return a + t * (b - a);
+static inline float vl_rgb_axis_value(float u) {
+  float w = 1.0f - u, low = 2.0f * u * u, high = 1.0f - 2.0f * w * w;
+  return u < 0.5f ? low : high;
+}
+
+typedef struct vlRgbCell {
+  int index;
+  float t; /* share of the upper node */
+} vlRgbCell;
+static inline vlRgbCell vl_rgb_cell(float v, int size) {
+  int i = (int)(vl_rgb_axis(v) * (float)(size - 1));
+  i = i < size - 2 ? i : size - 2;
+  float step = 1.0f / (float)(size - 1);
+  float low = vl_rgb_axis_value((float)i * step), high = vl_rgb_axis_value((float)(i + 1) * step);
+  return (vlRgbCell){i, (v - low) / (high - low)};
+}
+
+static inline float vl_rgb_corners(const float *p, int i, float x, float y, float z) {
+  enum { X = 3, Y = 3 * VL_RGB_TABLE_XY, Z = 3 * VL_RGB_TABLE_XY * VL_RGB_TABLE_XY };
+  float a = p[i], b = p[i + Y], c = p[i + Z], d = p[i + Z + Y];
+  a = a + x * (p[i + X] - a);
+  b = b + x * (p[i + X + Y] - b);
+  c = c + x * (p[i + X + Z] - c);
+  d = d + x * (p[i + X + Z + Y] - d);
+  a = a + y * (b - a);
+  c = c + y * (d - c);
+  return a + z * (c - a);
 }
 
 /* Coefficients of the reflectance whose colour under the space's illuminant is r, g, b (clamped to [0,1]). */
 static inline vlSigmoid vl_rgb_table_lookup(const vlRgbTable *table, float r, float g, float b) {
-  enum { N = VL_RGB_TABLE_SIZE };
-  r = r > 0.0f ? (r < 1.0f ? r : 1.0f) : 0.0f;
-  g = g > 0.0f ? (g < 1.0f ? g : 1.0f) : 0.0f;
-  b = b > 0.0f ? (b < 1.0f ? b : 1.0f) : 0.0f;
-  int big = r > g ? (r > b ? 0 : 2) : (g > b ? 1 : 2);
-  float z = big == 0 ? r : big == 1 ? g : b;
-  float inv = (float)(N - 1) / (z > 1e-20f ? z : 1e-20f);
-  float x = (big == 0 ? g : big == 1 ? b : r) * inv;
-  float y = (big == 0 ? b : big == 1 ? r : g) * inv;
-  float w = vl_rgb_table_axis(z);
-  int i = (int)x, j = (int)y, k = (int)w;
-  i = i > N - 2 ? N - 2 : i;
-  j = j > N - 2 ? N - 2 : j;
-  k = k > N - 2 ? N - 2 : k;
-  float dx = x - (float)i, dy = y - (float)j, dz = w - (float)k;
-  const float *p = table->coefficients + 3 * (((big * N + k) * N + j) * N + i);
-  enum { X = 3, Y = 3 * N, Z = 3 * N * N };
-  float c[3];
-  for (int q = 0; q < 3; q++) {
-    float low = vl_rgb_table_mix(dy, vl_rgb_table_mix(dx, p[q], p[q + X]), vl_rgb_table_mix(dx, p[q + Y], p[q + X + Y]));
-    float high = vl_rgb_table_mix(dy, vl_rgb_table_mix(dx, p[q + Z], p[q + X + Z]),
-                                  vl_rgb_table_mix(dx, p[q + Y + Z], p[q + X + Y + Z]));
-    c[q] = vl_rgb_table_mix(dz, low, high);
-  }
-  return (vlSigmoid){c[0], c[1], c[2]};
+  r = r > 0.0f ? r : 0.0f;
+  g = g > 0.0f ? g : 0.0f;
+  b = b > 0.0f ? b : 0.0f;
+  r = r < 1.0f ? r : 1.0f;
+  g = g < 1.0f ? g : 1.0f;
+  b = b < 1.0f ? b : 1.0f;
+  float low = r < g ? r : g, high = r < g ? g : r;
+  low = low < b ? low : b;
+  high = high > b ? high : b;
+  int flip = low + high > 1.0f;
+  r = flip ? 1.0f - r : r;
+  g = flip ? 1.0f - g : g;
+  b = flip ? 1.0f - b : b;
+  float z = flip ? 1.0f - low : high;
+  int red = r == z, green = g == z;
+  float x = red ? g : green ? b : r;
+  float y = red ? b : green ? r : g;
+  int face = red ? 0 : green ? 1 : 2;
+  float divisor = z > 0.0f ? z : 1.0f;
+  x = z > 0.0f ? x / divisor : 1.0f;
+  y = z > 0.0f ? y / divisor : 1.0f;
+  vlRgbCell cx = vl_rgb_cell(x, VL_RGB_TABLE_XY), cy = vl_rgb_cell(y, VL_RGB_TABLE_XY);
+  vlRgbCell cz = vl_rgb_cell(z, VL_RGB_TABLE_Z);
+  int i = 3 * (((face * VL_RGB_TABLE_Z + cz.index) * VL_RGB_TABLE_XY + cy.index) * VL_RGB_TABLE_XY + cx.index);
+  float m = (r + g + b) * (1.0f / 3.0f);
+  float k = __builtin_sqrtf(m * (1.0f - m));
+  /* black: exactly -2^30, where the sigmoid is exactly 0 */
+  k = k > 4.656612873e-10f ? k : 4.656612873e-10f;
+  float scale = (flip ? -1.0f : 1.0f) / k;
+  const float *p = table->coefficients;
+  return (vlSigmoid){scale * vl_rgb_corners(p, i, cx.t, cy.t, cz.t), scale * vl_rgb_corners(p, i + 1, cx.t, cy.t, cz.t),
+                     scale * vl_rgb_corners(p, i + 2, cx.t, cy.t, cz.t)};
 }
 
 #endif

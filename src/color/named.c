@@ -1,0 +1,18 @@
+/* color/named.c: finding spectra by name. */
+#include "color/named.h"
+
+#include <string.h>
+
+#include "color/tables.h"
+
+const char *vl_named_spectrum_name(unsigned index) {
+  return index < vl_table_named_count ? vl_table_named[index].name : NULL;
+}
+
+const float *vl_named_spectrum(const char *name) {
+  if (!name) return NULL;
+  for (uint32_t i = 0; i < vl_table_named_count; i++) {
+    if (strcmp(vl_table_named[i].name, name) == 0) return vl_table_named[i].values;
+  }
+  return NULL;
+}

@@ -1,0 +1,29 @@
+/* color/tables.h: the constant tables that tools/color_tables writes when velo is built. */
+#ifndef COLOR_TABLES_H
+#define COLOR_TABLES_H
+
+#include "color/color.h"
+#include "color/kernels.h"
+
+typedef struct vlNamedTable {
+  char name[24];
+  double y; /* sum over all nm of Y times values */
+  float values[VL_LAMBDA_COUNT];
+} vlNamedTable;
+extern const uint32_t vl_table_named_count;
+extern const vlNamedTable vl_table_named[]; /* ascending by name */
+
+typedef struct vlSpaceTable {
+  double xy[8]; /* red, green, blue, white */
+  double xyz_from_rgb[9], rgb_from_xyz[9];
+  uint32_t illuminant; /* index into vl_table_named; its y is that of the constant spectrum 1 */
+} vlSpaceTable;
+extern const vlSpaceTable vl_table_spaces[4];
+
+extern const double vl_table_y_integral; /* sum of Y over all nm */
+extern const float vl_table_cie[3][VL_LAMBDA_COUNT];
+
+/* Coefficients of each colour space (color/rgb_table.h). */
+extern const float vl_table_rgb_0[], vl_table_rgb_1[], vl_table_rgb_2[], vl_table_rgb_3[];
+
+#endif

@@ -1,0 +1,44 @@
+/* main.c: color_tables spectra FILE.c | color_tables rgb SPACE FILE.bin: writes the colour tables of velo. Run by the
+ * build (CMakeLists.txt); some seconds of one core in all. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "color/rgb_table.h"
+#include "tables.h"
+
+int main(int argc, char **argv) {
+  static space spaces[SPACE_COUNT];
+  bool rgb = argc == 4 && strcmp(argv[1], "rgb") == 0;
+  int which = rgb ? atoi(argv[2]) : 0;
+  if ((!rgb && (argc != 3 || strcmp(argv[1], "spectra") != 0)) || which < 0 || which >= SPACE_COUNT) {
+    fprintf(stderr, "usage: color_tables spectra FILE.c | color_tables rgb SPACE FILE.bin\n");
+    return 2;
+  }
+  const char *path = argv[argc - 1];
+  FILE *spectra = rgb ? tmpfile() : fopen(path, "w");
+  if (!spectra) {
+    perror(path);
+    return 5;
+  }
+  write_spectra(spectra, spaces);
+  bool good = !ferror(spectra);
+  good = fclose(spectra) == 0 && good;
+  if (rgb) {
+    size_t count = (size_t)3 * VL_RGB_TABLE_Z * VL_RGB_TABLE_XY * VL_RGB_TABLE_XY * 3;
+    float *coefficients = calloc(count, sizeof *coefficients);
+    FILE *file = fopen(path, "wb");
+    good = coefficients && file;
+    if (good) {
+      solve_space(&spaces[which], coefficients);
+      good = fwrite(coefficients, sizeof *coefficients, count, file) == count;
+    }
+    if (file) good = fclose(file) == 0 && good;
+    free(coefficients);
+  }
+  if (!good) {
+    perror(path);
+    remove(path);
+    return 5;
+  }
+  return 0;
+}

@@ -1,0 +1,22 @@
+/* tables.h: what the parts of the generator share. It runs when velo is built and writes constant C tables. */
+#ifndef COLOR_TABLES_TABLES_H
+#define COLOR_TABLES_TABLES_H
+
+#include <stdio.h>
+
+enum { LAMBDA_COUNT = 471, LAMBDA_MIN = 360, SPACE_COUNT = 4 };
+
+/* A colour space as seen by a reflectance under the space's illuminant. */
+typedef struct space {
+  int illuminant; /* which of the named spectra */
+  double xy[8];   /* red, green, blue, white */
+  double xyz_from_rgb[9], rgb_from_xyz[9];
+  double weight[3][LAMBDA_COUNT]; /* rgb = sum over nm of weight * reflectance; each sums to 1 */
+} space;
+
+/* dense.c: fills spaces from the tables it writes. */
+void write_spectra(FILE *file, space spaces[SPACE_COUNT]);
+/* rgb.c: the coefficient table of one space, 3 N^3 colours, 3 floats each. */
+void solve_space(const space *s, float *coefficients);
+
+#endif

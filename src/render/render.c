@@ -14,8 +14,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "camera/rays.h"
-#include "color/kernels.h"
-#include "film/film.h"
+#include "film/expose.h"
 #include "trace/trace.h"
 #include "velo/render.h"
 
@@ -37,7 +36,6 @@ enum Row {
   TIME,
   LENS_U,
   LENS_V,
-  WAVE,
   OX,
   OY,
   OZ,
@@ -71,9 +69,7 @@ typedef struct Render {
   const vlCameraKernels *camera_kernels;
   const vlSamplerKernels *sampler_kernels;
   const vlFilterKernels *filter_kernels;
-  const vlColorKernels *color_kernels;
   const vlTraceKernels *trace_kernels;
-  float rgb_from_xyz[9], out_from_srgb[9];
   bool rgb_mode, lens;
   uint32_t crop[4];
   uint32_t tiles_x, tiles_y, tile_x0, tile_y0;
@@ -87,7 +83,7 @@ typedef struct Render {
   uint64_t paths_before, rays_before;
 } Render;
 
-static float *row(Worker *w, enum Row r) {
+static float *row(Worker *w, int r) {
   return w->rows + (size_t)r * VL_ROW_SIZE;
 }
 
@@ -129,48 +125,28 @@ static void render_batch(const Render *r, Worker *w, uint32_t n) {
   vlCameraRays rays = {row(w, OX), row(w, OY),    row(w, OZ),    row(w, DX),      row(w, DY),
                        row(w, DZ), row(w, T_MIN), row(w, T_MAX), row(w, RAY_TIME)};
   r->camera_kernels->rays(&r->camera, n, &samples, &rays);
-  float *const lambda[4] = {row(w, LAMBDA), row(w, LAMBDA + 1), row(w, LAMBDA + 2), row(w, LAMBDA + 3)};
-  float *const inv_pdf[4] = {row(w, INV_PDF), row(w, INV_PDF + 1), row(w, INV_PDF + 2), row(w, INV_PDF + 3)};
-  if (!r->rgb_mode) {
-    k->get_1d(&r->sampler, n, px, py, index, VL_DIM_WAVELENGTH, row(w, WAVE));
-    r->color_kernels->visible_wavelengths(n, row(w, WAVE), lambda, inv_pdf);
+  vlTraceBatch batch = {.n = n,
+                        .ox = rays.ox,
+                        .oy = rays.oy,
+                        .oz = rays.oz,
+                        .dx = rays.dx,
+                        .dy = rays.dy,
+                        .dz = rays.dz,
+                        .t_min = rays.t_min,
+                        .t_max = rays.t_max,
+                        .px = px,
+                        .py = py,
+                        .index = index,
+                        .alpha = row(w, ALPHA)};
+  vlExposure expose = {.n = n, .exposure = r->exposure_time};
+  for (int c = 0; c < 4; c++) {
+    expose.radiance[c] = batch.radiance[c] = row(w, RADIANCE + c);
+    expose.lambda[c] = batch.lambda[c] = r->rgb_mode ? NULL : row(w, LAMBDA + c);
+    expose.inv_pdf[c] = batch.inv_pdf[c] = r->rgb_mode ? NULL : row(w, INV_PDF + c);
   }
-  vlTraceBatch batch = {
-      .n = n,
-      .ox = rays.ox,
-      .oy = rays.oy,
-      .oz = rays.oz,
-      .dx = rays.dx,
-      .dy = rays.dy,
-      .dz = rays.dz,
-      .t_min = rays.t_min,
-      .t_max = rays.t_max,
-      .px = px,
-      .py = py,
-      .index = index,
-      .lambda = {lambda[0], lambda[1], lambda[2], lambda[3]},
-      .radiance = {row(w, RADIANCE), row(w, RADIANCE + 1), row(w, RADIANCE + 2), row(w, RADIANCE + 3)},
-      .alpha = row(w, ALPHA)};
   r->trace_kernels->trace(r->world, &r->trace, w->scratch, &batch);
-  float *red = row(w, RED), *green = row(w, GREEN), *blue = row(w, BLUE);
-  if (r->rgb_mode) {
-    const float *m = r->out_from_srgb;
-    const float *a = batch.radiance[0], *b = batch.radiance[1], *c = batch.radiance[2];
-    for (uint32_t i = 0; i < VL_PAD(n); i++) {
-      red[i] = m[0] * a[i] + m[1] * b[i] + m[2] * c[i];
-      green[i] = m[3] * a[i] + m[4] * b[i] + m[5] * c[i];
-      blue[i] = m[6] * a[i] + m[7] * b[i] + m[8] * c[i];
-    }
-  } else {
-    const float *const radiance[4] = {batch.radiance[0], batch.radiance[1], batch.radiance[2], batch.radiance[3]};
-    const float *const wave[4] = {lambda[0], lambda[1], lambda[2], lambda[3]};
-    const float *const inv[4] = {inv_pdf[0], inv_pdf[1], inv_pdf[2], inv_pdf[3]};
-    r->color_kernels->rgb_from_radiance(r->rgb_from_xyz, n, radiance, wave, inv, red, green, blue);
-  }
-  float e = r->exposure_time;
-  if (e != 1.0f)
-    for (uint32_t i = 0; i < n; i++) red[i] *= e, green[i] *= e, blue[i] *= e;
-  vlFilmSamples add = {n, px, py, red, green, blue, batch.alpha, row(w, WEIGHT)};
+  vl_film_expose(r->film, r->trace.isa, &expose, row(w, RED), row(w, GREEN), row(w, BLUE));
+  vlFilmSamples add = {n, px, py, row(w, RED), row(w, GREEN), row(w, BLUE), batch.alpha, row(w, WEIGHT)};
   int32_t bad_x = 0, bad_y = 0;
   uint32_t bad = vl_film_add(r->film, &add, &bad_x, &bad_y);
   if (bad && !w->not_finite) w->bad_x = bad_x, w->bad_y = bad_y;
@@ -264,11 +240,6 @@ static vlResult make_workers(Render *r, vlContext *context, vlError *error) {
   return r->workers ? VL_OK : vl_fail_memory(error);
 }
 
-static void multiply3(const float a[9], const float b[9], float c[9]) {
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) c[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
-}
-
 static void prepare(Render *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
   const vlFilmDef *f = vl_film_def(r->film);
@@ -280,15 +251,8 @@ static void prepare(Render *r, const vlCamera *camera) {
   r->camera_kernels = vl_camera_kernels(isa);
   r->sampler_kernels = vl_sampler_kernels(isa);
   r->filter_kernels = vl_filter_kernels(isa);
-  r->color_kernels = vl_color_kernels(isa);
   r->trace_kernels = vl_trace_kernels(isa);
   r->rgb_mode = world->def.color == VL_COLOR_RGB;
-  vl_rgb_from_xyz(f->space, r->rgb_from_xyz);
-  float xyz_from_srgb[9];
-  vl_xyz_from_rgb(VL_SPACE_SRGB, xyz_from_srgb);
-  multiply3(r->rgb_from_xyz, xyz_from_srgb, r->out_from_srgb);
-  if (f->space == VL_SPACE_SRGB)
-    for (int i = 0; i < 9; i++) r->out_from_srgb[i] = i % 4 == 0;
   /* Footprints shrink with the samples of a pixel (pbrt book 10.1.3 scales by 1/sqrt(spp), at least 1/8); a fixed
    * share, so that more samples continue the same picture. */
   const float footprint = 0.25f;

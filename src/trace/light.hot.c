@@ -124,44 +124,48 @@ static bool reversed(const vlWorldShape *s) {
   return s->flip != (det < 0);
 }
 
-static Sample sample_triangle(const vlWorldShape *s, uint32_t prim, float area, vlVec3 from, float u, float v) {
-  static const float unit[6] = {0, 0, 1, 0, 1, 1};
-  const uint32_t *f = s->indices + 3 * (size_t)prim;
-  vlVec3 p[3], ns = vl_vec3(0, 0, 0);
-  for (int k = 0; k < 3; k++)
-    p[k] =
-        vl_vec3(s->positions[3 * (size_t)f[k]], s->positions[3 * (size_t)f[k] + 1], s->positions[3 * (size_t)f[k] + 2]);
+static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, bool with_uv, vlVec3 from, float u,
+                              float v) {
+  const float *q = light->corners;
+  vlVec3 p[3] = {vl_vec3(q[0], q[1], q[2]), vl_vec3(q[3], q[4], q[5]), vl_vec3(q[6], q[7], q[8])};
   /* Low-distortion map of the square (Heitz 2019). */
   float b0 = u < v ? u * 0.5f : u - v * 0.5f, b1 = u < v ? v - u * 0.5f : v * 0.5f;
   float b[3] = {b0, b1, 1.0f - b0 - b1};
   Sample r;
   r.p = vl_add(vl_add(vl_mul(p[0], b[0]), vl_mul(p[1], b[1])), vl_mul(p[2], b[2]));
-  vlVec3 n = vl_normalize(vl_cross(vl_sub(p[1], p[0]), vl_sub(p[2], p[0])));
-  for (int k = 0; s->normals && k < 3; k++) {
-    const float *x = s->normals + 3 * (size_t)f[k];
-    ns = vl_add(ns, vl_mul(vl_vec3(x[0], x[1], x[2]), b[k]));
-  }
-  bool flip = vl_length2(ns) > 0.0f ? vl_dot(n, ns) < 0.0f : s->flip;
-  r.n = flip ? vl_neg(n) : n;
+  r.n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
   r.u = r.v = 0;
-  for (int k = 0; k < 3; k++) {
-    const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
-    r.u += b[k] * t[0], r.v += b[k] * t[1];
+  r.pdf = light->area > 0.0f ? solid_pdf(1.0f / light->area, from, r.p, r.n) : 0.0f;
+  const uint32_t *f = s->indices + 3 * (size_t)light->prim;
+  if (!light->one_sided_normals) {
+    vlVec3 ns = vl_vec3(0, 0, 0);
+    for (int k = 0; k < 3; k++) {
+      const float *x = s->normals + 3 * (size_t)f[k];
+      ns = vl_add(ns, vl_mul(vl_vec3(x[0], x[1], x[2]), b[k]));
+    }
+    if (vl_dot(r.n, ns) < 0.0f) r.n = vl_neg(r.n);
   }
-  r.pdf = area > 0.0f ? solid_pdf(1.0f / area, from, r.p, n) : 0.0f;
+  if (with_uv) {
+    static const float unit[6] = {0, 0, 1, 0, 1, 1};
+    for (int k = 0; k < 3; k++) {
+      const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
+      r.u += b[k] * t[0], r.v += b[k] * t[1];
+    }
+  }
   return r;
 }
 
 static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec3 from, float u, float v) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
-  if (s->kind == VL_SHAPE_TRIANGLES) return sample_triangle(s, light->prim, light->area, from, u, v);
+  bool with_uv = world->emitted.items[light->emitted].image >= 0;
+  if (s->kind == VL_SHAPE_TRIANGLES) return sample_triangle(light, s, with_uv || s->alpha >= 0, from, u, v);
   vlVec3 center;
   float radius;
   if (whole_sphere(s, &center, &radius)) {
     vlVec3 to = vl_sub(center, from);
     if (vl_length2(to) > radius * radius * 1.0001f) {
       Sample r = sample_cone(center, radius, reversed(s), from, u, v);
-      if (world->emitted.items[light->emitted].image >= 0) { /* uv by way of the shape */
+      if (with_uv || s->alpha >= 0) { /* uv by way of the shape */
         vlShapeHit hit = {0, 0, 0, {0, 0, 0}};
         vlSurfacePoint point;
         for (int i = 0; i < 3; i++)

@@ -359,6 +359,10 @@ static void start_paths(Tracing *t) {
   vlTraceBatch *b = t->batch;
   vlPaths *p = &t->s->a;
   uint32_t padded = VL_PAD(b->n);
+  if (b->lambda[0]) {
+    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->shade.u0);
+    vl_color_kernels(t->def->isa)->visible_wavelengths(b->n, t->s->shade.u0, b->lambda, b->inv_pdf);
+  }
   for (uint32_t i = 0; i < padded; i++) {
     p->ox[i] = b->ox[i], p->oy[i] = b->oy[i], p->oz[i] = b->oz[i];
     p->dx[i] = b->dx[i], p->dy[i] = b->dy[i], p->dz[i] = b->dz[i];
@@ -373,7 +377,7 @@ static void start_paths(Tracing *t) {
   for (int c = 0; c < 4; c++)
     for (uint32_t i = 0; i < padded; i++) {
       p->beta[c][i] = 1.0f;
-      p->lambda[c][i] = b->lambda[c][i];
+      p->lambda[c][i] = b->lambda[c] ? b->lambda[c][i] : 0.0f;
       b->radiance[c][i] = 0.0f;
     }
 }

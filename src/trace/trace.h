@@ -48,8 +48,9 @@ typedef struct vlTraceBatch {
   const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;
   const int32_t *px, *py;
   const uint32_t *index;
-  float *lambda[4];                  /* spectral: wavelengths; RGB mode: ignored */
   float *radiance[4];                /* out; spectral: per wavelength; RGB mode: r, g, b, 0 */
+  float *lambda[4];                  /* out, spectral: wavelengths, nm; RGB mode: null */
+  float *inv_pdf[4];                 /* out, spectral: 1 / their density */
   float *alpha;                      /* out: 1 where the ray meets a surface */
   uint64_t bounce_rays, shadow_rays; /* added to */
 } vlTraceBatch;

@@ -84,7 +84,7 @@ static double interface_mean(const Grid *grid, int transmit, float c, float eta,
     float li = vl_ggx_length(w, alpha, alpha);
     float g = vl_ggx_shadowing(o.z, lo, w.z, li) * layer(tau, w.z);
     float share = transmit ? 1.0f - f.reflected : f.reflected;
-    part[i] = (oh > 0.0f) & (w.z > 0.0f) ? share * g : 0.0f;
+    part[i] = ((oh > 0.0f) & (w.z > 0.0f)) ? share * g : 0.0f;
     /* densities of w: through the interface from outside, by the base's cosine, through the interface from inside */
     float p = vl_ggx_density(h, alpha, alpha) * 2.0f / (lo + o.z) * oh * f.cos_t / (t * t > 1e-30f ? t * t : 1e-30f);
     float q = p * (lo + o.z) / ((li + w.z) * eta * eta), d = w.z * VL_INV_PI;

@@ -248,25 +248,26 @@ static vlResult add_emission(vlWorld *world, const vlEmissionDef *def, vlEmitted
   return e->image < 0 ? (error && error->code ? error->code : VL_ERROR_SCENE) : VL_OK;
 }
 
-static void triangle_normal(const vlWorldShape *s, uint32_t prim, float n[3]) {
+/* Corners and lit side. The renderer turns the geometric normal to the side of the interpolated shading normal: where the
+ * three vertex normals agree on the side, so does every point between. */
+static void triangle_light(const vlWorldShape *s, uint32_t prim, vlWorldLight *light) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
   vlVec3 p[3];
   for (int k = 0; k < 3; k++) {
     const float *x = s->positions + 3 * (size_t)f[k];
     p[k] = vl_vec3(x[0], x[1], x[2]);
+    for (int i = 0; i < 3; i++) light->corners[3 * k + i] = x[i];
   }
   vlVec3 g = vl_normalize(vl_cross(vl_sub(p[1], p[0]), vl_sub(p[2], p[0])));
-  if (s->flip) g = vl_neg(g);
-  if (s->normals) { /* as the renderer orients it: to the side of the shading normal */
-    vlVec3 ns = vl_vec3(0, 0, 0);
-    for (int k = 0; k < 3; k++) {
-      const float *x = s->normals + 3 * (size_t)f[k];
-      ns = vl_add(ns, vl_vec3(x[0], x[1], x[2]));
-    }
-    vlVec3 face = s->flip ? vl_neg(g) : g;
-    g = vl_dot(face, ns) < 0 ? vl_neg(face) : face;
+  int against = 0;
+  for (int k = 0; s->normals && k < 3; k++) {
+    const float *x = s->normals + 3 * (size_t)f[k];
+    against += vl_dot(g, vl_vec3(x[0], x[1], x[2])) < 0;
   }
-  n[0] = g.x, n[1] = g.y, n[2] = g.z;
+  bool flip = s->normals ? against >= 2 : s->flip;
+  light->one_sided_normals = against == 0 || against == 3;
+  if (flip) g = vl_neg(g);
+  light->direction[0] = g.x, light->direction[1] = g.y, light->direction[2] = g.z;
 }
 
 static vlResult add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t shape_index, vlError *error) {
@@ -314,7 +315,7 @@ static vlResult add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t 
                                   luminance(&e->spectrum)
                             : luminance(&e->spectrum);
     light->power = VL_PI * area * l * (e->two_sided ? 2 : 1);
-    if (shape->kind == VL_SHAPE_TRIANGLES) triangle_normal(shape, i, light->direction);
+    if (shape->kind == VL_SHAPE_TRIANGLES) triangle_light(shape, i, light);
     if (shape->kind == VL_SHAPE_DISK) {
       vlSurfacePoint point;
       double pdf;

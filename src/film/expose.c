@@ -1,0 +1,36 @@
+/* film/expose.c: see expose.h. */
+#include "film/expose.h"
+
+#include "color/kernels.h"
+
+static void multiply3(const float a[9], const float b[9], float c[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) c[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+}
+
+static void convert(vlColorSpace space, const vlExposure *e, float *r, float *g, float *b) {
+  float to[9], from[9], m[9];
+  vl_rgb_from_xyz(space, to);
+  vl_xyz_from_rgb(VL_SPACE_SRGB, from);
+  multiply3(to, from, m);
+  for (int i = 0; space == VL_SPACE_SRGB && i < 9; i++) m[i] = i % 4 == 0; /* not the rounded product */
+  const float *x = e->radiance[0], *y = e->radiance[1], *z = e->radiance[2];
+  for (uint32_t i = 0; i < VL_PAD(e->n); i++) {
+    r[i] = m[0] * x[i] + m[1] * y[i] + m[2] * z[i];
+    g[i] = m[3] * x[i] + m[4] * y[i] + m[5] * z[i];
+    b[i] = m[6] * x[i] + m[7] * y[i] + m[8] * z[i];
+  }
+}
+
+void vl_film_expose(const vlFilm *film, vlIsa isa, const vlExposure *e, float *r, float *g, float *b) {
+  vlColorSpace space = vl_film_def(film)->space;
+  if (e->lambda[0]) {
+    float m[9];
+    vl_rgb_from_xyz(space, m);
+    vl_color_kernels(isa)->rgb_from_radiance(m, e->n, e->radiance, e->lambda, e->inv_pdf, r, g, b);
+  } else {
+    convert(space, e, r, g, b);
+  }
+  float f = e->exposure;
+  for (uint32_t i = 0; f != 1.0f && i < VL_PAD(e->n); i++) r[i] *= f, g[i] *= f, b[i] *= f;
+}

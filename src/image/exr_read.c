@@ -46,8 +46,45 @@ static int64_t on_size(exr_const_context_t exr, void *user) {
   return (int64_t)((vlExr *)user)->file->size;
 }
 
+static uint32_t le32(const uint8_t *p) {
+  return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+
+/* The bytes after a zero-terminated text of 1 to 255 letters at `at`; 0 when there is none. */
+static size_t after_text(const vlImageFile *file, size_t at) {
+  size_t end = at;
+  while (end < file->size && end - at < 256 && file->data[end]) end++;
+  return end > at && end < file->size && !file->data[end] ? end + 1 : 0;
+}
+
+/* OpenEXRCore takes memory for whatever size an attribute claims before it looks whether the file has it. So the
+ * headers (several in a file of parts) are walked first: name, type, size, and that many bytes. */
+static bool headers_fit(const vlImageFile *file) {
+  if (file->size < 9) return false;
+  bool parts = le32(file->data + 4) & 0x1000u;
+  size_t at = 8;
+  do {
+    while (at < file->size && file->data[at]) {
+      size_t type = after_text(file, at), size_at = type ? after_text(file, type) : 0;
+      if (!size_at || file->size - size_at < 4) return false;
+      uint32_t size = le32(file->data + size_at);
+      at = size_at + 4;
+      if (size > file->size - at) return false;
+      if (strcmp((const char *)file->data + type, "preview") == 0) { /* width, height, four bytes a pixel */
+        if (size < 8 || (double)le32(file->data + at) * le32(file->data + at + 4) * 4.0 > size - 8.0) return false;
+      }
+      at += size;
+    }
+    if (at >= file->size) return false;
+    at++;
+  } while (parts && at < file->size && file->data[at]);
+  return true;
+}
+
 static vlResult fail(Reader *r, exr_result_t code) {
-  if (code == EXR_ERR_OUT_OF_MEMORY) return vl_fail_memory(r->base.file->error);
+  /* PIZ's unpacking also gives "out of memory" for damaged data; the message tells the two apart. */
+  bool damaged = strncmp(r->base.message, "Unable to decompress", 20) == 0;
+  if (code == EXR_ERR_OUT_OF_MEMORY && !damaged) return vl_fail_memory(r->base.file->error);
   return vl_codec_broken(r->base.file, "OpenEXR",
                          r->base.message[0] ? r->base.message : exr_get_default_error_message(code));
 }
@@ -209,6 +246,7 @@ static vlResult read_all(Reader *r) {
 }
 
 vlResult vl_exr_read(const vlImageFile *file, vlImage **image) {
+  if (!headers_fit(file)) return vl_codec_broken(file, "OpenEXR", "ends in its header, or the header is damaged");
   Reader r;
   memset(&r, 0, sizeof r);
   r.base.file = file;

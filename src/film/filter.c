@@ -12,7 +12,7 @@ static double series_exp(double x) { /* x <= 0 */
   if (x < -700.0) return 0.0;
   int n = (int)(x * 1.4426950408889634 - 0.5);
   double r = (x - n * 0.693147180369123816490) - n * 1.90821492927058770002e-10, sum = 1.0;
-  for (int k = 20; k > 0; k--) sum = 1.0 + sum * r / k;
+  for (int k = 15; k > 0; k--) sum = 1.0 + sum * r / k;
   for (; n < 0; n++) sum *= 0.5;
   return sum;
 }
@@ -114,30 +114,53 @@ static double lobe_invert(Shape s, const Lobe *lobe, double m) {
   return x;
 }
 
-/* The lobes of [0, radius]: between changes of sign, found on a grid and then by halving. 0: too many. */
+/* Where f changes sign between a and b (sign * f > 0 at a). */
+static double find_root(Shape s, double a, double b, double sign) {
+  for (int i = 0; i < 60; i++) {
+    double mid = 0.5 * (a + b);
+    if (vl_filter_value(s.filter, s.axis, mid) * sign > 0.0)
+      a = mid;
+    else
+      b = mid;
+  }
+  return b;
+}
+/* Where |f| is least between a and b. */
+static double find_least(Shape s, double a, double b) {
+  for (int i = 0; i < 100; i++) {
+    double p = a + (b - a) / 3.0, q = b - (b - a) / 3.0;
+    if (magnitude(s, p) < magnitude(s, q))
+      b = q;
+    else
+      a = p;
+  }
+  return 0.5 * (a + b);
+}
+
+/* The lobes of [0, radius]: between the places where f changes sign or touches zero, found on a grid first. 0: too
+ * many, or f is not above zero at its centre. */
 static int find_lobes(Shape s, double radius, Lobe *lobes) {
   enum { GRID = 1024 };
+  double step = radius / GRID, top = vl_filter_value(s.filter, s.axis, 0.0), sign = 1.0, start = 0.0, last = 0.0;
   int count = 0;
-  double sign = 1.0, last = 0.0, start = 0.0;
+  if (!(top > 0.0)) return 0;
   for (int k = 1; k <= GRID; k++) {
-    double x = radius * k / GRID, f = vl_filter_value(s.filter, s.axis, x);
-    if (fabs(f) < 1e-12) continue; /* touches zero: no side taken */
-    if (f * sign < 0.0) {
-      if (count == 0 && last == 0.0 && vl_filter_value(s.filter, s.axis, 0.0) <= 0.0) return 0;
-      double a = last, b = x;
-      for (int i = 0; i < 60; i++) {
-        double mid = 0.5 * (a + b);
-        if (vl_filter_value(s.filter, s.axis, mid) * sign > 0.0)
-          a = mid;
-        else
-          b = mid;
-      }
-      if (count == LOBES - 1) return 0;
-      lobes[count++] = (Lobe){.a = start, .b = b, .sign = sign};
-      start = b;
-      sign = -sign;
+    double x = step * k, f = vl_filter_value(s.filter, s.axis, x);
+    double cut = -1.0;
+    if (fabs(f) >= 1e-12 * top && f * sign < 0.0) {
+      cut = find_root(s, last, x, sign);
+    } else if (k > 1 && k < GRID) {
+      double before = vl_filter_value(s.filter, s.axis, x - step), after = vl_filter_value(s.filter, s.axis, x + step);
+      bool same = before * sign > 0.0 && after * sign > 0.0, dip = fabs(f) < fabs(before) && fabs(f) <= fabs(after);
+      double least = same && dip ? find_least(s, x - step, x + step) : -1.0;
+      if (least > 0.0 && magnitude(s, least) < 1e-6 * top) cut = least;
     }
-    last = x;
+    if (fabs(f) >= 1e-12 * top) last = x;
+    if (cut <= start) continue;
+    if (count == LOBES - 1) return 0;
+    lobes[count++] = (Lobe){.a = start, .b = cut, .sign = sign};
+    start = cut;
+    if (f * sign < 0.0) sign = -sign;
   }
   lobes[count++] = (Lobe){.a = start, .b = radius, .sign = sign};
   return count;
@@ -162,7 +185,7 @@ static void add_segment(Shape s, vlFilterAxis *axis, const Lobe *lobe, double m0
 }
 
 static bool compile_axis(const vlPixelFilter *filter, int which, vlFilterAxis *axis) {
-  enum { BINS = 512, TAIL_BINS = 64, LEAST_BINS = 8 };
+  enum { BINS = 512, TAIL_BINS = 64, LEAST_BINS = 64 };
   double radius = which ? filter->radius_y : filter->radius_x;
   memset(axis, 0, sizeof *axis);
   axis->radius = (float)radius;
@@ -180,7 +203,7 @@ static bool compile_axis(const vlPixelFilter *filter, int which, vlFilterAxis *a
     integral += lobes[i].sign * lobes[i].sum[STEPS];
   }
   if (count == 0 || !(integral > 0.1 * total) || !(total < 1e30)) return false;
-  double ratio = count == 1 ? 1.0 : total / integral;
+  double ratio = integral == total ? 1.0 : total / integral;
   for (int i = 0; i < count; i++) {
     double mass = lobes[i].sum[STEPS], weight = lobes[i].sign * ratio;
     uint32_t bins = (uint32_t)(BINS * mass / total);

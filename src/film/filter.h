@@ -7,7 +7,7 @@
 
 #include "film/film.h"
 
-enum { VL_FILTER_SEGMENTS = 48, VL_FILTER_EDGES = 2048, VL_FILTER_RADIUS_MAX = 32 };
+enum { VL_FILTER_SEGMENTS = 48, VL_FILTER_EDGES = 4096, VL_FILTER_RADIUS_MAX = 32 };
 
 typedef struct vlFilterAxis {
   float radius;

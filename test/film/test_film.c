@@ -93,7 +93,7 @@ static void test_exact(void **state) {
     long double sum = 0, weight = 0;
     for (int i = 0; i < COUNT; i++)
       if (py_[i] * WIDTH + px_[i] == p) {
-        long double w = rintl((long double)w_[i] * 0x1p24L) * 0x1p-24L;
+        long double w = roundl((long double)w_[i] * 0x1p24L) * 0x1p-24L;
         sum += w * r_[i], weight += w;
       }
     assert_true(weight > 0);

@@ -246,7 +246,7 @@ static const Option render_options[] = {
      "the same in fractions of the picture, in pbrt's order", 0, 0, NULL},
     {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "take camera and picture size from this scene file", 0, 0, NULL},
     {RENDER_TRACER, 0, "tracer", OPTION_CHOICE, "NAME", "how light is followed:", 0, 0, tracer_choices},
-    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "longest path, in bounces", 0, 65535, NULL},
+    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "longest path, in bounces", 0, 4096, NULL},
     {RENDER_SAMPLER, 0, "sampler", OPTION_CHOICE, "NAME", "how samples are placed:", 0, 0, sampler_choices},
     {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "another number, other noise", 0, 4294967295.0, NULL},
     {RENDER_FILTER, 0, "filter", OPTION_CHOICE, "NAME", "pixel filter, with pbrt's usual size:", 0, 0, filter_choices},

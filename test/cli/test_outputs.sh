@@ -73,7 +73,7 @@ if [ "$code" = 5 ] && [[ $err == *"No space left"* ]]; then pass full_png; else 
 [ -s beside.exr ] && pass the_other_output_is_written || fail the_other_output_is_written
 run "$VELO" image convert a.png full.png
 [ "$code" = 5 ] && pass convert_to_full_disk || fail "convert_to_full_disk (exit code $code)"
-run bash -c 'exec "$0" image info a.exr >/dev/full' "$VELO"
+run bash -c 'exec "$0" image info a.png >/dev/full' "$VELO"
 [ "$code" = 5 ] && pass stdout_is_full || fail "stdout_is_full (exit code $code)"
 # A file may not grow past a kilobyte: like a disk that fills up while writing. The old picture must survive.
 printf old >limited.exr

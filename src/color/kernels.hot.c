@@ -136,31 +136,31 @@ static void dense_gather(uint32_t n, const float *dense, const uint32_t *offset,
 static void sigmoid_from_rgb(const vlRgbTable *table, uint32_t n, const float *r, const float *g, const float *b,
                              float *c0, float *c1, float *c2) {
   uint32_t count = VL_PAD(n);
-  vlRgbTable t = *table;
+  const float *p = table->coefficients;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    vlSigmoid s = vl_rgb_table_lookup(&t, r[i], g[i], b[i]);
-    c0[i] = s.c0;
-    c1[i] = s.c1;
-    c2[i] = s.c2;
+    vlRgbPlace at = vl_rgb_place(r[i], g[i], b[i]);
+    c0[i] = vl_rgb_coefficient(p, 0, at);
+    c1[i] = vl_rgb_coefficient(p, 1, at);
+    c2[i] = vl_rgb_coefficient(p, 2, at);
   }
 }
 
 static void sigmoid_from_light(const vlRgbTable *table, uint32_t n, const float *r, const float *g, const float *b,
                                float *scale, float *c0, float *c1, float *c2) {
   uint32_t count = VL_PAD(n);
-  vlRgbTable t = *table;
+  const float *p = table->coefficients;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     float high = r[i] > g[i] ? r[i] : g[i];
     high = high > b[i] ? high : b[i];
     float m = high > 0.0f ? 2.0f * high : 0.0f;
     float inv = high > 0.0f ? 1.0f / m : 0.0f;
-    vlSigmoid s = vl_rgb_table_lookup(&t, r[i] * inv, g[i] * inv, b[i] * inv);
+    vlRgbPlace at = vl_rgb_place(r[i] * inv, g[i] * inv, b[i] * inv);
     scale[i] = m;
-    c0[i] = s.c0;
-    c1[i] = s.c1;
-    c2[i] = s.c2;
+    c0[i] = vl_rgb_coefficient(p, 0, at);
+    c1[i] = vl_rgb_coefficient(p, 1, at);
+    c2[i] = vl_rgb_coefficient(p, 2, at);
   }
 }
 

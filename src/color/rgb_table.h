@@ -44,20 +44,12 @@ static inline vlRgbCell vl_rgb_cell(float v, int size) {
   return (vlRgbCell){i, (v - low) / (high - low)};
 }
 
-static inline float vl_rgb_corners(const float *p, int i, float x, float y, float z) {
-  enum { X = 3, Y = 3 * VL_RGB_TABLE_XY, Z = 3 * VL_RGB_TABLE_XY * VL_RGB_TABLE_XY };
-  float a = p[i], b = p[i + Y], c = p[i + Z], d = p[i + Z + Y];
-  a = a + x * (p[i + X] - a);
-  b = b + x * (p[i + X + Y] - b);
-  c = c + x * (p[i + X + Z] - c);
-  d = d + x * (p[i + X + Z + Y] - d);
-  a = a + y * (b - a);
-  c = c + y * (d - c);
-  return a + z * (c - a);
-}
-
-/* Coefficients of the reflectance whose colour under the space's illuminant is r, g, b (clamped to [0,1]). */
-static inline vlSigmoid vl_rgb_table_lookup(const vlRgbTable *table, float r, float g, float b) {
+/* Where a colour lies: its cell, the shares of the upper nodes, and the factor on what is stored. Reads no memory. */
+typedef struct vlRgbPlace {
+  int index;
+  float x, y, z, scale;
+} vlRgbPlace;
+static inline __attribute__((always_inline)) vlRgbPlace vl_rgb_place(float r, float g, float b) {
   r = r > 0.0f ? r : 0.0f;
   g = g > 0.0f ? g : 0.0f;
   b = b > 0.0f ? b : 0.0f;
@@ -77,8 +69,10 @@ static inline vlSigmoid vl_rgb_table_lookup(const vlRgbTable *table, float r, fl
   float y = red ? b : green ? r : g;
   int face = red ? 0 : green ? 1 : 2;
   float divisor = z > 0.0f ? z : 1.0f;
-  x = z > 0.0f ? x / divisor : 1.0f;
-  y = z > 0.0f ? y / divisor : 1.0f;
+  x = x / divisor;
+  y = y / divisor;
+  x = z > 0.0f ? x : 1.0f;
+  y = z > 0.0f ? y : 1.0f;
   vlRgbCell cx = vl_rgb_cell(x, VL_RGB_TABLE_XY), cy = vl_rgb_cell(y, VL_RGB_TABLE_XY);
   vlRgbCell cz = vl_rgb_cell(z, VL_RGB_TABLE_Z);
   int i = 3 * (((face * VL_RGB_TABLE_Z + cz.index) * VL_RGB_TABLE_XY + cy.index) * VL_RGB_TABLE_XY + cx.index);
@@ -87,9 +81,30 @@ static inline vlSigmoid vl_rgb_table_lookup(const vlRgbTable *table, float r, fl
   /* black: exactly -2^30, where the sigmoid is exactly 0 */
   k = k > 4.656612873e-10f ? k : 4.656612873e-10f;
   float scale = (flip ? -1.0f : 1.0f) / k;
+  return (vlRgbPlace){i, cx.t, cy.t, cz.t, scale};
+}
+
+/* Coefficient k of the three. */
+static inline __attribute__((always_inline)) float vl_rgb_coefficient(const float *p, int k, vlRgbPlace at) {
+  enum { X = 3, Y = 3 * VL_RGB_TABLE_XY, Z = 3 * VL_RGB_TABLE_XY * VL_RGB_TABLE_XY };
+  int i = at.index + k;
+  float a = p[i], b = p[i + Y], c = p[i + Z], d = p[i + Z + Y];
+  a = a + at.x * (p[i + X] - a);
+  b = b + at.x * (p[i + X + Y] - b);
+  c = c + at.x * (p[i + X + Z] - c);
+  d = d + at.x * (p[i + X + Z + Y] - d);
+  a = a + at.y * (b - a);
+  c = c + at.y * (d - c);
+  return at.scale * (a + at.z * (c - a));
+}
+
+/* Coefficients of the reflectance whose colour under the space's illuminant is r, g, b (clamped to [0,1]). In a loop
+ * that clang shall vectorise, call the parts: it forgets that a loop is a simd loop for what is inlined twice over. */
+static inline __attribute__((always_inline)) vlSigmoid vl_rgb_table_lookup(const vlRgbTable *table, float r, float g,
+                                                                           float b) {
+  vlRgbPlace at = vl_rgb_place(r, g, b);
   const float *p = table->coefficients;
-  return (vlSigmoid){scale * vl_rgb_corners(p, i, cx.t, cy.t, cz.t), scale * vl_rgb_corners(p, i + 1, cx.t, cy.t, cz.t),
-                     scale * vl_rgb_corners(p, i + 2, cx.t, cy.t, cz.t)};
+  return (vlSigmoid){vl_rgb_coefficient(p, 0, at), vl_rgb_coefficient(p, 1, at), vl_rgb_coefficient(p, 2, at)};
 }
 
 #endif

@@ -203,8 +203,8 @@ bool vl_import_ctm(vlImport *import, vlSource place, vlMat4 *ctm) {
   *ctm = import->state.ctm[0];
   if (memcmp(&import->state.ctm[0], &import->state.ctm[1], sizeof(vlMat4)) == 0 || import->animation_told) return true;
   import->animation_told = import->permissive;
-  return vl_import_unsupported(
-      import, place, "animated transforms (ActiveTransform) are not understood yet; the transform at the start counts");
+  return vl_import_unsupported(import, place, "animated transforms (ActiveTransform) are not understood yet%s",
+                               import->permissive ? "; the transform at the start counts" : "");
 }
 
 /* pbrt's LookAt (book 3.9.2): camera from world, x right, y up, z forward. */

@@ -99,7 +99,7 @@ void job_describe(const Job *job, vlContext *context, const vlScene *scene, cons
   printf("scene     %s: %llu shapes, %llu materials, %llu textures, %llu instances\n", job->path,
          (unsigned long long)f.scene.shapes, (unsigned long long)f.scene.materials,
          (unsigned long long)f.scene.textures, (unsigned long long)f.scene.instances);
-  printf("world     %s triangles, %llu other primitives, %llu lights, %sB; built in %s\n", triangles,
+  printf("world     %s triangles, other primitives %llu, lights %llu, %sB; built in %s\n", triangles,
          (unsigned long long)(f.world.primitives > f.world.triangles ? f.world.primitives - f.world.triangles : 0),
          (unsigned long long)f.world.lights, bytes, build);
   printf("camera    %s", f.projection);

@@ -1,7 +1,8 @@
 /* math/fresnel.h: share of light that a smooth interface reflects, unpolarised. By value, no branches: the hot loops
  * inline these. Cosines are taken against the (micro)normal on the side the light comes from, so >= 0.
  * Source: pbrt book 9.3.6 (dielectric: Fresnel's equations with Snell's law) and 9.3.7 (conductor: complex index; the
- * form without complex numbers is Born and Wolf, Principles of Optics, 14.2, as in Lagarde's memo on Fresnel equations). */
+ * form without complex numbers is Born and Wolf, Principles of Optics, 14.2, as in Lagarde's memo on Fresnel
+ * equations). */
 #ifndef MATH_FRESNEL_H
 #define MATH_FRESNEL_H
 
@@ -10,9 +11,10 @@ typedef struct vlFresnel {
   float cos_t;     /* cosine of the refracted direction, 0 in total internal reflection */
 } vlFresnel;
 
-/* eta: index beyond the interface over the index on the side of the light, > 0. cos_i in [0, 1]. */
+/* eta: index beyond the interface over the index on the side of the light, > 0. cos_i is clamped to [0, 1]. */
 static inline vlFresnel vl_fresnel_dielectric(float cos_i, float eta) {
   float c = cos_i > 1.0f ? 1.0f : cos_i;
+  c = c > 0.0f ? c : 0.0f;
   float sin2_t = (1.0f - c * c) / (eta * eta);
   float inside = 1.0f - sin2_t;
   float cos_t = __builtin_sqrtf(inside > 0.0f ? inside : 0.0f);
@@ -23,7 +25,8 @@ static inline vlFresnel vl_fresnel_dielectric(float cos_i, float eta) {
   return (vlFresnel){inside > 0.0f ? r : 1.0f, cos_t};
 }
 
-/* Index eta + i k over vacuum, for one channel. Values past 1e6 count as 1e6 (their squares' squares would overflow). */
+/* Index eta + i k over vacuum, for one channel. Values past 1e6 count as 1e6 (their squares' squares would overflow).
+ */
 static inline float vl_fresnel_conductor(float cos_i, float eta, float k) {
   float c = cos_i > 1.0f ? 1.0f : cos_i;
   float n = 1e6f < eta ? 1e6f : eta, m = 1e6f < k ? 1e6f : k;

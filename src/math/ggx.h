@@ -2,10 +2,10 @@
  * All directions have z >= 0 (mirror the others first: the distribution is even in z) and unit length.
  *
  * With L(w) = |(alpha_x w.x, alpha_y w.y, w.z)| Smith's functions become short, and finite at grazing angles:
- *   1 + Lambda(w) = (L + z) / 2z,  G1 = 2z / (L + z),  G(o, i) = 1 / (1 + Lambda_o + Lambda_i) = 2 zo zi / (Lo zi + Li zo)
- * (height-correlated; pbrt book 9.6.3). From it, with D the density of normals:
- *   reflection:  f cos_i = F D zi / (2 (Lo zi + Li zo)),  pdf(wi) = D / (2 (Lo + zo)),  f cos_i / pdf = F G/G1
- * References: Walter et al. 2007; Heitz 2014, 2018; Dupuy and Benyoub 2023 (spherical caps); pbrt book 9.6. */
+ *   1 + Lambda(w) = (L + z) / 2z,  G1 = 2z / (L + z),  G(o, i) = 1 / (1 + Lambda_o + Lambda_i) = 2 zo zi / (Lo zi + Li
+ * zo) (height-correlated; pbrt book 9.6.3). From it, with D the density of normals: reflection:  f cos_i = F D zi / (2
+ * (Lo zi + Li zo)),  pdf(wi) = D / (2 (Lo + zo)),  f cos_i / pdf = F G/G1 References: Walter et al. 2007; Heitz 2014,
+ * 2018; Dupuy and Benyoub 2023 (spherical caps); pbrt book 9.6. */
 #ifndef MATH_GGX_H
 #define MATH_GGX_H
 
@@ -28,11 +28,19 @@ static inline float vl_ggx_length(vlVec3 w, float alpha_x, float alpha_y) {
   return __builtin_sqrtf(x * x + y * y + w.z * w.z);
 }
 
-/* Density of microfacet normals, per solid angle and per area of the surface. */
+/* Density of microfacet normals, per solid angle and per area of the surface. Finite for h = 0 too. */
 static inline float vl_ggx_density(vlVec3 h, float alpha_x, float alpha_y) {
   float x = h.x / alpha_x, y = h.y / alpha_y;
   float e = x * x + y * y + h.z * h.z;
+  e = e > 1e-6f ? e : 1e-6f;
   return VL_INV_PI / (alpha_x * alpha_y * (e * e));
+}
+
+/* D(h) G1(w) / w.z = 2 D / (L + z): times w.h the density of h among those that w sees. (The bound is far below what
+ * unit vectors have.) */
+static inline float vl_ggx_visible(vlVec3 h, float alpha_x, float alpha_y, float z, float length) {
+  float down = length + z;
+  return 2.0f * vl_ggx_density(h, alpha_x, alpha_y) / (down > 1e-9f ? down : 1e-9f);
 }
 
 /* G(wo, wi) / G1(wo): what a sample drawn by visible normals is worth, Fresnel apart. zo, zi > 0. */

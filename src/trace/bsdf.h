@@ -1,5 +1,5 @@
-/* trace/bsdf.h: BSDFs over batches of one kind. All directions in the local shading frame, z the shading normal; wo and wi
- * point away from the surface. Channel-wise: 4 wavelengths or R, G, B and nothing; the code does not know which.
+/* trace/bsdf.h: BSDFs over batches of one kind. All directions in the local shading frame, z the shading normal; wo and
+ * wi point away from the surface. Channel-wise: 4 wavelengths or R, G, B and nothing; the code does not know which.
  *
  *   eval:   value[c] = f(wo, wi) |cos wi|, pdf = density of sampling wi (solid angle); specular (delta) parts are 0
  *   sample: wi; weight[c] = f |cos| / pdf; pdf (for delta parts: the discrete probability's, flag set); flags
@@ -14,25 +14,25 @@
 
 typedef enum vlBsdfKind {
   VL_BSDF_DIFFUSE,
-  VL_BSDF_CONDUCTOR,       /* eta, k; rough or smooth by lane (alpha < 1e-3 both: smooth) */
-  VL_BSDF_DIELECTRIC,      /* eta_s > 0 interior over exterior; rough or smooth by lane */
+  VL_BSDF_CONDUCTOR,  /* eta, k; rough or smooth by lane (alpha < 1e-3 both: smooth) */
+  VL_BSDF_DIELECTRIC, /* eta_s > 0 interior over exterior; rough or smooth by lane */
   VL_BSDF_THIN_DIELECTRIC,
-  VL_BSDF_COATED_DIFFUSE,  /* rough or smooth dielectric coat over a diffuse base, table of its transmittances */
+  VL_BSDF_COATED_DIFFUSE, /* rough or smooth dielectric coat over a diffuse base, table of its transmittances */
   VL_BSDF_KINDS
 } vlBsdfKind;
 
 enum {
-  VL_SAMPLED_SPECULAR = 1,      /* delta: eval knows nothing of it */
-  VL_SAMPLED_TRANSMISSION = 2,  /* wi on the other side of the surface */
-  VL_SAMPLED_NONE = 4           /* no direction: the path ends; weight is 0 */
+  VL_SAMPLED_SPECULAR = 1,     /* delta: eval knows nothing of it */
+  VL_SAMPLED_TRANSMISSION = 2, /* wi on the other side of the surface */
+  VL_SAMPLED_NONE = 4          /* no direction: the path ends; weight is 0 */
 };
 
 /* One array a parameter, VL_PAD(n) lanes; a kind reads only what it names. */
 typedef struct vlBsdfParams {
-  float *reflectance[4]; /* diffuse, coated diffuse: albedo of the base in [0,1] */
-  float *eta[4], *k[4];  /* conductor */
+  float *reflectance[4];    /* diffuse, coated diffuse: albedo of the base in [0,1] */
+  float *eta[4], *k[4];     /* conductor */
   float *alpha_x, *alpha_y; /* conductor, dielectric, coat */
-  float *eta_s;          /* dielectric, thin, coat */
+  float *eta_s;             /* dielectric, thin, coat */
   const vlCoatTable **coat; /* coated diffuse */
 } vlBsdfParams;
 

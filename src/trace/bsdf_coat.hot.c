@@ -146,7 +146,7 @@ static inline __attribute__((always_inline)) CoatLobe coat_lobe(vlVec3 o, vlVec3
   vlVec3 h = vl_normalize(vl_add(o, w));
   float f = vl_fresnel_dielectric(vl_dot(o, h), eta).reflected;
   float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
-  float p = vl_ggx_density(h, rx, ry) / (2.0f * (lo + o.z));
+  float p = 0.25f * vl_ggx_visible(h, rx, ry, o.z, lo);
   p = rough ? p : 0.0f;
   return (CoatLobe){f * p * vl_ggx_shadowing(o.z, lo, w.z, li), p};
 }

@@ -18,7 +18,7 @@ void VL_HOT(vl_bsdf_conductor_eval)(uint32_t n, const vlBsdfParams *params, vlBs
     vlVec3 h = vl_normalize(vl_add(o, w));
     float c = vl_dot(o, h);
     float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
-    float p = vl_ggx_density(h, rx, ry) / (2.0f * (lo + o.z));
+    float p = 0.25f * vl_ggx_visible(h, rx, ry, o.z, lo);
     float g = p * vl_ggx_shadowing(o.z, lo, w.z, li);
     float f0 = vl_fresnel_conductor(c, e0[i], k0[i]), f1 = vl_fresnel_conductor(c, e1[i], k1[i]);
     float f2 = vl_fresnel_conductor(c, e2[i], k2[i]), f3 = vl_fresnel_conductor(c, e3[i], k3[i]);
@@ -53,7 +53,7 @@ void VL_HOT(vl_bsdf_conductor_sample)(uint32_t n, const vlBsdfParams *params, vl
     vlVec3 w = vl_reflect(o, h, c);
     int valid = (o.z > 0.0f) & (w.z > 0.0f) & (c > 0.0f);
     float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
-    float p = vl_ggx_density(h, rx, ry) / (2.0f * (lo + o.z));
+    float p = 0.25f * vl_ggx_visible(h, rx, ry, o.z, lo);
     float g = vl_ggx_shadowing(o.z, lo, w.z, li);
     g = valid ? (smooth ? 1.0f : g) : 0.0f;
     ix[i] = w.x;

@@ -29,7 +29,7 @@ void VL_HOT(vl_bsdf_dielectric_eval)(uint32_t n, const vlBsdfParams *params, vlB
     float fr = vl_fresnel_dielectric(oh, eta).reflected;
     float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
     /* D_wo(h) / wo.h = 2 D / (Lo + zo); Jacobian of h by wi */
-    float visible = vl_ggx_density(h, rx, ry) * 2.0f / (lo + o.z);
+    float visible = vl_ggx_visible(h, rx, ry, o.z, lo);
     float t = ih + oh / eta;
     float t2 = t * t;
     float jacobian = oh * vl_abs(ih) / (t2 > 1e-30f ? t2 : 1e-30f);
@@ -74,7 +74,7 @@ void VL_HOT(vl_bsdf_dielectric_sample)(uint32_t n, const vlBsdfParams *params, v
     vlVec3 w = vl_vec3(a * h.x - b * o.x, a * h.y - b * o.y, a * h.z - b * o.z);
     int valid = (o.z > 0.0f) & (oh > 0.0f) & (reflect ? w.z > 0.0f : w.z < 0.0f);
     float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
-    float visible = vl_ggx_density(h, rx, ry) * 2.0f / (lo + o.z);
+    float visible = vl_ggx_visible(h, rx, ry, o.z, lo);
     /* wi.h = -cos_t after transmission */
     float t = oh / eta - f.cos_t, t2 = t * t;
     float jacobian = oh * f.cos_t / (t2 > 1e-30f ? t2 : 1e-30f);

@@ -86,7 +86,7 @@ static double interface_mean(const Grid *grid, int transmit, float c, float eta,
     float share = transmit ? 1.0f - f.reflected : f.reflected;
     part[i] = ((oh > 0.0f) & (w.z > 0.0f)) ? share * g : 0.0f;
     /* densities of w: through the interface from outside, by the base's cosine, through the interface from inside */
-    float p = vl_ggx_density(h, alpha, alpha) * 2.0f / (lo + o.z) * oh * f.cos_t / (t * t > 1e-30f ? t * t : 1e-30f);
+    float p = vl_ggx_visible(h, alpha, alpha, o.z, lo) * oh * f.cos_t / (t * t > 1e-30f ? t * t : 1e-30f);
     float q = p * (lo + o.z) / ((li + w.z) * eta * eta), d = w.z * VL_INV_PI;
     float base2 = d * d;
     excess[i] = part[i] * (base2 / (base2 + q * q + 1e-30f) - base2 / (base2 + p * p + 1e-30f));

@@ -1,0 +1,372 @@
+/* test_bsdf_limits.c: what a BSDF may never do: make energy, differ between instruction sets, answer NaN, prefer a
+ * direction of travel. White furnaces of what loses nothing, reciprocity, equal bits, degenerate input, pbrt's special
+ * cases. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+/* after those */
+#include <cmocka.h>
+
+#include "bsdf_batch.h"
+
+typedef struct {
+  vlContext *context;
+  const vlBsdfKernels *kernels;
+  Batch *batch, *other;
+  vlCoatTable *tables[4];
+} State;
+
+static int setup(void **state) {
+  State *s = calloc(1, sizeof *s);
+  vlContextDef def = vl_default_context_def();
+  if (vl_context_create(&def, &s->context)) return 1;
+  s->kernels = vl_bsdf_kernels(vl_context_isa(s->context));
+  s->batch = calloc(1, sizeof *s->batch);
+  s->other = calloc(1, sizeof *s->other);
+  const float alphas[4][2] = {{0, 0}, {0.1f, 0.1f}, {0.0f, 0.6f}, {0.4f, 0.4f}};
+  for (int i = 0; i < 4; i++)
+    if (vl_coat_build(s->context, 1.5f, 0.01f, i == 3 ? 1000 : 10, alphas[i][0], alphas[i][1], &s->tables[i])) return 1;
+  *state = s;
+  return 0;
+}
+static int teardown(void **state) {
+  State *s = *state;
+  for (int i = 0; i < 4; i++) vl_coat_free(s->context, s->tables[i]);
+  vl_context_destroy(s->context);
+  free(s->batch);
+  free(s->other);
+  free(s);
+  return 0;
+}
+
+/* ---- white furnace ---- */
+
+/* Energy that comes back from a unit of light, by channel 0; radiance scaling undone. */
+static double furnace(const State *s, const Surface *surface, double theta) {
+  Batch *b = s->batch;
+  double sum = 0;
+  enum { TURNS = 128 };
+  statRng rng = stat_rng(3);
+  for (int turn = 0; turn < TURNS; turn++) {
+    for (uint32_t j = 0; j < BATCH; j++) {
+      batch_surface(b, j, surface);
+      batch_wo(b, j, theta, 0.3);
+      b->lobe[j] = ((float)j + stat_float(&rng)) / BATCH; /* strata by lobe, lattice in the square */
+      b->u[j] = ((float)turn + stat_float(&rng)) / TURNS;
+      double v = (double)j * 0.6180339887498949 + (double)turn * 0.7548776662466927;
+      b->v[j] = (float)(v - floor(v)) * 0.999999f;
+    }
+    batch_sample(s->kernels, surface->kind, BATCH, b);
+    for (uint32_t j = 0; j < BATCH; j++) sum += (double)(b->weight[0][j] * b->scale[j]);
+  }
+  return sum / TURNS / BATCH;
+}
+
+static void white_furnace(void **state) {
+  const State *s = *state;
+  vlCoatTable *clear, *dense;
+  assert_int_equal(vl_coat_build(s->context, 1.5f, 0.0f, 1000, 0, 0, &clear), VL_OK);
+  assert_int_equal(vl_coat_build(s->context, 2.4f, 0.0f, 1000, 0, 0, &dense), VL_OK);
+  const Surface lossless[] = {
+      {.kind = VL_BSDF_DIFFUSE, .reflectance = 1},
+      {.kind = VL_BSDF_CONDUCTOR, .eta = 1, .k = 1e7f},
+      {.kind = VL_BSDF_CONDUCTOR, .eta = 0, .k = 2.0f}, /* real part 0: all of it comes back */
+      {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f},
+      {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.0f, .alpha_x = 0.3f, .alpha_y = 0.3f},
+      {.kind = VL_BSDF_DIELECTRIC, .eta_s = 0.6f},
+      {.kind = VL_BSDF_THIN_DIELECTRIC, .eta_s = 1.5f},
+      {.kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 1, .eta_s = 1.5f, .coat = clear},
+      {.kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 1, .eta_s = 2.4f, .coat = dense},
+  };
+  const double thetas[] = {0.0, 0.8, 1.4, 1.55, 2.0, 3.0};
+  for (size_t i = 0; i < sizeof lossless / sizeof *lossless; i++)
+    for (size_t t = 0; t < 6; t++) {
+      double albedo = furnace(s, &lossless[i], thetas[t]);
+      if (!(albedo > 0.999 && albedo < 1.001)) fail_msg("surface %zu theta %g: albedo %g", i, thetas[t], albedo);
+    }
+  vl_coat_free(s->context, clear);
+  vl_coat_free(s->context, dense);
+  /* Rough ones lose what would scatter again, and never gain. */
+  for (int a = 0; a < 12; a++) {
+    float ax = (float[]){0.001f, 0.05f, 0.3f, 1.0f}[a % 4], ay = (float[]){0.001f, 0.4f, 0.3f}[a / 4];
+    const Surface rough[] = {{.kind = VL_BSDF_CONDUCTOR, .eta = 0, .k = 2.0f, .alpha_x = ax, .alpha_y = ay},
+                             {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f, .alpha_x = ax, .alpha_y = ay},
+                             {.kind = VL_BSDF_COATED_DIFFUSE,
+                              .reflectance = 1,
+                              .eta_s = 1.5f,
+                              .alpha_x = 0.4f,
+                              .alpha_y = 0.4f,
+                              .coat = s->tables[3]}};
+    for (int i = 0; i < 3; i++)
+      for (size_t t = 0; t < 6; t++) {
+        double albedo = furnace(s, &rough[i], thetas[t]);
+        if (!(albedo > 0.1 && albedo < 1.001))
+          fail_msg("rough %d alpha %g %g theta %g: %g", i, (double)ax, (double)ay, thetas[t], albedo);
+      }
+  }
+}
+
+/* ---- reciprocity ---- */
+
+static void reciprocity(void **state) {
+  const State *s = *state;
+  Batch *b = s->batch, *c = s->other;
+  const Surface all[] = {{.kind = VL_BSDF_DIFFUSE, .reflectance = 0.7f},
+                         {.kind = VL_BSDF_CONDUCTOR, .eta = 0.2f, .k = 3.9f, .alpha_x = 0.2f, .alpha_y = 0.5f},
+                         {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f, .alpha_x = 0.4f, .alpha_y = 0.3f},
+                         {.kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 0.6f, .eta_s = 1.5f, .coat = s->tables[0]},
+                         {.kind = VL_BSDF_COATED_DIFFUSE,
+                          .reflectance = 0.6f,
+                          .eta_s = 1.5f,
+                          .alpha_x = 0.3f,
+                          .alpha_y = 0.1f,
+                          .coat = s->tables[2]}};
+  statRng rng = stat_rng(9);
+  for (size_t i = 0; i < 5; i++) {
+    double worst = 0;
+    int seen = 0;
+    for (uint32_t j = 0; j < BATCH; j++) {
+      double o[3], w[3];
+      stat_direction(&rng, o);
+      stat_direction(&rng, w);
+      batch_surface(b, j, &all[i]);
+      b->ox[j] = (float)o[0], b->oy[j] = (float)o[1], b->oz[j] = (float)o[2];
+      b->ix[j] = (float)w[0], b->iy[j] = (float)w[1], b->iz[j] = (float)w[2];
+    }
+    *c = *b;
+    memcpy(c->ox, b->ix, sizeof b->ix), memcpy(c->oy, b->iy, sizeof b->iy), memcpy(c->oz, b->iz, sizeof b->iz);
+    memcpy(c->ix, b->ox, sizeof b->ox), memcpy(c->iy, b->oy, sizeof b->oy), memcpy(c->iz, b->oz, sizeof b->oz);
+    batch_eval(s->kernels, all[i].kind, BATCH, b);
+    batch_eval(s->kernels, all[i].kind, BATCH, c);
+    for (uint32_t j = 0; j < BATCH; j++) {
+      if (fabsf(b->oz[j]) < 0.02f || fabsf(b->iz[j]) < 0.02f) continue;
+      double f = (double)(b->value[2][j] / fabsf(b->iz[j])), g = (double)(c->value[2][j] / fabsf(b->oz[j]));
+      /* radiance over the square of its medium's index is what stays: f(wo, wi) n_i^2 = f(wi, wo) n_o^2 */
+      double n = all[i].kind == VL_BSDF_DIELECTRIC ? (double)all[i].eta_s : 1;
+      f *= b->iz[j] < 0 ? n * n : 1, g *= b->oz[j] < 0 ? n * n : 1;
+      double off = fabs(f - g) / (fabs(f) + 1e-2); /* near the critical angle 1 - F is all rounding */
+      if (!(off < worst)) worst = off;
+      seen += f > 0;
+    }
+    if (!(worst < 3e-4)) fail_msg("surface %zu: not reciprocal by %g", i, worst);
+    assert_true(seen > 300);
+  }
+}
+
+/* ---- bits and NaN ---- */
+
+static float pick(statRng *rng, const float *values, size_t count) {
+  return values[stat_bits(rng) % count];
+}
+/* Random lanes, one in eight of them degenerate somehow. Directions are finite and at most unit length. */
+static void fill(const State *s, Batch *b, statRng *rng) {
+  const float alphas[] = {0, 1e-5f, 9.99e-4f, 1e-3f, 0.01f, 0.1f, 0.5f, 1};
+  const float etas[] = {1.5f, 1 / 1.5f, 1, 1.0001f, 2.4f, 4, 0.3f}, ks[] = {0, 0.1f, 3.9f, 9, 1e7f, 1e20f};
+  const float small[] = {0, -0.0f, 1e-42f, -1e-42f, 1e-30f, 1e-7f, -1e-7f, 1, -1, 0.7f},
+              edges[] = {0, 0.5f, 0x1.fffffep-1f};
+  for (uint32_t j = 0; j < BATCH; j++) {
+    for (int c = 0; c < 4; c++) {
+      b->reflectance[c][j] = stat_bits(rng) & 7 ? stat_float(rng) : pick(rng, (float[]){0, 1}, 2);
+      b->eta[c][j] = stat_bits(rng) & 7 ? 0.1f + 3 * stat_float(rng) : pick(rng, ks, 6);
+      b->k[c][j] = stat_bits(rng) & 7 ? 5 * stat_float(rng) : pick(rng, ks, 6);
+    }
+    b->alpha_x[j] = stat_bits(rng) & 1 ? stat_float(rng) : pick(rng, alphas, 8);
+    b->alpha_y[j] = stat_bits(rng) & 1 ? b->alpha_x[j] : pick(rng, alphas, 8);
+    b->eta_s[j] = pick(rng, etas, 7);
+    b->coat[j] = s->tables[stat_bits(rng) % 4];
+    double o[3], w[3];
+    stat_direction(rng, o);
+    stat_direction(rng, w);
+    b->ox[j] = (float)o[0], b->oy[j] = (float)o[1], b->oz[j] = (float)o[2];
+    b->ix[j] = (float)w[0], b->iy[j] = (float)w[1], b->iz[j] = (float)w[2];
+    if (!(stat_bits(rng) & 7))
+      b->ox[j] = pick(rng, small, 10), b->oy[j] = pick(rng, small, 7), b->oz[j] = pick(rng, small, 9);
+    if (!(stat_bits(rng) & 7))
+      b->ix[j] = pick(rng, small, 10), b->iy[j] = pick(rng, small, 7), b->iz[j] = pick(rng, small, 9);
+    if (!(stat_bits(rng) & 7)) b->ix[j] = -b->ox[j], b->iy[j] = -b->oy[j], b->iz[j] = -b->oz[j]; /* no half vector */
+    if (!(stat_bits(rng) & 15)) b->ix[j] = -b->ox[j], b->iy[j] = -b->oy[j], b->iz[j] = b->oz[j]; /* mirror */
+  }
+  batch_numbers(b, BATCH, rng);
+  for (uint32_t j = 0; j < BATCH; j += 9)
+    b->lobe[j] = pick(rng, edges, 3), b->u[j] = pick(rng, edges, 3), b->v[j] = pick(rng, edges, 3);
+}
+
+static void never_nan(void **state) {
+  const State *s = *state;
+  Batch *b = s->batch;
+  statRng rng = stat_rng(21);
+  for (int turn = 0; turn < 1000; turn++) {
+    vlBsdfKind kind = (vlBsdfKind)(turn % VL_BSDF_KINDS);
+    fill(s, b, &rng);
+    batch_eval(s->kernels, kind, BATCH, b);
+    for (uint32_t j = 0; j < BATCH; j++)
+      for (int c = 0; c < 5; c++) {
+        float x = c < 4 ? b->value[c][j] : b->pdf[j];
+        if (!(x >= 0 && x < INFINITY))
+          fail_msg("kind %d eval %g: wo %g %g %g wi %g %g %g alpha %g %g eta %g", kind, (double)x, (double)b->ox[j],
+                   (double)b->oy[j], (double)b->oz[j], (double)b->ix[j], (double)b->iy[j], (double)b->iz[j],
+                   (double)b->alpha_x[j], (double)b->alpha_y[j], (double)b->eta_s[j]);
+      }
+    batch_sample(s->kernels, kind, BATCH, b);
+    for (uint32_t j = 0; j < BATCH; j++) {
+      bool none = b->flags[j] & VL_SAMPLED_NONE;
+      for (int c = 0; c < 6; c++) {
+        float x = c < 4 ? b->weight[c][j] : c == 4 ? b->pdf[j] : b->scale[j];
+        if (!(x >= 0 && x < INFINITY) || (none && c < 5 && x != 0))
+          fail_msg("kind %d sample %d: %g: wo %g %g %g u %g %g %g alpha %g %g eta %g", kind, c, (double)x,
+                   (double)b->ox[j], (double)b->oy[j], (double)b->oz[j], (double)b->lobe[j], (double)b->u[j],
+                   (double)b->v[j], (double)b->alpha_x[j], (double)b->alpha_y[j], (double)b->eta_s[j]);
+      }
+      assert_true(none || (b->pdf[j] > 0 && isfinite(b->ix[j] + b->iy[j] + b->iz[j])));
+      assert_true(b->flags[j] < 8 && (b->oz[j] != 0 || none));
+    }
+  }
+}
+
+static void same_bits(void **state) {
+  const State *s = *state;
+  const vlBsdfKernels *base = vl_bsdf_kernels(VL_ISA_V2);
+  int compared = 0;
+  for (int isa = VL_ISA_V3; isa <= VL_ISA_V4; isa++) {
+    if ((int)vl_isa_best() < isa) continue;
+    const vlBsdfKernels *wide = vl_bsdf_kernels((vlIsa)isa);
+    assert_ptr_not_equal(base, wide);
+    statRng rng = stat_rng(31);
+    for (int turn = 0; turn < 100; turn++) {
+      vlBsdfKind kind = (vlBsdfKind)(turn % VL_BSDF_KINDS);
+      uint32_t n = turn < 50 ? BATCH : 1 + (uint32_t)(stat_bits(&rng) % BATCH);
+      fill(s, s->batch, &rng);
+      memcpy(s->other, s->batch, sizeof *s->batch);
+      batch_eval(base, kind, n, s->batch);
+      batch_eval(wide, kind, n, s->other);
+      assert_memory_equal(s->batch->value[0], s->other->value[0], n * 4);
+      assert_memory_equal(s->batch->value[3], s->other->value[3], n * 4);
+      assert_memory_equal(s->batch->pdf, s->other->pdf, n * 4);
+      batch_sample(base, kind, n, s->batch);
+      batch_sample(wide, kind, n, s->other);
+      assert_memory_equal(s->batch->ix, s->other->ix, n * 4);
+      assert_memory_equal(s->batch->iz, s->other->iz, n * 4);
+      assert_memory_equal(s->batch->weight[0], s->other->weight[0], n * 4);
+      assert_memory_equal(s->batch->weight[3], s->other->weight[3], n * 4);
+      assert_memory_equal(s->batch->pdf, s->other->pdf, n * 4);
+      assert_memory_equal(s->batch->flags, s->other->flags, n * 4);
+      assert_memory_equal(s->batch->scale, s->other->scale, n * 4);
+    }
+    compared++;
+  }
+  if (!compared) print_message("only one instruction set here: nothing to compare\n");
+}
+
+/* A lane's bits depend on that lane alone: neither on its place nor on its neighbours nor on the batch's length. */
+static void lanes_alone(void **state) {
+  const State *s = *state;
+  Batch *b = s->batch, *c = s->other;
+  statRng rng = stat_rng(41);
+  for (int k = 0; k < VL_BSDF_KINDS; k++) {
+    vlBsdfKind kind = (vlBsdfKind)k;
+    fill(s, b, &rng);
+    *c = *b;
+    for (uint32_t j = 0; j < 600; j++) { /* reversed, and a shorter batch */
+      uint32_t i = 599 - j;
+      for (int d = 0; d < 4; d++)
+        c->reflectance[d][j] = b->reflectance[d][i], c->eta[d][j] = b->eta[d][i], c->k[d][j] = b->k[d][i];
+      c->alpha_x[j] = b->alpha_x[i], c->alpha_y[j] = b->alpha_y[i], c->eta_s[j] = b->eta_s[i], c->coat[j] = b->coat[i];
+      c->ox[j] = b->ox[i], c->oy[j] = b->oy[i], c->oz[j] = b->oz[i];
+      c->lobe[j] = b->lobe[i], c->u[j] = b->u[i], c->v[j] = b->v[i];
+    }
+    for (uint32_t j = 600; j < BATCH; j++)
+      c->coat[j] = NULL, c->ox[j] = NAN, c->alpha_x[j] = NAN; /* padding is garbage */
+    batch_sample(s->kernels, kind, BATCH, b);
+    batch_sample(s->kernels, kind, 600, c);
+    for (uint32_t j = 0; j < 600; j++) {
+      assert_true(memcmp(&b->weight[1][599 - j], &c->weight[1][j], 4) == 0);
+      assert_true(memcmp(&b->iy[599 - j], &c->iy[j], 4) == 0 && b->flags[599 - j] == c->flags[j]);
+    }
+  }
+}
+
+/* ---- special cases ---- */
+
+static void special(void **state) {
+  const State *s = *state;
+  Batch *b = s->batch;
+  /* normal incidence on glass: 4 %; a pane of it: 2R/(1+R); light leaving it is spread again */
+  const Surface glass = {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f},
+                pane = {.kind = VL_BSDF_THIN_DIELECTRIC, .eta_s = 1.5f};
+  for (uint32_t j = 0; j < 16; j++) {
+    batch_surface(b, j, &glass);
+    batch_wo(b, j, j & 1 ? 3.14159265358979 : 0.0, 0);
+    b->lobe[j] = j & 2 ? 0.03f : 0.05f;
+    b->u[j] = b->v[j] = 0.4f;
+  }
+  batch_sample(s->kernels, VL_BSDF_DIELECTRIC, 16, b);
+  assert_true(fabsf(b->pdf[2] - 0.04f) < 1e-6f && b->flags[2] == VL_SAMPLED_SPECULAR && b->weight[0][2] == 1 &&
+              b->iz[2] == 1);
+  assert_true(fabsf(b->pdf[0] - 0.96f) < 1e-6f && b->iz[0] == -1 && fabsf(b->weight[0][0] * 2.25f - 1) < 1e-6f);
+  assert_true(b->flags[0] == (VL_SAMPLED_SPECULAR | VL_SAMPLED_TRANSMISSION) && fabsf(b->scale[0] - 2.25f) < 1e-6f);
+  assert_true(b->iz[1] == 1 && fabsf(b->weight[0][1] - 2.25f) < 1e-5f && fabsf(b->scale[1] * 2.25f - 1) < 1e-6f);
+  for (uint32_t j = 0; j < 16; j++) batch_surface(b, j, &pane);
+  batch_sample(s->kernels, VL_BSDF_THIN_DIELECTRIC, 16, b);
+  assert_true(fabsf(b->pdf[2] - 0.08f / 1.04f) < 1e-6f && b->weight[0][2] == 1 && b->scale[0] == 1);
+  /* total inner reflection: never through */
+  for (uint32_t j = 0; j < 16; j++) {
+    batch_surface(b, j, &glass);
+    batch_wo(b, j, 3.14159265358979 - 0.75, 0);
+    b->lobe[j] = 0.9999f;
+  }
+  batch_sample(s->kernels, VL_BSDF_DIELECTRIC, 16, b);
+  assert_true(b->flags[0] == VL_SAMPLED_SPECULAR && b->pdf[0] == 1 && b->iz[0] < 0);
+  /* gold at normal incidence by the textbook's formula, and just rough enough to be no mirror */
+  Surface gold = {.kind = VL_BSDF_CONDUCTOR, .eta = 0.2f, .k = 3.9f, .alpha_x = 9.9e-4f, .alpha_y = 9.9e-4f};
+  for (int rough = 0; rough < 2; rough++) {
+    for (uint32_t j = 0; j < 16; j++) {
+      batch_surface(b, j, &gold);
+      batch_wo(b, j, 0, 0);
+      b->v[j] = 0;
+    }
+    batch_sample(s->kernels, VL_BSDF_CONDUCTOR, 16, b);
+    double n = 0.2, k = 3.9, r = ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
+    assert_true(fabs((double)b->weight[0][0] - r) < 1e-5);
+    assert_int_equal(b->flags[0], rough ? 0 : VL_SAMPLED_SPECULAR);
+    gold.alpha_x = gold.alpha_y = 1e-3f;
+  }
+  /* a two-sided coat: from below as from above */
+  const Surface coat = {.kind = VL_BSDF_COATED_DIFFUSE,
+                        .reflectance = 0.5f,
+                        .eta_s = 1.5f,
+                        .alpha_x = 0.1f,
+                        .alpha_y = 0.1f,
+                        .coat = s->tables[1]};
+  for (uint32_t j = 0; j < 16; j++) {
+    batch_surface(b, j, &coat);
+    batch_wo(b, j, 0.5, 0);
+    b->ix[j] = 0.6f, b->iy[j] = 0, b->iz[j] = 0.8f;
+    if (j & 1) b->oz[j] = -b->oz[j], b->iz[j] = -b->iz[j];
+    if (j & 2) b->iz[j] = -b->iz[j];
+  }
+  batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, b);
+  assert_true(b->value[0][0] > 0 && b->value[0][0] == b->value[0][1] && b->value[0][2] == 0 && b->pdf[3] == 0);
+  /* the closed form itself */
+  const vlCoatTable *t = s->tables[1];
+  vlCoatPlace p = vl_coat_place(0.8f);
+  const float *q = t->transmittance[0] + p.first;
+  double ti = (double)vl_coat_cubic(q[0], q[1], q[2], q[3], p.t);
+  p = vl_coat_place(b->oz[0]);
+  q = t->transmittance[0] + p.first;
+  double to = (double)vl_coat_cubic(q[0], q[1], q[2], q[3], p.t), x = 0.5 * (double)t->back[0],
+         series = 1 + x + x * x + x * x * x + x * x * x * x;
+  const Surface black = {.kind = VL_BSDF_COATED_DIFFUSE, .eta_s = 1.5f, .alpha_x = 0.1f, .alpha_y = 0.1f, .coat = t};
+  double with = (double)b->value[0][0];
+  for (uint32_t j = 0; j < 16; j++) batch_surface(b, j, &black);
+  batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, b);
+  double base = with - (double)b->value[0][0], want = to * ti * 0.5 / 3.14159265358979 / 2.25 * series * 0.8;
+  assert_true(fabs(base / want - 1) < 1e-5);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(white_furnace), cmocka_unit_test(reciprocity),
+                                     cmocka_unit_test(never_nan),     cmocka_unit_test(same_bits),
+                                     cmocka_unit_test(lanes_alone),   cmocka_unit_test(special)};
+  return cmocka_run_group_tests(tests, setup, teardown);
+}

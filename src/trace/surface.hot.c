@@ -90,8 +90,12 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   vlVec3 e02 = vl_sub(p0, p2), e12 = vl_sub(p1, p2);
   vlVec3 cross = vl_cross(e02, e12);
   vlVec3 g = vl_normalize(cross);
-  /* pbrt's bound of the point's error, projected on the normal, twice: Embree rounds too. */
-  r.offset = 2.0f * (GAMMA(7) * (vl_abs(g.x) * ex + vl_abs(g.y) * ey + vl_abs(g.z) * ez) +
+  /* pbrt's bound of the point's error (book 6.8.3), projected on the normal; and the error of the distance that Embree
+   * will find when it meets this triangle again from here: its plane stands on corner 0, its normal is rounded, so that
+   * the error grows with the way from that corner. Both doubled. */
+  vlVec3 way = vl_sub(r.p, p0);
+  float reach = vl_abs(way.x) + vl_abs(way.y) + vl_abs(way.z);
+  r.offset = 2.0f * (GAMMA(7) * (vl_abs(g.x) * ex + vl_abs(g.y) * ey + vl_abs(g.z) * ez) + GAMMA(5) * reach +
                      corner_error * (vl_abs(g.x) + vl_abs(g.y) + vl_abs(g.z)));
   r.dist = vl_dot(vl_sub(r.p, o), d);
   vlVec3 ns = vl_add(vl_add(vl_mul(n0, b0), vl_mul(n1, b1)), vl_mul(n2, b2));

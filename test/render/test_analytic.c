@@ -112,7 +112,8 @@ static void finish(Bench *b, Shot shot, double mean[3], double range[2]) {
   assert_int_equal(vl_render(world, &camera, film, &def, &stats, &error), VL_OK);
   assert_int_equal(stats.not_finite, 0);
   vlImage *image = NULL;
-  assert_int_equal(vl_film_develop(film, NULL, &image), VL_OK);
+  vlDevelopDef develop = vl_default_develop_def();
+  assert_int_equal(vl_film_develop(film, &develop, &image), VL_OK);
   mean[0] = mean[1] = mean[2] = 0;
   double low = INFINITY, high = -INFINITY;
   for (uint32_t y = 0; y < shot.size; y++)

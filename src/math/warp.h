@@ -1,0 +1,132 @@
+/* math/warp.h: from the unit square to disks, hemispheres, cones, triangles and spherical triangles, and back. (u, v)
+ * in [0,1)^2 uniform gives the density that stands with each function. All keep neighbours together (low distortion),
+ * so that well-spread points stay well spread. No branches, no libm: made for hot loops. The map of the whole sphere
+ * used for pictures of the sky is math/octahedral.h.
+ *
+ * Directions are local, z up. Sources: pbrt book appendix A.5; others at their place. */
+#ifndef MATH_WARP_H
+#define MATH_WARP_H
+
+#include "math/approx.h"
+#include "math/vec.h"
+
+#define VL_INV_2PI 0.15915494309189533577f
+#define VL_INV_4PI 0.07957747154594766788f
+
+/* ---- unit disk: density 1 / pi
+ * ---------------------------------------------------------------------------------------- */
+
+/* Concentric squares to concentric circles (Shirley and Chiu 1997). r: its distance from the centre, signed. */
+typedef struct vlDiskPoint {
+  float x, y, r;
+} vlDiskPoint;
+static inline vlDiskPoint vl_warp_disk(float u, float v) {
+  float a = 2.0f * u - 1.0f, b = 2.0f * v - 1.0f;
+  int flat = vl_abs(a) > vl_abs(b);
+  float r = flat ? a : b, other = flat ? b : a;
+  float t = other / (r == 0.0f ? 1.0f : r); /* in [-1, 1]: the angle in eighths of a turn, from the nearer axis */
+  vlSinCos k = vl_sincos_kernel(0.785398163397448310f * t);
+  float along = r * k.cos, across = r * k.sin;
+  return (vlDiskPoint){flat ? along : across, flat ? across : along, r};
+}
+static inline vlVec2 vl_unwarp_disk(float x, float y) {
+  int flat = vl_abs(x) > vl_abs(y);
+  float along = flat ? x : y, across = flat ? y : x;
+  float r = __builtin_copysignf(__builtin_sqrtf(x * x + y * y), along);
+  float other = r * 1.27323954473516268615f * vl_atan(across / (along == 0.0f ? 1.0f : along));
+  float a = flat ? r : other, b = flat ? other : r;
+  return (vlVec2){vl_clamp(0.5f * (a + 1.0f), 0.0f, 1.0f), vl_clamp(0.5f * (b + 1.0f), 0.0f, 1.0f)};
+}
+
+/* ---- hemisphere and sphere
+ * --------------------------------------------------------------------------------------------- */
+
+/* Density cos(theta) / pi (Malley: the disk, lifted). z is right to the last bits near the horizon, too. */
+static inline vlVec3 vl_warp_cosine_hemisphere(float u, float v) {
+  vlDiskPoint d = vl_warp_disk(u, v);
+  float z = __builtin_sqrtf(vl_max(0.0f, (1.0f - d.r) * (1.0f + d.r)));
+  return vl_vec3(d.x, d.y, z);
+}
+static inline float vl_cosine_hemisphere_pdf(float cos_theta) {
+  return vl_max(0.0f, cos_theta) * VL_INV_PI;
+}
+static inline vlVec2 vl_unwarp_cosine_hemisphere(vlVec3 w) {
+  return vl_unwarp_disk(w.x, w.y);
+}
+
+/* Density 1 / (2 pi (1 - cos_max)) in the cone around z. The argument is 1 - cos_max, which small cones need:
+ * sin^2 / (1 + cos). 1: hemisphere; 2: sphere. A point of the disk, lifted so that areas stay in proportion. */
+static inline vlVec3 vl_warp_cone(float u, float v, float one_minus_cos_max) {
+  vlDiskPoint d = vl_warp_disk(u, v);
+  float h = d.r * d.r * one_minus_cos_max; /* 1 - z */
+  float s = __builtin_sqrtf(one_minus_cos_max * vl_max(0.0f, 2.0f - h));
+  return vl_vec3(d.x * s, d.y * s, 1.0f - h);
+}
+static inline float vl_cone_pdf(float one_minus_cos_max) {
+  return VL_INV_2PI / one_minus_cos_max;
+}
+static inline vlVec2 vl_unwarp_cone(vlVec3 w, float one_minus_cos_max) {
+  float s2 = one_minus_cos_max * vl_max(0.0f, 1.0f + w.z);
+  float s = s2 > 0.0f ? 1.0f / __builtin_sqrtf(s2) : 0.0f;
+  return vl_unwarp_disk(w.x * s, w.y * s);
+}
+static inline vlVec3 vl_warp_hemisphere(float u, float v) { /* density 1 / (2 pi) */
+  return vl_warp_cone(u, v, 1.0f);
+}
+/* Density 1 / (4 pi). By latitude and longitude: u is the height, v the angle. */
+static inline vlVec3 vl_warp_sphere(float u, float v) {
+  float r = 2.0f * __builtin_sqrtf(vl_max(0.0f, u * (1.0f - u)));
+  vlSinCos a = vl_sincos_turn(v);
+  return vl_vec3(r * a.cos, r * a.sin, 1.0f - 2.0f * u);
+}
+static inline vlVec2 vl_unwarp_sphere(vlVec3 w) {
+  float a = vl_atan2(w.y, w.x) * VL_INV_2PI;
+  return (vlVec2){vl_clamp(0.5f * (1.0f - w.z), 0.0f, 1.0f), a < 0.0f ? a + 1.0f : a};
+}
+
+/* ---- triangle: density 1 / area
+ * ---------------------------------------------------------------------------------------- */
+
+/* Barycentric coordinates of the first two corners (Heitz 2019, "A Low-Distortion Map Between Triangle and Square"). */
+static inline vlVec2 vl_warp_triangle(float u, float v) {
+  float less = 0.5f * vl_min(u, v), rest = vl_max(u, v) - less;
+  return u < v ? (vlVec2){less, rest} : (vlVec2){rest, less};
+}
+static inline vlVec2 vl_unwarp_triangle(float b0, float b1) {
+  float less = vl_min(b0, b1), sum = b0 + b1;
+  return b0 < b1 ? (vlVec2){2.0f * less, sum} : (vlVec2){sum, 2.0f * less};
+}
+
+/* ---- spherical triangle: density 1 / solid angle
+ * ------------------------------------------------------------------------ */
+
+/* Seen from the origin. After Arvo 1995, "Stratified Sampling of Spherical Triangles", without his angles: with c' on
+ * the arc from a to c, c' = cos(s) a + sin(s) t, van Oosterom and Strackee's (1983) solid angle of (a, b, c'), tan(area
+ * / 2) = det(a, b, c') / (1 + a.b + b.c' + c'.a), solved for s is   tan(s / 2) = (1 + a.b) tan / (det(a, b, t) - b.t
+ * tan):   no inverse cosine, no loss for small triangles but that of the corners' own rounding (6e-8 / size; below a
+ * solid angle of about 1e-6 sample the area). */
+typedef struct vlSphericalTriangle {
+  vlVec3 a, b, t;
+  float solid_angle;
+  float one_plus_ab, det, bt;
+} vlSphericalTriangle;
+/* a, b, c of unit length. Degenerate triangles have solid angle 0 and must not be sampled. */
+static inline vlSphericalTriangle vl_spherical_triangle(vlVec3 a, vlVec3 b, vlVec3 c) {
+  vlVec3 ab = vl_sub(b, a), ac = vl_sub(c, a), n = vl_cross(ab, ac);
+  vlVec3 t = vl_normalize(vl_sub(ac, vl_mul(a, vl_dot(a, ac))));
+  float one_plus_ab = 1.0f + vl_dot(a, b);
+  float half = vl_atan2(vl_abs(vl_dot(a, n)), one_plus_ab + vl_dot(b, c) + vl_dot(c, a));
+  return (vlSphericalTriangle){a, b, t, 2.0f * half, one_plus_ab, vl_abs(vl_dot(a, vl_cross(ab, t))), vl_dot(b, t)};
+}
+static inline vlVec3 vl_warp_spherical_triangle(vlSphericalTriangle s, float u, float v) {
+  vlSinCos half = vl_sincos(0.5f * u * s.solid_angle);
+  float y = half.sin * s.one_plus_ab, x = s.det * half.cos - s.bt * half.sin;
+  float length2 = x * x + y * y, scale = length2 > 0.0f ? 1.0f / length2 : 0.0f;
+  vlVec3 move = vl_sub(vl_mul(s.t, 2.0f * x * y * scale), vl_mul(s.a, 2.0f * y * y * scale)); /* c' - a */
+  vlVec3 c = vl_add(s.a, move), bc = vl_sub(c, s.b);
+  float whole = 0.5f * vl_length2(bc), h = v * whole; /* 1 - b.c', 1 - b.w */
+  vlVec3 side = vl_normalize(vl_sub(bc, vl_mul(s.b, vl_dot(bc, s.b))));
+  return vl_normalize(vl_add(vl_mul(s.b, 1.0f - h), vl_mul(side, __builtin_sqrtf(vl_max(0.0f, h * (2.0f - h))))));
+}
+
+#endif

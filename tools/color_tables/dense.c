@@ -233,32 +233,35 @@ static int by_name(const void *a, const void *b) {
   return strcmp(((const named *)a)->name, ((const named *)b)->name);
 }
 
-void write_spectra(FILE *file, space spaces[SPACE_COUNT]) {
-  static state s;
+static state all;
+
+void make_spectra(space spaces[SPACE_COUNT]) {
   const double *cmf[3] = {cie_x_5nm, cie_y_5nm, cie_z_5nm};
   for (int k = 0; k < 3; k++)
-    for (int i = 0; i < LAMBDA_COUNT; i++) s.cie[k][i] = (float)sprague(cmf[k], 95, LAMBDA_MIN + i);
-  add_all(&s);
-  qsort(s.list, (size_t)s.count, sizeof *s.list, by_name);
-  make_spaces(&s, spaces);
+    for (int i = 0; i < LAMBDA_COUNT; i++) all.cie[k][i] = (float)sprague(cmf[k], 95, LAMBDA_MIN + i);
+  add_all(&all);
+  qsort(all.list, (size_t)all.count, sizeof *all.list, by_name);
+  make_spaces(&all, spaces);
+}
 
+void write_spectra(FILE *file, const space spaces[SPACE_COUNT]) {
   fprintf(file, "/* Written by tools/color_tables. */\n#include \"color/tables.h\"\n\n");
-  fprintf(file, "const double vl_table_y_integral = %.17g;\n", y_integral(&s));
+  fprintf(file, "const double vl_table_y_integral = %.17g;\n", y_integral(&all));
   fprintf(file, "const float vl_table_cie[3][VL_LAMBDA_COUNT] = {");
   for (int k = 0; k < 3; k++) {
     fprintf(file, "\n  {");
-    write_floats(file, s.cie[k], LAMBDA_COUNT, 1);
+    write_floats(file, all.cie[k], LAMBDA_COUNT, 1);
     fprintf(file, "},");
   }
   fprintf(file, "\n};\n__attribute__((aligned(64))) const float vl_cie_xyz0[VL_LAMBDA_COUNT * 4] = {");
   for (int i = 0; i < LAMBDA_COUNT; i++) {
-    float v[4] = {s.cie[0][i], s.cie[1][i], s.cie[2][i], 0};
+    float v[4] = {all.cie[0][i], all.cie[1][i], all.cie[2][i], 0};
     write_floats(file, v, 4, 1);
   }
-  fprintf(file, "\n};\nconst uint32_t vl_table_named_count = %d;\nconst vlNamedTable vl_table_named[] = {", s.count);
-  for (int i = 0; i < s.count; i++) {
-    fprintf(file, "\n  {\"%s\", %.9g, {", s.list[i].name, sum_y(&s, s.list[i].values));
-    write_floats(file, s.list[i].values, LAMBDA_COUNT, 1);
+  fprintf(file, "\n};\nconst uint32_t vl_table_named_count = %d;\nconst vlNamedTable vl_table_named[] = {", all.count);
+  for (int i = 0; i < all.count; i++) {
+    fprintf(file, "\n  {\"%s\", %.9g, {", all.list[i].name, sum_y(&all, all.list[i].values));
+    write_floats(file, all.list[i].values, LAMBDA_COUNT, 1);
     fprintf(file, "}},");
   }
   fprintf(file, "\n};\nconst vlSpaceTable vl_table_spaces[4] = {");

@@ -14,26 +14,21 @@ int main(int argc, char **argv) {
     fprintf(stderr, "usage: color_tables spectra FILE.c | color_tables rgb SPACE FILE.bin\n");
     return 2;
   }
+  make_spectra(spaces);
   const char *path = argv[argc - 1];
-  FILE *spectra = rgb ? tmpfile() : fopen(path, "w");
-  if (!spectra) {
-    perror(path);
-    return 5;
-  }
-  write_spectra(spectra, spaces);
-  bool good = !ferror(spectra);
-  good = fclose(spectra) == 0 && good;
-  if (rgb) {
+  FILE *file = fopen(path, "wb");
+  bool good = file;
+  if (file && !rgb) write_spectra(file, spaces);
+  if (file && rgb) {
     size_t count = (size_t)3 * VL_RGB_TABLE_Z * VL_RGB_TABLE_XY * VL_RGB_TABLE_XY * 3;
     float *coefficients = calloc(count, sizeof *coefficients);
-    FILE *file = fopen(path, "wb");
-    good = coefficients && file;
-    if (good) {
-      solve_space(&spaces[which], coefficients);
-      good = fwrite(coefficients, sizeof *coefficients, count, file) == count;
-    }
-    if (file) good = fclose(file) == 0 && good;
+    if (coefficients) solve_space(&spaces[which], coefficients);
+    good = coefficients && fwrite(coefficients, sizeof *coefficients, count, file) == count;
     free(coefficients);
+  }
+  if (file) {
+    good = !ferror(file) && good;
+    good = fclose(file) == 0 && good;
   }
   if (!good) {
     perror(path);

@@ -14,8 +14,9 @@ typedef struct space {
   double weight[3][LAMBDA_COUNT]; /* rgb = sum over nm of weight * reflectance; each sums to 1 */
 } space;
 
-/* dense.c: fills spaces from the tables it writes. */
-void write_spectra(FILE *file, space spaces[SPACE_COUNT]);
+/* dense.c: the spectra, once; then the file. */
+void make_spectra(space spaces[SPACE_COUNT]);
+void write_spectra(FILE *file, const space spaces[SPACE_COUNT]);
 /* rgb.c: the coefficient table of one space, 3 N^3 colours, 3 floats each. */
 void solve_space(const space *s, float *coefficients);
 

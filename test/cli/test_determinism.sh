@@ -62,6 +62,22 @@ else
   show info
 fi
 
+# The same for scenes that others made: textures, environment light, coats, glass, a large mesh.
+for scene in cornell-box/cornell-box veach-mis/veach-mis coffee/coffee material-testball/material-testball pbrt-killeroos/killeroo-gold; do
+  name=$(basename "$scene")
+  file=$shared/scenes/pbrt/$scene.pbrt
+  if [ -z "$shared" ] || [ ! -e "$file" ]; then
+    skip "scene_$name" "needs ../shared/scenes"
+    continue
+  fi
+  small="--resolution 64x48 --spp 2 --quiet"
+  "$VELO" render "$file" $small -t 1 --isa v2 -o a.exr && "$VELO" render "$file" $small -t 3 -o b.exr || fail "scene_$name"
+  same "scene_$name" a.exr b.exr
+  "$VELO" render "$file" $small -t 2 --crop 9,5,50,31 -o part.exr && "$VELO" image convert a.exr cut.exr --crop 9,5,50,31
+  run "$VELO" image diff cut.exr part.exr --threshold differing=0
+  [ "$code" = 0 ] && pass "scene_${name}_crop" || { fail "scene_${name}_crop"; show diff; }
+done
+
 # Nothing in a file tells when, where or by how many it was made.
 sleep 1.1
 render -t 2 -o later.exr -o later.png -o later.jpg

@@ -90,11 +90,13 @@ static inline vlVec2 vl_unwarp_sphere(vlVec3 w) {
 /* Barycentric coordinates of the first two corners (Heitz 2019, "A Low-Distortion Map Between Triangle and Square"). */
 static inline vlVec2 vl_warp_triangle(float u, float v) {
   float less = 0.5f * vl_min(u, v), rest = vl_max(u, v) - less;
-  return u < v ? (vlVec2){less, rest} : (vlVec2){rest, less};
+  int upper = u < v;
+  return (vlVec2){upper ? less : rest, upper ? rest : less};
 }
 static inline vlVec2 vl_unwarp_triangle(float b0, float b1) {
   float less = vl_min(b0, b1), sum = b0 + b1;
-  return b0 < b1 ? (vlVec2){2.0f * less, sum} : (vlVec2){sum, 2.0f * less};
+  int upper = b0 < b1;
+  return (vlVec2){upper ? 2.0f * less : sum, upper ? sum : 2.0f * less};
 }
 
 /* ---- spherical triangle: density 1 / solid angle

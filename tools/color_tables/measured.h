@@ -112,9 +112,9 @@ static const double daylight[3][DAYLIGHT_COUNT] = {
      -1.2, -1.0, -0.5, -0.3, 0.0, 0.2, 0.5, 2.1, 3.2, 4.1, 4.7, 5.1, 6.7, 7.3, 8.6, 9.8,
      10.2, 8.3, 9.6, 8.5, 7.0, 7.6, 8.0, 6.7, 5.2, 7.4, 6.8, 7.0, 6.4, 5.5, 6.1, 6.5},
 };
-/* M1, M2: D50 and D65 as published by the CIE; D60 as the ACES white (correlated colour temperature 6000 K put into the
+/* M1, M2 of D50 and D65, to three decimals as the CIE has them; D60 as the ACES white (correlated colour temperature 6000 K put into the
  * formulas, to three decimals). */
-static const double daylight_D50[2] = {-1.040, 0.367};
+static const double daylight_D50[2] = {-1.039, 0.363};
 static const double daylight_D60[2] = {-0.536, -0.519};
 static const double daylight_D65[2] = {-0.295, -0.689};
 

@@ -1,0 +1,174 @@
+/* Colour kernels: the same bits on every instruction set and as the inline functions; wavelengths follow their density;
+ * a picture of a constant spectrum has the colour that it must have. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "color/kernels.h"
+
+enum { N = 1000, PAD = VL_PAD(N) };
+
+typedef struct batch {
+  float u[PAD], r[PAD], g[PAD], b[PAD], c0[PAD], c1[PAD], c2[PAD], scale[PAD];
+  float lambda[4][PAD], inv_pdf[4][PAD], out[4][PAD];
+  uint32_t offset[PAD];
+} batch;
+
+static uint32_t seed = 1;
+static float uniform(void) {
+  seed = seed * 747796405u + 2891336453u;
+  uint32_t word = ((seed >> ((seed >> 28) + 4)) ^ seed) * 277803737u;
+  return (float)((word >> 22 ^ word) >> 8) * 0x1p-24f;
+}
+
+#define ROWS(a) \
+  { a[0], a[1], a[2], a[3] }
+
+/* All kernels one after another; results go into all[] for comparison. */
+enum { RESULTS = 34 };
+static float all[3][RESULTS][PAD];
+static float dense_pool[3 * VL_LAMBDA_COUNT];
+static batch input;
+
+static void run(const vlColorKernels *k, float (*result)[PAD]) {
+  static batch x;
+  x = input;
+  float *lambda[4] = ROWS(x.lambda), *inv_pdf[4] = ROWS(x.inv_pdf), *out[4] = ROWS(x.out);
+  const float *l[4] = ROWS(x.lambda), *p[4] = ROWS(x.inv_pdf), *o[4] = ROWS(x.out);
+  int at = 0;
+#define KEEP(a) memcpy(result[at++], a, sizeof x.u)
+#define KEEP4(a) KEEP(a[0]), KEEP(a[1]), KEEP(a[2]), KEEP(a[3])
+  k->visible_wavelengths(N, x.u, lambda, inv_pdf);
+  KEEP4(x.lambda), KEEP4(x.inv_pdf);
+  k->sigmoid_from_light(vl_rgb_table(VL_SPACE_REC2020), N, x.r, x.g, x.b, x.scale, x.c0, x.c1, x.c2);
+  KEEP(x.scale), KEEP(x.c0), KEEP(x.c1), KEEP(x.c2);
+  k->light_eval(N, x.c0, x.c1, x.c2, x.scale, vl_space_illuminant(VL_SPACE_REC2020), l, out);
+  KEEP4(x.out);
+  float m[9];
+  vl_rgb_from_xyz(VL_SPACE_SRGB, m);
+  k->rgb_from_radiance(m, N, o, l, p, x.r, x.g, x.b);
+  KEEP(x.r), KEEP(x.g), KEEP(x.b);
+  k->sigmoid_from_rgb(vl_rgb_table(VL_SPACE_SRGB), N, input.r, input.g, input.b, x.c0, x.c1, x.c2);
+  KEEP(x.c0), KEEP(x.c1), KEEP(x.c2);
+  k->sigmoid_eval(N, x.c0, x.c1, x.c2, NULL, l, out);
+  KEEP4(x.out);
+  k->dense_eval(N, dense_pool, l, out);
+  KEEP4(x.out);
+  k->dense_gather(N, dense_pool, x.offset, l, out);
+  KEEP4(x.out);
+  assert_int_equal(at, RESULTS);
+}
+
+static void fill(void) {
+  for (int i = 0; i < PAD; i++) {
+    input.u[i] = uniform();
+    input.r[i] = uniform(), input.g[i] = uniform(), input.b[i] = uniform();
+    if (i % 7 == 0) input.r[i] = input.g[i] = input.b[i];
+    if (i % 11 == 0) input.b[i] = 0;
+    if (i % 13 == 0) input.g[i] = 1;
+    input.offset[i] = (uint32_t)(i % 3) * VL_LAMBDA_COUNT;
+  }
+  input.r[0] = input.g[0] = input.b[0] = 0;
+  input.r[1] = input.g[1] = input.b[1] = 1;
+  input.u[0] = 0;
+  input.u[1] = 0x1.fffffep-1f;
+  for (int i = 0; i < 3 * VL_LAMBDA_COUNT; i++) dense_pool[i] = uniform();
+}
+
+static void test_bits(void **state) {
+  (void)state;
+  fill();
+  vlIsa best = vl_isa_best();
+  run(vl_color_kernels(VL_ISA_V2), all[0]);
+  for (int isa = VL_ISA_V3; isa <= (int)best; isa++) {
+    run(vl_color_kernels((vlIsa)isa), all[1]);
+    for (int i = 0; i < RESULTS; i++) {
+      if (memcmp(all[0][i], all[1][i], sizeof all[0][i]) != 0) fail_msg("set v%d: result %d differs", isa, i);
+    }
+  }
+}
+
+/* Result by result against the inline functions of the headers, which other code uses. */
+static void test_inline(void **state) {
+  (void)state;
+  fill();
+  run(vl_color_kernels(vl_isa_best()), all[0]);
+  float(*x)[PAD] = all[0];
+  for (int i = 0; i < N; i++) {
+    vlSigmoid s = vl_rgb_table_lookup(vl_rgb_table(VL_SPACE_SRGB), input.r[i], input.g[i], input.b[i]);
+    assert_true(s.c0 == x[19][i] && s.c1 == x[20][i] && s.c2 == x[21][i]);
+    float high = fmaxf(fmaxf(input.r[i], input.g[i]), input.b[i]);
+    assert_true(x[8][i] == 2 * high);
+    for (int c = 0; c < 4; c++) {
+      float lambda = x[c][i], v = input.u[i] + 0.25f * (float)c;
+      assert_true(lambda >= 360 && lambda <= 830);
+      assert_float_equal(lambda, vl_visible_lambda(v >= 1 ? v - 1 : v), 1e-3);
+      assert_float_equal(x[4 + c][i] * vl_visible_pdf(lambda), 1.0, 2e-4);
+      assert_true(x[22 + c][i] == vl_sigmoid(s, lambda));
+      assert_true(x[26 + c][i] == vl_dense_at(dense_pool, lambda));
+      assert_true(x[30 + c][i] == vl_dense_at(dense_pool + input.offset[i], lambda));
+      vlSigmoid light = {x[9][i], x[10][i], x[11][i]};
+      assert_true(x[12 + c][i] ==
+                  x[8][i] * vl_sigmoid(light, lambda) * vl_dense_at(vl_space_illuminant(VL_SPACE_REC2020), lambda));
+    }
+  }
+  assert_true(vl_dense_at(dense_pool, 359.9f) == 0 && vl_dense_at(dense_pool, 830.1f) == 0);
+  assert_true(vl_dense_at(dense_pool, 830) == dense_pool[470] && vl_dense_at(dense_pool, 360) == dense_pool[0]);
+}
+
+/* The share of wavelengths below l is the integral of the density up to l. */
+static void test_density(void **state) {
+  (void)state;
+  double sum = 0;
+  for (int i = 0; i < 4700; i++) sum += (double)vl_visible_pdf(360.05f + 0.1f * (float)i) * 0.1;
+  assert_float_equal(sum, 1.0, 1e-4);
+  sum = 0;
+  int at = 0;
+  for (int i = 0; i < 100; i++) {
+    double l = (double)vl_visible_lambda((float)(i + 1) / 101.0f);
+    for (; 360.05 + 0.1 * at < l; at++) sum += (double)vl_visible_pdf(360.05f + 0.1f * (float)at) * 0.1;
+    assert_float_equal(sum, (i + 1) / 101.0, 2e-3);
+  }
+}
+
+/* A grey light of the space's illuminant, luminance 1, seen through random wavelengths: (1, 1, 1) on average;
+ * stratified u gives it almost exactly. */
+static void test_white(void **state) {
+  (void)state;
+  static batch x;
+  const vlColorKernels *k = vl_color_kernels(vl_isa_best());
+  float *lambda[4] = ROWS(x.lambda), *inv_pdf[4] = ROWS(x.inv_pdf), *out[4] = ROWS(x.out);
+  const float *l[4] = ROWS(x.lambda), *p[4] = ROWS(x.inv_pdf), *o[4] = ROWS(x.out);
+  for (int space = VL_SPACE_SRGB; space <= VL_SPACE_ACES2065_1; space++) {
+    vlSpectrum white = vl_spectrum_rgb(1, 1, 1);
+    white.space = (vlColorSpace)space;
+    float scale = (float)(1 / vl_spectrum_photometric(&white, NULL)), m[9];
+    for (int i = 0; i < PAD; i++) x.u[i] = ((float)i + 0.5f) / (float)PAD;
+    k->visible_wavelengths(PAD, x.u, lambda, inv_pdf);
+    k->dense_eval(PAD, vl_space_illuminant((vlColorSpace)space), l, out);
+    for (int c = 0; c < 4; c++)
+      for (int i = 0; i < PAD; i++) x.out[c][i] *= scale;
+    vl_rgb_from_xyz((vlColorSpace)space, m);
+    k->rgb_from_radiance(m, PAD, o, l, p, x.r, x.g, x.b);
+    double sum[3] = {0};
+    for (int i = 0; i < PAD; i++)
+      sum[0] += (double)x.r[i] / PAD, sum[1] += (double)x.g[i] / PAD, sum[2] += (double)x.b[i] / PAD;
+    for (int c = 0; c < 3; c++) assert_float_equal(sum[c], 1.0, 2e-3);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_bits),
+      cmocka_unit_test(test_inline),
+      cmocka_unit_test(test_density),
+      cmocka_unit_test(test_white),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -3,6 +3,7 @@
 #define IMAGE_EXR_H
 
 #include <openexr.h>
+#include <stdatomic.h>
 
 #include "image/codec.h"
 
@@ -10,6 +11,7 @@
 typedef struct vlExr {
   const vlImageFile *file; /* reading */
   vlFileWriter *writer;    /* writing */
+  atomic_flag told;        /* chunks are packed by many threads */
   char message[256];
 } vlExr;
 

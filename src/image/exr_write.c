@@ -7,16 +7,26 @@
 #include "image/exr.h"
 #include "image/pixel.h"
 
+/* One chunk on its way: rows in the type of the file, then packed. */
+typedef struct Slot {
+  exr_encode_pipeline_t pipeline;
+  bool started;
+  char *lines; /* each channel's rows on their own */
+  float *row;  /* one channel's row */
+  exr_result_t code;
+} Slot;
+
+enum { MAX_SLOTS = 64 };
+
 typedef struct Writer {
   vlExr base;
   const vlImage *image;
   exr_context_t exr;
-  exr_encode_pipeline_t pipeline;
-  bool started;
   exr_pixel_type_t *types; /* per channel of the image */
-  char *lines;             /* one chunk: each channel's rows on their own, in the type of the file */
-  float *row;              /* one channel's row */
-  int32_t lines_per_chunk;
+  int32_t lines_per_chunk, first_y;
+  uint32_t first_chunk;
+  uint32_t slot_count;
+  Slot *slots;
 } Writer;
 
 static int64_t on_write(exr_const_context_t exr, void *user, const void *buffer, uint64_t size, uint64_t offset,
@@ -73,7 +83,7 @@ static vlResult header(Writer *w, const vlWriteDef *def, vlError *error) {
 }
 
 /* One channel's row in the type of the file. */
-static void fill_row(Writer *w, uint32_t channel, uint32_t y, char *to) {
+static void fill_row(const Writer *w, Slot *slot, uint32_t channel, uint32_t y, char *to) {
   const vlImage *image = w->image;
   uint32_t n = image->width, step = image->channels;
   if (image->type == VL_PIXEL_U32) {
@@ -86,60 +96,113 @@ static void fill_row(Writer *w, uint32_t channel, uint32_t y, char *to) {
     for (uint32_t x = 0; x < n; x++) out[x] = from[(size_t)x * step];
   } else if (w->types[channel] == EXR_PIXEL_HALF) {
     uint16_t *out = (uint16_t *)(void *)to;
-    vl_image_row_to_float(image, y, &channel, 1, w->row);
-    for (uint32_t x = 0; x < n; x++) out[x] = to_half(w->row[x]);
+    vl_image_row_to_float(image, y, &channel, 1, slot->row);
+    for (uint32_t x = 0; x < n; x++) out[x] = to_half(slot->row[x]);
   } else {
     vl_image_row_to_float(image, y, &channel, 1, (float *)(void *)to);
   }
 }
 
-static exr_result_t encode_chunk(Writer *w, uint32_t first, int32_t y) {
+/* In place of OpenEXRCore's waiting and writing: the packed bytes stay in the pipeline. */
+static exr_result_t keep(exr_encode_pipeline_t *pipeline) {
+  (void)pipeline;
+  return EXR_ERR_SUCCESS;
+}
+
+static exr_result_t pack_chunk(const Writer *w, Slot *slot, uint32_t first) {
   exr_chunk_info_t chunk;
-  exr_encode_pipeline_t *p = &w->pipeline;
-  exr_result_t code = exr_write_scanline_chunk_info(w->exr, 0, y, &chunk);
+  exr_encode_pipeline_t *p = &slot->pipeline;
+  exr_result_t code = exr_write_scanline_chunk_info(w->exr, 0, w->first_y + (int32_t)first, &chunk);
   if (code != EXR_ERR_SUCCESS) return code;
-  code = w->started ? exr_encoding_update(w->exr, 0, &chunk, p) : exr_encoding_initialize(w->exr, 0, &chunk, p);
+  code = slot->started ? exr_encoding_update(w->exr, 0, &chunk, p) : exr_encoding_initialize(w->exr, 0, &chunk, p);
   if (code != EXR_ERR_SUCCESS) return code;
   size_t line = (size_t)w->image->width * 4;
   for (int i = 0; i < p->channel_count; i++) {
     exr_coding_channel_info_t *c = &p->channels[i];
     int channel = vl_image_find_channel(w->image, c->channel_name);
     if (channel < 0) return EXR_ERR_INVALID_ARGUMENT;
-    char *at = w->lines + (size_t)i * (size_t)w->lines_per_chunk * line;
+    char *at = slot->lines + (size_t)i * (size_t)w->lines_per_chunk * line;
     for (int32_t k = 0; k < chunk.height; k++)
-      fill_row(w, (uint32_t)channel, first + (uint32_t)k, at + (size_t)k * line);
+      fill_row(w, slot, (uint32_t)channel, first + (uint32_t)k, at + (size_t)k * line);
     c->encode_from_ptr = (const uint8_t *)at;
     c->user_pixel_stride = c->bytes_per_element;
     c->user_line_stride = (int32_t)line;
     c->user_bytes_per_element = c->bytes_per_element;
     c->user_data_type = c->data_type;
   }
-  if (!w->started) {
-    w->started = true;
+  if (!slot->started) {
+    slot->started = true;
     code = exr_encoding_choose_default_routines(w->exr, 0, p);
     if (code != EXR_ERR_SUCCESS) return code;
+    p->yield_until_ready_fn = keep;
+    p->write_fn = keep;
   }
   return exr_encoding_run(w->exr, 0, p);
+}
+
+static void pack_body(void *user, uint32_t index, uint32_t worker) {
+  Writer *w = user;
+  (void)worker;
+  w->slots[index].code = pack_chunk(w, &w->slots[index], (w->first_chunk + index) * (uint32_t)w->lines_per_chunk);
+}
+
+static vlResult write_chunks(Writer *w, vlError *error) {
+  uint32_t lines = (uint32_t)w->lines_per_chunk, chunks = (w->image->height + lines - 1) / lines;
+  for (w->first_chunk = 0; w->first_chunk < chunks; w->first_chunk += w->slot_count) {
+    uint32_t count = chunks - w->first_chunk < w->slot_count ? chunks - w->first_chunk : w->slot_count;
+    vl_parallel_for(w->image->context, count, pack_body, w);
+    for (uint32_t i = 0; i < count; i++) {
+      const exr_encode_pipeline_t *p = &w->slots[i].pipeline;
+      exr_result_t code = w->slots[i].code;
+      bool packed = p->compressed_buffer && p->compressed_bytes;
+      int y = w->first_y + (int)((w->first_chunk + i) * lines);
+      if (code == EXR_ERR_SUCCESS)
+        code = exr_write_scanline_chunk(w->exr, 0, y, packed ? p->compressed_buffer : p->packed_buffer,
+                                        packed ? p->compressed_bytes : p->packed_bytes);
+      if (code != EXR_ERR_SUCCESS) return fail(w, code, error);
+    }
+  }
+  return VL_OK;
 }
 
 static vlResult write_all(Writer *w, const vlWriteDef *def, vlError *error) {
   vlResult result = header(w, def, error);
   if (result != VL_OK) return result;
   const vlImage *image = w->image;
-  w->lines = vl_alloc_array(image->context, (size_t)w->lines_per_chunk * image->channels, (size_t)image->width * 4);
-  w->row = vl_alloc_array(image->context, image->width, sizeof *w->row);
-  if (!w->lines || !w->row) return vl_fail_memory(error);
   exr_attr_box2i_t window;
   exr_result_t code = exr_get_data_window(w->exr, 0, &window);
-  for (uint32_t y = 0; y < image->height && code == EXR_ERR_SUCCESS; y += (uint32_t)w->lines_per_chunk)
-    code = encode_chunk(w, y, window.min.y + (int32_t)y);
-  return code == EXR_ERR_SUCCESS ? VL_OK : fail(w, code, error);
+  if (code != EXR_ERR_SUCCESS) return fail(w, code, error);
+  w->first_y = window.min.y;
+  uint32_t chunks = (image->height - 1) / (uint32_t)w->lines_per_chunk + 1,
+           wish = 2 * vl_context_threads(image->context);
+  w->slot_count = wish < chunks ? wish : chunks;
+  if (w->slot_count > MAX_SLOTS) w->slot_count = MAX_SLOTS;
+  w->slots = vl_alloc_zero(image->context, w->slot_count, sizeof *w->slots);
+  if (!w->slots) return vl_fail_memory(error);
+  for (uint32_t i = 0; i < w->slot_count; i++) {
+    Slot *slot = &w->slots[i];
+    slot->lines =
+        vl_alloc_array(image->context, (size_t)w->lines_per_chunk * image->channels, (size_t)image->width * 4);
+    slot->row = vl_alloc_array(image->context, image->width, sizeof *slot->row);
+    if (!slot->lines || !slot->row) return vl_fail_memory(error);
+  }
+  return write_chunks(w, error);
+}
+
+static void free_slots(Writer *w) {
+  for (uint32_t i = 0; w->slots && i < w->slot_count; i++) {
+    if (w->slots[i].started) exr_encoding_destroy(w->exr, &w->slots[i].pipeline);
+    vl_free(w->image->context, w->slots[i].lines);
+    vl_free(w->image->context, w->slots[i].row);
+  }
+  vl_free(w->image->context, w->slots);
 }
 
 vlResult vl_exr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error) {
   Writer w;
   memset(&w, 0, sizeof w);
   w.base.writer = writer;
+  atomic_flag_clear(&w.base.told);
   w.image = image;
   w.types = vl_alloc_array(image->context, image->channels, sizeof *w.types);
   if (!w.types) return vl_fail_memory(error);
@@ -150,13 +213,11 @@ vlResult vl_exr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter 
   start.zip_level = 4;
   exr_result_t code = exr_start_write(&w.exr, writer->path, EXR_WRITE_FILE_DIRECTLY, &start);
   vlResult result = code == EXR_ERR_SUCCESS ? write_all(&w, def, error) : fail(&w, code, error);
-  if (w.started) exr_encoding_destroy(w.exr, &w.pipeline);
+  free_slots(&w);
   if (w.exr) {
     code = exr_finish(&w.exr); /* writes the table of chunks */
     if (result == VL_OK && code != EXR_ERR_SUCCESS) result = fail(&w, code, error);
   }
   vl_free(image->context, w.types);
-  vl_free(image->context, w.lines);
-  vl_free(image->context, w.row);
   return result;
 }

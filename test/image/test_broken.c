@@ -304,6 +304,26 @@ static void test_made_exr(void **state) {
   end_context(context);
 }
 
+/* Old run lengths may be chained: 1 1 1 n, then 1 1 1 m counts m times 256 more. */
+static void test_made_hdr(void **state) {
+  (void)state;
+  Failing failing;
+  vlContext *context = make_context(&failing);
+  vlImage *image;
+  vlError error;
+  static const char head[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 600\n";
+  static const uint8_t pixels[] = {10, 20, 30, 128, 1, 1, 1, 87, 1, 1, 1, 2};
+  uint8_t file[128];
+  memcpy(file, head, sizeof head - 1);
+  memcpy(file + sizeof head - 1, pixels, sizeof pixels); /* 1 + 87 + 512 pixels */
+  assert_int_equal(read_bytes(context, file, sizeof head - 1 + sizeof pixels, &image, &error), VL_OK);
+  for (uint32_t x = 0; x < 600; x++) assert_true(vl_image_get(image, x, 0, 2) == 30.0f / 256.0f);
+  vl_image_destroy(image);
+  file[sizeof head - 1 + 7] = 88; /* one too many */
+  assert_int_equal(read_bytes(context, file, sizeof head - 1 + sizeof pixels, &image, &error), VL_ERROR_SCENE);
+  end_context(context);
+}
+
 /* The library must not write to the terminal, whatever it is fed. */
 static void test_silent(void **state) {
   (void)state;
@@ -350,9 +370,9 @@ static void test_silent(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cut),    cmocka_unit_test(test_damaged),      cmocka_unit_test(test_promises),
-      cmocka_unit_test(test_ratio),  cmocka_unit_test(test_not_pictures), cmocka_unit_test(test_made_exr),
-      cmocka_unit_test(test_silent),
+      cmocka_unit_test(test_cut),      cmocka_unit_test(test_damaged),      cmocka_unit_test(test_promises),
+      cmocka_unit_test(test_ratio),    cmocka_unit_test(test_not_pictures), cmocka_unit_test(test_made_exr),
+      cmocka_unit_test(test_made_hdr), cmocka_unit_test(test_silent),
   };
   return cmocka_run_group_tests(tests, NULL, remove_folder);
 }

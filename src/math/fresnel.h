@@ -8,25 +8,29 @@
 
 typedef struct vlFresnel {
   float reflected; /* share in [0, 1]; 1 in total internal reflection */
-  float cos_t;     /* cosine of the refracted direction, 0 in total internal reflection */
+  float root;      /* eta times the cosine of the refracted direction; 0 in total internal reflection */
 } vlFresnel;
 
-/* eta: index beyond the interface over the index on the side of the light, > 0. cos_i is clamped to [0, 1]. */
+/* eta: index beyond the interface over the index on the side of the light, > 0. cos_i is clamped to [0, 1]. With
+ * root = eta cos_t = sqrt(eta^2 - sin_i^2) only one division is left. */
 static inline vlFresnel vl_fresnel_dielectric(float cos_i, float eta) {
   float c = cos_i > 1.0f ? 1.0f : cos_i;
   c = c > 0.0f ? c : 0.0f;
-  float sin2_t = (1.0f - c * c) / (eta * eta);
-  float inside = 1.0f - sin2_t;
-  float cos_t = __builtin_sqrtf(inside > 0.0f ? inside : 0.0f);
-  float pc = eta * c, sc = eta * cos_t;
-  float p = (pc - cos_t) / (pc + cos_t), s = (c - sc) / (c + sc);
-  float r = 0.5f * (p * p + s * s);
-  /* with cos_t = 0 both quotients are 1 already; the select is for cos_i = 0 (0/0) */
-  return (vlFresnel){inside > 0.0f ? r : 1.0f, cos_t};
+  float eta2 = eta * eta;
+  float inside = eta2 - (1.0f - c * c);
+  float root = __builtin_sqrtf(inside > 0.0f ? inside : 0.0f);
+  float dense = eta2 * c;
+  float s = c + root, p = dense + root;
+  float down = s * p;
+  down = 1.0f / (down > 1e-30f ? down : 1e-30f);
+  float rs = (c - root) * p * down, rp = (dense - root) * s * down;
+  float r = 0.5f * (rs * rs + rp * rp);
+  /* where root = 0 both are 1 already; the select is for cos_i = 0 */
+  return (vlFresnel){inside > 0.0f ? r : 1.0f, root};
 }
 
-/* Index eta + i k over vacuum, for one channel. Values past 1e6 count as 1e6 (their squares' squares would overflow).
- */
+/* Index eta + i k over vacuum, for one channel. Values past 1e6 count as 1e6 (their powers would overflow). With the
+ * usual t1 ... t4: Rs = (t1 - t2)/(t1 + t2), Rp = Rs (t3 - t4)/(t3 + t4), so that their mean is Rs t3/(t3 + t4). */
 static inline float vl_fresnel_conductor(float cos_i, float eta, float k) {
   float c = cos_i > 1.0f ? 1.0f : cos_i;
   float n = 1e6f < eta ? 1e6f : eta, m = 1e6f < k ? 1e6f : k;
@@ -36,14 +40,9 @@ static inline float vl_fresnel_conductor(float cos_i, float eta, float k) {
   float ab = __builtin_sqrtf(t0 * t0 + 4.0f * n2 * m2); /* a^2 + b^2 */
   float a2 = 0.5f * (ab + t0);
   float t2 = 2.0f * c * __builtin_sqrtf(a2 > 0.0f ? a2 : 0.0f);
-  float t1 = ab + c2;
-  float t3 = c2 * ab + s2 * s2, t4 = t2 * s2;
-  float down_s = t1 + t2, down_p = t3 + t4;
-  float s = (t1 - t2) / (down_s > 0.0f ? down_s : 1.0f);
-  float p = s * ((t3 - t4) / (down_p > 0.0f ? down_p : 1.0f));
-  /* eta = k = 0 at normal incidence: no p term to divide; both polarisations are one there */
-  p = down_p > 0.0f ? p : s;
-  return 0.5f * (s + p);
+  float t1 = ab + c2 + 1e-20f; /* never 0/0: an index of 0 reflects all */
+  float t3 = c2 * ab + s2 * s2 + 1e-20f, t4 = t2 * s2;
+  return (t1 - t2) * t3 / ((t1 + t2) * (t3 + t4));
 }
 
 /* A slab of two parallel interfaces with light going back and forth between them: R + T^2 R + T^2 R^3 ... = 2R/(1+R)

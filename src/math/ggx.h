@@ -28,19 +28,15 @@ static inline float vl_ggx_length(vlVec3 w, float alpha_x, float alpha_y) {
   return __builtin_sqrtf(x * x + y * y + w.z * w.z);
 }
 
-/* Density of microfacet normals, per solid angle and per area of the surface. Finite for h = 0 too. */
-static inline float vl_ggx_density(vlVec3 h, float alpha_x, float alpha_y) {
-  float x = h.x / alpha_x, y = h.y / alpha_y;
+/* D(h) G1(w) / w.z = 2 D / (L + z), D the density of microfacet normals per solid angle and per area of the surface:
+ * times w.h the density of h among those that w sees. Finite for h = 0 too (unit vectors are far from the bounds). */
+static inline float vl_ggx_visible(vlVec3 h, float alpha_x, float alpha_y, float z, float length) {
+  float area = alpha_x * alpha_y, inverse = 1.0f / area;
+  float x = h.x * (inverse * alpha_y), y = h.y * (inverse * alpha_x);
   float e = x * x + y * y + h.z * h.z;
   e = e > 1e-6f ? e : 1e-6f;
-  return VL_INV_PI / (alpha_x * alpha_y * (e * e));
-}
-
-/* D(h) G1(w) / w.z = 2 D / (L + z): times w.h the density of h among those that w sees. (The bound is far below what
- * unit vectors have.) */
-static inline float vl_ggx_visible(vlVec3 h, float alpha_x, float alpha_y, float z, float length) {
   float down = length + z;
-  return 2.0f * vl_ggx_density(h, alpha_x, alpha_y) / (down > 1e-9f ? down : 1e-9f);
+  return 2.0f * VL_INV_PI / (area * (e * e) * (down > 1e-9f ? down : 1e-9f));
 }
 
 /* G(wo, wi) / G1(wo): what a sample drawn by visible normals is worth, Fresnel apart. zo, zi > 0. */

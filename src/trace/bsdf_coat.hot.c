@@ -1,8 +1,11 @@
 /* trace/bsdf_coat.hot.c: a Lambertian base under a dielectric coat, in the closed form of world/coat.h: no random walk,
  * no noise of its own. Two lobes: the coat's reflection (a delta when it is smooth) and the base seen through the coat.
  *
- * Work goes in chunks with a few passes over small arrays, since looking up T(w) in each lane's own table does not
- * vectorise: a scalar pass copies the four nodes of each lane side by side, vector passes do all the rest. */
+ * Work goes in chunks with a few passes over small arrays, since looking up T(w) does not vectorise (gcc makes no
+ * gathers for generic x86-64, and lanes may have tables of their own): a scalar pass copies the four nodes of each lane
+ * side by side, vector passes do all the rest. */
+#include <string.h>
+
 #include "trace/bsdf_local.h"
 
 enum { CHUNK = 64 };
@@ -44,20 +47,31 @@ static Slice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t first) {
 
 enum { OF_WO, OF_WI, OF_LIGHT }; /* light: a wi that was not sampled here */
 
-/* T at the cosines z; for wo the tables' constants too. Returns the highest K then. */
-static int32_t look_up(const Slice *s, const float *z, Lanes *lanes, float *through, int of) {
-  int32_t place[CHUNK];  /* first of four nodes of T */
-  float at[CHUNK];       /* place among them */
-  float nodes[CHUNK][4]; /* T there */
-  uint32_t count = VL_WHOLE(s->count);
-  /* must vectorise */
-  VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    vlCoatPlace p = vl_coat_place(vl_abs(z[i]));
-    place[i] = p.first;
-    at[i] = p.t;
-  }
-  int32_t most = 0;
-  for (uint32_t i = 0; i < count; i++) {
+/* The rows that T is read from. */
+static const float (*rows_of(const vlCoatTable *table, int of))[VL_COAT_COS] {
+  return of == OF_LIGHT && table->imitate ? table->imitation : table->transmittance;
+}
+
+/* Four neighbouring nodes of T for each lane. */
+typedef struct {
+  int32_t first[CHUNK];
+  float at[CHUNK]; /* place among them */
+  float value[CHUNK][4];
+} Nodes;
+
+/* One table with one row for the whole slice, the usual case. */
+static void fetch_row(const vlCoatTable *table, uint32_t count, Lanes *lanes, Nodes *nodes, int of) {
+  const float *row = rows_of(table, of)[0];
+  for (uint32_t i = 0; i < count; i++) memcpy(nodes->value[i], row + nodes->first[i], sizeof nodes->value[i]);
+  if (of != OF_WO) return;
+  float back = table->back[0], escape = table->escape[0];
+  int32_t bounces = (int32_t)table->bounces;
+  for (uint32_t i = 0; i < count; i++) lanes->back[i] = back, lanes->escape[i] = escape, lanes->bounces[i] = bounces;
+}
+
+/* A table for each lane, or rows to mix. The same bits as above where there is nothing to mix. */
+static void fetch_each(const Slice *s, Lanes *lanes, Nodes *nodes, int of) {
+  for (uint32_t i = 0; i < s->count; i++) {
     const vlCoatTable *table = s->coat[i < s->live ? i : 0];
     uint32_t low = 0, high = 0;
     float t = 0.0f;
@@ -70,20 +84,40 @@ static int32_t look_up(const Slice *s, const float *z, Lanes *lanes, float *thro
       t = row - (float)low;
       t = t < 1.0f ? t : 1.0f;
     }
-    const float(*rows)[VL_COAT_COS] = of == OF_LIGHT && table->imitate ? table->imitation : table->transmittance;
-    const float *a = rows[low] + place[i], *b = rows[high] + place[i];
-    for (int k = 0; k < 4; k++) nodes[i][k] = a[k] + t * (b[k] - a[k]);
+    const float(*rows)[VL_COAT_COS] = rows_of(table, of);
+    const float *a = rows[low] + nodes->first[i], *b = rows[high] + nodes->first[i];
+    for (int k = 0; k < 4; k++) nodes->value[i][k] = a[k] + t * (b[k] - a[k]);
     if (of == OF_WO) {
       lanes->back[i] = table->back[low] + t * (table->back[high] - table->back[low]);
       lanes->escape[i] = table->escape[low] + t * (table->escape[high] - table->escape[low]);
       lanes->bounces[i] = (int32_t)table->bounces;
-      most = most > lanes->bounces[i] ? most : lanes->bounces[i];
     }
   }
+}
+
+/* T at the cosines z; for wo the tables' constants too. */
+PASS look_up(const Slice *s, const float *z, Lanes *lanes, float *through, int of) {
+  Nodes nodes;
+  uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
-  VL_SIMD for (uint32_t i = 0; i < count; i++) through[i] =
-      vl_coat_cubic(nodes[i][0], nodes[i][1], nodes[i][2], nodes[i][3], at[i]);
-  return most;
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    vlCoatPlace p = vl_coat_place(vl_abs(z[i]));
+    nodes.first[i] = p.first;
+    nodes.at[i] = p.t;
+  }
+  const vlCoatTable *table = s->coat[0];
+  uintptr_t differ = 0;
+  for (uint32_t i = 0; i < s->live; i++) differ |= (uintptr_t)s->coat[i] ^ (uintptr_t)table;
+  if (differ == 0 && table->alphas == 1)
+    fetch_row(table, count, lanes, &nodes, of);
+  else
+    fetch_each(s, lanes, &nodes, of);
+  const float(*value)[4] = (const float(*)[4])nodes.value;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    float q0 = value[i][0], q1 = value[i][1], q2 = value[i][2], q3 = value[i][3];
+    through[i] = vl_coat_cubic(q0, q1, q2, q3, nodes.at[i]);
+  }
 }
 
 /* 1 + x + ... + x^(K-1), x in [0, 1), K < 2^bits: (1 - x^K)/(1 - x), the power by K's bits. */
@@ -97,7 +131,7 @@ static inline float series(float x, int32_t k, const int bits) {
   return (1.0f - power) / (down > 1e-6f ? down : 1e-6f);
 }
 
-/* From the lookup at wo: the base's strength by channel, and how to share samples between the lobes: by the light each
+/* From T(wo): the base's strength by channel, and how to share samples between the lobes: by the light each
  * returns, the coat's judged as if smooth. */
 static inline __attribute__((always_inline)) void weigh_loop(const Slice *s, const float *oz, Lanes *lanes,
                                                              const int bits) {
@@ -127,8 +161,11 @@ static inline __attribute__((always_inline)) void weigh_loop(const Slice *s, con
   }
 }
 
-PASS weigh(const Slice *s, const float *oz, Lanes *lanes, int32_t most) {
-  if (most < 8)
+PASS weigh(const Slice *s, const float *oz, Lanes *lanes) {
+  look_up(s, oz, lanes, lanes->through_o, OF_WO);
+  int32_t all = 0;
+  for (uint32_t i = 0; i < s->live; i++) all |= lanes->bounces[i];
+  if (all < 8)
     weigh_loop(s, oz, lanes, 3);
   else
     weigh_loop(s, oz, lanes, 8);
@@ -186,7 +223,7 @@ void VL_HOT(vl_bsdf_coat_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDir
   Lanes lanes;
   for (uint32_t first = 0; first < n; first += CHUNK) {
     Slice s = slice_of(params, n, first);
-    weigh(&s, wo.z + first, &lanes, look_up(&s, wo.z + first, &lanes, lanes.through_o, OF_WO));
+    weigh(&s, wo.z + first, &lanes);
     look_up(&s, wi.z + first, &lanes, lanes.through_i, OF_LIGHT);
     combine(&s, &lanes, wo, wi, value, pdf, first);
   }
@@ -261,7 +298,7 @@ void VL_HOT(vl_bsdf_coat_sample)(uint32_t n, const vlBsdfParams *params, vlBsdfD
   Lanes lanes;
   for (uint32_t first = 0; first < n; first += CHUNK) {
     Slice s = slice_of(params, n, first);
-    weigh(&s, wo.z + first, &lanes, look_up(&s, wo.z + first, &lanes, lanes.through_o, OF_WO));
+    weigh(&s, wo.z + first, &lanes);
     choose(&s, &lanes, wo, u_lobe, u, v, wi, first);
     look_up(&s, wi.z + first, &lanes, lanes.through_i, OF_WI);
     settle(&s, &lanes, wo, u_lobe, wi, weight, pdf, flags, first);

@@ -13,7 +13,8 @@ void VL_HOT(vl_bsdf_dielectric_eval)(uint32_t n, const vlBsdfParams *params, vlB
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     float rx = vl_ggx_alpha(ax[i]), ry = vl_ggx_alpha(ay[i]);
     int below = oz[i] < 0.0f;
-    float eta = below ? 1.0f / index[i] : index[i];
+    float forth = index[i], back = 1.0f / forth;
+    float eta = below ? back : forth, inverse = below ? forth : back;
     vlVec3 o = vl_vec3(ox[i], oy[i], vl_abs(oz[i])), w = vl_vec3(ix[i], iy[i], below ? -iz[i] : iz[i]);
     int reflect = w.z > 0.0f;
     int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (index[i] == 1.0f);
@@ -30,12 +31,12 @@ void VL_HOT(vl_bsdf_dielectric_eval)(uint32_t n, const vlBsdfParams *params, vlB
     float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
     /* D_wo(h) / wo.h = 2 D / (Lo + zo); Jacobian of h by wi */
     float visible = vl_ggx_visible(h, rx, ry, o.z, lo);
-    float t = ih + oh / eta;
+    float t = ih + oh * inverse;
     float t2 = t * t;
     float jacobian = oh * vl_abs(ih) / (t2 > 1e-30f ? t2 : 1e-30f);
     float p = visible * (reflect ? 0.25f * fr : (1.0f - fr) * jacobian);
     float g = vl_ggx_shadowing(o.z, lo, vl_abs(w.z), li);
-    g = p * g * (reflect ? 1.0f : 1.0f / (eta * eta));
+    g = p * g * (reflect ? 1.0f : inverse * inverse);
     g = valid ? g : 0.0f;
     v0[i] = g;
     v1[i] = g;
@@ -58,7 +59,8 @@ void VL_HOT(vl_bsdf_dielectric_sample)(uint32_t n, const vlBsdfParams *params, v
     float rx = vl_ggx_alpha(ax[i]), ry = vl_ggx_alpha(ay[i]);
     int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (index[i] == 1.0f);
     int below = oz[i] < 0.0f;
-    float eta = below ? 1.0f / index[i] : index[i];
+    float forth = index[i], back = 1.0f / forth;
+    float eta = below ? back : forth, inverse = below ? forth : back;
     vlVec3 o = vl_vec3(ox[i], oy[i], vl_abs(oz[i]));
     vlVec3 h = vl_ggx_sample(o, rx, ry, u[i], v[i]);
     h.x = smooth ? 0.0f : h.x;
@@ -69,19 +71,20 @@ void VL_HOT(vl_bsdf_dielectric_sample)(uint32_t n, const vlBsdfParams *params, v
     float fr = index[i] == 1.0f ? 0.0f : f.reflected;
     int reflect = u_lobe[i] < fr;
     /* wi = a h - b wo for both: mirrored, or bent by Snell's law */
-    float b = reflect ? 1.0f : 1.0f / eta;
-    float a = reflect ? 2.0f * oh : oh / eta - f.cos_t;
+    float b = reflect ? 1.0f : inverse;
+    float cos_t = f.root * inverse, t = oh * inverse - cos_t;
+    float a = reflect ? 2.0f * oh : t;
     vlVec3 w = vl_vec3(a * h.x - b * o.x, a * h.y - b * o.y, a * h.z - b * o.z);
     int valid = (o.z > 0.0f) & (oh > 0.0f) & (reflect ? w.z > 0.0f : w.z < 0.0f);
     float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
     float visible = vl_ggx_visible(h, rx, ry, o.z, lo);
     /* wi.h = -cos_t after transmission */
-    float t = oh / eta - f.cos_t, t2 = t * t;
-    float jacobian = oh * f.cos_t / (t2 > 1e-30f ? t2 : 1e-30f);
+    float t2 = t * t;
+    float jacobian = oh * cos_t / (t2 > 1e-30f ? t2 : 1e-30f);
     float chosen = reflect ? fr : 1.0f - fr;
     float p = chosen * (smooth ? 1.0f : visible * (reflect ? 0.25f : jacobian));
     float g = smooth ? 1.0f : vl_ggx_shadowing(o.z, lo, vl_abs(w.z), li);
-    g = g * (reflect ? 1.0f : 1.0f / (eta * eta));
+    g = g * (reflect ? 1.0f : inverse * inverse);
     g = valid ? g : 0.0f;
     uint32_t flag = (smooth ? (uint32_t)VL_SAMPLED_SPECULAR : 0u) | (reflect ? 0u : (uint32_t)VL_SAMPLED_TRANSMISSION);
     ix[i] = w.x;

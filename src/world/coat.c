@@ -77,7 +77,7 @@ static double interface_mean(const Grid *grid, int transmit, float c, float eta,
     vlVec3 h = vl_ggx_sample(o, alpha, alpha, grid->u[i], grid->v[i]);
     float oh = vl_dot(o, h);
     vlFresnel f = vl_fresnel_dielectric(oh, eta);
-    float t = oh / eta - f.cos_t;
+    float cos_t = f.root / eta, t = oh / eta - cos_t;
     float a = transmit ? t : 2.0f * oh, b = transmit ? 1.0f / eta : 1.0f;
     vlVec3 w = vl_vec3(a * h.x - b * o.x, a * h.y - b * o.y, a * h.z - b * o.z);
     w.z = transmit ? -w.z : w.z;
@@ -86,7 +86,7 @@ static double interface_mean(const Grid *grid, int transmit, float c, float eta,
     float share = transmit ? 1.0f - f.reflected : f.reflected;
     part[i] = ((oh > 0.0f) & (w.z > 0.0f)) ? share * g : 0.0f;
     /* densities of w: through the interface from outside, by the base's cosine, through the interface from inside */
-    float p = vl_ggx_visible(h, alpha, alpha, o.z, lo) * oh * f.cos_t / (t * t > 1e-30f ? t * t : 1e-30f);
+    float p = vl_ggx_visible(h, alpha, alpha, o.z, lo) * oh * cos_t / (t * t > 1e-30f ? t * t : 1e-30f);
     float q = p * (lo + o.z) / ((li + w.z) * eta * eta), d = w.z * VL_INV_PI;
     float base2 = d * d;
     excess[i] = part[i] * (base2 / (base2 + q * q + 1e-30f) - base2 / (base2 + p * p + 1e-30f));
@@ -103,7 +103,7 @@ static double interface_mean(const Grid *grid, int transmit, float c, float eta,
 static double transmittance(const Rules *rules, float c, float eta, float alpha, float tau, double *imitation) {
   if (alpha >= VL_GGX_SMOOTH && eta != 1.0f) return interface_mean(&rules->out, 1, c, eta, alpha, tau, imitation);
   vlFresnel f = vl_fresnel_dielectric(c, eta);
-  double t = eta == 1.0f ? (c > 0.0f ? layer(tau, c) : 0.0f) : (1.0f - f.reflected) * layer(tau, f.cos_t);
+  double t = eta == 1.0f ? (c > 0.0f ? layer(tau, c) : 0.0f) : (1.0f - f.reflected) * layer(tau, f.root / eta);
   return *imitation = t;
 }
 

@@ -1,0 +1,146 @@
+/* bench/bsdf.c: nanoseconds for one evaluation and one sample of each BSDF, by instruction set, in batches, against the
+ * same code one lane at a time (compiled here without vectors). Lines end in the ratio of the two. Usage: bench_bsdf
+ * [lanes] (default 512). Each number is the best of several rounds. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "base/context.h"
+#include "trace/bsdf.h"
+
+/* The kernels once more, one lane at a time: no padding, and no vectors. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC push_options
+#pragma GCC optimize("no-tree-vectorize", "no-tree-slp-vectorize")
+#pragma GCC target("sse4.2")
+#endif
+#undef VL_PAD
+#define VL_PAD(n) (n)
+#define VL_WHOLE(n) (n)
+#undef VL_SIMD
+#define VL_SIMD
+#define VL_ISA_SUFFIX one
+#define eval eval_one
+#define sample sample_one
+const vlBsdfKernels vl_bsdf_kernels_one;
+#include "../src/trace/bsdf_coat.hot.c"
+#include "../src/trace/bsdf_conductor.hot.c"
+#include "../src/trace/bsdf_dielectric.hot.c"
+#include "../src/trace/bsdf_diffuse.hot.c"
+#include "../src/trace/bsdf_table.hot.c"
+#undef eval
+#undef sample
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC pop_options
+#endif
+
+enum { MOST = 4096, ROUNDS = 7 };
+
+typedef struct {
+  /* rows a little longer than a power of two, or all would share the cache's same few sets */
+  float in[24][MOST + 80], out[14][MOST + 80];
+  const vlCoatTable *coat[MOST];
+  uint32_t flags[MOST];
+} Arrays;
+
+static double seconds(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static uint32_t state = 1;
+static float number(void) {
+  state = state * 1664525u + 1013904223u;
+  return (float)(state >> 8) * 0x1p-24f;
+}
+static void direction(Arrays *a, int first, uint32_t i) {
+  float z = 2 * number() - 1, phi = 6.2831853f * number(), r = sqrtf(1 - z * z);
+  a->in[first][i] = r * cosf(phi), a->in[first + 1][i] = r * sinf(phi), a->in[first + 2][i] = z;
+}
+
+/* One pass of lanes [first, first + n). what: 1 evaluation, 2 sample */
+static void pass(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, uint32_t first, uint32_t n) {
+#define IN(j) (a->in[j] + first)
+#define OUT(j) (a->out[j] + first)
+  vlBsdfParams p = {.reflectance = {IN(0), IN(1), IN(2), IN(3)},
+                    .eta = {IN(4), IN(5), IN(6), IN(7)},
+                    .k = {IN(8), IN(9), IN(10), IN(11)},
+                    .alpha_x = IN(12),
+                    .alpha_y = IN(13),
+                    .eta_s = IN(14),
+                    .coat = a->coat + first};
+  vlBsdfDirections wo = {IN(15), IN(16), IN(17)}, wi = {IN(18), IN(19), IN(20)}, out = {OUT(0), OUT(1), OUT(2)};
+  float *value[4] = {OUT(3), OUT(4), OUT(5), OUT(6)}, *weight[4] = {OUT(8), OUT(9), OUT(10), OUT(11)};
+  if (what & 1) k->eval(kind, n, &p, wo, wi, value, OUT(7));
+  if (what & 2) k->sample(kind, n, &p, wo, IN(21), IN(22), IN(23), out, weight, OUT(12), a->flags + first, OUT(13));
+}
+
+/* Best of several, nanoseconds a lane. */
+static double cost(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, uint32_t n, uint32_t step) {
+  double best = 1e30;
+  for (int round = 0; round < ROUNDS; round++) {
+    uint32_t turns = (step == 1 ? 40000u : 400000u) / n;
+    double start = seconds();
+    for (uint32_t t = 0; t < turns; t++)
+      for (uint32_t i = 0; i < n; i += step) pass(k, kind, what, a, i, step);
+    double time = (seconds() - start) * 1e9 / ((double)turns * n);
+    best = time < best ? time : best;
+  }
+  return best;
+}
+
+int main(int argc, char **argv) {
+  uint32_t n = argc > 1 ? (uint32_t)atoi(argv[1]) : 512;
+  n = n < 16 ? 16 : n > MOST ? MOST : (n + 15u) & ~15u;
+  Arrays *a = calloc(1, sizeof *a);
+  vlContextDef def = vl_default_context_def();
+  vlContext *context;
+  vlCoatTable *coat, *rough;
+  if (!a || vl_context_create(&def, &context)) return 1;
+  if (vl_coat_build(context, 1.5f, 0.01f, 10, 0.1f, 0.1f, &coat) ||
+      vl_coat_build(context, 1.5f, 0.01f, 10, 0, 0.5f, &rough))
+    return 1;
+  for (uint32_t i = 0; i < n; i++) {
+    for (int j = 0; j < 24; j++) a->in[j][i] = number();
+    for (int c = 0; c < 4; c++) a->in[4 + c][i] += 0.2f, a->in[8 + c][i] *= 5;
+    a->in[12][i] = a->in[13][i] = 0.1f;
+    a->in[14][i] = 1.5f;
+    a->coat[i] = coat;
+    direction(a, 15, i);
+    direction(a, 18, i);
+  }
+  const struct {
+    const char *name;
+    vlBsdfKind kind;
+    const vlCoatTable *coat;
+  } rows[] = {{"diffuse", VL_BSDF_DIFFUSE, coat},
+              {"conductor", VL_BSDF_CONDUCTOR, coat},
+              {"dielectric", VL_BSDF_DIELECTRIC, coat},
+              {"thin dielectric", VL_BSDF_THIN_DIELECTRIC, coat},
+              {"coated diffuse", VL_BSDF_COATED_DIFFUSE, coat},
+              {"coated, textured", VL_BSDF_COATED_DIFFUSE, rough}};
+  printf("ns a lane, batches of %u; alpha 0.1; \"one\": one lane at a time, SSE4.2 without vectors\n", n);
+  printf("%-18s %-8s %8s", "", "", "one");
+  for (int isa = 2; isa <= (int)vl_isa_best(); isa++) printf("%8s%d", "v", isa);
+  printf("%10s\n", "ratio");
+  for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+    for (uint32_t i = 0; i < n; i++) a->coat[i] = rows[r].coat;
+    for (int what = 1; what <= 3; what++) {
+      const char *names[] = {"eval", "sample", "both"};
+      double one = cost(&vl_bsdf_kernels_one, rows[r].kind, what, a, n, 1), last = one;
+      printf("%-18s %-8s %8.1f", what == 1 ? rows[r].name : "", names[what - 1], one);
+      for (int isa = 2; isa <= (int)vl_isa_best(); isa++) {
+        last = cost(vl_bsdf_kernels((vlIsa)isa), rows[r].kind, what, a, n, n);
+        printf("%9.2f", last);
+      }
+      printf("%9.1fx\n", one / last);
+    }
+  }
+  vl_coat_free(context, coat);
+  vl_coat_free(context, rough);
+  vl_context_destroy(context);
+  free(a);
+  return 0;
+}

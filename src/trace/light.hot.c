@@ -1,6 +1,7 @@
 /* trace/light.hot.c: choosing a light and a point on it, and the densities that multiple importance sampling asks for
  * (pbrt book 12). Scalar per lane: the tree walk and the kinds of lights diverge. */
 #include "math/octahedral.h"
+#include "math/warp.h"
 #include "trace/stages.h"
 #include "world/surface_point.h"
 #include "world/texture_lookup.h"
@@ -124,6 +125,38 @@ static bool reversed(const vlWorldShape *s) {
   return s->flip != (det < 0);
 }
 
+/* Near triangles are sampled by solid angle, where the area's density would vary over them without bound; far ones by
+ * area, which is cheaper. Both sides of multiple importance sampling ask this one question. */
+typedef struct Near {
+  vlSphericalTriangle cap;
+  bool near;
+} Near;
+
+static Near near_triangle(const vlWorldLight *light, vlVec3 from) {
+  const float *q = light->corners;
+  Near r;
+  r.near = false;
+  vlVec3 a = vl_vec3(q[0] - from.x, q[1] - from.y, q[2] - from.z),
+         b = vl_vec3(q[3] - from.x, q[4] - from.y, q[5] - from.z);
+  vlVec3 c = vl_vec3(q[6] - from.x, q[7] - from.y, q[8] - from.z);
+  float d2 = vl_length2(vl_add(vl_add(a, b), c)) * (1.0f / 9.0f);
+  if (!(light->area > 0.05f * d2)) return r;
+  r.cap = vl_spherical_triangle(vl_normalize(a), vl_normalize(b), vl_normalize(c));
+  r.near = r.cap.solid_angle > 1e-3f && r.cap.solid_angle < 6.22f;
+  return r;
+}
+
+/* Where the direction w from `from` meets the light's plane, as weights of its corners. */
+static vlVec3 plane_weights(const float *q, vlVec3 from, vlVec3 w) {
+  vlVec3 a = vl_vec3(q[0] - from.x, q[1] - from.y, q[2] - from.z),
+         b = vl_vec3(q[3] - from.x, q[4] - from.y, q[5] - from.z);
+  vlVec3 c = vl_vec3(q[6] - from.x, q[7] - from.y, q[8] - from.z);
+  float b0 = vl_abs(vl_dot(w, vl_cross(b, c))), b1 = vl_abs(vl_dot(w, vl_cross(c, a))),
+        b2 = vl_abs(vl_dot(w, vl_cross(a, b)));
+  float sum = b0 + b1 + b2, inv = sum > 0.0f ? 1.0f / sum : 0.0f;
+  return vl_vec3(b0 * inv, b1 * inv, 1.0f - (b0 + b1) * inv);
+}
+
 static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, bool with_uv, vlVec3 from, float u,
                               float v) {
   const float *q = light->corners;
@@ -131,11 +164,18 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
   /* Low-distortion map of the square (Heitz 2019). */
   float b0 = u < v ? u * 0.5f : u - v * 0.5f, b1 = u < v ? v - u * 0.5f : v * 0.5f;
   float b[3] = {b0, b1, 1.0f - b0 - b1};
+  Near near = near_triangle(light, from);
+  if (near.near) {
+    vlVec3 w = plane_weights(q, from, vl_warp_spherical_triangle(near.cap, u, v));
+    b[0] = w.x, b[1] = w.y, b[2] = w.z;
+  }
   Sample r;
   r.p = vl_add(vl_add(vl_mul(p[0], b[0]), vl_mul(p[1], b[1])), vl_mul(p[2], b[2]));
   r.n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
   r.u = r.v = 0;
-  r.pdf = light->area > 0.0f ? solid_pdf(1.0f / light->area, from, r.p, r.n) : 0.0f;
+  r.pdf = near.near            ? 1.0f / near.cap.solid_angle
+          : light->area > 0.0f ? solid_pdf(1.0f / light->area, from, r.p, r.n)
+                               : 0.0f;
   const uint32_t *f = s->indices + 3 * (size_t)light->prim;
   if (!light->one_sided_normals) {
     vlVec3 ns = vl_vec3(0, 0, 0);
@@ -190,8 +230,11 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
 
 float VL_HOT(vl_area_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
-  if (s->kind == VL_SHAPE_TRIANGLES)
+  if (s->kind == VL_SHAPE_TRIANGLES) {
+    Near near = near_triangle(light, from);
+    if (near.near) return 1.0f / near.cap.solid_angle;
     return light->area > 0.0f ? solid_pdf(1.0f / light->area, from, at->p, at->g) : 0.0f;
+  }
   vlVec3 center;
   float radius;
   if (whole_sphere(s, &center, &radius)) {

@@ -1,0 +1,307 @@
+/* Light sampling against its own densities: directions of vl_stage_lights, counted over the sphere, against the density
+ * that multiple importance sampling is told for the light that a ray in that direction meets (chi-square); the light
+ * tree's choice against its probabilities; Monte Carlo of the radiance against the same integral by BSDF-free
+ * directions. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "statistics.h"
+
+#define VL_ISA_SUFFIX v2
+#include "trace/stages.h"
+#include "velo/velo.h"
+
+enum { TRIES = 200 * 1000 };
+
+typedef struct Fixture {
+  vlContext *context;
+  vlScene *scene;
+  vlWorld *world;
+  vlVec3 p, n;
+  vlTraceScratch *scratch;
+} Fixture;
+
+static Fixture *begin(void) {
+  Fixture *f = calloc(1, sizeof *f);
+  assert_int_equal(vl_context_create(NULL, &f->context), VL_OK);
+  assert_int_equal(vl_scene_create(f->context, &f->scene), VL_OK);
+  f->scratch = aligned_alloc(64, (vl_trace_scratch_size() + 63) / 64 * 64);
+  memset(f->scratch, 0, vl_trace_scratch_size());
+  return f;
+}
+
+static void build(Fixture *f, vlLightSampler sampler) {
+  vlBuildDef def = vl_default_build_def();
+  def.color = VL_COLOR_RGB;
+  def.light_sampler = sampler;
+  vlError error;
+  assert_int_equal(vl_world_build(f->scene, &def, &f->world, &error), VL_OK);
+}
+
+static void end(Fixture *f) {
+  vl_world_destroy(f->world);
+  vl_scene_destroy(f->scene);
+  assert_int_equal(vl_context_memory(f->context, NULL), 0);
+  vl_context_destroy(f->context);
+  free(f->scratch);
+  free(f);
+}
+
+static vlEmissionId glow(Fixture *f, bool two_sided) {
+  vlEmissionDef def = vl_default_emission_def();
+  def.radiance = vl_spectrum_rgb(1, 1, 1);
+  def.two_sided = two_sided;
+  return vl_scene_add_emission(f->scene, &def);
+}
+
+/* Density of sampling direction d: of the light that a ray meets there first (lights must not hide each other). */
+static double density(void *user, const double d[3]) {
+  Fixture *f = user;
+  float o[3] = {f->p.x, f->p.y, f->p.z}, w[3] = {(float)d[0], (float)d[1], (float)d[2]};
+  vlRays ray = {o, o + 1, o + 2, w, w + 1, w + 2, NULL, NULL};
+  uint32_t shape, prim, instance;
+  vl_accel_closest(f->world, 1, &ray, false, &shape, &prim, &instance);
+  vlVec3 dir = vl_vec3(w[0], w[1], w[2]);
+  double pdf = 0;
+  for (size_t k = 0; k < f->world->infinite_lights.count; k++) {
+    uint32_t index = f->world->infinite_lights.items[k];
+    pdf += (double)vl_light_pmf(&f->world->tree, f->p, f->n, index) *
+           VL_HOT(vl_infinite_pdf)(f->world, &f->world->lights.items[index], dir);
+  }
+  if (shape == VL_NONE || f->world->shapes.items[shape].first_light == VL_NONE) return pdf;
+  uint32_t index = f->world->shapes.items[shape].first_light + prim;
+  const vlWorldLight *light = &f->world->lights.items[index];
+  vlPoint at = VL_HOT(vl_point_at)(f->world, f->p, dir, shape, prim, instance);
+  if (vl_dot(at.g, dir) >= 0 && !f->world->emitted.items[light->emitted].two_sided) return pdf;
+  return pdf +
+         (double)VL_HOT(vl_area_pdf)(f->world, light, f->p, &at) * vl_light_pmf(&f->world->tree, f->p, f->n, index);
+}
+
+/* Light samples weighed by 1 / pdf measure the solid angle of what they reach in each cell of the sphere; uniform
+ * directions measure it, too: where density() is above 0. Both are means with known variances: their difference,
+ * squared and summed over the cells, is chi-square. (Edges of lights cut cells anyhow: a numerical integral would have
+ * to find them.) */
+enum { ROWS = 16, COLUMNS = 32, CELLS = ROWS * COLUMNS };
+
+typedef struct Cell {
+  double sum, sum2;
+  double density; /* sum of, over uniform directions */
+  uint32_t count;
+} Cell;
+
+static uint32_t cell_of(double x, double y, double z) {
+  uint32_t row = (uint32_t)((z + 1) * 0.5 * ROWS), column = (uint32_t)((atan2(y, x) + M_PI) / (2 * M_PI) * COLUMNS);
+  return (row < ROWS ? row : ROWS - 1) * COLUMNS + (column < COLUMNS ? column : COLUMNS - 1);
+}
+
+static void add_to(Cell *cell, double weight) {
+  cell->sum += weight;
+  cell->sum2 += weight * weight;
+  cell->count++;
+}
+
+static uint32_t sample_all(Fixture *f, Cell *cells, unsigned seed) {
+  statRng rng = stat_rng(seed);
+  vlTraceScratch *s = f->scratch;
+  uint32_t done = 0;
+  for (; done < TRIES; done += VL_BATCH) {
+    for (uint32_t i = 0; i < VL_BATCH; i++) {
+      s->surface.px[i] = f->p.x, s->surface.py[i] = f->p.y, s->surface.pz[i] = f->p.z;
+      s->surface.nx[i] = f->n.x, s->surface.ny[i] = f->n.y, s->surface.nz[i] = f->n.z;
+      s->shade.u0[i] = stat_float(&rng), s->shade.u1[i] = stat_float(&rng), s->shade.u2[i] = stat_float(&rng);
+    }
+    VL_HOT(vl_stage_lights)(f->world, VL_BATCH, &s->b, &s->surface, s->shade.u0, s->shade.u1, s->shade.u2, &s->light);
+    for (uint32_t i = 0; i < VL_BATCH; i++) {
+      const vlLightSamples *l = &s->light;
+      if (!(l->pdf[i] > 0)) continue;
+      double d[3] = {l->wx[i], l->wy[i], l->wz[i]}, told = density(f, d);
+      if (!(told > 0)) continue; /* at the very edge a ray may just miss, or another light stands before it */
+      /* The density that comes with a sample is the one that a hit is given. */
+      if (!(fabs(told - (double)l->pdf[i]) <= 5e-3 * told))
+        fail_msg("pdf %g with the sample, %g for the hit", (double)l->pdf[i], told);
+      add_to(&cells[cell_of(d[0], d[1], d[2])], 1 / told);
+    }
+  }
+  return done;
+}
+
+static void judge(Fixture *f, unsigned seed, unsigned tests) {
+  static Cell sampled[CELLS], uniform[CELLS];
+  memset(sampled, 0, sizeof sampled);
+  memset(uniform, 0, sizeof uniform);
+  uint32_t n = sample_all(f, sampled, seed), m = 4 * TRIES;
+  statRng rng = stat_rng(seed + 1000);
+  for (uint32_t i = 0; i < m; i++) {
+    double d[3];
+    stat_direction(&rng, d);
+    double pdf = density(f, d);
+    if (!(pdf > 0)) continue;
+    Cell *cell = &uniform[cell_of(d[0], d[1], d[2])];
+    add_to(cell, 4 * M_PI);
+    cell->density += pdf;
+  }
+  double statistic = 0;
+  uint32_t freedom = 0;
+  for (uint32_t k = 0; k < CELLS; k++) {
+    const Cell *a = &sampled[k], *b = &uniform[k];
+    if (b->count < 100 || a->count < 100) {
+      double expected = b->density * 4 * M_PI / m * n;
+      if (b->count >= 100 && expected > 200) fail_msg("cell %u: %u samples, %g expected", k, a->count, expected);
+      continue;
+    }
+    double ma = a->sum / n, mb = b->sum / m;
+    double variance = (a->sum2 / n - ma * ma) / n + (b->sum2 / m - mb * mb) / m;
+    statistic += (ma - mb) * (ma - mb) / variance;
+    freedom++;
+  }
+  assert_true(freedom >= 1);
+  double p = stat_chi2_q(statistic, freedom);
+  if (!(p > 0.01 / tests)) fail_msg("chi-square %g with %u degrees of freedom: p = %g", statistic, freedom, p);
+}
+
+enum { TESTS = 16 };
+
+static void add_triangles(Fixture *f, const float *positions, uint32_t faces, bool two_sided) {
+  uint32_t indices[24];
+  for (uint32_t i = 0; i < 3 * faces; i++) indices[i] = i;
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.vertices = 3 * faces;
+  def.faces = faces;
+  def.positions = positions;
+  def.indices = indices;
+  def.emission = glow(f, two_sided);
+  assert_int_not_equal(vl_scene_add_shape(f->scene, &def).index, 0);
+}
+
+static void triangles(void **state) {
+  (void)state;
+  const float near[9] = {-1, -1, 1, 2, -1, 1, -1, 2, 1}, far[9] = {-1, -1, 6, 2, -1, 6, -1, 2, 8};
+  for (int i = 0; i < 2; i++) {
+    Fixture *f = begin();
+    add_triangles(f, i ? far : near, 1, true);
+    f->p = vl_vec3(0.2f, 0.1f, 0);
+    f->n = vl_vec3(0, 0, 1);
+    build(f, VL_LIGHT_SAMPLER_BVH);
+    judge(f, 1 + (unsigned)i, TESTS);
+    end(f);
+  }
+}
+
+/* Several lights, each choice of the tree with its probability; all ways of choosing. */
+static void many_triangles(void **state) {
+  (void)state;
+  const float p[36] = {-3, -1, 2, -2, -1, 2, -3, 1, 2.5f, 2, -1, 1,  3, -1, 1,  2, 1,  1,
+                       -1, 3,  0, 1,  3,  0, 0,  3, 2,    0, -3, -1, 1, -3, -1, 0, -3, 1};
+  const vlLightSampler samplers[3] = {VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER, VL_LIGHT_SAMPLER_UNIFORM};
+  for (int i = 0; i < 3; i++) {
+    Fixture *f = begin();
+    add_triangles(f, p, 4, true);
+    f->p = vl_vec3(0.1f, 0.2f, 0.1f);
+    f->n = vl_normalize(vl_vec3(0.3f, 0.2f, 1));
+    build(f, samplers[i]);
+    judge(f, 11 + (unsigned)i, TESTS);
+    double sum = 0;
+    for (uint32_t k = 0; k < 4; k++) sum += vl_light_pmf(&f->world->tree, f->p, f->n, k);
+    assert_true(fabs(sum - 1) < 1e-5);
+    end(f);
+  }
+}
+
+static void add_round(Fixture *f, vlShapeKind kind, const double m[16]) {
+  vlShapeDef def = vl_default_shape_def(kind);
+  def.emission = glow(f, true);
+  if (m) memcpy(def.group_from_shape, m, sizeof def.group_from_shape);
+  assert_int_not_equal(vl_scene_add_shape(f->scene, &def).index, 0);
+}
+
+static void round_lights(void **state) {
+  (void)state;
+  const vlShapeKind kinds[3] = {VL_SHAPE_SPHERE, VL_SHAPE_DISK, VL_SHAPE_CYLINDER};
+  const double plain[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 3, 0, 0, 0, 1};
+  const double bent[16] = {1.5, 0.2, 0, 0.4, 0, 0.8, 0.1, 0.2, 0, 0, 0.6, 3, 0, 0, 0, 1};
+  for (int k = 0; k < 3; k++)
+    for (int j = 0; j < 2; j++) {
+      if (kinds[k] == VL_SHAPE_CYLINDER) continue; /* one direction meets it twice: the nearer hides the farther */
+      Fixture *f = begin();
+      add_round(f, kinds[k], j ? bent : plain);
+      f->p = vl_vec3(0.2f, 0.1f, 0);
+      f->n = vl_vec3(0, 0, 1);
+      /* A bent sphere is sampled by area: its far side is hidden, so that only one that is seen from inside fits this
+       * test. */
+      if (kinds[k] == VL_SHAPE_SPHERE && j) f->p = vl_vec3(0.4f, 0.3f, 3);
+      build(f, VL_LIGHT_SAMPLER_BVH);
+      judge(f, 21 + (unsigned)(2 * k + j), TESTS);
+      end(f);
+    }
+}
+
+static void sphere_from_inside(void **state) {
+  (void)state;
+  Fixture *f = begin();
+  add_round(f, VL_SHAPE_SPHERE, NULL);
+  f->p = vl_vec3(0.3f, -0.2f, 0.5f);
+  f->n = vl_vec3(0, 0, 1);
+  build(f, VL_LIGHT_SAMPLER_BVH);
+  judge(f, 31, TESTS);
+  end(f);
+}
+
+static void patch(void **state) {
+  (void)state;
+  const float p[12] = {-1, -1, 2, 1, -1, 2.5f, -1, 1, 3, 1.2f, 1, 2};
+  const uint32_t index[4] = {0, 1, 2, 3};
+  Fixture *f = begin();
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_BILINEAR);
+  def.vertices = 4;
+  def.faces = 1;
+  def.positions = p;
+  def.indices = index;
+  def.emission = glow(f, true);
+  assert_int_not_equal(vl_scene_add_shape(f->scene, &def).index, 0);
+  f->p = vl_vec3(0, 0.1f, 0);
+  f->n = vl_vec3(0, 0, 1);
+  build(f, VL_LIGHT_SAMPLER_BVH);
+  judge(f, 41, TESTS);
+  end(f);
+}
+
+static void sky(void **state) {
+  (void)state;
+  for (int i = 0; i < 3; i++) {
+    Fixture *f = begin();
+    vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
+    vlImage *image = NULL;
+    if (i) {
+      vlImageDef image_def = vl_default_image_def(32, 32, 3);
+      image_def.type = VL_PIXEL_F32;
+      assert_int_equal(vl_image_create(f->context, &image_def, &image), VL_OK);
+      float *pixels = vl_image_pixels(image);
+      for (int k = 0; k < 32 * 32 * 3; k++)
+        pixels[k] = i == 1 ? 1.0f + 0.5f * sinf(0.05f * (float)k) : (k / 3) % 37 == 5 ? 50.0f : 0.5f;
+      def.image = image;
+      def.image_is_radiance = true;
+      const double turned[16] = {0, -1, 0, 0, 0.6, 0, -0.8, 0, 0.8, 0, 0.6, 0, 0, 0, 0, 1};
+      memcpy(def.world_from_light, turned, sizeof turned);
+    }
+    assert_int_not_equal(vl_scene_add_light(f->scene, &def).index, 0);
+    f->n = vl_vec3(0, 0, 1);
+    build(f, VL_LIGHT_SAMPLER_BVH);
+    vl_image_destroy(image);
+    judge(f, 51 + (unsigned)i, TESTS);
+    end(f);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(triangles),          cmocka_unit_test(many_triangles), cmocka_unit_test(round_lights),
+      cmocka_unit_test(sphere_from_inside), cmocka_unit_test(patch),          cmocka_unit_test(sky),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

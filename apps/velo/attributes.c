@@ -39,15 +39,6 @@ static void set_window(Header *header, const char *name, uint32_t x0, uint32_t y
   set(header, name, VL_ATTRIBUTE_BOX2I, (double[]){x0, y0, x1 - 1.0, y1 - 1.0}, 4, NULL);
 }
 
-/* CIE 1931 xy of red, green, blue, white: ITU-R BT.709, SMPTE RP 431-2 primaries with D65, ITU-R BT.2020, ACES
- * TB-2014-004. */
-static const double chromaticities[][8] = {
-    [VL_SPACE_SRGB] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290},
-    [VL_SPACE_DCI_P3] = {0.680, 0.320, 0.265, 0.690, 0.150, 0.060, 0.3127, 0.3290},
-    [VL_SPACE_REC2020] = {0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290},
-    [VL_SPACE_ACES2065_1] = {0.7347, 0.2653, 0, 1, 0.0001, -0.0770, 0.32168, 0.33767},
-};
-
 /* OpenEXR multiplies row vectors from the left, p' = p M: the transpose of a matrix for columns. */
 static void set_matrix(Header *header, const char *name, vlAttributeType type, const double m[16]) {
   double transposed[16];
@@ -113,7 +104,6 @@ vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
   char software[32];
   snprintf(software, sizeof software, "velo %d.%d.%d", VL_VERSION_MAJOR, VL_VERSION_MINOR, VL_VERSION_PATCH);
   set_text(&header, "software", software);
-  set(&header, "chromaticities", VL_ATTRIBUTE_CHROMATICITIES, chromaticities[job->film.space], 8, NULL);
   set_window(&header, "displayWindow", 0, 0, c->width, c->height);
   set_window(&header, "dataWindow", crop[0], crop[1], crop[2], crop[3]);
   set_window(&header, "originalDataWindow", 0, 0, c->width, c->height);

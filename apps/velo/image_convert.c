@@ -107,7 +107,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
     vlResult result = vl_image_write(image, outputs.paths[0], NULL, &error);
     status = result == VL_OK ? STATUS_OK : report_error(&error, result, outputs.paths[0]);
   }
-  if (status < 0) status = outputs_write(&outputs, image, false);
+  if (status < 0) status = outputs_write(context, &outputs, image, false);
   vl_image_destroy(image);
   vl_context_destroy(context);
   return status;

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "display.h"
 #include "options.h"
 #include "report.h"
 
@@ -79,7 +80,7 @@ static bool is_plain_file(const char *path) {
   return stat(path, &info) != 0 || S_ISREG(info.st_mode);
 }
 
-int outputs_write(const Outputs *outputs, const vlImage *image, bool progress) {
+int outputs_write(vlContext *context, const Outputs *outputs, const vlImage *image, bool progress) {
   vlWriteDef write = vl_default_write_def();
   write.half = outputs->half;
   vlImage *display = NULL; /* made once, when the first file wants it */
@@ -91,7 +92,7 @@ int outputs_write(const Outputs *outputs, const vlImage *image, bool progress) {
     if (progress && !is_plain_file(path)) continue;
     vlError error = {0};
     vlResult result = VL_OK;
-    if (eight_bit && !display) result = vl_image_view(image, outputs->view, outputs->exposure, NULL, &display);
+    if (eight_bit && !display) result = display_image(context, image, outputs->view, outputs->exposure, &display);
     if (result == VL_OK) result = vl_image_write(eight_bit ? display : image, path, &write, &error);
     if (result == VL_OK) continue;
     if (progress) {

@@ -21,6 +21,6 @@ int outputs_check_names(const Outputs *outputs);
 int outputs_check_folders(const Outputs *outputs);
 /* Writes the picture into every file, even after one of them failed. `progress`: only into plain files, and a failure
  * is a warning. Returns STATUS_OK or the code of the first failure. */
-int outputs_write(const Outputs *outputs, const vlImage *image, bool progress);
+int outputs_write(vlContext *context, const Outputs *outputs, const vlImage *image, bool progress);
 
 #endif

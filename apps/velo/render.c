@@ -38,7 +38,8 @@ static int write_picture(Render *render, bool progress) {
   uint32_t spp = vl_film_spp(render->film);
   vlResult result = vl_film_develop(render->film, &develop, &image);
   if (result == VL_OK) result = attributes_set(image, &render->job, spp);
-  int status = result == VL_OK ? outputs_write(&render->outputs, image, progress) : report_error(NULL, result, NULL);
+  int status = result == VL_OK ? outputs_write(render->context, &render->outputs, image, progress)
+                               : report_error(NULL, result, NULL);
   vl_image_destroy(image);
   render->written_spp = spp;
   render->written_whole = status == STATUS_OK;

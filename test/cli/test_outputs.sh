@@ -90,6 +90,17 @@ else
   skip tiny_disk "needs the right to mount"
 fi
 
+# The film's colour space does not change what people see, nor does the way through an EXR file.
+"$VELO" render scene.pbrt -o srgb.png --quiet
+for space in rec2020 dci-p3 aces2065-1; do
+  sed "s/^Film/ColorSpace \"$space\"\nFilm/; s/^WorldBegin/ColorSpace \"srgb\"\nWorldBegin/" scene.pbrt >space.pbrt
+  check "space_$space" "$VELO" render space.pbrt -o space.png -o space.exr --quiet
+  run "$VELO" image diff srgb.png space.png --threshold mse=1e-6 --threshold flip=0.001
+  [ "$code" = 0 ] && pass "space_${space}_looks_the_same" || { fail "space_${space}_looks_the_same"; show diff; }
+  "$VELO" image convert space.exr converted.png
+  same "space_${space}_through_exr" space.png converted.png
+done
+
 # Closed standard streams: messages must not end up in pictures.
 bash -c '"$0" render scene.pbrt -o closed.exr <&- >&- 2>&-' "$VELO"
 check closed_streams "$VELO" image info closed.exr

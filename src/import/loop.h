@@ -7,7 +7,8 @@
 
 typedef struct vlLoopMesh {
   uint32_t vertices, faces;
-  float *positions, *normals; /* 3 a vertex, on the limit surface; normals not normalised */
+  float *positions, *normals; /* 3 a vertex, on the limit surface; normals as pbrt has them: against the winding, and
+                                 not normalised */
   uint32_t *indices;          /* 3 a face */
 } vlLoopMesh;
 

@@ -186,8 +186,8 @@ static bool read_ply(vlDict *dict, vlPlyMesh *mesh) {
   vlError error = {0};
   vlResult result = vl_ply_read(import->context, path, mesh, &error);
   if (result == VL_OK) return true;
-  return vl_import_fail(import, result, (vlSource){error.file[0] ? error.file : path, error.line, error.column}, "%s",
-                        error.message);
+  vlSource inside = {error.file, error.line, error.column};
+  return vl_import_fail(import, result, error.file[0] ? inside : file->place, "%s", error.message);
 }
 
 /* A mesh of both kinds becomes two shapes that share nothing: the second gets copies. */

@@ -54,7 +54,11 @@ bool vl_scene_copy_source(vlScene *scene, vlSource *source) {
   }
   if (!vl_scene_copy_string(scene, &source->file)) return false;
   const char **slot = VL_PUSH(scene->context, &scene->files);
-  if (slot) *slot = source->file; /* without a slot the copy is still owned, only not shared */
+  if (!slot) {
+    vl_scene_fail(scene, VL_ERROR_MEMORY, nowhere, "out of memory");
+    return false;
+  }
+  *slot = source->file;
   return true;
 }
 

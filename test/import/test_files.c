@@ -1,0 +1,221 @@
+/* test/import/test_files.c: scenes of several files: Include, Import, gzip, spectra, what names are relative to,
+ * circles. */
+#include <sys/stat.h>
+#include <zlib.h>
+
+#include "import/load.h"
+
+static char folder[64];
+
+static const char *in_folder(const char *name) {
+  static char path[4][256];
+  static int turn;
+  turn = (turn + 1) % 4;
+  snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
+  return path[turn];
+}
+
+static void write_file(const char *name, const char *text) {
+  FILE *f = fopen(in_folder(name), "wb");
+  assert_non_null(f);
+  assert_int_equal(fwrite(text, 1, strlen(text), f), strlen(text));
+  fclose(f);
+}
+
+static int set_up(void **state) {
+  (void)state;
+  snprintf(folder, sizeof folder, "/tmp/velo-import-XXXXXX");
+  return !mkdtemp(folder) || mkdir(in_folder("parts"), 0777) != 0;
+}
+
+static int tear_down(void **state) {
+  (void)state;
+  char command[128];
+  snprintf(command, sizeof command, "rm -rf '%s'", folder);
+  return system(command);
+}
+
+static void load_file(Loaded *l, const char *name) {
+  start_load(l);
+  vlLoadDef def = vl_default_load_def();
+  l->result = vl_scene_load(l->scene, in_folder(name), &def, &l->error);
+}
+
+static void file_fine(Loaded *l, const char *name) {
+  load_file(l, name);
+  if (l->result != VL_OK)
+    print_message("%s:%u:%u: %s\n", l->error.file, l->error.line, l->error.column, l->error.message);
+  assert_int_equal(l->result, VL_OK);
+}
+
+/* expected holds %s for the folder, some times */
+static void file_error(const char *name, vlResult code, const char *expected) {
+  Loaded l;
+  char said[1200], wanted[1200];
+  load_file(&l, name);
+  snprintf(said, sizeof said, "%s:%u:%u: %s", l.error.file, l.error.line, l.error.column, l.error.message);
+  size_t n = 0;
+  for (const char *p = expected; *p && n + 80 < sizeof wanted; p++) {
+    if (p[0] == '%')
+      n += (size_t)snprintf(wanted + n, sizeof wanted - n, "%s", folder);
+    else
+      wanted[n++] = *p;
+  }
+  wanted[n] = 0;
+  if (l.result != code) print_message("%s\n", vl_result_name(l.result));
+  assert_string_equal(said, wanted);
+  assert_int_equal(l.result, code);
+  end_load(&l);
+}
+
+static void includes(void **state) {
+  (void)state;
+  Loaded l;
+  write_file("main.pbrt",
+             "WorldBegin\nTranslate 1 0 0\nInclude \"parts/a.pbrt\"\nShape \"sphere\"\nImport \"parts/b.pbrt\"\nShape "
+             "\"disk\"\nNamedMaterial \"m\" Shape \"disk\"");
+  write_file("parts/a.pbrt", "Translate 2 0 0\nInclude \"c.pbrt\"\nInclude \"main-c.pbrt\"");
+  write_file("parts/b.pbrt",
+             "Translate 5 0 0\nReverseOrientation\nShape \"cylinder\"\nMakeNamedMaterial \"m\" \"string type\" "
+             "\"dielectric\"");
+  write_file("parts/c.pbrt", "Shape \"sphere\" \"float radius\" 2");
+  write_file("main-c.pbrt", "Shape \"sphere\" \"float radius\" 7"); /* beside the first file */
+  file_fine(&l, "main.pbrt");
+  const vlShapeDef *s = l.scene->shapes.items;
+  assert_int_equal(l.scene->shapes.count, 6);
+  assert_near(s[0].radius, 2, 0);
+  assert_near(s[1].radius, 7, 0);
+  assert_near(s[2].group_from_shape[3], 3, 0); /* Include leaves its state behind */
+  assert_near(s[3].group_from_shape[3], 8, 0);
+  assert_true(s[3].reverse_orientation);
+  assert_near(s[4].group_from_shape[3], 3, 0); /* Import does not */
+  assert_false(s[4].reverse_orientation);
+  assert_int_equal(s[5].material.index, 1);
+  assert_string_equal(s[0].source.file, in_folder("parts/c.pbrt"));
+  end_load(&l);
+}
+
+static void mistakes_in_parts(void **state) {
+  (void)state;
+  write_file("m.pbrt", "WorldBegin\n\n  Include \"parts/bad.pbrt\"\n");
+  write_file("parts/bad.pbrt", "Shape \"sphere\"\nShape \"sphere\" \"float raduis\" 1");
+  file_error("m.pbrt", VL_ERROR_SCENE,
+             "%/parts/bad.pbrt:2:16: Shape \"sphere\": unknown parameter \"raduis\" (did you mean \"radius\"?)");
+  write_file("parts/bad.pbrt",
+             "Material \"diffuse\" \"float raduis\" 1\n"); /* found at the end, when the file is gone */
+  file_error("m.pbrt", VL_ERROR_SCENE, "%/parts/bad.pbrt:1:20: Material \"diffuse\": unknown parameter \"raduis\"");
+  write_file("parts/bad.pbrt", "Shape \"sphere\" \"float radius\" [ 1");
+  file_error("m.pbrt", VL_ERROR_SCENE,
+             "%/parts/bad.pbrt:1:31: unclosed [ in \"float radius\": the file ends before the ]");
+  write_file("parts/bad.pbrt", "AttributeBegin\n");
+  file_error("m.pbrt", VL_ERROR_SCENE, "%/parts/bad.pbrt:1:1: AttributeBegin is never closed");
+  write_file("m.pbrt", "WorldBegin\nImport \"parts/bad.pbrt\"\nAttributeEnd");
+  file_error("m.pbrt", VL_ERROR_SCENE, "%/parts/bad.pbrt:1:1: AttributeBegin is never closed");
+  write_file("parts/bad.pbrt", "AttributeEnd\n");
+  write_file("m.pbrt", "WorldBegin\nAttributeBegin\nImport \"parts/bad.pbrt\"\nAttributeEnd");
+  file_error("m.pbrt", VL_ERROR_SCENE, "%/parts/bad.pbrt:1:1: AttributeEnd without its beginning");
+  write_file("m.pbrt", "Import \"parts/bad.pbrt\"");
+  file_error("m.pbrt", VL_ERROR_SCENE, "%/m.pbrt:1:1: Import must come after WorldBegin");
+}
+
+static void circles(void **state) {
+  (void)state;
+  write_file("self.pbrt", "WorldBegin\nInclude \"self.pbrt\"");
+  file_error("self.pbrt", VL_ERROR_SCENE, "%/self.pbrt:2:9: the file includes itself: %/self.pbrt");
+  write_file("self.pbrt", "WorldBegin\nImport \"./parts/../self.pbrt\"");
+  file_error("self.pbrt", VL_ERROR_SCENE, "%/self.pbrt:2:8: the file includes itself: %/./parts/../self.pbrt");
+  write_file("x.pbrt", "Include \"y.pbrt\"");
+  write_file("y.pbrt", "Include \"z.pbrt\"");
+  write_file("z.pbrt", "#\nInclude \"x.pbrt\"");
+  file_error("x.pbrt", VL_ERROR_SCENE,
+             "%/z.pbrt:2:9: the file includes itself in a circle: %/x.pbrt is being read already");
+  char name[32], text[64];
+  for (int i = 0; i < 70; i++) {
+    snprintf(name, sizeof name, "deep%d.pbrt", i);
+    snprintf(text, sizeof text, "Include \"deep%d.pbrt\"", i + 1);
+    write_file(name, text);
+  }
+  file_error("deep0.pbrt", VL_ERROR_SCENE, "%/deep64.pbrt:1:9: files include each other more than 64 deep");
+  /* two includes a file, twenty files deep: a million; it ends early */
+  for (int i = 0; i < 20; i++) {
+    snprintf(name, sizeof name, "twice%d.pbrt", i);
+    snprintf(text, sizeof text, "Include \"twice%d.pbrt\" Include \"twice%d.pbrt\"", i + 1, i + 1);
+    write_file(name, text);
+  }
+  write_file("twice20.pbrt", "");
+  Loaded l;
+  load_file(&l, "twice0.pbrt");
+  assert_int_equal(l.result, VL_ERROR_SCENE);
+  assert_string_equal(l.error.message, "more than 20000 files are included");
+  end_load(&l);
+}
+
+static void missing(void **state) {
+  (void)state;
+  file_error("none-of-this.pbrt", VL_ERROR_MISSING, ":0:0: no such file: %/none-of-this.pbrt");
+  write_file("m.pbrt", "WorldBegin\nInclude \"parts/cc.pbrt\"");
+  file_error("m.pbrt", VL_ERROR_MISSING, "%/m.pbrt:2:9: no such file: %/parts/cc.pbrt (did you mean \"c.pbrt\"?)");
+  write_file("m.pbrt", "WorldBegin\nInclude \"parts\"");
+  file_error("m.pbrt", VL_ERROR_SCENE, "%/m.pbrt:2:9: %/parts is not a regular file");
+  write_file("m.pbrt", "WorldBegin\nShape \"plymesh\" \"string filename\" \"parts\"");
+  file_error("m.pbrt", VL_ERROR_IO, "%/m.pbrt:2:17: cannot read %/parts: is a folder");
+  file_error("parts", VL_ERROR_IO, ":0:0: cannot read %/parts: is a folder");
+  write_file("scene.obj", "v 0 0 0");
+  file_error("scene.obj", VL_ERROR_SCENE, ":0:0: %/scene.obj: unknown kind of scene file (known: .pbrt, .pbrt.gz)");
+}
+
+static void packed(void **state) {
+  (void)state;
+  Loaded l;
+  const char *text = "WorldBegin\nShape \"plymesh\" \"string filename\" \"t.ply.gz\"",
+             *ply =
+                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+                 "z\nelement face 1\n"
+                 "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  gzFile f = gzopen(in_folder("packed.pbrt.gz"), "wb");
+  gzwrite(f, text, (unsigned)strlen(text));
+  gzclose(f);
+  f = gzopen(in_folder("t.ply.gz"), "wb");
+  gzwrite(f, ply, (unsigned)strlen(ply));
+  gzclose(f);
+  file_fine(&l, "packed.pbrt.gz");
+  assert_int_equal(l.scene->shapes.items[0].faces, 1);
+  end_load(&l);
+  write_file("broken.pbrt.gz", "\x1f\x8b\x08 no");
+  file_error("broken.pbrt.gz", VL_ERROR_SCENE, ":0:0: %/broken.pbrt.gz: broken gzip file");
+  write_file("bad.ply",
+             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+             "z\nend_header\n0 0 0 1 0 0 0 x 0\n");
+  write_file("m.pbrt", "WorldBegin\nShape \"plymesh\" \"string filename\" \"bad.ply\"");
+  file_error("m.pbrt", VL_ERROR_SCENE, "%/bad.ply:8:1: PLY: expected a number, found \"x\"");
+}
+
+static void spectra(void **state) {
+  (void)state;
+  Loaded l;
+  write_file("parts/glass.spd", "# a comment\n400 1.5\n500\t1.4 # in line\n600 1.3");
+  write_file("m.pbrt", "WorldBegin\nMaterial \"dielectric\" \"spectrum eta\" \"parts/glass.spd\"");
+  file_fine(&l, "m.pbrt");
+  const vlSpectrum *s = &l.scene->materials.items[0].eta.value;
+  assert_int_equal(s->kind, VL_SPECTRUM_SAMPLED);
+  assert_int_equal(s->count, 3);
+  assert_near(s->wavelengths[1], 500, 0);
+  assert_near(s->values[2], 1.3, 1e-6);
+  end_load(&l);
+  write_file("parts/glass.spd", "400 1.5\n500");
+  file_error("m.pbrt", VL_ERROR_SCENE,
+             "%/parts/glass.spd:1:1: a spectrum holds pairs of wavelength and value; found 3 numbers");
+  write_file("parts/glass.spd", "400 1.5\n500 green");
+  file_error("m.pbrt", VL_ERROR_SCENE, "%/parts/glass.spd:2:5: spectrum file: expected a number");
+  write_file("parts/glass.spd", "");
+  file_error("m.pbrt", VL_ERROR_SCENE, "%/parts/glass.spd:1:1: spectrum file: holds no numbers");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(includes), cmocka_unit_test(mistakes_in_parts),
+      cmocka_unit_test(circles),  cmocka_unit_test(missing),
+      cmocka_unit_test(packed),   cmocka_unit_test(spectra),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}

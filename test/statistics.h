@@ -24,14 +24,17 @@
 typedef struct statRng {
   uint64_t state;
 } statRng;
-static inline statRng stat_rng(uint64_t seed) {
-  return (statRng){seed * 0x9e3779b97f4a7c15u + 0x632be59bd9b4e019u};
-}
 static inline uint64_t stat_bits(statRng *rng) {
   uint64_t z = (rng->state += 0x9e3779b97f4a7c15u);
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
   return z ^ (z >> 31);
+}
+/* The state steps by a constant: seeds are hashed, lest neighbouring ones give the same stream, one step apart. */
+static inline statRng stat_rng(uint64_t seed) {
+  statRng hash = {seed ^ 0x632be59bd9b4e019u};
+  stat_bits(&hash);
+  return (statRng){stat_bits(&hash)};
 }
 /* 24 bits, [0, 1). */
 static inline float stat_float(statRng *rng) {

@@ -3,7 +3,6 @@
  * as in the field's renderers. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "image/codec.h"
@@ -34,8 +33,28 @@ static bool next_line(const vlImageFile *file, size_t *at, char *line, size_t si
   return false;
 }
 
+/* " 123", at most nine digits; the place behind it, or null. */
+static const char *parse_number(const char *p, uint32_t *value) {
+  const char *digits = p + (*p == ' ');
+  *value = 0;
+  for (p = digits; *p >= '0' && *p <= '9' && p - digits < 9; p++) *value = *value * 10 + (uint32_t)(*p - '0');
+  return p > digits ? p : NULL;
+}
+
+/* "-Y 480 +X 640" */
+static bool parse_resolution(const char *line, Header *h) {
+  if ((line[0] != '-' && line[0] != '+') || (line[1] != 'Y' && line[1] != 'X')) return false;
+  const char *p = parse_number(line + 2, &h->height);
+  if (!p || p[0] != ' ' || (p[1] != '-' && p[1] != '+') || (p[2] != 'Y' && p[2] != 'X')) return false;
+  h->other_order = line[1] != 'Y' || p[2] != 'X' || p[1] != '+';
+  h->upward = line[0] == '+';
+  p = parse_number(p + 3, &h->width);
+  while (p && *p == ' ') p++;
+  return p && !*p;
+}
+
 static bool parse_header(const vlImageFile *file, Header *h) {
-  char line[256], y_sign, x_sign, y_axis, x_axis, rest;
+  char line[256];
   size_t at = 0;
   memset(h, 0, sizeof *h);
   for (bool blank = false; !blank;) {
@@ -43,14 +62,7 @@ static bool parse_header(const vlImageFile *file, Header *h) {
     blank = !line[0];
     if (strncmp(line, "FORMAT=32-bit_rle_xyze", 22) == 0) h->xyze = true;
   }
-  unsigned height, width;
-  if (!next_line(file, &at, line, sizeof line)) return false;
-  if (sscanf(line, "%c%c %9u %c%c %9u %c", &y_sign, &y_axis, &height, &x_sign, &x_axis, &width, &rest) != 6)
-    return false;
-  h->other_order = y_axis != 'Y' || x_axis != 'X' || x_sign != '+';
-  h->upward = y_sign == '+';
-  h->width = width;
-  h->height = height;
+  if (!next_line(file, &at, line, sizeof line) || !parse_resolution(line, h)) return false;
   h->pixels = at;
   return true;
 }

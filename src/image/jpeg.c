@@ -50,7 +50,7 @@ static void on_progress(j_common_ptr info) {
   if (info->is_decompressor && ((j_decompress_ptr)info)->input_scan_number > MAX_SCANS) {
     info->err->msg_code = JERR_BAD_PROGRESSION;
     Jpeg *j = (Jpeg *)(void *)info->err;
-    strcpy(j->message, "too many scans");
+    snprintf(j->message, sizeof j->message, "too many scans");
     longjmp(j->jump, 1);
   }
 }

@@ -1,7 +1,6 @@
 /* image/pfm.c: portable float maps ("PF" colour, "Pf" grey; Debevec): 32-bit floats, rows from the bottom; a negative
  * scale says little-endian. The scale's size is not applied, as in the field's renderers. Written little-endian. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "image/codec.h"
@@ -25,24 +24,37 @@ static bool next_word(const vlImageFile *file, size_t *at, char *word, size_t si
 }
 
 static bool parse_size(const char *word, uint32_t *value) {
-  char *end;
-  unsigned long v = strtoul(word, &end, 10);
-  if (*end || word[0] < '0' || word[0] > '9' || v > 0x7fffffffu) return false;
-  *value = (uint32_t)v;
+  *value = 0;
+  for (const char *p = word; *p; p++) {
+    if (*p < '0' || *p > '9' || *value > 200000000u) return false;
+    *value = *value * 10 + (uint32_t)(*p - '0');
+  }
   return true;
 }
 
+/* Of the scale only its sign counts; any number but 0 will do (strtod would ask the locale for its point). */
+static bool parse_scale(const char *word, bool *little_endian) {
+  *little_endian = word[0] == '-';
+  const char *p = word + (word[0] == '-' || word[0] == '+');
+  bool some = false;
+  for (; (*p >= '0' && *p <= '9') || *p == '.'; p++) some |= *p >= '1' && *p <= '9';
+  if (some && (*p == 'e' || *p == 'E')) {
+    p += p[1] == '-' || p[1] == '+' ? 2 : 1;
+    while (*p >= '0' && *p <= '9') p++;
+  }
+  return some && !*p;
+}
+
 vlResult vl_pfm_read(const vlImageFile *file, vlImage **image) {
-  char word[64], *end;
+  char word[64];
+  bool little_endian;
   size_t at = 2;
   uint32_t width, height, channels = file->data[1] == 'F' ? 3 : 1;
   if (!next_word(file, &at, word, sizeof word) || !parse_size(word, &width) ||
       !next_word(file, &at, word, sizeof word) || !parse_size(word, &height) ||
       !next_word(file, &at, word, sizeof word))
     return vl_codec_broken(file, "PFM", "its header is not understood");
-  double scale = strtod(word, &end);
-  if (*end || !(scale < 0.0 || scale > 0.0))
-    return vl_codec_broken(file, "PFM", "its scale is not a number other than 0");
+  if (!parse_scale(word, &little_endian)) return vl_codec_broken(file, "PFM", "its scale is not a number other than 0");
   double need = 4.0 * channels * width * (double)height;
   vlResult result = vl_codec_promise(file, "PFM", width, height, need + (double)at, 1.0);
   if (result == VL_OK) result = vl_codec_create(file, width, height, channels, VL_PIXEL_F32, VL_ENCODING_LINEAR, image);
@@ -51,7 +63,7 @@ vlResult vl_pfm_read(const vlImageFile *file, vlImage **image) {
   for (uint32_t y = 0; y < height; y++) {
     uint32_t *out = vl_image_row(*image, height - 1 - y);
     memcpy(out, file->data + at + row * y, row);
-    if (scale > 0.0)
+    if (!little_endian)
       for (size_t i = 0; i < row / 4; i++) out[i] = __builtin_bswap32(out[i]);
   }
   return VL_OK;

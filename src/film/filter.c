@@ -75,9 +75,10 @@ static double mass_between(Shape s, double a, double b) {
           0.6521451548625461 * (magnitude(s, c - h * 0.3399810435848563) + magnitude(s, c + h * 0.3399810435848563)));
 }
 
-enum { STEPS = 256, LOBES = VL_FILTER_SEGMENTS - 2 };
+enum { STEPS = 256, LOBES = 48 };
 typedef struct Lobe {
   double a, b, sign;
+  bool flat_a, flat_b;   /* f touches zero there, or ends: bins of equal mass would be wide where f is curved */
   double sum[STEPS + 1]; /* mass up to a + (b - a) k / STEPS */
 } Lobe;
 
@@ -143,6 +144,7 @@ static int find_lobes(Shape s, double radius, Lobe *lobes) {
   enum { GRID = 1024 };
   double step = radius / GRID, top = vl_filter_value(s.filter, s.axis, 0.0), sign = 1.0, start = 0.0, last = 0.0;
   int count = 0;
+  bool flat = false;
   if (!(top > 0.0)) return 0;
   for (int k = 1; k <= GRID; k++) {
     double x = step * k, f = vl_filter_value(s.filter, s.axis, x);
@@ -158,11 +160,13 @@ static int find_lobes(Shape s, double radius, Lobe *lobes) {
     if (fabs(f) >= 1e-12 * top) last = x;
     if (cut <= start) continue;
     if (count == LOBES - 1) return 0;
-    lobes[count++] = (Lobe){.a = start, .b = cut, .sign = sign};
+    bool change = f * sign < 0.0;
+    lobes[count++] = (Lobe){.a = start, .b = cut, .sign = sign, .flat_a = flat, .flat_b = !change};
     start = cut;
-    if (f * sign < 0.0) sign = -sign;
+    flat = !change;
+    if (change) sign = -sign;
   }
-  lobes[count++] = (Lobe){.a = start, .b = radius, .sign = sign};
+  lobes[count++] = (Lobe){.a = start, .b = radius, .sign = sign, .flat_a = flat, .flat_b = true};
   return count;
 }
 
@@ -185,7 +189,7 @@ static void add_segment(Shape s, vlFilterAxis *axis, const Lobe *lobe, double m0
 }
 
 static bool compile_axis(const vlPixelFilter *filter, int which, vlFilterAxis *axis) {
-  enum { BINS = 512, TAIL_BINS = 64, LEAST_BINS = 64 };
+  enum { BINS = 512, TAIL_BINS = 32, LEAST_BINS = 64 };
   double radius = which ? filter->radius_y : filter->radius_x;
   memset(axis, 0, sizeof *axis);
   axis->radius = (float)radius;
@@ -212,13 +216,12 @@ static bool compile_axis(const vlPixelFilter *filter, int which, vlFilterAxis *a
       before += mass;
       continue;
     }
-    if (i == count - 1) {
-      double cut1 = mass * (1.0 - 0x1p-6), cut2 = mass * (1.0 - 0x1p-12);
-      add_segment(s, axis, &lobes[i], 0.0, cut1, before, total, bins, weight);
-      add_segment(s, axis, &lobes[i], cut1, cut2, before, total, TAIL_BINS, weight);
-      add_segment(s, axis, &lobes[i], cut2, mass, before, total, TAIL_BINS, weight);
-    } else {
-      add_segment(s, axis, &lobes[i], 0.0, mass, before, total, bins, weight);
+    double cuts[6] = {0.0, mass * 0x1p-12, mass * 0x1p-6, mass * (1.0 - 0x1p-6), mass * (1.0 - 0x1p-12), mass};
+    for (int k = 0; k < 5; k++) {
+      bool body = k == 2;
+      if (!body && !(k < 2 ? lobes[i].flat_a : lobes[i].flat_b)) continue;
+      double m0 = body && !lobes[i].flat_a ? 0.0 : cuts[k], m1 = body && !lobes[i].flat_b ? mass : cuts[k + 1];
+      add_segment(s, axis, &lobes[i], m0, m1, before, total, body ? bins : TAIL_BINS, weight);
     }
     before += mass;
   }

@@ -1,13 +1,13 @@
 /* film/filter.h: a pixel filter compiled for sampling. Filters are products f(x) f(y) and even; half an axis is
- * described by the inverse of the cumulated |f|. It is cut in segments: the lobes (f's sign is constant in each), the
- * outermost one with two extra cuts near its end, where f is flat and small. A segment is cut in bins of equal mass;
- * within a bin the density goes linearly from f at one edge to f at the other. */
+ * described by the inverse of the cumulated |f|. It is cut in segments: the lobes (f's sign is constant in each), with
+ * extra cuts near the ends where f touches zero without crossing it. A segment is cut in bins of equal mass; within a
+ * bin the density goes linearly from f at one edge to f at the other. */
 #ifndef FILM_FILTER_H
 #define FILM_FILTER_H
 
 #include "film/film.h"
 
-enum { VL_FILTER_SEGMENTS = 48, VL_FILTER_EDGES = 4096, VL_FILTER_RADIUS_MAX = 32 };
+enum { VL_FILTER_SEGMENTS = 240, VL_FILTER_EDGES = 12288, VL_FILTER_RADIUS_MAX = 32 };
 
 typedef struct vlFilterAxis {
   float radius;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 bool vl_array_grow(vlContext *context, void **items, size_t *capacity, size_t count, size_t size, size_t more) {
+  if (more == 0) return true;
   if (more <= *capacity - count) {
     memset((char *)*items + count * size, 0, more * size);
     return true;

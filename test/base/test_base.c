@@ -88,6 +88,7 @@ static void arrays_grow_and_survive_refusal(void **state) {
   failAllocator allocator = {0};
   vlContext *context = make_context(&allocator);
   VL_ARRAY(int) numbers = {0};
+  assert_true(VL_RESERVE(context, &numbers, 0)); /* nothing of nothing */
   for (int i = 0; i < 1000; i++) {
     int *slot = VL_PUSH(context, &numbers);
     assert_non_null(slot);

@@ -33,13 +33,13 @@ extern "C" {
 /* What a fallible call returns. The numbers are stable. */
 typedef enum vlResult {
   VL_OK = 0,
-  VL_ERROR_ARGUMENT = 1,  /* the caller broke the contract: null, def without cookie, value out of range */
-  VL_ERROR_MEMORY = 2,    /* the allocator said no; the object is as before the call */
-  VL_ERROR_SCENE = 3,     /* a file or scene is wrong: the error names the place */
-  VL_ERROR_MISSING = 4,   /* a file that the scene names does not exist */
-  VL_ERROR_IO = 5,        /* reading or writing failed: no such folder, disk full, permission */
+  VL_ERROR_ARGUMENT = 1,    /* the caller broke the contract: null, def without cookie, value out of range */
+  VL_ERROR_MEMORY = 2,      /* the allocator said no; the object is as before the call */
+  VL_ERROR_SCENE = 3,       /* a file or scene is wrong: the error names the place */
+  VL_ERROR_MISSING = 4,     /* a file that the scene names does not exist */
+  VL_ERROR_IO = 5,          /* reading or writing failed: no such folder, disk full, permission */
   VL_ERROR_UNSUPPORTED = 6, /* understood as valid, not implemented */
-  VL_CANCELLED = 7        /* the caller's callback asked to stop; what was rendered is kept */
+  VL_CANCELLED = 7          /* the caller's callback asked to stop; what was rendered is kept */
 } vlResult;
 
 VL_API const char *vl_result_name(vlResult result);

@@ -19,11 +19,11 @@ typedef struct vlImage vlImage;
 typedef struct vlImageDef {
   uint32_t cookie;
   uint32_t width, height;
-  uint32_t channels;          /* 1 to 1024 */
-  const char *const *names;   /* channels strings, OpenEXR's names ("R", "Z", "N.X"); null: Y | Y A | R G B | R G B A */
+  uint32_t channels;        /* 1 to 1024 */
+  const char *const *names; /* channels strings, OpenEXR's names ("R", "Z", "N.X"); null: Y | Y A | R G B | R G B A */
   vlPixelType type;
   vlEncoding encoding;
-  float gamma;                /* used by VL_ENCODING_GAMMA */
+  float gamma; /* used by VL_ENCODING_GAMMA */
 } vlImageDef;
 
 VL_API vlImageDef vl_default_image_def(uint32_t width, uint32_t height, uint32_t channels);
@@ -48,8 +48,17 @@ VL_API float vl_image_get(const vlImage *image, uint32_t x, uint32_t y, uint32_t
 /* Attributes travel to and from EXR headers (other formats drop them). A name set twice keeps the last value.
  * Numbers: count 1 (float/int), 2 (v2), 3 (v3), 4 (box), 8 (chromaticities), 9 (m33), 16 (m44, OpenEXR's order). */
 typedef enum vlAttributeType {
-  VL_ATTRIBUTE_FLOAT, VL_ATTRIBUTE_INT, VL_ATTRIBUTE_STRING, VL_ATTRIBUTE_V2F, VL_ATTRIBUTE_V3F, VL_ATTRIBUTE_M33F,
-  VL_ATTRIBUTE_M44F, VL_ATTRIBUTE_BOX2I, VL_ATTRIBUTE_CHROMATICITIES, VL_ATTRIBUTE_DOUBLE, VL_ATTRIBUTE_M44D
+  VL_ATTRIBUTE_FLOAT,
+  VL_ATTRIBUTE_INT,
+  VL_ATTRIBUTE_STRING,
+  VL_ATTRIBUTE_V2F,
+  VL_ATTRIBUTE_V3F,
+  VL_ATTRIBUTE_M33F,
+  VL_ATTRIBUTE_M44F,
+  VL_ATTRIBUTE_BOX2I,
+  VL_ATTRIBUTE_CHROMATICITIES,
+  VL_ATTRIBUTE_DOUBLE,
+  VL_ATTRIBUTE_M44D
 } vlAttributeType;
 typedef struct vlAttribute {
   const char *name;
@@ -70,31 +79,32 @@ VL_API vlResult vl_image_read(vlContext *context, const char *path, vlImage **im
 
 typedef struct vlWriteDef {
   uint32_t cookie;
-  bool half;          /* EXR: 16-bit floats for colour channels (ids and depths stay 32-bit); default false */
-  int compression;    /* EXR: 0 none, 1 ZIP (default); PNG: always deflate */
-  int quality;        /* JPEG 1..100, default 95 */
+  bool half;       /* EXR: 16-bit floats for colour channels (ids and depths stay 32-bit); default false */
+  int compression; /* EXR: 0 none, 1 ZIP (default); PNG: always deflate */
+  int quality;     /* JPEG 1..100, default 95 */
 } vlWriteDef;
 VL_API vlWriteDef vl_default_write_def(void);
-/* The suffix chooses the format: .exr .png .jpg .jpeg .hdr .pfm .tga. Written to a temporary file beside the target, synced,
- * renamed: the target is whole or as before. 8-bit formats take VL_PIXEL_U8 pictures as they are and encode float ones
- * with sRGB's curve (clamped). write may be null. */
+/* The suffix chooses the format: .exr .png .jpg .jpeg .hdr .pfm .tga. Written to a temporary file beside the target,
+ * synced, renamed: the target is whole or as before. 8-bit formats take VL_PIXEL_U8 pictures as they are and encode
+ * float ones with sRGB's curve (clamped). write may be null. */
 VL_API vlResult vl_image_write(const vlImage *image, const char *path, const vlWriteDef *write, vlError *error);
 
 /* How a linear picture becomes display values. */
 typedef enum vlView { VL_VIEW_STANDARD, VL_VIEW_KHRONOS_NEUTRAL, VL_VIEW_AGX, VL_VIEW_RAW } vlView;
 /* New 8-bit sRGB picture (R G B, or Y) from linear Rec.709 channels R, G, B (or Y): times 2^exposure, through the view.
  * Values that are not finite become 0 and are counted in *not_finite (may be null). */
-VL_API vlResult vl_image_view(const vlImage *image, vlView view, float exposure, uint64_t *not_finite, vlImage **result);
+VL_API vlResult vl_image_view(const vlImage *image, vlView view, float exposure, uint64_t *not_finite,
+                              vlImage **result);
 
 /* Statistics of b against the reference a, on R, G, B (or Y); sizes must agree. */
 typedef struct vlImageDiff {
-  double mse, rel_mse;      /* rel: mean of (b-a)^2 / (a^2 + 0.01) */
-  double psnr;              /* dB, peak 1, of the linear values */
-  double flip;              /* mean FLIP (Andersson et al. 2020), both pictures through sRGB, 67 pixels per degree */
-  double mean_ratio;        /* mean luminance b / mean luminance a */
+  double mse, rel_mse; /* rel: mean of (b-a)^2 / (a^2 + 0.01) */
+  double psnr;         /* dB, peak 1, of the linear values */
+  double flip;         /* mean FLIP (Andersson et al. 2020), both pictures through sRGB, 67 pixels per degree */
+  double mean_ratio;   /* mean luminance b / mean luminance a */
   double max_abs;
-  uint64_t differing;       /* pixels with any different value */
-  uint64_t not_finite;      /* pixels of either picture with a value that is not finite; left out above */
+  uint64_t differing;  /* pixels with any different value */
+  uint64_t not_finite; /* pixels of either picture with a value that is not finite; left out above */
 } vlImageDiff;
 /* heat may be null; else a new 8-bit picture: FLIP in false colour. */
 VL_API vlResult vl_image_compare(const vlImage *a, const vlImage *b, vlImageDiff *diff, vlImage **heat, vlError *error);

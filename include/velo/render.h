@@ -17,7 +17,7 @@ extern "C" {
 typedef struct vlWorld vlWorld;
 typedef struct vlBuildDef {
   uint32_t cookie;
-  vlColorMode color;             /* spectral (default) or RGB; fixed at build */
+  vlColorMode color; /* spectral (default) or RGB; fixed at build */
   vlLightSampler light_sampler;
   bool permissive;
 } vlBuildDef;
@@ -41,7 +41,7 @@ typedef struct vlFilmDef {
   uint32_t width, height; /* the whole picture */
   uint32_t crop[4];       /* x0, y0, x1, y1, exclusive; the pixels that are rendered */
   vlPixelFilter filter;
-  vlColorSpace space;     /* of the developed picture */
+  vlColorSpace space; /* of the developed picture */
 } vlFilmDef;
 VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);
 VL_API vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film);
@@ -61,10 +61,10 @@ VL_API vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlI
 /* Called after each pass, on the thread that called vl_render; the film may be read in it. */
 typedef struct vlProgress {
   uint32_t spp_done, spp_total;
-  double elapsed, remaining;  /* seconds; remaining is an estimate */
-  double fraction;            /* of the work, 0 to 1; also between passes */
+  double elapsed, remaining; /* seconds; remaining is an estimate */
+  double fraction;           /* of the work, 0 to 1; also between passes */
   uint64_t paths, rays;
-  bool pass_done;             /* false: just a sign of life from inside a pass; the film must not be read */
+  bool pass_done; /* false: just a sign of life from inside a pass; the film must not be read */
 } vlProgress;
 /* Return false to stop: after a pass at once; inside a pass the pass is given up and its samples are not counted. */
 typedef bool vlProgressFn(void *user, const vlProgress *progress);
@@ -73,12 +73,12 @@ typedef struct vlRenderDef {
   uint32_t cookie;
   vlTracer tracer;
   vlSamplerKind sampler;
-  uint32_t spp;               /* samples each pixel shall have in the end */
+  uint32_t spp; /* samples each pixel shall have in the end */
   uint32_t seed;
-  uint32_t max_depth;         /* bounces */
+  uint32_t max_depth; /* bounces */
   float ao_distance;
   bool ao_cosine;
-  double time_limit;          /* seconds, 0: none; ends after the pass in which it passes */
+  double time_limit; /* seconds, 0: none; ends after the pass in which it passes */
   vlProgressFn *progress;
   void *progress_user;
 } vlRenderDef;
@@ -87,9 +87,9 @@ VL_API vlRenderDef vl_default_render_def(void);
 typedef struct vlRenderStats {
   uint32_t spp;
   uint64_t paths, camera_rays, bounce_rays, shadow_rays;
-  uint64_t not_finite;        /* samples dropped since not finite or negative: counted, never hidden */
+  uint64_t not_finite; /* samples dropped since not finite or negative: counted, never hidden */
   double seconds;
-  uint32_t worst_x, worst_y;  /* a pixel where the first such sample was found */
+  uint32_t worst_x, worst_y; /* a pixel where the first such sample was found */
 } vlRenderStats;
 /* Adds samples until each pixel has def->spp. The same bits for any number of threads, crop and split of the passes.
  * VL_CANCELLED when the callback stopped it: the film holds whole passes. stats may be null. */

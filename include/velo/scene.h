@@ -15,15 +15,30 @@ extern "C" {
 typedef struct vlScene vlScene;
 
 /* Typed ids; index 0 is "none", the first object has index 1. */
-typedef struct vlTextureId { uint32_t index; } vlTextureId;
-typedef struct vlMaterialId { uint32_t index; } vlMaterialId;
-typedef struct vlEmissionId { uint32_t index; } vlEmissionId;
-typedef struct vlLightId { uint32_t index; } vlLightId;
-typedef struct vlShapeId { uint32_t index; } vlShapeId;
-typedef struct vlGroupId { uint32_t index; } vlGroupId; /* 0: the world itself */
+typedef struct vlTextureId {
+  uint32_t index;
+} vlTextureId;
+typedef struct vlMaterialId {
+  uint32_t index;
+} vlMaterialId;
+typedef struct vlEmissionId {
+  uint32_t index;
+} vlEmissionId;
+typedef struct vlLightId {
+  uint32_t index;
+} vlLightId;
+typedef struct vlShapeId {
+  uint32_t index;
+} vlShapeId;
+typedef struct vlGroupId {
+  uint32_t index;
+} vlGroupId; /* 0: the world itself */
 
 /* Where in a file something was said; for errors found later. file may be null. Copied. */
-typedef struct vlSource { const char *file; uint32_t line, column; } vlSource;
+typedef struct vlSource {
+  const char *file;
+  uint32_t line, column;
+} vlSource;
 
 typedef enum vlColorSpace { VL_SPACE_SRGB, VL_SPACE_DCI_P3, VL_SPACE_REC2020, VL_SPACE_ACES2065_1 } vlColorSpace;
 
@@ -54,41 +69,63 @@ VL_API vlSpectrum vl_spectrum_named(const char *name);
 VL_API const char *vl_spectrum_name(uint32_t index);
 
 /* A parameter that may be textured: the texture where its index is not 0, else the value. */
-typedef struct vlFloatInput { vlTextureId texture; float value; } vlFloatInput;
-typedef struct vlSpectrumInput { vlTextureId texture; vlSpectrum value; } vlSpectrumInput;
+typedef struct vlFloatInput {
+  vlTextureId texture;
+  float value;
+} vlFloatInput;
+typedef struct vlSpectrumInput {
+  vlTextureId texture;
+  vlSpectrum value;
+} vlSpectrumInput;
 VL_API vlFloatInput vl_float_input(float value);
 VL_API vlSpectrumInput vl_spectrum_input(vlSpectrum value);
 
 /* ---- textures -------------------------------------------------------------------------------------------------- */
 
 typedef enum vlTextureKind {
-  VL_TEXTURE_CONSTANT, VL_TEXTURE_SCALE, VL_TEXTURE_MIX, VL_TEXTURE_CHECKERBOARD, VL_TEXTURE_IMAGE,
-  VL_TEXTURE_DIRECTION_MIX, VL_TEXTURE_BILERP
+  VL_TEXTURE_CONSTANT,
+  VL_TEXTURE_SCALE,
+  VL_TEXTURE_MIX,
+  VL_TEXTURE_CHECKERBOARD,
+  VL_TEXTURE_IMAGE,
+  VL_TEXTURE_DIRECTION_MIX,
+  VL_TEXTURE_BILERP
 } vlTextureKind;
 typedef enum vlWrap { VL_WRAP_REPEAT, VL_WRAP_BLACK, VL_WRAP_CLAMP, VL_WRAP_OCTAHEDRAL } vlWrap;
-typedef enum vlTextureFilter { VL_FILTER_POINT, VL_FILTER_BILINEAR, VL_FILTER_TRILINEAR, VL_FILTER_EWA } vlTextureFilter;
-typedef enum vlMapping { VL_MAPPING_UV, VL_MAPPING_SPHERICAL, VL_MAPPING_CYLINDRICAL, VL_MAPPING_PLANAR, VL_MAPPING_3D } vlMapping;
+typedef enum vlTextureFilter {
+  VL_FILTER_POINT,
+  VL_FILTER_BILINEAR,
+  VL_FILTER_TRILINEAR,
+  VL_FILTER_EWA
+} vlTextureFilter;
+typedef enum vlMapping {
+  VL_MAPPING_UV,
+  VL_MAPPING_SPHERICAL,
+  VL_MAPPING_CYLINDRICAL,
+  VL_MAPPING_PLANAR,
+  VL_MAPPING_3D
+} vlMapping;
 
 typedef struct vlTextureDef {
   uint32_t cookie;
-  const char *name;      /* may be null */
+  const char *name; /* may be null */
   vlSource source;
   vlTextureKind kind;
-  bool spectrum;         /* a colour texture; else a float texture. Inputs below: the matching half is read */
-  vlFloatInput float_a, float_b, float_c, float_d;         /* constant value; scale: tex = a; mix: a, b; checkerboard: a, b */
+  bool spectrum; /* a colour texture; else a float texture. Inputs below: the matching half is read */
+  vlFloatInput float_a, float_b, float_c, float_d; /* constant value; scale: tex = a; mix: a, b; checkerboard: a, b */
   vlSpectrumInput spectrum_a, spectrum_b, spectrum_c, spectrum_d;
-  vlFloatInput amount;   /* scale's scale, mix's amount */
-  float direction[3];    /* direction mix */
-  uint32_t dimension;    /* checkerboard: 2 or 3 */
+  vlFloatInput amount; /* scale's scale, mix's amount */
+  float direction[3];  /* direction mix */
+  uint32_t dimension;  /* checkerboard: 2 or 3 */
   /* image */
-  const char *path;      /* read when the world is built (once per path); or */
-  const vlImage *image;  /* given directly, copied */
+  const char *path;     /* read when the world is built (once per path); or */
+  const vlImage *image; /* given directly, copied */
   vlWrap wrap;
   vlTextureFilter filter;
-  bool encoding_given;   /* else the file's own (8-bit: sRGB) */
+  bool encoding_given; /* else the file's own (8-bit: sRGB) */
   vlEncoding encoding;
   float gamma;
-  float scale;           /* factor on image values */
+  float scale; /* factor on image values */
   bool invert;
   vlColorSpace space;
   /* mapping: (s, t) = (su u + du, sv v + dv); others map through texture_from_world */
@@ -103,8 +140,13 @@ VL_API vlTextureId vl_scene_add_texture(vlScene *scene, const vlTextureDef *def)
 /* ---- materials ------------------------------------------------------------------------------------------------- */
 
 typedef enum vlMaterialKind {
-  VL_MATERIAL_DIFFUSE, VL_MATERIAL_COATED_DIFFUSE, VL_MATERIAL_CONDUCTOR, VL_MATERIAL_DIELECTRIC,
-  VL_MATERIAL_THIN_DIELECTRIC, VL_MATERIAL_MIX, VL_MATERIAL_INTERFACE
+  VL_MATERIAL_DIFFUSE,
+  VL_MATERIAL_COATED_DIFFUSE,
+  VL_MATERIAL_CONDUCTOR,
+  VL_MATERIAL_DIELECTRIC,
+  VL_MATERIAL_THIN_DIELECTRIC,
+  VL_MATERIAL_MIX,
+  VL_MATERIAL_INTERFACE
 } vlMaterialKind;
 
 /* One flat struct; the defaults of vl_default_material_def(kind) are pbrt-v4's. */
@@ -113,18 +155,18 @@ typedef struct vlMaterialDef {
   const char *name;
   vlSource source;
   vlMaterialKind kind;
-  vlSpectrumInput reflectance;        /* diffuse, coated diffuse; conductor when use_reflectance */
+  vlSpectrumInput reflectance; /* diffuse, coated diffuse; conductor when use_reflectance */
   bool use_reflectance;
   vlFloatInput u_roughness, v_roughness;
-  bool remap_roughness;               /* alpha = sqrt(roughness), pbrt book 9.6 */
-  vlSpectrumInput eta, k;             /* conductor: both; dielectrics and coat: eta (no texture) */
-  vlFloatInput thickness, g;          /* coat */
-  vlSpectrumInput albedo;             /* coat's medium */
-  uint32_t max_depth, samples;        /* coat's walk */
-  vlFloatInput amount;                /* mix: share of the second */
+  bool remap_roughness;        /* alpha = sqrt(roughness), pbrt book 9.6 */
+  vlSpectrumInput eta, k;      /* conductor: both; dielectrics and coat: eta (no texture) */
+  vlFloatInput thickness, g;   /* coat */
+  vlSpectrumInput albedo;      /* coat's medium */
+  uint32_t max_depth, samples; /* coat's walk */
+  vlFloatInput amount;         /* mix: share of the second */
   vlMaterialId materials[2];
-  vlFloatInput displacement;          /* bump map; texture index 0: none */
-  const char *normal_map;             /* path, null: none; linear, tangent space */
+  vlFloatInput displacement; /* bump map; texture index 0: none */
+  const char *normal_map;    /* path, null: none; linear, tangent space */
 } vlMaterialDef;
 VL_API vlMaterialDef vl_default_material_def(vlMaterialKind kind);
 VL_API vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def);
@@ -138,9 +180,9 @@ typedef struct vlEmissionDef {
   vlSource source;
   vlSpectrum radiance;
   float scale;
-  double power;       /* watts (pbrt's "power"); VL_UNSET: from radiance */
+  double power; /* watts (pbrt's "power"); VL_UNSET: from radiance */
   bool two_sided;
-  const char *image;  /* emission picture over uv, null: none */
+  const char *image; /* emission picture over uv, null: none */
 } vlEmissionDef;
 VL_API vlEmissionDef vl_default_emission_def(void);
 VL_API vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def);
@@ -150,16 +192,16 @@ typedef struct vlLightDef {
   uint32_t cookie;
   vlSource source;
   vlLightKind kind;
-  vlSpectrum color;          /* intensity I (point, spot) or radiance L (distant, infinite) */
+  vlSpectrum color; /* intensity I (point, spot) or radiance L (distant, infinite) */
   float scale;
-  double power;              /* point, spot: total watts; VL_UNSET */
-  double illuminance;        /* distant, infinite: lux; VL_UNSET */
+  double power;       /* point, spot: total watts; VL_UNSET */
+  double illuminance; /* distant, infinite: lux; VL_UNSET */
   double world_from_light[16];
-  float from[3], to[3];      /* light space: point's position is from; spot and distant shine from -> to */
+  float from[3], to[3];         /* light space: point's position is from; spot and distant shine from -> to */
   float cone_angle, cone_delta; /* spot, radians */
-  const char *path;          /* infinite: equal-area octahedral picture (pbrt book 3.8.3), square; null: uniform */
-  const vlImage *image;      /* or given directly, copied */
-  bool image_is_radiance;    /* true: colour is ignored, the picture holds RGB radiance */
+  const char *path;             /* infinite: equal-area octahedral picture (pbrt book 3.8.3), square; null: uniform */
+  const vlImage *image;         /* or given directly, copied */
+  bool image_is_radiance;       /* true: colour is ignored, the picture holds RGB radiance */
   vlColorSpace space;
 } vlLightDef;
 VL_API vlLightDef vl_default_light_def(vlLightKind kind);
@@ -168,26 +210,30 @@ VL_API vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def);
 /* ---- shapes ---------------------------------------------------------------------------------------------------- */
 
 typedef enum vlShapeKind {
-  VL_SHAPE_TRIANGLES, VL_SHAPE_BILINEAR, VL_SHAPE_SPHERE, VL_SHAPE_DISK, VL_SHAPE_CYLINDER
+  VL_SHAPE_TRIANGLES,
+  VL_SHAPE_BILINEAR,
+  VL_SHAPE_SPHERE,
+  VL_SHAPE_DISK,
+  VL_SHAPE_CYLINDER
 } vlShapeKind;
 
 typedef struct vlShapeDef {
   uint32_t cookie;
   vlSource source;
   vlShapeKind kind;
-  vlGroupId group;                   /* 0: the world; else part of a group that instances place */
-  double group_from_shape[16];       /* shape space to group (or world) space */
-  bool reverse_orientation;          /* pbrt's: flips the normal; also flipped where the transform mirrors */
-  vlMaterialId material;             /* 0: a default diffuse 0.5 */
-  vlFloatInput alpha;                /* coverage; value 1: opaque */
-  vlEmissionId emission;             /* 0: none */
+  vlGroupId group;             /* 0: the world; else part of a group that instances place */
+  double group_from_shape[16]; /* shape space to group (or world) space */
+  bool reverse_orientation;    /* pbrt's: flips the normal; also flipped where the transform mirrors */
+  vlMaterialId material;       /* 0: a default diffuse 0.5 */
+  vlFloatInput alpha;          /* coverage; value 1: opaque */
+  vlEmissionId emission;       /* 0: none */
   /* triangles: 3 indices a face; bilinear: 4 (pbrt's order p00 p10 p01 p11). Shape space. normals, tangents, uvs may
    * be null. */
   uint32_t vertices, faces;
-  const float *positions;            /* 3 a vertex */
-  const float *normals;              /* 3 a vertex */
-  const float *tangents;             /* 3 a vertex, pbrt's S */
-  const float *uvs;                  /* 2 a vertex */
+  const float *positions; /* 3 a vertex */
+  const float *normals;   /* 3 a vertex */
+  const float *tangents;  /* 3 a vertex, pbrt's S */
+  const float *uvs;       /* 2 a vertex */
   const uint32_t *indices;
   /* sphere, disk, cylinder: pbrt's, z axis, book 6.2-6.4; angles in radians */
   float radius, inner_radius, z_min, z_max, height, phi_max;
@@ -204,12 +250,23 @@ VL_API void vl_scene_add_instance(vlScene *scene, vlGroupId group, const double 
 
 typedef enum vlTracer { VL_TRACER_PATH, VL_TRACER_RAYCAST, VL_TRACER_AMBIENT_OCCLUSION } vlTracer;
 typedef enum vlSamplerKind {
-  VL_SAMPLER_INDEPENDENT, VL_SAMPLER_REGULAR, VL_SAMPLER_STRATIFIED, VL_SAMPLER_NROOKS, VL_SAMPLER_MULTI_JITTERED,
-  VL_SAMPLER_HAMMERSLEY, VL_SAMPLER_HALTON, VL_SAMPLER_SOBOL, VL_SAMPLER_ZSOBOL
+  VL_SAMPLER_INDEPENDENT,
+  VL_SAMPLER_REGULAR,
+  VL_SAMPLER_STRATIFIED,
+  VL_SAMPLER_NROOKS,
+  VL_SAMPLER_MULTI_JITTERED,
+  VL_SAMPLER_HAMMERSLEY,
+  VL_SAMPLER_HALTON,
+  VL_SAMPLER_SOBOL,
+  VL_SAMPLER_ZSOBOL
 } vlSamplerKind;
 typedef enum vlPixelFilterKind {
-  VL_PIXEL_FILTER_BOX, VL_PIXEL_FILTER_TRIANGLE, VL_PIXEL_FILTER_GAUSSIAN, VL_PIXEL_FILTER_MITCHELL,
-  VL_PIXEL_FILTER_LANCZOS, VL_PIXEL_FILTER_BLACKMAN_HARRIS
+  VL_PIXEL_FILTER_BOX,
+  VL_PIXEL_FILTER_TRIANGLE,
+  VL_PIXEL_FILTER_GAUSSIAN,
+  VL_PIXEL_FILTER_MITCHELL,
+  VL_PIXEL_FILTER_LANCZOS,
+  VL_PIXEL_FILTER_BLACKMAN_HARRIS
 } vlPixelFilterKind;
 typedef struct vlPixelFilter {
   vlPixelFilterKind kind;
@@ -224,19 +281,19 @@ typedef enum vlLightSampler { VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER, VL_L
 
 typedef struct vlSceneSettings {
   vlCameraDef camera;
-  vlSource camera_source;      /* where the file says so, for errors of vl_camera_make; file may be null */
+  vlSource camera_source; /* where the file says so, for errors of vl_camera_make; file may be null */
   uint32_t width, height;
-  uint32_t crop[4];            /* x0, y0, x1, y1 in pixels (x1, y1 exclusive) */
-  char output[512];            /* file name the scene asks for; may be empty */
-  float exposure;              /* sensor: imaging ratio, ISO etc. folded; default 1 */
-  vlColorSpace space;          /* of the output picture */
+  uint32_t crop[4];   /* x0, y0, x1, y1 in pixels (x1, y1 exclusive) */
+  char output[512];   /* file name the scene asks for; may be empty */
+  float exposure;     /* sensor: imaging ratio, ISO etc. folded; default 1 */
+  vlColorSpace space; /* of the output picture */
   vlPixelFilter filter;
   vlSamplerKind sampler;
   uint32_t spp;
   uint32_t sampler_seed;
   vlTracer tracer;
-  uint32_t max_depth;          /* bounces; pbrt default 5 */
-  float ao_distance;           /* ambient occlusion: reach in scene units; infinity default */
+  uint32_t max_depth; /* bounces; pbrt default 5 */
+  float ao_distance;  /* ambient occlusion: reach in scene units; infinity default */
   bool ao_cosine;
   vlLightSampler light_sampler;
   vlColorMode color;

@@ -5,7 +5,11 @@
 
 #include "base/context.h"
 
-#define VL_ARRAY(T) struct { T *items; size_t count, capacity; }
+#define VL_ARRAY(T)         \
+  struct {                  \
+    T *items;               \
+    size_t count, capacity; \
+  }
 
 /* Pointer to a new zeroed element at the end, or null when memory is out (the array is as before). */
 #define VL_PUSH(context, array)                                                                                        \

@@ -38,12 +38,13 @@ typedef struct PoolSlot {
   uint32_t worker;
 } PoolSlot;
 
-/* ---- memory: a header of 64 bytes before each block keeps its size, so that the count is exact --------------------- */
+/* ---- memory: a header of 64 bytes before each block keeps its size, so that the count is exact ---------------------
+ */
 
 enum { HEADER = 64 };
 typedef struct BlockHeader {
-  size_t size;   /* of the user part */
-  void *raw;     /* what the allocator returned */
+  size_t size; /* of the user part */
+  void *raw;   /* what the allocator returned */
 } BlockHeader;
 
 static void *default_allocate(void *user, size_t size) {
@@ -66,7 +67,8 @@ static BlockHeader *header_of(void *block) {
 static void count_memory(vlContext *context, size_t add, size_t sub) {
   size_t now = atomic_fetch_add(&context->held, add - sub) + (add - sub);
   size_t peak = atomic_load(&context->peak);
-  while (now > peak && !atomic_compare_exchange_weak(&context->peak, &peak, now)) {}
+  while (now > peak && !atomic_compare_exchange_weak(&context->peak, &peak, now)) {
+  }
 }
 
 /* Every block is 64-byte aligned: one rule, and vector loads are always welcome. */
@@ -125,7 +127,8 @@ size_t vl_context_memory(const vlContext *context, size_t *peak) {
   return atomic_load(&context->held);
 }
 
-/* ---- log ---------------------------------------------------------------------------------------------------------- */
+/* ---- log ----------------------------------------------------------------------------------------------------------
+ */
 
 void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const char *format, ...) {
   if (!context->def.log) return;
@@ -139,7 +142,8 @@ void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const ch
   pthread_mutex_unlock(&context->log_mutex);
 }
 
-/* ---- workers ------------------------------------------------------------------------------------------------------ */
+/* ---- workers ------------------------------------------------------------------------------------------------------
+ */
 
 static void pool_work(Pool *pool, uint32_t worker) {
   for (;;) {
@@ -226,7 +230,8 @@ void vl_parallel_for(vlContext *context, uint32_t count, vlParallelBody *body, v
   pthread_mutex_unlock(&context->run_mutex);
 }
 
-/* ---- life ---------------------------------------------------------------------------------------------------------- */
+/* ---- life ----------------------------------------------------------------------------------------------------------
+ */
 
 vlContextDef vl_default_context_def(void) {
   long cores = sysconf(_SC_NPROCESSORS_ONLN);
@@ -242,7 +247,8 @@ vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
   if (!result) return VL_ERROR_ARGUMENT;
   *result = NULL;
   vlContextDef d = def ? *def : vl_default_context_def();
-  if (d.cookie != VL_COOKIE_CONTEXT || !d.allocator.allocate || !d.allocator.release || d.threads == 0 || d.threads > 4096)
+  if (d.cookie != VL_COOKIE_CONTEXT || !d.allocator.allocate || !d.allocator.release || d.threads == 0 ||
+      d.threads > 4096)
     return VL_ERROR_ARGUMENT;
   vlIsa isa = VL_ISA_V2;
   vlResult r = vl_isa_choose(d.isa, &isa);

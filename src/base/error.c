@@ -23,7 +23,8 @@ vlResult vl_fail(vlError *error, vlResult code, const char *format, ...) {
   return code;
 }
 
-vlResult vl_fail_at(vlError *error, vlResult code, const char *file, uint32_t line, uint32_t column, const char *format, ...) {
+vlResult vl_fail_at(vlError *error, vlResult code, const char *file, uint32_t line, uint32_t column, const char *format,
+                    ...) {
   if (error) {
     set_place(error, code, file, line, column);
     va_list args;

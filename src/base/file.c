@@ -26,7 +26,8 @@ static void nearest_file(const char *path, char *result, size_t size) {
   char folder[4096];
   const char *slash = strrchr(path, '/');
   const char *name = slash ? slash + 1 : path;
-  int n = slash ? snprintf(folder, sizeof folder, "%.*s/", (int)(slash - path), path) : snprintf(folder, sizeof folder, ".");
+  int n = slash ? snprintf(folder, sizeof folder, "%.*s/", (int)(slash - path), path)
+                : snprintf(folder, sizeof folder, ".");
   if (n < 0 || (size_t)n >= sizeof folder) return;
   DIR *directory = opendir(folder);
   if (!directory) return;
@@ -109,7 +110,8 @@ vlResult vl_file_read(vlContext *context, const char *path, bool gunzip, char **
   struct stat info;
   if (fstat(fd, &info) != 0 || S_ISDIR(info.st_mode)) {
     close(fd);
-    return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, S_ISDIR(info.st_mode) ? "is a folder" : strerror(errno));
+    return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path,
+                   S_ISDIR(info.st_mode) ? "is a folder" : strerror(errno));
   }
   size_t capacity = info.st_size > 0 ? (size_t)info.st_size : 65536, used = 0;
   char *block = vl_alloc(context, capacity + 1);
@@ -203,7 +205,8 @@ vlResult vl_file_commit(vlFileWriter *writer, vlError *error) {
     writer->failed_errno = errno;
   if (close(writer->descriptor) != 0 && !writer->failed_errno) writer->failed_errno = errno;
   writer->descriptor = -1;
-  if (!writer->failed_errno && writer->temporary[0] && rename(writer->temporary, writer->path) != 0) writer->failed_errno = errno;
+  if (!writer->failed_errno && writer->temporary[0] && rename(writer->temporary, writer->path) != 0)
+    writer->failed_errno = errno;
   if (!writer->failed_errno) return VL_OK;
   if (writer->temporary[0]) unlink(writer->temporary);
   return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", writer->path, strerror(writer->failed_errno));

@@ -5,7 +5,8 @@
 #include "base/context.h"
 
 /* The whole file in one block with a zero byte after it (not counted in size). A gzip file (by its first bytes) is
- * unpacked when gunzip is set. Errors: MISSING (with the nearest name in that folder, where one is near), IO, MEMORY. */
+ * unpacked when gunzip is set. Errors: MISSING (with the nearest name in that folder, where one is near), IO, MEMORY.
+ */
 vlResult vl_file_read(vlContext *context, const char *path, bool gunzip, char **data, size_t *size, vlError *error);
 
 /* Writing that is whole or not at all: bytes go to a temporary file beside the target; commit syncs and renames it;

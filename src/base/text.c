@@ -23,7 +23,8 @@ uint32_t vl_edit_distance(const char *a, const char *b) {
     for (size_t j = 1; j <= m; j++) {
       int ca = tolower((unsigned char)a[i - 1]), cb = tolower((unsigned char)b[j - 1]);
       row[j] = min3(last[j] + 1, row[j - 1] + 1, last[j - 1] + (ca != cb));
-      if (i > 1 && j > 1 && ca == tolower((unsigned char)b[j - 2]) && cb == tolower((unsigned char)a[i - 2]) && before[j - 2] + 1 < row[j])
+      if (i > 1 && j > 1 && ca == tolower((unsigned char)b[j - 2]) && cb == tolower((unsigned char)a[i - 2]) &&
+          before[j - 2] + 1 < row[j])
         row[j] = before[j - 2] + 1;
     }
     memcpy(before, last, sizeof last);

@@ -248,8 +248,8 @@ static vlResult add_emission(vlWorld *world, const vlEmissionDef *def, vlEmitted
   return e->image < 0 ? (error && error->code ? error->code : VL_ERROR_SCENE) : VL_OK;
 }
 
-/* Corners and lit side. The renderer turns the geometric normal to the side of the interpolated shading normal: where the
- * three vertex normals agree on the side, so does every point between. */
+/* Corners and lit side. The renderer turns the geometric normal to the side of the interpolated shading normal: where
+ * the three vertex normals agree on the side, so does every point between. */
 static void triangle_light(const vlWorldShape *s, uint32_t prim, vlWorldLight *light) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
   vlVec3 p[3];

@@ -85,8 +85,8 @@ typedef struct vlWorldLight {
   float cos_start, cos_end; /* spot: full inside start, nothing outside end */
   uint32_t environment;     /* infinite with a picture: index; VL_NONE: uniform */
   float power;              /* for choosing: watts-like, luminance */
-  float corners[9];        /* area, triangle: its corners, and */
-  bool one_sided_normals;  /* direction is the normal to the lit side all over it */
+  float corners[9];         /* area, triangle: its corners, and */
+  bool one_sided_normals;   /* direction is the normal to the lit side all over it */
 } vlWorldLight;
 
 /* A picture of the sky in pbrt's equal-area octahedral square, with a distribution over its texels. */

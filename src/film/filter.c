@@ -8,18 +8,24 @@
 /* ---- elementary functions by their series: + - * / only
  * -------------------------------------------------------------- */
 
+/* 1/k: a division in each term would take most of the time */
+static const double INVERSE[26] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,
+                                   1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13,
+                                   1.0 / 14, 1.0 / 15, 1.0 / 16, 1.0 / 17, 1.0 / 18, 1.0 / 19, 1.0 / 20,
+                                   1.0 / 21, 1.0 / 22, 1.0 / 23, 1.0 / 24, 1.0 / 25};
+
 static double series_exp(double x) { /* x <= 0 */
   if (x < -700.0) return 0.0;
   int n = (int)(x * 1.4426950408889634 - 0.5);
   double r = (x - n * 0.693147180369123816490) - n * 1.90821492927058770002e-10, sum = 1.0;
-  for (int k = 15; k > 0; k--) sum = 1.0 + sum * r / k;
+  for (int k = 15; k > 0; k--) sum = 1.0 + sum * (r * INVERSE[k]);
   for (; n < 0; n++) sum *= 0.5;
   return sum;
 }
 /* sin(pi x); exactly 0 at whole numbers. */
 static double series_sin_pi(double x) {
   double n = floor(x + 0.5), r = (x - n) * 3.14159265358979323846, r2 = r * r, sum = 1.0;
-  for (int k = 24; k > 0; k -= 2) sum = 1.0 - sum * r2 / (k * (k + 1));
+  for (int k = 22; k > 0; k -= 2) sum = 1.0 - sum * (r2 * INVERSE[k] * INVERSE[k + 1]);
   sum *= r;
   return n * 0.5 == floor(n * 0.5) ? sum : -sum;
 }

@@ -69,6 +69,11 @@ typedef struct Triangle {
   float s, t, dist, offset, uv_scale;
 } Triangle;
 
+/* By component: a choice between structs would be a jump. */
+static inline vlVec3 select3(bool which, vlVec3 a, vlVec3 b) {
+  return vl_vec3(which ? a.x : b.x, which ? a.y : b.y, which ? a.z : b.z);
+}
+
 /* The point of a triangle that a ray meets. Barycentric coordinates are ratios of volumes spanned with the ray
  * (signs as in Woop et al. 2013); what falls outside by rounding is put on the edge. */
 static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, vlVec3 d, vlVec3 p0, vlVec3 p1,
@@ -102,9 +107,10 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   float has_n = vl_length2(ns) > 0.0f ? 1.0f : 0.0f;
   ns = vl_normalize(ns);
   /* With vertex normals the geometric one goes to their side; without, the face order and flip decide. */
-  float side = has_n > 0.0f ? (vl_dot(g, ns) < 0.0f ? -1.0f : 1.0f) : flip;
+  float towards = vl_dot(g, ns) < 0.0f ? -1.0f : 1.0f;
+  float side = has_n > 0.0f ? towards : flip;
   r.g = vl_mul(g, side);
-  r.n = has_n > 0.0f ? ns : r.g;
+  r.n = select3(has_n > 0.0f, ns, r.g);
   r.s = b0 * uv.u0 + b1 * uv.u1 + b2 * uv.u2;
   r.t = b0 * uv.v0 + b1 * uv.v1 + b2 * uv.v2;
   float u02 = uv.u0 - uv.u2, v02 = uv.v0 - uv.v2, u12 = uv.u1 - uv.u2, v12 = uv.v1 - uv.v2;
@@ -115,8 +121,8 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   vlVec3 dv = vl_mul(vl_sub(vl_mul(e12, u02), vl_mul(e02, u12)), inv_det);
   vlFrame frame = vl_frame_from_z(r.n);
   float ok = vl_length2(du) > 0.0f ? 1.0f : 0.0f;
-  r.u = ok > 0.0f ? du : frame.x;
-  r.v = ok > 0.0f ? dv : frame.y;
+  r.u = select3(ok > 0.0f, du, frame.x);
+  r.v = select3(ok > 0.0f, dv, frame.y);
   r.uv_scale = area2 > 0.0f ? __builtin_sqrtf(vl_abs(det) / area2) : 0.0f;
   return r;
 }

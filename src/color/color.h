@@ -21,7 +21,8 @@ static inline float vl_sigmoid(vlSigmoid s, float lambda) {
   float x = (s.c0 * t + s.c1) * t + s.c2;
   return 0.5f + 0.5f * (x / __builtin_sqrtf(1.0f + x * x)); /* never outside [0,1]: the root is never below |x| */
 }
-/* rgb in [0,1] of the space, clamped. Exact black and white and greys are constant spectra. */
+/* rgb in [0,1] of the space, clamped. Black, white and greys are constant spectra. Some microseconds: exact to 1e-6
+ * where a reflectance can be of that colour at all; for texels there is vl_rgb_table_lookup (color/rgb_table.h). */
 vlSigmoid vl_sigmoid_from_rgb(vlColorSpace space, float r, float g, float b);
 
 /* Dense tables, VL_LAMBDA_COUNT floats each: CIE 1931 2-degree observer, standard illuminant of a colour space. */

@@ -10,10 +10,6 @@ const vlRgbTable *vl_rgb_table(vlColorSpace space) {
   return &tables[(unsigned)space < 4 ? space : VL_SPACE_SRGB];
 }
 
-vlSigmoid vl_sigmoid_from_rgb(vlColorSpace space, float r, float g, float b) {
-  return vl_rgb_table_lookup(vl_rgb_table(space), r, g, b);
-}
-
 const float *vl_cie_x(void) {
   return vl_table_cie[0];
 }

@@ -259,7 +259,7 @@ static void test_lights(void **state) {
     for (int i = 0; i < 3; i++) {
       double v = 0;
       for (int k = 0; k < 3; k++) v += (double)m[3 * i + k] * xyz[k] / photometric;
-      assert_float_equal(v, s.rgb[i], 34e-3); /* 1e-3 of the scale */
+      assert_float_equal(v, s.rgb[i], 1e-4);
       assert_true(rgb[i] == s.rgb[i]);
     }
   }

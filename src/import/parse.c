@@ -215,6 +215,32 @@ static bool add_value(File *file, const vlToken *token, vlParam *param) {
   return add_number(file, token, param);
 }
 
+/* Numbers one after the other as far as they go, without a token for each; what is not a number, or not fitting, is
+ * left to the careful way. */
+static bool read_run(File *file, vlParam *param) {
+  vlContext *context = file->parser->context;
+  bool integers = param->type == VL_PARAM_INTEGER;
+  for (size_t chunk = 4;; chunk = 1024) { /* most lists are short, and there may be many */
+    if (integers ? !VL_RESERVE(context, &param->integers, chunk) : !VL_RESERVE(context, &param->floats, chunk))
+      return fail_memory(file);
+    for (size_t i = 0; i < chunk; i++) {
+      vlTokenizer before = file->tokens;
+      double value;
+      if (!vl_token_number(&file->tokens, &value)) return true;
+      if (!integers) {
+        size_t n = param->floats.count++;
+        param->floats.items[n] = (float)value;
+        if (n < 16) param->exact[n] = value;
+      } else if (value >= -2147483648.0 && value <= 2147483647.0 && value == (double)(int32_t)value) {
+        param->integers.items[param->integers.count++] = (int32_t)value;
+      } else {
+        file->tokens = before;
+        return true;
+      }
+    }
+  }
+}
+
 static bool read_values(File *file, vlParam *param) {
   vlToken token = take(file);
   if (token.kind == VL_TOKEN_BAD) return fail(file, place_of(file, &token), "%s", token.message);
@@ -225,7 +251,9 @@ static bool read_values(File *file, vlParam *param) {
     return add_value(file, &token, param);
   }
   vlToken open = token;
+  bool numbers = takes_numbers(param->type);
   for (;;) {
+    if (numbers && param->strings.count == 0 && !read_run(file, param)) return false;
     token = take(file);
     if (token.kind == VL_TOKEN_CLOSE) return true;
     if (token.kind == VL_TOKEN_BAD) return fail(file, place_of(file, &token), "%s", token.message);

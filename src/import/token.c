@@ -189,6 +189,14 @@ bool vl_number_scan(const char **text, const char *end, double *value) {
   return isfinite(v);
 }
 
+bool vl_token_number(vlTokenizer *t, double *value) {
+  skip_blank(t);
+  const char *p = t->at;
+  if (p >= t->end || !vl_number_scan(&p, t->end, value) || (p < t->end && !ends_word(*p))) return false;
+  t->at += p - t->at;
+  return true;
+}
+
 bool vl_number_parse(const char *text, size_t length, double *value) {
   const char *p = text;
   return length > 0 && vl_number_scan(&p, text + length, value) && p == text + length;

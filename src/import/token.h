@@ -31,6 +31,8 @@ typedef struct vlTokenizer {
 /* data[size] must be a zero byte. */
 void vl_tokenizer_start(vlTokenizer *tokenizer, char *data, size_t size);
 vlToken vl_token_next(vlTokenizer *tokenizer);
+/* Takes the next token if it is a number; else leaves all as it is. The quick way through long lists. */
+bool vl_token_number(vlTokenizer *tokenizer, double *value);
 
 /* One number that fills [text, text + length): integers, decimals, exponents, hexadecimal. false otherwise, also for
  * infinities and what is too large for a double. */

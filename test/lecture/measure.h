@@ -47,8 +47,12 @@ static inline void ok(vlResult result, const vlError *error) {
     fail_msg("%s: %s:%u:%u: %s", vl_result_name(result), error->file, error->line, error->column, error->message);
 }
 
-/* Renders scenes/lecture/<name>.pbrt with its own camera, tracer and filter in a small picture, RGB, 256 samples. */
-static inline Picture render_scene(const char *name, uint32_t width, uint32_t height) {
+typedef void ChangeCamera(vlCameraDef *def, const void *user);
+
+/* Renders scenes/lecture/<name>.pbrt with its own camera (changed, where change is not null), tracer and filter in a
+ * small picture, RGB, 256 samples. */
+static inline Picture render_changed(const char *name, uint32_t width, uint32_t height, ChangeCamera *change,
+                                     const void *user) {
   Picture p = {.width = width, .height = height};
   vlError error = {0};
   vlScene *scene;
@@ -64,7 +68,9 @@ static inline Picture render_scene(const char *name, uint32_t width, uint32_t he
   build.color = VL_COLOR_RGB;
   ok(vl_world_build(scene, &build, &world, &error), &error);
   vlCamera camera;
-  ok(vl_camera_make(&vl_scene_settings(scene)->camera, &camera, NULL, &error), &error);
+  vlCameraDef camera_def = vl_scene_settings(scene)->camera;
+  if (change) change(&camera_def, user);
+  ok(vl_camera_make(&camera_def, &camera, NULL, &error), &error);
   ok(vl_camera_resize(&camera, width, height, &p.camera), &error);
   vlFilmDef film_def = vl_default_film_def(width, height);
   film_def.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
@@ -85,6 +91,10 @@ static inline Picture render_scene(const char *name, uint32_t width, uint32_t he
     for (uint32_t y = 0; y < height; y++)
       for (uint32_t x = 0; x < width; x++) p.full[c] = fmaxf(p.full[c], vl_image_get(p.image, x, y, (uint32_t)c));
   return p;
+}
+
+static inline Picture render_scene(const char *name, uint32_t width, uint32_t height) {
+  return render_changed(name, width, height, NULL, NULL);
 }
 
 static inline void free_picture(Picture *p) {

@@ -33,6 +33,16 @@ static double worst_of(const double a[3], const double b[3]) {
   return worst;
 }
 
+/* How far off the spectrum is as floats compute it. */
+static double error_of(const double weight[3][VL_LAMBDA_COUNT], vlSigmoid s, const double target[3]) {
+  double rgb[3] = {0};
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
+    double v = (double)vl_sigmoid(s, (float)(VL_LAMBDA_MIN + i));
+    for (int k = 0; k < 3; k++) rgb[k] += weight[k][i] * v;
+  }
+  return worst_of(rgb, target);
+}
+
 /* Cramer's rule. */
 static bool solve(const double m[9], const double b[3], double x[3]) {
   double c0 = m[4] * m[8] - m[5] * m[7], c1 = m[5] * m[6] - m[3] * m[8], c2 = m[3] * m[7] - m[4] * m[6];
@@ -83,5 +93,7 @@ vlSigmoid vl_sigmoid_from_rgb(vlColorSpace space, float r, float g, float b) {
     memcpy(value, next_value, sizeof value);
     memcpy(jacobian, next_jacobian, sizeof jacobian);
   }
-  return (vlSigmoid){(float)c[0], (float)c[1], (float)c[2]};
+  /* coefficients that nearly cancel lose by rounding what was won */
+  vlSigmoid refined = {(float)c[0], (float)c[1], (float)c[2]};
+  return error_of(weight, refined, target) < error_of(weight, s, target) ? refined : s;
 }

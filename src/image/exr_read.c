@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "image/exr.h"
+#include "image/exr_dwa.h"
+#include "image/pixel.h"
 
 typedef struct Reader {
   vlExr base;
@@ -20,6 +22,11 @@ typedef struct Reader {
   vlImage *image;
   exr_decode_pipeline_t pipeline;
   bool started;
+  bool dwa; /* unpacked here, not by OpenEXRCore */
+  vlDwaChannel *dwa_channels;
+  uint16_t *dwa_curve;
+  uint8_t *packed, *unpacked;
+  size_t packed_size, unpacked_size;
   /* the grid of chunks: rows of `lines`, or tiles */
   bool tiled;
   int32_t lines, tile_width, tile_height;
@@ -97,6 +104,10 @@ static uint32_t rank(const char *name) {
   return 5;
 }
 
+static double ratio(const Reader *r) {
+  return r->dwa ? 16384.0 : 1032.0;
+}
+
 static vlResult layout(Reader *r) {
   const vlImageFile *file = r->base.file;
   exr_storage_t storage;
@@ -110,8 +121,7 @@ static vlResult layout(Reader *r) {
   r->tiled = storage == EXR_STORAGE_TILED;
   if ((unsigned)r->compression >= EXR_COMPRESSION_LAST_TYPE)
     return vl_codec_broken(file, "OpenEXR", "unknown compression");
-  if (r->compression == EXR_COMPRESSION_DWAA || r->compression == EXR_COMPRESSION_DWAB)
-    return vl_codec_unsupported(file, "OpenEXR", "DWA compression"); /* OpenEXRCore 3.1 cannot unpack it */
+  r->dwa = r->compression == EXR_COMPRESSION_DWAA || r->compression == EXR_COMPRESSION_DWAB;
   if (r->list->num_channels < 1) return vl_codec_broken(file, "OpenEXR", "no channels");
   if (r->list->num_channels > 1024) return vl_codec_unsupported(file, "OpenEXR", "more than 1024 channels");
 
@@ -134,9 +144,10 @@ static vlResult layout(Reader *r) {
   if (width < 1 || height < 1) return vl_codec_broken(file, "OpenEXR", "its data window is empty");
   if (width > INT32_MAX / (r->user_size * (int64_t)count) || height > INT32_MAX)
     return vl_codec_unsupported(file, "OpenEXR", "rows of more than 2^31 bytes");
-  /* The tightest coding is deflate's, 1032:1. Chunks are judged one by one below. */
+  /* The tightest coding is deflate's, 1032:1; DWA has one value of 64 and run lengths under it. Chunks are judged one
+   * by one below. */
   vlResult result = vl_codec_promise(file, "OpenEXR", (uint64_t)width, (uint64_t)height,
-                                     (double)width * (double)height * bytes, 1032.0);
+                                     (double)width * (double)height * bytes, ratio(r));
   if (result != VL_OK) return result;
   int32_t chunks;
   code = exr_get_chunk_count(r->exr, 0, &chunks);
@@ -164,7 +175,7 @@ static vlResult find_chunk(Reader *r, uint32_t column, uint32_t row, exr_chunk_i
   if (chunk->data_offset > file->size || chunk->packed_size > file->size - chunk->data_offset ||
       chunk->packed_size == 0)
     return vl_codec_broken(file, "OpenEXR", "a chunk lies outside the file");
-  if ((double)chunk->unpacked_size > (double)chunk->packed_size * 1032.0 + 64.0)
+  if ((double)chunk->unpacked_size > (double)chunk->packed_size * ratio(r) + 64.0)
     return vl_codec_broken(file, "OpenEXR", "a chunk is too small for its pixels");
   int64_t left = (int64_t)r->width - (r->tiled ? (int64_t)column * r->tile_width : 0);
   int64_t below = (int64_t)r->height - (int64_t)row * (r->tiled ? r->tile_height : r->lines);
@@ -173,18 +184,92 @@ static vlResult find_chunk(Reader *r, uint32_t column, uint32_t row, exr_chunk_i
   return VL_OK;
 }
 
+/* At least `size` bytes. */
+static bool grow(Reader *r, uint8_t **block, size_t *have, size_t size) {
+  if (*have >= size) return true;
+  vl_free(r->base.file->context, *block);
+  *block = vl_alloc(r->base.file->context, size);
+  *have = *block ? size : 0;
+  return *block != NULL;
+}
+
+static vlResult start_dwa(Reader *r) {
+  vlContext *context = r->base.file->context;
+  r->dwa_curve = vl_alloc_array(context, 65536, sizeof *r->dwa_curve);
+  r->dwa_channels = vl_alloc_array(context, (size_t)r->list->num_channels, sizeof *r->dwa_channels);
+  if (!r->dwa_curve || !r->dwa_channels) return vl_fail_memory(r->base.file->error);
+  vl_dwa_make_curve(r->dwa_curve);
+  for (int i = 0; i < r->list->num_channels; i++) {
+    const exr_attr_chlist_entry_t *c = &r->list->entries[i];
+    r->dwa_channels[i] = (vlDwaChannel){c->name.str, (int)c->pixel_type, c->p_linear != 0};
+  }
+  return VL_OK;
+}
+
+/* A value of the file into one of the image. */
+static void convert_value(int from, const uint8_t *p, int to, void *result) {
+  if (from == to) {
+    memcpy(result, p, from == EXR_PIXEL_HALF ? 2 : 4);
+    return;
+  }
+  uint16_t half = 0; /* else the image is of floats */
+  uint32_t integer = 0;
+  memcpy(&half, p, 2);
+  if (from == EXR_PIXEL_UINT) memcpy(&integer, p, 4);
+  float value = from == EXR_PIXEL_HALF ? vl_half_to_float(half) : (float)integer;
+  memcpy(result, &value, 4);
+}
+
+static vlResult decode_dwa_chunk(Reader *r, const exr_chunk_info_t *chunk, char *origin) {
+  const vlImageFile *file = r->base.file;
+  if (!r->dwa_channels) {
+    vlResult result = start_dwa(r);
+    if (result != VL_OK) return result;
+  }
+  uint32_t count = (uint32_t)r->list->num_channels;
+  size_t line = 0;
+  for (uint32_t i = 0; i < count; i++)
+    line += (size_t)chunk->width * (r->dwa_channels[i].type == EXR_PIXEL_HALF ? 2u : 4u);
+  size_t size = line * (size_t)chunk->height;
+  if (size != chunk->unpacked_size) return vl_codec_broken(file, "OpenEXR", "a chunk of the wrong size");
+  if (!grow(r, &r->packed, &r->packed_size, (size_t)chunk->packed_size) ||
+      !grow(r, &r->unpacked, &r->unpacked_size, size))
+    return vl_fail_memory(file->error);
+  exr_result_t code = exr_read_chunk(r->exr, 0, chunk, r->packed);
+  if (code != EXR_ERR_SUCCESS) return fail(r, code);
+  vlResult result = VL_OK;
+  if (chunk->packed_size == size) /* did not shrink, and is stored as it was */
+    memcpy(r->unpacked, r->packed, size);
+  else
+    result = vl_dwa_unpack(file->context, r->dwa_channels, count, (uint32_t)chunk->width, (uint32_t)chunk->height,
+                           r->dwa_curve, r->packed, (size_t)chunk->packed_size, r->unpacked);
+  if (result == VL_ERROR_MEMORY) return vl_fail_memory(file->error);
+  if (result != VL_OK) return vl_codec_broken(file, "OpenEXR", "a DWA chunk is damaged");
+  const uint8_t *from = r->unpacked;
+  size_t pixel = (size_t)r->user_size * count;
+  for (int32_t y = 0; y < chunk->height; y++)
+    for (uint32_t i = 0; i < count; i++) {
+      char *to = origin + (size_t)y * pixel * r->width + (size_t)r->user_size * r->place[i];
+      size_t step = r->dwa_channels[i].type == EXR_PIXEL_HALF ? 2 : 4;
+      for (int32_t x = 0; x < chunk->width; x++, from += step, to += pixel)
+        convert_value(r->dwa_channels[i].type, from, r->user_type, to);
+    }
+  return VL_OK;
+}
+
 static vlResult decode_chunk(Reader *r, uint32_t column, uint32_t row) {
   exr_chunk_info_t chunk;
   vlResult result = find_chunk(r, column, row, &chunk);
   if (result != VL_OK) return result;
-  exr_decode_pipeline_t *p = &r->pipeline;
-  exr_result_t code =
-      r->started ? exr_decoding_update(r->exr, 0, &chunk, p) : exr_decoding_initialize(r->exr, 0, &chunk, p);
-  if (code != EXR_ERR_SUCCESS) return fail(r, code);
   size_t pixel = (size_t)r->user_size * r->image->channels, line = pixel * r->width;
   char *origin = (char *)r->image->pixels +
                  (r->tiled ? row * (size_t)r->tile_height * line + column * (size_t)r->tile_width * pixel
                            : row * (size_t)r->lines * line);
+  if (r->dwa) return decode_dwa_chunk(r, &chunk, origin);
+  exr_decode_pipeline_t *p = &r->pipeline;
+  exr_result_t code =
+      r->started ? exr_decoding_update(r->exr, 0, &chunk, p) : exr_decoding_initialize(r->exr, 0, &chunk, p);
+  if (code != EXR_ERR_SUCCESS) return fail(r, code);
   for (int i = 0; i < p->channel_count; i++) {
     exr_coding_channel_info_t *c = &p->channels[i];
     c->decode_to_ptr = (uint8_t *)origin + (size_t)r->user_size * r->place[i];
@@ -262,6 +347,10 @@ vlResult vl_exr_read(const vlImageFile *file, vlImage **image) {
   if (r.started) exr_decoding_destroy(r.exr, &r.pipeline);
   exr_finish(&r.exr);
   vl_free(file->context, r.place);
+  vl_free(file->context, r.dwa_channels);
+  vl_free(file->context, r.dwa_curve);
+  vl_free(file->context, r.packed);
+  vl_free(file->context, r.unpacked);
   if (result == VL_OK)
     *image = r.image;
   else

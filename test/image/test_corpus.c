@@ -223,7 +223,8 @@ static void test_exr(void **state) {
       {"exr_tiled_piz.exr", VL_PIXEL_F16, 0.0},    {"exr_tiled_zip.exr", VL_PIXEL_F16, 0.0},
       {"exr_mip.exr", VL_PIXEL_F32, 0.0},          {"exr_window.exr", VL_PIXEL_F16, 0.0},
       {"exr_multipart.exr", VL_PIXEL_F16, 0.0},    {"exr_mixed.exr", VL_PIXEL_F32, 0.0},
-      {"exr_attributes.exr", VL_PIXEL_F32, 0.0},
+      {"exr_attributes.exr", VL_PIXEL_F32, 0.0},   {"exr_half_dwaa.exr", VL_PIXEL_F16, 0.06},
+      {"exr_float_dwab.exr", VL_PIXEL_F32, 0.06},  {"exr_tiled_dwaa.exr", VL_PIXEL_F16, 0.06},
   };
   for (size_t i = 0; i < sizeof FILES / sizeof *FILES; i++) {
     vlImage *image = read_ok(context, FILES[i].file);
@@ -280,10 +281,39 @@ static void test_all(void **state) {
   end_context(context);
 }
 
+/* Every reader with an allocator that fails at the n-th call. */
+static void test_out_of_memory(void **state) {
+  (void)state;
+  Failing failing;
+  vlContext *context = make_context(&failing);
+  DIR *directory = opendir(corpus(""));
+  assert_non_null(directory);
+  for (struct dirent *entry; (entry = readdir(directory));) {
+    if (entry->d_name[0] == '.') continue;
+    size_t before = failing.live;
+    vlResult result = VL_ERROR_MEMORY;
+    long n = 0;
+    for (; result == VL_ERROR_MEMORY && n < 300; n++) {
+      vlImage *image;
+      vlError error;
+      failing.left = n;
+      result = vl_image_read(context, corpus(entry->d_name), &image, &error);
+      failing.left = -1;
+      if (result != VL_OK && result != VL_ERROR_MEMORY) fail_msg("%s: %s", entry->d_name, error.message);
+      vl_image_destroy(image);
+      assert_int_equal(failing.live, before);
+    }
+    assert_in_range(n, 2, 299);
+  }
+  closedir(directory);
+  end_context(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_integers), cmocka_unit_test(test_long_gif), cmocka_unit_test(test_floats),
-      cmocka_unit_test(test_jpeg),     cmocka_unit_test(test_exr),      cmocka_unit_test(test_all),
+      cmocka_unit_test(test_integers),      cmocka_unit_test(test_long_gif), cmocka_unit_test(test_floats),
+      cmocka_unit_test(test_jpeg),          cmocka_unit_test(test_exr),      cmocka_unit_test(test_all),
+      cmocka_unit_test(test_out_of_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,6 +10,7 @@
 
 #include "math/fresnel.h"
 #include "math/ggx.h"
+#include "math/warp.h"
 #include "trace/bsdf.h"
 
 /* A count of whole vectors, so that the compiler sees it and makes no remainder loop. */
@@ -29,17 +30,11 @@ VL_BSDF_DECLARE(dielectric);
 VL_BSDF_DECLARE(thin);
 VL_BSDF_DECLARE(coat);
 
-/* Cosine-weighted direction about +z: the square goes to the disk by squares onto circles, so that strata stay whole
- * (Shirley and Chiu 1997, "A Low Distortion Map Between Disk and Square"), then up (Malley). u, v in [0, 1). z > 0. */
+/* Cosine-weighted direction about +z. u, v in [0, 1). z > 0 always, so that no sample is lost. */
 static inline vlVec3 vl_cosine_direction(float u, float v) {
-  float a = 2.0f * u - 1.0f, b = 2.0f * v - 1.0f;
-  int wide = vl_abs(a) > vl_abs(b);
-  float r = wide ? a : b, other = wide ? b : a;
-  float q = other / (r != 0.0f ? r : 1.0f);
-  vlSinCos t = vl_sincos_kernel(0.785398163397448310f * q);
-  float x = r * (wide ? t.cos : t.sin), y = r * (wide ? t.sin : t.cos);
-  float z2 = 1.0f - r * r;
-  return vl_vec3(x, y, __builtin_sqrtf(z2 > 1e-12f ? z2 : 1e-12f));
+  vlDiskPoint d = vl_warp_disk(u, v);
+  float z2 = (1.0f - d.r) * (1.0f + d.r);
+  return vl_vec3(d.x, d.y, __builtin_sqrtf(z2 > 1e-12f ? z2 : 1e-12f));
 }
 
 /* wo mirrored at the normal h; oh = wo.h */

@@ -358,7 +358,21 @@ static void special(void **state) {
          series = 1 + x + x * x + x * x * x + x * x * x * x;
   const Surface black = {.kind = VL_BSDF_COATED_DIFFUSE, .eta_s = 1.5f, .alpha_x = 0.1f, .alpha_y = 0.1f, .coat = t};
   double with = (double)b->value[0][0];
+  vlCoatTable as_pbrt = *t; /* imitating: brighter to the light, and samples as before */
+  as_pbrt.imitate = true;
+  Surface imitator = coat;
+  imitator.coat = &as_pbrt;
+  Batch *c = s->other;
+  *c = *b;
+  for (uint32_t j = 0; j < 16; j++) batch_surface(c, j, &imitator);
+  batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, c);
+  assert_true((double)c->value[0][0] > with * 1.005 && (double)c->value[0][0] < with * 1.05 && c->pdf[0] == b->pdf[0]);
+  for (uint32_t j = 0; j < 16; j++) batch_surface(b, j, &coat);
+  batch_sample(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, b);
+  batch_sample(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, c);
+  assert_true(b->weight[0][0] > 0 && b->weight[0][0] == c->weight[0][0]);
   for (uint32_t j = 0; j < 16; j++) batch_surface(b, j, &black);
+  b->ix[0] = 0.6f, b->iy[0] = 0, b->iz[0] = 0.8f;
   batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, b);
   double base = with - (double)b->value[0][0], want = to * ti * 0.5 / 3.14159265358979 / 2.25 * series * 0.8;
   assert_true(fabs(base / want - 1) < 1e-5);

@@ -146,6 +146,47 @@ static void against_walk(void **state) {
   print_message("worst bin: %.2f sigma\n", worst);
 }
 
+/* The table that imitates pbrt-v4: its walk leaves through the coat by two samplers, visible normals from wi (density
+ * p) and the base's cosine (density d), weighed p^2/(p^2 + d^2) and d^2/(d^2 + q^2): q should be p and is the density
+ * of wi by visible normals from inside. Integrated here over cosine-distributed directions. */
+static void imitation(void **state) {
+  const float alphas[] = {0.2f, 0.4f}, eta_f = 1.5f, tau = 0.01f;
+  const double eta = 1.5, cosines[] = {0.9, 0.3};
+  for (int a = 0; a < 2; a++) {
+    vlCoatTable *t;
+    assert_int_equal(vl_coat_build(*state, eta_f, tau, 10, alphas[a], alphas[a], &t), VL_OK);
+    for (int k = 0; k < 2; k++) {
+      statRng rng = stat_rng((uint64_t)(7 + k));
+      double alpha = (double)alphas[a], excess = 0, square = 0;
+      Vec o = {sqrt(1 - cosines[k] * cosines[k]), 0, cosines[k]};
+      enum { TRIES = 400000 };
+      for (int i = 0; i < TRIES; i++) {
+        double r = sqrt(stat_double(&rng)), phi = 2 * PI * stat_double(&rng);
+        Vec w = {r * cos(phi), r * sin(phi), -sqrt(fmax(1e-12, 1 - r * r))};
+        Vec h = {-(o.x + eta * w.x), -(o.y + eta * w.y), -(o.z + eta * w.z)}; /* eta > 1: up */
+        double n = sqrt(h.x * h.x + h.y * h.y + h.z * h.z), cos_t = 0;
+        h = (Vec){h.x / n, h.y / n, h.z / n};
+        double oh = o.x * h.x + o.y * h.y + o.z * h.z, wh = w.x * h.x + w.y * h.y + w.z * h.z, c = -w.z;
+        if (oh <= 0 || wh >= 0 || h.z <= 0) continue;
+        double e = (h.x * h.x + h.y * h.y) / (alpha * alpha) + h.z * h.z, density = 1 / (PI * alpha * alpha * e * e);
+        double lo = lambda(o, alpha), lw = lambda(w, alpha), out = wh + oh / eta, in = oh + wh * eta;
+        double p = density * oh / (1 + lo) / o.z * -wh / (out * out), q = density * -wh / (1 + lw) / c * oh / (in * in);
+        double ft = (1 - fresnel(oh, eta, &cos_t)) * density * oh * -wh / (o.z * c * out * out) / (1 + lo + lw);
+        double x = ft * PI * exp(-(double)tau / c), d = c / PI;
+        double y = x * (p * p / (p * p + d * d) + d * d / (d * d + q * q) - 1);
+        excess += y, square += y * y;
+      }
+      excess /= TRIES;
+      double error = sqrt((square / TRIES - excess * excess) / TRIES);
+      double plain = through(t->transmittance[0], cosines[k]), got = through(t->imitation[0], cosines[k]) - plain;
+      if (fabs(got - excess) > 4 * error || error > 1e-3)
+        fail_msg("alpha %g cos %g: excess %g, should be %g +- %g", alpha, cosines[k], got, excess, error);
+      assert_true(excess > 0.03 * plain); /* it is worth a table */
+    }
+    vl_coat_free(*state, t);
+  }
+}
+
 /* A clear coat over white: nothing is lost at a smooth one, and never more leaves or comes back than was there. */
 static void energy(void **state) {
   for (int i = 0; i < 24; i++) {
@@ -262,8 +303,8 @@ static int teardown(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(against_walk), cmocka_unit_test(energy),
-                                     cmocka_unit_test(textured), cmocka_unit_test(arguments),
-                                     cmocka_unit_test(out_of_memory)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(against_walk), cmocka_unit_test(imitation),
+                                     cmocka_unit_test(energy),       cmocka_unit_test(textured),
+                                     cmocka_unit_test(arguments),    cmocka_unit_test(out_of_memory)};
   return cmocka_run_group_tests(tests, setup, teardown);
 }

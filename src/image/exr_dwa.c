@@ -49,8 +49,8 @@ static size_t type_size(int type) {
 
 void vl_dwa_make_curve(uint16_t *curve) {
   for (uint32_t i = 0; i < 65536; i++) {
-    double x = vl_half_to_float((uint16_t)(i & 0x7fffu));
     bool finite = (i & 0x7c00u) != 0x7c00u;
+    double x = finite ? vl_half_to_float((uint16_t)(i & 0x7fffu)) : 0.0;
     /* above 1: e^(2.2 (x - 1)) */
     double y = x <= 1.0 ? vl_pow_exact(x, 2.2) : vl_exp2_exact((x > 100.0 ? 99.0 : x - 1.0) * 2.2 * 1.4426950408889634);
     curve[i] = finite ? (uint16_t)(vl_float_to_half((float)(y < 1e30 ? y : 1e30)) | (i & 0x8000u)) : 0;

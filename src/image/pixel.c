@@ -26,7 +26,7 @@ double vl_log2_exact(double x) {
 }
 
 double vl_exp2_exact(double x) {
-  if (x > 1023.0) return __builtin_inf();
+  if (!(x <= 1023.0)) return x != x ? x : __builtin_inf();
   if (x < -1020.0) return 0.0;
   double n = __builtin_floor(x + 0.5);
   double r = (x - n) * 0.69314718055994531, sum = 1.0;

@@ -23,7 +23,8 @@ enum { TILE = 16, TILE_PIXELS = TILE * TILE, MAX_PASS = 16 };
 typedef struct Worker {
   vlTraceScratch *scratch;
   float *rows; /* ROWS arrays of VL_ROW_SIZE */
-  uint64_t paths, bounce_rays, shadow_rays, not_finite;
+  _Atomic uint64_t paths, bounce_rays, shadow_rays; /* written by the worker, read by the progress report meanwhile */
+  uint64_t not_finite;
   int32_t bad_x, bad_y;
 } Worker;
 
@@ -111,6 +112,11 @@ static uint32_t list_samples(const Render *r, Worker *w, uint32_t tile, uint32_t
   return n;
 }
 
+/* One writer: no exchange is needed. */
+static void count_more(_Atomic uint64_t *total, uint64_t more) {
+  atomic_store_explicit(total, atomic_load_explicit(total, memory_order_relaxed) + more, memory_order_relaxed);
+}
+
 static void render_batch(const Render *r, Worker *w, uint32_t n) {
   const int32_t *px = (int32_t *)(void *)row(w, PIXEL_X), *py = (int32_t *)(void *)row(w, PIXEL_Y);
   const uint32_t *index = (uint32_t *)(void *)row(w, INDEX);
@@ -151,9 +157,9 @@ static void render_batch(const Render *r, Worker *w, uint32_t n) {
   uint32_t bad = vl_film_add(r->film, &add, &bad_x, &bad_y);
   if (bad && !w->not_finite) w->bad_x = bad_x, w->bad_y = bad_y;
   w->not_finite += bad;
-  w->paths += n;
-  w->bounce_rays += batch.bounce_rays;
-  w->shadow_rays += batch.shadow_rays;
+  count_more(&w->paths, n);
+  count_more(&w->bounce_rays, batch.bounce_rays);
+  count_more(&w->shadow_rays, batch.shadow_rays);
 }
 
 static void count_rays(const Render *r, uint64_t *paths, uint64_t *rays) {

@@ -59,7 +59,33 @@ static void a_world_is_shared(void **state) {
   vl_context_destroy(context);
 }
 
+/* The progress report reads what the workers count, from inside a pass. */
+static bool watch(void *user, const vlProgress *progress) {
+  int *reports = user;
+  if (!progress->pass_done) ++*reports;
+  return *reports < 3;
+}
+
+static void progress_is_told_meanwhile(void **state) {
+  (void)state;
+  vlContextDef def = vl_default_context_def();
+  def.threads = 3;
+  vlContext *context = NULL;
+  assert_int_equal(vl_context_create(&def, &context), VL_OK);
+  int reports = 0;
+  vlRenderDef render = vl_default_render_def();
+  render.spp = 4096;
+  render.progress = watch;
+  render.progress_user = &reports;
+  vlImage *image = NULL;
+  assert_int_equal(small_picture(context, &render, NULL, VL_COLOR_SPECTRAL, &image), VL_CANCELLED);
+  assert_int_equal(reports, 3);
+  vl_image_destroy(image);
+  assert_int_equal(vl_context_memory(context, NULL), 0);
+  vl_context_destroy(context);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_world_is_shared)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_world_is_shared), cmocka_unit_test(progress_is_told_meanwhile)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,6 +54,9 @@ static vlResult fail_open(const char *path, int code, vlError *error) {
   return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(code));
 }
 
+/* Text packs 3 to 50 times; what unpacks to far more than that, and to much, was made to fill the memory. */
+enum { MAX_RATIO = 200, MAX_UNPACKED = 64 << 20 };
+
 static vlResult gunzip_all(vlContext *context, const char *path, char **data, size_t *size, vlError *error) {
   z_stream z;
   memset(&z, 0, sizeof z);
@@ -68,6 +71,10 @@ static vlResult gunzip_all(vlContext *context, const char *path, char **data, si
       z.avail_in = left > 1u << 30 ? 1u << 30 : (uInt)left;
       left -= z.avail_in;
     }
+    if (used > MAX_UNPACKED && used / MAX_RATIO > *size) {
+      status = Z_VERSION_ERROR;
+      break;
+    }
     if (capacity == used) {
       char *more = vl_realloc_array(context, out, capacity * 2 + 1, 1);
       if (!more) {
@@ -77,7 +84,7 @@ static vlResult gunzip_all(vlContext *context, const char *path, char **data, si
       out = more;
       capacity *= 2;
     }
-    size_t room = capacity - used > 1u << 30 ? 1u << 30 : capacity - used;
+    size_t room = capacity - used > 1u << 24 ? 1u << 24 : capacity - used;
     z.next_out = (Bytef *)out + used;
     z.avail_out = (uInt)room;
     uInt before_in = z.avail_in;
@@ -93,6 +100,8 @@ static vlResult gunzip_all(vlContext *context, const char *path, char **data, si
   if (status != Z_STREAM_END) {
     vl_free(context, out);
     if (status == Z_MEM_ERROR) return vl_fail_memory(error);
+    if (status == Z_VERSION_ERROR)
+      return vl_fail(error, VL_ERROR_SCENE, "%s: unpacks to more than %d times its size", path, MAX_RATIO);
     return vl_fail(error, VL_ERROR_SCENE, "%s: broken gzip file", path);
   }
   out[used] = 0;

@@ -9,7 +9,8 @@
 #include "base/error.h"
 
 static const uint32_t NONE = UINT32_MAX;
-enum { MAX_FACES = 1 << 25 };
+/* A short file may not ask for a mesh out of all proportion: past 5 levels (a thousandfold) only small results. */
+enum { MAX_FACES = 1 << 24, MAX_DEEP_FACES = 1 << 20, DEEP = 5 };
 
 typedef struct Level {
   uint32_t vertices, faces;
@@ -352,7 +353,7 @@ vlResult vl_loop_subdivide(vlContext *context, uint32_t vertices, const float *p
   *mesh = (vlLoopMesh){0};
   uint64_t total = faces;
   for (uint32_t i = 0; i < levels && total <= MAX_FACES; i++) total *= 4;
-  if (total > MAX_FACES || vertices > MAX_FACES)
+  if (total > MAX_FACES || vertices > MAX_FACES || (levels > DEEP && total > MAX_DEEP_FACES))
     return vl_fail(error, VL_ERROR_SCENE, "%u levels of %u faces are too many", levels, faces);
   Level level = {0};
   vlResult result = first_level(context, vertices, positions, faces, indices, &level, error);

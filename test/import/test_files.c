@@ -183,6 +183,12 @@ static void packed(void **state) {
   end_load(&l);
   write_file("broken.pbrt.gz", "\x1f\x8b\x08 no");
   file_error("broken.pbrt.gz", VL_ERROR_SCENE, ":0:0: %/broken.pbrt.gz: broken gzip file");
+  f = gzopen(in_folder("bomb.pbrt.gz"), "wb");
+  static char blank[1 << 20];
+  memset(blank, ' ', sizeof blank);
+  for (int i = 0; i < 130; i++) gzwrite(f, blank, sizeof blank);
+  gzclose(f);
+  file_error("bomb.pbrt.gz", VL_ERROR_SCENE, ":0:0: %/bomb.pbrt.gz: unpacks to more than 200 times its size");
   write_file("bad.ply",
              "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
              "z\nend_header\n0 0 0 1 0 0 0 x 0\n");

@@ -268,6 +268,10 @@ static const Option render_options[] = {
      0, 0, isa_choices},
     {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "warn about what is not understood instead of refusing it",
      0, 0, NULL},
+    {RENDER_IMITATE_PBRT, 0, "imitate-pbrt", OPTION_FLAG, NULL,
+     "follow pbrt-v4 where it is known to be off: rough coats come out\n"
+     "a few percent too bright",
+     0, 0, NULL},
     {RENDER_DRY_RUN, 0, "dry-run", OPTION_FLAG, NULL, "load, build and say what would be rendered; write nothing", 0, 0,
      NULL},
     {RENDER_QUIET, 0, "quiet", OPTION_FLAG, NULL, "only warnings and errors", 0, 0, NULL},

@@ -20,6 +20,8 @@ typedef struct vlBuildDef {
   vlColorMode color; /* spectral (default) or RGB; fixed at build */
   vlLightSampler light_sampler;
   bool permissive;
+  bool imitate_pbrt; /* follow pbrt-v4 where it is known to be off (rough coats too bright by up to 8 %; docs/decisions)
+                      */
 } vlBuildDef;
 VL_API vlBuildDef vl_default_build_def(void);
 /* Compiles the scene. The scene may be destroyed afterwards. The world is constant: any number of threads and renders

@@ -1,6 +1,8 @@
 /* world/accel.c: the one file that knows Embree (3.13 or 4). Triangles are Embree's; other shapes are user geometry
  * intersected by surface_point.c. Alpha and interface surfaces are decided in filters, by a hash of ray and primitive,
- * so that the order of traversal does not matter. */
+ * so that the order of traversal does not matter. Inside instances Embree hands out the ray in the group's space, by
+ * its own arithmetic, which differs between instruction sets: callbacks look the ray up in the world by its id instead
+ * and move it themselves. */
 #include "world/accel.h"
 
 #include <math.h>
@@ -23,24 +25,50 @@
 
 /* Embree's accessors of packets of any size are C++ only; this is the layout that its manual gives: row k of N values.
  */
-enum { ORG = 0, TNEAR = 3, DIR = 4, TFAR = 8, PRIM = 5, GEOM = 6, INST = 7, HIT = 12 };
+enum { TNEAR = 3, TFAR = 8, ID = 10, PRIM = 5, GEOM = 6, INST = 7, HIT = 12 };
 static inline float *ray_row(void *ray, unsigned n, int row, unsigned i) {
   return (float *)ray + (size_t)row * n + i;
 }
 static inline unsigned *hit_row(void *hit, unsigned n, int row, unsigned i) {
   return (unsigned *)hit + (size_t)row * n + i;
 }
-static inline void load_ray(void *ray, unsigned n, unsigned i, float o[3], float d[3]) {
-  for (int k = 0; k < 3; k++) {
-    o[k] = *ray_row(ray, n, ORG + k, i);
-    d[k] = *ray_row(ray, n, DIR + k, i);
-  }
-}
 
 typedef struct AccelGeometry {
   const vlWorld *world;
   const vlWorldShape *shape;
 } AccelGeometry;
+
+/* What Embree carries along: the rays of the call. */
+#if VELO_EMBREE_MAJOR >= 4
+typedef struct RTCRayQueryContext EmbreeContext;
+#else
+typedef struct RTCIntersectContext EmbreeContext;
+#endif
+typedef struct Query {
+  EmbreeContext context; /* first: Embree hands back its address */
+  const vlRays *rays;
+} Query;
+
+/* A ray of the call in the space of the shape's group, and which instance that is. */
+typedef struct LocalRay {
+  uint32_t instance;
+  float world_o[3], world_d[3];
+  double o[3], d[3];
+} LocalRay;
+
+static LocalRay local_ray(const vlWorld *world, const EmbreeContext *context, unsigned id, unsigned inst) {
+  const vlRays *r = ((const Query *)(const void *)context)->rays;
+  LocalRay q = {VL_NONE,
+                {r->ox[id], r->oy[id], r->oz[id]},
+                {r->dx[id], r->dy[id], r->dz[id]},
+                {r->ox[id], r->oy[id], r->oz[id]},
+                {r->dx[id], r->dy[id], r->dz[id]}};
+  if (inst != RTC_INVALID_GEOMETRY_ID) {
+    q.instance = inst - world->groups.items[0].count;
+    vl_ray_to_group(&world->instances.items[q.instance], q.o, q.d);
+  }
+  return q;
+}
 
 unsigned vl_accel_enter(void) {
 #if defined(__SSE__)
@@ -63,23 +91,25 @@ void vl_accel_leave(unsigned state) {
 /* ---- alpha
  * ------------------------------------------------------------------------------------------------------------ */
 
-static float ray_hash(const float o[3], const float d[3], uint32_t shape, uint32_t prim) {
-  uint32_t h = vl_hash2(shape, prim);
-  for (int i = 0; i < 3; i++) h = vl_hash2(h, vl_float_bits(o[i])), h = vl_hash2(h, vl_float_bits(d[i]));
-  return vl_unit_float(h);
+static float ray_hash(const LocalRay *r, uint32_t shape, uint32_t prim, float t) {
+  uint32_t h = vl_hash2(vl_hash2(shape, prim), r->instance);
+  for (int i = 0; i < 3; i++)
+    h = vl_hash2(h, vl_float_bits(r->world_o[i])), h = vl_hash2(h, vl_float_bits(r->world_d[i]));
+  return vl_unit_float(vl_hash2(h, vl_float_bits(t)));
 }
 
-static bool alpha_passes(const AccelGeometry *g, const float o[3], const float d[3], uint32_t prim, float u, float v,
+/* t: of shapes that a ray can meet twice, so that each crossing is decided for itself; 0 of triangles. */
+static bool alpha_passes(const AccelGeometry *g, const LocalRay *r, uint32_t prim, float t, float u, float v,
                          const float p[3]) {
   float alpha = vl_texture_float_at(g->world, g->shape->alpha, u, v, p);
-  return ray_hash(o, d, (uint32_t)(g->shape - g->world->shapes.items), prim) >= alpha;
+  return ray_hash(r, (uint32_t)(g->shape - g->world->shapes.items), prim, t) >= alpha;
 }
 
 /* uv and position where the ray meets triangle prim, in our own arithmetic. */
-static void triangle_uv(const vlWorldShape *s, uint32_t prim, const float o[3], const float d[3], float uv[2],
-                        float p[3]) {
+static void triangle_uv(const vlWorldShape *s, uint32_t prim, const LocalRay *r, float uv[2], float p[3]) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
-  vlVec3 ray_o = vl_vec3(o[0], o[1], o[2]), ray_d = vl_vec3(d[0], d[1], d[2]), c[3];
+  vlVec3 ray_o = vl_vec3((float)r->o[0], (float)r->o[1], (float)r->o[2]);
+  vlVec3 ray_d = vl_vec3((float)r->d[0], (float)r->d[1], (float)r->d[2]), c[3];
   for (int k = 0; k < 3; k++) {
     const float *x = s->positions + 3 * (size_t)f[k];
     c[k] = vl_sub(vl_vec3(x[0], x[1], x[2]), ray_o);
@@ -105,11 +135,12 @@ static bool filter_rejects(const AccelGeometry *g, const struct RTCFilterFunctio
                            bool shadow) {
   if (shadow && g->shape->pass_shadow) return true;
   if (g->shape->alpha < 0) return false;
-  float o[3], d[3], uv[2], p[3];
-  load_ray(args->ray, args->N, i, o, d);
+  float uv[2], p[3];
+  LocalRay r =
+      local_ray(g->world, args->context, *hit_row(args->ray, args->N, ID, i), *hit_row(args->hit, args->N, INST, i));
   uint32_t prim = *hit_row(args->hit, args->N, PRIM, i);
-  triangle_uv(g->shape, prim, o, d, uv, p);
-  return alpha_passes(g, o, d, prim, uv[0], uv[1], p);
+  triangle_uv(g->shape, prim, &r, uv, p);
+  return alpha_passes(g, &r, prim, 0, uv[0], uv[1], p);
 }
 
 static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
@@ -133,18 +164,17 @@ static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
   args->bounds_o->upper_x = high[0], args->bounds_o->upper_y = high[1], args->bounds_o->upper_z = high[2];
 }
 
-static bool user_hit(const AccelGeometry *g, void *ray, unsigned n, unsigned i, uint32_t prim, double *t) {
-  float of[3], df[3];
-  load_ray(ray, n, i, of, df);
-  double o[3] = {of[0], of[1], of[2]}, d[3] = {df[0], df[1], df[2]};
+static bool user_hit(const AccelGeometry *g, const EmbreeContext *context, void *ray, unsigned n, unsigned i,
+                     uint32_t prim, double *t) {
+  LocalRay r = local_ray(g->world, context, *hit_row(ray, n, ID, i), context->instID[0]);
   double t_min = *ray_row(ray, n, TNEAR, i), t_max = *ray_row(ray, n, TFAR, i);
   vlShapeHit hit;
-  while (vl_shape_intersect(g->shape, prim, o, d, t_min, t_max, &hit)) {
+  while (vl_shape_intersect(g->shape, prim, r.o, r.d, t_min, t_max, &hit)) {
     if (g->shape->alpha >= 0) {
       vlSurfacePoint point;
       vl_shape_point(g->shape, prim, &hit, &point);
       float p[3] = {(float)point.p[0], (float)point.p[1], (float)point.p[2]};
-      if (alpha_passes(g, of, df, prim, point.uv[0], point.uv[1], p)) {
+      if (alpha_passes(g, &r, prim, (float)hit.t, point.uv[0], point.uv[1], p)) {
         t_min = hit.t * (1 + 1e-12);
         continue;
       }
@@ -160,7 +190,7 @@ static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
   void *ray = args->rayhit, *hit = ray_row(ray, args->N, HIT, 0);
   for (unsigned i = 0; i < args->N; i++) {
     double t;
-    if (args->valid[i] != -1 || !user_hit(g, ray, args->N, i, args->primID, &t)) continue;
+    if (args->valid[i] != -1 || !user_hit(g, args->context, ray, args->N, i, args->primID, &t)) continue;
     *ray_row(ray, args->N, TFAR, i) = (float)t;
     *hit_row(hit, args->N, GEOM, i) = args->geomID;
     *hit_row(hit, args->N, PRIM, i) = args->primID;
@@ -173,7 +203,7 @@ static void user_occluded(const struct RTCOccludedFunctionNArguments *args) {
   if (g->shape->pass_shadow) return;
   for (unsigned i = 0; i < args->N; i++) {
     double t;
-    if (args->valid[i] == -1 && user_hit(g, args->ray, args->N, i, args->primID, &t))
+    if (args->valid[i] == -1 && user_hit(g, args->context, args->ray, args->N, i, args->primID, &t))
       *ray_row(args->ray, args->N, TFAR, i) = -INFINITY;
   }
 }
@@ -273,14 +303,32 @@ void vl_accel_destroy(vlContext *context, vlAccel *a) {
 /* ---- tracing
  * ---------------------------------------------------------------------------------------------------------------- */
 
+/* A query; arguments tells Embree 4 of it. */
 #if VELO_EMBREE_MAJOR >= 4
-#define INTERSECT1(scene, ray) rtcIntersect1((scene), (ray), NULL)
-#define OCCLUDED1(scene, ray) rtcOccluded1((scene), (ray), NULL)
-#define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), (ray), NULL)
+#define BEGIN_QUERY(query, r, coherent)                                                               \
+  Query query;                                                                                        \
+  rtcInitRayQueryContext(&query.context);                                                             \
+  query.rays = (r);                                                                                   \
+  struct RTCIntersectArguments closest_arguments;                                                     \
+  rtcInitIntersectArguments(&closest_arguments);                                                      \
+  closest_arguments.context = &query.context;                                                         \
+  closest_arguments.flags = (coherent) ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT; \
+  struct RTCOccludedArguments any_arguments;                                                          \
+  rtcInitOccludedArguments(&any_arguments);                                                           \
+  any_arguments.context = &query.context;                                                             \
+  (void)closest_arguments, (void)any_arguments
+#define INTERSECT1(scene, ray) rtcIntersect1((scene), (ray), &closest_arguments)
+#define OCCLUDED1(scene, ray) rtcOccluded1((scene), (ray), &any_arguments)
+#define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), (ray), &closest_arguments)
 #else
-#define INTERSECT1(scene, ray) rtcIntersect1((scene), &context, (ray))
-#define OCCLUDED1(scene, ray) rtcOccluded1((scene), &context, (ray))
-#define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), &context, (ray))
+#define BEGIN_QUERY(query, r, coherent)    \
+  Query query;                             \
+  rtcInitIntersectContext(&query.context); \
+  query.rays = (r);                        \
+  query.context.flags = (coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT
+#define INTERSECT1(scene, ray) rtcIntersect1((scene), &query.context, (ray))
+#define OCCLUDED1(scene, ray) rtcOccluded1((scene), &query.context, (ray))
+#define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), &query.context, (ray))
 #endif
 
 static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsigned inst, uint32_t *shape,
@@ -300,12 +348,8 @@ static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsign
 }
 
 static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32_t *shape, uint32_t *prim,
-                       uint32_t *instance) {
-#if VELO_EMBREE_MAJOR < 4
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-#endif
+                       uint32_t *instance, float *t) {
+  BEGIN_QUERY(query, r, true);
   for (uint32_t first = 0; first < n; first += 16) {
     struct RTCRayHit16 q;
     int valid[16] __attribute__((aligned(64)));
@@ -316,11 +360,12 @@ static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32
       q.ray.dir_x[k] = r->dx[i], q.ray.dir_y[k] = r->dy[i], q.ray.dir_z[k] = r->dz[i];
       q.ray.tnear[k] = r->t_min ? r->t_min[i] : 0.0f;
       q.ray.tfar[k] = r->t_max ? r->t_max[i] : INFINITY;
-      q.ray.time[k] = 0, q.ray.mask[k] = (unsigned)-1, q.ray.id[k] = 0, q.ray.flags[k] = 0;
+      q.ray.time[k] = 0, q.ray.mask[k] = (unsigned)-1, q.ray.id[k] = i, q.ray.flags[k] = 0;
       q.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
       q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
     INTERSECT16(valid, world->accel.scene, &q);
+    for (uint32_t k = 0; k < 16 && first + k < n; k++) t[first + k] = q.ray.tfar[k];
     for (uint32_t k = 0; k < 16 && first + k < n; k++)
       store_ids(world, q.hit.geomID[k], q.hit.primID[k], q.hit.instID[0][k], &shape[first + k], &prim[first + k],
                 &instance[first + k]);
@@ -332,36 +377,31 @@ static void fill_ray(struct RTCRay *q, const vlRays *r, uint32_t i) {
   q->dir_x = r->dx[i], q->dir_y = r->dy[i], q->dir_z = r->dz[i];
   q->tnear = r->t_min ? r->t_min[i] : 0.0f;
   q->tfar = r->t_max ? r->t_max[i] : INFINITY;
-  q->time = 0, q->mask = (unsigned)-1, q->id = 0, q->flags = 0;
+  q->time = 0, q->mask = (unsigned)-1, q->id = i, q->flags = 0;
 }
 
 void vl_accel_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
-                      uint32_t *prim, uint32_t *instance) {
+                      uint32_t *prim, uint32_t *instance, float *t) {
   if (world->accel.log) world->accel.log(world->accel.log_user, coherent ? 0 : 1, n, rays);
   if (coherent) {
-    closest_16(world, n, rays, shape, prim, instance);
+    closest_16(world, n, rays, shape, prim, instance, t);
     return;
   }
-#if VELO_EMBREE_MAJOR < 4
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-#endif
+  BEGIN_QUERY(query, rays, false);
   for (uint32_t i = 0; i < n; i++) {
     struct RTCRayHit q;
     fill_ray(&q.ray, rays, i);
     q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     INTERSECT1(world->accel.scene, &q);
+    t[i] = q.ray.tfar;
     store_ids(world, q.hit.geomID, q.hit.primID, q.hit.instID[0], &shape[i], &prim[i], &instance[i]);
   }
 }
 
 void vl_accel_occluded(const vlWorld *world, uint32_t n, const vlRays *rays, uint8_t *occluded) {
   if (world->accel.log) world->accel.log(world->accel.log_user, 2, n, rays);
-#if VELO_EMBREE_MAJOR < 4
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-#endif
+  BEGIN_QUERY(query, rays, false);
   for (uint32_t i = 0; i < n; i++) {
     struct RTCRay q;
     fill_ray(&q, rays, i);

@@ -31,10 +31,12 @@ typedef struct vlAccel {
 vlResult vl_accel_build(struct vlWorld *world, vlError *error);
 void vl_accel_destroy(vlContext *context, vlAccel *accel);
 
-/* Ids of the nearest hit of rays [0, n); shape VL_NONE where nothing is hit. coherent: neighbours go the same way
- * (camera rays), traced in packets. */
+/* Ids of the nearest hit of rays [0, n); shape VL_NONE where nothing is hit. t: where on the ray; of shapes that are
+ * not of triangles it is our own number, and tells which of their crossings was meant (the nearest may be cut by a
+ * plane or not covered); of triangles it is Embree's, differs between instruction sets and is not to be used. coherent:
+ * neighbours go the same way (camera rays), traced in packets. */
 void vl_accel_closest(const struct vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
-                      uint32_t *prim, uint32_t *instance);
+                      uint32_t *prim, uint32_t *instance, float *t);
 /* occluded[i] = 1 where something lies in (t_min, t_max). */
 void vl_accel_occluded(const struct vlWorld *world, uint32_t n, const vlRays *rays, uint8_t *occluded);
 /* Called by each thread before it traces: flush-to-zero, as Embree wants; returns the old state to give back. */

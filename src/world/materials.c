@@ -45,6 +45,7 @@ static vlResult coat_of(vlWorld *world, const vlMaterialDef *def, vlWorldMateria
   }
   vlResult r = vl_coat_build(world->context, m->eta_s, thickness, def->max_depth, low, high, &m->coat);
   if (r != VL_OK) return vl_fail_memory(error);
+  m->coat->imitate = world->def.imitate_pbrt;
   m->owns_coat = true;
   m->coat_depth = def->max_depth;
   return VL_OK;

@@ -271,6 +271,15 @@ static void patch_point(const vlWorldShape *s, uint32_t prim, double u, double v
 /* ---- all kinds
  * --------------------------------------------------------------------------------------------------------- */
 
+void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]) {
+  const float *m = instance->to_group;
+  double p[3] = {o[0], o[1], o[2]}, v[3] = {d[0], d[1], d[2]};
+  for (int i = 0; i < 3; i++) {
+    o[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+    d[i] = m[4 * i] * v[0] + m[4 * i + 1] * v[1] + m[4 * i + 2] * v[2];
+  }
+}
+
 bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3], const double d[3], double t_min,
                         double t_max, vlShapeHit *hit) {
   hit->a = hit->b = 0;

@@ -12,6 +12,9 @@ typedef struct vlShapeHit {
   double p[3]; /* shape space */
 } vlShapeHit;
 
+/* A ray of the world in the space of an instance's group; t stays what it is. */
+void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]);
+
 /* Nearest hit in (t_min, t_max) of a ray in group space. */
 bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3], const double d[3], double t_min,
                         double t_max, vlShapeHit *hit);

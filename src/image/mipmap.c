@@ -5,11 +5,15 @@
 
 #include "image/pixel.h"
 
+enum { STARTS = 4096 };
+
 typedef struct Builder {
   vlMipmap *map;
-  float begin[4][256]; /* linear values from which on each code is the nearest */
-  float *column;       /* one row of sums down the source rows */
-  float *line;         /* one decoded row */
+  float begin[4][256];      /* linear values from which on each code is the nearest */
+  uint8_t start[4][STARTS]; /* the code at i / STARTS, to begin looking at */
+  bool one_table;           /* all channels decode alike */
+  float *column;            /* one row of sums down the source rows */
+  float *line;              /* one decoded row */
 } Builder;
 
 size_t vl_mipmap_bytes(const vlMipmap *map) {
@@ -28,11 +32,11 @@ void vl_mipmap_destroy(vlMipmap *map) {
   vl_free(map->context, map);
 }
 
-static uint8_t nearest_code(const float begin[256], float v) {
-  uint32_t low = 0;
-  for (uint32_t step = 128; step; step >>= 1)
-    if (v >= begin[low + step]) low += step;
-  return (uint8_t)low;
+/* v in [0, 1], as means of decoded bytes are. */
+static uint8_t nearest_code(const Builder *b, uint32_t channel, float v) {
+  uint32_t i = (uint32_t)(v * STARTS), code = b->start[channel][i < STARTS ? i : STARTS - 1];
+  while (code < 255 && v >= b->begin[channel][code + 1]) code++;
+  return (uint8_t)code;
 }
 
 /* Is this channel light (put through a curve) or alpha? */
@@ -52,7 +56,14 @@ static void make_tables(Builder *b, const vlImage *image, const vlMipmapDef *def
     for (int i = 1; i < 256; i++)
       b->begin[c][i] =
           encoding == VL_ENCODING_SRGB ? vl_srgb8_begin[i] : (float)vl_decode(encoding, gamma, (i - 0.5) / 255.0);
+    for (uint32_t i = 0, code = 0; i < STARTS; i++) {
+      while (code < 255 && (float)i / STARTS >= b->begin[c][code + 1]) code++;
+      b->start[c][i] = (uint8_t)code;
+    }
   }
+  b->one_table = true;
+  for (uint32_t c = 1; c < map->channels; c++)
+    b->one_table &= memcmp(map->decode[0], map->decode[c], sizeof map->decode[0]) == 0;
 }
 
 /* 16-bit pictures under another encoding than their own. */
@@ -101,31 +112,49 @@ static const float *source_row(Builder *b, const vlMipLevel *from, const float *
   size_t row = (size_t)from->width * n;
   if (floats) return floats + row * y;
   const uint8_t *bytes = from->bytes + row * y;
+  if (b->one_table) {
+    for (size_t i = 0; i < row; i++) b->line[i] = b->map->decode[0][bytes[i]];
+    return b->line;
+  }
   for (uint32_t c = 0; c < n; c++)
     for (uint32_t x = 0; x < from->width; x++) b->line[(size_t)x * n + c] = b->map->decode[c][bytes[(size_t)x * n + c]];
   return b->line;
+}
+
+/* A row of sums into half the width (or a width of 1), exactly two texels each. */
+static void shrink_pairs(const float *column, uint32_t width, uint32_t n, float *out) {
+  for (uint32_t x = 0; x < width; x++)
+    for (uint32_t c = 0; c < n; c++)
+      out[(size_t)x * n + c] = 0.5f * column[(size_t)2 * x * n + c] + 0.5f * column[((size_t)2 * x + 1) * n + c];
 }
 
 static void shrink(Builder *b, const vlMipLevel *from, const float *floats, uint32_t width, uint32_t height,
                    float *out) {
   uint32_t n = b->map->channels;
   size_t row = (size_t)from->width * n;
-  for (uint32_t y = 0; y < height; y++) {
+  for (uint32_t y = 0; y < height; y++, out += (size_t)width * n) {
     uint32_t first = (uint32_t)((uint64_t)y * from->height / height);
     uint32_t last = (uint32_t)(((uint64_t)(y + 1) * from->height + height - 1) / height);
-    memset(b->column, 0, row * sizeof(float));
     for (uint32_t i = first; i < last; i++) {
       float w = share(i, y, from->height, height);
       const float *line = source_row(b, from, floats, i);
-      for (size_t k = 0; k < row; k++) b->column[k] += w * line[k];
+      if (i == first)
+        for (size_t k = 0; k < row; k++) b->column[k] = w * line[k];
+      else
+        for (size_t k = 0; k < row; k++) b->column[k] += w * line[k];
     }
-    for (uint32_t x = 0; x < width; x++, out += n) {
+    if (from->width == 2 * width) {
+      shrink_pairs(b->column, width, n, out);
+      continue;
+    }
+    for (uint32_t x = 0; x < width; x++) {
       uint32_t left = (uint32_t)((uint64_t)x * from->width / width);
       uint32_t right = (uint32_t)(((uint64_t)(x + 1) * from->width + width - 1) / width);
-      for (uint32_t c = 0; c < n; c++) out[c] = 0.0f;
+      float *to = out + (size_t)x * n;
+      for (uint32_t c = 0; c < n; c++) to[c] = 0.0f;
       for (uint32_t i = left; i < right; i++) {
         float w = share(i, x, from->width, width);
-        for (uint32_t c = 0; c < n; c++) out[c] += w * b->column[(size_t)i * n + c];
+        for (uint32_t c = 0; c < n; c++) to[c] += w * b->column[(size_t)i * n + c];
       }
     }
   }
@@ -145,7 +174,8 @@ static vlResult add_level(Builder *b, float **kept) {
     return VL_ERROR_MEMORY;
   }
   shrink(b, from, map->is_bytes ? *kept : from->floats, width, height, floats);
-  for (size_t i = 0; bytes && i < count; i++) bytes[i] = nearest_code(b->begin[i % map->channels], floats[i]);
+  for (size_t i = 0; bytes && i < count; i += map->channels)
+    for (uint32_t c = 0; c < map->channels; c++) bytes[i + c] = nearest_code(b, c, floats[i + c]);
   if (map->is_bytes) {
     vl_free(map->context, *kept);
     *kept = floats;

@@ -51,7 +51,7 @@ static void add_glow(Tracing *t, const vlPaths *p, const vlHits *h, uint32_t i) 
   const vlWorldLight *light = &world->lights.items[index];
   const vlEmitted *e = &world->emitted.items[light->emitted];
   vlVec3 o = vl_vec3(p->ox[i], p->oy[i], p->oz[i]), d = vl_vec3(p->dx[i], p->dy[i], p->dz[i]);
-  vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i]);
+  vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
   if (!(vl_dot(d, at.g) < 0.0f) && !e->two_sided) return;
   float lambda[4] = {p->lambda[0][i], p->lambda[1][i], p->lambda[2][i], p->lambda[3][i]}, radiance[4];
   VL_HOT(vl_emitted_at)(world, e, lambda, at.u, 1.0f - at.v, false, radiance);
@@ -71,10 +71,10 @@ static void add_glow(Tracing *t, const vlPaths *p, const vlHits *h, uint32_t i) 
  */
 static uint32_t resolve_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   uint32_t material = world->shapes.items[h->shape[i]].material;
-  for (int level = 0; world->materials.items[material].kind == VL_MATERIAL_MIX && level < 16; level++) {
+  while (world->materials.items[material].kind == VL_MATERIAL_MIX) { /* parts come before: it ends */
     const vlWorldMaterial *m = &world->materials.items[material];
     vlVec3 o = vl_vec3(p->ox[i], p->oy[i], p->oz[i]), d = vl_vec3(p->dx[i], p->dy[i], p->dz[i]);
-    vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i]);
+    vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
     float position[3] = {at.p.x, at.p.y, at.p.z};
     float amount = vl_texture_float_at(world, m->amount, at.u, at.v, position);
     uint32_t hash = vl_hash3(vl_float_bits(d.x), vl_float_bits(d.y), vl_float_bits(d.z));
@@ -85,18 +85,23 @@ static uint32_t resolve_material(const vlWorld *world, const vlPaths *p, const v
   return material;
 }
 
-/* Interface surfaces bend nothing: the ray goes on behind them. */
-static void pass_interfaces(Tracing *t, vlPaths *p, vlHits *h, uint32_t i) {
+/* Interface surfaces bend nothing: the same ray goes on behind them. It keeps its start, which the weights of multiple
+ * importance sampling ask for, and its end. */
+static void pass_interfaces(Tracing *t, vlPaths *p, vlHits *h, uint32_t i, const float *t_max) {
   const vlWorld *world = t->world;
-  for (int step = 0; step < 256 && h->shape[i] != VL_NONE; step++) {
+  float t_min = 0;
+  for (int step = 0; h->shape[i] != VL_NONE; step++) {
     if (world->materials.items[world->shapes.items[h->shape[i]].material].kind != VL_MATERIAL_INTERFACE) return;
-    vlVec3 o = vl_vec3(p->ox[i], p->oy[i], p->oz[i]), d = vl_vec3(p->dx[i], p->dy[i], p->dz[i]);
+    if (step == 1024) h->shape[i] = VL_NONE; /* no ray needs so many */
+    if (h->shape[i] == VL_NONE) return;
     if (world->shapes.items[h->shape[i]].first_light != VL_NONE) add_glow(t, p, h, i);
-    vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i]);
-    vlVec3 start = vl_offset_origin(at.p, at.g, at.offset, d);
-    p->ox[i] = start.x, p->oy[i] = start.y, p->oz[i] = start.z;
-    vlRays ray = {p->ox + i, p->oy + i, p->oz + i, p->dx + i, p->dy + i, p->dz + i, NULL, NULL};
-    vl_accel_closest(world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i);
+    vlVec3 o = vl_vec3(p->ox[i], p->oy[i], p->oz[i]), d = vl_vec3(p->dx[i], p->dy[i], p->dz[i]);
+    vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
+    /* Past the surface by what its point may be wrong, along the ray; ever forward. */
+    float margin = 2.0f * at.offset / vl_max(vl_abs(vl_dot(at.g, d)), 0.01f) + 0x1p-22f * vl_abs(at.t);
+    t_min = vl_max(at.t, t_min) + vl_max(margin, 1e-30f);
+    vlRays ray = {p->ox + i, p->oy + i, p->oz + i, p->dx + i, p->dy + i, p->dz + i, &t_min, t_max ? t_max + i : NULL};
+    vl_accel_closest(world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i, h->t + i);
     t->batch->bounce_rays++;
   }
 }
@@ -106,11 +111,11 @@ static void trace_rays(Tracing *t, uint32_t n, bool camera) {
   vlHits *h = &t->s->hits_a;
   vlRays rays = {
       p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, camera ? t->batch->t_min : NULL, camera ? t->batch->t_max : NULL};
-  vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance);
+  vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
   if (!camera) t->batch->bounce_rays += n;
   for (uint32_t i = 0; i < n; i++) {
     if (h->shape[i] == VL_NONE) continue;
-    if (t->world->has_interfaces) pass_interfaces(t, p, h, i);
+    if (t->world->has_interfaces) pass_interfaces(t, p, h, i, rays.t_max);
     if (h->shape[i] != VL_NONE) h->material[i] = resolve_material(t->world, p, h, i);
   }
 }
@@ -147,6 +152,7 @@ static void permute_hits(const vlHits *a, vlHits *b, const uint32_t *order, uint
   MOVE(prim);
   MOVE(instance);
   MOVE(material);
+  MOVE(t);
 #undef MOVE
 }
 
@@ -450,7 +456,7 @@ static void ambient_occlusion_tracer(Tracing *t) {
   t->sampler->get_2d(t->def->sampler, n, s->b.px, s->b.py, s->b.index, VL_DIM_BOUNCE + VL_DIM_BSDF_UV, sh->u1, sh->u2);
   vlShadowRays *q = &s->shadow;
   for (uint32_t i = 0; i < n; i++) {
-    vlVec3 nn = vl_vec3(s->surface.nx[i], s->surface.ny[i], s->surface.nz[i]);
+    vlVec3 nn = vl_vec3(s->surface.gx[i], s->surface.gy[i], s->surface.gz[i]); /* of the true surface, as pbrt's */
     vlVec3 d = vl_vec3(s->b.dx[i], s->b.dy[i], s->b.dz[i]);
     if (vl_dot(nn, d) > 0.0f) nn = vl_neg(nn);
     bool cosine = t->def->ao_cosine;

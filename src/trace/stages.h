@@ -32,6 +32,7 @@ typedef struct vlPaths {
 
 typedef struct vlHits {
   VL_ROW uint32_t shape[VL_ROW_SIZE], prim[VL_ROW_SIZE], instance[VL_ROW_SIZE], material[VL_ROW_SIZE];
+  VL_ROW float t[VL_ROW_SIZE]; /* which crossing of shapes that are not of triangles (world/accel.h) */
 } vlHits;
 
 typedef struct vlSurface {
@@ -117,12 +118,13 @@ void VL_HOT(vl_stage_frames)(uint32_t n, const vlPaths *paths, const vlSurface *
 void VL_HOT(vl_stage_lights)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *surface,
                              const float *u_choice, const float *u, const float *v, vlLightSamples *light);
 
-/* One surface point in scalar, for the few lanes that need it alone (hit lights, mixed materials). */
+/* One surface point in scalar, for the few lanes that need it alone (hit lights, mixed materials). t: as in vlHits. */
 typedef struct vlPoint {
   vlVec3 p, g, n; /* geometric, shading normal */
   float u, v, t, offset;
 } vlPoint;
-vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim, uint32_t instance);
+vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim, uint32_t instance,
+                            float t);
 
 /* Emitted radiance at 4 channels: of a light's colour (image: at s, t of its picture). */
 void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *emitted, const float lambda[4], float s, float t,

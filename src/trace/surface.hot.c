@@ -142,28 +142,21 @@ static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, vlV
   out->uv_scale[i] = l > 0.0f ? 1.0f / l : 0.0f;
 }
 
-/* A sphere, disk, cylinder or patch: meet it again in group space, bring the point to the world. */
+/* A sphere, disk, cylinder or patch: meet it again in group space, bring the point to the world. t, found by the same
+ * arithmetic, says which crossing is meant. */
 static vlSurfacePoint other_point(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
-                                  uint32_t instance) {
+                                  uint32_t instance, float t) {
   const vlWorldShape *s = &world->shapes.items[shape];
   double go[3] = {o.x, o.y, o.z}, gd[3] = {d.x, d.y, d.z};
   const vlWorldInstance *q = instance == VL_NONE ? NULL : &world->instances.items[instance];
-  if (q) {
-    const float *m = q->to_group;
-    for (int i = 0; i < 3; i++) {
-      go[i] = (double)m[4 * i] * o.x + (double)m[4 * i + 1] * o.y + (double)m[4 * i + 2] * o.z + m[4 * i + 3];
-      gd[i] = (double)m[4 * i] * d.x + (double)m[4 * i + 1] * d.y + (double)m[4 * i + 2] * d.z;
-    }
-  }
+  if (q) vl_ray_to_group(q, go, gd);
   vlShapeHit hit;
   vlSurfacePoint point;
-  if (!vl_shape_intersect(s, prim, go, gd, 0, (double)VL_INFINITY, &hit)) {
-    /* Embree saw it through a float more or less: take the parameters' middle, the point on the ray's own line is lost.
-     */
+  if (vl_shape_intersect(s, prim, go, gd, t * (1 - 0x1p-21), t * (1 + 0x1p-21) + 1e-37, &hit)) {
+    vl_shape_point(s, prim, &hit, &point);
+  } else { /* cannot be: the same ray met it with the same arithmetic */
     double pdf;
     vl_shape_sample(s, prim, 0.5f, 0.5f, &point, &pdf);
-  } else {
-    vl_shape_point(s, prim, &hit, &point);
   }
   if (!q) return point;
   const float *m = q->from_group, *w = q->to_group;
@@ -243,7 +236,7 @@ void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *p
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
     vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]), d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
     if (s->kind != VL_SHAPE_TRIANGLES) {
-      vlSurfacePoint q = other_point(world, o, d, hits->shape[i], hits->prim[i], hits->instance[i]);
+      vlSurfacePoint q = other_point(world, o, d, hits->shape[i], hits->prim[i], hits->instance[i], hits->t[i]);
       store_point(out, i, &q, o, d);
     } else if (s->tangents) {
       apply_tangents(world, hits, i, c, out);
@@ -252,8 +245,8 @@ void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *p
   for (uint32_t i = 0; i < padded; i++) out->width[i] = paths->cone[i] + def->pixel_spread * out->t[i];
 }
 
-vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
-                            uint32_t instance) {
+vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim, uint32_t instance,
+                            float t_hit) {
   const vlWorldShape *s = &world->shapes.items[shape];
   vlPoint r;
   if (s->kind == VL_SHAPE_TRIANGLES) {
@@ -283,7 +276,7 @@ vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t s
                                 s->flip != (q && q->mirrored) ? -1.0f : 1.0f);
     return (vlPoint){t.p, t.g, t.n, t.s, t.t, t.dist, t.offset};
   }
-  vlSurfacePoint q = other_point(world, o, d, shape, prim, instance);
+  vlSurfacePoint q = other_point(world, o, d, shape, prim, instance, t_hit);
   r.p = vl_vec3((float)q.p[0], (float)q.p[1], (float)q.p[2]);
   r.g = vl_vec3((float)q.n[0], (float)q.n[1], (float)q.n[2]);
   r.n = vl_vec3((float)q.ns[0], (float)q.ns[1], (float)q.ns[2]);

@@ -66,7 +66,8 @@ static double density(void *user, const double d[3]) {
   float o[3] = {f->p.x, f->p.y, f->p.z}, w[3] = {(float)d[0], (float)d[1], (float)d[2]};
   vlRays ray = {o, o + 1, o + 2, w, w + 1, w + 2, NULL, NULL};
   uint32_t shape, prim, instance;
-  vl_accel_closest(f->world, 1, &ray, false, &shape, &prim, &instance);
+  float t;
+  vl_accel_closest(f->world, 1, &ray, false, &shape, &prim, &instance, &t);
   vlVec3 dir = vl_vec3(w[0], w[1], w[2]);
   double pdf = 0;
   for (size_t k = 0; k < f->world->infinite_lights.count; k++) {
@@ -77,7 +78,7 @@ static double density(void *user, const double d[3]) {
   if (shape == VL_NONE || f->world->shapes.items[shape].first_light == VL_NONE) return pdf;
   uint32_t index = f->world->shapes.items[shape].first_light + prim;
   const vlWorldLight *light = &f->world->lights.items[index];
-  vlPoint at = VL_HOT(vl_point_at)(f->world, f->p, dir, shape, prim, instance);
+  vlPoint at = VL_HOT(vl_point_at)(f->world, f->p, dir, shape, prim, instance, t);
   if (vl_dot(at.g, dir) >= 0 && !f->world->emitted.items[light->emitted].two_sided) return pdf;
   return pdf +
          (double)VL_HOT(vl_area_pdf)(f->world, light, f->p, &at) * vl_light_pmf(&f->world->tree, f->p, f->n, index);

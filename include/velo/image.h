@@ -72,8 +72,9 @@ VL_API uint32_t vl_image_attribute_count(const vlImage *image);
 VL_API vlResult vl_image_attribute(const vlImage *image, uint32_t index, vlAttribute *attribute);
 VL_API vlResult vl_image_find_attribute(const vlImage *image, const char *name, vlAttribute *attribute);
 
-/* Reads EXR, PNG, JPEG, HDR, PFM, TGA (and BMP, GIF, PNM, QOI where stb_image knows them); the content decides, not the
- * suffix. Broken files are VL_ERROR_SCENE, absent ones VL_ERROR_MISSING. Memory is bounded by what the file can really
+/* Reads EXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM, QOI; the content decides, not the suffix. Of an EXR: the first part;
+ * the picture is its data window, and where that is not the display window both are attributes ("dataWindow",
+ * "displayWindow"), which vl_image_write puts back. Broken files are VL_ERROR_SCENE, absent ones VL_ERROR_MISSING. Memory is bounded by what the file can really
  * hold: a header that promises more pixels than the file carries is refused before allocating. */
 VL_API vlResult vl_image_read(vlContext *context, const char *path, vlImage **image, vlError *error);
 
@@ -86,7 +87,8 @@ typedef struct vlWriteDef {
 VL_API vlWriteDef vl_default_write_def(void);
 /* The suffix chooses the format: .exr .png .jpg .jpeg .hdr .pfm .tga. Written to a temporary file beside the target,
  * synced, renamed: the target is whole or as before. 8-bit formats take VL_PIXEL_U8 pictures as they are and encode
- * float ones with sRGB's curve (clamped). write may be null. */
+ * float ones with sRGB's curve (clamped). write may be null. EXR is packed on the context's workers (not from inside a
+ * parallel body); its bytes do not depend on their number. */
 VL_API vlResult vl_image_write(const vlImage *image, const char *path, const vlWriteDef *write, vlError *error);
 
 /* How a linear picture becomes display values. */

@@ -6,6 +6,7 @@ for source in test/fuzz/fuzz_*.c; do
   [ -e "$source" ] || { skip "fuzz targets" "there are none"; break; }
   name=$(basename "$source" .c)
   corpus=test/fuzz/corpus/${name#fuzz_}
+  [ "$name" != fuzz_render ] || corpus=test/fuzz/corpus/scene
   if [ ! -d "$corpus" ]; then
     fail "$name has a corpus ($corpus)"
     continue

@@ -1,0 +1,38 @@
+/* The whole way: what a scene file says is built into a world and a few pixels of it are rendered. Nothing may crash,
+ * hang or take memory out of proportion, whatever numbers stand in a file that reads well. */
+#include "fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  enum { SIDE = 6 };
+  vlContext *context = fuzz_context();
+  vlScene *scene = NULL;
+  vlWorld *world = NULL;
+  vlFilm *film = NULL;
+  vlError error;
+  vlLoadDef load = vl_default_load_def();
+  load.permissive = true;
+  vlBuildDef build = vl_default_build_def();
+  build.permissive = true;
+  build.color = size % 2 ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
+  if (vl_scene_create(context, &scene) != VL_OK) exit(1);
+  vlResult result = vl_scene_load(scene, fuzz_file("input.pbrt", data, size), &load, &error);
+  if (result == VL_OK) result = vl_world_build(scene, &build, &world, &error);
+  if (result == VL_OK) {
+    vlSceneSettings *settings = vl_scene_settings(scene);
+    vlCameraDef def = settings->camera;
+    def.width = def.height = SIDE;
+    vlCamera camera;
+    vlFilmDef film_def = vl_default_film_def(SIDE, SIDE);
+    film_def.filter = settings->filter;
+    vlRenderDef render = vl_scene_render_def(scene);
+    render.spp = 2;
+    render.max_depth = render.max_depth > 6 ? 6 : render.max_depth;
+    if (vl_camera_make(&def, &camera, NULL, &error) == VL_OK && vl_film_create(context, &film_def, &film) == VL_OK)
+      vl_render(world, &camera, film, &render, NULL, &error);
+  }
+  vl_film_destroy(film);
+  vl_world_destroy(world);
+  vl_scene_destroy(scene);
+  fuzz_end(context);
+  return 0;
+}

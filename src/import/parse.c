@@ -500,8 +500,10 @@ bool vl_parse_find_file(const char *including, const char *first, const char *na
   if (!vl_path_join(including, name, path, size)) return false;
   if (exists(path)) return true;
   char other[MAX_PATH];
-  if (first && vl_path_join(first, name, other, sizeof other) && strlen(other) < size && exists(other))
-    strcpy(path, other);
+  if (first && vl_path_join(first, name, other, sizeof other) && exists(other)) {
+    size_t length = strlen(other);
+    if (length < size) memcpy(path, other, length + 1);
+  }
   return true;
 }
 

@@ -46,11 +46,16 @@ static void put(Buffer *b, const char *type, double v) {
     put_bytes(b, &x, sizeof x);  \
     return;                      \
   }
-  AS("char", int8_t)
-  AS("uchar", uint8_t) AS("short", int16_t) AS("ushort", uint16_t) AS("int", int32_t) AS("uint", uint32_t)
-      AS("float", float) AS("double", double)
+  AS("char", int8_t);
+  AS("uchar", uint8_t);
+  AS("short", int16_t);
+  AS("ushort", uint16_t);
+  AS("int", int32_t);
+  AS("uint", uint32_t);
+  AS("float", float);
+  AS("double", double);
 #undef AS
-          fail();
+  fail();
 }
 
 static const char *const formats[] = {"ascii", "binary_little_endian", "binary_big_endian"};

@@ -145,6 +145,10 @@ static bool read_quadric(vlDict *dict, vlShapeDef *def, int kind) {
       def->z_min = def->z_max;
       def->z_max = t;
     }
+    if (kind == SPHERE) { /* and clamps them */
+      if (def->z_min < -def->radius) def->z_min = -def->radius;
+      if (def->z_max > def->radius) def->z_max = def->radius;
+    }
   } else {
     vl_dict_float(dict, "height", &def->height);
     vl_dict_float(dict, "innerradius", &def->inner_radius);

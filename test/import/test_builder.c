@@ -374,7 +374,8 @@ static void shapes(void **state) {
             "1 1 1]\n"
             "  \"integer faceIndices\" [0 1]\n"
             "Shape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0]\n"
-            "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n");
+            "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n"
+            "Shape \"sphere\" \"float zmin\" 9 \"float zmax\" -.5\n");
   const vlShapeDef *s = l.scene->shapes.items;
   assert_near(s[0].z_min, -2, 0);
   assert_near(s[0].z_max, 2, 0);
@@ -396,6 +397,8 @@ static void shapes(void **state) {
   assert_int_equal(s[5].indices[2], 2);
   assert_int_equal(s[6].kind, VL_SHAPE_BILINEAR);
   assert_int_equal(s[6].indices[3], 3);
+  assert_near(s[7].z_min, -.5, 0); /* sorted and clamped, as in pbrt */
+  assert_near(s[7].z_max, 1, 0);
   assert_int_equal(s[4].source.line, 7);
   end_load(&l);
 }

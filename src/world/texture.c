@@ -9,7 +9,8 @@
 #include "world/texture_lookup.h"
 #include "world/world.h"
 
-enum { MAX_NESTING = 12, ROLES = 4, ROLE_FLOAT = 3 };
+/* MAX_NESTING bounds recursion here, VL_NODE_ROWS what may nest by the room it takes: no level may disturb another. */
+enum { MAX_NESTING = 32, ROLES = 4, ROLE_FLOAT = 3 };
 
 /* ---- constant spectra ----------------------------------------------------------------------------------------------
  */
@@ -114,12 +115,14 @@ static int32_t image_of(vlWorld *world, const vlTextureDef *def, vlError *error)
   entry->encoding_given = def->encoding_given;
   entry->gamma = def->gamma;
   if (def->path) {
-    char *copy = vl_world_block(world, strlen(def->path) + 1, 1);
+    size_t size = strlen(def->path) + 1;
+    char *copy = vl_world_block(world, size, 1);
     if (!copy) {
       vl_fail_memory(error);
       return -1;
     }
-    entry->path = strcpy(copy, def->path);
+    memcpy(copy, def->path, size);
+    entry->path = copy;
   }
   return index;
 }
@@ -174,6 +177,23 @@ static int32_t compile_spectrum(Compile *c, vlSpectrumInput input, int role, int
 static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f, vlSpectrumInput s, int role,
                              int nesting) {
   return def->spectrum ? compile_spectrum(c, s, role, nesting) : compile_float(c, f, nesting);
+}
+
+/* Rows that a node takes for itself (as trace/material.hot.c pushes them) and for the hungriest of its inputs. */
+static uint32_t rows_of(const vlWorld *world, const vlTextureNode *node) {
+  uint32_t own = 0, inputs = 0;
+  switch (node->kind) {
+    case VL_NODE_SCALE: own = 1; break;
+    case VL_NODE_MIX:
+    case VL_NODE_CHECKERBOARD:
+    case VL_NODE_DIRECTION_MIX: own = node->is_spectrum ? 5 : 2; break;
+    case VL_NODE_BILERP: own = node->is_spectrum ? 8 : 5; break;
+    default: break;
+  }
+  const int32_t input[5] = {node->a, node->b, node->c, node->d, node->amount};
+  for (int i = 0; i < 5; i++)
+    if (input[i] >= 0 && world->nodes.items[input[i]].rows > inputs) inputs = world->nodes.items[input[i]].rows;
+  return own + inputs;
 }
 
 static vlResult image_spectrum(vlWorld *world, vlTextureNode *node, vlError *error) {
@@ -232,6 +252,13 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
     if ((node.image = image_of(c->world, def, c->error)) < 0) return -1;
     if (def->spectrum && image_spectrum(c->world, &node, c->error) != VL_OK) return -1;
   }
+  uint32_t rows = rows_of(c->world, &node);
+  if (rows > VL_NODE_ROWS) {
+    vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+               "textures are nested too deep");
+    return -1;
+  }
+  node.rows = (uint8_t)rows;
   int32_t n = push_node(c->world, &node);
   if (n == VL_TEXTURE_NO_MEMORY)
     vl_fail_memory(c->error);

@@ -19,7 +19,7 @@ static inline vlTexturePoint point_of(const Run *r, uint32_t i) {
   vlTexturePoint at;
   at.u = f->u[i], at.v = f->v[i];
   at.p = vl_vec3(f->px[i], f->py[i], f->pz[i]);
-  at.n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
+  at.n = vl_vec3(f->gx[i], f->gy[i], f->gz[i]); /* the true surface's, as pbrt's */
   at.width = f->width[i];
   at.uv_width = f->width[i] * f->uv_scale[i];
   if (r->shift_u) {
@@ -30,7 +30,7 @@ static inline vlTexturePoint point_of(const Run *r, uint32_t i) {
 }
 
 static float *push_row(Run *r) {
-  return r->s->rows[r->top < VL_TEXTURE_ROWS - 1 ? r->top++ : r->top]; /* nesting is limited when the world is built */
+  return r->s->rows[r->top < VL_TEXTURE_ROWS - 1 ? r->top++ : r->top]; /* enough: world/texture.c limits nesting */
 }
 
 static void eval_float(Run *r, int32_t index, float *out);
@@ -198,7 +198,7 @@ static vlVec3 facing(vlVec3 n, vlVec3 side) {
 
 /* Displaced positions to either side, by differences (pbrt book 10.5.3; the curvature term is left out: it is small
  * against the slope). */
-static void bump(Run *r, int32_t node) {
+static void bump(Run *r, int32_t node) { /* VL_BUMP_ROWS rows of its own */
   vlSurface *f = &r->s->surface;
   float *h = push_row(r), *hu = push_row(r), *hv = push_row(r), *step = push_row(r);
   float *su = push_row(r), *sv = push_row(r), *x = push_row(r), *y = push_row(r), *z = push_row(r);

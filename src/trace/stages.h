@@ -88,7 +88,7 @@ typedef struct vlShadowRays {
   uint8_t occluded[VL_ROW_SIZE];
 } vlShadowRays;
 
-enum { VL_TEXTURE_ROWS = 64 };
+enum { VL_BUMP_ROWS = 9, VL_TEXTURE_ROWS = VL_NODE_ROWS + VL_BUMP_ROWS };
 
 struct vlTraceScratch {
   vlPaths a, b;

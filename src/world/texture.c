@@ -149,6 +149,7 @@ static vlTextureNode empty_node(vlNodeKind kind) {
   memset(&node, 0, sizeof node);
   node.kind = kind;
   node.a = node.b = node.c = node.d = node.amount = node.image = -1;
+  node.visits = 1;
   return node;
 }
 
@@ -179,9 +180,10 @@ static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f
   return def->spectrum ? compile_spectrum(c, s, role, nesting) : compile_float(c, f, nesting);
 }
 
-/* Rows that a node takes for itself (as trace/material.hot.c pushes them) and for the hungriest of its inputs. */
-static uint32_t rows_of(const vlWorld *world, const vlTextureNode *node) {
-  uint32_t own = 0, inputs = 0;
+/* Rows that a node takes for itself (as trace/material.hot.c pushes them) and for the hungriest of its inputs; nodes
+ * that are visited for it. false: too many. */
+static bool weigh(const vlWorld *world, vlTextureNode *node) {
+  uint32_t own = 0, most = 0, visits = 1;
   switch (node->kind) {
     case VL_NODE_SCALE: own = 1; break;
     case VL_NODE_MIX:
@@ -191,9 +193,16 @@ static uint32_t rows_of(const vlWorld *world, const vlTextureNode *node) {
     default: break;
   }
   const int32_t input[5] = {node->a, node->b, node->c, node->d, node->amount};
-  for (int i = 0; i < 5; i++)
-    if (input[i] >= 0 && world->nodes.items[input[i]].rows > inputs) inputs = world->nodes.items[input[i]].rows;
-  return own + inputs;
+  for (int i = 0; i < 5; i++) {
+    if (input[i] < 0) continue;
+    const vlTextureNode *n = &world->nodes.items[input[i]];
+    most = n->rows > most ? n->rows : most;
+    visits += n->visits;
+  }
+  if (own + most > VL_NODE_ROWS || visits > VL_NODE_VISITS) return false;
+  node->rows = (uint8_t)(own + most);
+  node->visits = (uint16_t)visits;
+  return true;
 }
 
 static vlResult image_spectrum(vlWorld *world, vlTextureNode *node, vlError *error) {
@@ -252,13 +261,11 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
     if ((node.image = image_of(c->world, def, c->error)) < 0) return -1;
     if (def->spectrum && image_spectrum(c->world, &node, c->error) != VL_OK) return -1;
   }
-  uint32_t rows = rows_of(c->world, &node);
-  if (rows > VL_NODE_ROWS) {
+  if (!weigh(c->world, &node)) {
     vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
                "textures are nested too deep");
     return -1;
   }
-  node.rows = (uint8_t)rows;
   int32_t n = push_node(c->world, &node);
   if (n == VL_TEXTURE_NO_MEMORY)
     vl_fail_memory(c->error);

@@ -21,6 +21,10 @@ typedef struct vlSpectral {
   float rgb[3];
 } vlSpectral;
 
+/* Scratch rows that a texture may need while it is evaluated over a batch (trace/material.hot.c): this bounds nesting.
+ */
+enum { VL_NODE_ROWS = 64 };
+
 typedef enum vlNodeKind {
   VL_NODE_FLOAT,
   VL_NODE_SPECTRUM,
@@ -35,6 +39,8 @@ typedef enum vlNodeKind {
 typedef struct vlTextureNode {
   vlNodeKind kind;
   bool is_spectrum;
+  uint8_t rows; /* scratch rows that its evaluation needs, inputs included */
+  uint16_t visits;
   vlSpectrumRole role;
   float value;                /* VL_NODE_FLOAT */
   vlSpectral spectrum;        /* VL_NODE_SPECTRUM; VL_NODE_IMAGE: dense = illuminant of the space for that role */

@@ -27,8 +27,8 @@ static inline vlVec2 vl_texture_st(const vlTextureNode *node, vlTexturePoint at)
     return (vlVec2){node->du + q.x * node->v1[0] + q.y * node->v1[1] + q.z * node->v1[2],
                     node->dv + q.x * node->v2[0] + q.y * node->v2[1] + q.z * node->v2[2]};
   float phi = vl_atan2(q.y, q.x);
-  phi = phi < 0 ? phi + 2 * VL_PI : phi;
   if (node->mapping == VL_MAPPING_CYLINDRICAL) return (vlVec2){(VL_PI + phi) * (0.5f * VL_INV_PI), q.z};
+  phi = phi < 0 ? phi + 2 * VL_PI : phi;
   vlVec3 d = vl_normalize(q);
   return (vlVec2){vl_acos(vl_clamp(d.z, -1, 1)) * VL_INV_PI, phi * (0.5f * VL_INV_PI)};
 }

@@ -21,9 +21,9 @@ typedef struct vlSpectral {
   float rgb[3];
 } vlSpectral;
 
-/* Scratch rows that a texture may need while it is evaluated over a batch (trace/material.hot.c): this bounds nesting.
- */
-enum { VL_NODE_ROWS = 64 };
+/* Scratch rows that a texture may need while it is evaluated over a batch (trace/material.hot.c), and how many nodes
+ * may be visited for it (inputs that are shared are evaluated each time): these bound nesting. */
+enum { VL_NODE_ROWS = 64, VL_NODE_VISITS = 4096 };
 
 typedef enum vlNodeKind {
   VL_NODE_FLOAT,

@@ -112,7 +112,8 @@ typedef struct vlTextureDef {
   vlSource source;
   vlTextureKind kind;
   bool spectrum; /* a colour texture; else a float texture. Inputs below: the matching half is read */
-  vlFloatInput float_a, float_b, float_c, float_d; /* constant value; scale: tex = a; mix: a, b; checkerboard: a, b */
+  vlFloatInput float_a, float_b, float_c, float_d; /* constant value; scale: tex = a; mix, checkerboard: a, b;
+                                                    * bilerp: v00, v01, v10, v11 */
   vlSpectrumInput spectrum_a, spectrum_b, spectrum_c, spectrum_d;
   vlFloatInput amount; /* scale's scale, mix's amount */
   float direction[3];  /* direction mix */

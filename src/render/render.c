@@ -18,11 +18,11 @@
 #include "trace/trace.h"
 #include "velo/render.h"
 
-enum { TILE = 16, TILE_PIXELS = TILE * TILE, MAX_PASS = 16 };
+enum { TILE = 16, TILE_PIXELS = TILE * TILE, MAX_PASS = 16, PASS_SECONDS = 5 };
 
 typedef struct Worker {
   vlTraceScratch *scratch;
-  float *rows; /* ROWS arrays of VL_ROW_SIZE */
+  float *rows;                                      /* ROWS arrays of VL_ROW_SIZE */
   _Atomic uint64_t paths, bounce_rays, shadow_rays; /* written by the worker, read by the progress report meanwhile */
   uint64_t not_finite;
   int32_t bad_x, bad_y;
@@ -276,9 +276,13 @@ static void prepare(Render *r, const vlCamera *camera) {
   r->tiles_y = (r->crop[3] + TILE - 1) / TILE - r->tile_y0;
 }
 
-/* Passes of 1, 1, 2, 4, ... samples: a first picture at once, then fewer interruptions. */
-static uint32_t pass_size(uint32_t done, uint32_t total) {
+/* Passes of 1, 1, 2, 4, ... samples: a first picture at once, then fewer interruptions; but no longer than
+ * PASS_SECONDS, for that much is lost when a pass is given up. How samples are split into passes does not show in the
+ * picture. */
+static uint32_t pass_size(uint32_t done, uint32_t total, double seconds_per_sample) {
   uint32_t size = done == 0 ? 1 : done < MAX_PASS ? done : MAX_PASS;
+  double fit = seconds_per_sample > 0 ? PASS_SECONDS / seconds_per_sample : MAX_PASS;
+  if (fit < size) size = fit > 1 ? (uint32_t)fit : 1;
   return size < total - done ? size : total - done;
 }
 
@@ -322,13 +326,15 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
   r->spp_before = vl_film_spp(film);
   prepare(r, camera);
   result = make_workers(r, world->context, error);
+  double seconds_per_sample = 0;
   while (result == VL_OK && vl_film_spp(film) < def->spp) {
     if ((result = vl_film_begin_pass(film)) != VL_OK) {
       vl_fail_memory(error);
       break;
     }
     r->first_sample = vl_film_spp(film);
-    r->pass_samples = pass_size(r->first_sample, def->spp);
+    r->pass_samples = pass_size(r->first_sample, def->spp, seconds_per_sample);
+    double pass_start = vl_seconds();
     atomic_store(&r->tiles_done, 0);
     vl_parallel_for(world->context, r->tiles_x * r->tiles_y, render_tile, r);
     if (atomic_load(&r->cancelled)) {
@@ -337,6 +343,7 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
       break;
     }
     vl_film_commit_pass(film);
+    seconds_per_sample = (vl_seconds() - pass_start) / r->pass_samples;
     vl_film_set_spp(film, r->first_sample + r->pass_samples);
     if (!report(r, true, vl_film_spp(film)) && vl_film_spp(film) < def->spp)
       result = vl_fail(error, VL_CANCELLED, "stopped");

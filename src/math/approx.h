@@ -53,7 +53,9 @@ static inline float vl_exp(float x) {
   float n = __builtin_floorf(y * 1.44269504088896341f + 0.5f);
   float r = (y - n * 0.693359375f) - n * -2.12194440e-4f;
   float p = ((((1.9875691500e-4f * r + 1.3981999507e-3f) * r + 8.3334519073e-3f) * r + 4.1665795894e-2f) * r +
-             1.6666665459e-1f) * r + 5.0000001201e-1f;
+             1.6666665459e-1f) *
+                r +
+            5.0000001201e-1f;
   p = p * r * r + r + 1.0f;
   float result = p * vl_bits_float((uint32_t)((int32_t)n + 127) << 23);
   return x < -87.3f ? 0.0f : x != x ? x : result;
@@ -69,8 +71,16 @@ static inline float vl_ln(float x) {
   float ef = (float)(small ? e - 1 : e);
   float z = f * f;
   float p = ((((((((7.0376836292e-2f * f - 1.1514610310e-1f) * f + 1.1676998740e-1f) * f - 1.2420140846e-1f) * f +
-                 1.4249322787e-1f) * f - 1.6668057665e-1f) * f + 2.0000714765e-1f) * f - 2.4999993993e-1f) * f +
-             3.3333331174e-1f) * f * z;
+                 1.4249322787e-1f) *
+                    f -
+                1.6668057665e-1f) *
+                   f +
+               2.0000714765e-1f) *
+                  f -
+              2.4999993993e-1f) *
+                 f +
+             3.3333331174e-1f) *
+            f * z;
   p = p + ef * -2.12194440e-4f;
   p = p - 0.5f * z;
   float result = f + p + ef * 0.693359375f;
@@ -94,13 +104,16 @@ static inline float vl_asin(float x) {
   float z = big ? 0.5f * (1.0f - a) : a * a;
   float s = big ? __builtin_sqrtf(z) : a;
   float p = ((((4.2163199048e-2f * z + 2.4181311049e-2f) * z + 4.5470025998e-2f) * z + 7.4953002686e-2f) * z +
-             1.6666752422e-1f) * z * s + s;
+             1.6666752422e-1f) *
+                z * s +
+            s;
   p = big ? 1.57079632679489662f - 2.0f * p : p;
   return __builtin_copysignf(p, x);
 }
 static inline float vl_acos(float x) {
   float a = __builtin_fabsf(x);
-  float t = a > 0.5f ? 2.0f * vl_asin(__builtin_sqrtf(0.5f * (a > 1.0f ? 0.0f : 1.0f - a))) : 1.57079632679489662f - vl_asin(a);
+  float t = a > 0.5f ? 2.0f * vl_asin(__builtin_sqrtf(0.5f * (a > 1.0f ? 0.0f : 1.0f - a)))
+                     : 1.57079632679489662f - vl_asin(a);
   return x < 0.0f ? 3.14159265358979324f - t : t;
 }
 /* arctan; absolute error < 2e-7. */

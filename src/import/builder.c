@@ -1,175 +1,14 @@
-/* import/builder.c: the statements of a pbrt file to a scene: state, transforms, names, and what is shared by the
- * parts. */
+/* import/builder.c: the statements of a pbrt file to a scene: what may stand where, names, objects, what waits for the
+ * end, and the end. */
 #include "import/builder.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "base/file.h"
-#include "base/text.h"
 #include "import/import.h"
 
-/* ---- errors --------------------------------------------------------------------------------------------------------
- */
+/* ---- parameters that outlive their directive -------------------------------------------------------------------- */
 
-bool vl_import_fail(vlImport *import, vlResult code, vlSource place, const char *format, ...) {
-  char text[512];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
-  vl_scene_fail(import->scene, code, place, "%s", text);
-  return false;
-}
-
-bool vl_import_fail_memory(vlImport *import) {
-  return vl_import_fail(import, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-}
-
-static void log_text(vlImport *import, vlLogLevel level, vlSource place, const char *text) {
-  vlError where = {0};
-  vl_fail_at(&where, VL_OK, place.file, place.line, place.column, "%s", "");
-  vl_log(import->context, level, &where, "%s", text);
-}
-
-void vl_import_warn(vlImport *import, vlLogLevel level, vlSource place, const char *format, ...) {
-  char text[512];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
-  log_text(import, level, place, text);
-}
-
-bool vl_import_unsupported(vlImport *import, vlSource place, const char *format, ...) {
-  char text[400];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
-  if (!import->permissive) return vl_import_fail(import, VL_ERROR_SCENE, place, "%s", text);
-  log_text(import, VL_LOG_WARNING, place, text);
-  return true;
-}
-
-bool vl_import_unknown(vlImport *import, vlSource place, const char *thing, const char *name, const char *const *known,
-                       size_t known_count, const char *const *later, size_t later_count) {
-  for (size_t i = 0; i < later_count; i++)
-    if (strcmp(name, later[i]) == 0)
-      return vl_import_unsupported(import, place, "%s \"%s\" is not understood yet", thing, name);
-  const char *near = vl_nearest_name(name, known, known_count);
-  if (!near) near = vl_nearest_name(name, later, later_count);
-  if (near)
-    return vl_import_unsupported(import, place, "unknown %s \"%.80s\" (did you mean \"%s\"?)", thing, name, near);
-  return vl_import_unsupported(import, place, "unknown %s \"%.80s\"", thing, name);
-}
-
-const char *vl_import_keep(vlImport *import, const char *text) {
-  char **slot = VL_PUSH(import->context, &import->strings);
-  if (slot) *slot = vl_strdup(import->context, text);
-  if (slot && *slot) return *slot;
-  vl_import_fail_memory(import);
-  return NULL;
-}
-
-vlDict vl_import_dict(vlImport *import, const char *what, vlSource place, vlColorSpace space, const vlParamList *own,
-                      const vlParamList *attributes) {
-  return (vlDict){.import = import, .what = what, .place = place, .space = space, .own = own, .attributes = attributes};
-}
-
-bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t size) {
-  if (param->strings.count != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\" takes one file name, found %zu", param->name,
-                          param->strings.count);
-  if (param->strings.items[0][0] == 0)
-    return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\" is an empty file name", param->name);
-  if (!vl_parse_find_file(param->place.file, import->first, param->strings.items[0], path, size))
-    return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\": file name too long", param->name);
-  if (access(path, R_OK) == 0) return true;
-  char *data;
-  size_t count;
-  vlError error = {0};
-  vlResult result = vl_file_read(import->context, path, false, &data, &count, &error); /* for its words */
-  vl_free(import->context, data);
-  if (result != VL_OK) return vl_import_fail(import, result, param->place, "%s", error.message);
-  return vl_import_fail(import, VL_ERROR_IO, param->place, "cannot read %s", path);
-}
-
-bool vl_import_color_space(const char *name, vlColorSpace *space) {
-  static const struct {
-    const char *name;
-    vlColorSpace space;
-  } spaces[] = {{"srgb", VL_SPACE_SRGB},
-                {"dci-p3", VL_SPACE_DCI_P3},
-                {"rec2020", VL_SPACE_REC2020},
-                {"aces2065-1", VL_SPACE_ACES2065_1}};
-  for (size_t i = 0; i < sizeof spaces / sizeof *spaces; i++) {
-    if (strlen(name) == strlen(spaces[i].name) && vl_ends_with(name, spaces[i].name)) { /* case ignored, as in pbrt */
-      *space = spaces[i].space;
-      return true;
-    }
-  }
-  return false;
-}
-
-/* ---- parameters that outlive their directive
- * ------------------------------------------------------------------------- */
-
-static bool copy_bytes(vlContext *context, const void *from, size_t count, size_t size, void *items, size_t *n,
-                       size_t *capacity) {
-  void *copy = NULL;
-  if (count) {
-    copy = vl_alloc_array(context, count, size);
-    if (!copy) return false;
-    memcpy(copy, from, count * size);
-  }
-  memcpy(items, &copy, sizeof copy);
-  *n = *capacity = count;
-  return true;
-}
-
-static bool copy_param(vlContext *context, const vlParam *from, vlParam *to) {
-  to->type = from->type;
-  to->place = from->place;
-  to->space = from->space;
-  to->optional = true;
-  memcpy(to->exact, from->exact, sizeof to->exact);
-  to->name = vl_strdup(context, from->name);
-  bool fine = to->name &&
-              copy_bytes(context, from->floats.items, from->floats.count, sizeof(float), &to->floats.items,
-                         &to->floats.count, &to->floats.capacity) &&
-              copy_bytes(context, from->integers.items, from->integers.count, sizeof(int32_t), &to->integers.items,
-                         &to->integers.count, &to->integers.capacity) &&
-              copy_bytes(context, from->bools.items, from->bools.count, 1, &to->bools.items, &to->bools.count,
-                         &to->bools.capacity);
-  for (size_t i = 0; i < from->strings.count && fine; i++) {
-    char **slot = VL_PUSH(context, &to->strings);
-    fine = slot && (*slot = vl_strdup(context, from->strings.items[i]));
-  }
-  return fine;
-}
-
-bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamList *to) {
-  for (size_t i = 0; i < from->list.count; i++) {
-    vlParam *param = vl_alloc_zero(import->context, 1, sizeof *param);
-    vlParam **slot = param ? VL_PUSH(import->context, &to->list) : NULL;
-    if (slot)
-      *slot = param;
-    else
-      vl_free(import->context, param);
-    if (!slot || !copy_param(import->context, from->list.items[i], param)) return vl_import_fail_memory(import);
-  }
-  return true;
-}
-
-const vlParamList *vl_import_attributes(vlImport *import, vlAttributeTarget target) {
-  return &import->attributes[target];
-}
-
-/* The statement's parameters go on living: their file names are kept by the scene, their colour space is the current.
- */
+/* The statement's parameters go on living: their file names are kept by the scene, their colour space is known. */
 static bool keep_params(vlImport *import, const vlStatement *s, vlParamList *to) {
   for (size_t i = 0; i < s->params->list.count; i++)
     if (!vl_scene_copy_source(import->scene, &s->params->list.items[i]->place)) return false;
@@ -186,135 +25,7 @@ static bool keep_source(vlImport *import, vlSource *place) {
   return vl_scene_copy_source(import->scene, place);
 }
 
-/* ---- transforms
- * ------------------------------------------------------------------------------------------------------ */
-
-static void set_ctm(vlImport *import, vlMat4 m) {
-  for (int i = 0; i < 2; i++)
-    if (import->state.active & 1u << i) import->state.ctm[i] = m;
-}
-
-static void apply(vlImport *import, vlMat4 m) {
-  for (int i = 0; i < 2; i++)
-    if (import->state.active & 1u << i) import->state.ctm[i] = vl_mat4_multiply(import->state.ctm[i], m);
-}
-
-bool vl_import_ctm(vlImport *import, vlSource place, vlMat4 *ctm) {
-  *ctm = import->state.ctm[0];
-  if (memcmp(&import->state.ctm[0], &import->state.ctm[1], sizeof(vlMat4)) == 0 || import->animation_told) return true;
-  import->animation_told = import->permissive;
-  return vl_import_unsupported(import, place, "animated transforms (ActiveTransform) are not understood yet%s",
-                               import->permissive ? "; the transform at the start counts" : "");
-}
-
-/* pbrt's LookAt (book 3.9.2): camera from world, x right, y up, z forward. */
-static bool look_at(vlImport *import, const vlStatement *s) {
-  const double *e = s->numbers, *l = s->numbers + 3, *u = s->numbers + 6;
-  double d[3] = {l[0] - e[0], l[1] - e[1], l[2] - e[2]};
-  double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-  if (!(length > 0.0))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "LookAt: the eye and the point it looks at are the same");
-  for (int i = 0; i < 3; i++) d[i] /= length;
-  double r[3] = {u[1] * d[2] - u[2] * d[1], u[2] * d[0] - u[0] * d[2], u[0] * d[1] - u[1] * d[0]};
-  double size = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
-  double up = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
-  if (!(up > 0.0)) return vl_import_fail(import, VL_ERROR_SCENE, s->place, "LookAt: the up vector is zero");
-  if (!(size > 1e-12 * up))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "LookAt: the up vector is parallel to the view direction");
-  for (int i = 0; i < 3; i++) r[i] /= size;
-  double n[3] = {d[1] * r[2] - d[2] * r[1], d[2] * r[0] - d[0] * r[2], d[0] * r[1] - d[1] * r[0]};
-  vlMat4 world_from_camera = {{r[0], n[0], d[0], e[0], r[1], n[1], d[1], e[1], r[2], n[2], d[2], e[2], 0, 0, 0, 1}}, m;
-  vl_mat4_inverse(world_from_camera, &m);
-  apply(import, m);
-  return true;
-}
-
-static bool transform(vlImport *import, const vlStatement *s) {
-  const double *v = s->numbers;
-  vlMat4 m = vl_mat4_identity();
-  switch (s->directive) {
-    case VL_DIR_IDENTITY: set_ctm(import, m); return true;
-    case VL_DIR_TRANSLATE: apply(import, vl_mat4_translate(v[0], v[1], v[2])); return true;
-    case VL_DIR_SCALE: apply(import, vl_mat4_scale(v[0], v[1], v[2])); return true;
-    case VL_DIR_ROTATE:
-      if (v[1] == 0.0 && v[2] == 0.0 && v[3] == 0.0)
-        return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Rotate: the axis is zero");
-      apply(import, vl_mat4_rotate(v[0] * 0.017453292519943295, v[1], v[2], v[3]));
-      return true;
-    case VL_DIR_LOOK_AT: return look_at(import, s);
-    default: break;
-  }
-  for (int i = 0; i < 4; i++) /* files hold columns one after the other */
-    for (int j = 0; j < 4; j++) m.m[4 * i + j] = v[4 * j + i];
-  if (s->directive == VL_DIR_TRANSFORM)
-    set_ctm(import, m);
-  else
-    apply(import, m);
-  return true;
-}
-
-static bool add_coordinate_system(vlImport *import, const char *name, vlMat4 m) {
-  const char *kept = vl_import_keep(import, name);
-  vlMat4 *slot = kept ? VL_PUSH(import->context, &import->matrices) : NULL;
-  if (!slot) return vl_import_fail_memory(import);
-  *slot = m;
-  if (vl_names_add(import->context, &import->coordinate_systems, kept, (uint32_t)import->matrices.count - 1))
-    return true;
-  return vl_import_fail_memory(import);
-}
-
-static bool coord_sys_transform(vlImport *import, const vlStatement *s) {
-  uint32_t index;
-  if (vl_names_find(&import->coordinate_systems, s->names[0], &index)) {
-    import->state.ctm[0] = import->state.ctm[1] = import->matrices.items[index];
-    return true;
-  }
-  const char *near = vl_names_nearest(&import->coordinate_systems, s->names[0]);
-  if (near)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
-                          "there is no coordinate system \"%.80s\" (did you mean \"%s\"?)", s->names[0], near);
-  return vl_import_fail(import, VL_ERROR_SCENE, s->place, "there is no coordinate system \"%.80s\"", s->names[0]);
-}
-
-/* ---- state
- * ------------------------------------------------------------------------------------------------------------ */
-
-static bool push_state(vlImport *import, char kind, vlSource place) {
-  if (import->stack.count > 100000)
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "attributes are nested more than 100000 deep");
-  vlStackEntry *entry = VL_PUSH(import->context, &import->stack);
-  if (!entry) return vl_import_fail_memory(import);
-  *entry = (vlStackEntry){kind, place, import->state};
-  return keep_source(import, &entry->place);
-}
-
-static void restore_state(vlImport *import) {
-  import->state = import->stack.items[--import->stack.count].state;
-  for (int t = 0; t < VL_ATTR_TARGETS; t++) {
-    vlParamList *params = &import->attributes[t];
-    while (params->list.count > import->state.attributes[t])
-      vl_param_free(import->context, params->list.items[--params->list.count]);
-  }
-}
-
-static bool pop_state(vlImport *import, char kind, const char *directive, vlSource place) {
-  static const struct {
-    char kind;
-    const char *name;
-  } openers[] = {{'a', "AttributeBegin"}, {'o', "ObjectBegin"}, {'i', "Import"}};
-  const vlStackEntry *top = import->stack.count ? &import->stack.items[import->stack.count - 1] : NULL;
-  if (!top || (top->kind != kind && top->kind == 'i'))
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "%s without its beginning", directive);
-  if (top->kind != kind) {
-    const char *open = "";
-    for (size_t i = 0; i < 3; i++)
-      if (openers[i].kind == top->kind) open = openers[i].name;
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "%s: the %s of line %u must be closed first", directive, open,
-                          top->place.line);
-  }
-  restore_state(import);
-  return true;
-}
+/* ---- state ------------------------------------------------------------------------------------------------------ */
 
 static bool attribute(vlImport *import, const vlStatement *s) {
   static const char *const targets[] = {"shape", "light", "material", "medium", "texture"};
@@ -341,8 +52,7 @@ static bool attribute(vlImport *import, const vlStatement *s) {
   return fine || vl_import_fail_memory(import);
 }
 
-/* ---- objects
- * ----------------------------------------------------------------------------------------------------------- */
+/* ---- objects ---------------------------------------------------------------------------------------------------- */
 
 /* An object may be placed before it is made: its group is there from its first mention. */
 static vlObject *find_object(vlImport *import, const char *name, vlSource place) {
@@ -371,11 +81,11 @@ static bool object_begin(vlImport *import, const vlStatement *s) {
   object->defined = true;
   import->in_object = true;
   import->object = object->group;
-  return push_state(import, 'o', s->place);
+  return vl_import_push(import, 'o', s->place);
 }
 
 static bool object_end(vlImport *import, const vlStatement *s) {
-  if (!pop_state(import, 'o', "ObjectEnd", s->place)) return false;
+  if (!vl_import_pop(import, 'o', "ObjectEnd", s->place)) return false;
   import->in_object = false;
   import->object = (vlGroupId){0};
   return true;
@@ -391,8 +101,7 @@ static bool object_instance(vlImport *import, const vlStatement *s) {
   return import->scene->error.code == VL_OK;
 }
 
-/* ---- what waits
- * --------------------------------------------------------------------------------------------------------- */
+/* ---- what waits ------------------------------------------------------------------------------------------------- */
 
 static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttributeTarget target, bool is_texture) {
   vlPending *p =
@@ -495,7 +204,7 @@ static bool camera(vlImport *import, const vlStatement *s) {
     import->medium_name = import->state.outside;
     import->medium_place = import->camera.place;
   }
-  return add_coordinate_system(import, "camera", world_from_camera);
+  return vl_import_name_system(import, "camera", world_from_camera);
 }
 
 static bool medium_interface(vlImport *import, const vlStatement *s) {
@@ -514,12 +223,11 @@ static bool world_begin(vlImport *import) {
   import->in_world = true;
   import->state.ctm[0] = import->state.ctm[1] = vl_mat4_identity();
   import->state.active = 3;
-  return add_coordinate_system(import, "world", vl_mat4_identity()) && vl_import_film(import) &&
+  return vl_import_name_system(import, "world", vl_mat4_identity()) && vl_import_film(import) &&
          vl_import_camera(import) && vl_import_sampling(import);
 }
 
-/* ---- statements
- * ---------------------------------------------------------------------------------------------------------- */
+/* ---- statements ------------------------------------------------------------------------------------------------- */
 
 static const char *directive_name(vlDirective d) {
   switch (d) {
@@ -595,13 +303,13 @@ static bool statement(void *user, const vlStatement *s) {
   note_space(import, s);
   switch (s->directive) {
     case VL_DIR_ATTRIBUTE_BEGIN:
-    case VL_DIR_TRANSFORM_BEGIN: return push_state(import, 'a', s->place); /* pbrt-v4: both keep the whole state */
+    case VL_DIR_TRANSFORM_BEGIN: return vl_import_push(import, 'a', s->place); /* pbrt-v4: both keep the whole state */
     case VL_DIR_ATTRIBUTE_END:
-    case VL_DIR_TRANSFORM_END: return pop_state(import, 'a', directive_name(s->directive), s->place);
-    case VL_DIR_IMPORT_BEGIN: return push_state(import, 'i', s->place);
+    case VL_DIR_TRANSFORM_END: return vl_import_pop(import, 'a', directive_name(s->directive), s->place);
+    case VL_DIR_IMPORT_BEGIN: return vl_import_push(import, 'i', s->place);
     case VL_DIR_IMPORT_END: {
       const vlStackEntry *top = &import->stack.items[import->stack.count - 1];
-      if (top->kind == 'i') return restore_state(import), true;
+      if (top->kind == 'i') return vl_import_restore(import), true;
       return vl_import_fail(import, VL_ERROR_SCENE, top->place, "%s is never closed",
                             top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
     }
@@ -620,11 +328,11 @@ static bool statement(void *user, const vlStatement *s) {
     case VL_DIR_ROTATE:
     case VL_DIR_LOOK_AT:
     case VL_DIR_TRANSFORM:
-    case VL_DIR_CONCAT_TRANSFORM: return transform(import, s);
+    case VL_DIR_CONCAT_TRANSFORM: return vl_import_transform(import, s);
     case VL_DIR_TRANSFORM_TIMES:
       return true; /* matters to animated transforms only, which are told about where they are used */
-    case VL_DIR_COORDINATE_SYSTEM: return add_coordinate_system(import, s->names[0], import->state.ctm[0]);
-    case VL_DIR_COORD_SYS_TRANSFORM: return coord_sys_transform(import, s);
+    case VL_DIR_COORDINATE_SYSTEM: return vl_import_name_system(import, s->names[0], import->state.ctm[0]);
+    case VL_DIR_COORD_SYS_TRANSFORM: return vl_import_use_system(import, s);
     case VL_DIR_COLOR_SPACE: return color_space(import, s);
     case VL_DIR_NAMED_MATERIAL: return named_material(import, s);
     case VL_DIR_MEDIUM_INTERFACE: return medium_interface(import, s);
@@ -651,8 +359,7 @@ static void parse_error(void *user, vlResult code, vlSource place, const char *m
   vl_import_fail(user, code, place, "%s", message);
 }
 
-/* ---- the end
- * -------------------------------------------------------------------------------------------------------------- */
+/* ---- the end ---------------------------------------------------------------------------------------------------- */
 
 static bool link_shapes(vlImport *import) {
   for (size_t i = 0; i < import->links.count; i++) {

@@ -121,7 +121,7 @@ struct vlImport {
 };
 enum { VL_IMPORT_DEPTH = 200 };
 
-/* ---- errors, warnings (builder.c) ---- */
+/* ---- errors, warnings, copies (report.c) ------------------------------------------------------------------------- */
 bool vl_import_fail(vlImport *import, vlResult code, vlSource place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 bool vl_import_fail_memory(vlImport *import);
@@ -145,10 +145,17 @@ bool vl_import_color_space(const char *name, vlColorSpace *space);
 bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamList *to);
 /* What applies to this kind of directive now. */
 const vlParamList *vl_import_attributes(vlImport *import, vlAttributeTarget target);
+/* State (state.c). */
+bool vl_import_transform(vlImport *import, const vlStatement *s); /* Translate, LookAt, Transform, ... */
+bool vl_import_name_system(vlImport *import, const char *name, vlMat4 m);
+bool vl_import_use_system(vlImport *import, const vlStatement *s);
+bool vl_import_push(vlImport *import, char kind, vlSource place);
+bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource place);
+void vl_import_restore(vlImport *import);
 /* The current transform; an error (or warning, once) where start and end differ. */
 bool vl_import_ctm(vlImport *import, vlSource place, vlMat4 *ctm);
 
-/* ---- parts ---- */
+/* ---- parts ------------------------------------------------------------------------------------------------------ */
 bool vl_import_camera(vlImport *import); /* the choices made before WorldBegin, to scene settings; camera after film */
 bool vl_import_film(vlImport *import);
 bool vl_import_sampling(vlImport *import); /* sampler, filter, integrator */

@@ -106,8 +106,7 @@ bool vl_import_film(vlImport *import) {
   return vl_dict_done(&dict);
 }
 
-/* ---- options
- * --------------------------------------------------------------------------------------------------------- */
+/* ---- options ---------------------------------------------------------------------------------------------------- */
 
 /* pbrt compares option names without case, blanks, dashes and underscores. */
 static void normalise(const char *name, char *result, size_t size) {
@@ -148,8 +147,7 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
                            sizeof refused / sizeof *refused);
 }
 
-/* ---- media
- * ------------------------------------------------------------------------------------------------------------- */
+/* ---- media ------------------------------------------------------------------------------------------------------ */
 
 /* Only their names are kept: a medium that nothing lies in does not matter. */
 bool vl_import_medium(vlImport *import, const vlStatement *s) {

@@ -35,7 +35,6 @@ static bool read_infinite(vlDict *dict, vlLightDef *def, bool has_color) {
   char path[4096];
   if (!vl_dict_done(dict) || !vl_import_path(import, file, path, sizeof path)) return false;
   def->path = vl_import_keep(import, path);
-  def->image_is_radiance = true;
   return def->path != NULL;
 }
 

@@ -60,8 +60,7 @@ size_t vl_param_count(const vlParam *param) {
   return param->floats.count + param->integers.count + param->strings.count + param->bools.count;
 }
 
-/* ---- questions -----------------------------------------------------------------------------------------------------
- */
+/* ---- questions -------------------------------------------------------------------------------------------------- */
 
 /* "float" or "float, texture" ... */
 static const char *wanted_types(uint32_t bits, char *text, size_t size) {

@@ -53,8 +53,7 @@ void vl_param_free(vlContext *context, vlParam *param);
 void vl_param_list_free(vlContext *context, vlParamList *params);
 size_t vl_param_count(const vlParam *param); /* values of any kind */
 
-/* ---- questions -----------------------------------------------------------------------------------------------------
- */
+/* ---- questions -------------------------------------------------------------------------------------------------- */
 
 typedef struct vlImport vlImport;
 

@@ -31,8 +31,7 @@ typedef struct File {
   vlToken token;
 } File;
 
-/* ---- errors --------------------------------------------------------------------------------------------------------
- */
+/* ---- errors ----------------------------------------------------------------------------------------------------- */
 
 static vlSource place_of(const File *file, const vlToken *token) {
   return (vlSource){file->path, token->line, token->column};
@@ -79,8 +78,7 @@ static Shown show(const vlToken *token) {
   return s;
 }
 
-/* ---- tokens --------------------------------------------------------------------------------------------------------
- */
+/* ---- tokens ----------------------------------------------------------------------------------------------------- */
 
 static vlToken peek(File *file) {
   if (!file->has_token) {
@@ -113,8 +111,7 @@ static bool take_number(File *file, const char *directive, double *value) {
   return fail(file, place_of(file, &token), "%s: expected a number, found %s", directive, show(&token).text);
 }
 
-/* ---- parameters ----------------------------------------------------------------------------------------------------
- */
+/* ---- parameters ------------------------------------------------------------------------------------------------- */
 
 static bool is_blank(char c) {
   return c == ' ' || c == '\t';
@@ -284,8 +281,7 @@ static bool read_params(File *file, vlParamList *params) {
   }
 }
 
-/* ---- directives ----------------------------------------------------------------------------------------------------
- */
+/* ---- directives ------------------------------------------------------------------------------------------------- */
 
 typedef enum Form { ALONE, NUMBERS, MATRIX, ONE_NAME, MEDIA, OPTION, PARAMS, TEXTURE, ACTIVE, INCLUDE, IMPORT } Form;
 typedef struct Keyword {
@@ -472,8 +468,7 @@ static bool read_directive(File *file, const vlToken *token) {
   return fine;
 }
 
-/* ---- files ---------------------------------------------------------------------------------------------------------
- */
+/* ---- files ------------------------------------------------------------------------------------------------------ */
 
 static bool parse_block(File *file, char *data, size_t size) {
   const unsigned char *b = (const unsigned char *)data;

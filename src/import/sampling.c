@@ -6,8 +6,7 @@
 
 #include "import/builder.h"
 
-/* ---- sampler
- * --------------------------------------------------------------------------------------------------------- */
+/* ---- sampler ---------------------------------------------------------------------------------------------------- */
 
 typedef struct SamplerName {
   const char *name;
@@ -83,8 +82,7 @@ static bool read_sampler(vlImport *import, vlSceneSettings *s) {
   return vl_dict_done(&dict);
 }
 
-/* ---- pixel filter
- * ----------------------------------------------------------------------------------------------------- */
+/* ---- pixel filter ----------------------------------------------------------------------------------------------- */
 
 static bool read_filter(vlImport *import, vlSceneSettings *s) {
   static const char *const names[] = {"box", "triangle", "gaussian", "mitchell", "sinc", "lanczos", "blackmanharris"};
@@ -120,8 +118,7 @@ static bool read_filter(vlImport *import, vlSceneSettings *s) {
   return true;
 }
 
-/* ---- integrator
- * --------------------------------------------------------------------------------------------------------- */
+/* ---- integrator ------------------------------------------------------------------------------------------------- */
 
 static bool read_path(vlDict *dict, vlSceneSettings *s) {
   static const char *const light_samplers[] = {"bvh", "power", "uniform", "exhaustive"};

@@ -158,8 +158,7 @@ static bool read_quadric(vlDict *dict, vlShapeDef *def, int kind) {
   return dict->import->scene->error.code == VL_OK;
 }
 
-/* ---- shapes enter
- * ---------------------------------------------------------------------------------------------------- */
+/* ---- shapes enter ----------------------------------------------------------------------------------------------- */
 
 /* The def's arrays are given away. */
 static bool add(vlImport *import, const vlShapeDef *def, const vlShapeLink *link) {

@@ -38,10 +38,7 @@ bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlS
 static bool read_mapping(vlDict *dict, vlTextureDef *def, const vlMat4 *texture_from_world, bool three) {
   static const char *const names[] = {"uv", "spherical", "cylindrical", "planar"};
   memcpy(def->texture_from_world, texture_from_world->m, sizeof def->texture_from_world);
-  if (three) {
-    def->mapping = VL_MAPPING_3D;
-    return true;
-  }
+  if (three) return true; /* cubes of texture space */
   int mapping = 0;
   double v[3];
   vl_dict_choice(dict, "mapping", names, 4, &mapping);

@@ -58,7 +58,7 @@ static bool take_spectrum(vlScene *scene, vlSpectrumInput *input, vlSource sourc
   return vl_scene_copy_spectrum(scene, &input->value, source, what);
 }
 
-/* ---- textures ---------------------------------------------------------------------------------------------------- */
+/* ---- textures --------------------------------------------------------------------------------------------------- */
 
 static bool check_texture_def(vlScene *scene, const vlTextureDef *d) {
   if ((unsigned)d->kind > VL_TEXTURE_BILERP) return bad(scene, d->source, "texture", "unknown kind");
@@ -111,7 +111,7 @@ vlTextureId vl_scene_add_texture(vlScene *scene, const vlTextureDef *def) {
   return (vlTextureId){(uint32_t)scene->textures.count};
 }
 
-/* ---- materials --------------------------------------------------------------------------------------------------- */
+/* ---- materials -------------------------------------------------------------------------------------------------- */
 
 static bool take_mix(vlScene *scene, vlMaterialDef *d) {
   for (int i = 0; i < 2; i++) {
@@ -151,7 +151,7 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   return (vlMaterialId){(uint32_t)scene->materials.count};
 }
 
-/* ---- light ------------------------------------------------------------------------------------------------------- */
+/* ---- light ------------------------------------------------------------------------------------------------------ */
 
 static bool finite_or_unset(double x) {
   return isnan(x) || (isfinite(x) && x >= 0.0);

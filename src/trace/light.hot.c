@@ -13,7 +13,7 @@ void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *e, const float
     return;
   }
   const vlMipmap *mip = world->images.items[e->image].mipmap;
-  vlTexel x = sky ? vl_nearest(mip, 0, s, t, VL_WRAP_OCTAHEDRAL) : vl_bilinear(mip, 0, s, t, VL_WRAP_REPEAT);
+  vlTexel x = sky ? vl_nearest(mip, 0, s, t, VL_WRAP_OCTAHEDRAL) : vl_bilinear(mip, 0, s, t, VL_WRAP_CLAMP);
   float rgb[3];
   for (int k = 0; k < 3; k++) {
     float y = e->image_scale * x.c[mip->channels < 3 ? 0 : k];
@@ -78,13 +78,21 @@ typedef struct Sample {
   float u, v;
 } Sample;
 
-/* Centre and radius of a whole sphere under a similarity, or false. */
+/* Centre and radius of a whole sphere under a similarity, or false. Not with holes, through which the far side shows.
+ */
 static bool whole_sphere(const vlWorldShape *s, vlVec3 *center, float *radius) {
-  if (s->kind != VL_SHAPE_SPHERE || s->z_min > -s->radius || s->z_max < s->radius || s->phi_max < 6.2831f) return false;
+  if (s->kind != VL_SHAPE_SPHERE || s->alpha >= 0 || s->z_min > -s->radius || s->z_max < s->radius ||
+      s->phi_max < 6.2831f)
+    return false;
   const double *m = s->from_shape;
   double l[3];
   for (int i = 0; i < 3; i++) l[i] = m[i] * m[i] + m[4 + i] * m[4 + i] + m[8 + i] * m[8 + i];
   if (l[1] > l[0] * 1.0001 || l[1] < l[0] * 0.9999 || l[2] > l[0] * 1.0001 || l[2] < l[0] * 0.9999) return false;
+  for (int i = 0; i < 3; i++) { /* no shear: the axes stay at right angles */
+    int j = (i + 1) % 3;
+    double skew = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
+    if (skew > l[0] * 0.0001 || skew < -l[0] * 0.0001) return false;
+  }
   *center = vl_vec3((float)m[3], (float)m[7], (float)m[11]);
   *radius = s->radius * (float)__builtin_sqrt(l[0]);
   return true;
@@ -205,7 +213,7 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
     vlVec3 to = vl_sub(center, from);
     if (vl_length2(to) > radius * radius * 1.0001f) {
       Sample r = sample_cone(center, radius, reversed(s), from, u, v);
-      if (with_uv || s->alpha >= 0) { /* uv by way of the shape */
+      if (with_uv) { /* uv by way of the shape */
         vlShapeHit hit = {0, 0, 0, {0, 0, 0}};
         vlSurfacePoint point;
         for (int i = 0; i < 3; i++)
@@ -324,7 +332,9 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
       if (!(pdf > 0.0f)) return;
       VL_HOT(vl_emitted_at)(world, e, lambda, q.u, 1.0f - q.v, false, radiance);
       const vlWorldShape *shape = &world->shapes.items[light->shape];
-      if (shape->alpha >= 0) {
+      if (light->invisible) {
+        out->delta[i] = 1;
+      } else if (shape->alpha >= 0) {
         float at[3] = {q.p.x, q.p.y, q.p.z};
         float cover = vl_clamp(vl_texture_float_at(world, shape->alpha, q.u, q.v, at), 0.0f, 1.0f);
         for (int c = 0; c < 4; c++) radiance[c] *= cover;

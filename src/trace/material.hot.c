@@ -296,9 +296,11 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
   if (m->dispersive) { /* each wavelength goes its own way: the hero alone is followed, with the weight of all four */
     vlPaths *p = &s->b;
     for (uint32_t i = first; i < last; i++) {
-      bool alone = p->beta[1][i] == 0.0f && p->beta[2][i] == 0.0f && p->beta[3][i] == 0.0f;
+      /* That the hero is alone is told by equal wavelengths: weights may be zero for other reasons. */
+      bool alone = p->lambda[1][i] == p->lambda[0][i];
       p->beta[0][i] *= alone ? 1.0f : 4.0f;
       p->beta[1][i] = p->beta[2][i] = p->beta[3][i] = 0.0f;
+      p->lambda[1][i] = p->lambda[2][i] = p->lambda[3][i] = p->lambda[0][i];
     }
   }
 }

@@ -310,6 +310,8 @@ static vlResult add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t 
     light->shape = shape_index;
     light->prim = i;
     light->area = area;
+    light->invisible = shape->alpha >= 0 && world->nodes.items[shape->alpha].kind == VL_NODE_FLOAT &&
+                       world->nodes.items[shape->alpha].value == 0;
     light->environment = VL_NONE;
     float l = e->image >= 0 ? e->image_scale * mean_image_luminance(world->images.items[e->image].mipmap) *
                                   luminance(&e->spectrum)

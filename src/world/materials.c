@@ -112,6 +112,9 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
   }
   if (r == VL_OK && def->kind == VL_MATERIAL_MIX) {
     m->mix[0] = def->materials[0].index, m->mix[1] = def->materials[1].index;
+    for (int i = 0; i < 2; i++)
+      if (scene->materials.items[m->mix[i] - 1].kind == VL_MATERIAL_INTERFACE)
+        return fail(def, error, "an interface as a part of a mix is not understood yet (alpha does what it would do)");
     r = vl_world_float_node(world, scene, def->amount, &m->amount, error);
   }
   if (r == VL_OK && def->displacement.texture.index)

@@ -85,6 +85,7 @@ typedef struct vlWorldLight {
   float cos_start, cos_end; /* spot: full inside start, nothing outside end */
   uint32_t environment;     /* infinite with a picture: index; VL_NONE: uniform */
   float power;              /* for choosing: watts-like, luminance */
+  bool invisible;           /* area, of coverage 0 throughout: no ray meets it, it shines all the same (as pbrt's) */
   float corners[9];         /* area, triangle: its corners, and */
   bool one_sided_normals;   /* direction is the normal to the lit side all over it */
 } vlWorldLight;
@@ -100,6 +101,12 @@ typedef struct vlEnvironment {
 } vlEnvironment;
 
 #include "world/light_tree.h"
+
+/* Where an id comes from, for people (origins.c). */
+typedef struct vlWorldOrigin {
+  const char *name; /* may be null */
+  vlSource source;
+} vlWorldOrigin;
 
 /* ---- the whole ------------------------------------------------------------------------------------------------------
  */
@@ -121,7 +128,8 @@ struct vlWorld {
   int32_t *texture_memo;   /* while building: scene texture and role -> node */
   uint32_t *rank;          /* of materials: those of one kind together */
   bool has_interfaces;
-  vlSpectral white; /* radiance that shows as white */
+  vlWorldOrigin *shape_origins, *material_origins, *instance_origins; /* one for each element of those arrays */
+  vlSpectral white;                                                   /* radiance that shows as white */
   vlLightTree tree;
   vlAccel accel;
   float bounds_min[3], bounds_max[3], center[3], radius; /* of all surfaces; a sphere round them */
@@ -139,6 +147,7 @@ int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *give
 vlResult vl_world_add_materials(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_shapes(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_lights(vlWorld *world, const struct vlScene *scene, vlError *error);
+vlResult vl_world_add_origins(vlWorld *world, const struct vlScene *scene, vlError *error);
 
 /* Area of one primitive in the space its vertices are in (with from_group where an instance places it). */
 float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim);

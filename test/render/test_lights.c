@@ -1,0 +1,412 @@
+/* Lights against the numbers of the book: inverse squares and cosines, cones, photometric scales, pictures on lights
+ * and in the sky, and the three ways of choosing among lights. */
+#include "render/shots.h"
+
+enum { SIZE = 32 };
+
+/* A floor of reflectance 1/2 in the plane z = 0 seen straight from above: pixel (x, y) looks at (2u - 1, 2v - 1). */
+static Stage floor_stage(bool exact) {
+  Stage s = stage_open(SIZE, SIZE);
+  s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
+  s.camera.eye[2] = 0.01;
+  s.build.color = VL_COLOR_RGB;
+  s.render.max_depth = 1;
+  if (exact) s.render.sampler = VL_SAMPLER_REGULAR, s.render.spp = 1;
+  Quad q = quad_at(0, 0, 0, 40, 0, 0, 0, 40, 0);
+  q.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
+  add_quad(&s, &q);
+  return s;
+}
+static double at_x(uint32_t x) {
+  return 2 * (x + 0.5) / SIZE - 1;
+}
+static double at_y(uint32_t y) {
+  return 1 - 2 * (y + 0.5) / SIZE;
+}
+
+static double smoothstep(double x, double a, double b) {
+  double t = (x - a) / (b - a);
+  t = t < 0 ? 0 : t > 1 ? 1 : t;
+  return t * t * (3 - 2 * t);
+}
+
+static void point_and_spot(void **state) {
+  (void)state;
+  for (int spot = 0; spot < 2; spot++)
+    for (int powered = 0; powered < 2; powered++) {
+      Stage s = floor_stage(true);
+      vlLightDef def = vl_default_light_def(spot ? VL_LIGHT_SPOT : VL_LIGHT_POINT);
+      const double p[3] = {0.3, -0.2, 0.9}, aim[3] = {-0.1, 0.1, 0};
+      for (int i = 0; i < 3; i++) def.from[i] = (float)p[i], def.to[i] = (float)aim[i];
+      def.scale = 3;
+      def.cone_angle = 0.7f, def.cone_delta = 0.3f;
+      double start = cos((double)def.cone_angle - def.cone_delta), end = cos(def.cone_angle), intensity = 3;
+      if (powered) {
+        def.power = 20;
+        intensity *= 20 / (spot ? 2 * M_PI * ((1 - start) + (start - end) / 2) : 4 * M_PI);
+      }
+      vl_scene_add_light(s.scene, &def);
+      Picture q = stage_finish(&s);
+      double axis[3], l = 0;
+      for (int i = 0; i < 3; i++) axis[i] = aim[i] - p[i], l += axis[i] * axis[i];
+      for (uint32_t y = 0; y < SIZE; y++)
+        for (uint32_t x = 0; x < SIZE; x++) {
+          double d[3] = {at_x(x) - p[0], at_y(y) - p[1], -p[2]};
+          double d2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], cosine = p[2] / sqrt(d2);
+          double along = (d[0] * axis[0] + d[1] * axis[1] + d[2] * axis[2]) / sqrt(d2 * l);
+          double expected = 0.5 / M_PI * intensity * cosine / d2 * (spot ? smoothstep(along, end, start) : 1);
+          assert_near(spot ? "spot" : "point", picture_at(&q, x, y, 1), expected, 2e-4 * expected + 1e-5 * intensity);
+        }
+      picture_free(&q);
+    }
+}
+
+static void distant(void **state) {
+  (void)state;
+  for (int lux = 0; lux < 2; lux++) {
+    Stage s = floor_stage(true);
+    vlLightDef def = vl_default_light_def(VL_LIGHT_DISTANT);
+    def.from[0] = 3, def.from[2] = 4, def.to[2] = 0;
+    if (lux) def.illuminance = 7;
+    vl_scene_add_light(s.scene, &def);
+    Picture p = stage_finish(&s);
+    assert_ratio("distant", picture_mean(&p, 1), 0.5 / M_PI * 0.8 * (lux ? 7 : 1), 1e-4);
+    picture_free(&p);
+  }
+}
+
+static void uniform_sky(void **state) {
+  (void)state;
+  for (int lux = 0; lux < 2; lux++) {
+    Stage s = floor_stage(false);
+    s.render.spp = 64;
+    vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
+    def.scale = 2;
+    if (lux) def.illuminance = M_PI * 3;
+    vl_scene_add_light(s.scene, &def);
+    Picture p = stage_finish(&s);
+    assert_ratio("sky on a floor", picture_mean(&p, 1), 0.5 * 2 * (lux ? 3 : 1), 2e-3);
+    picture_free(&p);
+  }
+}
+
+/* Whatever the spectrum, a light of radiance 1 shows luminance 1, in both colour modes; the colours agree. */
+static void photometric_scale(void **state) {
+  (void)state;
+  const vlSpectrum colors[4] = {vl_spectrum_blackbody(2800), vl_spectrum_named("stdillum-D65"),
+                                vl_spectrum_named("stdillum-F11"), vl_spectrum_constant(5)};
+  for (int i = 0; i < 4; i++) {
+    double mean[2][3];
+    for (int mode = 0; mode < 2; mode++) {
+      Stage s = stage_open(SIZE, SIZE);
+      s.build.color = mode ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
+      s.render.spp = 256;
+      vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
+      def.color = colors[i];
+      vl_scene_add_light(s.scene, &def);
+      Picture p = stage_finish(&s);
+      for (int c = 0; c < 3; c++) mean[mode][c] = picture_mean(&p, c);
+      double y = 0.2126 * mean[mode][0] + 0.7152 * mean[mode][1] + 0.0722 * mean[mode][2];
+      assert_ratio(mode ? "luminance, rgb" : "luminance, spectral", y, 1, 2e-3);
+      picture_free(&p);
+    }
+    for (int c = 0; c < 3; c++) assert_near("colour of a light", mean[0][c], mean[1][c], 0.01);
+  }
+}
+
+/* ---- area lights
+ * ------------------------------------------------------------------------------------------------------ */
+
+/* The light's own picture: one side, both sides, turned over. */
+static void sides(void **state) {
+  (void)state;
+  for (int kind = 0; kind < 5; kind++) /* triangles, patch, disk, sphere (from inside), cylinder (from inside) */
+    for (int mode = 0; mode < 8; mode++) {
+      bool two_sided = mode & 1, reverse = mode & 2, mirrored = mode & 4;
+      Stage s = stage_open(16, 16);
+      s.camera.fov = 0.2;
+      s.render.max_depth = 0;
+      vlShapeDef def = vl_default_shape_def((vlShapeKind[5]){VL_SHAPE_TRIANGLES, VL_SHAPE_BILINEAR, VL_SHAPE_DISK,
+                                                             VL_SHAPE_SPHERE, VL_SHAPE_CYLINDER}[kind]);
+      static const float p[12] = {-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0};
+      static const uint32_t triangles[6] = {0, 1, 3, 0, 3, 2}, patch[4] = {0, 1, 2, 3};
+      if (kind < 2)
+        def.vertices = 4, def.faces = kind ? 1 : 2, def.positions = p, def.indices = kind ? patch : triangles;
+      if (kind > 2) def.radius = 20, def.z_min = -20, def.z_max = 20;
+      def.emission = add_glow(&s, 2, two_sided);
+      def.reverse_orientation = reverse;
+      /* Normals of the flat ones point to the camera, of the round ones away from it. A mirror (x to -x) turns over
+       * triangles' order, and pbrt turns it back; normals of the round ones stay outside. */
+      set_matrix(def.group_from_shape, mirrored ? -1 : 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -2);
+      if (kind == 4) set_matrix(def.group_from_shape, mirrored ? -1 : 1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, -2);
+      vl_scene_add_shape(s.scene, &def);
+      Picture q = stage_finish(&s);
+      bool lit = two_sided || (reverse != (kind < 3));
+      char what[64];
+      snprintf(what, sizeof what, "kind %d, mode %d", kind, mode);
+      assert_near(what, picture_mean(&q, 1), lit ? 2 : 0, 2e-2);
+      picture_free(&q);
+    }
+}
+
+/* A small square light of known power far over the floor is a point of intensity power/pi on its axis. */
+static void power_of_area_lights(void **state) {
+  (void)state;
+  for (int two_sided = 0; two_sided < 2; two_sided++)
+    for (int kind = 0; kind < 2; kind++) {
+      Stage s = floor_stage(false);
+      s.render.spp = 16;
+      vlEmissionDef glow = vl_default_emission_def();
+      glow.power = 10;
+      glow.two_sided = two_sided;
+      glow.radiance = vl_spectrum_rgb(7, 7, 7); /* does not matter */
+      vlEmissionId emission = vl_scene_add_emission(s.scene, &glow);
+      if (kind == 0) {
+        Quad q = quad_at(0, 0, 10, 0.01f, 0, 0, 0, -0.02f, 0); /* faces down */
+        q.patch = true;
+        q.emission = emission;
+        add_quad(&s, &q);
+      } else {
+        vlShapeDef def = vl_default_shape_def(VL_SHAPE_DISK);
+        def.radius = 0.02f, def.emission = emission, def.reverse_orientation = true;
+        set_matrix(def.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 10);
+        vl_scene_add_shape(s.scene, &def);
+      }
+      s.camera.screen_min_x = s.camera.screen_min_y = -0.1, s.camera.screen_max_x = s.camera.screen_max_y = 0.1;
+      Picture p = stage_finish(&s);
+      /* rgb's factor 7 is kept (only its white is normalised), as pbrt's spectrum would be */
+      double intensity = 10 / M_PI / (two_sided ? 2 : 1) * 7;
+      assert_ratio("power of an area light", picture_mean(&p, 1), 0.5 / M_PI * intensity / 100, 5e-3);
+      picture_free(&p);
+    }
+}
+
+/* A picture on a light: first row on top (v = 1), edges do not wrap; its light is that of its squares. */
+static void picture_on_a_light(void **state) {
+  (void)state;
+  char path[600];
+  snprintf(path, sizeof path, "%s/test_lights.pfm", VELO_BINARY_DIR);
+  const float rgb[12] = {4, 1, 1, 1, 4, 1, 1, 1, 4, 2, 2, 2}; /* red, green over blue, grey */
+  for (int patch = 0; patch < 2; patch++) {
+    Stage s = stage_open(SIZE, SIZE);
+    s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
+    s.build.color = VL_COLOR_RGB;
+    s.render.sampler = VL_SAMPLER_REGULAR, s.render.spp = 1;
+    vlImage *image = make_image(&s, 2, 2, rgb);
+    assert_int_equal(vl_image_write(image, path, NULL, NULL), VL_OK);
+    vl_image_destroy(image);
+    vlEmissionDef glow = vl_default_emission_def();
+    glow.image = path;
+    Quad q = quad_at(0, 0, -1, 1, 0, 0, 0, 1, 0);
+    q.patch = patch;
+    q.emission = vl_scene_add_emission(s.scene, &glow);
+    add_quad(&s, &q);
+    Picture p = stage_finish(&s);
+    for (int y = 0; y < 2; y++)
+      for (int x = 0; x < 2; x++)
+        for (int c = 0; c < 3; c++) {
+          uint32_t px = x ? SIZE - 1 : 0, py = y ? SIZE - 1 : 0;
+          assert_near("corner of a light's picture", picture_at(&p, px, py, c), rgb[3 * (2 * y + x) + c], 1e-4);
+        }
+    picture_free(&p);
+  }
+  remove(path);
+}
+
+/* ---- the sky
+ * ------------------------------------------------------------------------------------------------------------ */
+
+/* The equal-area octahedral map of the book (3.8.3), in double, written from its definition. */
+static void square_to_sphere(double u, double v, double d[3]) {
+  u = 2 * u - 1, v = 2 * v - 1;
+  double up = fabs(u), vp = fabs(v), sd = 1 - (up + vp), r = 1 - fabs(sd);
+  double phi = (r == 0 ? 1 : (vp - up) / r + 1) * M_PI / 4;
+  d[2] = copysign(1 - r * r, sd);
+  d[0] = copysign(cos(phi), u) * r * sqrt(2 - r * r);
+  d[1] = copysign(sin(phi), v) * r * sqrt(2 - r * r);
+}
+
+enum { SKY = 16 };
+
+static void sky_orientation(void **state) {
+  (void)state;
+  /* Known by the book: the square's middle is +z, its corners -z, the middles of its edges +-x and +-y (row 0 is v =
+   * 0). */
+  double d[3];
+  square_to_sphere(1, 0.5, d);
+  assert_near("+x", d[0], 1, 1e-12);
+  square_to_sphere(0.5, 1, d);
+  assert_near("+y", d[1], 1, 1e-12);
+  float sky[SKY * SKY * 3];
+  for (int i = 0; i < SKY * SKY * 3; i++) sky[i] = 0.1f + (float)((i * 7919) % 101) / 50.0f;
+  for (int turned = 0; turned < 2; turned++)
+    for (int k = 0; k < 24; k++) {
+      int x = (k * 5 + 3) % SKY, y = (k * 11 + 1) % SKY;
+      square_to_sphere((x + 0.5) / SKY, (y + 0.5) / SKY, d);
+      Stage s = stage_open(4, 4);
+      s.build.color = VL_COLOR_RGB;
+      s.camera.fov = 0.001;
+      /* light's x is the world's y, its y the world's z: world = turn(light) */
+      double w[3] = {turned ? d[2] : d[0], turned ? d[0] : d[1], turned ? d[1] : d[2]};
+      for (int i = 0; i < 3; i++) s.camera.lookat[i] = w[i];
+      s.camera.up[0] = 0.3, s.camera.up[1] = 0.5, s.camera.up[2] = 0.8;
+      vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
+      vlImage *image = make_image(&s, SKY, SKY, sky);
+      def.image = image;
+      def.scale = 2;
+      if (turned) set_matrix(def.world_from_light, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0);
+      vl_scene_add_light(s.scene, &def);
+      vl_image_destroy(image);
+      Picture p = stage_finish(&s);
+      for (int c = 0; c < 3; c++)
+        assert_ratio("texel of the sky", picture_mean(&p, c), 2 * sky[3 * (y * SKY + x) + c], 1e-4);
+      picture_free(&p);
+    }
+}
+
+/* Light of a sky with one hot texel on a floor, turned several ways, against the integral, by every light sampler. */
+static void sky_light_against_the_integral(void **state) {
+  (void)state;
+  float sky[SKY * SKY * 3];
+  for (int i = 0; i < SKY * SKY; i++)
+    for (int c = 0; c < 3; c++) sky[3 * i + c] = i == SKY * 6 + 7 ? 150.0f : 0.2f + 0.02f * (float)((i * 31) % 17);
+  for (int way = 0; way < 4; way++) {
+    /* floor's normal z is the light's z, x, y, -z */
+    const double turns[4][9] = {{1, 0, 0, 0, 1, 0, 0, 0, 1},
+                                {0, 0, 1, 0, 1, 0, 1, 0, 0},
+                                {1, 0, 0, 0, 0, 1, 0, 1, 0},
+                                {1, 0, 0, 0, -1, 0, 0, 0, -1}};
+    const double *m = turns[way];
+    double expected = 0;
+    const int fine = 8 * SKY;
+    for (int y = 0; y < fine; y++)
+      for (int x = 0; x < fine; x++) {
+        double d[3];
+        square_to_sphere((x + 0.5) / fine, (y + 0.5) / fine, d);
+        double z = m[6] * d[0] + m[7] * d[1] + m[8] * d[2];
+        if (z > 0) expected += z * sky[3 * (y / 8 * SKY + x / 8)] * 4 * M_PI / ((double)fine * fine);
+      }
+    for (int sampler = 0; sampler < 3; sampler++) {
+      Stage s = floor_stage(false);
+      s.render.spp = 64;
+      s.build.light_sampler =
+          (vlLightSampler[3]){VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER, VL_LIGHT_SAMPLER_UNIFORM}[sampler];
+      vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
+      vlImage *image = make_image(&s, SKY, SKY, sky);
+      def.image = image;
+      set_matrix(def.world_from_light, m[0], m[1], m[2], 0, m[3], m[4], m[5], 0, m[6], m[7], m[8], 0);
+      vl_scene_add_light(s.scene, &def);
+      vl_image_destroy(image);
+      Picture p = stage_finish(&s);
+      assert_ratio("floor under a pictured sky", picture_mean(&p, 1), 0.5 / M_PI * expected, 5e-3);
+      picture_free(&p);
+    }
+  }
+}
+
+/* ---- choosing among many
+ * ---------------------------------------------------------------------------------------------------- */
+
+static void light_samplers_agree(void **state) {
+  (void)state;
+  double mean[3];
+  for (int sampler = 0; sampler < 3; sampler++) {
+    Stage s = stage_open(48, 36);
+    s.camera.eye[1] = 1, s.camera.eye[2] = 3, s.camera.lookat[1] = -0.5;
+    s.render.spp = sampler == 2 ? 400 : 100;
+    s.render.max_depth = 2;
+    s.build.light_sampler = (vlLightSampler)sampler;
+    Quad floor = quad_at(0, -1, 0, 4, 0, 0, 0, 0, -4);
+    floor.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
+    add_quad(&s, &floor);
+    add_point(&s, 1, 1, 0, 1);
+    vlLightDef spot = vl_default_light_def(VL_LIGHT_SPOT);
+    spot.from[0] = -1, spot.from[1] = 2, spot.to[0] = -1, spot.to[1] = -1, spot.to[2] = 0.5f;
+    spot.scale = 5;
+    vl_scene_add_light(s.scene, &spot);
+    vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);
+    sun.from[0] = 1, sun.from[1] = 2, sun.to[2] = 0, sun.scale = 0.3f;
+    vl_scene_add_light(s.scene, &sun);
+    add_sky(&s, 0.1f);
+    for (int k = 0; k < 12; k++) {
+      Quad q = quad_at(-2 + 0.4f * (float)k, -0.5f + 0.1f * (float)(k % 5), -1 + 0.3f * (float)(k % 4), 0.1f, 0, 0, 0,
+                       0.02f * (float)(k % 3), -0.1f);
+      q.patch = k % 4 == 1;
+      q.emission = add_glow(&s, 1 + (float)k, k % 3 == 0);
+      q.reverse = k % 2;
+      add_quad(&s, &q);
+    }
+    for (int k = 0; k < 3; k++) {
+      vlShapeDef def = vl_default_shape_def((vlShapeKind[3]){VL_SHAPE_SPHERE, VL_SHAPE_CYLINDER, VL_SHAPE_DISK}[k]);
+      set_matrix(def.group_from_shape, 0.1, 0.02, 0, k - 1, 0, 0.15, 0, -0.6, 0, 0, 0.1, 0.8);
+      def.emission = add_glow(&s, 3, k == 2);
+      vl_scene_add_shape(s.scene, &def);
+    }
+    Picture p = stage_finish(&s);
+    mean[sampler] = picture_mean(&p, 1);
+    picture_free(&p);
+  }
+  assert_ratio("power against bvh", mean[1], mean[0], 6e-3);
+  assert_ratio("uniform against bvh", mean[2], mean[0], 6e-3);
+}
+
+/* A sphere sheared so that its axes keep their lengths is no sphere: as a light it must match its own mesh. */
+static void sheared_sphere_light(void **state) {
+  (void)state;
+  double mean[2];
+  for (int mesh = 0; mesh < 2; mesh++) {
+    Stage s = floor_stage(false);
+    s.render.spp = 100;
+    float *block = NULL;
+    vlShapeDef def = mesh ? mesh_sphere(48, 1, false, &block) : vl_default_shape_def(VL_SHAPE_SPHERE);
+    set_matrix(def.group_from_shape, 0.5, 0, 0.4, 0, 0, 0.5, 0, 0, 0, 0, 0.3, 0.7);
+    def.emission = add_glow(&s, 1, false);
+    vl_scene_add_shape(s.scene, &def);
+    free(block);
+    Picture p = stage_finish(&s);
+    mean[mesh] = picture_mean(&p, 1);
+    picture_free(&p);
+  }
+  assert_ratio("sheared sphere", mean[0], mean[1], 6e-3);
+}
+
+/* pbrt: a glowing shape of coverage 0 cannot be seen and lights all the same. */
+static void invisible_light(void **state) {
+  (void)state;
+  double mean[2];
+  for (int hidden = 0; hidden < 2; hidden++) {
+    Stage s = floor_stage(false);
+    s.render.spp = 64;
+    Quad q = quad_at(0.2f, 0, 0.5f, 0.3f, 0, 0, 0, -0.3f, 0);
+    q.emission = add_glow(&s, 1, false);
+    if (hidden) q.alpha = vl_float_input(0);
+    add_quad(&s, &q);
+    if (hidden) { /* it casts no shadow either: a sun through it leaves the floor as bright as without */
+      vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);
+      sun.from[2] = 1, sun.to[2] = 0, sun.scale = 2;
+      vl_scene_add_light(s.scene, &sun);
+    }
+    Picture p = stage_finish(&s);
+    mean[hidden] = picture_mean(&p, 1) - (hidden ? 2 * 0.5 / M_PI : 0);
+    picture_free(&p);
+  }
+  assert_ratio("invisible light", mean[1], mean[0], 5e-3);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(point_and_spot),
+      cmocka_unit_test(distant),
+      cmocka_unit_test(uniform_sky),
+      cmocka_unit_test(photometric_scale),
+      cmocka_unit_test(sides),
+      cmocka_unit_test(power_of_area_lights),
+      cmocka_unit_test(picture_on_a_light),
+      cmocka_unit_test(sky_orientation),
+      cmocka_unit_test(sky_light_against_the_integral),
+      cmocka_unit_test(light_samplers_agree),
+      cmocka_unit_test(sheared_sphere_light),
+      cmocka_unit_test(invisible_light),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -9,7 +9,34 @@
 extern "C" {
 #endif
 
-typedef enum vlProjection { VL_PROJECTION_PERSPECTIVE, VL_PROJECTION_ORTHOGRAPHIC } vlProjection;
+/* Which point of the plane a direction lands on: docs/cameras.md has the equations. The plane's unit is the focal length
+ * (fx, fy pixels); for angles it is a radian. */
+typedef enum vlProjection {
+  VL_PROJECTION_PERSPECTIVE,
+  VL_PROJECTION_ORTHOGRAPHIC,
+  VL_PROJECTION_EQUIDISTANT,     /* fisheyes: r = theta */
+  VL_PROJECTION_EQUISOLID,       /* 2 sin(theta / 2) */
+  VL_PROJECTION_STEREOGRAPHIC,   /* 2 tan(theta / 2) */
+  VL_PROJECTION_SINE,            /* the "orthographic" fisheye: sin(theta) */
+  VL_PROJECTION_EQUIRECTANGULAR, /* longitude, latitude; limits are the screen window, in radians */
+  VL_PROJECTION_EQUAL_AREA,      /* octahedral: the sphere in a square -1 to 1 */
+  VL_PROJECTION_CYLINDRICAL,     /* longitude, tangent of the latitude */
+  VL_PROJECTION_CUBE,            /* six faces in a row: right, left, up, down, front, back; the plane is 6 x 1 */
+  VL_PROJECTION_PANINI,          /* shape: d >= 0 */
+  VL_PROJECTION_FOV,             /* shape: w, radians */
+  VL_PROJECTION_DIVISION,        /* shape: lambda */
+  VL_PROJECTION_UNIFIED,         /* shape: xi >= 0 (Mei) */
+  VL_PROJECTION_EUCM,            /* shape: alpha in [0, 1], beta > 0 */
+  VL_PROJECTION_DOUBLE_SPHERE    /* shape: xi in (-1, 1), alpha in [0, 1] */
+} vlProjection;
+
+/* How a calibrated lens's coefficients are written. They act on the plane of the projection. */
+typedef enum vlDistortion {
+  VL_DISTORTION_NONE,
+  VL_DISTORTION_OPENCV,    /* k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]]: 4, 5, 8, 12 or 14 numbers */
+  VL_DISTORTION_RADIAL,    /* k1 [k2 [k3 [k4]]]: with EQUIDISTANT it is OpenCV's and COLMAP's fisheye */
+  VL_DISTORTION_THIN_PRISM /* COLMAP's k1 k2 p1 p2 k3 k4 sx1 sy1 */
+} vlDistortion;
 
 typedef enum vlFovAxis { VL_FOV_VERTICAL, VL_FOV_HORIZONTAL, VL_FOV_DIAGONAL, VL_FOV_SMALLER, VL_FOV_LARGER } vlFovAxis;
 
@@ -46,13 +73,37 @@ typedef struct vlCameraDef {
   double focus_distance;              /* z of the plane in focus, scene units; unset: infinity */
   double shutter_open, shutter_close; /* seconds; default 0, 1 */
   double exposure_time;               /* a factor on radiance, as in the lecture; default 1 */
-  double near_plane, far_plane; /* z in camera space; default 0, infinity. Cut what the camera sees, nothing else */
+  /* z in camera space (for projections that are neither perspective nor orthographic: distance from the eye); default
+   * 0, infinity. Cut what the camera sees, nothing else */
+  double near_plane, far_plane;
+
+  double shape[2];  /* the projection's own numbers; unset: Panini 1, the others must be given */
+  double max_angle; /* fisheyes and calibrated models: the image circle, radians from the axis; unset: as far as the
+                     * projection goes, or half of fov where a fisheye's fov is given or its default (180 degrees) */
+  vlDistortion distortion;
+  uint32_t distortion_count;
+  double distortion_coefficients[14];
 } vlCameraDef;
 
 VL_API vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height);
 
+/* Sets projection, distortion, fx, fy, cx, cy from one of COLMAP's camera models by its name (SIMPLE_PINHOLE, PINHOLE,
+ * SIMPLE_RADIAL, RADIAL, OPENCV, OPENCV_FISHEYE, FULL_OPENCV, FOV, SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE,
+ * THIN_PRISM_FISHEYE) with its parameters in COLMAP's order. COLMAP's first pixel is centred at (0.5, 0.5), as here.
+ * ARGUMENT: an unknown name (the nearest is told), a wrong count. */
+VL_API vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double *parameters, uint32_t count,
+                                     vlError *error);
+
+/* The distortion in one form (equations in docs/cameras.md), made by vl_camera_make. */
+typedef struct vlDistortionMap {
+  double numerator[4], denominator[3], tangential[2], prism[4];
+  double tilt[9], untilt[9]; /* row-major homographies */
+  double radius;             /* of the disc of the plane around its centre inside which nothing folds */
+  uint32_t steps;            /* of Newton's method that the inverse takes everywhere in it; 0: no distortion */
+} vlDistortionMap;
+
 /* Compiled. Plain data: copy freely. Pixel (x, y), column and row from the top left corner:
- *   x_cam = (x - cx - skew (y - cy)/fy)/fx, y_cam = (y - cy)/fy, z_cam = 1. */
+ *   x_cam = (x - cx - skew (y - cy)/fy)/fx, y_cam = (y - cy)/fy: the point of the plane; perspective: z_cam = 1. */
 typedef struct vlCamera {
   vlProjection projection;
   uint32_t width, height;
@@ -60,10 +111,16 @@ typedef struct vlCamera {
   double world_from_camera[16], camera_from_world[16];
   double lens_radius, focus_distance;
   double shutter_open, shutter_close, exposure_time, near_plane, far_plane;
+  double shape[2];
+  double limit; /* radius of the plane's valid disc: image circle, the model's own end; infinity */
+  vlDistortionMap distortion;
+  double outside; /* share of the picture that sees nothing */
 } vlCamera;
 
 /* Errors: ARGUMENT with a message (fov out of range, eye = lookat, disagreeing ways, NaN, singular matrix).
- * up parallel to the view direction: a defined fallback basis, and *warning set to a static text (may be null). */
+ * up parallel to the view direction: a defined fallback basis, and *warning set to a static text (may be null).
+ * So too when a lens's distortion folds inside the picture, or its model ends there: `outside` then tells the share of
+ * the picture that sees nothing. */
 VL_API vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error);
 
 /* The same camera for another resolution: the framing of the smaller field of view is kept as pbrt keeps it for fov
@@ -75,6 +132,17 @@ VL_API vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_
 VL_API bool vl_camera_unproject(const vlCamera *camera, double x, double y, double origin[3], double direction[3]);
 /* World point to film point; z is the depth along the view axis. false behind the camera or outside the domain. */
 VL_API bool vl_camera_project(const vlCamera *camera, const double point[3], double pixel[2], double *z);
+
+/* The same for arrays of triples and pairs, the same bits as one by one. valid[i] is 1 or 0; where it is 0 the other
+ * outputs are 0. z, origins and valid may be null. */
+VL_API void vl_camera_unproject_batch(const vlCamera *camera, size_t count, const double *pixels, double *origins,
+                                      double *directions, uint8_t *valid);
+VL_API void vl_camera_project_batch(const vlCamera *camera, size_t count, const double *points, double *pixels,
+                                    double *z, uint8_t *valid);
+
+/* Solid angle (steradians) that a pixel-sized square of the film around (x, y) sees, by the derivative there; 0 outside
+ * the domain and for orthographic cameras. A matrix that mirrors or scales does not enter. */
+VL_API double vl_camera_solid_angle(const vlCamera *camera, double x, double y);
 
 #ifdef __cplusplus
 }

@@ -1,14 +1,9 @@
-/* camera/camera.c: the public face of the room: def to camera, another resolution, pixels to rays and points to pixels.
- */
+/* camera/camera.c: the public face of the room: def to camera, another resolution. */
 #include <math.h>
 
 #include "base/cookie.h"
 #include "base/error.h"
-#include "camera/orthographic.h"
 #include "camera/parts.h"
-#include "camera/perspective.h"
-#include "camera/place.h"
-#include "camera/rays.h"
 
 vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height) {
   return (vlCameraDef){
@@ -39,6 +34,8 @@ vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height) {
       .shutter_close = 1.0,
       .exposure_time = 1.0,
       .far_plane = INFINITY,
+      .shape = {VL_UNSET, VL_UNSET},
+      .max_angle = VL_UNSET,
   };
 }
 
@@ -51,7 +48,7 @@ static vlResult check_vector(const char *name, const double v[3], vlError *error
 
 /* All that is neither intrinsics nor pose. */
 static vlResult check_rest(const vlCameraDef *d, vlError *error) {
-  if ((uint32_t)d->projection > VL_PROJECTION_ORTHOGRAPHIC)
+  if ((uint32_t)d->projection > VL_PROJECTION_DOUBLE_SPHERE)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown projection %d", (int)d->projection);
   if ((uint32_t)d->fov_axis > VL_FOV_LARGER)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown field-of-view axis %d", (int)d->fov_axis);
@@ -100,8 +97,10 @@ vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **w
       .far_plane = def->far_plane,
   };
   vlResult result = check_rest(def, error);
+  if (result == VL_OK) result = vl_camera_model(def, &made, error);
   if (result == VL_OK) result = vl_camera_intrinsics(def, &made, error);
   if (result == VL_OK) result = vl_camera_pose(def, &made, warning, error);
+  if (result == VL_OK) result = vl_camera_domain(def, &made, warning, error);
   if (result == VL_OK) *camera = made;
   return result;
 }
@@ -111,45 +110,20 @@ vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t heigh
     return VL_ERROR_ARGUMENT;
   double before = camera->width < camera->height ? camera->width : camera->height;
   double scale = (width < height ? width : height) / before;
+  /* planes that hold the whole sphere, or a cube, are stretched: each side keeps what it spans */
+  bool stretched = camera->projection == VL_PROJECTION_EQUIRECTANGULAR || camera->projection == VL_PROJECTION_CUBE ||
+                   camera->projection == VL_PROJECTION_EQUAL_AREA;
+  double scale_x = stretched ? (double)width / camera->width : scale;
+  double scale_y = stretched ? (double)height / camera->height : scale;
   vlCamera resized = *camera;
   resized.width = width;
   resized.height = height;
-  resized.fx *= scale;
-  resized.fy *= scale;
-  resized.skew *= scale;
+  resized.fx *= scale_x;
+  resized.fy *= scale_y;
+  resized.skew *= scale_x;
   /* the principal point keeps its place relative to the centre */
-  resized.cx = 0.5 * width + (camera->cx - 0.5 * camera->width) * scale;
-  resized.cy = 0.5 * height + (camera->cy - 0.5 * camera->height) * scale;
+  resized.cx = 0.5 * width + (camera->cx - 0.5 * camera->width) * scale_x;
+  resized.cy = 0.5 * height + (camera->cy - 0.5 * camera->height) * scale_y;
   *result = resized;
   return VL_OK;
-}
-
-bool vl_camera_unproject(const vlCamera *camera, double x, double y, double origin[3], double direction[3]) {
-  if (!camera || !isfinite(x) || !isfinite(y)) return false;
-  vlCameraCompiled c;
-  vl_camera_compile(camera, &c);
-  double px = x - c.cx, py = y - c.cy;
-  vlCameraLocal r = c.projection == VL_PROJECTION_ORTHOGRAPHIC ? vl_orthographic_unproject(&c, px, py)
-                                                               : vl_perspective_unproject(&c, px, py);
-  vlWorldRay w = vl_camera_place(&c, r);
-  origin[0] = w.ox, origin[1] = w.oy, origin[2] = w.oz;
-  direction[0] = w.dx * w.inv_length, direction[1] = w.dy * w.inv_length, direction[2] = w.dz * w.inv_length;
-  return isfinite(direction[0]) && isfinite(direction[1]) && isfinite(direction[2]);
-}
-
-bool vl_camera_project(const vlCamera *camera, const double point[3], double pixel[2], double *z) {
-  if (!camera) return false;
-  const double *m = camera->camera_from_world;
-  vlCameraPoint p = {m[0] * point[0] + m[1] * point[1] + m[2] * point[2] + m[3],
-                     m[4] * point[0] + m[5] * point[1] + m[6] * point[2] + m[7],
-                     m[8] * point[0] + m[9] * point[1] + m[10] * point[2] + m[11]};
-  bool orthographic = camera->projection == VL_PROJECTION_ORTHOGRAPHIC;
-  /* a perspective camera sees nothing in its own plane; an orthographic one stands in it. NaN fails too. */
-  if (!(orthographic ? p.z >= 0.0 : p.z > 0.0)) return false;
-  vlFilmPoint f = orthographic ? vl_orthographic_project(camera, p) : vl_perspective_project(camera, p);
-  if (!isfinite(f.x) || !isfinite(f.y)) return false;
-  pixel[0] = f.x;
-  pixel[1] = f.y;
-  if (z) *z = p.z;
-  return true;
 }

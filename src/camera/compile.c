@@ -1,13 +1,31 @@
 /* camera/compile.c: vlCamera (the value the public face hands out) to vlCameraCompiled (what the batches read). */
 #include <math.h>
+#include <string.h>
 
 #include "camera/rays.h"
+#include "math/approx_double.h"
+
+/* Pixels that a plane which closes on itself goes on for beyond its edges; no filter is wider. */
+static const double overhang = 16.0;
 
 const vlCameraKernels *vl_camera_kernels(vlIsa isa) {
   switch (isa) {
     case VL_ISA_V4: return &vl_camera_kernels_v4;
     case VL_ISA_V3: return &vl_camera_kernels_v3;
     default: return &vl_camera_kernels_v2;
+  }
+}
+
+/* The angle that the central pixel subtends. */
+static double central_spread(const vlCameraCompiled *c) {
+  double size = sqrt(c->inv_fx * c->inv_fy);
+  switch (c->projection) {
+    case VL_PROJECTION_CUBE: return 2.0 * size;
+    case VL_PROJECTION_EQUAL_AREA: return 1.7724538509055159 * size; /* 4 pi over an area of 4 */
+    case VL_PROJECTION_UNIFIED:
+    case VL_PROJECTION_DOUBLE_SPHERE: return (1.0 + c->shape[0]) * size;
+    case VL_PROJECTION_FOV: return c->shape[0] / c->shape[1] * size;
+    default: return size;
   }
 }
 
@@ -34,8 +52,27 @@ void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
       .near_plane = camera->near_plane,
       .far_plane = camera->far_plane,
   };
+  bool perspective = camera->projection == VL_PROJECTION_PERSPECTIVE;
+  bool orthographic = camera->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  c->plain = orthographic || (perspective && camera->distortion.steps == 0);
+  c->inclined = perspective;
+  c->fx = camera->fx, c->fy = camera->fy, c->skew = camera->skew;
+  c->shape[0] = camera->shape[0], c->shape[1] = camera->shape[1];
+  if (camera->projection == VL_PROJECTION_FOV) {
+    vlSinCosDouble half = vl_sincos_double(0.5 * camera->shape[0]);
+    c->shape[1] = 2.0 * half.sin / half.cos;
+  }
+  c->over_x = overhang * c->inv_fx, c->over_y = overhang * c->inv_fy;
+  if (camera->projection == VL_PROJECTION_EQUAL_AREA) c->over_x = c->over_x > c->over_y ? c->over_x : c->over_y;
+  c->limit2 = camera->limit * camera->limit;
+  c->distortion = camera->distortion;
+  memcpy(c->camera_from_world, camera->camera_from_world, sizeof c->camera_from_world);
+  if (!perspective && !orthographic) {
+    c->pixel_spread = (float)central_spread(c);
+    return;
+  }
   double size = 1.0 / sqrt(camera->fx * camera->fy); /* a pixel's side at z = 1, or its width in camera units */
-  if (camera->projection == VL_PROJECTION_PERSPECTIVE) {
+  if (perspective) {
     c->pixel_spread = (float)size;
   } else {
     double det =

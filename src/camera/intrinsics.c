@@ -67,7 +67,10 @@ static vlResult check_all(const vlCameraDef *d, vlError *error) {
     vlResult result = check(values[i].name, values[i].value, values[i].positive, error);
     if (result != VL_OK) return result;
   }
-  if (d->fov >= pi)
+  if (d->fov > 2.0 * pi)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: fov is %g radians (%g degrees); all round is 360 degrees", d->fov,
+                   d->fov * 180.0 / pi);
+  if (d->fov >= pi && d->projection <= VL_PROJECTION_ORTHOGRAPHIC)
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: fov is %g radians (%g degrees); a flat view plane needs less than 180 degrees", d->fov,
                    d->fov * 180.0 / pi);
@@ -118,11 +121,39 @@ static vlResult take_screen(const vlCameraDef *d, double tangent, const char *fr
   return take(&g->cy, d->screen_max_y / down * d->height, "the screen window", error);
 }
 
-static vlResult gather_perspective(const vlCameraDef *d, bool screen, Gathered *g, vlError *error) {
+/* Half a field of view in the plane's unit, along an axis. */
+static vlResult plane_half(const vlCameraDef *d, const vlCamera *camera, bool vertical, double *half, vlError *error) {
+  vlProjection kind = d->projection;
+  if (kind == VL_PROJECTION_PERSPECTIVE) {
+    *half = tan(0.5 * d->fov);
+    return VL_OK;
+  }
+  const char *name = vl_projection_name(kind);
+  if (kind == VL_PROJECTION_CUBE || kind == VL_PROJECTION_EQUAL_AREA)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a fov has no meaning for the %s projection", name);
+  bool round = !(kind >= VL_PROJECTION_EQUIRECTANGULAR && kind <= VL_PROJECTION_PANINI);
+  if (d->fov_axis == VL_FOV_DIAGONAL && !round)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a diagonal fov has no meaning for the %s projection", name);
+  /* all round: straight back, told from the side of the picture */
+  double angle = 0.5 * d->fov < pi ? 0.5 * d->fov : pi * (1.0 - 1e-15);
+  if (!vl_camera_plane_radius(camera, angle, vertical, half))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the %s projection cannot show a fov of %g degrees", name,
+                   d->fov * 180.0 / pi);
+  return VL_OK;
+}
+
+/* Perspective, and all the others whose plane hangs on a focal length. */
+static vlResult gather_focal(const vlCameraDef *d, const vlCamera *camera, bool screen, Gathered *g, vlError *error) {
   char from[160];
   bool has_fov = !vl_is_unset(d->fov), has_d = !vl_is_unset(d->view_distance), has_mm = !vl_is_unset(d->focal_mm);
   double zoom = vl_is_unset(d->zoom) ? 1.0 : d->zoom, size = vl_is_unset(d->pixel_size) ? 1.0 : d->pixel_size;
-  if (screen) {
+  if (screen && d->projection != VL_PROJECTION_PERSPECTIVE) {
+    if (has_fov)
+      return vl_fail(error, VL_ERROR_ARGUMENT,
+                     "camera: fov and a screen window are given; for the %s projection the window alone says it",
+                     vl_projection_name(d->projection));
+    TRY(take_screen(d, 1.0, "the screen window", g, error));
+  } else if (screen) {
     double fov = has_fov ? d->fov : 0.5 * pi;
     snprintf(from, sizeof from, "the screen window with fov %.9g degrees%s", fov * 180.0 / pi,
              has_fov ? "" : " (the default)");
@@ -130,7 +161,9 @@ static vlResult gather_perspective(const vlCameraDef *d, bool screen, Gathered *
   } else if (has_fov) {
     static const char *const axes[] = {"vertical", "horizontal", "diagonal", "smaller side", "larger side"};
     bool horizontal, vertical;
-    double f = half_window(d, &horizontal, &vertical) / tan(0.5 * d->fov);
+    double window = half_window(d, &horizontal, &vertical), half;
+    TRY(plane_half(d, camera, !horizontal, &half, error));
+    double f = window / half;
     snprintf(from, sizeof from, "fov %.9g degrees (%s)", d->fov * 180.0 / pi, axes[d->fov_axis]);
     if (horizontal) TRY(take(&g->fx, f, from, error));
     if (vertical) TRY(take(&g->fy, f, from, error));
@@ -183,29 +216,50 @@ static vlResult gather_orthographic(const vlCameraDef *d, bool screen, Gathered 
   return VL_OK;
 }
 
+/* Nothing said. Perspective: 90 degrees across the smaller side; orthographic: -1 to 1 across it; both are half of it
+ * in pixels. Fisheyes: 180 degrees across it. Planes of the whole sphere, the cylinder and the cube: all of it. The
+ * rest: 90 degrees across the smaller side where the model sees that. */
+static void standard_focal(const vlCameraDef *d, const vlCamera *camera, Gathered *g) {
+  double half = 0.5 * (d->width < d->height ? d->width : d->height), radius = 1.0;
+  bool fisheye = d->projection >= VL_PROJECTION_EQUIDISTANT && d->projection <= VL_PROJECTION_SINE;
+  g->fx.value = g->fy.value = half;
+  switch (d->projection) {
+    case VL_PROJECTION_PERSPECTIVE:
+    case VL_PROJECTION_ORTHOGRAPHIC: break;
+    case VL_PROJECTION_EQUIRECTANGULAR: g->fx.value = d->width / (2.0 * pi), g->fy.value = d->height / pi; break;
+    case VL_PROJECTION_EQUAL_AREA: g->fx.value = 0.5 * d->width, g->fy.value = 0.5 * d->height; break;
+    case VL_PROJECTION_CYLINDRICAL: g->fx.value = g->fy.value = d->width / (2.0 * pi); break;
+    case VL_PROJECTION_CUBE: g->fx.value = d->width / 6.0, g->fy.value = d->height; break;
+    default:
+      if (!vl_camera_plane_radius(camera, fisheye ? 0.5 * pi * (1.0 - 1e-15) : 0.25 * pi, d->width >= d->height,
+                                  &radius))
+        radius = 1.0;
+      g->fx.value = g->fy.value = half / radius;
+  }
+}
+
 vlResult vl_camera_intrinsics(const vlCameraDef *d, vlCamera *camera, vlError *error) {
   Gathered g = {{"focal length fx", VL_UNSET, ""},
                 {"focal length fy", VL_UNSET, ""},
                 {"principal point cx", VL_UNSET, ""},
                 {"principal point cy", VL_UNSET, ""}};
-  bool perspective = d->projection == VL_PROJECTION_PERSPECTIVE, screen;
+  bool orthographic = d->projection == VL_PROJECTION_ORTHOGRAPHIC, screen;
   TRY(check_all(d, error));
   TRY(screen_given(d, &screen, error));
   if (!vl_is_unset(d->fx)) TRY(take(&g.fx, d->fx, "fx", error));
   if (!vl_is_unset(d->fy)) TRY(take(&g.fy, d->fy, "fy", error));
   if (!vl_is_unset(d->cx)) TRY(take(&g.cx, d->cx, "cx", error));
   if (!vl_is_unset(d->cy)) TRY(take(&g.cy, d->cy, "cy", error));
-  TRY(perspective ? gather_perspective(d, screen, &g, error) : gather_orthographic(d, screen, &g, error));
+  TRY(orthographic ? gather_orthographic(d, screen, &g, error) : gather_focal(d, camera, screen, &g, error));
 
-  /* Nothing said: 90 degrees across the smaller side; orthographic: -1 to 1 across it. Both are half of it in pixels.
-   * One focal length said: square pixels. */
-  double half = 0.5 * (d->width < d->height ? d->width : d->height);
-  if (vl_is_unset(g.fx.value) && vl_is_unset(g.fy.value)) g.fx.value = g.fy.value = half;
+  /* One focal length said: square pixels. */
+  if (vl_is_unset(g.fx.value) && vl_is_unset(g.fy.value)) standard_focal(d, camera, &g);
   camera->fx = vl_is_unset(g.fx.value) ? g.fy.value : g.fx.value;
   camera->fy = vl_is_unset(g.fy.value) ? g.fx.value : g.fy.value;
   camera->skew = vl_is_unset(d->skew) ? 0.0 : d->skew;
-  camera->cx = vl_is_unset(g.cx.value) ? 0.5 * d->width : g.cx.value;
-  camera->cy = vl_is_unset(g.cy.value) ? 0.5 * d->height : g.cy.value;
+  double centre = d->projection == VL_PROJECTION_CUBE ? 0.0 : 0.5; /* the row of faces starts at the corner */
+  camera->cx = vl_is_unset(g.cx.value) ? centre * d->width : g.cx.value;
+  camera->cy = vl_is_unset(g.cy.value) ? centre * d->height : g.cy.value;
   /* beyond these the arithmetic of the rays, and of their squares, would leave the numbers */
   if (camera->fx > 1e30 || camera->fy > 1e30 || camera->fx < 1e-30 || camera->fy < 1e-30)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focal lengths of %g and %g pixels are out of range", camera->fx,

@@ -28,15 +28,20 @@ static inline vlLensPoint vl_lens_disk(float u, float v) {
   return (vlLensPoint){wide ? along : across, wide ? across : along};
 }
 
-/* With r = o + s d and the point of focus at z = F: start at o + l, aim at o + d F/dz. */
-static inline vlCameraLocal vl_lens_apply(const vlCameraCompiled *c, vlCameraLocal r, vlLensPoint disk) {
+/* With r = o + s d and the point of focus at z = F: start at o + l, aim at o + d F/dz. depth = dz. Projections that see
+ * more than what lies ahead focus on a sphere instead: d of unit length, depth = 1. */
+static inline vlCameraLocal vl_lens_apply_at(const vlCameraCompiled *c, vlCameraLocal r, vlLensPoint disk,
+                                             double depth) {
   double lx = c->lens_radius * (double)disk.x, ly = c->lens_radius * (double)disk.y;
-  double bend = r.dz * c->inv_focus;
+  double bend = depth * c->inv_focus;
   r.ox += lx;
   r.oy += ly;
   r.dx -= lx * bend;
   r.dy -= ly * bend;
   return r;
+}
+static inline vlCameraLocal vl_lens_apply(const vlCameraCompiled *c, vlCameraLocal r, vlLensPoint disk) {
+  return vl_lens_apply_at(c, r, disk, r.dz);
 }
 
 #endif

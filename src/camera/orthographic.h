@@ -1,5 +1,6 @@
-/* camera/orthographic.h: the orthographic projection, both directions: projectors are parallel to the view axis and
- * size does not depend on distance. fx, fy are pixels per scene unit. */
+/* camera/orthographic.h: the orthographic projection: projectors are parallel to the view axis and
+ * size does not depend on distance. fx, fy are pixels per scene unit. The way back, x and y as they are, stands with
+ * the others in projection.h. */
 #ifndef CAMERA_ORTHOGRAPHIC_H
 #define CAMERA_ORTHOGRAPHIC_H
 
@@ -15,10 +16,6 @@ static inline vlCameraLocal vl_orthographic_unproject(const vlCameraCompiled *c,
   r.dy = 0.0;
   r.dz = 1.0;
   return r;
-}
-
-static inline vlFilmPoint vl_orthographic_project(const vlCamera *c, vlCameraPoint p) {
-  return (vlFilmPoint){c->fx * p.x + c->skew * p.y + c->cx, c->fy * p.y + c->cy};
 }
 
 #endif

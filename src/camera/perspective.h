@@ -1,5 +1,6 @@
-/* camera/perspective.h: the perspective projection, both directions: all projectors meet in the centre of projection,
- * the view plane is flat. (The lecture's "pinhole camera"; Suffern, Ray Tracing from the Ground Up, ch. 8 and 9.) */
+/* camera/perspective.h: the perspective projection: all projectors meet in the centre of projection,
+ * the view plane is flat. (The lecture's "pinhole camera"; Suffern, Ray Tracing from the Ground Up, ch. 8 and 9.)
+ * The way back, x/z and y/z, stands with the others in projection.h. */
 #ifndef CAMERA_PERSPECTIVE_H
 #define CAMERA_PERSPECTIVE_H
 
@@ -16,12 +17,6 @@ static inline vlCameraLocal vl_perspective_unproject(const vlCameraCompiled *c, 
   r.dy = y * c->aspect;
   r.dz = c->focal;
   return r;
-}
-
-/* p in camera space, p.z > 0. */
-static inline vlFilmPoint vl_perspective_project(const vlCamera *c, vlCameraPoint p) {
-  double x = p.x / p.z, y = p.y / p.z;
-  return (vlFilmPoint){c->fx * x + c->skew * y + c->cx, c->fy * y + c->cy};
 }
 
 #endif

@@ -1,6 +1,7 @@
 /* camera/rays.h: the camera as the render loop sees it: film samples in, rays out, a batch at a time.
  *
- *   film sample -> projection (perspective.h, orthographic.h) -> lens (lens.h) -> pose -> world-space ray
+ *   film sample -> distortion (distortion.h) -> projection (projection.h and what it gathers) -> lens (lens.h)
+ *   -> pose -> world-space ray
  *
  * Each stage is a plain function by value; the projection is chosen once per batch. Positions and directions are
  * computed in double and rounded to float once, at the end: a ray is the nearest float to the exact formula. */
@@ -9,6 +10,9 @@
 
 #include "base/isa.h"
 #include "velo/camera.h"
+
+/* Points per chunk of the double arrays below. */
+enum { VL_CAMERA_CHUNK = 256 };
 
 /* A camera ready for batches. Camera space: x right, y down, z forward. Plain data, made by vl_camera_compile. */
 typedef struct vlCameraCompiled {
@@ -28,6 +32,16 @@ typedef struct vlCameraCompiled {
    * Perspective: the width is 0 and the spread is the angle (radians) that the central pixel subtends. Orthographic:
    * spread 0. */
   float pixel_spread, pixel_width;
+
+  /* What follows serves all but the plain perspective and orthographic cameras. */
+  bool plain;            /* perspective without distortion, or orthographic: every film point is valid */
+  bool inclined;         /* perspective: depth along z, not distance, counts for lens and planes */
+  double fx, fy, skew;   /* pixels */
+  double shape[2];       /* of the projection; FOV: w and 2 tan(w/2) */
+  double over_x, over_y; /* how far a plane that closes on itself goes on beyond its edges, for filters */
+  double limit2;         /* square of the valid disc's radius in the plane */
+  vlDistortionMap distortion;
+  double camera_from_world[12];
 } vlCameraCompiled;
 
 /* All arrays hold VL_PAD(n) elements; those past n may hold anything, and what comes out for them means nothing.
@@ -42,15 +56,32 @@ typedef struct vlCameraSamples {
   const float *time;
 } vlCameraSamples;
 
-/* World space; d normalised; [t_min, t_max] from the near and far planes (0 and infinity without); time in seconds. */
+/* World space; d normalised; [t_min, t_max] from the near and far planes (0 and infinity without); time in seconds.
+ * valid (may be null): 1, or 0 where the film point lies outside the camera's domain; t_max is -1 there, so that the
+ * ray hits nothing, and d is some unit vector. */
 typedef struct vlCameraRays {
   float *ox, *oy, *oz, *dx, *dy, *dz;
   float *t_min, *t_max;
   float *time;
+  float *valid;
 } vlCameraRays;
+
+/* A chunk of points or pixels in double: VL_PAD(n) elements are computed, n <= VL_CAMERA_CHUNK. */
+typedef struct vlCameraPixels {
+  double x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK], z[VL_CAMERA_CHUNK], valid[VL_CAMERA_CHUNK];
+} vlCameraPixels;
+typedef struct vlCameraPoints {
+  double ox[VL_CAMERA_CHUNK], oy[VL_CAMERA_CHUNK], oz[VL_CAMERA_CHUNK]; /* unproject: where the ray starts */
+  double x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK], z[VL_CAMERA_CHUNK];    /* a point; unproject: a unit direction */
+  double valid[VL_CAMERA_CHUNK];
+} vlCameraPoints;
 
 typedef struct vlCameraKernels {
   void (*rays)(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r);
+  /* Film positions in x, y (pixels) to world-space rays. */
+  void (*unproject)(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *pixels, vlCameraPoints *points);
+  /* World-space points to film positions; z is the depth. */
+  void (*project)(const vlCameraCompiled *c, uint32_t n, const vlCameraPoints *points, vlCameraPixels *pixels);
 } vlCameraKernels;
 
 /* One table per instruction set; all give the same bits. */

@@ -4,6 +4,7 @@
 #include "camera/orthographic.h"
 #include "camera/perspective.h"
 #include "camera/place.h"
+#include "camera/stages.h"
 
 /* One loop, inlined once for each projection with and without a lens: the two constants are decided before it. */
 static inline __attribute__((always_inline)) void ray_loop(const int orthographic, const int lens,
@@ -35,23 +36,80 @@ static inline __attribute__((always_inline)) void ray_loop(const int orthographi
   }
 }
 
-static void rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r) {
-  uint32_t count = VL_PAD(n);
-  switch (c->projection) {
-    case VL_PROJECTION_PERSPECTIVE:
-      if (c->has_lens)
-        ray_loop(0, 1, c, count, s, r);
-      else
-        ray_loop(0, 0, c, count, s, r);
-      break;
-    case VL_PROJECTION_ORTHOGRAPHIC:
-      if (c->has_lens)
-        ray_loop(1, 1, c, count, s, r);
-      else
-        ray_loop(1, 0, c, count, s, r);
-      break;
+/* The rays of a chunk whose directions are known: samples from `first` on. */
+static inline __attribute__((always_inline)) void place_loop(const int lens, const vlCameraCompiled *camera,
+                                                             uint32_t first, uint32_t count, const vlDirections *d,
+                                                             const vlCameraSamples *s, const vlCameraRays *r) {
+  const vlCameraCompiled copy = *camera, *c = &copy;
+  const float *lens_u = s->lens_u + (lens ? first : 0), *lens_v = s->lens_v + (lens ? first : 0);
+  const float *time = s->time + first;
+  float *ox = r->ox + first, *oy = r->oy + first, *oz = r->oz + first;
+  float *dx = r->dx + first, *dy = r->dy + first, *dz = r->dz + first;
+  float *t_min = r->t_min + first, *t_max = r->t_max + first, *seconds = r->time + first;
+  const double near_t = c->near_plane, far_t = c->far_plane;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    vlCameraLocal local = {0.0, 0.0, d->dx[i], d->dy[i], d->dz[i]};
+    /* directions that are not inclined have unit length, perspective ones z = 1: the depth is 1 either way */
+    if (lens) local = vl_lens_apply_at(c, local, vl_lens_disk(lens_u[i], lens_v[i]), 1.0);
+    vlWorldRay w = vl_camera_place(c, local);
+    int good = d->valid[i] > 0.0;
+    ox[i] = (float)w.ox;
+    oy[i] = (float)w.oy;
+    oz[i] = (float)w.oz;
+    dx[i] = (float)(w.dx * w.inv_length);
+    dy[i] = (float)(w.dy * w.inv_length);
+    dz[i] = (float)(w.dz * w.inv_length);
+    t_min[i] = (float)(good ? near_t * w.length : 0.0);
+    t_max[i] = (float)(good ? far_t * w.length : -1.0);
+    seconds[i] = (float)(c->shutter_open + c->shutter_time * (double)time[i]);
   }
 }
 
+/* All that is neither plain perspective nor orthographic. */
+static void staged_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, const vlCameraRays *r) {
+  const double cx = c->cx, cy = c->cy, inv_fx = c->inv_fx;
+  vlDirections d;
+  for (uint32_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
+    uint32_t n = count - first < VL_CAMERA_CHUNK ? count - first : VL_CAMERA_CHUNK;
+    const float *film_x = s->film_x + first, *film_y = s->film_y + first;
+    const int32_t *pixel_x = s->pixel_x + first, *pixel_y = s->pixel_y + first;
+    /* must vectorise */
+    VL_SIMD for (uint32_t i = 0; i < n; i++) {
+      double x = (double)pixel_x[i] - cx, y = (double)pixel_y[i] - cy;
+      d.face[i] = __builtin_floor((x + 0.5) * inv_fx);
+      d.x[i] = x + (double)film_x[i];
+      d.y[i] = y + (double)film_y[i];
+    }
+    VL_HOT(vl_camera_directions)(c, n, &d);
+    if (c->has_lens)
+      place_loop(1, c, first, n, &d, s, r);
+    else
+      place_loop(0, c, first, n, &d, s, r);
+    for (uint32_t i = 0; r->valid && i < n; i++) r->valid[first + i] = (float)d.valid[i];
+  }
+}
+
+static void rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r) {
+  uint32_t count = VL_PAD(n);
+  if (!c->plain) {
+    staged_rays(c, count, s, r);
+    return;
+  }
+  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) {
+    if (c->has_lens)
+      ray_loop(1, 1, c, count, s, r);
+    else
+      ray_loop(1, 0, c, count, s, r);
+  } else {
+    if (c->has_lens)
+      ray_loop(0, 1, c, count, s, r);
+    else
+      ray_loop(0, 0, c, count, s, r);
+  }
+  for (uint32_t i = 0; r->valid && i < count; i++) r->valid[i] = 1.0f;
+}
+
 extern const vlCameraKernels VL_HOT(vl_camera_kernels);
-const vlCameraKernels VL_HOT(vl_camera_kernels) = {rays};
+const vlCameraKernels VL_HOT(vl_camera_kernels) = {rays, VL_HOT(vl_camera_unproject_chunk),
+                                                   VL_HOT(vl_camera_project_chunk)};

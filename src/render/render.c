@@ -46,6 +46,7 @@ enum Row {
   T_MIN,
   T_MAX,
   RAY_TIME,
+  VALID,
   LAMBDA,
   INV_PDF = LAMBDA + 4,
   RADIANCE = INV_PDF + 4,
@@ -117,6 +118,15 @@ static void count_more(_Atomic uint64_t *total, uint64_t more) {
   atomic_store_explicit(total, atomic_load_explicit(total, memory_order_relaxed) + more, memory_order_relaxed);
 }
 
+/* Where the camera sees nothing (outside an image circle, beyond a fold), not even the sky is seen. */
+static void clear_invalid(uint32_t n, const float *valid, float *alpha, float *const radiance[4]) {
+  for (uint32_t i = 0; i < n; i++) {
+    if (valid[i] > 0.0f) continue;
+    alpha[i] = 0.0f;
+    for (int c = 0; c < 4; c++) radiance[c][i] = 0.0f;
+  }
+}
+
 static void render_batch(const Render *r, Worker *w, uint32_t n) {
   const int32_t *px = (int32_t *)(void *)row(w, PIXEL_X), *py = (int32_t *)(void *)row(w, PIXEL_Y);
   const uint32_t *index = (uint32_t *)(void *)row(w, INDEX);
@@ -128,8 +138,8 @@ static void render_batch(const Render *r, Worker *w, uint32_t n) {
   k->get_1d(&r->sampler, n, px, py, index, VL_DIM_TIME, row(w, TIME));
   if (r->lens) k->get_2d(&r->sampler, n, px, py, index, VL_DIM_LENS, row(w, LENS_U), row(w, LENS_V));
   vlCameraSamples samples = {fx, fy, px, py, row(w, LENS_U), row(w, LENS_V), row(w, TIME)};
-  vlCameraRays rays = {row(w, OX), row(w, OY),    row(w, OZ),    row(w, DX),      row(w, DY),
-                       row(w, DZ), row(w, T_MIN), row(w, T_MAX), row(w, RAY_TIME)};
+  vlCameraRays rays = {row(w, OX), row(w, OY),    row(w, OZ),    row(w, DX),       row(w, DY),
+                       row(w, DZ), row(w, T_MIN), row(w, T_MAX), row(w, RAY_TIME), row(w, VALID)};
   r->camera_kernels->rays(&r->camera, n, &samples, &rays);
   vlTraceBatch batch = {.n = n,
                         .ox = rays.ox,
@@ -151,6 +161,7 @@ static void render_batch(const Render *r, Worker *w, uint32_t n) {
     expose.inv_pdf[c] = batch.inv_pdf[c] = r->rgb_mode ? NULL : row(w, INV_PDF + c);
   }
   r->trace_kernels->trace(r->world, &r->trace, w->scratch, &batch);
+  if (!r->camera.plain) clear_invalid(n, row(w, VALID), batch.alpha, batch.radiance);
   vl_film_expose(r->film, r->trace.isa, &expose, row(w, RED), row(w, GREEN), row(w, BLUE));
   vlFilmSamples add = {n, px, py, row(w, RED), row(w, GREEN), row(w, BLUE), batch.alpha, row(w, WEIGHT)};
   int32_t bad_x = 0, bad_y = 0;

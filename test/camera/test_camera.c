@@ -250,7 +250,7 @@ static void error_messages(void **state) {
   EXPECT_ERROR(d.cookie = 0, "vl_default_camera_def", NULL);
   EXPECT_ERROR(d.width = 0, "0 x 480", NULL);
   EXPECT_ERROR(d.height = 1u << 25, "33554432", NULL);
-  EXPECT_ERROR(d.projection = (vlProjection)9, "projection 9", NULL);
+  EXPECT_ERROR(d.projection = (vlProjection)99, "projection 99", NULL);
   EXPECT_ERROR(d.fov_axis = (vlFovAxis)9, "axis 9", NULL);
   /* over-determined: both values are named */
   EXPECT_ERROR((d.fov = RADIANS(60), d.view_distance = 500), "fov 60 degrees", "d 500");

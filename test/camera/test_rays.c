@@ -12,7 +12,7 @@ typedef struct {
   int32_t pixel_x[N], pixel_y[N];
 } Samples;
 typedef struct {
-  float ox[N], oy[N], oz[N], dx[N], dy[N], dz[N], t_min[N], t_max[N], time[N];
+  float ox[N], oy[N], oz[N], dx[N], dy[N], dz[N], t_min[N], t_max[N], time[N], valid[N];
 } Rays;
 
 static Samples samples;
@@ -23,7 +23,8 @@ static void run(vlIsa isa, const vlCamera *camera, uint32_t n, Rays *out) {
   vl_camera_compile(camera, &c);
   vlCameraSamples s = {samples.film_x, samples.film_y, samples.pixel_x, samples.pixel_y,
                        samples.lens_u, samples.lens_v, samples.time};
-  vlCameraRays r = {out->ox, out->oy, out->oz, out->dx, out->dy, out->dz, out->t_min, out->t_max, out->time};
+  vlCameraRays r = {out->ox, out->oy,    out->oz,    out->dx,   out->dy,
+                    out->dz, out->t_min, out->t_max, out->time, out->valid};
   vl_camera_kernels(isa)->rays(&c, n, &s, &r);
 }
 

@@ -1,0 +1,222 @@
+/* camera/domain.c: how far a camera sees: the disc of the plane within which its lens does not fold and its projection
+ * has a meaning, how many steps of Newton's method turn its distortion round there, and what share of the picture lies
+ * outside. */
+#include <math.h>
+
+#include "base/error.h"
+#include "camera/parts.h"
+#include "camera/points.h"
+
+enum { DEGREE = 8, MAX_STEPS = 48, DIRECTIONS = 64, GRID = 48 };
+static const double pi = 3.14159265358979323846;
+
+/* ---- where a radial distortion folds: the first root of a polynomial ------------------------------------------------
+ */
+
+static double value_at(const double *p, int degree, double s) {
+  double value = 0.0;
+  for (int i = degree; i >= 0; i--) value = value * s + p[i];
+  return value;
+}
+
+/* All roots of p in (0, top], in order, into roots; between two roots of the derivative there is at most one, so none
+ * is missed but pairs closer than rounding. Returns their number. */
+static int positive_roots(const double *p, int degree, double top, double roots[DEGREE]) {
+  if (degree < 1) return 0;
+  double derivative[DEGREE], turns[DEGREE];
+  for (int i = 0; i < degree; i++) derivative[i] = (i + 1) * p[i + 1];
+  int turn_count = positive_roots(derivative, degree - 1, top, turns), count = 0;
+  double low = 0.0;
+  for (int k = 0; k <= turn_count; k++) {
+    double high = k < turn_count ? turns[k] : top;
+    double at_low = value_at(p, degree, low), at_high = value_at(p, degree, high);
+    if ((at_low > 0.0) != (at_high > 0.0)) {
+      double a = low, b = high;
+      for (int i = 0; i < 200 && a < b; i++) {
+        double middle = 0.5 * (a + b);
+        if (middle == a || middle == b) break;
+        if ((value_at(p, degree, middle) > 0.0) == (at_low > 0.0))
+          a = middle;
+        else
+          b = middle;
+      }
+      roots[count++] = a;
+    }
+    low = high;
+  }
+  return count;
+}
+
+/* With s = r^2 and q = N/D, r q(s) grows as long as (N + 2 s N') D - 2 s N D' > 0 and D > 0. */
+static double radial_fold(const vlDistortionMap *m) {
+  const double n[5] = {1.0, m->numerator[0], m->numerator[1], m->numerator[2], m->numerator[3]};
+  const double d[4] = {1.0, m->denominator[0], m->denominator[1], m->denominator[2]};
+  double growth[DEGREE] = {0}, roots[DEGREE];
+  for (int i = 0; i < 5; i++)
+    for (int j = 0; j < 4; j++) growth[i + j] += n[i] * d[j] * (1.0 + 2.0 * i - 2.0 * j);
+  const double top = 1e12;
+  double first = INFINITY;
+  if (positive_roots(growth, 7, top, roots) > 0) first = roots[0];
+  if (positive_roots(d, 3, top, roots) > 0 && roots[0] < first) first = roots[0];
+  return sqrt(first);
+}
+
+/* ---- the general case: along 64 directions, the first place where the determinant is no longer positive -------------
+ */
+
+static bool unfolded(const vlDistortionMap *m, double x, double y) {
+  vlDistorted d = vl_distort(m, x, y);
+  double s = x * x + y * y, below = 1.0 + s * (m->denominator[0] + s * (m->denominator[1] + s * m->denominator[2]));
+  double w = m->tilt[6] * d.u + m->tilt[7] * d.v + m->tilt[8];
+  return below > 0.0 && w > 1e-6 && d.ux * d.vy - d.uy * d.vx > 0.0;
+}
+
+static double fold_along(const vlDistortionMap *m, double cosine, double sine, double most) {
+  double before = 0.0;
+  for (double r = 1e-3; before < most; r *= 1.03) {
+    double here = r < most ? r : most;
+    if (!unfolded(m, here * cosine, here * sine)) {
+      double a = before, b = here;
+      for (int i = 0; i < 60; i++) {
+        double middle = 0.5 * (a + b);
+        if (unfolded(m, middle * cosine, middle * sine))
+          a = middle;
+        else
+          b = middle;
+      }
+      return a;
+    }
+    before = here;
+  }
+  return most;
+}
+
+static double fold_radius(const vlDistortionMap *m, double most) {
+  bool radial = m->tangential[0] == 0.0 && m->tangential[1] == 0.0 && m->tilt[6] == 0.0 && m->tilt[7] == 0.0;
+  for (int i = 0; i < 4; i++) radial = radial && m->prism[i] == 0.0;
+  double radius = fmin(radial_fold(m), most);
+  if (radial) return radius;
+  /* tangential terms move the fold either way, so the search goes on past the radial one */
+  radius = most;
+  for (int i = 0; i < DIRECTIONS; i++) {
+    double angle = 2.0 * pi * i / DIRECTIONS;
+    radius = fmin(radius, fold_along(m, cos(angle), sin(angle), radius));
+  }
+  return radius < most ? 0.998 * radius : radius; /* between the directions */
+}
+
+/* ---- how many steps -------------------------------------------------------------------------------------------------
+ */
+
+/* Until the inverse of (x, y)'s image is found; MAX_STEPS + 1: never. */
+static uint32_t steps_for(const vlDistortionMap *m, double x, double y) {
+  vlDistorted d = vl_distort(m, x, y);
+  vlPlanePoint p = vl_distortion_start(m, d.u, d.v);
+  uint32_t step = 0;
+  while (step <= MAX_STEPS && vl_distortion_check(m, p.x, p.y, d.u, d.v) == 0.0) {
+    p = vl_distortion_step(m, p.x, p.y, d.u, d.v);
+    step++;
+  }
+  return step;
+}
+
+/* The plane's radius that the picture can need: the first where the image lies beyond all its corners by half. */
+static double needed_radius(const vlCamera *c) {
+  const vlDistortionMap *m = &c->distortion;
+  double corner = 0.0;
+  for (int i = 0; i < 4; i++) {
+    double y = ((i & 1 ? c->height : 0.0) - c->cy) / c->fy;
+    double x = ((i & 2 ? c->width : 0.0) - c->cx) / c->fx - c->skew / c->fx * y;
+    vlPlanePoint p = vl_tilt(m->untilt, x, y);
+    if (p.valid > 0.0) corner = fmax(corner, vl_length2(p.x, p.y));
+  }
+  for (double r = 1e-3; r < m->radius && r < 1e6; r *= 1.05) {
+    double least = INFINITY;
+    for (int i = 0; i < 8; i++) {
+      vlDistorted d = vl_distort(m, r * cos(0.25 * pi * i), r * sin(0.25 * pi * i));
+      least = fmin(least, vl_length2(d.u, d.v));
+    }
+    if (least > 1.5 * corner) return r;
+  }
+  return fmin(m->radius, 1e6);
+}
+
+static uint32_t steps_everywhere(const vlCamera *c) {
+  const vlDistortionMap *m = &c->distortion;
+  double most = needed_radius(c);
+  uint32_t steps = 1;
+  for (int i = 0; i < 24; i++)
+    for (int k = 1; k <= 40; k++) {
+      /* towards the edge ever closer: a fold is where Newton's method is slow */
+      double share = k <= 32 ? k / 33.0 : 1.0 - pow(10.0, 30.5 - k);
+      double r = most * share, angle = 2.0 * pi * (i + 0.3) / 24;
+      uint32_t here = steps_for(m, r * cos(angle), r * sin(angle));
+      if (here <= MAX_STEPS && here > steps) steps = here;
+    }
+  return steps + 1;
+}
+
+/* ---- the picture ----------------------------------------------------------------------------------------------------
+ */
+
+static double share_outside(const vlCamera *camera) {
+  vlCameraCompiled c;
+  vl_camera_compile(camera, &c);
+  if (c.plain) return 0.0;
+  uint32_t outside = 0;
+  for (int i = 0; i <= GRID; i++)
+    for (int j = 0; j <= GRID; j++) {
+      double x = (double)camera->width * i / GRID, y = (double)camera->height * j / GRID;
+      /* the grid's outermost points stand half a pixel within */
+      x = fmin(fmax(x, 0.5), camera->width - 0.5), y = fmin(fmax(y, 0.5), camera->height - 0.5);
+      outside += vl_camera_direction(&c, x - c.cx, y - c.cy).valid == 0.0;
+    }
+  return outside / (double)((GRID + 1) * (GRID + 1));
+}
+
+static bool has_circle(vlProjection p) {
+  return (p >= VL_PROJECTION_EQUIDISTANT && p <= VL_PROJECTION_SINE) || p >= VL_PROJECTION_FOV ||
+         p == VL_PROJECTION_PERSPECTIVE;
+}
+
+vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error) {
+  vlProjection kind = def->projection;
+  bool fisheye = kind >= VL_PROJECTION_EQUIDISTANT && kind <= VL_PROJECTION_SINE;
+  double angle = def->max_angle, limit = INFINITY;
+  if (!vl_is_unset(angle)) {
+    if (!has_circle(kind) || (kind == VL_PROJECTION_PERSPECTIVE && camera->distortion.steps == 0))
+      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: max_angle has no meaning for the %s projection",
+                     vl_projection_name(kind));
+    if (!(angle > 0.0 && angle <= pi))
+      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: max_angle is %g radians; it must be above 0 and at most pi",
+                     angle);
+  }
+  bool said = !vl_is_unset(def->fx) || !vl_is_unset(def->fy) || !vl_is_unset(def->view_distance) ||
+              !vl_is_unset(def->focal_mm) || !vl_is_unset(def->screen_min_x);
+  if (vl_is_unset(angle) && fisheye && !vl_is_unset(def->fov)) angle = 0.5 * def->fov;
+  if (vl_is_unset(angle) && fisheye && !said) angle = 0.5 * pi;
+  if (kind == VL_PROJECTION_EQUIDISTANT) limit = pi;
+  double radius;
+  if (!vl_is_unset(angle)) {
+    /* straight back is nowhere in particular; a hair before it is */
+    bool seen = vl_camera_plane_radius(camera, angle < pi ? angle : pi * (1.0 - 1e-9), false, &radius);
+    if (seen)
+      limit = fmin(limit, radius * (1.0 + 1e-12));
+    else if (!vl_is_unset(def->max_angle) && kind != VL_PROJECTION_PERSPECTIVE)
+      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the %s projection does not see as far as max_angle, %g degrees",
+                     vl_projection_name(kind), angle * 180.0 / pi);
+  }
+  camera->limit = limit;
+  vlDistortionMap *m = &camera->distortion;
+  if (m->steps > 0) {
+    m->radius = fold_radius(m, fmin(limit, 1e4));
+    m->steps = steps_everywhere(camera);
+  }
+  camera->outside = share_outside(camera);
+  bool calibrated = m->steps > 0 || kind >= VL_PROJECTION_FOV;
+  if (calibrated && vl_is_unset(def->max_angle) && camera->outside > 0.0 && warning && !*warning)
+    *warning =
+        "camera: the lens's model folds or ends inside the picture; beyond that the picture is empty (alpha 0), and "
+        "vlCamera.outside says which share of it";
+  return VL_OK;
+}

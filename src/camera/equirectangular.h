@@ -1,0 +1,23 @@
+/* camera/equirectangular.h: longitude across, latitude down, both directions; radians. The plane's centre looks ahead.
+ * Longitude goes from -pi to pi, latitude from -pi/2 (up) to pi/2. A little beyond, the plane goes on as the sphere
+ * does (round it, and over the poles), so that filters see no edge: `over_x`, `over_y`, radians; project gives the
+ * point within. */
+#ifndef CAMERA_EQUIRECTANGULAR_H
+#define CAMERA_EQUIRECTANGULAR_H
+
+#include "camera/plane.h"
+#include "math/approx_double.h"
+
+static inline vlDirection vl_equirectangular_unproject(double over_x, double over_y, double x, double y) {
+  int inside =
+      __builtin_fabs(x) <= 3.14159265358979323846 + over_x && __builtin_fabs(y) <= 1.57079632679489661923 + over_y;
+  vlSinCosDouble lon = vl_sincos_double(inside ? x : 0.0), lat = vl_sincos_double(inside ? y : 0.0);
+  return (vlDirection){lat.cos * lon.sin, lat.sin, lat.cos * lon.cos, inside ? 1.0 : 0.0};
+}
+static inline vlPlanePoint vl_equirectangular_project(double x, double y, double z) {
+  double across = vl_length2(x, z);
+  return (vlPlanePoint){vl_atan2_double(x, z), vl_atan2_double(y, across),
+                        across + __builtin_fabs(y) > 0.0 ? 1.0 : 0.0};
+}
+
+#endif

@@ -1,0 +1,254 @@
+/* camera/model.c: the numbers of a projection and of a lens's distortion, checked and brought to one form. */
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/error.h"
+#include "camera/parts.h"
+#include "camera/points.h"
+
+const char *vl_projection_name(vlProjection projection) {
+  static const char *const names[] = {"perspective",
+                                      "orthographic",
+                                      "equidistant fisheye",
+                                      "equisolid fisheye",
+                                      "stereographic fisheye",
+                                      "orthographic fisheye",
+                                      "equirectangular",
+                                      "equal-area",
+                                      "cylindrical",
+                                      "cube",
+                                      "Panini",
+                                      "FOV",
+                                      "division",
+                                      "unified",
+                                      "EUCM",
+                                      "double sphere"};
+  return (uint32_t)projection < sizeof names / sizeof names[0] ? names[projection] : "unknown";
+}
+
+typedef struct {
+  const char *name;
+  double least, most; /* both allowed */
+  double standard;    /* unset: must be given */
+} ShapeNumber;
+
+/* Least and most: beyond them the equations have no meaning, or no precision. */
+static int shape_numbers(vlProjection projection, ShapeNumber n[2]) {
+  switch (projection) {
+    case VL_PROJECTION_PANINI: n[0] = (ShapeNumber){"d", 0.0, 1e3, 1.0}; return 1;
+    case VL_PROJECTION_FOV: n[0] = (ShapeNumber){"w", 1e-6, 3.14, VL_UNSET}; return 1;
+    case VL_PROJECTION_DIVISION: n[0] = (ShapeNumber){"lambda", -1e3, 1e3, VL_UNSET}; return 1;
+    case VL_PROJECTION_UNIFIED: n[0] = (ShapeNumber){"xi", 0.0, 1e3, VL_UNSET}; return 1;
+    case VL_PROJECTION_EUCM:
+      n[0] = (ShapeNumber){"alpha", 0.0, 1.0, VL_UNSET};
+      n[1] = (ShapeNumber){"beta", 1e-6, 1e6, VL_UNSET};
+      return 2;
+    case VL_PROJECTION_DOUBLE_SPHERE:
+      n[0] = (ShapeNumber){"xi", -0.999, 0.999, VL_UNSET};
+      n[1] = (ShapeNumber){"alpha", 0.0, 1.0, VL_UNSET};
+      return 2;
+    default: return 0;
+  }
+}
+
+static vlResult shape(const vlCameraDef *def, vlCamera *camera, vlError *error) {
+  const char *name = vl_projection_name(def->projection);
+  ShapeNumber n[2];
+  int count = shape_numbers(def->projection, n);
+  camera->shape[0] = camera->shape[1] = 0.0;
+  for (int i = 0; i < 2; i++) {
+    double value = def->shape[i];
+    if (i >= count) {
+      if (!vl_is_unset(value))
+        return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the %s projection takes %d numbers; shape[%d] is %g", name,
+                       count, i, value);
+      continue;
+    }
+    if (vl_is_unset(value)) value = n[i].standard;
+    if (vl_is_unset(value))
+      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the %s projection needs its %s", name, n[i].name);
+    if (!(value >= n[i].least && value <= n[i].most))
+      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s of the %s projection is %g; it must be %g to %g", n[i].name,
+                     name, value, n[i].least, n[i].most);
+    camera->shape[i] = value;
+  }
+  return VL_OK;
+}
+
+static void multiply3(const double a[9], const double b[9], double r[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) r[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+}
+
+static void inverse3(const double a[9], double r[9]) {
+  double det =
+      a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      int i1 = (j + 1) % 3, i2 = (j + 2) % 3, j1 = (i + 1) % 3, j2 = (i + 2) % 3;
+      r[3 * i + j] = (a[3 * i1 + j1] * a[3 * i2 + j2] - a[3 * i1 + j2] * a[3 * i2 + j1]) / det;
+    }
+}
+
+/* OpenCV's tilted sensor: rotation about x by tau_x, then y by tau_y, then back along the axis to the plane. */
+static void tilt(vlDistortionMap *m, double tau_x, double tau_y) {
+  vlSinCosDouble x = vl_sincos_double(tau_x), y = vl_sincos_double(tau_y);
+  const double about_x[9] = {1, 0, 0, 0, x.cos, x.sin, 0, -x.sin, x.cos};
+  const double about_y[9] = {y.cos, 0, -y.sin, 0, 1, 0, y.sin, 0, y.cos};
+  double r[9];
+  multiply3(about_y, about_x, r);
+  const double back[9] = {r[8], 0, -r[2], 0, r[8], -r[5], 0, 0, 1};
+  multiply3(back, r, m->tilt);
+  inverse3(m->tilt, m->untilt);
+}
+
+static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *error) {
+  static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const double *k = def->distortion_coefficients;
+  uint32_t n = def->distortion_count;
+  memset(m, 0, sizeof *m);
+  memcpy(m->tilt, identity, sizeof identity);
+  memcpy(m->untilt, identity, sizeof identity);
+  m->radius = INFINITY;
+  if (def->distortion == VL_DISTORTION_NONE && n != 0)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %u distortion coefficients are given without a distortion", n);
+  if (def->distortion == VL_DISTORTION_NONE) return VL_OK;
+  if (def->projection == VL_PROJECTION_ORTHOGRAPHIC || def->projection == VL_PROJECTION_CUBE ||
+      def->projection == VL_PROJECTION_EQUAL_AREA || def->projection == VL_PROJECTION_EQUIRECTANGULAR)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a distortion has no meaning for the %s projection",
+                   vl_projection_name(def->projection));
+  for (uint32_t i = 0; i < n && i < 14; i++)
+    if (!isfinite(k[i]) || fabs(k[i]) > 1e30)
+      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: distortion coefficient %u is %g", i + 1, k[i]);
+  switch (def->distortion) {
+    case VL_DISTORTION_OPENCV: {
+      if (n != 4 && n != 5 && n != 8 && n != 12 && n != 14)
+        return vl_fail(error, VL_ERROR_ARGUMENT,
+                       "camera: %u OpenCV distortion coefficients; there are 4, 5, 8, 12 or 14", n);
+      double c[14] = {0};
+      memcpy(c, k, n * sizeof *c);
+      m->numerator[0] = c[0], m->numerator[1] = c[1], m->numerator[2] = c[4];
+      for (int i = 0; i < 3; i++) m->denominator[i] = c[5 + i];
+      m->tangential[0] = c[2], m->tangential[1] = c[3];
+      for (int i = 0; i < 4; i++) m->prism[i] = c[8 + i];
+      if (!(fabs(c[12]) < 1.5 && fabs(c[13]) < 1.5))
+        return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the sensor's tilt %g, %g radians must be below 1.5", c[12],
+                       c[13]);
+      if (c[12] != 0.0 || c[13] != 0.0) tilt(m, c[12], c[13]);
+      break;
+    }
+    case VL_DISTORTION_RADIAL:
+      if (n < 1 || n > 4)
+        return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %u radial distortion coefficients; there are 1 to 4", n);
+      memcpy(m->numerator, k, n * sizeof *k);
+      break;
+    case VL_DISTORTION_THIN_PRISM:
+      if (n != 8)
+        return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %u thin-prism distortion coefficients; there are 8", n);
+      m->numerator[0] = k[0], m->numerator[1] = k[1], m->numerator[2] = k[4], m->numerator[3] = k[5];
+      m->tangential[0] = k[2], m->tangential[1] = k[3];
+      m->prism[0] = k[6], m->prism[2] = k[7];
+      break;
+    default: return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown distortion %d", (int)def->distortion);
+  }
+  for (uint32_t i = 0; i < n; i++)
+    if (k[i] != 0.0) m->steps = 1; /* all zero: no distortion */
+  return VL_OK;
+}
+
+vlResult vl_camera_model(const vlCameraDef *def, vlCamera *camera, vlError *error) {
+  vlResult result = shape(def, camera, error);
+  if (result == VL_OK) result = distortion(def, &camera->distortion, error);
+  camera->limit = INFINITY;
+  return result;
+}
+
+bool vl_camera_plane_radius(const vlCamera *camera, double angle, bool vertical, double *radius) {
+  vlCameraCompiled c;
+  memset(&c, 0, sizeof c);
+  c.shape[0] = camera->shape[0], c.shape[1] = camera->shape[1];
+  if (camera->projection == VL_PROJECTION_FOV) c.shape[1] = 2.0 * tan(0.5 * camera->shape[0]);
+  c.limit2 = INFINITY;
+  double s = sin(angle), z = cos(angle);
+  vlPlanePoint p = vl_plane_project(camera->projection, &c, vertical ? 0.0 : s, vertical ? s : 0.0, z);
+  *radius = vertical ? p.y : p.x;
+  return p.valid > 0.0 && isfinite(*radius) && *radius > 0.0;
+}
+
+/* ---- COLMAP's models (sensor/models.h of COLMAP; parameters in its order) -------------------------------------------
+ */
+
+typedef struct {
+  const char *name;
+  uint32_t count;
+  vlProjection projection;
+  vlDistortion distortion;
+  bool one_focal; /* f cx cy instead of fx fy cx cy */
+} Colmap;
+
+static const Colmap colmap[] = {
+    {"SIMPLE_PINHOLE", 3, VL_PROJECTION_PERSPECTIVE, VL_DISTORTION_NONE, true},
+    {"PINHOLE", 4, VL_PROJECTION_PERSPECTIVE, VL_DISTORTION_NONE, false},
+    {"SIMPLE_RADIAL", 4, VL_PROJECTION_PERSPECTIVE, VL_DISTORTION_RADIAL, true},
+    {"RADIAL", 5, VL_PROJECTION_PERSPECTIVE, VL_DISTORTION_RADIAL, true},
+    {"OPENCV", 8, VL_PROJECTION_PERSPECTIVE, VL_DISTORTION_OPENCV, false},
+    {"OPENCV_FISHEYE", 8, VL_PROJECTION_EQUIDISTANT, VL_DISTORTION_RADIAL, false},
+    {"FULL_OPENCV", 12, VL_PROJECTION_PERSPECTIVE, VL_DISTORTION_OPENCV, false},
+    {"FOV", 5, VL_PROJECTION_FOV, VL_DISTORTION_NONE, false},
+    {"SIMPLE_RADIAL_FISHEYE", 4, VL_PROJECTION_EQUIDISTANT, VL_DISTORTION_RADIAL, true},
+    {"RADIAL_FISHEYE", 5, VL_PROJECTION_EQUIDISTANT, VL_DISTORTION_RADIAL, true},
+    {"THIN_PRISM_FISHEYE", 12, VL_PROJECTION_EQUIDISTANT, VL_DISTORTION_THIN_PRISM, false},
+};
+enum { COLMAP_MODELS = sizeof colmap / sizeof colmap[0] };
+
+/* Of two words, how many letters must change; words of more than 31 letters count as far away. */
+static uint32_t distance(const char *a, const char *b) {
+  size_t n = strlen(a), m = strlen(b);
+  uint32_t row[32];
+  if (n > 31 || m > 31) return 99;
+  for (size_t j = 0; j <= m; j++) row[j] = (uint32_t)j;
+  for (size_t i = 1; i <= n; i++) {
+    uint32_t before = row[0];
+    row[0] = (uint32_t)i;
+    for (size_t j = 1; j <= m; j++) {
+      uint32_t change = before + (strncasecmp(a + i - 1, b + j - 1, 1) != 0);
+      before = row[j];
+      uint32_t best = row[j] < row[j - 1] ? row[j] + 1 : row[j - 1] + 1;
+      row[j] = change < best ? change : best;
+    }
+  }
+  return row[m];
+}
+
+vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double *parameters, uint32_t count,
+                              vlError *error) {
+  vl_error_clear(error);
+  if (!def || !model || (!parameters && count > 0)) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: null argument");
+  const Colmap *found = NULL, *nearest = &colmap[0];
+  for (int i = 0; i < COLMAP_MODELS; i++) {
+    if (strcmp(model, colmap[i].name) == 0) found = &colmap[i];
+    if (distance(model, colmap[i].name) < distance(model, nearest->name)) nearest = &colmap[i];
+  }
+  if (!found)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown COLMAP camera model \"%.40s\"; the nearest is %s", model,
+                   nearest->name);
+  if (count != found->count)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the COLMAP camera model %s has %u parameters, not %u",
+                   found->name, found->count, count);
+  uint32_t first = found->one_focal ? 3 : 4, rest = count - first;
+  def->projection = found->projection;
+  def->distortion = found->distortion;
+  def->fx = parameters[0];
+  def->fy = parameters[found->one_focal ? 0 : 1];
+  def->cx = parameters[first - 2];
+  def->cy = parameters[first - 1];
+  def->distortion_count = 0;
+  if (found->projection == VL_PROJECTION_FOV) {
+    def->shape[0] = parameters[4];
+  } else {
+    def->distortion_count = rest;
+    memcpy(def->distortion_coefficients, parameters + first, rest * sizeof(double));
+  }
+  return VL_OK;
+}

@@ -1,0 +1,27 @@
+/* camera/panini.h: the general Panini projection, both directions: the world on a cylinder about the vertical axis,
+ * seen from a point d behind its axis. d = 0 is the perspective, d = 1 the cylindrical stereographic, large d nears the
+ * cylindrical orthographic. Verticals and all lines through the centre stay straight (Sharpless, Postle, German,
+ * "Pannini: A New Projection for Rendering Wide Angle Perspective Images", 2010). */
+#ifndef CAMERA_PANINI_H
+#define CAMERA_PANINI_H
+
+#include "camera/plane.h"
+
+/* cos(longitude) must stay above this: for d <= 1 the plane is infinite there, for d > 1 it turns back. */
+static inline double vl_panini_edge(double d) {
+  return d <= 1.0 ? -d : -1.0 / d;
+}
+
+static inline vlDirection vl_panini_unproject(double d, double x, double y) {
+  double k = x * x / ((d + 1.0) * (d + 1.0)), root = 1.0 + k * (1.0 - d * d);
+  double cosine = (vl_root(root) - k * d) / (k + 1.0);
+  double over = d + cosine, s = (d + 1.0) / vl_not_tiny(over);
+  return (vlDirection){x / s, y / s, cosine, root >= 0.0 && over > 1e-12 && k < 1e24 ? 1.0 : 0.0};
+}
+static inline vlPlanePoint vl_panini_project(double d, double x, double y, double z) {
+  double across = vl_length2(x, z), scale = 1.0 / vl_not_tiny(across), cosine = z * scale;
+  double over = d + cosine, s = (d + 1.0) / vl_not_tiny(over) * scale;
+  return (vlPlanePoint){x * s, y * s, across > 0.0 && over > 1e-12 && cosine >= vl_panini_edge(d) ? 1.0 : 0.0};
+}
+
+#endif

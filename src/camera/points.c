@@ -1,0 +1,157 @@
+/* camera/points.c: pixels to rays and points to pixels, the public functions: one by one and in arrays. */
+#include <math.h>
+
+#include "camera/orthographic.h"
+#include "camera/perspective.h"
+#include "camera/place.h"
+#include "camera/points.h"
+
+vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y) {
+  vlPlanePoint p = vl_pixel_to_plane(c, x, y);
+  double face = vl_cube_face(p.x);
+  const vlDistortionMap *m = &c->distortion;
+  double valid = 1.0;
+  if (m->steps > 0) {
+    vlPlanePoint flat = vl_tilt(m->untilt, p.x, p.y);
+    p = vl_distortion_start(m, flat.x, flat.y);
+    for (uint32_t step = 0; step < m->steps; step++) p = vl_distortion_step(m, p.x, p.y, flat.x, flat.y);
+    valid = flat.valid * vl_distortion_check(m, p.x, p.y, flat.x, flat.y);
+  }
+  vlDirection d = vl_plane_unproject(c->projection, c, face, p.x, p.y);
+  return vl_direction_finish(c->inclined, d, valid);
+}
+
+vlPlanePoint vl_camera_film_point(const vlCameraCompiled *c, double x, double y, double z) {
+  vlPlanePoint p = vl_plane_project(c->projection, c, x, y, z);
+  if (c->distortion.steps > 0) {
+    vlPlanePoint bent = vl_distortion_apply(&c->distortion, p.x, p.y);
+    bent.valid *= p.valid;
+    p = bent;
+  }
+  return vl_plane_to_pixel(c, p);
+}
+
+static vlCameraLocal local_ray(const vlCameraCompiled *c, double x, double y, double *valid) {
+  *valid = 1.0;
+  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) return vl_orthographic_unproject(c, x, y);
+  if (c->plain) return vl_perspective_unproject(c, x, y);
+  vlDirection d = vl_camera_direction(c, x, y);
+  *valid = d.valid;
+  return (vlCameraLocal){0.0, 0.0, d.x, d.y, d.z};
+}
+
+bool vl_camera_unproject(const vlCamera *camera, double x, double y, double origin[3], double direction[3]) {
+  if (!camera || !isfinite(x) || !isfinite(y)) return false;
+  vlCameraCompiled c;
+  vl_camera_compile(camera, &c);
+  double valid;
+  vlCameraLocal r = local_ray(&c, x - c.cx, y - c.cy, &valid);
+  if (valid == 0.0) return false;
+  vlWorldRay w = vl_camera_place(&c, r);
+  origin[0] = w.ox, origin[1] = w.oy, origin[2] = w.oz;
+  direction[0] = w.dx * w.inv_length, direction[1] = w.dy * w.inv_length, direction[2] = w.dz * w.inv_length;
+  return isfinite(direction[0]) && isfinite(direction[1]) && isfinite(direction[2]);
+}
+
+bool vl_camera_project(const vlCamera *camera, const double point[3], double pixel[2], double *z) {
+  if (!camera) return false;
+  vlCameraCompiled c;
+  vl_camera_compile(camera, &c);
+  const double *m = c.camera_from_world;
+  double x = m[0] * point[0] + m[1] * point[1] + m[2] * point[2] + m[3];
+  double y = m[4] * point[0] + m[5] * point[1] + m[6] * point[2] + m[7];
+  double depth = m[8] * point[0] + m[9] * point[1] + m[10] * point[2] + m[11];
+  vlPlanePoint f = vl_camera_film_point(&c, x, y, depth);
+  if (!(f.valid > 0.0)) return false;
+  pixel[0] = f.x;
+  pixel[1] = f.y;
+  if (z) *z = depth;
+  return true;
+}
+
+static const vlCameraKernels *kernels(void) {
+  vlIsa isa;
+  return vl_camera_kernels(vl_isa_choose(VL_ISA_AUTO, &isa) == VL_OK ? isa : VL_ISA_V2);
+}
+
+void vl_camera_unproject_batch(const vlCamera *camera, size_t count, const double *pixels, double *origins,
+                               double *directions, uint8_t *valid) {
+  if (!camera) return;
+  vlCameraCompiled c;
+  vlCameraPixels in;
+  vlCameraPoints out;
+  vl_camera_compile(camera, &c);
+  const vlCameraKernels *k = kernels();
+  for (size_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
+    uint32_t n = count - first < VL_CAMERA_CHUNK ? (uint32_t)(count - first) : VL_CAMERA_CHUNK;
+    for (uint32_t i = 0; i < VL_PAD(n); i++) {
+      const double *p = pixels + 2 * (first + (i < n ? i : n - 1));
+      in.x[i] = p[0], in.y[i] = p[1];
+    }
+    k->unproject(&c, n, &in, &out);
+    for (uint32_t i = 0; i < n; i++) {
+      double *d = directions + 3 * (first + i);
+      d[0] = out.x[i], d[1] = out.y[i], d[2] = out.z[i];
+      if (origins) {
+        double *o = origins + 3 * (first + i);
+        o[0] = out.ox[i], o[1] = out.oy[i], o[2] = out.oz[i];
+      }
+      if (valid) valid[first + i] = out.valid[i] > 0.0;
+    }
+  }
+}
+
+void vl_camera_project_batch(const vlCamera *camera, size_t count, const double *points, double *pixels, double *z,
+                             uint8_t *valid) {
+  if (!camera) return;
+  vlCameraCompiled c;
+  vlCameraPoints in;
+  vlCameraPixels out;
+  vl_camera_compile(camera, &c);
+  const vlCameraKernels *k = kernels();
+  for (size_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
+    uint32_t n = count - first < VL_CAMERA_CHUNK ? (uint32_t)(count - first) : VL_CAMERA_CHUNK;
+    for (uint32_t i = 0; i < VL_PAD(n); i++) {
+      const double *p = points + 3 * (first + (i < n ? i : n - 1));
+      in.x[i] = p[0], in.y[i] = p[1], in.z[i] = p[2];
+    }
+    k->project(&c, n, &in, &out);
+    for (uint32_t i = 0; i < n; i++) {
+      pixels[2 * (first + i)] = out.x[i], pixels[2 * (first + i) + 1] = out.y[i];
+      if (z) z[first + i] = out.z[i];
+      if (valid) valid[first + i] = out.valid[i] > 0.0;
+    }
+  }
+}
+
+/* Derivatives of the direction by central differences of fourth order: the rays are smooth, so half a pixel is close
+ * enough for 1e-10 of any usual lens and far enough not to drown in rounding. */
+static bool slope(const vlCameraCompiled *c, double x, double y, double hx, double hy, double d[3]) {
+  static const double weight[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12}, at[4] = {-2, -1, 1, 2};
+  d[0] = d[1] = d[2] = 0.0;
+  for (int i = 0; i < 4; i++) {
+    vlDirection r = vl_camera_direction(c, x + at[i] * hx, y + at[i] * hy);
+    double k = weight[i] / (vl_length3(r.x, r.y, r.z) * (hx + hy));
+    if (r.valid == 0.0) return false;
+    d[0] += k * r.x, d[1] += k * r.y, d[2] += k * r.z;
+  }
+  return true;
+}
+
+double vl_camera_solid_angle(const vlCamera *camera, double x, double y) {
+  if (!camera || camera->projection == VL_PROJECTION_ORTHOGRAPHIC || !isfinite(x) || !isfinite(y)) return 0.0;
+  vlCameraCompiled c;
+  vl_camera_compile(camera, &c);
+  double px = x - c.cx, py = y - c.cy, a[3], b[3];
+  vlDirection d = vl_camera_direction(&c, px, py);
+  if (d.valid == 0.0) return 0.0;
+  /* plane units: 1/1000 of a focal length, less where that would leave the domain */
+  for (double h = 1e-3; h > 1e-7; h *= 0.1) {
+    if (!slope(&c, px, py, h * c.fx, 0.0, a) || !slope(&c, px, py, 0.0, h * c.fy, b)) continue;
+    double length = vl_length3(d.x, d.y, d.z);
+    return fabs(d.x * (a[1] * b[2] - a[2] * b[1]) + d.y * (a[2] * b[0] - a[0] * b[2]) +
+                d.z * (a[0] * b[1] - a[1] * b[0])) /
+           length;
+  }
+  return 0.0;
+}

@@ -1,0 +1,37 @@
+/* camera/points.h: a pixel to a direction and a point to a pixel, all factors but lens and pose, one point at a time.
+ * The public functions call these; the batches (points.hot.c) run the same operations in stages, so the bits agree. */
+#ifndef CAMERA_POINTS_H
+#define CAMERA_POINTS_H
+
+#include "camera/distortion.h"
+#include "camera/projection.h"
+
+/* Pixels from the principal point to the plane. */
+static inline vlPlanePoint vl_pixel_to_plane(const vlCameraCompiled *c, double x, double y) {
+  return (vlPlanePoint){(x - c->skew_ratio * y) * c->inv_fx, y * c->inv_fy, 1.0};
+}
+static inline vlPlanePoint vl_plane_to_pixel(const vlCameraCompiled *c, vlPlanePoint p) {
+  double x = c->fx * p.x + c->skew * p.y + c->cx, y = c->fy * p.y + c->cy;
+  int valid = p.valid > 0.0 && x - x == 0.0 && y - y == 0.0; /* infinity minus itself is NaN */
+  return (vlPlanePoint){valid ? x : 0.0, valid ? y : 0.0, valid ? 1.0 : 0.0};
+}
+
+/* The face of a cube's row that a plane point lies on. */
+static inline double vl_cube_face(double x) {
+  return __builtin_floor(x);
+}
+
+/* Takes what the projection said: unit length but for perspective cameras (z = 1 there), and straight ahead where not
+ * valid, so that nothing after this meets a zero or a NaN. */
+static inline vlDirection vl_direction_finish(const int inclined, vlDirection d, double valid) {
+  int good = d.valid > 0.0 && valid > 0.0;
+  double k = inclined ? 1.0 : 1.0 / vl_not_tiny(vl_length3(d.x, d.y, d.z));
+  return (vlDirection){good ? d.x * k : 0.0, good ? d.y * k : 0.0, good ? d.z * k : 1.0, good ? 1.0 : 0.0};
+}
+
+/* x, y: pixels from the principal point. */
+vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y);
+/* A point in camera space to the film. */
+vlPlanePoint vl_camera_film_point(const vlCameraCompiled *c, double x, double y, double z);
+
+#endif

@@ -1,0 +1,145 @@
+/* camera/points.hot.c: pixels to directions and points to pixels in chunks of doubles, in stages: affine map,
+ * distortion, projection. Each stage is a loop of its own, so that every projection goes with every lens at the price
+ * of their sum. Compiled once per instruction set. */
+#include "camera/stages.h"
+
+#include "camera/orthographic.h"
+#include "camera/perspective.h"
+#include "camera/place.h"
+#include "camera/points.h"
+
+/* Real plane points to ideal ones, in place; Newton's method in a fixed number of steps. */
+static void undistort(const vlDistortionMap *map, uint32_t count, double *x, double *y, double *valid) {
+  const vlDistortionMap copy = *map, *m = &copy;
+  double u[VL_CAMERA_CHUNK], v[VL_CAMERA_CHUNK];
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    vlPlanePoint flat = vl_tilt(m->untilt, x[i], y[i]);
+    vlPlanePoint start = vl_distortion_start(m, flat.x, flat.y);
+    u[i] = flat.x, v[i] = flat.y;
+    x[i] = start.x, y[i] = start.y;
+    valid[i] = flat.valid;
+  }
+  for (uint32_t step = 0; step < m->steps; step++) {
+    /* must vectorise */
+    VL_SIMD for (uint32_t i = 0; i < count; i++) {
+      vlPlanePoint p = vl_distortion_step(m, x[i], y[i], u[i], v[i]);
+      x[i] = p.x, y[i] = p.y;
+    }
+  }
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) valid[i] *= vl_distortion_check(m, x[i], y[i], u[i], v[i]);
+}
+
+static inline __attribute__((always_inline)) void plane_loop(vlProjection kind, const vlCameraCompiled *camera,
+                                                             uint32_t count, vlDirections *d) {
+  const vlCameraCompiled copy = *camera, *c = &copy;
+  const int inclined = kind == VL_PROJECTION_PERSPECTIVE;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    vlDirection r = vl_plane_unproject(kind, c, d->face[i], d->x[i], d->y[i]);
+    r = vl_direction_finish(inclined, r, d->valid[i]);
+    d->dx[i] = r.x, d->dy[i] = r.y, d->dz[i] = r.z, d->valid[i] = r.valid;
+  }
+}
+
+void VL_HOT(vl_camera_directions)(const vlCameraCompiled *c, uint32_t count, vlDirections *d) {
+  const double skew_ratio = c->skew_ratio, inv_fx = c->inv_fx, inv_fy = c->inv_fy;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    d->x[i] = (d->x[i] - skew_ratio * d->y[i]) * inv_fx;
+    d->y[i] = d->y[i] * inv_fy;
+    d->valid[i] = 1.0;
+  }
+  if (c->distortion.steps > 0) undistort(&c->distortion, count, d->x, d->y, d->valid);
+#define PLANE_LOOP(kind) plane_loop(kind, c, count, d)
+  VL_EACH_PROJECTION(c->projection, PLANE_LOOP)
+#undef PLANE_LOOP
+}
+
+static void place(const vlCameraCompiled *c, uint32_t count, const double *dx, const double *dy, const double *dz,
+                  const double *valid, vlCameraPoints *out) {
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    vlWorldRay w = vl_camera_place(c, (vlCameraLocal){0.0, 0.0, dx[i], dy[i], dz[i]});
+    int good = valid[i] > 0.0;
+    out->ox[i] = good ? w.ox : 0.0, out->oy[i] = good ? w.oy : 0.0, out->oz[i] = good ? w.oz : 0.0;
+    out->x[i] = good ? w.dx * w.inv_length : 0.0;
+    out->y[i] = good ? w.dy * w.inv_length : 0.0;
+    out->z[i] = good ? w.dz * w.inv_length : 0.0;
+    out->valid[i] = valid[i];
+  }
+}
+
+/* Film points that are not finite are not valid; the others always are. */
+static inline __attribute__((always_inline)) void plain_loop(const int orthographic, const vlCameraCompiled *camera,
+                                                             uint32_t count, const vlCameraPixels *in,
+                                                             vlCameraPoints *out) {
+  const vlCameraCompiled copy = *camera, *c = &copy;
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    double x = in->x[i] - c->cx, y = in->y[i] - c->cy;
+    vlCameraLocal r = orthographic ? vl_orthographic_unproject(c, x, y) : vl_perspective_unproject(c, x, y);
+    vlWorldRay w = vl_camera_place(c, r);
+    double sum = w.dx * w.inv_length + w.dy * w.inv_length + w.dz * w.inv_length;
+    int good = sum - sum == 0.0 && x - x == 0.0 && y - y == 0.0;
+    out->ox[i] = good ? w.ox : 0.0, out->oy[i] = good ? w.oy : 0.0, out->oz[i] = good ? w.oz : 0.0;
+    out->x[i] = good ? w.dx * w.inv_length : 0.0;
+    out->y[i] = good ? w.dy * w.inv_length : 0.0;
+    out->z[i] = good ? w.dz * w.inv_length : 0.0;
+    out->valid[i] = good ? 1.0 : 0.0;
+  }
+}
+
+void VL_HOT(vl_camera_unproject_chunk)(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in,
+                                       vlCameraPoints *out) {
+  uint32_t count = VL_PAD(n);
+  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) {
+    plain_loop(1, c, count, in, out);
+  } else if (c->plain) {
+    plain_loop(0, c, count, in, out);
+  } else {
+    vlDirections d;
+    for (uint32_t i = 0; i < count; i++) {
+      d.x[i] = in->x[i] - c->cx, d.y[i] = in->y[i] - c->cy;
+      d.face[i] = vl_cube_face(vl_pixel_to_plane(c, d.x[i], d.y[i]).x);
+    }
+    VL_HOT(vl_camera_directions)(c, count, &d);
+    place(c, count, d.dx, d.dy, d.dz, d.valid, out);
+  }
+}
+
+static inline __attribute__((always_inline)) void project_loop(vlProjection kind, const vlCameraCompiled *camera,
+                                                               uint32_t count, const vlCameraPoints *in,
+                                                               vlCameraPixels *out) {
+  const vlCameraCompiled copy = *camera, *c = &copy;
+  const double *m = c->camera_from_world;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    double wx = in->x[i], wy = in->y[i], wz = in->z[i];
+    double x = m[0] * wx + m[1] * wy + m[2] * wz + m[3], y = m[4] * wx + m[5] * wy + m[6] * wz + m[7];
+    double z = m[8] * wx + m[9] * wy + m[10] * wz + m[11];
+    vlPlanePoint p = vl_plane_project(kind, c, x, y, z);
+    out->x[i] = p.x, out->y[i] = p.y, out->z[i] = z, out->valid[i] = p.valid;
+  }
+}
+
+void VL_HOT(vl_camera_project_chunk)(const vlCameraCompiled *camera, uint32_t n, const vlCameraPoints *in,
+                                     vlCameraPixels *out) {
+  const vlCameraCompiled copy = *camera, *c = &copy;
+  uint32_t count = VL_PAD(n);
+#define PROJECT_LOOP(kind) project_loop(kind, c, count, in, out)
+  VL_EACH_PROJECTION(c->projection, PROJECT_LOOP)
+#undef PROJECT_LOOP
+  if (c->distortion.steps > 0) {
+    /* must vectorise */
+    VL_SIMD for (uint32_t i = 0; i < count; i++) {
+      vlPlanePoint p = vl_distortion_apply(&c->distortion, out->x[i], out->y[i]);
+      out->x[i] = p.x, out->y[i] = p.y, out->valid[i] *= p.valid;
+    }
+  }
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    vlPlanePoint p = vl_plane_to_pixel(c, (vlPlanePoint){out->x[i], out->y[i], out->valid[i]});
+    out->x[i] = p.x, out->y[i] = p.y, out->valid[i] = p.valid;
+    out->z[i] = p.valid > 0.0 ? out->z[i] : 0.0;
+  }
+}

@@ -1,0 +1,21 @@
+/* camera/stages.h: the stages of the batches that one hot file offers another. */
+#ifndef CAMERA_STAGES_H
+#define CAMERA_STAGES_H
+
+#include "camera/rays.h"
+
+/* In: x, y, pixels from the principal point (overwritten); face, of a cube's row. Out: directions in camera space, z =
+ * 1 for perspective cameras, else unit length. */
+typedef struct vlDirections {
+  double x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK], face[VL_CAMERA_CHUNK];
+  double dx[VL_CAMERA_CHUNK], dy[VL_CAMERA_CHUNK], dz[VL_CAMERA_CHUNK], valid[VL_CAMERA_CHUNK];
+} vlDirections;
+
+/* count is padded. */
+void VL_HOT(vl_camera_directions)(const vlCameraCompiled *c, uint32_t count, vlDirections *d);
+void VL_HOT(vl_camera_unproject_chunk)(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in,
+                                       vlCameraPoints *out);
+void VL_HOT(vl_camera_project_chunk)(const vlCameraCompiled *c, uint32_t n, const vlCameraPoints *in,
+                                     vlCameraPixels *out);
+
+#endif

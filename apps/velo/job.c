@@ -189,7 +189,6 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   job->build = vl_default_build_def();
   job->build.color = settings->color;
   job->build.light_sampler = settings->light_sampler;
-  job->build.permissive = v[RENDER_PERMISSIVE].given;
   job->build.imitate_pbrt = v[RENDER_IMITATE_PBRT].given;
   return -1;
 }

@@ -3,7 +3,9 @@
  *
  * Conventions of the whole library
  *   - Functions that can fail return a vlResult; those that read files also fill an optional vlError.
- *   - Description structs ("defs") come from vl_default_*_def(); a cookie catches a def that skipped it.
+ *   - Description structs ("defs") come from vl_default_*_def(); a cookie catches a def that skipped it. A null def
+ * stands for the default wherever vl_default_*_def() takes no arguments (context, load, write, build, develop, render);
+ * what has a size or kind needs its def.
  *   - In defs, zero is a value. A double that is not given is VL_UNSET (a NaN); an id that is not given has index 0.
  *   - Matrices are row-major double[16] acting on column vectors: p' = M p; `a_from_b` maps b to a.
  *   - Units inside: metres, seconds, radians. World right-handed. Camera x right, y down, z forward. First pixel's

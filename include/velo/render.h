@@ -19,17 +19,20 @@ typedef struct vlBuildDef {
   uint32_t cookie;
   vlColorMode color; /* spectral (default) or RGB; fixed at build */
   vlLightSampler light_sampler;
-  bool permissive;
   bool imitate_pbrt; /* follow pbrt-v4 where it is known to be off (rough coats too bright by up to 8 %; docs/decisions)
                       */
 } vlBuildDef;
 VL_API vlBuildDef vl_default_build_def(void);
-/* Compiles the scene. The scene may be destroyed afterwards. The world is constant: any number of threads and renders
- * may share it. Errors: SCENE (with the place), MISSING (textures), MEMORY. */
+/* Compiles the scene, with the pictures that it names. The scene may be destroyed afterwards, the context not. The
+ * world is constant: any number of threads and renders may share it. Errors: ARGUMENT, what vl_scene_result says, SCENE
+ * (with the place), MISSING (pictures), IO, MEMORY; *world is null then. */
 VL_API vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **world, vlError *error);
 VL_API void vl_world_destroy(vlWorld *world);
 typedef struct vlWorldInfo {
-  uint64_t triangles, primitives, instances, lights, texture_bytes, bytes;
+  uint64_t triangles, primitives; /* triangles count among the primitives; those of groups once */
+  uint64_t instances, lights;     /* each glowing primitive is a light */
+  uint64_t texture_bytes;         /* of pictures, with their coarser levels */
+  uint64_t bytes; /* that the context held when the world was done, the scene's included; not Embree's */
   float bounds_min[3], bounds_max[3];
   double build_seconds;
 } vlWorldInfo;
@@ -55,18 +58,20 @@ typedef struct vlDevelopDef {
   float exposure; /* factor on the linear values; default 1 */
 } vlDevelopDef;
 VL_API vlDevelopDef vl_default_develop_def(void);
-/* New float picture R G B A of the crop window, linear. Not while a render runs, except from its callback. */
+/* New float picture R G B A of the crop window: the weighted mean of the samples, linear, in the film's colour space; A
+ * is the share of them that met a surface (R G B hold the sky behind, too). Zero where there is none. Not while a
+ * render runs, except from its callback after a pass. def may be null. */
 VL_API vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **image);
 
 /* ---- render ----------------------------------------------------------------------------------------------------- */
 
-/* Called after each pass, on the thread that called vl_render; the film may be read in it. */
+/* Called after each pass, and about ten times a second inside one, on the thread that called vl_render. */
 typedef struct vlProgress {
   uint32_t spp_done, spp_total;
   double elapsed, remaining; /* seconds; remaining is an estimate */
   double fraction;           /* of the work, 0 to 1; also between passes */
   uint64_t paths, rays;
-  bool pass_done; /* false: just a sign of life from inside a pass; the film must not be read */
+  bool pass_done; /* the film may be read; false: just a sign of life from inside a pass, the film must not be read */
 } vlProgress;
 /* Return false to stop: after a pass at once; inside a pass the pass is given up and its samples are not counted. */
 typedef bool vlProgressFn(void *user, const vlProgress *progress);
@@ -89,12 +94,14 @@ VL_API vlRenderDef vl_default_render_def(void);
 typedef struct vlRenderStats {
   uint32_t spp;
   uint64_t paths, camera_rays, bounce_rays, shadow_rays;
-  uint64_t not_finite; /* samples dropped since not finite or negative: counted, never hidden */
+  uint64_t not_finite; /* samples dropped since not finite (or above 2^40): counted, never hidden */
   double seconds;
-  uint32_t worst_x, worst_y; /* a pixel where the first such sample was found */
+  uint32_t worst_x, worst_y; /* a pixel where such a sample was found */
 } vlRenderStats;
 /* Adds samples until each pixel has def->spp. The same bits for any number of threads, crop and split of the passes.
- * VL_CANCELLED when the callback stopped it: the film holds whole passes. stats may be null. */
+ * VL_CANCELLED when the callback stopped it: the film holds whole passes. One render at a time adds to a film; it
+ * runs on the workers of the world's context. def and stats may be null. Errors: ARGUMENT (camera and film of different
+ * sizes, too), MEMORY. */
 VL_API vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                           vlRenderStats *stats, vlError *error);
 

@@ -46,10 +46,10 @@ typedef enum vlSpectrumKind {
   VL_SPECTRUM_CONSTANT,  /* value at every wavelength */
   VL_SPECTRUM_RGB,       /* rgb in space, made a spectrum by the role of the place it stands in */
   VL_SPECTRUM_BLACKBODY, /* kelvin, normalised to maximum 1 */
-  VL_SPECTRUM_SAMPLED,   /* count pairs (nm ascending, value), linear between, 0 outside... see count */
+  VL_SPECTRUM_SAMPLED,   /* count pairs (nm ascending, value): linear between, 0 outside */
   VL_SPECTRUM_NAMED      /* "metal-Au-eta", "glass-BK7", "stdillum-D65", ... see vl_spectrum_names */
 } vlSpectrumKind;
-/* A spectrum by value. All are multiplied by scale. Sampled: constant beyond the ends is NOT assumed: 0 outside. */
+/* A spectrum by value. All are multiplied by scale; only the kind's own fields are read. */
 typedef struct vlSpectrum {
   vlSpectrumKind kind;
   float scale;
@@ -93,18 +93,12 @@ typedef enum vlTextureKind {
 } vlTextureKind;
 typedef enum vlWrap { VL_WRAP_REPEAT, VL_WRAP_BLACK, VL_WRAP_CLAMP, VL_WRAP_OCTAHEDRAL } vlWrap;
 typedef enum vlTextureFilter {
-  VL_FILTER_POINT,
-  VL_FILTER_BILINEAR,
-  VL_FILTER_TRILINEAR,
-  VL_FILTER_EWA
+  VL_FILTER_POINT,     /* nearest texel of the level that fits the footprint */
+  VL_FILTER_BILINEAR,  /* between four texels of the finer level */
+  VL_FILTER_TRILINEAR, /* and between two levels */
+  VL_FILTER_EWA        /* read as trilinear: footprints are round */
 } vlTextureFilter;
-typedef enum vlMapping {
-  VL_MAPPING_UV,
-  VL_MAPPING_SPHERICAL,
-  VL_MAPPING_CYLINDRICAL,
-  VL_MAPPING_PLANAR,
-  VL_MAPPING_3D
-} vlMapping;
+typedef enum vlMapping { VL_MAPPING_UV, VL_MAPPING_SPHERICAL, VL_MAPPING_CYLINDRICAL, VL_MAPPING_PLANAR } vlMapping;
 
 typedef struct vlTextureDef {
   uint32_t cookie;
@@ -117,7 +111,7 @@ typedef struct vlTextureDef {
   vlSpectrumInput spectrum_a, spectrum_b, spectrum_c, spectrum_d;
   vlFloatInput amount; /* scale's scale, mix's amount */
   float direction[3];  /* direction mix */
-  uint32_t dimension;  /* checkerboard: 2 or 3 */
+  uint32_t dimension;  /* checkerboard: 2 (s, t by the mapping) or 3 (cubes of unit size in texture_from_world) */
   /* image */
   const char *path;     /* read when the world is built (once per path); or */
   const vlImage *image; /* given directly, copied */
@@ -202,8 +196,7 @@ typedef struct vlLightDef {
   float cone_angle, cone_delta; /* spot, radians */
   const char *path;             /* infinite: equal-area octahedral picture (pbrt book 3.8.3), square; null: uniform */
   const vlImage *image;         /* or given directly, copied */
-  bool image_is_radiance;       /* true: colour is ignored, the picture holds RGB radiance */
-  vlColorSpace space;
+  vlColorSpace space;           /* of the picture. It holds radiance, times scale; colour is ignored */
 } vlLightDef;
 VL_API vlLightDef vl_default_light_def(vlLightKind kind);
 VL_API vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def);

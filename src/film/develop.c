@@ -33,7 +33,8 @@ static vlResult set_attributes(const vlFilm *film, vlImage *image) {
 vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **image) {
   if (!image) return VL_ERROR_ARGUMENT;
   *image = NULL;
-  if (!film || !def || def->cookie != VL_COOKIE_DEVELOP) return VL_ERROR_ARGUMENT;
+  vlDevelopDef d = def ? *def : vl_default_develop_def();
+  if (!film || d.cookie != VL_COOKIE_DEVELOP) return VL_ERROR_ARGUMENT;
   static const char *const names[4] = {"R", "G", "B", "A"};
   vlImageDef image_def = vl_default_image_def(film->width, film->height, 4);
   image_def.names = names;
@@ -50,7 +51,7 @@ vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **
   /* The quotient of the sums, in units of their last places, is right to 2^-51: where all samples of a pixel are the
    * same float, rounding gives that float. */
   float *out = vl_image_pixels(made);
-  double color_unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS)), exposure = def->exposure;
+  double color_unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS)), exposure = d.exposure;
   double alpha_unit = 1.0 / (double)(1 << (VL_ALPHA_BITS - VL_WEIGHT_BITS));
   size_t count = film->front ? vl_film_pixels(film) : 0; /* else the picture's zeros stand */
   for (size_t i = 0; i < count; i++) {

@@ -56,9 +56,6 @@ void vl_film_set_spp(vlFilm *film, uint32_t spp) {
 const vlFilmDef *vl_film_def(const vlFilm *film) {
   return &film->def;
 }
-vlContext *vl_film_context(const vlFilm *film) {
-  return film->context;
-}
 const vlFilterTable *vl_film_filter(const vlFilm *film) {
   return &film->filter;
 }

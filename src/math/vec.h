@@ -50,9 +50,6 @@ static inline float vl_clamp(float x, float low, float high) {
 static inline float vl_abs(float x) {
   return __builtin_fabsf(x);
 }
-static inline float vl_lerp(float t, float a, float b) {
-  return (1.0f - t) * a + t * b;
-}
 /* Largest float below 1. */
 #define VL_ONE_MINUS_EPSILON 0x1.fffffep-1f
 #define VL_PI 3.14159265358979323846f
@@ -67,9 +64,6 @@ static inline vlFrame vl_frame_from_z(vlVec3 n) {
   float sign = __builtin_copysignf(1.0f, n.z);
   float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
   return (vlFrame){{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
-}
-static inline vlVec3 vl_to_local(vlFrame f, vlVec3 v) {
-  return vl_vec3(vl_dot(v, f.x), vl_dot(v, f.y), vl_dot(v, f.z));
 }
 static inline vlVec3 vl_from_local(vlFrame f, vlVec3 v) {
   return vl_add(vl_add(vl_mul(f.x, v.x), vl_mul(f.y, v.y)), vl_mul(f.z, v.z));

@@ -82,7 +82,6 @@ typedef struct Render {
   pthread_t caller;
   double start, last_sign;
   uint32_t spp_before;
-  uint64_t paths_before, rays_before;
 } Render;
 
 static float *row(Worker *w, int r) {
@@ -226,7 +225,7 @@ static void render_tile(void *user, uint32_t tile, uint32_t worker) {
 
 static vlResult check_arguments(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                                 vlError *error) {
-  if (!world || !camera || !film || !def) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: null argument");
+  if (!world || !camera || !film) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: null argument");
   if (def->cookie != VL_COOKIE_RENDER)
     return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: the def was not made by vl_default_render_def");
   const vlFilmDef *f = vl_film_def(film);
@@ -325,6 +324,8 @@ vlRenderDef vl_default_render_def(void) {
 vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                    vlRenderStats *stats, vlError *error) {
   vl_error_clear(error);
+  vlRenderDef standard = vl_default_render_def();
+  if (!def) def = &standard;
   vlResult result = check_arguments(world, camera, film, def, error);
   if (result != VL_OK) return result;
   Render render, *r = &render;

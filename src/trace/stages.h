@@ -141,11 +141,6 @@ float VL_HOT(vl_area_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec
 /* ---- small common pieces
  * -------------------------------------------------------------------------------------------------- */
 
-static inline vlSpectral vl_no_spectral(void) {
-  vlSpectral s = {VL_SPECTRAL_CONSTANT, 0, {0, 0, 0}, 0, {0, 0, 0}};
-  return s;
-}
-
 static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambda) {
   switch (s->kind) {
     case VL_SPECTRAL_SIGMOID: return s->scale * vl_sigmoid(s->sigmoid, lambda);

@@ -41,6 +41,8 @@ vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **r
   for (int i = 0; i < 3; i++)
     world->info.bounds_min[i] = world->bounds_min[i], world->info.bounds_max[i] = world->bounds_max[i];
   world->info.build_seconds = vl_seconds() - start;
+  for (size_t i = 0; i < world->images.count; i++)
+    world->info.texture_bytes += vl_mipmap_bytes(world->images.items[i].mipmap);
   world->info.bytes = vl_context_memory(world->context, NULL);
   *result = world;
   return VL_OK;

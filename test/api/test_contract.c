@@ -147,6 +147,50 @@ static void null_is_an_argument_error(void **state) {
   assert_int_equal(vl_image_read(context, "none.png", NULL, &error), VL_ERROR_ARGUMENT);
 }
 
+static void a_null_def_stands_for_the_default(void **state) {
+  (void)state;
+  vlContext *own = NULL;
+  assert_int_equal(vl_context_create(NULL, &own), VL_OK);
+  vlScene *scene = NULL;
+  vlWorld *world = NULL;
+  vlError error;
+  assert_int_equal(vl_scene_create(own, &scene), VL_OK);
+  vlShapeDef sphere = vl_default_shape_def(VL_SHAPE_SPHERE);
+  vl_scene_add_shape(scene, &sphere);
+  vlLightDef sky = vl_default_light_def(VL_LIGHT_INFINITE);
+  vl_scene_add_light(scene, &sky);
+  assert_int_equal(vl_world_build(scene, NULL, &world, &error), VL_OK);
+  vl_scene_destroy(scene);
+  vlCamera camera;
+  vlCameraDef camera_def = vl_default_camera_def(8, 8);
+  camera_def.eye[2] = 5;
+  assert_int_equal(vl_camera_make(&camera_def, &camera, NULL, &error), VL_OK);
+  vlFilmDef film_def = vl_default_film_def(8, 8);
+  vlFilm *film[2];
+  vlImage *image[2];
+  vlRenderDef render = vl_default_render_def();
+  vlDevelopDef develop = vl_default_develop_def();
+  for (int i = 0; i < 2; i++) {
+    assert_int_equal(vl_film_create(own, &film_def, &film[i]), VL_OK);
+    assert_int_equal(vl_render(world, &camera, film[i], i ? &render : NULL, NULL, &error), VL_OK);
+    assert_int_equal(vl_film_spp(film[i]), render.spp);
+    assert_int_equal(vl_film_develop(film[i], i ? &develop : NULL, &image[i]), VL_OK);
+  }
+  assert_memory_equal(vl_image_const_pixels(image[0]), vl_image_const_pixels(image[1]), 8 * 8 * 4 * sizeof(float));
+  assert_true(vl_image_get(image[0], 4, 4, 0) > 0.0f);
+  develop.cookie = 0;
+  vlImage *none = NULL;
+  assert_int_equal(vl_film_develop(film[0], &develop, &none), VL_ERROR_ARGUMENT);
+  render.cookie = 0;
+  assert_int_equal(vl_render(world, &camera, film[0], &render, NULL, &error), VL_ERROR_ARGUMENT);
+  for (int i = 0; i < 2; i++) {
+    vl_film_destroy(film[i]);
+    vl_image_destroy(image[i]);
+  }
+  vl_world_destroy(world);
+  vl_context_destroy(own);
+}
+
 static void spectra_have_names(void **state) {
   (void)state;
   uint32_t count = 0;
@@ -163,9 +207,13 @@ static void spectra_have_names(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_default_has_a_cookie),        cmocka_unit_test(a_def_made_by_hand_is_caught),
-      cmocka_unit_test(a_scene_remembers_its_first_error), cmocka_unit_test(nothing_is_destroyed_quietly),
-      cmocka_unit_test(null_is_an_argument_error),         cmocka_unit_test(spectra_have_names),
+      cmocka_unit_test(every_default_has_a_cookie),
+      cmocka_unit_test(a_def_made_by_hand_is_caught),
+      cmocka_unit_test(a_scene_remembers_its_first_error),
+      cmocka_unit_test(nothing_is_destroyed_quietly),
+      cmocka_unit_test(null_is_an_argument_error),
+      cmocka_unit_test(a_null_def_stands_for_the_default),
+      cmocka_unit_test(spectra_have_names),
   };
   return cmocka_run_group_tests(tests, begin, end);
 }

@@ -12,7 +12,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   vlLoadDef load = vl_default_load_def();
   load.permissive = true;
   vlBuildDef build = vl_default_build_def();
-  build.permissive = true;
   build.color = size % 2 ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
   if (vl_scene_create(context, &scene) != VL_OK) exit(1);
   vlResult result = vl_scene_load(scene, fuzz_file("input.pbrt", data, size), &load, &error);

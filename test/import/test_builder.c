@@ -289,7 +289,6 @@ static void textures(void **state) {
   assert_near(t[2].spectrum_b.value.value, 1, 0); /* default */
   assert_int_equal(t[2].amount.texture.index, 2);
   assert_near(t[3].direction[2], 1, 0);
-  assert_int_equal(t[4].mapping, VL_MAPPING_3D);
   assert_int_equal(t[4].dimension, 3);
   assert_near(t[4].texture_from_world[3], -1, 0);
   assert_near(t[4].spectrum_a.value.value, 1, 0);

@@ -286,7 +286,6 @@ static void sky(void **state) {
       for (int k = 0; k < 32 * 32 * 3; k++)
         pixels[k] = i == 1 ? 1.0f + 0.5f * sinf(0.05f * (float)k) : (k / 3) % 37 == 5 ? 50.0f : 0.5f;
       def.image = image;
-      def.image_is_radiance = true;
       const double turned[16] = {0, -1, 0, 0, 0.6, 0, -0.8, 0, 0.8, 0, 0.6, 0, 0, 0, 0, 1};
       memcpy(def.world_from_light, turned, sizeof turned);
     }

@@ -13,7 +13,7 @@ static void circle_of_confusion(void **state) {
   for (int i = 0; i < 3; i++) {
     Stage s = stage_open(64, 64);
     s.build.color = VL_COLOR_RGB;
-    s.render.spp = 1024;
+    s.render.spp = 4096;
     s.render.max_depth = 0;
     s.camera.fx = s.camera.fy = 60;
     s.camera.lens_radius = 0.4, s.camera.focus_distance = 2.5;
@@ -36,7 +36,7 @@ static void circle_of_confusion(void **state) {
       }
     /* x^2 + y^2 of a disk: R^2/2; of the square: 2 a^2/3; of a pixel: 1/6 */
     double a = side / z * 60, expected = radius * radius / 2 + 2 * a * a / 3 + 1.0 / 6;
-    assert_ratio("second moment of the blur", second / sum, expected, 0.02);
+    assert_ratio("second moment of the blur", second / sum, expected, 0.01);
     assert_near("centre of the blur, x", mx, 32 + 60 * 0.1, 0.05);
     assert_near("centre of the blur, y", my, 32 + 60 * 0.05, 0.05);
     assert_ratio("light in the blur", sum, 100 * 4 * a * a, 0.01);

@@ -79,6 +79,14 @@ VL_API vlResult vl_image_find_attribute(const vlImage *image, const char *name, 
  * refused before allocating. */
 VL_API vlResult vl_image_read(vlContext *context, const char *path, vlImage **image, vlError *error);
 
+/* Of an OpenEXR file only these channels (other formats: all). They keep a type that all of them have: so ids stay
+ * VL_PIXEL_U32 beside colours that are floats, where vl_image_read makes floats of both (exact up to 2^24). SCENE when
+ * the file lacks one of them. */
+VL_API vlResult vl_image_read_channels(vlContext *context, const char *path, const char *const *names, uint32_t count,
+                                       vlImage **image, vlError *error);
+/* The type that a channel has in the file that it was read from; the picture's own type otherwise. */
+VL_API vlPixelType vl_image_stored_type(const vlImage *image, uint32_t channel);
+
 typedef struct vlWriteDef {
   uint32_t cookie;
   bool half;       /* EXR: 16-bit floats for colour channels (ids and depths stay 32-bit); default false */
@@ -91,6 +99,11 @@ VL_API vlWriteDef vl_default_write_def(void);
  * float ones with sRGB's curve (clamped). write may be null. EXR is packed on the context's workers (not from inside a
  * parallel body); its bytes do not depend on their number. */
 VL_API vlResult vl_image_write(const vlImage *image, const char *path, const vlWriteDef *write, vlError *error);
+
+/* One OpenEXR file of all channels of several pictures of the same size, each in its picture's type; names must
+ * differ. Attributes are the first picture's; `half` touches the first picture alone. */
+VL_API vlResult vl_image_write_layers(const vlImage *const *images, uint32_t count, const char *path,
+                                      const vlWriteDef *write, vlError *error);
 
 /* How a linear picture becomes display values. */
 typedef enum vlView { VL_VIEW_STANDARD, VL_VIEW_KHRONOS_NEUTRAL, VL_VIEW_AGX, VL_VIEW_RAW } vlView;

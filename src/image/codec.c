@@ -92,10 +92,12 @@ void vl_codec_row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel
 /* ---- reading -------------------------------------------------------------------------------------------------------
  */
 
-vlResult vl_image_read_memory(vlContext *context, const char *name, const void *data, size_t size, vlImage **image,
-                              vlError *error) {
+static vlResult read_memory(const vlImageFile *f, vlImage **image) {
   *image = NULL;
-  vlImageFile file = {context, name, data, size, error};
+  vlImageFile file = *f;
+  const char *name = file.name;
+  size_t size = file.size;
+  vlError *error = file.error;
   for (uint32_t i = 0; i < vl_codec_count; i++) {
     if (!vl_codecs[i].probe(file.data, size)) continue;
     vlResult result = vl_codecs[i].read(&file, image);
@@ -110,16 +112,43 @@ vlResult vl_image_read_memory(vlContext *context, const char *name, const void *
                  "%s: not a picture (known are OpenEXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM and QOI)", name);
 }
 
-vlResult vl_image_read(vlContext *context, const char *path, vlImage **image, vlError *error) {
-  if (image) *image = NULL;
-  if (!context || !path || !image) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_read: null argument");
+vlResult vl_image_read_memory(vlContext *context, const char *name, const void *data, size_t size, vlImage **image,
+                              vlError *error) {
+  vlImageFile file = {.context = context, .name = name, .data = data, .size = size, .error = error};
+  return read_memory(&file, image);
+}
+
+static vlResult read_file(vlContext *context, const char *path, const char *const *wanted, uint32_t count,
+                          vlImage **image, vlError *error) {
   vl_error_clear(error);
   char *data;
   size_t size;
   vlResult result = vl_file_read(context, path, false, &data, &size, error);
   if (result != VL_OK) return result;
-  result = vl_image_read_memory(context, path, data, size, image, error);
+  vlImageFile file = {context, path, (const uint8_t *)data, size, error, wanted, count};
+  result = read_memory(&file, image);
   vl_free(context, data);
+  return result;
+}
+
+vlResult vl_image_read(vlContext *context, const char *path, vlImage **image, vlError *error) {
+  if (image) *image = NULL;
+  if (!context || !path || !image) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_read: null argument");
+  return read_file(context, path, NULL, 0, image, error);
+}
+
+vlResult vl_image_read_channels(vlContext *context, const char *path, const char *const *names, uint32_t count,
+                                vlImage **image, vlError *error) {
+  if (image) *image = NULL;
+  if (!context || !path || !image || !names || !count)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_read_channels: null argument, or no names");
+  vlResult result = read_file(context, path, names, count, image, error);
+  for (uint32_t i = 0; result == VL_OK && i < count; i++) {
+    if (names[i] && vl_image_find_channel(*image, names[i]) >= 0) continue;
+    result = vl_fail(error, VL_ERROR_SCENE, "%s: has no channel \"%s\"", path, names[i] ? names[i] : "");
+    vl_image_destroy(*image);
+    *image = NULL;
+  }
   return result;
 }
 
@@ -137,13 +166,25 @@ static const vlCodec *codec_of_suffix(const char *path) {
   return NULL;
 }
 
-vlResult vl_image_write(const vlImage *image, const char *path, const vlWriteDef *write, vlError *error) {
-  vlWriteDef def = write ? *write : vl_default_write_def();
-  if (!image || !path || def.cookie != VL_COOKIE_WRITE)
+static vlResult check_write(const vlImage *image, const char *path, const vlWriteDef *def, vlError *error) {
+  if (!image || !path || def->cookie != VL_COOKIE_WRITE)
     return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_write: null argument, or a def not from vl_default_write_def");
-  if (def.compression < 0 || def.compression > 1 || def.quality < 1 || def.quality > 100)
+  if (def->compression < 0 || def->compression > 1 || def->quality < 1 || def->quality > 100)
     return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_write: compression is 0 or 1, quality 1 to 100");
   vl_error_clear(error);
+  return VL_OK;
+}
+
+static vlResult finish_write(vlFileWriter *writer, vlResult result, vlError *error) {
+  if (result == VL_OK || writer->failed_errno) return vl_file_commit(writer, error); /* commit reports a failed write */
+  vl_file_abandon(writer);
+  return result;
+}
+
+vlResult vl_image_write(const vlImage *image, const char *path, const vlWriteDef *write, vlError *error) {
+  vlWriteDef def = write ? *write : vl_default_write_def();
+  vlResult result = check_write(image, path, &def, error);
+  if (result != VL_OK) return result;
   const vlCodec *codec = codec_of_suffix(path);
   if (!codec) {
     const char *names[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr", ".pfm", ".tga"};
@@ -155,10 +196,39 @@ vlResult vl_image_write(const vlImage *image, const char *path, const vlWriteDef
                    "cannot write %s: the suffix must be .exr .png .jpg .jpeg .hdr .pfm or .tga", path);
   }
   vlFileWriter writer;
-  vlResult result = vl_file_open_write(&writer, path, error);
+  result = vl_file_open_write(&writer, path, error);
   if (result != VL_OK) return result;
-  result = codec->write(image, &def, &writer, error);
-  if (result == VL_OK || writer.failed_errno) return vl_file_commit(&writer, error); /* commit reports a failed write */
-  vl_file_abandon(&writer);
-  return result;
+  return finish_write(&writer, codec->write(image, &def, &writer, error), error);
+}
+
+static vlResult check_layers(const vlImage *const *images, uint32_t count, vlError *error) {
+  for (uint32_t k = 0; k < count; k++) {
+    if (!images[k]) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_write_layers: null argument");
+    if (images[k]->width != images[0]->width || images[k]->height != images[0]->height)
+      return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write layers of %ux%u and %ux%u pixels into one file",
+                     images[0]->width, images[0]->height, images[k]->width, images[k]->height);
+    for (uint32_t j = 0; j < k; j++)
+      for (uint32_t c = 0; c < images[k]->channels; c++)
+        if (vl_image_find_channel(images[j], images[k]->names[c]) >= 0)
+          return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write two layers with a channel \"%s\" into one file",
+                         images[k]->names[c]);
+  }
+  return VL_OK;
+}
+
+vlResult vl_image_write_layers(const vlImage *const *images, uint32_t count, const char *path, const vlWriteDef *write,
+                               vlError *error) {
+  vlWriteDef def = write ? *write : vl_default_write_def();
+  if (!images || count == 0 || count > 64)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_write_layers: needs 1 to 64 pictures");
+  vlResult result = check_write(images[0], path, &def, error);
+  if (result == VL_OK) result = check_layers(images, count, error);
+  if (result != VL_OK) return result;
+  const vlCodec *codec = codec_of_suffix(path);
+  if (!codec || codec->write != vl_exr_write)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write layers to %s: only .exr holds them", path);
+  vlFileWriter writer;
+  result = vl_file_open_write(&writer, path, error);
+  if (result != VL_OK) return result;
+  return finish_write(&writer, vl_exr_write_layers(images, count, &def, &writer, error), error);
 }

@@ -14,6 +14,8 @@ typedef struct vlImageFile {
   const uint8_t *data; /* one zero byte follows */
   size_t size;
   vlError *error;
+  const char *const *wanted; /* names of the channels to read; null: all. OpenEXR alone looks at it */
+  uint32_t wanted_count;
 } vlImageFile;
 
 typedef struct vlCodec {
@@ -50,6 +52,8 @@ void vl_codec_row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel
 
 vlResult vl_exr_read(const vlImageFile *file, vlImage **image);
 vlResult vl_exr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
+vlResult vl_exr_write_layers(const vlImage *const *images, uint32_t count, const vlWriteDef *def, vlFileWriter *writer,
+                             vlError *error);
 bool vl_exr_probe(const uint8_t *data, size_t size);
 vlResult vl_png_read(const vlImageFile *file, vlImage **image);
 vlResult vl_png_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);

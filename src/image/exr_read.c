@@ -17,7 +17,8 @@ typedef struct Reader {
   exr_attr_box2i_t window;
   exr_compression_t compression;
   uint32_t width, height;
-  uint32_t *place; /* channel of the image for each channel of the file */
+  uint32_t *place; /* channel of the image for each channel of the file; NOT_WANTED */
+  uint32_t count;  /* channels of the image */
   int user_type, user_size;
   vlImage *image;
   exr_decode_pipeline_t pipeline;
@@ -31,6 +32,8 @@ typedef struct Reader {
   bool tiled;
   int32_t lines, tile_width, tile_height;
 } Reader;
+
+#define NOT_WANTED UINT32_MAX
 
 bool vl_exr_probe(const uint8_t *data, size_t size) {
   return size >= 4 && memcmp(data, "\x76\x2f\x31\x01", 4) == 0;
@@ -104,6 +107,12 @@ static uint32_t rank(const char *name) {
   return 5;
 }
 
+static bool is_wanted(const vlImageFile *file, const char *name) {
+  for (uint32_t i = 0; i < file->wanted_count; i++)
+    if (file->wanted[i] && strcmp(file->wanted[i], name) == 0) return true;
+  return !file->wanted;
+}
+
 static double ratio(const Reader *r) {
   return r->dwa ? 16384.0 : 1032.0;
 }
@@ -133,11 +142,20 @@ static vlResult layout(Reader *r) {
       return vl_codec_broken(file, "OpenEXR", "a channel without a name");
     if ((unsigned)c->pixel_type >= EXR_PIXEL_LAST_TYPE) return vl_codec_broken(file, "OpenEXR", "unknown pixel type");
     bytes += c->pixel_type == EXR_PIXEL_HALF ? 2 : 4;
+    if (!is_wanted(file, c->name.str)) continue;
+    r->count++;
     halves += c->pixel_type == EXR_PIXEL_HALF;
     integers += c->pixel_type == EXR_PIXEL_UINT;
   }
-  r->user_type = halves == count ? EXR_PIXEL_HALF : integers == count ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
-  r->user_size = halves == count ? 2 : 4;
+  if (r->count == 0)
+    return vl_fail(file->error, VL_ERROR_SCENE, "%s: has no channel \"%s\"", file->name,
+                   file->wanted[0] ? file->wanted[0] : "");
+  r->user_type = halves == r->count ? EXR_PIXEL_HALF : integers == r->count ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+  r->user_size = halves == r->count ? 2 : 4;
+  if (r->user_type == EXR_PIXEL_FLOAT && integers)
+    vl_log(file->context, VL_LOG_INFO, NULL,
+           "%s: integers beside floats are read as floats, exact up to 2^24 (vl_image_read_channels keeps them)",
+           file->name);
 
   int64_t width = (int64_t)r->window.max.x - r->window.min.x + 1,
           height = (int64_t)r->window.max.y - r->window.min.y + 1;
@@ -246,11 +264,15 @@ static vlResult decode_dwa_chunk(Reader *r, const exr_chunk_info_t *chunk, char 
   if (result == VL_ERROR_MEMORY) return vl_fail_memory(file->error);
   if (result != VL_OK) return vl_codec_broken(file, "OpenEXR", "a DWA chunk is damaged");
   const uint8_t *from = r->unpacked;
-  size_t pixel = (size_t)r->user_size * count;
+  size_t pixel = (size_t)r->user_size * r->count;
   for (int32_t y = 0; y < chunk->height; y++)
     for (uint32_t i = 0; i < count; i++) {
-      char *to = origin + (size_t)y * pixel * r->width + (size_t)r->user_size * r->place[i];
       size_t step = r->dwa_channels[i].type == EXR_PIXEL_HALF ? 2 : 4;
+      if (r->place[i] == NOT_WANTED) {
+        from += step * (size_t)chunk->width;
+        continue;
+      }
+      char *to = origin + (size_t)y * pixel * r->width + (size_t)r->user_size * r->place[i];
       for (int32_t x = 0; x < chunk->width; x++, from += step, to += pixel)
         convert_value(r->dwa_channels[i].type, from, r->user_type, to);
     }
@@ -272,6 +294,8 @@ static vlResult decode_chunk(Reader *r, uint32_t column, uint32_t row) {
   if (code != EXR_ERR_SUCCESS) return fail(r, code);
   for (int i = 0; i < p->channel_count; i++) {
     exr_coding_channel_info_t *c = &p->channels[i];
+    c->decode_to_ptr = NULL; /* skipped */
+    if (r->place[i] == NOT_WANTED) continue;
     c->decode_to_ptr = (uint8_t *)origin + (size_t)r->user_size * r->place[i];
     c->user_bytes_per_element = (int16_t)r->user_size;
     c->user_data_type = (uint16_t)r->user_type;
@@ -293,14 +317,16 @@ static vlResult create(Reader *r) {
   r->place = vl_alloc_array(context, count, sizeof *r->place);
   const char **names = vl_alloc_array(context, count, sizeof *names);
   vlResult result = r->place && names ? VL_OK : VL_ERROR_MEMORY;
+  for (uint32_t i = 0; result == VL_OK && i < count; i++) r->place[i] = NOT_WANTED;
   for (uint32_t k = 0; result == VL_OK && k <= 5; k++)
     for (uint32_t i = 0; i < count; i++) {
-      if (rank(r->list->entries[i].name.str) != k || next >= count) continue;
-      names[next] = r->list->entries[i].name.str;
+      const char *name = r->list->entries[i].name.str;
+      if (rank(name) != k || next >= r->count || !is_wanted(r->base.file, name)) continue;
+      names[next] = name;
       r->place[i] = next++;
     }
   if (result == VL_OK) {
-    vlImageDef def = vl_default_image_def(r->width, r->height, count);
+    vlImageDef def = vl_default_image_def(r->width, r->height, r->count);
     def.names = names;
     def.type = r->user_type == EXR_PIXEL_HALF   ? VL_PIXEL_F16
                : r->user_type == EXR_PIXEL_UINT ? VL_PIXEL_U32
@@ -308,6 +334,14 @@ static vlResult create(Reader *r) {
     result = vl_image_create(context, &def, &r->image);
   }
   vl_free(context, names);
+  if (result == VL_OK && !(r->image->stored = vl_alloc_zero(context, r->count, 1))) result = VL_ERROR_MEMORY;
+  for (uint32_t i = 0; result == VL_OK && i < count; i++) {
+    exr_pixel_type_t type = r->list->entries[i].pixel_type;
+    if (r->place[i] == NOT_WANTED) continue;
+    r->image->stored[r->place[i]] = type == EXR_PIXEL_HALF   ? VL_PIXEL_F16
+                                    : type == EXR_PIXEL_UINT ? VL_PIXEL_U32
+                                                             : VL_PIXEL_F32;
+  }
   if (result == VL_OK) result = vl_exr_attributes_in(r->exr, r->image);
   if (result == VL_ERROR_MEMORY) return vl_fail_memory(r->base.file->error);
   return result == VL_OK ? VL_OK : vl_codec_broken(r->base.file, "OpenEXR", "its channels are not possible");

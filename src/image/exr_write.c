@@ -1,6 +1,7 @@
 /* image/exr_write.c: OpenEXR through OpenEXRCore: one part of scanlines, ZIP or uncompressed. One thread, fixed level
  * of compression, no time stamp: the same picture gives the same bytes. Halves for pictures of halves, or for the
- * colours (R G B A Y, also of layers: "diffuse.R") when asked; 8 and 16-bit pictures are written as light. */
+ * colours (R G B A Y, also of layers: "diffuse.R") when asked; 8 and 16-bit pictures are written as light. Several
+ * pictures of one size become one file of all their channels. */
 #include <limits.h>
 #include <string.h>
 
@@ -18,11 +19,19 @@ typedef struct Slot {
 
 enum { MAX_SLOTS = 64 };
 
+/* A channel of the file: which of the pictures has it, and where. */
+typedef struct Channel {
+  const vlImage *image;
+  uint32_t index;
+  exr_pixel_type_t type;
+} Channel;
+
 typedef struct Writer {
   vlExr base;
-  const vlImage *image;
+  const vlImage *image; /* the first: context, attributes */
   exr_context_t exr;
-  exr_pixel_type_t *types; /* per channel of the image */
+  Channel *channels;
+  uint32_t count;
   int32_t lines_per_chunk, first_y;
   uint32_t first_chunk;
   uint32_t slot_count;
@@ -56,6 +65,16 @@ static uint16_t to_half(float v) {
   return vl_float_to_half(v);
 }
 
+static const char *channel_name(const Channel *c) {
+  return c->image->names[c->index];
+}
+
+static const Channel *find_channel(const Writer *w, const char *name) {
+  for (uint32_t i = 0; i < w->count; i++)
+    if (strcmp(channel_name(&w->channels[i]), name) == 0) return &w->channels[i];
+  return NULL;
+}
+
 static vlResult header(Writer *w, const vlWriteDef *def, vlError *error) {
   const vlImage *image = w->image;
   if (image->width > INT32_MAX / 4 || image->height > INT32_MAX / 2)
@@ -66,13 +85,16 @@ static vlResult header(Writer *w, const vlWriteDef *def, vlError *error) {
     code = exr_initialize_required_attr_simple(w->exr, 0, (int32_t)image->width, (int32_t)image->height,
                                                def->compression ? EXR_COMPRESSION_ZIP : EXR_COMPRESSION_NONE);
   bool long_names = false;
-  for (uint32_t i = 0; i < image->channels; i++) long_names |= strlen(image->names[i]) > 31;
+  for (uint32_t i = 0; i < w->count; i++) long_names |= strlen(channel_name(&w->channels[i])) > 31;
   for (size_t i = 0; i < image->attributes.count; i++) long_names |= strlen(image->attributes.items[i].name) > 31;
   if (code == EXR_ERR_SUCCESS && long_names) code = exr_set_longname_support(w->exr, 1);
-  for (uint32_t i = 0; i < image->channels && code == EXR_ERR_SUCCESS; i++) {
-    bool half = image->type == VL_PIXEL_F16 || (def->half && image->type != VL_PIXEL_U32 && is_color(image->names[i]));
-    w->types[i] = image->type == VL_PIXEL_U32 ? EXR_PIXEL_UINT : half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
-    code = exr_add_channel(w->exr, 0, image->names[i], w->types[i], EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+  for (uint32_t i = 0; i < w->count && code == EXR_ERR_SUCCESS; i++) {
+    Channel *c = &w->channels[i];
+    const char *name = channel_name(c);
+    vlPixelType type = c->image->type;
+    bool half = type == VL_PIXEL_F16 || (def->half && c->image == image && type != VL_PIXEL_U32 && is_color(name));
+    c->type = type == VL_PIXEL_U32 ? EXR_PIXEL_UINT : half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
+    code = exr_add_channel(w->exr, 0, name, c->type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
   }
   if (code != EXR_ERR_SUCCESS) return fail(w, code, error);
   vlResult result = vl_exr_attributes_out(w->exr, image, error);
@@ -83,9 +105,9 @@ static vlResult header(Writer *w, const vlWriteDef *def, vlError *error) {
 }
 
 /* One channel's row in the type of the file. */
-static void fill_row(const Writer *w, Slot *slot, uint32_t channel, uint32_t y, char *to) {
-  const vlImage *image = w->image;
-  uint32_t n = image->width, step = image->channels;
+static void fill_row(const Channel *c, Slot *slot, uint32_t y, char *to) {
+  const vlImage *image = c->image;
+  uint32_t n = image->width, step = image->channels, channel = c->index;
   if (image->type == VL_PIXEL_U32) {
     const uint32_t *from = (const uint32_t *)vl_image_const_row(image, y) + channel;
     uint32_t *out = (uint32_t *)(void *)to;
@@ -94,7 +116,7 @@ static void fill_row(const Writer *w, Slot *slot, uint32_t channel, uint32_t y, 
     const uint16_t *from = (const uint16_t *)vl_image_const_row(image, y) + channel;
     uint16_t *out = (uint16_t *)(void *)to;
     for (uint32_t x = 0; x < n; x++) out[x] = from[(size_t)x * step];
-  } else if (w->types[channel] == EXR_PIXEL_HALF) {
+  } else if (c->type == EXR_PIXEL_HALF) {
     uint16_t *out = (uint16_t *)(void *)to;
     vl_image_row_to_float(image, y, &channel, 1, slot->row);
     for (uint32_t x = 0; x < n; x++) out[x] = to_half(slot->row[x]);
@@ -119,11 +141,10 @@ static exr_result_t pack_chunk(const Writer *w, Slot *slot, uint32_t first) {
   size_t line = (size_t)w->image->width * 4;
   for (int i = 0; i < p->channel_count; i++) {
     exr_coding_channel_info_t *c = &p->channels[i];
-    int channel = vl_image_find_channel(w->image, c->channel_name);
-    if (channel < 0) return EXR_ERR_INVALID_ARGUMENT;
+    const Channel *channel = find_channel(w, c->channel_name);
+    if (!channel) return EXR_ERR_INVALID_ARGUMENT;
     char *at = slot->lines + (size_t)i * (size_t)w->lines_per_chunk * line;
-    for (int32_t k = 0; k < chunk.height; k++)
-      fill_row(w, slot, (uint32_t)channel, first + (uint32_t)k, at + (size_t)k * line);
+    for (int32_t k = 0; k < chunk.height; k++) fill_row(channel, slot, first + (uint32_t)k, at + (size_t)k * line);
     c->encode_from_ptr = (const uint8_t *)at;
     c->user_pixel_stride = c->bytes_per_element;
     c->user_line_stride = (int32_t)line;
@@ -181,8 +202,7 @@ static vlResult write_all(Writer *w, const vlWriteDef *def, vlError *error) {
   if (!w->slots) return vl_fail_memory(error);
   for (uint32_t i = 0; i < w->slot_count; i++) {
     Slot *slot = &w->slots[i];
-    slot->lines =
-        vl_alloc_array(image->context, (size_t)w->lines_per_chunk * image->channels, (size_t)image->width * 4);
+    slot->lines = vl_alloc_array(image->context, (size_t)w->lines_per_chunk * w->count, (size_t)image->width * 4);
     slot->row = vl_alloc_array(image->context, image->width, sizeof *slot->row);
     if (!slot->lines || !slot->row) return vl_fail_memory(error);
   }
@@ -199,13 +219,22 @@ static void free_slots(Writer *w) {
 }
 
 vlResult vl_exr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error) {
+  return vl_exr_write_layers(&image, 1, def, writer, error);
+}
+
+vlResult vl_exr_write_layers(const vlImage *const *images, uint32_t count, const vlWriteDef *def, vlFileWriter *writer,
+                             vlError *error) {
+  const vlImage *image = images[0];
   Writer w;
   memset(&w, 0, sizeof w);
   w.base.writer = writer;
   atomic_flag_clear(&w.base.told);
   w.image = image;
-  w.types = vl_alloc_array(image->context, image->channels, sizeof *w.types);
-  if (!w.types) return vl_fail_memory(error);
+  for (uint32_t k = 0; k < count; k++) w.count += images[k]->channels;
+  w.channels = vl_alloc_array(image->context, w.count, sizeof *w.channels);
+  if (!w.channels) return vl_fail_memory(error);
+  for (uint32_t k = 0, at = 0; k < count; k++)
+    for (uint32_t i = 0; i < images[k]->channels; i++) w.channels[at++] = (Channel){images[k], i, EXR_PIXEL_FLOAT};
   exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
   start.error_handler_fn = vl_exr_on_error;
   start.user_data = &w.base;
@@ -218,6 +247,6 @@ vlResult vl_exr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter 
     code = exr_finish(&w.exr); /* writes the table of chunks */
     if (result == VL_OK && code != EXR_ERR_SUCCESS) result = fail(&w, code, error);
   }
-  vl_free(image->context, w.types);
+  vl_free(image->context, w.channels);
   return result;
 }

@@ -109,6 +109,7 @@ void vl_image_destroy(vlImage *image) {
   VL_ARRAY_FREE(context, &image->attributes);
   vl_free(context, image->names);
   vl_free(context, image->pixels);
+  vl_free(context, image->stored);
   vl_free(context, image);
 }
 
@@ -123,6 +124,9 @@ uint32_t vl_image_channels(const vlImage *image) {
 }
 vlPixelType vl_image_type(const vlImage *image) {
   return image->type;
+}
+vlPixelType vl_image_stored_type(const vlImage *image, uint32_t channel) {
+  return image->stored && channel < image->channels ? (vlPixelType)image->stored[channel] : image->type;
 }
 vlEncoding vl_image_encoding(const vlImage *image) {
   return image->encoding;

@@ -20,8 +20,9 @@ struct vlImage {
   vlPixelType type;
   vlEncoding encoding;
   float gamma;
-  char **names; /* channels strings in one block with the pointers */
-  void *pixels; /* rows from the top, interleaved, no padding */
+  char **names;    /* channels strings in one block with the pointers */
+  void *pixels;    /* rows from the top, interleaved, no padding */
+  uint8_t *stored; /* vlPixelType of each channel in the file it came from; null: as the picture's */
   VL_ARRAY(vlImageAttribute) attributes;
 };
 

@@ -30,6 +30,7 @@ vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **r
   vl_error_clear(&local);
   r = vl_world_add_materials(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_shapes(world, scene, &local);
+  if (r == VL_OK) r = vl_world_add_origins(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_lights(world, scene, &local);
   if (r == VL_OK) r = vl_accel_build(world, &local);
   world->texture_memo = NULL;

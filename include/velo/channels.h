@@ -1,0 +1,70 @@
+/* velo/channels.h: ground truth: what the centre of each pixel sees, as numbers. Depth, position, normals, albedo, ids:
+ * never filtered, never mixed between neighbours, always 32-bit. docs/ground-truth.md says what each channel means. */
+#ifndef VELO_CHANNELS_H
+#define VELO_CHANNELS_H
+
+#include "velo/base.h"
+#include "velo/camera.h"
+#include "velo/image.h"
+#include "velo/render.h"
+#include "velo/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Bits of a set of channels. World space, world units; "nothing" is what a pixel holds that meets no surface. */
+typedef enum vlChannel {
+  VL_CHANNEL_Z = 1 << 0,            /* Z: depth along the view axis, camera space; nothing: +infinity */
+  VL_CHANNEL_DISTANCE = 1 << 1,     /* distance.Y: along the ray from its origin; nothing: +infinity */
+  VL_CHANNEL_P = 1 << 2,            /* P.X P.Y P.Z: origin + distance * ray; nothing: 0 0 0, as all that follow */
+  VL_CHANNEL_N = 1 << 3,            /* N.X N.Y N.Z: unit normal of shading, bump and normal maps included */
+  VL_CHANNEL_NG = 1 << 4,           /* Ng.X Ng.Y Ng.Z: unit normal of the surface itself */
+  VL_CHANNEL_UV = 1 << 5,           /* uv.U uv.V */
+  VL_CHANNEL_ALBEDO = 1 << 6,       /* albedo.R albedo.G albedo.B: reflectance under the colour space's white, linear */
+  VL_CHANNEL_RAY = 1 << 7,          /* ray.X ray.Y ray.Z: unit direction; also where nothing is met */
+  VL_CHANNEL_ID_OBJECT = 1 << 8,    /* id.object: shape, in the order of the file, from 1; nothing: 0 */
+  VL_CHANNEL_ID_MATERIAL = 1 << 9,  /* id.material: 1 is the default material, then in the order of the file */
+  VL_CHANNEL_ID_INSTANCE = 1 << 10, /* id.instance: from 1; 0 also for what is no part of an instance */
+  VL_CHANNEL_ID_PRIMITIVE = 1 << 11, /* id.primitive: face of the shape, from 1 */
+  VL_CHANNEL_SAMPLES = 1 << 12       /* samples: of the picture's pixel, as the def says */
+} vlChannel;
+enum { VL_CHANNEL_COUNT = 13, VL_CHANNEL_ALL = (1 << VL_CHANNEL_COUNT) - 1 };
+
+/* "Z", "distance", "P", ...: the name of bit `index`; null past the end. */
+VL_API const char *vl_channel_name(uint32_t index);
+
+typedef struct vlChannelsDef {
+  uint32_t cookie;
+  uint32_t channels;  /* bits; default all */
+  uint32_t crop[4];   /* x0, y0, x1, y1, exclusive: the pixels that are wanted; default all */
+  vlColorSpace space; /* of the albedo */
+  uint32_t samples;   /* what the channel `samples` holds */
+} vlChannelsDef;
+VL_API vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height);
+
+/* One ray through each pixel's exact centre, without lens, in the middle of the shutter's time. New pictures of the
+ * crop window: VL_PIXEL_F32 with the channels that are numbers, VL_PIXEL_U32 with ids and samples; null where the def
+ * wants none of the kind (the pointer may be null then). The same bits for any number of threads, instruction set and
+ * crop. Pixels outside the camera's domain hold nothing, their ray is 0 0 0. Not from inside a parallel body. */
+VL_API vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera, const vlChannelsDef *def,
+                                   vlImage **floats, vlImage **ids, vlError *error);
+
+/* ---- what the ids stand for ------------------------------------------------------------------------------------- */
+
+typedef enum vlIdKind { VL_ID_OBJECT, VL_ID_MATERIAL, VL_ID_INSTANCE } vlIdKind;
+typedef struct vlIdInfo {
+  const char *name;  /* of a material, as the scene calls it; may be null */
+  const char *type;  /* "triangles", "sphere", "diffuse", "instance", ... */
+  vlSource source;   /* file is null where the scene did not say */
+  uint32_t material; /* objects: their id.material */
+} vlIdInfo;
+/* Ids are 1 to this number. */
+VL_API uint32_t vl_world_id_count(const vlWorld *world, vlIdKind kind);
+/* Strings live as long as the world. ARGUMENT when there is no such id. */
+VL_API vlResult vl_world_id_info(const vlWorld *world, vlIdKind kind, uint32_t id, vlIdInfo *info);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,40 @@
+/* trace/truth.h: ground truth: exact rays in, what they meet first out, a batch at a time. Apart from the tracers, so
+ * that it may be slow and exact: distances are found in double against the surface itself. */
+#ifndef TRACE_TRUTH_H
+#define TRACE_TRUTH_H
+
+#include "trace/trace.h"
+
+/* Albedo: the mean over `sets` of 4 wavelengths, reflectance times weight[set][channel of 4][rgb]. sets 0: RGB mode,
+ * linear Rec.709 comes out. */
+enum { VL_TRUTH_SETS = 16 };
+typedef struct vlTruthDef {
+  float pixel_spread, pixel_width; /* as in vlTraceDef */
+  vlIsa isa;
+  bool shading, albedo; /* what is wanted of normals of shading (bump maps) and albedo */
+  uint32_t sets;
+  float lambda[VL_TRUTH_SETS][4];
+  float weight[VL_TRUTH_SETS][4][3];
+} vlTruthDef;
+
+/* Rays in double, d of unit length, n <= VL_BATCH; arrays of VL_ROW_SIZE. Where nothing is met: distance infinity, the
+ * rest zero. Ids count from 1. */
+typedef struct vlTruthBatch {
+  uint32_t n;
+  double o[3][VL_ROW_SIZE], d[3][VL_ROW_SIZE];
+  float t_min[VL_ROW_SIZE], t_max[VL_ROW_SIZE];
+  double distance[VL_ROW_SIZE];
+  float n_shading[3][VL_ROW_SIZE], n_geometric[3][VL_ROW_SIZE], uv[2][VL_ROW_SIZE], albedo[3][VL_ROW_SIZE];
+  uint32_t object[VL_ROW_SIZE], material[VL_ROW_SIZE], instance[VL_ROW_SIZE], primitive[VL_ROW_SIZE];
+} vlTruthBatch;
+
+typedef struct vlTruthScratch vlTruthScratch;
+size_t vl_truth_scratch_size(void); /* allocate 64-byte aligned, zeroed */
+
+typedef struct vlTruthKernels {
+  void (*trace)(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *scratch, vlTruthBatch *batch);
+} vlTruthKernels;
+extern const vlTruthKernels vl_truth_kernels_v2, vl_truth_kernels_v3, vl_truth_kernels_v4;
+const vlTruthKernels *vl_truth_kernels(vlIsa isa);
+
+#endif

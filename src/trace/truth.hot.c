@@ -1,0 +1,226 @@
+/* trace/truth.hot.c: ground truth of a batch of rays: who is met, how far away in double, normals, albedo.
+ *
+ *   exact rays -> rounded to float -> ids (Embree) -> distance in double, from the exact ray and the surface itself
+ *                                                  -> the stages of the tracers: normals, uv, textures at 64
+ * wavelengths
+ *
+ * What a hit is (interfaces are passed, mixed materials decided by a hash of the ray) is as in path.hot.c. */
+#include "math/hash.h"
+#include "trace/truth_scratch.h"
+#include "world/surface_point.h"
+
+/* The part of a mixed material that this ray meets: the same choice as the tracers make. */
+static uint32_t part_met(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
+  uint32_t material = world->shapes.items[h->shape[i]].material;
+  while (world->materials.items[material].kind == VL_MATERIAL_MIX) {
+    const vlWorldMaterial *m = &world->materials.items[material];
+    vlVec3 o = vl_vec3(p->ox[i], p->oy[i], p->oz[i]), d = vl_vec3(p->dx[i], p->dy[i], p->dz[i]);
+    vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
+    float position[3] = {at.p.x, at.p.y, at.p.z};
+    float amount = vl_texture_float_at(world, m->amount, at.u, at.v, position);
+    uint32_t hash = vl_hash3(vl_float_bits(d.x), vl_float_bits(d.y), vl_float_bits(d.z));
+    hash = vl_hash3(hash, vl_float_bits(at.p.x), vl_float_bits(at.p.y));
+    hash = vl_hash3(hash, vl_float_bits(at.p.z), material);
+    material = m->mix[vl_unit_float(hash) < amount ? 1 : 0];
+  }
+  return material;
+}
+
+static bool is_interface(const vlWorld *world, uint32_t shape) {
+  return world->materials.items[world->shapes.items[shape].material].kind == VL_MATERIAL_INTERFACE;
+}
+
+/* Surfaces of no material are not seen: on to what stands behind. */
+static void pass_interfaces(const vlWorld *world, const vlPaths *p, vlHits *h, uint32_t i, const float *t_max) {
+  float t_min = 0;
+  for (int step = 0; h->shape[i] != VL_NONE && is_interface(world, h->shape[i]); step++) {
+    if (step == 1024) h->shape[i] = VL_NONE; /* no ray needs so many */
+    if (h->shape[i] == VL_NONE) return;
+    vlVec3 o = vl_vec3(p->ox[i], p->oy[i], p->oz[i]), d = vl_vec3(p->dx[i], p->dy[i], p->dz[i]);
+    vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
+    float margin = 2.0f * at.offset / vl_max(vl_abs(vl_dot(at.g, d)), 0.01f) + 0x1p-22f * vl_abs(at.t);
+    t_min = vl_max(at.t, t_min) + vl_max(margin, 1e-30f);
+    vlRays ray = {p->ox + i, p->oy + i, p->oz + i, p->dx + i, p->dy + i, p->dz + i, &t_min, t_max + i};
+    vl_accel_closest(world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i, h->t + i);
+  }
+}
+
+/* ---- how far, in double --------------------------------------------------------------------------------------------
+ */
+
+typedef struct Exact {
+  double x, y, z;
+} Exact;
+static inline Exact exact_sub(Exact a, Exact b) {
+  return (Exact){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+static inline Exact exact_cross(Exact a, Exact b) {
+  return (Exact){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+static inline double exact_dot(Exact a, Exact b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static Exact exact_corner(const vlWorldShape *s, const vlWorldInstance *q, uint32_t vertex) {
+  const float *x = s->positions + 3 * (size_t)vertex;
+  if (!q) return (Exact){x[0], x[1], x[2]};
+  double r[3];
+  for (int i = 0; i < 3; i++) {
+    const float *m = q->from_group + 4 * i;
+    r[i] = (double)m[0] * x[0] + (double)m[1] * x[1] + (double)m[2] * x[2] + m[3];
+  }
+  return (Exact){r[0], r[1], r[2]};
+}
+
+/* To the triangle's plane; held between its corners, since on a grazing plane the rounding of the ray that found the
+ * triangle may put the exact ray's crossing far outside. */
+static double triangle_distance(const vlWorldShape *s, const vlWorldInstance *q, uint32_t prim, Exact o, Exact d,
+                                double otherwise) {
+  const uint32_t *f = s->indices + 3 * (size_t)prim;
+  Exact a = exact_sub(exact_corner(s, q, f[0]), o), b = exact_sub(exact_corner(s, q, f[1]), o),
+        c = exact_sub(exact_corner(s, q, f[2]), o);
+  Exact n = exact_cross(exact_sub(b, a), exact_sub(c, a));
+  double along = exact_dot(d, n), t = exact_dot(a, n) / along;
+  if (!(along != 0.0) || !(t - t == 0.0)) return otherwise;
+  double ta = exact_dot(a, d), tb = exact_dot(b, d), tc = exact_dot(c, d);
+  double low = ta < tb ? ta : tb, high = ta < tb ? tb : ta;
+  low = low < tc ? low : tc, high = high > tc ? high : tc;
+  t = t < low ? low : t;
+  return t > high ? high : t;
+}
+
+/* The crossing of a curved shape near t, where the rounded ray found it. */
+static double curved_distance(const vlWorldShape *s, const vlWorldInstance *q, uint32_t prim, Exact o, Exact d,
+                              double t) {
+  double go[3] = {o.x, o.y, o.z}, gd[3] = {d.x, d.y, d.z};
+  if (q) vl_ray_to_group(q, go, gd);
+  vlShapeHit hit;
+  for (double reach = 0x1p-21; reach < 1e-2; reach *= 32.0) /* grazing rays move their crossing further */
+    if (vl_shape_intersect(s, prim, go, gd, t * (1.0 - reach), t * (1.0 + reach) + 1e-37, &hit)) return hit.t;
+  return t;
+}
+
+static double exact_distance(const vlWorld *world, const vlTruthBatch *batch, uint32_t lane, const vlHits *h,
+                             uint32_t i, double t) {
+  const vlWorldShape *s = &world->shapes.items[h->shape[i]];
+  const vlWorldInstance *q = h->instance[i] == VL_NONE ? NULL : &world->instances.items[h->instance[i]];
+  Exact o = {batch->o[0][lane], batch->o[1][lane], batch->o[2][lane]};
+  Exact d = {batch->d[0][lane], batch->d[1][lane], batch->d[2][lane]};
+  return s->kind == VL_SHAPE_TRIANGLES ? triangle_distance(s, q, h->prim[i], o, d, t)
+                                       : curved_distance(s, q, h->prim[i], o, d, h->t[i]);
+}
+
+/* ---- what it looks like --------------------------------------------------------------------------------------------
+ */
+
+static void keep_frames(vlTruthScratch *s, uint32_t n, bool back) {
+  vlSurface *f = &s->trace.surface;
+  float *rows[6] = {f->nx, f->ny, f->nz, f->ux, f->uy, f->uz};
+  for (int k = 0; k < 6; k++)
+    for (uint32_t i = 0; i < n; i++) {
+      float *from = back ? s->kept[k] : rows[k], *to = back ? rows[k] : s->kept[k];
+      to[i] = from[i];
+    }
+}
+
+/* Reflectance of one lane at channel c: conductors straight on; what lets light through reflects or transmits all. */
+static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, int c, uint32_t i) {
+  if (m->reflectance >= 0) return sh->reflectance[c][i];
+  if (m->kind != VL_MATERIAL_CONDUCTOR) return 1.0f;
+  float n = sh->eta[c][i], k = sh->k[c][i];
+  return ((n - 1.0f) * (n - 1.0f) + k * k) / ((n + 1.0f) * (n + 1.0f) + k * k);
+}
+
+static void add_albedo(const vlWorld *world, const vlTruthDef *def, uint32_t set, uint32_t n, vlTraceScratch *s,
+                       vlTruthBatch *batch) {
+  for (uint32_t i = 0; i < n; i++) {
+    const vlWorldMaterial *m = &world->materials.items[s->hits_b.material[i]];
+    uint32_t lane = s->b.lane[i];
+    for (int c = 0; c < 4; c++) {
+      float a = albedo_at(m, &s->shade, c, i);
+      if (def->sets == 0 && c < 3) batch->albedo[c][lane] = a;
+      for (int k = 0; def->sets && k < 3; k++) batch->albedo[k][lane] += a * def->weight[set][c][k];
+    }
+  }
+}
+
+static void shade(const vlWorld *world, const vlTruthDef *def, uint32_t n, vlTruthScratch *scratch,
+                  vlTruthBatch *batch) {
+  vlTraceScratch *s = &scratch->trace;
+  uint32_t sets = def->albedo && def->sets ? def->sets : 1;
+  keep_frames(scratch, n, false);
+  for (uint32_t set = 0; set < sets; set++) {
+    if (set) keep_frames(scratch, n, true);
+    for (int c = 0; c < 4; c++)
+      for (uint32_t i = 0; i < n; i++) s->b.lambda[c][i] = def->lambda[set][c], s->b.beta[c][i] = 1.0f;
+    for (uint32_t first = 0, last; first < n; first = last) {
+      uint32_t material = s->hits_b.material[first];
+      for (last = first + 1; last < n && s->hits_b.material[last] == material;) last++;
+      VL_HOT(vl_stage_material)(world, first, last, material, s);
+    }
+    if (def->albedo) add_albedo(world, def, set, n, s, batch);
+  }
+}
+
+/* ---- the batch -----------------------------------------------------------------------------------------------------
+ */
+
+static void start(const vlTruthDef *def, vlTruthBatch *batch, vlPaths *p) {
+  for (uint32_t i = 0; i < batch->n; i++) {
+    p->ox[i] = (float)batch->o[0][i], p->oy[i] = (float)batch->o[1][i], p->oz[i] = (float)batch->o[2][i];
+    p->dx[i] = (float)batch->d[0][i], p->dy[i] = (float)batch->d[1][i], p->dz[i] = (float)batch->d[2][i];
+    p->cone[i] = def->pixel_width;
+    batch->distance[i] = VL_INFINITY;
+    for (int k = 0; k < 3; k++) batch->n_shading[k][i] = batch->n_geometric[k][i] = batch->albedo[k][i] = 0.0f;
+    batch->uv[0][i] = batch->uv[1][i] = 0.0f;
+    batch->object[i] = batch->material[i] = batch->instance[i] = batch->primitive[i] = 0;
+  }
+}
+
+/* Lanes of a that met something, close together in b. */
+static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s, vlTruthBatch *batch) {
+  const vlPaths *a = &s->a;
+  vlPaths *b = &s->b;
+  vlHits *h = &s->hits_a, *g = &s->hits_b;
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (world->has_interfaces && h->shape[i] != VL_NONE) pass_interfaces(world, a, h, i, batch->t_max);
+    if (h->shape[i] == VL_NONE) continue;
+    uint32_t k = count++;
+    b->ox[k] = a->ox[i], b->oy[k] = a->oy[i], b->oz[k] = a->oz[i];
+    b->dx[k] = a->dx[i], b->dy[k] = a->dy[i], b->dz[k] = a->dz[i];
+    b->cone[k] = a->cone[i];
+    b->lane[k] = i;
+    g->shape[k] = h->shape[i], g->prim[k] = h->prim[i], g->instance[k] = h->instance[i], g->t[k] = h->t[i];
+    g->material[k] = part_met(world, a, h, i);
+    batch->object[i] = h->shape[i] + 1;
+    batch->material[i] = world->shapes.items[h->shape[i]].material + 1;
+    batch->instance[i] = h->instance[i] == VL_NONE ? 0 : h->instance[i] + 1;
+    batch->primitive[i] = h->prim[i] + 1;
+  }
+  return count;
+}
+
+static void trace(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *scratch, vlTruthBatch *batch) {
+  vlTraceScratch *s = &scratch->trace;
+  start(def, batch, &s->a);
+  if (batch->n == 0) return;
+  vlRays rays = {s->a.ox, s->a.oy, s->a.oz, s->a.dx, s->a.dy, s->a.dz, batch->t_min, batch->t_max};
+  vl_accel_closest(world, batch->n, &rays, true, s->hits_a.shape, s->hits_a.prim, s->hits_a.instance, s->hits_a.t);
+  uint32_t n = gather_hits(world, batch->n, s, batch);
+  if (n == 0) return;
+  vlTraceDef surface_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
+  VL_HOT(vl_stage_surface)(world, n, &s->b, &s->hits_b, &s->corners, &s->surface, &surface_def);
+  if (def->shading || def->albedo) shade(world, def, n, scratch, batch);
+  const vlSurface *f = &s->surface;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = s->b.lane[i];
+    batch->distance[lane] = exact_distance(world, batch, lane, &s->hits_b, i, f->t[i]);
+    batch->n_shading[0][lane] = f->nx[i], batch->n_shading[1][lane] = f->ny[i], batch->n_shading[2][lane] = f->nz[i];
+    batch->n_geometric[0][lane] = f->gx[i], batch->n_geometric[1][lane] = f->gy[i];
+    batch->n_geometric[2][lane] = f->gz[i];
+    batch->uv[0][lane] = f->u[i], batch->uv[1][lane] = f->v[i];
+  }
+}
+
+const vlTruthKernels VL_HOT(vl_truth_kernels) = {trace};

@@ -1,0 +1,13 @@
+/* trace/truth_scratch.h: working memory of truth.hot.c; private to trace. */
+#ifndef TRACE_TRUTH_SCRATCH_H
+#define TRACE_TRUTH_SCRATCH_H
+
+#include "trace/stages.h"
+#include "trace/truth.h"
+
+struct vlTruthScratch {
+  vlTraceScratch trace;
+  VL_ROW float kept[6][VL_ROW_SIZE]; /* shading normal and dpdu before bump maps turned them */
+};
+
+#endif

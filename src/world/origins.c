@@ -1,0 +1,131 @@
+/* world/origins.c: what ids stand for: type, name and place in its file of each shape, material and instance. Nothing
+ * of it is read while rendering. */
+#include <string.h>
+
+#include "base/error.h"
+#include "scene/scene.h"
+#include "velo/channels.h"
+#include "world/world.h"
+
+static const char *shape_type(vlShapeKind kind) {
+  switch (kind) {
+    case VL_SHAPE_TRIANGLES: return "triangles";
+    case VL_SHAPE_BILINEAR: return "bilinear";
+    case VL_SHAPE_SPHERE: return "sphere";
+    case VL_SHAPE_DISK: return "disk";
+    case VL_SHAPE_CYLINDER: return "cylinder";
+  }
+  return "shape";
+}
+
+static const char *material_type(vlMaterialKind kind) {
+  switch (kind) {
+    case VL_MATERIAL_DIFFUSE: return "diffuse";
+    case VL_MATERIAL_COATED_DIFFUSE: return "coateddiffuse";
+    case VL_MATERIAL_CONDUCTOR: return "conductor";
+    case VL_MATERIAL_DIELECTRIC: return "dielectric";
+    case VL_MATERIAL_THIN_DIELECTRIC: return "thindielectric";
+    case VL_MATERIAL_MIX: return "mix";
+    case VL_MATERIAL_INTERFACE: return "interface";
+  }
+  return "material";
+}
+
+static const char *copy_text(vlWorld *world, const char *text) {
+  size_t size = strlen(text) + 1;
+  char *copy = vl_world_block(world, size, 1);
+  if (copy) memcpy(copy, text, size);
+  return copy;
+}
+
+/* Sources share their file names (scene/scene.h): each is copied once. */
+typedef struct Files {
+  const char **copies; /* of scene->files */
+  size_t last;         /* where the one before was found */
+} Files;
+
+static void copy_source(Files *files, const vlScene *scene, vlSource source, vlSource *copy) {
+  *copy = source;
+  copy->file = NULL;
+  for (size_t i = 0; source.file && i < scene->files.count; i++) {
+    size_t at = (files->last + i) % scene->files.count;
+    if (scene->files.items[at] != source.file) continue;
+    copy->file = files->copies[at];
+    files->last = at;
+    return;
+  }
+}
+
+static vlResult fill(vlWorld *world, const vlScene *scene, Files *files) {
+  for (size_t i = 0; i < scene->shapes.count; i++) {
+    vlWorldOrigin *o = &world->shape_origins[i];
+    copy_source(files, scene, scene->shapes.items[i].source, &o->source);
+  }
+  for (size_t i = 0; i < scene->materials.count; i++) { /* the world's first is the default material */
+    vlWorldOrigin *o = &world->material_origins[i + 1];
+    const vlMaterialDef *def = &scene->materials.items[i];
+    copy_source(files, scene, def->source, &o->source);
+    if (def->name && def->name[0] && !(o->name = copy_text(world, def->name))) return VL_ERROR_MEMORY;
+  }
+  size_t next = 0;
+  for (size_t i = 0; i < scene->instances.count; i++) { /* those of empty groups are not in the world */
+    const vlSceneInstance *instance = &scene->instances.items[i];
+    uint32_t group = instance->group.index;
+    if (world->groups.items[group].count == 0 || next >= world->instances.count) continue;
+    vlWorldOrigin *o = &world->instance_origins[next++];
+    copy_source(files, scene, instance->source, &o->source);
+  }
+  return VL_OK;
+}
+
+static vlWorldOrigin *make_origins(vlWorld *world, size_t count) {
+  vlWorldOrigin *o = vl_world_block(world, count, sizeof *o);
+  if (o) memset(o, 0, (count ? count : 1) * sizeof *o);
+  return o;
+}
+
+vlResult vl_world_add_origins(vlWorld *world, const vlScene *scene, vlError *error) {
+  world->shape_origins = make_origins(world, world->shapes.count);
+  world->material_origins = make_origins(world, world->materials.count);
+  world->instance_origins = make_origins(world, world->instances.count);
+  Files files = {vl_world_block(world, scene->files.count, sizeof(char *)), 0};
+  if (!world->shape_origins || !world->material_origins || !world->instance_origins || !files.copies)
+    return vl_fail_memory(error);
+  for (size_t i = 0; i < scene->files.count; i++)
+    if (!(files.copies[i] = copy_text(world, scene->files.items[i]))) return vl_fail_memory(error);
+  return fill(world, scene, &files) == VL_OK ? VL_OK : vl_fail_memory(error);
+}
+
+uint32_t vl_world_id_count(const vlWorld *world, vlIdKind kind) {
+  if (!world) return 0;
+  switch (kind) {
+    case VL_ID_OBJECT: return (uint32_t)world->shapes.count;
+    case VL_ID_MATERIAL: return (uint32_t)world->materials.count;
+    case VL_ID_INSTANCE: return (uint32_t)world->instances.count;
+  }
+  return 0;
+}
+
+vlResult vl_world_id_info(const vlWorld *world, vlIdKind kind, uint32_t id, vlIdInfo *info) {
+  if (!world || !info || id == 0 || id > vl_world_id_count(world, kind)) return VL_ERROR_ARGUMENT;
+  memset(info, 0, sizeof *info);
+  const vlWorldOrigin *o = NULL;
+  switch (kind) {
+    case VL_ID_OBJECT:
+      o = &world->shape_origins[id - 1];
+      info->type = shape_type(world->shapes.items[id - 1].kind);
+      info->material = world->shapes.items[id - 1].material + 1;
+      break;
+    case VL_ID_MATERIAL:
+      o = &world->material_origins[id - 1];
+      info->type = material_type(world->materials.items[id - 1].kind);
+      break;
+    case VL_ID_INSTANCE:
+      o = &world->instance_origins[id - 1];
+      info->type = "instance";
+      break;
+  }
+  info->name = o->name;
+  info->source = o->source;
+  return VL_OK;
+}

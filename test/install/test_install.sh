@@ -31,7 +31,7 @@ target_link_libraries(shared PRIVATE velo::velo)
 add_executable(static "$example")
 target_link_libraries(static PRIVATE velo::velo_static)
 END
-check "configures by find_package" cmake -S "$work/project" -B "$work/outside" -DCMAKE_PREFIX_PATH="$prefix"
+check "configures by find_package" cmake -G Ninja -S "$work/project" -B "$work/outside" -DCMAKE_PREFIX_PATH="$prefix"
 check "compiles by find_package" cmake --build "$work/outside"
 check "runs with the static library" "$work/outside/static" "$work/b.exr"
 check "links the shared library" sh -c "ldd '$work/outside/shared' | grep -q '$prefix/lib/libvelo.so.0'"

@@ -164,14 +164,17 @@ static double share_outside(const vlCamera *camera) {
   vl_camera_compile(camera, &c);
   if (c.plain) return 0.0;
   uint32_t outside = 0;
-  for (int i = 0; i <= GRID; i++)
-    for (int j = 0; j <= GRID; j++) {
-      double x = (double)camera->width * i / GRID, y = (double)camera->height * j / GRID;
-      /* the grid's outermost points stand half a pixel within */
-      x = fmin(fmax(x, 0.5), camera->width - 0.5), y = fmin(fmax(y, 0.5), camera->height - 0.5);
-      outside += vl_camera_direction(&c, x - c.cx, y - c.cy).valid == 0.0;
-    }
-  return outside / (double)((GRID + 1) * (GRID + 1));
+  for (int i = 0; i < GRID * GRID; i++) {
+    double x = camera->width * (i % GRID + 0.5) / GRID, y = camera->height * (i / GRID + 0.5) / GRID;
+    outside += vl_camera_direction(&c, x - c.cx, y - c.cy).valid == 0.0;
+  }
+  if (outside > 0) return outside / (double)(GRID * GRID);
+  /* the corners' pixels, which the grid may miss */
+  for (int i = 0; i < 4; i++) {
+    double x = i & 1 ? camera->width - 0.5 : 0.5, y = i & 2 ? camera->height - 0.5 : 0.5;
+    outside += vl_camera_direction(&c, x - c.cx, y - c.cy).valid == 0.0;
+  }
+  return outside / ((double)camera->width * camera->height);
 }
 
 static bool has_circle(vlProjection p) {

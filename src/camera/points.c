@@ -124,8 +124,8 @@ void vl_camera_project_batch(const vlCamera *camera, size_t count, const double 
   }
 }
 
-/* Derivatives of the direction by central differences of fourth order: the rays are smooth, so half a pixel is close
- * enough for 1e-10 of any usual lens and far enough not to drown in rounding. */
+/* Derivatives of the direction by central differences of fourth order: steps short enough for 1e-10 of any usual lens,
+ * and long enough not to drown in rounding. */
 static bool slope(const vlCameraCompiled *c, double x, double y, double hx, double hy, double d[3]) {
   static const double weight[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12}, at[4] = {-2, -1, 1, 2};
   d[0] = d[1] = d[2] = 0.0;
@@ -145,8 +145,8 @@ double vl_camera_solid_angle(const vlCamera *camera, double x, double y) {
   double px = x - c.cx, py = y - c.cy, a[3], b[3];
   vlDirection d = vl_camera_direction(&c, px, py);
   if (d.valid == 0.0) return 0.0;
-  /* plane units: 1/1000 of a focal length, less where that would leave the domain */
-  for (double h = 1e-3; h > 1e-7; h *= 0.1) {
+  /* plane units: 1/10000 of a focal length, less where that would leave the domain */
+  for (double h = 1e-4; h > 1e-7; h *= 0.1) {
     if (!slope(&c, px, py, h * c.fx, 0.0, a) || !slope(&c, px, py, 0.0, h * c.fy, b)) continue;
     double length = vl_length3(d.x, d.y, d.z);
     return fabs(d.x * (a[1] * b[2] - a[2] * b[1]) + d.y * (a[2] * b[0] - a[0] * b[2]) +

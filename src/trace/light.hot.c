@@ -126,13 +126,6 @@ static float solid_pdf(float pdf_area, vlVec3 from, vlVec3 p, vlVec3 n) {
   return cosine > 0.0f ? pdf_area * d2 * __builtin_sqrtf(d2) / cosine : 0.0f;
 }
 
-static bool reversed(const vlWorldShape *s) {
-  const double *m = s->from_shape;
-  double det =
-      m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
-  return s->flip != (det < 0);
-}
-
 /* Near triangles are sampled by solid angle, where the area's density would vary over them without bound; far ones by
  * area, which is cheaper. Both sides of multiple importance sampling ask this one question. */
 typedef struct Near {
@@ -169,9 +162,8 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
                               float v) {
   const float *q = light->corners;
   vlVec3 p[3] = {vl_vec3(q[0], q[1], q[2]), vl_vec3(q[3], q[4], q[5]), vl_vec3(q[6], q[7], q[8])};
-  /* Low-distortion map of the square (Heitz 2019). */
-  float b0 = u < v ? u * 0.5f : u - v * 0.5f, b1 = u < v ? v - u * 0.5f : v * 0.5f;
-  float b[3] = {b0, b1, 1.0f - b0 - b1};
+  vlVec2 b01 = vl_warp_triangle(u, v);
+  float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
   Near near = near_triangle(light, from);
   if (near.near) {
     vlVec3 w = plane_weights(q, from, vl_warp_spherical_triangle(near.cap, u, v));
@@ -212,7 +204,7 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
   if (whole_sphere(s, &center, &radius)) {
     vlVec3 to = vl_sub(center, from);
     if (vl_length2(to) > radius * radius * 1.0001f) {
-      Sample r = sample_cone(center, radius, reversed(s), from, u, v);
+      Sample r = sample_cone(center, radius, vl_shape_reversed(s), from, u, v);
       if (with_uv) { /* uv by way of the shape */
         vlShapeHit hit = {0, 0, 0, {0, 0, 0}};
         vlSurfacePoint point;
@@ -271,7 +263,8 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
   if (chosen.light == VL_INNER || !(chosen.pmf > 0.0f)) return;
   const vlWorldLight *light = &world->lights.items[chosen.light];
   const vlEmitted *e = &world->emitted.items[light->emitted];
-  float lambda[4] = {paths->lambda[0][i], paths->lambda[1][i], paths->lambda[2][i], paths->lambda[3][i]}, radiance[4];
+  float lambda[4], radiance[4];
+  vl_path_lambda(paths, i, lambda);
   vlVec3 w, target;
   float pdf = 0.0f;
   out->delta[i] = 0;
@@ -304,9 +297,7 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
     case VL_WL_INFINITE: {
       out->distant[i] = 1;
       if (light->environment == VL_NONE) {
-        float z = 1.0f - 2.0f * u, r = __builtin_sqrtf(vl_max(0.0f, 1.0f - z * z));
-        vlSinCos phi = vl_sincos_turn(v);
-        w = vl_vec3(r * phi.cos, r * phi.sin, z);
+        w = vl_warp_sphere(u, v);
         pdf = 0.25f * VL_INV_PI;
         VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, true, radiance);
       } else {

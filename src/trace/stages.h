@@ -103,9 +103,35 @@ struct vlTraceScratch {
   VL_ROW uint32_t slot[VL_ROW_SIZE]; /* shading lanes of one material, ... */
 };
 
+/* A batch on its way: what the stages work on. Paths and hits of a bounce arrive in a, are sorted into b, and go on in
+ * a.
+ */
+typedef struct vlTracing {
+  const vlWorld *world;
+  const vlTraceDef *def;
+  vlTraceScratch *s;
+  vlTraceBatch *batch;
+  const vlSamplerKernels *sampler;
+  const vlBsdfKernels *bsdf;
+} vlTracing;
+
 #ifdef VL_ISA_SUFFIX
 /* ---- stages
  * ----------------------------------------------------------------------------------------------------------- */
+
+/* Ids and materials of what the n rays of a meet (hits_a); camera: the first rays, with their t_min and t_max. */
+void VL_HOT(vl_stage_hits)(vlTracing *t, uint32_t n, bool camera);
+/* Adds the light that the rays of a run into: sky and glowing surfaces. */
+void VL_HOT(vl_stage_emission)(vlTracing *t, uint32_t n);
+/* The batch's alpha, from its camera rays' hits. */
+void VL_HOT(vl_stage_alpha)(vlTracing *t);
+/* Paths of a that hit something go to b, those of one material together. Returns how many. */
+uint32_t VL_HOT(vl_stage_sort)(vlTracing *t, uint32_t n);
+/* Surfaces, materials, frames of the n sorted hits. */
+void VL_HOT(vl_stage_shade)(vlTracing *t, uint32_t n);
+/* Path order[k] of a becomes path k of b. */
+void VL_HOT(vl_permute_paths)(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n);
+void VL_HOT(vl_path_tracer)(vlTracing *t);
 
 /* The surfaces that paths->o, d meet, from ids alone. */
 void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits,
@@ -140,6 +166,18 @@ float VL_HOT(vl_area_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec
 
 /* ---- small common pieces
  * -------------------------------------------------------------------------------------------------- */
+
+static inline float vl_power_heuristic(float a, float b) {
+  float a2 = a * a, b2 = b * b;
+  return a2 < VL_INFINITY ? (a2 + b2 > 0.0f ? a2 / (a2 + b2) : 0.0f) : 1.0f;
+}
+
+static inline vlVec3 vl_lane3(const float *x, const float *y, const float *z, uint32_t i) {
+  return vl_vec3(x[i], y[i], z[i]);
+}
+static inline void vl_path_lambda(const vlPaths *p, uint32_t i, float lambda[4]) {
+  for (int c = 0; c < 4; c++) lambda[c] = p->lambda[c][i];
+}
 
 static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambda) {
   switch (s->kind) {

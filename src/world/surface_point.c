@@ -29,6 +29,10 @@ static double normalize3(double a[3]) {
   return l;
 }
 
+static double determinant3(const double m[12]) {
+  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+}
+
 /* ---- quadrics, in shape space ---------------------------------------------------------------------------------------
  */
 
@@ -127,6 +131,13 @@ static void quadric_derivatives(const vlWorldShape *s, const double p[3], double
   }
 }
 
+/* The normal transforms to the outside whatever the handedness; pbrt's flip is told by reverse orientation xor mirror,
+ * and its cross product dpdu x dpdv mirrors too: both together leave the reverse orientation alone. flip holds the xor.
+ */
+bool vl_shape_reversed(const vlWorldShape *s) {
+  return s->flip != (determinant3(s->from_shape) < 0);
+}
+
 static void quadric_normal(const vlWorldShape *s, const double p[3], double n[3]) {
   n[0] = s->kind == VL_SHAPE_DISK ? 0 : p[0] / s->radius;
   n[1] = s->kind == VL_SHAPE_DISK ? 0 : p[1] / s->radius;
@@ -141,13 +152,7 @@ static void quadric_point(const vlWorldShape *s, const double p[3], vlSurfacePoi
   map_vector(s->from_shape, dpdu, point->dpdu);
   map_normal(s->to_shape, n, point->n);
   normalize3(point->n);
-  /* The normal transforms to the outside whatever the handedness; pbrt's flip is told by reverse orientation xor
-   * mirror, and its cross product dpdu x dpdv mirrors too: both together leave the reverse orientation alone. flip
-   * holds the xor. */
-  double det = s->from_shape[0] * (s->from_shape[5] * s->from_shape[10] - s->from_shape[6] * s->from_shape[9]) -
-               s->from_shape[1] * (s->from_shape[4] * s->from_shape[10] - s->from_shape[6] * s->from_shape[8]) +
-               s->from_shape[2] * (s->from_shape[4] * s->from_shape[9] - s->from_shape[5] * s->from_shape[8]);
-  bool reversed = s->flip != (det < 0);
+  bool reversed = vl_shape_reversed(s);
   for (int i = 0; i < 3; i++) point->ns[i] = point->n[i] = reversed ? -point->n[i] : point->n[i];
 }
 
@@ -296,12 +301,9 @@ void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *
 
 /* Density over area of points uniform in shape-space area: the map stretches area by |det M| |M^-T n|. */
 static double area_stretch(const vlWorldShape *s, const double n_shape[3]) {
-  const double *m = s->from_shape;
-  double det =
-      m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
   double n[3];
   map_normal(s->to_shape, n_shape, n);
-  return fabs(det) * sqrt(dot3(n, n));
+  return fabs(determinant3(s->from_shape)) * sqrt(dot3(n, n));
 }
 
 static double shape_area(const vlWorldShape *s) {

@@ -27,6 +27,9 @@ typedef struct vlSurfacePoint {
   double dpdu[3];
   float uv[2];
 } vlSurfacePoint;
+/* Does the outward normal of a sphere, disk or cylinder point inwards: reverse orientation alone, see surface_point.c.
+ */
+bool vl_shape_reversed(const vlWorldShape *shape);
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point);
 
 /* A point spread uniformly over the parameters, with its density per unit area in group space. */

@@ -1,0 +1,123 @@
+/* trace/hits.hot.c: rays to what they meet: ids, interfaces passed, mixed materials decided, and the light that the
+ * rays run into, weighed against that of light sampling (pbrt book 13.4). */
+#include "math/hash.h"
+#include "trace/stages.h"
+
+/* ---- light that rays run into ------------------------------------------------------------------------------------ */
+
+static void add_radiance(vlTraceBatch *batch, uint32_t lane, const vlPaths *p, uint32_t i, const float radiance[4],
+                         float weight) {
+  for (int c = 0; c < 4; c++) batch->radiance[c][lane] += p->beta[c][i] * radiance[c] * weight;
+}
+
+static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i) {
+  const vlWorld *world = t->world;
+  vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+  float lambda[4], radiance[4];
+  vl_path_lambda(p, i, lambda);
+  for (size_t k = 0; k < world->infinite_lights.count; k++) {
+    uint32_t index = world->infinite_lights.items[k];
+    const vlWorldLight *light = &world->lights.items[index];
+    VL_HOT(vl_infinite_at)(world, light, d, lambda, radiance);
+    float weight = 1.0f;
+    if (!p->specular[i]) {
+      float pdf = VL_HOT(vl_infinite_pdf)(world, light, d) *
+                  vl_light_pmf(&world->tree, vl_lane3(p->ox, p->oy, p->oz, i),
+                               vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), index);
+      weight = vl_power_heuristic(p->pdf[i], pdf);
+    }
+    add_radiance(t->batch, p->lane[i], p, i, radiance, weight);
+  }
+}
+
+static void add_glow(vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t i) {
+  const vlWorld *world = t->world;
+  uint32_t index = world->shapes.items[h->shape[i]].first_light + h->prim[i];
+  const vlWorldLight *light = &world->lights.items[index];
+  const vlEmitted *e = &world->emitted.items[light->emitted];
+  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+  vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
+  if (!(vl_dot(d, at.g) < 0.0f) && !e->two_sided) return;
+  float lambda[4], radiance[4];
+  vl_path_lambda(p, i, lambda);
+  VL_HOT(vl_emitted_at)(world, e, lambda, at.u, 1.0f - at.v, false, radiance);
+  float weight = 1.0f;
+  if (!p->specular[i]) {
+    vlVec3 from_n = vl_lane3(p->from_nx, p->from_ny, p->from_nz, i);
+    float pdf = VL_HOT(vl_area_pdf)(world, light, o, &at) * vl_light_pmf(&world->tree, o, from_n, index);
+    weight = vl_power_heuristic(p->pdf[i], pdf);
+  }
+  add_radiance(t->batch, p->lane[i], p, i, radiance, weight);
+}
+
+/* What the n rays of a run into: the sky where nothing is hit, or a surface that glows. */
+void VL_HOT(vl_stage_emission)(vlTracing *t, uint32_t n) {
+  const vlHits *h = &t->s->hits_a;
+  for (uint32_t i = 0; i < n; i++) {
+    if (h->shape[i] == VL_NONE)
+      add_sky(t, &t->s->a, i);
+    else if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE)
+      add_glow(t, &t->s->a, h, i);
+  }
+}
+
+/* ---- hits -------------------------------------------------------------------------------------------------------- */
+
+/* The material a hit really has: mixes are decided by a hash of the ray, so that the choice needs no sampler dimension.
+ */
+static uint32_t resolve_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
+  uint32_t material = world->shapes.items[h->shape[i]].material;
+  while (world->materials.items[material].kind == VL_MATERIAL_MIX) { /* parts come before: it ends */
+    const vlWorldMaterial *m = &world->materials.items[material];
+    vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+    vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
+    float position[3] = {at.p.x, at.p.y, at.p.z};
+    float amount = vl_texture_float_at(world, m->amount, at.u, at.v, position);
+    uint32_t hash = vl_hash3(vl_float_bits(d.x), vl_float_bits(d.y), vl_float_bits(d.z));
+    hash = vl_hash3(hash, vl_float_bits(at.p.x), vl_float_bits(at.p.y));
+    hash = vl_hash3(hash, vl_float_bits(at.p.z), material);
+    material = m->mix[vl_unit_float(hash) < amount ? 1 : 0];
+  }
+  return material;
+}
+
+/* Interface surfaces bend nothing: the same ray goes on behind them. It keeps its start, which the weights of multiple
+ * importance sampling ask for, and its end. */
+static void pass_interfaces(vlTracing *t, vlPaths *p, vlHits *h, uint32_t i, const float *t_max) {
+  const vlWorld *world = t->world;
+  float t_min = 0;
+  for (int step = 0; h->shape[i] != VL_NONE; step++) {
+    if (world->materials.items[world->shapes.items[h->shape[i]].material].kind != VL_MATERIAL_INTERFACE) return;
+    if (step == 1024) h->shape[i] = VL_NONE; /* no ray needs so many */
+    if (h->shape[i] == VL_NONE) return;
+    if (world->shapes.items[h->shape[i]].first_light != VL_NONE) add_glow(t, p, h, i);
+    vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+    vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
+    /* Past the surface by what its point may be wrong, along the ray; ever forward. */
+    float margin = 2.0f * at.offset / vl_max(vl_abs(vl_dot(at.g, d)), 0.01f) + 0x1p-22f * vl_abs(at.t);
+    t_min = vl_max(at.t, t_min) + vl_max(margin, 1e-30f);
+    vlRays ray = {p->ox + i, p->oy + i, p->oz + i, p->dx + i, p->dy + i, p->dz + i, &t_min, t_max ? t_max + i : NULL};
+    vl_accel_closest(world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i, h->t + i);
+    t->batch->bounce_rays++;
+  }
+}
+
+/* Rays of a: ids of what they meet, of which material. */
+void VL_HOT(vl_stage_hits)(vlTracing *t, uint32_t n, bool camera) {
+  vlPaths *p = &t->s->a;
+  vlHits *h = &t->s->hits_a;
+  vlRays rays = {
+      p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, camera ? t->batch->t_min : NULL, camera ? t->batch->t_max : NULL};
+  vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
+  if (!camera) t->batch->bounce_rays += n;
+  for (uint32_t i = 0; i < n; i++) {
+    if (h->shape[i] == VL_NONE) continue;
+    if (t->world->has_interfaces) pass_interfaces(t, p, h, i, rays.t_max);
+    if (h->shape[i] != VL_NONE) h->material[i] = resolve_material(t->world, p, h, i);
+  }
+}
+
+/* 1 where the camera's ray meets a surface. */
+void VL_HOT(vl_stage_alpha)(vlTracing *t) {
+  for (uint32_t i = 0; i < t->batch->n; i++) t->batch->alpha[i] = t->s->hits_a.shape[i] == VL_NONE ? 0.0f : 1.0f;
+}

@@ -4,6 +4,6 @@
 
 #include "options.h"
 
-extern const Command render_command, image_info_command, image_diff_command, image_convert_command;
+extern const Command render_command, image_info_command, image_diff_command, image_convert_command, image_check_command;
 
 #endif

@@ -59,6 +59,13 @@ static const char *type_name(vlPixelType type) {
   return "?";
 }
 
+/* Do its channels have different types in the file? */
+static bool is_mixed(const vlImage *image) {
+  for (uint32_t i = 1; i < vl_image_channels(image); i++)
+    if (vl_image_stored_type(image, i) != vl_image_stored_type(image, 0)) return true;
+  return false;
+}
+
 static const char *encoding_name(vlEncoding encoding) {
   return encoding == VL_ENCODING_SRGB ? "sRGB" : encoding == VL_ENCODING_GAMMA ? "gamma" : "linear";
 }
@@ -106,7 +113,19 @@ static void print_text(const char *path, const vlImage *image) {
     putchar(' ');
     print_plain(vl_image_channel_name(image, i));
   }
-  printf("\ntype        %s, %s\n", type_name(vl_image_type(image)), encoding_name(vl_image_encoding(image)));
+  if (!is_mixed(image))
+    printf("\ntype        %s, %s\n", type_name(vl_image_type(image)), encoding_name(vl_image_encoding(image)));
+  for (int type = VL_PIXEL_U8; type <= VL_PIXEL_U32 && is_mixed(image); type++) {
+    bool any = false;
+    for (uint32_t i = 0; i < vl_image_channels(image); i++) {
+      if ((int)vl_image_stored_type(image, i) != type) continue;
+      if (!any) printf("\ntype        %s:", type_name((vlPixelType)type));
+      any = true;
+      putchar(' ');
+      print_plain(vl_image_channel_name(image, i));
+    }
+  }
+  if (is_mixed(image)) putchar('\n');
   uint32_t count = vl_image_attribute_count(image);
   if (count) printf("attributes  %u\n", count);
   for (uint32_t i = 0; i < count; i++) {
@@ -136,6 +155,12 @@ static void print_json(const char *path, const vlImage *image) {
   for (uint32_t i = 0; i < vl_image_channels(image); i++) json_text(&json, NULL, vl_image_channel_name(image, i));
   json_end(&json, ']');
   json_text(&json, "type", type_name(vl_image_type(image)));
+  if (is_mixed(image)) {
+    json_begin(&json, "types", '[');
+    for (uint32_t i = 0; i < vl_image_channels(image); i++)
+      json_text(&json, NULL, type_name(vl_image_stored_type(image, i)));
+    json_end(&json, ']');
+  }
   json_text(&json, "encoding", encoding_name(vl_image_encoding(image)));
   json_begin(&json, "attributes", '{');
   for (uint32_t i = 0; i < vl_image_attribute_count(image); i++) {

@@ -31,7 +31,8 @@ enum {
   RENDER_QUIET,
   RENDER_LOG_JSON,
   RENDER_VERBOSE,
-  RENDER_ISA
+  RENDER_ISA,
+  RENDER_CHANNELS
 };
 
 extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[], color_choices[],

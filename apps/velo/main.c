@@ -11,7 +11,7 @@
 
 /* Names of two words come last: "image diff" is found by its first and second word. */
 static const Command *const commands[] = {&render_command, &image_info_command, &image_diff_command,
-                                          &image_convert_command};
+                                          &image_convert_command, &image_check_command};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_overview(void) {
@@ -20,7 +20,7 @@ static void print_overview(void) {
   printf("  %-15s  %s\n", "help COMMAND", "the options of a command");
   printf("  %-15s  %s\n\n", "--version", "the version");
   printf(
-      "exit codes: 0 done, 1 image diff over a threshold or out of memory, 2 wrong command line,\n"
+      "exit codes: 0 done, 1 image diff or check over a threshold or out of memory, 2 wrong command line,\n"
       "3 wrong scene or picture, 4 missing file, 5 reading or writing failed, 130 and 143 stopped by a signal\n");
 }
 

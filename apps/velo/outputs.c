@@ -28,6 +28,11 @@ bool output_suffix(const char *path, bool *eight_bit) {
   return false;
 }
 
+bool output_holds_layers(const char *path) {
+  size_t length = strlen(path);
+  return length >= 4 && strcasecmp(path + length - 4, ".exr") == 0;
+}
+
 static int fail_suffix(const char *path) {
   const char *names[8];
   int count = 0;
@@ -93,7 +98,13 @@ int outputs_write(vlContext *context, const Outputs *outputs, const vlImage *ima
     vlError error = {0};
     vlResult result = VL_OK;
     if (eight_bit && !display) result = display_image(context, image, outputs->view, outputs->exposure, &display);
-    if (result == VL_OK) result = vl_image_write(eight_bit ? display : image, path, &write, &error);
+    const vlImage *images[3] = {eight_bit ? display : image};
+    uint32_t count = 1;
+    for (int k = 0; k < 2 && output_holds_layers(path); k++)
+      if (outputs->layers[k]) images[count++] = outputs->layers[k];
+    if (result == VL_OK)
+      result = count > 1 ? vl_image_write_layers(images, count, path, &write, &error)
+                         : vl_image_write(images[0], path, &write, &error);
     if (result == VL_OK) continue;
     if (progress) {
       report_warning("progress picture: %s", error.message[0] ? error.message : vl_result_name(result));

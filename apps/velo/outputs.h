@@ -10,10 +10,13 @@ typedef struct Outputs {
   const char *paths[MAX_OUTPUTS];
   int count;
   bool half;
-  vlView view;    /* of 8-bit files */
-  float exposure; /* EV, of 8-bit files */
+  vlView view;              /* of 8-bit files */
+  float exposure;           /* EV, of 8-bit files */
+  const vlImage *layers[2]; /* what .exr files hold beside the picture; null: nothing */
 } Outputs;
 
+/* The file can hold more than a picture's colours. */
+bool output_holds_layers(const char *path);
 /* The suffix is one that velo writes; *eight_bit tells whether that format holds display values. */
 bool output_suffix(const char *path, bool *eight_bit);
 /* Both: -1 when all is well, else the exit code, all has been said. The first needs no file system. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "attributes.h"
+#include "channels.h"
 #include "commands.h"
 #include "job.h"
 #include "outputs.h"
@@ -27,6 +28,8 @@ typedef struct Render {
   bool written_whole;   /* all of them */
   bool write_failed;    /* said once */
   double last_write, write_cost;
+  uint32_t channels; /* of ground truth; bits of vlChannel */
+  vlImage *layers[2];
 } Render;
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
@@ -81,6 +84,45 @@ static void choose_output(Render *render, const char *scene_path, const char *as
   render->outputs.count = 1;
 }
 
+/* ---- ground truth ------------------------------------------------------------------------------------------------ */
+
+/* Read before the work begins; the files that cannot hold it are named. */
+static int choose_channels(Render *render, const Arguments *arguments) {
+  const OptionValue *v = &arguments->values[RENDER_CHANNELS];
+  return v->given ? channels_read(v->text, &render->channels) : -1;
+}
+
+static void warn_of_channels(const Render *render) {
+  for (int i = 0; i < render->outputs.count && render->channels; i++)
+    if (!output_holds_layers(render->outputs.paths[i]))
+      report_warning("--channels: %s cannot hold them, only .exr can", render->outputs.paths[i]);
+}
+
+static bool has_layers(const Render *render) {
+  for (int i = 0; i < render->outputs.count && render->channels; i++)
+    if (output_holds_layers(render->outputs.paths[i])) return true;
+  return false;
+}
+
+static int render_channels(Render *render, uint32_t spp) {
+  if (!has_layers(render)) return STATUS_OK;
+  vlChannelsDef def = vl_default_channels_def(render->job.camera.width, render->job.camera.height);
+  def.channels = render->channels;
+  def.space = render->job.film.space;
+  def.samples = spp;
+  memcpy(def.crop, render->job.film.crop, sizeof def.crop);
+  vlError error = {0};
+  vlResult result =
+      vl_render_channels(render->world, &render->job.camera, &def, &render->layers[0], &render->layers[1], &error);
+  if (result != VL_OK) return report_error(&error, result, render->job.path);
+  for (int k = 0; k < 2; k++) render->outputs.layers[k] = render->layers[k];
+  int status = STATUS_OK;
+  for (int i = 0; i < render->outputs.count && status == STATUS_OK; i++)
+    if (output_holds_layers(render->outputs.paths[i]))
+      status = channels_write_ids(render->world, render->layers[1], render->outputs.paths[i]);
+  return status;
+}
+
 /* ---- steps: each returns -1 to go on, else the exit code
  * ------------------------------------------------------------- */
 
@@ -96,7 +138,8 @@ static int prepare(Render *render, const Arguments *arguments) {
   outputs->half = v[RENDER_HALF].given;
   outputs->view = v[RENDER_VIEW].given ? (vlView)v[RENDER_VIEW].integer : VL_VIEW_STANDARD;
   outputs->exposure = (float)v[RENDER_EXPOSURE].number;
-  int status = outputs_check_names(outputs);
+  int status = choose_channels(render, arguments);
+  if (status < 0) status = outputs_check_names(outputs);
   if (status < 0) status = outputs_check_folders(outputs);
   if (status >= 0) return status;
 
@@ -129,6 +172,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     status = outputs_check_folders(&render->outputs);
     if (status >= 0) return status;
   }
+  warn_of_channels(render);
   result = vl_world_build(render->scene, &render->job.build, &render->world, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   if (arguments->values[RENDER_VERBOSE].given) {
@@ -197,7 +241,9 @@ static int render_and_write(Render *render) {
 
   uint32_t spp = vl_film_spp(render->film);
   int status = STATUS_OK;
-  if (spp && !(render->written_whole && render->written_spp == spp)) status = write_picture(render, false);
+  if (spp) status = render_channels(render, spp);
+  if (spp && status == STATUS_OK && (!(render->written_whole && render->written_spp == spp) || has_layers(render)))
+    status = write_picture(render, false);
   int number = signals_pending();
   if (number && !spp) {
     report_failure(128 + number, "interrupted before the first pass was done; nothing is written");
@@ -222,6 +268,8 @@ static int run_render(const Command *command, const Arguments *arguments) {
     status = STATUS_OK;
   }
   if (status < 0) status = render_and_write(&render);
+  vl_image_destroy(render.layers[0]);
+  vl_image_destroy(render.layers[1]);
   vl_film_destroy(render.film);
   vl_world_destroy(render.world);
   vl_scene_destroy(render.scene);
@@ -257,6 +305,11 @@ static const Option render_options[] = {
     {RENDER_VIEW, 0, "view", OPTION_CHOICE, "NAME", "how light becomes display values (.png .jpg .tga):", 0, 0,
      view_choices},
     {RENDER_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "brighter by 2^EV (.png .jpg .tga)", -64, 64, NULL},
+    {RENDER_CHANNELS, 0, "channels", OPTION_TEXT, "LIST",
+     "ground truth of pixel centres into the .exr, 32-bit: any of\n"
+     "Z, distance, P, N, Ng, uv, albedo, ray, id.object, id.material,\n"
+     "id.instance, id.primitive, samples, separated by commas; or all.\nFILE.ids.json says what the ids stand for",
+     0, 0, NULL},
     {RENDER_HALF, 0, "half", OPTION_FLAG, NULL, ".exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
     {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N",
      "workers; default: one for each processor. The picture does not\n"

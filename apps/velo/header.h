@@ -1,0 +1,10 @@
+/* header.h: the camera that attributes.c wrote into a picture's header, read back. */
+#ifndef APP_HEADER_H
+#define APP_HEADER_H
+
+#include "velo/velo.h"
+
+/* -1, or the exit code when all has been said. x0, y0: the picture's first pixel in the whole picture (crops). */
+int header_camera(const vlImage *image, const char *path, vlCamera *camera, uint32_t *x0, uint32_t *y0);
+
+#endif

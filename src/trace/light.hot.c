@@ -29,8 +29,7 @@ void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *e, const float
     out[c] = scale * vl_sigmoid(sigmoid, lambda[c]) * vl_spectral_at(&e->spectrum, c, lambda[c]);
 }
 
-/* ---- the sky --------------------------------------------------------------------------------------------------------
- */
+/* ---- the sky ----------------------------------------------------------------------------------------------------- */
 
 static vlVec3 turn(const float m[9], vlVec3 d) {
   return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
@@ -69,8 +68,7 @@ static inline uint32_t find_cell(const float *cdf, uint32_t n, float u, float *w
   return low;
 }
 
-/* ---- area lights
- * -------------------------------------------------------------------------------------------------------- */
+/* ---- area lights ------------------------------------------------------------------------------------------------- */
 
 typedef struct Sample {
   vlVec3 p, n; /* on the light */
@@ -246,8 +244,7 @@ float VL_HOT(vl_area_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec
   return solid_pdf((float)vl_shape_pdf(s, light->prim, &point), from, at->p, at->g);
 }
 
-/* ---- one sample a lane
- * ------------------------------------------------------------------------------------------------- */
+/* ---- one sample a lane ------------------------------------------------------------------------------------------- */
 
 static float smooth_step(float x, float a, float b) {
   if (a == b) return x < a ? 0.0f : 1.0f;

@@ -189,8 +189,7 @@ static void eval_spectrum(Run *r, int32_t index, float *const out[4]) {
   r->top = top;
 }
 
-/* ---- bump and normal maps: both turn the shading normal and dpdu
- * ------------------------------------------------------ */
+/* ---- bump and normal maps: both turn the shading normal and dpdu ------------------------------------------------- */
 
 static vlVec3 facing(vlVec3 n, vlVec3 side) {
   return vl_dot(n, side) < 0.0f ? vl_neg(n) : n;
@@ -243,8 +242,7 @@ static void normal_map(Run *r, int32_t image) {
   }
 }
 
-/* ---- parameters
- * ------------------------------------------------------------------------------------------------------------ */
+/* ---- parameters -------------------------------------------------------------------------------------------------- */
 
 static void roughness(Run *r, const vlWorldMaterial *m, int32_t node, float *alpha) {
   eval_float(r, node, alpha);

@@ -40,7 +40,7 @@ static void permute_hits(const vlHits *a, vlHits *b, const uint32_t *order, uint
 }
 
 /* Paths of a that hit something go to b, those of one material together (and materials of one kind): a counting sort
- * that keeps the order of the tile. Returns how many; runs gets the material of each run's first lane. */
+ * that keeps the order of the tile. Returns how many. */
 uint32_t VL_HOT(vl_stage_sort)(vlTracing *t, uint32_t n) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;

@@ -100,7 +100,7 @@ struct vlTraceScratch {
   vlShadowRays shadow;
   VL_ROW float rows[VL_TEXTURE_ROWS][VL_ROW_SIZE]; /* a stack for nested textures */
   VL_ROW uint32_t order[VL_ROW_SIZE];
-  VL_ROW uint32_t slot[VL_ROW_SIZE]; /* shading lanes of one material, ... */
+  VL_ROW uint32_t slot[VL_ROW_SIZE]; /* where each material's lanes start; then which lanes live on */
 };
 
 /* A batch on its way: what the stages work on. Paths and hits of a bounce arrive in a, are sorted into b, and go on in
@@ -116,8 +116,7 @@ typedef struct vlTracing {
 } vlTracing;
 
 #ifdef VL_ISA_SUFFIX
-/* ---- stages
- * ----------------------------------------------------------------------------------------------------------- */
+/* ---- stages ------------------------------------------------------------------------------------------------------ */
 
 /* Ids and materials of what the n rays of a meet (hits_a); camera: the first rays, with their t_min and t_max. */
 void VL_HOT(vl_stage_hits)(vlTracing *t, uint32_t n, bool camera);
@@ -164,8 +163,7 @@ float VL_HOT(vl_area_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec
 
 #endif
 
-/* ---- small common pieces
- * -------------------------------------------------------------------------------------------------- */
+/* ---- small common pieces ----------------------------------------------------------------------------------------- */
 
 static inline float vl_power_heuristic(float a, float b) {
   float a2 = a * a, b2 = b * b;

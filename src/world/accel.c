@@ -88,8 +88,7 @@ void vl_accel_leave(unsigned state) {
 #endif
 }
 
-/* ---- alpha
- * ------------------------------------------------------------------------------------------------------------ */
+/* ---- alpha ------------------------------------------------------------------------------------------------------- */
 
 static float ray_hash(const LocalRay *r, uint32_t shape, uint32_t prim, float t) {
   uint32_t h = vl_hash2(vl_hash2(shape, prim), r->instance);
@@ -153,8 +152,7 @@ static void filter_occluded(const struct RTCFilterFunctionNArguments *args) {
     if (args->valid[i] == -1 && filter_rejects(args->geometryUserPtr, args, i, true)) args->valid[i] = 0;
 }
 
-/* ---- user geometry
- * ------------------------------------------------------------------------------------------------------ */
+/* ---- user geometry ----------------------------------------------------------------------------------------------- */
 
 static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
   const AccelGeometry *g = args->geometryUserPtr;
@@ -208,8 +206,7 @@ static void user_occluded(const struct RTCOccludedFunctionNArguments *args) {
   }
 }
 
-/* ---- building
- * ------------------------------------------------------------------------------------------------------------ */
+/* ---- building ---------------------------------------------------------------------------------------------------- */
 
 static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, AccelGeometry *g, vlError *error) {
   const vlWorldShape *s = g->shape;
@@ -300,8 +297,7 @@ void vl_accel_destroy(vlContext *context, vlAccel *a) {
   memset(a, 0, sizeof *a);
 }
 
-/* ---- tracing
- * ---------------------------------------------------------------------------------------------------------------- */
+/* ---- tracing ----------------------------------------------------------------------------------------------------- */
 
 /* A query; arguments tells Embree 4 of it. */
 #if VELO_EMBREE_MAJOR >= 4

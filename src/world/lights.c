@@ -73,8 +73,7 @@ static float texel_luminance(vlTexel t, uint32_t channels) {
   return channels < 3 ? t.c[0] : 0.2126f * t.c[0] + 0.7152f * t.c[1] + 0.0722f * t.c[2];
 }
 
-/* ---- the sky --------------------------------------------------------------------------------------------------------
- */
+/* ---- the sky ----------------------------------------------------------------------------------------------------- */
 
 enum { MAX_CELLS = 1024 };
 
@@ -232,8 +231,7 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
   return placed(def->source, error, r);
 }
 
-/* ---- glowing shapes
- * --------------------------------------------------------------------------------------------------- */
+/* ---- glowing shapes ---------------------------------------------------------------------------------------------- */
 
 static float mean_image_luminance(const vlMipmap *mip) {
   uint32_t last = mip->level_count - 1;

@@ -12,8 +12,7 @@
 /* MAX_NESTING bounds recursion here, VL_NODE_ROWS what may nest by the room it takes: no level may disturb another. */
 enum { MAX_NESTING = 32, ROLES = 4, ROLE_FLOAT = 3 };
 
-/* ---- constant spectra ----------------------------------------------------------------------------------------------
- */
+/* ---- constant spectra -------------------------------------------------------------------------------------------- */
 
 vlResult vl_spectral_compile(vlWorld *world, const vlSpectrum *spectrum, vlSpectrumRole role, vlSpectral *result,
                              vlError *error) {
@@ -42,8 +41,7 @@ vlResult vl_spectral_compile(vlWorld *world, const vlSpectrum *spectrum, vlSpect
   return vl_spectrum_dense(spectrum, role, dense, error);
 }
 
-/* ---- pictures
- * -------------------------------------------------------------------------------------------------------- */
+/* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
 static bool same_image(const vlWorldImage *a, const vlTextureDef *def) {
   return a->path && def->path && strcmp(a->path, def->path) == 0 && a->encoding_given == def->encoding_given &&
@@ -127,8 +125,7 @@ static int32_t image_of(vlWorld *world, const vlTextureDef *def, vlError *error)
   return index;
 }
 
-/* ---- nodes
- * ------------------------------------------------------------------------------------------------------------ */
+/* ---- nodes ------------------------------------------------------------------------------------------------------- */
 
 typedef struct Compile {
   vlWorld *world;
@@ -307,8 +304,7 @@ vlResult vl_world_spectrum_node(vlWorld *world, const vlScene *scene, vlSpectrum
   return r;
 }
 
-/* ---- one point, for alpha
- * ------------------------------------------------------------------------------------------------ */
+/* ---- one point, for alpha ---------------------------------------------------------------------------------------- */
 
 float vl_texture_float_at(const vlWorld *world, int32_t index, float u, float v, const float p[3]) {
   const vlTextureNode *node = &world->nodes.items[index];

@@ -58,8 +58,7 @@ static inline float vl_texture_checker(const vlTextureNode *node, vlTexturePoint
   return sum & 1 ? 1.0f : 0.0f;
 }
 
-/* ---- pictures ------------------------------------------------------------------------------------------------------
- */
+/* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
 /* Maps an integer texel coordinate by the wrap mode; -1: outside (black). */
 static inline int32_t vl_wrap_index(int32_t i, int32_t n, vlWrap wrap) {

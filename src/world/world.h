@@ -14,8 +14,7 @@
 #include "world/coat.h"
 #include "world/texture.h"
 
-/* ---- shapes --------------------------------------------------------------------------------------------------------
- */
+/* ---- shapes ------------------------------------------------------------------------------------------------------ */
 
 typedef struct vlWorldShape {
   vlShapeKind kind;
@@ -44,8 +43,7 @@ typedef struct vlWorldInstance {
   float from_group[12], to_group[12];
 } vlWorldInstance;
 
-/* ---- materials -----------------------------------------------------------------------------------------------------
- */
+/* ---- materials --------------------------------------------------------------------------------------------------- */
 
 typedef struct vlWorldMaterial {
   vlMaterialKind kind;
@@ -62,8 +60,7 @@ typedef struct vlWorldMaterial {
   uint32_t coat_depth;
 } vlWorldMaterial;
 
-/* ---- lights --------------------------------------------------------------------------------------------------------
- */
+/* ---- lights ------------------------------------------------------------------------------------------------------ */
 
 typedef struct vlEmitted {
   vlSpectral spectrum; /* normalised and scaled */
@@ -108,8 +105,7 @@ typedef struct vlWorldOrigin {
   vlSource source;
 } vlWorldOrigin;
 
-/* ---- the whole ------------------------------------------------------------------------------------------------------
- */
+/* ---- the whole --------------------------------------------------------------------------------------------------- */
 
 struct vlWorld {
   vlContext *context;

@@ -56,13 +56,21 @@ static void multiply(const double a[16], const double b[16], double result[16]) 
     }
 }
 
+/* Whether straight lines stay straight: then matrices and a focal length say all of it. */
+static bool is_linear(const vlCamera *c) {
+  return c->projection == VL_PROJECTION_ORTHOGRAPHIC ||
+         (c->projection == VL_PROJECTION_PERSPECTIVE && c->distortion.steps == 0);
+}
+
 /* worldToCamera: to x right, y up, z forward. worldToNDC: to the display window's upper left (0, 0) and lower right
- * (1, 1) corner after division by w; its third row is 1/z (perspective) or z, so that the matrix can be inverted. */
+ * (1, 1) corner after division by w; its third row is 1/z (perspective) or z, so that the matrix can be inverted. Other
+ * projections have no such matrix. */
 static void set_camera_matrices(Header *header, const vlCamera *c) {
   static const double up_from_down[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   double m[16], w = c->width, h = c->height;
   multiply(up_from_down, c->camera_from_world, m);
   set_matrix(header, "worldToCamera", VL_ATTRIBUTE_M44F, m);
+  if (!is_linear(c)) return;
   const double perspective[16] = {c->fx / w, c->skew / w, c->cx / w, 0, 0, c->fy / h, c->cy / h, 0,
                                   0,         0,           0,         1, 0, 0,         1,         0};
   const double orthographic[16] = {c->fx / w, c->skew / w, 0, c->cx / w, 0, c->fy / h, 0, c->cy / h,
@@ -77,7 +85,7 @@ static void set_camera_matrices(Header *header, const vlCamera *c) {
 static void set_camera(Header *header, const Job *job) {
   const vlCamera *c = &job->camera;
   set_camera_matrices(header, c);
-  if (c->projection == VL_PROJECTION_PERSPECTIVE) {
+  if (c->projection == VL_PROJECTION_PERSPECTIVE && is_linear(c)) {
     double sensor = job->settings->camera.sensor_width_mm;
     double mm = (sensor > 0 ? sensor : 36.0) / c->width;
     set_float(header, "pinholeFocalLength", c->fx * mm);
@@ -90,7 +98,7 @@ static void set_camera(Header *header, const Job *job) {
   set_double(header, "velo.cx", c->cx);
   set_double(header, "velo.cy", c->cy);
   set_matrix(header, "velo.worldFromCamera", VL_ATTRIBUTE_M44D, c->world_from_camera);
-  set_text(header, "velo.projection", c->projection == VL_PROJECTION_PERSPECTIVE ? "perspective" : "orthographic");
+  set_text(header, "velo.projection", c->distortion.steps > 0 ? "distorted" : vl_projection_name(c->projection));
   set_float(header, "velo.lensRadius", c->lens_radius);
   if (isfinite(c->focus_distance)) set_float(header, "focus", c->focus_distance);
   set_v2(header, "velo.shutter", c->shutter_open, c->shutter_close);

@@ -18,9 +18,9 @@ static Facts gather(const Job *job, const vlScene *scene, const vlWorld *world) 
   const vlCamera *c = &job->camera;
   const vlSceneSettings *s = job->settings;
   Facts f = {
-      .projection = c->projection == VL_PROJECTION_ORTHOGRAPHIC ? "orthographic"
-                    : c->lens_radius > 0                        ? "thin lens"
-                                                                : "perspective",
+      .projection = c->projection == VL_PROJECTION_PERSPECTIVE && c->lens_radius > 0
+                        ? "thin lens"
+                        : vl_projection_name(c->projection),
       .sampler = choice_name(sampler_choices, (int)job->render.sampler),
       .tracer = choice_name(tracer_choices, (int)job->render.tracer),
       .filter = choice_name(filter_choices, (int)job->film.filter.kind),

@@ -30,6 +30,9 @@ typedef enum vlProjection {
   VL_PROJECTION_DOUBLE_SPHERE    /* shape: xi in (-1, 1), alpha in [0, 1] */
 } vlProjection;
 
+/* "perspective", "equidistant fisheye", ...; "unknown" for another number. */
+VL_API const char *vl_projection_name(vlProjection projection);
+
 /* How a calibrated lens's coefficients are written. They act on the plane of the projection. */
 typedef enum vlDistortion {
   VL_DISTORTION_NONE,

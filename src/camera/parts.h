@@ -17,8 +17,6 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
 /* How far from the plane's centre a direction at an angle from the axis lands, before distortion; across or down.
  * false: the projection does not see it. */
 bool vl_camera_plane_radius(const vlCamera *camera, double angle, bool vertical, double *radius);
-/* "fisheye", ... for messages. */
-const char *vl_projection_name(vlProjection projection);
 /* Fills fx, fy, skew, cx, cy from all the ways a def may say them; disagreeing ways are an error that names both. */
 vlResult vl_camera_intrinsics(const vlCameraDef *def, vlCamera *camera, vlError *error);
 /* Fills world_from_camera and camera_from_world. */

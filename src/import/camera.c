@@ -1,5 +1,6 @@
-/* import/camera.c: the Camera directive to a vlCameraDef: pbrt's perspective and orthographic cameras, and the
- * lecture's pinhole and thin lens in its own words. */
+/* import/camera.c: the Camera directive to a vlCameraDef: pbrt's perspective, orthographic and spherical cameras, the
+ * lecture's pinhole and thin lens in its own words, and in the same words velo's further projections and calibrated
+ * lenses. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,9 +9,34 @@
 
 static const double degrees = 0.017453292519943295;
 
-typedef enum Kind { PERSPECTIVE, ORTHOGRAPHIC, PINHOLE, THIN_LENS, KINDS } Kind;
-static const char *const kinds[KINDS] = {"perspective", "orthographic", "pinhole", "thinlens"};
-static const char *const later[] = {"realistic", "spherical"};
+/* Up to SPHERICAL in pbrt's words, from PINHOLE on in the lecture's. */
+typedef enum Kind {
+  PERSPECTIVE,
+  ORTHOGRAPHIC,
+  SPHERICAL,
+  PINHOLE,
+  THIN_LENS,
+  FISHEYE,
+  EQUIRECTANGULAR,
+  EQUAL_AREA,
+  CYLINDRICAL,
+  CUBE,
+  PANINI,
+  OPENCV,
+  OPENCV_FISHEYE,
+  COLMAP,
+  FOV,
+  DIVISION,
+  UNIFIED,
+  EUCM,
+  DOUBLE_SPHERE,
+  KINDS
+} Kind;
+static const char *const kinds[KINDS] = {"perspective", "orthographic",    "spherical",     "pinhole",     "thinlens",
+                                         "fisheye",     "equirectangular", "equalarea",     "cylindrical", "cube",
+                                         "panini",      "opencv",          "opencvfisheye", "colmap",      "fov",
+                                         "division",    "unified",         "eucm",          "doublesphere"};
+static const char *const later[] = {"realistic"};
 
 /* velo's camera has y down; pbrt's y up, both x right, z forward. The world's numbers stay as they are: pbrt reads them
  * as left-handed, so that seen from velo its cameras mirror. */
@@ -73,6 +99,126 @@ static bool read_pbrt(vlDict *dict, vlCameraDef *def, Kind kind) {
   return read_shutter(dict, def) && vl_dict_done(dict) && pose_from_ctm(import, def);
 }
 
+/* pbrt's spherical camera: the whole sphere, whatever the frame. Its poles are up and down; its equirectangular picture
+ * begins at the right and turns left (seen in its left-handed axes), its equal-area one has the zenith in the middle.
+ * velo's own maps look ahead in the middle: the axes are exchanged. */
+static bool read_spherical(vlDict *dict, vlCameraDef *def) {
+  static const char *const mappings[] = {"equalarea", "equirectangular"};
+  static const double axes[2][9] = {{1, 0, 0, 0, 0, -1, 0, 1, 0}, {0, 0, -1, 0, 1, 0, -1, 0, 0}};
+  int mapping = 0;
+  double unused;
+  vl_dict_choice(dict, "mapping", mappings, 2, &mapping);
+  vl_dict_double(dict, "lensradius", &unused); /* read and not used, as pbrt does */
+  vl_dict_double(dict, "focaldistance", &unused);
+  vl_dict_double(dict, "frameaspectratio", &unused);
+  double window[4];
+  vl_dict_floats(dict, "screenwindow", 4, window);
+  def->projection = mapping ? VL_PROJECTION_EQUIRECTANGULAR : VL_PROJECTION_EQUAL_AREA;
+  if (!read_shutter(dict, def) || !vl_dict_done(dict) || !pose_from_ctm(dict->import, def)) return false;
+  double *m = def->world_from_camera;
+  for (int row = 0; row < 3; row++) {
+    double old[3] = {m[4 * row], m[4 * row + 1], m[4 * row + 2]};
+    for (int column = 0; column < 3; column++)
+      m[4 * row + column] =
+          old[0] * axes[mapping][column] + old[1] * axes[mapping][3 + column] + old[2] * axes[mapping][6 + column];
+  }
+  return true;
+}
+
+/* "coefficients", as many as there are; vl_camera_make judges their number. */
+static bool read_coefficients(vlDict *dict, const char *name, double *values, uint32_t *count) {
+  vlParam *p = vl_dict_find(dict, name, VL_BIT_FLOAT);
+  if (!p) return false;
+  size_t n = vl_param_count(p);
+  if (n > 14)
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->place,
+                          "%s: \"%s\" has %zu numbers; at most 14 have a meaning", dict->what, name, n);
+  for (size_t i = 0; i < n; i++) values[i] = p->exact[i];
+  *count = (uint32_t)n;
+  return true;
+}
+
+/* What sets a projection or a calibrated lens apart from the pinhole. */
+static bool read_model(vlDict *dict, vlCameraDef *def, Kind kind) {
+  static const char *const mappings[] = {"equidistant", "equisolid", "stereographic", "orthographic"};
+  int mapping = 0;
+  double window[4];
+  if (vl_dict_double(dict, "maxangle", &def->max_angle)) def->max_angle *= degrees;
+  switch (kind) {
+    case FISHEYE:
+      vl_dict_choice(dict, "mapping", mappings, 4, &mapping);
+      def->projection = (vlProjection)(VL_PROJECTION_EQUIDISTANT + mapping);
+      break;
+    case EQUIRECTANGULAR: {
+      static const char *const limits[] = {"longitude", "latitude"}; /* degrees; right and up count as above zero */
+      def->projection = VL_PROJECTION_EQUIRECTANGULAR;
+      window[0] = -180.0, window[1] = 180.0, window[2] = -90.0, window[3] = 90.0;
+      bool given = vl_dict_floats(dict, limits[0], 2, window);
+      given = vl_dict_floats(dict, limits[1], 2, window + 2) || given;
+      if (given) {
+        def->screen_min_x = window[0] * degrees, def->screen_max_x = window[1] * degrees;
+        def->screen_min_y = window[2] * degrees, def->screen_max_y = window[3] * degrees;
+      }
+      break;
+    }
+    case EQUAL_AREA: def->projection = VL_PROJECTION_EQUAL_AREA; break;
+    case CYLINDRICAL: def->projection = VL_PROJECTION_CYLINDRICAL; break;
+    case CUBE: def->projection = VL_PROJECTION_CUBE; break;
+    case PANINI:
+      def->projection = VL_PROJECTION_PANINI;
+      vl_dict_double(dict, "panini", &def->shape[0]);
+      break;
+    case OPENCV:
+      def->distortion = VL_DISTORTION_OPENCV;
+      if (!read_coefficients(dict, "coefficients", def->distortion_coefficients, &def->distortion_count))
+        def->distortion = VL_DISTORTION_NONE;
+      break;
+    case OPENCV_FISHEYE:
+      def->projection = VL_PROJECTION_EQUIDISTANT;
+      if (read_coefficients(dict, "coefficients", def->distortion_coefficients, &def->distortion_count))
+        def->distortion = VL_DISTORTION_RADIAL;
+      break;
+    case COLMAP: {
+      const char *model = "PINHOLE";
+      double values[14];
+      uint32_t count = 0;
+      vlError error = {0};
+      vl_dict_string(dict, "model", &model);
+      read_coefficients(dict, "parameters", values, &count);
+      if (dict->import->scene->error.code == VL_OK && vl_camera_def_colmap(def, model, values, count, &error) != VL_OK)
+        return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %s", dict->what,
+                              error.message + strlen("camera: "));
+      break;
+    }
+    case FOV:
+      def->projection = VL_PROJECTION_FOV;
+      vl_dict_double(dict, "omega", &def->shape[0]);
+      break;
+    case DIVISION:
+      def->projection = VL_PROJECTION_DIVISION;
+      vl_dict_double(dict, "lambda", &def->shape[0]);
+      break;
+    case UNIFIED:
+      def->projection = VL_PROJECTION_UNIFIED;
+      vl_dict_double(dict, "xi", &def->shape[0]);
+      if (read_coefficients(dict, "coefficients", def->distortion_coefficients, &def->distortion_count))
+        def->distortion = VL_DISTORTION_OPENCV;
+      break;
+    case EUCM:
+      def->projection = VL_PROJECTION_EUCM;
+      vl_dict_double(dict, "alpha", &def->shape[0]);
+      vl_dict_double(dict, "beta", &def->shape[1]);
+      break;
+    case DOUBLE_SPHERE:
+      def->projection = VL_PROJECTION_DOUBLE_SPHERE;
+      vl_dict_double(dict, "xi", &def->shape[0]);
+      vl_dict_double(dict, "alpha", &def->shape[1]);
+      break;
+    default: break;
+  }
+  return dict->import->scene->error.code == VL_OK;
+}
+
 /* The lecture's camera: eye, lookat, up, roll; d, zoom, s or a field of view; exposure time. Its world is right-handed.
  */
 static bool read_lecture(vlDict *dict, vlCameraDef *def, Kind kind) {
@@ -99,7 +245,8 @@ static bool read_lecture(vlDict *dict, vlCameraDef *def, Kind kind) {
   vl_dict_double(dict, "exposuretime", &def->exposure_time);
   vl_dict_double(dict, "near", &def->near_plane);
   vl_dict_double(dict, "far", &def->far_plane);
-  if (kind == THIN_LENS) {
+  if (kind >= FISHEYE && !read_model(dict, def, kind)) return false;
+  if (kind != PINHOLE) {
     vl_dict_double(dict, "lensradius", &def->lens_radius);
     vl_dict_double(dict, "focusdistance", &def->focus_distance);
     vl_dict_double(dict, "focaldistance", &def->focus_distance); /* pbrt's word for it */
@@ -124,6 +271,9 @@ static bool check(vlImport *import, const char *what, const vlCameraDef *def) {
     return vl_import_fail(import, VL_ERROR_SCENE, import->camera.place, "%s: %s", what, text);
   }
   if (warning) vl_import_warn(import, VL_LOG_WARNING, import->camera.place, "%s", warning);
+  if (warning && camera.outside > 0.0)
+    vl_import_warn(import, VL_LOG_WARNING, import->camera.place, "%s: %.2g %% of the picture sees nothing", what,
+                   100.0 * camera.outside);
   return true;
 }
 
@@ -154,18 +304,20 @@ bool vl_import_camera(vlImport *import) {
   if (!choice->given) import->camera_from_world = vl_mat4_identity();
   settings->camera_source = choice->place;
   if (kind < 0) { /* permissive: pbrt's perspective camera from the same place */
-    if (!vl_import_unknown(import, choice->place, "camera", choice->kind, kinds, KINDS, later, 2)) return false;
+    if (!vl_import_unknown(import, choice->place, "camera", choice->kind, kinds, KINDS, later, 1)) return false;
     vl_dict_skip(&dict);
     def.fov = 90.0 * degrees;
     if (!pose_from_ctm(import, &def)) return false;
   } else if (kind == PERSPECTIVE || kind == ORTHOGRAPHIC) {
     if (!read_pbrt(&dict, &def, (Kind)kind)) return false;
+  } else if (kind == SPHERICAL) {
+    if (!read_spherical(&dict, &def)) return false;
   } else if (!read_lecture(&dict, &def, (Kind)kind)) {
     return false;
   }
   if (!check(import, what, &def)) return false;
   settings->camera = def;
   /* pbrt's sensor: the longer the shutter is open, the brighter; the lecture says it with its own factor. */
-  if (kind == PERSPECTIVE || kind == ORTHOGRAPHIC) settings->exposure *= (float)(def.shutter_close - def.shutter_open);
+  if (kind >= PERSPECTIVE && kind < PINHOLE) settings->exposure *= (float)(def.shutter_close - def.shutter_open);
   return kind < PINHOLE || name_lecture_system(import, &def);
 }

@@ -263,7 +263,7 @@ static void permissive(void **state) {
   vlSceneInfo info;
   load_text(
       &l,
-      "Film \"gbuffer\" \"string coordinatesystem\" \"camera\"\nCamera \"spherical\" \"string mapping\" \"equalarea\"\n"
+      "Film \"gbuffer\" \"string coordinatesystem\" \"camera\"\nCamera \"realistic\" \"string lensfile\" \"wide.dat\"\n"
       "Integrator \"bdpt\" \"integer maxdepth\" 9\nOption \"forcediffuse\" true\nSampler \"future\" \"integer n\" 1\n" W
       "Material \"subsurface\" \"rgb mfp\" [1 1 1]\nShape \"sphere\"\nShape \"curve\" \"point3 P\" [0 0 0]\n"
       "LightSource \"projection\"\nTexture \"t\" \"spectrum\" \"marble\"\nMaterial \"diffuse\" \"texture reflectance\" "
@@ -278,7 +278,7 @@ static void permissive(void **state) {
   assert_int_equal(info.lights, 0);
   assert_int_equal(vl_scene_settings(l.scene)->max_depth, 9);
   assert_int_equal(l.scene->materials.items[l.scene->shapes.items[0].material.index - 1].kind, VL_MATERIAL_DIFFUSE);
-  const char *said[] = {"warning t.pbrt:1:1: film \"gbuffer\"",    "warning t.pbrt:2:1: camera \"spherical\"",
+  const char *said[] = {"warning t.pbrt:1:1: film \"gbuffer\"",    "warning t.pbrt:2:1: camera \"realistic\"",
                         "warning t.pbrt:3:1: integrator",          "warning t.pbrt:4:1: Option",
                         "warning t.pbrt:5:1: unknown sampler",     "warning t.pbrt:7:1: material \"subsurface\"",
                         "warning t.pbrt:9:1: shape \"curve\"",     "warning t.pbrt:10:1: light \"projection\"",

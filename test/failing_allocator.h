@@ -1,8 +1,9 @@
 /* test/failing_allocator.h: an allocator that says no at its n-th call, and counts what is still held.
  *   failAllocator state = {.fail_at = n};             n counts from 1; 0: never
  *   def.allocator = fail_allocator(&state);
- * The out-of-memory loop: for n = 1, 2, ... until a run in which nothing was refused; each must return
- * VL_ERROR_MEMORY and leave state.blocks at 0. */
+ * The out-of-memory loop (fail_everywhere): for n = 1, 2, ... until a run in which nothing was refused; each must
+ * return VL_ERROR_MEMORY and leave state.blocks at 0. One call alone is refused, so that what comes after it works with
+ * what is half there. cmocka.h comes before this header. */
 #ifndef TEST_FAILING_ALLOCATOR_H
 #define TEST_FAILING_ALLOCATOR_H
 
@@ -46,8 +47,38 @@ static inline void fail_release(void *user, void *block) {
   free(block);
 }
 
+/* From now on refuses the call after the next n, once; n < 0: none. */
+static inline void fail_after(failAllocator *state, long n) {
+  state->fail_at = n < 0 ? 0 : atomic_load(&state->calls) + n + 1;
+}
+
 static inline vlAllocator fail_allocator(failAllocator *state) {
   return (vlAllocator){state, fail_allocate, fail_reallocate, fail_release};
+}
+
+/* The out-of-memory loop round body, with a context of one thread; the run without a refusal is at least the least-th.
+ */
+static inline void fail_everywhere(vlResult (*body)(vlContext *context, void *user), void *user, long least) {
+  for (long n = 1;; n++) {
+    failAllocator state = {.fail_at = n};
+    vlContextDef def = vl_default_context_def();
+    vlContext *context = NULL;
+    def.threads = 1;
+    def.allocator = fail_allocator(&state);
+    vlResult result = vl_context_create(&def, &context);
+    if (result == VL_OK) {
+      result = body(context, user);
+      vl_context_destroy(context);
+    }
+    vlResult wanted = state.refused ? VL_ERROR_MEMORY : VL_OK;
+    if (state.blocks != 0) print_message("failing at call %ld leaks\n", n);
+    if (result != wanted) print_message("failing at call %ld gives %s\n", n, vl_result_name(result));
+    assert_int_equal(state.blocks, 0);
+    assert_int_equal(result, wanted);
+    if (state.refused) continue;
+    assert_true(n > least);
+    return;
+  }
 }
 
 #endif

@@ -195,9 +195,9 @@ vlResult vl_mipmap_create(const vlImage *image, const vlMipmapDef *def, vlMipmap
   vlMipmap *map = vl_alloc_zero(context, 1, sizeof *map);
   vlResult result = b && map ? VL_OK : VL_ERROR_MEMORY;
   float *kept = NULL;
+  if (map) map->context = context; /* for its destruction */
   if (result == VL_OK) {
     b->map = map;
-    map->context = context;
     map->channels = def->count;
     map->is_bytes = image->type == VL_PIXEL_U8;
     if (map->is_bytes) make_tables(b, image, def);

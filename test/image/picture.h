@@ -1,4 +1,4 @@
-/* test/image/picture.h: what the tests of this room share: contexts that count, failing allocators, folders, patterns.
+/* test/image/picture.h: what the tests of this room share: contexts that count, folders, patterns.
  */
 #ifndef TEST_IMAGE_PICTURE_H
 #define TEST_IMAGE_PICTURE_H
@@ -17,42 +17,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "failing_allocator.h"
 #include "image/image.h"
 
-/* Fails the n-th call from now on (and all after it); n < 0 never. */
-typedef struct Failing {
-  long left;
-  size_t live;
-} Failing;
-
-static inline bool failing_now(Failing *f) {
-  if (f->left < 0) return false;
-  if (f->left == 0) return true;
-  f->left--;
-  return false;
-}
-static inline void *failing_allocate(void *user, size_t size) {
-  Failing *f = user;
-  if (failing_now(f)) return NULL;
-  f->live++;
-  return malloc(size);
-}
-static inline void *failing_reallocate(void *user, void *block, size_t size) {
-  Failing *f = user;
-  if (failing_now(f)) return NULL;
-  if (!block) f->live++;
-  return realloc(block, size);
-}
-static inline void failing_release(void *user, void *block) {
-  if (block) ((Failing *)user)->live--;
-  free(block);
-}
-
-static inline vlContext *make_context(Failing *failing) {
+static inline vlContext *make_context(failAllocator *failing) {
   vlContextDef def = vl_default_context_def();
   def.threads = 1;
-  *failing = (Failing){.left = -1};
-  def.allocator = (vlAllocator){failing, failing_allocate, failing_reallocate, failing_release};
+  *failing = (failAllocator){0};
+  def.allocator = fail_allocator(failing);
   vlContext *context;
   assert_int_equal(vl_context_create(&def, &context), VL_OK);
   return context;

@@ -30,7 +30,7 @@ static vlResult read_bytes(vlContext *context, const void *data, size_t size, vl
 
 static void test_cut(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   static const char *const FILES[] = {
       "png_interlaced.png", "png_palette4.png",   "tga_rle.tga",       "tga_bottom.tga", "bmp_4.bmp",
@@ -43,12 +43,12 @@ static void test_cut(void **state) {
     for (size_t cut = 0; cut < size; cut += step) {
       vlImage *image;
       vlError error;
-      size_t before = failing.live;
+      long before = failing.blocks;
       /* Only what comes after the last pixel may be missing: a PNG's or JPEG's end mark, QOI's padding, a GIF's end. */
       if (read_bytes(context, data, cut, &image, &error) == VL_OK && cut + 24 < size)
         fail_msg("%s cut to %zu", FILES[i], cut);
       vl_image_destroy(image);
-      assert_int_equal(failing.live, before);
+      assert_int_equal(failing.blocks, before);
     }
     free(data);
   }
@@ -57,7 +57,7 @@ static void test_cut(void **state) {
 
 static void test_damaged(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   DIR *directory = opendir(corpus(""));
   assert_non_null(directory);
@@ -110,7 +110,7 @@ static void expect_promise(vlContext *context, const char *what, const void *dat
 
 static void test_promises(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   size_t size;
   uint8_t *d = slurp(corpus("png_rgba.png"), &size);
@@ -167,7 +167,7 @@ static void test_promises(void **state) {
 /* A bomb of honest deflate is let through only in proportion. */
 static void test_ratio(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   static const uint8_t head[] = "\211PNG\r\n\032\n\0\0\0\rIHDR\0\0\x13\x88\0\0\x13\x88\x08\0\0\0\0";
   size_t raw = 5001u * 5000u;
@@ -192,7 +192,7 @@ static void test_ratio(void **state) {
 
 static void test_not_pictures(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image;
   vlError error;
@@ -278,7 +278,7 @@ static void make_exr(Bytes *b, int32_t sampling, int32_t version) {
 
 static void test_made_exr(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image;
   vlError error;
@@ -307,7 +307,7 @@ static void test_made_exr(void **state) {
 /* Old run lengths may be chained: 1 1 1 n, then 1 1 1 m counts m times 256 more. */
 static void test_made_hdr(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image;
   vlError error;
@@ -336,7 +336,7 @@ static void test_silent(void **state) {
   assert_non_null(file);
   dup2(fileno(file), 1);
   dup2(fileno(file), 2);
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   static const char *const FILES[] = {"exr_half_zip.exr", "exr_tiled_zip.exr", "png_rgba.png", "jpeg_progressive.jpg",
                                       "jpeg_rgb.jpg"};

@@ -26,7 +26,7 @@ static vlImageDiff compare(const vlImage *a, const vlImage *b) {
 
 static void test_numbers(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *a = plain(context, 10, 10, 0.5f, 0.25f, 1.0f), *b = plain(context, 10, 10, 0.75f, 0.25f, 0.5f);
   vlImageDiff d = compare(a, b);
@@ -64,7 +64,7 @@ static void test_numbers(void **state) {
 
 static void test_extremes(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *noisy = make_picture(context, 40, 30, 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
   vlImageDiff d = compare(noisy, noisy);
@@ -221,7 +221,7 @@ static void direct(const float *a, const float *b, double *flip) {
 
 static void test_direct(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   float a[W * H * 3], b[W * H * 3], got[W * H];
   double want[W * H];
@@ -249,7 +249,7 @@ static void test_direct(void **state) {
 
 static void test_heat(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *a = plain(context, 30, 20, 0, 1, 0), *b = plain(context, 30, 20, 0, 0, 1), *heat;
   vlImageDiff d;
@@ -269,7 +269,7 @@ static void test_heat(void **state) {
 
 static void test_small_and_memory(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   static const uint32_t SIZES[][2] = {{1, 1}, {1, 50}, {50, 1}, {3, 2}};
   for (int i = 0; i < 4; i++) {
@@ -281,19 +281,19 @@ static void test_small_and_memory(void **state) {
     vl_image_destroy(b);
   }
   vlImage *a = make_picture(context, 9, 9, 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
-  size_t before = failing.live;
+  long before = failing.blocks;
   vlResult result = VL_ERROR_MEMORY;
   long n = 0;
   for (; result != VL_OK && n < 100; n++) {
     vlImage *heat;
     vlImageDiff d;
     vlError error;
-    failing.left = n;
+    fail_after(&failing, n);
     result = vl_image_compare(a, a, &d, &heat, &error);
-    failing.left = -1;
+    fail_after(&failing, -1);
     if (result != VL_OK) assert_int_equal(result, VL_ERROR_MEMORY);
     vl_image_destroy(heat);
-    assert_int_equal(failing.live, before);
+    assert_int_equal(failing.blocks, before);
   }
   assert_in_range(n, 7, 20);
   vl_image_destroy(a);

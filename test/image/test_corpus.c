@@ -119,7 +119,7 @@ static vlImage *read_ok(vlContext *context, const char *file) {
 
 static void test_integers(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   for (size_t i = 0; i < sizeof INTEGERS / sizeof *INTEGERS; i++) {
     const struct Integer *t = &INTEGERS[i];
@@ -145,7 +145,7 @@ static void test_integers(void **state) {
 
 static void test_long_gif(void **state) { /* fills the table of 4096 codes several times */
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image = read_ok(context, "gif_full_table.gif");
   uint64_t sum = 0;
@@ -157,7 +157,7 @@ static void test_long_gif(void **state) { /* fills the table of 4096 codes sever
 
 static void test_floats(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   static const char *const HDR[] = {"hdr_flat.hdr", "hdr_upward.hdr", "hdr_old_runs.hdr"};
   for (int i = 0; i < 3; i++) {
@@ -186,7 +186,7 @@ static void test_floats(void **state) {
 
 static void test_jpeg(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   static const char *const FILES[] = {"jpeg_rgb.jpg", "jpeg_progressive.jpg", "jpeg_grey.jpg", "jpeg_cmyk.jpg"};
   for (int i = 0; i < 4; i++) {
@@ -208,7 +208,7 @@ static void test_jpeg(void **state) {
 
 static void test_exr(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   static const struct {
     const char *file;
@@ -255,14 +255,14 @@ static void test_exr(void **state) {
 /* Whatever lies in the corpus: a picture or a clear refusal, and nothing left behind. */
 static void test_all(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   DIR *directory = opendir(corpus(""));
   assert_non_null(directory);
   int count = 0;
   for (struct dirent *entry; (entry = readdir(directory));) {
     if (entry->d_name[0] == '.') continue;
-    size_t before = failing.live;
+    long before = failing.blocks;
     vlImage *image;
     vlError error;
     vlResult result = vl_image_read(context, corpus(entry->d_name), &image, &error);
@@ -273,7 +273,7 @@ static void test_all(void **state) {
       assert_non_null(strstr(error.message, entry->d_name));
     }
     vl_image_destroy(image);
-    assert_int_equal(failing.live, before);
+    assert_int_equal(failing.blocks, before);
     count++;
   }
   closedir(directory);
@@ -284,24 +284,24 @@ static void test_all(void **state) {
 /* Every reader with an allocator that fails at the n-th call. */
 static void test_out_of_memory(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   DIR *directory = opendir(corpus(""));
   assert_non_null(directory);
   for (struct dirent *entry; (entry = readdir(directory));) {
     if (entry->d_name[0] == '.') continue;
-    size_t before = failing.live;
+    long before = failing.blocks;
     vlResult result = VL_ERROR_MEMORY;
     long n = 0;
     for (; result == VL_ERROR_MEMORY && n < 300; n++) {
       vlImage *image;
       vlError error;
-      failing.left = n;
+      fail_after(&failing, n);
       result = vl_image_read(context, corpus(entry->d_name), &image, &error);
-      failing.left = -1;
+      fail_after(&failing, -1);
       if (result != VL_OK && result != VL_ERROR_MEMORY) fail_msg("%s: %s", entry->d_name, error.message);
       vl_image_destroy(image);
-      assert_int_equal(failing.live, before);
+      assert_int_equal(failing.blocks, before);
     }
     assert_in_range(n, 2, 299);
   }

@@ -15,7 +15,7 @@ static vlImage *round_trip(vlContext *context, const vlImage *image, const char 
 
 static void test_exr(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   static const vlPixelType TYPES[] = {VL_PIXEL_F32, VL_PIXEL_F16, VL_PIXEL_U32};
   static const uint32_t SIZES[][2] = {{1, 1}, {37, 21}, {64, 16}, {5, 100}};
@@ -39,7 +39,7 @@ static void test_exr(void **state) {
 
 static void test_exr_half(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   const char *const names[5] = {"A", "Z", "G", "B", "R"};
   vlImageDef d = vl_default_image_def(40, 9, 5);
@@ -104,7 +104,7 @@ enum { ATTRIBUTE_COUNT = sizeof ATTRIBUTES / sizeof *ATTRIBUTES };
 
 static void test_attributes(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image = make_picture(context, 20, 30, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR);
   for (int i = 0; i < ATTRIBUTE_COUNT; i++) assert_int_equal(vl_image_set_attribute(image, &ATTRIBUTES[i]), VL_OK);
@@ -135,7 +135,7 @@ static void test_attributes(void **state) {
 
 static void test_same_bytes(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image = make_picture(context, 61, 47, 4, VL_PIXEL_F32, VL_ENCODING_LINEAR);
   static const char *const NAMES[] = {"same.exr", "same.png", "same.jpg", "same.hdr", "same.pfm", "same.tga"};
@@ -188,7 +188,7 @@ static void test_same_bytes(void **state) {
 
 static void test_integers(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   for (uint32_t channels = 1; channels <= 4; channels++) {
     static const vlEncoding ENCODINGS[] = {VL_ENCODING_SRGB, VL_ENCODING_LINEAR};
@@ -226,7 +226,7 @@ static void test_integers(void **state) {
 
 static void test_floats(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   for (uint32_t channels = 1; channels <= 3; channels += 2) {
     vlImage *image = make_picture(context, 33, 17, channels, VL_PIXEL_F32, VL_ENCODING_LINEAR);
@@ -272,7 +272,7 @@ static void test_floats(void **state) {
 
 static void test_refusals(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image = make_picture(context, 200, 100, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR), *back;
   char path[1024], target[1100];
@@ -325,7 +325,7 @@ static void test_refusals(void **state) {
 /* Each writer and its reader with an allocator that fails at the n-th call. */
 static void test_out_of_memory(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   static const char *const NAMES[] = {"m.exr", "m.png", "m.jpg", "m.hdr", "m.pfm", "m.tga"};
   for (int i = 0; i < 6; i++) {
@@ -334,23 +334,23 @@ static void test_out_of_memory(void **state) {
       assert_int_equal(vl_image_set_attribute(image, &ATTRIBUTES[k]), VL_OK);
     char path[1024];
     in_folder(NAMES[i], path);
-    size_t before = failing.live;
+    long before = failing.blocks;
     for (int reading = 0; reading < 2; reading++) {
       vlResult result = VL_ERROR_MEMORY;
       long n = 0;
       for (; result != VL_OK && n < 1000; n++) {
         vlImage *back = NULL;
         vlError error;
-        failing.left = n;
+        fail_after(&failing, n);
         result = reading ? vl_image_read(context, path, &back, &error) : vl_image_write(image, path, NULL, &error);
-        failing.left = -1;
+        fail_after(&failing, -1);
         if (result != VL_OK) {
           if (result != VL_ERROR_MEMORY) fail_msg("%s: %s", NAMES[i], error.message);
           assert_null(back);
           if (!reading) assert_int_equal(access(path, F_OK), -1); /* nothing half-written, no temporary */
         }
         vl_image_destroy(back);
-        assert_int_equal(failing.live, before);
+        assert_int_equal(failing.blocks, before);
       }
       assert_in_range(n, 2, 999);
     }
@@ -366,7 +366,7 @@ static void test_other_reader(void **state) {
     print_message("oiiotool is not installed: skipped\n");
     skip();
   }
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image = make_picture(context, 40, 30, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR);
   float *p = vl_image_pixels(image);

@@ -6,7 +6,7 @@
 
 static void test_create(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image;
   vlImageDef def = vl_default_image_def(5, 3, 3);
@@ -48,7 +48,7 @@ static void test_create(void **state) {
 
 static void test_get(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImageDef def = vl_default_image_def(256, 1, 4);
   def.type = VL_PIXEL_U8;
@@ -83,7 +83,7 @@ static void test_get(void **state) {
 
 static void test_color(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   const char *const names[6] = {"Z", "B", "A", "G", "id", "R"};
   vlImageDef def = vl_default_image_def(1, 1, 6);
@@ -103,7 +103,7 @@ static void test_color(void **state) {
 
 static void test_attributes(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image = make_picture(context, 2, 2, 1, VL_PIXEL_F32, VL_ENCODING_LINEAR);
   vlAttribute a = {.name = "one", .type = VL_ATTRIBUTE_FLOAT, .numbers = {1.5}}, b;
@@ -191,23 +191,23 @@ static void test_curves(void **state) {
 
 static void test_out_of_memory(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlResult result = VL_ERROR_MEMORY;
   long n = 0;
   for (; result != VL_OK; n++) {
-    size_t before = failing.live;
+    long before = failing.blocks;
     vlImage *image = NULL;
     vlImageDef def = vl_default_image_def(4, 4, 3);
     vlAttribute a = {.name = "text", .type = VL_ATTRIBUTE_STRING, .string = "hello"};
-    failing.left = n;
+    fail_after(&failing, n);
     result = vl_image_create(context, &def, &image);
     if (result == VL_OK) result = vl_image_set_attribute(image, &a);
     if (result != VL_OK && image) assert_int_equal(vl_image_attribute_count(image), 0);
-    failing.left = -1;
+    fail_after(&failing, -1);
     vl_image_destroy(image);
     assert_true(result == VL_OK || result == VL_ERROR_MEMORY);
-    assert_int_equal(failing.live, before);
+    assert_int_equal(failing.blocks, before);
   }
   assert_in_range(n, 5, 20);
   end_context(context);

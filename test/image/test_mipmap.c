@@ -13,7 +13,7 @@ static vlMipmap *make(const vlImage *image, uint32_t count) {
 /* The mean of a linear picture is the same on all levels. */
 static void test_means(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   static const uint32_t SIZES[][2] = {{64, 64}, {64, 16}, {37, 21}, {1, 9}, {100, 1}, {7, 300}, {1, 1}};
   for (int s = 0; s < 7; s++)
@@ -45,7 +45,7 @@ static void test_means(void **state) {
 
 static void test_weights(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImageDef def = vl_default_image_def(5, 1, 1);
   vlImage *image;
@@ -63,7 +63,7 @@ static void test_weights(void **state) {
 
 static void test_bytes(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image = make_picture(context, 32, 24, 4, VL_PIXEL_U8, VL_ENCODING_SRGB);
   vlMipmap *map = make(image, 4);
@@ -122,22 +122,22 @@ static void test_bytes(void **state) {
 
 static void test_out_of_memory(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   for (int type = 0; type < 2; type++) {
     vlImage *image = make_picture(context, 20, 30, 3, type ? VL_PIXEL_F32 : VL_PIXEL_U8, VL_ENCODING_SRGB);
-    size_t before = failing.live;
+    long before = failing.blocks;
     vlResult result = VL_ERROR_MEMORY;
     long n = 0;
     for (; result != VL_OK && n < 100; n++) {
       vlMipmapDef def = {.channel = {0, 1, 2}, .count = 3};
       vlMipmap *map;
-      failing.left = n;
+      fail_after(&failing, n);
       result = vl_mipmap_create(image, &def, &map);
-      failing.left = -1;
+      fail_after(&failing, -1);
       if (result != VL_OK) assert_true(result == VL_ERROR_MEMORY && !map);
       vl_mipmap_destroy(map);
-      assert_int_equal(failing.live, before);
+      assert_int_equal(failing.blocks, before);
     }
     assert_in_range(n, 8, 30);
     vl_image_destroy(image);

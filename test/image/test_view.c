@@ -50,7 +50,7 @@ static void expect(vlView view, const float *light, double exposure, double out[
 
 static void test_formulas(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImageDef def = vl_default_image_def(4096, 1, 3);
   vlImage *image, *seen;
@@ -83,7 +83,7 @@ static void test_formulas(void **state) {
 
 static void test_known(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImageDef def = vl_default_image_def(5, 1, 1);
   vlImage *image, *seen;
@@ -140,20 +140,20 @@ static void test_known(void **state) {
 
 static void test_out_of_memory(void **state) {
   (void)state;
-  Failing failing;
+  failAllocator failing;
   vlContext *context = make_context(&failing);
   vlImage *image = make_picture(context, 4, 4, 3, VL_PIXEL_F16, VL_ENCODING_LINEAR);
-  size_t before = failing.live;
+  long before = failing.blocks;
   vlResult result = VL_ERROR_MEMORY;
   long n = 0;
   for (; result != VL_OK && n < 100; n++) {
     vlImage *seen;
-    failing.left = n;
+    fail_after(&failing, n);
     result = vl_image_view(image, VL_VIEW_STANDARD, 0.0f, NULL, &seen);
-    failing.left = -1;
+    fail_after(&failing, -1);
     if (result != VL_OK) assert_int_equal(result, VL_ERROR_MEMORY);
     vl_image_destroy(seen);
-    assert_int_equal(failing.live, before);
+    assert_int_equal(failing.blocks, before);
   }
   assert_in_range(n, 3, 20);
   vl_image_destroy(image);

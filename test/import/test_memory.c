@@ -35,31 +35,6 @@ static const char ply_text[] =
     "vertex_indices\n"
     "end_header\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n1 1 0 0 0 1 1 1\n0 1 0 0 0 1 0 1\n4 0 1 2 3\n3 0 1 2\n";
 
-/* Runs body with an allocator that fails at 1, 2, ... until nothing was refused. */
-static void for_every_failure(vlResult (*body)(vlContext *context, void *user), void *user, long least) {
-  for (long n = 1;; n++) {
-    failAllocator state = {.fail_at = n};
-    vlContextDef def = vl_default_context_def();
-    vlContext *context = NULL;
-    def.threads = 1;
-    def.allocator = fail_allocator(&state);
-    vlResult result = vl_context_create(&def, &context);
-    if (result == VL_OK) {
-      result = body(context, user);
-      vl_context_destroy(context);
-    }
-    if (atomic_load(&state.blocks) != 0) print_message("failing at call %ld leaks\n", n);
-    assert_int_equal(atomic_load(&state.blocks), 0);
-    if (!atomic_load(&state.refused)) {
-      assert_int_equal(result, VL_OK);
-      assert_true(n > least);
-      return;
-    }
-    if (result != VL_ERROR_MEMORY) print_message("failing at call %ld gives %s\n", n, vl_result_name(result));
-    assert_int_equal(result, VL_ERROR_MEMORY);
-  }
-}
-
 static vlResult load_scene(vlContext *context, void *user) {
   vlScene *scene;
   vlResult result = vl_scene_create(context, &scene);
@@ -79,7 +54,7 @@ static void scene(void **state) {
   assert_true(fd >= 0 && write(fd, ply_text, sizeof ply_text - 1) == sizeof ply_text - 1);
   close(fd);
   snprintf(text, sizeof text, scene_text, path);
-  for_every_failure(load_scene, text, 200);
+  fail_everywhere(load_scene, text, 200);
   unlink(path);
 }
 
@@ -93,7 +68,7 @@ static vlResult read_ply(vlContext *context, void *user) {
 
 static void ply(void **state) {
   (void)state;
-  for_every_failure(read_ply, NULL, 5);
+  fail_everywhere(read_ply, NULL, 5);
 }
 
 int main(void) {

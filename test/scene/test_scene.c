@@ -276,7 +276,8 @@ static void large_mesh(void **state) {
 
 /* ---- out of memory ---------------------------------------------------------------------------------------------- */
 
-static vlResult fill(vlContext *from) {
+static vlResult fill(vlContext *from, void *user) {
+  (void)user;
   vlScene *s;
   vlResult result = vl_scene_create(from, &s);
   if (result != VL_OK) return result;
@@ -307,25 +308,7 @@ static vlResult fill(vlContext *from) {
 
 static void out_of_memory(void **state) {
   (void)state;
-  for (long n = 1;; n++) {
-    failAllocator allocator = {.fail_at = n};
-    vlContextDef def = vl_default_context_def();
-    vlContext *from = NULL;
-    def.threads = 1;
-    def.allocator = fail_allocator(&allocator);
-    vlResult result = vl_context_create(&def, &from);
-    if (result == VL_OK) {
-      result = fill(from);
-      vl_context_destroy(from);
-    }
-    assert_int_equal(atomic_load(&allocator.blocks), 0);
-    if (!atomic_load(&allocator.refused)) {
-      assert_int_equal(result, VL_OK);
-      assert_true(n > 20);
-      return;
-    }
-    assert_int_equal(result, VL_ERROR_MEMORY);
-  }
+  fail_everywhere(fill, NULL, 20);
 }
 
 int main(void) {

@@ -6,6 +6,9 @@ if [ "$VELO_BINARY_DIR" != "$VELO_SOURCE_DIR/build/release" ]; then
   exit 77
 fi
 
+# All built, for what follows is about calls that find it so.
+check "builds" "$VELO_SOURCE_DIR/script/build" release velo_app
+
 mkdir "$work/elsewhere"
 cd "$work/elsewhere" || exit 1
 cat >small.pbrt <<'END'

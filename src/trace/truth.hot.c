@@ -4,46 +4,9 @@
  *                                                  -> the stages of the tracers: normals, uv, textures at 64
  * wavelengths
  *
- * What a hit is (interfaces are passed, mixed materials decided by a hash of the ray) is as in path.hot.c. */
-#include "math/hash.h"
+ * What a hit is (interfaces are passed, mixed materials decided by a hash of the ray) is what the tracers say it is. */
 #include "trace/truth_scratch.h"
 #include "world/surface_point.h"
-
-/* The part of a mixed material that this ray meets: the same choice as the tracers make. */
-static uint32_t part_met(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
-  uint32_t material = world->shapes.items[h->shape[i]].material;
-  while (world->materials.items[material].kind == VL_MATERIAL_MIX) {
-    const vlWorldMaterial *m = &world->materials.items[material];
-    vlVec3 o = vl_vec3(p->ox[i], p->oy[i], p->oz[i]), d = vl_vec3(p->dx[i], p->dy[i], p->dz[i]);
-    vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
-    float position[3] = {at.p.x, at.p.y, at.p.z};
-    float amount = vl_texture_float_at(world, m->amount, at.u, at.v, position);
-    uint32_t hash = vl_hash3(vl_float_bits(d.x), vl_float_bits(d.y), vl_float_bits(d.z));
-    hash = vl_hash3(hash, vl_float_bits(at.p.x), vl_float_bits(at.p.y));
-    hash = vl_hash3(hash, vl_float_bits(at.p.z), material);
-    material = m->mix[vl_unit_float(hash) < amount ? 1 : 0];
-  }
-  return material;
-}
-
-static bool is_interface(const vlWorld *world, uint32_t shape) {
-  return world->materials.items[world->shapes.items[shape].material].kind == VL_MATERIAL_INTERFACE;
-}
-
-/* Surfaces of no material are not seen: on to what stands behind. */
-static void pass_interfaces(const vlWorld *world, const vlPaths *p, vlHits *h, uint32_t i, const float *t_max) {
-  float t_min = 0;
-  for (int step = 0; h->shape[i] != VL_NONE && is_interface(world, h->shape[i]); step++) {
-    if (step == 1024) h->shape[i] = VL_NONE; /* no ray needs so many */
-    if (h->shape[i] == VL_NONE) return;
-    vlVec3 o = vl_vec3(p->ox[i], p->oy[i], p->oz[i]), d = vl_vec3(p->dx[i], p->dy[i], p->dz[i]);
-    vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
-    float margin = 2.0f * at.offset / vl_max(vl_abs(vl_dot(at.g, d)), 0.01f) + 0x1p-22f * vl_abs(at.t);
-    t_min = vl_max(at.t, t_min) + vl_max(margin, 1e-30f);
-    vlRays ray = {p->ox + i, p->oy + i, p->oz + i, p->dx + i, p->dy + i, p->dz + i, &t_min, t_max + i};
-    vl_accel_closest(world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i, h->t + i);
-  }
-}
 
 /* ---- how far, in double --------------------------------------------------------------------------------------------
  */
@@ -170,6 +133,9 @@ static void start(const vlTruthDef *def, vlTruthBatch *batch, vlPaths *p) {
     p->ox[i] = (float)batch->o[0][i], p->oy[i] = (float)batch->o[1][i], p->oz[i] = (float)batch->o[2][i];
     p->dx[i] = (float)batch->d[0][i], p->dy[i] = (float)batch->d[1][i], p->dz[i] = (float)batch->d[2][i];
     p->cone[i] = def->pixel_width;
+    p->lane[i] = i;
+    p->specular[i] = 1;
+    for (int c = 0; c < 4; c++) p->lambda[c][i] = def->lambda[0][c], p->beta[c][i] = 0.0f;
     batch->distance[i] = VL_INFINITY;
     for (int k = 0; k < 3; k++) batch->n_shading[k][i] = batch->n_geometric[k][i] = batch->albedo[k][i] = 0.0f;
     batch->uv[0][i] = batch->uv[1][i] = 0.0f;
@@ -184,7 +150,6 @@ static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s,
   vlHits *h = &s->hits_a, *g = &s->hits_b;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    if (world->has_interfaces && h->shape[i] != VL_NONE) pass_interfaces(world, a, h, i, batch->t_max);
     if (h->shape[i] == VL_NONE) continue;
     uint32_t k = count++;
     b->ox[k] = a->ox[i], b->oy[k] = a->oy[i], b->oz[k] = a->oz[i];
@@ -192,7 +157,7 @@ static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s,
     b->cone[k] = a->cone[i];
     b->lane[k] = i;
     g->shape[k] = h->shape[i], g->prim[k] = h->prim[i], g->instance[k] = h->instance[i], g->t[k] = h->t[i];
-    g->material[k] = part_met(world, a, h, i);
+    g->material[k] = h->material[i];
     batch->object[i] = h->shape[i] + 1;
     batch->material[i] = world->shapes.items[h->shape[i]].material + 1;
     batch->instance[i] = h->instance[i] == VL_NONE ? 0 : h->instance[i] + 1;
@@ -205,12 +170,15 @@ static void trace(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *s
   vlTraceScratch *s = &scratch->trace;
   start(def, batch, &s->a);
   if (batch->n == 0) return;
-  vlRays rays = {s->a.ox, s->a.oy, s->a.oz, s->a.dx, s->a.dy, s->a.dz, batch->t_min, batch->t_max};
-  vl_accel_closest(world, batch->n, &rays, true, s->hits_a.shape, s->hits_a.prim, s->hits_a.instance, s->hits_a.t);
+  /* Light that the rays run into is of no interest here. */
+  vlTraceBatch rays = {.n = batch->n, .t_min = batch->t_min, .t_max = batch->t_max};
+  for (int c = 0; c < 4; c++) rays.radiance[c] = scratch->light[c];
+  vlTraceDef trace_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
+  vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
+  VL_HOT(vl_stage_hits)(&tracing, batch->n, true);
   uint32_t n = gather_hits(world, batch->n, s, batch);
   if (n == 0) return;
-  vlTraceDef surface_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
-  VL_HOT(vl_stage_surface)(world, n, &s->b, &s->hits_b, &s->corners, &s->surface, &surface_def);
+  VL_HOT(vl_stage_surface)(world, n, &s->b, &s->hits_b, &s->corners, &s->surface, &trace_def);
   if (def->shading || def->albedo) shade(world, def, n, scratch, batch);
   const vlSurface *f = &s->surface;
   for (uint32_t i = 0; i < n; i++) {

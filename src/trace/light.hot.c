@@ -252,11 +252,11 @@ static float smooth_step(float x, float a, float b) {
   return t * t * (3.0f - 2.0f * t);
 }
 
-static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, vlVec3 p, vlVec3 n, float choice,
-                       float u, float v, vlLightSamples *out) {
+static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, vlVec3 p, float u, float v,
+                       vlLightSamples *out) {
   out->pdf[i] = 0.0f;
   out->wx[i] = out->wy[i] = out->wz[i] = 0.0f;
-  vlLightChoice chosen = vl_light_choose(&world->tree, p, n, choice);
+  vlLightChoice chosen = {out->light[i], out->pmf[i]};
   if (chosen.light == VL_INNER || !(chosen.pmf > 0.0f)) return;
   const vlWorldLight *light = &world->lights.items[chosen.light];
   const vlEmitted *e = &world->emitted.items[light->emitted];
@@ -343,7 +343,6 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
 
 void VL_HOT(vl_stage_lights)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *f,
                              const float *u_choice, const float *u, const float *v, vlLightSamples *out) {
-  for (uint32_t i = 0; i < n; i++)
-    sample_one(world, i, paths, vl_vec3(f->px[i], f->py[i], f->pz[i]), vl_vec3(f->nx[i], f->ny[i], f->nz[i]),
-               u_choice[i], u[i], v[i], out);
+  VL_HOT(vl_stage_light_choice)(&world->tree, n, f, u_choice, out);
+  for (uint32_t i = 0; i < n; i++) sample_one(world, i, paths, vl_vec3(f->px[i], f->py[i], f->pz[i]), u[i], v[i], out);
 }

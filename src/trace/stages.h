@@ -72,6 +72,8 @@ typedef struct vlShade {
 } vlShade;
 
 typedef struct vlLightSamples {
+  VL_ROW uint32_t light[VL_ROW_SIZE]; /* chosen; VL_INNER: none */
+  VL_ROW float pmf[VL_ROW_SIZE];
   VL_ROW float wx[VL_ROW_SIZE], wy[VL_ROW_SIZE], wz[VL_ROW_SIZE]; /* towards the light, unit */
   VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE], tz[VL_ROW_SIZE]; /* point that must be visible */
   VL_ROW float radiance[4][VL_ROW_SIZE];                          /* already divided by the pdf */
@@ -139,6 +141,9 @@ void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *p
 void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material,
                                vlTraceScratch *s);
 void VL_HOT(vl_stage_frames)(uint32_t n, const vlPaths *paths, const vlSurface *surface, vlShade *shade);
+/* Which light each lane asks: light->light and light->pmf. */
+void VL_HOT(vl_stage_light_choice)(const vlLightTree *tree, uint32_t n, const vlSurface *surface, const float *u,
+                                   vlLightSamples *light);
 /* One light sample for each lane. */
 void VL_HOT(vl_stage_lights)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *surface,
                              const float *u_choice, const float *u, const float *v, vlLightSamples *light);

@@ -11,7 +11,6 @@
 #include "base/cookie.h"
 #include "base/error.h"
 #include "camera/rays.h"
-#include "color/color.h"
 #include "trace/truth.h"
 
 enum { TILE = 32 };
@@ -67,8 +66,6 @@ typedef struct Pass {
   const vlCameraKernels *camera_kernels;
   const vlTruthKernels *truth_kernels;
   vlTruthDef truth;
-  bool convert; /* albedo comes in linear Rec.709, is wanted in another space */
-  float matrix[9];
   uint32_t tiles_x, tile_x0, tile_y0, tiles;
   uint32_t place[VL_CHANNEL_COUNT]; /* of the first part in its picture */
   vlImage *images[2];               /* floats, ids */
@@ -148,11 +145,7 @@ static void put_floats(const Pass *p, const vlTruthBatch *b, uint32_t i, float *
   if (wants(p, VL_CHANNEL_N)) put3(at[3], b->n_shading, i);
   if (wants(p, VL_CHANNEL_NG)) put3(at[4], b->n_geometric, i);
   if (wants(p, VL_CHANNEL_UV)) at[5][0] = b->uv[0][i], at[5][1] = b->uv[1][i];
-  if (!wants(p, VL_CHANNEL_ALBEDO)) return;
-  float c[3] = {b->albedo[0][i], b->albedo[1][i], b->albedo[2][i]};
-  const float *q = p->matrix;
-  for (int k = 0; k < 3; k++)
-    at[6][k] = p->convert ? q[3 * k] * c[0] + q[3 * k + 1] * c[1] + q[3 * k + 2] * c[2] : c[k];
+  if (wants(p, VL_CHANNEL_ALBEDO)) put3(at[6], b->albedo, i);
 }
 
 static void put_ids(const Pass *p, const vlTruthBatch *b, uint32_t i, uint32_t *pixel) {
@@ -195,47 +188,6 @@ static void trace_tile(void *user, uint32_t tile, uint32_t worker) {
     if (p->images[0]) put_floats(p, w->batch, i, (float *)vl_image_pixels(p->images[0]) + at * p->step[0]);
     if (p->images[1]) put_ids(p, w->batch, i, (uint32_t *)vl_image_pixels(p->images[1]) + at * p->step[1]);
   }
-}
-
-/* ---- albedo: reflectance to RGB ---------------------------------------------------------------------------------- */
-
-/* Quadrature over the visible wavelengths under the white of the colour space, so scaled that what reflects everything
- * is (1, 1, 1) (pbrt book 4.6.3: the colour of a reflectance under an illuminant). Wavelengths of a set lie far apart;
- * which set one is in does not matter. */
-static void plan_albedo(Pass *p) {
-  vlTruthDef *t = &p->truth;
-  vlColorSpace space = p->def->space;
-  if (p->world->def.color == VL_COLOR_RGB) {
-    float to[9], from[9];
-    vl_rgb_from_xyz(space, to);
-    vl_xyz_from_rgb(VL_SPACE_SRGB, from);
-    p->convert = space != VL_SPACE_SRGB;
-    for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++)
-        p->matrix[3 * i + j] = to[3 * i] * from[j] + to[3 * i + 1] * from[3 + j] + to[3 * i + 2] * from[6 + j];
-    return;
-  }
-  float m[9];
-  vl_rgb_from_xyz(space, m);
-  const float *white = vl_space_illuminant(space), *cie[3] = {vl_cie_x(), vl_cie_y(), vl_cie_z()};
-  double sum[3] = {0, 0, 0}, weight[VL_TRUTH_SETS][4][3];
-  const double step = (VL_LAMBDA_MAX - VL_LAMBDA_MIN) / (4.0 * VL_TRUTH_SETS);
-  t->sets = VL_TRUTH_SETS;
-  for (int k = 0; k < VL_TRUTH_SETS; k++)
-    for (int c = 0; c < 4; c++) {
-      /* 380 to 720 nm would hold nearly all of it; the ends cost little. */
-      double lambda = VL_LAMBDA_MIN + (c * VL_TRUTH_SETS + k + 0.5) * step, xyz[3];
-      t->lambda[k][c] = (float)lambda;
-      for (int i = 0; i < 3; i++)
-        xyz[i] = (double)vl_dense_at(cie[i], t->lambda[k][c]) * vl_dense_at(white, t->lambda[k][c]);
-      for (int i = 0; i < 3; i++) {
-        weight[k][c][i] = m[3 * i] * xyz[0] + m[3 * i + 1] * xyz[1] + m[3 * i + 2] * xyz[2];
-        sum[i] += weight[k][c][i];
-      }
-    }
-  for (int k = 0; k < VL_TRUTH_SETS; k++)
-    for (int c = 0; c < 4; c++)
-      for (int i = 0; i < 3; i++) t->weight[k][c][i] = (float)(weight[k][c][i] / sum[i]);
 }
 
 /* ---- the call ---------------------------------------------------------------------------------------------------- */
@@ -317,8 +269,7 @@ static void prepare(Pass *p, const vlCamera *camera) {
                           .isa = isa,
                           .shading = wants(p, VL_CHANNEL_N),
                           .albedo = wants(p, VL_CHANNEL_ALBEDO)};
-  if (p->truth.albedo) plan_albedo(p);
-  for (int c = 0; c < 4 && p->truth.sets == 0; c++) p->truth.lambda[0][c] = 550.0f;
+  vl_truth_plan_albedo(p->world, p->def->space, &p->truth);
   const uint32_t *crop = p->def->crop;
   p->tile_x0 = crop[0] / TILE, p->tile_y0 = crop[1] / TILE;
   p->tiles_x = (crop[2] + TILE - 1) / TILE - p->tile_x0;

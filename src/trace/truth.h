@@ -5,8 +5,8 @@
 
 #include "trace/trace.h"
 
-/* Albedo: the mean over `sets` of 4 wavelengths, reflectance times weight[set][channel of 4][rgb]. sets 0: RGB mode,
- * linear Rec.709 comes out. */
+/* Albedo: the sum over `sets` of 4 channels of reflectance times weight[set][channel][rgb]. Spectral: 64 wavelengths;
+ * RGB mode: one set, the matrix of the colour space. */
 enum { VL_TRUTH_SETS = 16 };
 typedef struct vlTruthDef {
   float pixel_spread, pixel_width; /* as in vlTraceDef */
@@ -16,6 +16,9 @@ typedef struct vlTruthDef {
   float lambda[VL_TRUTH_SETS][4];
   float weight[VL_TRUTH_SETS][4][3];
 } vlTruthDef;
+
+/* Fills sets, lambda and weight; one set of no weight where def wants no albedo. */
+void vl_truth_plan_albedo(const vlWorld *world, vlColorSpace space, vlTruthDef *def);
 
 /* Rays in double, d of unit length, n <= VL_BATCH; arrays of VL_ROW_SIZE. Where nothing is met: distance infinity, the
  * rest zero. Ids count from 1. */

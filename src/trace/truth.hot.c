@@ -101,8 +101,7 @@ static void add_albedo(const vlWorld *world, const vlTruthDef *def, uint32_t set
     uint32_t lane = s->b.lane[i];
     for (int c = 0; c < 4; c++) {
       float a = albedo_at(m, &s->shade, c, i);
-      if (def->sets == 0 && c < 3) batch->albedo[c][lane] = a;
-      for (int k = 0; def->sets && k < 3; k++) batch->albedo[k][lane] += a * def->weight[set][c][k];
+      for (int k = 0; k < 3; k++) batch->albedo[k][lane] += a * def->weight[set][c][k];
     }
   }
 }
@@ -110,9 +109,8 @@ static void add_albedo(const vlWorld *world, const vlTruthDef *def, uint32_t set
 static void shade(const vlWorld *world, const vlTruthDef *def, uint32_t n, vlTruthScratch *scratch,
                   vlTruthBatch *batch) {
   vlTraceScratch *s = &scratch->trace;
-  uint32_t sets = def->albedo && def->sets ? def->sets : 1;
   keep_frames(scratch, n, false);
-  for (uint32_t set = 0; set < sets; set++) {
+  for (uint32_t set = 0; set < def->sets; set++) {
     if (set) keep_frames(scratch, n, true);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = 0; i < n; i++) s->b.lambda[c][i] = def->lambda[set][c], s->b.beta[c][i] = 1.0f;

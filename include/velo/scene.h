@@ -155,9 +155,9 @@ typedef struct vlMaterialDef {
   vlFloatInput u_roughness, v_roughness;
   bool remap_roughness;        /* alpha = sqrt(roughness), pbrt book 9.6 */
   vlSpectrumInput eta, k;      /* conductor: both; dielectrics and coat: eta (no texture) */
-  vlFloatInput thickness, g;   /* coat */
-  vlSpectrumInput albedo;      /* coat's medium */
-  uint32_t max_depth, samples; /* coat's walk */
+  vlFloatInput thickness, g;   /* coat; thickness not textured, g is not needed while albedo is 0 */
+  vlSpectrumInput albedo;      /* coat's medium: 0 (else vl_world_build says that it is not understood yet) */
+  uint32_t max_depth, samples; /* coat: bounces inside; samples is pbrt's, here they are summed into a table */
   vlFloatInput amount;         /* mix: share of the second */
   vlMaterialId materials[2];
   vlFloatInput displacement; /* bump map; texture index 0: none */

@@ -71,6 +71,13 @@ void vl_world_destroy(vlWorld *world) {
   vl_free(c, world);
 }
 
+vlResult vl_world_placed(vlSource source, vlError *error, vlResult r) {
+  if (r == VL_OK || r == VL_ERROR_MEMORY || !error || error->line) return r;
+  char message[sizeof error->message];
+  memcpy(message, error->message, sizeof message);
+  return vl_fail_at(error, r, source.file, source.line, source.column, "%s", message);
+}
+
 void vl_world_info(const vlWorld *world, vlWorldInfo *info) {
   *info = world->info;
 }

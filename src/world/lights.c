@@ -2,7 +2,6 @@
  * Scales are pbrt-v4's (lights.cpp's conventions; book 12): spectra divided by their own luminance, times scale, or set
  * by power or illuminance. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/error.h"
@@ -12,13 +11,6 @@
 #include "world/surface_point.h"
 #include "world/texture_lookup.h"
 #include "world/world.h"
-
-static vlResult placed(vlSource source, vlError *error, vlResult r) {
-  if (r == VL_OK || r == VL_ERROR_MEMORY || !error || error->line) return r;
-  char message[sizeof error->message];
-  snprintf(message, sizeof message, "%s", error->message);
-  return vl_fail_at(error, r, source.file, source.line, source.column, "%s", message);
-}
 
 /* The light's colour with luminance 1 (times what rgb or scale say). */
 static vlResult compile_color(vlWorld *world, const vlSpectrum *color, float factor, vlEmitted *e, vlError *error) {
@@ -228,7 +220,7 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
       break;
     }
   }
-  return placed(def->source, error, r);
+  return vl_world_placed(def->source, error, r);
 }
 
 /* ---- glowing shapes ---------------------------------------------------------------------------------------------- */
@@ -291,7 +283,7 @@ static vlResult add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t 
       if (!e) return vl_fail_memory(error);
       e->image = -1;
       vlResult r = add_emission(world, emission, e, error);
-      if (r != VL_OK) return placed(emission->source, error, r);
+      if (r != VL_OK) return vl_world_placed(emission->source, error, r);
       shared = (uint32_t)world->emitted.count - 1;
       if (has_power) { /* as in pbrt, for each primitive */
         float sent = (e->two_sided ? 2 : 1) * area * VL_PI;

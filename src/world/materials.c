@@ -1,6 +1,5 @@
 /* world/materials.c: scene materials -> world materials. Index 0 is the default, a diffuse grey. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/error.h"
@@ -10,14 +9,6 @@
 static vlResult fail(const vlMaterialDef *def, vlError *error, const char *what) {
   return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
                     "material \"%s\": %s", def->name ? def->name : "", what);
-}
-
-/* An error found deeper without a place gets the material's. */
-static vlResult placed(const vlMaterialDef *def, vlError *error, vlResult r) {
-  if (r == VL_OK || r == VL_ERROR_MEMORY || !error || error->line) return r;
-  char message[sizeof error->message];
-  snprintf(message, sizeof message, "%s", error->message);
-  return vl_fail_at(error, r, def->source.file, def->source.line, def->source.column, "%s", message);
 }
 
 static float alpha_of(float roughness, bool remap) {
@@ -132,7 +123,7 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
       r = vl_fail_memory(error);
   }
   if (r != VL_OK && m->owns_coat) vl_coat_free(world->context, m->coat);
-  return placed(def, error, r);
+  return vl_world_placed(def->source, error, r);
 }
 
 vlResult vl_world_add_materials(vlWorld *world, const vlScene *scene, vlError *error) {

@@ -148,6 +148,8 @@ vlResult vl_world_add_origins(vlWorld *world, const struct vlScene *scene, vlErr
 /* Area of one primitive in the space its vertices are in (with from_group where an instance places it). */
 float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim);
 void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3], float high[3]);
+/* r, with the place put to an error that was found deeper and has none. */
+vlResult vl_world_placed(vlSource source, vlError *error, vlResult r);
 /* A new block owned by the world, or null. */
 void *vl_world_block(vlWorld *world, size_t count, size_t size);
 

@@ -144,16 +144,14 @@ static void override_sampling(vlSceneSettings *settings, const Arguments *argume
 }
 
 static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t height) {
-  const char *warning = NULL;
   vlError error = {0};
   vlCamera camera;
-  vlResult result = vl_camera_make(&def, &camera, &warning, &error);
+  vlResult result = vl_camera_make(&def, &camera, NULL, &error); /* what it warns of was said when it was read */
   if (result != VL_OK) {
     snprintf(job->camera_place.message, sizeof job->camera_place.message, "%s",
              error.message[0] ? error.message : vl_result_name(result));
     return report_error(error.file[0] ? &error : &job->camera_place, result, NULL);
   }
-  if (warning) report_log(NULL, VL_LOG_WARNING, &job->camera_place, warning);
   if (camera.width == width && camera.height == height) {
     job->camera = camera;
     return -1;

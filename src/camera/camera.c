@@ -124,6 +124,7 @@ vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t heigh
   /* the principal point keeps its place relative to the centre */
   resized.cx = 0.5 * width + (camera->cx - 0.5 * camera->width) * scale_x;
   resized.cy = 0.5 * height + (camera->cy - 0.5 * camera->height) * scale_y;
+  vl_camera_measure(&resized);
   *result = resized;
   return VL_OK;
 }

@@ -177,6 +177,11 @@ static double share_outside(const vlCamera *camera) {
   return outside / ((double)camera->width * camera->height);
 }
 
+void vl_camera_measure(vlCamera *camera) {
+  if (camera->distortion.steps > 0) camera->distortion.steps = steps_everywhere(camera);
+  camera->outside = share_outside(camera);
+}
+
 static bool has_circle(vlProjection p) {
   return (p >= VL_PROJECTION_EQUIDISTANT && p <= VL_PROJECTION_SINE) || p >= VL_PROJECTION_FOV ||
          p == VL_PROJECTION_PERSPECTIVE;
@@ -211,15 +216,10 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
   }
   camera->limit = limit;
   vlDistortionMap *m = &camera->distortion;
-  if (m->steps > 0) {
-    m->radius = fold_radius(m, fmin(limit, 1e4));
-    m->steps = steps_everywhere(camera);
-  }
-  camera->outside = share_outside(camera);
+  if (m->steps > 0) m->radius = fold_radius(m, fmin(limit, 1e4));
+  vl_camera_measure(camera);
   bool calibrated = m->steps > 0 || kind >= VL_PROJECTION_FOV;
   if (calibrated && vl_is_unset(def->max_angle) && camera->outside > 0.0 && warning && !*warning)
-    *warning =
-        "camera: the lens's model folds or ends inside the picture; beyond that the picture is empty (alpha 0), and "
-        "vlCamera.outside says which share of it";
+    *warning = "camera: the lens folds or its model ends inside the picture; what lies beyond sees nothing (alpha 0)";
   return VL_OK;
 }

@@ -270,10 +270,12 @@ static bool check(vlImport *import, const char *what, const vlCameraDef *def) {
     const char *text = strncmp(error.message, "camera: ", 8) == 0 ? error.message + 8 : error.message;
     return vl_import_fail(import, VL_ERROR_SCENE, import->camera.place, "%s: %s", what, text);
   }
-  if (warning) vl_import_warn(import, VL_LOG_WARNING, import->camera.place, "%s", warning);
   if (warning && camera.outside > 0.0)
-    vl_import_warn(import, VL_LOG_WARNING, import->camera.place, "%s: %.2g %% of the picture sees nothing", what,
-                   100.0 * camera.outside);
+    vl_import_warn(import, VL_LOG_WARNING, import->camera.place,
+                   "%s: the lens folds or its model ends inside the picture: %.2g %% of it sees nothing (alpha 0)",
+                   what, 100.0 * camera.outside);
+  else if (warning)
+    vl_import_warn(import, VL_LOG_WARNING, import->camera.place, "%s", warning);
   return true;
 }
 

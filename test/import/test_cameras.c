@@ -102,7 +102,7 @@ static void warnings_and_errors(void **state) {
   load_fine(&l, FILM "Camera \"opencv\" \"float fx\" 100 \"float coefficients\" [-0.4 0 0 0]\n" W);
   assert_non_null(strstr(l.log, "t.pbrt:2:1"));
   assert_non_null(strstr(l.log, "folds"));
-  assert_non_null(strstr(l.log, "% of the picture sees nothing"));
+  assert_non_null(strstr(l.log, "% of it sees nothing"));
   end_load(&l);
   const struct {
     const char *text, *said;

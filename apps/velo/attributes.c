@@ -79,6 +79,22 @@ static void set_camera_matrices(Header *header, const vlCamera *c) {
   set_matrix(header, "worldToNDC", VL_ATTRIBUTE_M44F, m);
 }
 
+/* The projection's own numbers, and the lens's coefficients as its calibration writes them. */
+static void set_model(Header *header, const vlCamera *c, const vlCameraDef *def) {
+  static const char *const names[] = {"none", "opencv", "radial", "thinprism"};
+  /* not those that the projection does not take; Panini's has a default */
+  if (!isnan(def->shape[0]) || c->shape[0] != 0) set_double(header, "velo.shape0", c->shape[0]);
+  if (!isnan(def->shape[1])) set_double(header, "velo.shape1", c->shape[1]);
+  if (def->distortion == VL_DISTORTION_NONE) return;
+  char text[14 * 26] = "";
+  for (uint32_t i = 0; i < def->distortion_count; i++) {
+    size_t n = strlen(text);
+    snprintf(text + n, sizeof text - n, "%s%.17g", i ? " " : "", def->distortion_coefficients[i]);
+  }
+  set_text(header, "velo.distortion", names[def->distortion]);
+  set_text(header, "velo.distortionCoefficients", text);
+}
+
 /* The camera in full: OpenEXR's words in single precision, velo's own in double (camera x right, y down, z forward).
  * Lens and sensor are in millimetres. A virtual camera has no sensor: where the scene names no width it is
  * given full frame's 36 mm, which fixes the scale and nothing else. */
@@ -98,7 +114,9 @@ static void set_camera(Header *header, const Job *job) {
   set_double(header, "velo.cx", c->cx);
   set_double(header, "velo.cy", c->cy);
   set_matrix(header, "velo.worldFromCamera", VL_ATTRIBUTE_M44D, c->world_from_camera);
-  set_text(header, "velo.projection", c->distortion.steps > 0 ? "distorted" : vl_projection_name(c->projection));
+  set_text(header, "velo.projection", vl_projection_name(c->projection));
+  if (isfinite(c->limit)) set_double(header, "velo.limit", c->limit);
+  set_model(header, c, &job->settings->camera);
   set_float(header, "velo.lensRadius", c->lens_radius);
   if (isfinite(c->focus_distance)) set_float(header, "focus", c->focus_distance);
   set_v2(header, "velo.shutter", c->shutter_open, c->shutter_close);

@@ -1,6 +1,7 @@
 /* header.c: see header.h. */
 #include "header.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "report.h"
@@ -20,6 +21,37 @@ static bool window(const vlImage *image, const char *name, double box[4]) {
   return box[2] >= box[0] && box[3] >= box[1];
 }
 
+static bool text(const vlImage *image, const char *name, const char **value) {
+  vlAttribute a;
+  if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_STRING || !a.string) return false;
+  *value = a.string;
+  return true;
+}
+
+/* Projection and lens; false for a name or a coefficient that is not understood. */
+static bool read_model(const vlImage *image, const char *projection, vlCameraDef *def) {
+  static const char *const names[] = {"none", "opencv", "radial", "thinprism"};
+  int kind = 0;
+  while (kind <= VL_PROJECTION_DOUBLE_SPHERE && strcmp(vl_projection_name((vlProjection)kind), projection) != 0) kind++;
+  if (kind > VL_PROJECTION_DOUBLE_SPHERE) return false;
+  def->projection = (vlProjection)kind;
+  number(image, "velo.shape0", &def->shape[0]);
+  number(image, "velo.shape1", &def->shape[1]);
+  const char *distortion, *at;
+  if (!text(image, "velo.distortion", &distortion)) return true;
+  for (int i = 0; i < 4; i++)
+    if (strcmp(names[i], distortion) == 0) def->distortion = (vlDistortion)i;
+  if (def->distortion == VL_DISTORTION_NONE || !text(image, "velo.distortionCoefficients", &at)) return false;
+  while (*at) {
+    char *end;
+    if (def->distortion_count == 14) return false;
+    def->distortion_coefficients[def->distortion_count++] = strtod(at, &end);
+    if (end == at) return false;
+    at = end;
+  }
+  return true;
+}
+
 int header_camera(const vlImage *image, const char *path, vlCamera *camera, uint32_t *x0, uint32_t *y0) {
   double whole[4] = {0, 0, vl_image_width(image) - 1.0, vl_image_height(image) - 1.0}, data[4];
   memcpy(data, whole, sizeof data);
@@ -36,11 +68,8 @@ int header_camera(const vlImage *image, const char *path, vlCamera *camera, uint
       vl_image_find_attribute(image, "velo.projection", &projection) == VL_OK &&
       projection.type == VL_ATTRIBUTE_STRING && projection.string;
   if (!found) return report_failure(STATUS_SCENE, "%s: has no camera in its header", path);
-  if (strcmp(projection.string, "orthographic") == 0)
-    def.projection = VL_PROJECTION_ORTHOGRAPHIC;
-  else if (strcmp(projection.string, "perspective") != 0)
-    return report_failure(STATUS_SCENE, "%s: cameras of the projection \"%s\" are not read from headers yet", path,
-                          projection.string);
+  if (!read_model(image, projection.string, &def))
+    return report_failure(STATUS_SCENE, "%s: the camera in its header is of a kind that is not known", path);
   def.has_matrix = true; /* OpenEXR's matrices act on rows */
   for (int row = 0; row < 4; row++)
     for (int column = 0; column < 4; column++)
@@ -49,6 +78,8 @@ int header_camera(const vlImage *image, const char *path, vlCamera *camera, uint
   vlResult result = vl_camera_make(&def, camera, NULL, &error);
   if (result != VL_OK)
     return report_failure(STATUS_SCENE, "%s: the camera in its header is wrong: %s", path, error.message);
+  double limit;
+  if (number(image, "velo.limit", &limit)) camera->limit = limit;
   *x0 = (uint32_t)data[0];
   *y0 = (uint32_t)data[1];
   return -1;

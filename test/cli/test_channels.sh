@@ -22,6 +22,14 @@ sed 's/Camera "perspective".*/Camera "orthographic" "float screenwindow" [-2 2 -
 check render_orthographic "$VELO" render flat.pbrt -o flat.exr --channels all --quiet
 check orthographic_agrees "$VELO" image check flat.exr
 
+# Every projection and lens, cropped too: the header alone is enough to know the camera.
+for file in "$VELO_SOURCE_DIR"/scenes/cameras/*.pbrt; do
+  [ -e "$file" ] && grep -q '^Camera' "$file" || continue
+  name=$(basename "$file" .pbrt)
+  check "render_$name" "$VELO" render "$file" -o lens.exr --channels all --quiet --spp 1 --max-depth 0 --resolution 96x72 --crop 7,3,90,70
+  check "${name}_agrees" "$VELO" image check lens.exr
+done
+
 expect_code 2 unknown_name "$VELO" render scene.pbrt -o no.exr --channels Z,albdo
 expect_text nearest_name 'unknown name "albdo"; did you mean "albedo"?'
 check nothing_written test ! -e no.exr

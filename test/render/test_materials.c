@@ -331,6 +331,25 @@ static void dispersion_keeps_energy(void **state) {
   assert_ratio("narrow band through dispersive glass", mean[1], mean[0], 0.02);
 }
 
+/* A ball of flint glass before a white sky cannot be seen: what it splits comes together again. */
+static void dispersion_in_the_white_furnace(void **state) {
+  (void)state;
+  const char *const glass[2] = {"glass-SF11", "glass-BK7"};
+  for (int k = 0; k < 2; k++) {
+    Stage s = stage_open(32, 32);
+    s.camera.fov = 0.4;
+    s.render.spp = 256;
+    s.render.max_depth = 500;
+    add_sky(&s, 1);
+    vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIELECTRIC);
+    def.eta = vl_spectrum_input(vl_spectrum_named(glass[k]));
+    add_ball(&s, vl_scene_add_material(s.scene, &def));
+    Picture p = stage_finish(&s);
+    for (int c = 0; c < 3; c++) assert_ratio("flint glass in the furnace", picture_mean(&p, c), 1, 3e-3);
+    picture_free(&p);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(mixes),
@@ -342,6 +361,7 @@ int main(void) {
       cmocka_unit_test(far_plane_behind_an_interface),
       cmocka_unit_test(prism),
       cmocka_unit_test(dispersion_keeps_energy),
+      cmocka_unit_test(dispersion_in_the_white_furnace),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,7 +39,7 @@ expect_text other_formats_warn 'warning: --channels: picture.png cannot hold the
 
 "$VELO" image info --json all.exr >all.json
 "$VELO" image info --json crop.exr >crop.json
-cat >types.py <<'CODE'
+cat >layout.py <<'CODE'
 import json
 
 for name in ("all", "crop"):
@@ -61,7 +61,7 @@ for o in ids["objects"].values():
     assert str(o["material"]) in ids["materials"], o
 assert sorted(m["type"] for m in ids["materials"].values()) == ["conductor", "dielectric", "diffuse"]
 CODE
-check types_and_ids python3 types.py
+check types_and_ids python3 layout.py
 
 # An independent reader finds the same, and P times worldToNDC is the pixel.
 if command -v oiiotool >/dev/null; then

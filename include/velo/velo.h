@@ -4,6 +4,7 @@
 
 #include "velo/base.h"
 #include "velo/camera.h"
+#include "velo/camera_file.h"
 #include "velo/channels.h"
 #include "velo/image.h"
 #include "velo/render.h"

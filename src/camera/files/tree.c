@@ -94,7 +94,8 @@ static vlResult collect(const vlCameraFile *file, const json_t *list, const char
     if (json_is_array(item) && depth > 0) {
       result = collect(file, item, key, depth - 1, values, most, count);
     } else {
-      if (*count == most) return vl_camera_wrong(file, "%s: \"%s\" holds more than %u numbers", file->dialect, key, most);
+      if (*count == most)
+        return vl_camera_wrong(file, "%s: \"%s\" holds more than %u numbers", file->dialect, key, most);
       result = number_of(file, item, key, &values[*count]);
       ++*count;
     }

@@ -74,7 +74,8 @@ static vlResult take(const vlCameraFile *file, Builder *b, const yaml_event_t *e
     }
     case YAML_SEQUENCE_END_EVENT:
     case YAML_MAPPING_END_EVENT: b->depth--; return VL_OK;
-    case YAML_ALIAS_EVENT: return wrong_at(file, event->start_mark, "anchors of YAML are not taken; write the value out");
+    case YAML_ALIAS_EVENT:
+      return wrong_at(file, event->start_mark, "anchors of YAML are not taken; write the value out");
     default: return VL_OK;
   }
 }

@@ -9,8 +9,8 @@
 extern "C" {
 #endif
 
-/* Which point of the plane a direction lands on: docs/cameras.md has the equations. The plane's unit is the focal length
- * (fx, fy pixels); for angles it is a radian. */
+/* Which point of the plane a direction lands on: docs/cameras.md has the equations. The plane's unit is the focal
+ * length (fx, fy pixels); for angles it is a radian. */
 typedef enum vlProjection {
   VL_PROJECTION_PERSPECTIVE,
   VL_PROJECTION_ORTHOGRAPHIC,

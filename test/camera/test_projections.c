@@ -233,6 +233,40 @@ static void rays_of_all_sets(void **state) {
   }
 }
 
+/* All rays of a film point meet in one point: at z = 5 for perspective cameras, at the distance 5 for all others. */
+static void lens_focuses(void **state) {
+  (void)state;
+  enum { N = 64 };
+  for (int k = 0; k < MODELS; k++) {
+    vlCamera camera = model(k);
+    camera.lens_radius = 0.2, camera.focus_distance = 5;
+    float film[N], u[N], v[N], time[N] = {0}, out[10][N];
+    int32_t px[N], py[N];
+    uint64_t random = 41;
+    for (int i = 0; i < N; i++) {
+      film[i] = 0.25f, px[i] = (int32_t)(0.6 * camera.width), py[i] = (int32_t)(0.55 * camera.height);
+      u[i] = (float)next_unit(&random) * 0.9999f, v[i] = (float)next_unit(&random) * 0.9999f;
+    }
+    vlCameraCompiled c;
+    vl_camera_compile(&camera, &c);
+    vlCameraSamples s = {film, film, px, py, u, v, time};
+    vlCameraRays rays = {out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]};
+    vl_camera_kernels(VL_ISA_V2)->rays(&c, N, &s, &rays);
+    double o[3], d[3], p[3];
+    assert_true(vl_camera_unproject(&camera, px[0] + 0.25, py[0] + 0.25, o, d));
+    const double *m = camera.world_from_camera;
+    double depth = d[0] * m[2] + d[1] * m[6] + d[2] * m[10];
+    double reach = camera.projection <= VL_PROJECTION_ORTHOGRAPHIC ? 5 / depth : 5;
+    for (int a = 0; a < 3; a++) p[a] = o[a] + reach * d[a];
+    for (int i = 0; i < N; i++) {
+      double to[3], along = 0, off = 0;
+      for (int a = 0; a < 3; a++) to[a] = p[a] - out[a][i], along += to[a] * out[3 + a][i];
+      for (int a = 0; a < 3; a++) off += pow(to[a] - along * out[3 + a][i], 2);
+      if (!(along > 0 && sqrt(off) < 1e-5)) fail_msg("model %d: a ray misses the focus by %g", k, sqrt(off));
+    }
+  }
+}
+
 /* Known from the equations: cos^3 for the perspective; constant for equal-area maps; cos(latitude), ... */
 static void solid_angles(void **state) {
   (void)state;
@@ -422,9 +456,15 @@ static void error_messages(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(there_and_back),   cmocka_unit_test(back_and_there), cmocka_unit_test(batches_are_single_calls),
-      cmocka_unit_test(rays_of_all_sets), cmocka_unit_test(solid_angles),   cmocka_unit_test(framing_and_image_circles),
-      cmocka_unit_test(folding_is_found), cmocka_unit_test(error_messages),
+      cmocka_unit_test(there_and_back),
+      cmocka_unit_test(back_and_there),
+      cmocka_unit_test(batches_are_single_calls),
+      cmocka_unit_test(rays_of_all_sets),
+      cmocka_unit_test(lens_focuses),
+      cmocka_unit_test(solid_angles),
+      cmocka_unit_test(framing_and_image_circles),
+      cmocka_unit_test(folding_is_found),
+      cmocka_unit_test(error_messages),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

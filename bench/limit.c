@@ -23,8 +23,7 @@
 
 enum { ROUNDS = 5, SPHERES = 64, RINGS = 88, SEGMENTS = 90, SIZE = 512 };
 
-/* ---- the scene: lumpy spheres in a room with a lamp
- * ------------------------------------------------------------------- */
+/* ---- the scene: lumpy spheres in a room with a lamp -------------------------------------------------------------- */
 
 static vlMaterialId diffuse(vlScene *scene, float r, float g, float b) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
@@ -93,8 +92,7 @@ static void build_scene(vlScene *scene) {
   add_quad(scene, top, grey, glow);
 }
 
-/* ---- the record
- * --------------------------------------------------------------------------------------------------------- */
+/* ---- the record -------------------------------------------------------------------------------------------------- */
 
 typedef struct Chunk {
   int kind;
@@ -126,8 +124,7 @@ static void record(void *user, int kind, uint32_t n, const vlRays *rays) {
   pthread_mutex_unlock(&r->mutex);
 }
 
-/* ---- bare Embree
- * ----------------------------------------------------------------------------------------------------------- */
+/* ---- bare Embree ------------------------------------------------------------------------------------------------- */
 
 typedef struct Bare {
   const Record *record;
@@ -207,8 +204,7 @@ static double time_bare(vlContext *context, const Record *r, RTCScene scene, int
   return vl_seconds() - start;
 }
 
-/* ---- the renderer
- * ------------------------------------------------------------------------------------------------------------ */
+/* ---- the renderer ------------------------------------------------------------------------------------------------ */
 
 static vlRenderStats render_once(vlContext *context, const vlWorld *world, const vlCamera *camera, uint32_t spp) {
   vlFilmDef film_def = vl_default_film_def(camera->width, camera->height);

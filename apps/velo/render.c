@@ -123,8 +123,7 @@ static int render_channels(Render *render, uint32_t spp) {
   return status;
 }
 
-/* ---- steps: each returns -1 to go on, else the exit code
- * ------------------------------------------------------------- */
+/* ---- steps: each returns -1 to go on, else the exit code --------------------------------------------------------- */
 
 static int prepare(Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;

@@ -38,8 +38,7 @@ typedef struct PoolSlot {
   uint32_t worker;
 } PoolSlot;
 
-/* ---- memory: a header of 64 bytes before each block keeps its size, so that the count is exact ---------------------
- */
+/* ---- memory: a header of 64 bytes before each block keeps its size, so that the count is exact ------------------- */
 
 enum { HEADER = 64 };
 typedef struct BlockHeader {
@@ -127,8 +126,7 @@ size_t vl_context_memory(const vlContext *context, size_t *peak) {
   return atomic_load(&context->held);
 }
 
-/* ---- log ----------------------------------------------------------------------------------------------------------
- */
+/* ---- log --------------------------------------------------------------------------------------------------------- */
 
 void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const char *format, ...) {
   if (!context->def.log) return;
@@ -142,8 +140,7 @@ void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const ch
   pthread_mutex_unlock(&context->log_mutex);
 }
 
-/* ---- workers ------------------------------------------------------------------------------------------------------
- */
+/* ---- workers ----------------------------------------------------------------------------------------------------- */
 
 static void pool_work(Pool *pool, uint32_t worker) {
   for (;;) {
@@ -230,8 +227,7 @@ void vl_parallel_for(vlContext *context, uint32_t count, vlParallelBody *body, v
   pthread_mutex_unlock(&context->run_mutex);
 }
 
-/* ---- life ----------------------------------------------------------------------------------------------------------
- */
+/* ---- life -------------------------------------------------------------------------------------------------------- */
 
 vlContextDef vl_default_context_def(void) {
   long cores = sysconf(_SC_NPROCESSORS_ONLN);

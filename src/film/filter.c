@@ -5,8 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- elementary functions by their series: + - * / only
- * -------------------------------------------------------------- */
+/* ---- elementary functions by their series: + - * / only ---------------------------------------------------------- */
 
 /* 1/k: a division in each term would take most of the time */
 static const double INVERSE[26] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,
@@ -33,8 +32,7 @@ static double sinc(double x) {
   return fabs(x) < 1e-9 ? 1.0 : series_sin_pi(x) / (3.14159265358979323846 * x);
 }
 
-/* ---- shapes
- * ---------------------------------------------------------------------------------------------------------- */
+/* ---- shapes ------------------------------------------------------------------------------------------------------ */
 
 static double mitchell(double b, double c, double x) { /* on [0, 2] */
   if (x < 1.0) return (((12 - 9 * b - 6 * c) * x + (-18 + 12 * b + 6 * c)) * x * x + (6 - 2 * b)) / 6.0;
@@ -62,8 +60,7 @@ double vl_filter_value(const vlPixelFilter *filter, int axis, double x) {
   return 0.0;
 }
 
-/* ---- tables
- * ---------------------------------------------------------------------------------------------------------- */
+/* ---- tables ------------------------------------------------------------------------------------------------------ */
 
 typedef struct Shape {
   const vlPixelFilter *filter;

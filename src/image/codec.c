@@ -89,8 +89,7 @@ void vl_codec_row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel
     }
 }
 
-/* ---- reading -------------------------------------------------------------------------------------------------------
- */
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
 
 static vlResult read_memory(const vlImageFile *f, vlImage **image) {
   *image = NULL;
@@ -152,8 +151,7 @@ vlResult vl_image_read_channels(vlContext *context, const char *path, const char
   return result;
 }
 
-/* ---- writing --------------------------------------------------------------------------------------------------------
- */
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
 
 vlWriteDef vl_default_write_def(void) {
   return (vlWriteDef){.cookie = VL_COOKIE_WRITE, .half = false, .compression = 1, .quality = 95};

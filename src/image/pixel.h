@@ -8,8 +8,7 @@
 
 #include "velo/image.h"
 
-/* ---- half floats (IEEE 754 binary16) -------------------------------------------------------------------------------
- */
+/* ---- half floats (IEEE 754 binary16) ----------------------------------------------------------------------------- */
 
 static inline float vl_half_to_float(uint16_t h) {
   uint32_t sign = (uint32_t)(h & 0x8000u) << 16, exponent = (h >> 10) & 31u, mantissa = h & 0x3ffu, bits;
@@ -46,8 +45,7 @@ static inline uint16_t vl_float_to_half(float f) {
   return (uint16_t)(sign | (magnitude - 0x38000000u) >> 13);
 }
 
-/* ---- curves ---------------------------------------------------------------------------------------------------------
- */
+/* ---- curves ------------------------------------------------------------------------------------------------------ */
 
 /* sRGB's curve (IEC 61966-2-1) for the 256 codes, and where the codes begin: code c stands for linear values from
  * vl_srgb8_begin[c] on, up to vl_srgb8_begin[c + 1]. Correctly rounded floats. */

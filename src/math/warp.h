@@ -13,8 +13,7 @@
 #define VL_INV_2PI 0.15915494309189533577f
 #define VL_INV_4PI 0.07957747154594766788f
 
-/* ---- unit disk: density 1 / pi
- * ---------------------------------------------------------------------------------------- */
+/* ---- unit disk: density 1 / pi ----------------------------------------------------------------------------------- */
 
 /* Concentric squares to concentric circles (Shirley and Chiu 1997). r: its distance from the centre, signed. */
 typedef struct vlDiskPoint {
@@ -38,8 +37,7 @@ static inline vlVec2 vl_unwarp_disk(float x, float y) {
   return (vlVec2){vl_clamp(0.5f * (a + 1.0f), 0.0f, 1.0f), vl_clamp(0.5f * (b + 1.0f), 0.0f, 1.0f)};
 }
 
-/* ---- hemisphere and sphere
- * --------------------------------------------------------------------------------------------- */
+/* ---- hemisphere and sphere --------------------------------------------------------------------------------------- */
 
 /* Density cos(theta) / pi (Malley: the disk, lifted). z is right to the last bits near the horizon, too. */
 static inline vlVec3 vl_warp_cosine_hemisphere(float u, float v) {
@@ -84,8 +82,7 @@ static inline vlVec2 vl_unwarp_sphere(vlVec3 w) {
   return (vlVec2){vl_clamp(0.5f * (1.0f - w.z), 0.0f, 1.0f), a < 0.0f ? a + 1.0f : a};
 }
 
-/* ---- triangle: density 1 / area
- * ---------------------------------------------------------------------------------------- */
+/* ---- triangle: density 1 / area ---------------------------------------------------------------------------------- */
 
 /* Barycentric coordinates of the first two corners (Heitz 2019, "A Low-Distortion Map Between Triangle and Square"). */
 static inline vlVec2 vl_warp_triangle(float u, float v) {
@@ -99,8 +96,7 @@ static inline vlVec2 vl_unwarp_triangle(float b0, float b1) {
   return (vlVec2){upper ? 2.0f * less : sum, upper ? sum : 2.0f * less};
 }
 
-/* ---- spherical triangle: density 1 / solid angle
- * ------------------------------------------------------------------------ */
+/* ---- spherical triangle: density 1 / solid angle ----------------------------------------------------------------- */
 
 /* Seen from the origin. After Arvo 1995, "Stratified Sampling of Spherical Triangles", without his angles: with c' on
  * the arc from a to c, c' = cos(s) a + sin(s) t, van Oosterom and Strackee's (1983) solid angle of (a, b, c'), tan(area

@@ -8,8 +8,7 @@
 #include "trace/truth_scratch.h"
 #include "world/surface_point.h"
 
-/* ---- how far, in double --------------------------------------------------------------------------------------------
- */
+/* ---- how far, in double ------------------------------------------------------------------------------------------ */
 
 typedef struct Exact {
   double x, y, z;
@@ -73,8 +72,7 @@ static double exact_distance(const vlWorld *world, const vlTruthBatch *batch, ui
                                        : curved_distance(s, q, h->prim[i], o, d, h->t[i]);
 }
 
-/* ---- what it looks like --------------------------------------------------------------------------------------------
- */
+/* ---- what it looks like ------------------------------------------------------------------------------------------ */
 
 static void keep_frames(vlTruthScratch *s, uint32_t n, bool back) {
   vlSurface *f = &s->trace.surface;
@@ -123,8 +121,7 @@ static void shade(const vlWorld *world, const vlTruthDef *def, uint32_t n, vlTru
   }
 }
 
-/* ---- the batch -----------------------------------------------------------------------------------------------------
- */
+/* ---- the batch --------------------------------------------------------------------------------------------------- */
 
 static void start(const vlTruthDef *def, vlTruthBatch *batch, vlPaths *p) {
   for (uint32_t i = 0; i < batch->n; i++) {

@@ -87,8 +87,7 @@ static void test_extremes(void **state) {
   end_context(context);
 }
 
-/* ---- the paper, directly ------------------------------------------------------------------------------------------
- */
+/* ---- the paper, directly ----------------------------------------------------------------------------------------- */
 
 enum { W = 24, H = 18 };
 typedef double Plane[H][W];

@@ -2,8 +2,7 @@
  * crop; and the depths and tracers of a render. */
 #include "render/shots.h"
 
-/* ---- lens
- * ---------------------------------------------------------------------------------------------------------------- */
+/* ---- lens -------------------------------------------------------------------------------------------------------- */
 
 /* A small bright square out of focus makes a disk of radius lens_radius * |1/z - 1/focus| * fx pixels, evenly bright.
  */
@@ -117,8 +116,7 @@ static void exposure_and_crop(void **state) {
   for (int k = 0; k < 3; k++) picture_free(&p[k]);
 }
 
-/* ---- depths and tracers
- * ---------------------------------------------------------------------------------------------------- */
+/* ---- depths and tracers ------------------------------------------------------------------------------------------ */
 
 /* In a closed glowing sphere depth n holds the first n + 1 terms of a geometric series. */
 static void depths(void **state) {

@@ -114,8 +114,7 @@ static void photometric_scale(void **state) {
   }
 }
 
-/* ---- area lights
- * ------------------------------------------------------------------------------------------------------ */
+/* ---- area lights ------------------------------------------------------------------------------------------------- */
 
 /* The light's own picture: one side, both sides, turned over. */
 static void sides(void **state) {
@@ -213,8 +212,7 @@ static void picture_on_a_light(void **state) {
   remove(path);
 }
 
-/* ---- the sky
- * ------------------------------------------------------------------------------------------------------------ */
+/* ---- the sky ----------------------------------------------------------------------------------------------------- */
 
 /* The equal-area octahedral map of the book (3.8.3), in double, written from its definition. */
 static void square_to_sphere(double u, double v, double d[3]) {
@@ -304,8 +302,7 @@ static void sky_light_against_the_integral(void **state) {
   }
 }
 
-/* ---- choosing among many
- * ---------------------------------------------------------------------------------------------------- */
+/* ---- choosing among many ----------------------------------------------------------------------------------------- */
 
 static void light_samplers_agree(void **state) {
   (void)state;

@@ -20,8 +20,7 @@ static void add_ball(Stage *s, vlMaterialId material) {
   vl_scene_add_shape(s->scene, &def);
 }
 
-/* ---- mixes
- * ------------------------------------------------------------------------------------------------------------ */
+/* ---- mixes ------------------------------------------------------------------------------------------------------- */
 
 static vlMaterialId add_mix(Stage *s, vlMaterialId a, vlMaterialId b, float amount) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_MIX);
@@ -106,8 +105,7 @@ static void mix_with_an_interface_is_refused(void **state) {
   stage_close(&s);
 }
 
-/* ---- bump and normal maps
- * ------------------------------------------------------------------------------------------------ */
+/* ---- bump and normal maps ---------------------------------------------------------------------------------------- */
 
 /* A wall seen straight on, lit by a sun from `from`; the map bends its normal. */
 static Stage wall_stage(const double from[3]) {
@@ -202,8 +200,7 @@ static void displacements(void **state) {
   picture_free(&p[0]), picture_free(&p[1]);
 }
 
-/* ---- interfaces
- * -------------------------------------------------------------------------------------------------------------- */
+/* ---- interfaces -------------------------------------------------------------------------------------------------- */
 
 /* Boxes, balls and sheets of interface between everything and a near area light: the picture must not notice. */
 static void interfaces_are_nothing(void **state) {
@@ -256,8 +253,7 @@ static void far_plane_behind_an_interface(void **state) {
   picture_free(&p);
 }
 
-/* ---- glass that splits colours
- * -------------------------------------------------------------------------------------------------- */
+/* ---- glass that splits colours ----------------------------------------------------------------------------------- */
 
 /* A thin white strip seen through a wedge whose thick side is on the left: rays bend to the left, blue ones more, so
  * that the strip's image goes to the right, its blue further than its red. */

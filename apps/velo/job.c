@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "camera.h"
 #include "report.h"
 
 const Choice tracer_choices[] = {{"path", VL_TRACER_PATH},
@@ -55,8 +56,24 @@ static vlError camera_place(const vlSceneSettings *settings, const char *path) {
   return place;
 }
 
+/* Camera and picture size of a camera file. */
+static int take_camera_file(Job *job, vlContext *context, vlSceneSettings *settings, const char *path) {
+  vlCameraRecord record;
+  int status = camera_load(context, path, 0, NULL, &record);
+  if (status >= 0) return status;
+  settings->camera = record.camera;
+  settings->width = record.camera.width;
+  settings->height = record.camera.height;
+  const uint32_t whole[4] = {0, 0, settings->width, settings->height};
+  memcpy(settings->crop, whole, sizeof whole);
+  job->camera_place = (vlError){0};
+  snprintf(job->camera_place.file, sizeof job->camera_place.file, "%s", path);
+  return -1;
+}
+
 /* Camera and picture size of another scene file. The camera def holds no pointers, so it outlives that scene. */
 static int take_camera(Job *job, vlContext *context, vlSceneSettings *settings, const char *path, bool permissive) {
+  if (!camera_is_scene(path)) return take_camera_file(job, context, settings, path);
   vlScene *other = NULL;
   vlError error = {0};
   vlResult result = vl_scene_create(context, &other);

@@ -292,7 +292,7 @@ static const Option render_options[] = {
     {RENDER_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1", "render only these pixels, x1 and y1 exclusive", 0, 0, NULL},
     {RENDER_CROPWINDOW, 0, "cropwindow", OPTION_FRACTIONS, "x0,x1,y0,y1",
      "the same in fractions of the picture, in pbrt's order", 0, 0, NULL},
-    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "take camera and picture size from this scene file", 0, 0, NULL},
+    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "take camera and picture size from this scene or camera file", 0, 0, NULL},
     {RENDER_TRACER, 0, "tracer", OPTION_CHOICE, "NAME", "how light is followed:", 0, 0, tracer_choices},
     {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "longest path, in bounces", 0, 4096, NULL},
     {RENDER_SAMPLER, 0, "sampler", OPTION_CHOICE, "NAME", "how samples are placed:", 0, 0, sampler_choices},

@@ -176,7 +176,7 @@ static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLigh
     for (int i = 0; i < 3; i++) b->axis[i] = light->direction[i];
     float to = acosf(light->cos_start), te = acosf(light->cos_end);
     b->cos_o = light->cos_start;
-    b->cos_e = cosf(te - to);
+    b->cos_e = fminf(cosf(te - to), 0.999f); /* a hard edge has no width, and rounding none to lose */
   }
   if (light->kind == VL_WL_AREA) {
     const vlWorldShape *shape = &world->shapes.items[light->shape];

@@ -89,7 +89,9 @@ static vlResult build_environment(vlWorld *world, vlEnvironment *env, double *me
       for (uint32_t j = y * step; j < (y + 1) * step && j < n; j++)
         for (uint32_t i = x * step; i < (x + 1) * step && i < n; i++) {
           float l = texel_luminance(vl_texel(mip, 0, (int32_t)i, (int32_t)j, VL_WRAP_CLAMP), channels);
-          if (isfinite(l) && l > 0) sum += l;
+          if (!isfinite(l))
+            return vl_fail(error, VL_ERROR_SCENE, "pixel (%u, %u) of the picture of the sky is not finite", i, j);
+          if (l > 0) sum += l;
           count++;
         }
       env->pdf[(size_t)y * size + x] = (float)(sum / count);
@@ -99,7 +101,8 @@ static vlResult build_environment(vlWorld *world, vlEnvironment *env, double *me
     }
   double mean = total / ((double)size * size);
   *mean_luminance = mean;
-  *illuminance = upper * 4 * M_PI / ((double)size * size);
+  /* pbrt-v4 takes the upper half for a hemisphere that fills the square: half of what really arrives. */
+  *illuminance = upper * (world->def.imitate_pbrt ? 2 : 4) * M_PI / ((double)size * size);
   bool flat = true;
   for (size_t i = 0; i < (size_t)size * size; i++) flat = flat && env->pdf[i] <= mean * 1.0001;
   double sum_all = 0;
@@ -235,7 +238,13 @@ static vlResult add_emission(vlWorld *world, const vlEmissionDef *def, vlEmitted
   if (!def->image) return compile_color(world, &def->radiance, def->scale, e, error);
   image_color(world, VL_SPACE_SRGB, def->scale, e);
   e->image = vl_world_add_image(world, def->image, NULL, NULL, 1, true, error);
-  return e->image < 0 ? (error && error->code ? error->code : VL_ERROR_SCENE) : VL_OK;
+  if (e->image < 0) return error && error->code ? error->code : VL_ERROR_SCENE;
+  const vlMipmap *mip = world->images.items[e->image].mipmap;
+  for (uint32_t y = 0; y < mip->levels[0].height; y++)
+    for (uint32_t x = 0; x < mip->levels[0].width; x++)
+      if (!isfinite(texel_luminance(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels)))
+        return vl_fail(error, VL_ERROR_SCENE, "%s: pixel (%u, %u) is not finite, it cannot shine", def->image, x, y);
+  return VL_OK;
 }
 
 /* Corners and lit side. The renderer turns the geometric normal to the side of the interpolated shading normal: where

@@ -11,7 +11,7 @@ enum { MAX_DEPTH = 32 };
 
 typedef struct {
   json_t *tree[MAX_DEPTH]; /* open lists and maps; each is held by the one before it */
-  char *key[MAX_DEPTH];    /* of the value to come, in maps; jansson's allocator */
+  char *key[MAX_DEPTH];    /* of the value to come, in maps */
   int depth;
   json_t *root;
 } Builder;
@@ -50,7 +50,7 @@ static vlResult add(const vlCameraFile *file, Builder *b, json_t *value, yaml_ma
   if (json_is_array(parent)) return json_array_append_new(parent, value) == 0 ? VL_OK : vl_fail_memory(file->error);
   bool twice = json_object_get(parent, *key) != NULL;
   int failed = json_object_set_new(parent, *key, value);
-  free(*key);
+  vl_free(file->context, *key);
   *key = NULL;
   if (twice) return wrong_at(file, mark, "a key stands twice in one map");
   return failed ? vl_fail_memory(file->error) : VL_OK;
@@ -61,7 +61,7 @@ static vlResult take(const vlCameraFile *file, Builder *b, const yaml_event_t *e
   switch (event->type) {
     case YAML_SCALAR_EVENT:
       if (!key_next) return add(file, b, scalar(event), event->start_mark);
-      b->key[b->depth - 1] = strdup((const char *)event->data.scalar.value);
+      b->key[b->depth - 1] = vl_strdup(file->context, (const char *)event->data.scalar.value);
       return b->key[b->depth - 1] ? VL_OK : vl_fail_memory(file->error);
     case YAML_SEQUENCE_START_EVENT:
     case YAML_MAPPING_START_EVENT: {
@@ -109,7 +109,7 @@ vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size,
     yaml_event_delete(&event);
   }
   yaml_parser_delete(&parser);
-  for (int i = 0; i < MAX_DEPTH; i++) free(b.key[i]);
+  for (int i = 0; i < MAX_DEPTH; i++) vl_free(file->context, b.key[i]);
   if (result != VL_OK)
     json_decref(b.root);
   else

@@ -120,6 +120,7 @@ static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_ROULETTE, sh->u0);
   uint32_t padded = VL_PAD(n);
   uint32_t *alive = s->slot;
+  float *broken = s->rows[0];
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
@@ -139,7 +140,9 @@ static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
     float survive = depth > 1 && carried < 1.0f ? carried : 1.0f;
     uint32_t lives = most > 0.0f && !(sh->flags[i] & VL_SAMPLED_NONE) && sh->u0[i] < survive ? 1 : 0;
     float inv = survive > 0.0f ? 1.0f / survive : 0.0f;
+    float sum = b0 + b1 + b2 + b3;
     alive[i] = lives;
+    broken[i] = sum == sum ? 0.0f : 1.0f;
     p->ox[i] = o.x, p->oy[i] = o.y, p->oz[i] = o.z;
     p->dx[i] = w.x, p->dy[i] = w.y, p->dz[i] = w.z;
     p->beta[0][i] = b0 * inv, p->beta[1][i] = b1 * inv, p->beta[2][i] = b2 * inv, p->beta[3][i] = b3 * inv;
@@ -153,6 +156,7 @@ static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   for (uint32_t i = 0; i < n; i++) {
     s->order[count] = i;
     count += alive[i];
+    if (broken[i] > 0.0f) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film counts it */
   }
   VL_HOT(vl_permute_paths)(p, &s->a, s->order, count);
   return count;

@@ -141,8 +141,36 @@ typedef enum vlMaterialKind {
   VL_MATERIAL_DIELECTRIC,
   VL_MATERIAL_THIN_DIELECTRIC,
   VL_MATERIAL_MIX,
+  VL_MATERIAL_PRINCIPLED, /* many layers in one: glTF's metallic-roughness with its extensions */
   VL_MATERIAL_INTERFACE
 } vlMaterialKind;
+
+/* The principled material, in the words of glTF 2.0 and its KHR_materials extensions; docs/principled.md has the
+ * formulas. Its base colour is vlMaterialDef's reflectance, its index of refraction (one number; 0: as dense as can be)
+ * eta. The defaults are the extensions': everything beyond metal, roughness and specular is off. */
+typedef struct vlPrincipledDef {
+  vlFloatInput metallic;             /* 0 to 1; default 1, as roughness */
+  vlFloatInput roughness;            /* alpha = roughness^2 */
+  vlFloatInput anisotropy;           /* strength, 0 to 1: alpha along the tangent grows towards 1 by its square */
+  vlFloatInput anisotropy_rotation;  /* radians from the tangent towards the bitangent */
+  vlFloatInput specular;             /* factor on the dielectric's reflection; default 1 */
+  vlSpectrumInput specular_color;    /* factor on its reflection at normal incidence; default 1 */
+  vlFloatInput transmission;         /* share of the base that light passes instead of being scattered */
+  bool thin_walled;                  /* a sheet: light passes unbent; default true (glTF: no thickness) */
+  float dispersion;                  /* 20 / Abbe number; not of sheets */
+  vlFloatInput diffuse_transmission; /* share of the diffuse light that leaves on the other side */
+  vlSpectrumInput diffuse_transmission_color;
+  vlFloatInput clearcoat, clearcoat_roughness;
+  vlSpectrumInput sheen_color;
+  vlFloatInput sheen_roughness;
+  vlFloatInput iridescence; /* share that a thin film of thickness (nm) and index covers */
+  float iridescence_ior;    /* default 1.3 */
+  vlFloatInput iridescence_thickness;
+  /* Tangent-space normal maps: linear colour textures (VL_TEXTURE_IMAGE, not clamped), 0: none; x and y are multiplied
+   * by the scale. The clear coat has one of its own. */
+  vlTextureId normal, clearcoat_normal;
+  float normal_scale, clearcoat_normal_scale;
+} vlPrincipledDef;
 
 /* One flat struct; the defaults of vl_default_material_def(kind) are pbrt-v4's. */
 typedef struct vlMaterialDef {
@@ -162,6 +190,7 @@ typedef struct vlMaterialDef {
   vlMaterialId materials[2];
   vlFloatInput displacement; /* bump map; texture index 0: none */
   const char *normal_map;    /* path, null: none; linear, tangent space */
+  vlPrincipledDef principled;
 } vlMaterialDef;
 VL_API vlMaterialDef vl_default_material_def(vlMaterialKind kind);
 VL_API vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def);

@@ -123,6 +123,34 @@ static bool take_mix(vlScene *scene, vlMaterialDef *d) {
   return true;
 }
 
+static bool take_normal_map(vlScene *scene, vlTextureId id, vlSource at) {
+  if (id.index > scene->textures.count) return bad(scene, at, "normal map", "there is no such texture (add it first)");
+  if (id.index && !scene->textures.items[id.index - 1].spectrum)
+    return bad(scene, at, "normal map", "must be a colour texture");
+  return true;
+}
+
+static bool take_principled(vlScene *scene, vlPrincipledDef *d, vlSource at) {
+  if (!isfinite(d->dispersion) || d->dispersion < 0.0f || !(d->iridescence_ior >= 1.0f) ||
+      !isfinite(d->iridescence_ior) || !isfinite(d->normal_scale) || !isfinite(d->clearcoat_normal_scale))
+    return bad(scene, at, "principled material", "dispersion, a film's index or a normal map's scale makes no sense");
+  return take_float(scene, &d->metallic, at, "metallic") && take_float(scene, &d->roughness, at, "roughness") &&
+         take_float(scene, &d->anisotropy, at, "anisotropy") &&
+         take_float(scene, &d->anisotropy_rotation, at, "anisotropy rotation") &&
+         take_float(scene, &d->specular, at, "specular") &&
+         take_spectrum(scene, &d->specular_color, at, "specular colour") &&
+         take_float(scene, &d->transmission, at, "transmission") &&
+         take_float(scene, &d->diffuse_transmission, at, "diffuse transmission") &&
+         take_spectrum(scene, &d->diffuse_transmission_color, at, "diffuse transmission colour") &&
+         take_float(scene, &d->clearcoat, at, "clear coat") &&
+         take_float(scene, &d->clearcoat_roughness, at, "clear coat roughness") &&
+         take_spectrum(scene, &d->sheen_color, at, "sheen colour") &&
+         take_float(scene, &d->sheen_roughness, at, "sheen roughness") &&
+         take_float(scene, &d->iridescence, at, "iridescence") &&
+         take_float(scene, &d->iridescence_thickness, at, "iridescence thickness") &&
+         take_normal_map(scene, d->normal, at) && take_normal_map(scene, d->clearcoat_normal, at);
+}
+
 vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   const vlMaterialId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_MATERIAL, scene->materials.count, (vlSource){0}, "material"))
@@ -132,11 +160,13 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   if ((unsigned)d.kind > VL_MATERIAL_INTERFACE) return bad(scene, at, "material", "unknown kind"), none;
   if (d.kind == VL_MATERIAL_MIX && !take_mix(scene, &d)) return none;
   if (d.kind != VL_MATERIAL_MIX) d.materials[0].index = d.materials[1].index = 0;
-  bool dielectric =
-      d.kind == VL_MATERIAL_DIELECTRIC || d.kind == VL_MATERIAL_THIN_DIELECTRIC || d.kind == VL_MATERIAL_COATED_DIFFUSE;
+  bool dielectric = d.kind == VL_MATERIAL_DIELECTRIC || d.kind == VL_MATERIAL_THIN_DIELECTRIC ||
+                    d.kind == VL_MATERIAL_COATED_DIFFUSE || d.kind == VL_MATERIAL_PRINCIPLED;
   if (dielectric && d.eta.texture.index) return bad(scene, at, "eta", "index of refraction cannot be textured"), none;
   if (d.kind == VL_MATERIAL_COATED_DIFFUSE && (d.max_depth == 0 || d.samples == 0))
     return bad(scene, at, "coated diffuse material", "max depth and samples must be at least 1"), none;
+  if (d.kind != VL_MATERIAL_PRINCIPLED) d.principled = vl_default_material_def(VL_MATERIAL_DIFFUSE).principled;
+  if (!take_principled(scene, &d.principled, at)) return none;
   if (!vl_scene_copy_source(scene, &d.source) || !take_spectrum(scene, &d.reflectance, at, "reflectance") ||
       !take_float(scene, &d.u_roughness, at, "u roughness") || !take_float(scene, &d.v_roughness, at, "v roughness") ||
       !take_spectrum(scene, &d.eta, at, "eta") || !take_spectrum(scene, &d.k, at, "k") ||

@@ -67,6 +67,23 @@ vlTextureDef vl_default_texture_def(vlTextureKind kind, bool spectrum) {
   return def;
 }
 
+static vlPrincipledDef principled(void) {
+  vlSpectrumInput white = vl_spectrum_input(vl_spectrum_constant(1.0f));
+  return (vlPrincipledDef){
+      .metallic = vl_float_input(1.0f),
+      .roughness = vl_float_input(1.0f),
+      .specular = vl_float_input(1.0f),
+      .specular_color = white,
+      .thin_walled = true,
+      .diffuse_transmission_color = white,
+      .sheen_color = vl_spectrum_input(vl_spectrum_constant(0.0f)),
+      .iridescence_ior = 1.3f,
+      .iridescence_thickness = vl_float_input(400.0f),
+      .normal_scale = 1.0f,
+      .clearcoat_normal_scale = 1.0f,
+  };
+}
+
 vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
   vlMaterialDef def = {
       .cookie = VL_COOKIE_MATERIAL,
@@ -80,7 +97,9 @@ vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
       .max_depth = 10,
       .samples = 1,
       .amount = vl_float_input(0.5f),
+      .principled = principled(),
   };
+  if (kind == VL_MATERIAL_PRINCIPLED) def.reflectance = vl_spectrum_input(vl_spectrum_constant(1.0f));
   if (kind == VL_MATERIAL_CONDUCTOR) {
     def.eta = vl_spectrum_input(vl_spectrum_named("metal-Cu-eta"));
     def.k = vl_spectrum_input(vl_spectrum_named("metal-Cu-k"));

@@ -26,6 +26,7 @@ static const char *material_type(vlMaterialKind kind) {
     case VL_MATERIAL_DIELECTRIC: return "dielectric";
     case VL_MATERIAL_THIN_DIELECTRIC: return "thindielectric";
     case VL_MATERIAL_MIX: return "mix";
+    case VL_MATERIAL_PRINCIPLED: return "principled";
     case VL_MATERIAL_INTERFACE: return "interface";
   }
   return "material";

@@ -130,6 +130,7 @@ static bool read_material(vlDict *dict, vlMaterialDef *def) {
     case VL_MATERIAL_MIX:
       if (!read_mix(dict, def)) return false;
       break;
+    case VL_MATERIAL_PRINCIPLED: /* not in this language */
     case VL_MATERIAL_INTERFACE: break;
   }
   if (def->kind != VL_MATERIAL_MIX && def->kind != VL_MATERIAL_INTERFACE && !read_relief(dict, def)) return false;

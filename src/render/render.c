@@ -13,8 +13,8 @@
 #include "base/cookie.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "camera/rays.h"
 #include "film/expose.h"
+#include "render/film_rays.h"
 #include "trace/trace.h"
 #include "velo/render.h"
 
@@ -64,15 +64,11 @@ typedef struct Render {
   const vlWorld *world;
   vlFilm *film;
   const vlRenderDef *def;
-  vlCameraCompiled camera;
+  vlFilmRays film_rays;
   float exposure_time;
-  vlSampler sampler;
   vlTraceDef trace;
-  const vlCameraKernels *camera_kernels;
-  const vlSamplerKernels *sampler_kernels;
-  const vlFilterKernels *filter_kernels;
   const vlTraceKernels *trace_kernels;
-  bool rgb_mode, lens;
+  bool rgb_mode;
   uint32_t crop[4];
   uint32_t tiles_x, tiles_y, tile_x0, tile_y0;
   uint32_t first_sample, pass_samples;
@@ -129,17 +125,21 @@ static void clear_invalid(uint32_t n, const float *valid, float *alpha, float *c
 static void render_batch(const Render *r, Worker *w, uint32_t n) {
   const int32_t *px = (int32_t *)(void *)row(w, PIXEL_X), *py = (int32_t *)(void *)row(w, PIXEL_Y);
   const uint32_t *index = (uint32_t *)(void *)row(w, INDEX);
-  const vlSamplerKernels *k = r->sampler_kernels;
-  float *fx = row(w, FILM_X), *fy = row(w, FILM_Y);
-  k->get_2d(&r->sampler, n, px, py, index, VL_DIM_FILM, row(w, FILM_U), row(w, FILM_V));
-  r->filter_kernels->sample(vl_film_filter(r->film), n, row(w, FILM_U), row(w, FILM_V), fx, fy, row(w, WEIGHT));
-  for (uint32_t i = 0; i < VL_PAD(n); i++) fx[i] += 0.5f, fy[i] += 0.5f;
-  k->get_1d(&r->sampler, n, px, py, index, VL_DIM_TIME, row(w, TIME));
-  if (r->lens) k->get_2d(&r->sampler, n, px, py, index, VL_DIM_LENS, row(w, LENS_U), row(w, LENS_V));
-  vlCameraSamples samples = {fx, fy, px, py, row(w, LENS_U), row(w, LENS_V), row(w, TIME)};
   vlCameraRays rays = {row(w, OX), row(w, OY),    row(w, OZ),    row(w, DX),       row(w, DY),
                        row(w, DZ), row(w, T_MIN), row(w, T_MAX), row(w, RAY_TIME), row(w, VALID)};
-  r->camera_kernels->rays(&r->camera, n, &samples, &rays);
+  vlFilmRayRows rows = {px,
+                        py,
+                        index,
+                        row(w, FILM_U),
+                        row(w, FILM_V),
+                        row(w, FILM_X),
+                        row(w, FILM_Y),
+                        row(w, WEIGHT),
+                        row(w, TIME),
+                        row(w, LENS_U),
+                        row(w, LENS_V),
+                        rays};
+  vl_film_rays_make(&r->film_rays, n, &rows);
   vlTraceBatch batch = {.n = n,
                         .ox = rays.ox,
                         .oy = rays.oy,
@@ -160,7 +160,7 @@ static void render_batch(const Render *r, Worker *w, uint32_t n) {
     expose.inv_pdf[c] = batch.inv_pdf[c] = r->rgb_mode ? NULL : row(w, INV_PDF + c);
   }
   r->trace_kernels->trace(r->world, &r->trace, w->scratch, &batch);
-  if (!r->camera.plain) clear_invalid(n, row(w, VALID), batch.alpha, batch.radiance);
+  if (!r->film_rays.camera.plain) clear_invalid(n, row(w, VALID), batch.alpha, batch.radiance);
   vl_film_expose(r->film, r->trace.isa, &expose, row(w, RED), row(w, GREEN), row(w, BLUE));
   vlFilmSamples add = {n, px, py, row(w, RED), row(w, GREEN), row(w, BLUE), batch.alpha, row(w, WEIGHT)};
   int32_t bad_x = 0, bad_y = 0;
@@ -260,26 +260,23 @@ static void prepare(Render *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
   const vlFilmDef *f = vl_film_def(r->film);
   vlIsa isa = vl_context_isa(world->context);
-  vl_camera_compile(camera, &r->camera);
+  vlSampler sampler;
+  vl_sampler_init(&sampler, r->def->sampler, r->def->seed, f->width, f->height, r->def->spp);
+  vl_film_rays_init(&r->film_rays, camera, vl_film_filter(r->film), &sampler, isa);
   r->exposure_time = (float)camera->exposure_time;
-  r->lens = camera->lens_radius > 0;
-  vl_sampler_init(&r->sampler, r->def->sampler, r->def->seed, f->width, f->height, r->def->spp);
-  r->camera_kernels = vl_camera_kernels(isa);
-  r->sampler_kernels = vl_sampler_kernels(isa);
-  r->filter_kernels = vl_filter_kernels(isa);
   r->trace_kernels = vl_trace_kernels(isa);
   r->rgb_mode = world->def.color == VL_COLOR_RGB;
   /* Footprints shrink with the samples of a pixel (pbrt book 10.1.3 scales by 1/sqrt(spp), at least 1/8); a fixed
    * share, so that more samples continue the same picture. */
   const float footprint = 0.25f;
   r->trace = (vlTraceDef){.tracer = r->def->tracer,
-                          .sampler = &r->sampler,
+                          .sampler = &r->film_rays.sampler,
                           .isa = isa,
                           .max_depth = r->def->max_depth,
                           .ao_distance = r->def->ao_distance,
                           .ao_cosine = r->def->ao_cosine,
-                          .pixel_spread = footprint * r->camera.pixel_spread,
-                          .pixel_width = footprint * r->camera.pixel_width};
+                          .pixel_spread = footprint * r->film_rays.camera.pixel_spread,
+                          .pixel_width = footprint * r->film_rays.camera.pixel_width};
   memcpy(r->crop, f->crop, sizeof r->crop);
   r->tile_x0 = r->crop[0] / TILE, r->tile_y0 = r->crop[1] / TILE;
   r->tiles_x = (r->crop[2] + TILE - 1) / TILE - r->tile_x0;

@@ -1,0 +1,26 @@
+/* render/film_rays.c: see film_rays.h. */
+#include "render/film_rays.h"
+
+#include "trace/trace.h"
+
+void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTable *filter, const vlSampler *sampler,
+                       vlIsa isa) {
+  vl_camera_compile(camera, &f->camera);
+  f->sampler = *sampler;
+  f->filter = filter;
+  f->camera_kernels = vl_camera_kernels(isa);
+  f->sampler_kernels = vl_sampler_kernels(isa);
+  f->filter_kernels = vl_filter_kernels(isa);
+  f->lens = camera->lens_radius > 0;
+}
+
+void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) {
+  const vlSamplerKernels *k = f->sampler_kernels;
+  k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_FILM, r->film_u, r->film_v);
+  f->filter_kernels->sample(f->filter, n, r->film_u, r->film_v, r->film_x, r->film_y, r->weight);
+  for (uint32_t i = 0; i < VL_PAD(n); i++) r->film_x[i] += 0.5f, r->film_y[i] += 0.5f;
+  k->get_1d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_TIME, r->time);
+  if (f->lens) k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_LENS, r->lens_u, r->lens_v);
+  vlCameraSamples samples = {r->film_x, r->film_y, r->px, r->py, r->lens_u, r->lens_v, r->time};
+  f->camera_kernels->rays(&f->camera, n, &samples, &r->rays);
+}

@@ -1,0 +1,34 @@
+/* render/film_rays.h: samples of the film to rays of the camera. The picture's rays and those of the ground truth that
+ * counts the picture's own samples come from here: the same bits. */
+#ifndef RENDER_FILM_RAYS_H
+#define RENDER_FILM_RAYS_H
+
+#include "camera/rays.h"
+#include "film/film.h"
+#include "trace/sampler.h"
+
+/* What a sample of the film becomes depends on these alone. */
+typedef struct vlFilmRays {
+  vlCameraCompiled camera;
+  vlSampler sampler;
+  const vlFilterTable *filter;
+  const vlCameraKernels *camera_kernels;
+  const vlSamplerKernels *sampler_kernels;
+  const vlFilterKernels *filter_kernels;
+  bool lens; /* points on the lens are drawn */
+} vlFilmRays;
+
+/* One element a sample, VL_PAD(n) of them: in are pixel and index of the sample in it; the rest comes out. film_x,
+ * film_y: from the pixel's top left corner; weight: of the pixel filter. */
+typedef struct vlFilmRayRows {
+  const int32_t *px, *py;
+  const uint32_t *index;
+  float *film_u, *film_v, *film_x, *film_y, *weight, *time, *lens_u, *lens_v;
+  vlCameraRays rays;
+} vlFilmRayRows;
+
+void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTable *filter, const vlSampler *sampler,
+                       vlIsa isa);
+void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *rows);
+
+#endif

@@ -1,0 +1,114 @@
+/* tools/albedo_tables: computes the principled material's tables (src/world/principled.h) by quadrature and writes them
+ * as C. Called by the build: albedo_tables FILE.c */
+#include <stdio.h>
+
+#include "world/principled.h"
+
+#include "math/ggx.h"
+
+enum { POINTS = 32, SHEEN_POINTS = 64 };
+
+static float table_cos(uint32_t column) {
+  float x = (float)column / (float)(VL_ALBEDO_COS - 1), c = x * x;
+  return c > 1e-5f ? c : 1e-5f;
+}
+
+/* Visible normals make the sample's weight G/G1 F: a smooth function, so that a midpoint rule does. */
+static void specular_at(float cosine, float alpha, float *a, float *b) {
+  vlVec3 o = vl_vec3(__builtin_sqrtf(1.0f - cosine * cosine), 0.0f, cosine);
+  float lo = vl_ggx_length(o, alpha, alpha);
+  double sum_a = 0, sum_b = 0;
+  for (uint32_t k = 0; k < POINTS * POINTS; k++) {
+    float u = ((float)(k % POINTS) + 0.5f) / POINTS, v = ((float)(k / POINTS) + 0.5f) / POINTS;
+    vlVec3 h = vl_ggx_sample(o, alpha, alpha, u, v);
+    float c = vl_dot(o, h), z = 2.0f * c * h.z - o.z;
+    if (!(z > 0.0f)) continue;
+    vlVec3 w = vl_vec3(2.0f * c * h.x - o.x, 2.0f * c * h.y - o.y, z);
+    float g = vl_ggx_shadowing(o.z, lo, z, vl_ggx_length(w, alpha, alpha)), s = vl_schlick_weight(c);
+    sum_a += (double)(g * (1.0f - s));
+    sum_b += (double)(g * s);
+  }
+  *a = (float)(sum_a / (POINTS * POINTS));
+  *b = (float)(sum_b / (POINTS * POINTS));
+}
+
+/* Over polar angle and azimuth; denser towards the horizon, where the sheen is. */
+static float sheen_at(float cosine, float alpha) {
+  float sine = __builtin_sqrtf(1.0f - cosine * cosine);
+  double sum = 0;
+  for (uint32_t k = 0; k < SHEEN_POINTS * SHEEN_POINTS; k++) {
+    float x = ((float)(k % SHEEN_POINTS) + 0.5f) / SHEEN_POINTS, z = x * x;
+    float turn = 0.5f * ((float)(k / SHEEN_POINTS) + 0.5f) / SHEEN_POINTS;
+    float r = __builtin_sqrtf(1.0f - z * z);
+    vlSinCos phi = vl_sincos_turn(turn);
+    vlVec3 h = vl_normalize(vl_vec3(sine + r * phi.cos, r * phi.sin, cosine + z));
+    sum += (double)(vl_sheen(cosine, z, h.z, alpha) * 2.0f * x); /* dz = 2 x dx */
+  }
+  return (float)(sum * 2.0 * (double)VL_PI / (SHEEN_POINTS * SHEEN_POINTS));
+}
+
+/* int E 2 cos dcos with cos = x^2. */
+static float mean_of(const float *row) {
+  double sum = 0, weight = 0;
+  for (uint32_t j = 0; j < VL_ALBEDO_COS; j++) {
+    double x = (double)j / (VL_ALBEDO_COS - 1), w = 4 * x * x * x * (j == VL_ALBEDO_COS - 1 ? 0.5 : 1.0);
+    sum += w * (double)row[j];
+    weight += w;
+  }
+  return (float)(sum / weight);
+}
+
+static void fill_row(vlPrincipledTables *t, uint32_t row) {
+  float r = (float)row / (float)(VL_ALBEDO_ALPHA - 1), alpha = r * r;
+  float rough = alpha > VL_GGX_SMOOTH ? alpha : VL_GGX_SMOOTH, fuzz = alpha > VL_SHEEN_ALPHA ? alpha : VL_SHEEN_ALPHA;
+  for (uint32_t j = 0; j < VL_ALBEDO_COS; j++) {
+    float c = table_cos(j);
+    specular_at(c, rough, &t->a[row][j], &t->b[row][j]);
+    t->sheen[row][j] = sheen_at(c, fuzz);
+  }
+  t->a_mean[row] = mean_of(t->a[row]);
+  t->b_mean[row] = mean_of(t->b[row]);
+  float capped[VL_ALBEDO_COS];
+  for (uint32_t j = 0; j < VL_ALBEDO_COS; j++) capped[j] = t->sheen[row][j] < 1.0f ? t->sheen[row][j] : 1.0f;
+  t->sheen_mean[row] = mean_of(capped);
+}
+
+static void write_row(FILE *file, const float *row, uint32_t count) {
+  for (uint32_t i = 0; i < count; i++) fprintf(file, "%s%a%s", i % 6 ? " " : "\n", (double)row[i], "f,");
+}
+
+static void write_table(FILE *file, const char *name, const float table[][VL_ALBEDO_COS]) {
+  fprintf(file, "\n.%s = {", name);
+  for (uint32_t i = 0; i < VL_ALBEDO_ALPHA; i++) {
+    fprintf(file, "\n{");
+    write_row(file, table[i], VL_ALBEDO_COS);
+    fprintf(file, "},");
+  }
+  fprintf(file, "},");
+}
+
+static void write_means(FILE *file, const char *name, const float *mean) {
+  fprintf(file, "\n.%s = {", name);
+  write_row(file, mean, VL_ALBEDO_ALPHA);
+  fprintf(file, "},");
+}
+
+int main(int argc, char **argv) {
+  static vlPrincipledTables t;
+  FILE *file = argc == 2 ? fopen(argv[1], "w") : NULL;
+  if (!file) {
+    fprintf(stderr, "usage: albedo_tables FILE.c\n");
+    return 2;
+  }
+  for (uint32_t i = 0; i < VL_ALBEDO_ALPHA; i++) fill_row(&t, i);
+  fprintf(file, "/* Written by tools/albedo_tables. */\n#include \"world/principled.h\"\n\n");
+  fprintf(file, "const vlPrincipledTables vl_principled_tables = {");
+  write_table(file, "a", t.a);
+  write_table(file, "b", t.b);
+  write_table(file, "sheen", t.sheen);
+  write_means(file, "a_mean", t.a_mean);
+  write_means(file, "b_mean", t.b_mean);
+  write_means(file, "sheen_mean", t.sheen_mean);
+  fprintf(file, "};\n");
+  return fclose(file) == 0 ? 0 : 5;
+}

@@ -21,7 +21,7 @@ typedef enum vlProjection {
   VL_PROJECTION_EQUIRECTANGULAR, /* longitude, latitude; limits are the screen window, in radians */
   VL_PROJECTION_EQUAL_AREA,      /* octahedral: the sphere in a square -1 to 1 */
   VL_PROJECTION_CYLINDRICAL,     /* longitude, tangent of the latitude */
-  VL_PROJECTION_CUBE,            /* six faces in a row: right, left, up, down, front, back; the plane is 6 x 1 */
+  VL_PROJECTION_CUBE,            /* six faces; shape: 0 (default) in a row, 1 in a cross: docs/cameras.md */
   VL_PROJECTION_PANINI,          /* shape: d >= 0 */
   VL_PROJECTION_FOV,             /* shape: w, radians */
   VL_PROJECTION_DIVISION,        /* shape: lambda */
@@ -42,6 +42,27 @@ typedef enum vlDistortion {
 } vlDistortion;
 
 typedef enum vlFovAxis { VL_FOV_VERTICAL, VL_FOV_HORIZONTAL, VL_FOV_DIAGONAL, VL_FOV_SMALLER, VL_FOV_LARGER } vlFovAxis;
+
+/* Two eyes from one camera: it stands between them, the eyes half of `interocular` to its left and right.
+ * PARALLEL: the axes are parallel. OFF_AXIS: they too, and both windows are shifted so that they meet at the distance
+ * `convergence`: a rectangle that both see whole, without keystone (perspective without distortion only). TOE_IN: the
+ * eyes are turned until their axes cross there. OMNIDIRECTIONAL: each direction has its own eye on a circle about the
+ * camera's vertical axis, so that all of a panorama has depth (equirectangular, cylindrical, equal-area, cube); its
+ * eyes converge at infinity. */
+typedef enum vlStereoMode {
+  VL_STEREO_NONE,
+  VL_STEREO_PARALLEL,
+  VL_STEREO_OFF_AXIS,
+  VL_STEREO_TOE_IN,
+  VL_STEREO_OMNIDIRECTIONAL
+} vlStereoMode;
+/* Which picture a camera takes; BOTH: from between them, until vl_camera_stereo or vl_camera_eye makes two. */
+typedef enum vlEye { VL_EYE_BOTH, VL_EYE_LEFT, VL_EYE_RIGHT } vlEye;
+typedef struct vlStereo {
+  vlStereoMode mode;
+  double interocular; /* between the eyes, scene units; default 0.065 (metres, a grown person's) */
+  double convergence; /* z where the axes or windows meet, scene units; unset: infinity. OFF_AXIS and TOE_IN need it */
+} vlStereo;
 
 /* Several equivalent ways in, one compiled form out. Everything optional is VL_UNSET. Ways that are given together must
  * agree (1e-6 relative), else ARGUMENT with both values named in the error.
@@ -80,12 +101,15 @@ typedef struct vlCameraDef {
    * 0, infinity. Cut what the camera sees, nothing else */
   double near_plane, far_plane;
 
-  double shape[2];  /* the projection's own numbers; unset: Panini 1, the others must be given */
+  double shape[2];  /* the projection's own numbers; unset: Panini 1, cube 0, the others must be given */
   double max_angle; /* fisheyes and calibrated models: the image circle, radians from the axis; unset: as far as the
                      * projection goes, or half of fov where a fisheye's fov is given or its default (180 degrees) */
   vlDistortion distortion;
   uint32_t distortion_count;
   double distortion_coefficients[14];
+
+  vlStereo stereo;
+  vlEye stereo_eye;
 } vlCameraDef;
 
 VL_API vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height);
@@ -117,7 +141,8 @@ typedef struct vlCamera {
   double shape[2];
   double limit; /* radius of the plane's valid disc: image circle, the model's own end; infinity */
   vlDistortionMap distortion;
-  double outside; /* share of the picture that sees nothing */
+  double outside;    /* share of the picture that sees nothing */
+  double eye_circle; /* omnidirectional stereo: the circle's radius, above 0 for the right eye; 0: one eye point */
 } vlCamera;
 
 /* Errors: ARGUMENT with a message (fov out of range, eye = lookat, disagreeing ways, NaN, singular matrix).
@@ -125,6 +150,18 @@ typedef struct vlCamera {
  * So too when a lens's distortion folds inside the picture, or its model ends there: `outside` then tells the share of
  * the picture that sees nothing. */
 VL_API vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error);
+
+/* One eye of a camera that stands between them; BOTH: the camera itself. Any number of cameras from one. ARGUMENT: a
+ * mode that the projection cannot have, a number out of range. */
+VL_API vlResult vl_camera_eye(const vlCamera *camera, const vlStereo *stereo, vlEye eye, vlCamera *result,
+                              vlError *error);
+/* Both eyes of a def, whatever its `stereo_eye`; warning as in vl_camera_make. ARGUMENT: a def without stereo, too. */
+VL_API vlResult vl_camera_stereo(const vlCameraDef *def, vlCamera *left, vlCamera *right, const char **warning,
+                                 vlError *error);
+/* The same camera elsewhere: only its pose changes, and nothing is measured anew; cheap enough for each frame of a
+ * trajectory. ARGUMENT: not finite, singular. */
+VL_API vlResult vl_camera_move(const vlCamera *camera, const double world_from_camera[16], vlCamera *result,
+                               vlError *error);
 
 /* The same camera for another resolution: the framing of the smaller field of view is kept as pbrt keeps it for fov
  * cameras: focal length and principal point scale with the smaller image side. */

@@ -36,6 +36,8 @@ vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height) {
       .far_plane = INFINITY,
       .shape = {VL_UNSET, VL_UNSET},
       .max_angle = VL_UNSET,
+      .stereo = {VL_STEREO_NONE, 0.065, VL_UNSET},
+      .stereo_eye = VL_EYE_BOTH,
   };
 }
 
@@ -101,6 +103,7 @@ vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **w
   if (result == VL_OK) result = vl_camera_intrinsics(def, &made, error);
   if (result == VL_OK) result = vl_camera_pose(def, &made, warning, error);
   if (result == VL_OK) result = vl_camera_domain(def, &made, warning, error);
+  if (result == VL_OK) result = vl_camera_eye(&made, &def->stereo, def->stereo_eye, &made, error);
   if (result == VL_OK) *camera = made;
   return result;
 }

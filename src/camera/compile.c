@@ -66,6 +66,7 @@ void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
   if (camera->projection == VL_PROJECTION_EQUAL_AREA) c->over_x = c->over_x > c->over_y ? c->over_x : c->over_y;
   c->limit2 = camera->limit * camera->limit;
   c->distortion = camera->distortion;
+  c->eye_circle = camera->eye_circle;
   memcpy(c->camera_from_world, camera->camera_from_world, sizeof c->camera_from_world);
   if (!perspective && !orthographic) {
     c->pixel_spread = (float)central_spread(c);

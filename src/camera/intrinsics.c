@@ -229,7 +229,11 @@ static void standard_focal(const vlCameraDef *d, const vlCamera *camera, Gathere
     case VL_PROJECTION_EQUIRECTANGULAR: g->fx.value = d->width / (2.0 * pi), g->fy.value = d->height / pi; break;
     case VL_PROJECTION_EQUAL_AREA: g->fx.value = 0.5 * d->width, g->fy.value = 0.5 * d->height; break;
     case VL_PROJECTION_CYLINDRICAL: g->fx.value = g->fy.value = d->width / (2.0 * pi); break;
-    case VL_PROJECTION_CUBE: g->fx.value = d->width / 6.0, g->fy.value = d->height; break;
+    case VL_PROJECTION_CUBE: {
+      bool cross = camera->shape[0] > 0.0;
+      g->fx.value = d->width / (cross ? 4.0 : 6.0), g->fy.value = d->height / (cross ? 3.0 : 1.0);
+      break;
+    }
     default:
       if (!vl_camera_plane_radius(camera, fisheye ? 0.5 * pi * (1.0 - 1e-15) : 0.25 * pi, d->width >= d->height,
                                   &radius))
@@ -257,7 +261,7 @@ vlResult vl_camera_intrinsics(const vlCameraDef *d, vlCamera *camera, vlError *e
   camera->fx = vl_is_unset(g.fx.value) ? g.fy.value : g.fx.value;
   camera->fy = vl_is_unset(g.fy.value) ? g.fx.value : g.fy.value;
   camera->skew = vl_is_unset(d->skew) ? 0.0 : d->skew;
-  double centre = d->projection == VL_PROJECTION_CUBE ? 0.0 : 0.5; /* the row of faces starts at the corner */
+  double centre = d->projection == VL_PROJECTION_CUBE ? 0.0 : 0.5; /* the faces start at the corner */
   camera->cx = vl_is_unset(g.cx.value) ? centre * d->width : g.cx.value;
   camera->cy = vl_is_unset(g.cy.value) ? centre * d->height : g.cy.value;
   /* beyond these the arithmetic of the rays, and of their squares, would leave the numbers */

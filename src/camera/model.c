@@ -36,6 +36,7 @@ typedef struct {
 /* Least and most: beyond them the equations have no meaning, or no precision. */
 static int shape_numbers(vlProjection projection, ShapeNumber n[2]) {
   switch (projection) {
+    case VL_PROJECTION_CUBE: n[0] = (ShapeNumber){"layout", 0.0, 1.0, 0.0}; return 1;
     case VL_PROJECTION_PANINI: n[0] = (ShapeNumber){"d", 0.0, 1e3, 1.0}; return 1;
     case VL_PROJECTION_FOV: n[0] = (ShapeNumber){"w", 1e-6, 3.14, VL_UNSET}; return 1;
     case VL_PROJECTION_DIVISION: n[0] = (ShapeNumber){"lambda", -1e3, 1e3, VL_UNSET}; return 1;
@@ -71,6 +72,9 @@ static vlResult shape(const vlCameraDef *def, vlCamera *camera, vlError *error) 
     if (!(value >= n[i].least && value <= n[i].most))
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s of the %s projection is %g; it must be %g to %g", n[i].name,
                      name, value, n[i].least, n[i].most);
+    if (def->projection == VL_PROJECTION_CUBE && value != 0.0 && value != 1.0)
+      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: layout of the cube is %g; it must be 0 (a row) or 1 (a cross)",
+                     value);
     camera->shape[i] = value;
   }
   return VL_OK;

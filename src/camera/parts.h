@@ -23,5 +23,7 @@ bool vl_camera_plane_radius(const vlCamera *camera, double angle, bool vertical,
 vlResult vl_camera_intrinsics(const vlCameraDef *def, vlCamera *camera, vlError *error);
 /* Fills world_from_camera and camera_from_world. */
 vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error);
+/* The same from a matrix, which is checked. */
+vlResult vl_camera_pose_matrix(const double world_from_camera[16], vlCamera *camera, vlError *error);
 
 #endif

@@ -2,6 +2,7 @@
 #ifndef CAMERA_PLACE_H
 #define CAMERA_PLACE_H
 
+#include "camera/eyes.h"
 #include "camera/local.h"
 #include "camera/rays.h"
 
@@ -23,6 +24,15 @@ static inline vlWorldRay vl_camera_place(const vlCameraCompiled *c, vlCameraLoca
   w.dz = m[6] * r.dx + m[7] * r.dy + m[8] * r.dz;
   w.length = __builtin_sqrt(w.dx * w.dx + w.dy * w.dy + w.dz * w.dz);
   w.inv_length = 1.0 / w.length;
+  return w;
+}
+
+/* The ray's start moved to its own eye. */
+static inline vlWorldRay vl_camera_place_eye(const vlCameraCompiled *c, vlEyePlace eye, vlWorldRay w) {
+  const double *m = c->rotation;
+  w.ox += m[0] * eye.x + m[2] * eye.z;
+  w.oy += m[3] * eye.x + m[5] * eye.z;
+  w.oz += m[6] * eye.x + m[8] * eye.z;
   return w;
 }
 

@@ -8,7 +8,7 @@
 
 vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y) {
   vlPlanePoint p = vl_pixel_to_plane(c, x, y);
-  double face = vl_cube_face(p.x);
+  double face = vl_cube_cell(p.x, p.y);
   const vlDistortionMap *m = &c->distortion;
   double valid = 1.0;
   if (m->steps > 0) {
@@ -22,7 +22,10 @@ vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y) {
 }
 
 vlPlanePoint vl_camera_film_point(const vlCameraCompiled *c, double x, double y, double z) {
-  vlPlanePoint p = vl_plane_project(c->projection, c, x, y, z);
+  vlDirection d = {x, y, z, 1.0};
+  if (c->eye_circle != 0.0) d = vl_eye_direction(c->eye_circle, x, y, z);
+  vlPlanePoint p = vl_plane_project(c->projection, c, d.x, d.y, d.z);
+  p.valid *= d.valid;
   if (c->distortion.steps > 0) {
     vlPlanePoint bent = vl_distortion_apply(&c->distortion, p.x, p.y);
     bent.valid *= p.valid;
@@ -48,6 +51,7 @@ bool vl_camera_unproject(const vlCamera *camera, double x, double y, double orig
   vlCameraLocal r = local_ray(&c, x - c.cx, y - c.cy, &valid);
   if (valid == 0.0) return false;
   vlWorldRay w = vl_camera_place(&c, r);
+  if (c.eye_circle != 0.0) w = vl_camera_place_eye(&c, vl_eye_place(c.eye_circle, r.dx, r.dz), w);
   origin[0] = w.ox, origin[1] = w.oy, origin[2] = w.oz;
   direction[0] = w.dx * w.inv_length, direction[1] = w.dy * w.inv_length, direction[2] = w.dz * w.inv_length;
   return isfinite(direction[0]) && isfinite(direction[1]) && isfinite(direction[2]);

@@ -16,11 +16,6 @@ static inline vlPlanePoint vl_plane_to_pixel(const vlCameraCompiled *c, vlPlaneP
   return (vlPlanePoint){valid ? x : 0.0, valid ? y : 0.0, valid ? 1.0 : 0.0};
 }
 
-/* The face of a cube's row that a plane point lies on. */
-static inline double vl_cube_face(double x) {
-  return __builtin_floor(x);
-}
-
 /* Takes what the projection said: unit length but for perspective cameras (z = 1 there), and straight ahead where not
  * valid, so that nothing after this meets a zero or a NaN. */
 static inline vlDirection vl_direction_finish(const int inclined, vlDirection d, double valid) {

@@ -57,10 +57,14 @@ void VL_HOT(vl_camera_directions)(const vlCameraCompiled *c, uint32_t count, vlD
 #undef PLANE_LOOP
 }
 
-static void place(const vlCameraCompiled *c, uint32_t count, const double *dx, const double *dy, const double *dz,
-                  const double *valid, vlCameraPoints *out) {
+static inline __attribute__((always_inline)) void place_loop(const int eyes, const vlCameraCompiled *camera,
+                                                             uint32_t count, const double *dx, const double *dy,
+                                                             const double *dz, const double *valid,
+                                                             vlCameraPoints *out) {
+  const vlCameraCompiled copy = *camera, *c = &copy;
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlWorldRay w = vl_camera_place(c, (vlCameraLocal){0.0, 0.0, dx[i], dy[i], dz[i]});
+    if (eyes) w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, dx[i], dz[i]), w);
     int good = valid[i] > 0.0;
     out->ox[i] = good ? w.ox : 0.0, out->oy[i] = good ? w.oy : 0.0, out->oz[i] = good ? w.oz : 0.0;
     out->x[i] = good ? w.dx * w.inv_length : 0.0;
@@ -100,16 +104,20 @@ void VL_HOT(vl_camera_unproject_chunk)(const vlCameraCompiled *c, uint32_t n, co
     vlDirections d;
     for (uint32_t i = 0; i < count; i++) {
       d.x[i] = in->x[i] - c->cx, d.y[i] = in->y[i] - c->cy;
-      d.face[i] = vl_cube_face(vl_pixel_to_plane(c, d.x[i], d.y[i]).x);
+      vlPlanePoint p = vl_pixel_to_plane(c, d.x[i], d.y[i]);
+      d.face[i] = vl_cube_cell(p.x, p.y);
     }
     VL_HOT(vl_camera_directions)(c, count, &d);
-    place(c, count, d.dx, d.dy, d.dz, d.valid, out);
+    if (c->eye_circle != 0.0)
+      place_loop(1, c, count, d.dx, d.dy, d.dz, d.valid, out);
+    else
+      place_loop(0, c, count, d.dx, d.dy, d.dz, d.valid, out);
   }
 }
 
-static inline __attribute__((always_inline)) void project_loop(vlProjection kind, const vlCameraCompiled *camera,
-                                                               uint32_t count, const vlCameraPoints *in,
-                                                               vlCameraPixels *out) {
+static inline __attribute__((always_inline)) void project_loop(vlProjection kind, const int eyes,
+                                                               const vlCameraCompiled *camera, uint32_t count,
+                                                               const vlCameraPoints *in, vlCameraPixels *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   const double *m = c->camera_from_world;
   /* must vectorise */
@@ -117,7 +125,10 @@ static inline __attribute__((always_inline)) void project_loop(vlProjection kind
     double wx = in->x[i], wy = in->y[i], wz = in->z[i];
     double x = m[0] * wx + m[1] * wy + m[2] * wz + m[3], y = m[4] * wx + m[5] * wy + m[6] * wz + m[7];
     double z = m[8] * wx + m[9] * wy + m[10] * wz + m[11];
-    vlPlanePoint p = vl_plane_project(kind, c, x, y, z);
+    vlDirection d = {x, y, z, 1.0};
+    if (eyes) d = vl_eye_direction(c->eye_circle, x, y, z);
+    vlPlanePoint p = vl_plane_project(kind, c, d.x, d.y, d.z);
+    p.valid *= d.valid;
     out->x[i] = p.x, out->y[i] = p.y, out->z[i] = z, out->valid[i] = p.valid;
   }
 }
@@ -126,8 +137,14 @@ void VL_HOT(vl_camera_project_chunk)(const vlCameraCompiled *camera, uint32_t n,
                                      vlCameraPixels *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   uint32_t count = VL_PAD(n);
-#define PROJECT_LOOP(kind) project_loop(kind, c, count, in, out)
-  VL_EACH_PROJECTION(c->projection, PROJECT_LOOP)
+#define PROJECT_LOOP(kind) project_loop(kind, 0, c, count, in, out)
+#define EYES_LOOP(kind) project_loop(kind, 1, c, count, in, out)
+  if (c->eye_circle != 0.0) {
+    VL_EACH_ROUND_PROJECTION(c->projection, EYES_LOOP)
+  } else {
+    VL_EACH_PROJECTION(c->projection, PROJECT_LOOP)
+  }
+#undef EYES_LOOP
 #undef PROJECT_LOOP
   if (c->distortion.steps > 0) {
     /* must vectorise */

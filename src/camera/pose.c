@@ -93,6 +93,17 @@ static vlResult check_matrix(const vlMat4 *m, vlError *error) {
   return VL_OK;
 }
 
+static vlResult fill(vlMat4 m, vlCamera *camera, vlError *error) {
+  vlMat4 inverse;
+  if (!vl_mat4_inverse(m, &inverse) || !vl_mat4_is_finite(inverse))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: world_from_camera cannot be inverted; its scale is too extreme");
+  for (int i = 0; i < 16; i++) {
+    camera->world_from_camera[i] = m.m[i] + 0.0;
+    camera->camera_from_world[i] = inverse.m[i] + 0.0;
+  }
+  return VL_OK;
+}
+
 vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error) {
   vlMat4 m = vl_mat4_identity();
   vlResult result;
@@ -117,12 +128,11 @@ vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **w
     turn.m[4] = s, turn.m[5] = c;
     m = vl_mat4_multiply(m, turn);
   }
-  vlMat4 inverse;
-  if (!vl_mat4_inverse(m, &inverse) || !vl_mat4_is_finite(inverse))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: world_from_camera cannot be inverted; its scale is too extreme");
-  for (int i = 0; i < 16; i++) {
-    camera->world_from_camera[i] = m.m[i] + 0.0;
-    camera->camera_from_world[i] = inverse.m[i] + 0.0;
-  }
-  return VL_OK;
+  return fill(m, camera, error);
+}
+
+vlResult vl_camera_pose_matrix(const double world_from_camera[16], vlCamera *camera, vlError *error) {
+  vlMat4 m = vl_mat4_load(world_from_camera);
+  vlResult result = check_matrix(&m, error);
+  return result == VL_OK ? fill(m, camera, error) : result;
 }

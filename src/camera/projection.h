@@ -12,7 +12,7 @@
 #include "camera/panini.h"
 #include "camera/rays.h"
 
-/* face: of VL_PROJECTION_CUBE, else unread. */
+/* face: the cell of VL_PROJECTION_CUBE, else unread. */
 static inline __attribute__((always_inline)) vlDirection vl_plane_unproject(vlProjection kind,
                                                                             const vlCameraCompiled *c, double face,
                                                                             double x, double y) {
@@ -28,7 +28,7 @@ static inline __attribute__((always_inline)) vlDirection vl_plane_unproject(vlPr
     case VL_PROJECTION_EQUIRECTANGULAR: d = vl_equirectangular_unproject(c->over_x, c->over_y, x, y); break;
     case VL_PROJECTION_EQUAL_AREA: d = vl_equal_area_unproject(c->over_x, x, y); break;
     case VL_PROJECTION_CYLINDRICAL: d = vl_cylindrical_unproject(c->over_x, x, y); break;
-    case VL_PROJECTION_CUBE: d = vl_cube_unproject(c->over_y, face, x, y); break;
+    case VL_PROJECTION_CUBE: d = vl_cube_unproject(a[0], c->over_y, face, x, y); break;
     case VL_PROJECTION_PANINI: d = vl_panini_unproject(a[0], x, y); break;
     case VL_PROJECTION_FOV: d = vl_fov_unproject(a[0], a[1], x, y); break;
     case VL_PROJECTION_DIVISION: d = vl_division_unproject(a[0], x, y); break;
@@ -55,7 +55,7 @@ static inline __attribute__((always_inline)) vlPlanePoint vl_plane_project(vlPro
     case VL_PROJECTION_EQUIRECTANGULAR: p = vl_equirectangular_project(x, y, z); break;
     case VL_PROJECTION_EQUAL_AREA: p = vl_equal_area_project(x, y, z); break;
     case VL_PROJECTION_CYLINDRICAL: p = vl_cylindrical_project(x, y, z); break;
-    case VL_PROJECTION_CUBE: p = vl_cube_project(x, y, z); break;
+    case VL_PROJECTION_CUBE: p = vl_cube_project(a[0], x, y, z); break;
     case VL_PROJECTION_PANINI: p = vl_panini_project(a[0], x, y, z); break;
     case VL_PROJECTION_FOV: p = vl_fov_project(a[0], a[1], x, y, z); break;
     case VL_PROJECTION_DIVISION: p = vl_division_project(a[0], x, y, z); break;
@@ -86,6 +86,15 @@ static inline __attribute__((always_inline)) vlPlanePoint vl_plane_project(vlPro
     case VL_PROJECTION_UNIFIED: CALL(VL_PROJECTION_UNIFIED); break;                 \
     case VL_PROJECTION_EUCM: CALL(VL_PROJECTION_EUCM); break;                       \
     case VL_PROJECTION_DOUBLE_SPHERE: CALL(VL_PROJECTION_DOUBLE_SPHERE); break;     \
+  }
+
+/* Those that go all round, and so have omnidirectional stereo (eyes.h). */
+#define VL_EACH_ROUND_PROJECTION(projection, CALL)                          \
+  switch (projection) {                                                     \
+    case VL_PROJECTION_EQUAL_AREA: CALL(VL_PROJECTION_EQUAL_AREA); break;   \
+    case VL_PROJECTION_CYLINDRICAL: CALL(VL_PROJECTION_CYLINDRICAL); break; \
+    case VL_PROJECTION_CUBE: CALL(VL_PROJECTION_CUBE); break;               \
+    default: CALL(VL_PROJECTION_EQUIRECTANGULAR); break;                    \
   }
 
 #endif

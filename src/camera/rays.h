@@ -42,6 +42,7 @@ typedef struct vlCameraCompiled {
   double limit2;         /* square of the valid disc's radius in the plane */
   vlDistortionMap distortion;
   double camera_from_world[12];
+  double eye_circle; /* of omnidirectional stereo: the circle's radius, signed; 0: none */
 } vlCameraCompiled;
 
 /* All arrays hold VL_PAD(n) elements; those past n may hold anything, and what comes out for them means nothing.

@@ -1,5 +1,7 @@
 /* camera/rays.hot.c: film samples to rays, in batches. Compiled once per instruction set. */
 #include "camera/rays.h"
+#include "camera/cube.h"
+#include "camera/eyes.h"
 #include "camera/lens.h"
 #include "camera/orthographic.h"
 #include "camera/perspective.h"
@@ -37,8 +39,9 @@ static inline __attribute__((always_inline)) void ray_loop(const int orthographi
 }
 
 /* The rays of a chunk whose directions are known: samples from `first` on. */
-static inline __attribute__((always_inline)) void place_loop(const int lens, const vlCameraCompiled *camera,
-                                                             uint32_t first, uint32_t count, const vlDirections *d,
+static inline __attribute__((always_inline)) void place_loop(const int lens, const int eyes,
+                                                             const vlCameraCompiled *camera, uint32_t first,
+                                                             uint32_t count, const vlDirections *d,
                                                              const vlCameraSamples *s, const vlCameraRays *r) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   const float *lens_u = s->lens_u + (lens ? first : 0), *lens_v = s->lens_v + (lens ? first : 0);
@@ -53,6 +56,7 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
     /* directions that are not inclined have unit length, perspective ones z = 1: the depth is 1 either way */
     if (lens) local = vl_lens_apply_at(c, local, vl_lens_disk(lens_u[i], lens_v[i]), 1.0);
     vlWorldRay w = vl_camera_place(c, local);
+    if (eyes) w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, d->dx[i], d->dz[i]), w);
     int good = d->valid[i] > 0.0;
     ox[i] = (float)w.ox;
     oy[i] = (float)w.oy;
@@ -68,7 +72,7 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
 
 /* All that is neither plain perspective nor orthographic. */
 static void staged_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, const vlCameraRays *r) {
-  const double cx = c->cx, cy = c->cy, inv_fx = c->inv_fx;
+  const double cx = c->cx, cy = c->cy, inv_fx = c->inv_fx, inv_fy = c->inv_fy;
   vlDirections d;
   for (uint32_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
     uint32_t n = count - first < VL_CAMERA_CHUNK ? count - first : VL_CAMERA_CHUNK;
@@ -77,15 +81,19 @@ static void staged_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < n; i++) {
       double x = (double)pixel_x[i] - cx, y = (double)pixel_y[i] - cy;
-      d.face[i] = __builtin_floor((x + 0.5) * inv_fx);
+      d.face[i] = vl_cube_cell((x + 0.5) * inv_fx, (y + 0.5) * inv_fy);
       d.x[i] = x + (double)film_x[i];
       d.y[i] = y + (double)film_y[i];
     }
     VL_HOT(vl_camera_directions)(c, n, &d);
-    if (c->has_lens)
-      place_loop(1, c, first, n, &d, s, r);
+    if (c->has_lens && c->eye_circle != 0.0)
+      place_loop(1, 1, c, first, n, &d, s, r);
+    else if (c->has_lens)
+      place_loop(1, 0, c, first, n, &d, s, r);
+    else if (c->eye_circle != 0.0)
+      place_loop(0, 1, c, first, n, &d, s, r);
     else
-      place_loop(0, c, first, n, &d, s, r);
+      place_loop(0, 0, c, first, n, &d, s, r);
     for (uint32_t i = 0; r->valid && i < n; i++) r->valid[first + i] = (float)d.valid[i];
   }
 }

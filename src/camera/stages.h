@@ -4,8 +4,8 @@
 
 #include "camera/rays.h"
 
-/* In: x, y, pixels from the principal point (overwritten); face, of a cube's row. Out: directions in camera space, z =
- * 1 for perspective cameras, else unit length. */
+/* In: x, y, pixels from the principal point (overwritten); face, the cell of a cube. Out: directions in camera space, z
+ * = 1 for perspective cameras, else unit length. */
 typedef struct vlDirections {
   double x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK], face[VL_CAMERA_CHUNK];
   double dx[VL_CAMERA_CHUNK], dy[VL_CAMERA_CHUNK], dz[VL_CAMERA_CHUNK], valid[VL_CAMERA_CHUNK];

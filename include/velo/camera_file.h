@@ -20,6 +20,11 @@ typedef enum vlCameraDialect {
   VL_CAMERA_DIALECT_KALIBR,  /* camchain YAML */
   VL_CAMERA_DIALECT_BLENDER, /* JSON of Blender's own property names */
   VL_CAMERA_DIALECT_PBRT,    /* written only: Transform and Camera statements; scenes are read by vl_scene_load */
+  VL_CAMERA_DIALECT_GLTF,    /* a node with a camera; .glb is read too */
+  VL_CAMERA_DIALECT_OPENGL,  /* projection and view matrix, as JSON or YAML; conventions stated */
+  VL_CAMERA_DIALECT_VULKAN,
+  VL_CAMERA_DIALECT_D3D,
+  VL_CAMERA_DIALECT_MITSUBA, /* a sensor in Mitsuba 3's XML */
   VL_CAMERA_DIALECT_COUNT
 } vlCameraDialect;
 
@@ -32,6 +37,8 @@ typedef struct vlCameraFileDef {
   const char *frame;       /* of files with several cameras or poses: its name or its number from 0; null: the first */
   const char *const *drop; /* fields that writing may leave out */
   uint32_t drop_count;
+  uint32_t width,
+      height; /* the picture's, for dialects that hold none (glTF); 0: 720 rows of the file's aspect ratio */
 } vlCameraFileDef;
 
 VL_API vlCameraFileDef vl_default_camera_file_def(void);
@@ -40,6 +47,7 @@ typedef struct vlCameraRecord {
   vlCameraDef camera;
   vlCameraDialect dialect; /* that it was read as */
   uint32_t frames;         /* that the file holds */
+  bool size_assumed;       /* the file holds no picture size, and the def gave none */
   char name[256];          /* of the camera or its picture; may be empty */
 } vlCameraRecord;
 

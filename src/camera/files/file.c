@@ -12,6 +12,7 @@ typedef struct {
   const char *name;
   vlCameraReadTree *read;
   vlCameraWriteText *write;
+  vlCameraReadText *read_text; /* of those that are neither JSON nor YAML */
 } Dialect;
 
 static const Dialect dialects[VL_CAMERA_DIALECT_COUNT] = {
@@ -24,6 +25,11 @@ static const Dialect dialects[VL_CAMERA_DIALECT_COUNT] = {
     [VL_CAMERA_DIALECT_KALIBR] = {"kalibr", vl_camera_read_kalibr, vl_camera_write_kalibr},
     [VL_CAMERA_DIALECT_BLENDER] = {"blender", vl_camera_read_blender, vl_camera_write_blender},
     [VL_CAMERA_DIALECT_PBRT] = {"pbrt", NULL, vl_camera_write_pbrt},
+    [VL_CAMERA_DIALECT_GLTF] = {"gltf", vl_camera_read_gltf, vl_camera_write_gltf},
+    [VL_CAMERA_DIALECT_OPENGL] = {"opengl", vl_camera_read_matrices, vl_camera_write_matrices},
+    [VL_CAMERA_DIALECT_VULKAN] = {"vulkan", vl_camera_read_matrices, vl_camera_write_matrices},
+    [VL_CAMERA_DIALECT_D3D] = {"d3d", vl_camera_read_matrices, vl_camera_write_matrices},
+    [VL_CAMERA_DIALECT_MITSUBA] = {"mitsuba", NULL, vl_camera_write_mitsuba, vl_camera_read_mitsuba},
 };
 
 const char *vl_camera_dialect_name(vlCameraDialect dialect) {
@@ -40,6 +46,7 @@ static vlCameraDialect dialect_of(const json_t *tree) {
     const char *key;
     vlCameraDialect dialect;
   } marks[] = {{"velo_camera", VL_CAMERA_DIALECT_VELO},
+               {"asset", VL_CAMERA_DIALECT_GLTF},
                {"frames", VL_CAMERA_DIALECT_NERF},
                {"fl_x", VL_CAMERA_DIALECT_NERF},
                {"camera_angle_x", VL_CAMERA_DIALECT_NERF},
@@ -53,6 +60,12 @@ static vlCameraDialect dialect_of(const json_t *tree) {
                {"sensor_fit", VL_CAMERA_DIALECT_BLENDER},
                {"lens", VL_CAMERA_DIALECT_BLENDER},
                {"image_width", VL_CAMERA_DIALECT_OPENCV}};
+  const char *api = vl_camera_text(tree, "graphics_api");
+  if (api) {
+    for (int i = VL_CAMERA_DIALECT_OPENGL; i <= VL_CAMERA_DIALECT_D3D; i++)
+      if (strcmp(api, dialects[i].name) == 0) return (vlCameraDialect)i;
+    return VL_CAMERA_DIALECT_OPENGL; /* whose reader names the three */
+  }
   for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
     if (json_object_get(tree, marks[i].key)) return marks[i].dialect;
   return VL_CAMERA_DIALECT_AUTO;
@@ -67,7 +80,9 @@ static vlResult unknown(const vlCameraFile *file, const json_t *tree) {
     if (n < 100) snprintf(names + n, sizeof names - n, "%s%.40s", n ? ", " : "", key);
   }
   return vl_camera_wrong(
-      file, "no camera of a known dialect (velo, opencv, ros, colmap, nerf, kalibr, blender); its fields are: %s",
+      file,
+      "no camera of a known dialect (velo, opencv, ros, colmap, nerf, kalibr, blender, gltf, opengl, "
+      "vulkan, d3d); its fields are: %s",
       names);
 }
 
@@ -80,22 +95,31 @@ static bool is_colmap_name(const char *path) {
   return vl_ends_with(path, "cameras.txt") || vl_ends_with(path, "images.txt");
 }
 
-static vlResult read_tree(vlCameraFile *file, vlCameraRecord *record) {
-  char *text;
-  size_t size;
+/* By its first letters; AUTO: JSON or YAML. */
+static vlCameraDialect dialect_of_text(const char *text, size_t size) {
+  size_t first = size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* UTF-8's mark */
+  first += strspn(text + first, " \t\r\n");
+  if (first < size && text[first] == '<') return VL_CAMERA_DIALECT_MITSUBA;
+  return VL_CAMERA_DIALECT_AUTO;
+}
+
+static vlResult other_dialect(const vlCameraFile *file, vlCameraDialect found, vlCameraDialect wish) {
+  return vl_camera_wrong(file, "this is a camera in the dialect of %s, not of %s", dialects[found].name,
+                         dialects[wish].name);
+}
+
+static vlResult read_tree(vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
   json_t *tree = NULL;
-  vlResult result = vl_file_read(file->context, file->path, false, &text, &size, file->error);
-  if (result != VL_OK) return result;
-  result = vl_camera_tree(file, text, size, &tree);
-  vl_free(file->context, text);
+  vlResult result = vl_camera_tree(file, text, size, &tree);
   if (result != VL_OK) return result;
   vlCameraDialect found = dialect_of(tree), wish = file->def->dialect;
   /* every ROS file has OpenCV's fields too */
   bool related = wish == VL_CAMERA_DIALECT_OPENCV && found == VL_CAMERA_DIALECT_ROS;
   related = related || (wish == VL_CAMERA_DIALECT_ROS && found == VL_CAMERA_DIALECT_OPENCV);
   if (wish && found && wish != found && !related) {
-    result = vl_camera_wrong(file, "this is a camera in the dialect of %s, not of %s", dialects[found].name,
-                             dialects[wish].name);
+    result = other_dialect(file, found, wish);
+  } else if (wish && !dialects[wish].read) {
+    result = vl_camera_wrong(file, "this is no camera in the dialect of %s", dialects[wish].name);
   } else if (!wish && !found) {
     result = unknown(file, tree);
   } else {
@@ -104,6 +128,25 @@ static vlResult read_tree(vlCameraFile *file, vlCameraRecord *record) {
     result = dialects[record->dialect].read(file, tree, record);
   }
   json_decref(tree);
+  return result;
+}
+
+static vlResult read_file(vlCameraFile *file, vlCameraRecord *record) {
+  char *text;
+  size_t size;
+  vlResult result = vl_file_read(file->context, file->path, false, &text, &size, file->error);
+  if (result != VL_OK) return result;
+  vlCameraDialect found = dialect_of_text(text, size), wish = file->def->dialect;
+  if (found && wish && found != wish) {
+    result = other_dialect(file, found, wish);
+  } else if (found) {
+    record->dialect = found;
+    file->dialect = dialects[found].name;
+    result = dialects[found].read_text(file, text, size, record);
+  } else {
+    result = read_tree(file, text, size, record);
+  }
+  vl_free(file->context, text);
   return result;
 }
 
@@ -135,7 +178,7 @@ vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFile
     read.dialect = VL_CAMERA_DIALECT_COLMAP;
     result = vl_camera_read_colmap(&file, &read);
   } else {
-    result = read_tree(&file, &read);
+    result = read_file(&file, &read);
   }
   if (result == VL_OK) *record = read;
   return result;
@@ -147,6 +190,8 @@ static vlCameraDialect dialect_of_name(const char *path) {
   if (vl_ends_with(path, ".json")) return VL_CAMERA_DIALECT_VELO;
   if (vl_ends_with(path, ".yaml") || vl_ends_with(path, ".yml")) return VL_CAMERA_DIALECT_OPENCV;
   if (vl_ends_with(path, ".pbrt")) return VL_CAMERA_DIALECT_PBRT;
+  if (vl_ends_with(path, ".gltf")) return VL_CAMERA_DIALECT_GLTF;
+  if (vl_ends_with(path, ".xml")) return VL_CAMERA_DIALECT_MITSUBA;
   return VL_CAMERA_DIALECT_AUTO;
 }
 

@@ -72,6 +72,11 @@ void vl_camera_get_pose(const vlCamera *camera, double r[9], double t[3]) {
   }
 }
 
+void vl_camera_flip_columns(const double m[16], double x, double y, double z, double result[16]) {
+  const double sign[4] = {x, y, z, 1.0};
+  for (int i = 0; i < 16; i++) result[i] = m[i] * sign[i % 4] + 0.0;
+}
+
 void vl_camera_flip_axes(const double m[16], double result[16]) {
-  for (int i = 0; i < 16; i++) result[i] = (i % 4 == 1 || i % 4 == 2) && m[i] != 0.0 ? -m[i] : m[i];
+  vl_camera_flip_columns(m, 1.0, -1.0, -1.0, result);
 }

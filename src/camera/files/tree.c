@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
@@ -16,10 +17,28 @@ vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...) {
   return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, 0, 0, "%s", message);
 }
 
+vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t column, const char *format, ...) {
+  char message[400];
+  va_list list;
+  va_start(list, format);
+  vsnprintf(message, sizeof message, format, list);
+  va_end(list);
+  return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, line, column, "%s", message);
+}
+
 vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {
   size_t first = strspn(text, " \t\r\n");
   vlResult result = VL_OK;
   *tree = NULL;
+  /* .glb: 12 bytes of header, then a chunk of JSON: its length, "JSON", the text */
+  if (size >= 20 && memcmp(text, "glTF", 4) == 0 && memcmp(text + 16, "JSON", 4) == 0) {
+    const unsigned char *b = (const unsigned char *)text + 12;
+    size_t length = (size_t)b[0] | (size_t)b[1] << 8 | (size_t)b[2] << 16 | (size_t)b[3] << 24;
+    if (length > size - 20) return vl_camera_wrong(file, "not glTF: the file is cut off");
+    text += 20;
+    size = length;
+    first = 0;
+  }
   if (first >= size) return vl_camera_wrong(file, "the file is empty");
   if (text[first] == '{') {
     json_error_t place;
@@ -49,6 +68,13 @@ vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const c
   const char *near = vl_nearest_name(key, names, count);
   return vl_camera_wrong(file, "%s: the field \"%s\" is missing%s%.60s%s", file->dialect, key,
                          near ? "; did you mean it by \"" : "", near ? near : "", near ? "\"?" : "");
+}
+
+double vl_camera_parse(const char *text, char **end) {
+  const char *first = text + strspn(text, " \t\r\n,;");
+  double value = strtod(first, end);
+  if (*end == first) *end = (char *)text;
+  return value;
 }
 
 static vlResult number_of(const vlCameraFile *file, const json_t *value, const char *key, double *number) {
@@ -81,6 +107,18 @@ vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const ch
     return vl_camera_wrong(file, "%s: \"%s\" is %g; a picture's side is 1 to 16777216 whole pixels", file->dialect, key,
                            number);
   *value = (uint32_t)number;
+  return VL_OK;
+}
+
+vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord *record) {
+  const vlCameraFileDef *def = file->def;
+  double width = def->width, height = def->height;
+  record->size_assumed = !def->width || !def->height;
+  if (record->size_assumed) height = 720.0, width = floor(720.0 * aspect + 0.5);
+  if (!(width >= 1.0 && width <= 1 << 24))
+    return vl_camera_wrong(file, "%s: an aspect ratio of %g gives no picture", file->dialect, aspect);
+  record->camera.width = (uint32_t)width;
+  record->camera.height = (uint32_t)height;
   return VL_OK;
 }
 
@@ -159,6 +197,11 @@ void vl_camera_put(vlCameraText *text, const char *format, ...) {
   vsnprintf(text->text.items + text->text.count, (size_t)n + 1, format, list);
   va_end(list);
   text->text.count += (size_t)n;
+}
+
+void vl_camera_put_text(vlCameraText *text, const vlCameraText *other) {
+  text->failed = text->failed || other->failed;
+  if (!text->failed && other->text.count) vl_camera_put(text, "%.*s", (int)other->text.count, other->text.items);
 }
 
 void vl_camera_put_numbers(vlCameraText *text, const double *values, uint32_t count) {

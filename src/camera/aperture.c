@@ -1,0 +1,217 @@
+/* camera/aperture.c: openings that are not round: blade polygons and pictures. See aperture.h. */
+#include "camera/aperture.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/context.h"
+#include "base/error.h"
+#include "base/text.h"
+
+static const double pi = 3.14159265358979323846;
+enum { LARGEST = 4096, NAMED = 256 };
+
+/* ---- blades ------------------------------------------------------------------------------------------------------ */
+
+void vl_blades_make(uint32_t count, double rotation, vlBlades *blades) {
+  memset(blades, 0, sizeof *blades);
+  blades->count = count < VL_MOST_BLADES ? count : VL_MOST_BLADES;
+  for (uint32_t i = 0; i < blades->count; i++) {
+    double angle = rotation - 0.5 * pi + 2.0 * pi * i / blades->count;
+    blades->x[i] = (float)cos(angle), blades->y[i] = (float)sin(angle);
+  }
+  blades->x[blades->count] = blades->x[0], blades->y[blades->count] = blades->y[0];
+}
+
+/* u chooses one of the equal triangles between centre and side, its rest the place along the side; the square root of v
+ * is the height: a triangle's area grows as the square of it. */
+void vl_blades_points(const vlBlades *blades, uint32_t n, const float *u, const float *v, float *x, float *y) {
+  for (uint32_t i = 0; i < n; i++) {
+    double t = (double)u[i] * blades->count;
+    uint32_t side = (uint32_t)t < blades->count ? (uint32_t)t : blades->count - 1;
+    double along = t - side, height = sqrt((double)v[i]);
+    double ax = blades->x[side], ay = blades->y[side], bx = blades->x[side + 1], by = blades->y[side + 1];
+    x[i] = (float)(height * (ax + along * (bx - ax)));
+    y[i] = (float)(height * (ay + along * (by - ay)));
+  }
+}
+
+/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+
+struct vlAperture {
+  vlContext *context;
+  uint32_t width, height;
+  float *values;  /* scaled: their mean is pi / 4 */
+  float *rows;    /* height + 1: share of the light above each row's upper edge */
+  float *columns; /* height x (width + 1): the same from the left inside each row */
+};
+
+/* The cell of a cumulative table that u falls in, and where inside it, [0, 1). Cells without light are never hit. */
+static uint32_t find_cell(const float *table, uint32_t count, float u, float *inside) {
+  uint32_t low = 0, high = count;
+  while (high - low > 1) {
+    uint32_t middle = (low + high) / 2;
+    if (table[middle] <= u)
+      low = middle;
+    else
+      high = middle;
+  }
+  double width = (double)table[low + 1] - table[low];
+  double share = width > 0.0 ? ((double)u - table[low]) / width : 0.5;
+  *inside = share < 0.99999994 ? (float)share : 0.99999994f;
+  return low;
+}
+
+void vl_aperture_points(const vlAperture *a, uint32_t n, const float *u, const float *v, float *x, float *y) {
+  for (uint32_t i = 0; i < n; i++) {
+    float dx, dy;
+    uint32_t row = find_cell(a->rows, a->height, v[i], &dy);
+    uint32_t column = find_cell(a->columns + (size_t)row * (a->width + 1), a->width, u[i], &dx);
+    x[i] = (float)(2.0 * (column + (double)dx) / a->width - 1.0);
+    y[i] = (float)(2.0 * (row + (double)dy) / a->height - 1.0);
+  }
+}
+
+static double value_of(const vlAperture *a, int64_t x, int64_t y) {
+  bool inside = x >= 0 && y >= 0 && x < a->width && y < a->height;
+  return inside ? (double)a->values[(size_t)y * a->width + (size_t)x] : 0.0;
+}
+
+double vl_aperture_value(const vlAperture *a, double x, double y) {
+  if (!(fabs(x) <= 1.0 && fabs(y) <= 1.0)) return 0.0;
+  double px = 0.5 * (x + 1.0) * a->width - 0.5, py = 0.5 * (y + 1.0) * a->height - 0.5;
+  double fx = floor(px), fy = floor(py), sx = px - fx, sy = py - fy;
+  int64_t ix = (int64_t)fx, iy = (int64_t)fy;
+  double upper = (1.0 - sx) * value_of(a, ix, iy) + sx * value_of(a, ix + 1, iy);
+  double lower = (1.0 - sx) * value_of(a, ix, iy + 1) + sx * value_of(a, ix + 1, iy + 1);
+  return (1.0 - sy) * upper + sy * lower;
+}
+
+static vlResult check(uint32_t width, uint32_t height, const float *values, double *sum, vlError *error) {
+  if (!values) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: null argument");
+  if (width == 0 || height == 0 || width > LARGEST || height > LARGEST)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: a picture of %u x %u; each side must be 1 to %d", width, height,
+                   LARGEST);
+  *sum = 0.0;
+  for (size_t i = 0; i < (size_t)width * height; i++) {
+    if (!(values[i] >= 0.0f) || isinf(values[i]))
+      return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: the picture's pixel %zu, %zu is %g; it must be 0 or above",
+                     i % width, i / width, (double)values[i]);
+    *sum += (double)values[i];
+  }
+  if (!(*sum > 0.0)) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: the picture is black; no light would pass");
+  return VL_OK;
+}
+
+/* Sums so far, as shares of the whole; all zero, and unread, where there is no light. */
+static void accumulate(const double *sums, uint32_t count, float *table) {
+  double whole = 0.0, before = 0.0;
+  for (uint32_t i = 0; i < count; i++) whole += sums[i];
+  table[0] = 0.0f;
+  for (uint32_t i = 0; i < count; i++) {
+    before += sums[i];
+    table[i + 1] = whole > 0.0 ? (float)(before / whole) : 0.0f;
+  }
+  /* from the last cell with light on all is 1, so that no rounding leads behind it */
+  for (uint32_t i = count; whole > 0.0 && i > 0; i--) {
+    table[i] = 1.0f;
+    if (sums[i - 1] > 0.0) break;
+  }
+}
+
+vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height, const float *values,
+                            vlAperture **aperture, vlError *error) {
+  double sum = 0.0;
+  vl_error_clear(error);
+  if (!context || !aperture) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: null argument");
+  *aperture = NULL;
+  vlResult result = check(width, height, values, &sum, error);
+  if (result != VL_OK) return result;
+  size_t cells = (size_t)width * height;
+  vlAperture *a = vl_alloc_zero(context, 1, sizeof *a);
+  double *sums = vl_alloc_array(context, width > height ? width : height, sizeof *sums);
+  if (a) {
+    *a = (vlAperture){.context = context, .width = width, .height = height};
+    a->values = vl_alloc_array(context, cells, sizeof *a->values);
+    a->rows = vl_alloc_array(context, height + 1, sizeof *a->rows);
+    a->columns = vl_alloc_array(context, (size_t)(width + 1) * height, sizeof *a->columns);
+  }
+  if (!a || !sums || !a->values || !a->rows || !a->columns) {
+    vl_free(context, sums);
+    vl_aperture_destroy(a);
+    return vl_fail_memory(error);
+  }
+  for (uint32_t row = 0; row < height; row++) {
+    for (uint32_t i = 0; i < width; i++) sums[i] = (double)values[(size_t)row * width + i];
+    accumulate(sums, width, a->columns + (size_t)row * (width + 1));
+  }
+  for (uint32_t row = 0; row < height; row++) {
+    sums[row] = 0.0;
+    for (uint32_t i = 0; i < width; i++) sums[row] += (double)values[(size_t)row * width + i];
+  }
+  accumulate(sums, height, a->rows);
+  double scale = 0.25 * pi * (double)cells / sum;
+  for (size_t i = 0; i < cells; i++) a->values[i] = (float)(scale * (double)values[i]);
+  vl_free(context, sums);
+  *aperture = a;
+  return VL_OK;
+}
+
+void vl_aperture_destroy(vlAperture *a) {
+  if (!a) return;
+  vlContext *context = a->context;
+  vl_free(context, a->values);
+  vl_free(context, a->rows);
+  vl_free(context, a->columns);
+  vl_free(context, a);
+}
+
+/* ---- pbrt's names ------------------------------------------------------------------------------------------------ */
+
+/* Even-odd: is the point inside the polygon? */
+static bool inside(const double (*corners)[2], int count, double x, double y) {
+  bool in = false;
+  for (int i = 0, k = count - 1; i < count; k = i++) {
+    double ax = corners[i][0], ay = corners[i][1], bx = corners[k][0], by = corners[k][1];
+    if ((ay > y) != (by > y) && x < ax + (bx - ax) * (y - ay) / (by - ay)) in = !in;
+  }
+  return in;
+}
+
+/* Shapes and sizes are pbrt-v4's; y up here. The pentagon stands on a side and reaches 0.8 of the radius; the star's
+ * inner corners lie where the sides of its outer pentagon's diagonals cross, and one of them is to the right. */
+static double named_value(int name, double x, double y) {
+  double corners[10][2];
+  if (name == 0) return fmax(0.0, exp(-(x * x + y * y)) - exp(-1.0));
+  if (name == 1) return 1.0;
+  int count = name == 2 ? 5 : 10;
+  for (int i = 0; i < count; i++) {
+    double angle = name == 2 ? 0.5 * pi + 0.4 * pi * i : 0.2 * pi * i;
+    double radius = name == 2 ? 0.8 : i & 1 ? 1.0 : cos(0.4 * pi) / cos(0.2 * pi);
+    corners[i][0] = radius * cos(angle), corners[i][1] = radius * sin(angle);
+  }
+  return inside((const double(*)[2])corners, count, x, y) ? 1.0 : 0.0;
+}
+
+vlResult vl_aperture_create_named(vlContext *context, const char *name, vlAperture **aperture, vlError *error) {
+  static const char *const names[] = {"gaussian", "square", "pentagon", "star"};
+  vl_error_clear(error);
+  if (!context || !name || !aperture) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: null argument");
+  *aperture = NULL;
+  int kind = 0;
+  while (kind < 4 && strcmp(name, names[kind]) != 0) kind++;
+  if (kind == 4) {
+    const char *near = vl_nearest_name(name, names, 4);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: unknown shape \"%.40s\"%s%s%s", name,
+                   near ? "; did you mean \"" : " (known: gaussian, square, pentagon, star)", near ? near : "",
+                   near ? "\"?" : "");
+  }
+  float *values = vl_alloc_array(context, (size_t)NAMED * NAMED, sizeof *values);
+  if (!values) return vl_fail_memory(error);
+  for (int i = 0; i < NAMED * NAMED; i++)
+    values[i] =
+        (float)named_value(kind, (i % NAMED + 0.5) * 2.0 / NAMED - 1.0, 1.0 - (double)(i / NAMED + 0.5) * 2.0 / NAMED);
+  vlResult result = vl_aperture_create(context, NAMED, NAMED, values, aperture, error);
+  vl_free(context, values);
+  return result;
+}

@@ -258,6 +258,10 @@ typedef struct vlShapeDef {
   const float *tangents;  /* 3 a vertex, pbrt's S */
   const float *uvs;       /* 2 a vertex */
   const uint32_t *indices;
+  /* Triangles on the move: where the vertices (and normals) are at times[1], seconds, those above being for times[0];
+   * straight between, at rest before and after. May be null. Such a mesh cannot glow. */
+  const float *positions_close, *normals_close;
+  double times[2]; /* default 0, 1 */
   /* sphere, disk, cylinder: pbrt's, z axis, book 6.2-6.4; angles in radians */
   float radius, inner_radius, z_min, z_max, height, phi_max;
 } vlShapeDef;
@@ -268,6 +272,11 @@ VL_API vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def);
 VL_API vlGroupId vl_scene_add_group(vlScene *scene, const char *name);
 /* Places a group in the world (groups do not nest). */
 VL_API void vl_scene_add_instance(vlScene *scene, vlGroupId group, const double world_from_group[16], vlSource source);
+/* One on the move: `keys` poses (16 numbers each) at times, in seconds, that ascend; between them translation, rotation
+ * and stretch each go their own way (math/motion.h says how), before the first and after the last it rests. Errors,
+ * sticky: a pose that is singular, one that mirrors while the next does not, times that do not ascend. */
+VL_API void vl_scene_add_moving_instance(vlScene *scene, vlGroupId group, uint32_t keys, const double *times,
+                                         const double *world_from_group, vlSource source);
 
 /* ---- how the picture is to be taken: the scene file's own choices, defaults otherwise ---------------------------- */
 

@@ -137,6 +137,7 @@ vlShapeDef vl_default_shape_def(vlShapeKind kind) {
       .z_min = -1.0f,
       .z_max = 1.0f,
       .phi_max = 2.0f * 3.14159265358979f,
+      .times = {0.0, 1.0},
   };
   memcpy(def.group_from_shape, identity, sizeof identity);
   return def;

@@ -18,8 +18,10 @@ typedef struct vlSceneGroup {
 
 typedef struct vlSceneInstance {
   vlGroupId group;
-  double world_from_group[16];
+  double world_from_group[16]; /* at the first key */
   vlSource source;
+  uint32_t keys; /* 0: at rest */
+  const double *times, *poses;
 } vlSceneInstance;
 
 struct vlScene {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "math/motion.h"
 #include "scene/scene.h"
 
 static vlResult bad(vlScene *scene, const vlShapeDef *d, const char *why) {
@@ -38,6 +39,20 @@ static bool check_floats(vlScene *scene, const vlShapeDef *d, const float *v, si
   return false;
 }
 
+static bool check_motion(vlScene *scene, const vlShapeDef *d) {
+  if (!d->positions_close && !d->normals_close) return true;
+  if (d->kind != VL_SHAPE_TRIANGLES) return bad(scene, d, "only vertices of triangles can move"), false;
+  if (!d->positions_close) return bad(scene, d, "normals move, but positions do not"), false;
+  if (!d->normals != !d->normals_close)
+    return bad(scene, d, "normals are needed at both ends of a motion or at neither"), false;
+  if (!isfinite(d->times[0]) || !isfinite(d->times[1]) || !(d->times[0] < d->times[1]))
+    return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "vertices cannot move from %g to %g seconds", d->times[0],
+                         d->times[1]),
+           false;
+  return check_floats(scene, d, d->positions_close, 3, "position at the end") &&
+         check_floats(scene, d, d->normals_close, 3, "normal at the end");
+}
+
 static bool check_mesh(vlScene *scene, const vlShapeDef *d) {
   size_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
   const char *face = per == 3 ? "triangle" : "patch";
@@ -54,7 +69,8 @@ static bool check_mesh(vlScene *scene, const vlShapeDef *d) {
     return false;
   }
   return check_floats(scene, d, d->positions, 3, "position") && check_floats(scene, d, d->normals, 3, "normal") &&
-         check_floats(scene, d, d->tangents, 3, "tangent") && check_floats(scene, d, d->uvs, 2, "uv");
+         check_floats(scene, d, d->tangents, 3, "tangent") && check_floats(scene, d, d->uvs, 2, "uv") &&
+         check_motion(scene, d);
 }
 
 static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
@@ -113,7 +129,7 @@ static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
 static void drop_unused(vlShapeDef *d) {
   if (d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR) return;
   d->vertices = d->faces = 0;
-  d->positions = d->normals = d->tangents = d->uvs = NULL;
+  d->positions = d->normals = d->tangents = d->uvs = d->positions_close = d->normals_close = NULL;
   d->indices = NULL;
 }
 
@@ -132,6 +148,8 @@ vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
       !vl_scene_copy_block(scene, d.normals, v, 3 * sizeof(float), &d.normals) ||
       !vl_scene_copy_block(scene, d.tangents, v, 3 * sizeof(float), &d.tangents) ||
       !vl_scene_copy_block(scene, d.uvs, v, 2 * sizeof(float), &d.uvs) ||
+      !vl_scene_copy_block(scene, d.positions_close, v, 3 * sizeof(float), &d.positions_close) ||
+      !vl_scene_copy_block(scene, d.normals_close, v, 3 * sizeof(float), &d.normals_close) ||
       !vl_scene_copy_block(scene, d.indices, d.faces, per * sizeof(uint32_t), &d.indices))
     return none;
   return push_shape(scene, &d);
@@ -141,8 +159,8 @@ vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def) {
   vlShapeDef d = *def;
   bool fine = scene->error.code == VL_OK && d.cookie == VL_COOKIE_SHAPE && vl_scene_copy_source(scene, &d.source) &&
               check_shape(scene, &d);
-  const void *blocks[5] = {d.positions, d.normals, d.tangents, d.uvs, d.indices};
-  for (int i = 0; i < 5; i++) {
+  const void *blocks[7] = {d.positions, d.normals, d.tangents, d.uvs, d.indices, d.positions_close, d.normals_close};
+  for (int i = 0; i < 7; i++) {
     void *block;
     memcpy(&block, &blocks[i],
            sizeof block); /* the const of a def's pointers is a promise to callers, not to the owner */
@@ -168,26 +186,70 @@ vlGroupId vl_scene_add_group(vlScene *scene, const char *name) {
   return (vlGroupId){(uint32_t)scene->groups.count};
 }
 
-void vl_scene_add_instance(vlScene *scene, vlGroupId group, const double world_from_group[16], vlSource source) {
-  if (scene->error.code != VL_OK) return;
+static bool check_pose(vlScene *scene, const double *m, vlSource source) {
+  for (int i = 0; i < 16; i++) {
+    if (m && isfinite(m[i])) continue;
+    vl_scene_fail(scene, VL_ERROR_SCENE, source, "instance: transform is not finite");
+    return false;
+  }
+  return true;
+}
+
+/* A new instance whose group is there; null after an error. */
+static vlSceneInstance *push_instance(vlScene *scene, vlGroupId group, const double *pose, vlSource source) {
+  if (scene->error.code != VL_OK) return NULL;
   if (group.index == 0 || group.index > scene->groups.count) {
     vl_scene_fail(scene, VL_ERROR_SCENE, source, "instance: there is no such group");
-    return;
+    return NULL;
   }
-  for (int i = 0; i < 16; i++) {
-    if (!world_from_group || !isfinite(world_from_group[i])) {
-      vl_scene_fail(scene, VL_ERROR_SCENE, source, "instance: transform is not finite");
-      return;
-    }
-  }
-  if (!vl_scene_copy_source(scene, &source)) return;
+  if (!check_pose(scene, pose, source) || !vl_scene_copy_source(scene, &source)) return NULL;
   vlSceneInstance *slot = VL_PUSH(scene->context, &scene->instances);
   if (!slot) {
     vl_scene_fail(scene, VL_ERROR_MEMORY, source, "out of memory");
+    return NULL;
+  }
+  *slot = (vlSceneInstance){.group = group, .source = source};
+  memcpy(slot->world_from_group, pose, sizeof slot->world_from_group);
+  scene->groups.items[group.index - 1].instance_count++;
+  return slot;
+}
+
+void vl_scene_add_instance(vlScene *scene, vlGroupId group, const double world_from_group[16], vlSource source) {
+  push_instance(scene, group, world_from_group, source);
+}
+
+static bool check_keys(vlScene *scene, uint32_t keys, const double *times, const double *poses, vlSource source) {
+  for (uint32_t k = 0; k < keys; k++) {
+    if (!check_pose(scene, poses + 16 * (size_t)k, source)) return false;
+    if (isfinite(times[k]) && (k == 0 || times[k] > times[k - 1])) continue;
+    vl_scene_fail(scene, VL_ERROR_SCENE, source, "instance: the times of its poses do not ascend (%g)", times[k]);
+    return false;
+  }
+  for (uint32_t k = 0; k + 1 < keys; k++) {
+    vlMotion motion;
+    if (vl_motion_make(poses + 16 * (size_t)k, poses + 16 * (size_t)(k + 1), &motion)) continue;
+    vl_scene_fail(scene, VL_ERROR_SCENE, source,
+                  "instance: no motion leads from one pose to the next: one is singular, not affine, or mirrors alone");
+    return false;
+  }
+  return true;
+}
+
+void vl_scene_add_moving_instance(vlScene *scene, vlGroupId group, uint32_t keys, const double *times,
+                                  const double *world_from_group, vlSource source) {
+  if (scene->error.code != VL_OK) return;
+  if (keys == 0 || keys > 65536 || !times || !world_from_group) {
+    vl_scene_fail(scene, VL_ERROR_ARGUMENT, source, "instance: a motion needs 1 to 65536 poses and their times");
     return;
   }
-  slot->group = group;
-  slot->source = source;
-  memcpy(slot->world_from_group, world_from_group, sizeof slot->world_from_group);
-  scene->groups.items[group.index - 1].instance_count++;
+  if (!check_keys(scene, keys, times, world_from_group, source)) return;
+  const double *kept_times = times, *kept_poses = world_from_group;
+  if (!vl_scene_copy_block(scene, times, keys, sizeof *times, &kept_times) ||
+      !vl_scene_copy_block(scene, world_from_group, keys, 16 * sizeof *world_from_group, &kept_poses))
+    return;
+  vlSceneInstance *slot = push_instance(scene, group, world_from_group, source);
+  if (!slot) return;
+  slot->keys = keys > 1 ? keys : 0;
+  slot->times = kept_times;
+  slot->poses = kept_poses;
 }

@@ -87,9 +87,10 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
     q->dx[count] = d.x, q->dy[count] = d.y, q->dz[count] = d.z;
     q->t_max[count] = l->distant[i] ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
     for (int c = 0; c < 4; c++) q->radiance[c][count] = p->beta[c][i] * sh->value[c][i] * l->radiance[c][i] * weight;
+    if (p->time) q->time[count] = vl_path_time(p, i);
     q->lane[count++] = p->lane[i];
   }
-  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max};
+  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
   vl_accel_occluded(world, count, &rays, q->occluded);
   t->batch->shadow_rays += count;
   for (uint32_t k = 0; k < count; k++)

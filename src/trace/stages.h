@@ -28,7 +28,11 @@ typedef struct vlPaths {
   VL_ROW int32_t px[VL_ROW_SIZE], py[VL_ROW_SIZE];
   VL_ROW uint32_t index[VL_ROW_SIZE];
   VL_ROW uint32_t lane[VL_ROW_SIZE]; /* which element of the batch */
+  const float *time;                 /* by lane: the world's time; null where nothing moves */
 } vlPaths;
+static inline float vl_path_time(const vlPaths *p, uint32_t i) {
+  return p->time ? p->time[p->lane[i]] : 0.0f;
+}
 
 typedef struct vlHits {
   VL_ROW uint32_t shape[VL_ROW_SIZE], prim[VL_ROW_SIZE], instance[VL_ROW_SIZE], material[VL_ROW_SIZE];
@@ -87,6 +91,7 @@ typedef struct vlShadowRays {
       t_max[VL_ROW_SIZE];
   VL_ROW float radiance[4][VL_ROW_SIZE];
   VL_ROW uint32_t lane[VL_ROW_SIZE];
+  VL_ROW float time[VL_ROW_SIZE]; /* where something moves */
   uint8_t occluded[VL_ROW_SIZE];
 } vlShadowRays;
 
@@ -101,6 +106,7 @@ struct vlTraceScratch {
   vlLightSamples light;
   vlShadowRays shadow;
   VL_ROW float rows[VL_TEXTURE_ROWS][VL_ROW_SIZE]; /* a stack for nested textures */
+  VL_ROW float time[VL_ROW_SIZE];                  /* of the rays of a, where something moves */
   VL_ROW uint32_t order[VL_ROW_SIZE];
   VL_ROW uint32_t slot[VL_ROW_SIZE]; /* where each material's lanes start; then which lanes live on */
 };
@@ -153,8 +159,12 @@ typedef struct vlPoint {
   vlVec3 p, g, n; /* geometric, shading normal */
   float u, v, t, offset;
 } vlPoint;
-vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim, uint32_t instance,
-                            float t);
+vlPoint VL_HOT(vl_point_at_time)(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
+                                 uint32_t instance, float t);
+static inline vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
+                                          uint32_t instance, float t) {
+  return VL_HOT(vl_point_at_time)(world, 0.0f, o, d, shape, prim, instance, t);
+}
 
 /* Emitted radiance at 4 channels: of a light's colour (image: at s, t of its picture). */
 void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *emitted, const float lambda[4], float s, float t,

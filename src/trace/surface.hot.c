@@ -3,6 +3,7 @@
  * one. */
 #include "math/transform.h"
 #include "trace/stages.h"
+#include "world/moving.h"
 #include "world/surface_point.h"
 
 /* gamma_n = n eps / (1 - n eps), the bound of n roundings (pbrt book 6.8.1). */
@@ -48,6 +49,7 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
   }
   if (instance == VL_NONE) return;
   const vlWorldInstance *q = &world->instances.items[instance];
+  if (q->keys || s->steps > 1) return;
   c->flip[i] = s->flip != q->mirrored ? -1.0f : 1.0f;
   for (int k = 0; k < 3; k++) {
     Corner moved = move_corner(q->from_group, s->positions + 3 * (size_t)f[k]);
@@ -58,6 +60,58 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
       c->n[3 * k][i] = n.x, c->n[3 * k + 1][i] = n.y, c->n[3 * k + 2][i] = n.z;
     }
   }
+}
+
+/* Corners at a time, of what moves; normals zero without. */
+typedef struct MovedTriangle {
+  vlVec3 p[3], n[3];
+  float error;
+  bool mirrored;
+} MovedTriangle;
+
+static MovedTriangle move_triangle(const vlWorldShape *s, const vlWorldInstance *instance, uint32_t prim, float time) {
+  const uint32_t *f = s->indices + 3 * (size_t)prim;
+  vlWorldInstance room;
+  const vlWorldInstance *q = instance ? vl_instance_at(instance, time, &room) : NULL;
+  MovedTriangle r;
+  r.error = 0;
+  r.mirrored = q && q->mirrored;
+  for (int k = 0; k < 3; k++) {
+    float point_room[3], normal_room[3];
+    const float *x = vl_vertex_at(s, f[k], time, point_room);
+    const float *y = s->normals ? vl_normal_at(s, f[k], time, normal_room) : NULL;
+    float error = s->steps > 1 ? vl_moving_vertex_error(s, f[k], time) : 0.0f;
+    r.p[k] = vl_vec3(x[0], x[1], x[2]);
+    r.n[k] = y ? vl_vec3(y[0], y[1], y[2]) : vl_vec3(0, 0, 0);
+    if (q) {
+      Corner moved = move_corner(q->from_group, x);
+      float size = 0;
+      for (int i = 0; i < 9; i++) size = vl_max(size, vl_abs(q->from_group[i + i / 3]));
+      float doubt = q->doubt[0] * vl_abs(x[0]) + q->doubt[1] * vl_abs(x[1]) + q->doubt[2] * vl_abs(x[2]) + q->doubt[3];
+      r.p[k] = moved.p;
+      error = moved.error + doubt + 3.0f * size * error;
+      if (y) r.n[k] = move_normal(q->to_group, y);
+    }
+    r.error = vl_max(r.error, error);
+  }
+  return r;
+}
+
+static inline bool triangle_moves(const vlWorld *world, uint32_t shape, uint32_t instance) {
+  return world->shapes.items[shape].steps > 1 || (instance != VL_NONE && world->instances.items[instance].keys);
+}
+
+/* The same as gather_triangle, of what moves. */
+static void gather_moving(const vlWorld *world, const vlHits *hits, float time, uint32_t i, vlCorners *c) {
+  const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+  const vlWorldInstance *q = hits->instance[i] == VL_NONE ? NULL : &world->instances.items[hits->instance[i]];
+  MovedTriangle r = move_triangle(s, q, hits->prim[i], time);
+  for (int k = 0; k < 3; k++) {
+    c->p[3 * k][i] = r.p[k].x, c->p[3 * k + 1][i] = r.p[k].y, c->p[3 * k + 2][i] = r.p[k].z;
+    c->n[3 * k][i] = r.n[k].x, c->n[3 * k + 1][i] = r.n[k].y, c->n[3 * k + 2][i] = r.n[k].z;
+  }
+  c->error[i] = r.error;
+  c->flip[i] = s->flip != r.mirrored ? -1.0f : 1.0f;
 }
 
 typedef struct TriangleUv {
@@ -144,11 +198,13 @@ static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, vlV
 
 /* A sphere, disk, cylinder or patch: meet it again in group space, bring the point to the world. t, found by the same
  * arithmetic, says which crossing is meant. */
-static vlSurfacePoint other_point(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
+static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
                                   uint32_t instance, float t) {
   const vlWorldShape *s = &world->shapes.items[shape];
   double go[3] = {o.x, o.y, o.z}, gd[3] = {d.x, d.y, d.z};
-  const vlWorldInstance *q = instance == VL_NONE ? NULL : &world->instances.items[instance];
+  vlWorldInstance room;
+  const vlWorldInstance *q =
+      instance == VL_NONE ? NULL : vl_instance_at(&world->instances.items[instance], time, &room);
   if (q) vl_ray_to_group(q, go, gd);
   vlShapeHit hit;
   vlSurfacePoint point;
@@ -176,7 +232,8 @@ static vlSurfacePoint other_point(const vlWorld *world, vlVec3 o, vlVec3 d, uint
 }
 
 /* Vertex tangents (pbrt's S), interpolated. */
-static void apply_tangents(const vlWorld *world, const vlHits *hits, uint32_t i, const vlCorners *c, vlSurface *out) {
+static void apply_tangents(const vlWorld *world, const vlHits *hits, float time, uint32_t i, const vlCorners *c,
+                           vlSurface *out) {
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
   const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
   vlVec3 p = vl_vec3(out->px[i], out->py[i], out->pz[i]), k[3];
@@ -193,7 +250,8 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, uint32_t i,
     t = vl_add(t, vl_mul(vl_vec3(x[0], x[1], x[2]), w[j]));
   }
   if (hits->instance[i] != VL_NONE) {
-    const float *m = world->instances.items[hits->instance[i]].from_group;
+    vlWorldInstance room;
+    const float *m = vl_instance_at(&world->instances.items[hits->instance[i]], time, &room)->from_group;
     t = vl_vec3(m[0] * t.x + m[1] * t.y + m[2] * t.z, m[4] * t.x + m[5] * t.y + m[6] * t.z,
                 m[8] * t.x + m[9] * t.y + m[10] * t.z);
   }
@@ -209,6 +267,8 @@ void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *p
   for (uint32_t i = 0; i < n; i++) {
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
     if (s->kind == VL_SHAPE_TRIANGLES) gather_triangle(world, hits, i, c);
+    if (world->moves && s->kind == VL_SHAPE_TRIANGLES && triangle_moves(world, hits->shape[i], hits->instance[i]))
+      gather_moving(world, hits, vl_path_time(paths, i), i, c);
     others = others || s->kind != VL_SHAPE_TRIANGLES || s->tangents;
   }
   uint32_t padded = VL_PAD(n);
@@ -236,17 +296,18 @@ void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *p
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
     vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]), d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
     if (s->kind != VL_SHAPE_TRIANGLES) {
-      vlSurfacePoint q = other_point(world, o, d, hits->shape[i], hits->prim[i], hits->instance[i], hits->t[i]);
+      vlSurfacePoint q = other_point(world, vl_path_time(paths, i), o, d, hits->shape[i], hits->prim[i],
+                                     hits->instance[i], hits->t[i]);
       store_point(out, i, &q, o, d);
     } else if (s->tangents) {
-      apply_tangents(world, hits, i, c, out);
+      apply_tangents(world, hits, vl_path_time(paths, i), i, c, out);
     }
   }
   for (uint32_t i = 0; i < padded; i++) out->width[i] = paths->cone[i] + def->pixel_spread * out->t[i];
 }
 
-vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim, uint32_t instance,
-                            float t_hit) {
+vlPoint VL_HOT(vl_point_at_time)(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
+                                 uint32_t instance, float t_hit) {
   const vlWorldShape *s = &world->shapes.items[shape];
   vlPoint r;
   if (s->kind == VL_SHAPE_TRIANGLES) {
@@ -271,12 +332,17 @@ vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t s
       }
       for (int j = 0; j < 2; j++) uv[2 * k + j] = s->uvs ? s->uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
     }
+    if (triangle_moves(world, shape, instance)) {
+      MovedTriangle moving = move_triangle(s, q, prim, time);
+      for (int k = 0; k < 3; k++) p[k] = moving.p[k], nn[k] = moving.n[k];
+      error = moving.error;
+    }
     Triangle t = triangle_point(o, d, p[0], p[1], p[2], nn[0], nn[1], nn[2],
                                 (TriangleUv){uv[0], uv[1], uv[2], uv[3], uv[4], uv[5]}, error,
                                 s->flip != (q && q->mirrored) ? -1.0f : 1.0f);
     return (vlPoint){t.p, t.g, t.n, t.s, t.t, t.dist, t.offset};
   }
-  vlSurfacePoint q = other_point(world, o, d, shape, prim, instance, t_hit);
+  vlSurfacePoint q = other_point(world, time, o, d, shape, prim, instance, t_hit);
   r.p = vl_vec3((float)q.p[0], (float)q.p[1], (float)q.p[2]);
   r.g = vl_vec3((float)q.n[0], (float)q.n[1], (float)q.n[2]);
   r.n = vl_vec3((float)q.ns[0], (float)q.ns[1], (float)q.ns[2]);

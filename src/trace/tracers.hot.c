@@ -7,6 +7,7 @@ static void start_paths(vlTracing *t) {
   vlTraceBatch *b = t->batch;
   vlPaths *p = &t->s->a;
   uint32_t padded = VL_PAD(b->n);
+  t->s->a.time = t->s->b.time = b->time;
   if (b->lambda[0]) {
     t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->shade.u0);
     vl_color_kernels(t->def->isa)->visible_wavelengths(b->n, t->s->shade.u0, b->lambda, b->inv_pdf);
@@ -83,7 +84,8 @@ static void ambient_occlusion_tracer(vlTracing *t) {
     for (int c = 0; c < 4; c++)
       q->radiance[c][i] = (cosine ? 1.0f : 2.0f * local.z) * vl_spectral_at(&world->white, c, lambda[c]);
   }
-  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max};
+  for (uint32_t i = 0; s->b.time && i < n; i++) q->time[i] = vl_path_time(&s->b, i);
+  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, s->b.time ? q->time : NULL};
   vl_accel_occluded(world, n, &rays, q->occluded);
   t->batch->shadow_rays += n;
   for (uint32_t i = 0; i < n; i++)

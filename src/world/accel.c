@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "math/hash.h"
+#include "world/moving.h"
 #include "world/surface_point.h"
 #include "world/world.h"
 
@@ -52,6 +53,7 @@ typedef struct Query {
 /* A ray of the call in the space of the shape's group, and which instance that is. */
 typedef struct LocalRay {
   uint32_t instance;
+  float time;
   float world_o[3], world_d[3];
   double o[3], d[3];
 } LocalRay;
@@ -59,13 +61,15 @@ typedef struct LocalRay {
 static LocalRay local_ray(const vlWorld *world, const EmbreeContext *context, unsigned id, unsigned inst) {
   const vlRays *r = ((const Query *)(const void *)context)->rays;
   LocalRay q = {VL_NONE,
+                r->time ? r->time[id] : 0,
                 {r->ox[id], r->oy[id], r->oz[id]},
                 {r->dx[id], r->dy[id], r->dz[id]},
                 {r->ox[id], r->oy[id], r->oz[id]},
                 {r->dx[id], r->dy[id], r->dz[id]}};
   if (inst != RTC_INVALID_GEOMETRY_ID) {
     q.instance = inst - world->groups.items[0].count;
-    vl_ray_to_group(&world->instances.items[q.instance], q.o, q.d);
+    vlWorldInstance moved;
+    vl_ray_to_group(vl_instance_at(&world->instances.items[q.instance], q.time, &moved), q.o, q.d);
   }
   return q;
 }
@@ -109,8 +113,10 @@ static void triangle_uv(const vlWorldShape *s, uint32_t prim, const LocalRay *r,
   const uint32_t *f = s->indices + 3 * (size_t)prim;
   vlVec3 ray_o = vl_vec3((float)r->o[0], (float)r->o[1], (float)r->o[2]);
   vlVec3 ray_d = vl_vec3((float)r->d[0], (float)r->d[1], (float)r->d[2]), c[3];
+  float room[3][3];
+  const float *corner[3];
   for (int k = 0; k < 3; k++) {
-    const float *x = s->positions + 3 * (size_t)f[k];
+    const float *x = corner[k] = vl_vertex_at(s, f[k], r->time, room[k]);
     c[k] = vl_sub(vl_vec3(x[0], x[1], x[2]), ray_o);
   }
   float b0 = vl_dot(ray_d, vl_cross(c[1], c[2])), b1 = vl_dot(ray_d, vl_cross(c[2], c[0])),
@@ -125,9 +131,7 @@ static void triangle_uv(const vlWorldShape *s, uint32_t prim, const LocalRay *r,
     uv[0] += b[k] * t[0];
     uv[1] += b[k] * t[1];
   }
-  for (int i = 0; i < 3; i++)
-    p[i] = b0 * s->positions[3 * (size_t)f[0] + i] + b1 * s->positions[3 * (size_t)f[1] + i] +
-           b2 * s->positions[3 * (size_t)f[2] + i];
+  for (int i = 0; i < 3; i++) p[i] = b0 * corner[0][i] + b1 * corner[1][i] + b2 * corner[2][i];
 }
 
 static bool filter_rejects(const AccelGeometry *g, const struct RTCFilterFunctionNArguments *args, unsigned i,
@@ -215,8 +219,10 @@ static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, Acce
   if (!geometry) return vl_fail_memory(error);
   rtcSetGeometryUserData(geometry, g);
   if (triangles) {
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s->positions, 0, 12,
-                               s->vertices);
+    rtcSetGeometryTimeStepCount(geometry, s->steps);
+    for (uint32_t k = 0; k < s->steps; k++)
+      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3, s->positions,
+                                 12 * (size_t)k * s->vertices, 12, s->vertices);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s->indices, 0, 12, s->faces);
     if (s->alpha >= 0) rtcSetGeometryIntersectFilterFunction(geometry, filter_closest);
     if (s->alpha >= 0 || s->pass_shadow) rtcSetGeometryOccludedFilterFunction(geometry, filter_occluded);
@@ -232,13 +238,16 @@ static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, Acce
   return VL_OK;
 }
 
-static vlResult attach_instance(RTCDevice device, RTCScene scene, RTCScene target, unsigned id, const float m[12],
-                                vlError *error) {
+static vlResult attach_instance(RTCDevice device, RTCScene scene, RTCScene target, unsigned id,
+                                const vlWorldInstance *q, vlError *error) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
   if (!geometry) return vl_fail_memory(error);
   rtcSetGeometryInstancedScene(geometry, target);
-  rtcSetGeometryTimeStepCount(geometry, 1);
-  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, m);
+  uint32_t steps = q->keys ? q->keys : 1;
+  rtcSetGeometryTimeStepCount(geometry, steps);
+  for (uint32_t k = 0; k < steps; k++) /* matrices between two are straight between them, as in moving.c */
+    rtcSetGeometryTransform(geometry, k, RTC_FORMAT_FLOAT3X4_ROW_MAJOR,
+                            q->keys ? q->path + 12 * (size_t)k : q->from_group);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);
@@ -275,8 +284,7 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
       r = attach_shape(device, scene, i, &geometries[group->shapes[i]], error);
     for (size_t i = 0; k == 0 && r == VL_OK && i < world->instances.count; i++) {
       const vlWorldInstance *instance = &world->instances.items[i];
-      r = attach_instance(device, scene, a->groups[instance->group], group->count + (unsigned)i, instance->from_group,
-                          error);
+      r = attach_instance(device, scene, a->groups[instance->group], group->count + (unsigned)i, instance, error);
     }
     if (r != VL_OK) return r;
     rtcCommitScene(scene);
@@ -356,7 +364,7 @@ static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32
       q.ray.dir_x[k] = r->dx[i], q.ray.dir_y[k] = r->dy[i], q.ray.dir_z[k] = r->dz[i];
       q.ray.tnear[k] = r->t_min ? r->t_min[i] : 0.0f;
       q.ray.tfar[k] = r->t_max ? r->t_max[i] : INFINITY;
-      q.ray.time[k] = 0, q.ray.mask[k] = (unsigned)-1, q.ray.id[k] = i, q.ray.flags[k] = 0;
+      q.ray.time[k] = r->time ? r->time[i] : 0, q.ray.mask[k] = (unsigned)-1, q.ray.id[k] = i, q.ray.flags[k] = 0;
       q.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
       q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
@@ -373,7 +381,7 @@ static void fill_ray(struct RTCRay *q, const vlRays *r, uint32_t i) {
   q->dir_x = r->dx[i], q->dir_y = r->dy[i], q->dir_z = r->dz[i];
   q->tnear = r->t_min ? r->t_min[i] : 0.0f;
   q->tfar = r->t_max ? r->t_max[i] : INFINITY;
-  q->time = 0, q->mask = (unsigned)-1, q->id = i, q->flags = 0;
+  q->time = r->time ? r->time[i] : 0, q->mask = (unsigned)-1, q->id = i, q->flags = 0;
 }
 
 void vl_accel_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,

@@ -13,6 +13,7 @@ struct vlWorld;
 typedef struct vlRays {
   const float *ox, *oy, *oz, *dx, *dy, *dz;
   const float *t_min, *t_max; /* null: 0, infinity */
+  const float *time;          /* the world's, 0 to 1 (world/moving.h); null: 0 */
 } vlRays;
 
 /* For benchmarks: told of every batch of rays before it is traced. kind: 0 coherent closest, 1 closest, 2 occluded. */

@@ -273,10 +273,12 @@ static vlResult add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t 
   const vlShapeDef *def = &scene->shapes.items[shape_index];
   vlWorldShape *shape = &world->shapes.items[shape_index];
   const vlEmissionDef *emission = &scene->emissions.items[def->emission.index - 1];
-  if (def->group.index) {
+  if (def->group.index || shape->steps > 1) {
     vlError where;
     vl_fail_at(&where, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column, " ");
-    vl_log(world->context, VL_LOG_WARNING, &where, "a glowing shape inside an object that is instanced does not shine");
+    vl_log(world->context, VL_LOG_WARNING, &where,
+           def->group.index ? "a glowing shape inside an object that is instanced or moves does not shine"
+                            : "a glowing shape that moves does not shine");
     return VL_OK;
   }
   bool meshed = shape->kind == VL_SHAPE_TRIANGLES || shape->kind == VL_SHAPE_BILINEAR;

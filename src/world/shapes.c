@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "math/transform.h"
 #include "scene/scene.h"
+#include "world/moving.h"
 #include "world/surface_point.h"
 #include "world/world.h"
 
@@ -32,6 +33,70 @@ static bool is_identity(const vlMat4 *m) {
   return memcmp(e.m, m->m, sizeof e.m) == 0;
 }
 
+/* positions or normals at one end of a motion, moved to group space. */
+typedef struct Rows {
+  const float *from;
+  bool normals;
+} Rows;
+
+static bool move_rows(const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse, Rows rows, float *to) {
+  bool fine = true;
+  for (size_t i = 0; i < def->vertices; i++) {
+    double p[3] = {rows.from[3 * i], rows.from[3 * i + 1], rows.from[3 * i + 2]}, q[3], f = 1;
+    if (rows.normals) {
+      vl_mat4_normal(inverse, p, q);
+      double l = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
+      f = l > 0 ? 1 / l : 0;
+      if (def->reverse_orientation) f = -f;
+    } else {
+      vl_mat4_point(m, p, q);
+    }
+    for (int k = 0; k < 3; k++) {
+      to[3 * i + k] = (float)(rows.normals ? q[k] * f : q[k]);
+      fine = fine && (rows.normals || isfinite(to[3 * i + k]));
+    }
+  }
+  return fine;
+}
+
+/* Spreads what was made for the two ends of a motion, the first and the last of `steps` sets, over the sets between. */
+static void spread(const vlWorld *world, const vlShapeDef *def, float *rows, uint32_t steps) {
+  size_t n = 3 * (size_t)def->vertices;
+  double span = world->time_close - world->time_open, first = (def->times[0] - world->time_open) / span,
+         last = (def->times[1] - world->time_open) / span;
+  for (uint32_t k = 1; k + 1 < steps; k++) {
+    double f = ((double)k / (steps - 1) - first) / (last - first);
+    f = f > 1e-6 ? (f < 1 - 1e-6 ? f : 1) : 0;
+    for (size_t i = 0; i < n; i++) rows[k * n + i] = (float)(rows[i] * (1 - f) + rows[(steps - 1) * n + i] * f);
+  }
+}
+
+static vlResult add_vertex_motion(vlWorld *world, const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse,
+                                  vlWorldShape *s, vlError *error) {
+  size_t n = 3 * (size_t)def->vertices;
+  uint32_t steps = vl_world_time_steps(world, def->times[0], def->times[1]);
+  if (steps == 0)
+    return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+                      "vertices move from %g to %g seconds, other things from %g to %g: no even steps lead through all",
+                      def->times[0], def->times[1], world->time_open, world->time_close);
+  s->steps = steps + 1;
+  float *positions = vl_world_block(world, s->steps * n + 4, sizeof(float)), *normals = NULL;
+  if (!positions) return vl_fail_memory(error);
+  if (s->normals && !(normals = vl_world_block(world, s->steps * n, sizeof(float)))) return vl_fail_memory(error);
+  memset(positions + s->steps * n, 0, 4 * sizeof(float));
+  memcpy(positions, s->positions, n * sizeof(float));
+  if (!move_rows(def, m, inverse, (Rows){def->positions_close, false}, positions + steps * n))
+    return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");
+  spread(world, def, positions, s->steps);
+  s->positions = positions;
+  if (!normals) return VL_OK;
+  memcpy(normals, s->normals, n * sizeof(float));
+  move_rows(def, m, inverse, (Rows){def->normals_close, true}, normals + steps * n);
+  spread(world, def, normals, s->steps);
+  s->normals = normals;
+  return VL_OK;
+}
+
 static vlResult move_mesh(vlWorld *world, const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse,
                           vlWorldShape *s, vlError *error) {
   size_t n = def->vertices, corners = def->kind == VL_SHAPE_BILINEAR ? 4 : 3;
@@ -50,28 +115,16 @@ static vlResult move_mesh(vlWorld *world, const vlShapeDef *def, const vlMat4 *m
     memcpy(s->uvs, def->uvs, 2 * n * sizeof(float));
   }
   if (same) memcpy(s->positions, def->positions, 3 * n * sizeof(float));
-  for (size_t i = 0; i < n && !same; i++) {
-    double p[3] = {def->positions[3 * i], def->positions[3 * i + 1], def->positions[3 * i + 2]}, q[3];
-    vl_mat4_point(m, p, q);
-    for (int k = 0; k < 3; k++) {
-      s->positions[3 * i + k] = (float)q[k];
-      if (!isfinite((float)q[k]))
-        return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");
-    }
-  }
-  for (size_t i = 0; def->normals && i < n; i++) {
-    double p[3] = {def->normals[3 * i], def->normals[3 * i + 1], def->normals[3 * i + 2]}, q[3];
-    vl_mat4_normal(inverse, p, q);
-    double l = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]), f = l > 0 ? 1 / l : 0;
-    if (def->reverse_orientation) f = -f;
-    for (int k = 0; k < 3; k++) s->normals[3 * i + k] = (float)(q[k] * f);
-  }
+  if (!same && !move_rows(def, m, inverse, (Rows){def->positions, false}, s->positions))
+    return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");
+  if (def->normals) move_rows(def, m, inverse, (Rows){def->normals, true}, s->normals);
   for (size_t i = 0; def->tangents && i < n; i++) {
     double p[3] = {def->tangents[3 * i], def->tangents[3 * i + 1], def->tangents[3 * i + 2]}, q[3];
     vl_mat4_vector(m, p, q);
     for (int k = 0; k < 3; k++) s->tangents[3 * i + k] = (float)q[k];
   }
-  return VL_OK;
+  return def->positions_close && def->kind == VL_SHAPE_TRIANGLES ? add_vertex_motion(world, def, m, inverse, s, error)
+                                                                 : VL_OK;
 }
 
 static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef *def, vlWorldShape *s,
@@ -97,7 +150,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef
     s->z_min = s->z_min < -s->radius ? -s->radius : s->z_min;
     s->z_max = s->z_max > s->radius ? s->radius : s->z_max;
   }
-  s->faces = 1;
+  s->faces = s->steps = 1;
   store_affine_d(&m, s->from_shape);
   store_affine_d(&inverse, s->to_shape);
   if (def->kind == VL_SHAPE_TRIANGLES || def->kind == VL_SHAPE_BILINEAR)
@@ -114,7 +167,7 @@ static void grow_bounds(float low[3], float high[3], const float p[3]) {
 
 static void shape_bounds(const vlWorldShape *s, float low[3], float high[3]) {
   if (s->positions) {
-    for (size_t i = 0; i < s->vertices; i++) grow_bounds(low, high, s->positions + 3 * i);
+    for (size_t i = 0; i < (size_t)s->steps * s->vertices; i++) grow_bounds(low, high, s->positions + 3 * i);
   } else {
     float a[3], b[3];
     vl_world_prim_bounds(s, 0, a, b);
@@ -123,20 +176,26 @@ static void shape_bounds(const vlWorldShape *s, float low[3], float high[3]) {
   }
 }
 
+static void set_group_bounds(const vlWorld *world, vlWorldGroup *group) {
+  for (int i = 0; i < 3; i++) group->low[i] = INFINITY, group->high[i] = -INFINITY;
+  for (uint32_t i = 0; i < group->count; i++)
+    shape_bounds(&world->shapes.items[group->shapes[i]], group->low, group->high);
+}
+
 static void set_world_bounds(vlWorld *world) {
   float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   const vlWorldGroup *root = &world->groups.items[0];
   for (uint32_t i = 0; i < root->count; i++) shape_bounds(&world->shapes.items[root->shapes[i]], low, high);
   for (size_t k = 0; k < world->instances.count; k++) {
     const vlWorldInstance *instance = &world->instances.items[k];
-    const vlWorldGroup *group = &world->groups.items[instance->group];
-    float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (uint32_t i = 0; i < group->count; i++) shape_bounds(&world->shapes.items[group->shapes[i]], a, b);
-    for (int c = 0; group->count && c < 8; c++) {
-      float p[3] = {c & 1 ? a[0] : b[0], c & 2 ? a[1] : b[1], c & 4 ? a[2] : b[2]}, q[3];
-      const float *m = instance->from_group;
-      for (int i = 0; i < 3; i++) q[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
-      grow_bounds(low, high, q);
+    const float *a = world->groups.items[instance->group].low, *b = world->groups.items[instance->group].high;
+    for (uint32_t key = 0; key == 0 || key < instance->keys; key++) {
+      const float *m = instance->keys ? instance->path + 12 * (size_t)key : instance->from_group;
+      for (int c = 0; a[0] <= b[0] && c < 8; c++) {
+        float p[3] = {c & 1 ? a[0] : b[0], c & 2 ? a[1] : b[1], c & 4 ? a[2] : b[2]}, q[3];
+        for (int i = 0; i < 3; i++) q[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+        grow_bounds(low, high, q);
+      }
     }
   }
   for (int i = 0; i < 3; i++) {
@@ -154,6 +213,7 @@ static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *err
     if (world->groups.items[source->group.index].count == 0) continue;
     vlWorldInstance *instance = VL_PUSH(world->context, &world->instances);
     if (!instance) return vl_fail_memory(error);
+    memset(instance, 0, sizeof *instance);
     vlMat4 m = vl_mat4_load(source->world_from_group), inverse;
     if (!vl_mat4_inverse(m, &inverse))
       return vl_fail_at(error, VL_ERROR_SCENE, source->source.file, source->source.line, source->source.column,
@@ -162,12 +222,17 @@ static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *err
     instance->mirrored = vl_mat4_determinant3(m) < 0;
     store_affine_f(&m, instance->from_group);
     store_affine_f(&inverse, instance->to_group);
+    if (source->keys == 0) continue;
+    const vlWorldGroup *group = &world->groups.items[source->group.index];
+    vlResult r = vl_world_add_motion(world, source, group->low, group->high, instance, error);
+    if (r != VL_OK) return r;
   }
   return VL_OK;
 }
 
 vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *error) {
   size_t group_count = scene->groups.count + 1;
+  vl_world_find_times(world, scene);
   if (!VL_RESERVE(world->context, &world->shapes, scene->shapes.count) ||
       !VL_RESERVE(world->context, &world->groups, group_count))
     return vl_fail_memory(error);
@@ -193,6 +258,7 @@ vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *erro
     vlWorldGroup *group = &world->groups.items[def->group.index];
     group->shapes[group->count++] = (uint32_t)i;
   }
+  for (size_t k = 0; k < group_count; k++) set_group_bounds(world, &world->groups.items[k]);
   vlResult r = add_instances(world, scene, error);
   if (r == VL_OK) set_world_bounds(world);
   world->info.instances = world->instances.count;

@@ -27,6 +27,7 @@ typedef struct vlWorldShape {
   uint32_t vertices, faces;
   float *positions, *normals, *tangents, *uvs;
   uint32_t *indices;
+  uint32_t steps; /* of positions and normals, one set after the other, evenly over the world's time; 1: at rest */
   /* sphere, disk, cylinder: parameters as in vlShapeDef, and the affine maps, row-major 3x4 */
   float radius, inner_radius, z_min, z_max, phi_max, height;
   double from_shape[12], to_shape[12]; /* group space <-> shape space */
@@ -35,12 +36,17 @@ typedef struct vlWorldShape {
 typedef struct vlWorldGroup {
   uint32_t *shapes; /* world shape index of each Embree geometry id */
   uint32_t count;
+  float low[3], high[3]; /* box round them at all times, group space; empty: low > high */
 } vlWorldGroup;
 
+/* What moves goes straight from key to key: Embree and we (moving.h) interpolate the same numbers the same way. */
 typedef struct vlWorldInstance {
   uint32_t group;
   bool mirrored;
-  float from_group[12], to_group[12];
+  float from_group[12], to_group[12]; /* of one that moves: at the world's time 0 */
+  uint32_t keys;                      /* of path, evenly over the world's time; 0: at rest */
+  const float *path;                  /* 12 a key */
+  float doubt[4];                     /* bound of the rounding error of a moved matrix, by column; 0 of those at rest */
 } vlWorldInstance;
 
 /* ---- materials --------------------------------------------------------------------------------------------------- */
@@ -124,6 +130,8 @@ struct vlWorld {
   int32_t *texture_memo;   /* while building: scene texture and role -> node */
   uint32_t *rank;          /* of materials: those of one kind together */
   bool has_interfaces;
+  bool moves;                   /* something does; else no ray need know its time */
+  double time_open, time_close; /* seconds: the world's times 0 and 1; before and after everything rests */
   vlWorldOrigin *shape_origins, *material_origins, *instance_origins; /* one for each element of those arrays */
   vlSpectral white;                                                   /* radiance that shows as white */
   vlLightTree tree;

@@ -18,8 +18,32 @@ typedef enum vlBsdfKind {
   VL_BSDF_DIELECTRIC, /* eta_s > 0 interior over exterior; rough or smooth by lane */
   VL_BSDF_THIN_DIELECTRIC,
   VL_BSDF_COATED_DIFFUSE, /* rough or smooth dielectric coat over a diffuse base, table of its transmittances */
+  VL_BSDF_PRINCIPLED,     /* many layers: docs/principled.md */
   VL_BSDF_KINDS
 } vlBsdfKind;
+
+/* Rows of the principled material; its base colour is reflectance, its roughness alpha_x and alpha_y (at least 1e-3).
+ * F0 is the dielectric's, without metal. COAT_X, Y, Z: the coat's normal, unit, z > 0. */
+enum {
+  VL_P_METALLIC,
+  VL_P_F0,
+  VL_P_F90 = VL_P_F0 + 4,
+  VL_P_TRANSMISSION,
+  VL_P_THIN, /* 1: a sheet, or nothing passes; 0: a solid of index eta_s */
+  VL_P_DIFFUSE_TRANSMISSION,
+  VL_P_THROUGH, /* colour of that */
+  VL_P_COAT = VL_P_THROUGH + 4,
+  VL_P_COAT_ALPHA,
+  VL_P_COAT_X,
+  VL_P_COAT_Y,
+  VL_P_COAT_Z,
+  VL_P_SHEEN,
+  VL_P_SHEEN_ALPHA = VL_P_SHEEN + 4,
+  VL_P_FILM,
+  VL_P_FILM_INDEX,
+  VL_P_FILM_NM,
+  VL_PRINCIPLED_ROWS
+};
 
 enum {
   VL_SAMPLED_SPECULAR = 1,     /* delta: eval knows nothing of it */
@@ -34,6 +58,8 @@ typedef struct vlBsdfParams {
   float *alpha_x, *alpha_y; /* conductor, dielectric, coat */
   float *eta_s;             /* dielectric, thin, coat */
   const vlCoatTable **coat; /* coated diffuse */
+  float *principled[VL_PRINCIPLED_ROWS];
+  const float *lambda[4]; /* principled: wavelengths, nm; null in RGB mode */
 } vlBsdfParams;
 
 typedef struct vlBsdfDirections {

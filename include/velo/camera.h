@@ -4,6 +4,7 @@
 #define VELO_CAMERA_H
 
 #include "velo/base.h"
+#include "velo/lens.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -27,7 +28,8 @@ typedef enum vlProjection {
   VL_PROJECTION_DIVISION,        /* shape: lambda */
   VL_PROJECTION_UNIFIED,         /* shape: xi >= 0 (Mei) */
   VL_PROJECTION_EUCM,            /* shape: alpha in [0, 1], beta > 0 */
-  VL_PROJECTION_DOUBLE_SPHERE    /* shape: xi in (-1, 1), alpha in [0, 1] */
+  VL_PROJECTION_DOUBLE_SPHERE,   /* shape: xi in (-1, 1), alpha in [0, 1] */
+  VL_PROJECTION_OPTICS           /* a lens of many elements: lens.optics */
 } vlProjection;
 
 /* "perspective", "equidistant fisheye", ...; "unknown" for another number. */
@@ -93,12 +95,14 @@ typedef struct vlCameraDef {
   bool has_matrix;
   double world_from_camera[16]; /* camera x right, y down, z forward; may mirror or scale */
 
-  double lens_radius;                 /* scene units; 0 pinhole */
-  double focus_distance;              /* z of the plane in focus, scene units; unset: infinity */
+  double lens_radius;    /* scene units; 0 pinhole */
+  double focus_distance; /* z of the plane in focus (distance from the eye, as the planes below), scene units; unset:
+                          * infinity, or what `lens` says */
+  vlLensDef lens;
   double shutter_open, shutter_close; /* seconds; default 0, 1 */
   double exposure_time;               /* a factor on radiance, as in the lecture; default 1 */
-  /* z in camera space (for projections that are neither perspective nor orthographic: distance from the eye); default
-   * 0, infinity. Cut what the camera sees, nothing else */
+  /* z in camera space; distance from the eye for projections that can look back (all but perspective, orthographic,
+   * the orthographic fisheye, FOV and OPTICS). Default 0, infinity. Cut what the camera sees, nothing else */
   double near_plane, far_plane;
 
   double shape[2];  /* the projection's own numbers; unset: Panini 1, cube 0, the others must be given */
@@ -137,6 +141,7 @@ typedef struct vlCamera {
   double fx, fy, skew, cx, cy;
   double world_from_camera[16], camera_from_world[16];
   double lens_radius, focus_distance;
+  vlLens lens;
   double shutter_open, shutter_close, exposure_time, near_plane, far_plane;
   double shape[2];
   double limit; /* radius of the plane's valid disc: image circle, the model's own end; infinity */

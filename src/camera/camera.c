@@ -31,6 +31,13 @@ vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height) {
       .up = {0.0, 1.0, 0.0},
       .world_from_camera = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
       .focus_distance = VL_UNSET,
+      .lens = {.f_number = VL_UNSET,
+               .unit_mm = 1000.0,
+               .focus_point = {VL_UNSET, VL_UNSET, VL_UNSET},
+               .focus_pixel = {VL_UNSET, VL_UNSET},
+               .ratio = 1.0,
+               .iso = VL_UNSET,
+               .seconds = VL_UNSET},
       .shutter_close = 1.0,
       .exposure_time = 1.0,
       .far_plane = INFINITY,
@@ -50,7 +57,7 @@ static vlResult check_vector(const char *name, const double v[3], vlError *error
 
 /* All that is neither intrinsics nor pose. */
 static vlResult check_rest(const vlCameraDef *d, vlError *error) {
-  if ((uint32_t)d->projection > VL_PROJECTION_DOUBLE_SPHERE)
+  if ((uint32_t)d->projection > VL_PROJECTION_OPTICS)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown projection %d", (int)d->projection);
   if ((uint32_t)d->fov_axis > VL_FOV_LARGER)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown field-of-view axis %d", (int)d->fov_axis);
@@ -102,6 +109,7 @@ vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **w
   if (result == VL_OK) result = vl_camera_model(def, &made, error);
   if (result == VL_OK) result = vl_camera_intrinsics(def, &made, error);
   if (result == VL_OK) result = vl_camera_pose(def, &made, warning, error);
+  if (result == VL_OK) result = vl_camera_lens(def, &made, error);
   if (result == VL_OK) result = vl_camera_domain(def, &made, warning, error);
   if (result == VL_OK) result = vl_camera_eye(&made, &def->stereo, def->stereo_eye, &made, error);
   if (result == VL_OK) *camera = made;
@@ -127,6 +135,10 @@ vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t heigh
   /* the principal point keeps its place relative to the centre */
   resized.cx = 0.5 * width + (camera->cx - 0.5 * camera->width) * scale_x;
   resized.cy = 0.5 * height + (camera->cy - 0.5 * camera->height) * scale_y;
+  for (int i = 0; i < 2; i++) /* unset stays unset */
+    resized.lens.focus_pixel[i] =
+        (i ? resized.cy : resized.cx) +
+        (camera->lens.focus_pixel[i] - (i ? camera->cy : camera->cx)) * (i ? scale_y : scale_x);
   vl_camera_measure(&resized);
   *result = resized;
   return VL_OK;

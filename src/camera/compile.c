@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "camera/parts.h"
 #include "camera/rays.h"
 #include "math/approx_double.h"
 
@@ -27,6 +28,22 @@ static double central_spread(const vlCameraCompiled *c) {
     case VL_PROJECTION_FOV: return c->shape[0] / c->shape[1] * size;
     default: return size;
   }
+}
+
+static void compile_lens(const vlCamera *camera, vlCameraCompiled *c) {
+  const vlLens *l = &camera->lens;
+  c->ahead = vl_camera_sees_ahead(camera->projection);
+  c->vignetting = l->vignetting;
+  c->optics = l->optics;
+  if (c->optics || !c->has_lens) return;
+  c->focus[0] = l->tilt[0] * c->inv_focus + l->hinge[0];
+  c->focus[1] = l->tilt[1] * c->inv_focus + l->hinge[1];
+  c->focus[2] = c->inv_focus;
+  c->inv_ratio = 1.0 / l->ratio;
+  c->aperture = l->aperture;
+  c->lens_turn[0] = cos(l->rotation), c->lens_turn[1] = sin(l->rotation);
+  if (l->blades) vl_blades_make(l->blades, l->rotation, &c->blades);
+  c->shaped = l->blades || l->aperture || l->ratio != 1.0 || c->focus[0] != 0.0 || c->focus[1] != 0.0;
 }
 
 void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
@@ -67,6 +84,7 @@ void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
   c->limit2 = camera->limit * camera->limit;
   c->distortion = camera->distortion;
   c->eye_circle = camera->eye_circle;
+  compile_lens(camera, c);
   memcpy(c->camera_from_world, camera->camera_from_world, sizeof c->camera_from_world);
   if (!perspective && !orthographic) {
     c->pixel_spread = (float)central_spread(c);

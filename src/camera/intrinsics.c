@@ -180,10 +180,14 @@ static vlResult gather_focal(const vlCameraDef *d, const vlCamera *camera, bool 
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: pixel size %g is given without the view distance d that it divides", size);
   }
-  if (has_mm != !vl_is_unset(d->sensor_width_mm))
+  /* with an f-number one of them may serve the lens alone, where the focal length in pixels is known */
+  bool both = has_mm && !vl_is_unset(d->sensor_width_mm),
+       known = !vl_is_unset(g->fx.value) || !vl_is_unset(g->fy.value);
+  bool lens = !vl_is_unset(d->lens.f_number) || d->lens.lens_tilt_x != 0.0 || d->lens.lens_tilt_y != 0.0;
+  if (has_mm != !vl_is_unset(d->sensor_width_mm) && !(lens && known))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is given without %s", has_mm ? "focal_mm" : "sensor_width_mm",
                    has_mm ? "sensor_width_mm" : "focal_mm");
-  if (has_mm) {
+  if (both) {
     snprintf(from, sizeof from, "focal_mm %.9g on sensor_width_mm %.9g", d->focal_mm, d->sensor_width_mm);
     TRY(take(&g->fx, d->focal_mm / d->sensor_width_mm * d->width, from, error));
   }

@@ -44,4 +44,21 @@ static inline vlCameraLocal vl_lens_apply(const vlCameraCompiled *c, vlCameraLoc
   return vl_lens_apply_at(c, r, disk, r.dz);
 }
 
+/* The general case, with the plane in focus p . focus = 1: the ray o + s d meets it at 1 / s = d . focus / (1 - o .
+ * focus). lens: a point of the opening, in lens radii. */
+static inline vlCameraLocal vl_lens_bend(const vlCameraCompiled *c, vlCameraLocal r, vlLensPoint lens) {
+  double lx = c->lens_radius * (double)lens.x, ly = c->lens_radius * (double)lens.y;
+  const double *a = c->focus;
+  double plane = (a[0] * r.dx + a[1] * r.dy + a[2] * r.dz) / (1.0 - a[0] * r.ox - a[1] * r.oy);
+  double bend = c->ahead ? plane : c->inv_focus;
+  r.ox += lx;
+  r.oy += ly;
+  r.dx -= lx * bend;
+  r.dy -= ly * bend;
+  return r;
+}
+
+/* lens_points.c: n pairs of random numbers to points of a shaped opening. */
+void vl_lens_points(const vlCameraCompiled *c, uint32_t n, const float *u, const float *v, float *x, float *y);
+
 #endif

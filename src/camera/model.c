@@ -23,7 +23,8 @@ const char *vl_projection_name(vlProjection projection) {
                                       "division",
                                       "unified",
                                       "EUCM",
-                                      "double sphere"};
+                                      "double sphere",
+                                      "optics"};
   return (uint32_t)projection < sizeof names / sizeof names[0] ? names[projection] : "unknown";
 }
 

@@ -25,5 +25,11 @@ vlResult vl_camera_intrinsics(const vlCameraDef *def, vlCamera *camera, vlError 
 vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error);
 /* The same from a matrix, which is checked. */
 vlResult vl_camera_pose_matrix(const double world_from_camera[16], vlCamera *camera, vlError *error);
+/* Fills lens, lens_radius, focus_distance and exposure_time where def.lens says them; after intrinsics and pose. */
+vlResult vl_camera_lens(const vlCameraDef *def, vlCamera *camera, vlError *error);
+/* Planes of constant z cut and focus, not spheres around the eye. */
+bool vl_camera_sees_ahead(vlProjection kind);
+/* The focus distance that brings a point of the world into focus; false: it lies behind. */
+bool vl_camera_focus_at(const vlCamera *camera, const double point[3], double *distance);
 
 #endif

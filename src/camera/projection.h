@@ -35,6 +35,7 @@ static inline __attribute__((always_inline)) vlDirection vl_plane_unproject(vlPr
     case VL_PROJECTION_UNIFIED: d = vl_unified_unproject(a[0], x, y); break;
     case VL_PROJECTION_EUCM: d = vl_eucm_unproject(a[0], a[1], x, y); break;
     case VL_PROJECTION_DOUBLE_SPHERE: d = vl_double_sphere_unproject(a[0], a[1], x, y); break;
+    case VL_PROJECTION_OPTICS: d.valid = 0.0; break; /* rays of optics go their own way */
   }
   d.valid = x * x + y * y <= c->limit2 ? d.valid : 0.0;
   return d;
@@ -62,6 +63,7 @@ static inline __attribute__((always_inline)) vlPlanePoint vl_plane_project(vlPro
     case VL_PROJECTION_UNIFIED: p = vl_unified_project(a[0], x, y, z); break;
     case VL_PROJECTION_EUCM: p = vl_eucm_project(a[0], a[1], x, y, z); break;
     case VL_PROJECTION_DOUBLE_SPHERE: p = vl_double_sphere_project(a[0], a[1], x, y, z); break;
+    case VL_PROJECTION_OPTICS: p.valid = 0.0; break;
   }
   p.valid = p.x * p.x + p.y * p.y <= c->limit2 ? p.valid : 0.0;
   return p;
@@ -86,6 +88,7 @@ static inline __attribute__((always_inline)) vlPlanePoint vl_plane_project(vlPro
     case VL_PROJECTION_UNIFIED: CALL(VL_PROJECTION_UNIFIED); break;                 \
     case VL_PROJECTION_EUCM: CALL(VL_PROJECTION_EUCM); break;                       \
     case VL_PROJECTION_DOUBLE_SPHERE: CALL(VL_PROJECTION_DOUBLE_SPHERE); break;     \
+    case VL_PROJECTION_OPTICS: CALL(VL_PROJECTION_OPTICS); break;                   \
   }
 
 /* Those that go all round, and so have omnidirectional stereo (eyes.h). */

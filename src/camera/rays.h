@@ -9,6 +9,7 @@
 #define CAMERA_RAYS_H
 
 #include "base/isa.h"
+#include "camera/aperture.h"
 #include "velo/camera.h"
 
 /* Points per chunk of the double arrays below. */
@@ -18,14 +19,16 @@ enum { VL_CAMERA_CHUNK = 256 };
 typedef struct vlCameraCompiled {
   vlProjection projection;
   bool has_lens;
-  double cx, cy;                     /* principal point, pixels */
-  double skew_ratio;                 /* skew / fy */
-  double aspect;                     /* fx / fy */
-  double focal;                      /* fx, pixels (orthographic: pixels per scene unit) */
-  double inv_fx, inv_fy;             /* orthographic: scene units per pixel */
-  double rotation[9];                /* row-major 3x3 part of world_from_camera (may scale or mirror) */
-  double position[3];                /* of the camera in the world */
-  double lens_radius, inv_focus;     /* 1 / focus distance; 0: focused at infinity */
+  double cx, cy;                 /* principal point, pixels */
+  double skew_ratio;             /* skew / fy */
+  double aspect;                 /* fx / fy */
+  double focal;                  /* fx, pixels (orthographic: pixels per scene unit) */
+  double inv_fx, inv_fy;         /* orthographic: scene units per pixel */
+  double rotation[9];            /* row-major 3x3 part of world_from_camera (may scale or mirror) */
+  double position[3];            /* of the camera in the world */
+  double lens_radius, inv_focus; /* 1 / focus distance; 0: focused at infinity */
+  /* The plane in focus is p . focus = 1; read with shaped lenses and where `ahead` is set. */
+  double focus[3];
   double shutter_open, shutter_time; /* seconds */
   double near_plane, far_plane;      /* z in camera space */
   /* Width of a pixel's footprint at distance t along the ray: pixel_width + pixel_spread * t (world units).
@@ -42,6 +45,15 @@ typedef struct vlCameraCompiled {
   double limit2;         /* square of the valid disc's radius in the plane */
   vlDistortionMap distortion;
   double camera_from_world[12];
+  /* A lens that is not a plain disc: its points are drawn by vl_lens_points, before the loop over the rays. */
+  bool shaped;
+  bool ahead;      /* depth along z, not distance, counts for lens and planes */
+  bool vignetting; /* rays have weights */
+  vlBlades blades; /* none: count 0 */
+  const vlAperture *aperture;
+  double lens_turn[2]; /* cosine and sine that turn the picture */
+  double inv_ratio;    /* of the opening's width */
+  const vlOptics *optics;
   double eye_circle; /* of omnidirectional stereo: the circle's radius, signed; 0: none */
 } vlCameraCompiled;
 
@@ -59,12 +71,15 @@ typedef struct vlCameraSamples {
 
 /* World space; d normalised; [t_min, t_max] from the near and far planes (0 and infinity without); time in seconds.
  * valid (may be null): 1, or 0 where the film point lies outside the camera's domain; t_max is -1 there, so that the
- * ray hits nothing, and d is some unit vector. */
+ * ray hits nothing, and d is some unit vector.
+ * weight (may be null): what the light that comes back along the ray counts; written only if the camera is `weighted`.
+ * 0 with valid 1: a part of the lens stops the ray (t_max is -1 then, too). */
 typedef struct vlCameraRays {
   float *ox, *oy, *oz, *dx, *dy, *dz;
   float *t_min, *t_max;
   float *time;
   float *valid;
+  float *weight;
 } vlCameraRays;
 
 /* A chunk of points or pixels in double: VL_PAD(n) elements are computed, n <= VL_CAMERA_CHUNK. */
@@ -89,6 +104,11 @@ typedef struct vlCameraKernels {
 extern const vlCameraKernels vl_camera_kernels_v2, vl_camera_kernels_v3, vl_camera_kernels_v4;
 /* AUTO is not a set: anything but V3 and V4 gives V2's table. */
 const vlCameraKernels *vl_camera_kernels(vlIsa isa);
+
+/* Are there weights other than 1? */
+static inline bool vl_camera_weighted(const vlCameraCompiled *c) {
+  return c->vignetting || c->optics;
+}
 
 void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c);
 

@@ -8,7 +8,10 @@
 #include "camera/place.h"
 #include "camera/stages.h"
 
-/* One loop, inlined once for each projection with and without a lens: the two constants are decided before it. */
+/* How the samples' lens_u and lens_v are meant: as random numbers, or as points of the opening already. */
+enum { NO_LENS, DISC, POINTS };
+
+/* One loop, inlined once for each projection and kind of lens: the two constants are decided before it. */
 static inline __attribute__((always_inline)) void ray_loop(const int orthographic, const int lens,
                                                            const vlCameraCompiled *camera, uint32_t count,
                                                            const vlCameraSamples *s, const vlCameraRays *r) {
@@ -24,7 +27,8 @@ static inline __attribute__((always_inline)) void ray_loop(const int orthographi
     double x = (double)pixel_x[i] - c->cx + (double)film_x[i];
     double y = (double)pixel_y[i] - c->cy + (double)film_y[i];
     vlCameraLocal local = orthographic ? vl_orthographic_unproject(c, x, y) : vl_perspective_unproject(c, x, y);
-    if (lens) local = vl_lens_apply(c, local, vl_lens_disk(lens_u[i], lens_v[i]));
+    if (lens == DISC) local = vl_lens_apply(c, local, vl_lens_disk(lens_u[i], lens_v[i]));
+    if (lens == POINTS) local = vl_lens_bend(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
     vlWorldRay w = vl_camera_place(c, local);
     ox[i] = (float)w.ox;
     oy[i] = (float)w.oy;
@@ -44,17 +48,20 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
                                                              uint32_t count, const vlDirections *d,
                                                              const vlCameraSamples *s, const vlCameraRays *r) {
   const vlCameraCompiled copy = *camera, *c = &copy;
-  const float *lens_u = s->lens_u + (lens ? first : 0), *lens_v = s->lens_v + (lens ? first : 0);
+  const float *lens_u = s->lens_u + (lens == DISC ? first : 0), *lens_v = s->lens_v + (lens == DISC ? first : 0);
   const float *time = s->time + first;
   float *ox = r->ox + first, *oy = r->oy + first, *oz = r->oz + first;
   float *dx = r->dx + first, *dy = r->dy + first, *dz = r->dz + first;
   float *t_min = r->t_min + first, *t_max = r->t_max + first, *seconds = r->time + first;
-  const double near_t = c->near_plane, far_t = c->far_plane;
+  const double near_z = c->near_plane, far_z = c->far_plane;
+  const int flat = c->ahead && !c->inclined;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlCameraLocal local = {0.0, 0.0, d->dx[i], d->dy[i], d->dz[i]};
-    /* directions that are not inclined have unit length, perspective ones z = 1: the depth is 1 either way */
-    if (lens) local = vl_lens_apply_at(c, local, vl_lens_disk(lens_u[i], lens_v[i]), 1.0);
+    /* perspective directions have z = 1, others unit length: the depth is 1 but for those that have planes */
+    double depth = flat ? (local.dz > 1e-300 ? local.dz : 1e-300) : 1.0;
+    if (lens == DISC) local = vl_lens_apply_at(c, local, vl_lens_disk(lens_u[i], lens_v[i]), depth);
+    if (lens == POINTS) local = vl_lens_bend(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
     vlWorldRay w = vl_camera_place(c, local);
     if (eyes) w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, d->dx[i], d->dz[i]), w);
     int good = d->valid[i] > 0.0;
@@ -64,9 +71,26 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
     dx[i] = (float)(w.dx * w.inv_length);
     dy[i] = (float)(w.dy * w.inv_length);
     dz[i] = (float)(w.dz * w.inv_length);
-    t_min[i] = (float)(good ? near_t * w.length : 0.0);
-    t_max[i] = (float)(good ? far_t * w.length : -1.0);
+    t_min[i] = (float)(good ? near_z / depth * w.length : 0.0);
+    t_max[i] = (float)(good ? far_z / depth * w.length : -1.0);
     seconds[i] = (float)(c->shutter_open + c->shutter_time * (double)time[i]);
+  }
+}
+
+/* Natural vignetting of a chunk: cos^4 of the angle between film point and axis, as seen from the lens's middle. */
+static void weigh_plain(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, float *weight) {
+  for (uint32_t i = 0; i < count; i++) {
+    double x = (double)s->pixel_x[i] - c->cx + (double)s->film_x[i];
+    double y = (double)s->pixel_y[i] - c->cy + (double)s->film_y[i];
+    vlCameraLocal l = vl_perspective_unproject(c, x, y);
+    double square = l.dz * l.dz / (l.dx * l.dx + l.dy * l.dy + l.dz * l.dz);
+    weight[i] = (float)(square * square);
+  }
+}
+static void weigh_staged(uint32_t count, const vlDirections *d, float *weight) {
+  for (uint32_t i = 0; i < count; i++) {
+    double square = 1.0 / (d->dx[i] * d->dx[i] + d->dy[i] * d->dy[i] + 1.0); /* z = 1 */
+    weight[i] = (float)(square * square);
   }
 }
 
@@ -86,15 +110,46 @@ static void staged_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
       d.y[i] = y + (double)film_y[i];
     }
     VL_HOT(vl_camera_directions)(c, n, &d);
-    if (c->has_lens && c->eye_circle != 0.0)
-      place_loop(1, 1, c, first, n, &d, s, r);
-    else if (c->has_lens)
-      place_loop(1, 0, c, first, n, &d, s, r);
-    else if (c->eye_circle != 0.0)
-      place_loop(0, 1, c, first, n, &d, s, r);
-    else
-      place_loop(0, 0, c, first, n, &d, s, r);
+    if (c->shaped) {
+      float x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK];
+      vl_lens_points(c, n, s->lens_u + first, s->lens_v + first, x, y);
+      vlCameraSamples points = *s;
+      points.lens_u = x, points.lens_v = y;
+      place_loop(POINTS, 1, c, first, n, &d, &points, r);
+    } else if (c->has_lens && c->eye_circle != 0.0) {
+      place_loop(DISC, 1, c, first, n, &d, s, r);
+    } else if (c->has_lens) {
+      place_loop(DISC, 0, c, first, n, &d, s, r);
+    } else if (c->eye_circle != 0.0) {
+      place_loop(NO_LENS, 1, c, first, n, &d, s, r);
+    } else {
+      place_loop(NO_LENS, 0, c, first, n, &d, s, r);
+    }
+    if (r->weight && c->vignetting) weigh_staged(n, &d, r->weight + first);
     for (uint32_t i = 0; r->valid && i < n; i++) r->valid[first + i] = (float)d.valid[i];
+  }
+}
+
+/* A shaped lens on a plain camera. */
+static void shaped_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, const vlCameraRays *r) {
+  float x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK];
+  for (uint32_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
+    uint32_t n = count - first < VL_CAMERA_CHUNK ? count - first : VL_CAMERA_CHUNK, k = first;
+    vl_lens_points(c, n, s->lens_u + k, s->lens_v + k, x, y);
+    vlCameraSamples samples = {s->film_x + k, s->film_y + k, s->pixel_x + k, s->pixel_y + k, x, y, s->time + k};
+    vlCameraRays out = {.ox = r->ox + k,
+                        .oy = r->oy + k,
+                        .oz = r->oz + k,
+                        .dx = r->dx + k,
+                        .dy = r->dy + k,
+                        .dz = r->dz + k,
+                        .t_min = r->t_min + k,
+                        .t_max = r->t_max + k,
+                        .time = r->time + k};
+    if (c->projection == VL_PROJECTION_ORTHOGRAPHIC)
+      ray_loop(1, POINTS, c, n, &samples, &out);
+    else
+      ray_loop(0, POINTS, c, n, &samples, &out);
   }
 }
 
@@ -104,17 +159,20 @@ static void rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s
     staged_rays(c, count, s, r);
     return;
   }
-  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) {
+  if (c->shaped) {
+    shaped_rays(c, count, s, r);
+  } else if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) {
     if (c->has_lens)
-      ray_loop(1, 1, c, count, s, r);
+      ray_loop(1, DISC, c, count, s, r);
     else
-      ray_loop(1, 0, c, count, s, r);
+      ray_loop(1, NO_LENS, c, count, s, r);
   } else {
     if (c->has_lens)
-      ray_loop(0, 1, c, count, s, r);
+      ray_loop(0, DISC, c, count, s, r);
     else
-      ray_loop(0, 0, c, count, s, r);
+      ray_loop(0, NO_LENS, c, count, s, r);
   }
+  if (r->weight && c->vignetting) weigh_plain(c, count, s, r->weight);
   for (uint32_t i = 0; r->valid && i < count; i++) r->valid[i] = 1.0f;
 }
 

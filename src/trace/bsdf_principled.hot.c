@@ -91,7 +91,7 @@ static __attribute__((noinline)) void combine(const vlPrincipledSlice *s, const 
     if (s->coat) coat = coat_facet(o, w, vl_principled_coat(s, i, side), s->row[VL_P_COAT_ALPHA][i]);
     float bare = 1.0f - inside; /* layers lie outside */
     float on_coat = s->row[VL_P_COAT][i] * bare;
-    coat.value = coat.value * on_coat;
+    coat.value = on_coat > 0.0f ? coat.value * on_coat : 0.0f; /* rows of other materials may be stale */
     coat.pdf = on_coat > 0.0f ? coat.pdf : 0.0f;
     float co = l->coat_o[i], ci = l->coat_i[i], so = l->sheen_o[i], si = l->sheen_i[i];
     float hide_mirror = over_mirror(co, ci) * over_mirror(so, si);

@@ -79,6 +79,7 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
   if (m->displacement >= 0) bump(&r, m->displacement);
   if (m->normal_map >= 0) normal_map(&r, m->normal_map);
   r.top = 0;
+  if (m->kind == VL_MATERIAL_PRINCIPLED) VL_HOT(vl_stage_principled)(&r, m);
   if (m->reflectance >= 0) {
     spectrum_rows(&r, m->reflectance, shade->reflectance);
     for (int c = 0; c < 4; c++)
@@ -101,7 +102,7 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
     roughness(&r, m, m->u_roughness, shade->alpha_x);
     roughness(&r, m, m->v_roughness, shade->alpha_y);
   }
-  for (uint32_t i = first; i < last; i++) {
+  for (uint32_t i = first; i < last && m->kind != VL_MATERIAL_PRINCIPLED; i++) {
     shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
     shade->coat[i] = m->coat;
   }

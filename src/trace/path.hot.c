@@ -10,6 +10,7 @@ static vlBsdfKind bsdf_kind(vlMaterialKind kind) {
     case VL_MATERIAL_DIELECTRIC: return VL_BSDF_DIELECTRIC;
     case VL_MATERIAL_THIN_DIELECTRIC: return VL_BSDF_THIN_DIELECTRIC;
     case VL_MATERIAL_COATED_DIFFUSE: return VL_BSDF_COATED_DIFFUSE;
+    case VL_MATERIAL_PRINCIPLED: return VL_BSDF_PRINCIPLED;
     default: return VL_BSDF_DIFFUSE;
   }
 }
@@ -27,13 +28,16 @@ static Run next_kind(const vlWorld *world, const vlHits *h, uint32_t first, uint
   return r;
 }
 
-static vlBsdfParams params_of(vlShade *s, uint32_t first) {
+static vlBsdfParams params_of(vlTracing *t, uint32_t first) {
+  vlShade *s = &t->s->shade;
   vlBsdfParams p;
   for (int c = 0; c < 4; c++) {
     p.reflectance[c] = s->reflectance[c] + first;
     p.eta[c] = s->eta[c] + first;
     p.k[c] = s->k[c] + first;
+    p.lambda[c] = t->world->def.color == VL_COLOR_RGB ? NULL : t->s->b.lambda[c] + first;
   }
+  for (int k = 0; k < VL_PRINCIPLED_ROWS; k++) p.principled[k] = s->principled[k] + first;
   p.alpha_x = s->alpha_x + first;
   p.alpha_y = s->alpha_y + first;
   p.eta_s = s->eta_s + first;
@@ -65,7 +69,7 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
   }
   for (uint32_t first = 0; first < n;) {
     Run r = next_kind(world, &s->hits_b, first, n);
-    vlBsdfParams params = params_of(sh, first);
+    vlBsdfParams params = params_of(t, first);
     vlBsdfDirections wo = {sh->wo[0] + first, sh->wo[1] + first, sh->wo[2] + first};
     vlBsdfDirections wi = {sh->wi[0] + first, sh->wi[1] + first, sh->wi[2] + first};
     float *const value[4] = {sh->value[0] + first, sh->value[1] + first, sh->value[2] + first, sh->value[3] + first};
@@ -110,7 +114,7 @@ static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV, sh->u1, sh->u2);
   for (uint32_t first = 0; first < n;) {
     Run r = next_kind(t->world, &s->hits_b, first, n);
-    vlBsdfParams params = params_of(sh, first);
+    vlBsdfParams params = params_of(t, first);
     vlBsdfDirections wo = {sh->wo[0] + first, sh->wo[1] + first, sh->wo[2] + first};
     vlBsdfDirections wi = {sh->wi[0] + first, sh->wi[1] + first, sh->wi[2] + first};
     float *const weight[4] = {sh->value[0] + first, sh->value[1] + first, sh->value[2] + first, sh->value[3] + first};

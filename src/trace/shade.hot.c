@@ -1,5 +1,5 @@
 /* trace/shade.hot.c: hits sorted by material, so that each run of lanes is shaded by one. */
-#include "trace/stages.h"
+#include "trace/texture_run.h"
 
 /* ---- sorting ----------------------------------------------------------------------------------------------------- */
 
@@ -84,4 +84,9 @@ void VL_HOT(vl_stage_shade)(vlTracing *t, uint32_t n) {
     VL_HOT(vl_stage_material)(t->world, first, last, material, s);
   }
   VL_HOT(vl_stage_frames)(n, &s->b, &s->surface, &s->shade);
+  for (uint32_t first = 0, last; first < n; first = last) {
+    const vlWorldMaterial *m = &t->world->materials.items[s->hits_b.material[first]];
+    for (last = first + 1; last < n && s->hits_b.material[last] == s->hits_b.material[first];) last++;
+    if (m->principled && m->principled->has_coat) VL_HOT(vl_stage_coat_frames)(&s->surface, &s->shade, first, last);
+  }
 }

@@ -2,21 +2,6 @@
  * wavelengths. A node's inputs are evaluated into rows of a stack, then combined. */
 #include "trace/texture_run.h"
 
-static inline vlTexturePoint point_of(const vlTextureRun *r, uint32_t i) {
-  const vlSurface *f = r->surface;
-  vlTexturePoint at;
-  at.u = f->u[i], at.v = f->v[i];
-  at.p = vl_vec3(f->px[i], f->py[i], f->pz[i]);
-  at.n = vl_vec3(f->gx[i], f->gy[i], f->gz[i]); /* the true surface's, as pbrt's */
-  at.width = f->width[i];
-  at.uv_width = f->width[i] * f->uv_scale[i];
-  if (r->shift_u) {
-    at.u += r->shift_u[i], at.v += r->shift_v[i];
-    at.p = vl_add(at.p, vl_vec3(r->shift_x[i], r->shift_y[i], r->shift_z[i]));
-  }
-  return at;
-}
-
 /* Weight of the second input of mix-like nodes, in w. */
 static void mix_weight(vlTextureRun *r, const vlTextureNode *node, float *w) {
   if (node->kind == VL_NODE_MIX) {
@@ -24,7 +9,7 @@ static void mix_weight(vlTextureRun *r, const vlTextureNode *node, float *w) {
     return;
   }
   for (uint32_t i = r->first; i < r->last; i++) {
-    vlTexturePoint at = point_of(r, i);
+    vlTexturePoint at = vl_texture_point_of(r, i);
     if (node->kind == VL_NODE_CHECKERBOARD)
       w[i] = vl_texture_checker(node, at);
     else
@@ -34,7 +19,7 @@ static void mix_weight(vlTextureRun *r, const vlTextureNode *node, float *w) {
 
 static void bilerp_weights(vlTextureRun *r, const vlTextureNode *node, float *const w[4]) {
   for (uint32_t i = r->first; i < r->last; i++) {
-    vlVec2 st = vl_texture_st(node, point_of(r, i));
+    vlVec2 st = vl_texture_st(node, vl_texture_point_of(r, i));
     w[0][i] = (1 - st.x) * (1 - st.y), w[1][i] = (1 - st.x) * st.y;
     w[2][i] = st.x * (1 - st.y), w[3][i] = st.x * st.y;
   }
@@ -46,7 +31,7 @@ void VL_HOT(vl_texture_float)(vlTextureRun *r, int32_t index, float *out) {
   switch (node->kind) {
     case VL_NODE_IMAGE: {
       const vlMipmap *mip = r->world->images.items[node->image].mipmap;
-      for (uint32_t i = r->first; i < r->last; i++) out[i] = vl_texture_image_float(node, mip, point_of(r, i));
+      for (uint32_t i = r->first; i < r->last; i++) out[i] = vl_texture_image_float(node, mip, vl_texture_point_of(r, i));
       break;
     }
     case VL_NODE_SCALE: {
@@ -107,7 +92,7 @@ static void image_spectrum(vlTextureRun *r, const vlTextureNode *node, float *co
   bool rgb_mode = r->world->def.color == VL_COLOR_RGB;
   const vlRgbTable *table = vl_rgb_table(node->space);
   for (uint32_t i = r->first; i < r->last; i++) {
-    vlTexel t = vl_texture_image(node, mip, point_of(r, i));
+    vlTexel t = vl_texture_image(node, mip, vl_texture_point_of(r, i));
     float c[3] = {t.c[0], mip->channels < 3 ? t.c[0] : t.c[1], mip->channels < 3 ? t.c[0] : t.c[2]};
     if (node->role == VL_ROLE_ALBEDO)
       for (int k = 0; k < 3; k++) c[k] = c[k] > 1.0f ? 1.0f : c[k];

@@ -101,6 +101,7 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
         return fail(def, error, "a scattering layer in the coat (albedo above 0) is not understood yet");
     r = coat_of(world, def, m, error);
   }
+  if (def->kind == VL_MATERIAL_PRINCIPLED) r = vl_world_principled(world, scene, def, m, error);
   if (r == VL_OK && def->kind == VL_MATERIAL_MIX) {
     m->mix[0] = def->materials[0].index, m->mix[1] = def->materials[1].index;
     for (int i = 0; i < 2; i++)

@@ -51,6 +51,19 @@ typedef struct vlWorldInstance {
 
 /* ---- materials --------------------------------------------------------------------------------------------------- */
 
+/* The principled material's inputs: float nodes, spectrum nodes; what stays off for good has its flag unset. */
+typedef struct vlWorldPrincipled {
+  int32_t metallic, roughness, anisotropy, anisotropy_rotation, specular, transmission, diffuse_transmission;
+  int32_t clearcoat, clearcoat_roughness, sheen_roughness, iridescence, iridescence_thickness;
+  int32_t specular_color, through, sheen; /* spectra */
+  int32_t normal, coat_normal;            /* picture nodes, -1: none */
+  float normal_scale, coat_normal_scale, film_index;
+  float f0;                 /* reflection at normal incidence */
+  bool thin;                /* a sheet, or nothing passes */
+  float cauchy_a, cauchy_b; /* index of refraction where it disperses: a + b / lambda^2 */
+  bool has_coat, has_sheen, has_film, has_anisotropy, has_through;
+} vlWorldPrincipled;
+
 typedef struct vlWorldMaterial {
   vlMaterialKind kind;
   int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
@@ -64,6 +77,7 @@ typedef struct vlWorldMaterial {
   vlCoatTable *coat;    /* may be shared; the owner frees it */
   bool owns_coat;
   uint32_t coat_depth;
+  const vlWorldPrincipled *principled; /* null for other kinds */
 } vlWorldMaterial;
 
 /* ---- lights ------------------------------------------------------------------------------------------------------ */
@@ -148,6 +162,8 @@ vlResult vl_world_spectrum_node(vlWorld *world, const struct vlScene *scene, vlS
 /* Reads a picture (or takes the one given); encoding null: the file's own. Index, or -1 with the error set. */
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
                            float gamma, bool pyramid, vlError *error);
+vlResult vl_world_principled(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
+                             vlError *error);
 vlResult vl_world_add_materials(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_shapes(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_lights(vlWorld *world, const struct vlScene *scene, vlError *error);

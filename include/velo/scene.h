@@ -89,9 +89,10 @@ typedef enum vlTextureKind {
   VL_TEXTURE_CHECKERBOARD,
   VL_TEXTURE_IMAGE,
   VL_TEXTURE_DIRECTION_MIX,
-  VL_TEXTURE_BILERP
+  VL_TEXTURE_BILERP,
+  VL_TEXTURE_VERTEX_COLOR /* the colours of the shape's vertices, with tint, channel, bias and cutoff as a picture */
 } vlTextureKind;
-typedef enum vlWrap { VL_WRAP_REPEAT, VL_WRAP_BLACK, VL_WRAP_CLAMP, VL_WRAP_OCTAHEDRAL } vlWrap;
+typedef enum vlWrap { VL_WRAP_REPEAT, VL_WRAP_BLACK, VL_WRAP_CLAMP, VL_WRAP_OCTAHEDRAL, VL_WRAP_MIRROR } vlWrap;
 typedef enum vlTextureFilter {
   VL_FILTER_POINT,     /* nearest texel of the level that fits the footprint */
   VL_FILTER_BILINEAR,  /* between four texels of the finer level */
@@ -114,20 +115,35 @@ typedef struct vlTextureDef {
   uint32_t dimension;  /* checkerboard: 2 (s, t by the mapping) or 3 (cubes of unit size in texture_from_world) */
   /* image */
   const char *path;     /* read when the world is built (once per path); or */
-  const vlImage *image; /* given directly, copied */
+  const vlImage *image; /* given directly, copied; or */
+  const void *data;     /* a picture file of data_size bytes in memory, copied */
+  size_t data_size;
   vlWrap wrap;
+  bool wrap_t_given; /* else as wrap */
+  vlWrap wrap_t;
   vlTextureFilter filter;
   bool encoding_given; /* else the file's own (8-bit: sRGB) */
   vlEncoding encoding;
   float gamma;
   float scale; /* factor on image values */
   bool invert;
+  /* After filter, scale and invert: channels times tint, and times the colour of the shape's vertices. A float texture
+   * reads one channel (0 to 3; coverage is 1 where the picture has none; -1: grey, mean or coverage, by the picture)
+   * and is bias + that; with a cutoff 1 from it on and 0 below (unset: none). */
+  float tint[4];
+  bool colors;
+  int channel;
+  float bias;
+  double cutoff;
   vlColorSpace space;
   /* mapping: (s, t) = (su u + du, sv v + dv); others map through texture_from_world */
   vlMapping mapping;
   float su, sv, du, dv;
   float planar_v1[3], planar_v2[3];
   double texture_from_world[16];
+  uint32_t uv_set;       /* 0 to 3, of triangles that have several */
+  bool st_from_uv_given; /* (s, t) = 2x3 matrix, row by row, times (u, v, 1), instead of su, sv, du, dv */
+  float st_from_uv[6];
 } vlTextureDef;
 VL_API vlTextureDef vl_default_texture_def(vlTextureKind kind, bool spectrum);
 VL_API vlTextureId vl_scene_add_texture(vlScene *scene, const vlTextureDef *def);
@@ -206,7 +222,8 @@ typedef struct vlEmissionDef {
   float scale;
   double power; /* watts (pbrt's "power"); VL_UNSET: from radiance */
   bool two_sided;
-  const char *image; /* emission picture over uv, null: none */
+  const char *image;   /* emission picture over uv, null: none; or */
+  vlTextureId texture; /* a colour texture of a picture (VL_TEXTURE_IMAGE), times scale; colour is ignored */
 } vlEmissionDef;
 VL_API vlEmissionDef vl_default_emission_def(void);
 VL_API vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def);
@@ -258,6 +275,11 @@ typedef struct vlShapeDef {
   const float *tangents;  /* 3 a vertex, pbrt's S */
   const float *uvs;       /* 2 a vertex */
   const uint32_t *indices;
+  /* Triangles, may be null: */
+  const float *tangent_signs; /* 1 a vertex: the bitangent is sign * n x tangent; null: 1 */
+  const float *more_uvs[3];   /* 2 a vertex: uv sets 1 to 3 */
+  const float *colors;        /* 4 a vertex: linear R G B and coverage */
+  bool one_sided;             /* triangles: rays pass through their backs */
   /* Triangles on the move: where the vertices (and normals) are at times[1], seconds, those above being for times[0];
    * straight between, at rest before and after. May be null. Such a mesh cannot glow. */
   const float *positions_close, *normals_close;
@@ -315,10 +337,12 @@ typedef struct vlSceneSettings {
   vlCameraDef camera;
   vlSource camera_source; /* where the file says so, for errors of vl_camera_make; file may be null */
   uint32_t width, height;
-  uint32_t crop[4];   /* x0, y0, x1, y1 in pixels (x1, y1 exclusive) */
-  char output[512];   /* file name the scene asks for; may be empty */
-  float exposure;     /* sensor: imaging ratio, ISO etc. folded; default 1 */
-  vlColorSpace space; /* of the output picture */
+  uint32_t crop[4];    /* x0, y0, x1, y1 in pixels (x1, y1 exclusive) */
+  char output[512];    /* file name the scene asks for; may be empty */
+  float exposure;      /* sensor: imaging ratio, ISO etc. folded; default 1 */
+  bool camera_missing; /* the file has none: vl_scene_complete makes one */
+  bool light_missing;  /* nor light that shines from outside its shapes */
+  vlColorSpace space;  /* of the output picture */
   vlPixelFilter filter;
   vlSamplerKind sampler;
   uint32_t spp;
@@ -341,10 +365,15 @@ VL_API vlResult vl_scene_result(const vlScene *scene, vlError *error);
 typedef struct vlLoadDef {
   uint32_t cookie;
   bool permissive; /* what is not understood yet is a warning, not an error */
+  /* glTF; others pass it over */
+  double time;           /* of animations, seconds; unset: as modelled */
+  const char *animation; /* name or number from 0; null: the first */
+  const char *variant;   /* of materials, by name; null: the file's own */
+  const char *camera;    /* name or number from 0; null: the first */
 } vlLoadDef;
 VL_API vlLoadDef vl_default_load_def(void);
-/* Adds what a file says. The format is chosen by suffix (.pbrt, .pbrt.gz); relative names are relative to the
- * file. Errors: SCENE, MISSING, IO, MEMORY, UNSUPPORTED (as SCENE with a clear message). def may be null. */
+/* Adds what a file says. The format is chosen by suffix (.pbrt, .pbrt.gz, .gltf, .glb); relative names are relative to
+ * the file. Errors: SCENE, MISSING, IO, MEMORY, UNSUPPORTED (as SCENE with a clear message). def may be null. */
 VL_API vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 
 typedef struct vlSceneInfo {

@@ -61,24 +61,49 @@ static bool take_spectrum(vlScene *scene, vlSpectrumInput *input, vlSource sourc
 /* ---- textures --------------------------------------------------------------------------------------------------- */
 
 static bool check_texture_def(vlScene *scene, const vlTextureDef *d) {
-  if ((unsigned)d->kind > VL_TEXTURE_BILERP) return bad(scene, d->source, "texture", "unknown kind");
+  if ((unsigned)d->kind > VL_TEXTURE_VERTEX_COLOR) return bad(scene, d->source, "texture", "unknown kind");
   if (!is_finite_matrix(d->texture_from_world)) return bad(scene, d->source, "texture", "transform is not finite");
-  const float numbers[] = {d->su,           d->sv,           d->du,           d->dv,           d->scale,
-                           d->direction[0], d->direction[1], d->direction[2], d->planar_v1[0], d->planar_v1[1],
-                           d->planar_v1[2], d->planar_v2[0], d->planar_v2[1], d->planar_v2[2]};
+  const float numbers[] = {d->su,
+                           d->sv,
+                           d->du,
+                           d->dv,
+                           d->scale,
+                           d->direction[0],
+                           d->direction[1],
+                           d->direction[2],
+                           d->planar_v1[0],
+                           d->planar_v1[1],
+                           d->planar_v1[2],
+                           d->planar_v2[0],
+                           d->planar_v2[1],
+                           d->planar_v2[2],
+                           d->bias,
+                           d->tint[0],
+                           d->tint[1],
+                           d->tint[2],
+                           d->tint[3],
+                           d->st_from_uv[0],
+                           d->st_from_uv[1],
+                           d->st_from_uv[2],
+                           d->st_from_uv[3],
+                           d->st_from_uv[4],
+                           d->st_from_uv[5]};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
     if (!isfinite(numbers[i])) return bad(scene, d->source, "texture", "a number is not finite");
   if (d->kind == VL_TEXTURE_CHECKERBOARD && d->dimension != 2 && d->dimension != 3)
     return bad(scene, d->source, "checkerboard", "dimension must be 2 or 3");
   if (d->kind == VL_TEXTURE_IMAGE) {
-    if (!d->path == !d->image) return bad(scene, d->source, "image texture", "needs either a file name or a picture");
+    if (!!d->path + !!d->image + !!d->data != 1)
+      return bad(scene, d->source, "image texture", "needs either a file name or a picture");
+    if (d->channel < -1 || d->channel > 3) return bad(scene, d->source, "image texture", "its channels are 0 to 3");
+    if (d->uv_set > 3) return bad(scene, d->source, "image texture", "uv sets are 0 to 3");
     if (d->encoding_given && d->encoding == VL_ENCODING_GAMMA && !(d->gamma > 0.0f && isfinite(d->gamma)))
       return bad(scene, d->source, "image texture", "gamma must be above 0");
   }
   return true;
 }
 
-vlTextureId vl_scene_add_texture(vlScene *scene, const vlTextureDef *def) {
+static vlTextureId add_texture(vlScene *scene, const vlTextureDef *def, bool adopt) {
   const vlTextureId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_TEXTURE, scene->textures.count, (vlSource){0}, "texture"))
     return none;
@@ -87,6 +112,7 @@ vlTextureId vl_scene_add_texture(vlScene *scene, const vlTextureDef *def) {
   /* how many of the inputs a kind reads: constant and scale one, most two, bilerp four, a picture none */
   int inputs = d.kind == VL_TEXTURE_BILERP                                   ? 4
                : d.kind == VL_TEXTURE_IMAGE                                  ? 0
+               : d.kind == VL_TEXTURE_VERTEX_COLOR                           ? 0
                : d.kind == VL_TEXTURE_CONSTANT || d.kind == VL_TEXTURE_SCALE ? 1
                                                                              : 2;
   vlFloatInput *floats[4] = {&d.float_a, &d.float_b, &d.float_c, &d.float_d};
@@ -101,14 +127,22 @@ vlTextureId vl_scene_add_texture(vlScene *scene, const vlTextureDef *def) {
   bool uses_amount = d.kind == VL_TEXTURE_SCALE || d.kind == VL_TEXTURE_MIX;
   if (!uses_amount) d.amount = vl_float_input(0.0f);
   if (!take_float(scene, &d.amount, d.source, "amount")) return none;
-  if (d.kind != VL_TEXTURE_IMAGE) d.path = NULL, d.image = NULL;
-  if (!vl_scene_copy_string(scene, &d.name) || !vl_scene_copy_string(scene, &d.path) ||
-      !vl_scene_copy_image(scene, &d.image))
+  if (d.kind != VL_TEXTURE_IMAGE) d.path = NULL, d.image = NULL, d.data = NULL;
+  if (!vl_scene_copy_string(scene, &d.name) || !vl_scene_copy_string(scene, &d.path)) return none;
+  if (!adopt && (!vl_scene_copy_image(scene, &d.image) || !vl_scene_copy_block(scene, d.data, d.data_size, 1, &d.data)))
     return none;
   vlTextureDef *slot = VL_PUSH(scene->context, &scene->textures);
   if (!slot) return out_of_memory(scene), none;
   *slot = d;
   return (vlTextureId){(uint32_t)scene->textures.count};
+}
+
+vlTextureId vl_scene_add_texture(vlScene *scene, const vlTextureDef *def) {
+  return add_texture(scene, def, false);
+}
+
+vlTextureId vl_scene_adopt_texture(vlScene *scene, const vlTextureDef *def) {
+  return add_texture(scene, def, true);
 }
 
 /* ---- materials -------------------------------------------------------------------------------------------------- */
@@ -195,6 +229,9 @@ vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
   if (!isfinite(d.scale)) return bad(scene, d.source, "emission", "scale is not finite"), none;
   if (!finite_or_unset(d.power))
     return bad(scene, d.source, "emission", "power must not be negative or infinite"), none;
+  if (!check_texture(scene, d.texture, true, d.source, "emission")) return none;
+  if (d.texture.index && scene->textures.items[d.texture.index - 1].kind != VL_TEXTURE_IMAGE)
+    return bad(scene, d.source, "emission", "its texture must be a picture"), none;
   if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_spectrum(scene, &d.radiance, d.source, "radiance") ||
       !vl_scene_copy_string(scene, &d.image))
     return none;

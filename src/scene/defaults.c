@@ -43,6 +43,9 @@ vlTextureDef vl_default_texture_def(vlTextureKind kind, bool spectrum) {
       .encoding = VL_ENCODING_SRGB,
       .gamma = 2.2f,
       .scale = 1.0f,
+      .tint = {1, 1, 1, 1},
+      .channel = -1,
+      .cutoff = VL_UNSET,
       .space = VL_SPACE_SRGB,
       .mapping = VL_MAPPING_UV,
       .su = 1.0f,
@@ -159,5 +162,5 @@ vlPixelFilter vl_default_pixel_filter(vlPixelFilterKind kind) {
 }
 
 vlLoadDef vl_default_load_def(void) {
-  return (vlLoadDef){.cookie = VL_COOKIE_LOAD};
+  return (vlLoadDef){.cookie = VL_COOKIE_LOAD, .time = VL_UNSET};
 }

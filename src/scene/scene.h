@@ -51,6 +51,9 @@ vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const cha
  * ones taken. */
 vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def);
 
+/* As vl_scene_add_texture; its picture (image, data) is the scene's already and is not copied. */
+vlTextureId vl_scene_adopt_texture(vlScene *scene, const vlTextureDef *def);
+
 /* Internal copying, in scene/copy.c. All return false after vl_scene_fail(MEMORY ...). */
 bool vl_scene_own(vlScene *scene, void *block);
 bool vl_scene_copy_block(vlScene *scene, const void *data, size_t count, size_t size, void *result_pointer);

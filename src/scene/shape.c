@@ -53,6 +53,12 @@ static bool check_motion(vlScene *scene, const vlShapeDef *d) {
          check_floats(scene, d, d->normals_close, 3, "normal at the end");
 }
 
+static bool check_colors(vlScene *scene, const vlShapeDef *d) {
+  size_t count = d->colors ? (size_t)d->vertices * 4 : 0, i = first_not_finite(d->colors, count);
+  if (i < count) vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "colour of vertex %zu is not finite", i / 4);
+  return i == count;
+}
+
 static bool check_mesh(vlScene *scene, const vlShapeDef *d) {
   size_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
   const char *face = per == 3 ? "triangle" : "patch";
@@ -70,7 +76,10 @@ static bool check_mesh(vlScene *scene, const vlShapeDef *d) {
   }
   return check_floats(scene, d, d->positions, 3, "position") && check_floats(scene, d, d->normals, 3, "normal") &&
          check_floats(scene, d, d->tangents, 3, "tangent") && check_floats(scene, d, d->uvs, 2, "uv") &&
-         check_motion(scene, d);
+         check_floats(scene, d, d->tangent_signs, 1, "sign of the tangent") &&
+         check_floats(scene, d, d->more_uvs[0], 2, "uv of set 1") &&
+         check_floats(scene, d, d->more_uvs[1], 2, "uv of set 2") &&
+         check_floats(scene, d, d->more_uvs[2], 2, "uv of set 3") && check_colors(scene, d) && check_motion(scene, d);
 }
 
 static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
@@ -130,6 +139,7 @@ static void drop_unused(vlShapeDef *d) {
   if (d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR) return;
   d->vertices = d->faces = 0;
   d->positions = d->normals = d->tangents = d->uvs = d->positions_close = d->normals_close = NULL;
+  d->tangent_signs = d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = NULL;
   d->indices = NULL;
 }
 
@@ -150,8 +160,12 @@ vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
       !vl_scene_copy_block(scene, d.uvs, v, 2 * sizeof(float), &d.uvs) ||
       !vl_scene_copy_block(scene, d.positions_close, v, 3 * sizeof(float), &d.positions_close) ||
       !vl_scene_copy_block(scene, d.normals_close, v, 3 * sizeof(float), &d.normals_close) ||
+      !vl_scene_copy_block(scene, d.tangent_signs, v, sizeof(float), &d.tangent_signs) ||
+      !vl_scene_copy_block(scene, d.colors, v, 4 * sizeof(float), &d.colors) ||
       !vl_scene_copy_block(scene, d.indices, d.faces, per * sizeof(uint32_t), &d.indices))
     return none;
+  for (int k = 0; k < 3; k++)
+    if (!vl_scene_copy_block(scene, d.more_uvs[k], v, 2 * sizeof(float), &d.more_uvs[k])) return none;
   return push_shape(scene, &d);
 }
 
@@ -159,8 +173,11 @@ vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def) {
   vlShapeDef d = *def;
   bool fine = scene->error.code == VL_OK && d.cookie == VL_COOKIE_SHAPE && vl_scene_copy_source(scene, &d.source) &&
               check_shape(scene, &d);
-  const void *blocks[7] = {d.positions, d.normals, d.tangents, d.uvs, d.indices, d.positions_close, d.normals_close};
-  for (int i = 0; i < 7; i++) {
+  enum { BLOCKS = 12 };
+  const void *blocks[BLOCKS] = {d.positions, d.normals,         d.tangents,      d.uvs,
+                                d.indices,   d.positions_close, d.normals_close, d.tangent_signs,
+                                d.colors,    d.more_uvs[0],     d.more_uvs[1],   d.more_uvs[2]};
+  for (int i = 0; i < BLOCKS; i++) {
     void *block;
     memcpy(&block, &blocks[i],
            sizeof block); /* the const of a def's pointers is a promise to callers, not to the owner */

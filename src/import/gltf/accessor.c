@@ -1,0 +1,214 @@
+/* import/gltf/accessor.c: typed arrays over buffer views: checked once, then read as floats or whole numbers. */
+#include <string.h>
+
+#include "import/gltf/gltf.h"
+
+static uint32_t component_size(uint32_t type) {
+  switch (type) {
+    case VL_GLTF_BYTE:
+    case VL_GLTF_UBYTE: return 1;
+    case VL_GLTF_SHORT:
+    case VL_GLTF_USHORT: return 2;
+    case VL_GLTF_UINT:
+    case VL_GLTF_FLOAT: return 4;
+    default: return 0;
+  }
+}
+
+static uint32_t component_count(const char *type, bool *matrix) {
+  static const struct {
+    const char *name;
+    uint32_t count;
+  } types[] = {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
+  for (size_t i = 0; i < sizeof types / sizeof *types; i++)
+    if (strcmp(types[i].name, type) == 0) {
+      *matrix = i > 3;
+      return types[i].count;
+    }
+  return 0;
+}
+
+/* `count` elements of `size` bytes from `offset` on, `stride` apart, inside the view. */
+static bool fits(vlGltf *g, const vlGltfPlace *at, int64_t view, size_t offset, size_t count, size_t size,
+                 size_t stride) {
+  const vlGltfView *v = &g->views[view];
+  if (!v->data) return vl_gltf_fail(g, at, "bufferViews[%d] holds nothing that velo can read", (int)view);
+  if (count == 0) return true;
+  /* count and offset are below 2^53, stride at most 252, so that the sum stays below 2^64 only if count is small: */
+  if (count > v->size || offset > v->size || size > v->size - offset ||
+      (count - 1) > (v->size - offset - size) / stride)
+    return vl_gltf_fail(g, at, "%zu elements of %zu bytes do not fit into bufferViews[%d], which has %zu bytes", count,
+                        size, (int)view, v->size);
+  return true;
+}
+
+static bool read_sparse(vlGltf *g, const vlGltfPlace *up, const json_t *json, vlGltfAccessor *a, size_t size) {
+  const json_t *sparse, *indices, *values;
+  if (!vl_gltf_object(g, up, json, "sparse", &sparse)) return false;
+  if (!sparse) return true;
+  const vlGltfPlace *at = VL_GLTF_KEY(up, "sparse"), *at_i = VL_GLTF_KEY(at, "indices"),
+                    *at_v = VL_GLTF_KEY(at, "values");
+  int64_t index_view, value_view;
+  size_t index_offset = 0, value_offset = 0, type = 0;
+  if (!vl_gltf_size(g, at, sparse, "count", &a->sparse_count) || !vl_gltf_object(g, at, sparse, "indices", &indices) ||
+      !vl_gltf_object(g, at, sparse, "values", &values) ||
+      !vl_gltf_index(g, at_i, indices, "bufferView", g->view_count, &index_view) ||
+      !vl_gltf_size(g, at_i, indices, "byteOffset", &index_offset) ||
+      !vl_gltf_size(g, at_i, indices, "componentType", &type) ||
+      !vl_gltf_index(g, at_v, values, "bufferView", g->view_count, &value_view) ||
+      !vl_gltf_size(g, at_v, values, "byteOffset", &value_offset))
+    return false;
+  if (index_view < 0) return vl_gltf_fail(g, at_i, "\"bufferView\" is missing");
+  if (value_view < 0) return vl_gltf_fail(g, at_v, "\"bufferView\" is missing");
+  if (type != VL_GLTF_UBYTE && type != VL_GLTF_USHORT && type != VL_GLTF_UINT)
+    return vl_gltf_fail(g, VL_GLTF_KEY(at_i, "componentType"), "%zu is not 5121, 5123 or 5125", type);
+  if (a->sparse_count > a->count) return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "more than the accessor's count");
+  size_t index_size = component_size((uint32_t)type);
+  if (!fits(g, at_i, index_view, index_offset, a->sparse_count, index_size, index_size) ||
+      !fits(g, at_v, value_view, value_offset, a->sparse_count, size, size))
+    return false;
+  a->sparse_type = (uint32_t)type;
+  a->sparse_indices = g->views[index_view].data + index_offset;
+  a->sparse_values = g->views[value_view].data + value_offset;
+  return true;
+}
+
+static uint32_t read_uint(const uint8_t *p, uint32_t type) {
+  uint16_t s;
+  uint32_t i;
+  if (type == VL_GLTF_UBYTE) return *p;
+  if (type == VL_GLTF_USHORT) return memcpy(&s, p, 2), s;
+  return memcpy(&i, p, 4), i;
+}
+
+const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *from, size_t index) {
+  (void)from;
+  vlGltfAccessor *a = &g->accessors[index];
+  if (a->state == VL_GLTF_GOOD) return a;
+  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "accessors", index);
+  const json_t *json = vl_gltf_item(g, "accessors", index);
+  const char *type = "";
+  int64_t view;
+  size_t offset = 0, component = 0;
+  if (!vl_gltf_index(g, at, json, "bufferView", g->view_count, &view) ||
+      !vl_gltf_size(g, at, json, "byteOffset", &offset) || !vl_gltf_size(g, at, json, "count", &a->count) ||
+      !vl_gltf_size(g, at, json, "componentType", &component) || !vl_gltf_text(g, at, json, "type", &type) ||
+      !vl_gltf_bool(g, at, json, "normalized", &a->normalized))
+    return NULL;
+  a->components = component_count(type, &a->matrix);
+  a->type = component <= VL_GLTF_FLOAT ? (uint32_t)component : 0;
+  size_t one = component_size(a->type);
+  if (!a->components) return vl_gltf_fail(g, VL_GLTF_KEY(at, "type"), "unknown type \"%.20s\"", type), NULL;
+  if (!one) return vl_gltf_fail(g, VL_GLTF_KEY(at, "componentType"), "unknown type %zu", component), NULL;
+  if (a->count == 0) return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "must be at least 1"), NULL;
+  if (a->count > UINT32_MAX) return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu is too many", a->count), NULL;
+  if (a->matrix && one < 4) return vl_gltf_fail(g, at, "matrices of small integers are not supported"), NULL;
+  size_t size = one * a->components;
+  a->stride = view >= 0 && g->views[view].stride ? g->views[view].stride : size;
+  if (a->stride < size)
+    return vl_gltf_fail(g, at, "its elements of %zu bytes overlap at a byteStride of %zu", size, a->stride), NULL;
+  if (view >= 0) {
+    if (!fits(g, at, view, offset, a->count, size, a->stride)) return NULL;
+    a->data = g->views[view].data + offset;
+  } else if (a->count > g->total + 65536) { /* zeros: nothing in the file bounds them */
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu zeros are out of proportion to the file", a->count), NULL;
+  }
+  if (!read_sparse(g, at, json, a, size)) return NULL;
+  for (size_t i = 0; i < a->sparse_count; i++) {
+    uint32_t k = read_uint(a->sparse_indices + i * component_size(a->sparse_type), a->sparse_type);
+    if (k >= a->count) {
+      vl_gltf_fail(g, VL_GLTF_KEY(at, "sparse.indices"), "names element %u of %zu", k, a->count);
+      return NULL;
+    }
+  }
+  a->state = VL_GLTF_GOOD;
+  return a;
+}
+
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
+
+static float read_float(const uint8_t *p, uint32_t type, bool normalized) {
+  int8_t b;
+  int16_t s;
+  float f;
+  switch (type) {
+    case VL_GLTF_BYTE:
+      memcpy(&b, p, 1);
+      f = normalized ? (float)b / 127.0f : (float)b;
+      return normalized && f < -1.0f ? -1.0f : f;
+    case VL_GLTF_SHORT:
+      memcpy(&s, p, 2);
+      f = normalized ? (float)s / 32767.0f : (float)s;
+      return normalized && f < -1.0f ? -1.0f : f;
+    case VL_GLTF_FLOAT: memcpy(&f, p, 4); return f;
+    case VL_GLTF_UBYTE: return normalized ? (float)*p / 255.0f : (float)*p;
+    case VL_GLTF_USHORT: f = (float)read_uint(p, type); return normalized ? f / 65535.0f : f;
+    default: return normalized ? (float)((double)read_uint(p, type) / 4294967295.0) : (float)read_uint(p, type);
+  }
+}
+
+static void read_element(const vlGltfAccessor *a, const uint8_t *p, uint32_t components, float *out) {
+  size_t one = component_size(a->type);
+  for (uint32_t c = 0; c < components; c++) out[c] = p ? read_float(p + c * one, a->type, a->normalized) : 0.0f;
+}
+
+void vl_gltf_read_floats(const vlGltfAccessor *a, uint32_t wanted, float *out) {
+  uint32_t n = wanted < a->components ? wanted : a->components;
+  if (a->data && a->type == VL_GLTF_FLOAT && n == wanted) {
+    if (n == a->components && a->stride == 4 * n)
+      memcpy(out, a->data, a->count * 4 * n);
+    else
+      for (size_t i = 0; i < a->count; i++) memcpy(out + i * wanted, a->data + i * a->stride, 4 * n);
+  } else {
+    for (size_t i = 0; i < a->count; i++)
+      read_element(a, a->data ? a->data + i * a->stride : NULL, n, out + i * wanted);
+  }
+  size_t size = component_size(a->type) * a->components, step = component_size(a->sparse_type);
+  for (size_t i = 0; i < a->sparse_count; i++)
+    read_element(a, a->sparse_values + i * size, n,
+                 out + (size_t)read_uint(a->sparse_indices + i * step, a->sparse_type) * wanted);
+}
+
+static uint32_t as_uint(const uint8_t *p, uint32_t type) {
+  if (type == VL_GLTF_UBYTE || type == VL_GLTF_USHORT || type == VL_GLTF_UINT) return read_uint(p, type);
+  float f = read_float(p, type, false);
+  return f > 0 && f < 4e9f ? (uint32_t)f : 0;
+}
+
+void vl_gltf_read_uints(const vlGltfAccessor *a, uint32_t wanted, uint32_t *out) {
+  uint32_t n = wanted < a->components ? wanted : a->components;
+  size_t one = component_size(a->type), step = component_size(a->sparse_type);
+  for (size_t i = 0; i < a->count; i++)
+    for (uint32_t c = 0; c < wanted; c++)
+      out[i * wanted + c] = a->data && c < n ? as_uint(a->data + i * a->stride + c * one, a->type) : 0;
+  for (size_t i = 0; i < a->sparse_count; i++) {
+    uint32_t k = read_uint(a->sparse_indices + i * step, a->sparse_type);
+    for (uint32_t c = 0; c < n; c++)
+      out[(size_t)k * wanted + c] = as_uint(a->sparse_values + (i * a->components + c) * one, a->type);
+  }
+}
+
+bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes) {
+  /* Triangles may share their data many times over, and points become small bodies; a thousandfold is no model. */
+  uint64_t limit = (256u << 20) + 1000 * (g->total + g->file_size);
+  g->spent += bytes;
+  return g->spent <= limit ||
+         vl_gltf_fail(g, at, "the file uses its data again and again: more than %llu MB of geometry",
+                      (unsigned long long)(limit >> 20));
+}
+
+float *vl_gltf_load_floats(vlGltf *g, const vlGltfPlace *at, size_t index, uint32_t components, size_t count,
+                           size_t *read) {
+  const vlGltfAccessor *a = vl_gltf_accessor(g, at, index);
+  if (!a) return NULL;
+  if (count && a->count != count)
+    return vl_gltf_fail(g, at, "accessors[%zu] has %zu elements, %zu are needed", index, a->count, count), NULL;
+  if (!vl_gltf_spend(g, at, (uint64_t)a->count * components * 4)) return NULL;
+  float *out = vl_alloc_array(g->context, a->count, components * sizeof(float));
+  if (!out) return vl_gltf_fail_memory(g), NULL;
+  if (components > a->components)
+    for (size_t i = 0; i < a->count * components; i++) out[i] = i % components == 3 ? 1.0f : 0.0f;
+  vl_gltf_read_floats(a, components, out);
+  if (read) *read = a->count;
+  return out;
+}

@@ -1,0 +1,179 @@
+/* import/gltf/animation.c: nodes and morph weights at one moment: STEP, LINEAR (rotations along the great circle) and
+ * CUBICSPLINE (specification, appendix C). Before its first key a channel holds the first value, after the last the
+ * last. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "import/gltf/gltf.h"
+
+typedef enum { STEP, LINEAR, CUBIC } Mode;
+
+/* A sampler's keys: count times, count * width values (three times that of CUBICSPLINE). */
+typedef struct {
+  size_t count, width;
+  float *times, *values;
+  Mode mode;
+} Track;
+
+static void free_track(vlContext *context, Track *t) {
+  vl_free(context, t->times);
+  vl_free(context, t->values);
+}
+
+static bool read_track(vlGltf *g, const vlGltfPlace *at, const json_t *sampler, uint32_t components, Track *t) {
+  int64_t input, output;
+  const char *mode = "LINEAR";
+  size_t total = 0;
+  if (!vl_gltf_index(g, at, sampler, "input", g->accessor_count, &input) ||
+      !vl_gltf_index(g, at, sampler, "output", g->accessor_count, &output) ||
+      !vl_gltf_text(g, at, sampler, "interpolation", &mode))
+    return false;
+  if (input < 0 || output < 0) return vl_gltf_fail(g, at, "needs \"input\" and \"output\"");
+  t->mode = strcmp(mode, "STEP") == 0 ? STEP : strcmp(mode, "CUBICSPLINE") == 0 ? CUBIC : LINEAR;
+  if (t->mode == LINEAR && strcmp(mode, "LINEAR") != 0)
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "interpolation"), "unknown name \"%.30s\"", mode);
+  if (!(t->times = vl_gltf_load_floats(g, VL_GLTF_KEY(at, "input"), (size_t)input, 1, 0, &t->count)) ||
+      !(t->values = vl_gltf_load_floats(g, VL_GLTF_KEY(at, "output"), (size_t)output, components, 0, &total)))
+    return false;
+  for (size_t i = 0; i < t->count; i++)
+    if (!isfinite(t->times[i]) || (i && !(t->times[i] > t->times[i - 1])))
+      return vl_gltf_fail(g, VL_GLTF_KEY(at, "input"), "times must ascend; number %zu does not", i);
+  for (size_t i = 0; i < total * components; i++)
+    if (!isfinite(t->values[i])) return vl_gltf_fail(g, VL_GLTF_KEY(at, "output"), "a value is not finite");
+  size_t keys = t->count * (t->mode == CUBIC ? 3 : 1);
+  if (total % keys != 0)
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "output"), "%zu values for %zu keys", total, t->count);
+  t->width = total / keys * components;
+  return true;
+}
+
+static void slerp(const float *a, const float *b, double u, double out[4]) {
+  double dot = 0, q[4];
+  for (int i = 0; i < 4; i++) dot += (double)a[i] * b[i];
+  double sign = dot < 0 ? -1 : 1;
+  dot = fmin(fabs(dot), 1);
+  double angle = acos(dot), s = sin(angle), wa = 1 - u, wb = u;
+  if (s > 1e-6) wa = sin((1 - u) * angle) / s, wb = sin(u * angle) / s;
+  for (int i = 0; i < 4; i++) q[i] = wa * a[i] + sign * wb * b[i];
+  memcpy(out, q, sizeof q);
+}
+
+/* The value of component c. */
+static double at_key(const Track *t, size_t key, size_t part, size_t c) {
+  size_t step = t->mode == CUBIC ? 3 : 1;
+  return t->values[(key * step + part) * t->width + c];
+}
+
+static void evaluate(const Track *t, double time, bool rotation, double *out) {
+  size_t value = t->mode == CUBIC ? 1 : 0, last = t->count - 1, k = 0;
+  if (time <= t->times[0] || last == 0 || time >= t->times[last]) {
+    size_t key = last && time >= t->times[last] ? last : 0;
+    for (size_t c = 0; c < t->width; c++) out[c] = at_key(t, key, value, c);
+    return;
+  }
+  size_t high = last;
+  while (high - k > 1) {
+    size_t middle = (k + high) / 2;
+    if ((double)t->times[middle] <= time)
+      k = middle;
+    else
+      high = middle;
+  }
+  double span = (double)t->times[k + 1] - t->times[k], u = (time - t->times[k]) / span;
+  if (t->mode == LINEAR && rotation && t->width == 4) {
+    slerp(t->values + k * 4, t->values + (k + 1) * 4, u, out);
+    return;
+  }
+  for (size_t c = 0; c < t->width; c++) {
+    double a = at_key(t, k, value, c), b = at_key(t, k + 1, value, c);
+    if (t->mode == STEP) out[c] = a;
+    if (t->mode == LINEAR) out[c] = a + u * (b - a);
+    if (t->mode != CUBIC) continue;
+    double u2 = u * u, u3 = u2 * u, from = span * at_key(t, k, 2, c), to = span * at_key(t, k + 1, 0, c);
+    out[c] = (2 * u3 - 3 * u2 + 1) * a + (u3 - 2 * u2 + u) * from + (3 * u2 - 2 * u3) * b + (u3 - u2) * to;
+  }
+}
+
+static bool apply_weights(vlGltf *g, vlGltfNode *node, const Track *t) {
+  double *values = vl_alloc_array(g->context, t->width + 1, sizeof *values);
+  float *weights = vl_alloc_array(g->context, t->width + 1, sizeof *weights);
+  if (values && weights) {
+    evaluate(t, g->def->time, false, values);
+    for (size_t i = 0; i < t->width; i++) weights[i] = (float)values[i];
+    vl_free(g->context, node->weights);
+    node->weights = weights;
+    node->weight_count = (uint32_t)t->width;
+    weights = NULL;
+  }
+  bool ok = values && node->weights;
+  vl_free(g->context, weights);
+  vl_free(g->context, values);
+  return ok || vl_gltf_fail_memory(g);
+}
+
+static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animation, size_t i) {
+  static const char *const paths[] = {"translation", "rotation", "scale", "weights"};
+  const vlGltfPlace *at = VL_GLTF_ITEM(up, "channels", i), *at_target = VL_GLTF_KEY(at, "target");
+  const json_t *channel = json_array_get(json_object_get(animation, "channels"), i), *target;
+  const json_t *samplers = json_object_get(animation, "samplers");
+  const char *path = "";
+  int64_t sampler, node;
+  if (!json_is_object(channel)) return vl_gltf_fail(g, at, "must be an object");
+  if (!vl_gltf_index(g, at, channel, "sampler", json_array_size(samplers), &sampler) ||
+      !vl_gltf_object(g, at, channel, "target", &target) ||
+      !vl_gltf_index(g, at_target, target, "node", g->node_count, &node) ||
+      !vl_gltf_text(g, at_target, target, "path", &path))
+    return false;
+  if (sampler < 0) return vl_gltf_fail(g, at, "\"sampler\" is missing");
+  int what = -1;
+  for (int k = 0; k < 4; k++)
+    if (strcmp(path, paths[k]) == 0) what = k;
+  if (node < 0 || what < 0) return true; /* the specification lets these be passed over */
+  const json_t *json = json_array_get(samplers, (size_t)sampler);
+  const vlGltfPlace *at_sampler = VL_GLTF_ITEM(up, "samplers", (size_t)sampler);
+  if (!json_is_object(json)) return vl_gltf_fail(g, at_sampler, "must be an object");
+  static const uint32_t components[] = {3, 4, 3, 1};
+  Track track = {0};
+  vlGltfNode *n = &g->nodes[node];
+  bool ok = read_track(g, at_sampler, json, components[what], &track);
+  if (ok && what == 3) {
+    ok = apply_weights(g, n, &track);
+  } else if (ok && track.width != components[what]) {
+    ok = vl_gltf_fail(g, at_sampler, "its output holds more values than keys");
+  } else if (ok) {
+    double v[4];
+    evaluate(&track, g->def->time, what == 1, v);
+    memcpy(what == 0 ? n->translation : what == 1 ? n->rotation : n->scale, v, components[what] * sizeof *v);
+    n->has_matrix = false;
+  }
+  free_track(g->context, &track);
+  return ok;
+}
+
+bool vl_gltf_animate(vlGltf *g) {
+  if (!(g->def->time == g->def->time) || g->animation_count == 0) return true;
+  size_t chosen = SIZE_MAX;
+  const char *name = g->def->animation;
+  for (size_t i = 0; name && i < g->animation_count; i++) {
+    const char *own = json_string_value(json_object_get(vl_gltf_item(g, "animations", i), "name"));
+    if (own && strcmp(own, name) == 0 && chosen == SIZE_MAX) chosen = i;
+  }
+  if (name && chosen == SIZE_MAX) {
+    char *end;
+    unsigned long number = strtoul(name, &end, 10);
+    if (*end || end == name || number >= g->animation_count)
+      return vl_gltf_fail(g, NULL, "there is no animation \"%.60s\" (%zu are there)", name, g->animation_count);
+    chosen = number;
+  }
+  if (!name) chosen = 0;
+  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "animations", chosen);
+  const json_t *animation = vl_gltf_item(g, "animations", chosen), *channels, *samplers;
+  size_t count, sampler_count;
+  if (!vl_gltf_array(g, at, animation, "channels", &channels, &count) ||
+      !vl_gltf_array(g, at, animation, "samplers", &samplers, &sampler_count))
+    return false;
+  for (size_t i = 0; i < count; i++)
+    if (!apply_channel(g, at, animation, i)) return false;
+  return true;
+}

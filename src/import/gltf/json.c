@@ -1,0 +1,189 @@
+/* import/gltf/json.c: errors that name a place in the JSON, and typed members. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "import/gltf/gltf.h"
+
+/* The outermost part of the place is written first. */
+static size_t write_place(const vlGltfPlace *place, char *text, size_t size) {
+  size_t n = place->up ? write_place(place->up, text, size) : 0;
+  if (n + 1 >= size) return n;
+  int wrote = place->index == SIZE_MAX
+                  ? snprintf(text + n, size - n, "%s%.60s", n ? "." : "", place->key)
+                  : snprintf(text + n, size - n, "%s%.60s[%zu]", n ? "." : "", place->key, place->index);
+  return wrote < 0 ? n : n + (size_t)wrote < size ? n + (size_t)wrote : size - 1;
+}
+
+static void format_message(const vlGltfPlace *place, const char *format, va_list args, char *text, size_t size) {
+  size_t n = place ? write_place(place, text, size) : 0;
+  if (n && n + 3 < size) n += (size_t)snprintf(text + n, size - n, ": ");
+  vsnprintf(text + n, size - n, format, args);
+}
+
+bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format, ...) {
+  char text[512];
+  va_list args;
+  va_start(args, format);
+  format_message(place, format, args, text, sizeof text);
+  va_end(args);
+  vl_scene_fail(g->scene, code, (vlSource){g->path, 0, 0}, "%s", text);
+  return false;
+}
+
+bool vl_gltf_fail(vlGltf *g, const vlGltfPlace *place, const char *format, ...) {
+  char text[512];
+  va_list args;
+  va_start(args, format);
+  format_message(place, format, args, text, sizeof text);
+  va_end(args);
+  vl_scene_fail(g->scene, VL_ERROR_SCENE, (vlSource){g->path, 0, 0}, "%s", text);
+  return false;
+}
+
+bool vl_gltf_fail_memory(vlGltf *g) {
+  vl_scene_fail(g->scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+  return false;
+}
+
+void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfPlace *place, const char *format, ...) {
+  char text[512];
+  va_list args;
+  va_start(args, format);
+  format_message(place, format, args, text, sizeof text);
+  va_end(args);
+  vlError where;
+  vl_fail_at(&where, VL_ERROR_SCENE, g->path, 0, 0, " ");
+  vl_log(g->context, level, &where, "%s", text);
+}
+
+bool vl_gltf_once(vlGltf *g, uint32_t bit) {
+  bool first = !(g->told & bit);
+  g->told |= bit;
+  return first;
+}
+
+/* ---- members ----------------------------------------------------------------------------------------------------- */
+
+static const char *kind_of(const json_t *value) {
+  switch (json_typeof(value)) {
+    case JSON_OBJECT: return "an object";
+    case JSON_ARRAY: return "an array";
+    case JSON_STRING: return "a string";
+    case JSON_INTEGER:
+    case JSON_REAL: return "a number";
+    case JSON_NULL: return "null";
+    default: return "true or false";
+  }
+}
+
+static bool wrong_kind(vlGltf *g, const vlGltfPlace *at, const char *key, const char *wanted, const json_t *found) {
+  return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must be %s, found %s", wanted, kind_of(found));
+}
+
+bool vl_gltf_number(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, double *value) {
+  const json_t *v = json_object_get(object, key);
+  if (!v) return true;
+  if (!json_is_number(v)) return wrong_kind(g, at, key, "a number", v);
+  *value = json_number_value(v);
+  if (isfinite(*value) && fabs(*value) <= 3e38) return true;
+  return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%g is out of range", *value);
+}
+
+bool vl_gltf_float(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, float *value) {
+  double x = *value;
+  bool ok = vl_gltf_number(g, at, object, key, &x);
+  *value = (float)x;
+  return ok;
+}
+
+bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t count,
+                     double *values) {
+  const json_t *v = json_object_get(object, key);
+  if (!v) return true;
+  if (!json_is_array(v)) return wrong_kind(g, at, key, "an array", v);
+  if (json_array_size(v) != count)
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must hold %zu numbers, found %zu", count, json_array_size(v));
+  for (size_t i = 0; i < count; i++) {
+    const json_t *x = json_array_get(v, i);
+    if (!json_is_number(x)) return vl_gltf_fail(g, VL_GLTF_ITEM(at, key, i), "must be a number, found %s", kind_of(x));
+    values[i] = json_number_value(x);
+    if (!isfinite(values[i]) || fabs(values[i]) > 3e38)
+      return vl_gltf_fail(g, VL_GLTF_ITEM(at, key, i), "%g is out of range", values[i]);
+  }
+  return true;
+}
+
+bool vl_gltf_bool(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, bool *value) {
+  const json_t *v = json_object_get(object, key);
+  if (!v) return true;
+  if (!json_is_boolean(v)) return wrong_kind(g, at, key, "true or false", v);
+  *value = json_is_true(v);
+  return true;
+}
+
+bool vl_gltf_text(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char **value) {
+  const json_t *v = json_object_get(object, key);
+  if (!v) return true;
+  if (!json_is_string(v)) return wrong_kind(g, at, key, "a string", v);
+  *value = json_string_value(v);
+  return true;
+}
+
+static bool whole(vlGltf *g, const vlGltfPlace *at, const char *key, const json_t *v, size_t *value) {
+  if (!json_is_number(v)) return wrong_kind(g, at, key, "a whole number", v);
+  double x = json_number_value(v); /* writers of other languages may say 3.0 */
+  if (!(x >= 0 && x <= 9007199254740992.0) || x != floor(x))
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must be a whole number from 0 on, found %.17g", x);
+  *value = (size_t)x;
+  return true;
+}
+
+bool vl_gltf_size(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t *value) {
+  const json_t *v = json_object_get(object, key);
+  return !v || whole(g, at, key, v, value);
+}
+
+bool vl_gltf_index(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t limit,
+                   int64_t *index) {
+  const json_t *v = json_object_get(object, key);
+  size_t value;
+  *index = -1;
+  if (!v) return true;
+  if (!whole(g, at, key, v, &value)) return false;
+  if (value >= limit)
+    return limit ? vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%zu: there are only %zu (0 to %zu)", value, limit, limit - 1)
+                 : vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%zu: there are none", value);
+  *index = (int64_t)value;
+  return true;
+}
+
+bool vl_gltf_object(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const json_t **value) {
+  const json_t *v = json_object_get(object, key);
+  *value = NULL;
+  if (!v) return true;
+  if (!json_is_object(v)) return wrong_kind(g, at, key, "an object", v);
+  *value = v;
+  return true;
+}
+
+bool vl_gltf_array(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const json_t **value,
+                   size_t *count) {
+  const json_t *v = json_object_get(object, key);
+  *value = NULL;
+  *count = 0;
+  if (!v) return true;
+  if (!json_is_array(v)) return wrong_kind(g, at, key, "an array", v);
+  *value = v;
+  *count = json_array_size(v);
+  return true;
+}
+
+const json_t *vl_gltf_extension(const json_t *object, const char *name) {
+  const json_t *found = json_object_get(json_object_get(object, "extensions"), name);
+  return json_is_object(found) ? found : NULL;
+}
+
+const json_t *vl_gltf_item(const vlGltf *g, const char *array, size_t index) {
+  return json_array_get(json_object_get(g->root, array), index);
+}

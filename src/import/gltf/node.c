@@ -1,0 +1,295 @@
+/* import/gltf/node.c: the tree of nodes: poses, which scene is drawn, meshes and lights put in their places. */
+#include <math.h>
+#include <string.h>
+
+#include "import/gltf/gltf.h"
+
+#define NO_NODE UINT32_MAX
+
+vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const double s[3]) {
+  double n = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
+  double x = r[0], y = r[1], z = r[2], w = r[3];
+  if (n > 0)
+    x /= n, y /= n, z /= n, w /= n;
+  else
+    w = 1;
+  vlMat4 m = {{(1 - 2 * (y * y + z * z)) * s[0], 2 * (x * y - z * w) * s[1], 2 * (x * z + y * w) * s[2], t[0],
+               2 * (x * y + z * w) * s[0], (1 - 2 * (x * x + z * z)) * s[1], 2 * (y * z - x * w) * s[2], t[1],
+               2 * (x * z - y * w) * s[0], 2 * (y * z + x * w) * s[1], (1 - 2 * (x * x + y * y)) * s[2], t[2], 0, 0, 0,
+               1}};
+  return m;
+}
+
+static bool read_node(vlGltf *g, size_t i) {
+  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "nodes", i);
+  vlGltfNode *n = &g->nodes[i];
+  double columns[16];
+  const json_t *children;
+  size_t count;
+  n->has_matrix = json_object_get(n->json, "matrix") != NULL;
+  n->rotation[3] = n->scale[0] = n->scale[1] = n->scale[2] = 1;
+  if (!vl_gltf_numbers(g, at, n->json, "translation", 3, n->translation) ||
+      !vl_gltf_numbers(g, at, n->json, "rotation", 4, n->rotation) ||
+      !vl_gltf_numbers(g, at, n->json, "scale", 3, n->scale) ||
+      !vl_gltf_numbers(g, at, n->json, "matrix", 16, columns) ||
+      !vl_gltf_array(g, at, n->json, "children", &children, &count))
+    return false;
+  for (int k = 0; n->has_matrix && k < 16; k++) n->matrix[k] = columns[4 * (k % 4) + k / 4];
+  if (n->has_matrix && (n->matrix[12] != 0 || n->matrix[13] != 0 || n->matrix[14] != 0 || n->matrix[15] != 1))
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "matrix"), "its last row must be 0 0 0 1");
+  for (size_t k = 0; k < count; k++) {
+    const json_t *child = json_array_get(children, k);
+    double index = json_number_value(child);
+    if (!json_is_number(child) || !(index >= 0 && index < (double)g->node_count) || index != floor(index))
+      return vl_gltf_fail(g, VL_GLTF_ITEM(at, "children", k), "there is no such node");
+    vlGltfNode *c = &g->nodes[(size_t)index];
+    if (c->parent != NO_NODE)
+      return vl_gltf_fail(g, VL_GLTF_ITEM(at, "children", k), "node %zu is already a child of node %u", (size_t)index,
+                          c->parent);
+    c->parent = (uint32_t)i;
+  }
+  return true;
+}
+
+bool vl_gltf_read_nodes(vlGltf *g) {
+  for (size_t i = 0; i < g->node_count; i++) {
+    g->nodes[i].json = vl_gltf_item(g, "nodes", i);
+    g->nodes[i].parent = NO_NODE;
+  }
+  for (size_t i = 0; i < g->node_count; i++)
+    if (!read_node(g, i)) return false;
+  for (size_t i = 0; i < g->node_count; i++) { /* each has one parent at most: a circle never ends upwards */
+    size_t steps = 0;
+    for (uint32_t k = g->nodes[i].parent; k != NO_NODE && !g->nodes[k].reached; k = g->nodes[k].parent)
+      if (++steps > g->node_count) return vl_gltf_fail(g, VL_GLTF_ITEM(NULL, "nodes", i), "is among its own children");
+    for (uint32_t k = (uint32_t)i; k != NO_NODE && !g->nodes[k].reached; k = g->nodes[k].parent)
+      g->nodes[k].reached = true;
+  }
+  for (size_t i = 0; i < g->node_count; i++) g->nodes[i].reached = false;
+  return true;
+}
+
+static vlMat4 local_matrix(const vlGltfNode *n) {
+  return n->has_matrix ? vl_mat4_load(n->matrix) : vl_gltf_matrix_from_trs(n->translation, n->rotation, n->scale);
+}
+
+bool vl_gltf_pose_nodes(vlGltf *g) {
+  uint32_t *chain = vl_alloc_array(g->context, g->node_count + 1, sizeof *chain);
+  if (!chain) return vl_gltf_fail_memory(g);
+  for (size_t i = 0; i < g->node_count; i++) {
+    size_t n = 0;
+    for (uint32_t k = (uint32_t)i; k != NO_NODE && !g->nodes[k].has_pose; k = g->nodes[k].parent) chain[n++] = k;
+    while (n > 0) {
+      vlGltfNode *node = &g->nodes[chain[--n]];
+      vlMat4 local = local_matrix(node);
+      node->world = node->parent == NO_NODE ? local : vl_mat4_multiply(g->nodes[node->parent].world, local);
+      node->has_pose = true;
+    }
+  }
+  vl_free(g->context, chain);
+  for (size_t i = 0; i < g->node_count; i++)
+    if (!vl_mat4_is_finite(g->nodes[i].world))
+      return vl_gltf_fail(g, VL_GLTF_ITEM(NULL, "nodes", i), "its place in the world is not finite");
+  return true;
+}
+
+bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node) {
+  if (json_object_get(node->json, "skin")) return true;
+  double mesh = json_number_value(json_object_get(node->json, "mesh"));
+  const json_t *json = vl_gltf_item(g, "meshes", (size_t)(mesh > 0 ? mesh : 0));
+  return (node->weights || json_object_get(node->json, "weights") || json_object_get(json, "weights")) &&
+         json_object_get(json_array_get(json_object_get(json, "primitives"), 0), "targets");
+}
+
+/* ---- drawing ----------------------------------------------------------------------------------------------------- */
+
+/* Poses of EXT_mesh_gpu_instancing relative to the node; null and count 0 where there is none. */
+static bool read_instances(vlGltf *g, const vlGltfPlace *node_at, const json_t *node, vlMat4 **poses, size_t *count) {
+  static const char *const names[3] = {"TRANSLATION", "ROTATION", "SCALE"};
+  static const uint32_t sizes[3] = {3, 4, 3};
+  *poses = NULL;
+  *count = 0;
+  const json_t *extension = vl_gltf_extension(node, "EXT_mesh_gpu_instancing"), *attributes;
+  if (!extension) return true;
+  const vlGltfPlace *at = VL_GLTF_KEY(node_at, "extensions.EXT_mesh_gpu_instancing");
+  if (!vl_gltf_object(g, at, extension, "attributes", &attributes)) return false;
+  float *values[3] = {NULL, NULL, NULL};
+  bool ok = true;
+  for (int k = 0; k < 3 && ok; k++) {
+    int64_t index;
+    const vlGltfPlace *here = VL_GLTF_KEY(at, "attributes");
+    ok = vl_gltf_index(g, here, attributes, names[k], g->accessor_count, &index);
+    if (!ok || index < 0) continue;
+    values[k] = vl_gltf_load_floats(g, VL_GLTF_KEY(here, names[k]), (size_t)index, sizes[k], *count, count);
+    ok = values[k] != NULL;
+  }
+  if (ok && *count) {
+    *poses = vl_gltf_spend(g, at, *count * sizeof **poses) ? vl_alloc_array(g->context, *count, sizeof **poses) : NULL;
+    ok = *poses || vl_gltf_fail_memory(g);
+  }
+  for (size_t i = 0; ok && i < *count; i++) {
+    double v[3][4] = {{0, 0, 0, 0}, {0, 0, 0, 1}, {1, 1, 1, 0}};
+    for (int k = 0; k < 3; k++)
+      for (uint32_t c = 0; values[k] && c < sizes[k]; c++) v[k][c] = values[k][i * sizes[k] + c];
+    (*poses)[i] = vl_gltf_matrix_from_trs(v[0], v[1], v[2]);
+  }
+  for (int k = 0; k < 3; k++) vl_free(g->context, values[k]);
+  if (!ok) {
+    vl_free(g->context, *poses);
+    *poses = NULL;
+  }
+  return ok;
+}
+
+static size_t instance_count(vlGltf *g, const json_t *node) {
+  const json_t *attributes = json_object_get(vl_gltf_extension(node, "EXT_mesh_gpu_instancing"), "attributes");
+  const char *key;
+  json_t *value;
+  size_t count = 1;
+  json_object_foreach((json_t *)(uintptr_t)attributes, key, value) {
+    double index = json_number_value(value);
+    if (index < 0 || index >= (double)g->accessor_count) continue;
+    double n = json_number_value(json_object_get(vl_gltf_item(g, "accessors", (size_t)index), "count"));
+    if (n > (double)count) count = (size_t)(n < 1e9 ? n : 1e9);
+  }
+  return count;
+}
+
+static bool is_flat(vlMat4 m) {
+  double l = 0;
+  for (int i = 0; i < 12; i++) l += i % 4 == 3 ? 0 : m.m[i] * m.m[i];
+  return !(fabs(vl_mat4_determinant3(m)) > 1e-12 * l * sqrt(l)) || l == 0;
+}
+
+/* Meshes that stand in several places are kept once; others, and those that glow, go to the world. */
+static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t node_index, vlMat4 pose) {
+  vlGltfMesh *m = &g->meshes[mesh];
+  bool deforms = vl_gltf_deforms(g, node), flat = is_flat(pose);
+  if (flat && vl_gltf_once(g, VL_GLTF_TOLD_FLAT))
+    vl_gltf_warn(g, VL_LOG_INFO, VL_GLTF_ITEM(NULL, "nodes", node_index), "its scale makes it flat");
+  if (deforms || flat || m->glows || m->uses < 2)
+    return vl_gltf_add_mesh(g, mesh, node, node_index, (vlGroupId){0}, pose);
+  if (!m->grouped) {
+    const char *name = json_string_value(json_object_get(vl_gltf_item(g, "meshes", mesh), "name"));
+    m->group = vl_scene_add_group(g->scene, name ? name : "");
+    m->grouped = true;
+    if (!vl_gltf_add_mesh(g, mesh, NULL, node_index, m->group, vl_mat4_identity())) return false;
+  }
+  vl_scene_add_instance(g->scene, m->group, pose.m, (vlSource){g->path, 0, 0});
+  return g->scene->error.code == VL_OK;
+}
+
+static bool draw_node(vlGltf *g, size_t i) {
+  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "nodes", i);
+  const vlGltfNode *node = &g->nodes[i];
+  int64_t mesh, light = -1;
+  const json_t *punctual = vl_gltf_extension(node->json, "KHR_lights_punctual");
+  const vlGltfPlace *at_light = VL_GLTF_KEY(at, "extensions.KHR_lights_punctual");
+  if (!vl_gltf_index(g, at, node->json, "mesh", g->mesh_count, &mesh) ||
+      !vl_gltf_index(g, at_light, punctual, "light", g->light_count, &light))
+    return false;
+  if (light >= 0 && !vl_gltf_add_light(g, i, light)) return false;
+  if (mesh < 0) return true;
+  vlMat4 *poses;
+  size_t count;
+  if (!read_instances(g, at, node->json, &poses, &count)) return false;
+  bool ok = true;
+  if (!poses) ok = place_mesh(g, (size_t)mesh, node, i, node->world);
+  for (size_t k = 0; ok && k < count; k++)
+    ok = place_mesh(g, (size_t)mesh, node, i, vl_mat4_multiply(node->world, poses[k]));
+  vl_free(g->context, poses);
+  return ok;
+}
+
+/* Is the material (by the chosen variant too) one that gives out light? What does not parse is said later. */
+static bool glows(vlGltf *g, const json_t *primitive) {
+  double index = json_number_value(json_object_get(primitive, "material"));
+  size_t i = 0;
+  const json_t *mapping,
+      *mappings = json_object_get(vl_gltf_extension(primitive, "KHR_materials_variants"), "mappings");
+  bool any = false;
+  for (int k = -1; k < (int)json_array_size(mappings); k++) {
+    mapping = k < 0 ? primitive : json_array_get(mappings, (size_t)k);
+    index = json_number_value(json_object_get(mapping, "material"));
+    if (!json_object_get(mapping, "material") || index < 0) continue;
+    i = (size_t)index;
+    const json_t *m = vl_gltf_item(g, "materials", i), *factor = json_object_get(m, "emissiveFactor");
+    for (size_t c = 0; c < json_array_size(factor); c++) any = any || json_number_value(json_array_get(factor, c)) > 0;
+    any = any || vl_gltf_extension(m, "KHR_materials_unlit");
+  }
+  return any;
+}
+
+/* Marks what the scene reaches, in order; an explicit stack, since trees may be deep. */
+static bool collect(vlGltf *g, const json_t *roots, const vlGltfPlace *at, uint32_t *order, size_t *count) {
+  uint32_t *stack = vl_alloc_array(g->context, g->node_count + 1, sizeof *stack);
+  if (!stack) return vl_gltf_fail_memory(g);
+  bool ok = true;
+  *count = 0;
+  for (size_t k = 0; ok && k < json_array_size(roots); k++) {
+    const json_t *root = json_array_get(roots, k);
+    double index = json_number_value(root);
+    if (!json_is_number(root) || !(index >= 0 && index < (double)g->node_count) || index != floor(index)) {
+      ok = vl_gltf_fail(g, VL_GLTF_ITEM(at, "nodes", k), "there is no such node");
+      break;
+    }
+    size_t top = 0;
+    stack[top++] = (uint32_t)index;
+    while (top > 0) {
+      uint32_t i = stack[--top];
+      if (g->nodes[i].reached) continue; /* named twice: drawn once */
+      g->nodes[i].reached = true;
+      order[(*count)++] = i;
+      const json_t *children = json_object_get(g->nodes[i].json, "children");
+      for (size_t c = json_array_size(children); c-- > 0;)
+        if (top <= g->node_count) stack[top++] = (uint32_t)json_number_value(json_array_get(children, c));
+    }
+  }
+  vl_free(g->context, stack);
+  return ok;
+}
+
+static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
+  for (size_t k = 0; k < count; k++) {
+    int64_t mesh;
+    const vlGltfNode *node = &g->nodes[order[k]];
+    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", order[k]), node->json, "mesh", g->mesh_count, &mesh))
+      return false;
+    if (mesh < 0 || vl_gltf_deforms(g, node)) continue;
+    size_t n = instance_count(g, node->json);
+    vlGltfMesh *m = &g->meshes[mesh];
+    m->uses = m->uses + n > 1000000 ? 1000000 : (uint32_t)(m->uses + n);
+  }
+  for (size_t i = 0; i < g->mesh_count; i++) {
+    const json_t *primitives = json_object_get(vl_gltf_item(g, "meshes", i), "primitives");
+    for (size_t k = 0; g->meshes[i].uses > 1 && k < json_array_size(primitives); k++)
+      g->meshes[i].glows = g->meshes[i].glows || glows(g, json_array_get(primitives, k));
+    if (g->meshes[i].uses > 1000) g->meshes[i].glows = false; /* then its glow is seen, but lights nothing */
+  }
+  return true;
+}
+
+bool vl_gltf_draw(vlGltf *g) {
+  int64_t index;
+  if (!vl_gltf_index(g, NULL, g->root, "scene", g->scene_count, &index)) return false;
+  size_t chosen = index < 0 ? 0 : (size_t)index;
+  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "scenes", chosen);
+  const json_t *scene = g->scene_count ? vl_gltf_item(g, "scenes", chosen) : NULL, *roots = NULL;
+  size_t root_count = 0, count = 0;
+  if (!vl_gltf_array(g, at, scene, "nodes", &roots, &root_count)) return false;
+  json_t *all = NULL;
+  if (!scene) { /* a file without scenes: all roots */
+    all = json_array();
+    for (size_t i = 0; i < g->node_count; i++)
+      if (g->nodes[i].parent == NO_NODE) json_array_append_new(all, json_integer((json_int_t)i));
+    roots = all;
+  }
+  uint32_t *order = vl_alloc_array(g->context, g->node_count + 1, sizeof *order);
+  bool ok = order || vl_gltf_fail_memory(g);
+  ok = ok && collect(g, roots, at, order, &count) && count_uses(g, order, count);
+  for (size_t k = 0; ok && k < count; k++) ok = draw_node(g, order[k]);
+  ok = ok && vl_gltf_image_light(g, scene, at);
+  vl_free(g->context, order);
+  json_decref(all);
+  return ok;
+}

@@ -1,0 +1,279 @@
+/* import/gltf/tangent.c: tangents as MikkTSpace makes them (Mikkelsen 2008, "Simulation of Wrinkled Surfaces
+ * Revisited", and its published rules): vertices of the same position, normal and uv are one; faces that share an edge
+ * and whose uvs run the same way round form a group at each vertex; a group's tangent is the sum of its faces'
+ * directions of u, projected on the plane of the normal, weighted by the faces' angles there. Own implementation.
+ *
+ * v points upwards here, so that n x t * sign is the direction in which v grows: glTF's rule for tangent.w. */
+#include <math.h>
+#include <string.h>
+
+#include "import/gltf/gltf.h"
+#include "math/hash.h"
+
+typedef struct Maker {
+  const vlGltfPrimitive *p;
+  const float *uvs;
+  uint32_t *welded; /* vertex -> the first one like it */
+  uint32_t *group;  /* corner -> corner that stands for its group (a forest) */
+  float *direction; /* face -> unit direction of u (3), 0 where there is none */
+  int8_t *sign;     /* face -> 1, -1; 0 degenerate */
+} Maker;
+
+static uint32_t hash_floats(uint32_t h, const float *v, int n) {
+  for (int i = 0; i < n; i++) {
+    float x = v[i] + 0.0f; /* -0 is 0 */
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    h = vl_hash2(h, bits);
+  }
+  return h;
+}
+
+static bool alike(const Maker *m, uint32_t a, uint32_t b) {
+  const vlGltfPrimitive *p = m->p;
+  for (size_t i = 0; i < 3; i++)
+    if (p->positions[3 * (size_t)a + i] != p->positions[3 * (size_t)b + i] ||
+        p->normals[3 * (size_t)a + i] != p->normals[3 * (size_t)b + i])
+      return false;
+  return m->uvs[2 * (size_t)a] == m->uvs[2 * (size_t)b] && m->uvs[2 * (size_t)a + 1] == m->uvs[2 * (size_t)b + 1];
+}
+
+static size_t table_size(size_t items) {
+  size_t size = 16;
+  while (size < 2 * items) size *= 2;
+  return size;
+}
+
+static bool weld(vlContext *context, Maker *m) {
+  size_t size = table_size(m->p->vertices);
+  uint32_t *table = vl_alloc_zero(context, size, sizeof *table);
+  if (!table) return false;
+  for (size_t i = 0; i < m->p->vertices; i++) {
+    uint32_t h = hash_floats(hash_floats(hash_floats(1, m->p->positions + 3 * i, 3), m->p->normals + 3 * i, 3),
+                             m->uvs + 2 * i, 2);
+    size_t slot = h & (size - 1);
+    while (table[slot] && !alike(m, table[slot] - 1, (uint32_t)i)) slot = (slot + 1) & (size - 1);
+    if (!table[slot]) table[slot] = (uint32_t)i + 1;
+    m->welded[i] = table[slot] - 1;
+  }
+  vl_free(context, table);
+  return true;
+}
+
+static void face_directions(Maker *m) {
+  const vlGltfPrimitive *p = m->p;
+  for (size_t f = 0; f < p->faces; f++) {
+    const uint32_t *k = p->indices + 3 * f;
+    double e1[3], e2[3], t[3], l = 0;
+    for (int i = 0; i < 3; i++) {
+      e1[i] = (double)p->positions[3 * (size_t)k[1] + (size_t)i] - p->positions[3 * (size_t)k[0] + (size_t)i];
+      e2[i] = (double)p->positions[3 * (size_t)k[2] + (size_t)i] - p->positions[3 * (size_t)k[0] + (size_t)i];
+    }
+    const float *a = m->uvs + 2 * (size_t)k[0], *b = m->uvs + 2 * (size_t)k[1], *c = m->uvs + 2 * (size_t)k[2];
+    double s1 = (double)b[0] - a[0], t1 = (double)b[1] - a[1], s2 = (double)c[0] - a[0], t2 = (double)c[1] - a[1];
+    double area = s1 * t2 - s2 * t1;
+    for (int i = 0; i < 3; i++) t[i] = (t2 * e1[i] - t1 * e2[i]) * (area < 0 ? -1 : 1), l += t[i] * t[i];
+    l = sqrt(l);
+    m->sign[f] = fabs(area) > 1e-30 && l > 0 ? (area > 0 ? 1 : -1) : 0;
+    for (int i = 0; i < 3; i++) m->direction[3 * f + (size_t)i] = m->sign[f] ? (float)(t[i] / l) : 0.0f;
+  }
+}
+
+static uint32_t find(uint32_t *group, uint32_t i) {
+  while (group[i] != i) group[i] = group[group[i]], i = group[i];
+  return i;
+}
+
+static void join(uint32_t *group, uint32_t a, uint32_t b) {
+  a = find(group, a), b = find(group, b);
+  if (a < b)
+    group[b] = a;
+  else
+    group[a] = b;
+}
+
+/* Steps that an edge is looked for: damaged files name one edge a million times. */
+enum { MAX_PROBES = 200 };
+
+/* Faces on both sides of an edge, each going along it the other way; of more than two the first pairs. A face without
+ * a direction of its own goes with either. */
+static bool join_edges(vlContext *context, Maker *m) {
+  size_t corners = 3 * m->p->faces, size = table_size(corners);
+  uint32_t *table = vl_alloc_zero(context, size, sizeof *table);
+  if (!table) return false;
+  const uint32_t *index = m->p->indices;
+  for (uint32_t c = 0; c < corners; c++) {
+    uint32_t f = c / 3, next = 3 * f + (c + 1) % 3;
+    uint32_t from = m->welded[index[c]], to = m->welded[index[next]];
+    size_t slot = vl_hash2(to, from) & (size - 1);
+    bool partner = false;
+    int probes = MAX_PROBES;
+    for (; from != to && table[slot] && probes-- > 0; slot = (slot + 1) & (size - 1)) { /* backwards, still alone */
+      uint32_t d = table[slot] - 1;
+      if (d == UINT32_MAX - 1) continue;
+      uint32_t g = d / 3, d_next = 3 * g + (d + 1) % 3;
+      bool same = m->sign[f] == m->sign[g] || !m->sign[f] || !m->sign[g];
+      if (m->welded[index[d]] != to || m->welded[index[d_next]] != from || !same || g == f) continue;
+      partner = true;
+      table[slot] = UINT32_MAX; /* taken */
+      join(m->group, c, d_next);
+      join(m->group, next, d);
+      break;
+    }
+    if (partner || from == to) continue;
+    slot = vl_hash2(from, to) & (size - 1);
+    for (probes = MAX_PROBES; table[slot] && probes > 0; probes--) slot = (slot + 1) & (size - 1);
+    if (!table[slot]) table[slot] = c + 1;
+  }
+  vl_free(context, table);
+  return true;
+}
+
+/* v without its part along the unit vector n, made unit; false when nothing is left. */
+static bool project(const float *v, const float *n, double out[3]) {
+  double d = 0, l = 0;
+  for (int i = 0; i < 3; i++) d += (double)v[i] * n[i];
+  for (int i = 0; i < 3; i++) out[i] = v[i] - d * n[i], l += out[i] * out[i];
+  l = sqrt(l);
+  for (int i = 0; i < 3 && l > 0; i++) out[i] /= l;
+  return l > 1e-12;
+}
+
+/* sums: 3 a corner, at the corner that stands for the group. */
+static void add_corner(const Maker *m, uint32_t c, double *sums) {
+  const vlGltfPrimitive *p = m->p;
+  uint32_t f = c / 3;
+  if (!m->sign[f]) return;
+  const uint32_t *k = p->indices + 3 * (size_t)f;
+  const float *n = p->normals + 3 * (size_t)p->indices[c];
+  const float *x = p->positions + 3 * (size_t)p->indices[c];
+  const float *a = p->positions + 3 * (size_t)k[(c + 1) % 3 == 0 ? 0 : (c % 3 + 1) % 3];
+  const float *b = p->positions + 3 * (size_t)k[(c % 3 + 2) % 3];
+  float to_a[3], to_b[3];
+  for (int i = 0; i < 3; i++) to_a[i] = a[i] - x[i], to_b[i] = b[i] - x[i];
+  double pa[3], pb[3], t[3];
+  if (!project(to_a, n, pa) || !project(to_b, n, pb) || !project(m->direction + 3 * (size_t)f, n, t)) return;
+  double dot = pa[0] * pb[0] + pa[1] * pb[1] + pa[2] * pb[2];
+  double angle = acos(dot > 1 ? 1 : dot < -1 ? -1 : dot);
+  for (int i = 0; i < 3; i++) sums[3 * (size_t)m->group[c] + (size_t)i] += angle * t[i];
+}
+
+/* ---- the new vertices -------------------------------------------------------------------------------------------- */
+
+static float *gather(vlContext *context, const float *rows, size_t width, const uint32_t *from, size_t count,
+                     bool *ok) {
+  if (!rows || !*ok) return NULL;
+  float *out = vl_alloc_array(context, count, width * sizeof *out);
+  if (!out) *ok = false;
+  for (size_t i = 0; out && i < count; i++)
+    memcpy(out + i * width, rows + (size_t)from[i] * width, width * sizeof *out);
+  return out;
+}
+
+/* Vertices named by corners: vertex i looks like vertex from[i] of p. */
+static bool rebuild(vlGltf *g, vlGltfPrimitive *p, const uint32_t *from, size_t count, const uint32_t *indices) {
+  vlGltfPrimitive q = {.vertices = count, .faces = p->faces};
+  bool ok = true;
+  q.positions = gather(g->context, p->positions, 3, from, count, &ok);
+  q.normals = gather(g->context, p->normals, 3, from, count, &ok);
+  q.colors = gather(g->context, p->colors, 4, from, count, &ok);
+  for (int k = 0; k < 4; k++) q.uvs[k] = gather(g->context, p->uvs[k], 2, from, count, &ok);
+  if (ok && (q.indices = vl_alloc_array(g->context, 3 * p->faces, sizeof *q.indices)))
+    memcpy(q.indices, indices, 3 * p->faces * sizeof *indices);
+  if (!ok || !q.indices) {
+    vl_gltf_free_primitive(g->context, &q);
+    return vl_gltf_fail_memory(g);
+  }
+  vl_gltf_free_primitive(g->context, p);
+  *p = q;
+  return true;
+}
+
+/* Each face gets vertices of its own, with its normal (specification: flat normals where none are given). */
+static bool make_flat(vlGltf *g, vlGltfPrimitive *p) {
+  size_t corners = 3 * p->faces;
+  uint32_t *order = vl_alloc_array(g->context, corners, sizeof *order);
+  bool ok = order || vl_gltf_fail_memory(g);
+  for (size_t i = 0; ok && i < corners; i++) order[i] = (uint32_t)i;
+  ok = ok && rebuild(g, p, p->indices, corners, order);
+  vl_free(g->context, order);
+  if (!ok) return false;
+  if (!(p->normals = vl_alloc_zero(g->context, corners, 3 * sizeof(float)))) return vl_gltf_fail_memory(g);
+  for (size_t f = 0; f < p->faces; f++) {
+    const float *v = p->positions + 9 * f;
+    double a[3], b[3], n[3], l = 0;
+    for (int i = 0; i < 3; i++) a[i] = (double)v[3 + i] - v[i], b[i] = (double)v[6 + i] - v[i];
+    for (int i = 0; i < 3; i++) {
+      n[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+      l += n[i] * n[i];
+    }
+    l = sqrt(l);
+    for (int k = 0; k < 9; k++) p->normals[9 * f + (size_t)k] = l > 0 ? (float)(n[k % 3] / l) : (k % 3 == 2);
+  }
+  return true;
+}
+
+/* One vertex for each pair of vertex and group. */
+static bool split(vlGltf *g, vlGltfPrimitive *p, const Maker *m, const double *sums) {
+  size_t corners = 3 * p->faces, size = table_size(corners), count = 0;
+  uint32_t *table = vl_alloc_zero(g->context, size, sizeof *table);
+  uint32_t *from = vl_alloc_array(g->context, corners, sizeof *from);
+  uint32_t *group = vl_alloc_array(g->context, corners, sizeof *group);
+  uint32_t *indices = vl_alloc_array(g->context, corners, sizeof *indices);
+  int8_t *signs = vl_alloc_array(g->context, corners, 1);
+  bool ok = table && from && group && indices && signs;
+  for (size_t c = 0; ok && c < corners; c++) {
+    uint32_t vertex = p->indices[c], of = m->group[c];
+    size_t slot = vl_hash2(vertex, of) & (size - 1);
+    while (table[slot] && (from[table[slot] - 1] != vertex || group[table[slot] - 1] != of))
+      slot = (slot + 1) & (size - 1);
+    if (!table[slot]) {
+      from[count] = vertex, group[count] = of, signs[count] = 0;
+      table[slot] = (uint32_t)++count;
+    }
+    indices[c] = table[slot] - 1;
+    if (m->sign[c / 3]) signs[indices[c]] = m->sign[c / 3];
+  }
+  ok = (ok || vl_gltf_fail_memory(g)) && rebuild(g, p, from, count, indices);
+  if (ok) {
+    p->tangents = vl_alloc_array(g->context, count, 4 * sizeof(float));
+    ok = p->tangents || vl_gltf_fail_memory(g);
+  }
+  for (size_t i = 0; ok && i < count; i++) {
+    const double *s = sums + 3 * (size_t)group[i];
+    double l = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+    for (int k = 0; k < 3; k++) p->tangents[4 * i + (size_t)k] = l > 0 ? (float)(s[k] / l) : 0.0f;
+    p->tangents[4 * i + 3] = signs[i] < 0 ? -1.0f : 1.0f;
+  }
+  vl_free(g->context, table);
+  vl_free(g->context, from);
+  vl_free(g->context, group);
+  vl_free(g->context, indices);
+  vl_free(g->context, signs);
+  return ok;
+}
+
+bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p) {
+  if (!p->normals && !make_flat(g, p)) return false;
+  size_t corners = 3 * p->faces;
+  if (!vl_gltf_spend(g, NULL, 40 * (uint64_t)corners)) return false;
+  Maker m = {.p = p, .uvs = p->uvs[set]};
+  m.welded = vl_alloc_array(g->context, p->vertices, sizeof *m.welded);
+  m.group = vl_alloc_array(g->context, corners, sizeof *m.group);
+  m.direction = vl_alloc_array(g->context, p->faces, 3 * sizeof *m.direction);
+  m.sign = vl_alloc_array(g->context, p->faces, 1);
+  double *sums = vl_alloc_zero(g->context, corners, 3 * sizeof *sums);
+  bool ok = m.welded && m.group && m.direction && m.sign && sums && weld(g->context, &m);
+  for (uint32_t c = 0; ok && c < corners; c++) m.group[c] = c;
+  if (ok) face_directions(&m);
+  ok = ok && join_edges(g->context, &m);
+  for (uint32_t c = 0; ok && c < corners; c++) m.group[c] = find(m.group, c);
+  for (uint32_t c = 0; ok && c < corners; c++) add_corner(&m, c, sums);
+  ok = (ok || vl_gltf_fail_memory(g)) && split(g, p, &m, sums);
+  vl_free(g->context, m.welded);
+  vl_free(g->context, m.group);
+  vl_free(g->context, m.direction);
+  vl_free(g->context, m.sign);
+  vl_free(g->context, sums);
+  return ok;
+}

@@ -47,6 +47,7 @@ enum Row {
   T_MAX,
   RAY_TIME,
   VALID,
+  RAY_WEIGHT,
   LAMBDA,
   INV_PDF = LAMBDA + 4,
   RADIANCE = INV_PDF + 4,
@@ -122,11 +123,29 @@ static void clear_invalid(uint32_t n, const float *valid, float *alpha, float *c
   }
 }
 
+/* What a ray's light counts. What a part of the lens stops is black, not transparent. */
+static void weigh(uint32_t n, const float *weight, const float *valid, float *alpha, float *const radiance[4]) {
+  for (uint32_t i = 0; i < n; i++) {
+    for (int c = 0; c < 4; c++) radiance[c][i] = weight[i] > 0.0f ? radiance[c][i] * weight[i] : 0.0f;
+    alpha[i] = weight[i] > 0.0f || !(valid[i] > 0.0f) ? alpha[i] : 1.0f;
+  }
+}
+
 static void render_batch(const Render *r, Worker *w, uint32_t n) {
   const int32_t *px = (int32_t *)(void *)row(w, PIXEL_X), *py = (int32_t *)(void *)row(w, PIXEL_Y);
   const uint32_t *index = (uint32_t *)(void *)row(w, INDEX);
-  vlCameraRays rays = {row(w, OX), row(w, OY),    row(w, OZ),    row(w, DX),       row(w, DY),
-                       row(w, DZ), row(w, T_MIN), row(w, T_MAX), row(w, RAY_TIME), row(w, VALID)};
+  const vlCameraCompiled *camera = &r->film_rays.camera;
+  vlCameraRays rays = {.ox = row(w, OX),
+                       .oy = row(w, OY),
+                       .oz = row(w, OZ),
+                       .dx = row(w, DX),
+                       .dy = row(w, DY),
+                       .dz = row(w, DZ),
+                       .t_min = row(w, T_MIN),
+                       .t_max = row(w, T_MAX),
+                       .time = row(w, RAY_TIME),
+                       .valid = row(w, VALID),
+                       .weight = row(w, RAY_WEIGHT)};
   vlFilmRayRows rows = {px,
                         py,
                         index,
@@ -160,7 +179,8 @@ static void render_batch(const Render *r, Worker *w, uint32_t n) {
     expose.inv_pdf[c] = batch.inv_pdf[c] = r->rgb_mode ? NULL : row(w, INV_PDF + c);
   }
   r->trace_kernels->trace(r->world, &r->trace, w->scratch, &batch);
-  if (!r->film_rays.camera.plain) clear_invalid(n, row(w, VALID), batch.alpha, batch.radiance);
+  if (vl_camera_weighted(camera)) weigh(n, rays.weight, rays.valid, batch.alpha, batch.radiance);
+  if (!camera->plain) clear_invalid(n, row(w, VALID), batch.alpha, batch.radiance);
   vl_film_expose(r->film, r->trace.isa, &expose, row(w, RED), row(w, GREEN), row(w, BLUE));
   vlFilmSamples add = {n, px, py, row(w, RED), row(w, GREEN), row(w, BLUE), batch.alpha, row(w, WEIGHT)};
   int32_t bad_x = 0, bad_y = 0;

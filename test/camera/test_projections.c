@@ -214,7 +214,7 @@ static void rays_of_all_sets(void **state) {
     const vlIsa sets[] = {VL_ISA_V2, VL_ISA_V3, VL_ISA_V4};
     for (int set = 0; set < 3 && sets[set] <= vl_isa_best(); set++) {
       float(*r)[N] = out[set > 0];
-      vlCameraRays rays = {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8], r[9]};
+      vlCameraRays rays = {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8], r[9], NULL};
       vl_camera_kernels(sets[set])->rays(&c, N, &s, &rays);
       if (set > 0 && memcmp(out[0], out[1], sizeof out[0])) fail_msg("model %d: sets differ", k / 2);
     }
@@ -250,7 +250,7 @@ static void lens_focuses(void **state) {
     vlCameraCompiled c;
     vl_camera_compile(&camera, &c);
     vlCameraSamples s = {film, film, px, py, u, v, time};
-    vlCameraRays rays = {out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]};
+    vlCameraRays rays = {out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9], NULL};
     vl_camera_kernels(VL_ISA_V2)->rays(&c, N, &s, &rays);
     double o[3], d[3], p[3];
     assert_true(vl_camera_unproject(&camera, px[0] + 0.25, py[0] + 0.25, o, d));

@@ -23,8 +23,8 @@ static void run(vlIsa isa, const vlCamera *camera, uint32_t n, Rays *out) {
   vl_camera_compile(camera, &c);
   vlCameraSamples s = {samples.film_x, samples.film_y, samples.pixel_x, samples.pixel_y,
                        samples.lens_u, samples.lens_v, samples.time};
-  vlCameraRays r = {out->ox, out->oy,    out->oz,    out->dx,   out->dy,
-                    out->dz, out->t_min, out->t_max, out->time, out->valid};
+  vlCameraRays r = {out->ox,    out->oy,    out->oz,   out->dx,    out->dy, out->dz,
+                    out->t_min, out->t_max, out->time, out->valid, NULL};
   vl_camera_kernels(isa)->rays(&c, n, &s, &r);
 }
 

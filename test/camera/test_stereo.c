@@ -196,8 +196,8 @@ static void batches_agree(void **state) {
       vlIsa got;
       if (vl_isa_choose(sets[k], &got) != VL_OK) continue;
       vlCameraSamples samples = {film[0], film[1], px, py, half, half, half};
-      vlCameraRays rays = {out[k][0], out[k][1], out[k][2], out[k][3], out[k][4],
-                           out[k][5], out[k][6], out[k][7], out[k][8], out[k][9]};
+      vlCameraRays rays = {out[k][0], out[k][1], out[k][2], out[k][3], out[k][4], out[k][5],
+                           out[k][6], out[k][7], out[k][8], out[k][9], NULL};
       vl_camera_kernels(sets[k])->rays(&c, N, &samples, &rays);
       assert_memory_equal(out[0], out[k], sizeof out[0]);
     }

@@ -5,14 +5,14 @@
 
 #include "import/builder.h"
 
-static const char *const kinds[] = {"diffuse", "coateddiffuse", "conductor", "dielectric", "thindielectric",
-                                    "mix",     "interface",     "",          "none"};
-static const vlMaterialKind kind_values[] = {
-    VL_MATERIAL_DIFFUSE,    VL_MATERIAL_COATED_DIFFUSE,  VL_MATERIAL_CONDUCTOR,
-    VL_MATERIAL_DIELECTRIC, VL_MATERIAL_THIN_DIELECTRIC, VL_MATERIAL_MIX,
-    VL_MATERIAL_INTERFACE,  VL_MATERIAL_INTERFACE,       VL_MATERIAL_INTERFACE};
+static const char *const kinds[] = {"diffuse", "coateddiffuse", "conductor",  "dielectric", "thindielectric",
+                                    "mix",     "interface",     "principled", "",           "none"};
+static const vlMaterialKind kind_values[] = {VL_MATERIAL_DIFFUSE,    VL_MATERIAL_COATED_DIFFUSE,  VL_MATERIAL_CONDUCTOR,
+                                             VL_MATERIAL_DIELECTRIC, VL_MATERIAL_THIN_DIELECTRIC, VL_MATERIAL_MIX,
+                                             VL_MATERIAL_INTERFACE,  VL_MATERIAL_PRINCIPLED,      VL_MATERIAL_INTERFACE,
+                                             VL_MATERIAL_INTERFACE};
 static const char *const later[] = {"coatedconductor", "diffusetransmission", "hair", "measured", "subsurface"};
-enum { KINDS = sizeof kinds / sizeof *kinds, NAMES = 7, LATER = sizeof later / sizeof *later };
+enum { KINDS = sizeof kinds / sizeof *kinds, NAMES = 8, LATER = sizeof later / sizeof *later };
 
 bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface) {
   uint32_t index;
@@ -130,7 +130,9 @@ static bool read_material(vlDict *dict, vlMaterialDef *def) {
     case VL_MATERIAL_MIX:
       if (!read_mix(dict, def)) return false;
       break;
-    case VL_MATERIAL_PRINCIPLED: /* not in this language */
+    case VL_MATERIAL_PRINCIPLED:
+      if (!vl_import_principled(dict, def)) return false;
+      break;
     case VL_MATERIAL_INTERFACE: break;
   }
   if (def->kind != VL_MATERIAL_MIX && def->kind != VL_MATERIAL_INTERFACE && !read_relief(dict, def)) return false;

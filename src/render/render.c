@@ -16,6 +16,7 @@
 #include "film/expose.h"
 #include "render/film_rays.h"
 #include "trace/trace.h"
+#include "velo/focus.h"
 #include "velo/render.h"
 
 enum { TILE = 16, TILE_PIXELS = TILE * TILE, MAX_PASS = 16, PASS_SECONDS = 5 };
@@ -353,7 +354,9 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
   r->caller = pthread_self();
   r->start = r->last_sign = vl_seconds();
   r->spp_before = vl_film_spp(film);
-  prepare(r, camera);
+  vlCamera focused = *camera;
+  if ((result = vl_camera_autofocus(world, &focused, error)) != VL_OK) return result;
+  prepare(r, &focused);
   result = make_workers(r, world->context, error);
   double seconds_per_sample = 0;
   while (result == VL_OK && vl_film_spp(film) < def->spp) {

@@ -9,5 +9,6 @@
 #include "velo/image.h"
 #include "velo/render.h"
 #include "velo/scene.h"
+#include "velo/trajectory.h"
 
 #endif

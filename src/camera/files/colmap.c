@@ -9,7 +9,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "camera/files/files.h"
+#include "camera/files/trajectory.h"
 
 typedef struct {
   char *at, *end; /* of the text that is left */
@@ -127,6 +127,84 @@ static vlResult read_images(const vlCameraFile *file, const char *path, double *
     result = vl_camera_wrong(file, "colmap: there is no picture \"%.60s\" among the %u",
                              file->def->frame ? file->def->frame : "0", record->frames);
   vl_free(file->context, text);
+  return result;
+}
+
+/* ---- many pictures ----------------------------------------------------------------------------------------------- */
+
+typedef struct {
+  double id;
+  int32_t index; /* of the trajectory's cameras */
+} CameraId;
+typedef VL_ARRAY(CameraId) CameraIds;
+
+static int by_id(const void *a, const void *b) {
+  double x = ((const CameraId *)a)->id, y = ((const CameraId *)b)->id;
+  return (x > y) - (x < y);
+}
+
+static vlResult read_all_cameras(vlTrajectory *t, const vlCameraFile *file, const char *path, char *text, size_t size,
+                                 CameraIds *ids) {
+  Lines lines = {text, text + size, 0};
+  for (char *line; (line = next_line(&lines));) {
+    vlCameraRecord record;
+    CameraId id;
+    if (line[strspn(line, " \t")] == 0) continue;
+    memset(&record, 0, sizeof record);
+    record.camera = vl_default_camera_def(1, 1);
+    record.dialect = VL_CAMERA_DIALECT_COLMAP;
+    if (!next_number(&line, &id.id))
+      return wrong_line(file, path, lines.line, "a line begins with the camera's number");
+    vlResult result = read_camera_line(file, path, &lines, line, &record.camera);
+    snprintf(record.name, sizeof record.name, "%.0f", id.id);
+    if (result == VL_OK) result = vl_trajectory_add_camera(t, file, &record, &id.index);
+    if (result != VL_OK) return result;
+    CameraId *added = VL_PUSH(file->context, ids);
+    if (!added) return vl_fail_memory(file->error);
+    *added = id;
+  }
+  if (ids->count) qsort(ids->items, ids->count, sizeof *ids->items, by_id);
+  return VL_OK;
+}
+
+static vlResult read_all_images(vlTrajectory *t, const vlCameraFile *file, const char *path, char *text, size_t size,
+                                const CameraIds *ids) {
+  Lines lines = {text, text + size, 0};
+  vlCameraFileDef any = *file->def; /* every picture is the one that is asked for */
+  vlCameraFile copy = *file;
+  copy.def = &any;
+  any.frame = NULL;
+  for (char *line; (line = next_line(&lines));) {
+    if (line[strspn(line, " \t")] == 0) continue;
+    vlCameraRecord record = {.frames = 0};
+    CameraId wanted = {0, 0};
+    bool found = false;
+    vlResult result = read_image_line(&copy, path, lines.line, line, &found, 0, &wanted.id, &record);
+    if (result != VL_OK) return result;
+    const CameraId *id = ids->count ? bsearch(&wanted, ids->items, ids->count, sizeof *ids->items, by_id) : NULL;
+    vlFramePlace place = {path, lines.line, (uint32_t)t->frames.count, record.name};
+    if (!id) return vl_frame_wrong(file, &place, "there is no camera %.0f in cameras.txt", wanted.id);
+    result = vl_trajectory_add(t, file, &place, id->index, record.camera.world_from_camera, VL_UNSET);
+    if (result != VL_OK) return result;
+    next_line(&lines); /* its points */
+  }
+  return VL_OK;
+}
+
+static bool find_files(const char *path, char cameras[4096], char images[4096]);
+
+vlResult vl_trajectory_read_colmap(vlTrajectory *t, const vlCameraFile *file) {
+  char paths[2][4096], *texts[2] = {NULL, NULL};
+  size_t sizes[2] = {0, 0};
+  CameraIds ids = {NULL, 0, 0};
+  if (!find_files(file->path, paths[0], paths[1])) return vl_camera_wrong(file, "colmap: the name is too long");
+  vlResult result = VL_OK;
+  for (int i = 0; i < 2 && result == VL_OK; i++)
+    result = vl_file_read(file->context, paths[i], false, &texts[i], &sizes[i], file->error);
+  if (result == VL_OK) result = read_all_cameras(t, file, paths[0], texts[0], sizes[0], &ids);
+  if (result == VL_OK) result = read_all_images(t, file, paths[1], texts[1], sizes[1], &ids);
+  for (int i = 0; i < 2; i++) vl_free(file->context, texts[i]);
+  VL_ARRAY_FREE(file->context, &ids);
   return result;
 }
 

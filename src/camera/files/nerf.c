@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "camera/files/files.h"
+#include "camera/files/trajectory.h"
 
 /* A frame's own value comes before the file's. */
 static const json_t *holder(const json_t *frame, const json_t *tree, const char *key) {
@@ -43,7 +43,8 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const j
   return VL_OK;
 }
 
-static vlResult read_frame(const vlCameraFile *file, const json_t *frame, const json_t *tree, vlCameraRecord *record) {
+vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame, const json_t *tree,
+                                   vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double m[16] = {0}, angle_x = VL_UNSET, angle_y = VL_UNSET;
   uint32_t count;
@@ -84,7 +85,8 @@ vlResult vl_camera_read_nerf(const vlCameraFile *file, const json_t *tree, vlCam
   for (uint32_t i = 0; i < record->frames; i++) {
     const json_t *frame = json_array_get(frames, i);
     if (!json_is_object(frame)) return vl_camera_wrong(file, "nerf: frame %u is no object", i);
-    if (vl_camera_is_frame(file, i, vl_camera_text(frame, "file_path"))) return read_frame(file, frame, tree, record);
+    if (vl_camera_is_frame(file, i, vl_camera_text(frame, "file_path")))
+      return vl_camera_read_nerf_frame(file, frame, tree, record);
   }
   return vl_camera_wrong(file, "nerf: there is no frame \"%.60s\" among the %u",
                          file->def->frame ? file->def->frame : "0", record->frames);

@@ -9,13 +9,21 @@
 #include "image.h"
 #include "report.h"
 
-const Choice dialect_choices[] = {{"velo", VL_CAMERA_DIALECT_VELO},       {"opencv", VL_CAMERA_DIALECT_OPENCV},
-                                  {"ros", VL_CAMERA_DIALECT_ROS},         {"colmap", VL_CAMERA_DIALECT_COLMAP},
-                                  {"nerf", VL_CAMERA_DIALECT_NERF},       {"kalibr", VL_CAMERA_DIALECT_KALIBR},
-                                  {"blender", VL_CAMERA_DIALECT_BLENDER}, {"gltf", VL_CAMERA_DIALECT_GLTF},
-                                  {"mitsuba", VL_CAMERA_DIALECT_MITSUBA}, {"opengl", VL_CAMERA_DIALECT_OPENGL},
-                                  {"vulkan", VL_CAMERA_DIALECT_VULKAN},   {"d3d", VL_CAMERA_DIALECT_D3D},
-                                  {"pbrt", VL_CAMERA_DIALECT_PBRT},       {NULL, 0}};
+const Choice dialect_choices[] = {{"velo", VL_CAMERA_DIALECT_VELO},
+                                  {"opencv", VL_CAMERA_DIALECT_OPENCV},
+                                  {"ros", VL_CAMERA_DIALECT_ROS},
+                                  {"colmap", VL_CAMERA_DIALECT_COLMAP},
+                                  {"nerf", VL_CAMERA_DIALECT_NERF},
+                                  {"kalibr", VL_CAMERA_DIALECT_KALIBR},
+                                  {"blender", VL_CAMERA_DIALECT_BLENDER},
+                                  {"gltf", VL_CAMERA_DIALECT_GLTF},
+                                  {"mitsuba", VL_CAMERA_DIALECT_MITSUBA},
+                                  {"opengl", VL_CAMERA_DIALECT_OPENGL},
+                                  {"vulkan", VL_CAMERA_DIALECT_VULKAN},
+                                  {"d3d", VL_CAMERA_DIALECT_D3D},
+                                  {"usd", VL_CAMERA_DIALECT_USD},
+                                  {"pbrt", VL_CAMERA_DIALECT_PBRT},
+                                  {NULL, 0}};
 
 static bool ends_with(const char *text, const char *suffix) {
   size_t n = strlen(text), m = strlen(suffix);

@@ -25,6 +25,7 @@ typedef enum vlCameraDialect {
   VL_CAMERA_DIALECT_VULKAN,
   VL_CAMERA_DIALECT_D3D,
   VL_CAMERA_DIALECT_MITSUBA, /* a sensor in Mitsuba 3's XML */
+  VL_CAMERA_DIALECT_USD,     /* a Camera in USD's text form, .usda */
   VL_CAMERA_DIALECT_COUNT
 } vlCameraDialect;
 

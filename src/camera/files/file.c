@@ -30,6 +30,7 @@ static const Dialect dialects[VL_CAMERA_DIALECT_COUNT] = {
     [VL_CAMERA_DIALECT_VULKAN] = {"vulkan", vl_camera_read_matrices, vl_camera_write_matrices},
     [VL_CAMERA_DIALECT_D3D] = {"d3d", vl_camera_read_matrices, vl_camera_write_matrices},
     [VL_CAMERA_DIALECT_MITSUBA] = {"mitsuba", NULL, vl_camera_write_mitsuba, vl_camera_read_mitsuba},
+    [VL_CAMERA_DIALECT_USD] = {"usd", NULL, vl_camera_write_usd, vl_camera_read_usd},
 };
 
 const char *vl_camera_dialect_name(vlCameraDialect dialect) {
@@ -82,7 +83,7 @@ static vlResult unknown(const vlCameraFile *file, const json_t *tree) {
   return vl_camera_wrong(
       file,
       "no camera of a known dialect (velo, opencv, ros, colmap, nerf, kalibr, blender, gltf, opengl, "
-      "vulkan, d3d); its fields are: %s",
+      "vulkan, d3d, mitsuba, usd); its fields are: %s",
       names);
 }
 
@@ -98,6 +99,7 @@ static bool is_colmap_name(const char *path) {
 /* By its first letters; AUTO: JSON or YAML. */
 static vlCameraDialect dialect_of_text(const char *text, size_t size) {
   size_t first = size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* UTF-8's mark */
+  if (size >= first + 5 && memcmp(text + first, "#usda", 5) == 0) return VL_CAMERA_DIALECT_USD;
   first += strspn(text + first, " \t\r\n");
   if (first < size && text[first] == '<') return VL_CAMERA_DIALECT_MITSUBA;
   return VL_CAMERA_DIALECT_AUTO;
@@ -191,6 +193,7 @@ static vlCameraDialect dialect_of_name(const char *path) {
   if (vl_ends_with(path, ".yaml") || vl_ends_with(path, ".yml")) return VL_CAMERA_DIALECT_OPENCV;
   if (vl_ends_with(path, ".pbrt")) return VL_CAMERA_DIALECT_PBRT;
   if (vl_ends_with(path, ".gltf")) return VL_CAMERA_DIALECT_GLTF;
+  if (vl_ends_with(path, ".usda")) return VL_CAMERA_DIALECT_USD;
   if (vl_ends_with(path, ".xml")) return VL_CAMERA_DIALECT_MITSUBA;
   return VL_CAMERA_DIALECT_AUTO;
 }

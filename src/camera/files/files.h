@@ -28,9 +28,12 @@ vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t co
 vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
 vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
 
-/* XML; below the root only elements with the wanted tags (null ends the list). */
+/* XML; below the root, unless it is wanted itself, only elements with the wanted tags (null ends the list). */
 vlResult vl_camera_xml(const vlCameraFile *file, const char *text, size_t size, const char *const *wanted,
                        json_t **tree);
+
+/* USD's text form. */
+vlResult vl_camera_usda(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
 
 /* Missing is an error that names the nearest key. */
 vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const char *key, const json_t **value);
@@ -67,7 +70,8 @@ enum {
   VL_HOLDS_SKEW = 4,
   VL_HOLDS_LENS = 8,
   VL_HOLDS_PLANES = 16,
-  VL_HOLDS_TIME = 32 /* shutter */
+  VL_HOLDS_TIME = 32, /* shutter */
+  VL_HOLDS_EXPOSURE = 64
 };
 
 void vl_camera_put(vlCameraText *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -112,10 +116,10 @@ vlCameraReadTree vl_camera_read_velo, vl_camera_read_opencv, vl_camera_read_ros,
     vl_camera_read_kalibr, vl_camera_read_blender, vl_camera_read_gltf, vl_camera_read_matrices;
 /* From the file's text. */
 typedef vlResult vlCameraReadText(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record);
-vlCameraReadText vl_camera_read_mitsuba;
+vlCameraReadText vl_camera_read_mitsuba, vl_camera_read_usd;
 vlCameraWriteText vl_camera_write_velo, vl_camera_write_opencv, vl_camera_write_ros, vl_camera_write_nerf,
     vl_camera_write_kalibr, vl_camera_write_blender, vl_camera_write_pbrt, vl_camera_write_gltf,
-    vl_camera_write_matrices, vl_camera_write_mitsuba;
+    vl_camera_write_matrices, vl_camera_write_mitsuba, vl_camera_write_usd;
 vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record);
 vlResult vl_camera_write_colmap(const vlCameraFile *file, const vlCameraRecord *record);
 

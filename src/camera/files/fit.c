@@ -50,7 +50,7 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, u
       {"far_plane", !(holds & VL_HOLDS_PLANES) && !isinf(camera->far_plane)},
       {"shutter_open", !(holds & VL_HOLDS_TIME) && camera->shutter_open != 0.0},
       {"shutter_close", !(holds & VL_HOLDS_TIME) && camera->shutter_close != 1.0},
-      {"exposure_time", camera->exposure_time != 1.0},
+      {"exposure_time", !(holds & VL_HOLDS_EXPOSURE) && camera->exposure_time != 1.0},
       {"max_angle", !vl_is_unset(d->max_angle)},
   };
   for (size_t i = 0; i < sizeof fields / sizeof fields[0] && result == VL_OK; i++)

@@ -11,7 +11,7 @@ enum { MAX_DEPTH = 32, MAX_ELEMENTS = 20000 };
 typedef struct {
   const vlCameraFile *file;
   XML_Parser parser;
-  const char *const *wanted; /* tags below the root; others are passed over with all in them */
+  const char *const *wanted; /* tags of the root, or below it; others there are passed over with all in them */
   json_t *open[MAX_DEPTH];   /* held by the one before */
   int depth, skipped;        /* skipped: open elements that are passed over */
   uint32_t elements;
@@ -27,11 +27,14 @@ static void stop(Builder *b, vlResult result) {
   XML_StopParser(b->parser, XML_FALSE);
 }
 
+static bool is_among(const char *const *tags, const char *tag) {
+  while (*tags && strcmp(*tags, tag) != 0) tags++;
+  return *tags != NULL;
+}
+
 static bool is_wanted(const Builder *b, const char *tag) {
-  if (b->depth != 1) return true;
-  for (const char *const *name = b->wanted; *name; name++)
-    if (strcmp(*name, tag) == 0) return true;
-  return false;
+  if (b->depth != 1 || is_among(b->wanted, tag)) return true;
+  return is_among(b->wanted, json_string_value(json_object_get(b->open[0], "<")));
 }
 
 static void on_start(void *data, const char *tag, const char **attributes) {

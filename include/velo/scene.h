@@ -33,6 +33,9 @@ typedef struct vlShapeId {
 typedef struct vlGroupId {
   uint32_t index;
 } vlGroupId; /* 0: the world itself */
+typedef struct vlMediumId {
+  uint32_t index;
+} vlMediumId; /* 0: vacuum */
 
 /* Where in a file something was said; for errors found later. file may be null. Copied. */
 typedef struct vlSource {
@@ -211,6 +214,49 @@ typedef struct vlMaterialDef {
 VL_API vlMaterialDef vl_default_material_def(vlMaterialKind kind);
 VL_API vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def);
 
+/* ---- participating media --------------------------------------------------------------------------------------- */
+
+typedef enum vlMediumKind {
+  VL_MEDIUM_HOMOGENEOUS, /* the same everywhere */
+  VL_MEDIUM_GRID,        /* sigma_a and sigma_s times a density on a grid over a box */
+  VL_MEDIUM_RGB_GRID,    /* sigma_a and sigma_s themselves on a grid */
+  VL_MEDIUM_CLOUD,       /* times a procedural density (pbrt-v4's cloud) */
+  VL_MEDIUM_NANOVDB      /* times a density from a NanoVDB file */
+} vlMediumKind;
+
+/* What fills the space between surfaces (pbrt book 11). Coefficients are per world unit of length, whatever the
+ * medium's transform. Light is scattered by the Henyey-Greenstein phase function. Outside its box a medium of a kind
+ * that has one is empty. */
+typedef struct vlMediumDef {
+  uint32_t cookie;
+  const char *name; /* may be null */
+  vlSource source;
+  vlMediumKind kind;
+  vlSpectrum sigma_a, sigma_s; /* absorption, scattering; default 1; not of RGB grids */
+  float scale;                 /* factor on both */
+  float g;                     /* mean cosine of scattering, -1 to 1 */
+  /* Radiance given out where light is absorbed (sigma_a times this per length), divided by its own luminance as that of
+   * lights; times emission_scale. Homogeneous and grid. */
+  vlSpectrum emission;
+  float emission_scale;
+  double world_from_medium[16];
+  /* grids: nx * ny * nz values, x fastest, at the centres of equal cells of the box low, high; between them linear,
+   * towards 0 at the box's faces. May be null but for density. */
+  uint32_t nx, ny, nz;
+  float low[3], high[3]; /* of clouds, too */
+  const float *density, *emission_scales;
+  const float *temperature;                    /* kelvin: a black body glows in place of `emission` */
+  float temperature_offset, temperature_scale; /* kelvin = (value - offset) * scale; below 100 nothing glows */
+  const float *rgb_a, *rgb_s, *rgb_emission;   /* RGB grid, 3 numbers a cell, of `space`; null coefficients: 1 */
+  vlColorSpace space;
+  float cloud_density, wispiness, frequency; /* cloud */
+  const char *path;                          /* NanoVDB file */
+  const char *grid, *temperature_grid;       /* names of its grids; null: density, temperature (which may be absent) */
+} vlMediumDef;
+VL_API vlMediumDef vl_default_medium_def(vlMediumKind kind);
+/* Errors, sticky: negative coefficients or values, sizes of no cells, boxes without room, numbers not finite. */
+VL_API vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def);
+
 /* ---- lights ---------------------------------------------------------------------------------------------------- */
 
 /* Light that surfaces give out. Radiance = scale * L normalised so that its luminance Y is 1 for L of Y = 1 (pbrt's
@@ -243,6 +289,7 @@ typedef struct vlLightDef {
   const char *path;             /* infinite: equal-area octahedral picture (pbrt book 3.8.3), square; null: uniform */
   const vlImage *image;         /* or given directly, copied */
   vlColorSpace space;           /* of the picture. It holds radiance, times scale; colour is ignored */
+  vlMediumId medium;            /* that it stands in */
 } vlLightDef;
 VL_API vlLightDef vl_default_light_def(vlLightKind kind);
 VL_API vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def);
@@ -267,6 +314,9 @@ typedef struct vlShapeDef {
   vlMaterialId material;       /* 0: a default diffuse 0.5 */
   vlFloatInput alpha;          /* coverage; value 1: opaque */
   vlEmissionId emission;       /* 0: none */
+  /* Media on both sides; the normal points to the outside. Equal ones (so nothing at all, too) say that the shape lies
+   * in whatever medium is there. */
+  vlMediumId inside, outside;
   /* triangles: 3 indices a face; bilinear: 4 (pbrt's order p00 p10 p01 p11). Shape space. normals, tangents, uvs may
    * be null. */
   uint32_t vertices, faces;
@@ -302,7 +352,12 @@ VL_API void vl_scene_add_moving_instance(vlScene *scene, vlGroupId group, uint32
 
 /* ---- how the picture is to be taken: the scene file's own choices, defaults otherwise ---------------------------- */
 
-typedef enum vlTracer { VL_TRACER_PATH, VL_TRACER_RAYCAST, VL_TRACER_AMBIENT_OCCLUSION } vlTracer;
+typedef enum vlTracer {
+  VL_TRACER_PATH, /* looks past media */
+  VL_TRACER_RAYCAST,
+  VL_TRACER_AMBIENT_OCCLUSION,
+  VL_TRACER_VOLPATH /* through media; where there are none the same as VL_TRACER_PATH, to the bit */
+} vlTracer;
 typedef enum vlSamplerKind {
   VL_SAMPLER_INDEPENDENT,
   VL_SAMPLER_REGULAR,
@@ -353,6 +408,7 @@ typedef struct vlSceneSettings {
   bool ao_cosine;
   vlLightSampler light_sampler;
   vlColorMode color;
+  vlMediumId camera_medium; /* that the camera stands in */
 } vlSceneSettings;
 /* Never null; may be changed. */
 VL_API vlSceneSettings *vl_scene_settings(vlScene *scene);
@@ -377,7 +433,7 @@ VL_API vlLoadDef vl_default_load_def(void);
 VL_API vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 
 typedef struct vlSceneInfo {
-  uint64_t shapes, triangles, vertices, textures, materials, lights, emissive_shapes, groups, instances;
+  uint64_t shapes, triangles, vertices, textures, materials, lights, emissive_shapes, groups, instances, media;
 } vlSceneInfo;
 VL_API void vl_scene_info(const vlScene *scene, vlSceneInfo *info);
 

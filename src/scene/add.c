@@ -244,6 +244,7 @@ vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
 static bool check_light(vlScene *scene, const vlLightDef *d) {
   if ((unsigned)d->kind > VL_LIGHT_INFINITE) return bad(scene, d->source, "light", "unknown kind");
   if (!isfinite(d->scale)) return bad(scene, d->source, "light", "scale is not finite");
+  if (d->medium.index > scene->media.count) return bad(scene, d->source, "light", "there is no such medium");
   if (!finite_or_unset(d->power)) return bad(scene, d->source, "light", "power must not be negative or infinite");
   if (!finite_or_unset(d->illuminance))
     return bad(scene, d->source, "light", "illuminance must not be negative or infinite");

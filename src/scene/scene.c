@@ -56,6 +56,7 @@ void vl_scene_destroy(vlScene *scene) {
   VL_ARRAY_FREE(context, &scene->materials);
   VL_ARRAY_FREE(context, &scene->emissions);
   VL_ARRAY_FREE(context, &scene->lights);
+  VL_ARRAY_FREE(context, &scene->media);
   VL_ARRAY_FREE(context, &scene->shapes);
   VL_ARRAY_FREE(context, &scene->groups);
   VL_ARRAY_FREE(context, &scene->instances);
@@ -81,6 +82,7 @@ void vl_scene_info(const vlScene *scene, vlSceneInfo *info) {
       .textures = scene->textures.count,
       .materials = scene->materials.count,
       .lights = scene->lights.count,
+      .media = scene->media.count,
       .groups = scene->groups.count,
       .instances = scene->instances.count,
   };

@@ -31,6 +31,7 @@ struct vlScene {
   VL_ARRAY(vlMaterialDef) materials;
   VL_ARRAY(vlEmissionDef) emissions;
   VL_ARRAY(vlLightDef) lights;
+  VL_ARRAY(vlMediumDef) media;
   VL_ARRAY(vlShapeDef) shapes;
   VL_ARRAY(vlSceneGroup) groups;
   VL_ARRAY(vlSceneInstance) instances;

@@ -102,6 +102,8 @@ static bool check_shape(vlScene *scene, const vlShapeDef *d) {
   if (d->group.index > scene->groups.count) return bad(scene, d, "there is no such group"), false;
   if (d->material.index > scene->materials.count) return bad(scene, d, "there is no such material"), false;
   if (d->emission.index > scene->emissions.count) return bad(scene, d, "there is no such emission"), false;
+  if (d->inside.index > scene->media.count || d->outside.index > scene->media.count)
+    return bad(scene, d, "there is no such medium"), false;
   if (d->alpha.texture.index > scene->textures.count) return bad(scene, d, "alpha: there is no such texture"), false;
   if (d->alpha.texture.index && scene->textures.items[d->alpha.texture.index - 1].spectrum)
     return bad(scene, d, "alpha needs a float texture, this is a spectrum texture"), false;

@@ -7,6 +7,7 @@
 
 #include <stdio.h>
 
+#include "failing_allocator.h"
 #include "velo/camera_file.h"
 
 static vlContext *context;

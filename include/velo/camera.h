@@ -66,6 +66,10 @@ typedef struct vlStereo {
   double convergence; /* z where the axes or windows meet, scene units; unset: infinity. OFF_AXIS and TOE_IN need it */
 } vlStereo;
 
+/* A rolling shutter: which way the rows (or columns) of the sensor are read, one after the other. */
+typedef enum vlReadout { VL_READOUT_DOWN, VL_READOUT_UP, VL_READOUT_RIGHT, VL_READOUT_LEFT } vlReadout;
+enum { VL_SHUTTER_POINTS = 16 };
+
 /* Several equivalent ways in, one compiled form out. Everything optional is VL_UNSET. Ways that are given together must
  * agree (1e-6 relative), else ARGUMENT with both values named in the error.
  *
@@ -76,7 +80,11 @@ typedef struct vlStereo {
  * Orthographic: fx, fy (pixels per scene unit); pixel_size (scene units per pixel) with zoom; or screen_* in scene
  * units; default -1 to 1 across the smaller side.
  *
- * Pose: eye, lookat, up, roll (the lecture); or world_from_camera (then eye, lookat, up are ignored). */
+ * Pose: eye, lookat, up, roll (the lecture); or world_from_camera (then eye, lookat, up are ignored).
+ *
+ * Time: a sample of pixel row r of `height`, counted in the direction of readout, falls at
+ *   shutter_open + r/height readout + s (shutter_close - shutter_open), s in [0, 1) spread as the shutter's curve says.
+ */
 typedef struct vlCameraDef {
   uint32_t cookie;
   vlProjection projection;
@@ -100,7 +108,20 @@ typedef struct vlCameraDef {
                           * infinity, or what `lens` says */
   vlLensDef lens;
   double shutter_open, shutter_close; /* seconds; default 0, 1 */
-  double exposure_time;               /* a factor on radiance, as in the lecture; default 1 */
+  /* How far open the shutter is: straight between points (share of the time from open to close, ascending; any unit),
+   * shut before the first and after the last. 0 points: open throughout. Says when light comes, not how much. */
+  uint32_t shutter_points;
+  double shutter_at[VL_SHUTTER_POINTS], shutter_value[VL_SHUTTER_POINTS];
+  double readout; /* seconds from the first row's exposure to the (not existing) one after the last; 0: all at once */
+  vlReadout readout_direction;
+  /* A camera that moves: its pose at pose_times[1]; all above is that at pose_times[0]. Between them position, rotation
+   * and stretch each go their own way (rotation by the shortest arc, evenly), before and after it rests. What is unset
+   * is as above; with a matrix only has_matrix_close, world_from_camera_close and roll_close count. pose_times in
+   * seconds; unset: shutter_open and shutter_close + readout. */
+  double eye_close[3], lookat_close[3], up_close[3], roll_close;
+  bool has_matrix_close;
+  double world_from_camera_close[16], pose_times[2];
+  double exposure_time; /* a factor on radiance, as in the lecture; default 1 */
   /* z in camera space; distance from the eye for projections that can look back (all but perspective, orthographic,
    * the orthographic fisheye, FOV and OPTICS). Default 0, infinity. Cut what the camera sees, nothing else */
   double near_plane, far_plane;
@@ -143,6 +164,13 @@ typedef struct vlCamera {
   double lens_radius, focus_distance;
   vlLens lens;
   double shutter_open, shutter_close, exposure_time, near_plane, far_plane;
+  uint32_t shutter_points;
+  double shutter_at[VL_SHUTTER_POINTS], shutter_value[VL_SHUTTER_POINTS];
+  double readout;
+  vlReadout readout_direction;
+  bool moves;                         /* from world_from_camera at pose_times[0] to */
+  double world_from_camera_close[16]; /* at pose_times[1] */
+  double pose_times[2];
   double shape[2];
   double limit; /* radius of the plane's valid disc: image circle, the model's own end; infinity */
   vlDistortionMap distortion;
@@ -167,13 +195,24 @@ VL_API vlResult vl_camera_stereo(const vlCameraDef *def, vlCamera *left, vlCamer
  * trajectory. ARGUMENT: not finite, singular. */
 VL_API vlResult vl_camera_move(const vlCamera *camera, const double world_from_camera[16], vlCamera *result,
                                vlError *error);
+/* The same on the way from one pose at times[0] to another at times[1], seconds: blurred by its motion. ARGUMENT: as
+ * above; one pose mirrors and the other does not; times that do not ascend. */
+VL_API vlResult vl_camera_travel(const vlCamera *camera, const double open[16], const double close[16],
+                                 const double times[2], vlCamera *result, vlError *error);
+/* The camera held at one time, in seconds: at rest where it is then, its shutter open for that instant, all rows at
+ * once. What moves in the world is seen as it is then. ARGUMENT: null, time not finite. */
+VL_API vlResult vl_camera_at(const vlCamera *camera, double time, vlCamera *result);
+/* When light falls on the pixel around film point (x, y): u in [0, 1] is the share of it that came before; 0.5: the
+ * middle of that pixel's exposure. */
+VL_API double vl_camera_time(const vlCamera *camera, double x, double y, double u);
 
 /* The same camera for another resolution: the framing of the smaller field of view is kept as pbrt keeps it for fov
  * cameras: focal length and principal point scale with the smaller image side. */
 VL_API vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t height, vlCamera *result);
 
 /* One ray, in double: pinhole direction through film point (x, y) in pixels; direction normalised, world space.
- * false outside the domain. */
+ * false outside the domain. All that follow see a camera that moves where it is at pose_times[0]; ask vl_camera_at for
+ * another time. */
 VL_API bool vl_camera_unproject(const vlCamera *camera, double x, double y, double origin[3], double direction[3]);
 /* World point to film point; z is the depth along the view axis. false behind the camera or outside the domain. */
 VL_API bool vl_camera_project(const vlCamera *camera, const double point[3], double pixel[2], double *z);

@@ -39,6 +39,12 @@ vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height) {
                .iso = VL_UNSET,
                .seconds = VL_UNSET},
       .shutter_close = 1.0,
+      .eye_close = {VL_UNSET, VL_UNSET, VL_UNSET},
+      .lookat_close = {VL_UNSET, VL_UNSET, VL_UNSET},
+      .up_close = {VL_UNSET, VL_UNSET, VL_UNSET},
+      .roll_close = VL_UNSET,
+      .world_from_camera_close = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+      .pose_times = {VL_UNSET, VL_UNSET},
       .exposure_time = 1.0,
       .far_plane = INFINITY,
       .shape = {VL_UNSET, VL_UNSET},
@@ -109,6 +115,7 @@ vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **w
   if (result == VL_OK) result = vl_camera_model(def, &made, error);
   if (result == VL_OK) result = vl_camera_intrinsics(def, &made, error);
   if (result == VL_OK) result = vl_camera_pose(def, &made, warning, error);
+  if (result == VL_OK) result = vl_camera_time_part(def, &made, warning, error);
   if (result == VL_OK) result = vl_camera_lens(def, &made, error);
   if (result == VL_OK) result = vl_camera_domain(def, &made, warning, error);
   if (result == VL_OK) result = vl_camera_eye(&made, &def->stereo, def->stereo_eye, &made, error);

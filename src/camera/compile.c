@@ -85,6 +85,7 @@ void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
   c->distortion = camera->distortion;
   c->eye_circle = camera->eye_circle;
   compile_lens(camera, c);
+  vl_camera_compile_time(camera, &c->when);
   memcpy(c->camera_from_world, camera->camera_from_world, sizeof c->camera_from_world);
   if (!perspective && !orthographic) {
     c->pixel_spread = (float)central_spread(c);

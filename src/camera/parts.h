@@ -23,7 +23,9 @@ bool vl_camera_plane_radius(const vlCamera *camera, double angle, bool vertical,
 vlResult vl_camera_intrinsics(const vlCameraDef *def, vlCamera *camera, vlError *error);
 /* Fills world_from_camera and camera_from_world. */
 vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error);
-/* The same from a matrix, which is checked. */
+/* Fills what belongs to time: curve, readout, the second pose. After vl_camera_pose. */
+vlResult vl_camera_time_part(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error);
+/* The pose from a matrix, which is checked. */
 vlResult vl_camera_pose_matrix(const double world_from_camera[16], vlCamera *camera, vlError *error);
 /* Fills lens, lens_radius, focus_distance and exposure_time where def.lens says them; after intrinsics and pose. */
 vlResult vl_camera_lens(const vlCameraDef *def, vlCamera *camera, vlError *error);

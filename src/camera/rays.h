@@ -10,6 +10,7 @@
 
 #include "base/isa.h"
 #include "camera/aperture.h"
+#include "camera/time.h"
 #include "velo/camera.h"
 
 /* Points per chunk of the double arrays below. */
@@ -55,6 +56,7 @@ typedef struct vlCameraCompiled {
   double inv_ratio;    /* of the opening's width */
   const vlOptics *optics;
   double eye_circle; /* of omnidirectional stereo: the circle's radius, signed; 0: none */
+  vlCameraTime when;
 } vlCameraCompiled;
 
 /* All arrays hold VL_PAD(n) elements; those past n may hold anything, and what comes out for them means nothing.
@@ -111,5 +113,7 @@ static inline bool vl_camera_weighted(const vlCameraCompiled *c) {
 }
 
 void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c);
+/* Another clock from here on: rays come with (seconds - origin) * scale. */
+void vl_camera_retime(vlCameraCompiled *c, double origin, double scale);
 
 #endif

@@ -153,7 +153,7 @@ static void shaped_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
   }
 }
 
-static void rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r) {
+static void still_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r) {
   uint32_t count = VL_PAD(n);
   if (!c->plain) {
     staged_rays(c, count, s, r);
@@ -174,6 +174,19 @@ static void rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s
   }
   if (r->weight && c->vignetting) weigh_plain(c, count, s, r->weight);
   for (uint32_t i = 0; r->valid && i < count; i++) r->valid[i] = 1.0f;
+}
+
+/* Time comes last: a camera that moves makes its rays in its own space. */
+static void rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r) {
+  if (c->when.moves) {
+    vlCameraCompiled here = *c;
+    for (int i = 0; i < 9; i++) here.rotation[i] = i % 4 ? 0.0 : 1.0;
+    for (int i = 0; i < 3; i++) here.position[i] = 0.0;
+    still_rays(&here, n, s, r);
+  } else {
+    still_rays(c, n, s, r);
+  }
+  if (c->when.timed) VL_HOT(vl_camera_time_rays)(c, VL_PAD(n), s, r);
 }
 
 extern const vlCameraKernels VL_HOT(vl_camera_kernels);

@@ -13,6 +13,10 @@ typedef struct vlDirections {
 
 /* count is padded. */
 void VL_HOT(vl_camera_directions)(const vlCameraCompiled *c, uint32_t count, vlDirections *d);
+/* Times of n rays (n padded), of a camera whose `when` is timed; takes those of a camera that moves from camera space
+ * to the world. */
+void VL_HOT(vl_camera_time_rays)(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s,
+                                 const vlCameraRays *r);
 void VL_HOT(vl_camera_unproject_chunk)(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in,
                                        vlCameraPoints *out);
 void VL_HOT(vl_camera_project_chunk)(const vlCameraCompiled *c, uint32_t n, const vlCameraPoints *in,

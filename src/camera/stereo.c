@@ -1,6 +1,7 @@
 /* camera/stereo.c: two cameras from one, and one camera in many places. An eye is a camera like any other; but for
  * omnidirectional stereo (eyes.h) it is made of what a camera has anyway: another pose and another principal point. */
 #include <math.h>
+#include <string.h>
 
 #include "base/error.h"
 #include "camera/parts.h"
@@ -62,9 +63,11 @@ vlResult vl_camera_eye(const vlCamera *camera, const vlStereo *stereo, vlEye eye
   if (stereo->mode == VL_STEREO_OMNIDIRECTIONAL) {
     made.eye_circle = x;
   } else {
-    vlMat4 pose = eye_pose(x, stereo->mode == VL_STEREO_TOE_IN ? -meet : 0.0);
-    pose = vl_mat4_multiply(vl_mat4_load(camera->world_from_camera), pose);
+    vlMat4 from_between = eye_pose(x, stereo->mode == VL_STEREO_TOE_IN ? -meet : 0.0);
+    vlMat4 pose = vl_mat4_multiply(vl_mat4_load(camera->world_from_camera), from_between);
     status = vl_camera_pose_matrix(pose.m, &made, error);
+    vlMat4 there = vl_mat4_multiply(vl_mat4_load(camera->world_from_camera_close), from_between);
+    memcpy(made.world_from_camera_close, there.m, sizeof there.m);
     /* the axis of the camera between the eyes meets the plane z = convergence in this pixel of both */
     if (stereo->mode == VL_STEREO_OFF_AXIS) made.cx += made.fx * meet;
   }
@@ -93,6 +96,8 @@ vlResult vl_camera_move(const vlCamera *camera, const double world_from_camera[1
   if (!camera || !world_from_camera || !result) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: null argument");
   vlCamera moved = *camera;
   vlResult status = vl_camera_pose_matrix(world_from_camera, &moved, error);
+  memcpy(moved.world_from_camera_close, moved.world_from_camera, sizeof moved.world_from_camera);
+  moved.moves = false;
   if (status == VL_OK) *result = moved;
   return status;
 }

@@ -1,0 +1,39 @@
+/* camera/time.h: time, first of the four factors of a camera: when a sample's light arrives (shutter, its curve, the
+ * rows' readout), and where the camera is then. Part of the compiled camera.
+ *
+ *   random number -> curve -> share of the exposure -> seconds, later for rows that are read later -> pose */
+#ifndef CAMERA_TIME_H
+#define CAMERA_TIME_H
+
+#include "math/motion.h"
+#include "velo/camera.h"
+
+typedef struct vlCameraTime {
+  bool timed;                     /* there is more to it than open + u (close - open) */
+  bool moves;                     /* rays come out in camera space, and `motion` takes them to the world */
+  double per_column, per_row;     /* how much later a pixel's exposure begins than its neighbour's */
+  double first_column, first_row; /* the pixel that is read first */
+  double pose_open, pose_rate;    /* share of the motion: (when - pose_open) * pose_rate, held in [0, 1] */
+  vlMotion motion;                /* of world_from_camera */
+  uint32_t points;                /* of the shutter's curve; 0: fully open throughout */
+  double at[VL_SHUTTER_POINTS], value[VL_SHUTTER_POINTS], share[VL_SHUTTER_POINTS]; /* share of the light before `at` */
+  double area;                                                                      /* under the curve */
+} vlCameraTime;
+
+/* The share of the exposure's time that has passed when the share u of its light has come: the inverse of the curve's
+ * integral, a parabola between two points. */
+static inline double vl_shutter_share(const vlCameraTime *t, double u) {
+  if (t->points == 0) return u;
+  uint32_t k = 0;
+  for (uint32_t i = 1; i + 1 < t->points; i++) k = t->share[i] <= u ? i : k;
+  double width = t->at[k + 1] - t->at[k], a = t->value[k], slope = t->value[k + 1] - a;
+  double light = width > 0.0 ? (u - t->share[k]) * t->area / width : 0.0;
+  double square = a * a + 2.0 * slope * light, root = __builtin_sqrt(square > 0.0 ? square : 0.0);
+  double x = light > 0.0 ? 2.0 * light / (a + root) : 0.0;
+  return t->at[k] + (x < 1.0 ? x : 1.0) * width;
+}
+
+/* Fills *t from a made camera; what it says about the shutter's open and close is not in it. */
+void vl_camera_compile_time(const vlCamera *camera, vlCameraTime *t);
+
+#endif

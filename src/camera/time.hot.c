@@ -1,0 +1,60 @@
+/* camera/time.hot.c: the rays of cameras for which time is more than a random number: shutter curves, rolling shutters,
+ * cameras that move. Runs after the rays are made in camera space. Compiled once per instruction set. */
+#include "camera/rays.h"
+#include "camera/stages.h"
+
+typedef struct Moved {
+  double ox, oy, oz, dx, dy, dz, length;
+} Moved;
+
+static inline Moved move_ray(vlAffine a, double ox, double oy, double oz, double dx, double dy, double dz) {
+  const double *m = a.m;
+  Moved r;
+  r.ox = a.p[0] + (m[0] * ox + m[1] * oy + m[2] * oz);
+  r.oy = a.p[1] + (m[3] * ox + m[4] * oy + m[5] * oz);
+  r.oz = a.p[2] + (m[6] * ox + m[7] * oy + m[8] * oz);
+  r.dx = m[0] * dx + m[1] * dy + m[2] * dz;
+  r.dy = m[3] * dx + m[4] * dy + m[5] * dz;
+  r.dz = m[6] * dx + m[7] * dy + m[8] * dz;
+  r.length = __builtin_sqrt(r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
+  return r;
+}
+
+/* Camera space to the world, each ray at its own time; t_min and t_max keep their places on it. */
+static void move_chunk(const vlCameraTime *time, uint32_t count, const double *when, const vlCameraRays *r,
+                       uint32_t first) {
+  const vlCameraTime copy = *time, *t = &copy;
+  float *ox = r->ox + first, *oy = r->oy + first, *oz = r->oz + first;
+  float *dx = r->dx + first, *dy = r->dy + first, *dz = r->dz + first;
+  float *t_min = r->t_min + first, *t_max = r->t_max + first;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    double f = (when[i] - t->pose_open) * t->pose_rate;
+    f = f > 0.0 ? f : 0.0;
+    f = f < 1.0 ? f : 1.0;
+    Moved w = move_ray(vl_motion_between(&t->motion, f), (double)ox[i], (double)oy[i], (double)oz[i], (double)dx[i],
+                       (double)dy[i], (double)dz[i]);
+    double inverse = 1.0 / w.length;
+    ox[i] = (float)w.ox, oy[i] = (float)w.oy, oz[i] = (float)w.oz;
+    dx[i] = (float)(w.dx * inverse), dy[i] = (float)(w.dy * inverse), dz[i] = (float)(w.dz * inverse);
+    t_min[i] = (float)((double)t_min[i] * w.length);
+    t_max[i] = (float)((double)t_max[i] * w.length);
+  }
+}
+
+void VL_HOT(vl_camera_time_rays)(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s,
+                                 const vlCameraRays *r) {
+  const vlCameraTime *t = &c->when;
+  double when[VL_CAMERA_CHUNK];
+  for (uint32_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
+    uint32_t n = count - first < VL_CAMERA_CHUNK ? count - first : VL_CAMERA_CHUNK;
+    for (uint32_t i = 0; i < n; i++) {
+      uint32_t k = first + i;
+      double late = ((double)s->pixel_x[k] - t->first_column) * t->per_column +
+                    ((double)s->pixel_y[k] - t->first_row) * t->per_row;
+      when[i] = c->shutter_open + late + c->shutter_time * vl_shutter_share(t, (double)s->time[k]);
+      r->time[k] = (float)when[i];
+    }
+    if (t->moves) move_chunk(t, n, when, r, first);
+  }
+}

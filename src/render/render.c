@@ -2,9 +2,9 @@
  *
  *   tile x samples -> film positions (filter) -> camera rays -> trace -> RGB -> film sums
  *
- * A batch is a tile of 16 x 16 pixels times up to 4 samples, pixels in Morton order so that 16 neighbours make a
- * packet. What a sample is depends on (seed, pixel, index) alone, and the film adds exactly: no grouping shows in the
- * picture. */
+ * A batch is a tile of 16 x 16 pixels times up to 4 samples, or up to 4 tiles; pixels in Morton order so that 16
+ * neighbours make a packet. What a sample is depends on (seed, pixel, index) alone, and the film adds exactly: no
+ * grouping shows in the picture. */
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -73,9 +73,10 @@ typedef struct Render {
   bool rgb_mode;
   uint32_t crop[4];
   uint32_t tiles_x, tiles_y, tile_x0, tile_y0;
+  uint32_t span_x, span_y; /* tiles of a block, what a worker takes at a time */
   uint32_t first_sample, pass_samples;
   Worker *workers;
-  atomic_uint tiles_done;
+  atomic_uint blocks_done;
   atomic_bool cancelled;
   pthread_t caller;
   double start, last_sign;
@@ -94,13 +95,15 @@ static uint32_t morton_half(uint32_t m) {
   return (m | m >> 4) & 0x00ff00ffu;
 }
 
-/* Pixels of the tile inside the crop window, times the samples of this batch. Returns the number of lanes. */
-static uint32_t list_samples(const Render *r, Worker *w, uint32_t tile, uint32_t first, uint32_t count) {
+/* Pixels of the block's tiles inside the crop window, times the samples of this batch. Returns the number of lanes. */
+static uint32_t list_samples(const Render *r, Worker *w, uint32_t block, uint32_t first, uint32_t count) {
   int32_t *px = (int32_t *)(void *)row(w, PIXEL_X), *py = (int32_t *)(void *)row(w, PIXEL_Y);
   uint32_t *index = (uint32_t *)(void *)row(w, INDEX), n = 0;
-  uint32_t x0 = (r->tile_x0 + tile % r->tiles_x) * TILE, y0 = (r->tile_y0 + tile / r->tiles_x) * TILE;
+  uint32_t blocks_x = (r->tiles_x + r->span_x - 1) / r->span_x, pixels = r->span_x * r->span_y * TILE_PIXELS;
+  uint32_t x0 = (r->tile_x0 + block % blocks_x * r->span_x) * TILE;
+  uint32_t y0 = (r->tile_y0 + block / blocks_x * r->span_y) * TILE;
   for (uint32_t s = first; s < first + count; s++)
-    for (uint32_t m = 0; m < TILE_PIXELS; m++) {
+    for (uint32_t m = 0; m < pixels; m++) { /* two tiles lie side by side, four in a square */
       uint32_t x = x0 + morton_half(m), y = y0 + morton_half(m >> 1);
       if (x < r->crop[0] || y < r->crop[1] || x >= r->crop[2] || y >= r->crop[3]) continue;
       px[n] = (int32_t)x, py[n] = (int32_t)y, index[n] = s;
@@ -221,27 +224,40 @@ static bool report(Render *r, bool pass_done, double done_samples) {
   return r->def->progress(r->def->progress_user, &p);
 }
 
-static void render_tile(void *user, uint32_t tile, uint32_t worker) {
+static uint32_t block_count(const Render *r) {
+  return ((r->tiles_x + r->span_x - 1) / r->span_x) * ((r->tiles_y + r->span_y - 1) / r->span_y);
+}
+
+/* Passes of few samples take several tiles at once, so that batches are full; but not so many that a worker is idle. */
+static void choose_blocks(Render *r) {
+  uint32_t threads = vl_context_threads(r->world->context);
+  r->span_x = r->pass_samples <= 2 ? 2 : 1;
+  r->span_y = r->pass_samples <= 1 ? 2 : 1;
+  if (block_count(r) < 2 * threads) r->span_y = 1;
+  if (block_count(r) < 2 * threads) r->span_x = 1;
+}
+
+static void render_block(void *user, uint32_t block, uint32_t worker) {
   Render *r = user;
   Worker *w = &r->workers[worker];
   if (atomic_load(&r->cancelled)) return;
   unsigned state = vl_accel_enter();
   uint32_t end = r->first_sample + r->pass_samples;
   for (uint32_t s = r->first_sample; s < end && !atomic_load(&r->cancelled);) {
-    uint32_t count = end - s < VL_BATCH / TILE_PIXELS ? end - s : VL_BATCH / TILE_PIXELS;
-    uint32_t n = list_samples(r, w, tile, s, count);
+    uint32_t most = VL_BATCH / TILE_PIXELS / (r->span_x * r->span_y), count = end - s < most ? end - s : most;
+    uint32_t n = list_samples(r, w, block, s, count);
     if (n) render_batch(r, w, n);
     s += count;
     if (worker == 0 && pthread_equal(pthread_self(), r->caller) && vl_seconds() - r->last_sign > 0.1) {
       vl_accel_leave(state);
       r->last_sign = vl_seconds();
-      double share = (double)atomic_load(&r->tiles_done) / ((double)r->tiles_x * r->tiles_y);
+      double share = (double)atomic_load(&r->blocks_done) / block_count(r);
       if (!report(r, false, r->first_sample + share * r->pass_samples)) atomic_store(&r->cancelled, true);
       state = vl_accel_enter();
     }
   }
   vl_accel_leave(state);
-  atomic_fetch_add(&r->tiles_done, 1);
+  atomic_fetch_add(&r->blocks_done, 1);
 }
 
 static vlResult check_arguments(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
@@ -366,9 +382,10 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
     }
     r->first_sample = vl_film_spp(film);
     r->pass_samples = pass_size(r->first_sample, def->spp, seconds_per_sample);
+    choose_blocks(r);
     double pass_start = vl_seconds();
-    atomic_store(&r->tiles_done, 0);
-    vl_parallel_for(world->context, r->tiles_x * r->tiles_y, render_tile, r);
+    atomic_store(&r->blocks_done, 0);
+    vl_parallel_for(world->context, block_count(r), render_block, r);
     if (atomic_load(&r->cancelled)) {
       vl_film_abandon_pass(film);
       result = vl_fail(error, VL_CANCELLED, "stopped");

@@ -123,6 +123,7 @@ static bool read_texture(vlDict *dict, vlTextureDef *def, const vlPending *pendi
                           dict->what);
   if (!read_inputs(dict, def)) return false;
   switch (def->kind) {
+    case VL_TEXTURE_VERTEX_COLOR: /* not a texture of pbrt */
     case VL_TEXTURE_CONSTANT: break;
     case VL_TEXTURE_SCALE:
       if (!vl_import_float_input(dict, "scale", &def->amount, NULL)) return false;

@@ -46,7 +46,8 @@ static void add_glow(vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t i
   if (!(vl_dot(d, at.g) < 0.0f) && !e->two_sided) return;
   float lambda[4], radiance[4];
   vl_path_lambda(p, i, lambda);
-  VL_HOT(vl_emitted_at)(world, e, lambda, at.u, 1.0f - at.v, false, radiance);
+  vlVec2 uv = VL_HOT(vl_glow_uv)(world, light, &at);
+  VL_HOT(vl_emitted_at)(world, e, lambda, uv.x, 1.0f - uv.y, false, radiance);
   float weight = 1.0f;
   if (!p->specular[i]) {
     vlVec3 from_n = vl_lane3(p->from_nx, p->from_ny, p->from_nz, i);
@@ -78,7 +79,7 @@ static uint32_t resolve_material(const vlWorld *world, const vlPaths *p, const v
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = path_point(world, p, h, i);
     float position[3] = {at.p.x, at.p.y, at.p.z};
-    float amount = vl_texture_float_at(world, m->amount, at.u, at.v, position);
+    float amount = vl_texture_float_at(world, m->amount, at.u, at.v, position, NULL);
     uint32_t hash = vl_hash3(vl_float_bits(d.x), vl_float_bits(d.y), vl_float_bits(d.z));
     hash = vl_hash3(hash, vl_float_bits(at.p.x), vl_float_bits(at.p.y));
     hash = vl_hash3(hash, vl_float_bits(at.p.z), material);

@@ -13,10 +13,16 @@ void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *e, const float
     return;
   }
   const vlMipmap *mip = world->images.items[e->image].mipmap;
-  vlTexel x = sky ? vl_nearest(mip, 0, s, t, VL_WRAP_OCTAHEDRAL) : vl_bilinear(mip, 0, s, t, VL_WRAP_CLAMP);
+  vlTexel x;
+  if (e->node > 0) {
+    vlTexturePoint at = {s, 1.0f - t, vl_vec3(0, 0, 0), vl_vec3(0, 0, 1), 0, 0, {1, 1, 1, 1}};
+    x = vl_texture_rgba(&world->nodes.items[e->node - 1], mip, at);
+  } else {
+    x = sky ? vl_nearest(mip, 0, s, t, VL_WRAP_OCTAHEDRAL) : vl_bilinear(mip, 0, s, t, VL_WRAP_CLAMP);
+  }
   float rgb[3];
   for (int k = 0; k < 3; k++) {
-    float y = e->image_scale * x.c[mip->channels < 3 ? 0 : k];
+    float y = e->image_scale * x.c[mip->channels < 3 && e->node == 0 ? 0 : k];
     rgb[k] = y > 0.0f ? y : 0.0f;
   }
   if (world->def.color == VL_COLOR_RGB) {
@@ -185,12 +191,31 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
   }
   if (with_uv) {
     static const float unit[6] = {0, 0, 1, 0, 1, 1};
+    const float *uvs = s->glow_uvs ? s->glow_uvs : s->uvs;
     for (int k = 0; k < 3; k++) {
-      const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
+      const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
       r.u += b[k] * t[0], r.v += b[k] * t[1];
     }
   }
   return r;
+}
+
+vlVec2 VL_HOT(vl_glow_uv)(const vlWorld *world, const vlWorldLight *light, const vlPoint *at) {
+  const vlWorldShape *s = &world->shapes.items[light->shape];
+  vlVec2 uv = {at->u, at->v};
+  if (!s->glow_uvs) return uv;
+  const float *q = light->corners;
+  vlVec3 a = vl_vec3(q[0], q[1], q[2]), e1 = vl_sub(vl_vec3(q[3], q[4], q[5]), a),
+         e2 = vl_sub(vl_vec3(q[6], q[7], q[8]), a);
+  vlVec3 g = vl_cross(e1, e2), way = vl_sub(at->p, a);
+  float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
+  float b1 = vl_dot(vl_cross(way, e2), g) * inv, b2 = vl_dot(vl_cross(e1, way), g) * inv;
+  const uint32_t *f = s->indices + 3 * (size_t)light->prim;
+  const float *t0 = s->glow_uvs + 2 * (size_t)f[0], *t1 = s->glow_uvs + 2 * (size_t)f[1],
+              *t2 = s->glow_uvs + 2 * (size_t)f[2];
+  uv.x = (1.0f - b1 - b2) * t0[0] + b1 * t1[0] + b2 * t2[0];
+  uv.y = (1.0f - b1 - b2) * t0[1] + b1 * t1[1] + b2 * t2[1];
+  return uv;
 }
 
 static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec3 from, float u, float v) {
@@ -324,7 +349,7 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
         out->delta[i] = 1;
       } else if (shape->alpha >= 0) {
         float at[3] = {q.p.x, q.p.y, q.p.z};
-        float cover = vl_clamp(vl_texture_float_at(world, shape->alpha, q.u, q.v, at), 0.0f, 1.0f);
+        float cover = vl_clamp(vl_texture_float_at(world, shape->alpha, q.u, q.v, at, NULL), 0.0f, 1.0f);
         for (int c = 0; c < 4; c++) radiance[c] *= cover;
       }
       /* The end of the shadow ray is moved off the light by the bound of the rounding error of its points. */

@@ -24,7 +24,7 @@ static void colour(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {
 /* The mapped normal of a tangent-space picture. Its green points along dpdv as glTF has it (up in the picture). */
 static vlVec3 mapped(const vlTextureRun *r, const vlTextureNode *node, float scale, uint32_t i) {
   const vlSurface *f = &r->s->surface;
-  vlTexel t = vl_texture_image(node, r->world->images.items[node->image].mipmap, vl_texture_point_of(r, i));
+  vlTexel t = vl_texture_image(node, r->world->images.items[node->image].mipmap, vl_texture_point_of(r, node, i));
   vlVec3 local = vl_normalize(vl_vec3(scale * (2 * t.c[0] - 1), scale * (2 * t.c[1] - 1), 2 * t.c[2] - 1));
   vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]), u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]),
          v = vl_vec3(f->vx[i], f->vy[i], f->vz[i]);

@@ -170,6 +170,8 @@ static inline vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3
 /* Emitted radiance at 4 channels: of a light's colour (image: at s, t of its picture). */
 void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *emitted, const float lambda[4], float s, float t,
                            bool sky, float out[4]);
+/* uv of the emission's picture at a point of an area light that a ray has met. */
+vlVec2 VL_HOT(vl_glow_uv)(const vlWorld *world, const vlWorldLight *light, const vlPoint *at);
 /* Radiance of a light that a ray in direction d misses everything to see; and the density of sampling it. */
 void VL_HOT(vl_infinite_at)(const vlWorld *world, const vlWorldLight *light, vlVec3 d, const float lambda[4],
                             float out[4]);

@@ -249,14 +249,18 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
     const float *x = s->tangents + 3 * (size_t)f[j];
     t = vl_add(t, vl_mul(vl_vec3(x[0], x[1], x[2]), w[j]));
   }
+  bool mirrored = false;
   if (hits->instance[i] != VL_NONE) {
     vlWorldInstance room;
-    const float *m = vl_instance_at(&world->instances.items[hits->instance[i]], time, &room)->from_group;
+    const vlWorldInstance *q = vl_instance_at(&world->instances.items[hits->instance[i]], time, &room);
+    const float *m = q->from_group;
+    mirrored = q->mirrored;
     t = vl_vec3(m[0] * t.x + m[1] * t.y + m[2] * t.z, m[4] * t.x + m[5] * t.y + m[6] * t.z,
                 m[8] * t.x + m[9] * t.y + m[10] * t.z);
   }
   if (!(vl_length2(t) > 0.0f)) return;
   vlVec3 v = vl_cross(vl_vec3(out->nx[i], out->ny[i], out->nz[i]), t);
+  if (s->tangent_signs && (s->tangent_signs[f[0]] < 0.0f) != mirrored) v = vl_neg(v);
   out->ux[i] = t.x, out->uy[i] = t.y, out->uz[i] = t.z;
   out->vx[i] = v.x, out->vy[i] = v.y, out->vz[i] = v.z;
 }

@@ -9,7 +9,7 @@ static void mix_weight(vlTextureRun *r, const vlTextureNode *node, float *w) {
     return;
   }
   for (uint32_t i = r->first; i < r->last; i++) {
-    vlTexturePoint at = vl_texture_point_of(r, i);
+    vlTexturePoint at = vl_texture_point_of(r, node, i);
     if (node->kind == VL_NODE_CHECKERBOARD)
       w[i] = vl_texture_checker(node, at);
     else
@@ -19,7 +19,7 @@ static void mix_weight(vlTextureRun *r, const vlTextureNode *node, float *w) {
 
 static void bilerp_weights(vlTextureRun *r, const vlTextureNode *node, float *const w[4]) {
   for (uint32_t i = r->first; i < r->last; i++) {
-    vlVec2 st = vl_texture_st(node, vl_texture_point_of(r, i));
+    vlVec2 st = vl_texture_st(node, vl_texture_point_of(r, node, i));
     w[0][i] = (1 - st.x) * (1 - st.y), w[1][i] = (1 - st.x) * st.y;
     w[2][i] = st.x * (1 - st.y), w[3][i] = st.x * st.y;
   }
@@ -31,9 +31,14 @@ void VL_HOT(vl_texture_float)(vlTextureRun *r, int32_t index, float *out) {
   switch (node->kind) {
     case VL_NODE_IMAGE: {
       const vlMipmap *mip = r->world->images.items[node->image].mipmap;
-      for (uint32_t i = r->first; i < r->last; i++) out[i] = vl_texture_image_float(node, mip, vl_texture_point_of(r, i));
+      for (uint32_t i = r->first; i < r->last; i++)
+        out[i] = vl_texture_image_float(node, mip, vl_texture_point_of(r, node, i));
       break;
     }
+    case VL_NODE_VERTEX_COLOR:
+      for (uint32_t i = r->first; i < r->last; i++)
+        out[i] = vl_texture_channel(node, NULL, vl_texture_point_of(r, node, i));
+      break;
     case VL_NODE_SCALE: {
       float *w = vl_texture_row(r);
       VL_HOT(vl_texture_float)(r, node->a, out);
@@ -88,12 +93,14 @@ static void constant_spectrum(const vlTextureRun *r, const vlSpectral *s, float 
 
 /* A picture's colour at the wavelengths, by its role (pbrt book 10.4.1): albedos are clamped, others scaled. */
 static void image_spectrum(vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {
-  const vlMipmap *mip = r->world->images.items[node->image].mipmap;
+  const vlMipmap *mip = node->kind == VL_NODE_IMAGE ? r->world->images.items[node->image].mipmap : NULL;
   bool rgb_mode = r->world->def.color == VL_COLOR_RGB;
   const vlRgbTable *table = vl_rgb_table(node->space);
   for (uint32_t i = r->first; i < r->last; i++) {
-    vlTexel t = vl_texture_image(node, mip, vl_texture_point_of(r, i));
-    float c[3] = {t.c[0], mip->channels < 3 ? t.c[0] : t.c[1], mip->channels < 3 ? t.c[0] : t.c[2]};
+    vlTexel t = node->plain ? vl_texture_image(node, mip, vl_texture_point_of(r, node, i))
+                            : vl_texture_rgba(node, mip, vl_texture_point_of(r, node, i));
+    bool grey = node->plain && mip->channels < 3;
+    float c[3] = {t.c[0], grey ? t.c[0] : t.c[1], grey ? t.c[0] : t.c[2]};
     if (node->role == VL_ROLE_ALBEDO)
       for (int k = 0; k < 3; k++) c[k] = c[k] > 1.0f ? 1.0f : c[k];
     if (rgb_mode) {
@@ -116,7 +123,8 @@ void VL_HOT(vl_texture_spectrum)(vlTextureRun *r, int32_t index, float *const ou
   uint32_t top = r->top;
   switch (node->kind) {
     case VL_NODE_SPECTRUM: constant_spectrum(r, &node->spectrum, out); break;
-    case VL_NODE_IMAGE: image_spectrum(r, node, out); break;
+    case VL_NODE_IMAGE:
+    case VL_NODE_VERTEX_COLOR: image_spectrum(r, node, out); break;
     case VL_NODE_SCALE: {
       float *w = vl_texture_row(r);
       VL_HOT(vl_texture_spectrum)(r, node->a, out);

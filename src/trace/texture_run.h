@@ -24,7 +24,23 @@ static inline float *vl_texture_row(vlTextureRun *r) {
   return r->s->rows[r->top < VL_TEXTURE_ROWS - 1 ? r->top++ : r->top]; /* enough: world/texture.c limits nesting */
 }
 
-static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, uint32_t i) {
+/* What the corners of lane i's triangle carry: uv sets, colours. */
+static inline void vl_texture_lane_corner(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
+                                          vlTexturePoint *at) {
+  const vlCorners *c = &r->s->corners;
+  const vlHits *h = &r->s->hits_b;
+  vlTextureCorner where = {&r->world->shapes.items[h->shape[i]], h->prim[i], {1, 0, 0}};
+  vlVec3 k[3];
+  for (int j = 0; j < 3; j++) k[j] = vl_vec3(c->p[3 * j][i], c->p[3 * j + 1][i], c->p[3 * j + 2][i]);
+  vlVec3 e1 = vl_sub(k[1], k[0]), e2 = vl_sub(k[2], k[0]), g = vl_cross(e1, e2), way = vl_sub(at->p, k[0]);
+  float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
+  where.weights[1] = vl_dot(vl_cross(way, e2), g) * inv;
+  where.weights[2] = vl_dot(vl_cross(e1, way), g) * inv;
+  where.weights[0] = 1.0f - where.weights[1] - where.weights[2];
+  vl_texture_at_corner(node, &where, at);
+}
+
+static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vlTextureNode *node, uint32_t i) {
   const vlSurface *f = r->surface;
   vlTexturePoint at;
   at.u = f->u[i], at.v = f->v[i];
@@ -36,6 +52,7 @@ static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, uint32_t
     at.u += r->shift_u[i], at.v += r->shift_v[i];
     at.p = vl_add(at.p, vl_vec3(r->shift_x[i], r->shift_y[i], r->shift_z[i]));
   }
+  if (vl_texture_needs_corner(node)) vl_texture_lane_corner(r, node, i, &at);
   return at;
 }
 

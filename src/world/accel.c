@@ -103,13 +103,14 @@ static float ray_hash(const LocalRay *r, uint32_t shape, uint32_t prim, float t)
 
 /* t: of shapes that a ray can meet twice, so that each crossing is decided for itself; 0 of triangles. */
 static bool alpha_passes(const AccelGeometry *g, const LocalRay *r, uint32_t prim, float t, float u, float v,
-                         const float p[3]) {
-  float alpha = vl_texture_float_at(g->world, g->shape->alpha, u, v, p);
+                         const float p[3], const vlTextureCorner *where) {
+  float alpha = vl_texture_float_at(g->world, g->shape->alpha, u, v, p, where);
   return ray_hash(r, (uint32_t)(g->shape - g->world->shapes.items), prim, t) >= alpha;
 }
 
-/* uv and position where the ray meets triangle prim, in our own arithmetic. */
-static void triangle_uv(const vlWorldShape *s, uint32_t prim, const LocalRay *r, float uv[2], float p[3]) {
+/* uv and position where the ray meets triangle prim, in our own arithmetic, and the weights of its corners. true: from
+ * behind. */
+static bool triangle_uv(const vlWorldShape *s, uint32_t prim, const LocalRay *r, float uv[2], float p[3], float b[3]) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
   vlVec3 ray_o = vl_vec3((float)r->o[0], (float)r->o[1], (float)r->o[2]);
   vlVec3 ray_d = vl_vec3((float)r->d[0], (float)r->d[1], (float)r->d[2]), c[3];
@@ -124,7 +125,7 @@ static void triangle_uv(const vlWorldShape *s, uint32_t prim, const LocalRay *r,
   float sum = b0 + b1 + b2, inv = sum != 0 ? 1 / sum : 0;
   b0 *= inv, b1 *= inv, b2 *= inv;
   static const float unit[6] = {0, 0, 1, 0, 1, 1};
-  float b[3] = {b0, b1, b2};
+  b[0] = b0, b[1] = b1, b[2] = b2;
   uv[0] = uv[1] = 0;
   for (int k = 0; k < 3; k++) {
     const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
@@ -132,18 +133,22 @@ static void triangle_uv(const vlWorldShape *s, uint32_t prim, const LocalRay *r,
     uv[1] += b[k] * t[1];
   }
   for (int i = 0; i < 3; i++) p[i] = b0 * corner[0][i] + b1 * corner[1][i] + b2 * corner[2][i];
+  return s->flip ? sum < 0 : sum > 0; /* sum is the direction times the normal of the face order */
 }
 
 static bool filter_rejects(const AccelGeometry *g, const struct RTCFilterFunctionNArguments *args, unsigned i,
                            bool shadow) {
   if (shadow && g->shape->pass_shadow) return true;
-  if (g->shape->alpha < 0) return false;
+  if (g->shape->alpha < 0 && !g->shape->one_sided) return false;
   float uv[2], p[3];
+  vlTextureCorner where;
   LocalRay r =
       local_ray(g->world, args->context, *hit_row(args->ray, args->N, ID, i), *hit_row(args->hit, args->N, INST, i));
   uint32_t prim = *hit_row(args->hit, args->N, PRIM, i);
-  triangle_uv(g->shape, prim, &r, uv, p);
-  return alpha_passes(g, &r, prim, 0, uv[0], uv[1], p);
+  where.shape = g->shape, where.prim = prim;
+  bool behind = triangle_uv(g->shape, prim, &r, uv, p, where.weights);
+  if (behind && g->shape->one_sided) return true;
+  return g->shape->alpha >= 0 && alpha_passes(g, &r, prim, 0, uv[0], uv[1], p, &where);
 }
 
 static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
@@ -176,7 +181,7 @@ static bool user_hit(const AccelGeometry *g, const EmbreeContext *context, void 
       vlSurfacePoint point;
       vl_shape_point(g->shape, prim, &hit, &point);
       float p[3] = {(float)point.p[0], (float)point.p[1], (float)point.p[2]};
-      if (alpha_passes(g, &r, prim, (float)hit.t, point.uv[0], point.uv[1], p)) {
+      if (alpha_passes(g, &r, prim, (float)hit.t, point.uv[0], point.uv[1], p, NULL)) {
         t_min = hit.t * (1 + 1e-12);
         continue;
       }
@@ -224,8 +229,9 @@ static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, Acce
       rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3, s->positions,
                                  12 * (size_t)k * s->vertices, 12, s->vertices);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s->indices, 0, 12, s->faces);
-    if (s->alpha >= 0) rtcSetGeometryIntersectFilterFunction(geometry, filter_closest);
-    if (s->alpha >= 0 || s->pass_shadow) rtcSetGeometryOccludedFilterFunction(geometry, filter_occluded);
+    if (s->alpha >= 0 || s->one_sided) rtcSetGeometryIntersectFilterFunction(geometry, filter_closest);
+    if (s->alpha >= 0 || s->one_sided || s->pass_shadow)
+      rtcSetGeometryOccludedFilterFunction(geometry, filter_occluded);
   } else {
     rtcSetGeometryUserPrimitiveCount(geometry, s->kind == VL_SHAPE_BILINEAR ? s->faces : 1);
     rtcSetGeometryBoundsFunction(geometry, user_bounds, NULL);

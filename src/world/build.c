@@ -28,7 +28,8 @@ vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **r
   world->def = d;
   vlError local;
   vl_error_clear(&local);
-  r = vl_world_add_materials(world, scene, &local);
+  r = vl_world_preload_images(world, scene, &local);
+  if (r == VL_OK) r = vl_world_add_materials(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_shapes(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_origins(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_lights(world, scene, &local);

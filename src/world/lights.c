@@ -233,8 +233,20 @@ static float mean_image_luminance(const vlMipmap *mip) {
   return texel_luminance(vl_texel(mip, last, 0, 0, VL_WRAP_CLAMP), mip->channels);
 }
 
-static vlResult add_emission(vlWorld *world, const vlEmissionDef *def, vlEmitted *e, vlError *error) {
+static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmissionDef *def, vlEmitted *e,
+                             vlError *error) {
   e->two_sided = def->two_sided;
+  if (def->texture.index) {
+    image_color(world, VL_SPACE_SRGB, def->scale, e);
+    vlSpectrumInput input = vl_spectrum_input(vl_spectrum_constant(0.0f));
+    input.texture = def->texture;
+    int32_t node;
+    vlResult r = vl_world_spectrum_node(world, scene, input, VL_ROLE_ILLUMINANT, &node, error);
+    if (r != VL_OK) return r;
+    e->node = node + 1;
+    e->image = world->nodes.items[node].image;
+    return VL_OK;
+  }
   if (!def->image) return compile_color(world, &def->radiance, def->scale, e, error);
   image_color(world, VL_SPACE_SRGB, def->scale, e);
   e->image = vl_world_add_image(world, def->image, NULL, NULL, 1, true, error);
@@ -245,6 +257,27 @@ static vlResult add_emission(vlWorld *world, const vlEmissionDef *def, vlEmitted
       if (!isfinite(texel_luminance(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels)))
         return vl_fail(error, VL_ERROR_SCENE, "%s: pixel (%u, %u) is not finite, it cannot shine", def->image, x, y);
   return VL_OK;
+}
+
+/* Mean luminance of an emission's texture over a triangle, about: where a picture is dark, no light need be asked. */
+static float face_luminance(const vlWorld *world, const vlWorldShape *s, uint32_t prim, const vlEmitted *e) {
+  static const float inside[4][3] = {
+      {1 / 3.0f, 1 / 3.0f, 1 / 3.0f}, {0.7f, 0.15f, 0.15f}, {0.15f, 0.7f, 0.15f}, {0.15f, 0.15f, 0.7f}};
+  const vlTextureNode *node = &world->nodes.items[e->node - 1];
+  const float *uvs = s->glow_uvs ? s->glow_uvs : s->uvs;
+  const uint32_t *f = s->indices + 3 * (size_t)prim;
+  float unit[6] = {0, 0, 1, 0, 1, 1}, t[6];
+  for (int k = 0; k < 3; k++)
+    for (int j = 0; j < 2; j++) t[2 * k + j] = uvs ? uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
+  float area = fabsf((t[2] - t[0]) * (t[5] - t[1]) - (t[4] - t[0]) * (t[3] - t[1])), sum = 0;
+  vlTexturePoint at = {0, 0, vl_vec3(0, 0, 0), vl_vec3(0, 0, 1), sqrtf(0.5f * area), 0, {1, 1, 1, 1}};
+  for (int i = 0; i < 4; i++) {
+    at.u = inside[i][0] * t[0] + inside[i][1] * t[2] + inside[i][2] * t[4];
+    at.v = inside[i][0] * t[1] + inside[i][1] * t[3] + inside[i][2] * t[5];
+    vlTexel x = vl_texture_rgba(node, world->images.items[e->image].mipmap, at);
+    sum += 0.25f * texel_luminance(x, 4);
+  }
+  return e->image_scale * (isfinite(sum) ? sum : 0);
 }
 
 /* Corners and lit side. The renderer turns the geometric normal to the side of the interpolated shading normal: where
@@ -293,8 +326,10 @@ static vlResult add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t 
       vlEmitted *e = VL_PUSH(world->context, &world->emitted);
       if (!e) return vl_fail_memory(error);
       e->image = -1;
-      vlResult r = add_emission(world, emission, e, error);
+      vlResult r = add_emission(world, scene, emission, e, error);
       if (r != VL_OK) return vl_world_placed(emission->source, error, r);
+      uint32_t set = e->node ? world->nodes.items[e->node - 1].uv_set : 0;
+      if (set) shape->glow_uvs = shape->more_uvs[set - 1];
       shared = (uint32_t)world->emitted.count - 1;
       if (has_power) { /* as in pbrt, for each primitive */
         float sent = (e->two_sided ? 2 : 1) * area * VL_PI;
@@ -317,6 +352,7 @@ static vlResult add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t 
     float l = e->image >= 0 ? e->image_scale * mean_image_luminance(world->images.items[e->image].mipmap) *
                                   luminance(&e->spectrum)
                             : luminance(&e->spectrum);
+    if (e->node && shape->kind == VL_SHAPE_TRIANGLES) l = face_luminance(world, shape, i, e) * luminance(&e->spectrum);
     light->power = VL_PI * area * l * (e->two_sided ? 2 : 1);
     if (shape->kind == VL_SHAPE_TRIANGLES) triangle_light(shape, i, light);
     if (shape->kind == VL_SHAPE_DISK) {

@@ -97,6 +97,14 @@ static vlResult add_vertex_motion(vlWorld *world, const vlShapeDef *def, const v
   return VL_OK;
 }
 
+/* false: out of memory. */
+static bool copy_rows(vlWorld *world, const float *from, size_t count, size_t width, float **to) {
+  if (!from) return true;
+  if (!(*to = vl_world_block(world, count * width, sizeof(float)))) return false;
+  memcpy(*to, from, count * width * sizeof(float));
+  return true;
+}
+
 static vlResult move_mesh(vlWorld *world, const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse,
                           vlWorldShape *s, vlError *error) {
   size_t n = def->vertices, corners = def->kind == VL_SHAPE_BILINEAR ? 4 : 3;
@@ -114,6 +122,15 @@ static vlResult move_mesh(vlWorld *world, const vlShapeDef *def, const vlMat4 *m
     if (!(s->uvs = vl_world_block(world, 2 * n, sizeof(float)))) return vl_fail_memory(error);
     memcpy(s->uvs, def->uvs, 2 * n * sizeof(float));
   }
+  s->one_sided = def->one_sided && def->kind == VL_SHAPE_TRIANGLES;
+  if (def->kind == VL_SHAPE_TRIANGLES &&
+      (!copy_rows(world, def->tangent_signs, n, 1, &s->tangent_signs) ||
+       !copy_rows(world, def->colors, n, 4, &s->colors) || !copy_rows(world, def->more_uvs[0], n, 2, &s->more_uvs[0]) ||
+       !copy_rows(world, def->more_uvs[1], n, 2, &s->more_uvs[1]) ||
+       !copy_rows(world, def->more_uvs[2], n, 2, &s->more_uvs[2])))
+    return vl_fail_memory(error);
+  bool mirrored = vl_mat4_determinant3(*m) < 0; /* n x t turns over against what both of them do */
+  for (size_t i = 0; mirrored && s->tangent_signs && i < n; i++) s->tangent_signs[i] = -s->tangent_signs[i];
   if (same) memcpy(s->positions, def->positions, 3 * n * sizeof(float));
   if (!same && !move_rows(def, m, inverse, (Rows){def->positions, false}, s->positions))
     return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");

@@ -44,19 +44,21 @@ vlResult vl_spectral_compile(vlWorld *world, const vlSpectrum *spectrum, vlSpect
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
 static bool same_image(const vlWorldImage *a, const vlTextureDef *def) {
-  return a->path && def->path && strcmp(a->path, def->path) == 0 && a->encoding_given == def->encoding_given &&
+  bool same_file = a->path && def->path && strcmp(a->path, def->path) == 0;
+  return (same_file || (a->data && a->data == def->data)) && a->encoding_given == def->encoding_given &&
          (!a->encoding_given || (a->encoding == def->encoding && a->gamma == def->gamma));
 }
 
 /* Colour and, where it is not 1 everywhere, coverage; grey without. Names decide (EXR sorts its channels). */
-static void choose_channels(const vlImage *image, vlMipmapDef *mip) {
+static void choose_channels(const vlImage *image, bool keep_coverage, vlMipmapDef *mip) {
   int r = vl_image_find_channel(image, "R"), g = vl_image_find_channel(image, "G"),
       b = vl_image_find_channel(image, "B");
   int a = vl_image_find_channel(image, "A");
   if (r < 0 || g < 0 || b < 0) {
-    mip->count = 1;
     int y = vl_image_find_channel(image, "Y");
     mip->channel[0] = y < 0 ? 0 : (uint32_t)y;
+    mip->channel[1] = a < 0 ? 0 : (uint32_t)a;
+    mip->count = a >= 0 && keep_coverage ? 2 : 1;
     return;
   }
   bool covered = true;
@@ -68,32 +70,125 @@ static void choose_channels(const vlImage *image, vlMipmapDef *mip) {
   memcpy(mip->channel, channels, sizeof channels);
 }
 
+/* Where a picture comes from: a file, a file in memory, or given. */
+typedef struct Picture {
+  const char *path;
+  const void *data;
+  size_t size;
+  const vlImage *given;
+  const vlEncoding *encoding; /* null: the picture's own */
+  float gamma;
+  bool pyramid, keep_coverage;
+} Picture;
+
+static vlResult load_picture(vlContext *context, const Picture *p, vlMipmap **mipmap, vlError *error) {
+  const vlImage *given = p->given;
+  vlImage *image = NULL;
+  vlResult r = VL_OK;
+  if (p->data)
+    r = vl_image_read_memory(context, "picture", p->data, p->size, &image, error);
+  else if (!given)
+    r = vl_image_read(context, p->path, &image, error);
+  if (r != VL_OK) return r;
+  given = image ? image : given;
+  vlMipmapDef mip;
+  memset(&mip, 0, sizeof mip);
+  choose_channels(given, p->keep_coverage, &mip);
+  mip.only_finest = !p->pyramid;
+  mip.own_encoding = p->encoding != NULL;
+  mip.encoding = p->encoding ? *p->encoding : VL_ENCODING_LINEAR;
+  mip.gamma = p->gamma;
+  if ((r = vl_mipmap_create(given, &mip, mipmap)) == VL_ERROR_MEMORY)
+    vl_fail_memory(error);
+  else if (r != VL_OK)
+    vl_fail(error, r, "%s: cannot be used as a texture", p->path ? p->path : "image");
+  vl_image_destroy(image);
+  return r;
+}
+
+static int32_t push_picture(vlWorld *world, vlMipmap *mipmap, vlError *error) {
+  vlWorldImage *entry = VL_PUSH(world->context, &world->images);
+  if (!entry) {
+    vl_mipmap_destroy(mipmap);
+    vl_fail_memory(error);
+    return -1;
+  }
+  entry->mipmap = mipmap;
+  return (int32_t)world->images.count - 1;
+}
+
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
                            float gamma, bool pyramid, vlError *error) {
-  vlImage *image = NULL;
-  if (!given) {
-    if (vl_image_read(world->context, path, &image, error) != VL_OK) return -1;
-    given = image;
+  vlMipmap *mipmap = NULL;
+  Picture p = {path, NULL, 0, given, encoding, gamma, pyramid, false};
+  if (load_picture(world->context, &p, &mipmap, error) != VL_OK) return -1;
+  return push_picture(world, mipmap, error);
+}
+
+static Picture picture_of(const vlTextureDef *def) {
+  return (Picture){def->path,  def->data, def->data_size,   def->image, def->encoding_given ? &def->encoding : NULL,
+                   def->gamma, true,      def->data != NULL};
+}
+
+/* The picture is known by its name (or place) and encoding from here on. */
+static bool name_picture(vlWorld *world, vlWorldImage *entry, const vlTextureDef *def) {
+  entry->encoding = def->encoding;
+  entry->encoding_given = def->encoding_given;
+  entry->gamma = def->gamma;
+  entry->data = def->data;
+  if (!def->path) return true;
+  size_t size = strlen(def->path) + 1;
+  char *copy = vl_world_block(world, size, 1);
+  if (copy) memcpy(copy, def->path, size);
+  entry->path = copy;
+  return copy != NULL;
+}
+
+typedef struct Preload {
+  vlContext *context;
+  const vlTextureDef **defs;
+  vlMipmap **mipmaps;
+} Preload;
+
+static void preload_one(void *user, uint32_t index, uint32_t worker) {
+  (void)worker;
+  const Preload *job = user;
+  Picture p = picture_of(job->defs[index]);
+  vlError unsaid; /* who asks for the picture finds the error again, and says it with the place */
+  load_picture(job->context, &p, &job->mipmaps[index], &unsaid);
+}
+
+static bool listed(const vlTextureDef **defs, size_t count, const vlTextureDef *def) {
+  for (size_t i = 0; i < count; i++) {
+    vlWorldImage like = {NULL,          defs[i]->path, defs[i]->data, defs[i]->encoding, defs[i]->encoding_given,
+                         defs[i]->gamma};
+    if (same_image(&like, def)) return true;
   }
-  vlWorldImage *entry = VL_PUSH(world->context, &world->images);
-  vlResult r = VL_OK;
-  if (!entry) {
-    r = vl_fail_memory(error);
-  } else {
-    vlMipmapDef mip;
-    memset(&mip, 0, sizeof mip);
-    choose_channels(given, &mip);
-    mip.only_finest = !pyramid;
-    mip.own_encoding = encoding != NULL;
-    mip.encoding = encoding ? *encoding : VL_ENCODING_LINEAR;
-    mip.gamma = gamma;
-    if ((r = vl_mipmap_create(given, &mip, &entry->mipmap)) == VL_ERROR_MEMORY)
-      vl_fail_memory(error);
-    else if (r != VL_OK)
-      vl_fail(error, r, "%s: cannot be used as a texture", path ? path : "image");
+  return false;
+}
+
+vlResult vl_world_preload_images(vlWorld *world, const vlScene *scene, vlError *error) {
+  enum { MOST = 4096 }; /* looked for one by one */
+  size_t most = scene->textures.count < MOST ? scene->textures.count : MOST, count = 0;
+  Preload job = {world->context, vl_alloc_array(world->context, most + 1, sizeof *job.defs),
+                 vl_alloc_zero(world->context, most + 1, sizeof *job.mipmaps)};
+  bool ok = job.defs && job.mipmaps;
+  for (size_t i = 0; ok && i < scene->textures.count && count < most; i++) {
+    const vlTextureDef *def = &scene->textures.items[i];
+    if (def->kind == VL_TEXTURE_IMAGE && (def->path || def->data) && !listed(job.defs, count, def))
+      job.defs[count++] = def;
   }
-  vl_image_destroy(image);
-  return r == VL_OK ? (int32_t)world->images.count - 1 : -1;
+  if (ok && count > 1) vl_parallel_for(world->context, (uint32_t)count, preload_one, &job);
+  for (size_t i = 0; ok && i < count; i++) {
+    if (!job.mipmaps[i]) continue;
+    int32_t index = push_picture(world, job.mipmaps[i], error);
+    job.mipmaps[i] = NULL;
+    ok = index >= 0 && name_picture(world, &world->images.items[index], job.defs[i]);
+  }
+  for (size_t i = 0; job.mipmaps && i < count; i++) vl_mipmap_destroy(job.mipmaps[i]);
+  vl_free(world->context, job.defs);
+  vl_free(world->context, job.mipmaps);
+  return ok ? VL_OK : vl_fail_memory(error);
 }
 
 static int32_t image_of(vlWorld *world, const vlTextureDef *def, vlError *error) {
@@ -101,26 +196,18 @@ static int32_t image_of(vlWorld *world, const vlTextureDef *def, vlError *error)
     if (same_image(&world->images.items[i], def)) return (int32_t)i;
   vlError inner;
   vl_error_clear(&inner);
-  int32_t index = vl_world_add_image(world, def->path, def->path ? NULL : def->image,
-                                     def->encoding_given ? &def->encoding : NULL, def->gamma, true, &inner);
+  Picture picture = picture_of(def);
+  vlMipmap *mipmap = NULL;
+  int32_t index = -1;
+  if (load_picture(world->context, &picture, &mipmap, &inner) == VL_OK) index = push_picture(world, mipmap, &inner);
   if (index < 0) {
     vl_fail_at(error, inner.code ? inner.code : VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
                "%s", inner.message);
     return -1;
   }
-  vlWorldImage *entry = &world->images.items[index];
-  entry->encoding = def->encoding;
-  entry->encoding_given = def->encoding_given;
-  entry->gamma = def->gamma;
-  if (def->path) {
-    size_t size = strlen(def->path) + 1;
-    char *copy = vl_world_block(world, size, 1);
-    if (!copy) {
-      vl_fail_memory(error);
-      return -1;
-    }
-    memcpy(copy, def->path, size);
-    entry->path = copy;
+  if (!name_picture(world, &world->images.items[index], def)) {
+    vl_fail_memory(error);
+    return -1;
   }
   return index;
 }
@@ -147,6 +234,9 @@ static vlTextureNode empty_node(vlNodeKind kind) {
   node.kind = kind;
   node.a = node.b = node.c = node.d = node.amount = node.image = -1;
   node.visits = 1;
+  node.plain = true;
+  node.channel = -1;
+  node.cutoff = NAN;
   return node;
 }
 
@@ -211,6 +301,23 @@ static vlResult image_spectrum(vlWorld *world, vlTextureNode *node, vlError *err
   return VL_OK;
 }
 
+/* What textures of pictures and vertex colours have beyond the picture. */
+static void fill_picture_node(const vlTextureDef *def, vlTextureNode *node) {
+  node->wrap = def->wrap, node->filter = def->filter, node->scale = def->scale, node->invert = def->invert;
+  node->wrap_t = def->wrap_t_given ? def->wrap_t : def->wrap;
+  node->colors = def->colors || def->kind == VL_TEXTURE_VERTEX_COLOR;
+  node->channel = (int8_t)def->channel;
+  node->uv_set = (uint8_t)def->uv_set;
+  node->bias = def->bias, node->cutoff = (float)def->cutoff;
+  memcpy(node->tint, def->tint, sizeof node->tint);
+  node->st_given = def->st_from_uv_given;
+  memcpy(node->st, def->st_from_uv, sizeof node->st);
+  node->st_scale = sqrtf(fmaxf(node->st[0] * node->st[0] + node->st[3] * node->st[3],
+                               node->st[1] * node->st[1] + node->st[4] * node->st[4]));
+  bool tinted = def->tint[0] != 1 || def->tint[1] != 1 || def->tint[2] != 1 || def->tint[3] != 1;
+  node->plain = !tinted && !node->colors && def->channel < 0 && def->bias == 0 && isnan(def->cutoff);
+}
+
 static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting) {
   const vlTextureDef *def = &c->scene->textures.items[index - 1];
   if (!def->spectrum) role = ROLE_FLOAT;
@@ -232,7 +339,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   for (int i = 0; i < 12; i++) node.texture_from_world[i] = (float)def->texture_from_world[i];
   node.dimension = def->dimension;
   memcpy(node.direction, def->direction, sizeof node.direction);
-  node.wrap = def->wrap, node.filter = def->filter, node.scale = def->scale, node.invert = def->invert;
+  fill_picture_node(def, &node);
   int inputs = 0;
   bool amount = false;
   switch (def->kind) {
@@ -247,6 +354,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
     case VL_TEXTURE_CHECKERBOARD: node.kind = VL_NODE_CHECKERBOARD, inputs = 2; break;
     case VL_TEXTURE_BILERP: node.kind = VL_NODE_BILERP, inputs = 4; break;
     case VL_TEXTURE_IMAGE: node.kind = VL_NODE_IMAGE; break;
+    case VL_TEXTURE_VERTEX_COLOR: node.kind = VL_NODE_VERTEX_COLOR; break;
   }
   int32_t *slots[4] = {&node.a, &node.b, &node.c, &node.d};
   vlFloatInput floats[4] = {def->float_a, def->float_b, def->float_c, def->float_d};
@@ -256,8 +364,9 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   if (amount && (node.amount = compile_float(c, def->amount, nesting)) < 0) return node.amount;
   if (node.kind == VL_NODE_IMAGE) {
     if ((node.image = image_of(c->world, def, c->error)) < 0) return -1;
-    if (def->spectrum && image_spectrum(c->world, &node, c->error) != VL_OK) return -1;
   }
+  if (node.kind == VL_NODE_IMAGE || node.kind == VL_NODE_VERTEX_COLOR)
+    if (def->spectrum && image_spectrum(c->world, &node, c->error) != VL_OK) return -1;
   if (!weigh(c->world, &node)) {
     vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
                "textures are nested too deep");
@@ -306,28 +415,36 @@ vlResult vl_world_spectrum_node(vlWorld *world, const vlScene *scene, vlSpectrum
 
 /* ---- one point, for alpha ---------------------------------------------------------------------------------------- */
 
-float vl_texture_float_at(const vlWorld *world, int32_t index, float u, float v, const float p[3]) {
+float vl_texture_float_at(const vlWorld *world, int32_t index, float u, float v, const float p[3],
+                          const vlTextureCorner *where) {
   const vlTextureNode *node = &world->nodes.items[index];
-  vlTexturePoint at = {u, v, vl_vec3(p[0], p[1], p[2]), vl_vec3(0, 0, 1), 0, 0};
+  vlTexturePoint at = {u, v, vl_vec3(p[0], p[1], p[2]), vl_vec3(0, 0, 1), 0, 0, {1, 1, 1, 1}};
+  if (vl_texture_needs_corner(node)) vl_texture_at_corner(node, where, &at);
   switch (node->kind) {
     case VL_NODE_FLOAT: return node->value;
     case VL_NODE_SCALE:
-      return vl_texture_float_at(world, node->a, u, v, p) * vl_texture_float_at(world, node->amount, u, v, p);
+      return vl_texture_float_at(world, node->a, u, v, p, where) *
+             vl_texture_float_at(world, node->amount, u, v, p, where);
     case VL_NODE_MIX: {
-      float t = vl_texture_float_at(world, node->amount, u, v, p);
-      return (1 - t) * vl_texture_float_at(world, node->a, u, v, p) + t * vl_texture_float_at(world, node->b, u, v, p);
+      float t = vl_texture_float_at(world, node->amount, u, v, p, where);
+      return (1 - t) * vl_texture_float_at(world, node->a, u, v, p, where) +
+             t * vl_texture_float_at(world, node->b, u, v, p, where);
     }
     case VL_NODE_CHECKERBOARD: {
       float t = vl_texture_checker(node, at);
-      return (1 - t) * vl_texture_float_at(world, node->a, u, v, p) + t * vl_texture_float_at(world, node->b, u, v, p);
+      return (1 - t) * vl_texture_float_at(world, node->a, u, v, p, where) +
+             t * vl_texture_float_at(world, node->b, u, v, p, where);
     }
     case VL_NODE_BILERP: {
       vlVec2 st = vl_texture_st(node, at);
-      float a = vl_texture_float_at(world, node->a, u, v, p), b = vl_texture_float_at(world, node->b, u, v, p);
-      float c = vl_texture_float_at(world, node->c, u, v, p), d = vl_texture_float_at(world, node->d, u, v, p);
+      float a = vl_texture_float_at(world, node->a, u, v, p, where),
+            b = vl_texture_float_at(world, node->b, u, v, p, where);
+      float c = vl_texture_float_at(world, node->c, u, v, p, where),
+            d = vl_texture_float_at(world, node->d, u, v, p, where);
       return (1 - st.x) * (1 - st.y) * a + (1 - st.x) * st.y * b + st.x * (1 - st.y) * c + st.x * st.y * d;
     }
     case VL_NODE_IMAGE: return vl_texture_image_float(node, world->images.items[node->image].mipmap, at);
-    default: return vl_texture_float_at(world, node->a, u, v, p);
+    case VL_NODE_VERTEX_COLOR: return vl_texture_channel(node, NULL, at);
+    default: return vl_texture_float_at(world, node->a, u, v, p, where);
   }
 }

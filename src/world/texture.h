@@ -33,7 +33,8 @@ typedef enum vlNodeKind {
   VL_NODE_CHECKERBOARD,
   VL_NODE_IMAGE,
   VL_NODE_DIRECTION_MIX,
-  VL_NODE_BILERP
+  VL_NODE_BILERP,
+  VL_NODE_VERTEX_COLOR
 } vlNodeKind;
 
 typedef struct vlTextureNode {
@@ -48,20 +49,28 @@ typedef struct vlTextureNode {
   float direction[3];
   uint32_t dimension;
   int32_t image;
-  vlWrap wrap;
+  vlWrap wrap, wrap_t;
   vlTextureFilter filter;
   float scale;
   bool invert;
+  /* tint, bias, cutoff or vertex colours do something; channel of a float texture, -1: by the picture */
+  bool plain, colors;
+  int8_t channel;
+  uint8_t uv_set;
+  float tint[4], bias, cutoff; /* cutoff NaN: none */
   vlColorSpace space;
   vlMapping mapping;
+  bool st_given; /* s, t by st instead of su, sv, du, dv */
   float su, sv, du, dv;
+  float st[6], st_scale; /* st_scale: the longest that a unit of uv becomes */
   float v1[3], v2[3];
   float texture_from_world[12];
 } vlTextureNode;
 
 typedef struct vlWorldImage {
   vlMipmap *mipmap;
-  const char *path; /* with the choices that change the pixels, for reading each file once */
+  const char *path; /* with the choices that change the pixels, for reading each file once; or */
+  const void *data; /* the file in memory */
   vlEncoding encoding;
   bool encoding_given;
   float gamma;
@@ -73,7 +82,15 @@ enum { VL_TEXTURE_NO_MEMORY = -2 };
 /* Compiles a spectrum for its role; errors as vl_spectrum_dense. */
 vlResult vl_spectral_compile(struct vlWorld *world, const vlSpectrum *spectrum, vlSpectrumRole role, vlSpectral *result,
                              vlError *error);
-/* A float texture at one point, for alpha (called from the accelerator): uv, world position. Unfiltered. */
-float vl_texture_float_at(const struct vlWorld *world, int32_t node, float u, float v, const float p[3]);
+/* A point of a triangle, for what its corners carry. */
+typedef struct vlTextureCorner {
+  const struct vlWorldShape *shape;
+  uint32_t prim;
+  float weights[3];
+} vlTextureCorner;
+/* A float texture at one point, for alpha (called from the accelerator): uv, world position. Unfiltered. where: null
+ * when only the first uv set is known. */
+float vl_texture_float_at(const struct vlWorld *world, int32_t node, float u, float v, const float p[3],
+                          const vlTextureCorner *where);
 
 #endif

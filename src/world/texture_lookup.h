@@ -3,16 +3,44 @@
 #ifndef WORLD_TEXTURE_LOOKUP_H
 #define WORLD_TEXTURE_LOOKUP_H
 
-#include "world/texture.h"
+#include "world/world.h"
 
 /* Where a texture is asked for: uv, world position and normal, and the footprint: how far uv moves over the width of a
- * pixel (the larger axis), and that width itself in world units. */
+ * pixel (the larger axis), and that width itself in world units. color: of the shape's vertices there; read only by
+ * nodes that ask for it. */
 typedef struct vlTexturePoint {
   float u, v;
   vlVec3 p, n;
   float uv_width;
   float width;
+  float color[4];
 } vlTexturePoint;
+
+/* Does the node ask for more than the first uv set? */
+static inline bool vl_texture_needs_corner(const vlTextureNode *node) {
+  return node->uv_set != 0 || node->colors;
+}
+
+/* The uv set and the vertex colour that the node asks for, at a point of a triangle. */
+static inline void vl_texture_at_corner(const vlTextureNode *node, const vlTextureCorner *where, vlTexturePoint *at) {
+  for (int c = 0; c < 4; c++) at->color[c] = 1.0f;
+  if (!where || where->shape->kind != VL_SHAPE_TRIANGLES) return;
+  const vlWorldShape *s = where->shape;
+  const uint32_t *f = s->indices + 3 * (size_t)where->prim;
+  const float *uvs = node->uv_set ? s->more_uvs[node->uv_set - 1] : NULL;
+  if (uvs) {
+    at->u = at->v = 0;
+    for (int k = 0; k < 3; k++) {
+      at->u += where->weights[k] * uvs[2 * (size_t)f[k]];
+      at->v += where->weights[k] * uvs[2 * (size_t)f[k] + 1];
+    }
+  }
+  for (int c = 0; node->colors && s->colors && c < 4; c++) {
+    float sum = 0;
+    for (int k = 0; k < 3; k++) sum += where->weights[k] * s->colors[4 * (size_t)f[k] + (size_t)c];
+    at->color[c] = sum > 0.0f ? sum : 0.0f;
+  }
+}
 
 static inline vlVec3 vl_texture_space(const vlTextureNode *node, vlVec3 p) {
   const float *m = node->texture_from_world;
@@ -21,6 +49,9 @@ static inline vlVec3 vl_texture_space(const vlTextureNode *node, vlVec3 p) {
 }
 
 static inline vlVec2 vl_texture_st(const vlTextureNode *node, vlTexturePoint at) {
+  if (node->st_given)
+    return (vlVec2){node->st[0] * at.u + node->st[1] * at.v + node->st[2],
+                    node->st[3] * at.u + node->st[4] * at.v + node->st[5]};
   if (node->mapping == VL_MAPPING_UV) return (vlVec2){node->su * at.u + node->du, node->sv * at.v + node->dv};
   vlVec3 q = vl_texture_space(node, at.p);
   if (node->mapping == VL_MAPPING_PLANAR)
@@ -35,6 +66,7 @@ static inline vlVec2 vl_texture_st(const vlTextureNode *node, vlTexturePoint at)
 
 /* Width of the footprint in (s, t). */
 static inline float vl_texture_st_width(const vlTextureNode *node, vlTexturePoint at) {
+  if (node->st_given) return at.uv_width * node->st_scale;
   float scale = vl_max(vl_abs(node->su), vl_abs(node->sv));
   if (node->mapping == VL_MAPPING_UV) return at.uv_width * scale;
   if (node->mapping == VL_MAPPING_PLANAR) {
@@ -65,6 +97,11 @@ static inline int32_t vl_wrap_index(int32_t i, int32_t n, vlWrap wrap) {
   if (i >= 0 && i < n) return i;
   if (wrap == VL_WRAP_CLAMP) return i < 0 ? 0 : n - 1;
   if (wrap == VL_WRAP_BLACK) return -1;
+  if (wrap == VL_WRAP_MIRROR) {
+    int64_t period = 2 * (int64_t)n, m = i % period;
+    m = m < 0 ? m + period : m;
+    return (int32_t)(m < n ? m : period - 1 - m);
+  }
   int32_t m = i % n;
   return m < 0 ? m + n : m;
 }
@@ -73,7 +110,8 @@ typedef struct vlTexel {
   float c[4];
 } vlTexel;
 
-static inline vlTexel vl_texel(const vlMipmap *mip, uint32_t level, int32_t x, int32_t y, vlWrap wrap) {
+static inline vlTexel vl_texel_2(const vlMipmap *mip, uint32_t level, int32_t x, int32_t y, vlWrap wrap,
+                                 vlWrap wrap_t) {
   int32_t w = (int32_t)mip->levels[level].width, h = (int32_t)mip->levels[level].height;
   if (wrap == VL_WRAP_OCTAHEDRAL) { /* the square's edges fold onto themselves (pbrt book 3.8.3) */
     if (x < 0)
@@ -84,15 +122,19 @@ static inline vlTexel vl_texel(const vlMipmap *mip, uint32_t level, int32_t x, i
       x = w - 1 - x, y = -y - 1;
     else if (y >= h)
       x = w - 1 - x, y = 2 * h - 1 - y;
-    wrap = VL_WRAP_CLAMP;
+    wrap = wrap_t = VL_WRAP_CLAMP;
   }
   x = vl_wrap_index(x, w, wrap);
-  y = vl_wrap_index(y, h, wrap);
+  y = vl_wrap_index(y, h, wrap_t);
   vlTexel black = {{0, 0, 0, 0}};
   if (x < 0 || y < 0) return black;
   vlTexel t = black;
   for (uint32_t i = 0; i < mip->channels; i++) t.c[i] = vl_mip_texel(mip, level, (uint32_t)x, (uint32_t)y, i);
   return t;
+}
+
+static inline vlTexel vl_texel(const vlMipmap *mip, uint32_t level, int32_t x, int32_t y, vlWrap wrap) {
+  return vl_texel_2(mip, level, x, y, wrap, wrap);
 }
 
 static inline int32_t vl_to_index(float x) { /* floor, safe for any float */
@@ -103,20 +145,28 @@ static inline int32_t vl_to_index(float x) { /* floor, safe for any float */
 }
 
 /* s, t with (0, 0) the top left corner of the picture. */
-static inline vlTexel vl_bilinear(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap) {
+static inline vlTexel vl_bilinear_2(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap, vlWrap wrap_t) {
   float x = s * (float)mip->levels[level].width - 0.5f, y = t * (float)mip->levels[level].height - 0.5f;
   int32_t xi = vl_to_index(x), yi = vl_to_index(y);
   float dx = x - (float)xi, dy = y - (float)yi;
-  vlTexel a = vl_texel(mip, level, xi, yi, wrap), b = vl_texel(mip, level, xi + 1, yi, wrap);
-  vlTexel c = vl_texel(mip, level, xi, yi + 1, wrap), d = vl_texel(mip, level, xi + 1, yi + 1, wrap), r;
+  vlTexel a = vl_texel_2(mip, level, xi, yi, wrap, wrap_t), b = vl_texel_2(mip, level, xi + 1, yi, wrap, wrap_t);
+  vlTexel c = vl_texel_2(mip, level, xi, yi + 1, wrap, wrap_t),
+          d = vl_texel_2(mip, level, xi + 1, yi + 1, wrap, wrap_t), r;
   for (int i = 0; i < 4; i++)
     r.c[i] = (1 - dx) * (1 - dy) * a.c[i] + dx * (1 - dy) * b.c[i] + (1 - dx) * dy * c.c[i] + dx * dy * d.c[i];
   return r;
 }
 
+static inline vlTexel vl_bilinear(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap) {
+  return vl_bilinear_2(mip, level, s, t, wrap, wrap);
+}
+
+static inline vlTexel vl_nearest_2(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap, vlWrap wrap_t) {
+  return vl_texel_2(mip, level, vl_to_index(s * (float)mip->levels[level].width),
+                    vl_to_index(t * (float)mip->levels[level].height), wrap, wrap_t);
+}
 static inline vlTexel vl_nearest(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap) {
-  return vl_texel(mip, level, vl_to_index(s * (float)mip->levels[level].width),
-                  vl_to_index(t * (float)mip->levels[level].height), wrap);
+  return vl_nearest_2(mip, level, s, t, wrap, wrap);
 }
 
 /* log2 of a positive float to about 1e-3, for choosing a level. */
@@ -135,14 +185,15 @@ static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap
   vlTexel r;
   if (node->filter == VL_FILTER_POINT) {
     uint32_t l = level <= 0 ? 0 : level >= (float)last ? last : (uint32_t)level;
-    r = vl_nearest(mip, l, s, t, node->wrap);
+    r = vl_nearest_2(mip, l, s, t, node->wrap, node->wrap_t);
   } else if (node->filter == VL_FILTER_BILINEAR || level <= 0 || level >= (float)last) {
     uint32_t l = level <= 0 ? 0 : level >= (float)last ? last : (uint32_t)level;
-    r = vl_bilinear(mip, l, s, t, node->wrap);
+    r = vl_bilinear_2(mip, l, s, t, node->wrap, node->wrap_t);
   } else {
     uint32_t l = (uint32_t)level;
     float f = level - (float)l;
-    vlTexel a = vl_bilinear(mip, l, s, t, node->wrap), b = vl_bilinear(mip, l + 1, s, t, node->wrap);
+    vlTexel a = vl_bilinear_2(mip, l, s, t, node->wrap, node->wrap_t),
+            b = vl_bilinear_2(mip, l + 1, s, t, node->wrap, node->wrap_t);
     for (int i = 0; i < 4; i++) r.c[i] = (1 - f) * a.c[i] + f * b.c[i];
   }
   for (int i = 0; i < 4; i++) {
@@ -153,8 +204,34 @@ static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap
   return r;
 }
 
+/* All four channels, tinted: grey stands for red, green and blue, coverage is 1 where there is none. mip null: the
+ * vertex colour alone. */
+static inline vlTexel vl_texture_rgba(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  vlTexel t = {{1, 1, 1, 1}};
+  if (mip) {
+    uint32_t n = mip->channels;
+    t = vl_texture_image(node, mip, at);
+    if (n < 3) t.c[3] = n == 2 ? t.c[1] : 1.0f, t.c[1] = t.c[2] = t.c[0];
+    if (n == 3) t.c[3] = 1.0f;
+  }
+  for (int c = 0; c < 4; c++) t.c[c] *= node->colors ? node->tint[c] * at.color[c] : node->tint[c];
+  return t;
+}
+
+/* Float textures that are not plain. */
+static inline float vl_texture_channel(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  vlTexel t = vl_texture_rgba(node, mip, at);
+  float x = node->bias;
+  if (node->channel >= 0)
+    x += t.c[node->channel];
+  else
+    x += mip && mip->channels == 4 ? t.c[3] : (t.c[0] + t.c[1] + t.c[2]) * (1.0f / 3.0f);
+  return node->cutoff == node->cutoff ? (x >= node->cutoff ? 1.0f : 0.0f) : x;
+}
+
 /* Float from a picture: grey as it is, colour by its mean, four channels by their alpha (pbrt's rule). */
 static inline float vl_texture_image_float(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  if (!node->plain) return vl_texture_channel(node, mip, at);
   vlTexel t = vl_texture_image(node, mip, at);
   uint32_t channels = mip->channels;
   return channels == 1 ? t.c[0] : channels == 4 ? t.c[3] : (t.c[0] + t.c[1] + t.c[2]) * (1.0f / 3.0f);

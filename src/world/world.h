@@ -27,6 +27,9 @@ typedef struct vlWorldShape {
   uint32_t vertices, faces;
   float *positions, *normals, *tangents, *uvs;
   uint32_t *indices;
+  /* Triangles, may be null: bitangent = sign n x tangent; uv sets 1 to 3; 4 a vertex; uvs of the emission's picture */
+  float *tangent_signs, *more_uvs[3], *colors, *glow_uvs;
+  bool one_sided; /* rays pass through from behind */
   uint32_t steps; /* of positions and normals, one set after the other, evenly over the world's time; 1: at rest */
   /* sphere, disk, cylinder: parameters as in vlShapeDef, and the affine maps, row-major 3x4 */
   float radius, inner_radius, z_min, z_max, phi_max, height;
@@ -85,6 +88,7 @@ typedef struct vlWorldMaterial {
 typedef struct vlEmitted {
   vlSpectral spectrum; /* normalised and scaled */
   int32_t image; /* over uv (area) or directions (infinite), -1; then spectrum is the illuminant's normalised shape */
+  int32_t node;  /* 1 + picture node over uv, whose picture is image; 0: none */
   float image_scale;
   vlColorSpace space;
   bool two_sided;
@@ -164,6 +168,8 @@ int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *give
                            float gamma, bool pyramid, vlError *error);
 vlResult vl_world_principled(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
                              vlError *error);
+/* Reads the scene's pictures on all workers; errors are left to who asks for the picture. */
+vlResult vl_world_preload_images(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_materials(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_shapes(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_lights(vlWorld *world, const struct vlScene *scene, vlError *error);

@@ -147,7 +147,7 @@ bool vl_gltf_size(vlGltf *g, const vlGltfPlace *at, const json_t *object, const 
 bool vl_gltf_index(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t limit,
                    int64_t *index) {
   const json_t *v = json_object_get(object, key);
-  size_t value;
+  size_t value = 0;
   *index = -1;
   if (!v) return true;
   if (!whole(g, at, key, v, &value)) return false;

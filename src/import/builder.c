@@ -92,13 +92,10 @@ static bool object_end(vlImport *import, const vlStatement *s) {
 }
 
 static bool object_instance(vlImport *import, const vlStatement *s) {
-  vlMat4 ctm;
   if (import->in_object)
     return vl_import_fail(import, VL_ERROR_SCENE, s->place, "ObjectInstance inside of an object: objects do not nest");
   const vlObject *object = find_object(import, s->names[0], s->place);
-  if (!object || !vl_import_ctm(import, s->place, &ctm)) return false;
-  vl_scene_add_instance(import->scene, object->group, ctm.m, s->place);
-  return import->scene->error.code == VL_OK;
+  return object && vl_import_add_instance(import, object->group, import->state.ctm, s->place);
 }
 
 /* ---- what waits ------------------------------------------------------------------------------------------------- */
@@ -196,9 +193,11 @@ static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
 }
 
 static bool camera(vlImport *import, const vlStatement *s) {
-  vlMat4 world_from_camera;
-  if (!choose(import, s, &import->camera) || !vl_import_ctm(import, s->place, &import->camera_from_world)) return false;
-  if (!vl_mat4_inverse(import->camera_from_world, &world_from_camera))
+  vlMat4 world_from_camera[2];
+  if (!choose(import, s, &import->camera)) return false;
+  memcpy(import->camera_from_world, import->state.ctm, sizeof import->state.ctm);
+  if (!vl_mat4_inverse(import->state.ctm[0], &world_from_camera[0]) ||
+      !vl_mat4_inverse(import->state.ctm[1], &world_from_camera[1]))
     return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Camera: the current transform is singular");
   if (import->state.outside && import->state.outside[0] && !import->medium_name) {
     import->medium_name = import->state.outside;
@@ -223,7 +222,7 @@ static bool world_begin(vlImport *import) {
   import->in_world = true;
   import->state.ctm[0] = import->state.ctm[1] = vl_mat4_identity();
   import->state.active = 3;
-  return vl_import_name_system(import, "world", vl_mat4_identity()) && vl_import_film(import) &&
+  return vl_import_name_system(import, "world", import->state.ctm) && vl_import_film(import) &&
          vl_import_camera(import) && vl_import_sampling(import);
 }
 
@@ -329,9 +328,8 @@ static bool statement(void *user, const vlStatement *s) {
     case VL_DIR_LOOK_AT:
     case VL_DIR_TRANSFORM:
     case VL_DIR_CONCAT_TRANSFORM: return vl_import_transform(import, s);
-    case VL_DIR_TRANSFORM_TIMES:
-      return true; /* matters to animated transforms only, which are told about where they are used */
-    case VL_DIR_COORDINATE_SYSTEM: return vl_import_name_system(import, s->names[0], import->state.ctm[0]);
+    case VL_DIR_TRANSFORM_TIMES: return vl_import_times(import, s);
+    case VL_DIR_COORDINATE_SYSTEM: return vl_import_name_system(import, s->names[0], import->state.ctm);
     case VL_DIR_COORD_SYS_TRANSFORM: return vl_import_use_system(import, s);
     case VL_DIR_COLOR_SPACE: return color_space(import, s);
     case VL_DIR_NAMED_MATERIAL: return named_material(import, s);
@@ -399,7 +397,7 @@ static bool finish(vlImport *import) {
     if (!vl_import_finish_texture(import, i)) return false;
   for (uint32_t i = 0; i < import->materials.count; i++)
     if (!vl_import_finish_material(import, i)) return false;
-  if (!link_shapes(import)) return false;
+  if (!link_shapes(import) || !vl_import_finish_motion(import)) return false;
   for (size_t i = 0; i < import->object_list.count; i++) {
     const vlObject *object = &import->object_list.items[i];
     if (!object->defined)
@@ -446,6 +444,7 @@ static void release(vlImport *import) {
   VL_ARRAY_FREE(context, &import->strings);
   VL_ARRAY_FREE(context, &import->stack);
   VL_ARRAY_FREE(context, &import->matrices);
+  VL_ARRAY_FREE(context, &import->moving);
   VL_ARRAY_FREE(context, &import->object_list);
   VL_ARRAY_FREE(context, &import->links);
 }
@@ -461,6 +460,7 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
   import->first = path;
   import->state.ctm[0] = import->state.ctm[1] = vl_mat4_identity();
   import->state.active = 3;
+  import->times[1] = 1.0;
   import->state.space = VL_SPACE_SRGB;
   vlParseTarget target = {import, statement, parse_error};
   bool fine = data ? vl_parse_memory(import->context, data, size, path, &target)

@@ -42,6 +42,10 @@ typedef struct vlNamed {
   uint32_t index;
 } vlNamed;
 
+typedef struct vlTransforms {
+  vlMat4 at[2];
+} vlTransforms;
+
 /* Small open hash of strings to indices; strings belong to someone else. */
 typedef struct vlNameTable {
   vlNamed *slots;
@@ -83,6 +87,13 @@ typedef struct vlObject {
   vlSource place; /* where it was first named */
 } vlObject;
 
+/* Shapes under an animated transform. */
+typedef struct vlMovingGroup {
+  vlGroupId group, object; /* object: the one they are part of, 0: none */
+  vlMat4 ctm[2];
+  vlSource place;
+} vlMovingGroup;
+
 /* A directive before WorldBegin, kept until then. */
 typedef struct vlChoice {
   bool given;
@@ -102,7 +113,7 @@ struct vlImport {
   VL_ARRAY(vlStackEntry) stack;
   vlParamList attributes[VL_ATTR_TARGETS]; /* a stack, cut when the state that added to it ends */
   vlNameTable coordinate_systems;          /* to index in matrices */
-  VL_ARRAY(vlMat4) matrices;
+  VL_ARRAY(vlTransforms) matrices;
   VL_ARRAY(vlPending) textures;
   VL_ARRAY(vlPending) materials;
   vlNameTable float_textures, spectrum_textures, named_materials, objects;
@@ -112,11 +123,12 @@ struct vlImport {
   bool in_object;           /* between ObjectBegin and ObjectEnd */
   vlGroupId object;
   vlChoice camera, film, sampler, integrator, filter, accelerator;
-  vlMat4 camera_from_world;
+  vlMat4 camera_from_world[2]; /* at the start and the end */
   vlNameTable media;
   const char *medium_name; /* the first one that something lies in; null: none */
   vlSource medium_place;
-  bool animation_told;
+  double times[2]; /* of the two current transforms, seconds */
+  VL_ARRAY(vlMovingGroup) moving;
   uint32_t depth; /* of textures or materials that resolve each other */
 };
 enum { VL_IMPORT_DEPTH = 200 };
@@ -147,13 +159,19 @@ bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamLis
 const vlParamList *vl_import_attributes(vlImport *import, vlAttributeTarget target);
 /* State (state.c). */
 bool vl_import_transform(vlImport *import, const vlStatement *s); /* Translate, LookAt, Transform, ... */
-bool vl_import_name_system(vlImport *import, const char *name, vlMat4 m);
+bool vl_import_name_system(vlImport *import, const char *name, const vlMat4 m[2]);
 bool vl_import_use_system(vlImport *import, const vlStatement *s);
 bool vl_import_push(vlImport *import, char kind, vlSource place);
 bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource place);
 void vl_import_restore(vlImport *import);
-/* The current transform; an error (or warning, once) where start and end differ. */
+/* Motion (motion.c). The current transform of what cannot move; a warning where start and end differ. */
 bool vl_import_ctm(vlImport *import, vlSource place, vlMat4 *ctm);
+bool vl_import_times(vlImport *import, const vlStatement *s); /* TransformTimes */
+bool vl_import_moves(const vlImport *import);                 /* do the current transforms differ? */
+/* The group for a shape under the current, animated transform; the shape's own transform is the identity then. */
+bool vl_import_moving_group(vlImport *import, vlSource place, vlGroupId *group);
+bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2], vlSource place);
+bool vl_import_finish_motion(vlImport *import); /* moving parts of objects, when all instances are known */
 
 /* ---- parts ------------------------------------------------------------------------------------------------------ */
 bool vl_import_camera(vlImport *import); /* the choices made before WorldBegin, to scene settings; camera after film */

@@ -40,24 +40,32 @@ static const char *const later[] = {"realistic"};
 
 /* velo's camera has y down; pbrt's y up, both x right, z forward. The world's numbers stay as they are: pbrt reads them
  * as left-handed, so that seen from velo its cameras mirror. */
-static bool pose_from_ctm(vlImport *import, vlCameraDef *def) {
+static bool pose_from(vlImport *import, const vlMat4 *ctm, double pose[16]) {
   vlMat4 m;
-  if (!vl_mat4_inverse(import->camera_from_world, &m))
+  if (!vl_mat4_inverse(*ctm, &m))
     return vl_import_fail(import, VL_ERROR_SCENE, import->camera.place, "Camera: the current transform is singular");
   for (int row = 0; row < 3; row++) {
     for (int column = 0; column < 4; column++)
-      def->world_from_camera[4 * row + column] = m.m[4 * row + column] * (column == 1 ? -1.0 : 1.0);
+      pose[4 * row + column] = m.m[4 * row + column] * (column == 1 ? -1.0 : 1.0);
   }
-  bool affine = import->camera_from_world.m[12] == 0.0 && import->camera_from_world.m[13] == 0.0 &&
-                import->camera_from_world.m[14] == 0.0;
+  bool affine = ctm->m[12] == 0.0 && ctm->m[13] == 0.0 && ctm->m[14] == 0.0;
   for (int column = 0; column < 4; column++) {
     double v = m.m[12 + column] * (column == 1 ? -1.0 : 1.0);
-    def->world_from_camera[12 + column] = affine ? (column == 3 ? 1.0 : 0.0) : v;
+    pose[12 + column] = affine ? (column == 3 ? 1.0 : 0.0) : v;
   }
   double w = affine ? m.m[15] : 1.0; /* a transform's last number need not be 1 */
-  for (int i = 0; i < 12; i++) def->world_from_camera[i] /= w;
-  def->has_matrix = true;
+  for (int i = 0; i < 12; i++) pose[i] /= w;
   return true;
+}
+
+static bool pose_from_ctm(vlImport *import, vlCameraDef *def) {
+  const vlMat4 *ctm = import->camera_from_world;
+  def->has_matrix = true;
+  if (!pose_from(import, &ctm[0], def->world_from_camera)) return false;
+  if (memcmp(&ctm[0], &ctm[1], sizeof *ctm) == 0) return true;
+  def->has_matrix_close = true;
+  def->pose_times[0] = import->times[0], def->pose_times[1] = import->times[1];
+  return pose_from(import, &ctm[1], def->world_from_camera_close);
 }
 
 static bool read_shutter(vlDict *dict, vlCameraDef *def) {
@@ -121,6 +129,43 @@ static bool read_spherical(vlDict *dict, vlCameraDef *def) {
     for (int column = 0; column < 3; column++)
       m[4 * row + column] =
           old[0] * axes[mapping][column] + old[1] * axes[mapping][3 + column] + old[2] * axes[mapping][6 + column];
+  }
+  return true;
+}
+
+/* The shutter's curve, by a name or by points (at, value, at, value, ...), and the rows' readout: velo's own words. */
+static bool read_curve(vlDict *dict, vlCameraDef *def) {
+  static const char *const curves[] = {"box", "triangle", "trapezoid"};
+  static const char *const directions[] = {"down", "up", "right", "left"};
+  int curve = 0, direction = 0;
+  double rise = 0.1;
+  vl_dict_choice(dict, "shuttercurve", curves, 3, &curve);
+  bool risen = vl_dict_double(dict, "shutterrise", &rise);
+  vlParam *points = vl_dict_find(dict, "shutterpoints", VL_BIT_FLOAT);
+  vl_dict_double(dict, "readout", &def->readout);
+  vl_dict_choice(dict, "readoutdirection", directions, 4, &direction);
+  def->readout_direction = (vlReadout)direction;
+  if (dict->import->scene->error.code != VL_OK) return false;
+  if (risen && (curve != 2 || !(rise > 0.0 && rise <= 0.5)))
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
+                          "%s: \"shutterrise\" is the share, above 0 and at most 0.5, in which a trapezoid rises and "
+                          "falls",
+                          dict->what);
+  if (points) {
+    size_t n = vl_param_count(points);
+    if (curve || n % 2 || n < 4 || n > 2 * VL_SHUTTER_POINTS)
+      return vl_import_fail(dict->import, VL_ERROR_SCENE, points->place,
+                            "%s: \"shutterpoints\" are 2 to %d pairs (share of the time, how far open), instead of "
+                            "\"shuttercurve\"",
+                            dict->what, (int)VL_SHUTTER_POINTS);
+    def->shutter_points = (uint32_t)(n / 2);
+    for (size_t i = 0; i < n; i++) (i % 2 ? def->shutter_value : def->shutter_at)[i / 2] = points->exact[i];
+  } else if (curve) {
+    const double at[4] = {0.0, curve == 1 ? 0.5 : rise, curve == 1 ? 1.0 : 1.0 - rise, 1.0};
+    const double value[4] = {0.0, 1.0, curve == 1 ? 0.0 : 1.0, 0.0};
+    def->shutter_points = curve == 1 ? 3 : 4;
+    memcpy(def->shutter_at, at, sizeof at);
+    memcpy(def->shutter_value, value, sizeof value);
   }
   return true;
 }
@@ -229,6 +274,10 @@ static bool read_lecture(vlDict *dict, vlCameraDef *def, Kind kind) {
   vl_dict_vector(dict, "lookat", VL_PARAM_POINT3, def->lookat);
   vl_dict_vector(dict, "up", VL_PARAM_VECTOR3, def->up);
   if (vl_dict_double(dict, "roll", &def->roll)) def->roll *= degrees;
+  vl_dict_vector(dict, "eyeclose", VL_PARAM_POINT3, def->eye_close);
+  vl_dict_vector(dict, "lookatclose", VL_PARAM_POINT3, def->lookat_close);
+  vl_dict_vector(dict, "upclose", VL_PARAM_VECTOR3, def->up_close);
+  if (vl_dict_double(dict, "rollclose", &def->roll_close)) def->roll_close *= degrees;
   vl_dict_double(dict, "d", &def->view_distance);
   vl_dict_double(dict, "zoom", &def->zoom);
   vl_dict_double(dict, "pixelsize", &def->pixel_size);
@@ -251,10 +300,10 @@ static bool read_lecture(vlDict *dict, vlCameraDef *def, Kind kind) {
     vl_dict_double(dict, "focusdistance", &def->focus_distance);
     vl_dict_double(dict, "focaldistance", &def->focus_distance); /* pbrt's word for it */
   }
-  if (!read_shutter(dict, def) || !vl_dict_done(dict)) return false;
+  if (!read_shutter(dict, def) || !read_curve(dict, def) || !vl_dict_done(dict)) return false;
   const vlMat4 identity = vl_mat4_identity();
   for (int i = 0; i < 16; i++)
-    if (import->camera_from_world.m[i] != identity.m[i])
+    if (import->camera_from_world[0].m[i] != identity.m[i] || import->camera_from_world[1].m[i] != identity.m[i])
       return vl_import_fail(import, VL_ERROR_SCENE, dict->place,
                             "%s: its pose is given by eye, lookat and up; transforms before it have no meaning",
                             dict->what);
@@ -289,7 +338,7 @@ static bool name_lecture_system(vlImport *import, const vlCameraDef *def) {
     return true;
   vlMat4 m = vl_mat4_load(camera.world_from_camera);
   for (int row = 0; row < 3; row++) m.m[4 * row + 1] = -m.m[4 * row + 1];
-  import->matrices.items[index] = m;
+  import->matrices.items[index].at[0] = import->matrices.items[index].at[1] = m;
   return true;
 }
 
@@ -303,7 +352,7 @@ bool vl_import_camera(vlImport *import) {
   int kind = choice->given ? -1 : PERSPECTIVE;
   for (int i = 0; choice->given && i < KINDS; i++)
     if (strcmp(choice->kind, kinds[i]) == 0) kind = i;
-  if (!choice->given) import->camera_from_world = vl_mat4_identity();
+  for (int i = 0; i < 2 && !choice->given; i++) import->camera_from_world[i] = vl_mat4_identity();
   settings->camera_source = choice->place;
   if (kind < 0) { /* permissive: pbrt's perspective camera from the same place */
     if (!vl_import_unknown(import, choice->place, "camera", choice->kind, kinds, KINDS, later, 1)) return false;

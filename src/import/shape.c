@@ -265,15 +265,21 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
   vlShapeLink link = {.material = import->state.material,
                       .material_name = import->state.material_name,
                       .material_place = import->state.material_place};
-  vlMat4 ctm;
+  vlMat4 ctm = vl_mat4_identity();
+  bool moves = vl_import_moves(import);
   def.source = s->place;
   def.group = import->object;
   def.reverse_orientation = import->state.reverse_orientation;
-  if (!vl_import_ctm(import, s->place, &ctm) || !read_alpha(&dict, &def, &link)) return false;
+  if (moves && !vl_import_moving_group(import, s->place, &def.group)) return false;
+  if ((!moves && !vl_import_ctm(import, s->place, &ctm)) || !read_alpha(&dict, &def, &link)) return false;
   memcpy(def.group_from_shape, ctm.m, sizeof def.group_from_shape);
   def.emission = import->state.emission;
   if (def.emission.index && import->in_object) {
     vl_import_warn(import, VL_LOG_WARNING, s->place, "area lights inside of objects give no light (as in pbrt)");
+    def.emission.index = 0;
+  }
+  if (def.emission.index && moves) {
+    vl_import_warn(import, VL_LOG_WARNING, s->place, "an area light that moves (ActiveTransform) gives no light");
     def.emission.index = 0;
   }
   note_medium(import, s);

@@ -16,14 +16,6 @@ static void apply(vlImport *import, vlMat4 m) {
     if (import->state.active & 1u << i) import->state.ctm[i] = vl_mat4_multiply(import->state.ctm[i], m);
 }
 
-bool vl_import_ctm(vlImport *import, vlSource place, vlMat4 *ctm) {
-  *ctm = import->state.ctm[0];
-  if (memcmp(&import->state.ctm[0], &import->state.ctm[1], sizeof(vlMat4)) == 0 || import->animation_told) return true;
-  import->animation_told = import->permissive;
-  return vl_import_unsupported(import, place, "animated transforms (ActiveTransform) are not understood yet%s",
-                               import->permissive ? "; the transform at the start counts" : "");
-}
-
 /* pbrt's LookAt (book 3.9.2): camera from world, x right, y up, z forward. */
 static bool look_at(vlImport *import, const vlStatement *s) {
   const double *e = s->numbers, *l = s->numbers + 3, *u = s->numbers + 6;
@@ -70,11 +62,11 @@ bool vl_import_transform(vlImport *import, const vlStatement *s) {
   return true;
 }
 
-bool vl_import_name_system(vlImport *import, const char *name, vlMat4 m) {
+bool vl_import_name_system(vlImport *import, const char *name, const vlMat4 m[2]) {
   const char *kept = vl_import_keep(import, name);
-  vlMat4 *slot = kept ? VL_PUSH(import->context, &import->matrices) : NULL;
+  vlTransforms *slot = kept ? VL_PUSH(import->context, &import->matrices) : NULL;
   if (!slot) return vl_import_fail_memory(import);
-  *slot = m;
+  slot->at[0] = m[0], slot->at[1] = m[1];
   if (vl_names_add(import->context, &import->coordinate_systems, kept, (uint32_t)import->matrices.count - 1))
     return true;
   return vl_import_fail_memory(import);
@@ -83,7 +75,7 @@ bool vl_import_name_system(vlImport *import, const char *name, vlMat4 m) {
 bool vl_import_use_system(vlImport *import, const vlStatement *s) {
   uint32_t index;
   if (vl_names_find(&import->coordinate_systems, s->names[0], &index)) {
-    import->state.ctm[0] = import->state.ctm[1] = import->matrices.items[index];
+    for (int i = 0; i < 2; i++) import->state.ctm[i] = import->matrices.items[index].at[i];
     return true;
   }
   const char *near = vl_names_nearest(&import->coordinate_systems, s->names[0]);

@@ -2,6 +2,7 @@
  * edge of what each sees, solid angles, folding, names, error messages. */
 #include "camera/cameras.h"
 
+#include "camera/parts.h"
 #include "camera/rays.h"
 
 static const double pi = 3.14159265358979323846;
@@ -233,7 +234,8 @@ static void rays_of_all_sets(void **state) {
   }
 }
 
-/* All rays of a film point meet in one point: at z = 5 for perspective cameras, at the distance 5 for all others. */
+/* All rays of a film point meet in one point: at z = 5 for those that see only ahead, at the distance 5 for all others.
+ */
 static void lens_focuses(void **state) {
   (void)state;
   enum { N = 64 };
@@ -256,7 +258,7 @@ static void lens_focuses(void **state) {
     assert_true(vl_camera_unproject(&camera, px[0] + 0.25, py[0] + 0.25, o, d));
     const double *m = camera.world_from_camera;
     double depth = d[0] * m[2] + d[1] * m[6] + d[2] * m[10];
-    double reach = camera.projection <= VL_PROJECTION_ORTHOGRAPHIC ? 5 / depth : 5;
+    double reach = vl_camera_sees_ahead(camera.projection) ? 5 / depth : 5;
     for (int a = 0; a < 3; a++) p[a] = o[a] + reach * d[a];
     for (int i = 0; i < N; i++) {
       double to[3], along = 0, off = 0;

@@ -152,6 +152,82 @@ static void test_round_trips(void **state) {
       }
 }
 
+/* The lens and time in full, in velo's JSON and glTF's extras: the same bits; others refuse each by name. */
+static void test_lens_and_time(void **state) {
+  (void)state;
+  uint64_t seed = 77;
+  static const char *const fields[] = {"blades",        "aperture_ratio", "focus_pixel", "tilt",  "vignetting",
+                                       "shutter_curve", "readout",        "motion",      "stereo"};
+  enum { FIELDS = sizeof fields / sizeof *fields };
+  for (int n = 0; n < 200; n++) {
+    vlCameraRecord r = random_camera(&seed, all[0].holds), back;
+    vlCameraDef *d = &r.camera;
+    d->projection = VL_PROJECTION_PERSPECTIVE;
+    d->fx = d->fy = VL_UNSET;
+    d->focal_mm = next_between(&seed, 10, 90), d->sensor_width_mm = 36;
+    d->exposure_time = 1.0;
+    d->lens = (vlLensDef){.f_number = next_between(&seed, 1, 9),
+                          .unit_mm = next_between(&seed, 1, 2000),
+                          .focus_point = {VL_UNSET, VL_UNSET, VL_UNSET},
+                          .focus_pixel = {VL_UNSET, VL_UNSET},
+                          .blades = 5,
+                          .rotation = 0.3,
+                          .ratio = 2.0,
+                          .lens_tilt_x = 0.1,
+                          .vignetting = true,
+                          .iso = 100,
+                          .seconds = n & 1 ? 0.01 : VL_UNSET};
+    d->lens_radius = 0.0, d->focus_distance = next_between(&seed, 1, 5);
+    if (n & 2) d->lens.focus_pixel[0] = 3.5, d->lens.focus_pixel[1] = 4.25, d->focus_distance = VL_UNSET;
+    if (n & 4) d->lens.lens_tilt_x = 0.0, d->lens.tilt_y = 0.2;
+    d->shutter_points = 3;
+    for (int i = 0; i < 3; i++) d->shutter_at[i] = 0.5 * i, d->shutter_value[i] = next_between(&seed, 0.1, 1);
+    d->readout = 0.02, d->readout_direction = VL_READOUT_LEFT;
+    if (d->has_matrix) {
+      d->has_matrix_close = true;
+      memcpy(d->world_from_camera_close, d->world_from_camera, sizeof d->world_from_camera);
+      d->world_from_camera_close[3] += 1.0;
+    } else {
+      set3(d->eye_close, 1, 2, 3);
+    }
+    d->pose_times[0] = 0.1, d->pose_times[1] = 0.7;
+    d->stereo = (vlStereo){VL_STEREO_OFF_AXIS, 0.07, 3.0};
+    d->stereo_eye = n & 8 ? VL_EYE_LEFT : VL_EYE_BOTH;
+    vlCamera one = {0}, two = {0};
+    vlError error;
+    const char *warning;
+    if (vl_camera_make(d, &one, &warning, &error) != VL_OK) fail_msg("%s", error.message);
+    back = through(&r, &all[0]);
+    assert_int_equal(vl_camera_make(&back.camera, &two, NULL, NULL), VL_OK);
+    assert_memory_equal(&one, &two, sizeof one);
+    assert_int_equal(back.camera.stereo.mode, d->stereo.mode);
+    assert_int_equal(back.camera.stereo_eye, d->stereo_eye);
+  }
+  for (int k = 1; k < DIALECTS; k++)
+    for (int f = 0; f < FIELDS; f++) {
+      vlCameraRecord r = {.camera = vl_default_camera_def(64, 48), .frames = 1};
+      vlCameraDef *d = &r.camera;
+      vlCameraFileDef def = vl_default_camera_file_def();
+      vlError error;
+      d->lens_radius = all[k].holds & LENS ? 0.1 : 0.0;
+      d->focus_distance = all[k].holds & LENS ? 3.0 : VL_UNSET;
+      switch (f) {
+        case 0: d->lens.blades = 6; break;
+        case 1: d->lens.ratio = 2.0; break;
+        case 2: d->lens.focus_pixel[0] = d->lens.focus_pixel[1] = 3.0, d->focus_distance = VL_UNSET; break;
+        case 3: d->lens.tilt_x = 0.1; break;
+        case 4: d->lens.vignetting = true; break;
+        case 5: d->shutter_points = 2, d->shutter_at[1] = 1.0, d->shutter_value[0] = 1.0; break;
+        case 6: d->readout = 0.1; break;
+        case 7: set3(d->eye_close, 1, 2, 3); break;
+        default: d->stereo.mode = VL_STEREO_PARALLEL; break;
+      }
+      def.dialect = all[k].dialect;
+      assert_int_equal(vl_camera_write(context, path_of("r"), &def, &r, &error), VL_ERROR_UNSUPPORTED);
+      if (!strstr(error.message, fields[f])) fail_msg("%s: %s", fields[f], error.message);
+    }
+}
+
 /* What glTF's own fields cannot hold is refused, and dropped by name stands in the extras. */
 static void test_gltf_extras(void **state) {
   (void)state;
@@ -409,10 +485,15 @@ static void test_refusals(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_round_trips),        cmocka_unit_test(test_gltf_extras),
-      cmocka_unit_test(test_gltf_example),       cmocka_unit_test(test_mitsuba_example),
-      cmocka_unit_test(test_usd_example),        cmocka_unit_test(test_matrices_land_on_the_pixel),
-      cmocka_unit_test(test_matrices_of_others), cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_round_trips),
+      cmocka_unit_test(test_lens_and_time),
+      cmocka_unit_test(test_gltf_extras),
+      cmocka_unit_test(test_gltf_example),
+      cmocka_unit_test(test_mitsuba_example),
+      cmocka_unit_test(test_usd_example),
+      cmocka_unit_test(test_matrices_land_on_the_pixel),
+      cmocka_unit_test(test_matrices_of_others),
+      cmocka_unit_test(test_refusals),
   };
   return cmocka_run_group_tests(tests, files_setup, files_teardown);
 }

@@ -38,6 +38,7 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, u
   vlResult result = vl_camera_make(d, camera, NULL, file->error);
   if (result != VL_OK) return result;
   bool posed = holds & VL_HOLDS_POSE;
+  const vlLens *lens = &camera->lens;
   const struct {
     const char *field;
     bool present;
@@ -52,6 +53,16 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, u
       {"shutter_close", !(holds & VL_HOLDS_TIME) && camera->shutter_close != 1.0},
       {"exposure_time", !(holds & VL_HOLDS_EXPOSURE) && camera->exposure_time != 1.0},
       {"max_angle", !vl_is_unset(d->max_angle)},
+      {"blades", lens->blades != 0},
+      {"aperture", lens->aperture != NULL},
+      {"aperture_ratio", lens->ratio != 1.0},
+      {"focus_pixel", !vl_is_unset(lens->focus_pixel[0])},
+      {"tilt", lens->tilt[0] != 0.0 || lens->tilt[1] != 0.0 || lens->hinge[0] != 0.0 || lens->hinge[1] != 0.0},
+      {"vignetting", lens->vignetting},
+      {"shutter_curve", camera->shutter_points != 0},
+      {"readout", camera->readout != 0.0},
+      {"motion", camera->moves},
+      {"stereo", d->stereo.mode != VL_STEREO_NONE && d->stereo_eye == VL_EYE_BOTH},
   };
   for (size_t i = 0; i < sizeof fields / sizeof fields[0] && result == VL_OK; i++)
     result = vl_camera_refuse(file, fields[i].field, fields[i].present);

@@ -47,16 +47,9 @@ static vlBsdfParams params_of(vlTracing *t, uint32_t first) {
 
 /* ---- direct light ------------------------------------------------------------------------------------------------ */
 
-/* Light samples, weighed by the BSDF, become shadow rays; those that arrive add their radiance. */
-static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
-  const vlWorld *world = t->world;
+void VL_HOT(vl_stage_light_bsdf)(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;
-  if (world->lights.count == 0) return;
-  vlPaths *p = &s->b;
-  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT, sh->u0);
-  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
-  VL_HOT(vl_stage_lights)(world, n, p, &s->surface, sh->u0, sh->u1, sh->u2, &s->light);
   const vlLightSamples *l = &s->light;
   uint32_t padded = VL_PAD(n);
   /* must vectorise */
@@ -68,7 +61,7 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
     sh->wi[2][i] = x * s->surface.nx[i] + y * s->surface.ny[i] + z * s->surface.nz[i];
   }
   for (uint32_t first = 0; first < n;) {
-    Run r = next_kind(world, &s->hits_b, first, n);
+    Run r = next_kind(t->world, &s->hits_b, first, n);
     vlBsdfParams params = params_of(t, first);
     vlBsdfDirections wo = {sh->wo[0] + first, sh->wo[1] + first, sh->wo[2] + first};
     vlBsdfDirections wi = {sh->wi[0] + first, sh->wi[1] + first, sh->wi[2] + first};
@@ -76,6 +69,20 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
     t->bsdf->eval(r.kind, r.last - first, &params, wo, wi, value, sh->pdf + first);
     first = r.last;
   }
+}
+
+/* Light samples, weighed by the BSDF, become shadow rays; those that arrive add their radiance. */
+static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
+  const vlWorld *world = t->world;
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  if (world->lights.count == 0) return;
+  vlPaths *p = &s->b;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT, sh->u0);
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
+  VL_HOT(vl_stage_lights)(world, n, p, &s->surface, sh->u0, sh->u1, sh->u2, &s->light);
+  VL_HOT(vl_stage_light_bsdf)(t, n);
+  const vlLightSamples *l = &s->light;
   vlShadowRays *q = &s->shadow;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
@@ -104,8 +111,7 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
 
 /* ---- the next direction ------------------------------------------------------------------------------------------ */
 
-/* Samples the BSDFs of the n lanes of b and writes the paths that go on into a. Returns how many. */
-static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+uint32_t VL_HOT(vl_stage_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;
   vlPaths *p = &s->b;
@@ -181,6 +187,6 @@ void VL_HOT(vl_path_tracer)(vlTracing *t) {
     uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
     VL_HOT(vl_stage_shade)(t, n);
     direct_light(t, n, dimension);
-    n = scatter(t, n, depth + 1, dimension);
+    n = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
   }
 }

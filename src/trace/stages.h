@@ -139,6 +139,11 @@ uint32_t VL_HOT(vl_stage_sort)(vlTracing *t, uint32_t n);
 void VL_HOT(vl_stage_shade)(vlTracing *t, uint32_t n);
 /* Path order[k] of a becomes path k of b. */
 void VL_HOT(vl_permute_paths)(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n);
+/* The BSDFs of the n shaded lanes for the directions of their light samples, to shade.value and shade.pdf. */
+void VL_HOT(vl_stage_light_bsdf)(vlTracing *t, uint32_t n);
+/* Samples the BSDFs of the n lanes of b and writes the paths that go on into a: path k was lane s->order[k]. Returns
+ * how many. depth: which bounce this is, from 1. */
+uint32_t VL_HOT(vl_stage_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
 void VL_HOT(vl_path_tracer)(vlTracing *t);
 
 /* The surfaces that paths->o, d meet, from ids alone. */

@@ -31,6 +31,7 @@ vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **r
   r = vl_world_preload_images(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_materials(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_shapes(world, scene, &local);
+  if (r == VL_OK) r = vl_world_add_media(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_origins(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_lights(world, scene, &local);
   if (r == VL_OK) r = vl_accel_build(world, &local);
@@ -69,6 +70,7 @@ void vl_world_destroy(vlWorld *world) {
   VL_ARRAY_FREE(c, &world->lights);
   VL_ARRAY_FREE(c, &world->infinite_lights);
   VL_ARRAY_FREE(c, &world->environments);
+  VL_ARRAY_FREE(c, &world->media);
   vl_free(c, world);
 }
 

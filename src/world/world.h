@@ -12,6 +12,7 @@
 #include "velo/render.h"
 #include "world/accel.h"
 #include "world/coat.h"
+#include "world/medium.h"
 #include "world/texture.h"
 
 /* ---- shapes ------------------------------------------------------------------------------------------------------ */
@@ -23,6 +24,8 @@ typedef struct vlWorldShape {
   int32_t alpha;        /* texture node, -1: opaque */
   bool flip;            /* the geometric normal of face order is to be flipped (reverse orientation xor mirrored) */
   bool pass_shadow;     /* interface material: shadow rays pass */
+  uint32_t inside,
+      outside; /* media on both sides (the geometric normal's is outside), VL_NONE: vacuum; equal: no change */
   /* triangles (3 indices a face) and bilinear patches (4): positions end in 16 spare bytes for Embree */
   uint32_t vertices, faces;
   float *positions, *normals, *tangents, *uvs;
@@ -144,10 +147,12 @@ struct vlWorld {
   VL_ARRAY(vlWorldLight) lights;
   VL_ARRAY(uint32_t) infinite_lights; /* indices of lights that a missing ray sees */
   VL_ARRAY(vlEnvironment) environments;
-  VL_ARRAY(void *) blocks; /* dense spectra and the like */
-  int32_t *texture_memo;   /* while building: scene texture and role -> node */
-  uint32_t *rank;          /* of materials: those of one kind together */
+  VL_ARRAY(vlWorldMedium) media; /* those that something lies in */
+  VL_ARRAY(void *) blocks;       /* dense spectra and the like */
+  int32_t *texture_memo;         /* while building: scene texture and role -> node */
+  uint32_t *rank;                /* of materials: those of one kind together */
   bool has_interfaces;
+  uint32_t camera_medium;       /* index into media, VL_NONE: vacuum */
   bool moves;                   /* something does; else no ray need know its time */
   double time_open, time_close; /* seconds: the world's times 0 and 1; before and after everything rests */
   vlWorldOrigin *shape_origins, *material_origins, *instance_origins; /* one for each element of those arrays */

@@ -1,20 +1,34 @@
 /* channels.c: see channels.h. */
 #include "channels.h"
 
-#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include "camera.h"
 #include "report.h"
 
+const Choice channel_mode_choices[] = {{"centre", VL_CHANNEL_MODE_CENTRE},
+                                       {"center", VL_CHANNEL_MODE_CENTRE},
+                                       {"nearest", VL_CHANNEL_MODE_NEAREST},
+                                       {"coverage", VL_CHANNEL_MODE_COVERAGE},
+                                       {NULL, 0}};
+
+/* ---- which ------------------------------------------------------------------------------------------------------- */
+
 static int read_one(const char *name, uint32_t *channels) {
-  const char *names[VL_CHANNEL_COUNT + 1] = {"all"};
-  int count = 1;
-  if (strcmp(name, "all") == 0) {
-    *channels = VL_CHANNEL_ALL;
+  static const struct {
+    const char *name;
+    uint32_t bits;
+  } groups[] = {
+      {"all", VL_CHANNEL_ALL},
+      {"crypto", VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE},
+  };
+  const char *names[VL_CHANNEL_COUNT + 2];
+  int count = 0;
+  for (size_t i = 0; i < sizeof groups / sizeof *groups; i++) {
+    names[count++] = groups[i].name;
+    if (strcmp(name, groups[i].name) != 0) continue;
+    *channels |= groups[i].bits;
     return -1;
   }
   for (uint32_t i = 0; vl_channel_name(i); i++) {
@@ -25,7 +39,7 @@ static int read_one(const char *name, uint32_t *channels) {
   }
   const char *near = did_you_mean("", name, names, count);
   if (*near) return report_usage("--channels: unknown name \"%s\"%s", name, near);
-  char list[300] = "";
+  char list[400] = "";
   for (int i = 0; i < count; i++) {
     size_t n = strlen(list);
     snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
@@ -33,8 +47,7 @@ static int read_one(const char *name, uint32_t *channels) {
   return report_usage("--channels: unknown name \"%s\"; accepted are %s", name, list);
 }
 
-int channels_read(const char *list, uint32_t *channels) {
-  *channels = 0;
+static int read_list(const char *list, uint32_t *channels) {
   for (const char *at = list;; at++) {
     size_t length = strcspn(at, ",");
     char name[64];
@@ -46,92 +59,79 @@ int channels_read(const char *list, uint32_t *channels) {
   }
 }
 
-/* ---- what the ids stand for -------------------------------------------------------------------------------------- */
-
-static void mark_ids(const vlImage *ids, const char *name, bool *seen, uint32_t count) {
-  int channel = vl_image_find_channel(ids, name);
-  if (channel < 0) return;
-  size_t pixels = (size_t)vl_image_width(ids) * vl_image_height(ids), step = vl_image_channels(ids);
-  const uint32_t *value = (const uint32_t *)vl_image_const_pixels(ids) + channel;
-  for (size_t i = 0; i < pixels; i++, value += step)
-    if (*value <= count) seen[*value] = true;
+int channels_choose(Channels *c, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  memset(c, 0, sizeof *c);
+  c->mode = v[RENDER_CHANNELS_MODE].given ? (vlChannelMode)v[RENDER_CHANNELS_MODE].integer : VL_CHANNEL_MODE_CENTRE;
+  c->ranks = v[RENDER_CRYPTO_RANKS].given ? (uint32_t)v[RENDER_CRYPTO_RANKS].integer : 6;
+  if (c->ranks % 2)
+    return report_usage("--crypto-ranks %u: two ranks share a layer, so that their number is even", c->ranks);
+  int status = v[RENDER_CHANNELS].given ? read_list(v[RENDER_CHANNELS].text, &c->bits) : -1;
+  if (status >= 0) return status;
+  static const int options[2] = {RENDER_FLOW_CAMERA, RENDER_FLOW_CAMERA_BEFORE};
+  for (int i = 0; i < 2; i++) {
+    if (v[options[i]].given) {
+      c->other_paths[i] = v[options[i]].text;
+      c->bits |= VL_CHANNEL_FORWARD << i;
+    } else if (c->bits & (VL_CHANNEL_FORWARD << i)) {
+      return report_usage("--channels %s: where is the other camera? give it by %s FILE", i ? "backward" : "forward",
+                          i ? "--flow-camera-before" : "--flow-camera");
+    }
+  }
+  return -1;
 }
 
-static void put_id(Json *json, const vlWorld *world, vlIdKind kind, uint32_t id) {
-  vlIdInfo info;
-  char key[16];
-  if (vl_world_id_info(world, kind, id, &info) != VL_OK) return;
-  snprintf(key, sizeof key, "%u", id);
-  fputs(json->comma ? ",\n    " : "\n    ", json->out);
-  json->comma = false;
-  json_begin(json, key, '{');
-  json_text(json, "type", info.type);
-  if (info.name) json_text(json, "name", info.name);
-  if (info.material) json_integer(json, "material", info.material);
-  if (info.source.file) {
-    json_text(json, "file", info.source.file);
-    json_integer(json, "line", info.source.line);
-    json_integer(json, "column", info.source.column);
+/* ---- the pass ---------------------------------------------------------------------------------------------------- */
+
+/* A camera of another picture size keeps its framing, as the picture's own does. */
+int channels_load(Channels *c, vlContext *context, const Job *job) {
+  for (int i = 0; i < 2; i++) {
+    if (!c->other_paths[i]) continue;
+    vlCameraRecord record;
+    int status = camera_load(context, c->other_paths[i], 0, NULL, &record);
+    if (status >= 0) return status;
+    vlError error = {0};
+    vlCamera camera;
+    vlResult result = vl_camera_make(&record.camera, &camera, NULL, &error);
+    if (result == VL_OK) result = vl_camera_resize(&camera, job->camera.width, job->camera.height, &c->others[i]);
+    if (result != VL_OK) return report_error(&error, result, c->other_paths[i]);
   }
-  json_end(json, '}');
+  return -1;
 }
 
-static bool put_all(FILE *file, const vlWorld *world, const vlImage *ids, const char *path) {
-  static const struct {
-    const char *channel, *key;
-    vlIdKind kind;
-  } kinds[] = {{"id.object", "objects", VL_ID_OBJECT},
-               {"id.material", "materials", VL_ID_MATERIAL},
-               {"id.instance", "instances", VL_ID_INSTANCE}};
-  const char *slash = strrchr(path, '/');
-  Json json = {.out = file};
-  json_begin(&json, NULL, '{');
-  json_text(&json, "picture", slash ? slash + 1 : path);
-  for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
-    if (vl_image_find_channel(ids, kinds[k].channel) < 0) continue;
-    uint32_t count = vl_world_id_count(world, kinds[k].kind);
-    bool *seen = calloc((size_t)count + 1, 1);
-    if (!seen) return false;
-    mark_ids(ids, kinds[k].channel, seen, count);
-    fputs(",\n  ", file);
-    json.comma = false;
-    json_begin(&json, kinds[k].key, '{');
-    for (uint32_t id = 1; id <= count; id++)
-      if (seen[id]) put_id(&json, world, kinds[k].kind, id);
-    json_end(&json, '}');
-    free(seen);
-  }
-  json_end(&json, '}');
-  fputc('\n', file);
-  return fflush(file) == 0 && !ferror(file);
+int channels_render(Channels *c, const vlWorld *world, const Job *job, const vlFilm *film) {
+  if (!c->bits) return STATUS_OK;
+  vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
+  def.channels = c->bits;
+  def.space = job->film.space;
+  def.samples = vl_film_spp(film);
+  def.mode = c->mode;
+  def.ranks = c->ranks;
+  def.film = film;
+  def.render = &job->render;
+  def.exposure = job->settings->exposure;
+  if (c->bits & VL_CHANNEL_FORWARD) def.forward = &c->others[0];
+  if (c->bits & VL_CHANNEL_BACKWARD) def.backward = &c->others[1];
+  memcpy(def.crop, job->film.crop, sizeof def.crop);
+  vlError error = {0};
+  vlResult result = vl_render_channels(world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
+  return result == VL_OK ? STATUS_OK : report_error(&error, result, job->path);
 }
 
-/* Written beside the target, synced, renamed: whole or as before. */
-int channels_write_ids(const vlWorld *world, const vlImage *ids, const char *path) {
-  char target[4200], temporary[4240];
-  if (!ids) return STATUS_OK;
-  bool any = vl_image_find_channel(ids, "id.object") >= 0 || vl_image_find_channel(ids, "id.material") >= 0 ||
-             vl_image_find_channel(ids, "id.instance") >= 0;
-  if (!any) return STATUS_OK;
-  if (snprintf(target, sizeof target, "%s.ids.json", path) >= (int)sizeof target)
-    return report_failure(STATUS_IO, "cannot write %s.ids.json: %s", path, strerror(ENAMETOOLONG));
-  snprintf(temporary, sizeof temporary, "%s.XXXXXX", target);
-  int descriptor = mkstemp(temporary);
-  FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
-  if (!file) {
-    int code = errno;
-    if (descriptor >= 0) close(descriptor), unlink(temporary);
-    return report_failure(STATUS_IO, "cannot write %s: %s", target, strerror(code));
-  }
-  errno = 0;
-  bool good = put_all(file, world, ids, path) && fsync(descriptor) == 0;
-  mode_t mask = umask(0);
-  umask(mask);
-  good = good && fchmod(descriptor, 0666 & ~mask) == 0;
-  int code = errno;
-  if (fclose(file) != 0 && good) good = false, code = errno;
-  if (good && rename(temporary, target) != 0) good = false, code = errno;
-  if (good) return STATUS_OK;
-  unlink(temporary);
-  return report_failure(STATUS_IO, "cannot write %s: %s", target, strerror(code ? code : EIO));
+vlResult channels_describe(const Channels *c, vlImage *image) {
+  vlResult result = VL_OK;
+  for (int k = 0; k < 2 && c->layers[k]; k++)
+    for (uint32_t i = 0; i < vl_image_attribute_count(c->layers[k]) && result == VL_OK; i++) {
+      vlAttribute attribute;
+      result = vl_image_attribute(c->layers[k], i, &attribute);
+      if (result == VL_OK) result = vl_image_set_attribute(image, &attribute);
+    }
+  if (!c->bits || result != VL_OK) return result;
+  const vlAttribute mode = {
+      .name = "velo.channels", .type = VL_ATTRIBUTE_STRING, .string = choice_name(channel_mode_choices, (int)c->mode)};
+  return vl_image_set_attribute(image, &mode);
+}
+
+void channels_free(Channels *c) {
+  for (int k = 0; k < 2; k++) vl_image_destroy(c->layers[k]);
 }

@@ -5,10 +5,29 @@
 
 #include "job.h"
 
-/* "Z,P,id.object" or "all" to bits of vlChannel. -1, or the exit code when all has been said. */
-int channels_read(const char *list, uint32_t *channels);
-/* Writes PATH.ids.json: type, name, material and place in its file of each id that the pictures hold. ids may be null:
- * nothing is written. Returns STATUS_OK or the exit code. */
-int channels_write_ids(const vlWorld *world, const vlImage *ids, const char *path);
+typedef struct Channels {
+  uint32_t bits; /* of vlChannel; 0: none */
+  vlChannelMode mode;
+  uint32_t ranks;
+  bool boxes;
+  const char *other_paths[2]; /* camera files of flow: forward, backward; null: the shutter's ends */
+  vlCamera others[2];
+  vlImage *layers[2]; /* what came of it; null: nothing of the kind */
+} Channels;
+
+extern const Choice channel_mode_choices[];
+
+/* What the command line wants. -1, or the exit code when all has been said. */
+int channels_choose(Channels *c, const Arguments *arguments);
+/* The other cameras of flow, once the picture's own is known. -1 or the exit code. */
+int channels_load(Channels *c, vlContext *context, const Job *job);
+/* The pass, after the picture. STATUS_OK or the exit code. */
+int channels_render(Channels *c, const vlWorld *world, const Job *job, const vlFilm *film);
+/* What the layers' header says, into the picture's. */
+vlResult channels_describe(const Channels *c, vlImage *image);
+/* Writes PATH.ids.json: type, name, material, place in its file and, if wanted, boxes of each id in the picture.
+ * STATUS_OK or the exit code. */
+int channels_write_ids(const Channels *c, const vlWorld *world, const Job *job, const char *path);
+void channels_free(Channels *c);
 
 #endif

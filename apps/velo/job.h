@@ -32,7 +32,11 @@ enum {
   RENDER_LOG_JSON,
   RENDER_VERBOSE,
   RENDER_ISA,
-  RENDER_CHANNELS
+  RENDER_CHANNELS,
+  RENDER_CHANNELS_MODE,
+  RENDER_CRYPTO_RANKS,
+  RENDER_FLOW_CAMERA,
+  RENDER_FLOW_CAMERA_BEFORE
 };
 
 extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[], color_choices[],

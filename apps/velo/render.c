@@ -28,8 +28,7 @@ typedef struct Render {
   bool written_whole;   /* all of them */
   bool write_failed;    /* said once */
   double last_write, write_cost;
-  uint32_t channels; /* of ground truth; bits of vlChannel */
-  vlImage *layers[2];
+  Channels channels; /* of ground truth */
 } Render;
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
@@ -41,6 +40,7 @@ static int write_picture(Render *render, bool progress) {
   uint32_t spp = vl_film_spp(render->film);
   vlResult result = vl_film_develop(render->film, &develop, &image);
   if (result == VL_OK) result = attributes_set(image, &render->job, spp);
+  if (result == VL_OK) result = channels_describe(&render->channels, image);
   int status = result == VL_OK ? outputs_write(render->context, &render->outputs, image, progress)
                                : report_error(NULL, result, NULL);
   vl_image_destroy(image);
@@ -86,40 +86,26 @@ static void choose_output(Render *render, const char *scene_path, const char *as
 
 /* ---- ground truth ------------------------------------------------------------------------------------------------ */
 
-/* Read before the work begins; the files that cannot hold it are named. */
-static int choose_channels(Render *render, const Arguments *arguments) {
-  const OptionValue *v = &arguments->values[RENDER_CHANNELS];
-  return v->given ? channels_read(v->text, &render->channels) : -1;
-}
-
 static void warn_of_channels(const Render *render) {
-  for (int i = 0; i < render->outputs.count && render->channels; i++)
+  for (int i = 0; i < render->outputs.count && render->channels.bits; i++)
     if (!output_holds_layers(render->outputs.paths[i]))
       report_warning("--channels: %s cannot hold them, only .exr can", render->outputs.paths[i]);
 }
 
 static bool has_layers(const Render *render) {
-  for (int i = 0; i < render->outputs.count && render->channels; i++)
+  for (int i = 0; i < render->outputs.count && render->channels.bits; i++)
     if (output_holds_layers(render->outputs.paths[i])) return true;
   return false;
 }
 
-static int render_channels(Render *render, uint32_t spp) {
+static int render_channels(Render *render) {
   if (!has_layers(render)) return STATUS_OK;
-  vlChannelsDef def = vl_default_channels_def(render->job.camera.width, render->job.camera.height);
-  def.channels = render->channels;
-  def.space = render->job.film.space;
-  def.samples = spp;
-  memcpy(def.crop, render->job.film.crop, sizeof def.crop);
-  vlError error = {0};
-  vlResult result =
-      vl_render_channels(render->world, &render->job.camera, &def, &render->layers[0], &render->layers[1], &error);
-  if (result != VL_OK) return report_error(&error, result, render->job.path);
-  for (int k = 0; k < 2; k++) render->outputs.layers[k] = render->layers[k];
-  int status = STATUS_OK;
+  Channels *channels = &render->channels;
+  int status = channels_render(channels, render->world, &render->job, render->film);
+  for (int k = 0; k < 2; k++) render->outputs.layers[k] = channels->layers[k];
   for (int i = 0; i < render->outputs.count && status == STATUS_OK; i++)
     if (output_holds_layers(render->outputs.paths[i]))
-      status = channels_write_ids(render->world, render->layers[1], render->outputs.paths[i]);
+      status = channels_write_ids(channels, render->world, &render->job, render->outputs.paths[i]);
   return status;
 }
 
@@ -137,7 +123,7 @@ static int prepare(Render *render, const Arguments *arguments) {
   outputs->half = v[RENDER_HALF].given;
   outputs->view = v[RENDER_VIEW].given ? (vlView)v[RENDER_VIEW].integer : VL_VIEW_STANDARD;
   outputs->exposure = (float)v[RENDER_EXPOSURE].number;
-  int status = choose_channels(render, arguments);
+  int status = channels_choose(&render->channels, arguments);
   if (status < 0) status = outputs_check_names(outputs);
   if (status < 0) status = outputs_check_folders(outputs);
   if (status >= 0) return status;
@@ -172,6 +158,9 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     if (status >= 0) return status;
   }
   warn_of_channels(render);
+  status = channels_load(&render->channels, render->context, &render->job);
+  if (status >= 0) return status;
+  render->job.film.errors = (render->channels.bits & VL_CHANNEL_ERROR) && has_layers(render);
   result = vl_world_build(render->scene, &render->job.build, &render->world, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   if (arguments->values[RENDER_VERBOSE].given) {
@@ -240,7 +229,7 @@ static int render_and_write(Render *render) {
 
   uint32_t spp = vl_film_spp(render->film);
   int status = STATUS_OK;
-  if (spp) status = render_channels(render, spp);
+  if (spp) status = render_channels(render);
   if (spp && status == STATUS_OK && (!(render->written_whole && render->written_spp == spp) || has_layers(render)))
     status = write_picture(render, false);
   int number = signals_pending();
@@ -267,8 +256,7 @@ static int run_render(const Command *command, const Arguments *arguments) {
     status = STATUS_OK;
   }
   if (status < 0) status = render_and_write(&render);
-  vl_image_destroy(render.layers[0]);
-  vl_image_destroy(render.layers[1]);
+  channels_free(&render.channels);
   vl_film_destroy(render.film);
   vl_world_destroy(render.world);
   vl_scene_destroy(render.scene);
@@ -306,10 +294,26 @@ static const Option render_options[] = {
      view_choices},
     {RENDER_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "brighter by 2^EV (.png .jpg .tga)", -64, 64, NULL},
     {RENDER_CHANNELS, 0, "channels", OPTION_TEXT, "LIST",
-     "ground truth of pixel centres into the .exr, 32-bit: any of\n"
-     "Z, distance, P, N, Ng, uv, albedo, ray, id.object, id.material,\n"
-     "id.instance, id.primitive, samples, separated by commas; or all.\nFILE.ids.json says what the ids stand for",
+     "ground truth into the .exr, 32-bit: any of Z, distance, P, N, Ng,\n"
+     "uv, albedo, ray, id.object, id.material, id.instance,\n"
+     "id.primitive, samples, film, separated by commas; or all of\n"
+     "these. More, that cost more: error (standard error), forward,\n"
+     "backward (flow), crypto.object, crypto.material, crypto.instance\n"
+     "(Cryptomatte; crypto: all three).\n"
+     "FILE.ids.json says what the ids stand for",
      0, 0, NULL},
+    {RENDER_CHANNELS_MODE, 0, "channels-mode", OPTION_CHOICE, "NAME",
+     "which point of a pixel they tell about: its centre, or of the\n"
+     "picture's samples the nearest, or one of the thing that covers\nmost of the pixel:",
+     0, 0, channel_mode_choices},
+    {RENDER_CRYPTO_RANKS, 0, "crypto-ranks", OPTION_INTEGER, "N", "things a pixel of a Cryptomatte can hold; default 6",
+     2, 32, NULL},
+    {RENDER_FLOW_CAMERA, 0, "flow-camera", OPTION_TEXT, "FILE",
+     "the camera of the next picture: the channels forward.U, .V tell\n"
+     "in pixels where it sees what this one sees, and forward.hidden\nwhether it does (scene or camera file)",
+     0, 0, NULL},
+    {RENDER_FLOW_CAMERA_BEFORE, 0, "flow-camera-before", OPTION_TEXT, "FILE",
+     "the camera of the picture before, for backward.U, .V, .hidden", 0, 0, NULL},
     {RENDER_HALF, 0, "half", OPTION_FLAG, NULL, ".exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
     {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N",
      "workers; default: one for each processor. The picture does not\n"

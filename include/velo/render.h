@@ -47,6 +47,7 @@ typedef struct vlFilmDef {
   uint32_t crop[4];       /* x0, y0, x1, y1, exclusive; the pixels that are rendered */
   vlPixelFilter filter;
   vlColorSpace space; /* of the developed picture */
+  bool errors;        /* remember what vl_film_errors needs: three times the memory; default false */
 } vlFilmDef;
 VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);
 VL_API vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film);
@@ -62,6 +63,10 @@ VL_API vlDevelopDef vl_default_develop_def(void);
  * is the share of them that met a surface (R G B hold the sky behind, too). Zero where there is none. Not while a
  * render runs, except from its callback after a pass. def may be null. */
 VL_API vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **image);
+/* New float picture error.R error.G error.B of the crop window: the standard error of what vl_film_develop gives: the
+ * square root of the variance of the mean, estimated from the pixel's samples as if they were independent (those of
+ * most samplers err less); infinity below 2 samples. ARGUMENT when the film was made without vlFilmDef.errors. */
+VL_API vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlImage **image);
 
 /* ---- render ----------------------------------------------------------------------------------------------------- */
 

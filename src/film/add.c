@@ -1,25 +1,11 @@
 /* film/add.c: samples into the exact sums. Integers only: the float's mantissa times the weight's is exact, and goes to
  * its place in the 128-bit sum by one multiplication. No branch hangs on the values. */
 #include "film/sums.h"
-#include "math/approx.h"
 
 enum {
   COLOR_LIMIT = (127 + 40) << 23, /* bits of 2^40; infinities and NaNs lie above, too */
   WEIGHT_LIMIT = (127 + 4) << 23
 };
-
-/* value * weight, rounded to the nearest unit of the sum. |value| < 2^40, |weight| <= 2^28 (units of 2^-24). */
-static inline vlInt128 product(float value, int64_t weight) {
-  uint32_t bits = vl_float_bits(value);
-  int32_t field = (int32_t)(bits >> 23 & 255), exponent = field > 0 ? field : 1;
-  int64_t mantissa = (int64_t)(bits & 0x7fffffu) | (int64_t)(field > 0) << 23; /* value = mantissa 2^(exponent - 150) */
-  int64_t p = (bits >> 31 ? -mantissa : mantissa) * weight;
-  int32_t shift = exponent - 150 - VL_WEIGHT_BITS + VL_COLOR_BITS;
-  int32_t left = shift > 0 ? shift : 0, right = shift < 0 ? -shift : 0;
-  right = right < 62 ? right : 62;
-  p = (p + ((INT64_C(1) << right) >> 1)) >> right;
-  return (vlInt128)p * (INT64_C(1) << left);
-}
 
 uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *s, int32_t *bad_x, int32_t *bad_y) {
   static const vlFilmPixel zero = {{0, 0, 0}, 0, 0};
@@ -44,14 +30,16 @@ uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *s, int32_t *bad_x, int32
     }
     size_t at = (size_t)y * width + x;
     vlFilmPixel *p = back + at;
-    if (stamp[at] != pass) {
+    bool is_new = stamp[at] != pass;
+    if (is_new) {
       stamp[at] = pass;
       *p = front ? front[at] : zero;
     }
+    if (film->def.errors) vl_film_add_moments(film, at, is_new, (const float[3]){s->r[i], s->g[i], s->b[i]});
     int64_t weight = (int64_t)((double)w * (1 << VL_WEIGHT_BITS) + (w < 0.0f ? -0.5 : 0.5));
-    p->color[0] += product(s->r[i], weight);
-    p->color[1] += product(s->g[i], weight);
-    p->color[2] += product(s->b[i], weight);
+    p->color[0] += vl_film_product(s->r[i], weight);
+    p->color[1] += vl_film_product(s->g[i], weight);
+    p->color[2] += vl_film_product(s->b[i], weight);
     a = a > 0.0f ? (a < 1.0f ? a : 1.0f) : 0.0f;
     int64_t alpha = (int64_t)(a * 0x1p24f) * weight; /* units of 2^-48 */
     p->alpha += (alpha + (INT64_C(1) << 19)) >> 20;

@@ -44,6 +44,7 @@ void vl_film_destroy(vlFilm *film) {
   vl_free(context, film->front);
   vl_free(context, film->back);
   vl_free(context, film->stamp);
+  for (int i = 0; i < 2; i++) vl_free(context, film->moments[i]);
   vl_free(context, film);
 }
 
@@ -65,6 +66,9 @@ vlResult vl_film_begin_pass(vlFilm *film) {
   size_t count = vl_film_pixels(film);
   if (!film->stamp) film->stamp = vl_alloc_zero(film->context, count, sizeof *film->stamp);
   if (!film->back) film->back = vl_alloc_array(film->context, count, sizeof *film->back);
+  for (int i = 0; i < 2 && film->def.errors; i++)
+    if (!film->moments[i] && !(film->moments[i] = vl_alloc_zero(film->context, count, sizeof(vlFilmMoments))))
+      return VL_ERROR_MEMORY;
   if (!film->stamp || !film->back) return VL_ERROR_MEMORY;
   film->in_pass = true;
   return VL_OK;
@@ -84,7 +88,13 @@ void vl_film_commit_pass(vlFilm *film) {
   size_t count = vl_film_pixels(film);
   static const vlFilmPixel zero = {{0, 0, 0}, 0, 0};
   for (size_t i = 0; i < count; i++)
-    if (film->stamp[i] != film->pass) film->back[i] = film->front ? film->front[i] : zero;
+    if (film->stamp[i] != film->pass) {
+      film->back[i] = film->front ? film->front[i] : zero;
+      if (film->def.errors) film->moments[1][i] = film->moments[0][i];
+    }
+  vlFilmMoments *moments = film->moments[0];
+  film->moments[0] = film->moments[1];
+  film->moments[1] = moments;
   vlFilmPixel *front = film->front;
   film->front = film->back;
   film->back = front;
@@ -99,8 +109,12 @@ vlResult vl_film_merge(vlFilm *film, const vlFilm *other) {
   if (!film || !other || film == other || film->in_pass || other->in_pass) return VL_ERROR_ARGUMENT;
   if (film->def.width != other->def.width || film->def.height != other->def.height ||
       memcmp(film->def.crop, other->def.crop, sizeof film->def.crop) != 0 || film->def.space != other->def.space ||
-      film->spp > UINT32_MAX - other->spp)
+      film->spp > UINT32_MAX - other->spp || (film->def.errors && !other->def.errors))
     return VL_ERROR_ARGUMENT;
+  if (film->def.errors && other->moments[0]) {
+    if (!film->moments[0]) film->moments[0] = vl_alloc_zero(film->context, vl_film_pixels(film), sizeof(vlFilmMoments));
+    if (!film->moments[0]) return VL_ERROR_MEMORY;
+  }
   if (other->front) {
     size_t count = vl_film_pixels(film);
     if (!film->front) film->front = vl_alloc_zero(film->context, count, sizeof *film->front);
@@ -110,6 +124,7 @@ vlResult vl_film_merge(vlFilm *film, const vlFilm *other) {
       film->front[i].alpha += other->front[i].alpha;
       film->front[i].weight += other->front[i].weight;
     }
+    if (film->def.errors) vl_film_merge_moments(film, other);
   }
   film->spp += other->spp;
   return VL_OK;

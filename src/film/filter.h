@@ -31,4 +31,13 @@ bool vl_filter_compile(const vlPixelFilter *filter, vlFilterTable *table);
 /* f of one axis, not normalised; 0 outside the radius. */
 double vl_filter_value(const vlPixelFilter *filter, int axis, double x);
 
+/* |weight| of every sample. */
+static inline double vl_filter_weight(const vlFilterTable *filter) {
+  double weight = 1;
+  for (int i = 0; i < 2; i++)
+    if (filter->axis[i].segments)
+      weight *= filter->axis[i].sign[0] < 0 ? -filter->axis[i].sign[0] : filter->axis[i].sign[0];
+  return weight;
+}
+
 #endif

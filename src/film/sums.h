@@ -5,6 +5,7 @@
 #include "base/context.h"
 #include "film/film.h"
 #include "film/filter.h"
+#include "math/approx.h"
 
 __extension__ typedef __int128 vlInt128;
 
@@ -19,6 +20,16 @@ typedef struct vlFilmPixel {
 } vlFilmPixel;
 _Static_assert(sizeof(vlFilmPixel) == 64, "a pixel's sums are one cache line");
 
+/* What standard errors need beside the sums: of each channel the plain sum and that of squares, and the samples.
+ * Squares are exact, too: 192-bit fixed point, the lowest limb first. Two cache lines. */
+enum { VL_SQUARE_BITS = 80 };
+typedef struct vlFilmMoments {
+  vlInt128 plain[3];
+  uint64_t squares[3][3];
+  uint64_t samples;
+} vlFilmMoments;
+_Static_assert(sizeof(vlFilmMoments) == 128, "the compiler adds no bytes");
+
 struct vlFilm {
   vlContext *context;
   vlFilmDef def;
@@ -29,8 +40,26 @@ struct vlFilm {
   uint32_t *stamp;    /* the pass in which the pixel's back was last written */
   uint32_t pass;      /* counts from 1 */
   bool in_pass;
+  vlFilmMoments *moments[2]; /* front and back, with def.errors; a pixel's back is good where the sums' is */
   vlFilterTable filter;
 };
+
+/* Of moments.c: one sample more; begins with the front where the pixel is new in the pass. */
+void vl_film_add_moments(vlFilm *film, size_t at, bool is_new, const float color[3]);
+void vl_film_merge_moments(vlFilm *film, const vlFilm *other);
+
+/* value * weight, rounded to the nearest unit of the sum. |value| < 2^40, |weight| <= 2^28 (units of 2^-24). */
+static inline vlInt128 vl_film_product(float value, int64_t weight) {
+  uint32_t bits = vl_float_bits(value);
+  int32_t field = (int32_t)(bits >> 23 & 255), exponent = field > 0 ? field : 1;
+  int64_t mantissa = (int64_t)(bits & 0x7fffffu) | (int64_t)(field > 0) << 23; /* value = mantissa 2^(exponent - 150) */
+  int64_t p = (bits >> 31 ? -mantissa : mantissa) * weight;
+  int32_t shift = exponent - 150 - VL_WEIGHT_BITS + VL_COLOR_BITS;
+  int32_t left = shift > 0 ? shift : 0, right = shift < 0 ? -shift : 0;
+  right = right < 62 ? right : 62;
+  p = (p + ((INT64_C(1) << right) >> 1)) >> right;
+  return (vlInt128)p * (INT64_C(1) << left);
+}
 
 static inline size_t vl_film_pixels(const vlFilm *film) {
   return (size_t)film->width * film->height;

@@ -15,7 +15,8 @@ typedef struct vlFilmRays {
   const vlCameraKernels *camera_kernels;
   const vlSamplerKernels *sampler_kernels;
   const vlFilterKernels *filter_kernels;
-  bool lens; /* points on the lens are drawn */
+  bool lens;   /* points on the lens are drawn */
+  bool middle; /* in the middle of the shutter's time, all of them */
 } vlFilmRays;
 
 /* One element a sample, VL_PAD(n) of them: in are pixel and index of the sample in it; the rest comes out. film_x,

@@ -31,11 +31,31 @@ typedef struct vlTruthBatch {
   uint32_t object[VL_ROW_SIZE], material[VL_ROW_SIZE], instance[VL_ROW_SIZE], primitive[VL_ROW_SIZE];
 } vlTruthBatch;
 
+/* Only who is met, by the very rays that the picture's paths begin with: floats, VL_PAD(n) of them. distance (may be
+ * null): in float, for choosing; infinity where nothing is met. Ids as above. */
+typedef struct vlTruthHits {
+  uint32_t n;
+  const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;
+  uint32_t *object, *material, *instance;
+  float *distance;
+} vlTruthHits;
+
+/* Everything on the way of one ray of a batch, seen or hidden behind the rest: how many crossings at most are looked
+ * at. */
+enum { VL_TRUTH_LAYERS = 256 };
+typedef struct vlTruthLayers {
+  uint32_t count;
+  uint32_t object[VL_TRUTH_LAYERS], instance[VL_TRUTH_LAYERS];
+} vlTruthLayers;
+
 typedef struct vlTruthScratch vlTruthScratch;
 size_t vl_truth_scratch_size(void); /* allocate 64-byte aligned, zeroed */
 
 typedef struct vlTruthKernels {
   void (*trace)(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *scratch, vlTruthBatch *batch);
+  void (*hits)(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *scratch, const vlTruthHits *hits);
+  /* Of lane `lane` of a batch that was traced: the crossings behind (and with) what it met, each surface once. */
+  void (*layers)(const vlWorld *world, const vlTruthBatch *batch, uint32_t lane, vlTruthLayers *layers);
 } vlTruthKernels;
 extern const vlTruthKernels vl_truth_kernels_v2, vl_truth_kernels_v3, vl_truth_kernels_v4;
 const vlTruthKernels *vl_truth_kernels(vlIsa isa);

@@ -186,4 +186,67 @@ static void trace(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *s
   }
 }
 
-const vlTruthKernels VL_HOT(vl_truth_kernels) = {trace};
+/* ---- who is met ---------------------------------------------------------------------------------------------------
+ */
+
+static void hits(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *scratch, const vlTruthHits *to) {
+  vlTraceScratch *s = &scratch->trace;
+  vlPaths *p = &s->a;
+  uint32_t n = to->n;
+  if (n == 0) return;
+  for (uint32_t i = 0; i < n; i++) {
+    p->ox[i] = to->ox[i], p->oy[i] = to->oy[i], p->oz[i] = to->oz[i];
+    p->dx[i] = to->dx[i], p->dy[i] = to->dy[i], p->dz[i] = to->dz[i];
+    p->cone[i] = def->pixel_width;
+    p->specular[i] = 1;
+    for (int c = 0; c < 4; c++) p->lambda[c][i] = def->lambda[0][c], p->beta[c][i] = 0.0f;
+  }
+  vlTraceBatch rays = {.n = n, .t_min = to->t_min, .t_max = to->t_max};
+  for (int c = 0; c < 4; c++) rays.radiance[c] = scratch->light[c];
+  vlTraceDef trace_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
+  vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
+  VL_HOT(vl_stage_hits)(&tracing, n, true);
+  const vlHits *h = &s->hits_a;
+  for (uint32_t i = 0; i < n; i++) {
+    bool hit = h->shape[i] != VL_NONE;
+    to->object[i] = hit ? h->shape[i] + 1 : 0;
+    to->material[i] = hit ? world->shapes.items[h->shape[i]].material + 1 : 0;
+    to->instance[i] = hit && h->instance[i] != VL_NONE ? h->instance[i] + 1 : 0;
+    if (!to->distance) continue;
+    to->distance[i] = VL_INFINITY;
+    if (!hit) continue;
+    vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+    to->distance[i] = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]).t;
+  }
+}
+
+/* As interfaces are passed (hits.hot.c): past each surface by what its point may be wrong. */
+static void layers(const vlWorld *world, const vlTruthBatch *batch, uint32_t lane, vlTruthLayers *to) {
+  float o[3], d[3], t_min = batch->t_min[lane];
+  for (int k = 0; k < 3; k++) o[k] = (float)batch->o[k][lane], d[k] = (float)batch->d[k][lane];
+  to->count = 0;
+  for (int step = 0; step < VL_TRUTH_LAYERS; step++) {
+    uint32_t shape, prim, instance;
+    float t;
+    vlRays ray = {.ox = o,
+                  .oy = o + 1,
+                  .oz = o + 2,
+                  .dx = d,
+                  .dy = d + 1,
+                  .dz = d + 2,
+                  .t_min = &t_min,
+                  .t_max = batch->t_max + lane};
+    vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t);
+    if (shape == VL_NONE) return;
+    vlVec3 from = {o[0], o[1], o[2]}, along = {d[0], d[1], d[2]};
+    vlPoint at = VL_HOT(vl_point_at)(world, from, along, shape, prim, instance, t);
+    uint32_t object = shape + 1, placed = instance == VL_NONE ? 0 : instance + 1, k = 0;
+    while (k < to->count && (to->object[k] != object || to->instance[k] != placed)) k++;
+    bool seen = world->materials.items[world->shapes.items[shape].material].kind != VL_MATERIAL_INTERFACE;
+    if (k == to->count && seen) to->object[k] = object, to->instance[k] = placed, to->count++;
+    float margin = 2.0f * at.offset / vl_max(vl_abs(vl_dot(at.g, along)), 0.01f) + 0x1p-22f * vl_abs(at.t);
+    t_min = vl_max(at.t, t_min) + vl_max(margin, 1e-30f);
+  }
+}
+
+const vlTruthKernels VL_HOT(vl_truth_kernels) = {trace, hits, layers};

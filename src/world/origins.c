@@ -68,6 +68,13 @@ static vlResult fill(vlWorld *world, const vlScene *scene, Files *files) {
     copy_source(files, scene, def->source, &o->source);
     if (def->name && def->name[0] && !(o->name = copy_text(world, def->name))) return VL_ERROR_MEMORY;
   }
+  const char **names = vl_world_block(world, scene->groups.count, sizeof(char *));
+  if (!names) return VL_ERROR_MEMORY;
+  for (size_t i = 0; i < scene->groups.count; i++) {
+    const char *name = scene->groups.items[i].name;
+    names[i] = name[0] ? copy_text(world, name) : NULL;
+    if (name[0] && !names[i]) return VL_ERROR_MEMORY;
+  }
   size_t next = 0;
   for (size_t i = 0; i < scene->instances.count; i++) { /* those of empty groups are not in the world */
     const vlSceneInstance *instance = &scene->instances.items[i];
@@ -75,6 +82,7 @@ static vlResult fill(vlWorld *world, const vlScene *scene, Files *files) {
     if (world->groups.items[group].count == 0 || next >= world->instances.count) continue;
     vlWorldOrigin *o = &world->instance_origins[next++];
     copy_source(files, scene, instance->source, &o->source);
+    o->name = names[group - 1];
   }
   return VL_OK;
 }

@@ -45,7 +45,7 @@ import json
 for name in ("all", "crop"):
     info = json.load(open(name + ".json"))
     types = dict(zip(info["channels"], info["types"]))
-    assert len(types) == 28, types
+    assert len(types) == 30, types
     for channel, kind in types.items():
         whole = channel.startswith("id.") or channel == "samples"
         half = name == "crop" and len(channel) == 1 and channel != "Z"

@@ -1,0 +1,120 @@
+/* render/channel_pass.h: the pass of ground truth: what its files share. */
+#ifndef RENDER_CHANNEL_PASS_H
+#define RENDER_CHANNEL_PASS_H
+
+#include "render/cryptomatte.h"
+#include "render/film_rays.h"
+#include "trace/truth.h"
+#include "velo/channels.h"
+
+enum { VL_CHANNEL_TILE = 32, VL_TILE_PIXELS = VL_CHANNEL_TILE * VL_CHANNEL_TILE };
+_Static_assert((int)VL_TILE_PIXELS <= (int)VL_BATCH, "a tile is a batch");
+
+/* Bits' numbers: places in the tables below. */
+enum {
+  VL_INDEX_Z,
+  VL_INDEX_DISTANCE,
+  VL_INDEX_P,
+  VL_INDEX_N,
+  VL_INDEX_NG,
+  VL_INDEX_UV,
+  VL_INDEX_ALBEDO,
+  VL_INDEX_RAY,
+  VL_INDEX_IDS,
+  VL_INDEX_SAMPLES = 12,
+  VL_INDEX_FILM,
+  VL_INDEX_ERROR,
+  VL_INDEX_FORWARD,
+  VL_INDEX_BACKWARD,
+  VL_INDEX_CRYPTO
+};
+
+/* How much of a pixel each of the things in it covers: a small hash table. A pixel that sees more things than it holds
+ * loses the latest. */
+enum { VL_TALLY_SLOTS = 1024, VL_TALLY_MOST = 768 };
+typedef struct vlTallyEntry {
+  uint64_t key;
+  int64_t weight;  /* units of 2^-24 */
+  float off, x, y; /* the sample closest to the pixel's centre: square of its distance, and its point of the film */
+  uint32_t round;  /* the entry is good where it is the tally's */
+} vlTallyEntry;
+typedef struct vlTally {
+  uint32_t round, count, last; /* last: the slot found before */
+  uint32_t used[VL_TALLY_MOST];
+  vlTallyEntry slots[VL_TALLY_SLOTS];
+} vlTally;
+
+typedef struct vlChannelWorker {
+  vlTruthScratch *scratch;
+  vlTruthBatch *batch;
+  float *rows;         /* VL_CHANNEL_ROWS arrays of VL_ROW_SIZE */
+  vlTally *tallies;    /* three of Cryptomatte or one of the choice; null where nothing is counted */
+  vlTruthBatch *other; /* what the other camera sees; null without flow */
+  uint32_t *lanes;     /* of `other`: which lane of the batch */
+  uint32_t x[VL_BATCH], y[VL_BATCH];
+  float film_x[VL_TILE_PIXELS], film_y[VL_TILE_PIXELS]; /* the point of each pixel of the tile */
+  float lane_x[VL_BATCH], lane_y[VL_BATCH];             /* and of each lane */
+} vlChannelWorker;
+enum { VL_CHANNEL_ROWS = 28 };
+
+/* Where the rays of a camera begin and end. */
+typedef struct vlChannelEnds {
+  const vlCameraCompiled *camera;
+  const uint32_t *x, *y;
+  const float *film_x, *film_y;
+} vlChannelEnds;
+
+typedef struct vlChannelPass {
+  const vlWorld *world;
+  const vlChannelsDef *def;
+  vlCamera camera; /* a pinhole in the middle of the shutter's time */
+  vlCameraCompiled compiled;
+  const vlCameraKernels *camera_kernels;
+  const vlTruthKernels *truth_kernels;
+  vlTruthDef truth;
+  uint32_t tiles_x, tile_x0, tile_y0, tiles;
+  uint32_t place[2][VL_CHANNEL_COUNT]; /* of each channel's first part among floats and ids */
+  vlImage *images[2];                  /* floats, ids */
+  uint32_t step[2];                    /* values of a pixel */
+  vlChannelWorker *workers;
+  vlFilmRays choice, picture; /* rays of the picture's samples through the middle of the lens, and as they are */
+  uint32_t spp;               /* of the picture */
+  vlCryptomatte crypto[3];
+  vlCamera other[2]; /* forward, backward */
+  vlCameraCompiled other_compiled[2];
+} vlChannelPass;
+
+static inline bool vl_channel_wanted(const vlChannelPass *p, uint32_t bits) {
+  return (p->def->channels & bits) != 0;
+}
+/* Pixel k of a tile; false outside the crop window. */
+static inline bool vl_channel_pixel(const vlChannelPass *p, uint32_t tile, uint32_t k, uint32_t *x, uint32_t *y) {
+  *x = (p->tile_x0 + tile % p->tiles_x) * VL_CHANNEL_TILE + k % VL_CHANNEL_TILE;
+  *y = (p->tile_y0 + tile / p->tiles_x) * VL_CHANNEL_TILE + k / VL_CHANNEL_TILE;
+  const uint32_t *crop = p->def->crop;
+  return *x >= crop[0] && *y >= crop[1] && *x < crop[2] && *y < crop[3];
+}
+static inline size_t vl_channel_at(const vlChannelPass *p, uint32_t x, uint32_t y) {
+  return (size_t)(y - p->def->crop[1]) * (p->def->crop[2] - p->def->crop[0]) + (x - p->def->crop[0]);
+}
+static inline float *vl_channel_floats(const vlChannelPass *p, size_t at, uint32_t index) {
+  return (float *)vl_image_pixels(p->images[0]) + at * p->step[0] + p->place[0][index];
+}
+static inline uint32_t *vl_channel_ids(const vlChannelPass *p, size_t at, uint32_t index) {
+  return (uint32_t *)vl_image_pixels(p->images[1]) + at * p->step[1] + p->place[1][index];
+}
+static inline float *vl_channel_row(vlChannelWorker *w, uint32_t row) {
+  return w->rows + (size_t)row * VL_ROW_SIZE;
+}
+
+/* channel_samples.c: counts the picture's samples: fills film_x and film_y of the tile, writes Cryptomatte. */
+void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile);
+/* flow.c: where the other cameras see what the n lanes of the batch met. */
+void vl_channel_flow(const vlChannelPass *p, vlChannelWorker *w, int which);
+/* channel_tile.c: the part of the rays that near and far plane leave, from the very kernel the picture's rays come
+ * from. */
+void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, const vlChannelEnds *ends, float *t_min,
+                     float *t_max);
+void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker);
+
+#endif

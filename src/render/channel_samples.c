@@ -1,0 +1,229 @@
+/* render/channel_samples.c: ground truth of a pixel's area: the picture's own samples, sent out once more, say what
+ * they meet first. From them come Cryptomatte's coverages, and the point of the film that a pixel's numbers are of
+ * where that is not its centre.
+ *
+ * All samples of a pixel stand one after the other, in the order of their indices; sums are of integers. */
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "render/channel_pass.h"
+
+enum Row {
+  FILM_U,
+  FILM_V,
+  FILM_X,
+  FILM_Y,
+  WEIGHT,
+  TIME,
+  LENS_U,
+  LENS_V,
+  OX,
+  OY,
+  OZ,
+  DX,
+  DY,
+  DZ,
+  T_MIN,
+  T_MAX,
+  RAY_TIME,
+  VALID,
+  RAY_WEIGHT,
+  PIXEL_X,
+  PIXEL_Y,
+  INDEX,
+  OBJECT,
+  MATERIAL,
+  INSTANCE,
+  DISTANCE,
+  ROWS
+};
+_Static_assert((int)ROWS <= (int)VL_CHANNEL_ROWS, "rows are shared");
+
+/* ---- tallies ----------------------------------------------------------------------------------------------------- */
+
+static void tally_clear(vlTally *t) {
+  t->count = 0;
+  if (++t->round) return;
+  memset(t, 0, sizeof *t);
+  t->round = 1;
+}
+
+static vlTallyEntry *tally_find(vlTally *t, uint64_t key) {
+  vlTallyEntry *e = &t->slots[t->last];
+  if (e->round == t->round && e->key == key) return e;
+  uint32_t at = (uint32_t)((key * UINT64_C(0x9e3779b97f4a7c15)) >> 54); /* 10 bits */
+  for (;; at = (at + 1) % VL_TALLY_SLOTS) {
+    e = &t->slots[at];
+    if (e->round == t->round && e->key != key) continue;
+    t->last = at;
+    if (e->round == t->round) return e;
+    if (t->count == VL_TALLY_MOST) return NULL;
+    t->used[t->count++] = at;
+    *e = (vlTallyEntry){.key = key, .round = t->round, .off = INFINITY};
+    return e;
+  }
+}
+
+/* The heaviest entry; of several the one with the smallest key, which depends on no order. */
+static vlTallyEntry *tally_best(vlTally *t) {
+  vlTallyEntry *best = NULL;
+  for (uint32_t i = 0; i < t->count; i++) {
+    vlTallyEntry *e = &t->slots[t->used[i]];
+    if (!best || e->weight > best->weight || (e->weight == best->weight && e->key < best->key)) best = e;
+  }
+  return best;
+}
+
+/* ---- samples ----------------------------------------------------------------------------------------------------- */
+
+/* Which of the two: the choice of a point, or Cryptomatte. */
+typedef struct Count {
+  const vlFilmRays *rays;
+  bool matte;
+  int64_t total;            /* weight of the pixel's samples */
+  float off, x, y, nearest; /* of the choice: the closest to the centre, or the nearest */
+} Count;
+
+static void add_choice(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t i, int64_t weight) {
+  float x = vl_channel_row(w, FILM_X)[i], y = vl_channel_row(w, FILM_Y)[i];
+  float off = (x - 0.5f) * (x - 0.5f) + (y - 0.5f) * (y - 0.5f);
+  if (p->def->mode == VL_CHANNEL_MODE_NEAREST) {
+    float t = vl_channel_row(w, DISTANCE)[i], z = INFINITY;
+    if (t < INFINITY) {
+      const double *m = p->camera.camera_from_world;
+      double q[3];
+      for (uint32_t k = 0; k < 3; k++)
+        q[k] = (double)vl_channel_row(w, OX + k)[i] + (double)t * (double)vl_channel_row(w, DX + k)[i];
+      z = (float)(m[8] * q[0] + m[9] * q[1] + m[10] * q[2] + m[11]);
+    }
+    if (!(z < c->nearest) && !(z == c->nearest && off < c->off)) return;
+    c->nearest = z, c->off = off, c->x = x, c->y = y;
+    return;
+  }
+  const uint32_t *object = (uint32_t *)(void *)vl_channel_row(w, OBJECT);
+  const uint32_t *instance = (uint32_t *)(void *)vl_channel_row(w, INSTANCE);
+  vlTallyEntry *e = tally_find(&w->tallies[0], (uint64_t)instance[i] << 32 | object[i]);
+  if (!e) return;
+  e->weight += weight;
+  if (off < e->off) e->off = off, e->x = x, e->y = y;
+}
+
+static void add_matte(const vlChannelPass *p, vlChannelWorker *w, uint32_t i, int64_t weight) {
+  static const int rows[3] = {OBJECT, MATERIAL, INSTANCE};
+  for (uint32_t k = 0; k < 3; k++) {
+    uint32_t id = ((uint32_t *)(void *)vl_channel_row(w, (uint32_t)rows[k]))[i];
+    if (!id || !vl_channel_wanted(p, VL_CHANNEL_CRYPTO_OBJECT << k)) continue;
+    vlTallyEntry *e = tally_find(&w->tallies[k], id);
+    if (e) e->weight += weight;
+  }
+}
+
+/* Rank after rank: the bits of a hash, and the share of the pixel. */
+static void put_matte(const vlChannelPass *p, vlChannelWorker *w, size_t at, int64_t total) {
+  for (uint32_t k = 0; k < 3; k++) {
+    if (!vl_channel_wanted(p, VL_CHANNEL_CRYPTO_OBJECT << k)) continue;
+    float *to = vl_channel_floats(p, at, VL_INDEX_CRYPTO + k);
+    for (uint32_t rank = 0; rank < p->def->ranks; rank++) {
+      vlTallyEntry *e = tally_best(&w->tallies[k]);
+      if (!e || e->weight <= 0) break;
+      uint32_t id = (uint32_t)e->key;
+      memcpy(to + 2 * rank, &p->crypto[k].hash[id - 1], sizeof(float));
+      to[2 * rank + 1] = (float)((double)e->weight / (double)total);
+      atomic_store_explicit(&p->crypto[k].seen[id - 1], 1, memory_order_relaxed);
+      e->weight = 0;
+    }
+  }
+}
+
+static void begin_pixel(vlChannelWorker *w, Count *c) {
+  for (int k = 0; k < 3; k++) tally_clear(&w->tallies[k]);
+  c->total = 0;
+  c->off = c->nearest = INFINITY;
+  c->x = c->y = 0.5f;
+}
+
+static void end_pixel(const vlChannelPass *p, vlChannelWorker *w, const Count *c, uint32_t x, uint32_t y) {
+  if (c->matte) {
+    put_matte(p, w, vl_channel_at(p, x, y), c->total);
+    return;
+  }
+  uint32_t k = y % VL_CHANNEL_TILE * VL_CHANNEL_TILE + x % VL_CHANNEL_TILE;
+  w->film_x[k] = c->x, w->film_y[k] = c->y;
+  if (p->def->mode != VL_CHANNEL_MODE_COVERAGE) return;
+  const vlTallyEntry *e = tally_best(&w->tallies[0]);
+  if (e) w->film_x[k] = e->x, w->film_y[k] = e->y;
+}
+
+static void flush(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t n) {
+  if (n == 0) return;
+  float *r[ROWS];
+  for (uint32_t i = 0; i < ROWS; i++) r[i] = vl_channel_row(w, i);
+  int32_t *px = (int32_t *)(void *)r[PIXEL_X], *py = (int32_t *)(void *)r[PIXEL_Y];
+  uint32_t *index = (uint32_t *)(void *)r[INDEX];
+  for (uint32_t i = n; i < VL_PAD(n); i++) px[i] = px[n - 1], py[i] = py[n - 1], index[i] = index[n - 1];
+  vlCameraRays rays = {.ox = r[OX],
+                       .oy = r[OY],
+                       .oz = r[OZ],
+                       .dx = r[DX],
+                       .dy = r[DY],
+                       .dz = r[DZ],
+                       .t_min = r[T_MIN],
+                       .t_max = r[T_MAX],
+                       .time = r[RAY_TIME],
+                       .valid = r[VALID],
+                       .weight = r[RAY_WEIGHT]};
+  if (!c->rays->lens)
+    for (uint32_t i = 0; i < VL_PAD(n); i++) r[LENS_U][i] = r[LENS_V][i] = 0.5f;
+  vlFilmRayRows rows = {px,        py,        index,   r[FILM_U], r[FILM_V], r[FILM_X],
+                        r[FILM_Y], r[WEIGHT], r[TIME], r[LENS_U], r[LENS_V], rays};
+  vl_film_rays_make(c->rays, n, &rows);
+  bool depths = !c->matte && p->def->mode == VL_CHANNEL_MODE_NEAREST;
+  vlTruthHits hits = {.n = n,
+                      .ox = r[OX],
+                      .oy = r[OY],
+                      .oz = r[OZ],
+                      .dx = r[DX],
+                      .dy = r[DY],
+                      .dz = r[DZ],
+                      .t_min = r[T_MIN],
+                      .t_max = r[T_MAX],
+                      .object = (uint32_t *)(void *)r[OBJECT],
+                      .material = (uint32_t *)(void *)r[MATERIAL],
+                      .instance = (uint32_t *)(void *)r[INSTANCE],
+                      .distance = depths ? r[DISTANCE] : NULL};
+  p->truth_kernels->hits(p->world, &p->truth, w->scratch, &hits);
+  for (uint32_t i = 0; i < n; i++) {
+    if (index[i] == 0) begin_pixel(w, c);
+    /* As the film adds them; what the negative lobes of a filter take away is nobody's. */
+    int64_t weight = r[WEIGHT][i] > 0.0f ? (int64_t)((double)r[WEIGHT][i] * 0x1p24 + 0.5) : 0;
+    c->total += weight;
+    if (c->matte)
+      add_matte(p, w, i, weight);
+    else
+      add_choice(p, w, c, i, weight);
+    if (index[i] == p->spp - 1) end_pixel(p, w, c, (uint32_t)px[i], (uint32_t)py[i]);
+  }
+}
+
+static void count(const vlChannelPass *p, vlChannelWorker *w, const vlFilmRays *rays, bool matte, uint32_t tile) {
+  int32_t *px = (int32_t *)(void *)vl_channel_row(w, PIXEL_X), *py = (int32_t *)(void *)vl_channel_row(w, PIXEL_Y);
+  uint32_t *index = (uint32_t *)(void *)vl_channel_row(w, INDEX), n = 0, x, y;
+  Count c = {.rays = rays, .matte = matte};
+  for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
+    if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
+    for (uint32_t s = 0; s < p->spp; s++) {
+      px[n] = (int32_t)x, py[n] = (int32_t)y, index[n] = s;
+      if (++n < VL_BATCH) continue;
+      flush(p, w, &c, n);
+      n = 0;
+    }
+  }
+  flush(p, w, &c, n);
+}
+
+void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
+  if (p->def->mode != VL_CHANNEL_MODE_CENTRE) count(p, w, &p->choice, false, tile);
+  if (vl_channel_wanted(p, VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE))
+    count(p, w, &p->picture, true, tile);
+}

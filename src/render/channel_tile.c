@@ -1,0 +1,138 @@
+/* render/channel_tile.c: a tile of ground truth: one exact ray a pixel, what it meets, into the pictures.
+ *
+ * All numbers of a pixel come from one double-precision ray: P = o + t d, z is P's depth, and so project(P) is the
+ * pixel's point of the film. They are rounded to float once, each for itself. */
+#include <math.h>
+#include <string.h>
+
+#include "render/channel_pass.h"
+
+void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, const vlChannelEnds *ends, float *t_min,
+                     float *t_max) {
+  enum { HALF, X, Y, FILM_X, FILM_Y, OX, OY, OZ, DX, DY, DZ, T_MIN, T_MAX, TIME, ROWS };
+  _Static_assert((int)ROWS <= (int)VL_CHANNEL_ROWS, "rows are shared");
+  float *rows[ROWS];
+  for (uint32_t i = 0; i < ROWS; i++) rows[i] = vl_channel_row(w, i);
+  int32_t *px = (int32_t *)(void *)rows[X], *py = (int32_t *)(void *)rows[Y];
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
+    uint32_t k = i < n ? i : n - 1;
+    rows[HALF][i] = 0.5f;
+    rows[FILM_X][i] = ends->film_x[k], rows[FILM_Y][i] = ends->film_y[k];
+    px[i] = (int32_t)ends->x[k], py[i] = (int32_t)ends->y[k];
+  }
+  vlCameraSamples samples = {.film_x = rows[FILM_X],
+                             .film_y = rows[FILM_Y],
+                             .pixel_x = px,
+                             .pixel_y = py,
+                             .lens_u = rows[HALF],
+                             .lens_v = rows[HALF],
+                             .time = rows[HALF]};
+  vlCameraRays rays = {.ox = rows[OX],
+                       .oy = rows[OY],
+                       .oz = rows[OZ],
+                       .dx = rows[DX],
+                       .dy = rows[DY],
+                       .dz = rows[DZ],
+                       .t_min = rows[T_MIN],
+                       .t_max = rows[T_MAX],
+                       .time = rows[TIME]};
+  p->camera_kernels->rays(ends->camera, n, &samples, &rays);
+  memcpy(t_min, rays.t_min, n * sizeof(float));
+  memcpy(t_max, rays.t_max, n * sizeof(float));
+}
+
+/* Pixels of the tile inside the crop window that the camera has a ray for. */
+static uint32_t list_pixels(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
+  uint32_t n = 0, x, y;
+  vlTruthBatch *b = w->batch;
+  for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
+    if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
+    double o[3], d[3];
+    if (!vl_camera_unproject(&p->camera, (double)x + (double)w->film_x[k], (double)y + (double)w->film_y[k], o, d))
+      continue;
+    for (int i = 0; i < 3; i++) b->o[i][n] = o[i], b->d[i][n] = d[i];
+    w->x[n] = x, w->y[n] = y;
+    w->lane_x[n] = w->film_x[k], w->lane_y[n] = w->film_y[k];
+    n++;
+  }
+  return b->n = n;
+}
+
+static void put3(float *to, const float rows[3][VL_ROW_SIZE], uint32_t i) {
+  to[0] = rows[0][i], to[1] = rows[1][i], to[2] = rows[2][i];
+}
+
+static void put_floats(const vlChannelPass *p, const vlTruthBatch *b, uint32_t i, size_t at) {
+  bool hit = b->object[i] != 0;
+  double t = b->distance[i], point[3] = {0, 0, 0};
+  for (int k = 0; k < 3 && hit; k++) point[k] = b->o[k][i] + t * b->d[k][i];
+  const double *m = p->camera.camera_from_world;
+  double z = hit ? m[8] * point[0] + m[9] * point[1] + m[10] * point[2] + m[11] : (double)INFINITY;
+  if (vl_channel_wanted(p, VL_CHANNEL_Z)) *vl_channel_floats(p, at, VL_INDEX_Z) = (float)z;
+  if (vl_channel_wanted(p, VL_CHANNEL_DISTANCE)) *vl_channel_floats(p, at, VL_INDEX_DISTANCE) = (float)t;
+  for (int k = 0; k < 3; k++) {
+    if (vl_channel_wanted(p, VL_CHANNEL_P)) vl_channel_floats(p, at, VL_INDEX_P)[k] = (float)point[k];
+    if (vl_channel_wanted(p, VL_CHANNEL_RAY)) vl_channel_floats(p, at, VL_INDEX_RAY)[k] = (float)b->d[k][i];
+  }
+  if (vl_channel_wanted(p, VL_CHANNEL_N)) put3(vl_channel_floats(p, at, VL_INDEX_N), b->n_shading, i);
+  if (vl_channel_wanted(p, VL_CHANNEL_NG)) put3(vl_channel_floats(p, at, VL_INDEX_NG), b->n_geometric, i);
+  if (vl_channel_wanted(p, VL_CHANNEL_ALBEDO)) put3(vl_channel_floats(p, at, VL_INDEX_ALBEDO), b->albedo, i);
+  if (!vl_channel_wanted(p, VL_CHANNEL_UV)) return;
+  float *uv = vl_channel_floats(p, at, VL_INDEX_UV);
+  uv[0] = b->uv[0][i], uv[1] = b->uv[1][i];
+}
+
+static void put_ids(const vlChannelPass *p, const vlTruthBatch *b, uint32_t i, size_t at) {
+  const uint32_t values[4] = {b->object[i], b->material[i], b->instance[i], b->primitive[i]};
+  for (uint32_t k = 0; k < 4; k++)
+    if (vl_channel_wanted(p, VL_CHANNEL_ID_OBJECT << k)) *vl_channel_ids(p, at, VL_INDEX_IDS + k) = values[k];
+}
+
+/* Pixels without a ray hold nothing too. */
+static void clear_tile(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
+  uint32_t x, y;
+  for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
+    w->film_x[k] = w->film_y[k] = 0.5f;
+    if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
+    size_t at = vl_channel_at(p, x, y);
+    if (vl_channel_wanted(p, VL_CHANNEL_Z)) *vl_channel_floats(p, at, VL_INDEX_Z) = INFINITY;
+    if (vl_channel_wanted(p, VL_CHANNEL_DISTANCE)) *vl_channel_floats(p, at, VL_INDEX_DISTANCE) = INFINITY;
+    if (vl_channel_wanted(p, VL_CHANNEL_SAMPLES)) *vl_channel_ids(p, at, VL_INDEX_SAMPLES) = p->def->samples;
+    for (uint32_t i = 0; i < 2; i++)
+      if (vl_channel_wanted(p, VL_CHANNEL_FORWARD << i))
+        *vl_channel_ids(p, at, VL_INDEX_FORWARD + i) = VL_HIDDEN_NOWHERE;
+  }
+}
+
+static void put_film(const vlChannelPass *p, const vlChannelWorker *w, uint32_t tile) {
+  uint32_t x, y;
+  for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
+    if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
+    float *to = vl_channel_floats(p, vl_channel_at(p, x, y), VL_INDEX_FILM);
+    to[0] = w->film_x[k], to[1] = w->film_y[k];
+  }
+}
+
+void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
+  const vlChannelPass *p = pass;
+  vlChannelWorker *w = &p->workers[worker];
+  clear_tile(p, w, tile);
+  unsigned state = vl_accel_enter();
+  if (w->tallies) vl_channel_count(p, w, tile);
+  uint32_t n = list_pixels(p, w, tile);
+  vlTruthBatch *b = w->batch;
+  if (n) {
+    vlChannelEnds ends = {&p->compiled, w->x, w->y, w->lane_x, w->lane_y};
+    vl_channel_ends(p, w, n, &ends, b->t_min, b->t_max);
+    p->truth_kernels->trace(p->world, &p->truth, w->scratch, b);
+  }
+  for (int i = 0; i < 2 && n; i++)
+    if (vl_channel_wanted(p, VL_CHANNEL_FORWARD << i)) vl_channel_flow(p, w, i);
+  vl_accel_leave(state);
+  if (vl_channel_wanted(p, VL_CHANNEL_FILM)) put_film(p, w, tile);
+  for (uint32_t i = 0; i < n; i++) {
+    size_t at = vl_channel_at(p, w->x[i], w->y[i]);
+    put_floats(p, b, i, at);
+    put_ids(p, b, i, at);
+  }
+}

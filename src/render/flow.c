@@ -1,0 +1,133 @@
+/* render/flow.c: optical flow: where another camera sees the point of the surface that a pixel shows, how far that is
+ * on the film, and whether it really sees it: a ray from there decides.
+ *
+ *   P -> project -> (u, v) - the pixel's point;   other camera -> ray towards P -> what it meets first: P itself?
+ *
+ * A pixel of the sky has flow too: its direction is seen by the other camera, if nothing stands before it. */
+#include <math.h>
+#include <string.h>
+
+#include "render/channel_pass.h"
+
+/* How much nearer than the point a crossing must be to hide it: rays are rounded to float, which moves them by some
+ * 2^-23 of the numbers involved, and their crossing by 1 / cosine as much. */
+static const double TOLERANCE = 0x1p-19, LEAST_COSINE = 0.01;
+
+typedef struct Target {
+  bool sky;
+  double point[3];     /* of the surface */
+  double direction[3]; /* of the sky */
+  double normal[3];
+  double pixel[2]; /* in the other picture */
+} Target;
+
+static double length3(const double v[3]) {
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static Target target_of(const vlTruthBatch *b, uint32_t i) {
+  Target t = {.sky = b->object[i] == 0};
+  for (int k = 0; k < 3; k++) {
+    t.direction[k] = b->d[k][i];
+    t.normal[k] = b->n_geometric[k][i];
+    if (!t.sky) t.point[k] = b->o[k][i] + b->distance[i] * b->d[k][i];
+  }
+  return t;
+}
+
+/* Where the other camera sees it. The sky is far, not infinitely so: far enough that the eyes of a camera that has many
+ * are one. An orthographic camera sees one direction alone, in all of its pixels. */
+static bool find_pixel(const vlCamera *camera, Target *t) {
+  double point[3], z;
+  if (t->sky && camera->projection == VL_PROJECTION_ORTHOGRAPHIC) return false;
+  const double *m = camera->world_from_camera, eye[3] = {m[3], m[7], m[11]};
+  for (int k = 0; k < 3; k++) point[k] = t->sky ? eye[k] + 1e6 * (1 + length3(eye)) * t->direction[k] : t->point[k];
+  return vl_camera_project(camera, point, t->pixel, &z);
+}
+
+/* The ray by which the other camera would see it, and its end; false where it has none. */
+static bool aim(const vlCamera *camera, const Target *t, vlTruthBatch *to, double *end) {
+  double o[3], d[3];
+  if (!vl_camera_unproject(camera, t->pixel[0], t->pixel[1], o, d)) return false;
+  for (int k = 0; k < 3; k++) d[k] = t->sky ? t->direction[k] : t->point[k] - o[k];
+  double length = length3(d);
+  if (!(length > 0)) return false;
+  for (int k = 0; k < 3; k++) to->o[k][to->n] = o[k], to->d[k][to->n] = d[k] / length;
+  *end = t->sky ? (double)INFINITY : length;
+  return true;
+}
+
+/* What the ray met hides the point, unless it is the point. */
+static bool hides(const vlChannelPass *p, const vlTruthBatch *b, uint32_t lane, const Target *t,
+                  const vlTruthBatch *other, uint32_t i, double end) {
+  if (other->object[i] == 0) return false;
+  if (t->sky) return true;
+  bool same = other->object[i] == b->object[lane] && other->instance[i] == b->instance[lane] &&
+              other->primitive[i] == b->primitive[lane];
+  if (same && p->world->shapes.items[b->object[lane] - 1].kind == VL_SHAPE_TRIANGLES) return false;
+  double o[3], cosine = 0;
+  for (int k = 0; k < 3; k++) o[k] = other->o[k][i], cosine += t->normal[k] * other->d[k][i];
+  double size = end + length3(o) + length3(t->point);
+  return other->distance[i] < end - TOLERANCE * size / fmax(fabs(cosine), LEAST_COSINE);
+}
+
+static vlHidden judge(const vlChannelPass *p, const vlTruthBatch *b, uint32_t lane, const Target *t,
+                      const vlTruthBatch *other, uint32_t i, double end, const vlCamera *camera) {
+  bool inside = t->pixel[0] >= 0 && t->pixel[1] >= 0 && t->pixel[0] < camera->width && t->pixel[1] < camera->height;
+  bool cut = !t->sky && !(end >= (double)other->t_min[i] && end <= (double)other->t_max[i]);
+  if (!inside || cut) return VL_HIDDEN_OUTSIDE;
+  return hides(p, b, lane, t, other, i, end) ? VL_HIDDEN_BEHIND : VL_HIDDEN_NOT;
+}
+
+/* Lanes [first, last) of the batch that the other camera has a pixel for, as rays of that camera; first half of the
+ * work, so that rays are traced together. */
+static void list_targets(const vlChannelPass *p, vlChannelWorker *w, int which, Target *targets, double *ends,
+                         uint32_t first, uint32_t last) {
+  const vlCamera *camera = &p->other[which];
+  vlTruthBatch *other = w->other;
+  other->n = 0;
+  for (uint32_t i = first; i < last; i++) {
+    Target t = target_of(w->batch, i);
+    if (!find_pixel(camera, &t)) continue;
+    float *flow = vl_channel_floats(p, vl_channel_at(p, w->x[i], w->y[i]), VL_INDEX_FORWARD + (uint32_t)which);
+    flow[0] = (float)(t.pixel[0] - ((double)w->x[i] + (double)w->lane_x[i]));
+    flow[1] = (float)(t.pixel[1] - ((double)w->y[i] + (double)w->lane_y[i]));
+    *vl_channel_ids(p, vl_channel_at(p, w->x[i], w->y[i]), VL_INDEX_FORWARD + (uint32_t)which) = VL_HIDDEN_OUTSIDE;
+    bool far_outside = !(fabs(t.pixel[0]) < 0x1p20 && fabs(t.pixel[1]) < 0x1p20);
+    if (far_outside || !aim(camera, &t, other, &ends[other->n])) continue;
+    w->lanes[other->n] = i;
+    targets[other->n++] = t;
+  }
+}
+
+enum { CHUNK = 128 };
+
+static void flow_chunk(const vlChannelPass *p, vlChannelWorker *w, int which, uint32_t first, uint32_t last) {
+  Target targets[CHUNK];
+  double ends[CHUNK];
+  uint32_t x[CHUNK], y[CHUNK];
+  float film_x[CHUNK], film_y[CHUNK];
+  vlTruthBatch *other = w->other;
+  list_targets(p, w, which, targets, ends, first, last);
+  if (other->n == 0) return;
+  for (uint32_t i = 0; i < other->n; i++) {
+    double left = floor(targets[i].pixel[0]), top = floor(targets[i].pixel[1]);
+    x[i] = (uint32_t)(int32_t)left, y[i] = (uint32_t)(int32_t)top;
+    film_x[i] = (float)(targets[i].pixel[0] - left), film_y[i] = (float)(targets[i].pixel[1] - top);
+  }
+  vlChannelEnds cut = {&p->other_compiled[which], x, y, film_x, film_y};
+  vl_channel_ends(p, w, other->n, &cut, other->t_min, other->t_max);
+  vlTruthDef def = p->truth; /* neither bumps nor colours matter */
+  def.shading = def.albedo = false;
+  p->truth_kernels->trace(p->world, &def, w->scratch, other);
+  for (uint32_t i = 0; i < other->n; i++) {
+    uint32_t lane = w->lanes[i];
+    *vl_channel_ids(p, vl_channel_at(p, w->x[lane], w->y[lane]), VL_INDEX_FORWARD + (uint32_t)which) =
+        judge(p, w->batch, lane, &targets[i], other, i, ends[i], &p->other[which]);
+  }
+}
+
+void vl_channel_flow(const vlChannelPass *p, vlChannelWorker *w, int which) {
+  for (uint32_t first = 0; first < w->batch->n; first += CHUNK)
+    flow_chunk(p, w, which, first, first + CHUNK < w->batch->n ? first + CHUNK : w->batch->n);
+}

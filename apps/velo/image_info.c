@@ -82,7 +82,8 @@ static int number_count(vlAttributeType type) {
     case VL_ATTRIBUTE_M33F: return 9;
     case VL_ATTRIBUTE_M44F:
     case VL_ATTRIBUTE_M44D: return 16;
-    case VL_ATTRIBUTE_STRING: return 0;
+    case VL_ATTRIBUTE_STRING:
+    case VL_ATTRIBUTE_STRINGS: return 0;
   }
   return 0;
 }
@@ -134,7 +135,7 @@ static void print_text(const char *path, const vlImage *image) {
     printf("  ");
     print_plain(a.name);
     printf("%*s", (int)(strlen(a.name) < 26 ? 26 - strlen(a.name) : 1), "");
-    if (a.type == VL_ATTRIBUTE_STRING) print_plain(a.string ? a.string : "");
+    if (a.type == VL_ATTRIBUTE_STRING || a.type == VL_ATTRIBUTE_STRINGS) print_plain(a.string ? a.string : "");
     for (int k = 0; k < number_count(a.type); k++) {
       char text[40];
       format_number(text, sizeof text, shown(&a, k));

@@ -42,6 +42,8 @@ VL_API int vl_image_find_channel(const vlImage *image, const char *name);
 /* width*height*channels values of the picture's type; lives as long as the image. */
 VL_API void *vl_image_pixels(vlImage *image);
 VL_API const void *vl_image_const_pixels(const vlImage *image);
+/* Another name for a channel. ARGUMENT: no such channel, no name, the name of another one. */
+VL_API vlResult vl_image_rename_channel(vlImage *image, uint32_t channel, const char *name);
 /* One value as linear float, whatever the type and encoding; x, y inside the picture. */
 VL_API float vl_image_get(const vlImage *image, uint32_t x, uint32_t y, uint32_t channel);
 
@@ -58,7 +60,8 @@ typedef enum vlAttributeType {
   VL_ATTRIBUTE_BOX2I,
   VL_ATTRIBUTE_CHROMATICITIES,
   VL_ATTRIBUTE_DOUBLE,
-  VL_ATTRIBUTE_M44D
+  VL_ATTRIBUTE_M44D,
+  VL_ATTRIBUTE_STRINGS /* several, each ended by a line end but the last: "left\nright" */
 } vlAttributeType;
 typedef struct vlAttribute {
   const char *name;
@@ -92,6 +95,7 @@ typedef struct vlWriteDef {
   bool half;       /* EXR: 16-bit floats for colour channels (ids and depths stay 32-bit); default false */
   int compression; /* EXR: 0 none, 1 ZIP (default); PNG: always deflate */
   int quality;     /* JPEG 1..100, default 95 */
+  bool alone;      /* on the calling thread only: for writing while the context's workers render; default false */
 } vlWriteDef;
 VL_API vlWriteDef vl_default_write_def(void);
 /* The suffix chooses the format: .exr .png .jpg .jpeg .hdr .pfm .tga. Written to a temporary file beside the target,

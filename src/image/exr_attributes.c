@@ -36,8 +36,19 @@ static void copy_box(vlAttribute *to, const exr_attr_box2i_t *box) {
   to->numbers[3] = box->max.y;
 }
 
-/* false: a type that vlAttribute does not hold. */
-static bool convert(const exr_attribute_t *from, vlAttribute *to) {
+/* Joined by line ends; a vector that does not fit is cut. */
+static void join_strings(const exr_attr_string_vector_t *from, char *text, size_t size) {
+  size_t length = 0;
+  text[0] = 0;
+  for (int32_t i = 0; i < from->n_strings && length + 1 < size; i++) {
+    const char *string = from->strings[i].str ? from->strings[i].str : "";
+    int n = snprintf(text + length, size - length, "%s%.*s", i ? "\n" : "", (int)from->strings[i].length, string);
+    length += n > 0 ? (size_t)n : 0;
+  }
+}
+
+/* false: a type that vlAttribute does not hold. `text` is for strings that must be put together. */
+static bool convert(const exr_attribute_t *from, vlAttribute *to, char *text, size_t size) {
   memset(to, 0, sizeof *to);
   to->name = from->name;
   switch (from->type) {
@@ -56,6 +67,11 @@ static bool convert(const exr_attribute_t *from, vlAttribute *to) {
     case EXR_ATTR_STRING:
       to->type = VL_ATTRIBUTE_STRING;
       to->string = from->string->str ? from->string->str : "";
+      return true;
+    case EXR_ATTR_STRING_VECTOR:
+      to->type = VL_ATTRIBUTE_STRINGS;
+      join_strings(from->stringvector, text, size);
+      to->string = text;
       return true;
     case EXR_ATTR_V2F: copy_floats(to, VL_ATTRIBUTE_V2F, from->v2f->arr, 2); return true;
     case EXR_ATTR_V3F: copy_floats(to, VL_ATTRIBUTE_V3F, from->v3f->arr, 3); return true;
@@ -95,8 +111,9 @@ vlResult vl_exr_attributes_in(exr_const_context_t exr, vlImage *image) {
   for (int32_t i = 0; i < count; i++) {
     const exr_attribute_t *from;
     vlAttribute to;
+    char text[2048];
     if (exr_get_attribute_by_index(exr, 0, EXR_ATTR_LIST_FILE_ORDER, i, &from) != EXR_ERR_SUCCESS) continue;
-    if (!from->name || !from->name[0] || is_layout(from->name) || !convert(from, &to)) continue;
+    if (!from->name || !from->name[0] || is_layout(from->name) || !convert(from, &to, text, sizeof text)) continue;
     if (strcmp(to.name, "dataWindow") == 0 || strcmp(to.name, "displayWindow") == 0) {
       windows[to.name[1] == 'a' ? 0 : 1] = to;
       plain += is_default(&to, image);
@@ -121,6 +138,23 @@ static exr_attr_box2i_t box_of(const double n[16]) {
   return box;
 }
 
+static exr_result_t set_strings(exr_context_t exr, const char *name, const char *text) {
+  enum { MOST = 64 };
+  const char *strings[MOST];
+  char copy[2048];
+  int count = 0;
+  if (strlen(text) >= sizeof copy) return EXR_ERR_INVALID_ATTR;
+  strcpy(copy, text);
+  for (char *at = copy; at;) {
+    char *end = strchr(at, '\n');
+    if (end) *end = 0;
+    if (count == MOST) return EXR_ERR_INVALID_ATTR;
+    strings[count++] = at;
+    at = end ? end + 1 : NULL;
+  }
+  return exr_attr_set_string_vector(exr, 0, name, count, strings);
+}
+
 static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) {
   const double *n = a->numbers;
   float f[16];
@@ -133,6 +167,7 @@ static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) 
     case VL_ATTRIBUTE_DOUBLE: return exr_attr_set_double(exr, 0, a->name, n[0]);
     case VL_ATTRIBUTE_INT: return exr_attr_set_int(exr, 0, a->name, (int32_t)n[0]);
     case VL_ATTRIBUTE_STRING: return exr_attr_set_string(exr, 0, a->name, a->string);
+    case VL_ATTRIBUTE_STRINGS: return set_strings(exr, a->name, a->string);
     case VL_ATTRIBUTE_V2F: {
       exr_attr_v2f_t v;
       memcpy(v.arr, f, sizeof v.arr);

@@ -36,6 +36,7 @@ typedef struct Writer {
   uint32_t first_chunk;
   uint32_t slot_count;
   Slot *slots;
+  bool alone; /* without the context's workers */
 } Writer;
 
 static int64_t on_write(exr_const_context_t exr, void *user, const void *buffer, uint64_t size, uint64_t offset,
@@ -171,7 +172,10 @@ static vlResult write_chunks(Writer *w, vlError *error) {
   uint32_t lines = (uint32_t)w->lines_per_chunk, chunks = (w->image->height + lines - 1) / lines;
   for (w->first_chunk = 0; w->first_chunk < chunks; w->first_chunk += w->slot_count) {
     uint32_t count = chunks - w->first_chunk < w->slot_count ? chunks - w->first_chunk : w->slot_count;
-    vl_parallel_for(w->image->context, count, pack_body, w);
+    if (w->alone)
+      for (uint32_t i = 0; i < count; i++) pack_body(w, i, 0);
+    else
+      vl_parallel_for(w->image->context, count, pack_body, w);
     for (uint32_t i = 0; i < count; i++) {
       const exr_encode_pipeline_t *p = &w->slots[i].pipeline;
       exr_result_t code = w->slots[i].code;
@@ -195,7 +199,7 @@ static vlResult write_all(Writer *w, const vlWriteDef *def, vlError *error) {
   if (code != EXR_ERR_SUCCESS) return fail(w, code, error);
   w->first_y = window.min.y;
   uint32_t chunks = (image->height - 1) / (uint32_t)w->lines_per_chunk + 1,
-           wish = 2 * vl_context_threads(image->context);
+           wish = def->alone ? 1 : 2 * vl_context_threads(image->context);
   w->slot_count = wish < chunks ? wish : chunks;
   if (w->slot_count > MAX_SLOTS) w->slot_count = MAX_SLOTS;
   w->slots = vl_alloc_zero(image->context, w->slot_count, sizeof *w->slots);
@@ -230,6 +234,7 @@ vlResult vl_exr_write_layers(const vlImage *const *images, uint32_t count, const
   w.base.writer = writer;
   atomic_flag_clear(&w.base.told);
   w.image = image;
+  w.alone = def->alone;
   for (uint32_t k = 0; k < count; k++) w.count += images[k]->channels;
   w.channels = vl_alloc_array(image->context, w.count, sizeof *w.channels);
   if (!w.channels) return vl_fail_memory(error);

@@ -204,6 +204,22 @@ static float value_at(const vlImage *image, size_t index, vlEncoding encoding) {
   return ((const float *)image->pixels)[index];
 }
 
+vlResult vl_image_rename_channel(vlImage *image, uint32_t channel, const char *name) {
+  if (!image || channel >= image->channels || !name_ok(name)) return VL_ERROR_ARGUMENT;
+  int found = vl_image_find_channel(image, name);
+  if (found >= 0) return (uint32_t)found == channel ? VL_OK : VL_ERROR_ARGUMENT;
+  char **names, *before = image->names[channel];
+  image->names[channel] = (char *)name; /* copied with the others */
+  vlResult result = copy_names(image->context, (const char *const *)image->names, image->channels, &names);
+  if (result == VL_OK) {
+    vl_free(image->context, image->names);
+    image->names = names;
+  } else {
+    image->names[channel] = before;
+  }
+  return result;
+}
+
 float vl_image_get(const vlImage *image, uint32_t x, uint32_t y, uint32_t channel) {
   if (x >= image->width || y >= image->height || channel >= image->channels) return 0.0f;
   return value_at(image, ((size_t)y * image->width + x) * image->channels + channel, channel_encoding(image, channel));
@@ -251,11 +267,11 @@ static vlImageAttribute *find_attribute(const vlImage *image, const char *name) 
 
 vlResult vl_image_set_attribute(vlImage *image, const vlAttribute *attribute) {
   if (!image || !attribute || !name_ok(attribute->name)) return VL_ERROR_ARGUMENT;
-  if ((unsigned)attribute->type > VL_ATTRIBUTE_M44D) return VL_ERROR_ARGUMENT;
-  if (attribute->type == VL_ATTRIBUTE_STRING && !attribute->string) return VL_ERROR_ARGUMENT;
+  if ((unsigned)attribute->type > VL_ATTRIBUTE_STRINGS) return VL_ERROR_ARGUMENT;
+  bool text = attribute->type == VL_ATTRIBUTE_STRING || attribute->type == VL_ATTRIBUTE_STRINGS;
+  if (text && !attribute->string) return VL_ERROR_ARGUMENT;
   char *string = NULL;
-  if (attribute->type == VL_ATTRIBUTE_STRING && !(string = vl_strdup(image->context, attribute->string)))
-    return VL_ERROR_MEMORY;
+  if (text && !(string = vl_strdup(image->context, attribute->string))) return VL_ERROR_MEMORY;
   vlImageAttribute *kept = find_attribute(image, attribute->name);
   if (!kept) {
     char *name = vl_strdup(image->context, attribute->name);

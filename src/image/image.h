@@ -11,7 +11,7 @@ typedef struct vlImageAttribute {
   char *name;
   vlAttributeType type;
   double numbers[16];
-  char *string; /* VL_ATTRIBUTE_STRING only */
+  char *string; /* VL_ATTRIBUTE_STRING, _STRINGS only */
 } vlImageAttribute;
 
 struct vlImage {

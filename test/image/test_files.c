@@ -82,6 +82,8 @@ static const vlAttribute ATTRIBUTES[] = {
     {.name = "samples", .type = VL_ATTRIBUTE_INT, .numbers = {-64}},
     {.name = "comments", .type = VL_ATTRIBUTE_STRING, .string = "grüße, \"velo\"\nline"},
     {.name = "empty", .type = VL_ATTRIBUTE_STRING, .string = ""},
+    {.name = "multiView", .type = VL_ATTRIBUTE_STRINGS, .string = "left\nright"},
+    {.name = "one", .type = VL_ATTRIBUTE_STRINGS, .string = "alone"},
     {.name = "v2", .type = VL_ATTRIBUTE_V2F, .numbers = {1, -2}},
     {.name = "v3", .type = VL_ATTRIBUTE_V3F, .numbers = {1, -2, 0.5}},
     {.name = "m33", .type = VL_ATTRIBUTE_M33F, .numbers = {1, 2, 3, 4, 5, 6, 7, 8, 9}},
@@ -115,7 +117,7 @@ static void test_attributes(void **state) {
     vlAttribute a;
     assert_int_equal(vl_image_find_attribute(back, ATTRIBUTES[i].name, &a), VL_OK);
     assert_int_equal(a.type, ATTRIBUTES[i].type);
-    if (a.type == VL_ATTRIBUTE_STRING)
+    if (a.type == VL_ATTRIBUTE_STRING || a.type == VL_ATTRIBUTE_STRINGS)
       assert_string_equal(a.string, ATTRIBUTES[i].string);
     else
       assert_memory_equal(a.numbers, ATTRIBUTES[i].numbers, sizeof a.numbers);

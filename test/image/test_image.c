@@ -213,11 +213,38 @@ static void test_out_of_memory(void **state) {
   end_context(context);
 }
 
+static void test_rename(void **state) {
+  (void)state;
+  failAllocator failing = {.fail_at = 0};
+  vlContextDef def = vl_default_context_def();
+  vlContext *context;
+  vlImage *image;
+  def.threads = 1;
+  def.allocator = fail_allocator(&failing);
+  assert_int_equal(vl_context_create(&def, &context), VL_OK);
+  vlImageDef image_def = vl_default_image_def(2, 2, 3);
+  assert_int_equal(vl_image_create(context, &image_def, &image), VL_OK);
+  assert_int_equal(vl_image_rename_channel(image, 1, "right.G"), VL_OK);
+  assert_string_equal(vl_image_channel_name(image, 0), "R");
+  assert_string_equal(vl_image_channel_name(image, 1), "right.G");
+  assert_int_equal(vl_image_find_channel(image, "B"), 2);
+  assert_int_equal(vl_image_rename_channel(image, 1, "right.G"), VL_OK);
+  assert_int_equal(vl_image_rename_channel(image, 1, "B"), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_image_rename_channel(image, 1, ""), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_image_rename_channel(image, 3, "X"), VL_ERROR_ARGUMENT);
+  fail_after(&failing, 0);
+  assert_int_equal(vl_image_rename_channel(image, 0, "X"), VL_ERROR_MEMORY);
+  assert_string_equal(vl_image_channel_name(image, 0), "R");
+  vl_image_destroy(image);
+  vl_context_destroy(context);
+  assert_int_equal(failing.blocks, 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_create),        cmocka_unit_test(test_get),  cmocka_unit_test(test_color),
-      cmocka_unit_test(test_attributes),    cmocka_unit_test(test_half), cmocka_unit_test(test_curves),
-      cmocka_unit_test(test_out_of_memory),
+      cmocka_unit_test(test_rename), cmocka_unit_test(test_create),        cmocka_unit_test(test_get),
+      cmocka_unit_test(test_color),  cmocka_unit_test(test_attributes),    cmocka_unit_test(test_half),
+      cmocka_unit_test(test_curves), cmocka_unit_test(test_out_of_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

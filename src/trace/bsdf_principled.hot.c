@@ -77,63 +77,96 @@ static inline Facet coat_facet(vlVec3 o, vlVec3 w, vlVec3 n, float alpha) {
   return (Facet){valid ? g : 0.0f, valid ? p : 0.0f, f, 0.0f};
 }
 
+/* Whether a chunk has a coat is a constant in each of two loops. */
+static inline __attribute__((always_inline)) void combine_loop(const vlPrincipledSlice *s, const vlPrincipledLanes *l,
+                                                               vlBsdfDirections wo, vlBsdfDirections wi,
+                                                               float *const value[4], float *pdf, uint32_t first,
+                                                               bool has_coat) {
+  const float *ox = wo.x + first, *oy = wo.y + first, *ix = wi.x + first, *iy = wi.y + first, *iz = wi.z + first;
+  const float *ax = s->alpha_x, *ay = s->alpha_y, *index = s->eta;
+  const float *metallic = s->row[VL_P_METALLIC], *f90s = s->row[VL_P_F90], *clears = s->row[VL_P_TRANSMISSION];
+  const float *thins = s->row[VL_P_THIN], *shares_row = s->row[VL_P_DIFFUSE_TRANSMISSION], *films = s->row[VL_P_FILM];
+  const float *coats = s->row[VL_P_COAT], *coat_alpha = s->row[VL_P_COAT_ALPHA];
+  const float *cx = s->row[VL_P_COAT_X], *cy = s->row[VL_P_COAT_Y], *cz = s->row[VL_P_COAT_Z];
+  float *density = pdf + first;
+  uint32_t count = VL_WHOLE(s->count);
+  float hide_mirrors[VL_PRINCIPLED_CHUNK], hide_matts[VL_PRINCIPLED_CHUNK], hide_throughs[VL_PRINCIPLED_CHUNK];
+  float facets[VL_PRINCIPLED_CHUNK], weights[VL_PRINCIPLED_CHUNK], totals[VL_PRINCIPLED_CHUNK];
+  float upper_on[VL_PRINCIPLED_CHUNK], lower_on[VL_PRINCIPLED_CHUNK], coat_values[VL_PRINCIPLED_CHUNK];
+  float cosines[VL_PRINCIPLED_CHUNK], agains[VL_PRINCIPLED_CHUNK];
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    float side = l->side[i], inside = l->inside[i], thin = thins[i];
+    vlVec3 o = vl_vec3(ox[i], oy[i], l->z[i]), w = vl_vec3(ix[i], iy[i], iz[i] * side);
+    int reflect = w.z > 0.0f, valid = (o.z > 0.0f) & (vl_abs(w.z) > 0.0f);
+    Facet facet = base_facet(o, w, ax[i], ay[i], index[i], inside, thin);
+    float bare = 1.0f - inside, coat_value = 0.0f, coat_pdf = 0.0f; /* layers lie outside */
+    if (has_coat) {
+      float on = coats[i] * bare;
+      Facet coat = coat_facet(o, w, vl_vec3(cx[i] * side, cy[i] * side, cz[i]), coat_alpha[i]);
+      coat_value = on > 0.0f ? coat.value * on : 0.0f; /* rows of other materials may be stale */
+      coat_pdf = on > 0.0f ? coat.pdf : 0.0f;
+    }
+    float co = l->coat_o[i], ci = l->coat_i[i], so = l->sheen_o[i], si = l->sheen_i[i];
+    float mirror = over_mirror(co, ci) * over_mirror(so, si);
+    float matt = over_matt(co, ci, l->coat_mean[i]) * over_matt(so, si, l->sheen_mean[i]);
+    hide_mirrors[i] = inside > 0.0f ? 1.0f : mirror;
+    hide_matts[i] = inside > 0.0f ? 1.0f : matt;
+    /* Light that passes meets the layers once, on the upper side. */
+    hide_throughs[i] = side < 0.0f ? (1.0f - ci) * (1.0f - si) : (1.0f - co) * (1.0f - so);
+    facets[i] = facet.value, weights[i] = facet.fresnel, totals[i] = facet.total;
+    coat_values[i] = coat_value;
+    float cosine = vl_abs(w.z) * VL_INV_PI;
+    cosines[i] = cosine;
+    /* between microfacets: Kulla and Conty */
+    agains[i] = (1.0f - l->one_o[i]) * (1.0f - l->one_i[i]) / (1.0f - l->one_mean[i]) * cosine;
+    float above = l->specular[i] * facet.pdf + l->diffuse[i] * cosine + l->coat[i] * coat_pdf;
+    float below = l->refract[i] * facet.pdf + l->through[i] * cosine;
+    float on = valid ? 1.0f : 0.0f, up = reflect ? on : 0.0f; /* products, since gcc makes branches of selects */
+    upper_on[i] = up;
+    lower_on[i] = on - up;
+    density[i] = above * up + below * (on - up);
+  }
+  for (int c = 0; c < 4; c++) {
+    const float *bases = s->base[c], *f0s = s->row[VL_P_F0 + c], *throughs = s->row[VL_P_THROUGH + c];
+    const float *sheens = s->row[VL_P_SHEEN + c];
+    float *result = value[c] + first;
+    /* must vectorise */
+    VL_SIMD for (uint32_t i = 0; i < count; i++) {
+      float metal = metallic[i], dielectric = 1.0f - metal, clear = clears[i], shares = shares_row[i];
+      float f90 = f90s[i], film = films[i], base = bases[i], f0 = f0s[i], again = agains[i], facet = facets[i];
+      float m0 = f0 + metal * (base - f0), m90 = f90 + metal * (1.0f - f90);
+      float f = m0 + (m90 - m0) * weights[i];
+      f = f + film * (l->film[c][i] - f);
+      f = totals[i] > 0.0f ? 1.0f : f;
+      float fd = f0 + (f90 - f0) * weights[i]; /* of the dielectric alone */
+      fd = fd + film * (l->film[c][i] - fd);
+      float matt = (1.0f - l->energy_o[c][i]) * (1.0f - l->energy_i[c][i]) / (1.0f - l->energy_mean[c][i]) *
+                   cosines[i] * dielectric * (1.0f - clear);
+      float metal_mean = base + (1.0f - base) * (1.0f / 21.0f), sheet_mean = f0 + (f90 - f0) * (1.0f / 21.0f);
+      float metal_again = metal_mean * metal_mean * l->one_mean[i] / (1.0f - metal_mean * (1.0f - l->one_mean[i]));
+      float sheet_again = dielectric * clear * thins[i] * again;
+      float bare = 1.0f - l->inside[i];
+      float fuzz = sheens[i] * l->sheen_value[i] * bare * over_matt(l->coat_o[i], l->coat_i[i], l->coat_mean[i]);
+      float upper =
+          hide_mirrors[i] * f * facet +
+          hide_matts[i] * (matt * (1.0f - shares) * base + metal * metal_again * again + sheet_again * sheet_mean) +
+          coat_values[i] + fuzz;
+      float lower = hide_throughs[i] * (dielectric * clear * base * (1.0f - fd) * facet + matt * shares * throughs[i] +
+                                        sheet_again * (1.0f - sheet_mean) * base);
+      result[i] = upper * upper_on[i] + lower * lower_on[i];
+    }
+  }
+}
+
 /* f cos_i and the density of sampling wi. */
 static __attribute__((noinline)) void combine(const vlPrincipledSlice *s, const vlPrincipledLanes *l,
                                               vlBsdfDirections wo, vlBsdfDirections wi, float *const value[4],
                                               float *pdf, uint32_t first) {
-  for (uint32_t i = 0; i < s->count; i++) {
-    float side = l->side[i], inside = l->inside[i], thin = s->row[VL_P_THIN][i];
-    vlVec3 o = vl_vec3(wo.x[first + i], wo.y[first + i], l->z[i]);
-    vlVec3 w = vl_vec3(wi.x[first + i], wi.y[first + i], wi.z[first + i] * side);
-    int reflect = w.z > 0.0f, valid = (o.z > 0.0f) & (w.z != 0.0f);
-    Facet facet = base_facet(o, w, s->alpha_x[i], s->alpha_y[i], s->eta[i], inside, thin);
-    Facet coat = {0.0f, 0.0f, 0.0f, 0.0f};
-    if (s->coat) coat = coat_facet(o, w, vl_principled_coat(s, i, side), s->row[VL_P_COAT_ALPHA][i]);
-    float bare = 1.0f - inside; /* layers lie outside */
-    float on_coat = s->row[VL_P_COAT][i] * bare;
-    coat.value = on_coat > 0.0f ? coat.value * on_coat : 0.0f; /* rows of other materials may be stale */
-    coat.pdf = on_coat > 0.0f ? coat.pdf : 0.0f;
-    float co = l->coat_o[i], ci = l->coat_i[i], so = l->sheen_o[i], si = l->sheen_i[i];
-    float hide_mirror = over_mirror(co, ci) * over_mirror(so, si);
-    float hide_matt = over_matt(co, ci, l->coat_mean[i]) * over_matt(so, si, l->sheen_mean[i]);
-    hide_mirror = inside > 0.0f ? 1.0f : hide_mirror;
-    hide_matt = inside > 0.0f ? 1.0f : hide_matt;
-    /* Light that passes meets the layers once, on the upper side. */
-    float hide_through = side < 0.0f ? (1.0f - ci) * (1.0f - si) : (1.0f - co) * (1.0f - so);
-    float metal = s->row[VL_P_METALLIC][i], dielectric = 1.0f - metal, clear = s->row[VL_P_TRANSMISSION][i];
-    float shares = s->row[VL_P_DIFFUSE_TRANSMISSION][i], f90 = s->row[VL_P_F90][i], film = s->row[VL_P_FILM][i];
-    float cosine = vl_abs(w.z) * VL_INV_PI;
-    /* between microfacets: Kulla and Conty */
-    float left = 1.0f - l->one_mean[i];
-    float again = (1.0f - l->one_o[i]) * (1.0f - l->one_i[i]) / left * cosine;
-    for (int c = 0; c < 4; c++) {
-      float base = s->base[c][i], f0 = s->row[VL_P_F0 + c][i];
-      float m0 = f0 + metal * (base - f0), m90 = f90 + metal * (1.0f - f90);
-      float f = m0 + (m90 - m0) * facet.fresnel;
-      f = f + film * (l->film[c][i] - f);
-      f = facet.total > 0.0f ? 1.0f : f;
-      float fd = f0 + (f90 - f0) * facet.fresnel; /* of the dielectric alone */
-      fd = fd + film * (l->film[c][i] - fd);
-      float matt = (1.0f - l->energy_o[c][i]) * (1.0f - l->energy_i[c][i]) / (1.0f - l->energy_mean[c][i]) * cosine *
-                   dielectric * (1.0f - clear);
-      float metal_mean = base + (1.0f - base) * (1.0f / 21.0f), sheet_mean = f0 + (f90 - f0) * (1.0f / 21.0f);
-      float metal_again = metal_mean * metal_mean * l->one_mean[i] / (1.0f - metal_mean * left);
-      float sheet_again = dielectric * clear * thin * again;
-      float upper =
-          hide_mirror * f * facet.value +
-          hide_matt * (matt * (1.0f - shares) * base + metal * metal_again * again + sheet_again * sheet_mean) +
-          coat.value + s->row[VL_P_SHEEN + c][i] * l->sheen_value[i] * bare * over_matt(co, ci, l->coat_mean[i]);
-      float lower =
-          hide_through * (dielectric * clear * base * (1.0f - fd) * facet.value +
-                          matt * shares * s->row[VL_P_THROUGH + c][i] + sheet_again * (1.0f - sheet_mean) * base);
-      float result = reflect ? upper : lower;
-      value[c][first + i] = valid ? result : 0.0f;
-    }
-    float above = l->specular[i] * facet.pdf + l->diffuse[i] * cosine + l->coat[i] * coat.pdf;
-    float below = l->refract[i] * facet.pdf + l->through[i] * cosine;
-    float density = reflect ? above : below;
-    pdf[first + i] = valid ? density : 0.0f;
-  }
+  if (s->coat)
+    combine_loop(s, l, wo, wi, value, pdf, first, true);
+  else
+    combine_loop(s, l, wo, wi, value, pdf, first, false);
 }
 
 void VL_HOT(vl_bsdf_principled_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,

@@ -37,124 +37,229 @@ static float film_reflection(const vlPrincipledSlice *s, uint32_t i, int channel
 
 /* ---- directional albedos ----------------------------------------------------------------------------------------- */
 
-/* The dielectric's specular albedo at a cosine, or its mean. a, b: from the tables. */
-static float mixed_energy(const vlPrincipledSlice *s, uint32_t i, int c, float cosine, float a, float b) {
-  float f0 = s->row[VL_P_F0 + c][i], e = f0 * a + s->row[VL_P_F90][i] * b, film = s->row[VL_P_FILM][i];
-  if (film > 0.0f) {
-    float r;
-    if (cosine >= 0.0f) {
-      r = film_reflection(s, i, c, cosine, f0);
-    } else { /* the mean: Gauss-Legendre in cos^2 */
-      r = (5.0f * film_reflection(s, i, c, 0.33571f, f0) + 8.0f * film_reflection(s, i, c, 0.70711f, f0) +
-           5.0f * film_reflection(s, i, c, 0.94197f, f0)) *
-          (1.0f / 18.0f);
-    }
-    e = e + film * (r * (a + b) - e);
+/* The isotropic roughness that loses about as much light between its microfacets. */
+static inline float base_alpha(float x, float y) {
+  return 0.6f * vl_max(x, y) + 0.4f * vl_min(x, y);
+}
+
+/* Places in the tables of a chunk. */
+typedef struct Places {
+  int32_t alpha[VL_PRINCIPLED_CHUNK], cosine[VL_PRINCIPLED_CHUNK];
+  float alpha_t[VL_PRINCIPLED_CHUNK], cosine_t[VL_PRINCIPLED_CHUNK];
+} Places;
+
+static __attribute__((noinline)) void find_places(const vlPrincipledSlice *s, const float *z, Places *p) {
+  const float *ax = s->alpha_x, *ay = s->alpha_y;
+  uint32_t count = VL_WHOLE(s->count);
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    float a = base_alpha(ax[i], ay[i]), c = vl_abs(z[i]);
+    a = __builtin_sqrtf(a < 1.0f ? a : 1.0f) * (float)(VL_ALBEDO_ALPHA - 1);
+    c = __builtin_sqrtf(c < 1.0f ? c : 1.0f) * (float)(VL_ALBEDO_COS - 1);
+    int32_t ia = (int32_t)a, ic = (int32_t)c;
+    ia = ia < VL_ALBEDO_ALPHA - 2 ? ia : VL_ALBEDO_ALPHA - 2;
+    ic = ic < VL_ALBEDO_COS - 2 ? ic : VL_ALBEDO_COS - 2;
+    p->alpha[i] = ia > 0 ? ia : 0, p->cosine[i] = ic > 0 ? ic : 0;
+    p->alpha_t[i] = a - (float)ia, p->cosine_t[i] = c - (float)ic;
   }
-  return e < 0.9999f ? e : 0.9999f;
+}
+
+/* Scalar: there are no gathers on every instruction set. */
+static __attribute__((noinline)) void look_up(const Places *p, uint32_t count, float *a, float *b) {
+  const vlPrincipledTables *t = &vl_principled_tables;
+  for (uint32_t i = 0; i < count; i++) {
+    vlAlbedoPlace alpha = {(uint32_t)p->alpha[i], p->alpha_t[i]}, c = {(uint32_t)p->cosine[i], p->cosine_t[i]};
+    a[i] = vl_albedo_at(t->a, alpha, c);
+    b[i] = vl_albedo_at(t->b, alpha, c);
+  }
+}
+
+static __attribute__((noinline)) void look_up_means(const Places *p, uint32_t count, float *a, float *b) {
+  const vlPrincipledTables *t = &vl_principled_tables;
+  for (uint32_t i = 0; i < count; i++) {
+    vlAlbedoPlace alpha = {(uint32_t)p->alpha[i], p->alpha_t[i]};
+    a[i] = vl_albedo_mean(t->a_mean, alpha);
+    b[i] = vl_albedo_mean(t->b_mean, alpha);
+  }
+}
+
+/* The dielectric's specular albedo F0 a + F90 b. */
+static __attribute__((noinline)) void energies(const vlPrincipledSlice *s, const float *a, const float *b,
+                                               float energy[4][VL_PRINCIPLED_CHUNK], float *one) {
+  const float *f90 = s->row[VL_P_F90];
+  uint32_t count = VL_WHOLE(s->count);
+  for (int c = 0; c < 4; c++) {
+    const float *f0 = s->row[VL_P_F0 + c];
+    float *out = energy[c];
+    /* must vectorise */
+    VL_SIMD for (uint32_t i = 0; i < count; i++) {
+      float e = f0[i] * a[i] + f90[i] * b[i];
+      out[i] = e < 0.9999f ? e : 0.9999f;
+    }
+  }
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    float sum = a[i] + b[i];
+    one[i] = sum < 0.999999f ? sum : 0.999999f;
+  }
+}
+
+/* Under a film: its own reflection at that cosine; z null: the mean over cosines, Gauss-Legendre in cos^2. */
+static void film_energies(const vlPrincipledSlice *s, const float *z, const float *one,
+                          float energy[4][VL_PRINCIPLED_CHUNK]) {
+  for (uint32_t i = 0; i < s->count; i++) {
+    float film = s->row[VL_P_FILM][i];
+    if (!(film > 0.0f)) continue;
+    for (int c = 0; c < 4; c++) {
+      float f0 = s->row[VL_P_F0 + c][i];
+      float r = z ? film_reflection(s, i, c, vl_abs(z[i]), f0)
+                  : (5.0f * film_reflection(s, i, c, 0.33571f, f0) + 8.0f * film_reflection(s, i, c, 0.70711f, f0) +
+                     5.0f * film_reflection(s, i, c, 0.94197f, f0)) *
+                        (1.0f / 18.0f);
+      float e = energy[c][i] + film * (r * one[i] - energy[c][i]);
+      energy[c][i] = e < 0.9999f ? e : 0.9999f;
+    }
+  }
 }
 
 static float brightest(const vlPrincipledSlice *s, uint32_t row, uint32_t i) {
   return vl_max(vl_max(s->row[row][i], s->row[row + 1][i]), vl_max(s->row[row + 2][i], s->row[row + 3][i]));
 }
 
-static float base_alpha(const vlPrincipledSlice *s, uint32_t i) {
-  return __builtin_sqrtf(s->alpha_x[i] * s->alpha_y[i]);
-}
-
-/* Share that the coat reflects of light at this cosine to its normal. */
-static float coat_energy(const vlPrincipledSlice *s, uint32_t i, float cosine) {
-  vlAlbedoPlace alpha = vl_albedo_place(s->row[VL_P_COAT_ALPHA][i], VL_ALBEDO_ALPHA),
-                c = vl_albedo_place(vl_abs(cosine), VL_ALBEDO_COS);
-  const vlPrincipledTables *t = &vl_principled_tables;
-  return s->row[VL_P_COAT][i] * (0.04f * vl_albedo_at(t->a, alpha, c) + vl_albedo_at(t->b, alpha, c));
-}
-
-void VL_HOT(vl_principled_view)(const vlPrincipledSlice *s, vlBsdfDirections wo, uint32_t first, vlPrincipledLanes *l) {
+/* What the coat reflects of light at z (null: the mean) to its normal. directions: up is wo's side. */
+static void coat_energies(const vlPrincipledSlice *s, const vlPrincipledLanes *l, const float *x, const float *y,
+                          const float *z, float *energy) {
   const vlPrincipledTables *t = &vl_principled_tables;
   for (uint32_t i = 0; i < s->count; i++) {
-    float oz = wo.z[first + i], z = vl_abs(oz), side = oz < 0.0f ? -1.0f : 1.0f;
-    l->z[i] = z, l->side[i] = side;
-    float inside = side < 0.0f && s->row[VL_P_THIN][i] == 0.0f ? 1.0f : 0.0f;
-    l->inside[i] = inside;
-    vlAlbedoPlace alpha = vl_albedo_place(base_alpha(s, i), VL_ALBEDO_ALPHA), c = vl_albedo_place(z, VL_ALBEDO_COS);
-    float a = vl_albedo_at(t->a, alpha, c), b = vl_albedo_at(t->b, alpha, c);
-    float am = vl_albedo_mean(t->a_mean, alpha), bm = vl_albedo_mean(t->b_mean, alpha);
-    l->one_o[i] = vl_min(a + b, 1.0f), l->one_mean[i] = vl_min(am + bm, 0.999999f);
-    float base = 0.0f, energy = 0.0f, seen = 0.0f, through = 0.0f, metal = s->row[VL_P_METALLIC][i];
-    for (int k = 0; k < 4; k++) {
-      l->energy_o[k][i] = mixed_energy(s, i, k, z, a, b);
-      l->energy_mean[k][i] = mixed_energy(s, i, k, -1.0f, am, bm);
-      base += 0.25f * s->base[k][i];
-      through += 0.25f * s->row[VL_P_THROUGH + k][i];
-      energy += 0.25f * l->energy_o[k][i];
-      seen += 0.25f * s->base[k][i] * (1.0f - l->energy_o[k][i]);
+    float coat = s->row[VL_P_COAT][i];
+    energy[i] = 0.0f;
+    if (!(coat > 0.0f)) continue;
+    vlAlbedoPlace alpha = vl_albedo_place(s->row[VL_P_COAT_ALPHA][i], VL_ALBEDO_ALPHA);
+    if (!z) {
+      energy[i] = coat * (0.04f * vl_albedo_mean(t->a_mean, alpha) + vl_albedo_mean(t->b_mean, alpha));
+      continue;
     }
-    vlVec3 n = vl_principled_coat(s, i, side), o = vl_vec3(wo.x[first + i], wo.y[first + i], z);
-    float coat_cos = vl_dot(o, n);
-    l->coat_o[i] = l->coat_mean[i] = 0.0f;
-    if (s->row[VL_P_COAT][i] > 0.0f) {
-      vlAlbedoPlace rough = vl_albedo_place(s->row[VL_P_COAT_ALPHA][i], VL_ALBEDO_ALPHA);
-      l->coat_o[i] = coat_energy(s, i, coat_cos);
-      l->coat_mean[i] =
-          s->row[VL_P_COAT][i] * (0.04f * vl_albedo_mean(t->a_mean, rough) + vl_albedo_mean(t->b_mean, rough));
-    }
-    l->sheen_o[i] = l->sheen_i[i] = l->sheen_mean[i] = l->sheen_raw[i] = l->sheen_value[i] = 0.0f;
+    vlVec3 n = vl_principled_coat(s, i, l->side[i]);
+    vlAlbedoPlace c = vl_albedo_place(vl_abs(vl_dot(vl_vec3(x[i], y[i], z[i]), n)), VL_ALBEDO_COS);
+    energy[i] = coat * (0.04f * vl_albedo_at(t->a, alpha, c) + vl_albedo_at(t->b, alpha, c));
+  }
+}
+
+static void sheen_at_view(const vlPrincipledSlice *s, vlPrincipledLanes *l) {
+  const vlPrincipledTables *t = &vl_principled_tables;
+  for (uint32_t i = 0; i < s->count; i++) {
     float fuzz = brightest(s, VL_P_SHEEN, i);
-    if (fuzz > 0.0f) {
-      vlAlbedoPlace rough = vl_albedo_place(s->row[VL_P_SHEEN_ALPHA][i], VL_ALBEDO_ALPHA);
-      l->sheen_raw[i] = vl_albedo_at(t->sheen, rough, c);
-      l->sheen_o[i] = fuzz * vl_min(l->sheen_raw[i], 1.0f);
-      l->sheen_mean[i] = fuzz * vl_albedo_mean(t->sheen_mean, rough);
-    }
-    /* Chances: about what each lobe sends back, none of those that can shine left at 0. */
-    float clear = s->row[VL_P_TRANSMISSION][i], shares = s->row[VL_P_DIFFUSE_TRANSMISSION][i];
-    float dielectric = 1.0f - metal, f90 = s->row[VL_P_F90][i];
-    float cover = inside > 0.0f ? 1.0f : (1.0f - l->coat_o[i]) * (1.0f - l->sheen_o[i]);
-    vlOuterCosine outer = vl_outer_cosine(z, s->eta[i]);
-    float fresnel = inside > 0.0f ? (outer.total ? 1.0f : vl_schlick_weight(outer.cosine)) : 0.0f;
-    float reflected = inside > 0.0f ? s->row[VL_P_F0][i] + (f90 - s->row[VL_P_F0][i]) * fresnel : energy;
-    reflected = inside > 0.0f && outer.total ? 1.0f : reflected;
-    float mirror = cover * (metal * vl_max(base, 0.02f) + dielectric * reflected) + 1e-3f;
-    float matt = cover * (dielectric * (1.0f - clear) * (1.0f - shares) * seen +
-                          (metal * base + dielectric * clear) * (1.0f - l->one_o[i])) +
-                 l->sheen_o[i];
-    float coat = coat_cos > 1e-3f && inside == 0.0f ? l->coat_o[i] : 0.0f;
+    if (!(fuzz > 0.0f)) continue;
+    vlAlbedoPlace rough = vl_albedo_place(s->row[VL_P_SHEEN_ALPHA][i], VL_ALBEDO_ALPHA);
+    l->sheen_raw[i] = vl_albedo_at(t->sheen, rough, vl_albedo_place(l->z[i], VL_ALBEDO_COS));
+    l->sheen_o[i] = fuzz * vl_min(l->sheen_raw[i], 1.0f);
+    l->sheen_mean[i] = fuzz * vl_albedo_mean(t->sheen_mean, rough);
+  }
+}
+
+static void sheen_at_light(const vlPrincipledSlice *s, const float *ox, const float *oy, const float *ix,
+                           const float *iy, const float *z, vlPrincipledLanes *l) {
+  const vlPrincipledTables *t = &vl_principled_tables;
+  for (uint32_t i = 0; i < s->count; i++) {
+    float fuzz = brightest(s, VL_P_SHEEN, i), c = vl_abs(z[i]);
+    if (!(fuzz > 0.0f)) continue;
+    float alpha = s->row[VL_P_SHEEN_ALPHA][i];
+    float raw = vl_albedo_at(t->sheen, vl_albedo_place(alpha, VL_ALBEDO_ALPHA), vl_albedo_place(c, VL_ALBEDO_COS));
+    float most = vl_max(vl_max(raw, l->sheen_raw[i]), 1.0f);
+    vlVec3 h = vl_normalize(vl_vec3(ox[i] + ix[i], oy[i] + iy[i], l->z[i] + c));
+    l->sheen_i[i] = fuzz * vl_min(raw, 1.0f);
+    l->sheen_value[i] = l->z[i] > 0.0f && z[i] > 0.0f ? vl_sheen(l->z[i], z[i], h.z, alpha) / most : 0.0f;
+  }
+}
+
+/* Chances of the lobes: about what each sends back; none of those that can shine is left at 0. */
+static __attribute__((noinline)) void weigh(const vlPrincipledSlice *s, const float *coat_cos, vlPrincipledLanes *l) {
+  const float *b0 = s->base[0], *b1 = s->base[1], *b2 = s->base[2], *b3 = s->base[3];
+  const float *t0 = s->row[VL_P_THROUGH], *t1 = s->row[VL_P_THROUGH + 1], *t2 = s->row[VL_P_THROUGH + 2],
+              *t3 = s->row[VL_P_THROUGH + 3];
+  const float *metallic = s->row[VL_P_METALLIC], *clears = s->row[VL_P_TRANSMISSION], *index = s->eta;
+  const float *shares_row = s->row[VL_P_DIFFUSE_TRANSMISSION], *f90s = s->row[VL_P_F90], *f0s = s->row[VL_P_F0];
+  uint32_t count = VL_WHOLE(s->count);
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    float e0 = l->energy_o[0][i], e1 = l->energy_o[1][i], e2 = l->energy_o[2][i], e3 = l->energy_o[3][i];
+    float base = 0.25f * ((b0[i] + b1[i]) + (b2[i] + b3[i])), energy = 0.25f * ((e0 + e1) + (e2 + e3));
+    float seen = 0.25f * ((b0[i] * (1.0f - e0) + b1[i] * (1.0f - e1)) + (b2[i] * (1.0f - e2) + b3[i] * (1.0f - e3)));
+    float through = 0.25f * ((t0[i] + t1[i]) + (t2[i] + t3[i]));
+    float metal = metallic[i], dielectric = 1.0f - metal, clear = clears[i], shares = shares_row[i];
+    float inside = l->inside[i], f0 = f0s[i];
+    float cover = (1.0f - l->coat_o[i]) * (1.0f - l->sheen_o[i]);
+    cover = inside > 0.0f ? 1.0f : cover;
+    vlOuterCosine outer = vl_outer_cosine(l->z[i], index[i]);
+    float inner = f0 + (f90s[i] - f0) * vl_schlick_weight(outer.cosine);
+    inner = outer.total ? 1.0f : inner;
+    float reflected = inside > 0.0f ? inner : energy;
+    float mirror = cover * (metal * (base > 0.02f ? base : 0.02f) + dielectric * reflected) + 1e-3f;
+    float lost = 1.0f - l->one_o[i];
+    float matt =
+        cover * (dielectric * (1.0f - clear) * (1.0f - shares) * seen + (metal * base + dielectric * clear) * lost) +
+        l->sheen_o[i];
+    float coat = (coat_cos[i] > 1e-3f) & (inside == 0.0f) ? 1.0f : 0.0f;
+    coat = coat * l->coat_o[i];
     float refract = cover * dielectric * clear * base * (1.0f - reflected);
-    float beyond = cover * dielectric *
-                   ((1.0f - clear) * shares * through * (1.0f - energy) + clear * base * (1.0f - l->one_o[i]));
+    float beyond = cover * dielectric * ((1.0f - clear) * shares * through * (1.0f - energy) + clear * base * lost);
     float inverse = 1.0f / (mirror + matt + coat + refract + beyond);
     l->specular[i] = mirror * inverse, l->diffuse[i] = matt * inverse, l->coat[i] = coat * inverse;
     l->refract[i] = refract * inverse, l->through[i] = beyond * inverse;
   }
 }
 
+void VL_HOT(vl_principled_view)(const vlPrincipledSlice *s, vlBsdfDirections wo, uint32_t first, vlPrincipledLanes *l) {
+  const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first, *thin = s->row[VL_P_THIN];
+  float a[VL_PRINCIPLED_CHUNK], b[VL_PRINCIPLED_CHUNK], coat_cos[VL_PRINCIPLED_CHUNK];
+  uint32_t count = VL_WHOLE(s->count);
+  for (uint32_t i = 0; i < count; i++) {
+    float z = oz[i];
+    l->z[i] = vl_abs(z), l->side[i] = z < 0.0f ? -1.0f : 1.0f;
+    l->inside[i] = z < 0.0f ? 1.0f - thin[i] : 0.0f;
+    l->coat_o[i] = l->coat_mean[i] = l->sheen_o[i] = l->sheen_mean[i] = l->sheen_raw[i] = coat_cos[i] = 0.0f;
+    l->coat_i[i] = l->sheen_i[i] = l->sheen_value[i] = 0.0f;
+    for (int c = 0; c < 4; c++) l->film[c][i] = 0.0f;
+  }
+  Places places;
+  find_places(s, l->z, &places);
+  look_up_means(&places, count, a, b);
+  energies(s, a, b, l->energy_mean, l->one_mean);
+  if (s->film) film_energies(s, NULL, l->one_mean, l->energy_mean);
+  look_up(&places, count, a, b);
+  energies(s, a, b, l->energy_o, l->one_o);
+  if (s->film) film_energies(s, l->z, l->one_o, l->energy_o);
+  if (s->coat) {
+    coat_energies(s, l, ox, oy, l->z, l->coat_o);
+    coat_energies(s, l, NULL, NULL, NULL, l->coat_mean);
+    for (uint32_t i = 0; i < count; i++)
+      coat_cos[i] = vl_dot(vl_vec3(ox[i], oy[i], l->z[i]), vl_principled_coat(s, i, l->side[i]));
+  }
+  if (s->sheen) sheen_at_view(s, l);
+  weigh(s, coat_cos, l);
+}
+
 void VL_HOT(vl_principled_light)(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBsdfDirections wi, uint32_t first,
                                  vlPrincipledLanes *l) {
-  const vlPrincipledTables *t = &vl_principled_tables;
-  for (uint32_t i = 0; i < s->count; i++) {
-    float side = l->side[i], iz = wi.z[first + i] * side, z = vl_abs(iz);
-    vlAlbedoPlace alpha = vl_albedo_place(base_alpha(s, i), VL_ALBEDO_ALPHA), c = vl_albedo_place(z, VL_ALBEDO_COS);
-    float a = vl_albedo_at(t->a, alpha, c), b = vl_albedo_at(t->b, alpha, c);
-    l->one_i[i] = vl_min(a + b, 1.0f);
-    for (int k = 0; k < 4; k++) l->energy_i[k][i] = mixed_energy(s, i, k, z, a, b);
-    vlVec3 n = vl_principled_coat(s, i, side);
-    vlVec3 o = vl_vec3(wo.x[first + i], wo.y[first + i], l->z[i]), w = vl_vec3(wi.x[first + i], wi.y[first + i], iz);
-    l->coat_i[i] = s->row[VL_P_COAT][i] > 0.0f ? coat_energy(s, i, vl_dot(w, n)) : 0.0f;
-    vlVec3 h = vl_normalize(vl_vec3(o.x + w.x, o.y + w.y, o.z + z));
-    float fuzz = s->sheen ? brightest(s, VL_P_SHEEN, i) : 0.0f;
-    if (fuzz > 0.0f) {
-      vlAlbedoPlace rough = vl_albedo_place(s->row[VL_P_SHEEN_ALPHA][i], VL_ALBEDO_ALPHA);
-      float raw = vl_albedo_at(t->sheen, rough, c), most = vl_max(vl_max(raw, l->sheen_raw[i]), 1.0f);
-      l->sheen_i[i] = fuzz * vl_min(raw, 1.0f);
-      l->sheen_value[i] =
-          l->z[i] > 0.0f && iz > 0.0f ? vl_sheen(l->z[i], iz, h.z, s->row[VL_P_SHEEN_ALPHA][i]) / most : 0.0f;
-    }
-    for (int k = 0; k < 4; k++) {
-      l->film[k][i] = 0.0f;
-      if (!(s->row[VL_P_FILM][i] > 0.0f)) continue;
-      float metal = s->row[VL_P_METALLIC][i], f0 = s->row[VL_P_F0 + k][i];
-      l->film[k][i] = film_reflection(s, i, k, vl_dot(o, h), f0 + metal * (s->base[k][i] - f0));
+  const float *ox = wo.x + first, *oy = wo.y + first, *ix = wi.x + first, *iy = wi.y + first, *iz = wi.z + first;
+  float a[VL_PRINCIPLED_CHUNK], b[VL_PRINCIPLED_CHUNK], z[VL_PRINCIPLED_CHUNK];
+  uint32_t count = VL_WHOLE(s->count);
+  for (uint32_t i = 0; i < count; i++) z[i] = iz[i] * l->side[i];
+  Places places;
+  find_places(s, z, &places);
+  look_up(&places, count, a, b);
+  energies(s, a, b, l->energy_i, l->one_i);
+  if (s->coat) coat_energies(s, l, ix, iy, z, l->coat_i);
+  if (s->sheen) sheen_at_light(s, ox, oy, ix, iy, z, l);
+  if (!s->film) return;
+  film_energies(s, z, l->one_i, l->energy_i);
+  for (uint32_t i = 0; i < count; i++) {
+    if (!(s->row[VL_P_FILM][i] > 0.0f)) continue;
+    vlVec3 o = vl_vec3(ox[i], oy[i], l->z[i]), h = vl_normalize(vl_vec3(o.x + ix[i], o.y + iy[i], o.z + vl_abs(z[i])));
+    for (int c = 0; c < 4; c++) {
+      float f0 = s->row[VL_P_F0 + c][i];
+      f0 = f0 + s->row[VL_P_METALLIC][i] * (s->base[c][i] - f0);
+      l->film[c][i] = film_reflection(s, i, c, vl_dot(o, h), f0);
     }
   }
 }

@@ -52,6 +52,8 @@ typedef struct vlFilmDef {
 VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);
 VL_API vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film);
 VL_API void vl_film_destroy(vlFilm *film);
+/* As new: no samples. Keeps its memory, for the next picture of the same size. Not while a render runs. */
+VL_API void vl_film_clear(vlFilm *film);
 /* Samples that each pixel has (whole passes). */
 VL_API uint32_t vl_film_spp(const vlFilm *film);
 typedef struct vlDevelopDef {

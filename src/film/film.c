@@ -44,6 +44,7 @@ void vl_film_destroy(vlFilm *film) {
   vl_free(context, film->front);
   vl_free(context, film->back);
   vl_free(context, film->stamp);
+  vl_free(context, film->scratch);
   for (int i = 0; i < 2; i++) vl_free(context, film->moments[i]);
   vl_free(context, film);
 }
@@ -103,6 +104,28 @@ void vl_film_commit_pass(vlFilm *film) {
 
 void vl_film_abandon_pass(vlFilm *film) {
   if (film->in_pass) next_pass(film);
+}
+
+/* Where there are two sets of sums one goes: the next pass begins as the first one does. */
+void vl_film_clear(vlFilm *film) {
+  if (!film || film->in_pass) return;
+  film->spp = 0;
+  if (film->front && film->back) {
+    vl_free(film->context, film->front);
+  } else if (film->front) {
+    film->back = film->front;
+  }
+  film->front = NULL;
+  if (film->moments[0]) memset(film->moments[0], 0, vl_film_pixels(film) * sizeof *film->moments[0]);
+}
+
+void *vl_film_scratch(vlFilm *film, size_t size) {
+  if (film->scratch_size < size) {
+    vl_free(film->context, film->scratch);
+    film->scratch = vl_alloc_zero(film->context, size, 1);
+    film->scratch_size = film->scratch ? size : 0;
+  }
+  return film->scratch;
 }
 
 vlResult vl_film_merge(vlFilm *film, const vlFilm *other) {

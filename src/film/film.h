@@ -34,6 +34,10 @@ vlResult vl_film_begin_pass(vlFilm *film);
 void vl_film_commit_pass(vlFilm *film);
 void vl_film_abandon_pass(vlFilm *film);
 
+/* Memory for those who add samples, kept with the film, so that a film that is rendered again and again costs no
+ * allocation. Zero when it is new, else as it was left; null: out of memory. Valid until the next call. */
+void *vl_film_scratch(vlFilm *film, size_t size);
+
 /* Adds the sums and the sample count of another film of the same size and crop: the same bytes as if all samples had
  * gone into one. Not inside a pass. ARGUMENT when they do not fit, MEMORY. */
 vlResult vl_film_merge(vlFilm *film, const vlFilm *other);

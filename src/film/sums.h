@@ -42,6 +42,8 @@ struct vlFilm {
   bool in_pass;
   vlFilmMoments *moments[2]; /* front and back, with def.errors; a pixel's back is good where the sums' is */
   vlFilterTable filter;
+  void *scratch; /* of those who render into it: kept for the next time */
+  size_t scratch_size;
 };
 
 /* Of moments.c: one sample more; begins with the front where the pixel is new in the pass. */

@@ -285,23 +285,25 @@ static vlResult check_arguments(const vlWorld *world, const vlCamera *camera, vl
   return VL_OK;
 }
 
-static void free_workers(Render *r, vlContext *context) {
-  for (uint32_t i = 0; r->workers && i < vl_context_threads(context); i++) {
-    vl_free(context, r->workers[i].scratch);
-    vl_free(context, r->workers[i].rows);
-  }
-  vl_free(context, r->workers);
+static size_t round_up(size_t size) {
+  return (size + 63) & ~(size_t)63;
 }
 
+/* In one block that stays with the film: many small pictures one after the other need no fresh memory. */
 static vlResult make_workers(Render *r, vlContext *context, vlError *error) {
   uint32_t threads = vl_context_threads(context);
-  r->workers = vl_alloc_zero(context, threads, sizeof *r->workers);
-  for (uint32_t i = 0; r->workers && i < threads; i++) {
-    r->workers[i].scratch = vl_alloc_zero(context, 1, vl_trace_scratch_size());
-    r->workers[i].rows = vl_alloc_zero(context, (size_t)ROWS * VL_ROW_SIZE, sizeof(float));
-    if (!r->workers[i].scratch || !r->workers[i].rows) return vl_fail_memory(error);
+  size_t head = round_up(threads * sizeof *r->workers), scratch = round_up(vl_trace_scratch_size());
+  size_t rows = round_up((size_t)ROWS * VL_ROW_SIZE * sizeof(float));
+  char *block = vl_film_scratch(r->film, head + threads * (scratch + rows));
+  if (!block) return vl_fail_memory(error);
+  r->workers = (Worker *)(void *)block;
+  memset(block, 0, head);
+  for (uint32_t i = 0; i < threads; i++) {
+    char *own = block + head + i * (scratch + rows);
+    r->workers[i].scratch = (vlTraceScratch *)(void *)own;
+    r->workers[i].rows = (float *)(void *)(own + scratch);
   }
-  return r->workers ? VL_OK : vl_fail_memory(error);
+  return VL_OK;
 }
 
 static void prepare(Render *r, const vlCamera *camera) {
@@ -412,6 +414,5 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
     if (def->time_limit > 0 && vl_seconds() - r->start >= def->time_limit) break;
   }
   if (stats && r->workers) fill_stats(r, stats);
-  free_workers(r, world->context);
   return result;
 }

@@ -18,7 +18,8 @@ vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, v
   bool readable = stat(path, &info) == 0 && !S_ISDIR(info.st_mode);
   if (!readable || vl_ends_with(path, ".pbrt") || vl_ends_with(path, ".pbrt.gz"))
     return vl_import_pbrt(scene, path, def, error);
-  vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){0}, "%.300s: unknown kind of scene file (known: .pbrt, .pbrt.gz)",
-                path);
+  if (vl_ends_with(path, ".gltf") || vl_ends_with(path, ".glb")) return vl_import_gltf(scene, path, def, error);
+  vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){0},
+                "%.300s: unknown kind of scene file (known: .pbrt, .pbrt.gz, .gltf, .glb)", path);
   return vl_scene_result(scene, error);
 }

@@ -11,4 +11,7 @@ vlResult vl_import_pbrt(vlScene *scene, const char *path, const vlLoadDef *def, 
 vlResult vl_import_pbrt_memory(vlScene *scene, const char *data, size_t size, const char *name, const vlLoadDef *def,
                                vlError *error);
 
+/* A glTF 2.0 file (.gltf or .glb, by its content). Where it has no camera or light the scene's settings say so. */
+vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
+
 #endif

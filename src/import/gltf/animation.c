@@ -42,8 +42,7 @@ static bool read_track(vlGltf *g, const vlGltfPlace *at, const json_t *sampler, 
   for (size_t i = 0; i < total * components; i++)
     if (!isfinite(t->values[i])) return vl_gltf_fail(g, VL_GLTF_KEY(at, "output"), "a value is not finite");
   size_t keys = t->count * (t->mode == CUBIC ? 3 : 1);
-  if (total % keys != 0)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "output"), "%zu values for %zu keys", total, t->count);
+  if (total % keys != 0) return vl_gltf_fail(g, VL_GLTF_KEY(at, "output"), "%zu values for %zu keys", total, t->count);
   t->width = total / keys * components;
   return true;
 }

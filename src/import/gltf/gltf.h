@@ -70,6 +70,7 @@ typedef struct vlGltfMaterial {
   vlFloatInput alpha;
   vlEmissionId emission;
   bool double_sided, needs_tangents, needs_uvs;
+  vlMediumId inside;
   uint32_t tangent_set; /* which uv set the tangents follow */
 } vlGltfMaterial;
 
@@ -249,6 +250,10 @@ bool vl_gltf_texture(vlGltf *g, const vlGltfPlace *at, const json_t *object, con
                      const vlGltfTextureUse *use, vlTextureId *id);
 /* The uv set that a textureInfo names (KHR_texture_transform's wins). */
 bool vl_gltf_texture_set(vlGltf *g, const vlGltfPlace *at, const json_t *info, uint32_t *set);
+
+/* volume.c: KHR_materials_volume of a body; a texture of directions into one of angles, plus rotation. */
+bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfMaterial *result);
+bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatInput *input);
 
 /* ---- lights, cameras --------------------------------------------------------------------------------------------- */
 

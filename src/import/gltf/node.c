@@ -4,8 +4,6 @@
 
 #include "import/gltf/gltf.h"
 
-#define NO_NODE UINT32_MAX
-
 vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const double s[3]) {
   double n = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
   double x = r[0], y = r[1], z = r[2], w = r[3];
@@ -43,7 +41,7 @@ static bool read_node(vlGltf *g, size_t i) {
     if (!json_is_number(child) || !(index >= 0 && index < (double)g->node_count) || index != floor(index))
       return vl_gltf_fail(g, VL_GLTF_ITEM(at, "children", k), "there is no such node");
     vlGltfNode *c = &g->nodes[(size_t)index];
-    if (c->parent != NO_NODE)
+    if (c->parent != UINT32_MAX)
       return vl_gltf_fail(g, VL_GLTF_ITEM(at, "children", k), "node %zu is already a child of node %u", (size_t)index,
                           c->parent);
     c->parent = (uint32_t)i;
@@ -54,15 +52,15 @@ static bool read_node(vlGltf *g, size_t i) {
 bool vl_gltf_read_nodes(vlGltf *g) {
   for (size_t i = 0; i < g->node_count; i++) {
     g->nodes[i].json = vl_gltf_item(g, "nodes", i);
-    g->nodes[i].parent = NO_NODE;
+    g->nodes[i].parent = UINT32_MAX;
   }
   for (size_t i = 0; i < g->node_count; i++)
     if (!read_node(g, i)) return false;
   for (size_t i = 0; i < g->node_count; i++) { /* each has one parent at most: a circle never ends upwards */
     size_t steps = 0;
-    for (uint32_t k = g->nodes[i].parent; k != NO_NODE && !g->nodes[k].reached; k = g->nodes[k].parent)
+    for (uint32_t k = g->nodes[i].parent; k != UINT32_MAX && !g->nodes[k].reached; k = g->nodes[k].parent)
       if (++steps > g->node_count) return vl_gltf_fail(g, VL_GLTF_ITEM(NULL, "nodes", i), "is among its own children");
-    for (uint32_t k = (uint32_t)i; k != NO_NODE && !g->nodes[k].reached; k = g->nodes[k].parent)
+    for (uint32_t k = (uint32_t)i; k != UINT32_MAX && !g->nodes[k].reached; k = g->nodes[k].parent)
       g->nodes[k].reached = true;
   }
   for (size_t i = 0; i < g->node_count; i++) g->nodes[i].reached = false;
@@ -78,11 +76,11 @@ bool vl_gltf_pose_nodes(vlGltf *g) {
   if (!chain) return vl_gltf_fail_memory(g);
   for (size_t i = 0; i < g->node_count; i++) {
     size_t n = 0;
-    for (uint32_t k = (uint32_t)i; k != NO_NODE && !g->nodes[k].has_pose; k = g->nodes[k].parent) chain[n++] = k;
+    for (uint32_t k = (uint32_t)i; k != UINT32_MAX && !g->nodes[k].has_pose; k = g->nodes[k].parent) chain[n++] = k;
     while (n > 0) {
       vlGltfNode *node = &g->nodes[chain[--n]];
       vlMat4 local = local_matrix(node);
-      node->world = node->parent == NO_NODE ? local : vl_mat4_multiply(g->nodes[node->parent].world, local);
+      node->world = node->parent == UINT32_MAX ? local : vl_mat4_multiply(g->nodes[node->parent].world, local);
       node->has_pose = true;
     }
   }
@@ -281,7 +279,7 @@ bool vl_gltf_draw(vlGltf *g) {
   if (!scene) { /* a file without scenes: all roots */
     all = json_array();
     for (size_t i = 0; i < g->node_count; i++)
-      if (g->nodes[i].parent == NO_NODE) json_array_append_new(all, json_integer((json_int_t)i));
+      if (g->nodes[i].parent == UINT32_MAX) json_array_append_new(all, json_integer((json_int_t)i));
     roots = all;
   }
   uint32_t *order = vl_alloc_array(g->context, g->node_count + 1, sizeof *order);

@@ -1,0 +1,120 @@
+/* import/gltf/camera.c: which camera of the scene takes the picture, and its numbers (specification, 3.10). */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "import/gltf/gltf.h"
+
+enum { HEIGHT = 720, SIDE = 1280 }; /* glTF knows no pixels */
+
+static void set_size(vlGltf *g, double aspect) {
+  vlSceneSettings *s = vl_scene_settings(g->scene);
+  double width = SIDE, height = SIDE / aspect;
+  if (height > HEIGHT) height = HEIGHT, width = HEIGHT * aspect;
+  s->width = width >= 1 ? (uint32_t)(width + 0.5) : 1;
+  s->height = height >= 1 ? (uint32_t)(height + 0.5) : 1;
+  const uint32_t whole[4] = {0, 0, s->width, s->height};
+  memcpy(s->crop, whole, sizeof whole);
+}
+
+static bool take_perspective(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlCameraDef *def) {
+  double yfov = 0, aspect = 16.0 / 9.0, near_plane = 0, far_plane = INFINITY;
+  if (!vl_gltf_number(g, at, json, "yfov", &yfov) || !vl_gltf_number(g, at, json, "aspectRatio", &aspect) ||
+      !vl_gltf_number(g, at, json, "znear", &near_plane) || !vl_gltf_number(g, at, json, "zfar", &far_plane))
+    return false;
+  if (!(yfov > 0 && yfov < 3.1415926)) return vl_gltf_fail(g, VL_GLTF_KEY(at, "yfov"), "must lie between 0 and pi");
+  if (!(aspect > 1e-3 && aspect < 1e3))
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "aspectRatio"), "%g is no shape", aspect);
+  set_size(g, aspect);
+  def->fov = yfov;
+  def->fov_axis = VL_FOV_VERTICAL;
+  def->near_plane = near_plane > 0 ? near_plane : 0;
+  def->far_plane = far_plane > def->near_plane ? far_plane : INFINITY;
+  return true;
+}
+
+static bool take_orthographic(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlCameraDef *def) {
+  double x = 0, y = 0, near_plane = 0, far_plane = INFINITY;
+  if (!vl_gltf_number(g, at, json, "xmag", &x) || !vl_gltf_number(g, at, json, "ymag", &y) ||
+      !vl_gltf_number(g, at, json, "znear", &near_plane) || !vl_gltf_number(g, at, json, "zfar", &far_plane))
+    return false;
+  x = fabs(x), y = fabs(y); /* some exporters write negative ones */
+  if (!(x > 0 && y > 0 && x / y > 1e-3 && x / y < 1e3)) return vl_gltf_fail(g, at, "needs xmag and ymag above 0");
+  set_size(g, x / y);
+  def->projection = VL_PROJECTION_ORTHOGRAPHIC;
+  def->screen_min_x = -x, def->screen_max_x = x, def->screen_min_y = -y, def->screen_max_y = y;
+  def->near_plane = near_plane > 0 ? near_plane : 0;
+  def->far_plane = far_plane > def->near_plane ? far_plane : INFINITY;
+  return true;
+}
+
+static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
+  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "cameras", camera);
+  const json_t *json = vl_gltf_item(g, "cameras", camera), *lens;
+  const char *type = "";
+  if (!vl_gltf_text(g, at, json, "type", &type)) return false;
+  bool flat = strcmp(type, "orthographic") == 0;
+  if (!flat && strcmp(type, "perspective") != 0)
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "type"), "unknown name \"%.30s\"", type);
+  if (!vl_gltf_object(g, at, json, type, &lens)) return false;
+  if (!lens) return vl_gltf_fail(g, at, "\"%s\" is missing", type);
+  vlCameraDef def = vl_default_camera_def(1, 1);
+  if (!(flat ? take_orthographic(g, VL_GLTF_KEY(at, type), lens, &def)
+             : take_perspective(g, VL_GLTF_KEY(at, type), lens, &def)))
+    return false;
+  def.has_matrix = true; /* glTF's cameras: y up, looking along -z; only where it stands and looks counts, not scale */
+  memcpy(def.world_from_camera, node->world.m, sizeof def.world_from_camera);
+  for (int column = 0; column < 3; column++) {
+    double *m = def.world_from_camera, l = 0;
+    for (int row = 0; row < 3; row++) l += m[4 * row + column] * m[4 * row + column];
+    l = (column ? -1 : 1) / (l > 0 ? sqrt(l) : 1);
+    for (int row = 0; row < 3; row++) m[4 * row + column] *= l;
+  }
+  if (!(fabs(vl_mat4_determinant3(vl_mat4_load(def.world_from_camera))) > 1e-9))
+    return vl_gltf_fail(g, at, "its node's transform is singular");
+  vlSceneSettings *s = vl_scene_settings(g->scene);
+  def.width = s->width, def.height = s->height;
+  s->camera = def;
+  s->camera_source.file = NULL;
+  s->camera_missing = false;
+  return true;
+}
+
+static bool is_called(const json_t *json, const char *name) {
+  const char *own = json_string_value(json_object_get(json, "name"));
+  return own && strcmp(own, name) == 0;
+}
+
+bool vl_gltf_choose_camera(vlGltf *g) {
+  const char *wanted = g->def->camera;
+  char *end = NULL;
+  unsigned long number = wanted ? strtoul(wanted, &end, 10) : 0;
+  bool numbered = wanted && end != wanted && !*end;
+  int64_t by_name = -1, by_number = -1;
+  for (size_t i = 0; i < g->node_count; i++) {
+    int64_t camera;
+    const vlGltfNode *node = &g->nodes[i];
+    if (!node->reached) continue;
+    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", i), node->json, "camera", g->camera_count, &camera)) return false;
+    if (camera < 0) continue;
+    bool named =
+        wanted && (is_called(node->json, wanted) || is_called(vl_gltf_item(g, "cameras", (size_t)camera), wanted));
+    if (named && by_name < 0) by_name = (int64_t)i;
+    if ((numbered || !wanted) && g->cameras_seen == number) by_number = (int64_t)i;
+    g->cameras_seen++;
+  }
+  int64_t chosen = by_name >= 0 ? by_name : by_number;
+  if (chosen < 0 && wanted) {
+    char names[200] = "";
+    for (size_t i = 0; i < g->node_count; i++) {
+      const char *own = json_string_value(json_object_get(g->nodes[i].json, "name"));
+      if (!g->nodes[i].reached || !json_object_get(g->nodes[i].json, "camera") || !own) continue;
+      size_t n = strlen(names);
+      if (n + strlen(own) + 3 < sizeof names) strcat(strcat(names, n ? ", " : ": "), own);
+    }
+    return vl_gltf_fail(g, NULL, "the scene has no camera \"%.60s\" (%zu are there%s)", wanted, g->cameras_seen, names);
+  }
+  if (chosen < 0) return true;
+  const vlGltfNode *node = &g->nodes[chosen];
+  return take_camera(g, (size_t)json_number_value(json_object_get(node->json, "camera")), node);
+}

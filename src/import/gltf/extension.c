@@ -1,0 +1,58 @@
+/* import/gltf/extension.c: which extensions are read. One that a file requires and velo lacks is an error; one that it
+ * only uses, a warning. */
+#include <string.h>
+
+#include "base/text.h"
+#include "import/gltf/gltf.h"
+
+static const char *const known[] = {
+    "KHR_materials_unlit",       "KHR_materials_emissive_strength",
+    "KHR_materials_ior",         "KHR_materials_specular",
+    "KHR_materials_clearcoat",   "KHR_materials_transmission",
+    "KHR_materials_volume",      "KHR_materials_sheen",
+    "KHR_materials_iridescence", "KHR_materials_anisotropy",
+    "KHR_materials_dispersion",  "KHR_materials_diffuse_transmission",
+    "KHR_materials_variants",    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_texture_transform",     "KHR_mesh_quantization",
+    "EXT_mesh_gpu_instancing",   "KHR_lights_punctual",
+};
+/* Nothing of these changes the picture. */
+static const char *const silent[] = {"KHR_xmp",
+                                     "KHR_xmp_json_ld",
+                                     "KHR_node_visibility_unused",
+                                     "EXT_texture_webp",
+                                     "KHR_texture_basisu",
+                                     "KHR_draco_mesh_compression",
+                                     "EXT_meshopt_compression"};
+
+static bool is_in(const char *name, const char *const *names, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (strcmp(name, names[i]) == 0) return true;
+  return false;
+}
+
+bool vl_gltf_check_extensions(vlGltf *g) {
+  const size_t known_count = sizeof known / sizeof *known, silent_count = sizeof silent / sizeof *silent;
+  const json_t *used, *required;
+  size_t used_count, required_count;
+  if (!vl_gltf_array(g, NULL, g->root, "extensionsUsed", &used, &used_count) ||
+      !vl_gltf_array(g, NULL, g->root, "extensionsRequired", &required, &required_count))
+    return false;
+  for (size_t i = 0; i < required_count; i++) {
+    const char *name = json_string_value(json_array_get(required, i));
+    const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "extensionsRequired", i);
+    if (!name) return vl_gltf_fail(g, at, "must be a string");
+    if (is_in(name, known, known_count)) continue;
+    const char *near = vl_nearest_name(name, known, known_count);
+    return near ? vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "velo does not read %.80s (it reads %s)", name, near)
+                : vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "velo does not read %.80s", name);
+  }
+  for (size_t i = 0; i < used_count; i++) {
+    const char *name = json_string_value(json_array_get(used, i));
+    const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "extensionsUsed", i);
+    if (!name) return vl_gltf_fail(g, at, "must be a string");
+    if (!is_in(name, known, known_count) && !is_in(name, silent, silent_count))
+      vl_gltf_warn(g, VL_LOG_WARNING, at, "%.80s is passed over: velo does not read it", name);
+  }
+  return true;
+}

@@ -1,0 +1,48 @@
+/* import/gltf/gltf.c: a glTF 2.0 file to a scene: the order of the steps. */
+#include "import/gltf/gltf.h"
+
+#include <string.h>
+
+#include "import/import.h"
+
+bool vl_gltf_choose_variant(vlGltf *g) {
+  g->variant = -1;
+  if (!g->def->variant) return true;
+  const json_t *extension = vl_gltf_extension(g->root, "KHR_materials_variants"), *variants;
+  size_t count;
+  const vlGltfPlace *at = VL_GLTF_KEY(NULL, "extensions.KHR_materials_variants");
+  if (!vl_gltf_array(g, at, extension, "variants", &variants, &count)) return false;
+  char names[300] = "";
+  for (size_t i = 0; i < count; i++) {
+    const char *name = json_string_value(json_object_get(json_array_get(variants, i), "name"));
+    if (!name) continue;
+    if (strcmp(name, g->def->variant) == 0) {
+      g->variant = (int64_t)i;
+      return true;
+    }
+    size_t n = strlen(names);
+    if (n + strlen(name) + 4 < sizeof names) strcat(strcat(names, n ? ", " : ": "), name);
+  }
+  return vl_gltf_fail(g, NULL, "there is no variant \"%.60s\" (%zu are there%s)", g->def->variant, count, names);
+}
+
+static void set_defaults(vlScene *scene) {
+  vlSceneSettings *s = vl_scene_settings(scene);
+  s->spp = 64;
+  s->max_depth = 12; /* light goes through glass */
+  s->camera_missing = true;
+  s->light_missing = true;
+}
+
+vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
+  vlLoadDef plain = vl_default_load_def();
+  vlGltf g = {.context = scene->context, .scene = scene, .def = def ? def : &plain, .path = path};
+  set_defaults(scene);
+  bool ok = vl_gltf_open(&g) && vl_gltf_check_extensions(&g) && vl_gltf_read_buffers(&g) &&
+            vl_gltf_choose_variant(&g) && vl_gltf_read_nodes(&g) && vl_gltf_animate(&g) && vl_gltf_pose_nodes(&g) &&
+            vl_gltf_draw(&g) && vl_gltf_choose_camera(&g);
+  if (ok && g.shapes_made == 0) vl_gltf_warn(&g, VL_LOG_WARNING, NULL, "draws nothing");
+  if (ok) vl_scene_settings(scene)->light_missing = g.lights_made == 0;
+  vl_gltf_close(&g);
+  return vl_scene_result(scene, error);
+}

@@ -1,0 +1,220 @@
+/* import/gltf/mesh.c: a mesh's primitives to shapes: attributes gathered, deformed, made triangles, given tangents. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "import/gltf/gltf.h"
+
+/* Attribute `name` as floats, `components` each (a VEC3 colour is opaque); null where there is none. */
+static bool attribute(vlGltf *g, const vlGltfPlace *up, const json_t *attributes, const char *name, uint32_t least,
+                      uint32_t components, size_t vertices, float **out) {
+  int64_t index;
+  const vlGltfPlace *at = VL_GLTF_KEY(up, name);
+  if (!vl_gltf_index(g, up, attributes, name, g->accessor_count, &index)) return false;
+  if (index < 0) return true;
+  const vlGltfAccessor *a = vl_gltf_accessor(g, at, (size_t)index);
+  if (!a) return false;
+  if (a->matrix || a->components < least || a->components > components)
+    return vl_gltf_fail(g, at, "accessors[%d] has %u components, %u are needed", (int)index, a->components, components);
+  *out = vl_gltf_load_floats(g, at, (size_t)index, components, vertices, NULL);
+  return *out != NULL;
+}
+
+static bool is_compressed(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, int64_t position) {
+  if (!vl_gltf_extension(primitive, "KHR_draco_mesh_compression")) return false;
+  if (json_object_get(vl_gltf_item(g, "accessors", (size_t)position), "bufferView")) return false;
+  vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at,
+                    "is compressed by KHR_draco_mesh_compression, which velo does not read");
+  return true;
+}
+
+static bool read_attributes(vlGltf *g, const vlGltfPlace *up, const json_t *primitive, const json_t *attributes,
+                            int64_t position, vlGltfPrimitive *p) {
+  static const char *const sets[4] = {"TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3"};
+  const vlGltfPlace *at = VL_GLTF_KEY(up, "attributes"), *at_position = VL_GLTF_KEY(at, "POSITION");
+  if (is_compressed(g, up, primitive, position)) return false;
+  const vlGltfAccessor *a = vl_gltf_accessor(g, at_position, (size_t)position);
+  if (!a) return false;
+  if (a->components != 3) return vl_gltf_fail(g, at_position, "must be of type VEC3");
+  p->vertices = a->count;
+  if (!attribute(g, at, attributes, "POSITION", 3, 3, p->vertices, &p->positions) ||
+      !attribute(g, at, attributes, "NORMAL", 3, 3, p->vertices, &p->normals) ||
+      !attribute(g, at, attributes, "TANGENT", 4, 4, p->vertices, &p->tangents) ||
+      !attribute(g, at, attributes, "COLOR_0", 3, 4, p->vertices, &p->colors))
+    return false;
+  for (int k = 0; k < 4; k++) {
+    if (!attribute(g, at, attributes, sets[k], 2, 2, p->vertices, &p->uvs[k])) return false;
+    for (size_t i = 0; p->uvs[k] && i < p->vertices; i++) p->uvs[k][2 * i + 1] = 1.0f - p->uvs[k][2 * i + 1];
+  }
+  return true;
+}
+
+/* The indices, or 0, 1, 2, ... without; a new block. */
+static bool read_indices(vlGltf *g, const vlGltfPlace *up, const json_t *primitive, size_t vertices, uint32_t **indices,
+                         size_t *count) {
+  int64_t index;
+  const vlGltfPlace *at = VL_GLTF_KEY(up, "indices");
+  if (!vl_gltf_index(g, up, primitive, "indices", g->accessor_count, &index)) return false;
+  const vlGltfAccessor *a = index < 0 ? NULL : vl_gltf_accessor(g, at, (size_t)index);
+  if (index >= 0 && !a) return false;
+  *count = a ? a->count : vertices;
+  if (a && (a->components != 1 || a->type == VL_GLTF_FLOAT || a->type == VL_GLTF_BYTE || a->type == VL_GLTF_SHORT))
+    return vl_gltf_fail(g, at, "must be SCALAR of unsigned whole numbers");
+  if (!vl_gltf_spend(g, at, 4 * (uint64_t)*count)) return false;
+  if (!(*indices = vl_alloc_array(g->context, *count, sizeof **indices))) return vl_gltf_fail_memory(g);
+  if (a)
+    vl_gltf_read_uints(a, 1, *indices);
+  else
+    for (size_t i = 0; i < *count; i++) (*indices)[i] = (uint32_t)i;
+  for (size_t i = 0; i < *count; i++)
+    if ((*indices)[i] >= vertices) {
+      vl_gltf_fail(g, at, "number %zu names vertex %u, but there are only %zu", i, (*indices)[i], vertices);
+      vl_free(g->context, *indices);
+      *indices = NULL;
+      return false;
+    }
+  return true;
+}
+
+/* The variant's material, else the primitive's own. */
+static bool choose_material(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, int64_t *material) {
+  if (!vl_gltf_index(g, at, primitive, "material", g->material_count, material)) return false;
+  const json_t *mappings = json_object_get(vl_gltf_extension(primitive, "KHR_materials_variants"), "mappings");
+  const vlGltfPlace *up = VL_GLTF_KEY(at, "extensions.KHR_materials_variants");
+  for (size_t i = 0; g->variant >= 0 && i < json_array_size(mappings); i++) {
+    const json_t *mapping = json_array_get(mappings, i), *variants = json_object_get(mapping, "variants");
+    for (size_t k = 0; k < json_array_size(variants); k++)
+      if (json_number_value(json_array_get(variants, k)) == (double)g->variant)
+        return vl_gltf_index(g, VL_GLTF_ITEM(up, "mappings", i), mapping, "material", g->material_count, material);
+  }
+  return true;
+}
+
+/* ---- the shape --------------------------------------------------------------------------------------------------- */
+
+/* A pose that no transform of the scene may have: the vertices go there themselves. */
+static void bake(vlGltfPrimitive *p, vlMat4 pose, vlContext *context) {
+  for (size_t i = 0; i < p->vertices; i++) {
+    double q[3] = {p->positions[3 * i], p->positions[3 * i + 1], p->positions[3 * i + 2]}, w[3];
+    vl_mat4_point(&pose, q, w);
+    for (int k = 0; k < 3; k++) p->positions[3 * i + (size_t)k] = (float)w[k];
+  }
+  vl_free(context, p->normals);
+  vl_free(context, p->tangents);
+  p->normals = p->tangents = NULL;
+}
+
+static bool split_tangents(vlGltf *g, vlGltfPrimitive *p, float **signs) {
+  *signs = NULL;
+  if (!p->tangents) return true;
+  float *three = vl_alloc_array(g->context, p->vertices, 3 * sizeof *three);
+  *signs = vl_alloc_array(g->context, p->vertices, sizeof **signs);
+  if (!three || !*signs) {
+    vl_free(g->context, three);
+    vl_free(g->context, *signs);
+    *signs = NULL;
+    return vl_gltf_fail_memory(g);
+  }
+  for (size_t i = 0; i < p->vertices; i++) {
+    memcpy(three + 3 * i, p->tangents + 4 * i, 3 * sizeof *three);
+    (*signs)[i] = p->tangents[4 * i + 3] < 0 ? -1.0f : 1.0f;
+  }
+  vl_free(g->context, p->tangents);
+  p->tangents = three;
+  return true;
+}
+
+/* The arrays go to the scene. */
+static bool add_shape(vlGltf *g, const vlGltfMaterial *m, vlGltfPrimitive *p, vlGroupId group, vlMat4 pose) {
+  float *signs;
+  if (!split_tangents(g, p, &signs)) return false;
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.source.file = g->path;
+  def.group = group;
+  memcpy(def.group_from_shape, pose.m, sizeof def.group_from_shape);
+  def.material = m->material;
+  def.alpha = m->alpha;
+  def.emission = m->emission;
+  def.inside = m->inside;
+  def.one_sided = !m->double_sided;
+  def.vertices = (uint32_t)p->vertices;
+  def.faces = (uint32_t)p->faces;
+  def.positions = p->positions, def.normals = p->normals, def.tangents = p->tangents, def.uvs = p->uvs[0];
+  def.tangent_signs = signs, def.colors = p->colors, def.indices = p->indices;
+  for (int k = 0; k < 3; k++) def.more_uvs[k] = p->uvs[k + 1];
+  vlShapeId id = vl_scene_adopt_shape(g->scene, &def);
+  memset(p, 0, sizeof *p);
+  g->shapes_made++;
+  return id.index != 0;
+}
+
+static bool finish_primitive(vlGltf *g, const vlGltfPlace *at, const vlGltfMaterial *m, vlGltfPrimitive *p,
+                             vlGroupId group, vlMat4 pose, bool posed) {
+  if (!vl_gltf_compact(g, p)) return false;
+  double det = vl_mat4_determinant3(pose), l = 0;
+  for (int i = 0; i < 12; i++) l += i % 4 == 3 ? 0 : pose.m[i] * pose.m[i];
+  if (posed || !(fabs(det) > 1e-12 * l * sqrt(l))) {
+    if (!posed) bake(p, pose, g->context);
+    pose = vl_mat4_identity();
+  }
+  if (!p->normals) {
+    vl_free(g->context, p->tangents);
+    p->tangents = NULL;
+  }
+  if (!m->needs_tangents) {
+    vl_free(g->context, p->tangents);
+    p->tangents = NULL;
+  } else if (!p->tangents && p->uvs[m->tangent_set]) {
+    if (!vl_gltf_make_tangents(g, m->tangent_set, p)) return false;
+  }
+  (void)at;
+  return add_shape(g, m, p, group, pose);
+}
+
+static bool add_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const json_t *primitive,
+                          const vlGltfNode *node, vlGroupId group, vlMat4 pose, vlGltfPrimitive *p) {
+  const json_t *attributes;
+  int64_t position, material;
+  size_t mode = 4, count;
+  uint32_t *indices;
+  if (!vl_gltf_object(g, at, primitive, "attributes", &attributes) ||
+      !vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, "POSITION", g->accessor_count, &position) ||
+      !vl_gltf_size(g, at, primitive, "mode", &mode) || !choose_material(g, at, primitive, &material))
+    return false;
+  if (mode > 6) return vl_gltf_fail(g, VL_GLTF_KEY(at, "mode"), "%zu is not from 0 to 6", mode);
+  if (position < 0) {
+    vl_gltf_warn(g, VL_LOG_WARNING, at, "has no positions and is not drawn");
+    return true;
+  }
+  if (!read_attributes(g, at, primitive, attributes, position, p) ||
+      !read_indices(g, at, primitive, p->vertices, &indices, &count))
+    return false;
+  bool skinned = node && json_object_get(node->json, "skin");
+  if (!vl_gltf_morph(g, at, mesh, primitive, node, p) || (skinned && !vl_gltf_skin(g, at, primitive, node, p))) {
+    vl_free(g->context, indices);
+    return false;
+  }
+  if (!vl_gltf_triangles(g, at, (uint32_t)mode, indices, count, p)) return false;
+  if (p->faces == 0) return true;
+  const vlGltfMaterial *m = vl_gltf_material(g, material, p->colors != NULL);
+  return m && finish_primitive(g, at, m, p, group, pose, skinned);
+}
+
+bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index, vlGroupId group,
+                      vlMat4 pose) {
+  (void)node_index;
+  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "meshes", index);
+  const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
+  size_t count;
+  if (!vl_gltf_array(g, at, mesh, "primitives", &primitives, &count)) return false;
+  for (size_t i = 0; i < count; i++) {
+    const json_t *primitive = json_array_get(primitives, i);
+    const vlGltfPlace *here = VL_GLTF_ITEM(at, "primitives", i);
+    if (!json_is_object(primitive)) return vl_gltf_fail(g, here, "must be an object");
+    vlGltfPrimitive p = {0};
+    bool ok = add_primitive(g, here, mesh, primitive, node, group, pose, &p);
+    vl_gltf_free_primitive(g->context, &p);
+    if (!ok) return false;
+  }
+  return true;
+}

@@ -1,0 +1,142 @@
+/* import/gltf/texture.c: textureInfo objects to textures of the scene: picture, sampler, uv set, KHR_texture_transform.
+ * Pictures are not decoded here: the scene keeps their bytes or names. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "import/gltf/gltf.h"
+
+vlGltfTextureUse vl_gltf_use_color(void) {
+  return (vlGltfTextureUse){.spectrum = true, .channel = -1, .srgb = true, .tint = {1, 1, 1, 1}, .cutoff = NAN};
+}
+
+vlGltfTextureUse vl_gltf_use_channel(int channel, float factor) {
+  vlGltfTextureUse use = {.channel = channel, .tint = {1, 1, 1, 1}, .cutoff = NAN};
+  use.tint[channel] = factor;
+  return use;
+}
+
+static bool read_image(vlGltf *g, size_t index) {
+  vlGltfImage *image = &g->images[index];
+  if (image->read) return true;
+  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "images", index);
+  const json_t *json = vl_gltf_item(g, "images", index);
+  const char *uri = NULL;
+  int64_t view;
+  if (!vl_gltf_text(g, at, json, "uri", &uri) || !vl_gltf_index(g, at, json, "bufferView", g->view_count, &view))
+    return false;
+  if (uri) {
+    if (!vl_gltf_uri(g, VL_GLTF_KEY(at, "uri"), uri, &image->data, &image->size, &image->path)) return false;
+  } else if (view >= 0) {
+    if (!g->views[view].data) return vl_gltf_fail(g, at, "its bufferView holds nothing that velo can read");
+    image->data = g->views[view].data;
+    image->size = g->views[view].size;
+  } else {
+    return vl_gltf_fail(g, at, "has neither uri nor bufferView");
+  }
+  image->read = true;
+  return true;
+}
+
+/* The picture of a texture; extensions put other formats beside it. -1 with true: none, said already. */
+static bool choose_image(vlGltf *g, size_t texture, int64_t *image) {
+  static const char *const others[] = {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds",
+                                       "EXT_texture_avif"};
+  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "textures", texture);
+  const json_t *json = vl_gltf_item(g, "textures", texture);
+  if (!vl_gltf_index(g, at, json, "source", g->image_count, image)) return false;
+  if (*image >= 0) return true;
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    if (vl_gltf_extension(json, others[i]))
+      return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "its picture is there by %s only, which velo does not read",
+                               others[i]);
+  vl_gltf_warn(g, VL_LOG_WARNING, at, "has no picture");
+  return true;
+}
+
+static vlWrap wrap_of(double code) {
+  return code == 33071 ? VL_WRAP_CLAMP : code == 33648 ? VL_WRAP_MIRROR : VL_WRAP_REPEAT;
+}
+
+static bool read_sampler(vlGltf *g, size_t texture, vlTextureDef *def) {
+  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "textures", texture);
+  int64_t index;
+  if (!vl_gltf_index(g, at, vl_gltf_item(g, "textures", texture), "sampler", g->sampler_count, &index)) return false;
+  const json_t *sampler = index < 0 ? NULL : vl_gltf_item(g, "samplers", (size_t)index);
+  const vlGltfPlace *here = VL_GLTF_ITEM(NULL, "samplers", (size_t)(index < 0 ? 0 : index));
+  double s = 10497, t = 10497, large = 9729;
+  if (!vl_gltf_number(g, here, sampler, "wrapS", &s) || !vl_gltf_number(g, here, sampler, "wrapT", &t) ||
+      !vl_gltf_number(g, here, sampler, "magFilter", &large))
+    return false;
+  def->wrap = wrap_of(s);
+  def->wrap_t = wrap_of(t);
+  def->wrap_t_given = true;
+  def->filter = large == 9728 ? VL_FILTER_POINT : VL_FILTER_TRILINEAR;
+  return true;
+}
+
+bool vl_gltf_texture_set(vlGltf *g, const vlGltfPlace *at, const json_t *info, uint32_t *set) {
+  size_t value = 0;
+  const json_t *transform = vl_gltf_extension(info, "KHR_texture_transform");
+  if (!vl_gltf_size(g, at, info, "texCoord", &value) || !vl_gltf_size(g, at, transform, "texCoord", &value))
+    return false;
+  if (value > 3) {
+    if (vl_gltf_once(g, VL_GLTF_TOLD_SETS))
+      vl_gltf_warn(g, VL_LOG_WARNING, at, "uv set %zu: velo keeps sets 0 to 3; set 0 is taken", value);
+    value = 0;
+  }
+  *set = (uint32_t)value;
+  return true;
+}
+
+/* The extension maps glTF's uv, v downwards; ours has v upwards before and after. */
+static bool read_transform(vlGltf *g, const vlGltfPlace *up, const json_t *info, vlTextureDef *def) {
+  const json_t *json = vl_gltf_extension(info, "KHR_texture_transform");
+  if (!json) return true;
+  const vlGltfPlace *at = VL_GLTF_KEY(up, "extensions.KHR_texture_transform");
+  double offset[2] = {0, 0}, scale[2] = {1, 1}, rotation = 0;
+  if (!vl_gltf_numbers(g, at, json, "offset", 2, offset) || !vl_gltf_numbers(g, at, json, "scale", 2, scale) ||
+      !vl_gltf_number(g, at, json, "rotation", &rotation))
+    return false;
+  double c = cos(rotation), s = sin(rotation);
+  double m[6] = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
+  const double flipped[6] = {m[0], -m[1], m[1] + m[2], -m[3], m[4], 1 - m[4] - m[5]};
+  def->st_from_uv_given = true;
+  for (int i = 0; i < 6; i++) def->st_from_uv[i] = (float)flipped[i];
+  return true;
+}
+
+bool vl_gltf_texture(vlGltf *g, const vlGltfPlace *up, const json_t *object, const char *key,
+                     const vlGltfTextureUse *use, vlTextureId *id) {
+  const json_t *info;
+  const vlGltfPlace *at = VL_GLTF_KEY(up, key);
+  int64_t texture, image;
+  *id = (vlTextureId){0};
+  if (!vl_gltf_object(g, up, object, key, &info)) return false;
+  if (!info) return true;
+  if (!vl_gltf_index(g, at, info, "index", g->texture_count, &texture)) return false;
+  if (texture < 0) return vl_gltf_fail(g, at, "\"index\" is missing");
+  if (!choose_image(g, (size_t)texture, &image)) return false;
+  if (image < 0) return true;
+  if (!read_image(g, (size_t)image)) return false;
+  vlTextureDef def = vl_default_texture_def(VL_TEXTURE_IMAGE, use->spectrum);
+  char name[64];
+  snprintf(name, sizeof name, "images[%d]", (int)image);
+  def.name = name;
+  def.source.file = g->path;
+  def.path = g->images[image].path;
+  def.data = def.path ? NULL : g->images[image].data;
+  def.data_size = g->images[image].size;
+  if (!read_sampler(g, (size_t)texture, &def) || !vl_gltf_texture_set(g, at, info, &def.uv_set) ||
+      !read_transform(g, at, info, &def))
+    return false;
+  def.encoding_given = !use->srgb;
+  def.encoding = VL_ENCODING_LINEAR;
+  def.channel = use->channel;
+  def.colors = use->colors;
+  def.bias = use->bias;
+  def.cutoff = use->cutoff;
+  memcpy(def.tint, use->tint, sizeof def.tint);
+  *id = vl_scene_adopt_texture(g->scene, &def);
+  return id->index != 0;
+}

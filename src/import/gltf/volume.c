@@ -1,0 +1,74 @@
+/* import/gltf/volume.c: what a material says about the space behind its surface (KHR_materials_volume), and pictures
+ * that must be worked on before they are textures. */
+#include <math.h>
+#include <string.h>
+
+#include "image/image.h"
+#include "import/gltf/gltf.h"
+
+/* White light through `attenuationDistance` of it takes on `attenuationColor`: sigma_a = -ln(colour) / distance. */
+bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfMaterial *result) {
+  double distance = INFINITY, color[3] = {1, 1, 1}, most = 0;
+  float sigma[3];
+  if (!vl_gltf_number(g, at, json, "attenuationDistance", &distance) ||
+      !vl_gltf_numbers(g, at, json, "attenuationColor", 3, color))
+    return false;
+  if (!(distance > 0)) return vl_gltf_fail(g, VL_GLTF_KEY(at, "attenuationDistance"), "must be above 0");
+  for (int i = 0; i < 3; i++) {
+    double c = color[i] > 1e-4 ? color[i] < 1 ? color[i] : 1 : 1e-4;
+    sigma[i] = (float)(-log(c) / distance);
+    most = sigma[i] > most ? sigma[i] : most;
+  }
+  if (!(most > 0)) return true;
+  vlMediumDef def = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
+  def.source.file = g->path;
+  def.sigma_a = vl_spectrum_rgb(sigma[0], sigma[1], sigma[2]);
+  def.sigma_s = vl_spectrum_constant(0.0f);
+  result->inside = vl_scene_add_medium(g->scene, &def);
+  return result->inside.index != 0;
+}
+
+/* ---- anisotropy -------------------------------------------------------------------------------------------------- */
+
+/* A texture's red and green are the direction of the tangent; a new one holds its angle. Angles of opposite directions
+ * mean the same, but means of them nothing: the new one is not filtered. */
+bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatInput *input) {
+  vlTextureDef def = g->scene->textures.items[from.index - 1];
+  vlImage *image = NULL, *angles = NULL;
+  vlError error;
+  vl_error_clear(&error);
+  vlResult r = def.data ? vl_image_read_memory(g->context, def.name, def.data, def.data_size, &image, &error)
+                        : vl_image_read(g->context, def.path, &image, &error);
+  if (r != VL_OK) return vl_gltf_fail_code(g, r, NULL, "%s", error.message);
+  bool ok = image->channels >= 3 || vl_gltf_fail(g, NULL, "%s: has no directions", def.name);
+  if (ok) {
+    vlImageDef form = vl_default_image_def(image->width, image->height, 1);
+    form.type = VL_PIXEL_F32;
+    ok = vl_image_create(g->context, &form, &angles) == VL_OK || vl_gltf_fail_memory(g);
+  }
+  uint32_t channel[4];
+  float *row = ok ? vl_alloc_array(g->context, image->width, 3 * sizeof *row) : NULL;
+  ok = ok && (row || vl_gltf_fail_memory(g)) && vl_image_color(image, channel) >= 3;
+  if (ok) image->encoding = VL_ENCODING_LINEAR;
+  for (uint32_t y = 0; ok && y < image->height; y++) {
+    float *to = vl_image_row(angles, y);
+    vl_image_row_to_float(image, y, channel, 3, row);
+    for (uint32_t x = 0; x < image->width; x++) {
+      float a = atan2f(2 * row[3 * x + 1] - 1, 2 * row[3 * x] - 1) + rotation;
+      to[x] = a - floorf(a / 3.14159265f) * 3.14159265f; /* pictures hold no negative numbers */
+    }
+  }
+  if (ok) {
+    def.data = NULL, def.path = NULL, def.image = angles;
+    def.filter = VL_FILTER_POINT;
+    def.channel = -1;
+    def.tint[0] = def.tint[1] = def.tint[2] = 1;
+    def.encoding_given = false;
+    input->texture = vl_scene_add_texture(g->scene, &def);
+    ok = input->texture.index != 0;
+  }
+  vl_free(g->context, row);
+  vl_image_destroy(angles);
+  vl_image_destroy(image);
+  return ok;
+}

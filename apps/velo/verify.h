@@ -66,7 +66,7 @@ void target_point(const Target *target, const Placement *placement, double i, do
 vlResult target_build(vlContext *context, const Target *target, const Placement *placement, vlWorld **world,
                       vlError *error);
 /* The marker of the white square (i, j), read between its four corners (across, then down) in the picture: 1 as drawn,
- * 0 another, -1 the square has none. */
+ * 0 another, -1 the square has none, or it is too small. */
 int target_read_marker(const Target *target, int i, int j, const Picture *picture, double corners[4][2]);
 
 /* ---- verify_run.c: pose after pose ------------------------------------------------------------------------------- */

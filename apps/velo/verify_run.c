@@ -26,21 +26,22 @@ typedef struct Pose {
   uint32_t crop[4];
 } Pose;
 
-/* The window round (x, y) is one piece of what the camera sees: all of it sees, and nearly in one direction. */
+/* The window round (x, y) lies in the picture, all of it sees, and straight lines of space are nearly straight in it:
+ * not so at the creases of a map of the sphere, and at poles. */
 static bool in_one_piece(const vlCamera *c, double x, double y, double radius) {
-  double origin[3], middle[3], d[3];
-  if (!vl_camera_unproject(c, x, y, origin, middle)) return false;
-  double least = -1.0, largest = 0.0;
-  for (int k = 0; k < 16; k++) {
-    double a = 2.0 * M_PI * k / 16.0, off = 0.0;
-    double px = x + radius * cos(a), py = y + radius * sin(a);
-    if (!(px >= 0.0 && py >= 0.0 && px <= c->width && py <= c->height)) return false;
-    if (!vl_camera_unproject(c, px, py, origin, d)) return false;
-    for (int i = 0; i < 3; i++) off += (d[i] - middle[i]) * (d[i] - middle[i]);
-    least = least < 0.0 || off < least ? off : least;
-    largest = fmax(largest, off);
+  for (int k = 0; k < 8; k++) {
+    double middle[3] = {0, 0, 0}, o[3], d[3], pixel[2], z;
+    for (int side = 0; side < 2; side++) {
+      double r = side ? -radius : radius, px = x + r * cos(M_PI * k / 8.0), py = y + r * sin(M_PI * k / 8.0);
+      if (!(px >= 0.0 && py >= 0.0 && px <= c->width && py <= c->height)) return false;
+      if (!vl_camera_unproject(c, px, py, o, d)) return false;
+      for (int a = 0; a < 3; a++) middle[a] += 0.5 * (o[a] + d[a]);
+    }
+    if (!vl_camera_project(c, middle, pixel, &z)) return false;
+    double off = (pixel[1] - y) * cos(M_PI * k / 8.0) - (pixel[0] - x) * sin(M_PI * k / 8.0);
+    if (!(fabs(off) < 0.04 * radius)) return false;
   }
-  return c->projection == VL_PROJECTION_ORTHOGRAPHIC || (least > 0.0 && largest < 100.0 * least && largest < 0.25);
+  return true;
 }
 
 static bool place_of(const Pose *pose, double i, double j, double point[3], double pixel[2]) {
@@ -69,7 +70,7 @@ static void expect_corners(Pose *pose) {
       }
       e.x = at[0], e.y = at[1], e.apart = apart;
       e.reach = fmin(8.0, (v->target.charuco ? 0.27 : 0.8) * apart - 1.5);
-      if (e.reach < 3.0 || !in_one_piece(&v->camera, e.x, e.y, e.reach + MARGIN)) continue;
+      if (e.reach < 4.5 || !in_one_piece(&v->camera, e.x, e.y, e.reach + MARGIN)) continue;
       pose->expected[pose->count++] = e;
     }
   double box[4] = {v->camera.width, v->camera.height, 0, 0};

@@ -79,6 +79,11 @@ static double sample(const Picture *p, double x, double y) {
 
 int target_read_marker(const Target *target, int i, int j, const Picture *picture, double c[4][2]) {
   if (!target->charuco || !is_white(i, j)) return -1;
+  for (int k = 0; k < 4; k++) { /* cells of less than 2.4 pixels cannot be read */
+    static const int round[5] = {0, 1, 3, 2, 0};
+    const double *a = c[round[k]], *b = c[round[k + 1]];
+    if (hypot(a[0] - b[0], a[1] - b[1]) < 2.4 * CELLS) return -1;
+  }
   double values[BITS * BITS], black = 0.0, white = 0.0;
   for (int pass = 0; pass < CELLS * CELLS; pass++) {
     int x = pass % CELLS, y = pass / CELLS;
@@ -103,8 +108,8 @@ int target_read_marker(const Target *target, int i, int j, const Picture *pictur
  */
 
 double target_choose(Target *target, const vlCamera *camera) {
-  double side = sqrt((double)camera->width * camera->height) / (target->charuco ? 16.0 : 24.0);
-  side = fmin(fmax(side, target->charuco ? 28.0 : 12.0), target->charuco ? 72.0 : 48.0);
+  double side = sqrt((double)camera->width * camera->height) / (target->charuco ? 16.0 : 20.0);
+  side = fmin(fmax(side, target->charuco ? 28.0 : 16.0), target->charuco ? 72.0 : 48.0);
   double most = 0.7 * fmin(camera->width, camera->height) / side - 1.0;
   target->corners = most > 7.0 ? (target->charuco ? 5 : 7) : most > 5.0 ? 5 : 3;
   return side;

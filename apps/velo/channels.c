@@ -68,6 +68,7 @@ int channels_choose(Channels *c, const Arguments *arguments) {
     return report_usage("--crypto-ranks %u: two ranks share a layer, so that their number is even", c->ranks);
   int status = v[RENDER_CHANNELS].given ? read_list(v[RENDER_CHANNELS].text, &c->bits) : -1;
   if (status >= 0) return status;
+  if (c->bits && c->mode != VL_CHANNEL_MODE_CENTRE) c->bits |= VL_CHANNEL_FILM; /* else nobody knows the point */
   static const int options[2] = {RENDER_FLOW_CAMERA, RENDER_FLOW_CAMERA_BEFORE};
   for (int i = 0; i < 2; i++) {
     if (v[options[i]].given) {

@@ -2,89 +2,33 @@
  * in its header? Everything is computed again in double from what the file holds. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "check.h"
 #include "commands.h"
 #include "header.h"
 #include "image.h"
 #include "report.h"
 
-enum { CHECK_THRESHOLD, CHECK_JSON };
+enum { CHECK_THRESHOLD, CHECK_JSON, CHECK_FLOW, CHECK_FLOW_BEFORE };
 
-/* What is checked; errors are relative. */
-enum {
-  RULE_POINT,
-  RULE_DEPTH,
-  RULE_PIXEL,
-  RULE_RAY,
-  RULE_UNIT_N,
-  RULE_UNIT_NG,
-  RULE_NOTHING,
-  RULE_IDS,
-  RULE_TYPES,
-  RULES
-};
-typedef struct Rule {
-  const char *name, *text;
-  bool checked;
-  double worst;
-  uint32_t x, y; /* of the worst */
-} Rule;
-
-typedef struct Check {
-  const vlImage *image;
-  const float *pixel; /* the one that is looked at */
-  vlCamera camera;
-  uint32_t x0, y0, x, y; /* corner of the data window, and place in the whole picture */
-  int z, distance, p, n, ng, ray, object, material, primitive, instance; /* channels; -1: not in the file */
-  uint64_t hits, misses;
-  double pixel_error; /* largest, in pixels */
-  Rule rules[RULES];
-} Check;
-
-static void note(Check *c, int rule, double error) {
+void check_note(Check *c, int rule, double error) {
   Rule *r = &c->rules[rule];
   if (r->checked && error <= r->worst) return;
   r->checked = true;
-  r->worst = error == error ? error : INFINITY; /* NaN never agrees */
+  r->worst = error == error ? error : (double)INFINITY; /* NaN never agrees */
   r->x = c->x, r->y = c->y;
 }
 
-/* X Y Z of a vector: three channels that stand together in the file's order; -1 unless all are there. */
-static int find_vector(const vlImage *image, const char *name) {
-  char part[40];
-  int first = -1;
-  for (int k = 0; k < 3; k++) {
-    snprintf(part, sizeof part, "%s.%c", name, 'X' + k);
-    int at = vl_image_find_channel(image, part);
-    if (at < 0 || (k && at != first + k)) return -1;
-    if (k == 0) first = at;
-  }
-  return first;
-}
-
-static void find_channels(Check *c) {
-  c->z = vl_image_find_channel(c->image, "Z");
-  c->distance = vl_image_find_channel(c->image, "distance.Y");
-  c->object = vl_image_find_channel(c->image, "id.object");
-  c->material = vl_image_find_channel(c->image, "id.material");
-  c->primitive = vl_image_find_channel(c->image, "id.primitive");
-  c->instance = vl_image_find_channel(c->image, "id.instance");
-  c->p = find_vector(c->image, "P");
-  c->n = find_vector(c->image, "N");
-  c->ng = find_vector(c->image, "Ng");
-  c->ray = find_vector(c->image, "ray");
-}
-
-static double length3(const double v[3]) {
+double check_length3(const double v[3]) {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
-static void load3(const Check *c, int channel, double v[3]) {
+void check_load3(const Check *c, int channel, double v[3]) {
   for (int k = 0; k < 3; k++) v[k] = c->pixel[channel + k];
 }
 
-/* Anything that tells whether the pixel met a surface; without such a channel it is taken to. */
-static bool is_hit(const Check *c) {
+bool check_is_hit(const Check *c) {
   if (c->object >= 0) return c->pixel[c->object] != 0;
   if (c->distance >= 0) return c->pixel[c->distance] != INFINITY;
   if (c->z >= 0) return c->pixel[c->z] != INFINITY;
@@ -93,105 +37,94 @@ static bool is_hit(const Check *c) {
   double v[3];
   int vector = c->ng >= 0 ? c->ng : c->n;
   if (vector < 0) return true;
-  load3(c, vector, v);
-  return length3(v) != 0;
+  check_load3(c, vector, v);
+  return check_length3(v) != 0;
 }
 
-static void check_miss(Check *c, bool in_domain, const double direction[3]) {
-  double wrong = 0, v[3];
-  const int zeros[] = {c->object, c->material, c->primitive, c->instance}, vectors[] = {c->p, c->n, c->ng};
-  for (size_t i = 0; i < sizeof zeros / sizeof *zeros; i++)
-    if (zeros[i] >= 0 && c->pixel[zeros[i]] != 0) wrong = INFINITY;
-  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
-    if (vectors[i] < 0) continue;
-    load3(c, vectors[i], v);
-    if (length3(v) != 0) wrong = INFINITY;
+/* ---- what there is ------------------------------------------------------------------------------------------------
+ */
+
+/* Parts of a channel, "N." and "XYZ", that stand together in the file's order; -1 unless all are there. */
+static int find_parts(const vlImage *image, const char *name, const char *parts) {
+  char part[40];
+  int first = -1;
+  for (int k = 0; parts[k]; k++) {
+    snprintf(part, sizeof part, "%s%c", name, parts[k]);
+    int at = vl_image_find_channel(image, part);
+    if (at < 0 || (k && at != first + k)) return -1;
+    if (k == 0) first = at;
   }
-  if (c->z >= 0 && c->pixel[c->z] != INFINITY) wrong = INFINITY;
-  if (c->distance >= 0 && c->pixel[c->distance] != INFINITY) wrong = INFINITY;
-  note(c, RULE_NOTHING, wrong);
-  if (c->ray < 0) return;
-  load3(c, c->ray, v);
-  for (int k = 0; k < 3 && in_domain; k++) v[k] -= direction[k];
-  note(c, RULE_RAY, length3(v));
+  return first;
 }
 
-/* Errors are measured against the largest number that takes part: that is what floats can promise. */
-static void check_point(Check *c, const double origin[3], const double direction[3]) {
-  double p[3], ray[3], t = c->distance >= 0 ? c->pixel[c->distance] : 0;
-  if (c->ray >= 0)
-    load3(c, c->ray, ray);
-  else
-    memcpy(ray, direction, sizeof ray);
-  if (c->p >= 0)
-    load3(c, c->p, p);
-  else
-    for (int k = 0; k < 3; k++) p[k] = origin[k] + t * ray[k];
-  if (c->p < 0 && c->distance < 0) return;
-  double away[3] = {p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]};
-  double size = fmax(fmax(length3(p), length3(origin)), length3(away));
-  if (c->p >= 0 && c->distance >= 0) {
-    double off[3];
-    for (int k = 0; k < 3; k++) off[k] = p[k] - (origin[k] + t * ray[k]);
-    note(c, RULE_POINT, length3(off) / size);
-  }
-  double pixel[2], z;
-  bool seen = vl_camera_project(&c->camera, p, pixel, &z);
-  if (c->z >= 0) {
-    const double *m = c->camera.camera_from_world;
-    double scale = length3((double[3]){m[8], m[9], m[10]});
-    z = m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11];
-    note(c, RULE_DEPTH, fabs(c->pixel[c->z] - z) / (scale * size));
-  }
-  double error = seen ? hypot(pixel[0] - (c->x + 0.5), pixel[1] - (c->y + 0.5)) : INFINITY;
-  if (error > c->pixel_error) c->pixel_error = error;
-  double larger = c->camera.width > c->camera.height ? c->camera.width : c->camera.height;
-  note(c, RULE_PIXEL, error / larger * fmin(1, length3(away) / size));
+static void find_channels(Check *c) {
+  const vlImage *image = c->image;
+  c->z = vl_image_find_channel(image, "Z");
+  c->distance = vl_image_find_channel(image, "distance.Y");
+  c->object = vl_image_find_channel(image, "id.object");
+  c->material = vl_image_find_channel(image, "id.material");
+  c->primitive = vl_image_find_channel(image, "id.primitive");
+  c->instance = vl_image_find_channel(image, "id.instance");
+  c->samples = vl_image_find_channel(image, "samples");
+  c->alpha = vl_image_find_channel(image, "A");
+  c->p = find_parts(image, "P.", "XYZ");
+  c->n = find_parts(image, "N.", "XYZ");
+  c->ng = find_parts(image, "Ng.", "XYZ");
+  c->ray = find_parts(image, "ray.", "XYZ");
+  c->uv = find_parts(image, "uv.", "UV");
+  c->film = find_parts(image, "film.", "XY");
+  c->flow[0] = find_parts(image, "forward.", "UV");
+  c->flow[1] = find_parts(image, "backward.", "UV");
+  c->hidden[0] = vl_image_find_channel(image, "forward.hidden");
+  c->hidden[1] = vl_image_find_channel(image, "backward.hidden");
+  c->albedo = find_parts(image, "albedo.", "RGB"); /* as the reader sorts colours */
+  c->error = find_parts(image, "error.", "RGB");
 }
 
-static void check_pixel(Check *c) {
-  double origin[3] = {0, 0, 0}, direction[3] = {0, 0, 0}, v[3];
-  bool in_domain = vl_camera_unproject(&c->camera, c->x + 0.5, c->y + 0.5, origin, direction);
-  if (!is_hit(c)) {
-    c->misses++;
-    check_miss(c, in_domain, direction);
+static bool has_any(const Check *c) {
+  const int all[] = {c->z,         c->distance, c->p,    c->n,     c->ng,     c->ray,     c->object, c->material,
+                     c->primitive, c->uv,       c->film, c->error, c->albedo, c->flow[0], c->flow[1]};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+    if (all[i] >= 0) return true;
+  return c->mattes[0].ranks || c->mattes[1].ranks || c->mattes[2].ranks;
+}
+
+/* What the header says of how the picture was taken. */
+static void read_header(Check *c) {
+  vlAttribute a;
+  bool centre = vl_image_find_attribute(c->image, "velo.channels", &a) != VL_OK || strcmp(a.string, "centre") == 0;
+  if (!centre && vl_image_find_attribute(c->image, "velo.filterRadius", &a) == VL_OK)
+    for (int k = 0; k < 2; k++) c->reach[k] = a.numbers[k] * (1 + 1e-6);
+  if (vl_image_find_attribute(c->image, "samplesPerPixel", &a) == VL_OK) c->spp = a.numbers[0];
+  static const char *const positive[] = {"box", "triangle", "gaussian", "blackmanharris"};
+  bool pinhole = vl_image_find_attribute(c->image, "velo.lensRadius", &a) == VL_OK && a.numbers[0] == 0;
+  if (vl_image_find_attribute(c->image, "velo.filter", &a) != VL_OK || !pinhole || c->alpha < 0 ||
+      vl_image_stored_type(c->image, (uint32_t)c->alpha) != VL_PIXEL_F32)
     return;
-  }
-  c->hits++;
-  if (c->ray >= 0) {
-    load3(c, c->ray, v);
-    for (int k = 0; k < 3; k++) v[k] -= direction[k];
-    note(c, RULE_RAY, in_domain ? length3(v) : INFINITY);
-  }
-  check_point(c, origin, direction);
-  if (c->n >= 0) {
-    load3(c, c->n, v);
-    note(c, RULE_UNIT_N, fabs(length3(v) - 1));
-  }
-  if (c->ng >= 0) {
-    load3(c, c->ng, v);
-    note(c, RULE_UNIT_NG, fabs(length3(v) - 1));
-  }
-  const int ids[] = {c->object, c->material, c->primitive};
-  for (size_t i = 0; i < sizeof ids / sizeof *ids; i++)
-    if (ids[i] >= 0)
-      note(c, RULE_IDS, c->pixel[ids[i]] >= 1 && floorf(c->pixel[ids[i]]) == c->pixel[ids[i]] ? 0 : INFINITY);
-  if (c->instance >= 0)
-    note(c, RULE_IDS,
-         c->pixel[c->instance] >= 0 && floorf(c->pixel[c->instance]) == c->pixel[c->instance] ? 0 : INFINITY);
+  for (size_t i = 0; i < sizeof positive / sizeof *positive; i++)
+    c->matte_is_alpha = c->matte_is_alpha || strcmp(a.string, positive[i]) == 0;
+}
+
+static void check_type(Check *c, int channel, int parts, vlPixelType type) {
+  for (int k = 0; k < parts && channel >= 0; k++)
+    check_note(c, RULE_TYPES, vl_image_stored_type(c->image, (uint32_t)(channel + k)) == type ? 0 : (double)INFINITY);
 }
 
 /* Depths and positions as 32-bit floats, ids as integers. */
 static void check_types(Check *c) {
-  const int floats[] = {c->z, c->distance, c->p, c->n, c->ng, c->ray},
-            ids[] = {c->object, c->material, c->primitive, c->instance};
+  const int ones[] = {c->z, c->distance}, twos[] = {c->uv, c->film, c->flow[0], c->flow[1]},
+            threes[] = {c->p, c->n, c->ng, c->ray, c->albedo, c->error},
+            ids[] = {c->object, c->material, c->primitive, c->instance, c->samples, c->hidden[0], c->hidden[1]};
   c->x = c->x0, c->y = c->y0;
-  for (size_t i = 0; i < sizeof floats / sizeof *floats; i++)
-    if (floats[i] >= 0)
-      note(c, RULE_TYPES, vl_image_stored_type(c->image, (uint32_t)floats[i]) == VL_PIXEL_F32 ? 0 : INFINITY);
-  for (size_t i = 0; i < sizeof ids / sizeof *ids; i++)
-    if (ids[i] >= 0)
-      note(c, RULE_TYPES, vl_image_stored_type(c->image, (uint32_t)ids[i]) == VL_PIXEL_U32 ? 0 : INFINITY);
+  for (size_t i = 0; i < sizeof ones / sizeof *ones; i++) check_type(c, ones[i], 1, VL_PIXEL_F32);
+  for (size_t i = 0; i < sizeof twos / sizeof *twos; i++) check_type(c, twos[i], 2, VL_PIXEL_F32);
+  for (size_t i = 0; i < sizeof threes / sizeof *threes; i++) check_type(c, threes[i], 3, VL_PIXEL_F32);
+  for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) check_type(c, ids[i], 1, VL_PIXEL_U32);
+  for (int k = 0; k < 3; k++)
+    for (uint32_t r = 0; r < c->mattes[k].ranks; r++) {
+      check_type(c, c->mattes[k].id[r], 1, VL_PIXEL_F32);
+      check_type(c, c->mattes[k].coverage[r], 1, VL_PIXEL_F32);
+    }
 }
 
 static void check_all(Check *c) {
@@ -203,6 +136,7 @@ static void check_all(Check *c) {
       c->x = c->x0 + x, c->y = c->y0 + y;
       check_pixel(c);
     }
+  check_finish_flow(c);
 }
 
 /* ---- the command ------------------------------------------------------------------------------------------------- */
@@ -215,7 +149,7 @@ static void print_result(const Check *c, const Arguments *arguments, double thre
       const Rule *r = &c->rules[i];
       if (!r->checked) continue;
       printf("%-10s %-8.3g %s", r->name, r->worst, r->text);
-      if (r->worst > threshold) printf(": worst at pixel %u, %u", r->x, r->y);
+      if (r->worst > fmax(threshold, r->limit)) printf(": worst at pixel %u, %u", r->x, r->y);
       putchar('\n');
     }
     if (c->rules[RULE_PIXEL].checked)
@@ -240,49 +174,94 @@ static int judge(const Check *c, const char *path, double threshold) {
   int status = STATUS_OK;
   for (int i = 0; i < RULES; i++) {
     const Rule *r = &c->rules[i];
-    if (!r->checked || r->worst <= threshold) continue;
+    double limit = fmax(threshold, r->limit);
+    if (!r->checked || r->worst <= limit) continue;
     status = report_failure(STATUS_OTHER, "%s: %s: %s: %g, the threshold is %g; worst at pixel %u, %u", path, r->name,
-                            r->text, r->worst, threshold, r->x, r->y);
+                            r->text, r->worst, limit, r->x, r->y);
   }
   return status;
 }
 
+/* The picture that flow leads to: its camera, and its distances if it has them. */
+static int load_other(Check *c, vlContext *context, const Arguments *arguments, vlImage **image) {
+  static const int options[2] = {CHECK_FLOW, CHECK_FLOW_BEFORE};
+  const OptionValue *v = arguments->values;
+  if (v[CHECK_FLOW].given && v[CHECK_FLOW_BEFORE].given)
+    return report_usage("--flow and --flow-before exclude each other");
+  for (int i = 0; i < 2; i++) {
+    const char *path = v[options[i]].text;
+    if (!v[options[i]].given) continue;
+    if (c->flow[i] < 0 || c->hidden[i] < 0)
+      return report_failure(STATUS_SCENE, "%s: has no channels %s.U, .V, .hidden", c->path, i ? "backward" : "forward");
+    c->which = i;
+    int status = image_load(context, path, image);
+    if (status >= 0) return status;
+    if (vl_image_type(*image) != VL_PIXEL_F32)
+      return report_failure(STATUS_SCENE, "%s: its channels are not 32-bit floats", path);
+    status = header_camera(*image, path, &c->other_camera, &c->other_x0, &c->other_y0);
+    if (status >= 0) return status;
+    c->other_distance = vl_image_find_channel(*image, "distance.Y");
+    c->other = *image;
+  }
+  return -1;
+}
+
+/* Everything that is needed before pixels are looked at. */
+static int prepare(Check *c, vlContext *context, const Arguments *arguments, vlImage **image, vlImage **other) {
+  int status = image_load(context, c->path, image);
+  if (status >= 0) return status;
+  c->image = *image;
+  find_channels(c);
+  status = check_find_mattes(c);
+  if (status >= 0) return status;
+  if (!has_any(c))
+    return report_failure(STATUS_SCENE, "%s: has no channel that could be checked (velo render --channels)", c->path);
+  if (vl_image_type(*image) != VL_PIXEL_F32)
+    return report_failure(STATUS_SCENE, "%s: its channels are not 32-bit floats", c->path);
+  status = header_camera(*image, c->path, &c->camera, &c->x0, &c->y0);
+  if (status >= 0) return status;
+  read_header(c);
+  c->material_of = calloc(CHECK_OBJECTS, sizeof *c->material_of);
+  return load_other(c, context, arguments, other);
+}
+
 static int run_check(const Command *command, const Arguments *arguments) {
   (void)command;
-  const char *path = arguments->operands[0];
   const OptionValue *limit = &arguments->values[CHECK_THRESHOLD];
   double threshold = limit->given ? limit->number : 1e-6;
-  static const Rule rules[RULES] = {{"point", "P = origin + distance * ray", false, 0, 0, 0},
-                                    {"depth", "Z = depth of P in the camera", false, 0, 0, 0},
-                                    {"pixel", "project(P) = centre of the pixel", false, 0, 0, 0},
-                                    {"ray", "ray = direction of the camera's ray", false, 0, 0, 0},
-                                    {"N", "|N| = 1", false, 0, 0, 0},
-                                    {"Ng", "|Ng| = 1", false, 0, 0, 0},
-                                    {"nothing", "pixels without a surface hold nothing", false, 0, 0, 0},
-                                    {"ids", "ids are whole numbers from 1", false, 0, 0, 0},
-                                    {"types", "numbers are 32-bit floats, ids 32-bit integers", false, 0, 0, 0}};
-  Check check = {.hits = 0}, *c = &check;
+  static const Rule rules[RULES] = {
+      {"point", "P = origin + distance * ray", 0, false, 0, 0, 0},
+      {"depth", "Z = depth of P in the camera", 0, false, 0, 0, 0},
+      {"pixel", "project(P) = the pixel's point of the film", 0, false, 0, 0, 0},
+      {"ray", "ray = direction of the camera's ray", 0, false, 0, 0, 0},
+      {"N", "|N| = 1", 0, false, 0, 0, 0},
+      {"Ng", "|Ng| = 1", 0, false, 0, 0, 0},
+      {"nothing", "pixels without a surface hold nothing", 0, false, 0, 0, 0},
+      {"ids", "ids are whole numbers from 1, a shape has one material", 0, false, 0, 0, 0},
+      {"types", "numbers are 32-bit floats, ids 32-bit integers", 0, false, 0, 0, 0},
+      {"finite", "uv, albedo and errors are numbers", 0, false, 0, 0, 0},
+      {"film", "the point of the film is the centre, or inside the pixel filter", 0, false, 0, 0, 0},
+      {"samples", "samples are the header's", 0, false, 0, 0, 0},
+      {"matte", "Cryptomatte's ids are the manifest's, the larger coverage first", 0, false, 0, 0, 0},
+      {"coverage", "coverages add up to alpha", 0, false, 0, 0, 0},
+      {"flow", "flow leads to project(P) in the other camera", 0, false, 0, 0, 0},
+      {"hidden", "flow leads outside where it says so", 0, false, 0, 0, 0},
+      {"seen", "share of pixels whose flow leads to other depths than it says", 0.01, false, 0, 0, 0}};
+  Check check = {.path = arguments->operands[0]}, *c = &check;
   memcpy(c->rules, rules, sizeof rules);
   vlContext *context = NULL;
-  vlImage *image = NULL;
+  vlImage *image = NULL, *other = NULL;
   int status = image_context(&context);
-  if (status < 0) status = image_load(context, path, &image);
-  if (status < 0) {
-    c->image = image;
-    find_channels(c);
-    if (c->z < 0 && c->distance < 0 && c->p < 0 && c->n < 0 && c->ng < 0 && c->ray < 0 && c->object < 0 &&
-        c->material < 0 && c->primitive < 0)
-      status = report_failure(STATUS_SCENE, "%s: has no channel that could be checked (velo render --channels)", path);
-    else if (vl_image_type(image) != VL_PIXEL_F32)
-      status = report_failure(STATUS_SCENE, "%s: its channels are not 32-bit floats", path);
-  }
-  if (status < 0) status = header_camera(image, path, &c->camera, &c->x0, &c->y0);
+  if (status < 0) status = prepare(c, context, arguments, &image, &other);
   if (status < 0) {
     check_all(c);
     print_result(c, arguments, threshold);
-    status = image_finish_output(judge(c, path, threshold));
+    status = image_finish_output(judge(c, c->path, threshold));
   }
+  free(c->material_of);
+  check_free_mattes(c);
   vl_image_destroy(image);
+  vl_image_destroy(other);
   vl_context_destroy(context);
   return status;
 }
@@ -290,6 +269,10 @@ static int run_check(const Command *command, const Arguments *arguments) {
 static const Option check_options[] = {
     {CHECK_THRESHOLD, 0, "threshold", OPTION_NUMBER, "ERROR", "largest relative error that is accepted; default 1e-6",
      0, 1, NULL},
+    {CHECK_FLOW, 0, "flow", OPTION_TEXT, "FILE", "the next picture: check that forward.U, .V lead to its pixels", 0, 0,
+     NULL},
+    {CHECK_FLOW_BEFORE, 0, "flow-before", OPTION_TEXT, "FILE", "the picture before: the same of backward.U, .V", 0, 0,
+     NULL},
     {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
@@ -301,7 +284,8 @@ const Command image_check_command = {
         "Computes depths, positions, rays and pixels of FILE's ground truth channels from each other and from\n"
         "the camera in its header, in double precision, and prints the largest relative errors. Positions and\n"
         "depths are measured against the largest of |P|, |origin| and distance, pixels against the larger side\n"
-        "of the picture. Exit code 1 when an error is above the threshold.",
+        "of the picture. Cryptomatte's ids are looked up in its manifest, its coverages compared with alpha.\n"
+        "Exit code 1 when an error is above the threshold.",
     .options = check_options,
     .min_operands = 1,
     .max_operands = 1,

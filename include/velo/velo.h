@@ -10,5 +10,6 @@
 #include "velo/render.h"
 #include "velo/scene.h"
 #include "velo/trajectory.h"
+#include "velo/vanishing.h"
 
 #endif

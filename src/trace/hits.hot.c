@@ -72,7 +72,7 @@ void VL_HOT(vl_stage_emission)(vlTracing *t, uint32_t n) {
 
 /* The material a hit really has: mixes are decided by a hash of the ray, so that the choice needs no sampler dimension.
  */
-static uint32_t resolve_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
+uint32_t VL_HOT(vl_hit_material)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   uint32_t material = world->shapes.items[h->shape[i]].material;
   while (world->materials.items[material].kind == VL_MATERIAL_MIX) { /* parts come before: it ends */
     const vlWorldMaterial *m = &world->materials.items[material];
@@ -137,7 +137,7 @@ void VL_HOT(vl_stage_hits)(vlTracing *t, uint32_t n, bool camera) {
   for (uint32_t i = 0; i < n; i++) {
     if (h->shape[i] == VL_NONE) continue;
     if (t->world->has_interfaces) pass_interfaces(t, p, h, i, rays.t_max);
-    if (h->shape[i] != VL_NONE) h->material[i] = resolve_material(t->world, p, h, i);
+    if (h->shape[i] != VL_NONE) h->material[i] = VL_HOT(vl_hit_material)(t->world, p, h, i);
   }
 }
 

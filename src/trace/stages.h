@@ -98,6 +98,24 @@ typedef struct vlShadowRays {
 
 enum { VL_BUMP_ROWS = 9, VL_TEXTURE_ROWS = VL_NODE_ROWS + VL_BUMP_ROWS };
 
+/* What paths through media carry besides (volume.hot.c): rescaled densities of the path (pbrt book 14.2.2) as the
+ * direction was sampled (u), and as light sampling would have had it (l), and the medium that the ray starts in. */
+typedef struct vlVolumeRows {
+  VL_ROW float u[4][VL_ROW_SIZE], l[4][VL_ROW_SIZE];
+  VL_ROW uint32_t medium[VL_ROW_SIZE]; /* VL_NONE: vacuum */
+} vlVolumeRows;
+
+typedef struct vlVolumeScratch {
+  vlPaths scattered;    /* those that go on from inside of media */
+  vlVolumeRows a, b, c; /* of the paths a, b and of those */
+  VL_ROW uint8_t event[VL_ROW_SIZE];
+  VL_ROW float t[VL_ROW_SIZE]; /* where on the ray a medium scatters */
+  /* shadow rays: densities of the light sample and of the scattering */
+  VL_ROW float light_pdf[VL_ROW_SIZE], pdf[VL_ROW_SIZE], density[4][VL_ROW_SIZE];
+  VL_ROW uint32_t shadow_medium[VL_ROW_SIZE], from[VL_ROW_SIZE];
+  VL_ROW uint32_t kept[VL_ROW_SIZE]; /* which of the scattered */
+} vlVolumeScratch;
+
 struct vlTraceScratch {
   vlPaths a, b;
   vlHits hits_a, hits_b;
@@ -110,6 +128,7 @@ struct vlTraceScratch {
   VL_ROW float time[VL_ROW_SIZE];                  /* of the rays of a, where something moves */
   VL_ROW uint32_t order[VL_ROW_SIZE];
   VL_ROW uint32_t slot[VL_ROW_SIZE]; /* where each material's lanes start; then which lanes live on */
+  vlVolumeScratch volume;
 };
 
 /* A batch on its way: what the stages work on. Paths and hits of a bounce arrive in a, are sorted into b, and go on in
@@ -129,6 +148,8 @@ typedef struct vlTracing {
 
 /* Ids and materials of what the n rays of a meet (hits_a); camera: the first rays, with their t_min and t_max. */
 void VL_HOT(vl_stage_hits)(vlTracing *t, uint32_t n, bool camera);
+/* The material that a hit really has, where it is mixed. */
+uint32_t VL_HOT(vl_hit_material)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
 /* Adds the light that the rays of a run into: sky and glowing surfaces. */
 void VL_HOT(vl_stage_emission)(vlTracing *t, uint32_t n);
 /* The batch's alpha, from its camera rays' hits. */
@@ -145,6 +166,7 @@ void VL_HOT(vl_stage_light_bsdf)(vlTracing *t, uint32_t n);
  * how many. depth: which bounce this is, from 1. */
 uint32_t VL_HOT(vl_stage_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
 void VL_HOT(vl_path_tracer)(vlTracing *t);
+void VL_HOT(vl_volume_tracer)(vlTracing *t); /* volume.hot.c: through participating media */
 
 /* The surfaces that paths->o, d meet, from ids alone. */
 void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits,

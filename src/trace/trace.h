@@ -29,6 +29,7 @@ enum {
   VL_DIM_LOBE = 3,     /* 1 */
   VL_DIM_BSDF_UV = 4,  /* 2 */
   VL_DIM_ROULETTE = 6, /* 1 */
+  VL_DIM_FLIGHT = 7,   /* 1: how far through a medium */
   VL_DIM_STRIDE = 8
 };
 

@@ -99,6 +99,13 @@ static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *s
   switch (def->tracer) {
     case VL_TRACER_RAYCAST: raycast_tracer(&t); break;
     case VL_TRACER_AMBIENT_OCCLUSION: ambient_occlusion_tracer(&t); break;
+    case VL_TRACER_VOLPATH:
+      if (world->media.count > 0) {
+        VL_HOT(vl_volume_tracer)(&t);
+        break;
+      }
+      VL_HOT(vl_path_tracer)(&t);
+      break;
     default: VL_HOT(vl_path_tracer)(&t); break;
   }
 }

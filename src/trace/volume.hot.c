@@ -1,0 +1,480 @@
+/* trace/volume.hot.c: path tracing through participating media: the path tracer's stages for what happens on surfaces,
+ * and between them flights (medium.hot.c) that scatter in media or cross interfaces (pbrt book 14.2.3). All lanes of a
+ * batch are at the same scattering of their paths, in a medium or on a surface:
+ *
+ *   a: rays -> travel -> emission -> those that scatter in media: light samples, phase function -> volume.scattered
+ *                                 -> those on surfaces: as in path.hot.c, b -> a
+ *   a <- both
+ *
+ * Weights: beta over the mean of the rescaled densities u (of the path as it was sampled) and l (as light sampling
+ * would have had its last piece). */
+#include "trace/medium.h"
+#include "trace/phase.h"
+#include "trace/stages.h"
+
+enum { ON_SURFACE, IN_SKY, IN_MEDIUM, AT_END };
+enum { KEY_FLIGHT = 0, KEY_SHADOW = 1, KEY_HERO = 2 };
+
+/* ---- what a lane carries ----------------------------------------------------------------------------------------- */
+
+static bool is_rgb(const vlTracing *t) {
+  return t->world->def.color == VL_COLOR_RGB;
+}
+
+/* Random numbers that the sampler does not give. */
+static uint32_t lane_key(const vlTracing *t, const vlPaths *p, uint32_t i, uint32_t depth, uint32_t purpose) {
+  uint32_t pixel = vl_hash3((uint32_t)p->px[i], (uint32_t)p->py[i], p->index[i]);
+  return vl_hash3(pixel, t->def->sampler->seed, 4 * depth + purpose);
+}
+
+/* The channel that flights are sampled by: the hero wavelength, which is chance enough; of RGB any, one for a path. */
+static int hero_of(const vlTracing *t, const vlPaths *p, uint32_t i) {
+  return is_rgb(t) ? (int)(lane_key(t, p, i, 0, KEY_HERO) % 3) : 0;
+}
+
+static vlFlight load_flight(const vlTracing *t, const vlPaths *p, const vlVolumeRows *v, uint32_t i, uint32_t depth,
+                            uint32_t purpose) {
+  vlFlight f = {.hero = hero_of(t, p, i),
+                .channels = is_rgb(t) ? 3 : 4,
+                .first = -1.0f,
+                .key = lane_key(t, p, i, depth, purpose)};
+  for (int c = 0; c < 4; c++) {
+    f.lambda[c] = p->lambda[c][i];
+    f.beta[c] = p->beta[c][i];
+    f.u[c] = v->u[c][i];
+    f.l[c] = v->l[c][i];
+  }
+  return f;
+}
+
+static void store_flight(vlPaths *p, vlVolumeRows *v, uint32_t i, const vlFlight *f) {
+  for (int c = 0; c < 4; c++) {
+    p->beta[c][i] = f->beta[c];
+    v->u[c][i] = f->u[c];
+    v->l[c][i] = f->l[c];
+  }
+}
+
+static void permute_rows(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n) {
+  for (int c = 0; c < 4; c++)
+    for (uint32_t k = 0; k < n; k++) b->u[c][k] = a->u[c][order[k]], b->l[c][k] = a->l[c][order[k]];
+  for (uint32_t k = 0; k < n; k++) b->medium[k] = a->medium[order[k]];
+}
+
+/* beta is the path's weight from here on. A path that follows its hero alone is judged by that one's density. */
+static void normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i) {
+  float u[4];
+  bool alone = !is_rgb(t) && p->lambda[1][i] == p->lambda[0][i];
+  for (int c = 0; c < 4; c++) u[c] = v->u[alone ? 0 : c][i];
+  float inv = 1.0f / vl_flight_mean(u, is_rgb(t) ? 3 : 4);
+  for (int c = 0; c < 4; c++) {
+    v->u[c][i] = u[c] * inv;
+    p->beta[c][i] *= inv;
+  }
+}
+
+/* The medium beyond a surface in direction w. */
+static uint32_t medium_beyond(const vlWorldShape *s, vlVec3 g, vlVec3 w, uint32_t here) {
+  if (s->inside == s->outside) return here;
+  return vl_dot(w, g) > 0.0f ? s->outside : s->inside;
+}
+
+/* ---- travel ------------------------------------------------------------------------------------------------------ */
+
+static vlPoint met(const vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t i) {
+  return VL_HOT(vl_point_at_time)(t->world, vl_path_time(p, i), vl_lane3(p->ox, p->oy, p->oz, i),
+                                  vl_lane3(p->dx, p->dy, p->dz, i), h->shape[i], h->prim[i], h->instance[i], h->t[i]);
+}
+
+static bool is_interface(const vlWorld *world, uint32_t shape) {
+  return world->materials.items[world->shapes.items[shape].material].kind == VL_MATERIAL_INTERFACE;
+}
+
+/* Past a surface by what its point may be wrong, along the ray; ever forward. */
+static float past(const vlPoint *at, vlVec3 d, float t_min) {
+  float margin = 2.0f * at->offset / vl_max(vl_abs(vl_dot(at->g, d)), 0.01f) + 0x1p-22f * vl_abs(at->t);
+  return vl_max(at->t, t_min) + vl_max(margin, 1e-30f);
+}
+
+/* One lane of a, from medium to medium through interfaces, to what happens to it. Its origin stays that of its last
+ * scattering, which densities of light sampling ask for. */
+static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, const float *t_min_row, const float *t_max_row) {
+  const vlWorld *world = t->world;
+  vlPaths *p = &t->s->a;
+  vlHits *h = &t->s->hits_a;
+  vlVolumeScratch *v = &t->s->volume;
+  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+  float t_min = t_min_row ? t_min_row[i] : 0.0f, time = vl_path_time(p, i), given[4] = {0, 0, 0, 0};
+  vlFlight f = load_flight(t, p, &v->a, i, depth, KEY_FLIGHT);
+  f.first = t->s->shade.u0[i];
+  uint32_t medium = v->a.medium[i], event = AT_END;
+  for (int step = 0; step < 1024; step++) { /* no ray needs so many */
+    bool hit = h->shape[i] != VL_NONE;
+    bool passes = hit && is_interface(world, h->shape[i]);
+    vlPoint at = {.t = t_max_row ? t_max_row[i] : VL_INFINITY};
+    if (hit && (passes || medium != VL_NONE)) at = met(t, p, h, i);
+    vlFlightEnd end = VL_FLIGHT_PASSED;
+    if (medium != VL_NONE)
+      end = VL_HOT(vl_fly)(&world->media.items[medium], o, d, t_min, at.t, depth < t->def->max_depth, &f, given,
+                           &v->t[i]);
+    if (end != VL_FLIGHT_PASSED) {
+      event = end == VL_FLIGHT_SCATTERED ? IN_MEDIUM : AT_END;
+      break;
+    }
+    if (!passes) {
+      event = hit ? ON_SURFACE : IN_SKY;
+      break;
+    }
+    medium = medium_beyond(&world->shapes.items[h->shape[i]], at.g, d, medium);
+    t_min = past(&at, d, t_min);
+    vlRays ray = {p->ox + i,
+                  p->oy + i,
+                  p->oz + i,
+                  p->dx + i,
+                  p->dy + i,
+                  p->dz + i,
+                  &t_min,
+                  t_max_row ? t_max_row + i : NULL,
+                  p->time ? &time : NULL};
+    vl_accel_closest(world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i, h->t + i);
+    t->batch->bounce_rays++;
+  }
+  store_flight(p, &v->a, i, &f);
+  v->a.medium[i] = medium;
+  v->event[i] = (uint8_t)event;
+  for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += given[c];
+  if (event == ON_SURFACE)
+    h->material[i] = VL_HOT(vl_hit_material)(world, p, h, i);
+  else
+    h->shape[i] = VL_NONE;
+}
+
+static void travel(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTraceScratch *s = t->s;
+  vlPaths *p = &s->a;
+  vlHits *h = &s->hits_a;
+  bool camera = depth == 0;
+  const float *t_min = camera ? t->batch->t_min : NULL, *t_max = camera ? t->batch->t_max : NULL;
+  vlRays rays = {p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, p->time ? s->time : NULL};
+  for (uint32_t i = 0; rays.time && i < n; i++) s->time[i] = vl_path_time(p, i);
+  vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
+  if (!camera) t->batch->bounce_rays += n;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_BOUNCE + depth * VL_DIM_STRIDE + VL_DIM_FLIGHT,
+                     s->shade.u0);
+  for (uint32_t i = 0; i < n; i++) travel_lane(t, i, depth, t_min, t_max);
+  for (uint32_t i = 0; camera && i < n; i++) t->batch->alpha[i] = s->volume.event[i] == IN_SKY ? 0.0f : 1.0f;
+}
+
+/* ---- light that rays run into ------------------------------------------------------------------------------------ */
+
+/* light_pdf: of light sampling; 0 where none competes. */
+static void add_light(vlTracing *t, uint32_t i, const float radiance[4], float light_pdf) {
+  const vlPaths *p = &t->s->a;
+  const vlVolumeRows *v = &t->s->volume.a;
+  float density[4];
+  for (int c = 0; c < 4; c++) density[c] = v->u[c][i] + (light_pdf > 0.0f ? v->l[c][i] * light_pdf : 0.0f);
+  float inv = 1.0f / vl_flight_mean(density, is_rgb(t) ? 3 : 4);
+  for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * radiance[c] * inv;
+}
+
+static void add_sky(vlTracing *t, uint32_t i) {
+  const vlWorld *world = t->world;
+  const vlPaths *p = &t->s->a;
+  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+  vlVec3 from_n = vl_lane3(p->from_nx, p->from_ny, p->from_nz, i);
+  float lambda[4], radiance[4];
+  vl_path_lambda(p, i, lambda);
+  for (size_t k = 0; k < world->infinite_lights.count; k++) {
+    uint32_t index = world->infinite_lights.items[k];
+    const vlWorldLight *light = &world->lights.items[index];
+    VL_HOT(vl_infinite_at)(world, light, d, lambda, radiance);
+    float pdf = 0.0f;
+    if (!p->specular[i]) pdf = VL_HOT(vl_infinite_pdf)(world, light, d) * vl_light_pmf(&world->tree, o, from_n, index);
+    add_light(t, i, radiance, pdf);
+  }
+}
+
+static void add_glow(vlTracing *t, uint32_t i) {
+  const vlWorld *world = t->world;
+  const vlPaths *p = &t->s->a;
+  const vlHits *h = &t->s->hits_a;
+  uint32_t index = world->shapes.items[h->shape[i]].first_light + h->prim[i];
+  const vlWorldLight *light = &world->lights.items[index];
+  const vlEmitted *e = &world->emitted.items[light->emitted];
+  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+  vlPoint at = met(t, p, h, i);
+  if (!(vl_dot(d, at.g) < 0.0f) && !e->two_sided) return;
+  float lambda[4], radiance[4], pdf = 0.0f;
+  vl_path_lambda(p, i, lambda);
+  vlVec2 uv = VL_HOT(vl_glow_uv)(world, light, &at);
+  VL_HOT(vl_emitted_at)(world, e, lambda, uv.x, uv.y, false, radiance);
+  if (!p->specular[i])
+    pdf = VL_HOT(vl_area_pdf)(world, light, o, &at) *
+          vl_light_pmf(&world->tree, o, vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), index);
+  add_light(t, i, radiance, pdf);
+}
+
+static void emission(vlTracing *t, uint32_t n) {
+  const vlHits *h = &t->s->hits_a;
+  for (uint32_t i = 0; i < n; i++) {
+    uint8_t event = t->s->volume.event[i];
+    if (event == IN_SKY) add_sky(t, i);
+    if (event == ON_SURFACE && t->world->shapes.items[h->shape[i]].first_light != VL_NONE) add_glow(t, i);
+  }
+}
+
+/* ---- shadow rays ------------------------------------------------------------------------------------------------- */
+
+/* Lane i's light sample as the next shadow ray, from o; value: what the scattering passes on, pdf its density. */
+static uint32_t push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,
+                            const float value[4], float pdf, uint32_t medium, uint32_t count) {
+  vlShadowRays *q = &t->s->shadow;
+  const vlLightSamples *l = &t->s->light;
+  vlVolumeScratch *v = &t->s->volume;
+  vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
+  float length = VL_INFINITY;
+  if (!l->distant[i]) { /* of unit length: interfaces on the way are met at distances */
+    vlVec3 to = vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
+    length = vl_length(to);
+    w = vl_normalize(to);
+  }
+  q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
+  q->dx[count] = w.x, q->dy[count] = w.y, q->dz[count] = w.z;
+  q->t_max[count] = length * (1.0f - 0x1p-21f);
+  for (int c = 0; c < 4; c++) {
+    q->radiance[c][count] = p->beta[c][i] * value[c] * l->radiance[c][i] * l->pdf[i];
+    v->density[c][count] = rows->u[c][i];
+  }
+  v->light_pdf[count] = l->pdf[i];
+  v->pdf[count] = l->delta[i] ? 0.0f : pdf;
+  v->shadow_medium[count] = medium;
+  v->from[count] = i;
+  q->time[count] = vl_path_time(p, i);
+  q->lane[count] = p->lane[i];
+  return count + 1;
+}
+
+/* Transmittance of shadow ray k to f->beta, and its densities: through media and interfaces. */
+static void pass_media(vlTracing *t, uint32_t k, vlFlight *f) {
+  const vlWorld *world = t->world;
+  const vlShadowRays *q = &t->s->shadow;
+  vlVec3 o = vl_lane3(q->ox, q->oy, q->oz, k), d = vl_lane3(q->dx, q->dy, q->dz, k);
+  uint32_t medium = t->s->volume.shadow_medium[k];
+  float t_min = 0.0f;
+  for (int step = 0; step < 1024; step++) {
+    uint32_t shape = VL_NONE, prim = 0, instance = VL_NONE;
+    float t_hit = 0.0f;
+    vlRays ray = {q->ox + k, q->oy + k,    q->oz + k,
+                  q->dx + k, q->dy + k,    q->dz + k,
+                  &t_min,    q->t_max + k, t->s->a.time ? q->time + k : NULL};
+    if (world->has_interfaces) {
+      vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t_hit);
+      t->batch->shadow_rays++;
+    }
+    if (shape != VL_NONE && !is_interface(world, shape)) break; /* cannot be: it is not occluded */
+    vlPoint at = {.t = q->t_max[k]};
+    if (shape != VL_NONE) at = VL_HOT(vl_point_at_time)(world, q->time[k], o, d, shape, prim, instance, t_hit);
+    if (medium != VL_NONE) VL_HOT(vl_attenuate)(&world->media.items[medium], o, d, t_min, at.t, f);
+    if (shape == VL_NONE || !(vl_max(vl_max(f->beta[0], f->beta[1]), vl_max(f->beta[2], f->beta[3])) > 0.0f)) return;
+    medium = medium_beyond(&world->shapes.items[shape], at.g, d, medium);
+    t_min = past(&at, d, t_min);
+  }
+  for (int c = 0; c < 4; c++) f->beta[c] = 0.0f;
+}
+
+static void trace_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth) {
+  vlShadowRays *q = &t->s->shadow;
+  const vlVolumeScratch *v = &t->s->volume;
+  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
+  vl_accel_occluded(t->world, count, &rays, q->occluded);
+  t->batch->shadow_rays += count;
+  for (uint32_t k = 0; k < count; k++) {
+    if (q->occluded[k]) continue;
+    vlFlight f = load_flight(t, p, rows, v->from[k], depth, KEY_SHADOW);
+    for (int c = 0; c < 4; c++) f.beta[c] = f.u[c] = f.l[c] = 1.0f;
+    pass_media(t, k, &f);
+    float density[4];
+    for (int c = 0; c < 4; c++) density[c] = v->density[c][k] * (f.l[c] * v->light_pdf[k] + f.u[c] * v->pdf[k]);
+    float inv = 1.0f / vl_flight_mean(density, f.channels);
+    for (int c = 0; c < 4; c++) t->batch->radiance[c][q->lane[k]] += q->radiance[c][k] * f.beta[c] * inv;
+  }
+}
+
+static void sample_lights(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension) {
+  vlShade *sh = &t->s->shade;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT, sh->u0);
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
+  VL_HOT(vl_stage_lights)(t->world, n, p, &t->s->surface, sh->u0, sh->u1, sh->u2, &t->s->light);
+}
+
+/* ---- scattering in media ----------------------------------------------------------------------------------------- */
+
+static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = &s->volume;
+  const vlPaths *p = &v->scattered;
+  if (t->world->lights.count == 0) return;
+  sample_lights(t, n, p, dimension);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (!(s->light.pdf[i] > 0.0f)) continue;
+    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i), w = vl_lane3(s->light.wx, s->light.wy, s->light.wz, i);
+    float phase = vl_phase(t->world->media.items[v->c.medium[i]].g, vl_dot(d, w));
+    const float value[4] = {phase, phase, phase, phase};
+    count = push_shadow(t, p, &v->c, i, vl_lane3(p->ox, p->oy, p->oz, i), value, phase, v->c.medium[i], count);
+  }
+  trace_shadows(t, p, &v->c, count, depth);
+}
+
+/* New directions by the phase function, roulette as on surfaces. Returns how many go on. */
+static uint32_t phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = &s->volume;
+  vlPaths *p = &v->scattered;
+  vlShade *sh = &s->shade;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_ROULETTE, sh->u0);
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV, sh->u1, sh->u2);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    float most = vl_max(vl_max(p->beta[0][i], p->beta[1][i]), vl_max(p->beta[2][i], p->beta[3][i]));
+    float sum = p->beta[0][i] + p->beta[1][i] + p->beta[2][i] + p->beta[3][i];
+    if (sum != sum) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film counts it */
+    float carried = most * p->eta_scale[i];
+    float survive = depth > 1 && carried < 1.0f ? carried : 1.0f;
+    if (!(most > 0.0f) || !(sh->u0[i] < survive)) continue;
+    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+    float g = t->world->media.items[v->c.medium[i]].g;
+    vlVec3 w = vl_phase_sample(g, d, sh->u1[i], sh->u2[i]);
+    float pdf = vl_phase(g, vl_dot(d, w));
+    for (int c = 0; c < 4; c++) {
+      p->beta[c][i] /= survive;
+      v->c.l[c][i] = v->c.u[c][i] / pdf;
+    }
+    p->dx[i] = w.x, p->dy[i] = w.y, p->dz[i] = w.z;
+    p->pdf[i] = pdf;
+    p->specular[i] = 0;
+    s->order[count++] = i;
+  }
+  return count;
+}
+
+/* The lanes of a that scatter in media, to their next rays in volume.scattered. Returns how many go on; s->order names
+ * them. */
+static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = &s->volume;
+  vlPaths *p = &v->scattered;
+  uint32_t count = 0, dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
+  for (uint32_t i = 0; i < n; i++)
+    if (v->event[i] == IN_MEDIUM) s->order[count++] = i;
+  if (count == 0) return 0;
+  VL_HOT(vl_permute_paths)(&s->a, p, s->order, count);
+  permute_rows(&v->a, &v->c, s->order, count);
+  for (uint32_t i = 0; i < count; i++) {
+    normalise(t, p, &v->c, i);
+    float distance = v->t[s->order[i]];
+    p->ox[i] += distance * p->dx[i], p->oy[i] += distance * p->dy[i], p->oz[i] += distance * p->dz[i];
+    p->cone[i] += t->def->pixel_spread * distance;
+    p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
+    s->surface.px[i] = p->ox[i], s->surface.py[i] = p->oy[i], s->surface.pz[i] = p->oz[i];
+    s->surface.nx[i] = s->surface.ny[i] = s->surface.nz[i] = 0.0f; /* light comes from everywhere */
+  }
+  phase_light(t, count, depth, dimension);
+  return phase_scatter(t, count, depth + 1, dimension);
+}
+
+/* ---- scattering on surfaces -------------------------------------------------------------------------------------- */
+
+static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  const vlPaths *p = &s->b;
+  const vlShade *sh = &s->shade;
+  const vlLightSamples *l = &s->light;
+  if (t->world->lights.count == 0) return;
+  sample_lights(t, n, p, dimension);
+  VL_HOT(vl_stage_light_bsdf)(t, n);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (!(l->pdf[i] > 0.0f)) continue;
+    const float value[4] = {sh->value[0][i], sh->value[1][i], sh->value[2][i], sh->value[3][i]};
+    float sum = value[0] + value[1] + value[2] + value[3];
+    if (!(sum > 0.0f) && sum == sum) continue;
+    vlVec3 at = vl_lane3(s->surface.px, s->surface.py, s->surface.pz, i);
+    vlVec3 g = vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w = vl_lane3(l->wx, l->wy, l->wz, i);
+    vlVec3 o = vl_offset_origin(at, g, s->surface.offset[i], w);
+    const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
+    count = push_shadow(t, p, &s->volume.b, i, o, value, sh->pdf[i], medium_beyond(shape, g, w, s->volume.b.medium[i]),
+                        count);
+  }
+  trace_shadows(t, p, &s->volume.b, count, depth);
+}
+
+static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = &s->volume;
+  uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
+  n = VL_HOT(vl_stage_sort)(t, n);
+  if (n == 0) return 0;
+  permute_rows(&v->a, &v->b, s->order, n);
+  VL_HOT(vl_stage_shade)(t, n);
+  for (uint32_t i = 0; i < n; i++) normalise(t, &s->b, &v->b, i);
+  surface_light(t, n, depth, dimension);
+  uint32_t count = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
+  permute_rows(&v->b, &v->a, s->order, count);
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = s->order[k];
+    float pdf = s->a.pdf[k], inv = pdf > 0.0f ? 1.0f / pdf : 0.0f;
+    for (int c = 0; c < 4; c++) v->a.l[c][k] = v->a.u[c][k] * inv;
+    v->a.medium[k] = medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]],
+                                   vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i),
+                                   vl_lane3(s->a.dx, s->a.dy, s->a.dz, k), v->a.medium[k]);
+  }
+  return count;
+}
+
+/* ---- the tracer -------------------------------------------------------------------------------------------------- */
+
+/* Paths k of volume.scattered to the end of a. */
+static uint32_t append(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n) {
+  vlPaths *a = &t->s->a;
+  const vlPaths *b = &t->s->volume.scattered;
+  vlVolumeRows *va = &t->s->volume.a;
+  const vlVolumeRows *vb = &t->s->volume.c;
+  for (uint32_t k = 0; k < count; k++, n++) {
+    uint32_t i = order[k];
+    a->ox[n] = b->ox[i], a->oy[n] = b->oy[i], a->oz[n] = b->oz[i];
+    a->dx[n] = b->dx[i], a->dy[n] = b->dy[i], a->dz[n] = b->dz[i];
+    for (int c = 0; c < 4; c++) {
+      a->beta[c][n] = b->beta[c][i], a->lambda[c][n] = b->lambda[c][i];
+      va->u[c][n] = vb->u[c][i], va->l[c][n] = vb->l[c][i];
+    }
+    a->pdf[n] = b->pdf[i];
+    a->from_nx[n] = b->from_nx[i], a->from_ny[n] = b->from_ny[i], a->from_nz[n] = b->from_nz[i];
+    a->eta_scale[n] = b->eta_scale[i], a->cone[n] = b->cone[i];
+    a->specular[n] = b->specular[i];
+    a->px[n] = b->px[i], a->py[n] = b->py[i], a->index[n] = b->index[i], a->lane[n] = b->lane[i];
+    va->medium[n] = vb->medium[i];
+  }
+  return n;
+}
+
+void VL_HOT(vl_volume_tracer)(vlTracing *t) {
+  vlTraceScratch *s = t->s;
+  vlVolumeRows *rows = &s->volume.a;
+  uint32_t n = t->batch->n;
+  for (uint32_t i = 0; i < n; i++) {
+    for (int c = 0; c < 4; c++) rows->u[c][i] = rows->l[c][i] = 1.0f;
+    rows->medium[i] = t->world->camera_medium;
+    if (is_rgb(t)) s->a.beta[3][i] = 0.0f;
+  }
+  for (uint32_t depth = 0; n > 0; depth++) {
+    travel(t, n, depth);
+    emission(t, n);
+    if (depth >= t->def->max_depth) break;
+    uint32_t inside = scatter_in_media(t, n, depth);
+    uint32_t *kept = s->volume.kept;
+    for (uint32_t k = 0; k < inside; k++) kept[k] = s->order[k];
+    n = scatter_on_surfaces(t, n, depth);
+    n = append(t, kept, inside, n);
+  }
+}

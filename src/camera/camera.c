@@ -129,6 +129,10 @@ vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t heigh
   double before = camera->width < camera->height ? camera->width : camera->height;
   double scale = (width < height ? width : height) / before;
   /* planes that hold the whole sphere, or a cube, are stretched: each side keeps what it spans */
+  if (camera->projection == VL_PROJECTION_OPTICS) { /* the film's diagonal stays */
+    double w = width, h = height, w0 = camera->width, h0 = camera->height;
+    scale = sqrt((w * w + h * h) / (w0 * w0 + h0 * h0));
+  }
   bool stretched = camera->projection == VL_PROJECTION_EQUIRECTANGULAR || camera->projection == VL_PROJECTION_CUBE ||
                    camera->projection == VL_PROJECTION_EQUAL_AREA;
   double scale_x = stretched ? (double)width / camera->width : scale;

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "camera/optics.h"
 #include "camera/parts.h"
 #include "camera/rays.h"
 #include "math/approx_double.h"
@@ -35,6 +36,11 @@ static void compile_lens(const vlCamera *camera, vlCameraCompiled *c) {
   c->ahead = vl_camera_sees_ahead(camera->projection);
   c->vignetting = l->vignetting;
   c->optics = l->optics;
+  if (c->optics) {
+    double width = camera->width, height = camera->height;
+    c->pitch = 2.0 * c->optics->half / sqrt(width * width + height * height);
+    if (c->near_plane < c->optics->front) c->near_plane = c->optics->front;
+  }
   if (c->optics || !c->has_lens) return;
   c->focus[0] = l->tilt[0] * c->inv_focus + l->hinge[0];
   c->focus[1] = l->tilt[1] * c->inv_focus + l->hinge[1];

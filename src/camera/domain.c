@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/error.h"
+#include "camera/optics.h"
 #include "camera/parts.h"
 #include "camera/points.h"
 
@@ -159,10 +160,22 @@ static uint32_t steps_everywhere(const vlCamera *c) {
 /* ---- the picture ----------------------------------------------------------------------------------------------------
  */
 
+/* Of a lens of many elements: rings of the film that no light reaches. */
+static double dark_share(const vlCamera *camera, const vlCameraCompiled *c) {
+  uint32_t dark = 0;
+  for (int i = 0; i < GRID * GRID; i++) {
+    double x = camera->width * (i % GRID + 0.5) / GRID - c->cx, y = camera->height * (i / GRID + 0.5) / GRID - c->cy;
+    double ring = c->pitch * sqrt(x * x + y * y) / c->optics->half * VL_PUPILS;
+    dark += c->optics->pupils[ring < VL_PUPILS ? (int)ring : VL_PUPILS - 1].area == 0.0;
+  }
+  return dark / (double)(GRID * GRID);
+}
+
 static double share_outside(const vlCamera *camera) {
   vlCameraCompiled c;
   vl_camera_compile(camera, &c);
   if (c.plain) return 0.0;
+  if (c.optics) return dark_share(camera, &c);
   uint32_t outside = 0;
   for (int i = 0; i < GRID * GRID; i++) {
     double x = camera->width * (i % GRID + 0.5) / GRID, y = camera->height * (i / GRID + 0.5) / GRID;
@@ -218,7 +231,7 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
   vlDistortionMap *m = &camera->distortion;
   if (m->steps > 0) m->radius = fold_radius(m, fmin(limit, 1e4));
   vl_camera_measure(camera);
-  bool calibrated = m->steps > 0 || kind >= VL_PROJECTION_FOV;
+  bool calibrated = m->steps > 0 || (kind >= VL_PROJECTION_FOV && kind != VL_PROJECTION_OPTICS);
   if (calibrated && vl_is_unset(def->max_angle) && camera->outside > 0.0 && warning && !*warning)
     *warning = "camera: the lens folds or its model ends inside the picture; what lies beyond sees nothing (alpha 0)";
   return VL_OK;

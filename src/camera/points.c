@@ -1,12 +1,18 @@
 /* camera/points.c: pixels to rays and points to pixels, the public functions: one by one and in arrays. */
 #include <math.h>
 
+#include "camera/optics.h"
 #include "camera/orthographic.h"
 #include "camera/perspective.h"
 #include "camera/place.h"
 #include "camera/points.h"
 
 vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y) {
+  if (c->optics) {
+    vlCameraLocal r = {0.0, 0.0, 0.0, 0.0, 1.0};
+    bool valid = vl_optics_unproject(c->optics, c->pitch * x, c->pitch * y, &r);
+    return (vlDirection){r.dx, r.dy, r.dz, valid ? 1.0 : 0.0};
+  }
   vlPlanePoint p = vl_pixel_to_plane(c, x, y);
   double face = vl_cube_cell(p.x, p.y);
   const vlDistortionMap *m = &c->distortion;
@@ -22,6 +28,12 @@ vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y) {
 }
 
 vlPlanePoint vl_camera_film_point(const vlCameraCompiled *c, double x, double y, double z) {
+  if (c->optics) {
+    double film[2] = {0.0, 0.0};
+    bool valid = vl_optics_project(c->optics, x, y, z, film);
+    return (vlPlanePoint){valid ? film[0] / c->pitch + c->cx : 0.0, valid ? film[1] / c->pitch + c->cy : 0.0,
+                          valid ? 1.0 : 0.0};
+  }
   vlDirection d = {x, y, z, 1.0};
   if (c->eye_circle != 0.0) d = vl_eye_direction(c->eye_circle, x, y, z);
   vlPlanePoint p = vl_plane_project(c->projection, c, d.x, d.y, d.z);
@@ -38,6 +50,11 @@ static vlCameraLocal local_ray(const vlCameraCompiled *c, double x, double y, do
   *valid = 1.0;
   if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) return vl_orthographic_unproject(c, x, y);
   if (c->plain) return vl_perspective_unproject(c, x, y);
+  if (c->optics) {
+    vlCameraLocal r = {0.0, 0.0, 0.0, 0.0, 1.0};
+    *valid = vl_optics_unproject(c->optics, c->pitch * x, c->pitch * y, &r) ? 1.0 : 0.0;
+    return r;
+  }
   vlDirection d = vl_camera_direction(c, x, y);
   *valid = d.valid;
   return (vlCameraLocal){0.0, 0.0, d.x, d.y, d.z};

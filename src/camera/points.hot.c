@@ -1,6 +1,7 @@
 /* camera/points.hot.c: pixels to directions and points to pixels in chunks of doubles, in stages: affine map,
  * distortion, projection. Each stage is a loop of its own, so that every projection goes with every lens at the price
  * of their sum. Compiled once per instruction set. */
+#include "camera/optics_chunk.h"
 #include "camera/stages.h"
 
 #include "camera/orthographic.h"
@@ -96,7 +97,9 @@ static inline __attribute__((always_inline)) void plain_loop(const int orthograp
 void VL_HOT(vl_camera_unproject_chunk)(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in,
                                        vlCameraPoints *out) {
   uint32_t count = VL_PAD(n);
-  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) {
+  if (c->optics) {
+    vl_optics_unproject_chunk(c, count, in, out);
+  } else if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) {
     plain_loop(1, c, count, in, out);
   } else if (c->plain) {
     plain_loop(0, c, count, in, out);
@@ -137,6 +140,10 @@ void VL_HOT(vl_camera_project_chunk)(const vlCameraCompiled *camera, uint32_t n,
                                      vlCameraPixels *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   uint32_t count = VL_PAD(n);
+  if (c->optics) {
+    vl_optics_project_chunk(c, count, in, out);
+    return;
+  }
 #define PROJECT_LOOP(kind) project_loop(kind, 0, c, count, in, out)
 #define EYES_LOOP(kind) project_loop(kind, 1, c, count, in, out)
   if (c->eye_circle != 0.0) {

@@ -52,10 +52,11 @@ typedef struct vlCameraCompiled {
   bool vignetting; /* rays have weights */
   vlBlades blades; /* none: count 0 */
   const vlAperture *aperture;
-  double lens_turn[2]; /* cosine and sine that turn the picture */
-  double inv_ratio;    /* of the opening's width */
-  const vlOptics *optics;
-  double eye_circle; /* of omnidirectional stereo: the circle's radius, signed; 0: none */
+  double lens_turn[2];    /* cosine and sine that turn the picture */
+  double inv_ratio;       /* of the opening's width */
+  const vlOptics *optics; /* their rays go their own way: optics.hot.c */
+  double pitch;           /* side of a pixel on their film, scene units */
+  double eye_circle;      /* of omnidirectional stereo: the circle's radius, signed; 0: none */
   vlCameraTime when;
 } vlCameraCompiled;
 

@@ -8,8 +8,9 @@
 #include "camera/place.h"
 #include "camera/stages.h"
 
-/* How the samples' lens_u and lens_v are meant: as random numbers, or as points of the opening already. */
-enum { NO_LENS, DISC, POINTS };
+/* How the samples' lens_u and lens_v are meant: as random numbers, or as points of the opening already.
+ * OPTICS: the directions start at d->x, d->y. */
+enum { NO_LENS, DISC, POINTS, OPTICS };
 
 /* One loop, inlined once for each projection and kind of lens: the two constants are decided before it. */
 static inline __attribute__((always_inline)) void ray_loop(const int orthographic, const int lens,
@@ -62,6 +63,7 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
     double depth = flat ? (local.dz > 1e-300 ? local.dz : 1e-300) : 1.0;
     if (lens == DISC) local = vl_lens_apply_at(c, local, vl_lens_disk(lens_u[i], lens_v[i]), depth);
     if (lens == POINTS) local = vl_lens_bend(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
+    if (lens == OPTICS) local.ox = d->x[i], local.oy = d->y[i];
     vlWorldRay w = vl_camera_place(c, local);
     if (eyes) w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, d->dx[i], d->dz[i]), w);
     int good = d->valid[i] > 0.0;
@@ -153,8 +155,28 @@ static void shaped_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
   }
 }
 
+static void optics_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, const vlCameraRays *r) {
+  vlDirections d;
+  double seen[VL_CAMERA_CHUNK];
+  for (uint32_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
+    uint32_t n = count - first < VL_CAMERA_CHUNK ? count - first : VL_CAMERA_CHUNK;
+    for (uint32_t i = 0, k = first; i < n; i++, k++) {
+      d.x[i] = (double)s->pixel_x[k] - c->cx + (double)s->film_x[k];
+      d.y[i] = (double)s->pixel_y[k] - c->cy + (double)s->film_y[k];
+    }
+    VL_HOT(vl_camera_optics)
+    (c, n, s->lens_u + first, s->lens_v + first, &d, seen, r->weight ? r->weight + first : NULL);
+    place_loop(OPTICS, 0, c, first, n, &d, s, r);
+    for (uint32_t i = 0; r->valid && i < n; i++) r->valid[first + i] = (float)seen[i];
+  }
+}
+
 static void still_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r) {
   uint32_t count = VL_PAD(n);
+  if (c->optics) {
+    optics_rays(c, count, s, r);
+    return;
+  }
   if (!c->plain) {
     staged_rays(c, count, s, r);
     return;

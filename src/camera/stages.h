@@ -21,5 +21,10 @@ void VL_HOT(vl_camera_unproject_chunk)(const vlCameraCompiled *c, uint32_t n, co
                                        vlCameraPoints *out);
 void VL_HOT(vl_camera_project_chunk)(const vlCameraCompiled *c, uint32_t n, const vlCameraPoints *in,
                                      vlCameraPixels *out);
+/* A lens of many elements. In: d->x, d->y, pixels from the principal point; lens_u, lens_v. Out: rays in camera space,
+ * unit length: d->x, d->y are where they start in the plane z = 0; d->valid: 0 where the lens stops them; seen: 0 where
+ * no light comes at all; weight (may be null): what they count. count is padded. */
+void VL_HOT(vl_camera_optics)(const vlCameraCompiled *c, uint32_t count, const float *lens_u, const float *lens_v,
+                              vlDirections *d, double *seen, float *weight);
 
 #endif

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "base/error.h"
-#include "camera/aperture.h"
+#include "camera/optics.h"
 #include "camera/parts.h"
 
 static const double agreement = 1e-6;
@@ -169,6 +169,45 @@ static vlResult exposure(const vlCameraDef *def, vlCamera *camera, vlError *erro
   return VL_OK;
 }
 
+/* A lens of many elements says focal length, focus and opening itself. */
+static vlResult optics(const vlCameraDef *def, vlCamera *camera, vlError *error) {
+  const vlLensDef *d = &def->lens;
+  if (def->projection != VL_PROJECTION_OPTICS || !d->optics)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s",
+                   d->optics ? "lens.optics needs the projection OPTICS" : "the projection OPTICS needs lens.optics");
+  const struct {
+    const char *name;
+    bool there;
+  } foreign[] = {{"fov", given(def->fov)},
+                 {"view_distance", given(def->view_distance)},
+                 {"focal_mm", given(def->focal_mm)},
+                 {"sensor_width_mm", given(def->sensor_width_mm)},
+                 {"fx", given(def->fx)},
+                 {"fy", given(def->fy)},
+                 {"skew", given(def->skew) && def->skew != 0.0},
+                 {"a screen window", given(def->screen_min_x)},
+                 {"lens_radius", def->lens_radius != 0.0},
+                 {"focus_distance", given(def->focus_distance)},
+                 {"focus_point", given(d->focus_point[0])},
+                 {"focus_pixel", given(d->focus_pixel[0])},
+                 {"f_number", given(d->f_number)},
+                 {"iso", given(d->iso)},
+                 {"blades", d->blades != 0},
+                 {"ratio", d->ratio != 1.0},
+                 {"an aperture picture", d->aperture != NULL},
+                 {"a tilt", d->tilt_x != 0.0 || d->tilt_y != 0.0 || d->lens_tilt_x != 0.0 || d->lens_tilt_y != 0.0}};
+  for (size_t i = 0; i < sizeof foreign / sizeof *foreign; i++)
+    if (foreign[i].there)
+      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is given; a lens of many elements has its own, or none",
+                     foreign[i].name);
+  double width = def->width, height = def->height;
+  camera->fx = camera->fy =
+      d->optics->info.rear_principal / (2.0 * d->optics->half) * sqrt(width * width + height * height);
+  camera->lens_radius = sqrt(d->optics->pupils[0].area / 3.14159265358979323846);
+  camera->focus_distance = d->optics->info.focus_distance;
+  return VL_OK;
+}
+
 vlResult vl_camera_lens(const vlCameraDef *def, vlCamera *camera, vlError *error) {
   const vlLensDef *d = &def->lens;
   camera->lens = (vlLens){.blades = d->blades,
@@ -179,8 +218,7 @@ vlResult vl_camera_lens(const vlCameraDef *def, vlCamera *camera, vlError *error
                           .aperture = d->aperture,
                           .optics = d->optics};
   vlResult result = check(def, error);
-  if (result == VL_OK && (def->projection == VL_PROJECTION_OPTICS || d->optics))
-    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera: lenses of many elements are not there yet");
+  if (result == VL_OK && (def->projection == VL_PROJECTION_OPTICS || d->optics)) return optics(def, camera, error);
   double focal_mm = focal_length(def, camera);
   if (result == VL_OK) result = radius(def, focal_mm, camera, error);
   if (result == VL_OK) result = tilt(def, focal_mm, camera, error);

@@ -432,6 +432,32 @@ VL_API vlLoadDef vl_default_load_def(void);
  * the file. Errors: SCENE, MISSING, IO, MEMORY, UNSUPPORTED (as SCENE with a clear message). def may be null. */
 VL_API vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 
+/* What a scene that a file describes may lack: a camera, light, a ground to stand on. */
+typedef enum vlEnvironmentKind {
+  VL_ENVIRONMENT_AUTO,   /* the studio where the file has no light of its own */
+  VL_ENVIRONMENT_NONE,   /* none is added */
+  VL_ENVIRONMENT_STUDIO, /* neutral: soft lights in a grey room, brighter than it above and in front */
+  VL_ENVIRONMENT_SKY,    /* a clear sky and the sun */
+  VL_ENVIRONMENT_WHITE,  /* radiance 1 from everywhere */
+  VL_ENVIRONMENT_FILE    /* path */
+} vlEnvironmentKind;
+typedef struct vlCompleteDef {
+  uint32_t cookie;
+  uint32_t width, height; /* of the picture, for framing and where the file says none; 0: the settings' */
+  vlEnvironmentKind environment;
+  const char *path; /* a picture twice as wide as high (longitude, latitude; its centre lies ahead of one who looks
+                     * along -front) or square (equal-area octahedral) */
+  double rotation;  /* radians about up, counter-clockwise from above */
+  float strength;   /* factor on the environment's radiance */
+  double up[3], front[3]; /* of the world; default +y, +z (glTF's) */
+  bool ground;            /* a wide grey disk under everything */
+  bool reframe;           /* a new camera even where the file has one */
+} vlCompleteDef;
+VL_API vlCompleteDef vl_default_complete_def(void);
+/* Adds what is missing (settings' camera_missing, light_missing) or asked for. The camera sees everything from the
+ * front, a little from the right and above. def may be null. Errors: as vl_scene_result; MISSING, IO (path). */
+VL_API vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *def, vlError *error);
+
 typedef struct vlSceneInfo {
   uint64_t shapes, triangles, vertices, textures, materials, lights, emissive_shapes, groups, instances, media;
 } vlSceneInfo;

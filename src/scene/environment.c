@@ -1,0 +1,187 @@
+/* scene/environment.c: see environment.h. Directions here: x to the right, y ahead (away from the viewer), z up; the
+ * picture is the equal-area octahedral square that infinite lights take (math/octahedral.h). */
+#include "scene/environment.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "image/image.h"
+#include "math/octahedral.h"
+
+enum { BUILT_IN_SIDE = 512, MOST_SIDE = 2048 };
+
+bool vl_scene_axes(const vlCompleteDef *def, double right[3], double up[3], double front[3]) {
+  double l = 0, d = 0, f = 0;
+  for (int i = 0; i < 3; i++) l += def->up[i] * def->up[i];
+  for (int i = 0; i < 3; i++) up[i] = l > 0 ? def->up[i] / sqrt(l) : 0;
+  for (int i = 0; i < 3; i++) d += def->front[i] * up[i];
+  for (int i = 0; i < 3; i++) front[i] = def->front[i] - d * up[i], f += front[i] * front[i];
+  for (int i = 0; i < 3; i++) front[i] /= f > 0 ? sqrt(f) : 1;
+  for (int i = 0; i < 3; i++) right[i] = up[(i + 1) % 3] * front[(i + 2) % 3] - up[(i + 2) % 3] * front[(i + 1) % 3];
+  return l > 0 && f > 1e-12 && isfinite(l + f);
+}
+
+/* ---- the studio -------------------------------------------------------------------------------------------------- */
+
+static float ramp(float x, float from, float to) {
+  float t = (x - from) / (to - from);
+  t = t < 0 ? 0 : t > 1 ? 1 : t;
+  return t * t * (3 - 2 * t);
+}
+
+/* A soft light: a rectangle on the sphere, angles in degrees from straight ahead to the right, and up. */
+static float soft_box(float azimuth, float elevation, float at, float height, float half_width, float half_height,
+                      float edge) {
+  float a = fabsf(azimuth - at);
+  a = a > 180 ? 360 - a : a;
+  return ramp(half_width - a, 0, edge) * ramp(half_height - fabsf(elevation - height), 0, edge);
+}
+
+static float studio(vlVec3 d) {
+  float azimuth = vl_atan2(d.x, d.y) * 57.29578f, elevation = 90.0f - vl_acos(vl_clamp(d.z, -1, 1)) * 57.29578f;
+  /* A grey room: floor, and walls that grow brighter upwards. */
+  float floor = 0.20f + 0.10f * ramp(elevation, -90, 0), wall = 0.42f + 0.25f * ramp(elevation, 0, 90);
+  float y = floor + (wall - floor) * ramp(elevation, -1.5f, 1.5f);
+  /* The viewer stands at 180 degrees: key light over his left shoulder, fill light on the right, two from behind, one
+   * above. */
+  y += 6.5f * soft_box(azimuth, elevation, -135, 42, 32, 24, 6);
+  y += 1.6f * soft_box(azimuth, elevation, 105, 22, 16, 34, 6);
+  y += 3.0f * soft_box(azimuth, elevation, 38, 38, 16, 16, 5);
+  y += 1.8f * soft_box(azimuth, elevation, -52, 24, 9, 30, 5);
+  y += 2.2f * ramp(elevation, 66, 76);
+  return y;
+}
+
+static void fill_studio(vlImage *image) {
+  for (uint32_t y = 0; y < image->height; y++) {
+    float *row = vl_image_row(image, y);
+    for (uint32_t x = 0; x < image->width; x++)
+      row[x] = studio(
+          vl_octahedral_decode(((float)x + 0.5f) / (float)image->width, ((float)y + 0.5f) / (float)image->height));
+  }
+}
+
+/* Scattered light alone; the sun is a light of its own. */
+static void fill_sky(vlImage *image) {
+  static const float zenith[3] = {0.16f, 0.32f, 0.75f}, horizon[3] = {0.72f, 0.85f, 1.0f},
+                     ground[3] = {0.22f, 0.20f, 0.18f};
+  for (uint32_t y = 0; y < image->height; y++) {
+    float *row = vl_image_row(image, y);
+    for (uint32_t x = 0; x < image->width; x++) {
+      vlVec3 d =
+          vl_octahedral_decode(((float)x + 0.5f) / (float)image->width, ((float)y + 0.5f) / (float)image->height);
+      float height = 1 - (1 - (d.z > 0 ? d.z : 0)) * (1 - (d.z > 0 ? d.z : 0)), above = ramp(d.z, -0.02f, 0.02f);
+      for (int c = 0; c < 3; c++) {
+        float sky = horizon[c] + (zenith[c] - horizon[c]) * height;
+        row[3 * x + (uint32_t)c] = ground[c] + (sky - ground[c]) * above;
+      }
+    }
+  }
+}
+
+/* ---- files ------------------------------------------------------------------------------------------------------- */
+
+/* Mean of 2 x 2 points of each cell, each between four pixels. */
+static void from_latitudes(const vlImage *from, const float *pixels, uint32_t channels, vlImage *to) {
+  double w = from->width, h = from->height;
+  for (uint32_t y = 0; y < to->height; y++) {
+    float *row = vl_image_row(to, y);
+    for (uint32_t x = 0; x < to->width; x++) {
+      double sum[3] = {0, 0, 0};
+      for (int k = 0; k < 4; k++) {
+        vlVec3 d = vl_octahedral_decode(((float)x + (k & 1 ? 0.75f : 0.25f)) / (float)to->width,
+                                        ((float)y + (k & 2 ? 0.75f : 0.25f)) / (float)to->height);
+        double u = (atan2(d.x, d.y) / 6.283185307179586 + 0.5) * w - 0.5;
+        double v = acos(d.z > 1 ? 1 : d.z < -1 ? -1 : (double)d.z) / 3.141592653589793 * h - 0.5;
+        double fu = floor(u), fv = floor(v);
+        for (int c = 0; c < 4; c++) {
+          int64_t i = (int64_t)fu + (c & 1), j = (int64_t)fv + (c >> 1);
+          i = i < 0 ? i + (int64_t)from->width : i >= (int64_t)from->width ? i - (int64_t)from->width : i;
+          j = j < 0 ? 0 : j >= (int64_t)from->height ? (int64_t)from->height - 1 : j;
+          double weight = (c & 1 ? u - fu : 1 - (u - fu)) * (c >> 1 ? v - fv : 1 - (v - fv)) * 0.25;
+          const float *p = pixels + ((size_t)j * from->width + (size_t)i) * channels;
+          for (uint32_t n = 0; n < 3; n++) sum[n] += weight * p[channels < 3 ? 0 : n];
+        }
+      }
+      for (int n = 0; n < 3; n++) row[3 * x + (uint32_t)n] = sum[n] > 0 ? (float)sum[n] : 0.0f;
+    }
+  }
+}
+
+static bool out_of_memory(vlScene *scene) {
+  vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+  return false;
+}
+
+static bool new_image(vlScene *scene, uint32_t side, uint32_t channels, vlImage **image) {
+  vlImageDef def = vl_default_image_def(side, side, channels);
+  def.type = VL_PIXEL_F32;
+  return vl_image_create(scene->context, &def, image) == VL_OK || out_of_memory(scene);
+}
+
+static bool read_environment(vlScene *scene, const char *path, vlImage **image) {
+  vlError error;
+  vl_error_clear(&error);
+  vlImage *from = NULL;
+  vlResult r = vl_image_read(scene->context, path ? path : "", &from, &error);
+  if (r != VL_OK) {
+    vl_scene_fail(scene, r, (vlSource){0}, "%s", error.message);
+    return false;
+  }
+  if (from->width == from->height) {
+    *image = from;
+    return true;
+  }
+  uint32_t channel[4], channels = vl_image_color(from, channel);
+  float *pixels = NULL;
+  bool ok = from->width == 2 * from->height && channels > 0;
+  if (!ok)
+    vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){0},
+                  "%.300s: %u x %u: a picture of the surroundings must be twice as wide as high, or square", path,
+                  from->width, from->height);
+  channels = channels > 2 ? 3 : 1;
+  ok = ok && (vl_image_to_float(from, channel, channels, &pixels) == VL_OK || out_of_memory(scene));
+  uint32_t side = from->height + from->height / 4; /* about the same solid angle a pixel at the horizon */
+  ok = ok && new_image(scene, side > MOST_SIDE ? MOST_SIDE : side < 16 ? 16 : side, 3, image);
+  if (ok) from_latitudes(from, pixels, channels, *image);
+  vl_free(scene->context, pixels);
+  vl_image_destroy(from);
+  return ok;
+}
+
+/* ---- the light --------------------------------------------------------------------------------------------------- */
+
+static bool add_sun(vlScene *scene, const vlCompleteDef *def, const vlLightDef *sky) {
+  vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);
+  memcpy(sun.world_from_light, sky->world_from_light, sizeof sun.world_from_light);
+  const float from[3] = {-0.45f, -0.55f, 0.75f};
+  memcpy(sun.from, from, sizeof from);
+  sun.to[0] = sun.to[1] = sun.to[2] = 0;
+  sun.color = vl_spectrum_rgb(1.0f, 0.93f, 0.82f);
+  sun.scale = 3.0f * def->strength;
+  return vl_scene_add_light(scene, &sun).index != 0;
+}
+
+bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def, vlEnvironmentKind kind) {
+  vlLightDef light = vl_default_light_def(VL_LIGHT_INFINITE);
+  double right[3], up[3], front[3], c = cos(def->rotation), s = sin(def->rotation);
+  if (!vl_scene_axes(def, right, up, front) || !isfinite(def->strength) || !isfinite(c)) {
+    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "environment: its axes, rotation or strength make no sense");
+    return false;
+  }
+  for (int i = 0; i < 3; i++) { /* x to the right, y ahead, both turned about z */
+    light.world_from_light[4 * i] = c * right[i] - s * front[i];
+    light.world_from_light[4 * i + 1] = -s * right[i] - c * front[i];
+    light.world_from_light[4 * i + 2] = up[i];
+  }
+  light.scale = def->strength;
+  vlImage *image = NULL;
+  bool ok = true;
+  if (kind == VL_ENVIRONMENT_FILE) ok = read_environment(scene, def->path, &image);
+  if (kind == VL_ENVIRONMENT_STUDIO && (ok = new_image(scene, BUILT_IN_SIDE, 1, &image))) fill_studio(image);
+  if (kind == VL_ENVIRONMENT_SKY && (ok = new_image(scene, BUILT_IN_SIDE, 3, &image))) fill_sky(image);
+  light.image = image;
+  ok = ok && vl_scene_add_light(scene, &light).index != 0;
+  vl_image_destroy(image);
+  return ok && (kind != VL_ENVIRONMENT_SKY || add_sun(scene, def, &light));
+}

@@ -70,6 +70,7 @@ typedef struct vlChannelsDef {
   const vlRenderDef *render;
   float exposure;                     /* of the developed picture, for ERROR; default 1 */
   const vlCamera *forward, *backward; /* the other cameras of FORWARD and BACKWARD */
+  double time;                        /* seconds: when all of it is seen; unset: in the middle of the shutter's time */
 } vlChannelsDef;
 VL_API vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height);
 
@@ -77,6 +78,10 @@ VL_API vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height);
  * time. New pictures of the crop window: VL_PIXEL_F32 with the channels that are numbers, VL_PIXEL_U32 with ids and
  * samples; null where the def wants none of the kind (the pointer may be null then). The same bits for any number of
  * threads, instruction set and crop. Pixels outside the camera's domain hold nothing, their ray is 0 0 0.
+ * What moves is seen at one time (Cryptomatte: at the times of the picture's samples), by a camera held there, all rows
+ * of a rolling shutter at once: vl_camera_at(camera, time). The middle of the shutter's time is when half of the light
+ * has come to the middle of the picture: vl_camera_time. Flow leads to where the point of the surface is in the middle
+ * of the other camera's time.
  * Cryptomatte's header (cryptomatte/.../name, hash, conversion, manifest) are attributes of *floats. Not from inside a
  * parallel body. */
 VL_API vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera, const vlChannelsDef *def,

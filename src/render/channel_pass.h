@@ -67,7 +67,8 @@ typedef struct vlChannelEnds {
 typedef struct vlChannelPass {
   const vlWorld *world;
   const vlChannelsDef *def;
-  vlCamera camera; /* a pinhole in the middle of the shutter's time */
+  vlCamera camera;            /* a pinhole, held at the time of all numbers */
+  double time, other_time[2]; /* seconds; of the pass and of the other cameras */
   vlCameraCompiled compiled;
   const vlCameraKernels *camera_kernels;
   const vlTruthKernels *truth_kernels;

@@ -188,6 +188,7 @@ static void flush(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t
                       .dz = r[DZ],
                       .t_min = r[T_MIN],
                       .t_max = r[T_MAX],
+                      .time = c->rays->moves ? r[RAY_TIME] : NULL,
                       .object = (uint32_t *)(void *)r[OBJECT],
                       .material = (uint32_t *)(void *)r[MATERIAL],
                       .instance = (uint32_t *)(void *)r[INSTANCE],

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "render/channel_pass.h"
+#include "world/moving.h"
 
 void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, const vlChannelEnds *ends, float *t_min,
                      float *t_max) {
@@ -124,6 +125,7 @@ void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
   if (n) {
     vlChannelEnds ends = {&p->compiled, w->x, w->y, w->lane_x, w->lane_y};
     vl_channel_ends(p, w, n, &ends, b->t_min, b->t_max);
+    b->time = vl_world_time(p->world, p->time);
     p->truth_kernels->trace(p->world, &p->truth, w->scratch, b);
   }
   for (int i = 0; i < 2 && n; i++)

@@ -51,7 +51,8 @@ vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height) {
                          .crop = {0, 0, width, height},
                          .space = VL_SPACE_SRGB,
                          .ranks = 6,
-                         .exposure = 1};
+                         .exposure = 1,
+                         .time = VL_UNSET};
 }
 
 /* ---- is it possible ---------------------------------------------------------------------------------------------- */
@@ -223,22 +224,32 @@ static void prepare_counting(vlChannelPass *p, const vlCamera *camera, vlIsa isa
   vl_film_rays_init(&p->picture, camera, vl_film_filter(def->film), &sampler, isa);
   vl_film_rays_init(&p->choice, &p->camera, vl_film_filter(def->film), &sampler, isa);
   p->choice.middle = true;
+  vl_film_rays_clock(&p->picture, p->world);
+  vl_film_rays_clock(&p->choice, p->world);
 }
 
-static vlCamera pinhole(const vlCamera *camera) {
+/* The middle of the light: half of it has come in the middle of the picture. */
+static double middle_time(const vlCamera *c) {
+  return vl_camera_time(c, 0.5 * c->width, 0.5 * c->height, 0.5);
+}
+
+static vlCamera pinhole(const vlCamera *camera, double time) {
   vlCamera c = *camera;
+  vl_camera_at(camera, time, &c);
   c.lens_radius = 0;
   return c;
 }
 
 static void prepare(vlChannelPass *p, const vlCamera *camera) {
   vlIsa isa = vl_context_isa(p->world->context);
-  p->camera = pinhole(camera);
+  p->time = p->def->time == p->def->time ? p->def->time : middle_time(camera);
+  p->camera = pinhole(camera, p->time);
   vl_camera_compile(&p->camera, &p->compiled);
   const vlCamera *others[2] = {p->def->forward, p->def->backward};
   for (int i = 0; i < 2; i++) {
     if (!vl_channel_wanted(p, VL_CHANNEL_FORWARD << i)) continue;
-    p->other[i] = pinhole(others[i]);
+    p->other_time[i] = middle_time(others[i]);
+    p->other[i] = pinhole(others[i], p->other_time[i]);
     vl_camera_compile(&p->other[i], &p->other_compiled[i]);
   }
   p->camera_kernels = vl_camera_kernels(isa);

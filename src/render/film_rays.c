@@ -12,7 +12,12 @@ void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTabl
   f->sampler_kernels = vl_sampler_kernels(isa);
   f->filter_kernels = vl_filter_kernels(isa);
   f->lens = camera->lens_radius > 0;
-  f->middle = false;
+  f->middle = f->moves = false;
+}
+
+void vl_film_rays_clock(vlFilmRays *f, const vlWorld *world) {
+  f->moves = world->moves;
+  if (f->moves) vl_camera_retime(&f->camera, world->time_open, 1 / (world->time_close - world->time_open));
 }
 
 void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) {
@@ -27,4 +32,8 @@ void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) 
   if (f->lens) k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_LENS, r->lens_u, r->lens_v);
   vlCameraSamples samples = {r->film_x, r->film_y, r->px, r->py, r->lens_u, r->lens_v, r->time};
   f->camera_kernels->rays(&f->camera, n, &samples, &r->rays);
+  for (uint32_t i = 0; f->moves && i < VL_PAD(n); i++) { /* before and after its time the world rests */
+    float t = r->rays.time[i] > 0.0f ? r->rays.time[i] : 0.0f;
+    r->rays.time[i] = t < 1.0f ? t : 1.0f;
+  }
 }

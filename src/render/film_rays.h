@@ -17,6 +17,7 @@ typedef struct vlFilmRays {
   const vlFilterKernels *filter_kernels;
   bool lens;   /* points on the lens are drawn */
   bool middle; /* in the middle of the shutter's time, all of them */
+  bool moves;  /* something in the world does: times of rays are the world's, 0 to 1; else seconds */
 } vlFilmRays;
 
 /* One element a sample, VL_PAD(n) of them: in are pixel and index of the sample in it; the rest comes out. film_x,
@@ -30,6 +31,8 @@ typedef struct vlFilmRayRows {
 
 void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTable *filter, const vlSampler *sampler,
                        vlIsa isa);
+/* Rays come with the world's time. */
+void vl_film_rays_clock(vlFilmRays *f, const struct vlWorld *world);
 void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *rows);
 
 #endif

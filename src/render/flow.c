@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "render/channel_pass.h"
+#include "world/moving.h"
 
 /* How much nearer than the point a crossing must be to hide it: rays are rounded to float, which moves them by some
  * 2^-23 of the numbers involved, and their crossing by 1 / cosine as much. */
@@ -25,13 +26,17 @@ static double length3(const double v[3]) {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-static Target target_of(const vlTruthBatch *b, uint32_t i) {
+/* What lane i met, where it is at the other camera's time. */
+static Target target_of(const vlChannelPass *p, const vlTruthBatch *b, uint32_t i, int which) {
   Target t = {.sky = b->object[i] == 0};
   for (int k = 0; k < 3; k++) {
     t.direction[k] = b->d[k][i];
     t.normal[k] = b->n_geometric[k][i];
     if (!t.sky) t.point[k] = b->o[k][i] + b->distance[i] * b->d[k][i];
   }
+  if (!t.sky && p->world->moves)
+    vl_world_follow(p->world, b->object[i] - 1, b->primitive[i] - 1, b->instance[i] ? b->instance[i] - 1 : VL_NONE,
+                    p->time, p->other_time[which], t.point, t.point);
   return t;
 }
 
@@ -87,7 +92,7 @@ static void list_targets(const vlChannelPass *p, vlChannelWorker *w, int which, 
   vlTruthBatch *other = w->other;
   other->n = 0;
   for (uint32_t i = first; i < last; i++) {
-    Target t = target_of(w->batch, i);
+    Target t = target_of(p, w->batch, i, which);
     if (!find_pixel(camera, &t)) continue;
     float *flow = vl_channel_floats(p, vl_channel_at(p, w->x[i], w->y[i]), VL_INDEX_FORWARD + (uint32_t)which);
     flow[0] = (float)(t.pixel[0] - ((double)w->x[i] + (double)w->lane_x[i]));
@@ -117,6 +122,7 @@ static void flow_chunk(const vlChannelPass *p, vlChannelWorker *w, int which, ui
   }
   vlChannelEnds cut = {&p->other_compiled[which], x, y, film_x, film_y};
   vl_channel_ends(p, w, other->n, &cut, other->t_min, other->t_max);
+  other->time = vl_world_time(p->world, p->other_time[which]);
   vlTruthDef def = p->truth; /* neither bumps nor colours matter */
   def.shading = def.albedo = false;
   p->truth_kernels->trace(p->world, &def, w->scratch, other);

@@ -135,16 +135,6 @@ static void weigh(uint32_t n, const float *weight, const float *valid, float *al
   }
 }
 
-/* Before and after its time the world rests. */
-static const float *world_times(const vlWorld *world, uint32_t n, float *time) {
-  if (!world->moves) return NULL;
-  for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    float t = time[i] > 0.0f ? time[i] : 0.0f;
-    time[i] = t < 1.0f ? t : 1.0f;
-  }
-  return time;
-}
-
 static void render_batch(const Render *r, Worker *w, uint32_t n) {
   const int32_t *px = (int32_t *)(void *)row(w, PIXEL_X), *py = (int32_t *)(void *)row(w, PIXEL_Y);
   const uint32_t *index = (uint32_t *)(void *)row(w, INDEX);
@@ -185,7 +175,7 @@ static void render_batch(const Render *r, Worker *w, uint32_t n) {
                         .px = px,
                         .py = py,
                         .index = index,
-                        .time = world_times(r->world, n, rays.time),
+                        .time = r->film_rays.moves ? rays.time : NULL,
                         .alpha = row(w, ALPHA)};
   vlExposure expose = {.n = n, .exposure = r->exposure_time};
   for (int c = 0; c < 4; c++) {
@@ -313,8 +303,7 @@ static void prepare(Render *r, const vlCamera *camera) {
   vlSampler sampler;
   vl_sampler_init(&sampler, r->def->sampler, r->def->seed, f->width, f->height, r->def->spp);
   vl_film_rays_init(&r->film_rays, camera, vl_film_filter(r->film), &sampler, isa);
-  if (world->moves) /* rays come with the world's time */
-    vl_camera_retime(&r->film_rays.camera, world->time_open, 1 / (world->time_close - world->time_open));
+  vl_film_rays_clock(&r->film_rays, world);
   r->exposure_time = (float)camera->exposure_time;
   r->trace_kernels = vl_trace_kernels(isa);
   r->rgb_mode = world->def.color == VL_COLOR_RGB;

@@ -24,6 +24,7 @@ void vl_truth_plan_albedo(const vlWorld *world, vlColorSpace space, vlTruthDef *
  * rest zero. Ids count from 1. */
 typedef struct vlTruthBatch {
   uint32_t n;
+  float time; /* the world's, of all rays (world/moving.h) */
   double o[3][VL_ROW_SIZE], d[3][VL_ROW_SIZE];
   float t_min[VL_ROW_SIZE], t_max[VL_ROW_SIZE];
   double distance[VL_ROW_SIZE];
@@ -36,6 +37,7 @@ typedef struct vlTruthBatch {
 typedef struct vlTruthHits {
   uint32_t n;
   const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;
+  const float *time; /* the world's; null where nothing moves */
   uint32_t *object, *material, *instance;
   float *distance;
 } vlTruthHits;

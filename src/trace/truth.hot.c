@@ -6,6 +6,7 @@
  *
  * What a hit is (interfaces are passed, mixed materials decided by a hash of the ray) is what the tracers say it is. */
 #include "trace/truth_scratch.h"
+#include "world/moving.h"
 #include "world/surface_point.h"
 
 /* ---- how far, in double ------------------------------------------------------------------------------------------ */
@@ -23,8 +24,9 @@ static inline double exact_dot(Exact a, Exact b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-static Exact exact_corner(const vlWorldShape *s, const vlWorldInstance *q, uint32_t vertex) {
-  const float *x = s->positions + 3 * (size_t)vertex;
+static Exact exact_corner(const vlWorldShape *s, const vlWorldInstance *q, float time, uint32_t vertex) {
+  float room[3];
+  const float *x = vl_vertex_at(s, vertex, time, room);
   if (!q) return (Exact){x[0], x[1], x[2]};
   double r[3];
   for (int i = 0; i < 3; i++) {
@@ -36,11 +38,11 @@ static Exact exact_corner(const vlWorldShape *s, const vlWorldInstance *q, uint3
 
 /* To the triangle's plane; held between its corners, since on a grazing plane the rounding of the ray that found the
  * triangle may put the exact ray's crossing far outside. */
-static double triangle_distance(const vlWorldShape *s, const vlWorldInstance *q, uint32_t prim, Exact o, Exact d,
-                                double otherwise) {
+static double triangle_distance(const vlWorldShape *s, const vlWorldInstance *q, float time, uint32_t prim, Exact o,
+                                Exact d, double otherwise) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
-  Exact a = exact_sub(exact_corner(s, q, f[0]), o), b = exact_sub(exact_corner(s, q, f[1]), o),
-        c = exact_sub(exact_corner(s, q, f[2]), o);
+  Exact a = exact_sub(exact_corner(s, q, time, f[0]), o), b = exact_sub(exact_corner(s, q, time, f[1]), o),
+        c = exact_sub(exact_corner(s, q, time, f[2]), o);
   Exact n = exact_cross(exact_sub(b, a), exact_sub(c, a));
   double along = exact_dot(d, n), t = exact_dot(a, n) / along;
   if (!(along != 0.0) || !(t - t == 0.0)) return otherwise;
@@ -65,10 +67,12 @@ static double curved_distance(const vlWorldShape *s, const vlWorldInstance *q, u
 static double exact_distance(const vlWorld *world, const vlTruthBatch *batch, uint32_t lane, const vlHits *h,
                              uint32_t i, double t) {
   const vlWorldShape *s = &world->shapes.items[h->shape[i]];
-  const vlWorldInstance *q = h->instance[i] == VL_NONE ? NULL : &world->instances.items[h->instance[i]];
+  vlWorldInstance room;
+  const vlWorldInstance *q =
+      h->instance[i] == VL_NONE ? NULL : vl_instance_at(&world->instances.items[h->instance[i]], batch->time, &room);
   Exact o = {batch->o[0][lane], batch->o[1][lane], batch->o[2][lane]};
   Exact d = {batch->d[0][lane], batch->d[1][lane], batch->d[2][lane]};
-  return s->kind == VL_SHAPE_TRIANGLES ? triangle_distance(s, q, h->prim[i], o, d, t)
+  return s->kind == VL_SHAPE_TRIANGLES ? triangle_distance(s, q, batch->time, h->prim[i], o, d, t)
                                        : curved_distance(s, q, h->prim[i], o, d, h->t[i]);
 }
 
@@ -164,6 +168,8 @@ static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s,
 static void trace(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *scratch, vlTruthBatch *batch) {
   vlTraceScratch *s = &scratch->trace;
   start(def, batch, &s->a);
+  s->a.time = s->b.time = world->moves ? scratch->time : NULL;
+  for (uint32_t i = 0; world->moves && i < VL_ROW_SIZE; i++) scratch->time[i] = batch->time;
   if (batch->n == 0) return;
   /* Light that the rays run into is of no interest here. */
   vlTraceBatch rays = {.n = batch->n, .t_min = batch->t_min, .t_max = batch->t_max};
@@ -199,8 +205,10 @@ static void hits(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *sc
     p->dx[i] = to->dx[i], p->dy[i] = to->dy[i], p->dz[i] = to->dz[i];
     p->cone[i] = def->pixel_width;
     p->specular[i] = 1;
+    p->lane[i] = i;
     for (int c = 0; c < 4; c++) p->lambda[c][i] = def->lambda[0][c], p->beta[c][i] = 0.0f;
   }
+  p->time = to->time;
   vlTraceBatch rays = {.n = n, .t_min = to->t_min, .t_max = to->t_max};
   for (int c = 0; c < 4; c++) rays.radiance[c] = scratch->light[c];
   vlTraceDef trace_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
@@ -216,7 +224,8 @@ static void hits(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *sc
     to->distance[i] = VL_INFINITY;
     if (!hit) continue;
     vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-    to->distance[i] = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]).t;
+    float time = vl_path_time(p, i);
+    to->distance[i] = VL_HOT(vl_point_at_time)(world, time, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]).t;
   }
 }
 
@@ -235,11 +244,12 @@ static void layers(const vlWorld *world, const vlTruthBatch *batch, uint32_t lan
                   .dy = d + 1,
                   .dz = d + 2,
                   .t_min = &t_min,
-                  .t_max = batch->t_max + lane};
+                  .t_max = batch->t_max + lane,
+                  .time = &batch->time};
     vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t);
     if (shape == VL_NONE) return;
     vlVec3 from = {o[0], o[1], o[2]}, along = {d[0], d[1], d[2]};
-    vlPoint at = VL_HOT(vl_point_at)(world, from, along, shape, prim, instance, t);
+    vlPoint at = VL_HOT(vl_point_at_time)(world, batch->time, from, along, shape, prim, instance, t);
     uint32_t object = shape + 1, placed = instance == VL_NONE ? 0 : instance + 1, k = 0;
     while (k < to->count && (to->object[k] != object || to->instance[k] != placed)) k++;
     bool seen = world->materials.items[world->shapes.items[shape].material].kind != VL_MATERIAL_INTERFACE;

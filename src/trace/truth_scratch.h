@@ -8,7 +8,8 @@
 struct vlTruthScratch {
   vlTraceScratch trace;
   VL_ROW float light[4][VL_ROW_SIZE]; /* radiance that nobody asks for */
-  VL_ROW float kept[6][VL_ROW_SIZE];  /* shading normal and dpdu before bump maps turned them */
+  VL_ROW float time[VL_ROW_SIZE];
+  VL_ROW float kept[6][VL_ROW_SIZE]; /* shading normal and dpdu before bump maps turned them */
 };
 
 #endif

@@ -228,6 +228,20 @@ static void map(const float m[12], const double p[3], double q[3]) {
     q[i] = (double)m[4 * i] * p[0] + (double)m[4 * i + 1] * p[1] + (double)m[4 * i + 2] * p[2] + (double)m[4 * i + 3];
 }
 
+/* The way back, not rounded to float as to_group is. */
+static void unmap(const float m[12], const double p[3], double q[3]) {
+  double x[3], y[3], z[3], r[3], n[3];
+  for (int i = 0; i < 3; i++)
+    x[i] = m[4 * i], y[i] = m[4 * i + 1], z[i] = m[4 * i + 2], r[i] = p[i] - (double)m[4 * i + 3];
+  vl_cross3(y, z, n);
+  double volume = vl_dot3(x, n);
+  q[0] = vl_dot3(r, n) / volume;
+  vl_cross3(z, x, n);
+  q[1] = vl_dot3(r, n) / volume;
+  vl_cross3(x, y, n);
+  q[2] = vl_dot3(r, n) / volume;
+}
+
 static void corners(const vlWorldShape *s, uint32_t prim, float time, double c[3][3]) {
   for (int k = 0; k < 3; k++) {
     float room[3];
@@ -263,7 +277,7 @@ void vl_world_follow(const vlWorld *world, uint32_t shape, uint32_t prim, uint32
   if (from == to || (!flows && !goes)) return;
   vlWorldInstance room;
   memcpy(g, p, sizeof g);
-  if (q) map(vl_instance_at(q, from, &room)->to_group, p, g);
+  if (q) unmap(vl_instance_at(q, from, &room)->from_group, p, g);
   if (flows) follow_triangle(s, prim, from, to, g);
   memcpy(moved, g, sizeof g);
   if (q) map(vl_instance_at(q, to, &room)->from_group, g, moved);

@@ -246,7 +246,8 @@ int options_parse(const Command *command, int argc, char **argv, Arguments *argu
   for (char **rest = argv; rest < end; rest++) {
     if (!only_operands && strcmp(*rest, "--") == 0) {
       only_operands = true;
-    } else if (!only_operands && (*rest)[0] == '-' && (*rest)[1]) {
+    } else if (!only_operands && (*rest)[0] == '-' && (*rest)[1] &&
+               !strchr(".0123456789", (*rest)[1])) { /* -1: a number */
       int status = parse_option(command, &rest, end, arguments);
       if (status >= 0) return status;
     } else if (arguments->operand_count == command->max_operands) {

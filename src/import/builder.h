@@ -87,6 +87,14 @@ typedef struct vlObject {
   vlSource place; /* where it was first named */
 } vlObject;
 
+/* Media that are looked up at the end: target 's' shape (index in scene->shapes), 'l' light, 'c' camera. */
+typedef struct vlMediumLink {
+  char target;
+  uint32_t index;
+  const char *inside, *outside; /* empty: vacuum */
+  vlSource place;
+} vlMediumLink;
+
 /* Shapes under an animated transform. */
 typedef struct vlMovingGroup {
   vlGroupId group, object; /* object: the one they are part of, 0: none */
@@ -122,11 +130,11 @@ struct vlImport {
   VL_ARRAY(char *) strings; /* kept until the end */
   bool in_object;           /* between ObjectBegin and ObjectEnd */
   vlGroupId object;
+  double film_diagonal; /* mm */
   vlChoice camera, film, sampler, integrator, filter, accelerator;
   vlMat4 camera_from_world[2]; /* at the start and the end */
-  vlNameTable media;
-  const char *medium_name; /* the first one that something lies in; null: none */
-  vlSource medium_place;
+  vlNameTable media; /* to ids in the scene */
+  VL_ARRAY(vlMediumLink) medium_links;
   double times[2]; /* of the two current transforms, seconds */
   VL_ARRAY(vlMovingGroup) moving;
   uint32_t depth; /* of textures or materials that resolve each other */
@@ -197,5 +205,8 @@ bool vl_import_light(vlImport *import, const vlStatement *s);
 bool vl_import_area_light(vlImport *import, const vlStatement *s);
 bool vl_import_shape(vlImport *import, const vlStatement *s);
 bool vl_import_medium(vlImport *import, const vlStatement *s);
+/* The media of the current state are those of a shape ('s'), a light ('l'), the camera ('c'). */
+bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource place);
+bool vl_import_finish_media(vlImport *import);
 
 #endif

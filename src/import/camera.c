@@ -6,14 +6,16 @@
 #include <string.h>
 
 #include "import/builder.h"
+#include "import/lens.h"
 
 static const double degrees = 0.017453292519943295;
 
-/* Up to SPHERICAL in pbrt's words, from PINHOLE on in the lecture's. */
+/* Up to REALISTIC in pbrt's words, from PINHOLE on in the lecture's. */
 typedef enum Kind {
   PERSPECTIVE,
   ORTHOGRAPHIC,
   SPHERICAL,
+  REALISTIC,
   PINHOLE,
   THIN_LENS,
   FISHEYE,
@@ -32,11 +34,10 @@ typedef enum Kind {
   DOUBLE_SPHERE,
   KINDS
 } Kind;
-static const char *const kinds[KINDS] = {"perspective", "orthographic",    "spherical",     "pinhole",     "thinlens",
-                                         "fisheye",     "equirectangular", "equalarea",     "cylindrical", "cube",
-                                         "panini",      "opencv",          "opencvfisheye", "colmap",      "fov",
-                                         "division",    "unified",         "eucm",          "doublesphere"};
-static const char *const later[] = {"realistic"};
+static const char *const kinds[KINDS] = {
+    "perspective",     "orthographic", "spherical",   "realistic", "pinhole", "thinlens",    "fisheye",
+    "equirectangular", "equalarea",    "cylindrical", "cube",      "panini",  "opencv",      "opencvfisheye",
+    "colmap",          "fov",          "division",    "unified",   "eucm",    "doublesphere"};
 
 /* velo's camera has y down; pbrt's y up, both x right, z forward. The world's numbers stay as they are: pbrt reads them
  * as left-handed, so that seen from velo its cameras mirror. */
@@ -295,11 +296,8 @@ static bool read_lecture(vlDict *dict, vlCameraDef *def, Kind kind) {
   vl_dict_double(dict, "near", &def->near_plane);
   vl_dict_double(dict, "far", &def->far_plane);
   if (kind >= FISHEYE && !read_model(dict, def, kind)) return false;
-  if (kind != PINHOLE) {
-    vl_dict_double(dict, "lensradius", &def->lens_radius);
-    vl_dict_double(dict, "focusdistance", &def->focus_distance);
-    vl_dict_double(dict, "focaldistance", &def->focus_distance); /* pbrt's word for it */
-  }
+  if (kind != PINHOLE && !vl_import_lens(dict, def)) return false;
+  vl_dict_bool(dict, "vignetting", &def->lens.vignetting);
   if (!read_shutter(dict, def) || !read_curve(dict, def) || !vl_dict_done(dict)) return false;
   const vlMat4 identity = vl_mat4_identity();
   for (int i = 0; i < 16; i++)
@@ -355,7 +353,7 @@ bool vl_import_camera(vlImport *import) {
   for (int i = 0; i < 2 && !choice->given; i++) import->camera_from_world[i] = vl_mat4_identity();
   settings->camera_source = choice->place;
   if (kind < 0) { /* permissive: pbrt's perspective camera from the same place */
-    if (!vl_import_unknown(import, choice->place, "camera", choice->kind, kinds, KINDS, later, 1)) return false;
+    if (!vl_import_unknown(import, choice->place, "camera", choice->kind, kinds, KINDS, NULL, 0)) return false;
     vl_dict_skip(&dict);
     def.fov = 90.0 * degrees;
     if (!pose_from_ctm(import, &def)) return false;
@@ -363,6 +361,9 @@ bool vl_import_camera(vlImport *import) {
     if (!read_pbrt(&dict, &def, (Kind)kind)) return false;
   } else if (kind == SPHERICAL) {
     if (!read_spherical(&dict, &def)) return false;
+  } else if (kind == REALISTIC) {
+    if (!vl_import_optics(&dict, &def, import->film_diagonal)) return false;
+    if (!read_shutter(&dict, &def) || !vl_dict_done(&dict) || !pose_from_ctm(import, &def)) return false;
   } else if (!read_lecture(&dict, &def, (Kind)kind)) {
     return false;
   }

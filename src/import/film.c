@@ -79,15 +79,16 @@ bool vl_import_film(vlImport *import) {
   s->width = 1280;
   s->height = 720;
   s->space = choice->given ? choice->space : VL_SPACE_SRGB;
-  double iso = 100.0, time = 1.0, ratio = 1.0, ignored = 35.0;
+  double iso = 100.0, time = 1.0, ratio = 1.0;
   bool half = true;
   const char *output = "";
   vlParam *file = vl_dict_find(&dict, "filename", 1u << VL_PARAM_STRING);
   vl_dict_count(&dict, "xresolution", 1, &s->width);
   vl_dict_count(&dict, "yresolution", 1, &s->height);
   vl_dict_string(&dict, "filename", &output);
-  vl_dict_double(&dict, "diagonal", &ignored); /* matters to realistic cameras only */
-  vl_dict_bool(&dict, "savefp16", &half);      /* how the file is written: the program's business */
+  import->film_diagonal = 35.0;
+  vl_dict_double(&dict, "diagonal", &import->film_diagonal); /* matters to realistic cameras only */
+  vl_dict_bool(&dict, "savefp16", &half);                    /* how the file is written: the program's business */
   vl_dict_double(&dict, "iso", &iso);
   vl_dict_double(&dict, "exposuretime", &time);
   vl_dict_double(&dict, "imagingratio", &ratio);
@@ -145,25 +146,4 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
   static const char *const known[] = {"seed"};
   return vl_import_unknown(import, s->place, "option", s->names[0], known, 1, refused,
                            sizeof refused / sizeof *refused);
-}
-
-/* ---- media ------------------------------------------------------------------------------------------------------ */
-
-/* Only their names are kept: a medium that nothing lies in does not matter. */
-bool vl_import_medium(vlImport *import, const vlStatement *s) {
-  uint32_t index;
-  if (vl_names_find(&import->media, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "medium \"%.80s\" is made a second time", s->names[0]);
-  char what[96];
-  const char *type = NULL;
-  snprintf(what, sizeof what, "MakeNamedMedium \"%.60s\"", s->names[0]);
-  vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
-                               vl_import_attributes(import, VL_ATTR_MEDIUM));
-  if (!vl_dict_string(&dict, "type", &type)) {
-    if (import->scene->error.code != VL_OK) return false;
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s: \"string type\" is missing", what);
-  }
-  const char *name = vl_import_keep(import, s->names[0]);
-  if (!name) return false;
-  return vl_names_add(import->context, &import->media, name, 1) || vl_import_fail_memory(import);
 }

@@ -52,6 +52,10 @@ void vl_scene_destroy(vlScene *scene) {
   vlContext *context = scene->context;
   for (size_t i = 0; i < scene->blocks.count; i++) vl_free(context, scene->blocks.items[i]);
   for (size_t i = 0; i < scene->images.count; i++) vl_image_destroy(scene->images.items[i]);
+  for (size_t i = 0; i < scene->apertures.count; i++) vl_aperture_destroy(scene->apertures.items[i]);
+  for (size_t i = 0; i < scene->optics.count; i++) vl_optics_destroy(scene->optics.items[i]);
+  VL_ARRAY_FREE(context, &scene->apertures);
+  VL_ARRAY_FREE(context, &scene->optics);
   VL_ARRAY_FREE(context, &scene->textures);
   VL_ARRAY_FREE(context, &scene->materials);
   VL_ARRAY_FREE(context, &scene->emissions);

@@ -36,6 +36,8 @@ struct vlScene {
   VL_ARRAY(vlSceneGroup) groups;
   VL_ARRAY(vlSceneInstance) instances;
   vlSceneSettings settings;
+  VL_ARRAY(vlAperture *) apertures; /* that the settings' camera may have */
+  VL_ARRAY(vlOptics *) optics;
   /* Everything the stored defs point at (strings, spectra, meshes), freed with the scene. */
   VL_ARRAY(void *) blocks;
   VL_ARRAY(vlImage *) images;

@@ -9,6 +9,7 @@
 #include "report.h"
 
 const Choice tracer_choices[] = {{"path", VL_TRACER_PATH},
+                                 {"volpath", VL_TRACER_VOLPATH},
                                  {"raycast", VL_TRACER_RAYCAST},
                                  {"ambientocclusion", VL_TRACER_AMBIENT_OCCLUSION},
                                  {"ao", VL_TRACER_AMBIENT_OCCLUSION},
@@ -44,6 +45,14 @@ const Choice view_choices[] = {{"standard", VL_VIEW_STANDARD},
                                {"agx", VL_VIEW_AGX},
                                {"raw", VL_VIEW_RAW},
                                {NULL, 0}};
+const Choice stereo_choices[] = {{"none", VL_STEREO_NONE},
+                                 {"parallel", VL_STEREO_PARALLEL},
+                                 {"off-axis", VL_STEREO_OFF_AXIS},
+                                 {"toe-in", VL_STEREO_TOE_IN},
+                                 {"omnidirectional", VL_STEREO_OMNIDIRECTIONAL},
+                                 {"ods", VL_STEREO_OMNIDIRECTIONAL},
+                                 {NULL, 0}};
+const Choice eye_choices[] = {{"both", VL_EYE_BOTH}, {"left", VL_EYE_LEFT}, {"right", VL_EYE_RIGHT}, {NULL, 0}};
 const Choice isa_choices[] = {{"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {NULL, 0}};
 
 /* ---- overrides --------------------------------------------------------------------------------------------------- */
@@ -57,9 +66,10 @@ static vlError camera_place(const vlSceneSettings *settings, const char *path) {
 }
 
 /* Camera and picture size of a camera file. */
-static int take_camera_file(Job *job, vlContext *context, vlSceneSettings *settings, const char *path) {
+static int take_camera_file(Job *job, vlContext *context, vlSceneSettings *settings, const char *path,
+                            const char *frame) {
   vlCameraRecord record;
-  int status = camera_load(context, path, 0, NULL, &record);
+  int status = camera_load(context, path, 0, frame, &record);
   if (status >= 0) return status;
   settings->camera = record.camera;
   settings->width = record.camera.width;
@@ -72,13 +82,15 @@ static int take_camera_file(Job *job, vlContext *context, vlSceneSettings *setti
 }
 
 /* Camera and picture size of another scene file. The camera def holds no pointers, so it outlives that scene. */
-static int take_camera(Job *job, vlContext *context, vlSceneSettings *settings, const char *path, bool permissive) {
-  if (!camera_is_scene(path)) return take_camera_file(job, context, settings, path);
+static int take_camera(Job *job, vlContext *context, vlSceneSettings *settings, const char *path,
+                       const Arguments *arguments) {
+  const OptionValue *frame = &arguments->values[RENDER_FRAME];
+  if (!camera_is_scene(path)) return take_camera_file(job, context, settings, path, frame->given ? frame->text : NULL);
   vlScene *other = NULL;
   vlError error = {0};
   vlResult result = vl_scene_create(context, &other);
   vlLoadDef load = vl_default_load_def();
-  load.permissive = permissive;
+  load.permissive = arguments->values[RENDER_PERMISSIVE].given;
   if (result == VL_OK) result = vl_scene_load(other, path, &load, &error);
   if (result == VL_OK) {
     const vlSceneSettings *from = vl_scene_settings(other);
@@ -177,6 +189,54 @@ static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t heigh
   return result == VL_OK ? -1 : report_error(NULL, result, job->path);
 }
 
+/* The eyes are made last of all, in frames.c: the camera is the one between them. */
+static int override_stereo(vlSceneSettings *settings, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  vlStereo *stereo = &settings->camera.stereo;
+  if (v[RENDER_STEREO].given) stereo->mode = (vlStereoMode)v[RENDER_STEREO].integer;
+  bool none = stereo->mode == VL_STEREO_NONE;
+  if (none && (v[RENDER_INTEROCULAR].given || v[RENDER_CONVERGENCE].given || v[RENDER_EYE].given))
+    return report_usage("--interocular, --convergence and --eye go with --stereo MODE");
+  if (v[RENDER_INTEROCULAR].given) stereo->interocular = v[RENDER_INTEROCULAR].number;
+  if (v[RENDER_CONVERGENCE].given) stereo->convergence = v[RENDER_CONVERGENCE].number;
+  if (v[RENDER_EYE].given) settings->camera.stereo_eye = (vlEye)v[RENDER_EYE].integer;
+  return -1;
+}
+
+/* Size, crop and camera as the command line has them. The camera is made at the size it was described for and then
+ * resized, which keeps the framing. */
+static int fit_camera(Job *job, vlSceneSettings *settings, const Arguments *arguments) {
+  const OptionValue *size = &arguments->values[RENDER_RESOLUTION];
+  vlCameraDef camera = settings->camera;
+  camera.width = settings->width;
+  camera.height = settings->height;
+  camera.stereo_eye = VL_EYE_BOTH;
+  if (size->given) override_size(settings, (uint32_t)size->integers[0], (uint32_t)size->integers[1]);
+  int status = override_crop(settings, arguments);
+  return status < 0 ? make_camera(job, camera, settings->width, settings->height) : status;
+}
+
+int job_take_camera(Job *job, vlSceneSettings *settings, const vlCameraDef *def, const char *path,
+                    const Arguments *arguments) {
+  vlStereo stereo = job->settings->camera.stereo;
+  *settings = *job->settings;
+  settings->camera = *def;
+  settings->camera.stereo = stereo;
+  settings->width = def->width;
+  settings->height = def->height;
+  const uint32_t whole[4] = {0, 0, def->width, def->height};
+  memcpy(settings->crop, whole, sizeof whole);
+  job->camera_place = (vlError){.line = 0};
+  snprintf(job->camera_place.file, sizeof job->camera_place.file, "%s", path);
+  job->settings = settings;
+  int status = fit_camera(job, settings, arguments);
+  if (status >= 0) return status;
+  job->film.width = settings->width;
+  job->film.height = settings->height;
+  memcpy(job->film.crop, settings->crop, sizeof job->film.crop);
+  return -1;
+}
+
 int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   vlSceneSettings *settings = vl_scene_settings(scene);
@@ -184,17 +244,11 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   job->settings = settings;
   job->camera_place = camera_place(settings, path);
   if (v[RENDER_CAMERA].given) {
-    int status = take_camera(job, context, settings, v[RENDER_CAMERA].text, v[RENDER_PERMISSIVE].given);
+    int status = take_camera(job, context, settings, v[RENDER_CAMERA].text, arguments);
     if (status >= 0) return status;
   }
-  /* The camera is made at the size it was described for and then resized, which keeps the framing. */
-  vlCameraDef camera = settings->camera;
-  camera.width = settings->width;
-  camera.height = settings->height;
-  if (v[RENDER_RESOLUTION].given)
-    override_size(settings, (uint32_t)v[RENDER_RESOLUTION].integers[0], (uint32_t)v[RENDER_RESOLUTION].integers[1]);
-  int status = override_crop(settings, arguments);
-  if (status < 0) status = make_camera(job, camera, settings->width, settings->height);
+  int status = override_stereo(settings, arguments);
+  if (status < 0) status = fit_camera(job, settings, arguments);
   if (status >= 0) return status;
   override_sampling(settings, arguments);
 

@@ -199,10 +199,12 @@ static bool camera(vlImport *import, const vlStatement *s) {
   if (!vl_mat4_inverse(import->state.ctm[0], &world_from_camera[0]) ||
       !vl_mat4_inverse(import->state.ctm[1], &world_from_camera[1]))
     return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Camera: the current transform is singular");
-  if (import->state.outside && import->state.outside[0] && !import->medium_name) {
-    import->medium_name = import->state.outside;
-    import->medium_place = import->camera.place;
-  }
+  for (size_t i = 0; i < import->medium_links.count;) /* the last camera counts */
+    if (import->medium_links.items[i].target == 'c')
+      import->medium_links.items[i] = import->medium_links.items[--import->medium_links.count];
+    else
+      i++;
+  if (!vl_import_note_media(import, 'c', 0, s->place)) return false;
   return vl_import_name_system(import, "camera", world_from_camera);
 }
 
@@ -403,24 +405,7 @@ static bool finish(vlImport *import) {
     if (!object->defined)
       return vl_import_fail(import, VL_ERROR_SCENE, object->place, "there is no object \"%.80s\"", object->name);
   }
-  uint32_t index;
-  if (import->medium_name && !vl_names_find(&import->media, import->medium_name, &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, import->medium_place, "there is no medium \"%.80s\"",
-                          import->medium_name);
-  /* pbrt's surface integrators do as if there were no media, and warn. */
-  const vlChoice *integrator = &import->integrator;
-  if (import->medium_name && integrator->given &&
-      (strcmp(integrator->kind, "path") == 0 || strcmp(integrator->kind, "simplepath") == 0 ||
-       strcmp(integrator->kind, "raycast") == 0 || strcmp(integrator->kind, "ambientocclusion") == 0)) {
-    vl_import_warn(import, VL_LOG_WARNING, import->medium_place,
-                   "integrator \"%s\" looks past participating media (here \"%.60s\"), as in pbrt", integrator->kind,
-                   import->medium_name);
-    return true;
-  }
-  if (import->medium_name)
-    return vl_import_unsupported(import, import->medium_place,
-                                 "participating media (here \"%.60s\") are not understood yet", import->medium_name);
-  return true;
+  return vl_import_finish_media(import);
 }
 
 static void free_pending(vlContext *context, vlPending *items, size_t count) {
@@ -447,6 +432,7 @@ static void release(vlImport *import) {
   VL_ARRAY_FREE(context, &import->moving);
   VL_ARRAY_FREE(context, &import->object_list);
   VL_ARRAY_FREE(context, &import->links);
+  VL_ARRAY_FREE(context, &import->medium_links);
 }
 
 static vlResult run(vlScene *scene, const char *path, const char *data, size_t size, const vlLoadDef *def,

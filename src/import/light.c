@@ -69,13 +69,6 @@ static bool read_light(vlDict *dict, vlLightDef *def) {
   return vl_dict_done(dict);
 }
 
-static void note_medium(vlImport *import, vlSource place) {
-  if (import->medium_name || !import->state.outside || !import->state.outside[0]) return;
-  import->medium_name = import->state.outside;
-  import->medium_place = place;
-  vl_scene_copy_source(import->scene, &import->medium_place);
-}
-
 bool vl_import_light(vlImport *import, const vlStatement *s) {
   static const char *const kinds[] = {"point", "spot", "distant", "infinite"};
   static const char *const later[] = {"goniometric", "projection"};
@@ -94,8 +87,8 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
   def.space = import->state.space;
   if (!vl_import_ctm(import, s->place, &ctm) || !read_light(&dict, &def)) return false;
   memcpy(def.world_from_light, ctm.m, sizeof def.world_from_light);
-  if (kind < 2) note_medium(import, s->place);
-  return vl_scene_add_light(import->scene, &def).index != 0;
+  vlLightId id = vl_scene_add_light(import->scene, &def);
+  return id.index != 0 && (kind > 1 || vl_import_note_media(import, 'l', id.index - 1, s->place));
 }
 
 bool vl_import_area_light(vlImport *import, const vlStatement *s) {

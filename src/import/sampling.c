@@ -125,7 +125,6 @@ static bool read_path(vlDict *dict, vlSceneSettings *s) {
   vlImport *import = dict->import;
   bool regularize = false, yes = true;
   int sampler = 0;
-  s->tracer = VL_TRACER_PATH;
   vl_dict_count(dict, "maxdepth", 0, &s->max_depth);
   if (vl_dict_choice(dict, "lightsampler", light_samplers, 4, &sampler)) {
     if (sampler == 3 && !vl_import_unsupported(import, vl_dict_find(dict, "lightsampler", 1u << VL_PARAM_STRING)->place,
@@ -145,28 +144,31 @@ static bool read_path(vlDict *dict, vlSceneSettings *s) {
 }
 
 static bool read_integrator(vlImport *import, vlSceneSettings *s) {
-  static const char *const names[] = {"path", "volpath", "simplepath", "raycast", "ambientocclusion"};
-  static const char *const later[] = {"bdpt", "function", "lightpath", "mlt", "randomwalk", "simplevolpath", "sppm"};
+  static const char *const names[] = {"path", "simplepath", "volpath", "simplevolpath", "raycast", "ambientocclusion"};
+  static const char *const later[] = {"bdpt", "function", "lightpath", "mlt", "randomwalk", "sppm"};
   const vlChoice *choice = &import->integrator;
-  s->tracer = VL_TRACER_PATH;
+  s->tracer = VL_TRACER_VOLPATH;
   s->max_depth = 5;
   if (!choice->given) return true;
   char what[96];
   snprintf(what, sizeof what, "Integrator \"%.60s\"", choice->kind);
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
   int kind = -1;
-  for (int i = 0; i < 5; i++)
+  for (int i = 0; i < 6; i++)
     if (strcmp(choice->kind, names[i]) == 0) kind = i;
   if (kind < 0) { /* permissive: a path tracer of that depth stands in */
-    if (!vl_import_unknown(import, choice->place, "integrator", choice->kind, names, 5, later,
+    if (!vl_import_unknown(import, choice->place, "integrator", choice->kind, names, 6, later,
                            sizeof later / sizeof *later))
       return false;
     vl_dict_count(&dict, "maxdepth", 0, &s->max_depth);
     return import->scene->error.code == VL_OK;
   }
-  if (kind < 3) return read_path(&dict, s) && vl_dict_done(&dict);
-  s->tracer = kind == 3 ? VL_TRACER_RAYCAST : VL_TRACER_AMBIENT_OCCLUSION;
-  if (kind == 4) {
+  if (kind < 4) {
+    s->tracer = kind < 2 ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
+    return read_path(&dict, s) && vl_dict_done(&dict);
+  }
+  s->tracer = kind == 4 ? VL_TRACER_RAYCAST : VL_TRACER_AMBIENT_OCCLUSION;
+  if (kind == 5) {
     vl_dict_bool(&dict, "cossample", &s->ao_cosine);
     vlParam *p = vl_dict_find(&dict, "maxdistance", VL_BIT_FLOAT);
     vl_dict_float(&dict, "maxdistance", &s->ao_distance);

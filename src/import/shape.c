@@ -221,15 +221,6 @@ static bool add_ply(vlImport *import, vlPlyMesh *mesh, const vlShapeDef *base, c
   return add(import, &def, link);
 }
 
-static void note_medium(vlImport *import, const vlStatement *s) {
-  const vlGraphicsState *state = &import->state;
-  const char *name = state->inside && state->inside[0] ? state->inside : state->outside;
-  if (import->medium_name || !name || !name[0]) return;
-  import->medium_name = name;
-  import->medium_place = s->place;
-  vl_scene_copy_source(import->scene, &import->medium_place);
-}
-
 /* Alpha: a number, or a float texture that is looked up at the end. */
 static bool read_alpha(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
@@ -245,6 +236,13 @@ static bool read_alpha(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   link->alpha = vl_import_keep(import, p->strings.items[0]);
   link->alpha_place = p->place;
   return link->alpha && vl_scene_copy_source(import->scene, &link->alpha_place);
+}
+
+/* Of the shapes from this one on. */
+static bool note_media(vlImport *import, size_t first, vlSource place) {
+  for (size_t i = first; i < import->scene->shapes.count; i++)
+    if (!vl_import_note_media(import, 's', (uint32_t)i, place)) return false;
+  return true;
 }
 
 bool vl_import_shape(vlImport *import, const vlStatement *s) {
@@ -282,16 +280,16 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
     vl_import_warn(import, VL_LOG_WARNING, s->place, "an area light that moves (ActiveTransform) gives no light");
     def.emission.index = 0;
   }
-  note_medium(import, s);
+  size_t before = import->scene->shapes.count;
   if (kind == PLY) {
     vlPlyMesh mesh = {0};
-    return read_ply(&dict, &mesh) && add_ply(import, &mesh, &def, &link);
+    return read_ply(&dict, &mesh) && add_ply(import, &mesh, &def, &link) && note_media(import, before, s->place);
   }
   bool fine = kind == LOOP     ? read_loop(&dict, &def)
               : kind >= SPHERE ? read_quadric(&dict, &def, kind)
                                : read_mesh(&dict, &def, kind == TRIANGLES ? 3 : 4);
   fine = fine && vl_dict_done(&dict);
-  if (fine) return add(import, &def, &link);
+  if (fine) return add(import, &def, &link) && note_media(import, before, s->place);
   free_arrays(import, &def);
   return false;
 }

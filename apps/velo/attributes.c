@@ -8,12 +8,15 @@
 
 typedef struct Header {
   vlImage *image;
-  vlResult result; /* of the first that failed */
+  vlResult result;  /* of the first that failed */
+  const char *view; /* before each name; null: nothing */
 } Header;
 
 static void set(Header *header, const char *name, vlAttributeType type, const double *numbers, int count,
                 const char *text) {
-  vlAttribute attribute = {.name = name, .type = type, .string = text};
+  char full[100];
+  snprintf(full, sizeof full, "%s%s%s", header->view ? header->view : "", header->view ? "." : "", name);
+  vlAttribute attribute = {.name = full, .type = type, .string = text};
   for (int i = 0; i < count; i++) attribute.numbers[i] = numbers[i] + 0.0; /* no negative zeros */
   if (header->result == VL_OK) header->result = vl_image_set_attribute(header->image, &attribute);
 }
@@ -95,6 +98,15 @@ static void set_model(Header *header, const vlCamera *c, const vlCameraDef *def)
   set_text(header, "velo.distortionCoefficients", text);
 }
 
+/* What made two eyes of one camera. The eye's own pose and principal point stand with the rest; but for the circle. */
+static void set_stereo(Header *header, const vlCamera *c, const vlStereo *stereo) {
+  if (stereo->mode == VL_STEREO_NONE) return;
+  set_text(header, "velo.stereo", choice_name(stereo_choices, (int)stereo->mode));
+  set_double(header, "velo.interocular", stereo->interocular);
+  if (isfinite(stereo->convergence)) set_double(header, "velo.convergence", stereo->convergence);
+  if (c->eye_circle != 0) set_double(header, "velo.eyeCircle", c->eye_circle);
+}
+
 /* The camera in full: OpenEXR's words in single precision, velo's own in double (camera x right, y down, z forward).
  * Lens and sensor are in millimetres. A virtual camera has no sensor: where the scene names no width it is
  * given full frame's 36 mm, which fixes the scale and nothing else. */
@@ -117,6 +129,7 @@ static void set_camera(Header *header, const Job *job) {
   set_text(header, "velo.projection", vl_projection_name(c->projection));
   if (isfinite(c->limit)) set_double(header, "velo.limit", c->limit);
   set_model(header, c, &job->settings->camera);
+  set_stereo(header, c, &job->settings->camera.stereo);
   set_float(header, "velo.lensRadius", c->lens_radius);
   if (isfinite(c->focus_distance)) set_float(header, "focus", c->focus_distance);
   set_v2(header, "velo.shutter", c->shutter_open, c->shutter_close);
@@ -146,5 +159,25 @@ vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
   set_int(&header, "velo.maxDepth", job->render.max_depth);
   set_text(&header, "velo.color", choice_name(color_choices, (int)job->settings->color));
   set_text(&header, "velo.lightSampler", choice_name(light_sampler_choices, (int)job->settings->light_sampler));
+  return header.result;
+}
+
+vlResult attributes_set_view(vlImage *image, const Job *job, const char *view) {
+  Header header = {.image = image, .result = VL_OK, .view = view};
+  set_camera(&header, job);
+  return header.result;
+}
+
+vlResult attributes_set_frame(vlImage *image, uint32_t number, const char *name, double time) {
+  Header header = {.image = image, .result = VL_OK};
+  set_int(&header, "velo.frame", number);
+  if (name && *name) set_text(&header, "velo.frameName", name);
+  if (!isnan(time)) set_double(&header, "velo.frameTime", time);
+  return header.result;
+}
+
+vlResult attributes_set_eye(vlImage *image, const char *view) {
+  Header header = {.image = image, .result = VL_OK};
+  set_text(&header, "view", view);
   return header.result;
 }

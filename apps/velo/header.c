@@ -80,6 +80,7 @@ int header_camera(const vlImage *image, const char *path, vlCamera *camera, uint
     return report_failure(STATUS_SCENE, "%s: the camera in its header is wrong: %s", path, error.message);
   double limit;
   if (number(image, "velo.limit", &limit)) camera->limit = limit;
+  number(image, "velo.eyeCircle", &camera->eye_circle);
   *x0 = (uint32_t)data[0];
   *y0 = (uint32_t)data[1];
   return -1;

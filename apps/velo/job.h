@@ -36,11 +36,19 @@ enum {
   RENDER_CHANNELS_MODE,
   RENDER_CRYPTO_RANKS,
   RENDER_FLOW_CAMERA,
-  RENDER_FLOW_CAMERA_BEFORE
+  RENDER_FLOW_CAMERA_BEFORE,
+  RENDER_TRAJECTORY,
+  RENDER_FRAMES,
+  RENDER_FRAME,
+  RENDER_RIG,
+  RENDER_STEREO,
+  RENDER_INTEROCULAR,
+  RENDER_CONVERGENCE,
+  RENDER_EYE
 };
 
 extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[], color_choices[],
-    view_choices[], isa_choices[];
+    view_choices[], isa_choices[], stereo_choices[], eye_choices[];
 
 typedef struct Job {
   const char *path;                /* of the scene file */
@@ -54,6 +62,10 @@ typedef struct Job {
 
 /* Overrides the scene's settings and makes camera and defs. -1: go on; else the exit code, all has been said. */
 int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments);
+
+/* The job with another camera, of a file: *settings, which must outlive it, become the scene's with this camera. */
+int job_take_camera(Job *job, vlSceneSettings *settings, const vlCameraDef *def, const char *path,
+                    const Arguments *arguments);
 
 /* What would be rendered, on stdout (or as a JSON line). */
 void job_describe(const Job *job, vlContext *context, const vlScene *scene, const vlWorld *world,

@@ -6,6 +6,7 @@
 #include "attributes.h"
 #include "channels.h"
 #include "commands.h"
+#include "frames.h"
 #include "job.h"
 #include "outputs.h"
 #include "progress.h"
@@ -29,6 +30,8 @@ typedef struct Render {
   bool write_failed;    /* said once */
   double last_write, write_cost;
   Channels channels; /* of ground truth */
+  Frames frames;     /* of a trajectory, a rig, two eyes */
+  bool many;         /* there are such */
 } Render;
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
@@ -125,6 +128,7 @@ static int prepare(Render *render, const Arguments *arguments) {
   outputs->exposure = (float)v[RENDER_EXPOSURE].number;
   int status = channels_choose(&render->channels, arguments);
   if (status < 0) status = outputs_check_names(outputs);
+  if (status < 0) status = frames_check(arguments, outputs);
   if (status < 0) status = outputs_check_folders(outputs);
   if (status >= 0) return status;
 
@@ -161,6 +165,12 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   status = channels_load(&render->channels, render->context, &render->job);
   if (status >= 0) return status;
   render->job.film.errors = (render->channels.bits & VL_CHANNEL_ERROR) && has_layers(render);
+  render->many = frames_wanted(arguments, &render->job);
+  if (render->many) {
+    status = frames_load(&render->frames, render->context, &render->job, arguments);
+    if (status < 0) status = frames_check_names(&render->frames, &render->outputs);
+    if (status >= 0) return status;
+  }
   result = vl_world_build(render->scene, &render->job.build, &render->world, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   if (arguments->values[RENDER_VERBOSE].given) {
@@ -253,9 +263,14 @@ static int run_render(const Command *command, const Arguments *arguments) {
   if (status < 0) status = load_and_build(&render, arguments->operands[0], arguments);
   if (status < 0 && arguments->values[RENDER_DRY_RUN].given) {
     job_describe(&render.job, render.context, render.scene, render.world, render.outputs.paths, render.outputs.count);
+    if (render.many && frames_count(&render.frames) > 1)
+      report_note("%u frames%s", frames_count(&render.frames), render.frames.views == 2 ? ", two eyes each" : "");
     status = STATUS_OK;
   }
+  if (status < 0 && render.many)
+    status = frames_render(&render.frames, render.context, render.world, &render.outputs, &render.channels);
   if (status < 0) status = render_and_write(&render);
+  frames_free(&render.frames);
   channels_free(&render.channels);
   vl_film_destroy(render.film);
   vl_world_destroy(render.world);
@@ -282,6 +297,28 @@ static const Option render_options[] = {
      "the same in fractions of the picture, in pbrt's order", 0, 0, NULL},
     {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "take camera and picture size from this scene or camera file", 0,
      0, NULL},
+    {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which camera of --camera FILE, by its name or number from 0", 0, 0,
+     NULL},
+    {RENDER_TRAJECTORY, 0, "trajectory", OPTION_TEXT, "FILE",
+     "render every frame of FILE: a COLMAP model, transforms.json, a\n"
+     "camchain, a calibration with its views, or poses in lines (CSV,\n"
+     "TUM, KITTI). In -o %d (%04d: four digits) becomes the frame's\n"
+     "number, %n its name, %c the camera's, %v the eye",
+     0, 0, NULL},
+    {RENDER_FRAMES, 0, "frames", OPTION_TEXT, "A-B[:STEP]", "only these frames of the trajectory; numbers from 0", 0, 0,
+     NULL},
+    {RENDER_RIG, 0, "rig", OPTION_TEXT, "FILE",
+     "every camera of FILE at each pose of the trajectory: a pose is\nthe place of the rig, as a camchain's is cam0's",
+     0, 0, NULL},
+    {RENDER_STEREO, 0, "stereo", OPTION_CHOICE, "MODE",
+     "two eyes: an .exr holds both views, or one file for each where\n"
+     "the name has %v:",
+     0, 0, stereo_choices},
+    {RENDER_INTEROCULAR, 0, "interocular", OPTION_NUMBER, "D", "distance between the eyes, scene units; default 0.065",
+     1e-9, 1e9, NULL},
+    {RENDER_CONVERGENCE, 0, "convergence", OPTION_NUMBER, "D",
+     "depth where off-axis windows or toed-in axes meet, scene units", 1e-9, 1e12, NULL},
+    {RENDER_EYE, 0, "eye", OPTION_CHOICE, "NAME", "which eyes' pictures:", 0, 0, eye_choices},
     {RENDER_TRACER, 0, "tracer", OPTION_CHOICE, "NAME", "how light is followed:", 0, 0, tracer_choices},
     {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "longest path, in bounces", 0, 4096, NULL},
     {RENDER_SAMPLER, 0, "sampler", OPTION_CHOICE, "NAME", "how samples are placed:", 0, 0, sampler_choices},

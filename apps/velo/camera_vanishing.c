@@ -163,7 +163,7 @@ typedef struct Drawing {
   double spacing, level; /* of the ground's grid; 0: none */
 } Drawing;
 
-static void draw(Overlay *o, const vlCamera *c, const vlVanishingPoints *v, const Drawing *drawing) {
+static void draw(Overlay *o, const vlCamera *c, const Drawing *drawing) {
   static const uint8_t colors[3][3] = {{235, 60, 50}, {40, 170, 70}, {50, 110, 245}}, white[3] = {255, 255, 255},
                        yellow[3] = {255, 205, 40};
   double a[3], b[3], width = fmax(1.0, 0.0022 * (o->width + o->height));
@@ -176,8 +176,12 @@ static void draw(Overlay *o, const vlCamera *c, const vlVanishingPoints *v, cons
     const double d[3] = {i == 0, i == 1, i == 2};
     if (!flat && drawing->lines) draw_family(o, c, d, drawing->lines, 0.8 * width);
     overlay_paint(o, colors[i], 0.55);
-    if (v->axes[i].kind == VL_VANISHING_FINITE)
-      overlay_ring(o, v->axes[i].pixel[0], v->axes[i].pixel[1], 5.0 * width, 1.5 * width);
+    for (int end = 0; end < 2; end++) { /* curved pictures may show both ends */
+      const double e[3] = {end ? -d[0] : d[0], end ? -d[1] : d[1], end ? -d[2] : d[2]};
+      vlVanishingPoint p;
+      if (vl_camera_vanishing_point(c, e, &p) && p.kind == VL_VANISHING_FINITE)
+        overlay_ring(o, p.pixel[0], p.pixel[1], 5.0 * width, 1.5 * width);
+    }
     overlay_paint(o, colors[i], 1.0);
   }
   if (flat) return;
@@ -203,7 +207,6 @@ static int draw_overlay(vlContext *context, const Arguments *arguments, const vl
   const OptionValue *v = arguments->values;
   vlImage *picture = NULL;
   vlCamera camera = *of;
-  vlVanishingPoints points;
   vlError error = {0};
   bool eight_bit = false;
   if (!output_suffix(v[V_OUT].text, &eight_bit) || !eight_bit)
@@ -214,8 +217,7 @@ static int draw_overlay(vlContext *context, const Arguments *arguments, const vl
     Overlay overlay = {0};
     vlResult result = VL_ERROR_MEMORY;
     if (overlay_begin(&overlay, picture)) {
-      vl_camera_vanishing_points(&camera, drawing->up, &points);
-      draw(&overlay, &camera, &points, drawing);
+      draw(&overlay, &camera, drawing);
       result = overlay_write(&overlay, context, v[V_OUT].text, &error);
     }
     overlay_end(&overlay);

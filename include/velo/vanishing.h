@@ -17,7 +17,7 @@ typedef enum vlVanishing {
 /* Where the pictures of all lines of one direction meet. */
 typedef struct vlVanishingPoint {
   vlVanishing kind;
-  bool behind;         /* perspective: the other end of the lines is the one before the camera */
+  bool behind;         /* the point is that of the lines' other end, which is the one before the camera */
   double pixel[2];     /* FINITE; may lie outside the picture */
   double direction[2]; /* INFINITE: unit vector along the lines, x right, y down */
 } vlVanishingPoint;
@@ -29,7 +29,8 @@ typedef struct vlVanishingPoint {
 VL_API bool vl_camera_vanishing_point(const vlCamera *camera, const double direction[3], vlVanishingPoint *point);
 
 typedef struct vlVanishingPoints {
-  vlVanishingPoint axes[3]; /* the principal vanishing points: of the world's x, y, z */
+  vlVanishingPoint
+      axes[3]; /* the principal vanishing points: of the world's x, y, z; of -x ... where that end is seen */
   /* One-, two- or three-point perspective: how many of them are finite. 0: not a perspective camera. */
   uint32_t finite;
   /* Where all planes at right angles to `up` vanish: horizon[0] x + horizon[1] y + horizon[2] = 0, the first two of

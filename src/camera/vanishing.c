@@ -55,8 +55,11 @@ bool vl_camera_vanishing_points(const vlCamera *camera, const double up[3], vlVa
   if (!camera || !up || !points) return false;
   *points = (vlVanishingPoints){.finite = 0};
   for (int i = 0; i < 3; i++) {
-    const double axis[3] = {i == 0, i == 1, i == 2};
+    const double axis[3] = {i == 0, i == 1, i == 2}, other[3] = {-axis[0], -axis[1], -axis[2]};
     vl_camera_vanishing_point(camera, axis, &points->axes[i]);
+    if (points->axes[i].kind == VL_VANISHING_NONE && camera->projection != VL_PROJECTION_ORTHOGRAPHIC &&
+        vl_camera_vanishing_point(camera, other, &points->axes[i]))
+      points->axes[i].behind = points->axes[i].kind == VL_VANISHING_FINITE;
     points->finite += points->axes[i].kind == VL_VANISHING_FINITE;
   }
   if (camera->projection != VL_PROJECTION_PERSPECTIVE) points->finite = 0;

@@ -25,7 +25,7 @@ static const char *tag_of(const json_t *element) {
 }
 
 static uint32_t line_of(const json_t *element) {
-  return (uint32_t)json_integer_value(json_object_get(element, "#"));
+  return (uint32_t)json_number_value(json_object_get(element, "#"));
 }
 
 /* Equal but for case and underscores. */

@@ -94,7 +94,7 @@ static vlResult local_matrix(const vlCameraFile *file, const json_t *prim, vlMat
 
 /* A value that changes with time is no still camera's. */
 static vlResult check_still(const vlCameraFile *file, const json_t *prim) {
-  uint32_t line = (uint32_t)json_integer_value(json_object_get(prim, "#"));
+  uint32_t line = (uint32_t)json_number_value(json_object_get(prim, "#"));
   const char *key;
   json_t *unused;
   json_object_foreach((json_t *)prim, key, unused) {

@@ -258,7 +258,7 @@ static bool prim(Parser *p, json_t *parent, int depth) {
   json_t *self = json_object();
   int failed = json_object_set_new(self, "<", json_stringn(type, type_length));
   failed |= json_object_set_new(self, "@", json_stringn(text, length));
-  failed |= json_object_set_new(self, "#", json_integer(line));
+  failed |= json_object_set_new(self, "#", json_real(line));
   failed |= json_object_set_new(self, "/", json_array());
   if (stored && !failed) failed = json_array_append(json_object_get(parent, "/"), self);
   bool good = failed ? memory(p) : metadata(p, NULL);

@@ -52,7 +52,7 @@ static void on_start(void *data, const char *tag, const char **attributes) {
   }
   json_t *element = json_object();
   int failed = json_object_set_new(element, "<", json_string(tag));
-  failed |= json_object_set_new(element, "#", json_integer(line));
+  failed |= json_object_set_new(element, "#", json_real(line));
   failed |= json_object_set_new(element, "/", json_array());
   for (; *attributes && !failed; attributes += 2)
     failed |= json_object_set_new(element, attributes[0], json_string(attributes[1]));

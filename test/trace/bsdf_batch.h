@@ -12,6 +12,7 @@ enum { BATCH = 1024 };
 typedef struct Batch {
   float reflectance[4][BATCH], eta[4][BATCH], k[4][BATCH], alpha_x[BATCH], alpha_y[BATCH], eta_s[BATCH];
   const vlCoatTable *coat[BATCH];
+  float principled[VL_PRINCIPLED_ROWS][BATCH], lambda[4][BATCH];
   float ox[BATCH], oy[BATCH], oz[BATCH], ix[BATCH], iy[BATCH], iz[BATCH], lobe[BATCH], u[BATCH], v[BATCH];
   float value[4][BATCH], pdf[BATCH], weight[4][BATCH], scale[BATCH];
   uint32_t flags[BATCH];
@@ -22,12 +23,15 @@ typedef struct Surface {
   vlBsdfKind kind;
   float reflectance, eta, k, alpha_x, alpha_y, eta_s;
   const vlCoatTable *coat;
+  const float *principled; /* VL_PRINCIPLED_ROWS values */
 } Surface;
 
 static inline vlBsdfParams batch_params(Batch *b) {
   vlBsdfParams p;
   for (int c = 0; c < 4; c++) p.reflectance[c] = b->reflectance[c], p.eta[c] = b->eta[c], p.k[c] = b->k[c];
   p.alpha_x = b->alpha_x, p.alpha_y = b->alpha_y, p.eta_s = b->eta_s, p.coat = b->coat;
+  for (int k = 0; k < VL_PRINCIPLED_ROWS; k++) p.principled[k] = b->principled[k];
+  for (int c = 0; c < 4; c++) p.lambda[c] = b->lambda[c];
   return p;
 }
 static inline void batch_surface(Batch *b, uint32_t i, const Surface *s) {
@@ -37,6 +41,8 @@ static inline void batch_surface(Batch *b, uint32_t i, const Surface *s) {
     b->k[c][i] = s->k * (1.0f - 0.1f * (float)c);
   }
   b->alpha_x[i] = s->alpha_x, b->alpha_y[i] = s->alpha_y, b->eta_s[i] = s->eta_s, b->coat[i] = s->coat;
+  for (int k = 0; s->principled && k < VL_PRINCIPLED_ROWS; k++) b->principled[k][i] = s->principled[k];
+  for (int c = 0; c < 4; c++) b->lambda[c][i] = 420.0f + 80.0f * (float)c;
 }
 /* theta from +z; past pi/2 from below */
 static inline void batch_wo(Batch *b, uint32_t i, double theta, double phi) {

@@ -6,7 +6,7 @@
 
 #include "math/ggx.h"
 
-enum { POINTS = 32, SHEEN_POINTS = 64 };
+enum { TURNS = 24, CAPS = 384, SHEEN_POINTS = 64 }; /* caps: fine, for the long tails of narrow lobes */
 
 static float table_cos(uint32_t column) {
   float x = (float)column / (float)(VL_ALBEDO_COS - 1), c = x * x;
@@ -18,8 +18,8 @@ static void specular_at(float cosine, float alpha, float *a, float *b) {
   vlVec3 o = vl_vec3(__builtin_sqrtf(1.0f - cosine * cosine), 0.0f, cosine);
   float lo = vl_ggx_length(o, alpha, alpha);
   double sum_a = 0, sum_b = 0;
-  for (uint32_t k = 0; k < POINTS * POINTS; k++) {
-    float u = ((float)(k % POINTS) + 0.5f) / POINTS, v = ((float)(k / POINTS) + 0.5f) / POINTS;
+  for (uint32_t k = 0; k < TURNS * CAPS; k++) {
+    float u = ((float)(k % TURNS) + 0.5f) / TURNS, v = ((float)(k / TURNS) + 0.5f) / CAPS;
     vlVec3 h = vl_ggx_sample(o, alpha, alpha, u, v);
     float c = vl_dot(o, h), z = 2.0f * c * h.z - o.z;
     if (!(z > 0.0f)) continue;
@@ -28,8 +28,8 @@ static void specular_at(float cosine, float alpha, float *a, float *b) {
     sum_a += (double)(g * (1.0f - s));
     sum_b += (double)(g * s);
   }
-  *a = (float)(sum_a / (POINTS * POINTS));
-  *b = (float)(sum_b / (POINTS * POINTS));
+  *a = (float)(sum_a / (TURNS * CAPS));
+  *b = (float)(sum_b / (TURNS * CAPS));
 }
 
 /* Over polar angle and azimuth; denser towards the horizon, where the sheen is. */

@@ -1,0 +1,360 @@
+/* test_principled.c: the principled BSDF: white surfaces in a white furnace, reciprocity, densities by chi-square, the
+ * value that sampling and evaluation agree on, the thin film against Fresnel and against interference by hand, layers
+ * that are off change nothing. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+/* after those */
+#include <cmocka.h>
+
+#include "bsdf_batch.h"
+
+#define PI 3.14159265358979323846
+
+typedef struct State {
+  vlContext *context;
+  const vlBsdfKernels *kernels;
+  Batch *batch, *other;
+} State;
+
+static int setup(void **state) {
+  State *s = calloc(1, sizeof *s);
+  vlContextDef def = vl_default_context_def();
+  if (vl_context_create(&def, &s->context)) return 1;
+  s->kernels = vl_bsdf_kernels(vl_context_isa(s->context));
+  s->batch = calloc(1, sizeof *s->batch);
+  s->other = calloc(1, sizeof *s->other);
+  *state = s;
+  return 0;
+}
+static int teardown(void **state) {
+  State *s = *state;
+  vl_context_destroy(s->context);
+  free(s->batch);
+  free(s->other);
+  free(s);
+  return 0;
+}
+
+/* What a material says; least and most: bounds of what a white one sends back of a furnace. */
+typedef struct Look {
+  const char *name;
+  float metallic, roughness, transmission, solid, beyond, coat, coat_roughness, sheen, sheen_roughness, film, film_nm,
+      anisotropy, base;
+  double least, most;
+} Look;
+static const Look looks[] = {
+    {.name = "mirror-like dielectric", .base = 1, .least = 0.999, .most = 1.001},
+    {.name = "dielectric", .base = 1, .roughness = 0.5f, .least = 0.998, .most = 1.001},
+    {.name = "rough dielectric", .base = 1, .roughness = 1, .least = 0.999, .most = 1.001},
+    {.name = "mirror", .base = 1, .metallic = 1, .least = 0.999, .most = 1.001},
+    {.name = "metal", .base = 1, .metallic = 1, .roughness = 0.5f, .least = 0.997, .most = 1.003},
+    {.name = "rough metal", .base = 1, .metallic = 1, .roughness = 1, .least = 0.996, .most = 1.004},
+    {.name = "half metal", .base = 1, .metallic = 0.5f, .roughness = 0.4f, .least = 0.996, .most = 1.003},
+    {.name = "sheet", .base = 1, .transmission = 1, .least = 0.999, .most = 1.001},
+    {.name = "rough sheet", .base = 1, .roughness = 0.6f, .transmission = 1, .least = 0.997, .most = 1.003},
+    {.name = "solid", .base = 1, .transmission = 1, .solid = 1, .least = 0.999, .most = 1.001},
+    {.name = "half passing", .base = 1, .roughness = 0.3f, .transmission = 0.5f, .least = 0.997, .most = 1.003},
+    {.name = "leaf", .base = 1, .roughness = 0.5f, .beyond = 0.5f, .least = 0.998, .most = 1.001},
+    {.name = "coat", .base = 1, .roughness = 0.5f, .coat = 1, .least = 0.993, .most = 1.004},
+    {.name = "coated mirror", .base = 1, .metallic = 1, .coat = 1, .least = 0.996, .most = 1.001},
+    {.name = "coated metal",
+     .base = 1,
+     .metallic = 1,
+     .roughness = 0.3f,
+     .coat = 1,
+     .coat_roughness = 0.4f,
+     .least = 0.975,
+     .most = 1.001},
+    {.name = "velvet",
+     .base = 1,
+     .roughness = 0.8f,
+     .sheen = 1,
+     .sheen_roughness = 0.3f,
+     .least = 0.996,
+     .most = 1.003},
+    {.name = "cloth", .base = 1, .roughness = 0.5f, .sheen = 1, .sheen_roughness = 0.7f, .least = 0.996, .most = 1.003},
+    {.name = "film", .base = 1, .roughness = 0.2f, .film = 1, .film_nm = 400, .least = 0.955, .most = 1.001},
+    {.name = "film on metal",
+     .base = 1,
+     .metallic = 1,
+     .roughness = 0.4f,
+     .film = 1,
+     .film_nm = 500,
+     .least = 0.994,
+     .most = 1.005},
+    {.name = "brushed metal",
+     .base = 1,
+     .metallic = 1,
+     .roughness = 0.55f,
+     .anisotropy = 0.5f,
+     .least = 0.97,
+     .most = 1.035},
+    /* with all that is on at once, and not white */
+    {.name = "everything",
+     .base = 0.7f,
+     .metallic = 0.3f,
+     .roughness = 0.4f,
+     .transmission = 0.4f,
+     .beyond = 0.3f,
+     .coat = 0.8f,
+     .coat_roughness = 0.3f,
+     .sheen = 0.3f,
+     .sheen_roughness = 0.5f,
+     .film = 0.5f,
+     .film_nm = 350,
+     .anisotropy = 0.4f,
+     .least = 0.6,
+     .most = 1.0},
+    {.name = "frosted solid",
+     .base = 0.9f,
+     .roughness = 0.5f,
+     .transmission = 0.8f,
+     .solid = 1,
+     .coat = 0.5f,
+     .coat_roughness = 0.3f,
+     .least = 0.6,
+     .most = 1.0},
+};
+enum { LOOKS = sizeof looks / sizeof *looks };
+
+static Surface surface_of(const Look *l, float rows[VL_PRINCIPLED_ROWS]) {
+  memset(rows, 0, VL_PRINCIPLED_ROWS * sizeof *rows);
+  rows[VL_P_METALLIC] = l->metallic;
+  rows[VL_P_F90] = 1;
+  rows[VL_P_TRANSMISSION] = l->transmission;
+  rows[VL_P_THIN] = 1 - l->solid;
+  rows[VL_P_DIFFUSE_TRANSMISSION] = l->beyond;
+  rows[VL_P_COAT] = l->coat;
+  rows[VL_P_COAT_ALPHA] = fmaxf(l->coat_roughness * l->coat_roughness, 1e-3f);
+  rows[VL_P_COAT_Z] = 1;
+  rows[VL_P_SHEEN_ALPHA] = fmaxf(l->sheen_roughness * l->sheen_roughness, 0.005f);
+  rows[VL_P_FILM] = l->film, rows[VL_P_FILM_INDEX] = 1.3f, rows[VL_P_FILM_NM] = l->film_nm;
+  for (int c = 0; c < 4; c++) rows[VL_P_F0 + c] = 0.04f, rows[VL_P_THROUGH + c] = 1, rows[VL_P_SHEEN + c] = l->sheen;
+  float alpha = fmaxf(l->roughness * l->roughness, 1e-3f);
+  return (Surface){.kind = VL_BSDF_PRINCIPLED,
+                   .reflectance = l->base,
+                   .eta_s = 1.5f,
+                   .alpha_x = alpha + (1 - alpha) * l->anisotropy * l->anisotropy,
+                   .alpha_y = alpha,
+                   .principled = rows};
+}
+
+/* Channel 0 of the base is white where base is 1 (batch_surface darkens the others). */
+static void furnace(void **state) {
+  State *s = *state;
+  Batch *b = s->batch;
+  static const double cosines[] = {0.98, 0.7, 0.4, 0.15, -0.3, -0.85};
+  for (int k = 0; k < LOOKS; k++) {
+    float rows[VL_PRINCIPLED_ROWS];
+    Surface surface = surface_of(&looks[k], rows);
+    for (int t = 0; t < 6; t++) {
+      statRng rng = stat_rng((uint64_t)(k * 6 + t));
+      double sum = 0, square = 0;
+      enum { TURNS = 100 };
+      for (uint32_t j = 0; j < BATCH; j++) {
+        batch_surface(b, j, &surface);
+        batch_wo(b, j, acos(cosines[t]), 0.6);
+      }
+      for (int turn = 0; turn < TURNS; turn++) {
+        batch_numbers(b, BATCH, &rng);
+        batch_sample(s->kernels, VL_BSDF_PRINCIPLED, BATCH, b);
+        for (uint32_t j = 0; j < BATCH; j++) {
+          double w = b->flags[j] & VL_SAMPLED_NONE ? 0 : (double)(b->weight[0][j] * b->scale[j]);
+          sum += w;
+          square += w * w;
+        }
+      }
+      double n = (double)TURNS * BATCH, mean = sum / n, error = sqrt((square / n - mean * mean) / n);
+      if (!(mean > looks[k].least - 4 * error && mean < looks[k].most + 4 * error))
+        fail_msg("%s at cos %g: %g +- %g", looks[k].name, cosines[t], mean, error);
+    }
+  }
+}
+
+/* f(o, i) / eta_i^2 is the same both ways; eta is the index on the side of the direction. */
+static void reciprocity(void **state) {
+  State *s = *state;
+  Batch *a = s->batch, *b = s->other;
+  for (int k = 0; k < LOOKS; k++) {
+    float rows[VL_PRINCIPLED_ROWS];
+    Surface surface = surface_of(&looks[k], rows);
+    if (looks[k].roughness == 0) continue; /* values of sharp peaks are rounded more */
+    statRng rng = stat_rng((uint64_t)(1000 + k));
+    for (uint32_t j = 0; j < BATCH; j++) {
+      double o[3], w[3];
+      do stat_direction(&rng, o);
+      while (fabs(o[2]) < 0.05);
+      do stat_direction(&rng, w);
+      while (fabs(w[2]) < 0.05);
+      batch_surface(a, j, &surface);
+      batch_surface(b, j, &surface);
+      a->ox[j] = b->ix[j] = (float)o[0], a->oy[j] = b->iy[j] = (float)o[1], a->oz[j] = b->iz[j] = (float)o[2];
+      a->ix[j] = b->ox[j] = (float)w[0], a->iy[j] = b->oy[j] = (float)w[1], a->iz[j] = b->oz[j] = (float)w[2];
+    }
+    batch_eval(s->kernels, VL_BSDF_PRINCIPLED, BATCH, a);
+    batch_eval(s->kernels, VL_BSDF_PRINCIPLED, BATCH, b);
+    uint32_t lit = 0;
+    for (uint32_t j = 0; j < BATCH; j++)
+      for (int c = 0; c < 4; c++) {
+        double forth = (double)a->value[c][j] / fabs((double)a->iz[j]),
+               back = (double)b->value[c][j] / fabs((double)b->iz[j]);
+        if (looks[k].solid > 0 && a->oz[j] * a->iz[j] < 0) { /* radiance over the squared index of where it travels */
+          forth /= a->oz[j] > 0 ? 1 : 2.25;
+          back /= b->oz[j] > 0 ? 1 : 2.25;
+        }
+        lit += forth > 0;
+        if (!(fabs(forth - back) <= 1e-4 * (fabs(forth) + 1e-4)))
+          fail_msg("%s: %g one way, %g the other (o.z %g, i.z %g)", looks[k].name, forth, back, (double)a->oz[j],
+                   (double)a->iz[j]);
+      }
+    assert_true(lit > BATCH / 2);
+  }
+}
+
+typedef struct Direction {
+  const State *s;
+} Direction;
+static double density(void *user, const double w[3]) {
+  const Direction *d = user;
+  Batch *b = d->s->other;
+  b->ix[0] = (float)w[0], b->iy[0] = (float)w[1], b->iz[0] = (float)w[2];
+  batch_eval(d->s->kernels, VL_BSDF_PRINCIPLED, 1, b);
+  return (double)b->pdf[0];
+}
+
+/* Directions fall as the density says; it integrates to at most 1. */
+static void chi_square(void **state) {
+  State *s = *state;
+  Batch *b = s->batch;
+  static const double thetas[] = {0.3, 1.3, PI - 0.7};
+  const char *names[] = {"dielectric", "rough metal", "rough sheet",   "leaf",       "coated metal",
+                         "velvet",     "film",        "brushed metal", "everything", "frosted solid"};
+  for (int q = 0; q < 10; q++)
+    for (int t = 0; t < 3; t++) {
+      int k = 0;
+      while (strcmp(looks[k].name, names[q]) != 0) k++;
+      float rows[VL_PRINCIPLED_ROWS];
+      Surface surface = surface_of(&looks[k], rows);
+      statRng rng = stat_rng((uint64_t)(q * 3 + t + 31));
+      statSphere hist = stat_sphere_new(24, 32);
+      for (uint32_t j = 0; j < BATCH; j++) {
+        batch_surface(b, j, &surface);
+        batch_wo(b, j, thetas[t], 0.7);
+      }
+      for (int turn = 0; turn < 64; turn++) {
+        batch_numbers(b, BATCH, &rng);
+        batch_sample(s->kernels, VL_BSDF_PRINCIPLED, BATCH, b);
+        for (uint32_t j = 0; j < BATCH; j++)
+          if (b->flags[j] & VL_SAMPLED_NONE)
+            stat_sphere_reject(hist);
+          else
+            stat_sphere_add(hist, (double)b->ix[j], (double)b->iy[j], (double)b->iz[j]);
+      }
+      for (uint32_t j = 0; j < VL_LANES; j++) {
+        batch_surface(s->other, j, &surface);
+        batch_wo(s->other, j, thetas[t], 0.7);
+      }
+      Direction d = {s};
+      statResult r = stat_sphere_test(hist, density, &d, 2e-5);
+      if (!stat_accept(r, 30)) fail_msg("%s, theta %g: p %g, integral %g", names[q], thetas[t], r.p, r.integral);
+      assert_true(r.integral < 1.0005);
+    }
+}
+
+static void sampled_is_evaluated(void **state) {
+  State *s = *state;
+  Batch *a = s->batch, *b = s->other;
+  for (int k = 0; k < LOOKS; k++) {
+    if (looks[k].roughness == 0) continue;
+    float rows[VL_PRINCIPLED_ROWS];
+    Surface surface = surface_of(&looks[k], rows);
+    statRng rng = stat_rng((uint64_t)(500 + k));
+    for (uint32_t j = 0; j < BATCH; j++) {
+      double d[3];
+      stat_direction(&rng, d);
+      batch_surface(a, j, &surface);
+      a->ox[j] = (float)d[0], a->oy[j] = (float)d[1], a->oz[j] = (float)d[2];
+    }
+    batch_numbers(a, BATCH, &rng);
+    batch_sample(s->kernels, VL_BSDF_PRINCIPLED, BATCH, a);
+    *b = *a;
+    batch_eval(s->kernels, VL_BSDF_PRINCIPLED, BATCH, b);
+    for (uint32_t j = 0; j < BATCH; j++) {
+      if (a->flags[j] & VL_SAMPLED_NONE) continue;
+      bool crosses = a->oz[j] * a->iz[j] < 0;
+      assert_true(((a->flags[j] & VL_SAMPLED_TRANSMISSION) != 0) == crosses);
+      for (int c = 0; c < 4; c++) {
+        double v = (double)b->value[c][j], w = (double)a->weight[c][j] * (double)a->pdf[j];
+        if (!(fabs(v - w) <= 1e-4 * (v + 1e-5))) fail_msg("%s: eval %g, sample %g", looks[k].name, v, w);
+      }
+    }
+  }
+}
+
+/* Reflection of a smooth film on black, by what the specular lobe sends back at one angle. */
+static double film_reflection(State *s, float nm, float index, double cosine, uint32_t channel) {
+  Look look = {.metallic = 1, .roughness = 0, .film = 1, .film_nm = nm, .base = 0.04f};
+  float rows[VL_PRINCIPLED_ROWS];
+  Surface surface = surface_of(&look, rows);
+  rows[VL_P_FILM_INDEX] = index;
+  Batch *b = s->batch;
+  statRng rng = stat_rng(3);
+  double sum = 0;
+  for (uint32_t j = 0; j < BATCH; j++) {
+    batch_surface(b, j, &surface);
+    for (int c = 0; c < 4; c++) b->reflectance[c][j] = 0.04f; /* an index of 1.5 */
+    batch_wo(b, j, acos(cosine), 0);
+  }
+  batch_numbers(b, BATCH, &rng);
+  batch_sample(s->kernels, VL_BSDF_PRINCIPLED, BATCH, b);
+  for (uint32_t j = 0; j < BATCH; j++) sum += b->flags[j] & VL_SAMPLED_NONE ? 0 : (double)b->weight[channel][j];
+  return sum / BATCH;
+}
+
+static void thin_film(void **state) {
+  State *s = *state;
+  /* No thickness: the bare base, (1.5 - 1)^2 / (1.5 + 1)^2 at normal incidence. */
+  assert_true(fabs(film_reflection(s, 0, 1.3f, 0.99999, 0) - 0.04) < 2e-4);
+  /* A quarter wave of index sqrt(1.5) makes it vanish; half a wave does nothing. Channel 1 is 500 nm. */
+  float root = sqrtf(1.5f);
+  assert_true(film_reflection(s, 500 / (4 * root), root, 0.99999, 1) < 2e-4);
+  assert_true(fabs(film_reflection(s, 500 / (2 * root), root, 0.99999, 1) - 0.04) < 3e-4);
+  /* A quarter wave of a denser film: ((n0 ns - n^2) / (n0 ns + n^2))^2. */
+  double n = 2.2, expected = pow((1.5 - n * n) / (1.5 + n * n), 2);
+  assert_true(fabs(film_reflection(s, (float)(500 / (4 * n)), (float)n, 0.99999, 1) - expected) < 2e-3);
+}
+
+/* A layer at 0 leaves the same bits, whatever its other numbers. */
+static void off_is_off(void **state) {
+  State *s = *state;
+  Batch *a = s->batch, *b = s->other;
+  Look look = {.roughness = 0.4f, .metallic = 0.2f, .base = 0.8f};
+  float plain[VL_PRINCIPLED_ROWS], other[VL_PRINCIPLED_ROWS];
+  Surface surface = surface_of(&look, plain), same = surface_of(&look, other);
+  other[VL_P_COAT_ALPHA] = 0.3f, other[VL_P_COAT_X] = 0.6f, other[VL_P_COAT_Z] = 0.8f, other[VL_P_SHEEN_ALPHA] = 0.2f;
+  other[VL_P_FILM_NM] = 700, other[VL_P_FILM_INDEX] = 2;
+  statRng rng = stat_rng(9);
+  for (uint32_t j = 0; j < BATCH; j++) {
+    double d[3];
+    stat_direction(&rng, d);
+    batch_surface(a, j, &surface);
+    batch_surface(b, j, &same);
+    a->ox[j] = b->ox[j] = (float)d[0], a->oy[j] = b->oy[j] = (float)d[1], a->oz[j] = b->oz[j] = (float)d[2];
+  }
+  batch_numbers(a, BATCH, &rng);
+  memcpy(b->lobe, a->lobe, sizeof a->lobe), memcpy(b->u, a->u, sizeof a->u), memcpy(b->v, a->v, sizeof a->v);
+  batch_sample(s->kernels, VL_BSDF_PRINCIPLED, BATCH, a);
+  batch_sample(s->kernels, VL_BSDF_PRINCIPLED, BATCH, b);
+  assert_memory_equal(a->weight, b->weight, sizeof a->weight);
+  assert_memory_equal(a->pdf, b->pdf, sizeof a->pdf);
+  assert_memory_equal(a->ix, b->ix, sizeof a->ix);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(furnace),    cmocka_unit_test(reciprocity),
+                                     cmocka_unit_test(chi_square), cmocka_unit_test(sampled_is_evaluated),
+                                     cmocka_unit_test(thin_film),  cmocka_unit_test(off_is_off)};
+  return cmocka_run_group_tests(tests, setup, teardown);
+}

@@ -197,6 +197,8 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
   if (ok && def.ground) ok = add_ground(scene, &def, &box);
   vl_free(scene->context, boxes);
   vlEnvironmentKind kind = def.environment;
+  /* Lamps alone leave everything else black: the room is there, too, but dim. */
+  if (kind == VL_ENVIRONMENT_AUTO && scene->lights.count > 0) def.strength *= 0.3f;
   if (kind == VL_ENVIRONMENT_AUTO) kind = s->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
   if (ok && kind != VL_ENVIRONMENT_NONE && vl_scene_add_environment(scene, &def, kind)) s->light_missing = false;
   return vl_scene_result(scene, error);

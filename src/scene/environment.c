@@ -40,15 +40,15 @@ static float soft_box(float azimuth, float elevation, float at, float height, fl
 static float studio(vlVec3 d) {
   float azimuth = vl_atan2(d.x, d.y) * 57.29578f, elevation = 90.0f - vl_acos(vl_clamp(d.z, -1, 1)) * 57.29578f;
   /* A grey room: floor, and walls that grow brighter upwards. */
-  float floor = 0.20f + 0.10f * ramp(elevation, -90, 0), wall = 0.42f + 0.25f * ramp(elevation, 0, 90);
+  float floor = 0.14f + 0.08f * ramp(elevation, -90, 0), wall = 0.28f + 0.15f * ramp(elevation, 0, 90);
   float y = floor + (wall - floor) * ramp(elevation, -1.5f, 1.5f);
   /* The viewer stands at 180 degrees: key light over his left shoulder, fill light on the right, two from behind, one
-   * above. */
-  y += 6.5f * soft_box(azimuth, elevation, -135, 42, 32, 24, 6);
-  y += 1.6f * soft_box(azimuth, elevation, 105, 22, 16, 34, 6);
-  y += 3.0f * soft_box(azimuth, elevation, 38, 38, 16, 16, 5);
-  y += 1.8f * soft_box(azimuth, elevation, -52, 24, 9, 30, 5);
-  y += 2.2f * ramp(elevation, 66, 76);
+   * above. White paper that faces him shows 0.7, lying 1.1. */
+  y += 4.2f * soft_box(azimuth, elevation, -135, 42, 32, 24, 6);
+  y += 1.2f * soft_box(azimuth, elevation, 105, 22, 16, 34, 6);
+  y += 2.2f * soft_box(azimuth, elevation, 38, 38, 16, 16, 5);
+  y += 1.3f * soft_box(azimuth, elevation, -52, 24, 9, 30, 5);
+  y += 1.2f * ramp(elevation, 66, 76);
   return y;
 }
 

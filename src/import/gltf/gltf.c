@@ -42,7 +42,6 @@ vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def, 
             vl_gltf_choose_variant(&g) && vl_gltf_read_nodes(&g) && vl_gltf_animate(&g) && vl_gltf_pose_nodes(&g) &&
             vl_gltf_draw(&g) && vl_gltf_choose_camera(&g);
   if (ok && g.shapes_made == 0) vl_gltf_warn(&g, VL_LOG_WARNING, NULL, "draws nothing");
-  if (ok) vl_scene_settings(scene)->light_missing = g.lights_made == 0;
   vl_gltf_close(&g);
   return vl_scene_result(scene, error);
 }

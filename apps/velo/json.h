@@ -17,6 +17,8 @@ void json_begin(Json *json, const char *key, char bracket);
 void json_end(Json *json, char bracket);
 void json_text(Json *json, const char *key, const char *text);
 void json_number(Json *json, const char *key, double number);
+/* jansson, which the library is made of, has a json_integer too: linked together they must not be the same. */
+#define json_integer json_put_integer
 void json_integer(Json *json, const char *key, int64_t number);
 void json_bool(Json *json, const char *key, bool truth);
 

@@ -46,8 +46,9 @@ typedef struct vlFilmDef {
   uint32_t width, height; /* the whole picture */
   uint32_t crop[4];       /* x0, y0, x1, y1, exclusive; the pixels that are rendered */
   vlPixelFilter filter;
-  vlColorSpace space; /* of the developed picture */
-  bool errors;        /* remember what vl_film_errors needs: three times the memory; default false */
+  vlColorSpace space;   /* of the developed picture */
+  double white_balance; /* kelvin: daylight of this colour temperature comes out white; 0 (default): as it is */
+  bool errors;          /* remember what vl_film_errors needs: three times the memory; default false */
 } vlFilmDef;
 VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);
 VL_API vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film);

@@ -392,12 +392,13 @@ typedef struct vlSceneSettings {
   vlCameraDef camera;
   vlSource camera_source; /* where the file says so, for errors of vl_camera_make; file may be null */
   uint32_t width, height;
-  uint32_t crop[4];    /* x0, y0, x1, y1 in pixels (x1, y1 exclusive) */
-  char output[512];    /* file name the scene asks for; may be empty */
-  float exposure;      /* sensor: imaging ratio, ISO etc. folded; default 1 */
-  bool camera_missing; /* the file has none: vl_scene_complete makes one */
-  bool light_missing;  /* nor light that shines from outside its shapes */
-  vlColorSpace space;  /* of the output picture */
+  uint32_t crop[4];     /* x0, y0, x1, y1 in pixels (x1, y1 exclusive) */
+  char output[512];     /* file name the scene asks for; may be empty */
+  float exposure;       /* sensor: imaging ratio, ISO etc. folded; default 1 */
+  bool camera_missing;  /* the file has none: vl_scene_complete makes one */
+  bool light_missing;   /* nor light from all around */
+  vlColorSpace space;   /* of the output picture */
+  double white_balance; /* kelvin, 0: none */
   vlPixelFilter filter;
   vlSamplerKind sampler;
   uint32_t spp;
@@ -434,7 +435,7 @@ VL_API vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef 
 
 /* What a scene that a file describes may lack: a camera, light, a ground to stand on. */
 typedef enum vlEnvironmentKind {
-  VL_ENVIRONMENT_AUTO,   /* the studio where the file has no light of its own */
+  VL_ENVIRONMENT_AUTO,   /* the studio where the settings say light_missing; dim where there are lamps */
   VL_ENVIRONMENT_NONE,   /* none is added */
   VL_ENVIRONMENT_STUDIO, /* neutral: soft lights in a grey room, brighter than it above and in front */
   VL_ENVIRONMENT_SKY,    /* a clear sky and the sun */

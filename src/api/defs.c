@@ -23,5 +23,6 @@ vlFilmDef vl_scene_film_def(const vlScene *scene) {
   memcpy(def.crop, s->crop, sizeof def.crop);
   def.filter = s->filter;
   def.space = s->space;
+  def.white_balance = s->white_balance;
   return def;
 }

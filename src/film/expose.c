@@ -8,12 +8,14 @@ static void multiply3(const float a[9], const float b[9], float c[9]) {
     for (int j = 0; j < 3; j++) c[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
 }
 
-static void convert(vlColorSpace space, const vlExposure *e, float *r, float *g, float *b) {
-  float to[9], from[9], m[9];
+static void convert(vlColorSpace space, const float *balance, const vlExposure *e, float *r, float *g, float *b) {
+  float to[9], from[9], m[9], product[9];
   vl_rgb_from_xyz(space, to);
   vl_xyz_from_rgb(VL_SPACE_SRGB, from);
-  multiply3(to, from, m);
-  for (int i = 0; space == VL_SPACE_SRGB && i < 9; i++) m[i] = i % 4 == 0; /* not the rounded product */
+  if (balance) multiply3(to, balance, m);
+  multiply3(balance ? m : to, from, product);
+  for (int i = 0; i < 9; i++) m[i] = product[i];
+  for (int i = 0; space == VL_SPACE_SRGB && !balance && i < 9; i++) m[i] = i % 4 == 0; /* not the rounded product */
   const float *x = e->radiance[0], *y = e->radiance[1], *z = e->radiance[2];
   for (uint32_t i = 0; i < VL_PAD(e->n); i++) {
     r[i] = m[0] * x[i] + m[1] * y[i] + m[2] * z[i];
@@ -24,12 +26,14 @@ static void convert(vlColorSpace space, const vlExposure *e, float *r, float *g,
 
 void vl_film_expose(const vlFilm *film, vlIsa isa, const vlExposure *e, float *r, float *g, float *b) {
   vlColorSpace space = vl_film_def(film)->space;
+  const float *balance = vl_film_balance(film);
   if (e->lambda[0]) {
-    float m[9];
-    vl_rgb_from_xyz(space, m);
+    float m[9], to[9];
+    vl_rgb_from_xyz(space, balance ? to : m);
+    if (balance) multiply3(to, balance, m);
     vl_color_kernels(isa)->rgb_from_radiance(m, e->n, e->radiance, e->lambda, e->inv_pdf, r, g, b);
   } else {
-    convert(space, e, r, g, b);
+    convert(space, balance, e, r, g, b);
   }
   float f = e->exposure;
   for (uint32_t i = 0; f != 1.0f && i < VL_PAD(e->n); i++) r[i] *= f, g[i] *= f, b[i] *= f;

@@ -1,6 +1,7 @@
 /* film/film.c: making films, passes, merging. */
 #include "base/cookie.h"
 #include "film/sums.h"
+#include "film/white.h"
 
 #include <string.h>
 
@@ -20,6 +21,8 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
   *film = NULL;
   if (!context || !def || def->cookie != VL_COOKIE_FILM) return VL_ERROR_ARGUMENT;
   const uint32_t *c = def->crop;
+  if (def->white_balance != 0.0 && !(def->white_balance >= 1000.0 && def->white_balance <= 1e5))
+    return VL_ERROR_ARGUMENT;
   if (def->width == 0 || def->height == 0 || def->width > SIZE_MAX_PIXELS || def->height > SIZE_MAX_PIXELS)
     return VL_ERROR_ARGUMENT;
   if (c[0] >= c[2] || c[1] >= c[3] || c[2] > def->width || c[3] > def->height) return VL_ERROR_ARGUMENT;
@@ -30,6 +33,7 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
   made->width = c[2] - c[0];
   made->height = c[3] - c[1];
   made->pass = 1;
+  if (def->white_balance > 0.0) vl_white_balance(def->white_balance, def->space, made->balance);
   if (!vl_filter_compile(&def->filter, &made->filter)) {
     vl_free(context, made);
     return VL_ERROR_ARGUMENT;
@@ -57,6 +61,9 @@ void vl_film_set_spp(vlFilm *film, uint32_t spp) {
 }
 const vlFilmDef *vl_film_def(const vlFilm *film) {
   return &film->def;
+}
+const float *vl_film_balance(const vlFilm *film) {
+  return film->def.white_balance > 0.0 ? film->balance : NULL;
 }
 const vlFilterTable *vl_film_filter(const vlFilm *film) {
   return &film->filter;

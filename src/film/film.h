@@ -25,6 +25,8 @@ typedef struct vlFilmSamples {
 uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *samples, int32_t *bad_x, int32_t *bad_y);
 
 const vlFilmDef *vl_film_def(const vlFilm *film);
+/* Row-major, acts on XYZ; null: none. */
+const float *vl_film_balance(const vlFilm *film);
 void vl_film_set_spp(vlFilm *film, uint32_t spp); /* called by render after each whole pass */
 
 /* A pass that is given up leaves no trace. Two sets of sums take turns: a pixel's first sample in a pass copies its

@@ -42,7 +42,8 @@ struct vlFilm {
   bool in_pass;
   vlFilmMoments *moments[2]; /* front and back, with def.errors; a pixel's back is good where the sums' is */
   vlFilterTable filter;
-  void *scratch; /* of those who render into it: kept for the next time */
+  float balance[9]; /* of white, on XYZ; with def.white_balance */
+  void *scratch;    /* of those who render into it: kept for the next time */
   size_t scratch_size;
 };
 

@@ -44,8 +44,8 @@ static bool read_crop(vlDict *dict, vlSceneSettings *s) {
   return import->scene->error.code == VL_OK;
 }
 
-/* What changes the picture and is not there yet. */
-static bool read_refused(vlDict *dict) {
+/* The sensor, and what changes the picture and is not there yet. */
+static bool read_sensor(vlDict *dict) {
   vlImport *import = dict->import;
   const char *sensor = "cie1931";
   double white = 0.0, top = INFINITY;
@@ -55,10 +55,11 @@ static bool read_refused(vlDict *dict) {
       !vl_import_unsupported(import, p->place, "%s: sensor \"%.40s\" is not understood yet (known: cie1931)",
                              dict->what, sensor))
     return false;
-  if (vl_dict_double(dict, "whitebalance", &white) && white != 0.0 &&
-      !vl_import_unsupported(import, vl_dict_find(dict, "whitebalance", VL_BIT_FLOAT)->place,
-                             "%s: \"whitebalance\" is not understood yet", dict->what))
-    return false;
+  if (vl_dict_double(dict, "whitebalance", &white) && white != 0.0 && !(white >= 1000.0 && white <= 1e5))
+    return vl_import_fail(import, VL_ERROR_SCENE, vl_dict_find(dict, "whitebalance", VL_BIT_FLOAT)->place,
+                          "%s: \"whitebalance\" is %g; it must be 0 (none) or 1000 to 100000 kelvin", dict->what,
+                          white);
+  vl_scene_settings(import->scene)->white_balance = white;
   if (vl_dict_double(dict, "maxcomponentvalue", &top) && isfinite(top) && top < 1e30 &&
       !vl_import_unsupported(import, vl_dict_find(dict, "maxcomponentvalue", VL_BIT_FLOAT)->place,
                              "%s: \"maxcomponentvalue\" is not understood yet", dict->what))
@@ -102,7 +103,7 @@ bool vl_import_film(vlImport *import) {
   s->exposure = (float)(iso / 100.0 * time * ratio);
   if (!(s->exposure >= 0.0f) || !isfinite(s->exposure))
     return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: the exposure is negative or not finite", what);
-  if (!read_crop(&dict, s) || !read_refused(&dict)) return false;
+  if (!read_crop(&dict, s) || !read_sensor(&dict)) return false;
   if (!known) vl_dict_skip(&dict);
   return vl_dict_done(&dict);
 }

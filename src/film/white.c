@@ -1,0 +1,61 @@
+/* film/white.c: see white.h. */
+#include "film/white.h"
+
+#include <math.h>
+
+#include "color/color.h"
+
+/* Lam, "Metamerism and colour constancy" (Bradford, 1985): XYZ to the responses of sharpened cones. */
+static const double cones[9] = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
+
+static void multiply3(const double a[9], const double b[9], double r[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) r[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+}
+
+static void inverse3(const double a[9], double r[9]) {
+  double det =
+      a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      int i1 = (j + 1) % 3, i2 = (j + 2) % 3, j1 = (i + 1) % 3, j2 = (i + 2) % 3;
+      r[3 * i + j] = (a[3 * i1 + j1] * a[3 * i2 + j2] - a[3 * i1 + j2] * a[3 * i2 + j1]) / det;
+    }
+}
+
+/* CIE 15: chromaticity of daylight; the temperature is corrected for today's value of Planck's second constant. Light
+ * below 4000 K is a blackbody's. */
+static void chromaticity(double kelvin, double xy[2]) {
+  double t = kelvin * 1.4388 / 1.4380, x;
+  if (t >= 4000.0) {
+    x = t <= 7000.0 ? -4.6070e9 / (t * t * t) + 2.9678e6 / (t * t) + 0.09911e3 / t + 0.244063
+                    : -2.0064e9 / (t * t * t) + 1.9018e6 / (t * t) + 0.24748e3 / t + 0.237040;
+    xy[0] = x, xy[1] = -3.0 * x * x + 2.870 * x - 0.275;
+    return;
+  }
+  double sum[3] = {0, 0, 0};
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
+    double metres = (VL_LAMBDA_MIN + i) * 1e-9, light = pow(metres * 1e7, -5.0) / expm1(1.438776877e-2 / (metres * t));
+    sum[0] += light * (double)vl_cie_x()[i], sum[1] += light * (double)vl_cie_y()[i];
+    sum[2] += light * (double)vl_cie_z()[i];
+  }
+  xy[0] = sum[0] / (sum[0] + sum[1] + sum[2]), xy[1] = sum[1] / (sum[0] + sum[1] + sum[2]);
+}
+
+static void response(double x, double y, double lms[3]) {
+  double xyz[3] = {x / y, 1.0, (1.0 - x - y) / y};
+  for (int i = 0; i < 3; i++) lms[i] = cones[3 * i] * xyz[0] + cones[3 * i + 1] * xyz[1] + cones[3 * i + 2] * xyz[2];
+}
+
+void vl_white_balance(double kelvin, vlColorSpace space, float m[9]) {
+  float primaries[8];
+  double source[2], from[3], to[3], scaled[9], back[9], whole[9];
+  vl_space_chromaticities(space, primaries);
+  chromaticity(kelvin, source);
+  response(source[0], source[1], from);
+  response((double)primaries[6], (double)primaries[7], to);
+  for (int i = 0; i < 9; i++) scaled[i] = cones[i] * to[i / 3] / from[i / 3];
+  inverse3(cones, back);
+  multiply3(back, scaled, whole);
+  for (int i = 0; i < 9; i++) m[i] = (float)whole[i];
+}

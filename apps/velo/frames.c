@@ -39,10 +39,11 @@ static bool read_range(const char *text, uint32_t *first, uint32_t *last, uint32
   return *first <= *last && *step > 0;
 }
 
-int frames_check(const Arguments *arguments, const Outputs *outputs) {
+int frames_check(const Arguments *arguments, Outputs *outputs) {
   const OptionValue *v = arguments->values;
   bool trajectory = v[RENDER_TRAJECTORY].given;
   uint32_t unused;
+  outputs->patterns = trajectory || v[RENDER_STEREO].given;
   if (v[RENDER_RIG].given && !trajectory) return report_usage("--rig FILE: the poses are missing; give --trajectory");
   if (v[RENDER_FRAMES].given && !trajectory) return report_usage("--frames goes with --trajectory");
   if (v[RENDER_FRAME].given && (trajectory || !v[RENDER_CAMERA].given))

@@ -39,7 +39,7 @@ typedef struct Frame {
  * before). */
 bool frames_wanted(const Arguments *arguments, const Job *job);
 /* Options that go together and the names' patterns. -1 or the exit code. */
-int frames_check(const Arguments *arguments, const Outputs *outputs);
+int frames_check(const Arguments *arguments, Outputs *outputs);
 /* Reads trajectory and rig, makes all cameras. -1 or the exit code, all has been said. */
 int frames_load(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments);
 /* Names and folders of all files, before the work begins: no two frames may have one name. -1 or the exit code. */

@@ -64,6 +64,7 @@ int outputs_check_folders(const Outputs *outputs) {
     size_t length = slash ? (size_t)(slash - path) : 1;
     if (length >= sizeof folder) return fail_write(path, ENAMETOOLONG);
     if (slash) snprintf(folder, sizeof folder, "%.*s", length ? (int)length : 1, path);
+    if (outputs->patterns && strchr(folder, '%')) continue;
     struct stat info;
     if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) return fail_write(path, EISDIR);
     if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) { /* devices and pipes are written in place */

@@ -10,6 +10,7 @@ typedef struct Outputs {
   const char *paths[MAX_OUTPUTS];
   int count;
   bool half;
+  bool patterns;            /* the names are patterns (pattern.h): folders with a % are made later */
   vlView view;              /* of 8-bit files */
   float exposure;           /* EV, of 8-bit files */
   const vlImage *layers[2]; /* what .exr files hold beside the picture; null: nothing */

@@ -1,0 +1,164 @@
+#!/usr/bin/env bash
+# Many pictures of one world: trajectories, rigs, stereo. A frame is the picture that its camera alone gives; names; two
+# views in one OpenEXR file, read by OpenImageIO; what is refused; interruptions.
+. "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
+. "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/cli/common.sh"
+cd "$work" || exit 1
+write_scene scene.pbrt
+
+# ---- a trajectory ----------------------------------------------------------------------------------------------------
+cat >transforms.json <<'END'
+{"w": 32, "h": 24, "fl_x": 30, "k1": 0.02, "frames": [
+ {"file_path": "images/a.png", "transform_matrix": [[1,0,0,0],[0,1,0,1],[0,0,1,4],[0,0,0,1]]},
+ {"file_path": "images/b.png", "transform_matrix": [[1,0,0,0.5],[0,1,0,1],[0,0,1,4],[0,0,0,1]]},
+ {"file_path": "images/c.png", "w": 40, "transform_matrix": [[0,0,1,4],[0,1,0,1],[-1,0,0,0],[0,0,0,1]]}]}
+END
+check trajectory "$VELO" render scene.pbrt --trajectory transforms.json -o 'frame_%04d.exr' -o '%n_%d.png' --channels Z,id.object
+for i in 0 1 2; do
+  name=$(echo abc | cut -c $((i + 1)))
+  check "frame_$i" "$VELO" render scene.pbrt --camera transforms.json --frame "$i" -o "one_$i.exr" --channels Z,id.object --quiet
+  check "frame_${i}_same" "$VELO" image diff "one_$i.exr" "frame_000$i.exr" --threshold differing=0
+  check "frame_${i}_ids" test -s "frame_000$i.exr.ids.json"
+  check "frame_${i}_named" test -s "${name}_$i.png"
+done
+run "$VELO" image info --json frame_0002.exr
+expect_text frame_header_name 'images/c.png'
+check frame_by_name "$VELO" render scene.pbrt --camera transforms.json --frame images/b.png -o named.exr --channels Z,id.object --quiet
+check frame_by_name_same "$VELO" image diff named.exr one_1.exr --threshold differing=0
+mkdir part
+check some_frames "$VELO" render scene.pbrt --trajectory transforms.json --frames 0-2:2 -o 'part/%d.exr' --quiet
+check some_frames_are test "$(ls part | tr '\n' ' ')" = '0.exr 2.exr '
+check threads_do_not_matter "$VELO" render scene.pbrt --trajectory transforms.json -o 'again_%04d.exr' --channels Z,id.object --quiet -t 1
+same threads_same_bytes again_0001.exr frame_0001.exr
+check no_left_overs test -z "$(ls | grep tmp)"
+
+# Poses without cameras take the scene's; crop and samples as ever.
+printf 'name,eye_x,eye_y,eye_z,lookat_x,lookat_y,lookat_z\np,0,1.2,4,0,0.6,0\nq,1,1,4,0,0.6,0\n' >poses.csv
+check poses "$VELO" render scene.pbrt --trajectory poses.csv -o '%n.exr' --quiet --spp 3 --crop 5,5,40,30
+run "$VELO" image info q.exr
+expect_text poses_cropped '35 x 25'
+check folders_are_made "$VELO" render scene.pbrt --trajectory poses.csv -o 'made_%n/picture.exr' --quiet
+check folder_made test -s made_q/picture.exr
+
+# ---- a rig -----------------------------------------------------------------------------------------------------------
+cat >rig.yaml <<'END'
+cam0:
+  camera_model: pinhole
+  intrinsics: [30, 30, 15.5, 11.5]
+  distortion_model: none
+  resolution: [32, 24]
+cam1:
+  camera_model: pinhole
+  intrinsics: [40, 40, 19.5, 14.5]
+  distortion_model: radtan
+  distortion_coeffs: [-0.1, 0, 0, 0]
+  resolution: [40, 30]
+  T_cn_cnm1:
+  - [1, 0, 0, -0.3]
+  - [0, 1, 0, 0]
+  - [0, 0, 1, 0]
+  - [0, 0, 0, 1]
+END
+printf '0 0 1 4 1 0 0 0\n1 0.2 1 4 1 0 0 0\n' >tum.txt # y and z turned over: looking along -z
+check rig "$VELO" render scene.pbrt --trajectory tum.txt --rig rig.yaml -o 'rig_%d_%c.exr' --quiet
+check rig_files test "$(ls rig_*_*.exr | tr '\n' ' ')" = 'rig_0_cam0.exr rig_0_cam1.exr rig_1_cam0.exr rig_1_cam1.exr '
+
+# ---- stereo ----------------------------------------------------------------------------------------------------------
+check stereo "$VELO" render scene.pbrt --stereo off-axis --interocular 0.2 --convergence 4 -o both.exr -o 'eye_%v.exr' -o '%v.png' --channels Z,N --quiet
+check stereo_half "$VELO" render scene.pbrt --stereo parallel -o half.exr --half --quiet
+check stereo_trajectory "$VELO" render scene.pbrt --trajectory poses.csv --stereo toe-in --convergence 4 -o 'stereo_%d.exr' --quiet
+check one_eye "$VELO" render scene.pbrt --stereo off-axis --interocular 0.2 --convergence 4 --eye right -o right.exr --channels Z,N --quiet
+check one_eye_same "$VELO" image diff right.exr eye_right.exr --threshold differing=0
+expect_code 1 eyes_differ "$VELO" image diff eye_left.exr eye_right.exr --threshold differing=0
+check ground_truth "$VELO" render scene.pbrt --stereo toe-in --interocular 0.2 --convergence 4 -o 'truth_%v.exr' --channels all --quiet
+check eyes_agree "$VELO" image check truth_left.exr
+sed 's/^Camera.*/Camera "equirectangular" "point3 eye" [0 1 2.5] "point3 lookat" [0 1 0]/; /^LookAt/d' scene.pbrt >round.pbrt
+check panorama "$VELO" render round.pbrt --stereo ods -o 'ods_%v.exr' --channels all --quiet
+check panorama_agrees "$VELO" image check ods_left.exr
+check panorama_agrees_right "$VELO" image check ods_right.exr
+if /usr/bin/python3 -c 'import OpenImageIO' 2>/dev/null; then
+  cat >views.py <<'END'
+import OpenImageIO as oiio
+import numpy as np
+
+
+def read(name):
+    file = oiio.ImageInput.open(name)
+    return file.spec(), file.read_image("float")
+
+
+spec, both = read("both.exr")
+left, right = read("eye_left.exr"), read("eye_right.exr")
+names, single = list(spec.channelnames), list(left[0].channelnames)
+views = spec.getattribute("multiView")
+assert list(views) == ["left", "right"], views
+assert set(names) == {"R", "G", "B", "A", "right.R", "right.G", "right.B", "right.A", "left.Z", "right.Z", "N.left.X",
+                      "N.left.Y", "N.left.Z", "N.right.X", "N.right.Y", "N.right.Z"}, names
+for plain in "RGBA":
+    assert np.array_equal(both[..., names.index(plain)], left[1][..., single.index(plain)]), plain
+    assert np.array_equal(both[..., names.index("right." + plain)], right[1][..., single.index(plain)]), plain
+assert np.array_equal(both[..., names.index("right.Z")], right[1][..., single.index("Z")])
+attribute = {a.name: a.value for a in spec.extra_attribs}
+shift = attribute["right.velo.cx"] - attribute["velo.cx"]
+assert abs(shift - attribute["velo.fx"] * 0.2 / 4) < 1e-9, shift
+half, track = read("half.exr")[0], read("stereo_1.exr")[0]
+assert "right.R" in half.channelnames and str(half.format) == "half", half.format
+assert "right.R" in track.channelnames
+assert right[0].getattribute("view") == "right" or right[0].getattribute("oiio:subimagename") == "right"
+END
+  check openimageio /usr/bin/python3 views.py
+else
+  skip openimageio "OpenImageIO's Python module is not installed"
+fi
+
+# ---- what is refused -------------------------------------------------------------------------------------------------
+expect_code 2 no_output "$VELO" render scene.pbrt --trajectory poses.csv
+expect_text no_output_told "give the files' name with -o"
+expect_code 2 twice "$VELO" render scene.pbrt --trajectory poses.csv -o same.exr
+expect_text twice_told 'two of the 2 frames would be "same.exr"'
+check twice_nothing test ! -e same.exr
+expect_code 2 twice_rig "$VELO" render scene.pbrt --trajectory tum.txt --rig rig.yaml -o 'x_%d.exr'
+expect_code 2 unknown_sign "$VELO" render scene.pbrt --trajectory poses.csv -o 'x_%5q.exr'
+expect_text unknown_sign_told '"%5q" is not known'
+expect_code 2 range "$VELO" render scene.pbrt --trajectory poses.csv --frames 1-5 -o 'x_%d.exr'
+expect_text range_told 'the trajectory has 2 frames, numbered from 0'
+expect_code 2 range_wrong "$VELO" render scene.pbrt --trajectory poses.csv --frames 5-1 -o 'x_%d.exr'
+expect_code 2 rig_alone "$VELO" render scene.pbrt --rig rig.yaml -o x.exr
+expect_code 3 rig_of_poses "$VELO" render scene.pbrt --trajectory tum.txt --rig poses.csv -o 'x_%d_%c.exr'
+expect_code 2 frame_alone "$VELO" render scene.pbrt --frame 3 -o x.exr
+expect_code 3 no_such_frame "$VELO" render scene.pbrt --camera transforms.json --frame 7 -o x.exr
+expect_code 2 stereo_png "$VELO" render scene.pbrt --stereo parallel -o x.png
+expect_text stereo_png_told 'only .exr holds both eyes'
+expect_code 2 stereo_alone "$VELO" render scene.pbrt --interocular 0.1 -o x.exr
+expect_code 3 stereo_screen "$VELO" render scene.pbrt --stereo off-axis -o x.exr
+expect_text stereo_screen_told 'scene.pbrt:2:1: camera: off-axis stereo needs the distance where the eyes converge'
+printf 'tx,ty,tz,qx,qy,qz,qw\n0,0,0,0,0,0,1\n0,nan,0,0,0,0,1\n' >bad.csv
+expect_code 3 bad_pose "$VELO" render scene.pbrt --trajectory bad.csv -o 'x_%d.exr'
+expect_text bad_pose_told 'bad.csv:3:1: frame 1: "ty" is "nan"'
+expect_code 4 no_trajectory "$VELO" render scene.pbrt --trajectory no.csv -o 'x_%d.exr'
+check nothing_written test -z "$(ls x* 2>/dev/null)"
+
+# A frame that cannot be written costs only itself: its target is a folder.
+mkdir hole_0.exr
+expect_code 5 hole "$VELO" render scene.pbrt --trajectory poses.csv -o 'hole_%d.exr'
+check others_written test -s hole_1.exr
+
+# Interrupted: what is written stays whole, the rest is missing, the code tells.
+python3 -c '
+print("eye_x,eye_y,eye_z,lookat_x,lookat_y,lookat_z")
+for i in range(5000): print(f"{i / 5000},1,4,0,0.6,0")' >long.csv
+mkdir long
+"$VELO" render scene.pbrt --trajectory long.csv -o 'long/%d.exr' --quiet &
+pid=$!
+for _ in $(seq 100); do
+  [ "$(ls long | wc -l)" -gt 5 ] && break
+  sleep 0.1
+done
+kill -TERM "$pid"
+wait "$pid"
+code=$?
+check interrupted_code test "$code" = 143
+check interrupted_some test "$(ls long | wc -l)" -gt 4 -a "$(ls long | wc -l)" -lt 5000
+check interrupted_whole test -z "$(ls long | grep tmp)"
+check interrupted_readable "$VELO" image info long/3.exr
+finish

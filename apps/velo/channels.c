@@ -2,6 +2,7 @@
 #include "channels.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "camera.h"
@@ -66,6 +67,8 @@ int channels_choose(Channels *c, const Arguments *arguments) {
   c->ranks = v[RENDER_CRYPTO_RANKS].given ? (uint32_t)v[RENDER_CRYPTO_RANKS].integer : 6;
   if (c->ranks % 2)
     return report_usage("--crypto-ranks %u: two ranks share a layer, so that their number is even", c->ranks);
+  c->boxes = v[RENDER_BOXES].given;
+  if (c->boxes) c->bits |= VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE;
   int status = v[RENDER_CHANNELS].given ? read_list(v[RENDER_CHANNELS].text, &c->bits) : -1;
   if (status >= 0) return status;
   if (c->bits && c->mode != VL_CHANNEL_MODE_CENTRE) c->bits |= VL_CHANNEL_FILM; /* else nobody knows the point */
@@ -100,6 +103,19 @@ int channels_load(Channels *c, vlContext *context, const Job *job) {
   return -1;
 }
 
+static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
+  static const vlIdKind kinds[2] = {VL_ID_OBJECT, VL_ID_INSTANCE};
+  for (int k = 0; k < 2; k++) {
+    c->box_list[k] = calloc((size_t)vl_world_id_count(world, kinds[k]) + 1, sizeof(vlIdBox));
+    if (!c->box_list[k]) return report_error(NULL, VL_ERROR_MEMORY, NULL);
+  }
+  vlBoxesDef def = vl_default_boxes_def(job->camera.width, job->camera.height);
+  memcpy(def.crop, job->film.crop, sizeof def.crop);
+  vlError error = {0};
+  vlResult result = vl_world_boxes(world, &job->camera, &def, c->box_list[0], c->box_list[1], &error);
+  return result == VL_OK ? STATUS_OK : report_error(&error, result, job->path);
+}
+
 int channels_render(Channels *c, const vlWorld *world, const Job *job, const vlFilm *film) {
   if (!c->bits) return STATUS_OK;
   vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
@@ -116,7 +132,8 @@ int channels_render(Channels *c, const vlWorld *world, const Job *job, const vlF
   memcpy(def.crop, job->film.crop, sizeof def.crop);
   vlError error = {0};
   vlResult result = vl_render_channels(world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
-  return result == VL_OK ? STATUS_OK : report_error(&error, result, job->path);
+  if (result != VL_OK) return report_error(&error, result, job->path);
+  return c->boxes ? find_boxes(c, world, job) : STATUS_OK;
 }
 
 vlResult channels_describe(const Channels *c, vlImage *image) {
@@ -134,5 +151,8 @@ vlResult channels_describe(const Channels *c, vlImage *image) {
 }
 
 void channels_free(Channels *c) {
-  for (int k = 0; k < 2; k++) vl_image_destroy(c->layers[k]);
+  for (int k = 0; k < 2; k++) {
+    vl_image_destroy(c->layers[k]);
+    free(c->box_list[k]);
+  }
 }

@@ -12,7 +12,8 @@ typedef struct Channels {
   bool boxes;
   const char *other_paths[2]; /* camera files of flow: forward, backward; null: the shutter's ends */
   vlCamera others[2];
-  vlImage *layers[2]; /* what came of it; null: nothing of the kind */
+  vlImage *layers[2];   /* what came of it; null: nothing of the kind */
+  vlIdBox *box_list[2]; /* of objects and instances, by id - 1; null without boxes */
 } Channels;
 
 extern const Choice channel_mode_choices[];

@@ -18,7 +18,37 @@ static void mark_ids(const vlImage *ids, const char *name, bool *seen, uint32_t 
     if (*value <= count) seen[*value] = true;
 }
 
-static void put_id(Json *json, const vlWorld *world, vlIdKind kind, uint32_t id) {
+static void put_numbers(Json *json, const char *key, const double *numbers, int count) {
+  json_begin(json, key, '[');
+  for (int i = 0; i < count; i++) json_number(json, NULL, numbers[i]);
+  json_end(json, ']');
+}
+
+/* x, y, width, height, as COCO has them. */
+static void put_corners(Json *json, const char *key, const double c[4]) {
+  put_numbers(json, key, (const double[4]){c[0], c[1], c[2] - c[0], c[3] - c[1]}, 4);
+}
+static void put_pixels(Json *json, const char *key, const uint32_t c[4]) {
+  put_corners(json, key, (const double[4]){c[0], c[1], c[2], c[3]});
+}
+
+static void put_box(Json *json, const vlIdBox *b, bool instance) {
+  json_integer(json, "pixels", (int64_t)b->seen);
+  if (b->seen) put_pixels(json, "box", b->seen_box);
+  json_integer(json, "amodal_pixels", (int64_t)b->all);
+  if (b->all) put_pixels(json, "amodal_box", b->all_box);
+  if (b->all) json_number(json, "occluded", 1 - (double)b->seen / (double)b->all);
+  if (b->has_outline) put_corners(json, "outline_box", b->outline);
+  if (!b->has_space) return;
+  json_begin(json, "box3d", '{');
+  json_text(json, "space", instance || b->grouped ? "group" : "world");
+  put_numbers(json, "low", b->low, 3);
+  put_numbers(json, "high", b->high, 3);
+  if (instance) put_numbers(json, "world_from_group", b->world_from_box, 16);
+  json_end(json, '}');
+}
+
+static void put_id(Json *json, const vlWorld *world, const Channels *c, vlIdKind kind, uint32_t id) {
   vlIdInfo info;
   char key[16];
   if (vl_world_id_info(world, kind, id, &info) != VL_OK) return;
@@ -34,10 +64,19 @@ static void put_id(Json *json, const vlWorld *world, vlIdKind kind, uint32_t id)
     json_integer(json, "line", info.source.line);
     json_integer(json, "column", info.source.column);
   }
+  if (c->box_list[0] && kind != VL_ID_MATERIAL)
+    put_box(json, &c->box_list[kind == VL_ID_INSTANCE][id - 1], kind == VL_ID_INSTANCE);
   json_end(json, '}');
 }
 
-static bool put_all(FILE *file, const vlWorld *world, const vlImage *ids, const char *path) {
+/* Those that only boxes know of: they are hidden. */
+static void mark_boxes(const Channels *c, vlIdKind kind, bool *seen, uint32_t count) {
+  if (!c->box_list[0] || kind == VL_ID_MATERIAL) return;
+  for (uint32_t id = 1; id <= count; id++) seen[id] = seen[id] || c->box_list[kind == VL_ID_INSTANCE][id - 1].all > 0;
+}
+
+static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const char *path) {
+  const vlImage *ids = c->layers[1];
   static const struct {
     const char *channel, *key;
     vlIdKind kind;
@@ -54,11 +93,12 @@ static bool put_all(FILE *file, const vlWorld *world, const vlImage *ids, const 
     bool *seen = calloc((size_t)count + 1, 1);
     if (!seen) return false;
     mark_ids(ids, kinds[k].channel, seen, count);
+    mark_boxes(c, kinds[k].kind, seen, count);
     fputs(",\n  ", file);
     json.comma = false;
     json_begin(&json, kinds[k].key, '{');
     for (uint32_t id = 1; id <= count; id++)
-      if (seen[id]) put_id(&json, world, kinds[k].kind, id);
+      if (seen[id]) put_id(&json, world, c, kinds[k].kind, id);
     json_end(&json, '}');
     free(seen);
   }
@@ -87,7 +127,7 @@ int channels_write_ids(const Channels *c, const vlWorld *world, const Job *job, 
     return report_failure(STATUS_IO, "cannot write %s: %s", target, strerror(code));
   }
   errno = 0;
-  bool good = put_all(file, world, ids, path) && fsync(descriptor) == 0;
+  bool good = put_all(file, world, c, path) && fsync(descriptor) == 0;
   mode_t mask = umask(0);
   umask(mask);
   good = good && fchmod(descriptor, 0666 & ~mask) == 0;

@@ -351,6 +351,9 @@ static const Option render_options[] = {
      0, 0, NULL},
     {RENDER_FLOW_CAMERA_BEFORE, 0, "flow-camera-before", OPTION_TEXT, "FILE",
      "the camera of the picture before, for backward.U, .V, .hidden", 0, 0, NULL},
+    {RENDER_BOXES, 0, "boxes", OPTION_FLAG, NULL,
+     "FILE.ids.json also has boxes of each object and instance, in\n"
+     "pixels (of what is seen, and of all of it) and in space", 0, 0, NULL},
     {RENDER_HALF, 0, "half", OPTION_FLAG, NULL, ".exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
     {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N",
      "workers; default: one for each processor. The picture does not\n"

@@ -3,6 +3,7 @@
 #define VELO_VELO_H
 
 #include "velo/base.h"
+#include "velo/boxes.h"
 #include "velo/camera.h"
 #include "velo/camera_file.h"
 #include "velo/channels.h"

@@ -108,6 +108,8 @@ static inline float *vl_channel_row(vlChannelWorker *w, uint32_t row) {
   return w->rows + (size_t)row * VL_ROW_SIZE;
 }
 
+/* channels.c: cameras, kernels, tiles, from def and world. */
+void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera);
 /* channel_samples.c: counts the picture's samples: fills film_x and film_y of the tile, writes Cryptomatte. */
 void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile);
 /* flow.c: where the other cameras see what the n lanes of the batch met. */

@@ -240,7 +240,7 @@ static vlCamera pinhole(const vlCamera *camera, double time) {
   return c;
 }
 
-static void prepare(vlChannelPass *p, const vlCamera *camera) {
+void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
   vlIsa isa = vl_context_isa(p->world->context);
   p->time = p->def->time == p->def->time ? p->def->time : middle_time(camera);
   p->camera = pinhole(camera, p->time);
@@ -279,7 +279,7 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera, const 
   memset(p, 0, sizeof *p);
   p->world = world;
   p->def = def;
-  prepare(p, camera);
+  vl_channel_prepare(p, camera);
   result = make_images(p, error);
   if (result == VL_OK) result = copy_errors(p, error);
   if (result == VL_OK) result = make_workers(p, error);

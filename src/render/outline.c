@@ -1,0 +1,144 @@
+/* render/outline.c: boxes of one object or instance: in space, and of its projection.
+ *
+ * The box of a projection is that of its corners: exact for triangles and bilinear patches where straight lines stay
+ * straight (a linear function of a bilinear patch is largest at a corner). Round shapes give points of their rims and
+ * of a fine grid. */
+#include <math.h>
+#include <string.h>
+
+#include "render/boxes.h"
+#include "world/moving.h"
+
+enum { CHUNK = 256, AROUND = 256, RINGS = 64 };
+
+/* Points on their way to boxes, a chunk at a time. */
+typedef struct Points {
+  const vlCamera *camera;
+  const float *place; /* of the instance: 3x4, or null */
+  vlIdBox *box;
+  bool space, outline, whole; /* what is wanted; all points so far had a pixel */
+  uint32_t count;
+  double own[3 * CHUNK], world[3 * CHUNK];
+} Points;
+
+static void flush(Points *p) {
+  double pixels[2 * CHUNK];
+  uint8_t valid[CHUNK];
+  vlIdBox *b = p->box;
+  if (p->count == 0) return;
+  for (uint32_t i = 0; i < p->count && p->space; i++)
+    for (int k = 0; k < 3; k++) {
+      b->low[k] = fmin(b->low[k], p->own[3 * i + (uint32_t)k]);
+      b->high[k] = fmax(b->high[k], p->own[3 * i + (uint32_t)k]);
+    }
+  if (p->outline) vl_camera_project_batch(p->camera, p->count, p->world, pixels, NULL, valid);
+  for (uint32_t i = 0; i < p->count && p->outline; i++) {
+    p->whole = p->whole && valid[i];
+    for (int k = 0; k < 2; k++) {
+      b->outline[k] = fmin(b->outline[k], pixels[2 * i + (uint32_t)k]);
+      b->outline[2 + k] = fmax(b->outline[2 + k], pixels[2 * i + (uint32_t)k]);
+    }
+  }
+  p->count = 0;
+}
+
+/* A point in the space of the shape's group. */
+static void add(Points *p, double x, double y, double z) {
+  double *own = p->own + 3 * p->count, *world = p->world + 3 * p->count;
+  own[0] = x, own[1] = y, own[2] = z;
+  for (int i = 0; i < 3; i++)
+    world[i] = p->place ? (double)p->place[4 * i] * x + (double)p->place[4 * i + 1] * y +
+                              (double)p->place[4 * i + 2] * z + (double)p->place[4 * i + 3]
+                        : own[i];
+  if (++p->count == CHUNK) flush(p);
+}
+
+static void add_vertices(Points *p, const vlWorldShape *s, float time) {
+  float room[3];
+  for (uint32_t i = 0; i < s->vertices; i++) {
+    const float *x = vl_vertex_at(s, i, time, room);
+    add(p, (double)x[0], (double)x[1], (double)x[2]);
+  }
+}
+
+/* A circle of radius r at height z in the shape's own space, as far round as the shape goes. */
+static void add_ring(Points *p, const vlWorldShape *s, double r, double z) {
+  const double *m = s->from_shape;
+  for (int i = 0; i <= AROUND; i++) {
+    double phi = (double)s->phi_max * i / AROUND, x = r * cos(phi), y = r * sin(phi), q[3];
+    for (int k = 0; k < 3; k++) q[k] = m[4 * k] * x + m[4 * k + 1] * y + m[4 * k + 2] * z + m[4 * k + 3];
+    add(p, q[0], q[1], q[2]);
+  }
+}
+
+static void add_round(Points *p, const vlWorldShape *s) {
+  double r = (double)s->radius;
+  if (s->kind == VL_SHAPE_DISK) {
+    add_ring(p, s, r, (double)s->height);
+    add_ring(p, s, (double)s->inner_radius, (double)s->height);
+    return;
+  }
+  if (s->kind == VL_SHAPE_CYLINDER) {
+    add_ring(p, s, r, (double)s->z_min);
+    add_ring(p, s, r, (double)s->z_max);
+    return;
+  }
+  double from = acos(fmax(-1, fmin(1, (double)s->z_min / r))), to = acos(fmax(-1, fmin(1, (double)s->z_max / r)));
+  for (int i = 0; i <= RINGS; i++) {
+    double theta = from + (to - from) * i / RINGS;
+    add_ring(p, s, r * sin(theta), r * cos(theta));
+  }
+}
+
+static void add_shape(Points *p, const vlWorldShape *s, float time) {
+  if (s->kind == VL_SHAPE_TRIANGLES || s->kind == VL_SHAPE_BILINEAR)
+    add_vertices(p, s, time);
+  else
+    add_round(p, s);
+}
+
+uint64_t vl_box_points(const vlWorldShape *s) {
+  return s->kind == VL_SHAPE_TRIANGLES || s->kind == VL_SHAPE_BILINEAR ? s->vertices : (uint64_t)RINGS * AROUND;
+}
+
+static Points begin(const vlCamera *camera, vlIdBox *box, const float *place) {
+  for (int k = 0; k < 3; k++) box->low[k] = INFINITY, box->high[k] = -INFINITY;
+  for (int k = 0; k < 2; k++) box->outline[k] = INFINITY, box->outline[2 + k] = -INFINITY;
+  for (int i = 0; i < 16; i++) box->world_from_box[i] = i % 5 == 0;
+  for (int i = 0; i < 12 && place; i++) box->world_from_box[i] = (double)place[i];
+  return (Points){.camera = camera, .place = place, .box = box, .whole = true};
+}
+
+static void end(Points *p) {
+  flush(p);
+  vlIdBox *b = p->box;
+  b->has_space = b->low[0] <= b->high[0];
+  b->has_outline = p->outline && p->whole && b->outline[0] <= b->outline[2];
+  if (!b->has_outline) memset(b->outline, 0, sizeof b->outline);
+  if (!b->has_space) memset(b->low, 0, sizeof b->low), memset(b->high, 0, sizeof b->high);
+}
+
+void vl_box_of_object(const vlWorld *world, const vlCamera *camera, float time, uint32_t id, bool grouped,
+                      vlIdBox *box) {
+  Points p = begin(camera, box, NULL);
+  p.space = true, p.outline = !grouped;
+  box->grouped = grouped;
+  add_shape(&p, &world->shapes.items[id - 1], time);
+  end(&p);
+}
+
+void vl_box_of_instance(const vlWorld *world, const vlCamera *camera, float time, uint32_t id, bool corners,
+                        vlIdBox *box) {
+  vlWorldInstance room;
+  const vlWorldInstance *q = vl_instance_at(&world->instances.items[id - 1], time, &room);
+  const vlWorldGroup *group = &world->groups.items[q->group];
+  Points p = begin(camera, box, q->from_group);
+  p.outline = true;
+  for (int c = 0; c < 8 && corners; c++)
+    add(&p, (double)(c & 1 ? group->low : group->high)[0], (double)(c & 2 ? group->low : group->high)[1],
+        (double)(c & 4 ? group->low : group->high)[2]);
+  for (uint32_t i = 0; i < group->count && !corners; i++) add_shape(&p, &world->shapes.items[group->shapes[i]], time);
+  flush(&p);
+  for (int k = 0; k < 3; k++) box->low[k] = (double)group->low[k], box->high[k] = (double)group->high[k];
+  end(&p);
+}

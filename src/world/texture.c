@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
-#include "world/texture_lookup.h"
+#include "world/texture_noise.h"
 #include "world/world.h"
 
 /* MAX_NESTING bounds recursion here, VL_NODE_ROWS what may nest by the room it takes: no level may disturb another. */
@@ -72,6 +72,7 @@ static void choose_channels(const vlImage *image, bool keep_coverage, vlMipmapDe
 
 /* Where a picture comes from: a file, a file in memory, or given. */
 typedef struct Picture {
+  const char *name; /* for errors, where there is no path */
   const char *path;
   const void *data;
   size_t size;
@@ -86,7 +87,7 @@ static vlResult load_picture(vlContext *context, const Picture *p, vlMipmap **mi
   vlImage *image = NULL;
   vlResult r = VL_OK;
   if (p->data)
-    r = vl_image_read_memory(context, "picture", p->data, p->size, &image, error);
+    r = vl_image_read_memory(context, p->name ? p->name : "picture", p->data, p->size, &image, error);
   else if (!given)
     r = vl_image_read(context, p->path, &image, error);
   if (r != VL_OK) return r;
@@ -120,14 +121,15 @@ static int32_t push_picture(vlWorld *world, vlMipmap *mipmap, vlError *error) {
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
                            float gamma, bool pyramid, vlError *error) {
   vlMipmap *mipmap = NULL;
-  Picture p = {path, NULL, 0, given, encoding, gamma, pyramid, false};
+  Picture p = {NULL, path, NULL, 0, given, encoding, gamma, pyramid, false};
   if (load_picture(world->context, &p, &mipmap, error) != VL_OK) return -1;
   return push_picture(world, mipmap, error);
 }
 
 static Picture picture_of(const vlTextureDef *def) {
-  return (Picture){def->path,  def->data, def->data_size,   def->image, def->encoding_given ? &def->encoding : NULL,
-                   def->gamma, true,      def->data != NULL};
+  return (Picture){def->name,      def->path,  def->data,
+                   def->data_size, def->image, def->encoding_given ? &def->encoding : NULL,
+                   def->gamma,     true,       def->data != NULL};
 }
 
 /* The picture is known by its name (or place) and encoding from here on. */
@@ -275,6 +277,7 @@ static bool weigh(const vlWorld *world, vlTextureNode *node) {
     case VL_NODE_SCALE: own = 1; break;
     case VL_NODE_MIX:
     case VL_NODE_CHECKERBOARD:
+    case VL_NODE_DOTS:
     case VL_NODE_DIRECTION_MIX: own = node->is_spectrum ? 5 : 2; break;
     case VL_NODE_BILERP: own = node->is_spectrum ? 8 : 5; break;
     default: break;
@@ -338,6 +341,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   memcpy(node.v2, def->planar_v2, sizeof node.v2);
   for (int i = 0; i < 12; i++) node.texture_from_world[i] = (float)def->texture_from_world[i];
   node.dimension = def->dimension;
+  node.octaves = def->octaves, node.omega = def->omega, node.variation = def->variation;
   memcpy(node.direction, def->direction, sizeof node.direction);
   fill_picture_node(def, &node);
   int inputs = 0;
@@ -354,6 +358,11 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
     case VL_TEXTURE_CHECKERBOARD: node.kind = VL_NODE_CHECKERBOARD, inputs = 2; break;
     case VL_TEXTURE_BILERP: node.kind = VL_NODE_BILERP, inputs = 4; break;
     case VL_TEXTURE_IMAGE: node.kind = VL_NODE_IMAGE; break;
+    case VL_TEXTURE_FBM: node.kind = VL_NODE_FBM; break;
+    case VL_TEXTURE_WRINKLED: node.kind = VL_NODE_WRINKLED; break;
+    case VL_TEXTURE_WINDY: node.kind = VL_NODE_WINDY; break;
+    case VL_TEXTURE_MARBLE: node.kind = VL_NODE_MARBLE; break;
+    case VL_TEXTURE_DOTS: node.kind = VL_NODE_DOTS, inputs = 2; break;
     case VL_TEXTURE_VERTEX_COLOR: node.kind = VL_NODE_VERTEX_COLOR; break;
   }
   int32_t *slots[4] = {&node.a, &node.b, &node.c, &node.d};
@@ -365,7 +374,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   if (node.kind == VL_NODE_IMAGE) {
     if ((node.image = image_of(c->world, def, c->error)) < 0) return -1;
   }
-  if (node.kind == VL_NODE_IMAGE || node.kind == VL_NODE_VERTEX_COLOR)
+  if (node.kind == VL_NODE_IMAGE || node.kind == VL_NODE_VERTEX_COLOR || node.kind == VL_NODE_MARBLE)
     if (def->spectrum && image_spectrum(c->world, &node, c->error) != VL_OK) return -1;
   if (!weigh(c->world, &node)) {
     vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
@@ -430,8 +439,12 @@ float vl_texture_float_at(const vlWorld *world, int32_t index, float u, float v,
       return (1 - t) * vl_texture_float_at(world, node->a, u, v, p, where) +
              t * vl_texture_float_at(world, node->b, u, v, p, where);
     }
+    case VL_NODE_FBM:
+    case VL_NODE_WRINKLED:
+    case VL_NODE_WINDY: return vl_texture_noise(node, at);
+    case VL_NODE_DOTS:
     case VL_NODE_CHECKERBOARD: {
-      float t = vl_texture_checker(node, at);
+      float t = node->kind == VL_NODE_DOTS ? vl_texture_dots(node, at) : vl_texture_checker(node, at);
       return (1 - t) * vl_texture_float_at(world, node->a, u, v, p, where) +
              t * vl_texture_float_at(world, node->b, u, v, p, where);
     }

@@ -1,0 +1,515 @@
+/* test/import/test_gltf.c: glTF files made here become the scenes that the specification says: arrays, modes, trees,
+ * animation, deformation, tangents, cameras, variants. */
+#include "import/gltf_writer.h"
+#include "import/load.h"
+#include "velo/render.h"
+
+static char folder[64];
+
+static int set_up(void **state) {
+  (void)state;
+  snprintf(folder, sizeof folder, "/tmp/velo-gltf-XXXXXX");
+  return !mkdtemp(folder);
+}
+
+static int tear_down(void **state) {
+  (void)state;
+  char command[128];
+  snprintf(command, sizeof command, "rm -rf '%s'", folder);
+  return system(command);
+}
+
+static const char *in_folder(const char *name) {
+  static char path[256];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  return path;
+}
+
+static void load(Loaded *l, const Gltf *g, const char *rest, const vlLoadDef *def) {
+  gltf_write_text(g, in_folder("t.gltf"), rest);
+  start_load(l);
+  l->result = vl_scene_load(l->scene, in_folder("t.gltf"), def, &l->error);
+}
+
+static void fine(Loaded *l, const Gltf *g, const char *rest) {
+  load(l, g, rest, NULL);
+  if (l->result != VL_OK) print_message("%s: %s\n", l->error.file, l->error.message);
+  assert_int_equal(l->result, VL_OK);
+}
+
+static const float square[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+static const uint16_t square_faces[6] = {0, 1, 2, 2, 1, 3};
+
+/* accessors 0: positions, 1: indices */
+static Gltf *new_square(void) {
+  Gltf *g = calloc(1, sizeof *g);
+  gltf_floats(g, square, 4, "VEC3", 3);
+  gltf_shorts(g, square_faces, 6);
+  return g;
+}
+
+#define SCENE "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
+#define SQUARE_MESH "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}]"
+
+static const vlShapeDef *shape(const Loaded *l, size_t i) {
+  assert_true(i < l->scene->shapes.count);
+  return &l->scene->shapes.items[i];
+}
+
+/* ---- the file ---------------------------------------------------------------------------------------------------- */
+
+static void containers(void **state) {
+  (void)state;
+  Gltf *g = new_square();
+  const char *rest = SCENE "\"nodes\":[{\"mesh\":0}]," SQUARE_MESH;
+  Loaded l;
+  fine(&l, g, rest);
+  assert_int_equal(shape(&l, 0)->faces, 2);
+  assert_true(l.scene->settings.camera_missing && l.scene->settings.light_missing);
+  end_load(&l);
+  size_t size;
+  uint8_t *binary = gltf_binary(g, rest, &size);
+  gltf_file(in_folder("t.glb"), binary, size);
+  free(binary);
+  start_load(&l);
+  assert_int_equal(vl_scene_load(l.scene, in_folder("t.glb"), NULL, NULL), VL_OK);
+  assert_memory_equal(shape(&l, 0)->positions, square, sizeof square);
+  end_load(&l);
+  /* a buffer in a file whose name needs escapes */
+  gltf_file(in_folder("my data%.bin"), g->bytes, g->size);
+  char *text = gltf_json(g, "my%20data%25.bin", rest);
+  gltf_file(in_folder("u.gltf"), text, strlen(text));
+  free(text);
+  start_load(&l);
+  assert_int_equal(vl_scene_load(l.scene, in_folder("u.gltf"), NULL, NULL), VL_OK);
+  assert_int_equal(shape(&l, 0)->vertices, 4);
+  end_load(&l);
+  free(g);
+}
+
+/* Bytes normalised, elements apart, elements replaced, zeros without a view. */
+static void arrays(void **state) {
+  (void)state;
+  Gltf *g = calloc(1, sizeof *g);
+  const int16_t quantised[] = {0, 0, 0, 99, 32767, 0, 0, 99, 0, -32768, 0, 99}; /* 8 bytes apart */
+  int view = gltf_view(g, quantised, sizeof quantised, 8);
+  gltf_accessor(g, view, 5122, 3, "VEC3", ",\"normalized\":true");
+  const uint8_t colors[] = {255, 0, 51, 0, 0, 255, 0, 0, 0, 0, 0, 0}; /* 4 bytes apart */
+  gltf_accessor(g, gltf_view(g, colors, sizeof colors, 4), 5121, 3, "VEC3", ",\"normalized\":true");
+  const uint8_t where[] = {2, 0, 0, 0};
+  const float put[] = {7, 8, 9};
+  int indices = gltf_view(g, where, 1, 0), values = gltf_view(g, put, sizeof put, 0);
+  char sparse[200];
+  snprintf(sparse, sizeof sparse,
+           ",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":%d,\"componentType\":5121},"
+           "\"values\":{\"bufferView\":%d}}",
+           indices, values);
+  gltf_accessor(g, -1, 5126, 3, "VEC3", sparse);
+  Loaded l;
+  fine(&l, g,
+       SCENE
+       "\"extensionsUsed\":[\"KHR_mesh_quantization\"],\"extensionsRequired\":[\"KHR_mesh_quantization\"],"
+       "\"nodes\":[{\"mesh\":0}],"
+       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"COLOR_0\":1,\"NORMAL\":2}}]}]");
+  const vlShapeDef *s = shape(&l, 0);
+  assert_int_equal(s->vertices, 3);
+  const float positions[] = {0, 0, 0, 1, 0, 0, 0, -1, 0}, normals[] = {0, 0, 0, 0, 0, 0, 7, 8, 9};
+  assert_memory_equal(s->positions, positions, sizeof positions);
+  assert_memory_equal(s->normals, normals, sizeof normals);
+  assert_near((double)s->colors[0], 1, 0);
+  assert_near((double)s->colors[2], 0.2, 1e-7);
+  assert_near((double)s->colors[3], 1, 0); /* VEC3 is opaque */
+  assert_near((double)s->colors[5], 1, 0);
+  end_load(&l);
+  free(g);
+}
+
+static void modes(void **state) {
+  (void)state;
+  static const struct {
+    int mode;
+    uint32_t faces;
+  } cases[] = {{4, 1}, {5, 2}, {6, 2}, {0, 4 * 32}, {1, 2 * 20}, {2, 4 * 20}, {3, 3 * 20}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    Gltf *g = new_square();
+    char rest[400];
+    snprintf(rest, sizeof rest,
+             SCENE
+             "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+             "\"mode\":%d}]}]",
+             cases[i].mode);
+    Loaded l;
+    fine(&l, g, rest);
+    assert_int_equal(shape(&l, 0)->faces, cases[i].faces);
+    /* balls and tubes are closed and look outwards: their volume is positive */
+    const vlShapeDef *s = shape(&l, 0);
+    double volume = 0;
+    for (size_t f = 0; cases[i].mode < 4 && f < s->faces; f++) {
+      const float *a = s->positions + 3 * s->indices[3 * f], *b = s->positions + 3 * s->indices[3 * f + 1],
+                  *c = s->positions + 3 * s->indices[3 * f + 2];
+      volume += (double)a[0] * ((double)b[1] * c[2] - (double)b[2] * c[1]) -
+                (double)a[1] * ((double)b[0] * c[2] - (double)b[2] * c[0]) +
+                (double)a[2] * ((double)b[0] * c[1] - (double)b[1] * c[0]);
+    }
+    assert_true(cases[i].mode >= 4 || volume > 0);
+    end_load(&l);
+    free(g);
+  }
+  Gltf *g = new_square(); /* a strip of 4: 0 1 2, 1 3 2 */
+  Loaded l;
+  fine(&l, g,
+       SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":5}]}]");
+  const uint32_t strip[] = {0, 1, 2, 1, 3, 2};
+  assert_memory_equal(shape(&l, 0)->indices, strip, sizeof strip);
+  end_load(&l);
+  free(g);
+}
+
+/* ---- the tree ---------------------------------------------------------------------------------------------------- */
+
+static void poses(void **state) {
+  (void)state;
+  Gltf *g = new_square();
+  Loaded l;
+  fine(&l, g,
+       SCENE
+       "\"nodes\":[{\"translation\":[1,2,3],\"rotation\":[0,0,0.70710678118,0.70710678118],\"children\":[1]},"
+       "{\"mesh\":0,\"matrix\":[-2,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,1]}]," SQUARE_MESH);
+  const double *m = shape(&l, 0)->group_from_shape;
+  const double expected[16] = {0, -1, 0, 1, -2, 0, 0, 7, 0, 0, 1, 3, 0, 0, 0, 1};
+  for (int i = 0; i < 16; i++) assert_near(m[i], expected[i], 1e-9);
+  assert_true(shape(&l, 0)->one_sided); /* the default material shows one side */
+  end_load(&l);
+  /* a mesh in two places is kept once */
+  fine(&l, g, "\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[3,0,0]}]," SQUARE_MESH);
+  assert_int_equal(l.scene->shapes.count, 1);
+  assert_int_equal(l.scene->instances.count, 2);
+  assert_near(l.scene->instances.items[1].world_from_group[3], 3, 0);
+  end_load(&l);
+  /* instances by attributes */
+  const float places[] = {0, 0, 0, 2, 0, 0, 4, 0, 0};
+  int translation = gltf_floats(g, places, 3, "VEC3", 3);
+  char rest[600];
+  snprintf(rest, sizeof rest,
+           SCENE
+           "\"extensionsUsed\":[\"EXT_mesh_gpu_instancing\"],\"nodes\":[{\"mesh\":0,\"translation\":[0,1,0],"
+           "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":%d}}}}]," SQUARE_MESH,
+           translation);
+  fine(&l, g, rest);
+  assert_int_equal(l.scene->instances.count, 3);
+  assert_near(l.scene->instances.items[2].world_from_group[3], 4, 0);
+  assert_near(l.scene->instances.items[2].world_from_group[7], 1, 0);
+  end_load(&l);
+  /* a flat pose moves the vertices themselves */
+  fine(&l, g, SCENE "\"nodes\":[{\"mesh\":0,\"scale\":[2,2,0]}]," SQUARE_MESH);
+  assert_near((double)shape(&l, 0)->positions[3], 2, 0);
+  end_load(&l);
+  free(g);
+}
+
+static double at_time(const Gltf *g, const char *rest, double time, int element) {
+  Loaded l;
+  vlLoadDef def = vl_default_load_def();
+  def.time = time;
+  load(&l, g, rest, &def);
+  if (l.result != VL_OK) print_message("%s\n", l.error.message);
+  assert_int_equal(l.result, VL_OK);
+  double x = shape(&l, 0)->group_from_shape[element];
+  end_load(&l);
+  return x;
+}
+
+static void animation(void **state) {
+  (void)state;
+  Gltf *g = new_square();
+  const float times[] = {1, 2, 4}, places[] = {0, 0, 0, 1, 0, 0, 3, 0, 0};
+  const float cubic[] = {0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0};
+  const float turns[] = {0, 0, 0, 1, 0, 0, 0.70710678f, 0.70710678f, 0, 0, -1, 0};
+  gltf_floats(g, times, 3, "SCALAR", 1); /* 2 */
+  gltf_floats(g, places, 3, "VEC3", 3);  /* 3 */
+  gltf_floats(g, cubic, 9, "VEC3", 3);   /* 4 */
+  gltf_floats(g, turns, 3, "VEC4", 4);   /* 5 */
+  char rest[800];
+  static const char *const modes_of[] = {"STEP", "LINEAR", "CUBICSPLINE"};
+  const double expected[3][6] = {/* at 0, 1, 1.5, 2, 3, 9 */
+                                 {0, 0, 0, 1, 1, 3},
+                                 {0, 0, 0.5, 1, 2, 3},
+                                 {0, 0, 0.75, 1, 2, 3}};
+  const double moments[6] = {0, 1, 1.5, 2, 3, 9};
+  for (int k = 0; k < 3; k++) {
+    snprintf(rest, sizeof rest,
+             SCENE
+             "\"nodes\":[{\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":2,\"output\":%d,"
+             "\"interpolation\":\"%s\"}],\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
+             "\"path\":\"translation\"}}]}]," SQUARE_MESH,
+             k == 2 ? 4 : 3, modes_of[k]);
+    for (int i = 0; i < 6; i++) assert_near(at_time(g, rest, moments[i], 3), expected[k][i], 1e-6);
+    assert_near(at_time(g, rest, VL_UNSET, 3), 0, 0);
+  }
+  snprintf(rest, sizeof rest,
+           SCENE
+           "\"nodes\":[{\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":2,\"output\":5}],"
+           "\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"rotation\"}}]}]," SQUARE_MESH);
+  assert_near(at_time(g, rest, 1.5, 0), cos(3.14159265358979 / 4), 1e-6);  /* half of a quarter turn */
+  assert_near(at_time(g, rest, 3, 4), sin(3.14159265358979 * 0.75), 1e-6); /* the short way on */
+  free(g);
+}
+
+static void morph_and_skin(void **state) {
+  (void)state;
+  Gltf *g = new_square();
+  const float up[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, right[] = {1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0};
+  gltf_floats(g, up, 4, "VEC3", 3);    /* 2 */
+  gltf_floats(g, right, 4, "VEC3", 3); /* 3 */
+  Loaded l;
+  fine(&l, g,
+       SCENE
+       "\"nodes\":[{\"mesh\":0,\"weights\":[0.5,2]}],\"meshes\":[{\"weights\":[9,9],\"primitives\":[{"
+       "\"attributes\":{\"POSITION\":0},\"indices\":1,\"targets\":[{\"POSITION\":2},{\"POSITION\":3}]}]}]");
+  assert_near((double)shape(&l, 0)->positions[2], 0.5, 0);
+  assert_near((double)shape(&l, 0)->positions[0], 2, 0);
+  end_load(&l);
+  const uint16_t joints[16] = {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
+  const float weights[16] = {0.25f, 0.75f, 0, 0, 0.25f, 0.75f, 0, 0, 0.25f, 0.75f, 0, 0, 0.25f, 0.75f, 0, 0};
+  const float bind[32] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,
+                          1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -4, 0, 0, 1};
+  gltf_accessor(g, gltf_view(g, joints, sizeof joints, 0), 5123, 4, "VEC4", NULL); /* 4 */
+  gltf_floats(g, weights, 4, "VEC4", 4);                                           /* 5 */
+  gltf_floats(g, bind, 2, "MAT4", 16);                                             /* 6 */
+  fine(&l, g,
+       "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0,\"skin\":0,\"translation\":[100,0,0]},"
+       "{\"translation\":[0,8,0]},{\"translation\":[4,0,16]}],"
+       "\"skins\":[{\"joints\":[1,2],\"inverseBindMatrices\":6}],\"meshes\":[{\"primitives\":[{"
+       "\"attributes\":{\"POSITION\":0,\"JOINTS_0\":4,\"WEIGHTS_0\":5},\"indices\":1}]}]");
+  const float *p = shape(&l, 0)->positions; /* 1/4 of 8 up, 3/4 of 16 ahead; the node's own place does not count */
+  assert_near((double)p[0], 0, 1e-6);
+  assert_near((double)p[1], 2, 1e-6);
+  assert_near((double)p[2], 12, 1e-6);
+  assert_near(shape(&l, 0)->group_from_shape[3], 0, 0);
+  end_load(&l);
+  free(g);
+}
+
+/* ---- tangents ---------------------------------------------------------------------------------------------------- */
+
+/* Two squares side by side, the right one's picture mirrored; a normal map asks for tangents. The vertices between them
+ * are shared and must be split. */
+static void tangents(void **state) {
+  (void)state;
+  Gltf *g = calloc(1, sizeof *g);
+  const float positions[] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0};
+  const float normals[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+  const float uvs[] = {0, 1, 1, 1, 0, 1, 0, 0, 1, 0, 0, 0}; /* glTF's v points down */
+  const uint16_t faces[] = {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4};
+  gltf_floats(g, positions, 6, "VEC3", 3);
+  gltf_floats(g, normals, 6, "VEC3", 3);
+  gltf_floats(g, uvs, 6, "VEC2", 2);
+  gltf_shorts(g, faces, 12);
+  gltf_view(g, "not a picture", 13, 0);
+  Loaded l;
+  fine(&l, g,
+       SCENE
+       "\"nodes\":[{\"mesh\":0}],\"images\":[{\"bufferView\":4,\"mimeType\":\"image/png\"}],"
+       "\"textures\":[{\"source\":0}],\"materials\":[{\"normalTexture\":{\"index\":0,\"scale\":0.5}}],"
+       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},"
+       "\"indices\":3,\"material\":0}]}]");
+  const vlShapeDef *s = shape(&l, 0);
+  assert_int_equal(s->vertices, 8);
+  for (size_t f = 0; f < 4; f++)
+    for (int k = 0; k < 3; k++) {
+      uint32_t v = s->indices[3 * f + (size_t)k];
+      assert_near((double)s->tangents[3 * v], f < 2 ? 1 : -1, 1e-6);
+      assert_near((double)s->tangent_signs[v], f < 2 ? 1 : -1, 0); /* up is up in both */
+    }
+  assert_near((double)s->uvs[1], 0, 0); /* turned: v upwards */
+  const vlMaterialDef *m = &l.scene->materials.items[s->material.index - 1];
+  assert_near((double)m->principled.normal_scale, 0.5, 0);
+  assert_true(m->principled.normal.index != 0);
+  /* the picture itself is looked at when the world is built, and its place is told */
+  vlWorld *world;
+  vlError error;
+  assert_int_equal(vl_world_build(l.scene, NULL, &world, &error), VL_ERROR_SCENE);
+  assert_non_null(strstr(error.message, "images[0]: not a picture"));
+  end_load(&l);
+  free(g);
+}
+
+/* ---- cameras, variants, extensions ------------------------------------------------------------------------------- */
+
+static void cameras(void **state) {
+  (void)state;
+  Gltf *g = new_square();
+  const char *rest =
+      "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0},{\"name\":\"front\",\"camera\":0,\"translation\":[0,0,"
+      "5]},"
+      "{\"camera\":1,\"scale\":[2,2,2]}],\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.5,"
+      "\"aspectRatio\":0.5,\"znear\":0.1}},{\"name\":\"flat\",\"type\":\"orthographic\",\"orthographic\":{\"xmag\":2,"
+      "\"ymag\":1,\"znear\":0,\"zfar\":10}}]," SQUARE_MESH;
+  static const char *const wanted[] = {NULL, "front", "0", "flat", "1"};
+  for (int i = 0; i < 5; i++) {
+    Loaded l;
+    vlLoadDef def = vl_default_load_def();
+    def.camera = wanted[i];
+    load(&l, g, rest, &def);
+    assert_int_equal(l.result, VL_OK);
+    const vlSceneSettings *s = &l.scene->settings;
+    assert_false(s->camera_missing);
+    vlCamera camera;
+    vlCameraDef made = s->camera;
+    made.width = s->width, made.height = s->height;
+    assert_int_equal(vl_camera_make(&made, &camera, NULL, NULL), VL_OK);
+    double pixel[2], z, point[3] = {0, 0, 0};
+    if (i < 3) {
+      assert_near((double)s->width / s->height, 0.5, 1e-2);
+      point[1] = 5 * tan(0.25); /* the upper edge of the picture */
+      assert_true(vl_camera_project(&camera, point, pixel, &z));
+      assert_near(pixel[1], 0, 1e-6);
+      assert_near(z, 5, 1e-9);
+    } else {
+      point[0] = 2, point[2] = -1; /* the right edge; the node's scale makes nothing larger */
+      assert_true(vl_camera_project(&camera, point, pixel, &z));
+      assert_near(pixel[0], s->width, 1e-6);
+      assert_near(z, 1, 1e-9);
+    }
+    end_load(&l);
+  }
+  Loaded l;
+  vlLoadDef def = vl_default_load_def();
+  def.camera = "back";
+  load(&l, g, rest, &def);
+  assert_int_equal(l.result, VL_ERROR_SCENE);
+  assert_string_equal(l.error.message, "the scene has no camera \"back\" (2 are there: front)");
+  end_load(&l);
+  free(g);
+}
+
+/* Everything is inside the picture, and near its edge on some side. */
+static void completion(void **state) {
+  (void)state;
+  Gltf *g = new_square();
+  Loaded l;
+  fine(&l, g, SCENE "\"nodes\":[{\"mesh\":0,\"scale\":[30,2,1],\"translation\":[100,7,-3]}]," SQUARE_MESH);
+  vlCompleteDef def = vl_default_complete_def();
+  def.width = 300, def.height = 200;
+  def.ground = true;
+  assert_int_equal(vl_scene_complete(l.scene, &def, NULL), VL_OK);
+  const vlSceneSettings *s = &l.scene->settings;
+  assert_false(s->camera_missing || s->light_missing);
+  assert_int_equal(s->width, 300);
+  assert_int_equal(l.scene->lights.count, 1);
+  assert_int_equal(l.scene->shapes.count, 2);
+  vlCamera camera;
+  assert_int_equal(vl_camera_make(&s->camera, &camera, NULL, NULL), VL_OK);
+  double most = 0;
+  for (int k = 0; k < 4; k++) {
+    double point[3] = {100 + 30.0 * (k & 1), 7 + 2.0 * (k >> 1), -3}, pixel[2];
+    assert_true(vl_camera_project(&camera, point, pixel, NULL));
+    double x = fabs(pixel[0] / 150 - 1), y = fabs(pixel[1] / 100 - 1);
+    assert_true(x < 0.93 && y < 0.93);
+    most = fmax(most, fmax(x, y));
+  }
+  assert_true(most > 0.8);
+  end_load(&l);
+  free(g);
+}
+
+static void variants(void **state) {
+  (void)state;
+  Gltf *g = new_square();
+  const char *rest = SCENE
+      "\"extensionsUsed\":[\"KHR_materials_variants\",\"EXT_unheard_of\"],"
+      "\"extensions\":{\"KHR_materials_variants\":{\"variants\":[{\"name\":\"red\"},{\"name\":\"blue\"}]}},"
+      "\"materials\":[{\"name\":\"own\"},{\"name\":\"sea\",\"doubleSided\":true}],\"nodes\":[{\"mesh\":0}],"
+      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0,\"extensions\":{"
+      "\"KHR_materials_variants\":{\"mappings\":[{\"material\":1,\"variants\":[1]}]}}}]}]";
+  static const char *const names[] = {NULL, "red", "blue"}, *const expected[] = {"own", "own", "sea"};
+  for (int i = 0; i < 3; i++) {
+    Loaded l;
+    vlLoadDef def = vl_default_load_def();
+    def.variant = names[i];
+    load(&l, g, rest, &def);
+    assert_int_equal(l.result, VL_OK);
+    assert_string_equal(l.scene->materials.items[shape(&l, 0)->material.index - 1].name, expected[i]);
+    assert_int_equal(shape(&l, 0)->one_sided, i < 2);
+    const char *first = strstr(l.log, "EXT_unheard_of is passed over");
+    assert_non_null(first);
+    assert_null(strstr(first + 1, "EXT_unheard_of")); /* once */
+    end_load(&l);
+  }
+  Loaded l;
+  vlLoadDef def = vl_default_load_def();
+  def.variant = "green";
+  load(&l, g, rest, &def);
+  assert_string_equal(l.error.message, "there is no variant \"green\" (2 are there: red, blue)");
+  end_load(&l);
+  free(g);
+}
+
+/* ---- what is wrong is said --------------------------------------------------------------------------------------- */
+
+static void errors(void **state) {
+  (void)state;
+  static const struct {
+    const char *rest, *message;
+  } cases[] = {
+      {SCENE "\"nodes\":[{\"mesh\":1}]," SQUARE_MESH, "nodes[0].mesh: 1: there are only 1 (0 to 0)"},
+      {SCENE "\"nodes\":[{\"mesh\":\"a\"}]," SQUARE_MESH, "nodes[0].mesh: must be a whole number, found a string"},
+      {SCENE "\"nodes\":[{\"mesh\":0,\"scale\":[1,2]}]," SQUARE_MESH, "nodes[0].scale: must hold 3 numbers, found 2"},
+      {SCENE "\"nodes\":[{\"children\":[1]},{\"children\":[0]}]," SQUARE_MESH, "nodes[0]: is among its own children"},
+      {SCENE "\"nodes\":[{\"children\":[1,1]},{}]," SQUARE_MESH,
+       "nodes[0].children[1]: node 1 is already a child of node 0"},
+      {"\"scenes\":[{\"nodes\":[7]}],\"nodes\":[{}]," SQUARE_MESH, "scenes[0].nodes[0]: there is no such node"},
+      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":1}}]}]",
+       "meshes[0].primitives[0].attributes.POSITION: must be of type VEC3"},
+      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":0}]}]",
+       "meshes[0].primitives[0].indices: must be SCALAR of unsigned whole numbers"},
+      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":9}]}]",
+       "meshes[0].primitives[0].mode: 9 is not from 0 to 6"},
+      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":2}]}]",
+       "accessors[2]: 100 elements of 2 bytes do not fit into bufferViews[1], which has 12 bytes"},
+      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":3}}]}]",
+       "accessors[3].count: 4000000000 zeros are out of proportion to the file"},
+      {"\"extensionsRequired\":[\"KHR_materials_iridescense\"],\"nodes\":[]",
+       "extensionsRequired[0]: velo does not read KHR_materials_iridescense (it reads KHR_materials_iridescence)"},
+      {"\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"nodes\":[]",
+       "extensionsRequired[0]: velo does not read KHR_draco_mesh_compression"},
+      {SCENE "\"nodes\":[{\"mesh\":0}],\"materials\":[{\"alphaMode\":\"GLASS\"}],\"meshes\":[{\"primitives\":[{"
+             "\"attributes\":{\"POSITION\":0},\"material\":0}]}]",
+       "materials[0].alphaMode: unknown name \"GLASS\""},
+      {SCENE "\"nodes\":[{\"mesh\":0}],\"textures\":[{\"extensions\":{\"KHR_texture_basisu\":{\"source\":0}}}],"
+             "\"materials\":[{\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0}}],\"meshes\":[{"
+             "\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]}]",
+       "textures[0]: its picture is there by KHR_texture_basisu only, which velo does not read"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    Gltf *g = new_square();
+    gltf_accessor(g, 1, 5123, 100, "SCALAR", NULL);
+    gltf_accessor(g, -1, 5126, 4000000000u, "VEC3", NULL);
+    Loaded l;
+    load(&l, g, cases[i].rest, NULL);
+    assert_true(l.result == VL_ERROR_SCENE || l.result == VL_ERROR_UNSUPPORTED);
+    assert_string_equal(l.error.message, cases[i].message);
+    assert_string_equal(l.error.file, in_folder("t.gltf"));
+    end_load(&l);
+    free(g);
+  }
+  /* broken JSON: line and column */
+  const char *text = "{\"asset\":{\"version\":\"2.0\"},\n \"nodes\":[}";
+  gltf_file(in_folder("b.gltf"), text, strlen(text));
+  Loaded l;
+  start_load(&l);
+  assert_int_equal(vl_scene_load(l.scene, in_folder("b.gltf"), NULL, &l.error), VL_ERROR_SCENE);
+  assert_int_equal(l.error.line, 2);
+  assert_int_equal(l.error.column, 11);
+  end_load(&l);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(containers), cmocka_unit_test(arrays),    cmocka_unit_test(modes),
+      cmocka_unit_test(poses),      cmocka_unit_test(animation), cmocka_unit_test(morph_and_skin),
+      cmocka_unit_test(tangents),   cmocka_unit_test(cameras),   cmocka_unit_test(completion),
+      cmocka_unit_test(variants),   cmocka_unit_test(errors),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -93,6 +93,11 @@ typedef enum vlTextureKind {
   VL_TEXTURE_IMAGE,
   VL_TEXTURE_DIRECTION_MIX,
   VL_TEXTURE_BILERP,
+  VL_TEXTURE_FBM,         /* float: noise of several sizes in texture_from_world, as the next two */
+  VL_TEXTURE_WRINKLED,    /* float */
+  VL_TEXTURE_WINDY,       /* float; octaves and roughness are its own */
+  VL_TEXTURE_MARBLE,      /* colour; scale and variation of its veins */
+  VL_TEXTURE_DOTS,        /* a outside of the dots, b inside */
   VL_TEXTURE_VERTEX_COLOR /* the colours of the shape's vertices, with tint, channel, bias and cutoff as a picture */
 } vlTextureKind;
 typedef enum vlWrap { VL_WRAP_REPEAT, VL_WRAP_BLACK, VL_WRAP_CLAMP, VL_WRAP_OCTAHEDRAL, VL_WRAP_MIRROR } vlWrap;
@@ -116,6 +121,9 @@ typedef struct vlTextureDef {
   vlFloatInput amount; /* scale's scale, mix's amount */
   float direction[3];  /* direction mix */
   uint32_t dimension;  /* checkerboard: 2 (s, t by the mapping) or 3 (cubes of unit size in texture_from_world) */
+  uint32_t octaves;    /* noise: how many sizes, at most 64; default 8 */
+  float omega;         /* each is so much weaker than the one before ("roughness"); default 0.5 */
+  float variation;     /* marble; default 0.2 */
   /* image */
   const char *path;     /* read when the world is built (once per path); or */
   const vlImage *image; /* given directly, copied; or */
@@ -128,7 +136,7 @@ typedef struct vlTextureDef {
   bool encoding_given; /* else the file's own (8-bit: sRGB) */
   vlEncoding encoding;
   float gamma;
-  float scale; /* factor on image values */
+  float scale; /* factor on image values; marble: on positions */
   bool invert;
   /* After filter, scale and invert: channels times tint, and times the colour of the shape's vertices. A float texture
    * reads one channel (0 to 3; coverage is 1 where the picture has none; -1: grey, mean or coverage, by the picture)
@@ -413,6 +421,11 @@ typedef struct vlSceneSettings {
 } vlSceneSettings;
 /* Never null; may be changed. */
 VL_API vlSceneSettings *vl_scene_settings(vlScene *scene);
+/* Camera, picture size and crop of another scene of the same context; what its lens needs passes over, so that `from`
+ * may go. ARGUMENT, MEMORY. */
+VL_API vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error);
+/* Focuses the settings' camera, one with a lens of many elements, at a distance from its film. ARGUMENT, MEMORY. */
+VL_API vlResult vl_scene_refocus(vlScene *scene, double distance, vlError *error);
 
 VL_API vlResult vl_scene_create(vlContext *context, vlScene **scene);
 VL_API void vl_scene_destroy(vlScene *scene);

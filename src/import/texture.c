@@ -5,11 +5,13 @@
 
 #include "import/builder.h"
 
-static const char *const kinds[] = {"constant", "scale", "mix", "directionmix", "bilerp", "checkerboard", "imagemap"};
+static const char *const kinds[] = {"constant", "scale", "mix",      "directionmix", "bilerp", "checkerboard",
+                                    "imagemap", "fbm",   "wrinkled", "windy",        "marble", "dots"};
 static const vlTextureKind kind_values[] = {VL_TEXTURE_CONSTANT,      VL_TEXTURE_SCALE,  VL_TEXTURE_MIX,
                                             VL_TEXTURE_DIRECTION_MIX, VL_TEXTURE_BILERP, VL_TEXTURE_CHECKERBOARD,
-                                            VL_TEXTURE_IMAGE};
-static const char *const later[] = {"dots", "fbm", "marble", "ptex", "windy", "wrinkled"};
+                                            VL_TEXTURE_IMAGE,         VL_TEXTURE_FBM,    VL_TEXTURE_WRINKLED,
+                                            VL_TEXTURE_WINDY,         VL_TEXTURE_MARBLE, VL_TEXTURE_DOTS};
+static const char *const later[] = {"ptex"};
 enum { KINDS = sizeof kinds / sizeof *kinds, LATER = sizeof later / sizeof *later };
 
 bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource place, vlTextureId *id) {
@@ -103,7 +105,8 @@ static bool read_image(vlDict *dict, vlTextureDef *def) {
 
 static bool read_inputs(vlDict *dict, vlTextureDef *def) {
   static const char *const names[][5] = {
-      {"value"}, {"tex"}, {"tex1", "tex2"}, {"tex1", "tex2"}, {"v00", "v01", "v10", "v11"}, {"tex1", "tex2"}, {NULL}};
+      {"value"}, {"tex"}, {"tex1", "tex2"}, {"tex1", "tex2"}, {"v00", "v01", "v10", "v11"}, {"tex1", "tex2"}, {NULL},
+      {NULL},    {NULL},  {NULL},           {NULL},           {"outside", "inside"}};
   vlFloatInput *floats[4] = {&def->float_a, &def->float_b, &def->float_c, &def->float_d};
   vlSpectrumInput *spectra[4] = {&def->spectrum_a, &def->spectrum_b, &def->spectrum_c, &def->spectrum_d};
   size_t kind = 0;
@@ -114,6 +117,24 @@ static bool read_inputs(vlDict *dict, vlTextureDef *def) {
     if (!fine) return false;
   }
   return true;
+}
+
+static bool read_noise(vlDict *dict, vlTextureDef *def, const vlMat4 *texture_from_world) {
+  static const char *const types[] = {"float", "float", "float", "spectrum"};
+  const char *type = types[def->kind - VL_TEXTURE_FBM];
+  if (def->spectrum != (def->kind == VL_TEXTURE_MARBLE))
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: this is a %s texture only", dict->what, type);
+  uint32_t most = 64;
+  if (def->kind != VL_TEXTURE_WINDY) {
+    vl_dict_count(dict, "octaves", 0, &def->octaves);
+    vl_dict_float(dict, "roughness", &def->omega);
+  }
+  if (def->kind == VL_TEXTURE_MARBLE) {
+    vl_dict_float(dict, "scale", &def->scale);
+    vl_dict_float(dict, "variation", &def->variation);
+  }
+  def->octaves = def->octaves < most ? def->octaves : most; /* finer ones are below any footprint */
+  return read_mapping(dict, def, texture_from_world, true);
 }
 
 static bool read_texture(vlDict *dict, vlTextureDef *def, const vlPending *pending) {
@@ -141,6 +162,13 @@ static bool read_texture(vlDict *dict, vlTextureDef *def, const vlPending *pendi
       for (int i = 0; i < 3; i++) def->direction[i] = (float)(world[i] / length);
       break;
     }
+    case VL_TEXTURE_FBM:
+    case VL_TEXTURE_WRINKLED:
+    case VL_TEXTURE_WINDY:
+    case VL_TEXTURE_MARBLE:
+      if (!read_noise(dict, def, &texture_from_world)) return false;
+      break;
+    case VL_TEXTURE_DOTS:
     case VL_TEXTURE_BILERP:
       if (!read_mapping(dict, def, &texture_from_world, false)) return false;
       break;

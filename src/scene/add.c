@@ -78,6 +78,8 @@ static bool check_texture_def(vlScene *scene, const vlTextureDef *d) {
                            d->planar_v2[1],
                            d->planar_v2[2],
                            d->bias,
+                           d->omega,
+                           d->variation,
                            d->tint[0],
                            d->tint[1],
                            d->tint[2],
@@ -90,6 +92,10 @@ static bool check_texture_def(vlScene *scene, const vlTextureDef *d) {
                            d->st_from_uv[5]};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
     if (!isfinite(numbers[i])) return bad(scene, d->source, "texture", "a number is not finite");
+  if (d->octaves > 64) return bad(scene, d->source, "texture", "noise has at most 64 octaves");
+  bool noise = d->kind == VL_TEXTURE_FBM || d->kind == VL_TEXTURE_WRINKLED || d->kind == VL_TEXTURE_WINDY;
+  if ((noise && d->spectrum) || (d->kind == VL_TEXTURE_MARBLE && !d->spectrum))
+    return bad(scene, d->source, "texture", "noise is a float texture, marble a colour");
   if (d->kind == VL_TEXTURE_CHECKERBOARD && d->dimension != 2 && d->dimension != 3)
     return bad(scene, d->source, "checkerboard", "dimension must be 2 or 3");
   if (d->kind == VL_TEXTURE_IMAGE) {
@@ -113,6 +119,7 @@ static vlTextureId add_texture(vlScene *scene, const vlTextureDef *def, bool ado
   int inputs = d.kind == VL_TEXTURE_BILERP                                   ? 4
                : d.kind == VL_TEXTURE_IMAGE                                  ? 0
                : d.kind == VL_TEXTURE_VERTEX_COLOR                           ? 0
+               : d.kind >= VL_TEXTURE_FBM && d.kind <= VL_TEXTURE_MARBLE     ? 0
                : d.kind == VL_TEXTURE_CONSTANT || d.kind == VL_TEXTURE_SCALE ? 1
                                                                              : 2;
   vlFloatInput *floats[4] = {&d.float_a, &d.float_b, &d.float_c, &d.float_d};

@@ -38,6 +38,9 @@ vlTextureDef vl_default_texture_def(vlTextureKind kind, bool spectrum) {
       .spectrum = spectrum,
       .direction = {0, 1, 0},
       .dimension = 2,
+      .octaves = 8,
+      .omega = 0.5f,
+      .variation = 0.2f,
       .wrap = VL_WRAP_REPEAT,
       .filter = VL_FILTER_BILINEAR,
       .encoding = VL_ENCODING_SRGB,
@@ -59,6 +62,7 @@ vlTextureDef vl_default_texture_def(vlTextureKind kind, bool spectrum) {
   float v[4] = {1, 1, 0, 0};
   if (kind == VL_TEXTURE_MIX || kind == VL_TEXTURE_DIRECTION_MIX) v[0] = 0, v[1] = 1;
   if (kind == VL_TEXTURE_CHECKERBOARD) v[0] = 1, v[1] = 0;
+  if (kind == VL_TEXTURE_DOTS) v[0] = 0, v[1] = 1;
   if (kind == VL_TEXTURE_BILERP) v[0] = 0, v[1] = 1, v[2] = 0, v[3] = 1;
   vlFloatInput *floats[4] = {&def.float_a, &def.float_b, &def.float_c, &def.float_d};
   vlSpectrumInput *spectra[4] = {&def.spectrum_a, &def.spectrum_b, &def.spectrum_c, &def.spectrum_d};

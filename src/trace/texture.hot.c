@@ -12,6 +12,8 @@ static void mix_weight(vlTextureRun *r, const vlTextureNode *node, float *w) {
     vlTexturePoint at = vl_texture_point_of(r, node, i);
     if (node->kind == VL_NODE_CHECKERBOARD)
       w[i] = vl_texture_checker(node, at);
+    else if (node->kind == VL_NODE_DOTS)
+      w[i] = vl_texture_dots(node, at);
     else
       w[i] = 1.0f - vl_abs(vl_dot(at.n, vl_vec3(node->direction[0], node->direction[1], node->direction[2])));
   }
@@ -35,6 +37,11 @@ void VL_HOT(vl_texture_float)(vlTextureRun *r, int32_t index, float *out) {
         out[i] = vl_texture_image_float(node, mip, vl_texture_point_of(r, node, i));
       break;
     }
+    case VL_NODE_FBM:
+    case VL_NODE_WRINKLED:
+    case VL_NODE_WINDY:
+      for (uint32_t i = r->first; i < r->last; i++) out[i] = vl_texture_noise(node, vl_texture_point_of(r, node, i));
+      break;
     case VL_NODE_VERTEX_COLOR:
       for (uint32_t i = r->first; i < r->last; i++)
         out[i] = vl_texture_channel(node, NULL, vl_texture_point_of(r, node, i));
@@ -48,6 +55,7 @@ void VL_HOT(vl_texture_float)(vlTextureRun *r, int32_t index, float *out) {
     }
     case VL_NODE_MIX:
     case VL_NODE_CHECKERBOARD:
+    case VL_NODE_DOTS:
     case VL_NODE_DIRECTION_MIX: {
       float *w = vl_texture_row(r), *b = vl_texture_row(r);
       mix_weight(r, node, w);
@@ -91,16 +99,27 @@ static void constant_spectrum(const vlTextureRun *r, const vlSpectral *s, float 
   }
 }
 
-/* A picture's colour at the wavelengths, by its role (pbrt book 10.4.1): albedos are clamped, others scaled. */
+/* The colour of a picture, of vertices, of marble. */
+static void rgb_at(const vlTextureRun *r, const vlTextureNode *node, const vlMipmap *mip, uint32_t i, float c[3]) {
+  vlTexturePoint at = vl_texture_point_of(r, node, i);
+  if (node->kind == VL_NODE_MARBLE) {
+    vlVec3 m = vl_texture_marble(node, at);
+    c[0] = m.x, c[1] = m.y, c[2] = m.z;
+    return;
+  }
+  vlTexel t = node->plain ? vl_texture_image(node, mip, at) : vl_texture_rgba(node, mip, at);
+  bool grey = node->plain && mip->channels < 3;
+  c[0] = t.c[0], c[1] = grey ? t.c[0] : t.c[1], c[2] = grey ? t.c[0] : t.c[2];
+}
+
+/* Such a colour at the wavelengths, by its role (pbrt book 10.4.1): albedos are clamped, others scaled. */
 static void image_spectrum(vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {
   const vlMipmap *mip = node->kind == VL_NODE_IMAGE ? r->world->images.items[node->image].mipmap : NULL;
   bool rgb_mode = r->world->def.color == VL_COLOR_RGB;
   const vlRgbTable *table = vl_rgb_table(node->space);
   for (uint32_t i = r->first; i < r->last; i++) {
-    vlTexel t = node->plain ? vl_texture_image(node, mip, vl_texture_point_of(r, node, i))
-                            : vl_texture_rgba(node, mip, vl_texture_point_of(r, node, i));
-    bool grey = node->plain && mip->channels < 3;
-    float c[3] = {t.c[0], grey ? t.c[0] : t.c[1], grey ? t.c[0] : t.c[2]};
+    float c[3];
+    rgb_at(r, node, mip, i, c);
     if (node->role == VL_ROLE_ALBEDO)
       for (int k = 0; k < 3; k++) c[k] = c[k] > 1.0f ? 1.0f : c[k];
     if (rgb_mode) {
@@ -124,6 +143,7 @@ void VL_HOT(vl_texture_spectrum)(vlTextureRun *r, int32_t index, float *const ou
   switch (node->kind) {
     case VL_NODE_SPECTRUM: constant_spectrum(r, &node->spectrum, out); break;
     case VL_NODE_IMAGE:
+    case VL_NODE_MARBLE:
     case VL_NODE_VERTEX_COLOR: image_spectrum(r, node, out); break;
     case VL_NODE_SCALE: {
       float *w = vl_texture_row(r);
@@ -135,6 +155,7 @@ void VL_HOT(vl_texture_spectrum)(vlTextureRun *r, int32_t index, float *const ou
     }
     case VL_NODE_MIX:
     case VL_NODE_CHECKERBOARD:
+    case VL_NODE_DOTS:
     case VL_NODE_DIRECTION_MIX: {
       float *w = vl_texture_row(r),
             *b[4] = {vl_texture_row(r), vl_texture_row(r), vl_texture_row(r), vl_texture_row(r)};

@@ -3,7 +3,7 @@
 #define TRACE_TEXTURE_RUN_H
 
 #include "trace/stages.h"
-#include "world/texture_lookup.h"
+#include "world/texture_noise.h"
 
 /* A run of lanes and a stack of scratch rows for nested textures. */
 typedef struct vlTextureRun {

@@ -34,7 +34,12 @@ typedef enum vlNodeKind {
   VL_NODE_IMAGE,
   VL_NODE_DIRECTION_MIX,
   VL_NODE_BILERP,
-  VL_NODE_VERTEX_COLOR
+  VL_NODE_VERTEX_COLOR,
+  VL_NODE_FBM,
+  VL_NODE_WRINKLED,
+  VL_NODE_WINDY,
+  VL_NODE_MARBLE,
+  VL_NODE_DOTS
 } vlNodeKind;
 
 typedef struct vlTextureNode {
@@ -47,7 +52,8 @@ typedef struct vlTextureNode {
   vlSpectral spectrum;        /* VL_NODE_SPECTRUM; VL_NODE_IMAGE: dense = illuminant of the space for that role */
   int32_t a, b, c, d, amount; /* inputs, -1 none */
   float direction[3];
-  uint32_t dimension;
+  uint32_t dimension, octaves;
+  float omega, variation; /* noise */
   int32_t image;
   vlWrap wrap, wrap_t;
   vlTextureFilter filter;

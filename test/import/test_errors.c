@@ -128,7 +128,7 @@ static const struct {
      "t.pbrt:2:1: there is no material \"wals\" (did you mean \"walls\"?)"},
     {W "Shape \"curve\" \"point3 P\" [0 0 0]", "t.pbrt:2:1: shape \"curve\" is not understood yet"},
     {W "Shape \"spere\"", "t.pbrt:2:1: unknown shape \"spere\" (did you mean \"sphere\"?)"},
-    {W "Texture \"a\" \"spectrum\" \"marble\"", "t.pbrt:2:1: texture \"marble\" is not understood yet"},
+    {W "Texture \"a\" \"spectrum\" \"ptex\"", "t.pbrt:2:1: texture \"ptex\" is not understood yet"},
     {W "Texture \"a\" \"colour\" \"constant\"",
      "t.pbrt:2:1: Texture \"a\": the type must be \"float\" or \"spectrum\", not \"colour\""},
     {W "Texture \"a\" \"float\" \"constant\"\nTexture \"a\" \"float\" \"constant\"",
@@ -278,7 +278,7 @@ static void permissive(void **state) {
       "Film \"gbuffer\" \"string coordinatesystem\" \"camera\"\nCamera \"future\" \"string lensfile\" \"wide.dat\"\n"
       "Integrator \"bdpt\" \"integer maxdepth\" 9\nOption \"forcediffuse\" true\nSampler \"future\" \"integer n\" 1\n" W
       "Material \"subsurface\" \"rgb mfp\" [1 1 1]\nShape \"sphere\"\nShape \"curve\" \"point3 P\" [0 0 0]\n"
-      "LightSource \"projection\"\nTexture \"t\" \"spectrum\" \"marble\"\nMaterial \"diffuse\" \"texture reflectance\" "
+      "LightSource \"projection\"\nTexture \"t\" \"spectrum\" \"ptex\"\nMaterial \"diffuse\" \"texture reflectance\" "
       "\"t\"\n"
       "MakeNamedMedium \"m\" \"string type\" \"cloud\"\nMediumInterface \"m\"\nActiveTransform EndTime Translate 1 1 "
       "1\nShape \"disk\"\n",
@@ -294,7 +294,7 @@ static void permissive(void **state) {
                         "warning t.pbrt:3:1: integrator",          "warning t.pbrt:4:1: Option",
                         "warning t.pbrt:5:1: unknown sampler",     "warning t.pbrt:7:1: material \"subsurface\"",
                         "warning t.pbrt:9:1: shape \"curve\"",     "warning t.pbrt:10:1: light \"projection\"",
-                        "warning t.pbrt:11:1: texture \"marble\"", "warning t.pbrt:16:1: participating media"};
+                        "warning t.pbrt:11:1: texture \"ptex\"", "warning t.pbrt:16:1: participating media"};
   for (size_t i = 0; i < sizeof said / sizeof *said; i++) {
     if (!strstr(l.log, said[i])) print_message("not said: %s\nbut:\n%s", said[i], l.log);
     assert_non_null(strstr(l.log, said[i]));

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "frame_writer.h"
+#include "lens_options.h"
 #include "progress.h"
 #include "report.h"
 #include "signals.h"
@@ -84,6 +85,8 @@ static int render_view(Run *run, const Frame *frame, int view, FramePicture *pic
   frame_place(run, frame, place, sizeof place);
   vlResult result = frames_camera(run->frames, frame, view, &job->camera, &error);
   if (result != VL_OK) return report_error(&error, result, place);
+  int status = lens_autofocus(job, NULL, run->world);
+  if (status >= 0) return status;
   job->render.progress = on_progress;
   job->render.progress_user = run;
   vl_film_clear(film);

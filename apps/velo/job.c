@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "camera.h"
+#include "lens_options.h"
 #include "report.h"
 
 const Choice tracer_choices[] = {{"path", VL_TRACER_PATH},
@@ -81,11 +82,11 @@ static int take_camera_file(Job *job, vlContext *context, vlSceneSettings *setti
   return -1;
 }
 
-/* Camera and picture size of another scene file. The camera def holds no pointers, so it outlives that scene. */
-static int take_camera(Job *job, vlContext *context, vlSceneSettings *settings, const char *path,
-                       const Arguments *arguments) {
+/* Camera and picture size of another scene file. */
+static int take_camera(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
   const OptionValue *frame = &arguments->values[RENDER_FRAME];
-  if (!camera_is_scene(path)) return take_camera_file(job, context, settings, path, frame->given ? frame->text : NULL);
+  if (!camera_is_scene(path))
+    return take_camera_file(job, context, vl_scene_settings(scene), path, frame->given ? frame->text : NULL);
   vlScene *other = NULL;
   vlError error = {0};
   vlResult result = vl_scene_create(context, &other);
@@ -93,12 +94,8 @@ static int take_camera(Job *job, vlContext *context, vlSceneSettings *settings, 
   load.permissive = arguments->values[RENDER_PERMISSIVE].given;
   if (result == VL_OK) result = vl_scene_load(other, path, &load, &error);
   if (result == VL_OK) {
-    const vlSceneSettings *from = vl_scene_settings(other);
-    settings->camera = from->camera;
-    job->camera_place = camera_place(from, path);
-    settings->width = from->width;
-    settings->height = from->height;
-    memcpy(settings->crop, from->crop, sizeof settings->crop);
+    job->camera_place = camera_place(vl_scene_settings(other), path);
+    result = vl_scene_take_camera(scene, other, &error);
   }
   int status = result == VL_OK ? -1 : report_error(&error, result, path);
   vl_scene_destroy(other);
@@ -213,7 +210,8 @@ static int fit_camera(Job *job, vlSceneSettings *settings, const Arguments *argu
   camera.stereo_eye = VL_EYE_BOTH;
   if (size->given) override_size(settings, (uint32_t)size->integers[0], (uint32_t)size->integers[1]);
   int status = override_crop(settings, arguments);
-  return status < 0 ? make_camera(job, camera, settings->width, settings->height) : status;
+  if (status < 0) status = make_camera(job, camera, settings->width, settings->height);
+  return status < 0 ? lens_focus_on(&job->camera, arguments) : status;
 }
 
 int job_take_camera(Job *job, vlSceneSettings *settings, const vlCameraDef *def, const char *path,
@@ -229,7 +227,8 @@ int job_take_camera(Job *job, vlSceneSettings *settings, const vlCameraDef *def,
   job->camera_place = (vlError){.line = 0};
   snprintf(job->camera_place.file, sizeof job->camera_place.file, "%s", path);
   job->settings = settings;
-  int status = fit_camera(job, settings, arguments);
+  int status = lens_override(NULL, settings, arguments);
+  if (status < 0) status = fit_camera(job, settings, arguments);
   if (status >= 0) return status;
   job->film.width = settings->width;
   job->film.height = settings->height;
@@ -244,10 +243,11 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   job->settings = settings;
   job->camera_place = camera_place(settings, path);
   if (v[RENDER_CAMERA].given) {
-    int status = take_camera(job, context, settings, v[RENDER_CAMERA].text, arguments);
+    int status = take_camera(job, context, scene, v[RENDER_CAMERA].text, arguments);
     if (status >= 0) return status;
   }
   int status = override_stereo(settings, arguments);
+  if (status < 0) status = lens_override(scene, settings, arguments);
   if (status < 0) status = fit_camera(job, settings, arguments);
   if (status >= 0) return status;
   override_sampling(settings, arguments);

@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "frames.h"
 #include "job.h"
+#include "lens_options.h"
 #include "outputs.h"
 #include "progress.h"
 #include "report.h"
@@ -261,6 +262,7 @@ static int run_render(const Command *command, const Arguments *arguments) {
   memset(&render, 0, sizeof render);
   int status = prepare(&render, arguments);
   if (status < 0) status = load_and_build(&render, arguments->operands[0], arguments);
+  if (status < 0 && !render.many) status = lens_autofocus(&render.job, render.scene, render.world);
   if (status < 0 && arguments->values[RENDER_DRY_RUN].given) {
     job_describe(&render.job, render.context, render.scene, render.world, render.outputs.paths, render.outputs.count);
     if (render.many && frames_count(&render.frames) > 1)
@@ -329,6 +331,20 @@ static const Option render_options[] = {
     {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME", "what light is made of:", 0, 0, color_choices},
     {RENDER_VIEW, 0, "view", OPTION_CHOICE, "NAME", "how light becomes display values (.png .jpg .tga):", 0, 0,
      view_choices},
+    {RENDER_FOCUS_PIXEL, 0, "focus-pixel", OPTION_TEXT, "X,Y",
+     "autofocus: sharp is what this point of the picture sees, in\npixels from the top left corner", 0, 0, NULL},
+    {RENDER_FOCUS_DISTANCE, 0, "focus-distance", OPTION_NUMBER, "D", "sharp is the plane at this depth, in scene units",
+     1e-30, 1e30, NULL},
+    {RENDER_LENS_RADIUS, 0, "lens-radius", OPTION_NUMBER, "R", "of a thin lens, in scene units; 0 is a pinhole", 0,
+     1e30, NULL},
+    {RENDER_F_NUMBER, 0, "f-number", OPTION_NUMBER, "N",
+     "the same by focal length / (2 N); the camera must have its\nfocal length in millimetres", 1e-6, 1e6, NULL},
+    {RENDER_ISO, 0, "iso", OPTION_NUMBER, "S",
+     "exposure as a camera has it, with its f-number and --seconds:\nthe light is multiplied by seconds ISO / (120 "
+     "N^2)",
+     1e-6, 1e12, NULL},
+    {RENDER_SECONDS, 0, "seconds", OPTION_NUMBER, "T", "exposure time for --iso; default: the shutter's", 1e-12, 1e12,
+     NULL},
     {RENDER_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "brighter by 2^EV (.png .jpg .tga)", -64, 64, NULL},
     {RENDER_CHANNELS, 0, "channels", OPTION_TEXT, "LIST",
      "ground truth into the .exr, 32-bit: any of Z, distance, P, N, Ng,\n"
@@ -353,7 +369,8 @@ static const Option render_options[] = {
      "the camera of the picture before, for backward.U, .V, .hidden", 0, 0, NULL},
     {RENDER_BOXES, 0, "boxes", OPTION_FLAG, NULL,
      "FILE.ids.json also has boxes of each object and instance, in\n"
-     "pixels (of what is seen, and of all of it) and in space", 0, 0, NULL},
+     "pixels (of what is seen, and of all of it) and in space",
+     0, 0, NULL},
     {RENDER_HALF, 0, "half", OPTION_FLAG, NULL, ".exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
     {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N",
      "workers; default: one for each processor. The picture does not\n"

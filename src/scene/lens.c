@@ -1,0 +1,42 @@
+/* scene/lens.c: the lens of the settings' camera: a scene owns what its camera only points at. */
+#include <string.h>
+
+#include "base/error.h"
+#include "scene/scene.h"
+
+/* Room first, so that nothing has two owners when memory is out. */
+vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
+  vl_error_clear(error);
+  if (!scene || !from) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_take_camera: null argument");
+  vlContext *context = scene->context;
+  if (from->context != context)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_take_camera: the scenes are of different contexts");
+  if (scene == from) return VL_OK;
+  if (!VL_RESERVE(context, &scene->apertures, from->apertures.count) ||
+      !VL_RESERVE(context, &scene->optics, from->optics.count))
+    return vl_fail_memory(error);
+  for (size_t i = 0; i < from->apertures.count; i++)
+    scene->apertures.items[scene->apertures.count++] = from->apertures.items[i];
+  for (size_t i = 0; i < from->optics.count; i++) scene->optics.items[scene->optics.count++] = from->optics.items[i];
+  from->apertures.count = from->optics.count = 0;
+  vlSceneSettings *to = &scene->settings;
+  const vlSceneSettings *s = &from->settings;
+  to->camera = s->camera;
+  to->width = s->width, to->height = s->height;
+  memcpy(to->crop, s->crop, sizeof to->crop);
+  return VL_OK;
+}
+
+vlResult vl_scene_refocus(vlScene *scene, double distance, vlError *error) {
+  vl_error_clear(error);
+  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_refocus: null argument");
+  vlCameraDef *camera = &scene->settings.camera;
+  if (!camera->lens.optics) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_refocus: the camera's lens is thin");
+  if (!VL_RESERVE(scene->context, &scene->optics, 1)) return vl_fail_memory(error);
+  vlOptics *optics;
+  vlResult result = vl_optics_refocus(scene->context, camera->lens.optics, distance, &optics, error);
+  if (result != VL_OK) return result;
+  scene->optics.items[scene->optics.count++] = optics;
+  camera->lens.optics = optics;
+  return VL_OK;
+}

@@ -8,44 +8,12 @@
  *
  * Weights: beta over the mean of the rescaled densities u (of the path as it was sampled) and l (as light sampling
  * would have had its last piece). */
-#include "trace/medium.h"
+#include "trace/volume.h"
 #include "trace/phase.h"
-#include "trace/stages.h"
 
 enum { ON_SURFACE, IN_SKY, IN_MEDIUM, AT_END };
-enum { KEY_FLIGHT = 0, KEY_SHADOW = 1, KEY_HERO = 2 };
 
 /* ---- what a lane carries ----------------------------------------------------------------------------------------- */
-
-static bool is_rgb(const vlTracing *t) {
-  return t->world->def.color == VL_COLOR_RGB;
-}
-
-/* Random numbers that the sampler does not give. */
-static uint32_t lane_key(const vlTracing *t, const vlPaths *p, uint32_t i, uint32_t depth, uint32_t purpose) {
-  uint32_t pixel = vl_hash3((uint32_t)p->px[i], (uint32_t)p->py[i], p->index[i]);
-  return vl_hash3(pixel, t->def->sampler->seed, 4 * depth + purpose);
-}
-
-/* The channel that flights are sampled by: the hero wavelength, which is chance enough; of RGB any, one for a path. */
-static int hero_of(const vlTracing *t, const vlPaths *p, uint32_t i) {
-  return is_rgb(t) ? (int)(lane_key(t, p, i, 0, KEY_HERO) % 3) : 0;
-}
-
-static vlFlight load_flight(const vlTracing *t, const vlPaths *p, const vlVolumeRows *v, uint32_t i, uint32_t depth,
-                            uint32_t purpose) {
-  vlFlight f = {.hero = hero_of(t, p, i),
-                .channels = is_rgb(t) ? 3 : 4,
-                .first = -1.0f,
-                .key = lane_key(t, p, i, depth, purpose)};
-  for (int c = 0; c < 4; c++) {
-    f.lambda[c] = p->lambda[c][i];
-    f.beta[c] = p->beta[c][i];
-    f.u[c] = v->u[c][i];
-    f.l[c] = v->l[c][i];
-  }
-  return f;
-}
 
 static void store_flight(vlPaths *p, vlVolumeRows *v, uint32_t i, const vlFlight *f) {
   for (int c = 0; c < 4; c++) {
@@ -64,19 +32,13 @@ static void permute_rows(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t 
 /* beta is the path's weight from here on. A path that follows its hero alone is judged by that one's density. */
 static void normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i) {
   float u[4];
-  bool alone = !is_rgb(t) && p->lambda[1][i] == p->lambda[0][i];
+  bool alone = !vl_volume_rgb(t) && p->lambda[1][i] == p->lambda[0][i];
   for (int c = 0; c < 4; c++) u[c] = v->u[alone ? 0 : c][i];
-  float inv = 1.0f / vl_flight_mean(u, is_rgb(t) ? 3 : 4);
+  float inv = 1.0f / vl_flight_mean(u, vl_volume_rgb(t) ? 3 : 4);
   for (int c = 0; c < 4; c++) {
     v->u[c][i] = u[c] * inv;
     p->beta[c][i] *= inv;
   }
-}
-
-/* The medium beyond a surface in direction w. */
-static uint32_t medium_beyond(const vlWorldShape *s, vlVec3 g, vlVec3 w, uint32_t here) {
-  if (s->inside == s->outside) return here;
-  return vl_dot(w, g) > 0.0f ? s->outside : s->inside;
 }
 
 /* ---- travel ------------------------------------------------------------------------------------------------------ */
@@ -84,16 +46,6 @@ static uint32_t medium_beyond(const vlWorldShape *s, vlVec3 g, vlVec3 w, uint32_
 static vlPoint met(const vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t i) {
   return VL_HOT(vl_point_at_time)(t->world, vl_path_time(p, i), vl_lane3(p->ox, p->oy, p->oz, i),
                                   vl_lane3(p->dx, p->dy, p->dz, i), h->shape[i], h->prim[i], h->instance[i], h->t[i]);
-}
-
-static bool is_interface(const vlWorld *world, uint32_t shape) {
-  return world->materials.items[world->shapes.items[shape].material].kind == VL_MATERIAL_INTERFACE;
-}
-
-/* Past a surface by what its point may be wrong, along the ray; ever forward. */
-static float past(const vlPoint *at, vlVec3 d, float t_min) {
-  float margin = 2.0f * at->offset / vl_max(vl_abs(vl_dot(at->g, d)), 0.01f) + 0x1p-22f * vl_abs(at->t);
-  return vl_max(at->t, t_min) + vl_max(margin, 1e-30f);
 }
 
 /* One lane of a, from medium to medium through interfaces, to what happens to it. Its origin stays that of its last
@@ -105,12 +57,12 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, const float *t
   vlVolumeScratch *v = &t->s->volume;
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
   float t_min = t_min_row ? t_min_row[i] : 0.0f, time = vl_path_time(p, i), given[4] = {0, 0, 0, 0};
-  vlFlight f = load_flight(t, p, &v->a, i, depth, KEY_FLIGHT);
+  vlFlight f = vl_volume_flight(t, p, &v->a, i, depth, VL_KEY_FLIGHT);
   f.first = t->s->shade.u0[i];
   uint32_t medium = v->a.medium[i], event = AT_END;
   for (int step = 0; step < 1024; step++) { /* no ray needs so many */
     bool hit = h->shape[i] != VL_NONE;
-    bool passes = hit && is_interface(world, h->shape[i]);
+    bool passes = hit && vl_is_interface(world, h->shape[i]);
     vlPoint at = {.t = t_max_row ? t_max_row[i] : VL_INFINITY};
     if (hit && (passes || medium != VL_NONE)) at = met(t, p, h, i);
     vlFlightEnd end = VL_FLIGHT_PASSED;
@@ -125,8 +77,8 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, const float *t
       event = hit ? ON_SURFACE : IN_SKY;
       break;
     }
-    medium = medium_beyond(&world->shapes.items[h->shape[i]], at.g, d, medium);
-    t_min = past(&at, d, t_min);
+    medium = vl_medium_beyond(&world->shapes.items[h->shape[i]], at.g, d, medium);
+    t_min = vl_past_surface(&at, d, t_min);
     vlRays ray = {p->ox + i,
                   p->oy + i,
                   p->oz + i,
@@ -173,7 +125,7 @@ static void add_light(vlTracing *t, uint32_t i, const float radiance[4], float l
   const vlVolumeRows *v = &t->s->volume.a;
   float density[4];
   for (int c = 0; c < 4; c++) density[c] = v->u[c][i] + (light_pdf > 0.0f ? v->l[c][i] * light_pdf : 0.0f);
-  float inv = 1.0f / vl_flight_mean(density, is_rgb(t) ? 3 : 4);
+  float inv = 1.0f / vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * radiance[c] * inv;
 }
 
@@ -223,82 +175,7 @@ static void emission(vlTracing *t, uint32_t n) {
   }
 }
 
-/* ---- shadow rays ------------------------------------------------------------------------------------------------- */
-
-/* Lane i's light sample as the next shadow ray, from o; value: what the scattering passes on, pdf its density. */
-static uint32_t push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,
-                            const float value[4], float pdf, uint32_t medium, uint32_t count) {
-  vlShadowRays *q = &t->s->shadow;
-  const vlLightSamples *l = &t->s->light;
-  vlVolumeScratch *v = &t->s->volume;
-  vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
-  float length = VL_INFINITY;
-  if (!l->distant[i]) { /* of unit length: interfaces on the way are met at distances */
-    vlVec3 to = vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
-    length = vl_length(to);
-    w = vl_normalize(to);
-  }
-  q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
-  q->dx[count] = w.x, q->dy[count] = w.y, q->dz[count] = w.z;
-  q->t_max[count] = length * (1.0f - 0x1p-21f);
-  for (int c = 0; c < 4; c++) {
-    q->radiance[c][count] = p->beta[c][i] * value[c] * l->radiance[c][i] * l->pdf[i];
-    v->density[c][count] = rows->u[c][i];
-  }
-  v->light_pdf[count] = l->pdf[i];
-  v->pdf[count] = l->delta[i] ? 0.0f : pdf;
-  v->shadow_medium[count] = medium;
-  v->from[count] = i;
-  q->time[count] = vl_path_time(p, i);
-  q->lane[count] = p->lane[i];
-  return count + 1;
-}
-
-/* Transmittance of shadow ray k to f->beta, and its densities: through media and interfaces. */
-static void pass_media(vlTracing *t, uint32_t k, vlFlight *f) {
-  const vlWorld *world = t->world;
-  const vlShadowRays *q = &t->s->shadow;
-  vlVec3 o = vl_lane3(q->ox, q->oy, q->oz, k), d = vl_lane3(q->dx, q->dy, q->dz, k);
-  uint32_t medium = t->s->volume.shadow_medium[k];
-  float t_min = 0.0f;
-  for (int step = 0; step < 1024; step++) {
-    uint32_t shape = VL_NONE, prim = 0, instance = VL_NONE;
-    float t_hit = 0.0f;
-    vlRays ray = {q->ox + k, q->oy + k,    q->oz + k,
-                  q->dx + k, q->dy + k,    q->dz + k,
-                  &t_min,    q->t_max + k, t->s->a.time ? q->time + k : NULL};
-    if (world->has_interfaces) {
-      vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t_hit);
-      t->batch->shadow_rays++;
-    }
-    if (shape != VL_NONE && !is_interface(world, shape)) break; /* cannot be: it is not occluded */
-    vlPoint at = {.t = q->t_max[k]};
-    if (shape != VL_NONE) at = VL_HOT(vl_point_at_time)(world, q->time[k], o, d, shape, prim, instance, t_hit);
-    if (medium != VL_NONE) VL_HOT(vl_attenuate)(&world->media.items[medium], o, d, t_min, at.t, f);
-    if (shape == VL_NONE || !(vl_max(vl_max(f->beta[0], f->beta[1]), vl_max(f->beta[2], f->beta[3])) > 0.0f)) return;
-    medium = medium_beyond(&world->shapes.items[shape], at.g, d, medium);
-    t_min = past(&at, d, t_min);
-  }
-  for (int c = 0; c < 4; c++) f->beta[c] = 0.0f;
-}
-
-static void trace_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth) {
-  vlShadowRays *q = &t->s->shadow;
-  const vlVolumeScratch *v = &t->s->volume;
-  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
-  vl_accel_occluded(t->world, count, &rays, q->occluded);
-  t->batch->shadow_rays += count;
-  for (uint32_t k = 0; k < count; k++) {
-    if (q->occluded[k]) continue;
-    vlFlight f = load_flight(t, p, rows, v->from[k], depth, KEY_SHADOW);
-    for (int c = 0; c < 4; c++) f.beta[c] = f.u[c] = f.l[c] = 1.0f;
-    pass_media(t, k, &f);
-    float density[4];
-    for (int c = 0; c < 4; c++) density[c] = v->density[c][k] * (f.l[c] * v->light_pdf[k] + f.u[c] * v->pdf[k]);
-    float inv = 1.0f / vl_flight_mean(density, f.channels);
-    for (int c = 0; c < 4; c++) t->batch->radiance[c][q->lane[k]] += q->radiance[c][k] * f.beta[c] * inv;
-  }
-}
+/* ---- light samples ------------------------------------------------------------------------------------------- */
 
 static void sample_lights(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension) {
   vlShade *sh = &t->s->shade;
@@ -321,9 +198,10 @@ static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i), w = vl_lane3(s->light.wx, s->light.wy, s->light.wz, i);
     float phase = vl_phase(t->world->media.items[v->c.medium[i]].g, vl_dot(d, w));
     const float value[4] = {phase, phase, phase, phase};
-    count = push_shadow(t, p, &v->c, i, vl_lane3(p->ox, p->oy, p->oz, i), value, phase, v->c.medium[i], count);
+    count = VL_HOT(vl_volume_push_shadow)(t, p, &v->c, i, vl_lane3(p->ox, p->oy, p->oz, i), value, phase,
+                                          v->c.medium[i], count);
   }
-  trace_shadows(t, p, &v->c, count, depth);
+  VL_HOT(vl_volume_shadows)(t, p, &v->c, count, depth);
 }
 
 /* New directions by the phase function, roulette as on surfaces. Returns how many go on. */
@@ -403,10 +281,10 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     vlVec3 g = vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w = vl_lane3(l->wx, l->wy, l->wz, i);
     vlVec3 o = vl_offset_origin(at, g, s->surface.offset[i], w);
     const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
-    count = push_shadow(t, p, &s->volume.b, i, o, value, sh->pdf[i], medium_beyond(shape, g, w, s->volume.b.medium[i]),
-                        count);
+    count = VL_HOT(vl_volume_push_shadow)(t, p, &s->volume.b, i, o, value, sh->pdf[i],
+                                          vl_medium_beyond(shape, g, w, s->volume.b.medium[i]), count);
   }
-  trace_shadows(t, p, &s->volume.b, count, depth);
+  VL_HOT(vl_volume_shadows)(t, p, &s->volume.b, count, depth);
 }
 
 static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
@@ -425,9 +303,9 @@ static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
     uint32_t i = s->order[k];
     float pdf = s->a.pdf[k], inv = pdf > 0.0f ? 1.0f / pdf : 0.0f;
     for (int c = 0; c < 4; c++) v->a.l[c][k] = v->a.u[c][k] * inv;
-    v->a.medium[k] = medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]],
-                                   vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i),
-                                   vl_lane3(s->a.dx, s->a.dy, s->a.dz, k), v->a.medium[k]);
+    v->a.medium[k] = vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]],
+                                      vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i),
+                                      vl_lane3(s->a.dx, s->a.dy, s->a.dz, k), v->a.medium[k]);
   }
   return count;
 }
@@ -465,7 +343,7 @@ void VL_HOT(vl_volume_tracer)(vlTracing *t) {
   for (uint32_t i = 0; i < n; i++) {
     for (int c = 0; c < 4; c++) rows->u[c][i] = rows->l[c][i] = 1.0f;
     rows->medium[i] = t->world->camera_medium;
-    if (is_rgb(t)) s->a.beta[3][i] = 0.0f;
+    if (vl_volume_rgb(t)) s->a.beta[3][i] = 0.0f;
   }
   for (uint32_t depth = 0; n > 0; depth++) {
     travel(t, n, depth);

@@ -6,24 +6,18 @@
 #include <strings.h>
 
 #include "commands.h"
+#include "header.h"
 #include "image.h"
 #include "report.h"
 
-const Choice dialect_choices[] = {{"velo", VL_CAMERA_DIALECT_VELO},
-                                  {"opencv", VL_CAMERA_DIALECT_OPENCV},
-                                  {"ros", VL_CAMERA_DIALECT_ROS},
-                                  {"colmap", VL_CAMERA_DIALECT_COLMAP},
-                                  {"nerf", VL_CAMERA_DIALECT_NERF},
-                                  {"kalibr", VL_CAMERA_DIALECT_KALIBR},
-                                  {"blender", VL_CAMERA_DIALECT_BLENDER},
-                                  {"gltf", VL_CAMERA_DIALECT_GLTF},
-                                  {"mitsuba", VL_CAMERA_DIALECT_MITSUBA},
-                                  {"opengl", VL_CAMERA_DIALECT_OPENGL},
-                                  {"vulkan", VL_CAMERA_DIALECT_VULKAN},
-                                  {"d3d", VL_CAMERA_DIALECT_D3D},
-                                  {"usd", VL_CAMERA_DIALECT_USD},
-                                  {"pbrt", VL_CAMERA_DIALECT_PBRT},
-                                  {NULL, 0}};
+const Choice dialect_choices[] = {{"velo", VL_CAMERA_DIALECT_VELO},       {"opencv", VL_CAMERA_DIALECT_OPENCV},
+                                  {"ros", VL_CAMERA_DIALECT_ROS},         {"colmap", VL_CAMERA_DIALECT_COLMAP},
+                                  {"nerf", VL_CAMERA_DIALECT_NERF},       {"kalibr", VL_CAMERA_DIALECT_KALIBR},
+                                  {"blender", VL_CAMERA_DIALECT_BLENDER}, {"gltf", VL_CAMERA_DIALECT_GLTF},
+                                  {"mitsuba", VL_CAMERA_DIALECT_MITSUBA}, {"opengl", VL_CAMERA_DIALECT_OPENGL},
+                                  {"vulkan", VL_CAMERA_DIALECT_VULKAN},   {"d3d", VL_CAMERA_DIALECT_D3D},
+                                  {"usd", VL_CAMERA_DIALECT_USD},         {"pbrt", VL_CAMERA_DIALECT_PBRT},
+                                  {"exr", VL_CAMERA_DIALECT_EXR},         {NULL, 0}};
 
 static bool ends_with(const char *text, const char *suffix) {
   size_t n = strlen(text), m = strlen(suffix);
@@ -46,11 +40,31 @@ static int load_scene_camera(vlContext *context, const char *path, vlCameraRecor
     record->camera.width = from->width;
     record->camera.height = from->height;
   }
+  int status = result == VL_OK ? -1 : report_error(&error, result, path);
+  /* what a camera only points at goes with its scene */
+  if (status < 0 && record->camera.lens.optics)
+    status = report_failure(STATUS_SCENE, "%s: a lens of many elements is a camera of its scene alone", path);
+  if (status < 0 && record->camera.lens.aperture) {
+    report_note("%s: the picture of the lens's opening is left out", path);
+    record->camera.lens.aperture = NULL;
+  }
   vl_scene_destroy(scene);
-  return result == VL_OK ? -1 : report_error(&error, result, path);
+  return status;
+}
+
+/* The camera in the header of a picture that velo rendered. */
+static int load_picture_camera(vlContext *context, const char *path, vlCameraRecord *record) {
+  vlImage *image = NULL;
+  *record = (vlCameraRecord){.dialect = VL_CAMERA_DIALECT_EXR, .frames = 1};
+  int status = image_load(context, path, &image);
+  if (status < 0) status = header_camera_def(image, path, &record->camera);
+  vl_image_destroy(image);
+  return status;
 }
 
 int camera_load(vlContext *context, const char *path, int dialect, const char *frame, vlCameraRecord *record) {
+  if (dialect == VL_CAMERA_DIALECT_EXR || (!dialect && ends_with(path, ".exr")))
+    return load_picture_camera(context, path, record);
   if (dialect == VL_CAMERA_DIALECT_PBRT || (!dialect && camera_is_scene(path)))
     return load_scene_camera(context, path, record);
   vlError error = {0};
@@ -59,6 +73,8 @@ int camera_load(vlContext *context, const char *path, int dialect, const char *f
   def.frame = frame;
   vlResult result = vl_camera_read(context, path, &def, record, &error);
   if (result != VL_OK) return report_error(&error, result, path);
+  if (record->size_assumed)
+    report_note("%s: names no picture size; %u x %u is taken", path, record->camera.width, record->camera.height);
   if (record->frames > 1 && !frame)
     report_note("%s: the first of %u cameras is taken (%s)", path, record->frames,
                 record->name[0] ? record->name : "no name");

@@ -52,36 +52,73 @@ static bool read_model(const vlImage *image, const char *projection, vlCameraDef
   return true;
 }
 
-int header_camera(const vlImage *image, const char *path, vlCamera *camera, uint32_t *x0, uint32_t *y0) {
-  double whole[4] = {0, 0, vl_image_width(image) - 1.0, vl_image_height(image) - 1.0}, data[4];
-  memcpy(data, whole, sizeof data);
+/* The whole picture, and the window of it that the file holds, corner pixels inclusive. */
+static int windows(const vlImage *image, const char *path, double whole[4], double data[4]) {
+  const double all[4] = {0, 0, vl_image_width(image) - 1.0, vl_image_height(image) - 1.0};
+  memcpy(whole, all, sizeof all);
+  memcpy(data, all, sizeof all);
   if (!window(image, "originalDataWindow", whole)) window(image, "displayWindow", whole);
   window(image, "dataWindow", data);
   if (whole[0] != 0 || whole[1] != 0 || data[0] < 0 || data[1] < 0 || data[2] > whole[2] || data[3] > whole[3])
     return report_failure(STATUS_SCENE, "%s: its windows are not those of a picture that velo rendered", path);
-  vlCameraDef def = vl_default_camera_def((uint32_t)whole[2] + 1, (uint32_t)whole[3] + 1);
+  return -1;
+}
+
+/* Projection and pose. */
+static int read_def(const vlImage *image, const char *path, const double whole[4], vlCameraDef *def) {
+  *def = vl_default_camera_def((uint32_t)whole[2] + 1, (uint32_t)whole[3] + 1);
   vlAttribute matrix, projection;
   bool found =
-      number(image, "velo.fx", &def.fx) && number(image, "velo.fy", &def.fy) && number(image, "velo.skew", &def.skew) &&
-      number(image, "velo.cx", &def.cx) && number(image, "velo.cy", &def.cy) &&
-      vl_image_find_attribute(image, "velo.worldFromCamera", &matrix) == VL_OK && matrix.type == VL_ATTRIBUTE_M44D &&
-      vl_image_find_attribute(image, "velo.projection", &projection) == VL_OK &&
+      number(image, "velo.fx", &def->fx) && number(image, "velo.fy", &def->fy) &&
+      number(image, "velo.skew", &def->skew) && number(image, "velo.cx", &def->cx) &&
+      number(image, "velo.cy", &def->cy) && vl_image_find_attribute(image, "velo.worldFromCamera", &matrix) == VL_OK &&
+      matrix.type == VL_ATTRIBUTE_M44D && vl_image_find_attribute(image, "velo.projection", &projection) == VL_OK &&
       projection.type == VL_ATTRIBUTE_STRING && projection.string;
   if (!found) return report_failure(STATUS_SCENE, "%s: has no camera in its header", path);
-  if (!read_model(image, projection.string, &def))
+  if (!read_model(image, projection.string, def))
     return report_failure(STATUS_SCENE, "%s: the camera in its header is of a kind that is not known", path);
-  def.has_matrix = true; /* OpenEXR's matrices act on rows */
+  def->has_matrix = true; /* OpenEXR's matrices act on rows */
   for (int row = 0; row < 4; row++)
     for (int column = 0; column < 4; column++)
-      def.world_from_camera[4 * row + column] = matrix.numbers[4 * column + row];
+      def->world_from_camera[4 * row + column] = matrix.numbers[4 * column + row];
+  return -1;
+}
+
+int header_camera(const vlImage *image, const char *path, vlCamera *camera, uint32_t *x0, uint32_t *y0) {
+  double whole[4], data[4], limit;
+  vlCameraDef def;
+  int status = windows(image, path, whole, data);
+  if (status < 0) status = read_def(image, path, whole, &def);
+  if (status >= 0) return status;
   vlError error = {0};
   vlResult result = vl_camera_make(&def, camera, NULL, &error);
   if (result != VL_OK)
     return report_failure(STATUS_SCENE, "%s: the camera in its header is wrong: %s", path, error.message);
-  double limit;
   if (number(image, "velo.limit", &limit)) camera->limit = limit;
   number(image, "velo.eyeCircle", &camera->eye_circle);
   *x0 = (uint32_t)data[0];
   *y0 = (uint32_t)data[1];
+  return -1;
+}
+
+static void single(const vlImage *image, const char *name, vlAttributeType type, double *values, int count) {
+  vlAttribute a;
+  if (vl_image_find_attribute(image, name, &a) == VL_OK && a.type == type)
+    memcpy(values, a.numbers, (size_t)count * sizeof *values);
+}
+
+int header_camera_def(const vlImage *image, const char *path, vlCameraDef *def) {
+  double whole[4], data[4], shutter[2], circle = 0.0;
+  int status = windows(image, path, whole, data);
+  if (status < 0) status = read_def(image, path, whole, def);
+  if (status >= 0) return status;
+  if (number(image, "velo.eyeCircle", &circle) && circle != 0.0)
+    return report_failure(STATUS_SCENE, "%s: one eye of an omnidirectional picture is no camera of its own", path);
+  shutter[0] = def->shutter_open, shutter[1] = def->shutter_close;
+  single(image, "velo.lensRadius", VL_ATTRIBUTE_FLOAT, &def->lens_radius, 1);
+  single(image, "focus", VL_ATTRIBUTE_FLOAT, &def->focus_distance, 1);
+  single(image, "velo.shutter", VL_ATTRIBUTE_V2F, shutter, 2);
+  single(image, "velo.exposureTime", VL_ATTRIBUTE_FLOAT, &def->exposure_time, 1);
+  def->shutter_open = shutter[0], def->shutter_close = shutter[1];
   return -1;
 }

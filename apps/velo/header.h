@@ -7,4 +7,8 @@
 /* -1, or the exit code when all has been said. x0, y0: the picture's first pixel in the whole picture (crops). */
 int header_camera(const vlImage *image, const char *path, vlCamera *camera, uint32_t *x0, uint32_t *y0);
 
+/* The whole picture's camera as a def, with lens radius, focus, shutter times and exposure; the opening's shape, tilt,
+ * the shutter's curve, motion and the clipping planes are not in headers. */
+int header_camera_def(const vlImage *image, const char *path, vlCameraDef *def);
+
 #endif

@@ -26,6 +26,7 @@ typedef enum vlCameraDialect {
   VL_CAMERA_DIALECT_D3D,
   VL_CAMERA_DIALECT_MITSUBA, /* a sensor in Mitsuba 3's XML */
   VL_CAMERA_DIALECT_USD,     /* a Camera in USD's text form, .usda */
+  VL_CAMERA_DIALECT_EXR,     /* the header of a picture that the program velo rendered; read by that program alone */
   VL_CAMERA_DIALECT_COUNT
 } vlCameraDialect;
 

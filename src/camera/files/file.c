@@ -30,6 +30,7 @@ static const Dialect dialects[VL_CAMERA_DIALECT_COUNT] = {
     [VL_CAMERA_DIALECT_VULKAN] = {"vulkan", vl_camera_read_matrices, vl_camera_write_matrices},
     [VL_CAMERA_DIALECT_D3D] = {"d3d", vl_camera_read_matrices, vl_camera_write_matrices},
     [VL_CAMERA_DIALECT_MITSUBA] = {"mitsuba", NULL, vl_camera_write_mitsuba, vl_camera_read_mitsuba},
+    [VL_CAMERA_DIALECT_EXR] = {"exr", NULL, NULL},
     [VL_CAMERA_DIALECT_USD] = {"usd", NULL, vl_camera_write_usd, vl_camera_read_usd},
 };
 
@@ -171,6 +172,8 @@ vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFile
   vlResult result = begin(context, path, &def, &standard, error);
   if (result != VL_OK) return result;
   if (!record) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: null argument");
+  if (def->dialect == VL_CAMERA_DIALECT_EXR)
+    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: pictures are read by vl_image_read");
   if (def->dialect == VL_CAMERA_DIALECT_PBRT)
     return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: pbrt scenes are read as scenes");
   vlCameraFile file = {context, path, dialects[def->dialect].name, def, error};
@@ -208,6 +211,8 @@ vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFil
   if (!dialect)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: the name \"%.200s\" does not say which dialect to write",
                    path);
+  if (dialect == VL_CAMERA_DIALECT_EXR)
+    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: a picture's header is written with its picture");
   vlCameraFile file = {context, path, dialects[dialect].name, def, error};
   if (dialect == VL_CAMERA_DIALECT_COLMAP) return vl_camera_write_colmap(&file, record);
   vlCameraText text = {.context = context};

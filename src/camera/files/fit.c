@@ -33,6 +33,16 @@ static bool is_rigid(const double m[16]) {
   return vl_mat4_determinant3(vl_mat4_load(m)) > 0.0;
 }
 
+/* The same view, its picture left for right: the x axis the other way. Left-handed worlds, pbrt's, need it. */
+static void unmirror(vlCamera *c) {
+  for (int i = 0; i < 4; i++) {
+    c->world_from_camera[4 * i] = 0.0 - c->world_from_camera[4 * i];
+    c->camera_from_world[i] = 0.0 - c->camera_from_world[i];
+  }
+  c->cx = c->width - c->cx;
+  c->skew = 0.0 - c->skew;
+}
+
 vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, vlCamera *camera) {
   const vlCameraDef *d = &record->camera;
   vlResult result = vl_camera_make(d, camera, NULL, file->error);
@@ -67,7 +77,13 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, u
   for (size_t i = 0; i < sizeof fields / sizeof fields[0] && result == VL_OK; i++)
     result = vl_camera_refuse(file, fields[i].field, fields[i].present);
   if (result != VL_OK) return result;
-  if (posed && !(holds & VL_HOLDS_SCALE) && !is_rigid(camera->world_from_camera))
+  bool strict = posed && !(holds & VL_HOLDS_SCALE);
+  if (strict && vl_mat4_determinant3(vl_mat4_load(camera->world_from_camera)) < 0.0 && camera->distortion.steps == 0) {
+    result = vl_camera_refuse(file, "mirror", true);
+    if (result != VL_OK) return result;
+    unmirror(camera);
+  }
+  if (strict && !is_rigid(camera->world_from_camera))
     return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
                       "%s cannot hold a pose that scales or mirrors", file->dialect);
   if (vl_camera_drops(file, "skew")) camera->skew = 0.0;

@@ -94,7 +94,10 @@ static bool list(Parser *p, int depth, char close, json_t **result) {
     json_t *item = NULL;
     if (p->at >= p->end) fail(p, "a list has no end");
     if (p->result == VL_OK && depth == 0) fail(p, "lists are nested too deeply");
-    if (p->result != VL_OK || !value(p, depth - 1, items ? &item : NULL)) break;
+    if (p->result != VL_OK || !value(p, depth - 1, items ? &item : NULL)) {
+      json_decref(item);
+      break;
+    }
     if (item && json_array_size(items) < MAX_NUMBERS)
       json_array_append_new(items, item);
     else

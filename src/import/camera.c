@@ -209,7 +209,14 @@ static bool read_model(vlDict *dict, vlCameraDef *def, Kind kind) {
     }
     case EQUAL_AREA: def->projection = VL_PROJECTION_EQUAL_AREA; break;
     case CYLINDRICAL: def->projection = VL_PROJECTION_CYLINDRICAL; break;
-    case CUBE: def->projection = VL_PROJECTION_CUBE; break;
+    case CUBE: {
+      static const char *const layouts[] = {"row", "cross"};
+      int layout = 0;
+      def->projection = VL_PROJECTION_CUBE;
+      vl_dict_choice(dict, "layout", layouts, 2, &layout);
+      def->shape[0] = layout;
+      break;
+    }
     case PANINI:
       def->projection = VL_PROJECTION_PANINI;
       vl_dict_double(dict, "panini", &def->shape[0]);
@@ -265,6 +272,19 @@ static bool read_model(vlDict *dict, vlCameraDef *def, Kind kind) {
   return dict->import->scene->error.code == VL_OK;
 }
 
+/* Two eyes: the render makes both of this camera, or the one that is said. */
+static void read_stereo(vlDict *dict, vlCameraDef *def) {
+  static const char *const modes[] = {"none", "parallel", "off-axis", "toe-in", "omnidirectional"};
+  static const char *const eyes[] = {"both", "left", "right"};
+  int mode = VL_STEREO_NONE, eye = VL_EYE_BOTH;
+  vl_dict_choice(dict, "stereo", modes, 5, &mode);
+  vl_dict_choice(dict, "stereoeye", eyes, 3, &eye);
+  vl_dict_double(dict, "interocular", &def->stereo.interocular);
+  vl_dict_double(dict, "convergence", &def->stereo.convergence);
+  def->stereo.mode = (vlStereoMode)mode;
+  def->stereo_eye = (vlEye)eye;
+}
+
 /* The lecture's camera: eye, lookat, up, roll; d, zoom, s or a field of view; exposure time. Its world is right-handed.
  */
 static bool read_lecture(vlDict *dict, vlCameraDef *def, Kind kind) {
@@ -295,6 +315,7 @@ static bool read_lecture(vlDict *dict, vlCameraDef *def, Kind kind) {
   vl_dict_double(dict, "exposuretime", &def->exposure_time);
   vl_dict_double(dict, "near", &def->near_plane);
   vl_dict_double(dict, "far", &def->far_plane);
+  read_stereo(dict, def);
   if (kind >= FISHEYE && !read_model(dict, def, kind)) return false;
   if (kind != PINHOLE && !vl_import_lens(dict, def)) return false;
   vl_dict_bool(dict, "vignetting", &def->lens.vignetting);

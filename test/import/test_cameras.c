@@ -96,6 +96,21 @@ static void kinds(void **state) {
   }
 }
 
+static void stereo_and_the_cross(void **state) {
+  (void)state;
+  Loaded l;
+  load_fine(&l, FILM
+            "Camera \"pinhole\" \"string stereo\" \"off-axis\" \"float interocular\" 0.2 \"float convergence\" 4 "
+            "\"string stereoeye\" \"left\"\n" W);
+  const vlCameraDef *def = &vl_scene_settings(l.scene)->camera;
+  assert_true(def->stereo.mode == VL_STEREO_OFF_AXIS && def->stereo_eye == VL_EYE_LEFT);
+  assert_true(def->stereo.interocular == (double)0.2f || def->stereo.interocular == 0.2);
+  assert_true(def->stereo.convergence == 4);
+  end_load(&l);
+  vlCamera c = camera_of(&l, FILM "Camera \"cube\" \"string layout\" \"cross\"\n" W);
+  assert_true(c.shape[0] == 1 && fabs(c.fx - c.width / 4.0) < 1e-9 && fabs(c.fy - c.height / 3.0) < 1e-9);
+}
+
 static void warnings_and_errors(void **state) {
   (void)state;
   Loaded l;
@@ -132,6 +147,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(pbrt_spherical),
       cmocka_unit_test(kinds),
+      cmocka_unit_test(stereo_and_the_cross),
       cmocka_unit_test(warnings_and_errors),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

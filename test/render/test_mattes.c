@@ -1,0 +1,369 @@
+/* Cryptomatte, the modes that choose among the picture's samples, standard errors: they agree with the picture, with
+ * each other and with what is known of simple scenes, and their bits hang on nothing else. */
+#include "render/shots.h"
+
+#include "failing_allocator.h"
+
+typedef struct Truth {
+  vlWorld *world;
+  vlCamera camera;
+  vlFilm *film;
+  vlImage *picture, *floats, *ids;
+} Truth;
+
+static const uint32_t MATTES = VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
+
+static Truth truth_take(Stage *s, uint32_t channels, vlChannelMode mode) {
+  Truth t;
+  memset(&t, 0, sizeof t);
+  vlError error = {0};
+  if (vl_world_build(s->scene, &s->build, &t.world, &error) != VL_OK) fail_msg("build: %s", error.message);
+  if (vl_camera_make(&s->camera, &t.camera, NULL, &error) != VL_OK) fail_msg("camera: %s", error.message);
+  s->film.errors = (channels & VL_CHANNEL_ERROR) != 0;
+  assert_int_equal(vl_film_create(s->context, &s->film, &t.film), VL_OK);
+  if (vl_render(t.world, &t.camera, t.film, &s->render, NULL, &error) != VL_OK) fail_msg("render: %s", error.message);
+  assert_int_equal(vl_film_develop(t.film, NULL, &t.picture), VL_OK);
+  vlChannelsDef def = vl_default_channels_def(s->camera.width, s->camera.height);
+  memcpy(def.crop, s->film.crop, sizeof def.crop);
+  def.channels = channels;
+  def.mode = mode;
+  def.film = t.film;
+  def.render = &s->render;
+  if (vl_render_channels(t.world, &t.camera, &def, &t.floats, &t.ids, &error) != VL_OK)
+    fail_msg("channels: %s", error.message);
+  return t;
+}
+
+static void truth_free(Truth *t) {
+  vl_image_destroy(t->picture);
+  vl_image_destroy(t->floats);
+  vl_image_destroy(t->ids);
+  vl_film_destroy(t->film);
+  vl_world_destroy(t->world);
+}
+
+static const float *place(const Truth *t, uint32_t x, uint32_t y, const char *name) {
+  int channel = vl_image_find_channel(t->floats, name);
+  assert_true(channel >= 0);
+  return (const float *)vl_image_const_pixels(t->floats) +
+         ((size_t)y * vl_image_width(t->floats) + x) * vl_image_channels(t->floats) + channel;
+}
+static uint32_t id(const Truth *t, uint32_t x, uint32_t y, const char *name) {
+  int channel = vl_image_find_channel(t->ids, name);
+  assert_true(channel >= 0);
+  const uint32_t *pixels = vl_image_const_pixels(t->ids);
+  return pixels[((size_t)y * vl_image_width(t->ids) + x) * vl_image_channels(t->ids) + (size_t)channel];
+}
+
+/* Two half planes at different depths whose border leans across the pixels, an instanced ball, a lens. */
+static void fill(Stage *s) {
+  Quad left = quad_at(-5, 0, -6, 5, 0.4f, 0, -0.3f, 8, 0), right = quad_at(5, 1, -8, 5, 0, 0, 0, 3, 0);
+  left.material = add_diffuse(s, 0.8f, 0.2f, 0.2f);
+  right.material = add_diffuse(s, 0.2f, 0.8f, 0.2f);
+  add_quad(s, &left);
+  add_quad(s, &right);
+  vlGroupId group = vl_scene_add_group(s->scene, "ball");
+  vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
+  ball.radius = 0.7f, ball.z_min = -0.7f, ball.z_max = 0.7f;
+  ball.group = group;
+  vl_scene_add_shape(s->scene, &ball);
+  for (int i = 0; i < 2; i++) {
+    double m[16];
+    set_matrix(m, 1, 0, 0, -1 + 2 * i, 0, 1, 0, -0.5, 0, 0, 1, -4);
+    vl_scene_add_instance(s->scene, group, m, (vlSource){0});
+  }
+  vlLightDef light = vl_default_light_def(VL_LIGHT_INFINITE);
+  vl_scene_add_light(s->scene, &light);
+  s->camera.lens_radius = 0.1, s->camera.focus_distance = 5;
+  s->render.spp = 13;
+  s->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
+}
+
+static void test_hash(void **state) {
+  (void)state;
+  /* published values of MurmurHash3_x86_32, seed 0 */
+  assert_int_equal(vl_cryptomatte_hash("hello"), 0x248bfa47);
+  assert_int_equal(vl_cryptomatte_hash("hello, world"), 0x149bbb7f);
+  assert_int_equal(vl_cryptomatte_hash("The quick brown fox jumps over the lazy dog"), 0x2e4ff723);
+  assert_int_equal(vl_cryptomatte_hash(""), 0x00800000); /* 0 would be a float that means nobody */
+  for (int i = 0; i < 5000; i++) {
+    char name[16];
+    snprintf(name, sizeof name, "name %d", i);
+    uint32_t bits = vl_cryptomatte_hash(name);
+    float f;
+    memcpy(&f, &bits, sizeof f);
+    assert_true(isnormal(f));
+  }
+}
+
+/* Coverages are the picture's alpha to the last bit but rounding; ids are those of the manifest. */
+static void test_agrees_with_the_picture(void **state) {
+  (void)state;
+  Stage s = stage_open(49, 37);
+  fill(&s);
+  Truth t = truth_take(&s, MATTES, VL_CHANNEL_MODE_CENTRE);
+  uint32_t shared = 0;
+  for (uint32_t y = 0; y < 37; y++)
+    for (uint32_t x = 0; x < 49; x++) {
+      double object = 0, material = 0, instance = 0, alpha = vl_image_get(t.picture, x, y, 3);
+      for (int rank = 0; rank < 6; rank++) {
+        char name[32];
+        const char part = rank % 2 ? 'A' : 'G';
+        snprintf(name, sizeof name, "CryptoObject%02d.%c", rank / 2, part);
+        object += *place(&t, x, y, name);
+        shared += rank == 1 && *place(&t, x, y, name) > 0;
+        snprintf(name, sizeof name, "CryptoMaterial%02d.%c", rank / 2, part);
+        material += *place(&t, x, y, name);
+        snprintf(name, sizeof name, "CryptoInstance%02d.%c", rank / 2, part);
+        instance += *place(&t, x, y, name);
+      }
+      assert_near("objects", object, alpha, 2e-7);
+      assert_near("materials", material, alpha, 2e-7);
+      assert_true(instance <= object + 2e-7);
+    }
+  assert_true(shared > 30);
+  vlAttribute a;
+  char key[64];
+  snprintf(key, sizeof key, "cryptomatte/%07x/manifest", vl_cryptomatte_hash("CryptoInstance") >> 4);
+  assert_int_equal(vl_image_find_attribute(t.floats, key, &a), VL_OK);
+  char expected[100];
+  snprintf(expected, sizeof expected, "{\"ball.1\":\"%08x\",\"ball.2\":\"%08x\"}", vl_cryptomatte_hash("ball.1"),
+           vl_cryptomatte_hash("ball.2"));
+  assert_string_equal(a.string, expected);
+  truth_free(&t);
+  stage_close(&s);
+}
+
+/* A filter with negative lobes: shares of a whole all the same. */
+static void test_negative_lobes(void **state) {
+  (void)state;
+  Stage s = stage_open(33, 25);
+  fill(&s);
+  s.film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_MITCHELL);
+  Truth t = truth_take(&s, MATTES | VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
+  for (uint32_t y = 0; y < 25; y++)
+    for (uint32_t x = 0; x < 33; x++) {
+      double sum = 0;
+      for (int rank = 0; rank < 6; rank++) {
+        char name[32];
+        snprintf(name, sizeof name, "CryptoObject%02d.%c", rank / 2, rank % 2 ? 'A' : 'G');
+        assert_true(*place(&t, x, y, name) >= 0);
+        sum += *place(&t, x, y, name);
+      }
+      assert_true(sum <= 1 + 1e-6);
+    }
+  truth_free(&t);
+  stage_close(&s);
+}
+
+/* The chosen samples: nearest is never farther than the centre's neighbours say; the covering one is Cryptomatte's
+ * first rank where no lens and no instance is in play. */
+static void test_modes(void **state) {
+  (void)state;
+  Stage s = stage_open(41, 31);
+  fill(&s);
+  s.camera.lens_radius = 0;
+  uint32_t channels = VL_CHANNEL_ALL | VL_CHANNEL_CRYPTO_OBJECT;
+  Truth most = truth_take(&s, channels, VL_CHANNEL_MODE_COVERAGE);
+  Truth near = truth_take(&s, channels, VL_CHANNEL_MODE_NEAREST);
+  uint32_t moved = 0, differ = 0;
+  for (uint32_t y = 0; y < 31; y++)
+    for (uint32_t x = 0; x < 41; x++) {
+      const Truth *both[2] = {&most, &near};
+      for (int k = 0; k < 2; k++) { /* everything is of one ray through one point */
+        const float *film = place(both[k], x, y, "film.X"), *p = place(both[k], x, y, "P.X");
+        double o[3], d[3], pixel[2], z, point[3] = {p[0], p[1], p[2]};
+        assert_true(fabsf(film[0] - 0.5f) <= 1.5f && fabsf(film[1] - 0.5f) <= 1.5f);
+        moved += film[0] != 0.5f;
+        assert_true(vl_camera_unproject(&both[k]->camera, x + (double)film[0], y + (double)film[1], o, d));
+        for (int i = 0; i < 3; i++) assert_near("ray", place(both[k], x, y, "ray.X")[i], d[i], 1e-7);
+        if (!id(both[k], x, y, "id.object")) continue;
+        assert_true(vl_camera_project(&both[k]->camera, point, pixel, &z));
+        assert_near("x", pixel[0], x + (double)film[0], 1e-4);
+        assert_near("y", pixel[1], y + (double)film[1], 1e-4);
+      }
+      assert_true(*place(&near, x, y, "Z") <= *place(&most, x, y, "Z") * (1 + 1e-6f));
+      differ += id(&near, x, y, "id.object") != id(&most, x, y, "id.object");
+      uint32_t object = id(&most, x, y, "id.object"), first;
+      memcpy(&first, place(&most, x, y, "CryptoObject00.R"), sizeof first);
+      bool alone = *place(&most, x, y, "CryptoObject00.G") > 0.51f;
+      char name[32];
+      snprintf(name, sizeof name, "%s.%u", object == 3 ? "sphere" : "triangles", object);
+      if (alone && object != 3) assert_int_equal(first, object ? vl_cryptomatte_hash(name) : 0);
+    }
+  assert_true(moved > 1000 && differ > 5);
+  truth_free(&most);
+  truth_free(&near);
+  stage_close(&s);
+}
+
+/* Of independent samples: the errors that are predicted are those that happen. A surface of one light has none. */
+static void test_standard_error(void **state) {
+  (void)state;
+  for (int filter = 0; filter < 2; filter++) {
+    Stage s = stage_open(64, 64);
+    Quad glow = quad_at(0, 0, -2, 3, 0, 0, 0, 3, 0), ceiling = quad_at(0, 2, -2, 1, 0, 0, 0, 0, 1);
+    glow.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
+    ceiling.emission = add_glow(&s, 3, true);
+    add_quad(&s, &glow);
+    add_quad(&s, &ceiling);
+    s.camera.eye[2] = 1.5, s.camera.lookat[2] = 0;
+    s.render.sampler = VL_SAMPLER_INDEPENDENT;
+    s.film.filter = vl_default_pixel_filter(filter ? VL_PIXEL_FILTER_MITCHELL : VL_PIXEL_FILTER_BOX);
+    s.render.spp = 32;
+    Truth few = truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
+    s.render.spp = 512, s.render.seed = 5;
+    Truth many = truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
+    double inside = 0, count = 0;
+    for (uint32_t y = 0; y < 64; y++)
+      for (uint32_t x = 0; x < 64; x++) {
+        double e = *place(&few, x, y, "error.G"), f = *place(&many, x, y, "error.G");
+        double off = vl_image_get(few.picture, x, y, 1) - vl_image_get(many.picture, x, y, 1);
+        assert_true(e >= 0 && e < 1e6);
+        if (e == 0) continue;
+        inside += off * off < 0.6745 * 0.6745 * (e * e + f * f), count++; /* half of a normal distribution */
+      }
+    assert_true(count > 3000);
+    assert_near("share inside the quartiles", inside / count, 0.5, 0.05);
+    truth_free(&few);
+    truth_free(&many);
+    stage_close(&s);
+  }
+  Stage s = stage_open(8, 8);
+  Quad wall = quad_at(0, 0, -1, 9, 0, 0, 0, 9, 0);
+  wall.emission = add_glow(&s, 2, true);
+  add_quad(&s, &wall);
+  s.build.color = VL_COLOR_RGB;
+  s.render.max_depth = 0;
+  s.render.spp = 1;
+  Truth t = truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
+  assert_true(isinf(*place(&t, 3, 3, "error.R")));
+  truth_free(&t);
+  s.render.spp = 9;
+  t = truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
+  assert_true(*place(&t, 3, 3, "error.R") == 0.0f);
+  truth_free(&t);
+  stage_close(&s);
+}
+
+static void same_bits(const vlImage *a, const vlImage *b, uint32_t dx, uint32_t dy) {
+  uint32_t step = vl_image_channels(a);
+  assert_int_equal(step, vl_image_channels(b));
+  const uint32_t *p = vl_image_const_pixels(a), *q = vl_image_const_pixels(b);
+  for (uint32_t y = 0; y < vl_image_height(b); y++)
+    for (uint32_t x = 0; x < vl_image_width(b); x++)
+      assert_memory_equal(p + ((size_t)(y + dy) * vl_image_width(a) + x + dx) * step,
+                          q + ((size_t)y * vl_image_width(b) + x) * step, step * sizeof *p);
+}
+
+static void test_same_bits(void **state) {
+  (void)state;
+  uint32_t channels = VL_CHANNEL_ALL | MATTES | VL_CHANNEL_ERROR;
+  for (int mode = VL_CHANNEL_MODE_NEAREST; mode <= VL_CHANNEL_MODE_COVERAGE; mode++) {
+    Stage s = stage_open(45, 35);
+    fill(&s);
+    Truth whole = truth_take(&s, channels, (vlChannelMode)mode);
+    const uint32_t crop[4] = {7, 3, 41, 34}, all[4] = {0, 0, 45, 35};
+    memcpy(s.film.crop, crop, sizeof crop);
+    Truth part = truth_take(&s, channels, (vlChannelMode)mode);
+    same_bits(whole.floats, part.floats, 7, 3);
+    same_bits(whole.ids, part.ids, 7, 3);
+    memcpy(s.film.crop, all, sizeof all);
+    for (int isa = VL_ISA_V2; isa <= VL_ISA_V4; isa++) {
+      Stage other = s;
+      vlContextDef def = vl_default_context_def();
+      def.threads = isa == VL_ISA_V2 ? 1 : 3;
+      def.isa = (vlIsa)isa;
+      vlResult made = vl_context_create(&def, &other.context);
+      if (made == VL_ERROR_UNSUPPORTED) continue; /* this machine does not have it */
+      assert_int_equal(vl_scene_create(other.context, &other.scene), VL_OK);
+      fill(&other);
+      Truth t = truth_take(&other, channels, (vlChannelMode)mode);
+      same_bits(whole.floats, t.floats, 0, 0);
+      same_bits(whole.ids, t.ids, 0, 0);
+      truth_free(&t);
+      stage_close(&other);
+    }
+    truth_free(&part);
+    truth_free(&whole);
+    stage_close(&s);
+  }
+}
+
+static void test_wrong_arguments(void **state) {
+  (void)state;
+  Stage s = stage_open(16, 8);
+  fill(&s);
+  Truth t = truth_take(&s, MATTES, VL_CHANNEL_MODE_CENTRE);
+  vlImage *floats = NULL, *ids = NULL;
+  vlError error;
+  vlChannelsDef def = vl_default_channels_def(16, 8);
+  def.channels = VL_CHANNEL_CRYPTO_OBJECT;
+  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error), VL_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.message, "film"));
+  def.film = t.film, def.render = &s.render;
+  def.ranks = 7;
+  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error), VL_ERROR_ARGUMENT);
+  def.ranks = 6, def.channels = VL_CHANNEL_ERROR; /* the film was not made for it */
+  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error), VL_ERROR_ARGUMENT);
+  vlImage *image;
+  assert_int_equal(vl_film_errors(t.film, NULL, &image), VL_ERROR_ARGUMENT);
+  def.channels = VL_CHANNEL_FORWARD;
+  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error), VL_ERROR_ARGUMENT);
+  def.channels = VL_CHANNEL_Z, def.mode = (vlChannelMode)3;
+  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error), VL_ERROR_ARGUMENT);
+  truth_free(&t);
+  stage_close(&s);
+}
+
+static void test_out_of_memory(void **state) {
+  (void)state;
+  bool done = false;
+  for (long n = 1; !done; n++) {
+    failAllocator allocator = {.fail_at = 0};
+    vlContextDef context_def = vl_default_context_def();
+    context_def.threads = 2;
+    context_def.allocator = fail_allocator(&allocator);
+    Stage s = stage_open(16, 8);
+    vlContext *usual = s.context;
+    vl_scene_destroy(s.scene);
+    assert_int_equal(vl_context_create(&context_def, &s.context), VL_OK);
+    assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
+    fill(&s);
+    Truth t = truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
+    vlChannelsDef def = vl_default_channels_def(16, 8);
+    def.channels = VL_CHANNEL_ALL | MATTES | VL_CHANNEL_ERROR | VL_CHANNEL_FORWARD;
+    def.mode = VL_CHANNEL_MODE_COVERAGE;
+    def.film = t.film, def.render = &s.render, def.forward = &t.camera;
+    vlImage *floats, *ids;
+    vlIdBox objects[8], instances[8];
+    vlBoxesDef boxes = vl_default_boxes_def(16, 8);
+    allocator.fail_at = atomic_load(&allocator.calls) + n;
+    vlResult result = vl_render_channels(t.world, &t.camera, &def, &floats, &ids, NULL);
+    if (result == VL_OK) result = vl_world_boxes(t.world, &t.camera, &boxes, objects, instances, NULL);
+    done = !atomic_load(&allocator.refused);
+    assert_int_equal(result, done ? VL_OK : VL_ERROR_MEMORY);
+    vl_image_destroy(floats);
+    vl_image_destroy(ids);
+    truth_free(&t);
+    vl_scene_destroy(s.scene);
+    vl_context_destroy(s.context);
+    assert_int_equal(atomic_load(&allocator.blocks), 0);
+    vl_context_destroy(usual);
+    assert_true(n < 1000);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_hash),
+      cmocka_unit_test(test_agrees_with_the_picture),
+      cmocka_unit_test(test_negative_lobes),
+      cmocka_unit_test(test_modes),
+      cmocka_unit_test(test_standard_error),
+      cmocka_unit_test(test_same_bits),
+      cmocka_unit_test(test_wrong_arguments),
+      cmocka_unit_test(test_out_of_memory),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -107,11 +107,34 @@ static void set_stereo(Header *header, const vlCamera *c, const vlStereo *stereo
   if (c->eye_circle != 0) set_double(header, "velo.eyeCircle", c->eye_circle);
 }
 
+/* The motion, where there is one: the matrices above hold the camera in the middle of the shutter's time, as the ground
+ * truth sees it. */
+static void set_motion(Header *header, const vlCamera *c) {
+  static const char *const directions[] = {"down", "up", "right", "left"};
+  if (c->moves) {
+    set_matrix(header, "velo.worldFromCameraOpen", VL_ATTRIBUTE_M44D, c->world_from_camera);
+    set_matrix(header, "velo.worldFromCameraClose", VL_ATTRIBUTE_M44D, c->world_from_camera_close);
+    set_v2(header, "velo.poseTimes", c->pose_times[0], c->pose_times[1]);
+  }
+  if (c->readout > 0) {
+    set_double(header, "velo.readout", c->readout);
+    set_text(header, "velo.readoutDirection", directions[c->readout_direction]);
+  }
+  if (c->shutter_points == 0) return;
+  char text[VL_SHUTTER_POINTS * 52] = "";
+  for (uint32_t i = 0; i < c->shutter_points; i++) {
+    size_t n = strlen(text);
+    snprintf(text + n, sizeof text - n, "%s%.17g %.17g", i ? " " : "", c->shutter_at[i], c->shutter_value[i]);
+  }
+  set_text(header, "velo.shutterCurve", text);
+}
+
 /* The camera in full: OpenEXR's words in single precision, velo's own in double (camera x right, y down, z forward).
  * Lens and sensor are in millimetres. A virtual camera has no sensor: where the scene names no width it is
  * given full frame's 36 mm, which fixes the scale and nothing else. */
 static void set_camera(Header *header, const Job *job) {
-  const vlCamera *c = &job->camera;
+  vlCamera held = job->camera, *c = &held;
+  vl_camera_at(&job->camera, vl_camera_time(&held, 0.5 * held.width, 0.5 * held.height, 0.5), &held);
   set_camera_matrices(header, c);
   if (c->projection == VL_PROJECTION_PERSPECTIVE && is_linear(c)) {
     double sensor = job->settings->camera.sensor_width_mm;
@@ -132,7 +155,8 @@ static void set_camera(Header *header, const Job *job) {
   set_stereo(header, c, &job->settings->camera.stereo);
   set_float(header, "velo.lensRadius", c->lens_radius);
   if (isfinite(c->focus_distance)) set_float(header, "focus", c->focus_distance);
-  set_v2(header, "velo.shutter", c->shutter_open, c->shutter_close);
+  set_v2(header, "velo.shutter", job->camera.shutter_open, job->camera.shutter_close);
+  set_motion(header, &job->camera);
   set_float(header, "velo.exposureTime", c->exposure_time);
 }
 

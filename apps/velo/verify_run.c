@@ -193,10 +193,22 @@ static void add_up(Measure *all, const Measure *m) {
     all->most = m->most, all->at_x = m->at_x, all->at_y = m->at_y, all->pose = m->pose;
 }
 
-static vlResult keep_picture(const char *folder, uint32_t index, const vlImage *image, vlError *error) {
+/* One channel, without alpha: for other programs' corner finders. */
+static vlResult keep_picture(vlContext *context, const char *folder, uint32_t index, const Picture *picture,
+                             vlError *error) {
   char path[4096];
+  vlImage *image = NULL;
+  vlImageDef def = vl_default_image_def((uint32_t)picture->width, (uint32_t)picture->height, 1);
+  def.type = VL_PIXEL_F32;
+  vlResult result = vl_image_create(context, &def, &image);
   snprintf(path, sizeof path, "%s/pose_%03u.png", folder, index);
-  return vl_image_write(image, path, NULL, error);
+  if (result == VL_OK) {
+    memcpy(vl_image_pixels(image), picture->pixels,
+           (size_t)picture->width * (size_t)picture->height * sizeof *picture->pixels);
+    result = vl_image_write(image, path, NULL, error);
+  }
+  vl_image_destroy(image);
+  return result;
 }
 
 static int measure_pose(Pose *pose, uint32_t index, Verification *v, vlContext *context, FILE *csv) {
@@ -204,7 +216,6 @@ static int measure_pose(Pose *pose, uint32_t index, Verification *v, vlContext *
   vlImage *image = NULL;
   vlError error = {0};
   vlResult result = render(pose, context, &image, &error);
-  if (result == VL_OK && v->keep) result = keep_picture(v->keep, index, image, &error);
   int width = (int)(pose->crop[2] - pose->crop[0]), height = (int)(pose->crop[3] - pose->crop[1]);
   float *red = result == VL_OK ? malloc((size_t)width * (size_t)height * sizeof *red) : NULL;
   if (result == VL_OK && !red) result = VL_ERROR_MEMORY;
@@ -215,6 +226,7 @@ static int measure_pose(Pose *pose, uint32_t index, Verification *v, vlContext *
     Picture picture = {width, height, red};
     int count = corners_find(&picture, corners, ROOM);
     if (count < 0) result = VL_ERROR_MEMORY;
+    if (count >= 0 && v->keep) result = keep_picture(context, v->keep, index, &picture, &error);
     match(pose, &picture, corners, count);
     compare(pose, index, v, csv);
     read_markers(pose, &picture, &v->each[index]);

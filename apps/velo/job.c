@@ -8,6 +8,7 @@
 #include "camera.h"
 #include "lens_options.h"
 #include "report.h"
+#include "scene_options.h"
 
 const Choice tracer_choices[] = {{"path", VL_TRACER_PATH},
                                  {"volpath", VL_TRACER_VOLPATH},
@@ -242,7 +243,7 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   job->path = path;
   job->settings = settings;
   job->camera_place = camera_place(settings, path);
-  if (v[RENDER_CAMERA].given) {
+  if (v[RENDER_CAMERA].given && !scene_camera_is_own(path, arguments)) {
     int status = take_camera(job, context, scene, v[RENDER_CAMERA].text, arguments);
     if (status >= 0) return status;
   }

@@ -45,7 +45,14 @@ enum {
   RENDER_STEREO,
   RENDER_INTEROCULAR,
   RENDER_CONVERGENCE,
-  RENDER_EYE
+  RENDER_EYE,
+  RENDER_AT,
+  RENDER_ANIMATION,
+  RENDER_VARIANT,
+  RENDER_ENVIRONMENT,
+  RENDER_ENVIRONMENT_ROTATION,
+  RENDER_ENVIRONMENT_STRENGTH,
+  RENDER_GROUND
 };
 
 extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[], color_choices[],

@@ -12,6 +12,7 @@
 #include "outputs.h"
 #include "progress.h"
 #include "report.h"
+#include "scene_options.h"
 #include "signals.h"
 
 /* Seconds between two progress pictures; and they may take at most a twentieth of the time. */
@@ -148,14 +149,11 @@ static int prepare(Render *render, const Arguments *arguments) {
 static int load_and_build(Render *render, const char *path, const Arguments *arguments) {
   double start = monotonic_seconds();
   vlError error = {0};
-  vlLoadDef load = vl_default_load_def();
-  load.permissive = arguments->values[RENDER_PERMISSIVE].given;
-  vlResult result = vl_scene_create(render->context, &render->scene);
-  if (result == VL_OK) result = vl_scene_load(render->scene, path, &load, &error);
-  if (result != VL_OK) return report_error(&error, result, path);
+  int status = scene_open(render->context, path, arguments, &render->scene);
+  if (status >= 0) return status;
   double loaded = monotonic_seconds();
 
-  int status = job_make(&render->job, render->context, render->scene, path, arguments);
+  status = job_make(&render->job, render->context, render->scene, path, arguments);
   if (status >= 0) return status;
   if (render->outputs.count == 0) {
     choose_output(render, path, render->job.settings->output);
@@ -172,7 +170,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     if (status < 0) status = frames_check_names(&render->frames, &render->outputs);
     if (status >= 0) return status;
   }
-  result = vl_world_build(render->scene, &render->job.build, &render->world, &error);
+  vlResult result = vl_world_build(render->scene, &render->job.build, &render->world, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   if (arguments->values[RENDER_VERBOSE].given) {
     size_t peak;
@@ -297,10 +295,25 @@ static const Option render_options[] = {
     {RENDER_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1", "render only these pixels, x1 and y1 exclusive", 0, 0, NULL},
     {RENDER_CROPWINDOW, 0, "cropwindow", OPTION_FRACTIONS, "x0,x1,y0,y1",
      "the same in fractions of the picture, in pbrt's order", 0, 0, NULL},
-    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "take camera and picture size from this scene or camera file", 0,
-     0, NULL},
+    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
+     "take camera and picture size from this scene or camera file;\nof a glTF file one of its own, by name or number",
+     0, 0, NULL},
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which camera of --camera FILE, by its name or number from 0", 0, 0,
      NULL},
+    {RENDER_AT, 0, "at", OPTION_NUMBER, "SECONDS", "glTF: the moment of its animation; default: as modelled", -1e6, 1e6,
+     NULL},
+    {RENDER_ANIMATION, 0, "animation", OPTION_TEXT, "NAME", "which one, by name or number from 0; default: the first",
+     0, 0, NULL},
+    {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: this variant of its materials", 0, 0, NULL},
+    {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "FILE",
+     "light from all around: studio, sky, white, none, or a picture\n(twice as wide as high: longitude and latitude; "
+     "or a square:\n"
+     "equal-area). Default: the studio where a file has none",
+     0, 0, NULL},
+    {RENDER_ENVIRONMENT_ROTATION, 0, "environment-rotation", OPTION_NUMBER, "DEG", "turned about the vertical", -36000,
+     36000, NULL},
+    {RENDER_ENVIRONMENT_STRENGTH, 0, "environment-strength", OPTION_NUMBER, "X", "factor on its light", 0, 1e6, NULL},
+    {RENDER_GROUND, 0, "ground", OPTION_FLAG, NULL, "a wide grey disk under everything", 0, 0, NULL},
     {RENDER_TRAJECTORY, 0, "trajectory", OPTION_TEXT, "FILE",
      "render every frame of FILE: a COLMAP model, transforms.json, a\n"
      "camchain, a calibration with its views, or poses in lines (CSV,\n"
@@ -396,7 +409,7 @@ static const Option render_options[] = {
 const Command render_command = {
     .name = "render",
     .usage = "FILE [options]",
-    .summary = "render a scene file (.pbrt, .pbrt.gz) into pictures",
+    .summary = "render a scene file (.pbrt, .pbrt.gz, .gltf, .glb) into pictures",
     .text =
         "Renders FILE. Options override what the file says. After the first pass, and then every ten\n"
         "seconds or so, the pictures are written as they are; Ctrl-C writes the whole passes that are done.",

@@ -405,6 +405,7 @@ typedef struct vlSceneSettings {
   float exposure;       /* sensor: imaging ratio, ISO etc. folded; default 1 */
   bool camera_missing;  /* the file has none: vl_scene_complete makes one */
   bool light_missing;   /* nor light from all around */
+  bool camera_in_full;  /* a glTF file holds more of it than glTF can say: vl_camera_read reads that */
   vlColorSpace space;   /* of the output picture */
   double white_balance; /* kelvin, 0: none */
   vlPixelFilter filter;

@@ -77,6 +77,7 @@ static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
   s->camera = def;
   s->camera_source.file = NULL;
   s->camera_missing = false;
+  s->camera_in_full = json_object_get(json_object_get(json, "extras"), "velo") != NULL;
   return true;
 }
 

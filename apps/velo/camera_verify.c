@@ -28,8 +28,10 @@ enum {
 
 static const Choice target_choices[] = {{"chessboard", 0}, {"charuco", 1}, {NULL, 0}};
 
-/* What is asked is where things lie: lens, focus, clipping planes take no part. */
+/* What is asked is where things lie: lens, focus, motion, clipping planes take no part. */
 static void make_pinhole(vlCamera *c) {
+  vlCamera moving = *c;
+  vl_camera_at(&moving, moving.shutter_open, c);
   c->lens_radius = 0.0;
   c->near_plane = 0.0;
   c->far_plane = INFINITY;
@@ -164,6 +166,7 @@ static int load_model(vlContext *context, const Arguments *arguments, const vlCa
     int status = camera_load_made(context, path, arguments, VERIFY_AGAINST_FRAME, &record, &v->model.camera);
     if (status >= 0) return status;
     v->model.def = record.camera;
+    make_pinhole(&v->model.camera);
     if (o[VERIFY_IGNORE_POSE].given)
       memcpy(v->model.camera.world_from_camera, v->camera.world_from_camera, sizeof v->camera.world_from_camera);
     if (v->model.camera.width != v->camera.width || v->model.camera.height != v->camera.height)
@@ -197,7 +200,7 @@ static int run_verify(const Command *command, const Arguments *arguments) {
   v.seed = o[VERIFY_SEED].given ? (uint64_t)o[VERIFY_SEED].integer : 1;
   v.keep = o[VERIFY_KEEP].given ? o[VERIFY_KEEP].text : NULL;
   int status = camera_load_made(context, path, arguments, VERIFY_FRAME, &record, &v.camera);
-  make_pinhole(&v.camera);
+  if (status < 0) make_pinhole(&v.camera);
   if (status < 0) status = load_model(context, arguments, &record, &v);
   if (status < 0 && v.keep && mkdir(v.keep, 0777) != 0 && errno != EEXIST)
     status = report_failure(STATUS_IO, "%s: %s", v.keep, strerror(errno));

@@ -30,8 +30,9 @@ static void equal_area(const double p[3], double plane[2]) {
   plane[0] = copysign(u, p[0]), plane[1] = copysign(v, p[1]);
 }
 
-/* Right, left, up, down, front, back. */
-static void cube(const double p[3], double plane[2]) {
+/* Right, left, up, down, front, back: in a row, or as a cross four wide and three high. */
+static void cube(bool as_cross, const double p[3], double plane[2]) {
+  static const double at[6][2] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
   static const double ahead[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
   static const double right[6][3] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {-1, 0, 0}};
   static const double down[6][3] = {{0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, {0, 1, 0}};
@@ -42,7 +43,8 @@ static void cube(const double p[3], double plane[2]) {
     double y = down[face][0] * p[0] + down[face][1] * p[1] + down[face][2] * p[2];
     if (z <= most) continue;
     most = z;
-    plane[0] = face + 0.5 * (x / z + 1.0), plane[1] = 0.5 * (y / z + 1.0);
+    plane[0] = (as_cross ? at[face][0] : face) + 0.5 * (x / z + 1.0);
+    plane[1] = (as_cross ? at[face][1] : 0.0) + 0.5 * (y / z + 1.0);
   }
 }
 
@@ -65,7 +67,7 @@ static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
     case VL_PROJECTION_CYLINDRICAL:
       plane[0] = atan2(x, z), plane[1] = y / sqrt(x * x + z * z);
       return x * x + z * z > 0.0;
-    case VL_PROJECTION_CUBE: cube(p, plane); return length > 0.0;
+    case VL_PROJECTION_CUBE: cube(a > 0.0, p, plane); return length > 0.0;
     case VL_PROJECTION_PANINI: {
       double longitude = atan2(x, z), latitude = atan2(y, sqrt(x * x + z * z));
       double s = (a + 1.0) / (a + cos(longitude));
@@ -148,7 +150,7 @@ static void to_camera(const double m[16], const double point[3], double p[3]) {
 }
 
 bool verify_knows(const VerifyModel *m) {
-  return (unsigned)m->camera.projection <= VL_PROJECTION_DOUBLE_SPHERE &&
+  return m->camera.eye_circle == 0.0 && (unsigned)m->camera.projection <= VL_PROJECTION_DOUBLE_SPHERE &&
          (unsigned)m->def.distortion <= VL_DISTORTION_THIN_PRISM;
 }
 

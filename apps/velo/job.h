@@ -58,6 +58,8 @@ enum {
 extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[], color_choices[],
     view_choices[], isa_choices[], stereo_choices[], eye_choices[];
 
+extern const Option render_options[];
+
 typedef struct Job {
   const char *path;                /* of the scene file */
   const vlSceneSettings *settings; /* resolved; live in the scene */

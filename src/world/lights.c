@@ -320,6 +320,7 @@ static vlResult add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t 
   if (!VL_RESERVE(world->context, &world->lights, faces)) return vl_fail_memory(error);
   bool has_power = emission->power == emission->power && emission->power > 0;
   uint32_t shared = VL_NONE;
+  float own = 0; /* luminance of the emission's spectrum */
   for (uint32_t i = 0; i < faces; i++) {
     float area = vl_world_prim_area(shape, i);
     if (shared == VL_NONE || has_power) {
@@ -339,6 +340,7 @@ static vlResult add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t 
       }
     }
     const vlEmitted *e = &world->emitted.items[shared];
+    if (i == 0 || has_power) own = luminance(&e->spectrum);
     vlWorldLight *light = &world->lights.items[world->lights.count++];
     memset(light, 0, sizeof *light);
     light->kind = VL_WL_AREA;
@@ -349,10 +351,8 @@ static vlResult add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t 
     light->invisible = shape->alpha >= 0 && world->nodes.items[shape->alpha].kind == VL_NODE_FLOAT &&
                        world->nodes.items[shape->alpha].value == 0;
     light->environment = VL_NONE;
-    float l = e->image >= 0 ? e->image_scale * mean_image_luminance(world->images.items[e->image].mipmap) *
-                                  luminance(&e->spectrum)
-                            : luminance(&e->spectrum);
-    if (e->node && shape->kind == VL_SHAPE_TRIANGLES) l = face_luminance(world, shape, i, e) * luminance(&e->spectrum);
+    float l = e->image >= 0 ? e->image_scale * mean_image_luminance(world->images.items[e->image].mipmap) * own : own;
+    if (e->node && shape->kind == VL_SHAPE_TRIANGLES) l = face_luminance(world, shape, i, e) * own;
     light->power = VL_PI * area * l * (e->two_sided ? 2 : 1);
     if (shape->kind == VL_SHAPE_TRIANGLES) triangle_light(shape, i, light);
     if (shape->kind == VL_SHAPE_DISK) {

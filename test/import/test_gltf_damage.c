@@ -2,6 +2,8 @@
  * One file that uses much of the format is cut off, has bytes and numbers changed, by a fixed seed. */
 #include "import/gltf_writer.h"
 #include "import/load.h"
+
+#include "failing_allocator.h"
 #include "math/hash.h"
 #include "velo/render.h"
 
@@ -169,7 +171,36 @@ static void damage(void **state) {
   free(file);
 }
 
+static vlResult load_whole(vlContext *context, void *user) {
+  vlScene *scene;
+  vlResult result = vl_scene_create(context, &scene);
+  if (result != VL_OK) return result;
+  vlError error;
+  vlLoadDef load = vl_default_load_def();
+  load.time = 0.5;
+  vlCompleteDef complete = vl_default_complete_def();
+  complete.environment = VL_ENVIRONMENT_WHITE;
+  complete.ground = complete.reframe = true;
+  result = vl_scene_load(scene, user, &load, &error);
+  if (result == VL_OK) result = vl_scene_complete(scene, &complete, &error);
+  if (result != VL_OK && result != VL_ERROR_MEMORY) print_message("%s: %s\n", error.file, error.message);
+  vl_scene_destroy(scene);
+  return result;
+}
+
+/* Memory runs out at the n-th call, for every n. */
+static void memory(void **state) {
+  (void)state;
+  size_t size;
+  uint8_t *file = new_file(&size);
+  snprintf(path, sizeof path, "/tmp/velo-gltf-memory-%d.glb", (int)getpid());
+  gltf_file(path, file, size);
+  fail_everywhere(load_whole, path, 60);
+  unlink(path);
+  free(file);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(damage)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(damage), cmocka_unit_test(memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,6 +29,7 @@ bool vl_gltf_choose_variant(vlGltf *g) {
 static void set_defaults(vlScene *scene) {
   vlSceneSettings *s = vl_scene_settings(scene);
   s->spp = 64;
+  s->tracer = VL_TRACER_VOLPATH;
   s->max_depth = 12; /* light goes through glass */
   s->camera_missing = true;
   s->light_missing = true;

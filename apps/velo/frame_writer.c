@@ -1,6 +1,6 @@
 /* frame_writer.c: see frame_writer.h. Two views become one OpenEXR file as its "Multi-View" page has it: the attribute
- * multiView lists the views, the first one's colours have no prefix, others "right.R"; layers of either eye have the
- * view before the last part of their name ("N.right.X"). */
+ * multiView lists the views; channels without a dot are the first one's ("R", "Z"), others have their view before the
+ * last part of their name ("right.R", "N.left.X", "N.right.X"). */
 #include "frame_writer.h"
 
 #include <pthread.h>
@@ -39,11 +39,12 @@ void frame_picture_free(FramePicture *picture) {
 
 /* ---- one picture ------------------------------------------------------------------------------------------------- */
 
-/* "R" to "right.R", "N.X" to "N.right.X". */
-static vlResult add_view(vlImage *image, const char *view) {
+/* "Z" to "right.Z", "N.X" to "N.right.X"; of the first view only the latter: what has no dot is the first view's. */
+static vlResult add_view(vlImage *image, const char *view, bool first) {
   for (uint32_t i = 0; i < vl_image_channels(image); i++) {
     const char *name = vl_image_channel_name(image, i), *dot = strrchr(name, '.');
     char full[300];
+    if (first && !dot) continue;
     snprintf(full, sizeof full, "%.*s%s.%s", dot ? (int)(dot + 1 - name) : 0, name, view, dot ? dot + 1 : name);
     vlResult result = vl_image_rename_channel(image, i, full);
     if (result != VL_OK) return result;
@@ -92,7 +93,7 @@ static vlResult write_both(FrameWriter *w, FramePicture *p, const char *path, co
     for (int k = 0; k < 2 && result == VL_OK; k++) {
       vlImage *layer = p->channels[v].layers[k];
       if (!layer) continue;
-      if (!p->renamed) result = add_view(layer, names[v]);
+      if (!p->renamed) result = add_view(layer, names[v], v == 0);
       layers[count++] = layer;
     }
   layers[0] = both;

@@ -92,7 +92,7 @@ left, right = read("eye_left.exr"), read("eye_right.exr")
 names, single = list(spec.channelnames), list(left[0].channelnames)
 views = spec.getattribute("multiView")
 assert list(views) == ["left", "right"], views
-assert set(names) == {"R", "G", "B", "A", "right.R", "right.G", "right.B", "right.A", "left.Z", "right.Z", "N.left.X",
+assert set(names) == {"R", "G", "B", "A", "right.R", "right.G", "right.B", "right.A", "Z", "right.Z", "N.left.X",
                       "N.left.Y", "N.left.Z", "N.right.X", "N.right.Y", "N.right.Z"}, names
 for plain in "RGBA":
     assert np.array_equal(both[..., names.index(plain)], left[1][..., single.index(plain)]), plain

@@ -57,6 +57,10 @@ static void fill(Stage *s, const char *picture) {
     double identity[16];
     set_matrix(identity, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0);
     if (k == 4) vl_scene_add_instance(s->scene, q.group, identity, (vlSource){0});
+    double poses[32], times[2] = {0, 1};
+    memcpy(poses, identity, sizeof identity);
+    set_matrix(poses + 16, 0, -1, 0, 0, 1, 0, 0, 2, 0, 0, 1, 0);
+    if (k == 4) vl_scene_add_moving_instance(s->scene, q.group, 2, times, poses, (vlSource){0});
   }
   float *block = NULL;
   vlShapeDef mesh = mesh_sphere(3, 1, true, &block);
@@ -64,6 +68,9 @@ static void fill(Stage *s, const char *picture) {
   vlEmissionDef glow = vl_default_emission_def();
   glow.image = picture;
   mesh.emission = vl_scene_add_emission(s->scene, &glow);
+  vl_scene_add_shape(s->scene, &mesh);
+  mesh.emission.index = 0;
+  mesh.positions_close = mesh.positions, mesh.normals_close = mesh.normals; /* on its way, if only to itself */
   vl_scene_add_shape(s->scene, &mesh);
   free(block);
   vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);

@@ -98,6 +98,33 @@ static void set_model(Header *header, const vlCamera *c, const vlCameraDef *def)
   set_text(header, "velo.distortionCoefficients", text);
 }
 
+/* Shape of the opening, tilt, vignetting; a lens of many elements whole, but for a picture in its stop. */
+static void set_lens(Header *header, const vlCamera *c) {
+  const vlLens *l = &c->lens;
+  if (l->blades) set_int(header, "velo.blades", l->blades);
+  if (l->rotation != 0) set_double(header, "velo.bladeRotation", l->rotation);
+  if (l->ratio != 1) set_double(header, "velo.apertureRatio", l->ratio);
+  if (l->tilt[0] != 0 || l->tilt[1] != 0) set_v2(header, "velo.tilt", l->tilt[0], l->tilt[1]);
+  if (l->hinge[0] != 0 || l->hinge[1] != 0) set_v2(header, "velo.hinge", l->hinge[0], l->hinge[1]);
+  if (l->vignetting) set_int(header, "velo.vignetting", 1);
+  if (!l->optics) return;
+  vlOpticsDef def;
+  vlLensSurface surfaces[64];
+  char text[64 * 4 * 26] = "";
+  size_t n = 0;
+  vl_optics_def(l->optics, &def, surfaces);
+  for (uint32_t i = 0; i < def.count; i++) {
+    const vlLensSurface *s = &surfaces[i];
+    n += (size_t)snprintf(text + n, sizeof text - n, "%s%.17g %.17g %.17g %.17g", i ? " " : "", s->radius, s->thickness,
+                          s->ior, s->aperture);
+  }
+  set_text(header, "velo.optics", text);
+  if (!isnan(def.aperture_diameter)) set_double(header, "velo.opticsAperture", def.aperture_diameter);
+  if (isfinite(def.focus_distance)) set_double(header, "velo.opticsFocus", def.focus_distance);
+  set_double(header, "velo.opticsDiagonal", def.film_diagonal);
+  set_double(header, "velo.opticsUnit", def.unit_mm);
+}
+
 /* What made two eyes of one camera. The eye's own pose and principal point stand with the rest; but for the circle. */
 static void set_stereo(Header *header, const vlCamera *c, const vlStereo *stereo) {
   if (stereo->mode == VL_STEREO_NONE) return;
@@ -154,6 +181,7 @@ static void set_camera(Header *header, const Job *job) {
   set_model(header, c, &job->settings->camera);
   set_stereo(header, c, &job->settings->camera.stereo);
   set_float(header, "velo.lensRadius", c->lens_radius);
+  set_lens(header, c);
   if (isfinite(c->focus_distance)) set_float(header, "focus", c->focus_distance);
   set_v2(header, "velo.shutter", job->camera.shutter_open, job->camera.shutter_close);
   set_motion(header, &job->camera);

@@ -61,6 +61,7 @@ typedef struct Check {
 
   const vlImage *other; /* what flow leads to; null: not given */
   vlCamera other_camera;
+  vlOptics *optics, *other_optics; /* that the cameras have; null: none */
   uint32_t other_x0, other_y0;
   int other_distance, which; /* channel; 0 forward, 1 backward */
   uint64_t flow_seen, flow_wrong;

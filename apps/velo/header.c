@@ -1,6 +1,7 @@
 /* header.c: see header.h. */
 #include "header.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,8 +33,8 @@ static bool text(const vlImage *image, const char *name, const char **value) {
 static bool read_model(const vlImage *image, const char *projection, vlCameraDef *def) {
   static const char *const names[] = {"none", "opencv", "radial", "thinprism"};
   int kind = 0;
-  while (kind <= VL_PROJECTION_DOUBLE_SPHERE && strcmp(vl_projection_name((vlProjection)kind), projection) != 0) kind++;
-  if (kind > VL_PROJECTION_DOUBLE_SPHERE) return false;
+  while (kind <= VL_PROJECTION_OPTICS && strcmp(vl_projection_name((vlProjection)kind), projection) != 0) kind++;
+  if (kind > VL_PROJECTION_OPTICS) return false;
   def->projection = (vlProjection)kind;
   number(image, "velo.shape0", &def->shape[0]);
   number(image, "velo.shape1", &def->shape[1]);
@@ -84,11 +85,51 @@ static int read_def(const vlImage *image, const char *path, const double whole[4
   return -1;
 }
 
-int header_camera(const vlImage *image, const char *path, vlCamera *camera, uint32_t *x0, uint32_t *y0) {
+/* The lens of many elements, which says the focal length itself. A picture in its stop is not known; it bends no ray.
+ */
+static int read_optics(vlContext *context, const vlImage *image, const char *path, vlCameraDef *def,
+                       vlOptics **optics) {
+  vlOpticsDef lens = vl_default_optics_def();
+  vlLensSurface surfaces[64];
+  const char *at;
+  lens.focus_distance = INFINITY;
+  lens.surfaces = surfaces;
+  number(image, "velo.opticsAperture", &lens.aperture_diameter);
+  number(image, "velo.opticsFocus", &lens.focus_distance);
+  number(image, "velo.opticsDiagonal", &lens.film_diagonal);
+  number(image, "velo.opticsUnit", &lens.unit_mm);
+  uint32_t count = 0;
+  bool good = text(image, "velo.optics", &at);
+  while (good && *at) {
+    char *end;
+    double value = strtod(at, &end);
+    vlLensSurface *s = &surfaces[count / 4];
+    good = end != at && count < 256;
+    if (good)
+      *(count % 4 == 0 ? &s->radius : count % 4 == 1 ? &s->thickness : count % 4 == 2 ? &s->ior : &s->aperture) = value;
+    count++;
+    at = end;
+  }
+  if (!good || count % 4) return report_failure(STATUS_SCENE, "%s: the lens in its header is not understood", path);
+  lens.count = count / 4;
+  vlError error = {0};
+  vlResult result = vl_optics_create(context, &lens, optics, &error);
+  if (result == VL_ERROR_MEMORY) return report_error(NULL, result, NULL);
+  if (result != VL_OK)
+    return report_failure(STATUS_SCENE, "%s: the lens in its header is wrong: %s", path, error.message);
+  def->lens.optics = *optics;
+  def->fx = def->fy = def->skew = VL_UNSET;
+  return -1;
+}
+
+int header_camera(vlContext *context, const vlImage *image, const char *path, vlCamera *camera, vlOptics **optics,
+                  uint32_t *x0, uint32_t *y0) {
   double whole[4], data[4], limit;
   vlCameraDef def;
   int status = windows(image, path, whole, data);
+  *optics = NULL;
   if (status < 0) status = read_def(image, path, whole, &def);
+  if (status < 0 && def.projection == VL_PROJECTION_OPTICS) status = read_optics(context, image, path, &def, optics);
   if (status >= 0) return status;
   vlError error = {0};
   vlResult result = vl_camera_make(&def, camera, NULL, &error);
@@ -112,6 +153,9 @@ int header_camera_def(const vlImage *image, const char *path, vlCameraDef *def) 
   int status = windows(image, path, whole, data);
   if (status < 0) status = read_def(image, path, whole, def);
   if (status >= 0) return status;
+  if (def->projection == VL_PROJECTION_OPTICS)
+    return report_failure(STATUS_SCENE, "%s: a lens of many elements is not taken from a picture; its scene has it",
+                          path);
   if (number(image, "velo.eyeCircle", &circle) && circle != 0.0)
     return report_failure(STATUS_SCENE, "%s: one eye of an omnidirectional picture is no camera of its own", path);
   shutter[0] = def->shutter_open, shutter[1] = def->shutter_close;

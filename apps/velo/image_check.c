@@ -198,7 +198,7 @@ static int load_other(Check *c, vlContext *context, const Arguments *arguments, 
     if (status >= 0) return status;
     if (vl_image_type(*image) != VL_PIXEL_F32)
       return report_failure(STATUS_SCENE, "%s: its channels are not 32-bit floats", path);
-    status = header_camera(*image, path, &c->other_camera, &c->other_x0, &c->other_y0);
+    status = header_camera(context, *image, path, &c->other_camera, &c->other_optics, &c->other_x0, &c->other_y0);
     if (status >= 0) return status;
     c->other_distance = vl_image_find_channel(*image, "distance.Y");
     c->other = *image;
@@ -218,7 +218,7 @@ static int prepare(Check *c, vlContext *context, const Arguments *arguments, vlI
     return report_failure(STATUS_SCENE, "%s: has no channel that could be checked (velo render --channels)", c->path);
   if (vl_image_type(*image) != VL_PIXEL_F32)
     return report_failure(STATUS_SCENE, "%s: its channels are not 32-bit floats", c->path);
-  status = header_camera(*image, c->path, &c->camera, &c->x0, &c->y0);
+  status = header_camera(context, *image, c->path, &c->camera, &c->optics, &c->x0, &c->y0);
   if (status >= 0) return status;
   read_header(c);
   c->material_of = calloc(CHECK_OBJECTS, sizeof *c->material_of);
@@ -262,6 +262,8 @@ static int run_check(const Command *command, const Arguments *arguments) {
   check_free_mattes(c);
   vl_image_destroy(image);
   vl_image_destroy(other);
+  vl_optics_destroy(c->optics);
+  vl_optics_destroy(c->other_optics);
   vl_context_destroy(context);
   return status;
 }

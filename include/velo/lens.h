@@ -67,6 +67,8 @@ typedef struct vlOpticsInfo {
   double film_diagonal;
   double f_number; /* focal length over the diameter of the entrance pupil; 0 with an aperture picture */
 } vlOpticsInfo;
+/* What it was made of: def and its surfaces (room for 64). */
+VL_API void vl_optics_def(const vlOptics *optics, vlOpticsDef *def, vlLensSurface *surfaces);
 VL_API void vl_optics_info(const vlOptics *optics, vlOpticsInfo *info);
 
 /* ---- the lens of a camera --------------------------------------------------------------------------------------- */

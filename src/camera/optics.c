@@ -187,3 +187,9 @@ void vl_optics_destroy(vlOptics *optics) {
 void vl_optics_info(const vlOptics *optics, vlOpticsInfo *info) {
   *info = optics->info;
 }
+
+void vl_optics_def(const vlOptics *optics, vlOpticsDef *def, vlLensSurface *surfaces) {
+  *def = optics->def;
+  memcpy(surfaces, optics->given, optics->count * sizeof *surfaces);
+  def->surfaces = surfaces;
+}

@@ -132,8 +132,9 @@ static int run_convert(const Command *command, const Arguments *arguments) {
 static const Option convert_options[] = {
     {CONVERT_FROM, 0, "from", OPTION_CHOICE, "DIALECT", "what IN is; default: by its content:", 0, 0, dialect_choices},
     {CONVERT_TO, 0, "to", OPTION_CHOICE, "DIALECT",
-     "what OUT becomes; default: .json velo, .yaml opencv,\ntransforms.json nerf, cameras.txt colmap, .pbrt pbrt", 0, 0,
-     dialect_choices},
+     "what OUT becomes; default: .json velo, .yaml opencv, .gltf gltf,\n.xml mitsuba, .usda usd, .pbrt pbrt, "
+     "transforms.json nerf,\ncameras.txt colmap:",
+     0, 0, dialect_choices},
     {CONVERT_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
     {CONVERT_DROP, 0, "drop", OPTION_TEXTS, "FIELD",
      "leave out a field that OUT cannot hold; may be given several\ntimes", 0, 0, NULL},

@@ -5,8 +5,16 @@
 
 enum { W = 24, H = 18 };
 
-/* A wheel of boards, a sphere and a mesh whose vertices move, over a floor; the camera may move, too. */
-static void fill(Stage *s, bool camera_moves) {
+/* Where the wheel is: turned by 120 degrees in the first half second, by 60 in the second. */
+static void wheel_pose(double t, double m[16]) {
+  double f = t < 0.5 ? 2 * t : 2 * t - 1, angle = (t < 0.5 ? 120 * f : 120 + 60 * f) * M_PI / 180;
+  double x = t < 0.5 ? -0.6 : -0.6 + 0.8 * f, y = t < 0.5 ? 0.1 * f : 0.1 + 0.1 * f, z = t < 0.5 ? -3 : -3 + 0.2 * f;
+  set_matrix(m, cos(angle), -sin(angle), 0, x, sin(angle), cos(angle), 0, y, 0, 0, 1, z);
+}
+
+/* A wheel of boards, a sphere and a mesh whose vertices move, over a floor; the camera may move, too. held >= 0: all
+ * rests, but where it is at that time. */
+static void fill(Stage *s, bool camera_moves, double held) {
   s->camera.fov = 0.9;
   s->camera.shutter_open = 0.25, s->camera.shutter_close = 0.75;
   if (camera_moves) {
@@ -37,41 +45,48 @@ static void fill(Stage *s, bool camera_moves) {
   assert_int_not_equal(vl_scene_add_shape(s->scene, &ball).index, 0);
   const double times[3] = {0, 0.5, 1};
   double poses[48];
-  set_matrix(poses, 1, 0, 0, -0.6, 0, 1, 0, 0, 0, 0, 1, -3);
-  set_matrix(poses + 16, -0.5, -0.8660254, 0, -0.6, 0.8660254, -0.5, 0, 0.1, 0, 0, 1, -3);
-  set_matrix(poses + 32, -1, 0, 0, 0.2, 0, -1, 0, 0.2, 0, 0, 1, -2.8);
-  vl_scene_add_moving_instance(s->scene, group, 3, times, poses, (vlSource){0});
+  for (int k = 0; k < 3; k++) wheel_pose(times[k], poses + 16 * k);
+  if (held >= 0) wheel_pose(held, poses);
+  if (held >= 0)
+    vl_scene_add_instance(s->scene, group, poses, (vlSource){0});
+  else
+    vl_scene_add_moving_instance(s->scene, group, 3, times, poses, (vlSource){0});
   float *block, close[3 * 13 * 7];
   vlShapeDef mesh = mesh_sphere(6, 0.4f, true, &block);
   set_matrix(mesh.group_from_shape, 1, 0, 0, 0.7, 0, 1, 0, 0, 0, 0, 1, -3);
   for (uint32_t i = 0; i < 3 * mesh.vertices; i++)
     close[i] = mesh.positions[i] * 0.6f + (i % 3 == 1 ? 0.6f * fabsf(mesh.positions[i - 1]) : 0);
-  mesh.positions_close = close, mesh.normals_close = mesh.normals;
+  double f = fmin(fmax((held - 0.25) / 0.25, 0), 1);
+  for (uint32_t i = 0; held >= 0 && i < 3 * mesh.vertices; i++)
+    close[i] = (float)((double)mesh.positions[i] * (1 - f) + (double)close[i] * f);
+  if (held >= 0) mesh.positions = close;
+  if (held < 0) mesh.positions_close = close, mesh.normals_close = mesh.normals;
   mesh.times[0] = 0.25, mesh.times[1] = 0.5;
   mesh.material = add_diffuse(s, 0.3f, 0.7f, 0.3f);
   assert_int_not_equal(vl_scene_add_shape(s->scene, &mesh).index, 0);
   free(block);
 }
 
-/* Independent samples: the mean of N held pictures, at random times, and a blurred one have the same expectation. */
+/* Independent samples: the mean of N pictures of worlds at rest, spread over the time, and a blurred one have the same
+ * expectation. */
 static void blur_is_the_mean_of_held_pictures(void **state) {
   (void)state;
   enum { HELD = 400, SPP = 4 };
   for (int moves = 0; moves < 2; moves++) {
-    Stage s = stage_open(W, H);
-    fill(&s, moves);
-    s.render.sampler = VL_SAMPLER_INDEPENDENT;
-    vlError error;
-    vlWorld *world = NULL;
-    vlCamera camera, held;
-    assert_int_equal(vl_world_build(s.scene, &s.build, &world, &error), VL_OK);
-    assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, &error), VL_OK);
     static double sum[2][W * H], square[2][W * H];
     memset(sum, 0, sizeof sum), memset(square, 0, sizeof square);
     for (int k = 0; k < 2 * HELD; k++) { /* even: blurred, odd: held */
       int set = k % 2;
       /* the times of the held ones: even steps, jittered */
       double t = 0.25 + 0.5 * (k / 2 + fmod(0.61803398875 * k, 1.0)) / HELD;
+      Stage s = stage_open(W, H);
+      fill(&s, moves, set ? t : -1);
+      s.render.sampler = VL_SAMPLER_INDEPENDENT;
+      vlError error;
+      vlWorld *world = NULL;
+      vlCamera camera, held;
+      assert_int_equal(vl_world_build(s.scene, &s.build, &world, &error), VL_OK);
+      assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, &error), VL_OK);
       assert_int_equal(vl_camera_at(&camera, t, &held), VL_OK);
       vlFilm *film = NULL;
       vlImage *image = NULL;
@@ -85,6 +100,8 @@ static void blur_is_the_mean_of_held_pictures(void **state) {
       }
       vl_image_destroy(image);
       vl_film_destroy(film);
+      vl_world_destroy(world);
+      stage_close(&s);
     }
     double chi2 = 0;
     int far = 0;
@@ -104,8 +121,6 @@ static void blur_is_the_mean_of_held_pictures(void **state) {
     assert_true(chi2 < freedom + 5 * sqrt(2 * freedom));
     assert_true(chi2 > 0.3 * freedom);
     assert_true(far < 10);
-    vl_world_destroy(world);
-    stage_close(&s);
   }
 }
 
@@ -121,7 +136,7 @@ static void same_bits(void **state) {
     vl_context_destroy(s.context);
     if (vl_context_create(&def, &s.context) == VL_ERROR_UNSUPPORTED) continue; /* this machine lacks it */
     assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
-    fill(&s, true);
+    fill(&s, true, -1);
     s.render.spp = 16;
     Picture p = stage_finish(&s);
     if (first.rgba) {

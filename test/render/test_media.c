@@ -1,0 +1,294 @@
+/* Participating media whose light is known: Beer's law, media that scatter all under a white sky, single scattering by
+ * quadrature, glowing fog, every kind and both ways to carry colour. And what must not change the picture. */
+#include "shots.h"
+
+static vlMediumId add_medium(Stage *s, const vlMediumDef *def) {
+  vlMediumId id = vl_scene_add_medium(s->scene, def);
+  vlError error;
+  if (vl_scene_result(s->scene, &error) != VL_OK) fail_msg("medium: %s", error.message);
+  return id;
+}
+
+static vlMaterialId interface(Stage *s) {
+  vlMaterialDef def = vl_default_material_def(VL_MATERIAL_INTERFACE);
+  return vl_scene_add_material(s->scene, &def);
+}
+
+static void add_ball(Stage *s, float z, float radius, vlMaterialId material, vlMediumId inside, vlMediumId outside) {
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
+  def.radius = radius, def.z_min = -radius, def.z_max = radius;
+  set_matrix(def.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, z);
+  def.material = material;
+  def.inside = inside;
+  def.outside = outside;
+  assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
+}
+
+static vlMediumDef fog(float a, float s, float g) {
+  vlMediumDef def = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
+  def.sigma_a = vl_spectrum_constant(a);
+  def.sigma_s = vl_spectrum_constant(s);
+  def.g = g;
+  return def;
+}
+
+static const float eights[64] = {1, 2, 0, 1, 3, 1, 0, 2, 1, 1, 1, 1, 2, 0, 2, 1, 1, 2, 0, 1, 3, 1,
+                                 0, 2, 1, 1, 1, 1, 2, 0, 2, 1, 1, 2, 0, 1, 3, 1, 0, 2, 1, 1, 1, 1,
+                                 2, 0, 2, 1, 1, 2, 0, 1, 3, 1, 0, 2, 1, 1, 1, 1, 2, 0, 2, 1};
+static const float colours[24] = {1, 2, 3, .5f, 1, 0, 0, 0, 2, 1, 1, 1, 3, 2, 1, 0, 1, 2, 1, 2, 1, .3f, .2f, .1f};
+
+/* One of each kind that needs no file, round z = -3; of albedo 1. */
+static vlMediumDef white_medium(int kind) {
+  vlMediumDef def = vl_default_medium_def((vlMediumKind)kind);
+  def.sigma_a = vl_spectrum_constant(0);
+  def.sigma_s = vl_spectrum_rgb(1, 1.5f, 2);
+  for (int i = 0; i < 3; i++) def.low[i] = -1, def.high[i] = 1;
+  set_matrix(def.world_from_medium, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, -3);
+  def.g = 0.4f;
+  static const float none[24] = {0};
+  if (kind == VL_MEDIUM_GRID) def.nx = def.ny = def.nz = 4, def.density = eights;
+  if (kind == VL_MEDIUM_RGB_GRID) def.nx = def.ny = def.nz = 2, def.rgb_s = colours, def.rgb_a = none;
+  return def;
+}
+
+/* ---- white furnaces ---------------------------------------------------------------------------------------------- */
+
+/* Grey ones vanish but for rounding; of coloured ones paths carry more of this and less of that. */
+static void furnace(void **state) {
+  (void)state;
+  for (int kind = VL_MEDIUM_HOMOGENEOUS; kind <= VL_MEDIUM_CLOUD; kind++)
+    for (int rgb = 0; rgb < 2; rgb++)
+      for (int grey = kind != VL_MEDIUM_RGB_GRID ? 1 : 0; grey >= 0; grey--) {
+        Stage s = stage_open(24, 24);
+        s.camera.fov = 0.7;
+        s.build.color = rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
+        s.render.tracer = VL_TRACER_VOLPATH;
+        s.render.sampler = VL_SAMPLER_SOBOL;
+        s.render.spp = grey ? (kind < VL_MEDIUM_CLOUD ? 512 : 256) : 128;
+        s.render.max_depth = 300;
+        vlMediumDef def = white_medium(kind);
+        if (grey) def.sigma_s = vl_spectrum_constant(2);
+        add_sky(&s, 1);
+        add_ball(&s, -3, 1.0f, interface(&s), add_medium(&s, &def), (vlMediumId){0});
+        Picture p = stage_finish(&s);
+        /* wavelengths are themselves chance, where they are not colours */
+        for (int c = 0; c < 3; c++) assert_near("furnace", picture_mean(&p, c), 1, grey ? (rgb ? 1.5e-3 : 3e-3) : 8e-3);
+        assert_int_equal(p.stats.not_finite, 0);
+        picture_free(&p);
+      }
+}
+
+/* Inside of glass, too: a smooth dielectric ball full of fog reflects and passes all. */
+static void furnace_in_glass(void **state) {
+  (void)state;
+  Stage s = stage_open(24, 24);
+  s.camera.fov = 0.8;
+  s.render.tracer = VL_TRACER_VOLPATH;
+  s.render.spp = 256;
+  s.render.max_depth = 1000;
+  vlMaterialDef glass = vl_default_material_def(VL_MATERIAL_DIELECTRIC);
+  vlMediumDef def = fog(0, 2, -0.3f);
+  add_sky(&s, 1);
+  add_ball(&s, -3, 1.0f, vl_scene_add_material(s.scene, &glass), add_medium(&s, &def), (vlMediumId){0});
+  Picture p = stage_finish(&s);
+  for (int c = 0; c < 3; c++) assert_near("fog in glass", picture_mean(&p, c), 1, 4e-3);
+  picture_free(&p);
+}
+
+/* ---- absorption -------------------------------------------------------------------------------------------------- */
+
+/* Beer's law: the sky through the middle of a ball of fog: homogeneous, on a grid, and scattering without return. */
+static void beer(void **state) {
+  (void)state;
+  const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
+  for (int kind = 0; kind < 3; kind++) {
+    Stage s = stage_open(8, 8);
+    s.camera.fov = 0.02;
+    s.build.color = VL_COLOR_RGB;
+    s.render.tracer = VL_TRACER_VOLPATH;
+    s.render.spp = kind ? 4096 : 64;
+    s.render.max_depth = kind == 2 ? 0 : 5;
+    vlMediumDef def = fog(0, 0, 0);
+    def.sigma_a = vl_spectrum_rgb(0.1f, 0.5f, 1.0f);
+    if (kind == 1) { /* a grid that is 1 where the ray goes; twice as wide so that it stays so up to the slab's faces */
+      def.kind = VL_MEDIUM_GRID;
+      def.nx = def.ny = def.nz = 2, def.density = ones;
+      for (int i = 0; i < 3; i++) def.low[i] = -20, def.high[i] = 20;
+    }
+    if (kind == 2) def.sigma_s = vl_spectrum_constant(0.25f);
+    vlMediumId id = add_medium(&s, &def);
+    add_ball(&s, -3, 1.0f, interface(&s), id, (vlMediumId){0});
+    add_sky(&s, 1);
+    Picture p = stage_finish(&s);
+    const double sigma[3] = {0.1, 0.5, 1.0}, more = kind == 2 ? 0.25 : 0;
+    for (int c = 0; c < 3; c++)
+      assert_ratio("Beer", picture_mean(&p, c), exp(-2 * (sigma[c] + more)), kind ? 5e-3 : 1e-3);
+    picture_free(&p);
+  }
+}
+
+/* ---- single scattering ------------------------------------------------------------------------------------------- */
+
+static double phase(double g, double cosine) {
+  return (1 - g * g) / (4 * M_PI * pow(1 + g * g - 2 * g * cosine, 1.5));
+}
+
+/* A lamp in fog without end, the camera in it: once-scattered light along the central ray is an integral. */
+static void single_scattering(void **state) {
+  (void)state;
+  const double a = 0.1, sc = 0.3, g = 0.5, lamp[3] = {1, 0.5, -2};
+  double expected = 0;
+  const int n = 400000;
+  for (int k = 0; k < n; k++) {
+    double t = 60 * (k + 0.5) / n, to[3] = {lamp[0], lamp[1], lamp[2] + t};
+    double d = sqrt(to[0] * to[0] + to[1] * to[1] + to[2] * to[2]),
+           cosine = -to[2] / d; /* between lamp to fog and fog to eye */
+    expected += 60.0 / n * sc * phase(g, cosine) * exp(-(a + sc) * (t + d)) / (d * d);
+  }
+  for (int kind = 0; kind < 2; kind++) {
+    const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
+    Stage s = stage_open(8, 8);
+    s.camera.fov = 0.002;
+    s.render.tracer = VL_TRACER_VOLPATH;
+    s.render.spp = 8192;
+    s.render.max_depth = 1;
+    vlMediumDef def = fog((float)a, (float)sc, (float)g);
+    if (kind == 1) {
+      def.kind = VL_MEDIUM_GRID;
+      def.nx = def.ny = def.nz = 2, def.density = ones;
+      for (int i = 0; i < 3; i++) def.low[i] = -200, def.high[i] = 200;
+    }
+    add_point(&s, (float)lamp[0], (float)lamp[1], (float)lamp[2], 1);
+    vl_scene_settings(s.scene)->camera_medium = add_medium(&s, &def);
+    Picture p = stage_finish(&s);
+    assert_ratio("single scattering", picture_mean(&p, 1), expected, 6e-3);
+    picture_free(&p);
+  }
+}
+
+/* ---- emission ---------------------------------------------------------------------------------------------------- */
+
+static void glowing(void **state) {
+  (void)state;
+  const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
+  for (int kind = 0; kind < 4; kind++) {
+    Stage s = stage_open(8, 8);
+    s.camera.fov = 0.02;
+    s.build.color = kind & 1 ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
+    s.render.tracer = VL_TRACER_VOLPATH;
+    s.render.spp = 1024;
+    vlMediumDef def = fog(0.7f, 0, 0);
+    def.emission = vl_spectrum_rgb(3, 3, 3);
+    if (kind > 1) {
+      def.kind = VL_MEDIUM_GRID;
+      def.nx = def.ny = def.nz = 2, def.density = ones;
+      for (int i = 0; i < 3; i++) def.low[i] = -20, def.high[i] = 20;
+    }
+    add_ball(&s, -3, 1.0f, interface(&s), add_medium(&s, &def), (vlMediumId){0});
+    Picture p = stage_finish(&s);
+    for (int c = 0; c < 3; c++) assert_ratio("glow", picture_mean(&p, c), 3 * (1 - exp(-1.4)), kind == 3 ? 8e-3 : 5e-3);
+    picture_free(&p);
+  }
+}
+
+/* A grid of one temperature against the black body of it as emission: raw, its maximum 1. */
+static void hot(void **state) {
+  (void)state;
+  const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1}, kelvin[8] = {30, 30, 30, 30, 30, 30, 30, 30};
+  double mean[2][2][3];
+  for (int rgb = 0; rgb < 2; rgb++)
+    for (int way = 0; way < 2; way++) {
+      Stage s = stage_open(8, 8);
+      s.camera.fov = 0.02;
+      s.build.color = rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
+      s.render.tracer = VL_TRACER_VOLPATH;
+      s.render.spp = 1024;
+      vlMediumDef def = fog(0.7f, 0, 0);
+      def.kind = VL_MEDIUM_GRID;
+      def.nx = def.ny = def.nz = 2, def.density = ones;
+      for (int i = 0; i < 3; i++) def.low[i] = -20, def.high[i] = 20;
+      if (way == 0) def.emission = vl_spectrum_blackbody(2500);
+      if (way == 1) def.temperature = kelvin, def.temperature_offset = 5, def.temperature_scale = 100;
+      add_ball(&s, -3, 1.0f, interface(&s), add_medium(&s, &def), (vlMediumId){0});
+      Picture p = stage_finish(&s);
+      for (int c = 0; c < 3; c++) mean[rgb][way][c] = picture_mean(&p, c);
+      picture_free(&p);
+    }
+  double factor = mean[0][1][1] / mean[0][0][1]; /* the body's own luminance */
+  assert_true(factor > 5 && factor < 107);
+  for (int rgb = 0; rgb < 2; rgb++)
+    for (int c = 0; c < 3; c++)
+      assert_near("black body", mean[rgb][1][c], factor * mean[rgb][0][c], 0.015 * factor * mean[rgb][0][0]);
+}
+
+/* ---- what must not show ------------------------------------------------------------------------------------------ */
+
+static Picture rich(int threads, vlIsa isa, vlTracer tracer) {
+  Stage s = stage_open(24, 24);
+  vl_scene_destroy(s.scene);
+  vl_context_destroy(s.context);
+  vlContextDef context = vl_default_context_def();
+  context.threads = (uint32_t)threads;
+  context.isa = isa;
+  if (vl_context_create(&context, &s.context) != VL_OK) return (Picture){0};
+  assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
+  s.camera.fov = 0.9;
+  s.render.tracer = tracer;
+  s.render.spp = 8;
+  s.render.max_depth = 12;
+  add_sky(&s, 0.5f);
+  add_point(&s, 1, 2, -1, 5);
+  vlMediumDef dust = fog(0.01f, 0.05f, 0.2f);
+  vlMediumId air = add_medium(&s, &dust);
+  vl_scene_settings(s.scene)->camera_medium = air;
+  vlMediumDef def = white_medium(VL_MEDIUM_GRID);
+  def.emission = vl_spectrum_rgb(0.5f, 0.1f, 0.1f), def.sigma_a = vl_spectrum_rgb(0.1f, 0.3f, 0.6f);
+  add_ball(&s, -3, 0.9f, interface(&s), add_medium(&s, &def), air);
+  Quad floor = quad_at(0, -1, -3, 4, 0, 0, 0, 0, -4);
+  floor.material = add_diffuse(&s, 0.7f, 0.5f, 0.3f);
+  add_quad(&s, &floor);
+  return stage_finish(&s);
+}
+
+static void same_bits(void **state) {
+  (void)state;
+  Picture a = rich(1, VL_ISA_V2, VL_TRACER_VOLPATH);
+  assert_int_equal(a.stats.not_finite, 0);
+  for (int threads = 1; threads <= 3; threads++)
+    for (int isa = VL_ISA_V2; isa <= VL_ISA_V4; isa++) {
+      Picture b = rich(threads, (vlIsa)isa, VL_TRACER_VOLPATH);
+      if (!b.rgba) continue; /* a machine without that set */
+      assert_memory_equal(a.rgba, b.rgba, (size_t)a.width * a.height * 4 * sizeof(float));
+      picture_free(&b);
+    }
+  picture_free(&a);
+}
+
+/* The tracer of surfaces passes through interfaces and sees no medium; without media both tracers are one. */
+static void path_looks_past(void **state) {
+  (void)state;
+  Picture past[2];
+  for (int with = 0; with < 2; with++) {
+    Stage s = stage_open(16, 16);
+    s.render.spp = 16;
+    s.render.tracer = with ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
+    vlMediumDef def = fog(1, 1, 0);
+    vlMediumId id = {0};
+    if (with) id = add_medium(&s, &def);
+    add_sky(&s, 1);
+    add_ball(&s, -3, 1, interface(&s), id, (vlMediumId){0});
+    add_ball(&s, -3, 0.5f, add_diffuse(&s, 0.5f, 0.5f, 0.5f), (vlMediumId){0}, (vlMediumId){0});
+    past[with] = stage_finish(&s);
+  }
+  assert_memory_equal(past[0].rgba, past[1].rgba, (size_t)16 * 16 * 4 * sizeof(float));
+  picture_free(&past[0]);
+  picture_free(&past[1]);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(furnace),   cmocka_unit_test(furnace_in_glass),
+                                     cmocka_unit_test(beer),      cmocka_unit_test(single_scattering),
+                                     cmocka_unit_test(glowing),   cmocka_unit_test(hot),
+                                     cmocka_unit_test(same_bits), cmocka_unit_test(path_looks_past)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -133,7 +133,7 @@ struct vlImport {
   double film_diagonal; /* mm */
   vlChoice camera, film, sampler, integrator, filter, accelerator;
   vlMat4 camera_from_world[2]; /* at the start and the end */
-  vlNameTable media; /* to ids in the scene */
+  vlNameTable media;           /* to ids in the scene */
   VL_ARRAY(vlMediumLink) medium_links;
   double times[2]; /* of the two current transforms, seconds */
   VL_ARRAY(vlMovingGroup) moving;

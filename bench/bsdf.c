@@ -28,6 +28,13 @@ const vlBsdfKernels vl_bsdf_kernels_one;
 #include "../src/trace/bsdf_conductor.hot.c"
 #include "../src/trace/bsdf_dielectric.hot.c"
 #include "../src/trace/bsdf_diffuse.hot.c"
+#define slice_of principled_slice_of /* the coat's file has functions of these names, too */
+#define look_up principled_look_up
+#define weigh principled_weigh
+#define combine principled_combine
+#define choose principled_choose
+#include "../src/trace/bsdf_principled.hot.c"
+#include "../src/trace/bsdf_principled_energy.hot.c"
 #include "../src/trace/bsdf_table.hot.c"
 #undef eval
 #undef sample
@@ -39,7 +46,7 @@ enum { MOST = 4096, ROUNDS = 7 };
 
 typedef struct {
   /* rows a little longer than a power of two, or all would share the cache's same few sets */
-  float in[24][MOST + 80], out[14][MOST + 80];
+  float in[24][MOST + 80], out[14][MOST + 80], principled[VL_PRINCIPLED_ROWS][MOST + 80];
   const vlCoatTable *coat[MOST];
   uint32_t flags[MOST];
 } Arrays;
@@ -71,6 +78,7 @@ static void pass(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, u
                     .alpha_y = IN(13),
                     .eta_s = IN(14),
                     .coat = a->coat + first};
+  for (int j = 0; j < VL_PRINCIPLED_ROWS; j++) p.principled[j] = a->principled[j] + first;
   vlBsdfDirections wo = {IN(15), IN(16), IN(17)}, wi = {IN(18), IN(19), IN(20)}, out = {OUT(0), OUT(1), OUT(2)};
   float *value[4] = {OUT(3), OUT(4), OUT(5), OUT(6)}, *weight[4] = {OUT(8), OUT(9), OUT(10), OUT(11)};
   if (what & 1) k->eval(kind, n, &p, wo, wi, value, OUT(7));
@@ -108,6 +116,9 @@ int main(int argc, char **argv) {
     a->in[12][i] = a->in[13][i] = 0.1f;
     a->in[14][i] = 1.5f;
     a->coat[i] = coat;
+    a->principled[VL_P_F90][i] = a->principled[VL_P_THIN][i] = a->principled[VL_P_COAT_Z][i] = 1.0f;
+    for (int c = 0; c < 4; c++) a->principled[VL_P_F0 + c][i] = 0.04f;
+    a->principled[VL_P_METALLIC][i] = a->in[8][i] / 5;
     direction(a, 15, i);
     direction(a, 18, i);
   }
@@ -120,7 +131,8 @@ int main(int argc, char **argv) {
               {"dielectric", VL_BSDF_DIELECTRIC, coat},
               {"thin dielectric", VL_BSDF_THIN_DIELECTRIC, coat},
               {"coated diffuse", VL_BSDF_COATED_DIFFUSE, coat},
-              {"coated, textured", VL_BSDF_COATED_DIFFUSE, rough}};
+              {"coated, textured", VL_BSDF_COATED_DIFFUSE, rough},
+              {"principled", VL_BSDF_PRINCIPLED, coat}};
   printf("ns a lane, batches of %u; alpha 0.1; \"one\": one lane at a time, SSE4.2 without vectors\n", n);
   printf("%-18s %-8s %8s", "", "", "one");
   for (int isa = 2; isa <= (int)vl_isa_best(); isa++) printf("%8s%d", "v", isa);

@@ -161,7 +161,8 @@ static void missing(void **state) {
   file_error("m.pbrt", VL_ERROR_IO, "%/m.pbrt:2:17: cannot read %/parts: is a folder");
   file_error("parts", VL_ERROR_IO, ":0:0: cannot read %/parts: is a folder");
   write_file("scene.obj", "v 0 0 0");
-  file_error("scene.obj", VL_ERROR_SCENE, ":0:0: %/scene.obj: unknown kind of scene file (known: .pbrt, .pbrt.gz, .gltf, .glb)");
+  file_error("scene.obj", VL_ERROR_SCENE,
+             ":0:0: %/scene.obj: unknown kind of scene file (known: .pbrt, .pbrt.gz, .gltf, .glb)");
 }
 
 static void packed(void **state) {

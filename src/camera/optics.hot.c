@@ -45,7 +45,6 @@ static void start(const vlCameraCompiled *c, uint32_t count, const vlDirections 
 static inline __attribute__((always_inline)) void refract(const int round, const vlOpticsSurface *surface,
                                                           uint32_t count, Bundle *b) {
   const vlOpticsSurface copy = *surface, *s = &copy;
-  /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) store(b, i, vl_optics_refract(s, round, load(b, i)));
 }
 

@@ -55,12 +55,13 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
   float *dx = r->dx + first, *dy = r->dy + first, *dz = r->dz + first;
   float *t_min = r->t_min + first, *t_max = r->t_max + first, *seconds = r->time + first;
   const double near_z = c->near_plane, far_z = c->far_plane;
-  const int flat = c->ahead && !c->inclined;
+  const double flat = c->ahead && !c->inclined ? 1.0 : 0.0;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlCameraLocal local = {0.0, 0.0, d->dx[i], d->dy[i], d->dz[i]};
     /* perspective directions have z = 1, others unit length: the depth is 1 but for those that have planes */
-    double depth = flat ? (local.dz > 1e-300 ? local.dz : 1e-300) : 1.0;
+    double ahead = local.dz > 1e-300 ? local.dz : 1e-300;
+    double depth = flat * ahead + (1.0 - flat);
     if (lens == DISC) local = vl_lens_apply_at(c, local, vl_lens_disk(lens_u[i], lens_v[i]), depth);
     if (lens == POINTS) local = vl_lens_bend(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
     if (lens == OPTICS) local.ox = d->x[i], local.oy = d->y[i];

@@ -52,13 +52,17 @@ static float studio(vlVec3 d) {
   return y;
 }
 
-static void fill_studio(vlImage *image) {
-  for (uint32_t y = 0; y < image->height; y++) {
-    float *row = vl_image_row(image, y);
-    for (uint32_t x = 0; x < image->width; x++)
-      row[x] = studio(
-          vl_octahedral_decode(((float)x + 0.5f) / (float)image->width, ((float)y + 0.5f) / (float)image->height));
-  }
+static void fill_row(void *user, uint32_t y, uint32_t worker) {
+  (void)worker;
+  vlImage *image = user;
+  float *row = vl_image_row(image, y);
+  for (uint32_t x = 0; x < image->width; x++)
+    row[x] =
+        studio(vl_octahedral_decode(((float)x + 0.5f) / (float)image->width, ((float)y + 0.5f) / (float)image->height));
+}
+
+static void fill_studio(vlScene *scene, vlImage *image) {
+  vl_parallel_for(scene->context, image->height, fill_row, image);
 }
 
 /* Scattered light alone; the sun is a light of its own. */
@@ -178,7 +182,7 @@ bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def, vlEnviro
   vlImage *image = NULL;
   bool ok = true;
   if (kind == VL_ENVIRONMENT_FILE) ok = read_environment(scene, def->path, &image);
-  if (kind == VL_ENVIRONMENT_STUDIO && (ok = new_image(scene, BUILT_IN_SIDE, 1, &image))) fill_studio(image);
+  if (kind == VL_ENVIRONMENT_STUDIO && (ok = new_image(scene, BUILT_IN_SIDE, 1, &image))) fill_studio(scene, image);
   if (kind == VL_ENVIRONMENT_SKY && (ok = new_image(scene, BUILT_IN_SIDE, 3, &image))) fill_sky(image);
   light.image = image;
   ok = ok && vl_scene_add_light(scene, &light).index != 0;

@@ -49,6 +49,24 @@ static bool same_image(const vlWorldImage *a, const vlTextureDef *def) {
          (!a->encoding_given || (a->encoding == def->encoding && a->gamma == def->gamma));
 }
 
+static bool is_covered(const vlImage *image, uint32_t alpha) {
+  for (uint32_t y = 0; y < image->height; y++) {
+    if (image->type == VL_PIXEL_U8) {
+      const uint8_t *row = vl_image_const_row(image, y);
+      uint32_t least = 255;
+      for (uint32_t x = 0; x < image->width; x++) {
+        uint32_t v = row[(size_t)x * image->channels + alpha];
+        least = v < least ? v : least;
+      }
+      if (least < 255) return false;
+      continue;
+    }
+    for (uint32_t x = 0; x < image->width; x++)
+      if (!(vl_image_get(image, x, y, alpha) >= 1.0f)) return false;
+  }
+  return true;
+}
+
 /* Colour and, where it is not 1 everywhere, coverage; grey without. Names decide (EXR sorts its channels). */
 static void choose_channels(const vlImage *image, bool keep_coverage, vlMipmapDef *mip) {
   int r = vl_image_find_channel(image, "R"), g = vl_image_find_channel(image, "G"),
@@ -61,10 +79,7 @@ static void choose_channels(const vlImage *image, bool keep_coverage, vlMipmapDe
     mip->count = a >= 0 && keep_coverage ? 2 : 1;
     return;
   }
-  bool covered = true;
-  for (uint32_t y = 0; a >= 0 && covered && y < vl_image_height(image); y++)
-    for (uint32_t x = 0; covered && x < vl_image_width(image); x++)
-      covered = vl_image_get(image, x, y, (uint32_t)a) >= 1.0f;
+  bool covered = a < 0 || is_covered(image, (uint32_t)a);
   uint32_t channels[4] = {(uint32_t)r, (uint32_t)g, (uint32_t)b, (uint32_t)(a < 0 ? 0 : a)};
   mip->count = a >= 0 && !covered ? 4 : 3;
   memcpy(mip->channel, channels, sizeof channels);

@@ -461,7 +461,7 @@ static void picture_settings(void **state) {
   assert_int_equal(s->height, 720);
   assert_int_equal(s->spp, 16);
   assert_int_equal(s->sampler, VL_SAMPLER_ZSOBOL);
-  assert_int_equal(s->tracer, VL_TRACER_PATH);
+  assert_int_equal(s->tracer, VL_TRACER_VOLPATH);
   assert_int_equal(s->max_depth, 5);
   assert_int_equal(s->filter.kind, VL_PIXEL_FILTER_GAUSSIAN);
   assert_near(s->filter.radius_x, 1.5, 0);
@@ -570,6 +570,44 @@ static void media(void **state) {
   load_fine(&l,
             "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n" W "Shape \"sphere\""); /* nothing lies in it */
   assert_string_equal(l.log, "");
+  end_load(&l);
+  /* Every kind; named before they are made; who lies in them. */
+  load_fine(
+      &l,
+      "MediumInterface \"\" \"air\"\nCamera \"perspective\"\n" W
+      "MakeNamedMedium \"air\" \"string type\" \"homogeneous\" \"string preset\" \"Skin1\" \"float scale\" 2\n"
+      "LightSource \"point\"\nMediumInterface \"grid\" \"air\"\nShape \"sphere\"\n"
+      "AttributeBegin Translate 1 2 3\n"
+      "MakeNamedMedium \"grid\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"integer nz\" 2 \"float density\" "
+      "[1 2 3 4] \"float Lescale\" [5 6 7 8] \"rgb Le\" [1 2 3] \"point3 p0\" [4 5 6] \"float g\" -.5\nAttributeEnd\n"
+      "MakeNamedMedium \"rgb\" \"string type\" \"rgbgrid\" \"rgb sigma_a\" [1 2 3] \"rgb Le\" [3 2 1] \"float "
+      "Lescale\" 7\nMakeNamedMedium \"cloud\" \"string type\" \"cloud\" \"float wispiness\" 3\n"
+      "MediumInterface \"rgb\"\nShape \"disk\"\nMediumInterface \"cloud\" \"cloud\"\nShape \"disk\"\n");
+  const vlMediumDef *m = l.scene->media.items;
+  const vlShapeDef *s = l.scene->shapes.items;
+  assert_int_equal(l.scene->media.count, 4);
+  assert_string_equal(m[0].name, "air");
+  assert_near(m[0].sigma_a.rgb[1], 0.17, 1e-6);
+  assert_near(m[0].sigma_s.rgb[2], 1.01, 1e-6);
+  assert_near(m[0].scale, 2, 0);
+  assert_int_equal(m[1].kind, VL_MEDIUM_GRID);
+  assert_near(m[1].density[3], 4, 0);
+  assert_near(m[1].emission_scales[2], 7, 0);
+  assert_near(m[1].emission.rgb[2], 3, 0);
+  assert_near(m[1].g, -.5, 0);
+  assert_near(m[1].low[0], 1, 0); /* corners sorted */
+  assert_near(m[1].high[2], 6, 0);
+  assert_near(m[1].world_from_medium[11], 3, 0);
+  assert_near(m[2].rgb_a[1], 2, 0);
+  assert_near(m[2].emission_scale, 7, 0);
+  assert_near(m[3].wispiness, 3, 0);
+  assert_int_equal(vl_scene_settings(l.scene)->camera_medium.index, 1);
+  assert_int_equal(l.scene->lights.items[0].medium.index, 1);
+  assert_int_equal(s[0].inside.index, 2);
+  assert_int_equal(s[0].outside.index, 1);
+  assert_int_equal(s[1].inside.index, 3); /* one name stands for both sides */
+  assert_int_equal(s[2].inside.index, 4);
+  assert_int_equal(s[2].outside.index, 4);
   end_load(&l);
 }
 

@@ -1,7 +1,7 @@
 """calibrate_opencv.py VELO FOLDER [CAMERAS [VIEWS]]: OpenCV as the judge of pictures. A chessboard is rendered by velo
 in many views through random distorted cameras (the first is an OpenCV pinhole with 5 coefficients, then a fisheye, 8
 coefficients, in turn); findChessboardCorners, cornerSubPix and calibrateCamera are given nothing but the pictures and
-must find the camera again: RMS <= 0.05 pixels, fx and fy within 0.1 %, cx and cy within 0.1 pixels. Exit 1 when not.
+must find the camera again: RMS <= 0.05 pixels, fx and fy within 0.1 %, cx and cy within 0.1 pixels. Exit 1 when not."""
 import json
 import os
 import subprocess

@@ -243,7 +243,8 @@ static const struct {
     {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"string preset\" \"Whole milk\"",
      "t.pbrt:1:49: MakeNamedMedium \"m\": no preset is named \"Whole milk\" (did you mean \"Wholemilk\"?)"},
     {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float sigma_a\" 1",
-     "t.pbrt:1:49: MakeNamedMedium \"m\": parameter \"sigma_a\" must be of type \"spectrum\" or \"rgb\" or \"blackbody\", not \"float\""},
+     "t.pbrt:1:49: MakeNamedMedium \"m\": parameter \"sigma_a\" must be of type \"spectrum\" or \"rgb\" or "
+     "\"blackbody\", not \"float\""},
     {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [1 -1 1]",
      "t.pbrt:1:49: \"rgb sigma_s\" has a negative value"},
     {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float g\" 2",

@@ -99,11 +99,11 @@ static inline __attribute__((always_inline)) void combine_loop(const vlPrinciple
     float side = l->side[i], inside = l->inside[i], thin = thins[i];
     vlVec3 o = vl_vec3(ox[i], oy[i], l->z[i]), w = vl_vec3(ix[i], iy[i], iz[i] * side);
     int reflect = w.z > 0.0f, valid = (o.z > 0.0f) & (vl_abs(w.z) > 0.0f);
-    Facet facet = base_facet(o, w, ax[i], ay[i], index[i], inside, thin);
+    Facet facet = base_facet(o, w, vl_ggx_alpha(ax[i]), vl_ggx_alpha(ay[i]), index[i], inside, thin);
     float bare = 1.0f - inside, coat_value = 0.0f, coat_pdf = 0.0f; /* layers lie outside */
     if (has_coat) {
       float on = coats[i] * bare;
-      Facet coat = coat_facet(o, w, vl_vec3(cx[i] * side, cy[i] * side, cz[i]), coat_alpha[i]);
+      Facet coat = coat_facet(o, w, vl_vec3(cx[i] * side, cy[i] * side, cz[i]), vl_ggx_alpha(coat_alpha[i]));
       coat_value = on > 0.0f ? coat.value * on : 0.0f; /* rows of other materials may be stale */
       coat_pdf = on > 0.0f ? coat.pdf : 0.0f;
     }
@@ -191,7 +191,7 @@ static __attribute__((noinline)) void choose(const vlPrincipledSlice *s, const v
     float to_diffuse = l->specular[i] + l->diffuse[i], to_coat = to_diffuse + l->coat[i];
     float to_refract = to_coat + l->refract[i], scale = 1.0f;
     if (x < l->specular[i] || (x >= to_coat && x < to_refract)) {
-      vlVec3 h = vl_ggx_sample(o, s->alpha_x[i], s->alpha_y[i], u[k], v[k]);
+      vlVec3 h = vl_ggx_sample(o, vl_ggx_alpha(s->alpha_x[i]), vl_ggx_alpha(s->alpha_y[i]), u[k], v[k]);
       float oh = vl_dot(o, h);
       w = vl_reflect(o, h, oh);
       if (x >= to_coat && thin > 0.0f) w.z = -w.z;
@@ -234,6 +234,7 @@ void VL_HOT(vl_bsdf_principled_sample)(uint32_t n, const vlBsdfParams *params, v
     combine(&s, &lanes, wo, wi, weight, pdf, first);
     for (uint32_t i = 0; i < s.count; i++) {
       uint32_t k = first + i;
+      pdf[k] = pdf[k] > 1e-30f ? pdf[k] : 0.0f;
       float inverse = pdf[k] > 0.0f ? 1.0f / pdf[k] : 0.0f;
       for (int c = 0; c < 4; c++) weight[c][k] *= inverse;
       int below = (wi.z[k] > 0.0f) != (wo.z[k] > 0.0f);

@@ -5,6 +5,14 @@
 
 /* ---- thin film --------------------------------------------------------------------------------------------------- */
 
+/* Two interfaces of one polarisation with all that goes to and fro between them. */
+static float interfere(float first, float second, float phase) {
+  float product = first * second, sum = first * first + second * second + 2.0f * product * phase;
+  float down = 1.0f + product * product + 2.0f * product * phase;
+  float r = sum / vl_max(down, 1e-9f); /* both vanish where two opposite total reflections meet at grazing angles */
+  return vl_clamp(r, 0.0f, 1.0f);
+}
+
 /* Reflection of a film of index n2 and thickness d (nm) over a base that reflects f0 at normal incidence (taken as a
  * dielectric of that index), in air: Airy's sum, both polarisations. Belcour and Barla 2017, "A Practical Extension to
  * Microfacet Theory for the Modeling of Varying Iridescence", for one wavelength: nothing need be integrated. */
@@ -15,10 +23,7 @@ static float airy(float cosine, float n2, float n3, float d, float lambda) {
   float s12 = (cosine - n2 * c2) / (cosine + n2 * c2), p12 = (n2 * cosine - c2) / (n2 * cosine + c2);
   float s23 = (n2 * c2 - n3 * c3) / (n2 * c2 + n3 * c3), p23 = (n3 * c2 - n2 * c3) / (n3 * c2 + n2 * c3);
   float phase = vl_sincos(4.0f * VL_PI * n2 * d * c2 / lambda).cos;
-  float s = s12 * s23, p = p12 * p23;
-  float rs = (s12 * s12 + s23 * s23 + 2.0f * s * phase) / (1.0f + s * s + 2.0f * s * phase);
-  float rp = (p12 * p12 + p23 * p23 + 2.0f * p * phase) / (1.0f + p * p + 2.0f * p * phase);
-  return 0.5f * (rs + rp);
+  return 0.5f * (interfere(s12, s23, phase) + interfere(p12, p23, phase));
 }
 
 /* Wavelengths that stand for R, G, B where there is no spectrum: three a channel, across its sensitivity. */

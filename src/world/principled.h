@@ -72,6 +72,7 @@ static inline float vl_sheen_lambda(float cosine, float alpha) {
 }
 /* f cos_i for cosines > 0; h: cosine of the half vector. */
 static inline float vl_sheen(float o, float i, float h, float alpha) {
+  alpha = alpha > VL_SHEEN_ALPHA ? alpha : VL_SHEEN_ALPHA;
   float inverse = 1.0f / alpha, sin2 = 1.0f - h * h;
   float d = (2.0f + inverse) * vl_pow(sin2 > 1e-12f ? sin2 : 1e-12f, 0.5f * inverse) * (0.5f * VL_INV_PI);
   float g = 1.0f / (1.0f + vl_sheen_lambda(o, alpha) + vl_sheen_lambda(i, alpha));

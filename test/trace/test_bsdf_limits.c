@@ -174,6 +174,16 @@ static void fill(const State *s, Batch *b, statRng *rng) {
     b->alpha_x[j] = stat_bits(rng) & 1 ? stat_float(rng) : pick(rng, alphas, 8);
     b->alpha_y[j] = stat_bits(rng) & 1 ? b->alpha_x[j] : pick(rng, alphas, 8);
     b->eta_s[j] = pick(rng, etas, 7);
+    for (int k = 0; k < VL_PRINCIPLED_ROWS; k++)
+      b->principled[k][j] = stat_bits(rng) & 3 ? stat_float(rng) : (float)(stat_bits(rng) & 1);
+    for (int c = 0; c < 4; c++) b->lambda[c][j] = 360 + 470 * stat_float(rng);
+    b->principled[VL_P_THIN][j] = (float)(stat_bits(rng) & 1);
+    b->principled[VL_P_FILM_INDEX][j] = 1 + stat_float(rng);
+    b->principled[VL_P_FILM_NM][j] = stat_bits(rng) & 3 ? 1000 * stat_float(rng) : 0;
+    double n[3];
+    stat_direction(rng, n);
+    b->principled[VL_P_COAT_X][j] = (float)n[0], b->principled[VL_P_COAT_Y][j] = (float)n[1];
+    b->principled[VL_P_COAT_Z][j] = (float)fabs(n[2]);
     b->coat[j] = s->tables[stat_bits(rng) % 4];
     double o[3], w[3];
     stat_direction(rng, o);
@@ -271,6 +281,8 @@ static void lanes_alone(void **state) {
       uint32_t i = 599 - j;
       for (int d = 0; d < 4; d++)
         c->reflectance[d][j] = b->reflectance[d][i], c->eta[d][j] = b->eta[d][i], c->k[d][j] = b->k[d][i];
+      for (int d = 0; d < 4; d++) c->lambda[d][j] = b->lambda[d][i];
+      for (int r = 0; r < VL_PRINCIPLED_ROWS; r++) c->principled[r][j] = b->principled[r][i];
       c->alpha_x[j] = b->alpha_x[i], c->alpha_y[j] = b->alpha_y[i], c->eta_s[j] = b->eta_s[i], c->coat[j] = b->coat[i];
       c->ox[j] = b->ox[i], c->oy[j] = b->oy[i], c->oz[j] = b->oz[i];
       c->lobe[j] = b->lobe[i], c->u[j] = b->u[i], c->v[j] = b->v[i];

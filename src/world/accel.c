@@ -365,7 +365,10 @@ static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32
     int valid[16] __attribute__((aligned(64)));
     for (uint32_t k = 0; k < 16; k++) {
       uint32_t i = first + k < n ? first + k : n - 1;
-      valid[k] = first + k < n ? -1 : 0;
+      /* Embree takes no rays from beyond its range (nor NaN): they meet nothing. Only cameras stand so far away; the
+       * world itself ends before (shapes.c). */
+      bool near = fabsf(r->ox[i]) < 1.8e18f && fabsf(r->oy[i]) < 1.8e18f && fabsf(r->oz[i]) < 1.8e18f;
+      valid[k] = first + k < n && near ? -1 : 0;
       q.ray.org_x[k] = r->ox[i], q.ray.org_y[k] = r->oy[i], q.ray.org_z[k] = r->oz[i];
       q.ray.dir_x[k] = r->dx[i], q.ray.dir_y[k] = r->dy[i], q.ray.dir_z[k] = r->dz[i];
       q.ray.tnear[k] = r->t_min ? r->t_min[i] : 0.0f;

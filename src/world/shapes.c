@@ -278,6 +278,10 @@ vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *erro
   for (size_t k = 0; k < group_count; k++) set_group_bounds(world, &world->groups.items[k]);
   vlResult r = add_instances(world, scene, error);
   if (r == VL_OK) set_world_bounds(world);
+  for (int i = 0; r == VL_OK && i < 3; i++)
+    if (!(world->bounds_min[i] > -1e18f && world->bounds_max[i] < 1e18f))
+      r = vl_fail(error, VL_ERROR_SCENE, "the scene reaches from %g to %g: rays can be followed to 1e18 at most",
+                  (double)world->bounds_min[i], (double)world->bounds_max[i]);
   world->info.instances = world->instances.count;
   return r;
 }

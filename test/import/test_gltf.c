@@ -445,6 +445,20 @@ static void variants(void **state) {
   free(g);
 }
 
+/* What lies beyond the reach of rays is an error, not a crash. */
+static void too_far(void **state) {
+  (void)state;
+  Gltf *g = new_square();
+  Loaded l;
+  fine(&l, g, SCENE "\"nodes\":[{\"mesh\":0,\"scale\":[1e29,1,1]}]," SQUARE_MESH);
+  vlWorld *world;
+  vlError error;
+  assert_int_equal(vl_world_build(l.scene, NULL, &world, &error), VL_ERROR_SCENE);
+  assert_string_equal(error.message, "the scene reaches from 0 to 1e+29: rays can be followed to 1e18 at most");
+  end_load(&l);
+  free(g);
+}
+
 /* ---- what is wrong is said --------------------------------------------------------------------------------------- */
 
 static void errors(void **state) {
@@ -509,7 +523,7 @@ int main(void) {
       cmocka_unit_test(containers), cmocka_unit_test(arrays),    cmocka_unit_test(modes),
       cmocka_unit_test(poses),      cmocka_unit_test(animation), cmocka_unit_test(morph_and_skin),
       cmocka_unit_test(tangents),   cmocka_unit_test(cameras),   cmocka_unit_test(completion),
-      cmocka_unit_test(variants),   cmocka_unit_test(errors),
+      cmocka_unit_test(variants),   cmocka_unit_test(too_far),   cmocka_unit_test(errors),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -74,7 +74,16 @@ static void fill(Stage *s, const char *picture) {
   vl_scene_add_shape(s->scene, &mesh);
   free(block);
   vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
-  vl_scene_add_shape(s->scene, &ball);
+  const float cells[6] = {1, 2, 3, 4, 5, 6};
+  for (int k = VL_MEDIUM_HOMOGENEOUS; k < VL_MEDIUM_NANOVDB; k++) {
+    vlMediumDef medium = vl_default_medium_def((vlMediumKind)k);
+    medium.sigma_a = vl_spectrum_rgb(1, 2, 3);
+    medium.nx = 2;
+    medium.density = medium.temperature = medium.emission_scales = cells;
+    medium.rgb_a = medium.rgb_emission = cells;
+    ball.inside = vl_scene_add_medium(s->scene, &medium);
+    vl_scene_add_shape(s->scene, &ball);
+  }
   add_point(s, 0, 0, 0, 1);
   vlLightDef sky = vl_default_light_def(VL_LIGHT_INFINITE);
   sky.image = image;

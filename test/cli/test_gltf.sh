@@ -83,25 +83,4 @@ fi
 for file in "$shared"/scenes/gltf/*/*.gl*; do
   check "model_$(basename "$file" | tr ' ' '_')" "$VELO" render "$file" --resolution 16x16 --spp 1 -o model.exr --quiet
 done
-if is_plain_build; then
-  cat >first.py <<'CODE'
-import os, signal, subprocess, sys, time
-program, scene = sys.argv[1:]
-best = 99
-for attempt in range(5):
-    if os.path.exists("first.png"):
-        os.remove("first.png")
-    start = time.monotonic()
-    process = subprocess.Popen([program, "render", scene, "-o", "first.png", "--resolution", "256x256", "--spp", "16777216", "--quiet"])
-    while not os.path.exists("first.png") and time.monotonic() - start < 20:
-        time.sleep(0.002)
-    best = min(best, time.monotonic() - start)
-    process.send_signal(signal.SIGINT)
-    process.wait()
-print("%.3f s" % best)
-sys.exit(best > 0.5)
-CODE
-  run python3 first.py "$VELO" "$shared/scenes/gltf/DamagedHelmet/DamagedHelmet.glb"
-  [ "$code" = 0 ] && pass "first_pass ($out)" || { fail "first_pass (wanted 0.5 s, found $out)"; show first; }
-fi
 finish

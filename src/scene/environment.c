@@ -47,7 +47,7 @@ static float studio(vlVec3 d) {
   y += 4.2f * soft_box(azimuth, elevation, -135, 42, 32, 24, 6);
   y += 1.2f * soft_box(azimuth, elevation, 105, 22, 16, 34, 6);
   y += 2.2f * soft_box(azimuth, elevation, 38, 38, 16, 16, 5);
-  y += 1.3f * soft_box(azimuth, elevation, -52, 24, 9, 30, 5);
+  y += 1.3f * soft_box(azimuth, elevation, -52, 42, 12, 24, 5);
   y += 1.2f * ramp(elevation, 66, 76);
   return y;
 }

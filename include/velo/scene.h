@@ -309,8 +309,14 @@ typedef enum vlShapeKind {
   VL_SHAPE_BILINEAR,
   VL_SHAPE_SPHERE,
   VL_SHAPE_DISK,
-  VL_SHAPE_CYLINDER
+  VL_SHAPE_CYLINDER,
+  VL_SHAPE_CURVES /* hairs and the like: cubic Bezier segments with a width */
 } vlShapeKind;
+typedef enum vlCurveKind {
+  VL_CURVE_FLAT,     /* faces every ray */
+  VL_CURVE_CYLINDER, /* so does this one, with the normal of a tube */
+  VL_CURVE_RIBBON    /* lies across its normals */
+} vlCurveKind;
 
 typedef struct vlShapeDef {
   uint32_t cookie;
@@ -344,6 +350,13 @@ typedef struct vlShapeDef {
   double times[2]; /* default 0, 1 */
   /* sphere, disk, cylinder: pbrt's, z axis, book 6.2-6.4; angles in radians */
   float radius, inner_radius, z_min, z_max, height, phi_max;
+  /* curves: `faces` segments, the 4 Bezier points of each in positions (vertices = 4 faces). They cannot glow. Of a
+   * picture's coordinates u goes along a segment, v from one side to the other. Ribbons: normals at both ends of each
+   * segment (6 numbers a face). Segments are cut into 2^split_depth pieces for speed, fewer where there are millions;
+   * the picture does not depend on it. */
+  vlCurveKind curve;
+  const float *widths;  /* 2 a face, at its ends, in shape space */
+  uint32_t split_depth; /* default 3 */
 } vlShapeDef;
 VL_API vlShapeDef vl_default_shape_def(vlShapeKind kind);
 /* Errors (sticky): index out of range, position or normal that is not finite (the vertex is named), radius <= 0 ... */

@@ -395,6 +395,7 @@ static bool finish(vlImport *import) {
     return vl_import_fail(import, VL_ERROR_SCENE, top->place, "%s is never closed",
                           top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
   }
+  if (!vl_import_flush_curves(import)) return false;
   for (uint32_t i = 0; i < import->textures.count; i++)
     if (!vl_import_finish_texture(import, i)) return false;
   for (uint32_t i = 0; i < import->materials.count; i++)
@@ -430,6 +431,7 @@ static void release(vlImport *import) {
   VL_ARRAY_FREE(context, &import->stack);
   VL_ARRAY_FREE(context, &import->matrices);
   VL_ARRAY_FREE(context, &import->moving);
+  vl_import_free_curves(import);
   VL_ARRAY_FREE(context, &import->object_list);
   VL_ARRAY_FREE(context, &import->links);
   VL_ARRAY_FREE(context, &import->medium_links);

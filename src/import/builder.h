@@ -95,6 +95,17 @@ typedef struct vlMediumLink {
   vlSource place;
 } vlMediumLink;
 
+/* Curves that become one shape, while they are gathered. */
+typedef struct vlCurveRun {
+  bool open;
+  vlShapeDef def;
+  vlShapeLink link;
+  const char *inside, *outside; /* media */
+  VL_ARRAY(float) points;
+  VL_ARRAY(float) widths;
+  VL_ARRAY(float) normals;
+} vlCurveRun;
+
 /* Shapes under an animated transform. */
 typedef struct vlMovingGroup {
   vlGroupId group, object; /* object: the one they are part of, 0: none */
@@ -137,6 +148,7 @@ struct vlImport {
   VL_ARRAY(vlMediumLink) medium_links;
   double times[2]; /* of the two current transforms, seconds */
   VL_ARRAY(vlMovingGroup) moving;
+  vlCurveRun curves;
   uint32_t depth; /* of textures or materials that resolve each other */
 };
 enum { VL_IMPORT_DEPTH = 200 };
@@ -204,6 +216,11 @@ bool vl_import_material_id(vlImport *import, const char *name, vlSource place, v
 bool vl_import_light(vlImport *import, const vlStatement *s);
 bool vl_import_area_light(vlImport *import, const vlStatement *s);
 bool vl_import_shape(vlImport *import, const vlStatement *s);
+/* The def's arrays are given away. */
+bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link);
+bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link);
+bool vl_import_flush_curves(vlImport *import); /* before any other shape, and at the end */
+void vl_import_free_curves(vlImport *import);
 bool vl_import_medium(vlImport *import, const vlStatement *s);
 /* The media of the current state are those of a shape ('s'), a light ('l'), the camera ('c'). */
 bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource place);

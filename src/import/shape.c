@@ -7,10 +7,9 @@
 #include "import/ply.h"
 
 static const double degrees = 0.017453292519943295;
-static const char *const kinds[] = {"trianglemesh", "bilinearmesh", "plymesh",   "sphere",
-                                    "disk",         "cylinder",     "loopsubdiv"};
-static const char *const later[] = {"curve"};
-enum { KINDS = 7, LATER = 1, TRIANGLES = 0, BILINEAR = 1, PLY = 2, SPHERE = 3, DISK = 4, CYLINDER = 5, LOOP = 6 };
+static const char *const kinds[] = {"trianglemesh", "bilinearmesh", "plymesh",    "sphere",
+                                    "disk",         "cylinder",     "loopsubdiv", "curve"};
+enum { KINDS = 8, TRIANGLES = 0, BILINEAR, PLY, SPHERE, DISK, CYLINDER, LOOP, CURVE };
 
 /* Takes the array out of the parameter: a block of the context without slack. */
 static bool take_floats(vlImport *import, vlParam *p, const float **result) {
@@ -160,8 +159,7 @@ static bool read_quadric(vlDict *dict, vlShapeDef *def, int kind) {
 
 /* ---- shapes enter ----------------------------------------------------------------------------------------------- */
 
-/* The def's arrays are given away. */
-static bool add(vlImport *import, const vlShapeDef *def, const vlShapeLink *link) {
+bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link) {
   vlShapeId id = vl_scene_adopt_shape(import->scene, def);
   if (!id.index) return false;
   if (!link->material && !link->material_name && !link->alpha) return true;
@@ -218,7 +216,7 @@ static bool add_ply(vlImport *import, vlPlyMesh *mesh, const vlShapeDef *base, c
   def.kind = mesh->triangles ? VL_SHAPE_TRIANGLES : VL_SHAPE_BILINEAR;
   def.faces = mesh->triangles ? mesh->triangles : mesh->quads;
   def.indices = mesh->triangles ? mesh->triangle_indices : mesh->quad_indices;
-  return add(import, &def, link);
+  return vl_import_add_shape(import, &def, link);
 }
 
 /* Alpha: a number, or a float texture that is looked up at the end. */
@@ -254,11 +252,10 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
   for (int i = 0; i < KINDS; i++)
     if (strcmp(s->names[0], kinds[i]) == 0) kind = i;
   if (kind < 0)
-    return vl_import_unknown(import, s->place, "shape", s->names[0], kinds, KINDS, later,
-                             LATER); /* permissive: left out */
+    return vl_import_unknown(import, s->place, "shape", s->names[0], kinds, KINDS, NULL, 0); /* permissive: left out */
   static const vlShapeKind shape_kinds[KINDS] = {VL_SHAPE_TRIANGLES, VL_SHAPE_BILINEAR, VL_SHAPE_TRIANGLES,
                                                  VL_SHAPE_SPHERE,    VL_SHAPE_DISK,     VL_SHAPE_CYLINDER,
-                                                 VL_SHAPE_TRIANGLES};
+                                                 VL_SHAPE_TRIANGLES, VL_SHAPE_CURVES};
   vlShapeDef def = vl_default_shape_def(shape_kinds[kind]);
   vlShapeLink link = {.material = import->state.material,
                       .material_name = import->state.material_name,
@@ -280,6 +277,8 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
     vl_import_warn(import, VL_LOG_WARNING, s->place, "an area light that moves (ActiveTransform) gives no light");
     def.emission.index = 0;
   }
+  if (kind == CURVE) return vl_import_curve(&dict, &def, &link);
+  if (!vl_import_flush_curves(import)) return false;
   size_t before = import->scene->shapes.count;
   if (kind == PLY) {
     vlPlyMesh mesh = {0};
@@ -289,7 +288,7 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
               : kind >= SPHERE ? read_quadric(&dict, &def, kind)
                                : read_mesh(&dict, &def, kind == TRIANGLES ? 3 : 4);
   fine = fine && vl_dict_done(&dict);
-  if (fine) return add(import, &def, &link) && note_media(import, before, s->place);
+  if (fine) return vl_import_add_shape(import, &def, &link) && note_media(import, before, s->place);
   free_arrays(import, &def);
   return false;
 }

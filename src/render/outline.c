@@ -90,14 +90,27 @@ static void add_round(Points *p, const vlWorldShape *s) {
   }
 }
 
+/* The corners of the boxes of its pieces. */
+static void add_curves(Points *p, const vlWorldShape *s) {
+  for (uint32_t i = 0; i < s->faces; i++) {
+    float low[3], high[3];
+    vl_world_prim_bounds(s, i, low, high);
+    for (int c = 0; c < 8; c++)
+      add(p, (double)(c & 1 ? low : high)[0], (double)(c & 2 ? low : high)[1], (double)(c & 4 ? low : high)[2]);
+  }
+}
+
 static void add_shape(Points *p, const vlWorldShape *s, float time) {
-  if (s->kind == VL_SHAPE_TRIANGLES || s->kind == VL_SHAPE_BILINEAR)
+  if (s->kind == VL_SHAPE_CURVES)
+    add_curves(p, s);
+  else if (s->kind == VL_SHAPE_TRIANGLES || s->kind == VL_SHAPE_BILINEAR)
     add_vertices(p, s, time);
   else
     add_round(p, s);
 }
 
 uint64_t vl_box_points(const vlWorldShape *s) {
+  if (s->kind == VL_SHAPE_CURVES) return 8 * (uint64_t)s->faces;
   return s->kind == VL_SHAPE_TRIANGLES || s->kind == VL_SHAPE_BILINEAR ? s->vertices : (uint64_t)RINGS * AROUND;
 }
 

@@ -145,6 +145,7 @@ vlShapeDef vl_default_shape_def(vlShapeKind kind) {
       .z_max = 1.0f,
       .phi_max = 2.0f * 3.14159265358979f,
       .times = {0.0, 1.0},
+      .split_depth = 3,
   };
   memcpy(def.group_from_shape, identity, sizeof identity);
   return def;

@@ -82,6 +82,21 @@ static bool check_mesh(vlScene *scene, const vlShapeDef *d) {
          check_floats(scene, d, d->more_uvs[2], 2, "uv of set 3") && check_colors(scene, d) && check_motion(scene, d);
 }
 
+static bool check_curves(vlScene *scene, const vlShapeDef *d) {
+  if (d->faces == 0 || !d->positions || !d->widths) return bad(scene, d, "curves have no segments"), false;
+  if (d->faces > 0x1fffffff || d->vertices != 4 * d->faces)
+    return bad(scene, d, "curves need four points for each segment"), false;
+  if (d->curve > VL_CURVE_RIBBON) return bad(scene, d, "unknown kind of curves"), false;
+  if (d->curve == VL_CURVE_RIBBON && !d->normals) return bad(scene, d, "ribbons need normals"), false;
+  if (d->emission.index) return bad(scene, d, "curves cannot be area lights"), false;
+  if (first_not_finite(d->widths, 2 * (size_t)d->faces) < 2 * (size_t)d->faces ||
+      (d->normals && first_not_finite(d->normals, 6 * (size_t)d->faces) < 6 * (size_t)d->faces))
+    return bad(scene, d, "a width or normal of a curve is not finite"), false;
+  for (size_t i = 0; i < 2 * (size_t)d->faces; i++)
+    if (d->widths[i] < 0.0f) return bad(scene, d, "a curve's width is negative"), false;
+  return check_floats(scene, d, d->positions, 3, "position");
+}
+
 static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
   const float numbers[] = {d->radius, d->inner_radius, d->z_min, d->z_max, d->height, d->phi_max};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
@@ -121,6 +136,7 @@ static bool check_shape(vlScene *scene, const vlShapeDef *d) {
     case VL_SHAPE_SPHERE:
     case VL_SHAPE_DISK:
     case VL_SHAPE_CYLINDER: return check_quadric(scene, d);
+    case VL_SHAPE_CURVES: return check_curves(scene, d);
   }
   return bad(scene, d, "unknown kind of shape"), false;
 }
@@ -138,7 +154,16 @@ static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
 }
 
 static void drop_unused(vlShapeDef *d) {
+  if (d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR) d->widths = NULL;
   if (d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR) return;
+  if (d->kind == VL_SHAPE_CURVES) {
+    if (d->curve != VL_CURVE_RIBBON) d->normals = NULL;
+    d->tangents = d->uvs = d->positions_close = d->normals_close = NULL;
+    d->tangent_signs = d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = NULL;
+    d->indices = NULL;
+    return;
+  }
+  d->widths = NULL;
   d->vertices = d->faces = 0;
   d->positions = d->normals = d->tangents = d->uvs = d->positions_close = d->normals_close = NULL;
   d->tangent_signs = d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = NULL;
@@ -156,14 +181,16 @@ vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
   drop_unused(&d);
   if (!vl_scene_copy_source(scene, &d.source) || !check_shape(scene, &d)) return none;
   size_t v = d.vertices, per = d.kind == VL_SHAPE_TRIANGLES ? 3 : 4;
+  size_t normals = d.kind == VL_SHAPE_CURVES ? 2 * (size_t)d.faces : v;
   if (!vl_scene_copy_block(scene, d.positions, v, 3 * sizeof(float), &d.positions) ||
-      !vl_scene_copy_block(scene, d.normals, v, 3 * sizeof(float), &d.normals) ||
+      !vl_scene_copy_block(scene, d.normals, normals, 3 * sizeof(float), &d.normals) ||
       !vl_scene_copy_block(scene, d.tangents, v, 3 * sizeof(float), &d.tangents) ||
       !vl_scene_copy_block(scene, d.uvs, v, 2 * sizeof(float), &d.uvs) ||
       !vl_scene_copy_block(scene, d.positions_close, v, 3 * sizeof(float), &d.positions_close) ||
       !vl_scene_copy_block(scene, d.normals_close, v, 3 * sizeof(float), &d.normals_close) ||
       !vl_scene_copy_block(scene, d.tangent_signs, v, sizeof(float), &d.tangent_signs) ||
       !vl_scene_copy_block(scene, d.colors, v, 4 * sizeof(float), &d.colors) ||
+      !vl_scene_copy_block(scene, d.widths, 2 * (size_t)d.faces, sizeof(float), &d.widths) ||
       !vl_scene_copy_block(scene, d.indices, d.faces, per * sizeof(uint32_t), &d.indices))
     return none;
   for (int k = 0; k < 3; k++)
@@ -175,10 +202,10 @@ vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def) {
   vlShapeDef d = *def;
   bool fine = scene->error.code == VL_OK && d.cookie == VL_COOKIE_SHAPE && vl_scene_copy_source(scene, &d.source) &&
               check_shape(scene, &d);
-  enum { BLOCKS = 12 };
-  const void *blocks[BLOCKS] = {d.positions, d.normals,         d.tangents,      d.uvs,
-                                d.indices,   d.positions_close, d.normals_close, d.tangent_signs,
-                                d.colors,    d.more_uvs[0],     d.more_uvs[1],   d.more_uvs[2]};
+  enum { BLOCKS = 13 };
+  const void *blocks[BLOCKS] = {d.positions,       d.normals,       d.tangents,      d.uvs,    d.indices,
+                                d.positions_close, d.normals_close, d.tangent_signs, d.colors, d.more_uvs[0],
+                                d.more_uvs[1],     d.more_uvs[2],   d.widths};
   for (int i = 0; i < BLOCKS; i++) {
     void *block;
     memcpy(&block, &blocks[i],

@@ -229,7 +229,7 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
     if (vl_length2(to) > radius * radius * 1.0001f) {
       Sample r = sample_cone(center, radius, vl_shape_reversed(s), from, u, v);
       if (with_uv) { /* uv by way of the shape */
-        vlShapeHit hit = {0, 0, 0, {0, 0, 0}};
+        vlShapeHit hit = {.t = 0};
         vlSurfacePoint point;
         for (int i = 0; i < 3; i++)
           hit.p[i] = s->to_shape[4 * i] * r.p.x + s->to_shape[4 * i + 1] * r.p.y + s->to_shape[4 * i + 2] * r.p.z +

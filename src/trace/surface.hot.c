@@ -181,6 +181,12 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   return r;
 }
 
+/* How far from the surface the point's own error may put a ray that leaves it. */
+static float point_error(const vlSurfacePoint *q) {
+  return (float)(__builtin_fabs(q->n[0]) * q->error[0] + __builtin_fabs(q->n[1]) * q->error[1] +
+                 __builtin_fabs(q->n[2]) * q->error[2]);
+}
+
 static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, vlVec3 o, vlVec3 d) {
   out->px[i] = (float)q->p[0], out->py[i] = (float)q->p[1], out->pz[i] = (float)q->p[2];
   out->gx[i] = (float)q->n[0], out->gy[i] = (float)q->n[1], out->gz[i] = (float)q->n[2];
@@ -191,7 +197,8 @@ static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, vlV
   out->u[i] = q->uv[0], out->v[i] = q->uv[1];
   vlVec3 p = vl_vec3(out->px[i], out->py[i], out->pz[i]);
   out->t[i] = vl_dot(vl_sub(p, o), d);
-  out->offset[i] = 2.0f * GAMMA(7) * (vl_abs(out->gx[i] * p.x) + vl_abs(out->gy[i] * p.y) + vl_abs(out->gz[i] * p.z));
+  out->offset[i] = 2.0f * GAMMA(7) * (vl_abs(out->gx[i] * p.x) + vl_abs(out->gy[i] * p.y) + vl_abs(out->gz[i] * p.z)) +
+                   point_error(q);
   float l = vl_length(vl_vec3(out->ux[i], out->uy[i], out->uz[i]));
   out->uv_scale[i] = l > 0.0f ? 1.0f / l : 0.0f;
 }
@@ -223,6 +230,9 @@ static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vl
     r.dpdu[i] =
         (double)m[4 * i] * point.dpdu[0] + (double)m[4 * i + 1] * point.dpdu[1] + (double)m[4 * i + 2] * point.dpdu[2];
     r.n[i] = (double)w[i] * point.n[0] + (double)w[4 + i] * point.n[1] + (double)w[8 + i] * point.n[2];
+    r.error[i] = __builtin_fabs((double)m[4 * i]) * point.error[0] +
+                 __builtin_fabs((double)m[4 * i + 1]) * point.error[1] +
+                 __builtin_fabs((double)m[4 * i + 2]) * point.error[2];
     r.ns[i] = (double)w[i] * point.ns[0] + (double)w[4 + i] * point.ns[1] + (double)w[8 + i] * point.ns[2];
   }
   double ln = __builtin_sqrt(r.n[0] * r.n[0] + r.n[1] * r.n[1] + r.n[2] * r.n[2]);
@@ -352,6 +362,7 @@ vlPoint VL_HOT(vl_point_at_time)(const vlWorld *world, float time, vlVec3 o, vlV
   r.n = vl_vec3((float)q.ns[0], (float)q.ns[1], (float)q.ns[2]);
   r.u = q.uv[0], r.v = q.uv[1];
   r.t = vl_dot(vl_sub(r.p, o), d);
-  r.offset = 2.0f * GAMMA(7) * (vl_abs(r.g.x * r.p.x) + vl_abs(r.g.y * r.p.y) + vl_abs(r.g.z * r.p.z));
+  r.offset =
+      2.0f * GAMMA(7) * (vl_abs(r.g.x * r.p.x) + vl_abs(r.g.y * r.p.y) + vl_abs(r.g.z * r.p.z)) + point_error(&q);
   return r;
 }

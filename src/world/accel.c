@@ -233,7 +233,7 @@ static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, Acce
     if (s->alpha >= 0 || s->one_sided || s->pass_shadow)
       rtcSetGeometryOccludedFilterFunction(geometry, filter_occluded);
   } else {
-    rtcSetGeometryUserPrimitiveCount(geometry, s->kind == VL_SHAPE_BILINEAR ? s->faces : 1);
+    rtcSetGeometryUserPrimitiveCount(geometry, s->faces);
     rtcSetGeometryBoundsFunction(geometry, user_bounds, NULL);
     rtcSetGeometryIntersectFunction(geometry, user_intersect);
     rtcSetGeometryOccludedFunction(geometry, user_occluded);

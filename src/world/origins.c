@@ -14,6 +14,7 @@ static const char *shape_type(vlShapeKind kind) {
     case VL_SHAPE_SPHERE: return "sphere";
     case VL_SHAPE_DISK: return "disk";
     case VL_SHAPE_CYLINDER: return "cylinder";
+    case VL_SHAPE_CURVES: return "curves";
   }
   return "shape";
 }

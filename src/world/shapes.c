@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "math/transform.h"
 #include "scene/scene.h"
+#include "world/curve.h"
 #include "world/moving.h"
 #include "world/surface_point.h"
 #include "world/world.h"
@@ -172,6 +173,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef
   store_affine_d(&inverse, s->to_shape);
   if (def->kind == VL_SHAPE_TRIANGLES || def->kind == VL_SHAPE_BILINEAR)
     return move_mesh(world, def, &m, &inverse, s, error);
+  if (def->kind == VL_SHAPE_CURVES && !vl_curve_copy(world, def, s)) return vl_fail_memory(error);
   return VL_OK;
 }
 
@@ -183,7 +185,14 @@ static void grow_bounds(float low[3], float high[3], const float p[3]) {
 }
 
 static void shape_bounds(const vlWorldShape *s, float low[3], float high[3]) {
-  if (s->positions) {
+  if (s->kind == VL_SHAPE_CURVES) {
+    for (uint32_t i = 0; i < s->faces; i++) {
+      float a[3], b[3];
+      vl_world_prim_bounds(s, i, a, b);
+      grow_bounds(low, high, a);
+      grow_bounds(low, high, b);
+    }
+  } else if (s->positions) {
     for (size_t i = 0; i < (size_t)s->steps * s->vertices; i++) grow_bounds(low, high, s->positions + 3 * i);
   } else {
     float a[3], b[3];

@@ -2,6 +2,9 @@
  * of all. */
 #include "world/surface_point.h"
 
+#include <string.h>
+
+#include "world/curve.h"
 #include "world/double3.h"
 #include "world/patch.h"
 #include "world/quadric.h"
@@ -18,19 +21,27 @@ void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]) 
 bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3], const double d[3], double t_min,
                         double t_max, vlShapeHit *hit) {
   hit->a = hit->b = 0;
+  if (shape->kind == VL_SHAPE_CURVES) return vl_curve_intersect(shape, prim, o, d, t_min, t_max, hit);
   return shape->kind == VL_SHAPE_BILINEAR ? vl_patch_intersect(shape, prim, o, d, t_min, t_max, hit)
                                           : vl_quadric_intersect(shape, o, d, t_min, t_max, hit);
 }
 
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
-  if (shape->kind == VL_SHAPE_BILINEAR)
+  memset(point->error, 0, sizeof point->error);
+  if (shape->kind == VL_SHAPE_CURVES)
+    vl_curve_point(shape, prim, hit, point);
+  else if (shape->kind == VL_SHAPE_BILINEAR)
     vl_patch_point(shape, prim, hit->a, hit->b, point);
   else
     vl_quadric_point(shape, hit->p, point);
 }
 
 void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
-  if (shape->kind == VL_SHAPE_BILINEAR)
+  memset(point->error, 0, sizeof point->error);
+  *pdf = 0;
+  if (shape->kind == VL_SHAPE_CURVES)
+    vl_curve_middle(shape, prim, point);
+  else if (shape->kind == VL_SHAPE_BILINEAR)
     vl_patch_sample(shape, prim, u, v, point, pdf);
   else
     vl_quadric_sample(shape, u, v, point, pdf);
@@ -76,7 +87,9 @@ void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3]
       lo[i] = x < lo[i] ? x : lo[i];
       hi[i] = x > hi[i] ? x : hi[i];
     }
-  if (!corners) {
+  if (shape->kind == VL_SHAPE_CURVES) {
+    vl_curve_bounds(shape, prim, lo, hi);
+  } else if (!corners) {
     double r = shape->radius;
     double z0 = shape->kind == VL_SHAPE_DISK ? shape->height : shape->z_min;
     double z1 = shape->kind == VL_SHAPE_DISK ? shape->height : shape->z_max;

@@ -1,5 +1,5 @@
-/* world/surface_point.h: sphere, disk, cylinder and bilinear patch: where a ray meets them, what the surface is like
- * there, and points spread over them by area. Double inside; scalar: such shapes are few. Triangles live in trace
+/* world/surface_point.h: sphere, disk, cylinder, bilinear patch and curve: where a ray meets them, what the surface is
+ * like there, and points spread over them by area. Double inside; scalar: such shapes are few. Triangles live in trace
  * (batches). Conventions (parametrisation, normals): pbrt book 6.2-6.4 and 6.6. */
 #ifndef WORLD_SURFACE_POINT_H
 #define WORLD_SURFACE_POINT_H
@@ -8,8 +8,9 @@
 
 typedef struct vlShapeHit {
   double t;    /* along the (not normalised) ray */
-  double a, b; /* bilinear: patch parameters; else unused */
+  double a, b; /* bilinear patches, curves: parameters; else unused */
   double p[3]; /* shape space */
+  double d[3]; /* curves: the ray's direction in shape space, unit */
 } vlShapeHit;
 
 /* A ray of the world in the space of an instance's group; t stays what it is. */
@@ -25,6 +26,7 @@ typedef struct vlSurfacePoint {
   double n[3];  /* geometric normal */
   double ns[3]; /* shading normal: vertex normals interpolated, else n */
   double dpdu[3];
+  double error[3]; /* of curves, how far off p may be along each axis; else 0: rounding alone */
   float uv[2];
 } vlSurfacePoint;
 /* Does the outward normal of a sphere, disk or cylinder point inwards: reverse orientation alone, see surface_point.c.

@@ -114,8 +114,8 @@ printf '%s\n' 'format unknown' >scene.obj2
 wrong 3 unknown_suffix '.*scene\.obj2' scene.obj2
 
 # What is not there yet: an error with its place, or a warning.
-scene medium.pbrt 'Shape "curve" "point3 P" [0 0 0 1 0 0 2 0 0 3 0 0]' "$sphere"
-wrong 3 not_there_yet 'medium\.pbrt:3:[0-9]+: .*curve' medium.pbrt
+scene medium.pbrt 'Shape "heightfield" "integer nu" 3' "$sphere"
+wrong 3 not_there_yet 'medium\.pbrt:3:[0-9]+: .*heightfield' medium.pbrt
 check permissive "$VELO" render medium.pbrt --permissive --spp 1 --resolution 16x16 -o permissive.exr
 expect_text permissive_warns "velo: warning: medium.pbrt:3:"
 finish

@@ -126,7 +126,19 @@ static const struct {
      "t.pbrt:3:1: material \"a\" is made a second time (first in line 2)"},
     {W "NamedMaterial \"wals\" Shape \"sphere\" MakeNamedMaterial \"walls\" \"string type\" \"diffuse\"",
      "t.pbrt:2:1: there is no material \"wals\" (did you mean \"walls\"?)"},
-    {W "Shape \"curve\" \"point3 P\" [0 0 0]", "t.pbrt:2:1: shape \"curve\" is not understood yet"},
+    {W "Shape \"curve\" \"point3 P\" [0 0 0]",
+     "t.pbrt:2:15: Shape \"curve\": 1 points, but Bezier curves of degree 3 need 4, or that and a multiple of "
+     "the degree"},
+    {W "Shape \"curve\"", "t.pbrt:2:1: Shape \"curve\": \"point3 P\" is missing"},
+    {W "Shape \"curve\" \"integer degree\" 4", "t.pbrt:2:1: Shape \"curve\": the degree must be 2 or 3, not 4"},
+    {W "Shape \"curve\" \"string type\" \"ribon\"",
+     "t.pbrt:2:15: Shape \"curve\": \"type\" cannot be \"ribon\" (did you mean \"ribbon\"?)"},
+    {W "Shape \"curve\" \"string type\" \"ribbon\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]",
+     "t.pbrt:2:1: Shape \"curve\": ribbons need \"normal N\""},
+    {W "Shape \"curve\" \"string basis\" \"bspline\" \"point3 P\" [0 0 0 1 0 0 2 0 0]",
+     "t.pbrt:2:40: Shape \"curve\": 3 points, but a B-spline of degree 3 needs at least 4"},
+    {W "Shape \"curve\" \"float width0\" -1 \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]",
+     "t.pbrt:2:1: Shape \"curve\": a width must not be negative"},
     {W "Shape \"spere\"", "t.pbrt:2:1: unknown shape \"spere\" (did you mean \"sphere\"?)"},
     {W "Texture \"a\" \"spectrum\" \"ptex\"", "t.pbrt:2:1: texture \"ptex\" is not understood yet"},
     {W "Texture \"a\" \"colour\" \"constant\"",
@@ -309,7 +321,7 @@ static void permissive(void **state) {
       &l,
       "Film \"gbuffer\" \"string coordinatesystem\" \"camera\"\nCamera \"future\" \"string lensfile\" \"wide.dat\"\n"
       "Integrator \"bdpt\" \"integer maxdepth\" 9\nOption \"forcediffuse\" true\nSampler \"future\" \"integer n\" 1\n" W
-      "Material \"subsurface\" \"rgb mfp\" [1 1 1]\nShape \"sphere\"\nShape \"curve\" \"point3 P\" [0 0 0]\n"
+      "Material \"subsurface\" \"rgb mfp\" [1 1 1]\nShape \"sphere\"\nShape \"heightfield\"\n"
       "LightSource \"projection\"\nTexture \"t\" \"spectrum\" \"ptex\"\nMaterial \"diffuse\" \"texture reflectance\" "
       "\"t\"\n"
       "MakeNamedMedium \"m\" \"string type\" \"smoke\"\nMediumInterface \"m\"\nActiveTransform EndTime Translate 1 1 "
@@ -322,11 +334,16 @@ static void permissive(void **state) {
   assert_int_equal(info.lights, 0);
   assert_int_equal(vl_scene_settings(l.scene)->max_depth, 9);
   assert_int_equal(l.scene->materials.items[l.scene->shapes.items[0].material.index - 1].kind, VL_MATERIAL_DIFFUSE);
-  const char *said[] = {"warning t.pbrt:1:1: film \"gbuffer\"",  "warning t.pbrt:2:1: unknown camera",
-                        "warning t.pbrt:3:1: integrator",        "warning t.pbrt:4:1: Option",
-                        "warning t.pbrt:5:1: unknown sampler",   "warning t.pbrt:7:1: material \"subsurface\"",
-                        "warning t.pbrt:9:1: shape \"curve\"",   "warning t.pbrt:10:1: light \"projection\"",
-                        "warning t.pbrt:11:1: texture \"ptex\"", "warning t.pbrt:13:1: unknown medium type"};
+  const char *said[] = {"warning t.pbrt:1:1: film \"gbuffer\"",
+                        "warning t.pbrt:2:1: unknown camera",
+                        "warning t.pbrt:3:1: integrator",
+                        "warning t.pbrt:4:1: Option",
+                        "warning t.pbrt:5:1: unknown sampler",
+                        "warning t.pbrt:7:1: material \"subsurface\"",
+                        "warning t.pbrt:9:1: unknown shape \"heigh",
+                        "warning t.pbrt:10:1: light \"projection\"",
+                        "warning t.pbrt:11:1: texture \"ptex\"",
+                        "warning t.pbrt:13:1: unknown medium type"};
   for (size_t i = 0; i < sizeof said / sizeof *said; i++) {
     if (!strstr(l.log, said[i])) print_message("not said: %s\nbut:\n%s", said[i], l.log);
     assert_non_null(strstr(l.log, said[i]));

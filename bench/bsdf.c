@@ -28,6 +28,8 @@ const vlBsdfKernels vl_bsdf_kernels_one;
 #include "../src/trace/bsdf_conductor.hot.c"
 #include "../src/trace/bsdf_dielectric.hot.c"
 #include "../src/trace/bsdf_diffuse.hot.c"
+#include "../src/trace/bsdf_layered.hot.c"
+#include "../src/trace/bsdf_translucent.hot.c"
 #define slice_of principled_slice_of /* the coat's file has functions of these names, too */
 #define look_up principled_look_up
 #define weigh principled_weigh
@@ -77,7 +79,8 @@ static void pass(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, u
                     .alpha_x = IN(12),
                     .alpha_y = IN(13),
                     .eta_s = IN(14),
-                    .coat = a->coat + first};
+                    .coat = a->coat + first,
+                    .seed = a->flags + first};
   for (int j = 0; j < VL_PRINCIPLED_ROWS; j++) p.principled[j] = a->principled[j] + first;
   vlBsdfDirections wo = {IN(15), IN(16), IN(17)}, wi = {IN(18), IN(19), IN(20)}, out = {OUT(0), OUT(1), OUT(2)};
   float *value[4] = {OUT(3), OUT(4), OUT(5), OUT(6)}, *weight[4] = {OUT(8), OUT(9), OUT(10), OUT(11)};
@@ -132,7 +135,9 @@ int main(int argc, char **argv) {
               {"thin dielectric", VL_BSDF_THIN_DIELECTRIC, coat},
               {"coated diffuse", VL_BSDF_COATED_DIFFUSE, coat},
               {"coated, textured", VL_BSDF_COATED_DIFFUSE, rough},
-              {"principled", VL_BSDF_PRINCIPLED, coat}};
+              {"principled", VL_BSDF_PRINCIPLED, coat},
+              {"diffuse transmission", VL_BSDF_DIFFUSE_TRANSMISSION, coat},
+              {"layered", VL_BSDF_LAYERED, coat}};
   printf("ns a lane, batches of %u; alpha 0.1; \"one\": one lane at a time, SSE4.2 without vectors\n", n);
   printf("%-18s %-8s %8s", "", "", "one");
   for (int isa = 2; isa <= (int)vl_isa_best(); isa++) printf("%8s%d", "v", isa);

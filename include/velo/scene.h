@@ -169,6 +169,8 @@ typedef enum vlMaterialKind {
   VL_MATERIAL_THIN_DIELECTRIC,
   VL_MATERIAL_MIX,
   VL_MATERIAL_PRINCIPLED, /* many layers in one: glTF's metallic-roughness with its extensions */
+  VL_MATERIAL_DIFFUSE_TRANSMISSION,
+  VL_MATERIAL_COATED_CONDUCTOR,
   VL_MATERIAL_INTERFACE
 } vlMaterialKind;
 
@@ -205,19 +207,23 @@ typedef struct vlMaterialDef {
   const char *name;
   vlSource source;
   vlMaterialKind kind;
-  vlSpectrumInput reflectance; /* diffuse, coated diffuse; conductor when use_reflectance */
+  vlSpectrumInput reflectance; /* diffuse, coated diffuse, diffuse transmission; metals when use_reflectance */
   bool use_reflectance;
   vlFloatInput u_roughness, v_roughness;
   bool remap_roughness;        /* alpha = sqrt(roughness), pbrt book 9.6 */
-  vlSpectrumInput eta, k;      /* conductor: both; dielectrics and coat: eta (no texture) */
-  vlFloatInput thickness, g;   /* coat; thickness not textured, g is not needed while albedo is 0 */
-  vlSpectrumInput albedo;      /* coat's medium: 0 (else vl_world_build says that it is not understood yet) */
-  uint32_t max_depth, samples; /* coat: bounces inside; samples is pbrt's, here they are summed into a table */
+  vlSpectrumInput eta, k;      /* metals: both; dielectrics and the coat of what is diffuse: eta (no texture) */
+  vlFloatInput thickness, g;   /* coat; thickness not textured over what is diffuse */
+  vlSpectrumInput albedo;      /* of the coat's medium; 0: it absorbs only */
+  uint32_t max_depth, samples; /* coat: bounces inside; random walks for each look at it, where it takes walks */
   vlFloatInput amount;         /* mix: share of the second */
   vlMaterialId materials[2];
   vlFloatInput displacement; /* bump map; texture index 0: none */
   const char *normal_map;    /* path, null: none; linear, tangent space */
   vlPrincipledDef principled;
+  vlSpectrumInput transmittance;                   /* diffuse transmission */
+  float scale;                                     /* diffuse transmission: on both */
+  vlFloatInput coat_u_roughness, coat_v_roughness; /* coated conductor: of the coat; the others are the metal's */
+  vlSpectrumInput coat_eta;                        /* no texture */
 } vlMaterialDef;
 VL_API vlMaterialDef vl_default_material_def(vlMaterialKind kind);
 VL_API vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def);
@@ -312,6 +318,7 @@ typedef enum vlShapeKind {
   VL_SHAPE_CYLINDER,
   VL_SHAPE_CURVES /* hairs and the like: cubic Bezier segments with a width */
 } vlShapeKind;
+
 typedef enum vlCurveKind {
   VL_CURVE_FLAT,     /* faces every ray */
   VL_CURVE_CYLINDER, /* so does this one, with the normal of a tube */

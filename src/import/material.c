@@ -5,14 +5,16 @@
 
 #include "import/builder.h"
 
-static const char *const kinds[] = {"diffuse", "coateddiffuse", "conductor",  "dielectric", "thindielectric",
-                                    "mix",     "interface",     "principled", "",           "none"};
-static const vlMaterialKind kind_values[] = {VL_MATERIAL_DIFFUSE,    VL_MATERIAL_COATED_DIFFUSE,  VL_MATERIAL_CONDUCTOR,
-                                             VL_MATERIAL_DIELECTRIC, VL_MATERIAL_THIN_DIELECTRIC, VL_MATERIAL_MIX,
-                                             VL_MATERIAL_INTERFACE,  VL_MATERIAL_PRINCIPLED,      VL_MATERIAL_INTERFACE,
-                                             VL_MATERIAL_INTERFACE};
-static const char *const later[] = {"coatedconductor", "diffusetransmission", "hair", "measured", "subsurface"};
-enum { KINDS = sizeof kinds / sizeof *kinds, NAMES = 8, LATER = sizeof later / sizeof *later };
+static const char *const kinds[] = {"diffuse", "coateddiffuse", "conductor",  "dielectric",          "thindielectric",
+                                    "mix",     "interface",     "principled", "diffusetransmission", "coatedconductor",
+                                    "",        "none"};
+static const vlMaterialKind kind_values[] = {
+    VL_MATERIAL_DIFFUSE,          VL_MATERIAL_COATED_DIFFUSE,  VL_MATERIAL_CONDUCTOR,
+    VL_MATERIAL_DIELECTRIC,       VL_MATERIAL_THIN_DIELECTRIC, VL_MATERIAL_MIX,
+    VL_MATERIAL_INTERFACE,        VL_MATERIAL_PRINCIPLED,      VL_MATERIAL_DIFFUSE_TRANSMISSION,
+    VL_MATERIAL_COATED_CONDUCTOR, VL_MATERIAL_INTERFACE,       VL_MATERIAL_INTERFACE};
+static const char *const later[] = {"hair", "measured", "subsurface"};
+enum { KINDS = sizeof kinds / sizeof *kinds, NAMES = KINDS - 2, LATER = sizeof later / sizeof *later };
 
 bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface) {
   uint32_t index;
@@ -31,42 +33,82 @@ bool vl_import_material_id(vlImport *import, const char *name, vlSource place, v
   return true;
 }
 
-/* uroughness and vroughness, each falling back on roughness. */
-static bool read_roughness(vlDict *dict, vlMaterialDef *def) {
+/* The ways to name roughness: of both directions, and of each, which fall back on it. */
+static const char *const plain_roughness[3] = {"roughness", "uroughness", "vroughness"};
+static const char *const metal_roughness[3] = {"conductor.roughness", "conductor.uroughness", "conductor.vroughness"};
+static const char *const coat_roughness[3] = {"interface.roughness", "interface.uroughness", "interface.vroughness"};
+
+static bool read_rough(vlDict *dict, const char *const names[3], vlFloatInput *u, vlFloatInput *v) {
   vlFloatInput both = vl_float_input(0.0f);
-  bool u = false, v = false;
-  if (!vl_import_float_input(dict, "uroughness", &def->u_roughness, &u) ||
-      !vl_import_float_input(dict, "vroughness", &def->v_roughness, &v) ||
-      !vl_import_float_input(dict, "roughness", &both, NULL))
+  bool has_u = false, has_v = false;
+  if (!vl_import_float_input(dict, names[1], u, &has_u) || !vl_import_float_input(dict, names[2], v, &has_v) ||
+      !vl_import_float_input(dict, names[0], &both, NULL))
     return false;
-  if (!u) def->u_roughness = both;
-  if (!v) def->v_roughness = both;
+  if (!has_u) *u = both;
+  if (!has_v) *v = both;
+  return true;
+}
+
+static bool read_roughness(vlDict *dict, vlMaterialDef *def) {
+  if (!read_rough(dict, plain_roughness, &def->u_roughness, &def->v_roughness)) return false;
   vl_dict_bool(dict, "remaproughness", &def->remap_roughness);
   return true;
 }
 
 /* An index of refraction: a number or a spectrum, not a texture. */
-static bool read_eta(vlDict *dict, vlMaterialDef *def) {
-  vlParam *p = vl_dict_find(dict, "eta", VL_BIT_FLOAT | VL_BITS_SPECTRUM);
+static bool read_index(vlDict *dict, const char *name, vlSpectrumInput *input) {
+  vlParam *p = vl_dict_find(dict, name, VL_BIT_FLOAT | VL_BITS_SPECTRUM);
   if (!p) return dict->import->scene->error.code == VL_OK;
-  def->eta = (vlSpectrumInput){0};
-  if (p->type != VL_PARAM_FLOAT) return vl_import_spectrum(dict->import, p, &def->eta.value);
+  *input = (vlSpectrumInput){0};
+  if (p->type != VL_PARAM_FLOAT) return vl_import_spectrum(dict->import, p, &input->value);
   float eta = 1.5f;
-  bool given = vl_dict_float(dict, "eta", &eta);
-  def->eta.value = vl_spectrum_constant(eta);
+  bool given = vl_dict_float(dict, name, &eta);
+  input->value = vl_spectrum_constant(eta);
   return given;
 }
 
-static bool read_conductor(vlDict *dict, vlMaterialDef *def) {
+static bool read_eta(vlDict *dict, vlMaterialDef *def) {
+  return read_index(dict, "eta", &def->eta);
+}
+
+static bool read_metal(vlDict *dict, vlMaterialDef *def, const char *eta_name, const char *k_name) {
   bool eta, k;
-  if (!vl_import_spectrum_input(dict, "eta", &def->eta, false, &eta) ||
-      !vl_import_spectrum_input(dict, "k", &def->k, false, &k) ||
+  if (!vl_import_spectrum_input(dict, eta_name, &def->eta, false, &eta) ||
+      !vl_import_spectrum_input(dict, k_name, &def->k, false, &k) ||
       !vl_import_spectrum_input(dict, "reflectance", &def->reflectance, true, &def->use_reflectance))
     return false;
   if (def->use_reflectance && (eta || k))
     return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
-                          "%s: give either \"reflectance\" or \"eta\" and \"k\", not both", dict->what);
-  return read_roughness(dict, def);
+                          "%s: give either \"reflectance\" or \"%s\" and \"%s\", not both", dict->what, eta_name,
+                          k_name);
+  return true;
+}
+
+static bool read_conductor(vlDict *dict, vlMaterialDef *def) {
+  return read_metal(dict, def, "eta", "k") && read_roughness(dict, def);
+}
+
+/* What lies between a coat and its base. */
+static bool read_medium(vlDict *dict, vlMaterialDef *def) {
+  return vl_import_float_input(dict, "thickness", &def->thickness, NULL) &&
+         vl_import_float_input(dict, "g", &def->g, NULL) &&
+         vl_import_spectrum_input(dict, "albedo", &def->albedo, true, NULL) &&
+         (vl_dict_count(dict, "maxdepth", 1, &def->max_depth), vl_dict_count(dict, "nsamples", 1, &def->samples),
+          dict->import->scene->error.code == VL_OK);
+}
+
+static bool read_coated_conductor(vlDict *dict, vlMaterialDef *def) {
+  vl_dict_bool(dict, "remaproughness", &def->remap_roughness);
+  return read_metal(dict, def, "conductor.eta", "conductor.k") &&
+         read_rough(dict, metal_roughness, &def->u_roughness, &def->v_roughness) &&
+         read_rough(dict, coat_roughness, &def->coat_u_roughness, &def->coat_v_roughness) &&
+         read_index(dict, "interface.eta", &def->coat_eta) && read_medium(dict, def);
+}
+
+static bool read_diffuse_transmission(vlDict *dict, vlMaterialDef *def) {
+  vl_dict_float(dict, "scale", &def->scale);
+  return vl_import_spectrum_input(dict, "reflectance", &def->reflectance, true, NULL) &&
+         vl_import_spectrum_input(dict, "transmittance", &def->transmittance, true, NULL);
 }
 
 static bool read_mix(vlDict *dict, vlMaterialDef *def) {
@@ -90,11 +132,7 @@ static bool read_mix(vlDict *dict, vlMaterialDef *def) {
 
 static bool read_coat(vlDict *dict, vlMaterialDef *def) {
   return vl_import_spectrum_input(dict, "reflectance", &def->reflectance, true, NULL) && read_roughness(dict, def) &&
-         vl_import_float_input(dict, "thickness", &def->thickness, NULL) && read_eta(dict, def) &&
-         vl_import_float_input(dict, "g", &def->g, NULL) &&
-         vl_import_spectrum_input(dict, "albedo", &def->albedo, true, NULL) &&
-         (vl_dict_count(dict, "maxdepth", 1, &def->max_depth), vl_dict_count(dict, "nsamples", 1, &def->samples),
-          dict->import->scene->error.code == VL_OK);
+         read_eta(dict, def) && read_medium(dict, def);
 }
 
 /* Bumps: what every surface but a mix may have. */
@@ -132,6 +170,12 @@ static bool read_material(vlDict *dict, vlMaterialDef *def) {
       break;
     case VL_MATERIAL_PRINCIPLED:
       if (!vl_import_principled(dict, def)) return false;
+      break;
+    case VL_MATERIAL_DIFFUSE_TRANSMISSION:
+      if (!read_diffuse_transmission(dict, def)) return false;
+      break;
+    case VL_MATERIAL_COATED_CONDUCTOR:
+      if (!read_coated_conductor(dict, def)) return false;
       break;
     case VL_MATERIAL_INTERFACE: break;
   }

@@ -203,9 +203,12 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   if (d.kind != VL_MATERIAL_MIX) d.materials[0].index = d.materials[1].index = 0;
   bool dielectric = d.kind == VL_MATERIAL_DIELECTRIC || d.kind == VL_MATERIAL_THIN_DIELECTRIC ||
                     d.kind == VL_MATERIAL_COATED_DIFFUSE || d.kind == VL_MATERIAL_PRINCIPLED;
+  if (d.coat_eta.texture.index) return bad(scene, at, "coat's eta", "index of refraction cannot be textured"), none;
   if (dielectric && d.eta.texture.index) return bad(scene, at, "eta", "index of refraction cannot be textured"), none;
-  if (d.kind == VL_MATERIAL_COATED_DIFFUSE && (d.max_depth == 0 || d.samples == 0))
-    return bad(scene, at, "coated diffuse material", "max depth and samples must be at least 1"), none;
+  bool coated = d.kind == VL_MATERIAL_COATED_DIFFUSE || d.kind == VL_MATERIAL_COATED_CONDUCTOR;
+  if (coated && (d.max_depth == 0 || d.samples == 0))
+    return bad(scene, at, "coated material", "max depth and samples must be at least 1"), none;
+  if (!isfinite(d.scale) || d.scale < 0.0f) return bad(scene, at, "material", "its scale makes no sense"), none;
   if (d.kind != VL_MATERIAL_PRINCIPLED) d.principled = vl_default_material_def(VL_MATERIAL_DIFFUSE).principled;
   if (!take_principled(scene, &d.principled, at)) return none;
   if (!vl_scene_copy_source(scene, &d.source) || !take_spectrum(scene, &d.reflectance, at, "reflectance") ||
@@ -213,7 +216,11 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
       !take_spectrum(scene, &d.eta, at, "eta") || !take_spectrum(scene, &d.k, at, "k") ||
       !take_float(scene, &d.thickness, at, "thickness") || !take_float(scene, &d.g, at, "g") ||
       !take_spectrum(scene, &d.albedo, at, "albedo") || !take_float(scene, &d.amount, at, "amount") ||
-      !take_float(scene, &d.displacement, at, "displacement") || !vl_scene_copy_string(scene, &d.name) ||
+      !take_float(scene, &d.displacement, at, "displacement") ||
+      !take_spectrum(scene, &d.transmittance, at, "transmittance") ||
+      !take_float(scene, &d.coat_u_roughness, at, "coat's u roughness") ||
+      !take_float(scene, &d.coat_v_roughness, at, "coat's v roughness") ||
+      !take_spectrum(scene, &d.coat_eta, at, "coat's eta") || !vl_scene_copy_string(scene, &d.name) ||
       !vl_scene_copy_string(scene, &d.normal_map))
     return none;
   vlMaterialDef *slot = VL_PUSH(scene->context, &scene->materials);

@@ -105,9 +105,13 @@ vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
       .samples = 1,
       .amount = vl_float_input(0.5f),
       .principled = principled(),
+      .transmittance = vl_spectrum_input(vl_spectrum_constant(0.25f)),
+      .scale = 1.0f,
+      .coat_eta = vl_spectrum_input(vl_spectrum_constant(1.5f)),
   };
+  if (kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) def.reflectance = vl_spectrum_input(vl_spectrum_constant(0.25f));
   if (kind == VL_MATERIAL_PRINCIPLED) def.reflectance = vl_spectrum_input(vl_spectrum_constant(1.0f));
-  if (kind == VL_MATERIAL_CONDUCTOR) {
+  if (kind == VL_MATERIAL_CONDUCTOR || kind == VL_MATERIAL_COATED_CONDUCTOR) {
     def.eta = vl_spectrum_input(vl_spectrum_named("metal-Cu-eta"));
     def.k = vl_spectrum_input(vl_spectrum_named("metal-Cu-k"));
   }

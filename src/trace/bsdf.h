@@ -19,6 +19,8 @@ typedef enum vlBsdfKind {
   VL_BSDF_THIN_DIELECTRIC,
   VL_BSDF_COATED_DIFFUSE, /* rough or smooth dielectric coat over a diffuse base, table of its transmittances */
   VL_BSDF_PRINCIPLED,     /* many layers: docs/principled.md */
+  VL_BSDF_DIFFUSE_TRANSMISSION,
+  VL_BSDF_LAYERED, /* rough or smooth dielectric coat over metal or a diffuse base, by random walks between them */
   VL_BSDF_KINDS
 } vlBsdfKind;
 
@@ -45,6 +47,19 @@ enum {
   VL_PRINCIPLED_ROWS
 };
 
+/* Other kinds use the same rows for parameters of their own. */
+enum { VL_T_TRANSMITTANCE /* 4 */ };
+enum {
+  VL_L_METAL, /* 1: the base is metal of eta, k (over the coat's index); 0: diffuse, of reflectance */
+  VL_L_BASE_X,
+  VL_L_BASE_Y, /* alpha of the metal; that of the coat is alpha_x, alpha_y */
+  VL_L_THICKNESS,
+  VL_L_G,
+  VL_L_ALBEDO,
+  VL_L_DEPTH = VL_L_ALBEDO + 4, /* steps of a walk */
+  VL_L_WALKS
+};
+
 enum {
   VL_SAMPLED_SPECULAR = 1,     /* delta: eval knows nothing of it */
   VL_SAMPLED_TRANSMISSION = 2, /* wi on the other side of the surface */
@@ -59,6 +74,7 @@ typedef struct vlBsdfParams {
   float *eta_s;             /* dielectric, thin, coat */
   const vlCoatTable **coat; /* coated diffuse */
   float *principled[VL_PRINCIPLED_ROWS];
+  const uint32_t *seed;   /* layered: of the walks' random numbers */
   const float *lambda[4]; /* principled: wavelengths, nm; null in RGB mode */
 } vlBsdfParams;
 

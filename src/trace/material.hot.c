@@ -85,7 +85,8 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
     for (int c = 0; c < 4; c++)
       for (uint32_t i = first; i < last; i++) shade->reflectance[c][i] = vl_clamp(shade->reflectance[c][i], 0.0f, 1.0f);
   }
-  if (m->kind == VL_MATERIAL_CONDUCTOR && m->use_reflectance) {
+  bool metal = m->kind == VL_MATERIAL_CONDUCTOR || m->kind == VL_MATERIAL_COATED_CONDUCTOR;
+  if (metal && m->use_reflectance) {
     /* eta = 1, k = 2 sqrt(R / (1 - R)) reflects R straight on (pbrt book 9.3.6's convention of the conductor material).
      */
     for (int c = 0; c < 4; c++)
@@ -102,6 +103,8 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
     roughness(&r, m, m->u_roughness, shade->alpha_x);
     roughness(&r, m, m->v_roughness, shade->alpha_y);
   }
+  if (m->layers) VL_HOT(vl_stage_layers)(&r, m);
+  if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) VL_HOT(vl_stage_translucent)(&r, m);
   for (uint32_t i = first; i < last && m->kind != VL_MATERIAL_PRINCIPLED; i++) {
     shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
     shade->coat[i] = m->coat;

@@ -4,13 +4,15 @@
 
 /* ---- runs of one BSDF -------------------------------------------------------------------------------------------- */
 
-static vlBsdfKind bsdf_kind(vlMaterialKind kind) {
-  switch (kind) {
+static vlBsdfKind bsdf_kind(const vlWorldMaterial *m) {
+  if (m->layers) return VL_BSDF_LAYERED;
+  switch (m->kind) {
     case VL_MATERIAL_CONDUCTOR: return VL_BSDF_CONDUCTOR;
     case VL_MATERIAL_DIELECTRIC: return VL_BSDF_DIELECTRIC;
     case VL_MATERIAL_THIN_DIELECTRIC: return VL_BSDF_THIN_DIELECTRIC;
     case VL_MATERIAL_COATED_DIFFUSE: return VL_BSDF_COATED_DIFFUSE;
     case VL_MATERIAL_PRINCIPLED: return VL_BSDF_PRINCIPLED;
+    case VL_MATERIAL_DIFFUSE_TRANSMISSION: return VL_BSDF_DIFFUSE_TRANSMISSION;
     default: return VL_BSDF_DIFFUSE;
   }
 }
@@ -23,8 +25,8 @@ typedef struct Run {
 } Run;
 
 static Run next_kind(const vlWorld *world, const vlHits *h, uint32_t first, uint32_t n) {
-  Run r = {bsdf_kind(world->materials.items[h->material[first]].kind), first, first + 1};
-  while (r.last < n && bsdf_kind(world->materials.items[h->material[r.last]].kind) == r.kind) r.last++;
+  Run r = {bsdf_kind(&world->materials.items[h->material[first]]), first, first + 1};
+  while (r.last < n && bsdf_kind(&world->materials.items[h->material[r.last]]) == r.kind) r.last++;
   return r;
 }
 
@@ -42,6 +44,7 @@ static vlBsdfParams params_of(vlTracing *t, uint32_t first) {
   p.alpha_y = s->alpha_y + first;
   p.eta_s = s->eta_s + first;
   p.coat = s->coat + first;
+  p.seed = s->seed + first;
   return p;
 }
 

@@ -56,6 +56,10 @@ static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vl
   return at;
 }
 
+/* Rows of the materials with walks between layers (after their textured eta, k and roughness), and of those that let
+ * diffuse light through (after their reflectance). */
+void VL_HOT(vl_stage_layers)(vlTextureRun *r, const vlWorldMaterial *m);
+void VL_HOT(vl_stage_translucent)(vlTextureRun *r, const vlWorldMaterial *m);
 /* The principled material's rows of a run; the coat's normal stays in the world until there are frames. */
 void VL_HOT(vl_stage_principled)(vlTextureRun *r, const vlWorldMaterial *m);
 void VL_HOT(vl_stage_coat_frames)(const vlSurface *surface, vlShade *shade, uint32_t first, uint32_t last);

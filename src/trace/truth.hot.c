@@ -91,7 +91,7 @@ static void keep_frames(vlTruthScratch *s, uint32_t n, bool back) {
 /* Reflectance of one lane at channel c: conductors straight on; what lets light through reflects or transmits all. */
 static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, int c, uint32_t i) {
   if (m->reflectance >= 0) return sh->reflectance[c][i];
-  if (m->kind != VL_MATERIAL_CONDUCTOR) return 1.0f;
+  if (m->kind != VL_MATERIAL_CONDUCTOR && m->kind != VL_MATERIAL_COATED_CONDUCTOR) return 1.0f;
   float n = sh->eta[c][i], k = sh->k[c][i];
   return ((n - 1.0f) * (n - 1.0f) + k * k) / ((n + 1.0f) * (n + 1.0f) + k * k);
 }

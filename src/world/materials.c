@@ -18,7 +18,6 @@ static float alpha_of(float roughness, bool remap) {
 /* The coat's table: shared between materials with the same numbers. */
 static vlResult coat_of(vlWorld *world, const vlMaterialDef *def, vlWorldMaterial *m, vlError *error) {
   float thickness = def->thickness.value, low, high;
-  if (def->thickness.texture.index) return fail(def, error, "a textured thickness of the coat is not supported");
   const vlTextureNode *u = &world->nodes.items[m->u_roughness], *v = &world->nodes.items[m->v_roughness];
   if (u->kind == VL_NODE_FLOAT && v->kind == VL_NODE_FLOAT) {
     low = high = sqrtf(alpha_of(u->value, m->remap) * alpha_of(v->value, m->remap));
@@ -42,20 +41,29 @@ static vlResult coat_of(vlWorld *world, const vlMaterialDef *def, vlWorldMateria
   return VL_OK;
 }
 
-static vlResult dielectric_eta(vlWorld *world, const vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
-                               vlError *error) {
-  if (def->eta.texture.index) return fail(def, error, "a textured index of refraction is not supported");
+/* A coat whose medium does not scatter, of one thickness. */
+static bool in_closed_form(const vlMaterialDef *def) {
+  const vlSpectrum *a = &def->albedo.value;
+  float grey = 0;
+  bool black = (vl_spectrum_is_constant(a, &grey) && grey == 0) ||
+               (a->kind == VL_SPECTRUM_RGB && a->rgb[0] == 0 && a->rgb[1] == 0 && a->rgb[2] == 0);
+  return !def->albedo.texture.index && black && !def->thickness.texture.index;
+}
+
+static vlResult dielectric_eta(vlWorld *world, const vlScene *scene, const vlMaterialDef *def,
+                               const vlSpectrumInput *eta, vlWorldMaterial *m, vlError *error) {
+  if (eta->texture.index) return fail(def, error, "a textured index of refraction is not supported");
   float value;
-  if (vl_spectrum_is_constant(&def->eta.value, &value)) {
+  if (vl_spectrum_is_constant(&eta->value, &value)) {
     if (!(value > 0) || !isfinite(value)) return fail(def, error, "the index of refraction must be a positive number");
     m->eta_s = value;
     return VL_OK;
   }
-  if (def->kind == VL_MATERIAL_COATED_DIFFUSE || def->kind == VL_MATERIAL_THIN_DIELECTRIC ||
-      world->def.color == VL_COLOR_RGB) {
+  if (def->kind == VL_MATERIAL_COATED_DIFFUSE || def->kind == VL_MATERIAL_COATED_CONDUCTOR ||
+      def->kind == VL_MATERIAL_THIN_DIELECTRIC || world->def.color == VL_COLOR_RGB) {
     /* One number stands for the glass: the index at the sodium line, as catalogues give it. */
     float dense[VL_LAMBDA_COUNT];
-    vlResult r = vl_spectrum_dense(&def->eta.value, VL_ROLE_UNBOUNDED, dense, error);
+    vlResult r = vl_spectrum_dense(&eta->value, VL_ROLE_UNBOUNDED, dense, error);
     if (r != VL_OK) return r;
     m->eta_s = vl_dense_at(dense, 589.3f);
     if (!(m->eta_s > 0)) return fail(def, error, "the index of refraction must be positive");
@@ -67,40 +75,44 @@ static vlResult dielectric_eta(vlWorld *world, const vlScene *scene, const vlMat
   }
   m->dispersive = true;
   m->eta_s = 1.5f;
-  return vl_world_spectrum_node(world, scene, def->eta, VL_ROLE_UNBOUNDED, &m->eta, error);
+  return vl_world_spectrum_node(world, scene, *eta, VL_ROLE_UNBOUNDED, &m->eta, error);
 }
 
 static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMaterialDef *def, vlError *error) {
   vlWorldMaterial material, *m = &material;
   memset(m, 0, sizeof *m);
   m->kind = def->kind;
-  m->reflectance = m->eta = m->k = m->u_roughness = m->v_roughness = m->amount = m->displacement = m->normal_map = -1;
+  m->reflectance = m->eta = m->k = m->u_roughness = m->v_roughness = m->amount = m->displacement = m->normal_map =
+      m->transmittance = -1;
   m->remap = def->remap_roughness;
   m->eta_s = 1.5f;
   vlResult r = VL_OK;
-  bool rough = def->kind == VL_MATERIAL_CONDUCTOR || def->kind == VL_MATERIAL_DIELECTRIC ||
-               def->kind == VL_MATERIAL_COATED_DIFFUSE;
+  bool metal = def->kind == VL_MATERIAL_CONDUCTOR || def->kind == VL_MATERIAL_COATED_CONDUCTOR;
+  bool rough = metal || def->kind == VL_MATERIAL_DIELECTRIC || def->kind == VL_MATERIAL_COATED_DIFFUSE;
   if (def->kind == VL_MATERIAL_DIFFUSE || def->kind == VL_MATERIAL_COATED_DIFFUSE ||
-      (def->kind == VL_MATERIAL_CONDUCTOR && def->use_reflectance))
+      def->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION || (metal && def->use_reflectance))
     r = vl_world_spectrum_node(world, scene, def->reflectance, VL_ROLE_ALBEDO, &m->reflectance, error);
   m->use_reflectance = def->use_reflectance;
   if (r == VL_OK && rough) r = vl_world_float_node(world, scene, def->u_roughness, &m->u_roughness, error);
   if (r == VL_OK && rough) r = vl_world_float_node(world, scene, def->v_roughness, &m->v_roughness, error);
-  if (r == VL_OK && def->kind == VL_MATERIAL_CONDUCTOR && !def->use_reflectance) {
+  if (r == VL_OK && metal && !def->use_reflectance) {
     r = vl_world_spectrum_node(world, scene, def->eta, VL_ROLE_UNBOUNDED, &m->eta, error);
     if (r == VL_OK) r = vl_world_spectrum_node(world, scene, def->k, VL_ROLE_UNBOUNDED, &m->k, error);
   }
   if (r == VL_OK && (def->kind == VL_MATERIAL_DIELECTRIC || def->kind == VL_MATERIAL_THIN_DIELECTRIC ||
                      def->kind == VL_MATERIAL_COATED_DIFFUSE))
-    r = dielectric_eta(world, scene, def, m, error);
-  if (r == VL_OK && def->kind == VL_MATERIAL_COATED_DIFFUSE) {
-    float albedo = 0;
-    if (def->albedo.texture.index || !vl_spectrum_is_constant(&def->albedo.value, &albedo) || albedo != 0)
-      if (!(def->albedo.value.kind == VL_SPECTRUM_RGB && def->albedo.value.rgb[0] == 0 &&
-            def->albedo.value.rgb[1] == 0 && def->albedo.value.rgb[2] == 0))
-        return fail(def, error, "a scattering layer in the coat (albedo above 0) is not understood yet");
-    r = coat_of(world, def, m, error);
+    r = dielectric_eta(world, scene, def, &def->eta, m, error);
+  if (r == VL_OK && def->kind == VL_MATERIAL_COATED_CONDUCTOR)
+    r = dielectric_eta(world, scene, def, &def->coat_eta, m, error);
+  if (r == VL_OK && def->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) {
+    m->scale = def->scale;
+    r = vl_world_spectrum_node(world, scene, def->transmittance, VL_ROLE_ALBEDO, &m->transmittance, error);
   }
+  if (r == VL_OK &&
+      (def->kind == VL_MATERIAL_COATED_CONDUCTOR || (def->kind == VL_MATERIAL_COATED_DIFFUSE && !in_closed_form(def))))
+    r = vl_world_layers(world, scene, def, m, error);
+  else if (r == VL_OK && def->kind == VL_MATERIAL_COATED_DIFFUSE)
+    r = coat_of(world, def, m, error);
   if (def->kind == VL_MATERIAL_PRINCIPLED) r = vl_world_principled(world, scene, def, m, error);
   if (r == VL_OK && def->kind == VL_MATERIAL_MIX) {
     m->mix[0] = def->materials[0].index, m->mix[1] = def->materials[1].index;

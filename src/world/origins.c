@@ -28,6 +28,8 @@ static const char *material_type(vlMaterialKind kind) {
     case VL_MATERIAL_THIN_DIELECTRIC: return "thindielectric";
     case VL_MATERIAL_MIX: return "mix";
     case VL_MATERIAL_PRINCIPLED: return "principled";
+    case VL_MATERIAL_DIFFUSE_TRANSMISSION: return "diffusetransmission";
+    case VL_MATERIAL_COATED_CONDUCTOR: return "coatedconductor";
     case VL_MATERIAL_INTERFACE: return "interface";
   }
   return "material";

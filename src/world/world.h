@@ -74,6 +74,14 @@ typedef struct vlWorldPrincipled {
   bool has_coat, has_sheen, has_film, has_anisotropy, has_through;
 } vlWorldPrincipled;
 
+/* A coat over metal, or one that scatters over what is diffuse: looked at by random walks. Spectrum and float nodes. */
+typedef struct vlWorldLayers {
+  bool metal;
+  int32_t albedo, thickness, g;
+  int32_t coat_u, coat_v; /* of metal; else the material's own roughness is the coat's */
+  uint32_t depth, walks;
+} vlWorldLayers;
+
 typedef struct vlWorldMaterial {
   vlMaterialKind kind;
   int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
@@ -88,6 +96,9 @@ typedef struct vlWorldMaterial {
   bool owns_coat;
   uint32_t coat_depth;
   const vlWorldPrincipled *principled; /* null for other kinds */
+  int32_t transmittance;               /* diffuse transmission: spectrum node; and the factor on both */
+  float scale;
+  const vlWorldLayers *layers; /* null: none, or in closed form */
 } vlWorldMaterial;
 
 /* ---- lights ------------------------------------------------------------------------------------------------------ */
@@ -177,6 +188,8 @@ int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *give
                            float gamma, bool pyramid, vlError *error);
 vlResult vl_world_principled(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
                              vlError *error);
+vlResult vl_world_layers(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
+                         vlError *error);
 /* Reads the scene's pictures on all workers; errors are left to who asks for the picture. */
 vlResult vl_world_preload_images(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_materials(vlWorld *world, const struct vlScene *scene, vlError *error);

@@ -13,6 +13,7 @@ typedef struct Batch {
   float reflectance[4][BATCH], eta[4][BATCH], k[4][BATCH], alpha_x[BATCH], alpha_y[BATCH], eta_s[BATCH];
   const vlCoatTable *coat[BATCH];
   float principled[VL_PRINCIPLED_ROWS][BATCH], lambda[4][BATCH];
+  uint32_t seed[BATCH];
   float ox[BATCH], oy[BATCH], oz[BATCH], ix[BATCH], iy[BATCH], iz[BATCH], lobe[BATCH], u[BATCH], v[BATCH];
   float value[4][BATCH], pdf[BATCH], weight[4][BATCH], scale[BATCH];
   uint32_t flags[BATCH];
@@ -32,6 +33,7 @@ static inline vlBsdfParams batch_params(Batch *b) {
   p.alpha_x = b->alpha_x, p.alpha_y = b->alpha_y, p.eta_s = b->eta_s, p.coat = b->coat;
   for (int k = 0; k < VL_PRINCIPLED_ROWS; k++) p.principled[k] = b->principled[k];
   for (int c = 0; c < 4; c++) p.lambda[c] = b->lambda[c];
+  p.seed = b->seed;
   return p;
 }
 static inline void batch_surface(Batch *b, uint32_t i, const Surface *s) {

@@ -45,7 +45,10 @@ static int teardown(void **state) {
   return 0;
 }
 
-enum { SURFACES = 15 };
+static const float through[VL_PRINCIPLED_ROWS] = {
+    [VL_T_TRANSMITTANCE] = 0.5f, [VL_T_TRANSMITTANCE + 1] = 0.2f, [VL_T_TRANSMITTANCE + 2] = 0.4f};
+
+enum { SURFACES = 16 };
 static Surface surface(const State *s, int i) {
   const Surface all[SURFACES] = {
       {.kind = VL_BSDF_DIFFUSE, .reflectance = 0.7f},
@@ -75,6 +78,7 @@ static Surface surface(const State *s, int i) {
        .alpha_x = 0.1f,
        .alpha_y = 0.4f,
        .coat = s->varied},
+      {.kind = VL_BSDF_DIFFUSE_TRANSMISSION, .reflectance = 0.3f, .principled = through},
       /* for the tests that do not integrate over the sphere */
       {.kind = VL_BSDF_CONDUCTOR, .eta = 0.2f, .k = 3.9f, .alpha_x = 0.01f, .alpha_y = 0.02f},
       {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f, .alpha_x = 0.01f, .alpha_y = 0.02f},
@@ -86,7 +90,7 @@ static Surface surface(const State *s, int i) {
        .coat = s->varied}};
   return all[i];
 }
-enum { INTEGRABLE = 12 };
+enum { INTEGRABLE = 13 };
 static const double thetas[] = {0.2, 1.0, 1.4, PI - 0.5, PI - 1.2};
 enum { THETAS = 5 };
 static const double wo_phi = 0.7;

@@ -68,7 +68,10 @@ static void white_furnace(void **state) {
   vlCoatTable *clear, *dense;
   assert_int_equal(vl_coat_build(s->context, 1.5f, 0.0f, 1000, 0, 0, &clear), VL_OK);
   assert_int_equal(vl_coat_build(s->context, 2.4f, 0.0f, 1000, 0, 0, &dense), VL_OK);
+  float through[VL_PRINCIPLED_ROWS] = {0};
+  for (int c = 0; c < 4; c++) through[VL_T_TRANSMITTANCE + c] = 0.7f;
   const Surface lossless[] = {
+      {.kind = VL_BSDF_DIFFUSE_TRANSMISSION, .reflectance = 0.3f, .principled = through},
       {.kind = VL_BSDF_DIFFUSE, .reflectance = 1},
       {.kind = VL_BSDF_CONDUCTOR, .eta = 1, .k = 1e7f},
       {.kind = VL_BSDF_CONDUCTOR, .eta = 0, .k = 2.0f}, /* real part 0: all of it comes back */
@@ -112,7 +115,10 @@ static void white_furnace(void **state) {
 static void reciprocity(void **state) {
   const State *s = *state;
   Batch *b = s->batch, *c = s->other;
+  float through[VL_PRINCIPLED_ROWS] = {0};
+  through[VL_T_TRANSMITTANCE + 2] = 0.7f;
   const Surface all[] = {{.kind = VL_BSDF_DIFFUSE, .reflectance = 0.7f},
+                         {.kind = VL_BSDF_DIFFUSE_TRANSMISSION, .reflectance = 0.2f, .principled = through},
                          {.kind = VL_BSDF_CONDUCTOR, .eta = 0.2f, .k = 3.9f, .alpha_x = 0.2f, .alpha_y = 0.5f},
                          {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f, .alpha_x = 0.4f, .alpha_y = 0.3f},
                          {.kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 0.6f, .eta_s = 1.5f, .coat = s->tables[0]},
@@ -123,7 +129,7 @@ static void reciprocity(void **state) {
                           .alpha_y = 0.1f,
                           .coat = s->tables[2]}};
   statRng rng = stat_rng(9);
-  for (size_t i = 0; i < 5; i++) {
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     double worst = 0;
     int seen = 0;
     for (uint32_t j = 0; j < BATCH; j++) {
@@ -160,7 +166,7 @@ static float pick(statRng *rng, const float *values, size_t count) {
   return values[stat_bits(rng) % count];
 }
 /* Random lanes, one in eight of them degenerate somehow. Directions are finite and at most unit length. */
-static void fill(const State *s, Batch *b, statRng *rng) {
+static void fill(const State *s, Batch *b, statRng *rng, vlBsdfKind kind) {
   const float alphas[] = {0, 1e-5f, 9.99e-4f, 1e-3f, 0.01f, 0.1f, 0.5f, 1};
   const float etas[] = {1.5f, 1 / 1.5f, 1, 1.0001f, 2.4f, 4, 0.3f}, ks[] = {0, 0.1f, 3.9f, 9, 1e7f, 1e20f};
   const float small[] = {0, -0.0f, 1e-42f, -1e-42f, 1e-30f, 1e-7f, -1e-7f, 1, -1, 0.7f},
@@ -184,6 +190,11 @@ static void fill(const State *s, Batch *b, statRng *rng) {
     stat_direction(rng, n);
     b->principled[VL_P_COAT_X][j] = (float)n[0], b->principled[VL_P_COAT_Y][j] = (float)n[1];
     b->principled[VL_P_COAT_Z][j] = (float)fabs(n[2]);
+    if (kind == VL_BSDF_LAYERED) {
+      b->principled[VL_L_BASE_X][j] = pick(rng, alphas, 8), b->principled[VL_L_BASE_Y][j] = pick(rng, alphas, 8);
+      b->principled[VL_L_DEPTH][j] = 10, b->principled[VL_L_WALKS][j] = 1;
+    }
+    b->seed[j] = (uint32_t)stat_bits(rng);
     b->coat[j] = s->tables[stat_bits(rng) % 4];
     double o[3], w[3];
     stat_direction(rng, o);
@@ -208,7 +219,7 @@ static void never_nan(void **state) {
   statRng rng = stat_rng(21);
   for (int turn = 0; turn < 1000; turn++) {
     vlBsdfKind kind = (vlBsdfKind)(turn % VL_BSDF_KINDS);
-    fill(s, b, &rng);
+    fill(s, b, &rng, kind);
     batch_eval(s->kernels, kind, BATCH, b);
     for (uint32_t j = 0; j < BATCH; j++)
       for (int c = 0; c < 5; c++) {
@@ -246,7 +257,7 @@ static void same_bits(void **state) {
     for (int turn = 0; turn < 100; turn++) {
       vlBsdfKind kind = (vlBsdfKind)(turn % VL_BSDF_KINDS);
       uint32_t n = turn < 50 ? BATCH : 1 + (uint32_t)(stat_bits(&rng) % BATCH);
-      fill(s, s->batch, &rng);
+      fill(s, s->batch, &rng, kind);
       memcpy(s->other, s->batch, sizeof *s->batch);
       batch_eval(base, kind, n, s->batch);
       batch_eval(wide, kind, n, s->other);
@@ -275,7 +286,7 @@ static void lanes_alone(void **state) {
   statRng rng = stat_rng(41);
   for (int k = 0; k < VL_BSDF_KINDS; k++) {
     vlBsdfKind kind = (vlBsdfKind)k;
-    fill(s, b, &rng);
+    fill(s, b, &rng, kind);
     *c = *b;
     for (uint32_t j = 0; j < 600; j++) { /* reversed, and a shorter batch */
       uint32_t i = 599 - j;
@@ -285,7 +296,7 @@ static void lanes_alone(void **state) {
       for (int r = 0; r < VL_PRINCIPLED_ROWS; r++) c->principled[r][j] = b->principled[r][i];
       c->alpha_x[j] = b->alpha_x[i], c->alpha_y[j] = b->alpha_y[i], c->eta_s[j] = b->eta_s[i], c->coat[j] = b->coat[i];
       c->ox[j] = b->ox[i], c->oy[j] = b->oy[i], c->oz[j] = b->oz[i];
-      c->lobe[j] = b->lobe[i], c->u[j] = b->u[i], c->v[j] = b->v[i];
+      c->lobe[j] = b->lobe[i], c->u[j] = b->u[i], c->v[j] = b->v[i], c->seed[j] = b->seed[i];
     }
     for (uint32_t j = 600; j < BATCH; j++)
       c->coat[j] = NULL, c->ox[j] = NAN, c->alpha_x[j] = NAN; /* padding is garbage */

@@ -384,7 +384,12 @@ typedef enum vlTracer {
   VL_TRACER_PATH, /* looks past media */
   VL_TRACER_RAYCAST,
   VL_TRACER_AMBIENT_OCCLUSION,
-  VL_TRACER_VOLPATH /* through media; where there are none the same as VL_TRACER_PATH, to the bit */
+  VL_TRACER_VOLPATH, /* through media; where there are none the same as VL_TRACER_PATH, to the bit */
+  /* Light followed both ways (docs/tracers.md). Where something moves or lies in a medium: VL_TRACER_VOLPATH. */
+  VL_TRACER_BIDIRECTIONAL, /* paths from the eye, and paths from the lights that the eye sees; unbiased */
+  VL_TRACER_MERGING,       /* and both meet at surfaces, within a radius that shrinks with each pass */
+  VL_TRACER_LIGHT_PATH,    /* from the lights alone: sees no light through or in what is smooth */
+  VL_TRACER_RANDOM_WALK    /* asks for no light and scatters all over the sphere: for comparison */
 } vlTracer;
 typedef enum vlSamplerKind {
   VL_SAMPLER_INDEPENDENT,

@@ -10,11 +10,13 @@
 #include <stdatomic.h>
 #include <string.h>
 
+#include "base/context.h"
 #include "base/cookie.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "film/expose.h"
 #include "render/film_rays.h"
+#include "render/two_way.h"
 #include "trace/trace.h"
 #include "velo/focus.h"
 #include "velo/render.h"
@@ -70,6 +72,7 @@ typedef struct Render {
   float exposure_time;
   vlTraceDef trace;
   const vlTraceKernels *trace_kernels;
+  vlTwoWayRun *two_way; /* null: the light is only asked for */
   bool rgb_mode;
   uint32_t crop[4];
   uint32_t tiles_x, tiles_y, tile_x0, tile_y0;
@@ -183,10 +186,12 @@ static void render_batch(const Render *r, Worker *w, uint32_t n) {
     expose.lambda[c] = batch.lambda[c] = r->rgb_mode ? NULL : row(w, LAMBDA + c);
     expose.inv_pdf[c] = batch.inv_pdf[c] = r->rgb_mode ? NULL : row(w, INV_PDF + c);
   }
+  if (r->two_way) batch.two_way = vl_two_way_rows(r->two_way, (uint32_t)(w - r->workers));
   r->trace_kernels->trace(r->world, &r->trace, w->scratch, &batch);
   if (vl_camera_weighted(camera)) weigh(n, rays.weight, rays.valid, batch.alpha, batch.radiance);
   if (!camera->plain) clear_invalid(n, row(w, VALID), batch.alpha, batch.radiance);
   vl_film_expose(r->film, r->trace.isa, &expose, row(w, RED), row(w, GREEN), row(w, BLUE));
+  if (r->two_way) vl_two_way_take(r->two_way, n, px, py, row(w, WEIGHT), row(w, RED), row(w, GREEN), row(w, BLUE));
   vlFilmSamples add = {n, px, py, row(w, RED), row(w, GREEN), row(w, BLUE), batch.alpha, row(w, WEIGHT)};
   int32_t bad_x = 0, bad_y = 0;
   uint32_t bad = vl_film_add(r->film, &add, &bad_x, &bad_y);
@@ -296,6 +301,28 @@ static vlResult make_workers(Render *r, vlContext *context, vlError *error) {
   return VL_OK;
 }
 
+/* Light is followed both ways where nothing lies in a medium or moves; else by the tracer that can do that. */
+static vlTracer tracer_of(const Render *r, const vlCamera *camera) {
+  const vlWorld *world = r->world;
+  if (!vl_two_way_tracer(r->def->tracer) || (world->media.count == 0 && !world->moves && !camera->moves))
+    return r->def->tracer;
+  vl_log(world->context, VL_LOG_INFO, NULL,
+         "light is followed both ways only where nothing %s: paths from the eye alone are traced",
+         world->media.count ? "lies in a medium" : "moves");
+  return VL_TRACER_VOLPATH;
+}
+
+/* Their passes have one sample, and paths from the lights before it. */
+static vlResult prepare_two_way(Render *r, const vlCamera *camera, vlError *error) {
+  if (!vl_two_way_tracer(r->trace.tracer)) return VL_OK;
+  vlResult result = vl_two_way_create(r->world, camera, r->film, r->def, &r->trace, &r->two_way, error);
+  if (result != VL_OK) return result;
+  r->trace.two_way = vl_two_way_of(r->two_way);
+  for (uint32_t i = 0; i < vl_context_threads(r->world->context); i++)
+    vl_two_way_use(r->two_way, i, r->workers[i].scratch);
+  return VL_OK;
+}
+
 static void prepare(Render *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
   const vlFilmDef *f = vl_film_def(r->film);
@@ -310,7 +337,7 @@ static void prepare(Render *r, const vlCamera *camera) {
   /* Footprints shrink with the samples of a pixel (pbrt book 10.1.3 scales by 1/sqrt(spp), at least 1/8); a fixed
    * share, so that more samples continue the same picture. */
   const float footprint = 0.25f;
-  r->trace = (vlTraceDef){.tracer = r->def->tracer,
+  r->trace = (vlTraceDef){.tracer = tracer_of(r, camera),
                           .sampler = &r->film_rays.sampler,
                           .isa = isa,
                           .max_depth = r->def->max_depth,
@@ -347,6 +374,12 @@ static void fill_stats(const Render *r, vlRenderStats *stats) {
     stats->shadow_rays += w->shadow_rays;
   }
   stats->camera_rays = stats->paths;
+  if (!r->two_way) return;
+  vlTwoWayCounts more = vl_two_way_counts(r->two_way);
+  stats->paths += more.paths;
+  stats->bounce_rays += more.bounce_rays;
+  stats->shadow_rays += more.shadow_rays;
+  stats->not_finite += more.not_finite;
 }
 
 vlRenderDef vl_default_render_def(void) {
@@ -378,6 +411,7 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
   if ((result = vl_camera_autofocus(world, &focused, error)) != VL_OK) return result;
   prepare(r, &focused);
   result = make_workers(r, world->context, error);
+  if (result == VL_OK) result = prepare_two_way(r, &focused, error);
   double seconds_per_sample = 0;
   while (result == VL_OK && vl_film_spp(film) < def->spp) {
     if ((result = vl_film_begin_pass(film)) != VL_OK) {
@@ -385,8 +419,12 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
       break;
     }
     r->first_sample = vl_film_spp(film);
-    r->pass_samples = pass_size(r->first_sample, def->spp, seconds_per_sample);
+    r->pass_samples = r->two_way ? 1 : pass_size(r->first_sample, def->spp, seconds_per_sample);
     choose_blocks(r);
+    if (r->two_way && (result = vl_two_way_light(r->two_way, r->first_sample, error)) != VL_OK) {
+      vl_film_abandon_pass(film);
+      break;
+    }
     double pass_start = vl_seconds();
     atomic_store(&r->blocks_done, 0);
     vl_parallel_for(world->context, block_count(r), render_block, r);
@@ -403,5 +441,6 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
     if (def->time_limit > 0 && vl_seconds() - r->start >= def->time_limit) break;
   }
   if (stats && r->workers) fill_stats(r, stats);
+  vl_two_way_destroy(r->two_way);
   return result;
 }

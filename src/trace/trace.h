@@ -10,6 +10,10 @@
 #include "trace/sampler.h"
 #include "world/world.h"
 
+struct vlTwoWay; /* two_way.h */
+struct vlTwoWayRows;
+struct vlLightBatch;
+
 enum { VL_BATCH = 1024 };
 
 /* Elements of an array of a batch: one cache line more than the batch, so that element i of different arrays falls into
@@ -41,6 +45,7 @@ typedef struct vlTraceDef {
   float ao_distance;
   bool ao_cosine;
   float pixel_spread, pixel_width; /* footprint of a camera ray: width + spread * t */
+  const struct vlTwoWay *two_way;  /* of the tracers that follow light both ways (two_way.h), else null */
 } vlTraceDef;
 
 /* Rays of the camera, world space, d of unit length, and what comes back. Arrays of VL_PAD(n), n <= VL_BATCH. */
@@ -55,13 +60,18 @@ typedef struct vlTraceBatch {
   float *inv_pdf[4];                 /* out, spectral: 1 / their density */
   float *alpha;                      /* out: 1 where the ray meets a surface */
   uint64_t bounce_rays, shadow_rays; /* added to */
+  struct vlTwoWayRows *two_way;      /* with vlTraceDef.two_way: a worker's own memory, as vlTraceScratch is */
 } vlTraceBatch;
 
 typedef struct vlTraceScratch vlTraceScratch;
 size_t vl_trace_scratch_size(void); /* allocate 64-byte aligned, zeroed */
+size_t vl_two_way_rows_size(void);  /* the same */
 
 typedef struct vlTraceKernels {
   void (*trace)(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTraceBatch *batch);
+  /* Paths from the lights (two_way.h); def->sampler is not asked, def->two_way->sampler is. */
+  void (*light)(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, struct vlTwoWayRows *rows,
+                struct vlLightBatch *batch);
 } vlTraceKernels;
 extern const vlTraceKernels vl_trace_kernels_v2, vl_trace_kernels_v3, vl_trace_kernels_v4;
 const vlTraceKernels *vl_trace_kernels(vlIsa isa);

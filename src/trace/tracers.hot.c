@@ -1,7 +1,7 @@
 /* trace/tracers.hot.c: a batch from its camera rays to its radiance: the path tracer (path.hot.c), and beside it the
  * tracers that look no further than the first hit: raycast and ambient occlusion. */
 #include "math/warp.h"
-#include "trace/stages.h"
+#include "trace/two_way_stages.h"
 
 static void start_paths(vlTracing *t) {
   vlTraceBatch *b = t->batch;
@@ -10,6 +10,8 @@ static void start_paths(vlTracing *t) {
   t->s->a.time = t->s->b.time = b->time;
   if (b->lambda[0]) {
     t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->shade.u0);
+    float shared = t->def->two_way ? t->def->two_way->shared : -1.0f;
+    for (uint32_t i = 0; shared >= 0.0f && i < padded; i++) t->s->shade.u0[i] = shared;
     vl_color_kernels(t->def->isa)->visible_wavelengths(b->n, t->s->shade.u0, b->lambda, b->inv_pdf);
   }
   for (uint32_t i = 0; i < padded; i++) {
@@ -106,8 +108,13 @@ static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *s
       }
       VL_HOT(vl_path_tracer)(&t);
       break;
-    default: VL_HOT(vl_path_tracer)(&t); break;
+    default:
+      if (def->two_way)
+        VL_HOT(vl_two_way_tracer)(&t);
+      else
+        VL_HOT(vl_path_tracer)(&t);
+      break;
   }
 }
 
-const vlTraceKernels VL_HOT(vl_trace_kernels) = {trace};
+const vlTraceKernels VL_HOT(vl_trace_kernels) = {trace, VL_HOT(vl_light_tracer)};

@@ -1,0 +1,13 @@
+/* render/eye_view.h: what the light's paths know of the camera, and how near is near for it. */
+#ifndef RENDER_EYE_VIEW_H
+#define RENDER_EYE_VIEW_H
+
+#include "trace/two_way.h"
+
+/* view->sees is false for cameras that are not a perspective one at rest, with a round lens or none. */
+void vl_eye_view(const vlCamera *camera, const vlFilmDef *film, vlEyeView *view);
+/* The radius that merging starts from: two pixels wide where the middling ray of the camera ends; 0: none ends. */
+vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlTraceDef *trace, float *radius,
+                         vlError *error);
+
+#endif

@@ -1,0 +1,198 @@
+/* trace/two_way.hot.c: the eye's side of the two-way tracers: path tracing whose next event and whose lights met are
+ * weighed against what the light's paths bring (two_way.h). Beside it the random walk, which asks for nothing. */
+#include "math/warp.h"
+#include "trace/two_way_stages.h"
+
+/* ---- light that paths run into ----------------------------------------------------------------------------------- */
+
+/* density: of the light's paths that would come here. */
+static float hit_weight(const vlTracing *t, const vlPaths *p, uint32_t i, float asked, float density) {
+  if (p->specular[i])
+    asked = 0.0f;
+  else
+    asked /= p->pdf[i];
+  return 1.0f / (1.0f + asked + t->batch->two_way->carry[p->lane[i]] * density);
+}
+
+static void add_radiance(vlTracing *t, const vlPaths *p, uint32_t i, const float radiance[4], float weight) {
+  for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * radiance[c] * weight;
+}
+
+static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
+  const vlWorld *world = t->world;
+  vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+  float lambda[4], radiance[4];
+  vl_path_lambda(p, i, lambda);
+  for (size_t k = 0; k < world->infinite_lights.count; k++) {
+    uint32_t index = world->infinite_lights.items[k];
+    const vlWorldLight *light = &world->lights.items[index];
+    VL_HOT(vl_infinite_at)(world, light, d, lambda, radiance);
+    float weight = 1.0f;
+    if (!first) {
+      float asked = p->specular[i] ? 0.0f
+                                   : VL_HOT(vl_infinite_pdf)(world, light, d) *
+                                         vl_light_pmf(&world->tree, vl_lane3(p->ox, p->oy, p->oz, i),
+                                                      vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), index);
+      weight =
+          hit_weight(t, p, i, asked, VL_HOT(vl_emission_density)(world, t->def->two_way, index, d, VL_INFINITY, NULL));
+    }
+    add_radiance(t, p, i, radiance, weight);
+  }
+}
+
+static void add_glow(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
+  const vlWorld *world = t->world;
+  const vlHits *h = &t->s->hits_a;
+  uint32_t index = world->shapes.items[h->shape[i]].first_light + h->prim[i];
+  const vlWorldLight *light = &world->lights.items[index];
+  const vlEmitted *e = &world->emitted.items[light->emitted];
+  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+  vlPoint at = VL_HOT(vl_point_at)(world, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
+  if (!(vl_dot(d, at.g) < 0.0f) && !e->two_sided) return;
+  float lambda[4], radiance[4];
+  vl_path_lambda(p, i, lambda);
+  vlVec2 uv = VL_HOT(vl_glow_uv)(world, light, &at);
+  VL_HOT(vl_emitted_at)(world, e, lambda, uv.x, 1.0f - uv.y, false, radiance);
+  float weight = 1.0f;
+  if (!first) {
+    float asked = p->specular[i]
+                      ? 0.0f
+                      : VL_HOT(vl_area_pdf)(world, light, o, &at) *
+                            vl_light_pmf(&world->tree, o, vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), index);
+    weight = hit_weight(t, p, i, asked, VL_HOT(vl_emission_density)(world, t->def->two_way, index, d, at.t, &at));
+  }
+  add_radiance(t, p, i, radiance, weight);
+}
+
+/* first: the eye's own rays; also what weighs nothing against anything. */
+static void emission(vlTracing *t, uint32_t n, bool first) {
+  const vlHits *h = &t->s->hits_a;
+  for (uint32_t i = 0; i < n; i++) {
+    if (h->shape[i] == VL_NONE)
+      add_sky(t, &t->s->a, i, first);
+    else if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE)
+      add_glow(t, &t->s->a, i, first);
+  }
+}
+
+/* ---- one vertex -------------------------------------------------------------------------------------------------- */
+
+/* a, b of the ways that begin on the eye's side. */
+static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTwoWayRows *r = t->batch->two_way;
+  const vlTwoWay *way = t->def->two_way;
+  const vlEyeView *eye = &way->eye;
+  const vlSurface *f = &t->s->surface;
+  const vlPaths *p = &t->s->b;
+  for (uint32_t i = 0; i < n; i++) {
+    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+    float cosine = vl_abs(vl_dot(d, vl_lane3(f->gx, f->gy, f->gz, i))), inv = cosine > 0.0f ? 1.0f / cosine : 0.0f;
+    r->cosine[i] = cosine;
+    r->a[i] = depth == 0 ? 0.0f : r->carry[p->lane[i]] * inv;
+    r->b[i] = depth == 0 && eye->sees ? way->paths * vl_eye_pixel(eye, vl_dot(d, eye->ahead)) * f->t[i] * f->t[i] * inv
+                                      : 0.0f;
+  }
+}
+
+static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
+  const vlWorld *world = t->world;
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  vlTwoWayRows *r = t->batch->two_way;
+  const vlTwoWay *way = t->def->two_way;
+  if (world->lights.count == 0) return;
+  vlPaths *p = &s->b;
+  const vlSurface *f = &s->surface;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT, sh->u0);
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
+  VL_HOT(vl_stage_lights)(world, n, p, f, sh->u0, sh->u1, sh->u2, &s->light);
+  VL_HOT(vl_stage_light_bsdf)(t, n);
+  const vlLightSamples *l = &s->light;
+  vlShadowRays *q = &s->shadow;
+  float(*wi)[VL_ROW_SIZE] = s->rows;
+  float *density = s->rows[3], *cosine = s->rows[4];
+  uint32_t count = 0, *lane_of = r->count;
+  for (uint32_t i = 0; i < VL_PAD(n); i++)
+    for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
+  for (uint32_t i = 0; i < n; i++) {
+    if (!(l->pdf[i] > 0.0f)) continue;
+    float sum = sh->value[0][i] + sh->value[1][i] + sh->value[2][i] + sh->value[3][i];
+    if (!(sum > 0.0f) && sum == sum) continue;
+    vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
+    vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i), target = vl_lane3(l->tx, l->ty, l->tz, i);
+    vlVec3 o = vl_offset_origin(at, g, f->offset[i], w);
+    vlVec3 d = l->distant[i] ? w : vl_sub(target, o);
+    vlPoint point;
+    __builtin_memset(&point, 0, sizeof point);
+    point.p = target;
+    density[i] = VL_HOT(vl_emission_density)(world, way, l->light[i], w, vl_length(vl_sub(target, at)), &point);
+    cosine[i] = vl_abs(vl_dot(w, g));
+    q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
+    q->dx[count] = d.x, q->dy[count] = d.y, q->dz[count] = d.z;
+    q->t_max[count] = l->distant[i] ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
+    for (int c = 0; c < 4; c++) q->radiance[c][count] = p->beta[c][i] * sh->value[c][i] * l->radiance[c][i];
+    r->pdf[count] = l->pdf[i] + (l->delta[i] ? 0.0f : sh->pdf[i]);
+    q->time[count] = l->pdf[i];
+    lane_of[count] = i;
+    q->lane[count++] = p->lane[i];
+  }
+  VL_HOT(vl_stage_reverse)(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = lane_of[k];
+    float others = (way->merged + r->a[i] * r->rev[i] + r->b[i]) * density[i] * cosine[i];
+    float weight = q->time[k] / (r->pdf[k] + others);
+    for (int c = 0; c < 4; c++) q->radiance[c][k] *= weight;
+  }
+  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, NULL};
+  vl_accel_occluded(world, count, &rays, q->occluded);
+  t->batch->shadow_rays += count;
+  for (uint32_t k = 0; k < count; k++)
+    if (!q->occluded[k])
+      for (int c = 0; c < 4; c++) t->batch->radiance[c][q->lane[k]] += q->radiance[c][k];
+}
+
+static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  vlTwoWayRows *r = t->batch->two_way;
+  const vlSurface *f = &s->surface;
+  const vlPaths *p = &s->b;
+  uint32_t count = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
+  float(*wi)[VL_ROW_SIZE] = s->rows + 1;
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
+    for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
+    r->pdf[i] = sh->pdf[i];
+  }
+  VL_HOT(vl_stage_reverse)(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  float merged = t->def->two_way->merged;
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = s->order[k];
+    float cosine = vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), vl_lane3(f->gx, f->gy, f->gz, i)));
+    float pdf = r->pdf[i];
+    r->carry[s->a.lane[k]] = sh->flags[i] & VL_SAMPLED_SPECULAR
+                                 ? r->a[i] * cosine
+                                 : (pdf > 0.0f ? (r->a[i] * r->rev[i] + r->b[i] + merged) * cosine / pdf : 0.0f);
+  }
+  return count;
+}
+
+/* ---- the tracers ------------------------------------------------------------------------------------------------- */
+
+void VL_HOT(vl_two_way_tracer)(vlTracing *t) {
+  const vlTwoWay *way = t->def->two_way;
+  uint32_t n = t->batch->n;
+  for (uint32_t depth = 0; n > 0; depth++) {
+    VL_HOT(vl_stage_hits)(t, n, depth == 0);
+    if (depth == 0) VL_HOT(vl_stage_alpha)(t);
+    emission(t, n, depth == 0);
+    if (depth >= t->def->max_depth || way->light_only) break;
+    n = VL_HOT(vl_stage_sort)(t, n);
+    if (n == 0) break;
+    uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
+    VL_HOT(vl_stage_shade)(t, n);
+    arrive(t, n, depth);
+    direct_light(t, n, dimension);
+    if (way->merge) VL_HOT(vl_stage_merge)(t, n, depth);
+    n = scatter(t, n, depth, dimension);
+  }
+}

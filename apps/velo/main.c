@@ -10,10 +10,11 @@
 #include "signals.h"
 
 /* Names of two words come last: "image diff" is found by its first and second word. */
-static const Command *const commands[] = {&render_command,           &image_info_command,      &image_diff_command,
-                                          &image_convert_command,    &image_check_command,     &camera_project_command,
-                                          &camera_unproject_command, &camera_info_command,     &camera_convert_command,
-                                          &camera_verify_command,    &camera_vanishing_command};
+static const Command *const commands[] = {&render_command,          &scene_info_command,     &scene_check_command,
+                                          &image_info_command,      &image_diff_command,     &image_convert_command,
+                                          &image_check_command,     &camera_project_command, &camera_unproject_command,
+                                          &camera_info_command,     &camera_convert_command, &camera_verify_command,
+                                          &camera_vanishing_command};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_overview(void) {
@@ -22,8 +23,9 @@ static void print_overview(void) {
   printf("  %-15s  %s\n", "help COMMAND", "the options of a command");
   printf("  %-15s  %s\n\n", "--version", "the version");
   printf(
-      "exit codes: 0 done, 1 image diff or check over a threshold or out of memory, 2 wrong command line,\n"
-      "3 wrong scene or picture, 4 missing file, 5 reading or writing failed, 130 and 143 stopped by a signal\n");
+      "exit codes: 0 done, 1 findings of scene check, image diff or check over a threshold, or out of\n"
+      "memory, 2 wrong command line, 3 wrong scene or picture, 4 missing file, 5 reading or writing failed,\n"
+      "130 and 143 stopped by a signal\n");
 }
 
 /* How many words of argv the command's name takes; 0: another command. */

@@ -7,6 +7,7 @@
 #include "velo/camera.h"
 #include "velo/camera_file.h"
 #include "velo/channels.h"
+#include "velo/check.h"
 #include "velo/focus.h"
 #include "velo/image.h"
 #include "velo/render.h"

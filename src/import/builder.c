@@ -182,8 +182,40 @@ static bool texture(vlImport *import, const vlStatement *s) {
   return vl_import_fail_memory(import);
 }
 
+static const char *directive_name(vlDirective d) {
+  switch (d) {
+    case VL_DIR_ATTRIBUTE_BEGIN: return "AttributeBegin";
+    case VL_DIR_ATTRIBUTE_END: return "AttributeEnd";
+    case VL_DIR_TRANSFORM_BEGIN: return "TransformBegin";
+    case VL_DIR_TRANSFORM_END: return "TransformEnd";
+    case VL_DIR_REVERSE_ORIENTATION: return "ReverseOrientation";
+    case VL_DIR_WORLD_BEGIN: return "WorldBegin";
+    case VL_DIR_OBJECT_END: return "ObjectEnd";
+    case VL_DIR_IMPORT_BEGIN: return "Import";
+    case VL_DIR_TRANSFORM_TIMES: return "TransformTimes";
+    case VL_DIR_NAMED_MATERIAL: return "NamedMaterial";
+    case VL_DIR_OBJECT_BEGIN: return "ObjectBegin";
+    case VL_DIR_OBJECT_INSTANCE: return "ObjectInstance";
+    case VL_DIR_FILM: return "Film";
+    case VL_DIR_SAMPLER: return "Sampler";
+    case VL_DIR_INTEGRATOR: return "Integrator";
+    case VL_DIR_PIXEL_FILTER: return "PixelFilter";
+    case VL_DIR_ACCELERATOR: return "Accelerator";
+    case VL_DIR_CAMERA: return "Camera";
+    case VL_DIR_MATERIAL: return "Material";
+    case VL_DIR_MAKE_NAMED_MATERIAL: return "MakeNamedMaterial";
+    case VL_DIR_AREA_LIGHT_SOURCE: return "AreaLightSource";
+    case VL_DIR_LIGHT_SOURCE: return "LightSource";
+    case VL_DIR_SHAPE: return "Shape";
+    case VL_DIR_TEXTURE: return "Texture";
+    default: return "this directive";
+  }
+}
+
 /* A choice before WorldBegin; the last one given counts. */
 static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
+  if (choice->given)
+    vl_import_remark(import, s->place, "%s a second time: this one counts", directive_name(s->directive));
   vl_param_list_free(import->context, &choice->params);
   choice->given = true;
   choice->place = s->place;
@@ -230,36 +262,6 @@ static bool world_begin(vlImport *import) {
 
 /* ---- statements ------------------------------------------------------------------------------------------------- */
 
-static const char *directive_name(vlDirective d) {
-  switch (d) {
-    case VL_DIR_ATTRIBUTE_BEGIN: return "AttributeBegin";
-    case VL_DIR_ATTRIBUTE_END: return "AttributeEnd";
-    case VL_DIR_TRANSFORM_BEGIN: return "TransformBegin";
-    case VL_DIR_TRANSFORM_END: return "TransformEnd";
-    case VL_DIR_REVERSE_ORIENTATION: return "ReverseOrientation";
-    case VL_DIR_WORLD_BEGIN: return "WorldBegin";
-    case VL_DIR_OBJECT_END: return "ObjectEnd";
-    case VL_DIR_IMPORT_BEGIN: return "Import";
-    case VL_DIR_TRANSFORM_TIMES: return "TransformTimes";
-    case VL_DIR_NAMED_MATERIAL: return "NamedMaterial";
-    case VL_DIR_OBJECT_BEGIN: return "ObjectBegin";
-    case VL_DIR_OBJECT_INSTANCE: return "ObjectInstance";
-    case VL_DIR_FILM: return "Film";
-    case VL_DIR_SAMPLER: return "Sampler";
-    case VL_DIR_INTEGRATOR: return "Integrator";
-    case VL_DIR_PIXEL_FILTER: return "PixelFilter";
-    case VL_DIR_ACCELERATOR: return "Accelerator";
-    case VL_DIR_CAMERA: return "Camera";
-    case VL_DIR_MATERIAL: return "Material";
-    case VL_DIR_MAKE_NAMED_MATERIAL: return "MakeNamedMaterial";
-    case VL_DIR_AREA_LIGHT_SOURCE: return "AreaLightSource";
-    case VL_DIR_LIGHT_SOURCE: return "LightSource";
-    case VL_DIR_SHAPE: return "Shape";
-    case VL_DIR_TEXTURE: return "Texture";
-    default: return "this directive";
-  }
-}
-
 static bool in_right_part(vlImport *import, const vlStatement *s) {
   switch (s->directive) {
     case VL_DIR_WORLD_BEGIN:
@@ -298,8 +300,7 @@ static bool in_right_part(vlImport *import, const vlStatement *s) {
   }
 }
 
-static bool statement(void *user, const vlStatement *s) {
-  vlImport *import = user;
+static bool obey(vlImport *import, const vlStatement *s) {
   if (!in_right_part(import, s)) return false;
   note_space(import, s);
   switch (s->directive) {
@@ -355,32 +356,60 @@ static bool statement(void *user, const vlStatement *s) {
   return true;
 }
 
+/* For a doctor a wrong statement is left out. The name of a medium stays known, so that it is told once. */
+static bool statement(void *user, const vlStatement *s) {
+  vlImport *import = user;
+  if (obey(import, s)) return true;
+  if (!vl_import_recover(import)) return false;
+  uint32_t index;
+  if (s->directive != VL_DIR_MAKE_NAMED_MEDIUM || vl_names_find(&import->media, s->names[0], &index)) return true;
+  const char *name = vl_import_keep(import, s->names[0]);
+  return name && (vl_names_add(import->context, &import->media, name, 0) || vl_import_fail_memory(import));
+}
+
 static void parse_error(void *user, vlResult code, vlSource place, const char *message) {
   vl_import_fail(user, code, place, "%s", message);
 }
 
+static bool recover(void *user) {
+  return vl_import_recover(user);
+}
+
 /* ---- the end ---------------------------------------------------------------------------------------------------- */
 
-static bool link_shapes(vlImport *import) {
-  for (size_t i = 0; i < import->links.count; i++) {
-    const vlShapeLink *link = &import->links.items[i];
-    vlShapeDef *shape = &import->scene->shapes.items[link->shape];
-    bool is_interface = false;
-    if (link->material_name) {
-      if (!vl_import_material_id(import, link->material_name, link->material_place, &shape->material, &is_interface))
-        return false;
-    } else if (link->material) {
-      const vlPending *p = &import->materials.items[link->material - 1];
-      shape->material.index = p->id;
-      is_interface = p->is_interface;
-    }
-    if (is_interface && shape->emission.index) {
-      vl_import_warn(import, VL_LOG_WARNING, shape->source,
-                     "a shape of material \"interface\" gives no light: its area light is ignored");
-      shape->emission.index = 0;
-    }
-    if (link->alpha && !vl_import_texture_id(import, link->alpha, false, link->alpha_place, &shape->alpha.texture))
+static bool link_shape(vlImport *import, const vlShapeLink *link) {
+  vlShapeDef *shape = &import->scene->shapes.items[link->shape];
+  bool is_interface = false;
+  if (link->material_name) {
+    if (!vl_import_material_id(import, link->material_name, link->material_place, &shape->material, &is_interface))
       return false;
+  } else if (link->material) {
+    const vlPending *p = &import->materials.items[link->material - 1];
+    shape->material.index = p->id;
+    is_interface = p->is_interface;
+  }
+  if (is_interface && shape->emission.index) {
+    vl_import_warn(import, VL_LOG_WARNING, shape->source,
+                   "a shape of material \"interface\" gives no light: its area light is ignored");
+    shape->emission.index = 0;
+  }
+  return !link->alpha || vl_import_texture_id(import, link->alpha, false, link->alpha_place, &shape->alpha.texture);
+}
+
+/* What could not be made is done with: textures are left out, a plain material stands in. */
+static bool give_up(vlImport *import) {
+  if (!vl_import_recover(import)) return false;
+  import->depth = 0;
+  for (size_t i = 0; i < import->textures.count; i++)
+    if (import->textures.items[i].state == VL_IN_PROGRESS) import->textures.items[i].state = VL_DONE;
+  for (size_t i = 0; i < import->materials.count; i++) {
+    vlPending *p = &import->materials.items[i];
+    if (p->state != VL_IN_PROGRESS) continue;
+    vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
+    def.name = p->name;
+    p->state = VL_DONE;
+    p->id = vl_scene_add_material(import->scene, &def).index;
+    if (!p->id) return false;
   }
   return true;
 }
@@ -397,14 +426,17 @@ static bool finish(vlImport *import) {
   }
   if (!vl_import_flush_curves(import)) return false;
   for (uint32_t i = 0; i < import->textures.count; i++)
-    if (!vl_import_finish_texture(import, i)) return false;
+    if (!vl_import_finish_texture(import, i) && !give_up(import)) return false;
   for (uint32_t i = 0; i < import->materials.count; i++)
-    if (!vl_import_finish_material(import, i)) return false;
-  if (!link_shapes(import) || !vl_import_finish_motion(import)) return false;
+    if (!vl_import_finish_material(import, i) && !give_up(import)) return false;
+  for (size_t i = 0; i < import->links.count; i++)
+    if (!link_shape(import, &import->links.items[i]) && !give_up(import)) return false;
+  if (!vl_import_finish_motion(import)) return false;
   for (size_t i = 0; i < import->object_list.count; i++) {
     const vlObject *object = &import->object_list.items[i];
-    if (!object->defined)
-      return vl_import_fail(import, VL_ERROR_SCENE, object->place, "there is no object \"%.80s\"", object->name);
+    if (object->defined) continue;
+    vl_import_fail(import, VL_ERROR_SCENE, object->place, "there is no object \"%.80s\"", object->name);
+    if (!vl_import_recover(import)) return false;
   }
   return vl_import_finish_media(import);
 }
@@ -450,7 +482,7 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
   import->state.active = 3;
   import->times[1] = 1.0;
   import->state.space = VL_SPACE_SRGB;
-  vlParseTarget target = {import, statement, parse_error};
+  vlParseTarget target = {import, statement, parse_error, recover};
   bool fine = data ? vl_parse_memory(import->context, data, size, path, &target)
                    : vl_parse_file(import->context, path, &target);
   if (fine) finish(import);

@@ -149,9 +149,10 @@ struct vlImport {
   double times[2]; /* of the two current transforms, seconds */
   VL_ARRAY(vlMovingGroup) moving;
   vlCurveRun curves;
-  uint32_t depth; /* of textures or materials that resolve each other */
+  uint32_t depth;    /* of textures or materials that resolve each other */
+  uint32_t problems; /* told so far */
 };
-enum { VL_IMPORT_DEPTH = 200 };
+enum { VL_IMPORT_DEPTH = 200, VL_IMPORT_PROBLEMS = 1000 };
 
 /* ---- errors, warnings, copies (report.c) ------------------------------------------------------------------------- */
 bool vl_import_fail(vlImport *import, vlResult code, vlSource place, const char *format, ...)
@@ -159,6 +160,11 @@ bool vl_import_fail(vlImport *import, vlResult code, vlSource place, const char 
 bool vl_import_fail_memory(vlImport *import);
 void vl_import_warn(vlImport *import, vlLogLevel level, vlSource place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+/* For a doctor (vl_scene_diagnose): tells the scene's error, which is none from here on. false: none listens, or the
+ * error ends everything. */
+bool vl_import_recover(vlImport *import);
+/* For a doctor only: what is right, and yet perhaps not meant. */
+void vl_import_remark(vlImport *import, vlSource place, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* Valid pbrt that velo does not understand: an error, or a warning and true when permissive. */
 bool vl_import_unsupported(vlImport *import, vlSource place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

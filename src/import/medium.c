@@ -238,8 +238,10 @@ bool vl_import_finish_media(vlImport *import) {
   for (size_t i = 0; i < import->medium_links.count; i++) {
     const vlMediumLink *link = &import->medium_links.items[i];
     vlMediumId inside, outside;
-    if (!find(import, link->inside, link->place, &inside) || !find(import, link->outside, link->place, &outside))
-      return false;
+    if (!find(import, link->inside, link->place, &inside) || !find(import, link->outside, link->place, &outside)) {
+      if (!vl_import_recover(import)) return false;
+      continue;
+    }
     if (link->target == 's') {
       scene->shapes.items[link->index].inside = inside;
       scene->shapes.items[link->index].outside = outside;

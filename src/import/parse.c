@@ -526,7 +526,7 @@ static bool parse_path(Parser *parser, const File *parent, vlSource at, const ch
   vlResult result = vl_file_read(parser->context, path, true, &data, &size, &error);
   if (result != VL_OK) {
     target->error(target->user, result, at, error.message);
-    return false;
+    return parent && target->recover && target->recover(target->user);
   }
   bool fine = parse_block(&file, data, size);
   vl_free(parser->context, data);

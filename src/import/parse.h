@@ -67,6 +67,8 @@ typedef struct vlParseTarget {
   /* Returns false to stop: then it has set *error itself or not at all (its own sticky error). */
   bool (*statement)(void *user, const vlStatement *statement);
   void (*error)(void *user, vlResult code, vlSource place, const char *message);
+  /* After an error of a file that is to be included and cannot be read: true to go on without it. May be null. */
+  bool (*recover)(void *user);
 } vlParseTarget;
 
 /* Paths that includes are looked for: beside the including file, then beside the first file. */

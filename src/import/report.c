@@ -39,6 +39,28 @@ void vl_import_warn(vlImport *import, vlLogLevel level, vlSource place, const ch
   log_text(import, level, place, text);
 }
 
+bool vl_import_recover(vlImport *import) {
+  vlScene *scene = import->scene;
+  if (!scene->problem || scene->error.code == VL_ERROR_MEMORY || scene->error.code == VL_OK) return false;
+  if (++import->problems > VL_IMPORT_PROBLEMS) return false;
+  vlError problem = scene->error;
+  vl_error_clear(&scene->error);
+  scene->problem(scene->problem_user, &problem);
+  return true;
+}
+
+void vl_import_remark(vlImport *import, vlSource place, const char *format, ...) {
+  if (!import->scene->problem) return;
+  char text[400];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  vlError remark = {0};
+  vl_fail_at(&remark, VL_OK, place.file, place.line, place.column, "%s", text);
+  import->scene->problem(import->scene->problem_user, &remark);
+}
+
 bool vl_import_unsupported(vlImport *import, vlSource place, const char *format, ...) {
   char text[400];
   va_list args;

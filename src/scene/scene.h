@@ -8,6 +8,7 @@
 #include "base/array.h"
 #include "base/context.h"
 #include "base/error.h"
+#include "velo/check.h"
 #include "velo/scene.h"
 
 typedef struct vlSceneGroup {
@@ -26,7 +27,9 @@ typedef struct vlSceneInstance {
 
 struct vlScene {
   vlContext *context;
-  vlError error; /* the first error; code VL_OK: none yet */
+  vlError error;        /* the first error; code VL_OK: none yet */
+  vlProblemFn *problem; /* a doctor listens while loading, or null */
+  void *problem_user;
   VL_ARRAY(vlTextureDef) textures;
   VL_ARRAY(vlMaterialDef) materials;
   VL_ARRAY(vlEmissionDef) emissions;

@@ -1,0 +1,324 @@
+/* scene/body.c: see body.h. Corners are welded where they are the same point to the last bit; those on edges that stay
+ * open then, to a millionth of the body's size. */
+#include "scene/body.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "math/transform.h"
+
+void vl_body_free(const vlScene *scene, vlBody *b) {
+  vl_free(scene->context, b->points);
+  vl_free(scene->context, b->faces3);
+  vl_free(scene->context, b->part);
+  vl_free(scene->context, b->parts);
+  *b = (vlBody){0};
+}
+
+static uint32_t table_size(size_t count) {
+  uint32_t size = 16;
+  while (size < 2 * count && size < 0x80000000u) size *= 2;
+  return size;
+}
+
+static uint64_t mix(uint64_t h) {
+  h ^= h >> 32;
+  h *= 0xd6e8feb86659fd93ull;
+  h ^= h >> 32;
+  h *= 0xd6e8feb86659fd93ull;
+  return h ^ (h >> 32);
+}
+
+static uint64_t hash_point(const double p[3]) {
+  uint64_t h = 0;
+  for (int i = 0; i < 3; i++) {
+    double x = p[i] + 0.0; /* -0 is 0 */
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    h = mix(h ^ bits);
+  }
+  return h;
+}
+
+/* ---- gathering --------------------------------------------------------------------------------------------------- */
+
+static bool meshed(const vlShapeDef *d) {
+  return d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR;
+}
+
+/* Moves a shape's vertices to group space; welded[i]: corner of vertex i. */
+static void weld(const vlShapeDef *d, vlBody *b, uint32_t *table, uint32_t mask, uint32_t *welded) {
+  vlMat4 m = vl_mat4_load(d->group_from_shape);
+  for (uint32_t i = 0; i < d->vertices; i++) {
+    double p[3] = {d->positions[3 * (size_t)i], d->positions[3 * (size_t)i + 1], d->positions[3 * (size_t)i + 2]}, q[3];
+    vl_mat4_point(&m, p, q);
+    for (int k = 0; k < 3; k++) q[k] = (double)(float)q[k] + 0.0; /* as the renderer has them */
+    uint32_t slot = (uint32_t)hash_point(q) & mask;
+    while (table[slot] && memcmp(b->points + 3 * (size_t)(table[slot] - 1), q, sizeof q) != 0) slot = (slot + 1) & mask;
+    if (!table[slot]) {
+      memcpy(b->points + 3 * (size_t)b->corners, q, sizeof q);
+      table[slot] = ++b->corners;
+    }
+    welded[i] = table[slot] - 1;
+  }
+}
+
+/* Does the outside lie against the face's own winding? Vertex normals decide where there are some, as in rendering. */
+static bool is_turned(const vlShapeDef *d, const uint32_t *f, int k1, int k2, bool mirrored) {
+  if (!d->normals) return d->reverse_orientation != mirrored;
+  double e[2][3], n[3] = {0, 0, 0}, g[3];
+  const int corner[3] = {0, k1, k2};
+  for (int k = 0; k < 3; k++) {
+    e[0][k] = (double)d->positions[3 * (size_t)f[k1] + (size_t)k] - (double)d->positions[3 * (size_t)f[0] + (size_t)k];
+    e[1][k] = (double)d->positions[3 * (size_t)f[k2] + (size_t)k] - (double)d->positions[3 * (size_t)f[0] + (size_t)k];
+    for (int j = 0; j < 3; j++) n[k] += (double)d->normals[3 * (size_t)f[corner[j]] + (size_t)k];
+  }
+  g[0] = e[0][1] * e[1][2] - e[0][2] * e[1][1];
+  g[1] = e[0][2] * e[1][0] - e[0][0] * e[1][2];
+  g[2] = e[0][0] * e[1][1] - e[0][1] * e[1][0];
+  bool against = g[0] * n[0] + g[1] * n[1] + g[2] * n[2] < 0;
+  /* In shape space; the move to group space mirrors the winding but not the normals, which reverse_orientation turns.
+   */
+  return against != (d->reverse_orientation != mirrored);
+}
+
+static void add_face(vlBody *b, uint32_t x, uint32_t y, uint32_t z, bool turned) {
+  if (x == y || y == z || z == x) return; /* no surface */
+  uint32_t *f = b->faces3 + 3 * (size_t)b->faces++;
+  f[0] = x;
+  f[1] = turned ? z : y;
+  f[2] = turned ? y : z;
+}
+
+static void add_faces(const vlShapeDef *d, vlBody *b, const uint32_t *welded) {
+  bool mirrored = vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0;
+  for (uint32_t i = 0; i < d->faces; i++) {
+    const uint32_t *f = d->indices + (d->kind == VL_SHAPE_TRIANGLES ? 3 : 4) * (size_t)i;
+    if (d->kind == VL_SHAPE_TRIANGLES) {
+      add_face(b, welded[f[0]], welded[f[1]], welded[f[2]], is_turned(d, f, 1, 2, mirrored));
+    } else { /* p00 p10 p01 p11: round the patch 0 1 3 2 */
+      bool turned = is_turned(d, f, 1, 2, mirrored);
+      add_face(b, welded[f[0]], welded[f[1]], welded[f[3]], turned);
+      add_face(b, welded[f[0]], welded[f[3]], welded[f[2]], turned);
+    }
+  }
+}
+
+static bool gather(const vlScene *scene, const uint32_t *shapes, size_t count, vlBody *b) {
+  size_t vertices = 0, faces = 0, most = 0;
+  for (size_t i = 0; i < count; i++) {
+    const vlShapeDef *d = &scene->shapes.items[shapes[i]];
+    if (!meshed(d)) continue;
+    vertices += d->vertices;
+    faces += (d->kind == VL_SHAPE_TRIANGLES ? 1 : 2) * (size_t)d->faces;
+    most = d->vertices > most ? d->vertices : most;
+  }
+  if (vertices > 0x3fffffff || faces > 0x3fffffff) return true; /* too large to look at: no faces, no findings */
+  uint32_t size = table_size(vertices);
+  uint32_t *table = vl_alloc_zero(scene->context, size, sizeof *table);
+  uint32_t *welded = vl_alloc_array(scene->context, most + 1, sizeof *welded);
+  b->points = vl_alloc_array(scene->context, vertices + 1, 3 * sizeof *b->points);
+  b->faces3 = vl_alloc_array(scene->context, faces + 1, 3 * sizeof *b->faces3);
+  bool fine = table && welded && b->points && b->faces3;
+  for (size_t i = 0; i < count && fine; i++) {
+    const vlShapeDef *d = &scene->shapes.items[shapes[i]];
+    if (!meshed(d)) continue;
+    weld(d, b, table, size - 1, welded);
+    add_faces(d, b, welded);
+  }
+  vl_free(scene->context, table);
+  vl_free(scene->context, welded);
+  return fine;
+}
+
+/* ---- edges ------------------------------------------------------------------------------------------------------- */
+
+typedef struct Edge {
+  uint32_t a, b, face; /* a < b; face: one that has it */
+  int32_t count;       /* how many faces */
+} Edge;
+
+typedef struct Edges {
+  Edge *slots;
+  uint32_t mask;
+} Edges;
+
+static Edge *find_edge(const Edges *e, uint32_t a, uint32_t b) {
+  if (a > b) {
+    uint32_t t = a;
+    a = b, b = t;
+  }
+  uint32_t i = (uint32_t)mix(((uint64_t)a << 32) | b) & e->mask;
+  while (e->slots[i].count && (e->slots[i].a != a || e->slots[i].b != b)) i = (i + 1) & e->mask;
+  e->slots[i].a = a, e->slots[i].b = b;
+  return &e->slots[i];
+}
+
+static bool count_edges(const vlScene *scene, const vlBody *b, Edges *e) {
+  uint32_t size = table_size((size_t)b->faces * 3);
+  e->mask = size - 1;
+  e->slots = vl_alloc_zero(scene->context, size, sizeof *e->slots);
+  if (!e->slots) return false;
+  for (uint32_t i = 0; i < b->faces; i++)
+    for (int k = 0; k < 3; k++) {
+      Edge *edge = find_edge(e, b->faces3[3 * (size_t)i + (size_t)k], b->faces3[3 * (size_t)i + (size_t)((k + 1) % 3)]);
+      edge->count++;
+      edge->face = i;
+    }
+  return true;
+}
+
+/* Corners of open edges that lie as good as together become one. Cells are as wide as two reaches; a point's
+ * neighbours lie in the eight cells round the corner of cells that is nearest to it. */
+static bool weld_open(const vlScene *scene, vlBody *b, const Edges *e, bool *changed) {
+  double low[3], high[3], size = 0;
+  for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+  uint32_t *same = vl_alloc_array(scene->context, b->corners + 1, sizeof *same);
+  uint8_t *open = vl_alloc_zero(scene->context, b->corners + 1, 1);
+  size_t opens = 0;
+  for (uint32_t i = 0; open && i <= e->mask; i++)
+    if (e->slots[i].count == 1) open[e->slots[i].a] = open[e->slots[i].b] = 1;
+  for (uint32_t i = 0; same && open && i < b->corners; i++) {
+    same[i] = i;
+    opens += open[i];
+    for (int k = 0; k < 3; k++) {
+      double x = b->points[3 * (size_t)i + (size_t)k];
+      low[k] = x < low[k] ? x : low[k];
+      high[k] = x > high[k] ? x : high[k];
+    }
+  }
+  for (int k = 0; k < 3; k++) size = high[k] - low[k] > size ? high[k] - low[k] : size;
+  uint32_t slots = table_size(opens), *table = vl_alloc_zero(scene->context, slots, sizeof *table);
+  double reach = 1e-6 * size;
+  bool fine = same && open && table;
+  *changed = false;
+  for (uint32_t i = 0; fine && reach > 0 && i < b->corners; i++) {
+    if (!open[i]) continue;
+    const double *p = b->points + 3 * (size_t)i;
+    uint32_t found = UINT32_MAX;
+    for (int c = 0; c < 8 && found == UINT32_MAX; c++) {
+      double cell[3];
+      for (int k = 0; k < 3; k++) cell[k] = floor((p[k] - low[k]) / (2 * reach) + (c >> k & 1 ? 0.5 : -0.5));
+      uint32_t tries = 0;
+      for (uint32_t s = (uint32_t)hash_point(cell) & (slots - 1); table[s] && tries < 64;
+           s = (s + 1) & (slots - 1), tries++) {
+        const double *q = b->points + 3 * (size_t)(table[s] - 1);
+        if (fabs(p[0] - q[0]) <= reach && fabs(p[1] - q[1]) <= reach && fabs(p[2] - q[2]) <= reach) {
+          found = table[s] - 1;
+          break;
+        }
+      }
+    }
+    if (found != UINT32_MAX) {
+      same[i] = found;
+      *changed = true;
+      continue;
+    }
+    double cell[3];
+    for (int k = 0; k < 3; k++) cell[k] = floor((p[k] - low[k]) / (2 * reach));
+    uint32_t s = (uint32_t)hash_point(cell) & (slots - 1);
+    while (table[s]) s = (s + 1) & (slots - 1);
+    table[s] = i + 1;
+  }
+  uint32_t faces = b->faces;
+  b->faces = *changed ? 0 : faces;
+  for (uint32_t i = 0; fine && *changed && i < faces; i++) {
+    const uint32_t *f = b->faces3 + 3 * (size_t)i;
+    add_face(b, same[f[0]], same[f[1]], same[f[2]], false);
+  }
+  vl_free(scene->context, same);
+  vl_free(scene->context, open);
+  vl_free(scene->context, table);
+  return fine;
+}
+
+/* ---- parts ------------------------------------------------------------------------------------------------------- */
+
+static uint32_t root_of(uint32_t *parent, uint32_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+static bool find_parts(const vlScene *scene, vlBody *b, const Edges *e) {
+  uint32_t *parent = vl_alloc_array(scene->context, b->corners + 1, sizeof *parent);
+  uint32_t *index = vl_alloc_zero(scene->context, b->corners + 1, sizeof *index);
+  b->part = vl_alloc_array(scene->context, b->faces + 1, sizeof *b->part);
+  bool fine = parent && index && b->part;
+  for (uint32_t i = 0; fine && i < b->corners; i++) parent[i] = i;
+  for (uint32_t i = 0; fine && i < b->faces; i++) {
+    const uint32_t *f = b->faces3 + 3 * (size_t)i;
+    parent[root_of(parent, f[1])] = root_of(parent, f[0]);
+    parent[root_of(parent, f[2])] = root_of(parent, f[0]);
+  }
+  for (uint32_t i = 0; fine && i < b->faces; i++) {
+    uint32_t *part = &index[root_of(parent, b->faces3[3 * (size_t)i])];
+    if (!*part) *part = ++b->part_count;
+    b->part[i] = *part - 1;
+  }
+  if (fine) fine = (b->parts = vl_alloc_zero(scene->context, b->part_count + 1, sizeof *b->parts)) != NULL;
+  for (uint32_t i = 0; fine && i < b->part_count; i++)
+    for (int k = 0; k < 3; k++) b->parts[i].low[k] = INFINITY, b->parts[i].high[k] = -INFINITY;
+  for (uint32_t i = 0; fine && i < b->faces; i++) {
+    vlBodyPart *part = &b->parts[b->part[i]];
+    const uint32_t *f = b->faces3 + 3 * (size_t)i;
+    const double *o = b->points, *p[3]; /* volume against a point nearby, for the digits */
+    double v[3][3];
+    part->faces++;
+    for (int j = 0; j < 3; j++) {
+      p[j] = b->points + 3 * (size_t)f[j];
+      for (int k = 0; k < 3; k++) {
+        v[j][k] = p[j][k] - o[k];
+        part->low[k] = p[j][k] < part->low[k] ? p[j][k] : part->low[k];
+        part->high[k] = p[j][k] > part->high[k] ? p[j][k] : part->high[k];
+      }
+    }
+    part->volume +=
+        (v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) + v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2]) +
+         v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0])) /
+        6;
+  }
+  for (uint32_t i = 0; fine && i <= e->mask; i++)
+    if (e->slots[i].count == 1) b->parts[b->part[e->slots[i].face]].open_edges++;
+  vl_free(scene->context, parent);
+  vl_free(scene->context, index);
+  return fine;
+}
+
+bool vl_body_make(const vlScene *scene, const uint32_t *shapes, size_t count, vlBody *b) {
+  *b = (vlBody){0};
+  Edges e = {0};
+  bool changed = false;
+  bool fine = gather(scene, shapes, count, b) && count_edges(scene, b, &e) && weld_open(scene, b, &e, &changed);
+  if (fine && changed) {
+    vl_free(scene->context, e.slots);
+    fine = count_edges(scene, b, &e);
+  }
+  fine = fine && find_parts(scene, b, &e);
+  vl_free(scene->context, e.slots);
+  return fine;
+}
+
+int vl_body_winding(const vlBody *b, const double p[3], uint32_t only) {
+  const double d[3] = {0.5773, 0.2113, 0.7887}; /* along no axis and no diagonal */
+  int winding = 0;
+  for (uint32_t i = 0; i < b->faces; i++) {
+    if (only != UINT32_MAX && b->part[i] != only) continue;
+    const uint32_t *f = b->faces3 + 3 * (size_t)i;
+    double v[3][3], s[3];
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++) v[j][k] = b->points[3 * (size_t)f[j] + (size_t)k] - p[k];
+    for (int j = 0; j < 3; j++) { /* on which side of each edge the ray passes */
+      const double *x = v[j], *y = v[(j + 1) % 3];
+      s[j] =
+          d[0] * (x[1] * y[2] - x[2] * y[1]) + d[1] * (x[2] * y[0] - x[0] * y[2]) + d[2] * (x[0] * y[1] - x[1] * y[0]);
+    }
+    bool out = s[0] > 0 && s[1] > 0 && s[2] > 0, in = s[0] < 0 && s[1] < 0 && s[2] < 0;
+    if (!out && !in) continue;
+    double volume = v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) +
+                    v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2]) +
+                    v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
+    if (out && volume > 0) winding++; /* leaves through the face's front, ahead of p */
+    if (in && volume < 0) winding--;
+  }
+  return winding;
+}

@@ -1,0 +1,115 @@
+/* scene/check.c: a check's life: running the parts, the list of findings, their order and names. */
+#include "scene/check.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/cookie.h"
+
+vlCheckDef vl_default_check_def(void) {
+  return (vlCheckDef){.cookie = VL_COOKIE_CHECK, .pictures = true};
+}
+
+const char *vl_finding_kind_name(vlFindingKind kind) {
+  static const char *const names[VL_FINDING_KINDS] = {
+      "missing-file",        "broken-file", "unused",     "undone",      "open-dielectric",
+      "inverted-dielectric", "media",       "degenerate", "no-uv",       "albedo",
+      "camera-inside",       "dark-light",  "wrong",      "overwritten", "remark"};
+  return (unsigned)kind < VL_FINDING_KINDS ? names[kind] : "";
+}
+
+void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSource source, const char *format, ...) {
+  char text[600];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  char *message = vl_strdup(check->context, text);
+  vlFinding *slot = message ? VL_PUSH(check->context, &check->findings) : NULL;
+  if (!slot) {
+    vl_free(check->context, message);
+    check->no_memory = true;
+    return;
+  }
+  vlResult code = severity != VL_SEVERITY_ERROR     ? VL_OK
+                  : kind == VL_FINDING_MISSING_FILE ? VL_ERROR_MISSING
+                                                    : VL_ERROR_SCENE;
+  *slot = (vlFinding){kind, severity, code, source, message};
+}
+
+static bool make_used(vlCheck *check) {
+  const vlScene *s = check->scene;
+  const struct {
+    uint8_t **array;
+    size_t count;
+  } all[] = {{&check->texture_used, s->textures.count},
+             {&check->material_used, s->materials.count},
+             {&check->medium_used, s->media.count},
+             {&check->group_used, s->groups.count},
+             {&check->emission_used, s->emissions.count}};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+    if (!(*all[i].array = vl_alloc_zero(check->context, all[i].count + 1, 1))) return false;
+  return true;
+}
+
+/* Errors, warnings, notes; else as they were found. */
+static bool sort(vlCheck *check) {
+  size_t n = check->findings.count, next = 0;
+  vlFinding *sorted = vl_alloc_array(check->context, n ? n : 1, sizeof *sorted);
+  if (!sorted) return false;
+  for (int severity = VL_SEVERITY_ERROR; severity <= (int)VL_SEVERITY_NOTE; severity++)
+    for (size_t i = 0; i < n; i++)
+      if ((int)check->findings.items[i].severity == severity) sorted[next++] = check->findings.items[i];
+  if (n) memcpy(check->findings.items, sorted, n * sizeof *sorted);
+  vl_free(check->context, sorted);
+  return true;
+}
+
+vlResult vl_scene_check(const vlScene *scene, const vlCheckDef *def, vlCheck **result, vlError *error) {
+  vl_error_clear(error);
+  if (result) *result = NULL;
+  if (!scene || !result) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_check: null argument");
+  if (def && def->cookie != VL_COOKIE_CHECK)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "the def does not come from vl_default_check_def()");
+  if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
+  vlCheck *check = vl_alloc_zero(scene->context, 1, sizeof *check);
+  if (!check) return vl_fail_memory(error);
+  check->context = scene->context;
+  check->scene = scene;
+  check->def = def ? *def : vl_default_check_def();
+  check->no_memory = !make_used(check);
+  void (*const parts[])(vlCheck *) = {vl_check_names, vl_check_pictures, vl_check_meshes, vl_check_inside};
+  size_t count = check->def.names_only ? 1 : sizeof parts / sizeof *parts;
+  for (size_t i = 0; i < count && !check->no_memory; i++) parts[i](check);
+  if (check->no_memory || !sort(check)) {
+    vl_check_destroy(check);
+    return vl_fail_memory(error);
+  }
+  *result = check;
+  return VL_OK;
+}
+
+void vl_check_destroy(vlCheck *check) {
+  if (!check) return;
+  vlContext *c = check->context;
+  for (size_t i = 0; i < check->findings.count; i++) {
+    void *block;
+    memcpy(&block, &check->findings.items[i].message, sizeof block); /* const for readers, ours to free */
+    vl_free(c, block);
+  }
+  VL_ARRAY_FREE(c, &check->findings);
+  vl_free(c, check->texture_used);
+  vl_free(c, check->material_used);
+  vl_free(c, check->medium_used);
+  vl_free(c, check->group_used);
+  vl_free(c, check->emission_used);
+  vl_free(c, check);
+}
+
+uint32_t vl_check_count(const vlCheck *check) {
+  return check ? (uint32_t)check->findings.count : 0;
+}
+
+const vlFinding *vl_check_finding(const vlCheck *check, uint32_t index) {
+  return check && index < check->findings.count ? &check->findings.items[index] : NULL;
+}

@@ -1,0 +1,50 @@
+/* scene/check.h: what the parts of the doctor share (check*.c). Each walks the description once and adds findings;
+ * nothing is changed. The order of findings is that of the scene's objects, so it does not depend on threads. */
+#ifndef SCENE_CHECK_H
+#define SCENE_CHECK_H
+
+#include "scene/scene.h"
+#include "velo/check.h"
+
+struct vlCheck {
+  vlContext *context;
+  const vlScene *scene;
+  vlCheckDef def;
+  VL_ARRAY(vlFinding) findings; /* messages are blocks of their own */
+  bool no_memory;
+  /* What is reached from shapes, lights and instances; index id - 1. */
+  uint8_t *texture_used, *material_used, *medium_used, *group_used, *emission_used;
+};
+
+void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSource source, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+
+/* The parts. */
+void vl_check_names(vlCheck *check);    /* unused and replaced names; fills the used arrays */
+void vl_check_pictures(vlCheck *check); /* files, albedo, lights without power */
+void vl_check_meshes(vlCheck *check);   /* degenerate faces, uv, open and inverted bodies */
+void vl_check_inside(vlCheck *check);   /* the camera and media in bodies */
+
+/* ---- helpers ------------------------------------------------------------------------------------------------------
+ */
+
+static inline const vlTextureDef *vl_check_texture(const vlCheck *check, vlTextureId id) {
+  return id.index ? &check->scene->textures.items[id.index - 1] : NULL;
+}
+/* Null: the default diffuse. */
+static inline const vlMaterialDef *vl_check_material(const vlCheck *check, vlMaterialId id) {
+  return id.index ? &check->scene->materials.items[id.index - 1] : NULL;
+}
+/* The textures that a material reads itself, at most VL_CHECK_INPUTS (0: none). */
+enum { VL_CHECK_INPUTS = 40 };
+uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]);
+/* Those that a texture reads. */
+uint32_t vl_check_texture_inputs(const vlTextureDef *t, vlTextureId inputs[VL_CHECK_INPUTS]);
+/* "material \"glass\"", "the default material", "the material of line 3" */
+typedef struct vlCheckName {
+  char text[120];
+} vlCheckName;
+vlCheckName vl_check_material_name(const vlMaterialDef *m);
+vlCheckName vl_check_texture_name(const vlTextureDef *t);
+
+#endif

@@ -1,0 +1,241 @@
+/* scene/check_inside.c: the doctor: is the camera in a body where it sees nothing or sees it wrongly; do bodies of
+ * media lie in each other as they say? */
+#include <math.h>
+#include <string.h>
+
+#include "scene/check.h"
+#include "scene/solid.h"
+
+typedef struct Box {
+  double low[3], high[3];
+} Box;
+
+static bool box_holds(const Box *b, const double p[3]) {
+  bool in = true;
+  for (int k = 0; k < 3; k++) in = in && b->low[k] < p[k] && p[k] < b->high[k];
+  return in;
+}
+
+/* ---- the camera -------------------------------------------------------------------------------------------------- */
+
+static void eye_of(const vlCameraDef *d, double eye[3]) {
+  for (int k = 0; k < 3; k++) eye[k] = d->has_matrix ? d->world_from_camera[4 * k + 3] : d->eye[k];
+}
+
+/* Light passes its surface, or it is none. */
+static bool lets_light_pass(const vlCheck *c, const vlShapeDef *d) {
+  const vlMaterialDef *m = vl_check_material(c, d->material);
+  if (d->alpha.texture.index || d->alpha.value < 1 || d->one_sided) return true;
+  if (!m) return false;
+  return m->kind != VL_MATERIAL_DIFFUSE && m->kind != VL_MATERIAL_COATED_DIFFUSE && m->kind != VL_MATERIAL_CONDUCTOR &&
+         m->kind != VL_MATERIAL_COATED_CONDUCTOR;
+}
+
+/* Of the world's own lights; those in instances are not looked at: they count as being inside. */
+static bool holds_light(const vlCheck *c, const vlSolid *solid, const vlMat4 *group_from_world) {
+  const vlScene *s = c->scene;
+  double p[3], q[3];
+  for (size_t i = 0; i < s->lights.count; i++) {
+    const vlLightDef *l = &s->lights.items[i];
+    if (l->kind == VL_LIGHT_DISTANT || l->kind == VL_LIGHT_INFINITE) continue;
+    vlMat4 m = vl_mat4_load(l->world_from_light);
+    for (int k = 0; k < 3; k++) p[k] = l->from[k];
+    vl_mat4_point(&m, p, q);
+    vl_mat4_point(group_from_world, q, p);
+    if (vl_solid_holds(solid, p)) return true;
+  }
+  for (size_t i = 0; i < s->shapes.count; i++) {
+    const vlShapeDef *d = &s->shapes.items[i];
+    if (!d->emission.index) continue;
+    if (d->group.index) return true;
+    vlSolid glow = {.shape = d, .sphere = true};
+    for (uint32_t k = 0; k < 16; k++) {
+      if (d->positions) {
+        const float *x = d->positions + 3 * (size_t)((uint64_t)k * d->vertices / 16);
+        vlMat4 m = vl_mat4_load(d->group_from_shape);
+        for (int j = 0; j < 3; j++) q[j] = x[j];
+        vl_mat4_point(&m, q, p);
+      } else {
+        vl_solid_sample(&glow, k, 16, p);
+      }
+      vl_mat4_point(group_from_world, p, q);
+      if (vl_solid_holds(solid, q)) return true;
+    }
+  }
+  return false;
+}
+
+static const char *medium_name(const vlCheck *c, vlMediumId id) {
+  const char *name = id.index ? c->scene->media.items[id.index - 1].name : "";
+  return name ? name : "";
+}
+
+static void judge(vlCheck *c, const vlSolid *solid, const double *eye, const vlMat4 *group_from_world) {
+  const vlShapeDef *d = solid->shape;
+  const vlMaterialDef *m = vl_check_material(c, d->material);
+  vlCheckName name = vl_check_material_name(m);
+  vlMediumId medium = c->scene->settings.camera_medium;
+  bool media = d->inside.index != d->outside.index;
+  if (!vl_solid_holds(solid, eye)) return;
+  if (media && d->inside.index != medium.index)
+    vl_check_add(c, VL_FINDING_CAMERA_INSIDE, VL_SEVERITY_WARNING, d->source,
+                 "the camera stands in this body, whose medium is \"%.60s\", but its own medium is \"%.60s\"",
+                 medium_name(c, d->inside), medium_name(c, medium));
+  else if (!media && m && m->kind == VL_MATERIAL_DIELECTRIC)
+    vl_check_add(c, VL_FINDING_CAMERA_INSIDE, VL_SEVERITY_WARNING, d->source,
+                 "the camera stands in the body of %s and looks out through its surface", name.text);
+  else if (!lets_light_pass(c, d) && !d->emission.index && c->scene->settings.tracer != VL_TRACER_RAYCAST &&
+           c->scene->settings.tracer != VL_TRACER_AMBIENT_OCCLUSION && !holds_light(c, solid, group_from_world))
+    vl_check_add(c, VL_FINDING_CAMERA_INSIDE, VL_SEVERITY_WARNING, d->source,
+                 "the camera stands in this closed body of %s, and no light is in there: the picture stays black",
+                 name.text);
+}
+
+/* One placement of a group. Shapes of one material may make the body together. */
+static void check_group(vlCheck *c, uint32_t group, const Box *boxes, const double world_eye[3], const double *pose) {
+  const vlScene *s = c->scene;
+  vlMat4 inverse = vl_mat4_identity();
+  double eye[3];
+  if (pose && !vl_mat4_inverse(vl_mat4_load(pose), &inverse)) return;
+  vl_mat4_point(&inverse, world_eye, eye);
+  uint32_t *shapes = vl_alloc_array(c->context, s->shapes.count + 1, sizeof *shapes);
+  uint8_t *done = vl_alloc_zero(c->context, s->materials.count + 1, 1);
+  if (!shapes || !done) c->no_memory = true;
+  for (size_t i = 0; i < s->shapes.count && !c->no_memory; i++) {
+    const vlShapeDef *d = &s->shapes.items[i];
+    if (d->group.index != group || !box_holds(&boxes[i], eye)) continue;
+    bool meshed = d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR;
+    size_t count = 0;
+    if (meshed && done[d->material.index]) continue;
+    if (!meshed) shapes[count++] = (uint32_t)i;
+    for (size_t j = i; meshed && j < s->shapes.count; j++) {
+      const vlShapeDef *e = &s->shapes.items[j];
+      bool same = e->group.index == group && e->material.index == d->material.index &&
+                  (e->kind == VL_SHAPE_TRIANGLES || e->kind == VL_SHAPE_BILINEAR);
+      if (same) shapes[count++] = (uint32_t)j;
+    }
+    if (meshed) done[d->material.index] = 1;
+    vlSolid solid;
+    if (vl_solid_make(s, shapes, count, &solid))
+      judge(c, &solid, eye, &inverse);
+    else
+      c->no_memory = true;
+    vl_solid_free(s, &solid);
+  }
+  vl_free(c->context, shapes);
+  vl_free(c->context, done);
+}
+
+static void check_camera(vlCheck *c, const Box *boxes) {
+  const vlScene *s = c->scene;
+  double eye[3], p[3];
+  if (s->settings.camera_missing) return;
+  eye_of(&s->settings.camera, eye);
+  check_group(c, 0, boxes, eye, NULL);
+  Box *groups = vl_alloc_array(c->context, s->groups.count + 1, sizeof *groups);
+  if (!groups) c->no_memory = true;
+  if (c->no_memory) return;
+  for (size_t g = 0; g <= s->groups.count; g++)
+    for (int k = 0; k < 3; k++) groups[g].low[k] = INFINITY, groups[g].high[k] = -INFINITY;
+  for (size_t i = 0; i < s->shapes.count; i++) {
+    Box *b = &groups[s->shapes.items[i].group.index];
+    for (int k = 0; k < 3; k++) {
+      b->low[k] = boxes[i].low[k] < b->low[k] ? boxes[i].low[k] : b->low[k];
+      b->high[k] = boxes[i].high[k] > b->high[k] ? boxes[i].high[k] : b->high[k];
+    }
+  }
+  for (size_t i = 0; i < s->instances.count && !c->no_memory; i++) {
+    const vlSceneInstance *instance = &s->instances.items[i];
+    vlMat4 inverse;
+    if (instance->keys || !vl_mat4_inverse(vl_mat4_load(instance->world_from_group), &inverse)) continue;
+    vl_mat4_point(&inverse, eye, p);
+    if (box_holds(&groups[instance->group.index], p))
+      check_group(c, instance->group.index, boxes, eye, instance->world_from_group);
+  }
+  vl_free(c->context, groups);
+}
+
+/* ---- media ------------------------------------------------------------------------------------------------------- */
+
+enum { MAX_SOLIDS = 128, SAMPLES = 64 };
+
+static bool apart(const Box *a, const Box *b) {
+  bool away = false;
+  for (int k = 0; k < 3; k++) {
+    double hair = 1e-4 * (a->high[k] - a->low[k]);
+    away = away || a->high[k] <= b->low[k] + hair || b->high[k] <= a->low[k] + hair;
+  }
+  return away;
+}
+
+static uint32_t samples_in(const vlSolid *a, const vlSolid *b) {
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < SAMPLES; i++) {
+    double p[3];
+    vl_solid_sample(a, i, SAMPLES, p);
+    n += vl_solid_holds(b, p);
+  }
+  return n;
+}
+
+static double box_volume(const Box *b) {
+  return (b->high[0] - b->low[0]) * (b->high[1] - b->low[1]) * (b->high[2] - b->low[2]);
+}
+
+static void check_nesting(vlCheck *c, const vlSolid *solids, const Box *boxes, const uint32_t *shape, uint32_t n) {
+  for (uint32_t i = 0; i < n; i++) {
+    const vlShapeDef *d = solids[i].shape;
+    uint32_t around = UINT32_MAX;
+    for (uint32_t j = 0; j < n; j++) {
+      if (j == i || apart(&boxes[shape[i]], &boxes[shape[j]])) continue;
+      uint32_t in = samples_in(&solids[i], &solids[j]), back = samples_in(&solids[j], &solids[i]);
+      bool cut = (in > 1 && in < SAMPLES - 1) || (in == SAMPLES && back == SAMPLES);
+      if (cut && j > i)
+        vl_check_add(c, VL_FINDING_MEDIA, VL_SEVERITY_WARNING, solids[j].shape->source,
+                     "this body of medium \"%.60s\" overlaps the body of medium \"%.60s\" of line %u",
+                     medium_name(c, solids[j].shape->inside), medium_name(c, d->inside), d->source.line);
+      if (in == SAMPLES && back == 0 &&
+          (around == UINT32_MAX || box_volume(&boxes[shape[j]]) < box_volume(&boxes[shape[around]])))
+        around = j;
+    }
+    if (around != UINT32_MAX && d->outside.index != solids[around].shape->inside.index)
+      vl_check_add(c, VL_FINDING_MEDIA, VL_SEVERITY_WARNING, d->source,
+                   "this body lies in medium \"%.60s\" (line %u), but says that \"%.60s\" is outside of it",
+                   medium_name(c, solids[around].shape->inside), solids[around].shape->source.line,
+                   medium_name(c, d->outside));
+  }
+}
+
+/* Shapes of the world itself, each on its own. */
+static void check_media(vlCheck *c, const Box *boxes) {
+  const vlScene *s = c->scene;
+  vlSolid *solids = vl_alloc_zero(c->context, MAX_SOLIDS, sizeof *solids);
+  uint32_t shape[MAX_SOLIDS], n = 0;
+  if (!solids) c->no_memory = true;
+  for (uint32_t i = 0; i < s->shapes.count && n < MAX_SOLIDS && !c->no_memory; i++) {
+    const vlShapeDef *d = &s->shapes.items[i];
+    if (d->group.index || d->inside.index == d->outside.index) continue;
+    if (!vl_solid_make(s, &i, 1, &solids[n])) c->no_memory = true;
+    bool closed = solids[n].sphere || solids[n].body.part_count;
+    for (uint32_t k = 0; k < solids[n].body.part_count; k++) closed = closed && !solids[n].body.parts[k].open_edges;
+    shape[n] = i;
+    if (closed && !c->no_memory)
+      n++;
+    else
+      vl_solid_free(s, &solids[n]);
+  }
+  if (!c->no_memory) check_nesting(c, solids, boxes, shape, n);
+  for (uint32_t i = 0; solids && i < n; i++) vl_solid_free(s, &solids[i]);
+  vl_free(c->context, solids);
+}
+
+void vl_check_inside(vlCheck *c) {
+  const vlScene *s = c->scene;
+  Box *boxes = vl_alloc_array(c->context, s->shapes.count + 1, sizeof *boxes);
+  if (!boxes) c->no_memory = true;
+  for (size_t i = 0; i < s->shapes.count && !c->no_memory; i++)
+    vl_shape_box(&s->shapes.items[i], boxes[i].low, boxes[i].high);
+  if (!c->no_memory) check_camera(c, boxes);
+  if (!c->no_memory) check_media(c, boxes);
+  vl_free(c->context, boxes);
+}

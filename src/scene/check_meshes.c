@@ -1,0 +1,248 @@
+/* scene/check_meshes.c: the doctor: faces without area, normals without length, textures over uv that are not there,
+ * and bodies that light passes: are they closed, do their normals point outwards? */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/body.h"
+#include "scene/check.h"
+
+/* ---- degenerate -------------------------------------------------------------------------------------------------- */
+
+static bool has_no_area(const float *p, const uint32_t *f) {
+  if (f[0] == f[1] || f[1] == f[2] || f[2] == f[0]) return true;
+  double e[2][3], g = 0;
+  for (int k = 0; k < 3; k++) {
+    e[0][k] = (double)p[3 * (size_t)f[1] + (size_t)k] - (double)p[3 * (size_t)f[0] + (size_t)k];
+    e[1][k] = (double)p[3 * (size_t)f[2] + (size_t)k] - (double)p[3 * (size_t)f[0] + (size_t)k];
+  }
+  g += fabs(e[0][1] * e[1][2] - e[0][2] * e[1][1]) + fabs(e[0][2] * e[1][0] - e[0][0] * e[1][2]);
+  return g + fabs(e[0][0] * e[1][1] - e[0][1] * e[1][0]) == 0;
+}
+
+/* A share of a hundredth on is a warning: some are in nearly every mesh that comes from a program. */
+static void tell_share(vlCheck *c, const vlShapeDef *d, uint32_t wrong, uint32_t all, const char *what) {
+  if (!wrong) return;
+  bool much = (double)wrong >= 0.01 * all;
+  vl_check_add(c, VL_FINDING_DEGENERATE, much ? VL_SEVERITY_WARNING : VL_SEVERITY_NOTE, d->source,
+               "%u of %u %s (%.2g %%)", wrong, all, what, 100.0 * wrong / all);
+}
+
+static void check_degenerate(vlCheck *c, const vlShapeDef *d) {
+  uint32_t flat = 0, no_length = 0;
+  if (d->kind == VL_SHAPE_TRIANGLES) {
+    for (uint32_t i = 0; i < d->faces; i++) flat += has_no_area(d->positions, d->indices + 3 * (size_t)i);
+    tell_share(c, d, flat, d->faces, "triangles have no area");
+  } else if (d->kind == VL_SHAPE_BILINEAR) {
+    for (uint32_t i = 0; i < d->faces; i++) {
+      const uint32_t *f = d->indices + 4 * (size_t)i, other[3] = {f[3], f[2], f[1]};
+      flat += has_no_area(d->positions, f) && has_no_area(d->positions, other);
+    }
+    tell_share(c, d, flat, d->faces, "patches have no area");
+  }
+  if (!d->normals || (d->kind != VL_SHAPE_TRIANGLES && d->kind != VL_SHAPE_BILINEAR)) return;
+  for (uint32_t i = 0; i < d->vertices; i++) {
+    const float *n = d->normals + 3 * (size_t)i;
+    no_length += n[0] == 0 && n[1] == 0 && n[2] == 0;
+  }
+  tell_share(c, d, no_length, d->vertices, "vertex normals have no length");
+}
+
+/* ---- uv ---------------------------------------------------------------------------------------------------------- */
+
+/* What a texture needs of the mesh, with those that it reads. */
+enum { NEEDS_UV = 1, NEEDS_COLORS = 16 }; /* NEEDS_UV << set */
+
+static uint8_t own_needs(const vlTextureDef *t) {
+  bool over_uv = t->mapping == VL_MAPPING_UV &&
+                 (t->kind == VL_TEXTURE_IMAGE || t->kind == VL_TEXTURE_BILERP || t->kind == VL_TEXTURE_DOTS ||
+                  (t->kind == VL_TEXTURE_CHECKERBOARD && t->dimension == 2));
+  uint8_t needs = over_uv ? (uint8_t)(NEEDS_UV << (t->uv_set & 3)) : 0;
+  if (t->colors || t->kind == VL_TEXTURE_VERTEX_COLOR) needs |= NEEDS_COLORS;
+  return needs;
+}
+
+static uint8_t lacks(const vlShapeDef *d) {
+  if (d->kind != VL_SHAPE_TRIANGLES) return 0; /* the others have uv of their own */
+  uint8_t none = d->uvs ? 0 : NEEDS_UV;
+  for (int k = 0; k < 3; k++)
+    if (!d->more_uvs[k]) none |= (uint8_t)(NEEDS_UV << (k + 1));
+  return d->colors ? none : none | NEEDS_COLORS;
+}
+
+typedef struct Needs {
+  uint8_t *textures, *materials;
+  uint32_t *culprit; /* of materials: texture id that needs it */
+} Needs;
+
+static void find_needs(vlCheck *c, Needs *n) {
+  const vlScene *s = c->scene;
+  vlTextureId inputs[VL_CHECK_INPUTS];
+  for (size_t i = 0; i < s->textures.count; i++) {
+    n->textures[i] = own_needs(&s->textures.items[i]);
+    uint32_t count = vl_check_texture_inputs(&s->textures.items[i], inputs);
+    for (uint32_t k = 0; k < count; k++) n->textures[i] |= n->textures[inputs[k].index - 1];
+  }
+  for (size_t i = 0; i < s->materials.count; i++) {
+    const vlMaterialDef *m = &s->materials.items[i];
+    uint32_t count = vl_check_material_inputs(m, inputs);
+    for (uint32_t k = 0; k < count; k++) {
+      uint8_t needs = n->textures[inputs[k].index - 1];
+      if (needs) n->culprit[i] = inputs[k].index;
+      n->materials[i] |= needs;
+    }
+    if (m->normal_map) n->materials[i] |= NEEDS_UV;
+    for (int k = 0; k < 2; k++) {
+      uint32_t part = m->materials[k].index;
+      if (!part) continue;
+      n->materials[i] |= n->materials[part - 1];
+      if (n->culprit[part - 1]) n->culprit[i] = n->culprit[part - 1];
+    }
+  }
+}
+
+static void tell_lack(vlCheck *c, const vlShapeDef *d, uint8_t lack, const char *who, const char *texture) {
+  if (lack & NEEDS_COLORS)
+    vl_check_add(c, VL_FINDING_NO_UV, VL_SEVERITY_WARNING, d->source,
+                 "the mesh has no vertex colours, but %s%s%s reads them", texture, texture[0] ? " of " : "", who);
+  if (lack & ~NEEDS_COLORS)
+    vl_check_add(c, VL_FINDING_NO_UV, VL_SEVERITY_WARNING, d->source,
+                 "the mesh has no uv%s, but %s%s%s needs them: each triangle shows the same piece",
+                 lack & NEEDS_UV ? "" : " of that set", texture, texture[0] ? " of " : "", who);
+}
+
+static void check_uv(vlCheck *c, const vlShapeDef *d, const Needs *n) {
+  const vlScene *s = c->scene;
+  uint8_t none = lacks(d);
+  if (!none) return;
+  if (d->material.index) {
+    uint32_t m = d->material.index - 1, t = n->culprit[m];
+    uint8_t lack = none & n->materials[m];
+    if (lack)
+      tell_lack(c, d, lack, vl_check_material_name(&s->materials.items[m]).text,
+                t ? vl_check_texture_name(&s->textures.items[t - 1]).text : "the normal map");
+  }
+  if (d->alpha.texture.index && (none & n->textures[d->alpha.texture.index - 1]))
+    tell_lack(c, d, none & n->textures[d->alpha.texture.index - 1],
+              vl_check_texture_name(&s->textures.items[d->alpha.texture.index - 1]).text, "its alpha,");
+  if (!d->emission.index) return;
+  const vlEmissionDef *e = &s->emissions.items[d->emission.index - 1];
+  if ((e->image && (none & NEEDS_UV)) ||
+      (e->texture.index && (none & n->textures[e->texture.index - 1] & ~NEEDS_COLORS)))
+    tell_lack(c, d, NEEDS_UV, "its area light", "the picture");
+}
+
+/* ---- bodies ------------------------------------------------------------------------------------------------------ */
+
+static bool is_body(const vlCheck *c, const vlShapeDef *d) {
+  const vlMaterialDef *m = vl_check_material(c, d->material);
+  return m && (m->kind == VL_MATERIAL_DIELECTRIC ||
+               (m->kind == VL_MATERIAL_PRINCIPLED && !m->principled.thin_walled &&
+                (m->principled.transmission.texture.index || m->principled.transmission.value > 0)));
+}
+
+typedef struct Key {
+  uint32_t group, material, shape;
+} Key;
+
+static int by_key(const void *a, const void *b) {
+  const Key *x = a, *y = b;
+  if (x->group != y->group) return x->group < y->group ? -1 : 1;
+  if (x->material != y->material) return x->material < y->material ? -1 : 1;
+  return x->shape < y->shape ? -1 : x->shape > y->shape;
+}
+
+/* Does a closed part of the body hold this one? Then it may be a hollow in it. */
+static bool lies_in_another(const vlBody *b, uint32_t part) {
+  const vlBodyPart *p = &b->parts[part];
+  for (uint32_t i = 0; i < b->part_count; i++) {
+    const vlBodyPart *q = &b->parts[i];
+    bool within = i != part;
+    for (int k = 0; k < 3 && within; k++) within = q->low[k] <= p->low[k] && q->high[k] >= p->high[k];
+    if (within) return true;
+  }
+  return false;
+}
+
+/* The shape that a part's faces mostly come from cannot be told after welding: the first shape of the body stands for
+ * all, which is exact where a body is one shape. */
+static void check_body(vlCheck *c, const uint32_t *shapes, size_t count) {
+  const vlScene *s = c->scene;
+  const vlShapeDef *first = &s->shapes.items[shapes[0]];
+  vlBody body;
+  if (!vl_body_make(s, shapes, count, &body)) c->no_memory = true;
+  uint32_t open = 0, inverted = 0;
+  uint64_t edges = 0;
+  for (uint32_t i = 0; i < body.part_count && !c->no_memory; i++) {
+    const vlBodyPart *p = &body.parts[i];
+    edges += p->open_edges;
+    open += p->open_edges > 0;
+    inverted += !p->open_edges && p->volume < 0 && !lies_in_another(&body, i);
+  }
+  vlCheckName name = vl_check_material_name(vl_check_material(c, first->material));
+  if (open)
+    vl_check_add(c, VL_FINDING_OPEN_DIELECTRIC, VL_SEVERITY_WARNING, first->source,
+                 "the body of %s is not closed: %llu edges have one face only, in %u of its %u parts", name.text,
+                 (unsigned long long)edges, open, body.part_count);
+  if (inverted)
+    vl_check_add(c, VL_FINDING_INVERTED_DIELECTRIC, VL_SEVERITY_WARNING, first->source,
+                 "normals point into the body of %s (%u of its %u parts): light is bent the wrong way", name.text,
+                 inverted, body.part_count);
+  vl_body_free(s, &body);
+}
+
+static void check_sphere(vlCheck *c, const vlShapeDef *d) {
+  const double whole = 2 * 3.14159265358979 - 1e-5;
+  vlCheckName name = vl_check_material_name(vl_check_material(c, d->material));
+  if ((double)d->phi_max < whole || d->z_min > -d->radius || d->z_max < d->radius)
+    vl_check_add(c, VL_FINDING_OPEN_DIELECTRIC, VL_SEVERITY_WARNING, d->source,
+                 "the body of %s is not closed: the sphere is a part of one", name.text);
+  else if (d->reverse_orientation)
+    vl_check_add(c, VL_FINDING_INVERTED_DIELECTRIC, VL_SEVERITY_WARNING, d->source,
+                 "normals point into the sphere of %s: light is bent the wrong way", name.text);
+}
+
+static void check_bodies(vlCheck *c) {
+  const vlScene *s = c->scene;
+  Key *keys = vl_alloc_array(c->context, s->shapes.count + 1, sizeof *keys);
+  uint32_t *shapes = vl_alloc_array(c->context, s->shapes.count + 1, sizeof *shapes);
+  size_t n = 0;
+  if (!keys || !shapes) c->no_memory = true;
+  for (uint32_t i = 0; i < s->shapes.count && !c->no_memory; i++) {
+    const vlShapeDef *d = &s->shapes.items[i];
+    if (!is_body(c, d)) continue;
+    if (d->kind == VL_SHAPE_SPHERE)
+      check_sphere(c, d);
+    else
+      keys[n++] = (Key){d->group.index, d->material.index, i};
+  }
+  if (n) qsort(keys, n, sizeof *keys, by_key);
+  for (size_t i = 0, j; i < n && !c->no_memory; i = j) {
+    size_t count = 0;
+    bool round = false; /* disks and cylinders may close it: nobody can tell */
+    for (j = i; j < n && keys[j].group == keys[i].group && keys[j].material == keys[i].material; j++) {
+      vlShapeKind kind = s->shapes.items[keys[j].shape].kind;
+      round |= kind != VL_SHAPE_TRIANGLES && kind != VL_SHAPE_BILINEAR;
+      shapes[count++] = keys[j].shape;
+    }
+    if (!round) check_body(c, shapes, count);
+  }
+  vl_free(c->context, keys);
+  vl_free(c->context, shapes);
+}
+
+void vl_check_meshes(vlCheck *c) {
+  const vlScene *s = c->scene;
+  Needs n = {vl_alloc_zero(c->context, s->textures.count + 1, 1), vl_alloc_zero(c->context, s->materials.count + 1, 1),
+             vl_alloc_zero(c->context, s->materials.count + 1, sizeof *n.culprit)};
+  if (!n.textures || !n.materials || !n.culprit) c->no_memory = true;
+  if (!c->no_memory) find_needs(c, &n);
+  for (size_t i = 0; i < s->shapes.count && !c->no_memory; i++) {
+    check_degenerate(c, &s->shapes.items[i]);
+    check_uv(c, &s->shapes.items[i], &n);
+  }
+  vl_free(c->context, n.textures);
+  vl_free(c->context, n.materials);
+  vl_free(c->context, n.culprit);
+  if (!c->no_memory) check_bodies(c);
+}

@@ -1,0 +1,198 @@
+/* scene/check_names.c: the doctor: what is reached from shapes, lights and instances, and what bears a name or a place
+ * and is not. Things that were added later refer to earlier ones only, so one walk from the last to the first
+ * suffices. */
+#include <stdio.h>
+#include <string.h>
+
+#include "scene/check.h"
+
+static void push(vlTextureId inputs[VL_CHECK_INPUTS], uint32_t *n, vlTextureId id) {
+  if (id.index && *n < VL_CHECK_INPUTS) inputs[(*n)++] = id;
+}
+
+uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]) {
+  const vlPrincipledDef *p = &m->principled;
+  const vlTextureId all[] = {m->reflectance.texture,
+                             m->u_roughness.texture,
+                             m->v_roughness.texture,
+                             m->eta.texture,
+                             m->k.texture,
+                             m->thickness.texture,
+                             m->g.texture,
+                             m->albedo.texture,
+                             m->amount.texture,
+                             m->displacement.texture,
+                             m->transmittance.texture,
+                             m->coat_u_roughness.texture,
+                             m->coat_v_roughness.texture,
+                             m->coat_eta.texture,
+                             p->metallic.texture,
+                             p->roughness.texture,
+                             p->anisotropy.texture,
+                             p->anisotropy_rotation.texture,
+                             p->specular.texture,
+                             p->specular_color.texture,
+                             p->transmission.texture,
+                             p->diffuse_transmission.texture,
+                             p->diffuse_transmission_color.texture,
+                             p->clearcoat.texture,
+                             p->clearcoat_roughness.texture,
+                             p->sheen_color.texture,
+                             p->sheen_roughness.texture,
+                             p->iridescence.texture,
+                             p->iridescence_thickness.texture,
+                             p->normal,
+                             p->clearcoat_normal};
+  uint32_t n = 0;
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) push(inputs, &n, all[i]);
+  return n;
+}
+
+uint32_t vl_check_texture_inputs(const vlTextureDef *t, vlTextureId inputs[VL_CHECK_INPUTS]) {
+  const vlTextureId all[] = {t->float_a.texture,    t->float_b.texture,    t->float_c.texture,
+                             t->float_d.texture,    t->spectrum_a.texture, t->spectrum_b.texture,
+                             t->spectrum_c.texture, t->spectrum_d.texture, t->amount.texture};
+  uint32_t n = 0;
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) push(inputs, &n, all[i]);
+  return n;
+}
+
+vlCheckName vl_check_material_name(const vlMaterialDef *m) {
+  vlCheckName r;
+  if (!m)
+    snprintf(r.text, sizeof r.text, "the default material");
+  else if (m->name && m->name[0])
+    snprintf(r.text, sizeof r.text, "material \"%.80s\"", m->name);
+  else if (m->source.line)
+    snprintf(r.text, sizeof r.text, "the material of line %u", m->source.line);
+  else
+    snprintf(r.text, sizeof r.text, "its material");
+  return r;
+}
+
+vlCheckName vl_check_texture_name(const vlTextureDef *t) {
+  vlCheckName r;
+  if (t->name && t->name[0])
+    snprintf(r.text, sizeof r.text, "texture \"%.80s\"", t->name);
+  else if (t->source.line)
+    snprintf(r.text, sizeof r.text, "the texture of line %u", t->source.line);
+  else
+    snprintf(r.text, sizeof r.text, "its texture");
+  return r;
+}
+
+static void use(uint8_t *used, uint32_t index) {
+  if (index) used[index - 1] = 1;
+}
+
+static void find_used(vlCheck *c) {
+  const vlScene *s = c->scene;
+  for (size_t i = 0; i < s->shapes.count; i++) {
+    const vlShapeDef *d = &s->shapes.items[i];
+    use(c->material_used, d->material.index);
+    use(c->emission_used, d->emission.index);
+    use(c->texture_used, d->alpha.texture.index);
+    use(c->medium_used, d->inside.index);
+    use(c->medium_used, d->outside.index);
+  }
+  for (size_t i = 0; i < s->lights.count; i++) use(c->medium_used, s->lights.items[i].medium.index);
+  use(c->medium_used, s->settings.camera_medium.index);
+  for (size_t i = 0; i < s->emissions.count; i++) use(c->texture_used, s->emissions.items[i].texture.index);
+  for (size_t i = 0; i < s->instances.count; i++) use(c->group_used, s->instances.items[i].group.index);
+  vlTextureId inputs[VL_CHECK_INPUTS];
+  for (size_t i = s->materials.count; i-- > 0;) {
+    const vlMaterialDef *m = &s->materials.items[i];
+    if (!c->material_used[i]) continue;
+    use(c->material_used, m->materials[0].index);
+    use(c->material_used, m->materials[1].index);
+    uint32_t n = vl_check_material_inputs(m, inputs);
+    for (uint32_t k = 0; k < n; k++) use(c->texture_used, inputs[k].index);
+  }
+  for (size_t i = s->textures.count; i-- > 0;) {
+    if (!c->texture_used[i]) continue;
+    uint32_t n = vl_check_texture_inputs(&s->textures.items[i], inputs);
+    for (uint32_t k = 0; k < n; k++) use(c->texture_used, inputs[k].index);
+  }
+}
+
+/* Textures that only unused materials read are told once, by their material. */
+static void mark_textures_of_unused(vlCheck *c, uint8_t *read) {
+  const vlScene *s = c->scene;
+  vlTextureId inputs[VL_CHECK_INPUTS];
+  for (size_t i = 0; i < s->materials.count; i++) {
+    uint32_t n = vl_check_material_inputs(&s->materials.items[i], inputs);
+    for (uint32_t k = 0; k < n; k++) use(read, inputs[k].index);
+  }
+  for (size_t i = 0; i < s->textures.count; i++) {
+    uint32_t n = vl_check_texture_inputs(&s->textures.items[i], inputs);
+    for (uint32_t k = 0; k < n; k++) use(read, inputs[k].index);
+  }
+}
+
+static bool named(const char *name) {
+  return name && name[0];
+}
+
+static void tell_unused(vlCheck *c) {
+  const vlScene *s = c->scene;
+  uint8_t *read = vl_alloc_zero(c->context, s->textures.count + 1, 1);
+  uint8_t *mixed = vl_alloc_zero(c->context, s->materials.count + 1, 1);
+  if (!read || !mixed) {
+    vl_free(c->context, read);
+    vl_free(c->context, mixed);
+    c->no_memory = true;
+    return;
+  }
+  mark_textures_of_unused(c, read);
+  for (size_t i = 0; i < s->materials.count; i++)
+    for (int k = 0; k < 2; k++) use(mixed, s->materials.items[i].materials[k].index);
+  for (size_t i = 0; i < s->textures.count; i++) {
+    const vlTextureDef *t = &s->textures.items[i];
+    if (!c->texture_used[i] && !read[i] && named(t->name))
+      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, t->source, "texture \"%.80s\" is not used", t->name);
+  }
+  for (size_t i = 0; i < s->materials.count; i++) {
+    const vlMaterialDef *m = &s->materials.items[i];
+    if (c->material_used[i] || mixed[i]) continue;
+    if (named(m->name))
+      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, m->source, "material \"%.80s\" is not used", m->name);
+    else if (m->source.line)
+      vl_check_add(c, VL_FINDING_UNDONE, VL_SEVERITY_NOTE, m->source, "no shape takes this material");
+  }
+  for (size_t i = 0; i < s->media.count; i++)
+    if (!c->medium_used[i])
+      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->media.items[i].source,
+                   "nothing lies in medium \"%.80s\"", s->media.items[i].name ? s->media.items[i].name : "");
+  for (size_t i = 0; i < s->emissions.count; i++)
+    if (!c->emission_used[i])
+      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->emissions.items[i].source,
+                   "no shape glows by this area light");
+  vl_free(c->context, read);
+  vl_free(c->context, mixed);
+}
+
+/* Groups have no place of their own: the place of their first shape stands for them. */
+static void tell_groups(vlCheck *c) {
+  const vlScene *s = c->scene;
+  size_t next = 0;
+  for (size_t g = 0; g < s->groups.count; g++) {
+    const vlSceneGroup *group = &s->groups.items[g];
+    if (!c->group_used[g] && group->shape_count && named(group->name)) {
+      while (next < s->shapes.count && s->shapes.items[next].group.index != g + 1) next++;
+      vlSource at = next < s->shapes.count ? s->shapes.items[next].source : (vlSource){0};
+      next = 0;
+      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, at, "object \"%.80s\" is placed nowhere", group->name);
+    }
+    if (!c->group_used[g] || group->shape_count) continue;
+    size_t i = 0;
+    while (s->instances.items[i].group.index != g + 1) i++;
+    vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_NOTE, s->instances.items[i].source,
+                 "object \"%.80s\" is placed, but holds no shapes", group->name);
+  }
+}
+
+void vl_check_names(vlCheck *c) {
+  find_used(c);
+  tell_unused(c);
+  tell_groups(c);
+}

@@ -1,0 +1,227 @@
+/* scene/check_pictures.c: the doctor: files that are not there, surfaces that give back more light than they get,
+ * lights that give none. The greatest value of a texture is bounded from above: of a mix the larger part, of a product
+ * the product, of a picture its brightest texel. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "color/color.h"
+#include "image/image.h"
+#include "scene/check.h"
+
+/* ---- files ------------------------------------------------------------------------------------------------------- */
+
+static bool file_is_there(vlCheck *c, const char *path, vlSource source) {
+  if (access(path, R_OK) == 0) return true;
+  char *data = NULL;
+  size_t size;
+  vlError error = {0};
+  vlResult r = vl_file_read(c->context, path, false, &data, &size, &error); /* for its words */
+  vl_free(c->context, data);
+  if (r != VL_OK)
+    vl_check_add(c, r == VL_ERROR_MISSING ? VL_FINDING_MISSING_FILE : VL_FINDING_BROKEN_FILE, VL_SEVERITY_ERROR, source,
+                 "%s", error.message);
+  return r == VL_OK;
+}
+
+static void look_for_files(vlCheck *c) {
+  const vlScene *s = c->scene;
+  for (size_t i = 0; i < s->textures.count; i++)
+    if (s->textures.items[i].path) file_is_there(c, s->textures.items[i].path, s->textures.items[i].source);
+  for (size_t i = 0; i < s->materials.count; i++)
+    if (s->materials.items[i].normal_map)
+      file_is_there(c, s->materials.items[i].normal_map, s->materials.items[i].source);
+  for (size_t i = 0; i < s->lights.count; i++)
+    if (s->lights.items[i].path) file_is_there(c, s->lights.items[i].path, s->lights.items[i].source);
+  for (size_t i = 0; i < s->emissions.count; i++)
+    if (s->emissions.items[i].image) file_is_there(c, s->emissions.items[i].image, s->emissions.items[i].source);
+  for (size_t i = 0; i < s->media.count; i++)
+    if (s->media.items[i].path) file_is_there(c, s->media.items[i].path, s->media.items[i].source);
+}
+
+/* ---- greatest values --------------------------------------------------------------------------------------------- */
+
+/* As a reflectance: rgb by its channels, others at any wavelength. */
+static float spectrum_max(const vlSpectrum *s) {
+  if (s->kind == VL_SPECTRUM_RGB) {
+    float m = s->rgb[0] > s->rgb[1] ? s->rgb[0] : s->rgb[1];
+    return s->scale * (m > s->rgb[2] ? m : s->rgb[2]);
+  }
+  if (s->kind == VL_SPECTRUM_CONSTANT) return s->scale * s->value;
+  float dense[VL_LAMBDA_COUNT], most = 0;
+  if (vl_spectrum_dense(s, VL_ROLE_ALBEDO, dense, NULL) != VL_OK) return 0;
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++) most = dense[i] > most ? dense[i] : most;
+  return most;
+}
+
+/* Largest and smallest linear colour of a picture. */
+static bool image_range(vlCheck *c, const vlImage *image, float range[2]) {
+  uint32_t channel[4], n = vl_image_color(image, channel);
+  if (n == 2 || n == 4) n--; /* coverage is no colour */
+  float *row = n ? vl_alloc_array(c->context, (size_t)image->width * n, sizeof *row) : NULL;
+  if (!row) return false;
+  range[0] = INFINITY, range[1] = -INFINITY;
+  for (uint32_t y = 0; y < image->height; y++) {
+    vl_image_row_to_float(image, y, channel, n, row);
+    for (size_t i = 0; i < (size_t)image->width * n; i++) {
+      range[0] = row[i] < range[0] ? row[i] : range[0];
+      range[1] = row[i] > range[1] ? row[i] : range[1];
+    }
+  }
+  vl_free(c->context, row);
+  return true;
+}
+
+static float picture_max(vlCheck *c, const vlTextureDef *t) {
+  float tint = t->tint[0] > t->tint[1] ? t->tint[0] : t->tint[1], range[2] = {0, 1};
+  tint = tint > t->tint[2] ? tint : t->tint[2];
+  bool floats = t->image || t->data || !t->path || vl_ends_with(t->path, ".exr") || vl_ends_with(t->path, ".hdr") ||
+                vl_ends_with(t->path, ".pfm");
+  vlImage *image = NULL;
+  /* Integers reach 1 at most, and are only looked into where a factor makes more of it. */
+  if (c->def.pictures && !t->image && (floats || t->scale * tint > 1.0f || t->invert)) {
+    vlError error;
+    vlResult r = t->data   ? vl_image_read_memory(c->context, "a picture", t->data, t->data_size, &image, &error)
+                 : t->path ? vl_image_read(c->context, t->path, &image, &error)
+                           : VL_ERROR_MISSING;
+    if (r == VL_ERROR_MEMORY) c->no_memory = true;
+    if (r == VL_ERROR_SCENE || r == VL_ERROR_UNSUPPORTED)
+      vl_check_add(c, VL_FINDING_BROKEN_FILE, VL_SEVERITY_ERROR, t->source, "%s", error.message);
+  }
+  if (image || t->image)
+    if (!image_range(c, image ? image : t->image, range)) range[0] = 0, range[1] = 1;
+  vl_image_destroy(image);
+  return (t->invert ? 1.0f - t->scale * range[0] : t->scale * range[1]) * tint; /* pbrt: scaled, then inverted */
+}
+
+static float larger(float a, float b) {
+  return a > b ? a : b;
+}
+
+/* Bounds of all textures that a reflectance may read; others 0. The earlier ones are known. */
+static float texture_max(vlCheck *c, const vlTextureDef *t, const float *known) {
+  float in[4];
+  const vlFloatInput *floats[4] = {&t->float_a, &t->float_b, &t->float_c, &t->float_d};
+  const vlSpectrumInput *spectra[4] = {&t->spectrum_a, &t->spectrum_b, &t->spectrum_c, &t->spectrum_d};
+  for (int i = 0; i < 4; i++) {
+    uint32_t id = t->spectrum ? spectra[i]->texture.index : floats[i]->texture.index;
+    in[i] = id ? known[id - 1] : t->spectrum ? spectrum_max(&spectra[i]->value) : floats[i]->value;
+  }
+  float amount = t->amount.texture.index ? known[t->amount.texture.index - 1] : t->amount.value;
+  if (t->kind == VL_TEXTURE_IMAGE) return picture_max(c, t);
+  if (t->kind == VL_TEXTURE_SCALE) return in[0] * amount;
+  if (t->kind == VL_TEXTURE_CONSTANT) return in[0];
+  if (t->kind == VL_TEXTURE_BILERP) return larger(larger(in[0], in[1]), larger(in[2], in[3]));
+  if (t->kind == VL_TEXTURE_MIX && !t->amount.texture.index) return in[0] * (1 - amount) + in[1] * amount;
+  if (t->kind == VL_TEXTURE_MIX || t->kind == VL_TEXTURE_CHECKERBOARD || t->kind == VL_TEXTURE_DIRECTION_MIX ||
+      t->kind == VL_TEXTURE_DOTS)
+    return larger(in[0], in[1]);
+  return 0; /* noise: its colours are its own */
+}
+
+/* The inputs of a material that are shares of light. */
+enum { SHARES = 6 };
+typedef struct Share {
+  const char *what;
+  const vlSpectrumInput *input;
+  float factor;
+} Share;
+
+static uint32_t shares(const vlMaterialDef *m, Share list[SHARES]) {
+  uint32_t n = 0;
+  if (m->kind == VL_MATERIAL_DIFFUSE || m->kind == VL_MATERIAL_COATED_DIFFUSE || m->kind == VL_MATERIAL_PRINCIPLED ||
+      m->use_reflectance)
+    list[n++] = (Share){"reflectance", &m->reflectance, 1};
+  if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) {
+    list[n++] = (Share){"reflectance", &m->reflectance, m->scale};
+    list[n++] = (Share){"transmittance", &m->transmittance, m->scale};
+  }
+  if (m->kind == VL_MATERIAL_COATED_DIFFUSE || m->kind == VL_MATERIAL_COATED_CONDUCTOR)
+    list[n++] = (Share){"albedo of the coat", &m->albedo, 1};
+  return n;
+}
+
+static void mark(vlCheck *c, uint8_t *needed) {
+  const vlScene *s = c->scene;
+  Share list[SHARES];
+  vlTextureId inputs[VL_CHECK_INPUTS];
+  for (size_t i = 0; i < s->materials.count; i++) {
+    uint32_t n = shares(&s->materials.items[i], list);
+    for (uint32_t k = 0; k < n; k++)
+      if (list[k].input->texture.index) needed[list[k].input->texture.index - 1] = 1;
+  }
+  for (size_t i = s->textures.count; i-- > 0;) {
+    uint32_t n = needed[i] ? vl_check_texture_inputs(&s->textures.items[i], inputs) : 0;
+    for (uint32_t k = 0; k < n; k++) needed[inputs[k].index - 1] = 1;
+  }
+}
+
+static void check_albedo(vlCheck *c) {
+  const vlScene *s = c->scene;
+  const float most = 1.001f; /* what rounding of scaled colours may add */
+  uint8_t *needed = vl_alloc_zero(c->context, s->textures.count + 1, 1);
+  float *known = vl_alloc_zero(c->context, s->textures.count + 1, sizeof *known);
+  if (!needed || !known) c->no_memory = true;
+  if (!c->no_memory) mark(c, needed);
+  for (size_t i = 0; i < s->textures.count && !c->no_memory; i++)
+    if (needed[i]) known[i] = texture_max(c, &s->textures.items[i], known);
+  for (size_t i = 0; i < s->materials.count && !c->no_memory; i++) {
+    const vlMaterialDef *m = &s->materials.items[i];
+    Share list[SHARES];
+    float sum = 0;
+    uint32_t n = shares(m, list);
+    for (uint32_t k = 0; k < n; k++) {
+      uint32_t id = list[k].input->texture.index;
+      float value = list[k].factor * (id ? known[id - 1] : spectrum_max(&list[k].input->value));
+      if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) sum += value;
+      if (!(value > most)) continue;
+      if (id)
+        vl_check_add(c, VL_FINDING_ALBEDO, VL_SEVERITY_WARNING, s->textures.items[id - 1].source,
+                     "%s reaches %.4g as the %s of %s: surfaces give back at most 1",
+                     vl_check_texture_name(&s->textures.items[id - 1]).text, (double)value, list[k].what,
+                     vl_check_material_name(m).text);
+      else
+        vl_check_add(c, VL_FINDING_ALBEDO, VL_SEVERITY_WARNING, m->source,
+                     "%s: its %s is %.4g: surfaces give back at most 1", vl_check_material_name(m).text, list[k].what,
+                     (double)value);
+      sum = 0;
+    }
+    if (sum > most)
+      vl_check_add(c, VL_FINDING_ALBEDO, VL_SEVERITY_WARNING, m->source,
+                   "%s: reflectance and transmittance add up to %.4g: at most 1 is physical",
+                   vl_check_material_name(m).text, (double)sum);
+  }
+  vl_free(c->context, needed);
+  vl_free(c->context, known);
+}
+
+/* ---- lights ------------------------------------------------------------------------------------------------------ */
+
+static bool is_dark(const vlSpectrum *s, float scale, bool picture) {
+  return scale == 0.0f || (!picture && !(spectrum_max(s) > 0.0f));
+}
+
+static void check_lights(vlCheck *c) {
+  const vlScene *s = c->scene;
+  for (size_t i = 0; i < s->lights.count; i++) {
+    const vlLightDef *l = &s->lights.items[i];
+    if (is_dark(&l->color, l->scale, l->path || l->image) || l->power == 0.0 || l->illuminance == 0.0)
+      vl_check_add(c, VL_FINDING_DARK_LIGHT, VL_SEVERITY_WARNING, l->source,
+                   "this light gives no light: its power is 0");
+  }
+  for (size_t i = 0; i < s->emissions.count; i++) {
+    const vlEmissionDef *e = &s->emissions.items[i];
+    if (c->emission_used[i] && (is_dark(&e->radiance, e->scale, e->image || e->texture.index) || e->power == 0.0))
+      vl_check_add(c, VL_FINDING_DARK_LIGHT, VL_SEVERITY_WARNING, e->source,
+                   "this area light gives no light: its power is 0");
+  }
+}
+
+void vl_check_pictures(vlCheck *c) {
+  look_for_files(c);
+  check_albedo(c);
+  check_lights(c);
+}

@@ -1,0 +1,141 @@
+/* scene/inspect.c: what a scene holds, for people: its box, its lights with their power. */
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "color/color.h"
+#include "scene/solid.h"
+#include "velo/check.h"
+
+static const double pi = 3.14159265358979323846;
+
+void vl_scene_bounds(const vlScene *s, double low[3], double high[3]) {
+  for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+  size_t n = s->groups.count + 1;
+  double(*boxes)[6] = vl_alloc_array(s->context, n, sizeof *boxes);
+  if (!boxes) return;
+  for (size_t g = 0; g < n; g++)
+    for (int k = 0; k < 3; k++) boxes[g][k] = INFINITY, boxes[g][3 + k] = -INFINITY;
+  for (size_t i = 0; i < s->shapes.count; i++) {
+    double a[3], b[3], *box = boxes[s->shapes.items[i].group.index];
+    vl_shape_box(&s->shapes.items[i], a, b);
+    for (int k = 0; k < 3; k++) {
+      box[k] = a[k] < box[k] ? a[k] : box[k];
+      box[3 + k] = b[k] > box[3 + k] ? b[k] : box[3 + k];
+    }
+  }
+  memcpy(low, boxes[0], 3 * sizeof *low);
+  memcpy(high, boxes[0] + 3, 3 * sizeof *high);
+  for (size_t i = 0; i < s->instances.count; i++) {
+    const double *box = boxes[s->instances.items[i].group.index];
+    vlMat4 m = vl_mat4_load(s->instances.items[i].world_from_group);
+    for (int c = 0; box[0] <= box[3] && c < 8; c++) {
+      double p[3] = {box[c & 1 ? 3 : 0], box[c & 2 ? 4 : 1], box[c & 4 ? 5 : 2]}, q[3];
+      vl_mat4_point(&m, p, q);
+      for (int k = 0; k < 3; k++) low[k] = q[k] < low[k] ? q[k] : low[k], high[k] = q[k] > high[k] ? q[k] : high[k];
+    }
+  }
+  vl_free(s->context, boxes);
+}
+
+/* ---- areas ------------------------------------------------------------------------------------------------------- */
+
+static double triangle_area(const double p[3][3]) {
+  double e[2][3], n[3];
+  for (int k = 0; k < 3; k++) e[0][k] = p[1][k] - p[0][k], e[1][k] = p[2][k] - p[0][k];
+  n[0] = e[0][1] * e[1][2] - e[0][2] * e[1][1];
+  n[1] = e[0][2] * e[1][0] - e[0][0] * e[1][2];
+  n[2] = e[0][0] * e[1][1] - e[0][1] * e[1][0];
+  return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+}
+
+/* Patches as two triangles; round shapes as if their transform scaled evenly. */
+static double shape_area(const vlShapeDef *d) {
+  vlMat4 m = vl_mat4_load(d->group_from_shape);
+  double r = d->radius, turn = d->phi_max, scale = cbrt(fabs(vl_mat4_determinant3(m))), sum = 0;
+  if (d->kind == VL_SHAPE_SPHERE || d->kind == VL_SHAPE_CYLINDER)
+    return turn * r * ((double)d->z_max - (double)d->z_min) * scale * scale;
+  if (d->kind == VL_SHAPE_DISK)
+    return 0.5 * turn * (r * r - (double)d->inner_radius * (double)d->inner_radius) * scale * scale;
+  if (d->kind != VL_SHAPE_TRIANGLES && d->kind != VL_SHAPE_BILINEAR) return NAN;
+  uint32_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
+  for (uint32_t i = 0; i < d->faces; i++) {
+    double p[4][3];
+    for (uint32_t k = 0; k < per; k++) {
+      const float *x = d->positions + 3 * (size_t)d->indices[per * (size_t)i + k];
+      const double q[3] = {x[0], x[1], x[2]};
+      vl_mat4_point(&m, q, p[k]);
+    }
+    sum += triangle_area((const double(*)[3])p);
+    if (per == 4) sum += triangle_area((const double(*)[3])(p + 1));
+  }
+  return sum;
+}
+
+/* ---- lights ------------------------------------------------------------------------------------------------------ */
+
+/* Luminance after pbrt's normalisation: what is emitted divided by the spectrum's own luminance (for RGB: by that of
+ * the colour space's white). */
+static double luminance(const vlSpectrum *s) {
+  float dense[VL_LAMBDA_COUNT];
+  const float *y = vl_cie_y();
+  double sum = 0, own = vl_spectrum_photometric(s, NULL);
+  if (vl_spectrum_dense(s, VL_ROLE_ILLUMINANT, dense, NULL) != VL_OK || !(own > 0)) return 0;
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++) sum += (double)y[i] * (double)dense[i];
+  return sum / own;
+}
+
+static bool given(double x) {
+  return x == x && x > 0;
+}
+
+static vlLightInfo shape_light(const vlScene *s, const vlShapeDef *d) {
+  const vlEmissionDef *e = &s->emissions.items[d->emission.index - 1];
+  bool meshed = d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR;
+  vlLightInfo info = {.kind = "area", .source = d->source, .faces = meshed ? d->faces : 1};
+  info.picture = e->image || e->texture.index;
+  info.power = given(e->power) ? e->power * (double)info.faces
+               : info.picture
+                   ? NAN
+                   : pi * shape_area(d) * luminance(&e->radiance) * (double)e->scale * (e->two_sided ? 2 : 1);
+  return info;
+}
+
+static vlLightInfo light(const vlScene *s, const vlLightDef *l) {
+  static const char *const kinds[] = {"point", "spot", "distant", "infinite"};
+  vlLightInfo info = {.kind = (unsigned)l->kind < 4 ? kinds[l->kind] : "other", .source = l->source};
+  info.picture = l->path || l->image;
+  double low[3], high[3], radius2 = 0, y = luminance(&l->color) * (double)l->scale;
+  if (l->kind == VL_LIGHT_POINT) {
+    info.power = 4 * pi * y;
+  } else if (l->kind == VL_LIGHT_SPOT) {
+    double inner = cos((double)l->cone_angle - (double)l->cone_delta), outer = cos((double)l->cone_angle);
+    info.power = 2 * pi * y * ((1 - inner) + 0.5 * (inner - outer));
+  } else if (l->kind == VL_LIGHT_DISTANT || l->kind == VL_LIGHT_INFINITE) {
+    vl_scene_bounds(s, low, high);
+    for (int k = 0; k < 3; k++) radius2 += high[k] > low[k] ? 0.25 * (high[k] - low[k]) * (high[k] - low[k]) : 0;
+    bool distant = l->kind == VL_LIGHT_DISTANT;
+    if (given(l->illuminance)) y = distant ? l->illuminance : l->illuminance / pi;
+    info.power = (distant ? pi : 4 * pi * pi) * radius2 * y;
+  } else {
+    info.power = NAN;
+  }
+  if (info.picture) info.power = NAN;
+  if (given(l->power)) info.power = l->power;
+  return info;
+}
+
+uint32_t vl_scene_light_count(const vlScene *s) {
+  size_t n = s->lights.count;
+  for (size_t i = 0; i < s->shapes.count; i++) n += s->shapes.items[i].emission.index != 0;
+  return (uint32_t)n;
+}
+
+vlResult vl_scene_light_info(const vlScene *s, uint32_t index, vlLightInfo *info) {
+  if (!s || !info) return VL_ERROR_ARGUMENT;
+  if (index < s->lights.count) return *info = light(s, &s->lights.items[index]), VL_OK;
+  size_t left = index - s->lights.count;
+  for (size_t i = 0; i < s->shapes.count; i++)
+    if (s->shapes.items[i].emission.index && left-- == 0) return *info = shape_light(s, &s->shapes.items[i]), VL_OK;
+  return VL_ERROR_ARGUMENT;
+}

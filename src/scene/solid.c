@@ -1,0 +1,86 @@
+/* scene/solid.c: see solid.h. Also the boxes of shapes. */
+#include "scene/solid.h"
+
+#include <math.h>
+#include <string.h>
+
+static void grow(double low[3], double high[3], const double p[3]) {
+  for (int k = 0; k < 3; k++) {
+    low[k] = p[k] < low[k] ? p[k] : low[k];
+    high[k] = p[k] > high[k] ? p[k] : high[k];
+  }
+}
+
+void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]) {
+  vlMat4 m = vl_mat4_load(d->group_from_shape);
+  double p[3], q[3];
+  for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+  if (d->vertices && d->positions) {
+    for (uint32_t i = 0; i < d->vertices; i++) {
+      for (int k = 0; k < 3; k++) p[k] = d->positions[3 * (size_t)i + (size_t)k];
+      vl_mat4_point(&m, p, q);
+      grow(low, high, q);
+    }
+    return;
+  }
+  double r = d->radius, z0 = d->kind == VL_SHAPE_DISK ? d->height : d->z_min,
+         z1 = d->kind == VL_SHAPE_DISK ? d->height : d->z_max;
+  for (int c = 0; c < 8; c++) {
+    const double corner[3] = {c & 1 ? r : -r, c & 2 ? r : -r, c & 4 ? z1 : z0};
+    vl_mat4_point(&m, corner, q);
+    grow(low, high, q);
+  }
+}
+
+static bool is_whole_sphere(const vlShapeDef *d) {
+  return d->kind == VL_SHAPE_SPHERE && d->phi_max > 6.28318f && d->z_min <= -d->radius && d->z_max >= d->radius;
+}
+
+bool vl_solid_make(const vlScene *scene, const uint32_t *shapes, size_t count, vlSolid *s) {
+  *s = (vlSolid){.shape = &scene->shapes.items[shapes[0]]};
+  s->sphere = count == 1 && is_whole_sphere(s->shape);
+  if (s->sphere) {
+    vl_mat4_inverse(vl_mat4_load(s->shape->group_from_shape), &s->shape_from_group);
+    return true;
+  }
+  return vl_body_make(scene, shapes, count, &s->body);
+}
+
+void vl_solid_free(const vlScene *scene, vlSolid *s) {
+  vl_body_free(scene, &s->body);
+}
+
+bool vl_solid_holds(const vlSolid *s, const double p[3]) {
+  if (s->sphere) {
+    double q[3], r = s->shape->radius;
+    vl_mat4_point(&s->shape_from_group, p, q);
+    return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] < r * r;
+  }
+  int winding = 0;
+  for (uint32_t i = 0; i < s->body.part_count; i++) {
+    const vlBodyPart *part = &s->body.parts[i];
+    bool near = part->open_edges == 0;
+    for (int k = 0; k < 3 && near; k++) near = part->low[k] < p[k] && p[k] < part->high[k];
+    if (near) winding += vl_body_winding(&s->body, p, i);
+  }
+  return winding != 0;
+}
+
+void vl_solid_sample(const vlSolid *s, uint32_t i, uint32_t n, double p[3]) {
+  if (s->sphere) { /* a spiral over the sphere */
+    double z = 1 - (2.0 * i + 1) / n, r = sqrt(1 - z * z), a = 2.39996322972865332 * i;
+    double q[3] = {0.999 * (double)s->shape->radius * r * cos(a), 0.999 * (double)s->shape->radius * r * sin(a),
+                   0.999 * (double)s->shape->radius * z};
+    vlMat4 m = vl_mat4_load(s->shape->group_from_shape);
+    vl_mat4_point(&m, q, p);
+    return;
+  }
+  uint32_t face = (uint32_t)((uint64_t)i * s->body.faces / n);
+  const vlBodyPart *part = &s->body.parts[s->body.part[face]];
+  for (int k = 0; k < 3; k++) {
+    double sum = 0;
+    for (int j = 0; j < 3; j++)
+      sum += s->body.points[3 * (size_t)s->body.faces3[3 * (size_t)face + (size_t)j] + (size_t)k];
+    p[k] = 0.999 * sum / 3 + 0.0005 * (part->low[k] + part->high[k]);
+  }
+}

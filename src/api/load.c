@@ -19,7 +19,9 @@ vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, v
   if (!readable || vl_ends_with(path, ".pbrt") || vl_ends_with(path, ".pbrt.gz"))
     return vl_import_pbrt(scene, path, def, error);
   if (vl_ends_with(path, ".gltf") || vl_ends_with(path, ".glb")) return vl_import_gltf(scene, path, def, error);
+  if (vl_ends_with(path, ".obj") || vl_ends_with(path, ".obj.gz")) return vl_import_obj(scene, path, def, error);
+  if (vl_ends_with(path, ".ply") || vl_ends_with(path, ".ply.gz")) return vl_import_ply(scene, path, def, error);
   vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){0},
-                "%.300s: unknown kind of scene file (known: .pbrt, .pbrt.gz, .gltf, .glb)", path);
+                "%.300s: unknown kind of scene file (known: .pbrt, .pbrt.gz, .gltf, .glb, .obj, .ply)", path);
   return vl_scene_result(scene, error);
 }

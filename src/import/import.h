@@ -14,4 +14,8 @@ vlResult vl_import_pbrt_memory(vlScene *scene, const char *data, size_t size, co
 /* A glTF 2.0 file (.gltf or .glb, by its content). Where it has no camera or light the scene's settings say so. */
 vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 
+/* Plain geometry: Wavefront OBJ with its MTL libraries, and PLY. The settings say that camera and light are missing. */
+vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
+vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
+
 #endif

@@ -20,7 +20,7 @@ static const uint32_t type_size[TYPES] = {1, 1, 2, 2, 4, 4, 4, 8};
 typedef enum Format { ASCII, LITTLE, BIG } Format;
 
 /* What a property is to us. */
-typedef enum Role { NOTHING, X, Y, Z, NX, NY, NZ, U, V, INDICES, ROLES } Role;
+typedef enum Role { NOTHING, X, Y, Z, NX, NY, NZ, U, V, RED, GREEN, BLUE, ALPHA, INDICES, ROLES } Role;
 
 typedef struct Property {
   Type type, count_type;
@@ -114,8 +114,30 @@ static Role vertex_role(const char *name) {
   static const struct {
     const char *name;
     Role role;
-  } roles[] = {{"x", X}, {"y", Y}, {"z", Z}, {"nx", NX},       {"ny", NY},       {"nz", NZ},       {"u", U},
-               {"v", V}, {"s", U}, {"t", V}, {"texture_u", U}, {"texture_v", V}, {"texture_s", U}, {"texture_t", V}};
+  } roles[] = {{"x", X},
+               {"y", Y},
+               {"z", Z},
+               {"nx", NX},
+               {"ny", NY},
+               {"nz", NZ},
+               {"u", U},
+               {"v", V},
+               {"s", U},
+               {"t", V},
+               {"texture_u", U},
+               {"texture_v", V},
+               {"texture_s", U},
+               {"texture_t", V},
+               {"red", RED},
+               {"green", GREEN},
+               {"blue", BLUE},
+               {"alpha", ALPHA},
+               {"r", RED},
+               {"g", GREEN},
+               {"b", BLUE},
+               {"diffuse_red", RED},
+               {"diffuse_green", GREEN},
+               {"diffuse_blue", BLUE}};
   for (size_t i = 0; i < sizeof roles / sizeof *roles; i++)
     if (strcmp(name, roles[i].name) == 0) return roles[i].role;
   return NOTHING;
@@ -326,20 +348,33 @@ static bool has_roles(const Element *e, Role first, int count) {
 }
 
 static bool not_finite(Reader *r, uint64_t vertex, Role role, double value) {
-  static const char *const names[ROLES] = {"", "x", "y", "z", "nx", "ny", "nz", "u", "v", ""};
+  static const char *const names[ROLES] = {"",  "x", "y",   "z",     "nx",   "ny",    "nz",
+                                           "u", "v", "red", "green", "blue", "alpha", ""};
   return fail(r, "vertex %llu: %s is not finite (%g)", (unsigned long long)vertex, names[role], value);
+}
+
+/* Whole numbers reach from 0 to the largest of their type; colours are in sRGB, as the programs that write them have
+ * it.
+ */
+static float color_value(Type type, bool alpha, double value) {
+  double x = type == U8 ? value / 255 : type == U16 ? value / 65535 : value;
+  if (!isfinite(x)) return (float)x;
+  x = x < 0 ? 0 : x > 1 ? 1 : x;
+  return (float)(alpha ? x : x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4));
 }
 
 static bool read_vertices(Reader *r, const Element *e) {
   vlPlyMesh *m = r->mesh;
   if (!has_roles(e, X, 3)) return fail(r, "vertices have no x, y and z");
   if (e->count > 0x7fffffff) return fail(r, "too many vertices");
-  bool normals = has_roles(e, NX, 3), uvs = has_roles(e, U, 2);
+  bool normals = has_roles(e, NX, 3), uvs = has_roles(e, U, 2), colors = has_roles(e, RED, 3);
   m->vertices = (uint32_t)e->count;
   m->positions = vl_alloc_array(r->context, e->count, 3 * sizeof(float));
   if (normals) m->normals = vl_alloc_array(r->context, e->count, 3 * sizeof(float));
   if (uvs) m->uvs = vl_alloc_array(r->context, e->count, 2 * sizeof(float));
-  if (!m->positions || (normals && !m->normals) || (uvs && !m->uvs)) return fail_memory(r);
+  if (colors) m->colors = vl_alloc_array(r->context, e->count, 4 * sizeof(float));
+  if (!m->positions || (normals && !m->normals) || (uvs && !m->uvs) || (colors && !m->colors)) return fail_memory(r);
+  for (uint64_t i = 0; colors && i < e->count; i++) m->colors[4 * i + 3] = 1.0f;
   r->has_vertices = true;
   for (uint64_t i = 0; i < e->count; i++) {
     for (uint32_t j = 0; j < e->property_count; j++) {
@@ -352,9 +387,10 @@ static bool read_vertices(Reader *r, const Element *e) {
       if (p->role == NOTHING) continue;
       float *to = p->role <= Z    ? &m->positions[3 * i + (p->role - X)]
                   : p->role <= NZ ? (normals ? &m->normals[3 * i + (p->role - NX)] : NULL)
-                                  : (uvs ? &m->uvs[2 * i + (p->role - U)] : NULL);
+                  : p->role <= V  ? (uvs ? &m->uvs[2 * i + (p->role - U)] : NULL)
+                                  : (colors ? &m->colors[4 * i + (p->role - RED)] : NULL);
       if (!to) continue;
-      *to = (float)value;
+      *to = p->role >= RED ? color_value(p->type, p->role == ALPHA, value) : (float)value;
       if (!isfinite(*to)) return not_finite(r, i, p->role, value);
     }
   }
@@ -489,6 +525,7 @@ void vl_ply_free(vlContext *context, vlPlyMesh *mesh) {
   vl_free(context, mesh->positions);
   vl_free(context, mesh->normals);
   vl_free(context, mesh->uvs);
+  vl_free(context, mesh->colors);
   vl_free(context, mesh->triangle_indices);
   vl_free(context, mesh->quad_indices);
   *mesh = (vlPlyMesh){0};
@@ -512,7 +549,7 @@ vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, si
   return fine ? VL_OK : error->code;
 }
 
-vlResult vl_ply_read(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error) {
+vlResult vl_ply_read_colored(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error) {
   char *data;
   size_t size;
   *mesh = (vlPlyMesh){0};
@@ -520,5 +557,12 @@ vlResult vl_ply_read(vlContext *context, const char *path, vlPlyMesh *mesh, vlEr
   if (result != VL_OK) return result;
   result = vl_ply_parse(context, path, data, size, mesh, error);
   vl_free(context, data);
+  return result;
+}
+
+vlResult vl_ply_read(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error) {
+  vlResult result = vl_ply_read_colored(context, path, mesh, error);
+  vl_free(context, mesh->colors);
+  mesh->colors = NULL;
   return result;
 }

@@ -11,11 +11,14 @@ typedef struct vlPlyMesh {
   uint32_t vertices, triangles, quads;
   float *positions;           /* 3 a vertex */
   float *normals, *uvs;       /* 3, 2 a vertex, or null */
+  float *colors;              /* 4 a vertex, linear (the file's are in sRGB), or null */
   uint32_t *triangle_indices; /* 3 a triangle */
   uint32_t *quad_indices;     /* 4 a patch, p00 p10 p01 p11 */
 } vlPlyMesh;
 
 /* All arrays are blocks of the context. Errors: MISSING, IO, MEMORY, SCENE (with the line for text and header). */
+vlResult vl_ply_read_colored(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error);
+/* The same without colours. */
 vlResult vl_ply_read(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error);
 /* name: for errors. data[size] must be a zero byte; it is not changed. */
 vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size, vlPlyMesh *mesh,

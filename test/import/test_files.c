@@ -160,9 +160,9 @@ static void missing(void **state) {
   write_file("m.pbrt", "WorldBegin\nShape \"plymesh\" \"string filename\" \"parts\"");
   file_error("m.pbrt", VL_ERROR_IO, "%/m.pbrt:2:17: cannot read %/parts: is a folder");
   file_error("parts", VL_ERROR_IO, ":0:0: cannot read %/parts: is a folder");
-  write_file("scene.obj", "v 0 0 0");
-  file_error("scene.obj", VL_ERROR_SCENE,
-             ":0:0: %/scene.obj: unknown kind of scene file (known: .pbrt, .pbrt.gz, .gltf, .glb)");
+  write_file("scene.stl", "solid");
+  file_error("scene.stl", VL_ERROR_SCENE,
+             ":0:0: %/scene.stl: unknown kind of scene file (known: .pbrt, .pbrt.gz, .gltf, .glb, .obj, .ply)");
 }
 
 static void packed(void **state) {

@@ -1,0 +1,82 @@
+/* import/plain.c: geometry without a scene around it: a PLY file as the whole scene; settings for files that say none.
+ */
+#include "import/plain.h"
+
+#include <string.h>
+
+#include "import/import.h"
+#include "import/ply.h"
+
+void vl_import_plain_settings(vlScene *scene) {
+  vlSceneSettings *s = vl_scene_settings(scene);
+  s->spp = 64;
+  s->tracer = VL_TRACER_VOLPATH;
+  s->max_depth = 12; /* light goes through glass */
+  s->camera_missing = true;
+  s->light_missing = true;
+}
+
+/* Patches as two triangles, after the triangles that are there. */
+static bool split_quads(vlContext *context, vlPlyMesh *m) {
+  if (!m->quads) return true;
+  size_t count = (size_t)m->triangles + 2 * (size_t)m->quads;
+  if (count > 0x7fffffff) return false;
+  uint32_t *fresh = vl_realloc_array(context, m->triangle_indices, 3 * count, sizeof *fresh);
+  if (!fresh) return false;
+  m->triangle_indices = fresh;
+  uint32_t *to = fresh + 3 * (size_t)m->triangles;
+  for (size_t i = 0; i < m->quads; i++, to += 6) {
+    const uint32_t *q = m->quad_indices + 4 * i; /* p00 p10 p01 p11 */
+    const uint32_t two[6] = {q[0], q[1], q[3], q[0], q[3], q[2]};
+    memcpy(to, two, sizeof two);
+  }
+  m->triangles = (uint32_t)count;
+  return true;
+}
+
+/* Grey, as rough as plaster that has been polished a little; or of the vertices' colours. */
+static vlMaterialId add_material(vlScene *scene, bool colors) {
+  vlMaterialDef def = vl_default_material_def(VL_MATERIAL_PRINCIPLED);
+  def.reflectance = vl_spectrum_input(vl_spectrum_rgb(0.8f, 0.8f, 0.8f));
+  if (colors) {
+    vlTextureDef texture = vl_default_texture_def(VL_TEXTURE_VERTEX_COLOR, true);
+    def.reflectance.texture = vl_scene_add_texture(scene, &texture);
+  }
+  def.principled.metallic = vl_float_input(0.0f);
+  def.principled.roughness = vl_float_input(0.5f);
+  return vl_scene_add_material(scene, &def);
+}
+
+vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load, vlError *error) {
+  (void)load;
+  vlContext *context = scene->context;
+  vl_import_plain_settings(scene);
+  vlPlyMesh mesh = {0};
+  vlError inside = {0};
+  vlResult r = vl_ply_read_colored(context, path, &mesh, &inside);
+  if (r == VL_OK && !split_quads(context, &mesh)) {
+    r = VL_ERROR_MEMORY;
+    vl_ply_free(context, &mesh);
+  }
+  if (r != VL_OK) {
+    vlSource place = {inside.file[0] ? inside.file : NULL, inside.line, inside.column};
+    vl_scene_fail(scene, r, place, "%s", r == VL_ERROR_MEMORY ? "out of memory" : inside.message);
+    return vl_scene_result(scene, error);
+  }
+  if (!mesh.triangles) {
+    vlError where = {0};
+    strncpy(where.file, path, sizeof where.file - 1);
+    vl_log(context, VL_LOG_WARNING, &where, "it has no faces and draws nothing");
+    vl_ply_free(context, &mesh);
+    return vl_scene_result(scene, error);
+  }
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.source.file = path;
+  def.vertices = mesh.vertices, def.faces = mesh.triangles;
+  def.positions = mesh.positions, def.normals = mesh.normals, def.uvs = mesh.uvs, def.colors = mesh.colors;
+  def.indices = mesh.triangle_indices;
+  def.material = add_material(scene, mesh.colors != NULL);
+  vl_scene_adopt_shape(scene, &def);
+  vl_free(context, mesh.quad_indices);
+  return vl_scene_result(scene, error);
+}

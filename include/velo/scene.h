@@ -355,6 +355,10 @@ typedef struct vlShapeDef {
    * straight between, at rest before and after. May be null. Such a mesh cannot glow. */
   const float *positions_close, *normals_close;
   double times[2]; /* default 0, 1 */
+  /* Triangles at rest: a float texture moves them along their normals (index 0: none), once they are so fine that no
+   * edge is longer than edge_length in the group's space; 2^24 triangles at most, else vl_world_build fails. */
+  vlFloatInput displacement;
+  float edge_length; /* default 1 */
   /* sphere, disk, cylinder: pbrt's, z axis, book 6.2-6.4; angles in radians */
   float radius, inner_radius, z_min, z_max, height, phi_max;
   /* curves: `faces` segments, the 4 Bezier points of each in positions (vertices = 4 faces). They cannot glow. Of a

@@ -393,6 +393,9 @@ static bool link_shape(vlImport *import, const vlShapeLink *link) {
                    "a shape of material \"interface\" gives no light: its area light is ignored");
     shape->emission.index = 0;
   }
+  if (link->displacement &&
+      !vl_import_texture_id(import, link->displacement, false, link->displacement_place, &shape->displacement.texture))
+    return false;
   return !link->alpha || vl_import_texture_id(import, link->alpha, false, link->alpha_place, &shape->alpha.texture);
 }
 
@@ -481,6 +484,7 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
   import->state.ctm[0] = import->state.ctm[1] = vl_mat4_identity();
   import->state.active = 3;
   import->times[1] = 1.0;
+  import->edge_scale = 1.0;
   import->state.space = VL_SPACE_SRGB;
   vlParseTarget target = {import, statement, parse_error, recover};
   bool fine = data ? vl_parse_memory(import->context, data, size, path, &target)

@@ -78,6 +78,8 @@ typedef struct vlShapeLink {
   vlSource material_place;
   const char *alpha; /* float texture */
   vlSource alpha_place;
+  const char *displacement; /* float texture */
+  vlSource displacement_place;
 } vlShapeLink;
 
 typedef struct vlObject {
@@ -149,6 +151,7 @@ struct vlImport {
   double times[2]; /* of the two current transforms, seconds */
   VL_ARRAY(vlMovingGroup) moving;
   vlCurveRun curves;
+  double edge_scale; /* Option "displacementedgescale" */
   uint32_t depth;    /* of textures or materials that resolve each other */
   uint32_t problems; /* told so far */
 };

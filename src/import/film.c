@@ -122,8 +122,8 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
   /* these change the picture, and velo has nothing of the kind */
   static const char *const refused[] = {"disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter",
                                         "forcediffuse"};
-  static const char *const harmless[] = {"msereferenceimage", "msereferenceout",       "pixelstats",
-                                         "wavefront",         "displacementedgescale", "rendercoordsys"};
+  static const char *const harmless[] = {"msereferenceimage", "msereferenceout", "pixelstats", "wavefront",
+                                         "rendercoordsys"};
   char name[64];
   const char *value = s->names[1];
   normalise(s->names[0], name, sizeof name);
@@ -133,6 +133,11 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
       return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"seed\": \"%.40s\" is not an integer", value);
     vl_scene_settings(import->scene)->sampler_seed = (uint32_t)(int64_t)seed;
     return true;
+  }
+  if (strcmp(name, "displacementedgescale") == 0) {
+    if (vl_number_parse(value, strlen(value), &import->edge_scale) && import->edge_scale > 0.0) return true;
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": \"%.40s\" is not a number above 0", name,
+                          value);
   }
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
     if (strcmp(name, refused[i]) != 0) continue;
@@ -144,7 +149,7 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
   }
   for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++)
     if (strcmp(name, harmless[i]) == 0) return true;
-  static const char *const known[] = {"seed"};
-  return vl_import_unknown(import, s->place, "option", s->names[0], known, 1, refused,
+  static const char *const known[] = {"seed", "displacementedgescale"};
+  return vl_import_unknown(import, s->place, "option", s->names[0], known, 2, refused,
                            sizeof refused / sizeof *refused);
 }

@@ -162,7 +162,7 @@ static bool read_quadric(vlDict *dict, vlShapeDef *def, int kind) {
 bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link) {
   vlShapeId id = vl_scene_adopt_shape(import->scene, def);
   if (!id.index) return false;
-  if (!link->material && !link->material_name && !link->alpha) return true;
+  if (!link->material && !link->material_name && !link->alpha && !link->displacement) return true;
   vlShapeLink *slot = VL_PUSH(import->context, &import->links);
   if (!slot) return vl_import_fail_memory(import);
   *slot = *link;
@@ -170,23 +170,56 @@ bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeL
   return true;
 }
 
-static bool read_ply(vlDict *dict, vlPlyMesh *mesh) {
-  static const char *const displaced[] = {"displacement", "displacement.edgelength"};
+/* Patches become triangles: only those can be displaced. */
+static bool only_triangles(vlImport *import, vlPlyMesh *mesh) {
+  if (!mesh->quads) return true;
+  size_t old = 3 * (size_t)mesh->triangles, quads = mesh->quads;
+  if (old / 3 + 2 * quads > 0x7fffffff) return vl_import_fail_memory(import);
+  uint32_t *indices = vl_realloc_array(import->context, mesh->triangle_indices, old + 6 * quads, sizeof *indices);
+  if (!indices) return vl_import_fail_memory(import);
+  for (size_t i = 0; i < quads; i++) {
+    const uint32_t *q = mesh->quad_indices + 4 * i, t[6] = {q[0], q[1], q[3], q[0], q[3], q[2]};
+    memcpy(indices + old + 6 * i, t, sizeof t);
+  }
+  mesh->triangle_indices = indices;
+  mesh->triangles += (uint32_t)(2 * quads);
+  vl_free(import->context, mesh->quad_indices);
+  mesh->quad_indices = NULL;
+  mesh->quads = 0;
+  return true;
+}
+
+static bool read_displacement(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
+  vlImport *import = dict->import;
+  vlParam *p = vl_dict_find(dict, "displacement", VL_BIT_TEXTURE);
+  const char *const lengths[] = {"displacement.edgelength", "edgelength"};
+  for (int i = 0; i < 2; i++)
+    if (vl_dict_float(dict, lengths[i], &def->edge_length) && !(def->edge_length > 0.0f))
+      return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"%s\" must be above 0", dict->what, lengths[i]);
+  def->edge_length *= (float)import->edge_scale;
+  if (!p) return import->scene->error.code == VL_OK;
+  if (vl_param_count(p) != 1)
+    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: \"displacement\" takes one texture", dict->what);
+  link->displacement = vl_import_keep(import, p->strings.items[0]);
+  link->displacement_place = p->place;
+  return link->displacement && vl_scene_copy_source(import->scene, &link->displacement_place);
+}
+
+static bool read_ply(vlDict *dict, vlShapeDef *def, vlShapeLink *link, vlPlyMesh *mesh) {
   vlImport *import = dict->import;
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
-  for (int i = 0; i < 2; i++) {
-    vlParam *p = vl_dict_find(dict, displaced[i], i ? VL_BIT_FLOAT : VL_BIT_TEXTURE);
-    if (p && !vl_import_unsupported(import, p->place, "%s: \"%s\" is not understood yet", dict->what, displaced[i]))
-      return false;
-  }
-  if (!vl_dict_done(dict)) return false;
+  if (!read_displacement(dict, def, link) || !vl_dict_done(dict)) return false;
   if (!file)
     return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string filename\" is missing", dict->what);
   char path[4096];
   if (!vl_import_path(import, file, path, sizeof path)) return false;
   vlError error = {0};
   vlResult result = vl_ply_read(import->context, path, mesh, &error);
-  if (result == VL_OK) return true;
+  if (result == VL_OK) {
+    if (!link->displacement || only_triangles(import, mesh)) return true;
+    vl_ply_free(import->context, mesh);
+    return false;
+  }
   vlSource inside = {error.file, error.line, error.column};
   return vl_import_fail(import, result, error.file[0] ? inside : file->place, "%s", error.message);
 }
@@ -282,7 +315,8 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
   size_t before = import->scene->shapes.count;
   if (kind == PLY) {
     vlPlyMesh mesh = {0};
-    return read_ply(&dict, &mesh) && add_ply(import, &mesh, &def, &link) && note_media(import, before, s->place);
+    return read_ply(&dict, &def, &link, &mesh) && add_ply(import, &mesh, &def, &link) &&
+           note_media(import, before, s->place);
   }
   bool fine = kind == LOOP     ? read_loop(&dict, &def)
               : kind >= SPHERE ? read_quadric(&dict, &def, kind)

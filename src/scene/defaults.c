@@ -150,6 +150,7 @@ vlShapeDef vl_default_shape_def(vlShapeKind kind) {
       .phi_max = 2.0f * 3.14159265358979f,
       .times = {0.0, 1.0},
       .split_depth = 3,
+      .edge_length = 1.0f,
   };
   memcpy(def.group_from_shape, identity, sizeof identity);
   return def;

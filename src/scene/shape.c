@@ -113,6 +113,18 @@ static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
   return true;
 }
 
+static bool check_displacement(vlScene *scene, const vlShapeDef *d) {
+  uint32_t index = d->displacement.texture.index;
+  if (!index) return true;
+  if (d->kind != VL_SHAPE_TRIANGLES || d->positions_close)
+    return bad(scene, d, "displacement: only triangles at rest can be displaced"), false;
+  if (index > scene->textures.count || scene->textures.items[index - 1].spectrum)
+    return bad(scene, d, "displacement needs a float texture"), false;
+  if (!(d->edge_length > 0.0f) || !isfinite(d->edge_length))
+    return bad(scene, d, "displacement: the edge length must be above 0"), false;
+  return true;
+}
+
 static bool check_shape(vlScene *scene, const vlShapeDef *d) {
   if (d->group.index > scene->groups.count) return bad(scene, d, "there is no such group"), false;
   if (d->material.index > scene->materials.count) return bad(scene, d, "there is no such material"), false;
@@ -123,6 +135,7 @@ static bool check_shape(vlScene *scene, const vlShapeDef *d) {
   if (d->alpha.texture.index && scene->textures.items[d->alpha.texture.index - 1].spectrum)
     return bad(scene, d, "alpha needs a float texture, this is a spectrum texture"), false;
   if (!d->alpha.texture.index && !isfinite(d->alpha.value)) return bad(scene, d, "alpha is not finite"), false;
+  if (!check_displacement(scene, d)) return false;
   const double *m = d->group_from_shape;
   for (int i = 0; i < 16; i++)
     if (!isfinite(m[i])) return bad(scene, d, "transform of the shape is not finite"), false;

@@ -7,6 +7,7 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "world/curve.h"
+#include "world/displace.h"
 #include "world/moving.h"
 #include "world/surface_point.h"
 #include "world/world.h"
@@ -171,6 +172,14 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef
   s->faces = s->steps = 1;
   store_affine_d(&m, s->from_shape);
   store_affine_d(&inverse, s->to_shape);
+  if (def->kind == VL_SHAPE_TRIANGLES && def->displacement.texture.index) {
+    vlShapeDef fine;
+    vlResult r = vl_world_displace(world, scene, def, &m, &fine, error);
+    if (r != VL_OK) return r;
+    r = move_mesh(world, &fine, &m, &inverse, s, error);
+    vl_world_displace_free(world, &fine);
+    return r;
+  }
   if (def->kind == VL_SHAPE_TRIANGLES || def->kind == VL_SHAPE_BILINEAR)
     return move_mesh(world, def, &m, &inverse, s, error);
   if (def->kind == VL_SHAPE_CURVES && !vl_curve_copy(world, def, s)) return vl_fail_memory(error);
@@ -271,7 +280,7 @@ vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *erro
     if (def->faces || (def->kind != VL_SHAPE_TRIANGLES && def->kind != VL_SHAPE_BILINEAR))
       world->groups.items[def->group.index].count++;
     world->info.primitives += world->shapes.items[i].faces;
-    if (def->kind == VL_SHAPE_TRIANGLES) world->info.triangles += def->faces;
+    if (def->kind == VL_SHAPE_TRIANGLES) world->info.triangles += world->shapes.items[i].faces;
   }
   for (size_t k = 0; k < group_count; k++) {
     vlWorldGroup *group = &world->groups.items[k];

@@ -18,6 +18,11 @@ typedef struct Slot {
 } Slot;
 
 enum { MAX_SLOTS = 64 };
+/* OpenEXRCore writes a header in some 200 pieces: what follows on what stands here goes to the file as one. */
+enum { GATHERED = 1 << 16 };
+/* Pictures of no more bytes are not packed: deflating them takes longer than rendering does, and saves a block or two
+ * of the disk. */
+enum { SMALL = 1 << 16 };
 
 /* A channel of the file: which of the pictures has it, and where. */
 typedef struct Channel {
@@ -36,16 +41,31 @@ typedef struct Writer {
   uint32_t first_chunk;
   uint32_t slot_count;
   Slot *slots;
-  bool alone; /* without the context's workers */
+  bool alone;     /* without the context's workers */
+  char *gathered; /* GATHERED bytes, of which are taken */
+  size_t taken;
+  uint64_t offset; /* in the file, of the first */
 } Writer;
+
+static void flush(Writer *w) {
+  if (w->taken) vl_file_write_at(w->base.writer, w->gathered, w->taken, w->offset);
+  w->taken = 0;
+}
 
 static int64_t on_write(exr_const_context_t exr, void *user, const void *buffer, uint64_t size, uint64_t offset,
                         exr_stream_error_func_ptr_t fail) {
-  vlFileWriter *writer = ((vlExr *)user)->writer;
+  Writer *w = user; /* the vlExr is its first member */
   (void)exr;
   (void)fail;
-  vl_file_write_at(writer, buffer, size, offset);
-  return writer->failed_errno ? -1 : (int64_t)size;
+  if (offset != w->offset + w->taken || size > GATHERED - w->taken) flush(w);
+  if (size > GATHERED) {
+    vl_file_write_at(w->base.writer, buffer, size, offset);
+  } else {
+    if (!w->taken) w->offset = offset;
+    memcpy(w->gathered + w->taken, buffer, size);
+    w->taken += size;
+  }
+  return w->base.writer->failed_errno ? -1 : (int64_t)size;
 }
 
 static vlResult fail(Writer *w, exr_result_t code, vlError *error) {
@@ -81,10 +101,11 @@ static vlResult header(Writer *w, const vlWriteDef *def, vlError *error) {
   if (image->width > INT32_MAX / 4 || image->height > INT32_MAX / 2)
     return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write %s: too large for OpenEXR", w->base.writer->path);
   int part;
+  bool packed = def->compression && (uint64_t)image->width * image->height * w->count * 4 > SMALL;
   exr_result_t code = exr_add_part(w->exr, NULL, EXR_STORAGE_SCANLINE, &part);
   if (code == EXR_ERR_SUCCESS)
     code = exr_initialize_required_attr_simple(w->exr, 0, (int32_t)image->width, (int32_t)image->height,
-                                               def->compression ? EXR_COMPRESSION_ZIP : EXR_COMPRESSION_NONE);
+                                               packed ? EXR_COMPRESSION_ZIP : EXR_COMPRESSION_NONE);
   bool long_names = false;
   for (uint32_t i = 0; i < w->count; i++) long_names |= strlen(channel_name(&w->channels[i])) > 31;
   for (size_t i = 0; i < image->attributes.count; i++) long_names |= strlen(image->attributes.items[i].name) > 31;
@@ -237,7 +258,12 @@ vlResult vl_exr_write_layers(const vlImage *const *images, uint32_t count, const
   w.alone = def->alone;
   for (uint32_t k = 0; k < count; k++) w.count += images[k]->channels;
   w.channels = vl_alloc_array(image->context, w.count, sizeof *w.channels);
-  if (!w.channels) return vl_fail_memory(error);
+  w.gathered = vl_alloc(image->context, GATHERED);
+  if (!w.channels || !w.gathered) {
+    vl_free(image->context, w.channels);
+    vl_free(image->context, w.gathered);
+    return vl_fail_memory(error);
+  }
   for (uint32_t k = 0, at = 0; k < count; k++)
     for (uint32_t i = 0; i < images[k]->channels; i++) w.channels[at++] = (Channel){images[k], i, EXR_PIXEL_FLOAT};
   exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -252,6 +278,8 @@ vlResult vl_exr_write_layers(const vlImage *const *images, uint32_t count, const
     code = exr_finish(&w.exr); /* writes the table of chunks */
     if (result == VL_OK && code != EXR_ERR_SUCCESS) result = fail(&w, code, error);
   }
+  if (result == VL_OK) flush(&w); /* what fails here is told by whoever closes the file */
+  vl_free(image->context, w.gathered);
   vl_free(image->context, w.channels);
   return result;
 }

@@ -1,7 +1,9 @@
-"""calibrate_opencv.py VELO FOLDER [CAMERAS [VIEWS]]: OpenCV as the judge of pictures. A chessboard is rendered by velo
-in many views through random distorted cameras (the first is an OpenCV pinhole with 5 coefficients, then a fisheye, 8
-coefficients, in turn); findChessboardCorners, cornerSubPix and calibrateCamera are given nothing but the pictures and
-must find the camera again: RMS <= 0.05 pixels, fx and fy within 0.1 %, cx and cy within 0.1 pixels. Exit 1 when not."""
+"""calibrate_opencv.py VELO FOLDER [--seeds N] [--kinds pinhole,rational,fisheye] [--views N]: OpenCV as the judge of
+pictures. A chessboard is rendered by velo in many views through random distorted cameras: OpenCV's pinhole with 5 or 8
+(rational) coefficients, its fisheye with 4. findChessboardCorners, cornerSubPix and calibrateCamera are given nothing but the
+pictures and must find the camera again: RMS <= 0.05 pixels, fx and fy within 0.1 %, cx and cy within 0.1 pixels. Exit 1
+when not. Behind +- stands what calibrateCamera itself believes that its numbers are worth: one standard deviation."""
+import argparse
 import json
 import os
 import subprocess
@@ -10,133 +12,164 @@ import sys
 import cv2
 import numpy as np
 
-WIDTH, HEIGHT, ACROSS, DOWN = 640, 480, 10, 7  # pixels; inner corners
-random = np.random.default_rng(7)
+WIDTH, HEIGHT, ACROSS, DOWN = 960, 720, 11, 8  # pixels; inner corners
 
 
 def write_scene(path):
-    """White squares and the margin shine; black is nothing. The board lies in z = 0, its first corner in the origin."""
-    rectangles = [(i, j, i + 1, j + 1) for j in range(-1, DOWN) for i in range(-1, ACROSS) if (i + j) % 2]
-    rectangles += [(-2, -2, ACROSS + 1, -1), (-2, DOWN, ACROSS + 1, DOWN + 1), (-2, -1, -1, DOWN),
-                   (ACROSS, -1, ACROSS + 1, DOWN)]
-    points = " ".join("%d %d 0 %d %d 0 %d %d 0 %d %d 0" % (a, b, c, b, c, d, a, d) for a, b, c, d in rectangles)
-    indices = " ".join("%d %d %d %d %d %d" % tuple(4 * k + n for n in (0, 1, 2, 0, 2, 3)) for k in range(len(rectangles)))
+    """Black squares before a white sky. The board lies in z = 0, its first corner in the origin."""
+    squares = [(i, j) for j in range(-1, DOWN) for i in range(-1, ACROSS) if (i + j) % 2 == 0]
+    points = " ".join("%d %d 0 %d %d 0 %d %d 0 %d %d 0" % (i, j, i + 1, j, i + 1, j + 1, i, j + 1) for i, j in squares)
+    indices = " ".join("%d %d %d %d %d %d" % tuple(4 * k + n for n in (0, 1, 2, 0, 2, 3)) for k in range(len(squares)))
     with open(path, "w") as f:
         f.write('Camera "perspective"\nFilm "rgb" "integer xresolution" %d "integer yresolution" %d\n'
-                'PixelFilter "gaussian"\nIntegrator "path" "integer maxdepth" 0\nWorldBegin\n'
-                'AreaLightSource "diffuse" "rgb L" [ 1 1 1 ] "bool twosided" true\n'
+                'PixelFilter "box"\nIntegrator "path" "integer maxdepth" 0\nWorldBegin\n'
+                'LightSource "infinite" "rgb L" [ 1 1 1 ]\nMaterial "diffuse" "rgb reflectance" [ 0 0 0 ]\n'
                 'Shape "trianglemesh" "point3 P" [ %s ] "integer indices" [ %s ]\n' % (WIDTH, HEIGHT, points, indices))
 
 
-def random_camera(kind):
-    fx = random.uniform(220, 300) if kind == "fisheye" else random.uniform(320, 450)
-    fy = fx * random.uniform(0.97, 1.03)
-    cx, cy = (WIDTH - 1) / 2 + random.uniform(-15, 15), (HEIGHT - 1) / 2 + random.uniform(-15, 15)
-    if kind == "fisheye":
-        k = random.uniform(-1, 1, 4) * [0.05, 0.02, 0.005, 0.001]
-    elif kind == "rational":
-        k = np.array([-0.1, 0.05, 0, 0, 0.01, 0.15, 0.05, 0.01]) + random.uniform(-1, 1, 8) * [.1, .03, 2e-3, 2e-3, .01, .1, .03, .01]
-    else:
-        k = np.array([-0.25, 0.08, 0, 0, 0]) + random.uniform(-1, 1, 5) * [0.1, 0.03, 2e-3, 2e-3, 0.01]
-    return np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]]), k
+class Camera:
+    def __init__(self, kind, random):
+        self.kind = kind
+        fx = random.uniform(0.45, 0.55) * WIDTH if kind == "fisheye" else random.uniform(0.6, 0.75) * WIDTH
+        fy = fx * random.uniform(0.97, 1.03)
+        cx, cy = (WIDTH - 1) / 2 + random.uniform(-20, 20), (HEIGHT - 1) / 2 + random.uniform(-20, 20)
+        self.matrix = np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]])
+        if kind == "fisheye":
+            self.k = random.uniform(-1, 1, 4) * [0.05, 0.02, 0.005, 0.001]
+        elif kind == "rational":
+            self.k = np.array([-0.1, 0.05, 0, 0, 0.01, 0.15, 0.05, 0.01])
+            self.k += random.uniform(-1, 1, 8) * [0.1, 0.03, 2e-3, 2e-3, 0.01, 0.1, 0.03, 0.01]
+        else:
+            self.k = np.array([-0.2, 0.06, 0, 0, 0]) + random.uniform(-1, 1, 5) * [0.1, 0.03, 2e-3, 2e-3, 0.01]
+
+    def project(self, points, rvec, tvec):
+        if self.kind == "fisheye":
+            return cv2.fisheye.projectPoints(points.reshape(1, -1, 3), rvec, tvec, self.matrix, self.k)[0].reshape(-1, 2)
+        return cv2.projectPoints(points, rvec, tvec, self.matrix, self.k)[0].reshape(-1, 2)
+
+    def folds(self, space, pixels):
+        """Whether a point (camera space) lies where the lens's polynomial has bent back: the way back leads elsewhere."""
+        if self.kind == "fisheye":
+            back = cv2.fisheye.undistortPoints(pixels.reshape(1, -1, 2), self.matrix, self.k).reshape(-1, 2)
+        else:
+            back = cv2.undistortPointsIter(pixels.reshape(-1, 1, 2), self.matrix, self.k, None, None,
+                                           (3, 200, 1e-12)).reshape(-1, 2)
+        return not (np.abs(back - space[:, :2] / space[:, 2:]) < 1e-3).all()
 
 
-def project(kind, points, rvec, tvec, matrix, k):
-    if kind == "fisheye":
-        return cv2.fisheye.projectPoints(points.reshape(1, -1, 3), rvec, tvec, matrix, k)[0].reshape(-1, 2)
-    return cv2.projectPoints(points, rvec, tvec, matrix, k)[0].reshape(-1, 2)
-
-
-def random_pose(kind, matrix, k):
-    """The board tilted, turned, somewhere in the picture with all of its margin, as large as it can be."""
-    edge = np.array([(x, y, 0) for x in np.linspace(-2, ACROSS + 1, 8) for y in np.linspace(-2, DOWN + 1, 8)], float)
+def random_pose(camera, random, place):
+    """The board tilted by 20 to 45 degrees, turned, its middle towards `place` in the picture, as near as its squares
+    are all in it: what a calibration lives on is boards that lean all ways and reach the picture's corners."""
+    edge = np.array([(x, y, 0) for x in np.linspace(-1.2, ACROSS + 0.2, 9) for y in np.linspace(-1.2, DOWN + 0.2, 9)])
     middle = np.array([(ACROSS - 1) / 2, (DOWN - 1) / 2, 0])
-    # a fisheye bends large boards more than findChessboardCorners takes
-    share = 0.14 if kind == "fisheye" else 0.3
+    # findChessboardCorners does not take boards that a fisheye bends much
+    smallest, nearest = (0.1, 8) if camera.kind == "fisheye" else (0.26, 5)
     while True:
-        tilt, lean, turn = random.uniform(0.3, 0.7), random.uniform(0, 2 * np.pi), random.uniform(-0.4, 0.4)
+        tilt, lean, turn = random.uniform(0.35, 0.8), random.uniform(0, 2 * np.pi), random.uniform(-0.5, 0.5)
         tilted = cv2.Rodrigues(np.array([np.cos(lean), np.sin(lean), 0]) * tilt)[0]
         rotation = tilted @ cv2.Rodrigues(np.array([0, 0, turn]))[0]
         rvec = cv2.Rodrigues(rotation)[0].ravel()
-        x, y = random.uniform(-0.3, 0.3) * WIDTH / matrix[0, 0], random.uniform(-0.3, 0.3) * HEIGHT / matrix[1, 1]
-        for distance in np.linspace(4 if share > 0.2 else 7, 30, 53):
+        x, y = place + random.uniform(-0.06, 0.06, 2)
+        x, y = x * WIDTH / camera.matrix[0, 0], y * HEIGHT / camera.matrix[1, 1]
+        for distance in np.linspace(nearest, 30, 80):
             tvec = distance * np.array([x, y, 1]) - rotation @ middle
-            if ((edge @ rotation.T + tvec)[:, 2] < 1).any():
+            space = edge @ rotation.T + tvec
+            if (space[:, 2] < 1).any():
                 continue
-            p = project(kind, edge, rvec, tvec, matrix, k)
-            if (p > [2, 2]).all() and (p < [WIDTH - 3, HEIGHT - 3]).all():
-                if cv2.contourArea(cv2.convexHull(p.astype(np.float32))) > share * WIDTH * HEIGHT:
+            p = camera.project(edge, rvec, tvec)
+            if (p > [2, 2]).all() and (p < [WIDTH - 3, HEIGHT - 3]).all() and not camera.folds(space, p):
+                if cv2.contourArea(cv2.convexHull(p.astype(np.float32))) > smallest * WIDTH * HEIGHT:
                     return rvec, tvec, p
                 break
 
 
-def render(velo, folder, kind, matrix, k, rvec, tvec, edge):
-    camera = {"image_width": WIDTH, "image_height": HEIGHT, "camera_matrix": matrix.tolist(),
-              "distortion_coefficients": list(k), "rvec": list(rvec), "tvec": list(tvec)}
-    if kind == "fisheye":
-        camera["distortion_model"] = "fisheye"
+def render(velo, folder, camera, rvec, tvec, edge):
+    values = {"image_width": WIDTH, "image_height": HEIGHT, "camera_matrix": camera.matrix.tolist(),
+              "distortion_coefficients": list(camera.k), "rvec": list(rvec), "tvec": list(tvec)}
+    if camera.kind == "fisheye":
+        values["distortion_model"] = "fisheye"
     with open(os.path.join(folder, "camera.json"), "w") as f:
-        json.dump(camera, f)
+        json.dump(values, f)
     low, high = np.floor(edge.min(0)).clip(0), np.ceil(edge.max(0) + 1)
     crop = (int(low[0]), int(low[1]), min(int(high[0]), WIDTH), min(int(high[1]), HEIGHT))
     out = os.path.join(folder, "view.pfm")
     subprocess.run([velo, "render", os.path.join(folder, "board.pbrt"), "--camera", os.path.join(folder, "camera.json"),
-                    "--spp", "36", "--sampler", "multijittered", "--color", "rgb", "--quiet", "-o", out,
+                    "--spp", "16", "--sampler", "sobol", "--color", "rgb", "--quiet", "-o", out,
                     "--crop", "%d,%d,%d,%d" % crop], check=True)
-    part = cv2.imread(out, cv2.IMREAD_UNCHANGED)
-    picture = np.zeros((HEIGHT, WIDTH), np.float32)
-    picture[crop[1]:crop[3], crop[0]:crop[2]] = part[:, :, 1]
+    picture = np.ones((HEIGHT, WIDTH), np.float32)
+    picture[crop[1]:crop[3], crop[0]:crop[2]] = cv2.imread(out, cv2.IMREAD_UNCHANGED)[:, :, 1]
     # as soft as a lens makes it: cornerSubPix reads between pixels by straight lines, which edges of one pixel are not
-    return np.clip(cv2.GaussianBlur(picture, (0, 0), 0.8) * 255 + 0.5, 0, 255).astype(np.uint8)
+    return np.clip(cv2.GaussianBlur(picture, (0, 0), 1.2) * 255 + 0.5, 0, 255).astype(np.uint8)
 
 
-def judge(velo, folder, kind, views):
-    matrix, k = random_camera(kind)
-    objects, images = [], []
+def collect(velo, folder, camera, views, random):
+    """Board and picture points of each view, and how far OpenCV's corners are from the truth (RMS)."""
+    objects, images, errors, tried = [], [], [], 0
     board = np.array([(i, j, 0) for j in range(DOWN) for i in range(ACROSS)], np.float32)
-    worst_corner, tried = 0.0, 0
-    while len(images) < views and tried < 3 * views:
+    places = [np.array([x, y]) for y in (-0.18, 0.0, 0.18) for x in (-0.2, -0.1, 0.0, 0.1, 0.2)]
+    while len(images) < views and tried < 2 * views:
+        rvec, tvec, edge = random_pose(camera, random, places[7 * tried % len(places)])
         tried += 1
-        rvec, tvec, edge = random_pose(kind, matrix, k)
-        picture = render(velo, folder, kind, matrix, k, rvec, tvec, edge)
-        found, corners = cv2.findChessboardCorners(picture, (ACROSS, DOWN))
+        picture = render(velo, folder, camera, rvec, tvec, edge)
+        # not NORMALIZE_IMAGE, which makes noise of a picture that has no greys to speak of
+        found, corners = cv2.findChessboardCorners(picture, (ACROSS, DOWN), flags=cv2.CALIB_CB_ADAPTIVE_THRESH)
         if not found:
             continue
-        corners = cv2.cornerSubPix(picture, corners, (7, 7), (-1, -1), (3, 100, 1e-5)).reshape(-1, 2)
-        truth = project(kind, board.astype(float), rvec, tvec, matrix, k)
+        grid = corners.reshape(DOWN, ACROSS, 2)  # no window may reach a neighbour
+        nearest = min(np.linalg.norm(np.diff(grid, axis=a), axis=2).min() for a in (0, 1))
+        window = int(np.clip(0.45 * nearest, 3, 11))
+        corners = cv2.cornerSubPix(picture, corners, (window, window), (-1, -1), (3, 100, 1e-5)).reshape(-1, 2)
+        truth = camera.project(board.astype(float), rvec, tvec)
         if np.abs(corners[0] - truth[0]).max() > np.abs(corners[0] - truth[-1]).max():
             corners = corners[::-1].copy()
-        worst_corner = max(worst_corner, np.linalg.norm(corners - truth, axis=1).max())
+        errors.append(((corners - truth) ** 2).sum(1).mean())
         objects.append(board)
         images.append(corners.astype(np.float32))
+    return objects, images, np.sqrt(np.mean(errors)) if errors else 0.0, tried
+
+
+def judge(velo, folder, kind, views, seed):
+    random = np.random.default_rng([seed, {"pinhole": 0, "rational": 1, "fisheye": 2}[kind]])
+    camera = Camera(kind, random)
+    objects, images, corner, tried = collect(velo, folder, camera, views, random)
     if len(images) < views:
         print("%-9s the board was found in %d of %d pictures" % (kind, len(images), tried))
         return False
-    criteria = (3, 200, 1e-12)
+    criteria, deviations = (3, 300, 1e-13), None
     if kind == "fisheye":
-        flags = cv2.fisheye.CALIB_RECOMPUTE_EXTRINSIC | cv2.fisheye.CALIB_FIX_SKEW
-        rms, got, kk, _, _ = cv2.fisheye.calibrate([b.reshape(-1, 1, 3).astype(float) for b in objects],
-                                                   [p.reshape(-1, 1, 2).astype(float) for p in images],
-                                                   (WIDTH, HEIGHT), None, None, flags=flags, criteria=criteria)
+        flags = (cv2.fisheye.CALIB_RECOMPUTE_EXTRINSIC | cv2.fisheye.CALIB_FIX_SKEW |
+                 cv2.fisheye.CALIB_USE_INTRINSIC_GUESS)  # its own first guess is one that it fails with
+        guess = np.array([[0.5 * WIDTH, 0, WIDTH / 2], [0, 0.5 * WIDTH, HEIGHT / 2], [0, 0, 1]])
+        rms, got, _, _, _ = cv2.fisheye.calibrate([b.reshape(-1, 1, 3).astype(float) for b in objects],
+                                                  [p.reshape(-1, 1, 2).astype(float) for p in images],
+                                                  (WIDTH, HEIGHT), guess, np.zeros((4, 1)), flags=flags, criteria=criteria)
     else:
         flags = cv2.CALIB_RATIONAL_MODEL if kind == "rational" else 0
-        rms, got, kk, _, _ = cv2.calibrateCamera(objects, images, (WIDTH, HEIGHT), None, None, flags=flags,
-                                                 criteria=criteria)
-    focal = max(abs(got[0, 0] / matrix[0, 0] - 1), abs(got[1, 1] / matrix[1, 1] - 1))
-    center = max(abs(got[0, 2] - matrix[0, 2]), abs(got[1, 2] - matrix[1, 2]))
-    good = rms <= 0.05 and focal <= 1e-3 and center <= 0.1
-    print("%-9s %2d views: RMS %.4f px, f off by %.4f %%, c by %.3f px, corners by %.3f px at most%s" %
-          (kind, len(images), rms, 100 * focal, center, worst_corner, "" if good else "  <-- too much"))
+        rms, got, _, _, _, deviations, _, _ = cv2.calibrateCameraExtended(objects, images, (WIDTH, HEIGHT), None, None,
+                                                                          flags=flags, criteria=criteria)
+    truth = camera.matrix
+    focal = [100 * (got[i, i] / truth[i, i] - 1) for i in range(2)]
+    center = [got[i, 2] - truth[i, 2] for i in range(2)]
+    good = rms <= 0.05 and max(map(abs, focal)) <= 0.1 and max(map(abs, center)) <= 0.1
+    belief = ""
+    if deviations is not None:
+        d = deviations.ravel()
+        belief = " (+- %.4f %.4f %%, %.3f %.3f px)" % (100 * d[0] / truth[0, 0], 100 * d[1] / truth[1, 1], d[2], d[3])
+    print("%-9s seed %d, %2d of %2d views: RMS %.4f px; fx %+.4f %%, fy %+.4f %%, cx %+.3f px, cy %+.3f px%s; corners %.4f px%s"
+          % (kind, seed, len(images), tried, rms, *focal, *center, belief, corner, "" if good else "  <-- too much"), flush=True)
     return good
 
 
 def main():
-    velo, folder = sys.argv[1:3]
-    cameras = int(sys.argv[3]) if len(sys.argv) > 3 else 1
-    views = int(sys.argv[4]) if len(sys.argv) > 4 else 12
-    write_scene(os.path.join(folder, "board.pbrt"))
-    kinds = ["pinhole", "fisheye", "rational"]
-    results = [judge(velo, folder, kinds[i % 3], views) for i in range(cameras)]
+    parser = argparse.ArgumentParser()
+    parser.add_argument("velo")
+    parser.add_argument("folder")
+    parser.add_argument("--seeds", type=int, default=1)
+    parser.add_argument("--kinds", default="pinhole")
+    parser.add_argument("--views", type=int, default=32)
+    a = parser.parse_args()
+    write_scene(os.path.join(a.folder, "board.pbrt"))
+    results = [judge(a.velo, a.folder, kind, a.views, seed) for seed in range(1, a.seeds + 1) for kind in a.kinds.split(",")]
     sys.exit(not all(results))
 
 

@@ -7,6 +7,7 @@
 #include "base/context.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "math/warp.h"
 
 static const double pi = 3.14159265358979323846;
 enum { LARGEST = 4096, NAMED = 256 };
@@ -46,27 +47,11 @@ struct vlAperture {
   float *columns; /* height x (width + 1): the same from the left inside each row */
 };
 
-/* The cell of a cumulative table that u falls in, and where inside it, [0, 1). Cells without light are never hit. */
-static uint32_t find_cell(const float *table, uint32_t count, float u, float *inside) {
-  uint32_t low = 0, high = count;
-  while (high - low > 1) {
-    uint32_t middle = (low + high) / 2;
-    if (table[middle] <= u)
-      low = middle;
-    else
-      high = middle;
-  }
-  double width = (double)table[low + 1] - table[low];
-  double share = width > 0.0 ? ((double)u - table[low]) / width : 0.5;
-  *inside = share < 0.99999994 ? (float)share : 0.99999994f;
-  return low;
-}
-
 void vl_aperture_points(const vlAperture *a, uint32_t n, const float *u, const float *v, float *x, float *y) {
   for (uint32_t i = 0; i < n; i++) {
     float dx, dy;
-    uint32_t row = find_cell(a->rows, a->height, v[i], &dy);
-    uint32_t column = find_cell(a->columns + (size_t)row * (a->width + 1), a->width, u[i], &dx);
+    uint32_t row = vl_find_cell(a->rows, a->height, v[i], &dy);
+    uint32_t column = vl_find_cell(a->columns + (size_t)row * (a->width + 1), a->width, u[i], &dx);
     x[i] = (float)(2.0 * (column + (double)dx) / a->width - 1.0);
     y[i] = (float)(2.0 * (row + (double)dy) / a->height - 1.0);
   }

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "camera/parts.h"
 #include "camera/points.h"
+#include "math/transform.h"
 
 const char *vl_projection_name(vlProjection projection) {
   static const char *const names[] = {"perspective",
@@ -81,31 +82,16 @@ static vlResult shape(const vlCameraDef *def, vlCamera *camera, vlError *error) 
   return VL_OK;
 }
 
-static void multiply3(const double a[9], const double b[9], double r[9]) {
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) r[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
-}
-
-static void inverse3(const double a[9], double r[9]) {
-  double det =
-      a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      int i1 = (j + 1) % 3, i2 = (j + 2) % 3, j1 = (i + 1) % 3, j2 = (i + 2) % 3;
-      r[3 * i + j] = (a[3 * i1 + j1] * a[3 * i2 + j2] - a[3 * i1 + j2] * a[3 * i2 + j1]) / det;
-    }
-}
-
 /* OpenCV's tilted sensor: rotation about x by tau_x, then y by tau_y, then back along the axis to the plane. */
 static void tilt(vlDistortionMap *m, double tau_x, double tau_y) {
   vlSinCosDouble x = vl_sincos_double(tau_x), y = vl_sincos_double(tau_y);
   const double about_x[9] = {1, 0, 0, 0, x.cos, x.sin, 0, -x.sin, x.cos};
   const double about_y[9] = {y.cos, 0, -y.sin, 0, 1, 0, y.sin, 0, y.cos};
   double r[9];
-  multiply3(about_y, about_x, r);
+  vl_mat3_multiply(about_y, about_x, r);
   const double back[9] = {r[8], 0, -r[2], 0, r[8], -r[5], 0, 0, 1};
-  multiply3(back, r, m->tilt);
-  inverse3(m->tilt, m->untilt);
+  vl_mat3_multiply(back, r, m->tilt);
+  vl_mat3_inverse(m->tilt, m->untilt);
 }
 
 static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *error) {

@@ -4,24 +4,10 @@
 #include <math.h>
 
 #include "color/color.h"
+#include "math/transform.h"
 
 /* Lam, "Metamerism and colour constancy" (Bradford, 1985): XYZ to the responses of sharpened cones. */
 static const double cones[9] = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
-
-static void multiply3(const double a[9], const double b[9], double r[9]) {
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) r[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
-}
-
-static void inverse3(const double a[9], double r[9]) {
-  double det =
-      a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      int i1 = (j + 1) % 3, i2 = (j + 2) % 3, j1 = (i + 1) % 3, j2 = (i + 2) % 3;
-      r[3 * i + j] = (a[3 * i1 + j1] * a[3 * i2 + j2] - a[3 * i1 + j2] * a[3 * i2 + j1]) / det;
-    }
-}
 
 /* CIE 15: chromaticity of daylight; the temperature is corrected for today's value of Planck's second constant. Light
  * below 4000 K is a blackbody's. */
@@ -55,7 +41,7 @@ void vl_white_balance(double kelvin, vlColorSpace space, float m[9]) {
   response(source[0], source[1], from);
   response((double)primaries[6], (double)primaries[7], to);
   for (int i = 0; i < 9; i++) scaled[i] = cones[i] * to[i / 3] / from[i / 3];
-  inverse3(cones, back);
-  multiply3(back, scaled, whole);
+  vl_mat3_inverse(cones, back);
+  vl_mat3_multiply(back, scaled, whole);
   for (int i = 0; i < 9; i++) m[i] = (float)whole[i];
 }

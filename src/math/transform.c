@@ -102,3 +102,18 @@ void vl_mat4_normal(const vlMat4 *inverse, const double n[3], double result[3]) 
   for (int i = 0; i < 3; i++) r[i] = m[i] * n[0] + m[4 + i] * n[1] + m[8 + i] * n[2];
   for (int i = 0; i < 3; i++) result[i] = r[i];
 }
+
+void vl_mat3_multiply(const double a[9], const double b[9], double r[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) r[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+}
+
+void vl_mat3_inverse(const double a[9], double r[9]) {
+  double det =
+      a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      int i1 = (j + 1) % 3, i2 = (j + 2) % 3, j1 = (i + 1) % 3, j2 = (i + 2) % 3;
+      r[3 * i + j] = (a[3 * i1 + j1] * a[3 * i2 + j2] - a[3 * i1 + j2] * a[3 * i2 + j1]) / det;
+    }
+}

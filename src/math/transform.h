@@ -23,4 +23,8 @@ void vl_mat4_vector(const vlMat4 *a, const double v[3], double result[3]);
 /* Normal by the inverse transpose; pass the inverse. Not normalised. */
 void vl_mat4_normal(const vlMat4 *inverse, const double n[3], double result[3]);
 
+/* 3x3, row-major. The inverse of a singular matrix is not finite. */
+void vl_mat3_multiply(const double a[9], const double b[9], double result[9]);
+void vl_mat3_inverse(const double a[9], double result[9]);
+
 #endif

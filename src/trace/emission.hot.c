@@ -10,21 +10,6 @@ static float choice_of(const vlTwoWay *way, uint32_t light) {
   return way->choice[light + 1] - way->choice[light];
 }
 
-/* Cell [i, i+1) of a cdf of n cells in which u falls, and where in it. */
-static uint32_t find_cell(const float *cdf, uint32_t n, float u, float *within) {
-  uint32_t low = 0, high = n;
-  while (high - low > 1) {
-    uint32_t mid = (low + high) / 2;
-    if (cdf[mid] <= u)
-      low = mid;
-    else
-      high = mid;
-  }
-  float width = cdf[low + 1] - cdf[low];
-  *within = width > 0.0f ? vl_clamp((u - cdf[low]) / width, 0.0f, VL_ONE_MINUS_EPSILON) : 0.5f;
-  return low;
-}
-
 static float spot_factor(const vlWorldLight *light, float c) {
   float a = light->cos_end, b = light->cos_start;
   if (a == b) return c < a ? 0.0f : 1.0f;
@@ -152,8 +137,8 @@ static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light, con
   }
   const vlEnvironment *env = &world->environments.items[light->environment];
   float dx, dy;
-  uint32_t y = find_cell(env->marginal_cdf, env->size, v, &dy);
-  uint32_t x = find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
+  uint32_t y = vl_find_cell(env->marginal_cdf, env->size, v, &dy);
+  uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
   float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
   *pdf = env->pdf[(size_t)y * env->size + x] * VL_INV_4PI;
   VL_HOT(vl_emitted_at)(world, e, lambda, s, t, true, radiance);
@@ -178,7 +163,7 @@ vlEmission VL_HOT(vl_emission_sample)(const vlWorld *world, const vlTwoWay *way,
   vlEmission r;
   __builtin_memset(&r, 0, sizeof r);
   float within;
-  r.light = find_cell(way->choice, (uint32_t)world->lights.count, u_choice, &within);
+  r.light = vl_find_cell(way->choice, (uint32_t)world->lights.count, u_choice, &within);
   float p = choice_of(way, r.light);
   if (!(p > 0.0f)) return r;
   const vlWorldLight *light = &world->lights.items[r.light];

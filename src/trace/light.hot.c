@@ -59,21 +59,6 @@ float VL_HOT(vl_infinite_pdf)(const vlWorld *world, const vlWorldLight *light, v
   return env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
 }
 
-/* Cell [i, i+1) of a cdf of n cells in which u falls, and where in it. */
-static inline uint32_t find_cell(const float *cdf, uint32_t n, float u, float *within) {
-  uint32_t low = 0, high = n;
-  while (high - low > 1) {
-    uint32_t mid = (low + high) / 2;
-    if (cdf[mid] <= u)
-      low = mid;
-    else
-      high = mid;
-  }
-  float width = cdf[low + 1] - cdf[low];
-  *within = width > 0.0f ? vl_min((u - cdf[low]) / width, VL_ONE_MINUS_EPSILON) : 0.5f;
-  return low;
-}
-
 /* ---- area lights ------------------------------------------------------------------------------------------------- */
 
 typedef struct Sample {
@@ -325,8 +310,8 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
       } else {
         const vlEnvironment *env = &world->environments.items[light->environment];
         float dx, dy;
-        uint32_t y = find_cell(env->marginal_cdf, env->size, v, &dy);
-        uint32_t x = find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
+        uint32_t y = vl_find_cell(env->marginal_cdf, env->size, v, &dy);
+        uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
         float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
         w = vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
         pdf = env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);

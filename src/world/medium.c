@@ -11,51 +11,6 @@
 #include "scene/scene.h"
 #include "world/world.h"
 
-/* ---- noise ------------------------------------------------------------------------------------------------------- */
-
-/* The permutation of Perlin's reference implementation (2002). */
-static const uint8_t permutation[256] = {
-    151, 160, 137, 91,  90,  15,  131, 13,  201, 95,  96,  53,  194, 233, 7,   225, 140, 36,  103, 30,  69,  142,
-    8,   99,  37,  240, 21,  10,  23,  190, 6,   148, 247, 120, 234, 75,  0,   26,  197, 62,  94,  252, 219, 203,
-    117, 35,  11,  32,  57,  177, 33,  88,  237, 149, 56,  87,  174, 20,  125, 136, 171, 168, 68,  175, 74,  165,
-    71,  134, 139, 48,  27,  166, 77,  146, 158, 231, 83,  111, 229, 122, 60,  211, 133, 230, 220, 105, 92,  41,
-    55,  46,  245, 40,  244, 102, 143, 54,  65,  25,  63,  161, 1,   216, 80,  73,  209, 76,  132, 187, 208, 89,
-    18,  169, 200, 196, 135, 130, 116, 188, 159, 86,  164, 100, 109, 198, 173, 186, 3,   64,  52,  217, 226, 250,
-    124, 123, 5,   202, 38,  147, 118, 126, 255, 82,  85,  212, 207, 206, 59,  227, 47,  16,  58,  17,  182, 189,
-    28,  42,  223, 183, 170, 213, 119, 248, 152, 2,   44,  154, 163, 70,  221, 153, 101, 155, 167, 43,  172, 9,
-    129, 22,  39,  253, 19,  98,  108, 110, 79,  113, 224, 232, 178, 185, 112, 104, 218, 246, 97,  228, 251, 34,
-    242, 193, 238, 210, 144, 12,  191, 179, 162, 241, 81,  51,  145, 235, 249, 14,  239, 107, 49,  192, 214, 31,
-    181, 199, 106, 157, 184, 84,  204, 176, 115, 121, 50,  45,  127, 4,   150, 254, 138, 236, 205, 93,  222, 114,
-    67,  29,  24,  72,  243, 141, 128, 195, 78,  66,  215, 61,  156, 180};
-
-static float gradient(uint32_t x, uint32_t y, uint32_t z, float dx, float dy, float dz) {
-  uint32_t h = permutation[(permutation[(permutation[x & 255] + y) & 255] + z) & 255] & 15;
-  float u = h < 8 || h == 12 || h == 13 ? dx : dy, v = h < 4 || h == 12 || h == 13 ? dy : dz;
-  return (h & 1 ? -u : u) + (h & 2 ? -v : v);
-}
-
-static float fade(float t) {
-  return t * t * t * ((t * 6.0f - 15.0f) * t + 10.0f);
-}
-
-static float mix(float t, float a, float b) {
-  return (1.0f - t) * a + t * b;
-}
-
-float vl_medium_noise(vlVec3 p) {
-  const float limit = 1073741824.0f; /* beyond it floats have no fractions left */
-  if (!(vl_abs(p.x) < limit && vl_abs(p.y) < limit && vl_abs(p.z) < limit)) return 0;
-  float fx = floorf(p.x), fy = floorf(p.y), fz = floorf(p.z);
-  uint32_t x = (uint32_t)(int32_t)fx, y = (uint32_t)(int32_t)fy, z = (uint32_t)(int32_t)fz;
-  float dx = p.x - fx, dy = p.y - fy, dz = p.z - fz, wx = fade(dx), wy = fade(dy), wz = fade(dz), s[4];
-  for (uint32_t k = 0; k < 4; k++) {
-    uint32_t j = k & 1, l = k >> 1;
-    float ey = dy - (float)j, ez = dz - (float)l;
-    s[k] = mix(wx, gradient(x, y + j, z + l, dx, ey, ez), gradient(x + 1, y + j, z + l, dx - 1, ey, ez));
-  }
-  return mix(wz, mix(wy, s[0], s[1]), mix(wy, s[2], s[3]));
-}
-
 /* ---- spectra ----------------------------------------------------------------------------------------------------- */
 
 static bool is_zero(const vlSpectral *s) {

@@ -60,7 +60,5 @@ vlResult vl_world_add_media(struct vlWorld *world, const struct vlScene *scene, 
 /* Reads the grid of that name (null where there is none: *grid stays null). */
 vlResult vl_nanovdb_read(struct vlWorld *world, const char *path, const char *name, const vlSparseGrid **grid,
                          vlError *error);
-/* The Perlin noise (2002) that pbrt's procedural clouds are made of, -1 to 1. */
-float vl_medium_noise(vlVec3 p);
 
 #endif

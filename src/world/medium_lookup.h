@@ -3,6 +3,7 @@
 #ifndef WORLD_MEDIUM_LOOKUP_H
 #define WORLD_MEDIUM_LOOKUP_H
 
+#include "math/noise.h"
 #include "world/world.h"
 
 static inline vlVec3 vl_medium_point(const float m[12], vlVec3 p) {
@@ -78,10 +79,10 @@ static inline float vl_cloud_density(const vlWorldMedium *m, vlVec3 p) {
   for (int i = 0; m->wispiness > 0.0f && i < 2; i++) {
     vlVec3 at = vl_mul(q, frequency);
     const float delta = 0.01f;
-    float n = vl_medium_noise(at);
-    vlVec3 slope = vl_vec3((vl_medium_noise(vl_vec3(at.x + delta, at.y, at.z)) - n) / delta,
-                           (vl_medium_noise(vl_vec3(at.x, at.y + delta, at.z)) - n) / delta,
-                           (vl_medium_noise(vl_vec3(at.x, at.y, at.z + delta)) - n) / delta);
+    float n = vl_noise(at.x, at.y, at.z);
+    vlVec3 slope =
+        vl_vec3((vl_noise(at.x + delta, at.y, at.z) - n) / delta, (vl_noise(at.x, at.y + delta, at.z) - n) / delta,
+                (vl_noise(at.x, at.y, at.z + delta) - n) / delta);
     q = vl_add(q, vl_mul(slope, omega));
     omega *= 0.5f;
     frequency *= 1.99f;
@@ -89,7 +90,7 @@ static inline float vl_cloud_density(const vlWorldMedium *m, vlVec3 p) {
   float sum = 0;
   omega = 0.5f, frequency = 1.0f;
   for (int i = 0; i < 5; i++) {
-    sum += omega * vl_medium_noise(vl_mul(q, frequency));
+    sum += omega * vl_noise(frequency * q.x, frequency * q.y, frequency * q.z);
     omega *= 0.5f;
     frequency *= 1.99f;
   }

@@ -17,6 +17,7 @@ const Choice tracer_choices[] = {{"path", VL_TRACER_PATH},
                                  {"ao", VL_TRACER_AMBIENT_OCCLUSION},
                                  {"bidirectional", VL_TRACER_BIDIRECTIONAL},
                                  {"merging", VL_TRACER_MERGING},
+                                 {"sppm", VL_TRACER_SPPM},
                                  {"lightpath", VL_TRACER_LIGHT_PATH},
                                  {"randomwalk", VL_TRACER_RANDOM_WALK},
                                  {NULL, 0}};

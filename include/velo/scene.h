@@ -318,7 +318,6 @@ typedef enum vlShapeKind {
   VL_SHAPE_CYLINDER,
   VL_SHAPE_CURVES /* hairs and the like: cubic Bezier segments with a width */
 } vlShapeKind;
-
 typedef enum vlCurveKind {
   VL_CURVE_FLAT,     /* faces every ray */
   VL_CURVE_CYLINDER, /* so does this one, with the normal of a tube */
@@ -392,6 +391,7 @@ typedef enum vlTracer {
   /* Light followed both ways (docs/tracers.md). Where something moves or lies in a medium: VL_TRACER_VOLPATH. */
   VL_TRACER_BIDIRECTIONAL, /* paths from the eye, and paths from the lights that the eye sees; unbiased */
   VL_TRACER_MERGING,       /* and both meet at surfaces, within a radius that shrinks with each pass */
+  VL_TRACER_SPPM, /* the same; smooth surfaces that the eye looks through are no bounces, as pbrt's sppm counts */
   VL_TRACER_LIGHT_PATH,    /* from the lights alone: sees no light through or in what is smooth */
   VL_TRACER_RANDOM_WALK    /* asks for no light and scatters all over the sphere: for comparison */
 } vlTracer;

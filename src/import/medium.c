@@ -227,7 +227,8 @@ static bool find(vlImport *import, const char *name, vlSource place, vlMediumId 
 /* pbrt's surface integrators do as if there were no media, and warn. */
 static void warn_surface_integrator(vlImport *import, const vlMediumLink *link) {
   const vlChoice *integrator = &import->integrator;
-  if (vl_scene_settings(import->scene)->tracer == VL_TRACER_VOLPATH || !integrator->given) return;
+  vlTracer tracer = vl_scene_settings(import->scene)->tracer;
+  if (tracer == VL_TRACER_VOLPATH || tracer == VL_TRACER_BIDIRECTIONAL || !integrator->given) return;
   vl_import_warn(import, VL_LOG_WARNING, link->place,
                  "integrator \"%s\" looks past participating media (here \"%.60s\"), as in pbrt", integrator->kind,
                  link->inside[0] ? link->inside : link->outside);

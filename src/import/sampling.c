@@ -143,9 +143,43 @@ static bool read_path(vlDict *dict, vlSceneSettings *s) {
   return true;
 }
 
+/* pbrt's two-way integrators by velo's own: what steers theirs is read, and steers nothing here. */
+static bool read_two_way(vlDict *dict, vlSceneSettings *s, const char *kind) {
+  static const struct {
+    const char *name;
+    vlTracer tracer;
+    const char *by;
+  } kinds[] = {{"bdpt", VL_TRACER_BIDIRECTIONAL, "bidirectional tracer"},
+               {"mlt", VL_TRACER_BIDIRECTIONAL, "bidirectional tracer"},
+               {"sppm", VL_TRACER_SPPM, "merging tracer"},
+               {"lightpath", VL_TRACER_LIGHT_PATH, NULL},
+               {"randomwalk", VL_TRACER_RANDOM_WALK, NULL}};
+  static const char *const bools[] = {"regularize", "visualizestrategies", "visualizeweights"};
+  static const char *const numbers[] = {"bootstrapsamples",    "chains", "mutationsperpixel",
+                                        "photonsperiteration", "seed",   "iterations"};
+  static const char *const floats[] = {"radius", "sigma", "largestepprobability"};
+  vlImport *import = dict->import;
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+    if (strcmp(kind, kinds[i].name) != 0) continue;
+    s->tracer = kinds[i].tracer;
+    vl_dict_count(dict, "maxdepth", 0, &s->max_depth);
+    if (!kinds[i].by) break;
+    bool yes;
+    float number;
+    for (int k = 0; k < 3; k++) vl_dict_bool(dict, bools[k], &yes), vl_dict_float(dict, floats[k], &number);
+    for (int k = 0; k < 6; k++) vl_dict_find(dict, numbers[k], 1u << VL_PARAM_INTEGER);
+    vl_import_warn(import, VL_LOG_INFO, import->integrator.place, "integrator \"%s\": rendered by velo's %s", kind,
+                   kinds[i].by);
+    break;
+  }
+  return vl_dict_done(dict);
+}
+
 static bool read_integrator(vlImport *import, vlSceneSettings *s) {
-  static const char *const names[] = {"path", "simplepath", "volpath", "simplevolpath", "raycast", "ambientocclusion"};
-  static const char *const later[] = {"bdpt", "function", "lightpath", "mlt", "randomwalk", "sppm"};
+  static const char *const names[] = {"path", "simplepath", "volpath", "simplevolpath", "raycast",   "ambientocclusion",
+                                      "bdpt", "mlt",        "sppm",    "lightpath",     "randomwalk"};
+  enum { KINDS = sizeof names / sizeof *names };
+  static const char *const later[] = {"function"};
   const vlChoice *choice = &import->integrator;
   s->tracer = VL_TRACER_VOLPATH;
   s->max_depth = 5;
@@ -154,10 +188,10 @@ static bool read_integrator(vlImport *import, vlSceneSettings *s) {
   snprintf(what, sizeof what, "Integrator \"%.60s\"", choice->kind);
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
   int kind = -1;
-  for (int i = 0; i < 6; i++)
+  for (int i = 0; i < KINDS; i++)
     if (strcmp(choice->kind, names[i]) == 0) kind = i;
   if (kind < 0) { /* permissive: a path tracer of that depth stands in */
-    if (!vl_import_unknown(import, choice->place, "integrator", choice->kind, names, 6, later,
+    if (!vl_import_unknown(import, choice->place, "integrator", choice->kind, names, KINDS, later,
                            sizeof later / sizeof *later))
       return false;
     vl_dict_count(&dict, "maxdepth", 0, &s->max_depth);
@@ -167,6 +201,7 @@ static bool read_integrator(vlImport *import, vlSceneSettings *s) {
     s->tracer = kind < 2 ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
     return read_path(&dict, s) && vl_dict_done(&dict);
   }
+  if (kind > 5) return read_two_way(&dict, s, choice->kind);
   s->tracer = kind == 4 ? VL_TRACER_RAYCAST : VL_TRACER_AMBIENT_OCCLUSION;
   if (kind == 5) {
     vl_dict_bool(&dict, "cossample", &s->ao_cosine);

@@ -60,7 +60,8 @@ struct vlTwoWayRun {
 };
 
 bool vl_two_way_tracer(vlTracer tracer) {
-  return tracer == VL_TRACER_BIDIRECTIONAL || tracer == VL_TRACER_MERGING || tracer == VL_TRACER_LIGHT_PATH;
+  return tracer == VL_TRACER_BIDIRECTIONAL || tracer == VL_TRACER_MERGING || tracer == VL_TRACER_SPPM ||
+         tracer == VL_TRACER_LIGHT_PATH;
 }
 const vlTwoWay *vl_two_way_of(const vlTwoWayRun *run) {
   return &run->way;
@@ -283,7 +284,8 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   vlTwoWay *way = &run->way;
   vl_sampler_init(&way->sampler, def->sampler, vl_hash2(def->seed, light_seed), f->width, f->height, def->spp);
   way->light_only = def->tracer == VL_TRACER_LIGHT_PATH;
-  way->merge = def->tracer == VL_TRACER_MERGING;
+  way->apart = def->tracer == VL_TRACER_SPPM;
+  way->merge = def->tracer == VL_TRACER_MERGING || way->apart;
   way->shared = -1.0f;
   run->choice = vl_alloc_zero(context, world->lights.count + 1, sizeof *run->choice);
   run->splats = vl_alloc_zero(context, (size_t)run->width * run->height, sizeof *run->splats);

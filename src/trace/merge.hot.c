@@ -75,11 +75,12 @@ void VL_HOT(vl_stage_merge)(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlPaths *p = &s->b;
   vlTwoWayRows *r = t->batch->two_way;
   uint32_t listed = 0;
-  if (!map->buckets || depth >= t->def->max_depth) return;
+  if (!map->buckets) return;
   for (uint32_t i = 0; i < n; i++) r->count[i] = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (vl_all_specular(t->world, s, i)) continue;
-    Lane lane = {i, t->def->max_depth - depth, vl_lane3(f->px, f->py, f->pz, i),
+    Lane lane = {i, t->def->max_depth - (depth - (way->apart ? r->smooth[p->lane[i]] : 0)),
+                 vl_lane3(f->px, f->py, f->pz, i),
                  t->world->materials.items[s->hits_b.material[i]].kind == VL_MATERIAL_DIFFUSE};
     float sum[4] = {0, 0, 0, 0};
     int32_t corner[3] = {vl_photon_cell(lane.p.x - __builtin_sqrtf(map->radius2), map->inv_cell),

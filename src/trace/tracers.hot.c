@@ -108,6 +108,7 @@ static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *s
       }
       VL_HOT(vl_path_tracer)(&t);
       break;
+    case VL_TRACER_RANDOM_WALK: VL_HOT(vl_random_walk_tracer)(&t); break;
     default:
       if (def->two_way)
         VL_HOT(vl_two_way_tracer)(&t);

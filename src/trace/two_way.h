@@ -55,6 +55,7 @@ void vl_photon_map_build(vlPhotonMap *map, const vlPhoton *photons, uint32_t cou
 typedef struct vlTwoWay {
   vlEyeView eye;
   bool merge;          /* else the only meetings are at the eye */
+  bool apart;          /* smooth vertices that the eye's path begins with are no bounces, as pbrt's sppm counts */
   bool light_only;     /* no next event, no merging: weights are 1 */
   float paths;         /* N: the light's paths of a pass */
   float merged;        /* H = N pi radius^2; 0 without merging */

@@ -164,16 +164,29 @@ static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
     r->pdf[i] = sh->pdf[i];
   }
   VL_HOT(vl_stage_reverse)(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
-  float merged = t->def->two_way->merged;
+  const vlTwoWay *way = t->def->two_way;
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k];
     float cosine = vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), vl_lane3(f->gx, f->gy, f->gz, i)));
     float pdf = r->pdf[i];
-    r->carry[s->a.lane[k]] = sh->flags[i] & VL_SAMPLED_SPECULAR
-                                 ? r->a[i] * cosine
-                                 : (pdf > 0.0f ? (r->a[i] * r->rev[i] + r->b[i] + merged) * cosine / pdf : 0.0f);
+    uint32_t lane = s->a.lane[k], *smooth = &r->smooth[lane];
+    if (way->apart && s->a.specular[k] && *smooth == depth && depth < t->def->max_depth) *smooth = depth + 1;
+    r->carry[lane] = sh->flags[i] & VL_SAMPLED_SPECULAR
+                         ? r->a[i] * cosine
+                         : (pdf > 0.0f ? (r->a[i] * r->rev[i] + r->b[i] + way->merged) * cosine / pdf : 0.0f);
   }
   return count;
+}
+
+/* Where smooth beginnings do not count each path has a last bounce of its own. */
+static void end_long(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTraceScratch *s = t->s;
+  uint32_t *smooth = t->batch->two_way->smooth;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = s->a.lane[i];
+    if (depth == 0) smooth[lane] = 0;
+    if (depth - smooth[lane] >= t->def->max_depth) s->hits_a.shape[i] = VL_NONE;
+  }
 }
 
 /* ---- the tracers ------------------------------------------------------------------------------------------------- */
@@ -185,7 +198,8 @@ void VL_HOT(vl_two_way_tracer)(vlTracing *t) {
     VL_HOT(vl_stage_hits)(t, n, depth == 0);
     if (depth == 0) VL_HOT(vl_stage_alpha)(t);
     emission(t, n, depth == 0);
-    if (depth >= t->def->max_depth || way->light_only) break;
+    if (way->light_only || depth >= (way->apart ? 2 : 1) * t->def->max_depth) break;
+    if (way->apart) end_long(t, n, depth);
     n = VL_HOT(vl_stage_sort)(t, n);
     if (n == 0) break;
     uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;

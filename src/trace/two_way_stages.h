@@ -10,9 +10,10 @@ enum { VL_MERGE_PAIRS = 4 * VL_BATCH };
 
 /* Per path, by lane (its element of the batch, wherever sorting puts it): */
 typedef struct vlTwoWayRows {
-  VL_ROW float carry[VL_ROW_SIZE];   /* (S + H) cos / fwd of the vertex that was left; two_way.h */
-  VL_ROW float flux[4][VL_ROW_SIZE]; /* of a light's path when it set out; its beta starts from 1 */
-  VL_ROW float density[VL_ROW_SIZE]; /* vl_emission_density, of a light's first ray, and */
+  VL_ROW float carry[VL_ROW_SIZE];     /* (S + H) cos / fwd of the vertex that was left; two_way.h */
+  VL_ROW float flux[4][VL_ROW_SIZE];   /* of a light's path when it set out; its beta starts from 1 */
+  VL_ROW uint32_t smooth[VL_ROW_SIZE]; /* vertices that do not count as bounces: vlTwoWay.apart */
+  VL_ROW float density[VL_ROW_SIZE];   /* vl_emission_density, of a light's first ray, and */
   VL_ROW uint32_t light[VL_ROW_SIZE];
   VL_ROW float lx[VL_ROW_SIZE], ly[VL_ROW_SIZE], lz[VL_ROW_SIZE];    /* where on it, or its direction */
   VL_ROW float lnx[VL_ROW_SIZE], lny[VL_ROW_SIZE], lnz[VL_ROW_SIZE]; /* its normal there */

@@ -151,7 +151,7 @@ static const struct {
     {"Camera \"realistic\"\n" W, "t.pbrt:1:1: Camera \"realistic\": \"string lensfile\" is missing"},
     {"Film \"gbuffer\"\n" W, "t.pbrt:1:1: film \"gbuffer\" is not understood yet"},
     {"Sampler \"halto\"\n" W, "t.pbrt:1:1: unknown sampler \"halto\" (did you mean \"halton\"?)"},
-    {"Integrator \"bdpt\"\n" W, "t.pbrt:1:1: integrator \"bdpt\" is not understood yet"},
+    {"Integrator \"function\"\n" W, "t.pbrt:1:1: integrator \"function\" is not understood yet"},
     {"PixelFilter \"gauss\"\n" W, "t.pbrt:1:1: unknown pixel filter \"gauss\""},
     {"Accelerator \"grid\"\n" W, "t.pbrt:1:1: unknown accelerator \"grid\""},
     {"Option \"disablepixeljitter\" true", "t.pbrt:1:1: Option \"disablepixeljitter\" is not understood yet"},
@@ -320,7 +320,7 @@ static void permissive(void **state) {
   load_text(
       &l,
       "Film \"gbuffer\" \"string coordinatesystem\" \"camera\"\nCamera \"future\" \"string lensfile\" \"wide.dat\"\n"
-      "Integrator \"bdpt\" \"integer maxdepth\" 9\nOption \"forcediffuse\" true\nSampler \"future\" \"integer n\" 1\n" W
+      "Integrator \"function\" \"integer maxdepth\" 9\nOption \"forcediffuse\" true\nSampler \"future\" \"integer n\" 1\n" W
       "Material \"subsurface\" \"rgb mfp\" [1 1 1]\nShape \"sphere\"\nShape \"heightfield\"\n"
       "LightSource \"projection\"\nTexture \"t\" \"spectrum\" \"ptex\"\nMaterial \"diffuse\" \"texture reflectance\" "
       "\"t\"\n"

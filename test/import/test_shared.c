@@ -37,7 +37,7 @@ static const Expected scenes[] = {
     {"veach-ajar/veach-ajar.pbrt", NULL, 22, 382690, 13, 0, 1},
     {"veach-mis/veach-mis.pbrt", NULL, 9, 52, 6, 0, 3},
     {"volumetric-caustic/volumetric-caustic.pbrt", NULL, 8, 14, 8, 0, 1},
-    {"water-caustic/water-caustic.pbrt", "1:1: integrator \"sppm\" is not understood yet", 10, 103487, 9, 0, 1},
+    {"water-caustic/water-caustic.pbrt", NULL, 10, 103487, 9, 0, 1},
 };
 
 static bool absent(void) {

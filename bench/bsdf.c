@@ -28,6 +28,7 @@ const vlBsdfKernels vl_bsdf_kernels_one;
 #include "../src/trace/bsdf_conductor.hot.c"
 #include "../src/trace/bsdf_dielectric.hot.c"
 #include "../src/trace/bsdf_diffuse.hot.c"
+#include "../src/trace/bsdf_hair.hot.c"
 #include "../src/trace/bsdf_layered.hot.c"
 #include "../src/trace/bsdf_translucent.hot.c"
 #define slice_of principled_slice_of /* the coat's file has functions of these names, too */
@@ -137,7 +138,8 @@ int main(int argc, char **argv) {
               {"coated, textured", VL_BSDF_COATED_DIFFUSE, rough},
               {"principled", VL_BSDF_PRINCIPLED, coat},
               {"diffuse transmission", VL_BSDF_DIFFUSE_TRANSMISSION, coat},
-              {"layered", VL_BSDF_LAYERED, coat}};
+              {"layered", VL_BSDF_LAYERED, coat},
+              {"hair", VL_BSDF_HAIR, coat}};
   printf("ns a lane, batches of %u; alpha 0.1; \"one\": one lane at a time, SSE4.2 without vectors\n", n);
   printf("%-18s %-8s %8s", "", "", "one");
   for (int isa = 2; isa <= (int)vl_isa_best(); isa++) printf("%8s%d", "v", isa);

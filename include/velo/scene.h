@@ -171,6 +171,7 @@ typedef enum vlMaterialKind {
   VL_MATERIAL_PRINCIPLED, /* many layers in one: glTF's metallic-roughness with its extensions */
   VL_MATERIAL_DIFFUSE_TRANSMISSION,
   VL_MATERIAL_COATED_CONDUCTOR,
+  VL_MATERIAL_HAIR,
   VL_MATERIAL_INTERFACE
 } vlMaterialKind;
 
@@ -201,6 +202,21 @@ typedef struct vlPrincipledDef {
   float normal_scale, clearcoat_normal_scale;
 } vlPrincipledDef;
 
+/* Hair (pbrt book 9.9), for curves: their v lies across it. What it absorbs comes from one of three. */
+typedef enum vlHairColor {
+  VL_HAIR_SIGMA_A,     /* per radius of the hair */
+  VL_HAIR_REFLECTANCE, /* vlMaterialDef's reflectance: the colour of many hairs together */
+  VL_HAIR_MELANIN      /* concentrations of two pigments */
+} vlHairColor;
+typedef struct vlHairDef {
+  vlHairColor color; /* default: melanin, of eumelanin 1.3 */
+  vlSpectrumInput sigma_a;
+  vlFloatInput eumelanin, pheomelanin;
+  vlFloatInput eta;            /* default 1.55 */
+  vlFloatInput beta_m, beta_n; /* roughness along and around, 0 to 1; default 0.3 */
+  vlFloatInput alpha;          /* tilt of the scales, degrees; default 2 */
+} vlHairDef;
+
 /* One flat struct; the defaults of vl_default_material_def(kind) are pbrt-v4's. */
 typedef struct vlMaterialDef {
   uint32_t cookie;
@@ -224,6 +240,7 @@ typedef struct vlMaterialDef {
   float scale;                                     /* diffuse transmission: on both */
   vlFloatInput coat_u_roughness, coat_v_roughness; /* coated conductor: of the coat; the others are the metal's */
   vlSpectrumInput coat_eta;                        /* no texture */
+  vlHairDef hair;
 } vlMaterialDef;
 VL_API vlMaterialDef vl_default_material_def(vlMaterialKind kind);
 VL_API vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def);

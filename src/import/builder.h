@@ -220,6 +220,7 @@ bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlS
 bool vl_import_finish_texture(vlImport *import, uint32_t index); /* resolves what it refers to first */
 bool vl_import_finish_material(vlImport *import, uint32_t index);
 bool vl_import_principled(vlDict *dict, vlMaterialDef *def); /* the parameters of that kind */
+bool vl_import_hair(vlDict *dict, vlMaterialDef *def);
 bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface);
 
 bool vl_import_light(vlImport *import, const vlStatement *s);

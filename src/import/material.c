@@ -5,15 +5,25 @@
 
 #include "import/builder.h"
 
-static const char *const kinds[] = {"diffuse", "coateddiffuse", "conductor",  "dielectric",          "thindielectric",
-                                    "mix",     "interface",     "principled", "diffusetransmission", "coatedconductor",
-                                    "",        "none"};
-static const vlMaterialKind kind_values[] = {
-    VL_MATERIAL_DIFFUSE,          VL_MATERIAL_COATED_DIFFUSE,  VL_MATERIAL_CONDUCTOR,
-    VL_MATERIAL_DIELECTRIC,       VL_MATERIAL_THIN_DIELECTRIC, VL_MATERIAL_MIX,
-    VL_MATERIAL_INTERFACE,        VL_MATERIAL_PRINCIPLED,      VL_MATERIAL_DIFFUSE_TRANSMISSION,
-    VL_MATERIAL_COATED_CONDUCTOR, VL_MATERIAL_INTERFACE,       VL_MATERIAL_INTERFACE};
-static const char *const later[] = {"hair", "measured", "subsurface"};
+static const char *const kinds[] = {
+    "diffuse",   "coateddiffuse", "conductor",           "dielectric",      "thindielectric", "mix",
+    "interface", "principled",    "diffusetransmission", "coatedconductor", "hair",           "",
+    "none"};
+static const vlMaterialKind kind_values[] = {VL_MATERIAL_DIFFUSE,
+                                             VL_MATERIAL_COATED_DIFFUSE,
+                                             VL_MATERIAL_CONDUCTOR,
+                                             VL_MATERIAL_DIELECTRIC,
+                                             VL_MATERIAL_THIN_DIELECTRIC,
+                                             VL_MATERIAL_MIX,
+                                             VL_MATERIAL_INTERFACE,
+                                             VL_MATERIAL_PRINCIPLED,
+                                             VL_MATERIAL_DIFFUSE_TRANSMISSION,
+                                             VL_MATERIAL_COATED_CONDUCTOR,
+                                             VL_MATERIAL_HAIR,
+                                             VL_MATERIAL_INTERFACE,
+                                             VL_MATERIAL_INTERFACE};
+static const char *const later[] = {"measured", "subsurface"};
+_Static_assert(sizeof kinds / sizeof *kinds == sizeof kind_values / sizeof *kind_values, "a kind for each name");
 enum { KINDS = sizeof kinds / sizeof *kinds, NAMES = KINDS - 2, LATER = sizeof later / sizeof *later };
 
 bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface) {
@@ -176,6 +186,9 @@ static bool read_material(vlDict *dict, vlMaterialDef *def) {
       break;
     case VL_MATERIAL_COATED_CONDUCTOR:
       if (!read_coated_conductor(dict, def)) return false;
+      break;
+    case VL_MATERIAL_HAIR:
+      if (!vl_import_hair(dict, def)) return false;
       break;
     case VL_MATERIAL_INTERFACE: break;
   }

@@ -192,6 +192,14 @@ static bool take_principled(vlScene *scene, vlPrincipledDef *d, vlSource at) {
          take_normal_map(scene, d->normal, at) && take_normal_map(scene, d->clearcoat_normal, at);
 }
 
+static bool take_hair(vlScene *scene, vlHairDef *d, vlSource at) {
+  if ((unsigned)d->color > VL_HAIR_MELANIN) return bad(scene, at, "hair material", "its colour is of no known kind");
+  return take_spectrum(scene, &d->sigma_a, at, "sigma_a") && take_float(scene, &d->eumelanin, at, "eumelanin") &&
+         take_float(scene, &d->pheomelanin, at, "pheomelanin") && take_float(scene, &d->eta, at, "eta") &&
+         take_float(scene, &d->beta_m, at, "beta_m") && take_float(scene, &d->beta_n, at, "beta_n") &&
+         take_float(scene, &d->alpha, at, "alpha");
+}
+
 vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   const vlMaterialId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_MATERIAL, scene->materials.count, (vlSource){0}, "material"))
@@ -210,7 +218,7 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
     return bad(scene, at, "coated material", "max depth and samples must be at least 1"), none;
   if (!isfinite(d.scale) || d.scale < 0.0f) return bad(scene, at, "material", "its scale makes no sense"), none;
   if (d.kind != VL_MATERIAL_PRINCIPLED) d.principled = vl_default_material_def(VL_MATERIAL_DIFFUSE).principled;
-  if (!take_principled(scene, &d.principled, at)) return none;
+  if (!take_principled(scene, &d.principled, at) || !take_hair(scene, &d.hair, at)) return none;
   if (!vl_scene_copy_source(scene, &d.source) || !take_spectrum(scene, &d.reflectance, at, "reflectance") ||
       !take_float(scene, &d.u_roughness, at, "u roughness") || !take_float(scene, &d.v_roughness, at, "v roughness") ||
       !take_spectrum(scene, &d.eta, at, "eta") || !take_spectrum(scene, &d.k, at, "k") ||

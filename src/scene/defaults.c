@@ -108,6 +108,14 @@ vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
       .transmittance = vl_spectrum_input(vl_spectrum_constant(0.25f)),
       .scale = 1.0f,
       .coat_eta = vl_spectrum_input(vl_spectrum_constant(1.5f)),
+      .hair = {.color = VL_HAIR_MELANIN,
+               .sigma_a = vl_spectrum_input(vl_spectrum_constant(0.0f)),
+               .eumelanin = vl_float_input(1.3f),
+               .pheomelanin = vl_float_input(0.0f),
+               .eta = vl_float_input(1.55f),
+               .beta_m = vl_float_input(0.3f),
+               .beta_n = vl_float_input(0.3f),
+               .alpha = vl_float_input(2.0f)},
   };
   if (kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) def.reflectance = vl_spectrum_input(vl_spectrum_constant(0.25f));
   if (kind == VL_MATERIAL_PRINCIPLED) def.reflectance = vl_spectrum_input(vl_spectrum_constant(1.0f));

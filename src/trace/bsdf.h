@@ -21,6 +21,7 @@ typedef enum vlBsdfKind {
   VL_BSDF_PRINCIPLED,     /* many layers: docs/principled.md */
   VL_BSDF_DIFFUSE_TRANSMISSION,
   VL_BSDF_LAYERED, /* rough or smooth dielectric coat over metal or a diffuse base, by random walks between them */
+  VL_BSDF_HAIR,
   VL_BSDF_KINDS
 } vlBsdfKind;
 
@@ -58,6 +59,14 @@ enum {
   VL_L_ALBEDO,
   VL_L_DEPTH = VL_L_ALBEDO + 4, /* steps of a walk */
   VL_L_WALKS
+};
+enum {
+  VL_H_SIGMA_A,
+  VL_H_ACROSS = VL_H_SIGMA_A + 4, /* where the hair is met, -1 to 1 */
+  VL_H_BETA_M,
+  VL_H_BETA_N,
+  VL_H_ALPHA, /* radians */
+  VL_H_ROWS
 };
 
 enum {

@@ -13,6 +13,7 @@ static vlBsdfKind bsdf_kind(const vlWorldMaterial *m) {
     case VL_MATERIAL_COATED_DIFFUSE: return VL_BSDF_COATED_DIFFUSE;
     case VL_MATERIAL_PRINCIPLED: return VL_BSDF_PRINCIPLED;
     case VL_MATERIAL_DIFFUSE_TRANSMISSION: return VL_BSDF_DIFFUSE_TRANSMISSION;
+    case VL_MATERIAL_HAIR: return VL_BSDF_HAIR;
     default: return VL_BSDF_DIFFUSE;
   }
 }

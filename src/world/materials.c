@@ -113,6 +113,7 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
     r = vl_world_layers(world, scene, def, m, error);
   else if (r == VL_OK && def->kind == VL_MATERIAL_COATED_DIFFUSE)
     r = coat_of(world, def, m, error);
+  if (r == VL_OK && def->kind == VL_MATERIAL_HAIR) r = vl_world_hair(world, scene, def, m, error);
   if (def->kind == VL_MATERIAL_PRINCIPLED) r = vl_world_principled(world, scene, def, m, error);
   if (r == VL_OK && def->kind == VL_MATERIAL_MIX) {
     m->mix[0] = def->materials[0].index, m->mix[1] = def->materials[1].index;

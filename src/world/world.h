@@ -82,6 +82,12 @@ typedef struct vlWorldLayers {
   uint32_t depth, walks;
 } vlWorldLayers;
 
+/* Hair: spectrum nodes of one way to say its colour (-1: another), float nodes. */
+typedef struct vlWorldHair {
+  int32_t sigma_a, eumelanin, pheomelanin;
+  int32_t eumelanin_share, pheomelanin_share, eta, beta_m, beta_n, alpha;
+} vlWorldHair;
+
 typedef struct vlWorldMaterial {
   vlMaterialKind kind;
   int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
@@ -99,6 +105,7 @@ typedef struct vlWorldMaterial {
   int32_t transmittance;               /* diffuse transmission: spectrum node; and the factor on both */
   float scale;
   const vlWorldLayers *layers; /* null: none, or in closed form */
+  const vlWorldHair *hair;
 } vlWorldMaterial;
 
 /* ---- lights ------------------------------------------------------------------------------------------------------ */
@@ -190,6 +197,8 @@ vlResult vl_world_principled(vlWorld *world, const struct vlScene *scene, const 
                              vlError *error);
 vlResult vl_world_layers(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
                          vlError *error);
+vlResult vl_world_hair(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
+                       vlError *error);
 /* Reads the scene's pictures on all workers; errors are left to who asks for the picture. */
 vlResult vl_world_preload_images(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_materials(vlWorld *world, const struct vlScene *scene, vlError *error);

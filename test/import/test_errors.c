@@ -120,7 +120,8 @@ static const struct {
     /* names of kinds */
     {W "Material \"difuse\"", "t.pbrt:2:1: unknown material \"difuse\" (did you mean \"diffuse\"?)"},
     {W "Material \"subsurface\"", "t.pbrt:2:1: material \"subsurface\" is not understood yet"},
-    {W "MakeNamedMaterial \"a\" \"string type\" \"hair\"", "t.pbrt:2:23: material \"hair\" is not understood yet"},
+    {W "MakeNamedMaterial \"a\" \"string type\" \"measured\"",
+     "t.pbrt:2:23: material \"measured\" is not understood yet"},
     {W "MakeNamedMaterial \"a\"", "t.pbrt:2:1: MakeNamedMaterial \"a\": \"string type\" is missing"},
     {W "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"a\" \"string type\" \"diffuse\"",
      "t.pbrt:3:1: material \"a\" is made a second time (first in line 2)"},

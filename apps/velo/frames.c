@@ -8,10 +8,12 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "camera.h"
 #include "pattern.h"
 #include "report.h"
 
 static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+static const double y_up[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
 bool frames_wanted(const Arguments *arguments, const Job *job) {
   if (arguments->values[RENDER_TRAJECTORY].given) return true;
@@ -101,7 +103,13 @@ static int add_camera(Frames *frames, vlContext *context, const Job *job, const 
   vlCamera base = camera->job.camera;
   vlResult result = VL_OK;
   memcpy(camera->mount, base.world_from_camera, sizeof camera->mount);
-  if (frames->trajectory) result = vl_camera_move(&base, identity, &base, &error);
+  if (frames->trajectory) {
+    /* but a calibration file's negative fy says which way y goes in all of them (a scene's camera is in a place) */
+    const OptionValue *file = &arguments->values[RENDER_CAMERA];
+    bool turned = !record && file->given && !camera_is_scene(file->text) &&
+                  memcmp(base.world_from_camera, y_up, sizeof y_up) == 0;
+    result = vl_camera_move(&base, turned ? y_up : identity, &base, &error);
+  }
   for (int i = 0; i < frames->views && result == VL_OK; i++)
     result = vl_camera_eye(&base, &camera->job.settings->camera.stereo, frames->eyes[i], &camera->eyes[i], &error);
   if (result == VL_OK) return make_film(frames, context, camera);

@@ -84,7 +84,9 @@ static vlResult check_matrix(const vlMat4 *m, vlError *error) {
                    a[15]);
   /* The volume of the three axes after each is brought to length 1: 0 when they lie in a plane. */
   Vec x = {a[0], a[4], a[8]}, y = {a[1], a[5], a[9]}, z = {a[2], a[6], a[10]};
-  double volume = 0.0;
+  double volume = 0.0, most = fmax(largest(x), fmax(largest(y), largest(z)));
+  if (most > 1e30)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: world_from_camera stretches by %g; 1e30 is the most", most);
   if (largest(x) > 0.0 && largest(y) > 0.0 && largest(z) > 0.0)
     volume = fabs(dot(normalized(x), cross(normalized(y), normalized(z))));
   if (!(volume > 1e-9))

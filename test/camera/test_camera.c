@@ -292,6 +292,7 @@ static void error_messages(void **state) {
   EXPECT_ERROR(d.roll = NAN, "roll", NULL);
   EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[5] = NAN), "not finite", NULL);
   EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[5] = 0), "singular", NULL);
+  EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[5] = 1e308), "stretches by 1e+308", NULL);
   EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[1] = 1, d.world_from_camera[5] = 0), "singular", NULL);
   EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[14] = 1), "last row", NULL);
   /* the rest */

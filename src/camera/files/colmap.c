@@ -1,6 +1,7 @@
 /* camera/files/colmap.c: COLMAP's text model: cameras.txt (id, model, width, height, parameters) and images.txt (id,
  * quaternion w x y z, translation, camera id, name; a line of points follows each). OpenCV's axes, camera from world,
  * but the first pixel's centre is (0.5, 0.5), as in velo. */
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -208,14 +209,17 @@ vlResult vl_trajectory_read_colmap(vlTrajectory *t, const vlCameraFile *file) {
   return result;
 }
 
+/* A folder, or a name that only a folder can have. */
+static bool is_folder(const char *path) {
+  struct stat status;
+  if (stat(path, &status) == 0) return S_ISDIR(status.st_mode);
+  return !vl_ends_with(path, ".txt");
+}
+
 /* Where the two files are, from either's name or the folder's. */
 static bool find_files(const char *path, char cameras[4096], char images[4096]) {
-  struct stat status;
-  bool folder = stat(path, &status) == 0 && S_ISDIR(status.st_mode);
-  size_t n = strlen(path);
-  folder = folder || (n && path[n - 1] == '/');
   int a, b;
-  if (folder) {
+  if (is_folder(path)) {
     a = snprintf(cameras, 4096, "%s/cameras.txt", path);
     b = snprintf(images, 4096, "%s/images.txt", path);
   } else {
@@ -292,6 +296,8 @@ vlResult vl_camera_write_colmap(const vlCameraFile *file, const vlCameraRecord *
   if (result == VL_OK) result = choose_model(file, &record->camera, &model, p, &count);
   if (result != VL_OK) return result;
   if (!find_files(file->path, cameras, images)) return vl_camera_wrong(file, "colmap: the name is too long");
+  if (is_folder(file->path) && mkdir(file->path, 0777) != 0 && errno != EEXIST)
+    return vl_fail(file->error, VL_ERROR_IO, "cannot make the folder %s: %s", file->path, strerror(errno));
   vlCameraText text = {.context = file->context}, poses = {.context = file->context};
   vl_camera_put(&text, "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]; the first pixel's centre is (0.5, 0.5)\n");
   vl_camera_put(&text, "1 %s %u %u %.17g %.17g %.17g %.17g", model, c.width, c.height, c.fx, c.fy, c.cx, c.cy);

@@ -62,6 +62,18 @@ static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const 
   return VL_OK;
 }
 
+/* A negative fy (the RGB-D sequences of ICL-NUIM have it): a camera whose y goes up, in a left-handed world. The same
+ * pixels are those of fy > 0 and a pose that mirrors y. */
+static vlResult turn_y(const vlCameraFile *file, vlCameraDef *d) {
+  if (!(d->fy < 0.0)) return VL_OK;
+  for (uint32_t i = 0; i < d->distortion_count; i++)
+    if (d->distortion_coefficients[i] != 0.0)
+      return vl_camera_wrong(file, "%s: fy is %g; below zero it goes without distortion only", file->dialect, d->fy);
+  d->fy = -d->fy;
+  for (int row = 0; row < 3; row++) d->world_from_camera[4 * row + 1] = 0.0 - d->world_from_camera[4 * row + 1];
+  return VL_OK;
+}
+
 /* rvec, tvec: camera from world; both or neither. */
 static vlResult read_pose(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {
   double v[3] = {0, 0, 0}, t[3] = {0, 0, 0}, r[9];
@@ -81,6 +93,7 @@ vlResult vl_camera_read_opencv(const vlCameraFile *file, const json_t *tree, vlC
   if (result == VL_OK) result = read_matrix(file, tree, "camera_matrix", d);
   if (result == VL_OK) result = read_lens(file, tree, "distortion_coefficients", d);
   if (result == VL_OK) result = read_pose(file, tree, d);
+  if (result == VL_OK) result = turn_y(file, d);
   vl_camera_name(record, vl_camera_text(tree, "camera_name"));
   return result;
 }

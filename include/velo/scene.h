@@ -305,14 +305,22 @@ typedef struct vlEmissionDef {
 VL_API vlEmissionDef vl_default_emission_def(void);
 VL_API vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def);
 
-typedef enum vlLightKind { VL_LIGHT_POINT, VL_LIGHT_SPOT, VL_LIGHT_DISTANT, VL_LIGHT_INFINITE } vlLightKind;
+typedef enum vlLightKind {
+  VL_LIGHT_POINT,
+  VL_LIGHT_SPOT,
+  VL_LIGHT_DISTANT,
+  VL_LIGHT_INFINITE,
+  VL_LIGHT_GONIOMETRIC, /* a point whose intensity is times a picture's, by direction: an equal-area octahedral square
+                         * (pbrt book 3.8.3) whose axis is the light's y */
+  VL_LIGHT_PROJECTION   /* a point that throws its picture along z, y up; the picture is the intensity */
+} vlLightKind;
 typedef struct vlLightDef {
   uint32_t cookie;
   vlSource source;
   vlLightKind kind;
   vlSpectrum color; /* intensity I (point, spot) or radiance L (distant, infinite) */
   float scale;
-  double power;       /* point, spot: total watts; VL_UNSET */
+  double power;       /* all at a point: total watts; VL_UNSET */
   double illuminance; /* distant, infinite: lux; VL_UNSET */
   double world_from_light[16];
   float from[3], to[3];         /* light space: point's position is from; spot and distant shine from -> to */
@@ -321,6 +329,7 @@ typedef struct vlLightDef {
   const vlImage *image;         /* or given directly, copied */
   vlColorSpace space;           /* of the picture. It holds radiance, times scale; colour is ignored */
   vlMediumId medium;            /* that it stands in */
+  float fov;                    /* projection: radians across the picture's smaller side; default a right angle */
 } vlLightDef;
 VL_API vlLightDef vl_default_light_def(vlLightKind kind);
 VL_API vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def);

@@ -38,10 +38,27 @@ static bool read_infinite(vlDict *dict, vlLightDef *def, bool has_color) {
   return def->path != NULL;
 }
 
+/* Goniometric and projection lights stand at the origin of their space, and need a picture. */
+static bool read_beam(vlDict *dict, vlLightDef *def) {
+  vlImport *import = dict->import;
+  vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
+  double fov = 90.0;
+  read_target(dict, "power", &def->power);
+  if (def->kind == VL_LIGHT_PROJECTION && vl_dict_double(dict, "fov", &fov)) def->fov = (float)(fov * degrees);
+  if (!vl_dict_done(dict)) return false;
+  if (!file)
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string filename\" is missing", dict->what);
+  char path[4096];
+  if (!vl_import_path(import, file, path, sizeof path)) return false;
+  def->path = vl_import_keep(import, path);
+  return def->path != NULL;
+}
+
 static bool read_light(vlDict *dict, vlLightDef *def) {
-  bool given;
-  bool intensity = def->kind == VL_LIGHT_POINT || def->kind == VL_LIGHT_SPOT;
-  if (!vl_import_light_spectrum(dict, intensity ? "I" : "L", &def->color, &given)) return false;
+  bool given = false;
+  bool intensity = def->kind == VL_LIGHT_POINT || def->kind == VL_LIGHT_SPOT || def->kind == VL_LIGHT_GONIOMETRIC;
+  if (def->kind != VL_LIGHT_PROJECTION && !vl_import_light_spectrum(dict, intensity ? "I" : "L", &def->color, &given))
+    return false;
   vl_dict_float(dict, "scale", &def->scale);
   switch (def->kind) {
     case VL_LIGHT_POINT:
@@ -65,22 +82,23 @@ static bool read_light(vlDict *dict, vlLightDef *def) {
     case VL_LIGHT_INFINITE:
       if (!read_infinite(dict, def, given)) return false;
       break;
+    case VL_LIGHT_GONIOMETRIC:
+    case VL_LIGHT_PROJECTION: return read_beam(dict, def);
   }
   return vl_dict_done(dict);
 }
 
 bool vl_import_light(vlImport *import, const vlStatement *s) {
-  static const char *const kinds[] = {"point", "spot", "distant", "infinite"};
-  static const char *const later[] = {"goniometric", "projection"};
+  static const char *const kinds[] = {"point", "spot", "distant", "infinite", "goniometric", "projection"};
   char what[96];
   snprintf(what, sizeof what, "LightSource \"%.60s\"", s->names[0]);
   vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_LIGHT));
   int kind = -1;
-  for (int i = 0; i < 4; i++)
+  for (int i = 0; i < 6; i++)
     if (strcmp(s->names[0], kinds[i]) == 0) kind = i;
   if (kind < 0)
-    return vl_import_unknown(import, s->place, "light", s->names[0], kinds, 4, later, 2); /* permissive: left out */
+    return vl_import_unknown(import, s->place, "light", s->names[0], kinds, 6, NULL, 0); /* permissive: left out */
   vlLightDef def = vl_default_light_def((vlLightKind)kind);
   vlMat4 ctm;
   def.source = s->place;
@@ -88,7 +106,8 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
   if (!vl_import_ctm(import, s->place, &ctm) || !read_light(&dict, &def)) return false;
   memcpy(def.world_from_light, ctm.m, sizeof def.world_from_light);
   vlLightId id = vl_scene_add_light(import->scene, &def);
-  return id.index != 0 && (kind > 1 || vl_import_note_media(import, 'l', id.index - 1, s->place));
+  return id.index != 0 && (kind == VL_LIGHT_DISTANT || kind == VL_LIGHT_INFINITE ||
+                           vl_import_note_media(import, 'l', id.index - 1, s->place));
 }
 
 bool vl_import_area_light(vlImport *import, const vlStatement *s) {

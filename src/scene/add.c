@@ -264,7 +264,7 @@ vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
 }
 
 static bool check_light(vlScene *scene, const vlLightDef *d) {
-  if ((unsigned)d->kind > VL_LIGHT_INFINITE) return bad(scene, d->source, "light", "unknown kind");
+  if ((unsigned)d->kind > VL_LIGHT_PROJECTION) return bad(scene, d->source, "light", "unknown kind");
   if (!isfinite(d->scale)) return bad(scene, d->source, "light", "scale is not finite");
   if (d->medium.index > scene->media.count) return bad(scene, d->source, "light", "there is no such medium");
   if (!finite_or_unset(d->power)) return bad(scene, d->source, "light", "power must not be negative or infinite");
@@ -280,6 +280,10 @@ static bool check_light(vlScene *scene, const vlLightDef *d) {
       (!(d->cone_angle > 0.0f && d->cone_angle <= 3.1415928f) || !(d->cone_delta >= 0.0f) || !isfinite(d->cone_delta)))
     return bad(scene, d->source, "spot light",
                "cone angle must be above 0 and at most 180 degrees, its delta not negative");
+  if (d->kind >= VL_LIGHT_GONIOMETRIC && !d->path && !d->image)
+    return bad(scene, d->source, "light", "needs a picture");
+  if (d->kind == VL_LIGHT_PROJECTION && !(d->fov > 0.0f && d->fov < 3.1415f))
+    return bad(scene, d->source, "projection light", "field of view must be above 0 and below 180 degrees");
   return true;
 }
 
@@ -289,8 +293,8 @@ vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
     return none;
   vlLightDef d = *def;
   if (!check_light(scene, &d)) return none;
-  if (d.kind != VL_LIGHT_INFINITE) d.path = NULL, d.image = NULL;
-  if (d.path && d.image) return bad(scene, d.source, "infinite light", "has both a file name and a picture"), none;
+  if (d.kind < VL_LIGHT_INFINITE) d.path = NULL, d.image = NULL;
+  if (d.path && d.image) return bad(scene, d.source, "light", "has both a file name and a picture"), none;
   if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_spectrum(scene, &d.color, d.source, "light colour") ||
       !vl_scene_copy_string(scene, &d.path) || !vl_scene_copy_image(scene, &d.image))
     return none;

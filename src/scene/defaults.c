@@ -142,6 +142,7 @@ vlLightDef vl_default_light_def(vlLightKind kind) {
       .to = {0, 0, 1},
       .cone_angle = 30.0f * 3.14159265358979f / 180.0f,
       .cone_delta = 5.0f * 3.14159265358979f / 180.0f,
+      .fov = 0.5f * 3.14159265358979f,
   };
   memcpy(def.world_from_light, identity, sizeof identity);
   return def;

@@ -102,8 +102,8 @@ static vlLightInfo shape_light(const vlScene *s, const vlShapeDef *d) {
 }
 
 static vlLightInfo light(const vlScene *s, const vlLightDef *l) {
-  static const char *const kinds[] = {"point", "spot", "distant", "infinite"};
-  vlLightInfo info = {.kind = (unsigned)l->kind < 4 ? kinds[l->kind] : "other", .source = l->source};
+  static const char *const kinds[] = {"point", "spot", "distant", "infinite", "goniometric", "projection"};
+  vlLightInfo info = {.kind = (unsigned)l->kind < 6 ? kinds[l->kind] : "other", .source = l->source};
   info.picture = l->path || l->image;
   double low[3], high[3], radius2 = 0, y = luminance(&l->color) * (double)l->scale;
   if (l->kind == VL_LIGHT_POINT) {

@@ -262,6 +262,22 @@ static float smooth_step(float x, float a, float b) {
   return t * t * (3.0f - 2.0f * t);
 }
 
+/* How much of a light's colour its picture lets out towards -w, and where on a slide that is. */
+static float beam(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st) {
+  vlVec3 d = vl_normalize(turn(light->corners, vl_neg(w)));
+  *st = (vlVec2){0, 0};
+  if (light->kind == VL_WL_GONIOMETRIC) {
+    const vlMipmap *mip = world->images.items[light->picture].mipmap;
+    vlVec2 at = vl_octahedral_encode(d);
+    vlTexel x = vl_nearest(mip, 0, at.x, at.y, VL_WRAP_OCTAHEDRAL);
+    return vl_max(0.0f, mip->channels < 3 ? x.c[0] : (x.c[0] + x.c[1] + x.c[2]) / 3.0f);
+  }
+  float x = d.x / d.z / light->slide[0], y = d.y / d.z / light->slide[1];
+  if (!(d.z > 1e-3f) || !(vl_abs(x) <= 1.0f) || !(vl_abs(y) <= 1.0f)) return 0.0f;
+  *st = (vlVec2){0.5f * (x + 1.0f), 0.5f * (y + 1.0f)};
+  return 1.0f;
+}
+
 static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, vlVec3 p, float u, float v,
                        vlLightSamples *out) {
   out->pdf[i] = 0.0f;
@@ -278,7 +294,9 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
   out->distant[i] = 0;
   switch (light->kind) {
     case VL_WL_POINT:
-    case VL_WL_SPOT: {
+    case VL_WL_SPOT:
+    case VL_WL_GONIOMETRIC:
+    case VL_WL_PROJECTION: {
       target = vl_vec3(light->position[0], light->position[1], light->position[2]);
       vlVec3 to = vl_sub(target, p);
       float d2 = vl_length2(to);
@@ -288,7 +306,9 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
         float c = -vl_dot(w, vl_vec3(light->direction[0], light->direction[1], light->direction[2]));
         factor *= smooth_step(c, light->cos_end, light->cos_start);
       }
-      VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, false, radiance);
+      vlVec2 st = {0, 0};
+      if (light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION) factor *= beam(world, light, w, &st);
+      VL_HOT(vl_emitted_at)(world, e, lambda, st.x, st.y, true, radiance);
       for (int c = 0; c < 4; c++) radiance[c] *= factor;
       pdf = 1.0f;
       out->delta[i] = 1;

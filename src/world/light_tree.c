@@ -172,7 +172,7 @@ static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLigh
   for (int i = 0; i < 3; i++) b->low[i] = b->high[i] = light->position[i], b->axis[i] = i == 2;
   b->cos_o = -1; /* points shine everywhere */
   b->cos_e = 0;
-  if (light->kind == VL_WL_SPOT) {
+  if (light->kind == VL_WL_SPOT || light->kind == VL_WL_PROJECTION) {
     for (int i = 0; i < 3; i++) b->axis[i] = light->direction[i];
     float to = acosf(light->cos_start), te = acosf(light->cos_end);
     b->cos_o = light->cos_start;

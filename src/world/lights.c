@@ -8,12 +8,11 @@
 #include "math/octahedral.h"
 #include "math/transform.h"
 #include "scene/scene.h"
+#include "world/lights.h"
 #include "world/surface_point.h"
 #include "world/texture_lookup.h"
-#include "world/world.h"
 
-/* The light's colour with luminance 1 (times what rgb or scale say). */
-static vlResult compile_color(vlWorld *world, const vlSpectrum *color, float factor, vlEmitted *e, vlError *error) {
+vlResult vl_light_color(vlWorld *world, const vlSpectrum *color, float factor, vlEmitted *e, vlError *error) {
   vlResult r = vl_spectral_compile(world, color, VL_ROLE_ILLUMINANT, &e->spectrum, error);
   if (r != VL_OK) return r;
   e->spectrum.scale *= factor;
@@ -28,8 +27,7 @@ static vlResult compile_color(vlWorld *world, const vlSpectrum *color, float fac
   return VL_OK;
 }
 
-/* For pictures: the illuminant of the space, luminance 1; texels multiply it. */
-static void image_color(vlWorld *world, vlColorSpace space, float scale, vlEmitted *e) {
+void vl_light_picture_color(vlWorld *world, vlColorSpace space, float scale, vlEmitted *e) {
   memset(&e->spectrum, 0, sizeof e->spectrum);
   e->space = space;
   e->image_scale = scale;
@@ -47,8 +45,7 @@ static void image_color(vlWorld *world, vlColorSpace space, float scale, vlEmitt
   e->spectrum.scale = (float)(1 / sum);
 }
 
-/* Luminance that a constant emitted spectrum shows. */
-static float luminance(const vlSpectral *s) {
+float vl_light_luminance(const vlSpectral *s) {
   if (s->kind == VL_SPECTRAL_RGB) return s->scale * (0.2126f * s->rgb[0] + 0.7152f * s->rgb[1] + 0.0722f * s->rgb[2]);
   const float *y = vl_cie_y();
   double sum = 0;
@@ -61,7 +58,7 @@ static float luminance(const vlSpectral *s) {
   return (float)(sum * s->scale);
 }
 
-static float texel_luminance(vlTexel t, uint32_t channels) {
+float vl_light_texel_luminance(vlTexel t, uint32_t channels) {
   return channels < 3 ? t.c[0] : 0.2126f * t.c[0] + 0.7152f * t.c[1] + 0.0722f * t.c[2];
 }
 
@@ -88,7 +85,7 @@ static vlResult build_environment(vlWorld *world, vlEnvironment *env, double *me
       uint32_t count = 0;
       for (uint32_t j = y * step; j < (y + 1) * step && j < n; j++)
         for (uint32_t i = x * step; i < (x + 1) * step && i < n; i++) {
-          float l = texel_luminance(vl_texel(mip, 0, (int32_t)i, (int32_t)j, VL_WRAP_CLAMP), channels);
+          float l = vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)i, (int32_t)j, VL_WRAP_CLAMP), channels);
           if (!isfinite(l))
             return vl_fail(error, VL_ERROR_SCENE, "pixel (%u, %u) of the picture of the sky is not finite", i, j);
           if (l > 0) sum += l;
@@ -137,11 +134,11 @@ static vlResult add_infinite(vlWorld *world, const vlLightDef *def, vlWorldLight
   if (!def->path && !def->image) {
     float factor = def->scale;
     if (def->illuminance == def->illuminance) factor *= (float)(def->illuminance / M_PI);
-    vlResult r = compile_color(world, &def->color, factor, e, error);
-    light->power = 4 * VL_PI * area * luminance(&e->spectrum);
+    vlResult r = vl_light_color(world, &def->color, factor, e, error);
+    light->power = 4 * VL_PI * area * vl_light_luminance(&e->spectrum);
     return r;
   }
-  image_color(world, def->space, def->scale, e);
+  vl_light_picture_color(world, def->space, def->scale, e);
   e->image = vl_world_add_image(world, def->path, def->image, NULL, 1, false, error);
   if (e->image < 0) return error && error->code ? error->code : VL_ERROR_SCENE;
   const vlMipmap *mip = world->images.items[e->image].mipmap;
@@ -195,8 +192,8 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
     case VL_LIGHT_POINT:
       light->kind = VL_WL_POINT;
       if (has_power) factor *= (float)(def->power / (4 * M_PI));
-      r = compile_color(world, &def->color, factor, e, error);
-      light->power = 4 * VL_PI * luminance(&e->spectrum);
+      r = vl_light_color(world, &def->color, factor, e, error);
+      light->power = 4 * VL_PI * vl_light_luminance(&e->spectrum);
       break;
     case VL_LIGHT_SPOT: {
       light->kind = VL_WL_SPOT;
@@ -204,15 +201,15 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
       light->cos_start = cosf(def->cone_angle - def->cone_delta);
       float solid = 2 * VL_PI * ((1 - light->cos_start) + (light->cos_start - light->cos_end) / 2);
       if (has_power) factor *= (float)(def->power / solid);
-      r = compile_color(world, &def->color, factor, e, error);
-      light->power = 4 * VL_PI * luminance(&e->spectrum);
+      r = vl_light_color(world, &def->color, factor, e, error);
+      light->power = 4 * VL_PI * vl_light_luminance(&e->spectrum);
       break;
     }
     case VL_LIGHT_DISTANT:
       light->kind = VL_WL_DISTANT;
       if (def->illuminance == def->illuminance) factor *= (float)def->illuminance;
-      r = compile_color(world, &def->color, factor, e, error);
-      light->power = VL_PI * world->radius * world->radius * luminance(&e->spectrum);
+      r = vl_light_color(world, &def->color, factor, e, error);
+      light->power = VL_PI * world->radius * world->radius * vl_light_luminance(&e->spectrum);
       break;
     case VL_LIGHT_INFINITE: {
       light->kind = VL_WL_INFINITE;
@@ -222,6 +219,8 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
       *slot = (uint32_t)world->lights.count - 1;
       break;
     }
+    case VL_LIGHT_GONIOMETRIC:
+    case VL_LIGHT_PROJECTION: r = vl_world_add_beam(world, def, light, e, error); break;
   }
   return vl_world_placed(def->source, error, r);
 }
@@ -230,14 +229,14 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
 
 static float mean_image_luminance(const vlMipmap *mip) {
   uint32_t last = mip->level_count - 1;
-  return texel_luminance(vl_texel(mip, last, 0, 0, VL_WRAP_CLAMP), mip->channels);
+  return vl_light_texel_luminance(vl_texel(mip, last, 0, 0, VL_WRAP_CLAMP), mip->channels);
 }
 
 static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmissionDef *def, vlEmitted *e,
                              vlError *error) {
   e->two_sided = def->two_sided;
   if (def->texture.index) {
-    image_color(world, VL_SPACE_SRGB, def->scale, e);
+    vl_light_picture_color(world, VL_SPACE_SRGB, def->scale, e);
     vlSpectrumInput input = vl_spectrum_input(vl_spectrum_constant(0.0f));
     input.texture = def->texture;
     int32_t node;
@@ -247,14 +246,14 @@ static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmiss
     e->image = world->nodes.items[node].image;
     return VL_OK;
   }
-  if (!def->image) return compile_color(world, &def->radiance, def->scale, e, error);
-  image_color(world, VL_SPACE_SRGB, def->scale, e);
+  if (!def->image) return vl_light_color(world, &def->radiance, def->scale, e, error);
+  vl_light_picture_color(world, VL_SPACE_SRGB, def->scale, e);
   e->image = vl_world_add_image(world, def->image, NULL, NULL, 1, true, error);
   if (e->image < 0) return error && error->code ? error->code : VL_ERROR_SCENE;
   const vlMipmap *mip = world->images.items[e->image].mipmap;
   for (uint32_t y = 0; y < mip->levels[0].height; y++)
     for (uint32_t x = 0; x < mip->levels[0].width; x++)
-      if (!isfinite(texel_luminance(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels)))
+      if (!isfinite(vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels)))
         return vl_fail(error, VL_ERROR_SCENE, "%s: pixel (%u, %u) is not finite, it cannot shine", def->image, x, y);
   return VL_OK;
 }
@@ -275,7 +274,7 @@ static float face_luminance(const vlWorld *world, const vlWorldShape *s, uint32_
     at.u = inside[i][0] * t[0] + inside[i][1] * t[2] + inside[i][2] * t[4];
     at.v = inside[i][0] * t[1] + inside[i][1] * t[3] + inside[i][2] * t[5];
     vlTexel x = vl_texture_rgba(node, world->images.items[e->image].mipmap, at);
-    sum += 0.25f * texel_luminance(x, 4);
+    sum += 0.25f * vl_light_texel_luminance(x, 4);
   }
   return e->image_scale * (isfinite(sum) ? sum : 0);
 }
@@ -340,7 +339,7 @@ static vlResult add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t 
       }
     }
     const vlEmitted *e = &world->emitted.items[shared];
-    if (i == 0 || has_power) own = luminance(&e->spectrum);
+    if (i == 0 || has_power) own = vl_light_luminance(&e->spectrum);
     vlWorldLight *light = &world->lights.items[world->lights.count++];
     memset(light, 0, sizeof *light);
     light->kind = VL_WL_AREA;
@@ -369,7 +368,7 @@ vlResult vl_world_add_lights(vlWorld *world, const vlScene *scene, vlError *erro
   vlResult r = VL_OK;
   vlEmitted white;
   memset(&white, 0, sizeof white);
-  image_color(world, VL_SPACE_SRGB, 1, &white);
+  vl_light_picture_color(world, VL_SPACE_SRGB, 1, &white);
   world->white = white.spectrum;
   for (size_t i = 0; r == VL_OK && i < scene->lights.count; i++) r = add_light(world, &scene->lights.items[i], error);
   for (size_t i = 0; r == VL_OK && i < scene->shapes.count; i++)

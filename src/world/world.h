@@ -119,7 +119,15 @@ typedef struct vlEmitted {
   bool two_sided;
 } vlEmitted;
 
-typedef enum vlWorldLightKind { VL_WL_POINT, VL_WL_SPOT, VL_WL_DISTANT, VL_WL_INFINITE, VL_WL_AREA } vlWorldLightKind;
+typedef enum vlWorldLightKind {
+  VL_WL_POINT,
+  VL_WL_SPOT,
+  VL_WL_DISTANT,
+  VL_WL_INFINITE,
+  VL_WL_AREA,
+  VL_WL_GONIOMETRIC,
+  VL_WL_PROJECTION
+} vlWorldLightKind;
 
 typedef struct vlWorldLight {
   vlWorldLightKind kind;
@@ -132,6 +140,8 @@ typedef struct vlWorldLight {
   uint32_t environment;     /* infinite with a picture: index; VL_NONE: uniform */
   float power;              /* for choosing: watts-like, luminance */
   bool invisible;           /* area, of coverage 0 throughout: no ray meets it, it shines all the same (as pbrt's) */
+  uint32_t picture;         /* goniometric, projection: image; corners hold the map from world directions to theirs */
+  float slide[2];           /* projection: half its sides at distance 1 */
   float corners[9];         /* area, triangle: its corners, and */
   bool one_sided_normals;   /* direction is the normal to the lit side all over it */
 } vlWorldLight;

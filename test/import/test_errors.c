@@ -146,7 +146,7 @@ static const struct {
      "t.pbrt:2:1: Texture \"a\": the type must be \"float\" or \"spectrum\", not \"colour\""},
     {W "Texture \"a\" \"float\" \"constant\"\nTexture \"a\" \"float\" \"constant\"",
      "t.pbrt:3:1: float texture \"a\" is made a second time (first in line 2)"},
-    {W "LightSource \"goniometric\"", "t.pbrt:2:1: light \"goniometric\" is not understood yet"},
+    {W "LightSource \"goniometric\"", "t.pbrt:2:1: LightSource \"goniometric\": \"string filename\" is missing"},
     {W "LightSource \"infinit\"", "t.pbrt:2:1: unknown light \"infinit\" (did you mean \"infinite\"?)"},
     {W "AreaLightSource \"area\"", "t.pbrt:2:1: unknown area light \"area\""},
     {"Camera \"realistic\"\n" W, "t.pbrt:1:1: Camera \"realistic\": \"string lensfile\" is missing"},
@@ -323,7 +323,7 @@ static void permissive(void **state) {
       "Film \"gbuffer\" \"string coordinatesystem\" \"camera\"\nCamera \"future\" \"string lensfile\" \"wide.dat\"\n"
       "Integrator \"function\" \"integer maxdepth\" 9\nOption \"forcediffuse\" true\nSampler \"future\" \"integer n\" 1\n" W
       "Material \"subsurface\" \"rgb mfp\" [1 1 1]\nShape \"sphere\"\nShape \"heightfield\"\n"
-      "LightSource \"projection\"\nTexture \"t\" \"spectrum\" \"ptex\"\nMaterial \"diffuse\" \"texture reflectance\" "
+      "LightSource \"projector\"\nTexture \"t\" \"spectrum\" \"ptex\"\nMaterial \"diffuse\" \"texture reflectance\" "
       "\"t\"\n"
       "MakeNamedMedium \"m\" \"string type\" \"smoke\"\nMediumInterface \"m\"\nActiveTransform EndTime Translate 1 1 "
       "1\nShape \"disk\"\n",
@@ -342,7 +342,7 @@ static void permissive(void **state) {
                         "warning t.pbrt:5:1: unknown sampler",
                         "warning t.pbrt:7:1: material \"subsurface\"",
                         "warning t.pbrt:9:1: unknown shape \"heigh",
-                        "warning t.pbrt:10:1: light \"projection\"",
+                        "warning t.pbrt:10:1: unknown light \"projector",
                         "warning t.pbrt:11:1: texture \"ptex\"",
                         "warning t.pbrt:13:1: unknown medium type"};
   for (size_t i = 0; i < sizeof said / sizeof *said; i++) {

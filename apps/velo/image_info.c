@@ -42,6 +42,7 @@ static const char *format_of(const char *path) {
   if (n >= 6 && (memcmp(b, "#?RADI", 6) == 0 || memcmp(b, "#?RGBE", 6) == 0)) return "Radiance HDR";
   if (n >= 4 && memcmp(b, "GIF8", 4) == 0) return "GIF";
   if (n >= 4 && memcmp(b, "qoif", 4) == 0) return "QOI";
+  if (n >= 12 && memcmp(b, "RIFF", 4) == 0 && memcmp(b + 8, "WEBP", 4) == 0) return "WebP";
   if (n >= 2 && memcmp(b, "BM", 2) == 0) return "BMP";
   if (n >= 2 && b[0] == 'P' && (b[1] == 'F' || b[1] == 'f')) return "PFM";
   if (n >= 2 && b[0] == 'P' && b[1] >= '1' && b[1] <= '6') return "PNM";

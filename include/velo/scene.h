@@ -325,6 +325,7 @@ typedef struct vlLightDef {
   double world_from_light[16];
   float from[3], to[3];         /* light space: point's position is from; spot and distant shine from -> to */
   float cone_angle, cone_delta; /* spot, radians */
+  bool cone_squared;            /* its edge is t^2 in the cosine, as in glTF; else pbrt's smooth step 3t^2 - 2t^3 */
   const char *path;             /* infinite: equal-area octahedral picture (pbrt book 3.8.3), square; null: uniform */
   const vlImage *image;         /* or given directly, copied */
   vlColorSpace space;           /* of the picture. It holds radiance, times scale; colour is ignored */
@@ -417,9 +418,9 @@ typedef enum vlTracer {
   /* Light followed both ways (docs/tracers.md). Where something moves or lies in a medium: VL_TRACER_VOLPATH. */
   VL_TRACER_BIDIRECTIONAL, /* paths from the eye, and paths from the lights that the eye sees; unbiased */
   VL_TRACER_MERGING,       /* and both meet at surfaces, within a radius that shrinks with each pass */
-  VL_TRACER_SPPM, /* the same; smooth surfaces that the eye looks through are no bounces, as pbrt's sppm counts */
-  VL_TRACER_LIGHT_PATH,    /* from the lights alone: sees no light through or in what is smooth */
-  VL_TRACER_RANDOM_WALK    /* asks for no light and scatters all over the sphere: for comparison */
+  VL_TRACER_SPPM,       /* the same; smooth surfaces that the eye looks through are no bounces, as pbrt's sppm counts */
+  VL_TRACER_LIGHT_PATH, /* from the lights alone: sees no light through or in what is smooth */
+  VL_TRACER_RANDOM_WALK /* asks for no light and scatters all over the sphere: for comparison */
 } vlTracer;
 typedef enum vlSamplerKind {
   VL_SAMPLER_INDEPENDENT,

@@ -18,6 +18,7 @@ const vlCodec vl_codecs[] = {
     {"BMP", {NULL}, vl_bmp_probe, vl_bmp_read, NULL},
     {"GIF", {NULL}, vl_gif_probe, vl_gif_read, NULL},
     {"QOI", {NULL}, vl_qoi_probe, vl_qoi_read, NULL},
+    {"WebP", {NULL}, vl_webp_probe, vl_webp_read, NULL},
     {"TGA", {".tga"}, vl_tga_probe, vl_tga_read, vl_tga_write},
 };
 const uint32_t vl_codec_count = sizeof vl_codecs / sizeof *vl_codecs;

@@ -78,5 +78,7 @@ vlResult vl_pnm_read(const vlImageFile *file, vlImage **image);
 bool vl_pnm_probe(const uint8_t *data, size_t size);
 vlResult vl_qoi_read(const vlImageFile *file, vlImage **image);
 bool vl_qoi_probe(const uint8_t *data, size_t size);
+vlResult vl_webp_read(const vlImageFile *file, vlImage **image);
+bool vl_webp_probe(const uint8_t *data, size_t size);
 
 #endif

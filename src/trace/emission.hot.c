@@ -14,7 +14,7 @@ static float spot_factor(const vlWorldLight *light, float c) {
   float a = light->cos_end, b = light->cos_start;
   if (a == b) return c < a ? 0.0f : 1.0f;
   float t = vl_clamp((c - a) / (b - a), 0.0f, 1.0f);
-  return t * t * (3.0f - 2.0f * t);
+  return light->cone_squared ? t * t : t * t * (3.0f - 2.0f * t);
 }
 
 static float world_disk(const vlWorld *world) { /* area of a disk that hides the world */

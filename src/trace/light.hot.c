@@ -256,10 +256,11 @@ float VL_HOT(vl_area_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec
 
 /* ---- one sample a lane ------------------------------------------------------------------------------------------- */
 
-static float smooth_step(float x, float a, float b) {
+static float spot_edge(const vlWorldLight *light, float x) {
+  float a = light->cos_end, b = light->cos_start;
   if (a == b) return x < a ? 0.0f : 1.0f;
   float t = vl_clamp((x - a) / (b - a), 0.0f, 1.0f);
-  return t * t * (3.0f - 2.0f * t);
+  return light->cone_squared ? t * t : t * t * (3.0f - 2.0f * t);
 }
 
 /* How much of a light's colour its picture lets out towards -w, and where on a slide that is. */
@@ -304,7 +305,7 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
       float factor = d2 > 0.0f ? 1.0f / d2 : 0.0f;
       if (light->kind == VL_WL_SPOT) {
         float c = -vl_dot(w, vl_vec3(light->direction[0], light->direction[1], light->direction[2]));
-        factor *= smooth_step(c, light->cos_end, light->cos_start);
+        factor *= spot_edge(light, c);
       }
       vlVec2 st = {0, 0};
       if (light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION) factor *= beam(world, light, w, &st);

@@ -199,6 +199,7 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
       light->kind = VL_WL_SPOT;
       light->cos_end = cosf(def->cone_angle);
       light->cos_start = cosf(def->cone_angle - def->cone_delta);
+      light->cone_squared = def->cone_squared;
       float solid = 2 * VL_PI * ((1 - light->cos_start) + (light->cos_start - light->cos_end) / 2);
       if (has_power) factor *= (float)(def->power / solid);
       r = vl_light_color(world, &def->color, factor, e, error);

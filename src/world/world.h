@@ -137,6 +137,7 @@ typedef struct vlWorldLight {
   float position[3];        /* point, spot */
   float direction[3];       /* spot: axis away from the light; distant: towards the light */
   float cos_start, cos_end; /* spot: full inside start, nothing outside end */
+  bool cone_squared;        /* between them t^2; else smooth */
   uint32_t environment;     /* infinite with a picture: index; VL_NONE: uniform */
   float power;              /* for choosing: watts-like, luminance */
   bool invisible;           /* area, of coverage 0 throughout: no ray meets it, it shines all the same (as pbrt's) */

@@ -35,7 +35,8 @@ static void test_cut(void **state) {
   static const char *const FILES[] = {
       "png_interlaced.png", "png_palette4.png",   "tga_rle.tga",       "tga_bottom.tga", "bmp_4.bmp",
       "bmp_24.bmp",         "gif_interlaced.gif", "qoi_rgba.qoi",      "pnm_p6.ppm",     "hdr_flat.hdr",
-      "pfm_big.pfm",        "exr_half_zip.exr",   "exr_tiled_piz.exr", "jpeg_rgb.jpg",   "jpeg_progressive.jpg"};
+      "pfm_big.pfm",        "exr_half_zip.exr",   "exr_tiled_piz.exr", "jpeg_rgb.jpg",   "jpeg_progressive.jpg",
+      "webp_rgb.webp",      "webp_lossy.webp"};
   for (size_t i = 0; i < sizeof FILES / sizeof *FILES; i++) {
     size_t size;
     uint8_t *data = slurp(corpus(FILES[i]), &size);
@@ -208,7 +209,8 @@ static void test_not_pictures(void **state) {
                                       "\xff\xd8\xff",
                                       "v/1\x01",
                                       "PF\n",
-                                      "P1 \n"};
+                                      "P1 \n",
+                                      "RIFF....WEBPVP8L...."};
   for (size_t i = 0; i < sizeof TEXTS / sizeof *TEXTS; i++)
     assert_int_equal(read_bytes(context, TEXTS[i], strlen(TEXTS[i]), &image, &error), VL_ERROR_SCENE);
   end_context(context);

@@ -102,6 +102,8 @@ static const struct Integer {
     {"gif_offset.gif", 4, offset, false},
     {"qoi_rgb.qoi", 3, qoi, false},
     {"qoi_rgba.qoi", 4, qoi, false},
+    {"webp_rgb.webp", 3, exact, false},
+    {"webp_rgba.webp", 4, exact, false},
 };
 
 static const char *corpus(const char *file) {

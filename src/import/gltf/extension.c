@@ -15,15 +15,10 @@ static const char *const known[] = {
     "KHR_materials_variants",    "KHR_materials_pbrSpecularGlossiness",
     "KHR_texture_transform",     "KHR_mesh_quantization",
     "EXT_mesh_gpu_instancing",   "KHR_lights_punctual",
+    "EXT_texture_webp",          "EXT_meshopt_compression",
 };
 /* Nothing of these changes the picture. */
-static const char *const silent[] = {"KHR_xmp",
-                                     "KHR_xmp_json_ld",
-                                     "KHR_node_visibility_unused",
-                                     "EXT_texture_webp",
-                                     "KHR_texture_basisu",
-                                     "KHR_draco_mesh_compression",
-                                     "EXT_meshopt_compression"};
+static const char *const silent[] = {"KHR_xmp", "KHR_xmp_json_ld"};
 
 static bool is_in(const char *name, const char *const *names, size_t count) {
   for (size_t i = 0; i < count; i++)

@@ -238,8 +238,10 @@ static bool read_buffer(vlGltf *g, size_t i) {
 static bool read_view(vlGltf *g, size_t i) {
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "bufferViews", i);
   const json_t *json = vl_gltf_item(g, "bufferViews", i);
+  const json_t *packed = vl_gltf_extension(json, "EXT_meshopt_compression");
   int64_t buffer;
   size_t offset = 0, length = 0, stride = 0;
+  if (packed) return vl_gltf_unpack_view(g, at, packed, &g->views[i]);
   if (!vl_gltf_index(g, at, json, "buffer", g->buffer_count, &buffer) ||
       !vl_gltf_size(g, at, json, "byteOffset", &offset) || !vl_gltf_size(g, at, json, "byteLength", &length) ||
       !vl_gltf_size(g, at, json, "byteStride", &stride))

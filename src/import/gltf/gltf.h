@@ -164,6 +164,8 @@ const json_t *vl_gltf_item(const vlGltf *g, const char *array, size_t index);
 bool vl_gltf_open(vlGltf *g);
 bool vl_gltf_read_buffers(vlGltf *g); /* buffers and views */
 void vl_gltf_close(vlGltf *g);
+/* meshopt.c: a view by its EXT_meshopt_compression object. */
+bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfView *view);
 /* What a uri holds: a data: uri is unpacked into a block of the scene; else *path is the file's, with the folder of
  * the glTF file before it. */
 bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data, size_t *size,

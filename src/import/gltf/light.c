@@ -40,6 +40,7 @@ bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t index) {
   }
   def.cone_angle = (float)outer;
   def.cone_delta = (float)(outer - inner);
+  def.cone_squared = true;
   if (intensity > 0 && vl_scene_add_light(g->scene, &def).index == 0) return false;
   g->lights_made++;
   return true;

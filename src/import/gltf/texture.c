@@ -40,10 +40,13 @@ static bool read_image(vlGltf *g, size_t index) {
 
 /* The picture of a texture; extensions put other formats beside it. -1 with true: none, said already. */
 static bool choose_image(vlGltf *g, size_t texture, int64_t *image) {
-  static const char *const others[] = {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds",
-                                       "EXT_texture_avif"};
+  static const char *const others[] = {"KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif"};
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "textures", texture);
   const json_t *json = vl_gltf_item(g, "textures", texture);
+  const json_t *webp = vl_gltf_extension(json, "EXT_texture_webp");
+  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "extensions.EXT_texture_webp"), webp, "source", g->image_count, image))
+    return false;
+  if (*image >= 0) return true;
   if (!vl_gltf_index(g, at, json, "source", g->image_count, image)) return false;
   if (*image >= 0) return true;
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)

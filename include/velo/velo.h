@@ -8,6 +8,7 @@
 #include "velo/camera_file.h"
 #include "velo/channels.h"
 #include "velo/check.h"
+#include "velo/export.h"
 #include "velo/focus.h"
 #include "velo/image.h"
 #include "velo/render.h"

@@ -1,0 +1,193 @@
+/* export/export.c: the face of this room: chooses the format, keeps count of what is lost, writes files. */
+#include "export/export.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/cookie.h"
+#include "base/text.h"
+#include "image/image.h"
+
+vlSaveDef vl_default_save_def(void) {
+  return (vlSaveDef){.cookie = VL_COOKIE_SAVE};
+}
+
+void vl_export_lose(vlExport *x, const char *format, ...) {
+  char text[sizeof x->losses->text];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  for (uint32_t i = 0; i < x->loss_count; i++)
+    if (strcmp(x->losses[i].text, text) == 0 || i + 1 == VL_EXPORT_LOSSES) {
+      x->losses[i].count++;
+      return;
+    }
+  vlLoss *loss = &x->losses[x->loss_count++];
+  memcpy(loss->text, x->loss_count == VL_EXPORT_LOSSES ? "more of other kinds" : text,
+         x->loss_count == VL_EXPORT_LOSSES ? sizeof "more of other kinds" : sizeof text);
+  loss->count = 1;
+}
+
+bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...) {
+  if (x->result != VL_OK) return false;
+  char text[400];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  x->result = vl_fail(x->error, result, "%s", text);
+  return false;
+}
+
+/* ---- bytes ------------------------------------------------------------------------------------------------------- */
+
+void vl_bytes_put(vlContext *context, vlBytes *bytes, const void *data, size_t size) {
+  if (bytes->full || !VL_RESERVE(context, &bytes->data, size + 1)) {
+    bytes->full = true;
+    return;
+  }
+  if (size) memcpy(bytes->data.items + bytes->data.count, data, size);
+  bytes->data.count += size;
+}
+
+void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...) {
+  char text[2048];
+  va_list args;
+  va_start(args, format);
+  int n = vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  vl_bytes_put(context, bytes, text, n < 0 ? 0 : (size_t)n < sizeof text ? (size_t)n : sizeof text - 1);
+}
+
+/* ---- files ------------------------------------------------------------------------------------------------------- */
+
+bool vl_export_path(vlExport *x, const char *name, char *path, size_t size) {
+  return vl_path_join(x->path, name, path, size) || vl_export_fail(x, VL_ERROR_IO, "the file's name is too long");
+}
+
+bool vl_export_file(vlExport *x, const char *name, const void *data, size_t size) {
+  if (x->dry) return true;
+  char path[4096];
+  vlFileWriter writer;
+  if (name && !vl_export_path(x, name, path, sizeof path)) return false;
+  vlResult r = vl_file_open_write(&writer, name ? path : x->path, x->error);
+  if (r == VL_OK) {
+    vl_file_write(&writer, data, size);
+    r = vl_file_commit(&writer, x->error);
+  }
+  if (r != VL_OK && x->result == VL_OK) x->result = r;
+  return r == VL_OK;
+}
+
+vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t) {
+  vlImage *image = NULL;
+  vlError error;
+  vl_error_clear(&error);
+  vlResult r =
+      t->data ? vl_image_read_memory(x->context, t->name ? t->name : "picture", t->data, t->data_size, &image, &error)
+              : vl_image_read(x->context, t->path, &image, &error);
+  if (r != VL_OK) vl_export_fail(x, r, "%s", error.message);
+  return image;
+}
+
+bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char **data, size_t *size) {
+  char name[64], path[4096];
+  snprintf(name, sizeof name, ".velo-export-%ld%s", (long)getpid(), suffix);
+  *data = NULL;
+  if (!vl_export_path(x, name, path, sizeof path)) return false;
+  vlError error;
+  vl_error_clear(&error);
+  vlResult r = vl_image_write(image, path, NULL, &error);
+  if (r == VL_OK) r = vl_file_read(x->context, path, false, data, size, &error);
+  unlink(path);
+  return r == VL_OK || vl_export_fail(x, r, "%s", error.message);
+}
+
+static const char *kind_of(const char *data, size_t size) {
+  if (size > 8 && memcmp(data, "\x89PNG\r\n\x1a\n", 8) == 0) return ".png";
+  if (size > 3 && memcmp(data, "\xff\xd8\xff", 3) == 0) return ".jpg";
+  return NULL;
+}
+
+bool vl_export_picture(vlExport *x, const vlTextureDef *t, char **data, size_t *size, const char **suffix) {
+  *data = NULL;
+  if (t->data) {
+    *data = vl_alloc_array(x->context, t->data_size + 1, 1);
+    if (!*data) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    memcpy(*data, t->data, t->data_size);
+    *size = t->data_size;
+  } else if (t->path) {
+    vlError error;
+    vl_error_clear(&error);
+    vlResult r = vl_file_read(x->context, t->path, false, data, size, &error);
+    if (r != VL_OK) return vl_export_fail(x, r, "%s", error.message);
+  }
+  *suffix = *data ? kind_of(*data, *size) : NULL;
+  if (*suffix) return true;
+  vl_free(x->context, *data);
+  *data = NULL;
+  *suffix = ".png";
+  vl_export_lose(x, "picture of a kind other than PNG and JPEG: packed as PNG, 0 to 1 only");
+  if (t->image) return vl_export_pack(x, t->image, ".png", data, size);
+  vlImage *image = vl_export_decode(x, t);
+  bool fine = image && vl_export_pack(x, image, ".png", data, size);
+  vl_image_destroy(image);
+  return fine;
+}
+
+/* ---- the face ---------------------------------------------------------------------------------------------------- */
+
+static void start(vlExport *x, bool dry) {
+  x->dry = dry;
+  x->loss_count = 0;
+  const char *slash = strrchr(x->path, '/'), *name = slash ? slash + 1 : x->path, *dot = strrchr(name, '.');
+  snprintf(x->stem, sizeof x->stem, "%.*s", dot && dot > name ? (int)(dot - name) : (int)strlen(name), name);
+}
+
+static void finish(vlExport *x) {
+  VL_ARRAY_FREE(x->context, &x->pictures);
+  VL_ARRAY_FREE(x->context, &x->buffer.data);
+  VL_ARRAY_FREE(x->context, &x->looks);
+  VL_ARRAY_FREE(x->context, &x->text.data);
+  x->buffer.full = x->text.full = false;
+  json_decref(x->root);
+  x->root = NULL;
+}
+
+vlResult vl_scene_save(const vlScene *scene, const char *path, const vlSaveDef *def, vlError *error) {
+  vl_error_clear(error);
+  vlSaveDef plain = vl_default_save_def();
+  if (!scene || !path || (def && def->cookie != VL_COOKIE_SAVE))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_save: no scene or path, or a def not from vl_default_save_def");
+  if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
+  bool pbrt = vl_ends_with(path, ".pbrt"), binary = vl_ends_with(path, ".glb");
+  if (!pbrt && !binary && !vl_ends_with(path, ".gltf"))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "%.300s: unknown kind of file to write (known: .gltf, .glb, .pbrt)", path);
+  vlExport *x = vl_alloc_zero(scene->context, 1, sizeof *x);
+  if (!x) return vl_fail_memory(error);
+  x->context = scene->context, x->scene = scene, x->path = path, x->error = error, x->binary = binary;
+  x->def = def ? def : &plain;
+  bool fine = true;
+  if (x->def->strict) {
+    start(x, true);
+    fine = pbrt ? vl_export_pbrt(x) : vl_export_gltf(x);
+    finish(x);
+    if (fine && x->loss_count)
+      fine = vl_export_fail(x, VL_ERROR_UNSUPPORTED, "%s cannot hold: %s (%llu); %u kinds of loss in all",
+                            pbrt ? "pbrt" : "glTF", x->losses[0].text, (unsigned long long)x->losses[0].count,
+                            x->loss_count);
+  }
+  if (fine) {
+    start(x, false);
+    fine = pbrt ? vl_export_pbrt(x) : vl_export_gltf(x);
+    finish(x);
+  }
+  for (uint32_t i = 0; i < x->loss_count && x->def->lost; i++)
+    x->def->lost(x->def->lost_user, x->losses[i].text, x->losses[i].count);
+  vlResult r = fine ? VL_OK : x->result != VL_OK ? x->result : vl_fail_memory(error);
+  vl_free(scene->context, x);
+  return r;
+}

@@ -1,0 +1,97 @@
+/* export/meshes.c: shapes as triangles: meshes as they are, patches as two triangles, quadrics cut into facets. */
+#include <math.h>
+#include <string.h>
+
+#include "export/export.h"
+
+enum { ALONG = 64, ACROSS = 32 };
+
+void vl_export_free_mesh(vlExport *x, vlExportMesh *mesh) {
+  for (int i = 0; i < 4; i++) vl_free(x->context, mesh->own[i]);
+  *mesh = (vlExportMesh){0};
+}
+
+static bool patches(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
+  uint32_t *indices = vl_alloc_array(x->context, d->faces, 6 * sizeof *indices);
+  if (!indices) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  for (size_t i = 0; i < d->faces; i++) {
+    const uint32_t *q = d->indices + 4 * i; /* p00 p10 p01 p11 */
+    const uint32_t two[6] = {q[0], q[1], q[3], q[0], q[3], q[2]};
+    memcpy(indices + 6 * i, two, sizeof two);
+  }
+  mesh->own[0] = indices;
+  mesh->indices = indices;
+  mesh->faces = 2 * d->faces;
+  vl_export_lose(x, "bilinear patches: as two triangles each");
+  return true;
+}
+
+/* Point, normal and uv of a quadric at (a, b) of 0 to 1: around, and from z_min (or outside) on. */
+static void quadric(const vlShapeDef *d, double a, double b, float p[3], float n[3]) {
+  double phi = a * d->phi_max, c = cos(phi), s = sin(phi), r = d->radius;
+  if (d->kind == VL_SHAPE_DISK) {
+    double at = r + b * (d->inner_radius - r);
+    p[0] = (float)(at * c), p[1] = (float)(at * s), p[2] = d->height;
+    n[0] = n[1] = 0, n[2] = 1;
+    return;
+  }
+  if (d->kind == VL_SHAPE_CYLINDER) {
+    p[0] = (float)(r * c), p[1] = (float)(r * s), p[2] = (float)(d->z_min + b * (d->z_max - d->z_min));
+    n[0] = (float)c, n[1] = (float)s, n[2] = 0;
+    return;
+  }
+  double low = acos(fmin(1, fmax(-1, d->z_min / r))), high = acos(fmin(1, fmax(-1, d->z_max / r)));
+  double theta = low + b * (high - low);
+  n[0] = (float)(sin(theta) * c), n[1] = (float)(sin(theta) * s), n[2] = (float)cos(theta);
+  for (int i = 0; i < 3; i++) p[i] = (float)(r * (double)n[i]);
+}
+
+static bool facets(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
+  const uint32_t across = d->kind == VL_SHAPE_SPHERE ? ACROSS : 1, count = (ALONG + 1) * (across + 1);
+  float *p = vl_alloc_array(x->context, count, 3 * sizeof *p), *n = vl_alloc_array(x->context, count, 3 * sizeof *n),
+        *uv = vl_alloc_array(x->context, count, 2 * sizeof *uv);
+  uint32_t *indices = vl_alloc_array(x->context, ALONG * across, 6 * sizeof *indices), *to = indices;
+  mesh->own[0] = p, mesh->own[1] = n, mesh->own[2] = uv, mesh->own[3] = indices;
+  if (!p || !n || !uv || !indices) {
+    vl_export_free_mesh(x, mesh);
+    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  }
+  bool cap = d->kind == VL_SHAPE_SPHERE && d->z_max >= d->radius,
+       cup = d->kind == VL_SHAPE_SPHERE && d->z_min <= -d->radius;
+  bool point = d->kind == VL_SHAPE_DISK && d->inner_radius <= 0;
+  for (uint32_t j = 0; j <= across; j++)
+    for (uint32_t i = 0; i <= ALONG; i++) {
+      size_t k = (size_t)j * (ALONG + 1) + i;
+      double a = (double)i / ALONG, b = (double)j / across;
+      quadric(d, a, b, p + 3 * k, n + 3 * k);
+      uv[2 * k] = (float)a, uv[2 * k + 1] = (float)b;
+      if (i == ALONG || j == across) continue;
+      uint32_t k00 = (uint32_t)k, k10 = k00 + 1, k01 = k00 + ALONG + 1, k11 = k01 + 1;
+      if (!(cup && j == 0)) *to++ = k00, *to++ = k10, *to++ = k11;
+      if (!((cap && j + 1 == across) || point)) *to++ = k00, *to++ = k11, *to++ = k01;
+    }
+  mesh->vertices = count, mesh->faces = (uint32_t)(to - indices) / 3;
+  mesh->positions = p, mesh->normals = n, mesh->uvs[0] = uv, mesh->indices = indices;
+  return true;
+}
+
+bool vl_export_mesh(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
+  *mesh = (vlExportMesh){.vertices = d->vertices,
+                         .faces = d->faces,
+                         .positions = d->positions,
+                         .normals = d->normals,
+                         .tangents = d->tangents,
+                         .colors = d->colors,
+                         .signs = d->tangent_signs,
+                         .indices = d->indices};
+  mesh->uvs[0] = d->uvs;
+  for (int k = 0; k < 3; k++) mesh->uvs[k + 1] = d->more_uvs[k];
+  if (d->kind == VL_SHAPE_TRIANGLES) return true;
+  if (d->kind == VL_SHAPE_BILINEAR) return patches(x, d, mesh);
+  if (d->kind == VL_SHAPE_SPHERE || d->kind == VL_SHAPE_DISK || d->kind == VL_SHAPE_CYLINDER) {
+    vl_export_lose(x, "spheres, disks, cylinders: as triangles");
+    return facets(x, d, mesh);
+  }
+  vl_export_lose(x, "curves: left out");
+  return false;
+}

@@ -1,186 +1,10 @@
-/* import/builder.c: the statements of a pbrt file to a scene: what may stand where, names, objects, what waits for the
- * end, and the end. */
+/* import/builder.c: the statements of a pbrt file to a scene: what may stand where, who obeys, and the run through a
+ * whole file. */
 #include "import/builder.h"
 
 #include <string.h>
 
 #include "import/import.h"
-
-/* ---- parameters that outlive their directive -------------------------------------------------------------------- */
-
-/* The statement's parameters go on living: their file names are kept by the scene, their colour space is known. */
-static bool keep_params(vlImport *import, const vlStatement *s, vlParamList *to) {
-  for (size_t i = 0; i < s->params->list.count; i++)
-    if (!vl_scene_copy_source(import->scene, &s->params->list.items[i]->place)) return false;
-  *to = *s->params;
-  *s->params = (vlParamList){0};
-  return true;
-}
-
-static void note_space(vlImport *import, const vlStatement *s) {
-  for (size_t i = 0; i < s->params->list.count; i++) s->params->list.items[i]->space = import->state.space;
-}
-
-static bool keep_source(vlImport *import, vlSource *place) {
-  return vl_scene_copy_source(import->scene, place);
-}
-
-/* ---- state ------------------------------------------------------------------------------------------------------ */
-
-static bool attribute(vlImport *import, const vlStatement *s) {
-  static const char *const targets[] = {"shape", "light", "material", "medium", "texture"};
-  int target = -1;
-  for (int i = 0; i < VL_ATTR_TARGETS; i++)
-    if (strcmp(s->names[0], targets[i]) == 0) target = i;
-  if (target < 0)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
-                          "Attribute: unknown target \"%.40s\" (known: shape, light, material, medium, texture)",
-                          s->names[0]);
-  vlParamList params = {0};
-  if (!keep_params(import, s, &params)) return false;
-  bool fine = true;
-  for (size_t i = 0; i < params.list.count; i++) {
-    vlParam **slot = fine ? VL_PUSH(import->context, &import->attributes[target].list) : NULL;
-    params.list.items[i]->optional = true;
-    if (slot)
-      *slot = params.list.items[i];
-    else
-      fine = false, vl_param_free(import->context, params.list.items[i]);
-  }
-  VL_ARRAY_FREE(import->context, &params.list);
-  import->state.attributes[target] = import->attributes[target].list.count;
-  return fine || vl_import_fail_memory(import);
-}
-
-/* ---- objects ---------------------------------------------------------------------------------------------------- */
-
-/* An object may be placed before it is made: its group is there from its first mention. */
-static vlObject *find_object(vlImport *import, const char *name, vlSource place) {
-  uint32_t index;
-  if (vl_names_find(&import->objects, name, &index)) return &import->object_list.items[index];
-  const char *kept = vl_import_keep(import, name);
-  if (!kept || !keep_source(import, &place)) return NULL;
-  vlGroupId group = vl_scene_add_group(import->scene, kept);
-  if (!group.index) return NULL;
-  vlObject *object = VL_PUSH(import->context, &import->object_list);
-  if (!object || !vl_names_add(import->context, &import->objects, kept, (uint32_t)import->object_list.count - 1)) {
-    vl_import_fail_memory(import);
-    return NULL;
-  }
-  *object = (vlObject){.name = kept, .group = group, .place = place};
-  return object;
-}
-
-static bool object_begin(vlImport *import, const vlStatement *s) {
-  if (import->in_object)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "ObjectBegin inside of an object: objects do not nest");
-  vlObject *object = find_object(import, s->names[0], s->place);
-  if (!object) return false;
-  if (object->defined)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "object \"%.80s\" is defined a second time", s->names[0]);
-  object->defined = true;
-  import->in_object = true;
-  import->object = object->group;
-  return vl_import_push(import, 'o', s->place);
-}
-
-static bool object_end(vlImport *import, const vlStatement *s) {
-  if (!vl_import_pop(import, 'o', "ObjectEnd", s->place)) return false;
-  import->in_object = false;
-  import->object = (vlGroupId){0};
-  return true;
-}
-
-static bool object_instance(vlImport *import, const vlStatement *s) {
-  if (import->in_object)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "ObjectInstance inside of an object: objects do not nest");
-  const vlObject *object = find_object(import, s->names[0], s->place);
-  return object && vl_import_add_instance(import, object->group, import->state.ctm, s->place);
-}
-
-/* ---- what waits ------------------------------------------------------------------------------------------------- */
-
-static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttributeTarget target, bool is_texture) {
-  vlPending *p =
-      is_texture ? VL_PUSH(import->context, &import->textures) : VL_PUSH(import->context, &import->materials);
-  if (!p) {
-    vl_import_fail_memory(import);
-    return NULL;
-  }
-  vlParamList own = {0};
-  p->place = s->place;
-  p->space = import->state.space;
-  p->ctm = import->state.ctm[0];
-  if (!keep_source(import, &p->place) || !vl_import_copy_params(import, &import->attributes[target], &p->params) ||
-      !keep_params(import, s, &own))
-    return NULL;
-  bool fine = true;
-  for (size_t i = 0; i < own.list.count; i++) { /* after the attributes: the last one given wins */
-    vlParam **slot = fine ? VL_PUSH(import->context, &p->params.list) : NULL;
-    if (slot)
-      *slot = own.list.items[i];
-    else
-      fine = false, vl_param_free(import->context, own.list.items[i]);
-  }
-  VL_ARRAY_FREE(import->context, &own.list);
-  if (!fine) vl_import_fail_memory(import);
-  return fine ? p : NULL;
-}
-
-static bool material(vlImport *import, const vlStatement *s) {
-  vlPending *p = add_pending(import, s, VL_ATTR_MATERIAL, false);
-  if (!p || !(p->kind = vl_import_keep(import, s->names[0]))) return false;
-  import->state.material = (uint32_t)import->materials.count;
-  import->state.material_name = NULL;
-  return true;
-}
-
-static bool make_named_material(vlImport *import, const vlStatement *s) {
-  uint32_t index;
-  if (vl_names_find(&import->named_materials, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
-                          "material \"%.80s\" is made a second time (first in line %u)", s->names[0],
-                          import->materials.items[index].place.line);
-  vlPending *p = add_pending(import, s, VL_ATTR_MATERIAL, false);
-  if (!p || !(p->name = vl_import_keep(import, s->names[0]))) return false;
-  if (vl_names_add(import->context, &import->named_materials, p->name, (uint32_t)import->materials.count - 1))
-    return true;
-  return vl_import_fail_memory(import);
-}
-
-static bool named_material(vlImport *import, const vlStatement *s) {
-  uint32_t index;
-  import->state.material = 0;
-  import->state.material_place = s->place;
-  if (vl_names_find(&import->named_materials, s->names[0], &index)) {
-    import->state.material_name = import->materials.items[index].name;
-    return keep_source(import, &import->state.material_place);
-  }
-  import->state.material_name = vl_import_keep(import, s->names[0]);
-  return import->state.material_name && keep_source(import, &import->state.material_place);
-}
-
-static bool texture(vlImport *import, const vlStatement *s) {
-  bool spectrum = strcmp(s->names[1], "spectrum") == 0 || strcmp(s->names[1], "color") == 0;
-  if (!spectrum && strcmp(s->names[1], "float") != 0)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
-                          "Texture \"%.60s\": the type must be \"float\" or \"spectrum\", not \"%.40s\"", s->names[0],
-                          s->names[1]);
-  vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;
-  uint32_t index;
-  if (vl_names_find(table, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
-                          "%s texture \"%.80s\" is made a second time (first in line %u)",
-                          spectrum ? "spectrum" : "float", s->names[0], import->textures.items[index].place.line);
-  vlPending *p = add_pending(import, s, VL_ATTR_TEXTURE, true);
-  if (!p) return false;
-  p->spectrum = spectrum;
-  if (!vl_import_ctm(import, s->place, &p->ctm) || !(p->name = vl_import_keep(import, s->names[0])) ||
-      !(p->kind = vl_import_keep(import, s->names[2])))
-    return false;
-  if (vl_names_add(import->context, table, p->name, (uint32_t)import->textures.count - 1)) return true;
-  return vl_import_fail_memory(import);
-}
 
 static const char *directive_name(vlDirective d) {
   switch (d) {
@@ -221,7 +45,8 @@ static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
   choice->place = s->place;
   choice->space = import->state.space;
   choice->kind = vl_import_keep(import, s->names[0]);
-  return choice->kind && keep_source(import, &choice->place) && keep_params(import, s, &choice->params);
+  return choice->kind && vl_scene_copy_source(import->scene, &choice->place) &&
+         vl_import_keep_params(import, s, &choice->params);
 }
 
 static bool camera(vlImport *import, const vlStatement *s) {
@@ -258,6 +83,10 @@ static bool world_begin(vlImport *import) {
   import->state.active = 3;
   return vl_import_name_system(import, "world", import->state.ctm) && vl_import_film(import) &&
          vl_import_camera(import) && vl_import_sampling(import);
+}
+
+static void note_space(vlImport *import, const vlStatement *s) {
+  for (size_t i = 0; i < s->params->list.count; i++) s->params->list.items[i]->space = import->state.space;
 }
 
 /* ---- statements ------------------------------------------------------------------------------------------------- */
@@ -301,7 +130,6 @@ static bool in_right_part(vlImport *import, const vlStatement *s) {
 }
 
 static bool obey(vlImport *import, const vlStatement *s) {
-  if (!in_right_part(import, s)) return false;
   note_space(import, s);
   switch (s->directive) {
     case VL_DIR_ATTRIBUTE_BEGIN:
@@ -321,9 +149,9 @@ static bool obey(vlImport *import, const vlStatement *s) {
     case VL_DIR_REVERSE_ORIENTATION:
       return import->state.reverse_orientation = !import->state.reverse_orientation, true;
     case VL_DIR_WORLD_BEGIN: return world_begin(import);
-    case VL_DIR_OBJECT_BEGIN: return object_begin(import, s);
-    case VL_DIR_OBJECT_END: return object_end(import, s);
-    case VL_DIR_OBJECT_INSTANCE: return object_instance(import, s);
+    case VL_DIR_OBJECT_BEGIN: return vl_import_object_begin(import, s);
+    case VL_DIR_OBJECT_END: return vl_import_object_end(import, s);
+    case VL_DIR_OBJECT_INSTANCE: return vl_import_object_instance(import, s);
     case VL_DIR_IDENTITY:
     case VL_DIR_TRANSLATE:
     case VL_DIR_SCALE:
@@ -335,10 +163,10 @@ static bool obey(vlImport *import, const vlStatement *s) {
     case VL_DIR_COORDINATE_SYSTEM: return vl_import_name_system(import, s->names[0], import->state.ctm);
     case VL_DIR_COORD_SYS_TRANSFORM: return vl_import_use_system(import, s);
     case VL_DIR_COLOR_SPACE: return color_space(import, s);
-    case VL_DIR_NAMED_MATERIAL: return named_material(import, s);
+    case VL_DIR_NAMED_MATERIAL: return vl_import_named_material(import, s);
     case VL_DIR_MEDIUM_INTERFACE: return medium_interface(import, s);
     case VL_DIR_OPTION: return vl_import_option(import, s);
-    case VL_DIR_ATTRIBUTE: return attribute(import, s);
+    case VL_DIR_ATTRIBUTE: return vl_import_attribute(import, s);
     case VL_DIR_FILM: return choose(import, s, &import->film);
     case VL_DIR_SAMPLER: return choose(import, s, &import->sampler);
     case VL_DIR_INTEGRATOR: return choose(import, s, &import->integrator);
@@ -346,12 +174,12 @@ static bool obey(vlImport *import, const vlStatement *s) {
     case VL_DIR_ACCELERATOR: return choose(import, s, &import->accelerator);
     case VL_DIR_CAMERA: return camera(import, s);
     case VL_DIR_MAKE_NAMED_MEDIUM: return vl_import_medium(import, s);
-    case VL_DIR_MATERIAL: return material(import, s);
-    case VL_DIR_MAKE_NAMED_MATERIAL: return make_named_material(import, s);
+    case VL_DIR_MATERIAL: return vl_import_material(import, s);
+    case VL_DIR_MAKE_NAMED_MATERIAL: return vl_import_make_named_material(import, s);
     case VL_DIR_AREA_LIGHT_SOURCE: return vl_import_area_light(import, s);
     case VL_DIR_LIGHT_SOURCE: return vl_import_light(import, s);
     case VL_DIR_SHAPE: return vl_import_shape(import, s);
-    case VL_DIR_TEXTURE: return texture(import, s);
+    case VL_DIR_TEXTURE: return vl_import_texture(import, s);
   }
   return true;
 }
@@ -359,7 +187,12 @@ static bool obey(vlImport *import, const vlStatement *s) {
 /* For a doctor a wrong statement is left out. The name of a medium stays known, so that it is told once. */
 static bool statement(void *user, const vlStatement *s) {
   vlImport *import = user;
-  if (obey(import, s)) return true;
+  bool misplaced = !in_right_part(import, s);
+  if (!misplaced && obey(import, s)) return true;
+  if (misplaced && !import->in_world) { /* a fragment: all that follows would be as wrong */
+    import->problems = VL_IMPORT_PROBLEMS;
+    return false;
+  }
   if (!vl_import_recover(import)) return false;
   uint32_t index;
   if (s->directive != VL_DIR_MAKE_NAMED_MEDIUM || vl_names_find(&import->media, s->names[0], &index)) return true;
@@ -375,74 +208,8 @@ static bool recover(void *user) {
   return vl_import_recover(user);
 }
 
-/* ---- the end ---------------------------------------------------------------------------------------------------- */
-
-static bool link_shape(vlImport *import, const vlShapeLink *link) {
-  vlShapeDef *shape = &import->scene->shapes.items[link->shape];
-  bool is_interface = false;
-  if (link->material_name) {
-    if (!vl_import_material_id(import, link->material_name, link->material_place, &shape->material, &is_interface))
-      return false;
-  } else if (link->material) {
-    const vlPending *p = &import->materials.items[link->material - 1];
-    shape->material.index = p->id;
-    is_interface = p->is_interface;
-  }
-  if (is_interface && shape->emission.index) {
-    vl_import_warn(import, VL_LOG_WARNING, shape->source,
-                   "a shape of material \"interface\" gives no light: its area light is ignored");
-    shape->emission.index = 0;
-  }
-  if (link->displacement &&
-      !vl_import_texture_id(import, link->displacement, false, link->displacement_place, &shape->displacement.texture))
-    return false;
-  return !link->alpha || vl_import_texture_id(import, link->alpha, false, link->alpha_place, &shape->alpha.texture);
-}
-
-/* What could not be made is done with: textures are left out, a plain material stands in. */
-static bool give_up(vlImport *import) {
-  if (!vl_import_recover(import)) return false;
-  import->depth = 0;
-  for (size_t i = 0; i < import->textures.count; i++)
-    if (import->textures.items[i].state == VL_IN_PROGRESS) import->textures.items[i].state = VL_DONE;
-  for (size_t i = 0; i < import->materials.count; i++) {
-    vlPending *p = &import->materials.items[i];
-    if (p->state != VL_IN_PROGRESS) continue;
-    vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
-    def.name = p->name;
-    p->state = VL_DONE;
-    p->id = vl_scene_add_material(import->scene, &def).index;
-    if (!p->id) return false;
-  }
-  return true;
-}
-
-static bool finish(vlImport *import) {
-  vlScene *scene = import->scene;
-  if (scene->error.code != VL_OK) return false;
-  if (!import->in_world)
-    return vl_import_fail(import, VL_ERROR_SCENE, (vlSource){import->first, 0, 0}, "the file has no WorldBegin");
-  if (import->stack.count) {
-    const vlStackEntry *top = &import->stack.items[import->stack.count - 1];
-    return vl_import_fail(import, VL_ERROR_SCENE, top->place, "%s is never closed",
-                          top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
-  }
-  if (!vl_import_flush_curves(import)) return false;
-  for (uint32_t i = 0; i < import->textures.count; i++)
-    if (!vl_import_finish_texture(import, i) && !give_up(import)) return false;
-  for (uint32_t i = 0; i < import->materials.count; i++)
-    if (!vl_import_finish_material(import, i) && !give_up(import)) return false;
-  for (size_t i = 0; i < import->links.count; i++)
-    if (!link_shape(import, &import->links.items[i]) && !give_up(import)) return false;
-  if (!vl_import_finish_motion(import)) return false;
-  for (size_t i = 0; i < import->object_list.count; i++) {
-    const vlObject *object = &import->object_list.items[i];
-    if (object->defined) continue;
-    vl_import_fail(import, VL_ERROR_SCENE, object->place, "there is no object \"%.80s\"", object->name);
-    if (!vl_import_recover(import)) return false;
-  }
-  return vl_import_finish_media(import);
-}
+/* ---- a whole file -------------------------------------------------------------------------------------------------
+ */
 
 static void free_pending(vlContext *context, vlPending *items, size_t count) {
   for (size_t i = 0; i < count; i++) vl_param_list_free(context, &items[i].params);
@@ -469,6 +236,7 @@ static void release(vlImport *import) {
   vl_import_free_curves(import);
   VL_ARRAY_FREE(context, &import->object_list);
   VL_ARRAY_FREE(context, &import->links);
+  VL_ARRAY_FREE(context, &import->mesh_files);
   VL_ARRAY_FREE(context, &import->medium_links);
 }
 
@@ -489,7 +257,7 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
   vlParseTarget target = {import, statement, parse_error, recover};
   bool fine = data ? vl_parse_memory(import->context, data, size, path, &target)
                    : vl_parse_file(import->context, path, &target);
-  if (fine) finish(import);
+  if (fine) vl_import_finish(import);
   release(import);
   vl_free(scene->context, import);
   return vl_scene_result(scene, error);

@@ -82,6 +82,15 @@ typedef struct vlShapeLink {
   vlSource displacement_place;
 } vlShapeLink;
 
+/* A mesh file that is read at the end (meshes.c); `shape` is the place kept for it. */
+typedef struct vlMeshFile {
+  const char *path;
+  vlSource place;
+  vlShapeDef def;
+  vlShapeLink link;
+  uint32_t shape;
+} vlMeshFile;
+
 typedef struct vlObject {
   const char *name;
   vlGroupId group;
@@ -140,6 +149,7 @@ struct vlImport {
   vlNameTable float_textures, spectrum_textures, named_materials, objects;
   VL_ARRAY(vlObject) object_list;
   VL_ARRAY(vlShapeLink) links;
+  VL_ARRAY(vlMeshFile) mesh_files;
   VL_ARRAY(char *) strings; /* kept until the end */
   bool in_object;           /* between ObjectBegin and ObjectEnd */
   vlGroupId object;
@@ -223,9 +233,24 @@ bool vl_import_principled(vlDict *dict, vlMaterialDef *def); /* the parameters o
 bool vl_import_hair(vlDict *dict, vlMaterialDef *def);
 bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface);
 
+/* Parameters live on after their statement: file names are kept by the scene. */
+bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to);
+bool vl_import_attribute(vlImport *import, const vlStatement *s);
+bool vl_import_object_begin(vlImport *import, const vlStatement *s);
+bool vl_import_object_end(vlImport *import, const vlStatement *s);
+bool vl_import_object_instance(vlImport *import, const vlStatement *s);
+bool vl_import_material(vlImport *import, const vlStatement *s);
+bool vl_import_make_named_material(vlImport *import, const vlStatement *s);
+bool vl_import_named_material(vlImport *import, const vlStatement *s);
+bool vl_import_texture(vlImport *import, const vlStatement *s);
+bool vl_import_finish(vlImport *import); /* when all statements are read */
+
 bool vl_import_light(vlImport *import, const vlStatement *s);
 bool vl_import_area_light(vlImport *import, const vlStatement *s);
 bool vl_import_shape(vlImport *import, const vlStatement *s);
+bool vl_import_note_mesh(vlImport *import, const char *path, vlSource place, const vlShapeDef *def,
+                         const vlShapeLink *link);
+bool vl_import_read_meshes(vlImport *import); /* all that were noted */
 /* The def's arrays are given away. */
 bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link);
 bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link);

@@ -67,7 +67,7 @@ typedef struct vlParseTarget {
   /* Returns false to stop: then it has set *error itself or not at all (its own sticky error). */
   bool (*statement)(void *user, const vlStatement *statement);
   void (*error)(void *user, vlResult code, vlSource place, const char *message);
-  /* After an error of a file that is to be included and cannot be read: true to go on without it. May be null. */
+  /* After an error: true to go on without the directive or the file that it is in. May be null. */
   bool (*recover)(void *user);
 } vlParseTarget;
 

@@ -4,7 +4,6 @@
 
 #include "import/builder.h"
 #include "import/loop.h"
-#include "import/ply.h"
 
 static const double degrees = 0.017453292519943295;
 static const char *const kinds[] = {"trianglemesh", "bilinearmesh", "plymesh",    "sphere",
@@ -170,25 +169,6 @@ bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeL
   return true;
 }
 
-/* Patches become triangles: only those can be displaced. */
-static bool only_triangles(vlImport *import, vlPlyMesh *mesh) {
-  if (!mesh->quads) return true;
-  size_t old = 3 * (size_t)mesh->triangles, quads = mesh->quads;
-  if (old / 3 + 2 * quads > 0x7fffffff) return vl_import_fail_memory(import);
-  uint32_t *indices = vl_realloc_array(import->context, mesh->triangle_indices, old + 6 * quads, sizeof *indices);
-  if (!indices) return vl_import_fail_memory(import);
-  for (size_t i = 0; i < quads; i++) {
-    const uint32_t *q = mesh->quad_indices + 4 * i, t[6] = {q[0], q[1], q[3], q[0], q[3], q[2]};
-    memcpy(indices + old + 6 * i, t, sizeof t);
-  }
-  mesh->triangle_indices = indices;
-  mesh->triangles += (uint32_t)(2 * quads);
-  vl_free(import->context, mesh->quad_indices);
-  mesh->quad_indices = NULL;
-  mesh->quads = 0;
-  return true;
-}
-
 static bool read_displacement(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find(dict, "displacement", VL_BIT_TEXTURE);
@@ -205,7 +185,8 @@ static bool read_displacement(vlDict *dict, vlShapeDef *def, vlShapeLink *link) 
   return link->displacement && vl_scene_copy_source(import->scene, &link->displacement_place);
 }
 
-static bool read_ply(vlDict *dict, vlShapeDef *def, vlShapeLink *link, vlPlyMesh *mesh) {
+/* The file itself is read later, beside others (meshes.c). */
+static bool note_ply(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
   if (!read_displacement(dict, def, link) || !vl_dict_done(dict)) return false;
@@ -213,43 +194,7 @@ static bool read_ply(vlDict *dict, vlShapeDef *def, vlShapeLink *link, vlPlyMesh
     return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string filename\" is missing", dict->what);
   char path[4096];
   if (!vl_import_path(import, file, path, sizeof path)) return false;
-  vlError error = {0};
-  vlResult result = vl_ply_read(import->context, path, mesh, &error);
-  if (result == VL_OK) {
-    if (!link->displacement || only_triangles(import, mesh)) return true;
-    vl_ply_free(import->context, mesh);
-    return false;
-  }
-  vlSource inside = {error.file, error.line, error.column};
-  return vl_import_fail(import, result, error.file[0] ? inside : file->place, "%s", error.message);
-}
-
-/* A mesh of both kinds becomes two shapes that share nothing: the second gets copies. */
-static bool add_ply(vlImport *import, vlPlyMesh *mesh, const vlShapeDef *base, const vlShapeLink *link) {
-  vlShapeDef def = *base;
-  bool both = mesh->triangles && mesh->quads;
-  def.vertices = mesh->vertices;
-  def.positions = mesh->positions;
-  def.normals = mesh->normals;
-  def.uvs = mesh->uvs;
-  if (both) {
-    vlShapeDef copy = def;
-    copy.kind = VL_SHAPE_BILINEAR;
-    copy.faces = mesh->quads;
-    copy.indices = mesh->quad_indices;
-    if (!vl_scene_add_shape(import->scene, &copy).index) return vl_ply_free(import->context, mesh), false;
-    if (link->material || link->material_name || link->alpha) {
-      vlShapeLink *slot = VL_PUSH(import->context, &import->links);
-      if (!slot) return vl_ply_free(import->context, mesh), vl_import_fail_memory(import);
-      *slot = *link;
-      slot->shape = (uint32_t)import->scene->shapes.count - 1;
-    }
-    vl_free(import->context, mesh->quad_indices);
-  }
-  def.kind = mesh->triangles ? VL_SHAPE_TRIANGLES : VL_SHAPE_BILINEAR;
-  def.faces = mesh->triangles ? mesh->triangles : mesh->quads;
-  def.indices = mesh->triangles ? mesh->triangle_indices : mesh->quad_indices;
-  return vl_import_add_shape(import, &def, link);
+  return vl_import_note_mesh(import, path, file->place, def, link);
 }
 
 /* Alpha: a number, or a float texture that is looked up at the end. */
@@ -313,11 +258,7 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
   if (kind == CURVE) return vl_import_curve(&dict, &def, &link);
   if (!vl_import_flush_curves(import)) return false;
   size_t before = import->scene->shapes.count;
-  if (kind == PLY) {
-    vlPlyMesh mesh = {0};
-    return read_ply(&dict, &def, &link, &mesh) && add_ply(import, &mesh, &def, &link) &&
-           note_media(import, before, s->place);
-  }
+  if (kind == PLY) return note_ply(&dict, &def, &link) && note_media(import, before, s->place);
   bool fine = kind == LOOP     ? read_loop(&dict, &def)
               : kind >= SPHERE ? read_quadric(&dict, &def, kind)
                                : read_mesh(&dict, &def, kind == TRIANGLES ? 3 : 4);

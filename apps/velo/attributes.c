@@ -161,7 +161,7 @@ static void set_motion(Header *header, const vlCamera *c) {
  * given full frame's 36 mm, which fixes the scale and nothing else. */
 static void set_camera(Header *header, const Job *job) {
   vlCamera held = job->camera, *c = &held;
-  vl_camera_at(&job->camera, vl_camera_time(&held, 0.5 * held.width, 0.5 * held.height, 0.5), &held);
+  vl_camera_at(&job->camera, job_channels_time(job), &held);
   set_camera_matrices(header, c);
   if (c->projection == VL_PROJECTION_PERSPECTIVE && is_linear(c)) {
     double sensor = job->settings->camera.sensor_width_mm;

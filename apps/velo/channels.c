@@ -77,9 +77,6 @@ int channels_choose(Channels *c, const Arguments *arguments) {
     if (v[options[i]].given) {
       c->other_paths[i] = v[options[i]].text;
       c->bits |= VL_CHANNEL_FORWARD << i;
-    } else if (c->bits & (VL_CHANNEL_FORWARD << i)) {
-      return report_usage("--channels %s: where is the other camera? give it by %s FILE", i ? "backward" : "forward",
-                          i ? "--flow-camera-before" : "--flow-camera");
     }
   }
   return -1;
@@ -116,8 +113,19 @@ static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
   return result == VL_OK ? STATUS_OK : report_error(&error, result, job->path);
 }
 
+/* Where no other camera is named, flow is that of the shutter's time: from the moment of the channels to its end, and
+ * to its beginning. */
+static void shutter_ends(Channels *c, const Job *job) {
+  const vlCamera *camera = &job->camera;
+  for (int i = 0; i < 2; i++)
+    if (!c->other_paths[i])
+      vl_camera_at(camera, vl_camera_time(camera, 0.5 * camera->width, 0.5 * camera->height, i ? 0.0 : 1.0),
+                   &c->others[i]);
+}
+
 int channels_render(Channels *c, const vlWorld *world, const Job *job, const vlFilm *film) {
   if (!c->bits) return STATUS_OK;
+  shutter_ends(c, job);
   vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
   def.channels = c->bits;
   def.space = job->film.space;
@@ -127,6 +135,7 @@ int channels_render(Channels *c, const vlWorld *world, const Job *job, const vlF
   def.film = film;
   def.render = &job->render;
   def.exposure = job->settings->exposure;
+  def.time = job_channels_time(job);
   if (c->bits & VL_CHANNEL_FORWARD) def.forward = &c->others[0];
   if (c->bits & VL_CHANNEL_BACKWARD) def.backward = &c->others[1];
   memcpy(def.crop, job->film.crop, sizeof def.crop);

@@ -27,8 +27,8 @@ int channels_render(Channels *c, const vlWorld *world, const Job *job, const vlF
 /* What the layers' header says, into the picture's. */
 vlResult channels_describe(const Channels *c, vlImage *image);
 /* Writes PATH.ids.json: type, name, material, place in its file and, if wanted, boxes of each id in the picture.
- * STATUS_OK or the exit code. */
-int channels_write_ids(const Channels *c, const vlWorld *world, const Job *job, const char *path);
+ * `right` (may be null): the other view of the same file, whose ids are listed, too. STATUS_OK or the exit code. */
+int channels_write_ids(const Channels *c, const Channels *right, const vlWorld *world, const char *path);
 void channels_free(Channels *c);
 
 #endif

@@ -75,7 +75,7 @@ static void mark_boxes(const Channels *c, vlIdKind kind, bool *seen, uint32_t co
   for (uint32_t id = 1; id <= count; id++) seen[id] = seen[id] || c->box_list[kind == VL_ID_INSTANCE][id - 1].all > 0;
 }
 
-static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const char *path) {
+static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const Channels *right, const char *path) {
   const vlImage *ids = c->layers[1];
   static const struct {
     const char *channel, *key;
@@ -93,6 +93,8 @@ static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const c
     bool *seen = calloc((size_t)count + 1, 1);
     if (!seen) return false;
     mark_ids(ids, kinds[k].channel, seen, count);
+    if (right) mark_ids(right->layers[1], kinds[k].channel, seen, count);
+    if (right) mark_boxes(right, kinds[k].kind, seen, count);
     mark_boxes(c, kinds[k].kind, seen, count);
     fputs(",\n  ", file);
     json.comma = false;
@@ -108,10 +110,9 @@ static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const c
 }
 
 /* Written beside the target, synced, renamed: whole or as before. */
-int channels_write_ids(const Channels *c, const vlWorld *world, const Job *job, const char *path) {
+int channels_write_ids(const Channels *c, const Channels *right, const vlWorld *world, const char *path) {
   char target[4200], temporary[4240];
   const vlImage *ids = c->layers[1];
-  (void)job;
   if (!ids) return STATUS_OK;
   bool any = vl_image_find_channel(ids, "id.object") >= 0 || vl_image_find_channel(ids, "id.material") >= 0 ||
              vl_image_find_channel(ids, "id.instance") >= 0;
@@ -127,7 +128,7 @@ int channels_write_ids(const Channels *c, const vlWorld *world, const Job *job, 
     return report_failure(STATUS_IO, "cannot write %s: %s", target, strerror(code));
   }
   errno = 0;
-  bool good = put_all(file, world, c, path) && fsync(descriptor) == 0;
+  bool good = put_all(file, world, c, right, path) && fsync(descriptor) == 0;
   mode_t mask = umask(0);
   umask(mask);
   good = good && fchmod(descriptor, 0666 & ~mask) == 0;

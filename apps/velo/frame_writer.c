@@ -134,7 +134,8 @@ static int write_pattern(FrameWriter *w, FramePicture *p, const char *pattern, b
     vlError error = {0};
     frames_path(w->frames, &p->frame, pattern, view, path, sizeof path);
     int code = STATUS_OK;
-    if (output_holds_layers(path)) code = channels_write_ids(&p->channels[view], w->world, &p->jobs[view], path);
+    if (output_holds_layers(path))
+      code = channels_write_ids(&p->channels[view], two && !by_view ? &p->channels[1] : NULL, w->world, path);
     vlResult result =
         two && !by_view ? write_both(w, p, path, &def, &error) : write_one(w, p, view, path, &def, &error);
     if (result != VL_OK) code = report_error(&error, result, path);

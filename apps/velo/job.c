@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "camera.h"
@@ -242,6 +243,30 @@ int job_take_camera(Job *job, vlSceneSettings *settings, const vlCameraDef *def,
   return -1;
 }
 
+/* "open", "middle", "close" or seconds. */
+static int read_channels_time(Job *job, const Arguments *arguments) {
+  static const char *const words[] = {"open", "middle", "close"};
+  const OptionValue *v = &arguments->values[RENDER_CHANNELS_TIME];
+  job->channels_share = 0.5;
+  job->channels_seconds = VL_UNSET;
+  if (!v->given) return -1;
+  for (int i = 0; i < 3; i++)
+    if (strcmp(v->text, words[i]) == 0) {
+      job->channels_share = 0.5 * i;
+      return -1;
+    }
+  char *end;
+  job->channels_seconds = strtod(v->text, &end);
+  if (end != v->text && !*end && fabs(job->channels_seconds) < 1e12) return -1;
+  return report_usage("--channels-time \"%s\": must be open, middle, close or seconds", v->text);
+}
+
+double job_channels_time(const Job *job) {
+  const vlCamera *c = &job->camera;
+  if (!isnan(job->channels_seconds)) return job->channels_seconds;
+  return vl_camera_time(c, 0.5 * c->width, 0.5 * c->height, job->channels_share);
+}
+
 int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   vlSceneSettings *settings = vl_scene_settings(scene);
@@ -252,7 +277,8 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
     int status = take_camera(job, context, scene, v[RENDER_CAMERA].text, arguments);
     if (status >= 0) return status;
   }
-  int status = override_stereo(settings, arguments);
+  int status = read_channels_time(job, arguments);
+  if (status < 0) status = override_stereo(settings, arguments);
   if (status < 0) status = lens_override(scene, settings, arguments);
   if (status < 0) status = fit_camera(job, settings, arguments);
   if (status >= 0) return status;

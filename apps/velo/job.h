@@ -34,6 +34,7 @@ enum {
   RENDER_ISA,
   RENDER_CHANNELS,
   RENDER_CHANNELS_MODE,
+  RENDER_CHANNELS_TIME,
   RENDER_CRYPTO_RANKS,
   RENDER_FLOW_CAMERA,
   RENDER_BOXES,
@@ -68,10 +69,15 @@ typedef struct Job {
   vlFilmDef film;
   vlBuildDef build;
   vlRenderDef render;
+  double channels_share,
+      channels_seconds; /* when ground truth is seen: share of the shutter's time, unless seconds are set */
 } Job;
 
 /* Overrides the scene's settings and makes camera and defs. -1: go on; else the exit code, all has been said. */
 int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments);
+
+/* The time of the ground truth, and of the camera in the header, in seconds. */
+double job_channels_time(const Job *job);
 
 /* The job with another camera, of a file: *settings, which must outlive it, become the scene's with this camera. */
 int job_take_camera(Job *job, vlSceneSettings *settings, const vlCameraDef *def, const char *path,

@@ -110,7 +110,7 @@ static int render_channels(Render *render) {
   for (int k = 0; k < 2; k++) render->outputs.layers[k] = channels->layers[k];
   for (int i = 0; i < render->outputs.count && status == STATUS_OK; i++)
     if (output_holds_layers(render->outputs.paths[i]))
-      status = channels_write_ids(channels, render->world, &render->job, render->outputs.paths[i]);
+      status = channels_write_ids(channels, NULL, render->world, render->outputs.paths[i]);
   return status;
 }
 

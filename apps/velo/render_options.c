@@ -98,11 +98,14 @@ const Option render_options[] = {
      "which point of a pixel they tell about: its centre, or of the\n"
      "picture's samples the nearest, or one of the thing that covers\nmost of the pixel:",
      0, 0, channel_mode_choices},
+    {RENDER_CHANNELS_TIME, 0, "channels-time", OPTION_TEXT, "TIME",
+     "when they see what moves: open, middle or close of the shutter's\ntime, or seconds; default middle", 0, 0, NULL},
     {RENDER_CRYPTO_RANKS, 0, "crypto-ranks", OPTION_INTEGER, "N", "things a pixel of a Cryptomatte can hold; default 6",
      2, 32, NULL},
     {RENDER_FLOW_CAMERA, 0, "flow-camera", OPTION_TEXT, "FILE",
      "the camera of the next picture: the channels forward.U, .V tell\n"
-     "in pixels where it sees what this one sees, and forward.hidden\nwhether it does (scene or camera file)",
+     "in pixels where it sees what this one sees, and forward.hidden\nwhether it does (scene or camera file). Without "
+     "it: this camera at\nthe end of the shutter's time (--flow-camera-before: at its beginning)",
      0, 0, NULL},
     {RENDER_FLOW_CAMERA_BEFORE, 0, "flow-camera-before", OPTION_TEXT, "FILE",
      "the camera of the picture before, for backward.U, .V, .hidden", 0, 0, NULL},

@@ -52,8 +52,36 @@ assert sum(o["pixels"] for o in ids["objects"].values()) <= 64 * 48
 CODE
 check boxes python3 boxes.py
 
-expect_code 2 flow_without_camera "$VELO" render a.pbrt -o no.exr --channels forward
-expect_text says_how '--flow-camera FILE'
+# Without another camera: flow over the shutter's time, seen when --channels-time says. The sphere goes 0.5 to the right.
+cat >moving.pbrt <<'END'
+LookAt 0 0 -4  0 0 0  0 1 0
+Camera "perspective" "float shutteropen" 0 "float shutterclose" 1
+Film "rgb" "integer xresolution" 64 "integer yresolution" 48
+TransformTimes 0 1
+WorldBegin
+AttributeBegin
+ActiveTransform EndTime
+Translate 0.5 0 0
+ActiveTransform All
+Shape "sphere" "float radius" 0.5
+AttributeEnd
+END
+for moment in open middle close 0.25; do
+  check "shutter_flow_$moment" "$VELO" render moving.pbrt --spp 1 --quiet --channels Z,P,N,ray,distance,id.object,forward,backward \
+    --channels-time "$moment" -o moving.exr
+  check "shutter_flow_${moment}_check" "$VELO" image check moving.exr
+  "$VELO" image convert moving.exr forward.pfm --channel forward.U && "$VELO" image convert moving.exr backward.pfm --channel backward.U
+  check "shutter_flow_${moment}_is" python3 -c '
+import array, sys
+share = {"open": 0, "middle": 0.5, "close": 1}.get(sys.argv[1], 0.25)
+for name, wanted in (("forward.pfm", 3.28 * (1 - share)), ("backward.pfm", -3.28 * share)):
+    data = open(name, "rb").read().split(b"\n", 3)[3]
+    moved = [v for v in array.array("f", data) if abs(v) > 0.1]
+    got = sum(moved) / len(moved) if moved else 0
+    assert abs(got - wanted) < 0.02, (name, got, wanted)' "$moment"
+done
+expect_code 2 channels_time_word "$VELO" render a.pbrt -o no.exr --channels Z --channels-time opn
+expect_text says_how 'open, middle, close or seconds'
 expect_code 2 odd_ranks "$VELO" render a.pbrt -o no.exr --channels crypto --crypto-ranks 5
 expect_code 2 unknown_mode "$VELO" render a.pbrt -o no.exr --channels all --channels-mode neares
 expect_text near_mode 'nearest'

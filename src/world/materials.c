@@ -117,9 +117,12 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
   if (def->kind == VL_MATERIAL_PRINCIPLED) r = vl_world_principled(world, scene, def, m, error);
   if (r == VL_OK && def->kind == VL_MATERIAL_MIX) {
     m->mix[0] = def->materials[0].index, m->mix[1] = def->materials[1].index;
-    for (int i = 0; i < 2; i++)
-      if (scene->materials.items[m->mix[i] - 1].kind == VL_MATERIAL_INTERFACE)
-        return fail(def, error, "an interface as a part of a mix is not understood yet (alpha does what it would do)");
+    for (int i = 0; i < 2; i++) {
+      const vlWorldMaterial *part = &world->materials.items[m->mix[i]];
+      m->absent[i] = part->kind == VL_MATERIAL_INTERFACE;
+      if (part->kind == VL_MATERIAL_MIX && (part->absent[0] || part->absent[1]))
+        return fail(def, error, "a mix with an interface cannot be a part of another mix");
+    }
     r = vl_world_float_node(world, scene, def->amount, &m->amount, error);
   }
   if (r == VL_OK && def->displacement.texture.index)

@@ -146,6 +146,27 @@ static vlResult move_mesh(vlWorld *world, const vlShapeDef *def, const vlMat4 *m
                                                                  : VL_OK;
 }
 
+static vlResult constant_node(vlWorld *world, const vlScene *scene, float value, int32_t *node, vlError *error) {
+  return vl_world_float_node(world, scene, vl_float_input(value), node, error);
+}
+
+/* A mix of a material with an interface is that material with holes: what is there of it times the shape's alpha. */
+static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShapeDef *def, vlWorldShape *s,
+                              vlError *error) {
+  const vlWorldMaterial *m = &world->materials.items[s->material];
+  if (m->kind != VL_MATERIAL_MIX || !(m->absent[0] || m->absent[1])) return VL_OK;
+  bool first = m->absent[0], both = first && m->absent[1];
+  s->material = m->mix[first && !both ? 1 : 0];
+  if (both) return VL_OK;
+  if (def->inside.index != def->outside.index)
+    return fail_shape(def, error, "a mix with an interface cannot divide two media");
+  int32_t share = m->amount, whole = s->alpha, none;
+  vlResult r = constant_node(world, scene, 0.0f, &none, error);
+  if (r == VL_OK && whole < 0) r = constant_node(world, scene, 1.0f, &whole, error);
+  /* amount is the share of the second part */
+  return r == VL_OK ? vl_world_mix_node(world, first ? none : whole, first ? whole : none, share, &s->alpha, error) : r;
+}
+
 static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef *def, vlWorldShape *s,
                           vlError *error) {
   vlMat4 m = vl_mat4_load(def->group_from_shape), inverse;
@@ -161,6 +182,8 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef
     vlResult r = vl_world_float_node(world, scene, def->alpha, &s->alpha, error);
     if (r != VL_OK) return r;
   }
+  vlResult cut = cut_interface(world, scene, def, s, error);
+  if (cut != VL_OK) return cut;
   s->pass_shadow = world->materials.items[s->material].kind == VL_MATERIAL_INTERFACE;
   s->radius = def->radius, s->inner_radius = def->inner_radius, s->height = def->height, s->phi_max = def->phi_max;
   s->z_min = def->z_min < def->z_max ? def->z_min : def->z_max;

@@ -476,3 +476,11 @@ float vl_texture_float_at(const vlWorld *world, int32_t index, float u, float v,
     default: return vl_texture_float_at(world, node->a, u, v, p, where);
   }
 }
+
+vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node, vlError *error) {
+  vlTextureNode mix = empty_node(VL_NODE_MIX);
+  mix.a = a, mix.b = b, mix.amount = amount;
+  if (!weigh(world, &mix)) return vl_fail(error, VL_ERROR_SCENE, "textures are nested too deep");
+  *node = push_node(world, &mix);
+  return *node == VL_TEXTURE_NO_MEMORY ? vl_fail_memory(error) : VL_OK;
+}

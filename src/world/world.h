@@ -93,6 +93,7 @@ typedef struct vlWorldMaterial {
   int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
   int32_t u_roughness, v_roughness, amount; /* float nodes */
   uint32_t mix[2];
+  bool absent[2]; /* parts of a mix that are interfaces: shapes take the other, with a coverage (shapes.c) */
   bool remap, use_reflectance;
   bool dispersive;      /* dielectrics: eta varies with wavelength */
   float eta_s;          /* dielectrics with one eta */
@@ -201,6 +202,8 @@ vlResult vl_world_float_node(vlWorld *world, const struct vlScene *scene, vlFloa
                              vlError *error);
 vlResult vl_world_spectrum_node(vlWorld *world, const struct vlScene *scene, vlSpectrumInput input, vlSpectrumRole role,
                                 int32_t *node, vlError *error);
+/* Of two float nodes by a third. */
+vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node, vlError *error);
 /* Reads a picture (or takes the one given); encoding null: the file's own. Index, or -1 with the error set. */
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
                            float gamma, bool pyramid, vlError *error);

@@ -92,12 +92,41 @@ static void mix_by_texture(void **state) {
 }
 
 /* A mix with an interface as a part has no meaning yet: an error, no silent difference. */
-static void mix_with_an_interface_is_refused(void **state) {
+/* Half of a sheet that is not there: half of what lies behind is seen, and half of the light passes. Both orders, both
+ * sorts of amount, alpha beside. */
+static void mixed_with_an_interface(void **state) {
+  (void)state;
+  for (int way = 0; way < 4; way++) {
+    Stage s = stage_open(32, 32);
+    s.render.spp = 400;
+    s.camera.fov = 0.3;
+    Quad light = quad_at(0, 0, -9, 30, 0, 0, 0, 30, 0), sheet = quad_at(0, 0, -2, 30, 0, 0, 0, 30, 0);
+    light.emission = add_glow(&s, 1, true);
+    add_quad(&s, &light);
+    vlMaterialDef def = vl_default_material_def(VL_MATERIAL_INTERFACE);
+    vlMaterialId none = vl_scene_add_material(s.scene, &def), black = add_diffuse(&s, 0, 0, 0);
+    vlMaterialDef mix = vl_default_material_def(VL_MATERIAL_MIX);
+    mix.materials[way & 1] = none, mix.materials[!(way & 1)] = black;
+    mix.amount = vl_float_input(way & 1 ? 0.7f : 0.3f); /* the interface's share is 0.7 */
+    if (way & 2) {
+      vlTextureDef t = vl_default_texture_def(VL_TEXTURE_CONSTANT, false);
+      t.float_a = mix.amount;
+      mix.amount.texture = vl_scene_add_texture(s.scene, &t);
+    }
+    sheet.material = vl_scene_add_material(s.scene, &mix);
+    add_quad(&s, &sheet);
+    Picture p = stage_finish(&s);
+    assert_ratio("through the sheet", picture_mean(&p, 1), 0.7, 6e-3);
+    picture_free(&p);
+  }
+}
+
+static void mix_of_a_mix_with_an_interface_is_refused(void **state) {
   (void)state;
   Stage s = stage();
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_INTERFACE);
-  vlMaterialId none = vl_scene_add_material(s.scene, &def);
-  add_ball(&s, add_mix(&s, add_diffuse(&s, 0.5f, 0.5f, 0.5f), none, 0.5f));
+  vlMaterialId none = vl_scene_add_material(s.scene, &def), grey = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
+  add_ball(&s, add_mix(&s, add_mix(&s, grey, none, 0.5f), grey, 0.5f));
   vlWorld *world = NULL;
   vlError error;
   assert_int_equal(vl_world_build(s.scene, &s.build, &world, &error), VL_ERROR_SCENE);
@@ -350,7 +379,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(mixes),
       cmocka_unit_test(mix_by_texture),
-      cmocka_unit_test(mix_with_an_interface_is_refused),
+      cmocka_unit_test(mixed_with_an_interface),
+      cmocka_unit_test(mix_of_a_mix_with_an_interface_is_refused),
       cmocka_unit_test(normal_maps),
       cmocka_unit_test(displacements),
       cmocka_unit_test(interfaces_are_nothing),

@@ -48,6 +48,9 @@ typedef struct vlFilmDef {
   vlPixelFilter filter;
   vlColorSpace space;   /* of the developed picture */
   double white_balance; /* kelvin: daylight of this colour temperature comes out white; 0 (default): as it is */
+  /* A sample with one of X, Y, Z above this is made darker until none is: against fireflies, and biased. Default
+   * infinity. */
+  float max_component;
   bool errors;          /* remember what vl_film_errors needs: three times the memory; default false */
 } vlFilmDef;
 VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);

@@ -464,6 +464,7 @@ typedef struct vlSceneSettings {
   bool camera_in_full;  /* a glTF file holds more of it than glTF can say: vl_camera_read reads that */
   vlColorSpace space;   /* of the output picture */
   double white_balance; /* kelvin, 0: none */
+  float max_component;  /* of a sample, times exposure; infinity: as it is */
   vlPixelFilter filter;
   vlSamplerKind sampler;
   uint32_t spp;

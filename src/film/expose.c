@@ -24,6 +24,19 @@ static void convert(vlColorSpace space, const float *balance, const vlExposure *
   }
 }
 
+/* As pbrt's maxcomponentvalue: of the sensor's values, which are X, Y, Z. */
+static void limit(vlColorSpace space, float most, uint32_t n, float *r, float *g, float *b) {
+  float m[9];
+  vl_xyz_from_rgb(space, m);
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
+    float x = m[0] * r[i] + m[1] * g[i] + m[2] * b[i], y = m[3] * r[i] + m[4] * g[i] + m[5] * b[i];
+    float z = m[6] * r[i] + m[7] * g[i] + m[8] * b[i], top = x > y ? x : y;
+    top = top > z ? top : z;
+    float f = top > most ? most / top : 1.0f;
+    r[i] *= f, g[i] *= f, b[i] *= f;
+  }
+}
+
 void vl_film_expose(const vlFilm *film, vlIsa isa, const vlExposure *e, float *r, float *g, float *b) {
   vlColorSpace space = vl_film_def(film)->space;
   const float *balance = vl_film_balance(film);
@@ -37,4 +50,5 @@ void vl_film_expose(const vlFilm *film, vlIsa isa, const vlExposure *e, float *r
   }
   float f = e->exposure;
   for (uint32_t i = 0; f != 1.0f && i < VL_PAD(e->n); i++) r[i] *= f, g[i] *= f, b[i] *= f;
+  if (vl_film_def(film)->max_component < 3e38f) limit(space, vl_film_def(film)->max_component, e->n, r, g, b);
 }

@@ -3,6 +3,7 @@
 #include "film/sums.h"
 #include "film/white.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { SIZE_MAX_PIXELS = 65536 };
@@ -13,7 +14,8 @@ vlFilmDef vl_default_film_def(uint32_t width, uint32_t height) {
                      .height = height,
                      .crop = {0, 0, width, height},
                      .filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN),
-                     .space = (vlColorSpace)0};
+                     .space = (vlColorSpace)0,
+                     .max_component = INFINITY};
 }
 
 vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film) {
@@ -23,6 +25,7 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
   const uint32_t *c = def->crop;
   if (def->white_balance != 0.0 && !(def->white_balance >= 1000.0 && def->white_balance <= 1e5))
     return VL_ERROR_ARGUMENT;
+  if (!(def->max_component >= 0.0f)) return VL_ERROR_ARGUMENT;
   if (def->width == 0 || def->height == 0 || def->width > SIZE_MAX_PIXELS || def->height > SIZE_MAX_PIXELS)
     return VL_ERROR_ARGUMENT;
   if (c[0] >= c[2] || c[1] >= c[3] || c[2] > def->width || c[3] > def->height) return VL_ERROR_ARGUMENT;

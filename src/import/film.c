@@ -44,7 +44,7 @@ static bool read_crop(vlDict *dict, vlSceneSettings *s) {
   return import->scene->error.code == VL_OK;
 }
 
-/* The sensor, and what changes the picture and is not there yet. */
+/* The sensor, its white, its limit. */
 static bool read_sensor(vlDict *dict) {
   vlImport *import = dict->import;
   const char *sensor = "cie1931";
@@ -60,23 +60,24 @@ static bool read_sensor(vlDict *dict) {
                           "%s: \"whitebalance\" is %g; it must be 0 (none) or 1000 to 100000 kelvin", dict->what,
                           white);
   vl_scene_settings(import->scene)->white_balance = white;
-  if (vl_dict_double(dict, "maxcomponentvalue", &top) && isfinite(top) && top < 1e30 &&
-      !vl_import_unsupported(import, vl_dict_find(dict, "maxcomponentvalue", VL_BIT_FLOAT)->place,
-                             "%s: \"maxcomponentvalue\" is not understood yet", dict->what))
-    return false;
+  if (vl_dict_double(dict, "maxcomponentvalue", &top) && !(top >= 0.0))
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"maxcomponentvalue\" must not be negative",
+                          dict->what);
+  vl_scene_settings(import->scene)->max_component = top < 1e30 ? (float)top : INFINITY;
   return import->scene->error.code == VL_OK;
 }
 
 bool vl_import_film(vlImport *import) {
-  static const char *const kinds[] = {"rgb"};
-  static const char *const later[] = {"gbuffer", "spectral"};
+  static const char *const kinds[] = {"rgb", "gbuffer"};
+  static const char *const later[] = {"spectral"};
   vlSceneSettings *s = vl_scene_settings(import->scene);
   const vlChoice *choice = &import->film;
   char what[96];
   snprintf(what, sizeof what, "Film \"%.60s\"", choice->given ? choice->kind : "rgb");
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
-  bool known = !choice->given || strcmp(choice->kind, "rgb") == 0;
-  if (!known && !vl_import_unknown(import, choice->place, "film", choice->kind, kinds, 1, later, 2)) return false;
+  bool buffers = choice->given && strcmp(choice->kind, "gbuffer") == 0;
+  bool known = !choice->given || buffers || strcmp(choice->kind, "rgb") == 0;
+  if (!known && !vl_import_unknown(import, choice->place, "film", choice->kind, kinds, 2, later, 1)) return false;
   s->width = 1280;
   s->height = 720;
   s->space = choice->given ? choice->space : VL_SPACE_SRGB;
@@ -104,6 +105,14 @@ bool vl_import_film(vlImport *import) {
   if (!(s->exposure >= 0.0f) || !isfinite(s->exposure))
     return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: the exposure is negative or not finite", what);
   if (!read_crop(&dict, s) || !read_sensor(&dict)) return false;
+  if (buffers) { /* what its channels hold is asked for on the command line, in both spaces */
+    static const char *const systems[] = {"camera", "world"};
+    int system = 0;
+    vl_dict_choice(&dict, "coordinatesystem", systems, 2, &system);
+    vl_import_warn(import, VL_LOG_WARNING, choice->place,
+                   "film \"gbuffer\": its picture alone is written; velo render --channels adds position, normals, "
+                   "albedo, uv and more");
+  }
   if (!known) vl_dict_skip(&dict);
   return vl_dict_done(&dict);
 }

@@ -11,8 +11,7 @@ static const vlTextureKind kind_values[] = {VL_TEXTURE_CONSTANT,      VL_TEXTURE
                                             VL_TEXTURE_DIRECTION_MIX, VL_TEXTURE_BILERP, VL_TEXTURE_CHECKERBOARD,
                                             VL_TEXTURE_IMAGE,         VL_TEXTURE_FBM,    VL_TEXTURE_WRINKLED,
                                             VL_TEXTURE_WINDY,         VL_TEXTURE_MARBLE, VL_TEXTURE_DOTS};
-static const char *const later[] = {"ptex"};
-enum { KINDS = sizeof kinds / sizeof *kinds, LATER = sizeof later / sizeof *later };
+enum { KINDS = sizeof kinds / sizeof *kinds };
 
 bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource place, vlTextureId *id) {
   const vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;
@@ -203,7 +202,12 @@ static bool finish(vlImport *import, uint32_t index) {
   def.source = pending->place;
   def.space = pending->space;
   if (kind < 0) { /* a constant stands in: middle grey, or one */
-    if (!vl_import_unknown(import, pending->place, "texture", pending->kind, kinds, KINDS, later, LATER)) return false;
+    if (strcmp(pending->kind, "ptex") == 0) {
+      if (!vl_import_unsupported(import, pending->place, "texture \"ptex\": Ptex files are not supported"))
+        return false;
+    } else if (!vl_import_unknown(import, pending->place, "texture", pending->kind, kinds, KINDS, NULL, 0)) {
+      return false;
+    }
     def.spectrum_a = vl_spectrum_input(vl_spectrum_constant(0.5f));
   } else if (!read_texture(&dict, &def, pending)) {
     return false;

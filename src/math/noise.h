@@ -36,8 +36,8 @@ static inline float vl_noise_mix(float t, float a, float b) {
 
 /* In [-1, 1], 0 where all coordinates are integers; repeats every 256. Far out (1e9) and for NaN: of the point 0. */
 static inline float vl_noise(float x, float y, float z) {
-  float most = vl_max(vl_abs(x), vl_max(vl_abs(y), vl_abs(z)));
-  float on = most < 1e9f ? 1.0f : 0.0f;
+  float all = vl_abs(x) + vl_abs(y) + vl_abs(z); /* a maximum would lose a NaN */
+  float on = all < 1e9f ? 1.0f : 0.0f;
   x = on > 0.0f ? x : 0.0f, y = on > 0.0f ? y : 0.0f, z = on > 0.0f ? z : 0.0f;
   float fx = __builtin_floorf(x), fy = __builtin_floorf(y), fz = __builtin_floorf(z);
   uint32_t i = (uint32_t)(int32_t)fx, j = (uint32_t)(int32_t)fy, k = (uint32_t)(int32_t)fz;

@@ -1,6 +1,7 @@
 /* scene/scene.c: life of a scene: creating, destroying, its sticky error, its settings and its counts. */
 #include "scene/scene.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -19,6 +20,7 @@ static vlSceneSettings default_settings(void) {
       .width = 1280, /* pbrt's film */
       .height = 720,
       .exposure = 1.0f,
+      .max_component = INFINITY,
       .space = VL_SPACE_SRGB,
       .filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN),
       .sampler = VL_SAMPLER_ZSOBOL,

@@ -141,7 +141,7 @@ static const struct {
     {W "Shape \"curve\" \"float width0\" -1 \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]",
      "t.pbrt:2:1: Shape \"curve\": a width must not be negative"},
     {W "Shape \"spere\"", "t.pbrt:2:1: unknown shape \"spere\" (did you mean \"sphere\"?)"},
-    {W "Texture \"a\" \"spectrum\" \"ptex\"", "t.pbrt:2:1: texture \"ptex\" is not understood yet"},
+    {W "Texture \"a\" \"spectrum\" \"ptex\"", "t.pbrt:2:1: texture \"ptex\": Ptex files are not supported"},
     {W "Texture \"a\" \"colour\" \"constant\"",
      "t.pbrt:2:1: Texture \"a\": the type must be \"float\" or \"spectrum\", not \"colour\""},
     {W "Texture \"a\" \"float\" \"constant\"\nTexture \"a\" \"float\" \"constant\"",
@@ -150,7 +150,9 @@ static const struct {
     {W "LightSource \"infinit\"", "t.pbrt:2:1: unknown light \"infinit\" (did you mean \"infinite\"?)"},
     {W "AreaLightSource \"area\"", "t.pbrt:2:1: unknown area light \"area\""},
     {"Camera \"realistic\"\n" W, "t.pbrt:1:1: Camera \"realistic\": \"string lensfile\" is missing"},
-    {"Film \"gbuffer\"\n" W, "t.pbrt:1:1: film \"gbuffer\" is not understood yet"},
+    {"Film \"spectral\"\n" W, "t.pbrt:1:1: film \"spectral\" is not understood yet"},
+    {"Film \"gbuffer\" \"string coordinatesystem\" \"word\"\n" W,
+     "t.pbrt:1:16: Film \"gbuffer\": \"coordinatesystem\" cannot be \"word\" (did you mean \"world\"?)"},
     {"Sampler \"halto\"\n" W, "t.pbrt:1:1: unknown sampler \"halto\" (did you mean \"halton\"?)"},
     {"Integrator \"function\"\n" W, "t.pbrt:1:1: integrator \"function\" is not understood yet"},
     {"PixelFilter \"gauss\"\n" W, "t.pbrt:1:1: unknown pixel filter \"gauss\""},
@@ -321,7 +323,8 @@ static void permissive(void **state) {
   load_text(
       &l,
       "Film \"gbuffer\" \"string coordinatesystem\" \"camera\"\nCamera \"future\" \"string lensfile\" \"wide.dat\"\n"
-      "Integrator \"function\" \"integer maxdepth\" 9\nOption \"forcediffuse\" true\nSampler \"future\" \"integer n\" 1\n" W
+      "Integrator \"function\" \"integer maxdepth\" 9\nOption \"forcediffuse\" true\nSampler \"future\" \"integer n\" "
+      "1\n" W
       "Material \"subsurface\" \"rgb mfp\" [1 1 1]\nShape \"sphere\"\nShape \"heightfield\"\n"
       "LightSource \"projector\"\nTexture \"t\" \"spectrum\" \"ptex\"\nMaterial \"diffuse\" \"texture reflectance\" "
       "\"t\"\n"

@@ -78,7 +78,7 @@ for name, wanted in (("forward.pfm", 3.28 * (1 - share)), ("backward.pfm", -3.28
     data = open(name, "rb").read().split(b"\n", 3)[3]
     moved = [v for v in array.array("f", data) if abs(v) > 0.1]
     got = sum(moved) / len(moved) if moved else 0
-    assert abs(got - wanted) < 0.02, (name, got, wanted)' "$moment"
+    assert abs(got - wanted) < 0.05, (name, got, wanted)' "$moment"
 done
 expect_code 2 channels_time_word "$VELO" render a.pbrt -o no.exr --channels Z --channels-time opn
 expect_text says_how 'open, middle, close or seconds'

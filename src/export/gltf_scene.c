@@ -21,6 +21,29 @@ static vlResult write_camera(vlExport *x, const vlCameraRecord *record, const ch
   return vl_camera_write(x->context, path, &def, record, &error);
 }
 
+/* Axes that stand square but for rounding are made so: glTF's readers take transforms apart. */
+static void square_up(double m[16]) {
+  double a[3][3], dot, l;
+  for (int c = 0; c < 3; c++)
+    for (int i = 0; i < 3; i++) a[c][i] = m[4 * i + c];
+  const int order[3] = {2, 1, 0};
+  for (int k = 0; k < 3; k++) {
+    double *v = a[order[k]];
+    l = 0;
+    for (int j = 0; j < k; j++) {
+      dot = 0;
+      for (int i = 0; i < 3; i++) dot += v[i] * a[order[j]][i];
+      if (fabs(dot) > 1e-4) return;
+      for (int i = 0; i < 3; i++) v[i] -= dot * a[order[j]][i];
+    }
+    for (int i = 0; i < 3; i++) l += v[i] * v[i];
+    if (!(fabs(l - 1) < 1e-4)) return;
+    for (int i = 0; i < 3; i++) v[i] /= sqrt(l);
+  }
+  for (int c = 0; c < 3; c++)
+    for (int i = 0; i < 3; i++) m[4 * i + c] = a[c][i];
+}
+
 bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
   const vlSceneSettings *s = &x->scene->settings;
   if (s->camera_missing) return true;
@@ -34,6 +57,7 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
     memcpy(record.camera.world_from_camera, camera.world_from_camera, sizeof camera.world_from_camera);
     for (int i = 8; i < 12; i++) record.camera.world_from_camera[i] *= -1;
   }
+  if (record.camera.has_matrix) square_up(record.camera.world_from_camera);
   char name[64], path[4096];
   snprintf(name, sizeof name, ".velo-export-%ld.gltf", (long)getpid());
   if (!vl_export_path(x, name, path, sizeof path)) return false;

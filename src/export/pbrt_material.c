@@ -114,7 +114,10 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
     vl_pbrt_put_color(x, "reflectance", &color);
     vl_pbrt_put_color(x, "transmittance", &passed);
     PUT(" \"float scale\" [0.5]");
-  } else if (!p->specular.texture.index && p->specular.value == 0) {
+  } else if ((!p->specular.texture.index && p->specular.value == 0) || (!alpha.texture[0] && alpha.number > 0.3f)) {
+    /* pbrt's coats lose light when they are rough; plain diffuse is nearer */
+    if (p->specular.texture.index || p->specular.value != 0)
+      vl_export_lose(x, "rough principled dielectrics: as diffuse");
     PUT("\"diffuse\"");
     vl_pbrt_put_color(x, "reflectance", &color);
   } else {

@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# velo scene convert: glTF to glTF keeps every bit of the picture, pbrt to pbrt too, between them it stays near; what is
+# not held is told; Khronos' validator finds no error (where it is installed: npm install gltf-validator).
+. "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
+. "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/cli/common.sh"
+cd "$work" || exit 1
+write_scene scene.pbrt
+check pbrt_pbrt "$VELO" scene convert scene.pbrt again.pbrt
+check pbrt_a "$VELO" render scene.pbrt -o a.exr --quiet
+check pbrt_b "$VELO" render again.pbrt -o b.exr --quiet
+check pbrt_same "$VELO" image diff a.exr b.exr --threshold differing=0
+check pbrt_gltf "$VELO" scene convert scene.pbrt scene.gltf
+expect_text pbrt_gltf_tells 'not held: light from all around: left out (1)'
+check pbrt_glb "$VELO" scene convert scene.pbrt scene.glb
+expect_code 3 strict "$VELO" scene convert scene.pbrt strict.glb --strict
+check strict_wrote_nothing test ! -e strict.glb
+check glb_c "$VELO" render scene.glb --resolution 64x48 --spp 4 -o c.exr --quiet
+check gltf_d "$VELO" render scene.gltf --resolution 64x48 --spp 4 -o d.exr --quiet
+check gltf_glb_near "$VELO" image diff c.exr d.exr --threshold mse=0.01
+check gltf_gltf "$VELO" scene convert scene.gltf second.gltf
+check gltf_e "$VELO" render second.gltf --resolution 64x48 --spp 4 -o e.exr --quiet
+check gltf_same "$VELO" image diff d.exr e.exr --threshold maxabs=1e-5
+cat >t.mtl <<'END'
+newmtl a
+Kd 0.7 0.2 0.1
+newmtl b
+Kd 0 0 0
+Ks 0.9 0.8 0.4
+illum 3
+newmtl c
+illum 7
+Ke 1 0.5 0.2
+END
+printf 'mtllib t.mtl\nv 0 0 0 1 0.5 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nusemtl a\nf 1 2 3 4\nusemtl b\nf 4 3 2 1\nusemtl c\ns 1\nf 1 3 4\n' >t.obj
+check obj "$VELO" render t.obj --resolution 32x32 --spp 4 -o f.exr --quiet
+check obj_glb "$VELO" scene convert t.obj t.glb
+check obj_g "$VELO" render t.glb --resolution 32x32 --spp 4 -o g.exr --quiet
+check obj_near "$VELO" image diff f.exr g.exr --threshold maxabs=1e-3
+expect_code 2 unknown_kind "$VELO" scene convert t.obj t.stl
+written="scene.gltf scene.glb second.gltf t.glb"
+if [ -d "$shared/scenes/gltf" ]; then
+  for model in Box BoxTextured SimpleInstancing SpecularTest TextureTransformTest VertexColorTest Duck Cameras; do
+    for file in "$shared/scenes/gltf/$model/$model".gl*; do
+      check "to_glb_$model" "$VELO" scene convert "$file" "$model.glb"
+      check "first_$model" "$VELO" render "$file" --resolution 32x32 --spp 2 -o 1.exr --quiet
+      check "second_$model" "$VELO" render "$model.glb" --resolution 32x32 --spp 2 -o 2.exr --quiet
+      [ $model = Duck ] || check "same_$model" "$VELO" image diff 1.exr 2.exr --threshold maxabs=1e-5
+      written="$written $model.glb"
+    done
+  done
+else
+  skip models "needs ../shared/scenes/gltf"
+fi
+module=
+for place in "${GLTF_VALIDATOR:-}" "$VELO_SOURCE_DIR/build/node_modules/gltf-validator" "$(npm root -g 2>/dev/null)/gltf-validator"; do
+  [ -z "$module" ] && [ -n "$place" ] && [ -d "$place" ] && module=$place
+done
+if [ -n "$module" ] && command -v node >/dev/null; then
+  check validator node "$VELO_SOURCE_DIR/test/cli/validate_gltf.js" "$module" $written
+else
+  skip validator "needs npm's gltf-validator (npm install -g gltf-validator, or GLTF_VALIDATOR=its folder)"
+fi
+finish

@@ -30,6 +30,13 @@ static float point_density(const vlWorld *world, const vlWorldLight *light, vlVe
   return (float)vl_shape_pdf(s, light->prim, &point);
 }
 
+/* Pictures of the sky have a density that leaves out what is dim (other ways find that better): half of the light's
+ * paths go by it, half from anywhere. */
+static float sky_density(const vlWorld *world, const vlWorldLight *light, vlVec3 w) {
+  float pdf = VL_HOT(vl_infinite_pdf)(world, light, w);
+  return light->environment == VL_NONE ? pdf : 0.5f * (pdf + VL_INV_4PI);
+}
+
 float VL_HOT(vl_emission_density)(const vlWorld *world, const vlTwoWay *way, uint32_t index, vlVec3 w, float distance,
                                   const vlPoint *at) {
   const vlWorldLight *light = &world->lights.items[index];
@@ -42,7 +49,7 @@ float VL_HOT(vl_emission_density)(const vlWorld *world, const vlTwoWay *way, uin
       return c >= light->cos_end ? p * VL_INV_2PI / ((1.0f - light->cos_end) * distance * distance) : 0.0f;
     }
     case VL_WL_DISTANT: return p / world_disk(world);
-    case VL_WL_INFINITE: return p * VL_HOT(vl_infinite_pdf)(world, light, w) / world_disk(world);
+    case VL_WL_INFINITE: return p * sky_density(world, light, w) / world_disk(world);
     case VL_WL_AREA:
       return p * VL_INV_PI * point_density(world, light, at->p) *
              (world->emitted.items[light->emitted].two_sided ? 0.5f : 1.0f);
@@ -135,12 +142,19 @@ static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light, con
     VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, true, radiance);
     return vl_warp_sphere(u, v);
   }
+  if (u < 0.5f) {
+    vlVec3 w = vl_warp_sphere(2.0f * u, v);
+    VL_HOT(vl_infinite_at)(world, light, w, lambda, radiance);
+    *pdf = sky_density(world, light, w);
+    return w;
+  }
+  u = vl_min(2.0f * u - 1.0f, VL_ONE_MINUS_EPSILON);
   const vlEnvironment *env = &world->environments.items[light->environment];
   float dx, dy;
   uint32_t y = vl_find_cell(env->marginal_cdf, env->size, v, &dy);
   uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
   float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
-  *pdf = env->pdf[(size_t)y * env->size + x] * VL_INV_4PI;
+  *pdf = 0.5f * (env->pdf[(size_t)y * env->size + x] + 1.0f) * VL_INV_4PI;
   VL_HOT(vl_emitted_at)(world, e, lambda, s, t, true, radiance);
   return vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
 }

@@ -1,0 +1,197 @@
+/* The tracers that follow light both ways against the path tracer: the same mean within the errors of both, for every
+ * kind of light and of surface; the same bits whoever works; memory that runs out. */
+#include "render/shots.h"
+
+enum { SIZE = 24, FINE = 96, SEEDS = 6 };
+
+typedef enum Lamp { PANEL, PANEL_BOTH, PATCH, BALL, POINT, SPOT, DISTANT, SKY, PICTURE, LAMPS } Lamp;
+static const char *const lamp_name[LAMPS] = {"panel", "two-sided panel", "patch",       "ball",       "point",
+                                             "spot",  "distant",         "uniform sky", "picture sky"};
+
+static void add_round(Stage *s, float x, float y, float z, float radius, vlMaterialId material, vlEmissionId emission) {
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
+  set_matrix(def.group_from_shape, 1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z);
+  def.radius = radius, def.z_min = -radius, def.z_max = radius;
+  def.material = material, def.emission = emission;
+  assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
+}
+
+static vlLightDef lamp_def(vlLightKind kind, float color) {
+  vlLightDef def = vl_default_light_def(kind);
+  def.color = vl_spectrum_rgb(color, 0.8f * color, 0.6f * color);
+  const float from[3] = {0.3f, 1.4f, -2.6f}, to[3] = {-0.2f, -1, -3.2f};
+  memcpy(def.from, from, sizeof from);
+  memcpy(def.to, to, sizeof to);
+  def.cone_angle = 0.8f, def.cone_delta = 0.3f;
+  return def;
+}
+
+static void add_lamp(Stage *s, Lamp lamp) {
+  vlMaterialId dark = add_diffuse(s, 0.2f, 0.2f, 0.2f);
+  if (lamp <= PATCH) {
+    Quad q = quad_at(0.4f, 1.3f, -3, 0.3f, 0.05f, 0, 0, 0.1f, 0.3f);
+    q.material = dark, q.patch = lamp == PATCH;
+    q.emission = add_glow(s, 10, lamp == PANEL_BOTH);
+    add_quad(s, &q);
+  } else if (lamp == BALL) {
+    add_round(s, 0.3f, 1.1f, -3, 0.2f, dark, add_glow(s, 8, false));
+  } else {
+    static const vlLightKind kinds[LAMPS] = {[POINT] = VL_LIGHT_POINT,
+                                             [SPOT] = VL_LIGHT_SPOT,
+                                             [DISTANT] = VL_LIGHT_DISTANT,
+                                             [SKY] = VL_LIGHT_INFINITE,
+                                             [PICTURE] = VL_LIGHT_INFINITE};
+    vlLightDef def = lamp_def(kinds[lamp], lamp == POINT || lamp == SPOT ? 5 : lamp == DISTANT ? 2 : 0.7f);
+    float rgb[8 * 8 * 3];
+    for (int i = 0; i < 8 * 8 * 3; i++) rgb[i] = 0.2f + (i / 3 % 8 == 3 ? 4.0f : 0.0f) * (float)(i % 3);
+    if (lamp == PICTURE) def.image = make_image(s, 8, 8, rgb);
+    assert_int_not_equal(vl_scene_add_light(s->scene, &def).index, 0);
+    vl_image_destroy((vlImage *)(uintptr_t)def.image);
+  }
+}
+
+/* A floor, a back wall and things on it. rich: surfaces of several kinds, glass too; else all is diffuse. */
+static Stage room_in(vlContext *context, Lamp lamp, bool rich, uint32_t size) {
+  Stage s = stage_open(size, size);
+  if (context) {
+    vl_scene_destroy(s.scene);
+    vl_context_destroy(s.context);
+    s.context = context;
+    assert_int_equal(vl_scene_create(context, &s.scene), VL_OK);
+  }
+  s.build.color = VL_COLOR_RGB;
+  s.camera.fov = 1;
+  s.render.spp = size == FINE ? 4 : 32, s.render.max_depth = 4;
+  add_lamp(&s, lamp);
+  Quad q = quad_at(0, -1, -3, 3, 0, 0, 0, 0, -3);
+  q.material = add_diffuse(&s, 0.7f, 0.5f, 0.3f);
+  add_quad(&s, &q);
+  q = quad_at(0, 0, -4.5f, 3, 0, 0, 0, 3, 0);
+  vlMaterialDef def = vl_default_material_def(VL_MATERIAL_COATED_DIFFUSE);
+  def.u_roughness = def.v_roughness = vl_float_input(0.3f);
+  q.material = rich ? vl_scene_add_material(s.scene, &def) : add_diffuse(&s, 0.3f, 0.6f, 0.8f);
+  add_quad(&s, &q);
+  def = vl_default_material_def(VL_MATERIAL_CONDUCTOR);
+  def.u_roughness = vl_float_input(0.2f), def.v_roughness = vl_float_input(0.4f);
+  vlMaterialId metal = vl_scene_add_material(s.scene, &def), plain = add_diffuse(&s, 0.8f, 0.8f, 0.8f);
+  add_round(&s, -0.7f, -0.5f, -3.4f, 0.5f, rich ? metal : plain, (vlEmissionId){0});
+  def = vl_default_material_def(VL_MATERIAL_DIELECTRIC);
+  def.u_roughness = def.v_roughness = vl_float_input(0.35f);
+  vlMaterialId frosted = vl_scene_add_material(s.scene, &def);
+  if (rich) add_round(&s, 0.6f, -0.6f, -3, 0.4f, frosted, (vlEmissionId){0});
+  return s;
+}
+
+/* Merging blurs over two pixels: its picture is finer. */
+static Stage room(Lamp lamp, bool rich, vlTracer tracer) {
+  return room_in(NULL, lamp, rich, tracer == VL_TRACER_MERGING ? FINE : SIZE);
+}
+
+typedef struct Measure {
+  double mean[4], error[4]; /* of three bands of the picture, and the whole */
+} Measure;
+
+static Measure measure(Lamp lamp, bool rich, vlTracer tracer, double radius) {
+  double sum[4] = {0}, squares[4] = {0};
+  for (uint32_t seed = 0; seed < SEEDS; seed++) {
+    Stage s = room(lamp, rich, tracer);
+    s.render.tracer = tracer, s.render.seed = 77 * seed + (uint32_t)tracer;
+    if (radius > 0) s.camera.lens_radius = radius, s.camera.focus_distance = 2.5;
+    Picture p = stage_finish(&s);
+    assert_int_equal(p.stats.not_finite, 0);
+    for (int band = 0; band < 4; band++) {
+      double m = band < 3 ? picture_region(&p, 0, (uint32_t)band * p.height / 3, p.width,
+                                           ((uint32_t)band + 1) * p.height / 3, 1)
+                          : picture_mean(&p, 1);
+      sum[band] += m, squares[band] += m * m;
+    }
+    picture_free(&p);
+  }
+  Measure r;
+  for (int band = 0; band < 4; band++) {
+    r.mean[band] = sum[band] / SEEDS;
+    double spread = squares[band] / SEEDS - r.mean[band] * r.mean[band];
+    r.error[band] = sqrt((spread > 0 ? spread : 0) / (SEEDS - 1));
+  }
+  return r;
+}
+
+/* Five standard errors (of six values), and half a percent for what the errors' own estimates miss; merging, whose
+ * radius blurs: 2 %. */
+static void agree(const char *what, const char *how, Measure a, Measure b, double bias) {
+  for (int band = 0; band < 4; band++) {
+    double error = sqrt(a.error[band] * a.error[band] + b.error[band] * b.error[band]);
+    if (!(fabs(a.mean[band] - b.mean[band]) <= 5 * error + bias * b.mean[band]))
+      fail_msg("%s, %s, band %d: %.5f, by paths from the eye %.5f, errors %.5f %.5f", what, how, band, a.mean[band],
+               b.mean[band], a.error[band], b.error[band]);
+  }
+}
+
+static void all_lamps(void **state) {
+  (void)state;
+  for (int lamp = 0; lamp < LAMPS; lamp++)
+    for (int rich = 0; rich < 2; rich++) {
+      Measure path = measure((Lamp)lamp, rich, VL_TRACER_PATH, 0);
+      agree(lamp_name[lamp], "bidirectional", measure((Lamp)lamp, rich, VL_TRACER_BIDIRECTIONAL, 0), path, 0.005);
+      agree(lamp_name[lamp], "merging", measure((Lamp)lamp, rich, VL_TRACER_MERGING, 0), path, 0.02);
+      if (!rich) agree(lamp_name[lamp], "light paths", measure((Lamp)lamp, rich, VL_TRACER_LIGHT_PATH, 0), path, 0.005);
+    }
+}
+
+static void random_walks(void **state) {
+  (void)state;
+  for (int lamp = SKY; lamp <= SKY; lamp++)
+    agree(lamp_name[lamp], "random walk", measure((Lamp)lamp, true, VL_TRACER_RANDOM_WALK, 0),
+          measure((Lamp)lamp, true, VL_TRACER_PATH, 0), 0.005);
+}
+
+/* Through a lens, light finds the film by way of its points. */
+static void through_a_lens(void **state) {
+  (void)state;
+  Measure path = measure(PANEL, false, VL_TRACER_PATH, 0.1);
+  agree("lens", "bidirectional", measure(PANEL, false, VL_TRACER_BIDIRECTIONAL, 0.1), path, 0.005);
+  agree("lens", "light paths", measure(PANEL, false, VL_TRACER_LIGHT_PATH, 0.1), path, 0.005);
+}
+
+/* Sums are exact and photons have one order: neither threads, nor instruction sets, nor the crop show. */
+static Picture colored(uint32_t threads, vlIsa isa, vlTracer tracer, bool crop) {
+  vlContextDef def = vl_default_context_def();
+  def.threads = threads, def.isa = isa;
+  vlContext *context;
+  if (vl_context_create(&def, &context) != VL_OK) return (Picture){0, 0, NULL, {0}};
+  Stage s = room_in(context, PANEL, true, SIZE);
+  s.build.color = VL_COLOR_SPECTRAL;
+  s.film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
+  s.render.tracer = tracer, s.render.spp = 5;
+  const uint32_t part[4] = {5, 3, 17, 21};
+  if (crop) memcpy(s.film.crop, part, sizeof part);
+  return stage_finish(&s);
+}
+
+static void same_bits(void **state) {
+  (void)state;
+  static const vlTracer tracers[3] = {VL_TRACER_BIDIRECTIONAL, VL_TRACER_MERGING, VL_TRACER_SPPM};
+  for (int k = 0; k < 3; k++) {
+    Picture a = colored(1, VL_ISA_V2, tracers[k], false);
+    for (uint32_t threads = 1; threads <= 3; threads++)
+      for (int isa = VL_ISA_V2; isa <= VL_ISA_V4; isa++) {
+        Picture b = colored(threads, (vlIsa)isa, tracers[k], false);
+        if (!b.rgba) continue; /* a machine without that set */
+        assert_memory_equal(a.rgba, b.rgba, SIZE * SIZE * 4 * sizeof(float));
+        picture_free(&b);
+      }
+    Picture part = colored(2, VL_ISA_V2, tracers[k], true);
+    for (uint32_t y = 0; y < part.height; y++)
+      for (uint32_t x = 0; x < part.width; x++)
+        assert_memory_equal(&part.rgba[4 * (y * part.width + x)], &a.rgba[4 * ((y + 3) * SIZE + x + 5)],
+                            4 * sizeof(float));
+    picture_free(&part);
+    picture_free(&a);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(all_lamps), cmocka_unit_test(random_walks),
+                                     cmocka_unit_test(through_a_lens), cmocka_unit_test(same_bits)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

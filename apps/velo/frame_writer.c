@@ -10,6 +10,7 @@
 
 #include "attributes.h"
 #include "display.h"
+#include "exposure.h"
 #include "pattern.h"
 #include "report.h"
 
@@ -26,6 +27,8 @@ struct FrameWriter {
   FramePicture queue[QUEUE];
   uint32_t first, count; /* in the queue */
   bool closed;
+  bool metered;
+  float exposure;
   int status;
   uint32_t written;
 };
@@ -103,6 +106,14 @@ static vlResult write_both(FrameWriter *w, FramePicture *p, const char *path, co
   return result;
 }
 
+/* A trajectory is metered once, by its first picture: frames must not flicker. */
+static float exposure_of(FrameWriter *w, const vlImage *image) {
+  if (!w->outputs->meter) return w->outputs->exposure;
+  if (!w->metered) exposure_tell(w->exposure = exposure_meter(image));
+  w->metered = true;
+  return w->exposure;
+}
+
 static vlResult write_one(FrameWriter *w, FramePicture *p, int view, const char *path, const vlWriteDef *def,
                           vlError *error) {
   bool eight_bit = false;
@@ -111,7 +122,8 @@ static vlResult write_one(FrameWriter *w, FramePicture *p, int view, const char 
   uint32_t count = 1;
   if (eight_bit) {
     vlImage *display = NULL;
-    vlResult result = display_image(w->context, p->images[view], w->outputs->view, w->outputs->exposure, &display);
+    vlResult result =
+        display_image(w->context, p->images[view], w->outputs->view, exposure_of(w, p->images[view]), &display);
     if (result == VL_OK) result = vl_image_write(display, path, def, error);
     vl_image_destroy(display);
     return result;

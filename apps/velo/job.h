@@ -53,7 +53,9 @@ enum {
   RENDER_ENVIRONMENT,
   RENDER_ENVIRONMENT_ROTATION,
   RENDER_ENVIRONMENT_STRENGTH,
-  RENDER_GROUND
+  RENDER_GROUND,
+  RENDER_SHUTTER,
+  RENDER_SCENE
 };
 
 extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[], color_choices[],

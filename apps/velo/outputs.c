@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "display.h"
+#include "exposure.h"
 #include "options.h"
 #include "report.h"
 
@@ -89,6 +90,7 @@ static bool is_plain_file(const char *path) {
 int outputs_write(vlContext *context, const Outputs *outputs, const vlImage *image, bool progress) {
   vlWriteDef write = vl_default_write_def();
   write.half = outputs->half;
+  float exposure = outputs->meter ? exposure_meter(image) : outputs->exposure;
   vlImage *display = NULL; /* made once, when the first file wants it */
   int status = STATUS_OK;
   for (int i = 0; i < outputs->count; i++) {
@@ -98,7 +100,10 @@ int outputs_write(vlContext *context, const Outputs *outputs, const vlImage *ima
     if (progress && !is_plain_file(path)) continue;
     vlError error = {0};
     vlResult result = VL_OK;
-    if (eight_bit && !display) result = display_image(context, image, outputs->view, outputs->exposure, &display);
+    if (eight_bit && !display) {
+      result = display_image(context, image, outputs->view, exposure, &display);
+      if (outputs->meter && !progress) exposure_tell(exposure);
+    }
     const vlImage *images[3] = {eight_bit ? display : image};
     uint32_t count = 1;
     for (int k = 0; k < 2 && output_holds_layers(path); k++)

@@ -13,6 +13,7 @@ typedef struct Outputs {
   bool patterns;            /* the names are patterns (pattern.h): folders with a % are made later */
   vlView view;              /* of 8-bit files */
   float exposure;           /* EV, of 8-bit files */
+  bool meter;               /* by the picture itself, in place of exposure */
   const vlImage *layers[2]; /* what .exr files hold beside the picture; null: nothing */
 } Outputs;
 

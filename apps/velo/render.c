@@ -6,6 +6,7 @@
 #include "attributes.h"
 #include "channels.h"
 #include "commands.h"
+#include "exposure.h"
 #include "frames.h"
 #include "job.h"
 #include "lens_options.h"
@@ -127,8 +128,8 @@ static int prepare(Render *render, const Arguments *arguments) {
   outputs->count = arguments->text_count;
   outputs->half = v[RENDER_HALF].given;
   outputs->view = v[RENDER_VIEW].given ? (vlView)v[RENDER_VIEW].integer : VL_VIEW_STANDARD;
-  outputs->exposure = (float)v[RENDER_EXPOSURE].number;
-  int status = channels_choose(&render->channels, arguments);
+  int status = exposure_parse(&v[RENDER_EXPOSURE], &outputs->exposure, &outputs->meter);
+  if (status < 0) status = channels_choose(&render->channels, arguments);
   if (status < 0) status = outputs_check_names(outputs);
   if (status < 0) status = frames_check(arguments, outputs);
   if (status < 0) status = outputs_check_folders(outputs);
@@ -149,8 +150,10 @@ static int prepare(Render *render, const Arguments *arguments) {
 static int load_and_build(Render *render, const char *path, const Arguments *arguments) {
   double start = monotonic_seconds();
   vlError error = {0};
-  int status = scene_open(render->context, path, arguments, &render->scene);
+  bool lamps = false;
+  int status = scene_open(render->context, path, arguments, &render->scene, &lamps);
   if (status >= 0) return status;
+  if (lamps && !arguments->values[RENDER_EXPOSURE].given) render->outputs.meter = true;
   double loaded = monotonic_seconds();
 
   status = job_make(&render->job, render->context, render->scene, path, arguments);

@@ -26,8 +26,11 @@ const Option render_options[] = {
      0, 0, NULL},
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which camera of --camera FILE, by its name or number from 0", 0, 0,
      NULL},
-    {RENDER_AT, 0, "at", OPTION_NUMBER, "SECONDS", "glTF: the moment of its animation; default: as modelled", -1e6, 1e6,
-     NULL},
+    {RENDER_SCENE, 0, "scene", OPTION_TEXT, "NAME", "glTF: which of its scenes, by name or number from 0", 0, 0, NULL},
+    {RENDER_AT, 0, "at", OPTION_TEXT, "T[:T1]",
+     "glTF: the moment of its animation, in seconds, or two: what moves\nbetween them is blurred; default: as modelled",
+     0, 0, NULL},
+    {RENDER_SHUTTER, 0, "shutter", OPTION_NUMBER, "SECONDS", "the shutter is open so long from --at on", 0, 1e6, NULL},
     {RENDER_ANIMATION, 0, "animation", OPTION_TEXT, "NAME", "which one, by name or number from 0; default: the first",
      0, 0, NULL},
     {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: this variant of its materials", 0, 0, NULL},
@@ -84,7 +87,10 @@ const Option render_options[] = {
      1e-6, 1e12, NULL},
     {RENDER_SECONDS, 0, "seconds", OPTION_NUMBER, "T", "exposure time for --iso; default: the shutter's", 1e-12, 1e12,
      NULL},
-    {RENDER_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "brighter by 2^EV (.png .jpg .tga)", -64, 64, NULL},
+    {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV",
+     "brighter by 2^EV (.png .jpg .tga), or auto: so that the middle\nof the picture's light is 18 % grey. Default: 0; "
+     "auto for glTF\nfiles with lamps",
+     0, 0, NULL},
     {RENDER_CHANNELS, 0, "channels", OPTION_TEXT, "LIST",
      "ground truth into the .exr, 32-bit: any of Z, distance, P, N, Ng,\n"
      "uv, albedo, ray, id.object, id.material, id.instance,\n"

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
@@ -50,12 +51,35 @@ static void tell_camera(const vlSceneSettings *s) {
       c->eye[0], c->eye[1], c->eye[2], c->lookat[0], c->lookat[1], c->lookat[2], c->up[0], c->up[1], c->up[2], d);
 }
 
-int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene) {
+/* --at T, --at T0:T1, --shutter S. */
+static int choose_times(const OptionValue *v, vlLoadDef *load) {
+  const OptionValue *at = &v[RENDER_AT], *shutter = &v[RENDER_SHUTTER];
+  if (shutter->given && !at->given) return report_usage("--shutter goes with --at SECONDS");
+  if (!at->given) return -1;
+  char *end;
+  load->time = strtod(at->text, &end);
+  bool ok = end != at->text && fabs(load->time) <= 1e6;
+  if (ok && *end == ':') {
+    const char *text = end + 1;
+    load->time_close = strtod(text, &end);
+    ok = end != text && fabs(load->time_close) <= 1e6;
+    if (ok && shutter->given) return report_usage("--at \"%s\" says already when the shutter closes", at->text);
+    if (ok && !(load->time_close >= load->time))
+      return report_usage("--at \"%s\": the shutter cannot close before it opens", at->text);
+  }
+  if (!ok || *end) return report_usage("--at \"%s\": must be SECONDS or T0:T1, within a million", at->text);
+  if (shutter->given) load->time_close = load->time + shutter->number;
+  return -1;
+}
+
+int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene, bool *lamps) {
   const OptionValue *v = arguments->values;
   vlError error = {0};
   vlLoadDef load = vl_default_load_def();
   load.permissive = v[RENDER_PERMISSIVE].given;
-  if (v[RENDER_AT].given) load.time = v[RENDER_AT].number;
+  int status = choose_times(v, &load);
+  if (status >= 0) return status;
+  if (v[RENDER_SCENE].given) load.scene = v[RENDER_SCENE].text;
   if (v[RENDER_ANIMATION].given) load.animation = v[RENDER_ANIMATION].text;
   if (v[RENDER_VARIANT].given) load.variant = v[RENDER_VARIANT].text;
   if (scene_camera_is_own(path, arguments)) load.camera = v[RENDER_CAMERA].text;
@@ -67,6 +91,9 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   vlSceneSettings *settings = vl_scene_settings(*scene);
   bool camera = settings->camera_missing && (!v[RENDER_CAMERA].given || load.camera);
   settings->camera_missing = camera; /* another file has it */
+  vlSceneInfo info;
+  vl_scene_info(*scene, &info);
+  *lamps = info.lights > 0 && (ends_with(path, ".gltf") || ends_with(path, ".glb"));
   if (v[RENDER_RESOLUTION].given) {
     complete.width = (uint32_t)v[RENDER_RESOLUTION].integers[0];
     complete.height = (uint32_t)v[RENDER_RESOLUTION].integers[1];
@@ -79,7 +106,7 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   result = vl_scene_complete(*scene, &complete, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   if (camera) tell_camera(settings);
-  if (settings->camera_in_full && ends_with(path, ".gltf")) {
+  if (settings->camera_in_full) {
     vlCameraFileDef def = vl_default_camera_file_def();
     def.dialect = VL_CAMERA_DIALECT_GLTF;
     def.frame = load.camera;

@@ -495,6 +495,8 @@ typedef struct vlLoadDef {
   bool permissive; /* what is not understood yet is a warning, not an error */
   /* glTF; others pass it over */
   double time;           /* of animations, seconds; unset: as modelled */
+  double time_close;     /* the shutter closes then, later than time: what moves is blurred; unset: still */
+  const char *scene;     /* name or number from 0; null: the file's own choice */
   const char *animation; /* name or number from 0; null: the first */
   const char *variant;   /* of materials, by name; null: the file's own */
   const char *camera;    /* name or number from 0; null: the first */

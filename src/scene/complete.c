@@ -127,6 +127,7 @@ static bool frame_camera(vlScene *scene, const vlCompleteDef *def, const Box *bo
   }
   if (!(d > 0) || !isfinite(d)) d = 1;
   vlCameraDef camera = vl_default_camera_def(s->width, s->height);
+  camera.shutter_open = s->camera.shutter_open, camera.shutter_close = s->camera.shutter_close;
   camera.fov = fov;
   camera.fov_axis = VL_FOV_SMALLER;
   for (int i = 0; i < 3; i++) {

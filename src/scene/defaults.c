@@ -181,5 +181,5 @@ vlPixelFilter vl_default_pixel_filter(vlPixelFilterKind kind) {
 }
 
 vlLoadDef vl_default_load_def(void) {
-  return (vlLoadDef){.cookie = VL_COOKIE_LOAD, .time = VL_UNSET};
+  return (vlLoadDef){.cookie = VL_COOKIE_LOAD, .time = VL_UNSET, .time_close = VL_UNSET};
 }

@@ -98,7 +98,7 @@ static bool apply_weights(vlGltf *g, vlGltfNode *node, const Track *t) {
   double *values = vl_alloc_array(g->context, t->width + 1, sizeof *values);
   float *weights = vl_alloc_array(g->context, t->width + 1, sizeof *weights);
   if (values && weights) {
-    evaluate(t, g->def->time, false, values);
+    evaluate(t, g->time, false, values);
     for (size_t i = 0; i < t->width; i++) weights[i] = (float)values[i];
     vl_free(g->context, node->weights);
     node->weights = weights;
@@ -142,7 +142,7 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
     ok = vl_gltf_fail(g, at_sampler, "its output holds more values than keys");
   } else if (ok) {
     double v[4];
-    evaluate(&track, g->def->time, what == 1, v);
+    evaluate(&track, g->time, what == 1, v);
     memcpy(what == 0 ? n->translation : what == 1 ? n->rotation : n->scale, v, components[what] * sizeof *v);
     n->has_matrix = false;
   }
@@ -151,7 +151,7 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
 }
 
 bool vl_gltf_animate(vlGltf *g) {
-  if (!(g->def->time == g->def->time) || g->animation_count == 0) return true;
+  if (!(g->time == g->time) || g->animation_count == 0) return true;
   size_t chosen = SIZE_MAX;
   const char *name = g->def->animation;
   for (size_t i = 0; name && i < g->animation_count; i++) {

@@ -48,6 +48,17 @@ static bool take_orthographic(vlGltf *g, const vlGltfPlace *at, const json_t *js
   return true;
 }
 
+/* glTF's cameras: y up, looking along -z; only where one stands and looks counts, not scale. */
+static void set_pose(const vlMat4 *world, double m[16]) {
+  memcpy(m, world->m, 16 * sizeof *m);
+  for (int column = 0; column < 3; column++) {
+    double l = 0;
+    for (int row = 0; row < 3; row++) l += m[4 * row + column] * m[4 * row + column];
+    l = (column ? -1 : 1) / (l > 0 ? sqrt(l) : 1);
+    for (int row = 0; row < 3; row++) m[4 * row + column] *= l;
+  }
+}
+
 static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "cameras", camera);
   const json_t *json = vl_gltf_item(g, "cameras", camera), *lens;
@@ -62,14 +73,11 @@ static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
   if (!(flat ? take_orthographic(g, VL_GLTF_KEY(at, type), lens, &def)
              : take_perspective(g, VL_GLTF_KEY(at, type), lens, &def)))
     return false;
-  def.has_matrix = true; /* glTF's cameras: y up, looking along -z; only where it stands and looks counts, not scale */
-  memcpy(def.world_from_camera, node->world.m, sizeof def.world_from_camera);
-  for (int column = 0; column < 3; column++) {
-    double *m = def.world_from_camera, l = 0;
-    for (int row = 0; row < 3; row++) l += m[4 * row + column] * m[4 * row + column];
-    l = (column ? -1 : 1) / (l > 0 ? sqrt(l) : 1);
-    for (int row = 0; row < 3; row++) m[4 * row + column] *= l;
-  }
+  def.has_matrix = true;
+  set_pose(&node->world, def.world_from_camera);
+  if (g->moves) def.shutter_open = 0, def.shutter_close = g->close - g->open;
+  def.has_matrix_close = vl_gltf_node_moves(g, node);
+  if (def.has_matrix_close) set_pose(&node->keys[VL_GLTF_KEYS - 1], def.world_from_camera_close);
   if (!(fabs(vl_mat4_determinant3(vl_mat4_load(def.world_from_camera))) > 1e-9))
     return vl_gltf_fail(g, at, "its node's transform is singular");
   vlSceneSettings *s = vl_scene_settings(g->scene);

@@ -31,8 +31,9 @@ bool vl_gltf_morph(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const j
   if (!given) given = json_object_get(mesh, "weights");
   for (size_t i = 0; i < count; i++) {
     float weight = 0;
-    if (node && node->weights)
-      weight = i < node->weight_count ? node->weights[i] : 0.0f;
+    const float *animated = !node ? NULL : g->closing ? node->weights_close : node->weights;
+    if (animated)
+      weight = i < (g->closing ? node->weight_close_count : node->weight_count) ? animated[i] : 0.0f;
     else
       weight = (float)json_number_value(json_array_get(given, i));
     const json_t *target = json_array_get(targets, i);
@@ -51,6 +52,10 @@ bool vl_gltf_morph(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const j
 }
 
 /* ---- skins ------------------------------------------------------------------------------------------------------- */
+
+static const vlMat4 *world_of(const vlGltf *g, const vlGltfNode *node) {
+  return g->closing ? &node->keys[VL_GLTF_KEYS - 1] : &node->world;
+}
 
 /* World from mesh for each joint. */
 static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *count) {
@@ -84,7 +89,7 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
       ok = vl_gltf_fail(g, VL_GLTF_ITEM(at, "joints", i), "there is no such node");
       break;
     }
-    m[i] = g->nodes[(size_t)index].world;
+    m[i] = *world_of(g, &g->nodes[(size_t)index]);
     if (!columns) continue;
     vlMat4 bind;
     for (int k = 0; k < 16; k++) bind.m[k] = columns[16 * i + 4 * (size_t)(k % 4) + (size_t)(k / 4)];
@@ -171,7 +176,7 @@ bool vl_gltf_skin(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, con
     float *v = p->positions + 3 * i, q[3];
     double total = 0;
     for (int k = 0; k < 12; k++) total += fabs(m[k]);
-    if (!any || total == 0) memcpy(m, node->world.m, 12 * sizeof *m); /* no joint holds it */
+    if (!any || total == 0) memcpy(m, world_of(g, node)->m, 12 * sizeof *m); /* no joint holds it */
     for (int k = 0; k < 3; k++)
       q[k] = (float)(m[4 * k] * v[0] + m[4 * k + 1] * v[1] + m[4 * k + 2] * v[2] + m[4 * k + 3]);
     memcpy(v, q, sizeof q);

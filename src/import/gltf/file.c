@@ -115,10 +115,12 @@ bool vl_gltf_open(vlGltf *g) {
 
 void vl_gltf_close(vlGltf *g) {
   json_decref(g->root);
-  for (size_t i = 0; g->nodes && i < g->node_count; i++) vl_free(g->context, g->nodes[i].weights);
+  for (size_t i = 0; g->nodes && i < g->node_count; i++)
+    vl_free(g->context, g->nodes[i].weights), vl_free(g->context, g->nodes[i].weights_close);
   vl_free(g->context, g->buffers);
   vl_free(g->context, g->views);
   vl_free(g->context, g->accessors);
+  vl_free(g->context, g->keys);
   vl_free(g->context, g->nodes);
   vl_free(g->context, g->materials);
   vl_free(g->context, g->images);

@@ -59,8 +59,11 @@ typedef struct vlGltfNode {
   double matrix[16]; /* row-major */
   double translation[3], rotation[4], scale[3];
   vlMat4 world;   /* world_from_node, when has_pose */
+  vlMat4 *keys;   /* world at each of the key times; null: no time passes */
   float *weights; /* of morph targets, animated; null: the mesh's or the node's own */
   uint32_t weight_count;
+  float *weights_close; /* when the shutter closes */
+  uint32_t weight_close_count;
 } vlGltfNode;
 
 /* What meshes must know of a material, and the scene's objects made from it. */
@@ -81,6 +84,8 @@ typedef struct vlGltfImage {
   size_t size;
   const char *path;
 } vlGltfImage;
+
+enum { VL_GLTF_KEYS = 9 }; /* poses between the shutter's opening and closing, even */
 
 typedef struct vlGltfMesh {
   uint32_t uses; /* by nodes of the scene, without deformation; instances count each */
@@ -112,6 +117,11 @@ typedef struct vlGltf {
   uint64_t total;       /* bytes of all buffers */
   uint64_t spent;       /* bytes of geometry made, against total */
   int64_t variant;      /* index, -1: none */
+  double time;          /* that nodes are posed at */
+  double open, close;   /* the shutter's times */
+  bool moves;           /* close is later than open, and there are animations */
+  bool closing;         /* deformation is that of the closing shutter */
+  vlMat4 *keys;         /* of all nodes */
   uint32_t told;        /* bits of things warned of once */
   size_t shapes_made, lights_made, cameras_seen;
   double bounds_min[3], bounds_max[3];
@@ -123,7 +133,8 @@ enum {
   VL_GLTF_TOLD_MODE = 4,
   VL_GLTF_TOLD_SETS = 8,
   VL_GLTF_TOLD_FLAT = 16,
-  VL_GLTF_TOLD_SKIN = 32
+  VL_GLTF_TOLD_SKIN = 32,
+  VL_GLTF_TOLD_MOTION = 64
 };
 
 /* ---- errors and JSON (json.c): functions that return bool have said what is wrong when they return false ----------
@@ -193,8 +204,12 @@ bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes);
 /* ---- the tree (node.c, animation.c) ------------------------------------------------------------------------------ */
 
 bool vl_gltf_read_nodes(vlGltf *g);
-bool vl_gltf_animate(vlGltf *g);    /* at def->time */
+bool vl_gltf_animate(vlGltf *g);    /* at g->time */
 bool vl_gltf_pose_nodes(vlGltf *g); /* world matrices of all */
+/* Poses at def->time; and, where that is asked for, on the way to def->time_close. */
+bool vl_gltf_pose(vlGltf *g);
+/* Does the node go another way than the world between the shutter's opening and closing? */
+bool vl_gltf_node_moves(const vlGltf *g, const vlGltfNode *node);
 /* Draws the chosen scene. */
 bool vl_gltf_draw(vlGltf *g);
 vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const double s[3]);
@@ -204,9 +219,10 @@ vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const doubl
 /* A primitive as plain arrays (blocks of the context); triangles only. */
 typedef struct vlGltfPrimitive {
   size_t vertices, faces;
-  float *positions, *normals, *tangents; /* 3, 3, 4 a vertex; all but the first may be null */
-  float *colors;                         /* 4 a vertex, linear */
-  float *uvs[4];                         /* 2 a vertex, v upwards */
+  float *positions, *normals, *tangents;  /* 3, 3, 4 a vertex; all but the first may be null */
+  float *colors;                          /* 4 a vertex, linear */
+  float *uvs[4];                          /* 2 a vertex, v upwards */
+  float *positions_close, *normals_close; /* when the shutter closes; null: at rest */
   uint32_t *indices;
 } vlGltfPrimitive;
 void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p);
@@ -250,6 +266,8 @@ vlGltfTextureUse vl_gltf_use_color(void);
 vlGltfTextureUse vl_gltf_use_channel(int channel, float factor);
 bool vl_gltf_texture(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
                      const vlGltfTextureUse *use, vlTextureId *id);
+/* The bytes or the file of images[index]. */
+bool vl_gltf_read_image(vlGltf *g, size_t index);
 /* The uv set that a textureInfo names (KHR_texture_transform's wins). */
 bool vl_gltf_texture_set(vlGltf *g, const vlGltfPlace *at, const json_t *info, uint32_t *set);
 

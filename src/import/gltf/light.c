@@ -45,8 +45,3 @@ bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t index) {
   g->lights_made++;
   return true;
 }
-
-bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfPlace *at) {
-  (void)g, (void)scene, (void)at;
-  return true;
-}

@@ -101,7 +101,9 @@ static void bake(vlGltfPrimitive *p, vlMat4 pose, vlContext *context) {
   }
   vl_free(context, p->normals);
   vl_free(context, p->tangents);
-  p->normals = p->tangents = NULL;
+  vl_free(context, p->positions_close);
+  vl_free(context, p->normals_close);
+  p->normals = p->tangents = p->positions_close = p->normals_close = NULL;
 }
 
 static bool split_tangents(vlGltf *g, vlGltfPrimitive *p, float **signs) {
@@ -142,6 +144,8 @@ static bool add_shape(vlGltf *g, const vlGltfMaterial *m, vlGltfPrimitive *p, vl
   def.positions = p->positions, def.normals = p->normals, def.tangents = p->tangents, def.uvs = p->uvs[0];
   def.tangent_signs = signs, def.colors = p->colors, def.indices = p->indices;
   for (int k = 0; k < 3; k++) def.more_uvs[k] = p->uvs[k + 1];
+  def.positions_close = p->positions_close, def.normals_close = p->normals_close;
+  def.times[1] = p->positions_close ? g->close - g->open : def.times[1];
   vlShapeId id = vl_scene_adopt_shape(g->scene, &def);
   memset(p, 0, sizeof *p);
   g->shapes_made++;
@@ -171,6 +175,31 @@ static bool finish_primitive(vlGltf *g, const vlGltfPlace *at, const vlGltfMater
   return add_shape(g, m, p, group, pose);
 }
 
+/* The same vertices when the shutter closes. */
+static bool read_close(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const json_t *primitive,
+                       const vlGltfNode *node, int64_t position, bool skinned, vlGltfPrimitive *p) {
+  vlGltfPrimitive q = {0};
+  g->closing = true;
+  bool ok = read_attributes(g, at, primitive, json_object_get(primitive, "attributes"), position, &q) &&
+            vl_gltf_morph(g, at, mesh, primitive, node, &q) && (!skinned || vl_gltf_skin(g, at, primitive, node, &q));
+  g->closing = false;
+  if (ok && memcmp(p->positions, q.positions, 3 * p->vertices * sizeof(float)) != 0) {
+    p->positions_close = q.positions, p->normals_close = q.normals;
+    q.positions = q.normals = NULL;
+  }
+  vl_gltf_free_primitive(g->context, &q);
+  return ok;
+}
+
+/* A mesh that deforms cannot glow: then the glow counts. */
+static void still(vlGltf *g, const vlGltfPlace *at, vlGltfPrimitive *p) {
+  vl_free(g->context, p->positions_close);
+  vl_free(g->context, p->normals_close);
+  p->positions_close = p->normals_close = NULL;
+  if (vl_gltf_once(g, VL_GLTF_TOLD_MOTION))
+    vl_gltf_warn(g, VL_LOG_INFO, at, "gives out light, and stays as it is when the shutter opens");
+}
+
 static bool add_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const json_t *primitive,
                           const vlGltfNode *node, vlGroupId group, vlMat4 pose, vlGltfPrimitive *p) {
   const json_t *attributes;
@@ -194,9 +223,15 @@ static bool add_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, 
     vl_free(g->context, indices);
     return false;
   }
+  if (g->moves && node && mode >= 4 && (skinned || node->weights) &&
+      !read_close(g, at, mesh, primitive, node, position, skinned, p)) {
+    vl_free(g->context, indices);
+    return false;
+  }
   if (!vl_gltf_triangles(g, at, (uint32_t)mode, indices, count, p)) return false;
   if (p->faces == 0) return true;
   const vlGltfMaterial *m = vl_gltf_material(g, material, p->colors != NULL);
+  if (m && p->positions_close && m->emission.index) still(g, at, p);
   return m && finish_primitive(g, at, m, p, group, pose, skinned);
 }
 

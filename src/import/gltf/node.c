@@ -1,8 +1,10 @@
 /* import/gltf/node.c: the tree of nodes: poses, which scene is drawn, meshes and lights put in their places. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "import/gltf/gltf.h"
+#include "math/motion.h"
 
 vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const double s[3]) {
   double n = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
@@ -159,20 +161,56 @@ static bool is_flat(vlMat4 m) {
   return !(fabs(vl_mat4_determinant3(m)) > 1e-12 * l * sqrt(l)) || l == 0;
 }
 
+static bool group_mesh(vlGltf *g, size_t mesh, size_t node_index) {
+  vlGltfMesh *m = &g->meshes[mesh];
+  if (m->grouped) return true;
+  const char *name = json_string_value(json_object_get(vl_gltf_item(g, "meshes", mesh), "name"));
+  m->group = vl_scene_add_group(g->scene, name ? name : "");
+  m->grouped = true;
+  return vl_gltf_add_mesh(g, mesh, NULL, node_index, m->group, vl_mat4_identity());
+}
+
+/* On its way while the shutter is open; what deforms, too, has a group of its own. -1: no motion leads from pose to
+ * pose. */
+static int place_moving(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t node_index, vlMat4 local, bool deforms) {
+  double times[VL_GLTF_KEYS], poses[16 * VL_GLTF_KEYS];
+  for (int k = 0; k < VL_GLTF_KEYS; k++) {
+    vlMat4 m = vl_mat4_multiply(node->keys[k], local);
+    vlMotion motion;
+    times[k] = (g->close - g->open) * k / (VL_GLTF_KEYS - 1);
+    memcpy(poses + 16 * k, m.m, sizeof m.m);
+    if (k == 0 || vl_motion_make(poses + 16 * (k - 1), poses + 16 * k, &motion)) continue;
+    if (vl_gltf_once(g, VL_GLTF_TOLD_MOTION))
+      vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_ITEM(NULL, "nodes", node_index),
+                   "no motion leads from pose to pose: it stays as it is when the shutter opens");
+    return -1;
+  }
+  vlGroupId group;
+  if (deforms) {
+    group = vl_scene_add_group(g->scene, "");
+    if (!vl_gltf_add_mesh(g, mesh, node, node_index, group, vl_mat4_identity())) return 0;
+  } else {
+    if (!group_mesh(g, mesh, node_index)) return 0;
+    group = g->meshes[mesh].group;
+  }
+  vl_scene_add_moving_instance(g->scene, group, VL_GLTF_KEYS, times, poses, (vlSource){g->path, 0, 0});
+  return g->scene->error.code == VL_OK;
+}
+
 /* Meshes that stand in several places are kept once; others, and those that glow, go to the world. */
-static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t node_index, vlMat4 pose) {
+static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t node_index, vlMat4 local) {
+  vlMat4 pose = vl_mat4_multiply(node->world, local);
   vlGltfMesh *m = &g->meshes[mesh];
   bool deforms = vl_gltf_deforms(g, node), flat = is_flat(pose);
   if (flat && vl_gltf_once(g, VL_GLTF_TOLD_FLAT))
     vl_gltf_warn(g, VL_LOG_INFO, VL_GLTF_ITEM(NULL, "nodes", node_index), "its scale makes it flat");
+  if (vl_gltf_node_moves(g, node) && !flat && !json_object_get(node->json, "skin")) {
+    int done = place_moving(g, mesh, node, node_index, local, deforms);
+    if (done >= 0) return done;
+  }
   if (deforms || flat || m->glows || m->uses < 2)
     return vl_gltf_add_mesh(g, mesh, node, node_index, (vlGroupId){0}, pose);
-  if (!m->grouped) {
-    const char *name = json_string_value(json_object_get(vl_gltf_item(g, "meshes", mesh), "name"));
-    m->group = vl_scene_add_group(g->scene, name ? name : "");
-    m->grouped = true;
-    if (!vl_gltf_add_mesh(g, mesh, NULL, node_index, m->group, vl_mat4_identity())) return false;
-  }
+  if (!group_mesh(g, mesh, node_index)) return false;
   vl_scene_add_instance(g->scene, m->group, pose.m, (vlSource){g->path, 0, 0});
   return g->scene->error.code == VL_OK;
 }
@@ -192,9 +230,8 @@ static bool draw_node(vlGltf *g, size_t i) {
   size_t count;
   if (!read_instances(g, at, node->json, &poses, &count)) return false;
   bool ok = true;
-  if (!poses) ok = place_mesh(g, (size_t)mesh, node, i, node->world);
-  for (size_t k = 0; ok && k < count; k++)
-    ok = place_mesh(g, (size_t)mesh, node, i, vl_mat4_multiply(node->world, poses[k]));
+  if (!poses) ok = place_mesh(g, (size_t)mesh, node, i, vl_mat4_identity());
+  for (size_t k = 0; ok && k < count; k++) ok = place_mesh(g, (size_t)mesh, node, i, poses[k]);
   vl_free(g->context, poses);
   return ok;
 }
@@ -267,10 +304,26 @@ static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
   return true;
 }
 
+/* By name or number; the file's own choice stays where none is wanted. */
+static bool choose_scene(vlGltf *g, size_t *chosen) {
+  const char *wanted = g->def->scene;
+  char names[200] = "", *end;
+  for (size_t i = 0; i < g->scene_count; i++) {
+    const char *own = json_string_value(json_object_get(vl_gltf_item(g, "scenes", i), "name"));
+    if (own && strcmp(own, wanted) == 0) return *chosen = i, true;
+    size_t n = strlen(names);
+    if (own && n + strlen(own) + 3 < sizeof names) strcat(strcat(names, n ? ", " : ": "), own);
+  }
+  unsigned long number = strtoul(wanted, &end, 10);
+  if (end != wanted && !*end && number < g->scene_count) return *chosen = number, true;
+  return vl_gltf_fail(g, NULL, "there is no scene \"%.60s\" (%zu are there%s)", wanted, g->scene_count, names);
+}
+
 bool vl_gltf_draw(vlGltf *g) {
   int64_t index;
   if (!vl_gltf_index(g, NULL, g->root, "scene", g->scene_count, &index)) return false;
   size_t chosen = index < 0 ? 0 : (size_t)index;
+  if (g->def->scene && !choose_scene(g, &chosen)) return false;
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "scenes", chosen);
   const json_t *scene = g->scene_count ? vl_gltf_item(g, "scenes", chosen) : NULL, *roots = NULL;
   size_t root_count = 0, count = 0;

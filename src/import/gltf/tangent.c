@@ -176,6 +176,8 @@ static bool rebuild(vlGltf *g, vlGltfPrimitive *p, const uint32_t *from, size_t 
   bool ok = true;
   q.positions = gather(g->context, p->positions, 3, from, count, &ok);
   q.normals = gather(g->context, p->normals, 3, from, count, &ok);
+  q.positions_close = gather(g->context, p->positions_close, 3, from, count, &ok);
+  q.normals_close = gather(g->context, p->normals_close, 3, from, count, &ok);
   q.colors = gather(g->context, p->colors, 4, from, count, &ok);
   for (int k = 0; k < 4; k++) q.uvs[k] = gather(g->context, p->uvs[k], 2, from, count, &ok);
   if (ok && (q.indices = vl_alloc_array(g->context, 3 * p->faces, sizeof *q.indices)))
@@ -189,6 +191,23 @@ static bool rebuild(vlGltf *g, vlGltfPrimitive *p, const uint32_t *from, size_t 
   return true;
 }
 
+/* Of faces that share no vertices. */
+static float *flat_normals(vlGltf *g, const float *positions, size_t faces) {
+  float *normals = vl_alloc_zero(g->context, 3 * faces, 3 * sizeof *normals);
+  for (size_t f = 0; normals && f < faces; f++) {
+    const float *v = positions + 9 * f;
+    double a[3], b[3], n[3], l = 0;
+    for (int i = 0; i < 3; i++) a[i] = (double)v[3 + i] - v[i], b[i] = (double)v[6 + i] - v[i];
+    for (int i = 0; i < 3; i++) {
+      n[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+      l += n[i] * n[i];
+    }
+    l = sqrt(l);
+    for (int k = 0; k < 9; k++) normals[9 * f + (size_t)k] = l > 0 ? (float)(n[k % 3] / l) : (k % 3 == 2);
+  }
+  return normals;
+}
+
 /* Each face gets vertices of its own, with its normal (specification: flat normals where none are given). */
 static bool make_flat(vlGltf *g, vlGltfPrimitive *p) {
   size_t corners = 3 * p->faces;
@@ -198,19 +217,9 @@ static bool make_flat(vlGltf *g, vlGltfPrimitive *p) {
   ok = ok && rebuild(g, p, p->indices, corners, order);
   vl_free(g->context, order);
   if (!ok) return false;
-  if (!(p->normals = vl_alloc_zero(g->context, corners, 3 * sizeof(float)))) return vl_gltf_fail_memory(g);
-  for (size_t f = 0; f < p->faces; f++) {
-    const float *v = p->positions + 9 * f;
-    double a[3], b[3], n[3], l = 0;
-    for (int i = 0; i < 3; i++) a[i] = (double)v[3 + i] - v[i], b[i] = (double)v[6 + i] - v[i];
-    for (int i = 0; i < 3; i++) {
-      n[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-      l += n[i] * n[i];
-    }
-    l = sqrt(l);
-    for (int k = 0; k < 9; k++) p->normals[9 * f + (size_t)k] = l > 0 ? (float)(n[k % 3] / l) : (k % 3 == 2);
-  }
-  return true;
+  p->normals = flat_normals(g, p->positions, p->faces);
+  if (p->positions_close) p->normals_close = flat_normals(g, p->positions_close, p->faces);
+  return (p->normals && (p->normals_close || !p->positions_close)) || vl_gltf_fail_memory(g);
 }
 
 /* One vertex for each pair of vertex and group. */

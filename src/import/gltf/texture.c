@@ -16,7 +16,7 @@ vlGltfTextureUse vl_gltf_use_channel(int channel, float factor) {
   return use;
 }
 
-static bool read_image(vlGltf *g, size_t index) {
+bool vl_gltf_read_image(vlGltf *g, size_t index) {
   vlGltfImage *image = &g->images[index];
   if (image->read) return true;
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "images", index);
@@ -121,7 +121,7 @@ bool vl_gltf_texture(vlGltf *g, const vlGltfPlace *up, const json_t *object, con
   if (texture < 0) return vl_gltf_fail(g, at, "\"index\" is missing");
   if (!choose_image(g, (size_t)texture, &image)) return false;
   if (image < 0) return true;
-  if (!read_image(g, (size_t)image)) return false;
+  if (!vl_gltf_read_image(g, (size_t)image)) return false;
   vlTextureDef def = vl_default_texture_def(VL_TEXTURE_IMAGE, use->spectrum);
   char name[64];
   snprintf(name, sizeof name, "images[%d]", (int)image);

@@ -11,6 +11,8 @@ enum { POINTS, LINES, LINE_LOOP, LINE_STRIP, TRIANGLES, TRIANGLE_STRIP, TRIANGLE
 void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p) {
   vl_free(context, p->positions);
   vl_free(context, p->normals);
+  vl_free(context, p->positions_close);
+  vl_free(context, p->normals_close);
   vl_free(context, p->tangents);
   vl_free(context, p->colors);
   for (int i = 0; i < 4; i++) vl_free(context, p->uvs[i]);
@@ -204,6 +206,8 @@ bool vl_gltf_compact(vlGltf *g, vlGltfPrimitive *p) {
     for (size_t i = 0; i < 3 * p->faces; i++) p->indices[i] = to[p->indices[i]];
     move_rows(p->positions, 3, from, count);
     move_rows(p->normals, 3, from, count);
+    move_rows(p->positions_close, 3, from, count);
+    move_rows(p->normals_close, 3, from, count);
     move_rows(p->tangents, 4, from, count);
     move_rows(p->colors, 4, from, count);
     for (int k = 0; k < 4; k++) move_rows(p->uvs[k], 2, from, count);

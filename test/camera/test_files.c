@@ -287,9 +287,6 @@ static void test_pbrt(void **state) {
   vlCameraRecord r = some_camera();
   vlError error;
   if (vl_camera_write(context, path_of("s.pbrt"), NULL, &r, &error) != VL_OK) fail_msg("%s", error.message);
-  FILE *file = fopen(path_of("s.pbrt"), "a");
-  fputs("WorldBegin\n", file);
-  fclose(file);
   vlScene *scene;
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   if (vl_scene_load(scene, path_of("s.pbrt"), NULL, &error) != VL_OK) fail_msg("%s", error.message);

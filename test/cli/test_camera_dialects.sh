@@ -24,7 +24,6 @@ CODE
 for to in velo:json opencv:yaml mitsuba:xml usd:usda opengl:json vulkan:json d3d:json nerf:json blender:json pbrt:pbrt; do
   name=${to%%:*} file=out_${to%%:*}.${to##*:}
   check "convert_$name" "$VELO" camera convert cam.json "$file" --to "$name"
-  [ "$name" != pbrt ] || echo WorldBegin >>"$file"
   "$VELO" camera project --camera "$file" points.csv >"$name.csv" 2>err
   # pbrt's parameters are single precision
   check "lands_$name" python3 near.py wanted.csv "$name.csv" "$([ "$name" = pbrt ] && echo 1e-3 || echo 1e-9)"

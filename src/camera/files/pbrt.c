@@ -31,5 +31,6 @@ vlResult vl_camera_write_pbrt(const vlCameraFile *file, const vlCameraRecord *re
     vl_camera_put(text, "\n  \"float shutteropen\" [%.17g] \"float shutterclose\" [%.17g]", c.shutter_open,
                   c.shutter_close);
   vl_camera_put(text, "\nFilm \"rgb\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n", c.width, c.height);
+  vl_camera_put(text, "WorldBegin # an empty world makes this a whole scene; leave the line out of what you include\n");
   return VL_OK;
 }

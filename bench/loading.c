@@ -61,7 +61,7 @@ static vlWorld *make(const char *folder, vlContext **context, Result *r) {
   if (result == VL_OK) result = vl_scene_load(scene, path, NULL, &error);
   r->load = vl_seconds() - start;
   start = vl_seconds();
-  if (result == VL_OK) result = vl_world_build(scene, NULL, &world, &error);
+  if (result == VL_OK) result = vl_world_build_last(scene, NULL, &world, &error);
   r->build = vl_seconds() - start;
   if (result != VL_OK) fprintf(stderr, "%s\n", error.message);
   vl_scene_destroy(scene);

@@ -27,6 +27,9 @@ VL_API vlBuildDef vl_default_build_def(void);
  * world is constant: any number of threads and renders may share it. Errors: ARGUMENT, what vl_scene_result says, SCENE
  * (with the place), MISSING (pictures), IO, MEMORY; *world is null then. */
 VL_API vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **world, vlError *error);
+/* The same for a scene that no other world will be built of: its meshes go as soon as the world has them, so that both
+ * are never in memory beside the accelerator. Another build of it is ARGUMENT. */
+VL_API vlResult vl_world_build_last(vlScene *scene, const vlBuildDef *def, vlWorld **world, vlError *error);
 VL_API void vl_world_destroy(vlWorld *world);
 typedef struct vlWorldInfo {
   uint64_t triangles, primitives; /* triangles count among the primitives; those of groups once */

@@ -72,6 +72,7 @@ vlResult vl_scene_check(const vlScene *scene, const vlCheckDef *def, vlCheck **r
   if (def && def->cookie != VL_COOKIE_CHECK)
     return vl_fail(error, VL_ERROR_ARGUMENT, "the def does not come from vl_default_check_def()");
   if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
+  if (scene->meshes_dropped) return vl_fail(error, VL_ERROR_ARGUMENT, "the scene gave its meshes to a world");
   vlCheck *check = vl_alloc_zero(scene->context, 1, sizeof *check);
   if (!check) return vl_fail_memory(error);
   check->context = scene->context;

@@ -46,6 +46,7 @@ struct vlScene {
   VL_ARRAY(vlImage *) images;
   /* File names of vlSource, each once; a subset of blocks. */
   VL_ARRAY(const char *) files;
+  bool meshes_dropped; /* by vl_scene_drop_meshes: shapes have no arrays any more */
 };
 
 /* Remembers the error if it is the first; returns the code. */
@@ -56,6 +57,9 @@ vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const cha
  * null. On success they belong to the scene, on failure they are freed. The pointers of def that equal them are the
  * ones taken. */
 vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def);
+
+/* Frees what meshes point at: a world has its own. Nothing happens when memory for a list is out. */
+void vl_scene_drop_meshes(vlScene *scene);
 
 /* As vl_scene_add_texture; its picture (image, data) is the scene's already and is not copied. */
 vlTextureId vl_scene_adopt_texture(vlScene *scene, const vlTextureDef *def);

@@ -11,7 +11,8 @@ vlBuildDef vl_default_build_def(void) {
   return (vlBuildDef){.cookie = VL_COOKIE_BUILD, .color = VL_COLOR_SPECTRAL, .light_sampler = VL_LIGHT_SAMPLER_BVH};
 }
 
-vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **result, vlError *error) {
+/* giving: the same scene, when its meshes may go on the way; or null. */
+static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *def, vlWorld **result, vlError *error) {
   vl_error_clear(error);
   if (!result) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_world_build: null argument");
   *result = NULL;
@@ -21,6 +22,8 @@ vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **r
     return vl_fail(error, VL_ERROR_ARGUMENT, "vl_world_build: the def was not made by vl_default_build_def");
   vlResult r = vl_scene_result(scene, error);
   if (r != VL_OK) return r;
+  if (scene->meshes_dropped)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "the scene gave its meshes to an earlier world (vl_world_build_last)");
   double start = vl_seconds();
   vlWorld *world = vl_alloc_zero(scene->context, 1, sizeof *world);
   if (!world) return vl_fail_memory(error);
@@ -34,6 +37,7 @@ vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **r
   if (r == VL_OK) r = vl_world_add_media(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_origins(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_lights(world, scene, &local);
+  if (r == VL_OK && giving) vl_scene_drop_meshes(giving); /* before the accelerator takes its room */
   if (r == VL_OK) r = vl_accel_build(world, &local);
   world->texture_memo = NULL;
   if (r != VL_OK) {
@@ -49,6 +53,14 @@ vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **r
   world->info.bytes = vl_context_memory(world->context, NULL);
   *result = world;
   return VL_OK;
+}
+
+vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **result, vlError *error) {
+  return build(scene, NULL, def, result, error);
+}
+
+vlResult vl_world_build_last(vlScene *scene, const vlBuildDef *def, vlWorld **result, vlError *error) {
+  return build(scene, scene, def, result, error);
 }
 
 void vl_world_destroy(vlWorld *world) {

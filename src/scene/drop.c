@@ -1,0 +1,48 @@
+/* scene/drop.c: meshes leave the scene when a world has taken what it needs of them. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/scene.h"
+
+enum { ARRAYS = 13 };
+
+static int by_address(const void *a, const void *b) {
+  uintptr_t x = (uintptr_t) * (void *const *)a, y = (uintptr_t) * (void *const *)b;
+  return (x > y) - (x < y);
+}
+
+static void arrays_of(const vlShapeDef *d, const void *arrays[ARRAYS]) {
+  const void *all[ARRAYS] = {d->positions,       d->normals,       d->tangents,      d->uvs,    d->indices,
+                             d->positions_close, d->normals_close, d->tangent_signs, d->colors, d->more_uvs[0],
+                             d->more_uvs[1],     d->more_uvs[2],   d->widths};
+  memcpy(arrays, all, sizeof all);
+}
+
+static void forget(vlShapeDef *d) {
+  d->positions = d->normals = d->tangents = d->uvs = d->positions_close = d->normals_close = d->tangent_signs = NULL;
+  d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = d->widths = NULL;
+  d->indices = NULL;
+}
+
+void vl_scene_drop_meshes(vlScene *scene) {
+  size_t n = 0, kept = 0;
+  const void *arrays[ARRAYS], **all = vl_alloc_array(scene->context, scene->shapes.count * ARRAYS + 1, sizeof *all);
+  if (!all) return;
+  for (size_t i = 0; i < scene->shapes.count; i++) {
+    arrays_of(&scene->shapes.items[i], arrays);
+    for (int k = 0; k < ARRAYS; k++)
+      if (arrays[k]) all[n++] = arrays[k];
+    forget(&scene->shapes.items[i]);
+  }
+  if (n) qsort(all, n, sizeof *all, by_address);
+  for (size_t i = 0; i < scene->blocks.count; i++) {
+    void *block = scene->blocks.items[i];
+    if (n && bsearch(&block, all, n, sizeof *all, by_address))
+      vl_free(scene->context, block);
+    else
+      scene->blocks.items[kept++] = block;
+  }
+  scene->blocks.count = kept;
+  scene->meshes_dropped = true;
+  vl_free(scene->context, all);
+}

@@ -502,8 +502,9 @@ typedef struct vlLoadDef {
   const char *camera;    /* name or number from 0; null: the first */
 } vlLoadDef;
 VL_API vlLoadDef vl_default_load_def(void);
-/* Adds what a file says. The format is chosen by suffix (.pbrt, .pbrt.gz, .gltf, .glb); relative names are relative to
- * the file. Errors: SCENE, MISSING, IO, MEMORY, UNSUPPORTED (as SCENE with a clear message). def may be null. */
+/* Adds what a file says. The format is chosen by suffix (.pbrt, .gltf, .glb, .obj, .ply, .gz after pbrt, obj, ply);
+ * relative names are relative to the file. Errors: SCENE, MISSING, IO, MEMORY, UNSUPPORTED (as SCENE with a clear
+ * message). def may be null. */
 VL_API vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 
 /* What a scene that a file describes may lack: a camera, light, a ground to stand on. */

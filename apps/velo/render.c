@@ -173,7 +173,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     if (status < 0) status = frames_check_names(&render->frames, &render->outputs);
     if (status >= 0) return status;
   }
-  vlResult result = vl_world_build(render->scene, &render->job.build, &render->world, &error);
+  vlResult result = vl_world_build_last(render->scene, &render->job.build, &render->world, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   if (arguments->values[RENDER_VERBOSE].given) {
     size_t peak;

@@ -54,7 +54,7 @@ typedef struct vlFilmDef {
   /* A sample with one of X, Y, Z above this is made darker until none is: against fireflies, and biased. Default
    * infinity. */
   float max_component;
-  bool errors;          /* remember what vl_film_errors needs: three times the memory; default false */
+  bool errors; /* remember what vl_film_errors needs: three times the memory; default false */
 } vlFilmDef;
 VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);
 VL_API vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film);

@@ -72,7 +72,8 @@ static bool put_camera(vlExport *x) {
   unlink(path);
   if (r == VL_ERROR_MEMORY) return vl_export_fail(x, r, "out of memory");
   if (r == VL_OK) {
-    vl_bytes_put(x->context, &x->text, text, size);
+    const char *world = strstr(text, "WorldBegin"); /* the camera's file is a whole scene */
+    vl_bytes_put(x->context, &x->text, text, world ? (size_t)(world - text) : size);
   } else {
     vl_export_lose(x, "the camera: left out");
     PUT("Film \"rgb\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n", s->width, s->height);

@@ -33,20 +33,21 @@ static double luminance(const vlImage *image, const int rgb[3], uint32_t x, uint
 float exposure_meter(const vlImage *image) {
   const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
                       vl_image_find_channel(image, "B")};
+  int alpha = vl_image_find_channel(image, "A");
   if (rgb[0] < 0 || rgb[1] < 0 || rgb[2] < 0) return 0;
   uint32_t width = vl_image_width(image), height = vl_image_height(image);
-  double total = 0, logs = 0;
-  size_t lit = 0;
+  double total = 0, logs = 0, weights = 0;
   for (uint32_t y = 0; y < height; y++)
     for (uint32_t x = 0; x < width; x++) total += luminance(image, rgb, x, y);
   double least = 1e-3 * total / ((double)width * height);
   for (uint32_t y = 0; y < height; y++)
     for (uint32_t x = 0; x < width; x++) {
       double v = luminance(image, rgb, x, y);
-      if (v > 0 && v >= least) logs += log2(v), lit++;
+      double w = alpha < 0 ? 1 : (double)vl_image_get(image, x, y, (uint32_t)alpha);
+      if (v > 0 && v >= least && w > 0) logs += w * log2(v), weights += w;
     }
-  if (!lit) return 0;
-  double ev = round(10 * (log2(0.18) - logs / (double)lit)) / 10;
+  if (!(weights > 0)) return 0;
+  double ev = round(10 * (log2(0.18) - logs / weights)) / 10;
   return (float)(ev < -64 ? -64 : ev > 64 ? 64 : ev);
 }
 

@@ -8,7 +8,7 @@
 /* --exposure EV or auto; -1: go on, else the exit code. */
 int exposure_parse(const OptionValue *value, float *ev, bool *meter);
 /* The EV, in tenths, that makes the geometric mean of a linear picture's luminances 0.18. What is black or nearly so
- * (below a thousandth of the mean) does not count. */
+ * (below a thousandth of the mean) does not count, nor what lies behind everything (alpha 0). */
 float exposure_meter(const vlImage *image);
 void exposure_tell(float ev);
 

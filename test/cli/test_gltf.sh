@@ -39,6 +39,17 @@ expect_code 3 no_such_variant "$VELO" render square.gltf --variant red
 check moved "$VELO" render square.gltf --camera near --at 1 --resolution 32x32 --spp 1 --environment white --channels Z -o moved.exr --quiet
 check unmoved "$VELO" render square.gltf --camera near --resolution 32x32 --spp 1 --environment white --channels Z -o unmoved.exr --quiet
 expect_code 1 moved_differs "$VELO" image diff moved.exr unmoved.exr --threshold differing=0
+# Two moments: what moves is blurred. Scenes by name. Lamps are metered, unless an exposure is said.
+check blurred "$VELO" render square.gltf --camera near --at 0:1 --resolution 32x32 --spp 4 --environment white -o blurred.exr --quiet
+expect_code 2 shutter_alone "$VELO" render square.gltf --shutter 1
+expect_code 2 shutter_backwards "$VELO" render square.gltf --at 2:1
+expect_code 2 bad_moment "$VELO" render square.gltf --at noon
+check scene_0 "$VELO" render square.gltf --scene 0 --dry-run --quiet
+expect_code 3 no_such_scene "$VELO" render square.gltf --scene 1
+expect_text no_such_scene_says 'there is no scene "1" (1 are there)'
+check metered "$VELO" render plain.gltf --resolution 16x12 --spp 1 --exposure auto -o metered.png
+expect_text metered_tells 'EV, as metered'
+expect_code 2 bad_exposure "$VELO" render plain.gltf --exposure bright
 # A white surface in white surroundings cannot be seen to be brighter than they are; without light all is black.
 python3 - <<'END' && pass levels || fail levels
 import sys

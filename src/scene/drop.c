@@ -1,6 +1,9 @@
 /* scene/drop.c: meshes leave the scene when a world has taken what it needs of them. */
 #include <stdlib.h>
 #include <string.h>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #include "scene/scene.h"
 
@@ -45,4 +48,7 @@ void vl_scene_drop_meshes(vlScene *scene) {
   scene->blocks.count = kept;
   scene->meshes_dropped = true;
   vl_free(scene->context, all);
+#if defined(__GLIBC__)
+  malloc_trim(0); /* many arrays are too small to go back to the system by themselves */
+#endif
 }

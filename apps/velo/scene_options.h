@@ -6,8 +6,8 @@
 #include "options.h"
 #include "velo/velo.h"
 
-/* Loads the scene and completes it; *lamps: it is glTF and has lights of its own. -1, or the exit code when all has been
- * said. */
+/* Loads the scene and completes it; *lamps: it is glTF and has lights of its own. -1, or the exit code when all has
+ * been said. */
 int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene, bool *lamps);
 /* --camera names one of the scene's own cameras: the file is glTF, and no file has that name. */
 bool scene_camera_is_own(const char *path, const Arguments *arguments);

@@ -75,11 +75,11 @@ VL_API uint32_t vl_image_attribute_count(const vlImage *image);
 VL_API vlResult vl_image_attribute(const vlImage *image, uint32_t index, vlAttribute *attribute);
 VL_API vlResult vl_image_find_attribute(const vlImage *image, const char *name, vlAttribute *attribute);
 
-/* Reads EXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM, QOI, WebP; the content decides, not the suffix. Of an EXR: the first
- * part; the picture is its data window, and where that is not the display window both are attributes ("dataWindow",
- * "displayWindow"), which vl_image_write puts back. Broken files are VL_ERROR_SCENE, absent ones VL_ERROR_MISSING.
- * Memory is bounded by what the file can really hold: a header that promises more pixels than the file carries is
- * refused before allocating. */
+/* Reads EXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM, QOI, WebP; the content decides, not the suffix. Of an EXR: the
+ * first part; the picture is its data window, and where that is not the display window both are attributes
+ * ("dataWindow", "displayWindow"), which vl_image_write puts back. Broken files are VL_ERROR_SCENE, absent ones
+ * VL_ERROR_MISSING. Memory is bounded by what the file can really hold: a header that promises more pixels than the
+ * file carries is refused before allocating. */
 VL_API vlResult vl_image_read(vlContext *context, const char *path, vlImage **image, vlError *error);
 
 /* Of an OpenEXR file only these channels (other formats: all). They keep a type that all of them have: so ids stay

@@ -153,8 +153,28 @@ static void absorption(void **state) {
   assert_true(last < 0.35);
 }
 
+/* A clear hair met in its middle sends light on: most of it within its lobe about -wo, little back; at its edge the way
+ * is bent as glass bends it. */
+static void light_goes_through(void **state) {
+  const State *s = *state;
+  Batch *b = s->batch;
+  const float across[3] = {0.0f, 0.5f, -0.5f};
+  for (int k = 0; k < 3; k++) {
+    statRng rng = stat_rng(3);
+    double through = 0, turned = 2 * (asin((double)across[k] / 1.55) - asin((double)across[k])) + PI;
+    batch_numbers(b, BATCH, &rng);
+    for (uint32_t j = 0; j < BATCH; j++) put(b, j, 0, across[k], 0.1f, 0.1f, 0), batch_wo(b, j, 0, 0);
+    batch_sample(s->kernels, VL_BSDF_HAIR, BATCH, b);
+    for (uint32_t j = 0; j < BATCH; j++) {
+      double phi = atan2((double)b->iz[j], (double)b->iy[j]) - PI / 2;
+      through += cos(phi - turned) > 0.9 ? 1.0 / BATCH : 0;
+    }
+    if (!(through > 0.75)) fail_msg("met at %g: %g of the light goes through", (double)across[k], through);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(white_furnace), cmocka_unit_test(samples_follow_their_density),
-                                     cmocka_unit_test(absorption)};
+                                     cmocka_unit_test(absorption), cmocka_unit_test(light_goes_through)};
   return cmocka_run_group_tests(tests, setup, teardown);
 }

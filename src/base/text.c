@@ -44,6 +44,13 @@ const char *vl_nearest_name(const char *name, const char *const *names, size_t c
   return best && best_distance * 3 <= (length > 3 ? length : 3) ? best : NULL;
 }
 
+void vl_list_name(char *list, size_t size, const char *name) {
+  size_t used = strlen(list), length = strlen(name);
+  if (used + 2 + length >= size) return;
+  memcpy(list + used, used ? ", " : ": ", 2);
+  memcpy(list + used + 2, name, length + 1);
+}
+
 bool vl_ends_with(const char *text, const char *suffix) {
   size_t n = strlen(text), m = strlen(suffix);
   return n >= m && strcasecmp(text + n - m, suffix) == 0;

@@ -274,15 +274,16 @@ static bool write_files(vlExport *x) {
     if (!x->binary) json_object_set_new(buffer, "uri", json_string(name));
     vl_gltf_put(x, "buffers", buffer);
   }
-  char *text = json_dumps(x->root, x->binary ? JSON_COMPACT : JSON_INDENT(1) | JSON_PRESERVE_ORDER);
-  if (!text || x->buffer.full) {
-    free(text);
+  size_t flags = x->binary ? JSON_COMPACT : JSON_INDENT(1) | JSON_PRESERVE_ORDER;
+  size_t length = json_dumpb(x->root, NULL, 0, flags), padding = (4 - length % 4) % 4;
+  char *text = length ? vl_alloc_array(x->context, length, 1) : NULL;
+  if (!text || x->buffer.full || json_dumpb(x->root, text, length, flags) != length) {
+    vl_free(x->context, text);
     return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
   }
   bool fine;
-  size_t length = strlen(text), padding = (4 - length % 4) % 4;
   if (x->binary && (uint64_t)length + size > 0xffffff00u) {
-    free(text);
+    vl_free(x->context, text);
     return vl_export_fail(x, VL_ERROR_UNSUPPORTED, "more than 4 GB do not go into a .glb");
   }
   if (x->binary) {
@@ -302,7 +303,7 @@ static bool write_files(vlExport *x) {
   } else {
     fine = (!size || vl_export_file(x, name, x->buffer.data.items, size)) && vl_export_file(x, NULL, text, length);
   }
-  free(text);
+  vl_free(x->context, text);
   return fine;
 }
 

@@ -144,7 +144,7 @@ static exr_result_t set_strings(exr_context_t exr, const char *name, const char 
   char copy[2048];
   int count = 0;
   if (strlen(text) >= sizeof copy) return EXR_ERR_INVALID_ATTR;
-  strcpy(copy, text);
+  memcpy(copy, text, strlen(text) + 1);
   for (char *at = copy; at;) {
     char *end = strchr(at, '\n');
     if (end) *end = 0;

@@ -50,8 +50,8 @@ static bool is_blank(char c) {
 }
 
 bool vl_obj_statement(vlObj *obj, char **from, char *end) {
-  static char nothing[1];
-  obj->line_start = obj->at = obj->end = nothing;
+  obj->nothing[0] = 0;
+  obj->line_start = obj->at = obj->end = obj->nothing;
   if (*from >= end) return false;
   char *p = *from, *stop = p;
   uint32_t lines = 0;

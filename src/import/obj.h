@@ -66,6 +66,7 @@ typedef struct vlObj {
   vlScene *scene;
   const char *path;
   uint32_t line, more_lines;     /* the statement begins on; lines it goes on for */
+  char nothing[1];               /* what an empty statement points at */
   char *line_start, *at, *end;   /* of the statement */
   VL_ARRAY(float) positions;     /* 3 a vertex */
   VL_ARRAY(float) colors;        /* 3 a vertex, linear; empty where no vertex has one */

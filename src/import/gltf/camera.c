@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "import/gltf/gltf.h"
 
 enum { HEIGHT = 720, SIDE = 1280 }; /* glTF knows no pixels */
@@ -118,8 +119,7 @@ bool vl_gltf_choose_camera(vlGltf *g) {
     for (size_t i = 0; i < g->node_count; i++) {
       const char *own = json_string_value(json_object_get(g->nodes[i].json, "name"));
       if (!g->nodes[i].reached || !json_object_get(g->nodes[i].json, "camera") || !own) continue;
-      size_t n = strlen(names);
-      if (n + strlen(own) + 3 < sizeof names) strcat(strcat(names, n ? ", " : ": "), own);
+      vl_list_name(names, sizeof names, own);
     }
     return vl_gltf_fail(g, NULL, "the scene has no camera \"%.60s\" (%zu are there%s)", wanted, g->cameras_seen, names);
   }

@@ -1,5 +1,6 @@
 /* import/gltf/gltf.c: a glTF 2.0 file to a scene: the order of the steps. */
 #include "import/gltf/gltf.h"
+#include "base/text.h"
 
 #include <string.h>
 
@@ -20,8 +21,7 @@ bool vl_gltf_choose_variant(vlGltf *g) {
       g->variant = (int64_t)i;
       return true;
     }
-    size_t n = strlen(names);
-    if (n + strlen(name) + 4 < sizeof names) strcat(strcat(names, n ? ", " : ": "), name);
+    vl_list_name(names, sizeof names, name);
   }
   return vl_gltf_fail(g, NULL, "there is no variant \"%.60s\" (%zu are there%s)", g->def->variant, count, names);
 }

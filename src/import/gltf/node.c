@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "import/gltf/gltf.h"
 #include "math/motion.h"
 
@@ -311,8 +312,7 @@ static bool choose_scene(vlGltf *g, size_t *chosen) {
   for (size_t i = 0; i < g->scene_count; i++) {
     const char *own = json_string_value(json_object_get(vl_gltf_item(g, "scenes", i), "name"));
     if (own && strcmp(own, wanted) == 0) return *chosen = i, true;
-    size_t n = strlen(names);
-    if (own && n + strlen(own) + 3 < sizeof names) strcat(strcat(names, n ? ", " : ": "), own);
+    if (own) vl_list_name(names, sizeof names, own);
   }
   unsigned long number = strtoul(wanted, &end, 10);
   if (end != wanted && !*end && number < g->scene_count) return *chosen = number, true;

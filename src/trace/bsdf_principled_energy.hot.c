@@ -32,7 +32,7 @@ static const float rgb_lambda[3][3] = {{595, 615, 635}, {525, 545, 565}, {435, 4
 static float film_reflection(const vlPrincipledSlice *s, uint32_t i, int channel, float cosine, float f0) {
   float root = __builtin_sqrtf(vl_clamp(f0, 0.0f, 0.9999f));
   float n3 = (1.0f + root) / (1.0f - root), n2 = s->row[VL_P_FILM_INDEX][i], d = s->row[VL_P_FILM_NM][i];
-  float c = vl_clamp(cosine, 1e-4f, 1.0f);
+  float c = cosine > 1e-4f ? vl_min(cosine, 1.0f) : 1e-4f; /* padding may hold NaN */
   if (s->lambda[channel]) return airy(c, n2, n3, d, s->lambda[channel][i]);
   if (channel == 3) return 0.0f;
   float sum = 0.0f;

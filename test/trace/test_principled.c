@@ -8,34 +8,7 @@
 /* after those */
 #include <cmocka.h>
 
-#include "bsdf_batch.h"
-
-#define PI 3.14159265358979323846
-
-typedef struct State {
-  vlContext *context;
-  const vlBsdfKernels *kernels;
-  Batch *batch, *other;
-} State;
-
-static int setup(void **state) {
-  State *s = calloc(1, sizeof *s);
-  vlContextDef def = vl_default_context_def();
-  if (vl_context_create(&def, &s->context)) return 1;
-  s->kernels = vl_bsdf_kernels(vl_context_isa(s->context));
-  s->batch = calloc(1, sizeof *s->batch);
-  s->other = calloc(1, sizeof *s->other);
-  *state = s;
-  return 0;
-}
-static int teardown(void **state) {
-  State *s = *state;
-  vl_context_destroy(s->context);
-  free(s->batch);
-  free(s->other);
-  free(s);
-  return 0;
-}
+#include "bsdf_state.h"
 
 /* What a material says; least and most: bounds of what a white one sends back of a furnace. */
 typedef struct Look {

@@ -31,7 +31,7 @@ static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i) {
 }
 
 /* The point that a path's ray meets. */
-static vlPoint path_point(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
+vlPoint VL_HOT(vl_hit_point)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
   return VL_HOT(vl_point_at_time)(world, vl_path_time(p, i), o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
 }
@@ -42,7 +42,7 @@ static void add_glow(vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t i
   const vlWorldLight *light = &world->lights.items[index];
   const vlEmitted *e = &world->emitted.items[light->emitted];
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  vlPoint at = path_point(world, p, h, i);
+  vlPoint at = VL_HOT(vl_hit_point)(world, p, h, i);
   if (!(vl_dot(d, at.g) < 0.0f) && !e->two_sided) return;
   float lambda[4], radiance[4];
   vl_path_lambda(p, i, lambda);
@@ -77,7 +77,7 @@ uint32_t VL_HOT(vl_hit_material)(const vlWorld *world, const vlPaths *p, const v
   while (world->materials.items[material].kind == VL_MATERIAL_MIX) { /* parts come before: it ends */
     const vlWorldMaterial *m = &world->materials.items[material];
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
-    vlPoint at = path_point(world, p, h, i);
+    vlPoint at = VL_HOT(vl_hit_point)(world, p, h, i);
     float position[3] = {at.p.x, at.p.y, at.p.z};
     float amount = vl_texture_float_at(world, m->amount, at.u, at.v, position, NULL);
     uint32_t hash = vl_hash3(vl_float_bits(d.x), vl_float_bits(d.y), vl_float_bits(d.z));
@@ -86,6 +86,30 @@ uint32_t VL_HOT(vl_hit_material)(const vlWorld *world, const vlPaths *p, const v
     material = m->mix[vl_unit_float(hash) < amount ? 1 : 0];
   }
   return material;
+}
+
+void VL_HOT(vl_closest_hits)(vlTracing *t, uint32_t n, bool camera) {
+  vlPaths *p = &t->s->a;
+  vlHits *h = &t->s->hits_a;
+  const float *t_min = camera ? t->batch->t_min : NULL, *t_max = camera ? t->batch->t_max : NULL;
+  vlRays rays = {p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, p->time ? t->s->time : NULL};
+  for (uint32_t i = 0; rays.time && i < n; i++) t->s->time[i] = vl_path_time(p, i);
+  vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
+}
+
+void VL_HOT(vl_closest_beyond)(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min, const float *t_max) {
+  float time = vl_path_time(p, i);
+  vlRays ray = {p->ox + i,
+                p->oy + i,
+                p->oz + i,
+                p->dx + i,
+                p->dy + i,
+                p->dz + i,
+                &t_min,
+                t_max ? t_max + i : NULL,
+                p->time ? &time : NULL};
+  vl_accel_closest(t->world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i, h->t + i);
+  t->batch->bounce_rays++;
 }
 
 /* Interface surfaces bend nothing: the same ray goes on behind them. It keeps its start, which the weights of multiple
@@ -99,22 +123,9 @@ static void pass_interfaces(vlTracing *t, vlPaths *p, vlHits *h, uint32_t i, con
     if (h->shape[i] == VL_NONE) return;
     if (world->shapes.items[h->shape[i]].first_light != VL_NONE) add_glow(t, p, h, i);
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
-    vlPoint at = path_point(world, p, h, i);
-    /* Past the surface by what its point may be wrong, along the ray; ever forward. */
-    float margin = 2.0f * at.offset / vl_max(vl_abs(vl_dot(at.g, d)), 0.01f) + 0x1p-22f * vl_abs(at.t);
-    t_min = vl_max(at.t, t_min) + vl_max(margin, 1e-30f);
-    float time = vl_path_time(p, i);
-    vlRays ray = {p->ox + i,
-                  p->oy + i,
-                  p->oz + i,
-                  p->dx + i,
-                  p->dy + i,
-                  p->dz + i,
-                  &t_min,
-                  t_max ? t_max + i : NULL,
-                  p->time ? &time : NULL};
-    vl_accel_closest(world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i, h->t + i);
-    t->batch->bounce_rays++;
+    vlPoint at = VL_HOT(vl_hit_point)(world, p, h, i);
+    t_min = vl_past_surface(&at, d, t_min);
+    VL_HOT(vl_closest_beyond)(t, p, h, i, t_min, t_max);
   }
 }
 
@@ -122,21 +133,11 @@ static void pass_interfaces(vlTracing *t, vlPaths *p, vlHits *h, uint32_t i, con
 void VL_HOT(vl_stage_hits)(vlTracing *t, uint32_t n, bool camera) {
   vlPaths *p = &t->s->a;
   vlHits *h = &t->s->hits_a;
-  vlRays rays = {p->ox,
-                 p->oy,
-                 p->oz,
-                 p->dx,
-                 p->dy,
-                 p->dz,
-                 camera ? t->batch->t_min : NULL,
-                 camera ? t->batch->t_max : NULL,
-                 p->time ? t->s->time : NULL};
-  for (uint32_t i = 0; rays.time && i < n; i++) t->s->time[i] = vl_path_time(p, i);
-  vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
+  VL_HOT(vl_closest_hits)(t, n, camera);
   if (!camera) t->batch->bounce_rays += n;
   for (uint32_t i = 0; i < n; i++) {
     if (h->shape[i] == VL_NONE) continue;
-    if (t->world->has_interfaces) pass_interfaces(t, p, h, i, rays.t_max);
+    if (t->world->has_interfaces) pass_interfaces(t, p, h, i, camera ? t->batch->t_max : NULL);
     if (h->shape[i] != VL_NONE) h->material[i] = VL_HOT(vl_hit_material)(t->world, p, h, i);
   }
 }

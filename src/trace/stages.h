@@ -149,6 +149,10 @@ typedef struct vlTracing {
 
 /* Ids and materials of what the n rays of a meet (hits_a); camera: the first rays, with their t_min and t_max. */
 void VL_HOT(vl_stage_hits)(vlTracing *t, uint32_t n, bool camera);
+/* Ids of what the n rays of a meet (hits_a); camera: with the batch's t_min and t_max. */
+void VL_HOT(vl_closest_hits)(vlTracing *t, uint32_t n, bool camera);
+/* Lane i's ray once more, from t_min on (t_max: the batch's row, or null): into h, and counted. */
+void VL_HOT(vl_closest_beyond)(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min, const float *t_max);
 /* The material that a hit really has, where it is mixed. */
 uint32_t VL_HOT(vl_hit_material)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
 /* Adds the light that the rays of a run into: sky and glowing surfaces. */
@@ -188,6 +192,13 @@ typedef struct vlPoint {
   vlVec3 p, g, n; /* geometric, shading normal */
   float u, v, t, offset;
 } vlPoint;
+/* Past a surface by what its point may be wrong, along the ray; ever forward. */
+static inline float vl_past_surface(const vlPoint *at, vlVec3 d, float t_min) {
+  float margin = 2.0f * at->offset / vl_max(vl_abs(vl_dot(at->g, d)), 0.01f) + 0x1p-22f * vl_abs(at->t);
+  return vl_max(at->t, t_min) + vl_max(margin, 1e-30f);
+}
+/* The point that lane i's ray meets. */
+vlPoint VL_HOT(vl_hit_point)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
 vlPoint VL_HOT(vl_point_at_time)(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
                                  uint32_t instance, float t);
 static inline vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,

@@ -48,12 +48,6 @@ static inline bool vl_is_interface(const vlWorld *world, uint32_t shape) {
   return world->materials.items[world->shapes.items[shape].material].kind == VL_MATERIAL_INTERFACE;
 }
 
-/* Past a surface by what its point may be wrong, along the ray; ever forward. */
-static inline float vl_past_surface(const vlPoint *at, vlVec3 d, float t_min) {
-  float margin = 2.0f * at->offset / vl_max(vl_abs(vl_dot(at->g, d)), 0.01f) + 0x1p-22f * vl_abs(at->t);
-  return vl_max(at->t, t_min) + vl_max(margin, 1e-30f);
-}
-
 #ifdef VL_ISA_SUFFIX
 /* Lane i's light sample as shadow ray `count`, from o; value: what the scattering passes on, pdf its density. Returns
  * the next count. */

@@ -43,11 +43,6 @@ static void normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t 
 
 /* ---- travel ------------------------------------------------------------------------------------------------------ */
 
-static vlPoint met(const vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t i) {
-  return VL_HOT(vl_point_at_time)(t->world, vl_path_time(p, i), vl_lane3(p->ox, p->oy, p->oz, i),
-                                  vl_lane3(p->dx, p->dy, p->dz, i), h->shape[i], h->prim[i], h->instance[i], h->t[i]);
-}
-
 /* One lane of a, from medium to medium through interfaces, to what happens to it. Its origin stays that of its last
  * scattering, which densities of light sampling ask for. */
 static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, const float *t_min_row, const float *t_max_row) {
@@ -56,7 +51,7 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, const float *t
   vlHits *h = &t->s->hits_a;
   vlVolumeScratch *v = &t->s->volume;
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  float t_min = t_min_row ? t_min_row[i] : 0.0f, time = vl_path_time(p, i), given[4] = {0, 0, 0, 0};
+  float t_min = t_min_row ? t_min_row[i] : 0.0f, given[4] = {0, 0, 0, 0};
   vlFlight f = vl_volume_flight(t, p, &v->a, i, depth, VL_KEY_FLIGHT);
   f.first = t->s->shade.u0[i];
   uint32_t medium = v->a.medium[i], event = AT_END;
@@ -64,7 +59,7 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, const float *t
     bool hit = h->shape[i] != VL_NONE;
     bool passes = hit && vl_is_interface(world, h->shape[i]);
     vlPoint at = {.t = t_max_row ? t_max_row[i] : VL_INFINITY};
-    if (hit && (passes || medium != VL_NONE)) at = met(t, p, h, i);
+    if (hit && (passes || medium != VL_NONE)) at = VL_HOT(vl_hit_point)(world, p, h, i);
     vlFlightEnd end = VL_FLIGHT_PASSED;
     if (medium != VL_NONE)
       end = VL_HOT(vl_fly)(&world->media.items[medium], o, d, t_min, at.t, depth < t->def->max_depth, &f, given,
@@ -79,17 +74,7 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, const float *t
     }
     medium = vl_medium_beyond(&world->shapes.items[h->shape[i]], at.g, d, medium);
     t_min = vl_past_surface(&at, d, t_min);
-    vlRays ray = {p->ox + i,
-                  p->oy + i,
-                  p->oz + i,
-                  p->dx + i,
-                  p->dy + i,
-                  p->dz + i,
-                  &t_min,
-                  t_max_row ? t_max_row + i : NULL,
-                  p->time ? &time : NULL};
-    vl_accel_closest(world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i, h->t + i);
-    t->batch->bounce_rays++;
+    VL_HOT(vl_closest_beyond)(t, p, h, i, t_min, t_max_row);
   }
   store_flight(p, &v->a, i, &f);
   v->a.medium[i] = medium;
@@ -104,12 +89,9 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, const float *t
 static void travel(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlPaths *p = &s->a;
-  vlHits *h = &s->hits_a;
   bool camera = depth == 0;
   const float *t_min = camera ? t->batch->t_min : NULL, *t_max = camera ? t->batch->t_max : NULL;
-  vlRays rays = {p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, p->time ? s->time : NULL};
-  for (uint32_t i = 0; rays.time && i < n; i++) s->time[i] = vl_path_time(p, i);
-  vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
+  VL_HOT(vl_closest_hits)(t, n, camera);
   if (!camera) t->batch->bounce_rays += n;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_BOUNCE + depth * VL_DIM_STRIDE + VL_DIM_FLIGHT,
                      s->shade.u0);
@@ -154,7 +136,7 @@ static void add_glow(vlTracing *t, uint32_t i) {
   const vlWorldLight *light = &world->lights.items[index];
   const vlEmitted *e = &world->emitted.items[light->emitted];
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  vlPoint at = met(t, p, h, i);
+  vlPoint at = VL_HOT(vl_hit_point)(world, p, h, i);
   if (!(vl_dot(d, at.g) < 0.0f) && !e->two_sided) return;
   float lambda[4], radiance[4], pdf = 0.0f;
   vl_path_lambda(p, i, lambda);

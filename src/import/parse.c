@@ -103,7 +103,7 @@ static bool unknown_directive(vlParserFile *file, const vlToken *token) {
   return vl_parse_fail(file, vl_parse_place(file, token), "unknown directive %s", vl_parse_show(token).text);
 }
 
-static bool follow(vlParserFile *file, const vlToken *at, const char *name);
+static bool follow(vlParserFile *file, const vlToken *at, const char *name, bool included);
 
 static bool send(vlParserFile *file, const vlStatement *statement) {
   return file->parser->target->statement(file->parser->target->user, statement);
@@ -182,9 +182,9 @@ static bool read_import(vlParserFile *file, const Keyword *k, const vlToken *at,
   vlToken where = vl_parse_peek(file);
   const char *name;
   if (!take_string(file, k->name, "a file name", &name)) return false;
-  if (k->form == INCLUDE) return follow(file, &where, name);
+  if (k->form == INCLUDE) return follow(file, &where, name, true);
   (void)at;
-  if (!send(file, s) || !follow(file, &where, name)) return false;
+  if (!send(file, s) || !follow(file, &where, name, false)) return false;
   s->directive = VL_DIR_IMPORT_END;
   return send(file, s);
 }
@@ -277,9 +277,10 @@ bool vl_parse_find_file(const char *including, const char *first, const char *na
 }
 
 /* Reads and parses one file; `at` is the token that names it, in `parent`, or null for the first. */
-static bool parse_path(vlParser *parser, const vlParserFile *parent, vlSource at, const char *path) {
+static bool parse_path(vlParser *parser, vlParserFile *parent, vlSource at, const char *path, bool included) {
   struct stat info;
-  vlParserFile file = {.parser = parser, .parent = parent, .path = path, .depth = parent ? parent->depth + 1 : 0};
+  vlParserFile file = {.parser = parser, .parent = parent, .included = included, .path = path};
+  file.depth = parent ? parent->depth + 1 : 0;
   const vlParseTarget *target = parser->target;
   if (stat(path, &info) == 0) {
     file.device = info.st_dev;
@@ -308,17 +309,17 @@ static bool parse_path(vlParser *parser, const vlParserFile *parent, vlSource at
   return fine;
 }
 
-static bool follow(vlParserFile *file, const vlToken *at, const char *name) {
+static bool follow(vlParserFile *file, const vlToken *at, const char *name, bool included) {
   vlSource place = vl_parse_place(file, at);
   char path[MAX_PATH];
   if (!vl_parse_find_file(file->path, file->parser->first, name, path, sizeof path))
     return vl_parse_fail(file, place, "file name too long");
-  return parse_path(file->parser, file, place, path);
+  return parse_path(file->parser, file, place, path, included);
 }
 
 bool vl_parse_file(vlContext *context, const char *path, const vlParseTarget *target) {
   vlParser parser = {.context = context, .target = target, .first = path};
-  return parse_path(&parser, NULL, (vlSource){0}, path);
+  return parse_path(&parser, NULL, (vlSource){0}, path, false);
 }
 
 bool vl_parse_memory(vlContext *context, const char *data, size_t size, const char *name, const vlParseTarget *target) {

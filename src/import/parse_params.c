@@ -223,6 +223,10 @@ bool vl_parse_params(vlParserFile *file, vlParamList *params) {
   for (;;) {
     vlToken token = vl_parse_peek(file);
     if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_place(file, &token), "%s", token.message);
+    if (token.kind == VL_TOKEN_END && file->included && vl_parse_peek(file->parent).kind == VL_TOKEN_STRING) {
+      file = file->parent;
+      continue;
+    }
     if (token.kind != VL_TOKEN_STRING) return true;
     vl_parse_take(file);
     vlParam *param = vl_alloc_zero(context, 1, sizeof *param);

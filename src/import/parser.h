@@ -17,7 +17,8 @@ typedef struct vlParser {
 
 typedef struct vlParserFile {
   vlParser *parser;
-  const struct vlParserFile *parent;
+  struct vlParserFile *parent;
+  bool included; /* by Include: a list of parameters may go on in the parent */
   const char *path;
   dev_t device;
   ino_t inode;
@@ -40,7 +41,7 @@ bool vl_parse_fail_memory(const vlParserFile *file);
 vlToken vl_parse_peek(vlParserFile *file);
 vlToken vl_parse_take(vlParserFile *file); /* the end stays */
 bool vl_parse_is_word(const vlToken *token, const char *word);
-/* All that follow a directive. */
+/* All that follow a directive; past the end of an included file also those that stand after its Include. */
 bool vl_parse_params(vlParserFile *file, vlParamList *params);
 
 #endif

@@ -95,6 +95,28 @@ static void includes(void **state) {
   end_load(&l);
 }
 
+/* As scenes of pbrt-v4 have it: a file ends within a list of parameters, which goes on where it was included. */
+static void lists_across_files(void **state) {
+  (void)state;
+  Loaded l;
+  write_file("main.pbrt", "WorldBegin\nInclude \"parts/a.pbrt\"\n \"float zmin\" -1\nShape \"disk\"");
+  write_file("parts/a.pbrt", "Translate 2 0 0\nInclude \"c.pbrt\" \"float zmax\" 3 # its end\n");
+  write_file("parts/c.pbrt", "Shape \"sphere\" \"float radius\" 4");
+  file_fine(&l, "main.pbrt");
+  const vlShapeDef *s = l.scene->shapes.items;
+  assert_int_equal(l.scene->shapes.count, 2);
+  assert_near(s[0].radius, 4, 0);
+  assert_near(s[0].z_max, 3, 0);
+  assert_near(s[0].z_min, -1, 0);
+  assert_int_equal(s[1].kind, VL_SHAPE_DISK);
+  end_load(&l);
+  write_file("main.pbrt", "WorldBegin\nInclude \"parts/a.pbrt\"\n \"float zmni\" -1");
+  file_error("main.pbrt", VL_ERROR_SCENE,
+             "%/main.pbrt:3:2: Shape \"sphere\": unknown parameter \"zmni\" (did you mean \"zmin\"?)");
+  write_file("main.pbrt", "WorldBegin\nImport \"parts/c.pbrt\"\n \"float zmin\" -1"); /* a world of its own */
+  file_error("main.pbrt", VL_ERROR_SCENE, "%/main.pbrt:3:2: expected a directive, found \"float zmin\"");
+}
+
 static void mistakes_in_parts(void **state) {
   (void)state;
   write_file("m.pbrt", "WorldBegin\n\n  Include \"parts/bad.pbrt\"\n");
@@ -220,9 +242,10 @@ static void spectra(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(includes), cmocka_unit_test(mistakes_in_parts),
-      cmocka_unit_test(circles),  cmocka_unit_test(missing),
-      cmocka_unit_test(packed),   cmocka_unit_test(spectra),
+      cmocka_unit_test(includes),          cmocka_unit_test(lists_across_files),
+      cmocka_unit_test(mistakes_in_parts), cmocka_unit_test(circles),
+      cmocka_unit_test(missing),           cmocka_unit_test(packed),
+      cmocka_unit_test(spectra),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

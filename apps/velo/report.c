@@ -161,7 +161,8 @@ void report_note(const char *format, ...) {
 
 void report_log(void *user, vlLogLevel level, const vlError *where, const char *message) {
   (void)user;
-  if (level >= VL_LOG_INFO && state.verbosity != REPORT_VERBOSE) return;
-  static const char *const kinds[] = {"error", "warning", "info", "debug"};
+  if (level == VL_LOG_INFO && state.verbosity == REPORT_QUIET) return;
+  if (level >= VL_LOG_DEBUG && state.verbosity != REPORT_VERBOSE) return;
+  static const char *const kinds[] = {"error", "warning", "note", "debug"};
   say(kinds[level <= VL_LOG_DEBUG ? level : VL_LOG_DEBUG], 0, where, NULL, message);
 }

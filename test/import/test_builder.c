@@ -513,6 +513,11 @@ static void picture_settings(void **state) {
   assert_int_equal(s->sampler_seed, 3);
   assert_non_null(strstr(l.log, "info t.pbrt:3:1: sampler \"paddedsobol\""));
   end_load(&l);
+  load_fine(&l, W
+            "Material \"coateddiffuse\" \"float roughness\" 0.001\nShape \"sphere\"\n"
+            "Material \"coateddiffuse\" \"float roughness\" 0.1\nShape \"sphere\"");
+  assert_non_null(strstr(l.log, ": 1 rough coat: pbrt-v4 shows such 2 to 8 %"));
+  end_load(&l);
   const struct {
     const char *name;
     vlSamplerKind kind;

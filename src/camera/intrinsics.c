@@ -47,7 +47,7 @@ static vlResult check_all(const vlCameraDef *d, vlError *error) {
     double value;
     bool positive;
   } values[] = {
-      {"fov", d->fov, true},
+      {"fov", d->fov, false},
       {"view distance d", d->view_distance, true},
       {"zoom", d->zoom, true},
       {"pixel size s", d->pixel_size, true},
@@ -67,6 +67,9 @@ static vlResult check_all(const vlCameraDef *d, vlError *error) {
     vlResult result = check(values[i].name, values[i].value, values[i].positive, error);
     if (result != VL_OK) return result;
   }
+  if (d->fov <= 0.0)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: fov is %g radians (%g degrees); it must be above zero", d->fov,
+                   d->fov * 180.0 / pi);
   if (d->fov > 2.0 * pi)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: fov is %g radians (%g degrees); all round is 360 degrees", d->fov,
                    d->fov * 180.0 / pi);

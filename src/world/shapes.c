@@ -240,21 +240,41 @@ static void set_group_bounds(const vlWorld *world, vlWorldGroup *group) {
     shape_bounds(&world->shapes.items[group->shapes[i]], group->low, group->high);
 }
 
-static void set_world_bounds(vlWorld *world) {
+static void instance_bounds(const vlWorld *world, const vlWorldInstance *instance, float low[3], float high[3]) {
+  const float *a = world->groups.items[instance->group].low, *b = world->groups.items[instance->group].high;
+  for (uint32_t key = 0; key == 0 || key < instance->keys; key++) {
+    const float *m = instance->keys ? instance->path + 12 * (size_t)key : instance->from_group;
+    for (int c = 0; a[0] <= b[0] && c < 8; c++) {
+      float p[3] = {c & 1 ? a[0] : b[0], c & 2 ? a[1] : b[1], c & 4 ? a[2] : b[2]}, q[3];
+      for (int i = 0; i < 3; i++) q[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+      grow_bounds(low, high, q);
+    }
+  }
+}
+
+/* Rays can be followed to 1e18. */
+static vlResult check_reach(const float low[3], const float high[3], const vlSource *source, vlError *error) {
+  for (int i = 0; i < 3; i++)
+    if (low[i] <= high[i] && !(low[i] > -1e18f && high[i] < 1e18f))
+      return vl_fail_at(error, VL_ERROR_SCENE, source->file, source->line, source->column,
+                        "the shape reaches from %g to %g: rays can be followed to 1e18 at most", (double)low[i],
+                        (double)high[i]);
+  return VL_OK;
+}
+
+static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *error) {
   float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   const vlWorldGroup *root = &world->groups.items[0];
-  for (uint32_t i = 0; i < root->count; i++) shape_bounds(&world->shapes.items[root->shapes[i]], low, high);
-  for (size_t k = 0; k < world->instances.count; k++) {
-    const vlWorldInstance *instance = &world->instances.items[k];
-    const float *a = world->groups.items[instance->group].low, *b = world->groups.items[instance->group].high;
-    for (uint32_t key = 0; key == 0 || key < instance->keys; key++) {
-      const float *m = instance->keys ? instance->path + 12 * (size_t)key : instance->from_group;
-      for (int c = 0; a[0] <= b[0] && c < 8; c++) {
-        float p[3] = {c & 1 ? a[0] : b[0], c & 2 ? a[1] : b[1], c & 4 ? a[2] : b[2]}, q[3];
-        for (int i = 0; i < 3; i++) q[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
-        grow_bounds(low, high, q);
-      }
-    }
+  for (uint32_t i = 0; i < root->count; i++) {
+    shape_bounds(&world->shapes.items[root->shapes[i]], low, high);
+    vlResult r = check_reach(low, high, &scene->shapes.items[root->shapes[i]].source, error);
+    if (r != VL_OK) return r;
+  }
+  for (size_t i = 0, k = 0; k < world->instances.count; i++) {
+    if (world->groups.items[scene->instances.items[i].group.index].count == 0) continue;
+    instance_bounds(world, &world->instances.items[k++], low, high);
+    vlResult r = check_reach(low, high, &scene->instances.items[i].source, error);
+    if (r != VL_OK) return r;
   }
   for (int i = 0; i < 3; i++) {
     if (low[i] > high[i]) low[i] = high[i] = 0;
@@ -263,6 +283,7 @@ static void set_world_bounds(vlWorld *world) {
   }
   float d[3] = {high[0] - world->center[0], high[1] - world->center[1], high[2] - world->center[2]};
   world->radius = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  return VL_OK;
 }
 
 static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *error) {
@@ -318,11 +339,7 @@ vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *erro
   }
   for (size_t k = 0; k < group_count; k++) set_group_bounds(world, &world->groups.items[k]);
   vlResult r = add_instances(world, scene, error);
-  if (r == VL_OK) set_world_bounds(world);
-  for (int i = 0; r == VL_OK && i < 3; i++)
-    if (!(world->bounds_min[i] > -1e18f && world->bounds_max[i] < 1e18f))
-      r = vl_fail(error, VL_ERROR_SCENE, "the scene reaches from %g to %g: rays can be followed to 1e18 at most",
-                  (double)world->bounds_min[i], (double)world->bounds_max[i]);
+  if (r == VL_OK) r = set_world_bounds(world, scene, error);
   world->info.instances = world->instances.count;
   return r;
 }

@@ -454,7 +454,7 @@ static void too_far(void **state) {
   vlWorld *world;
   vlError error;
   assert_int_equal(vl_world_build(l.scene, NULL, &world, &error), VL_ERROR_SCENE);
-  assert_string_equal(error.message, "the scene reaches from 0 to 1e+29: rays can be followed to 1e18 at most");
+  assert_string_equal(error.message, "the shape reaches from 0 to 1e+29: rays can be followed to 1e18 at most");
   end_load(&l);
   free(g);
 }

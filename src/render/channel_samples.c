@@ -9,35 +9,8 @@
 
 #include "render/channel_pass.h"
 
-enum Row {
-  FILM_U,
-  FILM_V,
-  FILM_X,
-  FILM_Y,
-  WEIGHT,
-  TIME,
-  LENS_U,
-  LENS_V,
-  OX,
-  OY,
-  OZ,
-  DX,
-  DY,
-  DZ,
-  T_MIN,
-  T_MAX,
-  RAY_TIME,
-  VALID,
-  RAY_WEIGHT,
-  PIXEL_X,
-  PIXEL_Y,
-  INDEX,
-  OBJECT,
-  MATERIAL,
-  INSTANCE,
-  DISTANCE,
-  ROWS
-};
+/* After those of the film's samples. */
+enum Row { OBJECT = VL_FILM_ROWS, MATERIAL, INSTANCE, DISTANCE, ROWS };
 _Static_assert((int)ROWS <= (int)VL_CHANNEL_ROWS, "rows are shared");
 
 /* ---- tallies ----------------------------------------------------------------------------------------------------- */
@@ -86,7 +59,7 @@ typedef struct Count {
 } Count;
 
 static void add_choice(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t i, int64_t weight) {
-  float x = vl_channel_row(w, FILM_X)[i], y = vl_channel_row(w, FILM_Y)[i];
+  float x = vl_channel_row(w, VL_FILM_X)[i], y = vl_channel_row(w, VL_FILM_Y)[i];
   float off = (x - 0.5f) * (x - 0.5f) + (y - 0.5f) * (y - 0.5f);
   if (p->def->mode == VL_CHANNEL_MODE_NEAREST) {
     float t = vl_channel_row(w, DISTANCE)[i], z = INFINITY;
@@ -94,7 +67,8 @@ static void add_choice(const vlChannelPass *p, vlChannelWorker *w, Count *c, uin
       const double *m = p->camera.camera_from_world;
       double q[3];
       for (uint32_t k = 0; k < 3; k++)
-        q[k] = (double)vl_channel_row(w, OX + k)[i] + (double)t * (double)vl_channel_row(w, DX + k)[i];
+        q[k] = (double)vl_channel_row(w, VL_FILM_RAY + k)[i] +
+               (double)t * (double)vl_channel_row(w, VL_FILM_RAY + 3 + k)[i];
       z = (float)(m[8] * q[0] + m[9] * q[1] + m[10] * q[2] + m[11]);
     }
     if (!(z < c->nearest) && !(z == c->nearest && off < c->off)) return;
@@ -157,64 +131,48 @@ static void end_pixel(const vlChannelPass *p, vlChannelWorker *w, const Count *c
 
 static void flush(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t n) {
   if (n == 0) return;
-  float *r[ROWS];
-  for (uint32_t i = 0; i < ROWS; i++) r[i] = vl_channel_row(w, i);
-  int32_t *px = (int32_t *)(void *)r[PIXEL_X], *py = (int32_t *)(void *)r[PIXEL_Y];
-  uint32_t *index = (uint32_t *)(void *)r[INDEX];
-  for (uint32_t i = n; i < VL_PAD(n); i++) px[i] = px[n - 1], py[i] = py[n - 1], index[i] = index[n - 1];
-  vlCameraRays rays = {.ox = r[OX],
-                       .oy = r[OY],
-                       .oz = r[OZ],
-                       .dx = r[DX],
-                       .dy = r[DY],
-                       .dz = r[DZ],
-                       .t_min = r[T_MIN],
-                       .t_max = r[T_MAX],
-                       .time = r[RAY_TIME],
-                       .valid = r[VALID],
-                       .weight = r[RAY_WEIGHT]};
+  vlFilmRayRows r = vl_film_ray_rows(w->rows);
+  for (uint32_t i = n; i < VL_PAD(n); i++) r.px[i] = r.px[n - 1], r.py[i] = r.py[n - 1], r.index[i] = r.index[n - 1];
   if (!c->rays->lens)
-    for (uint32_t i = 0; i < VL_PAD(n); i++) r[LENS_U][i] = r[LENS_V][i] = 0.5f;
-  vlFilmRayRows rows = {px,        py,        index,   r[FILM_U], r[FILM_V], r[FILM_X],
-                        r[FILM_Y], r[WEIGHT], r[TIME], r[LENS_U], r[LENS_V], rays};
-  vl_film_rays_make(c->rays, n, &rows);
+    for (uint32_t i = 0; i < VL_PAD(n); i++) r.lens_u[i] = r.lens_v[i] = 0.5f;
+  vl_film_rays_make(c->rays, n, &r);
   bool depths = !c->matte && p->def->mode == VL_CHANNEL_MODE_NEAREST;
   vlTruthHits hits = {.n = n,
-                      .ox = r[OX],
-                      .oy = r[OY],
-                      .oz = r[OZ],
-                      .dx = r[DX],
-                      .dy = r[DY],
-                      .dz = r[DZ],
-                      .t_min = r[T_MIN],
-                      .t_max = r[T_MAX],
-                      .time = c->rays->moves ? r[RAY_TIME] : NULL,
-                      .object = (uint32_t *)(void *)r[OBJECT],
-                      .material = (uint32_t *)(void *)r[MATERIAL],
-                      .instance = (uint32_t *)(void *)r[INSTANCE],
-                      .distance = depths ? r[DISTANCE] : NULL};
+                      .ox = r.rays.ox,
+                      .oy = r.rays.oy,
+                      .oz = r.rays.oz,
+                      .dx = r.rays.dx,
+                      .dy = r.rays.dy,
+                      .dz = r.rays.dz,
+                      .t_min = r.rays.t_min,
+                      .t_max = r.rays.t_max,
+                      .time = c->rays->moves ? r.rays.time : NULL,
+                      .object = (uint32_t *)(void *)vl_channel_row(w, OBJECT),
+                      .material = (uint32_t *)(void *)vl_channel_row(w, MATERIAL),
+                      .instance = (uint32_t *)(void *)vl_channel_row(w, INSTANCE),
+                      .distance = depths ? vl_channel_row(w, DISTANCE) : NULL};
   p->truth_kernels->hits(p->world, &p->truth, w->scratch, &hits);
   for (uint32_t i = 0; i < n; i++) {
-    if (index[i] == 0) begin_pixel(w, c);
+    if (r.index[i] == 0) begin_pixel(w, c);
     /* As the film adds them; what the negative lobes of a filter take away is nobody's. */
-    int64_t weight = r[WEIGHT][i] > 0.0f ? (int64_t)((double)r[WEIGHT][i] * 0x1p24 + 0.5) : 0;
+    int64_t weight = r.weight[i] > 0.0f ? (int64_t)((double)r.weight[i] * 0x1p24 + 0.5) : 0;
     c->total += weight;
     if (c->matte)
       add_matte(p, w, i, weight);
     else
       add_choice(p, w, c, i, weight);
-    if (index[i] == p->spp - 1) end_pixel(p, w, c, (uint32_t)px[i], (uint32_t)py[i]);
+    if (r.index[i] == p->spp - 1) end_pixel(p, w, c, (uint32_t)r.px[i], (uint32_t)r.py[i]);
   }
 }
 
 static void count(const vlChannelPass *p, vlChannelWorker *w, const vlFilmRays *rays, bool matte, uint32_t tile) {
-  int32_t *px = (int32_t *)(void *)vl_channel_row(w, PIXEL_X), *py = (int32_t *)(void *)vl_channel_row(w, PIXEL_Y);
-  uint32_t *index = (uint32_t *)(void *)vl_channel_row(w, INDEX), n = 0, x, y;
+  vlFilmRayRows rows = vl_film_ray_rows(w->rows);
+  uint32_t n = 0, x, y;
   Count c = {.rays = rays, .matte = matte};
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
     for (uint32_t s = 0; s < p->spp; s++) {
-      px[n] = (int32_t)x, py[n] = (int32_t)y, index[n] = s;
+      rows.px[n] = (int32_t)x, rows.py[n] = (int32_t)y, rows.index[n] = s;
       if (++n < VL_BATCH) continue;
       flush(p, w, &c, n);
       n = 0;

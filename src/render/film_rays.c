@@ -3,6 +3,37 @@
 
 #include "trace/trace.h"
 
+static float *row(float *rows, int i) {
+  return rows + (size_t)i * VL_ROW_SIZE;
+}
+
+vlFilmRayRows vl_film_ray_rows(float *rows) {
+  float *ray[11];
+  for (int i = 0; i < 11; i++) ray[i] = row(rows, VL_FILM_RAY + i);
+  return (vlFilmRayRows){.px = (int32_t *)(void *)row(rows, VL_FILM_PIXEL_X),
+                         .py = (int32_t *)(void *)row(rows, VL_FILM_PIXEL_Y),
+                         .index = (uint32_t *)(void *)row(rows, VL_FILM_INDEX),
+                         .film_u = row(rows, VL_FILM_U),
+                         .film_v = row(rows, VL_FILM_V),
+                         .film_x = row(rows, VL_FILM_X),
+                         .film_y = row(rows, VL_FILM_Y),
+                         .weight = row(rows, VL_FILM_WEIGHT),
+                         .time = row(rows, VL_FILM_TIME),
+                         .lens_u = row(rows, VL_FILM_LENS_U),
+                         .lens_v = row(rows, VL_FILM_LENS_V),
+                         .rays = {.ox = ray[0],
+                                  .oy = ray[1],
+                                  .oz = ray[2],
+                                  .dx = ray[3],
+                                  .dy = ray[4],
+                                  .dz = ray[5],
+                                  .t_min = ray[6],
+                                  .t_max = ray[7],
+                                  .time = ray[8],
+                                  .valid = ray[9],
+                                  .weight = ray[10]}};
+}
+
 void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTable *filter, const vlSampler *sampler,
                        vlIsa isa) {
   vl_camera_compile(camera, &f->camera);

@@ -23,11 +23,29 @@ typedef struct vlFilmRays {
 /* One element a sample, VL_PAD(n) of them: in are pixel and index of the sample in it; the rest comes out. film_x,
  * film_y: from the pixel's top left corner; weight: of the pixel filter. */
 typedef struct vlFilmRayRows {
-  const int32_t *px, *py;
-  const uint32_t *index;
+  int32_t *px, *py;
+  uint32_t *index;
   float *film_u, *film_v, *film_x, *film_y, *weight, *time, *lens_u, *lens_v;
   vlCameraRays rays;
 } vlFilmRayRows;
+
+/* Where those arrays stand in a worker's rows of VL_ROW_SIZE numbers each; its own begin at VL_FILM_ROWS. */
+enum {
+  VL_FILM_U,
+  VL_FILM_V,
+  VL_FILM_X,
+  VL_FILM_Y,
+  VL_FILM_WEIGHT,
+  VL_FILM_TIME,
+  VL_FILM_LENS_U,
+  VL_FILM_LENS_V,
+  VL_FILM_RAY, /* ox, oy, oz, dx, dy, dz, t_min, t_max, time, valid, weight */
+  VL_FILM_PIXEL_X = VL_FILM_RAY + 11,
+  VL_FILM_PIXEL_Y,
+  VL_FILM_INDEX,
+  VL_FILM_ROWS
+};
+vlFilmRayRows vl_film_ray_rows(float *rows);
 
 void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTable *filter, const vlSampler *sampler,
                        vlIsa isa);

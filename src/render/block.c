@@ -1,0 +1,150 @@
+/* render/block.c: see block.h. */
+#include "render/block.h"
+
+#include "base/file.h"
+#include "film/expose.h"
+
+enum { TILE_PIXELS = VL_RENDER_TILE * VL_RENDER_TILE };
+
+/* After those of the film's samples. */
+enum Row {
+  LAMBDA = VL_FILM_ROWS,
+  INV_PDF = LAMBDA + 4,
+  RADIANCE = INV_PDF + 4,
+  ALPHA = RADIANCE + 4,
+  RED,
+  GREEN,
+  BLUE,
+  ROWS
+};
+_Static_assert((int)ROWS == (int)VL_RENDER_ROWS, "a worker's memory");
+
+static float *row(vlRenderWorker *w, int r) {
+  return w->rows + (size_t)r * VL_ROW_SIZE;
+}
+
+/* Every second bit of a Morton index. */
+static uint32_t morton_half(uint32_t m) {
+  m &= 0x55555555u;
+  m = (m | m >> 1) & 0x33333333u;
+  m = (m | m >> 2) & 0x0f0f0f0fu;
+  return (m | m >> 4) & 0x00ff00ffu;
+}
+
+/* Pixels of the block's tiles inside the crop window, times the samples of this batch. Returns the number of lanes. */
+static uint32_t list_samples(const vlRenderRun *r, vlRenderWorker *w, uint32_t block, uint32_t first, uint32_t count) {
+  vlFilmRayRows rows = vl_film_ray_rows(w->rows);
+  int32_t *px = rows.px, *py = rows.py;
+  uint32_t *index = rows.index, n = 0;
+  uint32_t blocks_x = (r->tiles_x + r->span_x - 1) / r->span_x, pixels = r->span_x * r->span_y * TILE_PIXELS;
+  uint32_t x0 = (r->tile_x0 + block % blocks_x * r->span_x) * VL_RENDER_TILE;
+  uint32_t y0 = (r->tile_y0 + block / blocks_x * r->span_y) * VL_RENDER_TILE;
+  for (uint32_t s = first; s < first + count; s++)
+    for (uint32_t m = 0; m < pixels; m++) { /* two tiles lie side by side, four in a square */
+      uint32_t x = x0 + morton_half(m), y = y0 + morton_half(m >> 1);
+      if (x < r->crop[0] || y < r->crop[1] || x >= r->crop[2] || y >= r->crop[3]) continue;
+      px[n] = (int32_t)x, py[n] = (int32_t)y, index[n] = s;
+      n++;
+    }
+  for (uint32_t i = n; n > 0 && i < VL_PAD(n); i++) px[i] = px[n - 1], py[i] = py[n - 1], index[i] = index[n - 1];
+  return n;
+}
+
+/* One writer: no exchange is needed. */
+static void count_more(_Atomic uint64_t *total, uint64_t more) {
+  atomic_store_explicit(total, atomic_load_explicit(total, memory_order_relaxed) + more, memory_order_relaxed);
+}
+
+/* Where the camera sees nothing (outside an image circle, beyond a fold), not even the sky is seen. */
+static void clear_invalid(uint32_t n, const float *valid, float *alpha, float *const radiance[4]) {
+  for (uint32_t i = 0; i < n; i++) {
+    if (valid[i] > 0.0f) continue;
+    alpha[i] = 0.0f;
+    for (int c = 0; c < 4; c++) radiance[c][i] = 0.0f;
+  }
+}
+
+/* What a ray's light counts. What a part of the lens stops is black, not transparent. */
+static void weigh(uint32_t n, const float *weight, const float *valid, float *alpha, float *const radiance[4]) {
+  for (uint32_t i = 0; i < n; i++) {
+    for (int c = 0; c < 4; c++) radiance[c][i] = weight[i] > 0.0f ? radiance[c][i] * weight[i] : 0.0f;
+    alpha[i] = weight[i] > 0.0f || !(valid[i] > 0.0f) ? alpha[i] : 1.0f;
+  }
+}
+
+static void render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
+  const vlCameraCompiled *camera = &r->film_rays.camera;
+  vlFilmRayRows rows = vl_film_ray_rows(w->rows);
+  const vlCameraRays rays = rows.rays;
+  vl_film_rays_make(&r->film_rays, n, &rows);
+  vlTraceBatch batch = {.n = n,
+                        .ox = rays.ox,
+                        .oy = rays.oy,
+                        .oz = rays.oz,
+                        .dx = rays.dx,
+                        .dy = rays.dy,
+                        .dz = rays.dz,
+                        .t_min = rays.t_min,
+                        .t_max = rays.t_max,
+                        .px = rows.px,
+                        .py = rows.py,
+                        .index = rows.index,
+                        .time = r->film_rays.moves ? rays.time : NULL,
+                        .alpha = row(w, ALPHA)};
+  vlExposure expose = {.n = n, .exposure = r->exposure_time};
+  for (int c = 0; c < 4; c++) {
+    expose.radiance[c] = batch.radiance[c] = row(w, RADIANCE + c);
+    expose.lambda[c] = batch.lambda[c] = r->rgb_mode ? NULL : row(w, LAMBDA + c);
+    expose.inv_pdf[c] = batch.inv_pdf[c] = r->rgb_mode ? NULL : row(w, INV_PDF + c);
+  }
+  if (r->two_way) batch.two_way = vl_two_way_rows(r->two_way, (uint32_t)(w - r->workers));
+  r->trace_kernels->trace(r->world, &r->trace, w->scratch, &batch);
+  if (vl_camera_weighted(camera)) weigh(n, rays.weight, rays.valid, batch.alpha, batch.radiance);
+  if (!camera->plain) clear_invalid(n, rays.valid, batch.alpha, batch.radiance);
+  vl_film_expose(r->film, r->trace.isa, &expose, row(w, RED), row(w, GREEN), row(w, BLUE));
+  if (r->two_way)
+    vl_two_way_take(r->two_way, n, rows.px, rows.py, rows.weight, row(w, RED), row(w, GREEN), row(w, BLUE));
+  vlFilmSamples add = {n, rows.px, rows.py, row(w, RED), row(w, GREEN), row(w, BLUE), batch.alpha, rows.weight};
+  int32_t bad_x = 0, bad_y = 0;
+  uint32_t bad = vl_film_add(r->film, &add, &bad_x, &bad_y);
+  if (bad && !w->not_finite) w->bad_x = bad_x, w->bad_y = bad_y;
+  w->not_finite += bad;
+  count_more(&w->paths, n);
+  count_more(&w->bounce_rays, batch.bounce_rays);
+  count_more(&w->shadow_rays, batch.shadow_rays);
+}
+
+uint32_t vl_render_block_count(const vlRenderRun *r) {
+  return ((r->tiles_x + r->span_x - 1) / r->span_x) * ((r->tiles_y + r->span_y - 1) / r->span_y);
+}
+
+void vl_render_choose_blocks(vlRenderRun *r) {
+  uint32_t threads = vl_context_threads(r->world->context);
+  r->span_x = r->pass_samples <= 2 ? 2 : 1;
+  r->span_y = r->pass_samples <= 1 ? 2 : 1;
+  if (vl_render_block_count(r) < 2 * threads) r->span_y = 1;
+  if (vl_render_block_count(r) < 2 * threads) r->span_x = 1;
+}
+
+void vl_render_block(void *user, uint32_t block, uint32_t worker) {
+  vlRenderRun *r = user;
+  vlRenderWorker *w = &r->workers[worker];
+  if (atomic_load(&r->cancelled)) return;
+  unsigned state = vl_accel_enter();
+  uint32_t end = r->first_sample + r->pass_samples;
+  for (uint32_t s = r->first_sample; s < end && !atomic_load(&r->cancelled);) {
+    uint32_t most = VL_BATCH / TILE_PIXELS / (r->span_x * r->span_y), count = end - s < most ? end - s : most;
+    uint32_t n = list_samples(r, w, block, s, count);
+    if (n) render_batch(r, w, n);
+    s += count;
+    if (worker == 0 && pthread_equal(pthread_self(), r->caller) && vl_seconds() - r->last_sign > 0.1) {
+      vl_accel_leave(state);
+      r->last_sign = vl_seconds();
+      double share = (double)atomic_load(&r->blocks_done) / vl_render_block_count(r);
+      if (!vl_render_report(r, false, r->first_sample + share * r->pass_samples)) atomic_store(&r->cancelled, true);
+      state = vl_accel_enter();
+    }
+  }
+  vl_accel_leave(state);
+  atomic_fetch_add(&r->blocks_done, 1);
+}

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "image/dct.h"
 #include "image/exr_huffman.h"
 #include "image/pixel.h"
 
@@ -184,34 +185,6 @@ static const uint8_t ZIGZAG[64] = {0,  1,  5,  6,  14, 15, 27, 28, 2,  4,  7,  1
                                    10, 19, 23, 32, 39, 45, 52, 54, 20, 22, 33, 38, 46, 51, 55, 60,
                                    21, 34, 37, 47, 50, 56, 59, 61, 35, 36, 48, 49, 57, 58, 62, 63};
 
-/* 0.5 cos(k pi / 16) */
-static const float COSINE[8] = {0.5f,        0.49039264f, 0.46193977f, 0.41573481f,
-                                0.35355339f, 0.27778512f, 0.19134172f, 0.09754516f};
-
-/* Entry of the orthonormal inverse transform: sample n of frequency k. */
-static float basis(int n, int k) {
-  if (k == 0) return COSINE[4];
-  int angle = (2 * n + 1) * k % 32; /* of 32 sixteenths of pi */
-  if (angle > 16) angle = 32 - angle;
-  return angle <= 8 ? (angle == 8 ? 0.0f : COSINE[angle]) : -COSINE[16 - angle];
-}
-
-static void inverse_dct(float block[64], const float matrix[8][8]) {
-  float rows[64];
-  for (int y = 0; y < 8; y++)
-    for (int n = 0; n < 8; n++) {
-      float sum = 0.0f;
-      for (int k = 0; k < 8; k++) sum += matrix[n][k] * block[8 * y + k];
-      rows[8 * y + n] = sum;
-    }
-  for (int n = 0; n < 8; n++)
-    for (int x = 0; x < 8; x++) {
-      float sum = 0.0f;
-      for (int k = 0; k < 8; k++) sum += matrix[n][k] * rows[8 * k + x];
-      block[8 * n + x] = sum;
-    }
-}
-
 /* The next block's AC values: 0xff00 ends the block, 0xffnn is nn zeros. */
 static bool next_block(Dwa *d, uint16_t dc, const float matrix[8][8], float block[64]) {
   uint16_t zigzag[64] = {dc};
@@ -226,7 +199,7 @@ static bool next_block(Dwa *d, uint16_t dc, const float matrix[8][8], float bloc
       zigzag[i++] = v;
   }
   for (int i = 0; i < 64; i++) block[i] = vl_half_to_float(zigzag[ZIGZAG[i]]);
-  inverse_dct(block, matrix);
+  vl_dct_inverse(block, matrix);
   return true;
 }
 
@@ -251,8 +224,7 @@ static bool unpack_lossy(Dwa *d, const uint32_t *channel, uint32_t count) {
   size_t plane = (size_t)blocks_x * blocks_y;
   float matrix[8][8], block[3][64];
   if (plane * count > d->dc_count - d->dc_at) return false;
-  for (int n = 0; n < 8; n++)
-    for (int k = 0; k < 8; k++) matrix[n][k] = basis(n, k);
+  vl_dct_make(matrix);
   for (uint32_t by = 0; by < blocks_y; by++)
     for (uint32_t bx = 0; bx < blocks_x; bx++) {
       for (uint32_t c = 0; c < count; c++)

@@ -10,8 +10,7 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "math/hash.h"
-#include "world/moving.h"
+#include "world/local_ray.h"
 #include "world/surface_point.h"
 #include "world/world.h"
 
@@ -50,28 +49,9 @@ typedef struct Query {
   const vlRays *rays;
 } Query;
 
-/* A ray of the call in the space of the shape's group, and which instance that is. */
-typedef struct LocalRay {
-  uint32_t instance;
-  float time;
-  float world_o[3], world_d[3];
-  double o[3], d[3];
-} LocalRay;
-
-static LocalRay local_ray(const vlWorld *world, const EmbreeContext *context, unsigned id, unsigned inst) {
-  const vlRays *r = ((const Query *)(const void *)context)->rays;
-  LocalRay q = {VL_NONE,
-                r->time ? r->time[id] : 0,
-                {r->ox[id], r->oy[id], r->oz[id]},
-                {r->dx[id], r->dy[id], r->dz[id]},
-                {r->ox[id], r->oy[id], r->oz[id]},
-                {r->dx[id], r->dy[id], r->dz[id]}};
-  if (inst != RTC_INVALID_GEOMETRY_ID) {
-    q.instance = inst - world->groups.items[0].count;
-    vlWorldInstance moved;
-    vl_ray_to_group(vl_instance_at(&world->instances.items[q.instance], q.time, &moved), q.o, q.d);
-  }
-  return q;
+static vlLocalRay local_ray(const vlWorld *world, const EmbreeContext *context, unsigned id, unsigned inst) {
+  uint32_t instance = inst == RTC_INVALID_GEOMETRY_ID ? VL_NONE : inst - world->groups.items[0].count;
+  return vl_local_ray(world, ((const Query *)(const void *)context)->rays, id, instance);
 }
 
 unsigned vl_accel_enter(void) {
@@ -92,49 +72,7 @@ void vl_accel_leave(unsigned state) {
 #endif
 }
 
-/* ---- alpha ------------------------------------------------------------------------------------------------------- */
-
-static float ray_hash(const LocalRay *r, uint32_t shape, uint32_t prim, float t) {
-  uint32_t h = vl_hash2(vl_hash2(shape, prim), r->instance);
-  for (int i = 0; i < 3; i++)
-    h = vl_hash2(h, vl_float_bits(r->world_o[i])), h = vl_hash2(h, vl_float_bits(r->world_d[i]));
-  return vl_unit_float(vl_hash2(h, vl_float_bits(t)));
-}
-
-/* t: of shapes that a ray can meet twice, so that each crossing is decided for itself; 0 of triangles. */
-static bool alpha_passes(const AccelGeometry *g, const LocalRay *r, uint32_t prim, float t, float u, float v,
-                         const float p[3], const vlTextureCorner *where) {
-  float alpha = vl_texture_float_at(g->world, g->shape->alpha, u, v, p, where);
-  return ray_hash(r, (uint32_t)(g->shape - g->world->shapes.items), prim, t) >= alpha;
-}
-
-/* uv and position where the ray meets triangle prim, in our own arithmetic, and the weights of its corners. true: from
- * behind. */
-static bool triangle_uv(const vlWorldShape *s, uint32_t prim, const LocalRay *r, float uv[2], float p[3], float b[3]) {
-  const uint32_t *f = s->indices + 3 * (size_t)prim;
-  vlVec3 ray_o = vl_vec3((float)r->o[0], (float)r->o[1], (float)r->o[2]);
-  vlVec3 ray_d = vl_vec3((float)r->d[0], (float)r->d[1], (float)r->d[2]), c[3];
-  float room[3][3];
-  const float *corner[3];
-  for (int k = 0; k < 3; k++) {
-    const float *x = corner[k] = vl_vertex_at(s, f[k], r->time, room[k]);
-    c[k] = vl_sub(vl_vec3(x[0], x[1], x[2]), ray_o);
-  }
-  float b0 = vl_dot(ray_d, vl_cross(c[1], c[2])), b1 = vl_dot(ray_d, vl_cross(c[2], c[0])),
-        b2 = vl_dot(ray_d, vl_cross(c[0], c[1]));
-  float sum = b0 + b1 + b2, inv = sum != 0 ? 1 / sum : 0;
-  b0 *= inv, b1 *= inv, b2 *= inv;
-  static const float unit[6] = {0, 0, 1, 0, 1, 1};
-  b[0] = b0, b[1] = b1, b[2] = b2;
-  uv[0] = uv[1] = 0;
-  for (int k = 0; k < 3; k++) {
-    const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
-    uv[0] += b[k] * t[0];
-    uv[1] += b[k] * t[1];
-  }
-  for (int i = 0; i < 3; i++) p[i] = b0 * corner[0][i] + b1 * corner[1][i] + b2 * corner[2][i];
-  return s->flip ? sum < 0 : sum > 0; /* sum is the direction times the normal of the face order */
-}
+/* ---- filters ----------------------------------------------------------------------------------------------------- */
 
 static bool filter_rejects(const AccelGeometry *g, const struct RTCFilterFunctionNArguments *args, unsigned i,
                            bool shadow) {
@@ -142,13 +80,13 @@ static bool filter_rejects(const AccelGeometry *g, const struct RTCFilterFunctio
   if (g->shape->alpha < 0 && !g->shape->one_sided) return false;
   float uv[2], p[3];
   vlTextureCorner where;
-  LocalRay r =
+  vlLocalRay r =
       local_ray(g->world, args->context, *hit_row(args->ray, args->N, ID, i), *hit_row(args->hit, args->N, INST, i));
   uint32_t prim = *hit_row(args->hit, args->N, PRIM, i);
   where.shape = g->shape, where.prim = prim;
-  bool behind = triangle_uv(g->shape, prim, &r, uv, p, where.weights);
+  bool behind = vl_local_triangle(g->shape, prim, &r, uv, p, where.weights);
   if (behind && g->shape->one_sided) return true;
-  return g->shape->alpha >= 0 && alpha_passes(g, &r, prim, 0, uv[0], uv[1], p, &where);
+  return g->shape->alpha >= 0 && vl_alpha_passes(g->world, g->shape, &r, prim, 0, uv[0], uv[1], p, &where);
 }
 
 static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
@@ -173,7 +111,7 @@ static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
 
 static bool user_hit(const AccelGeometry *g, const EmbreeContext *context, void *ray, unsigned n, unsigned i,
                      uint32_t prim, double *t) {
-  LocalRay r = local_ray(g->world, context, *hit_row(ray, n, ID, i), context->instID[0]);
+  vlLocalRay r = local_ray(g->world, context, *hit_row(ray, n, ID, i), context->instID[0]);
   double t_min = *ray_row(ray, n, TNEAR, i), t_max = *ray_row(ray, n, TFAR, i);
   vlShapeHit hit;
   while (vl_shape_intersect(g->shape, prim, r.o, r.d, t_min, t_max, &hit)) {
@@ -181,7 +119,7 @@ static bool user_hit(const AccelGeometry *g, const EmbreeContext *context, void 
       vlSurfacePoint point;
       vl_shape_point(g->shape, prim, &hit, &point);
       float p[3] = {(float)point.p[0], (float)point.p[1], (float)point.p[2]};
-      if (alpha_passes(g, &r, prim, (float)hit.t, point.uv[0], point.uv[1], p, NULL)) {
+      if (vl_alpha_passes(g->world, g->shape, &r, prim, (float)hit.t, point.uv[0], point.uv[1], p, NULL)) {
         t_min = hit.t * (1 + 1e-12);
         continue;
       }

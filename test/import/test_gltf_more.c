@@ -4,59 +4,12 @@
 #include <meshoptimizer.h>
 
 #include "image/image.h"
-#include "import/gltf_writer.h"
-#include "import/load.h"
+#include "import/gltf_load.h"
 #include "math/octahedral.h"
-
-static char folder[64];
-
-static int set_up(void **state) {
-  (void)state;
-  snprintf(folder, sizeof folder, "/tmp/velo-gltf-XXXXXX");
-  return !mkdtemp(folder);
-}
-
-static int tear_down(void **state) {
-  (void)state;
-  char command[128];
-  snprintf(command, sizeof command, "rm -rf '%s'", folder);
-  return system(command);
-}
-
-static const char *in_folder(const char *name) {
-  static char path[256];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return path;
-}
-
-static void load(Loaded *l, const Gltf *g, const char *rest, const vlLoadDef *def) {
-  gltf_write_text(g, in_folder("t.gltf"), rest);
-  start_load(l);
-  l->result = vl_scene_load(l->scene, in_folder("t.gltf"), def, &l->error);
-}
-
-static void fine(Loaded *l, const Gltf *g, const char *rest, const vlLoadDef *def) {
-  load(l, g, rest, def);
-  if (l->result != VL_OK) print_message("%s: %s\n", l->error.file, l->error.message);
-  assert_int_equal(l->result, VL_OK);
-}
 
 static void is_near(double a, double b, double most) {
   if (!(fabs(a - b) <= most)) fail_msg("%.9g is not %.9g", a, b);
 }
-
-static const float square[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
-static const uint16_t square_faces[6] = {0, 1, 2, 2, 1, 3};
-
-static Gltf *new_square(void) {
-  Gltf *g = calloc(1, sizeof *g);
-  gltf_floats(g, square, 4, "VEC3", 3);
-  gltf_shorts(g, square_faces, 6);
-  return g;
-}
-
-#define SCENE "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
-#define SQUARE_MESH "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}]"
 
 /* ---- time -------------------------------------------------------------------------------------------------------- */
 
@@ -77,7 +30,7 @@ static void motion(void **state) {
       "\"animations\":[{\"samplers\":[{\"input\":2,\"output\":3}],\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
       "\"path\":\"translation\"}}]}]," SQUARE_MESH;
   Loaded l;
-  fine(&l, g, moved, &def);
+  fine_with(&l, g, moved, &def);
   assert_int_equal(l.scene->instances.count, 1);
   const vlSceneInstance *instance = &l.scene->instances.items[0];
   assert_true(instance->keys >= 2);
@@ -94,7 +47,7 @@ static void motion(void **state) {
   is_near(camera->shutter_close, 1, 1e-12);
   end_load(&l);
   def.time_close = VL_UNSET; /* one moment: all is still */
-  fine(&l, g, moved, &def);
+  fine_with(&l, g, moved, &def);
   assert_int_equal(l.scene->instances.count, 0);
   assert_false(l.scene->settings.camera.has_matrix_close);
   end_load(&l);
@@ -104,12 +57,13 @@ static void motion(void **state) {
   end_load(&l);
   /* what deforms has its vertices at both ends */
   def.time_close = 3;
-  fine(&l, g,
-       SCENE
-       "\"nodes\":[{\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":2,\"output\":4}],"
-       "\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"weights\"}}]}],"
-       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"targets\":[{\"POSITION\":5}]}]}]",
-       &def);
+  fine_with(
+      &l, g,
+      SCENE
+      "\"nodes\":[{\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":2,\"output\":4}],"
+      "\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"weights\"}}]}],"
+      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"targets\":[{\"POSITION\":5}]}]}]",
+      &def);
   const vlShapeDef *s = &l.scene->shapes.items[0];
   assert_non_null(s->positions_close);
   is_near((double)s->positions[2], 0.25, 1e-6);
@@ -135,7 +89,7 @@ static void scenes(void **state) {
   vlLoadDef def = vl_default_load_def();
   for (size_t i = 0; i < 4; i++) {
     def.scene = cases[i].name;
-    fine(&l, g, rest, &def);
+    fine_with(&l, g, rest, &def);
     assert_int_equal(l.scene->instances.count, cases[i].instances);
     end_load(&l);
   }
@@ -220,16 +174,17 @@ static void textures(void **state) {
   (void)state;
   Gltf *g = new_square();
   Loaded l;
-  fine(&l, g,
-       SCENE
-       "\"extensionsUsed\":[\"KHR_texture_transform\",\"EXT_texture_webp\"],\"nodes\":[{\"mesh\":0}],"
-       "\"images\":[{\"uri\":\"a.png\"},{\"uri\":\"a.webp\"}],"
-       "\"textures\":[{\"source\":0,\"extensions\":{\"EXT_texture_webp\":{\"source\":1}}},{\"source\":0}],"
-       "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":1,\"extensions\":{"
-       "\"KHR_texture_transform\":{\"offset\":[0.5,0],\"scale\":[2,2],\"texCoord\":2}}},"
-       "\"metallicRoughnessTexture\":{\"index\":1,\"texCoord\":1}}}],"
-       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0}]}]",
-       NULL);
+  fine_with(
+      &l, g,
+      SCENE
+      "\"extensionsUsed\":[\"KHR_texture_transform\",\"EXT_texture_webp\"],\"nodes\":[{\"mesh\":0}],"
+      "\"images\":[{\"uri\":\"a.png\"},{\"uri\":\"a.webp\"}],"
+      "\"textures\":[{\"source\":0,\"extensions\":{\"EXT_texture_webp\":{\"source\":1}}},{\"source\":0}],"
+      "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":1,\"extensions\":{"
+      "\"KHR_texture_transform\":{\"offset\":[0.5,0],\"scale\":[2,2],\"texCoord\":2}}},"
+      "\"metallicRoughnessTexture\":{\"index\":1,\"texCoord\":1}}}],"
+      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0}]}]",
+      NULL);
   const vlMaterialDef *m = &l.scene->materials.items[l.scene->shapes.items[0].material.index - 1];
   const vlTextureDef *color = &l.scene->textures.items[m->reflectance.texture.index - 1],
                      *rough = &l.scene->textures.items[m->principled.roughness.texture.index - 1];
@@ -266,14 +221,14 @@ static void surroundings(void **state) {
     vl_image_destroy(image);
   }
   end_load(&l);
-  fine(&l, g,
-       "\"scenes\":[{\"nodes\":[0],\"extensions\":{\"EXT_lights_image_based\":{\"light\":0}}}],"
-       "\"extensionsUsed\":[\"EXT_lights_image_based\"],\"nodes\":[{\"mesh\":0}],"
-       "\"images\":[{\"uri\":\"0.png\"},{\"uri\":\"1.png\"},{\"uri\":\"2.png\"},{\"uri\":\"3.png\"},"
-       "{\"uri\":\"4.png\"},{\"uri\":\"5.png\"}],\"extensions\":{\"EXT_lights_image_based\":{\"lights\":[{"
-       "\"intensity\":2,\"rotation\":[0,0,0.70710678,0.70710678],\"specularImageSize\":4,"
-       "\"specularImages\":[[0,1,2,3,4,5]]}]}}," SQUARE_MESH,
-       NULL);
+  fine_with(&l, g,
+            "\"scenes\":[{\"nodes\":[0],\"extensions\":{\"EXT_lights_image_based\":{\"light\":0}}}],"
+            "\"extensionsUsed\":[\"EXT_lights_image_based\"],\"nodes\":[{\"mesh\":0}],"
+            "\"images\":[{\"uri\":\"0.png\"},{\"uri\":\"1.png\"},{\"uri\":\"2.png\"},{\"uri\":\"3.png\"},"
+            "{\"uri\":\"4.png\"},{\"uri\":\"5.png\"}],\"extensions\":{\"EXT_lights_image_based\":{\"lights\":[{"
+            "\"intensity\":2,\"rotation\":[0,0,0.70710678,0.70710678],\"specularImageSize\":4,"
+            "\"specularImages\":[[0,1,2,3,4,5]]}]}}," SQUARE_MESH,
+            NULL);
   assert_int_equal(l.scene->lights.count, 1);
   assert_false(l.scene->settings.light_missing);
   const vlLightDef *light = &l.scene->lights.items[0];
@@ -299,12 +254,12 @@ static void lamps(void **state) {
   (void)state;
   Gltf *g = new_square();
   Loaded l;
-  fine(&l, g,
-       SCENE
-       "\"extensionsUsed\":[\"KHR_lights_punctual\"],\"nodes\":[{\"extensions\":{\"KHR_lights_punctual\":{"
-       "\"light\":0}}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"spot\",\"intensity\":3,"
-       "\"spot\":{\"innerConeAngle\":0.2,\"outerConeAngle\":0.5}}]}}",
-       NULL);
+  fine_with(&l, g,
+            SCENE
+            "\"extensionsUsed\":[\"KHR_lights_punctual\"],\"nodes\":[{\"extensions\":{\"KHR_lights_punctual\":{"
+            "\"light\":0}}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"spot\",\"intensity\":3,"
+            "\"spot\":{\"innerConeAngle\":0.2,\"outerConeAngle\":0.5}}]}}",
+            NULL);
   const vlLightDef *light = &l.scene->lights.items[0];
   assert_true(light->cone_squared);
   is_near((double)light->cone_angle, 0.5, 1e-6);

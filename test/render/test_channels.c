@@ -1,50 +1,20 @@
 /* Ground truth: the channels agree with each other and with the camera, ids are those of a ray cast by hand, planes
  * have one depth, and the bits do not depend on threads, instruction set or crop. */
-#include "render/shots.h"
+#include "render/truths.h"
 
 #include "failing_allocator.h"
 
-typedef struct Truth {
-  vlContext *context;
-  vlWorld *world;
-  vlCamera camera;
-  vlImage *floats, *ids;
-} Truth;
-
 /* Builds what the stage holds and takes all channels. */
 static Truth truth_take(Stage *s, const uint32_t crop[4], uint32_t channels) {
-  Truth t;
-  memset(&t, 0, sizeof t);
-  vlError error = {0};
-  if (vl_world_build(s->scene, &s->build, &t.world, &error) != VL_OK) fail_msg("build: %s", error.message);
-  if (vl_camera_make(&s->camera, &t.camera, NULL, &error) != VL_OK) fail_msg("camera: %s", error.message);
+  Truth t = truth_begin(s);
   vlChannelsDef def = vl_default_channels_def(s->camera.width, s->camera.height);
   if (crop) memcpy(def.crop, crop, sizeof def.crop);
   def.channels = channels;
   def.samples = 7;
-  if (vl_render_channels(t.world, &t.camera, &def, &t.floats, &t.ids, &error) != VL_OK)
-    fail_msg("channels: %s", error.message);
+  truth_channels(&t, &def);
   return t;
 }
 
-static void truth_free(Truth *t) {
-  vl_image_destroy(t->floats);
-  vl_image_destroy(t->ids);
-  vl_world_destroy(t->world);
-}
-
-static float number(const Truth *t, uint32_t x, uint32_t y, const char *name) {
-  int channel = vl_image_find_channel(t->floats, name);
-  assert_true(channel >= 0);
-  return vl_image_get(t->floats, x, y, (uint32_t)channel);
-}
-static uint32_t id(const Truth *t, uint32_t x, uint32_t y, const char *name) {
-  int channel = vl_image_find_channel(t->ids, name);
-  assert_true(channel >= 0);
-  assert_int_equal(vl_image_type(t->ids), VL_PIXEL_U32);
-  const uint32_t *pixels = vl_image_const_pixels(t->ids);
-  return pixels[((size_t)y * vl_image_width(t->ids) + x) * vl_image_channels(t->ids) + (size_t)channel];
-}
 static void vector(const Truth *t, uint32_t x, uint32_t y, const char *name, double v[3]) {
   char part[16];
   for (int k = 0; k < 3; k++) {
@@ -253,16 +223,6 @@ static void test_albedo(void **state) {
   }
 }
 
-static void same_bits(const vlImage *a, const vlImage *b, uint32_t dx, uint32_t dy) {
-  uint32_t step = vl_image_channels(a);
-  assert_int_equal(step, vl_image_channels(b));
-  const uint32_t *p = vl_image_const_pixels(a), *q = vl_image_const_pixels(b);
-  for (uint32_t y = 0; y < vl_image_height(b); y++)
-    for (uint32_t x = 0; x < vl_image_width(b); x++)
-      assert_memory_equal(p + ((size_t)(y + dy) * vl_image_width(a) + x + dx) * step,
-                          q + ((size_t)y * vl_image_width(b) + x) * step, step * sizeof *p);
-}
-
 static void test_same_bits(void **state) {
   (void)state;
   Stage s = stage_open(75, 41);
@@ -273,14 +233,8 @@ static void test_same_bits(void **state) {
   same_bits(whole.floats, part.floats, 13, 5);
   same_bits(whole.ids, part.ids, 13, 5);
   for (int isa = VL_ISA_V2; isa <= VL_ISA_V4; isa++) {
-    Stage other = s;
-    vlContextDef def = vl_default_context_def();
-    def.threads = isa == VL_ISA_V2 ? 1 : 3;
-    def.isa = (vlIsa)isa;
-    vlResult made = vl_context_create(&def, &other.context);
-    if (made == VL_ERROR_UNSUPPORTED) continue; /* this machine does not have it */
-    assert_int_equal(made, VL_OK);
-    assert_int_equal(vl_scene_create(other.context, &other.scene), VL_OK);
+    Stage other;
+    if (!stage_like(&s, isa, &other)) continue;
     fill(&other);
     Truth t = truth_take(&other, NULL, VL_CHANNEL_ALL);
     same_bits(whole.floats, t.floats, 0, 0);

@@ -1,41 +1,15 @@
 /* Optical flow between two cameras against geometry that is known, and boxes against counted pixels. */
-#include "render/shots.h"
-
-typedef struct Truth {
-  vlWorld *world;
-  vlCamera camera, other;
-  vlImage *floats, *ids;
-} Truth;
+#include "render/truths.h"
 
 static Truth truth_take(Stage *s, const vlCameraDef *other, uint32_t channels) {
-  Truth t;
-  memset(&t, 0, sizeof t);
+  Truth t = truth_begin(s);
   vlError error = {0};
-  if (vl_world_build(s->scene, &s->build, &t.world, &error) != VL_OK) fail_msg("build: %s", error.message);
-  assert_int_equal(vl_camera_make(&s->camera, &t.camera, NULL, &error), VL_OK);
   assert_int_equal(vl_camera_make(other, &t.other, NULL, &error), VL_OK);
   vlChannelsDef def = vl_default_channels_def(s->camera.width, s->camera.height);
   def.channels = channels;
   def.forward = &t.other;
-  if (vl_render_channels(t.world, &t.camera, &def, &t.floats, &t.ids, &error) != VL_OK)
-    fail_msg("channels: %s", error.message);
+  truth_channels(&t, &def);
   return t;
-}
-static void truth_free(Truth *t) {
-  vl_image_destroy(t->floats);
-  vl_image_destroy(t->ids);
-  vl_world_destroy(t->world);
-}
-static float number(const Truth *t, uint32_t x, uint32_t y, const char *name) {
-  int channel = vl_image_find_channel(t->floats, name);
-  assert_true(channel >= 0);
-  return vl_image_get(t->floats, x, y, (uint32_t)channel);
-}
-static uint32_t id(const Truth *t, uint32_t x, uint32_t y, const char *name) {
-  int channel = vl_image_find_channel(t->ids, name);
-  assert_true(channel >= 0);
-  const uint32_t *pixels = vl_image_const_pixels(t->ids);
-  return pixels[((size_t)y * vl_image_width(t->ids) + x) * vl_image_channels(t->ids) + (size_t)channel];
 }
 
 /* A wall at 8 and before it a narrow one at 4; the other camera stands 1 to the right. Focal length 60: the wall moves

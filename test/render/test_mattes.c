@@ -1,24 +1,14 @@
 /* Cryptomatte, the modes that choose among the picture's samples, standard errors: they agree with the picture, with
  * each other and with what is known of simple scenes, and their bits hang on nothing else. */
-#include "render/shots.h"
+#include "render/truths.h"
 
 #include "failing_allocator.h"
-
-typedef struct Truth {
-  vlWorld *world;
-  vlCamera camera;
-  vlFilm *film;
-  vlImage *picture, *floats, *ids;
-} Truth;
 
 static const uint32_t MATTES = VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
 
 static Truth truth_take(Stage *s, uint32_t channels, vlChannelMode mode) {
-  Truth t;
-  memset(&t, 0, sizeof t);
+  Truth t = truth_begin(s);
   vlError error = {0};
-  if (vl_world_build(s->scene, &s->build, &t.world, &error) != VL_OK) fail_msg("build: %s", error.message);
-  if (vl_camera_make(&s->camera, &t.camera, NULL, &error) != VL_OK) fail_msg("camera: %s", error.message);
   s->film.errors = (channels & VL_CHANNEL_ERROR) != 0;
   assert_int_equal(vl_film_create(s->context, &s->film, &t.film), VL_OK);
   if (vl_render(t.world, &t.camera, t.film, &s->render, NULL, &error) != VL_OK) fail_msg("render: %s", error.message);
@@ -29,30 +19,8 @@ static Truth truth_take(Stage *s, uint32_t channels, vlChannelMode mode) {
   def.mode = mode;
   def.film = t.film;
   def.render = &s->render;
-  if (vl_render_channels(t.world, &t.camera, &def, &t.floats, &t.ids, &error) != VL_OK)
-    fail_msg("channels: %s", error.message);
+  truth_channels(&t, &def);
   return t;
-}
-
-static void truth_free(Truth *t) {
-  vl_image_destroy(t->picture);
-  vl_image_destroy(t->floats);
-  vl_image_destroy(t->ids);
-  vl_film_destroy(t->film);
-  vl_world_destroy(t->world);
-}
-
-static const float *place(const Truth *t, uint32_t x, uint32_t y, const char *name) {
-  int channel = vl_image_find_channel(t->floats, name);
-  assert_true(channel >= 0);
-  return (const float *)vl_image_const_pixels(t->floats) +
-         ((size_t)y * vl_image_width(t->floats) + x) * vl_image_channels(t->floats) + channel;
-}
-static uint32_t id(const Truth *t, uint32_t x, uint32_t y, const char *name) {
-  int channel = vl_image_find_channel(t->ids, name);
-  assert_true(channel >= 0);
-  const uint32_t *pixels = vl_image_const_pixels(t->ids);
-  return pixels[((size_t)y * vl_image_width(t->ids) + x) * vl_image_channels(t->ids) + (size_t)channel];
 }
 
 /* Two half planes at different depths whose border leans across the pixels, an instanced ball, a lens. */
@@ -246,16 +214,6 @@ static void test_standard_error(void **state) {
   stage_close(&s);
 }
 
-static void same_bits(const vlImage *a, const vlImage *b, uint32_t dx, uint32_t dy) {
-  uint32_t step = vl_image_channels(a);
-  assert_int_equal(step, vl_image_channels(b));
-  const uint32_t *p = vl_image_const_pixels(a), *q = vl_image_const_pixels(b);
-  for (uint32_t y = 0; y < vl_image_height(b); y++)
-    for (uint32_t x = 0; x < vl_image_width(b); x++)
-      assert_memory_equal(p + ((size_t)(y + dy) * vl_image_width(a) + x + dx) * step,
-                          q + ((size_t)y * vl_image_width(b) + x) * step, step * sizeof *p);
-}
-
 static void test_same_bits(void **state) {
   (void)state;
   uint32_t channels = VL_CHANNEL_ALL | MATTES | VL_CHANNEL_ERROR;
@@ -270,13 +228,8 @@ static void test_same_bits(void **state) {
     same_bits(whole.ids, part.ids, 7, 3);
     memcpy(s.film.crop, all, sizeof all);
     for (int isa = VL_ISA_V2; isa <= VL_ISA_V4; isa++) {
-      Stage other = s;
-      vlContextDef def = vl_default_context_def();
-      def.threads = isa == VL_ISA_V2 ? 1 : 3;
-      def.isa = (vlIsa)isa;
-      vlResult made = vl_context_create(&def, &other.context);
-      if (made == VL_ERROR_UNSUPPORTED) continue; /* this machine does not have it */
-      assert_int_equal(vl_scene_create(other.context, &other.scene), VL_OK);
+      Stage other;
+      if (!stage_like(&s, isa, &other)) continue;
       fill(&other);
       Truth t = truth_take(&other, channels, (vlChannelMode)mode);
       same_bits(whole.floats, t.floats, 0, 0);

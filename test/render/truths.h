@@ -1,0 +1,81 @@
+/* test/render/truths.h: ground truth of a stage (shots.h): taken, looked at by channel and pixel, compared bit by bit.
+ */
+#ifndef TEST_RENDER_TRUTHS_H
+#define TEST_RENDER_TRUTHS_H
+
+#include "render/shots.h"
+
+typedef struct Truth {
+  vlWorld *world;
+  vlCamera camera, other; /* other: of flow */
+  vlFilm *film;
+  vlImage *picture, *floats, *ids;
+} Truth;
+
+/* World and camera of what the stage holds. */
+static UNUSED Truth truth_begin(Stage *s) {
+  Truth t;
+  memset(&t, 0, sizeof t);
+  vlError error = {0};
+  if (vl_world_build(s->scene, &s->build, &t.world, &error) != VL_OK) fail_msg("build: %s", error.message);
+  if (vl_camera_make(&s->camera, &t.camera, NULL, &error) != VL_OK) fail_msg("camera: %s", error.message);
+  return t;
+}
+
+static UNUSED void truth_channels(Truth *t, const vlChannelsDef *def) {
+  vlError error = {0};
+  if (vl_render_channels(t->world, &t->camera, def, &t->floats, &t->ids, &error) != VL_OK)
+    fail_msg("channels: %s", error.message);
+}
+
+static UNUSED void truth_free(Truth *t) {
+  vl_image_destroy(t->picture);
+  vl_image_destroy(t->floats);
+  vl_image_destroy(t->ids);
+  vl_film_destroy(t->film);
+  vl_world_destroy(t->world);
+}
+
+static UNUSED const float *place(const Truth *t, uint32_t x, uint32_t y, const char *name) {
+  int channel = vl_image_find_channel(t->floats, name);
+  assert_true(channel >= 0);
+  return (const float *)vl_image_const_pixels(t->floats) +
+         ((size_t)y * vl_image_width(t->floats) + x) * vl_image_channels(t->floats) + channel;
+}
+static UNUSED float number(const Truth *t, uint32_t x, uint32_t y, const char *name) {
+  return *place(t, x, y, name);
+}
+static UNUSED uint32_t id(const Truth *t, uint32_t x, uint32_t y, const char *name) {
+  int channel = vl_image_find_channel(t->ids, name);
+  assert_true(channel >= 0);
+  assert_int_equal(vl_image_type(t->ids), VL_PIXEL_U32);
+  const uint32_t *pixels = vl_image_const_pixels(t->ids);
+  return pixels[((size_t)y * vl_image_width(t->ids) + x) * vl_image_channels(t->ids) + (size_t)channel];
+}
+
+/* b is a, from (dx, dy) on. */
+static UNUSED void same_bits(const vlImage *a, const vlImage *b, uint32_t dx, uint32_t dy) {
+  uint32_t step = vl_image_channels(a);
+  assert_int_equal(step, vl_image_channels(b));
+  const uint32_t *p = vl_image_const_pixels(a), *q = vl_image_const_pixels(b);
+  for (uint32_t y = 0; y < vl_image_height(b); y++)
+    for (uint32_t x = 0; x < vl_image_width(b); x++)
+      assert_memory_equal(p + ((size_t)(y + dy) * vl_image_width(a) + x + dx) * step,
+                          q + ((size_t)y * vl_image_width(b) + x) * step, step * sizeof *p);
+}
+
+/* A stage of the same defs, still empty, on that instruction set with other numbers of threads. false: this machine
+ * does not have it. */
+static UNUSED bool stage_like(const Stage *s, int isa, Stage *other) {
+  *other = *s;
+  vlContextDef def = vl_default_context_def();
+  def.threads = isa == VL_ISA_V2 ? 1 : 3;
+  def.isa = (vlIsa)isa;
+  vlResult made = vl_context_create(&def, &other->context);
+  if (made == VL_ERROR_UNSUPPORTED) return false;
+  assert_int_equal(made, VL_OK);
+  assert_int_equal(vl_scene_create(other->context, &other->scene), VL_OK);
+  return true;
+}
+
+#endif

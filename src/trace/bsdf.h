@@ -11,6 +11,7 @@
 #include "base/isa.h"
 #include "velo/base.h"
 #include "world/coat.h"
+#include "world/measured.h"
 
 typedef enum vlBsdfKind {
   VL_BSDF_DIFFUSE,
@@ -22,6 +23,7 @@ typedef enum vlBsdfKind {
   VL_BSDF_DIFFUSE_TRANSMISSION,
   VL_BSDF_LAYERED, /* rough or smooth dielectric coat over metal or a diffuse base, by random walks between them */
   VL_BSDF_HAIR,
+  VL_BSDF_MEASURED,
   VL_BSDF_KINDS
 } vlBsdfKind;
 
@@ -83,8 +85,9 @@ typedef struct vlBsdfParams {
   float *eta_s;             /* dielectric, thin, coat */
   const vlCoatTable **coat; /* coated diffuse */
   float *principled[VL_PRINCIPLED_ROWS];
-  const uint32_t *seed;   /* layered: of the walks' random numbers */
-  const float *lambda[4]; /* principled: wavelengths, nm; null in RGB mode */
+  const uint32_t *seed; /* layered: of the walks' random numbers */
+  const vlMeasured *const *measured;
+  const float *lambda[4]; /* principled, measured: wavelengths, nm; null in RGB mode */
 } vlBsdfParams;
 
 typedef struct vlBsdfDirections {

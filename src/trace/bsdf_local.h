@@ -33,6 +33,7 @@ VL_BSDF_DECLARE(principled);
 VL_BSDF_DECLARE(translucent);
 VL_BSDF_DECLARE(layered);
 VL_BSDF_DECLARE(hair);
+VL_BSDF_DECLARE(measured);
 
 /* Cosine-weighted direction about +z. u, v in [0, 1). z > 0 always, so that no sample is lost. */
 static inline vlVec3 vl_cosine_direction(float u, float v) {

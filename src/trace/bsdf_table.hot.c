@@ -13,6 +13,7 @@ static void eval(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdf
     case VL_BSDF_DIFFUSE_TRANSMISSION: VL_HOT(vl_bsdf_translucent_eval)(n, params, wo, wi, value, pdf); break;
     case VL_BSDF_LAYERED: VL_HOT(vl_bsdf_layered_eval)(n, params, wo, wi, value, pdf); break;
     case VL_BSDF_HAIR: VL_HOT(vl_bsdf_hair_eval)(n, params, wo, wi, value, pdf); break;
+    case VL_BSDF_MEASURED: VL_HOT(vl_bsdf_measured_eval)(n, params, wo, wi, value, pdf); break;
     case VL_BSDF_KINDS: break;
   }
 }
@@ -31,6 +32,7 @@ static void sample(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBs
     case VL_BSDF_DIFFUSE_TRANSMISSION: VL_SAMPLE(vl_bsdf_translucent_sample); break;
     case VL_BSDF_LAYERED: VL_SAMPLE(vl_bsdf_layered_sample); break;
     case VL_BSDF_HAIR: VL_SAMPLE(vl_bsdf_hair_sample); break;
+    case VL_BSDF_MEASURED: VL_SAMPLE(vl_bsdf_measured_sample); break;
     case VL_BSDF_KINDS: break;
   }
 }

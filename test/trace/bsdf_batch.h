@@ -14,6 +14,7 @@ typedef struct Batch {
   const vlCoatTable *coat[BATCH];
   float principled[VL_PRINCIPLED_ROWS][BATCH], lambda[4][BATCH];
   uint32_t seed[BATCH];
+  const vlMeasured *measured[BATCH];
   float ox[BATCH], oy[BATCH], oz[BATCH], ix[BATCH], iy[BATCH], iz[BATCH], lobe[BATCH], u[BATCH], v[BATCH];
   float value[4][BATCH], pdf[BATCH], weight[4][BATCH], scale[BATCH];
   uint32_t flags[BATCH];
@@ -25,6 +26,7 @@ typedef struct Surface {
   float reflectance, eta, k, alpha_x, alpha_y, eta_s;
   const vlCoatTable *coat;
   const float *principled; /* VL_PRINCIPLED_ROWS values */
+  const vlMeasured *measured;
 } Surface;
 
 static inline vlBsdfParams batch_params(Batch *b) {
@@ -34,6 +36,7 @@ static inline vlBsdfParams batch_params(Batch *b) {
   for (int k = 0; k < VL_PRINCIPLED_ROWS; k++) p.principled[k] = b->principled[k];
   for (int c = 0; c < 4; c++) p.lambda[c] = b->lambda[c];
   p.seed = b->seed;
+  p.measured = b->measured;
   return p;
 }
 static inline void batch_surface(Batch *b, uint32_t i, const Surface *s) {
@@ -43,6 +46,7 @@ static inline void batch_surface(Batch *b, uint32_t i, const Surface *s) {
     b->k[c][i] = s->k * (1.0f - 0.1f * (float)c);
   }
   b->alpha_x[i] = s->alpha_x, b->alpha_y[i] = s->alpha_y, b->eta_s[i] = s->eta_s, b->coat[i] = s->coat;
+  b->measured[i] = s->measured;
   for (int k = 0; s->principled && k < VL_PRINCIPLED_ROWS; k++) b->principled[k][i] = s->principled[k];
   for (int c = 0; c < 4; c++) b->lambda[c][i] = 420.0f + 80.0f * (float)c;
 }

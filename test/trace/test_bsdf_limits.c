@@ -9,12 +9,14 @@
 #include <cmocka.h>
 
 #include "bsdf_batch.h"
+#include "measured_file.h"
 
 typedef struct {
   vlContext *context;
   const vlBsdfKernels *kernels;
   Batch *batch, *other;
   vlCoatTable *tables[4];
+  vlMeasured *measured[2];
 } State;
 
 static int setup(void **state) {
@@ -27,12 +29,23 @@ static int setup(void **state) {
   const float alphas[4][2] = {{0, 0}, {0.1f, 0.1f}, {0.0f, 0.6f}, {0.4f, 0.4f}};
   for (int i = 0; i < 4; i++)
     if (vl_coat_build(s->context, 1.5f, 0.01f, i == 3 ? 1000 : 10, alphas[i][0], alphas[i][1], &s->tables[i])) return 1;
+  const char *path = VELO_BINARY_DIR "/limits.bsdf";
+  for (int i = 0; i < 2; i++) {
+    mfSurface metal = mf_surface(0.3, i ? 0.1 : 0.3);
+    metal.nodes = metal.samples = 16;
+    metal.parts = i ? 4 : 1;
+    mfFile file = mf_measure(&metal);
+    if (!mf_write(path, &file) || vl_measured_read(s->context, path, false, &s->measured[i], NULL)) return 1;
+    free(file.bytes);
+  }
+  remove(path);
   *state = s;
   return 0;
 }
 static int teardown(void **state) {
   State *s = *state;
   for (int i = 0; i < 4; i++) vl_coat_free(s->context, s->tables[i]);
+  for (int i = 0; i < 2; i++) vl_measured_free(s->context, s->measured[i]);
   vl_context_destroy(s->context);
   free(s->batch);
   free(s->other);
@@ -196,6 +209,7 @@ static void fill(const State *s, Batch *b, statRng *rng, vlBsdfKind kind) {
     }
     b->seed[j] = (uint32_t)stat_bits(rng);
     b->coat[j] = s->tables[stat_bits(rng) % 4];
+    b->measured[j] = s->measured[stat_bits(rng) % 2];
     double o[3], w[3];
     stat_direction(rng, o);
     stat_direction(rng, w);
@@ -296,10 +310,11 @@ static void lanes_alone(void **state) {
       for (int r = 0; r < VL_PRINCIPLED_ROWS; r++) c->principled[r][j] = b->principled[r][i];
       c->alpha_x[j] = b->alpha_x[i], c->alpha_y[j] = b->alpha_y[i], c->eta_s[j] = b->eta_s[i], c->coat[j] = b->coat[i];
       c->ox[j] = b->ox[i], c->oy[j] = b->oy[i], c->oz[j] = b->oz[i];
+      c->measured[j] = b->measured[i];
       c->lobe[j] = b->lobe[i], c->u[j] = b->u[i], c->v[j] = b->v[i], c->seed[j] = b->seed[i];
     }
     for (uint32_t j = 600; j < BATCH; j++)
-      c->coat[j] = NULL, c->ox[j] = NAN, c->alpha_x[j] = NAN; /* padding is garbage */
+      c->coat[j] = NULL, c->measured[j] = NULL, c->ox[j] = NAN, c->alpha_x[j] = NAN; /* padding is garbage */
     batch_sample(s->kernels, kind, BATCH, b);
     batch_sample(s->kernels, kind, 600, c);
     for (uint32_t j = 0; j < 600; j++) {

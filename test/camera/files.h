@@ -29,10 +29,12 @@ static inline int files_teardown(void **state) {
   return system(command);
 }
 
-/* Lives until the next call. */
+/* Lives until the fourth call after this. */
 static inline const char *path_of(const char *name) {
-  static char path[256];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
+  static char paths[4][512];
+  static int turn;
+  char *path = paths[turn = (turn + 1) % 4];
+  snprintf(path, sizeof paths[0], "%s/%s", folder, name);
   return path;
 }
 
@@ -71,5 +73,27 @@ static inline vlError refused(const char *name, const char *text) {
     if (!strstr(refused_error.message, words)) fail_msg("\"%s\" is not in: %s", words, refused_error.message); \
     assert_int_equal(refused_error.line, at_line);                                                             \
   } while (0)
+
+/* Writing a record and reading it again with the memory running out at every place in turn. file may be null. */
+static inline void check_memory(const char *path, const vlCameraRecord *record, const vlCameraFileDef *file) {
+  bool done = false;
+  for (long n = 1; !done && n < 1000; n++) {
+    failAllocator fail = {.fail_at = 0};
+    vlContextDef def = vl_default_context_def();
+    def.threads = 1;
+    def.allocator = fail_allocator(&fail);
+    vlContext *own;
+    assert_int_equal(vl_context_create(&def, &own), VL_OK);
+    vlCameraRecord r = *record;
+    fail_after(&fail, n - 1);
+    vlResult result = vl_camera_write(own, path, file, &r, NULL);
+    if (result == VL_OK) result = vl_camera_read(own, path, NULL, &r, NULL);
+    done = !atomic_load(&fail.refused);
+    assert_int_equal(result, done ? VL_OK : VL_ERROR_MEMORY);
+    vl_context_destroy(own);
+    assert_int_equal(atomic_load(&fail.blocks), 0);
+  }
+  assert_true(done);
+}
 
 #endif

@@ -1,6 +1,6 @@
 /* test/camera/test_lens.c: the lens of a camera: shapes of its opening against their areas, the tilted plane in focus,
  * f-number, focus on a point, exposure, vignetting, planes, and what is refused. */
-#include "camera/cameras.h"
+#include "camera/context.h"
 
 #include "camera/lens.h"
 #include "camera/parts.h"
@@ -8,7 +8,6 @@
 
 enum { N = 1 << 18, CHUNK = 1024 };
 
-static vlContext *context;
 static float u[N], v[N], x[N], y[N];
 
 static void draw(uint64_t seed) {
@@ -410,16 +409,6 @@ static void no_memory(void **state) {
   }
   fails_at = -1;
   vl_context_destroy(c);
-}
-
-static int begin(void **state) {
-  (void)state;
-  return vl_context_create(NULL, &context) != VL_OK;
-}
-static int end(void **state) {
-  (void)state;
-  vl_context_destroy(context);
-  return 0;
 }
 
 int main(void) {

@@ -1,6 +1,6 @@
 /* test/camera/test_optics.c: lenses of many elements: focal length and focus against the equations, rays against a
  * plain trace by Snell's law, brightness against the pupil's area, both ways, files. */
-#include "camera/cameras.h"
+#include "camera/context.h"
 
 #include <stdio.h>
 #include <unistd.h>
@@ -8,7 +8,6 @@
 #include "camera/optics.h"
 #include "camera/rays.h"
 
-static vlContext *context;
 static const char double_gauss[] = VELO_SOURCE_DIR "/scenes/cameras/lenses/double_gauss_50mm.dat";
 static const char single[] = VELO_SOURCE_DIR "/scenes/cameras/lenses/single_50mm.dat";
 
@@ -360,16 +359,6 @@ static void wrong_lenses(void **state) {
   assert_int_equal(vl_camera_make(&camera, &made, NULL, &error), VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "fov"));
   vl_optics_destroy(o);
-}
-
-static int begin(void **state) {
-  (void)state;
-  return vl_context_create(NULL, &context) != VL_OK;
-}
-static int end(void **state) {
-  (void)state;
-  vl_context_destroy(context);
-  return 0;
 }
 
 int main(void) {

@@ -1,39 +1,10 @@
 /* Files of many frames: what each dialect's frames are, that a frame is the camera that vl_camera_read gives for it,
  * and that bad lines are told with their place. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
-#include "failing_allocator.h"
+#include "camera/files.h"
 #include "velo/trajectory.h"
-
-static char folder[] = "/tmp/velo_trajectory_XXXXXX";
-static vlContext *context;
-
-static const char *path_of(const char *name) {
-  static char paths[4][512];
-  static int turn;
-  char *path = paths[turn = (turn + 1) % 4];
-  snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-  return path;
-}
-
-static const char *put(const char *name, const char *text) {
-  const char *path = path_of(name);
-  FILE *file = fopen(path, "w");
-  assert_non_null(file);
-  fputs(text, file);
-  fclose(file);
-  return path;
-}
 
 static vlTrajectory *load(const char *path) {
   vlTrajectory *t = NULL;
@@ -278,18 +249,6 @@ static void memory_runs_out(void **state) {
   for (int i = 0; i < 3; i++) fail_everywhere(load_once, (void *)path_of(files[i]), 3);
 }
 
-static int begin(void **state) {
-  (void)state;
-  return !mkdtemp(folder) || vl_context_create(NULL, &context) != VL_OK;
-}
-static int end(void **state) {
-  (void)state;
-  char command[600];
-  vl_context_destroy(context);
-  snprintf(command, sizeof command, "rm -rf '%s'", folder);
-  return system(command);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(colmap_has_pictures_and_cameras),
@@ -302,5 +261,5 @@ int main(void) {
       cmocka_unit_test(many_frames),
       cmocka_unit_test(memory_runs_out),
   };
-  return cmocka_run_group_tests(tests, begin, end);
+  return cmocka_run_group_tests(tests, files_setup, files_teardown);
 }

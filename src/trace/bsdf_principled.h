@@ -12,9 +12,9 @@ enum { VL_PRINCIPLED_CHUNK = 64 };
 typedef struct vlPrincipledSlice {
   const float *row[VL_PRINCIPLED_ROWS];
   const float *base[4], *alpha_x, *alpha_y, *eta;
-  const float *lambda[4]; /* null in RGB mode */
-  uint32_t count;         /* whole vectors */
-  bool film, sheen, coat; /* some lane has one */
+  const float *lambda[4];        /* null in RGB mode */
+  uint32_t count;                /* whole vectors */
+  bool film, sheen, coat, solid; /* some lane has one; solid: light passes into a body */
 } vlPrincipledSlice;
 
 typedef struct vlPrincipledLanes {
@@ -27,6 +27,12 @@ typedef struct vlPrincipledLanes {
   float sheen_o[VL_PRINCIPLED_CHUNK], sheen_i[VL_PRINCIPLED_CHUNK], sheen_mean[VL_PRINCIPLED_CHUNK];
   float sheen_raw[VL_PRINCIPLED_CHUNK], sheen_value[VL_PRINCIPLED_CHUNK]; /* E(wo) uncapped; f cos_i for white */
   float film[4][VL_PRINCIPLED_CHUNK];                                     /* the film's reflection at the microfacet */
+  /* Light between the microfacets of a body that light passes, loss_mean: here and beyond. lost_up, lost_down: shares
+   * of it that come back and pass, beside a sheet's; again_up (less the share again_pass of what passes), again_down: f
+   * cos_i */
+  float loss_o[VL_PRINCIPLED_CHUNK], loss_mean[2][VL_PRINCIPLED_CHUNK];
+  float lost_up[VL_PRINCIPLED_CHUNK], lost_down[VL_PRINCIPLED_CHUNK];
+  float again_up[VL_PRINCIPLED_CHUNK], again_pass[VL_PRINCIPLED_CHUNK], again_down[VL_PRINCIPLED_CHUNK];
   float specular[VL_PRINCIPLED_CHUNK], diffuse[VL_PRINCIPLED_CHUNK], coat[VL_PRINCIPLED_CHUNK],
       refract[VL_PRINCIPLED_CHUNK], through[VL_PRINCIPLED_CHUNK]; /* chances of the lobes */
 } vlPrincipledLanes;

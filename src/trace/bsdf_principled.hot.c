@@ -16,11 +16,12 @@ static vlPrincipledSlice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t fi
     s.lambda[c] = p->lambda[c] ? p->lambda[c] + first : NULL;
   }
   s.alpha_x = p->alpha_x + first, s.alpha_y = p->alpha_y + first, s.eta = p->eta_s + first;
-  s.film = s.sheen = s.coat = false;
+  s.film = s.sheen = s.coat = s.solid = false;
   uint32_t live = n - first < s.count ? n - first : s.count;
   for (uint32_t i = 0; i < live; i++) {
     s.film |= s.row[VL_P_FILM][i] > 0.0f;
     s.coat |= s.row[VL_P_COAT][i] > 0.0f;
+    s.solid |= s.row[VL_P_THIN][i] == 0.0f && s.row[VL_P_TRANSMISSION][i] > 0.0f;
     for (int c = 0; c < 4; c++) s.sheen |= s.row[VL_P_SHEEN + c][i] > 0.0f;
   }
   return s;
@@ -39,6 +40,7 @@ static inline float over_mirror(float o, float i) {
 typedef struct Facet {
   float value, pdf; /* without Fresnel's term */
   float fresnel;    /* Schlick's weight */
+  float opaque;     /* as if light came from outside */
   float total;      /* 1: total reflection */
 } Facet;
 
@@ -61,7 +63,7 @@ static inline Facet base_facet(vlVec3 o, vlVec3 w, float ax, float ay, float for
   vlOuterCosine outer = vl_outer_cosine(oh, forth);
   float c = inside > 0.0f ? (reflect ? outer.cosine : vl_abs(ih)) : oh;
   int total = (inside > 0.0f) & reflect & outer.total;
-  return (Facet){valid ? g : 0.0f, valid ? p : 0.0f, vl_schlick_weight(c), total ? 1.0f : 0.0f};
+  return (Facet){valid ? g : 0.0f, valid ? p : 0.0f, vl_schlick_weight(c), vl_schlick_weight(oh), total ? 1.0f : 0.0f};
 }
 
 /* The coat's, about its own normal n; F included. */
@@ -74,7 +76,7 @@ static inline Facet coat_facet(vlVec3 o, vlVec3 w, vlVec3 n, float alpha) {
   int valid = (oc > 1e-3f) & (ic > 1e-3f) & (hc > 0.0f) & (w.z > 0.0f);
   float p = 0.25f * visible, f = 0.04f + 0.96f * vl_schlick_weight(oh);
   float g = p * f * vl_ggx_shadowing(oc, lo, ic, li) * w.z / (ic > 1e-3f ? ic : 1e-3f);
-  return (Facet){valid ? g : 0.0f, valid ? p : 0.0f, f, 0.0f};
+  return (Facet){valid ? g : 0.0f, valid ? p : 0.0f, f, f, 0.0f};
 }
 
 /* Whether a chunk has a coat is a constant in each of two loops. */
@@ -91,7 +93,8 @@ static inline __attribute__((always_inline)) void combine_loop(const vlPrinciple
   float *density = pdf + first;
   uint32_t count = VL_WHOLE(s->count);
   float hide_mirrors[VL_PRINCIPLED_CHUNK], hide_matts[VL_PRINCIPLED_CHUNK], hide_throughs[VL_PRINCIPLED_CHUNK];
-  float facets[VL_PRINCIPLED_CHUNK], weights[VL_PRINCIPLED_CHUNK], totals[VL_PRINCIPLED_CHUNK];
+  float facets[VL_PRINCIPLED_CHUNK], weights[VL_PRINCIPLED_CHUNK], totals[VL_PRINCIPLED_CHUNK],
+      opaques[VL_PRINCIPLED_CHUNK];
   float upper_on[VL_PRINCIPLED_CHUNK], lower_on[VL_PRINCIPLED_CHUNK], coat_values[VL_PRINCIPLED_CHUNK];
   float cosines[VL_PRINCIPLED_CHUNK], agains[VL_PRINCIPLED_CHUNK];
   /* must vectorise */
@@ -114,7 +117,7 @@ static inline __attribute__((always_inline)) void combine_loop(const vlPrinciple
     hide_matts[i] = inside > 0.0f ? 1.0f : matt;
     /* Light that passes meets the layers once, on the upper side. */
     hide_throughs[i] = side < 0.0f ? (1.0f - ci) * (1.0f - si) : (1.0f - co) * (1.0f - so);
-    facets[i] = facet.value, weights[i] = facet.fresnel, totals[i] = facet.total;
+    facets[i] = facet.value, weights[i] = facet.fresnel, totals[i] = facet.total, opaques[i] = facet.opaque;
     coat_values[i] = coat_value;
     float cosine = vl_abs(w.z) * VL_INV_PI;
     cosines[i] = cosine;
@@ -136,24 +139,28 @@ static inline __attribute__((always_inline)) void combine_loop(const vlPrinciple
       float metal = metallic[i], dielectric = 1.0f - metal, clear = clears[i], shares = shares_row[i];
       float f90 = f90s[i], film = films[i], base = bases[i], f0 = f0s[i], again = agains[i], facet = facets[i];
       float m0 = f0 + metal * (base - f0), m90 = f90 + metal * (1.0f - f90);
-      float f = m0 + (m90 - m0) * weights[i];
+      float f = m0 + (m90 - m0) * opaques[i];
       f = f + film * (l->film[c][i] - f);
-      f = totals[i] > 0.0f ? 1.0f : f;
-      float fd = f0 + (f90 - f0) * weights[i]; /* of the dielectric alone */
-      fd = fd + film * (l->film[c][i] - fd);
+      float fd = f0 + (f90 - f0) * weights[i], fo = f0 + (f90 - f0) * opaques[i]; /* of the dielectric alone */
+      fd = fd + film * (l->film[c][i] - fd), fo = fo + film * (l->film[c][i] - fo);
+      float within = totals[i] > 0.0f ? 1.0f : fd; /* inside only what passes light is denser than beyond */
+      f = f + l->inside[i] * dielectric * clear * (within - fo);
       float matt = (1.0f - l->energy_o[c][i]) * (1.0f - l->energy_i[c][i]) / (1.0f - l->energy_mean[c][i]) *
                    cosines[i] * dielectric * (1.0f - clear);
       float metal_mean = base + (1.0f - base) * (1.0f / 21.0f), sheet_mean = f0 + (f90 - f0) * (1.0f / 21.0f);
       float metal_again = metal_mean * metal_mean * l->one_mean[i] / (1.0f - metal_mean * (1.0f - l->one_mean[i]));
       float sheet_again = dielectric * clear * thins[i] * again;
+      float body = dielectric * clear, body_pass = 1.0f - sheet_mean; /* between microfacets of both sides */
+      float body_up = body * l->again_up[i] * (1.0f - l->again_pass[i] * body_pass);
+      float body_down = body * l->again_down[i] * body_pass * base;
       float bare = 1.0f - l->inside[i];
       float fuzz = sheens[i] * l->sheen_value[i] * bare * over_matt(l->coat_o[i], l->coat_i[i], l->coat_mean[i]);
-      float upper =
-          hide_mirrors[i] * f * facet +
-          hide_matts[i] * (matt * (1.0f - shares) * base + metal * metal_again * again + sheet_again * sheet_mean) +
-          coat_values[i] + fuzz;
+      float upper = hide_mirrors[i] * f * facet +
+                    hide_matts[i] * (matt * (1.0f - shares) * base + metal * metal_again * again +
+                                     sheet_again * sheet_mean + body_up) +
+                    coat_values[i] + fuzz;
       float lower = hide_throughs[i] * (dielectric * clear * base * (1.0f - fd) * facet + matt * shares * throughs[i] +
-                                        sheet_again * (1.0f - sheet_mean) * base);
+                                        sheet_again * (1.0f - sheet_mean) * base + body_down);
       result[i] = upper * upper_on[i] + lower * lower_on[i];
     }
   }
@@ -215,7 +222,11 @@ static __attribute__((noinline)) void choose(const vlPrincipledSlice *s, const v
       if (!(w.z > 0.0f)) w = vl_vec3(0.0f, 0.0f, 0.0f);
     } else {
       w = vl_cosine_direction(u[k], v[k]);
-      if (x >= to_refract) w.z = -w.z;
+      if (x >= to_refract) {
+        float eta = inside > 0.0f ? 1.0f / s->eta[i] : s->eta[i];
+        scale = thin > 0.0f ? 1.0f : eta * eta;
+        w.z = -w.z;
+      }
     }
     wi.x[k] = w.x, wi.y[k] = w.y, wi.z[k] = w.z * side;
     eta_scale[k] = scale;

@@ -177,6 +177,45 @@ static void sheen_at_light(const vlPrincipledSlice *s, const float *ox, const fl
   }
 }
 
+/* ---- between the microfacets of a body --------------------------------------------------------------------------- */
+
+/* Kulla and Conty 2017 for a boundary that light passes: what single scattering loses at both directions, m(o) m(i),
+ * scattered evenly to both sides. With L over the squared index constant all around (a furnace) each side must get its
+ * loss back, and values must be the same both ways; M: mean of m, n: index:
+ *   f_up(o, i) = (1 - p) m(o) m(i) / (pi M),  f_down(o, i) = n_o^2 T m(o) m(i) / (pi max(n^2 M_in, M_out)),
+ *   p_out = T n^2 M_in / max(...),  p_in = T M_out / max(...),  T: mean of 1 - F from outside. */
+static void losses_at_view(const vlPrincipledSlice *s, vlPrincipledLanes *l) {
+  for (uint32_t i = 0; i < s->count; i++) {
+    float eta = s->eta[i];
+    if (s->row[VL_P_THIN][i] > 0.0f || !(s->row[VL_P_TRANSMISSION][i] > 0.0f) || !(eta > 1.0f)) continue;
+    vlAlbedoPlace index = vl_loss_place(eta),
+                  alpha = vl_albedo_place(base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
+    uint32_t side = l->inside[i] > 0.0f;
+    l->loss_o[i] = vl_loss_at(side, index, alpha, vl_albedo_place(l->z[i], VL_LOSS_COS));
+    for (uint32_t k = 0; k < 2; k++) l->loss_mean[k][i] = vl_max(vl_loss_mean(side ^ k, index, alpha), 1e-6f);
+    float here = l->loss_mean[0][i], there = l->loss_mean[1][i], n2 = side ? 1.0f / (eta * eta) : eta * eta;
+    l->again_pass[i] = n2 * there / vl_max(here, n2 * there);
+    float f0 = s->row[VL_P_F0][i], mean = f0 + (s->row[VL_P_F90][i] - f0) * (1.0f / 21.0f);
+    float passes = l->again_pass[i] * (1.0f - mean), lost = l->loss_o[i] / (1.0f - l->one_o[i]);
+    l->lost_up[i] = lost * (1.0f - passes), l->lost_down[i] = lost * passes;
+  }
+}
+
+static void losses_at_light(const vlPrincipledSlice *s, const float *z, vlPrincipledLanes *l) {
+  for (uint32_t i = 0; i < s->count; i++) {
+    float eta = s->eta[i], c = vl_abs(z[i]);
+    if (!(l->loss_mean[0][i] > 0.0f)) continue;
+    vlAlbedoPlace index = vl_loss_place(eta),
+                  alpha = vl_albedo_place(base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
+    uint32_t side = l->inside[i] > 0.0f, crosses = z[i] < 0.0f;
+    float both =
+        l->loss_o[i] * vl_loss_at(side ^ crosses, index, alpha, vl_albedo_place(c, VL_LOSS_COS)) * c * VL_INV_PI;
+    float here = l->loss_mean[0][i], there = l->loss_mean[1][i], n2 = side ? 1.0f / (eta * eta) : eta * eta;
+    l->again_up[i] = both / here;
+    l->again_down[i] = both / vl_max(here, n2 * there);
+  }
+}
+
 /* Chances of the lobes: about what each sends back; none of those that can shine is left at 0. */
 static __attribute__((noinline)) void weigh(const vlPrincipledSlice *s, const float *coat_cos, vlPrincipledLanes *l) {
   const float *b0 = s->base[0], *b1 = s->base[1], *b2 = s->base[2], *b3 = s->base[3];
@@ -201,13 +240,14 @@ static __attribute__((noinline)) void weigh(const vlPrincipledSlice *s, const fl
     float reflected = inside > 0.0f ? inner : energy;
     float mirror = cover * (metal * (base > 0.02f ? base : 0.02f) + dielectric * reflected) + 1e-3f;
     float lost = 1.0f - l->one_o[i];
-    float matt =
-        cover * (dielectric * (1.0f - clear) * (1.0f - shares) * seen + (metal * base + dielectric * clear) * lost) +
-        l->sheen_o[i];
+    float matt = cover * (dielectric * (1.0f - clear) * (1.0f - shares) * seen +
+                          (metal * base + dielectric * clear * l->lost_up[i]) * lost) +
+                 l->sheen_o[i];
     float coat = (coat_cos[i] > 1e-3f) & (inside == 0.0f) ? 1.0f : 0.0f;
     coat = coat * l->coat_o[i];
     float refract = cover * dielectric * clear * base * (1.0f - reflected);
-    float beyond = cover * dielectric * ((1.0f - clear) * shares * through * (1.0f - energy) + clear * base * lost);
+    float beyond = cover * dielectric *
+                   ((1.0f - clear) * shares * through * (1.0f - energy) + clear * base * lost * l->lost_down[i]);
     float inverse = 1.0f / (mirror + matt + coat + refract + beyond);
     l->specular[i] = mirror * inverse, l->diffuse[i] = matt * inverse, l->coat[i] = coat * inverse;
     l->refract[i] = refract * inverse, l->through[i] = beyond * inverse;
@@ -223,6 +263,8 @@ void VL_HOT(vl_principled_view)(const vlPrincipledSlice *s, vlBsdfDirections wo,
     l->z[i] = vl_abs(z), l->side[i] = z < 0.0f ? -1.0f : 1.0f;
     l->inside[i] = z < 0.0f ? 1.0f - thin[i] : 0.0f;
     l->coat_o[i] = l->coat_mean[i] = l->sheen_o[i] = l->sheen_mean[i] = l->sheen_raw[i] = coat_cos[i] = 0.0f;
+    l->loss_mean[0][i] = l->again_up[i] = l->again_down[i] = l->again_pass[i] = 0.0f;
+    l->lost_up[i] = l->lost_down[i] = 1.0f;
     l->coat_i[i] = l->sheen_i[i] = l->sheen_value[i] = 0.0f;
     for (int c = 0; c < 4; c++) l->film[c][i] = 0.0f;
   }
@@ -241,6 +283,7 @@ void VL_HOT(vl_principled_view)(const vlPrincipledSlice *s, vlBsdfDirections wo,
       coat_cos[i] = vl_dot(vl_vec3(ox[i], oy[i], l->z[i]), vl_principled_coat(s, i, l->side[i]));
   }
   if (s->sheen) sheen_at_view(s, l);
+  if (s->solid) losses_at_view(s, l);
   weigh(s, coat_cos, l);
 }
 
@@ -256,6 +299,7 @@ void VL_HOT(vl_principled_light)(const vlPrincipledSlice *s, vlBsdfDirections wo
   energies(s, a, b, l->energy_i, l->one_i);
   if (s->coat) coat_energies(s, l, ix, iy, z, l->coat_i);
   if (s->sheen) sheen_at_light(s, ox, oy, ix, iy, z, l);
+  if (s->solid) losses_at_light(s, z, l);
   if (!s->film) return;
   film_energies(s, z, l->one_i, l->energy_i);
   for (uint32_t i = 0; i < count; i++) {

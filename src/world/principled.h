@@ -5,6 +5,8 @@
  *             (Karis 2013, "Real Shading in Unreal Engine 4"); a + b: for F = 1
  *   sheen     the "Charlie" distribution with its shadowing (Estevez and Kulla 2017, "Production Friendly Microfacet
  *             Sheen BRDF")
+ *   loss      of light that meets a rough body of glass from outside or inside: what single scattering, reflected and
+ *             refracted together, fails to send on (Walter et al. 2007 with the Schlick term of that index)
  * Means are over the cosine-weighted hemisphere: int E 2 cos dcos (Kulla and Conty 2017). */
 #ifndef WORLD_PRINCIPLED_H
 #define WORLD_PRINCIPLED_H
@@ -12,13 +14,16 @@
 #include "math/approx.h"
 #include "math/vec.h"
 
-enum { VL_ALBEDO_COS = 64, VL_ALBEDO_ALPHA = 32 };
+enum { VL_ALBEDO_COS = 64, VL_ALBEDO_ALPHA = 32, VL_LOSS_COS = 32, VL_LOSS_ALPHA = 16, VL_LOSS_ETA = 16 };
+#define VL_LOSS_MOST_ROOT 0.5f /* of (eta - 1) / (eta + 1): eta 3 */
 
 /* Row: sqrt(alpha) in equal steps over [0, 1]; column: sqrt(cos) likewise. Linear between. */
 typedef struct vlPrincipledTables {
   float a[VL_ALBEDO_ALPHA][VL_ALBEDO_COS], b[VL_ALBEDO_ALPHA][VL_ALBEDO_COS];
   float a_mean[VL_ALBEDO_ALPHA], b_mean[VL_ALBEDO_ALPHA];
   float sheen[VL_ALBEDO_ALPHA][VL_ALBEDO_COS], sheen_mean[VL_ALBEDO_ALPHA];
+  /* First the side: 0 outside, 1 inside; then (eta - 1) / (eta + 1) in equal steps; then as above. */
+  float loss[2][VL_LOSS_ETA][VL_LOSS_ALPHA][VL_LOSS_COS], loss_mean[2][VL_LOSS_ETA][VL_LOSS_ALPHA];
 } vlPrincipledTables;
 
 /* Computed by tools/albedo_tables as the library is built. The sheen's exceeds 1 where it is narrow and light grazes:
@@ -44,6 +49,29 @@ static inline float vl_albedo_at(const float table[][VL_ALBEDO_COS], vlAlbedoPla
 }
 static inline float vl_albedo_mean(const float *mean, vlAlbedoPlace alpha) {
   return mean[alpha.first] + alpha.t * (mean[alpha.first + 1] - mean[alpha.first]);
+}
+
+/* The index's place in the tables of losses; eta >= 1. */
+static inline vlAlbedoPlace vl_loss_place(float eta) {
+  float c = (eta - 1.0f) / (eta + 1.0f) * ((float)(VL_LOSS_ETA - 1) / VL_LOSS_MOST_ROOT);
+  c = c > 0.0f ? c : 0.0f;
+  uint32_t first = c < (float)(VL_LOSS_ETA - 2) ? (uint32_t)c : VL_LOSS_ETA - 2;
+  float t = c - (float)first;
+  return (vlAlbedoPlace){first, t < 1.0f ? t : 1.0f};
+}
+static inline float vl_loss_at(uint32_t side, vlAlbedoPlace eta, vlAlbedoPlace alpha, vlAlbedoPlace cosine) {
+  float ends[2];
+  for (uint32_t k = 0; k < 2; k++) {
+    const float *p = vl_principled_tables.loss[side][eta.first + k][alpha.first] + cosine.first, *q = p + VL_LOSS_COS;
+    float low = p[0] + cosine.t * (p[1] - p[0]), high = q[0] + cosine.t * (q[1] - q[0]);
+    ends[k] = low + alpha.t * (high - low);
+  }
+  return ends[0] + eta.t * (ends[1] - ends[0]);
+}
+static inline float vl_loss_mean(uint32_t side, vlAlbedoPlace eta, vlAlbedoPlace alpha) {
+  const float(*mean)[VL_LOSS_ALPHA] = vl_principled_tables.loss_mean[side] + eta.first;
+  float low = vl_albedo_mean(mean[0], alpha), high = vl_albedo_mean(mean[1], alpha);
+  return low + eta.t * (high - low);
 }
 
 static inline float vl_schlick_weight(float cosine) {

@@ -14,7 +14,7 @@
 typedef struct Look {
   const char *name;
   float metallic, roughness, transmission, solid, beyond, coat, coat_roughness, sheen, sheen_roughness, film, film_nm,
-      anisotropy, base;
+      anisotropy, base, index;
   double least, most;
 } Look;
 static const Look looks[] = {
@@ -28,6 +28,47 @@ static const Look looks[] = {
     {.name = "sheet", .base = 1, .transmission = 1, .least = 0.999, .most = 1.001},
     {.name = "rough sheet", .base = 1, .roughness = 0.6f, .transmission = 1, .least = 0.997, .most = 1.003},
     {.name = "solid", .base = 1, .transmission = 1, .solid = 1, .least = 0.999, .most = 1.001},
+    {.name = "frosted glass",
+     .base = 1,
+     .roughness = 0.3f,
+     .transmission = 1,
+     .solid = 1,
+     .least = 0.997,
+     .most = 1.003},
+    {.name = "rough glass", .base = 1, .roughness = 0.6f, .transmission = 1, .solid = 1, .least = 0.997, .most = 1.003},
+    {.name = "rough diamond",
+     .base = 1,
+     .roughness = 0.7f,
+     .transmission = 1,
+     .solid = 1,
+     .index = 2.42f,
+     .least = 0.997,
+     .most = 1.003},
+    {.name = "rough water",
+     .base = 1,
+     .roughness = 0.8f,
+     .transmission = 1,
+     .solid = 1,
+     .index = 1.33f,
+     .least = 0.997,
+     .most = 1.003},
+    {.name = "rough air",
+     .base = 1,
+     .roughness = 0.9f,
+     .transmission = 1,
+     .solid = 1,
+     .index = 1.05f,
+     .least = 0.997,
+     .most = 1.003},
+    {.name = "roughest glass", .base = 1, .roughness = 1, .transmission = 1, .solid = 1, .least = 0.997, .most = 1.003},
+    {.name = "half frosted",
+     .base = 1,
+     .metallic = 0.3f,
+     .roughness = 0.7f,
+     .transmission = 0.5f,
+     .solid = 1,
+     .least = 0.99,
+     .most = 1.01},
     {.name = "half passing", .base = 1, .roughness = 0.3f, .transmission = 0.5f, .least = 0.997, .most = 1.003},
     {.name = "leaf", .base = 1, .roughness = 0.5f, .beyond = 0.5f, .least = 0.998, .most = 1.001},
     {.name = "coat", .base = 1, .roughness = 0.5f, .coat = 1, .least = 0.993, .most = 1.004},
@@ -104,11 +145,13 @@ static Surface surface_of(const Look *l, float rows[VL_PRINCIPLED_ROWS]) {
   rows[VL_P_COAT_Z] = 1;
   rows[VL_P_SHEEN_ALPHA] = fmaxf(l->sheen_roughness * l->sheen_roughness, 0.005f);
   rows[VL_P_FILM] = l->film, rows[VL_P_FILM_INDEX] = 1.3f, rows[VL_P_FILM_NM] = l->film_nm;
-  for (int c = 0; c < 4; c++) rows[VL_P_F0 + c] = 0.04f, rows[VL_P_THROUGH + c] = 1, rows[VL_P_SHEEN + c] = l->sheen;
+  float index = l->index > 0 ? l->index : 1.5f, root = (index - 1) / (index + 1);
+  for (int c = 0; c < 4; c++)
+    rows[VL_P_F0 + c] = root * root, rows[VL_P_THROUGH + c] = 1, rows[VL_P_SHEEN + c] = l->sheen;
   float alpha = fmaxf(l->roughness * l->roughness, 1e-3f);
   return (Surface){.kind = VL_BSDF_PRINCIPLED,
                    .reflectance = l->base,
-                   .eta_s = 1.5f,
+                   .eta_s = index,
                    .alpha_x = alpha + (1 - alpha) * l->anisotropy * l->anisotropy,
                    .alpha_y = alpha,
                    .principled = rows};
@@ -174,8 +217,9 @@ static void reciprocity(void **state) {
         double forth = (double)a->value[c][j] / fabs((double)a->iz[j]),
                back = (double)b->value[c][j] / fabs((double)b->iz[j]);
         if (looks[k].solid > 0 && a->oz[j] * a->iz[j] < 0) { /* radiance over the squared index of where it travels */
-          forth /= a->oz[j] > 0 ? 1 : 2.25;
-          back /= b->oz[j] > 0 ? 1 : 2.25;
+          double index = (double)surface.eta_s;
+          forth /= a->oz[j] > 0 ? 1 : index * index;
+          back /= b->oz[j] > 0 ? 1 : index * index;
         }
         lit += forth > 0;
         if (!(fabs(forth - back) <= 1e-4 * (fabs(forth) + 1e-4)))
@@ -202,9 +246,9 @@ static void chi_square(void **state) {
   State *s = *state;
   Batch *b = s->batch;
   static const double thetas[] = {0.3, 1.3, PI - 0.7};
-  const char *names[] = {"dielectric", "rough metal", "rough sheet",   "leaf",       "coated metal",
-                         "velvet",     "film",        "brushed metal", "everything", "frosted solid"};
-  for (int q = 0; q < 10; q++)
+  const char *names[] = {"dielectric", "rough metal",   "rough sheet", "leaf",          "coated metal",  "velvet",
+                         "film",       "brushed metal", "everything",  "frosted solid", "roughest glass"};
+  for (int q = 0; q < 11; q++)
     for (int t = 0; t < 3; t++) {
       int k = 0;
       while (strcmp(looks[k].name, names[q]) != 0) k++;

@@ -331,6 +331,10 @@ typedef struct vlLightDef {
   vlColorSpace space;           /* of the picture. It holds radiance, times scale; colour is ignored */
   vlMediumId medium;            /* that it stands in */
   float fov;                    /* projection: radians across the picture's smaller side; default a right angle */
+  /* Infinite with a picture: seen only through a rectangle of the world, its corners one after the other, in directions
+   * to the side that (last - first) x (second - first) points to. What has no such light is dark. */
+  bool has_portal;
+  float portal[4][3];
 } vlLightDef;
 VL_API vlLightDef vl_default_light_def(vlLightKind kind);
 VL_API vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def);

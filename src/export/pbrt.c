@@ -171,6 +171,8 @@ static bool put_light(vlExport *x, const vlLightDef *d) {
         degrees * (double)d->cone_delta);
   if (!isnan(d->power)) PUT(" \"float power\" [%.9g]", d->power);
   if (!isnan(d->illuminance)) PUT(" \"float illuminance\" [%.9g]", d->illuminance);
+  for (int i = 0; d->has_portal && i < 12; i++)
+    PUT("%s%.9g%s", i ? " " : " \"point3 portal\" [", (double)d->portal[i / 3][i % 3], i == 11 ? "]" : "");
   PUT("\nAttributeEnd\n");
   return true;
 }

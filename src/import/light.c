@@ -21,13 +21,27 @@ static void read_target(vlDict *dict, const char *name, double *value) {
   if (vl_dict_double(dict, name, &v) && v > 0.0) *value = v;
 }
 
+/* In the world's space, whatever the current transform: as pbrt. */
+static bool read_portal(vlDict *dict, vlLightDef *def, const vlParam *portal, bool pictured) {
+  vlImport *import = dict->import;
+  size_t count = portal->floats.count;
+  if (count != 12)
+    return vl_import_fail(import, VL_ERROR_SCENE, portal->place, "%s: \"portal\" takes 4 points, found %zu numbers",
+                          dict->what, count);
+  if (!pictured)
+    return vl_import_fail(import, VL_ERROR_SCENE, portal->place, "%s: \"portal\" needs a picture (\"string filename\")",
+                          dict->what);
+  def->has_portal = true;
+  for (int i = 0; i < 12; i++) def->portal[i / 3][i % 3] = portal->floats.items[i];
+  return true;
+}
+
 static bool read_infinite(vlDict *dict, vlLightDef *def, bool has_color) {
   vlImport *import = dict->import;
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
   vlParam *portal = vl_dict_find(dict, "portal", 1u << VL_PARAM_POINT3);
   read_target(dict, "illuminance", &def->illuminance);
-  if (portal && !vl_import_unsupported(import, portal->place, "%s: \"portal\" is not understood yet", dict->what))
-    return false;
+  if (portal && !read_portal(dict, def, portal, file != NULL)) return false;
   if (!file) return true;
   if (has_color)
     return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: give either \"L\" or \"filename\", not both",

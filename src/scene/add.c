@@ -263,6 +263,33 @@ vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
   return (vlEmissionId){(uint32_t)scene->emissions.count};
 }
 
+/* A rectangle, and a picture to be seen through it. Tolerances as pbrt's. */
+static bool check_portal(vlScene *scene, const vlLightDef *d) {
+  double sides[4][3], lengths[4];
+  if (d->kind != VL_LIGHT_INFINITE || (!d->path && !d->image))
+    return bad(scene, d->source, "light", "a portal is for an infinite light with a picture");
+  for (int k = 0; k < 4; k++) {
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+      if (!isfinite(d->portal[k][i])) return bad(scene, d->source, "light", "portal is not finite");
+      sides[k][i] = (double)d->portal[(k + 1) % 4][i] - d->portal[k][i];
+      sum += sides[k][i] * sides[k][i];
+    }
+    lengths[k] = sqrt(sum);
+    if (!(sum > 0)) return bad(scene, d->source, "light", "two corners of its portal are the same");
+  }
+  for (int k = 0; k < 4; k++) {
+    double across = 0, opposite = 0;
+    for (int i = 0; i < 3; i++) {
+      across += sides[k][i] * sides[(k + 1) % 4][i] / (lengths[k] * lengths[(k + 1) % 4]);
+      opposite += sides[k][i] * sides[(k + 2) % 4][i] / (lengths[k] * lengths[(k + 2) % 4]);
+    }
+    if (fabs(across) > 1e-3 || fabs(opposite + 1) > 1e-3)
+      return bad(scene, d->source, "light", "its portal is not a rectangle, corner after corner");
+  }
+  return true;
+}
+
 static bool check_light(vlScene *scene, const vlLightDef *d) {
   if ((unsigned)d->kind > VL_LIGHT_PROJECTION) return bad(scene, d->source, "light", "unknown kind");
   if (!isfinite(d->scale)) return bad(scene, d->source, "light", "scale is not finite");
@@ -284,7 +311,7 @@ static bool check_light(vlScene *scene, const vlLightDef *d) {
     return bad(scene, d->source, "light", "needs a picture");
   if (d->kind == VL_LIGHT_PROJECTION && !(d->fov > 0.0f && d->fov < 3.1415f))
     return bad(scene, d->source, "projection light", "field of view must be above 0 and below 180 degrees");
-  return true;
+  return !d->has_portal || check_portal(scene, d);
 }
 
 vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {

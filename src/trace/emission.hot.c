@@ -3,6 +3,7 @@
 #include "math/octahedral.h"
 #include "math/warp.h"
 #include "trace/two_way_stages.h"
+#include "world/portal.h"
 #include "world/surface_point.h"
 #include "world/texture_lookup.h"
 
@@ -33,8 +34,19 @@ static float point_density(const vlWorld *world, const vlWorldLight *light, vlVe
 /* Pictures of the sky have a density that leaves out what is dim (other ways find that better): half of the light's
  * paths go by it, half from anywhere. */
 static float sky_density(const vlWorld *world, const vlWorldLight *light, vlVec3 w) {
-  float pdf = VL_HOT(vl_infinite_pdf)(world, light, w);
+  float pdf = VL_HOT(vl_infinite_pdf)(world, light, vl_vec3(0, 0, 0), w);
   return light->environment == VL_NONE ? pdf : 0.5f * (pdf + VL_INV_4PI);
+}
+
+static const vlPortal *portal_of(const vlWorld *world, const vlWorldLight *light) {
+  return light->environment == VL_NONE ? NULL : world->environments.items[light->environment].portal;
+}
+
+/* Through a portal all paths go, from any of its directions by their light: per area across w. */
+static float portal_density(const vlPortal *portal, vlVec3 w) {
+  vlPortalWindow whole = vl_portal_whole(portal);
+  float across = portal->width * portal->height * vl_portal_local(portal, w).z;
+  return across > 0.0f ? vl_portal_pdf(portal, &whole, w) / across : 0.0f;
 }
 
 float VL_HOT(vl_emission_density)(const vlWorld *world, const vlTwoWay *way, uint32_t index, vlVec3 w, float distance,
@@ -49,7 +61,9 @@ float VL_HOT(vl_emission_density)(const vlWorld *world, const vlTwoWay *way, uin
       return c >= light->cos_end ? p * VL_INV_2PI / ((1.0f - light->cos_end) * distance * distance) : 0.0f;
     }
     case VL_WL_DISTANT: return p / world_disk(world);
-    case VL_WL_INFINITE: return p * sky_density(world, light, w) / world_disk(world);
+    case VL_WL_INFINITE:
+      if (portal_of(world, light)) return p * portal_density(portal_of(world, light), w);
+      return p * sky_density(world, light, w) / world_disk(world);
     case VL_WL_AREA:
       return p * VL_INV_PI * point_density(world, light, at->p) *
              (world->emitted.items[light->emitted].two_sided ? 0.5f : 1.0f);
@@ -144,7 +158,7 @@ static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light, con
   }
   if (u < 0.5f) {
     vlVec3 w = vl_warp_sphere(2.0f * u, v);
-    VL_HOT(vl_infinite_at)(world, light, w, lambda, radiance);
+    VL_HOT(vl_infinite_at)(world, light, vl_vec3(0, 0, 0), w, lambda, radiance);
     *pdf = sky_density(world, light, w);
     return w;
   }
@@ -169,6 +183,25 @@ static void from_afar(const vlWorld *world, vlVec3 w, float u, float v, vlEmissi
   out->o = vl_add(vl_vec3(world->center[0], world->center[1], world->center[2]), at);
   out->d = vl_neg(w);
   out->at = w;
+  out->valid = true;
+}
+
+/* Through the portal, from beyond the world. */
+static void through_portal(const vlWorld *world, const vlWorldLight *light, const vlPortal *portal,
+                           const float lambda[4], float u, float v, float s, float t, vlEmission *out) {
+  vlPortalWindow whole = vl_portal_whole(portal);
+  vlVec3 w = vl_portal_sample(portal, &whole, s, t);
+  float density = portal_density(portal, w);
+  if (!(density > 0.0f)) return;
+  vlVec3 at = vl_vec3(portal->corner[0], portal->corner[1], portal->corner[2]);
+  at = vl_add(at, vl_portal_world(portal, vl_vec3(u * portal->width, v * portal->height, 0)));
+  vlVec3 away = vl_sub(at, vl_vec3(world->center[0], world->center[1], world->center[2]));
+  out->o = vl_add(at, vl_mul(w, vl_length(away) + world->radius));
+  out->d = vl_neg(w);
+  out->at = w;
+  VL_HOT(vl_infinite_at)(world, light, vl_sub(at, w), w, lambda, out->flux);
+  for (int c = 0; c < 4; c++) out->flux[c] /= density;
+  out->density = density;
   out->valid = true;
 }
 
@@ -210,6 +243,10 @@ vlEmission VL_HOT(vl_emission_sample)(const vlWorld *world, const vlTwoWay *way,
       r.delta = true;
       break;
     case VL_WL_INFINITE: {
+      if (portal_of(world, light)) {
+        through_portal(world, light, portal_of(world, light), lambda, u, v, s, t, &r);
+        break;
+      }
       float pdf;
       from_afar(world, sky_direction(world, light, lambda, s, t, &pdf, r.flux), u, v, &r);
       if (!(pdf > 0.0f)) return (vlEmission){.valid = false};

@@ -3,6 +3,7 @@
 #include "math/octahedral.h"
 #include "math/warp.h"
 #include "trace/stages.h"
+#include "world/portal.h"
 #include "world/surface_point.h"
 #include "world/texture_lookup.h"
 
@@ -42,17 +43,28 @@ static vlVec3 turn(const float m[9], vlVec3 d) {
                  m[6] * d.x + m[7] * d.y + m[8] * d.z);
 }
 
-void VL_HOT(vl_infinite_at)(const vlWorld *world, const vlWorldLight *light, vlVec3 d, const float lambda[4],
+void VL_HOT(vl_infinite_at)(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d, const float lambda[4],
                             float out[4]) {
   vlVec2 st = {0, 0};
-  if (light->environment != VL_NONE)
-    st = vl_octahedral_encode(vl_normalize(turn(world->environments.items[light->environment].light_from_world, d)));
+  if (light->environment != VL_NONE) {
+    const vlEnvironment *env = &world->environments.items[light->environment];
+    st = vl_octahedral_encode(vl_normalize(turn(env->light_from_world, d)));
+    if (env->portal && !vl_portal_shows(env->portal, o, d)) {
+      for (int c = 0; c < 4; c++) out[c] = 0.0f;
+      return;
+    }
+  }
   VL_HOT(vl_emitted_at)(world, &world->emitted.items[light->emitted], lambda, st.x, st.y, true, out);
 }
 
-float VL_HOT(vl_infinite_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 d) {
+float VL_HOT(vl_infinite_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d) {
   if (light->environment == VL_NONE) return 0.25f * VL_INV_PI;
   const vlEnvironment *env = &world->environments.items[light->environment];
+  vlPortalWindow window;
+  if (env->portal)
+    return vl_portal_shows(env->portal, o, d) && vl_portal_window(env->portal, o, &window)
+               ? vl_portal_pdf(env->portal, &window, d)
+               : 0.0f;
   vlVec2 st = vl_octahedral_encode(vl_normalize(turn(env->light_from_world, d)));
   uint32_t x = (uint32_t)(st.x * (float)env->size), y = (uint32_t)(st.y * (float)env->size);
   x = x < env->size ? x : env->size - 1, y = y < env->size ? y : env->size - 1;
@@ -328,6 +340,13 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
         w = vl_warp_sphere(u, v);
         pdf = 0.25f * VL_INV_PI;
         VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, true, radiance);
+      } else if (world->environments.items[light->environment].portal) {
+        const vlPortal *portal = world->environments.items[light->environment].portal;
+        vlPortalWindow window;
+        if (!vl_portal_window(portal, p, &window)) return;
+        w = vl_portal_sample(portal, &window, u, v);
+        pdf = VL_HOT(vl_infinite_pdf)(world, light, p, w);
+        VL_HOT(vl_infinite_at)(world, light, p, w, lambda, radiance);
       } else {
         const vlEnvironment *env = &world->environments.items[light->environment];
         float dx, dy;

@@ -85,7 +85,7 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
 static float asked(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w) {
   const vlWorldLight *light = &world->lights.items[r->light[lane]];
   float pmf = vl_light_pmf(&world->tree, p, n, r->light[lane]);
-  if (light->kind == VL_WL_INFINITE) return pmf * VL_HOT(vl_infinite_pdf)(world, light, w);
+  if (light->kind == VL_WL_INFINITE) return pmf * VL_HOT(vl_infinite_pdf)(world, light, p, w);
   if (light->kind != VL_WL_AREA) return pmf;
   vlPoint at;
   __builtin_memset(&at, 0, sizeof at);

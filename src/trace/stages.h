@@ -211,10 +211,10 @@ void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *emitted, const
                            bool sky, float out[4]);
 /* uv of the emission's picture at a point of an area light that a ray has met. */
 vlVec2 VL_HOT(vl_glow_uv)(const vlWorld *world, const vlWorldLight *light, const vlPoint *at);
-/* Radiance of a light that a ray in direction d misses everything to see; and the density of sampling it. */
-void VL_HOT(vl_infinite_at)(const vlWorld *world, const vlWorldLight *light, vlVec3 d, const float lambda[4],
+/* Radiance of a light that a ray from o in direction d misses everything to see; and the density of sampling it. */
+void VL_HOT(vl_infinite_at)(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d, const float lambda[4],
                             float out[4]);
-float VL_HOT(vl_infinite_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 d);
+float VL_HOT(vl_infinite_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d);
 /* Density, per solid angle from `from`, of sampling this point of an area light (choice not included). */
 float VL_HOT(vl_area_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at);
 

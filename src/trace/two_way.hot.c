@@ -20,19 +20,19 @@ static void add_radiance(vlTracing *t, const vlPaths *p, uint32_t i, const float
 
 static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
   const vlWorld *world = t->world;
-  vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
   float lambda[4], radiance[4];
   vl_path_lambda(p, i, lambda);
   for (size_t k = 0; k < world->infinite_lights.count; k++) {
     uint32_t index = world->infinite_lights.items[k];
     const vlWorldLight *light = &world->lights.items[index];
-    VL_HOT(vl_infinite_at)(world, light, d, lambda, radiance);
+    VL_HOT(vl_infinite_at)(world, light, o, d, lambda, radiance);
     float weight = 1.0f;
     if (!first) {
-      float asked = p->specular[i] ? 0.0f
-                                   : VL_HOT(vl_infinite_pdf)(world, light, d) *
-                                         vl_light_pmf(&world->tree, vl_lane3(p->ox, p->oy, p->oz, i),
-                                                      vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), index);
+      float asked = p->specular[i]
+                        ? 0.0f
+                        : VL_HOT(vl_infinite_pdf)(world, light, o, d) *
+                              vl_light_pmf(&world->tree, o, vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), index);
       weight =
           hit_weight(t, p, i, asked, VL_HOT(vl_emission_density)(world, t->def->two_way, index, d, VL_INFINITY, NULL));
     }

@@ -121,9 +121,10 @@ static void add_sky(vlTracing *t, uint32_t i) {
   for (size_t k = 0; k < world->infinite_lights.count; k++) {
     uint32_t index = world->infinite_lights.items[k];
     const vlWorldLight *light = &world->lights.items[index];
-    VL_HOT(vl_infinite_at)(world, light, d, lambda, radiance);
+    VL_HOT(vl_infinite_at)(world, light, o, d, lambda, radiance);
     float pdf = 0.0f;
-    if (!p->specular[i]) pdf = VL_HOT(vl_infinite_pdf)(world, light, d) * vl_light_pmf(&world->tree, o, from_n, index);
+    if (!p->specular[i])
+      pdf = VL_HOT(vl_infinite_pdf)(world, light, o, d) * vl_light_pmf(&world->tree, o, from_n, index);
     add_light(t, i, radiance, pdf);
   }
 }

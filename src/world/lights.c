@@ -162,6 +162,10 @@ static vlResult add_infinite(vlWorld *world, const vlLightDef *def, vlWorldLight
     e->image_scale *= (float)(def->illuminance / illuminance);
   light->environment = (uint32_t)world->environments.count - 1;
   light->power = (float)(4 * M_PI * area * mean * e->image_scale);
+  if (r != VL_OK || !def->has_portal) return r;
+  double passes = 0;
+  r = vl_world_add_portal(world, def, &world->environments.items[light->environment], &passes, error);
+  light->power = (float)(passes * e->image_scale);
   return r;
 }
 

@@ -16,5 +16,7 @@ float vl_light_texel_luminance(vlTexel t, uint32_t channels);
 
 /* Points whose light a picture shapes: goniometric and projection (beam.c). */
 vlResult vl_world_add_beam(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e, vlError *error);
+/* The portal of a pictured sky, whose directions env knows; power: of the light that passes through it (portal.c). */
+vlResult vl_world_add_portal(vlWorld *world, const vlLightDef *def, vlEnvironment *env, double *power, vlError *error);
 
 #endif

@@ -156,6 +156,7 @@ typedef struct vlEnvironment {
   float *marginal_cdf;                            /* size + 1 */
   float *pdf;                                     /* size * size: density over the unit square */
   float light_from_world[9], world_from_light[9]; /* rotations, row-major */
+  const struct vlPortal *portal; /* through which alone it is seen (world/portal.h); null: none */
 } vlEnvironment;
 
 #include "world/light_tree.h"

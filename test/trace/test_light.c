@@ -73,7 +73,7 @@ static double density(void *user, const double d[3]) {
   for (size_t k = 0; k < f->world->infinite_lights.count; k++) {
     uint32_t index = f->world->infinite_lights.items[k];
     pdf += (double)vl_light_pmf(&f->world->tree, f->p, f->n, index) *
-           VL_HOT(vl_infinite_pdf)(f->world, &f->world->lights.items[index], dir);
+           VL_HOT(vl_infinite_pdf)(f->world, &f->world->lights.items[index], f->p, dir);
   }
   if (shape == VL_NONE || f->world->shapes.items[shape].first_light == VL_NONE) return pdf;
   uint32_t index = f->world->shapes.items[shape].first_light + prim;
@@ -166,7 +166,7 @@ static void judge(Fixture *f, unsigned seed, unsigned tests) {
   if (!(p > 0.01 / tests)) fail_msg("chi-square %g with %u degrees of freedom: p = %g", statistic, freedom, p);
 }
 
-enum { TESTS = 16 };
+enum { TESTS = 20 };
 
 static void add_triangles(Fixture *f, const float *positions, uint32_t faces, bool two_sided) {
   uint32_t indices[24];
@@ -298,10 +298,42 @@ static void sky(void **state) {
   }
 }
 
+/* A sky seen through windows: before the point, slanting, and so near that it fills half the sphere. */
+static void portals(void **state) {
+  (void)state;
+  const float corners[3][4][3] = {{{-0.5f, -1, 1}, {-0.5f, 1, 1}, {1, 1, 1}, {1, -1, 1}},
+                                  {{3, -0.4f, 0}, {2.2f, -0.4f, 0.6f}, {2.2f, 0.8f, 0.6f}, {3, 0.8f, 0}},
+                                  {{-2, -3, 0.02f}, {-2, 3, 0.02f}, {2, 3, 0.02f}, {2, -3, 0.02f}}};
+  for (int i = 0; i < 3; i++) {
+    Fixture *f = begin();
+    vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
+    vlImageDef image_def = vl_default_image_def(32, 32, 3);
+    vlImage *image;
+    image_def.type = VL_PIXEL_F32;
+    assert_int_equal(vl_image_create(f->context, &image_def, &image), VL_OK);
+    float *pixels = vl_image_pixels(image);
+    for (int k = 0; k < 32 * 32 * 3; k++)
+      pixels[k] = (k / 3) % 37 == 5 ? 20.0f : (k / 3) % 11 == 0 ? 0.0f : 0.5f + 0.3f * sinf(0.05f * (float)k);
+    const double turned[16] = {0, -1, 0, 0, 0.6, 0, -0.8, 0, 0.8, 0, 0.6, 0, 0, 0, 0, 1};
+    memcpy(def.world_from_light, turned, sizeof turned);
+    def.image = image;
+    def.has_portal = true;
+    memcpy(def.portal, corners[i], sizeof corners[i]);
+    assert_int_not_equal(vl_scene_add_light(f->scene, &def).index, 0);
+    f->n = vl_vec3(0, 0, 1);
+    build(f, VL_LIGHT_SAMPLER_BVH);
+    vl_image_destroy(image);
+    judge(f, 61 + (unsigned)i, TESTS);
+    end(f);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(triangles),          cmocka_unit_test(many_triangles), cmocka_unit_test(round_lights),
-      cmocka_unit_test(sphere_from_inside), cmocka_unit_test(patch),          cmocka_unit_test(sky),
+      cmocka_unit_test(triangles),    cmocka_unit_test(many_triangles),
+      cmocka_unit_test(round_lights), cmocka_unit_test(sphere_from_inside),
+      cmocka_unit_test(patch),        cmocka_unit_test(sky),
+      cmocka_unit_test(portals),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -172,6 +172,7 @@ typedef enum vlMaterialKind {
   VL_MATERIAL_DIFFUSE_TRANSMISSION,
   VL_MATERIAL_COATED_CONDUCTOR,
   VL_MATERIAL_HAIR,
+  VL_MATERIAL_MEASURED, /* reflection from a file */
   VL_MATERIAL_INTERFACE
 } vlMaterialKind;
 
@@ -241,6 +242,7 @@ typedef struct vlMaterialDef {
   vlFloatInput coat_u_roughness, coat_v_roughness; /* coated conductor: of the coat; the others are the metal's */
   vlSpectrumInput coat_eta;                        /* no texture */
   vlHairDef hair;
+  const char *measured; /* path of a file with spectra of the RGL material database (Dupuy and Jakob 2018) */
 } vlMaterialDef;
 VL_API vlMaterialDef vl_default_material_def(vlMaterialKind kind);
 VL_API vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def);

@@ -173,13 +173,18 @@ static bool put_principled(vlExport *x, const vlMaterialDef *m, uint32_t id) {
 
 static bool put_own(vlExport *x, const vlMaterialDef *m, uint32_t id) {
   Inputs in;
-  char normal[300] = "";
+  char normal[300] = "", measured[300] = "";
   if (!prepare(x, m, &in)) return false;
   if (m->displacement.texture.index && !vl_pbrt_prepare_number(x, &m->displacement, false, &in.relief)) return false;
   if (m->normal_map) {
     vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     t.path = m->normal_map;
     if (!vl_pbrt_picture(x, &t, false, normal)) return false;
+  }
+  if (m->kind == VL_MATERIAL_MEASURED) { /* copied as pictures are */
+    vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+    t.path = m->measured;
+    if (!vl_pbrt_picture(x, &t, false, measured)) return false;
   }
   PUT("MakeNamedMaterial \"material%u\" \"string type\" ", id);
   switch (m->kind) {
@@ -229,6 +234,7 @@ static bool put_own(vlExport *x, const vlMaterialDef *m, uint32_t id) {
       PUT("\"mix\" \"string materials\" [\"material%u\" \"material%u\"]", m->materials[0].index, m->materials[1].index);
       vl_pbrt_put_number(x, "amount", &in.amount);
       break;
+    case VL_MATERIAL_MEASURED: PUT("\"measured\" \"string filename\" \"%s\"", measured); break;
     case VL_MATERIAL_INTERFACE: PUT("\"interface\""); break;
     default:
       vl_export_lose(x, "materials of further kinds: grey");

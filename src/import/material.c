@@ -6,9 +6,8 @@
 #include "import/builder.h"
 
 static const char *const kinds[] = {
-    "diffuse",   "coateddiffuse", "conductor",           "dielectric",      "thindielectric", "mix",
-    "interface", "principled",    "diffusetransmission", "coatedconductor", "hair",           "",
-    "none"};
+    "diffuse",    "coateddiffuse",       "conductor",       "dielectric", "thindielectric", "mix", "interface",
+    "principled", "diffusetransmission", "coatedconductor", "hair",       "measured",       "",    "none"};
 static const vlMaterialKind kind_values[] = {VL_MATERIAL_DIFFUSE,
                                              VL_MATERIAL_COATED_DIFFUSE,
                                              VL_MATERIAL_CONDUCTOR,
@@ -20,9 +19,10 @@ static const vlMaterialKind kind_values[] = {VL_MATERIAL_DIFFUSE,
                                              VL_MATERIAL_DIFFUSE_TRANSMISSION,
                                              VL_MATERIAL_COATED_CONDUCTOR,
                                              VL_MATERIAL_HAIR,
+                                             VL_MATERIAL_MEASURED,
                                              VL_MATERIAL_INTERFACE,
                                              VL_MATERIAL_INTERFACE};
-static const char *const later[] = {"measured", "subsurface"};
+static const char *const later[] = {"subsurface"};
 _Static_assert(sizeof kinds / sizeof *kinds == sizeof kind_values / sizeof *kind_values, "a kind for each name");
 enum { KINDS = sizeof kinds / sizeof *kinds, NAMES = KINDS - 2, LATER = sizeof later / sizeof *later };
 
@@ -158,6 +158,18 @@ static bool read_relief(vlDict *dict, vlMaterialDef *def) {
   return def->normal_map != NULL;
 }
 
+static bool read_measured(vlDict *dict, vlMaterialDef *def) {
+  vlImport *import = dict->import;
+  vlParam *p = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
+  char path[4096];
+  if (!p)
+    return import->scene->error.code == VL_OK &&
+           vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string filename\" is missing", dict->what);
+  if (!vl_import_path(import, p, path, sizeof path)) return false;
+  def->measured = vl_import_keep(import, path);
+  return def->measured != NULL;
+}
+
 static bool read_material(vlDict *dict, vlMaterialDef *def) {
   switch (def->kind) {
     case VL_MATERIAL_DIFFUSE:
@@ -189,6 +201,9 @@ static bool read_material(vlDict *dict, vlMaterialDef *def) {
       break;
     case VL_MATERIAL_HAIR:
       if (!vl_import_hair(dict, def)) return false;
+      break;
+    case VL_MATERIAL_MEASURED:
+      if (!read_measured(dict, def)) return false;
       break;
     case VL_MATERIAL_INTERFACE: break;
   }

@@ -217,6 +217,8 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   if (coated && (d.max_depth == 0 || d.samples == 0))
     return bad(scene, at, "coated material", "max depth and samples must be at least 1"), none;
   if (!isfinite(d.scale) || d.scale < 0.0f) return bad(scene, at, "material", "its scale makes no sense"), none;
+  if (d.kind == VL_MATERIAL_MEASURED && !d.measured)
+    return bad(scene, at, "measured material", "its file is not named"), none;
   if (d.kind != VL_MATERIAL_PRINCIPLED) d.principled = vl_default_material_def(VL_MATERIAL_DIFFUSE).principled;
   if (!take_principled(scene, &d.principled, at) || !take_hair(scene, &d.hair, at)) return none;
   if (!vl_scene_copy_source(scene, &d.source) || !take_spectrum(scene, &d.reflectance, at, "reflectance") ||
@@ -229,7 +231,7 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
       !take_float(scene, &d.coat_u_roughness, at, "coat's u roughness") ||
       !take_float(scene, &d.coat_v_roughness, at, "coat's v roughness") ||
       !take_spectrum(scene, &d.coat_eta, at, "coat's eta") || !vl_scene_copy_string(scene, &d.name) ||
-      !vl_scene_copy_string(scene, &d.normal_map))
+      !vl_scene_copy_string(scene, &d.normal_map) || !vl_scene_copy_string(scene, &d.measured))
     return none;
   vlMaterialDef *slot = VL_PUSH(scene->context, &scene->materials);
   if (!slot) return out_of_memory(scene), none;

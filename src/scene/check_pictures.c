@@ -34,6 +34,8 @@ static void look_for_files(vlCheck *c) {
   for (size_t i = 0; i < s->materials.count; i++)
     if (s->materials.items[i].normal_map)
       file_is_there(c, s->materials.items[i].normal_map, s->materials.items[i].source);
+  for (size_t i = 0; i < s->materials.count; i++)
+    if (s->materials.items[i].measured) file_is_there(c, s->materials.items[i].measured, s->materials.items[i].source);
   for (size_t i = 0; i < s->lights.count; i++)
     if (s->lights.items[i].path) file_is_there(c, s->lights.items[i].path, s->lights.items[i].source);
   for (size_t i = 0; i < s->emissions.count; i++)

@@ -14,6 +14,7 @@ static vlBsdfKind bsdf_kind(const vlWorldMaterial *m) {
     case VL_MATERIAL_PRINCIPLED: return VL_BSDF_PRINCIPLED;
     case VL_MATERIAL_DIFFUSE_TRANSMISSION: return VL_BSDF_DIFFUSE_TRANSMISSION;
     case VL_MATERIAL_HAIR: return VL_BSDF_HAIR;
+    case VL_MATERIAL_MEASURED: return VL_BSDF_MEASURED;
     default: return VL_BSDF_DIFFUSE;
   }
 }
@@ -46,6 +47,7 @@ static vlBsdfParams params_of(vlTracing *t, uint32_t first) {
   p.eta_s = s->eta_s + first;
   p.coat = s->coat + first;
   p.seed = s->seed + first;
+  p.measured = s->measured + first;
   return p;
 }
 

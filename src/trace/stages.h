@@ -72,6 +72,7 @@ typedef struct vlShade {
   const vlCoatTable *coat[VL_ROW_SIZE];
   VL_ROW float principled[VL_PRINCIPLED_ROWS][VL_ROW_SIZE]; /* trace/bsdf.h names them */
   VL_ROW uint32_t seed[VL_ROW_SIZE];
+  const vlMeasured *measured[VL_ROW_SIZE];
   VL_ROW float value[4][VL_ROW_SIZE], pdf[VL_ROW_SIZE], eta_scale[VL_ROW_SIZE];
   VL_ROW uint32_t flags[VL_ROW_SIZE];
   VL_ROW float u0[VL_ROW_SIZE], u1[VL_ROW_SIZE], u2[VL_ROW_SIZE];

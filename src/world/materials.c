@@ -41,6 +41,18 @@ static vlResult coat_of(vlWorld *world, const vlMaterialDef *def, vlWorldMateria
   return VL_OK;
 }
 
+/* What was measured: one file is read once. */
+static vlResult measured_of(vlWorld *world, const vlMaterialDef *def, vlWorldMaterial *m, vlError *error) {
+  for (size_t i = 0; i < world->measured.count && !m->measured; i++)
+    if (strcmp(world->measured.items[i]->path, def->measured) == 0) m->measured = world->measured.items[i];
+  if (m->measured) return VL_OK;
+  vlMeasured **slot = VL_PUSH(world->context, &world->measured);
+  if (!slot) return vl_fail_memory(error);
+  vlResult r = vl_measured_read(world->context, def->measured, world->def.color == VL_COLOR_RGB, slot, error);
+  m->measured = *slot;
+  return r;
+}
+
 /* A coat whose medium does not scatter, of one thickness. */
 static bool in_closed_form(const vlMaterialDef *def) {
   const vlSpectrum *a = &def->albedo.value;
@@ -114,6 +126,7 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
   else if (r == VL_OK && def->kind == VL_MATERIAL_COATED_DIFFUSE)
     r = coat_of(world, def, m, error);
   if (r == VL_OK && def->kind == VL_MATERIAL_HAIR) r = vl_world_hair(world, scene, def, m, error);
+  if (r == VL_OK && def->kind == VL_MATERIAL_MEASURED) r = measured_of(world, def, m, error);
   if (def->kind == VL_MATERIAL_PRINCIPLED) r = vl_world_principled(world, scene, def, m, error);
   if (r == VL_OK && def->kind == VL_MATERIAL_MIX) {
     m->mix[0] = def->materials[0].index, m->mix[1] = def->materials[1].index;

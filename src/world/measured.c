@@ -238,7 +238,8 @@ vlResult vl_measured_read(vlContext *context, const char *path, bool rgb, vlMeas
   if (r != VL_OK) return r;
   r = check(&s, error);
   vlMeasured *m = r == VL_OK ? vl_alloc_zero(context, 1, sizeof *m) : NULL;
-  if (r == VL_OK) r = m ? build(context, &s, rgb, m, error) : vl_fail_memory(error);
+  if (r == VL_OK)
+    r = m && (m->path = vl_strdup(context, path)) ? build(context, &s, rgb, m, error) : vl_fail_memory(error);
   vl_tensor_free(context, &s.tensor);
   if (r == VL_OK)
     *result = m;
@@ -251,5 +252,6 @@ void vl_measured_free(vlContext *context, vlMeasured *m) {
   if (!m) return;
   vl_free(context, m->numbers);
   vl_free(context, m->file);
+  vl_free(context, m->path);
   vl_free(context, m);
 }

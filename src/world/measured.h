@@ -34,6 +34,7 @@ typedef struct vlMeasured {
   float side_x, side_y; /* signs of the part's x and y */
   float *numbers;       /* the memory of all tables but the file's spectra */
   char *file;
+  char *path; /* what it was read from */
 } vlMeasured;
 
 /* Reads a file. rgb: its spectra as linear sRGB under daylight. Errors: MISSING, IO, MEMORY; SCENE where the file is

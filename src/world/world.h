@@ -12,6 +12,7 @@
 #include "velo/render.h"
 #include "world/accel.h"
 #include "world/coat.h"
+#include "world/measured.h"
 #include "world/medium.h"
 #include "world/texture.h"
 
@@ -107,6 +108,7 @@ typedef struct vlWorldMaterial {
   float scale;
   const vlWorldLayers *layers; /* null: none, or in closed form */
   const vlWorldHair *hair;
+  const vlMeasured *measured; /* may be shared; the world frees it */
 } vlWorldMaterial;
 
 /* ---- lights ------------------------------------------------------------------------------------------------------ */
@@ -182,6 +184,7 @@ struct vlWorld {
   VL_ARRAY(vlWorldLight) lights;
   VL_ARRAY(uint32_t) infinite_lights; /* indices of lights that a missing ray sees */
   VL_ARRAY(vlEnvironment) environments;
+  VL_ARRAY(vlMeasured *) measured;
   VL_ARRAY(vlWorldMedium) media; /* those that something lies in */
   VL_ARRAY(void *) blocks;       /* dense spectra and the like */
   int32_t *texture_memo;         /* while building: scene texture and role -> node */

@@ -120,8 +120,9 @@ static const struct {
     /* names of kinds */
     {W "Material \"difuse\"", "t.pbrt:2:1: unknown material \"difuse\" (did you mean \"diffuse\"?)"},
     {W "Material \"subsurface\"", "t.pbrt:2:1: material \"subsurface\" is not understood yet"},
-    {W "MakeNamedMaterial \"a\" \"string type\" \"measured\"",
-     "t.pbrt:2:23: material \"measured\" is not understood yet"},
+    {W "MakeNamedMaterial \"a\" \"string type\" \"subsurface\"",
+     "t.pbrt:2:23: material \"subsurface\" is not understood yet"},
+    {W "Material \"measured\"", "t.pbrt:2:1: Material \"measured\": \"string filename\" is missing"},
     {W "MakeNamedMaterial \"a\"", "t.pbrt:2:1: MakeNamedMaterial \"a\": \"string type\" is missing"},
     {W "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"a\" \"string type\" \"diffuse\"",
      "t.pbrt:3:1: material \"a\" is made a second time (first in line 2)"},

@@ -1,0 +1,330 @@
+/* test_measured_files.c: files of measured materials from strangers. Each damage is one clear error that names the
+ * file, in memory of the file's size; memory that runs out leaves nothing behind; a file that several materials name is
+ * read once; a picture of the material is that of the metal that was measured. */
+#include <stdlib.h>
+
+#include "../trace/measured_file.h"
+#include "render/shots.h"
+#include "trace/bsdf_batch.h"
+#include "world/measured.h"
+#include "world/world.h"
+
+static const char path[] = VELO_BINARY_DIR "/damaged.bsdf";
+
+/* Largest block asked for, and blocks that are alive. */
+typedef struct Purse {
+  long left; /* allocations that still succeed; negative: all */
+  long alive;
+  size_t largest;
+} Purse;
+static bool pay(Purse *p, size_t size) {
+  if (p->left == 0) return false;
+  if (p->left > 0) p->left--;
+  p->largest = size > p->largest ? size : p->largest;
+  return true;
+}
+static void *purse_allocate(void *user, size_t size) {
+  Purse *p = user;
+  if (!pay(p, size)) return NULL;
+  p->alive++;
+  return malloc(size);
+}
+static void *purse_reallocate(void *user, void *block, size_t size) {
+  Purse *p = user;
+  if (!pay(p, size)) return NULL;
+  if (!block) p->alive++;
+  return realloc(block, size);
+}
+static void purse_release(void *user, void *block) {
+  Purse *p = user;
+  if (block) p->alive--;
+  free(block);
+}
+static vlContext *open_context(Purse *purse) {
+  vlContextDef def = vl_default_context_def();
+  def.allocator = (vlAllocator){purse, purse_allocate, purse_reallocate, purse_release};
+  vlContext *context = NULL;
+  assert_int_equal(vl_context_create(&def, &context), VL_OK);
+  return context;
+}
+
+static mfFile small_file(void) {
+  mfSurface metal = mf_surface(0.4, 0.2);
+  metal.nodes = metal.samples = 8;
+  metal.thetas = metal.lambdas = 3;
+  metal.phis = 4;
+  return mf_measure(&metal);
+}
+/* Where a field's head stands: its rank; type 2, offset 3, shape 11 bytes on. */
+static size_t head_of(const mfFile *file, const char *name) {
+  size_t length = strlen(name);
+  for (size_t i = 18; i + length < 600; i++)
+    if (file->bytes[i - 2] == length && memcmp(file->bytes + i, name, length) == 0) return i + length;
+  fail_msg("no field %s", name);
+  return 0;
+}
+static uint64_t offset_of(const mfFile *file, const char *name) {
+  uint64_t offset;
+  memcpy(&offset, file->bytes + head_of(file, name) + 3, 8);
+  return offset;
+}
+
+/* ---- damages with a name --------------------------------------------------------------------------------------- */
+
+static void set(mfFile *file, size_t at, uint64_t value, size_t size) {
+  memcpy(file->bytes + at, &value, size);
+}
+static void set_float(mfFile *file, size_t at, float value) {
+  memcpy(file->bytes + at, &value, sizeof value);
+}
+
+static void damages(void **state) {
+  (void)state;
+  static const char *const words[] = {"this is no tensor file",
+                                      "ends before what it announces",
+                                      "version 2.0",
+                                      "version 1.1",
+                                      "announces 65 fields",
+                                      "has no \"vndf\"",
+                                      "unknown type 12",
+                                      "unknown type 0",
+                                      "has 9 dimensions",
+                                      "ends before what it announces",
+                                      "ends before what it announces",
+                                      "ends before what it announces",
+                                      "the same field twice",
+                                      "should be 32-bit floats of 2 dimensions",
+                                      "should be 32-bit floats of 4 dimensions",
+                                      "kept as RGB",
+                                      "is not ascending",
+                                      "is out of range",
+                                      "holds a value that is not finite",
+                                      "does not fit \"theta_i\"",
+                                      "less than 2 x 2 values",
+                                      "should be bytes of 1 dimension",
+                                      "ends before what it announces",
+                                      "should be 32-bit floats of 1 dimension",
+                                      "holds a value that is not finite",
+                                      "is not ascending"};
+  enum { KINDS = sizeof words / sizeof *words };
+  Purse purse = {.left = -1};
+  vlContext *context = open_context(&purse);
+  for (int kind = -1; kind < KINDS; kind++) {
+    mfFile f = small_file();
+    size_t vndf = head_of(&f, "vndf"), ndf = head_of(&f, "ndf"), phi = head_of(&f, "phi_i");
+    switch (kind) {
+      case 0: f.bytes[3] = 'x'; break;
+      case 1: f.size = 15; break;
+      case 2: f.bytes[12] = 2; break;
+      case 3: f.bytes[13] = 1; break;
+      case 4: set(&f, 14, 65, 4); break;
+      case 5: f.bytes[vndf - 1] = 'x'; break;
+      case 6: f.bytes[vndf + 2] = 12; break;
+      case 7: f.bytes[vndf + 2] = 0; break;
+      case 8: set(&f, vndf, 9, 2); break;
+      case 9: set(&f, vndf + 3, f.size + 1, 8); break;
+      case 10: set(&f, vndf + 11, (uint64_t)1 << 62, 8); break;
+      case 11: set(&f, vndf + 3, UINT64_MAX - 4, 8); break;
+      case 12: memcpy(f.bytes + phi - 5, "sigma", 5); break;
+      case 13: f.bytes[ndf + 2] = 5; break;
+      case 14: f.bytes[vndf + 11] = 0; break;
+      case 15: { /* a shorter name; values stay where they are */
+        size_t at = head_of(&f, "spectra"), end = offset_of(&f, "description");
+        memcpy(f.bytes + at - 7, "rgb", 3);
+        set(&f, at - 9, 3, 2);
+        memmove(f.bytes + at - 4, f.bytes + at, end - at);
+        break;
+      }
+      case 16: set_float(&f, offset_of(&f, "theta_i") + 4, 0); break;
+      case 17: set_float(&f, offset_of(&f, "theta_i") + 8, 3); break;
+      case 18: set_float(&f, offset_of(&f, "luminance") + 40, NAN); break;
+      case 19: set(&f, head_of(&f, "luminance") + 19, 2, 8); break;
+      case 20: set(&f, ndf + 11, 1, 8); break;
+      case 21: f.bytes[head_of(&f, "jacobian") + 2] = 2; break;
+      case 22: f.size -= 2; break;
+      case 23: f.bytes[head_of(&f, "wavelengths") + 2] = 5; break;
+      case 24: set_float(&f, offset_of(&f, "spectra"), INFINITY); break;
+      case 25: set_float(&f, offset_of(&f, "wavelengths") + 4, 100); break;
+      default: break;
+    }
+    vlMeasured *m = NULL;
+    vlError error = {0};
+    assert_true(mf_write(path, &f));
+    vlResult r = vl_measured_read(context, path, false, &m, &error);
+    if (kind < 0) {
+      assert_int_equal(r, VL_OK);
+      vl_measured_free(context, m);
+    } else {
+      if (r != VL_ERROR_SCENE || !strstr(error.message, words[kind]) || !strstr(error.message, path) || m)
+        fail_msg("damage %d: %d \"%s\", not \"%s\"", kind, (int)r, error.message, words[kind]);
+    }
+    free(f.bytes);
+  }
+  vlMeasured *m;
+  vlError error = {0};
+  assert_int_equal(vl_measured_read(context, VELO_BINARY_DIR "/absent.bsdf", false, &m, &error), VL_ERROR_MISSING);
+  vl_context_destroy(context);
+  assert_int_equal(purse.alive, 0);
+  remove(path);
+}
+
+/* ---- damages without ------------------------------------------------------------------------------------------- */
+
+/* Bits, lost and doubled pieces, wild numbers, a few hundred: an error with the file's name, or a material whose every
+ * answer is a number. */
+static void mutations(void **state) {
+  (void)state;
+  Purse purse = {.left = -1};
+  vlContext *context = open_context(&purse);
+  const vlBsdfKernels *kernels = vl_bsdf_kernels(vl_context_isa(context));
+  Batch *b = calloc(1, sizeof *b);
+  statRng rng = stat_rng(7);
+  uint32_t refused = 0;
+  for (int turn = 0; turn < 300; turn++) {
+    mfFile f = small_file();
+    size_t whole = f.size, head = 420;
+    uint64_t wild[6] = {0, 1, UINT64_MAX, (uint64_t)1 << 40, 0x7f800000, 0xff7fffff};
+    for (int k = 0; k < 1 + turn % 3; k++) {
+      size_t at = stat_bits(&rng) % (turn & 1 ? head : whole - 8);
+      if (turn % 5 == 0)
+        f.bytes[at] ^= (unsigned char)(1u << stat_bits(&rng) % 8);
+      else if (turn % 5 == 1)
+        memcpy(f.bytes + at, &wild[stat_bits(&rng) % 6], turn % 3 ? 4 : 8);
+      else if (turn % 5 == 2)
+        f.size = stat_bits(&rng) % whole;
+      else if (turn % 5 == 3)
+        memmove(f.bytes + at, f.bytes + at + 5, whole - at - 5), f.size = whole - 5;
+      else
+        f.bytes[at] = (unsigned char)stat_bits(&rng);
+    }
+    assert_true(mf_write(path, &f));
+    vlMeasured *m = NULL;
+    vlError error = {0};
+    purse.largest = 0;
+    vlResult r = vl_measured_read(context, path, turn % 7 == 0, &m, &error);
+    if (r != VL_OK) {
+      refused++;
+      assert_int_equal(r, VL_ERROR_SCENE);
+      assert_non_null(strstr(error.message, path));
+    } else {
+      for (uint32_t i = 0; i < 256; i++) {
+        double o[3], w[3];
+        stat_direction(&rng, o), stat_direction(&rng, w);
+        b->measured[i] = m;
+        b->ox[i] = (float)o[0], b->oy[i] = (float)o[1], b->oz[i] = (float)o[2];
+        b->ix[i] = (float)w[0], b->iy[i] = (float)w[1], b->iz[i] = (float)w[2];
+        for (int c = 0; c < 4; c++) b->lambda[c][i] = 300 + 600 * stat_float(&rng);
+      }
+      batch_numbers(b, 256, &rng);
+      for (int way = 0; way < 2; way++) {
+        if (way == 0)
+          batch_eval(kernels, VL_BSDF_MEASURED, 256, b);
+        else
+          batch_sample(kernels, VL_BSDF_MEASURED, 256, b);
+        for (uint32_t i = 0; i < 256; i++)
+          for (int c = 0; c < 4; c++) {
+            float x = way ? b->weight[c][i] : b->value[c][i];
+            assert_true(x >= 0 && x < INFINITY && b->pdf[i] >= 0 && b->pdf[i] < INFINITY);
+          }
+      }
+      vl_measured_free(context, m);
+    }
+    assert_true(purse.largest <= 4 * whole);
+    free(f.bytes);
+  }
+  print_message("%u of 300 refused\n", refused);
+  assert_true(refused > 60 && refused < 290);
+  free(b);
+  vl_context_destroy(context);
+  assert_int_equal(purse.alive, 0);
+  remove(path);
+}
+
+static void no_memory(void **state) {
+  (void)state;
+  mfFile f = small_file();
+  assert_true(mf_write(path, &f));
+  Purse purse = {.left = -1};
+  vlContext *context = open_context(&purse);
+  long before = purse.alive, n = 0;
+  for (vlResult r = VL_ERROR_MEMORY; r != VL_OK; n++) {
+    vlMeasured *m = NULL;
+    vlError error = {0};
+    purse.left = n;
+    r = vl_measured_read(context, path, true, &m, &error);
+    purse.left = -1;
+    assert_true(r == VL_OK || (r == VL_ERROR_MEMORY && !m));
+    vl_measured_free(context, m);
+    assert_int_equal(purse.alive, before);
+  }
+  assert_true(n > 4);
+  vl_context_destroy(context);
+  free(f.bytes);
+  remove(path);
+}
+
+/* ---- in a scene ------------------------------------------------------------------------------------------------ */
+
+/* A ball of brushed metal under a lamp and a sky; another in the back has the same file. */
+static Picture ball(const mfSurface *metal, bool measured, bool rgb) {
+  Stage s = stage_open(64, 64);
+  s.build.color = rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
+  s.render.spp = 64;
+  vlMaterialDef def = vl_default_material_def(measured ? VL_MATERIAL_MEASURED : VL_MATERIAL_CONDUCTOR);
+  def.measured = measured ? path : NULL;
+  def.u_roughness = vl_float_input((float)metal->alpha_x), def.v_roughness = vl_float_input((float)metal->alpha_y);
+  def.remap_roughness = false;
+  def.eta = vl_spectrum_input(vl_spectrum_constant((float)metal->eta));
+  def.k = vl_spectrum_input(vl_spectrum_constant((float)metal->k));
+  for (int i = 0; i < 2; i++) {
+    vlShapeDef round = vl_default_shape_def(VL_SHAPE_SPHERE);
+    round.material = vl_scene_add_material(s.scene, &def);
+    set_matrix(round.group_from_shape, 1, 0, 0, i, 0, 0, 1, 0, 0, -1, 0, -1.9 - 30 * i);
+    assert_int_not_equal(vl_scene_add_shape(s.scene, &round).index, 0);
+  }
+  add_sky(&s, 0.5f);
+  add_point(&s, 2, 3, 1, 40);
+  Picture p = stage_take(&s);
+  if (measured) {
+    vlWorld *world = NULL;
+    assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_OK);
+    assert_int_equal(world->measured.count, 1);
+    assert_ptr_equal(world->materials.items[1].measured, world->materials.items[2].measured);
+    vl_world_destroy(world);
+  }
+  stage_close(&s);
+  return p;
+}
+
+static void picture(void **state) {
+  (void)state;
+  mfSurface metal = mf_surface(0.6, 0.25);
+  metal.color = 0;
+  metal.lambdas = 2;
+  metal.parts = 4;
+  metal.phis = 32;
+  mfFile f = mf_measure(&metal);
+  assert_true(mf_write(path, &f));
+  for (int rgb = 0; rgb < 2; rgb++) {
+    Picture a = ball(&metal, true, rgb), b = ball(&metal, false, rgb);
+    double off = 0, all = 0;
+    for (uint32_t y = 8; y < 56; y += 4)
+      for (uint32_t x = 8; x < 56; x += 4)
+        for (int c = 0; c < 3; c++) {
+          double u = picture_region(&a, x, y, x + 4, y + 4, c), v = picture_region(&b, x, y, x + 4, y + 4, c);
+          off += fabs(u - v), all += v;
+        }
+    print_message("mean %.4f, metal's %.4f; blocks off by %.4f\n", picture_mean(&a, 1), picture_mean(&b, 1), off / all);
+    assert_true(off / all < 0.02 && a.stats.not_finite == 0);
+    assert_ratio("measured ball", picture_mean(&a, 1), picture_mean(&b, 1), 0.004);
+    picture_free(&a), picture_free(&b);
+  }
+  free(f.bytes);
+  remove(path);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(damages), cmocka_unit_test(mutations),
+                                     cmocka_unit_test(no_memory), cmocka_unit_test(picture)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

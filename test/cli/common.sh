@@ -56,6 +56,12 @@ is_plain_build() {
   grep -q '^CMAKE_BUILD_TYPE:.*=Release$' "$VELO_BINARY_DIR/CMakeCache.txt" 2>/dev/null
 }
 
+# expect_line NAME TEXT: the last command said one line on stderr beside its notes, with TEXT in it.
+expect_line() {
+  expect_text "$1" "$2"
+  if [ "$(printf '%s\n' "$err" | grep -c -v '^velo: note: ')" = 1 ]; then pass "$1_one_line"; else fail "$1_one_line"; show "the last one"; fi
+}
+
 # same NAME A B: equal bytes.
 same() {
   if cmp -s "$2" "$3"; then pass "$1"; else fail "$1 ($(cmp "$2" "$3" 2>&1))"; fi

@@ -3,10 +3,6 @@
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "$VELO_SOURCE_DIR/test/cli/common.sh"
 cd "$work" || exit 1
-expect_line() {
-  expect_text "$1" "$2"
-  if [ "$(printf '%s\n' "$err" | wc -l)" = 1 ]; then pass "$1_one_line"; else fail "$1_one_line"; show "the last one"; fi
-}
 lecture=$VELO_SOURCE_DIR/scenes/lecture
 check one "$VELO" camera vanishing "$lecture/perspective_one_point.pbrt"
 expect_text one_kind "one-point perspective"

@@ -10,6 +10,7 @@ typedef struct State {
   vlContext *context;
   const vlBsdfKernels *kernels;
   Batch *batch, *other, *interface;
+  vlCoatTable *coats[4]; /* those that a test builds */
 } State;
 
 static int setup(void **state) {
@@ -25,6 +26,7 @@ static int setup(void **state) {
 }
 static int teardown(void **state) {
   State *s = *state;
+  for (int i = 0; i < 4; i++) vl_coat_free(s->context, s->coats[i]);
   vl_context_destroy(s->context);
   free(s->batch);
   free(s->other);

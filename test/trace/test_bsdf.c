@@ -7,42 +7,17 @@
 /* after those */
 #include <cmocka.h>
 
-#include "bsdf_batch.h"
+#include "bsdf_state.h"
 
-#define PI 3.14159265358979323846
-
-typedef struct {
-  vlContext *context;
-  const vlBsdfKernels *kernels;
-  Batch *batch, *single;
-  vlCoatTable *smooth, *fine, *rough, *varied;
-} State;
-
-static int setup(void **state) {
-  State *s = calloc(1, sizeof *s);
-  vlContextDef def = vl_default_context_def();
-  if (vl_context_create(&def, &s->context)) return 1;
-  s->kernels = vl_bsdf_kernels(vl_context_isa(s->context));
-  s->batch = calloc(1, sizeof *s->batch);
-  s->single = calloc(1, sizeof *s->single);
-  vl_coat_build(s->context, 1.5f, 0.01f, 10, 0, 0, &s->smooth);
-  vl_coat_build(s->context, 1.5f, 0.01f, 10, 0.1f, 0.1f, &s->fine);
-  vl_coat_build(s->context, 1.8f, 0.2f, 100, 0.4f, 0.4f, &s->rough);
-  vl_coat_build(s->context, 1.5f, 0.01f, 10, 0.0f, 0.5f, &s->varied);
-  *state = s;
-  return !s->smooth || !s->fine || !s->rough || !s->varied;
-}
-static int teardown(void **state) {
+/* The coats' tables of the state: smooth, fine, rough, varied. */
+static int build_coats(void **state) {
+  if (setup(state)) return 1;
   State *s = *state;
-  vl_coat_free(s->context, s->smooth);
-  vl_coat_free(s->context, s->fine);
-  vl_coat_free(s->context, s->rough);
-  vl_coat_free(s->context, s->varied);
-  vl_context_destroy(s->context);
-  free(s->batch);
-  free(s->single);
-  free(s);
-  return 0;
+  vl_coat_build(s->context, 1.5f, 0.01f, 10, 0, 0, &s->coats[0]);
+  vl_coat_build(s->context, 1.5f, 0.01f, 10, 0.1f, 0.1f, &s->coats[1]);
+  vl_coat_build(s->context, 1.8f, 0.2f, 100, 0.4f, 0.4f, &s->coats[2]);
+  vl_coat_build(s->context, 1.5f, 0.01f, 10, 0.0f, 0.5f, &s->coats[3]);
+  return !s->coats[0] || !s->coats[1] || !s->coats[2] || !s->coats[3];
 }
 
 static const float through[VL_PRINCIPLED_ROWS] = {
@@ -59,25 +34,25 @@ static Surface surface(const State *s, int i) {
       {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.6f},
       {.kind = VL_BSDF_DIELECTRIC, .eta_s = 0.7f, .alpha_x = 0.4f, .alpha_y = 0.4f},
       {.kind = VL_BSDF_DIELECTRIC, .eta_s = 2.4f, .alpha_x = 0.9f, .alpha_y = 0.9f},
-      {.kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 0.8f, .eta_s = 1.5f, .coat = s->smooth},
+      {.kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 0.8f, .eta_s = 1.5f, .coat = s->coats[0]},
       {.kind = VL_BSDF_COATED_DIFFUSE,
        .reflectance = 0.8f,
        .eta_s = 1.5f,
        .alpha_x = 0.1f,
        .alpha_y = 0.1f,
-       .coat = s->fine},
+       .coat = s->coats[1]},
       {.kind = VL_BSDF_COATED_DIFFUSE,
        .reflectance = 0.1f,
        .eta_s = 1.8f,
        .alpha_x = 0.4f,
        .alpha_y = 0.4f,
-       .coat = s->rough},
+       .coat = s->coats[2]},
       {.kind = VL_BSDF_COATED_DIFFUSE,
        .reflectance = 0.5f,
        .eta_s = 1.5f,
        .alpha_x = 0.1f,
        .alpha_y = 0.4f,
-       .coat = s->varied},
+       .coat = s->coats[3]},
       {.kind = VL_BSDF_DIFFUSE_TRANSMISSION, .reflectance = 0.3f, .principled = through},
       /* for the tests that do not integrate over the sphere */
       {.kind = VL_BSDF_CONDUCTOR, .eta = 0.2f, .k = 3.9f, .alpha_x = 0.01f, .alpha_y = 0.02f},
@@ -87,7 +62,7 @@ static Surface surface(const State *s, int i) {
        .eta_s = 1.5f,
        .alpha_x = 0.01f,
        .alpha_y = 0.01f,
-       .coat = s->varied}};
+       .coat = s->coats[3]}};
   return all[i];
 }
 enum { INTEGRABLE = 13 };
@@ -105,23 +80,23 @@ typedef struct {
 static void direction_set(Direction *d, const Surface *surface, double theta) {
   d->kind = surface->kind;
   for (uint32_t i = 0; i < VL_LANES; i++) {
-    batch_surface(d->s->single, i, surface);
-    batch_wo(d->s->single, i, theta, wo_phi);
+    batch_surface(d->s->other, i, surface);
+    batch_wo(d->s->other, i, theta, wo_phi);
   }
 }
 static void direction_eval(const Direction *d, const double w[3]) {
-  Batch *b = d->s->single;
+  Batch *b = d->s->other;
   b->ix[0] = (float)w[0], b->iy[0] = (float)w[1], b->iz[0] = (float)w[2];
   batch_eval(d->s->kernels, d->kind, 1, b);
 }
 static double direction_pdf(void *user, const double w[3]) {
   const Direction *d = user;
   direction_eval(d, w);
-  return (double)d->s->single->pdf[0];
+  return (double)d->s->other->pdf[0];
 }
 static double direction_value(void *user, double phi, double theta) {
   const Direction *d = user;
-  const Batch *b = d->s->single;
+  const Batch *b = d->s->other;
   double s = sin(theta), w[3] = {s * cos(phi), s * sin(phi), cos(theta)}, scale = 1;
   direction_eval(d, w);
   if (d->kind == VL_BSDF_DIELECTRIC && d->energy && w[2] * (double)b->oz[0] < 0) {
@@ -266,5 +241,5 @@ static void albedo(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(chi_square), cmocka_unit_test(consistent),
                                      cmocka_unit_test(albedo)};
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, build_coats, teardown);
 }

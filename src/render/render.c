@@ -78,11 +78,9 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
 /* Light is followed both ways where nothing lies in a medium or moves; else by the tracer that can do that. */
 static vlTracer tracer_of(const vlRenderRun *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
-  if (!vl_two_way_tracer(r->def->tracer) || (world->media.count == 0 && !world->moves && !camera->moves))
-    return r->def->tracer;
+  if (!vl_two_way_tracer(r->def->tracer) || (!world->moves && !camera->moves)) return r->def->tracer;
   vl_log(world->context, VL_LOG_INFO, NULL,
-         "light is followed both ways only where nothing %s: paths from the eye alone are traced",
-         world->media.count ? "lies in a medium" : "moves");
+         "light is followed both ways only where nothing moves: paths from the eye alone are traced");
   return VL_TRACER_VOLPATH;
 }
 

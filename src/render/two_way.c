@@ -48,7 +48,8 @@ struct vlTwoWayRun {
   Worker *workers;
   char *memory; /* of the workers' rows */
   float *choice;
-  Splat *splats; /* of the crop window */
+  uint32_t *medium; /* of lights */
+  Splat *splats;    /* of the crop window */
   uint32_t x0, y0, width, height;
   double filter_scale[2];
   float exposure, first_radius;
@@ -202,6 +203,7 @@ static void set_radius(vlTwoWayRun *run, uint32_t index) {
   float radius = run->first_radius * vl_pow((float)(index + 1), -1.0f / 6.0f);
   way->paths = (float)run->paths;
   way->merged = way->merge ? way->paths * VL_PI * radius * radius : 0.0f;
+  way->merged_volume = way->merged * radius * (4.0f / 3.0f);
   way->map.radius2 = radius * radius;
 }
 
@@ -264,6 +266,20 @@ static vlResult make_workers(vlTwoWayRun *run, vlError *error) {
   return VL_OK;
 }
 
+/* What lights stand in: light's paths must know it from the start. */
+static vlResult find_media(vlTwoWayRun *run, const vlCamera *camera, vlError *error) {
+  const vlWorld *world = run->world;
+  if (!world->media.count) return VL_OK;
+  run->way.medium = run->medium = vl_alloc_array(run->context, world->lights.count + 1, sizeof *run->medium);
+  if (!run->medium) return vl_fail_memory(error);
+  const double *m = camera->world_from_camera;
+  const float eye[3] = {(float)m[3], (float)m[7], (float)m[11]};
+  unsigned state = vl_accel_enter();
+  run->kernels->light_media(world, eye, run->medium);
+  vl_accel_leave(state);
+  return VL_OK;
+}
+
 vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                            const vlTraceDef *trace, vlTwoWayRun **made, vlError *error) {
   vlContext *context = world->context;
@@ -291,6 +307,7 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   run->splats = vl_alloc_zero(context, (size_t)run->width * run->height, sizeof *run->splats);
   way->choice = run->choice;
   vlResult result = run->choice && run->splats ? make_workers(run, error) : vl_fail_memory(error);
+  if (result == VL_OK) result = find_media(run, camera, error);
   if (result != VL_OK) return result;
   run->starts = vl_two_way_choice(world, run->choice);
   if (run->starts) vl_eye_view(camera, f, &way->eye);
@@ -307,6 +324,7 @@ void vl_two_way_destroy(vlTwoWayRun *run) {
   vl_free(context, run->workers);
   vl_free(context, run->memory);
   vl_free(context, run->choice);
+  vl_free(context, run->medium);
   vl_free(context, run->splats);
   vl_free(context, run->photons);
   vl_free(context, run->sorted);

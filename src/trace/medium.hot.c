@@ -42,6 +42,7 @@ static vlFlightEnd fly_homogeneous(const vlWorldMedium *m, float t0, float t1, b
     float distance = vl_min(depth / sigma[h], length);
     shift(sigma, h, distance, factor);
     *t = t0 + distance;
+    f->odds *= vl_exp(-m->extinction * distance);
     for (int c = 0; c < 4; c++) {
       f->beta[c] *= factor[c] * k.s[c] / sigma[h];
       f->u[c] *= factor[c] * sigma[c] / sigma[h];
@@ -49,6 +50,7 @@ static vlFlightEnd fly_homogeneous(const vlWorldMedium *m, float t0, float t1, b
     return largest(f->beta) > 0.0f ? VL_FLIGHT_SCATTERED : VL_FLIGHT_ENDED;
   }
   shift(sigma, h, length, factor);
+  f->odds *= vl_exp(-m->extinction * length);
   for (int c = 0; c < 4; c++) {
     f->beta[c] *= factor[c];
     f->u[c] *= factor[c];
@@ -65,6 +67,7 @@ static void attenuate_homogeneous(const vlWorldMedium *m, float t0, float t1, vl
     f->beta[c] *= passes;
     f->u[c] *= m->scatters ? passes : 1.0f;
   }
+  if (m->scatters) f->odds *= vl_exp(-m->extinction * length);
 }
 
 /* ---- the others -------------------------------------------------------------------------------------------------- */
@@ -83,6 +86,11 @@ static void pass(const vlWorldMedium *m, const float majorant[4], float length, 
   float factor[4];
   shift(majorant, f->hero, length, factor);
   for (int c = 0; c < 4; c++) f->beta[c] *= factor[c], f->u[c] *= factor[c], f->l[c] *= factor[c];
+}
+
+/* The share of null collisions is the same for all channels but in RGB grids, where it is left out of the odds. */
+static inline float null_odds(const vlWorldMedium *m, float none, float majorant) {
+  return m->kind == VL_MEDIUM_RGB_GRID ? 1.0f : none / majorant;
 }
 
 static bool start_tracking(const vlWorldMedium *m, const vlMediumLight *whole, vlVec3 o, vlVec3 d, float t0, float t1,
@@ -160,6 +168,7 @@ static vlFlightEnd fly_through(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float
       return largest(f->beta) > 0.0f ? VL_FLIGHT_SCATTERED : VL_FLIGHT_ENDED;
     }
     if (!(none[h] > 0.0f)) return VL_FLIGHT_ENDED; /* only rounding comes here */
+    f->odds *= null_odds(m, none[h], k.majorant[h]);
     for (int c = 0; c < 4; c++) {
       f->beta[c] *= none[c] / none[h];
       f->u[c] *= none[c] / none[h];
@@ -178,6 +187,7 @@ static void attenuate_through(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float 
   while (next_collision(m, f, &k)) {
     vlMediumLight at = vl_medium_at(m, &whole, f->lambda, vl_add(o, vl_mul(d, k.t)), false);
     float both[4];
+    if (m->scatters) f->odds *= null_odds(m, vl_max(0.0f, k.majorant[h] - at.a[h] - at.s[h]), k.majorant[h]);
     for (int c = 0; c < 4; c++) {
       float none = vl_max(0.0f, k.majorant[c] - at.a[c] - at.s[c]) / k.majorant[h];
       float any = k.majorant[c] / k.majorant[h];

@@ -111,7 +111,8 @@ typedef struct vlVolumeScratch {
   vlPaths scattered;    /* those that go on from inside of media */
   vlVolumeRows a, b, c; /* of the paths a, b and of those */
   VL_ROW uint8_t event[VL_ROW_SIZE];
-  VL_ROW float t[VL_ROW_SIZE]; /* where on the ray a medium scatters */
+  VL_ROW float t[VL_ROW_SIZE];    /* where on the ray a medium scatters */
+  VL_ROW float odds[VL_ROW_SIZE]; /* by lane: vlFlight.odds of its last flight */
   /* shadow rays: densities of the light sample and of the scattering */
   VL_ROW float light_pdf[VL_ROW_SIZE], pdf[VL_ROW_SIZE], density[4][VL_ROW_SIZE];
   VL_ROW uint32_t shadow_medium[VL_ROW_SIZE], from[VL_ROW_SIZE];
@@ -143,6 +144,7 @@ typedef struct vlTracing {
   vlTraceBatch *batch;
   const vlSamplerKernels *sampler;
   const vlBsdfKernels *bsdf;
+  bool from_light; /* the paths are light's */
 } vlTracing;
 
 #ifdef VL_ISA_SUFFIX

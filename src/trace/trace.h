@@ -12,6 +12,7 @@
 
 struct vlTwoWay; /* two_way.h */
 struct vlTwoWayRows;
+struct vlEyeView;
 struct vlLightBatch;
 
 enum { VL_BATCH = 1024 };
@@ -61,6 +62,7 @@ typedef struct vlTraceBatch {
   float *alpha;                      /* out: 1 where the ray meets a surface */
   uint64_t bounce_rays, shadow_rays; /* added to */
   struct vlTwoWayRows *two_way;      /* with vlTraceDef.two_way: a worker's own memory, as vlTraceScratch is */
+  const struct vlEyeView *eyes;      /* with it, of a camera that moves: each lane's; else null */
 } vlTraceBatch;
 
 typedef struct vlTraceScratch vlTraceScratch;
@@ -72,6 +74,8 @@ typedef struct vlTraceKernels {
   /* Paths from the lights (two_way.h); def->sampler is not asked, def->two_way->sampler is. */
   void (*light)(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, struct vlTwoWayRows *rows,
                 struct vlLightBatch *batch);
+  /* Which medium each light's paths start in, as far as its shape does not tell; eye: where the camera is. */
+  void (*light_media)(const vlWorld *world, const float eye[3], uint32_t *medium);
 } vlTraceKernels;
 extern const vlTraceKernels vl_trace_kernels_v2, vl_trace_kernels_v3, vl_trace_kernels_v4;
 const vlTraceKernels *vl_trace_kernels(vlIsa isa);

@@ -7,7 +7,7 @@ static void start_paths(vlTracing *t) {
   vlTraceBatch *b = t->batch;
   vlPaths *p = &t->s->a;
   uint32_t padded = VL_PAD(b->n);
-  t->s->a.time = t->s->b.time = b->time;
+  t->s->a.time = t->s->b.time = t->s->volume.scattered.time = b->time;
   if (b->lambda[0]) {
     t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->shade.u0);
     float shared = t->def->two_way ? t->def->two_way->shared : -1.0f;
@@ -96,7 +96,7 @@ static void ambient_occlusion_tracer(vlTracing *t) {
 }
 
 static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTraceBatch *batch) {
-  vlTracing t = {world, def, scratch, batch, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa)};
+  vlTracing t = {world, def, scratch, batch, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa), false};
   start_paths(&t);
   switch (def->tracer) {
     case VL_TRACER_RAYCAST: raycast_tracer(&t); break;
@@ -118,4 +118,4 @@ static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *s
   }
 }
 
-const vlTraceKernels VL_HOT(vl_trace_kernels) = {trace, VL_HOT(vl_light_tracer)};
+const vlTraceKernels VL_HOT(vl_trace_kernels) = {trace, VL_HOT(vl_light_tracer), VL_HOT(vl_light_media)};

@@ -11,7 +11,13 @@
  *   S_1 = N / p(z_1),   S_(t+1) = (S_t + H) rev_(t+1) cos_t / (fwd_t cos_(t+1))
  * with fwd and rev the densities of the directions as sampled and the other way round: distances cancel, so one number
  * a path (`carry` = (S + H) cos / fwd) is all that travels. The light's side is the same, from its end. At deltas fwd =
- * rev and H = 0. */
+ * rev and H = 0.
+ *
+ * In media cos is the density of the medium at the vertex: vl_medium_extinction, which no wavelength changes, so that
+ * weights are the same whoever finds the path; H = N 4/3 pi radius^3. What flights make likelier or not is the same
+ * both ways and cancels, too, but for the pieces that light samples and splats connect, without a flight: there the
+ * odds of the flight (vlFlight.odds) come in. Wavelengths have their own balance, within each way: over what the four
+ * would have made of its flights (trace/volume.h). */
 #ifndef TRACE_TWO_WAY_H
 #define TRACE_TWO_WAY_H
 
@@ -36,7 +42,7 @@ typedef struct vlPhoton {
   uint32_t bounce; /* from 1: vertices of the light's path so far, without the one on the light */
   uint32_t id;     /* unique in a pass, whatever the order of work */
   uint32_t alone;  /* the hero wavelength alone is left, with the weight of all */
-  uint32_t unused;
+  uint32_t medium; /* 1 + the medium that it scatters in; power is then divided by sigma_s. 0: on a surface */
 } vlPhoton;
 _Static_assert(sizeof(vlPhoton) == 64, "a photon is one cache line");
 
@@ -59,11 +65,13 @@ typedef struct vlTwoWay {
   bool light_only;     /* no next event, no merging: weights are 1 */
   float paths;         /* N: the light's paths of a pass */
   float merged;        /* H = N pi radius^2; 0 without merging */
+  float merged_volume; /* in media: H = N 4/3 pi radius^3 */
   float inv_merged;    /* 1 / H */
   float shared;        /* all paths of the pass have the wavelengths of this number in [0, 1); below 0: each its own */
   const float *choice; /* lights + 1: cumulated probabilities of starting from each */
-  vlSampler sampler;   /* of the light's paths */
-  vlPhotonMap map;     /* of this pass */
+  const uint32_t *medium; /* of each light: what its paths start in (vlTraceKernels.light_media); null without media */
+  vlSampler sampler;      /* of the light's paths */
+  vlPhotonMap map;        /* of this pass */
 } vlTwoWay;
 
 /* The light's paths of `n` <= VL_BATCH indices; what they leave goes to the sinks, up to VL_BATCH elements a call. */
@@ -71,7 +79,9 @@ typedef struct vlLightBatch {
   uint32_t n;
   const int32_t *px, *py; /* VL_PAD(n): which path, as a pixel of the sampler's */
   const uint32_t *index;
-  uint32_t width; /* paths are numbered py * width + px */
+  uint32_t width;        /* paths are numbered py * width + px */
+  const float *time;     /* the world's, by path; null where nothing moves */
+  const vlEyeView *eyes; /* by path, of a camera that moves; null: vlTwoWay.eye */
   void *user;
   /* Radiance for the film at points x, y (pixels from the top left corner): value at wavelengths of density 1 / inv_pdf
    * (spectral; else those rows mean nothing). Rows of VL_ROW_SIZE; may be written to. */

@@ -5,6 +5,7 @@
 #include "math/ggx.h"
 #include "trace/stages.h"
 #include "trace/two_way.h"
+#include "trace/volume.h"
 
 enum { VL_MERGE_PAIRS = 4 * VL_BATCH };
 
@@ -20,10 +21,11 @@ typedef struct vlTwoWayRows {
   /* by element of the sorted batch */
   VL_ROW float a[VL_ROW_SIZE], b[VL_ROW_SIZE]; /* S = a rev + b */
   VL_ROW float rev[VL_ROW_SIZE];               /* vl_stage_reverse */
-  VL_ROW float cosine[VL_ROW_SIZE];            /* of the ray that came, with the geometric normal */
+  VL_ROW float cosine[VL_ROW_SIZE];            /* of the ray that came, with the geometric normal; media: extinction */
   VL_ROW float wo[3][VL_ROW_SIZE], pdf[VL_ROW_SIZE];
-  VL_ROW float x[VL_ROW_SIZE], y[VL_ROW_SIZE]; /* film points, then of splats */
-  VL_ROW float rows[12][VL_ROW_SIZE];          /* value, wavelength, 1 / density of splats; wavelengths of the batch */
+  VL_ROW float x[VL_ROW_SIZE], y[VL_ROW_SIZE];        /* film points, then of splats */
+  VL_ROW float own[VL_ROW_SIZE], others[VL_ROW_SIZE]; /* of shadow rays: density of this way and of the others */
+  VL_ROW float rows[12][VL_ROW_SIZE]; /* value, wavelength, 1 / density of splats; wavelengths of the batch */
   VL_ROW uint32_t first[VL_ROW_SIZE + 1], count[VL_ROW_SIZE];
   uint32_t pair[VL_MERGE_PAIRS]; /* photons, those of a lane together */
   vlPhoton photons[VL_BATCH];
@@ -36,6 +38,35 @@ void VL_HOT(vl_light_tracer)(const vlWorld *world, const vlTraceDef *def, vlTrac
                              vlLightBatch *batch);
 /* Adds the light of the photons near the n shaded lanes, depth: bounces of the eye's path so far. */
 void VL_HOT(vl_stage_merge)(vlTracing *t, uint32_t n, uint32_t depth);
+void VL_HOT(vl_stage_merge_media)(vlTracing *t, uint32_t n, uint32_t depth);
+void VL_HOT(vl_light_media)(const vlWorld *world, const float eye[3], uint32_t *medium);
+
+/* The lanes of a that scatter in media (volume.scattered): light samples, merging, directions; s->order names those
+ * that go on. Of the eye's paths, and of light's, which leave photons and splats; last: none goes on. */
+uint32_t VL_HOT(vl_eye_in_media)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
+uint32_t VL_HOT(vl_light_in_media)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
+                                   uint32_t dimension, bool last);
+/* Light samples as `count` shadow rays: adds what arrives, weighed: own over own + odds others. */
+void VL_HOT(vl_two_way_shadows)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count,
+                                uint32_t depth);
+/* The n shaded lanes, as far as the eye sees them, become splats. */
+void VL_HOT(vl_show)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth, uint32_t dimension);
+/* Shadow rays towards the eye become splats; their radiance over own + odds others. */
+void VL_HOT(vl_two_way_splats)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p,
+                               const vlVolumeRows *rows, uint32_t count, uint32_t depth);
+/* Density with which next event would have asked for the light that this lane's path came from. */
+float VL_HOT(vl_light_asked)(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w);
+
+/* Where the eye would see a point from a point on its lens. */
+typedef struct vlSight {
+  bool seen;
+  vlVec3 w;         /* towards it */
+  vlVec3 from;      /* where on the lens */
+  float x, y;       /* film */
+  float end;        /* share of the way up to the near plane */
+  float per_square; /* 1 / (solid angle of a pixel * distance squared) */
+} vlSight;
+vlSight VL_HOT(vl_look)(const vlEyeView *eye, vlVec3 p, float u, float v);
 
 /* Densities of sampling wo had the path come from the directions wi (local, rows of n), to rows->rev; and the BSDFs'
  * values f(wi, wo) |cos wo| to shade.value. shade.wo stays, shade.wi and shade.pdf and light.w do not. */
@@ -68,6 +99,23 @@ static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s
       return vl_ggx_is_smooth(s->shade.alpha_x[i], s->shade.alpha_y[i]) || s->shade.eta_s[i] == 1.0f;
     default: return false;
   }
+}
+
+static inline bool vl_has_media(const vlTracing *t) {
+  return t->world->media.count > 0;
+}
+/* Of the path's last flight. */
+static inline float vl_last_odds(const vlTracing *t, uint32_t lane) {
+  return vl_has_media(t) ? t->s->volume.odds[lane] : 1.0f;
+}
+static inline const vlEyeView *vl_eye_of(const vlTracing *t, uint32_t lane) {
+  return t->batch->eyes ? &t->batch->eyes[lane] : &t->def->two_way->eye;
+}
+/* Of light's first ray, at that distance. */
+static inline float vl_light_density(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane, float distance) {
+  vlWorldLightKind kind = t->world->lights.items[r->light[lane]].kind;
+  bool point = kind == VL_WL_POINT || kind == VL_WL_SPOT || kind == VL_WL_GONIOMETRIC || kind == VL_WL_PROJECTION;
+  return point ? r->density[lane] / (distance * distance) : r->density[lane];
 }
 
 /* Solid angle of a pixel round the direction whose cosine with the axis is c: its side at distance 1 is 1/f. */

@@ -11,8 +11,6 @@
 #include "trace/volume.h"
 #include "trace/phase.h"
 
-enum { ON_SURFACE, IN_SKY, IN_MEDIUM, AT_END };
-
 /* ---- what a lane carries ----------------------------------------------------------------------------------------- */
 
 static void store_flight(vlPaths *p, vlVolumeRows *v, uint32_t i, const vlFlight *f) {
@@ -23,16 +21,16 @@ static void store_flight(vlPaths *p, vlVolumeRows *v, uint32_t i, const vlFlight
   }
 }
 
-static void permute_rows(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n) {
+void VL_HOT(vl_volume_permute)(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n) {
   for (int c = 0; c < 4; c++)
     for (uint32_t k = 0; k < n; k++) b->u[c][k] = a->u[c][order[k]], b->l[c][k] = a->l[c][order[k]];
   for (uint32_t k = 0; k < n; k++) b->medium[k] = a->medium[order[k]];
 }
 
-/* beta is the path's weight from here on. A path that follows its hero alone is judged by that one's density. */
-static void normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i) {
+/* A path that follows its hero alone is judged by that one's density, if that is what its flights are sampled by. */
+void VL_HOT(vl_volume_normalise)(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i) {
   float u[4];
-  bool alone = !vl_volume_rgb(t) && p->lambda[1][i] == p->lambda[0][i];
+  bool alone = !t->from_light && !vl_volume_rgb(t) && p->lambda[1][i] == p->lambda[0][i];
   for (int c = 0; c < 4; c++) u[c] = v->u[alone ? 0 : c][i];
   float inv = 1.0f / vl_flight_mean(u, vl_volume_rgb(t) ? 3 : 4);
   for (int c = 0; c < 4; c++) {
@@ -45,7 +43,8 @@ static void normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t 
 
 /* One lane of a, from medium to medium through interfaces, to what happens to it. Its origin stays that of its last
  * scattering, which densities of light sampling ask for. */
-static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, const float *t_min_row, const float *t_max_row) {
+static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission, const float *t_min_row,
+                        const float *t_max_row) {
   const vlWorld *world = t->world;
   vlPaths *p = &t->s->a;
   vlHits *h = &t->s->hits_a;
@@ -54,7 +53,7 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, const float *t
   float t_min = t_min_row ? t_min_row[i] : 0.0f, given[4] = {0, 0, 0, 0};
   vlFlight f = vl_volume_flight(t, p, &v->a, i, depth, VL_KEY_FLIGHT);
   f.first = t->s->shade.u0[i];
-  uint32_t medium = v->a.medium[i], event = AT_END;
+  uint32_t medium = v->a.medium[i], event = VL_AT_END;
   for (int step = 0; step < 1024; step++) { /* no ray needs so many */
     bool hit = h->shape[i] != VL_NONE;
     bool passes = hit && vl_is_interface(world, h->shape[i]);
@@ -62,14 +61,13 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, const float *t
     if (hit && (passes || medium != VL_NONE)) at = VL_HOT(vl_hit_point)(world, p, h, i);
     vlFlightEnd end = VL_FLIGHT_PASSED;
     if (medium != VL_NONE)
-      end = VL_HOT(vl_fly)(&world->media.items[medium], o, d, t_min, at.t, depth < t->def->max_depth, &f, given,
-                           &v->t[i]);
+      end = VL_HOT(vl_fly)(&world->media.items[medium], o, d, t_min, at.t, emission, &f, given, &v->t[i]);
     if (end != VL_FLIGHT_PASSED) {
-      event = end == VL_FLIGHT_SCATTERED ? IN_MEDIUM : AT_END;
+      event = end == VL_FLIGHT_SCATTERED ? VL_IN_MEDIUM : VL_AT_END;
       break;
     }
     if (!passes) {
-      event = hit ? ON_SURFACE : IN_SKY;
+      event = hit ? VL_ON_SURFACE : VL_IN_SKY;
       break;
     }
     medium = vl_medium_beyond(&world->shapes.items[h->shape[i]], at.g, d, medium);
@@ -79,24 +77,25 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, const float *t
   store_flight(p, &v->a, i, &f);
   v->a.medium[i] = medium;
   v->event[i] = (uint8_t)event;
+  v->odds[p->lane[i]] = vl_some_odds(f.odds);
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += given[c];
-  if (event == ON_SURFACE)
+  if (event == VL_ON_SURFACE)
     h->material[i] = VL_HOT(vl_hit_material)(world, p, h, i);
   else
     h->shape[i] = VL_NONE;
 }
 
-static void travel(vlTracing *t, uint32_t n, uint32_t depth) {
+void VL_HOT(vl_volume_travel)(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
   vlTraceScratch *s = t->s;
   vlPaths *p = &s->a;
-  bool camera = depth == 0;
+  bool camera = depth == 0 && !t->from_light;
   const float *t_min = camera ? t->batch->t_min : NULL, *t_max = camera ? t->batch->t_max : NULL;
   VL_HOT(vl_closest_hits)(t, n, camera);
   if (!camera) t->batch->bounce_rays += n;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_BOUNCE + depth * VL_DIM_STRIDE + VL_DIM_FLIGHT,
                      s->shade.u0);
-  for (uint32_t i = 0; i < n; i++) travel_lane(t, i, depth, t_min, t_max);
-  for (uint32_t i = 0; camera && i < n; i++) t->batch->alpha[i] = s->volume.event[i] == IN_SKY ? 0.0f : 1.0f;
+  for (uint32_t i = 0; i < n; i++) travel_lane(t, i, depth, emission, t_min, t_max);
+  for (uint32_t i = 0; camera && i < n; i++) t->batch->alpha[i] = s->volume.event[i] == VL_IN_SKY ? 0.0f : 1.0f;
 }
 
 /* ---- light that rays run into ------------------------------------------------------------------------------------ */
@@ -153,14 +152,14 @@ static void emission(vlTracing *t, uint32_t n) {
   const vlHits *h = &t->s->hits_a;
   for (uint32_t i = 0; i < n; i++) {
     uint8_t event = t->s->volume.event[i];
-    if (event == IN_SKY) add_sky(t, i);
-    if (event == ON_SURFACE && t->world->shapes.items[h->shape[i]].first_light != VL_NONE) add_glow(t, i);
+    if (event == VL_IN_SKY) add_sky(t, i);
+    if (event == VL_ON_SURFACE && t->world->shapes.items[h->shape[i]].first_light != VL_NONE) add_glow(t, i);
   }
 }
 
 /* ---- light samples ------------------------------------------------------------------------------------------- */
 
-static void sample_lights(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension) {
+void VL_HOT(vl_volume_sample_lights)(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension) {
   vlShade *sh = &t->s->shade;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT, sh->u0);
   t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
@@ -174,7 +173,7 @@ static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   vlVolumeScratch *v = &s->volume;
   const vlPaths *p = &v->scattered;
   if (t->world->lights.count == 0) return;
-  sample_lights(t, n, p, dimension);
+  VL_HOT(vl_volume_sample_lights)(t, n, p, dimension);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (!(s->light.pdf[i] > 0.0f)) continue;
@@ -187,8 +186,7 @@ static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   VL_HOT(vl_volume_shadows)(t, p, &v->c, count, depth);
 }
 
-/* New directions by the phase function, roulette as on surfaces. Returns how many go on. */
-static uint32_t phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+uint32_t VL_HOT(vl_volume_phase_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = &s->volume;
   vlPaths *p = &v->scattered;
@@ -219,20 +217,18 @@ static uint32_t phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t
   return count;
 }
 
-/* The lanes of a that scatter in media, to their next rays in volume.scattered. Returns how many go on; s->order names
- * them. */
-static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
+uint32_t VL_HOT(vl_volume_gather)(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = &s->volume;
   vlPaths *p = &v->scattered;
-  uint32_t count = 0, dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
+  uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++)
-    if (v->event[i] == IN_MEDIUM) s->order[count++] = i;
+    if (v->event[i] == VL_IN_MEDIUM) s->order[count++] = i;
   if (count == 0) return 0;
   VL_HOT(vl_permute_paths)(&s->a, p, s->order, count);
-  permute_rows(&v->a, &v->c, s->order, count);
+  VL_HOT(vl_volume_permute)(&v->a, &v->c, s->order, count);
   for (uint32_t i = 0; i < count; i++) {
-    normalise(t, p, &v->c, i);
+    VL_HOT(vl_volume_normalise)(t, p, &v->c, i);
     float distance = v->t[s->order[i]];
     p->ox[i] += distance * p->dx[i], p->oy[i] += distance * p->dy[i], p->oz[i] += distance * p->dz[i];
     p->cone[i] += t->def->pixel_spread * distance;
@@ -240,8 +236,16 @@ static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
     s->surface.px[i] = p->ox[i], s->surface.py[i] = p->oy[i], s->surface.pz[i] = p->oz[i];
     s->surface.nx[i] = s->surface.ny[i] = s->surface.nz[i] = 0.0f; /* light comes from everywhere */
   }
+  return count;
+}
+
+/* The lanes of a that scatter in media, to their next rays in volume.scattered. Returns how many go on; s->order names
+ * them. */
+static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
+  uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, count = VL_HOT(vl_volume_gather)(t, n);
+  if (count == 0) return 0;
   phase_light(t, count, depth, dimension);
-  return phase_scatter(t, count, depth + 1, dimension);
+  return VL_HOT(vl_volume_phase_scatter)(t, count, depth + 1, dimension);
 }
 
 /* ---- scattering on surfaces -------------------------------------------------------------------------------------- */
@@ -252,7 +256,7 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   const vlShade *sh = &s->shade;
   const vlLightSamples *l = &s->light;
   if (t->world->lights.count == 0) return;
-  sample_lights(t, n, p, dimension);
+  VL_HOT(vl_volume_sample_lights)(t, n, p, dimension);
   VL_HOT(vl_stage_light_bsdf)(t, n);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
@@ -270,18 +274,16 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   VL_HOT(vl_volume_shadows)(t, p, &s->volume.b, count, depth);
 }
 
-static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
+void VL_HOT(vl_volume_sorted)(vlTracing *t, uint32_t n) {
+  vlVolumeScratch *v = &t->s->volume;
+  if (t->world->media.count) VL_HOT(vl_volume_permute)(&v->a, &v->b, t->s->order, n);
+}
+
+void VL_HOT(vl_volume_go_on)(vlTracing *t, uint32_t count) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = &s->volume;
-  uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
-  n = VL_HOT(vl_stage_sort)(t, n);
-  if (n == 0) return 0;
-  permute_rows(&v->a, &v->b, s->order, n);
-  VL_HOT(vl_stage_shade)(t, n);
-  for (uint32_t i = 0; i < n; i++) normalise(t, &s->b, &v->b, i);
-  surface_light(t, n, depth, dimension);
-  uint32_t count = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
-  permute_rows(&v->b, &v->a, s->order, count);
+  if (!t->world->media.count) return;
+  VL_HOT(vl_volume_permute)(&v->b, &v->a, s->order, count);
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k];
     float pdf = s->a.pdf[k], inv = pdf > 0.0f ? 1.0f / pdf : 0.0f;
@@ -290,13 +292,26 @@ static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
                                       vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i),
                                       vl_lane3(s->a.dx, s->a.dy, s->a.dz, k), v->a.medium[k]);
   }
+}
+
+static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = &s->volume;
+  uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
+  n = VL_HOT(vl_stage_sort)(t, n);
+  if (n == 0) return 0;
+  VL_HOT(vl_volume_sorted)(t, n);
+  VL_HOT(vl_stage_shade)(t, n);
+  for (uint32_t i = 0; i < n; i++) VL_HOT(vl_volume_normalise)(t, &s->b, &v->b, i);
+  surface_light(t, n, depth, dimension);
+  uint32_t count = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
+  VL_HOT(vl_volume_go_on)(t, count);
   return count;
 }
 
 /* ---- the tracer -------------------------------------------------------------------------------------------------- */
 
-/* Paths k of volume.scattered to the end of a. */
-static uint32_t append(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n) {
+uint32_t VL_HOT(vl_volume_append)(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n) {
   vlPaths *a = &t->s->a;
   const vlPaths *b = &t->s->volume.scattered;
   vlVolumeRows *va = &t->s->volume.a;
@@ -319,23 +334,28 @@ static uint32_t append(vlTracing *t, const uint32_t *order, uint32_t count, uint
   return n;
 }
 
-void VL_HOT(vl_volume_tracer)(vlTracing *t) {
-  vlTraceScratch *s = t->s;
-  vlVolumeRows *rows = &s->volume.a;
-  uint32_t n = t->batch->n;
+void VL_HOT(vl_volume_start)(vlTracing *t, uint32_t n, const uint32_t *medium) {
+  vlPaths *p = &t->s->a;
+  vlVolumeRows *rows = &t->s->volume.a;
   for (uint32_t i = 0; i < n; i++) {
     for (int c = 0; c < 4; c++) rows->u[c][i] = rows->l[c][i] = 1.0f;
-    rows->medium[i] = t->world->camera_medium;
-    if (vl_volume_rgb(t)) s->a.beta[3][i] = 0.0f;
+    rows->medium[i] = medium ? medium[p->lane[i]] : t->world->camera_medium;
+    if (vl_volume_rgb(t)) p->beta[3][i] = 0.0f;
   }
+}
+
+void VL_HOT(vl_volume_tracer)(vlTracing *t) {
+  vlTraceScratch *s = t->s;
+  uint32_t n = t->batch->n;
+  VL_HOT(vl_volume_start)(t, n, NULL);
   for (uint32_t depth = 0; n > 0; depth++) {
-    travel(t, n, depth);
+    VL_HOT(vl_volume_travel)(t, n, depth, depth < t->def->max_depth);
     emission(t, n);
     if (depth >= t->def->max_depth) break;
     uint32_t inside = scatter_in_media(t, n, depth);
     uint32_t *kept = s->volume.kept;
     for (uint32_t k = 0; k < inside; k++) kept[k] = s->order[k];
     n = scatter_on_surfaces(t, n, depth);
-    n = append(t, kept, inside, n);
+    n = VL_HOT(vl_volume_append)(t, kept, inside, n);
   }
 }

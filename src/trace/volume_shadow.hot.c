@@ -58,6 +58,15 @@ static void pass_media(vlTracing *t, uint32_t k, vlFlight *f) {
   for (int c = 0; c < 4; c++) f->beta[c] = 0.0f;
 }
 
+vlFlight VL_HOT(vl_volume_shadow_flight)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t k,
+                                         uint32_t depth) {
+  vlFlight f = vl_volume_flight(t, p, rows, t->s->volume.from[k], depth, VL_KEY_SHADOW);
+  for (int c = 0; c < 4; c++) f.beta[c] = f.u[c] = f.l[c] = 1.0f;
+  pass_media(t, k, &f);
+  f.odds = vl_some_odds(f.odds);
+  return f;
+}
+
 void VL_HOT(vl_volume_shadows)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count,
                                uint32_t depth) {
   vlShadowRays *q = &t->s->shadow;
@@ -67,9 +76,7 @@ void VL_HOT(vl_volume_shadows)(vlTracing *t, const vlPaths *p, const vlVolumeRow
   t->batch->shadow_rays += count;
   for (uint32_t k = 0; k < count; k++) {
     if (q->occluded[k]) continue;
-    vlFlight f = vl_volume_flight(t, p, rows, v->from[k], depth, VL_KEY_SHADOW);
-    for (int c = 0; c < 4; c++) f.beta[c] = f.u[c] = f.l[c] = 1.0f;
-    pass_media(t, k, &f);
+    vlFlight f = VL_HOT(vl_volume_shadow_flight)(t, p, rows, k, depth);
     float density[4];
     for (int c = 0; c < 4; c++) density[c] = v->density[c][k] * (f.l[c] * v->light_pdf[k] + f.u[c] * v->pdf[k]);
     float inv = 1.0f / vl_flight_mean(density, f.channels);

@@ -9,6 +9,7 @@
 #include "color/rgb_table.h"
 #include "math/transform.h"
 #include "scene/scene.h"
+#include "world/medium_lookup.h"
 #include "world/world.h"
 
 /* ---- spectra ----------------------------------------------------------------------------------------------------- */
@@ -331,7 +332,7 @@ static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m
   m->grey = is_grey(&m->sigma_a) && is_grey(&m->sigma_s);
   m->temperature_emission = 1;
   switch (def->kind) {
-    case VL_MEDIUM_HOMOGENEOUS: return VL_OK;
+    case VL_MEDIUM_HOMOGENEOUS: m->extinction = vl_medium_mean_extinction(m); return VL_OK;
     case VL_MEDIUM_CLOUD: m->emits = false; return compile_cloud(world, def, m, error);
     case VL_MEDIUM_NANOVDB: m->emits = false; return compile_nanovdb(world, def, m, error);
     default: r = compile_grid(world, def, m, error); break;

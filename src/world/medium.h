@@ -34,6 +34,7 @@ typedef struct vlWorldMedium {
   vlSpectral emission;         /* luminance as said, scale included */
   float g;
   bool scatters, emits, grey; /* grey: the majorant is the same for all channels */
+  float extinction;           /* homogeneous: vl_medium_extinction */
   float medium_from_world[12];
   float low[3], high[3]; /* medium space; kinds but homogeneous */
   /* Upper bounds of the density (of an RGB grid: of sigma_t) over equal cells of the box. */

@@ -201,6 +201,23 @@ static inline vlMediumLight vl_medium_at(const vlWorldMedium *m, const vlMediumL
   return r;
 }
 
+/* One number for how dense a medium is at a place (world space), of sigma_t at three wavelengths that never change, or
+ * of R, G, B: for weights that must not depend on a path's wavelengths. Above 0. */
+static inline float vl_extinction_of(const vlMediumLight *x) {
+  return vl_max((x->a[0] + x->s[0] + x->a[1] + x->s[1] + x->a[2] + x->s[2]) * (1.0f / 3.0f), 1e-20f);
+}
+static const float vl_extinction_lambda[4] = {450.0f, 540.0f, 610.0f, 610.0f};
+static inline float vl_medium_mean_extinction(const vlWorldMedium *m) {
+  vlMediumLight whole = vl_medium_coefficients(m, vl_extinction_lambda);
+  return vl_extinction_of(&whole);
+}
+static inline float vl_medium_extinction(const vlWorldMedium *m, vlVec3 p) {
+  if (m->kind == VL_MEDIUM_HOMOGENEOUS) return m->extinction;
+  vlMediumLight whole = vl_medium_coefficients(m, vl_extinction_lambda);
+  vlMediumLight at = vl_medium_at(m, &whole, vl_extinction_lambda, p, false);
+  return vl_extinction_of(&at);
+}
+
 /* ---- majorants --------------------------------------------------------------------------------------------------- */
 
 /* A ray's way through the cells of majorants (Amanatides and Woo 1987; pbrt book 11.4.2). */

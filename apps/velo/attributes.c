@@ -210,6 +210,7 @@ vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
   set_text(&header, "velo.tracer", choice_name(tracer_choices, (int)job->render.tracer));
   set_int(&header, "velo.maxDepth", job->render.max_depth);
   set_text(&header, "velo.color", choice_name(color_choices, (int)job->settings->color));
+  if (job->build.regularize) set_int(&header, "velo.regularize", 1);
   set_text(&header, "velo.lightSampler", choice_name(light_sampler_choices, (int)job->settings->light_sampler));
   return header.result;
 }

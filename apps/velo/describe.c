@@ -112,7 +112,8 @@ void job_describe(const Job *job, vlContext *context, const vlScene *scene, cons
   printf(", filter %s, colour %s\n", f.filter, f.color);
   printf("sampling  %u spp, sampler %s, seed %u", job->render.spp, f.sampler, job->render.seed);
   if (job->render.time_limit > 0) printf(", at most %g s", job->render.time_limit);
-  printf("\ntracer    %s, max depth %u, lights by %s\n", f.tracer, job->render.max_depth, f.light_sampler);
+  printf("\ntracer    %s, max depth %u, lights by %s%s\n", f.tracer, job->render.max_depth, f.light_sampler,
+         job->build.regularize ? ", regularised" : "");
   printf("machine   %u threads, x86-64-v%d\n", vl_context_threads(context), (int)vl_context_isa(context));
   for (int i = 0; i < output_count; i++) printf("%s %s\n", i ? "         " : "output   ", outputs[i]);
 }

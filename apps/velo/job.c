@@ -47,6 +47,7 @@ const Choice filter_choices[] = {{"box", VL_PIXEL_FILTER_BOX},
                                  {NULL, 0}};
 const Choice light_sampler_choices[] = {
     {"bvh", VL_LIGHT_SAMPLER_BVH}, {"power", VL_LIGHT_SAMPLER_POWER}, {"uniform", VL_LIGHT_SAMPLER_UNIFORM}, {NULL, 0}};
+const Choice regularize_choices[] = {{"off", 0}, {"on", 1}, {NULL, 0}};
 const Choice color_choices[] = {{"spectral", VL_COLOR_SPECTRAL}, {"rgb", VL_COLOR_RGB}, {NULL, 0}};
 const Choice view_choices[] = {{"standard", VL_VIEW_STANDARD},
                                {"neutral", VL_VIEW_KHRONOS_NEUTRAL},
@@ -161,6 +162,7 @@ static void override_sampling(vlSceneSettings *settings, const Arguments *argume
   if (v[RENDER_SAMPLER].given) settings->sampler = (vlSamplerKind)v[RENDER_SAMPLER].integer;
   if (v[RENDER_FILTER].given) settings->filter = vl_default_pixel_filter((vlPixelFilterKind)v[RENDER_FILTER].integer);
   if (v[RENDER_LIGHT_SAMPLER].given) settings->light_sampler = (vlLightSampler)v[RENDER_LIGHT_SAMPLER].integer;
+  if (v[RENDER_REGULARIZE].given) settings->regularize = v[RENDER_REGULARIZE].integer == 1;
   if (v[RENDER_COLOR].given) settings->color = (vlColorMode)v[RENDER_COLOR].integer;
   if (v[RENDER_MAX_DEPTH].given) settings->max_depth = (uint32_t)v[RENDER_MAX_DEPTH].integer;
   if (v[RENDER_SEED].given) settings->sampler_seed = (uint32_t)v[RENDER_SEED].integer;
@@ -290,6 +292,7 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   job->build = vl_default_build_def();
   job->build.color = settings->color;
   job->build.light_sampler = settings->light_sampler;
+  job->build.regularize = settings->regularize;
   job->build.imitate_pbrt = v[RENDER_IMITATE_PBRT].given;
   return -1;
 }

@@ -20,6 +20,7 @@ enum {
   RENDER_SAMPLER,
   RENDER_FILTER,
   RENDER_LIGHT_SAMPLER,
+  RENDER_REGULARIZE,
   RENDER_MAX_DEPTH,
   RENDER_COLOR,
   RENDER_VIEW,
@@ -58,8 +59,8 @@ enum {
   RENDER_SCENE
 };
 
-extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[], color_choices[],
-    view_choices[], isa_choices[], stereo_choices[], eye_choices[];
+extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[],
+    regularize_choices[], color_choices[], view_choices[], isa_choices[], stereo_choices[], eye_choices[];
 
 extern const Option render_options[];
 

@@ -70,6 +70,10 @@ const Option render_options[] = {
     {RENDER_FILTER, 0, "filter", OPTION_CHOICE, "NAME", "pixel filter, with pbrt's usual size:", 0, 0, filter_choices},
     {RENDER_LIGHT_SAMPLER, 0, "light-sampler", OPTION_CHOICE, "NAME", "how a light is chosen:", 0, 0,
      light_sampler_choices},
+    {RENDER_REGULARIZE, 0, "regularize", OPTION_CHOICE, "NAME",
+     "make surfaces rougher for paths that have been scattered: no\n"
+     "fireflies, and softer caustics; default: as the scene says, or:",
+     0, 0, regularize_choices},
     {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME", "what light is made of:", 0, 0, color_choices},
     {RENDER_VIEW, 0, "view", OPTION_CHOICE, "NAME", "how light becomes display values (.png .jpg .tga):", 0, 0,
      view_choices},

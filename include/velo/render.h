@@ -21,6 +21,10 @@ typedef struct vlBuildDef {
   vlLightSampler light_sampler;
   bool imitate_pbrt; /* follow pbrt-v4 where it is known to be off (rough coats too bright by up to 8 %; docs/decisions)
                       */
+  /* Rough what a path meets after it has been scattered by anything but a mirror (pbrt-v4's regularize: alphas below
+   * 0.3 become twice as large, from 0.1 to 0.3): no fireflies of caustics, and not all of their light. Of the path and
+   * volume tracers. Default false. */
+  bool regularize;
 } vlBuildDef;
 VL_API vlBuildDef vl_default_build_def(void);
 /* Compiles the scene, with the pictures that it names. The scene may be destroyed afterwards, the context not. The

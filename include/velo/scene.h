@@ -480,6 +480,7 @@ typedef struct vlSceneSettings {
   float ao_distance;  /* ambient occlusion: reach in scene units; infinity default */
   bool ao_cosine;
   vlLightSampler light_sampler;
+  bool regularize; /* vlBuildDef.regularize */
   vlColorMode color;
   vlMediumId camera_medium; /* that the camera stands in */
 } vlSceneSettings;

@@ -117,6 +117,7 @@ static void put_sampling(vlExport *x) {
   PUT("\nIntegrator \"%s\" \"integer maxdepth\" [%u]", path ? "path" : "volpath", s->max_depth);
   if (s->light_sampler != VL_LIGHT_SAMPLER_BVH && s->light_sampler < 3)
     PUT(" \"string lightsampler\" \"%s\"", lights[s->light_sampler]);
+  if (s->regularize) PUT(" \"bool regularize\" true");
   PUT("\n");
 }
 

@@ -123,7 +123,7 @@ static bool read_filter(vlImport *import, vlSceneSettings *s) {
 static bool read_path(vlDict *dict, vlSceneSettings *s) {
   static const char *const light_samplers[] = {"bvh", "power", "uniform", "exhaustive"};
   vlImport *import = dict->import;
-  bool regularize = false, yes = true;
+  bool yes = true;
   int sampler = 0;
   vl_dict_count(dict, "maxdepth", 0, &s->max_depth);
   if (vl_dict_choice(dict, "lightsampler", light_samplers, 4, &sampler)) {
@@ -132,10 +132,7 @@ static bool read_path(vlDict *dict, vlSceneSettings *s) {
       return false;
     s->light_sampler = sampler == 3 ? VL_LIGHT_SAMPLER_BVH : (vlLightSampler)sampler;
   }
-  if (vl_dict_bool(dict, "regularize", &regularize) && regularize &&
-      !vl_import_unsupported(import, vl_dict_find(dict, "regularize", 1u << VL_PARAM_BOOL)->place,
-                             "%s: \"regularize\" is not understood yet", dict->what))
-    return false;
+  vl_dict_bool(dict, "regularize", &s->regularize);
   if (strstr(dict->what, "simple")) { /* how a simple path samples does not change what it converges to */
     vl_dict_bool(dict, "samplelights", &yes);
     vl_dict_bool(dict, "samplebsdf", &yes);

@@ -22,6 +22,13 @@ static inline float vl_ggx_alpha(float alpha) {
   return alpha > 1e-4f ? alpha : 1e-4f;
 }
 
+/* Alpha of what is made rougher on request (pbrt-v4's regularisation). */
+static inline float vl_ggx_widened(float alpha) {
+  float twice = 2.0f * alpha;
+  twice = twice < 0.1f ? 0.1f : twice > 0.3f ? 0.3f : twice;
+  return alpha < 0.3f ? twice : alpha;
+}
+
 /* L(w), see above. */
 static inline float vl_ggx_length(vlVec3 w, float alpha_x, float alpha_y) {
   float x = alpha_x * w.x, y = alpha_y * w.y;

@@ -173,6 +173,7 @@ uint32_t VL_HOT(vl_stage_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint
   for (uint32_t i = 0; i < n; i++) {
     s->order[count] = i;
     count += alive[i];
+    if (alive[i] && !(sh->flags[i] & VL_SAMPLED_SPECULAR)) vl_note_scattered(t, p->lane[i]);
     if (broken[i] > 0.0f) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film counts it */
   }
   VL_HOT(vl_permute_paths)(p, &s->a, s->order, count);
@@ -192,6 +193,7 @@ void VL_HOT(vl_path_tracer)(vlTracing *t) {
     if (n == 0) break;
     uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
     VL_HOT(vl_stage_shade)(t, n);
+    VL_HOT(vl_stage_regularize)(t, n);
     direct_light(t, n, dimension);
     n = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
   }

@@ -130,7 +130,8 @@ struct vlTraceScratch {
   VL_ROW float rows[VL_TEXTURE_ROWS][VL_ROW_SIZE]; /* a stack for nested textures */
   VL_ROW float time[VL_ROW_SIZE];                  /* of the rays of a, where something moves */
   VL_ROW uint32_t order[VL_ROW_SIZE];
-  VL_ROW uint32_t slot[VL_ROW_SIZE]; /* where each material's lanes start; then which lanes live on */
+  VL_ROW uint8_t scattered[VL_ROW_SIZE]; /* by lane of the batch, where the world is regularised: by no mirror */
+  VL_ROW uint32_t slot[VL_ROW_SIZE];     /* where each material's lanes start; then which lanes live on */
   vlVolumeScratch volume;
 };
 
@@ -168,6 +169,12 @@ uint32_t VL_HOT(vl_stage_sort)(vlTracing *t, uint32_t n);
 void VL_HOT(vl_stage_shade)(vlTracing *t, uint32_t n);
 /* Path order[k] of a becomes path k of b. */
 void VL_HOT(vl_permute_paths)(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n);
+/* Where the world asks for it: wider lobes for those of the n shaded lanes whose paths were scattered by more than
+ * mirrors (regularize.hot.c); and notes that the path of a lane of the batch was. */
+void VL_HOT(vl_stage_regularize)(vlTracing *t, uint32_t n);
+static inline void vl_note_scattered(const vlTracing *t, uint32_t lane) {
+  if (t->world->def.regularize) t->s->scattered[lane] = 1;
+}
 /* The BSDFs of the n shaded lanes for the directions of their light samples, to shade.value and shade.pdf. */
 void VL_HOT(vl_stage_light_bsdf)(vlTracing *t, uint32_t n);
 /* Samples the BSDFs of the n lanes of b and writes the paths that go on into a: path k was lane s->order[k]. Returns

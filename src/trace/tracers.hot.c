@@ -24,6 +24,7 @@ static void start_paths(vlTracing *t) {
     p->specular[i] = 1;
     p->px[i] = b->px[i], p->py[i] = b->py[i], p->index[i] = b->index[i];
     p->lane[i] = i;
+    t->s->scattered[i] = 0;
   }
   for (int c = 0; c < 4; c++)
     for (uint32_t i = 0; i < padded; i++) {

@@ -212,6 +212,7 @@ uint32_t VL_HOT(vl_volume_phase_scatter)(vlTracing *t, uint32_t n, uint32_t dept
     p->dx[i] = w.x, p->dy[i] = w.y, p->dz[i] = w.z;
     p->pdf[i] = pdf;
     p->specular[i] = 0;
+    vl_note_scattered(t, p->lane[i]);
     s->order[count++] = i;
   }
   return count;
@@ -302,6 +303,7 @@ static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   if (n == 0) return 0;
   VL_HOT(vl_volume_sorted)(t, n);
   VL_HOT(vl_stage_shade)(t, n);
+  VL_HOT(vl_stage_regularize)(t, n);
   for (uint32_t i = 0; i < n; i++) VL_HOT(vl_volume_normalise)(t, &s->b, &v->b, i);
   surface_light(t, n, depth, dimension);
   uint32_t count = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);

@@ -67,8 +67,7 @@ void vl_world_destroy(vlWorld *world) {
   if (!world) return;
   vlContext *c = world->context;
   vl_accel_destroy(c, &world->accel);
-  for (size_t i = 0; i < world->materials.count; i++)
-    if (world->materials.items[i].owns_coat) vl_coat_free(c, world->materials.items[i].coat);
+  for (size_t i = 0; i < world->coats.count; i++) vl_coat_free(c, world->coats.items[i].table);
   for (size_t i = 0; i < world->measured.count; i++) vl_measured_free(c, world->measured.items[i]);
   for (size_t i = 0; i < world->images.count; i++) vl_mipmap_destroy(world->images.items[i].mipmap);
   for (size_t i = 0; i < world->blocks.count; i++) vl_free(c, world->blocks.items[i]);
@@ -84,6 +83,7 @@ void vl_world_destroy(vlWorld *world) {
   VL_ARRAY_FREE(c, &world->infinite_lights);
   VL_ARRAY_FREE(c, &world->environments);
   VL_ARRAY_FREE(c, &world->measured);
+  VL_ARRAY_FREE(c, &world->coats);
   VL_ARRAY_FREE(c, &world->media);
   vl_free(c, world);
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "math/ggx.h"
 #include "scene/scene.h"
 #include "world/world.h"
 
@@ -15,30 +16,40 @@ static float alpha_of(float roughness, bool remap) {
   return remap ? sqrtf(roughness > 0 ? roughness : 0) : roughness;
 }
 
-/* The coat's table: shared between materials with the same numbers. */
-static vlResult coat_of(vlWorld *world, const vlMaterialDef *def, vlWorldMaterial *m, vlError *error) {
-  float thickness = def->thickness.value, low, high;
-  const vlTextureNode *u = &world->nodes.items[m->u_roughness], *v = &world->nodes.items[m->v_roughness];
-  if (u->kind == VL_NODE_FLOAT && v->kind == VL_NODE_FLOAT) {
-    low = high = sqrtf(alpha_of(u->value, m->remap) * alpha_of(v->value, m->remap));
-  } else {
-    low = 0, high = 1;
-  }
-  for (size_t i = 0; i < world->materials.count; i++) {
-    vlCoatTable *t = world->materials.items[i].coat;
-    if (t && t->eta == m->eta_s && t->tau == thickness && world->materials.items[i].coat_depth == def->max_depth &&
+/* A coat's table of these alphas. */
+static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWorldMaterial *m, float low, float high,
+                           const vlCoatTable **table, vlError *error) {
+  float thickness = def->thickness.value;
+  for (size_t i = 0; i < world->coats.count; i++) {
+    vlCoatTable *t = world->coats.items[i].table;
+    if (t->eta == m->eta_s && t->tau == thickness && world->coats.items[i].depth == def->max_depth &&
         t->alpha_min == low && t->alpha_max == high) {
-      m->coat_depth = def->max_depth;
-      m->coat = t;
+      *table = t;
       return VL_OK;
     }
   }
-  vlResult r = vl_coat_build(world->context, m->eta_s, thickness, def->max_depth, low, high, &m->coat);
-  if (r != VL_OK) return vl_fail_memory(error);
-  m->coat->imitate = world->def.imitate_pbrt;
-  m->owns_coat = true;
-  m->coat_depth = def->max_depth;
+  vlCoatTable *built = NULL;
+  if (vl_coat_build(world->context, m->eta_s, thickness, def->max_depth, low, high, &built) != VL_OK)
+    return vl_fail_memory(error);
+  vlWorldCoat *slot = VL_PUSH(world->context, &world->coats);
+  if (!slot) {
+    vl_coat_free(world->context, built);
+    return vl_fail_memory(error);
+  }
+  built->imitate = world->def.imitate_pbrt;
+  *slot = (vlWorldCoat){built, def->max_depth};
+  *table = built;
   return VL_OK;
+}
+
+static vlResult coat_of(vlWorld *world, const vlMaterialDef *def, vlWorldMaterial *m, vlError *error) {
+  const vlTextureNode *u = &world->nodes.items[m->u_roughness], *v = &world->nodes.items[m->v_roughness];
+  if (u->kind != VL_NODE_FLOAT || v->kind != VL_NODE_FLOAT) return coat_table(world, def, m, 0, 1, &m->coat, error);
+  float a = alpha_of(u->value, m->remap), b = alpha_of(v->value, m->remap), alpha = sqrtf(a * b);
+  vlResult r = coat_table(world, def, m, alpha, alpha, &m->coat, error);
+  if (r != VL_OK || !world->def.regularize) return r;
+  alpha = sqrtf(vl_ggx_widened(a) * vl_ggx_widened(b));
+  return coat_table(world, def, m, alpha, alpha, &m->widened, error);
 }
 
 /* What was measured: one file is read once. */
@@ -152,7 +163,6 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
     else
       r = vl_fail_memory(error);
   }
-  if (r != VL_OK && m->owns_coat) vl_coat_free(world->context, m->coat);
   return vl_world_placed(def->source, error, r);
 }
 

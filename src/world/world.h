@@ -96,13 +96,12 @@ typedef struct vlWorldMaterial {
   uint32_t mix[2];
   bool absent[2]; /* parts of a mix that are interfaces: shapes take the other, with a coverage (shapes.c) */
   bool remap, use_reflectance;
-  bool dispersive;      /* dielectrics: eta varies with wavelength */
-  float eta_s;          /* dielectrics with one eta */
-  int32_t displacement; /* float node, -1 */
-  int32_t normal_map;   /* image index, -1 */
-  vlCoatTable *coat;    /* may be shared; the owner frees it */
-  bool owns_coat;
-  uint32_t coat_depth;
+  bool dispersive;                     /* dielectrics: eta varies with wavelength */
+  float eta_s;                         /* dielectrics with one eta */
+  int32_t displacement;                /* float node, -1 */
+  int32_t normal_map;                  /* image index, -1 */
+  const vlCoatTable *coat;             /* may be shared; the world frees them */
+  const vlCoatTable *widened;          /* the same of the coat that is rougher (vlBuildDef.regularize), else null */
   const vlWorldPrincipled *principled; /* null for other kinds */
   int32_t transmittance;               /* diffuse transmission: spectrum node; and the factor on both */
   float scale;
@@ -110,6 +109,12 @@ typedef struct vlWorldMaterial {
   const vlWorldHair *hair;
   const vlMeasured *measured; /* may be shared; the world frees it */
 } vlWorldMaterial;
+
+/* Coats of the same numbers share a table. */
+typedef struct vlWorldCoat {
+  vlCoatTable *table;
+  uint32_t depth; /* max_depth of the material */
+} vlWorldCoat;
 
 /* ---- lights ------------------------------------------------------------------------------------------------------ */
 
@@ -158,7 +163,7 @@ typedef struct vlEnvironment {
   float *marginal_cdf;                            /* size + 1 */
   float *pdf;                                     /* size * size: density over the unit square */
   float light_from_world[9], world_from_light[9]; /* rotations, row-major */
-  const struct vlPortal *portal; /* through which alone it is seen (world/portal.h); null: none */
+  const struct vlPortal *portal;                  /* through which alone it is seen (world/portal.h); null: none */
 } vlEnvironment;
 
 #include "world/light_tree.h"
@@ -185,6 +190,7 @@ struct vlWorld {
   VL_ARRAY(uint32_t) infinite_lights; /* indices of lights that a missing ray sees */
   VL_ARRAY(vlEnvironment) environments;
   VL_ARRAY(vlMeasured *) measured;
+  VL_ARRAY(vlWorldCoat) coats;
   VL_ARRAY(vlWorldMedium) media; /* those that something lies in */
   VL_ARRAY(void *) blocks;       /* dense spectra and the like */
   int32_t *texture_memo;         /* while building: scene texture and role -> node */

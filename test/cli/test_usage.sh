@@ -81,6 +81,14 @@ done
 for name in bvh power uniform; do
   check "light_sampler_$name" "$VELO" render scene.pbrt --light-sampler "$name" --spp 1 --quiet -o light.pfm
 done
+for name in on off; do
+  check "regularize_$name" "$VELO" render scene.pbrt --regularize "$name" --spp 1 --quiet -o "regularize_$name.pfm"
+done
+# The scene's own wish counts where the command line has none.
+sed 's/^Integrator.*//; 1s/^/Integrator "path" "bool regularize" true\n/' scene.pbrt >asked.pbrt
+check regularize_asked "$VELO" render asked.pbrt --dry-run
+expect_text regularize_asked_is_told "regularised"
+check regularize_declined sh -c '! "$0" render asked.pbrt --dry-run --regularize off | grep regularised' "$VELO"
 for name in standard neutral agx raw; do
   check "view_$name" "$VELO" render scene.pbrt --view "$name" --exposure -0.5 --spp 1 --quiet -o view.png
 done

@@ -477,7 +477,7 @@ static void picture_settings(void **state) {
       "\"cie1931\"\n"
       "Sampler \"stratified\" \"integer xsamples\" 3 \"integer ysamples\" 5\n"
       "PixelFilter \"mitchell\" \"float xradius\" 3 \"float B\" .5 \"float C\" .25\n"
-      "Integrator \"volpath\" \"integer maxdepth\" 12 \"string lightsampler\" \"power\" \"bool regularize\" false\n"
+      "Integrator \"volpath\" \"integer maxdepth\" 12 \"string lightsampler\" \"power\" \"bool regularize\" true\n"
       "Accelerator \"kdtree\" \"integer intersectcost\" 5\nTransformTimes 0 1\n" W);
   s = vl_scene_settings(l.scene);
   assert_int_equal(s->crop[0], 11); /* rounded up, as pbrt */
@@ -495,6 +495,7 @@ static void picture_settings(void **state) {
   assert_near(s->filter.c, .25, 0);
   assert_int_equal(s->max_depth, 12);
   assert_int_equal(s->light_sampler, VL_LIGHT_SAMPLER_POWER);
+  assert_true(s->regularize);
   end_load(&l);
   load_fine(
       &l,

@@ -250,8 +250,8 @@ static const struct {
     {"PixelFilter \"box\" \"float xradius\" 0\n" W,
      "t.pbrt:1:1: PixelFilter \"box\": the radius must be above 0 and at most 64 pixels"},
     {"PixelFilter \"box\" \"float sigma\" 1\n" W, "t.pbrt:1:19: PixelFilter \"box\": unknown parameter \"sigma\""},
-    {"Integrator \"path\" \"bool regularize\" true\n" W,
-     "t.pbrt:1:19: Integrator \"path\": \"regularize\" is not understood yet"},
+    {"Integrator \"path\" \"bool regularise\" true\n" W,
+     "t.pbrt:1:19: Integrator \"path\": unknown parameter \"regularise\" (did you mean \"regularize\"?)"},
     {"Integrator \"path\" \"string lightsampler\" \"exhaustive\"\n" W,
      "t.pbrt:1:19: Integrator \"path\": light sampler \"exhaustive\" is not understood yet"},
     /* media */

@@ -123,7 +123,13 @@ static void shutter_ends(Channels *c, const Job *job) {
                    &c->others[i]);
 }
 
+bool channels_any(const Channels *c) {
+  return c->bits || c->spectrum;
+}
+
 int channels_render(Channels *c, const vlWorld *world, const Job *job, const vlFilm *film) {
+  vlResult spectrum = c->spectrum ? vl_film_spectrum(film, &c->layers[2]) : VL_OK;
+  if (spectrum != VL_OK) return report_error(NULL, spectrum, NULL);
   if (!c->bits) return STATUS_OK;
   shutter_ends(c, job);
   vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
@@ -147,8 +153,8 @@ int channels_render(Channels *c, const vlWorld *world, const Job *job, const vlF
 
 vlResult channels_describe(const Channels *c, vlImage *image) {
   vlResult result = VL_OK;
-  for (int k = 0; k < 2 && c->layers[k]; k++)
-    for (uint32_t i = 0; i < vl_image_attribute_count(c->layers[k]) && result == VL_OK; i++) {
+  for (int k = 0; k < CHANNEL_LAYERS; k++)
+    for (uint32_t i = 0; c->layers[k] && i < vl_image_attribute_count(c->layers[k]) && result == VL_OK; i++) {
       vlAttribute attribute;
       result = vl_image_attribute(c->layers[k], i, &attribute);
       if (result == VL_OK) result = vl_image_set_attribute(image, &attribute);
@@ -160,8 +166,6 @@ vlResult channels_describe(const Channels *c, vlImage *image) {
 }
 
 void channels_free(Channels *c) {
-  for (int k = 0; k < 2; k++) {
-    vl_image_destroy(c->layers[k]);
-    free(c->box_list[k]);
-  }
+  for (int k = 0; k < CHANNEL_LAYERS; k++) vl_image_destroy(c->layers[k]);
+  for (int k = 0; k < 2; k++) free(c->box_list[k]);
 }

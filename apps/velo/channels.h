@@ -5,6 +5,8 @@
 
 #include "job.h"
 
+enum { CHANNEL_LAYERS = 3 };
+
 typedef struct Channels {
   uint32_t bits; /* of vlChannel; 0: none */
   vlChannelMode mode;
@@ -12,8 +14,9 @@ typedef struct Channels {
   bool boxes;
   const char *other_paths[2]; /* camera files of flow: forward, backward; null: the shutter's ends */
   vlCamera others[2];
-  vlImage *layers[2];   /* what came of it; null: nothing of the kind */
-  vlIdBox *box_list[2]; /* of objects and instances, by id - 1; null without boxes */
+  vlImage *layers[CHANNEL_LAYERS]; /* what came of it: numbers, ids, spectrum; null: nothing of the kind */
+  bool spectrum;                   /* the film has one */
+  vlIdBox *box_list[2];            /* of objects and instances, by id - 1; null without boxes */
 } Channels;
 
 extern const Choice channel_mode_choices[];
@@ -22,6 +25,8 @@ extern const Choice channel_mode_choices[];
 int channels_choose(Channels *c, const Arguments *arguments);
 /* The other cameras of flow, once the picture's own is known. -1 or the exit code. */
 int channels_load(Channels *c, vlContext *context, const Job *job);
+/* Is there anything that only .exr files hold? */
+bool channels_any(const Channels *c);
 /* The pass, after the picture. STATUS_OK or the exit code. */
 int channels_render(Channels *c, const vlWorld *world, const Job *job, const vlFilm *film);
 /* What the layers' header says, into the picture's. */

@@ -83,7 +83,7 @@ static vlResult join(vlContext *context, vlImage *const images[2], const char *v
 
 static vlResult write_both(FrameWriter *w, FramePicture *p, const char *path, const vlWriteDef *def, vlError *error) {
   vlImage *both = NULL;
-  const vlImage *layers[5];
+  const vlImage *layers[1 + 2 * CHANNEL_LAYERS];
   uint32_t count = 1;
   char views[40];
   const char *const *names = w->frames->view_names;
@@ -93,7 +93,7 @@ static vlResult write_both(FrameWriter *w, FramePicture *p, const char *path, co
   if (result == VL_OK) result = vl_image_set_attribute(both, &multi);
   if (result == VL_OK) result = attributes_set_view(both, &p->jobs[1], names[1]);
   for (int v = 0; v < 2; v++)
-    for (int k = 0; k < 2 && result == VL_OK; k++) {
+    for (int k = 0; k < CHANNEL_LAYERS && result == VL_OK; k++) {
       vlImage *layer = p->channels[v].layers[k];
       if (!layer) continue;
       if (!p->renamed) result = add_view(layer, names[v], v == 0);
@@ -118,7 +118,7 @@ static vlResult write_one(FrameWriter *w, FramePicture *p, int view, const char 
                           vlError *error) {
   bool eight_bit = false;
   output_suffix(path, &eight_bit);
-  const vlImage *layers[3] = {p->images[view]};
+  const vlImage *layers[1 + CHANNEL_LAYERS] = {p->images[view]};
   uint32_t count = 1;
   if (eight_bit) {
     vlImage *display = NULL;
@@ -128,7 +128,7 @@ static vlResult write_one(FrameWriter *w, FramePicture *p, int view, const char 
     vl_image_destroy(display);
     return result;
   }
-  for (int k = 0; k < 2 && output_holds_layers(path); k++)
+  for (int k = 0; k < CHANNEL_LAYERS && output_holds_layers(path); k++)
     if (p->channels[view].layers[k]) layers[count++] = p->channels[view].layers[k];
   return count > 1 ? vl_image_write_layers(layers, count, path, def, error)
                    : vl_image_write(layers[0], path, def, error);

@@ -178,6 +178,31 @@ static void override_sampling(vlSceneSettings *settings, const Arguments *argume
   }
 }
 
+/* N[:MIN:MAX] */
+static int override_spectrum(vlSceneSettings *settings, const Arguments *arguments) {
+  const OptionValue *v = &arguments->values[RENDER_SPECTRUM];
+  if (v->given) {
+    unsigned count;
+    double low = 360, high = 830;
+    int used = 0;
+    bool good = sscanf(v->text, "%5u%n", &count, &used) == 1 && count <= 1000 && v->text[0] != '-';
+    if (good && v->text[used]) {
+      int more = 0;
+      good = sscanf(v->text + used, ":%lf:%lf%n", &low, &high, &more) == 2 && !v->text[used + more];
+    }
+    if (!good || !(low >= 360 && high <= 830 && low < high))
+      return report_usage(
+          "--spectrum \"%s\": must be N or N:MIN:MAX, N at most 1000 buckets from MIN to MAX, inside of "
+          "360 to 830 nm",
+          v->text);
+    settings->buckets = count, settings->lambda_min = low, settings->lambda_max = high;
+  }
+  if (settings->buckets && settings->color == VL_COLOR_RGB)
+    return report_usage("--color rgb: there is no spectrum then%s",
+                        v->given ? "" : " (--spectrum 0 leaves the scene's out)");
+  return -1;
+}
+
 static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t height) {
   vlError error = {0};
   vlCamera camera;
@@ -285,7 +310,8 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   if (status < 0) status = fit_camera(job, settings, arguments);
   if (status >= 0) return status;
   override_sampling(settings, arguments);
-
+  status = override_spectrum(settings, arguments);
+  if (status >= 0) return status;
   job->film = vl_scene_film_def(scene);
   job->render = vl_scene_render_def(scene);
   if (v[RENDER_TIME].given) job->render.time_limit = v[RENDER_TIME].number;

@@ -93,13 +93,15 @@ static void choose_output(Render *render, const char *scene_path, const char *as
 /* ---- ground truth ------------------------------------------------------------------------------------------------ */
 
 static void warn_of_channels(const Render *render) {
-  for (int i = 0; i < render->outputs.count && render->channels.bits; i++)
+  const Channels *c = &render->channels;
+  for (int i = 0; i < render->outputs.count && channels_any(c); i++)
     if (!output_holds_layers(render->outputs.paths[i]))
-      report_warning("--channels: %s cannot hold them, only .exr can", render->outputs.paths[i]);
+      report_warning("%s: %s cannot hold %s, only .exr can", c->bits ? "--channels" : "spectrum",
+                     render->outputs.paths[i], c->bits ? "them" : "it");
 }
 
 static bool has_layers(const Render *render) {
-  for (int i = 0; i < render->outputs.count && render->channels.bits; i++)
+  for (int i = 0; i < render->outputs.count && channels_any(&render->channels); i++)
     if (output_holds_layers(render->outputs.paths[i])) return true;
   return false;
 }
@@ -108,9 +110,9 @@ static int render_channels(Render *render) {
   if (!has_layers(render)) return STATUS_OK;
   Channels *channels = &render->channels;
   int status = channels_render(channels, render->world, &render->job, render->film);
-  for (int k = 0; k < 2; k++) render->outputs.layers[k] = channels->layers[k];
+  for (int k = 0; k < CHANNEL_LAYERS; k++) render->outputs.layers[k] = channels->layers[k];
   for (int i = 0; i < render->outputs.count && status == STATUS_OK; i++)
-    if (output_holds_layers(render->outputs.paths[i]))
+    if (channels->bits && output_holds_layers(render->outputs.paths[i]))
       status = channels_write_ids(channels, NULL, render->world, render->outputs.paths[i]);
   return status;
 }
@@ -163,6 +165,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     status = outputs_check_folders(&render->outputs);
     if (status >= 0) return status;
   }
+  render->channels.spectrum = render->job.film.buckets > 0;
   warn_of_channels(render);
   status = channels_load(&render->channels, render->context, &render->job);
   if (status >= 0) return status;

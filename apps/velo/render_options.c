@@ -123,6 +123,10 @@ const Option render_options[] = {
      "FILE.ids.json also has boxes of each object and instance, in\n"
      "pixels (of what is seen, and of all of it) and in space",
      0, 0, NULL},
+    {RENDER_SPECTRUM, 0, "spectrum", OPTION_TEXT, "N[:MIN:MAX]",
+     "the picture's spectrum into the .exr, too: N channels S0.<nm>nm,\n"
+     "from 360 (MIN) to 830 (MAX) nm; 0: none",
+     0, 0, NULL},
     {RENDER_HALF, 0, "half", OPTION_FLAG, NULL, ".exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
     {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N",
      "workers; default: one for each processor. The picture does not\n"

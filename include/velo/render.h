@@ -59,6 +59,11 @@ typedef struct vlFilmDef {
    * infinity. */
   float max_component;
   bool errors; /* remember what vl_film_errors needs: three times the memory; default false */
+  /* Spectra beside the colours: so many buckets of equal width from lambda_min to lambda_max (nm, inside of 360 to 830;
+   * the default), of 48 bytes each in every pixel. Paths have wavelengths of these alone then, all alike. 0 (default):
+   * none. 1000 at most. */
+  uint32_t buckets;
+  double lambda_min, lambda_max;
 } vlFilmDef;
 VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);
 VL_API vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film);
@@ -80,6 +85,12 @@ VL_API vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlI
  * square root of the variance of the mean, estimated from the pixel's samples as if they were independent (those of
  * most samplers err less); infinity below 2 samples. ARGUMENT when the film was made without vlFilmDef.errors. */
 VL_API vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlImage **image);
+/* New float picture of the crop window with a channel for each of the film's buckets, in the names of Fichet,
+ * Pacanowski, Wilkie 2021 ("An OpenEXR layout for spectral images") for emitted light: S0.374,688nm for the one round
+ * 374.688 nm. The mean radiance per wavelength in the bucket, in the unit in which a light of a constant spectrum and
+ * luminance 1 has 1 at each (pbrt-v4's): neither white balance nor exposure nor max_component change it. ARGUMENT when
+ * the film has none. */
+VL_API vlResult vl_film_spectrum(const vlFilm *film, vlImage **image);
 
 /* ---- render ----------------------------------------------------------------------------------------------------- */
 
@@ -119,7 +130,7 @@ typedef struct vlRenderStats {
 /* Adds samples until each pixel has def->spp. The same bits for any number of threads, crop and split of the passes.
  * VL_CANCELLED when the callback stopped it: the film holds whole passes. One render at a time adds to a film; it
  * runs on the workers of the world's context. def and stats may be null. Errors: ARGUMENT (camera and film of different
- * sizes, too), MEMORY. */
+ * sizes, too; a film with buckets and a world in RGB), MEMORY. Films with buckets are filled from the eye alone. */
 VL_API vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                           vlRenderStats *stats, vlError *error);
 

@@ -483,6 +483,8 @@ typedef struct vlSceneSettings {
   bool regularize; /* vlBuildDef.regularize */
   vlColorMode color;
   vlMediumId camera_medium; /* that the camera stands in */
+  uint32_t buckets;         /* of spectra beside the picture (velo/render.h); 0: none */
+  double lambda_min, lambda_max;
 } vlSceneSettings;
 /* Never null; may be changed. */
 VL_API vlSceneSettings *vl_scene_settings(vlScene *scene);

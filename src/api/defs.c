@@ -24,6 +24,9 @@ vlFilmDef vl_scene_film_def(const vlScene *scene) {
   def.filter = s->filter;
   def.space = s->space;
   def.white_balance = s->white_balance;
+  def.buckets = s->buckets;
+  def.lambda_min = s->lambda_min;
+  def.lambda_max = s->lambda_max;
   def.max_component = s->exposure > 0.0f ? s->max_component / s->exposure : s->max_component;
   return def;
 }

@@ -14,6 +14,9 @@ typedef struct vlColorKernels {
   /* u in [0,1) to the 4 wavelengths of u, u + 1/4, u + 2/4, u + 3/4 (mod 1), density as the eye's sensitivity
    * (vl_visible_lambda), and 1 / density (nm). */
   void (*visible_wavelengths)(uint32_t n, const float *u, float *const lambda[4], float *const inv_pdf[4]);
+  /* The same with every wavelength from low to low + span (nm) alike. */
+  void (*uniform_wavelengths)(float low, float span, uint32_t n, const float *u, float *const lambda[4],
+                              float *const inv_pdf[4]);
   /* XYZ = 1/4 sum_c cmf(lambda_c) L_c inv_pdf_c, then RGB = m XYZ; m row-major (vl_rgb_from_xyz). Not divided by the
    * integral of Y: lights are (vl_spectrum_photometric). */
   void (*rgb_from_radiance)(const float m[9], uint32_t n, const float *const radiance[4], const float *const lambda[4],

@@ -22,6 +22,21 @@ static void visible_wavelengths(uint32_t n, const float *u, float *const lambda[
   }
 }
 
+static void uniform_wavelengths(float low, float span, uint32_t n, const float *u, float *const lambda[4],
+                                float *const inv_pdf[4]) {
+  uint32_t count = VL_PAD(n);
+  for (int c = 0; c < 4; c++) {
+    float shift = 0.25f * (float)c, *l = lambda[c], *p = inv_pdf[c];
+    /* must vectorise */
+    VL_SIMD for (uint32_t i = 0; i < count; i++) {
+      float v = u[i] + shift;
+      v = v >= 1.0f ? v - 1.0f : v;
+      l[i] = low + span * v;
+      p[i] = span;
+    }
+  }
+}
+
 typedef struct xyz {
   float x, y, z;
 } xyz;
@@ -166,6 +181,6 @@ static void sigmoid_from_light(const vlRgbTable *table, uint32_t n, const float 
 
 extern const vlColorKernels VL_HOT(vl_color_kernels);
 const vlColorKernels VL_HOT(vl_color_kernels) = {
-    visible_wavelengths, rgb_from_radiance, sigmoid_eval,     light_eval,
-    dense_eval,          dense_gather,      sigmoid_from_rgb, sigmoid_from_light,
+    visible_wavelengths, uniform_wavelengths, rgb_from_radiance, sigmoid_eval,       light_eval,
+    dense_eval,          dense_gather,        sigmoid_from_rgb,  sigmoid_from_light,
 };

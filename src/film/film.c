@@ -1,12 +1,13 @@
 /* film/film.c: making films, passes, merging. */
 #include "base/cookie.h"
+#include "color/color.h"
 #include "film/sums.h"
 #include "film/white.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { SIZE_MAX_PIXELS = 65536 };
+enum { SIZE_MAX_PIXELS = 65536, MOST_BUCKETS = 1000 };
 
 vlFilmDef vl_default_film_def(uint32_t width, uint32_t height) {
   return (vlFilmDef){.cookie = VL_COOKIE_FILM,
@@ -15,7 +16,9 @@ vlFilmDef vl_default_film_def(uint32_t width, uint32_t height) {
                      .crop = {0, 0, width, height},
                      .filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN),
                      .space = (vlColorSpace)0,
-                     .max_component = INFINITY};
+                     .max_component = INFINITY,
+                     .lambda_min = VL_LAMBDA_MIN,
+                     .lambda_max = VL_LAMBDA_MIN + VL_LAMBDA_COUNT - 1};
 }
 
 vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film) {
@@ -26,6 +29,9 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
   if (def->white_balance != 0.0 && !(def->white_balance >= 1000.0 && def->white_balance <= 1e5))
     return VL_ERROR_ARGUMENT;
   if (!(def->max_component >= 0.0f)) return VL_ERROR_ARGUMENT;
+  if (def->buckets && (def->buckets > MOST_BUCKETS || !(def->lambda_min < def->lambda_max) ||
+                       !(def->lambda_min >= VL_LAMBDA_MIN && def->lambda_max <= VL_LAMBDA_MIN + VL_LAMBDA_COUNT - 1)))
+    return VL_ERROR_ARGUMENT;
   if (def->width == 0 || def->height == 0 || def->width > SIZE_MAX_PIXELS || def->height > SIZE_MAX_PIXELS)
     return VL_ERROR_ARGUMENT;
   if (c[0] >= c[2] || c[1] >= c[3] || c[2] > def->width || c[3] > def->height) return VL_ERROR_ARGUMENT;
@@ -53,6 +59,7 @@ void vl_film_destroy(vlFilm *film) {
   vl_free(context, film->stamp);
   vl_free(context, film->scratch);
   for (int i = 0; i < 2; i++) vl_free(context, film->moments[i]);
+  vl_film_spectrum_free(film);
   vl_free(context, film);
 }
 
@@ -80,7 +87,7 @@ vlResult vl_film_begin_pass(vlFilm *film) {
   for (int i = 0; i < 2 && film->def.errors; i++)
     if (!film->moments[i] && !(film->moments[i] = vl_alloc_zero(film->context, count, sizeof(vlFilmMoments))))
       return VL_ERROR_MEMORY;
-  if (!film->stamp || !film->back) return VL_ERROR_MEMORY;
+  if (!film->stamp || !film->back || !vl_film_spectrum_begin(film)) return VL_ERROR_MEMORY;
   film->in_pass = true;
   return VL_OK;
 }
@@ -90,6 +97,7 @@ static void next_pass(vlFilm *film) {
   film->in_pass = false;
   if (++film->pass == 0) {
     memset(film->stamp, 0, vl_film_pixels(film) * sizeof *film->stamp);
+    if (film->spectrum.stamp) memset(film->spectrum.stamp, 0, vl_film_pixels(film) * sizeof *film->spectrum.stamp);
     film->pass = 1;
   }
 }
@@ -109,6 +117,7 @@ void vl_film_commit_pass(vlFilm *film) {
   vlFilmPixel *front = film->front;
   film->front = film->back;
   film->back = front;
+  vl_film_spectrum_commit(film);
   next_pass(film);
 }
 
@@ -127,6 +136,7 @@ void vl_film_clear(vlFilm *film) {
   }
   film->front = NULL;
   if (film->moments[0]) memset(film->moments[0], 0, vl_film_pixels(film) * sizeof *film->moments[0]);
+  vl_film_spectrum_clear(film);
 }
 
 void *vl_film_scratch(vlFilm *film, size_t size) {
@@ -142,8 +152,11 @@ vlResult vl_film_merge(vlFilm *film, const vlFilm *other) {
   if (!film || !other || film == other || film->in_pass || other->in_pass) return VL_ERROR_ARGUMENT;
   if (film->def.width != other->def.width || film->def.height != other->def.height ||
       memcmp(film->def.crop, other->def.crop, sizeof film->def.crop) != 0 || film->def.space != other->def.space ||
-      film->spp > UINT32_MAX - other->spp || (film->def.errors && !other->def.errors))
+      film->spp > UINT32_MAX - other->spp || (film->def.errors && !other->def.errors) ||
+      film->def.buckets != other->def.buckets || film->def.lambda_min != other->def.lambda_min ||
+      film->def.lambda_max != other->def.lambda_max)
     return VL_ERROR_ARGUMENT;
+  if (!vl_film_spectrum_merge(film, other)) return VL_ERROR_MEMORY;
   if (film->def.errors && other->moments[0]) {
     if (!film->moments[0]) film->moments[0] = vl_alloc_zero(film->context, vl_film_pixels(film), sizeof(vlFilmMoments));
     if (!film->moments[0]) return VL_ERROR_MEMORY;

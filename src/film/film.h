@@ -24,6 +24,15 @@ typedef struct vlFilmSamples {
  * Concurrent calls must touch different pixels. Up to 2^31 samples a pixel. */
 uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *samples, int32_t *bad_x, int32_t *bad_y);
 
+/* The same samples' spectra, before vl_film_add has them: radiance at 4 wavelengths (nm) each, as the scene sends it.
+ * For films with buckets. What is not finite is left out, one sample as a whole. */
+typedef struct vlFilmSpectra {
+  uint32_t n;
+  const int32_t *px, *py;
+  const float *radiance[4], *lambda[4], *weight;
+} vlFilmSpectra;
+void vl_film_add_spectra(vlFilm *film, const vlFilmSpectra *samples);
+
 const vlFilmDef *vl_film_def(const vlFilm *film);
 /* Row-major, acts on XYZ; null: none. */
 const float *vl_film_balance(const vlFilm *film);

@@ -30,6 +30,14 @@ typedef struct vlFilmMoments {
 } vlFilmMoments;
 _Static_assert(sizeof(vlFilmMoments) == 128, "the compiler adds no bytes");
 
+/* Sums of weight * radiance and of weight for each bucket of each pixel (spectrum.c): front committed, back of the
+ * running pass where stamp == pass. */
+typedef struct vlFilmSpectrum {
+  vlInt128 *sums[2]; /* front, back; null: not made yet */
+  int64_t *weights[2];
+  uint32_t *stamp;
+} vlFilmSpectrum;
+
 struct vlFilm {
   vlContext *context;
   vlFilmDef def;
@@ -41,6 +49,7 @@ struct vlFilm {
   uint32_t pass;      /* counts from 1 */
   bool in_pass;
   vlFilmMoments *moments[2]; /* front and back, with def.errors; a pixel's back is good where the sums' is */
+  vlFilmSpectrum spectrum;   /* with def.buckets */
   vlFilterTable filter;
   float balance[9]; /* of white, on XYZ; with def.white_balance */
   void *scratch;    /* of those who render into it: kept for the next time */
@@ -50,6 +59,13 @@ struct vlFilm {
 /* Of moments.c: one sample more; begins with the front where the pixel is new in the pass. */
 void vl_film_add_moments(vlFilm *film, size_t at, bool is_new, const float color[3]);
 void vl_film_merge_moments(vlFilm *film, const vlFilm *other);
+
+/* Of spectrum.c. begin: false when out of memory. */
+bool vl_film_spectrum_begin(vlFilm *film);
+void vl_film_spectrum_commit(vlFilm *film);
+void vl_film_spectrum_clear(vlFilm *film);
+void vl_film_spectrum_free(vlFilm *film);
+bool vl_film_spectrum_merge(vlFilm *film, const vlFilm *other);
 
 /* value * weight, rounded to the nearest unit of the sum. |value| < 2^40, |weight| <= 2^28 (units of 2^-24). */
 static inline vlInt128 vl_film_product(float value, int64_t weight) {

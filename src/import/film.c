@@ -67,17 +67,36 @@ static bool read_sensor(vlDict *dict) {
   return import->scene->error.code == VL_OK;
 }
 
+/* Buckets of wavelengths beside the colours. */
+static bool read_spectrum(vlDict *dict, vlSceneSettings *s) {
+  uint32_t count = 16;
+  double low = 360.0, high = 830.0;
+  vl_dict_count(dict, "nbuckets", 1, &count);
+  vl_dict_double(dict, "lambdamin", &low);
+  vl_dict_double(dict, "lambdamax", &high);
+  if (dict->import->scene->error.code != VL_OK) return false;
+  if (count > 1000)
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %u buckets are too many (1000 at most)",
+                          dict->what, count);
+  if (!(low >= 360.0 && low < high && high <= 830.0))
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
+                          "%s: wavelengths from %g to %g nm; they must lie inside of 360 to 830", dict->what, low,
+                          high);
+  s->buckets = count, s->lambda_min = low, s->lambda_max = high;
+  return true;
+}
+
 bool vl_import_film(vlImport *import) {
-  static const char *const kinds[] = {"rgb", "gbuffer"};
-  static const char *const later[] = {"spectral"};
+  static const char *const kinds[] = {"rgb", "gbuffer", "spectral"};
   vlSceneSettings *s = vl_scene_settings(import->scene);
   const vlChoice *choice = &import->film;
   char what[96];
   snprintf(what, sizeof what, "Film \"%.60s\"", choice->given ? choice->kind : "rgb");
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
   bool buffers = choice->given && strcmp(choice->kind, "gbuffer") == 0;
-  bool known = !choice->given || buffers || strcmp(choice->kind, "rgb") == 0;
-  if (!known && !vl_import_unknown(import, choice->place, "film", choice->kind, kinds, 2, later, 1)) return false;
+  bool spectral = choice->given && strcmp(choice->kind, "spectral") == 0;
+  bool known = !choice->given || buffers || spectral || strcmp(choice->kind, "rgb") == 0;
+  if (!known && !vl_import_unknown(import, choice->place, "film", choice->kind, kinds, 3, NULL, 0)) return false;
   s->width = 1280;
   s->height = 720;
   s->space = choice->given ? choice->space : VL_SPACE_SRGB;
@@ -104,7 +123,7 @@ bool vl_import_film(vlImport *import) {
   s->exposure = (float)(iso / 100.0 * time * ratio);
   if (!(s->exposure >= 0.0f) || !isfinite(s->exposure))
     return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: the exposure is negative or not finite", what);
-  if (!read_crop(&dict, s) || !read_sensor(&dict)) return false;
+  if (!read_crop(&dict, s) || !read_sensor(&dict) || (spectral && !read_spectrum(&dict, s))) return false;
   if (buffers) { /* what its channels hold is asked for on the command line, in both spaces */
     static const char *const systems[] = {"camera", "world"};
     int system = 0;

@@ -101,6 +101,11 @@ static void render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   r->trace_kernels->trace(r->world, &r->trace, w->scratch, &batch);
   if (vl_camera_weighted(camera)) weigh(n, rays.weight, rays.valid, batch.alpha, batch.radiance);
   if (!camera->plain) clear_invalid(n, rays.valid, batch.alpha, batch.radiance);
+  if (vl_film_def(r->film)->buckets) {
+    vlFilmSpectra spectra = {.n = n, .px = rows.px, .py = rows.py, .weight = rows.weight};
+    for (int c = 0; c < 4; c++) spectra.radiance[c] = batch.radiance[c], spectra.lambda[c] = batch.lambda[c];
+    vl_film_add_spectra(r->film, &spectra);
+  }
   vl_film_expose(r->film, r->trace.isa, &expose, row(w, RED), row(w, GREEN), row(w, BLUE));
   if (r->two_way)
     vl_two_way_take(r->two_way, n, rows.px, rows.py, rows.weight, row(w, RED), row(w, GREEN), row(w, BLUE));

@@ -49,6 +49,8 @@ static vlResult check_arguments(const vlWorld *world, const vlCamera *camera, vl
   if (camera->width != f->width || camera->height != f->height)
     return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: camera (%u x %u) and film (%u x %u) differ", camera->width,
                    camera->height, f->width, f->height);
+  if (f->buckets && world->def.color == VL_COLOR_RGB)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: a world in RGB has no spectra for the film");
   if (def->max_depth > 4096)
     return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: max_depth %u is above 4096", def->max_depth);
   return VL_OK;
@@ -78,6 +80,10 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
 /* Light is followed both ways where nothing lies in a medium or moves; else by the tracer that can do that. */
 static vlTracer tracer_of(const vlRenderRun *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
+  if (vl_two_way_tracer(r->def->tracer) && vl_film_def(r->film)->buckets) {
+    vl_log(world->context, VL_LOG_INFO, NULL, "spectra are filled from the eye alone: light is not followed both ways");
+    return VL_TRACER_VOLPATH;
+  }
   if (!vl_two_way_tracer(r->def->tracer) || (!world->moves && !camera->moves)) return r->def->tracer;
   vl_log(world->context, VL_LOG_INFO, NULL,
          "light is followed both ways only where nothing moves: paths from the eye alone are traced");
@@ -115,6 +121,8 @@ static void prepare(vlRenderRun *r, const vlCamera *camera) {
                           .max_depth = r->def->max_depth,
                           .ao_distance = r->def->ao_distance,
                           .ao_cosine = r->def->ao_cosine,
+                          .lambda_low = (float)f->lambda_min,
+                          .lambda_span = f->buckets ? (float)(f->lambda_max - f->lambda_min) : 0.0f,
                           .pixel_spread = footprint * r->film_rays.camera.pixel_spread,
                           .pixel_width = footprint * r->film_rays.camera.pixel_width};
   memcpy(r->crop, f->crop, sizeof r->crop);

@@ -31,6 +31,8 @@ static vlSceneSettings default_settings(void) {
       .ao_cosine = true,
       .light_sampler = VL_LIGHT_SAMPLER_BVH,
       .color = VL_COLOR_SPECTRAL,
+      .lambda_min = 360,
+      .lambda_max = 830,
   };
   s.crop[2] = s.width;
   s.crop[3] = s.height;

@@ -12,7 +12,11 @@ static void start_paths(vlTracing *t) {
     t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->shade.u0);
     float shared = t->def->two_way ? t->def->two_way->shared : -1.0f;
     for (uint32_t i = 0; shared >= 0.0f && i < padded; i++) t->s->shade.u0[i] = shared;
-    vl_color_kernels(t->def->isa)->visible_wavelengths(b->n, t->s->shade.u0, b->lambda, b->inv_pdf);
+    const vlColorKernels *color = vl_color_kernels(t->def->isa);
+    if (t->def->lambda_span > 0.0f)
+      color->uniform_wavelengths(t->def->lambda_low, t->def->lambda_span, b->n, t->s->shade.u0, b->lambda, b->inv_pdf);
+    else
+      color->visible_wavelengths(b->n, t->s->shade.u0, b->lambda, b->inv_pdf);
   }
   for (uint32_t i = 0; i < padded; i++) {
     p->ox[i] = b->ox[i], p->oy[i] = b->oy[i], p->oz[i] = b->oz[i];

@@ -173,6 +173,7 @@ typedef enum vlMaterialKind {
   VL_MATERIAL_COATED_CONDUCTOR,
   VL_MATERIAL_HAIR,
   VL_MATERIAL_MEASURED, /* reflection from a file */
+  VL_MATERIAL_SUBSURFACE, /* a body that light enters and leaves elsewhere: VL_TRACER_VOLPATH shows it, others glass */
   VL_MATERIAL_INTERFACE
 } vlMaterialKind;
 
@@ -218,6 +219,15 @@ typedef struct vlHairDef {
   vlFloatInput alpha;          /* tilt of the scales, degrees; default 2 */
 } vlHairDef;
 
+/* A body of scattering substance below a smooth or rough surface (pbrt book, 3rd edition, 11.4): coefficients per unit
+ * of length, textured or not, times vlMaterialDef's scale; or what a thick piece reflects (vlMaterialDef's reflectance)
+ * and the mean free path, times scale. Its eta (one number, 0.5 to 2.5) and g are vlMaterialDef's. */
+typedef struct vlSubsurfaceDef {
+  bool from_reflectance;
+  vlSpectrumInput sigma_a, sigma_s; /* default: whole milk, per millimetre */
+  vlSpectrumInput mfp;              /* default 1 */
+} vlSubsurfaceDef;
+
 /* One flat struct; the defaults of vl_default_material_def(kind) are pbrt-v4's. */
 typedef struct vlMaterialDef {
   uint32_t cookie;
@@ -229,7 +239,7 @@ typedef struct vlMaterialDef {
   vlFloatInput u_roughness, v_roughness;
   bool remap_roughness;        /* alpha = sqrt(roughness), pbrt book 9.6 */
   vlSpectrumInput eta, k;      /* metals: both; dielectrics and the coat of what is diffuse: eta (no texture) */
-  vlFloatInput thickness, g;   /* coat; thickness not textured over what is diffuse */
+  vlFloatInput thickness, g;   /* coat; thickness not textured over what is diffuse. g: subsurface, too, untextured */
   vlSpectrumInput albedo;      /* of the coat's medium; 0: it absorbs only */
   uint32_t max_depth, samples; /* coat: bounces inside; random walks for each look at it, where it takes walks */
   vlFloatInput amount;         /* mix: share of the second */
@@ -238,11 +248,12 @@ typedef struct vlMaterialDef {
   const char *normal_map;    /* path, null: none; linear, tangent space */
   vlPrincipledDef principled;
   vlSpectrumInput transmittance;                   /* diffuse transmission */
-  float scale;                                     /* diffuse transmission: on both */
+  float scale;                                     /* diffuse transmission: on both; subsurface: see there */
   vlFloatInput coat_u_roughness, coat_v_roughness; /* coated conductor: of the coat; the others are the metal's */
   vlSpectrumInput coat_eta;                        /* no texture */
   vlHairDef hair;
   const char *measured; /* path of a file with spectra of the RGL material database (Dupuy and Jakob 2018) */
+  vlSubsurfaceDef subsurface;
 } vlMaterialDef;
 VL_API vlMaterialDef vl_default_material_def(vlMaterialKind kind);
 VL_API vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def);
@@ -420,8 +431,9 @@ typedef enum vlTracer {
   VL_TRACER_PATH, /* looks past media */
   VL_TRACER_RAYCAST,
   VL_TRACER_AMBIENT_OCCLUSION,
-  VL_TRACER_VOLPATH, /* through media; where there are none the same as VL_TRACER_PATH, to the bit */
-  /* Light followed both ways (docs/tracers.md). Where something moves or lies in a medium: VL_TRACER_VOLPATH. */
+  VL_TRACER_VOLPATH, /* through media and bodies; where there are none the same as VL_TRACER_PATH, to the bit */
+  /* Light followed both ways (docs/tracers.md). Where something moves or is a body that light goes through
+   * (VL_MATERIAL_SUBSURFACE): VL_TRACER_VOLPATH. */
   VL_TRACER_BIDIRECTIONAL, /* paths from the eye, and paths from the lights that the eye sees; unbiased */
   VL_TRACER_MERGING,       /* and both meet at surfaces, within a radius that shrinks with each pass */
   VL_TRACER_SPPM,       /* the same; smooth surfaces that the eye looks through are no bounces, as pbrt's sppm counts */

@@ -6,7 +6,7 @@
 #include "export/pbrt.h"
 
 typedef struct Inputs {
-  vlPbrtInput color, second, albedo, u, v, coat_u, coat_v, thickness, g, amount, relief;
+  vlPbrtInput color, second, albedo, u, v, coat_u, coat_v, thickness, g, amount, relief, sigma_a, sigma_s, mfp;
 } Inputs;
 
 /* "" for what has no texture, else its directives are written here, before the material's. */
@@ -19,7 +19,10 @@ static bool prepare(vlExport *x, const vlMaterialDef *m, Inputs *in) {
          vl_pbrt_prepare_number(x, &m->coat_u_roughness, false, &in->coat_u) &&
          vl_pbrt_prepare_number(x, &m->coat_v_roughness, false, &in->coat_v) &&
          vl_pbrt_prepare_number(x, &m->thickness, false, &in->thickness) &&
-         vl_pbrt_prepare_number(x, &m->g, false, &in->g) && vl_pbrt_prepare_number(x, &m->amount, false, &in->amount);
+         vl_pbrt_prepare_number(x, &m->g, false, &in->g) && vl_pbrt_prepare_number(x, &m->amount, false, &in->amount) &&
+         vl_pbrt_prepare_color(x, &m->subsurface.sigma_a, &in->sigma_a) &&
+         vl_pbrt_prepare_color(x, &m->subsurface.sigma_s, &in->sigma_s) &&
+         vl_pbrt_prepare_color(x, &m->subsurface.mfp, &in->mfp);
 }
 
 static void put_eta(vlExport *x, const char *name, const vlSpectrum *eta) {
@@ -235,6 +238,20 @@ static bool put_own(vlExport *x, const vlMaterialDef *m, uint32_t id) {
       vl_pbrt_put_number(x, "amount", &in.amount);
       break;
     case VL_MATERIAL_MEASURED: PUT("\"measured\" \"string filename\" \"%s\"", measured); break;
+    case VL_MATERIAL_SUBSURFACE:
+      PUT("\"subsurface\"");
+      if (m->subsurface.from_reflectance) {
+        vl_pbrt_put_color(x, "reflectance", &in.color);
+        vl_pbrt_put_color(x, "mfp", &in.mfp);
+      } else {
+        vl_pbrt_put_color(x, "sigma_a", &in.sigma_a);
+        vl_pbrt_put_color(x, "sigma_s", &in.sigma_s);
+      }
+      PUT(" \"float scale\" [%.9g]", (double)m->scale);
+      vl_pbrt_put_number(x, "g", &in.g);
+      put_eta(x, "eta", &m->eta.value);
+      put_roughness(x, m, &in);
+      break;
     case VL_MATERIAL_INTERFACE: PUT("\"interface\""); break;
     default:
       vl_export_lose(x, "materials of further kinds: grey");

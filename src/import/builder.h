@@ -231,6 +231,10 @@ bool vl_import_finish_texture(vlImport *import, uint32_t index); /* resolves wha
 bool vl_import_finish_material(vlImport *import, uint32_t index);
 bool vl_import_principled(vlDict *dict, vlMaterialDef *def); /* the parameters of that kind */
 bool vl_import_hair(vlDict *dict, vlMaterialDef *def);
+bool vl_import_subsurface(vlDict *dict, vlMaterialDef *def);
+/* Absorption and scattering per millimetre of the substance that parameter `name` names (scattering.h). */
+bool vl_import_scattering_preset(vlDict *dict, const char *name, vlSpectrum *absorption, vlSpectrum *scattering,
+                                 bool *given);
 bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface);
 
 /* Parameters live on after their statement: file names are kept by the scene. */

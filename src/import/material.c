@@ -6,8 +6,9 @@
 #include "import/builder.h"
 
 static const char *const kinds[] = {
-    "diffuse",    "coateddiffuse",       "conductor",       "dielectric", "thindielectric", "mix", "interface",
-    "principled", "diffusetransmission", "coatedconductor", "hair",       "measured",       "",    "none"};
+    "diffuse",    "coateddiffuse",       "conductor",       "dielectric", "thindielectric", "mix",        "interface",
+    "principled", "diffusetransmission", "coatedconductor", "hair",       "measured",       "subsurface", "",
+    "none"};
 static const vlMaterialKind kind_values[] = {VL_MATERIAL_DIFFUSE,
                                              VL_MATERIAL_COATED_DIFFUSE,
                                              VL_MATERIAL_CONDUCTOR,
@@ -20,11 +21,11 @@ static const vlMaterialKind kind_values[] = {VL_MATERIAL_DIFFUSE,
                                              VL_MATERIAL_COATED_CONDUCTOR,
                                              VL_MATERIAL_HAIR,
                                              VL_MATERIAL_MEASURED,
+                                             VL_MATERIAL_SUBSURFACE,
                                              VL_MATERIAL_INTERFACE,
                                              VL_MATERIAL_INTERFACE};
-static const char *const later[] = {"subsurface"};
 _Static_assert(sizeof kinds / sizeof *kinds == sizeof kind_values / sizeof *kind_values, "a kind for each name");
-enum { KINDS = sizeof kinds / sizeof *kinds, NAMES = KINDS - 2, LATER = sizeof later / sizeof *later };
+enum { KINDS = sizeof kinds / sizeof *kinds, NAMES = KINDS - 2 };
 
 bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface) {
   uint32_t index;
@@ -205,6 +206,9 @@ static bool read_material(vlDict *dict, vlMaterialDef *def) {
     case VL_MATERIAL_MEASURED:
       if (!read_measured(dict, def)) return false;
       break;
+    case VL_MATERIAL_SUBSURFACE:
+      if (!vl_import_subsurface(dict, def) || !read_roughness(dict, def)) return false;
+      break;
     case VL_MATERIAL_INTERFACE: break;
   }
   if (def->kind != VL_MATERIAL_MIX && def->kind != VL_MATERIAL_INTERFACE && !read_relief(dict, def)) return false;
@@ -225,7 +229,7 @@ static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict, int *k
     if (strcmp(type, kinds[i]) == 0) *kind = i;
   vlSource place = pending->place;
   if (*kind < 0 && !pending->kind) place = vl_dict_find(dict, "type", 1u << VL_PARAM_STRING)->place;
-  return *kind >= 0 || vl_import_unknown(import, place, "material", type, kinds, NAMES, later, LATER);
+  return *kind >= 0 || vl_import_unknown(import, place, "material", type, kinds, NAMES, NULL, 0);
 }
 
 static bool finish(vlImport *import, uint32_t index) {

@@ -22,21 +22,22 @@ static bool read_spectrum(vlDict *dict, const char *name, vlSpectrum *spectrum, 
   return vl_import_spectrum(dict->import, p, spectrum);
 }
 
-static bool read_preset(vlDict *dict, vlMediumDef *def, bool *given) {
+bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum *absorption, vlSpectrum *scattering,
+                                 bool *given) {
   const char *name = NULL, *names[64];
   size_t count = 0;
   *given = false;
-  if (!vl_dict_string(dict, "preset", &name)) return dict->import->scene->error.code == VL_OK;
+  if (!vl_dict_string(dict, parameter, &name)) return dict->import->scene->error.code == VL_OK;
   *given = name[0] != 0;
   for (const vlScattering *s; *given && count < 64 && (s = vl_scattering_preset(count)); count++) {
     names[count] = s->name;
     if (strcmp(s->name, name) != 0) continue;
-    def->sigma_a = vl_spectrum_rgb(s->absorption[0], s->absorption[1], s->absorption[2]);
-    def->sigma_s = vl_spectrum_rgb(s->scattering[0], s->scattering[1], s->scattering[2]);
+    *absorption = vl_spectrum_rgb(s->absorption[0], s->absorption[1], s->absorption[2]);
+    *scattering = vl_spectrum_rgb(s->scattering[0], s->scattering[1], s->scattering[2]);
     return true;
   }
   if (!*given) return true;
-  vlSource at = vl_dict_find(dict, "preset", 1u << VL_PARAM_STRING)->place;
+  vlSource at = vl_dict_find(dict, parameter, 1u << VL_PARAM_STRING)->place;
   const char *near = vl_nearest_name(name, names, count);
   if (near)
     return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%.80s\" (did you mean \"%s\"?)",
@@ -50,7 +51,7 @@ static bool read_sigmas(vlDict *dict, vlMediumDef *def) {
 
 static bool read_homogeneous(vlDict *dict, vlMediumDef *def) {
   bool preset;
-  if (!read_preset(dict, def, &preset)) return false;
+  if (!vl_import_scattering_preset(dict, "preset", &def->sigma_a, &def->sigma_s, &preset)) return false;
   vlMediumDef own = *def;
   if (!read_sigmas(dict, &own)) return false;
   if (!preset) *def = own; /* pbrt: a preset wins */

@@ -200,6 +200,21 @@ static bool take_hair(vlScene *scene, vlHairDef *d, vlSource at) {
          take_float(scene, &d->alpha, at, "alpha");
 }
 
+static bool take_subsurface(vlScene *scene, vlMaterialDef *d, vlSource at) {
+  const vlSpectrum *eta = &d->eta.value;
+  float index = eta->value * eta->scale;
+  if (d->kind == VL_MATERIAL_SUBSURFACE) {
+    /* what the profile's polynomials are good for */
+    if (d->eta.texture.index || eta->kind != VL_SPECTRUM_CONSTANT || !(index >= 0.5f && index <= 2.5f))
+      return bad(scene, at, "eta", "the index of refraction of a body must be one number between 0.5 and 2.5");
+    if (d->g.texture.index || !(d->g.value > -1.0f && d->g.value < 1.0f))
+      return bad(scene, at, "g", "must be a number between -1 and 1");
+  }
+  return take_spectrum(scene, &d->subsurface.sigma_a, at, "sigma_a") &&
+         take_spectrum(scene, &d->subsurface.sigma_s, at, "sigma_s") &&
+         take_spectrum(scene, &d->subsurface.mfp, at, "mfp");
+}
+
 vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   const vlMaterialId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_MATERIAL, scene->materials.count, (vlSource){0}, "material"))
@@ -220,7 +235,8 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   if (d.kind == VL_MATERIAL_MEASURED && !d.measured)
     return bad(scene, at, "measured material", "its file is not named"), none;
   if (d.kind != VL_MATERIAL_PRINCIPLED) d.principled = vl_default_material_def(VL_MATERIAL_DIFFUSE).principled;
-  if (!take_principled(scene, &d.principled, at) || !take_hair(scene, &d.hair, at)) return none;
+  if (!take_principled(scene, &d.principled, at) || !take_hair(scene, &d.hair, at) || !take_subsurface(scene, &d, at))
+    return none;
   if (!vl_scene_copy_source(scene, &d.source) || !take_spectrum(scene, &d.reflectance, at, "reflectance") ||
       !take_float(scene, &d.u_roughness, at, "u roughness") || !take_float(scene, &d.v_roughness, at, "v roughness") ||
       !take_spectrum(scene, &d.eta, at, "eta") || !take_spectrum(scene, &d.k, at, "k") ||

@@ -36,7 +36,7 @@ static inline const vlMaterialDef *vl_check_material(const vlCheck *check, vlMat
   return id.index ? &check->scene->materials.items[id.index - 1] : NULL;
 }
 /* The textures that a material reads itself, at most VL_CHECK_INPUTS (0: none). */
-enum { VL_CHECK_INPUTS = 40 };
+enum { VL_CHECK_INPUTS = 48 };
 uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]);
 /* Those that a texture reads. */
 uint32_t vl_check_texture_inputs(const vlTextureDef *t, vlTextureId inputs[VL_CHECK_INPUTS]);

@@ -28,7 +28,7 @@ static bool lets_light_pass(const vlCheck *c, const vlShapeDef *d) {
   if (d->alpha.texture.index || d->alpha.value < 1 || d->one_sided) return true;
   if (!m) return false;
   return m->kind != VL_MATERIAL_DIFFUSE && m->kind != VL_MATERIAL_COATED_DIFFUSE && m->kind != VL_MATERIAL_CONDUCTOR &&
-         m->kind != VL_MATERIAL_COATED_CONDUCTOR;
+         m->kind != VL_MATERIAL_COATED_CONDUCTOR && m->kind != VL_MATERIAL_SUBSURFACE;
 }
 
 /* Of the world's own lights; those in instances are not looked at: they count as being inside. */

@@ -42,7 +42,17 @@ uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_
                              p->iridescence.texture,
                              p->iridescence_thickness.texture,
                              p->normal,
-                             p->clearcoat_normal};
+                             p->clearcoat_normal,
+                             m->hair.sigma_a.texture,
+                             m->hair.eumelanin.texture,
+                             m->hair.pheomelanin.texture,
+                             m->hair.eta.texture,
+                             m->hair.beta_m.texture,
+                             m->hair.beta_n.texture,
+                             m->hair.alpha.texture,
+                             m->subsurface.sigma_a.texture,
+                             m->subsurface.sigma_s.texture,
+                             m->subsurface.mfp.texture};
   uint32_t n = 0;
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) push(inputs, &n, all[i]);
   return n;

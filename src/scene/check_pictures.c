@@ -135,7 +135,7 @@ typedef struct Share {
 static uint32_t shares(const vlMaterialDef *m, Share list[SHARES]) {
   uint32_t n = 0;
   if (m->kind == VL_MATERIAL_DIFFUSE || m->kind == VL_MATERIAL_COATED_DIFFUSE || m->kind == VL_MATERIAL_PRINCIPLED ||
-      m->use_reflectance)
+      m->use_reflectance || (m->kind == VL_MATERIAL_SUBSURFACE && m->subsurface.from_reflectance))
     list[n++] = (Share){"reflectance", &m->reflectance, 1};
   if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) {
     list[n++] = (Share){"reflectance", &m->reflectance, m->scale};

@@ -116,7 +116,11 @@ vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
                .beta_m = vl_float_input(0.3f),
                .beta_n = vl_float_input(0.3f),
                .alpha = vl_float_input(2.0f)},
+      .subsurface = {.sigma_a = vl_spectrum_input(vl_spectrum_rgb(0.0011f, 0.0024f, 0.014f)),
+                     .sigma_s = vl_spectrum_input(vl_spectrum_rgb(2.55f, 3.21f, 3.77f)),
+                     .mfp = vl_spectrum_input(vl_spectrum_constant(1.0f))},
   };
+  if (kind == VL_MATERIAL_SUBSURFACE) def.eta = vl_spectrum_input(vl_spectrum_constant(1.33f));
   if (kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) def.reflectance = vl_spectrum_input(vl_spectrum_constant(0.25f));
   if (kind == VL_MATERIAL_PRINCIPLED) def.reflectance = vl_spectrum_input(vl_spectrum_constant(1.0f));
   if (kind == VL_MATERIAL_CONDUCTOR || kind == VL_MATERIAL_COATED_CONDUCTOR) {

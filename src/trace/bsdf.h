@@ -70,6 +70,7 @@ enum {
   VL_H_ALPHA, /* radians */
   VL_H_ROWS
 };
+enum { VL_S_SIGMA /* extinction, 4 */, VL_S_ALBEDO = VL_S_SIGMA + 4 /* 4 */ }; /* of bodies (subsurface.hot.c) */
 
 enum {
   VL_SAMPLED_SPECULAR = 1,     /* delta: eval knows nothing of it */

@@ -107,6 +107,7 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
   if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) VL_HOT(vl_stage_translucent)(&r, m);
   if (m->hair) VL_HOT(vl_stage_hair)(&r, m);
   for (uint32_t i = first; i < last && m->measured; i++) shade->measured[i] = m->measured;
+  if (m->subsurface) VL_HOT(vl_stage_bodies)(&r, m);
   for (uint32_t i = first; i < last && m->kind != VL_MATERIAL_PRINCIPLED && !m->hair; i++) {
     shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
     shade->coat[i] = m->coat;

@@ -8,6 +8,7 @@ static vlBsdfKind bsdf_kind(const vlWorldMaterial *m) {
   if (m->layers) return VL_BSDF_LAYERED;
   switch (m->kind) {
     case VL_MATERIAL_CONDUCTOR: return VL_BSDF_CONDUCTOR;
+    case VL_MATERIAL_SUBSURFACE:
     case VL_MATERIAL_DIELECTRIC: return VL_BSDF_DIELECTRIC;
     case VL_MATERIAL_THIN_DIELECTRIC: return VL_BSDF_THIN_DIELECTRIC;
     case VL_MATERIAL_COATED_DIFFUSE: return VL_BSDF_COATED_DIFFUSE;

@@ -14,6 +14,7 @@ void VL_HOT(vl_stage_regularize)(vlTracing *t, uint32_t n) {
     switch (m->kind) {
       case VL_MATERIAL_CONDUCTOR:
       case VL_MATERIAL_DIELECTRIC:
+      case VL_MATERIAL_SUBSURFACE:
       case VL_MATERIAL_COATED_DIFFUSE:
       case VL_MATERIAL_COATED_CONDUCTOR:
       case VL_MATERIAL_PRINCIPLED: break;

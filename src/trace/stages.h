@@ -119,6 +119,23 @@ typedef struct vlVolumeScratch {
   VL_ROW uint32_t kept[VL_ROW_SIZE]; /* which of the scattered */
 } vlVolumeScratch;
 
+/* Paths through bodies, while they are (subsurface.hot.c). Touched only where there are some. */
+typedef struct vlSubsurfaceScratch {
+  vlPaths paths; /* all of the bounce, and */
+  vlVolumeRows rows;
+  VL_ROW uint8_t alive[VL_ROW_SIZE]; /* which of them go on */
+  /* by probe: which of the paths it is, of which material, where it came in, where from */
+  VL_ROW uint32_t place[VL_ROW_SIZE], material[VL_ROW_SIZE], medium[VL_ROW_SIZE];
+  VL_ROW float px[VL_ROW_SIZE], py[VL_ROW_SIZE], pz[VL_ROW_SIZE], nx[VL_ROW_SIZE], ny[VL_ROW_SIZE], nz[VL_ROW_SIZE];
+  VL_ROW float sigma[4][VL_ROW_SIZE], albedo[4][VL_ROW_SIZE];
+  VL_ROW float squeezed[VL_ROW_SIZE];                   /* its eta_scale by going in */
+  VL_ROW float length[VL_ROW_SIZE], t_min[VL_ROW_SIZE]; /* of the segment; what is left of it starts here */
+  VL_ROW uint32_t found[VL_ROW_SIZE];                   /* crossings so far, */
+  vlHits hits;                                          /* one of them */
+  VL_ROW uint32_t entry[VL_ROW_SIZE];                   /* by exit: its probe */
+  VL_ROW float from[VL_ROW_SIZE];
+} vlSubsurfaceScratch;
+
 struct vlTraceScratch {
   vlPaths a, b;
   vlHits hits_a, hits_b;
@@ -133,6 +150,7 @@ struct vlTraceScratch {
   VL_ROW uint8_t scattered[VL_ROW_SIZE]; /* by lane of the batch, where the world is regularised: by no mirror */
   VL_ROW uint32_t slot[VL_ROW_SIZE];     /* where each material's lanes start; then which lanes live on */
   vlVolumeScratch volume;
+  vlSubsurfaceScratch subsurface;
 };
 
 /* A batch on its way: what the stages work on. Paths and hits of a bounce arrive in a, are sorted into b, and go on in
@@ -181,7 +199,10 @@ void VL_HOT(vl_stage_light_bsdf)(vlTracing *t, uint32_t n);
  * how many. depth: which bounce this is, from 1. */
 uint32_t VL_HOT(vl_stage_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
 void VL_HOT(vl_path_tracer)(vlTracing *t);
-void VL_HOT(vl_volume_tracer)(vlTracing *t); /* volume.hot.c: through participating media */
+void VL_HOT(vl_volume_tracer)(vlTracing *t); /* volume.hot.c: through participating media, and bodies */
+/* Those of the n paths of a (path k from lane s->order[k] of the surfaces, sampled just now) that went into a body of a
+ * subsurface material leave it again, with light where they do; or end. Returns how many of all go on. */
+uint32_t VL_HOT(vl_stage_subsurface)(vlTracing *t, uint32_t n, uint32_t depth);
 
 /* The surfaces that paths->o, d meet, from ids alone. */
 void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits,
@@ -229,6 +250,18 @@ float VL_HOT(vl_infinite_pdf)(const vlWorld *world, const vlWorldLight *light, v
 float VL_HOT(vl_area_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at);
 
 #endif
+
+/* Element i of a to k of b. */
+static inline void vl_path_copy(const vlPaths *a, uint32_t i, vlPaths *b, uint32_t k) {
+  b->ox[k] = a->ox[i], b->oy[k] = a->oy[i], b->oz[k] = a->oz[i];
+  b->dx[k] = a->dx[i], b->dy[k] = a->dy[i], b->dz[k] = a->dz[i];
+  for (int c = 0; c < 4; c++) b->beta[c][k] = a->beta[c][i], b->lambda[c][k] = a->lambda[c][i];
+  b->pdf[k] = a->pdf[i];
+  b->from_nx[k] = a->from_nx[i], b->from_ny[k] = a->from_ny[i], b->from_nz[k] = a->from_nz[i];
+  b->eta_scale[k] = a->eta_scale[i], b->cone[k] = a->cone[i];
+  b->specular[k] = a->specular[i];
+  b->px[k] = a->px[i], b->py[k] = a->py[i], b->index[k] = a->index[i], b->lane[k] = a->lane[i];
+}
 
 /* ---- small common pieces ----------------------------------------------------------------------------------------- */
 

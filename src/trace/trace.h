@@ -35,7 +35,13 @@ enum {
   VL_DIM_BSDF_UV = 4,  /* 2 */
   VL_DIM_ROULETTE = 6, /* 1 */
   VL_DIM_FLIGHT = 7,   /* 1: how far through a medium */
-  VL_DIM_STRIDE = 8
+  VL_DIM_STRIDE = 8,
+  /* Where a bounce goes through a body (subsurface.hot.c), as many numbers again, from here on: light at its exit as
+   * above, and */
+  VL_DIM_SUBSURFACE = 1 << 20,
+  VL_DIM_PROBE_AXIS = 3, /* 1 */
+  VL_DIM_PROBE = 4,      /* 2 */
+  VL_DIM_EXIT_UV = 6     /* 2 */
 };
 
 typedef struct vlTraceDef {

@@ -107,7 +107,7 @@ static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *s
     case VL_TRACER_RAYCAST: raycast_tracer(&t); break;
     case VL_TRACER_AMBIENT_OCCLUSION: ambient_occlusion_tracer(&t); break;
     case VL_TRACER_VOLPATH:
-      if (world->media.count > 0) {
+      if (world->media.count > 0 || world->has_subsurface) {
         VL_HOT(vl_volume_tracer)(&t);
         break;
       }

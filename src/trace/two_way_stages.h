@@ -95,6 +95,7 @@ static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s
   switch (world->materials.items[s->hits_b.material[i]].kind) {
     case VL_MATERIAL_THIN_DIELECTRIC: return true;
     case VL_MATERIAL_CONDUCTOR: return vl_ggx_is_smooth(s->shade.alpha_x[i], s->shade.alpha_y[i]);
+    case VL_MATERIAL_SUBSURFACE:
     case VL_MATERIAL_DIELECTRIC:
       return vl_ggx_is_smooth(s->shade.alpha_x[i], s->shade.alpha_y[i]) || s->shade.eta_s[i] == 1.0f;
     default: return false;

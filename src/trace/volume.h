@@ -5,7 +5,7 @@
 #include "trace/medium.h"
 #include "trace/stages.h"
 
-enum { VL_KEY_FLIGHT = 0, VL_KEY_SHADOW = 1, VL_KEY_HERO = 2 };
+enum { VL_KEY_FLIGHT = 0, VL_KEY_SHADOW = 1, VL_KEY_HERO = 2, VL_KEY_PROBE = 3 };
 /* What happens to a ray: vlVolumeScratch.event. */
 enum { VL_ON_SURFACE, VL_IN_SKY, VL_IN_MEDIUM, VL_AT_END };
 /* Odds that weights can be worked out from. */
@@ -47,6 +47,11 @@ static inline vlFlight vl_volume_flight(const vlTracing *t, const vlPaths *p, co
   return f;
 }
 
+static inline void vl_volume_copy(const vlVolumeRows *a, uint32_t i, vlVolumeRows *b, uint32_t k) {
+  for (int c = 0; c < 4; c++) b->u[c][k] = a->u[c][i], b->l[c][k] = a->l[c][i];
+  b->medium[k] = a->medium[i];
+}
+
 /* The medium beyond a surface in direction w. */
 static inline uint32_t vl_medium_beyond(const vlWorldShape *s, vlVec3 g, vlVec3 w, uint32_t here) {
   if (s->inside == s->outside) return here;
@@ -73,7 +78,7 @@ uint32_t VL_HOT(vl_volume_phase_scatter)(vlTracing *t, uint32_t n, uint32_t dept
 /* The n paths of a set out: from these media (by lane), or null: from the camera. */
 void VL_HOT(vl_volume_start)(vlTracing *t, uint32_t n, const uint32_t *medium);
 /* volume.b of the n sorted lanes; and, after scattering on surfaces, volume.a of the `count` lanes s->order. Nothing
- * where there are no media. */
+ * where there are neither media nor bodies. */
 void VL_HOT(vl_volume_sorted)(vlTracing *t, uint32_t n);
 void VL_HOT(vl_volume_go_on)(vlTracing *t, uint32_t count);
 /* Paths order[k] of volume.scattered to the end of the n of a. Returns how many there are then. */

@@ -141,7 +141,7 @@ static void add_glow(vlTracing *t, uint32_t i) {
   float lambda[4], radiance[4], pdf = 0.0f;
   vl_path_lambda(p, i, lambda);
   vlVec2 uv = VL_HOT(vl_glow_uv)(world, light, &at);
-  VL_HOT(vl_emitted_at)(world, e, lambda, uv.x, uv.y, false, radiance);
+  VL_HOT(vl_emitted_at)(world, e, lambda, uv.x, 1.0f - uv.y, false, radiance);
   if (!p->specular[i])
     pdf = VL_HOT(vl_area_pdf)(world, light, o, &at) *
           vl_light_pmf(&world->tree, o, vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), index);
@@ -265,6 +265,10 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     const float value[4] = {sh->value[0][i], sh->value[1][i], sh->value[2][i], sh->value[3][i]};
     float sum = value[0] + value[1] + value[2] + value[3];
     if (!(sum > 0.0f) && sum == sum) continue;
+    /* What goes into a body is looked for where it leaves. */
+    bool into = t->world->has_subsurface && t->world->materials.items[s->hits_b.material[i]].subsurface &&
+                (sh->wi[2][i] < 0.0f) != (sh->wo[2][i] < 0.0f);
+    if (into) continue;
     vlVec3 at = vl_lane3(s->surface.px, s->surface.py, s->surface.pz, i);
     vlVec3 g = vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w = vl_lane3(l->wx, l->wy, l->wz, i);
     vlVec3 o = vl_offset_origin(at, g, s->surface.offset[i], w);
@@ -277,13 +281,13 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
 
 void VL_HOT(vl_volume_sorted)(vlTracing *t, uint32_t n) {
   vlVolumeScratch *v = &t->s->volume;
-  if (t->world->media.count) VL_HOT(vl_volume_permute)(&v->a, &v->b, t->s->order, n);
+  if (t->world->media.count || t->world->has_subsurface) VL_HOT(vl_volume_permute)(&v->a, &v->b, t->s->order, n);
 }
 
 void VL_HOT(vl_volume_go_on)(vlTracing *t, uint32_t count) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = &s->volume;
-  if (!t->world->media.count) return;
+  if (!t->world->media.count && !t->world->has_subsurface) return;
   VL_HOT(vl_volume_permute)(&v->b, &v->a, s->order, count);
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k];
@@ -308,7 +312,7 @@ static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   surface_light(t, n, depth, dimension);
   uint32_t count = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
   VL_HOT(vl_volume_go_on)(t, count);
-  return count;
+  return t->world->has_subsurface ? VL_HOT(vl_stage_subsurface)(t, count, depth) : count;
 }
 
 /* ---- the tracer -------------------------------------------------------------------------------------------------- */
@@ -320,18 +324,8 @@ uint32_t VL_HOT(vl_volume_append)(vlTracing *t, const uint32_t *order, uint32_t 
   const vlVolumeRows *vb = &t->s->volume.c;
   for (uint32_t k = 0; k < count; k++, n++) {
     uint32_t i = order[k];
-    a->ox[n] = b->ox[i], a->oy[n] = b->oy[i], a->oz[n] = b->oz[i];
-    a->dx[n] = b->dx[i], a->dy[n] = b->dy[i], a->dz[n] = b->dz[i];
-    for (int c = 0; c < 4; c++) {
-      a->beta[c][n] = b->beta[c][i], a->lambda[c][n] = b->lambda[c][i];
-      va->u[c][n] = vb->u[c][i], va->l[c][n] = vb->l[c][i];
-    }
-    a->pdf[n] = b->pdf[i];
-    a->from_nx[n] = b->from_nx[i], a->from_ny[n] = b->from_ny[i], a->from_nz[n] = b->from_nz[i];
-    a->eta_scale[n] = b->eta_scale[i], a->cone[n] = b->cone[i];
-    a->specular[n] = b->specular[i];
-    a->px[n] = b->px[i], a->py[n] = b->py[i], a->index[n] = b->index[i], a->lane[n] = b->lane[i];
-    va->medium[n] = vb->medium[i];
+    vl_path_copy(b, i, a, n);
+    vl_volume_copy(vb, i, va, n);
   }
   return n;
 }

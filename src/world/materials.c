@@ -111,7 +111,8 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
   m->eta_s = 1.5f;
   vlResult r = VL_OK;
   bool metal = def->kind == VL_MATERIAL_CONDUCTOR || def->kind == VL_MATERIAL_COATED_CONDUCTOR;
-  bool rough = metal || def->kind == VL_MATERIAL_DIELECTRIC || def->kind == VL_MATERIAL_COATED_DIFFUSE;
+  bool rough = metal || def->kind == VL_MATERIAL_DIELECTRIC || def->kind == VL_MATERIAL_COATED_DIFFUSE ||
+               def->kind == VL_MATERIAL_SUBSURFACE;
   if (def->kind == VL_MATERIAL_DIFFUSE || def->kind == VL_MATERIAL_COATED_DIFFUSE ||
       def->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION || (metal && def->use_reflectance))
     r = vl_world_spectrum_node(world, scene, def->reflectance, VL_ROLE_ALBEDO, &m->reflectance, error);
@@ -136,6 +137,7 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
     r = vl_world_layers(world, scene, def, m, error);
   else if (r == VL_OK && def->kind == VL_MATERIAL_COATED_DIFFUSE)
     r = coat_of(world, def, m, error);
+  if (r == VL_OK && def->kind == VL_MATERIAL_SUBSURFACE) r = vl_world_subsurface(world, scene, def, m, error);
   if (r == VL_OK && def->kind == VL_MATERIAL_HAIR) r = vl_world_hair(world, scene, def, m, error);
   if (r == VL_OK && def->kind == VL_MATERIAL_MEASURED) r = measured_of(world, def, m, error);
   if (def->kind == VL_MATERIAL_PRINCIPLED) r = vl_world_principled(world, scene, def, m, error);
@@ -144,6 +146,7 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
     for (int i = 0; i < 2; i++) {
       const vlWorldMaterial *part = &world->materials.items[m->mix[i]];
       m->absent[i] = part->kind == VL_MATERIAL_INTERFACE;
+      m->has_subsurface = m->has_subsurface || part->has_subsurface;
       if (part->kind == VL_MATERIAL_MIX && (part->absent[0] || part->absent[1]))
         return fail(def, error, "a mix with an interface cannot be a part of another mix");
     }

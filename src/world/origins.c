@@ -32,6 +32,7 @@ static const char *material_type(vlMaterialKind kind) {
     case VL_MATERIAL_COATED_CONDUCTOR: return "coatedconductor";
     case VL_MATERIAL_HAIR: return "hair";
     case VL_MATERIAL_MEASURED: return "measured";
+    case VL_MATERIAL_SUBSURFACE: return "subsurface";
     case VL_MATERIAL_INTERFACE: return "interface";
   }
   return "material";

@@ -185,6 +185,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef
   vlResult cut = cut_interface(world, scene, def, s, error);
   if (cut != VL_OK) return cut;
   s->pass_shadow = world->materials.items[s->material].kind == VL_MATERIAL_INTERFACE;
+  world->has_subsurface = world->has_subsurface || world->materials.items[s->material].has_subsurface;
   s->radius = def->radius, s->inner_radius = def->inner_radius, s->height = def->height, s->phi_max = def->phi_max;
   s->z_min = def->z_min < def->z_max ? def->z_min : def->z_max;
   s->z_max = def->z_min < def->z_max ? def->z_max : def->z_min;

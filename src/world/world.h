@@ -89,6 +89,13 @@ typedef struct vlWorldHair {
   int32_t eumelanin_share, pheomelanin_share, eta, beta_m, beta_n, alpha;
 } vlWorldHair;
 
+/* Light that enters a body and leaves it elsewhere: spectrum nodes; mfp is set where the material's reflectance says
+ * the rest. The material's scale is a factor on the sigmas, or on mfp. */
+typedef struct vlWorldSubsurface {
+  int32_t sigma_a, sigma_s, mfp;
+  const struct vlBssrdfTable *table;
+} vlWorldSubsurface;
+
 typedef struct vlWorldMaterial {
   vlMaterialKind kind;
   int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
@@ -108,6 +115,8 @@ typedef struct vlWorldMaterial {
   const vlWorldLayers *layers; /* null: none, or in closed form */
   const vlWorldHair *hair;
   const vlMeasured *measured; /* may be shared; the world frees it */
+  const vlWorldSubsurface *subsurface;
+  bool has_subsurface; /* it, or a part of a mix */
 } vlWorldMaterial;
 
 /* Coats of the same numbers share a table. */
@@ -195,7 +204,7 @@ struct vlWorld {
   VL_ARRAY(void *) blocks;       /* dense spectra and the like */
   int32_t *texture_memo;         /* while building: scene texture and role -> node */
   uint32_t *rank;                /* of materials: those of one kind together */
-  bool has_interfaces;
+  bool has_interfaces, has_subsurface; /* some material is one; some shape has one */
   uint32_t camera_medium;       /* index into media, VL_NONE: vacuum */
   bool moves;                   /* something does; else no ray need know its time */
   double time_open, time_close; /* seconds: the world's times 0 and 1; before and after everything rests */
@@ -221,6 +230,8 @@ vlResult vl_world_principled(vlWorld *world, const struct vlScene *scene, const 
                              vlError *error);
 vlResult vl_world_layers(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
                          vlError *error);
+vlResult vl_world_subsurface(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
+                             vlError *error);
 vlResult vl_world_hair(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
                        vlError *error);
 /* Reads the scene's pictures on all workers; errors are left to who asks for the picture. */

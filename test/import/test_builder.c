@@ -237,6 +237,49 @@ static void materials(void **state) {
   }
 }
 
+/* Four ways to say what a body is made of. */
+static void bodies(void **state) {
+  (void)state;
+  Loaded l;
+  load_fine(&l, W "Material \"subsurface\"");
+  const vlMaterialDef *m = last_material(&l);
+  assert_int_equal(m->kind, VL_MATERIAL_SUBSURFACE);
+  assert_false(m->subsurface.from_reflectance);
+  assert_near(m->subsurface.sigma_a.value.rgb[2], .014, 1e-7);
+  assert_near(m->subsurface.sigma_s.value.rgb[0], 2.55, 1e-6);
+  assert_near(m->eta.value.value, 1.33, 1e-6);
+  assert_near(m->scale, 1, 0);
+  assert_near(m->u_roughness.value, 0, 0);
+  end_load(&l);
+  load_fine(&l,
+            W "Material \"subsurface\" \"string name\" \"Skin1\" \"float g\" .5 \"float scale\" 10 \"float eta\" 1.4");
+  m = last_material(&l);
+  assert_near(m->subsurface.sigma_s.value.rgb[1], .88, 1e-6);
+  assert_near(m->subsurface.sigma_a.value.rgb[1], .17, 1e-7);
+  assert_near(m->scale, 10, 0);
+  assert_near(m->eta.value.value, 1.4, 1e-6);
+  assert_near(m->g.value, 0, 0);
+  assert_non_null(strstr(l.log, "\"g\" is ignored beside \"name\""));
+  end_load(&l);
+  load_fine(
+      &l, W
+      "Texture \"t\" \"spectrum\" \"checkerboard\" Material \"subsurface\" \"texture sigma_a\" \"t\""
+      " \"spectrum sigma_s\" [400 1 700 2] \"float g\" -.5 \"float uroughness\" .2 \"bool remaproughness\" false");
+  m = last_material(&l);
+  assert_int_equal(m->subsurface.sigma_a.texture.index, 1);
+  assert_near(m->subsurface.sigma_s.value.values[1], 2, 0);
+  assert_near(m->g.value, -.5, 0);
+  assert_near(m->u_roughness.value, .2, 1e-7);
+  assert_false(m->remap_roughness);
+  end_load(&l);
+  load_fine(&l, W "Material \"subsurface\" \"rgb reflectance\" [.8 .5 .4] \"rgb mfp\" [3 2 1]");
+  m = last_material(&l);
+  assert_true(m->subsurface.from_reflectance);
+  assert_near(m->reflectance.value.rgb[1], .5, 0);
+  assert_near(m->subsurface.mfp.value.rgb[0], 3, 0);
+  end_load(&l);
+}
+
 /* Materials may be named before they are made; a mix refers by name; shapes get what holds where they stand. */
 static void named_materials(void **state) {
   (void)state;
@@ -623,7 +666,7 @@ int main(void) {
       cmocka_unit_test(lecture_cameras),  cmocka_unit_test(materials),    cmocka_unit_test(named_materials),
       cmocka_unit_test(textures),         cmocka_unit_test(lights),       cmocka_unit_test(area_lights),
       cmocka_unit_test(shapes),           cmocka_unit_test(objects),      cmocka_unit_test(attributes),
-      cmocka_unit_test(picture_settings), cmocka_unit_test(media),
+      cmocka_unit_test(picture_settings), cmocka_unit_test(media),        cmocka_unit_test(bodies),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

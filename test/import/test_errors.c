@@ -119,9 +119,26 @@ static const struct {
      "t.pbrt:1:1: Camera \"pinhole\": readout takes -1 seconds; it must not be negative"},
     /* names of kinds */
     {W "Material \"difuse\"", "t.pbrt:2:1: unknown material \"difuse\" (did you mean \"diffuse\"?)"},
-    {W "Material \"subsurface\"", "t.pbrt:2:1: material \"subsurface\" is not understood yet"},
-    {W "MakeNamedMaterial \"a\" \"string type\" \"subsurface\"",
-     "t.pbrt:2:23: material \"subsurface\" is not understood yet"},
+    {W "MakeNamedMaterial \"a\" \"string type\" \"subsurfase\"",
+     "t.pbrt:2:23: unknown material \"subsurfase\" (did you mean \"subsurface\"?)"},
+    {W "Material \"subsurface\" \"string name\" \"skin1\"",
+     "t.pbrt:2:23: Material \"subsurface\": no preset is named \"skin1\" (did you mean \"Skin1\"?)"},
+    {W "Material \"subsurface\" \"string name\" \"Skin1\" \"rgb sigma_a\" [1 1 1] \"rgb sigma_s\" [1 1 1]",
+     "t.pbrt:2:1: Material \"subsurface\": give only one of \"name\", \"sigma_a\" and \"sigma_s\", \"reflectance\" "
+     "(and \"mfp\"): each says all"},
+    {W "Material \"subsurface\" \"rgb sigma_a\" [1 1 1]",
+     "t.pbrt:2:1: Material \"subsurface\": \"sigma_s\" is missing beside \"sigma_a\""},
+    {W "Material \"subsurface\" \"rgb sigma_s\" [1 1 1]",
+     "t.pbrt:2:1: Material \"subsurface\": \"sigma_a\" is missing beside \"sigma_s\""},
+    {W "Material \"subsurface\" \"rgb mfp\" [1 1 1]",
+     "t.pbrt:2:1: Material \"subsurface\": \"reflectance\" is missing beside \"mfp\""},
+    {W "Material \"subsurface\" \"float mfp\" 1",
+     "t.pbrt:2:23: Material \"subsurface\": parameter \"mfp\" must be of type \"spectrum\" or \"rgb\" or \"blackbody\" "
+     "or "
+     "\"texture\", not \"float\""},
+    {W "Material \"subsurface\" \"float eta\" 4",
+     "t.pbrt:2:1: eta: the index of refraction of a body must be one number between 0.5 and 2.5"},
+    {W "Material \"subsurface\" \"float g\" 1", "t.pbrt:2:1: g: must be a number between -1 and 1"},
     {W "Material \"measured\"", "t.pbrt:2:1: Material \"measured\": \"string filename\" is missing"},
     {W "MakeNamedMaterial \"a\"", "t.pbrt:2:1: MakeNamedMaterial \"a\": \"string type\" is missing"},
     {W "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"a\" \"string type\" \"diffuse\"",
@@ -328,7 +345,7 @@ static void permissive(void **state) {
       "Film \"gbuffer\" \"string coordinatesystem\" \"camera\"\nCamera \"future\" \"string lensfile\" \"wide.dat\"\n"
       "Integrator \"function\" \"integer maxdepth\" 9\nOption \"forcediffuse\" true\nSampler \"future\" \"integer n\" "
       "1\n" W
-      "Material \"subsurface\" \"rgb mfp\" [1 1 1]\nShape \"sphere\"\nShape \"heightfield\"\n"
+      "Material \"velvet\" \"rgb mfp\" [1 1 1]\nShape \"sphere\"\nShape \"heightfield\"\n"
       "LightSource \"projector\"\nTexture \"t\" \"spectrum\" \"ptex\"\nMaterial \"diffuse\" \"texture reflectance\" "
       "\"t\"\n"
       "MakeNamedMedium \"m\" \"string type\" \"smoke\"\nMediumInterface \"m\"\nActiveTransform EndTime Translate 1 1 "
@@ -346,7 +363,7 @@ static void permissive(void **state) {
                         "warning t.pbrt:3:1: integrator",
                         "warning t.pbrt:4:1: Option",
                         "warning t.pbrt:5:1: unknown sampler",
-                        "warning t.pbrt:7:1: material \"subsurface\"",
+                        "warning t.pbrt:7:1: unknown material \"velvet\"",
                         "warning t.pbrt:9:1: unknown shape \"heigh",
                         "warning t.pbrt:10:1: unknown light \"projector",
                         "warning t.pbrt:11:1: texture \"ptex\"",

@@ -117,10 +117,15 @@ vlResult vl_file_read(vlContext *context, const char *path, bool gunzip, char **
   int fd = open(path, O_RDONLY | O_CLOEXEC);
   if (fd < 0) return fail_open(path, errno, error);
   struct stat info;
-  if (fstat(fd, &info) != 0 || S_ISDIR(info.st_mode)) {
+  bool known = fstat(fd, &info) == 0;
+  const char *what = !known                  ? strerror(errno)
+                     : S_ISDIR(info.st_mode) ? "is a folder"
+                     : S_ISCHR(info.st_mode) ? "is a device"
+                     : S_ISBLK(info.st_mode) ? "is a device"
+                                             : NULL;
+  if (what) { /* a device, that a stranger's file may name, never ends */
     close(fd);
-    return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path,
-                   S_ISDIR(info.st_mode) ? "is a folder" : strerror(errno));
+    return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, what);
   }
   size_t capacity = info.st_size > 0 ? (size_t)info.st_size : 65536, used = 0;
   char *block = vl_alloc(context, capacity + 1);

@@ -86,7 +86,8 @@ static float picture_max(vlCheck *c, const vlTextureDef *t) {
   /* Integers reach 1 at most, and are only looked into where a factor makes more of it. */
   if (c->def.pictures && !t->image && (floats || t->scale * tint > 1.0f || t->invert)) {
     vlError error;
-    vlResult r = t->data   ? vl_image_read_memory(c->context, "a picture", t->data, t->data_size, &image, &error)
+    vlResult r = t->data   ? vl_image_read_memory(c->context, t->name ? t->name : "a picture", t->data, t->data_size,
+                                                  &image, &error)
                  : t->path ? vl_image_read(c->context, t->path, &image, &error)
                            : VL_ERROR_MISSING;
     if (r == VL_ERROR_MEMORY) c->no_memory = true;

@@ -196,6 +196,10 @@ static void files_are_read_whole(void **state) {
   assert_int_equal(vl_file_read(context, in_folder("scnee.pbrt"), true, &data, &size, &error), VL_ERROR_MISSING);
   assert_non_null(strstr(error.message, "scene.pbrt")); /* the nearest name in that folder */
   assert_int_equal(vl_file_read(context, folder, true, &data, &size, &error), VL_ERROR_IO);
+  if (access("/dev/zero", R_OK) == 0) { /* a device never ends */
+    assert_int_equal(vl_file_read(context, "/dev/zero", false, &data, &size, &error), VL_ERROR_IO);
+    assert_string_equal(error.message, "cannot read /dev/zero: is a device");
+  }
   assert_int_equal(vl_file_read(context, in_folder("scene.pbrt/x"), true, &data, &size, &error), VL_ERROR_MISSING);
 
   put_file(in_folder("empty"), "", 0);

@@ -57,4 +57,9 @@ static inline Gltf *new_square(void) {
 #define SCENE "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
 #define SQUARE_MESH "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}]"
 
+static inline const vlShapeDef *shape(const Loaded *l, size_t i) {
+  assert_true(i < l->scene->shapes.count);
+  return &l->scene->shapes.items[i];
+}
+
 #endif

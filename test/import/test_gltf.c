@@ -1,12 +1,7 @@
 /* test/import/test_gltf.c: glTF files made here become the scenes that the specification says: arrays, modes, trees,
- * animation, deformation, tangents, cameras, variants. */
+ * animation, deformation, tangents, cameras. */
 #include "import/gltf_load.h"
 #include "velo/render.h"
-
-static const vlShapeDef *shape(const Loaded *l, size_t i) {
-  assert_true(i < l->scene->shapes.count);
-  return &l->scene->shapes.items[i];
-}
 
 /* ---- the file ---------------------------------------------------------------------------------------------------- */
 
@@ -365,117 +360,11 @@ static void completion(void **state) {
   free(g);
 }
 
-static void variants(void **state) {
-  (void)state;
-  Gltf *g = new_square();
-  const char *rest = SCENE
-      "\"extensionsUsed\":[\"KHR_materials_variants\",\"EXT_unheard_of\"],"
-      "\"extensions\":{\"KHR_materials_variants\":{\"variants\":[{\"name\":\"red\"},{\"name\":\"blue\"}]}},"
-      "\"materials\":[{\"name\":\"own\"},{\"name\":\"sea\",\"doubleSided\":true}],\"nodes\":[{\"mesh\":0}],"
-      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0,\"extensions\":{"
-      "\"KHR_materials_variants\":{\"mappings\":[{\"material\":1,\"variants\":[1]}]}}}]}]";
-  static const char *const names[] = {NULL, "red", "blue"}, *const expected[] = {"own", "own", "sea"};
-  for (int i = 0; i < 3; i++) {
-    Loaded l;
-    vlLoadDef def = vl_default_load_def();
-    def.variant = names[i];
-    load(&l, g, rest, &def);
-    assert_int_equal(l.result, VL_OK);
-    assert_string_equal(l.scene->materials.items[shape(&l, 0)->material.index - 1].name, expected[i]);
-    assert_int_equal(shape(&l, 0)->one_sided, i < 2);
-    const char *first = strstr(l.log, "EXT_unheard_of is passed over");
-    assert_non_null(first);
-    assert_null(strstr(first + 1, "EXT_unheard_of")); /* once */
-    end_load(&l);
-  }
-  Loaded l;
-  vlLoadDef def = vl_default_load_def();
-  def.variant = "green";
-  load(&l, g, rest, &def);
-  assert_string_equal(l.error.message, "there is no variant \"green\" (2 are there: red, blue)");
-  end_load(&l);
-  free(g);
-}
-
-/* What lies beyond the reach of rays is an error, not a crash. */
-static void too_far(void **state) {
-  (void)state;
-  Gltf *g = new_square();
-  Loaded l;
-  fine(&l, g, SCENE "\"nodes\":[{\"mesh\":0,\"scale\":[1e29,1,1]}]," SQUARE_MESH);
-  vlWorld *world;
-  vlError error;
-  assert_int_equal(vl_world_build(l.scene, NULL, &world, &error), VL_ERROR_SCENE);
-  assert_string_equal(error.message, "the shape reaches from 0 to 1e+29: rays can be followed to 1e18 at most");
-  end_load(&l);
-  free(g);
-}
-
-/* ---- what is wrong is said --------------------------------------------------------------------------------------- */
-
-static void errors(void **state) {
-  (void)state;
-  static const struct {
-    const char *rest, *message;
-  } cases[] = {
-      {SCENE "\"nodes\":[{\"mesh\":1}]," SQUARE_MESH, "nodes[0].mesh: 1: there are only 1 (0 to 0)"},
-      {SCENE "\"nodes\":[{\"mesh\":\"a\"}]," SQUARE_MESH, "nodes[0].mesh: must be a whole number, found a string"},
-      {SCENE "\"nodes\":[{\"mesh\":0,\"scale\":[1,2]}]," SQUARE_MESH, "nodes[0].scale: must hold 3 numbers, found 2"},
-      {SCENE "\"nodes\":[{\"children\":[1]},{\"children\":[0]}]," SQUARE_MESH, "nodes[0]: is among its own children"},
-      {SCENE "\"nodes\":[{\"children\":[1,1]},{}]," SQUARE_MESH,
-       "nodes[0].children[1]: node 1 is already a child of node 0"},
-      {"\"scenes\":[{\"nodes\":[7]}],\"nodes\":[{}]," SQUARE_MESH, "scenes[0].nodes[0]: there is no such node"},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":1}}]}]",
-       "meshes[0].primitives[0].attributes.POSITION: must be of type VEC3"},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":0}]}]",
-       "meshes[0].primitives[0].indices: must be SCALAR of unsigned whole numbers"},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":9}]}]",
-       "meshes[0].primitives[0].mode: 9 is not from 0 to 6"},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":2}]}]",
-       "accessors[2]: 100 elements of 2 bytes do not fit into bufferViews[1], which has 12 bytes"},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":3}}]}]",
-       "accessors[3].count: 4000000000 zeros are out of proportion to the file"},
-      {"\"extensionsRequired\":[\"KHR_materials_iridescense\"],\"nodes\":[]",
-       "extensionsRequired[0]: velo does not read KHR_materials_iridescense (it reads KHR_materials_iridescence)"},
-      {"\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"nodes\":[]",
-       "extensionsRequired[0]: velo does not read KHR_draco_mesh_compression"},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"materials\":[{\"alphaMode\":\"GLASS\"}],\"meshes\":[{\"primitives\":[{"
-             "\"attributes\":{\"POSITION\":0},\"material\":0}]}]",
-       "materials[0].alphaMode: unknown name \"GLASS\""},
-      {SCENE "\"nodes\":[{\"mesh\":0}],\"textures\":[{\"extensions\":{\"KHR_texture_basisu\":{\"source\":0}}}],"
-             "\"materials\":[{\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0}}],\"meshes\":[{"
-             "\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]}]",
-       "textures[0]: its picture is there by KHR_texture_basisu only, which velo does not read"},
-  };
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    Gltf *g = new_square();
-    gltf_accessor(g, 1, 5123, 100, "SCALAR", NULL);
-    gltf_accessor(g, -1, 5126, 4000000000u, "VEC3", NULL);
-    Loaded l;
-    load(&l, g, cases[i].rest, NULL);
-    assert_true(l.result == VL_ERROR_SCENE || l.result == VL_ERROR_UNSUPPORTED);
-    assert_string_equal(l.error.message, cases[i].message);
-    assert_string_equal(l.error.file, in_folder("t.gltf"));
-    end_load(&l);
-    free(g);
-  }
-  /* broken JSON: line and column */
-  const char *text = "{\"asset\":{\"version\":\"2.0\"},\n \"nodes\":[}";
-  gltf_file(in_folder("b.gltf"), text, strlen(text));
-  Loaded l;
-  start_load(&l);
-  assert_int_equal(vl_scene_load(l.scene, in_folder("b.gltf"), NULL, &l.error), VL_ERROR_SCENE);
-  assert_int_equal(l.error.line, 2);
-  assert_int_equal(l.error.column, 11);
-  end_load(&l);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(containers), cmocka_unit_test(arrays),    cmocka_unit_test(modes),
       cmocka_unit_test(poses),      cmocka_unit_test(animation), cmocka_unit_test(morph_and_skin),
       cmocka_unit_test(tangents),   cmocka_unit_test(cameras),   cmocka_unit_test(completion),
-      cmocka_unit_test(variants),   cmocka_unit_test(too_far),   cmocka_unit_test(errors),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

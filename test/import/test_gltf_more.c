@@ -1,6 +1,6 @@
-/* test/import/test_gltf_more.c: glTF beyond the core: a shutter that is open for a while, several scenes, packed
- * buffers, WebP beside other pictures, light from a cube of pictures, textures with uv sets and transforms of their
- * own, extensions that velo lacks. */
+/* test/import/test_gltf_more.c: glTF beyond the core: a shutter that is open for a while, several scenes, variants,
+ * packed buffers, WebP beside other pictures, light from a cube of pictures, textures with uv sets and transforms of
+ * their own, extensions that velo lacks. */
 #include <meshoptimizer.h>
 
 #include "image/image.h"
@@ -268,10 +268,42 @@ static void lamps(void **state) {
   free(g);
 }
 
+static void variants(void **state) {
+  (void)state;
+  Gltf *g = new_square();
+  const char *rest = SCENE
+      "\"extensionsUsed\":[\"KHR_materials_variants\",\"EXT_unheard_of\"],"
+      "\"extensions\":{\"KHR_materials_variants\":{\"variants\":[{\"name\":\"red\"},{\"name\":\"blue\"}]}},"
+      "\"materials\":[{\"name\":\"own\"},{\"name\":\"sea\",\"doubleSided\":true}],\"nodes\":[{\"mesh\":0}],"
+      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0,\"extensions\":{"
+      "\"KHR_materials_variants\":{\"mappings\":[{\"material\":1,\"variants\":[1]}]}}}]}]";
+  static const char *const names[] = {NULL, "red", "blue"}, *const expected[] = {"own", "own", "sea"};
+  for (int i = 0; i < 3; i++) {
+    Loaded l;
+    vlLoadDef def = vl_default_load_def();
+    def.variant = names[i];
+    load(&l, g, rest, &def);
+    assert_int_equal(l.result, VL_OK);
+    assert_string_equal(l.scene->materials.items[shape(&l, 0)->material.index - 1].name, expected[i]);
+    assert_int_equal(shape(&l, 0)->one_sided, i < 2);
+    const char *first = strstr(l.log, "EXT_unheard_of is passed over");
+    assert_non_null(first);
+    assert_null(strstr(first + 1, "EXT_unheard_of")); /* once */
+    end_load(&l);
+  }
+  Loaded l;
+  vlLoadDef def = vl_default_load_def();
+  def.variant = "green";
+  load(&l, g, rest, &def);
+  assert_string_equal(l.error.message, "there is no variant \"green\" (2 are there: red, blue)");
+  end_load(&l);
+  free(g);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(motion),   cmocka_unit_test(scenes),       cmocka_unit_test(packed), cmocka_unit_test(lacking),
-      cmocka_unit_test(textures), cmocka_unit_test(surroundings), cmocka_unit_test(lamps),
+      cmocka_unit_test(variants), cmocka_unit_test(motion),   cmocka_unit_test(scenes),       cmocka_unit_test(packed),
+      cmocka_unit_test(lacking),  cmocka_unit_test(textures), cmocka_unit_test(surroundings), cmocka_unit_test(lamps),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -98,8 +98,14 @@ const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *from, size_
   a->components = component_count(type, &a->matrix);
   a->type = component <= VL_GLTF_FLOAT ? (uint32_t)component : 0;
   size_t one = component_size(a->type);
-  if (!a->components) return vl_gltf_fail(g, VL_GLTF_KEY(at, "type"), "unknown type \"%.20s\"", type), NULL;
-  if (!one) return vl_gltf_fail(g, VL_GLTF_KEY(at, "componentType"), "unknown type %zu", component), NULL;
+  if (!a->components)
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "type"),
+                        "unknown type \"%.20s\" (known: SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4)", type),
+           NULL;
+  if (!one)
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "componentType"), "%zu is not 5120, 5121, 5122, 5123, 5125 or 5126",
+                        component),
+           NULL;
   if (a->count == 0) return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "must be at least 1"), NULL;
   if (a->count > UINT32_MAX) return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu is too many", a->count), NULL;
   if (a->matrix && one < 4) return vl_gltf_fail(g, at, "matrices of small integers are not supported"), NULL;

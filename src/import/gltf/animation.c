@@ -23,16 +23,15 @@ static void free_track(vlContext *context, Track *t) {
 
 static bool read_track(vlGltf *g, const vlGltfPlace *at, const json_t *sampler, uint32_t components, Track *t) {
   int64_t input, output;
-  const char *mode = "LINEAR";
+  static const char *const modes[] = {"STEP", "LINEAR", "CUBICSPLINE"};
+  int mode = LINEAR;
   size_t total = 0;
   if (!vl_gltf_index(g, at, sampler, "input", g->accessor_count, &input) ||
       !vl_gltf_index(g, at, sampler, "output", g->accessor_count, &output) ||
-      !vl_gltf_text(g, at, sampler, "interpolation", &mode))
+      !vl_gltf_choice(g, at, sampler, "interpolation", modes, 3, &mode))
     return false;
   if (input < 0 || output < 0) return vl_gltf_fail(g, at, "needs \"input\" and \"output\"");
-  t->mode = strcmp(mode, "STEP") == 0 ? STEP : strcmp(mode, "CUBICSPLINE") == 0 ? CUBIC : LINEAR;
-  if (t->mode == LINEAR && strcmp(mode, "LINEAR") != 0)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "interpolation"), "unknown name \"%.30s\"", mode);
+  t->mode = (Mode)mode;
   if (!(t->times = vl_gltf_load_floats(g, VL_GLTF_KEY(at, "input"), (size_t)input, 1, 0, &t->count)) ||
       !(t->values = vl_gltf_load_floats(g, VL_GLTF_KEY(at, "output"), (size_t)output, components, 0, &total)))
     return false;
@@ -128,6 +127,8 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
   int what = -1;
   for (int k = 0; k < 4; k++)
     if (strcmp(path, paths[k]) == 0) what = k;
+  if (what < 0 && *path && strcmp(path, "pointer") != 0)
+    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"), "unknown name \"%.30s\" is passed over", path);
   if (node < 0 || what < 0) return true; /* the specification lets these be passed over */
   const json_t *json = json_array_get(samplers, (size_t)sampler);
   const vlGltfPlace *at_sampler = VL_GLTF_ITEM(up, "samplers", (size_t)sampler);

@@ -63,11 +63,11 @@ static void set_pose(const vlMat4 *world, double m[16]) {
 static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "cameras", camera);
   const json_t *json = vl_gltf_item(g, "cameras", camera), *lens;
-  const char *type = "";
-  if (!vl_gltf_text(g, at, json, "type", &type)) return false;
-  bool flat = strcmp(type, "orthographic") == 0;
-  if (!flat && strcmp(type, "perspective") != 0)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "type"), "unknown name \"%.30s\"", type);
+  static const char *const types[] = {"perspective", "orthographic"};
+  int flat = 0;
+  if (!json_object_get(json, "type")) return vl_gltf_fail(g, at, "\"type\" is missing");
+  if (!vl_gltf_choice(g, at, json, "type", types, 2, &flat)) return false;
+  const char *type = types[flat];
   if (!vl_gltf_object(g, at, json, type, &lens)) return false;
   if (!lens) return vl_gltf_fail(g, at, "\"%s\" is missing", type);
   vlCameraDef def = vl_default_camera_def(1, 1);

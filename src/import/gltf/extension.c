@@ -27,6 +27,10 @@ static bool is_in(const char *name, const char *const *names, size_t count) {
   return false;
 }
 
+bool vl_gltf_reads_extension(const char *name) {
+  return is_in(name, known, sizeof known / sizeof *known);
+}
+
 bool vl_gltf_check_extensions(vlGltf *g) {
   const size_t known_count = sizeof known / sizeof *known, silent_count = sizeof silent / sizeof *silent;
   const json_t *used, *required;

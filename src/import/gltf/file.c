@@ -109,7 +109,8 @@ bool vl_gltf_open(vlGltf *g) {
   if (size >= 4 && memcmp(data, "glTF", 4) == 0) {
     json = NULL;
     if (!split_glb(g, &json, &size)) return false;
-  }
+  } else if (vl_ends_with(g->path, ".glb") && (size == 0 || (data[0] != '{' && (unsigned char)data[0] != 0xef)))
+    return vl_gltf_fail(g, NULL, "no .glb: it does not begin with \"glTF\"");
   return parse(g, json, size) && count_all(g);
 }
 

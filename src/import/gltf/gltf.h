@@ -157,6 +157,9 @@ bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, con
                      double *values);
 bool vl_gltf_bool(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, bool *value);
 bool vl_gltf_text(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char **value);
+/* One of these names: its number. */
+bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char *const *names,
+                    int count, int *value);
 /* A whole number from 0. */
 bool vl_gltf_size(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t *value);
 /* An index below limit; -1 where absent. */
@@ -185,6 +188,9 @@ bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_
 /* ---- extensions (extension.c) ------------------------------------------------------------------------------------ */
 
 bool vl_gltf_check_extensions(vlGltf *g);
+bool vl_gltf_reads_extension(const char *name);
+/* names.c: warns of members whose name is nearly one that the format has. */
+void vl_gltf_check_names(vlGltf *g);
 
 /* ---- arrays (accessor.c) ----------------------------------------------------------------------------------------- */
 

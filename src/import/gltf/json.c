@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "import/gltf/gltf.h"
 
 /* The outermost part of the place is written first. */
@@ -128,6 +129,21 @@ bool vl_gltf_text(vlGltf *g, const vlGltfPlace *at, const json_t *object, const 
   if (!json_is_string(v)) return wrong_kind(g, at, key, "a string", v);
   *value = json_string_value(v);
   return true;
+}
+
+bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char *const *names,
+                    int count, int *value) {
+  const char *text = names[*value];
+  if (!vl_gltf_text(g, at, object, key, &text)) return false;
+  char list[160] = "";
+  for (int i = 0; i < count; i++) {
+    if (strcmp(text, names[i]) == 0) {
+      *value = i;
+      return true;
+    }
+    vl_list_name(list, sizeof list, names[i]);
+  }
+  return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "unknown name \"%.30s\" (known%s)", text, list);
 }
 
 static bool whole(vlGltf *g, const vlGltfPlace *at, const char *key, const json_t *v, size_t *value) {

@@ -10,17 +10,17 @@ bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t index) {
                     *at = VL_GLTF_ITEM(up, "lights", (size_t)index);
   const json_t *json = json_array_get(g->lights, (size_t)index), *spot;
   if (!json_is_object(json)) return vl_gltf_fail(g, at, "must be an object");
-  const char *type = "";
+  static const char *const types[] = {"directional", "point", "spot"};
+  int type = 0;
   double color[3] = {1, 1, 1}, intensity = 1, inner = 0, outer = 0.7853981633974483, range = INFINITY;
-  if (!vl_gltf_text(g, at, json, "type", &type) || !vl_gltf_numbers(g, at, json, "color", 3, color) ||
+  if (!json_object_get(json, "type")) return vl_gltf_fail(g, at, "\"type\" is missing");
+  if (!vl_gltf_choice(g, at, json, "type", types, 3, &type) || !vl_gltf_numbers(g, at, json, "color", 3, color) ||
       !vl_gltf_number(g, at, json, "intensity", &intensity) || !vl_gltf_number(g, at, json, "range", &range) ||
       !vl_gltf_object(g, at, json, "spot", &spot) ||
       !vl_gltf_number(g, VL_GLTF_KEY(at, "spot"), spot, "innerConeAngle", &inner) ||
       !vl_gltf_number(g, VL_GLTF_KEY(at, "spot"), spot, "outerConeAngle", &outer))
     return false;
-  bool is_spot = strcmp(type, "spot") == 0, is_distant = strcmp(type, "directional") == 0;
-  if (!is_spot && !is_distant && strcmp(type, "point") != 0)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "type"), "unknown name \"%.30s\" (known: directional, point, spot)", type);
+  bool is_spot = type == 2, is_distant = type == 0;
   if (!(intensity >= 0)) return vl_gltf_fail(g, VL_GLTF_KEY(at, "intensity"), "must not be negative");
   for (int i = 0; i < 3; i++)
     if (!(color[i] >= 0)) return vl_gltf_fail(g, VL_GLTF_KEY(at, "color"), "must not be negative");

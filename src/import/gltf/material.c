@@ -16,11 +16,16 @@ typedef struct Reader {
 
 /* ---- parameters -------------------------------------------------------------------------------------------------- */
 
-/* factor times a channel of a texture, plus bias. */
+/* factor, from 0 to 1, times a channel of a texture. */
 static bool channel(const Reader *r, const vlGltfPlace *at, const json_t *json, const char *factor_key,
                     const char *texture_key, int which, float default_factor, vlFloatInput *input) {
   float factor = default_factor;
   if (factor_key && !vl_gltf_float(r->g, at, json, factor_key, &factor)) return false;
+  if (!(factor >= 0 && factor <= 1)) {
+    vl_gltf_warn(r->g, VL_LOG_WARNING, VL_GLTF_KEY(at, factor_key), "%g does not lie between 0 and 1: %d is taken",
+                 (double)factor, factor > 1);
+    factor = factor > 1;
+  }
   vlGltfTextureUse use = vl_gltf_use_channel(which, factor);
   *input = vl_float_input(factor);
   return vl_gltf_texture(r->g, at, json, texture_key, &use, &input->texture);
@@ -70,16 +75,15 @@ static bool normal_input(const Reader *r, const vlGltfPlace *at, const json_t *j
 /* The base colour's fourth channel, by alphaMode. */
 static bool read_alpha(const Reader *r, const vlGltfPlace *at, const json_t *json, const char *texture_key,
                        float factor) {
-  const char *mode = "OPAQUE";
+  static const char *const modes[] = {"OPAQUE", "MASK", "BLEND"};
+  int mode = 0;
   float cutoff = 0.5f;
   r->result->alpha = vl_float_input(1.0f);
-  if (!vl_gltf_text(r->g, r->at, r->json, "alphaMode", &mode) ||
+  if (!vl_gltf_choice(r->g, r->at, r->json, "alphaMode", modes, 3, &mode) ||
       !vl_gltf_float(r->g, r->at, r->json, "alphaCutoff", &cutoff))
     return false;
-  if (strcmp(mode, "OPAQUE") == 0) return true;
-  bool mask = strcmp(mode, "MASK") == 0;
-  if (!mask && strcmp(mode, "BLEND") != 0)
-    return vl_gltf_fail(r->g, VL_GLTF_KEY(r->at, "alphaMode"), "unknown name \"%.30s\"", mode);
+  if (mode == 0) return true;
+  bool mask = mode == 1;
   vlGltfTextureUse use = vl_gltf_use_channel(3, factor);
   use.srgb = true; /* the colours'; so that the picture is the same one. Coverage has no curve */
   use.colors = r->colors;

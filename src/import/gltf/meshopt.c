@@ -10,15 +10,6 @@ enum { MOST_TIMES = 256 }; /* what a byte may unpack to; the formats themselves 
 typedef enum { ATTRIBUTES, TRIANGLES, INDICES } Mode;
 typedef enum { NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL } Filter;
 
-static bool choose(vlGltf *g, const vlGltfPlace *at, const json_t *json, const char *key, const char *const *names,
-                   int count, int *value) {
-  const char *text = names[*value];
-  if (!vl_gltf_text(g, at, json, key, &text)) return false;
-  for (*value = 0; *value < count; ++*value)
-    if (strcmp(text, names[*value]) == 0) return true;
-  return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "unknown name \"%.30s\"", text);
-}
-
 static bool sizes_fit(Mode mode, Filter filter, size_t count, size_t stride) {
   if (mode == TRIANGLES) return count % 3 == 0 && (stride == 2 || stride == 4) && filter == NONE;
   if (mode == INDICES) return (stride == 2 || stride == 4) && filter == NONE;
@@ -44,7 +35,8 @@ bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *up, const json_t *json, v
   if (!vl_gltf_index(g, at, json, "buffer", g->buffer_count, &buffer) ||
       !vl_gltf_size(g, at, json, "byteOffset", &offset) || !vl_gltf_size(g, at, json, "byteLength", &length) ||
       !vl_gltf_size(g, at, json, "byteStride", &stride) || !vl_gltf_size(g, at, json, "count", &count) ||
-      !choose(g, at, json, "mode", modes, 3, &mode) || !choose(g, at, json, "filter", filters, 4, &filter))
+      !vl_gltf_choice(g, at, json, "mode", modes, 3, &mode) ||
+      !vl_gltf_choice(g, at, json, "filter", filters, 4, &filter))
     return false;
   if (buffer < 0) return vl_gltf_fail(g, at, "\"buffer\" is missing");
   const vlGltfBuffer *b = &g->buffers[buffer];

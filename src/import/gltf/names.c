@@ -1,0 +1,215 @@
+/* import/gltf/names.c: members whose name the format does not have but that look like one that it has: they are passed
+ * over, as the specification wants it, with a word about it. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "import/gltf/gltf.h"
+
+/* All members of glTF 2.0 and of the extensions that velo reads; in strcmp's order. */
+static const char *const known[] = {"COLOR_0",
+                                    "JOINTS_0",
+                                    "NORMAL",
+                                    "POSITION",
+                                    "ROTATION",
+                                    "SCALE",
+                                    "TANGENT",
+                                    "TEXCOORD_0",
+                                    "TEXCOORD_1",
+                                    "TEXCOORD_2",
+                                    "TEXCOORD_3",
+                                    "TRANSLATION",
+                                    "WEIGHTS_0",
+                                    "accessors",
+                                    "alphaCutoff",
+                                    "alphaMode",
+                                    "animations",
+                                    "anisotropyRotation",
+                                    "anisotropyStrength",
+                                    "anisotropyTexture",
+                                    "aspectRatio",
+                                    "asset",
+                                    "attenuationColor",
+                                    "attenuationDistance",
+                                    "attributes",
+                                    "baseColorFactor",
+                                    "baseColorTexture",
+                                    "buffer",
+                                    "bufferView",
+                                    "bufferViews",
+                                    "buffers",
+                                    "byteLength",
+                                    "byteOffset",
+                                    "byteStride",
+                                    "camera",
+                                    "cameras",
+                                    "channels",
+                                    "children",
+                                    "clearcoatFactor",
+                                    "clearcoatNormalTexture",
+                                    "clearcoatRoughnessFactor",
+                                    "clearcoatRoughnessTexture",
+                                    "clearcoatTexture",
+                                    "color",
+                                    "componentType",
+                                    "copyright",
+                                    "count",
+                                    "diffuseFactor",
+                                    "diffuseTexture",
+                                    "diffuseTransmissionColorFactor",
+                                    "diffuseTransmissionColorTexture",
+                                    "diffuseTransmissionFactor",
+                                    "diffuseTransmissionTexture",
+                                    "dispersion",
+                                    "doubleSided",
+                                    "emissiveFactor",
+                                    "emissiveStrength",
+                                    "emissiveTexture",
+                                    "extensions",
+                                    "extensionsRequired",
+                                    "extensionsUsed",
+                                    "extras",
+                                    "fallback",
+                                    "filter",
+                                    "generator",
+                                    "glossinessFactor",
+                                    "images",
+                                    "index",
+                                    "indices",
+                                    "innerConeAngle",
+                                    "input",
+                                    "intensity",
+                                    "interpolation",
+                                    "inverseBindMatrices",
+                                    "ior",
+                                    "iridescenceFactor",
+                                    "iridescenceIor",
+                                    "iridescenceTexture",
+                                    "iridescenceThicknessMaximum",
+                                    "iridescenceThicknessMinimum",
+                                    "iridescenceThicknessTexture",
+                                    "irradianceCoefficients",
+                                    "joints",
+                                    "light",
+                                    "lights",
+                                    "magFilter",
+                                    "mappings",
+                                    "material",
+                                    "materials",
+                                    "matrix",
+                                    "max",
+                                    "mesh",
+                                    "meshes",
+                                    "metallicFactor",
+                                    "metallicRoughnessTexture",
+                                    "mimeType",
+                                    "min",
+                                    "minFilter",
+                                    "minVersion",
+                                    "mode",
+                                    "name",
+                                    "node",
+                                    "nodes",
+                                    "normalTexture",
+                                    "normalized",
+                                    "occlusionTexture",
+                                    "offset",
+                                    "orthographic",
+                                    "outerConeAngle",
+                                    "output",
+                                    "path",
+                                    "pbrMetallicRoughness",
+                                    "perspective",
+                                    "primitives",
+                                    "range",
+                                    "rotation",
+                                    "roughnessFactor",
+                                    "sampler",
+                                    "samplers",
+                                    "scale",
+                                    "scene",
+                                    "scenes",
+                                    "sheenColorFactor",
+                                    "sheenColorTexture",
+                                    "sheenRoughnessFactor",
+                                    "sheenRoughnessTexture",
+                                    "skeleton",
+                                    "skin",
+                                    "skins",
+                                    "source",
+                                    "sparse",
+                                    "specularColorFactor",
+                                    "specularColorTexture",
+                                    "specularFactor",
+                                    "specularGlossinessTexture",
+                                    "specularImageSize",
+                                    "specularImages",
+                                    "specularTexture",
+                                    "spot",
+                                    "strength",
+                                    "target",
+                                    "targets",
+                                    "texCoord",
+                                    "textures",
+                                    "thicknessFactor",
+                                    "thicknessTexture",
+                                    "translation",
+                                    "transmissionFactor",
+                                    "transmissionTexture",
+                                    "type",
+                                    "uri",
+                                    "values",
+                                    "variants",
+                                    "version",
+                                    "weights",
+                                    "wrapS",
+                                    "wrapT",
+                                    "xmag",
+                                    "yfov",
+                                    "ymag",
+                                    "zfar",
+                                    "znear"};
+enum { KNOWN = sizeof known / sizeof *known, MOST_SAID = 4 };
+
+static int compare(const void *a, const void *b) {
+  return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Attributes go on counting: TEXCOORD_7. What begins with _ is an application's own. */
+static bool is_known(const char *key) {
+  if (key[0] == '_' || bsearch(&key, known, KNOWN, sizeof *known, compare)) return true;
+  size_t length = strlen(key);
+  while (length > 0 && key[length - 1] >= '0' && key[length - 1] <= '9') length--;
+  return length > 0 && key[length] && key[length - 1] == '_';
+}
+
+static void look(vlGltf *g, const vlGltfPlace *at, const char *key, uint32_t *said) {
+  if (strlen(key) < 4 || is_known(key)) return;
+  const char *near = vl_nearest_name(key, known, KNOWN);
+  if (near && ++*said <= MOST_SAID)
+    vl_gltf_warn(g, VL_LOG_WARNING, at, "unknown name \"%.60s\" is passed over (did you mean \"%s\"?)", key, near);
+}
+
+/* Extras are anybody's, and so is what stands in extensions that velo does not read. jansson bounds the depth. */
+static void walk(vlGltf *g, const vlGltfPlace *at, json_t *value, uint32_t *said) {
+  const char *key;
+  json_t *part;
+  size_t i;
+  if (*said >= MOST_SAID) return;
+  if (json_is_object(value)) {
+    bool extensions = at && strcmp(at->key, "extensions") == 0;
+    json_object_foreach(value, key, part) {
+      if (extensions ? !vl_gltf_reads_extension(key) : strcmp(key, "extras") == 0) continue;
+      if (!extensions) look(g, at, key, said);
+      if (json_is_object(part)) walk(g, VL_GLTF_KEY(at, key), part, said);
+      if (!json_is_array(part)) continue;
+      for (i = 0; i < json_array_size(part) && *said < MOST_SAID; i++)
+        if (json_is_object(json_array_get(part, i))) walk(g, VL_GLTF_ITEM(at, key, i), json_array_get(part, i), said);
+    }
+  }
+}
+
+void vl_gltf_check_names(vlGltf *g) {
+  uint32_t said = 0;
+  walk(g, NULL, g->root, &said);
+}

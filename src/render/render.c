@@ -81,20 +81,16 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
  * that. */
 static vlTracer tracer_of(const vlRenderRun *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
-<<<<<<< ours
-  if (vl_two_way_tracer(r->def->tracer) && vl_film_def(r->film)->buckets) {
-    vl_log(world->context, VL_LOG_INFO, NULL, "spectra are filled from the eye alone: light is not followed both ways");
-    return VL_TRACER_VOLPATH;
-  }
-  if (!vl_two_way_tracer(r->def->tracer) || (!world->moves && !camera->moves)) return r->def->tracer;
-=======
   vlTracer tracer = r->def->tracer;
   bool moves = world->moves || camera->moves;
   if (world->has_subsurface && (tracer == VL_TRACER_PATH || tracer == VL_TRACER_RANDOM_WALK))
     vl_log(world->context, VL_LOG_WARNING, NULL,
            "this tracer shows bodies of material \"subsurface\" as clear glass; volpath shows the light in them");
+  if (vl_two_way_tracer(tracer) && vl_film_def(r->film)->buckets) {
+    vl_log(world->context, VL_LOG_INFO, NULL, "spectra are filled from the eye alone: light is not followed both ways");
+    return VL_TRACER_VOLPATH;
+  }
   if (!vl_two_way_tracer(tracer) || (!moves && !world->has_subsurface)) return tracer;
->>>>>>> theirs
   vl_log(world->context, VL_LOG_INFO, NULL,
          "light is followed both ways only where nothing %s: paths from the eye alone are traced",
          moves ? "moves" : "is of material \"subsurface\"");

@@ -1,8 +1,8 @@
 /* The tracers that follow light both ways against the path tracer: the same mean within the errors of both, for every
  * kind of light and of surface; the same bits whoever works; memory that runs out. */
-#include "render/shots.h"
+#include "render/agreement.h"
 
-enum { SIZE = 24, FINE = 96, SEEDS = 6 };
+enum { SIZE = 24, FINE = 96 };
 
 typedef enum Lamp { PANEL, PANEL_BOTH, PATCH, BALL, POINT, SPOT, DISTANT, SKY, PICTURE, LAMPS } Lamp;
 static const char *const lamp_name[LAMPS] = {"panel", "two-sided panel", "patch",       "ball",       "point",
@@ -82,75 +82,51 @@ static Stage room_in(vlContext *context, Lamp lamp, bool rich, uint32_t size) {
   return s;
 }
 
+typedef struct Case {
+  Lamp lamp;
+  bool rich;
+  double radius; /* of the lens */
+} Case;
+
 /* Merging blurs over two pixels: its picture is finer. */
-static Stage room(Lamp lamp, bool rich, vlTracer tracer) {
-  return room_in(NULL, lamp, rich, tracer == VL_TRACER_MERGING ? FINE : SIZE);
+static Stage room(const void *user, vlTracer tracer) {
+  const Case *c = user;
+  Stage s = room_in(NULL, c->lamp, c->rich, tracer == VL_TRACER_MERGING ? FINE : SIZE);
+  if (c->radius > 0) s.camera.lens_radius = c->radius, s.camera.focus_distance = 2.5;
+  return s;
 }
 
-typedef struct Measure {
-  double mean[4], error[4]; /* of three bands of the picture, and the whole */
-} Measure;
-
-static Measure measure(Lamp lamp, bool rich, vlTracer tracer, double radius) {
-  double sum[4] = {0}, squares[4] = {0};
-  for (uint32_t seed = 0; seed < SEEDS; seed++) {
-    Stage s = room(lamp, rich, tracer);
-    s.render.tracer = tracer, s.render.seed = 77 * seed + (uint32_t)tracer;
-    if (radius > 0) s.camera.lens_radius = radius, s.camera.focus_distance = 2.5;
-    Picture p = stage_finish(&s);
-    assert_int_equal(p.stats.not_finite, 0);
-    for (int band = 0; band < 4; band++) {
-      double m = band < 3 ? picture_region(&p, 0, (uint32_t)band * p.height / 3, p.width,
-                                           ((uint32_t)band + 1) * p.height / 3, 1)
-                          : picture_mean(&p, 1);
-      sum[band] += m, squares[band] += m * m;
-    }
-    picture_free(&p);
-  }
-  Measure r;
-  for (int band = 0; band < 4; band++) {
-    r.mean[band] = sum[band] / SEEDS;
-    double spread = squares[band] / SEEDS - r.mean[band] * r.mean[band];
-    r.error[band] = sqrt((spread > 0 ? spread : 0) / (SEEDS - 1));
-  }
-  return r;
-}
-
-/* Five standard errors (of six values), and half a percent for what the errors' own estimates miss; merging, whose
- * radius blurs: 2 %. */
-static void agree(const char *what, const char *how, Measure a, Measure b, double bias) {
-  for (int band = 0; band < 4; band++) {
-    double error = sqrt(a.error[band] * a.error[band] + b.error[band] * b.error[band]);
-    if (!(fabs(a.mean[band] - b.mean[band]) <= 5 * error + bias * b.mean[band]))
-      fail_msg("%s, %s, band %d: %.5f, by paths from the eye %.5f, errors %.5f %.5f", what, how, band, a.mean[band],
-               b.mean[band], a.error[band], b.error[band]);
-  }
+static void agrees(const char *how, Case what, vlTracer tracer, const Measure *path, double bias) {
+  Measure m = measure(room, &what, tracer);
+  assert_agree(what.radius > 0 ? "lens" : lamp_name[what.lamp], how, &m, path, bias);
 }
 
 static void all_lamps(void **state) {
   (void)state;
   for (int lamp = 0; lamp < LAMPS; lamp++)
     for (int rich = 0; rich < 2; rich++) {
-      Measure path = measure((Lamp)lamp, rich, VL_TRACER_PATH, 0);
-      agree(lamp_name[lamp], "bidirectional", measure((Lamp)lamp, rich, VL_TRACER_BIDIRECTIONAL, 0), path, 0.005);
-      agree(lamp_name[lamp], "merging", measure((Lamp)lamp, rich, VL_TRACER_MERGING, 0), path, 0.02);
-      if (!rich) agree(lamp_name[lamp], "light paths", measure((Lamp)lamp, rich, VL_TRACER_LIGHT_PATH, 0), path, 0.005);
+      Case what = {(Lamp)lamp, rich, 0};
+      Measure path = measure(room, &what, VL_TRACER_PATH);
+      agrees("bidirectional", what, VL_TRACER_BIDIRECTIONAL, &path, 0.005);
+      agrees("merging", what, VL_TRACER_MERGING, &path, 0.02);
+      if (!rich) agrees("light paths", what, VL_TRACER_LIGHT_PATH, &path, 0.005);
     }
 }
 
 static void random_walks(void **state) {
   (void)state;
-  for (int lamp = SKY; lamp <= SKY; lamp++)
-    agree(lamp_name[lamp], "random walk", measure((Lamp)lamp, true, VL_TRACER_RANDOM_WALK, 0),
-          measure((Lamp)lamp, true, VL_TRACER_PATH, 0), 0.005);
+  Case what = {SKY, true, 0};
+  Measure path = measure(room, &what, VL_TRACER_PATH);
+  agrees("random walk", what, VL_TRACER_RANDOM_WALK, &path, 0.005);
 }
 
 /* Through a lens, light finds the film by way of its points. */
 static void through_a_lens(void **state) {
   (void)state;
-  Measure path = measure(PANEL, false, VL_TRACER_PATH, 0.1);
-  agree("lens", "bidirectional", measure(PANEL, false, VL_TRACER_BIDIRECTIONAL, 0.1), path, 0.005);
-  agree("lens", "light paths", measure(PANEL, false, VL_TRACER_LIGHT_PATH, 0.1), path, 0.005);
+  Case what = {PANEL, false, 0.1};
+  Measure path = measure(room, &what, VL_TRACER_PATH);
+  agrees("bidirectional", what, VL_TRACER_BIDIRECTIONAL, &path, 0.005);
+  agrees("light paths", what, VL_TRACER_LIGHT_PATH, &path, 0.005);
 }
 
 /* Sums are exact and photons have one order: neither threads, nor instruction sets, nor the crop show. */

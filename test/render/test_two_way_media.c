@@ -1,0 +1,221 @@
+/* Light followed both ways through media against paths from the eye alone: the same mean within the errors of both, for
+ * every kind of medium, for lights in them and beside them; a white furnace; the same bits whoever works. */
+#include "render/agreement.h"
+
+enum { SIZE = 16, FINE = 72 };
+
+typedef enum Air {
+  FOG,    /* the camera and all else stand in it */
+  WALLED, /* fog in a room whose window lets the eye in */
+  GRID,   /* a ball of it */
+  RGB_GRID,
+  CLOUD,
+  IN_GLASS, /* smooth glass full of fog */
+  DARK,     /* a ball that absorbs only, on a grid */
+  GLOWING,  /* a ball that shines itself */
+  AIRS
+} Air;
+static const char *const air_name[AIRS] = {"fog",   "walled fog",   "grid",      "rgb grid",
+                                           "cloud", "fog in glass", "dark grid", "glow"};
+typedef enum Lamp { PANEL, BALL, POINT, SPOT, DISTANT, SKY } Lamp;
+
+typedef struct Case {
+  Air air;
+  Lamp lamp;
+  bool spectral;
+  vlContext *context; /* null: an own one */
+  uint32_t size;      /* 0: as the tracer wants it */
+} Case;
+
+static vlMediumId add_medium(Stage *s, Air air) {
+  static const float densities[8] = {1, 2, 0.2f, 1, 3, 1, 0, 2};
+  static const float colours[24] = {1, 2, 3, .5f, 1, 0, 0, 0, 2, 1, 1, 1, 3, 2, 1, 0, 1, 2, 1, 2, 1, .3f, .2f, .1f};
+  static const float little[24] = {.1f, .1f, .2f, .1f, .1f, .2f, .1f, .1f, .2f, .1f, .1f, .2f,
+                                   .1f, .1f, .2f, .1f, .1f, .2f, .1f, .1f, .2f, .1f, .1f, .2f};
+  static const vlMediumKind kinds[AIRS] = {
+      [GRID] = VL_MEDIUM_GRID, [DARK] = VL_MEDIUM_GRID, [RGB_GRID] = VL_MEDIUM_RGB_GRID, [CLOUD] = VL_MEDIUM_CLOUD};
+  vlMediumDef def = vl_default_medium_def(kinds[air]);
+  float thick = air == FOG || air == WALLED ? 0.15f : air == CLOUD ? 5.0f : 1.0f;
+  def.sigma_a = vl_spectrum_rgb(0.1f * thick, 0.2f * thick, 0.4f * thick);
+  def.sigma_s = vl_spectrum_rgb(1.5f * thick, 1.0f * thick, 0.6f * thick);
+  def.g = 0.4f;
+  for (int i = 0; i < 3; i++) def.low[i] = -0.8f, def.high[i] = 0.8f;
+  set_matrix(def.world_from_medium, 0, 0, 1, 0, 0, 1, 0, -0.2, -1, 0, 0, -3);
+  if (air == DARK) def.sigma_s = vl_spectrum_constant(0);
+  if (air == GLOWING) def.emission = vl_spectrum_rgb(0.3f, 0.4f, 0.2f);
+  def.nx = def.ny = def.nz = 2, def.density = densities, def.rgb_s = colours, def.rgb_a = little;
+  vlMediumId id = vl_scene_add_medium(s->scene, &def);
+  vlError error;
+  if (vl_scene_result(s->scene, &error) != VL_OK) fail_msg("medium: %s", error.message);
+  return id;
+}
+
+static void add_ball(Stage *s, float x, float y, float z, float radius, vlMaterialId material, vlMediumId inside,
+                     vlMediumId outside, vlEmissionId emission) {
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
+  set_matrix(def.group_from_shape, 1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z);
+  def.radius = radius, def.z_min = -radius, def.z_max = radius;
+  def.material = material, def.emission = emission;
+  def.inside = inside, def.outside = outside;
+  assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
+}
+
+static void add_lamp(Stage *s, Lamp lamp) {
+  static const vlLightKind kinds[] = {
+      [POINT] = VL_LIGHT_POINT, [SPOT] = VL_LIGHT_SPOT, [DISTANT] = VL_LIGHT_DISTANT, [SKY] = VL_LIGHT_INFINITE};
+  vlMaterialId dark = add_diffuse(s, 0.2f, 0.2f, 0.2f);
+  if (lamp == PANEL) {
+    Quad q = quad_at(0.4f, 1.3f, -3, 0.3f, 0.05f, 0, 0, 0.1f, 0.3f);
+    q.material = dark, q.emission = add_glow(s, 10, false);
+    add_quad(s, &q);
+  } else if (lamp == BALL) {
+    add_ball(s, 0.3f, 1.1f, -3, 0.2f, dark, (vlMediumId){0}, (vlMediumId){0}, add_glow(s, 8, false));
+  } else {
+    vlLightDef def = vl_default_light_def(kinds[lamp]);
+    float color = lamp == POINT || lamp == SPOT ? 5 : lamp == DISTANT ? 2 : 0.7f;
+    const float from[3] = {0.3f, 1.2f, -2.6f}, to[3] = {-0.2f, -1, -3.2f};
+    def.color = vl_spectrum_rgb(color, 0.8f * color, 0.6f * color);
+    memcpy(def.from, from, sizeof from), memcpy(def.to, to, sizeof to);
+    def.cone_angle = 0.8f, def.cone_delta = 0.3f;
+    assert_int_not_equal(vl_scene_add_light(s->scene, &def).index, 0);
+  }
+}
+
+static vlMaterialId material_of(Stage *s, vlMaterialKind kind) {
+  vlMaterialDef def = vl_default_material_def(kind);
+  return vl_scene_add_material(s->scene, &def);
+}
+
+/* A window of fog in front of a room without borders of its own. */
+static void add_window(Stage *s, vlMediumId fog) {
+  static const float p[12] = {-4, -4, -1.2f, 4, -4, -1.2f, -4, 4, -1.2f, 4, 4, -1.2f};
+  static const uint32_t faces[6] = {0, 1, 3, 0, 3, 2};
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.vertices = 4, def.faces = 2, def.positions = p, def.indices = faces;
+  def.material = material_of(s, VL_MATERIAL_INTERFACE);
+  def.inside = fog; /* its normal looks at the eye */
+  assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
+}
+
+static Stage room(const void *user, vlTracer tracer) {
+  const Case *c = user;
+  uint32_t size = c->size ? c->size : tracer == VL_TRACER_MERGING ? FINE : SIZE;
+  Stage s = stage_open(size, size);
+  if (c->context) {
+    vl_scene_destroy(s.scene);
+    vl_context_destroy(s.context);
+    s.context = c->context;
+    assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
+  }
+  s.build.color = c->spectral ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
+  s.camera.fov = 1;
+  s.render.spp = size == FINE ? 4 : 64, s.render.max_depth = 5;
+  add_lamp(&s, c->lamp);
+  Quad q = quad_at(0, -1, -3, 3, 0, 0, 0, 0, -3);
+  q.material = add_diffuse(&s, 0.7f, 0.5f, 0.3f);
+  add_quad(&s, &q);
+  q = quad_at(0, 0, -4.5f, 3, 0, 0, 0, 3, 0);
+  q.material = add_diffuse(&s, 0.3f, 0.6f, 0.8f);
+  add_quad(&s, &q);
+  vlMediumId medium = add_medium(&s, c->air), none = {0};
+  vlEmissionId no_glow = {0};
+  if (c->air == FOG) {
+    vl_scene_settings(s.scene)->camera_medium = medium;
+  } else if (c->air == WALLED) {
+    add_window(&s, medium);
+  } else {
+    vlMaterialId skin = material_of(&s, c->air == IN_GLASS ? VL_MATERIAL_DIELECTRIC : VL_MATERIAL_INTERFACE);
+    add_ball(&s, 0, -0.2f, -3, 0.75f, skin, medium, none, no_glow);
+  }
+  if (c->air <= WALLED) add_ball(&s, -0.7f, -0.5f, -3.4f, 0.5f, add_diffuse(&s, 0.8f, 0.8f, 0.8f), none, none, no_glow);
+  return s;
+}
+
+static void agrees(const char *how, Case what, vlTracer tracer, const Measure *eye, double bias) {
+  Measure m = measure(room, &what, tracer);
+  char name[64];
+  snprintf(name, sizeof name, "%s, lamp %d, %s", air_name[what.air], (int)what.lamp,
+           what.spectral ? "spectral" : "rgb");
+  assert_agree(name, how, &m, eye, bias);
+}
+
+static void compare(Case what, bool merging) {
+  Measure eye = measure(room, &what, VL_TRACER_VOLPATH);
+  agrees("bidirectional", what, VL_TRACER_BIDIRECTIONAL, &eye, 0.005);
+  if (what.air != IN_GLASS && what.air != GLOWING) agrees("light paths", what, VL_TRACER_LIGHT_PATH, &eye, 0.005);
+  if (merging) agrees("merging", what, VL_TRACER_MERGING, &eye, 0.02);
+}
+
+static void lamps_in_fog(void **state) {
+  (void)state;
+  for (int lamp = PANEL; lamp <= SPOT; lamp++) compare((Case){FOG, (Lamp)lamp, false, NULL, 0}, lamp == PANEL);
+  compare((Case){WALLED, PANEL, false, NULL, 0}, false);
+  compare((Case){WALLED, POINT, true, NULL, 0}, false);
+}
+
+static void media_in_the_light(void **state) {
+  (void)state;
+  for (int air = GRID; air < AIRS; air++)
+    for (int spectral = 0; spectral < 2; spectral++)
+      compare((Case){(Air)air, air % 2 ? SKY : DISTANT, spectral, NULL, 0}, air == GRID || air == IN_GLASS);
+  compare((Case){GRID, PANEL, true, NULL, 0}, true);
+}
+
+/* A medium that scatters all under a white sky is not seen, whichever way light is followed. */
+static void furnace(void **state) {
+  (void)state;
+  static const vlTracer tracers[2] = {VL_TRACER_BIDIRECTIONAL, VL_TRACER_MERGING};
+  for (int k = 0; k < 2; k++)
+    for (int grid = 0; grid < 2; grid++) {
+      Stage s = stage_open(24, 24);
+      s.camera.fov = 0.7;
+      s.build.color = VL_COLOR_RGB;
+      s.render.tracer = tracers[k], s.render.spp = 64, s.render.max_depth = 200;
+      const float densities[8] = {1, 2, 0.2f, 1, 3, 1, 0, 2};
+      vlMediumDef def = vl_default_medium_def(grid ? VL_MEDIUM_GRID : VL_MEDIUM_HOMOGENEOUS);
+      def.sigma_a = vl_spectrum_constant(0), def.sigma_s = vl_spectrum_constant(2), def.g = 0.3f;
+      for (int i = 0; i < 3; i++) def.low[i] = -1, def.high[i] = 1;
+      set_matrix(def.world_from_medium, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3);
+      def.nx = def.ny = def.nz = 2, def.density = densities;
+      add_sky(&s, 1);
+      add_ball(&s, 0, 0, -3, 1, material_of(&s, VL_MATERIAL_INTERFACE), vl_scene_add_medium(s.scene, &def),
+               (vlMediumId){0}, (vlEmissionId){0});
+      Picture p = stage_finish(&s);
+      for (int c = 0; c < 3; c++) assert_near("furnace", picture_mean(&p, c), 1, 6e-3);
+      picture_free(&p);
+    }
+}
+
+static Picture colored(uint32_t threads, vlIsa isa, vlTracer tracer, Air air) {
+  vlContextDef def = vl_default_context_def();
+  def.threads = threads, def.isa = isa;
+  Case what = {air, PANEL, true, NULL, SIZE};
+  if (vl_context_create(&def, &what.context) != VL_OK) return (Picture){0, 0, NULL, {0}};
+  Stage s = room(&what, tracer);
+  s.render.tracer = tracer, s.render.spp = 3;
+  return stage_finish(&s);
+}
+
+static void same_bits(void **state) {
+  (void)state;
+  static const Air airs[2] = {FOG, RGB_GRID};
+  for (int k = 0; k < 2; k++)
+    for (int merge = 0; merge < 2; merge++) {
+      vlTracer tracer = merge ? VL_TRACER_MERGING : VL_TRACER_BIDIRECTIONAL;
+      Picture a = colored(1, VL_ISA_V2, tracer, airs[k]);
+      for (uint32_t threads = 1; threads <= 3; threads += 2)
+        for (int isa = VL_ISA_V2; isa <= VL_ISA_V4; isa++) {
+          Picture b = colored(threads, (vlIsa)isa, tracer, airs[k]);
+          if (!b.rgba) continue; /* a machine without that set */
+          assert_memory_equal(a.rgba, b.rgba, SIZE * SIZE * 4 * sizeof(float));
+          picture_free(&b);
+        }
+      picture_free(&a);
+    }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(lamps_in_fog), cmocka_unit_test(media_in_the_light),
+                                     cmocka_unit_test(furnace), cmocka_unit_test(same_bits)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

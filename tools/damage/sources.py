@@ -33,6 +33,25 @@ def tree(folder):
 HEAD = 'LookAt 0.3 0.2 4  0 0 0  0 1 0\nCamera "perspective" "float fov" 45\nWorldBegin\nLightSource "infinite" "rgb L" [1 1 1]\n'
 
 
+# What no scene of the tree's shows.
+MORE = b"""Option "string rendercoordsys" "world"
+Film "spectral" "integer xresolution" [ 32 ] "integer yresolution" [ 24 ] "integer nbuckets" [ 8 ] "float lambdamin" [ 400 ] "float lambdamax" [ 700 ]
+Integrator "volpath" "integer maxdepth" [ 5 ] "bool regularize" true
+LookAt 0.3 0.2 4  0 0 0  0 1 0
+Camera "perspective" "float fov" 45
+WorldBegin
+LightSource "infinite" "string filename" "sky.pfm" "point3 portal" [ -1 -1 2  1 -1 2  1 1 2  -1 1 2 ]
+Material "measured" "string filename" "m.bsdf"
+Shape "sphere" "float radius" 0.5
+Material "subsurface" "string name" "Skin1" "float scale" 10
+AttributeBegin Translate 1 0 0 Shape "sphere" "float radius" 0.4 AttributeEnd
+Material "subsurface" "rgb reflectance" [ 0.6 0.4 0.3 ] "rgb mfp" [ 0.1 0.05 0.03 ] "float eta" 1.4
+AttributeBegin Translate -1 0 0 Shape "sphere" "float radius" 0.4 AttributeEnd
+Material "subsurface" "rgb sigma_a" [ 0.1 0.2 0.3 ] "rgb sigma_s" [ 5 4 3 ] "float g" 0.2 "float roughness" 0.2
+AttributeBegin Translate 0 1 0 Shape "sphere" "float radius" 0.4 AttributeEnd
+"""
+
+
 def scenes():
     for folder in ("features", "cameras", "lecture"):
         files = tree(os.path.join(ROOT, "scenes", folder))
@@ -46,6 +65,8 @@ def scenes():
         for name in names(os.path.join(SHARED, "pbrt", folder), r"\.pbrt$"):
             if "environment" not in name:
                 yield folder + "_" + name, files, name, "scene", name
+    sky = os.path.join(ROOT, "scenes", "features", "textures", "sky.pfm")
+    yield "more", {"more.pbrt": MORE, "sky.pfm": sky, "m.bsdf": measured()}, "more.pbrt", "scene", "more.pbrt"
     yield "packed", {"packed.pbrt.gz": gzip.compress(read(os.path.join(CORPUS, "scene", "everything.pbrt")), mtime=0)}, \
         "packed.pbrt.gz", "packed", "packed.pbrt.gz"
 
@@ -127,6 +148,23 @@ def nanovdb(codec):
     return bytes(head) + body
 
 
+def measured():
+    """A file of the RGL material database, of some smooth reflection: isotropic, four directions, five wavelengths."""
+    n, thetas, waves = 8, 4, 5
+    wave = lambda count: [1 + 0.5 * ((i * 7) % 11) / 11 for i in range(count)]
+    floats = {"phi_i": ([1], [0.0]), "theta_i": ([thetas], [0.0, 0.5, 1.0, 1.5]), "ndf": ([n, n], wave(n * n)), "sigma": ([n, n], wave(n * n)),
+              "vndf": ([1, thetas, n, n], wave(thetas * n * n)), "luminance": ([1, thetas, n, n], wave(thetas * n * n)),
+              "spectra": ([1, thetas, waves, n, n], wave(thetas * waves * n * n)), "wavelengths": ([waves], [400.0, 475, 550, 625, 700])}
+    fields = [(k, 10, shape, struct.pack("<%df" % len(v), *v)) for k, (shape, v) in floats.items()] + [("jacobian", 1, [1], b"\1")]
+    at = 18 + sum(2 + len(k) + 2 + 1 + 8 + 8 * len(shape) for k, _, shape, _ in fields)
+    head, body = b"tensor_file\0\1\0" + struct.pack("<I", len(fields)), b""
+    for name, kind, shape, data in fields:
+        head += struct.pack("<H", len(name)) + name.encode() + struct.pack("<HBQ", len(shape), kind, at + len(body))
+        head += struct.pack("<%dQ" % len(shape), *shape)
+        body += data
+    return head + body
+
+
 def tables():
     """What scenes name besides: spectra, lenses, NanoVDB grids."""
     spectrum = b"300 0.1\n400 0.5\n500 0.6\n# half way\n600 0.7\n700 0.2\n900 0.1\n"
@@ -140,6 +178,8 @@ def tables():
         yield lens, {"lens.dat": os.path.join(cameras, "lenses", lens), "scene.pbrt": text.encode()}, "lens.dat", "plain", "scene.pbrt"
     medium = (HEAD + 'MakeNamedMedium "m" "string type" "nanovdb" "string filename" "grid.nvdb"\nMediumInterface "m" ""\n'
               'Material "interface"\nShape "sphere"\n').encode()
+    yield "measured", {"m.bsdf": measured(), "scene.pbrt": (HEAD + 'Material "measured" "string filename" "m.bsdf"\nShape "sphere"\n').encode()}, \
+        "m.bsdf", "bytes", "scene.pbrt"
     for codec in (0, 1):
         yield "nanovdb_%d" % codec, {"grid.nvdb": nanovdb(codec), "scene.pbrt": medium}, "grid.nvdb", "bytes", "scene.pbrt"
 

@@ -59,4 +59,14 @@ static inline vlOuterCosine vl_outer_cosine(float inner, float eta) {
   return (vlOuterCosine){__builtin_sqrtf(c2 > 0.0f ? c2 : 0.0f), c2 <= 0.0f};
 }
 
+/* A microfacet inside of a solid is chosen first; the chance that it mirrors then is what it reflects. c: cosine
+ * outside; base: the mean of the base colour. */
+static inline float vl_principled_mirrors(float c, int total, float f0, float f90, float metal, float clear,
+                                          float base) {
+  float f = f0 + (f90 - f0) * vl_schlick_weight(c), dielectric = 1.0f - metal;
+  f = total ? 1.0f : f;
+  float forth = metal * base + dielectric * f + 1e-3f, through = dielectric * clear * base * (1.0f - f);
+  return forth / (forth + through);
+}
+
 #endif

@@ -40,7 +40,8 @@ static inline float over_mirror(float o, float i) {
 typedef struct Facet {
   float value, pdf; /* without Fresnel's term */
   float fresnel;    /* Schlick's weight */
-  float opaque;     /* as if light came from outside */
+  float outer;      /* cosine outside of the solid */
+  float opaque;     /* Schlick's weight as if light came from outside */
   float total;      /* 1: total reflection */
 } Facet;
 
@@ -63,7 +64,8 @@ static inline Facet base_facet(vlVec3 o, vlVec3 w, float ax, float ay, float for
   vlOuterCosine outer = vl_outer_cosine(oh, forth);
   float c = inside > 0.0f ? (reflect ? outer.cosine : vl_abs(ih)) : oh;
   int total = (inside > 0.0f) & reflect & outer.total;
-  return (Facet){valid ? g : 0.0f, valid ? p : 0.0f, vl_schlick_weight(c), vl_schlick_weight(oh), total ? 1.0f : 0.0f};
+  return (Facet){valid ? g : 0.0f,      valid ? p : 0.0f,   vl_schlick_weight(c), c,
+                 vl_schlick_weight(oh), total ? 1.0f : 0.0f};
 }
 
 /* The coat's, about its own normal n; F included. */
@@ -76,7 +78,7 @@ static inline Facet coat_facet(vlVec3 o, vlVec3 w, vlVec3 n, float alpha) {
   int valid = (oc > 1e-3f) & (ic > 1e-3f) & (hc > 0.0f) & (w.z > 0.0f);
   float p = 0.25f * visible, f = 0.04f + 0.96f * vl_schlick_weight(oh);
   float g = p * f * vl_ggx_shadowing(oc, lo, ic, li) * w.z / (ic > 1e-3f ? ic : 1e-3f);
-  return (Facet){valid ? g : 0.0f, valid ? p : 0.0f, f, f, 0.0f};
+  return (Facet){valid ? g : 0.0f, valid ? p : 0.0f, f, oh, f, 0.0f};
 }
 
 /* Whether a chunk has a coat is a constant in each of two loops. */
@@ -90,6 +92,7 @@ static inline __attribute__((always_inline)) void combine_loop(const vlPrinciple
   const float *thins = s->row[VL_P_THIN], *shares_row = s->row[VL_P_DIFFUSE_TRANSMISSION], *films = s->row[VL_P_FILM];
   const float *coats = s->row[VL_P_COAT], *coat_alpha = s->row[VL_P_COAT_ALPHA];
   const float *cx = s->row[VL_P_COAT_X], *cy = s->row[VL_P_COAT_Y], *cz = s->row[VL_P_COAT_Z];
+  const float *f0s = s->row[VL_P_F0], *b0 = s->base[0], *b1 = s->base[1], *b2 = s->base[2], *b3 = s->base[3];
   float *density = pdf + first;
   uint32_t count = VL_WHOLE(s->count);
   float hide_mirrors[VL_PRINCIPLED_CHUNK], hide_matts[VL_PRINCIPLED_CHUNK], hide_throughs[VL_PRINCIPLED_CHUNK];
@@ -123,21 +126,26 @@ static inline __attribute__((always_inline)) void combine_loop(const vlPrinciple
     cosines[i] = cosine;
     /* between microfacets: Kulla and Conty */
     agains[i] = (1.0f - l->one_o[i]) * (1.0f - l->one_i[i]) / (1.0f - l->one_mean[i]) * cosine;
-    float above = l->specular[i] * facet.pdf + l->diffuse[i] * cosine + l->coat[i] * coat_pdf;
-    float below = l->refract[i] * facet.pdf + l->through[i] * cosine;
+    float base = 0.25f * ((b0[i] + b1[i]) + (b2[i] + b3[i])), both = l->specular[i] + l->refract[i];
+    float mirrors =
+        vl_principled_mirrors(facet.outer, facet.total > 0.0f, f0s[i], f90s[i], metallic[i], clears[i], base);
+    float forth = inside > 0.0f ? both * mirrors : l->specular[i];
+    float through = inside > 0.0f ? both * (1.0f - mirrors) : l->refract[i];
+    float above = forth * facet.pdf + l->diffuse[i] * cosine + l->coat[i] * coat_pdf;
+    float below = through * facet.pdf + l->through[i] * cosine;
     float on = valid ? 1.0f : 0.0f, up = reflect ? on : 0.0f; /* products, since gcc makes branches of selects */
     upper_on[i] = up;
     lower_on[i] = on - up;
     density[i] = above * up + below * (on - up);
   }
   for (int c = 0; c < 4; c++) {
-    const float *bases = s->base[c], *f0s = s->row[VL_P_F0 + c], *throughs = s->row[VL_P_THROUGH + c];
+    const float *bases = s->base[c], *normals = s->row[VL_P_F0 + c], *throughs = s->row[VL_P_THROUGH + c];
     const float *sheens = s->row[VL_P_SHEEN + c];
     float *result = value[c] + first;
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < count; i++) {
       float metal = metallic[i], dielectric = 1.0f - metal, clear = clears[i], shares = shares_row[i];
-      float f90 = f90s[i], film = films[i], base = bases[i], f0 = f0s[i], again = agains[i], facet = facets[i];
+      float f90 = f90s[i], film = films[i], base = bases[i], f0 = normals[i], again = agains[i], facet = facets[i];
       float m0 = f0 + metal * (base - f0), m90 = f90 + metal * (1.0f - f90);
       float f = m0 + (m90 - m0) * opaques[i];
       f = f + film * (l->film[c][i] - f);
@@ -200,16 +208,25 @@ static __attribute__((noinline)) void choose(const vlPrincipledSlice *s, const v
     if (x < l->specular[i] || (x >= to_coat && x < to_refract)) {
       vlVec3 h = vl_ggx_sample(o, vl_ggx_alpha(s->alpha_x[i]), vl_ggx_alpha(s->alpha_y[i]), u[k], v[k]);
       float oh = vl_dot(o, h);
+      bool mirrors = x < l->specular[i];
+      if (inside > 0.0f) {
+        vlOuterCosine outer = vl_outer_cosine(oh, s->eta[i]);
+        float base = 0.25f * ((s->base[0][i] + s->base[1][i]) + (s->base[2][i] + s->base[3][i]));
+        float part = mirrors ? x : l->specular[i] + (x - to_coat);
+        mirrors = part < (l->specular[i] + l->refract[i]) *
+                             vl_principled_mirrors(outer.cosine, outer.total, s->row[VL_P_F0][i], s->row[VL_P_F90][i],
+                                                   s->row[VL_P_METALLIC][i], s->row[VL_P_TRANSMISSION][i], base);
+      }
       w = vl_reflect(o, h, oh);
-      if (x >= to_coat && thin > 0.0f) w.z = -w.z;
-      if (x >= to_coat && thin == 0.0f) {
+      if (!mirrors && thin > 0.0f) w.z = -w.z;
+      if (!mirrors && thin == 0.0f) {
         float eta = inside > 0.0f ? 1.0f / s->eta[i] : s->eta[i], inverse = 1.0f / eta;
         float cos2 = 1.0f - (1.0f - oh * oh) * inverse * inverse;
         float a = oh * inverse - __builtin_sqrtf(cos2 > 0.0f ? cos2 : 0.0f);
         w = vl_vec3(a * h.x - inverse * o.x, a * h.y - inverse * o.y, a * h.z - inverse * o.z);
         if (!(cos2 > 0.0f) || w.z > 0.0f) w = vl_vec3(0.0f, 0.0f, 0.0f);
         scale = eta * eta;
-      } else if ((x < l->specular[i]) != (w.z > 0.0f)) {
+      } else if (mirrors != (w.z > 0.0f)) {
         w = vl_vec3(0.0f, 0.0f, 0.0f);
       }
     } else if (x >= to_diffuse && x < to_coat) {

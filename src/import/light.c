@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "color/color.h"
 #include "import/builder.h"
 
 static const double degrees = 0.017453292519943295;
@@ -22,15 +23,12 @@ static void read_target(vlDict *dict, const char *name, double *value) {
 }
 
 /* In the world's space, whatever the current transform: as pbrt. */
-static bool read_portal(vlDict *dict, vlLightDef *def, const vlParam *portal, bool pictured) {
+static bool read_portal(vlDict *dict, vlLightDef *def, const vlParam *portal) {
   vlImport *import = dict->import;
   size_t count = portal->floats.count;
   if (count != 12)
     return vl_import_fail(import, VL_ERROR_SCENE, portal->place, "%s: \"portal\" takes 4 points, found %zu numbers",
                           dict->what, count);
-  if (!pictured)
-    return vl_import_fail(import, VL_ERROR_SCENE, portal->place, "%s: \"portal\" needs a picture (\"string filename\")",
-                          dict->what);
   def->has_portal = true;
   for (int i = 0; i < 12; i++) def->portal[i / 3][i % 3] = portal->floats.items[i];
   return true;
@@ -41,7 +39,7 @@ static bool read_infinite(vlDict *dict, vlLightDef *def, bool has_color) {
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
   vlParam *portal = vl_dict_find(dict, "portal", 1u << VL_PARAM_POINT3);
   read_target(dict, "illuminance", &def->illuminance);
-  if (portal && !read_portal(dict, def, portal, file != NULL)) return false;
+  if (portal && !read_portal(dict, def, portal)) return false;
   if (!file) return true;
   if (has_color)
     return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: give either \"L\" or \"filename\", not both",
@@ -102,6 +100,18 @@ static bool read_light(vlDict *dict, vlLightDef *def) {
   return vl_dict_done(dict);
 }
 
+/* Portals are for pictures: of a sky that is one colour, one of one pixel (as pbrt does). */
+static bool plain_sky(vlImport *import, const vlLightDef *def, vlImage **sky) {
+  vlImageDef image = vl_default_image_def(1, 1, 3);
+  vlError error = {0};
+  float rgb[3];
+  vlResult r = vl_spectrum_to_rgb(&def->color, VL_ROLE_ILLUMINANT, def->space, rgb, &error);
+  if (r == VL_OK) r = vl_image_create(import->context, &image, sky);
+  if (r != VL_OK) return vl_import_fail(import, r, def->source, "%s", error.message);
+  memcpy(vl_image_pixels(*sky), rgb, sizeof rgb);
+  return true;
+}
+
 bool vl_import_light(vlImport *import, const vlStatement *s) {
   static const char *const kinds[] = {"point", "spot", "distant", "infinite", "goniometric", "projection"};
   char what[96];
@@ -119,7 +129,11 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
   def.space = import->state.space;
   if (!vl_import_ctm(import, s->place, &ctm) || !read_light(&dict, &def)) return false;
   memcpy(def.world_from_light, ctm.m, sizeof def.world_from_light);
+  vlImage *sky = NULL;
+  if (def.has_portal && !def.path && !plain_sky(import, &def, &sky)) return false;
+  def.image = sky;
   vlLightId id = vl_scene_add_light(import->scene, &def);
+  vl_image_destroy(sky);
   return id.index != 0 && (kind == VL_LIGHT_DISTANT || kind == VL_LIGHT_INFINITE ||
                            vl_import_note_media(import, 'l', id.index - 1, s->place));
 }

@@ -349,6 +349,25 @@ static void textures(void **state) {
   end_load(&l);
 }
 
+/* A sky of one colour behind a portal is a picture of one pixel, of the light that it would be without. */
+static void plain_portal(void **state) {
+  (void)state;
+  Loaded l;
+  load_fine(&l, W
+            "LightSource \"infinite\" \"rgb L\" [3 2 1] \"float scale\" 4 "
+            "\"point3 portal\" [0 0 0 0 1 0 1 1 0 1 0 0]\n"
+            "LightSource \"infinite\" \"blackbody L\" 3000 \"point3 portal\" [0 0 0 0 1 0 1 1 0 1 0 0]");
+  const vlLightDef *d = l.scene->lights.items;
+  assert_true(d[0].has_portal && d[1].has_portal);
+  assert_int_equal(vl_image_width(d[0].image), 1);
+  const float *rgb = vl_image_const_pixels(d[0].image), *warm = vl_image_const_pixels(d[1].image);
+  for (int i = 0; i < 3; i++) assert_near(rgb[i], 3 - i, 1e-4);
+  assert_near(d[0].scale, 4, 0);
+  assert_near(0.2126 * warm[0] + 0.7152 * warm[1] + 0.0722 * warm[2], 1, 1e-3);
+  assert_true(warm[0] > 1.5f * warm[1] && warm[1] > warm[2]);
+  end_load(&l);
+}
+
 static void lights(void **state) {
   (void)state;
   Loaded l;
@@ -662,11 +681,12 @@ static void media(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(transforms),       cmocka_unit_test(pbrt_cameras), cmocka_unit_test(camera_system),
-      cmocka_unit_test(lecture_cameras),  cmocka_unit_test(materials),    cmocka_unit_test(named_materials),
-      cmocka_unit_test(textures),         cmocka_unit_test(lights),       cmocka_unit_test(area_lights),
-      cmocka_unit_test(shapes),           cmocka_unit_test(objects),      cmocka_unit_test(attributes),
-      cmocka_unit_test(picture_settings), cmocka_unit_test(media),        cmocka_unit_test(bodies),
+      cmocka_unit_test(transforms),      cmocka_unit_test(pbrt_cameras),     cmocka_unit_test(camera_system),
+      cmocka_unit_test(lecture_cameras), cmocka_unit_test(materials),        cmocka_unit_test(named_materials),
+      cmocka_unit_test(textures),        cmocka_unit_test(lights),           cmocka_unit_test(plain_portal),
+      cmocka_unit_test(area_lights),     cmocka_unit_test(shapes),           cmocka_unit_test(objects),
+      cmocka_unit_test(attributes),      cmocka_unit_test(picture_settings), cmocka_unit_test(media),
+      cmocka_unit_test(bodies),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -238,8 +238,6 @@ static const struct {
      "t.pbrt:2:40: LightSource \"infinite\": give either \"L\" or \"filename\", not both"},
     {W "LightSource \"infinite\" \"point3 portal\" [0 0 0]",
      "t.pbrt:2:24: LightSource \"infinite\": \"portal\" takes 4 points, found 3 numbers"},
-    {W "LightSource \"infinite\" \"point3 portal\" [0 0 0 0 1 0 1 1 0 1 0 0]",
-     "t.pbrt:2:24: LightSource \"infinite\": \"portal\" needs a picture (\"string filename\")"},
     {W "LightSource \"spot\" \"float coneangle\" 200",
      "t.pbrt:2:1: spot light: cone angle must be above 0 and at most 180 degrees, its delta not negative"},
     /* picture */

@@ -2,7 +2,7 @@
  * every kind of medium, for lights in them and beside them; a white furnace; the same bits whoever works. */
 #include "render/agreement.h"
 
-enum { SIZE = 16, FINE = 72 };
+enum { SIZE = 18, FINE = 72 }; /* of three bands each */
 
 typedef enum Air {
   FOG,    /* the camera and all else stand in it */

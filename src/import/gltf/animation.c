@@ -110,6 +110,25 @@ static bool apply_weights(vlGltf *g, vlGltfNode *node, const Track *t) {
   return ok || vl_gltf_fail_memory(g);
 }
 
+/* KHR_animation_pointer: what nodes have may be named as "/nodes/3/translation"; the rest stays as it is. */
+static bool read_pointer(vlGltf *g, const vlGltfPlace *up, const json_t *target, int64_t *node, const char **path) {
+  const json_t *json = vl_gltf_extension(target, "KHR_animation_pointer");
+  const vlGltfPlace *at = VL_GLTF_KEY(up, "extensions.KHR_animation_pointer");
+  const char *pointer = "";
+  if (!vl_gltf_text(g, at, json, "pointer", &pointer)) return false;
+  const char *number = pointer + 7;
+  char *end = NULL;
+  bool is_node = strncmp(pointer, "/nodes/", 7) == 0 && *number >= '0' && *number <= '9';
+  unsigned long index = is_node ? strtoul(number, &end, 10) : 0;
+  is_node = is_node && *end == '/' && index < g->node_count;
+  *node = is_node ? (int64_t)index : -1;
+  *path = is_node ? end + 1 : "";
+  if (!is_node)
+    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at, "pointer"), "%.80s is not animated: velo moves nodes only",
+                 pointer);
+  return true;
+}
+
 static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animation, size_t i) {
   static const char *const paths[] = {"translation", "rotation", "scale", "weights"};
   const vlGltfPlace *at = VL_GLTF_ITEM(up, "channels", i), *at_target = VL_GLTF_KEY(at, "target");
@@ -124,10 +143,11 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
       !vl_gltf_text(g, at_target, target, "path", &path))
     return false;
   if (sampler < 0) return vl_gltf_fail(g, at, "\"sampler\" is missing");
+  if (strcmp(path, "pointer") == 0 && !read_pointer(g, at_target, target, &node, &path)) return false;
   int what = -1;
   for (int k = 0; k < 4; k++)
     if (strcmp(path, paths[k]) == 0) what = k;
-  if (what < 0 && *path && strcmp(path, "pointer") != 0)
+  if (what < 0 && *path)
     vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"), "unknown name \"%.30s\" is passed over", path);
   if (node < 0 || what < 0) return true; /* the specification lets these be passed over */
   const json_t *json = json_array_get(samplers, (size_t)sampler);

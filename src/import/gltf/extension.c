@@ -16,7 +16,7 @@ static const char *const known[] = {
     "KHR_texture_transform",     "KHR_mesh_quantization",
     "EXT_mesh_gpu_instancing",   "KHR_lights_punctual",
     "EXT_texture_webp",          "EXT_meshopt_compression",
-    "EXT_lights_image_based",
+    "EXT_lights_image_based",    "KHR_animation_pointer",
 };
 /* Nothing of these changes the picture. */
 static const char *const silent[] = {"KHR_xmp", "KHR_xmp_json_ld"};

@@ -53,31 +53,17 @@ static UNUSED void put_box(Gltf *g, float thickness) {
   gltf_shorts(g, faces, thickness > 0 ? 36 : 6);
 }
 
-/* Mean of each channel: over the ball's disk, over the middle of a wall or slab. */
-static UNUSED void take_shot(const Shot *shot, double rgb[3]) {
-  Gltf *g = calloc(1, sizeof *g);
-  if (shot->body == BALL)
-    put_ball(g);
-  else
-    put_box(g, shot->body == SLAB ? 1.0f : 0.0f);
-  char rest[4096], path[] = "/tmp/velo-shot-XXXXXX.gltf";
-  snprintf(
-      rest, sizeof rest,
-      "\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"camera\":0,%s}],"
-      "\"cameras\":[{\"type\":\"orthographic\",\"orthographic\":{\"xmag\":1,\"ymag\":1,\"znear\":0.01,\"zfar\":100}}],"
-      "\"materials\":[{%s}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0%s},\"indices\":%d,"
-      "\"material\":0}]}]",
-      shot->from_behind ? "\"translation\":[0,0,-10],\"rotation\":[0,1,0,0]" : "\"translation\":[0,0,10]",
-      shot->material, shot->body == BALL ? ",\"NORMAL\":0,\"TEXCOORD_0\":1" : "", g->accessor_count - 1);
+/* A file of these arrays and members, 32 x 32 pixels by its own camera. */
+static UNUSED Picture shoot(const Gltf *g, const char *rest, const Shot *shot) {
+  char path[] = "/tmp/velo-shot-XXXXXX.gltf";
   int file = mkstemps(path, 5);
   assert_true(file >= 0);
   close(file);
   gltf_write_text(g, path, rest);
-  free(g);
   Stage s = stage_open(32, 32);
   vlError error;
   memset(&error, 0, sizeof error);
-  if (vl_scene_load(s.scene, path, NULL, &error) != VL_OK) fail_msg("%s: %s", shot->material, error.message);
+  if (vl_scene_load(s.scene, path, NULL, &error) != VL_OK) fail_msg("%s: %s", rest, error.message);
   vlCompleteDef complete = vl_default_complete_def();
   complete.environment = shot->room == VL_ENVIRONMENT_AUTO ? VL_ENVIRONMENT_WHITE : shot->room;
   if (vl_scene_complete(s.scene, &complete, &error) != VL_OK) fail_msg("%s", error.message);
@@ -90,6 +76,28 @@ static UNUSED void take_shot(const Shot *shot, double rgb[3]) {
   Picture p = stage_finish(&s);
   unlink(path);
   assert_int_equal(p.stats.not_finite, 0);
+  return p;
+}
+
+#define SHOT_CAMERA \
+  "\"cameras\":[{\"type\":\"orthographic\",\"orthographic\":{\"xmag\":1,\"ymag\":1,\"znear\":0.01,\"zfar\":100}}]"
+
+/* Mean of each channel: over the ball's disk, over the middle of a wall or slab. */
+static UNUSED void take_shot(const Shot *shot, double rgb[3]) {
+  Gltf *g = calloc(1, sizeof *g);
+  if (shot->body == BALL)
+    put_ball(g);
+  else
+    put_box(g, shot->body == SLAB ? 1.0f : 0.0f);
+  char rest[4096];
+  snprintf(rest, sizeof rest,
+           "\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"camera\":0,%s}]," SHOT_CAMERA
+           ",\"materials\":[{%s}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0%s},\"indices\":%d,"
+           "\"material\":0}]}]",
+           shot->from_behind ? "\"translation\":[0,0,-10],\"rotation\":[0,1,0,0]" : "\"translation\":[0,0,10]",
+           shot->material, shot->body == BALL ? ",\"NORMAL\":0,\"TEXCOORD_0\":1" : "", g->accessor_count - 1);
+  Picture p = shoot(g, rest, shot);
+  free(g);
   for (int c = 0; c < 3; c++)
     rgb[c] = shot->body != BALL ? picture_region(&p, 8, 8, 24, 24, c) : (picture_mean(&p, c) - (1 - M_PI_4)) / M_PI_4;
   picture_free(&p);

@@ -91,7 +91,7 @@ static inline double mf_between(double a, double b, double t) {
 /* Where in [0, 1] the integral of a + (b - a) t is `part` of the whole, by halving. */
 static inline double mf_solve(double a, double b, double part) {
   double low = 0, high = 1, whole = 0.5 * (a + b);
-  for (int i = 0; i < 50; i++) {
+  for (int i = 0; i < 40; i++) {
     double t = 0.5 * (low + high);
     if (t * (a + 0.5 * (b - a) * t) < part * whole)
       low = t;
@@ -100,26 +100,32 @@ static inline double mf_solve(double a, double b, double part) {
   }
   return 0.5 * (low + high);
 }
-/* A bilinear density over n x n nodes: (u, v) to (x, y), first the row by v, then the place in it by u. */
-static inline void mf_sample(const double *f, uint32_t n, double u, double v, double *x, double *y) {
-  double all = 0, sum = 0;
-  double *rows = calloc(n, sizeof *rows), *line = calloc(n, sizeof *line);
-  for (uint32_t j = 0; j < n; j++)
+/* Integrals of the rows of a bilinear function over n x n nodes. */
+static inline void mf_rows(const double *f, uint32_t n, double *rows) {
+  for (uint32_t j = 0; j < n; j++) {
+    rows[j] = 0;
     for (uint32_t i = 0; i + 1 < n; i++) rows[j] += 0.5 * (f[j * n + i] + f[j * n + i + 1]);
+  }
+}
+/* That function as a density: (u, v) to (x, y), first the row by v, then the place in it by u. */
+static inline void mf_sample(const double *f, const double *rows, uint32_t n, double u, double v, double *x,
+                             double *y) {
+  double all = 0, sum = 0;
   for (uint32_t j = 0; j + 1 < n; j++) all += 0.5 * (rows[j] + rows[j + 1]);
   uint32_t j = 0;
   for (; j + 2 < n && sum + 0.5 * (rows[j] + rows[j + 1]) < v * all; j++) sum += 0.5 * (rows[j] + rows[j + 1]);
   double t = mf_solve(rows[j], rows[j + 1], (v * all - sum) / (0.5 * (rows[j] + rows[j + 1])));
   *y = (j + t) / (n - 1);
-  all = sum = 0;
-  for (uint32_t i = 0; i < n; i++) line[i] = mf_between(f[j * n + i], f[j * n + n + i], t);
-  for (uint32_t i = 0; i + 1 < n; i++) all += 0.5 * (line[i] + line[i + 1]);
+  const double *a = f + (size_t)j * n, *b = a + n;
+  all = mf_between(rows[j], rows[j + 1], t), sum = 0;
   uint32_t i = 0;
-  for (; i + 2 < n && sum + 0.5 * (line[i] + line[i + 1]) < u * all; i++) sum += 0.5 * (line[i] + line[i + 1]);
-  t = mf_solve(line[i], line[i + 1], (u * all - sum) / fmax(0.5 * (line[i] + line[i + 1]), 1e-300));
-  *x = (i + t) / (n - 1);
-  free(rows);
-  free(line);
+  for (;; i++) {
+    double part = 0.5 * (mf_between(a[i], b[i], t) + mf_between(a[i + 1], b[i + 1], t));
+    if (i + 2 >= n || sum + part >= u * all) break;
+    sum += part;
+  }
+  double low = mf_between(a[i], b[i], t), high = mf_between(a[i + 1], b[i + 1], t);
+  *x = (i + mf_solve(low, high, (u * all - sum) / fmax(0.5 * (low + high), 1e-300))) / (n - 1);
 }
 
 /* ---- the file ---- */
@@ -165,7 +171,7 @@ static inline mfFile mf_measure(const mfSurface *s) {
   unsigned char scaled = !s->plain;
   char text[] = "metal of GGX microfacets";
   mfField jacobian = {"jacobian", 1, 1, {1}, &scaled, 1}, description = {"description", 1, 1, {24}, text, 24};
-  double *density = calloc((size_t)n * n, sizeof *density);
+  double *density = calloc((size_t)n * (n + 1), sizeof *density), *rows = density + (size_t)n * n;
   float *nm = lambda.values;
   for (uint32_t k = 0; k < s->lambdas; k++) nm[k] = 360.0f + (float)k * 470.0f / (float)(s->lambdas - 1);
   for (uint32_t j = 0; j < n; j++)
@@ -193,10 +199,11 @@ static inline mfFile mf_measure(const mfSurface *s) {
           density[j * n + i] = visible * 2 * MF_PI * MF_PI * x * sin(x * x * MF_PI / 2);
           ((float *)vndf.values)[slice * n * n + j * n + i] = (float)density[j * n + i];
         }
+      mf_rows(density, n, rows);
       for (uint32_t j = 0; j < q; j++)
         for (uint32_t i = 0; i < q; i++) {
           double x, y, m[3], w[3], sum = 0;
-          mf_sample(density, n, (double)i / (q - 1), (double)j / (q - 1), &x, &y);
+          mf_sample(density, rows, n, (double)i / (q - 1), (double)j / (q - 1), &x, &y);
           mf_unwarp(x, y, m);
           double oh = o[0] * m[0] + o[1] * m[1] + o[2] * m[2];
           for (int d = 0; d < 3; d++) w[d] = 2 * oh * m[d] - o[d];

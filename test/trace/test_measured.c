@@ -172,7 +172,7 @@ static void sampling(void **state) {
           known += mf_value(metal, o, w, 500) / (double)b->pdf[i];
         }
       }
-      statResult r = stat_sphere_test(hist, direction_pdf, &d, 1e-5);
+      statResult r = stat_sphere_test(hist, direction_pdf, &d, 4e-5);
       if (!stat_accept(r, SURFACES * 4)) fail_msg("surface %u, theta %g: integral %g", k, thetas[t], r.integral);
       print_message("surface %u theta %.2f: pdf %.4f + %.4f lost; albedo %.4f, metal's %.4f\n", k, thetas[t],
                     r.integral, lost / count, sum / count, known / count);
@@ -285,7 +285,7 @@ static void forms(void **state) {
       off += fabs(f - g), all += f;
     }
     print_message("form %u: off by %.5f\n", form, off / all);
-    assert_true(off / all < (form == 0 ? 0.02 : 2e-3));
+    assert_true(off / all < (form == 0 ? 0.02 : 5e-3));
     vl_measured_free(s->context, m);
   }
   vl_measured_free(s->context, whole);

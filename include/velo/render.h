@@ -114,6 +114,9 @@ typedef struct vlRenderDef {
   uint32_t max_depth; /* bounces */
   float ao_distance;
   bool ao_cosine;
+  /* For comparisons: all samples of a pixel through its centre, the lens' and the middle of the shutter's time; all
+   * paths with the same wavelengths; textures without a footprint. pbrt's disablepixeljitter and so on. */
+  bool centred, same_wavelengths, sharp_textures;
   double time_limit; /* seconds, 0: none; ends after the pass in which it passes */
   vlProgressFn *progress;
   void *progress_user;

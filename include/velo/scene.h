@@ -172,7 +172,7 @@ typedef enum vlMaterialKind {
   VL_MATERIAL_DIFFUSE_TRANSMISSION,
   VL_MATERIAL_COATED_CONDUCTOR,
   VL_MATERIAL_HAIR,
-  VL_MATERIAL_MEASURED, /* reflection from a file */
+  VL_MATERIAL_MEASURED,   /* reflection from a file */
   VL_MATERIAL_SUBSURFACE, /* a body that light enters and leaves elsewhere: VL_TRACER_VOLPATH shows it, others glass */
   VL_MATERIAL_INTERFACE
 } vlMaterialKind;
@@ -497,6 +497,7 @@ typedef struct vlSceneSettings {
   vlMediumId camera_medium; /* that the camera stands in */
   uint32_t buckets;         /* of spectra beside the picture (velo/render.h); 0: none */
   double lambda_min, lambda_max;
+  bool centred, same_wavelengths, sharp_textures; /* velo/render.h */
 } vlSceneSettings;
 /* Never null; may be changed. */
 VL_API vlSceneSettings *vl_scene_settings(vlScene *scene);

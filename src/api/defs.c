@@ -14,6 +14,9 @@ vlRenderDef vl_scene_render_def(const vlScene *scene) {
   def.max_depth = s->max_depth;
   def.ao_distance = s->ao_distance;
   def.ao_cosine = s->ao_cosine;
+  def.centred = s->centred;
+  def.same_wavelengths = s->same_wavelengths;
+  def.sharp_textures = s->sharp_textures;
   return def;
 }
 

@@ -44,22 +44,41 @@ static bool read_crop(vlDict *dict, vlSceneSettings *s) {
   return import->scene->error.code == VL_OK;
 }
 
+/* pbrt has the measured curves of these; velo has not. pbrt's white is daylight of 6500 K then, unless the file says
+ * another: the fallback has the same. Exposure is the same for all sensors (book 5.4.2: they are scaled to see white of
+ * equal luminance). */
+static bool check_sensor(vlDict *dict, double *white) {
+  static const char *const measured[] = {"canon_eos_100d",      "canon_eos_1dx_mkii", "canon_eos_200d",
+                                         "canon_eos_200d_mkii", "canon_eos_5d",       "canon_eos_5d_mkii",
+                                         "canon_eos_5d_mkiii",  "canon_eos_5d_mkiv",  "canon_eos_5ds",
+                                         "canon_eos_m",         "hasselblad_l1d_20c", "nikon_d810",
+                                         "nikon_d850",          "sony_ilce_6400",     "sony_ilce_7m3",
+                                         "sony_ilce_7rm3",      "sony_ilce_9",        "cie1931"};
+  enum { COUNT = sizeof measured / sizeof *measured };
+  vlImport *import = dict->import;
+  const char *sensor = "cie1931";
+  vlParam *p = vl_dict_find(dict, "sensor", 1u << VL_PARAM_STRING);
+  if (!vl_dict_string(dict, "sensor", &sensor) || strcmp(sensor, "cie1931") == 0) return true;
+  *white = 6500.0;
+  for (int i = 0; i < COUNT - 1; i++)
+    if (strcmp(sensor, measured[i]) == 0)
+      return vl_import_unsupported(import, p->place,
+                                   "%s: the measured colour curves of sensor \"%s\" are not part of velo; without "
+                                   "\"sensor\", or permissively (--permissive), cie1931 takes the picture",
+                                   dict->what, sensor);
+  return vl_import_unknown(import, p->place, "sensor", sensor, measured, COUNT, NULL, 0);
+}
+
 /* The sensor, its white, its limit. */
 static bool read_sensor(vlDict *dict) {
   vlImport *import = dict->import;
-  const char *sensor = "cie1931";
-  double white = 0.0, top = INFINITY;
-  vlParam *p = vl_dict_find(dict, "sensor", 1u << VL_PARAM_STRING);
-  vl_dict_string(dict, "sensor", &sensor);
-  if (strcmp(sensor, "cie1931") != 0 &&
-      !vl_import_unsupported(import, p->place, "%s: sensor \"%.40s\" is not understood yet (known: cie1931)",
-                             dict->what, sensor))
-    return false;
+  double white = 0.0, usual = 0.0, top = INFINITY;
+  if (!check_sensor(dict, &usual)) return false;
   if (vl_dict_double(dict, "whitebalance", &white) && white != 0.0 && !(white >= 1000.0 && white <= 1e5))
     return vl_import_fail(import, VL_ERROR_SCENE, vl_dict_find(dict, "whitebalance", VL_BIT_FLOAT)->place,
                           "%s: \"whitebalance\" is %g; it must be 0 (none) or 1000 to 100000 kelvin", dict->what,
                           white);
-  vl_scene_settings(import->scene)->white_balance = white;
+  vl_scene_settings(import->scene)->white_balance = white != 0.0 ? white : usual;
   if (vl_dict_double(dict, "maxcomponentvalue", &top) && !(top >= 0.0))
     return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"maxcomponentvalue\" must not be negative",
                           dict->what);
@@ -147,9 +166,14 @@ static void normalise(const char *name, char *result, size_t size) {
 }
 
 bool vl_import_option(vlImport *import, const vlStatement *s) {
-  /* these change the picture, and velo has nothing of the kind */
-  static const char *const refused[] = {"disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter",
-                                        "forcediffuse"};
+  vlSceneSettings *settings = vl_scene_settings(import->scene);
+  const struct {
+    const char *name;
+    bool *value; /* null: changes the picture, and velo has nothing of the kind */
+  } switches[] = {{"disablepixeljitter", &settings->centred},
+                  {"disabletexturefiltering", &settings->sharp_textures},
+                  {"disablewavelengthjitter", &settings->same_wavelengths},
+                  {"forcediffuse", NULL}};
   static const char *const harmless[] = {"msereferenceimage", "msereferenceout", "pixelstats", "wavefront",
                                          "rendercoordsys"};
   char name[64];
@@ -159,7 +183,7 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
     double seed;
     if (!vl_number_parse(value, strlen(value), &seed) || seed != floor(seed) || fabs(seed) > 4294967295.0)
       return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"seed\": \"%.40s\" is not an integer", value);
-    vl_scene_settings(import->scene)->sampler_seed = (uint32_t)(int64_t)seed;
+    settings->sampler_seed = (uint32_t)(int64_t)seed;
     return true;
   }
   if (strcmp(name, "displacementedgescale") == 0) {
@@ -167,17 +191,29 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
     return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": \"%.40s\" is not a number above 0", name,
                           value);
   }
-  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
-    if (strcmp(name, refused[i]) != 0) continue;
-    if (strcmp(value, "false") == 0) return true;
-    if (strcmp(value, "true") != 0)
+  for (size_t i = 0; i < sizeof switches / sizeof *switches; i++) {
+    if (strcmp(name, switches[i].name) != 0) continue;
+    bool on = strcmp(value, "true") == 0;
+    if (!on && strcmp(value, "false") != 0)
       return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": expected true or false, found \"%.40s\"",
-                            refused[i], value);
-    return vl_import_unsupported(import, s->place, "Option \"%s\" is not understood yet", refused[i]);
+                            switches[i].name, value);
+    if (switches[i].value) *switches[i].value = on;
+    return switches[i].value || !on ||
+           vl_import_unsupported(import, s->place, "Option \"%s\": velo cannot; its materials stay what they are",
+                                 name);
   }
   for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++)
     if (strcmp(name, harmless[i]) == 0) return true;
-  static const char *const known[] = {"seed", "displacementedgescale"};
-  return vl_import_unknown(import, s->place, "option", s->names[0], known, 2, refused,
-                           sizeof refused / sizeof *refused);
+  static const char *const known[] = {"seed",
+                                      "displacementedgescale",
+                                      "disablepixeljitter",
+                                      "disabletexturefiltering",
+                                      "disablewavelengthjitter",
+                                      "forcediffuse",
+                                      "msereferenceimage",
+                                      "msereferenceout",
+                                      "pixelstats",
+                                      "wavefront",
+                                      "rendercoordsys"};
+  return vl_import_unknown(import, s->place, "option", s->names[0], known, sizeof known / sizeof *known, NULL, 0);
 }

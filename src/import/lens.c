@@ -37,13 +37,15 @@ static vlResult aperture_from_image(vlImport *import, const vlImage *image, vlAp
   return result;
 }
 
-/* A name or a file; "circle": none. */
+/* A name or a file; "circle" or "circular": none. */
 static bool read_aperture(vlDict *dict, const vlAperture **aperture) {
   static const char *const names[] = {"gaussian", "square", "pentagon", "star"};
   vlImport *import = dict->import;
   const char *name = "circle";
   vlParam *p = vl_dict_find(dict, "aperture", 1u << VL_PARAM_STRING);
-  if (!vl_dict_string(dict, "aperture", &name) || strcmp(name, "circle") == 0 || name[0] == 0) return scene_ok(dict);
+  if (!vl_dict_string(dict, "aperture", &name) || strcmp(name, "circle") == 0 || strcmp(name, "circular") == 0 ||
+      name[0] == 0)
+    return scene_ok(dict);
   vlAperture **place = VL_PUSH(import->context, &import->scene->apertures);
   if (!place) return vl_import_fail_memory(import);
   vlError error = {0};

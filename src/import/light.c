@@ -56,6 +56,9 @@ static bool read_beam(vlDict *dict, vlLightDef *def) {
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
   double fov = 90.0;
   read_target(dict, "power", &def->power);
+  if (def->kind == VL_LIGHT_PROJECTION && vl_dict_find(dict, "I", VL_BITS_SPECTRUM))
+    vl_import_warn(import, VL_LOG_WARNING, dict->place,
+                   "%s: \"I\" has no effect, as in pbrt: the picture is the intensity", dict->what);
   if (def->kind == VL_LIGHT_PROJECTION && vl_dict_double(dict, "fov", &fov)) def->fov = (float)(fov * degrees);
   if (!vl_dict_done(dict)) return false;
   if (!file)

@@ -49,12 +49,17 @@ static bool read_sigmas(vlDict *dict, vlMediumDef *def) {
   return read_spectrum(dict, "sigma_a", &def->sigma_a, NULL) && read_spectrum(dict, "sigma_s", &def->sigma_s, NULL);
 }
 
-static bool read_homogeneous(vlDict *dict, vlMediumDef *def) {
+static bool read_scattering(vlDict *dict, vlMediumDef *def) {
   bool preset;
   if (!vl_import_scattering_preset(dict, "preset", &def->sigma_a, &def->sigma_s, &preset)) return false;
   vlMediumDef own = *def;
   if (!read_sigmas(dict, &own)) return false;
   if (!preset) *def = own; /* pbrt: a preset wins */
+  return true;
+}
+
+static bool read_homogeneous(vlDict *dict, vlMediumDef *def) {
+  if (!read_scattering(dict, def)) return false;
   vl_dict_float(dict, "Lescale", &def->emission_scale);
   return read_spectrum(dict, "Le", &def->emission, NULL);
 }
@@ -108,7 +113,7 @@ static bool missing(vlDict *dict, const char *what) {
 
 static bool read_grid(vlDict *dict, vlMediumDef *def) {
   bool glows;
-  if (!read_sigmas(dict, def) || !read_box(dict, def) || !read_resolution(dict, def) ||
+  if (!read_scattering(dict, def) || !read_box(dict, def) || !read_resolution(dict, def) ||
       !read_cells(dict, "density", VL_PARAM_FLOAT, def, &def->density) ||
       !read_cells(dict, "temperature", VL_PARAM_FLOAT, def, &def->temperature) ||
       !read_spectrum(dict, "Le", &def->emission, &glows))

@@ -75,10 +75,9 @@ static bool read_sampler(vlImport *import, vlSceneSettings *s) {
   int randomization = 2;
   bool scrambled =
       sampler->kind == VL_SAMPLER_HALTON || sampler->kind == VL_SAMPLER_SOBOL || sampler->kind == VL_SAMPLER_ZSOBOL;
-  if (scrambled && vl_dict_choice(&dict, "randomization", randomizations, 4, &randomization) && randomization == 0 &&
-      !vl_import_unsupported(import, vl_dict_find(&dict, "randomization", 1u << VL_PARAM_STRING)->place,
-                             "%s: randomization \"none\" is not understood yet", what))
-    return false;
+  if (scrambled && vl_dict_choice(&dict, "randomization", randomizations, 4, &randomization) && randomization == 0)
+    vl_import_warn(import, VL_LOG_INFO, vl_dict_find(&dict, "randomization", 1u << VL_PARAM_STRING)->place,
+                   "%s: randomization \"none\": samples are scrambled all the same", what);
   return vl_dict_done(&dict);
 }
 
@@ -127,9 +126,9 @@ static bool read_path(vlDict *dict, vlSceneSettings *s) {
   int sampler = 0;
   vl_dict_count(dict, "maxdepth", 0, &s->max_depth);
   if (vl_dict_choice(dict, "lightsampler", light_samplers, 4, &sampler)) {
-    if (sampler == 3 && !vl_import_unsupported(import, vl_dict_find(dict, "lightsampler", 1u << VL_PARAM_STRING)->place,
-                                               "%s: light sampler \"exhaustive\" is not understood yet", dict->what))
-      return false;
+    if (sampler == 3)
+      vl_import_warn(import, VL_LOG_INFO, vl_dict_find(dict, "lightsampler", 1u << VL_PARAM_STRING)->place,
+                     "%s: light sampler \"exhaustive\": \"bvh\" is taken in its place", dict->what);
     s->light_sampler = sampler == 3 ? VL_LIGHT_SAMPLER_BVH : (vlLightSampler)sampler;
   }
   vl_dict_bool(dict, "regularize", &s->regularize);

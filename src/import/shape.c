@@ -93,9 +93,8 @@ static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
       !take_vertex_floats(dict, "N", VL_PARAM_NORMAL, 3, def->vertices, &def->normals) ||
       (per == 3 && !take_vertex_floats(dict, "S", VL_PARAM_VECTOR3, 3, def->vertices, &def->tangents)))
     return false;
-  vlParam *emission = per == 4 ? vl_dict_find(dict, "emissionfilename", 1u << VL_PARAM_STRING) : NULL;
-  return !emission ||
-         vl_import_unsupported(import, emission->place, "%s: \"emissionfilename\" is not understood yet", dict->what);
+  if (per == 4) vl_dict_find(dict, "emissionfilename", 1u << VL_PARAM_STRING); /* where pbrt looks for light: a hint */
+  return import->scene->error.code == VL_OK;
 }
 
 static void free_arrays(vlImport *import, const vlShapeDef *def) {

@@ -43,7 +43,7 @@ void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTabl
   f->sampler_kernels = vl_sampler_kernels(isa);
   f->filter_kernels = vl_filter_kernels(isa);
   f->lens = camera->lens_radius > 0;
-  f->middle = f->moves = false;
+  f->middle = f->moves = f->centred = false;
 }
 
 void vl_film_rays_clock(vlFilmRays *f, const vlWorld *world) {
@@ -56,11 +56,13 @@ void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) 
   k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_FILM, r->film_u, r->film_v);
   f->filter_kernels->sample(f->filter, n, r->film_u, r->film_v, r->film_x, r->film_y, r->weight);
   for (uint32_t i = 0; i < VL_PAD(n); i++) r->film_x[i] += 0.5f, r->film_y[i] += 0.5f;
-  if (f->middle)
+  for (uint32_t i = 0; f->centred && i < VL_PAD(n); i++) r->film_x[i] = r->film_y[i] = 0.5f, r->weight[i] = 1.0f;
+  if (f->middle || f->centred)
     for (uint32_t i = 0; i < VL_PAD(n); i++) r->time[i] = 0.5f;
   else
     k->get_1d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_TIME, r->time);
   if (f->lens) k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_LENS, r->lens_u, r->lens_v);
+  for (uint32_t i = 0; f->centred && f->lens && i < VL_PAD(n); i++) r->lens_u[i] = r->lens_v[i] = 0.5f;
   vlCameraSamples samples = {r->film_x, r->film_y, r->px, r->py, r->lens_u, r->lens_v, r->time};
   f->camera_kernels->rays(&f->camera, n, &samples, &r->rays);
   for (uint32_t i = 0; f->moves && i < VL_PAD(n); i++) { /* before and after its time the world rests */

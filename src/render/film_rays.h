@@ -15,9 +15,10 @@ typedef struct vlFilmRays {
   const vlCameraKernels *camera_kernels;
   const vlSamplerKernels *sampler_kernels;
   const vlFilterKernels *filter_kernels;
-  bool lens;   /* points on the lens are drawn */
-  bool middle; /* in the middle of the shutter's time, all of them */
-  bool moves;  /* something in the world does: times of rays are the world's, 0 to 1; else seconds */
+  bool lens;    /* points on the lens are drawn */
+  bool centred; /* of pixel and lens, and in the middle of the shutter's time */
+  bool middle;  /* in the middle of the shutter's time, all of them */
+  bool moves;   /* something in the world does: times of rays are the world's, 0 to 1; else seconds */
 } vlFilmRays;
 
 /* One element a sample, VL_PAD(n) of them: in are pixel and index of the sample in it; the rest comes out. film_x,

@@ -116,18 +116,20 @@ static void prepare(vlRenderRun *r, const vlCamera *camera) {
   vl_sampler_init(&sampler, r->def->sampler, r->def->seed, f->width, f->height, r->def->spp);
   vl_film_rays_init(&r->film_rays, camera, vl_film_filter(r->film), &sampler, isa);
   vl_film_rays_clock(&r->film_rays, world);
+  r->film_rays.centred = r->def->centred;
   r->exposure_time = (float)camera->exposure_time;
   r->trace_kernels = vl_trace_kernels(isa);
   r->rgb_mode = world->def.color == VL_COLOR_RGB;
   /* Footprints shrink with the samples of a pixel (pbrt book 10.1.3 scales by 1/sqrt(spp), at least 1/8); a fixed
    * share, so that more samples continue the same picture. */
-  const float footprint = 0.25f;
+  const float footprint = r->def->sharp_textures ? 0.0f : 0.25f;
   r->trace = (vlTraceDef){.tracer = tracer_of(r, camera),
                           .sampler = &r->film_rays.sampler,
                           .isa = isa,
                           .max_depth = r->def->max_depth,
                           .ao_distance = r->def->ao_distance,
                           .ao_cosine = r->def->ao_cosine,
+                          .same_wavelengths = r->def->same_wavelengths,
                           .lambda_low = (float)f->lambda_min,
                           .lambda_span = f->buckets ? (float)(f->lambda_max - f->lambda_min) : 0.0f,
                           .pixel_spread = footprint * r->film_rays.camera.pixel_spread,

@@ -51,6 +51,7 @@ typedef struct vlTraceDef {
   uint32_t max_depth;
   float ao_distance;
   bool ao_cosine;
+  bool same_wavelengths;           /* of all paths */
   float lambda_low, lambda_span;   /* nm; span above 0: wavelengths are uniform there, else as the eye sees */
   float pixel_spread, pixel_width; /* footprint of a camera ray: width + spread * t */
   const struct vlTwoWay *two_way;  /* of the tracers that follow light both ways (two_way.h), else null */

@@ -11,6 +11,7 @@ static void start_paths(vlTracing *t) {
   if (b->lambda[0]) {
     t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->shade.u0);
     float shared = t->def->two_way ? t->def->two_way->shared : -1.0f;
+    if (t->def->same_wavelengths && shared < 0.0f) shared = 0.5f;
     for (uint32_t i = 0; shared >= 0.0f && i < padded; i++) t->s->shade.u0[i] = shared;
     const vlColorKernels *color = vl_color_kernels(t->def->isa);
     if (t->def->lambda_span > 0.0f)

@@ -46,6 +46,38 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
 
 /* ---- before the world -------------------------------------------------------------------------------------------- */
 
+/* The film's parameters beyond its size, which the camera's file has. pbrt's picture is as bright as the shutter is
+ * open long; shutter: those seconds. */
+static void put_film(vlExport *x, double shutter) {
+  const vlSceneSettings *s = &x->scene->settings;
+  double exposure = (double)s->exposure * s->camera.exposure_time / shutter;
+  if (s->buckets)
+    PUT("  \"integer nbuckets\" [%u] \"float lambdamin\" [%.9g] \"float lambdamax\" [%.9g]\n", s->buckets,
+        s->lambda_min, s->lambda_max);
+  if (fabs(exposure - 1) > 1e-7) PUT("  \"float iso\" [%.9g]\n", 100 * exposure);
+  if (s->white_balance > 0) PUT("  \"float whitebalance\" [%.9g]\n", s->white_balance);
+  if (s->max_component < 1e30f) PUT("  \"float maxcomponentvalue\" [%.9g]\n", (double)s->max_component);
+  if (s->crop[0] || s->crop[1] || s->crop[2] != s->width || s->crop[3] != s->height)
+    PUT("  \"integer pixelbounds\" [%u %u %u %u]\n", s->crop[0], s->crop[2], s->crop[1], s->crop[3]);
+  if (s->output[0] && !strpbrk(s->output, "\"\\\n")) PUT("  \"string filename\" \"%s\"\n", s->output);
+  if (s->centred) PUT("Option \"disablepixeljitter\" true\n");
+  if (s->same_wavelengths) PUT("Option \"disablewavelengthjitter\" true\n");
+  if (s->sharp_textures) PUT("Option \"disabletexturefiltering\" true\n");
+}
+
+/* The camera's file is a whole scene: what stands before its world. */
+static void put_head(vlExport *x, const char *text, size_t size) {
+  static const char film[] = "Film \"rgb\"";
+  const char *world = strstr(text, "WorldBegin"), *at = x->scene->settings.buckets ? strstr(text, film) : NULL;
+  size_t end = world ? (size_t)(world - text) : size, start = 0;
+  if (at && (size_t)(at - text) < end) {
+    vl_bytes_put(x->context, &x->text, text, (size_t)(at - text));
+    PUT("Film \"spectral\"");
+    start = (size_t)(at - text) + sizeof film - 1;
+  }
+  vl_bytes_put(x->context, &x->text, text + start, end - start);
+}
+
 static bool put_camera(vlExport *x) {
   static const char *const beyond[] = {"near_plane",   "far_plane",     "cx",
                                        "cy",           "skew",          "distortion",
@@ -54,6 +86,7 @@ static bool put_camera(vlExport *x) {
   const vlSceneSettings *s = &x->scene->settings;
   vlCameraRecord record = {.camera = s->camera};
   record.camera.width = s->width, record.camera.height = s->height;
+  record.camera.exposure_time = 1; /* the film says it */
   vlCameraFileDef def = vl_default_camera_file_def();
   def.dialect = VL_CAMERA_DIALECT_PBRT;
   char name[64], path[4096], *text = NULL;
@@ -72,19 +105,16 @@ static bool put_camera(vlExport *x) {
   unlink(path);
   if (r == VL_ERROR_MEMORY) return vl_export_fail(x, r, "out of memory");
   if (r == VL_OK) {
-    const char *world = strstr(text, "WorldBegin"); /* the camera's file is a whole scene */
-    vl_bytes_put(x->context, &x->text, text, world ? (size_t)(world - text) : size);
+    put_head(x, text, size);
   } else {
     vl_export_lose(x, "the camera: left out");
-    PUT("Film \"rgb\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n", s->width, s->height);
+    PUT("Film \"%s\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n", s->buckets ? "spectral" : "rgb",
+        s->width, s->height);
   }
+  double shutter = s->camera.shutter_close - s->camera.shutter_open;
+  bool told = r == VL_OK && shutter > 0 && strstr(text, "shutterclose");
   vl_free(x->context, text);
-  /* the film's parameters go on */
-  if (s->exposure != 1.0f) PUT("  \"float iso\" [%.9g]\n", 100 * (double)s->exposure);
-  if (s->white_balance > 0) PUT("  \"float whitebalance\" [%.9g]\n", s->white_balance);
-  if (s->crop[0] || s->crop[1] || s->crop[2] != s->width || s->crop[3] != s->height)
-    PUT("  \"integer pixelbounds\" [%u %u %u %u]\n", s->crop[0], s->crop[2], s->crop[1], s->crop[3]);
-  if (s->output[0] && !strpbrk(s->output, "\"\\\n")) PUT("  \"string filename\" \"%s\"\n", s->output);
+  put_film(x, told ? shutter : 1);
   return true;
 }
 

@@ -9,6 +9,17 @@ check pbrt_pbrt "$VELO" scene convert scene.pbrt again.pbrt
 check pbrt_a "$VELO" render scene.pbrt -o a.exr --quiet
 check pbrt_b "$VELO" render again.pbrt -o b.exr --quiet
 check pbrt_same "$VELO" image diff a.exr b.exr --threshold differing=0
+# The film in full, and how long the shutter is open; a lecture's camera with its exposure; a portal.
+sed 's/"float fov" \[40\]/& "float shutteropen" 0.25 "float shutterclose" 0.75/; s/Film "rgb"/Film "spectral" "integer nbuckets" 4 "float iso" 300 "float maxcomponentvalue" 2/' scene.pbrt >film.pbrt
+sed 's/^LookAt.*//; s/^Camera.*/Camera "pinhole" "point3 eye" [0 1.2 4] "point3 lookat" [0 0.6 0] "float fov" 40 "float exposuretime" 0.3/' scene.pbrt >lecture.pbrt
+"$VELO" render scene.pbrt -o square.exr --resolution 16x16 --spp 1 --quiet
+{ cat scene.pbrt; echo 'LightSource "infinite" "string filename" "square.exr" "point3 portal" [-1 3 -1  -1 3 1  1 3 1  1 3 -1]'; } >portal.pbrt
+for name in film lecture portal; do
+  check "convert_$name" "$VELO" scene convert "$name.pbrt" "$name.again.pbrt"
+  check "render_$name" "$VELO" render "$name.pbrt" -o a.exr --quiet
+  check "render_${name}_again" "$VELO" render "$name.again.pbrt" -o b.exr --quiet
+  check "same_$name" "$VELO" image diff a.exr b.exr --threshold maxabs=1e-5
+done
 check pbrt_gltf "$VELO" scene convert scene.pbrt scene.gltf
 expect_text pbrt_gltf_tells 'not held: light from all around: left out (1)'
 check pbrt_glb "$VELO" scene convert scene.pbrt scene.glb

@@ -5,27 +5,16 @@
 
 /* ---- light that rays run into ------------------------------------------------------------------------------------ */
 
-static void add_radiance(vlTraceBatch *batch, uint32_t lane, const vlPaths *p, uint32_t i, const float radiance[4],
-                         float weight) {
-  for (int c = 0; c < 4; c++) batch->radiance[c][lane] += p->beta[c][i] * radiance[c] * weight;
+/* What light sampling could have found, too, counts in part. */
+static void add_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlMetLight *met) {
+  float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
+  for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met->radiance[c] * weight;
 }
 
 static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i) {
-  const vlWorld *world = t->world;
-  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  float lambda[4], radiance[4];
-  vl_path_lambda(p, i, lambda);
-  for (size_t k = 0; k < world->infinite_lights.count; k++) {
-    uint32_t index = world->infinite_lights.items[k];
-    const vlWorldLight *light = &world->lights.items[index];
-    VL_HOT(vl_infinite_at)(world, light, o, d, lambda, radiance);
-    float weight = 1.0f;
-    if (!p->specular[i]) {
-      float pdf = VL_HOT(vl_infinite_pdf)(world, light, o, d) *
-                  vl_light_pmf(&world->tree, o, vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), index);
-      weight = vl_power_heuristic(p->pdf[i], pdf);
-    }
-    add_radiance(t->batch, p->lane[i], p, i, radiance, weight);
+  for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
+    vlMetLight met = VL_HOT(vl_meet_sky)(t->world, p, i, k);
+    add_met(t, p, i, &met);
   }
 }
 
@@ -36,24 +25,8 @@ vlPoint VL_HOT(vl_hit_point)(const vlWorld *world, const vlPaths *p, const vlHit
 }
 
 static void add_glow(vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t i) {
-  const vlWorld *world = t->world;
-  uint32_t index = world->shapes.items[h->shape[i]].first_light + h->prim[i];
-  const vlWorldLight *light = &world->lights.items[index];
-  const vlEmitted *e = &world->emitted.items[light->emitted];
-  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  vlPoint at = VL_HOT(vl_hit_point)(world, p, h, i);
-  if (!(vl_dot(d, at.g) < 0.0f) && !e->two_sided) return;
-  float lambda[4], radiance[4];
-  vl_path_lambda(p, i, lambda);
-  vlVec2 uv = VL_HOT(vl_glow_uv)(world, light, &at);
-  VL_HOT(vl_emitted_at)(world, e, lambda, uv.x, 1.0f - uv.y, false, radiance);
-  float weight = 1.0f;
-  if (!p->specular[i]) {
-    vlVec3 from_n = vl_lane3(p->from_nx, p->from_ny, p->from_nz, i);
-    float pdf = VL_HOT(vl_area_pdf)(world, light, o, &at) * vl_light_pmf(&world->tree, o, from_n, index);
-    weight = vl_power_heuristic(p->pdf[i], pdf);
-  }
-  add_radiance(t->batch, p->lane[i], p, i, radiance, weight);
+  vlMetLight met;
+  if (VL_HOT(vl_meet_glow)(t->world, p, h, i, &met)) add_met(t, p, i, &met);
 }
 
 /* What the n rays of a run into: the sky where nothing is hit, or a surface that glows. */

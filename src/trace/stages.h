@@ -240,6 +240,16 @@ static inline vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3
 /* Emitted radiance at 4 channels: of a light's colour (image: at s, t of its picture). */
 void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *emitted, const float lambda[4], float s, float t,
                            bool sky, float out[4]);
+/* A light that a ray has run into. pdf: of light sampling, from where the ray began, for the direction of the ray; 0
+ * after what is specular. */
+typedef struct vlMetLight {
+  uint32_t light;
+  float radiance[4], pdf;
+  vlPoint at; /* of area lights */
+} vlMetLight;
+/* Infinite light k of the world; the surface that glows at hit i: false where it is dark on that side. */
+vlMetLight VL_HOT(vl_meet_sky)(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k);
+bool VL_HOT(vl_meet_glow)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlMetLight *met);
 /* uv of the emission's picture at a point of an area light that a ray has met. */
 vlVec2 VL_HOT(vl_glow_uv)(const vlWorld *world, const vlWorldLight *light, const vlPoint *at);
 /* Radiance of a light that a ray from o in direction d misses everything to see; and the density of sampling it. */

@@ -21,50 +21,28 @@ static void add_radiance(vlTracing *t, const vlPaths *p, uint32_t i, const float
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * radiance[c] * weight;
 }
 
+/* distance: to the light; at: the point of an area light. */
+static void add_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlMetLight *met, float distance,
+                    const vlPoint *at, bool first) {
+  float weight = 1.0f;
+  if (!first) {
+    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+    weight = hit_weight(t, p, i, met->pdf,
+                        VL_HOT(vl_emission_density)(t->world, t->def->two_way, met->light, d, distance, at));
+  }
+  add_radiance(t, p, i, met->radiance, weight);
+}
+
 static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
-  const vlWorld *world = t->world;
-  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  float lambda[4], radiance[4];
-  vl_path_lambda(p, i, lambda);
-  for (size_t k = 0; k < world->infinite_lights.count; k++) {
-    uint32_t index = world->infinite_lights.items[k];
-    const vlWorldLight *light = &world->lights.items[index];
-    VL_HOT(vl_infinite_at)(world, light, o, d, lambda, radiance);
-    float weight = 1.0f;
-    if (!first) {
-      float asked = p->specular[i]
-                        ? 0.0f
-                        : VL_HOT(vl_infinite_pdf)(world, light, o, d) *
-                              vl_light_pmf(&world->tree, o, vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), index);
-      weight =
-          hit_weight(t, p, i, asked, VL_HOT(vl_emission_density)(world, t->def->two_way, index, d, VL_INFINITY, NULL));
-    }
-    add_radiance(t, p, i, radiance, weight);
+  for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
+    vlMetLight met = VL_HOT(vl_meet_sky)(t->world, p, i, k);
+    add_met(t, p, i, &met, VL_INFINITY, NULL, first);
   }
 }
 
 static void add_glow(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
-  const vlWorld *world = t->world;
-  const vlHits *h = &t->s->hits_a;
-  uint32_t index = world->shapes.items[h->shape[i]].first_light + h->prim[i];
-  const vlWorldLight *light = &world->lights.items[index];
-  const vlEmitted *e = &world->emitted.items[light->emitted];
-  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  vlPoint at = VL_HOT(vl_hit_point)(world, &t->s->a, h, i);
-  if (!(vl_dot(d, at.g) < 0.0f) && !e->two_sided) return;
-  float lambda[4], radiance[4];
-  vl_path_lambda(p, i, lambda);
-  vlVec2 uv = VL_HOT(vl_glow_uv)(world, light, &at);
-  VL_HOT(vl_emitted_at)(world, e, lambda, uv.x, 1.0f - uv.y, false, radiance);
-  float weight = 1.0f;
-  if (!first) {
-    float asked = p->specular[i]
-                      ? 0.0f
-                      : VL_HOT(vl_area_pdf)(world, light, o, &at) *
-                            vl_light_pmf(&world->tree, o, vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), index);
-    weight = hit_weight(t, p, i, asked, VL_HOT(vl_emission_density)(world, t->def->two_way, index, d, at.t, &at));
-  }
-  add_radiance(t, p, i, radiance, weight);
+  vlMetLight met;
+  if (VL_HOT(vl_meet_glow)(t->world, p, &t->s->hits_a, i, &met)) add_met(t, p, i, &met, met.at.t, &met.at, first);
 }
 
 /* first: the eye's own rays; also what weighs nothing against anything. */

@@ -111,41 +111,15 @@ static void add_light(vlTracing *t, uint32_t i, const float radiance[4], float l
 }
 
 static void add_sky(vlTracing *t, uint32_t i) {
-  const vlWorld *world = t->world;
-  const vlPaths *p = &t->s->a;
-  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  vlVec3 from_n = vl_lane3(p->from_nx, p->from_ny, p->from_nz, i);
-  float lambda[4], radiance[4];
-  vl_path_lambda(p, i, lambda);
-  for (size_t k = 0; k < world->infinite_lights.count; k++) {
-    uint32_t index = world->infinite_lights.items[k];
-    const vlWorldLight *light = &world->lights.items[index];
-    VL_HOT(vl_infinite_at)(world, light, o, d, lambda, radiance);
-    float pdf = 0.0f;
-    if (!p->specular[i])
-      pdf = VL_HOT(vl_infinite_pdf)(world, light, o, d) * vl_light_pmf(&world->tree, o, from_n, index);
-    add_light(t, i, radiance, pdf);
+  for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
+    vlMetLight met = VL_HOT(vl_meet_sky)(t->world, &t->s->a, i, k);
+    add_light(t, i, met.radiance, met.pdf);
   }
 }
 
 static void add_glow(vlTracing *t, uint32_t i) {
-  const vlWorld *world = t->world;
-  const vlPaths *p = &t->s->a;
-  const vlHits *h = &t->s->hits_a;
-  uint32_t index = world->shapes.items[h->shape[i]].first_light + h->prim[i];
-  const vlWorldLight *light = &world->lights.items[index];
-  const vlEmitted *e = &world->emitted.items[light->emitted];
-  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  vlPoint at = VL_HOT(vl_hit_point)(world, p, h, i);
-  if (!(vl_dot(d, at.g) < 0.0f) && !e->two_sided) return;
-  float lambda[4], radiance[4], pdf = 0.0f;
-  vl_path_lambda(p, i, lambda);
-  vlVec2 uv = VL_HOT(vl_glow_uv)(world, light, &at);
-  VL_HOT(vl_emitted_at)(world, e, lambda, uv.x, 1.0f - uv.y, false, radiance);
-  if (!p->specular[i])
-    pdf = VL_HOT(vl_area_pdf)(world, light, o, &at) *
-          vl_light_pmf(&world->tree, o, vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), index);
-  add_light(t, i, radiance, pdf);
+  vlMetLight met;
+  if (VL_HOT(vl_meet_glow)(t->world, &t->s->a, &t->s->hits_a, i, &met)) add_light(t, i, met.radiance, met.pdf);
 }
 
 static void emission(vlTracing *t, uint32_t n) {

@@ -89,7 +89,8 @@ vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t) {
   vlResult r =
       t->data ? vl_image_read_memory(x->context, t->name ? t->name : "picture", t->data, t->data_size, &image, &error)
               : vl_image_read(x->context, t->path, &image, &error);
-  if (r != VL_OK) vl_export_fail(x, r, "%s", error.message);
+  if (r != VL_OK && x->result == VL_OK) /* what is wrong is the scene's picture, not the file that is written */
+    x->result = vl_fail_at(x->error, r, t->source.file, t->source.line, t->source.column, "%s", error.message);
   return image;
 }
 

@@ -109,7 +109,7 @@ static vlResult read_memory(const vlImageFile *f, vlImage **image) {
   }
   if (size == 0) return vl_fail(error, VL_ERROR_SCENE, "%s: empty file, not a picture", name);
   return vl_fail(error, VL_ERROR_SCENE,
-                 "%s: not a picture (known are OpenEXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM and QOI)", name);
+                 "%s: not a picture (known are OpenEXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM, QOI and WebP)", name);
 }
 
 vlResult vl_image_read_memory(vlContext *context, const char *name, const void *data, size_t size, vlImage **image,

@@ -119,12 +119,22 @@ static bool read_filter(vlImport *import, vlSceneSettings *s) {
 
 /* ---- integrator ------------------------------------------------------------------------------------------------- */
 
+/* Longer paths than vl_render follows carry nothing that shows. */
+static void read_depth(vlDict *dict, vlSceneSettings *s) {
+  enum { MOST = 4096 };
+  vl_dict_count(dict, "maxdepth", 0, &s->max_depth);
+  if (s->max_depth <= MOST) return;
+  vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, "maxdepth", 1u << VL_PARAM_INTEGER)->place,
+                 "%s: \"maxdepth\" %u: %d is taken", dict->what, s->max_depth, MOST);
+  s->max_depth = MOST;
+}
+
 static bool read_path(vlDict *dict, vlSceneSettings *s) {
   static const char *const light_samplers[] = {"bvh", "power", "uniform", "exhaustive"};
   vlImport *import = dict->import;
   bool yes = true;
   int sampler = 0;
-  vl_dict_count(dict, "maxdepth", 0, &s->max_depth);
+  read_depth(dict, s);
   if (vl_dict_choice(dict, "lightsampler", light_samplers, 4, &sampler)) {
     if (sampler == 3)
       vl_import_warn(import, VL_LOG_INFO, vl_dict_find(dict, "lightsampler", 1u << VL_PARAM_STRING)->place,
@@ -158,7 +168,7 @@ static bool read_two_way(vlDict *dict, vlSceneSettings *s, const char *kind) {
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     if (strcmp(kind, kinds[i].name) != 0) continue;
     s->tracer = kinds[i].tracer;
-    vl_dict_count(dict, "maxdepth", 0, &s->max_depth);
+    read_depth(dict, s);
     if (!kinds[i].by) break;
     bool yes;
     float number;
@@ -190,7 +200,7 @@ static bool read_integrator(vlImport *import, vlSceneSettings *s) {
     if (!vl_import_unknown(import, choice->place, "integrator", choice->kind, names, KINDS, later,
                            sizeof later / sizeof *later))
       return false;
-    vl_dict_count(&dict, "maxdepth", 0, &s->max_depth);
+    read_depth(&dict, s);
     return import->scene->error.code == VL_OK;
   }
   if (kind < 4) {

@@ -1,0 +1,13 @@
+/* OBJ and MTL: the input is both, so that a library's words and a file's may stand in one. */
+#include "fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  vlContext *context = fuzz_context();
+  vlScene *scene = NULL;
+  vlError error;
+  fuzz_file("m.mtl", data, size);
+  if (vl_scene_create(context, &scene) == VL_OK) vl_scene_load(scene, fuzz_file("input.obj", data, size), NULL, &error);
+  vl_scene_destroy(scene);
+  fuzz_end(context);
+  return 0;
+}

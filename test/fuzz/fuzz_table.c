@@ -1,0 +1,45 @@
+/* What scenes name beside meshes and pictures, told by its first bytes: measured materials, NanoVDB grids; anything
+ * else is taken for a spectrum, a lens and a list of poses. */
+#include "fuzz.h"
+#include "velo/trajectory.h"
+
+static bool begins(const uint8_t *data, size_t size, const char *word) {
+  return size >= strlen(word) && memcmp(data, word, strlen(word)) == 0;
+}
+
+/* A scene of this text that names the file "input", up to its world. */
+static void build(const char *text) {
+  vlContext *context = fuzz_context();
+  vlScene *scene = NULL;
+  vlWorld *world = NULL;
+  vlError error;
+  const char *path = fuzz_file("table.pbrt", (const uint8_t *)text, strlen(text));
+  if (vl_scene_create(context, &scene) == VL_OK && vl_scene_load(scene, path, NULL, &error) == VL_OK)
+    vl_world_build(scene, NULL, &world, &error);
+  vl_world_destroy(world);
+  vl_scene_destroy(scene);
+  fuzz_end(context);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  const char *path = fuzz_file("input", data, size);
+  if (begins(data, size, "tensor")) {
+    build("WorldBegin\nMaterial \"measured\" \"string filename\" \"input\"\nShape \"sphere\"\n");
+    return 0;
+  }
+  if (begins(data, size, "NanoVDB")) {
+    build(
+        "WorldBegin\nMakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"input\"\n"
+        "MediumInterface \"m\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
+    return 0;
+  }
+  build("WorldBegin\nMaterial \"diffuse\" \"spectrum reflectance\" \"input\"\nShape \"sphere\"\n");
+  build("Camera \"realistic\" \"string lensfile\" \"input\"\nWorldBegin\nShape \"sphere\"\n");
+  vlContext *context = fuzz_context();
+  vlTrajectory *trajectory = NULL;
+  vlError error;
+  path = fuzz_file("input", data, size);
+  if (vl_trajectory_load(context, path, NULL, &trajectory, &error) == VL_OK) vl_trajectory_destroy(trajectory);
+  fuzz_end(context);
+  return 0;
+}

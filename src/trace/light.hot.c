@@ -16,7 +16,7 @@ void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *e, const float
   const vlMipmap *mip = world->images.items[e->image].mipmap;
   vlTexel x;
   if (e->node > 0) {
-    vlTexturePoint at = {s, 1.0f - t, vl_vec3(0, 0, 0), vl_vec3(0, 0, 1), 0, 0, {1, 1, 1, 1}};
+    vlTexturePoint at = {s, 1.0f - t, vl_vec3(0, 0, 0), vl_vec3(0, 0, 1), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
     x = vl_texture_rgba(&world->nodes.items[e->node - 1], mip, at);
   } else {
     x = sky ? vl_nearest(mip, 0, s, t, VL_WRAP_OCTAHEDRAL) : vl_bilinear(mip, 0, s, t, VL_WRAP_CLAMP);

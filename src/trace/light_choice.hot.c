@@ -14,6 +14,11 @@ typedef struct Walk {
   VL_ROW float u[VL_ROW_SIZE];
 } Walk;
 
+/* The normal that light's cosine is taken to; 0 where light from all around counts alike. */
+static inline vlVec3 facing_light(const vlSurface *f, uint32_t i) {
+  return vl_mul(vl_vec3(f->nx[i], f->ny[i], f->nz[i]), f->cosine[i]);
+}
+
 /* Lanes that chose a light without bounds are done (light set); the others stand at the root. */
 static void start(const vlLightTree *tree, uint32_t padded, const float *u, Walk *w, vlLightSamples *out) {
   float slots = (float)(tree->unbounded_count + 1), p_unbounded = (float)tree->unbounded_count / slots;
@@ -36,7 +41,7 @@ static void descend(const float *restrict nodes, uint32_t padded, const vlSurfac
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 p = vl_vec3(f->px[i], f->py[i], f->pz[i]), n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
+    vlVec3 p = vl_vec3(f->px[i], f->py[i], f->pz[i]), n = facing_light(f, i);
     uint32_t node0 = w->node[i], light0 = out->light[i];
     float u0 = w->u[i], pmf0 = out->pmf[i];
     uint32_t left = vl_float_bits(nodes[node0 * VL_LIGHT_NODE_FLOATS + LEFT_FIELD]), at = left * VL_LIGHT_NODE_FLOATS;
@@ -62,8 +67,7 @@ void VL_HOT(vl_stage_light_choice)(const vlLightTree *tree, uint32_t n, const vl
                                    vlLightSamples *out) {
   if (tree->kind != VL_LIGHT_SAMPLER_BVH || tree->node_count < 3) { /* nothing to walk */
     for (uint32_t i = 0; i < n; i++) {
-      vlLightChoice c =
-          vl_light_choose(tree, vl_vec3(f->px[i], f->py[i], f->pz[i]), vl_vec3(f->nx[i], f->ny[i], f->nz[i]), u[i]);
+      vlLightChoice c = vl_light_choose(tree, vl_vec3(f->px[i], f->py[i], f->pz[i]), facing_light(f, i), u[i]);
       out->light[i] = c.light;
       out->pmf[i] = c.pmf;
     }
@@ -83,7 +87,7 @@ void VL_HOT(vl_stage_light_choice)(const vlLightTree *tree, uint32_t n, const vl
     for (uint32_t i = 0; waiting > 0 && i < n; i++) { /* the last few go alone */
       if (out->light[i] != VL_INNER) continue;
       vlLightChoice c = vl_light_walk(tree, tree->nodes + w.node[i], vl_vec3(f->px[i], f->py[i], f->pz[i]),
-                                      vl_vec3(f->nx[i], f->ny[i], f->nz[i]), w.u[i], out->pmf[i]);
+                                      facing_light(f, i), w.u[i], out->pmf[i]);
       out->light[i] = c.light;
       out->pmf[i] = c.pmf;
     }

@@ -74,7 +74,7 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
     p->pdf[k] = 1.0f;
     p->from_nx[k] = p->from_ny[k] = p->from_nz[k] = 0.0f;
     p->eta_scale[k] = 1.0f;
-    p->cone[k] = 0.0f;
+    p->cone[k] = p->spread[k] = 0.0f;
     p->specular[k] = 1;
     p->px[k] = b->px[i], p->py[k] = b->py[i], p->index[k] = b->index[i];
     p->lane[k] = i;
@@ -119,7 +119,7 @@ static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
       inv = density > 0.0f ? inv / density : 0.0f;
       r->b[i] = inv / vl_last_odds(t, lane) *
                 VL_HOT(vl_light_asked)(t->world, r, lane, vl_lane3(f->px, f->py, f->pz, i),
-                                       vl_lane3(f->nx, f->ny, f->nz, i), w);
+                                       vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), f->cosine[i]), w);
     }
     r->a[i] = r->carry[lane] * inv;
   }

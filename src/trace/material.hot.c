@@ -8,8 +8,32 @@ static vlVec3 facing(vlVec3 n, vlVec3 side) {
   return vl_dot(n, side) < 0.0f ? vl_neg(n) : n;
 }
 
-/* Displaced positions to either side, by differences (pbrt book 10.5.3; the curvature term is left out: it is small
- * against the slope). */
+/* dndu and dndv of the interpolated normals of lane i's triangle: 0 without normals, without uv. */
+static void triangle_normal_slopes(vlTraceScratch *s, uint32_t i) {
+  const vlCorners *c = &s->corners;
+  vlSurface *f = &s->surface;
+  vlVec3 p[3], n[3];
+  for (int k = 0; k < 3; k++) {
+    p[k] = vl_lane3(c->p[3 * k], c->p[3 * k + 1], c->p[3 * k + 2], i);
+    n[k] = vl_lane3(c->n[3 * k], c->n[3 * k + 1], c->n[3 * k + 2], i);
+  }
+  vlVec3 e1 = vl_sub(p[1], p[0]), e2 = vl_sub(p[2], p[0]), g = vl_cross(e1, e2);
+  vlVec3 way = vl_sub(vl_lane3(f->px, f->py, f->pz, i), p[0]), m1 = vl_sub(n[1], n[0]), m2 = vl_sub(n[2], n[0]);
+  float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
+  float b1 = vl_dot(vl_cross(way, e2), g) * inv, b2 = vl_dot(vl_cross(e1, way), g) * inv;
+  float length = vl_length(vl_add(n[0], vl_add(vl_mul(m1, b1), vl_mul(m2, b2))));
+  float u1 = c->uv[2][i] - c->uv[0][i], v1 = c->uv[3][i] - c->uv[1][i];
+  float u2 = c->uv[4][i] - c->uv[0][i], v2 = c->uv[5][i] - c->uv[1][i], det = (u1 * v2 - v1 * u2) * length;
+  float scale = f->uv_scale[i] > 0.0f && vl_abs(det) > 0.0f ? 1.0f / det : 0.0f;
+  vlVec3 ns = vl_lane3(f->nx, f->ny, f->nz, i);
+  vlVec3 du = vl_mul(vl_sub(vl_mul(m1, v2), vl_mul(m2, v1)), scale);
+  vlVec3 dv = vl_mul(vl_sub(vl_mul(m2, u1), vl_mul(m1, u2)), scale);
+  du = vl_sub(du, vl_mul(ns, vl_dot(du, ns))), dv = vl_sub(dv, vl_mul(ns, vl_dot(dv, ns)));
+  f->dn[0][i] = du.x, f->dn[1][i] = du.y, f->dn[2][i] = du.z;
+  f->dn[3][i] = dv.x, f->dn[4][i] = dv.y, f->dn[5][i] = dv.z;
+}
+
+/* The surface p + h n: its slopes are dpdu + h' n + h dndu, and so with v; h' by differences (pbrt book 10.5.3). */
 static void bump(vlTextureRun *r, int32_t node) { /* VL_BUMP_ROWS rows of its own */
   vlSurface *f = &r->s->surface;
   float *h = vl_texture_row(r), *hu = vl_texture_row(r), *hv = vl_texture_row(r), *step = vl_texture_row(r);
@@ -29,9 +53,12 @@ static void bump(vlTextureRun *r, int32_t node) { /* VL_BUMP_ROWS rows of its ow
   VL_HOT(vl_texture_float)(r, node, hv);
   r->shift_u = NULL;
   for (uint32_t i = r->first; i < r->last; i++) {
+    if (r->world->shapes.items[r->s->hits_b.shape[i]].kind == VL_SHAPE_TRIANGLES) triangle_normal_slopes(r->s, i);
     vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
     vlVec3 du = vl_add(vl_vec3(f->ux[i], f->uy[i], f->uz[i]), vl_mul(n, (hu[i] - h[i]) / step[i]));
     vlVec3 dv = vl_add(vl_vec3(f->vx[i], f->vy[i], f->vz[i]), vl_mul(n, (hv[i] - h[i]) / step[i]));
+    du = vl_add(du, vl_mul(vl_vec3(f->dn[0][i], f->dn[1][i], f->dn[2][i]), h[i]));
+    dv = vl_add(dv, vl_mul(vl_vec3(f->dn[3][i], f->dn[4][i], f->dn[5][i]), h[i]));
     vlVec3 m = vl_cross(du, dv);
     if (!(vl_length2(m) > 0.0f)) continue;
     m = facing(vl_normalize(m), n);
@@ -76,6 +103,7 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
   const vlWorldMaterial *m = &world->materials.items[material];
   vlShade *shade = &s->shade;
   vlTextureRun r = {world, s, &s->b, &s->surface, first, last, 0, NULL, NULL, NULL, NULL, NULL};
+  for (uint32_t i = first; i < last; i++) s->surface.cosine[i] = m->hair ? 0.0f : 1.0f;
   if (m->displacement >= 0) bump(&r, m->displacement);
   if (m->normal_map >= 0) normal_map(&r, m->normal_map);
   r.top = 0;

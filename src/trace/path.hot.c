@@ -118,6 +118,22 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
 
 /* ---- the next direction ------------------------------------------------------------------------------------------ */
 
+/* Width and spread of the cone that leaves a surface. Mirrors and smooth interfaces bend it by their curvature across
+ * the plane of incidence (Coddington's sagittal equations), the lesser of two, so that nothing is blurred; all else
+ * starts again with the camera's spread, though what it spreads over is wider. */
+static inline vlVec2 cone_after(float pixel_spread, float cone, float spread, float distance, float bend, float wo_z,
+                                float wi_z, float eta_scale, uint32_t specular) {
+  float width = cone + spread * distance;
+  float sign = width < 0.0f ? -1.0f : 1.0f; /* past a focus */
+  width = width * sign, spread = spread * sign;
+  float side = wo_z < 0.0f ? -1.0f : 1.0f, k = bend * side, in = wo_z * side, out = vl_abs(wi_z);
+  float ratio = eta_scale > 0.0f ? 1.0f / __builtin_sqrtf(eta_scale) : 1.0f; /* of the indices, before over behind */
+  float reflected = spread + 2.0f * k * in * width;
+  float refracted = ratio * spread - k * (out - ratio * in) * width;
+  float smooth = wi_z * side > 0.0f ? reflected : refracted;
+  return (vlVec2){width, specular ? smooth : pixel_spread};
+}
+
 uint32_t VL_HOT(vl_stage_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;
@@ -167,8 +183,11 @@ uint32_t VL_HOT(vl_stage_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint
     p->pdf[i] = sh->pdf[i];
     p->specular[i] = sh->flags[i] & VL_SAMPLED_SPECULAR;
     p->eta_scale[i] = eta;
-    p->cone[i] = f->width[i];
-    p->from_nx[i] = f->nx[i], p->from_ny[i] = f->ny[i], p->from_nz[i] = f->nz[i];
+    vlVec2 cone = cone_after(t->def->pixel_spread, p->cone[i], p->spread[i], f->t[i], f->bend[i], sh->wo[2][i], z,
+                             sh->eta_scale[i], sh->flags[i] & VL_SAMPLED_SPECULAR);
+    p->cone[i] = cone.x, p->spread[i] = cone.y;
+    float c = f->cosine[i];
+    p->from_nx[i] = c * f->nx[i], p->from_ny[i] = c * f->ny[i], p->from_nz[i] = c * f->nz[i];
   }
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {

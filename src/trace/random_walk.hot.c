@@ -34,7 +34,7 @@ void VL_HOT(vl_random_walk_tracer)(vlTracing *t) {
       vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), vl_lane3(f->gx, f->gy, f->gz, i), f->offset[i], w);
       p->ox[i] = o.x, p->oy[i] = o.y, p->oz[i] = o.z;
       p->dx[i] = w.x, p->dy[i] = w.y, p->dz[i] = w.z;
-      p->cone[i] = f->width[i];
+      p->cone[i] = f->width[i], p->spread[i] = t->def->pixel_spread;
       s->order[count] = i;
       count += most > 0.0f;
     }

@@ -24,6 +24,7 @@ void VL_HOT(vl_permute_paths)(const vlPaths *a, vlPaths *b, const uint32_t *orde
   MOVE(from_nz);
   MOVE(eta_scale);
   MOVE(cone);
+  MOVE(spread);
   MOVE(specular);
   MOVE(px);
   MOVE(py);
@@ -77,7 +78,7 @@ uint32_t VL_HOT(vl_stage_sort)(vlTracing *t, uint32_t n) {
 /* Surfaces, materials, frames of the n sorted hits. */
 void VL_HOT(vl_stage_shade)(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
-  VL_HOT(vl_stage_surface)(t->world, n, &s->b, &s->hits_b, &s->corners, &s->surface, t->def);
+  VL_HOT(vl_stage_surface)(t->world, n, &s->b, &s->hits_b, &s->corners, &s->surface);
   for (uint32_t first = 0, last; first < n; first = last) {
     uint32_t material = s->hits_b.material[first];
     for (last = first + 1; last < n && s->hits_b.material[last] == material;) last++;

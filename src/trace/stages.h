@@ -23,7 +23,8 @@ typedef struct vlPaths {
   VL_ROW float from_nx[VL_ROW_SIZE], from_ny[VL_ROW_SIZE],
       from_nz[VL_ROW_SIZE]; /* normal where the ray starts, for the light tree */
   VL_ROW float eta_scale[VL_ROW_SIZE];
-  VL_ROW float cone[VL_ROW_SIZE];        /* width of the footprint at the ray's start */
+  VL_ROW float cone[VL_ROW_SIZE];        /* width of the footprint at the ray's start, */
+  VL_ROW float spread[VL_ROW_SIZE];      /* and how it grows along it: below zero towards a focus */
   VL_ROW uint32_t specular[VL_ROW_SIZE]; /* the ray came from the camera or a delta: no light sample competes */
   VL_ROW int32_t px[VL_ROW_SIZE], py[VL_ROW_SIZE];
   VL_ROW uint32_t index[VL_ROW_SIZE];
@@ -49,8 +50,13 @@ typedef struct vlSurface {
   VL_ROW float u[VL_ROW_SIZE], v[VL_ROW_SIZE];
   VL_ROW float
       offset[VL_ROW_SIZE]; /* how far along the geometric normal a new ray must start to be clear of the surface */
-  VL_ROW float uv_scale[VL_ROW_SIZE]; /* uv per world length */
-  VL_ROW float width[VL_ROW_SIZE];    /* of the footprint, world units */
+  VL_ROW float uv_scale[VL_ROW_SIZE];                        /* uv per world length */
+  VL_ROW float width[VL_ROW_SIZE];                           /* of the footprint, world units */
+  VL_ROW float across_u[VL_ROW_SIZE], across_v[VL_ROW_SIZE]; /* the footprint's axes in uv; where the world has */
+  VL_ROW float along_u[VL_ROW_SIZE], along_v[VL_ROW_SIZE];   /* pictures (footprint.hot.c) */
+  VL_ROW float bend[VL_ROW_SIZE];   /* mean curvature, as the shading normal tells: above zero where it bulges */
+  VL_ROW float dn[6][VL_ROW_SIZE];  /* dndu, dndv; of triangles only where asked for (material.hot.c) */
+  VL_ROW float cosine[VL_ROW_SIZE]; /* 1: light counts by its cosine to the shading normal; 0: from everywhere */
 } vlSurface;
 
 /* Corners of the triangles of a batch, gathered. */
@@ -206,7 +212,9 @@ uint32_t VL_HOT(vl_stage_subsurface)(vlTracing *t, uint32_t n, uint32_t depth);
 
 /* The surfaces that paths->o, d meet, from ids alone. */
 void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits,
-                              vlCorners *corners, vlSurface *surface, const vlTraceDef *def);
+                              vlCorners *corners, vlSurface *surface);
+/* The footprints' axes in uv, of surfaces that are there. */
+void VL_HOT(vl_stage_footprints)(uint32_t n, const vlPaths *paths, vlSurface *surface);
 /* Textures, bump and normal maps, frames, wo, parameters; runs: lanes [first, last) of one material. */
 void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material,
                                vlTraceScratch *s);
@@ -282,6 +290,21 @@ static inline float vl_power_heuristic(float a, float b) {
 
 static inline vlVec3 vl_lane3(const float *x, const float *y, const float *z, uint32_t i) {
   return vl_vec3(x[i], y[i], z[i]);
+}
+/* What a cone of some width cuts out of a surface of normal g round a ray along d: the axes of the ellipse, whole
+ * widths. Along the ray no longer than 64 times that across it. */
+typedef struct vlFootprint {
+  vlVec3 across, along;
+} vlFootprint;
+static inline vlFootprint vl_footprint_of(vlVec3 d, vlVec3 g, float width) {
+  float cosine = vl_abs(vl_dot(d, g));
+  vlVec3 a = vl_cross(g, d);
+  float l2 = vl_length2(a), inv = l2 > 1e-12f ? 1.0f / __builtin_sqrtf(l2) : 0.0f;
+  vlFrame any = vl_frame_from_z(g);
+  a.x = inv > 0.0f ? a.x * inv : any.x.x, a.y = inv > 0.0f ? a.y * inv : any.x.y,
+  a.z = inv > 0.0f ? a.z * inv : any.x.z;
+  vlFootprint r = {vl_mul(a, width), vl_mul(vl_cross(a, g), width / vl_max(cosine, 1.0f / 64.0f))};
+  return r;
 }
 static inline void vl_path_lambda(const vlPaths *p, uint32_t i, float lambda[4]) {
   for (int c = 0; c < 4; c++) lambda[c] = p->lambda[c][i];

@@ -120,7 +120,7 @@ typedef struct TriangleUv {
 
 typedef struct Triangle {
   vlVec3 p, g, n, u, v;
-  float s, t, dist, offset, uv_scale;
+  float s, t, dist, offset, uv_scale, bend;
 } Triangle;
 
 /* By component: a choice between structs would be a jump. */
@@ -159,6 +159,12 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   r.dist = vl_dot(vl_sub(r.p, o), d);
   vlVec3 ns = vl_add(vl_add(vl_mul(n0, b0), vl_mul(n1, b1)), vl_mul(n2, b2));
   float has_n = vl_length2(ns) > 0.0f ? 1.0f : 0.0f;
+  /* Mean curvature, by how the normals turn along the three edges. */
+  vlVec3 e01 = vl_sub(p0, p1), n02 = vl_sub(n0, n2), n12 = vl_sub(n1, n2), n01 = vl_sub(n0, n1);
+  float k0 = vl_dot(n02, e02) / vl_max(vl_length2(e02), 1e-37f),
+        k1 = vl_dot(n12, e12) / vl_max(vl_length2(e12), 1e-37f);
+  float k2 = vl_dot(n01, e01) / vl_max(vl_length2(e01), 1e-37f);
+  r.bend = has_n > 0.0f ? (k0 + k1 + k2) / (3.0f * vl_length(ns)) : 0.0f;
   ns = vl_normalize(ns);
   /* With vertex normals the geometric one goes to their side; without, the face order and flip decide. */
   float towards = vl_dot(g, ns) < 0.0f ? -1.0f : 1.0f;
@@ -187,20 +193,31 @@ static float point_error(const vlSurfacePoint *q) {
                  __builtin_fabs(q->n[2]) * q->error[2]);
 }
 
+/* Mean curvature from the derivatives of point and normal (Weingarten's equations). */
+static float mean_curvature(const vlSurfacePoint *q) {
+  const double *u = q->dpdu, *v = q->dpdv, *a = q->dndu, *b = q->dndv;
+  double e = u[0] * u[0] + u[1] * u[1] + u[2] * u[2], f = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+  double g = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  double l = a[0] * u[0] + a[1] * u[1] + a[2] * u[2], n = b[0] * v[0] + b[1] * v[1] + b[2] * v[2];
+  double m = a[0] * v[0] + a[1] * v[1] + a[2] * v[2], det = e * g - f * f;
+  return det > 0 ? (float)(0.5 * (l * g - 2 * m * f + n * e) / det) : 0.0f;
+}
+
 static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, vlVec3 o, vlVec3 d) {
   out->px[i] = (float)q->p[0], out->py[i] = (float)q->p[1], out->pz[i] = (float)q->p[2];
   out->gx[i] = (float)q->n[0], out->gy[i] = (float)q->n[1], out->gz[i] = (float)q->n[2];
   out->nx[i] = (float)q->ns[0], out->ny[i] = (float)q->ns[1], out->nz[i] = (float)q->ns[2];
   out->ux[i] = (float)q->dpdu[0], out->uy[i] = (float)q->dpdu[1], out->uz[i] = (float)q->dpdu[2];
-  vlVec3 v = vl_cross(vl_vec3(out->nx[i], out->ny[i], out->nz[i]), vl_vec3(out->ux[i], out->uy[i], out->uz[i]));
-  out->vx[i] = v.x, out->vy[i] = v.y, out->vz[i] = v.z;
+  out->vx[i] = (float)q->dpdv[0], out->vy[i] = (float)q->dpdv[1], out->vz[i] = (float)q->dpdv[2];
+  for (int k = 0; k < 3; k++) out->dn[k][i] = (float)q->dndu[k], out->dn[3 + k][i] = (float)q->dndv[k];
+  out->bend[i] = mean_curvature(q);
   out->u[i] = q->uv[0], out->v[i] = q->uv[1];
   vlVec3 p = vl_vec3(out->px[i], out->py[i], out->pz[i]);
   out->t[i] = vl_dot(vl_sub(p, o), d);
   out->offset[i] = 2.0f * GAMMA(7) * (vl_abs(out->gx[i] * p.x) + vl_abs(out->gy[i] * p.y) + vl_abs(out->gz[i] * p.z)) +
                    point_error(q);
-  float l = vl_length(vl_vec3(out->ux[i], out->uy[i], out->uz[i]));
-  out->uv_scale[i] = l > 0.0f ? 1.0f / l : 0.0f;
+  float area = vl_length(vl_cross(vl_lane3(out->ux, out->uy, out->uz, i), vl_lane3(out->vx, out->vy, out->vz, i)));
+  out->uv_scale[i] = area > 0.0f ? 1.0f / __builtin_sqrtf(area) : 0.0f;
 }
 
 /* A sphere, disk, cylinder or patch: meet it again in group space, bring the point to the world. t, found by the same
@@ -229,6 +246,10 @@ static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vl
              m[4 * i + 3];
     r.dpdu[i] =
         (double)m[4 * i] * point.dpdu[0] + (double)m[4 * i + 1] * point.dpdu[1] + (double)m[4 * i + 2] * point.dpdu[2];
+    r.dpdv[i] =
+        (double)m[4 * i] * point.dpdv[0] + (double)m[4 * i + 1] * point.dpdv[1] + (double)m[4 * i + 2] * point.dpdv[2];
+    r.dndu[i] = (double)w[i] * point.dndu[0] + (double)w[4 + i] * point.dndu[1] + (double)w[8 + i] * point.dndu[2];
+    r.dndv[i] = (double)w[i] * point.dndv[0] + (double)w[4 + i] * point.dndv[1] + (double)w[8 + i] * point.dndv[2];
     r.n[i] = (double)w[i] * point.n[0] + (double)w[4 + i] * point.n[1] + (double)w[8 + i] * point.n[2];
     r.error[i] = __builtin_fabs((double)m[4 * i]) * point.error[0] +
                  __builtin_fabs((double)m[4 * i + 1]) * point.error[1] +
@@ -238,6 +259,8 @@ static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vl
   double ln = __builtin_sqrt(r.n[0] * r.n[0] + r.n[1] * r.n[1] + r.n[2] * r.n[2]);
   double ls = __builtin_sqrt(r.ns[0] * r.ns[0] + r.ns[1] * r.ns[1] + r.ns[2] * r.ns[2]);
   for (int i = 0; i < 3; i++) r.n[i] /= ln > 0 ? ln : 1, r.ns[i] /= ls > 0 ? ls : 1;
+  vl_normal_derivative(r.ns, ls, r.dndu);
+  vl_normal_derivative(r.ns, ls, r.dndv);
   return r;
 }
 
@@ -276,7 +299,7 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
 }
 
 void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits, vlCorners *c,
-                              vlSurface *out, const vlTraceDef *def) {
+                              vlSurface *out) {
   bool others = false;
   for (uint32_t i = 0; i < n; i++) {
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
@@ -305,6 +328,7 @@ void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *p
     out->t[i] = r.dist;
     out->offset[i] = r.offset;
     out->uv_scale[i] = r.uv_scale;
+    out->bend[i] = r.bend;
   }
   for (uint32_t i = 0; others && i < n; i++) {
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
@@ -317,7 +341,8 @@ void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *p
       apply_tangents(world, hits, vl_path_time(paths, i), i, c, out);
     }
   }
-  for (uint32_t i = 0; i < padded; i++) out->width[i] = paths->cone[i] + def->pixel_spread * out->t[i];
+  for (uint32_t i = 0; i < padded; i++) out->width[i] = vl_abs(paths->cone[i] + paths->spread[i] * out->t[i]);
+  if (world->images.count) VL_HOT(vl_stage_footprints)(n, paths, out);
 }
 
 vlPoint VL_HOT(vl_point_at_time)(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,

@@ -40,6 +40,32 @@ static inline void vl_texture_lane_corner(const vlTextureRun *r, const vlTexture
   vl_texture_at_corner(node, &where, at);
 }
 
+/* The footprint's axes in (s, t): those of the first uv set are there; for all else a step along each axis is looked
+ * at.
+ */
+static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
+                                        vlTexturePoint *at) {
+  const vlSurface *f = r->surface;
+  if (vl_texture_over_uv(node)) {
+    float axes[4] = {f->across_u[i], f->across_v[i], f->along_u[i], f->along_v[i]};
+    vl_texture_axes_of_uv(node, axes, at);
+    return;
+  }
+  const vlPaths *p = r->paths;
+  vlFootprint print = vl_footprint_of(vl_lane3(p->dx, p->dy, p->dz, i), at->n, at->width);
+  vlVec2 here = vl_texture_st(node, *at);
+  vlTexturePoint step = *at;
+  for (int k = 0; k < 2; k++) {
+    step.p = vl_add(at->p, k ? print.along : print.across);
+    if (vl_texture_needs_corner(node)) vl_texture_lane_corner(r, node, i, &step);
+    vlVec2 there = vl_texture_st(node, step);
+    float s = there.x - here.x, t = there.y - here.y;
+    if (node->mapping == VL_MAPPING_SPHERICAL || node->mapping == VL_MAPPING_CYLINDRICAL) /* past the seam */
+      s -= __builtin_rintf(s), t -= node->mapping == VL_MAPPING_SPHERICAL ? __builtin_rintf(t) : 0.0f;
+    at->axes[2 * k] = s, at->axes[2 * k + 1] = t;
+  }
+}
+
 static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vlTextureNode *node, uint32_t i) {
   const vlSurface *f = r->surface;
   vlTexturePoint at;
@@ -47,12 +73,12 @@ static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vl
   at.p = vl_vec3(f->px[i], f->py[i], f->pz[i]);
   at.n = vl_vec3(f->gx[i], f->gy[i], f->gz[i]); /* the true surface's, as pbrt's */
   at.width = f->width[i];
-  at.uv_width = f->width[i] * f->uv_scale[i];
   if (r->shift_u) {
     at.u += r->shift_u[i], at.v += r->shift_v[i];
     at.p = vl_add(at.p, vl_vec3(r->shift_x[i], r->shift_y[i], r->shift_z[i]));
   }
   if (vl_texture_needs_corner(node)) vl_texture_lane_corner(r, node, i, &at);
+  if (node->kind == VL_NODE_IMAGE) vl_texture_lane_axes(r, node, i, &at);
   return at;
 }
 

@@ -25,7 +25,7 @@ static void start_paths(vlTracing *t) {
     p->pdf[i] = 1.0f;
     p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
     p->eta_scale[i] = 1.0f;
-    p->cone[i] = t->def->pixel_width;
+    p->cone[i] = t->def->pixel_width, p->spread[i] = t->def->pixel_spread;
     p->specular[i] = 1;
     p->px[i] = b->px[i], p->py[i] = b->py[i], p->index[i] = b->index[i];
     p->lane[i] = i;

@@ -131,7 +131,7 @@ static void start(const vlTruthDef *def, vlTruthBatch *batch, vlPaths *p) {
   for (uint32_t i = 0; i < batch->n; i++) {
     p->ox[i] = (float)batch->o[0][i], p->oy[i] = (float)batch->o[1][i], p->oz[i] = (float)batch->o[2][i];
     p->dx[i] = (float)batch->d[0][i], p->dy[i] = (float)batch->d[1][i], p->dz[i] = (float)batch->d[2][i];
-    p->cone[i] = def->pixel_width;
+    p->cone[i] = def->pixel_width, p->spread[i] = def->pixel_spread;
     p->lane[i] = i;
     p->specular[i] = 1;
     for (int c = 0; c < 4; c++) p->lambda[c][i] = def->lambda[0][c], p->beta[c][i] = 0.0f;
@@ -153,7 +153,7 @@ static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s,
     uint32_t k = count++;
     b->ox[k] = a->ox[i], b->oy[k] = a->oy[i], b->oz[k] = a->oz[i];
     b->dx[k] = a->dx[i], b->dy[k] = a->dy[i], b->dz[k] = a->dz[i];
-    b->cone[k] = a->cone[i];
+    b->cone[k] = a->cone[i], b->spread[k] = a->spread[i];
     b->lane[k] = i;
     g->shape[k] = h->shape[i], g->prim[k] = h->prim[i], g->instance[k] = h->instance[i], g->t[k] = h->t[i];
     g->material[k] = h->material[i];
@@ -179,7 +179,7 @@ static void trace(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *s
   VL_HOT(vl_stage_hits)(&tracing, batch->n, true);
   uint32_t n = gather_hits(world, batch->n, s, batch);
   if (n == 0) return;
-  VL_HOT(vl_stage_surface)(world, n, &s->b, &s->hits_b, &s->corners, &s->surface, &trace_def);
+  VL_HOT(vl_stage_surface)(world, n, &s->b, &s->hits_b, &s->corners, &s->surface);
   if (def->shading || def->albedo) shade(world, def, n, scratch, batch);
   const vlSurface *f = &s->surface;
   for (uint32_t i = 0; i < n; i++) {
@@ -203,7 +203,7 @@ static void hits(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *sc
   for (uint32_t i = 0; i < n; i++) {
     p->ox[i] = to->ox[i], p->oy[i] = to->oy[i], p->oz[i] = to->oz[i];
     p->dx[i] = to->dx[i], p->dy[i] = to->dy[i], p->dz[i] = to->dz[i];
-    p->cone[i] = def->pixel_width;
+    p->cone[i] = def->pixel_width, p->spread[i] = def->pixel_spread;
     p->specular[i] = 1;
     p->lane[i] = i;
     for (int c = 0; c < 4; c++) p->lambda[c][i] = def->lambda[0][c], p->beta[c][i] = 0.0f;

@@ -206,10 +206,11 @@ uint32_t VL_HOT(vl_volume_gather)(vlTracing *t, uint32_t n) {
     VL_HOT(vl_volume_normalise)(t, p, &v->c, i);
     float distance = v->t[s->order[i]];
     p->ox[i] += distance * p->dx[i], p->oy[i] += distance * p->dy[i], p->oz[i] += distance * p->dz[i];
-    p->cone[i] += t->def->pixel_spread * distance;
+    p->cone[i] = vl_abs(p->cone[i] + p->spread[i] * distance), p->spread[i] = t->def->pixel_spread;
     p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
     s->surface.px[i] = p->ox[i], s->surface.py[i] = p->oy[i], s->surface.pz[i] = p->oz[i];
     s->surface.nx[i] = s->surface.ny[i] = s->surface.nz[i] = 0.0f; /* light comes from everywhere */
+    s->surface.cosine[i] = 0.0f;
   }
   return count;
 }

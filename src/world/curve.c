@@ -290,6 +290,8 @@ void vl_curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *hit,
     for (int i = 0; i < 3; i++) n[i] = hit->d[i];
   vl_map_point(s->from_shape, hit->p, point->p);
   vl_map_vector(s->from_shape, along, point->dpdu);
+  vl_map_vector(s->from_shape, across, point->dpdv);
+  for (int i = 0; i < 3; i++) point->dndu[i] = point->dndv[i] = 0;
   vl_map_normal(s->to_shape, n, point->n);
   vl_normalize3(point->n);
   double side = vl_shape_reversed(s) ? -1 : 1;

@@ -274,7 +274,9 @@ static float face_luminance(const vlWorld *world, const vlWorldShape *s, uint32_
   for (int k = 0; k < 3; k++)
     for (int j = 0; j < 2; j++) t[2 * k + j] = uvs ? uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
   float area = fabsf((t[2] - t[0]) * (t[5] - t[1]) - (t[4] - t[0]) * (t[3] - t[1])), sum = 0;
-  vlTexturePoint at = {0, 0, vl_vec3(0, 0, 0), vl_vec3(0, 0, 1), sqrtf(0.5f * area), 0, {1, 1, 1, 1}};
+  vlTexturePoint at = {0, 0, vl_vec3(0, 0, 0), vl_vec3(0, 0, 1), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
+  float side = sqrtf(0.5f * area), axes[4] = {side, 0, 0, side};
+  vl_texture_axes_of_uv(node, axes, &at);
   for (int i = 0; i < 4; i++) {
     at.u = inside[i][0] * t[0] + inside[i][1] * t[2] + inside[i][2] * t[4];
     at.v = inside[i][0] * t[1] + inside[i][1] * t[3] + inside[i][2] * t[5];

@@ -86,13 +86,49 @@ bool vl_patch_intersect(const vlWorldShape *s, uint32_t prim, const double o[3],
   return found;
 }
 
+/* Derivatives of the interpolated vertex normals, not yet of unit length. */
+static void normal_slopes(const vlWorldShape *s, const Patch *q, double u, double v, double dndu[3], double dndv[3]) {
+  for (int i = 0; i < 3; i++) {
+    double n[4];
+    for (int k = 0; k < 4; k++) n[k] = s->normals[3 * (size_t)q->index[k] + i];
+    dndu[i] = (1 - v) * (n[1] - n[0]) + v * (n[3] - n[2]);
+    dndv[i] = (1 - u) * (n[2] - n[0]) + u * (n[3] - n[1]);
+  }
+}
+
+/* Derivatives over the patch's own parameters become those over its texture coordinates (pbrt book 6.6.2); where these
+ * do not tell directions apart they stay. */
+static void over_texture(const vlWorldShape *s, const Patch *q, double u, double v, vlSurfacePoint *point) {
+  double du[2], dv[2];
+  for (int i = 0; i < 2; i++) {
+    double t[4];
+    for (int k = 0; k < 4; k++) t[k] = s->uvs[2 * (size_t)q->index[k] + i];
+    du[i] = (1 - v) * (t[1] - t[0]) + v * (t[3] - t[2]);
+    dv[i] = (1 - u) * (t[2] - t[0]) + u * (t[3] - t[1]);
+  }
+  double det = du[0] * dv[1] - du[1] * dv[0];
+  if (!(fabs(det) > 1e-12 * (fabs(du[0] * dv[1]) + fabs(du[1] * dv[0])))) return;
+  double *pairs[2][2] = {{point->dpdu, point->dpdv}, {point->dndu, point->dndv}};
+  for (int k = 0; k < 2; k++)
+    for (int i = 0; i < 3; i++) {
+      double a = pairs[k][0][i], b = pairs[k][1][i];
+      pairs[k][0][i] = (dv[1] * a - du[1] * b) / det;
+      pairs[k][1][i] = (du[0] * b - dv[0] * a) / det;
+    }
+}
+
 void vl_patch_point(const vlWorldShape *s, uint32_t prim, double u, double v, vlSurfacePoint *point) {
   Patch q = load_patch(s, prim);
-  double dpdv[3];
+  double mixed[3], length;
   patch_position(&q, u, v, point->p);
-  patch_derivatives(&q, u, v, point->dpdu, dpdv);
-  vl_cross3(point->dpdu, dpdv, point->n);
-  vl_normalize3(point->n);
+  patch_derivatives(&q, u, v, point->dpdu, point->dpdv);
+  vl_cross3(point->dpdu, point->dpdv, point->n);
+  length = vl_normalize3(point->n);
+  for (int i = 0; i < 3; i++) mixed[i] = q.p00[i] - q.p10[i] - q.p01[i] + q.p11[i];
+  vl_cross3(point->dpdu, mixed, point->dndu); /* of dpdu x dpdv: dpdu does not change along u, dpdv not along v */
+  vl_cross3(mixed, point->dpdv, point->dndv);
+  vl_normal_derivative(point->n, length, point->dndu);
+  vl_normal_derivative(point->n, length, point->dndv);
   double w[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
   point->uv[0] = (float)u, point->uv[1] = (float)v;
   if (s->uvs) {
@@ -104,17 +140,22 @@ void vl_patch_point(const vlWorldShape *s, uint32_t prim, double u, double v, vl
     point->uv[0] = (float)a, point->uv[1] = (float)b;
   }
   if (s->flip)
-    for (int i = 0; i < 3; i++) point->n[i] = -point->n[i];
+    for (int i = 0; i < 3; i++)
+      point->n[i] = -point->n[i], point->dndu[i] = -point->dndu[i], point->dndv[i] = -point->dndv[i];
   for (int i = 0; i < 3; i++) point->ns[i] = point->n[i];
   if (s->normals) {
     double ns[3] = {0, 0, 0};
     for (int k = 0; k < 4; k++)
       for (int i = 0; i < 3; i++) ns[i] += w[k] * s->normals[3 * (size_t)q.index[k] + i];
-    if (vl_normalize3(ns) > 0) {
+    if ((length = vl_normalize3(ns)) > 0) {
+      normal_slopes(s, &q, u, v, point->dndu, point->dndv);
+      vl_normal_derivative(ns, length, point->dndu);
+      vl_normal_derivative(ns, length, point->dndv);
       double side = vl_dot3(ns, point->n) < 0 ? -1 : 1; /* the geometric normal goes to the shading normal's side */
       for (int i = 0; i < 3; i++) point->ns[i] = ns[i], point->n[i] *= side;
     }
   }
+  if (s->uvs) over_texture(s, &q, u, v, point);
 }
 
 /* Per unit area, of parameters spread uniformly. */

@@ -120,10 +120,20 @@ void vl_quadric_point(const vlWorldShape *s, const double p[3], vlSurfacePoint *
   quadric_normal(s, p, n);
   vl_map_point(s->from_shape, p, point->p);
   vl_map_vector(s->from_shape, dpdu, point->dpdu);
+  vl_map_vector(s->from_shape, dpdv, point->dpdv);
   vl_map_normal(s->to_shape, n, point->n);
-  vl_normalize3(point->n);
-  bool reversed = vl_shape_reversed(s);
-  for (int i = 0; i < 3; i++) point->ns[i] = point->n[i] = reversed ? -point->n[i] : point->n[i];
+  double length = vl_normalize3(point->n), side = vl_shape_reversed(s) ? -1 : 1;
+  double bend = s->kind == VL_SHAPE_DISK || !(s->radius > 0) ? 0 : 1.0 / s->radius;
+  if (s->kind == VL_SHAPE_CYLINDER) dpdv[2] = 0; /* the normal turns with what is across the axis */
+  for (int i = 0; i < 3; i++) dpdu[i] *= bend, dpdv[i] *= bend;
+  vl_map_normal(s->to_shape, dpdu, point->dndu);
+  vl_map_normal(s->to_shape, dpdv, point->dndv);
+  vl_normal_derivative(point->n, length, point->dndu);
+  vl_normal_derivative(point->n, length, point->dndv);
+  for (int i = 0; i < 3; i++) {
+    point->ns[i] = point->n[i] = side * point->n[i];
+    point->dndu[i] *= side, point->dndv[i] *= side;
+  }
 }
 
 /* Density over area of points uniform in shape-space area: the map stretches area by |det M| |M^-T n|. */

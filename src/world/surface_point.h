@@ -25,10 +25,16 @@ typedef struct vlSurfacePoint {
   double p[3];
   double n[3];  /* geometric normal */
   double ns[3]; /* shading normal: vertex normals interpolated, else n */
-  double dpdu[3];
-  double error[3]; /* of curves, how far off p may be along each axis; else 0: rounding alone */
+  double dpdu[3], dpdv[3];
+  double dndu[3], dndv[3]; /* of ns; curves: 0, they are thin */
+  double error[3];         /* of curves, how far off p may be along each axis; else 0: rounding alone */
   float uv[2];
 } vlSurfacePoint;
+/* The derivative of a unit normal n = m / |m|, |m| = length, from that of m: what points along n goes. */
+static inline void vl_normal_derivative(const double n[3], double length, double d[3]) {
+  double along = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
+  for (int i = 0; i < 3; i++) d[i] = length > 0 ? (d[i] - along * n[i]) / length : 0;
+}
 /* Does the outward normal of a sphere, disk or cylinder point inwards: reverse orientation alone, see surface_point.c.
  */
 bool vl_shape_reversed(const vlWorldShape *shape);

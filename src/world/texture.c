@@ -442,7 +442,7 @@ vlResult vl_world_spectrum_node(vlWorld *world, const vlScene *scene, vlSpectrum
 float vl_texture_float_at(const vlWorld *world, int32_t index, float u, float v, const float p[3],
                           const vlTextureCorner *where) {
   const vlTextureNode *node = &world->nodes.items[index];
-  vlTexturePoint at = {u, v, vl_vec3(p[0], p[1], p[2]), vl_vec3(0, 0, 1), 0, 0, {1, 1, 1, 1}};
+  vlTexturePoint at = {u, v, vl_vec3(p[0], p[1], p[2]), vl_vec3(0, 0, 1), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
   if (vl_texture_needs_corner(node)) vl_texture_at_corner(node, where, &at);
   switch (node->kind) {
     case VL_NODE_FLOAT: return node->value;

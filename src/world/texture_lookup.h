@@ -5,14 +5,14 @@
 
 #include "world/world.h"
 
-/* Where a texture is asked for: uv, world position and normal, and the footprint: how far uv moves over the width of a
- * pixel (the larger axis), and that width itself in world units. color: of the shape's vertices there; read only by
+/* Where a texture is asked for: uv, world position and normal, and the footprint: the width of a pixel in world units,
+ * and for pictures the two axes of the ellipse that it is in (s, t). color: of the shape's vertices there; read only by
  * nodes that ask for it. */
 typedef struct vlTexturePoint {
   float u, v;
   vlVec3 p, n;
-  float uv_width;
   float width;
+  float axes[4]; /* s, t of one, s, t of the other; whole widths */
   float color[4];
 } vlTexturePoint;
 
@@ -64,17 +64,16 @@ static inline vlVec2 vl_texture_st(const vlTextureNode *node, vlTexturePoint at)
   return (vlVec2){vl_acos(vl_clamp(d.z, -1, 1)) * VL_INV_PI, phi * (0.5f * VL_INV_PI)};
 }
 
-/* Width of the footprint in (s, t). */
-static inline float vl_texture_st_width(const vlTextureNode *node, vlTexturePoint at) {
-  if (node->st_given) return at.uv_width * node->st_scale;
-  float scale = vl_max(vl_abs(node->su), vl_abs(node->sv));
-  if (node->mapping == VL_MAPPING_UV) return at.uv_width * scale;
-  if (node->mapping == VL_MAPPING_PLANAR) {
-    float a = node->v1[0] * node->v1[0] + node->v1[1] * node->v1[1] + node->v1[2] * node->v1[2];
-    float b = node->v2[0] * node->v2[0] + node->v2[1] * node->v2[1] + node->v2[2] * node->v2[2];
-    return at.width * __builtin_sqrtf(vl_max(a, b));
+/* Are s, t an affine map of the first uv set? */
+static inline bool vl_texture_over_uv(const vlTextureNode *node) {
+  return node->uv_set == 0 && (node->st_given || node->mapping == VL_MAPPING_UV);
+}
+/* Axes in uv become axes in (s, t). */
+static inline void vl_texture_axes_of_uv(const vlTextureNode *node, const float uv[4], vlTexturePoint *at) {
+  for (int k = 0; k < 4; k += 2) {
+    at->axes[k] = node->st_given ? node->st[0] * uv[k] + node->st[1] * uv[k + 1] : node->su * uv[k];
+    at->axes[k + 1] = node->st_given ? node->st[3] * uv[k] + node->st[4] * uv[k + 1] : node->sv * uv[k + 1];
   }
-  return 0;
 }
 
 /* Share of the second texture, 0 or 1 (pbrt filters checks only over ray differentials; the samples of a pixel do it
@@ -174,27 +173,64 @@ static inline float vl_log2_rough(float x) {
   return vl_ln(x) * 1.44269504f;
 }
 
-/* A picture texture: t of the texture counts from the bottom, rows from the top. Filter by footprint: point and
- * bilinear take the finer level (as pbrt), trilinear (and EWA, which is isotropic here) blend two. */
+/* How a picture is filtered over an ellipse: blurred to its shorter axis by the choice of a level (a mip map's are
+ * blurred all ways alike), along the longer one by several taps. */
+enum { VL_FILTER_TAPS = 8 };
+typedef struct vlFilterPlan {
+  float level; /* at least 0 */
+  uint32_t taps;
+  float s, t; /* the whole way of the taps */
+} vlFilterPlan;
+static inline vlFilterPlan vl_filter_plan(const vlMipmap *mip, const float axes[4]) {
+  float w = (float)mip->levels[0].width, h = (float)mip->levels[0].height;
+  float as = axes[0] * w, at = axes[1] * h, bs = axes[2] * w, bt = axes[3] * h; /* in texels */
+  float a2 = as * as + at * at, b2 = bs * bs + bt * bt;
+  bool first = a2 > b2;
+  float long2 = first ? a2 : b2;
+  vlFilterPlan plan = {0.0f, 1, 0.0f, 0.0f};
+  if (!(long2 > 1.0f && long2 < 1e30f)) { /* no texel is skipped */
+    plan.level = long2 >= 1e30f ? (float)(mip->level_count - 1) : 0.0f;
+    return plan;
+  }
+  float longer = __builtin_sqrtf(long2), shorter = vl_abs(as * bt - at * bs) / longer; /* of equal area */
+  shorter = vl_max(shorter, 1.0f);
+  plan.level = vl_min(vl_log2_rough(shorter), (float)(mip->level_count - 1));
+  plan.taps = (uint32_t)vl_min(longer / shorter * 0.99999f, (float)(VL_FILTER_TAPS - 1)) + 1;
+  plan.s = first ? axes[0] : axes[2], plan.t = first ? axes[1] : axes[3];
+  return plan;
+}
+
+/* One tap at a level between two, in between if both is set. */
+static inline vlTexel vl_filter_tap(const vlTextureNode *node, const vlMipmap *mip, float level, bool both, float s,
+                                    float t) {
+  uint32_t l = (uint32_t)level;
+  float f = level - (float)l;
+  vlTexel a = vl_bilinear_2(mip, l, s, t, node->wrap, node->wrap_t);
+  if (!both || !(f > 0.0f)) return a;
+  vlTexel b = vl_bilinear_2(mip, l + 1, s, t, node->wrap, node->wrap_t);
+  for (int i = 0; i < 4; i++) a.c[i] = (1 - f) * a.c[i] + f * b.c[i];
+  return a;
+}
+
+/* A picture texture: t of the texture counts from the bottom, rows from the top. Point takes a texel of the finer
+ * level, bilinear is bilinear on it, trilinear (and EWA) blend two levels; these take several taps. */
 static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
   vlVec2 st = vl_texture_st(node, at);
   float s = st.x, t = 1.0f - st.y;
-  float width = vl_texture_st_width(node, at);
-  uint32_t last = mip->level_count - 1;
-  float level = (float)last + vl_log2_rough(vl_max(width, 1e-8f));
+  vlFilterPlan plan = vl_filter_plan(mip, at.axes);
   vlTexel r;
   if (node->filter == VL_FILTER_POINT) {
-    uint32_t l = level <= 0 ? 0 : level >= (float)last ? last : (uint32_t)level;
-    r = vl_nearest_2(mip, l, s, t, node->wrap, node->wrap_t);
-  } else if (node->filter == VL_FILTER_BILINEAR || level <= 0 || level >= (float)last) {
-    uint32_t l = level <= 0 ? 0 : level >= (float)last ? last : (uint32_t)level;
-    r = vl_bilinear_2(mip, l, s, t, node->wrap, node->wrap_t);
+    r = vl_nearest_2(mip, (uint32_t)plan.level, s, t, node->wrap, node->wrap_t);
   } else {
-    uint32_t l = (uint32_t)level;
-    float f = level - (float)l;
-    vlTexel a = vl_bilinear_2(mip, l, s, t, node->wrap, node->wrap_t),
-            b = vl_bilinear_2(mip, l + 1, s, t, node->wrap, node->wrap_t);
-    for (int i = 0; i < 4; i++) r.c[i] = (1 - f) * a.c[i] + f * b.c[i];
+    bool both = node->filter != VL_FILTER_BILINEAR;
+    float inv = 1.0f / (float)plan.taps, first = 0.5f * inv - 0.5f;
+    r = vl_filter_tap(node, mip, plan.level, both, s + first * plan.s, t - first * plan.t);
+    for (uint32_t k = 1; k < plan.taps; k++) {
+      float x = first + (float)k * inv;
+      vlTexel more = vl_filter_tap(node, mip, plan.level, both, s + x * plan.s, t - x * plan.t);
+      for (int i = 0; i < 4; i++) r.c[i] += more.c[i];
+    }
+    for (int i = 0; plan.taps > 1 && i < 4; i++) r.c[i] *= inv;
   }
   for (int i = 0; i < 4; i++) {
     float x = r.c[i] * node->scale;

@@ -119,7 +119,7 @@ static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
       inv = density > 0.0f ? inv / density : 0.0f;
       r->b[i] = inv / vl_last_odds(t, lane) *
                 VL_HOT(vl_light_asked)(t->world, r, lane, vl_lane3(f->px, f->py, f->pz, i),
-                                       vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), f->cosine[i]), w);
+                                       vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), 1.0f - f->all_round[i]), w);
     }
     r->a[i] = r->carry[lane] * inv;
   }

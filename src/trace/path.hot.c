@@ -186,7 +186,7 @@ uint32_t VL_HOT(vl_stage_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint
     vlVec2 cone = cone_after(t->def->pixel_spread, p->cone[i], p->spread[i], f->t[i], f->bend[i], sh->wo[2][i], z,
                              sh->eta_scale[i], sh->flags[i] & VL_SAMPLED_SPECULAR);
     p->cone[i] = cone.x, p->spread[i] = cone.y;
-    float c = f->cosine[i];
+    float c = 1.0f - f->all_round[i];
     p->from_nx[i] = c * f->nx[i], p->from_ny[i] = c * f->ny[i], p->from_nz[i] = c * f->nz[i];
   }
   uint32_t count = 0;

@@ -54,9 +54,10 @@ typedef struct vlSurface {
   VL_ROW float width[VL_ROW_SIZE];                           /* of the footprint, world units */
   VL_ROW float across_u[VL_ROW_SIZE], across_v[VL_ROW_SIZE]; /* the footprint's axes in uv; where the world has */
   VL_ROW float along_u[VL_ROW_SIZE], along_v[VL_ROW_SIZE];   /* pictures (footprint.hot.c) */
-  VL_ROW float bend[VL_ROW_SIZE];   /* mean curvature, as the shading normal tells: above zero where it bulges */
-  VL_ROW float dn[6][VL_ROW_SIZE];  /* dndu, dndv; of triangles only where asked for (material.hot.c) */
-  VL_ROW float cosine[VL_ROW_SIZE]; /* 1: light counts by its cosine to the shading normal; 0: from everywhere */
+  VL_ROW float bend[VL_ROW_SIZE];  /* mean curvature, as the shading normal tells: above zero where it bulges */
+  VL_ROW float dn[6][VL_ROW_SIZE]; /* dndu, dndv; of triangles only where asked for (material.hot.c) */
+  VL_ROW float
+      all_round[VL_ROW_SIZE]; /* 1: light counts alike wherever it comes from; 0: by its cosine to the normal */
 } vlSurface;
 
 /* Corners of the triangles of a batch, gathered. */

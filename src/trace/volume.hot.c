@@ -210,7 +210,7 @@ uint32_t VL_HOT(vl_volume_gather)(vlTracing *t, uint32_t n) {
     p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
     s->surface.px[i] = p->ox[i], s->surface.py[i] = p->oy[i], s->surface.pz[i] = p->oz[i];
     s->surface.nx[i] = s->surface.ny[i] = s->surface.nz[i] = 0.0f; /* light comes from everywhere */
-    s->surface.cosine[i] = 0.0f;
+    s->surface.all_round[i] = 1.0f;
   }
   return count;
 }

@@ -103,7 +103,7 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
   const vlWorldMaterial *m = &world->materials.items[material];
   vlShade *shade = &s->shade;
   vlTextureRun r = {world, s, &s->b, &s->surface, first, last, 0, NULL, NULL, NULL, NULL, NULL};
-  for (uint32_t i = first; i < last; i++) s->surface.all_round[i] = m->hair ? 1.0f : 0.0f;
+  for (uint32_t i = first; m->hair && i < last; i++) s->surface.all_round[i] = 1.0f;
   if (m->displacement >= 0) bump(&r, m->displacement);
   if (m->normal_map >= 0) normal_map(&r, m->normal_map);
   r.top = 0;

@@ -277,7 +277,7 @@ static inline void vl_path_copy(const vlPaths *a, uint32_t i, vlPaths *b, uint32
   for (int c = 0; c < 4; c++) b->beta[c][k] = a->beta[c][i], b->lambda[c][k] = a->lambda[c][i];
   b->pdf[k] = a->pdf[i];
   b->from_nx[k] = a->from_nx[i], b->from_ny[k] = a->from_ny[i], b->from_nz[k] = a->from_nz[i];
-  b->eta_scale[k] = a->eta_scale[i], b->cone[k] = a->cone[i];
+  b->eta_scale[k] = a->eta_scale[i], b->cone[k] = a->cone[i], b->spread[k] = a->spread[i];
   b->specular[k] = a->specular[i];
   b->px[k] = a->px[i], b->py[k] = a->py[i], b->index[k] = a->index[i], b->lane[k] = a->lane[i];
 }

@@ -183,7 +183,7 @@ static uint32_t gather_exits(vlTracing *t, uint32_t n) {
     s->hits_b.instance[i] = x->hits.instance[j], s->hits_b.t[i] = x->hits.t[j];
     s->hits_b.material[i] = x->material[j];
   }
-  if (count) VL_HOT(vl_stage_surface)(t->world, count, &s->a, &s->hits_b, &s->corners, &s->surface, t->def);
+  if (count) VL_HOT(vl_stage_surface)(t->world, count, &s->a, &s->hits_b, &s->corners, &s->surface);
   return count;
 }
 

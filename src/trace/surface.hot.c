@@ -341,7 +341,10 @@ void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *p
       apply_tangents(world, hits, vl_path_time(paths, i), i, c, out);
     }
   }
-  for (uint32_t i = 0; i < padded; i++) out->width[i] = vl_abs(paths->cone[i] + paths->spread[i] * out->t[i]);
+  for (uint32_t i = 0; i < padded; i++) {
+    out->width[i] = vl_abs(paths->cone[i] + paths->spread[i] * out->t[i]);
+    out->all_round[i] = 0.0f;
+  }
   if (world->images.count) VL_HOT(vl_stage_footprints)(n, paths, out);
 }
 

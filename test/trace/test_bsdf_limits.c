@@ -123,6 +123,31 @@ static void white_furnace(void **state) {
   }
 }
 
+/* Coats over white, of any index, thickness and roughness: never more than came; through a thick black medium nothing
+ * but what the coat itself sends back. */
+static void coats_never_gain(void **state) {
+  const State *s = *state;
+  const float etas[] = {0.7f, 1.01f, 1.5f, 3}, taus[] = {0, 0.1f, 20}, alphas[] = {0, 0.01f, 0.3f, 1};
+  const double thetas[] = {0.1, 1.5};
+  for (int i = 0; i < 4 * 3 * 4; i++) {
+    float eta = etas[i % 4], tau = taus[i / 4 % 3], alpha = alphas[i / 12];
+    vlCoatTable *table;
+    assert_int_equal(vl_coat_build(s->context, eta, tau, 1000, alpha, alpha, &table), VL_OK);
+    Surface white = {
+        .kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 1, .eta_s = eta, .alpha_x = alpha, .alpha_y = alpha};
+    white.coat = table;
+    Surface black = white;
+    black.reflectance = 0;
+    for (int t = 0; t < 2; t++) {
+      double all = furnace(s, &white, thetas[t]), coat = tau < 20 ? 0 : furnace(s, &black, thetas[t]);
+      if (!(all < 1.001 && coat <= all + 1e-3 && (tau < 20 || fabs(all - coat) < 1e-3)))
+        fail_msg("eta %g tau %g alpha %g theta %g: %g, its coat %g", (double)eta, (double)tau, (double)alpha, thetas[t],
+                 all, coat);
+    }
+    vl_coat_free(s->context, table);
+  }
+}
+
 /* ---- reciprocity ---- */
 
 static void reciprocity(void **state) {
@@ -417,8 +442,9 @@ static void special(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(white_furnace), cmocka_unit_test(reciprocity),
-                                     cmocka_unit_test(never_nan),     cmocka_unit_test(same_bits),
-                                     cmocka_unit_test(lanes_alone),   cmocka_unit_test(special)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(white_furnace), cmocka_unit_test(coats_never_gain),
+                                     cmocka_unit_test(reciprocity),   cmocka_unit_test(never_nan),
+                                     cmocka_unit_test(same_bits),     cmocka_unit_test(lanes_alone),
+                                     cmocka_unit_test(special)};
   return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -207,8 +207,11 @@ static void white_furnace(void **state) {
       {.metal = true, .eta_s = 2.4f, .eta = 0, .k = 2, .depth = 1000},
       {.eta_s = 1.5f, .reflectance = 1, .depth = 1000},
       {.eta_s = 1.5f, .reflectance = 1, .thickness = 0.5f, .albedo = 1, .g = 0.5f, .depth = 1000},
+      {.eta_s = 1.5f, .reflectance = 1, .thickness = 3, .albedo = 1, .g = 0.9f, .depth = 1000},
+      {.eta_s = 1.2f, .reflectance = 1, .thickness = 3, .albedo = 1, .g = -0.9f, .depth = 1000},
+      {.metal = true, .eta_s = 1.5f, .eta = 0, .k = 2, .thickness = 1, .albedo = 1, .g = 0.7f, .depth = 1000},
   };
-  for (int i = 0; i < 4; i++)
+  for (int i = 0; i < 7; i++)
     for (double theta = 0.1; theta < 1.5; theta += 0.6) {
       Tally t = {0};
       statRng rng = stat_rng((uint64_t)i);
@@ -218,6 +221,38 @@ static void white_furnace(void **state) {
       if (!(fabs(albedo - 1) < 4 * error + 1e-4) || !(error < 8e-3))
         fail_msg("furnace %d theta %g: %g, error %g", i, theta, albedo, error);
     }
+}
+
+/* Never more than came, whatever the roughness, the medium and the angle; nothing passes a thick black medium but what
+ * the coat itself sends back. */
+static void never_gains(void **state) {
+  const State *s = *state;
+  const float alphas[3] = {0, 0.05f, 1}, thicknesses[3] = {0, 0.3f, 20}, gs[3] = {-0.95f, 0, 0.95f};
+  const double thetas[3] = {0.05, 0.9, 1.54};
+  for (int i = 0; i < 3 * 3 * 3 * 2; i++) {
+    bool metal = i % 2;
+    float alpha = alphas[i / 2 % 3], thick = thicknesses[i / 6 % 3], g = gs[i / 18];
+    Stack t = {.metal = metal, .eta_s = 1.5f, .alpha = alpha, .base_x = alpha, .base_y = 0.5f, .eta = 0, .k = 2};
+    t.thickness = thick, t.g = g, t.albedo = 1, t.reflectance = 1, t.depth = 200;
+    for (int k = 0; k < 3; k++) {
+      Tally sum = {0}, black = {0}, bare = {0};
+      statRng rng = stat_rng((uint64_t)(900 + 3 * i + k));
+      for (int turn = 0; turn < 4; turn++) ours(s, &t, thetas[k], &rng, &sum);
+      double albedo = sum.sum[CELLS - 1] / sum.count;
+      double error = sqrt(fmax(sum.square[CELLS - 1] / sum.count - albedo * albedo, 0) / sum.count);
+      if (!(albedo < 1.0005 + 4.5 * error))
+        fail_msg("metal %d alpha %g thickness %g g %g theta %g: %g +- %g", metal, (double)alpha, (double)thick,
+                 (double)g, thetas[k], albedo, error);
+      if (thick < 20) continue;
+      Stack dark = t, coat = t;
+      dark.albedo = 0, coat.reflectance = 0, coat.metal = false, coat.albedo = 0;
+      for (int turn = 0; turn < 8; turn++)
+        ours(s, &dark, thetas[k], &rng, &black), ours(s, &coat, thetas[k], &rng, &bare);
+      double x = black.sum[CELLS - 1] / black.count, y = bare.sum[CELLS - 1] / bare.count;
+      error = sqrt((black.square[CELLS - 1] + bare.square[CELLS - 1]) / black.count / black.count);
+      if (!(fabs(x - y) < 4.5 * error + 1e-4)) fail_msg("black medium: %g comes back, of the coat %g", x, y);
+    }
+  }
 }
 
 static void reciprocity(void **state) {
@@ -293,11 +328,9 @@ static void sampling_agrees_with_evaluation(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(walks_are_natures),
-      cmocka_unit_test(diffuse_base_is_the_closed_form),
-      cmocka_unit_test(white_furnace),
-      cmocka_unit_test(reciprocity),
-      cmocka_unit_test(sampling_agrees_with_evaluation),
+      cmocka_unit_test(walks_are_natures), cmocka_unit_test(diffuse_base_is_the_closed_form),
+      cmocka_unit_test(white_furnace),     cmocka_unit_test(never_gains),
+      cmocka_unit_test(reciprocity),       cmocka_unit_test(sampling_agrees_with_evaluation),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

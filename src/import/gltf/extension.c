@@ -17,9 +17,10 @@ static const char *const known[] = {
     "EXT_mesh_gpu_instancing",   "KHR_lights_punctual",
     "EXT_texture_webp",          "EXT_meshopt_compression",
     "EXT_lights_image_based",    "KHR_animation_pointer",
+    "KHR_node_visibility",
 };
 /* Nothing of these changes the picture. */
-static const char *const silent[] = {"KHR_xmp", "KHR_xmp_json_ld"};
+static const char *const silent[] = {"KHR_xmp", "KHR_xmp_json_ld", "KHR_node_hoverability", "KHR_node_selectability"};
 
 static bool is_in(const char *name, const char *const *names, size_t count) {
   for (size_t i = 0; i < count; i++)

@@ -275,6 +275,8 @@ static bool collect(vlGltf *g, const json_t *roots, const vlGltfPlace *at, uint3
       uint32_t i = stack[--top];
       if (g->nodes[i].reached) continue; /* named twice: drawn once */
       g->nodes[i].reached = true;
+      const json_t *visibility = vl_gltf_extension(g->nodes[i].json, "KHR_node_visibility");
+      if (json_is_false(json_object_get(visibility, "visible"))) continue; /* and all below it */
       order[(*count)++] = i;
       const json_t *children = json_object_get(g->nodes[i].json, "children");
       for (size_t c = json_array_size(children); c-- > 0;)

@@ -211,6 +211,8 @@ vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
   set_int(&header, "velo.maxDepth", job->render.max_depth);
   set_text(&header, "velo.color", choice_name(color_choices, (int)job->settings->color));
   if (job->build.regularize) set_int(&header, "velo.regularize", 1);
+  if (job->render.merge_radius > 0) set_double(&header, "velo.mergeRadius", job->render.merge_radius);
+  if (job->render.light_paths != VL_AS_MANY_AS_PIXELS) set_double(&header, "velo.lightPaths", job->render.light_paths);
   set_text(&header, "velo.lightSampler", choice_name(light_sampler_choices, (int)job->settings->light_sampler));
   return header.result;
 }

@@ -159,6 +159,8 @@ static bool sampler_is_open(vlSamplerKind kind) {
 static void override_sampling(vlSceneSettings *settings, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   if (v[RENDER_TRACER].given) settings->tracer = (vlTracer)v[RENDER_TRACER].integer;
+  if (v[RENDER_MERGE_RADIUS].given) settings->merge_radius = v[RENDER_MERGE_RADIUS].number;
+  if (v[RENDER_LIGHT_PATHS].given) settings->light_paths = (uint32_t)v[RENDER_LIGHT_PATHS].integer;
   if (v[RENDER_SAMPLER].given) settings->sampler = (vlSamplerKind)v[RENDER_SAMPLER].integer;
   if (v[RENDER_FILTER].given) settings->filter = vl_default_pixel_filter((vlPixelFilterKind)v[RENDER_FILTER].integer);
   if (v[RENDER_LIGHT_SAMPLER].given) settings->light_sampler = (vlLightSampler)v[RENDER_LIGHT_SAMPLER].integer;

@@ -65,6 +65,14 @@ const Option render_options[] = {
     {RENDER_EYE, 0, "eye", OPTION_CHOICE, "NAME", "which eyes' pictures:", 0, 0, eye_choices},
     {RENDER_TRACER, 0, "tracer", OPTION_CHOICE, "NAME", "how light is followed:", 0, 0, tracer_choices},
     {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "longest path, in bounces", 0, 4096, NULL},
+    {RENDER_MERGE_RADIUS, 0, "merge-radius", OPTION_NUMBER, "R",
+     "merging, sppm: within which paths from the eye and from the\nlights meet at first, scene units; default: two "
+     "pixels wide",
+     1e-30, 1e30, NULL},
+    {RENDER_LIGHT_PATHS, 0, "light-paths", OPTION_INTEGER, "N",
+     "bidirectional, merging, sppm, lightpath: paths from the lights\nfor each sample of the picture; default: as many "
+     "as pixels",
+     0, 1 << 24, NULL},
     {RENDER_SAMPLER, 0, "sampler", OPTION_CHOICE, "NAME", "how samples are placed:", 0, 0, sampler_choices},
     {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "another number, other noise", 0, 4294967295.0, NULL},
     {RENDER_FILTER, 0, "filter", OPTION_CHOICE, "NAME", "pixel filter, with pbrt's usual size:", 0, 0, filter_choices},

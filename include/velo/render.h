@@ -105,6 +105,8 @@ typedef struct vlProgress {
 /* Return false to stop: after a pass at once; inside a pass the pass is given up and its samples are not counted. */
 typedef bool vlProgressFn(void *user, const vlProgress *progress);
 
+#define VL_AS_MANY_AS_PIXELS 0xffffffffu
+
 typedef struct vlRenderDef {
   uint32_t cookie;
   vlTracer tracer;
@@ -117,6 +119,11 @@ typedef struct vlRenderDef {
   /* For comparisons: all samples of a pixel through its centre, the lens' and the middle of the shutter's time; all
    * paths with the same wavelengths; textures without a footprint. pbrt's disablepixeljitter and so on. */
   bool centred, same_wavelengths, sharp_textures;
+  /* Tracers that follow light both ways (docs/tracers.md). merge_radius: within which paths meet in the first pass,
+   * scene units, above 0; VL_UNSET: two pixels wide. light_paths: in a pass, up to 2^24; VL_AS_MANY_AS_PIXELS: that,
+   * at most 2^20. */
+  double merge_radius;
+  uint32_t light_paths;
   double time_limit; /* seconds, 0: none; ends after the pass in which it passes */
   vlProgressFn *progress;
   void *progress_user;

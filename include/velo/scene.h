@@ -491,6 +491,8 @@ typedef struct vlSceneSettings {
   uint32_t max_depth; /* bounces; pbrt default 5 */
   float ao_distance;  /* ambient occlusion: reach in scene units; infinity default */
   bool ao_cosine;
+  double merge_radius; /* vlRenderDef.merge_radius, light_paths (velo/render.h) */
+  uint32_t light_paths;
   vlLightSampler light_sampler;
   bool regularize; /* vlBuildDef.regularize */
   vlColorMode color;

@@ -17,6 +17,8 @@ vlRenderDef vl_scene_render_def(const vlScene *scene) {
   def.centred = s->centred;
   def.same_wavelengths = s->same_wavelengths;
   def.sharp_textures = s->sharp_textures;
+  def.merge_radius = s->merge_radius;
+  def.light_paths = s->light_paths;
   return def;
 }
 

@@ -149,7 +149,22 @@ static bool read_path(vlDict *dict, vlSceneSettings *s) {
   return true;
 }
 
-/* pbrt's two-way integrators by velo's own: what steers theirs is read, and steers nothing here. */
+/* Of sppm; of the others the words alone are looked at. */
+static bool read_merging(vlDict *dict, vlSceneSettings *s) {
+  float radius = 0;
+  vlParam *given = vl_dict_find(dict, "radius", VL_BIT_FLOAT);
+  if (given && vl_dict_float(dict, "radius", &radius)) {
+    if (!(radius > 0.0f) || !(radius < __builtin_inff()))
+      return vl_import_fail(dict->import, VL_ERROR_SCENE, given->place, "%s: \"radius\" must be above 0", dict->what);
+    s->merge_radius = (double)radius;
+  }
+  int32_t photons = -1; /* as many as pixels */
+  if (vl_dict_integer(dict, "photonsperiteration", &photons) && photons > 0)
+    s->light_paths = photons < 1 << 24 ? (uint32_t)photons : 1u << 24;
+  return true;
+}
+
+/* pbrt's two-way integrators by velo's own: of what steers theirs, radius and photons do. */
 static bool read_two_way(vlDict *dict, vlSceneSettings *s, const char *kind) {
   static const struct {
     const char *name;
@@ -161,9 +176,8 @@ static bool read_two_way(vlDict *dict, vlSceneSettings *s, const char *kind) {
                {"lightpath", VL_TRACER_LIGHT_PATH, NULL},
                {"randomwalk", VL_TRACER_RANDOM_WALK, NULL}};
   static const char *const bools[] = {"regularize", "visualizestrategies", "visualizeweights"};
-  static const char *const numbers[] = {"bootstrapsamples",    "chains", "mutationsperpixel",
-                                        "photonsperiteration", "seed",   "iterations"};
-  static const char *const floats[] = {"radius", "sigma", "largestepprobability"};
+  static const char *const numbers[] = {"bootstrapsamples", "chains", "mutationsperpixel", "seed", "iterations"};
+  static const char *const floats[] = {"sigma", "largestepprobability"};
   vlImport *import = dict->import;
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     if (strcmp(kind, kinds[i].name) != 0) continue;
@@ -172,8 +186,10 @@ static bool read_two_way(vlDict *dict, vlSceneSettings *s, const char *kind) {
     if (!kinds[i].by) break;
     bool yes;
     float number;
-    for (int k = 0; k < 3; k++) vl_dict_bool(dict, bools[k], &yes), vl_dict_float(dict, floats[k], &number);
-    for (int k = 0; k < 6; k++) vl_dict_find(dict, numbers[k], 1u << VL_PARAM_INTEGER);
+    for (int k = 0; k < 3; k++) vl_dict_bool(dict, bools[k], &yes);
+    for (int k = 0; k < 2; k++) vl_dict_float(dict, floats[k], &number);
+    for (int k = 0; k < 5; k++) vl_dict_find(dict, numbers[k], 1u << VL_PARAM_INTEGER);
+    if (!read_merging(dict, s)) return false;
     vl_import_warn(import, VL_LOG_INFO, import->integrator.place, "integrator \"%s\": rendered by velo's %s", kind,
                    kinds[i].by);
     break;

@@ -53,6 +53,11 @@ static vlResult check_arguments(const vlWorld *world, const vlCamera *camera, vl
     return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: a world in RGB has no spectra for the film");
   if (def->max_depth > 4096)
     return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: max_depth %u is above 4096", def->max_depth);
+  if (def->merge_radius <= 0 || def->merge_radius > 3e38)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: merge_radius %g is not a radius", def->merge_radius);
+  if (def->light_paths != VL_AS_MANY_AS_PIXELS && def->light_paths > VL_MOST_LIGHT_PATHS)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: light_paths %u is above %u", def->light_paths,
+                   VL_MOST_LIGHT_PATHS);
   return VL_OK;
 }
 
@@ -178,6 +183,8 @@ vlRenderDef vl_default_render_def(void) {
                        .spp = 16,
                        .max_depth = 5,
                        .ao_distance = INFINITY,
+                       .merge_radius = VL_UNSET,
+                       .light_paths = VL_AS_MANY_AS_PIXELS,
                        .ao_cosine = true};
 }
 

@@ -13,7 +13,7 @@
 #include "render/eye_view.h"
 
 enum {
-  MOST_PATHS = 1 << 20,   /* of light in a pass */
+  MOST_PATHS = 1 << 20,   /* of light in a pass, if their number is not given */
   MOST_PHOTONS = 1 << 23, /* 512 MB, and as much again sorted; a pass that would leave more has fewer paths */
   FIRST_PHOTONS = 1 << 16
 };
@@ -54,6 +54,7 @@ struct vlTwoWayRun {
   double filter_scale[2];
   float exposure, first_radius;
   uint32_t most_paths, paths, index;
+  uint32_t pixels, rounds; /* paths are samples of the film's pixels, by the light's sampler: so many of each */
   vlPhoton *photons, *sorted;
   uint32_t *start, capacity, buckets;
   atomic_uint_least64_t stored;
@@ -161,11 +162,12 @@ static void light_block(void *user, uint32_t block, uint32_t worker) {
   uint32_t first = block * VL_BATCH, left = run->paths - first, n = left < VL_BATCH ? left : VL_BATCH;
   uint32_t width = run->film_def->width;
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    uint32_t path = first + (i < n ? i : n - 1);
-    w->px[i] = (int32_t)(path % width), w->py[i] = (int32_t)(path / width), w->index[i] = run->index;
+    uint32_t path = first + (i < n ? i : n - 1), pixel = path % run->pixels;
+    w->px[i] = (int32_t)(pixel % width), w->py[i] = (int32_t)(pixel / width);
+    w->index[i] = run->index * run->rounds + path / run->pixels;
   }
   vlLightBatch batch = {
-      .n = n, .px = w->px, .py = w->py, .index = w->index, .width = width, .user = w, .splat = splat, .store = store};
+      .n = n, .px = w->px, .py = w->py, .index = w->index, .first = first, .user = w, .splat = splat, .store = store};
   unsigned state = vl_accel_enter();
   run->kernels->light(run->world, &run->trace, w->scratch, w->rows, &batch);
   vl_accel_leave(state);
@@ -296,9 +298,15 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   run->width = f->crop[2] - f->crop[0], run->height = f->crop[3] - f->crop[1];
   for (int i = 0; i < 2; i++) run->filter_scale[i] = 1 / filter_integral(&f->filter, i);
   uint64_t pixels = (uint64_t)f->width * f->height;
-  run->most_paths = run->paths = pixels < MOST_PATHS ? (uint32_t)pixels : MOST_PATHS;
+  run->pixels = pixels < UINT32_MAX ? (uint32_t)pixels : UINT32_MAX;
+  run->most_paths = def->light_paths;
+  if (def->light_paths == VL_AS_MANY_AS_PIXELS) run->most_paths = pixels < MOST_PATHS ? (uint32_t)pixels : MOST_PATHS;
+  run->paths = run->most_paths;
+  run->rounds = run->most_paths > run->pixels ? (run->most_paths + run->pixels - 1) / run->pixels : 1;
+  uint64_t samples = (uint64_t)def->spp * run->rounds;
   vlTwoWay *way = &run->way;
-  vl_sampler_init(&way->sampler, def->sampler, vl_hash2(def->seed, light_seed), f->width, f->height, def->spp);
+  vl_sampler_init(&way->sampler, def->sampler, vl_hash2(def->seed, light_seed), f->width, f->height,
+                  samples < UINT32_MAX ? (uint32_t)samples : UINT32_MAX);
   way->light_only = def->tracer == VL_TRACER_LIGHT_PATH;
   way->apart = def->tracer == VL_TRACER_SPPM;
   way->merge = def->tracer == VL_TRACER_MERGING || way->apart;
@@ -309,9 +317,13 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   vlResult result = run->choice && run->splats ? make_workers(run, error) : vl_fail_memory(error);
   if (result == VL_OK) result = find_media(run, camera, error);
   if (result != VL_OK) return result;
-  run->starts = vl_two_way_choice(world, run->choice);
+  run->starts = vl_two_way_choice(world, run->choice) && run->most_paths > 0;
+  if (run->most_paths == 0) memset(run->choice, 0, (world->lights.count + 1) * sizeof *run->choice);
   if (run->starts) vl_eye_view(camera, f, &way->eye);
-  if (way->merge) result = vl_first_radius(world, camera, trace, &run->first_radius, error);
+  if (result == VL_OK && way->merge && def->merge_radius > 0)
+    run->first_radius = (float)def->merge_radius;
+  else if (result == VL_OK && way->merge)
+    result = vl_first_radius(world, camera, trace, &run->first_radius, error);
   way->merge = way->merge && run->starts && run->first_radius > 0.0f;
   if (result == VL_OK && way->merge) result = grow(run, FIRST_PHOTONS, error);
   set_radius(run, 0);

@@ -10,6 +10,8 @@
 
 typedef struct vlTwoWayRun vlTwoWayRun;
 
+enum { VL_MOST_LIGHT_PATHS = 1 << 24 };
+
 /* Whether a tracer goes both ways. */
 bool vl_two_way_tracer(vlTracer tracer);
 

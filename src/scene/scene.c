@@ -28,6 +28,8 @@ static vlSceneSettings default_settings(void) {
       .tracer = VL_TRACER_PATH,
       .max_depth = 5,
       .ao_distance = __builtin_inff(),
+      .merge_radius = VL_UNSET,
+      .light_paths = 0xffffffffu, /* VL_AS_MANY_AS_PIXELS */
       .ao_cosine = true,
       .light_sampler = VL_LIGHT_SAMPLER_BVH,
       .color = VL_COLOR_SPECTRAL,

@@ -18,6 +18,20 @@ static float spot_factor(const vlWorldLight *light, float c) {
   return light->cone_squared ? t * t : t * t * (3.0f - 2.0f * t);
 }
 
+/* 1 - cosine of the cone that a light at a point shines into; 2: everywhere, as a projection whose frame is skewed. */
+static float span_of(const vlWorldLight *light) {
+  if (light->kind == VL_WL_SPOT) return 1.0f - light->cos_end;
+  if (light->kind != VL_WL_PROJECTION) return 2.0f;
+  const float *m = light->corners;
+  float length2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+  for (int i = 0; i < 3; i++) {
+    const float *a = m + 3 * i, *b = m + 3 * ((i + 1) % 3);
+    float own = a[0] * a[0] + a[1] * a[1] + a[2] * a[2], skew = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    if (vl_abs(own - length2) > 1e-4f * length2 || vl_abs(skew) > 1e-4f * length2) return 2.0f;
+  }
+  return vl_min(1.001f * (1.0f - light->cos_end), 2.0f);
+}
+
 static float world_disk(const vlWorld *world) { /* area of a disk that hides the world */
   return VL_PI * world->radius * world->radius;
 }
@@ -55,10 +69,13 @@ float VL_HOT(vl_emission_density)(const vlWorld *world, const vlTwoWay *way, uin
   float p = choice_of(way, index);
   if (!(p > 0.0f)) return 0.0f;
   switch (light->kind) {
-    case VL_WL_POINT: return p * VL_INV_4PI / (distance * distance);
-    case VL_WL_SPOT: {
+    case VL_WL_POINT:
+    case VL_WL_GONIOMETRIC:
+    case VL_WL_SPOT:
+    case VL_WL_PROJECTION: {
+      float span = span_of(light);
       float c = -vl_dot(w, vl_vec3(light->direction[0], light->direction[1], light->direction[2]));
-      return c >= light->cos_end ? p * VL_INV_2PI / ((1.0f - light->cos_end) * distance * distance) : 0.0f;
+      return span == 2.0f || c >= 1.0f - span ? p * VL_INV_2PI / (span * distance * distance) : 0.0f;
     }
     case VL_WL_DISTANT: return p / world_disk(world);
     case VL_WL_INFINITE:
@@ -219,17 +236,22 @@ vlEmission VL_HOT(vl_emission_sample)(const vlWorld *world, const vlTwoWay *way,
   vlVec3 position = vl_vec3(light->position[0], light->position[1], light->position[2]);
   switch (light->kind) {
     case VL_WL_POINT:
-    case VL_WL_SPOT: {
-      float span = light->kind == VL_WL_SPOT ? 1.0f - light->cos_end : 2.0f, factor = 2.0f * VL_PI * span;
-      if (light->kind == VL_WL_POINT) {
+    case VL_WL_SPOT:
+    case VL_WL_GONIOMETRIC:
+    case VL_WL_PROJECTION: {
+      bool picture = light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION;
+      float span = span_of(light), factor = 2.0f * VL_PI * span;
+      vlVec2 st = {0, 0};
+      if (span == 2.0f) {
         r.d = vl_warp_sphere(s, t);
       } else {
         vlVec3 local = vl_warp_cone(s, t, span);
         r.d = vl_normalize(vl_from_local(vl_frame_from_z(direction), local));
-        factor *= spot_factor(light, local.z);
+        if (light->kind == VL_WL_SPOT) factor *= spot_factor(light, local.z);
       }
+      if (picture) factor *= VL_HOT(vl_beam)(world, light, vl_neg(r.d), &st);
       r.o = r.at = position;
-      VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, false, r.flux);
+      VL_HOT(vl_emitted_at)(world, e, lambda, st.x, st.y, picture, r.flux);
       for (int c = 0; c < 4; c++) r.flux[c] *= factor;
       r.density = 1.0f / (2.0f * VL_PI * span);
       r.delta = r.valid = true;

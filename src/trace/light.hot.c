@@ -275,8 +275,7 @@ static float spot_edge(const vlWorldLight *light, float x) {
   return light->cone_squared ? t * t : t * t * (3.0f - 2.0f * t);
 }
 
-/* How much of a light's colour its picture lets out towards -w, and where on a slide that is. */
-static float beam(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st) {
+float VL_HOT(vl_beam)(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st) {
   vlVec3 d = vl_normalize(turn(light->corners, vl_neg(w)));
   *st = (vlVec2){0, 0};
   if (light->kind == VL_WL_GONIOMETRIC) {
@@ -320,7 +319,8 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
         factor *= spot_edge(light, c);
       }
       vlVec2 st = {0, 0};
-      if (light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION) factor *= beam(world, light, w, &st);
+      if (light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION)
+        factor *= VL_HOT(vl_beam)(world, light, w, &st);
       VL_HOT(vl_emitted_at)(world, e, lambda, st.x, st.y, true, radiance);
       for (int c = 0; c < 4; c++) radiance[c] *= factor;
       pdf = 1.0f;

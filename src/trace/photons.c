@@ -62,9 +62,7 @@ bool vl_two_way_choice(const vlWorld *world, float *choice) {
   for (int pass = 0; pass < 2; pass++)
     for (size_t i = 0; i < world->lights.count; i++) {
       const vlWorldLight *light = &world->lights.items[i];
-      bool known = light->kind == VL_WL_POINT || light->kind == VL_WL_SPOT || light->kind == VL_WL_DISTANT ||
-                   light->kind == VL_WL_INFINITE || light->kind == VL_WL_AREA;
-      double power = known && light->power > 0.0f && light->power < 1e30f ? (double)light->power : 0.0;
+      double power = light->power > 0.0f && light->power < 1e30f ? (double)light->power : 0.0;
       if (pass == 0) {
         total += power;
       } else {

@@ -79,7 +79,7 @@ typedef struct vlLightBatch {
   uint32_t n;
   const int32_t *px, *py; /* VL_PAD(n): which path, as a pixel of the sampler's */
   const uint32_t *index;
-  uint32_t width;        /* paths are numbered py * width + px */
+  uint32_t first;        /* number of the first path in the pass; the others follow */
   const float *time;     /* the world's, by path; null where nothing moves */
   const vlEyeView *eyes; /* by path, of a camera that moves; null: vlTwoWay.eye */
   void *user;
@@ -91,8 +91,7 @@ typedef struct vlLightBatch {
   uint64_t bounce_rays, shadow_rays; /* added to */
 } vlLightBatch;
 
-/* Cumulated probabilities of starting a light's path, by power; light_count + 1 elements. Lights of a kind that no path
- * can start from have none. False: no light at all. */
+/* Cumulated probabilities of starting a light's path, by power; light_count + 1 elements. False: no light at all. */
 bool vl_two_way_choice(const vlWorld *world, float *choice);
 
 #endif

@@ -145,7 +145,7 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     for (int c = 0; c < 4; c++) sum += x->power[c] = k.s[c] > 0.0f ? p->beta[c][i] * r->flux[c][lane] / k.s[c] : 0.0f;
     x->a = r->a[i], x->b = r->b[i];
     x->bounce = depth + 1;
-    x->id = ((uint32_t)p->py[i] * b->width + (uint32_t)p->px[i]);
+    x->id = b->first + lane;
     x->alone = vl_hero_alone(p, i);
     x->medium = 1 + v->c.medium[i];
     count += sum > 0.0f && sum < VL_INFINITY;

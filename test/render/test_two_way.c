@@ -4,9 +4,24 @@
 
 enum { SIZE = 24, FINE = 96 };
 
-typedef enum Lamp { PANEL, PANEL_BOTH, PATCH, BALL, POINT, SPOT, DISTANT, SKY, PICTURE, LAMPS } Lamp;
-static const char *const lamp_name[LAMPS] = {"panel", "two-sided panel", "patch",       "ball",       "point",
-                                             "spot",  "distant",         "uniform sky", "picture sky"};
+typedef enum Lamp {
+  PANEL,
+  PANEL_BOTH,
+  PATCH,
+  BALL,
+  POINT,
+  SPOT,
+  DISTANT,
+  SKY,
+  PICTURE,
+  MEASURED,
+  SLIDE,
+  SKEWED,
+  LAMPS
+} Lamp;
+static const char *const lamp_name[LAMPS] = {
+    "panel",   "two-sided panel", "patch",       "ball",        "point",      "spot",
+    "distant", "uniform sky",     "picture sky", "goniometric", "projection", "projection, skewed"};
 
 static void add_round(Stage *s, float x, float y, float z, float radius, vlMaterialId material, vlEmissionId emission) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
@@ -36,15 +51,19 @@ static void add_lamp(Stage *s, Lamp lamp) {
   } else if (lamp == BALL) {
     add_round(s, 0.3f, 1.1f, -3, 0.2f, dark, add_glow(s, 8, false));
   } else {
-    static const vlLightKind kinds[LAMPS] = {[POINT] = VL_LIGHT_POINT,
-                                             [SPOT] = VL_LIGHT_SPOT,
-                                             [DISTANT] = VL_LIGHT_DISTANT,
-                                             [SKY] = VL_LIGHT_INFINITE,
-                                             [PICTURE] = VL_LIGHT_INFINITE};
-    vlLightDef def = lamp_def(kinds[lamp], lamp == POINT || lamp == SPOT ? 5 : lamp == DISTANT ? 2 : 0.7f);
+    static const vlLightKind kinds[LAMPS] = {
+        [POINT] = VL_LIGHT_POINT,      [SPOT] = VL_LIGHT_SPOT,        [DISTANT] = VL_LIGHT_DISTANT,
+        [SKY] = VL_LIGHT_INFINITE,     [PICTURE] = VL_LIGHT_INFINITE, [MEASURED] = VL_LIGHT_GONIOMETRIC,
+        [SLIDE] = VL_LIGHT_PROJECTION, [SKEWED] = VL_LIGHT_PROJECTION};
+    vlLightDef def = lamp_def(kinds[lamp], lamp == POINT || lamp == SPOT || lamp >= MEASURED ? 5
+                                           : lamp == DISTANT                                 ? 2
+                                                                                             : 0.7f);
     float rgb[8 * 8 * 3];
     for (int i = 0; i < 8 * 8 * 3; i++) rgb[i] = 0.2f + (i / 3 % 8 == 3 ? 4.0f : 0.0f) * (float)(i % 3);
-    if (lamp == PICTURE) def.image = make_image(s, 8, 8, rgb);
+    if (lamp == PICTURE || lamp >= MEASURED) def.image = make_image(s, 8, 8, rgb);
+    if (lamp >= MEASURED) set_matrix(def.world_from_light, 1, 0, 0, 0.3, 0, 0, -1, 1.4, 0, 1, 0, -2.6); /* down */
+    if (lamp == SKEWED) def.world_from_light[0] = 2;
+    def.fov = 1.2f;
     assert_int_not_equal(vl_scene_add_light(s->scene, &def).index, 0);
     vl_image_destroy((vlImage *)(uintptr_t)def.image);
   }
@@ -85,7 +104,9 @@ static Stage room_in(vlContext *context, Lamp lamp, bool rich, uint32_t size) {
 typedef struct Case {
   Lamp lamp;
   bool rich;
-  double radius; /* of the lens */
+  double radius;  /* of the lens */
+  uint32_t paths; /* of light; 0: as many as pixels */
+  double merge;   /* radius; 0: its own */
 } Case;
 
 /* Merging blurs over two pixels: its picture is finer. */
@@ -93,6 +114,8 @@ static Stage room(const void *user, vlTracer tracer) {
   const Case *c = user;
   Stage s = room_in(NULL, c->lamp, c->rich, tracer == VL_TRACER_MERGING ? FINE : SIZE);
   if (c->radius > 0) s.camera.lens_radius = c->radius, s.camera.focus_distance = 2.5;
+  if (c->paths) s.render.light_paths = c->paths;
+  if (c->merge > 0) s.render.merge_radius = c->merge;
   return s;
 }
 
@@ -105,7 +128,7 @@ static void all_lamps(void **state) {
   (void)state;
   for (int lamp = 0; lamp < LAMPS; lamp++)
     for (int rich = 0; rich < 2; rich++) {
-      Case what = {(Lamp)lamp, rich, 0};
+      Case what = {(Lamp)lamp, rich, 0, 0, 0};
       Measure path = measure(room, &what, VL_TRACER_PATH);
       agrees("bidirectional", what, VL_TRACER_BIDIRECTIONAL, &path, 0.005);
       agrees("merging", what, VL_TRACER_MERGING, &path, 0.02);
@@ -115,7 +138,7 @@ static void all_lamps(void **state) {
 
 static void random_walks(void **state) {
   (void)state;
-  Case what = {SKY, true, 0};
+  Case what = {SKY, true, 0, 0, 0};
   Measure path = measure(room, &what, VL_TRACER_PATH);
   agrees("random walk", what, VL_TRACER_RANDOM_WALK, &path, 0.005);
 }
@@ -123,10 +146,51 @@ static void random_walks(void **state) {
 /* Through a lens, light finds the film by way of its points. */
 static void through_a_lens(void **state) {
   (void)state;
-  Case what = {PANEL, false, 0.1};
+  Case what = {PANEL, false, 0.1, 0, 0};
   Measure path = measure(room, &what, VL_TRACER_PATH);
   agrees("bidirectional", what, VL_TRACER_BIDIRECTIONAL, &path, 0.005);
   agrees("light paths", what, VL_TRACER_LIGHT_PATH, &path, 0.005);
+}
+
+/* More paths from the lights than pixels, and few; a radius of one's own. */
+static void paths_and_radius(void **state) {
+  (void)state;
+  Case what = {PANEL, true, 0, 0, 0};
+  Measure path = measure(room, &what, VL_TRACER_PATH);
+  what.paths = 3 * SIZE * SIZE + 77;
+  agrees("bidirectional, many paths", what, VL_TRACER_BIDIRECTIONAL, &path, 0.005);
+  what.paths = 100, what.merge = 0.05;
+  agrees("bidirectional, few paths", what, VL_TRACER_BIDIRECTIONAL, &path, 0.005);
+  agrees("merging, few paths", what, VL_TRACER_MERGING, &path, 0.02);
+}
+
+static vlResult try_to_render(double radius, uint32_t paths) {
+  Stage s = room_in(NULL, POINT, false, SIZE);
+  vlWorld *world = NULL;
+  vlCamera camera;
+  vlFilm *film = NULL;
+  assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_OK);
+  assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, NULL), VL_OK);
+  assert_int_equal(vl_film_create(s.context, &s.film, &film), VL_OK);
+  s.render.tracer = VL_TRACER_MERGING, s.render.spp = 1;
+  s.render.merge_radius = radius, s.render.light_paths = paths;
+  vlResult result = vl_render(world, &camera, film, &s.render, NULL, NULL);
+  vl_film_destroy(film);
+  vl_world_destroy(world);
+  stage_close(&s);
+  return result;
+}
+
+static void bad_options(void **state) {
+  (void)state;
+  assert_int_equal(try_to_render(0, 5), VL_ERROR_ARGUMENT);
+  assert_int_equal(try_to_render(-1, 5), VL_ERROR_ARGUMENT);
+  assert_int_equal(try_to_render(INFINITY, 5), VL_ERROR_ARGUMENT);
+  assert_int_equal(try_to_render(0.1, (1 << 24) + 1), VL_ERROR_ARGUMENT);
+  assert_int_equal(try_to_render(0.1, 0), VL_OK);
+  assert_int_equal(try_to_render(1e30, 5), VL_OK);
+  assert_int_equal(try_to_render(1e-30, 5), VL_OK);
+  assert_int_equal(try_to_render(VL_UNSET, VL_AS_MANY_AS_PIXELS), VL_OK);
 }
 
 /* Sums are exact and photons have one order: neither threads, nor instruction sets, nor the crop show. */
@@ -139,6 +203,7 @@ static Picture colored(uint32_t threads, vlIsa isa, vlTracer tracer, bool crop) 
   s.build.color = VL_COLOR_SPECTRAL;
   s.film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
   s.render.tracer = tracer, s.render.spp = 5;
+  s.render.light_paths = 2 * SIZE * SIZE - 5;
   const uint32_t part[4] = {5, 3, 17, 21};
   if (crop) memcpy(s.film.crop, part, sizeof part);
   return stage_finish(&s);
@@ -167,7 +232,8 @@ static void same_bits(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(all_lamps), cmocka_unit_test(random_walks),
-                                     cmocka_unit_test(through_a_lens), cmocka_unit_test(same_bits)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(all_lamps),      cmocka_unit_test(random_walks),
+                                     cmocka_unit_test(through_a_lens), cmocka_unit_test(paths_and_radius),
+                                     cmocka_unit_test(bad_options),    cmocka_unit_test(same_bits)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "camera.h"
+#include "gbuffer.h"
 #include "report.h"
 
 const Choice channel_mode_choices[] = {{"centre", VL_CHANNEL_MODE_CENTRE},
@@ -124,12 +125,20 @@ static void shutter_ends(Channels *c, const Job *job) {
 }
 
 bool channels_any(const Channels *c) {
-  return c->bits || c->spectrum;
+  return c->bits || c->spectrum || c->gbuffer;
 }
 
-int channels_render(Channels *c, const vlWorld *world, const Job *job, const vlFilm *film) {
+void channels_take(Channels *c, Job *job) {
+  bool wanted = job->settings->gbuffer != VL_GBUFFER_NONE;
+  c->spectrum = job->film.buckets > 0;
+  c->gbuffer = wanted && !c->bits;
+  if (wanted && c->bits) report_note("--channels are written in place of the film's gbuffer");
+}
+
+int channels_render(Channels *c, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film) {
   vlResult spectrum = c->spectrum ? vl_film_spectrum(film, &c->layers[2]) : VL_OK;
   if (spectrum != VL_OK) return report_error(NULL, spectrum, NULL);
+  if (c->gbuffer) return gbuffer_render(context, world, job, film, &c->layers[3]);
   if (!c->bits) return STATUS_OK;
   shutter_ends(c, job);
   vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);

@@ -100,7 +100,7 @@ static int render_view(Run *run, const Frame *frame, int view, FramePicture *pic
   if (result != VL_OK) return report_error(NULL, result, NULL);
   picture->spp = vl_film_spp(film);
   picture->channels[view] = *run->channels;
-  return run->layers ? channels_render(&picture->channels[view], run->world, job, film) : STATUS_OK;
+  return run->layers ? channels_render(&picture->channels[view], run->context, run->world, job, film) : STATUS_OK;
 }
 
 static void report_end(const Run *run, uint32_t written, int status) {

@@ -104,9 +104,9 @@ int outputs_write(vlContext *context, const Outputs *outputs, const vlImage *ima
       result = display_image(context, image, outputs->view, exposure, &display);
       if (outputs->meter && !progress) exposure_tell(exposure);
     }
-    const vlImage *images[4] = {eight_bit ? display : image};
+    const vlImage *images[5] = {eight_bit ? display : image};
     uint32_t count = 1;
-    for (int k = 0; k < 3 && output_holds_layers(path); k++)
+    for (int k = 0; k < 4 && output_holds_layers(path); k++)
       if (outputs->layers[k]) images[count++] = outputs->layers[k];
     if (result == VL_OK)
       result = count > 1 ? vl_image_write_layers(images, count, path, &write, &error)

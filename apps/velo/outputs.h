@@ -14,7 +14,7 @@ typedef struct Outputs {
   vlView view;              /* of 8-bit files */
   float exposure;           /* EV, of 8-bit files */
   bool meter;               /* by the picture itself, in place of exposure */
-  const vlImage *layers[3]; /* what .exr files hold beside the picture; null: nothing */
+  const vlImage *layers[4]; /* what .exr files hold beside the picture; null: nothing */
 } Outputs;
 
 /* The file can hold more than a picture's colours. */

@@ -96,7 +96,10 @@ static void warn_of_channels(const Render *render) {
   const Channels *c = &render->channels;
   for (int i = 0; i < render->outputs.count && channels_any(c); i++)
     if (!output_holds_layers(render->outputs.paths[i]))
-      report_warning("%s: %s cannot hold %s, only .exr can", c->bits ? "--channels" : "spectrum",
+      report_warning("%s: %s cannot hold %s, only .exr can",
+                     c->bits      ? "--channels"
+                     : c->gbuffer ? "gbuffer"
+                                  : "spectrum",
                      render->outputs.paths[i], c->bits ? "them" : "it");
 }
 
@@ -109,7 +112,7 @@ static bool has_layers(const Render *render) {
 static int render_channels(Render *render) {
   if (!has_layers(render)) return STATUS_OK;
   Channels *channels = &render->channels;
-  int status = channels_render(channels, render->world, &render->job, render->film);
+  int status = channels_render(channels, render->context, render->world, &render->job, render->film);
   for (int k = 0; k < CHANNEL_LAYERS; k++) render->outputs.layers[k] = channels->layers[k];
   for (int i = 0; i < render->outputs.count && status == STATUS_OK; i++)
     if (channels->bits && output_holds_layers(render->outputs.paths[i]))
@@ -165,11 +168,12 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     status = outputs_check_folders(&render->outputs);
     if (status >= 0) return status;
   }
-  render->channels.spectrum = render->job.film.buckets > 0;
+  channels_take(&render->channels, &render->job);
   warn_of_channels(render);
   status = channels_load(&render->channels, render->context, &render->job);
   if (status >= 0) return status;
-  render->job.film.errors = (render->channels.bits & VL_CHANNEL_ERROR) && has_layers(render);
+  render->job.film.errors =
+      (render->channels.bits & VL_CHANNEL_ERROR || render->channels.gbuffer) && has_layers(render);
   render->many = frames_wanted(arguments, &render->job);
   if (render->many) {
     status = frames_load(&render->frames, render->context, &render->job, arguments);

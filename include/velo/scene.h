@@ -467,6 +467,7 @@ typedef struct vlPixelFilter {
   float tau;                /* Lanczos */
 } vlPixelFilter;
 VL_API vlPixelFilter vl_default_pixel_filter(vlPixelFilterKind kind); /* pbrt-v4's default sizes */
+typedef enum vlGbuffer { VL_GBUFFER_NONE, VL_GBUFFER_CAMERA, VL_GBUFFER_WORLD } vlGbuffer;
 typedef enum vlColorMode { VL_COLOR_SPECTRAL, VL_COLOR_RGB } vlColorMode;
 typedef enum vlLightSampler { VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER, VL_LIGHT_SAMPLER_UNIFORM } vlLightSampler;
 
@@ -500,6 +501,7 @@ typedef struct vlSceneSettings {
   uint32_t buckets;         /* of spectra beside the picture (velo/render.h); 0: none */
   double lambda_min, lambda_max;
   bool centred, same_wavelengths, sharp_textures; /* velo/render.h */
+  vlGbuffer gbuffer; /* pbrt's film of that name: ground truth is wanted, too, in this space; the program writes it */
 } vlSceneSettings;
 /* Never null; may be changed. */
 VL_API vlSceneSettings *vl_scene_settings(vlScene *scene);

@@ -51,7 +51,8 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
 static void put_film(vlExport *x, double shutter) {
   const vlSceneSettings *s = &x->scene->settings;
   double exposure = (double)s->exposure * s->camera.exposure_time / shutter;
-  if (s->buckets)
+  if (s->gbuffer == VL_GBUFFER_WORLD) PUT("  \"string coordinatesystem\" \"world\"\n");
+  if (s->buckets && !s->gbuffer)
     PUT("  \"integer nbuckets\" [%u] \"float lambdamin\" [%.9g] \"float lambdamax\" [%.9g]\n", s->buckets,
         s->lambda_min, s->lambda_max);
   if (fabs(exposure - 1) > 1e-7) PUT("  \"float iso\" [%.9g]\n", 100 * exposure);
@@ -66,13 +67,16 @@ static void put_film(vlExport *x, double shutter) {
 }
 
 /* The camera's file is a whole scene: what stands before its world. */
+static const char *film_kind(const vlSceneSettings *s) {
+  return s->gbuffer ? "gbuffer" : s->buckets ? "spectral" : "rgb";
+}
 static void put_head(vlExport *x, const char *text, size_t size) {
   static const char film[] = "Film \"rgb\"";
-  const char *world = strstr(text, "WorldBegin"), *at = x->scene->settings.buckets ? strstr(text, film) : NULL;
+  const char *world = strstr(text, "WorldBegin"), *at = strstr(text, film);
   size_t end = world ? (size_t)(world - text) : size, start = 0;
   if (at && (size_t)(at - text) < end) {
     vl_bytes_put(x->context, &x->text, text, (size_t)(at - text));
-    PUT("Film \"spectral\"");
+    PUT("Film \"%s\"", film_kind(&x->scene->settings));
     start = (size_t)(at - text) + sizeof film - 1;
   }
   vl_bytes_put(x->context, &x->text, text + start, end - start);
@@ -108,8 +112,7 @@ static bool put_camera(vlExport *x) {
     put_head(x, text, size);
   } else {
     vl_export_lose(x, "the camera: left out");
-    PUT("Film \"%s\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n", s->buckets ? "spectral" : "rgb",
-        s->width, s->height);
+    PUT("Film \"%s\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n", film_kind(s), s->width, s->height);
   }
   double shutter = s->camera.shutter_close - s->camera.shutter_open;
   bool told = r == VL_OK && shutter > 0 && strstr(text, "shutterclose");

@@ -143,13 +143,11 @@ bool vl_import_film(vlImport *import) {
   if (!(s->exposure >= 0.0f) || !isfinite(s->exposure))
     return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: the exposure is negative or not finite", what);
   if (!read_crop(&dict, s) || !read_sensor(&dict) || (spectral && !read_spectrum(&dict, s))) return false;
-  if (buffers) { /* what its channels hold is asked for on the command line, in both spaces */
+  if (buffers) {
     static const char *const systems[] = {"camera", "world"};
     int system = 0;
     vl_dict_choice(&dict, "coordinatesystem", systems, 2, &system);
-    vl_import_warn(import, VL_LOG_WARNING, choice->place,
-                   "film \"gbuffer\": its picture alone is written; velo render --channels adds position, normals, "
-                   "albedo, uv and more");
+    s->gbuffer = system ? VL_GBUFFER_WORLD : VL_GBUFFER_CAMERA;
   }
   if (!known) vl_dict_skip(&dict);
   return vl_dict_done(&dict);

@@ -34,8 +34,8 @@ allowed='^$'
 quietly whole format.pbrt
 check doctor "$VELO" scene info format.pbrt
 
-# Tracers that look past media, and the gbuffer's channels, are told about.
-allowed='looks past participating media|film "gbuffer": its picture alone|shows bodies of material "subsurface"'
+# Tracers that look past media and into bodies are told about.
+allowed='looks past participating media|shows bodies of material "subsurface"'
 count=0
 while IFS= read -r line; do
   kind=${line%% *}

@@ -258,6 +258,12 @@ static void put_other(vlExport *x, json_t *material, const vlMaterialDef *m, vlM
       put_color(x, extension(x, material, "KHR_materials_diffuse_transmission"), "diffuseTransmissionColorFactor",
                 "diffuseTransmissionColorTexture", true, &m->transmittance, -1);
       return;
+    case VL_MATERIAL_SUBSURFACE:
+      vl_export_lose(x, "subsurface: as a rough dielectric, its colour grey where no reflectance says it");
+      if (!m->subsurface.from_reflectance) color = vl_spectrum_input(vl_spectrum_constant(0.5f));
+      put_base(x, material, &color, coverage, 0, roughness);
+      put_ior(x, material, vl_export_eta(&m->eta.value));
+      return;
     default:
       vl_export_lose(x, "materials of kinds that glTF has not: grey");
       color = vl_spectrum_input(vl_spectrum_constant(0.5f));

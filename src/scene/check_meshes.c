@@ -136,7 +136,7 @@ static void check_uv(vlCheck *c, const vlShapeDef *d, const Needs *n) {
 
 static bool is_body(const vlCheck *c, const vlShapeDef *d) {
   const vlMaterialDef *m = vl_check_material(c, d->material);
-  return m && (m->kind == VL_MATERIAL_DIELECTRIC ||
+  return m && (m->kind == VL_MATERIAL_DIELECTRIC || m->kind == VL_MATERIAL_SUBSURFACE ||
                (m->kind == VL_MATERIAL_PRINCIPLED && !m->principled.thin_walled &&
                 (m->principled.transmission.texture.index || m->principled.transmission.value > 0)));
 }

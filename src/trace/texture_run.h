@@ -87,7 +87,7 @@ static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vl
 void VL_HOT(vl_stage_layers)(vlTextureRun *r, const vlWorldMaterial *m);
 void VL_HOT(vl_stage_translucent)(vlTextureRun *r, const vlWorldMaterial *m);
 void VL_HOT(vl_stage_bodies)(vlTextureRun *r, const vlWorldMaterial *m); /* after their reflectance */
-void VL_HOT(vl_stage_hair)(vlTextureRun *r, const vlWorldMaterial *m); /* as those; its index, too */
+void VL_HOT(vl_stage_hair)(vlTextureRun *r, const vlWorldMaterial *m);   /* as those; its index, too */
 /* The principled material's rows of a run; the coat's normal stays in the world until there are frames. */
 void VL_HOT(vl_stage_principled)(vlTextureRun *r, const vlWorldMaterial *m);
 void VL_HOT(vl_stage_coat_frames)(const vlSurface *surface, vlShade *shade, uint32_t first, uint32_t last);

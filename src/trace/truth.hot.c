@@ -6,6 +6,7 @@
  *
  * What a hit is (interfaces are passed, mixed materials decided by a hash of the ray) is what the tracers say it is. */
 #include "trace/truth_scratch.h"
+#include "world/bssrdf.h"
 #include "world/moving.h"
 #include "world/surface_point.h"
 
@@ -88,9 +89,14 @@ static void keep_frames(vlTruthScratch *s, uint32_t n, bool back) {
     }
 }
 
-/* Reflectance of one lane at channel c: conductors straight on; what lets light through reflects or transmits all. */
+/* Reflectance of one lane at channel c: conductors straight on; of bodies what comes back out of them; what lets light
+ * through reflects or transmits all. */
 static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, int c, uint32_t i) {
   if (m->reflectance >= 0) return sh->reflectance[c][i];
+  if (m->subsurface) {
+    vlSpline albedo = vl_bssrdf_albedo(m->subsurface->table, sh->principled[VL_S_ALBEDO + c][i]);
+    return vl_bssrdf_effective(m->subsurface->table, &albedo);
+  }
   if (m->kind != VL_MATERIAL_CONDUCTOR && m->kind != VL_MATERIAL_COATED_CONDUCTOR) return 1.0f;
   float n = sh->eta[c][i], k = sh->k[c][i];
   return ((n - 1.0f) * (n - 1.0f) + k * k) / ((n + 1.0f) * (n + 1.0f) + k * k);

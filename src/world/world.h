@@ -200,14 +200,14 @@ struct vlWorld {
   VL_ARRAY(vlEnvironment) environments;
   VL_ARRAY(vlMeasured *) measured;
   VL_ARRAY(vlWorldCoat) coats;
-  VL_ARRAY(vlWorldMedium) media; /* those that something lies in */
-  VL_ARRAY(void *) blocks;       /* dense spectra and the like */
-  int32_t *texture_memo;         /* while building: scene texture and role -> node */
-  uint32_t *rank;                /* of materials: those of one kind together */
+  VL_ARRAY(vlWorldMedium) media;       /* those that something lies in */
+  VL_ARRAY(void *) blocks;             /* dense spectra and the like */
+  int32_t *texture_memo;               /* while building: scene texture and role -> node */
+  uint32_t *rank;                      /* of materials: those of one kind together */
   bool has_interfaces, has_subsurface; /* some material is one; some shape has one */
-  uint32_t camera_medium;       /* index into media, VL_NONE: vacuum */
-  bool moves;                   /* something does; else no ray need know its time */
-  double time_open, time_close; /* seconds: the world's times 0 and 1; before and after everything rests */
+  uint32_t camera_medium;              /* index into media, VL_NONE: vacuum */
+  bool moves;                          /* something does; else no ray need know its time */
+  double time_open, time_close;        /* seconds: the world's times 0 and 1; before and after everything rests */
   vlWorldOrigin *shape_origins, *material_origins, *instance_origins; /* one for each element of those arrays */
   vlSpectral white;                                                   /* radiance that shows as white */
   vlLightTree tree;

@@ -20,6 +20,29 @@ for name in film lecture portal; do
   check "render_${name}_again" "$VELO" render "$name.again.pbrt" -o b.exr --quiet
   check "same_$name" "$VELO" image diff a.exr b.exr --threshold maxabs=1e-5
 done
+cat >body.pbrt <<'END'
+LookAt 0 0 4  0 0 0  0 1 0
+Camera "perspective"
+Film "rgb" "integer xresolution" 24 "integer yresolution" 24 "string filename" "body.exr"
+Sampler "zsobol" "integer pixelsamples" 4
+WorldBegin
+LightSource "infinite"
+Texture "t" "spectrum" "checkerboard" "rgb tex1" [ .5 .2 .1 ] "rgb tex2" [ 2 1 .3 ]
+Material "subsurface" "string name" "Skin1" "float scale" 12 "float roughness" .2
+Shape "sphere" "float radius" .9
+Material "subsurface" "texture sigma_a" "t" "rgb sigma_s" [ 9 8 7 ] "float g" .3 "float eta" 1.4
+Translate 1 1 -1
+Shape "sphere" "float radius" .9
+Material "subsurface" "rgb reflectance" [ .8 .5 .4 ] "rgb mfp" [ .3 .2 .1 ] "float scale" .5
+Translate -2 0 0
+Shape "sphere" "float radius" .9
+END
+check body_pbrt "$VELO" scene convert body.pbrt body2.pbrt --strict
+check body_a "$VELO" render body.pbrt -o body_a.exr --quiet
+check body_b "$VELO" render body2.pbrt -o body_b.exr --quiet
+check body_same "$VELO" image diff body_a.exr body_b.exr --threshold differing=0
+check body_gltf "$VELO" scene convert body.pbrt body.gltf
+expect_text body_gltf_tells 'subsurface: as a rough dielectric'
 check pbrt_gltf "$VELO" scene convert scene.pbrt scene.gltf
 expect_text pbrt_gltf_tells 'not held: light from all around: left out (1)'
 check pbrt_glb "$VELO" scene convert scene.pbrt scene.glb

@@ -221,6 +221,36 @@ static void hot(void **state) {
       assert_near("black body", mean[rgb][1][c], factor * mean[rgb][0][c], 0.015 * factor * mean[rgb][0][0]);
 }
 
+/* A lamp with a picture on it, seen straight on, stands upright with and without fog in the world. */
+static void pictured_lamp(void **state) {
+  (void)state;
+  const float rows[6] = {4, 4, 4, 1, 1, 1}; /* bright above */
+  double half[2][2];
+  for (int with = 0; with < 2; with++) {
+    Stage s = stage_open(8, 8);
+    s.camera.fov = 0.5;
+    s.build.color = VL_COLOR_RGB;
+    s.render.tracer = VL_TRACER_VOLPATH;
+    s.render.spp = 16;
+    vlTextureDef texture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+    vlImage *image = make_image(&s, 1, 2, rows);
+    texture.image = image, texture.filter = VL_FILTER_POINT;
+    vlEmissionDef glow = vl_default_emission_def();
+    glow.texture = vl_scene_add_texture(s.scene, &texture);
+    vl_image_destroy(image);
+    Quad lamp = quad_at(0, 0, -3, 2, 0, 0, 0, 2, 0);
+    lamp.emission = vl_scene_add_emission(s.scene, &glow);
+    add_quad(&s, &lamp);
+    vlMediumDef def = fog(1, 0, 0);
+    if (with) add_ball(&s, -3, 0.01f, interface(&s), add_medium(&s, &def), (vlMediumId){0});
+    Picture p = stage_finish(&s);
+    half[with][0] = picture_region(&p, 0, 0, 8, 3, 1), half[with][1] = picture_region(&p, 0, 5, 8, 8, 1);
+    picture_free(&p);
+  }
+  assert_true(half[0][0] > 2 * half[0][1]);
+  for (int k = 0; k < 2; k++) assert_ratio("pictured lamp", half[1][k], half[0][k], 1e-3);
+}
+
 /* ---- what must not show ------------------------------------------------------------------------------------------ */
 
 static Picture rich(int threads, vlIsa isa, vlTracer tracer) {
@@ -286,9 +316,9 @@ static void path_looks_past(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(furnace),   cmocka_unit_test(furnace_in_glass),
-                                     cmocka_unit_test(beer),      cmocka_unit_test(single_scattering),
-                                     cmocka_unit_test(glowing),   cmocka_unit_test(hot),
-                                     cmocka_unit_test(same_bits), cmocka_unit_test(path_looks_past)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(furnace),           cmocka_unit_test(furnace_in_glass), cmocka_unit_test(beer),
+      cmocka_unit_test(single_scattering), cmocka_unit_test(glowing),          cmocka_unit_test(hot),
+      cmocka_unit_test(same_bits),         cmocka_unit_test(path_looks_past),  cmocka_unit_test(pictured_lamp)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -92,7 +92,7 @@ static void walls(void **state) {
   const float etas[] = {1.0f, 1.33f, 1.5f};
   for (int k = 0; k < 3; k++)
     for (int way = 0; way < 2; way++)
-      for (int rgb = 0; rgb < 2; rgb++) {
+      for (int rgb = (k + way) & 1; rgb < 2; rgb += 2) {
         Stage s = open_stage(16, 512, rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL);
         s.render.max_depth = 1;
         vlMaterialDef def = way ? body(3, 17) : reflecting(vl_spectrum_constant(0.6f), 0.2f);
@@ -115,7 +115,7 @@ static void walls(void **state) {
 static void colours(void **state) {
   (void)state;
   for (int rgb = 0; rgb < 2; rgb++) {
-    Stage s = open_stage(16, 1024, rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL);
+    Stage s = open_stage(16, 512, rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL);
     s.render.max_depth = 1;
     vlMaterialDef def = reflecting(vl_spectrum_rgb(0.8f, 0.5f, 0.3f), 1);
     def.subsurface.mfp = vl_spectrum_input(vl_spectrum_rgb(0.4f, 0.2f, 0.1f));
@@ -188,7 +188,7 @@ static void corner(void **state) {
   const double a = 0.3, sigma = 5;
   const float albedo = 0.9f;
   for (int mesh = 0; mesh < 2; mesh++) {
-    Stage s = open_stage(8, 16384, VL_COLOR_RGB);
+    Stage s = open_stage(8, 8192, VL_COLOR_RGB);
     s.camera.fov = 0.001;
     s.render.max_depth = 1;
     s.camera.eye[0] = s.camera.lookat[0] = -a;
@@ -415,10 +415,57 @@ static void refused(void **state) {
   }
 }
 
+/* ---- memory ------------------------------------------------------------------------------------------------------ */
+
+typedef struct Purse {
+  long left; /* allocations that still succeed */
+} Purse;
+static void *take(void *user, size_t size) {
+  Purse *p = user;
+  return p->left-- > 0 ? malloc(size) : NULL;
+}
+static void *retake(void *user, void *block, size_t size) {
+  Purse *p = user;
+  return p->left-- > 0 ? realloc(block, size) : NULL;
+}
+static void give_back(void *user, void *block) {
+  (void)user;
+  free(block);
+}
+
+/* The n-th allocation of a build fails, for every n. */
+static void memory(void **state) {
+  (void)state;
+  vlResult r = VL_ERROR_MEMORY;
+  for (long n = 0; r != VL_OK && n < 1000; n++) {
+    Purse purse = {1000000};
+    vlContextDef def = vl_default_context_def();
+    def.threads = 1;
+    def.allocator.allocate = take, def.allocator.reallocate = retake, def.allocator.release = give_back;
+    def.allocator.user = &purse;
+    Stage s = {.build = vl_default_build_def()};
+    assert_int_equal(vl_context_create(&def, &s.context), VL_OK);
+    assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
+    vlMaterialDef one = body(1, 2), two = reflecting(vl_spectrum_rgb(0.1f, 0.2f, 0.3f), 1);
+    Quad q = wall(-3, 3, add(&s, &one)), p = wall(-4, 3, add(&s, &two));
+    add_quad(&s, &q);
+    add_quad(&s, &p);
+    purse.left = n;
+    vlWorld *world = NULL;
+    r = vl_world_build(s.scene, &s.build, &world, NULL);
+    if (r != VL_OK) assert_int_equal(r, VL_ERROR_MEMORY);
+    vl_world_destroy(world);
+    purse.left = 1000000;
+    stage_close(&s);
+  }
+  assert_int_equal(r, VL_OK);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(walls),    cmocka_unit_test(colours),   cmocka_unit_test(rough),    cmocka_unit_test(white),
       cmocka_unit_test(corner),   cmocka_unit_test(in_fog),    cmocka_unit_test(mixed),    cmocka_unit_test(textured),
-      cmocka_unit_test(as_glass), cmocka_unit_test(same_bits), cmocka_unit_test(extremes), cmocka_unit_test(refused)};
+      cmocka_unit_test(as_glass), cmocka_unit_test(same_bits), cmocka_unit_test(extremes), cmocka_unit_test(refused),
+      cmocka_unit_test(memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

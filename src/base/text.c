@@ -44,6 +44,16 @@ const char *vl_nearest_name(const char *name, const char *const *names, size_t c
   return best && best_distance * 3 <= (length > 3 ? length : 3) ? best : NULL;
 }
 
+void vl_tell_names(char *text, size_t size, const char *name, const char *const *names, size_t count) {
+  const char *near = vl_nearest_name(name, names, count);
+  char list[256] = "";
+  for (size_t i = 0; i < count && !near; i++) vl_list_name(list, sizeof list, names[i]);
+  if (near)
+    snprintf(text, size, "; the nearest is \"%s\"", near);
+  else
+    snprintf(text, size, "; known are%s", list + (list[0] == ':'));
+}
+
 void vl_list_name(char *list, size_t size, const char *name) {
   size_t used = strlen(list), length = strlen(name);
   if (used + 2 + length >= size) return;

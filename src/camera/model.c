@@ -1,9 +1,9 @@
 /* camera/model.c: the numbers of a projection and of a lens's distortion, checked and brought to one form. */
 #include <math.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "camera/parts.h"
 #include "camera/points.h"
 #include "math/transform.h"
@@ -193,37 +193,21 @@ static const Colmap colmap[] = {
 };
 enum { COLMAP_MODELS = sizeof colmap / sizeof colmap[0] };
 
-/* Of two words, how many letters must change; words of more than 31 letters count as far away. */
-static uint32_t distance(const char *a, const char *b) {
-  size_t n = strlen(a), m = strlen(b);
-  uint32_t row[32];
-  if (n > 31 || m > 31) return 99;
-  for (size_t j = 0; j <= m; j++) row[j] = (uint32_t)j;
-  for (size_t i = 1; i <= n; i++) {
-    uint32_t before = row[0];
-    row[0] = (uint32_t)i;
-    for (size_t j = 1; j <= m; j++) {
-      uint32_t change = before + (strncasecmp(a + i - 1, b + j - 1, 1) != 0);
-      before = row[j];
-      uint32_t best = row[j] < row[j - 1] ? row[j] + 1 : row[j - 1] + 1;
-      row[j] = change < best ? change : best;
-    }
-  }
-  return row[m];
-}
-
 vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double *parameters, uint32_t count,
                               vlError *error) {
   vl_error_clear(error);
   if (!def || !model || (!parameters && count > 0)) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: null argument");
-  const Colmap *found = NULL, *nearest = &colmap[0];
+  const Colmap *found = NULL;
+  const char *names[COLMAP_MODELS];
   for (int i = 0; i < COLMAP_MODELS; i++) {
-    if (strcmp(model, colmap[i].name) == 0) found = &colmap[i];
-    if (distance(model, colmap[i].name) < distance(model, nearest->name)) nearest = &colmap[i];
+    names[i] = colmap[i].name;
+    if (strcmp(model, names[i]) == 0) found = &colmap[i];
   }
-  if (!found)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown COLMAP camera model \"%.40s\"; the nearest is %s", model,
-                   nearest->name);
+  if (!found) {
+    char known[300];
+    vl_tell_names(known, sizeof known, model, names, COLMAP_MODELS);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown COLMAP camera model \"%.40s\"%s", model, known);
+  }
   if (count != found->count)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the COLMAP camera model %s has %u parameters, not %u",
                    found->name, found->count, count);

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 
-enum { MOST_TRIANGLES = 1 << 24 };
+enum { MOST_TRIANGLES = 1 << 22 }; /* some 600 MB with their hierarchy */
 
 typedef struct Edge {
   uint64_t key; /* lower vertex << 32 | higher; 0: free (no edge leads from 0 to 0) */

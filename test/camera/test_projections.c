@@ -459,7 +459,7 @@ static void error_messages(void **state) {
   vlCameraDef d = vl_default_camera_def(640, 480);
   const double p[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   assert_int_equal(vl_camera_def_colmap(&d, "PINHOL", p, 4, &error), VL_ERROR_ARGUMENT);
-  assert_non_null(strstr(error.message, "the nearest is PINHOLE"));
+  assert_non_null(strstr(error.message, "the nearest is \"PINHOLE\""));
   assert_int_equal(vl_camera_def_colmap(&d, "OPENCV", p, 7, &error), VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "8 parameters, not 7"));
   assert_int_equal(vl_camera_def_colmap(&d, "SIMPLE_RADIAL", p, 4, &error), VL_OK);

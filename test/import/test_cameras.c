@@ -125,7 +125,7 @@ static void warnings_and_errors(void **state) {
       {"\"opencv\" \"float coefficients\" [1 2 3]", "3 OpenCV distortion coefficients"},
       {"\"opencv\" \"float coefficients\" [1 2 3 4 5 6 7 8 9 0 1 2 3 4 5]", "15 numbers; at most 14"},
       {"\"opencv\" \"float coeficients\" [1 2 3 4]", "coefficients"},
-      {"\"colmap\" \"string model\" \"OPENCVV\" \"float parameters\" [1 2 3 4]", "the nearest is OPENCV"},
+      {"\"colmap\" \"string model\" \"OPENCVV\" \"float parameters\" [1 2 3 4]", "the nearest is \"OPENCV\""},
       {"\"unified\"", "needs its xi"},
       {"\"fisheye\" \"string mapping\" \"equidistance\"", "equidistant"},
       {"\"fish\"", "fish"},

@@ -99,7 +99,7 @@ static void refused(void **state) {
   (void)state;
   Made m = make(0.1f, 1e-7f, false, false);
   assert_int_equal(m.result, VL_ERROR_SCENE);
-  assert_non_null(strstr(m.error.message, "need more than 16777216 triangles"));
+  assert_non_null(strstr(m.error.message, "need more than 4194304 triangles"));
   finish(&m);
   m = make(0.1f, 0, false, false);
   assert_int_equal(m.result, VL_ERROR_SCENE);

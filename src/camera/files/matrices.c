@@ -131,14 +131,14 @@ vlResult vl_camera_read_matrices(const vlCameraFile *file, const json_t *tree, v
   const json_t *field;
   vlResult result = vl_camera_field(file, tree, "graphics_api", &field);
   if (result != VL_OK) return result;
-  const char *word = json_string_value(field), *near_name;
+  const char *word = json_string_value(field);
   const Api *api = NULL;
   for (int i = 0; i < API_COUNT && word; i++)
     if (strcmp(apis[i].name, word) == 0) api = &apis[i];
   if (!api) {
-    near_name = word ? vl_nearest_name(word, names, API_COUNT) : NULL;
-    return vl_camera_wrong(file, "unknown graphics_api \"%.40s\"; the nearest is \"%s\"", word ? word : "",
-                           near_name ? near_name : "opengl");
+    char known[300];
+    vl_tell_names(known, sizeof known, word ? word : "", names, API_COUNT);
+    return vl_camera_wrong(file, "unknown graphics_api \"%.40s\"%s", word ? word : "", known);
   }
   vlCameraFile own = *file;
   own.dialect = api->name;

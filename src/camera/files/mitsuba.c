@@ -245,9 +245,9 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDe
   int kind = 0;
   while (kind < 3 && !(type && strcmp(type, types[kind]) == 0)) kind++;
   if (kind == 3) {
-    const char *near_name = type ? vl_nearest_name(type, types, 3) : NULL;
-    return vl_camera_wrong_at(file, line_of(sensor), 0, "mitsuba: unknown sensor \"%.40s\"; the nearest is \"%s\"",
-                              type ? type : "", near_name ? near_name : types[0]);
+    char known[300];
+    vl_tell_names(known, sizeof known, type ? type : "", types, 3);
+    return vl_camera_wrong_at(file, line_of(sensor), 0, "mitsuba: unknown sensor \"%.40s\"%s", type ? type : "", known);
   }
   double size[2], crop[4], offset[2] = {0, 0}, f = 1.0;
   vlMat4 m;

@@ -18,9 +18,9 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const ch
   size_t found = 0, count = sizeof names / sizeof *names;
   while (model && model[0] && found < count && strcmp(model, names[found]) != 0) found++;
   if (found == count) {
-    const char *near = vl_nearest_name(model, names, count);
-    return vl_camera_wrong(file, "%s: unknown distortion_model \"%.40s\"; the nearest is \"%s\"", file->dialect, model,
-                           near ? near : "plumb_bob");
+    char known[300];
+    vl_tell_names(known, sizeof known, model, names, count);
+    return vl_camera_wrong(file, "%s: unknown distortion_model \"%.40s\"%s", file->dialect, model, known);
   }
   fisheye = fisheye || (model && (strcmp(model, "fisheye") == 0 || strcmp(model, "equidistant") == 0));
   double *k = d->distortion_coefficients;

@@ -98,8 +98,9 @@ static vlResult word(const vlCameraFile *file, const json_t *object, const char 
       *index = i;
       return VL_OK;
     }
-  const char *near = vl_nearest_name(text, names, count);
-  return vl_camera_wrong(file, "velo: unknown %s \"%.60s\"; the nearest is \"%s\"", key, text, near ? near : names[0]);
+  char known[300];
+  vl_tell_names(known, sizeof known, text, names, count);
+  return vl_camera_wrong(file, "velo: unknown %s \"%.60s\"%s", key, text, known);
 }
 
 static vlResult read_distortion(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {

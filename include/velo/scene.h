@@ -432,8 +432,8 @@ typedef enum vlTracer {
   VL_TRACER_RAYCAST,
   VL_TRACER_AMBIENT_OCCLUSION,
   VL_TRACER_VOLPATH, /* through media and bodies; where there are none the same as VL_TRACER_PATH, to the bit */
-  /* Light followed both ways (docs/tracers.md). Where something moves or is a body that light goes through
-   * (VL_MATERIAL_SUBSURFACE): VL_TRACER_VOLPATH. */
+  /* Light followed both ways (docs/tracers.md). With bodies that light goes through (VL_MATERIAL_SUBSURFACE), or where
+   * something moves while the camera's rows are read out: VL_TRACER_VOLPATH. */
   VL_TRACER_BIDIRECTIONAL, /* paths from the eye, and paths from the lights that the eye sees; unbiased */
   VL_TRACER_MERGING,       /* and both meet at surfaces, within a radius that shrinks with each pass */
   VL_TRACER_SPPM,       /* the same; smooth surfaces that the eye looks through are no bounces, as pbrt's sppm counts */

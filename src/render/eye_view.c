@@ -33,7 +33,8 @@ void vl_eye_view(const vlCamera *camera, const vlFilmDef *film, vlEyeView *view)
   const double *m = camera->world_from_camera;
   double s = axes_length(m);
   view->sees = c.projection == VL_PROJECTION_PERSPECTIVE && c.plain && !c.shaped && !vl_camera_weighted(&c) &&
-               c.eye_circle == 0.0 && !c.when.moves && camera->skew == 0.0 && s > 0;
+               c.eye_circle == 0.0 && camera->skew == 0.0 && s > 0;
+  if (c.when.moves && fabs(axes_length(camera->world_from_camera_close) - s) > 1e-5 * s) view->sees = false;
   if (!view->sees) return;
   view->position = (vlVec3){(float)m[3], (float)m[7], (float)m[11]};
   view->right = axis(m, 0, s), view->down = axis(m, 1, s), view->ahead = axis(m, 2, s);
@@ -45,6 +46,15 @@ void vl_eye_view(const vlCamera *camera, const vlFilmDef *film, vlEyeView *view)
   view->high_x = (float)film->crop[2] + film->filter.radius_x;
   view->low_y = (float)film->crop[1] - film->filter.radius_y,
   view->high_y = (float)film->crop[3] + film->filter.radius_y;
+}
+
+void vl_eye_view_move(vlEyeView *view, vlAffine at) {
+  const double *m = at.m;
+  double s = 1 / sqrt(m[0] * m[0] + m[3] * m[3] + m[6] * m[6]);
+  view->position = (vlVec3){(float)at.p[0], (float)at.p[1], (float)at.p[2]};
+  view->right = (vlVec3){(float)(m[0] * s), (float)(m[3] * s), (float)(m[6] * s)};
+  view->down = (vlVec3){(float)(m[1] * s), (float)(m[4] * s), (float)(m[7] * s)};
+  view->ahead = (vlVec3){(float)(m[2] * s), (float)(m[5] * s), (float)(m[8] * s)};
 }
 
 static int compare(const void *a, const void *b) {

@@ -2,10 +2,14 @@
 #ifndef RENDER_EYE_VIEW_H
 #define RENDER_EYE_VIEW_H
 
+#include "math/motion.h"
 #include "trace/two_way.h"
 
-/* view->sees is false for cameras that are not a perspective one at rest, with a round lens or none. */
+/* view->sees is false for cameras that are not a perspective one with a round lens or none. Of one that moves: its
+ * first pose. */
 void vl_eye_view(const vlCamera *camera, const vlFilmDef *film, vlEyeView *view);
+/* Where it is at another time: world from camera. */
+void vl_eye_view_move(vlEyeView *view, vlAffine at);
 /* The radius that merging starts from: two pixels wide where the middling ray of the camera ends; 0: none ends. */
 vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlTraceDef *trace, float *radius,
                          vlError *error);

@@ -44,6 +44,7 @@ void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTabl
   f->filter_kernels = vl_filter_kernels(isa);
   f->lens = camera->lens_radius > 0;
   f->middle = f->moves = f->centred = false;
+  f->shared = -1.0f;
 }
 
 void vl_film_rays_clock(vlFilmRays *f, const vlWorld *world) {
@@ -57,8 +58,8 @@ void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) 
   f->filter_kernels->sample(f->filter, n, r->film_u, r->film_v, r->film_x, r->film_y, r->weight);
   for (uint32_t i = 0; i < VL_PAD(n); i++) r->film_x[i] += 0.5f, r->film_y[i] += 0.5f;
   for (uint32_t i = 0; f->centred && i < VL_PAD(n); i++) r->film_x[i] = r->film_y[i] = 0.5f, r->weight[i] = 1.0f;
-  if (f->middle || f->centred)
-    for (uint32_t i = 0; i < VL_PAD(n); i++) r->time[i] = 0.5f;
+  if (f->middle || f->centred || f->shared >= 0.0f)
+    for (uint32_t i = 0; i < VL_PAD(n); i++) r->time[i] = f->middle || f->centred ? 0.5f : f->shared;
   else
     k->get_1d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_TIME, r->time);
   if (f->lens) k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_LENS, r->lens_u, r->lens_v);

@@ -17,6 +17,7 @@ typedef struct vlFilmRays {
   const vlFilterKernels *filter_kernels;
   bool lens;    /* points on the lens are drawn */
   bool centred; /* of pixel and lens, and in the middle of the shutter's time */
+  float shared; /* from 0 on: the number that all times are drawn by */
   bool middle;  /* in the middle of the shutter's time, all of them */
   bool moves;   /* something in the world does: times of rays are the world's, 0 to 1; else seconds */
 } vlFilmRays;

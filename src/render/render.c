@@ -82,12 +82,12 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
   return VL_OK;
 }
 
-/* Light is followed both ways where nothing moves or is a body that light goes through; else by the tracer that can do
- * that. */
+/* Light is followed both ways but through bodies of subsurface materials, and where each row of the picture has a time
+ * of its own; there by the tracer that can do that. */
 static vlTracer tracer_of(const vlRenderRun *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
   vlTracer tracer = r->def->tracer;
-  bool moves = world->moves || camera->moves;
+  bool rolls = (world->moves || camera->moves) && camera->readout > 0;
   if (world->has_subsurface && (tracer == VL_TRACER_PATH || tracer == VL_TRACER_RANDOM_WALK))
     vl_log(world->context, VL_LOG_WARNING, NULL,
            "this tracer shows bodies of material \"subsurface\" as clear glass; volpath shows the light in them");
@@ -95,17 +95,16 @@ static vlTracer tracer_of(const vlRenderRun *r, const vlCamera *camera) {
     vl_log(world->context, VL_LOG_INFO, NULL, "spectra are filled from the eye alone: light is not followed both ways");
     return VL_TRACER_VOLPATH;
   }
-  if (!vl_two_way_tracer(tracer) || (!moves && !world->has_subsurface)) return tracer;
-  vl_log(world->context, VL_LOG_INFO, NULL,
-         "light is followed both ways only where nothing %s: paths from the eye alone are traced",
-         moves ? "moves" : "is of material \"subsurface\"");
+  if (!vl_two_way_tracer(tracer) || (!rolls && !world->has_subsurface)) return tracer;
+  vl_log(world->context, VL_LOG_INFO, NULL, "light is not followed both ways %s: paths from the eye alone are traced",
+         rolls ? "where something moves while rows are read out" : "through bodies of material \"subsurface\"");
   return VL_TRACER_VOLPATH;
 }
 
 /* Their passes have one sample, and paths from the lights before it. */
 static vlResult prepare_two_way(vlRenderRun *r, const vlCamera *camera, vlError *error) {
   if (!vl_two_way_tracer(r->trace.tracer)) return VL_OK;
-  vlResult result = vl_two_way_create(r->world, camera, r->film, r->def, &r->trace, &r->two_way, error);
+  vlResult result = vl_two_way_create(r->world, camera, r->film, r->def, &r->trace, &r->film_rays, &r->two_way, error);
   if (result != VL_OK) return result;
   r->trace.two_way = vl_two_way_of(r->two_way);
   for (uint32_t i = 0; i < vl_context_threads(r->world->context); i++)
@@ -217,6 +216,7 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
     r->first_sample = vl_film_spp(film);
     r->pass_samples = r->two_way ? 1 : pass_size(r->first_sample, def->spp, seconds_per_sample);
     vl_render_choose_blocks(r);
+    if (r->two_way) r->film_rays.shared = vl_two_way_time(r->two_way, r->first_sample);
     if (r->two_way && (result = vl_two_way_light(r->two_way, r->first_sample, error)) != VL_OK) {
       vl_film_abandon_pass(film);
       break;

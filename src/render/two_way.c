@@ -8,30 +8,24 @@
 #include "base/context.h"
 #include "base/error.h"
 #include "film/expose.h"
-#include "film/sums.h"
 #include "math/hash.h"
 #include "render/eye_view.h"
+#include "render/splats.h"
 
 enum {
   MOST_PATHS = 1 << 20,   /* of light in a pass, if their number is not given */
   MOST_PHOTONS = 1 << 23, /* 512 MB, and as much again sorted; a pass that would leave more has fewer paths */
   FIRST_PHOTONS = 1 << 16
 };
-static const uint32_t light_seed = 0x6c696768u;
-
-/* 128 bits in two words, so that threads may add without a lock: a carry is what one addition makes. */
-typedef struct Sum {
-  atomic_uint_least64_t low, high;
-} Sum;
-typedef struct Splat {
-  Sum color[3];
-} Splat;
+static const uint32_t light_seed = 0x6c696768u, time_seed = 0x74696d65u;
 
 typedef struct Worker {
   struct vlTwoWayRows *rows;
   vlTraceScratch *scratch;
   int32_t px[VL_ROW_SIZE], py[VL_ROW_SIZE];
   uint32_t index[VL_ROW_SIZE];
+  float u[VL_ROW_SIZE], time[VL_ROW_SIZE];
+  vlEyeView *eyes; /* VL_ROW_SIZE, of a camera that moves */
   float color[3][VL_ROW_SIZE];
   uint64_t paths, bounce_rays, shadow_rays, not_finite;
   vlTwoWayRun *run;
@@ -47,11 +41,11 @@ struct vlTwoWayRun {
   const vlTraceKernels *kernels;
   Worker *workers;
   char *memory; /* of the workers' rows */
+  vlEyeView *eyes;
+  const vlFilmRays *rays;
   float *choice;
   uint32_t *medium; /* of lights */
-  Splat *splats;    /* of the crop window */
-  uint32_t x0, y0, width, height;
-  double filter_scale[2];
+  vlSplats splats;
   float exposure, first_radius;
   uint32_t most_paths, paths, index;
   uint32_t pixels, rounds; /* paths are samples of the film's pixels, by the light's sampler: so many of each */
@@ -78,31 +72,6 @@ void vl_two_way_use(vlTwoWayRun *run, uint32_t worker, vlTraceScratch *scratch) 
 
 /* ---- splats ------------------------------------------------------------------------------------------------------ */
 
-static void add(Sum *sum, float value) {
-  vlInt128 units = vl_film_product(value, INT64_C(1) << VL_WEIGHT_BITS);
-  uint64_t low = (uint64_t)units, high = (uint64_t)(units >> 64);
-  uint64_t old = atomic_fetch_add_explicit(&sum->low, low, memory_order_relaxed);
-  high += old + low < old;
-  if (high) atomic_fetch_add_explicit(&sum->high, high, memory_order_relaxed);
-}
-
-/* What the pixels round a film point see of it: the pixel filter, of integral 1. */
-static void splat_one(vlTwoWayRun *run, float x, float y, const float color[3]) {
-  const vlPixelFilter *f = &run->film_def->filter;
-  int32_t first_x = (int32_t)floor((double)x - 0.5 - (double)f->radius_x) + 1;
-  int32_t first_y = (int32_t)floor((double)y - 0.5 - (double)f->radius_y) + 1;
-  for (int32_t py = first_y; (double)py + 0.5 <= (double)y + (double)f->radius_y; py++) {
-    if (py < (int32_t)run->y0 || py >= (int32_t)(run->y0 + run->height)) continue;
-    double wy = vl_filter_value(f, 1, (double)y - (double)py - 0.5) * run->filter_scale[1];
-    for (int32_t px = first_x; (double)px + 0.5 <= (double)x + (double)f->radius_x; px++) {
-      if (px < (int32_t)run->x0 || px >= (int32_t)(run->x0 + run->width)) continue;
-      double w = wy * vl_filter_value(f, 0, (double)x - (double)px - 0.5) * run->filter_scale[0];
-      Splat *s = &run->splats[(size_t)(py - (int32_t)run->y0) * run->width + (size_t)(px - (int32_t)run->x0)];
-      for (int c = 0; c < 3; c++) add(&s->color[c], (float)(w * (double)color[c]));
-    }
-  }
-}
-
 static void splat(void *user, uint32_t n, const float *x, const float *y, float *const value[4], float *const lambda[4],
                   float *const inv_pdf[4]) {
   Worker *w = user;
@@ -121,30 +90,13 @@ static void splat(void *user, uint32_t n, const float *x, const float *y, float 
   vl_film_expose(run->film, run->trace.isa, &expose, w->color[0], w->color[1], w->color[2]);
   for (uint32_t i = 0; i < n; i++) {
     const float color[3] = {w->color[0][i], w->color[1][i], w->color[2][i]};
-    float most = fmaxf(fabsf(color[0]), fmaxf(fabsf(color[1]), fabsf(color[2])));
-    float sum = color[0] + color[1] + color[2];
-    if (most < 0x1p35f && sum == sum)
-      splat_one(run, x[i], y[i], color);
-    else
-      w->not_finite++;
+    w->not_finite += !vl_splats_add(&run->splats, x[i], y[i], color);
   }
 }
 
 void vl_two_way_take(vlTwoWayRun *run, uint32_t n, const int32_t *px, const int32_t *py, const float *weight, float *r,
                      float *g, float *b) {
-  for (uint32_t i = 0; i < n; i++) {
-    Splat *s = &run->splats[(size_t)((uint32_t)py[i] - run->y0) * run->width + ((uint32_t)px[i] - run->x0)];
-    float *const to[3] = {r + i, g + i, b + i};
-    for (int c = 0; c < 3; c++) {
-      uint64_t low = atomic_load_explicit(&s->color[c].low, memory_order_relaxed);
-      uint64_t high = atomic_load_explicit(&s->color[c].high, memory_order_relaxed);
-      if (!(low | high)) continue;
-      double sum = ((double)(int64_t)high * 0x1p64 + (double)low) * 0x1p-50;
-      *to[c] += (float)(sum / (double)weight[i]);
-      atomic_store_explicit(&s->color[c].low, 0, memory_order_relaxed);
-      atomic_store_explicit(&s->color[c].high, 0, memory_order_relaxed);
-    }
-  }
+  vl_splats_take(&run->splats, n, px, py, weight, r, g, b);
 }
 
 /* ---- light's paths ----------------------------------------------------------------------------------------------- */
@@ -154,6 +106,47 @@ static void store(void *user, uint32_t n, const vlPhoton *photons) {
   vlTwoWayRun *run = w->run;
   uint64_t at = atomic_fetch_add_explicit(&run->stored, n, memory_order_relaxed);
   if (at + n <= run->capacity) memcpy(run->photons + at, photons, n * sizeof *photons);
+}
+
+/* Van der Corput's sequence, turned by the seed: any number of passes has its wavelengths well spread. */
+static float shared_number(uint32_t seed, uint32_t index) {
+  uint32_t x = index;
+  x = x << 16 | x >> 16;
+  x = (x & 0x00ff00ffu) << 8 | (x >> 8 & 0x00ff00ffu);
+  x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
+  x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
+  x = (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+  return vl_unit_float(x + vl_hash2(seed, light_seed));
+}
+
+float vl_two_way_time(const vlTwoWayRun *run, uint32_t index) {
+  return run->way.merge ? shared_number(run->trace.sampler->seed ^ time_seed, index) : -1.0f;
+}
+
+const vlEyeView *vl_two_way_eyes(const vlTwoWayRun *run, uint32_t worker, uint32_t n, const float *u, float *time) {
+  const vlCameraCompiled *c = &run->rays->camera;
+  const vlCameraTime *t = &c->when;
+  vlEyeView *eyes = run->workers[worker].eyes;
+  if (!eyes && !time) return NULL;
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
+    double when = c->shutter_open + c->shutter_time * vl_shutter_share(t, (double)u[i]);
+    if (time) time[i] = when > 0 ? (when < 1 ? (float)when : 1.0f) : 0.0f; /* before and after, the world rests */
+    if (!eyes) continue;
+    double f = (when - t->pose_open) * t->pose_rate;
+    eyes[i] = run->way.eye;
+    vl_eye_view_move(&eyes[i], vl_motion_between(&t->motion, f > 0 ? (f < 1 ? f : 1) : 0));
+  }
+  return eyes;
+}
+
+/* The numbers that the times of light's paths stand for, one each. */
+static void draw_times(const vlTwoWayRun *run, uint32_t n, Worker *w) {
+  const vlFilmRays *rays = run->rays;
+  if (!rays->centred && rays->shared < 0.0f) {
+    rays->sampler_kernels->get_1d(&run->way.sampler, n, w->px, w->py, w->index, VL_DIM_BOUNCE + VL_DIM_LIGHT, w->u);
+    return;
+  }
+  for (uint32_t i = 0; i < VL_PAD(n); i++) w->u[i] = rays->centred ? 0.5f : rays->shared;
 }
 
 static void light_block(void *user, uint32_t block, uint32_t worker) {
@@ -168,6 +161,11 @@ static void light_block(void *user, uint32_t block, uint32_t worker) {
   }
   vlLightBatch batch = {
       .n = n, .px = w->px, .py = w->py, .index = w->index, .first = first, .user = w, .splat = splat, .store = store};
+  if (run->rays->moves || run->eyes) {
+    draw_times(run, n, w);
+    batch.eyes = vl_two_way_eyes(run, worker, n, w->u, w->time);
+    batch.time = run->rays->moves ? w->time : NULL;
+  }
   unsigned state = vl_accel_enter();
   run->kernels->light(run->world, &run->trace, w->scratch, w->rows, &batch);
   vl_accel_leave(state);
@@ -194,10 +192,6 @@ static vlResult grow(vlTwoWayRun *run, uint64_t wanted, vlError *error) {
   return good ? VL_OK : vl_fail_memory(error);
 }
 
-static void clear_splats(vlTwoWayRun *run) {
-  memset((void *)run->splats, 0, (size_t)run->width * run->height * sizeof *run->splats);
-}
-
 /* Radii shrink so that both error and bias vanish: r_i^2 = r_1^2 i^(alpha - 1), alpha = 2/3 (Knaus and Zwicker 2011;
  * Georgiev et al. 2012). */
 static void set_radius(vlTwoWayRun *run, uint32_t index) {
@@ -207,17 +201,6 @@ static void set_radius(vlTwoWayRun *run, uint32_t index) {
   way->merged = way->merge ? way->paths * VL_PI * radius * radius : 0.0f;
   way->merged_volume = way->merged * radius * (4.0f / 3.0f);
   way->map.radius2 = radius * radius;
-}
-
-/* Van der Corput's sequence, turned by the seed: any number of passes has its wavelengths well spread. */
-static float shared_number(uint32_t seed, uint32_t index) {
-  uint32_t x = index;
-  x = x << 16 | x >> 16;
-  x = (x & 0x00ff00ffu) << 8 | (x >> 8 & 0x00ff00ffu);
-  x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
-  x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
-  x = (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
-  return vl_unit_float(x + vl_hash2(seed, light_seed));
 }
 
 vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlError *error) {
@@ -237,7 +220,7 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlError *error) {
                           run->buckets);
       return VL_OK;
     }
-    clear_splats(run); /* the pass is done again, with more room or fewer paths */
+    vl_splats_clear(&run->splats); /* the pass is done again, with more room or fewer paths */
     if (stored > MOST_PHOTONS) run->paths = run->paths / 2 > 1 ? run->paths / 2 : 1;
     vlResult result = grow(run, stored < MOST_PHOTONS ? stored : MOST_PHOTONS, error);
     if (result != VL_OK) return result;
@@ -245,13 +228,6 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlError *error) {
 }
 
 /* ---- making ------------------------------------------------------------------------------------------------------ */
-
-static double filter_integral(const vlPixelFilter *f, int axis) {
-  enum { STEPS = 4096 };
-  double radius = (double)(axis ? f->radius_y : f->radius_x), sum = 0;
-  for (int i = 0; i < STEPS; i++) sum += vl_filter_value(f, axis, (i + 0.5) / STEPS * radius);
-  return 2 * radius * sum / STEPS;
-}
 
 static vlResult make_workers(vlTwoWayRun *run, vlError *error) {
   uint32_t threads = vl_context_threads(run->context);
@@ -265,6 +241,14 @@ static vlResult make_workers(vlTwoWayRun *run, vlError *error) {
     run->workers[i].run = run;
     run->workers[i].rows = (struct vlTwoWayRows *)(void *)(run->memory + i * size);
   }
+  return VL_OK;
+}
+
+static vlResult make_eyes(vlTwoWayRun *run, vlError *error) {
+  uint32_t threads = vl_context_threads(run->context);
+  run->eyes = vl_alloc_array(run->context, (size_t)threads * VL_ROW_SIZE, sizeof *run->eyes);
+  if (!run->eyes) return vl_fail_memory(error);
+  for (uint32_t i = 0; i < threads; i++) run->workers[i].eyes = run->eyes + (size_t)i * VL_ROW_SIZE;
   return VL_OK;
 }
 
@@ -283,7 +267,7 @@ static vlResult find_media(vlTwoWayRun *run, const vlCamera *camera, vlError *er
 }
 
 vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
-                           const vlTraceDef *trace, vlTwoWayRun **made, vlError *error) {
+                           const vlTraceDef *trace, const vlFilmRays *rays, vlTwoWayRun **made, vlError *error) {
   vlContext *context = world->context;
   vlTwoWayRun *run = vl_alloc_zero(context, 1, sizeof *run);
   *made = run;
@@ -293,10 +277,8 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   run->trace = *trace;
   run->trace.two_way = &run->way;
   run->kernels = vl_trace_kernels(trace->isa);
+  run->rays = rays;
   run->exposure = (float)camera->exposure_time;
-  run->x0 = f->crop[0], run->y0 = f->crop[1];
-  run->width = f->crop[2] - f->crop[0], run->height = f->crop[3] - f->crop[1];
-  for (int i = 0; i < 2; i++) run->filter_scale[i] = 1 / filter_integral(&f->filter, i);
   uint64_t pixels = (uint64_t)f->width * f->height;
   run->pixels = pixels < UINT32_MAX ? (uint32_t)pixels : UINT32_MAX;
   run->most_paths = def->light_paths;
@@ -312,14 +294,15 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   way->merge = def->tracer == VL_TRACER_MERGING || way->apart;
   way->shared = -1.0f;
   run->choice = vl_alloc_zero(context, world->lights.count + 1, sizeof *run->choice);
-  run->splats = vl_alloc_zero(context, (size_t)run->width * run->height, sizeof *run->splats);
+  bool good = run->choice && vl_splats_make(context, f, &run->splats) == VL_OK;
   way->choice = run->choice;
-  vlResult result = run->choice && run->splats ? make_workers(run, error) : vl_fail_memory(error);
+  vlResult result = good ? make_workers(run, error) : vl_fail_memory(error);
   if (result == VL_OK) result = find_media(run, camera, error);
   if (result != VL_OK) return result;
   run->starts = vl_two_way_choice(world, run->choice) && run->most_paths > 0;
   if (run->most_paths == 0) memset(run->choice, 0, (world->lights.count + 1) * sizeof *run->choice);
   if (run->starts) vl_eye_view(camera, f, &way->eye);
+  if (result == VL_OK && way->eye.sees && rays->camera.when.moves) result = make_eyes(run, error);
   if (result == VL_OK && way->merge && def->merge_radius > 0)
     run->first_radius = (float)def->merge_radius;
   else if (result == VL_OK && way->merge)
@@ -335,9 +318,10 @@ void vl_two_way_destroy(vlTwoWayRun *run) {
   vlContext *context = run->context;
   vl_free(context, run->workers);
   vl_free(context, run->memory);
+  vl_free(context, run->eyes);
   vl_free(context, run->choice);
   vl_free(context, run->medium);
-  vl_free(context, run->splats);
+  vl_splats_free(context, &run->splats);
   vl_free(context, run->photons);
   vl_free(context, run->sorted);
   vl_free(context, run->start);

@@ -6,6 +6,7 @@
 
 #include "camera/rays.h"
 #include "film/film.h"
+#include "render/film_rays.h"
 #include "trace/two_way.h"
 
 typedef struct vlTwoWayRun vlTwoWayRun;
@@ -15,9 +16,10 @@ enum { VL_MOST_LIGHT_PATHS = 1 << 24 };
 /* Whether a tracer goes both ways. */
 bool vl_two_way_tracer(vlTracer tracer);
 
-/* trace: what the eye's paths take; its two_way is the caller's to set, to vl_two_way_of. MEMORY. */
+/* trace: what the eye's paths take; its two_way is the caller's to set, to vl_two_way_of. rays: how the eye's samples
+ * have their times; it stays. MEMORY. */
 vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
-                           const vlTraceDef *trace, vlTwoWayRun **run, vlError *error);
+                           const vlTraceDef *trace, const vlFilmRays *rays, vlTwoWayRun **run, vlError *error);
 void vl_two_way_destroy(vlTwoWayRun *run);
 const vlTwoWay *vl_two_way_of(const vlTwoWayRun *run);
 /* Memory of a worker, for vlTraceBatch. */
@@ -26,6 +28,11 @@ struct vlTwoWayRows *vl_two_way_rows(const vlTwoWayRun *run, uint32_t worker);
 /* The scratch that a worker is to use. */
 void vl_two_way_use(vlTwoWayRun *run, uint32_t worker, vlTraceScratch *scratch);
 
+/* The number that all paths of sample `index` have their times by, where they are to meet; else below 0. */
+float vl_two_way_time(const vlTwoWayRun *run, uint32_t index);
+/* The camera at the times that the n numbers u stand for, and those times, the world's (VL_PAD(n); may be null): the
+ * worker's own memory. Null where the camera does not move or light does not see it. */
+const vlEyeView *vl_two_way_eyes(const vlTwoWayRun *run, uint32_t worker, uint32_t n, const float *u, float *time);
 /* The light's paths of sample `index`. MEMORY. */
 vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlError *error);
 /* Moves what the pixels got to their samples (of filter weight `weight`): each pixel once a pass, any thread. */

@@ -1,0 +1,146 @@
+/* Light followed both ways while things and the camera move: the same mean as of paths from the eye alone, within the
+ * errors of both; the same bits whoever works. */
+#include "render/agreement.h"
+
+enum { SIZE = 18, FINE = 54 };
+
+typedef struct Case {
+  const char *name;
+  bool things, camera, curve, lens, fog, sky;
+  uint32_t size; /* 0: as the tracer wants it */
+  vlContext *context;
+} Case;
+
+static void move_camera(vlCameraDef *c) {
+  const double eye[3] = {0.6, 0.1, -0.2}, lookat[3] = {0.2, 0.1, -3};
+  memcpy(c->eye_close, eye, sizeof eye);
+  memcpy(c->lookat_close, lookat, sizeof lookat);
+  c->roll_close = 0.3;
+}
+
+/* A board that turns and a ball that goes with it, above a floor. */
+static void add_mover(Stage *s) {
+  static const double times[2] = {0.2, 0.9};
+  double poses[32];
+  vlGroupId group = vl_scene_add_group(s->scene, "mover");
+  Quad board = quad_at(0, 0, 0, 0.5f, 0, 0, 0, 0.1f, 0.2f);
+  board.material = add_diffuse(s, 0.8f, 0.3f, 0.1f), board.group = group;
+  add_quad(s, &board);
+  vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
+  ball.radius = 0.25f, ball.z_min = -0.25f, ball.z_max = 0.25f, ball.group = group;
+  ball.material = add_diffuse(s, 0.2f, 0.3f, 0.8f);
+  set_matrix(ball.group_from_shape, 1, 0, 0, 0.4, 0, 1, 0, 0.4, 0, 0, 1, 0);
+  assert_int_not_equal(vl_scene_add_shape(s->scene, &ball).index, 0);
+  set_matrix(poses, 1, 0, 0, -0.7, 0, 1, 0, -0.3, 0, 0, 1, -3);
+  set_matrix(poses + 16, 0, -1, 0, 0.7, 1, 0, 0, 0, 0, 0, 1, -3.4);
+  vl_scene_add_moving_instance(s->scene, group, 2, times, poses, (vlSource){0});
+}
+
+static Stage room(const void *user, vlTracer tracer) {
+  const Case *c = user;
+  uint32_t size = c->size ? c->size : tracer == VL_TRACER_MERGING ? FINE : SIZE;
+  Stage s = stage_open(size, size);
+  if (c->context) {
+    vl_scene_destroy(s.scene);
+    vl_context_destroy(s.context);
+    s.context = c->context;
+    assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
+  }
+  s.camera.fov = 1;
+  s.camera.shutter_open = 0.25, s.camera.shutter_close = 0.85;
+  if (c->camera) move_camera(&s.camera);
+  if (c->lens) s.camera.lens_radius = 0.05, s.camera.focus_distance = 3;
+  if (c->curve) {
+    s.camera.shutter_points = 3;
+    s.camera.shutter_at[1] = 0.3, s.camera.shutter_at[2] = 1;
+    s.camera.shutter_value[1] = 1, s.camera.shutter_value[2] = 0.2;
+  }
+  s.build.color = VL_COLOR_RGB;
+  s.render.spp = size == FINE ? 24 : 96, s.render.max_depth = 4;
+  Quad q = quad_at(0.4f, 1.3f, -3, 0.3f, 0.05f, 0, 0, 0.1f, 0.3f);
+  q.material = add_diffuse(&s, 0.2f, 0.2f, 0.2f), q.emission = add_glow(&s, 10, false);
+  if (c->sky) add_sky(&s, 0.8f);
+  if (!c->sky) add_quad(&s, &q);
+  q = quad_at(0, -1, -3, 3, 0, 0, 0, 0, -3);
+  q.material = add_diffuse(&s, 0.7f, 0.5f, 0.3f);
+  add_quad(&s, &q);
+  q = quad_at(0, 0, -4.5f, 3, 0, 0, 0, 3, 0);
+  q.material = add_diffuse(&s, 0.3f, 0.6f, 0.8f);
+  add_quad(&s, &q);
+  if (c->things) add_mover(&s);
+  if (c->fog) {
+    vlMediumDef def = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
+    def.sigma_a = vl_spectrum_constant(0.02f), def.sigma_s = vl_spectrum_constant(0.15f);
+    vl_scene_settings(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &def);
+  }
+  return s;
+}
+
+static void agrees(const char *how, const Case *what, vlTracer tracer, const Measure *eye, double bias) {
+  Measure m = measure(room, what, tracer);
+  assert_agree(what->name, how, &m, eye, bias);
+}
+
+static void moving(void **state) {
+  (void)state;
+  static const Case cases[] = {{"things", true, false, true, false, false, false, 0, NULL},
+                               {"camera", false, true, true, false, false, false, 0, NULL},
+                               {"both", true, true, false, true, false, true, 0, NULL},
+                               {"both in fog", true, true, true, false, true, false, 0, NULL}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    Measure eye = measure(room, &cases[i], VL_TRACER_VOLPATH);
+    agrees("bidirectional", &cases[i], VL_TRACER_BIDIRECTIONAL, &eye, 0.005);
+    agrees("light paths", &cases[i], VL_TRACER_LIGHT_PATH, &eye, 0.005);
+    if (i < 3) agrees("merging", &cases[i], VL_TRACER_MERGING, &eye, 0.02);
+  }
+}
+
+/* Where it shows: the blur of a moving thing's light is where it should be, pixel by pixel. */
+static void blurred_alike(void **state) {
+  (void)state;
+  Case what = {"pixels", true, true, true, false, false, false, SIZE, NULL};
+  static const vlTracer tracers[2] = {VL_TRACER_BIDIRECTIONAL, VL_TRACER_MERGING};
+  Stage s = room(&what, VL_TRACER_PATH);
+  s.render.spp = 1024;
+  Picture path = stage_finish(&s);
+  for (int k = 0; k < 2; k++) {
+    s = room(&what, tracers[k]);
+    s.render.tracer = tracers[k], s.render.spp = 512, s.render.merge_radius = 0.02;
+    Picture p = stage_finish(&s);
+    assert_true(picture_differing(&path, &p, 0.25) < 0.025); /* edges of the lamp are noisy */
+    picture_free(&p);
+  }
+  picture_free(&path);
+}
+
+static Picture pixels(uint32_t threads, vlIsa isa, vlTracer tracer) {
+  vlContextDef def = vl_default_context_def();
+  def.threads = threads, def.isa = isa;
+  Case what = {"bits", true, true, true, true, true, false, SIZE, NULL};
+  if (vl_context_create(&def, &what.context) != VL_OK) return (Picture){0, 0, NULL, {0}};
+  Stage s = room(&what, tracer);
+  s.render.tracer = tracer, s.render.spp = 4;
+  return stage_finish(&s);
+}
+
+static void same_bits(void **state) {
+  (void)state;
+  for (int merge = 0; merge < 2; merge++) {
+    vlTracer tracer = merge ? VL_TRACER_MERGING : VL_TRACER_BIDIRECTIONAL;
+    Picture a = pixels(1, VL_ISA_V2, tracer);
+    for (uint32_t threads = 1; threads <= 3; threads += 2)
+      for (int isa = VL_ISA_V2; isa <= VL_ISA_V4; isa++) {
+        Picture b = pixels(threads, (vlIsa)isa, tracer);
+        if (!b.rgba) continue; /* a machine without that set */
+        assert_memory_equal(a.rgba, b.rgba, SIZE * SIZE * 4 * sizeof(float));
+        picture_free(&b);
+      }
+    picture_free(&a);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(moving), cmocka_unit_test(blurred_alike),
+                                     cmocka_unit_test(same_bits)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "color/color.h"
 #include "image/pixel.h"
 
 enum { STARTS = 4096 };
@@ -184,6 +185,20 @@ static vlResult add_level(Builder *b, float **kept) {
   return VL_OK;
 }
 
+/* By its chromaticities, to a thousandth (as pbrt). */
+static void find_space(const vlImage *image, vlMipmap *map) {
+  vlAttribute a;
+  if (vl_image_find_attribute(image, "chromaticities", &a) != VL_OK || a.type != VL_ATTRIBUTE_CHROMATICITIES) return;
+  for (int k = 0; k < 4; k++) {
+    float xy[8];
+    bool same = true;
+    vl_space_chromaticities((vlColorSpace)k, xy);
+    for (int i = 0; i < 8; i++)
+      same = same && a.numbers[i] - (double)xy[i] < 1e-3 && (double)xy[i] - a.numbers[i] < 1e-3;
+    if (same && !map->space_told) map->space_told = true, map->space = (vlColorSpace)k;
+  }
+}
+
 vlResult vl_mipmap_create(const vlImage *image, const vlMipmapDef *def, vlMipmap **mipmap) {
   *mipmap = NULL;
   if (def->count < 1 || def->count > 4) return VL_ERROR_ARGUMENT;
@@ -199,6 +214,7 @@ vlResult vl_mipmap_create(const vlImage *image, const vlMipmapDef *def, vlMipmap
   if (result == VL_OK) {
     b->map = map;
     map->channels = def->count;
+    find_space(image, map);
     map->is_bytes = image->type == VL_PIXEL_U8;
     if (map->is_bytes) make_tables(b, image, def);
     size_t row = (size_t)image->width * def->count;

@@ -132,6 +132,7 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
   def.space = import->state.space;
   if (!vl_import_ctm(import, s->place, &ctm) || !read_light(&dict, &def)) return false;
   memcpy(def.world_from_light, ctm.m, sizeof def.world_from_light);
+  if (def.path) def.space = VL_SPACE_SRGB; /* a picture that does not say its own: whatever ColorSpace says, as pbrt */
   vlImage *sky = NULL;
   if (def.has_portal && !def.path && !plain_sky(import, &def, &sky)) return false;
   def.image = sky;

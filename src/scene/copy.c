@@ -142,6 +142,9 @@ bool vl_scene_copy_image(vlScene *scene, const vlImage **image) {
     } else {
       memcpy((*slot)->pixels, from->pixels, vl_image_row_size(from) * from->height);
       *image = *slot;
+      vlAttribute colors;
+      if (vl_image_find_attribute(from, "chromaticities", &colors) == VL_OK)
+        result = vl_image_set_attribute(*slot, &colors);
     }
   }
   vl_free(scene->context, names);

@@ -70,8 +70,8 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
     }
   double flux = sum / ((double)w * h) * 4 * light->slide[0] * light->slide[1], factor = def->scale;
   if (def->power == def->power) factor *= flux > 0 ? def->power / flux : 0;
-  vl_light_picture_color(world, def->space, (float)factor, e);
   e->image = (int32_t)light->picture;
+  vl_light_picture_color(world, vl_light_picture_space(world, e->image, def->space), (float)factor, e);
   double forward[3] = {0, 0, 1}, axis[3];
   vlMat4 m = vl_mat4_load(def->world_from_light);
   vl_mat4_vector(&m, forward, axis);

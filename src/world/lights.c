@@ -45,6 +45,11 @@ void vl_light_picture_color(vlWorld *world, vlColorSpace space, float scale, vlE
   e->spectrum.scale = (float)(1 / sum);
 }
 
+vlColorSpace vl_light_picture_space(const vlWorld *world, int32_t image, vlColorSpace otherwise) {
+  const vlMipmap *mip = image >= 0 ? world->images.items[image].mipmap : NULL;
+  return mip && mip->space_told ? mip->space : otherwise;
+}
+
 float vl_light_luminance(const vlSpectral *s) {
   if (s->kind == VL_SPECTRAL_RGB) return s->scale * (0.2126f * s->rgb[0] + 0.7152f * s->rgb[1] + 0.0722f * s->rgb[2]);
   const float *y = vl_cie_y();
@@ -138,9 +143,9 @@ static vlResult add_infinite(vlWorld *world, const vlLightDef *def, vlWorldLight
     light->power = 4 * VL_PI * area * vl_light_luminance(&e->spectrum);
     return r;
   }
-  vl_light_picture_color(world, def->space, def->scale, e);
   e->image = vl_world_add_image(world, def->path, def->image, NULL, 1, false, error);
   if (e->image < 0) return error && error->code ? error->code : VL_ERROR_SCENE;
+  vl_light_picture_color(world, vl_light_picture_space(world, e->image, def->space), def->scale, e);
   const vlMipmap *mip = world->images.items[e->image].mipmap;
   if (mip->levels[0].width != mip->levels[0].height)
     return vl_fail(error, VL_ERROR_SCENE,
@@ -241,7 +246,6 @@ static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmiss
                              vlError *error) {
   e->two_sided = def->two_sided;
   if (def->texture.index) {
-    vl_light_picture_color(world, VL_SPACE_SRGB, def->scale, e);
     vlSpectrumInput input = vl_spectrum_input(vl_spectrum_constant(0.0f));
     input.texture = def->texture;
     int32_t node;
@@ -249,12 +253,13 @@ static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmiss
     if (r != VL_OK) return r;
     e->node = node + 1;
     e->image = world->nodes.items[node].image;
+    vl_light_picture_color(world, world->nodes.items[node].space, def->scale, e);
     return VL_OK;
   }
   if (!def->image) return vl_light_color(world, &def->radiance, def->scale, e, error);
-  vl_light_picture_color(world, VL_SPACE_SRGB, def->scale, e);
   e->image = vl_world_add_image(world, def->image, NULL, NULL, 1, true, error);
   if (e->image < 0) return error && error->code ? error->code : VL_ERROR_SCENE;
+  vl_light_picture_color(world, vl_light_picture_space(world, e->image, VL_SPACE_SRGB), def->scale, e);
   const vlMipmap *mip = world->images.items[e->image].mipmap;
   for (uint32_t y = 0; y < mip->levels[0].height; y++)
     for (uint32_t x = 0; x < mip->levels[0].width; x++)

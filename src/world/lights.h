@@ -10,6 +10,8 @@
 vlResult vl_light_color(vlWorld *world, const vlSpectrum *color, float factor, vlEmitted *e, vlError *error);
 /* For pictures: the illuminant of the space, luminance 1; texels multiply it. */
 void vl_light_picture_color(vlWorld *world, vlColorSpace space, float scale, vlEmitted *e);
+/* That of the picture, where it says so, else this one. */
+vlColorSpace vl_light_picture_space(const vlWorld *world, int32_t image, vlColorSpace otherwise);
 /* That a constant emitted spectrum shows. */
 float vl_light_luminance(const vlSpectral *spectrum);
 float vl_light_texel_luminance(vlTexel t, uint32_t channels);

@@ -388,6 +388,8 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   if (amount && (node.amount = compile_float(c, def->amount, nesting)) < 0) return node.amount;
   if (node.kind == VL_NODE_IMAGE) {
     if ((node.image = image_of(c->world, def, c->error)) < 0) return -1;
+    const vlMipmap *mip = c->world->images.items[node.image].mipmap;
+    if (mip->space_told) node.space = mip->space;
   }
   if (node.kind == VL_NODE_IMAGE || node.kind == VL_NODE_VERTEX_COLOR || node.kind == VL_NODE_MARBLE)
     if (def->spectrum && image_spectrum(c->world, &node, c->error) != VL_OK) return -1;

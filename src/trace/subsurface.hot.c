@@ -284,6 +284,7 @@ static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
     p->dx[i] = w.x, p->dy[i] = w.y, p->dz[i] = w.z;
     p->pdf[i] = pdf;
     p->specular[i] = 0;
+    p->cone[i] = vl_abs(p->cone[i]), p->spread[i] = t->def->pixel_spread;
     vl_note_scattered(t, p->lane[i]);
     p->from_nx[i] = nn.x, p->from_ny[i] = nn.y, p->from_nz[i] = nn.z;
     for (int c = 0; c < 4; c++) p->beta[c][i] *= weight, rows->l[c][i] = rows->u[c][i] / pdf;

@@ -7,6 +7,7 @@
  * What a hit is (interfaces are passed, mixed materials decided by a hash of the ray) is what the tracers say it is. */
 #include "trace/truth_scratch.h"
 #include "world/bssrdf.h"
+#include "world/measured_lookup.h"
 #include "world/moving.h"
 #include "world/surface_point.h"
 
@@ -89,10 +90,11 @@ static void keep_frames(vlTruthScratch *s, uint32_t n, bool back) {
     }
 }
 
-/* Reflectance of one lane at channel c: conductors straight on; of bodies what comes back out of them; what lets light
- * through reflects or transmits all. */
-static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, int c, uint32_t i) {
+/* Reflectance of one lane at channel c: conductors and what was measured straight on; of bodies what comes back out of
+ * them; what lets light through reflects or transmits all. */
+static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, float lambda, int c, uint32_t i) {
   if (m->reflectance >= 0) return sh->reflectance[c][i];
+  if (m->measured) return vl_measured_albedo(m->measured, c, lambda);
   if (m->subsurface) {
     vlSpline albedo = vl_bssrdf_albedo(m->subsurface->table, sh->principled[VL_S_ALBEDO + c][i]);
     return vl_bssrdf_effective(m->subsurface->table, &albedo);
@@ -108,7 +110,7 @@ static void add_albedo(const vlWorld *world, const vlTruthDef *def, uint32_t set
     const vlWorldMaterial *m = &world->materials.items[s->hits_b.material[i]];
     uint32_t lane = s->b.lane[i];
     for (int c = 0; c < 4; c++) {
-      float a = albedo_at(m, &s->shade, c, i);
+      float a = albedo_at(m, &s->shade, s->b.lambda[c][i], c, i);
       for (int k = 0; k < 3; k++) batch->albedo[k][lane] += a * def->weight[set][c][k];
     }
   }

@@ -201,6 +201,30 @@ static void keep_spectra(vlContext *context, vlMeasured *m, Source *s) {
   m->spectra.values = (const float *)(const void *)m->file;
 }
 
+/* The mean, over the square of random numbers, of what a sample is worth: of the first slice, o straight on. */
+static void find_albedo(vlMeasured *m, float *albedo) {
+  const vlMeasuredTable *t = &m->spectra;
+  const vlMeasuredSlices straight = {1, {0}, {1}};
+  size_t size = (size_t)t->width * t->height;
+  for (uint32_t k = 0; k < m->lambdas; k++) {
+    double sum = 0, all = 0;
+    for (uint32_t y = 0; y < t->height; y++)
+      for (uint32_t x = 0; x < t->width; x++) {
+        double part = (x == 0 || x == t->width - 1 ? 0.5 : 1) * (y == 0 || y == t->height - 1 ? 0.5 : 1);
+        double value = (double)t->values[k * size + (size_t)y * t->width + x];
+        if (!m->scaled) { /* f cos itself */
+          float u = (float)x / (float)(t->width - 1), v = (float)y / (float)(t->height - 1);
+          vlMeasuredPoint n = vl_measured_sample(&m->vndf, straight, u, v);
+          float d = vl_measured_in(&m->ndf, m->ndf.values, vl_measured_cell(&m->ndf, n.x, n.y));
+          value *= 4 * (double)m->sigma.values[0] / fmax((double)d, 1e-30);
+        }
+        sum += part * fmax(value, 0), all += part;
+      }
+    albedo[k] = (float)fmin(sum / all, 1);
+  }
+  m->albedo = albedo;
+}
+
 static vlResult build(vlContext *context, Source *s, bool rgb, vlMeasured *m, vlError *error) {
   const vlTensorField *const *f = s->fields;
   m->phis = (uint32_t)f[PHI]->count, m->thetas = (uint32_t)f[THETA]->count;
@@ -209,7 +233,7 @@ static vlResult build(vlContext *context, Source *s, bool rgb, vlMeasured *m, vl
   size_t count = (size_t)(f[PHI]->count + f[THETA]->count + f[LAMBDA]->count + f[NDF]->count + f[SIGMA]->count);
   count += 2 * (size_t)(f[VNDF]->count + f[LUMINANCE]->count);
   count += slices * (size_t)(f[VNDF]->shape[2] + f[LUMINANCE]->shape[2]);
-  if (rgb) count += 3 * slices * nodes;
+  count += rgb ? 3 * slices * nodes + 3 : (size_t)f[LAMBDA]->count;
   float *room = m->numbers = vl_alloc_array(context, count, sizeof(float));
   if (!room) return vl_fail_memory(error);
   m->phi = copy_values(f[PHI], &room);
@@ -219,15 +243,19 @@ static vlResult build(vlContext *context, Source *s, bool rgb, vlMeasured *m, vl
   m->sigma = table_of(f[SIGMA], copy_values(f[SIGMA], &room));
   m->vndf = density_of(f[VNDF], &room);
   m->luminance = density_of(f[LUMINANCE], &room);
+  float *albedo = room;
+  room += m->lambdas;
   m->spectra = table_of(f[SPECTRA], room);
   m->scaled = !f[JACOBIAN] || f[JACOBIAN]->values[0] != 0;
   find_symmetry(m);
   if (!rgb) {
     keep_spectra(context, m, s);
+    find_albedo(m, albedo);
     return VL_OK;
   }
   bool done = spectra_to_rgb(context, m, f[SPECTRA], (uint32_t)f[LAMBDA]->count, m->lambda, room);
   m->lambda = NULL;
+  if (done) find_albedo(m, albedo);
   return done ? VL_OK : vl_fail_memory(error);
 }
 

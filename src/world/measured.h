@@ -32,6 +32,7 @@ typedef struct vlMeasured {
   /* Of a symmetric surface only a half or a quarter of the azimuths is measured: o is turned or mirrored into it. */
   bool halves, quarters;
   float side_x, side_y; /* signs of the part's x and y */
+  const float *albedo;  /* by wavelength: what comes back straight on */
   float *numbers;       /* the memory of all tables but the file's spectra */
   char *file;
   char *path; /* what it was read from */

@@ -136,6 +136,13 @@ static inline vlMeasuredPoint vl_measured_sample(const vlMeasuredTable *table, v
                            vl_measured_between(a, b, s)};
 }
 
+/* What comes back of light from straight on, at a channel of a wavelength (RGB: the channel itself). */
+static inline float vl_measured_albedo(const vlMeasured *m, int channel, float lambda) {
+  if (!m->lambda) return channel < 3 ? m->albedo[channel] : 0.0f;
+  vlMeasuredKnot k = vl_measured_knot(m->lambda, m->lambdas, lambda);
+  return k.t > 0.0f ? vl_measured_between(m->albedo[k.i], m->albedo[k.i + 1], k.t) : m->albedo[k.i];
+}
+
 /* The (u, v) from which (x, y) is sampled, and its density. */
 static inline vlMeasuredPoint vl_measured_invert(const vlMeasuredTable *table, vlMeasuredSlices slices, float x,
                                                  float y) {

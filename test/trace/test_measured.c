@@ -226,6 +226,7 @@ static void furnace(void **state) {
           known += mf_share(&white, o, w, oh, 500) / 40000;
         }
       print_message("alpha %.1f theta %.2f: %.4f back, metal %.4f\n", alphas[i], theta, back, known);
+      if (t == 0) assert_true(fabs((double)vl_measured_albedo(m, 0, 500) - known) < 0.004);
       assert_true(back < 1.001 && fabs(back - known) < 0.006);
     }
     vl_measured_free(s->context, m);
@@ -272,6 +273,7 @@ static void forms(void **state) {
     other.plain = form == 0;
     other.parts = form == 0 ? 1 : form == 1 ? 2 : 4;
     vlMeasured *m = measure(s, &other, false);
+    assert_true(fabsf(vl_measured_albedo(m, 0, 500) - vl_measured_albedo(whole, 0, 500)) < 0.01f);
     assert_true(m->scaled == (form != 0) && m->halves == (form == 1) && m->quarters == (form == 2));
     statRng rng = stat_rng(80);
     double off = 0, all = 0;
@@ -328,6 +330,8 @@ static void wavelengths(void **state) {
   *c = *b;
   put_surface(c, rgb, 16);
   batch_eval(s->kernels, VL_BSDF_MEASURED, 16, c);
+  for (int k = 0; k < 3; k++) assert_true(vl_measured_albedo(rgb, k, 0) < 1 && vl_measured_albedo(rgb, k, 0) > 0.2f);
+  assert_true(vl_measured_albedo(rgb, 0, 0) > vl_measured_albedo(rgb, 2, 0));
   for (int k = 0; k < 3; k++)
     assert_true(fabs(sum[k] / white[k] / (double)c->value[k][0] - 1) < 1e-4 && c->value[3][0] == 0);
   vl_measured_free(s->context, m);

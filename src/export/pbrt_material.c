@@ -94,42 +94,48 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
   float transmission = vl_export_number(x, &p->transmission), rgb[3];
   double eta = (double)vl_export_eta(&m->eta.value);
   vl_export_rgb(x, &m->reflectance, rgb);
-  if (!vl_pbrt_prepare_color(x, &m->reflectance, &color) ||
+  eta = eta > 1 ? eta : 1.5;
+  bool clear = transmission >= 0.5f, leaf = is_on(&p->diffuse_transmission);
+  bool bare = (!p->specular.texture.index && p->specular.value == 0) ||
+              (!p->roughness.texture.index && p->roughness.value * p->roughness.value > 0.15f);
+  bool coated = !clear && !leaf && !bare;
+  if (!(coated ? vl_pbrt_prepare_under_coat(x, &m->reflectance, eta, &color)
+               : vl_pbrt_prepare_color(x, &m->reflectance, &color)) ||
       !vl_pbrt_prepare_color(x, &p->diffuse_transmission_color, &passed) ||
       !vl_pbrt_prepare_number(x, &p->roughness, true, &alpha))
     return false;
   PUT("MakeNamedMaterial \"%s\" \"string type\" ", name);
-  if (transmission >= 0.5f) {
+  if (clear) {
     if (m->reflectance.texture.index || rgb[0] != 1 || rgb[1] != 1 || rgb[2] != 1)
       vl_export_lose(x, "colour of glass at its surface: left out");
     if (transmission < 1 || p->transmission.texture.index)
       vl_export_lose(x, "surfaces that pass a part of light: glass");
-    PUT("\"%s\" \"float eta\" [%.9g]", p->thin_walled ? "thindielectric" : "dielectric", eta > 1 ? eta : 1.5);
+    PUT("\"%s\" \"float eta\" [%.9g]", p->thin_walled ? "thindielectric" : "dielectric", eta);
     if (!p->thin_walled) {
       vl_pbrt_put_number(x, "roughness", &alpha);
       PUT(" \"bool remaproughness\" false");
     } else if (alpha.texture[0] || alpha.number > 1e-4f) {
       vl_export_lose(x, "rough sheets of glass: smooth");
     }
-  } else if (is_on(&p->diffuse_transmission)) {
+  } else if (leaf) {
     vl_export_lose(x, "diffuse transmission: without reflection at the surface, halves of the light each way");
     PUT("\"diffusetransmission\"");
     vl_pbrt_put_color(x, "reflectance", &color);
     vl_pbrt_put_color(x, "transmittance", &passed);
     PUT(" \"float scale\" [0.5]");
-  } else if ((!p->specular.texture.index && p->specular.value == 0) || (!alpha.texture[0] && alpha.number > 0.3f)) {
+  } else if (bare) {
     /* pbrt's coats lose light when they are rough; plain diffuse is nearer */
     if (p->specular.texture.index || p->specular.value != 0)
       vl_export_lose(x, "rough principled dielectrics: as diffuse");
     PUT("\"diffuse\"");
     vl_pbrt_put_color(x, "reflectance", &color);
   } else {
-    vl_export_lose(x, "principled dielectrics: as coateddiffuse");
+    vl_export_lose(x, "principled dielectrics: as coateddiffuse, brighter below the coat");
     if (transmission > 0) vl_export_lose(x, "surfaces that pass a part of light: opaque");
     PUT("\"coateddiffuse\"");
     vl_pbrt_put_color(x, "reflectance", &color);
     vl_pbrt_put_number(x, "roughness", &alpha);
-    PUT(" \"bool remaproughness\" false \"float eta\" [%.9g]", eta > 1 ? eta : 1.5);
+    PUT(" \"bool remaproughness\" false \"float eta\" [%.9g] \"float thickness\" [0] \"integer maxdepth\" [100]", eta);
   }
   bool fine = put_normal(x, m);
   PUT("\n");

@@ -81,6 +81,37 @@ static bool put_kind(vlExport *x, const vlShapeDef *d, size_t index) {
   }
 }
 
+/* pbrt's glowing pictures do not repeat: uvs that lie in another cell of the plane move to the first, where every
+ * picture of the scene repeats and none is mapped otherwise. New uvs in *moved, else null. */
+static bool move_uvs(vlExport *x, const vlShapeDef *d, float **moved) {
+  const vlEmissionDef *e = &x->scene->emissions.items[d->emission.index - 1];
+  *moved = NULL;
+  if (!d->uvs || !e->texture.index) return true;
+  float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  for (size_t i = 0; i < 2 * (size_t)d->vertices; i++) {
+    low[i % 2] = fminf(low[i % 2], d->uvs[i]);
+    high[i % 2] = fmaxf(high[i % 2], d->uvs[i]);
+  }
+  float by[2] = {floorf(low[0]), floorf(low[1])};
+  if (low[0] >= 0 && low[1] >= 0 && high[0] <= 1 && high[1] <= 1) return true;
+  bool can = high[0] - by[0] <= 1 && high[1] - by[1] <= 1;
+  for (size_t i = 0; can && i < x->scene->textures.count; i++) {
+    const vlTextureDef *t = &x->scene->textures.items[i];
+    bool plain = t->wrap == VL_WRAP_REPEAT && (!t->wrap_t_given || t->wrap_t == VL_WRAP_REPEAT) &&
+                 !t->st_from_uv_given && t->su == 1 && t->sv == 1;
+    can = t->kind != VL_TEXTURE_IMAGE || plain;
+  }
+  if (!can) {
+    vl_export_lose(x, "pictures that glow again and again: at the first place only");
+    return true;
+  }
+  float *uvs = vl_alloc_array(x->context, d->vertices, 2 * sizeof *uvs);
+  if (!uvs) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  for (size_t i = 0; i < 2 * (size_t)d->vertices; i++) uvs[i] = d->uvs[i] - by[i % 2];
+  *moved = uvs;
+  return true;
+}
+
 static bool put_emission(vlExport *x, const vlEmissionDef *e) {
   const vlTextureDef *t = vl_export_texture(x, e->texture);
   vlTextureDef picture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
@@ -127,7 +158,13 @@ bool vl_pbrt_shape(vlExport *x, size_t index) {
     PUT("  MediumInterface \"%s\" \"%s\"\n", in, out);
   }
   if (d->reverse_orientation) PUT("  ReverseOrientation\n");
-  if (!put_kind(x, d, index)) return false;
+  float *moved = NULL;
+  if (d->emission.index && !move_uvs(x, d, &moved)) return false;
+  vlShapeDef here = *d;
+  here.uvs = moved ? moved : d->uvs;
+  bool put = put_kind(x, &here, index);
+  vl_free(x->context, moved);
+  if (!put) return false;
   if (alpha.texture[0] || alpha.number != 1) vl_pbrt_put_number(x, "alpha", &alpha);
   PUT("\nAttributeEnd\n");
   return true;

@@ -53,11 +53,22 @@ bool vl_pbrt_picture(vlExport *x, const vlTextureDef *t, bool light, char name[3
 
 /* ---- worked pictures --------------------------------------------------------------------------------------------- */
 
+/* What becomes of a picture's values. */
+typedef struct Change {
+  bool squared;
+  float turned_back; /* under a coat that sends this share of the light back in; 0: none */
+} Change;
+static const Change as_is = {false, 0};
+
+static float under_coat(float value, float turned_back) {
+  return value / (1 - turned_back + value * turned_back);
+}
+
 /* One channel as the tracer reads it, or three tinted ones. */
-static bool work(vlExport *x, const vlTextureDef *t, bool squared, char name[300]) {
-  uint32_t variant = 2 + (squared ? 1u : 0u);
-  const float key[8] = {t->tint[0], t->tint[1], t->tint[2],        t->tint[3],
-                        t->bias,    t->scale,   (float)t->channel, (float)t->cutoff};
+static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[300]) {
+  uint32_t variant = 2 + (change.squared ? 1u : 0u);
+  const float key[9] = {t->tint[0], t->tint[1],        t->tint[2],       t->tint[3],        t->bias,
+                        t->scale,   (float)t->channel, (float)t->cutoff, change.turned_back};
   for (size_t i = 0; i < sizeof key; i++) variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 2u;
   vlExportPicture *known = find_picture(x, t, variant);
   if (known) return memcpy(name, known->name, sizeof known->name), true;
@@ -81,13 +92,13 @@ static bool work(vlExport *x, const vlTextureDef *t, bool squared, char name[300
                        : have == 2 ? v[1]
                                    : 1.0f};
       if (per == 3) {
-        for (int k = 0; k < 3; k++) to[3 * i + (uint32_t)k] = rgba[k] * t->tint[k];
+        for (int k = 0; k < 3; k++) to[3 * i + (uint32_t)k] = under_coat(rgba[k] * t->tint[k], change.turned_back);
         continue;
       }
       float value =
           t->bias + (t->channel < 0 ? (rgba[0] + rgba[1] + rgba[2]) / 3 : rgba[t->channel] * t->tint[t->channel]);
       if (!isnan(t->cutoff)) value = value >= (float)t->cutoff ? 1.0f : 0.0f;
-      to[i] = squared ? value * value : value;
+      to[i] = change.squared ? value * value : value;
     }
   }
   char *bytes = NULL;
@@ -119,23 +130,24 @@ static void put_mapping(vlExport *x, const vlTextureDef *t) {
   if (t->uv_set) vl_export_lose(x, "uv sets beyond the first: the first stands in");
 }
 
-static bool put_image(vlExport *x, const vlTextureDef *t, bool squared) {
+static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
   static const char *const wraps[] = {"repeat", "black", "clamp", "octahedralsphere", "repeat"}, *const filters[] = {
                                                                                                      "point",
                                                                                                      "bilinear",
                                                                                                      "trilinear",
                                                                                                      "ewa"};
   bool even = t->tint[0] == t->tint[1] && t->tint[1] == t->tint[2];
-  bool plain = t->spectrum ? even : t->channel < 0 && t->bias == 0 && isnan(t->cutoff) && !squared;
+  bool plain = t->spectrum ? even : t->channel < 0 && t->bias == 0 && isnan(t->cutoff) && !change.squared;
+  plain = plain && change.turned_back == 0;
   char name[300];
-  if (!(plain ? vl_pbrt_picture(x, t, false, name) : work(x, t, squared, name))) return false;
+  if (!(plain ? vl_pbrt_picture(x, t, false, name) : work(x, t, change, name))) return false;
   if (t->wrap == VL_WRAP_MIRROR) vl_export_lose(x, "pictures that repeat in a mirror: repeated plainly");
   if (t->wrap_t_given && t->wrap_t != t->wrap) vl_export_lose(x, "wrap modes of their own for each axis: that of s");
   if (t->colors) vl_export_lose(x, "colours of vertices: left out");
   double scale = (double)t->scale * (plain && t->spectrum ? (double)t->tint[0] : 1);
   PUT(" \"string filename\" \"%s\" \"string wrap\" \"%s\" \"string filter\" \"%s\"", name, wraps[t->wrap],
       filters[t->filter]);
-  if (scale != 1) PUT(" \"float scale\" [%.9g]", squared ? scale * scale : scale);
+  if (scale != 1) PUT(" \"float scale\" [%.9g]", change.squared ? scale * scale : scale);
   if (t->invert) PUT(" \"bool invert\" true");
   if (plain && t->encoding_given) {
     if (t->encoding == VL_ENCODING_GAMMA)
@@ -148,7 +160,7 @@ static bool put_image(vlExport *x, const vlTextureDef *t, bool squared) {
 
 /* ---- textures ---------------------------------------------------------------------------------------------------- */
 
-static bool put_texture(vlExport *x, uint32_t id, bool squared, int depth, char name[64]);
+static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char name[64]);
 
 static bool inner(vlExport *x, const vlTextureDef *t, int k, int depth, vlPbrtInput *result) {
   const vlFloatInput *floats[] = {&t->float_a, &t->float_b, &t->float_c, &t->float_d, &t->amount};
@@ -158,7 +170,7 @@ static bool inner(vlExport *x, const vlTextureDef *t, int k, int depth, vlPbrtIn
   *result = (vlPbrtInput){0};
   result->number = color ? 0 : floats[k]->value;
   if (color) result->spectrum = spectra[k]->value;
-  return !id || put_texture(x, id, false, depth + 1, result->texture);
+  return !id || put_texture(x, id, as_is, depth + 1, result->texture);
 }
 
 static void put_inner(vlExport *x, const vlTextureDef *t, const char *name, const vlPbrtInput *input) {
@@ -169,12 +181,12 @@ static void put_inner(vlExport *x, const vlTextureDef *t, const char *name, cons
 }
 
 /* Written anew for each use: names are counted by their place in the file. */
-static bool put_texture(vlExport *x, uint32_t id, bool squared, int depth, char name[64]) {
+static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char name[64]) {
   static const char *const kinds[] = {"constant", "scale", "mix", "checkerboard", "imagemap"};
   static const char *const names[4][2] = {{"value", NULL}, {"tex", NULL}, {"tex1", "tex2"}, {"tex1", "tex2"}};
   const vlTextureDef *t = &x->scene->textures.items[id - 1];
   if (depth > 16) return vl_export_fail(x, VL_ERROR_SCENE, "textures stand in each other too deep");
-  if (t->kind > VL_TEXTURE_IMAGE || (squared && t->kind != VL_TEXTURE_IMAGE)) {
+  if (t->kind > VL_TEXTURE_IMAGE || (change.squared && t->kind != VL_TEXTURE_IMAGE)) {
     vl_export_lose(x, t->kind == VL_TEXTURE_VERTEX_COLOR ? "colours of vertices: left out"
                                                          : "computed textures (noise, dots, ...): a value stands in");
     name[0] = 0;
@@ -194,7 +206,7 @@ static bool put_texture(vlExport *x, uint32_t id, bool squared, int depth, char 
   }
   PUT("Texture \"%s\" \"%s\" \"%s\"", name, t->spectrum ? "spectrum" : "float", kinds[t->kind]);
   if (t->kind == VL_TEXTURE_IMAGE) {
-    if (!put_image(x, t, squared)) return false;
+    if (!put_image(x, t, change)) return false;
   } else {
     put_inner(x, t, names[t->kind][0], &a);
     if (names[t->kind][1]) put_inner(x, t, names[t->kind][1], &b);
@@ -211,21 +223,39 @@ static bool put_texture(vlExport *x, uint32_t id, bool squared, int depth, char 
 
 bool vl_pbrt_prepare_number(vlExport *x, const vlFloatInput *input, bool squared, vlPbrtInput *result) {
   *result = (vlPbrtInput){0};
-  if (input->texture.index && !put_texture(x, input->texture.index, squared, 0, result->texture)) return false;
+  if (input->texture.index && !put_texture(x, input->texture.index, (Change){squared, 0}, 0, result->texture))
+    return false;
   float v = result->texture[0] ? 0 : vl_export_number(x, input);
   result->number = squared ? v * v : v;
   return true;
 }
 
-bool vl_pbrt_prepare_color(vlExport *x, const vlSpectrumInput *input, vlPbrtInput *result) {
+static bool prepare_color(vlExport *x, const vlSpectrumInput *input, Change change, vlPbrtInput *result) {
   float rgb[3];
   *result = (vlPbrtInput){.spectrum = input->value};
-  if (!input->texture.index) return true;
-  if (!put_texture(x, input->texture.index, false, 0, result->texture)) return false;
-  if (result->texture[0]) return true;
+  if (input->texture.index && !put_texture(x, input->texture.index, change, 0, result->texture)) return false;
+  if (result->texture[0] || (!input->texture.index && change.turned_back == 0)) return true;
   vl_export_rgb(x, input, rgb);
+  for (int i = 0; i < 3; i++) rgb[i] = under_coat(rgb[i], change.turned_back);
   result->spectrum = vl_spectrum_rgb(rgb[0], rgb[1], rgb[2]);
   return true;
+}
+
+bool vl_pbrt_prepare_color(vlExport *x, const vlSpectrumInput *input, vlPbrtInput *result) {
+  return prepare_color(x, input, as_is, result);
+}
+
+/* A coat sends a share G of what comes from a diffuse base back to it: colour c (1 - G) / (1 - c G) is seen. From
+ * outside the mean of Fresnel's reflection is F, and 1 - G = (1 - F) / eta^2. */
+bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, double eta, vlPbrtInput *result) {
+  enum { STEPS = 64 };
+  double f = 0;
+  for (int i = 0; i < STEPS; i++) {
+    double c = (i + 0.5) / STEPS, t = sqrt(1 - (1 - c * c) / (eta * eta));
+    double s = (c - eta * t) / (c + eta * t), p = (eta * c - t) / (eta * c + t);
+    f += 2 * c / STEPS * 0.5 * (s * s + p * p);
+  }
+  return prepare_color(x, input, (Change){false, (float)(1 - (1 - f) / (eta * eta))}, result);
 }
 
 void vl_pbrt_put_number(vlExport *x, const char *name, const vlPbrtInput *input) {

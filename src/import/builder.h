@@ -117,6 +117,19 @@ typedef struct vlCurveRun {
   VL_ARRAY(float) normals;
 } vlCurveRun;
 
+/* Small meshes that become one, while they are gathered (mesh_run.c). */
+enum { VL_MESH_RUNS = 16, VL_MESH_RUN_FROM = 4096 };
+typedef struct vlMeshRun {
+  bool open;
+  vlShapeDef def; /* normals, uvs: not null where there are any */
+  vlShapeLink link;
+  const char *inside, *outside; /* media */
+  VL_ARRAY(float) positions;
+  VL_ARRAY(float) normals;
+  VL_ARRAY(float) uvs;
+  VL_ARRAY(uint32_t) indices;
+} vlMeshRun;
+
 /* Shapes under an animated transform. */
 typedef struct vlMovingGroup {
   vlGroupId group, object; /* object: the one they are part of, 0: none */
@@ -161,6 +174,8 @@ struct vlImport {
   double times[2]; /* of the two current transforms, seconds */
   VL_ARRAY(vlMovingGroup) moving;
   vlCurveRun curves;
+  vlMeshRun mesh_runs[VL_MESH_RUNS];
+  uint32_t next_run;
   double edge_scale; /* Option "displacementedgescale" */
   uint32_t depth;    /* of textures or materials that resolve each other */
   uint32_t problems; /* told so far */
@@ -260,6 +275,10 @@ bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeL
 bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link);
 bool vl_import_flush_curves(vlImport *import); /* before any other shape, and at the end */
 void vl_import_free_curves(vlImport *import);
+/* taken: a copy of the mesh is part of a run. */
+bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *def, const vlShapeLink *link, bool *taken);
+bool vl_import_flush_meshes(vlImport *import); /* at the end */
+void vl_import_free_meshes(vlImport *import);
 bool vl_import_medium(vlImport *import, const vlStatement *s);
 /* The media of the current state are those of a shape ('s'), a light ('l'), the camera ('c'). */
 bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource place);

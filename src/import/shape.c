@@ -262,7 +262,9 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
               : kind >= SPHERE ? read_quadric(&dict, &def, kind)
                                : read_mesh(&dict, &def, kind == TRIANGLES ? 3 : 4);
   fine = fine && vl_dict_done(&dict);
-  if (fine) return vl_import_add_shape(import, &def, &link) && note_media(import, before, s->place);
+  bool gathered = false;
+  if (fine && kind == TRIANGLES && !vl_import_gather_mesh(import, &def, &link, &gathered)) fine = false;
+  if (fine && !gathered) return vl_import_add_shape(import, &def, &link) && note_media(import, before, s->place);
   free_arrays(import, &def);
-  return false;
+  return fine;
 }

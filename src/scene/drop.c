@@ -29,7 +29,13 @@ static void forget(vlShapeDef *d) {
 
 void vl_scene_drop_meshes(vlScene *scene) {
   size_t n = 0, kept = 0;
-  const void *arrays[ARRAYS], **all = vl_alloc_array(scene->context, scene->shapes.count * ARRAYS + 1, sizeof *all);
+  const void *arrays[ARRAYS];
+  size_t room = 1;
+  for (size_t i = 0; i < scene->shapes.count; i++) {
+    arrays_of(&scene->shapes.items[i], arrays);
+    for (int k = 0; k < ARRAYS; k++) room += arrays[k] != NULL;
+  }
+  const void **all = vl_alloc_array(scene->context, room, sizeof *all);
   if (!all) return;
   for (size_t i = 0; i < scene->shapes.count; i++) {
     arrays_of(&scene->shapes.items[i], arrays);

@@ -36,7 +36,16 @@ static inline unsigned *hit_row(void *hit, unsigned n, int row, unsigned i) {
 typedef struct AccelGeometry {
   const vlWorld *world;
   const vlWorldShape *shape;
+  const uint32_t *members; /* of a bundle: the shapes that its primitives are, one each; else null */
 } AccelGeometry;
+
+/* The shape of a primitive, whose number in it replaces that in the geometry. */
+static const vlWorldShape *shape_of(const AccelGeometry *g, uint32_t *prim) {
+  if (!g->members) return g->shape;
+  const vlWorldShape *s = &g->world->shapes.items[g->members[*prim]];
+  *prim = 0;
+  return s;
+}
 
 /* What Embree carries along: the rays of the call. */
 #if VELO_EMBREE_MAJOR >= 4
@@ -104,22 +113,26 @@ static void filter_occluded(const struct RTCFilterFunctionNArguments *args) {
 static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
   const AccelGeometry *g = args->geometryUserPtr;
   float low[3], high[3];
-  vl_world_prim_bounds(g->shape, args->primID, low, high);
+  uint32_t prim = args->primID;
+  const vlWorldShape *shape = shape_of(g, &prim);
+  vl_world_prim_bounds(shape, prim, low, high);
   args->bounds_o->lower_x = low[0], args->bounds_o->lower_y = low[1], args->bounds_o->lower_z = low[2];
   args->bounds_o->upper_x = high[0], args->bounds_o->upper_y = high[1], args->bounds_o->upper_z = high[2];
 }
 
 static bool user_hit(const AccelGeometry *g, const EmbreeContext *context, void *ray, unsigned n, unsigned i,
-                     uint32_t prim, double *t) {
+                     uint32_t prim, bool shadow, double *t) {
+  const vlWorldShape *shape = shape_of(g, &prim);
+  if (shadow && shape->pass_shadow) return false;
   vlLocalRay r = local_ray(g->world, context, *hit_row(ray, n, ID, i), context->instID[0]);
   double t_min = *ray_row(ray, n, TNEAR, i), t_max = *ray_row(ray, n, TFAR, i);
   vlShapeHit hit;
-  while (vl_shape_intersect(g->shape, prim, r.o, r.d, t_min, t_max, &hit)) {
-    if (g->shape->alpha >= 0) {
+  while (vl_shape_intersect(shape, prim, r.o, r.d, t_min, t_max, &hit)) {
+    if (shape->alpha >= 0) {
       vlSurfacePoint point;
-      vl_shape_point(g->shape, prim, &hit, &point);
+      vl_shape_point(shape, prim, &hit, &point);
       float p[3] = {(float)point.p[0], (float)point.p[1], (float)point.p[2]};
-      if (vl_alpha_passes(g->world, g->shape, &r, prim, (float)hit.t, point.uv[0], point.uv[1], p, NULL)) {
+      if (vl_alpha_passes(g->world, shape, &r, prim, (float)hit.t, point.uv[0], point.uv[1], p, NULL)) {
         t_min = hit.t * (1 + 1e-12);
         continue;
       }
@@ -135,7 +148,7 @@ static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
   void *ray = args->rayhit, *hit = ray_row(ray, args->N, HIT, 0);
   for (unsigned i = 0; i < args->N; i++) {
     double t;
-    if (args->valid[i] != -1 || !user_hit(g, args->context, ray, args->N, i, args->primID, &t)) continue;
+    if (args->valid[i] != -1 || !user_hit(g, args->context, ray, args->N, i, args->primID, false, &t)) continue;
     *ray_row(ray, args->N, TFAR, i) = (float)t;
     *hit_row(hit, args->N, GEOM, i) = args->geomID;
     *hit_row(hit, args->N, PRIM, i) = args->primID;
@@ -145,17 +158,44 @@ static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
 
 static void user_occluded(const struct RTCOccludedFunctionNArguments *args) {
   const AccelGeometry *g = args->geometryUserPtr;
-  if (g->shape->pass_shadow) return;
   for (unsigned i = 0; i < args->N; i++) {
     double t;
-    if (args->valid[i] == -1 && user_hit(g, args->context, args->ray, args->N, i, args->primID, &t))
+    if (args->valid[i] == -1 && user_hit(g, args->context, args->ray, args->N, i, args->primID, true, &t))
       *ray_row(args->ray, args->N, TFAR, i) = -INFINITY;
   }
 }
 
 /* ---- building ---------------------------------------------------------------------------------------------------- */
 
-static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, AccelGeometry *g, vlError *error) {
+static void make_user_geometry(RTCGeometry geometry, uint32_t count) {
+  rtcSetGeometryUserPrimitiveCount(geometry, count);
+  rtcSetGeometryBoundsFunction(geometry, user_bounds, NULL);
+  rtcSetGeometryIntersectFunction(geometry, user_intersect);
+  rtcSetGeometryOccludedFunction(geometry, user_occluded);
+}
+
+static bool bundled(const vlWorldShape *s) {
+  return s->kind == VL_SHAPE_SPHERE || s->kind == VL_SHAPE_DISK || s->kind == VL_SHAPE_CYLINDER;
+}
+
+/* Spheres, disks and cylinders of a group, from two on, are one geometry, which stands at the first one's id: a
+ * geometry each costs more than they do. members: room for the group's shapes; how many of them are taken is returned.
+ */
+static uint32_t find_bundle(const vlWorld *world, const vlWorldGroup *group, vlAccelBundle *bundle, uint32_t *members) {
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < group->count; i++) {
+    if (!bundled(&world->shapes.items[group->shapes[i]])) continue;
+    if (count == 0) bundle->geometry = i;
+    members[count++] = group->shapes[i];
+  }
+  bundle->members = count > 1 ? members : NULL;
+  bundle->count = count > 1 ? count : 0;
+  return bundle->count;
+}
+
+/* count: of a bundle. */
+static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, AccelGeometry *g, uint32_t count,
+                             vlError *error) {
   const vlWorldShape *s = g->shape;
   bool triangles = s->kind == VL_SHAPE_TRIANGLES;
   RTCGeometry geometry = rtcNewGeometry(device, triangles ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_USER);
@@ -171,10 +211,7 @@ static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, Acce
     if (s->alpha >= 0 || s->one_sided || s->pass_shadow)
       rtcSetGeometryOccludedFilterFunction(geometry, filter_occluded);
   } else {
-    rtcSetGeometryUserPrimitiveCount(geometry, s->faces);
-    rtcSetGeometryBoundsFunction(geometry, user_bounds, NULL);
-    rtcSetGeometryIntersectFunction(geometry, user_intersect);
-    rtcSetGeometryOccludedFunction(geometry, user_occluded);
+    make_user_geometry(geometry, g->members ? count : s->faces);
   }
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
@@ -215,17 +252,27 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
   AccelGeometry *geometries = vl_alloc_array(world->context, world->shapes.count + 1, sizeof *geometries);
   a->groups = vl_alloc_zero(world->context, world->groups.count, sizeof *a->groups);
   a->user_data = geometries;
-  if (!geometries || !a->groups) return vl_fail_memory(error);
+  a->bundles = vl_alloc_zero(world->context, world->groups.count, sizeof *a->bundles);
+  a->members = vl_alloc_array(world->context, world->shapes.count + 1, sizeof *a->members);
+  if (!geometries || !a->groups || !a->bundles || !a->members) return vl_fail_memory(error);
+  uint32_t bundled_count = 0;
   a->group_count = (uint32_t)world->groups.count;
-  for (size_t i = 0; i < world->shapes.count; i++) geometries[i] = (AccelGeometry){world, &world->shapes.items[i]};
+  for (size_t i = 0; i < world->shapes.count; i++)
+    geometries[i] = (AccelGeometry){world, &world->shapes.items[i], NULL};
   for (size_t k = world->groups.count; k-- > 0;) { /* the world itself, group 0, comes last */
     const vlWorldGroup *group = &world->groups.items[k];
     RTCScene scene = new_scene(device);
     if (!scene) return vl_fail_memory(error);
     a->groups[k] = scene;
     vlResult r = VL_OK;
-    for (uint32_t i = 0; r == VL_OK && i < group->count; i++)
-      r = attach_shape(device, scene, i, &geometries[group->shapes[i]], error);
+    vlAccelBundle *bundle = &a->bundles[k];
+    bundled_count += find_bundle(world, group, bundle, a->members + bundled_count);
+    for (uint32_t i = 0; r == VL_OK && i < group->count; i++) {
+      AccelGeometry *g = &geometries[group->shapes[i]];
+      if (bundle->members && i > bundle->geometry && bundled(g->shape)) continue; /* part of it */
+      if (bundle->members && i == bundle->geometry) g->members = bundle->members;
+      r = attach_shape(device, scene, i, g, bundle->count, error);
+    }
     for (size_t i = 0; k == 0 && r == VL_OK && i < world->instances.count; i++) {
       const vlWorldInstance *instance = &world->instances.items[i];
       r = attach_instance(device, scene, a->groups[instance->group], group->count + (unsigned)i, instance, error);
@@ -246,6 +293,8 @@ void vl_accel_destroy(vlContext *context, vlAccel *a) {
   if (a->device) rtcReleaseDevice(a->device);
   vl_free(context, a->groups);
   vl_free(context, a->user_data);
+  vl_free(context, a->bundles);
+  vl_free(context, a->members);
   memset(a, 0, sizeof *a);
 }
 
@@ -291,8 +340,10 @@ static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsign
     *instance = inst - world->groups.items[0].count;
     group = world->instances.items[*instance].group;
   }
-  *shape = world->groups.items[group].shapes[geom];
-  *prim_out = prim;
+  const vlAccelBundle *bundle = &world->accel.bundles[group];
+  bool bundled_hit = bundle->members && geom == bundle->geometry;
+  *shape = bundled_hit ? bundle->members[prim] : world->groups.items[group].shapes[geom];
+  *prim_out = bundled_hit ? 0 : prim;
 }
 
 static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32_t *shape, uint32_t *prim,

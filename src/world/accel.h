@@ -19,13 +19,21 @@ typedef struct vlRays {
 /* For benchmarks: told of every batch of rays before it is traced. kind: 0 coherent closest, 1 closest, 2 occluded. */
 typedef void vlRayLogFn(void *user, int kind, uint32_t n, const vlRays *rays);
 
+/* The quadrics of a group, one geometry together: primitive k is shape members[k]. members null: none. */
+typedef struct vlAccelBundle {
+  uint32_t geometry, count;
+  const uint32_t *members;
+} vlAccelBundle;
+
 typedef struct vlAccel {
   void *device;  /* RTCDevice */
   void *scene;   /* RTCScene: the world */
   void **groups; /* RTCScene of each group with index >= 1 */
   uint32_t group_count;
-  void *user_data; /* blocks of AccelGeometry */
-  vlRayLogFn *log; /* null but in benchmarks */
+  void *user_data;        /* blocks of AccelGeometry */
+  vlAccelBundle *bundles; /* of each group */
+  uint32_t *members;      /* of all */
+  vlRayLogFn *log;        /* null but in benchmarks */
   void *log_user;
 } vlAccel;
 

@@ -24,6 +24,10 @@ typedef struct Cone {
 static Cone cone_union(Cone a, Cone b) {
   if (a.empty) return b;
   if (b.empty) return a;
+  /* Frequent and cheap: one is everything, or b a direction in a. The same answers as below. */
+  if (a.cos_o <= -1) return a;
+  if (b.cos_o <= -1) return b;
+  if (b.cos_o >= 1 && vl_dot(a.axis, b.axis) >= a.cos_o) return a;
   float ta = acosf(vl_clamp(a.cos_o, -1, 1)), tb = acosf(vl_clamp(b.cos_o, -1, 1));
   float td = acosf(vl_clamp(vl_dot(a.axis, b.axis), -1, 1));
   if (fminf(td + tb, VL_PI) <= ta) return a;
@@ -40,23 +44,27 @@ static Cone cone_union(Cone a, Cone b) {
   return (Cone){vl_normalize(w), cosf(to), false};
 }
 
-static vlLightBounds bounds_union(const vlLightBounds *a, const vlLightBounds *b) {
-  if (a->power == 0) return *b;
-  if (b->power == 0) return *a;
-  vlLightBounds r = *a;
-  for (int i = 0; i < 3; i++) {
-    r.low[i] = fminf(a->low[i], b->low[i]);
-    r.high[i] = fmaxf(a->high[i], b->high[i]);
+/* Makes a the bounds of both. In place, by comparisons: it is most of the build's time. */
+static void absorb(vlLightBounds *a, const vlLightBounds *b) {
+  if (b->power == 0) return;
+  if (a->power == 0) {
+    *a = *b;
+    return;
   }
-  Cone ca = {vl_vec3(a->axis[0], a->axis[1], a->axis[2]), a->cos_o, false};
-  Cone cb = {vl_vec3(b->axis[0], b->axis[1], b->axis[2]), b->cos_o, false};
-  Cone c = cone_union(ca, cb);
-  r.axis[0] = c.axis.x, r.axis[1] = c.axis.y, r.axis[2] = c.axis.z;
-  r.cos_o = c.cos_o;
-  r.cos_e = fminf(a->cos_e, b->cos_e);
-  r.power = a->power + b->power;
-  r.two_sided = a->two_sided || b->two_sided;
-  return r;
+  for (int i = 0; i < 3; i++) {
+    a->low[i] = b->low[i] < a->low[i] ? b->low[i] : a->low[i];
+    a->high[i] = b->high[i] > a->high[i] ? b->high[i] : a->high[i];
+  }
+  if (a->cos_o > -1) { /* else it is everything already */
+    Cone ca = {vl_vec3(a->axis[0], a->axis[1], a->axis[2]), a->cos_o, false};
+    Cone cb = {vl_vec3(b->axis[0], b->axis[1], b->axis[2]), b->cos_o, false};
+    Cone c = cone_union(ca, cb);
+    a->axis[0] = c.axis.x, a->axis[1] = c.axis.y, a->axis[2] = c.axis.z;
+    a->cos_o = c.cos_o;
+  }
+  a->cos_e = b->cos_e < a->cos_e ? b->cos_e : a->cos_e;
+  a->power = a->power + b->power;
+  a->two_sided = a->two_sided || b->two_sided;
 }
 
 static float cost_of(const vlLightBounds *b, const float parent_low[3], const float parent_high[3], int dimension) {
@@ -105,8 +113,9 @@ static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *al
   float clow[3] = {INFINITY, INFINITY, INFINITY}, chigh[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (uint32_t i = 0; i < count; i++)
     for (int k = 0; k < 3; k++) {
-      clow[k] = fminf(clow[k], centroid(&items[i], k));
-      chigh[k] = fmaxf(chigh[k], centroid(&items[i], k));
+      float c = centroid(&items[i], k);
+      clow[k] = c < clow[k] ? c : clow[k];
+      chigh[k] = c > chigh[k] ? c : chigh[k];
     }
   float best = INFINITY;
   int best_dimension = -1, best_bucket = 0;
@@ -117,17 +126,18 @@ static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *al
     for (uint32_t i = 0; i < count; i++) {
       int b = (int)(BUCKETS * (centroid(&items[i], k) - clow[k]) / (chigh[k] - clow[k]));
       b = b < 0 ? 0 : b >= BUCKETS ? BUCKETS - 1 : b;
-      buckets[b] = bounds_union(&buckets[b], &items[i].bounds);
+      absorb(&buckets[b], &items[i].bounds);
     }
-    for (int s = 0; s < BUCKETS - 1; s++) {
-      vlLightBounds left, right;
-      memset(&left, 0, sizeof left);
-      memset(&right, 0, sizeof right);
-      for (int b = 0; b <= s; b++) left = bounds_union(&left, &buckets[b]);
-      for (int b = s + 1; b < BUCKETS; b++) right = bounds_union(&right, &buckets[b]);
-      if (left.power == 0 || right.power == 0) continue;
+    int filled[BUCKETS], fill_count = 0; /* most nodes are small and fill two or three */
+    for (int b = 0; b < BUCKETS; b++)
+      if (buckets[b].power != 0) filled[fill_count++] = b;
+    vlLightBounds left = buckets[fill_count ? filled[0] : 0];
+    for (int s = 0; s + 1 < fill_count; s++) {
+      if (s > 0) absorb(&left, &buckets[filled[s]]);
+      vlLightBounds right = buckets[filled[s + 1]];
+      for (int b = s + 2; b < fill_count; b++) absorb(&right, &buckets[filled[b]]);
       float cost = cost_of(&left, all->low, all->high, k) + cost_of(&right, all->low, all->high, k);
-      if (cost < best) best = cost, best_dimension = k, best_bucket = s;
+      if (cost < best) best = cost, best_dimension = k, best_bucket = filled[s];
     }
   }
   if (best_dimension < 0) return count / 2;
@@ -153,7 +163,7 @@ static vlLightBounds build_node(Builder *b, uint32_t at, Item *items, uint32_t c
     return items[0].bounds;
   }
   vlLightBounds all = items[0].bounds;
-  for (uint32_t i = 1; i < count; i++) all = bounds_union(&all, &items[i].bounds);
+  for (uint32_t i = 1; i < count; i++) absorb(&all, &items[i].bounds);
   /* Trails have 64 bits: below a certain depth halve, so that depth stays bounded. */
   uint32_t middle = depth > MAX_DEPTH - 34 ? count / 2 : split_items(items, count, &all);
   uint32_t left = b->next;

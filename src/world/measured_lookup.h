@@ -97,6 +97,26 @@ static inline float vl_measured_part(float a, float b, float t) {
   return t * (a + 0.5f * (b - a) * t);
 }
 
+/* The mixture along a line between two rows: of each slice both rows, where they start. */
+typedef struct vlMeasuredLine {
+  uint32_t count;
+  size_t at[8];
+  float weight[8];
+} vlMeasuredLine;
+static inline vlMeasuredLine vl_measured_line(vlMeasuredSlices s, size_t size, size_t row, uint32_t width, float t) {
+  vlMeasuredLine line = {2 * s.count, {0}, {0}};
+  for (uint32_t k = 0; k < s.count; k++) {
+    line.at[2 * k] = s.slice[k] * size + row, line.weight[2 * k] = s.weight[k] * (1.0f - t);
+    line.at[2 * k + 1] = s.slice[k] * size + row + width, line.weight[2 * k + 1] = s.weight[k] * t;
+  }
+  return line;
+}
+static inline float vl_measured_on(const vlMeasuredLine *line, const float *data, size_t i) {
+  float sum = 0.0f;
+  for (uint32_t k = 0; k < line->count; k++) sum += line->weight[k] * data[line->at[k] + i];
+  return sum;
+}
+
 /* A point of the square, and the density there of those sampled. */
 typedef struct vlMeasuredPoint {
   float x, y, pdf;
@@ -118,20 +138,18 @@ static inline vlMeasuredPoint vl_measured_sample(const vlMeasuredTable *table, v
   float part = (v - vl_measured_mix(table->rows, h, slices, low)) * (float)(h - 1);
   float t = vl_measured_solve(vl_measured_mix(table->columns, size, slices, first + end),
                               vl_measured_mix(table->columns, size, slices, first + w + end), part);
-#define ROW(data, i)                                                           \
-  vl_measured_between(vl_measured_mix(table->data, size, slices, first + (i)), \
-                      vl_measured_mix(table->data, size, slices, first + w + (i)), t)
-  float wanted = u * ROW(columns, end);
+  vlMeasuredLine line = vl_measured_line(slices, size, first, w, t);
+  float wanted = u * vl_measured_on(&line, table->columns, end);
   uint32_t left = 0, right = w - 1;
   while (right - left > 1) {
     uint32_t mid = (left + right) / 2;
-    if (ROW(columns, mid) <= wanted)
+    if (vl_measured_on(&line, table->columns, mid) <= wanted)
       left = mid;
     else
       right = mid;
   }
-  float a = ROW(values, left), b = ROW(values, left + 1);
-  float s = vl_measured_solve(a, b, (wanted - ROW(columns, left)) * (float)(w - 1));
+  float a = vl_measured_on(&line, table->values, left), b = vl_measured_on(&line, table->values, left + 1);
+  float s = vl_measured_solve(a, b, (wanted - vl_measured_on(&line, table->columns, left)) * (float)(w - 1));
   return (vlMeasuredPoint){((float)left + s) / (float)(w - 1), ((float)low + t) / (float)(h - 1),
                            vl_measured_between(a, b, s)};
 }
@@ -155,9 +173,10 @@ static inline vlMeasuredPoint vl_measured_invert(const vlMeasuredTable *table, v
             vl_measured_part(vl_measured_mix(table->columns, size, slices, first + end),
                              vl_measured_mix(table->columns, size, slices, first + w + end), t) /
                 (float)(h - 1);
-  float a = ROW(values, c.column), b = ROW(values, c.column + 1), all = ROW(columns, end);
-  float u = ROW(columns, c.column) + vl_measured_part(a, b, c.s) / (float)(w - 1);
-#undef ROW
+  vlMeasuredLine line = vl_measured_line(slices, size, first, w, t);
+  float a = vl_measured_on(&line, table->values, c.column), b = vl_measured_on(&line, table->values, c.column + 1),
+        all = vl_measured_on(&line, table->columns, end);
+  float u = vl_measured_on(&line, table->columns, c.column) + vl_measured_part(a, b, c.s) / (float)(w - 1);
   return (vlMeasuredPoint){all > 0.0f ? vl_clamp(u / all, 0.0f, 1.0f) : 0.0f, vl_clamp(v, 0.0f, 1.0f),
                            vl_measured_between(a, b, c.s)};
 }

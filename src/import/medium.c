@@ -230,14 +230,18 @@ static bool find(vlImport *import, const char *name, vlSource place, vlMediumId 
   return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no medium \"%.80s\"", name);
 }
 
-/* pbrt's surface integrators do as if there were no media, and warn. */
+/* pbrt's surface integrators do as if there were no media, and warn; of these velo's tracers that follow light both
+ * ways do not. */
 static void warn_surface_integrator(vlImport *import, const vlMediumLink *link) {
   const vlChoice *integrator = &import->integrator;
   vlTracer tracer = vl_scene_settings(import->scene)->tracer;
   if (tracer == VL_TRACER_VOLPATH || tracer == VL_TRACER_BIDIRECTIONAL || !integrator->given) return;
+  bool through = tracer == VL_TRACER_SPPM || tracer == VL_TRACER_LIGHT_PATH;
   vl_import_warn(import, VL_LOG_WARNING, link->place,
-                 "integrator \"%s\" looks past participating media (here \"%.60s\"), as in pbrt", integrator->kind,
-                 link->inside[0] ? link->inside : link->outside);
+                 through
+                     ? "integrator \"%s\" of pbrt looks past participating media (here \"%.60s\"), velo's goes through"
+                     : "integrator \"%s\" looks past participating media (here \"%.60s\"), as in pbrt",
+                 integrator->kind, link->inside[0] ? link->inside : link->outside);
 }
 
 bool vl_import_finish_media(vlImport *import) {

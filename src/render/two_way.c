@@ -119,8 +119,12 @@ static float shared_number(uint32_t seed, uint32_t index) {
   return vl_unit_float(x + vl_hash2(seed, light_seed));
 }
 
+/* The same in base 3: in base 2 each wavelength would have a time of its own. */
 float vl_two_way_time(const vlTwoWayRun *run, uint32_t index) {
-  return run->way.merge ? shared_number(run->trace.sampler->seed ^ time_seed, index) : -1.0f;
+  if (!run->way.merge) return -1.0f;
+  double turn = vl_hash2(run->trace.sampler->seed, time_seed) * 0x1p-32, place = 1;
+  for (uint32_t x = index; x > 0; x /= 3) turn += (x % 3) * (place /= 3);
+  return fminf((float)(turn - floor(turn)), VL_ONE_MINUS_EPSILON);
 }
 
 const vlEyeView *vl_two_way_eyes(const vlTwoWayRun *run, uint32_t worker, uint32_t n, const float *u, float *time) {

@@ -243,7 +243,7 @@ static __attribute__((noinline)) void weigh(const vlPrincipledSlice *s, const fl
     float matt = cover * (dielectric * (1.0f - clear) * (1.0f - shares) * seen +
                           (metal * base + dielectric * clear * l->lost_up[i]) * lost) +
                  l->sheen_o[i];
-    float coat = (coat_cos[i] > 1e-3f) & (inside == 0.0f) ? 1.0f : 0.0f;
+    float coat = ((coat_cos[i] > 1e-3f) & (inside == 0.0f)) ? 1.0f : 0.0f;
     coat = coat * l->coat_o[i];
     float refract = cover * dielectric * clear * base * (1.0f - reflected);
     float beyond = cover * dielectric *

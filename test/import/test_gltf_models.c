@@ -199,8 +199,9 @@ static void next_to_nothing(void **state) {
   static const char *const texts[] = {
       "{\"asset\":{\"version\":\"2.0\"}}",
       "{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"2.0\",\"extras\":null},\"scenes\":[{}],\"scene\":0}",
-      "{\"asset\":{\"version\":\"2.1\",\"generator\":\"\"},\"nodes\":[{}],\"scenes\":[{\"nodes\":[0]}],\"materials\":[{"
-      "}]}"};
+      ("{\"asset\":{\"version\":\"2.1\",\"generator\":\"\"},\"nodes\":[{}],\"scenes\":[{\"nodes\":[0]}],\"materials\":["
+       "{"
+       "}]}")};
   for (int i = 0; i < 3; i++) {
     gltf_file(in_folder("n.gltf"), texts[i], strlen(texts[i]));
     Loaded l;

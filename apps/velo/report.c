@@ -7,8 +7,11 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+enum { MOST_LOGGED = 100 }; /* a stranger's file may earn a warning a line */
+
 static struct {
   bool json, terminal, line_shown;
+  unsigned logged; /* warnings and notes of the library */
   Verbosity verbosity;
   char *json_text;
   size_t json_size;
@@ -163,6 +166,11 @@ void report_log(void *user, vlLogLevel level, const vlError *where, const char *
   (void)user;
   if (level == VL_LOG_INFO && state.verbosity == REPORT_QUIET) return;
   if (level >= VL_LOG_DEBUG && state.verbosity != REPORT_VERBOSE) return;
+  if (level > VL_LOG_ERROR && state.verbosity != REPORT_VERBOSE && state.logged++ >= MOST_LOGGED) {
+    if (state.logged == MOST_LOGGED + 1)
+      report_warning("%d warnings and notes are enough: more are not shown", MOST_LOGGED);
+    return;
+  }
   static const char *const kinds[] = {"error", "warning", "note", "debug"};
   say(kinds[level <= VL_LOG_DEBUG ? level : VL_LOG_DEBUG], 0, where, NULL, message);
 }

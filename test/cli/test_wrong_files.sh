@@ -110,6 +110,10 @@ printf '\037\213\010\0broken' >broken.pbrt.gz
 wrong 3 broken_gzip '.*broken\.pbrt\.gz' broken.pbrt.gz
 head -c 4096 /dev/urandom >noise.pbrt
 wrong 3 noise '.*noise\.pbrt:[0-9]+:[0-9]+: ' noise.pbrt
+# A warning a line, thousands of them: a hundred are enough.
+{ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\n'; for i in $(seq 3000); do printf 'usemtl m%d\nf 1 2 3\n' "$i"; done; } >warnings.obj
+run "$VELO" render warnings.obj --quiet --spp 1 --resolution 8x8 -o warnings.exr
+check warnings_end test "$(printf '%s\n' "$err" | wc -l)" = 101
 printf '%s\n' 'format unknown' >scene.obj2
 wrong 3 unknown_suffix '.*scene\.obj2' scene.obj2
 

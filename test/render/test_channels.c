@@ -2,8 +2,6 @@
  * have one depth, and the bits do not depend on threads, instruction set or crop. */
 #include "render/truths.h"
 
-#include "failing_allocator.h"
-
 /* Builds what the stage holds and takes all channels. */
 static Truth truth_take(Stage *s, const uint32_t crop[4], uint32_t channels) {
   Truth t = truth_begin(s);
@@ -270,41 +268,22 @@ static void test_wrong_arguments(void **state) {
   stage_close(&s);
 }
 
+static void fill_wall(Stage *s) {
+  Quad wall = quad_at(0, 0, -2, 9, 0, 0, 0, 9, 0);
+  add_quad(s, &wall);
+}
+
+static vlResult take_standard(Stage *s, Truth *t) {
+  (void)s;
+  vlChannelsDef def = vl_default_channels_def(16, 8);
+  vlResult result = vl_render_channels(t->world, &t->camera, &def, &t->floats, &t->ids, NULL);
+  if (result != VL_OK) assert_true(!t->floats && !t->ids);
+  return result;
+}
+
 static void test_out_of_memory(void **state) {
   (void)state;
-  bool done = false;
-  for (long n = 1; !done; n++) {
-    failAllocator allocator = {.fail_at = 0};
-    vlContextDef def = vl_default_context_def();
-    def.threads = 2;
-    def.allocator = fail_allocator(&allocator);
-    Stage s = stage_open(16, 8);
-    vlContext *usual = s.context;
-    vl_scene_destroy(s.scene);
-    assert_int_equal(vl_context_create(&def, &s.context), VL_OK);
-    assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
-    Quad wall = quad_at(0, 0, -2, 9, 0, 0, 0, 9, 0);
-    add_quad(&s, &wall);
-    vlWorld *world;
-    vlCamera camera;
-    assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_OK);
-    assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, NULL), VL_OK);
-    vlChannelsDef channels = vl_default_channels_def(16, 8);
-    vlImage *floats, *ids;
-    allocator.fail_at = atomic_load(&allocator.calls) + n;
-    vlResult result = vl_render_channels(world, &camera, &channels, &floats, &ids, NULL);
-    done = !atomic_load(&allocator.refused);
-    assert_int_equal(result, done ? VL_OK : VL_ERROR_MEMORY);
-    if (!done) assert_true(!floats && !ids);
-    vl_image_destroy(floats);
-    vl_image_destroy(ids);
-    vl_world_destroy(world);
-    vl_scene_destroy(s.scene);
-    vl_context_destroy(s.context);
-    assert_int_equal(atomic_load(&allocator.blocks), 0);
-    vl_context_destroy(usual);
-    assert_true(n < 1000);
-  }
+  truth_out_of_memory(fill_wall, truth_begin, take_standard);
 }
 
 int main(void) {

@@ -2,8 +2,6 @@
  * each other and with what is known of simple scenes, and their bits hang on nothing else. */
 #include "render/truths.h"
 
-#include "failing_allocator.h"
-
 static const uint32_t MATTES = VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
 
 static Truth truth_take(Stage *s, uint32_t channels, vlChannelMode mode) {
@@ -269,42 +267,28 @@ static void test_wrong_arguments(void **state) {
   stage_close(&s);
 }
 
+static Truth take_errors(Stage *s) {
+  return truth_take(s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
+}
+
+static vlResult take_all(Stage *s, Truth *t) {
+  vlChannelsDef def = vl_default_channels_def(16, 8);
+  def.channels = VL_CHANNEL_ALL | MATTES | VL_CHANNEL_ERROR | VL_CHANNEL_FORWARD;
+  def.mode = VL_CHANNEL_MODE_COVERAGE;
+  def.film = t->film, def.render = &s->render, def.forward = &t->camera;
+  vlImage *floats, *ids;
+  vlIdBox objects[8], instances[8];
+  vlBoxesDef boxes = vl_default_boxes_def(16, 8);
+  vlResult result = vl_render_channels(t->world, &t->camera, &def, &floats, &ids, NULL);
+  if (result == VL_OK) result = vl_world_boxes(t->world, &t->camera, &boxes, objects, instances, NULL);
+  vl_image_destroy(floats);
+  vl_image_destroy(ids);
+  return result;
+}
+
 static void test_out_of_memory(void **state) {
   (void)state;
-  bool done = false;
-  for (long n = 1; !done; n++) {
-    failAllocator allocator = {.fail_at = 0};
-    vlContextDef context_def = vl_default_context_def();
-    context_def.threads = 2;
-    context_def.allocator = fail_allocator(&allocator);
-    Stage s = stage_open(16, 8);
-    vlContext *usual = s.context;
-    vl_scene_destroy(s.scene);
-    assert_int_equal(vl_context_create(&context_def, &s.context), VL_OK);
-    assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
-    fill(&s);
-    Truth t = truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
-    vlChannelsDef def = vl_default_channels_def(16, 8);
-    def.channels = VL_CHANNEL_ALL | MATTES | VL_CHANNEL_ERROR | VL_CHANNEL_FORWARD;
-    def.mode = VL_CHANNEL_MODE_COVERAGE;
-    def.film = t.film, def.render = &s.render, def.forward = &t.camera;
-    vlImage *floats, *ids;
-    vlIdBox objects[8], instances[8];
-    vlBoxesDef boxes = vl_default_boxes_def(16, 8);
-    allocator.fail_at = atomic_load(&allocator.calls) + n;
-    vlResult result = vl_render_channels(t.world, &t.camera, &def, &floats, &ids, NULL);
-    if (result == VL_OK) result = vl_world_boxes(t.world, &t.camera, &boxes, objects, instances, NULL);
-    done = !atomic_load(&allocator.refused);
-    assert_int_equal(result, done ? VL_OK : VL_ERROR_MEMORY);
-    vl_image_destroy(floats);
-    vl_image_destroy(ids);
-    truth_free(&t);
-    vl_scene_destroy(s.scene);
-    vl_context_destroy(s.context);
-    assert_int_equal(atomic_load(&allocator.blocks), 0);
-    vl_context_destroy(usual);
-    assert_true(n < 1000);
-  }
+  truth_out_of_memory(fill, take_errors, take_all);
 }
 
 int main(void) {

@@ -5,6 +5,8 @@
 
 #include "render/shots.h"
 
+#include "failing_allocator.h"
+
 typedef struct Truth {
   vlWorld *world;
   vlCamera camera, other; /* other: of flow */
@@ -76,6 +78,36 @@ static UNUSED bool stage_like(const Stage *s, int isa, Stage *other) {
   assert_int_equal(made, VL_OK);
   assert_int_equal(vl_scene_create(other->context, &other->scene), VL_OK);
   return true;
+}
+
+/* A 16 x 8 stage that fill fills and begin builds; then take, with its memory running out at every place in turn: it
+ * must say so, and nothing may be left. */
+static UNUSED void truth_out_of_memory(void (*fill)(Stage *s), Truth (*begin)(Stage *s),
+                                       vlResult (*take)(Stage *s, Truth *t)) {
+  bool done = false;
+  for (long n = 1; !done; n++) {
+    failAllocator allocator = {.fail_at = 0};
+    vlContextDef def = vl_default_context_def();
+    def.threads = 2;
+    def.allocator = fail_allocator(&allocator);
+    Stage s = stage_open(16, 8);
+    vlContext *usual = s.context;
+    vl_scene_destroy(s.scene);
+    assert_int_equal(vl_context_create(&def, &s.context), VL_OK);
+    assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
+    fill(&s);
+    Truth t = begin(&s);
+    allocator.fail_at = atomic_load(&allocator.calls) + n;
+    vlResult result = take(&s, &t);
+    done = !atomic_load(&allocator.refused);
+    assert_int_equal(result, done ? VL_OK : VL_ERROR_MEMORY);
+    truth_free(&t);
+    vl_scene_destroy(s.scene);
+    vl_context_destroy(s.context);
+    assert_int_equal(atomic_load(&allocator.blocks), 0);
+    vl_context_destroy(usual);
+    assert_true(n < 1000);
+  }
 }
 
 #endif

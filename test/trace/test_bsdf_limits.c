@@ -7,49 +7,34 @@
 /* after those */
 #include <cmocka.h>
 
-#include "bsdf_batch.h"
+#include "bsdf_state.h"
 #include "measured_file.h"
 
-typedef struct {
-  vlContext *context;
-  const vlBsdfKernels *kernels;
-  Batch *batch, *other;
-  vlCoatTable *tables[4];
-  vlMeasured *measured[2];
-} State;
+/* What a test needs beside the state's coats. */
+static vlMeasured *measured[2];
 
-static int setup(void **state) {
-  State *s = calloc(1, sizeof *s);
-  vlContextDef def = vl_default_context_def();
-  if (vl_context_create(&def, &s->context)) return 1;
-  s->kernels = vl_bsdf_kernels(vl_context_isa(s->context));
-  s->batch = calloc(1, sizeof *s->batch);
-  s->other = calloc(1, sizeof *s->other);
+static int build_all(void **state) {
+  if (setup(state)) return 1;
+  State *s = *state;
   const float alphas[4][2] = {{0, 0}, {0.1f, 0.1f}, {0.0f, 0.6f}, {0.4f, 0.4f}};
   for (int i = 0; i < 4; i++)
-    if (vl_coat_build(s->context, 1.5f, 0.01f, i == 3 ? 1000 : 10, alphas[i][0], alphas[i][1], &s->tables[i])) return 1;
+    if (vl_coat_build(s->context, 1.5f, 0.01f, i == 3 ? 1000 : 10, alphas[i][0], alphas[i][1], &s->coats[i])) return 1;
   const char *path = VELO_BINARY_DIR "/limits.bsdf";
   for (int i = 0; i < 2; i++) {
     mfSurface metal = mf_surface(0.3, i ? 0.1 : 0.3);
     metal.nodes = metal.samples = 16;
     metal.parts = i ? 4 : 1;
     mfFile file = mf_measure(&metal);
-    if (!mf_write(path, &file) || vl_measured_read(s->context, path, false, &s->measured[i], NULL)) return 1;
+    if (!mf_write(path, &file) || vl_measured_read(s->context, path, false, &measured[i], NULL)) return 1;
     free(file.bytes);
   }
   remove(path);
-  *state = s;
   return 0;
 }
-static int teardown(void **state) {
+static int free_all(void **state) {
   State *s = *state;
-  for (int i = 0; i < 4; i++) vl_coat_free(s->context, s->tables[i]);
-  for (int i = 0; i < 2; i++) vl_measured_free(s->context, s->measured[i]);
-  vl_context_destroy(s->context);
-  free(s->batch);
-  free(s->other);
-  free(s);
-  return 0;
+  for (int i = 0; i < 2; i++) vl_measured_free(s->context, measured[i]);
+  return teardown(state);
 }
 
 /* ---- reciprocity ---- */
@@ -63,13 +48,13 @@ static void reciprocity(void **state) {
                          {.kind = VL_BSDF_DIFFUSE_TRANSMISSION, .reflectance = 0.2f, .principled = through},
                          {.kind = VL_BSDF_CONDUCTOR, .eta = 0.2f, .k = 3.9f, .alpha_x = 0.2f, .alpha_y = 0.5f},
                          {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f, .alpha_x = 0.4f, .alpha_y = 0.3f},
-                         {.kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 0.6f, .eta_s = 1.5f, .coat = s->tables[0]},
+                         {.kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 0.6f, .eta_s = 1.5f, .coat = s->coats[0]},
                          {.kind = VL_BSDF_COATED_DIFFUSE,
                           .reflectance = 0.6f,
                           .eta_s = 1.5f,
                           .alpha_x = 0.3f,
                           .alpha_y = 0.1f,
-                          .coat = s->tables[2]}};
+                          .coat = s->coats[2]}};
   statRng rng = stat_rng(9);
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     double worst = 0;
@@ -137,8 +122,8 @@ static void fill(const State *s, Batch *b, statRng *rng, vlBsdfKind kind) {
       b->principled[VL_L_DEPTH][j] = 10, b->principled[VL_L_WALKS][j] = 1;
     }
     b->seed[j] = (uint32_t)stat_bits(rng);
-    b->coat[j] = s->tables[stat_bits(rng) % 4];
-    b->measured[j] = s->measured[stat_bits(rng) % 2];
+    b->coat[j] = s->coats[stat_bits(rng) % 4];
+    b->measured[j] = measured[stat_bits(rng) % 2];
     double o[3], w[3];
     stat_direction(rng, o);
     stat_direction(rng, w);
@@ -304,7 +289,7 @@ static void special(void **state) {
                         .eta_s = 1.5f,
                         .alpha_x = 0.1f,
                         .alpha_y = 0.1f,
-                        .coat = s->tables[1]};
+                        .coat = s->coats[1]};
   for (uint32_t j = 0; j < 16; j++) {
     batch_surface(b, j, &coat);
     batch_wo(b, j, 0.5, 0);
@@ -315,7 +300,7 @@ static void special(void **state) {
   batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, b);
   assert_true(b->value[0][0] > 0 && b->value[0][0] == b->value[0][1] && b->value[0][2] == 0 && b->pdf[3] == 0);
   /* the closed form itself */
-  const vlCoatTable *t = s->tables[1];
+  const vlCoatTable *t = s->coats[1];
   vlCoatPlace p = vl_coat_place(0.8f);
   const float *q = t->transmittance[0] + p.first;
   double ti = (double)vl_coat_cubic(q[0], q[1], q[2], q[3], p.t);
@@ -349,5 +334,5 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(reciprocity), cmocka_unit_test(never_nan),
                                      cmocka_unit_test(same_bits), cmocka_unit_test(lanes_alone),
                                      cmocka_unit_test(special)};
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, build_all, free_all);
 }

@@ -9,6 +9,7 @@
 #define WORLD_BSSRDF_H
 
 #include "base/context.h"
+#include "math/approx.h"
 
 enum { VL_BSSRDF_ALBEDOS = 100, VL_BSSRDF_RADII = 64 };
 
@@ -49,9 +50,8 @@ static inline uint32_t vl_spline_cell(const float *nodes, uint32_t n, float x) {
   return low;
 }
 
-static inline vlSpline vl_spline_at(const float *nodes, uint32_t n, float x) {
-  if (!(x >= nodes[0] && x <= nodes[n - 1])) return (vlSpline){0, {0, 0, 0, 0}};
-  uint32_t i = vl_spline_cell(nodes, n, x);
+/* x within the nodes, in the cell i that vl_spline_cell gives. */
+static inline vlSpline vl_spline_in(const float *nodes, uint32_t n, uint32_t i, float x) {
   float x0 = nodes[i], x1 = nodes[i + 1], width = x1 - x0;
   float t = (x - x0) / width, t2 = t * t, t3 = t2 * t;
   /* Hermite's cubic; slopes at both ends by differences across the neighbours, at the border by one side. */
@@ -71,6 +71,10 @@ static inline vlSpline vl_spline_at(const float *nodes, uint32_t n, float x) {
   if (i == 0) return (vlSpline){0, {w1, w2, w3, 0}};
   if (i + 2 == n) return (vlSpline){i - 2, {0, w0, w1, w2}};
   return (vlSpline){i - 1, {w0, w1, w2, w3}};
+}
+static inline vlSpline vl_spline_at(const float *nodes, uint32_t n, float x) {
+  if (!(x >= nodes[0] && x <= nodes[n - 1])) return (vlSpline){0, {0, 0, 0, 0}};
+  return vl_spline_in(nodes, n, vl_spline_cell(nodes, n, x), x);
 }
 
 /* The cubic between two nodes a `width` apart, in t = 0 to 1: value f, and F, its integral over width. */
@@ -124,9 +128,19 @@ static inline float vl_bssrdf_mix(const vlSpline *a, const float *row0, uint32_t
 static inline float vl_bssrdf_effective(const vlBssrdfTable *table, const vlSpline *albedo) {
   return vl_bssrdf_mix(albedo, table->effective, 1);
 }
+/* Radii grow by 1.2 from node to node: the cell by a logarithm, put right by its nodes. */
+static inline uint32_t vl_bssrdf_cell(const vlBssrdfTable *table, float r) {
+  float guess = 1.0f + vl_ln(r * 400.0f + 1e-9f) * 5.48481494f;
+  uint32_t i = guess > 1.0f ? (uint32_t)guess : 0;
+  i = i < VL_BSSRDF_RADII - 2 ? i : VL_BSSRDF_RADII - 2;
+  i -= i > 0 && r < table->radius[i];
+  i += i < VL_BSSRDF_RADII - 2 && r >= table->radius[i + 1];
+  return i;
+}
 /* 2 pi r R(r); 0 beyond the table. */
 static inline float vl_bssrdf_ring(const vlBssrdfTable *table, const vlSpline *albedo, float r) {
-  vlSpline s = vl_spline_at(table->radius, VL_BSSRDF_RADII, r);
+  if (!(r >= 0 && r <= table->radius[VL_BSSRDF_RADII - 1])) return 0;
+  vlSpline s = vl_spline_in(table->radius, VL_BSSRDF_RADII, vl_bssrdf_cell(table, r), r);
   float sum = 0;
   for (uint32_t k = 0; k < 4; k++)
     sum += s.w[k] * vl_bssrdf_mix(albedo, &table->profile[0][s.first + k], VL_BSSRDF_RADII);

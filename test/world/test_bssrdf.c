@@ -157,6 +157,22 @@ static void samples(void **state) {
   teardown(&s);
 }
 
+/* The cell of a radius, found by its logarithm, is the one that a search finds, next to nodes too. */
+static void cells(void **state) {
+  (void)state;
+  Setup s = setup(1.33f, 0);
+  for (uint32_t k = 0; k < VL_BSSRDF_RADII; k++)
+    for (int d = -2; d <= 2; d++) {
+      float r = s.table->radius[k];
+      for (int j = 0; j < abs(d); j++) r = nextafterf(r, d < 0 ? -1.0f : 1e9f);
+      if (r < 0 || r > s.table->radius[VL_BSSRDF_RADII - 1]) continue;
+      assert_int_equal(vl_bssrdf_cell(s.table, r), vl_spline_cell(s.table->radius, VL_BSSRDF_RADII, r));
+    }
+  for (float r = 1e-6f; r < 203; r *= 1.0013f)
+    assert_int_equal(vl_bssrdf_cell(s.table, r), vl_spline_cell(s.table->radius, VL_BSSRDF_RADII, r));
+  teardown(&s);
+}
+
 /* Larger u, larger radius: stratified numbers stay so. */
 static void ordered(void **state) {
   (void)state;
@@ -210,8 +226,9 @@ static void plain(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(integrals),      cmocka_unit_test(sums),
-                                     cmocka_unit_test(samples),        cmocka_unit_test(ordered),
-                                     cmocka_unit_test(there_and_back), cmocka_unit_test(plain)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(integrals), cmocka_unit_test(sums),
+                                     cmocka_unit_test(samples),   cmocka_unit_test(ordered),
+                                     cmocka_unit_test(cells),     cmocka_unit_test(there_and_back),
+                                     cmocka_unit_test(plain)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

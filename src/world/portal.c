@@ -31,41 +31,63 @@ static void set_frame(const vlLightDef *def, vlPortal *portal) {
   }
 }
 
-typedef struct Sky {
-  const vlEnvironment *env;
-  const vlMipmap *mip;
-} Sky;
-
-static float seen(const Sky *sky, vlVec3 d) {
-  const float *m = sky->env->light_from_world;
+static float seen(const vlEnvironment *env, const vlMipmap *mip, vlVec3 d) {
+  const float *m = env->light_from_world;
   vlVec3 l = vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
                      m[6] * d.x + m[7] * d.y + m[8] * d.z);
   vlVec2 st = vl_octahedral_encode(vl_normalize(l));
-  float y = vl_light_texel_luminance(vl_nearest(sky->mip, 0, st.x, st.y, VL_WRAP_OCTAHEDRAL), sky->mip->channels);
+  float y = vl_light_texel_luminance(vl_nearest(mip, 0, st.x, st.y, VL_WRAP_OCTAHEDRAL), mip->channels);
   return y > 0.0f ? y : 0.0f;
 }
 
-/* Fills the light of cells (not yet summed) in; what passes through a unit of the portal's area is returned. */
-static double fill(const Sky *sky, vlPortal *portal, double *total) {
-  uint32_t n = portal->size, fine = 2 * ((sky->mip->levels[0].width + n - 1) / n);
-  double passes = 0;
-  *total = 0;
-  for (uint32_t j = 0; j < n; j++)
-    for (uint32_t i = 0; i < n; i++) {
-      double sum = 0;
-      for (uint32_t k = 0; k < fine * fine; k++) {
-        double x = (i + (k % fine + 0.5) / fine) / n - 0.5, y = (j + (k / fine + 0.5) / fine) / n - 0.5;
-        double tx = tan(M_PI * x), ty = tan(M_PI * y);
-        vlVec3 w = vl_normalize(vl_vec3((float)tx, (float)ty, 1.0f));
-        double part = vl_portal_solid_angle(tx, ty) / ((double)n * n * fine * fine);
-        double light = part * (double)seen(sky, vl_portal_world(portal, w));
-        sum += light;
-        passes += light * (double)w.z;
-      }
-      portal->sums[(size_t)(j + 1) * (n + 1) + i + 1] = sum;
-      *total += sum;
+/* Points of a cell that are looked at, each way. */
+enum { COARSEST = 2, FINEST = 4 };
+
+typedef struct Filling {
+  const vlEnvironment *env;
+  const vlMipmap *mip;
+  vlPortal *portal;
+  uint32_t fine;
+  double *tangents; /* of the points' angles: size * fine */
+  double *passes;   /* of each row: what passes through a unit of the portal's area */
+} Filling;
+
+/* The light of a row's cells, not yet summed. */
+static void fill_row(void *user, uint32_t j, uint32_t worker) {
+  const Filling *f = user;
+  uint32_t n = f->portal->size, fine = f->fine;
+  (void)worker;
+  f->passes[j] = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    double sum = 0;
+    for (uint32_t k = 0; k < fine * fine; k++) {
+      double tx = f->tangents[i * fine + k % fine], ty = f->tangents[j * fine + k / fine];
+      vlVec3 w = vl_normalize(vl_vec3((float)tx, (float)ty, 1.0f));
+      double part = vl_portal_solid_angle(tx, ty) / ((double)n * n * fine * fine);
+      double light = part * (double)seen(f->env, f->mip, vl_portal_world(f->portal, w));
+      sum += light;
+      f->passes[j] += light * (double)w.z;
     }
-  return passes;
+    f->portal->sums[(size_t)(j + 1) * (n + 1) + i + 1] = sum;
+  }
+}
+
+/* All rows; *total: of all cells. */
+static bool fill(vlContext *context, Filling *f, double *total, double *passes) {
+  uint32_t n = f->portal->size, points = n * f->fine;
+  f->tangents = vl_alloc_array(context, points, sizeof *f->tangents);
+  f->passes = vl_alloc_array(context, n, sizeof *f->passes);
+  bool fine = f->tangents && f->passes;
+  for (uint32_t i = 0; fine && i < points; i++) f->tangents[i] = tan(M_PI * ((i + 0.5) / points - 0.5));
+  if (fine) vl_parallel_for(context, n, fill_row, f);
+  *total = *passes = 0;
+  for (uint32_t j = 0; fine && j < n; j++) {
+    *passes += f->passes[j];
+    for (uint32_t i = 0; i < n; i++) *total += f->portal->sums[(size_t)(j + 1) * (n + 1) + i + 1];
+  }
+  vl_free(context, f->tangents);
+  vl_free(context, f->passes);
+  return fine;
 }
 
 vlResult vl_world_add_portal(vlWorld *world, const vlLightDef *def, vlEnvironment *env, double *power, vlError *error) {
@@ -79,8 +101,12 @@ vlResult vl_world_add_portal(vlWorld *world, const vlLightDef *def, vlEnvironmen
   portal->sums = vl_world_block(world, (size_t)(n + 1) * (n + 1), sizeof(double));
   if (!portal->sums) return vl_fail_memory(error);
   memset(portal->sums, 0, (size_t)(n + 1) * (n + 1) * sizeof(double));
-  Sky sky = {env, mip};
-  double total, passes = fill(&sky, portal, &total), mean = total / (2 * M_PI);
+  uint32_t fine = (mip->levels[0].width + n - 1) / n;
+  Filling filling = {.env = env, .mip = mip, .portal = portal};
+  filling.fine = fine < COARSEST ? COARSEST : fine < FINEST ? fine : FINEST;
+  double total, passes;
+  if (!fill(world->context, &filling, &total, &passes)) return vl_fail_memory(error);
+  double mean = total / (2 * M_PI);
   *power = passes * (double)portal->width * (double)portal->height;
   if (!(mean > 0)) mean = 1; /* a black sky: any way of looking at it will do */
   for (uint32_t j = 0; j < n; j++) {

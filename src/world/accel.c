@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "world/bundle.h"
 #include "world/local_ray.h"
 #include "world/surface_point.h"
 #include "world/world.h"
@@ -174,25 +175,6 @@ static void make_user_geometry(RTCGeometry geometry, uint32_t count) {
   rtcSetGeometryOccludedFunction(geometry, user_occluded);
 }
 
-static bool bundled(const vlWorldShape *s) {
-  return s->kind == VL_SHAPE_SPHERE || s->kind == VL_SHAPE_DISK || s->kind == VL_SHAPE_CYLINDER;
-}
-
-/* Spheres, disks and cylinders of a group, from two on, are one geometry, which stands at the first one's id: a
- * geometry each costs more than they do. members: room for the group's shapes; how many of them are taken is returned.
- */
-static uint32_t find_bundle(const vlWorld *world, const vlWorldGroup *group, vlAccelBundle *bundle, uint32_t *members) {
-  uint32_t count = 0;
-  for (uint32_t i = 0; i < group->count; i++) {
-    if (!bundled(&world->shapes.items[group->shapes[i]])) continue;
-    if (count == 0) bundle->geometry = i;
-    members[count++] = group->shapes[i];
-  }
-  bundle->members = count > 1 ? members : NULL;
-  bundle->count = count > 1 ? count : 0;
-  return bundle->count;
-}
-
 /* count: of a bundle. */
 static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, AccelGeometry *g, uint32_t count,
                              vlError *error) {
@@ -266,10 +248,10 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
     a->groups[k] = scene;
     vlResult r = VL_OK;
     vlAccelBundle *bundle = &a->bundles[k];
-    bundled_count += find_bundle(world, group, bundle, a->members + bundled_count);
+    bundled_count += vl_accel_find_bundle(world, group, bundle, a->members + bundled_count);
     for (uint32_t i = 0; r == VL_OK && i < group->count; i++) {
       AccelGeometry *g = &geometries[group->shapes[i]];
-      if (bundle->members && i > bundle->geometry && bundled(g->shape)) continue; /* part of it */
+      if (bundle->members && i > bundle->geometry && vl_accel_bundled(g->shape)) continue; /* part of it */
       if (bundle->members && i == bundle->geometry) g->members = bundle->members;
       r = attach_shape(device, scene, i, g, bundle->count, error);
     }

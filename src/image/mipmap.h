@@ -21,8 +21,8 @@ typedef struct vlMipmap {
   uint32_t channels; /* 1 to 4 */
   uint32_t level_count;
   bool is_bytes;
-  bool space_told;    /* the picture says what its colours are, and this is one of the known spaces: */
-  vlColorSpace space; /* sRGB else */
+  bool space_told;      /* the picture says what its colours are, and this is one of the known spaces: */
+  vlColorSpace space;   /* sRGB else */
   float decode[4][256]; /* per channel: byte -> linear */
   vlMipLevel levels[VL_MIP_LEVELS];
 } vlMipmap;

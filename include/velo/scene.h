@@ -341,10 +341,9 @@ typedef struct vlLightDef {
   bool cone_squared;            /* its edge is t^2 in the cosine, as in glTF; else pbrt's smooth step 3t^2 - 2t^3 */
   const char *path;             /* infinite: equal-area octahedral picture (pbrt book 3.8.3), square; null: uniform */
   const vlImage *image;         /* or given directly, copied */
-  vlColorSpace
-      space; /* of the picture, unless it says its own (EXR). It holds radiance, times scale; colour is ignored */
-  vlMediumId medium; /* that it stands in */
-  float fov;         /* projection: radians across the picture's smaller side; default a right angle */
+  vlColorSpace space;           /* of the picture (radiance, times scale; colour is ignored) if it names none itself */
+  vlMediumId medium;            /* that it stands in */
+  float fov;                    /* projection: radians across the picture's smaller side; default a right angle */
   /* Infinite with a picture: seen only through a rectangle of the world, its corners one after the other, in directions
    * to the side that (last - first) x (second - first) points to. What has no such light is dark. */
   bool has_portal;

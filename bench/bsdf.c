@@ -30,6 +30,9 @@ const vlBsdfKernels vl_bsdf_kernels_one;
 #include "../src/trace/bsdf_diffuse.hot.c"
 #include "../src/trace/bsdf_hair.hot.c"
 #include "../src/trace/bsdf_layered.hot.c"
+#define turned measured_turned /* so have they of these */
+#include "../src/trace/bsdf_measured.hot.c"
+#undef turned
 #include "../src/trace/bsdf_translucent.hot.c"
 #define slice_of principled_slice_of /* the coat's file has functions of these names, too */
 #define look_up principled_look_up

@@ -337,8 +337,6 @@ void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *p
       vlSurfacePoint q = other_point(world, vl_path_time(paths, i), o, d, hits->shape[i], hits->prim[i],
                                      hits->instance[i], hits->t[i]);
       store_point(out, i, &q, o, d);
-    } else if (s->tangents) {
-      apply_tangents(world, hits, vl_path_time(paths, i), i, c, out);
     }
   }
   for (uint32_t i = 0; i < padded; i++) {
@@ -346,6 +344,11 @@ void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *p
     out->all_round[i] = 0.0f;
   }
   if (world->images.count) VL_HOT(vl_stage_footprints)(n, paths, out);
+  /* After footprints, which want the derivatives of the point: tangents have another length. */
+  for (uint32_t i = 0; others && i < n; i++) {
+    const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+    if (s->kind == VL_SHAPE_TRIANGLES && s->tangents) apply_tangents(world, hits, vl_path_time(paths, i), i, c, out);
+  }
 }
 
 vlPoint VL_HOT(vl_point_at_time)(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,

@@ -24,7 +24,8 @@ typedef struct vlPbrtInput {
 } vlPbrtInput;
 bool vl_pbrt_prepare_number(vlExport *x, const vlFloatInput *input, bool squared, vlPbrtInput *result);
 bool vl_pbrt_prepare_color(vlExport *x, const vlSpectrumInput *input, vlPbrtInput *result);
-/* The colour to put under a smooth coat of that index, so that with it as much light comes back as from the bare one. */
+/* The colour to put under a smooth coat of that index, so that with it as much light comes back as from the bare one.
+ */
 bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, double eta, vlPbrtInput *result);
 void vl_pbrt_put_number(vlExport *x, const char *name, const vlPbrtInput *input);
 void vl_pbrt_put_color(vlExport *x, const char *name, const vlPbrtInput *input);

@@ -169,6 +169,7 @@ typedef struct Quad {
   vlEmissionId emission;
   vlFloatInput alpha;
   bool patch, reverse, without_uv;
+  const float *tangents; /* 12, or none */
   vlGroupId group;
 } Quad;
 static UNUSED Quad quad_at(float x, float y, float z, float ux, float uy, float uz, float vx, float vy, float vz) {
@@ -188,6 +189,7 @@ static UNUSED vlShapeId add_quad(Stage *s, const Quad *q) {
   def.faces = q->patch ? 1 : 2;
   def.positions = q->p;
   def.uvs = q->without_uv ? NULL : uv;
+  def.tangents = q->tangents;
   def.indices = q->patch ? patch : triangles;
   def.material = q->material;
   def.emission = q->emission;

@@ -145,7 +145,10 @@ enum { TEXELS = 256, VIEW = 32 };
 
 /* Stripes of two texels, along u or along v, on a quad that is seen at 1:12, so that a pixel is 8 texels wide and, v
  * being repeated 12 times, 96 long. */
-static Picture stripes(bool along_v, vlTextureFilter filter, vlMapping mapping, bool patch, uint32_t spp) {
+static Picture stripes(bool along_v, vlTextureFilter filter, vlMapping mapping, bool patch, bool tangents,
+                       uint32_t spp) {
+  /* For normal maps; of any length. */
+  static const float along_u[12] = {1e-3f, 0, 0, 1e-3f, 0, 0, 1e-3f, 0, 0, 1e-3f, 0, 0};
   Stage s = stage_open(VIEW, VIEW);
   s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
   s.build.color = VL_COLOR_RGB;
@@ -172,6 +175,7 @@ static Picture stripes(bool along_v, vlTextureFilter filter, vlMapping mapping, 
   Quad q = quad_at(0, 0, -40, 1, 0, 0, 0, 1, -12);
   q.material = add_textured(&s, id);
   q.patch = patch;
+  q.tangents = tangents ? along_u : NULL;
   add_quad(&s, &q);
   return stage_finish(&s);
 }
@@ -179,13 +183,14 @@ static Picture stripes(bool along_v, vlTextureFilter filter, vlMapping mapping, 
 static void fine_stripes_are_grey_and_wide_ones_sharp(void **state) {
   (void)state;
   const double cosine = 1 / sqrt(145); /* which the raycast tracer shows, too */
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 9; i++) {
     vlTextureFilter filter = i % 3 == 2 ? VL_FILTER_BILINEAR : VL_FILTER_TRILINEAR;
     vlMapping mapping = i % 3 == 1 ? VL_MAPPING_PLANAR : VL_MAPPING_UV;
-    bool patch = i >= 3;
+    bool patch = i / 3 == 1, tangents = i / 3 == 2;
     char what[64];
     snprintf(what, sizeof what, "case %d", i);
-    Picture fine = stripes(true, filter, mapping, patch, 1), wide = stripes(false, filter, mapping, patch, 64);
+    Picture fine = stripes(true, filter, mapping, patch, tangents, 1);
+    Picture wide = stripes(false, filter, mapping, patch, tangents, 64);
     double sum = 0, square = 0;
     for (uint32_t y = 2; y < VIEW - 2; y++)
       for (uint32_t x = 2; x < VIEW - 2; x++) {

@@ -68,7 +68,7 @@ static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNo
 
 static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vlTextureNode *node, uint32_t i) {
   const vlSurface *f = r->surface;
-  vlTexturePoint at;
+  vlTexturePoint at = {.color = {1, 1, 1, 1}};
   at.u = f->u[i], at.v = f->v[i];
   at.p = vl_vec3(f->px[i], f->py[i], f->pz[i]);
   at.n = vl_vec3(f->gx[i], f->gy[i], f->gz[i]); /* the true surface's, as pbrt's */

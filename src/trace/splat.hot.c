@@ -27,6 +27,23 @@ vlSight VL_HOT(vl_look)(const vlEyeView *eye, vlVec3 p, float u, float v) {
   return r;
 }
 
+bool VL_HOT(vl_two_way_arrives)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlTwoWayRows *r,
+                                uint32_t k, uint32_t depth, float passes[4], float *scale) {
+  vlTraceScratch *s = t->s;
+  float odds = 1.0f, mean = 1.0f;
+  for (int c = 0; c < 4; c++) passes[c] = 1.0f;
+  if (s->shadow.occluded[k]) return false;
+  if (vl_has_media(t)) {
+    vlFlight f = VL_HOT(vl_volume_shadow_flight)(t, p, rows, k, depth);
+    float density[4];
+    for (int c = 0; c < 4; c++) passes[c] = f.beta[c], density[c] = s->volume.density[c][k] * f.l[c];
+    odds = f.odds, mean = vl_flight_mean(density, f.channels);
+    if (!(vl_max(vl_max(passes[0], passes[1]), vl_max(passes[2], passes[3])) > 0.0f)) return false;
+  }
+  *scale = 1.0f / ((r->own[k] + odds * r->others[k]) * mean);
+  return true;
+}
+
 void VL_HOT(vl_two_way_splats)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p,
                                const vlVolumeRows *rows, uint32_t count, uint32_t depth) {
   vlTraceScratch *s = t->s;
@@ -38,16 +55,8 @@ void VL_HOT(vl_two_way_splats)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, c
   for (int c = 0; c < 4; c++) value[c] = r->rows[c], lambda[c] = s->rows[c], inv_pdf[c] = s->rows[4 + c];
   uint32_t visible = 0;
   for (uint32_t k = 0; k < count; k++) {
-    if (q->occluded[k]) continue;
-    float passes[4] = {1.0f, 1.0f, 1.0f, 1.0f}, odds = 1.0f, mean = 1.0f;
-    if (vl_has_media(t)) {
-      vlFlight f = VL_HOT(vl_volume_shadow_flight)(t, p, rows, k, depth);
-      float density[4];
-      for (int c = 0; c < 4; c++) passes[c] = f.beta[c], density[c] = s->volume.density[c][k] * f.l[c];
-      odds = f.odds, mean = vl_flight_mean(density, f.channels);
-      if (!(vl_max(vl_max(passes[0], passes[1]), vl_max(passes[2], passes[3])) > 0.0f)) continue;
-    }
-    float scale = 1.0f / ((r->own[k] + odds * r->others[k]) * mean);
+    float passes[4], scale;
+    if (!VL_HOT(vl_two_way_arrives)(t, p, rows, r, k, depth, passes, &scale)) continue;
     uint32_t lane = q->lane[k], m = visible++;
     r->x[m] = r->x[k], r->y[m] = r->y[k];
     for (int c = 0; c < 4; c++) {

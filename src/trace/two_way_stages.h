@@ -136,6 +136,11 @@ static inline uint32_t vl_photon_bucket(int32_t x, int32_t y, int32_t z, uint32_
   return h & (buckets - 1);
 }
 
+/* What comes through along shadow ray k, which meets no surface: `passes` of each wavelength, `scale` of all, the
+ * weight against the other ways. false: nothing. */
+bool VL_HOT(vl_two_way_arrives)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlTwoWayRows *r,
+                                uint32_t k, uint32_t depth, float passes[4], float *scale);
+
 /* The hero is alone: material.hot.c tells it so. */
 static inline bool vl_hero_alone(const vlPaths *p, uint32_t i) {
   return p->lambda[0][i] == p->lambda[1][i] && p->lambda[0][i] > 0.0f;

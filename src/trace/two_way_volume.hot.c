@@ -5,23 +5,13 @@
 
 void VL_HOT(vl_two_way_shadows)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count,
                                 uint32_t depth) {
-  vlTraceScratch *s = t->s;
-  vlShadowRays *q = &s->shadow;
-  const vlTwoWayRows *r = t->batch->two_way;
+  vlShadowRays *q = &t->s->shadow;
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
   vl_accel_occluded(t->world, count, &rays, q->occluded);
   t->batch->shadow_rays += count;
   for (uint32_t k = 0; k < count; k++) {
-    if (q->occluded[k]) continue;
-    float passes[4] = {1.0f, 1.0f, 1.0f, 1.0f}, odds = 1.0f, mean = 1.0f;
-    if (vl_has_media(t)) {
-      vlFlight f = VL_HOT(vl_volume_shadow_flight)(t, p, rows, k, depth);
-      float density[4];
-      for (int c = 0; c < 4; c++) passes[c] = f.beta[c], density[c] = s->volume.density[c][k] * f.l[c];
-      odds = f.odds, mean = vl_flight_mean(density, f.channels);
-      if (!(vl_max(vl_max(passes[0], passes[1]), vl_max(passes[2], passes[3])) > 0.0f)) continue;
-    }
-    float scale = 1.0f / ((r->own[k] + odds * r->others[k]) * mean);
+    float passes[4], scale;
+    if (!VL_HOT(vl_two_way_arrives)(t, p, rows, t->batch->two_way, k, depth, passes, &scale)) continue;
     for (int c = 0; c < 4; c++) t->batch->radiance[c][q->lane[k]] += q->radiance[c][k] * passes[c] * scale;
   }
 }

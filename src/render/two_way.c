@@ -307,8 +307,8 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   if (run->most_paths == 0) memset(run->choice, 0, (world->lights.count + 1) * sizeof *run->choice);
   if (run->starts) vl_eye_view(camera, f, &way->eye);
   if (result == VL_OK && way->eye.sees && rays->camera.when.moves) result = make_eyes(run, error);
-  if (result == VL_OK && way->merge && def->merge_radius > 0)
-    run->first_radius = (float)def->merge_radius;
+  if (result == VL_OK && way->merge && def->merge_radius > 0) /* so that its cube is a number */
+    run->first_radius = (float)fmin(fmax(def->merge_radius, 1e-12), 1e9);
   else if (result == VL_OK && way->merge)
     result = vl_first_radius(world, camera, trace, &run->first_radius, error);
   way->merge = way->merge && run->starts && run->first_radius > 0.0f;

@@ -292,7 +292,7 @@ static int run_render(const Command *command, const Arguments *arguments) {
 const Command render_command = {
     .name = "render",
     .usage = "FILE [options]",
-    .summary = "render a scene file (.pbrt, .pbrt.gz, .gltf, .glb) into pictures",
+    .summary = "render a scene file (.pbrt, .gltf, .glb, .obj, .ply) into pictures",
     .text =
         "Renders FILE. Options override what the file says. After the first pass, and then every ten\n"
         "seconds or so, the pictures are written as they are; Ctrl-C writes the whole passes that are done.",

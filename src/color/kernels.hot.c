@@ -2,16 +2,21 @@
  */
 #include "color/kernels.h"
 
+/* u a quarter on for each channel, within 0 and 1. */
+static inline float turned(float u, int channel) {
+  float v = u + 0.25f * (float)channel;
+  return v >= 1.0f ? v - 1.0f : v;
+}
+
 /* The four hero wavelengths are u turned by quarters, so that they stratify the range together. The density is that of
  * vl_visible_pdf: there 1 / cosh^2(atanh t) = 1 - t^2. */
 static void visible_wavelengths(uint32_t n, const float *u, float *const lambda[4], float *const inv_pdf[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
-    float shift = 0.25f * (float)c, *l = lambda[c], *p = inv_pdf[c];
+    float *l = lambda[c], *p = inv_pdf[c];
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < count; i++) {
-      float v = u[i] + shift;
-      v = v >= 1.0f ? v - 1.0f : v;
+      float v = turned(u[i], c);
       float t = 0.85691062f - 1.82750197f * v;
       float x = 538.0f - 69.4444445f * vl_ln((1.0f + t) / (1.0f - t));
       /* rounding may leave the range by a hair */
@@ -26,11 +31,10 @@ static void uniform_wavelengths(float low, float span, uint32_t n, const float *
                                 float *const inv_pdf[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
-    float shift = 0.25f * (float)c, *l = lambda[c], *p = inv_pdf[c];
+    float *l = lambda[c], *p = inv_pdf[c];
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < count; i++) {
-      float v = u[i] + shift;
-      v = v >= 1.0f ? v - 1.0f : v;
+      float v = turned(u[i], c);
       l[i] = low + span * v;
       p[i] = span;
     }

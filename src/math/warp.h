@@ -127,18 +127,25 @@ static inline vlVec3 vl_warp_spherical_triangle(vlSphericalTriangle s, float u, 
   return vl_normalize(vl_add(vl_mul(s.b, 1.0f - h), vl_mul(side, __builtin_sqrtf(vl_max(0.0f, h * (2.0f - h))))));
 }
 
-/* Cell [i, i + 1) of a cumulative table of n cells (n + 1 entries, from 0 to 1) in which u falls, and where in it,
- * below
- * 1. Cells of no width are never hit, but for tables that have no others. */
-static inline uint32_t vl_find_cell(const float *cdf, uint32_t n, float u, float *within) {
+/* Which of n intervals between ascending nodes (n + 1 of them) x falls into: the last i with nodes[i] <= x; below all,
+ * 0; beyond all, n - 1. */
+static inline uint32_t vl_find_interval(const float *nodes, uint32_t n, float x) {
   uint32_t low = 0, high = n;
   while (high - low > 1) {
     uint32_t mid = (low + high) / 2;
-    if (cdf[mid] <= u)
+    if (nodes[mid] <= x)
       low = mid;
     else
       high = mid;
   }
+  return low;
+}
+
+/* Cell [i, i + 1) of a cumulative table of n cells (n + 1 entries, from 0 to 1) in which u falls, and where in it,
+ * below
+ * 1. Cells of no width are never hit, but for tables that have no others. */
+static inline uint32_t vl_find_cell(const float *cdf, uint32_t n, float u, float *within) {
+  uint32_t low = vl_find_interval(cdf, n, u);
   float width = cdf[low + 1] - cdf[low];
   *within = width > 0.0f ? vl_clamp((u - cdf[low]) / width, 0.0f, VL_ONE_MINUS_EPSILON) : 0.5f;
   return low;

@@ -78,6 +78,13 @@ void VL_HOT(vl_stage_light_bsdf)(vlTracing *t, uint32_t n) {
   }
 }
 
+void VL_HOT(vl_stage_light_samples)(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension) {
+  vlShade *sh = &t->s->shade;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT, sh->u0);
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
+  VL_HOT(vl_stage_lights)(t->world, n, p, &t->s->surface, sh->u0, sh->u1, sh->u2, &t->s->light);
+}
+
 /* Light samples, weighed by the BSDF, become shadow rays; those that arrive add their radiance. */
 static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
   const vlWorld *world = t->world;
@@ -85,9 +92,7 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
   vlShade *sh = &s->shade;
   if (world->lights.count == 0) return;
   vlPaths *p = &s->b;
-  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT, sh->u0);
-  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
-  VL_HOT(vl_stage_lights)(world, n, p, &s->surface, sh->u0, sh->u1, sh->u2, &s->light);
+  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
   VL_HOT(vl_stage_light_bsdf)(t, n);
   const vlLightSamples *l = &s->light;
   vlShadowRays *q = &s->shadow;

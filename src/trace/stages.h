@@ -202,6 +202,8 @@ static inline void vl_note_scattered(const vlTracing *t, uint32_t lane) {
 }
 /* The BSDFs of the n shaded lanes for the directions of their light samples, to shade.value and shade.pdf. */
 void VL_HOT(vl_stage_light_bsdf)(vlTracing *t, uint32_t n);
+/* One light sample for each of n paths on s->surface, by the random numbers of `dimension`. */
+void VL_HOT(vl_stage_light_samples)(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension);
 /* Samples the BSDFs of the n lanes of b and writes the paths that go on into a: path k was lane s->order[k]. Returns
  * how many. depth: which bounce this is, from 1. */
 uint32_t VL_HOT(vl_stage_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);

@@ -245,7 +245,7 @@ static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   const vlLightSamples *l = &s->light;
   vlVolumeRows *rows = &s->volume.a;
   if (t->world->lights.count == 0) return;
-  VL_HOT(vl_volume_sample_lights)(t, n, p, dimension);
+  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);

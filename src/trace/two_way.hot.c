@@ -112,7 +112,7 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
   if (world->lights.count == 0) return;
   vlPaths *p = &s->b;
   const vlSurface *f = &s->surface;
-  VL_HOT(vl_volume_sample_lights)(t, n, p, dimension);
+  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
   VL_HOT(vl_stage_light_bsdf)(t, n);
   const vlLightSamples *l = &s->light;
   float(*wi)[VL_ROW_SIZE] = s->rows;

@@ -55,7 +55,7 @@ static void light_samples(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   vlTwoWayRows *r = t->batch->two_way;
   const vlLightSamples *l = &t->s->light;
   if (world->lights.count == 0) return;
-  VL_HOT(vl_volume_sample_lights)(t, n, p, dimension);
+  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (!(l->pdf[i] > 0.0f)) continue;

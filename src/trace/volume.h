@@ -72,7 +72,6 @@ void VL_HOT(vl_volume_normalise)(const vlTracing *t, vlPaths *p, vlVolumeRows *v
 /* The lanes of a that scatter in media, normalised, at their places, to volume.scattered and .c; the surface's point is
  * theirs, for light sampling. s->order: which lanes of a. Returns how many. */
 uint32_t VL_HOT(vl_volume_gather)(vlTracing *t, uint32_t n);
-void VL_HOT(vl_volume_sample_lights)(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension);
 /* New directions by the phase function, roulette as on surfaces. Returns how many go on; s->order names them. */
 uint32_t VL_HOT(vl_volume_phase_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
 /* The n paths of a set out: from these media (by lane), or null: from the camera. */

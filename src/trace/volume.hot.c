@@ -131,15 +131,6 @@ static void emission(vlTracing *t, uint32_t n) {
   }
 }
 
-/* ---- light samples ------------------------------------------------------------------------------------------- */
-
-void VL_HOT(vl_volume_sample_lights)(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension) {
-  vlShade *sh = &t->s->shade;
-  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT, sh->u0);
-  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
-  VL_HOT(vl_stage_lights)(t->world, n, p, &t->s->surface, sh->u0, sh->u1, sh->u2, &t->s->light);
-}
-
 /* ---- scattering in media ----------------------------------------------------------------------------------------- */
 
 static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
@@ -147,7 +138,7 @@ static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   vlVolumeScratch *v = &s->volume;
   const vlPaths *p = &v->scattered;
   if (t->world->lights.count == 0) return;
-  VL_HOT(vl_volume_sample_lights)(t, n, p, dimension);
+  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (!(s->light.pdf[i] > 0.0f)) continue;
@@ -232,7 +223,7 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   const vlShade *sh = &s->shade;
   const vlLightSamples *l = &s->light;
   if (t->world->lights.count == 0) return;
-  VL_HOT(vl_volume_sample_lights)(t, n, p, dimension);
+  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
   VL_HOT(vl_stage_light_bsdf)(t, n);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {

@@ -10,6 +10,7 @@
 
 #include "base/context.h"
 #include "math/approx.h"
+#include "math/warp.h"
 
 enum { VL_BSSRDF_ALBEDOS = 100, VL_BSSRDF_RADII = 64 };
 
@@ -37,20 +38,7 @@ typedef struct vlSpline {
   float w[4];
 } vlSpline;
 
-/* The last i with nodes[i] <= x, at most n - 2. */
-static inline uint32_t vl_spline_cell(const float *nodes, uint32_t n, float x) {
-  uint32_t low = 0, high = n - 1;
-  while (high - low > 1) {
-    uint32_t middle = (low + high) / 2;
-    if (nodes[middle] <= x)
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
-}
-
-/* x within the nodes, in the cell i that vl_spline_cell gives. */
+/* x within the n nodes, in interval i of them. */
 static inline vlSpline vl_spline_in(const float *nodes, uint32_t n, uint32_t i, float x) {
   float x0 = nodes[i], x1 = nodes[i + 1], width = x1 - x0;
   float t = (x - x0) / width, t2 = t * t, t3 = t2 * t;
@@ -74,7 +62,7 @@ static inline vlSpline vl_spline_in(const float *nodes, uint32_t n, uint32_t i, 
 }
 static inline vlSpline vl_spline_at(const float *nodes, uint32_t n, float x) {
   if (!(x >= nodes[0] && x <= nodes[n - 1])) return (vlSpline){0, {0, 0, 0, 0}};
-  return vl_spline_in(nodes, n, vl_spline_cell(nodes, n, x), x);
+  return vl_spline_in(nodes, n, vl_find_interval(nodes, n - 1, x), x);
 }
 
 /* The cubic between two nodes a `width` apart, in t = 0 to 1: value f, and F, its integral over width. */
@@ -179,7 +167,7 @@ static inline float vl_bssrdf_invert(const vlBssrdfTable *table, float effective
   const uint32_t n = VL_BSSRDF_ALBEDOS;
   if (!(effective > table->effective[0])) return table->albedo[0];
   if (!(effective < table->effective[n - 1])) return table->albedo[n - 1];
-  uint32_t i = vl_spline_cell(table->effective, n, effective);
+  uint32_t i = vl_find_interval(table->effective, n - 1, effective);
   float f[4];
   for (uint32_t k = 0; k < 4; k++) {
     uint32_t j = i + k;

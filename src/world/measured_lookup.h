@@ -7,6 +7,7 @@
 
 #include "math/approx.h"
 #include "math/vec.h"
+#include "math/warp.h"
 #include "world/measured.h"
 
 /* Up to 4 slices (2 azimuths x 2 elevations) and their weights. */
@@ -23,14 +24,7 @@ typedef struct vlMeasuredKnot {
 } vlMeasuredKnot;
 static inline vlMeasuredKnot vl_measured_knot(const float *knots, uint32_t n, float x) {
   if (n < 2) return (vlMeasuredKnot){0, 0.0f};
-  uint32_t low = 0, high = n - 1;
-  while (high - low > 1) {
-    uint32_t mid = (low + high) / 2;
-    if (knots[mid] <= x)
-      low = mid;
-    else
-      high = mid;
-  }
+  uint32_t low = vl_find_interval(knots, n - 1, x);
   return (vlMeasuredKnot){low, vl_clamp((x - knots[low]) / (knots[low + 1] - knots[low]), 0.0f, 1.0f)};
 }
 

@@ -32,13 +32,15 @@ typedef struct Picture {
   vlRenderStats stats;
 } Picture;
 
-/* Box filter, camera at the origin looking along -z, 90 degrees across the smaller side, independent of any file. */
-static UNUSED Stage stage_open(uint32_t width, uint32_t height) {
+/* Box filter, camera at the origin looking along -z, 90 degrees across the smaller side, independent of any file. The
+ * context becomes the stage's; none: one of two threads. */
+static UNUSED Stage stage_open_in(vlContext *context, uint32_t width, uint32_t height) {
   Stage s;
   memset(&s, 0, sizeof s);
+  s.context = context;
   vlContextDef def = vl_default_context_def();
   def.threads = 2;
-  assert_int_equal(vl_context_create(&def, &s.context), VL_OK);
+  if (!context) assert_int_equal(vl_context_create(&def, &s.context), VL_OK);
   assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
   s.camera = vl_default_camera_def(width, height);
   s.camera.eye[0] = s.camera.eye[1] = s.camera.eye[2] = 0;
@@ -48,6 +50,9 @@ static UNUSED Stage stage_open(uint32_t width, uint32_t height) {
   s.film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
   s.render = vl_default_render_def();
   return s;
+}
+static UNUSED Stage stage_open(uint32_t width, uint32_t height) {
+  return stage_open_in(NULL, width, height);
 }
 
 /* Builds and renders; stops the test with the library's message when something fails. */
@@ -95,6 +100,31 @@ static UNUSED Picture stage_finish(Stage *s) {
 static UNUSED void picture_free(Picture *p) {
   free(p->rgba);
   memset(p, 0, sizeof *p);
+}
+
+/* Renders in that context, which it takes. */
+typedef Picture Rendering(vlContext *context, const void *what);
+
+static UNUSED Picture picture_in(Rendering *render, const void *what, uint32_t threads, vlIsa isa) {
+  vlContextDef def = vl_default_context_def();
+  def.threads = threads, def.isa = isa;
+  vlContext *context;
+  if (vl_context_create(&def, &context) != VL_OK) return (Picture){0}; /* a machine without that set */
+  return render(context, what);
+}
+
+/* The same bits on 1, 1 + step, ... up to 3 threads, by each instruction set. Returns one of the pictures. */
+static UNUSED Picture assert_same_bits(Rendering *render, const void *what, uint32_t step) {
+  Picture a = picture_in(render, what, 1, VL_ISA_V2);
+  assert_non_null(a.rgba);
+  for (uint32_t threads = 1; threads <= 3; threads += step)
+    for (int isa = VL_ISA_V2; isa <= VL_ISA_V4; isa++) {
+      Picture b = picture_in(render, what, threads, (vlIsa)isa);
+      if (!b.rgba) continue;
+      assert_memory_equal(a.rgba, b.rgba, (size_t)a.width * a.height * 4 * sizeof(float));
+      picture_free(&b);
+    }
+  return a;
 }
 
 static UNUSED float picture_at(const Picture *p, uint32_t x, uint32_t y, int c) {

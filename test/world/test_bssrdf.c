@@ -166,10 +166,10 @@ static void cells(void **state) {
       float r = s.table->radius[k];
       for (int j = 0; j < abs(d); j++) r = nextafterf(r, d < 0 ? -1.0f : 1e9f);
       if (r < 0 || r > s.table->radius[VL_BSSRDF_RADII - 1]) continue;
-      assert_int_equal(vl_bssrdf_cell(s.table, r), vl_spline_cell(s.table->radius, VL_BSSRDF_RADII, r));
+      assert_int_equal(vl_bssrdf_cell(s.table, r), vl_find_interval(s.table->radius, VL_BSSRDF_RADII - 1, r));
     }
   for (float r = 1e-6f; r < 203; r *= 1.0013f)
-    assert_int_equal(vl_bssrdf_cell(s.table, r), vl_spline_cell(s.table->radius, VL_BSSRDF_RADII, r));
+    assert_int_equal(vl_bssrdf_cell(s.table, r), vl_find_interval(s.table->radius, VL_BSSRDF_RADII - 1, r));
   teardown(&s);
 }
 

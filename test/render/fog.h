@@ -1,0 +1,38 @@
+/* test/render/fog.h: a stage's participating media: their definitions, and the balls that hold them. */
+#ifndef TEST_RENDER_FOG_H
+#define TEST_RENDER_FOG_H
+
+#include "shots.h"
+
+static UNUSED vlMediumId add_medium(Stage *s, const vlMediumDef *def) {
+  vlMediumId id = vl_scene_add_medium(s->scene, def);
+  vlError error;
+  if (vl_scene_result(s->scene, &error) != VL_OK) fail_msg("medium: %s", error.message);
+  return id;
+}
+
+static UNUSED vlMaterialId interface(Stage *s) {
+  vlMaterialDef def = vl_default_material_def(VL_MATERIAL_INTERFACE);
+  return vl_scene_add_material(s->scene, &def);
+}
+
+static UNUSED void add_ball(Stage *s, float z, float radius, vlMaterialId material, vlMediumId inside,
+                            vlMediumId outside) {
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
+  def.radius = radius, def.z_min = -radius, def.z_max = radius;
+  set_matrix(def.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, z);
+  def.material = material;
+  def.inside = inside;
+  def.outside = outside;
+  assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
+}
+
+static UNUSED vlMediumDef fog(float a, float s, float g) {
+  vlMediumDef def = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
+  def.sigma_a = vl_spectrum_constant(a);
+  def.sigma_s = vl_spectrum_constant(s);
+  def.g = g;
+  return def;
+}
+
+#endif

@@ -7,7 +7,7 @@
 #include <time.h>
 
 #include "base/context.h"
-#include "trace/bsdf.h"
+#include "trace/bsdf/bsdf.h"
 
 /* The kernels once more, one lane at a time: no padding, and no vectors. */
 #if defined(__GNUC__) && !defined(__clang__)
@@ -24,24 +24,24 @@
 #define eval eval_one
 #define sample sample_one
 const vlBsdfKernels vl_bsdf_kernels_one;
-#include "../src/trace/bsdf_coat.hot.c"
-#include "../src/trace/bsdf_conductor.hot.c"
-#include "../src/trace/bsdf_dielectric.hot.c"
-#include "../src/trace/bsdf_diffuse.hot.c"
-#include "../src/trace/bsdf_hair.hot.c"
-#include "../src/trace/bsdf_layered.hot.c"
+#include "../src/trace/bsdf/coat.hot.c"
+#include "../src/trace/bsdf/conductor.hot.c"
+#include "../src/trace/bsdf/dielectric.hot.c"
+#include "../src/trace/bsdf/diffuse.hot.c"
+#include "../src/trace/bsdf/hair.hot.c"
+#include "../src/trace/bsdf/layered.hot.c"
 #define turned measured_turned /* so have they of these */
-#include "../src/trace/bsdf_measured.hot.c"
+#include "../src/trace/bsdf/measured.hot.c"
 #undef turned
-#include "../src/trace/bsdf_translucent.hot.c"
+#include "../src/trace/bsdf/diffuse_transmission.hot.c"
 #define slice_of principled_slice_of /* the coat's file has functions of these names, too */
 #define look_up principled_look_up
 #define weigh principled_weigh
 #define combine principled_combine
 #define choose principled_choose
-#include "../src/trace/bsdf_principled.hot.c"
-#include "../src/trace/bsdf_principled_energy.hot.c"
-#include "../src/trace/bsdf_table.hot.c"
+#include "../src/trace/bsdf/principled.hot.c"
+#include "../src/trace/bsdf/principled_energy.hot.c"
+#include "../src/trace/bsdf/table.hot.c"
 #undef eval
 #undef sample
 #if defined(__GNUC__) && !defined(__clang__)

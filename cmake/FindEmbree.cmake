@@ -1,5 +1,5 @@
 # Embree 3.13 (Debian 12) or 4 (Debian 13): the newest that has both header and library. Gives Embree::Embree, which
-# defines VELO_EMBREE_MAJOR, and EMBREE_LIBRARY. Only src/world/accel*.c includes its header.
+# defines VELO_EMBREE_MAJOR, and EMBREE_LIBRARY. Only a file of src/world/accel includes its header.
 if(NOT EMBREE_MAJOR)
   foreach(major 4 3)
     find_path(EMBREE_INCLUDE_DIR_${major} embree${major}/rtcore.h)

@@ -5,9 +5,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "commands.h"
-#include "report.h"
-#include "signals.h"
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "cli/signals.h"
 
 /* Names of two words come last: "image diff" is found by its first and second word. */
 static const Command *const commands[] = {&render_command,           &scene_info_command,      &scene_check_command,

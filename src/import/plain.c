@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "import/import.h"
-#include "import/ply.h"
+#include "import/ply/ply.h"
 
 void vl_import_plain_settings(vlScene *scene) {
   vlSceneSettings *s = vl_scene_settings(scene);

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "camera/parts.h"
 #include "camera/rays.h"
-#include "trace/truth.h"
+#include "trace/ground_truth/ground_truth.h"
 
 /* The part of the ray between near and far plane, from the kernel that the picture's rays come from. */
 static void find_ends(const vlCamera *camera, vlIsa isa, double x, double y, float *t_min, float *t_max) {

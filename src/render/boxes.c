@@ -10,7 +10,7 @@
 #include "base/cookie.h"
 #include "base/error.h"
 #include "render/channel_pass.h"
-#include "world/moving.h"
+#include "world/shape/moving.h"
 
 /* Round pixels: how many, and the box. */
 typedef struct Extent {

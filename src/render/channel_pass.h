@@ -4,7 +4,7 @@
 
 #include "render/cryptomatte.h"
 #include "render/film_rays.h"
-#include "trace/truth.h"
+#include "trace/ground_truth/ground_truth.h"
 #include "velo/channels.h"
 
 enum { VL_CHANNEL_TILE = 32, VL_TILE_PIXELS = VL_CHANNEL_TILE * VL_CHANNEL_TILE };

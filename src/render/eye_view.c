@@ -8,7 +8,7 @@
 #include "base/context.h"
 #include "base/error.h"
 #include "camera/rays.h"
-#include "trace/truth.h"
+#include "trace/ground_truth/ground_truth.h"
 
 /* Lengths of the camera's axes, if they are alike and at right angles; else 0. */
 static double axes_length(const double m[16]) {

@@ -3,7 +3,7 @@
 #define RENDER_EYE_VIEW_H
 
 #include "math/motion.h"
-#include "trace/two_way.h"
+#include "trace/two_way/two_way.h"
 
 /* view->sees is false for cameras that are not a perspective one with a round lens or none. Of one that moves: its
  * first pose. */

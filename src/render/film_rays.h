@@ -5,7 +5,7 @@
 
 #include "camera/rays.h"
 #include "film/film.h"
-#include "trace/sampler.h"
+#include "trace/sampler/sampler.h"
 
 /* What a sample of the film becomes depends on these alone. */
 typedef struct vlFilmRays {

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "render/channel_pass.h"
-#include "world/moving.h"
+#include "world/shape/moving.h"
 
 /* How much nearer than the point a crossing must be to hide it: rays are rounded to float, which moves them by some
  * 2^-23 of the numbers involved, and their crossing by 1 / cosine as much. */

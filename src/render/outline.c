@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "render/boxes.h"
-#include "world/moving.h"
+#include "world/shape/moving.h"
 
 enum { CHUNK = 256, AROUND = 256, RINGS = 64 };
 

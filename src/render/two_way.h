@@ -1,13 +1,13 @@
-/* render/two_way.h: the passes of the tracers that follow light both ways (trace/two_way.h): before the eye's paths of
- * a pass come as many from the lights. What they leave on the film is summed exactly, so that neither threads nor
- * order show, and goes to the film with the one sample that each pixel has in the pass. */
+/* render/two_way.h: the passes of the tracers that follow light both ways (trace/two_way/two_way.h): before the eye's
+ * paths of a pass come as many from the lights. What they leave on the film is summed exactly, so that neither threads
+ * nor order show, and goes to the film with the one sample that each pixel has in the pass. */
 #ifndef RENDER_TWO_WAY_H
 #define RENDER_TWO_WAY_H
 
 #include "camera/rays.h"
 #include "film/film.h"
 #include "render/film_rays.h"
-#include "trace/two_way.h"
+#include "trace/two_way/two_way.h"
 
 typedef struct vlTwoWayRun vlTwoWayRun;
 

@@ -8,7 +8,7 @@
 #define TRACE_STAGES_H
 
 #include "color/kernels.h"
-#include "trace/bsdf.h"
+#include "trace/bsdf/bsdf.h"
 #include "trace/trace.h"
 
 #define VL_ROW __attribute__((aligned(64)))
@@ -37,7 +37,7 @@ static inline float vl_path_time(const vlPaths *p, uint32_t i) {
 
 typedef struct vlHits {
   VL_ROW uint32_t shape[VL_ROW_SIZE], prim[VL_ROW_SIZE], instance[VL_ROW_SIZE], material[VL_ROW_SIZE];
-  VL_ROW float t[VL_ROW_SIZE]; /* which crossing of shapes that are not of triangles (world/accel.h) */
+  VL_ROW float t[VL_ROW_SIZE]; /* which crossing of shapes that are not of triangles (world/accel/accel.h) */
 } vlHits;
 
 typedef struct vlSurface {
@@ -77,7 +77,7 @@ typedef struct vlShade {
   VL_ROW float reflectance[4][VL_ROW_SIZE], eta[4][VL_ROW_SIZE], k[4][VL_ROW_SIZE];
   VL_ROW float alpha_x[VL_ROW_SIZE], alpha_y[VL_ROW_SIZE], eta_s[VL_ROW_SIZE];
   const vlCoatTable *coat[VL_ROW_SIZE];
-  VL_ROW float principled[VL_PRINCIPLED_ROWS][VL_ROW_SIZE]; /* trace/bsdf.h names them */
+  VL_ROW float principled[VL_PRINCIPLED_ROWS][VL_ROW_SIZE]; /* trace/bsdf/bsdf.h names them */
   VL_ROW uint32_t seed[VL_ROW_SIZE];
   const vlMeasured *measured[VL_ROW_SIZE];
   VL_ROW float value[4][VL_ROW_SIZE], pdf[VL_ROW_SIZE], eta_scale[VL_ROW_SIZE];

@@ -7,7 +7,7 @@
 #define TRACE_TRACE_H
 
 #include "base/isa.h"
-#include "trace/sampler.h"
+#include "trace/sampler/sampler.h"
 #include "world/world.h"
 
 struct vlTwoWay; /* two_way.h */
@@ -63,7 +63,7 @@ typedef struct vlTraceBatch {
   const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;
   const int32_t *px, *py;
   const uint32_t *index;
-  const float *time;                 /* the world's, 0 to 1 (world/moving.h); null where nothing moves */
+  const float *time;                 /* the world's, 0 to 1 (world/shape/moving.h); null where nothing moves */
   float *radiance[4];                /* out; spectral: per wavelength; RGB mode: r, g, b, 0 */
   float *lambda[4];                  /* out, spectral: wavelengths, nm; RGB mode: null */
   float *inv_pdf[4];                 /* out, spectral: 1 / their density */

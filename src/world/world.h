@@ -10,11 +10,11 @@
 #include "base/array.h"
 #include "color/color.h"
 #include "velo/render.h"
-#include "world/accel.h"
-#include "world/coat.h"
-#include "world/measured.h"
-#include "world/medium.h"
-#include "world/texture.h"
+#include "world/accel/accel.h"
+#include "world/material/coat.h"
+#include "world/material/measured.h"
+#include "world/medium/medium.h"
+#include "world/texture/texture.h"
 
 /* ---- shapes ------------------------------------------------------------------------------------------------------ */
 
@@ -172,10 +172,10 @@ typedef struct vlEnvironment {
   float *marginal_cdf;                            /* size + 1 */
   float *pdf;                                     /* size * size: density over the unit square */
   float light_from_world[9], world_from_light[9]; /* rotations, row-major */
-  const struct vlPortal *portal;                  /* through which alone it is seen (world/portal.h); null: none */
+  const struct vlPortal *portal; /* through which alone it is seen (world/light/portal.h); null: none */
 } vlEnvironment;
 
-#include "world/light_tree.h"
+#include "world/light/light_tree.h"
 
 /* Where an id comes from, for people (origins.c). */
 typedef struct vlWorldOrigin {

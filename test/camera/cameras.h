@@ -1,6 +1,6 @@
 /* test/camera/cameras.h: what the camera tests share: a fixed random source, a few very different cameras. */
-#ifndef TEST_CAMERAS_H
-#define TEST_CAMERAS_H
+#ifndef TEST_CAMERA_CAMERAS_H
+#define TEST_CAMERA_CAMERAS_H
 
 #include <math.h>
 #include <setjmp.h>

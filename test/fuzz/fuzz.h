@@ -1,6 +1,6 @@
 /* test/fuzz/fuzz.h: what the fuzz targets share: a quiet context, the input as a file, the bound on memory. */
-#ifndef TEST_FUZZ_H
-#define TEST_FUZZ_H
+#ifndef TEST_FUZZ_FUZZ_H
+#define TEST_FUZZ_FUZZ_H
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* A tiny glTF 2.0 file made by a test: numbers go into one buffer as base64 or a binary chunk, JSON is written by hand.
  */
-#ifndef TEST_GLTF_WRITER_H
-#define TEST_GLTF_WRITER_H
+#ifndef TEST_IMPORT_GLTF_WRITER_H
+#define TEST_IMPORT_GLTF_WRITER_H
 
 #include <stdint.h>
 #include <stdio.h>

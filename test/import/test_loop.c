@@ -1,6 +1,6 @@
 /* test/import/test_loop.c: Loop subdivision against what is known of its limit surface. */
 #include "import/load.h"
-#include "import/loop.h"
+#include "import/pbrt/loop.h"
 
 static vlContext *context;
 

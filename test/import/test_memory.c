@@ -2,8 +2,8 @@
 #include "import/load.h"
 
 #include "failing_allocator.h"
-#include "import/loop.h"
-#include "import/ply.h"
+#include "import/pbrt/loop.h"
+#include "import/ply/ply.h"
 
 static const char *const scene_text =
     "Option \"seed\" 1\nColorSpace \"rec2020\"\nLookAt 0 0 5 0 0 0 0 1 0\n"

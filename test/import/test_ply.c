@@ -2,7 +2,7 @@
 #include <time.h>
 
 #include "import/load.h"
-#include "import/ply.h"
+#include "import/ply/ply.h"
 
 static vlContext *context;
 

@@ -4,7 +4,7 @@
 
 #include "base/text.h"
 #include "import/load.h"
-#include "import/ply.h"
+#include "import/ply/ply.h"
 
 #define SCENES VELO_SOURCE_DIR "/../shared/scenes/pbrt"
 

@@ -1,6 +1,6 @@
 /* test/import/test_token.c: tokens with their places, and numbers to the last bit. */
 #include "import/load.h"
-#include "import/token.h"
+#include "import/pbrt/token.h"
 
 static vlTokenizer tokens;
 static char text[1024];

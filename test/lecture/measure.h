@@ -9,8 +9,8 @@
  * point set with n points errs like n^-3/4 on a half plane, 0.016, less where the edge is nearly parallel to an axis).
  * A row crosses one to three such pixels: about 0.01 pixel for one row, 0.05 as a safe bound for the worst of some
  * hundred rows, and 0.02 for a mean or a fitted line. */
-#ifndef TEST_MEASURE_H
-#define TEST_MEASURE_H
+#ifndef TEST_LECTURE_MEASURE_H
+#define TEST_LECTURE_MEASURE_H
 
 #include <math.h>
 #include <setjmp.h>

@@ -3,7 +3,7 @@
  * lets through. */
 #include "render/gltf_shots.h"
 
-#include "world/principled.h"
+#include "world/material/principled.h"
 
 /* ---- albedos, without velo's tables ------------------------------------------------------------------------------ */
 

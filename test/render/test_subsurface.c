@@ -2,7 +2,7 @@
  * the corner of a block, against an integral over the side it fell on; white bodies; and what must not change a
  * picture. */
 #include "shots.h"
-#include "world/bssrdf.h"
+#include "world/material/bssrdf.h"
 
 static vlMaterialDef body(float sigma_a, float sigma_s) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_SUBSURFACE);

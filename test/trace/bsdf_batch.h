@@ -1,11 +1,11 @@
 /* bsdf_batch.h: lanes for the BSDF tests: all arrays of a batch in one struct, filled lane by lane. */
-#ifndef TEST_BSDF_BATCH_H
-#define TEST_BSDF_BATCH_H
+#ifndef TEST_TRACE_BSDF_BATCH_H
+#define TEST_TRACE_BSDF_BATCH_H
 
 #include <string.h>
 
 #include "statistics.h"
-#include "trace/bsdf.h"
+#include "trace/bsdf/bsdf.h"
 
 enum { BATCH = 1024 };
 

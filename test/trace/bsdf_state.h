@@ -1,6 +1,6 @@
 /* bsdf_state.h: what tests of one BSDF start from: a context, its kernels, room for three batches. */
-#ifndef TEST_BSDF_STATE_H
-#define TEST_BSDF_STATE_H
+#ifndef TEST_TRACE_BSDF_STATE_H
+#define TEST_TRACE_BSDF_STATE_H
 
 #include "bsdf_batch.h"
 

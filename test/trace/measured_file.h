@@ -1,8 +1,8 @@
 /* measured_file.h: files as the RGL material database has them, of a surface whose reflection is known: metal of GGX
  * microfacets, measured as Dupuy and Jakob (2018) describe it. Everything in double precision, and the warp written
  * anew, so that a wrong convention in the library does not cancel out. */
-#ifndef TEST_MEASURED_FILE_H
-#define TEST_MEASURED_FILE_H
+#ifndef TEST_TRACE_MEASURED_FILE_H
+#define TEST_TRACE_MEASURED_FILE_H
 
 #include <math.h>
 #include <stdbool.h>

@@ -13,7 +13,7 @@
 #include "statistics.h"
 
 #define VL_ISA_SUFFIX v2
-#include "trace/two_way_stages.h"
+#include "trace/two_way/stages.h"
 #include "velo/velo.h"
 
 enum { TRIES = 100 * 1000, ROWS = 8, COLUMNS = 8, TESTS = 40 };

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "bsdf_state.h"
-#include "trace/phase.h"
+#include "trace/medium/phase.h"
 
 typedef struct {
   bool metal;

@@ -11,7 +11,7 @@
 #include "color/color.h"
 #include "math/ggx.h"
 #include "measured_file.h"
-#include "world/measured_lookup.h"
+#include "world/material/measured_lookup.h"
 
 static vlMeasured *measure(const State *s, const mfSurface *metal, bool rgb) {
   const char *path = VELO_BINARY_DIR "/measured.bsdf";

@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "statistics.h"
-#include "trace/sampler.h"
+#include "trace/sampler/sampler.h"
 
 enum { KINDS = VL_SAMPLER_ZSOBOL + 1, BATCH = 4096 };
 static const char *const NAMES[KINDS] = {"independent", "regular", "stratified", "nrooks", "multi-jittered",

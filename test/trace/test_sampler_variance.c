@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "statistics.h"
-#include "trace/sampler.h"
+#include "trace/sampler/sampler.h"
 
 enum { WIDTH = 32, PIXELS = WIDTH * WIDTH, KINDS = VL_SAMPLER_ZSOBOL + 1 };
 

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "statistics.h"
-#include "world/bssrdf.h"
+#include "world/material/bssrdf.h"
 
 #define PI 3.14159265358979323846
 

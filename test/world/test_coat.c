@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "statistics.h"
-#include "world/coat.h"
+#include "world/material/coat.h"
 
 #define PI 3.14159265358979323846
 enum { BINS = 4, KEPT = 12 };

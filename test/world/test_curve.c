@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "velo/velo.h"
-#include "world/surface_point.h"
+#include "world/shape/surface_point.h"
 
 enum { SEGMENTS = 5, STEPS = 4000 };
 

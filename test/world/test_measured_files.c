@@ -6,7 +6,7 @@
 #include "../trace/measured_file.h"
 #include "render/shots.h"
 #include "trace/bsdf_batch.h"
-#include "world/measured.h"
+#include "world/material/measured.h"
 #include "world/world.h"
 
 static const char path[] = VELO_BINARY_DIR "/damaged.bsdf";

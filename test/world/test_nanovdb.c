@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "velo/velo.h"
-#include "world/medium_lookup.h"
+#include "world/medium/medium_lookup.h"
 #include "world/nanovdb_file.h"
 
 static const char *file_name(void) {

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "velo/velo.h"
-#include "world/surface_point.h"
+#include "world/shape/surface_point.h"
 #include "world/world.h"
 
 typedef struct Part {

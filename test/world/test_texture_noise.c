@@ -9,7 +9,7 @@
 /* after those */
 #include <cmocka.h>
 
-#include "world/texture_noise.h"
+#include "world/texture/texture_noise.h"
 
 static uint32_t seed = 3;
 static double random_unit(void) {

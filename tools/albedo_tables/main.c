@@ -1,8 +1,8 @@
-/* tools/albedo_tables: computes the principled material's tables (src/world/principled.h) by quadrature and writes them
- * as C. Called by the build: albedo_tables FILE.c */
+/* tools/albedo_tables: computes the principled material's tables (src/world/material/principled.h) by quadrature and
+ * writes them as C. Called by the build: albedo_tables FILE.c */
 #include <stdio.h>
 
-#include "world/principled.h"
+#include "world/material/principled.h"
 
 #include "math/ggx.h"
 
@@ -155,7 +155,7 @@ int main(int argc, char **argv) {
   for (uint32_t i = 0; i < VL_ALBEDO_ALPHA; i++) fill_row(&t, i);
   for (int side = 0; side < 2; side++)
     for (uint32_t i = 0; i < VL_LOSS_ETA; i++) fill_losses(&t, side, i);
-  fprintf(file, "/* Written by tools/albedo_tables. */\n#include \"world/principled.h\"\n\n");
+  fprintf(file, "/* Written by tools/albedo_tables. */\n#include \"world/material/principled.h\"\n\n");
   fprintf(file, "const vlPrincipledTables vl_principled_tables = {");
   write_table(file, "a", t.a);
   write_table(file, "b", t.b);

@@ -4,8 +4,8 @@
  * used; an error names the place in the JSON, as in meshes[3].primitives[0].attributes.POSITION.
  *
  * Source of everything here: the glTF 2.0 specification (Khronos) and the texts of its extensions. */
-#ifndef IMPORT_GLTF_H
-#define IMPORT_GLTF_H
+#ifndef IMPORT_GLTF_GLTF_H
+#define IMPORT_GLTF_GLTF_H
 
 #include <jansson.h>
 

@@ -1,0 +1,154 @@
+/* camera/camera.c: see camera.h; and `velo camera convert`. */
+#include "camera/camera.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "image/header.h"
+#include "image/image.h"
+
+const Choice dialect_choices[] = {{"velo", VL_CAMERA_DIALECT_VELO},       {"opencv", VL_CAMERA_DIALECT_OPENCV},
+                                  {"ros", VL_CAMERA_DIALECT_ROS},         {"colmap", VL_CAMERA_DIALECT_COLMAP},
+                                  {"nerf", VL_CAMERA_DIALECT_NERF},       {"kalibr", VL_CAMERA_DIALECT_KALIBR},
+                                  {"blender", VL_CAMERA_DIALECT_BLENDER}, {"gltf", VL_CAMERA_DIALECT_GLTF},
+                                  {"mitsuba", VL_CAMERA_DIALECT_MITSUBA}, {"opengl", VL_CAMERA_DIALECT_OPENGL},
+                                  {"vulkan", VL_CAMERA_DIALECT_VULKAN},   {"d3d", VL_CAMERA_DIALECT_D3D},
+                                  {"usd", VL_CAMERA_DIALECT_USD},         {"pbrt", VL_CAMERA_DIALECT_PBRT},
+                                  {"exr", VL_CAMERA_DIALECT_EXR},         {NULL, 0}};
+
+static bool ends_with(const char *text, const char *suffix) {
+  size_t n = strlen(text), m = strlen(suffix);
+  return n >= m && strcasecmp(text + n - m, suffix) == 0;
+}
+
+bool camera_is_scene(const char *path) {
+  return ends_with(path, ".pbrt") || ends_with(path, ".pbrt.gz");
+}
+
+static int load_scene_camera(vlContext *context, const char *path, vlCameraRecord *record) {
+  vlScene *scene = NULL;
+  vlError error = {0};
+  vlLoadDef load = vl_default_load_def();
+  vlResult result = vl_scene_create(context, &scene);
+  if (result == VL_OK) result = vl_scene_load(scene, path, &load, &error);
+  if (result == VL_OK) {
+    const vlSceneSettings *from = vl_scene_settings(scene);
+    *record = (vlCameraRecord){.camera = from->camera, .dialect = VL_CAMERA_DIALECT_PBRT, .frames = 1};
+    record->camera.width = from->width;
+    record->camera.height = from->height;
+  }
+  int status = result == VL_OK ? -1 : report_error(&error, result, path);
+  /* what a camera only points at goes with its scene */
+  if (status < 0 && record->camera.lens.optics)
+    status = report_failure(STATUS_SCENE, "%s: a lens of many elements is a camera of its scene alone", path);
+  if (status < 0 && record->camera.lens.aperture) {
+    report_note("%s: the picture of the lens's opening is left out", path);
+    record->camera.lens.aperture = NULL;
+  }
+  vl_scene_destroy(scene);
+  return status;
+}
+
+/* The camera in the header of a picture that velo rendered. */
+static int load_picture_camera(vlContext *context, const char *path, vlCameraRecord *record) {
+  vlImage *image = NULL;
+  *record = (vlCameraRecord){.dialect = VL_CAMERA_DIALECT_EXR, .frames = 1};
+  int status = image_load(context, path, &image);
+  if (status < 0) status = header_camera_def(image, path, &record->camera);
+  vl_image_destroy(image);
+  return status;
+}
+
+int camera_load(vlContext *context, const char *path, int dialect, const char *frame, vlCameraRecord *record) {
+  if (dialect == VL_CAMERA_DIALECT_EXR || (!dialect && ends_with(path, ".exr")))
+    return load_picture_camera(context, path, record);
+  if (dialect == VL_CAMERA_DIALECT_PBRT || (!dialect && camera_is_scene(path)))
+    return load_scene_camera(context, path, record);
+  vlError error = {0};
+  vlCameraFileDef def = vl_default_camera_file_def();
+  def.dialect = (vlCameraDialect)dialect;
+  def.frame = frame;
+  vlResult result = vl_camera_read(context, path, &def, record, &error);
+  if (result != VL_OK) return report_error(&error, result, path);
+  if (record->size_assumed)
+    report_note("%s: names no picture size; %u x %u is taken", path, record->camera.width, record->camera.height);
+  if (record->frames > 1 && !frame)
+    report_note("%s: the first of %u cameras is taken (%s)", path, record->frames,
+                record->name[0] ? record->name : "no name");
+  return -1;
+}
+
+int camera_load_made(vlContext *context, const char *path, const Arguments *arguments, int frame_option,
+                     vlCameraRecord *record, vlCamera *camera) {
+  const OptionValue *frame = &arguments->values[frame_option];
+  int status = camera_load(context, path, 0, frame->given ? frame->text : NULL, record);
+  if (status >= 0) return status;
+  const char *warning = NULL;
+  vlError error = {0};
+  vlResult result = vl_camera_make(&record->camera, camera, &warning, &error);
+  if (result != VL_OK) return report_failure(STATUS_SCENE, "%s: %s", path, error.message);
+  if (warning && camera->outside > 0.0)
+    report_warning("%s: %s (%.3g%% of the picture)", path, warning, 100.0 * camera->outside);
+  else if (warning)
+    report_warning("%s: %s", path, warning);
+  return -1;
+}
+
+enum { CONVERT_FROM, CONVERT_TO, CONVERT_FRAME, CONVERT_DROP };
+
+static int run_convert(const Command *command, const Arguments *arguments) {
+  (void)command;
+  const OptionValue *v = arguments->values;
+  const char *in = arguments->operands[0], *out = arguments->operands[1];
+  vlContext *context = NULL;
+  vlCameraRecord record;
+  int status = image_context(&context);
+  if (status < 0)
+    status = camera_load(context, in, v[CONVERT_FROM].given ? (int)v[CONVERT_FROM].integer : 0,
+                         v[CONVERT_FRAME].given ? v[CONVERT_FRAME].text : NULL, &record);
+  if (status < 0) {
+    vlCameraFileDef def = vl_default_camera_file_def();
+    def.dialect = v[CONVERT_TO].given ? (vlCameraDialect)v[CONVERT_TO].integer : VL_CAMERA_DIALECT_AUTO;
+    def.drop = arguments->texts;
+    def.drop_count = (uint32_t)arguments->text_count;
+    vlError error = {0};
+    vlResult result = vl_camera_write(context, out, &def, &record, &error);
+    if (result == VL_OK)
+      status = STATUS_OK;
+    else if (result == VL_ERROR_ARGUMENT && strncmp(error.message, "camera: ", 8) == 0)
+      status = report_failure(STATUS_SCENE, "%s: %s", in, error.message);
+    else if (result == VL_ERROR_ARGUMENT)
+      status = report_usage("%s; give --to DIALECT", error.message);
+    else
+      status = report_error(&error, result, out);
+  }
+  vl_context_destroy(context);
+  return status;
+}
+
+static const Option convert_options[] = {
+    {CONVERT_FROM, 0, "from", OPTION_CHOICE, "DIALECT", "what IN is; default: by its content:", 0, 0, dialect_choices},
+    {CONVERT_TO, 0, "to", OPTION_CHOICE, "DIALECT",
+     "what OUT becomes; default: .json velo, .yaml opencv, .gltf gltf,\n.xml mitsuba, .usda usd, .pbrt pbrt, "
+     "transforms.json nerf,\ncameras.txt colmap:",
+     0, 0, dialect_choices},
+    {CONVERT_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
+    {CONVERT_DROP, 0, "drop", OPTION_TEXTS, "FIELD",
+     "leave out a field that OUT cannot hold; may be given several\ntimes", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command camera_convert_command = {
+    .name = "camera convert",
+    .usage = "IN OUT [options]",
+    .summary = "a camera from one tool's file into another's",
+    .text =
+        "Reads the camera IN and writes it as OUT. Pixel origin and axes are converted; what OUT's dialect\n"
+        "cannot hold is refused by name.",
+    .options = convert_options,
+    .min_operands = 2,
+    .max_operands = 2,
+    .run = run_convert,
+};

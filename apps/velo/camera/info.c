@@ -1,0 +1,155 @@
+/* camera/info.c: `velo camera info`: one camera in all the ways that say the same. */
+#include <math.h>
+#include <stdio.h>
+
+#include "camera/camera.h"
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "image/image.h"
+
+enum { INFO_JSON, INFO_FRAME };
+
+static const double degrees = 180.0 / 3.14159265358979323846;
+
+/* Angle between what two places of the picture see; NaN where one sees nothing. */
+static double angle_between(const vlCamera *c, double x0, double y0, double x1, double y1) {
+  double o[3], a[3], b[3];
+  if (!vl_camera_unproject(c, x0, y0, o, a) || !vl_camera_unproject(c, x1, y1, o, b)) return NAN;
+  double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+  return atan2(sqrt(x * x + y * y + z * z), a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+}
+
+/* Past the principal point, in two parts, so that more than 180 degrees are told; NaN: an edge sees nothing. */
+static double field(const vlCamera *c, double x0, double y0, double x1, double y1) {
+  return angle_between(c, x0, y0, c->cx, c->cy) + angle_between(c, c->cx, c->cy, x1, y1);
+}
+
+typedef struct Info {
+  double horizontal, vertical, diagonal; /* radians */
+  double solid_angle, footprint;
+} Info;
+
+static Info measure(const vlCamera *c) {
+  enum { GRID = 256 };
+  double w = c->width, h = c->height, sum = 0.0;
+  Info info = {.horizontal = field(c, 0, c->cy, w, c->cy),
+               .vertical = field(c, c->cx, 0, c->cx, h),
+               .diagonal = angle_between(c, 0, 0, w, h)};
+  if (c->projection != VL_PROJECTION_PERSPECTIVE) info.diagonal = field(c, 0, 0, w, h);
+  for (int j = 0; j < GRID; j++)
+    for (int i = 0; i < GRID; i++) sum += vl_camera_solid_angle(c, (i + 0.5) * w / GRID, (j + 0.5) * h / GRID);
+  info.solid_angle = sum * (w / GRID) * (h / GRID);
+  info.footprint = sqrt(vl_camera_solid_angle(c, c->cx, c->cy));
+  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) info.footprint = 1.0 / sqrt(c->fx * c->fy);
+  return info;
+}
+
+static void print_json(const char *path, const vlCameraRecord *record, const vlCamera *c, const Info *info) {
+  Json json = {.out = stdout};
+  bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  double sensor = record->camera.sensor_width_mm > 0 ? record->camera.sensor_width_mm : 36.0;
+  json_begin(&json, NULL, '{');
+  json_text(&json, "file", path);
+  json_text(&json, "dialect", vl_camera_dialect_name(record->dialect));
+  if (record->name[0]) json_text(&json, "name", record->name);
+  json_text(&json, "projection", vl_projection_name(c->projection));
+  json_text(&json, "pixel_origin", "corner");
+  json_text(&json, "axes", "x right, y down, z forward");
+  json_integer(&json, "width", c->width);
+  json_integer(&json, "height", c->height);
+  json_number(&json, "fx", c->fx);
+  json_number(&json, "fy", c->fy);
+  json_number(&json, "skew", c->skew);
+  json_number(&json, "cx", c->cx);
+  json_number(&json, "cy", c->cy);
+  if (!flat) {
+    json_number(&json, "fov_horizontal", info->horizontal * degrees);
+    json_number(&json, "fov_vertical", info->vertical * degrees);
+    json_number(&json, "fov_diagonal", info->diagonal * degrees);
+    json_number(&json, "view_distance", c->fx);
+    json_number(&json, "pixel_size", 1.0);
+    json_number(&json, "zoom", 1.0);
+    json_number(&json, "focal_mm", c->fx * sensor / c->width);
+    json_number(&json, "sensor_width_mm", sensor);
+    json_number(&json, "solid_angle", info->solid_angle);
+  }
+  json_number(&json, "pixel_footprint", info->footprint);
+  json_number(&json, "outside", c->outside);
+  json_begin(&json, "world_from_camera", '[');
+  for (int i = 0; i < 16; i++) json_number(&json, NULL, c->world_from_camera[i]);
+  json_end(&json, ']');
+  json_end(&json, '}');
+  putchar('\n');
+}
+
+static void print_fov(const char *name, double radians) {
+  if (radians == radians)
+    printf("  %-12s %.10g degrees\n", name, radians * degrees);
+  else
+    printf("  %-12s its edges see nothing\n", name);
+}
+
+static void print_text(const char *path, const vlCameraRecord *record, const vlCamera *c, const Info *info) {
+  bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  double sensor = record->camera.sensor_width_mm > 0 ? record->camera.sensor_width_mm : 36.0;
+  const double *m = c->world_from_camera;
+  printf("file          %s (%s)\nprojection    %s\nsize          %u x %u\n", path,
+         vl_camera_dialect_name(record->dialect), vl_projection_name(c->projection), c->width, c->height);
+  printf("f in pixels   %.10g, %.10g; skew %.10g\n", c->fx, c->fy, c->skew);
+  printf("axis at       %.10g, %.10g from the picture's corner; %.10g, %.10g from the first pixel's centre\n", c->cx,
+         c->cy, c->cx - 0.5, c->cy - 0.5);
+  if (!flat) {
+    printf("field of view\n");
+    print_fov("horizontal", info->horizontal);
+    print_fov("vertical", info->vertical);
+    print_fov("diagonal", info->diagonal);
+    printf("lecture       d %.10g, zoom 1, pixel size s 1\n", c->fx);
+    printf("in mm         f %.10g on a sensor %.10g wide\n", c->fx * sensor / c->width, sensor);
+    printf("solid angle   %.8g steradians\n", info->solid_angle);
+    printf("pixel         %.8g radians at the axis: so much at distance 1\n", info->footprint);
+  } else {
+    printf("pixel         %.10g scene units\n", info->footprint);
+  }
+  if (c->outside > 0.0) printf("outside       %.4g%% of the picture sees nothing\n", 100.0 * c->outside);
+  printf("eye           %.10g %.10g %.10g\n", m[3], m[7], m[11]);
+  printf("looks along   %.10g %.10g %.10g\nup            %.10g %.10g %.10g\n", m[2], m[6], m[10], 0.0 - m[1],
+         0.0 - m[5], 0.0 - m[9]);
+}
+
+static int run_info(const Command *command, const Arguments *arguments) {
+  (void)command;
+  vlContext *context = NULL;
+  vlCameraRecord record;
+  vlCamera camera;
+  const char *path = arguments->operands[0];
+  int status = image_context(&context);
+  if (status < 0) status = camera_load_made(context, path, arguments, INFO_FRAME, &record, &camera);
+  if (status < 0) {
+    Info info = measure(&camera);
+    if (arguments->values[INFO_JSON].given)
+      print_json(path, &record, &camera, &info);
+    else
+      print_text(path, &record, &camera, &info);
+    status = image_finish_output(STATUS_OK);
+  }
+  vl_context_destroy(context);
+  return status;
+}
+
+static const Option info_options[] = {
+    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
+    {INFO_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command camera_info_command = {
+    .name = "camera info",
+    .usage = "FILE [options]",
+    .summary = "one camera in all the ways that say the same",
+    .text =
+        "FILE is a camera in any dialect of `velo camera convert`, or a scene. Without a sensor of its own the\n"
+        "camera is given one 36 mm wide.",
+    .options = info_options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run_info,
+};

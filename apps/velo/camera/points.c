@@ -1,0 +1,161 @@
+/* camera/points.c: `velo camera project` and `velo camera unproject`: lines of points to pixels, pixels to rays,
+ * through the library's batches. */
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "camera/camera.h"
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "image/image.h"
+
+enum { POINTS_CAMERA, POINTS_ORIGIN, POINTS_FRAME };
+enum { BATCH = 4096 };
+
+static const Choice origin_choices[] = {{"corner", 0}, {"center", 1}, {NULL, 0}};
+
+typedef struct Lines {
+  FILE *file;
+  const char *path;
+  char *line;
+  size_t room;
+  unsigned long number;
+} Lines;
+
+/* count numbers, separated by commas, blanks or both, and nothing else. */
+static bool read_numbers(const char *text, double *values, int count) {
+  for (int i = 0; i < count; i++) {
+    char *end;
+    values[i] = strtod(text, &end);
+    if (end == text || !isfinite(values[i])) return false;
+    text = end + strspn(end, " \t");
+    if (i + 1 < count && *text == ',') text++;
+  }
+  return text[strspn(text, " \t\r\n")] == 0;
+}
+
+/* Up to BATCH rows; a first line of words is a heading. -1, or the exit code. */
+static int read_batch(Lines *lines, int columns, double *values, size_t *count) {
+  *count = 0;
+  while (*count < BATCH && getline(&lines->line, &lines->room, lines->file) >= 0) {
+    const char *text = lines->line + strspn(lines->line, " \t\r\n");
+    lines->number++;
+    if (*text == 0 || *text == '#') continue;
+    if (read_numbers(text, values + (size_t)columns * *count, columns)) {
+      ++*count;
+      continue;
+    }
+    if (lines->number == 1 && ((*text >= 'a' && *text <= 'z') || *text == '"' || (*text >= 'A' && *text <= 'Z')) &&
+        strncasecmp(text, "nan", 3) != 0 && strncasecmp(text, "inf", 3) != 0)
+      continue;
+    return report_failure(STATUS_SCENE, "%s:%lu: a line must hold %d finite numbers", lines->path, lines->number,
+                          columns);
+  }
+  return ferror(lines->file) ? report_failure(STATUS_IO, "%s: %s", lines->path, strerror(errno)) : -1;
+}
+
+static int project_all(const vlCamera *camera, double shift, Lines *lines) {
+  static double points[3 * BATCH], pixels[2 * BATCH], z[BATCH];
+  static uint8_t valid[BATCH];
+  size_t count;
+  printf("u,v,z,valid\n");
+  do {
+    int status = read_batch(lines, 3, points, &count);
+    if (status >= 0) return status;
+    vl_camera_project_batch(camera, count, points, pixels, z, valid);
+    for (size_t i = 0; i < count; i++)
+      printf("%.17g,%.17g,%.17g,%d\n", valid[i] ? pixels[2 * i] - shift : 0.0,
+             valid[i] ? pixels[2 * i + 1] - shift : 0.0, z[i], valid[i]);
+  } while (count == BATCH && !ferror(stdout));
+  return STATUS_OK;
+}
+
+static int unproject_all(const vlCamera *camera, double shift, Lines *lines) {
+  static double pixels[2 * BATCH], origins[3 * BATCH], directions[3 * BATCH];
+  static uint8_t valid[BATCH];
+  size_t count;
+  printf("ox,oy,oz,dx,dy,dz,valid\n");
+  do {
+    int status = read_batch(lines, 2, pixels, &count);
+    if (status >= 0) return status;
+    for (size_t i = 0; i < 2 * count; i++) pixels[i] += shift;
+    vl_camera_unproject_batch(camera, count, pixels, origins, directions, valid);
+    for (size_t i = 0; i < count; i++)
+      printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%d\n", origins[3 * i], origins[3 * i + 1], origins[3 * i + 2],
+             directions[3 * i], directions[3 * i + 1], directions[3 * i + 2], valid[i]);
+  } while (count == BATCH && !ferror(stdout));
+  return STATUS_OK;
+}
+
+static int run_points(const Arguments *arguments, int (*all)(const vlCamera *, double, Lines *)) {
+  const OptionValue *v = arguments->values;
+  if (!v[POINTS_CAMERA].given) return report_usage("--camera FILE is needed");
+  double shift = v[POINTS_ORIGIN].given && v[POINTS_ORIGIN].integer ? 0.5 : 0.0;
+  vlContext *context = NULL;
+  vlCameraRecord record;
+  vlCamera camera;
+  int status = image_context(&context);
+  if (status < 0) status = camera_load_made(context, v[POINTS_CAMERA].text, arguments, POINTS_FRAME, &record, &camera);
+  Lines lines = {.path = arguments->operands[0]};
+  bool from_stdin = strcmp(lines.path, "-") == 0;
+  if (status < 0) {
+    lines.file = from_stdin ? stdin : fopen(lines.path, "r");
+    if (from_stdin) lines.path = "stdin";
+    if (!lines.file)
+      status = report_failure(errno == ENOENT ? STATUS_MISSING : STATUS_IO, "%s: %s", lines.path, strerror(errno));
+  }
+  if (status < 0) status = image_finish_output(all(&camera, shift, &lines));
+  if (lines.file && !from_stdin) fclose(lines.file);
+  free(lines.line);
+  vl_context_destroy(context);
+  return status;
+}
+
+static int run_project(const Command *command, const Arguments *arguments) {
+  (void)command;
+  return run_points(arguments, project_all);
+}
+
+static int run_unproject(const Command *command, const Arguments *arguments) {
+  (void)command;
+  return run_points(arguments, unproject_all);
+}
+
+static const Option points_options[] = {
+    {POINTS_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "the camera, in any dialect of `velo camera convert`, or a scene",
+     0, 0, NULL},
+    {POINTS_ORIGIN, 0, "pixel-origin", OPTION_CHOICE, "WHERE",
+     "what (0, 0) is: the picture's corner (default; the first pixel's\n"
+     "centre is (0.5, 0.5)), or the first pixel's centre, as in OpenCV:",
+     0, 0, origin_choices},
+    {POINTS_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command camera_project_command = {
+    .name = "camera project",
+    .usage = "--camera FILE POINTS.csv [options]",
+    .summary = "points of the world to pixels",
+    .text =
+        "POINTS.csv (- is stdin) has a line x,y,z for each point of the world. Prints u,v,z,valid: column and\n"
+        "row in the picture, depth along the view axis, and 1 where the camera can see in that direction.",
+    .options = points_options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run_project,
+};
+
+const Command camera_unproject_command = {
+    .name = "camera unproject",
+    .usage = "--camera FILE PIXELS.csv [options]",
+    .summary = "pixels to rays in the world",
+    .text =
+        "PIXELS.csv (- is stdin) has a line u,v for each place in the picture. Prints ox,oy,oz,dx,dy,dz,valid:\n"
+        "where the ray starts, its direction of length 1, and 1 where the camera sees anything.",
+    .options = points_options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run_unproject,
+};

@@ -1,0 +1,390 @@
+/* camera/vanishing.c: `velo camera vanishing`: the principal vanishing points and the horizon of a camera, drawn over a
+ * picture where asked; and the camera back from vanishing points. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "camera/camera.h"
+#include "cli/commands.h"
+#include "cli/json.h"
+#include "cli/report.h"
+#include "image/image.h"
+#include "image/overlay.h"
+#include "render/outputs.h"
+
+enum { V_JSON, V_FRAME, V_UP, V_OVERLAY, V_OUT, V_LINES, V_GRID, V_FROM, V_PRINCIPAL, V_SIZE, V_AXES, V_TO };
+
+static const double pi = 3.14159265358979323846;
+static const char *const axis_names[3] = {"x", "y", "z"};
+
+/* ---- what is said ------------------------------------------------------------------------------------------------ */
+
+static const char *kind_of(const vlCamera *c, const vlVanishingPoints *v) {
+  static const char *const kinds[] = {"parallel projection", "one-point perspective", "two-point perspective",
+                                      "three-point perspective"};
+  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) return kinds[0];
+  return c->projection == VL_PROJECTION_PERSPECTIVE ? kinds[v->finite] : "curvilinear perspective";
+}
+
+static void say_json(const char *path, const vlCamera *c, const vlVanishingPoints *v) {
+  Json json = {.out = stdout};
+  json_begin(&json, NULL, '{');
+  json_text(&json, "file", path);
+  json_text(&json, "projection", vl_projection_name(c->projection));
+  json_text(&json, "pixel_origin", "corner");
+  json_integer(&json, "width", c->width);
+  json_integer(&json, "height", c->height);
+  json_text(&json, "kind", kind_of(c, v));
+  json_integer(&json, "finite", v->finite);
+  json_begin(&json, "vanishing_points", '{');
+  for (int i = 0; i < 3; i++) {
+    const vlVanishingPoint *p = &v->axes[i];
+    json_begin(&json, axis_names[i], '{');
+    json_text(&json, "kind",
+              p->kind == VL_VANISHING_FINITE     ? "finite"
+              : p->kind == VL_VANISHING_INFINITE ? "infinite"
+                                                 : "none");
+    if (p->kind != VL_VANISHING_NONE) {
+      bool finite = p->kind == VL_VANISHING_FINITE;
+      const double *xy = finite ? p->pixel : p->direction;
+      json_begin(&json, finite ? "pixel" : "direction", '[');
+      json_number(&json, NULL, xy[0]);
+      json_number(&json, NULL, xy[1]);
+      json_end(&json, ']');
+      if (finite) json_text(&json, "end", p->behind ? "negative" : "positive");
+    }
+    json_end(&json, '}');
+  }
+  json_end(&json, '}');
+  if (v->has_horizon) {
+    json_begin(&json, "horizon", '[');
+    for (int i = 0; i < 3; i++) json_number(&json, NULL, v->horizon[i]);
+    json_end(&json, ']');
+  }
+  json_end(&json, '}');
+  putchar('\n');
+}
+
+static void say_text(const vlCamera *c, const vlVanishingPoints *v) {
+  printf("kind          %s\n", kind_of(c, v));
+  for (int i = 0; i < 3; i++) {
+    const vlVanishingPoint *p = &v->axes[i];
+    printf("%s             ", axis_names[i]);
+    if (p->kind == VL_VANISHING_FINITE)
+      printf("%.17g %.17g%s\n", p->pixel[0], p->pixel[1], p->behind ? " (of its negative end)" : "");
+    else if (p->kind == VL_VANISHING_INFINITE)
+      printf("infinite, along %.17g %.17g\n", p->direction[0], p->direction[1]);
+    else
+      printf("none\n");
+  }
+  if (v->has_horizon)
+    printf("horizon       %.17g x + %.17g y + %.17g = 0\n", v->horizon[0], v->horizon[1], v->horizon[2]);
+  else
+    printf("horizon       %s\n", c->projection == VL_PROJECTION_ORTHOGRAPHIC ? "none" : "no line in the picture");
+}
+
+/* ---- what is drawn ----------------------------------------------------------------------------------------------- */
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double r[3]) {
+  for (int i = 0; i < 3; i++) r[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+static void normalize(double v[3]) {
+  double length = sqrt(dot(v, v));
+  for (int i = 0; i < 3; i++) v[i] /= length;
+}
+
+/* Two unit vectors at right angles to d and each other. */
+static void basis_of(const double d[3], double a[3], double b[3]) {
+  const double other[3] = {fabs(d[0]) < 0.7, fabs(d[0]) >= 0.7, 0.0};
+  cross(d, other, a);
+  normalize(a);
+  cross(d, a, b);
+  normalize(b);
+}
+
+/* Every line of the world that is parallel to d lies with the eye in one of the planes through d: some of these. */
+static void draw_family(Overlay *o, const vlCamera *c, const double d[3], int count, double width) {
+  double a[3], b[3], n[3];
+  basis_of(d, a, b);
+  for (int i = 0; i < 2 * count; i++) {
+    double t = pi * i / count;
+    for (int k = 0; k < 3; k++) n[k] = cos(t) * a[k] + sin(t) * b[k];
+    overlay_arc(o, c, d, n, -0.5 * pi, 0.5 * pi, width);
+  }
+}
+
+/* A line of the world, point + s d, from s0 to s1, as the arc that it is to the eye. */
+static void draw_world_line(Overlay *o, const vlCamera *c, const double point[3], const double d[3], double s0,
+                            double s1, double width) {
+  double n[3], p[2], q[2], ends[2][3];
+  const double eye[3] = {c->world_from_camera[3], c->world_from_camera[7], c->world_from_camera[11]};
+  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) { /* straight, and depth is no matter */
+    for (int i = 0; i < 3; i++) ends[0][i] = point[i] + s0 * d[i], ends[1][i] = point[i] + s1 * d[i];
+    if (vl_camera_project(c, ends[0], p, NULL) && vl_camera_project(c, ends[1], q, NULL))
+      overlay_line(o, p[0], p[1], q[0], q[1], width);
+    return;
+  }
+  for (int i = 0; i < 3; i++) n[i] = point[i] - eye[i];
+  double along = dot(n, d);
+  for (int i = 0; i < 3; i++) n[i] -= along * d[i];
+  double height = sqrt(dot(n, n));
+  if (!(height > 0.0)) return; /* through the eye: a point */
+  for (int i = 0; i < 3; i++) n[i] /= height;
+  overlay_arc(o, c, d, n, atan2(s0 + along, height), atan2(s1 + along, height), width);
+}
+
+/* Lines of the ground, spacing apart, as far as 40 of them around the eye. */
+static void draw_grid(Overlay *o, const vlCamera *c, const double up[3], double spacing, double level, double width) {
+  enum { REACH = 20 };
+  double a[3], b[3], p[3];
+  const double eye[3] = {c->world_from_camera[3], c->world_from_camera[7], c->world_from_camera[11]};
+  basis_of(up, a, b);
+  const double *const sides[2][2] = {{a, b}, {b, a}};
+  for (int k = 0; k < 2; k++) {
+    const double *d = sides[k][0], *e = sides[k][1];
+    double middle_d = floor(dot(eye, d) / spacing + 0.5) * spacing;
+    double middle_e = floor(dot(eye, e) / spacing + 0.5) * spacing;
+    for (int i = -REACH; i <= REACH; i++) {
+      for (int j = 0; j < 3; j++) p[j] = (middle_e + i * spacing) * e[j] + level * up[j];
+      draw_world_line(o, c, p, d, middle_d - REACH * spacing, middle_d + REACH * spacing, width);
+    }
+  }
+}
+
+typedef struct Drawing {
+  const double *up;
+  int lines;
+  double spacing, level; /* of the ground's grid; 0: none */
+} Drawing;
+
+static void draw(Overlay *o, const vlCamera *c, const Drawing *drawing) {
+  static const uint8_t colors[3][3] = {{235, 60, 50}, {40, 170, 70}, {50, 110, 245}}, white[3] = {255, 255, 255},
+                       yellow[3] = {255, 205, 40};
+  double a[3], b[3], width = fmax(1.0, 0.0022 * (o->width + o->height));
+  if (drawing->spacing > 0.0) {
+    draw_grid(o, c, drawing->up, drawing->spacing, drawing->level, 0.8 * width);
+    overlay_paint(o, white, 0.6);
+  }
+  bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  for (int i = 0; i < 3; i++) {
+    const double d[3] = {i == 0, i == 1, i == 2};
+    if (!flat && drawing->lines) draw_family(o, c, d, drawing->lines, 0.8 * width);
+    overlay_paint(o, colors[i], 0.55);
+    for (int end = 0; end < 2; end++) { /* curved pictures may show both ends */
+      const double e[3] = {end ? -d[0] : d[0], end ? -d[1] : d[1], end ? -d[2] : d[2]};
+      vlVanishingPoint p;
+      if (vl_camera_vanishing_point(c, e, &p) && p.kind == VL_VANISHING_FINITE)
+        overlay_ring(o, p.pixel[0], p.pixel[1], 5.0 * width, 1.5 * width);
+    }
+    overlay_paint(o, colors[i], 1.0);
+  }
+  if (flat) return;
+  basis_of(drawing->up, a, b);
+  overlay_arc(o, c, b, a, 0.0, 2.0 * pi, 1.5 * width);
+  overlay_paint(o, yellow, 0.9);
+}
+
+/* Makes the camera as large as the picture, where both have the same shape. */
+static int fit_camera(const vlImage *picture, const char *path, vlCamera *camera) {
+  uint32_t w = vl_image_width(picture), h = vl_image_height(picture);
+  if (w == camera->width && h == camera->height) return -1;
+  if (fabs((double)w * camera->height - (double)h * camera->width) > fmax(w, h))
+    return report_failure(STATUS_SCENE, "%s: the picture has %u x %u pixels, the camera %u x %u: another shape", path,
+                          w, h, camera->width, camera->height);
+  vlCamera resized;
+  if (vl_camera_resize(camera, w, h, &resized) != VL_OK) return STATUS_OTHER;
+  *camera = resized;
+  return -1;
+}
+
+static int draw_overlay(vlContext *context, const Arguments *arguments, const vlCamera *of, const Drawing *drawing) {
+  const OptionValue *v = arguments->values;
+  vlImage *picture = NULL;
+  vlCamera camera = *of;
+  vlError error = {0};
+  bool eight_bit = false;
+  if (!output_suffix(v[V_OUT].text, &eight_bit) || !eight_bit)
+    return report_usage("-o \"%s\": the drawing is written as .png, .jpg or .tga", v[V_OUT].text);
+  int status = image_load(context, v[V_OVERLAY].text, &picture);
+  if (status < 0) status = fit_camera(picture, v[V_OVERLAY].text, &camera);
+  if (status < 0) {
+    Overlay overlay = {0};
+    vlResult result = VL_ERROR_MEMORY;
+    if (overlay_begin(&overlay, picture)) {
+      draw(&overlay, &camera, drawing);
+      result = overlay_write(&overlay, context, v[V_OUT].text, &error);
+    }
+    overlay_end(&overlay);
+    status = result == VL_OK ? -1 : report_error(&error, result, v[V_OUT].text);
+  }
+  vl_image_destroy(picture);
+  return status;
+}
+
+/* ---- the inverse ------------------------------------------------------------------------------------------------- */
+
+/* count numbers, separated by commas. */
+static bool parse_numbers(const char *text, int count, double *values) {
+  for (int i = 0; i < count; i++) {
+    char *end;
+    values[i] = strtod(text, &end);
+    if (end == text || !isfinite(values[i])) return false;
+    text = end;
+    if (i + 1 < count && *text++ != ',') return false;
+  }
+  return *text == 0;
+}
+
+/* "xz", "-xyz": which axis each point is of, a minus before those whose negative end is meant. */
+static bool parse_axes(const char *text, vlVanishingDef *def) {
+  for (uint32_t i = 0; i < def->count; i++) {
+    def->away[i] = *text != '-';
+    if (*text == '-' || *text == '+') text++;
+    if (*text < 'x' || *text > 'z') return false;
+    def->axes[i] = (uint32_t)(*text++ - 'x');
+  }
+  return *text == 0;
+}
+
+static void say_camera(const vlCameraDef *d, bool as_json) {
+  if (as_json) {
+    Json json = {.out = stdout};
+    json_begin(&json, NULL, '{');
+    json_text(&json, "pixel_origin", "corner");
+    json_text(&json, "axes", "x right, y down, z forward");
+    json_integer(&json, "width", d->width);
+    json_integer(&json, "height", d->height);
+    json_number(&json, "focal", d->fx);
+    json_number(&json, "cx", d->cx);
+    json_number(&json, "cy", d->cy);
+    json_begin(&json, "world_from_camera", '[');
+    for (int i = 0; i < 16; i++) json_number(&json, NULL, d->world_from_camera[i]);
+    json_end(&json, ']');
+    json_end(&json, '}');
+    putchar('\n');
+    return;
+  }
+  const double *m = d->world_from_camera;
+  printf("focal length  %.17g pixels\nprincipal     %.17g %.17g\n", d->fx, d->cx, d->cy);
+  printf("right         %.17g %.17g %.17g\n", m[0], m[4], m[8]);
+  printf("down          %.17g %.17g %.17g\n", m[1], m[5], m[9]);
+  printf("forward       %.17g %.17g %.17g\n", m[2], m[6], m[10]);
+}
+
+static int run_inverse(const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  if (!v[V_SIZE].given) return report_usage("--from needs --size WxH, the picture's");
+  vlVanishingDef def = vl_default_vanishing_def((uint32_t)v[V_SIZE].integers[0], (uint32_t)v[V_SIZE].integers[1]);
+  def.count = 1 + (uint32_t)arguments->operand_count;
+  if (def.count < 2 || def.count > 3) return report_usage("--from takes 2 or 3 points: --from x1,y1 x2,y2 [x3,y3]");
+  for (uint32_t i = 0; i < def.count; i++) {
+    const char *text = i ? arguments->operands[i - 1] : v[V_FROM].text;
+    if (!parse_numbers(text, 2, def.points[i])) return report_usage("\"%s\": a point is x,y in pixels", text);
+  }
+  if (!parse_axes(v[V_AXES].given ? v[V_AXES].text : def.count == 2 ? "xz" : "xyz", &def))
+    return report_usage("--axes \"%s\": %u of x, y, z, each with - before it where its negative end is meant",
+                        v[V_AXES].text, def.count);
+  if (v[V_PRINCIPAL].given) {
+    double p[2];
+    if (!parse_numbers(v[V_PRINCIPAL].text, 2, p)) return report_usage("--principal takes cx,cy in pixels");
+    def.cx = p[0], def.cy = p[1];
+  }
+  vlError error = {0};
+  vlCameraRecord record = {.frames = 1};
+  vlResult result = vl_camera_from_vanishing_points(&def, &record.camera, &error);
+  if (result != VL_OK) return report_failure(STATUS_SCENE, "%s", error.message);
+  if (v[V_OUT].given) {
+    vlContext *context = NULL;
+    int status = image_context(&context);
+    if (status < 0) {
+      vlCameraFileDef file = vl_default_camera_file_def();
+      file.dialect = v[V_TO].given ? (vlCameraDialect)v[V_TO].integer : VL_CAMERA_DIALECT_AUTO;
+      result = vl_camera_write(context, v[V_OUT].text, &file, &record, &error);
+      if (result != VL_OK) status = report_error(&error, result, v[V_OUT].text);
+    }
+    vl_context_destroy(context);
+    if (status >= 0) return status;
+  }
+  say_camera(&record.camera, v[V_JSON].given);
+  return image_finish_output(STATUS_OK);
+}
+
+/* ------------------------------------------------------------------------------------------------------------------ */
+
+static int run_vanishing(const Command *command, const Arguments *arguments) {
+  (void)command;
+  const OptionValue *v = arguments->values;
+  double up[3] = {0, 1, 0}, grid[2] = {0, 0};
+  if (v[V_FROM].given) return run_inverse(arguments);
+  if (arguments->operand_count != 1) return report_usage("camera vanishing takes one FILE, or --from and points");
+  if (v[V_UP].given && (!parse_numbers(v[V_UP].text, 3, up) || !(dot(up, up) > 0.0)))
+    return report_usage("--up \"%s\": a direction is x,y,z", v[V_UP].text);
+  if (v[V_OVERLAY].given != v[V_OUT].given) return report_usage("--overlay PICTURE and -o RESULT go together");
+  if (v[V_GRID].given && !parse_numbers(v[V_GRID].text, 2, grid) && !parse_numbers(v[V_GRID].text, 1, grid))
+    return report_usage("--grid takes SPACING or SPACING,HEIGHT");
+  if (v[V_GRID].given && !(grid[0] > 0.0)) return report_usage("--grid: the spacing must be above zero");
+  normalize(up);
+  vlContext *context = NULL;
+  vlCameraRecord record;
+  vlCamera camera;
+  const char *path = arguments->operands[0];
+  int status = image_context(&context);
+  if (status < 0) status = camera_load_made(context, path, arguments, V_FRAME, &record, &camera);
+  if (status < 0 && v[V_OVERLAY].given) {
+    Drawing drawing = {up, v[V_LINES].given ? (int)v[V_LINES].integer : 24, grid[0], grid[1]};
+    status = draw_overlay(context, arguments, &camera, &drawing);
+  }
+  if (status < 0) {
+    vlVanishingPoints points;
+    vl_camera_vanishing_points(&camera, up, &points);
+    if (v[V_JSON].given)
+      say_json(path, &camera, &points);
+    else
+      say_text(&camera, &points);
+    status = image_finish_output(STATUS_OK);
+  }
+  vl_context_destroy(context);
+  return status;
+}
+
+static const Option vanishing_options[] = {
+    {V_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
+    {V_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
+    {V_UP, 0, "up", OPTION_TEXT, "x,y,z", "what the horizon is at right angles to; default 0,1,0", 0, 0, NULL},
+    {V_OVERLAY, 0, "overlay", OPTION_TEXT, "PICTURE", "draw over this picture; needs -o", 0, 0, NULL},
+    {V_OUT, 'o', "output", OPTION_TEXT, "RESULT", "the drawing (.png .jpg .tga); with --from: a camera file", 0, 0,
+     NULL},
+    {V_LINES, 0, "lines", OPTION_INTEGER, "N", "planes of lines to each vanishing point, 0 to 360; default 24", 0, 360,
+     NULL},
+    {V_GRID, 0, "grid", OPTION_TEXT, "SPACING[,HEIGHT]", "draw the ground's grid, too, at this height along up", 0, 0,
+     NULL},
+    {V_FROM, 0, "from", OPTION_TEXT, "x1,y1 x2,y2 [x3,y3]", "the other way: the camera that has these vanishing points",
+     0, 0, NULL},
+    {V_PRINCIPAL, 0, "principal", OPTION_TEXT, "cx,cy", "its principal point; default with two points: the centre", 0,
+     0, NULL},
+    {V_SIZE, 0, "size", OPTION_SIZE, "WxH", "its picture's size", 1, 1 << 24, NULL},
+    {V_AXES, 0, "axes", OPTION_TEXT, "AXES",
+     "which axes the points are of, - for a negative end: xz (default\nof two), xyz (of three), -zx, ...", 0, 0, NULL},
+    {V_TO, 0, "to", OPTION_CHOICE, "DIALECT", "of that camera file; default: by its name:", 0, 0, dialect_choices},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command camera_vanishing_command = {
+    .name = "camera vanishing",
+    .usage = "FILE | --from x1,y1 x2,y2 [x3,y3] --size WxH [options]",
+    .summary = "vanishing points and horizon; the camera back from them",
+    .text =
+        "Prints where lines along the world's axes vanish in the picture of FILE's camera (any dialect, or a\n"
+        "scene), pixels from the picture's corner, and the horizon; --overlay draws them: lines along x red,\n"
+        "y green, z blue, the horizon yellow. With --from it finds focal length, principal point and rotation\n"
+        "from two vanishing points and a known principal point, or from three.",
+    .options = vanishing_options,
+    .min_operands = 0,
+    .max_operands = 2,
+    .run = run_vanishing,
+};

@@ -1,0 +1,251 @@
+/* camera/verify.c: `velo camera verify`: does what is rendered through a camera lie where the camera's equations say?
+ * And: do two camera files mean the same camera? */
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "camera/camera.h"
+#include "camera/verify.h"
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "image/image.h"
+
+enum {
+  VERIFY_CAMERA,
+  VERIFY_FRAME,
+  VERIFY_AGAINST,
+  VERIFY_AGAINST_FRAME,
+  VERIFY_IGNORE_POSE,
+  VERIFY_TARGET,
+  VERIFY_POSE_COUNT,
+  VERIFY_SPP,
+  VERIFY_SEED,
+  VERIFY_THRESHOLD,
+  VERIFY_KEEP,
+  VERIFY_JSON
+};
+
+static const Choice target_choices[] = {{"chessboard", 0}, {"charuco", 1}, {NULL, 0}};
+
+/* What is asked is where things lie: lens, focus, motion, clipping planes take no part. */
+static void make_pinhole(vlCamera *c) {
+  vlCamera moving = *c;
+  vl_camera_at(&moving, moving.shutter_open, c);
+  c->lens_radius = 0.0;
+  c->near_plane = 0.0;
+  c->far_plane = INFINITY;
+}
+
+static double mean_of(double sum, const Measure *m) {
+  uint32_t n = m->found - m->unseen;
+  return n ? sum / n : NAN;
+}
+
+/* Why the camera fails; null when all is well. */
+static const char *verdict(const Verification *v, double threshold, char *text, size_t size) {
+  const Measure *m = &v->all;
+  if (v->placed == 0)
+    snprintf(text, size, "the camera sees nothing, or too little for a board anywhere");
+  else if (m->found < 12 || m->found < 0.9 * m->expected)
+    snprintf(text, size, "only %u of %u corners are in the pictures where the camera should show them", m->found,
+             m->expected);
+  else if (m->misread)
+    snprintf(text, size, "%u of %u markers are not the ones that should be there", m->misread, m->markers);
+  else if (m->unseen)
+    snprintf(text, size, "%u of %u corners in the pictures cannot be seen by the other camera", m->unseen, m->found);
+  else if (!(m->most <= threshold))
+    snprintf(text, size, "%.4g pixels are more than %g", m->most, threshold);
+  else
+    return NULL;
+  return text;
+}
+
+/* Parts of the picture's 8 x 8 that see anything in their middle, and how many of them held corners. */
+static uint32_t parts(const Verification *v, uint32_t *covered) {
+  uint32_t seeing = 0;
+  double o[3], d[3];
+  *covered = 0;
+  for (int j = 0; j < COVERAGE; j++)
+    for (int i = 0; i < COVERAGE; i++) {
+      *covered += v->covered[j][i];
+      seeing += v->covered[j][i] || vl_camera_unproject(&v->camera, (i + 0.5) * v->camera.width / COVERAGE,
+                                                        (j + 0.5) * v->camera.height / COVERAGE, o, d);
+    }
+  return seeing;
+}
+
+/* Off by about half a pixel both ways, or one way: the commonest mistake deserves its name. */
+static bool half_pixel(const Measure *m) {
+  double x = fabs(mean_of(m->sum_x, m)), y = fabs(mean_of(m->sum_y, m));
+  bool half_x = fabs(x - 0.5) < 0.05, half_y = fabs(y - 0.5) < 0.05;
+  return (half_x && half_y) || (half_x && y < 0.05) || (half_y && x < 0.05);
+}
+
+static void print_text(const Verification *v, const char *path, const char *against, double threshold,
+                       const char *failure) {
+  const Measure *m = &v->all;
+  printf("camera    %s: %s, %u x %u\n", path, vl_projection_name(v->camera.projection), v->camera.width,
+         v->camera.height);
+  if (against) printf("against   %s: %s\n", against, vl_projection_name(v->model.camera.projection));
+  printf("target    %s, %d x %d corners, squares of %.0f pixels, %u poses, %u spp, seed %llu\n",
+         v->target.charuco ? "charuco" : "chessboard", v->target.corners, v->target.corners, v->side, v->placed, v->spp,
+         (unsigned long long)v->seed);
+  if (v->placed) printf("\npose  corners    mean px     max px  at\n");
+  for (uint32_t i = 0; i < v->placed; i++) {
+    const Measure *p = &v->each[i];
+    printf("%4u  %3u/%-3u  %10.5f %10.5f  %.1f, %.1f\n", i, p->found, p->expected, mean_of(p->sum, p), p->most, p->at_x,
+           p->at_y);
+  }
+  if (m->found) {
+    uint32_t covered, seeing = parts(v, &covered);
+    printf("\nall   %u of %u corners: mean %.5f, root mean square %.5f, maximum %.5f pixels (pose %u, at %.1f, %.1f)\n",
+           m->found, m->expected, mean_of(m->sum, m), sqrt(mean_of(m->sum2, m)), m->most, m->pose, m->at_x, m->at_y);
+    printf("shift found - projected, mean: %+.5f, %+.5f pixels%s\n", mean_of(m->sum_x, m), mean_of(m->sum_y, m),
+           half_pixel(m) ? "; half a pixel: are the pixel origins confused?" : "");
+    if (v->target.charuco) printf("read  %u markers, %u wrong\n", m->markers, m->misread);
+    printf("cover %u of the %u parts (of 8 x 8) of the picture that see anything\n", covered, seeing);
+  }
+  if (failure)
+    printf("FAILED: %s\n", failure);
+  else
+    printf("passed: no corner is off by more than %g pixels\n", threshold);
+}
+
+static void print_measure(Json *json, const Measure *m) {
+  json_integer(json, "expected", m->expected);
+  json_integer(json, "found", m->found);
+  json_integer(json, "unseen", m->unseen);
+  json_number(json, "mean", mean_of(m->sum, m));
+  json_number(json, "rms", sqrt(mean_of(m->sum2, m)));
+  json_number(json, "max", m->most);
+  json_number(json, "max_x", m->at_x);
+  json_number(json, "max_y", m->at_y);
+  json_number(json, "shift_x", mean_of(m->sum_x, m));
+  json_number(json, "shift_y", mean_of(m->sum_y, m));
+}
+
+static void print_json(const Verification *v, const char *path, const char *against, double threshold,
+                       const char *failure) {
+  Json json = {.out = stdout};
+  uint32_t covered, seeing = parts(v, &covered);
+  json_begin(&json, NULL, '{');
+  json_text(&json, "camera", path);
+  if (against) json_text(&json, "against", against);
+  json_text(&json, "projection", vl_projection_name(v->camera.projection));
+  json_text(&json, "target", v->target.charuco ? "charuco" : "chessboard");
+  json_integer(&json, "spp", v->spp);
+  json_integer(&json, "seed", (int64_t)v->seed);
+  json_number(&json, "threshold", threshold);
+  json_bool(&json, "passed", !failure);
+  if (failure) json_text(&json, "failure", failure);
+  print_measure(&json, &v->all);
+  json_integer(&json, "markers", v->all.markers);
+  json_integer(&json, "markers_wrong", v->all.misread);
+  json_integer(&json, "parts_covered", covered);
+  json_integer(&json, "parts_seeing", seeing);
+  json_begin(&json, "poses", '[');
+  for (uint32_t i = 0; i < v->placed; i++) {
+    json_begin(&json, NULL, '{');
+    print_measure(&json, &v->each[i]);
+    json_end(&json, '}');
+  }
+  json_end(&json, ']');
+  json_end(&json, '}');
+  putchar('\n');
+}
+
+/* The camera that the pictures are compared with: the same file, or another one. */
+static int load_model(vlContext *context, const Arguments *arguments, const vlCameraRecord *own, Verification *v) {
+  const OptionValue *o = arguments->values;
+  v->model = (VerifyModel){own->camera, v->camera};
+  const char *path = o[VERIFY_CAMERA].text;
+  if (o[VERIFY_AGAINST].given) {
+    vlCameraRecord record;
+    path = o[VERIFY_AGAINST].text;
+    int status = camera_load_made(context, path, arguments, VERIFY_AGAINST_FRAME, &record, &v->model.camera);
+    if (status >= 0) return status;
+    v->model.def = record.camera;
+    make_pinhole(&v->model.camera);
+    if (o[VERIFY_IGNORE_POSE].given)
+      memcpy(v->model.camera.world_from_camera, v->camera.world_from_camera, sizeof v->camera.world_from_camera);
+    if (v->model.camera.width != v->camera.width || v->model.camera.height != v->camera.height)
+      report_warning("%s is %u x %u pixels, %s %u x %u", o[VERIFY_CAMERA].text, v->camera.width, v->camera.height, path,
+                     v->model.camera.width, v->model.camera.height);
+  }
+  if (!verify_knows(&v->model))
+    return report_failure(STATUS_SCENE, "%s: there is no second formula for a %s camera to compare with", path,
+                          vl_projection_name(v->model.camera.projection));
+  return -1;
+}
+
+static int run_verify(const Command *command, const Arguments *arguments) {
+  (void)command;
+  static Verification v;
+  const OptionValue *o = arguments->values;
+  const char *path = o[VERIFY_CAMERA].text, *against = o[VERIFY_AGAINST].given ? o[VERIFY_AGAINST].text : NULL;
+  if (!o[VERIFY_CAMERA].given) return report_usage("which camera? --camera FILE");
+  if (!against && (o[VERIFY_AGAINST_FRAME].given || o[VERIFY_IGNORE_POSE].given))
+    return report_usage("--%s goes with --against FILE", o[VERIFY_IGNORE_POSE].given ? "ignore-pose" : "against-frame");
+  vlContext *context = NULL;
+  vlContextDef context_def = vl_default_context_def();
+  context_def.log = report_log;
+  vlResult result = vl_context_create(&context_def, &context);
+  if (result != VL_OK) return report_error(NULL, result, NULL);
+  vlCameraRecord record;
+  double threshold = o[VERIFY_THRESHOLD].given ? o[VERIFY_THRESHOLD].number : 0.05;
+  v.target.charuco = o[VERIFY_TARGET].given && o[VERIFY_TARGET].integer == 1;
+  v.poses = o[VERIFY_POSE_COUNT].given ? (uint32_t)o[VERIFY_POSE_COUNT].integer : 16;
+  v.spp = o[VERIFY_SPP].given ? (uint32_t)o[VERIFY_SPP].integer : 144;
+  v.seed = o[VERIFY_SEED].given ? (uint64_t)o[VERIFY_SEED].integer : 1;
+  v.keep = o[VERIFY_KEEP].given ? o[VERIFY_KEEP].text : NULL;
+  int status = camera_load_made(context, path, arguments, VERIFY_FRAME, &record, &v.camera);
+  if (status < 0) make_pinhole(&v.camera);
+  if (status < 0) status = load_model(context, arguments, &record, &v);
+  if (status < 0 && v.keep && mkdir(v.keep, 0777) != 0 && errno != EEXIST)
+    status = report_failure(STATUS_IO, "%s: %s", v.keep, strerror(errno));
+  if (status < 0) status = verify_run(&v, context);
+  if (status < 0) {
+    char text[200];
+    const char *failure = verdict(&v, threshold, text, sizeof text);
+    (o[VERIFY_JSON].given ? print_json : print_text)(&v, path, against, threshold, failure);
+    status = image_finish_output(failure ? STATUS_OTHER : STATUS_OK);
+  }
+  vl_context_destroy(context);
+  return status;
+}
+
+static const Option verify_options[] = {
+    {VERIFY_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "the camera, in any dialect of `velo camera convert`, or a scene",
+     0, 0, NULL},
+    {VERIFY_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
+    {VERIFY_AGAINST, 0, "against", OPTION_TEXT, "OTHER",
+     "compare the pictures with this camera file's equations: do both\nmean the same camera?", 0, 0, NULL},
+    {VERIFY_AGAINST_FRAME, 0, "against-frame", OPTION_TEXT, "NAME", "which camera of OTHER", 0, 0, NULL},
+    {VERIFY_IGNORE_POSE, 0, "ignore-pose", OPTION_FLAG, NULL, "OTHER is put where FILE is (for files without a pose)",
+     0, 0, NULL},
+    {VERIFY_TARGET, 0, "target", OPTION_CHOICE, "KIND", "default chessboard; charuco has markers that are read:", 0, 0,
+     target_choices},
+    {VERIFY_POSE_COUNT, 0, "poses", OPTION_INTEGER, "N", "places of the board, spread over the picture (default 16)", 1,
+     VERIFY_POSES, NULL},
+    {VERIFY_SPP, 0, "spp", OPTION_INTEGER, "N", "samples a pixel (default 144)", 1, 65536, NULL},
+    {VERIFY_SEED, 0, "seed", OPTION_INTEGER, "N", "other places, other samples (default 1)", 0, 4294967295.0, NULL},
+    {VERIFY_THRESHOLD, 0, "threshold", OPTION_NUMBER, "PX", "largest error that passes, in pixels (default 0.05)", 0,
+     1e9, NULL},
+    {VERIFY_KEEP, 0, "keep", OPTION_TEXT, "FOLDER", "write the pictures and corners.csv there", 0, 0, NULL},
+    {VERIFY_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command camera_verify_command = {
+    .name = "camera verify",
+    .usage = "--camera FILE [options]",
+    .summary = "render a chessboard through a camera and measure where its corners are",
+    .text =
+        "Renders a board in many poses through the camera, finds the corners in the pictures to a hundredth of\n"
+        "a pixel, and compares them with where the camera's equations, written a second time, put them. Exit\n"
+        "code 1 when one is off by more than the threshold, or corners are missing.",
+    .options = verify_options,
+    .min_operands = 0,
+    .max_operands = 0,
+    .run = run_verify,
+};

@@ -1,0 +1,165 @@
+/* camera/verify_model.c: where a point of the world lands, written a second time, straight from the equations of the
+ * sources that docs/cameras.md names, with the C library's functions and one point at a time. Nothing here calls the
+ * library's projections: it is what `velo camera verify` measures them against. */
+#include <math.h>
+#include <string.h>
+
+#include "camera/verify.h"
+
+/* Angle from the axis to radius on the plane. */
+static bool fisheye(vlProjection projection, double angle, double *r) {
+  switch (projection) {
+    case VL_PROJECTION_EQUIDISTANT: *r = angle; return true;
+    case VL_PROJECTION_EQUISOLID: *r = 2.0 * sin(0.5 * angle); return true;
+    case VL_PROJECTION_STEREOGRAPHIC: *r = 2.0 * tan(0.5 * angle); return true;
+    case VL_PROJECTION_SINE: *r = sin(angle); return angle <= 0.5 * M_PI;
+    default: return false;
+  }
+}
+
+/* pbrt book 3.8.3, EqualAreaSphereToSquare; the square is -1 to 1. */
+static void equal_area(const double p[3], double plane[2]) {
+  double length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+  double x = fabs(p[0]) / length, y = fabs(p[1]) / length, z = fabs(p[2]) / length;
+  double r = sqrt((x * x + y * y) / (1.0 + z)), phi = 2.0 / M_PI * atan2(y, x);
+  double v = phi * r, u = r - v;
+  if (p[2] < 0.0) {
+    double swap = u;
+    u = 1.0 - v, v = 1.0 - swap;
+  }
+  plane[0] = copysign(u, p[0]), plane[1] = copysign(v, p[1]);
+}
+
+/* Right, left, up, down, front, back: in a row, or as a cross four wide and three high. */
+static void cube(bool as_cross, const double p[3], double plane[2]) {
+  static const double at[6][2] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
+  static const double ahead[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
+  static const double right[6][3] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {-1, 0, 0}};
+  static const double down[6][3] = {{0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, {0, 1, 0}};
+  double most = -1.0;
+  for (int face = 0; face < 6; face++) {
+    double z = ahead[face][0] * p[0] + ahead[face][1] * p[1] + ahead[face][2] * p[2];
+    double x = right[face][0] * p[0] + right[face][1] * p[1] + right[face][2] * p[2];
+    double y = down[face][0] * p[0] + down[face][1] * p[1] + down[face][2] * p[2];
+    if (z <= most) continue;
+    most = z;
+    plane[0] = (as_cross ? at[face][0] : face) + 0.5 * (x / z + 1.0);
+    plane[1] = (as_cross ? at[face][1] : 0.0) + 0.5 * (y / z + 1.0);
+  }
+}
+
+/* A point in camera space to the ideal plane. */
+static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
+  double x = p[0], y = p[1], z = p[2], across = sqrt(x * x + y * y), length = sqrt(across * across + z * z);
+  double a = c->shape[0], b = c->shape[1], k, r;
+  switch (c->projection) {
+    case VL_PROJECTION_PERSPECTIVE: plane[0] = x / z, plane[1] = y / z; return z > 0.0;
+    case VL_PROJECTION_ORTHOGRAPHIC: plane[0] = x, plane[1] = y; return z >= 0.0;
+    case VL_PROJECTION_EQUIDISTANT:
+    case VL_PROJECTION_EQUISOLID:
+    case VL_PROJECTION_STEREOGRAPHIC:
+    case VL_PROJECTION_SINE:
+      if (!fisheye(c->projection, atan2(across, z), &r)) return false;
+      k = across > 0.0 ? r / across : 1.0 / z;
+      break;
+    case VL_PROJECTION_EQUIRECTANGULAR: plane[0] = atan2(x, z), plane[1] = asin(y / length); return length > 0.0;
+    case VL_PROJECTION_EQUAL_AREA: equal_area(p, plane); return length > 0.0;
+    case VL_PROJECTION_CYLINDRICAL:
+      plane[0] = atan2(x, z), plane[1] = y / sqrt(x * x + z * z);
+      return x * x + z * z > 0.0;
+    case VL_PROJECTION_CUBE: cube(a > 0.0, p, plane); return length > 0.0;
+    case VL_PROJECTION_PANINI: {
+      double longitude = atan2(x, z), latitude = atan2(y, sqrt(x * x + z * z));
+      double s = (a + 1.0) / (a + cos(longitude));
+      plane[0] = s * sin(longitude), plane[1] = s * tan(latitude);
+      return cos(longitude) > -a && (a <= 1.0 || cos(longitude) >= -1.0 / a);
+    }
+    case VL_PROJECTION_FOV:
+      r = atan(2.0 * across / z * tan(0.5 * a)) / a;
+      k = across > 0.0 ? r / across : 0.0;
+      plane[0] = k * x, plane[1] = k * y;
+      return z > 0.0;
+    case VL_PROJECTION_DIVISION: { /* r of r Z = R (1 + lambda r^2) that begins at 0 */
+      double root = z * z - 4.0 * a * across * across;
+      if (root < 0.0) return false;
+      k = 2.0 / (z + sqrt(root));
+      plane[0] = k * x, plane[1] = k * y;
+      return k > 0.0 && isfinite(k) && (z > 0.0 || a < 0.0);
+    }
+    case VL_PROJECTION_UNIFIED: k = 1.0 / (z + a * length); break;
+    case VL_PROJECTION_EUCM: k = 1.0 / (a * sqrt(b * across * across + z * z) + (1.0 - a) * z); break;
+    case VL_PROJECTION_DOUBLE_SPHERE: { /* shape: xi, alpha */
+      double second = a * length + z;
+      k = 1.0 / (b * sqrt(across * across + second * second) + (1.0 - b) * second);
+      break;
+    }
+    default: return false;
+  }
+  plane[0] = k * x, plane[1] = k * y;
+  return k > 0.0 && isfinite(k);
+}
+
+/* OpenCV, "Camera Calibration and 3D Reconstruction": with 14 numbers k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tx ty. */
+static void opencv(const double *k, double plane[2]) {
+  double x = plane[0], y = plane[1], r2 = x * x + y * y, r4 = r2 * r2, r6 = r4 * r2;
+  double q = (1.0 + k[0] * r2 + k[1] * r4 + k[4] * r6) / (1.0 + k[5] * r2 + k[6] * r4 + k[7] * r6);
+  double u = x * q + 2.0 * k[2] * x * y + k[3] * (r2 + 2.0 * x * x) + k[8] * r2 + k[9] * r4;
+  double v = y * q + k[2] * (r2 + 2.0 * y * y) + 2.0 * k[3] * x * y + k[10] * r2 + k[11] * r4;
+  if (k[12] != 0.0 || k[13] != 0.0) {
+    /* R = Ry(ty) Rx(tx); s (u', v', 1) = [R33 0 -R13; 0 R33 -R23; 0 0 1] R (u, v, 1) */
+    double cx = cos(k[12]), sx = sin(k[12]), cy = cos(k[13]), sy = sin(k[13]);
+    double rx = cy * u + sy * sx * v - sy * cx, ry = cx * v + sx, rz = sy * u - cy * sx * v + cy * cx;
+    double r13 = -sy * cx, r23 = sx, r33 = cy * cx;
+    u = (r33 * rx - r13 * rz) / rz, v = (r33 * ry - r23 * rz) / rz;
+  }
+  plane[0] = u, plane[1] = v;
+}
+
+static bool bend(const vlCameraDef *def, double plane[2]) {
+  double k[14] = {0}, x = plane[0], y = plane[1], r2 = x * x + y * y;
+  if (def->distortion_count > 14) return false;
+  memcpy(k, def->distortion_coefficients, def->distortion_count * sizeof *k);
+  switch (def->distortion) {
+    case VL_DISTORTION_NONE: return true;
+    case VL_DISTORTION_OPENCV: opencv(k, plane); return true;
+    case VL_DISTORTION_RADIAL: {
+      double q = 1.0 + k[0] * r2 + k[1] * pow(r2, 2.0) + k[2] * pow(r2, 3.0) + k[3] * pow(r2, 4.0);
+      plane[0] = q * x, plane[1] = q * y;
+      return true;
+    }
+    case VL_DISTORTION_THIN_PRISM: { /* COLMAP: k1 k2 p1 p2 k3 k4 sx1 sy1 */
+      double q = k[0] * r2 + k[1] * pow(r2, 2.0) + k[4] * pow(r2, 3.0) + k[5] * pow(r2, 4.0);
+      plane[0] = x + x * q + 2.0 * k[2] * x * y + k[3] * (r2 + 2.0 * x * x) + k[6] * r2;
+      plane[1] = y + y * q + 2.0 * k[3] * x * y + k[2] * (r2 + 2.0 * y * y) + k[7] * r2;
+      return true;
+    }
+    default: return false;
+  }
+}
+
+/* Solves world_from_camera (p, 1) = (point, 1) for p by Cramer's rule. */
+static void to_camera(const double m[16], const double point[3], double p[3]) {
+  double a[3] = {m[0], m[4], m[8]}, b[3] = {m[1], m[5], m[9]}, c[3] = {m[2], m[6], m[10]};
+  double d[3] = {point[0] - m[3], point[1] - m[7], point[2] - m[11]};
+#define CROSS_DOT(a, b, c)                                                                       \
+  ((a)[0] * ((b)[1] * (c)[2] - (b)[2] * (c)[1]) + (a)[1] * ((b)[2] * (c)[0] - (b)[0] * (c)[2]) + \
+   (a)[2] * ((b)[0] * (c)[1] - (b)[1] * (c)[0]))
+  double det = CROSS_DOT(a, b, c);
+  p[0] = CROSS_DOT(d, b, c) / det, p[1] = CROSS_DOT(a, d, c) / det, p[2] = CROSS_DOT(a, b, d) / det;
+#undef CROSS_DOT
+}
+
+bool verify_knows(const VerifyModel *m) {
+  return m->camera.eye_circle == 0.0 && (unsigned)m->camera.projection <= VL_PROJECTION_DOUBLE_SPHERE &&
+         (unsigned)m->def.distortion <= VL_DISTORTION_THIN_PRISM;
+}
+
+bool verify_project(const VerifyModel *m, const double point[3], double pixel[2]) {
+  const vlCamera *c = &m->camera;
+  double p[3], plane[2] = {0, 0};
+  to_camera(c->world_from_camera, point, p);
+  if (!to_plane(c, p, plane) || !bend(&m->def, plane)) return false;
+  pixel[0] = c->cx + c->fx * plane[0] + c->skew * plane[1];
+  pixel[1] = c->cy + c->fy * plane[1];
+  return isfinite(pixel[0]) && isfinite(pixel[1]);
+}

@@ -1,0 +1,90 @@
+/* cli/json.c: see json.h. */
+#include "cli/json.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Length of the UTF-8 sequence at s, 0 when it is none (overlong forms and surrogates included). */
+static size_t utf8_length(const unsigned char *s) {
+  if (s[0] < 0x80) return 1;
+  size_t n = s[0] >= 0xc2 && s[0] < 0xe0 ? 2 : (s[0] & 0xf0) == 0xe0 ? 3 : s[0] >= 0xf0 && s[0] < 0xf5 ? 4 : 0;
+  for (size_t i = 1; i < n; i++)
+    if ((s[i] & 0xc0) != 0x80) return 0;
+  if (n == 3 && ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] >= 0xa0))) return 0;
+  if (n == 4 && ((s[0] == 0xf0 && s[1] < 0x90) || (s[0] == 0xf4 && s[1] >= 0x90))) return 0;
+  return n;
+}
+
+static void put_string(FILE *out, const char *text) {
+  const unsigned char *s = (const unsigned char *)text;
+  fputc('"', out);
+  while (*s) {
+    size_t n = utf8_length(s);
+    if (n == 0) {
+      fputs("\\ufffd", out);
+      n = 1;
+    } else if (n > 1) {
+      fwrite(s, 1, n, out);
+    } else if (*s == '"' || *s == '\\') {
+      fprintf(out, "\\%c", *s);
+    } else if (*s < 0x20 || *s == 0x7f) {
+      fprintf(out, "\\u%04x", *s);
+    } else {
+      fputc(*s, out);
+    }
+    s += n;
+  }
+  fputc('"', out);
+}
+
+static void put_key(Json *json, const char *key) {
+  if (json->comma) fputs(", ", json->out);
+  json->comma = true;
+  if (key) {
+    put_string(json->out, key);
+    fputs(": ", json->out);
+  }
+}
+
+void json_begin(Json *json, const char *key, char bracket) {
+  put_key(json, key);
+  fputc(bracket, json->out);
+  json->comma = false;
+}
+
+void json_end(Json *json, char bracket) {
+  fputc(bracket, json->out);
+  json->comma = true;
+}
+
+void json_text(Json *json, const char *key, const char *text) {
+  put_key(json, key);
+  put_string(json->out, text);
+}
+
+void format_number(char *text, size_t size, double number) {
+  static const int digits[] = {6, 9, 15, 16, 17};
+  for (size_t i = 0; i < sizeof digits / sizeof *digits; i++) {
+    snprintf(text, size, "%.*g", digits[i], number);
+    double back = strtod(text, NULL);
+    if (back == number || number != number) return;
+  }
+}
+
+void json_number(Json *json, const char *key, double number) {
+  put_key(json, key);
+  char text[40];
+  if (isfinite(number)) format_number(text, sizeof text, number);
+  fputs(isfinite(number) ? text : "null", json->out);
+}
+
+void json_integer(Json *json, const char *key, int64_t number) {
+  put_key(json, key);
+  fprintf(json->out, "%lld", (long long)number);
+}
+
+void json_bool(Json *json, const char *key, bool truth) {
+  put_key(json, key);
+  fputs(truth ? "true" : "false", json->out);
+}

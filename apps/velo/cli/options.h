@@ -1,0 +1,75 @@
+/* cli/options.h: the command line by table: each command lists its options, and parsing, checking, "did you mean" and
+ * the help page come from that one list. */
+#ifndef APP_CLI_OPTIONS_H
+#define APP_CLI_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef enum OptionKind {
+  OPTION_FLAG,
+  OPTION_INTEGER,   /* min..max */
+  OPTION_NUMBER,    /* min..max */
+  OPTION_TIME,      /* seconds: 30, 30s, 5m, 1h30m */
+  OPTION_SIZE,      /* WxH, each min..max */
+  OPTION_CROP,      /* x0,y0,x1,y1, whole numbers */
+  OPTION_FRACTIONS, /* x0,x1,y0,y1 in 0..1 */
+  OPTION_CHOICE,    /* one of choices */
+  OPTION_TEXT,
+  OPTION_TEXTS /* may be given several times; at most one such option a command */
+} OptionKind;
+
+typedef struct Choice {
+  const char *name; /* null ends the list */
+  int value;        /* names with the same value are aliases of the first */
+} Choice;
+
+typedef struct Option {
+  int id; /* index into Arguments.values */
+  char letter;
+  const char *name; /* without dashes; null ends the list */
+  OptionKind kind;
+  const char *value; /* its name in the help page; null for flags */
+  const char *help;  /* lines separated by \n */
+  double min, max;
+  const Choice *choices;
+} Option;
+
+enum { MAX_OPTIONS = 64, MAX_TEXTS = 32, MAX_OPERANDS = 4 };
+
+typedef struct OptionValue {
+  bool given;
+  int64_t integer; /* integer; choice's value */
+  double number;   /* number, time in seconds */
+  int64_t integers[4];
+  double numbers[4];
+  const char *text; /* as written */
+} OptionValue;
+
+typedef struct Arguments {
+  OptionValue values[MAX_OPTIONS];
+  const char *texts[MAX_TEXTS];
+  int text_count;
+  const char *operands[MAX_OPERANDS];
+  int operand_count;
+} Arguments;
+
+typedef struct Command {
+  const char *name;    /* "image diff"; null ends a list */
+  const char *usage;   /* what follows the name: "FILE [options]" */
+  const char *summary; /* one line */
+  const char *text;    /* the help page between usage and options */
+  const Option *options;
+  int min_operands, max_operands;
+  int (*run)(const struct Command *command, const Arguments *arguments);
+} Command;
+
+/* argv without program and command names. -1: go on; else the exit code (0 after --help), all has been said. */
+int options_parse(const Command *command, int argc, char **argv, Arguments *arguments);
+void options_print_help(const Command *command);
+/* "render" → "; did you mean \"render\"?", or nothing. The result lives until the next call. */
+const char *did_you_mean(const char *prefix, const char *wrong, const char *const *names, int count);
+/* The name of a choice's value. */
+const char *choice_name(const Choice *choices, int value);
+
+#endif

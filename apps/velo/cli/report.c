@@ -1,0 +1,176 @@
+/* cli/report.c: see report.h. */
+#include "cli/report.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+enum { MOST_LOGGED = 100 }; /* a stranger's file may earn a warning a line */
+
+static struct {
+  bool json, terminal, line_shown;
+  unsigned logged; /* warnings and notes of the library */
+  Verbosity verbosity;
+  char *json_text;
+  size_t json_size;
+} state;
+
+void report_setup(bool json, Verbosity verbosity) {
+  const char *term = getenv("TERM");
+  state.json = json;
+  state.verbosity = verbosity;
+  state.terminal = !json && isatty(STDERR_FILENO) && term && *term && strcmp(term, "dumb") != 0;
+}
+
+bool report_is_json(void) {
+  return state.json;
+}
+
+bool report_is_quiet(void) {
+  return state.verbosity == REPORT_QUIET;
+}
+
+bool report_is_terminal(void) {
+  return state.terminal;
+}
+
+int report_terminal_columns(void) {
+  struct winsize size;
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+/* One line in one write, so that lines of several programs do not mix. */
+static void put_line(const char *text) {
+  char line[4200];
+  size_t n = 0;
+  if (state.line_shown) n = (size_t)snprintf(line, sizeof line, "\r\033[K");
+  state.line_shown = false;
+  for (const char *s = text; *s && n + 2 < sizeof line; s++)
+    line[n++] = (unsigned char)*s < 0x20 || *s == 0x7f ? (*s == '\n' || *s == '\t' ? ' ' : '?') : *s;
+  line[n++] = '\n';
+  if (fwrite(line, 1, n, stderr) != n) clearerr(stderr);
+  fflush(stderr);
+}
+
+void report_status_line(const char *text) {
+  if (!state.terminal || state.verbosity == REPORT_QUIET || (!text && !state.line_shown)) return;
+  fprintf(stderr, "\r%s\033[K", text ? text : "");
+  fflush(stderr);
+  state.line_shown = text != NULL;
+}
+
+Json report_json_begin(const char *event) {
+  Json json = {.out = open_memstream(&state.json_text, &state.json_size)};
+  if (!json.out) json.out = stderr;
+  json_begin(&json, NULL, '{');
+  json_text(&json, "event", event);
+  return json;
+}
+
+void report_json_end(Json *json) {
+  json_end(json, '}');
+  fputc('\n', json->out);
+  if (json->out == stderr) return;
+  if (fclose(json->out) == 0 && fwrite(state.json_text, 1, state.json_size, stderr) != state.json_size)
+    clearerr(stderr);
+  free(state.json_text);
+  state.json_text = NULL;
+  fflush(stderr);
+}
+
+/* kind: null for errors (whose lines carry no word, since they are the last thing said), else "warning", ... */
+static void say(const char *kind, int status, const vlError *where, const char *fallback_file, const char *message) {
+  const char *file = where && where->file[0] ? where->file : fallback_file;
+  uint32_t line = where && where->file[0] ? where->line : 0, column = line ? where->column : 0;
+  if (state.json) {
+    Json json = report_json_begin(kind ? kind : "error");
+    if (!kind) json_integer(&json, "status", status);
+    if (file) json_text(&json, "file", file);
+    if (line) json_integer(&json, "line", line);
+    if (column) json_integer(&json, "column", column);
+    json_text(&json, "message", message);
+    report_json_end(&json);
+    return;
+  }
+  char place[700] = "", text[4096];
+  if (file && column)
+    snprintf(place, sizeof place, "%s:%u:%u: ", file, line, column);
+  else if (file && line)
+    snprintf(place, sizeof place, "%s:%u: ", file, line);
+  else if (file)
+    snprintf(place, sizeof place, "%s: ", file);
+  snprintf(text, sizeof text, "velo: %s%s%s%s", kind ? kind : "", kind ? ": " : "", place, message);
+  put_line(text);
+}
+
+#define FORMATTED(text, format)                 \
+  char text[2048];                              \
+  do {                                          \
+    va_list args;                               \
+    va_start(args, format);                     \
+    vsnprintf(text, sizeof text, format, args); \
+    va_end(args);                               \
+  } while (0)
+
+int report_usage(const char *format, ...) {
+  FORMATTED(text, format);
+  say(NULL, STATUS_USAGE, NULL, NULL, text);
+  return STATUS_USAGE;
+}
+
+int report_failure(int status, const char *format, ...) {
+  FORMATTED(text, format);
+  say(NULL, status, NULL, NULL, text);
+  return status;
+}
+
+static int status_of(vlResult result) {
+  switch (result) {
+    case VL_OK:
+    case VL_CANCELLED: return STATUS_OK;
+    case VL_ERROR_ARGUMENT: /* what the library refuses came out of a file: the command line was checked before */
+    case VL_ERROR_SCENE:
+    case VL_ERROR_UNSUPPORTED: return STATUS_SCENE;
+    case VL_ERROR_MISSING: return STATUS_MISSING;
+    case VL_ERROR_IO: return STATUS_IO;
+    case VL_ERROR_MEMORY: return STATUS_OTHER;
+  }
+  return STATUS_OTHER;
+}
+
+int report_error(const vlError *error, vlResult result, const char *file) {
+  int status = status_of(result);
+  const char *message = error && error->message[0] ? error->message : vl_result_name(result);
+  /* Messages about files that cannot be opened name them already. */
+  if (file && strstr(message, file)) file = NULL;
+  say(NULL, status, error, file, message);
+  return status;
+}
+
+void report_warning(const char *format, ...) {
+  FORMATTED(text, format);
+  say("warning", 0, NULL, NULL, text);
+}
+
+void report_note(const char *format, ...) {
+  FORMATTED(text, format);
+  if (state.verbosity == REPORT_QUIET || state.json) return;
+  char line[2100];
+  snprintf(line, sizeof line, "velo: %s", text);
+  put_line(line);
+}
+
+void report_log(void *user, vlLogLevel level, const vlError *where, const char *message) {
+  (void)user;
+  if (level == VL_LOG_INFO && state.verbosity == REPORT_QUIET) return;
+  if (level >= VL_LOG_DEBUG && state.verbosity != REPORT_VERBOSE) return;
+  if (level > VL_LOG_ERROR && state.verbosity != REPORT_VERBOSE && state.logged++ >= MOST_LOGGED) {
+    if (state.logged == MOST_LOGGED + 1)
+      report_warning("%d warnings and notes are enough: more are not shown", MOST_LOGGED);
+    return;
+  }
+  static const char *const kinds[] = {"error", "warning", "note", "debug"};
+  say(kinds[level <= VL_LOG_DEBUG ? level : VL_LOG_DEBUG], 0, where, NULL, message);
+}

@@ -1,0 +1,295 @@
+/* image/check.c: `velo image check`: do the ground truth channels of a file agree with each other and with the camera
+ * in its header? Everything is computed again in double from what the file holds. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "image/check.h"
+#include "image/header.h"
+#include "image/image.h"
+
+enum { CHECK_THRESHOLD, CHECK_JSON, CHECK_FLOW, CHECK_FLOW_BEFORE };
+
+void check_note(Check *c, int rule, double error) {
+  Rule *r = &c->rules[rule];
+  if (r->checked && error <= r->worst) return;
+  r->checked = true;
+  r->worst = error == error ? error : (double)INFINITY; /* NaN never agrees */
+  r->x = c->x, r->y = c->y;
+}
+
+double check_length3(const double v[3]) {
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+void check_load3(const Check *c, int channel, double v[3]) {
+  for (int k = 0; k < 3; k++) v[k] = c->pixel[channel + k];
+}
+
+bool check_is_hit(const Check *c) {
+  if (c->object >= 0) return c->pixel[c->object] != 0;
+  if (c->distance >= 0) return c->pixel[c->distance] != INFINITY;
+  if (c->z >= 0) return c->pixel[c->z] != INFINITY;
+  if (c->material >= 0) return c->pixel[c->material] != 0;
+  if (c->primitive >= 0) return c->pixel[c->primitive] != 0;
+  double v[3];
+  int vector = c->ng >= 0 ? c->ng : c->n;
+  if (vector < 0) return true;
+  check_load3(c, vector, v);
+  return check_length3(v) != 0;
+}
+
+/* ---- what there is ------------------------------------------------------------------------------------------------
+ */
+
+/* Parts of a channel, "N." and "XYZ", that stand together in the file's order; -1 unless all are there. */
+static int find_parts(const vlImage *image, const char *name, const char *parts) {
+  char part[40];
+  int first = -1;
+  for (int k = 0; parts[k]; k++) {
+    snprintf(part, sizeof part, "%s%c", name, parts[k]);
+    int at = vl_image_find_channel(image, part);
+    if (at < 0 || (k && at != first + k)) return -1;
+    if (k == 0) first = at;
+  }
+  return first;
+}
+
+static void find_channels(Check *c) {
+  const vlImage *image = c->image;
+  c->z = vl_image_find_channel(image, "Z");
+  c->distance = vl_image_find_channel(image, "distance.Y");
+  c->object = vl_image_find_channel(image, "id.object");
+  c->material = vl_image_find_channel(image, "id.material");
+  c->primitive = vl_image_find_channel(image, "id.primitive");
+  c->instance = vl_image_find_channel(image, "id.instance");
+  c->samples = vl_image_find_channel(image, "samples");
+  c->alpha = vl_image_find_channel(image, "A");
+  c->p = find_parts(image, "P.", "XYZ");
+  c->n = find_parts(image, "N.", "XYZ");
+  c->ng = find_parts(image, "Ng.", "XYZ");
+  c->ray = find_parts(image, "ray.", "XYZ");
+  c->uv = find_parts(image, "uv.", "UV");
+  c->film = find_parts(image, "film.", "XY");
+  c->flow[0] = find_parts(image, "forward.", "UV");
+  c->flow[1] = find_parts(image, "backward.", "UV");
+  c->hidden[0] = vl_image_find_channel(image, "forward.hidden");
+  c->hidden[1] = vl_image_find_channel(image, "backward.hidden");
+  c->albedo = find_parts(image, "albedo.", "RGB"); /* as the reader sorts colours */
+  c->error = find_parts(image, "error.", "RGB");
+}
+
+static bool has_any(const Check *c) {
+  const int all[] = {c->z,         c->distance, c->p,    c->n,     c->ng,     c->ray,     c->object, c->material,
+                     c->primitive, c->uv,       c->film, c->error, c->albedo, c->flow[0], c->flow[1]};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+    if (all[i] >= 0) return true;
+  return c->mattes[0].ranks || c->mattes[1].ranks || c->mattes[2].ranks;
+}
+
+/* What the header says of how the picture was taken. */
+static void read_header(Check *c) {
+  vlAttribute a;
+  bool centre = vl_image_find_attribute(c->image, "velo.channels", &a) != VL_OK || strcmp(a.string, "centre") == 0;
+  if (!centre && vl_image_find_attribute(c->image, "velo.filterRadius", &a) == VL_OK)
+    for (int k = 0; k < 2; k++) c->reach[k] = a.numbers[k] * (1 + 1e-6);
+  if (vl_image_find_attribute(c->image, "samplesPerPixel", &a) == VL_OK) c->spp = a.numbers[0];
+  static const char *const positive[] = {"box", "triangle", "gaussian", "blackmanharris"};
+  bool pinhole = vl_image_find_attribute(c->image, "velo.lensRadius", &a) == VL_OK && a.numbers[0] == 0;
+  if (vl_image_find_attribute(c->image, "velo.filter", &a) != VL_OK || !pinhole || c->alpha < 0 ||
+      vl_image_stored_type(c->image, (uint32_t)c->alpha) != VL_PIXEL_F32)
+    return;
+  for (size_t i = 0; i < sizeof positive / sizeof *positive; i++)
+    c->matte_is_alpha = c->matte_is_alpha || strcmp(a.string, positive[i]) == 0;
+}
+
+static void check_type(Check *c, int channel, int parts, vlPixelType type) {
+  for (int k = 0; k < parts && channel >= 0; k++)
+    check_note(c, RULE_TYPES, vl_image_stored_type(c->image, (uint32_t)(channel + k)) == type ? 0 : (double)INFINITY);
+}
+
+/* Depths and positions as 32-bit floats, ids as integers. */
+static void check_types(Check *c) {
+  const int ones[] = {c->z, c->distance}, twos[] = {c->uv, c->film, c->flow[0], c->flow[1]},
+            threes[] = {c->p, c->n, c->ng, c->ray, c->albedo, c->error},
+            ids[] = {c->object, c->material, c->primitive, c->instance, c->samples, c->hidden[0], c->hidden[1]};
+  c->x = c->x0, c->y = c->y0;
+  for (size_t i = 0; i < sizeof ones / sizeof *ones; i++) check_type(c, ones[i], 1, VL_PIXEL_F32);
+  for (size_t i = 0; i < sizeof twos / sizeof *twos; i++) check_type(c, twos[i], 2, VL_PIXEL_F32);
+  for (size_t i = 0; i < sizeof threes / sizeof *threes; i++) check_type(c, threes[i], 3, VL_PIXEL_F32);
+  for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) check_type(c, ids[i], 1, VL_PIXEL_U32);
+  for (int k = 0; k < 3; k++)
+    for (uint32_t r = 0; r < c->mattes[k].ranks; r++) {
+      check_type(c, c->mattes[k].id[r], 1, VL_PIXEL_F32);
+      check_type(c, c->mattes[k].coverage[r], 1, VL_PIXEL_F32);
+    }
+}
+
+static void check_all(Check *c) {
+  check_types(c);
+  uint32_t width = vl_image_width(c->image), height = vl_image_height(c->image);
+  c->pixel = vl_image_const_pixels(c->image);
+  for (uint32_t y = 0; y < height; y++)
+    for (uint32_t x = 0; x < width; x++, c->pixel += vl_image_channels(c->image)) {
+      c->x = c->x0 + x, c->y = c->y0 + y;
+      check_pixel(c);
+    }
+  check_finish_flow(c);
+}
+
+/* ---- the command ------------------------------------------------------------------------------------------------- */
+
+static void print_result(const Check *c, const Arguments *arguments, double threshold) {
+  if (!arguments->values[CHECK_JSON].given) {
+    printf("pixels     %llu with a surface, %llu without\n", (unsigned long long)c->hits,
+           (unsigned long long)c->misses);
+    for (int i = 0; i < RULES; i++) {
+      const Rule *r = &c->rules[i];
+      if (!r->checked) continue;
+      printf("%-10s %-8.3g %s", r->name, r->worst, r->text);
+      if (r->worst > fmax(threshold, r->limit)) printf(": worst at pixel %u, %u", r->x, r->y);
+      putchar('\n');
+    }
+    if (c->rules[RULE_PIXEL].checked)
+      printf("largest distance of project(P) from its pixel's centre: %.3g pixels\n", c->pixel_error);
+    return;
+  }
+  Json json = {.out = stdout};
+  json_begin(&json, NULL, '{');
+  json_text(&json, "file", arguments->operands[0]);
+  json_integer(&json, "hits", (int64_t)c->hits);
+  json_integer(&json, "misses", (int64_t)c->misses);
+  json_begin(&json, "errors", '{');
+  for (int i = 0; i < RULES; i++)
+    if (c->rules[i].checked) json_number(&json, c->rules[i].name, c->rules[i].worst);
+  json_end(&json, '}');
+  if (c->rules[RULE_PIXEL].checked) json_number(&json, "pixels", c->pixel_error);
+  json_end(&json, '}');
+  putchar('\n');
+}
+
+static int judge(const Check *c, const char *path, double threshold) {
+  int status = STATUS_OK;
+  for (int i = 0; i < RULES; i++) {
+    const Rule *r = &c->rules[i];
+    double limit = fmax(threshold, r->limit);
+    if (!r->checked || r->worst <= limit) continue;
+    status = report_failure(STATUS_OTHER, "%s: %s: %s: %g, the threshold is %g; worst at pixel %u, %u", path, r->name,
+                            r->text, r->worst, limit, r->x, r->y);
+  }
+  return status;
+}
+
+/* The picture that flow leads to: its camera, and its distances if it has them. */
+static int load_other(Check *c, vlContext *context, const Arguments *arguments, vlImage **image) {
+  static const int options[2] = {CHECK_FLOW, CHECK_FLOW_BEFORE};
+  const OptionValue *v = arguments->values;
+  if (v[CHECK_FLOW].given && v[CHECK_FLOW_BEFORE].given)
+    return report_usage("--flow and --flow-before exclude each other");
+  for (int i = 0; i < 2; i++) {
+    const char *path = v[options[i]].text;
+    if (!v[options[i]].given) continue;
+    if (c->flow[i] < 0 || c->hidden[i] < 0)
+      return report_failure(STATUS_SCENE, "%s: has no channels %s.U, .V, .hidden", c->path, i ? "backward" : "forward");
+    c->which = i;
+    int status = image_load(context, path, image);
+    if (status >= 0) return status;
+    if (vl_image_type(*image) != VL_PIXEL_F32)
+      return report_failure(STATUS_SCENE, "%s: its channels are not 32-bit floats", path);
+    status = header_camera(context, *image, path, &c->other_camera, &c->other_optics, &c->other_x0, &c->other_y0);
+    if (status >= 0) return status;
+    c->other_distance = vl_image_find_channel(*image, "distance.Y");
+    c->other = *image;
+  }
+  return -1;
+}
+
+/* Everything that is needed before pixels are looked at. */
+static int prepare(Check *c, vlContext *context, const Arguments *arguments, vlImage **image, vlImage **other) {
+  int status = image_load(context, c->path, image);
+  if (status >= 0) return status;
+  c->image = *image;
+  find_channels(c);
+  status = check_find_mattes(c);
+  if (status >= 0) return status;
+  if (!has_any(c))
+    return report_failure(STATUS_SCENE, "%s: has no channel that could be checked (velo render --channels)", c->path);
+  if (vl_image_type(*image) != VL_PIXEL_F32)
+    return report_failure(STATUS_SCENE, "%s: its channels are not 32-bit floats", c->path);
+  status = header_camera(context, *image, c->path, &c->camera, &c->optics, &c->x0, &c->y0);
+  if (status >= 0) return status;
+  read_header(c);
+  c->material_of = calloc(CHECK_OBJECTS, sizeof *c->material_of);
+  return load_other(c, context, arguments, other);
+}
+
+static int run_check(const Command *command, const Arguments *arguments) {
+  (void)command;
+  const OptionValue *limit = &arguments->values[CHECK_THRESHOLD];
+  double threshold = limit->given ? limit->number : 1e-6;
+  static const Rule rules[RULES] = {
+      {"point", "P = origin + distance * ray", 0, false, 0, 0, 0},
+      {"depth", "Z = depth of P in the camera", 0, false, 0, 0, 0},
+      {"pixel", "project(P) = the pixel's point of the film", 0, false, 0, 0, 0},
+      {"ray", "ray = direction of the camera's ray", 0, false, 0, 0, 0},
+      {"N", "|N| = 1", 0, false, 0, 0, 0},
+      {"Ng", "|Ng| = 1", 0, false, 0, 0, 0},
+      {"nothing", "pixels without a surface hold nothing", 0, false, 0, 0, 0},
+      {"ids", "ids are whole numbers from 1, a shape has one material", 0, false, 0, 0, 0},
+      {"types", "numbers are 32-bit floats, ids 32-bit integers", 0, false, 0, 0, 0},
+      {"finite", "uv, albedo and errors are numbers", 0, false, 0, 0, 0},
+      {"film", "the point of the film is the centre, or inside the pixel filter", 0, false, 0, 0, 0},
+      {"samples", "samples are the header's", 0, false, 0, 0, 0},
+      {"matte", "Cryptomatte's ids are the manifest's, the larger coverage first", 0, false, 0, 0, 0},
+      {"coverage", "coverages add up to alpha", 0, false, 0, 0, 0},
+      {"flow", "flow leads to project(P) in the other camera", 0, false, 0, 0, 0},
+      {"hidden", "flow leads outside where it says so", 0, false, 0, 0, 0},
+      {"seen", "share of pixels whose flow leads to other depths than it says", 0.01, false, 0, 0, 0}};
+  Check check = {.path = arguments->operands[0]}, *c = &check;
+  memcpy(c->rules, rules, sizeof rules);
+  vlContext *context = NULL;
+  vlImage *image = NULL, *other = NULL;
+  int status = image_context(&context);
+  if (status < 0) status = prepare(c, context, arguments, &image, &other);
+  if (status < 0) {
+    check_all(c);
+    print_result(c, arguments, threshold);
+    status = image_finish_output(judge(c, c->path, threshold));
+  }
+  free(c->material_of);
+  check_free_mattes(c);
+  vl_image_destroy(image);
+  vl_image_destroy(other);
+  vl_optics_destroy(c->optics);
+  vl_optics_destroy(c->other_optics);
+  vl_context_destroy(context);
+  return status;
+}
+
+static const Option check_options[] = {
+    {CHECK_THRESHOLD, 0, "threshold", OPTION_NUMBER, "ERROR", "largest relative error that is accepted; default 1e-6",
+     0, 1, NULL},
+    {CHECK_FLOW, 0, "flow", OPTION_TEXT, "FILE", "the next picture: check that forward.U, .V lead to its pixels", 0, 0,
+     NULL},
+    {CHECK_FLOW_BEFORE, 0, "flow-before", OPTION_TEXT, "FILE", "the picture before: the same of backward.U, .V", 0, 0,
+     NULL},
+    {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command image_check_command = {
+    .name = "image check",
+    .usage = "FILE.exr [options]",
+    .summary = "do ground truth channels agree with the camera in the header?",
+    .text =
+        "Computes depths, positions, rays and pixels of FILE's ground truth channels from each other and from\n"
+        "the camera in its header, in double precision, and prints the largest relative errors. Positions and\n"
+        "depths are measured against the largest of |P|, |origin| and distance, pixels against the larger side\n"
+        "of the picture. Cryptomatte's ids are looked up in its manifest, its coverages compared with alpha.\n"
+        "Exit code 1 when an error is above the threshold.",
+    .options = check_options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run_check,
+};

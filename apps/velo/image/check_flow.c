@@ -1,0 +1,88 @@
+/* image/check_flow.c: does flow lead to where the other picture has the same point? */
+#include <math.h>
+#include <string.h>
+
+#include "image/check.h"
+
+/* The world's point at the end of the pixel's ray, or for the sky a point of it that is far away. */
+static bool find_point(const Check *c, bool hit, double p[3]) {
+  double origin[3], direction[3];
+  if (!vl_camera_unproject(&c->camera, c->point[0], c->point[1], origin, direction)) return false;
+  if (!hit) {
+    const double *m = c->other_camera.world_from_camera, eye[3] = {m[3], m[7], m[11]};
+    for (int k = 0; k < 3; k++) p[k] = eye[k] + 1e6 * (1 + check_length3(eye)) * direction[k];
+    return c->other_camera.projection != VL_PROJECTION_ORTHOGRAPHIC;
+  }
+  if (c->distance >= 0) {
+    for (int k = 0; k < 3; k++) p[k] = origin[k] + (double)c->pixel[c->distance] * direction[k];
+    return true;
+  }
+  if (c->p < 0) return false;
+  check_load3(c, c->p, p);
+  return true;
+}
+
+/* Distances that the other picture has around a place; false: the place is not in the file. */
+static bool around(const Check *c, const double at[2], double *nearest, double *farthest) {
+  uint32_t width = vl_image_width(c->other), height = vl_image_height(c->other), step = vl_image_channels(c->other);
+  const float *pixels = vl_image_const_pixels(c->other);
+  double x = floor(at[0]) - c->other_x0, y = floor(at[1]) - c->other_y0;
+  if (!(x >= 0 && y >= 0 && x < width && y < height)) return false;
+  *nearest = INFINITY, *farthest = 0;
+  for (int j = -1; j <= 1; j++)
+    for (int i = -1; i <= 1; i++) {
+      double px = x + i, py = y + j;
+      if (!(px >= 0 && py >= 0 && px < width && py < height)) continue;
+      double t = pixels[((size_t)py * width + (size_t)px) * step + (size_t)c->other_distance];
+      *nearest = fmin(*nearest, t), *farthest = fmax(*farthest, t);
+    }
+  return true;
+}
+
+/* What is seen there has nothing before it; what is hidden has. At edges the eight neighbours of the pixel decide too,
+ * and grazing surfaces leave some doubt: so a share of the pixels may disagree. */
+static void compare_distances(Check *c, int hidden, const double at[2], bool hit, const double p[3]) {
+  double nearest, farthest, origin[3], direction[3], away[3];
+  if (c->other_distance < 0 || hidden > VL_HIDDEN_BEHIND || !around(c, at, &nearest, &farthest)) return;
+  if (!vl_camera_unproject(&c->other_camera, at[0], at[1], origin, direction)) return;
+  for (int k = 0; k < 3; k++) away[k] = p[k] - origin[k];
+  double distance = hit ? check_length3(away) : (double)INFINITY;
+  c->flow_seen++;
+  c->flow_wrong += hidden == VL_HIDDEN_BEHIND ? nearest >= distance : farthest < distance * 0.99;
+}
+
+void check_flow(Check *c) {
+  int hidden = (int)c->pixel[c->hidden[c->which]];
+  const float *flow = c->pixel + c->flow[c->which];
+  bool hit = check_is_hit(c);
+  if (hidden < VL_HIDDEN_NOT || hidden > VL_HIDDEN_NOWHERE || (float)hidden != c->pixel[c->hidden[c->which]]) {
+    check_note(c, RULE_HIDDEN, INFINITY);
+    return;
+  }
+  double p[3], at[2], z;
+  if (!find_point(c, hit, p)) return;
+  if (!vl_camera_project(&c->other_camera, p, at, &z)) {
+    check_note(c, RULE_HIDDEN, hidden == VL_HIDDEN_NOWHERE && flow[0] == 0 && flow[1] == 0 ? 0 : (double)INFINITY);
+    return;
+  }
+  /* What a float of P may be wrong, seen from the other camera: the nearer, the more. */
+  const double *m = c->other_camera.world_from_camera, eye[3] = {m[3], m[7], m[11]};
+  double away[3] = {p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]};
+  double size = fmax(fmax(check_length3(p), check_length3(eye)), check_length3(away)), near = check_length3(away);
+  double larger = fmax(fmax(c->other_camera.width, c->other_camera.height), fmax(fabs(at[0]), fabs(at[1])));
+  double error = hypot(at[0] - c->point[0] - (double)flow[0], at[1] - c->point[1] - (double)flow[1]);
+  if (hidden != VL_HIDDEN_NOWHERE) check_note(c, RULE_FLOW, error / larger * fmin(1, near / size));
+  const double margin = 1e-3;
+  bool inside = at[0] > margin && at[1] > margin && at[0] < c->other_camera.width - margin &&
+                at[1] < c->other_camera.height - margin;
+  bool outside = at[0] < -margin || at[1] < -margin || at[0] > c->other_camera.width + margin ||
+                 at[1] > c->other_camera.height + margin;
+  bool cut = c->other_camera.near_plane > 0 || c->other_camera.far_plane < (double)INFINITY;
+  bool wrong = (inside && !cut && hidden >= VL_HIDDEN_OUTSIDE) || (outside && hidden < VL_HIDDEN_OUTSIDE);
+  check_note(c, RULE_HIDDEN, wrong ? (double)INFINITY : 0);
+  compare_distances(c, hidden, at, hit, p);
+}
+
+void check_finish_flow(Check *c) {
+  if (c->flow_seen) check_note(c, RULE_SEEN, (double)c->flow_wrong / (double)c->flow_seen);
+}

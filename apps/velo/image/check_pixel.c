@@ -1,0 +1,121 @@
+/* image/check_pixel.c: what one pixel's ground truth says about itself and about the camera. */
+#include <math.h>
+#include <string.h>
+
+#include "image/check.h"
+
+static void check_miss(Check *c, bool in_domain, const double direction[3]) {
+  double wrong = 0, v[3];
+  const int zeros[] = {c->object, c->material, c->primitive, c->instance}, vectors[] = {c->p, c->n, c->ng};
+  for (size_t i = 0; i < sizeof zeros / sizeof *zeros; i++)
+    if (zeros[i] >= 0 && c->pixel[zeros[i]] != 0) wrong = INFINITY;
+  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+    if (vectors[i] < 0) continue;
+    check_load3(c, vectors[i], v);
+    if (check_length3(v) != 0) wrong = INFINITY;
+  }
+  if (c->z >= 0 && c->pixel[c->z] != INFINITY) wrong = INFINITY;
+  if (c->distance >= 0 && c->pixel[c->distance] != INFINITY) wrong = INFINITY;
+  check_note(c, RULE_NOTHING, wrong);
+  if (c->ray < 0) return;
+  check_load3(c, c->ray, v);
+  for (int k = 0; k < 3 && in_domain; k++) v[k] -= direction[k];
+  check_note(c, RULE_RAY, check_length3(v));
+}
+
+/* Errors are measured against the largest number that takes part: that is what floats can promise. */
+static void check_point(Check *c, const double origin[3], const double direction[3]) {
+  double p[3], ray[3], t = c->distance >= 0 ? c->pixel[c->distance] : 0;
+  if (c->ray >= 0)
+    check_load3(c, c->ray, ray);
+  else
+    memcpy(ray, direction, sizeof ray);
+  if (c->p >= 0)
+    check_load3(c, c->p, p);
+  else
+    for (int k = 0; k < 3; k++) p[k] = origin[k] + t * ray[k];
+  if (c->p < 0 && c->distance < 0) return;
+  double away[3] = {p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]};
+  double size = fmax(fmax(check_length3(p), check_length3(origin)), check_length3(away));
+  if (c->p >= 0 && c->distance >= 0) {
+    double off[3];
+    for (int k = 0; k < 3; k++) off[k] = p[k] - (origin[k] + t * ray[k]);
+    check_note(c, RULE_POINT, check_length3(off) / size);
+  }
+  double pixel[2], z;
+  bool seen = vl_camera_project(&c->camera, p, pixel, &z);
+  if (c->z >= 0) {
+    const double *m = c->camera.camera_from_world;
+    double scale = check_length3((double[3]){m[8], m[9], m[10]});
+    z = m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11];
+    check_note(c, RULE_DEPTH, fabs(c->pixel[c->z] - z) / (scale * size));
+  }
+  double error = seen ? hypot(pixel[0] - c->point[0], pixel[1] - c->point[1]) : INFINITY;
+  if (error > c->pixel_error) c->pixel_error = error;
+  double larger = c->camera.width > c->camera.height ? c->camera.width : c->camera.height;
+  check_note(c, RULE_PIXEL, error / larger * fmin(1, check_length3(away) / size));
+}
+
+/* Numbers that can be checked for no more than being numbers; and the point of the film. */
+static void check_plain(Check *c) {
+  const int places[] = {c->uv, c->albedo}, counts[] = {2, 3};
+  for (int i = 0; i < 2; i++)
+    for (int k = 0; k < counts[i] && places[i] >= 0; k++)
+      check_note(c, RULE_FINITE, isfinite(c->pixel[places[i] + k]) ? 0 : (double)INFINITY);
+  for (int k = 0; k < 3 && c->error >= 0; k++) /* infinity: too few samples */
+    check_note(c, RULE_FINITE, c->pixel[c->error + k] >= 0 ? 0 : (double)INFINITY);
+  if (c->samples >= 0 && c->spp > 0) check_note(c, RULE_SAMPLES, fabs((double)c->pixel[c->samples] - c->spp) / c->spp);
+  if (c->film < 0) return;
+  for (int k = 0; k < 2; k++) {
+    double over = fabs((double)c->pixel[c->film + k] - 0.5) - c->reach[k];
+    check_note(c, RULE_FILM, over > 0 ? over : over <= 0 ? 0 : (double)INFINITY);
+  }
+}
+
+/* A shape has one material. */
+static void check_material_of(Check *c) {
+  if (c->object < 0 || c->material < 0 || !c->material_of) return;
+  float object = c->pixel[c->object], material = c->pixel[c->material];
+  if (!(object >= 1 && object < CHECK_OBJECTS)) return;
+  uint32_t *known = &c->material_of[(uint32_t)object];
+  if (!*known) *known = (uint32_t)material;
+  check_note(c, RULE_IDS, (double)*known == (double)material ? 0 : (double)INFINITY);
+}
+
+void check_pixel(Check *c) {
+  c->point[0] = c->x + (c->film >= 0 ? (double)c->pixel[c->film] : 0.5);
+  c->point[1] = c->y + (c->film >= 0 ? (double)c->pixel[c->film + 1] : 0.5);
+  check_plain(c);
+  check_mattes(c);
+  if (c->other) check_flow(c);
+  double origin[3] = {0, 0, 0}, direction[3] = {0, 0, 0}, v[3];
+  bool in_domain = vl_camera_unproject(&c->camera, c->point[0], c->point[1], origin, direction);
+  if (!check_is_hit(c)) {
+    c->misses++;
+    check_miss(c, in_domain, direction);
+    return;
+  }
+  c->hits++;
+  if (c->ray >= 0) {
+    check_load3(c, c->ray, v);
+    for (int k = 0; k < 3; k++) v[k] -= direction[k];
+    check_note(c, RULE_RAY, in_domain ? check_length3(v) : INFINITY);
+  }
+  check_material_of(c);
+  check_point(c, origin, direction);
+  if (c->n >= 0) {
+    check_load3(c, c->n, v);
+    check_note(c, RULE_UNIT_N, fabs(check_length3(v) - 1));
+  }
+  if (c->ng >= 0) {
+    check_load3(c, c->ng, v);
+    check_note(c, RULE_UNIT_NG, fabs(check_length3(v) - 1));
+  }
+  const int ids[] = {c->object, c->material, c->primitive};
+  for (size_t i = 0; i < sizeof ids / sizeof *ids; i++)
+    if (ids[i] >= 0)
+      check_note(c, RULE_IDS, c->pixel[ids[i]] >= 1 && floorf(c->pixel[ids[i]]) == c->pixel[ids[i]] ? 0 : INFINITY);
+  if (c->instance >= 0)
+    check_note(c, RULE_IDS,
+               c->pixel[c->instance] >= 0 && floorf(c->pixel[c->instance]) == c->pixel[c->instance] ? 0 : INFINITY);
+}

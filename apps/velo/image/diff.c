@@ -1,0 +1,167 @@
+/* image/diff.c: `velo image diff`: how far a picture is from a reference. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "image/image.h"
+#include "render/outputs.h"
+
+enum { DIFF_OUTPUT, DIFF_THRESHOLD, DIFF_JSON };
+
+/* What is measured; the name is also that of its threshold. */
+typedef enum MetricKind { METRIC_MOST, METRIC_LEAST, METRIC_FROM_ONE } MetricKind;
+typedef struct Metric {
+  const char *name;
+  MetricKind kind; /* a threshold is the most, the least, or the most away from 1 that is accepted */
+  double value;
+} Metric;
+
+enum { METRICS = 8 };
+
+static void list_metrics(const vlImageDiff *d, Metric metrics[METRICS]) {
+  const Metric list[METRICS] = {
+      {"mse", METRIC_MOST, d->mse},
+      {"relmse", METRIC_MOST, d->rel_mse},
+      {"psnr", METRIC_LEAST, d->psnr},
+      {"flip", METRIC_MOST, d->flip},
+      {"meanratio", METRIC_FROM_ONE, d->mean_ratio},
+      {"maxabs", METRIC_MOST, d->max_abs},
+      {"differing", METRIC_MOST, (double)d->differing},
+      {"notfinite", METRIC_MOST, (double)d->not_finite},
+  };
+  memcpy(metrics, list, sizeof list);
+}
+
+/* "flip=0.05" → index and limit. -1 or the exit code. */
+static int read_threshold(const char *text, const Metric metrics[METRICS], int *index, double *limit) {
+  const char *equals = strchr(text, '=');
+  char name[40], *end = NULL;
+  const char *names[METRICS];
+  for (int i = 0; i < METRICS; i++) names[i] = metrics[i].name;
+  if (!equals || equals - text >= (long)sizeof name)
+    return report_usage("--threshold \"%s\": must be NAME=VALUE, such as flip=0.05", text);
+  snprintf(name, sizeof name, "%.*s", (int)(equals - text), text);
+  *index = -1;
+  for (int i = 0; i < METRICS; i++)
+    if (strcmp(names[i], name) == 0) *index = i;
+  if (*index < 0) {
+    const char *near = did_you_mean("", name, names, METRICS);
+    return report_usage(
+        "--threshold: unknown measure \"%s\"%s", name,
+        *near ? near : "; accepted are mse, relmse, psnr, flip, meanratio, maxabs, differing, notfinite");
+  }
+  *limit = strtod(equals + 1, &end);
+  if (end == equals + 1 || *end || !isfinite(*limit))
+    return report_usage("--threshold \"%s\": the value must be a number", text);
+  return -1;
+}
+
+/* A measure that is not a number is never good enough. */
+static bool accepted(const Metric *metric, double limit) {
+  switch (metric->kind) {
+    case METRIC_MOST: return metric->value <= limit;
+    case METRIC_LEAST: return metric->value >= limit;
+    case METRIC_FROM_ONE: return fabs(metric->value - 1) <= limit;
+  }
+  return false;
+}
+
+static int check_thresholds(const Arguments *arguments, const Metric metrics[METRICS]) {
+  int result = STATUS_OK;
+  for (int i = 0; i < arguments->text_count; i++) {
+    int index;
+    double limit;
+    int status = read_threshold(arguments->texts[i], metrics, &index, &limit);
+    if (status >= 0) return status;
+    if (accepted(&metrics[index], limit)) continue;
+    result =
+        report_failure(STATUS_OTHER, "%s is %g, the threshold is %g", metrics[index].name, metrics[index].value, limit);
+  }
+  return result;
+}
+
+static void print_metrics(const Arguments *arguments, const Metric metrics[METRICS]) {
+  if (!arguments->values[DIFF_JSON].given) {
+    for (int i = 0; i < METRICS; i++) printf("%-10s %.9g\n", metrics[i].name, metrics[i].value);
+    return;
+  }
+  Json json = {.out = stdout};
+  json_begin(&json, NULL, '{');
+  json_text(&json, "reference", arguments->operands[0]);
+  json_text(&json, "picture", arguments->operands[1]);
+  for (int i = 0; i < METRICS; i++) json_number(&json, metrics[i].name, metrics[i].value);
+  json_end(&json, '}');
+  putchar('\n');
+}
+
+static int write_heat(const vlImage *heat, const char *path) {
+  vlError error = {0};
+  vlResult result = vl_image_write(heat, path, NULL, &error);
+  return result == VL_OK ? STATUS_OK : report_error(&error, result, path);
+}
+
+static int run_diff(const Command *command, const Arguments *arguments) {
+  (void)command;
+  Outputs heat_file = {.paths = {arguments->values[DIFF_OUTPUT].text}, .count = arguments->values[DIFF_OUTPUT].given};
+  vlImageDiff diff = {0};
+  Metric metrics[METRICS];
+  list_metrics(&diff, metrics);
+  /* Wrong thresholds and outputs are found before the work. */
+  int status = outputs_check_names(&heat_file);
+  for (int i = 0, index; i < arguments->text_count && status < 0; i++) {
+    double limit;
+    status = read_threshold(arguments->texts[i], metrics, &index, &limit);
+  }
+  if (status < 0) status = outputs_check_folders(&heat_file);
+  if (status >= 0) return status;
+
+  vlContext *context = NULL;
+  vlImage *a = NULL, *b = NULL, *heat = NULL;
+  status = image_context(&context);
+  if (status < 0) status = image_load(context, arguments->operands[0], &a);
+  if (status < 0) status = image_load(context, arguments->operands[1], &b);
+  if (status < 0) {
+    vlError error = {0};
+    vlResult result = vl_image_compare(a, b, &diff, heat_file.count ? &heat : NULL, &error);
+    if (result != VL_OK) status = report_error(&error, result, arguments->operands[1]);
+  }
+  if (status < 0) {
+    list_metrics(&diff, metrics);
+    print_metrics(arguments, metrics);
+    status = heat ? write_heat(heat, heat_file.paths[0]) : STATUS_OK;
+    if (status == STATUS_OK) status = image_finish_output(check_thresholds(arguments, metrics));
+  }
+  vl_image_destroy(heat);
+  vl_image_destroy(b);
+  vl_image_destroy(a);
+  vl_context_destroy(context);
+  return status;
+}
+
+static const Option diff_options[] = {
+    {DIFF_OUTPUT, 'o', "output", OPTION_TEXT, "FILE", "write the FLIP differences in false colour", 0, 0, NULL},
+    {DIFF_THRESHOLD, 0, "threshold", OPTION_TEXTS, "NAME=VALUE",
+     "exit with 1 when the measure is over VALUE (psnr: under it;\nmeanratio: farther than VALUE from 1); may be "
+     "repeated",
+     0, 0, NULL},
+    {DIFF_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command image_diff_command = {
+    .name = "image diff",
+    .usage = "REFERENCE PICTURE [options]",
+    .summary = "how far a picture is from a reference",
+    .text =
+        "Measures of PICTURE against REFERENCE over R, G, B (or Y), linear:\n"
+        "  mse        mean squared error          relmse     the same, relative to reference^2 + 0.01\n"
+        "  psnr       dB, for a peak of 1         flip       mean FLIP, 67 pixels per degree\n"
+        "  meanratio  of mean luminances          maxabs     largest difference of a value\n"
+        "  differing  pixels that differ at all   notfinite  pixels with inf or nan, left out above",
+    .options = diff_options,
+    .min_operands = 2,
+    .max_operands = 2,
+    .run = run_diff,
+};

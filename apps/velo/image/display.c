@@ -1,0 +1,95 @@
+/* image/display.c: see display.h. Primaries and white (the chromaticities attribute) → matrix to linear Rec.709 → view.
+ */
+#include "image/display.h"
+
+#include <math.h>
+#include <string.h>
+
+/* CIE xy of red, green, blue and white; ITU-R BT.709. */
+static const double rec709[8] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
+
+static void multiply(const double a[9], const double b[9], double result[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) result[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+}
+
+static bool invert(const double m[9], double result[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
+      result[3 * i + j] = m[3 * a + c] * m[3 * b + d] - m[3 * a + d] * m[3 * b + c];
+    }
+  double determinant = m[0] * result[0] + m[1] * result[3] + m[2] * result[6];
+  for (int i = 0; i < 9; i++) result[i] /= determinant;
+  return fabs(determinant) > 1e-9 && isfinite(determinant);
+}
+
+static void white_xyz(const double xy[8], double xyz[3]) {
+  xyz[0] = xy[6] / xy[7];
+  xyz[1] = 1;
+  xyz[2] = (1 - xy[6] - xy[7]) / xy[7];
+}
+
+/* Columns are the primaries, scaled so that (1, 1, 1) is the white (SMPTE RP 177). */
+static bool xyz_from_rgb(const double xy[8], double m[9]) {
+  double inverse[9], white[3];
+  for (int i = 0; i < 3; i++) {
+    m[i] = xy[2 * i];
+    m[3 + i] = xy[2 * i + 1];
+    m[6 + i] = 1 - xy[2 * i] - xy[2 * i + 1];
+  }
+  white_xyz(xy, white);
+  if (!invert(m, inverse)) return false;
+  for (int i = 0; i < 3; i++) {
+    double scale = inverse[3 * i] * white[0] + inverse[3 * i + 1] * white[1] + inverse[3 * i + 2] * white[2];
+    for (int row = 0; row < 3; row++) m[3 * row + i] *= scale;
+  }
+  return true;
+}
+
+/* The same colour (XYZ), without adaptation to another white: a scene looks the same whatever space its film has.
+ * false: the picture is in Rec.709, or says nothing that makes sense. */
+static bool rec709_matrix(const vlImage *image, double m[9]) {
+  vlAttribute attribute;
+  if (vl_image_find_attribute(image, "chromaticities", &attribute) != VL_OK ||
+      attribute.type != VL_ATTRIBUTE_CHROMATICITIES)
+    return false;
+  const double *xy = attribute.numbers;
+  double away = 0, to_xyz[9], from_rec709[9], from_xyz[9];
+  for (int i = 0; i < 8; i++) away = fmax(away, fabs(xy[i] - rec709[i]));
+  if (!(away > 1e-3) || !(xy[7] > 0) || !xyz_from_rgb(xy, to_xyz) || !xyz_from_rgb(rec709, from_rec709)) return false;
+  if (!invert(from_rec709, from_xyz)) return false;
+  multiply(from_xyz, to_xyz, m);
+  for (int i = 0; i < 9; i++)
+    if (!isfinite(m[i])) return false;
+  return true;
+}
+
+static vlResult to_rec709(vlContext *context, const vlImage *image, const int rgb[3], const double m[9],
+                          vlImage **result) {
+  vlImageDef def = vl_default_image_def(vl_image_width(image), vl_image_height(image), 3);
+  def.type = VL_PIXEL_F32;
+  vlResult status = vl_image_create(context, &def, result);
+  if (status != VL_OK) return status;
+  float *pixel = vl_image_pixels(*result);
+  for (uint32_t y = 0; y < def.height; y++)
+    for (uint32_t x = 0; x < def.width; x++, pixel += 3) {
+      double v[3];
+      for (int c = 0; c < 3; c++) v[c] = vl_image_get(image, x, y, (uint32_t)rgb[c]);
+      for (int c = 0; c < 3; c++) pixel[c] = (float)(m[3 * c] * v[0] + m[3 * c + 1] * v[1] + m[3 * c + 2] * v[2]);
+    }
+  return VL_OK;
+}
+
+vlResult display_image(vlContext *context, const vlImage *image, vlView view, float exposure, vlImage **result) {
+  const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
+                      vl_image_find_channel(image, "B")};
+  double m[9];
+  if (rgb[0] < 0 || rgb[1] < 0 || rgb[2] < 0 || !rec709_matrix(image, m))
+    return vl_image_view(image, view, exposure, NULL, result);
+  vlImage *converted = NULL;
+  vlResult status = to_rec709(context, image, rgb, m, &converted);
+  if (status == VL_OK) status = vl_image_view(converted, view, exposure, NULL, result);
+  vl_image_destroy(converted);
+  return status;
+}

@@ -1,0 +1,168 @@
+/* image/header.c: see header.h. */
+#include "image/header.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/report.h"
+
+static bool number(const vlImage *image, const char *name, double *value) {
+  vlAttribute a;
+  if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_DOUBLE) return false;
+  *value = a.numbers[0];
+  return true;
+}
+
+/* Corner pixels, inclusive; false when the file has no such window or an impossible one. */
+static bool window(const vlImage *image, const char *name, double box[4]) {
+  vlAttribute a;
+  if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_BOX2I) return false;
+  memcpy(box, a.numbers, 4 * sizeof *box);
+  return box[2] >= box[0] && box[3] >= box[1];
+}
+
+static bool text(const vlImage *image, const char *name, const char **value) {
+  vlAttribute a;
+  if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_STRING || !a.string) return false;
+  *value = a.string;
+  return true;
+}
+
+/* Projection and lens; false for a name or a coefficient that is not understood. */
+static bool read_model(const vlImage *image, const char *projection, vlCameraDef *def) {
+  static const char *const names[] = {"none", "opencv", "radial", "thinprism"};
+  int kind = 0;
+  while (kind <= VL_PROJECTION_OPTICS && strcmp(vl_projection_name((vlProjection)kind), projection) != 0) kind++;
+  if (kind > VL_PROJECTION_OPTICS) return false;
+  def->projection = (vlProjection)kind;
+  number(image, "velo.shape0", &def->shape[0]);
+  number(image, "velo.shape1", &def->shape[1]);
+  const char *distortion, *at;
+  if (!text(image, "velo.distortion", &distortion)) return true;
+  for (int i = 0; i < 4; i++)
+    if (strcmp(names[i], distortion) == 0) def->distortion = (vlDistortion)i;
+  if (def->distortion == VL_DISTORTION_NONE || !text(image, "velo.distortionCoefficients", &at)) return false;
+  while (*at) {
+    char *end;
+    if (def->distortion_count == 14) return false;
+    def->distortion_coefficients[def->distortion_count++] = strtod(at, &end);
+    if (end == at) return false;
+    at = end;
+  }
+  return true;
+}
+
+/* The whole picture, and the window of it that the file holds, corner pixels inclusive. */
+static int windows(const vlImage *image, const char *path, double whole[4], double data[4]) {
+  const double all[4] = {0, 0, vl_image_width(image) - 1.0, vl_image_height(image) - 1.0};
+  memcpy(whole, all, sizeof all);
+  memcpy(data, all, sizeof all);
+  if (!window(image, "originalDataWindow", whole)) window(image, "displayWindow", whole);
+  window(image, "dataWindow", data);
+  if (whole[0] != 0 || whole[1] != 0 || data[0] < 0 || data[1] < 0 || data[2] > whole[2] || data[3] > whole[3])
+    return report_failure(STATUS_SCENE, "%s: its windows are not those of a picture that velo rendered", path);
+  return -1;
+}
+
+/* Projection and pose. */
+static int read_def(const vlImage *image, const char *path, const double whole[4], vlCameraDef *def) {
+  *def = vl_default_camera_def((uint32_t)whole[2] + 1, (uint32_t)whole[3] + 1);
+  vlAttribute matrix, projection;
+  bool found =
+      number(image, "velo.fx", &def->fx) && number(image, "velo.fy", &def->fy) &&
+      number(image, "velo.skew", &def->skew) && number(image, "velo.cx", &def->cx) &&
+      number(image, "velo.cy", &def->cy) && vl_image_find_attribute(image, "velo.worldFromCamera", &matrix) == VL_OK &&
+      matrix.type == VL_ATTRIBUTE_M44D && vl_image_find_attribute(image, "velo.projection", &projection) == VL_OK &&
+      projection.type == VL_ATTRIBUTE_STRING && projection.string;
+  if (!found) return report_failure(STATUS_SCENE, "%s: has no camera in its header", path);
+  if (!read_model(image, projection.string, def))
+    return report_failure(STATUS_SCENE, "%s: the camera in its header is of a kind that is not known", path);
+  def->has_matrix = true; /* OpenEXR's matrices act on rows */
+  for (int row = 0; row < 4; row++)
+    for (int column = 0; column < 4; column++)
+      def->world_from_camera[4 * row + column] = matrix.numbers[4 * column + row];
+  return -1;
+}
+
+/* The lens of many elements, which says the focal length itself. A picture in its stop is not known; it bends no ray.
+ */
+static int read_optics(vlContext *context, const vlImage *image, const char *path, vlCameraDef *def,
+                       vlOptics **optics) {
+  vlOpticsDef lens = vl_default_optics_def();
+  vlLensSurface surfaces[64];
+  const char *at;
+  lens.focus_distance = INFINITY;
+  lens.surfaces = surfaces;
+  number(image, "velo.opticsAperture", &lens.aperture_diameter);
+  number(image, "velo.opticsFocus", &lens.focus_distance);
+  number(image, "velo.opticsDiagonal", &lens.film_diagonal);
+  number(image, "velo.opticsUnit", &lens.unit_mm);
+  uint32_t count = 0;
+  bool good = text(image, "velo.optics", &at);
+  while (good && *at) {
+    char *end;
+    double value = strtod(at, &end);
+    vlLensSurface *s = &surfaces[count / 4];
+    good = end != at && count < 256;
+    if (good)
+      *(count % 4 == 0 ? &s->radius : count % 4 == 1 ? &s->thickness : count % 4 == 2 ? &s->ior : &s->aperture) = value;
+    count++;
+    at = end;
+  }
+  if (!good || count % 4) return report_failure(STATUS_SCENE, "%s: the lens in its header is not understood", path);
+  lens.count = count / 4;
+  vlError error = {0};
+  vlResult result = vl_optics_create(context, &lens, optics, &error);
+  if (result == VL_ERROR_MEMORY) return report_error(NULL, result, NULL);
+  if (result != VL_OK)
+    return report_failure(STATUS_SCENE, "%s: the lens in its header is wrong: %s", path, error.message);
+  def->lens.optics = *optics;
+  def->fx = def->fy = def->skew = VL_UNSET;
+  return -1;
+}
+
+int header_camera(vlContext *context, const vlImage *image, const char *path, vlCamera *camera, vlOptics **optics,
+                  uint32_t *x0, uint32_t *y0) {
+  double whole[4], data[4], limit;
+  vlCameraDef def;
+  int status = windows(image, path, whole, data);
+  *optics = NULL;
+  if (status < 0) status = read_def(image, path, whole, &def);
+  if (status < 0 && def.projection == VL_PROJECTION_OPTICS) status = read_optics(context, image, path, &def, optics);
+  if (status >= 0) return status;
+  vlError error = {0};
+  vlResult result = vl_camera_make(&def, camera, NULL, &error);
+  if (result != VL_OK)
+    return report_failure(STATUS_SCENE, "%s: the camera in its header is wrong: %s", path, error.message);
+  if (number(image, "velo.limit", &limit)) camera->limit = limit;
+  number(image, "velo.eyeCircle", &camera->eye_circle);
+  *x0 = (uint32_t)data[0];
+  *y0 = (uint32_t)data[1];
+  return -1;
+}
+
+static void single(const vlImage *image, const char *name, vlAttributeType type, double *values, int count) {
+  vlAttribute a;
+  if (vl_image_find_attribute(image, name, &a) == VL_OK && a.type == type)
+    memcpy(values, a.numbers, (size_t)count * sizeof *values);
+}
+
+int header_camera_def(const vlImage *image, const char *path, vlCameraDef *def) {
+  double whole[4], data[4], shutter[2], circle = 0.0;
+  int status = windows(image, path, whole, data);
+  if (status < 0) status = read_def(image, path, whole, def);
+  if (status >= 0) return status;
+  if (def->projection == VL_PROJECTION_OPTICS)
+    return report_failure(STATUS_SCENE, "%s: a lens of many elements is not taken from a picture; its scene has it",
+                          path);
+  if (number(image, "velo.eyeCircle", &circle) && circle != 0.0)
+    return report_failure(STATUS_SCENE, "%s: one eye of an omnidirectional picture is no camera of its own", path);
+  shutter[0] = def->shutter_open, shutter[1] = def->shutter_close;
+  single(image, "velo.lensRadius", VL_ATTRIBUTE_FLOAT, &def->lens_radius, 1);
+  single(image, "focus", VL_ATTRIBUTE_FLOAT, &def->focus_distance, 1);
+  single(image, "velo.shutter", VL_ATTRIBUTE_V2F, shutter, 2);
+  single(image, "velo.exposureTime", VL_ATTRIBUTE_FLOAT, &def->exposure_time, 1);
+  def->shutter_open = shutter[0], def->shutter_close = shutter[1];
+  return -1;
+}

@@ -1,0 +1,217 @@
+/* image/info.c: `velo image info`: what a picture file holds. Also what the image commands share. */
+#include <ctype.h>
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "image/image.h"
+
+int image_context(vlContext **context) {
+  vlContextDef def = vl_default_context_def();
+  def.log = report_log;
+  def.threads = 1;
+  vlResult result = vl_context_create(&def, context);
+  if (result == VL_ERROR_UNSUPPORTED || result == VL_ERROR_ARGUMENT)
+    return report_usage("the environment variable VELO_ISA must be v2, v3 or v4, and the machine must have it");
+  return result == VL_OK ? -1 : report_error(NULL, result, NULL);
+}
+
+int image_load(vlContext *context, const char *path, vlImage **image) {
+  vlError error = {0};
+  vlResult result = vl_image_read(context, path, image, &error);
+  return result == VL_OK ? -1 : report_error(&error, result, path);
+}
+
+int image_finish_output(int status) {
+  if (fflush(stdout) != 0 || ferror(stdout))
+    return report_failure(STATUS_IO, "cannot write to stdout: %s", strerror(errno));
+  return status;
+}
+
+/* By the first bytes, as the library chooses its reader. */
+static const char *format_of(const char *path) {
+  unsigned char b[12] = {0};
+  FILE *file = fopen(path, "rb");
+  size_t n = file ? fread(b, 1, sizeof b, file) : 0;
+  if (file) fclose(file);
+  if (n >= 4 && memcmp(b, "\x76\x2f\x31\x01", 4) == 0) return "OpenEXR";
+  if (n >= 8 && memcmp(b, "\x89PNG\r\n\x1a\n", 8) == 0) return "PNG";
+  if (n >= 3 && memcmp(b, "\xff\xd8\xff", 3) == 0) return "JPEG";
+  if (n >= 6 && (memcmp(b, "#?RADI", 6) == 0 || memcmp(b, "#?RGBE", 6) == 0)) return "Radiance HDR";
+  if (n >= 4 && memcmp(b, "GIF8", 4) == 0) return "GIF";
+  if (n >= 4 && memcmp(b, "qoif", 4) == 0) return "QOI";
+  if (n >= 12 && memcmp(b, "RIFF", 4) == 0 && memcmp(b + 8, "WEBP", 4) == 0) return "WebP";
+  if (n >= 2 && memcmp(b, "BM", 2) == 0) return "BMP";
+  if (n >= 2 && b[0] == 'P' && (b[1] == 'F' || b[1] == 'f')) return "PFM";
+  if (n >= 2 && b[0] == 'P' && b[1] >= '1' && b[1] <= '6') return "PNM";
+  return "TGA";
+}
+
+static const char *type_name(vlPixelType type) {
+  switch (type) {
+    case VL_PIXEL_U8: return "8-bit integer";
+    case VL_PIXEL_U16: return "16-bit integer";
+    case VL_PIXEL_F16: return "16-bit float";
+    case VL_PIXEL_F32: return "32-bit float";
+    case VL_PIXEL_U32: return "32-bit integer";
+  }
+  return "?";
+}
+
+/* Do its channels have different types in the file? */
+static bool is_mixed(const vlImage *image) {
+  for (uint32_t i = 1; i < vl_image_channels(image); i++)
+    if (vl_image_stored_type(image, i) != vl_image_stored_type(image, 0)) return true;
+  return false;
+}
+
+static const char *encoding_name(vlEncoding encoding) {
+  return encoding == VL_ENCODING_SRGB ? "sRGB" : encoding == VL_ENCODING_GAMMA ? "gamma" : "linear";
+}
+
+static int number_count(vlAttributeType type) {
+  switch (type) {
+    case VL_ATTRIBUTE_FLOAT:
+    case VL_ATTRIBUTE_INT:
+    case VL_ATTRIBUTE_DOUBLE: return 1;
+    case VL_ATTRIBUTE_V2F: return 2;
+    case VL_ATTRIBUTE_V3F: return 3;
+    case VL_ATTRIBUTE_BOX2I: return 4;
+    case VL_ATTRIBUTE_CHROMATICITIES: return 8;
+    case VL_ATTRIBUTE_M33F: return 9;
+    case VL_ATTRIBUTE_M44F:
+    case VL_ATTRIBUTE_M44D: return 16;
+    case VL_ATTRIBUTE_STRING:
+    case VL_ATTRIBUTE_STRINGS: return 0;
+  }
+  return 0;
+}
+
+/* Numbers that the file holds in single precision are shown as short as they read back in it. */
+static double shown(const vlAttribute *a, int i) {
+  if (a->type == VL_ATTRIBUTE_DOUBLE || a->type == VL_ATTRIBUTE_M44D || a->type == VL_ATTRIBUTE_INT)
+    return a->numbers[i];
+  char text[40];
+  for (int digits = 6; digits <= 9; digits++) {
+    double back;
+    snprintf(text, sizeof text, "%.*g", digits, a->numbers[i]);
+    if (sscanf(text, "%lf", &back) == 1 && (float)back == (float)a->numbers[i]) return back;
+  }
+  return a->numbers[i];
+}
+
+/* A string of a stranger's file: one line, nothing that moves the cursor. */
+static void print_plain(const char *text) {
+  for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
+}
+
+static void print_text(const char *path, const vlImage *image) {
+  printf("file        %s\nformat      %s\n", path, format_of(path));
+  printf("size        %u x %u\n", vl_image_width(image), vl_image_height(image));
+  printf("channels    %u:", vl_image_channels(image));
+  for (uint32_t i = 0; i < vl_image_channels(image); i++) {
+    putchar(' ');
+    print_plain(vl_image_channel_name(image, i));
+  }
+  if (!is_mixed(image))
+    printf("\ntype        %s, %s\n", type_name(vl_image_type(image)), encoding_name(vl_image_encoding(image)));
+  for (int type = VL_PIXEL_U8; type <= VL_PIXEL_U32 && is_mixed(image); type++) {
+    bool any = false;
+    for (uint32_t i = 0; i < vl_image_channels(image); i++) {
+      if ((int)vl_image_stored_type(image, i) != type) continue;
+      if (!any) printf("\ntype        %s:", type_name((vlPixelType)type));
+      any = true;
+      putchar(' ');
+      print_plain(vl_image_channel_name(image, i));
+    }
+  }
+  if (is_mixed(image)) putchar('\n');
+  uint32_t count = vl_image_attribute_count(image);
+  if (count) printf("attributes  %u\n", count);
+  for (uint32_t i = 0; i < count; i++) {
+    vlAttribute a;
+    if (vl_image_attribute(image, i, &a) != VL_OK) continue;
+    printf("  ");
+    print_plain(a.name);
+    printf("%*s", (int)(strlen(a.name) < 26 ? 26 - strlen(a.name) : 1), "");
+    if (a.type == VL_ATTRIBUTE_STRING || a.type == VL_ATTRIBUTE_STRINGS) print_plain(a.string ? a.string : "");
+    for (int k = 0; k < number_count(a.type); k++) {
+      char text[40];
+      format_number(text, sizeof text, shown(&a, k));
+      printf("%s%s", k ? " " : "", text);
+    }
+    putchar('\n');
+  }
+}
+
+static void print_json(const char *path, const vlImage *image) {
+  Json json = {.out = stdout};
+  json_begin(&json, NULL, '{');
+  json_text(&json, "file", path);
+  json_text(&json, "format", format_of(path));
+  json_integer(&json, "width", vl_image_width(image));
+  json_integer(&json, "height", vl_image_height(image));
+  json_begin(&json, "channels", '[');
+  for (uint32_t i = 0; i < vl_image_channels(image); i++) json_text(&json, NULL, vl_image_channel_name(image, i));
+  json_end(&json, ']');
+  json_text(&json, "type", type_name(vl_image_type(image)));
+  if (is_mixed(image)) {
+    json_begin(&json, "types", '[');
+    for (uint32_t i = 0; i < vl_image_channels(image); i++)
+      json_text(&json, NULL, type_name(vl_image_stored_type(image, i)));
+    json_end(&json, ']');
+  }
+  json_text(&json, "encoding", encoding_name(vl_image_encoding(image)));
+  json_begin(&json, "attributes", '{');
+  for (uint32_t i = 0; i < vl_image_attribute_count(image); i++) {
+    vlAttribute a;
+    if (vl_image_attribute(image, i, &a) != VL_OK) continue;
+    int n = number_count(a.type);
+    if (n == 0) json_text(&json, a.name, a.string ? a.string : "");
+    if (n == 1) json_number(&json, a.name, shown(&a, 0));
+    if (n < 2) continue;
+    json_begin(&json, a.name, '[');
+    for (int k = 0; k < n; k++) json_number(&json, NULL, shown(&a, k));
+    json_end(&json, ']');
+  }
+  json_end(&json, '}');
+  json_end(&json, '}');
+  putchar('\n');
+}
+
+enum { INFO_JSON };
+
+static int run_info(const Command *command, const Arguments *arguments) {
+  (void)command;
+  vlContext *context = NULL;
+  vlImage *image = NULL;
+  int status = image_context(&context);
+  if (status < 0) status = image_load(context, arguments->operands[0], &image);
+  if (status < 0) {
+    if (arguments->values[INFO_JSON].given)
+      print_json(arguments->operands[0], image);
+    else
+      print_text(arguments->operands[0], image);
+    status = image_finish_output(STATUS_OK);
+  }
+  vl_image_destroy(image);
+  vl_context_destroy(context);
+  return status;
+}
+
+static const Option info_options[] = {
+    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command image_info_command = {
+    .name = "image info",
+    .usage = "FILE [options]",
+    .summary = "format, size, channels and attributes of a picture",
+    .text = "Prints what FILE is and holds. Matrices are in OpenEXR's order (row vectors).",
+    .options = info_options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run_info,
+};

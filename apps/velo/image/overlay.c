@@ -1,0 +1,134 @@
+/* image/overlay.c: see overlay.h. */
+#include "image/overlay.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double sample(const vlImage *image, uint32_t x, uint32_t y, int channel) {
+  double v = vl_image_get(image, x, y, (uint32_t)channel);
+  v = v > 0.0 ? v < 1.0 ? v : 1.0 : 0.0; /* NaN is black */
+  return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
+}
+
+bool overlay_begin(Overlay *o, const vlImage *picture) {
+  o->width = vl_image_width(picture);
+  o->height = vl_image_height(picture);
+  size_t pixels = (size_t)o->width * o->height;
+  o->rgb = malloc(3 * pixels);
+  o->coverage = calloc(pixels, sizeof *o->coverage);
+  if (!o->rgb || !o->coverage) return false;
+  static const char *const names[3] = {"R", "G", "B"};
+  for (int k = 0; k < 3; k++) {
+    int channel = vl_image_find_channel(picture, names[k]);
+    if (channel < 0) channel = vl_image_find_channel(picture, "Y");
+    if (channel < 0) channel = 0;
+    for (uint32_t y = 0; y < o->height; y++)
+      for (uint32_t x = 0; x < o->width; x++)
+        o->rgb[3 * ((size_t)y * o->width + x) + (size_t)k] =
+            (uint8_t)floor(255.0 * sample(picture, x, y, channel) + 0.5);
+  }
+  return true;
+}
+
+void overlay_end(Overlay *o) {
+  free(o->rgb);
+  free(o->coverage);
+  *o = (Overlay){0};
+}
+
+/* How far a pixel's centre is from a segment, as coverage of a pen with a soft edge one pixel wide. */
+static void touch(Overlay *o, long x, long y, const double a[2], const double d[2], double length2, double width) {
+  if (x < 0 || y < 0 || x >= (long)o->width || y >= (long)o->height) return;
+  double px = (double)x + 0.5 - a[0], py = (double)y + 0.5 - a[1];
+  double t = length2 > 0.0 ? (px * d[0] + py * d[1]) / length2 : 0.0;
+  t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
+  double distance = hypot(px - t * d[0], py - t * d[1]), c = 0.5 * width + 0.5 - distance;
+  float *cover = &o->coverage[(size_t)y * o->width + (size_t)x];
+  if (c > *cover) *cover = (float)(c < 1.0 ? c : 1.0);
+}
+
+/* Keeps the part of a segment inside a box (Liang and Barsky); false: nothing. */
+static bool clip(double p[4], double x0, double y0, double x1, double y1) {
+  double t0 = 0.0, t1 = 1.0, dx = p[2] - p[0], dy = p[3] - p[1];
+  const double run[4] = {-dx, dx, -dy, dy}, room[4] = {p[0] - x0, x1 - p[0], p[1] - y0, y1 - p[1]};
+  for (int i = 0; i < 4; i++) {
+    if (run[i] == 0.0 && room[i] < 0.0) return false;
+    if (run[i] < 0.0) t0 = fmax(t0, room[i] / run[i]);
+    if (run[i] > 0.0) t1 = fmin(t1, room[i] / run[i]);
+  }
+  if (!(t0 <= t1)) return false;
+  const double q[4] = {p[0] + t0 * dx, p[1] + t0 * dy, p[0] + t1 * dx, p[1] + t1 * dy};
+  memcpy(p, q, sizeof q);
+  return true;
+}
+
+void overlay_line(Overlay *o, double x0, double y0, double x1, double y1, double width) {
+  double p[4] = {x0, y0, x1, y1}, reach = 0.5 * width + 2.0;
+  if (!isfinite(x0 + y0 + x1 + y1) || !clip(p, -reach, -reach, o->width + reach, o->height + reach)) return;
+  const double a[2] = {p[0], p[1]}, d[2] = {p[2] - p[0], p[3] - p[1]};
+  double length2 = d[0] * d[0] + d[1] * d[1];
+  /* along the longer side, and across as far as the pen reaches */
+  bool flat = fabs(d[0]) >= fabs(d[1]);
+  double slope = flat ? (d[0] != 0.0 ? d[1] / d[0] : 0.0) : d[0] / d[1];
+  double low = fmin(flat ? p[0] : p[1], flat ? p[2] : p[3]), high = fmax(flat ? p[0] : p[1], flat ? p[2] : p[3]);
+  double across = reach * sqrt(1.0 + slope * slope);
+  for (long i = (long)floor(low - reach); i <= (long)ceil(high + reach); i++) {
+    double along = (double)i + 0.5 - (flat ? a[0] : a[1]), middle = (flat ? a[1] : a[0]) + slope * along;
+    for (long j = (long)floor(middle - across); j <= (long)ceil(middle + across); j++)
+      touch(o, flat ? i : j, flat ? j : i, a, d, length2, width);
+  }
+}
+
+void overlay_ring(Overlay *o, double x, double y, double radius, double width) {
+  enum { SIDES = 48 };
+  for (int i = 0; i < SIDES; i++) {
+    double t0 = 2.0 * 3.14159265358979323846 * i / SIDES, t1 = 2.0 * 3.14159265358979323846 * (i + 1) / SIDES;
+    overlay_line(o, x + radius * cos(t0), y + radius * sin(t0), x + radius * cos(t1), y + radius * sin(t1), width);
+  }
+}
+
+void overlay_arc(Overlay *o, const vlCamera *camera, const double d[3], const double n[3], double from, double to,
+                 double width) {
+  enum { STEPS = 2048 };
+  const double *m = camera->world_from_camera;
+  double last[2] = {0, 0}, jump = 0.25 * (o->width + o->height);
+  bool connected = false, straight = camera->projection == VL_PROJECTION_PERSPECTIVE && camera->distortion.steps == 0;
+  for (int i = 0; i <= STEPS; i++) {
+    double t = from + (to - from) * i / STEPS, point[3], pixel[2];
+    for (int k = 0; k < 3; k++) point[k] = m[4 * k + 3] + cos(t) * n[k] + sin(t) * d[k];
+    bool seen = vl_camera_project(camera, point, pixel, NULL);
+    /* a picture that closes on itself: the curve goes on at its other side */
+    if (seen && connected && (straight || hypot(pixel[0] - last[0], pixel[1] - last[1]) < jump))
+      overlay_line(o, last[0], last[1], pixel[0], pixel[1], width);
+    connected = seen;
+    if (seen) memcpy(last, pixel, sizeof last);
+  }
+}
+
+void overlay_paint(Overlay *o, const uint8_t color[3], double opacity) {
+  size_t pixels = (size_t)o->width * o->height;
+  for (size_t i = 0; i < pixels; i++) {
+    if (o->coverage[i] <= 0.0F) continue;
+    double c = opacity * (double)o->coverage[i];
+    for (size_t k = 0; k < 3; k++) {
+      double v = (1.0 - c) * o->rgb[3 * i + k] + c * color[k];
+      o->rgb[3 * i + k] = (uint8_t)floor(v + 0.5);
+    }
+    o->coverage[i] = 0.0F;
+  }
+}
+
+vlResult overlay_write(const Overlay *o, vlContext *context, const char *path, vlError *error) {
+  vlImageDef def = vl_default_image_def(o->width, o->height, 3);
+  vlImage *image = NULL;
+  def.type = VL_PIXEL_U8;
+  def.encoding = VL_ENCODING_SRGB;
+  vlResult result = vl_image_create(context, &def, &image);
+  if (result == VL_OK) {
+    memcpy(vl_image_pixels(image), o->rgb, 3 * (size_t)o->width * o->height);
+    result = vl_image_write(image, path, NULL, error);
+  }
+  vl_image_destroy(image);
+  return result;
+}

@@ -1,0 +1,180 @@
+/* render/channels.c: see channels.h. */
+#include "render/channels.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "camera/camera.h"
+#include "cli/report.h"
+#include "render/gbuffer.h"
+
+const Choice channel_mode_choices[] = {{"centre", VL_CHANNEL_MODE_CENTRE},
+                                       {"center", VL_CHANNEL_MODE_CENTRE},
+                                       {"nearest", VL_CHANNEL_MODE_NEAREST},
+                                       {"coverage", VL_CHANNEL_MODE_COVERAGE},
+                                       {NULL, 0}};
+
+/* ---- which ------------------------------------------------------------------------------------------------------- */
+
+static int read_one(const char *name, uint32_t *channels) {
+  static const struct {
+    const char *name;
+    uint32_t bits;
+  } groups[] = {
+      {"all", VL_CHANNEL_ALL},
+      {"crypto", VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE},
+  };
+  const char *names[VL_CHANNEL_COUNT + 2];
+  int count = 0;
+  for (size_t i = 0; i < sizeof groups / sizeof *groups; i++) {
+    names[count++] = groups[i].name;
+    if (strcmp(name, groups[i].name) != 0) continue;
+    *channels |= groups[i].bits;
+    return -1;
+  }
+  for (uint32_t i = 0; vl_channel_name(i); i++) {
+    names[count++] = vl_channel_name(i);
+    if (strcmp(name, vl_channel_name(i)) != 0) continue;
+    *channels |= 1u << i;
+    return -1;
+  }
+  const char *near = did_you_mean("", name, names, count);
+  if (*near) return report_usage("--channels: unknown name \"%s\"%s", name, near);
+  char list[400] = "";
+  for (int i = 0; i < count; i++) {
+    size_t n = strlen(list);
+    snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
+  }
+  return report_usage("--channels: unknown name \"%s\"; accepted are %s", name, list);
+}
+
+static int read_list(const char *list, uint32_t *channels) {
+  for (const char *at = list;; at++) {
+    size_t length = strcspn(at, ",");
+    char name[64];
+    snprintf(name, sizeof name, "%.*s", length < sizeof name ? (int)length : (int)sizeof name - 1, at);
+    int status = read_one(name, channels);
+    if (status >= 0) return status;
+    at += length;
+    if (!*at) return -1;
+  }
+}
+
+int channels_choose(Channels *c, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  memset(c, 0, sizeof *c);
+  c->mode = v[RENDER_CHANNELS_MODE].given ? (vlChannelMode)v[RENDER_CHANNELS_MODE].integer : VL_CHANNEL_MODE_CENTRE;
+  c->ranks = v[RENDER_CRYPTO_RANKS].given ? (uint32_t)v[RENDER_CRYPTO_RANKS].integer : 6;
+  if (c->ranks % 2)
+    return report_usage("--crypto-ranks %u: two ranks share a layer, so that their number is even", c->ranks);
+  c->boxes = v[RENDER_BOXES].given;
+  if (c->boxes) c->bits |= VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE;
+  int status = v[RENDER_CHANNELS].given ? read_list(v[RENDER_CHANNELS].text, &c->bits) : -1;
+  if (status >= 0) return status;
+  if (c->bits && c->mode != VL_CHANNEL_MODE_CENTRE) c->bits |= VL_CHANNEL_FILM; /* else nobody knows the point */
+  static const int options[2] = {RENDER_FLOW_CAMERA, RENDER_FLOW_CAMERA_BEFORE};
+  for (int i = 0; i < 2; i++) {
+    if (v[options[i]].given) {
+      c->other_paths[i] = v[options[i]].text;
+      c->bits |= VL_CHANNEL_FORWARD << i;
+    }
+  }
+  return -1;
+}
+
+/* ---- the pass ---------------------------------------------------------------------------------------------------- */
+
+/* A camera of another picture size keeps its framing, as the picture's own does. */
+int channels_load(Channels *c, vlContext *context, const Job *job) {
+  for (int i = 0; i < 2; i++) {
+    if (!c->other_paths[i]) continue;
+    vlCameraRecord record;
+    int status = camera_load(context, c->other_paths[i], 0, NULL, &record);
+    if (status >= 0) return status;
+    vlError error = {0};
+    vlCamera camera;
+    vlResult result = vl_camera_make(&record.camera, &camera, NULL, &error);
+    if (result == VL_OK) result = vl_camera_resize(&camera, job->camera.width, job->camera.height, &c->others[i]);
+    if (result != VL_OK) return report_error(&error, result, c->other_paths[i]);
+  }
+  return -1;
+}
+
+static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
+  static const vlIdKind kinds[2] = {VL_ID_OBJECT, VL_ID_INSTANCE};
+  for (int k = 0; k < 2; k++) {
+    c->box_list[k] = calloc((size_t)vl_world_id_count(world, kinds[k]) + 1, sizeof(vlIdBox));
+    if (!c->box_list[k]) return report_error(NULL, VL_ERROR_MEMORY, NULL);
+  }
+  vlBoxesDef def = vl_default_boxes_def(job->camera.width, job->camera.height);
+  memcpy(def.crop, job->film.crop, sizeof def.crop);
+  vlError error = {0};
+  vlResult result = vl_world_boxes(world, &job->camera, &def, c->box_list[0], c->box_list[1], &error);
+  return result == VL_OK ? STATUS_OK : report_error(&error, result, job->path);
+}
+
+/* Where no other camera is named, flow is that of the shutter's time: from the moment of the channels to its end, and
+ * to its beginning. */
+static void shutter_ends(Channels *c, const Job *job) {
+  const vlCamera *camera = &job->camera;
+  for (int i = 0; i < 2; i++)
+    if (!c->other_paths[i])
+      vl_camera_at(camera, vl_camera_time(camera, 0.5 * camera->width, 0.5 * camera->height, i ? 0.0 : 1.0),
+                   &c->others[i]);
+}
+
+bool channels_any(const Channels *c) {
+  return c->bits || c->spectrum || c->gbuffer;
+}
+
+void channels_take(Channels *c, Job *job) {
+  bool wanted = job->settings->gbuffer != VL_GBUFFER_NONE;
+  c->spectrum = job->film.buckets > 0;
+  c->gbuffer = wanted && !c->bits;
+  if (wanted && c->bits) report_note("--channels are written in place of the film's gbuffer");
+}
+
+int channels_render(Channels *c, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film) {
+  vlResult spectrum = c->spectrum ? vl_film_spectrum(film, &c->layers[2]) : VL_OK;
+  if (spectrum != VL_OK) return report_error(NULL, spectrum, NULL);
+  if (c->gbuffer) return gbuffer_render(context, world, job, film, &c->layers[3]);
+  if (!c->bits) return STATUS_OK;
+  shutter_ends(c, job);
+  vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
+  def.channels = c->bits;
+  def.space = job->film.space;
+  def.samples = vl_film_spp(film);
+  def.mode = c->mode;
+  def.ranks = c->ranks;
+  def.film = film;
+  def.render = &job->render;
+  def.exposure = job->settings->exposure;
+  def.time = job_channels_time(job);
+  if (c->bits & VL_CHANNEL_FORWARD) def.forward = &c->others[0];
+  if (c->bits & VL_CHANNEL_BACKWARD) def.backward = &c->others[1];
+  memcpy(def.crop, job->film.crop, sizeof def.crop);
+  vlError error = {0};
+  vlResult result = vl_render_channels(world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
+  if (result != VL_OK) return report_error(&error, result, job->path);
+  return c->boxes ? find_boxes(c, world, job) : STATUS_OK;
+}
+
+vlResult channels_describe(const Channels *c, vlImage *image) {
+  vlResult result = VL_OK;
+  for (int k = 0; k < CHANNEL_LAYERS; k++)
+    for (uint32_t i = 0; c->layers[k] && i < vl_image_attribute_count(c->layers[k]) && result == VL_OK; i++) {
+      vlAttribute attribute;
+      result = vl_image_attribute(c->layers[k], i, &attribute);
+      if (result == VL_OK) result = vl_image_set_attribute(image, &attribute);
+    }
+  if (!c->bits || result != VL_OK) return result;
+  const vlAttribute mode = {
+      .name = "velo.channels", .type = VL_ATTRIBUTE_STRING, .string = choice_name(channel_mode_choices, (int)c->mode)};
+  return vl_image_set_attribute(image, &mode);
+}
+
+void channels_free(Channels *c) {
+  for (int k = 0; k < CHANNEL_LAYERS; k++) vl_image_destroy(c->layers[k]);
+  for (int k = 0; k < 2; k++) free(c->box_list[k]);
+}

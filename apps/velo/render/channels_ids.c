@@ -1,0 +1,141 @@
+/* render/channels_ids.c: FILE.ids.json: what the ids of a picture stand for. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/report.h"
+#include "render/channels.h"
+
+static void mark_ids(const vlImage *ids, const char *name, bool *seen, uint32_t count) {
+  int channel = vl_image_find_channel(ids, name);
+  if (channel < 0) return;
+  size_t pixels = (size_t)vl_image_width(ids) * vl_image_height(ids), step = vl_image_channels(ids);
+  const uint32_t *value = (const uint32_t *)vl_image_const_pixels(ids) + channel;
+  for (size_t i = 0; i < pixels; i++, value += step)
+    if (*value <= count) seen[*value] = true;
+}
+
+static void put_numbers(Json *json, const char *key, const double *numbers, int count) {
+  json_begin(json, key, '[');
+  for (int i = 0; i < count; i++) json_number(json, NULL, numbers[i]);
+  json_end(json, ']');
+}
+
+/* x, y, width, height, as COCO has them. */
+static void put_corners(Json *json, const char *key, const double c[4]) {
+  put_numbers(json, key, (const double[4]){c[0], c[1], c[2] - c[0], c[3] - c[1]}, 4);
+}
+static void put_pixels(Json *json, const char *key, const uint32_t c[4]) {
+  put_corners(json, key, (const double[4]){c[0], c[1], c[2], c[3]});
+}
+
+static void put_box(Json *json, const vlIdBox *b, bool instance) {
+  json_integer(json, "pixels", (int64_t)b->seen);
+  if (b->seen) put_pixels(json, "box", b->seen_box);
+  json_integer(json, "amodal_pixels", (int64_t)b->all);
+  if (b->all) put_pixels(json, "amodal_box", b->all_box);
+  if (b->all) json_number(json, "occluded", 1 - (double)b->seen / (double)b->all);
+  if (b->has_outline) put_corners(json, "outline_box", b->outline);
+  if (!b->has_space) return;
+  json_begin(json, "box3d", '{');
+  json_text(json, "space", instance || b->grouped ? "group" : "world");
+  put_numbers(json, "low", b->low, 3);
+  put_numbers(json, "high", b->high, 3);
+  if (instance) put_numbers(json, "world_from_group", b->world_from_box, 16);
+  json_end(json, '}');
+}
+
+static void put_id(Json *json, const vlWorld *world, const Channels *c, vlIdKind kind, uint32_t id) {
+  vlIdInfo info;
+  char key[16];
+  if (vl_world_id_info(world, kind, id, &info) != VL_OK) return;
+  snprintf(key, sizeof key, "%u", id);
+  fputs(json->comma ? ",\n    " : "\n    ", json->out);
+  json->comma = false;
+  json_begin(json, key, '{');
+  json_text(json, "type", info.type);
+  if (info.name) json_text(json, "name", info.name);
+  if (info.material) json_integer(json, "material", info.material);
+  if (info.source.file) {
+    json_text(json, "file", info.source.file);
+    json_integer(json, "line", info.source.line);
+    json_integer(json, "column", info.source.column);
+  }
+  if (c->box_list[0] && kind != VL_ID_MATERIAL)
+    put_box(json, &c->box_list[kind == VL_ID_INSTANCE][id - 1], kind == VL_ID_INSTANCE);
+  json_end(json, '}');
+}
+
+/* Those that only boxes know of: they are hidden. */
+static void mark_boxes(const Channels *c, vlIdKind kind, bool *seen, uint32_t count) {
+  if (!c->box_list[0] || kind == VL_ID_MATERIAL) return;
+  for (uint32_t id = 1; id <= count; id++) seen[id] = seen[id] || c->box_list[kind == VL_ID_INSTANCE][id - 1].all > 0;
+}
+
+static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const Channels *right, const char *path) {
+  const vlImage *ids = c->layers[1];
+  static const struct {
+    const char *channel, *key;
+    vlIdKind kind;
+  } kinds[] = {{"id.object", "objects", VL_ID_OBJECT},
+               {"id.material", "materials", VL_ID_MATERIAL},
+               {"id.instance", "instances", VL_ID_INSTANCE}};
+  const char *slash = strrchr(path, '/');
+  Json json = {.out = file};
+  json_begin(&json, NULL, '{');
+  json_text(&json, "picture", slash ? slash + 1 : path);
+  for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+    if (vl_image_find_channel(ids, kinds[k].channel) < 0) continue;
+    uint32_t count = vl_world_id_count(world, kinds[k].kind);
+    bool *seen = calloc((size_t)count + 1, 1);
+    if (!seen) return false;
+    mark_ids(ids, kinds[k].channel, seen, count);
+    if (right) mark_ids(right->layers[1], kinds[k].channel, seen, count);
+    if (right) mark_boxes(right, kinds[k].kind, seen, count);
+    mark_boxes(c, kinds[k].kind, seen, count);
+    fputs(",\n  ", file);
+    json.comma = false;
+    json_begin(&json, kinds[k].key, '{');
+    for (uint32_t id = 1; id <= count; id++)
+      if (seen[id]) put_id(&json, world, c, kinds[k].kind, id);
+    json_end(&json, '}');
+    free(seen);
+  }
+  json_end(&json, '}');
+  fputc('\n', file);
+  return fflush(file) == 0 && !ferror(file);
+}
+
+/* Written beside the target, synced, renamed: whole or as before. */
+int channels_write_ids(const Channels *c, const Channels *right, const vlWorld *world, const char *path) {
+  char target[4200], temporary[4240];
+  const vlImage *ids = c->layers[1];
+  if (!ids) return STATUS_OK;
+  bool any = vl_image_find_channel(ids, "id.object") >= 0 || vl_image_find_channel(ids, "id.material") >= 0 ||
+             vl_image_find_channel(ids, "id.instance") >= 0;
+  if (!any) return STATUS_OK;
+  if (snprintf(target, sizeof target, "%s.ids.json", path) >= (int)sizeof target)
+    return report_failure(STATUS_IO, "cannot write %s.ids.json: %s", path, strerror(ENAMETOOLONG));
+  snprintf(temporary, sizeof temporary, "%s.XXXXXX", target);
+  int descriptor = mkstemp(temporary);
+  FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
+  if (!file) {
+    int code = errno;
+    if (descriptor >= 0) close(descriptor), unlink(temporary);
+    return report_failure(STATUS_IO, "cannot write %s: %s", target, strerror(code));
+  }
+  errno = 0;
+  bool good = put_all(file, world, c, right, path) && fsync(descriptor) == 0;
+  mode_t mask = umask(0);
+  umask(mask);
+  good = good && fchmod(descriptor, 0666 & ~mask) == 0;
+  int code = errno;
+  if (fclose(file) != 0 && good) good = false, code = errno;
+  if (good && rename(temporary, target) != 0) good = false, code = errno;
+  if (good) return STATUS_OK;
+  unlink(temporary);
+  return report_failure(STATUS_IO, "cannot write %s: %s", target, strerror(code ? code : EIO));
+}

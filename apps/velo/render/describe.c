@@ -1,0 +1,119 @@
+/* render/describe.c: what a job would render, for people and for machines (--dry-run). See job.h. */
+#include <math.h>
+#include <string.h>
+
+#include "cli/report.h"
+#include "render/job.h"
+#include "render/progress.h"
+
+typedef struct Facts {
+  const char *projection, *sampler, *tracer, *filter, *light_sampler, *color;
+  double fov_x, fov_y, eye[3], forward[3];
+  vlSceneInfo scene;
+  vlWorldInfo world;
+} Facts;
+
+static Facts gather(const Job *job, const vlScene *scene, const vlWorld *world) {
+  const double degrees = 57.295779513082320877;
+  const vlCamera *c = &job->camera;
+  const vlSceneSettings *s = job->settings;
+  Facts f = {
+      .projection = c->projection == VL_PROJECTION_PERSPECTIVE && c->lens_radius > 0
+                        ? "thin lens"
+                        : vl_projection_name(c->projection),
+      .sampler = choice_name(sampler_choices, (int)job->render.sampler),
+      .tracer = choice_name(tracer_choices, (int)job->render.tracer),
+      .filter = choice_name(filter_choices, (int)job->film.filter.kind),
+      .light_sampler = choice_name(light_sampler_choices, (int)s->light_sampler),
+      .color = choice_name(color_choices, (int)s->color),
+  };
+  f.fov_x = degrees * (atan(c->cx / c->fx) + atan((c->width - c->cx) / c->fx));
+  f.fov_y = degrees * (atan(c->cy / c->fy) + atan((c->height - c->cy) / c->fy));
+  double length = 0;
+  for (int i = 0; i < 3; i++) {
+    f.eye[i] = c->world_from_camera[4 * i + 3];
+    f.forward[i] = c->world_from_camera[4 * i + 2];
+    length += f.forward[i] * f.forward[i];
+  }
+  for (int i = 0; i < 3; i++) f.forward[i] = f.forward[i] / sqrt(length) + 0.0;
+  vl_scene_info(scene, &f.scene);
+  vl_world_info(world, &f.world);
+  return f;
+}
+
+static void describe_json(const Job *job, const Facts *f, const char *const *outputs, int output_count) {
+  const vlCamera *c = &job->camera;
+  Json json = report_json_begin("plan");
+  json_text(&json, "scene", job->path);
+  json_integer(&json, "width", c->width);
+  json_integer(&json, "height", c->height);
+  json_begin(&json, "crop", '[');
+  for (int i = 0; i < 4; i++) json_integer(&json, NULL, job->film.crop[i]);
+  json_end(&json, ']');
+  json_integer(&json, "spp", job->render.spp);
+  json_number(&json, "time_limit", job->render.time_limit);
+  json_integer(&json, "seed", job->render.seed);
+  json_integer(&json, "max_depth", job->render.max_depth);
+  json_text(&json, "tracer", f->tracer);
+  json_text(&json, "sampler", f->sampler);
+  json_text(&json, "filter", f->filter);
+  json_text(&json, "light_sampler", f->light_sampler);
+  json_text(&json, "color", f->color);
+  json_text(&json, "projection", f->projection);
+  json_begin(&json, "focal", '[');
+  json_number(&json, NULL, c->fx);
+  json_number(&json, NULL, c->fy);
+  json_end(&json, ']');
+  json_begin(&json, "principal", '[');
+  json_number(&json, NULL, c->cx);
+  json_number(&json, NULL, c->cy);
+  json_end(&json, ']');
+  json_begin(&json, "world_from_camera", '[');
+  for (int i = 0; i < 16; i++) json_number(&json, NULL, c->world_from_camera[i]);
+  json_end(&json, ']');
+  json_integer(&json, "triangles", (int64_t)f->world.triangles);
+  json_integer(&json, "primitives", (int64_t)f->world.primitives);
+  json_integer(&json, "instances", (int64_t)f->world.instances);
+  json_integer(&json, "lights", (int64_t)f->world.lights);
+  json_integer(&json, "bytes", (int64_t)f->world.bytes);
+  json_number(&json, "build_seconds", f->world.build_seconds);
+  json_begin(&json, "outputs", '[');
+  for (int i = 0; i < output_count; i++) json_text(&json, NULL, outputs[i]);
+  json_end(&json, ']');
+  report_json_end(&json);
+}
+
+void job_describe(const Job *job, vlContext *context, const vlScene *scene, const vlWorld *world,
+                  const char *const *outputs, int output_count) {
+  Facts f = gather(job, scene, world);
+  if (report_is_json()) {
+    describe_json(job, &f, outputs, output_count);
+    return;
+  }
+  const vlCamera *c = &job->camera;
+  const uint32_t *crop = job->film.crop;
+  char triangles[32], bytes[32], build[32];
+  format_count(triangles, sizeof triangles, (double)f.world.triangles);
+  format_count(bytes, sizeof bytes, (double)f.world.bytes);
+  format_seconds(build, sizeof build, f.world.build_seconds);
+  printf("scene     %s: %llu shapes, %llu materials, %llu textures, %llu instances\n", job->path,
+         (unsigned long long)f.scene.shapes, (unsigned long long)f.scene.materials,
+         (unsigned long long)f.scene.textures, (unsigned long long)f.scene.instances);
+  printf("world     %s triangles, other primitives %llu, lights %llu, %sB; built in %s\n", triangles,
+         (unsigned long long)(f.world.primitives > f.world.triangles ? f.world.primitives - f.world.triangles : 0),
+         (unsigned long long)f.world.lights, bytes, build);
+  printf("camera    %s", f.projection);
+  if (c->projection == VL_PROJECTION_PERSPECTIVE) printf(", field of view %.4g x %.4g degrees", f.fov_x, f.fov_y);
+  printf(", eye (%g, %g, %g), looking along (%.4g, %.4g, %.4g)\n", f.eye[0], f.eye[1], f.eye[2], f.forward[0],
+         f.forward[1], f.forward[2]);
+  printf("picture   %u x %u pixels", c->width, c->height);
+  if (crop[0] || crop[1] || crop[2] != c->width || crop[3] != c->height)
+    printf(", of these x %u to %u, y %u to %u", crop[0], crop[2], crop[1], crop[3]);
+  printf(", filter %s, colour %s\n", f.filter, f.color);
+  printf("sampling  %u spp, sampler %s, seed %u", job->render.spp, f.sampler, job->render.seed);
+  if (job->render.time_limit > 0) printf(", at most %g s", job->render.time_limit);
+  printf("\ntracer    %s, max depth %u, lights by %s%s\n", f.tracer, job->render.max_depth, f.light_sampler,
+         job->build.regularize ? ", regularised" : "");
+  printf("machine   %u threads, x86-64-v%d\n", vl_context_threads(context), (int)vl_context_isa(context));
+  for (int i = 0; i < output_count; i++) printf("%s %s\n", i ? "         " : "output   ", outputs[i]);
+}

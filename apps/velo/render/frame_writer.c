@@ -1,0 +1,244 @@
+/* render/frame_writer.c: see frame_writer.h. Two views become one OpenEXR file as its "Multi-View" page has it: the
+ * attribute multiView lists the views; channels without a dot are the first one's ("R", "Z"), others have their view
+ * before the last part of their name ("right.R", "N.left.X", "N.right.X"). */
+#include "render/frame_writer.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/report.h"
+#include "image/display.h"
+#include "render/attributes.h"
+#include "render/exposure.h"
+#include "render/pattern.h"
+
+enum { QUEUE = 4 };
+
+struct FrameWriter {
+  vlContext *context;
+  const vlWorld *world;
+  const Frames *frames;
+  const Outputs *outputs;
+  pthread_t thread;
+  pthread_mutex_t mutex;
+  pthread_cond_t changed;
+  FramePicture queue[QUEUE];
+  uint32_t first, count; /* in the queue */
+  bool closed;
+  bool metered;
+  float exposure;
+  int status;
+  uint32_t written;
+};
+
+void frame_picture_free(FramePicture *picture) {
+  for (int v = 0; v < 2; v++) {
+    vl_image_destroy(picture->images[v]);
+    channels_free(&picture->channels[v]);
+  }
+}
+
+/* ---- one picture ------------------------------------------------------------------------------------------------- */
+
+/* "Z" to "right.Z", "N.X" to "N.right.X"; of the first view only the latter: what has no dot is the first view's. */
+static vlResult add_view(vlImage *image, const char *view, bool first) {
+  for (uint32_t i = 0; i < vl_image_channels(image); i++) {
+    const char *name = vl_image_channel_name(image, i), *dot = strrchr(name, '.');
+    char full[300];
+    if (first && !dot) continue;
+    snprintf(full, sizeof full, "%.*s%s.%s", dot ? (int)(dot + 1 - name) : 0, name, view, dot ? dot + 1 : name);
+    vlResult result = vl_image_rename_channel(image, i, full);
+    if (result != VL_OK) return result;
+  }
+  return VL_OK;
+}
+
+/* The colours of both eyes in one picture, so that --half treats them alike; the first has the header. */
+static vlResult join(vlContext *context, vlImage *const images[2], const char *view, vlImage **both) {
+  static const char *const plain[4] = {"R", "G", "B", "A"};
+  char right[4][32];
+  const char *names[8];
+  for (int c = 0; c < 4; c++) {
+    snprintf(right[c], sizeof right[c], "%s.%s", view, plain[c]);
+    names[c] = plain[c], names[4 + c] = right[c];
+  }
+  vlImageDef def = vl_default_image_def(vl_image_width(images[0]), vl_image_height(images[0]), 8);
+  def.names = names;
+  vlResult result = vl_image_create(context, &def, both);
+  if (result != VL_OK) return result;
+  float *to = vl_image_pixels(*both);
+  const float *from[2] = {vl_image_const_pixels(images[0]), vl_image_const_pixels(images[1])};
+  size_t pixels = (size_t)def.width * def.height;
+  for (size_t i = 0; i < pixels; i++)
+    for (int v = 0; v < 2; v++) memcpy(to + 8 * i + 4 * v, from[v] + 4 * i, 4 * sizeof *to);
+  for (uint32_t i = 0; i < vl_image_attribute_count(images[0]) && result == VL_OK; i++) {
+    vlAttribute attribute;
+    vl_image_attribute(images[0], i, &attribute);
+    if (strcmp(attribute.name, "view") != 0) result = vl_image_set_attribute(*both, &attribute);
+  }
+  return result;
+}
+
+static vlResult write_both(FrameWriter *w, FramePicture *p, const char *path, const vlWriteDef *def, vlError *error) {
+  vlImage *both = NULL;
+  const vlImage *layers[1 + 2 * CHANNEL_LAYERS];
+  uint32_t count = 1;
+  char views[40];
+  const char *const *names = w->frames->view_names;
+  vlResult result = join(w->context, p->images, names[1], &both);
+  snprintf(views, sizeof views, "%s\n%s", names[0], names[1]);
+  const vlAttribute multi = {.name = "multiView", .type = VL_ATTRIBUTE_STRINGS, .string = views};
+  if (result == VL_OK) result = vl_image_set_attribute(both, &multi);
+  if (result == VL_OK) result = attributes_set_view(both, &p->jobs[1], names[1]);
+  for (int v = 0; v < 2; v++)
+    for (int k = 0; k < CHANNEL_LAYERS && result == VL_OK; k++) {
+      vlImage *layer = p->channels[v].layers[k];
+      if (!layer) continue;
+      if (!p->renamed) result = add_view(layer, names[v], v == 0);
+      layers[count++] = layer;
+    }
+  layers[0] = both;
+  p->renamed = true;
+  if (result == VL_OK) result = vl_image_write_layers(layers, count, path, def, error);
+  vl_image_destroy(both);
+  return result;
+}
+
+/* A trajectory is metered once, by its first picture: frames must not flicker. */
+static float exposure_of(FrameWriter *w, const vlImage *image) {
+  if (!w->outputs->meter) return w->outputs->exposure;
+  if (!w->metered) exposure_tell(w->exposure = exposure_meter(image));
+  w->metered = true;
+  return w->exposure;
+}
+
+static vlResult write_one(FrameWriter *w, FramePicture *p, int view, const char *path, const vlWriteDef *def,
+                          vlError *error) {
+  bool eight_bit = false;
+  output_suffix(path, &eight_bit);
+  const vlImage *layers[1 + CHANNEL_LAYERS] = {p->images[view]};
+  uint32_t count = 1;
+  if (eight_bit) {
+    vlImage *display = NULL;
+    vlResult result =
+        display_image(w->context, p->images[view], w->outputs->view, exposure_of(w, p->images[view]), &display);
+    if (result == VL_OK) result = vl_image_write(display, path, def, error);
+    vl_image_destroy(display);
+    return result;
+  }
+  for (int k = 0; k < CHANNEL_LAYERS && output_holds_layers(path); k++)
+    if (p->channels[view].layers[k]) layers[count++] = p->channels[view].layers[k];
+  return count > 1 ? vl_image_write_layers(layers, count, path, def, error)
+                   : vl_image_write(layers[0], path, def, error);
+}
+
+/* Both eyes' files of one pattern, or the one file of both. Layers are renamed on the way, so those come last. */
+static int write_pattern(FrameWriter *w, FramePicture *p, const char *pattern, bool by_view) {
+  vlWriteDef def = vl_default_write_def();
+  def.half = w->outputs->half;
+  def.alone = true;
+  bool two = w->frames->views == 2;
+  int status = STATUS_OK;
+  for (int view = 0; view < (by_view ? w->frames->views : 1); view++) {
+    char path[4096];
+    vlError error = {0};
+    frames_path(w->frames, &p->frame, pattern, view, path, sizeof path);
+    int code = STATUS_OK;
+    if (output_holds_layers(path))
+      code = channels_write_ids(&p->channels[view], two && !by_view ? &p->channels[1] : NULL, w->world, path);
+    vlResult result =
+        two && !by_view ? write_both(w, p, path, &def, &error) : write_one(w, p, view, path, &def, &error);
+    if (result != VL_OK) code = report_error(&error, result, path);
+    if (status == STATUS_OK) status = code;
+  }
+  return status;
+}
+
+static int write_picture(FrameWriter *w, FramePicture *p) {
+  int status = STATUS_OK;
+  for (int v = 0; v < w->frames->views && status == STATUS_OK; v++) {
+    vlResult result = attributes_set(p->images[v], &p->jobs[v], p->spp);
+    if (result == VL_OK) result = channels_describe(&p->channels[v], p->images[v]);
+    const vlTrajectoryFrame *pose = &p->frame.pose;
+    if (result == VL_OK && w->frames->trajectory)
+      result = attributes_set_frame(p->images[v], p->frame.number, pose->name, pose->time);
+    if (result == VL_OK && *w->frames->view_names[v])
+      result = attributes_set_eye(p->images[v], w->frames->view_names[v]);
+    if (result != VL_OK) status = report_error(NULL, result, NULL);
+  }
+  for (int last = 0; last < 2; last++)
+    for (int i = 0; i < w->outputs->count && status != STATUS_OTHER; i++) {
+      bool by_view = pattern_has(w->outputs->paths[i], 'v');
+      if ((w->frames->views == 2 && !by_view) != last) continue;
+      int code = write_pattern(w, p, w->outputs->paths[i], by_view);
+      if (status == STATUS_OK) status = code;
+    }
+  return status;
+}
+
+/* ---- the thread -------------------------------------------------------------------------------------------------- */
+
+static void *work(void *user) {
+  FrameWriter *w = user;
+  pthread_mutex_lock(&w->mutex);
+  for (;;) {
+    while (w->count == 0 && !w->closed) pthread_cond_wait(&w->changed, &w->mutex);
+    if (w->count == 0) break;
+    FramePicture *picture = &w->queue[w->first]; /* stays counted, so that nobody writes over it */
+    pthread_mutex_unlock(&w->mutex);
+    int status = write_picture(w, picture);
+    frame_picture_free(picture);
+    pthread_mutex_lock(&w->mutex);
+    if (status == STATUS_OK)
+      w->written++;
+    else if (w->status == STATUS_OK)
+      w->status = status;
+    w->first = (w->first + 1) % QUEUE;
+    w->count--;
+    pthread_cond_signal(&w->changed);
+  }
+  pthread_mutex_unlock(&w->mutex);
+  return NULL;
+}
+
+FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const Frames *frames,
+                                const Outputs *outputs) {
+  FrameWriter *w = calloc(1, sizeof *w);
+  if (!w) return NULL;
+  w->context = context;
+  w->world = world;
+  w->frames = frames;
+  w->outputs = outputs;
+  pthread_mutex_init(&w->mutex, NULL);
+  pthread_cond_init(&w->changed, NULL);
+  if (pthread_create(&w->thread, NULL, work, w) == 0) return w;
+  pthread_mutex_destroy(&w->mutex);
+  pthread_cond_destroy(&w->changed);
+  free(w);
+  return NULL;
+}
+
+void frame_writer_put(FrameWriter *w, const FramePicture *picture) {
+  pthread_mutex_lock(&w->mutex);
+  while (w->count == QUEUE) pthread_cond_wait(&w->changed, &w->mutex);
+  w->queue[(w->first + w->count) % QUEUE] = *picture;
+  w->count++;
+  pthread_cond_signal(&w->changed);
+  pthread_mutex_unlock(&w->mutex);
+}
+
+int frame_writer_finish(FrameWriter *w, uint32_t *written) {
+  pthread_mutex_lock(&w->mutex);
+  w->closed = true;
+  pthread_cond_signal(&w->changed);
+  pthread_mutex_unlock(&w->mutex);
+  pthread_join(w->thread, NULL);
+  int status = w->status;
+  *written = w->written;
+  pthread_mutex_destroy(&w->mutex);
+  pthread_cond_destroy(&w->changed);
+  free(w);
+  return status;
+}

@@ -1,0 +1,291 @@
+/* render/frames.c: see frames.h. Which frames there are, their cameras and the names of their files. */
+#include "render/frames.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "camera/camera.h"
+#include "cli/report.h"
+#include "render/pattern.h"
+
+static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+static const double y_up[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+bool frames_wanted(const Arguments *arguments, const Job *job) {
+  if (arguments->values[RENDER_TRAJECTORY].given) return true;
+  return job && job->settings->camera.stereo.mode != VL_STEREO_NONE;
+}
+
+/* ---- the command line -------------------------------------------------------------------------------------------- */
+
+/* "3", "0-99", "10-", "0-100:10" */
+static bool read_range(const char *text, uint32_t *first, uint32_t *last, uint32_t *step) {
+  char *end;
+  const char *at = text;
+  unsigned long long numbers[3] = {0, UINT32_MAX, 1};
+  if (!(*at >= '0' && *at <= '9')) return false;
+  numbers[0] = strtoull(at, &end, 10);
+  if (*end != '-') numbers[1] = numbers[0];
+  if (*end == '-') {
+    at = end + 1;
+    end = (char *)at;
+    if (*at >= '0' && *at <= '9') numbers[1] = strtoull(at, &end, 10);
+  }
+  if (*end == ':' && end[1] >= '0' && end[1] <= '9') numbers[2] = strtoull(end + 1, &end, 10);
+  if (*end || numbers[0] > UINT32_MAX || numbers[1] > UINT32_MAX || numbers[2] > UINT32_MAX) return false;
+  *first = (uint32_t)numbers[0], *last = (uint32_t)numbers[1], *step = (uint32_t)numbers[2];
+  return *first <= *last && *step > 0;
+}
+
+int frames_check(const Arguments *arguments, Outputs *outputs) {
+  const OptionValue *v = arguments->values;
+  bool trajectory = v[RENDER_TRAJECTORY].given;
+  uint32_t unused;
+  outputs->patterns = trajectory || v[RENDER_STEREO].given;
+  if (v[RENDER_RIG].given && !trajectory) return report_usage("--rig FILE: the poses are missing; give --trajectory");
+  if (v[RENDER_FRAMES].given && !trajectory) return report_usage("--frames goes with --trajectory");
+  if (v[RENDER_FRAME].given && (trajectory || !v[RENDER_CAMERA].given))
+    return report_usage(trajectory ? "--frame goes with --camera; a trajectory's are chosen by --frames"
+                                   : "--frame NAME says which camera of --camera FILE");
+  if (v[RENDER_FRAMES].given && !read_range(v[RENDER_FRAMES].text, &unused, &unused, &unused))
+    return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0", v[RENDER_FRAMES].text);
+  if (trajectory && (v[RENDER_FLOW_CAMERA].given || v[RENDER_FLOW_CAMERA_BEFORE].given))
+    return report_usage("--flow-camera is of one picture: it does not go with --trajectory");
+  if (!trajectory) return -1;
+  if (outputs->count == 0)
+    return report_usage("--trajectory: give the files' name with -o, such as -o frame_%%04d.exr");
+  for (int i = 0; i < outputs->count; i++) {
+    int status = pattern_check(outputs->paths[i]);
+    if (status >= 0) return status;
+  }
+  return -1;
+}
+
+/* ---- cameras ----------------------------------------------------------------------------------------------------- */
+
+static void multiply(const double a[16], const double b[16], double result[16]) {
+  double m[16];
+  for (int i = 0; i < 16; i++) {
+    const double *row = a + i / 4 * 4, *column = b + i % 4;
+    m[i] = row[0] * column[0] + row[1] * column[4] + row[2] * column[8] + row[3] * column[12];
+  }
+  memcpy(result, m, sizeof m);
+}
+
+/* The film of an earlier camera of the same size, else one of its own. */
+static int make_film(Frames *frames, vlContext *context, FrameCamera *camera) {
+  for (FrameCamera *other = frames->cameras; other < camera; other++)
+    if (memcmp(&other->job.film, &camera->job.film, sizeof camera->job.film) == 0) {
+      camera->film = other->film;
+      return -1;
+    }
+  vlResult result = vl_film_create(context, &camera->job.film, &camera->film);
+  camera->owns_film = result == VL_OK;
+  return result == VL_OK ? -1 : report_error(NULL, result, camera->job.path);
+}
+
+/* From a camera as made; def is null for the scene's own. */
+static int add_camera(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments,
+                      const vlCameraRecord *record, const char *path) {
+  FrameCamera *camera = &frames->cameras[frames->camera_count++];
+  camera->job = *job;
+  if (record) {
+    snprintf(camera->name, sizeof camera->name, "%s", record->name);
+    int status = job_take_camera(&camera->job, &camera->settings, &record->camera, path, arguments);
+    if (status >= 0) return status;
+  }
+  /* what only one picture's camera has, its place and its motion, makes room for the frames' poses */
+  vlError error = {0};
+  vlCamera base = camera->job.camera;
+  vlResult result = VL_OK;
+  memcpy(camera->mount, base.world_from_camera, sizeof camera->mount);
+  if (frames->trajectory) {
+    /* but a calibration file's negative fy says which way y goes in all of them (a scene's camera is in a place) */
+    const OptionValue *file = &arguments->values[RENDER_CAMERA];
+    bool turned = !record && file->given && !camera_is_scene(file->text) &&
+                  memcmp(base.world_from_camera, y_up, sizeof y_up) == 0;
+    result = vl_camera_move(&base, turned ? y_up : identity, &base, &error);
+  }
+  for (int i = 0; i < frames->views && result == VL_OK; i++)
+    result = vl_camera_eye(&base, &camera->job.settings->camera.stereo, frames->eyes[i], &camera->eyes[i], &error);
+  if (result == VL_OK) return make_film(frames, context, camera);
+  vlError place = camera->job.camera_place;
+  snprintf(place.message, sizeof place.message, "%s", error.message);
+  return report_error(&place, result, path);
+}
+
+static int load_file(vlContext *context, const char *path, vlTrajectory **trajectory) {
+  vlError error = {0};
+  vlResult result = vl_trajectory_load(context, path, NULL, trajectory, &error);
+  return result == VL_OK ? -1 : report_error(&error, result, path);
+}
+
+/* The rig's cameras where they stand in it. */
+static int add_rig(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments, const char *path) {
+  for (uint32_t i = 0; i < vl_trajectory_frames(frames->rig); i++) {
+    vlTrajectoryFrame frame;
+    vl_trajectory_frame(frames->rig, i, &frame);
+    if (frame.camera == VL_NO_CAMERA)
+      return report_failure(STATUS_SCENE, "%s: a rig needs cameras; this file holds poses only", path);
+    vlCameraRecord record = *vl_trajectory_camera(frames->rig, (uint32_t)frame.camera);
+    if (*frame.name) snprintf(record.name, sizeof record.name, "%s", frame.name);
+    if (!record.name[0]) snprintf(record.name, sizeof record.name, "%u", i);
+    int status = add_camera(frames, context, job, arguments, &record, path);
+    if (status >= 0) return status;
+    memcpy(frames->cameras[i].mount, frame.world_from_camera, sizeof frame.world_from_camera);
+  }
+  return -1;
+}
+
+static int choose_frames(Frames *frames, const Arguments *arguments) {
+  const OptionValue *range = &arguments->values[RENDER_FRAMES];
+  uint32_t count = vl_trajectory_frames(frames->trajectory);
+  frames->first = 0, frames->last = count - 1, frames->step = 1;
+  if (!range->given) return -1;
+  read_range(range->text, &frames->first, &frames->last, &frames->step);
+  if (frames->first >= count || (frames->last != UINT32_MAX && frames->last >= count))
+    return report_usage("--frames \"%s\": the trajectory has %u frames, numbered from 0", range->text, count);
+  if (frames->last >= count) frames->last = count - 1;
+  return -1;
+}
+
+int frames_load(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments) {
+  static const char *const names[2] = {"left", "right"};
+  const OptionValue *v = arguments->values;
+  const vlCameraDef *def = &job->settings->camera;
+  bool stereo = def->stereo.mode != VL_STEREO_NONE, both = stereo && def->stereo_eye == VL_EYE_BOTH;
+  memset(frames, 0, sizeof *frames);
+  frames->step = 1;
+  frames->views = both ? 2 : 1;
+  for (int i = 0; i < 2; i++) frames->eyes[i] = both ? (i ? VL_EYE_RIGHT : VL_EYE_LEFT) : def->stereo_eye;
+  for (int i = 0; i < 2; i++) frames->view_names[i] = stereo ? names[frames->eyes[i] == VL_EYE_RIGHT] : "";
+  int status = -1;
+  const char *path = v[RENDER_TRAJECTORY].text, *rig = v[RENDER_RIG].text;
+  if (v[RENDER_TRAJECTORY].given) status = load_file(context, path, &frames->trajectory);
+  if (status < 0 && v[RENDER_RIG].given) status = load_file(context, rig, &frames->rig);
+  if (status < 0 && frames->trajectory) status = choose_frames(frames, arguments);
+  if (status >= 0) return status;
+  uint32_t count = frames->rig ? vl_trajectory_frames(frames->rig) : vl_trajectory_cameras(frames->trajectory);
+  frames->cameras = calloc(count ? count : 1, sizeof *frames->cameras);
+  if (!frames->cameras) return report_error(NULL, VL_ERROR_MEMORY, NULL);
+  if (frames->rig) return add_rig(frames, context, job, arguments, rig);
+  if (count == 0) return add_camera(frames, context, job, arguments, NULL, NULL);
+  for (uint32_t i = 0; i < count && status < 0; i++)
+    status = add_camera(frames, context, job, arguments, vl_trajectory_camera(frames->trajectory, i), path);
+  return status;
+}
+
+void frames_free(Frames *frames) {
+  for (uint32_t i = 0; i < frames->camera_count; i++)
+    if (frames->cameras[i].owns_film) vl_film_destroy(frames->cameras[i].film);
+  free(frames->cameras);
+  vl_trajectory_destroy(frames->trajectory);
+  vl_trajectory_destroy(frames->rig);
+}
+
+/* ---- one after the other ----------------------------------------------------------------------------------------- */
+
+uint32_t frames_count(const Frames *frames) {
+  uint32_t poses = (frames->last - frames->first) / frames->step + 1;
+  return frames->rig ? poses * frames->camera_count : poses;
+}
+
+Frame frames_at(const Frames *frames, uint32_t index) {
+  uint32_t cameras = frames->rig ? frames->camera_count : 1;
+  Frame frame = {.number = frames->first + index / cameras * frames->step, .camera = &frames->cameras[index % cameras]};
+  frame.pose.time = VL_UNSET;
+  if (!frames->trajectory) return frame;
+  vl_trajectory_frame(frames->trajectory, frame.number, &frame.pose);
+  if (!frames->rig) frame.camera = &frames->cameras[frame.pose.camera == VL_NO_CAMERA ? 0 : frame.pose.camera];
+  return frame;
+}
+
+bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, int view, char *path, size_t size) {
+  if (!frames->trajectory && frames->views == 1) return snprintf(path, size, "%s", pattern) < (int)size;
+  const PatternValues values = {frame->number, frame->pose.name, frame->camera->name, frames->view_names[view]};
+  return pattern_expand(pattern, &values, path, size);
+}
+
+vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera, vlError *error) {
+  const vlCamera *eye = &frame->camera->eyes[view];
+  double pose[16];
+  *camera = *eye;
+  if (!frames->trajectory) return VL_OK;
+  memcpy(pose, frame->pose.world_from_camera, sizeof pose);
+  if (frames->rig) multiply(pose, frame->camera->mount, pose);
+  multiply(pose, eye->world_from_camera, pose);
+  vlResult result = vl_camera_move(eye, pose, camera, error);
+  if (result == VL_OK && !isnan(frame->pose.time)) {
+    camera->shutter_open += frame->pose.time;
+    camera->shutter_close += frame->pose.time;
+  }
+  return result;
+}
+
+/* ---- names ------------------------------------------------------------------------------------------------------- */
+
+static int compare_paths(const void *a, const void *b) {
+  return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+/* All paths of one pattern; names that the trajectory says may be the same twice. */
+static int check_twice(const Frames *frames, const char *pattern) {
+  uint32_t count = frames_count(frames);
+  char **paths = calloc(count, sizeof *paths), path[4096];
+  int status = paths ? -1 : report_error(NULL, VL_ERROR_MEMORY, NULL);
+  for (uint32_t i = 0; i < count && status < 0; i++) {
+    Frame frame = frames_at(frames, i);
+    if (!frames_path(frames, &frame, pattern, 0, path, sizeof path))
+      status = report_failure(STATUS_IO, "frame %u: the file's name is too long", frame.number);
+    else if (!(paths[i] = strdup(path)))
+      status = report_error(NULL, VL_ERROR_MEMORY, NULL);
+  }
+  if (status < 0) qsort(paths, count, sizeof *paths, compare_paths);
+  for (uint32_t i = 1; i < count && status < 0; i++)
+    if (strcmp(paths[i - 1], paths[i]) == 0)
+      status = report_usage("output \"%s\": two of the %u frames would be \"%s\"; %s", pattern, count, paths[i],
+                            frames->rig ? "put %d and %c into the name" : "put %d into the name");
+  for (uint32_t i = 0; i < count && paths; i++) free(paths[i]);
+  free(paths);
+  return status;
+}
+
+/* Folders that the pattern makes are made here; others must be there. */
+static int make_folder(char *path) {
+  char *slash = strrchr(path, '/');
+  if (!slash || slash == path) return -1;
+  *slash = 0;
+  int failed = mkdir(path, 0777) != 0 && errno != EEXIST ? errno : 0;
+  int status = failed ? report_failure(STATUS_IO, "cannot make the folder %s: %s", path, strerror(failed)) : -1;
+  *slash = '/';
+  return status;
+}
+
+int frames_check_names(const Frames *frames, const Outputs *outputs) {
+  char path[4096];
+  for (int i = 0; i < outputs->count; i++) {
+    const char *pattern = outputs->paths[i], *slash = strrchr(pattern, '/');
+    bool by_view = pattern_has(pattern, 'v');
+    if (frames->views == 2 && pattern_check(pattern) >= 0) return STATUS_USAGE;
+    if (frames->views == 2 && !by_view && !output_holds_layers(pattern))
+      return report_usage("output \"%s\": only .exr holds both eyes in one file; put %%v (left, right) into the name",
+                          pattern);
+    if (frames_count(frames) > 1) {
+      int status = check_twice(frames, pattern);
+      if (status >= 0) return status;
+    }
+    bool folders = slash && memchr(pattern, '%', (size_t)(slash - pattern));
+    for (uint32_t k = 0; k < frames_count(frames) && folders; k++)
+      for (int view = 0; view < (by_view ? frames->views : 1); view++) {
+        Frame frame = frames_at(frames, k);
+        if (!frames_path(frames, &frame, pattern, view, path, sizeof path)) continue;
+        int status = make_folder(path);
+        if (status >= 0) return status;
+      }
+  }
+  return -1;
+}

@@ -1,0 +1,173 @@
+/* render/frames_render.c: the frames one after the other. A frame that fails stops nothing: what is written stays, the
+ * others are rendered, and the exit code tells. */
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/report.h"
+#include "cli/signals.h"
+#include "render/frame_writer.h"
+#include "render/lens_options.h"
+#include "render/progress.h"
+
+typedef struct Run {
+  Frames *frames;
+  vlContext *context;
+  const vlWorld *world;
+  const Outputs *outputs;
+  const Channels *channels; /* what is wanted; no layers */
+  bool layers;              /* some file holds them */
+  uint32_t count, done;
+  Progress progress;
+  double start, last_shown;
+  vlRenderStats total;
+} Run;
+
+static bool on_progress(void *user, const vlProgress *now) {
+  Run *run = user;
+  if (run->count == 1) progress_show(&run->progress, now);
+  return !signals_pending();
+}
+
+/* Now and then how many frames there are. */
+static void show(Run *run, const Frame *frame) {
+  double now = monotonic_seconds();
+  if (run->count == 1 || report_is_quiet() || now - run->last_shown < (report_is_terminal() ? 0.1 : 5.0)) return;
+  run->last_shown = now;
+  char text[200], elapsed[32], left[32];
+  double each = run->done ? (now - run->start) / run->done : 0;
+  if (report_is_json()) {
+    Json json = report_json_begin("progress");
+    json_integer(&json, "frame", frame->number);
+    json_integer(&json, "frames_done", run->done);
+    json_integer(&json, "frames", run->count);
+    json_number(&json, "elapsed", now - run->start);
+    json_number(&json, "remaining", each * (run->count - run->done));
+    report_json_end(&json);
+    return;
+  }
+  format_seconds(elapsed, sizeof elapsed, now - run->start);
+  format_seconds(left, sizeof left, each * (run->count - run->done));
+  snprintf(text, sizeof text, "frame %u: %u/%u frames  %s elapsed  %s left", frame->number, run->done, run->count,
+           elapsed, left);
+  if (report_is_terminal())
+    report_status_line(text);
+  else
+    report_note("%3.0f %%  %s", 100.0 * run->done / run->count, text);
+}
+
+/* In words, for messages. */
+static void frame_place(const Run *run, const Frame *frame, char *text, size_t size) {
+  if (!run->frames->trajectory)
+    snprintf(text, size, "%s", frame->camera->job.path);
+  else
+    snprintf(text, size, "frame %u%s%.100s%s", frame->number, *frame->pose.name ? " (" : "", frame->pose.name,
+             *frame->pose.name ? ")" : "");
+}
+
+static void add_stats(vlRenderStats *total, const vlRenderStats *more) {
+  if (!total->not_finite) total->worst_x = more->worst_x, total->worst_y = more->worst_y;
+  total->spp = more->spp;
+  total->paths += more->paths;
+  total->camera_rays += more->camera_rays;
+  total->bounce_rays += more->bounce_rays;
+  total->shadow_rays += more->shadow_rays;
+  total->not_finite += more->not_finite;
+}
+
+/* One eye's picture and channels. VL_CANCELLED: interrupted, nothing is kept. */
+static int render_view(Run *run, const Frame *frame, int view, FramePicture *picture) {
+  char place[200];
+  vlError error = {0};
+  vlRenderStats stats = {0};
+  vlFilm *film = frame->camera->film;
+  Job *job = &picture->jobs[view];
+  *job = frame->camera->job;
+  frame_place(run, frame, place, sizeof place);
+  vlResult result = frames_camera(run->frames, frame, view, &job->camera, &error);
+  if (result != VL_OK) return report_error(&error, result, place);
+  int status = lens_autofocus(job, NULL, run->world);
+  if (status >= 0) return status;
+  job->render.progress = on_progress;
+  job->render.progress_user = run;
+  vl_film_clear(film);
+  result = vl_render(run->world, &job->camera, film, &job->render, &stats, &error);
+  add_stats(&run->total, &stats);
+  if (result == VL_CANCELLED || signals_pending()) return 128 + signals_pending();
+  if (result != VL_OK) return report_failure(STATUS_OTHER, "%s: %s", place, error.message);
+  vlDevelopDef develop = vl_default_develop_def();
+  develop.exposure = job->settings->exposure;
+  result = vl_film_develop(film, &develop, &picture->images[view]);
+  if (result != VL_OK) return report_error(NULL, result, NULL);
+  picture->spp = vl_film_spp(film);
+  picture->channels[view] = *run->channels;
+  return run->layers ? channels_render(&picture->channels[view], run->context, run->world, job, film) : STATUS_OK;
+}
+
+static void report_end(const Run *run, uint32_t written, int status) {
+  double seconds = monotonic_seconds() - run->start;
+  const vlRenderStats *t = &run->total;
+  if (t->not_finite)
+    report_warning("%llu samples were not finite or negative and were left out; the first one at pixel %u, %u",
+                   (unsigned long long)t->not_finite, t->worst_x, t->worst_y);
+  if (report_is_json()) {
+    Json json = report_json_begin("result");
+    json_integer(&json, "status", status);
+    json_integer(&json, "frames", run->count);
+    json_integer(&json, "written", written);
+    json_integer(&json, "spp", t->spp);
+    json_number(&json, "seconds", seconds);
+    json_integer(&json, "paths", (int64_t)t->paths);
+    json_integer(&json, "camera_rays", (int64_t)t->camera_rays);
+    json_integer(&json, "bounce_rays", (int64_t)t->bounce_rays);
+    json_integer(&json, "shadow_rays", (int64_t)t->shadow_rays);
+    json_integer(&json, "not_finite", (int64_t)t->not_finite);
+    report_json_end(&json);
+    return;
+  }
+  char time[32], speed[32];
+  format_seconds(time, sizeof time, seconds);
+  format_count(speed, sizeof speed, seconds > 0 ? (double)t->paths / seconds : 0);
+  report_note("%u of %u frames%s in %s, %u spp, %s paths/s; wrote %s%s", written, run->count,
+              run->frames->views == 2 ? " (two eyes)" : "", time, t->spp, speed, run->outputs->paths[0],
+              run->outputs->count > 1 ? ", ..." : "");
+}
+
+int frames_render(Frames *frames, vlContext *context, const vlWorld *world, const Outputs *outputs,
+                  const Channels *channels) {
+  Run run = {.frames = frames,
+             .context = context,
+             .world = world,
+             .outputs = outputs,
+             .channels = channels,
+             .count = frames_count(frames),
+             .start = monotonic_seconds()};
+  for (int i = 0; i < outputs->count; i++) run.layers = run.layers || output_holds_layers(outputs->paths[i]);
+  FrameWriter *writer = frame_writer_start(context, world, frames, outputs);
+  if (!writer) return report_error(NULL, VL_ERROR_MEMORY, NULL);
+  signals_remember();
+  int status = STATUS_OK;
+  for (uint32_t i = 0; i < run.count && status < 128; i++) {
+    FramePicture picture;
+    memset(&picture, 0, sizeof picture);
+    picture.frame = frames_at(frames, i);
+    show(&run, &picture.frame);
+    int code = STATUS_OK;
+    for (int v = 0; v < frames->views && code == STATUS_OK; v++) {
+      progress_start(&run.progress, picture.frame.camera->job.render.time_limit);
+      code = render_view(&run, &picture.frame, v, &picture);
+    }
+    if (code == STATUS_OK)
+      frame_writer_put(writer, &picture);
+    else
+      frame_picture_free(&picture);
+    if (code != STATUS_OK && (status == STATUS_OK || code >= 128)) status = code;
+    run.done++;
+  }
+  uint32_t written;
+  int code = frame_writer_finish(writer, &written);
+  report_status_line(NULL);
+  if (status < 128 && code != STATUS_OK) status = code;
+  if (status >= 128) report_note("interrupted; %u of %u frames are written", written, run.count);
+  report_end(&run, written, status);
+  return status;
+}

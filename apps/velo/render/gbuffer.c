@@ -1,0 +1,169 @@
+/* render/gbuffer.c: see gbuffer.h. From the ground truth of the pixels' centres; pbrt averages over a pixel's samples.
+ */
+#include "render/gbuffer.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "cli/report.h"
+
+static const char *const names[] = {"Albedo.R",
+                                    "Albedo.G",
+                                    "Albedo.B",
+                                    "P.X",
+                                    "P.Y",
+                                    "P.Z",
+                                    "dzdx",
+                                    "dzdy",
+                                    "N.X",
+                                    "N.Y",
+                                    "N.Z",
+                                    "Ns.X",
+                                    "Ns.Y",
+                                    "Ns.Z",
+                                    "u",
+                                    "v",
+                                    "Variance.R",
+                                    "Variance.G",
+                                    "Variance.B",
+                                    "RelativeVariance.R",
+                                    "RelativeVariance.G",
+                                    "RelativeVariance.B"};
+enum { ALBEDO = 0, P = 3, DZ = 6, N = 8, NS = 11, UV = 14, VARIANCE = 16, RELATIVE = 19, COUNT = 22 };
+_Static_assert(sizeof names / sizeof *names == COUNT, "a name for each");
+
+/* Where the channels that are read stand in the ground truth. */
+typedef struct Source {
+  const vlImage *truth, *picture;
+  const float *values;
+  uint32_t width, height, channels;
+  int p, n, ng, uv, albedo, ray, distance, error;
+  bool world;
+  double m[16]; /* camera from world */
+  double shrink, samples;
+} Source;
+
+static const float *at(const Source *s, uint32_t x, uint32_t y, int channel) {
+  return s->values + ((size_t)y * s->width + x) * s->channels + channel;
+}
+
+/* A point (w 1) or vector (w 0) of the world; pbrt's camera has x right, y up, z forward. */
+static void turn(const Source *s, const double v[3], double w, double out[3]) {
+  for (int i = 0; i < 3; i++) {
+    double sum = s->m[4 * i] * v[0] + s->m[4 * i + 1] * v[1] + s->m[4 * i + 2] * v[2] + s->m[4 * i + 3] * w;
+    out[i] = s->world ? v[i] : i == 1 ? -sum : sum;
+  }
+}
+static void put(const Source *s, const double v[3], double w, float *out) {
+  double turned[3], l = 1;
+  turn(s, v, w, turned);
+  if (w == 0.0) l = sqrt(turned[0] * turned[0] + turned[1] * turned[1] + turned[2] * turned[2]);
+  for (int i = 0; i < 3; i++) out[i] = l > 0 ? (float)(turned[i] / l) : 0.0f;
+}
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* How far the point's z moves from one pixel to the next on the surface's plane. */
+static double slope(const Source *s, uint32_t x, uint32_t y, uint32_t nx, uint32_t ny, const double p[3],
+                    const double n[3]) {
+  const float *ray = at(s, nx, ny, s->ray), *met = at(s, nx, ny, s->p), *own = at(s, x, y, s->ray);
+  double far = (double)*at(s, nx, ny, s->distance), distance = (double)*at(s, x, y, s->distance);
+  double d[3], o[3], way[3], turned[3];
+  for (int i = 0; i < 3; i++) {
+    d[i] = (double)ray[i];
+    o[i] = far < 1e30 ? (double)met[i] - far * d[i] : p[i] - distance * (double)own[i];
+    way[i] = p[i] - o[i];
+  }
+  double across = dot(n, d), t = across != 0.0 ? dot(n, way) / across : 0.0;
+  for (int i = 0; i < 3; i++) way[i] = across != 0.0 ? o[i] + t * d[i] - p[i] : 0.0;
+  turn(s, way, 0, turned);
+  return fabs(turned[2]) < 1e30 ? fabs(turned[2]) * s->shrink : 0.0;
+}
+
+static void fill(const Source *s, uint32_t x, uint32_t y, float out[COUNT]) {
+  for (int c = 0; c < 3; c++) { /* of samples: the mean's error squared times their number */
+    float error = at(s, x, y, s->error)[c], mean = vl_image_get(s->picture, x, y, (uint32_t)c);
+    out[VARIANCE + c] = error < 1e18f ? (float)((double)error * (double)error * s->samples) : 0.0f;
+    out[RELATIVE + c] = mean != 0.0f ? out[VARIANCE + c] / mean : 0.0f;
+  }
+  if (!(*at(s, x, y, s->distance) < 1e30f)) return;
+  double p[3], n[3], ns[3], ray[3];
+  for (int i = 0; i < 3; i++) {
+    p[i] = (double)at(s, x, y, s->p)[i];
+    n[i] = (double)at(s, x, y, s->ng)[i];
+    ns[i] = (double)at(s, x, y, s->n)[i];
+    ray[i] = (double)at(s, x, y, s->ray)[i];
+    out[ALBEDO + i] = at(s, x, y, s->albedo)[i];
+  }
+  bool away[2] = {dot(n, ray) > 0, dot(ns, ray) > 0}; /* both shall face the camera */
+  for (int i = 0; i < 3; i++) {
+    n[i] = away[0] ? -n[i] : n[i];
+    ns[i] = away[1] ? -ns[i] : ns[i];
+  }
+  put(s, p, 1, out + P);
+  put(s, n, 0, out + N);
+  put(s, ns, 0, out + NS);
+  for (int i = 0; i < 2; i++) out[UV + i] = at(s, x, y, s->uv)[i];
+  out[DZ] = (float)slope(s, x, y, x + 1 < s->width ? x + 1 : x ? x - 1 : x, y, p, n);
+  out[DZ + 1] = (float)slope(s, x, y, x, y + 1 < s->height ? y + 1 : y ? y - 1 : y, p, n);
+}
+
+static vlResult truth_of(const vlWorld *world, const Job *job, const vlFilm *film, vlImage **truth, vlError *error) {
+  vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
+  def.channels = VL_CHANNEL_P | VL_CHANNEL_N | VL_CHANNEL_NG | VL_CHANNEL_UV | VL_CHANNEL_ALBEDO | VL_CHANNEL_RAY |
+                 VL_CHANNEL_DISTANCE | VL_CHANNEL_ERROR;
+  memcpy(def.crop, job->film.crop, sizeof def.crop);
+  def.space = job->film.space;
+  def.film = film;
+  def.render = &job->render;
+  def.exposure = job->settings->exposure;
+  def.time = job_channels_time(job);
+  return vl_render_channels(world, &job->camera, &def, truth, NULL, error);
+}
+
+int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film, vlImage **image) {
+  vlImage *truth = NULL, *picture = NULL;
+  vlError error = {0};
+  vlDevelopDef develop = vl_default_develop_def();
+  develop.exposure = job->settings->exposure;
+  vlResult result = truth_of(world, job, film, &truth, &error);
+  if (result == VL_OK) result = vl_film_develop(film, &develop, &picture);
+  if (result == VL_OK) {
+    vlImageDef def = vl_default_image_def(vl_image_width(truth), vl_image_height(truth), COUNT);
+    def.names = names;
+    def.type = VL_PIXEL_F32;
+    def.encoding = VL_ENCODING_LINEAR;
+    result = vl_image_create(context, &def, image);
+  }
+  if (result == VL_OK) {
+    vlCamera held;
+    vl_camera_at(&job->camera, job_channels_time(job), &held);
+    double spp = vl_film_spp(film);
+    Source s = {.truth = truth,
+                .picture = picture,
+                .values = vl_image_const_pixels(truth),
+                .width = vl_image_width(truth),
+                .height = vl_image_height(truth),
+                .channels = vl_image_channels(truth),
+                .p = vl_image_find_channel(truth, "P.X"),
+                .n = vl_image_find_channel(truth, "N.X"),
+                .ng = vl_image_find_channel(truth, "Ng.X"),
+                .uv = vl_image_find_channel(truth, "uv.U"),
+                .albedo = vl_image_find_channel(truth, "albedo.R"),
+                .ray = vl_image_find_channel(truth, "ray.X"),
+                .distance = vl_image_find_channel(truth, "distance.Y"),
+                .error = vl_image_find_channel(truth, "error.R"),
+                .world = job->settings->gbuffer == VL_GBUFFER_WORLD,
+                .shrink = fmax(0.125, 1 / sqrt(spp)), /* pbrt's differentials shrink with the samples */
+                .samples = spp};
+    memcpy(s.m, held.camera_from_world, sizeof s.m);
+    float *out = vl_image_pixels(*image);
+    for (uint32_t y = 0; y < s.height; y++)
+      for (uint32_t x = 0; x < s.width; x++) fill(&s, x, y, out + ((size_t)y * s.width + x) * COUNT);
+  }
+  vl_image_destroy(truth);
+  vl_image_destroy(picture);
+  return result == VL_OK ? STATUS_OK : report_error(&error, result, job->path);
+}

@@ -1,0 +1,326 @@
+/* render/job.c: see job.h. Scene file's settings + command line → camera and defs of the render. */
+#include "render/job.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "camera/camera.h"
+#include "cli/report.h"
+#include "render/lens_options.h"
+#include "render/scene_options.h"
+
+const Choice tracer_choices[] = {{"path", VL_TRACER_PATH},
+                                 {"volpath", VL_TRACER_VOLPATH},
+                                 {"raycast", VL_TRACER_RAYCAST},
+                                 {"ambientocclusion", VL_TRACER_AMBIENT_OCCLUSION},
+                                 {"ao", VL_TRACER_AMBIENT_OCCLUSION},
+                                 {"bidirectional", VL_TRACER_BIDIRECTIONAL},
+                                 {"merging", VL_TRACER_MERGING},
+                                 {"sppm", VL_TRACER_SPPM},
+                                 {"lightpath", VL_TRACER_LIGHT_PATH},
+                                 {"randomwalk", VL_TRACER_RANDOM_WALK},
+                                 {NULL, 0}};
+const Choice sampler_choices[] = {{"zsobol", VL_SAMPLER_ZSOBOL},
+                                  {"sobol", VL_SAMPLER_SOBOL},
+                                  {"halton", VL_SAMPLER_HALTON},
+                                  {"hammersley", VL_SAMPLER_HAMMERSLEY},
+                                  {"multijittered", VL_SAMPLER_MULTI_JITTERED},
+                                  {"multi-jittered", VL_SAMPLER_MULTI_JITTERED},
+                                  {"nrooks", VL_SAMPLER_NROOKS},
+                                  {"n-rooks", VL_SAMPLER_NROOKS},
+                                  {"stratified", VL_SAMPLER_STRATIFIED},
+                                  {"jittered", VL_SAMPLER_STRATIFIED},
+                                  {"regular", VL_SAMPLER_REGULAR},
+                                  {"independent", VL_SAMPLER_INDEPENDENT},
+                                  {"random", VL_SAMPLER_INDEPENDENT},
+                                  {NULL, 0}};
+const Choice filter_choices[] = {{"box", VL_PIXEL_FILTER_BOX},
+                                 {"triangle", VL_PIXEL_FILTER_TRIANGLE},
+                                 {"gaussian", VL_PIXEL_FILTER_GAUSSIAN},
+                                 {"mitchell", VL_PIXEL_FILTER_MITCHELL},
+                                 {"lanczos", VL_PIXEL_FILTER_LANCZOS},
+                                 {"sinc", VL_PIXEL_FILTER_LANCZOS},
+                                 {"blackmanharris", VL_PIXEL_FILTER_BLACKMAN_HARRIS},
+                                 {"blackman-harris", VL_PIXEL_FILTER_BLACKMAN_HARRIS},
+                                 {NULL, 0}};
+const Choice light_sampler_choices[] = {
+    {"bvh", VL_LIGHT_SAMPLER_BVH}, {"power", VL_LIGHT_SAMPLER_POWER}, {"uniform", VL_LIGHT_SAMPLER_UNIFORM}, {NULL, 0}};
+const Choice regularize_choices[] = {{"off", 0}, {"on", 1}, {NULL, 0}};
+const Choice color_choices[] = {{"spectral", VL_COLOR_SPECTRAL}, {"rgb", VL_COLOR_RGB}, {NULL, 0}};
+const Choice view_choices[] = {{"standard", VL_VIEW_STANDARD},
+                               {"neutral", VL_VIEW_KHRONOS_NEUTRAL},
+                               {"agx", VL_VIEW_AGX},
+                               {"raw", VL_VIEW_RAW},
+                               {NULL, 0}};
+const Choice stereo_choices[] = {{"none", VL_STEREO_NONE},
+                                 {"parallel", VL_STEREO_PARALLEL},
+                                 {"off-axis", VL_STEREO_OFF_AXIS},
+                                 {"toe-in", VL_STEREO_TOE_IN},
+                                 {"omnidirectional", VL_STEREO_OMNIDIRECTIONAL},
+                                 {"ods", VL_STEREO_OMNIDIRECTIONAL},
+                                 {NULL, 0}};
+const Choice eye_choices[] = {{"both", VL_EYE_BOTH}, {"left", VL_EYE_LEFT}, {"right", VL_EYE_RIGHT}, {NULL, 0}};
+const Choice isa_choices[] = {{"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {NULL, 0}};
+
+/* ---- overrides --------------------------------------------------------------------------------------------------- */
+
+/* Where the settings' camera stands, copied: the source's string dies with its scene. */
+static vlError camera_place(const vlSceneSettings *settings, const char *path) {
+  vlSource source = settings->camera_source;
+  vlError place = {.line = source.file ? source.line : 0, .column = source.file ? source.column : 0};
+  snprintf(place.file, sizeof place.file, "%s", source.file ? source.file : path);
+  return place;
+}
+
+/* Camera and picture size of a camera file. */
+static int take_camera_file(Job *job, vlContext *context, vlSceneSettings *settings, const char *path,
+                            const char *frame) {
+  vlCameraRecord record;
+  int status = camera_load(context, path, 0, frame, &record);
+  if (status >= 0) return status;
+  settings->camera = record.camera;
+  settings->width = record.camera.width;
+  settings->height = record.camera.height;
+  const uint32_t whole[4] = {0, 0, settings->width, settings->height};
+  memcpy(settings->crop, whole, sizeof whole);
+  job->camera_place = (vlError){0};
+  snprintf(job->camera_place.file, sizeof job->camera_place.file, "%s", path);
+  return -1;
+}
+
+/* Camera and picture size of another scene file. */
+static int take_camera(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
+  const OptionValue *frame = &arguments->values[RENDER_FRAME];
+  if (!camera_is_scene(path))
+    return take_camera_file(job, context, vl_scene_settings(scene), path, frame->given ? frame->text : NULL);
+  vlScene *other = NULL;
+  vlError error = {0};
+  vlResult result = vl_scene_create(context, &other);
+  vlLoadDef load = vl_default_load_def();
+  load.permissive = arguments->values[RENDER_PERMISSIVE].given;
+  if (result == VL_OK) result = vl_scene_load(other, path, &load, &error);
+  if (result == VL_OK) {
+    job->camera_place = camera_place(vl_scene_settings(other), path);
+    result = vl_scene_take_camera(scene, other, &error);
+  }
+  int status = result == VL_OK ? -1 : report_error(&error, result, path);
+  vl_scene_destroy(other);
+  return status;
+}
+
+/* The first pixel whose left edge is at or right of the fraction: pbrt's ceil(resolution * fraction). */
+static uint32_t crop_pixel(uint32_t size, double fraction) {
+  double pixel = ceil(size * fraction);
+  return pixel < size ? (uint32_t)pixel : size;
+}
+
+static int override_crop(vlSceneSettings *settings, const Arguments *arguments) {
+  const OptionValue *crop = &arguments->values[RENDER_CROP], *window = &arguments->values[RENDER_CROPWINDOW];
+  uint32_t width = settings->width, height = settings->height;
+  if (crop->given && window->given) return report_usage("--crop and --cropwindow exclude each other");
+  if (crop->given) {
+    if (crop->integers[2] > width || crop->integers[3] > height)
+      return report_usage("--crop \"%s\": the picture has only %u x %u pixels", crop->text, width, height);
+    for (int i = 0; i < 4; i++) settings->crop[i] = (uint32_t)crop->integers[i];
+  } else if (window->given) {
+    settings->crop[0] = crop_pixel(width, window->numbers[0]);
+    settings->crop[2] = crop_pixel(width, window->numbers[1]);
+    settings->crop[1] = crop_pixel(height, window->numbers[2]);
+    settings->crop[3] = crop_pixel(height, window->numbers[3]);
+    if (settings->crop[0] >= settings->crop[2] || settings->crop[1] >= settings->crop[3])
+      return report_usage("--cropwindow \"%s\": holds no pixel of %u x %u", window->text, width, height);
+  }
+  return -1;
+}
+
+/* Keeps the scene's own crop window at the same fractions of the picture. */
+static void override_size(vlSceneSettings *settings, uint32_t width, uint32_t height) {
+  double sx = (double)width / settings->width, sy = (double)height / settings->height;
+  uint32_t *crop = settings->crop;
+  for (int i = 0; i < 4; i++) {
+    uint32_t limit = i & 1 ? height : width;
+    double pixel = ceil(crop[i] * (i & 1 ? sy : sx) - 1e-6);
+    crop[i] = pixel < limit ? (uint32_t)pixel : limit;
+  }
+  if (crop[0] == crop[2]) crop[crop[0] ? 0 : 2] += crop[0] ? (uint32_t)-1 : 1u;
+  if (crop[1] == crop[3]) crop[crop[1] ? 1 : 3] += crop[1] ? (uint32_t)-1 : 1u;
+  settings->width = width;
+  settings->height = height;
+}
+
+/* Samplers that lay out a fixed number of samples over the pixel cannot go on without end. */
+static bool sampler_is_open(vlSamplerKind kind) {
+  return kind == VL_SAMPLER_INDEPENDENT || kind == VL_SAMPLER_HALTON || kind == VL_SAMPLER_SOBOL ||
+         kind == VL_SAMPLER_ZSOBOL;
+}
+
+static void override_sampling(vlSceneSettings *settings, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  if (v[RENDER_TRACER].given) settings->tracer = (vlTracer)v[RENDER_TRACER].integer;
+  if (v[RENDER_MERGE_RADIUS].given) settings->merge_radius = v[RENDER_MERGE_RADIUS].number;
+  if (v[RENDER_LIGHT_PATHS].given) settings->light_paths = (uint32_t)v[RENDER_LIGHT_PATHS].integer;
+  if (v[RENDER_SAMPLER].given) settings->sampler = (vlSamplerKind)v[RENDER_SAMPLER].integer;
+  if (v[RENDER_FILTER].given) settings->filter = vl_default_pixel_filter((vlPixelFilterKind)v[RENDER_FILTER].integer);
+  if (v[RENDER_LIGHT_SAMPLER].given) settings->light_sampler = (vlLightSampler)v[RENDER_LIGHT_SAMPLER].integer;
+  if (v[RENDER_REGULARIZE].given) settings->regularize = v[RENDER_REGULARIZE].integer == 1;
+  if (v[RENDER_COLOR].given) settings->color = (vlColorMode)v[RENDER_COLOR].integer;
+  if (v[RENDER_MAX_DEPTH].given) settings->max_depth = (uint32_t)v[RENDER_MAX_DEPTH].integer;
+  if (v[RENDER_SEED].given) settings->sampler_seed = (uint32_t)v[RENDER_SEED].integer;
+  if (v[RENDER_SPP].given) {
+    settings->spp = (uint32_t)v[RENDER_SPP].integer;
+  } else if (v[RENDER_TIME].given) {
+    if (sampler_is_open(settings->sampler))
+      settings->spp = 65536;
+    else
+      report_warning(
+          "the sampler %s lays out a fixed number of samples: ends at %u spp even if --time is not over; give --spp",
+          choice_name(sampler_choices, (int)settings->sampler), settings->spp);
+  }
+}
+
+/* N[:MIN:MAX] */
+static int override_spectrum(vlSceneSettings *settings, const Arguments *arguments) {
+  const OptionValue *v = &arguments->values[RENDER_SPECTRUM];
+  if (v->given) {
+    unsigned count;
+    double low = 360, high = 830;
+    int used = 0;
+    bool good = sscanf(v->text, "%5u%n", &count, &used) == 1 && count <= 1000 && v->text[0] != '-';
+    if (good && v->text[used]) {
+      int more = 0;
+      good = sscanf(v->text + used, ":%lf:%lf%n", &low, &high, &more) == 2 && !v->text[used + more];
+    }
+    if (!good || !(low >= 360 && high <= 830 && low < high))
+      return report_usage(
+          "--spectrum \"%s\": must be N or N:MIN:MAX, N at most 1000 buckets from MIN to MAX, inside of "
+          "360 to 830 nm",
+          v->text);
+    settings->buckets = count, settings->lambda_min = low, settings->lambda_max = high;
+  }
+  if (settings->buckets && settings->color == VL_COLOR_RGB)
+    return report_usage("--color rgb: there is no spectrum then%s",
+                        v->given ? "" : " (--spectrum 0 leaves the scene's out)");
+  return -1;
+}
+
+static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t height) {
+  vlError error = {0};
+  vlCamera camera;
+  vlResult result = vl_camera_make(&def, &camera, NULL, &error); /* what it warns of was said when it was read */
+  if (result != VL_OK) {
+    snprintf(job->camera_place.message, sizeof job->camera_place.message, "%s",
+             error.message[0] ? error.message : vl_result_name(result));
+    return report_error(error.file[0] ? &error : &job->camera_place, result, NULL);
+  }
+  if (camera.width == width && camera.height == height) {
+    job->camera = camera;
+    return -1;
+  }
+  result = vl_camera_resize(&camera, width, height, &job->camera);
+  return result == VL_OK ? -1 : report_error(NULL, result, job->path);
+}
+
+/* The eyes are made last of all, in frames.c: the camera is the one between them. */
+static int override_stereo(vlSceneSettings *settings, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  vlStereo *stereo = &settings->camera.stereo;
+  if (v[RENDER_STEREO].given) stereo->mode = (vlStereoMode)v[RENDER_STEREO].integer;
+  bool none = stereo->mode == VL_STEREO_NONE;
+  if (none && (v[RENDER_INTEROCULAR].given || v[RENDER_CONVERGENCE].given || v[RENDER_EYE].given))
+    return report_usage("--interocular, --convergence and --eye go with --stereo MODE");
+  if (v[RENDER_INTEROCULAR].given) stereo->interocular = v[RENDER_INTEROCULAR].number;
+  if (v[RENDER_CONVERGENCE].given) stereo->convergence = v[RENDER_CONVERGENCE].number;
+  if (v[RENDER_EYE].given) settings->camera.stereo_eye = (vlEye)v[RENDER_EYE].integer;
+  return -1;
+}
+
+/* Size, crop and camera as the command line has them. The camera is made at the size it was described for and then
+ * resized, which keeps the framing. */
+static int fit_camera(Job *job, vlSceneSettings *settings, const Arguments *arguments) {
+  const OptionValue *size = &arguments->values[RENDER_RESOLUTION];
+  vlCameraDef camera = settings->camera;
+  camera.width = settings->width;
+  camera.height = settings->height;
+  camera.stereo_eye = VL_EYE_BOTH;
+  if (size->given) override_size(settings, (uint32_t)size->integers[0], (uint32_t)size->integers[1]);
+  int status = override_crop(settings, arguments);
+  if (status < 0) status = make_camera(job, camera, settings->width, settings->height);
+  return status < 0 ? lens_focus_on(&job->camera, arguments) : status;
+}
+
+int job_take_camera(Job *job, vlSceneSettings *settings, const vlCameraDef *def, const char *path,
+                    const Arguments *arguments) {
+  vlStereo stereo = job->settings->camera.stereo;
+  *settings = *job->settings;
+  settings->camera = *def;
+  settings->camera.stereo = stereo;
+  settings->width = def->width;
+  settings->height = def->height;
+  const uint32_t whole[4] = {0, 0, def->width, def->height};
+  memcpy(settings->crop, whole, sizeof whole);
+  job->camera_place = (vlError){.line = 0};
+  snprintf(job->camera_place.file, sizeof job->camera_place.file, "%s", path);
+  job->settings = settings;
+  int status = lens_override(NULL, settings, arguments);
+  if (status < 0) status = fit_camera(job, settings, arguments);
+  if (status >= 0) return status;
+  job->film.width = settings->width;
+  job->film.height = settings->height;
+  memcpy(job->film.crop, settings->crop, sizeof job->film.crop);
+  return -1;
+}
+
+/* "open", "middle", "close" or seconds. */
+static int read_channels_time(Job *job, const Arguments *arguments) {
+  static const char *const words[] = {"open", "middle", "close"};
+  const OptionValue *v = &arguments->values[RENDER_CHANNELS_TIME];
+  job->channels_share = 0.5;
+  job->channels_seconds = VL_UNSET;
+  if (!v->given) return -1;
+  for (int i = 0; i < 3; i++)
+    if (strcmp(v->text, words[i]) == 0) {
+      job->channels_share = 0.5 * i;
+      return -1;
+    }
+  char *end;
+  job->channels_seconds = strtod(v->text, &end);
+  if (end != v->text && !*end && fabs(job->channels_seconds) < 1e12) return -1;
+  return report_usage("--channels-time \"%s\": must be open, middle, close or seconds", v->text);
+}
+
+double job_channels_time(const Job *job) {
+  const vlCamera *c = &job->camera;
+  if (!isnan(job->channels_seconds)) return job->channels_seconds;
+  return vl_camera_time(c, 0.5 * c->width, 0.5 * c->height, job->channels_share);
+}
+
+int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  vlSceneSettings *settings = vl_scene_settings(scene);
+  job->path = path;
+  job->settings = settings;
+  job->camera_place = camera_place(settings, path);
+  if (v[RENDER_CAMERA].given && !scene_camera_is_own(path, arguments)) {
+    int status = take_camera(job, context, scene, v[RENDER_CAMERA].text, arguments);
+    if (status >= 0) return status;
+  }
+  int status = read_channels_time(job, arguments);
+  if (status < 0) status = override_stereo(settings, arguments);
+  if (status < 0) status = lens_override(scene, settings, arguments);
+  if (status < 0) status = fit_camera(job, settings, arguments);
+  if (status >= 0) return status;
+  override_sampling(settings, arguments);
+  status = override_spectrum(settings, arguments);
+  if (status >= 0) return status;
+  job->film = vl_scene_film_def(scene);
+  job->render = vl_scene_render_def(scene);
+  if (v[RENDER_TIME].given) job->render.time_limit = v[RENDER_TIME].number;
+  job->build = vl_default_build_def();
+  job->build.color = settings->color;
+  job->build.light_sampler = settings->light_sampler;
+  job->build.regularize = settings->regularize;
+  job->build.imitate_pbrt = v[RENDER_IMITATE_PBRT].given;
+  return -1;
+}

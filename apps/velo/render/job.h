@@ -1,0 +1,96 @@
+/* render/job.h: one render as it will be done: what the scene file says, overridden by the command line. */
+#ifndef APP_RENDER_JOB_H
+#define APP_RENDER_JOB_H
+
+#include "cli/options.h"
+#include "velo/velo.h"
+
+/* Options of `velo render`, indices into Arguments.values. */
+enum {
+  RENDER_OUTPUT,
+  RENDER_THREADS,
+  RENDER_SPP,
+  RENDER_TIME,
+  RENDER_RESOLUTION,
+  RENDER_CROP,
+  RENDER_CROPWINDOW,
+  RENDER_SEED,
+  RENDER_CAMERA,
+  RENDER_TRACER,
+  RENDER_SAMPLER,
+  RENDER_FILTER,
+  RENDER_LIGHT_SAMPLER,
+  RENDER_REGULARIZE,
+  RENDER_MERGE_RADIUS,
+  RENDER_LIGHT_PATHS,
+  RENDER_MAX_DEPTH,
+  RENDER_COLOR,
+  RENDER_VIEW,
+  RENDER_EXPOSURE,
+  RENDER_SPECTRUM,
+  RENDER_HALF,
+  RENDER_DRY_RUN,
+  RENDER_PERMISSIVE,
+  RENDER_IMITATE_PBRT,
+  RENDER_QUIET,
+  RENDER_LOG_JSON,
+  RENDER_VERBOSE,
+  RENDER_ISA,
+  RENDER_CHANNELS,
+  RENDER_CHANNELS_MODE,
+  RENDER_CHANNELS_TIME,
+  RENDER_CRYPTO_RANKS,
+  RENDER_FLOW_CAMERA,
+  RENDER_BOXES,
+  RENDER_FLOW_CAMERA_BEFORE,
+  RENDER_TRAJECTORY,
+  RENDER_FRAMES,
+  RENDER_FRAME,
+  RENDER_RIG,
+  RENDER_STEREO,
+  RENDER_INTEROCULAR,
+  RENDER_CONVERGENCE,
+  RENDER_EYE,
+  RENDER_AT,
+  RENDER_ANIMATION,
+  RENDER_VARIANT,
+  RENDER_ENVIRONMENT,
+  RENDER_ENVIRONMENT_ROTATION,
+  RENDER_ENVIRONMENT_STRENGTH,
+  RENDER_GROUND,
+  RENDER_SHUTTER,
+  RENDER_SCENE
+};
+
+extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[],
+    regularize_choices[], color_choices[], view_choices[], isa_choices[], stereo_choices[], eye_choices[];
+
+extern const Option render_options[];
+
+typedef struct Job {
+  const char *path;                /* of the scene file */
+  const vlSceneSettings *settings; /* resolved; live in the scene */
+  vlError camera_place;            /* where the camera stands in its file; only file, line and column are used */
+  vlCamera camera;
+  vlFilmDef film;
+  vlBuildDef build;
+  vlRenderDef render;
+  double channels_share,
+      channels_seconds; /* when ground truth is seen: share of the shutter's time, unless seconds are set */
+} Job;
+
+/* Overrides the scene's settings and makes camera and defs. -1: go on; else the exit code, all has been said. */
+int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments);
+
+/* The time of the ground truth, and of the camera in the header, in seconds. */
+double job_channels_time(const Job *job);
+
+/* The job with another camera, of a file: *settings, which must outlive it, become the scene's with this camera. */
+int job_take_camera(Job *job, vlSceneSettings *settings, const vlCameraDef *def, const char *path,
+                    const Arguments *arguments);
+
+/* What would be rendered, on stdout (or as a JSON line). */
+void job_describe(const Job *job, vlContext *context, const vlScene *scene, const vlWorld *world,
+                  const char *const *outputs, int output_count);
+
+#endif

@@ -1,0 +1,158 @@
+/* render/options.c: the options of `velo render`, in the order of its help page. */
+#include <stddef.h>
+
+#include "render/channels.h"
+#include "render/job.h"
+#include "render/lens_options.h"
+
+const Option render_options[] = {
+    {RENDER_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
+     "picture to write; may be given several times. The suffix chooses\n"
+     "the format: .exr .hdr .pfm (linear), .png .jpg .tga (display).\n"
+     "Default: the name the scene asks for, else its own with .exr,\nin the current folder",
+     0, 0, NULL},
+    {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel", 1, 1 << 24, NULL},
+    {RENDER_TIME, 0, "time", OPTION_TIME, "TIME",
+     "stop after the pass in which this time is over: 30, 30s, 5m,\n"
+     "1h30m. Without --spp as many samples as fit into it",
+     0, 0, NULL},
+    {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH", "picture size in pixels; the framing stays", 1, 65536,
+     NULL},
+    {RENDER_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1", "render only these pixels, x1 and y1 exclusive", 0, 0, NULL},
+    {RENDER_CROPWINDOW, 0, "cropwindow", OPTION_FRACTIONS, "x0,x1,y0,y1",
+     "the same in fractions of the picture, in pbrt's order", 0, 0, NULL},
+    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
+     "take camera and picture size from this scene or camera file;\nof a glTF file one of its own, by name or number",
+     0, 0, NULL},
+    {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which camera of --camera FILE, by its name or number from 0", 0, 0,
+     NULL},
+    {RENDER_SCENE, 0, "scene", OPTION_TEXT, "NAME", "glTF: which of its scenes, by name or number from 0", 0, 0, NULL},
+    {RENDER_AT, 0, "at", OPTION_TEXT, "T[:T1]",
+     "glTF: the moment of its animation, in seconds, or two: what moves\nbetween them is blurred; default: as modelled",
+     0, 0, NULL},
+    {RENDER_SHUTTER, 0, "shutter", OPTION_NUMBER, "SECONDS", "the shutter is open so long from --at on", 0, 1e6, NULL},
+    {RENDER_ANIMATION, 0, "animation", OPTION_TEXT, "NAME", "which one, by name or number from 0; default: the first",
+     0, 0, NULL},
+    {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: this variant of its materials", 0, 0, NULL},
+    {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "FILE",
+     "light from all around: studio, sky, white, none, or a picture\n(twice as wide as high: longitude and latitude; "
+     "or a square:\n"
+     "equal-area). Default: the studio where a file has none",
+     0, 0, NULL},
+    {RENDER_ENVIRONMENT_ROTATION, 0, "environment-rotation", OPTION_NUMBER, "DEG", "turned about the vertical", -36000,
+     36000, NULL},
+    {RENDER_ENVIRONMENT_STRENGTH, 0, "environment-strength", OPTION_NUMBER, "X", "factor on its light", 0, 1e6, NULL},
+    {RENDER_GROUND, 0, "ground", OPTION_FLAG, NULL, "a wide grey disk under everything", 0, 0, NULL},
+    {RENDER_TRAJECTORY, 0, "trajectory", OPTION_TEXT, "FILE",
+     "render every frame of FILE: a COLMAP model, transforms.json, a\n"
+     "camchain, a calibration with its views, or poses in lines (CSV,\n"
+     "TUM, KITTI). In -o %d (%04d: four digits) becomes the frame's\n"
+     "number, %n its name, %c the camera's, %v the eye",
+     0, 0, NULL},
+    {RENDER_FRAMES, 0, "frames", OPTION_TEXT, "A-B[:STEP]", "only these frames of the trajectory; numbers from 0", 0, 0,
+     NULL},
+    {RENDER_RIG, 0, "rig", OPTION_TEXT, "FILE",
+     "every camera of FILE at each pose of the trajectory: a pose is\nthe place of the rig, as a camchain's is cam0's",
+     0, 0, NULL},
+    {RENDER_STEREO, 0, "stereo", OPTION_CHOICE, "MODE",
+     "two eyes: an .exr holds both views, or one file for each where\n"
+     "the name has %v:",
+     0, 0, stereo_choices},
+    {RENDER_INTEROCULAR, 0, "interocular", OPTION_NUMBER, "D", "distance between the eyes, scene units; default 0.065",
+     1e-9, 1e9, NULL},
+    {RENDER_CONVERGENCE, 0, "convergence", OPTION_NUMBER, "D",
+     "depth where off-axis windows or toed-in axes meet, scene units", 1e-9, 1e12, NULL},
+    {RENDER_EYE, 0, "eye", OPTION_CHOICE, "NAME", "which eyes' pictures:", 0, 0, eye_choices},
+    {RENDER_TRACER, 0, "tracer", OPTION_CHOICE, "NAME", "how light is followed:", 0, 0, tracer_choices},
+    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "longest path, in bounces", 0, 4096, NULL},
+    {RENDER_MERGE_RADIUS, 0, "merge-radius", OPTION_NUMBER, "R",
+     "merging, sppm: within which paths from the eye and from the\nlights meet at first, scene units; default: two "
+     "pixels wide",
+     1e-30, 1e30, NULL},
+    {RENDER_LIGHT_PATHS, 0, "light-paths", OPTION_INTEGER, "N",
+     "bidirectional, merging, sppm, lightpath: paths from the lights\nfor each sample of the picture; default: as many "
+     "as pixels",
+     0, 1 << 24, NULL},
+    {RENDER_SAMPLER, 0, "sampler", OPTION_CHOICE, "NAME", "how samples are placed:", 0, 0, sampler_choices},
+    {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "another number, other noise", 0, 4294967295.0, NULL},
+    {RENDER_FILTER, 0, "filter", OPTION_CHOICE, "NAME", "pixel filter, with pbrt's usual size:", 0, 0, filter_choices},
+    {RENDER_LIGHT_SAMPLER, 0, "light-sampler", OPTION_CHOICE, "NAME", "how a light is chosen:", 0, 0,
+     light_sampler_choices},
+    {RENDER_REGULARIZE, 0, "regularize", OPTION_CHOICE, "NAME",
+     "make surfaces rougher for paths that have been scattered: no\n"
+     "fireflies, and softer caustics; default: as the scene says, or:",
+     0, 0, regularize_choices},
+    {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME", "what light is made of:", 0, 0, color_choices},
+    {RENDER_VIEW, 0, "view", OPTION_CHOICE, "NAME", "how light becomes display values (.png .jpg .tga):", 0, 0,
+     view_choices},
+    {RENDER_FOCUS_PIXEL, 0, "focus-pixel", OPTION_TEXT, "X,Y",
+     "autofocus: sharp is what this point of the picture sees, in\npixels from the top left corner", 0, 0, NULL},
+    {RENDER_FOCUS_DISTANCE, 0, "focus-distance", OPTION_NUMBER, "D", "sharp is the plane at this depth, in scene units",
+     1e-30, 1e30, NULL},
+    {RENDER_LENS_RADIUS, 0, "lens-radius", OPTION_NUMBER, "R", "of a thin lens, in scene units; 0 is a pinhole", 0,
+     1e30, NULL},
+    {RENDER_F_NUMBER, 0, "f-number", OPTION_NUMBER, "N",
+     "the same by focal length / (2 N); the camera must have its\nfocal length in millimetres", 1e-6, 1e6, NULL},
+    {RENDER_ISO, 0, "iso", OPTION_NUMBER, "S",
+     "exposure as a camera has it, with its f-number and --seconds:\nthe light is multiplied by seconds ISO / (120 "
+     "N^2)",
+     1e-6, 1e12, NULL},
+    {RENDER_SECONDS, 0, "seconds", OPTION_NUMBER, "T", "exposure time for --iso; default: the shutter's", 1e-12, 1e12,
+     NULL},
+    {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV",
+     "brighter by 2^EV (.png .jpg .tga), or auto: so that the middle\nof the picture's light is 18 % grey. Default: 0; "
+     "auto for glTF\nfiles with lamps",
+     0, 0, NULL},
+    {RENDER_CHANNELS, 0, "channels", OPTION_TEXT, "LIST",
+     "ground truth into the .exr, 32-bit: any of Z, distance, P, N, Ng,\n"
+     "uv, albedo, ray, id.object, id.material, id.instance,\n"
+     "id.primitive, samples, film, separated by commas; or all of\n"
+     "these. More, that cost more: error (standard error), forward,\n"
+     "backward (flow), crypto.object, crypto.material, crypto.instance\n"
+     "(Cryptomatte; crypto: all three).\n"
+     "FILE.ids.json says what the ids stand for",
+     0, 0, NULL},
+    {RENDER_CHANNELS_MODE, 0, "channels-mode", OPTION_CHOICE, "NAME",
+     "which point of a pixel they tell about: its centre, or of the\n"
+     "picture's samples the nearest, or one of the thing that covers\nmost of the pixel:",
+     0, 0, channel_mode_choices},
+    {RENDER_CHANNELS_TIME, 0, "channels-time", OPTION_TEXT, "TIME",
+     "when they see what moves: open, middle or close of the shutter's\ntime, or seconds; default middle", 0, 0, NULL},
+    {RENDER_CRYPTO_RANKS, 0, "crypto-ranks", OPTION_INTEGER, "N", "things a pixel of a Cryptomatte can hold; default 6",
+     2, 32, NULL},
+    {RENDER_FLOW_CAMERA, 0, "flow-camera", OPTION_TEXT, "FILE",
+     "the camera of the next picture: the channels forward.U, .V tell\n"
+     "in pixels where it sees what this one sees, and forward.hidden\nwhether it does (scene or camera file). Without "
+     "it: this camera at\nthe end of the shutter's time (--flow-camera-before: at its beginning)",
+     0, 0, NULL},
+    {RENDER_FLOW_CAMERA_BEFORE, 0, "flow-camera-before", OPTION_TEXT, "FILE",
+     "the camera of the picture before, for backward.U, .V, .hidden", 0, 0, NULL},
+    {RENDER_BOXES, 0, "boxes", OPTION_FLAG, NULL,
+     "FILE.ids.json also has boxes of each object and instance, in\n"
+     "pixels (of what is seen, and of all of it) and in space",
+     0, 0, NULL},
+    {RENDER_SPECTRUM, 0, "spectrum", OPTION_TEXT, "N[:MIN:MAX]",
+     "the picture's spectrum into the .exr, too: N channels S0.<nm>nm,\n"
+     "from 360 (MIN) to 830 (MAX) nm; 0: none",
+     0, 0, NULL},
+    {RENDER_HALF, 0, "half", OPTION_FLAG, NULL, ".exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
+    {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N",
+     "workers; default: one for each processor. The picture does not\n"
+     "depend on it",
+     1, 1024, NULL},
+    {RENDER_ISA, 0, "isa", OPTION_CHOICE, "NAME",
+     "instruction set, x86-64-...; default: the machine's best. The\n"
+     "picture does not depend on it:",
+     0, 0, isa_choices},
+    {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "warn about what is not understood instead of refusing it",
+     0, 0, NULL},
+    {RENDER_IMITATE_PBRT, 0, "imitate-pbrt", OPTION_FLAG, NULL,
+     "follow pbrt-v4 where it is known to be off: rough coats come out\n"
+     "a few percent too bright",
+     0, 0, NULL},
+    {RENDER_DRY_RUN, 0, "dry-run", OPTION_FLAG, NULL, "load, build and say what would be rendered; write nothing", 0, 0,
+     NULL},
+    {RENDER_QUIET, 0, "quiet", OPTION_FLAG, NULL, "only warnings and errors", 0, 0, NULL},
+    {RENDER_VERBOSE, 'v', "verbose", OPTION_FLAG, NULL, "more about loading and building", 0, 0, NULL},
+    {RENDER_LOG_JSON, 0, "log-json", OPTION_FLAG, NULL, "messages as JSON, one object a line, on stderr", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};

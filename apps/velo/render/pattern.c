@@ -1,0 +1,88 @@
+/* render/pattern.c: see pattern.h. */
+#include "render/pattern.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/report.h"
+
+/* After a percent sign: digits of the width, then the kind. 0: not known. */
+static char sign_at(const char *at, size_t *length, int *width) {
+  size_t digits = strspn(at, "0123456789");
+  *width = 0;
+  for (size_t i = 0; i < digits && i < 3; i++) *width = 10 * *width + (at[i] - '0');
+  *length = digits + 1;
+  char kind = at[digits];
+  if (kind == 'd') return digits <= 2 ? 'd' : 0;
+  return digits == 0 && kind && strchr("ncv%", kind) ? kind : 0;
+}
+
+int pattern_check(const char *pattern) {
+  for (const char *at = strchr(pattern, '%'); at; at = strchr(at, '%')) {
+    size_t length;
+    int width;
+    if (!sign_at(at + 1, &length, &width))
+      return report_usage(
+          "output \"%s\": \"%.*s\" is not known; there are %%d or %%04d (the frame's number), %%n (its name), %%c "
+          "(camera), %%v (eye), %%%%",
+          pattern, (int)(at[1] ? length + 1 : 1), at);
+    at += 1 + length;
+  }
+  return -1;
+}
+
+bool pattern_has(const char *pattern, char kind) {
+  for (const char *at = strchr(pattern, '%'); at; at = strchr(at, '%')) {
+    size_t length;
+    int width;
+    if (sign_at(at + 1, &length, &width) == kind) return true;
+    at += 1 + length;
+  }
+  return false;
+}
+
+/* The last part of a path, without a suffix; what no file name should have becomes "_". */
+static void clean(const char *name, char *result, size_t size) {
+  const char *slash = strrchr(name, '/'), *back = strrchr(slash ? slash : name, '\\');
+  const char *start = back ? back + 1 : slash ? slash + 1 : name, *dot = strrchr(start, '.');
+  size_t length = dot && dot > start && strlen(dot) <= 6 ? (size_t)(dot - start) : strlen(start);
+  if (length >= size) length = size - 1;
+  for (size_t i = 0; i < length; i++) {
+    unsigned char c = (unsigned char)start[i];
+    bool bad = c < 0x20 || c == 0x7f || strchr("\"*:<>?|", c) || (i == 0 && (c == '.' || c == '-'));
+    result[i] = bad ? '_' : (char)c;
+  }
+  result[length] = 0;
+}
+
+bool pattern_expand(const char *pattern, const PatternValues *v, char *path, size_t size) {
+  size_t used = 0;
+  for (const char *at = pattern; *at;) {
+    char piece[300] = "";
+    if (*at != '%') {
+      size_t n = strcspn(at, "%");
+      if (used + n >= size) return false;
+      memcpy(path + used, at, n);
+      used += n;
+      at += n;
+      continue;
+    }
+    size_t length;
+    int width;
+    char kind = sign_at(at + 1, &length, &width);
+    if (kind == 'n' && v->name) clean(v->name, piece, sizeof piece);
+    if (kind == 'c') clean(v->camera && *v->camera ? v->camera : "0", piece, sizeof piece);
+    if (kind == 'v' && v->view) snprintf(piece, sizeof piece, "%s", v->view);
+    if (kind == '%') snprintf(piece, sizeof piece, "%%");
+    if (kind == 'd' || (kind == 'n' && !*piece)) snprintf(piece, sizeof piece, "%0*u", width, v->number);
+    size_t n = strlen(piece);
+    if (used + n >= size) return false;
+    memcpy(path + used, piece, n);
+    used += n;
+    at += 1 + length;
+  }
+  if (size == 0) return false;
+  path[used] = 0;
+  return true;
+}

@@ -1,0 +1,114 @@
+/* render/progress.c: see progress.h. */
+#include "render/progress.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "cli/report.h"
+
+double monotonic_seconds(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void format_count(char *text, size_t size, double count) {
+  static const char *const units[] = {"", " k", " M", " G", " T"};
+  int unit = 0;
+  while (count >= 999.5 && unit < 4) count /= 1000, unit++;
+  if (unit == 0)
+    snprintf(text, size, "%.0f", count);
+  else
+    snprintf(text, size, "%.*f%s", count < 9.995 ? 2 : count < 99.95 ? 1 : 0, count, units[unit]);
+}
+
+void format_seconds(char *text, size_t size, double seconds) {
+  if (!(seconds >= 0) || seconds > 1e9) {
+    snprintf(text, size, "?");
+  } else if (seconds < 9.995) {
+    snprintf(text, size, "%.2f s", seconds);
+  } else if (seconds < 59.95) {
+    snprintf(text, size, "%.1f s", seconds);
+  } else {
+    unsigned long s = (unsigned long)(seconds + 0.5);
+    if (s < 3600)
+      snprintf(text, size, "%lu:%02lu", s / 60, s % 60);
+    else
+      snprintf(text, size, "%lu:%02lu:%02lu", s / 3600, s / 60 % 60, s % 60);
+  }
+}
+
+void progress_start(Progress *progress, double time_limit) {
+  *progress = (Progress){.time_limit = time_limit, .last_shown = -1};
+}
+
+/* The share of the work that is done and what is left, whichever of samples and time ends first. */
+static void estimate(const Progress *progress, const vlProgress *now, double *fraction, double *remaining) {
+  *fraction = now->fraction > 0 ? now->fraction < 1 ? now->fraction : 1 : 0;
+  *remaining = now->remaining;
+  if (progress->time_limit > 0) {
+    double by_time = now->elapsed / progress->time_limit, left = progress->time_limit - now->elapsed;
+    if (by_time > *fraction) *fraction = by_time < 1 ? by_time : 1;
+    if (!(*remaining >= 0) || left < *remaining) *remaining = left > 0 ? left : 0;
+  }
+}
+
+static void draw_bar(double fraction, const char *text) {
+  char line[512], bar[64];
+  int columns = report_terminal_columns();
+  int room = columns - 1 - (int)strlen(text) - 10;
+  int width = room > 40 ? 40 : room < 0 ? 0 : room;
+  int full = (int)(fraction * width);
+  for (int i = 0; i < width; i++) bar[i] = i < full ? '=' : i == full ? '>' : ' ';
+  bar[width] = 0;
+  int n = width >= 8 ? snprintf(line, sizeof line, "[%s] %3.0f %%  %s", bar, 100 * fraction, text)
+                     : snprintf(line, sizeof line, "%3.0f %%  %s", 100 * fraction, text);
+  if (n >= columns && columns > 1 && columns < (int)sizeof line) line[columns - 1] = 0;
+  report_status_line(line);
+}
+
+static bool is_power_of_two(uint32_t n) {
+  return n && !(n & (n - 1));
+}
+
+void progress_show(Progress *progress, const vlProgress *now) {
+  bool last = now->pass_done && now->spp_done >= now->spp_total;
+  double since = now->elapsed - progress->last_shown;
+  bool first = progress->last_shown < 0;
+  bool due;
+  if (report_is_terminal())
+    due = first || since >= 0.1;
+  else
+    due = (now->pass_done && now->spp_done != progress->last_spp && (is_power_of_two(now->spp_done) || last)) ||
+          since >= 5;
+  if (!due || report_is_quiet()) return;
+
+  double fraction, remaining, rate = now->elapsed > 0 ? (double)now->paths / now->elapsed : 0;
+  estimate(progress, now, &fraction, &remaining);
+  progress->last_shown = now->elapsed;
+  if (now->pass_done) progress->last_spp = now->spp_done;
+  if (report_is_json()) {
+    Json json = report_json_begin("progress");
+    json_integer(&json, "spp", now->spp_done);
+    json_integer(&json, "spp_total", now->spp_total);
+    json_number(&json, "fraction", fraction);
+    json_number(&json, "elapsed", now->elapsed);
+    json_number(&json, "remaining", remaining);
+    json_integer(&json, "paths", (int64_t)now->paths);
+    json_integer(&json, "rays", (int64_t)now->rays);
+    report_json_end(&json);
+    return;
+  }
+  char text[160], elapsed[32], left[32], speed[32];
+  format_seconds(elapsed, sizeof elapsed, now->elapsed);
+  format_seconds(left, sizeof left, remaining);
+  format_count(speed, sizeof speed, rate);
+  snprintf(text, sizeof text, "%u/%u spp  %s paths/s  %s elapsed  %s left", now->spp_done, now->spp_total, speed,
+           elapsed, left);
+  if (report_is_terminal())
+    draw_bar(fraction, text);
+  else
+    report_note("%3.0f %%  %s", 100 * fraction, text);
+}

@@ -1,0 +1,22 @@
+/* render/progress.h: how far the render is: a bar on a terminal, plain lines elsewhere, JSON lines for machines. */
+#ifndef APP_RENDER_PROGRESS_H
+#define APP_RENDER_PROGRESS_H
+
+#include "velo/velo.h"
+
+typedef struct Progress {
+  double time_limit; /* seconds; 0: none */
+  double last_shown; /* elapsed seconds of the last line or redraw; -1: none yet */
+  uint32_t last_spp;
+} Progress;
+
+void progress_start(Progress *progress, double time_limit);
+void progress_show(Progress *progress, const vlProgress *now);
+
+/* "1.27 M", "950", "3.4 G" */
+void format_count(char *text, size_t size, double count);
+/* "4.2 s", "1:05", "2:03:20" */
+void format_seconds(char *text, size_t size, double seconds);
+double monotonic_seconds(void);
+
+#endif

@@ -1,0 +1,122 @@
+/* render/scene_options.c: see scene_options.h. */
+#include "render/scene_options.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#include "cli/report.h"
+#include "render/job.h"
+
+static bool ends_with(const char *text, const char *suffix) {
+  size_t n = strlen(text), m = strlen(suffix);
+  return n >= m && strcasecmp(text + n - m, suffix) == 0;
+}
+
+bool scene_camera_is_own(const char *path, const Arguments *arguments) {
+  const OptionValue *camera = &arguments->values[RENDER_CAMERA];
+  struct stat info;
+  return camera->given && (ends_with(path, ".gltf") || ends_with(path, ".glb")) && stat(camera->text, &info) != 0;
+}
+
+/* studio, sky, white, none, or a file. */
+static void choose_environment(const char *text, vlCompleteDef *def) {
+  static const struct {
+    const char *name;
+    vlEnvironmentKind kind;
+  } kinds[] = {{"auto", VL_ENVIRONMENT_AUTO},
+               {"none", VL_ENVIRONMENT_NONE},
+               {"studio", VL_ENVIRONMENT_STUDIO},
+               {"sky", VL_ENVIRONMENT_SKY},
+               {"white", VL_ENVIRONMENT_WHITE}};
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+    if (strcmp(text, kinds[i].name) == 0) {
+      def->environment = kinds[i].kind;
+      return;
+    }
+  def->environment = VL_ENVIRONMENT_FILE;
+  def->path = text;
+}
+
+/* The lecture's parameters of the camera that was made. d: the view plane's distance at which a pixel is 1 wide. */
+static void tell_camera(const vlSceneSettings *s) {
+  const vlCameraDef *c = &s->camera;
+  double d = 0.5 * (s->width < s->height ? s->width : s->height) / tan(0.5 * c->fov);
+  report_note(
+      "no camera in the file: eye (%.5g, %.5g, %.5g), lookat (%.5g, %.5g, %.5g), up (%.3g, %.3g, %.3g), d %.5g "
+      "pixels",
+      c->eye[0], c->eye[1], c->eye[2], c->lookat[0], c->lookat[1], c->lookat[2], c->up[0], c->up[1], c->up[2], d);
+}
+
+/* --at T, --at T0:T1, --shutter S. */
+static int choose_times(const OptionValue *v, vlLoadDef *load) {
+  const OptionValue *at = &v[RENDER_AT], *shutter = &v[RENDER_SHUTTER];
+  if (shutter->given && !at->given) return report_usage("--shutter goes with --at SECONDS");
+  if (!at->given) return -1;
+  char *end;
+  load->time = strtod(at->text, &end);
+  bool ok = end != at->text && fabs(load->time) <= 1e6;
+  if (ok && *end == ':') {
+    const char *text = end + 1;
+    load->time_close = strtod(text, &end);
+    ok = end != text && fabs(load->time_close) <= 1e6;
+    if (ok && shutter->given) return report_usage("--at \"%s\" says already when the shutter closes", at->text);
+    if (ok && !(load->time_close >= load->time))
+      return report_usage("--at \"%s\": the shutter cannot close before it opens", at->text);
+  }
+  if (!ok || *end) return report_usage("--at \"%s\": must be SECONDS or T0:T1, within a million", at->text);
+  if (shutter->given) load->time_close = load->time + shutter->number;
+  return -1;
+}
+
+int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene, bool *lamps) {
+  const OptionValue *v = arguments->values;
+  vlError error = {0};
+  vlLoadDef load = vl_default_load_def();
+  load.permissive = v[RENDER_PERMISSIVE].given;
+  int status = choose_times(v, &load);
+  if (status >= 0) return status;
+  if (v[RENDER_SCENE].given) load.scene = v[RENDER_SCENE].text;
+  if (v[RENDER_ANIMATION].given) load.animation = v[RENDER_ANIMATION].text;
+  if (v[RENDER_VARIANT].given) load.variant = v[RENDER_VARIANT].text;
+  if (scene_camera_is_own(path, arguments)) load.camera = v[RENDER_CAMERA].text;
+  vlResult result = vl_scene_create(context, scene);
+  if (result == VL_OK) result = vl_scene_load(*scene, path, &load, &error);
+  if (result != VL_OK) return report_error(&error, result, path);
+
+  vlCompleteDef complete = vl_default_complete_def();
+  vlSceneSettings *settings = vl_scene_settings(*scene);
+  bool camera = settings->camera_missing && (!v[RENDER_CAMERA].given || load.camera);
+  settings->camera_missing = camera; /* another file has it */
+  vlSceneInfo info;
+  vl_scene_info(*scene, &info);
+  *lamps = info.lights > 0 && (ends_with(path, ".gltf") || ends_with(path, ".glb"));
+  if (v[RENDER_RESOLUTION].given) {
+    complete.width = (uint32_t)v[RENDER_RESOLUTION].integers[0];
+    complete.height = (uint32_t)v[RENDER_RESOLUTION].integers[1];
+  }
+  if (v[RENDER_ENVIRONMENT].given) choose_environment(v[RENDER_ENVIRONMENT].text, &complete);
+  if (v[RENDER_ENVIRONMENT_ROTATION].given)
+    complete.rotation = v[RENDER_ENVIRONMENT_ROTATION].number * 3.14159265358979323846 / 180.0;
+  if (v[RENDER_ENVIRONMENT_STRENGTH].given) complete.strength = (float)v[RENDER_ENVIRONMENT_STRENGTH].number;
+  complete.ground = v[RENDER_GROUND].given;
+  result = vl_scene_complete(*scene, &complete, &error);
+  if (result != VL_OK) return report_error(&error, result, path);
+  if (camera) tell_camera(settings);
+  if (settings->camera_in_full) {
+    vlCameraFileDef def = vl_default_camera_file_def();
+    def.dialect = VL_CAMERA_DIALECT_GLTF;
+    def.frame = load.camera;
+    vlCameraRecord record;
+    result = vl_camera_read(context, path, &def, &record, &error);
+    if (result != VL_OK) return report_error(&error, result, path);
+    const uint32_t whole[4] = {0, 0, record.camera.width, record.camera.height};
+    settings->camera = record.camera;
+    settings->width = whole[2], settings->height = whole[3];
+    memcpy(settings->crop, whole, sizeof whole);
+  }
+  return -1;
+}

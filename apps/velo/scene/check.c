@@ -1,0 +1,205 @@
+/* scene/check.c: `velo scene check`: the scene doctor. Reads a scene past its mistakes, looks at what it describes, and
+ * says everything that it finds with its place, on stdout. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "scene/scene.h"
+
+enum { CHECK_JSON, CHECK_NO_PICTURES, CHECK_ALL, CHECK_PERMISSIVE };
+enum { SHOWN = 10 }; /* of one kind, without --all */
+
+/* Owned copy of a finding, so that those told while loading stand beside the others. */
+typedef struct Entry {
+  vlFindingKind kind;
+  vlSeverity severity;
+  vlResult code;
+  char file[512];
+  uint32_t line, column;
+  char message[512];
+} Entry;
+
+typedef struct List {
+  Entry *items;
+  size_t count, capacity;
+} List;
+
+static void add(List *list, vlFindingKind kind, vlSeverity severity, vlResult code, const char *file, uint32_t line,
+                uint32_t column, const char *message) {
+  if (list->count == list->capacity) {
+    size_t wanted = list->capacity ? 2 * list->capacity : 64;
+    Entry *grown = realloc(list->items, wanted * sizeof *grown);
+    if (!grown) return; /* what cannot be kept cannot be shown */
+    list->items = grown;
+    list->capacity = wanted;
+  }
+  Entry *e = &list->items[list->count++];
+  *e = (Entry){.kind = kind, .severity = severity, .code = code, .line = line, .column = column};
+  snprintf(e->file, sizeof e->file, "%s", file ? file : "");
+  snprintf(e->message, sizeof e->message, "%s", message);
+}
+
+static void told(void *user, const vlError *e) {
+  vlFindingKind kind = e->code == VL_OK              ? VL_FINDING_OVERWRITTEN
+                       : e->code == VL_ERROR_MISSING ? VL_FINDING_MISSING_FILE
+                                                     : VL_FINDING_WRONG;
+  add(user, kind, e->code == VL_OK ? VL_SEVERITY_WARNING : VL_SEVERITY_ERROR, e->code, e->file, e->line, e->column,
+      e->message);
+}
+
+/* The importer's warnings are findings; its notes are none. */
+static void logged(void *user, vlLogLevel level, const vlError *where, const char *message) {
+  if (level <= VL_LOG_WARNING)
+    add(user, VL_FINDING_REMARK, VL_SEVERITY_NOTE, VL_OK, where ? where->file : "", where ? where->line : 0,
+        where ? where->column : 0, message);
+}
+
+/* -1: looked at whole. */
+static int look(vlContext *context, const Arguments *arguments, List *list) {
+  vlScene *scene = NULL;
+  vlCheck *check = NULL;
+  vlError error = {0};
+  vlLoadDef load = vl_default_load_def();
+  load.permissive = arguments->values[CHECK_PERMISSIVE].given;
+  vlResult r = vl_scene_create(context, &scene);
+  if (r == VL_OK) r = vl_scene_diagnose(scene, arguments->operands[0], &load, told, list, &error);
+  bool read = r == VL_OK;
+  if (!read && r != VL_ERROR_MEMORY) told(list, &error);
+  if (!read && r == VL_ERROR_SCENE)
+    add(list, VL_FINDING_REMARK, VL_SEVERITY_NOTE, VL_OK, arguments->operands[0], 0, 0,
+        "nothing after this place was looked at");
+  vlCheckDef def = vl_default_check_def();
+  def.pictures = !arguments->values[CHECK_NO_PICTURES].given;
+  if (read) r = vl_scene_check(scene, &def, &check, &error);
+  for (uint32_t i = 0; r == VL_OK && i < vl_check_count(check); i++) {
+    const vlFinding *f = vl_check_finding(check, i);
+    add(list, f->kind, f->severity, f->code, f->source.file, f->source.line, f->source.column, f->message);
+  }
+  vl_check_destroy(check);
+  vl_scene_destroy(scene);
+  if (r == VL_ERROR_MEMORY) return report_error(&error, r, NULL);
+  return -1;
+}
+
+static void print_plain(const char *text) {
+  for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
+}
+
+static const char *const severities[] = {"error", "warning", "note"};
+
+static void print_text(const List *list, const char *path, bool all) {
+  size_t of_kind[3][VL_FINDING_KINDS] = {{0}}, total[3] = {0};
+  for (int severity = VL_SEVERITY_ERROR; severity <= (int)VL_SEVERITY_NOTE; severity++)
+    for (size_t i = 0; i < list->count; i++) {
+      const Entry *e = &list->items[i];
+      if ((int)e->severity != severity) continue;
+      total[severity]++;
+      if (of_kind[severity][e->kind]++ >= SHOWN && !all) continue;
+      print_plain(e->file[0] ? e->file : path);
+      if (e->line) printf(":%u", e->line);
+      if (e->line && e->column) printf(":%u", e->column);
+      printf(": %s: ", severities[severity]);
+      print_plain(e->message);
+      printf(" [%s]\n", vl_finding_kind_name(e->kind));
+    }
+  for (int severity = 0; severity < 3; severity++)
+    for (int k = 0; k < (int)VL_FINDING_KINDS && !all; k++)
+      if (of_kind[severity][k] > SHOWN)
+        printf("%zu more %ss of this kind: %s (--all shows them)\n", of_kind[severity][k] - SHOWN, severities[severity],
+               vl_finding_kind_name((vlFindingKind)k));
+  if (list->count == 0) printf("nothing found\n");
+  if (list->count)
+    printf("%zu error%s, %zu warning%s, %zu note%s\n", total[0], total[0] == 1 ? "" : "s", total[1],
+           total[1] == 1 ? "" : "s", total[2], total[2] == 1 ? "" : "s");
+}
+
+static void print_json(const List *list, const char *path, int status) {
+  Json json = {.out = stdout};
+  size_t total[3] = {0};
+  for (size_t i = 0; i < list->count; i++) total[list->items[i].severity]++;
+  json_begin(&json, NULL, '{');
+  json_text(&json, "file", path);
+  json_integer(&json, "status", status);
+  json_integer(&json, "errors", (int64_t)total[0]);
+  json_integer(&json, "warnings", (int64_t)total[1]);
+  json_integer(&json, "notes", (int64_t)total[2]);
+  json_begin(&json, "findings", '[');
+  for (int severity = 0; severity < 3; severity++)
+    for (size_t i = 0; i < list->count; i++) {
+      const Entry *e = &list->items[i];
+      if ((int)e->severity != severity) continue;
+      json_begin(&json, NULL, '{');
+      json_text(&json, "kind", vl_finding_kind_name(e->kind));
+      json_text(&json, "severity", severities[severity]);
+      if (e->file[0]) json_text(&json, "file", e->file);
+      if (e->line) json_integer(&json, "line", e->line);
+      if (e->line && e->column) json_integer(&json, "column", e->column);
+      json_text(&json, "message", e->message);
+      json_end(&json, '}');
+    }
+  json_end(&json, ']');
+  json_end(&json, '}');
+  putchar('\n');
+}
+
+/* What `velo render` would return; 1 where it would render what was probably not meant. */
+static int status_of(const List *list) {
+  int status = STATUS_OK;
+  for (size_t i = 0; i < list->count; i++) {
+    const Entry *e = &list->items[i];
+    if (e->severity == VL_SEVERITY_WARNING) status = STATUS_OTHER;
+  }
+  for (size_t i = 0; i < list->count; i++) {
+    const Entry *e = &list->items[i];
+    if (e->severity == VL_SEVERITY_ERROR)
+      return e->code == VL_ERROR_MISSING ? STATUS_MISSING : e->code == VL_ERROR_IO ? STATUS_IO : STATUS_SCENE;
+  }
+  return status;
+}
+
+static int run(const Command *command, const Arguments *arguments) {
+  (void)command;
+  vlContext *context = NULL;
+  List list = {0};
+  int status = scene_context(&context, logged, &list);
+  if (status < 0) status = look(context, arguments, &list);
+  if (status < 0) {
+    status = status_of(&list);
+    if (arguments->values[CHECK_JSON].given)
+      print_json(&list, arguments->operands[0], status);
+    else
+      print_text(&list, arguments->operands[0], arguments->values[CHECK_ALL].given);
+    if (fflush(stdout) != 0 || ferror(stdout)) status = report_failure(STATUS_IO, "cannot write to stdout");
+  }
+  free(list.items);
+  vl_context_destroy(context);
+  return status;
+}
+
+static const Option options[] = {
+    {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
+    {CHECK_ALL, 'a', "all", OPTION_FLAG, NULL, "every finding; without, the first 10 of each kind", 0, 0, NULL},
+    {CHECK_NO_PICTURES, 0, "no-pictures", OPTION_FLAG, NULL, "do not read textures (they are looked for all the same)",
+     0, 0, NULL},
+    {CHECK_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "what velo does not understand yet is a note, not an error",
+     0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command scene_check_command = {
+    .name = "scene check",
+    .usage = "FILE [options]",
+    .summary = "the scene doctor: what is wrong or probably not meant",
+    .text =
+        "Reads a scene past its mistakes and says all that it finds, each with its place and kind:\n"
+        "missing and broken files, whatever else is wrong; unused and overwritten names; bodies of\n"
+        "glass that are open or inside out; media that overlap; faces without area; textures over uv\n"
+        "that a mesh does not have; surfaces that give back more light than they get; a camera inside\n"
+        "of a body; lights of power 0. Renders nothing.\n\n"
+        "exit codes: 0 nothing but notes; 1 warnings; 3, 4, 5 an error, with which velo render would end",
+    .options = options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run,
+};

@@ -1,0 +1,85 @@
+/* scene/convert.c: `velo scene convert`: a scene from one format to another, and what is lost on the way. */
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "scene/scene.h"
+#include "velo/export.h"
+
+enum { CONVERT_STRICT, CONVERT_PERMISSIVE, CONVERT_CAMERA, CONVERT_VARIANT, CONVERT_AT, CONVERT_COMPLETE };
+
+static const Option convert_options[] = {
+    {CONVERT_STRICT, 0, "strict", OPTION_FLAG, NULL, "what B cannot hold is an error; nothing is written", 0, 0, NULL},
+    {CONVERT_COMPLETE, 0, "complete", OPTION_FLAG, NULL,
+     "add the camera and light that A lacks, as velo render does;\nalways, where B is a .pbrt", 0, 0, NULL},
+    {CONVERT_CAMERA, 0, "camera", OPTION_TEXT, "NAME", "glTF: this camera, by name or number from 0", 0, 0, NULL},
+    {CONVERT_AT, 0, "at", OPTION_TIME, "SECONDS", "glTF: the moment of its animation; default: as modelled", 0, 1e9,
+     NULL},
+    {CONVERT_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: this variant of its materials", 0, 0, NULL},
+    {CONVERT_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
+     "what velo does not understand yet is a warning, not an error", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+static void tell(void *user, const char *what, uint64_t count) {
+  (void)user;
+  report_note("not held: %s (%llu)", what, (unsigned long long)count);
+}
+
+static bool ends_with(const char *text, const char *suffix) {
+  size_t n = strlen(text), m = strlen(suffix);
+  return n >= m && strcasecmp(text + n - m, suffix) == 0;
+}
+
+static int run_convert(const Command *command, const Arguments *arguments) {
+  (void)command;
+  const OptionValue *v = arguments->values;
+  const char *from = arguments->operands[0], *to = arguments->operands[1];
+  vlContext *context = NULL;
+  vlScene *scene = NULL;
+  vlError error = {0};
+  bool pbrt = ends_with(to, ".pbrt");
+  if (!pbrt && !ends_with(to, ".gltf") && !ends_with(to, ".glb"))
+    return report_usage("%s: unknown kind of file to write (known: .gltf, .glb, .pbrt)", to);
+  if (strcmp(from, to) == 0) return report_usage("%s: a file cannot be converted into itself", to);
+  int status = scene_context(&context, report_log, NULL);
+  if (status >= 0) return status;
+  vlLoadDef load = vl_default_load_def();
+  load.permissive = v[CONVERT_PERMISSIVE].given;
+  if (v[CONVERT_CAMERA].given) load.camera = v[CONVERT_CAMERA].text;
+  if (v[CONVERT_VARIANT].given) load.variant = v[CONVERT_VARIANT].text;
+  if (v[CONVERT_AT].given) load.time = v[CONVERT_AT].number;
+  vlSaveDef save = vl_default_save_def();
+  save.strict = v[CONVERT_STRICT].given;
+  save.lost = tell;
+  vlResult result = vl_scene_create(context, &scene);
+  if (result == VL_OK) result = vl_scene_load(scene, from, &load, &error);
+  const vlSceneSettings *settings = scene ? vl_scene_settings(scene) : NULL;
+  if (result == VL_OK && (pbrt || v[CONVERT_COMPLETE].given) && (settings->camera_missing || settings->light_missing)) {
+    result = vl_scene_complete(scene, NULL, &error);
+    if (result == VL_OK) report_note("%s lacks a camera or light: those that velo render would make are written", from);
+  }
+  if (result != VL_OK) {
+    status = report_error(&error, result, from);
+  } else {
+    result = vl_scene_save(scene, to, &save, &error);
+    status = result == VL_OK ? STATUS_OK : report_error(&error, result, to);
+  }
+  vl_scene_destroy(scene);
+  vl_context_destroy(context);
+  return status;
+}
+
+const Command scene_convert_command = {
+    .name = "scene convert",
+    .usage = "A B [options]",
+    .summary = "write a scene as another format: .gltf, .glb, .pbrt",
+    .text =
+        "Reads A (.pbrt, .gltf, .glb, .obj, .ply) and writes it as B, in the format of its suffix. What B's format\n"
+        "cannot hold, or only nearly, is told: one line for each kind, with how often it was met.",
+    .options = convert_options,
+    .min_operands = 2,
+    .max_operands = 2,
+    .run = run_convert,
+};

@@ -1,0 +1,240 @@
+/* scene/info.c: `velo scene info`: what a scene holds: counts, size in space and memory, camera, film, lights, unused
+ * definitions. Also what the scene commands share. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "scene/scene.h"
+
+int scene_context(vlContext **context, vlLogFn *log, void *log_user) {
+  vlContextDef def = vl_default_context_def();
+  def.log = log;
+  def.log_user = log_user;
+  vlResult result = vl_context_create(&def, context);
+  if (result == VL_ERROR_UNSUPPORTED || result == VL_ERROR_ARGUMENT)
+    return report_usage("the environment variable VELO_ISA must be v2, v3 or v4, and the machine must have it");
+  return result == VL_OK ? -1 : report_error(NULL, result, NULL);
+}
+
+enum { INFO_JSON, INFO_PERMISSIVE };
+enum { LIGHTS = 20, LIGHTS_JSON = 1000 }; /* listed */
+
+typedef struct Facts {
+  const char *path;
+  vlScene *scene;
+  vlSceneInfo info;
+  size_t bytes;
+  double low[3], high[3], seconds;
+  vlCheck *check; /* for the unused */
+} Facts;
+
+static const char *tracer_name(vlTracer tracer) {
+  static const char *const names[] = {"path",          "raycast", "ambientocclusion", "volpath",
+                                      "bidirectional", "merging", "light path",       "random walk"};
+  return (unsigned)tracer < 8 ? names[tracer] : "other";
+}
+
+static void print_plain(const char *text) {
+  for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
+}
+
+static void count(const char *name, uint64_t n) {
+  printf("%-12s%llu\n", name, (unsigned long long)n);
+}
+
+static void eye_of(const vlCameraDef *d, double eye[3]) {
+  for (int k = 0; k < 3; k++) eye[k] = d->has_matrix ? d->world_from_camera[4 * k + 3] : d->eye[k];
+}
+
+static void print_lights(const Facts *f) {
+  uint32_t n = vl_scene_light_count(f->scene);
+  printf("lights      %u\n", n);
+  for (uint32_t i = 0; i < n && i < LIGHTS; i++) {
+    vlLightInfo l;
+    if (vl_scene_light_info(f->scene, i, &l) != VL_OK) continue;
+    printf("  %-9s ", l.kind);
+    if (isfinite(l.power))
+      printf("power %-10.5g", l.power);
+    else
+      printf("%-16s", "of a picture");
+    if (l.faces > 1) printf(" %llu faces", (unsigned long long)l.faces);
+    if (l.source.file) {
+      printf("  ");
+      print_plain(l.source.file);
+      if (l.source.line) printf(":%u", l.source.line);
+    }
+    putchar('\n');
+  }
+  if (n > LIGHTS) printf("  and %u more\n", n - LIGHTS);
+}
+
+static void print_text(const Facts *f) {
+  const vlSceneSettings *s = vl_scene_settings(f->scene);
+  double eye[3];
+  printf("file        %s\n", f->path);
+  count("shapes", f->info.shapes);
+  count("triangles", f->info.triangles);
+  count("vertices", f->info.vertices);
+  count("objects", f->info.groups);
+  count("instances", f->info.instances);
+  count("textures", f->info.textures);
+  count("materials", f->info.materials);
+  count("media", f->info.media);
+  printf("memory      %.1f MB for the description, read in %.2f s\n", (double)f->bytes / 1e6, f->seconds);
+  if (f->low[0] <= f->high[0])
+    printf("bounds      (%.5g, %.5g, %.5g) to (%.5g, %.5g, %.5g)\n", f->low[0], f->low[1], f->low[2], f->high[0],
+           f->high[1], f->high[2]);
+  eye_of(&s->camera, eye);
+  if (s->camera_missing)
+    printf("camera      none: velo render makes one\n");
+  else
+    printf("camera      %s at (%.5g, %.5g, %.5g)\n", vl_projection_name(s->camera.projection), eye[0], eye[1], eye[2]);
+  printf("film        %u x %u", s->width, s->height);
+  if (s->crop[0] || s->crop[1] || s->crop[2] != s->width || s->crop[3] != s->height)
+    printf(", of it %u,%u to %u,%u", s->crop[0], s->crop[1], s->crop[2], s->crop[3]);
+  printf(", %u samples a pixel, %s, at most %u bounces\n", s->spp, tracer_name(s->tracer), s->max_depth);
+  print_lights(f);
+  uint32_t unused = 0;
+  for (uint32_t i = 0; i < vl_check_count(f->check); i++) {
+    const vlFinding *u = vl_check_finding(f->check, i);
+    if (u->kind != VL_FINDING_UNUSED) continue;
+    if (!unused++) printf("unused\n");
+    printf("  ");
+    print_plain(u->message);
+    if (u->source.line) printf(" (line %u)", u->source.line);
+    putchar('\n');
+  }
+}
+
+static void json_box(Json *json, const char *key, const double v[3]) {
+  json_begin(json, key, '[');
+  for (int k = 0; k < 3; k++) json_number(json, NULL, v[k]);
+  json_end(json, ']');
+}
+
+static void json_place(Json *json, const vlSource *source) {
+  if (source->file) json_text(json, "file", source->file);
+  if (source->line) json_integer(json, "line", source->line);
+  if (source->line && source->column) json_integer(json, "column", source->column);
+}
+
+static void print_json(const Facts *f) {
+  Json json = {.out = stdout};
+  const vlSceneSettings *s = vl_scene_settings(f->scene);
+  double eye[3];
+  json_begin(&json, NULL, '{');
+  json_text(&json, "file", f->path);
+  const struct {
+    const char *name;
+    uint64_t n;
+  } counts[] = {{"shapes", f->info.shapes},       {"triangles", f->info.triangles}, {"vertices", f->info.vertices},
+                {"objects", f->info.groups},      {"instances", f->info.instances}, {"textures", f->info.textures},
+                {"materials", f->info.materials}, {"media", f->info.media},         {"bytes", f->bytes}};
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) json_integer(&json, counts[i].name, (int64_t)counts[i].n);
+  json_number(&json, "seconds", f->seconds);
+  json_begin(&json, "bounds", '[');
+  if (f->low[0] <= f->high[0]) json_box(&json, NULL, f->low), json_box(&json, NULL, f->high);
+  json_end(&json, ']');
+  json_begin(&json, "camera", '{');
+  json_bool(&json, "missing", s->camera_missing);
+  json_text(&json, "projection", vl_projection_name(s->camera.projection));
+  eye_of(&s->camera, eye);
+  json_box(&json, "eye", eye);
+  json_end(&json, '}');
+  json_begin(&json, "film", '{');
+  json_integer(&json, "width", s->width);
+  json_integer(&json, "height", s->height);
+  json_begin(&json, "crop", '[');
+  for (int i = 0; i < 4; i++) json_integer(&json, NULL, s->crop[i]);
+  json_end(&json, ']');
+  json_integer(&json, "spp", s->spp);
+  json_text(&json, "tracer", tracer_name(s->tracer));
+  json_integer(&json, "max_depth", s->max_depth);
+  json_end(&json, '}');
+  uint32_t n = vl_scene_light_count(f->scene);
+  json_integer(&json, "light_count", n);
+  json_begin(&json, "lights", '[');
+  for (uint32_t i = 0; i < n && i < LIGHTS_JSON; i++) {
+    vlLightInfo l;
+    if (vl_scene_light_info(f->scene, i, &l) != VL_OK) continue;
+    json_begin(&json, NULL, '{');
+    json_text(&json, "kind", l.kind);
+    json_number(&json, "power", l.power);
+    json_bool(&json, "picture", l.picture);
+    if (l.faces) json_integer(&json, "faces", (int64_t)l.faces);
+    json_place(&json, &l.source);
+    json_end(&json, '}');
+  }
+  json_end(&json, ']');
+  json_begin(&json, "unused", '[');
+  for (uint32_t i = 0; i < vl_check_count(f->check); i++) {
+    const vlFinding *u = vl_check_finding(f->check, i);
+    if (u->kind != VL_FINDING_UNUSED) continue;
+    json_begin(&json, NULL, '{');
+    json_text(&json, "message", u->message);
+    json_place(&json, &u->source);
+    json_end(&json, '}');
+  }
+  json_end(&json, ']');
+  json_end(&json, '}');
+  putchar('\n');
+}
+
+static int run(const Command *command, const Arguments *arguments) {
+  (void)command;
+  Facts f = {.path = arguments->operands[0]};
+  vlContext *context = NULL;
+  vlError error = {0};
+  int status = scene_context(&context, report_log, NULL);
+  if (status >= 0) return status;
+  vlLoadDef load = vl_default_load_def();
+  load.permissive = arguments->values[INFO_PERMISSIVE].given;
+  struct timespec start, end;
+  clock_gettime(CLOCK_MONOTONIC, &start);
+  vlResult r = vl_scene_create(context, &f.scene);
+  if (r == VL_OK) r = vl_scene_load(f.scene, f.path, &load, &error);
+  clock_gettime(CLOCK_MONOTONIC, &end);
+  f.seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+  if (r == VL_OK) {
+    f.bytes = vl_context_memory(context, NULL);
+    vl_scene_info(f.scene, &f.info);
+    vl_scene_bounds(f.scene, f.low, f.high);
+    vlCheckDef def = vl_default_check_def();
+    def.names_only = true;
+    r = vl_scene_check(f.scene, &def, &f.check, &error);
+  }
+  if (r != VL_OK)
+    status = report_error(&error, r, f.path);
+  else if (arguments->values[INFO_JSON].given)
+    print_json(&f);
+  else
+    print_text(&f);
+  if (r == VL_OK)
+    status = fflush(stdout) != 0 || ferror(stdout) ? report_failure(STATUS_IO, "cannot write to stdout") : STATUS_OK;
+  vl_check_destroy(f.check);
+  vl_scene_destroy(f.scene);
+  vl_context_destroy(context);
+  return status;
+}
+
+static const Option options[] = {
+    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
+    {INFO_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "leave out what velo does not understand yet", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command scene_info_command = {
+    .name = "scene info",
+    .usage = "FILE [options]",
+    .summary = "what a scene holds: counts, bounds, camera, lights, unused names",
+    .text =
+        "Reads a scene and prints what it describes; builds and renders nothing. The power of a light is the "
+        "luminance\n"
+        "that it sends out, over area and solid angle; of distant and infinite ones into a sphere round the scene.",
+    .options = options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run,
+};

@@ -1,0 +1,85 @@
+/* camera_files/blender.c: a camera of Blender as JSON, by Blender's own property names: bpy.types.Camera (type, lens,
+ * sensor_width, sensor_height, sensor_fit, shift_x, shift_y, ortho_scale, clip_start, clip_end), the object's
+ * matrix_world, RenderSettings (resolution_x, resolution_y, pixel_aspect_x, pixel_aspect_y). Axes x right, y up, z
+ * back. shift is in units of the side that the sensor is fitted to: +0.1 moves the axis left, and down. */
+#include <math.h>
+#include <string.h>
+
+#include "camera_files/files.h"
+
+vlResult vl_camera_read_blender(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  vlCameraDef *d = &record->camera;
+  double lens = 50.0, sensor_width = 36.0, sensor_height = 24.0, shift_x = 0.0, shift_y = 0.0, ortho = 6.0;
+  double aspect_x = 1.0, aspect_y = 1.0, m[16];
+  const char *type = vl_camera_text(tree, "type"), *fit = vl_camera_text(tree, "sensor_fit");
+  bool flat = type && strcmp(type, "ORTHO") == 0;
+  if (type && !flat && strcmp(type, "PERSP") != 0)
+    return vl_camera_wrong(file, "blender: unknown type \"%.40s\"; there are PERSP, ORTHO", type);
+  if (fit && strcmp(fit, "AUTO") != 0 && strcmp(fit, "HORIZONTAL") != 0 && strcmp(fit, "VERTICAL") != 0)
+    return vl_camera_wrong(file, "blender: unknown sensor_fit \"%.40s\"; there are AUTO, HORIZONTAL, VERTICAL", fit);
+  vlResult result = vl_camera_side(file, tree, "resolution_x", &d->width);
+  if (result == VL_OK) result = vl_camera_side(file, tree, "resolution_y", &d->height);
+  if (result == VL_OK)
+    result = flat ? vl_camera_number(file, tree, "ortho_scale", &ortho) : vl_camera_number(file, tree, "lens", &lens);
+  const struct {
+    const char *key;
+    double *value;
+  } fields[] = {{"sensor_width", &sensor_width}, {"sensor_height", &sensor_height}, {"shift_x", &shift_x},
+                {"shift_y", &shift_y},           {"pixel_aspect_x", &aspect_x},     {"pixel_aspect_y", &aspect_y},
+                {"clip_start", &d->near_plane},  {"clip_end", &d->far_plane}};
+  for (size_t i = 0; i < sizeof fields / sizeof *fields && result == VL_OK; i++)
+    result = vl_camera_optional(file, tree, fields[i].key, fields[i].value);
+  if (result == VL_OK) result = vl_camera_numbers(file, tree, "matrix_world", m, 16, 16, NULL);
+  if (result != VL_OK) return result;
+  if (!(lens > 0.0 && sensor_width > 0.0 && sensor_height > 0.0 && ortho > 0.0 && aspect_x > 0.0 && aspect_y > 0.0))
+    return vl_camera_wrong(file, "blender: lens, sensor, scale and pixel aspect must be above zero");
+  double ratio = aspect_y / aspect_x, w = d->width, h = d->height;
+  bool vertical = fit && strcmp(fit, "VERTICAL") == 0;
+  bool across = fit && strcmp(fit, "AUTO") != 0 ? !vertical : w >= ratio * h;
+  double side = across ? w : ratio * h; /* that the sensor is fitted to, in pixel widths */
+  d->fx = flat ? side / ortho : lens / (vertical ? sensor_height : sensor_width) * side;
+  d->fy = d->fx / ratio;
+  d->cx = 0.5 * w - shift_x * side;
+  d->cy = 0.5 * h + shift_y * side / ratio;
+  d->projection = flat ? VL_PROJECTION_ORTHOGRAPHIC : VL_PROJECTION_PERSPECTIVE;
+  d->has_matrix = true;
+  vl_camera_flip_axes(m, d->world_from_camera);
+  vl_camera_name(record, vl_camera_text(tree, "name"));
+  return VL_OK;
+}
+
+vlResult vl_camera_write_blender(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  const vlCameraDef *d = &record->camera;
+  vlCamera c;
+  double m[16];
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_PLANES, &c);
+  if (result != VL_OK) return result;
+  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC) return vl_camera_no_model(file, d);
+  result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
+  if (result != VL_OK) return result;
+  bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  /* the smaller of the two aspects is 1, as Blender wants it */
+  double ratio = c.fx / c.fy, w = c.width, h = c.height, side = w >= ratio * h ? w : ratio * h;
+  double sensor = d->sensor_width_mm > 0.0 ? d->sensor_width_mm : 36.0;
+  vl_camera_flip_axes(c.world_from_camera, m);
+  vl_camera_put(text, "{\n  \"name\": ");
+  vl_camera_put_string(text, record->name[0] ? record->name : "Camera");
+  vl_camera_put(text, ",\n  \"type\": \"%s\",\n  \"%s\": %.17g,\n", flat ? "ORTHO" : "PERSP",
+                flat ? "ortho_scale" : "lens", flat ? side / c.fx : c.fx * sensor / side);
+  vl_camera_put(text, "  \"sensor_fit\": \"AUTO\",\n  \"sensor_width\": %.17g,\n  \"shift_x\": %.17g,\n", sensor,
+                (0.5 * w - c.cx) / side + 0.0);
+  vl_camera_put(text, "  \"shift_y\": %.17g,\n", (c.cy - 0.5 * h) * ratio / side + 0.0);
+  if (c.near_plane > 0.0) vl_camera_put(text, "  \"clip_start\": %.17g,\n", c.near_plane);
+  if (!isinf(c.far_plane)) vl_camera_put(text, "  \"clip_end\": %.17g,\n", c.far_plane);
+  vl_camera_put(text, "  \"resolution_x\": %u,\n  \"resolution_y\": %u,\n", c.width, c.height);
+  vl_camera_put(text, "  \"pixel_aspect_x\": %.17g,\n  \"pixel_aspect_y\": %.17g,\n", ratio < 1.0 ? 1.0 / ratio : 1.0,
+                ratio < 1.0 ? 1.0 : ratio);
+  vl_camera_put(text, "  \"matrix_world\": [");
+  for (int i = 0; i < 4; i++) {
+    vl_camera_put(text, "%s[", i ? ", " : "");
+    vl_camera_put_numbers(text, m + 4 * i, 4);
+    vl_camera_put(text, "]");
+  }
+  vl_camera_put(text, "]\n}\n");
+  return VL_OK;
+}

@@ -1,0 +1,317 @@
+/* camera_files/colmap.c: COLMAP's text model: cameras.txt (id, model, width, height, parameters) and images.txt (id,
+ * quaternion w x y z, translation, camera id, name; a line of points follows each). OpenCV's axes, camera from world,
+ * but the first pixel's centre is (0.5, 0.5), as in velo. */
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "camera_files/trajectory.h"
+
+typedef struct {
+  char *at, *end; /* of the text that is left */
+  uint32_t line;
+} Lines;
+
+/* The next line, ended by a zero; null at the end. Comments are passed over. */
+static char *next_line(Lines *lines) {
+  while (lines->at < lines->end) {
+    char *line = lines->at, *stop = memchr(line, '\n', (size_t)(lines->end - line));
+    lines->at = stop ? stop + 1 : lines->end;
+    if (stop) *stop = 0;
+    lines->line++;
+    size_t n = strlen(line);
+    if (n && line[n - 1] == '\r') line[n - 1] = 0;
+    if (line[0] != '#') return line;
+  }
+  return NULL;
+}
+
+static vlResult wrong_line(const vlCameraFile *file, const char *path, uint32_t line, const char *what) {
+  return vl_fail_at(file->error, VL_ERROR_SCENE, path, line, 1, "colmap: %s", what);
+}
+
+static bool next_number(char **at, double *value) {
+  char *end;
+  *value = strtod(*at, &end);
+  bool found = end != *at && isfinite(*value) && (*end == ' ' || *end == '\t' || *end == 0);
+  *at = end;
+  return found;
+}
+
+static char *next_word(char **at) {
+  char *word = *at + strspn(*at, " \t");
+  size_t n = strcspn(word, " \t");
+  *at = word + n + (word[n] != 0);
+  word[n] = 0;
+  return word;
+}
+
+static vlResult read_camera_line(const vlCameraFile *file, const char *path, const Lines *lines, char *rest,
+                                 vlCameraDef *d) {
+  char *model = next_word(&rest);
+  double size[2], parameters[12];
+  uint32_t count = 0;
+  for (int i = 0; i < 2; i++)
+    if (!next_number(&rest, &size[i]) || !(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
+      return wrong_line(file, path, lines->line, "after the model come width and height in whole pixels");
+  for (rest += strspn(rest, " \t"); *rest; rest += strspn(rest, " \t")) {
+    if (count == 12) return wrong_line(file, path, lines->line, "more than 12 parameters");
+    if (!next_number(&rest, &parameters[count++]))
+      return wrong_line(file, path, lines->line, "a parameter is no finite number");
+  }
+  d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
+  vlError error = {0};
+  vlResult result = vl_camera_def_colmap(d, model, parameters, count, &error);
+  if (result != VL_OK) return wrong_line(file, path, lines->line, error.message);
+  return VL_OK;
+}
+
+/* The camera with this id; null: the first. */
+static vlResult read_cameras(const vlCameraFile *file, const char *path, const double *id, vlCameraRecord *record) {
+  char *text;
+  size_t size;
+  vlResult result = vl_file_read(file->context, path, false, &text, &size, file->error);
+  if (result != VL_OK) return result;
+  Lines lines = {text, text + size, 0};
+  bool found = false;
+  for (char *line; result == VL_OK && !found && (line = next_line(&lines));) {
+    double number;
+    if (line[strspn(line, " \t")] == 0) continue;
+    if (!next_number(&line, &number))
+      result = wrong_line(file, path, lines.line, "a line begins with the camera's number");
+    else if ((found = !id || number == *id))
+      result = read_camera_line(file, path, &lines, line, &record->camera);
+  }
+  if (result == VL_OK && !found) result = wrong_line(file, path, 0, "the camera of the picture is not there");
+  vl_free(file->context, text);
+  return result;
+}
+
+static vlResult read_image_line(const vlCameraFile *file, const char *path, uint32_t line, char *rest, bool *found,
+                                uint32_t index, double *id, vlCameraRecord *record) {
+  double v[9], r[9];
+  for (int i = 0; i < 9; i++)
+    if (!next_number(&rest, &v[i]))
+      return wrong_line(file, path, line, "a picture has 9 finite numbers: id, qw qx qy qz, tx ty tz, camera");
+  rest += strspn(rest, " \t");
+  *found = vl_camera_is_frame(file, index, rest);
+  if (!*found) return VL_OK;
+  if (!vl_rotation_from_quaternion(v + 1, r)) return wrong_line(file, path, line, "the quaternion is zero");
+  vl_camera_set_pose(&record->camera, r, v + 5);
+  vl_camera_name(record, rest);
+  *id = v[8];
+  return VL_OK;
+}
+
+static vlResult read_images(const vlCameraFile *file, const char *path, double *id, vlCameraRecord *record) {
+  char *text;
+  size_t size;
+  vlResult result = vl_file_read(file->context, path, false, &text, &size, file->error);
+  if (result != VL_OK) return result;
+  Lines lines = {text, text + size, 0};
+  bool taken = false;
+  record->frames = 0;
+  for (char *line; result == VL_OK && (line = next_line(&lines));) {
+    if (line[strspn(line, " \t")] == 0) continue;
+    bool found = false;
+    if (!taken) result = read_image_line(file, path, lines.line, line, &found, record->frames, id, record);
+    taken = taken || found;
+    record->frames++;
+    next_line(&lines); /* its points */
+  }
+  if (result == VL_OK && !taken)
+    result = vl_camera_wrong(file, "colmap: there is no picture \"%.60s\" among the %u",
+                             file->def->frame ? file->def->frame : "0", record->frames);
+  vl_free(file->context, text);
+  return result;
+}
+
+/* ---- many pictures ----------------------------------------------------------------------------------------------- */
+
+typedef struct {
+  double id;
+  int32_t index; /* of the trajectory's cameras */
+} CameraId;
+typedef VL_ARRAY(CameraId) CameraIds;
+
+static int by_id(const void *a, const void *b) {
+  double x = ((const CameraId *)a)->id, y = ((const CameraId *)b)->id;
+  return (x > y) - (x < y);
+}
+
+static vlResult read_all_cameras(vlTrajectory *t, const vlCameraFile *file, const char *path, char *text, size_t size,
+                                 CameraIds *ids) {
+  Lines lines = {text, text + size, 0};
+  for (char *line; (line = next_line(&lines));) {
+    vlCameraRecord record;
+    CameraId id;
+    if (line[strspn(line, " \t")] == 0) continue;
+    memset(&record, 0, sizeof record);
+    record.camera = vl_default_camera_def(1, 1);
+    record.dialect = VL_CAMERA_DIALECT_COLMAP;
+    if (!next_number(&line, &id.id))
+      return wrong_line(file, path, lines.line, "a line begins with the camera's number");
+    vlResult result = read_camera_line(file, path, &lines, line, &record.camera);
+    snprintf(record.name, sizeof record.name, "%.0f", id.id);
+    if (result == VL_OK) result = vl_trajectory_add_camera(t, file, &record, &id.index);
+    if (result != VL_OK) return result;
+    CameraId *added = VL_PUSH(file->context, ids);
+    if (!added) return vl_fail_memory(file->error);
+    *added = id;
+  }
+  if (ids->count) qsort(ids->items, ids->count, sizeof *ids->items, by_id);
+  return VL_OK;
+}
+
+static vlResult read_all_images(vlTrajectory *t, const vlCameraFile *file, const char *path, char *text, size_t size,
+                                const CameraIds *ids) {
+  Lines lines = {text, text + size, 0};
+  vlCameraFileDef any = *file->def; /* every picture is the one that is asked for */
+  vlCameraFile copy = *file;
+  copy.def = &any;
+  any.frame = NULL;
+  for (char *line; (line = next_line(&lines));) {
+    if (line[strspn(line, " \t")] == 0) continue;
+    vlCameraRecord record = {.frames = 0};
+    CameraId wanted = {0, 0};
+    bool found = false;
+    vlResult result = read_image_line(&copy, path, lines.line, line, &found, 0, &wanted.id, &record);
+    if (result != VL_OK) return result;
+    const CameraId *id = ids->count ? bsearch(&wanted, ids->items, ids->count, sizeof *ids->items, by_id) : NULL;
+    vlFramePlace place = {path, lines.line, (uint32_t)t->frames.count, record.name};
+    if (!id) return vl_frame_wrong(file, &place, "there is no camera %.0f in cameras.txt", wanted.id);
+    result = vl_trajectory_add(t, file, &place, id->index, record.camera.world_from_camera, VL_UNSET);
+    if (result != VL_OK) return result;
+    next_line(&lines); /* its points */
+  }
+  return VL_OK;
+}
+
+static bool find_files(const char *path, char cameras[4096], char images[4096]);
+
+vlResult vl_trajectory_read_colmap(vlTrajectory *t, const vlCameraFile *file) {
+  char paths[2][4096], *texts[2] = {NULL, NULL};
+  size_t sizes[2] = {0, 0};
+  CameraIds ids = {NULL, 0, 0};
+  if (!find_files(file->path, paths[0], paths[1])) return vl_camera_wrong(file, "colmap: the name is too long");
+  vlResult result = VL_OK;
+  for (int i = 0; i < 2 && result == VL_OK; i++)
+    result = vl_file_read(file->context, paths[i], false, &texts[i], &sizes[i], file->error);
+  if (result == VL_OK) result = read_all_cameras(t, file, paths[0], texts[0], sizes[0], &ids);
+  if (result == VL_OK) result = read_all_images(t, file, paths[1], texts[1], sizes[1], &ids);
+  for (int i = 0; i < 2; i++) vl_free(file->context, texts[i]);
+  VL_ARRAY_FREE(file->context, &ids);
+  return result;
+}
+
+/* A folder, or a name that only a folder can have. */
+static bool is_folder(const char *path) {
+  struct stat status;
+  if (stat(path, &status) == 0) return S_ISDIR(status.st_mode);
+  return !vl_ends_with(path, ".txt");
+}
+
+/* Where the two files are, from either's name or the folder's. */
+static bool find_files(const char *path, char cameras[4096], char images[4096]) {
+  int a, b;
+  if (is_folder(path)) {
+    a = snprintf(cameras, 4096, "%s/cameras.txt", path);
+    b = snprintf(images, 4096, "%s/images.txt", path);
+  } else {
+    bool is_images = vl_ends_with(path, "images.txt");
+    const char *slash = strrchr(path, '/');
+    int folder_length = slash ? (int)(slash - path) + 1 : 0;
+    a = is_images ? snprintf(cameras, 4096, "%.*scameras.txt", folder_length, path)
+                  : snprintf(cameras, 4096, "%s", path);
+    b = is_images ? snprintf(images, 4096, "%s", path) : snprintf(images, 4096, "%.*simages.txt", folder_length, path);
+  }
+  return a > 0 && a < 4096 && b > 0 && b < 4096;
+}
+
+vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record) {
+  char cameras[4096], images[4096];
+  struct stat status;
+  double id = 0.0;
+  if (!find_files(file->path, cameras, images)) return vl_camera_wrong(file, "colmap: the name is too long");
+  /* cameras.txt alone: the camera in the origin, unless a picture's pose was asked for */
+  if (stat(images, &status) == 0 || file->def->frame || vl_ends_with(file->path, "images.txt")) {
+    vlResult result = read_images(file, images, &id, record);
+    return result == VL_OK ? read_cameras(file, cameras, &id, record) : result;
+  }
+  const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, none[3] = {0, 0, 0};
+  vl_camera_set_pose(&record->camera, identity, none);
+  return read_cameras(file, cameras, NULL, record);
+}
+
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
+
+static vlResult choose_model(const vlCameraFile *file, const vlCameraDef *d, const char **model, double p[12],
+                             uint32_t *count) {
+  double k[14] = {0};
+  const double *c = d->distortion_coefficients;
+  *count = 0;
+  if (d->projection == VL_PROJECTION_FOV && d->distortion == VL_DISTORTION_NONE) {
+    *model = "FOV";
+    p[(*count)++] = d->shape[0];
+  } else if (d->projection == VL_PROJECTION_EQUIDISTANT && d->distortion == VL_DISTORTION_THIN_PRISM) {
+    *model = "THIN_PRISM_FISHEYE";
+    for (int i = 0; i < 8; i++) p[(*count)++] = c[i];
+  } else if (d->projection == VL_PROJECTION_EQUIDISTANT && d->distortion != VL_DISTORTION_OPENCV) {
+    *model = "OPENCV_FISHEYE";
+    for (uint32_t i = 0; i < 4; i++) p[(*count)++] = i < d->distortion_count ? c[i] : 0.0;
+  } else {
+    uint32_t n = 0;
+    if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, &n))
+      return vl_camera_no_model(file, d);
+    for (int i = 8; i < 14; i++)
+      if (k[i] != 0.0) return vl_camera_no_model(file, d);
+    *model = n == 0 ? "PINHOLE" : n == 4 ? "OPENCV" : "FULL_OPENCV";
+    *count = n == 0 ? 0 : n == 4 ? 4 : 8;
+    memcpy(p, k, *count * sizeof *p);
+  }
+  return VL_OK;
+}
+
+static vlResult write_text(const vlCameraFile *file, const char *path, const vlCameraText *text) {
+  vlFileWriter writer;
+  if (text->failed) return vl_fail_memory(file->error);
+  vlResult result = vl_file_open_write(&writer, path, file->error);
+  if (result != VL_OK) return result;
+  vl_file_write(&writer, text->text.items, text->text.count);
+  return vl_file_commit(&writer, file->error);
+}
+
+vlResult vl_camera_write_colmap(const vlCameraFile *file, const vlCameraRecord *record) {
+  char cameras[4096], images[4096];
+  vlCamera c;
+  const char *model = NULL;
+  double p[12], r[9], t[3], q[4];
+  uint32_t count = 0;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  if (result == VL_OK) result = choose_model(file, &record->camera, &model, p, &count);
+  if (result != VL_OK) return result;
+  if (!find_files(file->path, cameras, images)) return vl_camera_wrong(file, "colmap: the name is too long");
+  if (is_folder(file->path) && mkdir(file->path, 0777) != 0 && errno != EEXIST)
+    return vl_fail(file->error, VL_ERROR_IO, "cannot make the folder %s: %s", file->path, strerror(errno));
+  vlCameraText text = {.context = file->context}, poses = {.context = file->context};
+  vl_camera_put(&text, "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]; the first pixel's centre is (0.5, 0.5)\n");
+  vl_camera_put(&text, "1 %s %u %u %.17g %.17g %.17g %.17g", model, c.width, c.height, c.fx, c.fy, c.cx, c.cy);
+  for (uint32_t i = 0; i < count; i++) vl_camera_put(&text, " %.17g", p[i] + 0.0);
+  vl_camera_put(&text, "\n");
+  vl_camera_get_pose(&c, r, t);
+  vl_rotation_to_quaternion(r, q);
+  vl_camera_put(&poses, "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME; camera from world\n1");
+  for (int i = 0; i < 4; i++) vl_camera_put(&poses, " %.17g", q[i] + 0.0);
+  for (int i = 0; i < 3; i++) vl_camera_put(&poses, " %.17g", t[i] + 0.0);
+  vl_camera_put(&poses, " 1 %s\n\n", record->name[0] ? record->name : "camera");
+  result = write_text(file, cameras, &text);
+  if (result == VL_OK) result = write_text(file, images, &poses);
+  VL_ARRAY_FREE(file->context, &text.text);
+  VL_ARRAY_FREE(file->context, &poses.text);
+  return result;
+}

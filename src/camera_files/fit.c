@@ -1,0 +1,121 @@
+/* camera_files/fit.c: what a dialect cannot hold is refused by name. */
+#include <math.h>
+#include <string.h>
+
+#include "camera_files/files.h"
+#include "math/transform.h"
+
+bool vl_camera_drops(const vlCameraFile *file, const char *field) {
+  for (uint32_t i = 0; i < file->def->drop_count; i++)
+    if (strcmp(file->def->drop[i], field) == 0) return true;
+  return false;
+}
+
+vlResult vl_camera_refuse(const vlCameraFile *file, const char *field, bool present) {
+  if (!present || vl_camera_drops(file, field)) return VL_OK;
+  return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
+                    "%s cannot hold this camera's \"%s\"; to leave it out, drop it by that name", file->dialect, field);
+}
+
+static bool is_identity(const double m[16]) {
+  for (int i = 0; i < 16; i++)
+    if (m[i] != (i % 5 == 0 ? 1.0 : 0.0)) return false;
+  return true;
+}
+
+/* Rotation and translation only, to rounding. */
+static bool is_rigid(const double m[16]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = i; j < 3; j++) {
+      double dot = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
+      if (!(fabs(dot - (i == j ? 1.0 : 0.0)) < 1e-9)) return false;
+    }
+  return vl_mat4_determinant3(vl_mat4_load(m)) > 0.0;
+}
+
+/* The same view, its picture left for right: the x axis the other way. Left-handed worlds, pbrt's, need it. */
+static void unmirror(vlCamera *c) {
+  for (int i = 0; i < 4; i++) {
+    c->world_from_camera[4 * i] = 0.0 - c->world_from_camera[4 * i];
+    c->camera_from_world[i] = 0.0 - c->camera_from_world[i];
+  }
+  c->cx = c->width - c->cx;
+  c->skew = 0.0 - c->skew;
+}
+
+vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, vlCamera *camera) {
+  const vlCameraDef *d = &record->camera;
+  vlResult result = vl_camera_make(d, camera, NULL, file->error);
+  if (result != VL_OK) return result;
+  bool posed = holds & VL_HOLDS_POSE;
+  const vlLens *lens = &camera->lens;
+  const struct {
+    const char *field;
+    bool present;
+  } fields[] = {
+      {"pose", !posed && !is_identity(camera->world_from_camera)},
+      {"skew", !(holds & VL_HOLDS_SKEW) && camera->skew != 0.0},
+      {"lens_radius", !(holds & VL_HOLDS_LENS) && camera->lens_radius != 0.0},
+      {"focus_distance", !(holds & VL_HOLDS_LENS) && !isinf(camera->focus_distance)},
+      {"near_plane", !(holds & VL_HOLDS_PLANES) && camera->near_plane != 0.0},
+      {"far_plane", !(holds & VL_HOLDS_PLANES) && !isinf(camera->far_plane)},
+      {"shutter_open", !(holds & VL_HOLDS_TIME) && camera->shutter_open != 0.0},
+      {"shutter_close", !(holds & VL_HOLDS_TIME) && camera->shutter_close != 1.0},
+      {"exposure_time", !(holds & VL_HOLDS_EXPOSURE) && camera->exposure_time != 1.0},
+      {"max_angle", !vl_is_unset(d->max_angle)},
+      {"blades", lens->blades != 0},
+      {"aperture", lens->aperture != NULL},
+      {"aperture_ratio", lens->ratio != 1.0},
+      {"focus_pixel", !vl_is_unset(lens->focus_pixel[0])},
+      {"tilt", lens->tilt[0] != 0.0 || lens->tilt[1] != 0.0 || lens->hinge[0] != 0.0 || lens->hinge[1] != 0.0},
+      {"vignetting", lens->vignetting},
+      {"shutter_curve", camera->shutter_points != 0},
+      {"readout", camera->readout != 0.0},
+      {"motion", camera->moves},
+      {"stereo", d->stereo.mode != VL_STEREO_NONE && d->stereo_eye == VL_EYE_BOTH},
+  };
+  for (size_t i = 0; i < sizeof fields / sizeof fields[0] && result == VL_OK; i++)
+    result = vl_camera_refuse(file, fields[i].field, fields[i].present);
+  if (result != VL_OK) return result;
+  bool strict = posed && !(holds & VL_HOLDS_SCALE);
+  if (strict && vl_mat4_determinant3(vl_mat4_load(camera->world_from_camera)) < 0.0 && camera->distortion.steps == 0) {
+    result = vl_camera_refuse(file, "mirror", true);
+    if (result != VL_OK) return result;
+    unmirror(camera);
+  }
+  if (strict && !is_rigid(camera->world_from_camera))
+    return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
+                      "%s cannot hold a pose that scales or mirrors", file->dialect);
+  if (vl_camera_drops(file, "skew")) camera->skew = 0.0;
+  return VL_OK;
+}
+
+vlResult vl_camera_no_model(const vlCameraFile *file, const vlCameraDef *def) {
+  static const char *const names[] = {"no distortion", "OpenCV's distortion", "a radial distortion",
+                                      "the thin-prism distortion"};
+  return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
+                    "%s cannot hold the %s projection with %s and these coefficients", file->dialect,
+                    vl_projection_name(def->projection), names[def->distortion]);
+}
+
+bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count) {
+  static const uint32_t counts[] = {0, 4, 5, 8, 12, 14};
+  const double *c = def->distortion_coefficients;
+  memset(k, 0, 14 * sizeof *k);
+  if (def->distortion == VL_DISTORTION_OPENCV) {
+    memcpy(k, c, def->distortion_count * sizeof *k);
+  } else if (def->distortion == VL_DISTORTION_RADIAL) {
+    k[0] = c[0];
+    k[1] = def->distortion_count > 1 ? c[1] : 0.0;
+    k[4] = def->distortion_count > 2 ? c[2] : 0.0;
+    if (def->distortion_count > 3 && c[3] != 0.0) return false;
+  } else if (def->distortion != VL_DISTORTION_NONE) {
+    return false;
+  }
+  /* as many as were given, or as few as hold what is not zero */
+  uint32_t last = def->distortion == VL_DISTORTION_OPENCV ? def->distortion_count : 0;
+  for (uint32_t i = 0; i < 14; i++)
+    if (k[i] != 0.0 && i + 1 > last) last = i + 1;
+  for (int i = 5; i >= 0 && counts[i] >= last; i--) *count = counts[i];
+  return true;
+}

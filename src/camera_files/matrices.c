@@ -1,0 +1,241 @@
+/* camera_files/matrices.c: the projection and view matrix of OpenGL, Vulkan and Direct3D, as JSON or YAML. What the
+ * three disagree on stands in the file: `order` of the 16 numbers and `vectors` that the matrix acts on, clip_y (where
+ * the picture's top is) and clip_z (what near and far plane become). They are written for a view space x right, y up, z
+ * back; read for any, since the matrix itself says which way it looks. */
+#include <math.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "camera_files/files.h"
+#include "math/transform.h"
+
+typedef struct {
+  const char *name;
+  vlCameraDialect dialect;
+  bool down;       /* clip space's y */
+  double z_near;   /* what the near plane becomes; the far plane 1 */
+  bool rows_first; /* as written: row-major */
+  bool row_vectors;
+} Api;
+
+static const Api apis[] = {{"opengl", VL_CAMERA_DIALECT_OPENGL, false, -1.0, false, false},
+                           {"vulkan", VL_CAMERA_DIALECT_VULKAN, true, 0.0, false, false},
+                           {"d3d", VL_CAMERA_DIALECT_D3D, false, 0.0, true, true}};
+enum { API_COUNT = sizeof apis / sizeof *apis };
+
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
+
+/* A word that must be one of two. */
+static vlResult choice(const vlCameraFile *file, const json_t *tree, const char *key, const char *yes, const char *no,
+                       bool *value) {
+  const json_t *field;
+  vlResult result = vl_camera_field(file, tree, key, &field);
+  const char *word = json_string_value(field);
+  if (result != VL_OK) return result;
+  *value = word && strcmp(word, yes) == 0;
+  if (*value || (word && strcmp(word, no) == 0)) return VL_OK;
+  return vl_camera_wrong(file, "%s: \"%s\" must be \"%s\" or \"%s\"", file->dialect, key, yes, no);
+}
+
+/* 16 numbers as a list, as lists, or as a text of numbers; into rows that act on columns. */
+static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const char *key, bool transposed,
+                            vlMat4 *matrix) {
+  double m[16];
+  const char *text = vl_camera_text(tree, key);
+  uint32_t count = 0;
+  if (text) {
+    for (char *end; count < 17; text = end, count++) {
+      double value = vl_camera_parse(text, &end);
+      if (end == text) break;
+      if (count < 16) m[count] = value;
+    }
+    if (count != 16 || text[strspn(text, " \t\r\n,;")] != 0)
+      return vl_camera_wrong(file, "%s: \"%s\" must hold 16 numbers", file->dialect, key);
+  } else {
+    vlResult result = vl_camera_numbers(file, tree, key, m, 16, 16, NULL);
+    if (result != VL_OK) return result;
+  }
+  for (int i = 0; i < 16; i++) {
+    matrix->m[i] = m[transposed ? 4 * (i % 4) + i / 4 : i];
+    if (!isfinite(matrix->m[i])) return vl_camera_wrong(file, "%s: \"%s\" is not finite", file->dialect, key);
+  }
+  return VL_OK;
+}
+
+/* z at which clip.z / clip.w = value, where clip.z = a z + b and clip.w = z, or 1. */
+static double plane_at(bool flat, double a, double b, double value) {
+  if (flat) return (value - b) / a;
+  return value == a ? INFINITY : b / (value - a);
+}
+
+static vlResult planes(const vlCameraFile *file, bool flat, double a, double b, double z_near, vlCameraDef *d) {
+  double near_plane = plane_at(flat, a, b, z_near), far_plane = plane_at(flat, a, b, 1.0);
+  if (near_plane > far_plane) { /* reversed z */
+    double other = near_plane;
+    near_plane = far_plane, far_plane = other;
+  }
+  /* an infinite far plane in single precision */
+  if (!flat && far_plane < 0.0) far_plane = INFINITY;
+  if (!(near_plane >= 0.0 && far_plane > near_plane))
+    return vl_camera_wrong(file, "%s: \"projection_matrix\" has its near plane at %g and its far plane at %g",
+                           file->dialect, near_plane, far_plane);
+  d->near_plane = near_plane;
+  d->far_plane = far_plane;
+  return VL_OK;
+}
+
+static vlResult decompose(const vlCameraFile *file, const vlMat4 *projection, vlMat4 view, bool down, double z_near,
+                          vlCameraDef *d) {
+  double p[16], w = d->width, h = d->height;
+  memcpy(p, projection->m, sizeof p);
+  bool flat = p[14] == 0.0;
+  double scale = flat ? p[15] : p[14];
+  if (p[12] != 0.0 || p[13] != 0.0 || (flat ? p[15] : p[14]) == 0.0 || (!flat && p[15] != 0.0))
+    return vl_camera_wrong(file,
+                           "%s: the last row of \"projection_matrix\" is %g %g %g %g; it must be 0 0 1 0, 0 0 -1 0 or "
+                           "0 0 0 1: are order and vectors right?",
+                           file->dialect, p[12], p[13], p[14], p[15]);
+  for (int i = 0; i < 16; i++) p[i] /= fabs(scale);
+  double forward = flat ? 1.0 : scale > 0.0 ? 1.0 : -1.0;
+  if (flat && scale < 0.0) return vl_camera_wrong(file, "%s: \"projection_matrix\" mirrors w", file->dialect);
+  /* orthographic: forward is where clip.z grows from the near plane on, against reversed z by the rule of all three */
+  if (flat) forward = p[10] < 0.0 ? -1.0 : 1.0;
+  if (p[4] != 0.0 || p[8] != 0.0 || p[9] != 0.0 || (!flat && (p[3] != 0.0 || p[7] != 0.0)))
+    return vl_camera_wrong(file, "%s: \"projection_matrix\" is not of the form of a camera's", file->dialect);
+  if (p[0] == 0.0 || p[5] == 0.0 || (flat && p[10] == 0.0))
+    return vl_camera_wrong(file, "%s: \"projection_matrix\" is singular", file->dialect);
+  double flip = down ? 1.0 : -1.0, x = p[0] < 0.0 ? -1.0 : 1.0, y = flip * p[5] < 0.0 ? -1.0 : 1.0;
+  d->projection = flat ? VL_PROJECTION_ORTHOGRAPHIC : VL_PROJECTION_PERSPECTIVE;
+  d->fx = 0.5 * w * fabs(p[0]);
+  d->fy = 0.5 * h * fabs(p[5]);
+  d->skew = 0.5 * w * p[1] * y;
+  d->cx = 0.5 * w * (1.0 + (flat ? p[3] : p[2] * forward));
+  d->cy = 0.5 * h * (1.0 + flip * (flat ? p[7] : p[6] * forward));
+  if (flat && (p[2] != 0.0 || p[6] != 0.0))
+    return vl_camera_wrong(file, "%s: an oblique \"projection_matrix\" is not taken", file->dialect);
+  vlResult result = planes(file, flat, p[10] * forward, p[11], z_near, d);
+  vlMat4 inverse;
+  if (result == VL_OK && (view.m[12] != 0.0 || view.m[13] != 0.0 || view.m[14] != 0.0 || view.m[15] != 1.0 ||
+                          !vl_mat4_inverse(view, &inverse)))
+    return vl_camera_wrong(file, "%s: \"view_matrix\" is no pose: are order and vectors right?", file->dialect);
+  if (result != VL_OK) return result;
+  d->has_matrix = true;
+  vl_camera_flip_columns(inverse.m, x, y, forward, d->world_from_camera);
+  d->world_from_camera[15] = 1.0;
+  return VL_OK;
+}
+
+vlResult vl_camera_read_matrices(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  static const char *const names[] = {"opengl", "vulkan", "d3d"};
+  vlCameraDef *d = &record->camera;
+  const json_t *field;
+  vlResult result = vl_camera_field(file, tree, "graphics_api", &field);
+  if (result != VL_OK) return result;
+  const char *word = json_string_value(field);
+  const Api *api = NULL;
+  for (int i = 0; i < API_COUNT && word; i++)
+    if (strcmp(apis[i].name, word) == 0) api = &apis[i];
+  if (!api) {
+    char known[300];
+    vl_tell_names(known, sizeof known, word ? word : "", names, API_COUNT);
+    return vl_camera_wrong(file, "unknown graphics_api \"%.40s\"%s", word ? word : "", known);
+  }
+  vlCameraFile own = *file;
+  own.dialect = api->name;
+  record->dialect = api->dialect;
+  bool rows_first = false, row_vectors = false, down = api->down, zero_to_one = api->z_near == 0.0;
+  double z[2];
+  vlMat4 projection, view;
+  result = vl_camera_side(&own, tree, "width", &d->width);
+  if (result == VL_OK) result = vl_camera_side(&own, tree, "height", &d->height);
+  if (result == VL_OK) result = choice(&own, tree, "order", "row-major", "column-major", &rows_first);
+  if (result == VL_OK) result = choice(&own, tree, "vectors", "row", "column", &row_vectors);
+  if (result == VL_OK && json_object_get(tree, "clip_y")) result = choice(&own, tree, "clip_y", "down", "up", &down);
+  if (result == VL_OK && json_object_get(tree, "clip_z")) {
+    result = vl_camera_numbers(&own, tree, "clip_z", z, 2, 2, NULL);
+    zero_to_one = z[0] == 0.0;
+    if (result == VL_OK && !(z[1] == 1.0 && (z[0] == 0.0 || z[0] == -1.0)))
+      result = vl_camera_wrong(&own, "%s: \"clip_z\" must be [0, 1] or [-1, 1]", own.dialect);
+  }
+  bool transposed = rows_first == row_vectors;
+  if (result == VL_OK) result = read_matrix(&own, tree, "projection_matrix", transposed, &projection);
+  if (result == VL_OK) result = read_matrix(&own, tree, "view_matrix", transposed, &view);
+  if (result == VL_OK) result = decompose(&own, &projection, view, down, zero_to_one ? 0.0 : -1.0, d);
+  /* the camera's own planes, where the matrix has some only because it must */
+  if (result == VL_OK) result = vl_camera_optional(&own, tree, "near_plane", &d->near_plane);
+  if (result == VL_OK && json_is_null(json_object_get(tree, "far_plane")))
+    d->far_plane = INFINITY;
+  else if (result == VL_OK)
+    result = vl_camera_optional(&own, tree, "far_plane", &d->far_plane);
+  vl_camera_name(record, vl_camera_text(tree, "name"));
+  return result;
+}
+
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
+
+/* View space x right, y up, z back, to clip space; acts on columns. */
+static vlMat4 projection_of(const vlCamera *c, const Api *api) {
+  bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  double w = c->width, h = c->height, up = api->down ? 1.0 : -1.0;
+  double x = 2.0 * c->cx / w - 1.0, y = up * (2.0 * c->cy / h - 1.0);
+  double f = c->far_plane, n = c->near_plane, a, b;
+  if (!(n > 0.0) && !flat) n = fmin(0.01, 1e-3 * f);
+  if (flat && isinf(f)) f = n + 1e4;
+  double lo = api->z_near;
+  /* clip.z = a z + b, z = -Z of view space: n to lo w, f to w */
+  if (flat)
+    a = (1.0 - lo) / (f - n), b = lo - a * n;
+  else if (isinf(f))
+    a = 1.0, b = (lo - 1.0) * n;
+  else
+    a = (f - lo * n) / (f - n), b = (lo - a) * n;
+  return (vlMat4){{2.0 * c->fx / w, -2.0 * c->skew / w, flat ? 0.0 : -x, flat ? x : 0.0, /* x */
+                   0.0, -up * 2.0 * c->fy / h, flat ? 0.0 : -y, flat ? y : 0.0,          /* y */
+                   0.0, 0.0, -a, b,                                                      /* z */
+                   0.0, 0.0, flat ? 0.0 : -1.0, flat ? 1.0 : 0.0}};
+}
+
+static void put_matrix(vlCameraText *text, const char *name, const vlMat4 *m, bool transposed) {
+  vl_camera_put(text, "  \"%s\": [", name);
+  for (int i = 0; i < 16; i++)
+    vl_camera_put(text, "%s%.17g",
+                  i == 0  ? "\n    "
+                  : i % 4 ? ", "
+                          : ",\n    ",
+                  m->m[transposed ? 4 * (i % 4) + i / 4 : i] + 0.0);
+  vl_camera_put(text, "\n  ]");
+}
+
+vlResult vl_camera_write_matrices(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  const vlCameraDef *d = &record->camera;
+  const Api *api = &apis[0];
+  vlCamera c;
+  for (int i = 0; i < API_COUNT; i++)
+    if (strcmp(apis[i].name, file->dialect) == 0) api = &apis[i];
+  uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_SKEW | VL_HOLDS_PLANES;
+  vlResult result = vl_camera_fit(file, record, holds, &c);
+  if (result != VL_OK) return result;
+  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC) return vl_camera_no_model(file, d);
+  result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
+  if (result != VL_OK) return result;
+  vlMat4 projection = projection_of(&c, api), view = vl_mat4_load(c.camera_from_world);
+  for (int i = 4; i < 12; i++) view.m[i] = 0.0 - view.m[i];
+  bool transposed = api->rows_first == api->row_vectors;
+  vl_camera_put(text, "{\n  \"graphics_api\": \"%s\",\n", api->name);
+  if (record->name[0]) {
+    vl_camera_put(text, "  \"name\": ");
+    vl_camera_put_string(text, record->name);
+    vl_camera_put(text, ",\n");
+  }
+  vl_camera_put(text, "  \"width\": %u,\n  \"height\": %u,\n  \"pixel_origin\": \"corner\",\n", c.width, c.height);
+  vl_camera_put(text, "  \"view_axes\": \"x right, y up, z back\",\n  \"order\": \"%s\",\n  \"vectors\": \"%s\",\n",
+                api->rows_first ? "row-major" : "column-major", api->row_vectors ? "row" : "column");
+  vl_camera_put(text, "  \"clip_y\": \"%s\",\n  \"clip_z\": [%g, 1],\n", api->down ? "down" : "up", api->z_near);
+  vl_camera_put(text, "  \"near_plane\": %.17g,\n  \"far_plane\": ", c.near_plane);
+  vl_camera_put(text, isinf(c.far_plane) ? "null,\n" : "%.17g,\n", c.far_plane);
+  put_matrix(text, "projection_matrix", &projection, transposed);
+  vl_camera_put(text, ",\n");
+  put_matrix(text, "view_matrix", &view, transposed);
+  vl_camera_put(text, "\n}\n");
+  return VL_OK;
+}

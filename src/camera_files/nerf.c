@@ -1,0 +1,130 @@
+/* camera_files/nerf.c: NeRF's transforms.json. Camera axes x right, y up, z back; world from camera; pixels count from
+ * the picture's corner, as in velo. */
+#include <math.h>
+#include <string.h>
+
+#include "camera_files/trajectory.h"
+
+/* A frame's own value comes before the file's. */
+static const json_t *holder(const json_t *frame, const json_t *tree, const char *key) {
+  return json_object_get(frame, key) ? frame : tree;
+}
+
+static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const json_t *tree, vlCameraDef *d) {
+  static const char *const names[] = {"k1", "k2", "p1", "p2", "k3", "k4"};
+  double k[6] = {0};
+  vlResult result = VL_OK;
+  for (int i = 0; i < 6 && result == VL_OK; i++)
+    result = vl_camera_optional(file, holder(frame, tree, names[i]), names[i], &k[i]);
+  if (result != VL_OK) return result;
+  const char *model = vl_camera_text(holder(frame, tree, "camera_model"), "camera_model");
+  bool fisheye = model && (strcmp(model, "OPENCV_FISHEYE") == 0 || strcmp(model, "RADIAL_FISHEYE") == 0);
+  fisheye = fisheye || json_is_true(json_object_get(tree, "is_fisheye"));
+  if (model && !fisheye && strcmp(model, "OPENCV") != 0 && strcmp(model, "PINHOLE") != 0 &&
+      strcmp(model, "SIMPLE_PINHOLE") != 0 && strcmp(model, "RADIAL") != 0 && strcmp(model, "SIMPLE_RADIAL") != 0)
+    return vl_camera_wrong(file,
+                           "nerf: unknown camera_model \"%.40s\"; there are PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, "
+                           "RADIAL, OPENCV, OPENCV_FISHEYE",
+                           model);
+  bool tangential = k[2] != 0.0 || k[3] != 0.0;
+  if (fisheye && tangential) return vl_camera_wrong(file, "nerf: a fisheye has no \"p1\" and \"p2\"");
+  if (!fisheye && k[5] != 0.0) return vl_camera_wrong(file, "nerf: \"k4\" is taken for fisheyes only");
+  if (fisheye) {
+    const double radial[4] = {k[0], k[1], k[4], k[5]};
+    d->projection = VL_PROJECTION_EQUIDISTANT;
+    d->distortion = VL_DISTORTION_RADIAL;
+    d->distortion_count = 4;
+    memcpy(d->distortion_coefficients, radial, sizeof radial);
+  } else if (tangential || k[0] != 0.0 || k[1] != 0.0 || k[4] != 0.0) {
+    d->distortion = VL_DISTORTION_OPENCV;
+    d->distortion_count = k[4] != 0.0 ? 5 : 4;
+    memcpy(d->distortion_coefficients, k, 5 * sizeof *k);
+  }
+  return VL_OK;
+}
+
+vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame, const json_t *tree,
+                                   vlCameraRecord *record) {
+  vlCameraDef *d = &record->camera;
+  double m[16] = {0}, angle_x = VL_UNSET, angle_y = VL_UNSET;
+  uint32_t count;
+  vlResult result = vl_camera_side(file, holder(frame, tree, "w"), "w", &d->width);
+  if (result == VL_OK) result = vl_camera_side(file, holder(frame, tree, "h"), "h", &d->height);
+  const struct {
+    const char *key;
+    double *value;
+  } fields[] = {{"fl_x", &d->fx},
+                {"fl_y", &d->fy},
+                {"cx", &d->cx},
+                {"cy", &d->cy},
+                {"camera_angle_x", &angle_x},
+                {"camera_angle_y", &angle_y}};
+  for (size_t i = 0; i < 6 && result == VL_OK; i++)
+    result = vl_camera_optional(file, holder(frame, tree, fields[i].key), fields[i].key, fields[i].value);
+  if (result == VL_OK) result = read_lens(file, frame, tree, d);
+  if (result == VL_OK) result = vl_camera_numbers(file, frame, "transform_matrix", m, 12, 16, &count);
+  if (result != VL_OK) return result;
+  /* the angles are those of the focal length, whatever the lens does; fl_x has the last word */
+  if (vl_is_unset(d->fx) && !vl_is_unset(angle_x)) d->fx = 0.5 * d->width / tan(0.5 * angle_x);
+  if (vl_is_unset(d->fy) && !vl_is_unset(angle_y)) d->fy = 0.5 * d->height / tan(0.5 * angle_y);
+  if (vl_is_unset(d->fx) && vl_is_unset(d->fy))
+    return vl_camera_wrong(file, "nerf: the field \"fl_x\" is missing, and \"camera_angle_x\" too");
+  if (count == 12) m[15] = 1.0;
+  d->has_matrix = true;
+  vl_camera_flip_axes(m, d->world_from_camera);
+  vl_camera_name(record, vl_camera_text(frame, "file_path"));
+  return VL_OK;
+}
+
+vlResult vl_camera_read_nerf(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *frames;
+  vlResult result = vl_camera_field(file, tree, "frames", &frames);
+  if (result != VL_OK) return result;
+  if (!json_is_array(frames)) return vl_camera_wrong(file, "nerf: \"frames\" must be a list");
+  record->frames = (uint32_t)json_array_size(frames);
+  for (uint32_t i = 0; i < record->frames; i++) {
+    const json_t *frame = json_array_get(frames, i);
+    if (!json_is_object(frame)) return vl_camera_wrong(file, "nerf: frame %u is no object", i);
+    if (vl_camera_is_frame(file, i, vl_camera_text(frame, "file_path")))
+      return vl_camera_read_nerf_frame(file, frame, tree, record);
+  }
+  return vl_camera_wrong(file, "nerf: there is no frame \"%.60s\" among the %u",
+                         file->def->frame ? file->def->frame : "0", record->frames);
+}
+
+vlResult vl_camera_write_nerf(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  static const char *const radial_names[] = {"k1", "k2", "k3", "k4"}, *const names[] = {"k1", "k2", "p1", "p2", "k3"};
+  const vlCameraDef *d = &record->camera;
+  vlCamera c;
+  double k[14] = {0}, m[16];
+  uint32_t n = 0;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE, &c);
+  if (result != VL_OK) return result;
+  bool fisheye = d->projection == VL_PROJECTION_EQUIDISTANT;
+  if (fisheye && (d->distortion == VL_DISTORTION_RADIAL || d->distortion == VL_DISTORTION_NONE))
+    memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k), n = 4;
+  else if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, &n))
+    return vl_camera_no_model(file, d);
+  for (int i = 5; i < 14; i++)
+    if (k[i] != 0.0) return vl_camera_no_model(file, d);
+  vl_camera_flip_axes(c.world_from_camera, m);
+  vl_camera_put(text, "{\n  \"camera_model\": \"%s\",\n  \"w\": %u,\n  \"h\": %u,\n",
+                fisheye ? "OPENCV_FISHEYE"
+                : n     ? "OPENCV"
+                        : "PINHOLE",
+                c.width, c.height);
+  vl_camera_put(text, "  \"fl_x\": %.17g,\n  \"fl_y\": %.17g,\n  \"cx\": %.17g,\n  \"cy\": %.17g", c.fx, c.fy, c.cx,
+                c.cy);
+  for (uint32_t i = 0; n && i < (fisheye ? 4u : 5u); i++)
+    vl_camera_put(text, ",\n  \"%s\": %.17g", fisheye ? radial_names[i] : names[i], k[i]);
+  vl_camera_put(text, ",\n  \"frames\": [\n    {\"file_path\": ");
+  vl_camera_put_string(text, record->name);
+  vl_camera_put(text, ",\n     \"transform_matrix\": [");
+  for (int i = 0; i < 4; i++) {
+    vl_camera_put(text, "%s[", i ? ", " : "");
+    vl_camera_put_numbers(text, m + 4 * i, 4);
+    vl_camera_put(text, "]");
+  }
+  vl_camera_put(text, "]}\n  ]\n}\n");
+  return VL_OK;
+}

@@ -1,0 +1,213 @@
+/* camera_files/trajectory.c: many frames from one file: which kind of file it is, the frames' checks, the public face.
+ * Poses and cameras are kept apart, for thousands of frames share one camera. */
+#include "camera_files/trajectory.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/cookie.h"
+#include "base/file.h"
+#include "base/text.h"
+
+/* How far a pose's rotation may be from one: files write 4 digits and more. */
+static const double rotation_tolerance = 1e-3;
+
+vlResult vl_frame_wrong(const vlCameraFile *file, const vlFramePlace *place, const char *format, ...) {
+  char message[300];
+  va_list list;
+  va_start(list, format);
+  vsnprintf(message, sizeof message, format, list);
+  va_end(list);
+  const char *path = place->path ? place->path : file->path, *name = place->name ? place->name : "";
+  return vl_fail_at(file->error, VL_ERROR_SCENE, path, place->line, place->line ? 1 : 0, "frame %u%s%.60s%s: %s",
+                    place->frame, *name ? " (" : "", name, *name ? ")" : "", message);
+}
+
+/* Null where it is a rotation and a place. */
+static const char *pose_fault(const double m[16]) {
+  for (int i = 0; i < 12; i++)
+    if (!isfinite(m[i])) return "the pose holds a value that is not finite";
+  for (int i = 0; i < 3; i++)
+    for (int j = i; j < 3; j++) {
+      double dot = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
+      if (!(fabs(dot - (i == j ? 1.0 : 0.0)) <= rotation_tolerance))
+        return "the pose is no rotation: its axes are not of length 1 and at right angles";
+    }
+  double turn =
+      m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+  return turn > 0.0 ? NULL : "the pose is no rotation: it mirrors";
+}
+
+vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file, const vlFramePlace *place, int32_t camera,
+                           const double m[16], double time) {
+  const char *fault = pose_fault(m);
+  if (fault) return vl_frame_wrong(file, place, "%s", fault);
+  if (t->frames.count == INT32_MAX) return vl_frame_wrong(file, place, "too many frames");
+  const char *name = place->name ? place->name : "";
+  size_t length = strlen(name) + 1;
+  if (!VL_RESERVE(t->context, &t->names, length)) return vl_fail_memory(file->error);
+  vlStoredFrame *frame = VL_PUSH(t->context, &t->frames);
+  if (!frame) return vl_fail_memory(file->error);
+  memcpy(frame->pose, m, sizeof frame->pose);
+  frame->time = time;
+  frame->camera = camera;
+  frame->line = place->line;
+  frame->name = t->names.count;
+  memcpy(t->names.items + t->names.count, name, length);
+  t->names.count += length;
+  return VL_OK;
+}
+
+vlResult vl_trajectory_add_camera(vlTrajectory *t, const vlCameraFile *file, const vlCameraRecord *record,
+                                  int32_t *index) {
+  if (t->cameras.count > 0) {
+    vlCameraDef last = t->cameras.items[t->cameras.count - 1].camera;
+    last.has_matrix = record->camera.has_matrix;
+    memcpy(last.world_from_camera, record->camera.world_from_camera, sizeof last.world_from_camera);
+    *index = (int32_t)t->cameras.count - 1;
+    if (memcmp(&last, &record->camera, sizeof last) == 0) return VL_OK;
+  }
+  if (t->cameras.count == INT32_MAX) return vl_camera_wrong(file, "too many cameras");
+  vlCameraRecord *added = VL_PUSH(t->context, &t->cameras);
+  if (!added) return vl_fail_memory(file->error);
+  memcpy(added, record, sizeof *added); /* padding too: it is compared */
+  *index = (int32_t)t->cameras.count - 1;
+  return VL_OK;
+}
+
+/* ---- which file ----------------------------------------------------------------------------------------------------
+ */
+
+/* One camera, one frame. */
+static vlResult read_single(vlTrajectory *t, const vlCameraFile *file) {
+  vlCameraRecord record;
+  vlCamera camera;
+  int32_t index;
+  vlResult result = vl_camera_read(file->context, file->path, file->def, &record, file->error);
+  if (result == VL_OK) result = vl_camera_make(&record.camera, &camera, NULL, file->error);
+  if (result == VL_ERROR_ARGUMENT)
+    result = vl_camera_wrong(file, "%s", file->error && file->error->message[0] ? file->error->message : "camera");
+  if (result == VL_OK) result = vl_trajectory_add_camera(t, file, &record, &index);
+  vlFramePlace place = {.name = record.name};
+  if (result == VL_OK) result = vl_trajectory_add(t, file, &place, index, camera.world_from_camera, VL_UNSET);
+  return result;
+}
+
+/* Of a JSON or YAML file; *single: it is left to vl_camera_read. */
+static vlResult read_tree(vlTrajectory *t, const vlCameraFile *file, const char *text, size_t size, bool *single) {
+  json_t *tree = NULL;
+  vlResult result = vl_camera_tree(file, text, size, &tree);
+  *single = false;
+  if (result != VL_OK) return result;
+  if (json_object_get(tree, "frames"))
+    result = vl_trajectory_read_nerf(t, file, tree, text);
+  else if (json_object_get(tree, "cam0"))
+    result = vl_trajectory_read_kalibr(t, file, tree);
+  else if (json_object_get(tree, "extrinsic_parameters"))
+    result = vl_trajectory_read_opencv(t, file, tree, text);
+  else
+    *single = true;
+  json_decref(tree);
+  return result;
+}
+
+static bool is_tree(const char *path, const char *text) {
+  const char *first = text + strspn(text, " \t\r\n");
+  return *first == '{' || strncmp(first, "%YAML", 5) == 0 || strncmp(first, "---", 3) == 0 ||
+         vl_ends_with(path, ".yaml") || vl_ends_with(path, ".yml");
+}
+
+/* Lists of numbers and words: CSV by its name, or text that begins like a list. */
+static bool is_list(const char *path, const char *text) {
+  if (vl_ends_with(path, ".csv") || vl_ends_with(path, ".txt") || vl_ends_with(path, ".tsv")) return true;
+  const char *first = text + strspn(text, " \t\r\n");
+  return *first && strchr("+-.0123456789#", *first);
+}
+
+static vlResult read_any(vlTrajectory *t, const vlCameraFile *file) {
+  struct stat status;
+  bool folder = stat(file->path, &status) == 0 && S_ISDIR(status.st_mode);
+  vlCameraDialect wish = file->def->dialect;
+  if (folder || wish == VL_CAMERA_DIALECT_COLMAP ||
+      (!wish && (vl_ends_with(file->path, "cameras.txt") || vl_ends_with(file->path, "images.txt")))) {
+    vlCameraFile colmap = *file;
+    colmap.dialect = "colmap";
+    return vl_trajectory_read_colmap(t, &colmap);
+  }
+  char *text;
+  size_t size;
+  bool single = true;
+  vlResult result = vl_file_read(file->context, file->path, false, &text, &size, file->error);
+  if (result != VL_OK) return result;
+  if (is_tree(file->path, text)) {
+    result = read_tree(t, file, text, size, &single);
+  } else if (is_list(file->path, text)) {
+    result = vl_trajectory_read_csv(t, file, text, size);
+    single = false;
+  }
+  vl_free(file->context, text);
+  return result == VL_OK && single ? read_single(t, file) : result;
+}
+
+/* ---- the public face -----------------------------------------------------------------------------------------------
+ */
+
+vlResult vl_trajectory_load(vlContext *context, const char *path, const vlCameraFileDef *def, vlTrajectory **trajectory,
+                            vlError *error) {
+  vl_error_clear(error);
+  if (!context || !path || !trajectory) return vl_fail(error, VL_ERROR_ARGUMENT, "trajectory: null argument");
+  *trajectory = NULL;
+  vlCameraFileDef plain = def ? *def : vl_default_camera_file_def();
+  if (plain.cookie != VL_COOKIE_CAMERA_FILE)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "trajectory: the def was not made by vl_default_camera_file_def");
+  plain.frame = NULL;
+  vlTrajectory *t = vl_alloc_zero(context, 1, sizeof *t);
+  if (!t) return vl_fail_memory(error);
+  t->context = context;
+  vlCameraFile file = {.context = context, .path = path, .dialect = "trajectory", .def = &plain, .error = error};
+  vlResult result = read_any(t, &file);
+  if (result == VL_OK && t->frames.count == 0)
+    result = vl_fail_at(error, VL_ERROR_SCENE, path, 0, 0, "the file holds no pose");
+  if (result != VL_OK) {
+    vl_trajectory_destroy(t);
+    return result;
+  }
+  *trajectory = t;
+  return VL_OK;
+}
+
+void vl_trajectory_destroy(vlTrajectory *t) {
+  if (!t) return;
+  vlContext *context = t->context;
+  VL_ARRAY_FREE(context, &t->frames);
+  VL_ARRAY_FREE(context, &t->cameras);
+  VL_ARRAY_FREE(context, &t->names);
+  vl_free(context, t);
+}
+
+uint32_t vl_trajectory_frames(const vlTrajectory *t) {
+  return t ? (uint32_t)t->frames.count : 0;
+}
+
+uint32_t vl_trajectory_cameras(const vlTrajectory *t) {
+  return t ? (uint32_t)t->cameras.count : 0;
+}
+
+const vlCameraRecord *vl_trajectory_camera(const vlTrajectory *t, uint32_t index) {
+  return t && index < t->cameras.count ? &t->cameras.items[index] : NULL;
+}
+
+vlResult vl_trajectory_frame(const vlTrajectory *t, uint32_t index, vlTrajectoryFrame *frame) {
+  if (!t || !frame || index >= t->frames.count) return VL_ERROR_ARGUMENT;
+  const vlStoredFrame *stored = &t->frames.items[index];
+  *frame = (vlTrajectoryFrame){.name = t->names.items + stored->name,
+                               .camera = stored->camera,
+                               .line = stored->line,
+                               .world_from_camera = {[15] = 1.0},
+                               .time = stored->time};
+  memcpy(frame->world_from_camera, stored->pose, sizeof stored->pose);
+  return VL_OK;
+}

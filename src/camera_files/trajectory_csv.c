@@ -1,0 +1,294 @@
+/* camera_files/trajectory_csv.c: poses in lines of text. With a header that names the columns: CSV (comma, semicolon,
+ * tab or blanks between them). Without one: TUM's lists (8 numbers: seconds, place, quaternion x y z w) and KITTI's (12
+ * numbers: three rows of a matrix). All are world from camera, x right, y down, z forward, unless a comment before the
+ * header says "axes: opengl" or "pose: camera_from_world". */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "camera_files/trajectory.h"
+
+enum { MOST_COLUMNS = 64 };
+
+enum Column {
+  NAME,
+  NUMBER, /* kept for people: frames are counted in the order of the file */
+  TIME,
+  TX,
+  TY,
+  TZ,
+  QX,
+  QY,
+  QZ,
+  QW,
+  EYE_X,
+  EYE_Y,
+  EYE_Z,
+  LOOKAT_X,
+  LOOKAT_Y,
+  LOOKAT_Z,
+  UP_X,
+  UP_Y,
+  UP_Z,
+  ROLL,
+  M00,
+  M23 = M00 + 11,
+  COLUMNS
+};
+
+static const char *const names[COLUMNS] = {
+    "name",  "number", "time",     "tx",       "ty",       "tz",   "qx",   "qy",   "qz",   "qw",  "eye_x",
+    "eye_y", "eye_z",  "lookat_x", "lookat_y", "lookat_z", "up_x", "up_y", "up_z", "roll", "m00", "m01",
+    "m02",   "m03",    "m10",      "m11",      "m12",      "m13",  "m20",  "m21",  "m22",  "m23"};
+static const struct {
+  const char *alias;
+  int column;
+} aliases[] = {{"image", NAME}, {"file", NAME},      {"filename", NAME}, {"frame", NUMBER}, {"index", NUMBER},
+               {"id", NUMBER},  {"timestamp", TIME}, {"t", TIME},        {"x", TX},         {"y", TY},
+               {"z", TZ}};
+
+typedef struct Csv {
+  vlTrajectory *trajectory;
+  const vlCameraFile *file;
+  char separator; /* 0: blanks */
+  uint32_t line;
+  int columns, of[MOST_COLUMNS]; /* which Column each is */
+  bool has[COLUMNS], header;
+  bool opengl, from_world;
+} Csv;
+
+static vlResult wrong(const Csv *csv, uint32_t column, const char *format, const char *word) {
+  return vl_fail_at(csv->file->error, VL_ERROR_SCENE, csv->file->path, csv->line, column + 1, format, word);
+}
+
+/* The fields of a line in place; blanks and quotes around them go. Returns how many, MOST_COLUMNS + 1: too many. */
+static int split(char *line, char separator, char *fields[MOST_COLUMNS]) {
+  int count = 0;
+  for (char *at = line; at;) {
+    if (!separator) at += strspn(at, " \t");
+    if (!separator && !*at) break;
+    char *field = at + strspn(at, " \t");
+    bool quoted = *field == '"';
+    char *end = quoted ? strchr(field + 1, '"') : NULL;
+    if (end) {
+      field++;
+      *end = 0;
+      at = end + 1;
+      at += strcspn(at, separator ? (char[]){separator, 0} : " \t");
+    } else {
+      at = field + strcspn(field, separator ? (char[]){separator, 0} : " \t");
+    }
+    bool more = *at != 0;
+    *at = 0;
+    at = more ? at + 1 : NULL;
+    for (size_t n = strlen(field); n && (field[n - 1] == ' ' || field[n - 1] == '\t'); n--) field[n - 1] = 0;
+    if (count == MOST_COLUMNS) return MOST_COLUMNS + 1;
+    fields[count++] = field;
+  }
+  return count;
+}
+
+static bool to_number(const char *text, double *value) {
+  char *end;
+  *value = strtod(text, &end);
+  return end != text && *end == 0;
+}
+
+/* "# axes: opengl": false for a word that is not known. */
+static bool take_comment(Csv *csv, const char *comment) {
+  const struct {
+    const char *key, *words[2];
+    bool *flag;
+  } said[] = {{"axes:", {"opencv", "opengl"}, &csv->opengl},
+              {"pose:", {"world_from_camera", "camera_from_world"}, &csv->from_world}};
+  comment += strspn(comment, "# \t");
+  for (int i = 0; i < 2; i++) {
+    size_t n = strlen(said[i].key);
+    if (strncmp(comment, said[i].key, n) != 0) continue;
+    const char *word = comment + n + strspn(comment + n, " \t");
+    size_t length = strcspn(word, " \t\r");
+    for (int k = 0; k < 2; k++)
+      if (strlen(said[i].words[k]) == length && strncmp(word, said[i].words[k], length) == 0) {
+        *said[i].flag = k == 1;
+        return true;
+      }
+    return false;
+  }
+  return true;
+}
+
+static bool whole(const Csv *csv, int first, int last) {
+  for (int i = first; i <= last; i++)
+    if (!csv->has[i]) return false;
+  return true;
+}
+static bool any(const Csv *csv, int first, int last) {
+  for (int i = first; i <= last; i++)
+    if (csv->has[i]) return true;
+  return false;
+}
+
+/* One of the ways to say a pose, and that one whole. */
+static vlResult check_columns(const Csv *csv) {
+  static const struct { int first, last; } ways[] = {{TX, QW}, {EYE_X, LOOKAT_Z}, {M00, M23}};
+  int found = 0;
+  for (int i = 0; i < 3; i++) {
+    if (!any(csv, ways[i].first, ways[i].last)) continue;
+    for (int k = ways[i].first; k <= ways[i].last; k++)
+      if (!csv->has[k]) return wrong(csv, 0, "the column \"%s\" is missing", names[k]);
+    found++;
+  }
+  if (found != 1)
+    return wrong(csv, 0,
+                 found ? "the columns say a pose in two ways%s"
+                       : "the columns say no pose: tx ty tz qx qy qz qw, or eye_x eye_y eye_z lookat_x lookat_y "
+                         "lookat_z, or m00 to m23%s",
+                 "");
+  if (any(csv, UP_X, UP_Z) && !whole(csv, UP_X, UP_Z)) return wrong(csv, 0, "\"up\" has not all of its columns%s", "");
+  if (any(csv, UP_X, ROLL) && !csv->has[EYE_X])
+    return wrong(csv, 0, "\"up\" and \"roll\" go with eye and lookat only%s", "");
+  return VL_OK;
+}
+
+static vlResult read_header(Csv *csv, char *fields[], int count) {
+  csv->header = true;
+  csv->columns = count;
+  for (int i = 0; i < count; i++) {
+    int column = 0;
+    for (char *c = fields[i]; *c; c++)
+      if (*c >= 'A' && *c <= 'Z') *c = (char)(*c + 'a' - 'A');
+    while (column < COLUMNS && strcmp(names[column], fields[i]) != 0) column++;
+    for (size_t k = 0; k < sizeof aliases / sizeof *aliases; k++)
+      if (strcmp(aliases[k].alias, fields[i]) == 0) column = aliases[k].column;
+    if (column == COLUMNS) {
+      const char *near = vl_nearest_name(fields[i], names, COLUMNS);
+      return vl_fail_at(csv->file->error, VL_ERROR_SCENE, csv->file->path, csv->line, 1,
+                        "unknown column \"%.40s\"%s%s%s", fields[i], near ? "; did you mean \"" : "", near ? near : "",
+                        near ? "\"?" : "");
+    }
+    if (csv->has[column]) return wrong(csv, 0, "the column \"%s\" stands twice", names[column]);
+    csv->has[column] = true;
+    csv->of[i] = column;
+  }
+  return check_columns(csv);
+}
+
+/* Lines of numbers alone. */
+static bool headless(Csv *csv, int count) {
+  static const int tum[8] = {TIME, TX, TY, TZ, QX, QY, QZ, QW};
+  if (count != 8 && count != 12) return false;
+  csv->header = true;
+  csv->columns = count;
+  for (int i = 0; i < count; i++) {
+    csv->of[i] = count == 8 ? tum[i] : M00 + i;
+    csv->has[csv->of[i]] = true;
+  }
+  return true;
+}
+
+static vlResult pose_of(const Csv *csv, const vlFramePlace *place, const double v[COLUMNS], double m[16]) {
+  vlCameraDef def = vl_default_camera_def(1, 1);
+  vlCamera camera = {.width = 1};
+  vlError error;
+  if (csv->has[EYE_X]) {
+    memcpy(def.eye, v + EYE_X, sizeof def.eye);
+    memcpy(def.lookat, v + LOOKAT_X, sizeof def.lookat);
+    if (csv->has[UP_X]) memcpy(def.up, v + UP_X, sizeof def.up);
+    if (csv->has[ROLL]) def.roll = v[ROLL] * 3.14159265358979323846 / 180.0;
+    if (vl_camera_make(&def, &camera, NULL, &error) != VL_OK) {
+      const char *text = strncmp(error.message, "camera: ", 8) == 0 ? error.message + 8 : error.message;
+      return vl_frame_wrong(csv->file, place, "%s", text);
+    }
+    memcpy(m, camera.world_from_camera, sizeof camera.world_from_camera);
+    return VL_OK;
+  }
+  double r[9], t[3];
+  if (csv->has[QX]) {
+    const double q[4] = {v[QW], v[QX], v[QY], v[QZ]};
+    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (!(fabs(length - 1.0) < 0.01) || !vl_rotation_from_quaternion(q, r))
+      return vl_frame_wrong(csv->file, place, "the quaternion's length is %g; a rotation's is 1", length);
+    memcpy(t, v + TX, sizeof t);
+  } else {
+    for (int i = 0; i < 3; i++) {
+      memcpy(r + 3 * i, v + M00 + 4 * i, 3 * sizeof *r);
+      t[i] = v[M00 + 4 * i + 3];
+    }
+  }
+  double axes = csv->opengl ? -1.0 : 1.0; /* y up, z back: the camera's own y and z turn over */
+  if (csv->from_world) {
+    for (int i = 1; i < 3; i++) {
+      for (int k = 0; k < 3; k++) r[3 * i + k] *= axes;
+      t[i] *= axes;
+    }
+    vl_camera_set_pose(&def, r, t);
+    memcpy(m, def.world_from_camera, sizeof def.world_from_camera);
+    return VL_OK;
+  }
+  for (int i = 0; i < 3; i++) {
+    for (int k = 0; k < 3; k++) m[4 * i + k] = r[3 * i + k] * (k ? axes : 1.0) + 0.0;
+    m[4 * i + 3] = t[i];
+    m[12 + i] = 0.0;
+  }
+  m[15] = 1.0;
+  return VL_OK;
+}
+
+static vlResult read_line(Csv *csv, char *line) {
+  char *fields[MOST_COLUMNS];
+  if (!csv->header) csv->separator = strchr(line, ',') ? ',' : strchr(line, ';') ? ';' : strchr(line, '\t') ? '\t' : 0;
+  int count = split(line, csv->separator, fields);
+  if (count > MOST_COLUMNS) return wrong(csv, 0, "more than 64 columns%s", "");
+  double v[COLUMNS] = {0}, m[16], unused;
+  if (!csv->header) {
+    bool numbers = true;
+    for (int i = 0; i < count; i++) numbers = numbers && to_number(fields[i], &unused);
+    if (!numbers) return read_header(csv, fields, count);
+    if (!headless(csv, count))
+      return wrong(
+          csv, 0,
+          "%snumbers without a header: lists of TUM have 8 in a line (seconds, tx ty tz, qx qy qz qw), those of "
+          "KITTI 12 (three rows of a matrix)",
+          "");
+  }
+  vlFramePlace place = {NULL, csv->line, (uint32_t)csv->trajectory->frames.count, NULL};
+  if (count != csv->columns)
+    return vl_frame_wrong(csv->file, &place, "the line has %d fields; the header has %d", count, csv->columns);
+  for (int i = 0; i < count; i++) {
+    int column = csv->of[i];
+    if (column == NAME)
+      place.name = fields[i];
+    else if (column != NUMBER && (!to_number(fields[i], &v[column]) || !isfinite(v[column])))
+      return vl_frame_wrong(csv->file, &place, "\"%s\" is \"%.40s\"; it must be a finite number", names[column],
+                            fields[i]);
+  }
+  vlResult result = pose_of(csv, &place, v, m);
+  if (result != VL_OK) return result;
+  return vl_trajectory_add(csv->trajectory, csv->file, &place, VL_NO_CAMERA, m, csv->has[TIME] ? v[TIME] : VL_UNSET);
+}
+
+vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char *text, size_t size) {
+  Csv csv = {.trajectory = t, .file = file};
+  char *end = text + size;
+  if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) text += 3; /* the mark that some programs begin files with */
+  for (char *line = text; line < end;) {
+    char *stop = memchr(line, '\n', (size_t)(end - line)), *next = stop ? stop + 1 : end;
+    if (stop) *stop = 0;
+    csv.line++;
+    size_t n = strlen(line);
+    if (n && line[n - 1] == '\r') line[n - 1] = 0;
+    const char *first = line + strspn(line, " \t");
+    vlResult result = VL_OK;
+    if (*first == '#') {
+      if (!take_comment(&csv, first))
+        result =
+            wrong(&csv, 0, "\"%.60s\": axes are opencv or opengl, poses world_from_camera or camera_from_world", first);
+    } else if (*first) {
+      result = read_line(&csv, line);
+    }
+    if (result != VL_OK) return result;
+    line = next;
+  }
+  return VL_OK;
+}

@@ -1,0 +1,222 @@
+/* camera_files/tree.c: values out of a file's tree, each error with the field's name; text that is put together. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "camera_files/files.h"
+
+vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...) {
+  char message[400];
+  va_list list;
+  va_start(list, format);
+  vsnprintf(message, sizeof message, format, list);
+  va_end(list);
+  return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, 0, 0, "%s", message);
+}
+
+vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t column, const char *format, ...) {
+  char message[400];
+  va_list list;
+  va_start(list, format);
+  vsnprintf(message, sizeof message, format, list);
+  va_end(list);
+  return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, line, column, "%s", message);
+}
+
+vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {
+  size_t first = strspn(text, " \t\r\n");
+  vlResult result = VL_OK;
+  *tree = NULL;
+  /* .glb: 12 bytes of header, then a chunk of JSON: its length, "JSON", the text */
+  if (size >= 20 && memcmp(text, "glTF", 4) == 0 && memcmp(text + 16, "JSON", 4) == 0) {
+    const unsigned char *b = (const unsigned char *)text + 12;
+    size_t length = (size_t)b[0] | (size_t)b[1] << 8 | (size_t)b[2] << 16 | (size_t)b[3] << 24;
+    if (length > size - 20) return vl_camera_wrong(file, "not glTF: the file is cut off");
+    text += 20;
+    size = length;
+    first = 0;
+  }
+  if (first >= size) return vl_camera_wrong(file, "the file is empty");
+  if (text[first] == '{') {
+    json_error_t place;
+    *tree = json_loadb(text, size, JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, &place);
+    if (!*tree && json_error_code(&place) == json_error_out_of_memory) return vl_fail_memory(file->error);
+    if (!*tree)
+      return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, place.line > 0 ? (uint32_t)place.line : 0,
+                        place.column > 0 ? (uint32_t)place.column : 0, "not JSON: %s", place.text);
+  } else {
+    result = vl_camera_yaml(file, text, size, tree);
+  }
+  if (result == VL_OK && !json_is_object(*tree)) {
+    json_decref(*tree);
+    *tree = NULL;
+    return vl_camera_wrong(file, "no camera file: it holds no named fields");
+  }
+  return result;
+}
+
+vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const char *key, const json_t **value) {
+  *value = json_object_get(object, key);
+  if (*value) return VL_OK;
+  const char *names[64], *other;
+  size_t count = 0;
+  json_t *unused;
+  json_object_foreach((json_t *)object, other, unused) if (count < 64) names[count++] = other;
+  const char *near = vl_nearest_name(key, names, count);
+  return vl_camera_wrong(file, "%s: the field \"%s\" is missing%s%.60s%s", file->dialect, key,
+                         near ? "; did you mean it by \"" : "", near ? near : "", near ? "\"?" : "");
+}
+
+double vl_camera_parse(const char *text, char **end) {
+  const char *first = text + strspn(text, " \t\r\n,;");
+  double value = strtod(first, end);
+  if (*end == first) *end = (char *)text;
+  return value;
+}
+
+static vlResult number_of(const vlCameraFile *file, const json_t *value, const char *key, double *number) {
+  if (json_is_number(value)) {
+    *number = json_number_value(value);
+    return VL_OK;
+  }
+  if (json_is_string(value))
+    return vl_camera_wrong(file, "%s: \"%s\" holds \"%.40s\", which is no finite number", file->dialect, key,
+                           json_string_value(value));
+  return vl_camera_wrong(file, "%s: \"%s\" must be a number", file->dialect, key);
+}
+
+vlResult vl_camera_number(const vlCameraFile *file, const json_t *object, const char *key, double *value) {
+  const json_t *field;
+  vlResult result = vl_camera_field(file, object, key, &field);
+  return result == VL_OK ? number_of(file, field, key, value) : result;
+}
+
+vlResult vl_camera_optional(const vlCameraFile *file, const json_t *object, const char *key, double *value) {
+  const json_t *field = json_object_get(object, key);
+  return field ? number_of(file, field, key, value) : VL_OK;
+}
+
+vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const char *key, uint32_t *value) {
+  double number = 0.0;
+  vlResult result = vl_camera_number(file, object, key, &number);
+  if (result != VL_OK) return result;
+  if (!(number >= 1.0 && number <= 1 << 24) || number != floor(number))
+    return vl_camera_wrong(file, "%s: \"%s\" is %g; a picture's side is 1 to 16777216 whole pixels", file->dialect, key,
+                           number);
+  *value = (uint32_t)number;
+  return VL_OK;
+}
+
+vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord *record) {
+  const vlCameraFileDef *def = file->def;
+  double width = def->width, height = def->height;
+  record->size_assumed = !def->width || !def->height;
+  if (record->size_assumed) height = 720.0, width = floor(720.0 * aspect + 0.5);
+  if (!(width >= 1.0 && width <= 1 << 24))
+    return vl_camera_wrong(file, "%s: an aspect ratio of %g gives no picture", file->dialect, aspect);
+  record->camera.width = (uint32_t)width;
+  record->camera.height = (uint32_t)height;
+  return VL_OK;
+}
+
+/* Appends; lists in lists to a depth of two. */
+static vlResult collect(const vlCameraFile *file, const json_t *list, const char *key, int depth, double *values,
+                        uint32_t most, uint32_t *count) {
+  size_t i;
+  json_t *item;
+  json_array_foreach((json_t *)list, i, item) {
+    vlResult result;
+    if (json_is_array(item) && depth > 0) {
+      result = collect(file, item, key, depth - 1, values, most, count);
+    } else {
+      if (*count == most)
+        return vl_camera_wrong(file, "%s: \"%s\" holds more than %u numbers", file->dialect, key, most);
+      result = number_of(file, item, key, &values[*count]);
+      ++*count;
+    }
+    if (result != VL_OK) return result;
+  }
+  return VL_OK;
+}
+
+vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key, double *values,
+                           uint32_t least, uint32_t most, uint32_t *count) {
+  const json_t *field;
+  uint32_t found = 0;
+  vlResult result = vl_camera_field(file, object, key, &field);
+  if (result != VL_OK) return result;
+  double rows = VL_UNSET, columns = VL_UNSET;
+  if (json_is_object(field)) {
+    result = vl_camera_number(file, field, "rows", &rows);
+    if (result == VL_OK) result = vl_camera_number(file, field, "cols", &columns);
+    if (result != VL_OK) return result;
+    field = json_object_get(field, "data");
+  }
+  if (!json_is_array(field)) return vl_camera_wrong(file, "%s: \"%s\" must be a list of numbers", file->dialect, key);
+  result = collect(file, field, key, 1, values, most, &found);
+  if (result != VL_OK) return result;
+  if (found < least)
+    return vl_camera_wrong(file, "%s: \"%s\" holds %u numbers; it must hold %u", file->dialect, key, found, least);
+  if (!vl_is_unset(rows) && rows * columns != found)
+    return vl_camera_wrong(file, "%s: \"%s\" says %g x %g and holds %u numbers", file->dialect, key, rows, columns,
+                           found);
+  if (count) *count = found;
+  return VL_OK;
+}
+
+const char *vl_camera_text(const json_t *object, const char *key) {
+  return json_string_value(json_object_get(object, key));
+}
+
+bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *name) {
+  const char *wish = file->def->frame;
+  char number[16];
+  if (!wish) return index == 0;
+  if (name && strcmp(wish, name) == 0) return true;
+  snprintf(number, sizeof number, "%u", index);
+  return strcmp(wish, number) == 0;
+}
+
+void vl_camera_name(vlCameraRecord *record, const char *name) {
+  snprintf(record->name, sizeof record->name, "%s", name ? name : "");
+}
+
+void vl_camera_put(vlCameraText *text, const char *format, ...) {
+  va_list list;
+  va_start(list, format);
+  int n = vsnprintf(NULL, 0, format, list);
+  va_end(list);
+  if (text->failed || n < 0 || !VL_RESERVE(text->context, &text->text, (size_t)n + 1)) {
+    text->failed = true;
+    return;
+  }
+  va_start(list, format);
+  vsnprintf(text->text.items + text->text.count, (size_t)n + 1, format, list);
+  va_end(list);
+  text->text.count += (size_t)n;
+}
+
+void vl_camera_put_text(vlCameraText *text, const vlCameraText *other) {
+  text->failed = text->failed || other->failed;
+  if (!text->failed && other->text.count) vl_camera_put(text, "%.*s", (int)other->text.count, other->text.items);
+}
+
+void vl_camera_put_numbers(vlCameraText *text, const double *values, uint32_t count) {
+  for (uint32_t i = 0; i < count; i++) vl_camera_put(text, "%s%.17g", i ? ", " : "", values[i] + 0.0);
+}
+
+void vl_camera_put_string(vlCameraText *text, const char *string) {
+  vl_camera_put(text, "\"");
+  for (const char *s = string; *s; s++) {
+    if (*s == '"' || *s == '\\')
+      vl_camera_put(text, "\\%c", *s);
+    else if ((unsigned char)*s < 0x20 || *s == 0x7f)
+      vl_camera_put(text, "\\u%04x", (unsigned char)*s);
+    else
+      vl_camera_put(text, "%c", *s);
+  }
+  vl_camera_put(text, "\"");
+}

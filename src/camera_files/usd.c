@@ -1,0 +1,281 @@
+/* camera_files/usd.c: USD's camera (UsdGeomCamera, UsdGeomXformable) in its text form, .usda. Camera axes x right, y
+ * up, z back; matrices act on row vectors, world from camera. Focal length, apertures and their offsets are in tenths
+ * of a scene unit; the aperture's offset moves the window, so the axis goes the other way; y is up. The picture's size
+ * is the resolution of the file's RenderSettings or RenderProduct. */
+#include <math.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "camera_files/files.h"
+#include "math/transform.h"
+
+static const double degree = 3.14159265358979323846 / 180.0;
+
+/* ---- transforms: as column matrices, so that the first operation of an order is the outermost
+ * ------------------------
+ */
+
+typedef struct {
+  const vlCameraFile *file;
+  const json_t *prim;
+  const char *name; /* of the operation */
+} Operation;
+
+static vlResult op_numbers(const Operation *op, const char *key, double *values, uint32_t count) {
+  return vl_camera_numbers(op->file, op->prim, key, values, count, count, NULL);
+}
+
+static vlMat4 turn(int axis, double degrees) {
+  return vl_mat4_rotate(degrees * degree, axis == 0, axis == 1, axis == 2);
+}
+
+/* xformOp:kind[:suffix], perhaps behind !invert! */
+static vlResult operation(const Operation *op, vlMat4 *m) {
+  bool inverted = strncmp(op->name, "!invert!", 8) == 0;
+  const char *key = op->name + (inverted ? 8 : 0), *kind = key + 8;
+  double v[16], r[9];
+  vlResult result = VL_OK;
+  *m = vl_mat4_identity();
+  if (strncmp(key, "xformOp:", 8) != 0)
+    return vl_camera_wrong(op->file, "usd: \"%.60s\" in xformOpOrder is no xformOp", op->name);
+  size_t n = strcspn(kind, ":");
+  if (n == 9 && strncmp(kind, "transform", n) == 0) {
+    result = op_numbers(op, key, v, 16);
+    for (int i = 0; i < 16 && result == VL_OK; i++) m->m[i] = v[4 * (i % 4) + i / 4];
+  } else if (n == 9 && strncmp(kind, "translate", n) == 0) {
+    result = op_numbers(op, key, v, 3);
+    if (result == VL_OK) *m = vl_mat4_translate(v[0], v[1], v[2]);
+  } else if (n == 5 && strncmp(kind, "scale", n) == 0) {
+    result = op_numbers(op, key, v, 3);
+    if (result == VL_OK) *m = vl_mat4_scale(v[0], v[1], v[2]);
+  } else if (n == 6 && strncmp(kind, "orient", n) == 0) {
+    result = op_numbers(op, key, v, 4); /* w x y z */
+    if (result == VL_OK && !vl_rotation_from_quaternion(v, r))
+      result = vl_camera_wrong(op->file, "usd: \"%.60s\" is no rotation", key);
+    for (int i = 0; i < 9 && result == VL_OK; i++) m->m[4 * (i / 3) + i % 3] = r[i];
+  } else if (n == 7 && strncmp(kind, "rotate", 6) == 0 && kind[6] >= 'X' && kind[6] <= 'Z') {
+    result = vl_camera_number(op->file, op->prim, key, v);
+    if (result == VL_OK) *m = turn(kind[6] - 'X', v[0]);
+  } else if (n == 9 && strncmp(kind, "rotate", 6) == 0 && strspn(kind + 6, "XYZ") == 3) {
+    result = op_numbers(op, key, v, 3); /* rotateXYZ: about x first, angles in the order x y z */
+    for (int i = 0; i < 3 && result == VL_OK; i++)
+      *m = vl_mat4_multiply(turn(kind[6 + i] - 'X', v[kind[6 + i] - 'X']), *m);
+  } else {
+    return vl_camera_wrong(op->file, "usd: unknown xformOp \"%.60s\"", key);
+  }
+  if (result == VL_OK && inverted && !vl_mat4_inverse(*m, m))
+    result = vl_camera_wrong(op->file, "usd: \"%.60s\" cannot be inverted", key);
+  return result;
+}
+
+/* Of one prim; *reset: what is above it does not count. */
+static vlResult local_matrix(const vlCameraFile *file, const json_t *prim, vlMat4 *m, bool *reset) {
+  const json_t *order = json_object_get(prim, "xformOpOrder"), *item;
+  size_t i;
+  *reset = false;
+  *m = vl_mat4_identity();
+  json_array_foreach(order, i, item) {
+    const char *name = json_string_value(item);
+    if (name && strcmp(name, "!resetXformStack!") == 0) {
+      *reset = true;
+      *m = vl_mat4_identity();
+      continue;
+    }
+    Operation op = {file, prim, name ? name : ""};
+    vlMat4 one;
+    vlResult result = operation(&op, &one);
+    if (result != VL_OK) return result;
+    *m = vl_mat4_multiply(*m, one);
+  }
+  return VL_OK;
+}
+
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
+
+/* A value that changes with time is no still camera's. */
+static vlResult check_still(const vlCameraFile *file, const json_t *prim) {
+  uint32_t line = (uint32_t)json_number_value(json_object_get(prim, "#"));
+  const char *key;
+  json_t *unused;
+  json_object_foreach((json_t *)prim, key, unused) {
+    if (vl_ends_with(key, ".timeSamples"))
+      return vl_camera_wrong_at(file, line, 0, "usd: \"%.60s\": values that change with time are not taken", key);
+  }
+  return VL_OK;
+}
+
+typedef struct {
+  const vlCameraFile *file;
+  const json_t *camera, *resolution; /* the prim chosen, and the first resolution of the file */
+  vlMat4 pose;
+  uint32_t frames;
+} Search;
+
+static vlResult walk(Search *s, const json_t *prim, vlMat4 above) {
+  const char *type = vl_camera_text(prim, "<");
+  const json_t *child;
+  size_t i;
+  if (type && strcmp(type, "Camera") == 0) {
+    bool wanted = !s->camera && vl_camera_is_frame(s->file, s->frames++, vl_camera_text(prim, "@"));
+    if (wanted) s->camera = prim, s->pose = above;
+  } else if (type && strncmp(type, "Render", 6) == 0 && !s->resolution) {
+    s->resolution = json_object_get(prim, "resolution") ? prim : NULL;
+  }
+  json_array_foreach(json_object_get(prim, "/"), i, child) {
+    vlMat4 own;
+    bool reset;
+    vlResult result = check_still(s->file, child);
+    if (result == VL_OK) result = local_matrix(s->file, child, &own, &reset);
+    if (result == VL_OK) result = walk(s, child, reset ? own : vl_mat4_multiply(above, own));
+    if (result != VL_OK) return result;
+  }
+  return VL_OK;
+}
+
+static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord *record) {
+  const vlCameraFile *file = s->file;
+  const json_t *prim = s->camera;
+  vlCameraDef *d = &record->camera;
+  double focal = 50.0, across = 20.955, down = 15.2908, offset_x = 0.0, offset_y = 0.0, stop = 0.0, focus = 0.0;
+  double range[2], size[2], exposure = 0.0, rate = 24.0;
+  const struct {
+    const char *key;
+    double *value;
+  } fields[] = {{"focalLength", &focal},
+                {"horizontalAperture", &across},
+                {"verticalAperture", &down},
+                {"horizontalApertureOffset", &offset_x},
+                {"verticalApertureOffset", &offset_y},
+                {"fStop", &stop},
+                {"focusDistance", &focus},
+                {"exposure", &exposure},
+                {"shutter:open", &d->shutter_open},
+                {"shutter:close", &d->shutter_close}};
+  vlResult result = VL_OK;
+  for (size_t i = 0; i < sizeof fields / sizeof *fields && result == VL_OK; i++)
+    result = vl_camera_optional(file, prim, fields[i].key, fields[i].value);
+  if (result == VL_OK) result = vl_camera_optional(file, root, "timeCodesPerSecond", &rate);
+  if (result == VL_OK && json_object_get(prim, "clippingRange")) {
+    result = vl_camera_numbers(file, prim, "clippingRange", range, 2, 2, NULL);
+    if (result == VL_OK) d->near_plane = range[0], d->far_plane = range[1] < 1e37 ? range[1] : INFINITY;
+  }
+  if (result != VL_OK) return result;
+  const char *projection = vl_camera_text(prim, "projection");
+  bool flat = projection && strcmp(projection, "orthographic") == 0;
+  if (projection && !flat && strcmp(projection, "perspective") != 0)
+    return vl_camera_wrong(file, "usd: unknown projection \"%.40s\"; there are perspective, orthographic", projection);
+  if (!(focal > 0.0 && across > 0.0 && down > 0.0 && rate > 0.0))
+    return vl_camera_wrong(file, "usd: focalLength, horizontalAperture and verticalAperture must be above zero");
+  if (s->resolution) {
+    result = vl_camera_numbers(file, s->resolution, "resolution", size, 2, 2, NULL);
+    for (int i = 0; i < 2 && result == VL_OK; i++)
+      if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
+        return vl_camera_wrong(file, "usd: a resolution of %g; a picture's side is 1 to 16777216 whole pixels",
+                               size[i]);
+    if (result == VL_OK) d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
+  } else {
+    result = vl_camera_size(file, across / down, record);
+  }
+  if (result != VL_OK) return result;
+  double w = d->width, h = d->height;
+  /* orthographic apertures are in tenths of a unit as well */
+  d->fx = flat ? 10.0 * (w / across) : focal * (w / across);
+  d->fy = flat ? 10.0 * (h / down) : focal * (h / down);
+  d->cx = 0.5 * w - offset_x * (w / across);
+  d->cy = 0.5 * h + offset_y * (h / down);
+  d->projection = flat ? VL_PROJECTION_ORTHOGRAPHIC : VL_PROJECTION_PERSPECTIVE;
+  if (stop > 0.0 && !flat) d->lens_radius = 0.1 * focal / (2.0 * stop);
+  if (focus > 0.0) d->focus_distance = focus;
+  if (exposure != 0.0) d->exposure_time = exp2(exposure);
+  if (json_object_get(prim, "shutter:open")) d->shutter_open /= rate;
+  if (json_object_get(prim, "shutter:close")) d->shutter_close /= rate;
+  d->has_matrix = true;
+  vl_camera_flip_axes(s->pose.m, d->world_from_camera);
+  vl_camera_name(record, vl_camera_text(prim, "@"));
+  return VL_OK;
+}
+
+vlResult vl_camera_read_usd(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+  json_t *tree;
+  vlResult result = vl_camera_usda(file, text, size, &tree);
+  if (result != VL_OK) return result;
+  Search search = {.file = file, .pose = vl_mat4_identity()};
+  result = walk(&search, tree, vl_mat4_identity());
+  record->frames = search.frames;
+  if (result == VL_OK && !search.frames)
+    result = vl_camera_wrong(file, "usd: the file holds no Camera (references and payloads are not followed)");
+  else if (result == VL_OK && !search.camera)
+    result = vl_camera_wrong(file, "usd: there is no Camera \"%.60s\" among the %u",
+                             file->def->frame ? file->def->frame : "0", search.frames);
+  else if (result == VL_OK)
+    result = read_camera(&search, tree, record);
+  json_decref(tree);
+  return result;
+}
+
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
+
+/* USD's names are made of letters, digits and _. */
+static void put_name(vlCameraText *text, const char *name) {
+  if (!*name || (*name >= '0' && *name <= '9')) vl_camera_put(text, "Camera%s", *name ? "_" : "");
+  for (; *name; name++) {
+    bool good = (*name >= 'a' && *name <= 'z') || (*name >= 'A' && *name <= 'Z') || (*name >= '0' && *name <= '9');
+    vl_camera_put(text, "%c", good ? *name : '_');
+  }
+}
+
+vlResult vl_camera_write_usd(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  const vlCameraDef *d = &record->camera;
+  vlCamera c;
+  uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS | VL_HOLDS_PLANES | VL_HOLDS_TIME | VL_HOLDS_EXPOSURE;
+  vlResult result = vl_camera_fit(file, record, holds, &c);
+  if (result != VL_OK) return result;
+  if (d->projection > VL_PROJECTION_ORTHOGRAPHIC) return vl_camera_no_model(file, d);
+  bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
+  if (result == VL_OK) result = vl_camera_refuse(file, "lens_radius", flat && c.lens_radius > 0.0);
+  if (result != VL_OK) return result;
+  double w = c.width, h = c.height, m[16];
+  /* a metre is the unit: 36 mm are 0.36 tenths of it */
+  double across = 0.01 * (d->sensor_width_mm > 0.0 ? d->sensor_width_mm : 36.0), focal = c.fx * (across / w);
+  if (flat) across = 10.0 * w / c.fx, focal = 0.5;
+  double down = flat ? 10.0 * h / c.fy : across * (h / w) * (c.fx / c.fy);
+  bool timed = c.shutter_open != 0.0 || c.shutter_close != 1.0;
+  vl_camera_flip_axes(c.world_from_camera, m);
+  vl_camera_put(text, "#usda 1.0\n(\n    defaultPrim = \"");
+  put_name(text, record->name);
+  vl_camera_put(text,
+                "\"\n    doc = \"pixels count from the picture's upper left corner; camera axes x right, y up, z "
+                "back; matrices act on row vectors\"\n    metersPerUnit = 1\n");
+  if (timed) vl_camera_put(text, "    timeCodesPerSecond = 1\n");
+  vl_camera_put(text, "    upAxis = \"Y\"\n)\n\ndef Camera \"");
+  put_name(text, record->name);
+  vl_camera_put(text, "\"\n{\n    token projection = \"%s\"\n", flat ? "orthographic" : "perspective");
+  vl_camera_put(text, "    float focalLength = %.17g\n    float horizontalAperture = %.17g\n", focal, across);
+  vl_camera_put(text, "    float verticalAperture = %.17g\n", down);
+  vl_camera_put(text, "    float horizontalApertureOffset = %.17g\n", (0.5 * w - c.cx) * (across / w) + 0.0);
+  vl_camera_put(text, "    float verticalApertureOffset = %.17g\n", (c.cy - 0.5 * h) * (down / h) + 0.0);
+  if (c.near_plane > 0.0 || !isinf(c.far_plane))
+    vl_camera_put(text, "    float2 clippingRange = (%.17g, %.17g)\n", c.near_plane,
+                  isinf(c.far_plane) ? 1e38 : c.far_plane);
+  if (c.lens_radius > 0.0 && !flat)
+    vl_camera_put(text, "    float fStop = %.17g\n", 0.1 * focal / (2.0 * c.lens_radius));
+  if (!isinf(c.focus_distance)) vl_camera_put(text, "    float focusDistance = %.17g\n", c.focus_distance);
+  if (c.exposure_time != 1.0) vl_camera_put(text, "    float exposure = %.17g\n", log2(c.exposure_time));
+  if (timed)
+    vl_camera_put(text, "    double shutter:open = %.17g\n    double shutter:close = %.17g\n", c.shutter_open,
+                  c.shutter_close);
+  vl_camera_put(text, "    matrix4d xformOp:transform = (");
+  for (int row = 0; row < 4; row++) {
+    vl_camera_put(text, "%s(", row ? ", " : " ");
+    for (int i = 0; i < 4; i++) vl_camera_put(text, "%s%.17g", i ? ", " : "", m[4 * i + row]);
+    vl_camera_put(text, ")");
+  }
+  vl_camera_put(text, " )\n    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n}\n\n");
+  vl_camera_put(text, "def Scope \"Render\"\n{\n    def RenderSettings \"Settings\"\n    {\n        rel camera = </");
+  put_name(text, record->name);
+  vl_camera_put(text, ">\n        uniform int2 resolution = (%u, %u)\n        uniform float pixelAspectRatio = %.17g\n",
+                c.width, c.height, c.fy / c.fx);
+  vl_camera_put(text, "    }\n}\n");
+  return VL_OK;
+}

@@ -1,0 +1,292 @@
+/* camera_files/usda.c: USD's text form, as far as cameras need it, made into a tree: a prim is an object with its
+ * properties by name (numbers, words and lists of them; tuples are lists), "<": its type, "@": its name, "#": its line,
+ * "/": the prims in it; the root holds the layer's metadata by name. Kept are properties of cameras and render
+ * settings and what places a prim; the rest, meshes above all, is passed over without being stored. */
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "camera_files/files.h"
+
+enum { MAX_DEPTH = 64, MAX_PRIMS = 20000, MAX_NUMBERS = 64 };
+
+typedef struct {
+  const vlCameraFile *file;
+  const char *at, *end;
+  uint32_t line;
+  uint32_t prims;
+  vlResult result;
+} Parser;
+
+static bool fail(Parser *p, const char *what) {
+  if (p->result == VL_OK) p->result = vl_camera_wrong_at(p->file, p->line, 0, "not USD: %s", what);
+  return false;
+}
+
+static bool memory(Parser *p) {
+  if (p->result == VL_OK) p->result = vl_fail_memory(p->file->error);
+  return false;
+}
+
+/* Past blanks and comments; false at the end. */
+static bool skip(Parser *p) {
+  for (; p->at < p->end; p->at++) {
+    if (*p->at == '\n') {
+      p->line++;
+    } else if (*p->at == '#') {
+      while (p->at + 1 < p->end && p->at[1] != '\n') p->at++;
+    } else if (!isspace((unsigned char)*p->at) && *p->at != ';') {
+      return true;
+    }
+  }
+  return false;
+}
+
+static bool next_is(Parser *p, char c) {
+  return skip(p) && *p->at == c;
+}
+
+static bool take(Parser *p, char c) {
+  if (!next_is(p, c)) return false;
+  p->at++;
+  return true;
+}
+
+/* Letters, digits and what names are made of: xformOp:translate, double3, camera.name. */
+static size_t word(Parser *p) {
+  const char *s = p->at;
+  while (s < p->end && (isalnum((unsigned char)*s) || strchr("_:.!", *s)) && *s) s++;
+  return (size_t)(s - p->at);
+}
+
+static bool equals(const char *text, size_t length, const char *wanted) {
+  return strlen(wanted) == length && memcmp(text, wanted, length) == 0;
+}
+
+/* After the opening quote: one, or three of them. *text, *length: what stands between. */
+static bool string(Parser *p, const char **text, size_t *length) {
+  char quote = *p->at;
+  size_t quotes = p->end - p->at >= 3 && p->at[1] == quote && p->at[2] == quote ? 3 : 1;
+  *text = p->at += quotes;
+  for (; p->at < p->end; p->at++) {
+    if (*p->at == '\\' && p->at + 1 < p->end) {
+      p->at++;
+    } else if (*p->at == quote && (quotes == 1 || (p->end - p->at >= 3 && p->at[1] == quote && p->at[2] == quote))) {
+      *length = (size_t)(p->at - *text);
+      p->at += quotes;
+      return true;
+    } else if (*p->at == '\n' && quotes == 1) {
+      break;
+    }
+    if (*p->at == '\n') p->line++;
+  }
+  return fail(p, "a string has no end");
+}
+
+/* Any value; *value (may be null: not kept) is a new reference, null where it is of no use here. */
+static bool value(Parser *p, int depth, json_t **result);
+
+static bool list(Parser *p, int depth, char close, json_t **result) {
+  json_t *items = result ? json_array() : NULL;
+  p->at++;
+  while (!take(p, close)) {
+    json_t *item = NULL;
+    if (p->at >= p->end) fail(p, "a list has no end");
+    if (p->result == VL_OK && depth == 0) fail(p, "lists are nested too deeply");
+    if (p->result != VL_OK || !value(p, depth - 1, items ? &item : NULL)) {
+      json_decref(item);
+      break;
+    }
+    if (item && json_array_size(items) < MAX_NUMBERS)
+      json_array_append_new(items, item);
+    else
+      json_decref(item);
+    take(p, ',');
+  }
+  if (result) *result = items;
+  return p->result == VL_OK;
+}
+
+/* { ... } of a dictionary or of time samples, from the brace: passed over. */
+static bool braces(Parser *p) {
+  int depth = 0;
+  do {
+    const char *text;
+    size_t length;
+    if (!skip(p)) return fail(p, "a brace is not closed");
+    if (*p->at == '"' || *p->at == '\'') {
+      if (!string(p, &text, &length)) return false;
+      continue;
+    }
+    depth += (*p->at == '{') - (*p->at == '}');
+    p->at++;
+  } while (depth > 0);
+  return true;
+}
+
+static bool value(Parser *p, int depth, json_t **result) {
+  const char *text;
+  size_t length;
+  if (!skip(p)) return fail(p, "a value is missing");
+  char c = *p->at;
+  if (c == '(' || c == '[') return list(p, depth, c == '(' ? ')' : ']', result);
+  if (c == '{') {
+    if (result) *result = json_true(); /* time samples: that they are there */
+    return braces(p);
+  }
+  if (c == '"' || c == '\'') {
+    if (!string(p, &text, &length)) return false;
+    if (result) *result = json_stringn(text, length);
+    return true;
+  }
+  if (c == '<' || c == '@') {
+    char close = c == '<' ? '>' : '@';
+    text = ++p->at;
+    while (p->at < p->end && *p->at != close && *p->at != '\n') p->at++;
+    if (p->at == p->end || *p->at != close) return fail(p, "a path has no end");
+    if (result) *result = json_stringn(text, (size_t)(p->at - text));
+    p->at++;
+    return true;
+  }
+  if (isdigit((unsigned char)c) || strchr("+-.", c)) {
+    char *end;
+    double number = strtod(p->at, &end); /* a zero byte stands after the file */
+    if (end == p->at) return fail(p, "a value is missing");
+    if (result) *result = isfinite(number) ? json_real(number) : json_stringn(p->at, (size_t)(end - p->at));
+    p->at = end;
+    return true;
+  }
+  length = word(p);
+  if (length == 0) return fail(p, "a value is missing");
+  if (result) *result = json_stringn(p->at, length);
+  p->at += length;
+  return true;
+}
+
+/* ( ... ) behind a prim or a property, or at the layer's head; words of the head are kept in `into`. */
+static bool metadata(Parser *p, json_t *into) {
+  if (!take(p, '(')) return p->result == VL_OK;
+  while (!take(p, ')')) {
+    const char *name;
+    size_t length;
+    if (!skip(p)) return fail(p, "a parenthesis is not closed");
+    if (*p->at == '"' || *p->at == '\'') { /* the comment */
+      if (!string(p, &name, &length)) return false;
+      continue;
+    }
+    name = p->at;
+    length = word(p);
+    if (length == 0) return fail(p, "a name is missing in parentheses");
+    p->at += length;
+    if (!take(p, '=')) continue; /* `prepend`, `delete`, ... stand before the name */
+    json_t *item = NULL;
+    if (!value(p, 4, into ? &item : NULL)) {
+      json_decref(item);
+      return false;
+    }
+    if (item && json_object_setn_new(into, name, length, item) != 0) return memory(p);
+  }
+  return true;
+}
+
+static bool is_kept(const json_t *prim, const char *name, size_t length) {
+  const char *type = json_string_value(json_object_get(prim, "<"));
+  if (length >= 7 && memcmp(name, "xformOp", 7) == 0) return true;
+  return type && (strcmp(type, "Camera") == 0 || strncmp(type, "Render", 6) == 0);
+}
+
+/* [custom] [uniform] type name [= value] [(metadata)]: the last word of the line before = or ( is the name. */
+static bool property(Parser *p, json_t *prim) {
+  const char *name = p->at;
+  size_t length = 0;
+  while (p->at < p->end && !strchr("\n#=(;", *p->at)) {
+    size_t more = word(p);
+    if (more) {
+      name = p->at;
+      length = more;
+    } else if (!strchr(" \t\r[]", *p->at)) {
+      return fail(p, "something stands where a property should");
+    }
+    p->at += more ? more : 1;
+  }
+  if (p->at < p->end && *p->at == '=') {
+    bool kept = is_kept(prim, name, length);
+    json_t *item = NULL;
+    p->at++;
+    if (!value(p, 4, kept ? &item : NULL)) {
+      json_decref(item);
+      return false;
+    }
+    if (item && json_object_setn_new(prim, name, length, item) != 0) return memory(p);
+  }
+  return metadata(p, NULL);
+}
+
+static bool prim(Parser *p, json_t *parent, int depth);
+
+static bool body(Parser *p, json_t *self, int depth) {
+  while (!take(p, '}')) {
+    if (!skip(p)) return fail(p, "a prim is not closed");
+    size_t length = word(p);
+    if (length == 0) return fail(p, "something stands where a property or a prim should");
+    bool is_prim = equals(p->at, length, "def") || equals(p->at, length, "over") || equals(p->at, length, "class");
+    if (equals(p->at, length, "variantSet")) {
+      p->at += length;
+      const char *text;
+      if (!skip(p) || (*p->at != '"' && *p->at != '\'')) return fail(p, "a variant set has no name");
+      if (!string(p, &text, &length) || !take(p, '=') || !next_is(p, '{')) return fail(p, "a variant set is empty");
+      if (!braces(p)) return false;
+    } else if (!(is_prim ? prim(p, self, depth) : property(p, self))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/* def [Type] "name" (metadata) { ... }, from its first word. */
+static bool prim(Parser *p, json_t *parent, int depth) {
+  const char *text = "", *type;
+  size_t length = word(p), type_length;
+  bool stored = !equals(p->at, length, "class");
+  if (depth == 0 || ++p->prims > MAX_PRIMS) return fail(p, depth == 0 ? "nested too deeply" : "too many prims");
+  p->at += length;
+  if (!skip(p)) return fail(p, "a prim has no name");
+  type = p->at;
+  type_length = word(p);
+  p->at += type_length;
+  uint32_t line = p->line;
+  if (!skip(p) || (*p->at != '"' && *p->at != '\'')) return fail(p, "a prim has no name");
+  if (!string(p, &text, &length)) return false;
+  json_t *self = json_object();
+  int failed = json_object_set_new(self, "<", json_stringn(type, type_length));
+  failed |= json_object_set_new(self, "@", json_stringn(text, length));
+  failed |= json_object_set_new(self, "#", json_real(line));
+  failed |= json_object_set_new(self, "/", json_array());
+  if (stored && !failed) failed = json_array_append(json_object_get(parent, "/"), self);
+  bool good = failed ? memory(p) : metadata(p, NULL);
+  if (good && !take(p, '{')) good = fail(p, "a prim has no body");
+  if (good) good = body(p, self, depth - 1);
+  json_decref(self);
+  return good;
+}
+
+vlResult vl_camera_usda(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {
+  Parser p = {.file = file, .at = text, .end = text + size, .line = 1, .result = VL_OK};
+  json_t *root = json_object();
+  *tree = NULL;
+  if (!root || json_object_set_new(root, "/", json_array()) != 0) memory(&p);
+  if (p.result == VL_OK) metadata(&p, root);
+  while (p.result == VL_OK && skip(&p)) {
+    size_t length = word(&p);
+    if (equals(p.at, length, "def") || equals(p.at, length, "over") || equals(p.at, length, "class"))
+      prim(&p, root, MAX_DEPTH);
+    else
+      fail(&p, "something stands where a prim should");
+  }
+  if (p.result == VL_OK)
+    *tree = root;
+  else
+    json_decref(root);
+  return p.result;
+}

@@ -1,0 +1,314 @@
+/* export/gltf/gltf.c: a scene as glTF 2.0: JSON and buffer, meshes and the tree of nodes. Where the scene's camera
+ * mirrors (as pbrt's do), everything stands under a node that mirrors the world, so that the camera need not. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "export/export.h"
+
+enum { ARRAY = 34962, ELEMENTS = 34963, TYPE_UINT = 5125, TYPE_USHORT = 5123, TYPE_FLOAT = 5126 };
+
+json_t *vl_gltf_array_of(const float *values, size_t count) {
+  json_t *array = json_array();
+  for (size_t i = 0; i < count; i++) json_array_append_new(array, json_real((double)values[i]));
+  return array;
+}
+
+json_int_t vl_gltf_put(vlExport *x, const char *key, json_t *value) {
+  json_t *array = json_object_get(x->root, key);
+  if (!array) {
+    array = json_array();
+    json_object_set_new(x->root, key, array);
+  }
+  json_array_append_new(array, value);
+  return (json_int_t)json_array_size(array) - 1;
+}
+
+void vl_gltf_use(vlExport *x, const char *extension) {
+  json_t *used = json_object_get(x->root, "extensionsUsed");
+  if (!used) json_object_set_new(x->root, "extensionsUsed", used = json_array());
+  for (size_t i = 0; i < json_array_size(used); i++)
+    if (strcmp(json_string_value(json_array_get(used, i)), extension) == 0) return;
+  json_array_append_new(used, json_string(extension));
+}
+
+json_int_t vl_gltf_put_view(vlExport *x, const void *data, size_t size, int target) {
+  static const char zeros[4] = {0};
+  vl_bytes_put(x->context, &x->buffer, zeros, (4 - x->buffer.data.count % 4) % 4);
+  json_t *view = json_pack("{s:i,s:I,s:I}", "buffer", 0, "byteOffset", (json_int_t)x->buffer.data.count, "byteLength",
+                           (json_int_t)size);
+  if (target) json_object_set_new(view, "target", json_integer(target));
+  vl_bytes_put(x->context, &x->buffer, data, size);
+  return vl_gltf_put(x, "bufferViews", view);
+}
+
+/* ---- meshes ------------------------------------------------------------------------------------------------------ */
+
+static json_int_t put_floats(vlExport *x, const float *values, size_t count, uint32_t components, bool bounds) {
+  static const char *const types[5] = {NULL, "SCALAR", "VEC2", "VEC3", "VEC4"};
+  json_int_t view = vl_gltf_put_view(x, values, count * components * sizeof *values, ARRAY);
+  json_t *accessor = json_pack("{s:I,s:i,s:I,s:s}", "bufferView", view, "componentType", TYPE_FLOAT, "count",
+                               (json_int_t)count, "type", types[components]);
+  if (bounds) {
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < 3 * count; i++) {
+      low[i % 3] = fminf(low[i % 3], values[i]);
+      high[i % 3] = fmaxf(high[i % 3], values[i]);
+    }
+    json_object_set_new(accessor, "min", vl_gltf_array_of(low, 3));
+    json_object_set_new(accessor, "max", vl_gltf_array_of(high, 3));
+  }
+  return vl_gltf_put(x, "accessors", accessor);
+}
+
+static json_int_t put_indices(vlExport *x, const vlExportMesh *m, bool turned) {
+  size_t count = 3 * (size_t)m->faces;
+  bool small = m->vertices < 65535;
+  uint32_t *wide = vl_alloc_array(x->context, count, sizeof *wide);
+  if (!wide) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory"), -1;
+  uint16_t *narrow = (uint16_t *)wide;
+  for (size_t i = 0; i < count; i++) {
+    size_t from = turned && i % 3 ? i + (i % 3 == 1 ? 1 : (size_t)-1) : i;
+    if (small)
+      narrow[i] = (uint16_t)m->indices[from]; /* never ahead of what is written */
+    else
+      wide[i] = m->indices[from];
+  }
+  json_int_t view = vl_gltf_put_view(x, wide, count * (small ? 2 : 4), ELEMENTS);
+  vl_free(x->context, wide);
+  return vl_gltf_put(x, "accessors",
+                     json_pack("{s:I,s:i,s:I,s:s}", "bufferView", view, "componentType",
+                               small ? TYPE_USHORT : TYPE_UINT, "count", (json_int_t)count, "type", "SCALAR"));
+}
+
+/* Of unit length, as glTF demands; those that are so nearly stay as they are. Any direction for none. */
+static void make_unit(const float *v, float sign, float *to) {
+  float l = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), k = fabsf(l - 1) < 1e-4f ? sign : sign / l;
+  for (int i = 0; i < 3; i++) to[i] = l > 1e-20f ? v[i] * k : (i == 2 ? 1.0f : 0.0f);
+}
+
+static float *vectors(vlExport *x, const vlExportMesh *m, bool tangents, bool turned) {
+  size_t per = tangents ? 4 : 3;
+  float *to = vl_alloc_array(x->context, m->vertices, per * sizeof *to);
+  if (!to) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory"), NULL;
+  for (size_t i = 0; i < m->vertices; i++) {
+    make_unit((tangents ? m->tangents : m->normals) + 3 * i, turned && !tangents ? -1 : 1, to + per * i);
+    if (tangents) to[4 * i + 3] = m->signs && m->signs[i] < 0 ? -1.0f : 1.0f;
+  }
+  return to;
+}
+
+static void put_attribute(vlExport *x, json_t *attributes, const char *name, const float *values, const vlExportMesh *m,
+                          uint32_t components) {
+  if (!values) return;
+  json_object_set_new(attributes, name,
+                      json_integer(put_floats(x, values, m->vertices, components, strcmp(name, "POSITION") == 0)));
+}
+
+static bool put_attributes(vlExport *x, const vlExportMesh *m, json_t *attributes, bool turned, bool colors,
+                           bool tangents) {
+  static const char *const sets[4] = {"TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3"};
+  put_attribute(x, attributes, "POSITION", m->positions, m, 3);
+  for (int k = 0; k < 2; k++) {
+    if (!(k ? m->tangents && m->normals && tangents : m->normals != NULL)) continue;
+    float *v = vectors(x, m, k, turned);
+    if (!v) return false;
+    put_attribute(x, attributes, k ? "TANGENT" : "NORMAL", v, m, k ? 4 : 3);
+    vl_free(x->context, v);
+  }
+  for (int k = 0; k < 4; k++) {
+    if (!m->uvs[k]) break;
+    float *v = vl_alloc_array(x->context, m->vertices, 2 * sizeof *v);
+    if (!v) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    for (size_t i = 0; i < m->vertices; i++) v[2 * i] = m->uvs[k][2 * i], v[2 * i + 1] = 1.0f - m->uvs[k][2 * i + 1];
+    put_attribute(x, attributes, sets[k], v, m, 2);
+    vl_free(x->context, v);
+  }
+  if (!m->colors || !colors) return true;
+  float *v = vl_alloc_array(x->context, m->vertices, 4 * sizeof *v);
+  if (!v) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  for (size_t i = 0; i < 4 * (size_t)m->vertices; i++) v[i] = fminf(1, fmaxf(0, m->colors[i]));
+  put_attribute(x, attributes, "COLOR_0", v, m, 4);
+  vl_free(x->context, v);
+  return true;
+}
+
+/* *index -1: nothing to draw. */
+static bool put_mesh(vlExport *x, const vlShapeDef *d, json_int_t *index) {
+  vlExportMesh mesh;
+  bool colors, tangents;
+  *index = -1;
+  if (vl_gltf_is_hidden(x, d)) {
+    vl_export_lose(x, "surfaces that only part media (material interface): left out");
+    return true;
+  }
+  if (d->positions_close) vl_export_lose(x, "meshes that change in time: as they are at first");
+  if (!vl_export_mesh(x, d, &mesh)) return x->result == VL_OK;
+  if (!mesh.faces || !mesh.vertices) {
+    vl_export_free_mesh(x, &mesh);
+    return true;
+  }
+  json_int_t material = vl_gltf_put_material(x, d, &colors, &tangents);
+  json_t *attributes = json_object();
+  bool fine = put_attributes(x, &mesh, attributes, d->reverse_orientation, colors, tangents);
+  json_int_t indices = fine ? put_indices(x, &mesh, d->reverse_orientation) : -1;
+  json_t *primitive = json_pack("{s:o,s:I}", "attributes", attributes, "indices", indices);
+  if (material >= 0) json_object_set_new(primitive, "material", json_integer(material));
+  *index = vl_gltf_put(x, "meshes", json_pack("{s:[o]}", "primitives", primitive));
+  vl_export_free_mesh(x, &mesh);
+  return indices >= 0;
+}
+
+/* ---- nodes ------------------------------------------------------------------------------------------------------- */
+
+static json_t *node_of(const double m[16]) {
+  static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  json_t *node = json_object(), *matrix = json_array();
+  bool plain = true;
+  for (int i = 0; i < 16; i++) plain = plain && m[i] == identity[i];
+  for (int i = 0; i < 16; i++) json_array_append_new(matrix, json_real(m[4 * (i % 4) + i / 4]));
+  if (!plain) json_object_set(node, "matrix", matrix);
+  json_decref(matrix);
+  return node;
+}
+
+static bool is_sheared(const double m[16]) {
+  for (int a = 0; a < 3; a++) {
+    int b = (a + 1) % 3;
+    double dot = 0, aa = 0, bb = 0;
+    for (int i = 0; i < 3; i++)
+      dot += m[4 * i + a] * m[4 * i + b], aa += m[4 * i + a] * m[4 * i + a], bb += m[4 * i + b] * m[4 * i + b];
+    if (!(fabs(dot) <= 1e-6 * sqrt(aa * bb))) return true;
+  }
+  return false;
+}
+
+static bool put_shapes(vlExport *x, json_t *roots, json_int_t *mesh_of) {
+  const vlScene *s = x->scene;
+  for (size_t i = 0; i < s->shapes.count; i++) {
+    const vlShapeDef *d = &s->shapes.items[i];
+    if (!put_mesh(x, d, &mesh_of[i])) return false;
+    if (mesh_of[i] < 0 || d->group.index) continue;
+    json_t *node = node_of(d->group_from_shape);
+    if (is_sheared(d->group_from_shape))
+      vl_export_lose(x, "transforms that shear: in the file, but not as glTF wants it");
+    json_object_set_new(node, "mesh", json_integer(mesh_of[i]));
+    json_array_append_new(roots, json_integer(vl_gltf_put(x, "nodes", node)));
+  }
+  return true;
+}
+
+/* An instance is a node whose children are its group's shapes; of one shape in the group's own space, that shape's. */
+static bool put_instances(vlExport *x, json_t *roots, const json_int_t *mesh_of) {
+  const vlScene *s = x->scene;
+  for (size_t i = 0; i < s->instances.count; i++) {
+    const vlSceneInstance *instance = &s->instances.items[i];
+    json_t *node = node_of(instance->world_from_group), *children = json_array();
+    if (instance->keys) vl_export_lose(x, "instances that move: as they stand at first");
+    if (is_sheared(instance->world_from_group))
+      vl_export_lose(x, "transforms that shear: in the file, but not as glTF wants it");
+    for (size_t k = 0; k < s->shapes.count; k++) {
+      const vlShapeDef *d = &s->shapes.items[k];
+      if (d->group.index != instance->group.index || mesh_of[k] < 0) continue;
+      json_t *child = node_of(d->group_from_shape);
+      json_object_set_new(child, "mesh", json_integer(mesh_of[k]));
+      if (s->groups.items[d->group.index - 1].shape_count == 1 && !json_object_get(child, "matrix")) {
+        json_object_set_new(node, "mesh", json_integer(mesh_of[k]));
+        json_decref(child);
+      } else {
+        json_array_append_new(children, json_integer(vl_gltf_put(x, "nodes", child)));
+      }
+    }
+    if (json_array_size(children)) json_object_set(node, "children", children);
+    json_decref(children);
+    json_array_append_new(roots, json_integer(vl_gltf_put(x, "nodes", node)));
+  }
+  return true;
+}
+
+static bool is_mirrored(const vlExport *x) {
+  const vlCameraDef *c = &x->scene->settings.camera;
+  vlCamera camera;
+  if (x->scene->settings.camera_missing || vl_camera_make(c, &camera, NULL, NULL) != VL_OK) return false;
+  return vl_mat4_determinant3(vl_mat4_load(camera.world_from_camera)) < 0;
+}
+
+static bool put_scene(vlExport *x) {
+  json_int_t *mesh_of = vl_alloc_array(x->context, x->scene->shapes.count + 1, sizeof *mesh_of);
+  if (!mesh_of) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  json_t *roots = json_array(), *nodes = roots;
+  bool mirror = is_mirrored(x);
+  if (mirror) nodes = json_array();
+  bool fine = put_shapes(x, nodes, mesh_of) && put_instances(x, nodes, mesh_of) && vl_gltf_put_lights(x, nodes);
+  if (mirror && json_array_size(nodes)) {
+    json_t *root = json_pack("{s:s,s:[i,i,i],s:O}", "name", "left-handed", "scale", 1, 1, -1, "children", nodes);
+    json_array_append_new(roots, json_integer(vl_gltf_put(x, "nodes", root)));
+  }
+  if (mirror) json_decref(nodes);
+  fine = fine && vl_gltf_put_camera(x, roots, mirror);
+  json_t *scene = json_object();
+  if (json_array_size(roots)) json_object_set(scene, "nodes", roots);
+  json_decref(roots);
+  vl_free(x->context, mesh_of);
+  json_object_set_new(x->root, "scene", json_integer(0));
+  vl_gltf_put(x, "scenes", scene);
+  return fine;
+}
+
+/* ---- the files --------------------------------------------------------------------------------------------------- */
+
+static void put_little(vlExport *x, vlBytes *bytes, uint32_t v) {
+  const unsigned char four[4] = {(unsigned char)v, (unsigned char)(v >> 8), (unsigned char)(v >> 16),
+                                 (unsigned char)(v >> 24)};
+  vl_bytes_put(x->context, bytes, four, 4);
+}
+
+static bool write_files(vlExport *x) {
+  char name[300];
+  vl_bytes_put(x->context, &x->buffer, "\0\0\0", (4 - x->buffer.data.count % 4) % 4);
+  size_t size = x->buffer.data.count;
+  snprintf(name, sizeof name, "%.200s.bin", x->stem);
+  if (size) {
+    json_t *buffer = json_pack("{s:I}", "byteLength", (json_int_t)size);
+    if (!x->binary) json_object_set_new(buffer, "uri", json_string(name));
+    vl_gltf_put(x, "buffers", buffer);
+  }
+  size_t flags = x->binary ? JSON_COMPACT : JSON_INDENT(1) | JSON_PRESERVE_ORDER;
+  size_t length = json_dumpb(x->root, NULL, 0, flags), padding = (4 - length % 4) % 4;
+  char *text = length ? vl_alloc_array(x->context, length, 1) : NULL;
+  if (!text || x->buffer.full || json_dumpb(x->root, text, length, flags) != length) {
+    vl_free(x->context, text);
+    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  }
+  bool fine;
+  if (x->binary && (uint64_t)length + size > 0xffffff00u) {
+    vl_free(x->context, text);
+    return vl_export_fail(x, VL_ERROR_UNSUPPORTED, "more than 4 GB do not go into a .glb");
+  }
+  if (x->binary) {
+    vlBytes file = {0};
+    uint32_t whole = (uint32_t)(12 + 8 + length + padding + (size ? 8 + size : 0));
+    put_little(x, &file, 0x46546C67), put_little(x, &file, 2), put_little(x, &file, whole);
+    put_little(x, &file, (uint32_t)(length + padding)), put_little(x, &file, 0x4E4F534A);
+    vl_bytes_put(x->context, &file, text, length);
+    vl_bytes_put(x->context, &file, "   ", padding);
+    if (size) {
+      put_little(x, &file, (uint32_t)size), put_little(x, &file, 0x004E4942);
+      vl_bytes_put(x->context, &file, x->buffer.data.items, size);
+    }
+    fine = file.full ? vl_export_fail(x, VL_ERROR_MEMORY, "out of memory")
+                     : vl_export_file(x, NULL, file.data.items, file.data.count);
+    VL_ARRAY_FREE(x->context, &file.data);
+  } else {
+    fine = (!size || vl_export_file(x, name, x->buffer.data.items, size)) && vl_export_file(x, NULL, text, length);
+  }
+  vl_free(x->context, text);
+  return fine;
+}
+
+bool vl_export_gltf(vlExport *x) {
+  x->root = json_pack("{s:{s:s,s:s}}", "asset", "version", "2.0", "generator", "velo");
+  if (!x->root) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  return put_scene(x) && write_files(x);
+}

@@ -1,0 +1,365 @@
+/* export/gltf/material.c: materials as metallic-roughness with the KHR extensions. The principled material goes out as
+ * it came in; others as their nearest. */
+#include <math.h>
+#include <string.h>
+
+#include "export/export.h"
+
+/* ---- inputs ------------------------------------------------------------------------------------------------------ */
+
+static json_t *extension(vlExport *x, json_t *material, const char *name) {
+  json_t *all = json_object_get(material, "extensions"), *one = json_object_get(all, name);
+  if (!all) json_object_set_new(material, "extensions", all = json_object());
+  if (!one) json_object_set_new(all, name, one = json_object());
+  vl_gltf_use(x, name);
+  return one;
+}
+
+static void set_number(json_t *to, const char *key, double value) {
+  if (isfinite(value)) json_object_set_new(to, key, json_real(value));
+}
+
+static double unit(double v) {
+  return v > 0 ? v < 1 ? v : 1 : 0;
+}
+
+/* Factor times a channel of a picture. */
+static void put_channel(vlExport *x, json_t *to, const char *factor_key, const char *texture_key, int channel,
+                        const vlFloatInput *input) {
+  const vlTextureDef *t = vl_export_texture(x, input->texture);
+  json_t *info = t && t->channel == channel && t->bias == 0 && isnan(t->cutoff) && !t->invert
+                     ? vl_gltf_texture_info(x, t, channel != 3)
+                     : NULL;
+  if (input->texture.index && !info) vl_export_lose(x, "textured %s: a number stands in", factor_key);
+  set_number(to, factor_key,
+             unit(info ? (double)t->scale * (double)t->tint[channel] : (double)vl_export_number(x, input)));
+  if (info) json_object_set_new(to, texture_key, info);
+}
+
+/* Colour factor times a picture in sRGB. *alpha (may be null): the texture, for who wants its fourth channel. */
+static void put_color(vlExport *x, json_t *to, const char *factor_key, const char *texture_key, bool bounded,
+                      const vlSpectrumInput *input, double coverage) {
+  const vlTextureDef *t = vl_export_texture(x, input->texture);
+  json_t *info = t && !t->invert ? vl_gltf_texture_info(x, t, false) : NULL;
+  float rgb[3];
+  vl_export_rgb(x, input, rgb);
+  json_t *factor = json_array();
+  for (int i = 0; i < 3; i++) {
+    double v = info ? (double)t->tint[i] * (double)t->scale : (double)rgb[i];
+    if (bounded && v > 1 + 1e-6) vl_export_lose(x, "%s above 1: cut off", factor_key);
+    json_array_append_new(factor, json_real(bounded ? unit(v) : v > 0 ? v : 0));
+  }
+  if (coverage >= 0) json_array_append_new(factor, json_real(unit(coverage)));
+  json_object_set_new(to, factor_key, factor);
+  if (info) json_object_set_new(to, texture_key, info);
+}
+
+static void put_normal(vlExport *x, json_t *to, const char *key, vlTextureId id, float scale) {
+  const vlTextureDef *t = vl_export_texture(x, id);
+  json_t *info = t ? vl_gltf_texture_info(x, t, true) : NULL;
+  if (!info) return;
+  if (scale != 1.0f) set_number(info, "scale", scale);
+  json_object_set_new(to, key, info);
+}
+
+/* ---- the base ---------------------------------------------------------------------------------------------------- */
+
+static void put_coverage(vlExport *x, json_t *material, const vlFloatInput *alpha, double *factor) {
+  const vlTextureDef *t = alpha->texture.index ? &x->scene->textures.items[alpha->texture.index - 1] : NULL;
+  *factor = t ? (double)t->tint[3] : (double)alpha->value;
+  if (!t && alpha->value >= 1) return;
+  bool mask = t && !isnan(t->cutoff);
+  json_object_set_new(material, "alphaMode", json_string(mask ? "MASK" : "BLEND"));
+  if (mask) set_number(material, "alphaCutoff", t->cutoff);
+  if (t && t->kind != VL_TEXTURE_VERTEX_COLOR && (t->kind != VL_TEXTURE_IMAGE || t->channel != 3))
+    vl_export_lose(x, "coverage that is not the fourth channel of the base colour's picture");
+}
+
+static void put_base(vlExport *x, json_t *material, const vlSpectrumInput *color, double coverage, double metallic,
+                     double roughness) {
+  json_t *base = json_object();
+  put_color(x, base, "baseColorFactor", "baseColorTexture", true, color, coverage);
+  set_number(base, "metallicFactor", unit(metallic));
+  set_number(base, "roughnessFactor", unit(roughness));
+  json_object_set_new(material, "pbrMetallicRoughness", base);
+}
+
+static bool same_picture(const vlTextureDef *a, const vlTextureDef *b) {
+  return a->data == b->data && a->image == b->image && a->uv_set == b->uv_set &&
+         (a->path == b->path || (a->path && b->path && strcmp(a->path, b->path) == 0));
+}
+
+static void put_metal(vlExport *x, json_t *base, const vlPrincipledDef *p) {
+  const vlTextureDef *m = vl_export_texture(x, p->metallic.texture), *r = vl_export_texture(x, p->roughness.texture);
+  bool good = m && r && same_picture(m, r) && m->channel == 2 && r->channel == 1 && m->bias == 0 && r->bias == 0;
+  json_t *info = good ? vl_gltf_texture_info(x, m, true) : NULL;
+  if ((p->metallic.texture.index || p->roughness.texture.index) && !info)
+    vl_export_lose(x, "textured metallic or roughness, not of one picture: numbers stand in");
+  set_number(base, "metallicFactor", unit(info ? (double)m->tint[2] : (double)vl_export_number(x, &p->metallic)));
+  set_number(base, "roughnessFactor", unit(info ? (double)r->tint[1] : (double)vl_export_number(x, &p->roughness)));
+  if (info) json_object_set_new(base, "metallicRoughnessTexture", info);
+}
+
+static bool is_on(const vlFloatInput *input) {
+  return input->texture.index || input->value > 0;
+}
+
+static bool is_white(vlExport *x, const vlSpectrumInput *input) {
+  float rgb[3];
+  if (input->texture.index) return false;
+  vl_export_rgb(x, input, rgb);
+  return rgb[0] == 1 && rgb[1] == 1 && rgb[2] == 1;
+}
+
+static void put_ior(vlExport *x, json_t *material, float eta) {
+  if (eta != 1.5f) set_number(extension(x, material, "KHR_materials_ior"), "ior", eta >= 1 || eta == 0 ? eta : 1.0f);
+}
+
+static bool is_zero(const vlSpectrum *s) {
+  float rgb[3];
+  vl_export_light_rgb(s, rgb);
+  return s->scale == 0 || (s->kind == VL_SPECTRUM_CONSTANT && s->value == 0) || !(rgb[0] + rgb[1] + rgb[2] > 0);
+}
+
+static void put_volume(vlExport *x, json_t *material, vlMediumId inside) {
+  json_t *volume = extension(x, material, "KHR_materials_volume");
+  set_number(volume, "thicknessFactor", 1);
+  if (!inside.index) return;
+  const vlMediumDef *m = &x->scene->media.items[inside.index - 1];
+  float sigma[3], most;
+  vlSpectrum s = m->sigma_a;
+  vlSpectrumInput input = {.value = s};
+  if (m->kind != VL_MEDIUM_HOMOGENEOUS || !is_zero(&m->sigma_s))
+    vl_export_lose(x, "media that scatter or vary: what they absorb alone");
+  vl_export_rgb(x, &input, sigma);
+  for (int i = 0; i < 3; i++) sigma[i] *= m->scale;
+  most = fmaxf(sigma[0], fmaxf(sigma[1], sigma[2]));
+  if (!(most > 0)) return;
+  json_t *color = json_array();
+  for (int i = 0; i < 3; i++) json_array_append_new(color, json_real(exp(-(double)sigma[i] / (double)most)));
+  json_object_set_new(volume, "attenuationColor", color);
+  set_number(volume, "attenuationDistance", 1.0 / (double)most);
+}
+
+/* ---- principled -------------------------------------------------------------------------------------------------- */
+
+static void put_sheen_coat(vlExport *x, json_t *material, const vlPrincipledDef *p) {
+  float sheen[3];
+  vl_export_rgb(x, &p->sheen_color, sheen);
+  if (p->sheen_color.texture.index || sheen[0] > 0 || sheen[1] > 0 || sheen[2] > 0) {
+    json_t *e = extension(x, material, "KHR_materials_sheen");
+    put_color(x, e, "sheenColorFactor", "sheenColorTexture", true, &p->sheen_color, -1);
+    put_channel(x, e, "sheenRoughnessFactor", "sheenRoughnessTexture", 3, &p->sheen_roughness);
+  }
+  if (!is_on(&p->clearcoat)) return;
+  json_t *e = extension(x, material, "KHR_materials_clearcoat");
+  put_channel(x, e, "clearcoatFactor", "clearcoatTexture", 0, &p->clearcoat);
+  put_channel(x, e, "clearcoatRoughnessFactor", "clearcoatRoughnessTexture", 1, &p->clearcoat_roughness);
+  put_normal(x, e, "clearcoatNormalTexture", p->clearcoat_normal, p->clearcoat_normal_scale);
+}
+
+static void put_film(vlExport *x, json_t *material, const vlPrincipledDef *p) {
+  if (is_on(&p->iridescence)) {
+    json_t *e = extension(x, material, "KHR_materials_iridescence");
+    put_channel(x, e, "iridescenceFactor", "iridescenceTexture", 0, &p->iridescence);
+    set_number(e, "iridescenceIor", p->iridescence_ior);
+    const vlTextureDef *t = vl_export_texture(x, p->iridescence_thickness.texture);
+    json_t *info = t && t->channel == 1 ? vl_gltf_texture_info(x, t, true) : NULL;
+    double most = info ? (double)t->bias + (double)t->tint[1] : (double)vl_export_number(x, &p->iridescence_thickness);
+    set_number(e, "iridescenceThicknessMinimum", info ? (double)t->bias : fmin(100, most));
+    set_number(e, "iridescenceThicknessMaximum", most);
+    if (info) json_object_set_new(e, "iridescenceThicknessTexture", info);
+  }
+  if (!is_on(&p->anisotropy)) return;
+  json_t *e = extension(x, material, "KHR_materials_anisotropy");
+  put_channel(x, e, "anisotropyStrength", "anisotropyTexture", 2, &p->anisotropy);
+  set_number(e, "anisotropyRotation", p->anisotropy_rotation.value);
+}
+
+static void put_passing(vlExport *x, json_t *material, const vlPrincipledDef *p, vlMediumId inside) {
+  if (is_on(&p->transmission))
+    put_channel(x, extension(x, material, "KHR_materials_transmission"), "transmissionFactor", "transmissionTexture", 0,
+                &p->transmission);
+  if (is_on(&p->diffuse_transmission)) {
+    json_t *e = extension(x, material, "KHR_materials_diffuse_transmission");
+    put_channel(x, e, "diffuseTransmissionFactor", "diffuseTransmissionTexture", 3, &p->diffuse_transmission);
+    put_color(x, e, "diffuseTransmissionColorFactor", "diffuseTransmissionColorTexture", true,
+              &p->diffuse_transmission_color, -1);
+  }
+  if (!p->thin_walled && (is_on(&p->transmission) || is_on(&p->diffuse_transmission))) {
+    put_volume(x, material, inside);
+    if (p->dispersion > 0) set_number(extension(x, material, "KHR_materials_dispersion"), "dispersion", p->dispersion);
+  }
+}
+
+static void put_principled(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+  const vlPrincipledDef *p = &m->principled;
+  put_base(x, material, &m->reflectance, coverage, 1, 1);
+  put_metal(x, json_object_get(material, "pbrMetallicRoughness"), p);
+  put_ior(x, material, vl_export_eta(&m->eta.value));
+  if (p->specular.texture.index || p->specular.value != 1 || !is_white(x, &p->specular_color)) {
+    json_t *e = extension(x, material, "KHR_materials_specular");
+    put_channel(x, e, "specularFactor", "specularTexture", 3, &p->specular);
+    put_color(x, e, "specularColorFactor", "specularColorTexture", false, &p->specular_color, -1);
+  }
+  put_sheen_coat(x, material, p);
+  put_film(x, material, p);
+  put_passing(x, material, p, inside);
+  put_normal(x, material, "normalTexture", p->normal, p->normal_scale);
+}
+
+/* ---- others ------------------------------------------------------------------------------------------------------ */
+
+static void put_glass(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+  vlSpectrumInput white = vl_spectrum_input(vl_spectrum_constant(1));
+  bool thin = m->kind == VL_MATERIAL_THIN_DIELECTRIC;
+  put_base(x, material, &white, coverage, 0, thin ? 0 : sqrt((double)vl_export_alpha(x, m, &m->u_roughness)));
+  put_ior(x, material, vl_export_eta(&m->eta.value));
+  set_number(extension(x, material, "KHR_materials_transmission"), "transmissionFactor", 1);
+  if (!thin) put_volume(x, material, inside);
+  if (m->eta.value.kind != VL_SPECTRUM_CONSTANT)
+    vl_export_lose(x, "indices of refraction by wavelength: that at 589 nm");
+}
+
+static void put_other(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+  float rgb[3];
+  vlSpectrumInput color = m->reflectance;
+  double roughness = sqrt((double)vl_export_alpha(x, m, &m->u_roughness));
+  switch (m->kind) {
+    case VL_MATERIAL_DIFFUSE:
+      put_base(x, material, &color, coverage, 0, 1);
+      set_number(extension(x, material, "KHR_materials_specular"), "specularFactor", 0);
+      return;
+    case VL_MATERIAL_COATED_DIFFUSE:
+      vl_export_lose(x, "coateddiffuse: as a rough dielectric");
+      put_base(x, material, &color, coverage, 0, roughness);
+      put_ior(x, material, vl_export_eta(&m->eta.value));
+      return;
+    case VL_MATERIAL_CONDUCTOR:
+    case VL_MATERIAL_COATED_CONDUCTOR:
+      vl_export_metal_rgb(x, m, rgb);
+      if (!m->use_reflectance) color = vl_spectrum_input(vl_spectrum_rgb(rgb[0], rgb[1], rgb[2]));
+      if (!m->use_reflectance) vl_export_lose(x, "metals by eta and k: their colour at normal incidence");
+      put_base(x, material, &color, coverage, 1, roughness);
+      if (m->kind == VL_MATERIAL_COATED_CONDUCTOR) {
+        vl_export_lose(x, "coatedconductor: as a metal with a clear coat");
+        set_number(extension(x, material, "KHR_materials_clearcoat"), "clearcoatFactor", 1);
+        set_number(extension(x, material, "KHR_materials_clearcoat"), "clearcoatRoughnessFactor",
+                   unit(sqrt((double)vl_export_alpha(x, m, &m->coat_u_roughness))));
+      }
+      return;
+    case VL_MATERIAL_DIELECTRIC:
+    case VL_MATERIAL_THIN_DIELECTRIC: put_glass(x, material, m, inside, coverage); return;
+    case VL_MATERIAL_DIFFUSE_TRANSMISSION:
+      vl_export_lose(x, "diffusetransmission: reflected and passed light share one colour");
+      put_base(x, material, &color, coverage, 0, 1);
+      set_number(extension(x, material, "KHR_materials_specular"), "specularFactor", 0);
+      set_number(extension(x, material, "KHR_materials_diffuse_transmission"), "diffuseTransmissionFactor", 0.5);
+      put_color(x, extension(x, material, "KHR_materials_diffuse_transmission"), "diffuseTransmissionColorFactor",
+                "diffuseTransmissionColorTexture", true, &m->transmittance, -1);
+      return;
+    case VL_MATERIAL_SUBSURFACE:
+      vl_export_lose(x, "subsurface: as a rough dielectric, its colour grey where no reflectance says it");
+      if (!m->subsurface.from_reflectance) color = vl_spectrum_input(vl_spectrum_constant(0.5f));
+      put_base(x, material, &color, coverage, 0, roughness);
+      put_ior(x, material, vl_export_eta(&m->eta.value));
+      return;
+    default:
+      vl_export_lose(x, "materials of kinds that glTF has not: grey");
+      color = vl_spectrum_input(vl_spectrum_constant(0.5f));
+      put_base(x, material, &color, coverage, 0, 1);
+      return;
+  }
+}
+
+/* ---- emission ---------------------------------------------------------------------------------------------------- */
+
+static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e) {
+  float rgb[3];
+  vlTextureDef picture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+  const vlTextureDef *t = vl_export_texture(x, e->texture);
+  vl_export_light_rgb(&e->radiance, rgb);
+  if (t)
+    for (int i = 0; i < 3; i++) rgb[i] = t->tint[i] * t->scale;
+  if (e->image) {
+    picture.path = e->image;
+    rgb[0] = rgb[1] = rgb[2] = 1;
+    t = &picture;
+  }
+  double most = fmax(rgb[0], fmax(rgb[1], rgb[2])), scale = e->scale;
+  if (!(most > 0)) return;
+  if (!isnan(e->power)) vl_export_lose(x, "area lights told by their power: radiance 1 stands in");
+  json_t *factor = json_array(), *info = t ? vl_gltf_texture_info(x, t, false) : NULL;
+  double over = most * scale > 1 ? most * scale : 1;
+  for (int i = 0; i < 3; i++) json_array_append_new(factor, json_real(unit((double)rgb[i] * scale / over)));
+  json_object_set_new(material, "emissiveFactor", factor);
+  if (info) json_object_set_new(material, "emissiveTexture", info);
+  if (over > 1) set_number(extension(x, material, "KHR_materials_emissive_strength"), "emissiveStrength", over);
+}
+
+/* ---- the whole --------------------------------------------------------------------------------------------------- */
+
+static const vlMaterialDef *material_of(const vlExport *x, const vlShapeDef *d) {
+  const vlMaterialDef *m = d->material.index ? &x->scene->materials.items[d->material.index - 1] : NULL;
+  for (int depth = 0; m && m->kind == VL_MATERIAL_MIX && depth < 16; depth++)
+    m = m->materials[0].index ? &x->scene->materials.items[m->materials[0].index - 1] : NULL;
+  return m;
+}
+
+bool vl_gltf_is_hidden(const vlExport *x, const vlShapeDef *d) {
+  const vlMaterialDef *m = material_of(x, d);
+  return m && m->kind == VL_MATERIAL_INTERFACE;
+}
+
+static bool wants_colors(const vlExport *x, const vlMaterialDef *m) {
+  const vlTextureDef *t =
+      m && m->reflectance.texture.index ? &x->scene->textures.items[m->reflectance.texture.index - 1] : NULL;
+  return t && (t->kind == VL_TEXTURE_VERTEX_COLOR || t->colors);
+}
+
+json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors, bool *tangents) {
+  const vlMaterialDef *m = material_of(x, d);
+  vlExportLook look = {.material = d->material,
+                       .alpha = d->alpha,
+                       .emission = d->emission,
+                       .inside = d->inside,
+                       .one_sided = d->one_sided};
+  *colors = wants_colors(x, m);
+  *tangents =
+      m && (m->principled.normal.index || m->principled.clearcoat_normal.index || is_on(&m->principled.anisotropy));
+  for (size_t i = 0; i < x->looks.count; i++) {
+    const vlExportLook *l = &x->looks.items[i];
+    if (l->material.index == look.material.index && l->emission.index == look.emission.index &&
+        l->inside.index == look.inside.index && l->one_sided == look.one_sided &&
+        l->alpha.texture.index == look.alpha.texture.index && l->alpha.value == look.alpha.value)
+      return l->index;
+  }
+  json_t *json = json_object();
+  double coverage;
+  if (m && m->name && m->name[0]) json_object_set_new(json, "name", json_string(m->name));
+  if (d->material.index && x->scene->materials.items[d->material.index - 1].kind == VL_MATERIAL_MIX)
+    vl_export_lose(x, "material mix: its first alone");
+  put_coverage(x, json, &d->alpha, &coverage);
+  vlMaterialDef plain = vl_default_material_def(VL_MATERIAL_DIFFUSE);
+  if (!m) m = &plain;
+  if (m->kind == VL_MATERIAL_PRINCIPLED)
+    put_principled(x, json, m, d->inside, coverage);
+  else
+    put_other(x, json, m, d->inside, coverage);
+  if (m->displacement.texture.index) vl_export_lose(x, "bump maps: left out");
+  if (m->normal_map) {
+    vlTextureDef picture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+    picture.path = m->normal_map;
+    json_t *info = vl_gltf_texture_info(x, &picture, true);
+    if (info) json_object_set_new(json, "normalTexture", info);
+  }
+  if (d->emission.index) put_emission(x, json, &x->scene->emissions.items[d->emission.index - 1]);
+  /* what light passes through is met from behind in any case */
+  bool body = json_object_get(json_object_get(json, "extensions"), "KHR_materials_volume") != NULL;
+  if (!d->one_sided && !body) json_object_set_new(json, "doubleSided", json_true());
+  if (!json_object_size(json_object_get(json, "extensions"))) json_object_del(json, "extensions");
+  look.index = vl_gltf_put(x, "materials", json);
+  vlExportLook *slot = VL_PUSH(x->context, &x->looks);
+  if (slot) *slot = look;
+  return look.index;
+}

@@ -1,0 +1,254 @@
+/* export/pbrt/pbrt.c: a scene as pbrt-v4's language: what stands before WorldBegin, the order of the rest, media,
+ * lights. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "color/color.h"
+#include "export/pbrt/pbrt.h"
+#include "velo/camera_file.h"
+
+static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
+
+void vl_pbrt_matrix(vlExport *x, const double m[16]) {
+  static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  bool plain = true;
+  for (int i = 0; i < 16; i++) plain = plain && m[i] == identity[i];
+  if (plain) return;
+  PUT("  ConcatTransform [");
+  for (int i = 0; i < 16; i++) PUT("%s%.17g", i ? " " : "", m[4 * (i % 4) + i / 4]);
+  PUT("]\n");
+}
+
+void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
+  const double k = (double)s->scale;
+  float rgb[3];
+  switch (s->kind) {
+    case VL_SPECTRUM_BLACKBODY: PUT(" \"blackbody %s\" [%.9g]", name, (double)s->kelvin); return;
+    case VL_SPECTRUM_NAMED: PUT(" \"spectrum %s\" \"%s\"", name, s->name); return;
+    case VL_SPECTRUM_CONSTANT:
+      PUT(" \"spectrum %s\" [200 %.9g 1000 %.9g]", name, k * (double)s->value, k * (double)s->value);
+      return;
+    case VL_SPECTRUM_SAMPLED:
+      PUT(" \"spectrum %s\" [", name);
+      for (uint32_t i = 0; i < s->count; i++)
+        PUT("%s%.9g %.9g", i ? " " : "", (double)s->wavelengths[i], k * (double)s->values[i]);
+      PUT("]");
+      return;
+    default: break;
+  }
+  memcpy(rgb, s->rgb, sizeof rgb);
+  for (int i = 0; i < 3; i++) rgb[i] *= s->scale;
+  if (s->space != x->scene->settings.space)
+    vl_spectrum_to_rgb(s, VL_ROLE_UNBOUNDED, x->scene->settings.space, rgb, NULL);
+  PUT(" \"rgb %s\" [%.9g %.9g %.9g]", name, (double)rgb[0], (double)rgb[1], (double)rgb[2]);
+}
+
+/* ---- before the world -------------------------------------------------------------------------------------------- */
+
+/* The film's parameters beyond its size, which the camera's file has. pbrt's picture is as bright as the shutter is
+ * open long; shutter: those seconds. */
+static void put_film(vlExport *x, double shutter) {
+  const vlSceneSettings *s = &x->scene->settings;
+  double exposure = (double)s->exposure * s->camera.exposure_time / shutter;
+  if (s->gbuffer == VL_GBUFFER_WORLD) PUT("  \"string coordinatesystem\" \"world\"\n");
+  if (s->buckets && !s->gbuffer)
+    PUT("  \"integer nbuckets\" [%u] \"float lambdamin\" [%.9g] \"float lambdamax\" [%.9g]\n", s->buckets,
+        s->lambda_min, s->lambda_max);
+  if (fabs(exposure - 1) > 1e-7) PUT("  \"float iso\" [%.9g]\n", 100 * exposure);
+  if (s->white_balance > 0) PUT("  \"float whitebalance\" [%.9g]\n", s->white_balance);
+  if (s->max_component < 1e30f) PUT("  \"float maxcomponentvalue\" [%.9g]\n", (double)s->max_component);
+  if (s->crop[0] || s->crop[1] || s->crop[2] != s->width || s->crop[3] != s->height)
+    PUT("  \"integer pixelbounds\" [%u %u %u %u]\n", s->crop[0], s->crop[2], s->crop[1], s->crop[3]);
+  if (s->output[0] && !strpbrk(s->output, "\"\\\n")) PUT("  \"string filename\" \"%s\"\n", s->output);
+  if (s->centred) PUT("Option \"disablepixeljitter\" true\n");
+  if (s->same_wavelengths) PUT("Option \"disablewavelengthjitter\" true\n");
+  if (s->sharp_textures) PUT("Option \"disabletexturefiltering\" true\n");
+}
+
+/* The camera's file is a whole scene: what stands before its world. */
+static const char *film_kind(const vlSceneSettings *s) {
+  return s->gbuffer ? "gbuffer" : s->buckets ? "spectral" : "rgb";
+}
+static void put_head(vlExport *x, const char *text, size_t size) {
+  static const char film[] = "Film \"rgb\"";
+  const char *world = strstr(text, "WorldBegin"), *at = strstr(text, film);
+  size_t end = world ? (size_t)(world - text) : size, start = 0;
+  if (at && (size_t)(at - text) < end) {
+    vl_bytes_put(x->context, &x->text, text, (size_t)(at - text));
+    PUT("Film \"%s\"", film_kind(&x->scene->settings));
+    start = (size_t)(at - text) + sizeof film - 1;
+  }
+  vl_bytes_put(x->context, &x->text, text + start, end - start);
+}
+
+static bool put_camera(vlExport *x) {
+  static const char *const beyond[] = {"near_plane",   "far_plane",     "cx",
+                                       "cy",           "skew",          "distortion",
+                                       "projection",   "lens_radius",   "focus_distance",
+                                       "shutter_open", "shutter_close", "exposure_time"};
+  const vlSceneSettings *s = &x->scene->settings;
+  vlCameraRecord record = {.camera = s->camera};
+  record.camera.width = s->width, record.camera.height = s->height;
+  record.camera.exposure_time = 1; /* the film says it */
+  vlCameraFileDef def = vl_default_camera_file_def();
+  def.dialect = VL_CAMERA_DIALECT_PBRT;
+  char name[64], path[4096], *text = NULL;
+  size_t size = 0;
+  snprintf(name, sizeof name, ".velo-export-%ld.pbrt", (long)getpid());
+  if (!vl_export_path(x, name, path, sizeof path)) return false;
+  vlError error;
+  vl_error_clear(&error);
+  vlResult r = vl_camera_write(x->context, path, &def, &record, &error);
+  if (r == VL_ERROR_UNSUPPORTED) {
+    vl_export_lose(x, "the camera: %.120s", error.message);
+    def.drop = beyond, def.drop_count = sizeof beyond / sizeof *beyond;
+    r = vl_camera_write(x->context, path, &def, &record, &error);
+  }
+  if (r == VL_OK) r = vl_file_read(x->context, path, false, &text, &size, &error);
+  unlink(path);
+  if (r == VL_ERROR_MEMORY) return vl_export_fail(x, r, "out of memory");
+  if (r == VL_OK) {
+    put_head(x, text, size);
+  } else {
+    vl_export_lose(x, "the camera: left out");
+    PUT("Film \"%s\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n", film_kind(s), s->width, s->height);
+  }
+  double shutter = s->camera.shutter_close - s->camera.shutter_open;
+  bool told = r == VL_OK && shutter > 0 && strstr(text, "shutterclose");
+  vl_free(x->context, text);
+  put_film(x, told ? shutter : 1);
+  return true;
+}
+
+static void put_sampling(vlExport *x) {
+  static const char *const samplers[] = {"independent", NULL,     "stratified", NULL,    NULL,
+                                         NULL,          "halton", "sobol",      "zsobol"};
+  static const char *const filters[] = {"box", "triangle", "gaussian", "mitchell", "sinc", NULL};
+  static const char *const lights[] = {"bvh", "power", "uniform"};
+  const vlSceneSettings *s = &x->scene->settings;
+  const char *sampler = s->sampler < 9 ? samplers[s->sampler] : NULL;
+  if (!sampler) vl_export_lose(x, "the sampler: zsobol in its place");
+  uint32_t side = (uint32_t)(sqrt((double)s->spp) + 0.5);
+  bool square = side * side == s->spp;
+  PUT("Sampler \"%s\"", sampler ? sampler : "zsobol");
+  if (sampler && s->sampler == VL_SAMPLER_STRATIFIED)
+    PUT(" \"integer xsamples\" [%u] \"integer ysamples\" [%u]", square ? side : s->spp, square ? side : 1);
+  else
+    PUT(" \"integer pixelsamples\" [%u]", s->spp);
+  if (s->sampler_seed) PUT(" \"integer seed\" [%u]", s->sampler_seed);
+  const vlPixelFilter *f = &s->filter;
+  const char *filter = f->kind < 6 ? filters[f->kind] : NULL;
+  if (!filter) vl_export_lose(x, "the pixel filter: gaussian in its place");
+  PUT("\nPixelFilter \"%s\" \"float xradius\" [%.9g] \"float yradius\" [%.9g]", filter ? filter : "gaussian",
+      (double)f->radius_x, (double)f->radius_y);
+  if (f->kind == VL_PIXEL_FILTER_GAUSSIAN) PUT(" \"float sigma\" [%.9g]", (double)f->sigma);
+  if (f->kind == VL_PIXEL_FILTER_MITCHELL) PUT(" \"float B\" [%.9g] \"float C\" [%.9g]", (double)f->b, (double)f->c);
+  if (f->kind == VL_PIXEL_FILTER_LANCZOS) PUT(" \"float tau\" [%.9g]", (double)f->tau);
+  bool path = s->tracer == VL_TRACER_PATH, volume = s->tracer == VL_TRACER_VOLPATH;
+  if (!path && !volume) vl_export_lose(x, "the tracer: volpath in its place");
+  PUT("\nIntegrator \"%s\" \"integer maxdepth\" [%u]", path ? "path" : "volpath", s->max_depth);
+  if (s->light_sampler != VL_LIGHT_SAMPLER_BVH && s->light_sampler < 3)
+    PUT(" \"string lightsampler\" \"%s\"", lights[s->light_sampler]);
+  if (s->regularize) PUT(" \"bool regularize\" true");
+  PUT("\n");
+}
+
+/* ---- media, lights ----------------------------------------------------------------------------------------------- */
+
+static void put_medium(vlExport *x, size_t i) {
+  const vlMediumDef *m = &x->scene->media.items[i];
+  if (m->kind != VL_MEDIUM_HOMOGENEOUS) vl_export_lose(x, "media that vary in space: empty");
+  bool empty = m->kind != VL_MEDIUM_HOMOGENEOUS;
+  PUT("MakeNamedMedium \"medium%zu\" \"string type\" \"homogeneous\"", i + 1);
+  if (empty) {
+    PUT(" \"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [0 0 0]\n");
+    return;
+  }
+  vl_pbrt_spectrum(x, "sigma_a", &m->sigma_a);
+  vl_pbrt_spectrum(x, "sigma_s", &m->sigma_s);
+  PUT(" \"float scale\" [%.9g] \"float g\" [%.9g]", (double)m->scale, (double)m->g);
+  if (m->emission_scale > 0 && !(m->emission.kind == VL_SPECTRUM_CONSTANT && m->emission.value == 0)) {
+    vl_pbrt_spectrum(x, "Le", &m->emission);
+    PUT(" \"float Lescale\" [%.9g]", (double)m->emission_scale);
+  }
+  PUT("\n");
+}
+
+static bool put_light(vlExport *x, const vlLightDef *d) {
+  static const char *const kinds[] = {"point", "spot", "distant", "infinite"};
+  char name[300] = "";
+  if ((unsigned)d->kind > VL_LIGHT_INFINITE) {
+    vl_export_lose(x, "lights of further kinds: left out");
+    return true;
+  }
+  if (d->kind == VL_LIGHT_INFINITE && (d->path || d->image)) {
+    vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+    t.path = d->path, t.image = d->image;
+    if (!vl_pbrt_picture(x, &t, true, name)) return false;
+  }
+  PUT("AttributeBegin\n");
+  vl_pbrt_matrix(x, d->world_from_light);
+  if (d->medium.index) PUT("  MediumInterface \"\" \"medium%u\"\n", d->medium.index);
+  PUT("  LightSource \"%s\" \"float scale\" [%.9g]", kinds[d->kind], (double)d->scale);
+  if (name[0])
+    PUT(" \"string filename\" \"%s\"", name);
+  else
+    vl_pbrt_spectrum(x, d->kind <= VL_LIGHT_SPOT ? "I" : "L", &d->color);
+  if (d->kind <= VL_LIGHT_DISTANT && (d->kind == VL_LIGHT_DISTANT || d->from[0] || d->from[1] || d->from[2]))
+    PUT(" \"point3 from\" [%.9g %.9g %.9g]", (double)d->from[0], (double)d->from[1], (double)d->from[2]);
+  if (d->kind == VL_LIGHT_SPOT || d->kind == VL_LIGHT_DISTANT)
+    PUT(" \"point3 to\" [%.9g %.9g %.9g]", (double)d->to[0], (double)d->to[1], (double)d->to[2]);
+  const double degrees = 57.295779513082323;
+  if (d->kind == VL_LIGHT_SPOT)
+    PUT(" \"float coneangle\" [%.9g] \"float conedeltaangle\" [%.9g]", degrees * (double)d->cone_angle,
+        degrees * (double)d->cone_delta);
+  if (!isnan(d->power)) PUT(" \"float power\" [%.9g]", d->power);
+  if (!isnan(d->illuminance)) PUT(" \"float illuminance\" [%.9g]", d->illuminance);
+  for (int i = 0; d->has_portal && i < 12; i++)
+    PUT("%s%.9g%s", i ? " " : " \"point3 portal\" [", (double)d->portal[i / 3][i % 3], i == 11 ? "]" : "");
+  PUT("\nAttributeEnd\n");
+  return true;
+}
+
+/* ---- the whole --------------------------------------------------------------------------------------------------- */
+
+static bool put_groups(vlExport *x) {
+  const vlScene *s = x->scene;
+  for (size_t g = 0; g < s->groups.count; g++) {
+    PUT("ObjectBegin \"object%zu\"\n", g + 1);
+    for (size_t i = 0; i < s->shapes.count; i++)
+      if (s->shapes.items[i].group.index == g + 1 && !vl_pbrt_shape(x, i)) return false;
+    PUT("ObjectEnd\n");
+  }
+  for (size_t i = 0; i < s->instances.count; i++) {
+    const vlSceneInstance *instance = &s->instances.items[i];
+    if (instance->keys) vl_export_lose(x, "instances that move: as they stand at first");
+    PUT("AttributeBegin\n");
+    vl_pbrt_matrix(x, instance->world_from_group);
+    PUT("  ObjectInstance \"object%u\"\nAttributeEnd\n", instance->group.index);
+  }
+  return true;
+}
+
+bool vl_export_pbrt(vlExport *x) {
+  const vlScene *s = x->scene;
+  PUT("# written by velo\n");
+  if (s->settings.space != VL_SPACE_SRGB && (unsigned)s->settings.space < 4)
+    PUT("ColorSpace \"%s\"\n", spaces[s->settings.space]);
+  for (size_t i = 0; i < s->media.count; i++) put_medium(x, i);
+  if (s->settings.camera_medium.index) PUT("MediumInterface \"\" \"medium%u\"\n", s->settings.camera_medium.index);
+  if (!put_camera(x)) return false;
+  put_sampling(x);
+  PUT("WorldBegin\n");
+  for (size_t i = 0; i < s->lights.count; i++)
+    if (!put_light(x, &s->lights.items[i])) return false;
+  for (size_t i = 0; i < s->materials.count; i++)
+    if (!vl_pbrt_material(x, (uint32_t)i + 1)) return false;
+  for (size_t i = 0; i < s->shapes.count; i++)
+    if (!s->shapes.items[i].group.index && !vl_pbrt_shape(x, i)) return false;
+  if (!put_groups(x)) return false;
+  if (x->text.full) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  return vl_export_file(x, NULL, x->text.data.items, x->text.data.count);
+}

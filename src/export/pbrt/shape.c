@@ -1,0 +1,171 @@
+/* export/pbrt/shape.c: shapes as pbrt's; large meshes go to PLY files of their own. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "export/pbrt/pbrt.h"
+
+enum { INLINE_FACES = 64 };
+
+static const double degrees = 57.295779513082323;
+
+static void put_floats(vlExport *x, const char *type, const char *name, const float *v, size_t count) {
+  if (!v) return;
+  PUT("\n    \"%s %s\" [", type, name);
+  for (size_t i = 0; i < count; i++) PUT("%s%.9g", i ? " " : "", (double)v[i]);
+  PUT("]");
+}
+
+static void put_inline(vlExport *x, const vlShapeDef *d) {
+  size_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
+  PUT("  Shape \"%s\"", per == 3 ? "trianglemesh" : "bilinearmesh");
+  put_floats(x, "point3", "P", d->positions, 3 * (size_t)d->vertices);
+  put_floats(x, "normal", "N", d->normals, 3 * (size_t)d->vertices);
+  if (per == 3 && !d->tangent_signs) put_floats(x, "vector3", "S", d->tangents, 3 * (size_t)d->vertices);
+  put_floats(x, "point2", "uv", d->uvs, 2 * (size_t)d->vertices);
+  PUT("\n    \"integer indices\" [");
+  for (size_t i = 0; i < per * d->faces; i++) PUT("%s%u", i ? " " : "", d->indices[i]);
+  PUT("]");
+}
+
+/* Binary, little-endian. pbrt makes patches of faces of four corners, which go round. */
+static bool put_ply(vlExport *x, const vlShapeDef *d, size_t index) {
+  vlBytes b = {0};
+  size_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
+  vl_bytes_print(x->context, &b, "ply\nformat binary_little_endian 1.0\nelement vertex %u\n", d->vertices);
+  vl_bytes_print(x->context, &b, "property float x\nproperty float y\nproperty float z\n");
+  if (d->normals) vl_bytes_print(x->context, &b, "property float nx\nproperty float ny\nproperty float nz\n");
+  if (d->uvs) vl_bytes_print(x->context, &b, "property float u\nproperty float v\n");
+  vl_bytes_print(x->context, &b, "element face %u\nproperty list uchar int vertex_indices\nend_header\n", d->faces);
+  for (size_t i = 0; i < d->vertices; i++) {
+    vl_bytes_put(x->context, &b, d->positions + 3 * i, 3 * sizeof(float));
+    if (d->normals) vl_bytes_put(x->context, &b, d->normals + 3 * i, 3 * sizeof(float));
+    if (d->uvs) vl_bytes_put(x->context, &b, d->uvs + 2 * i, 2 * sizeof(float));
+  }
+  for (size_t i = 0; i < d->faces; i++) {
+    const uint32_t *v = d->indices + per * i, round[4] = {v[0], v[1], per == 4 ? v[3] : v[2], v[2]};
+    const uint8_t count = (uint8_t)per;
+    vl_bytes_put(x->context, &b, &count, 1);
+    vl_bytes_put(x->context, &b, round, per * sizeof *round);
+  }
+  char name[300];
+  snprintf(name, sizeof name, "%.200s-mesh%zu.ply", x->stem, index + 1);
+  bool fine = b.full ? vl_export_fail(x, VL_ERROR_MEMORY, "out of memory")
+                     : vl_export_file(x, name, b.data.items, b.data.count);
+  VL_ARRAY_FREE(x->context, &b.data);
+  PUT("  Shape \"plymesh\" \"string filename\" \"%s\"", name);
+  return fine;
+}
+
+static bool put_kind(vlExport *x, const vlShapeDef *d, size_t index) {
+  switch (d->kind) {
+    case VL_SHAPE_TRIANGLES:
+    case VL_SHAPE_BILINEAR:
+      if (d->faces <= INLINE_FACES || (d->tangents && !d->tangent_signs))
+        put_inline(x, d);
+      else if (!put_ply(x, d, index))
+        return false;
+      return true;
+    case VL_SHAPE_SPHERE:
+    case VL_SHAPE_CYLINDER:
+      PUT("  Shape \"%s\" \"float radius\" [%.9g] \"float zmin\" [%.9g] \"float zmax\" [%.9g] \"float phimax\" [%.9g]",
+          d->kind == VL_SHAPE_SPHERE ? "sphere" : "cylinder", (double)d->radius, (double)d->z_min, (double)d->z_max,
+          degrees * (double)d->phi_max);
+      return true;
+    case VL_SHAPE_DISK:
+      PUT("  Shape \"disk\" \"float radius\" [%.9g] \"float innerradius\" [%.9g] \"float height\" [%.9g] \"float "
+          "phimax\" [%.9g]",
+          (double)d->radius, (double)d->inner_radius, (double)d->height, degrees * (double)d->phi_max);
+      return true;
+    default: return true;
+  }
+}
+
+/* pbrt's glowing pictures do not repeat: uvs that lie in another cell of the plane move to the first, where every
+ * picture of the scene repeats and none is mapped otherwise. New uvs in *moved, else null. */
+static bool move_uvs(vlExport *x, const vlShapeDef *d, float **moved) {
+  const vlEmissionDef *e = &x->scene->emissions.items[d->emission.index - 1];
+  *moved = NULL;
+  if (!d->uvs || !e->texture.index) return true;
+  float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  for (size_t i = 0; i < 2 * (size_t)d->vertices; i++) {
+    low[i % 2] = fminf(low[i % 2], d->uvs[i]);
+    high[i % 2] = fmaxf(high[i % 2], d->uvs[i]);
+  }
+  float by[2] = {floorf(low[0]), floorf(low[1])};
+  if (low[0] >= 0 && low[1] >= 0 && high[0] <= 1 && high[1] <= 1) return true;
+  bool can = high[0] - by[0] <= 1 && high[1] - by[1] <= 1;
+  for (size_t i = 0; can && i < x->scene->textures.count; i++) {
+    const vlTextureDef *t = &x->scene->textures.items[i];
+    bool plain = t->wrap == VL_WRAP_REPEAT && (!t->wrap_t_given || t->wrap_t == VL_WRAP_REPEAT) &&
+                 !t->st_from_uv_given && t->su == 1 && t->sv == 1;
+    can = t->kind != VL_TEXTURE_IMAGE || plain;
+  }
+  if (!can) {
+    vl_export_lose(x, "pictures that glow again and again: at the first place only");
+    return true;
+  }
+  float *uvs = vl_alloc_array(x->context, d->vertices, 2 * sizeof *uvs);
+  if (!uvs) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  for (size_t i = 0; i < 2 * (size_t)d->vertices; i++) uvs[i] = d->uvs[i] - by[i % 2];
+  *moved = uvs;
+  return true;
+}
+
+static bool put_emission(vlExport *x, const vlEmissionDef *e) {
+  const vlTextureDef *t = vl_export_texture(x, e->texture);
+  vlTextureDef picture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+  char name[300] = "";
+  double scale = (double)e->scale;
+  picture.path = e->image;
+  if (t) {
+    scale *= (double)fmaxf(t->tint[0], fmaxf(t->tint[1], t->tint[2]));
+    if (t->tint[0] != t->tint[1] || t->tint[1] != t->tint[2])
+      vl_export_lose(x, "tints of pictures that glow: left out");
+  }
+  if ((t || e->image) && !vl_pbrt_picture(x, t ? t : &picture, false, name)) return false;
+  PUT("  AreaLightSource \"diffuse\" \"float scale\" [%.9g]", scale);
+  if (name[0])
+    PUT(" \"string filename\" \"%s\"", name);
+  else
+    vl_pbrt_spectrum(x, "L", &e->radiance);
+  if (e->two_sided) PUT(" \"bool twosided\" true");
+  if (!isnan(e->power)) PUT(" \"float power\" [%.9g]", e->power);
+  PUT("\n");
+  return true;
+}
+
+bool vl_pbrt_shape(vlExport *x, size_t index) {
+  const vlShapeDef *d = &x->scene->shapes.items[index];
+  if ((unsigned)d->kind > VL_SHAPE_CYLINDER) {
+    vl_export_lose(x, "curves: left out");
+    return true;
+  }
+  if (d->positions && (!d->faces || !d->vertices)) return true;
+  if (d->positions_close) vl_export_lose(x, "meshes that change in time: as they are at first");
+  if (d->one_sided) vl_export_lose(x, "surfaces that are seen from one side only: from both");
+  if (d->colors) vl_export_lose(x, "colours of vertices: left out");
+  vlPbrtInput alpha;
+  if (!vl_pbrt_prepare_number(x, &d->alpha, false, &alpha)) return false;
+  PUT("AttributeBegin\n");
+  vl_pbrt_matrix(x, d->group_from_shape);
+  if (d->material.index) PUT("  NamedMaterial \"material%u\"\n", d->material.index);
+  if (d->emission.index && !put_emission(x, &x->scene->emissions.items[d->emission.index - 1])) return false;
+  if (d->inside.index != d->outside.index) {
+    char in[32] = "", out[32] = "";
+    if (d->inside.index) snprintf(in, sizeof in, "medium%u", d->inside.index);
+    if (d->outside.index) snprintf(out, sizeof out, "medium%u", d->outside.index);
+    PUT("  MediumInterface \"%s\" \"%s\"\n", in, out);
+  }
+  if (d->reverse_orientation) PUT("  ReverseOrientation\n");
+  float *moved = NULL;
+  if (d->emission.index && !move_uvs(x, d, &moved)) return false;
+  vlShapeDef here = *d;
+  here.uvs = moved ? moved : d->uvs;
+  bool put = put_kind(x, &here, index);
+  vl_free(x->context, moved);
+  if (!put) return false;
+  if (alpha.texture[0] || alpha.number != 1) vl_pbrt_put_number(x, "alpha", &alpha);
+  PUT("\nAttributeEnd\n");
+  return true;
+}

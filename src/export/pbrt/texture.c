@@ -1,0 +1,273 @@
+/* export/pbrt/texture.c: textures as pbrt's. Pictures of which one channel counts, or that are tinted, are worked into
+ * new ones (EXR, so that no value is rounded). */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "export/pbrt/pbrt.h"
+#include "image/image.h"
+
+static vlExportPicture *find_picture(vlExport *x, const vlTextureDef *t, uint32_t variant) {
+  const void *data = t->data ? t->data : (const void *)t->image;
+  for (size_t i = 0; i < x->pictures.count; i++) {
+    vlExportPicture *p = &x->pictures.items[i];
+    if (p->variant == variant && p->data == data && (data || (p->path && t->path && strcmp(p->path, t->path) == 0)))
+      return p;
+  }
+  return NULL;
+}
+
+static bool write_picture(vlExport *x, const vlTextureDef *t, uint32_t variant, const char *bytes, size_t size,
+                          const char *suffix, char name[300]) {
+  snprintf(name, 300, "%.200s-%zu%s", x->stem, x->pictures.count, suffix);
+  vlExportPicture *slot = VL_PUSH(x->context, &x->pictures);
+  if (!slot) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  const void *data = t->data ? t->data : (const void *)t->image;
+  *slot = (vlExportPicture){.data = data, .path = data ? NULL : t->path, .variant = variant};
+  memcpy(slot->name, name, sizeof slot->name);
+  return vl_export_file(x, name, bytes, size);
+}
+
+bool vl_pbrt_picture(vlExport *x, const vlTextureDef *t, bool light, char name[300]) {
+  vlExportPicture *known = find_picture(x, t, light);
+  if (known) return memcpy(name, known->name, sizeof known->name), true;
+  char *bytes = NULL;
+  size_t size;
+  const char *suffix = ".exr", *dot = t->path ? strrchr(t->path, '.') : NULL;
+  bool fine;
+  if (t->image) {
+    fine = vl_export_pack(x, t->image, ".exr", &bytes, &size);
+  } else if (t->path && dot && strlen(dot) < 8) { /* as it is, whatever it is */
+    vlError error;
+    vl_error_clear(&error);
+    vlResult r = vl_file_read(x->context, t->path, false, &bytes, &size, &error);
+    fine = r == VL_OK || vl_export_fail(x, r, "%s", error.message);
+    suffix = dot;
+  } else {
+    fine = vl_export_picture(x, t, &bytes, &size, &suffix);
+  }
+  fine = fine && write_picture(x, t, light, bytes, size, suffix, name);
+  vl_free(x->context, bytes);
+  return fine;
+}
+
+/* ---- worked pictures --------------------------------------------------------------------------------------------- */
+
+/* What becomes of a picture's values. */
+typedef struct Change {
+  bool squared;
+  float turned_back; /* under a coat that sends this share of the light back in; 0: none */
+} Change;
+static const Change as_is = {false, 0};
+
+static float under_coat(float value, float turned_back) {
+  return value / (1 - turned_back + value * turned_back);
+}
+
+/* One channel as the tracer reads it, or three tinted ones. */
+static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[300]) {
+  uint32_t variant = 2 + (change.squared ? 1u : 0u);
+  const float key[9] = {t->tint[0], t->tint[1],        t->tint[2],       t->tint[3],        t->bias,
+                        t->scale,   (float)t->channel, (float)t->cutoff, change.turned_back};
+  for (size_t i = 0; i < sizeof key; i++) variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 2u;
+  vlExportPicture *known = find_picture(x, t, variant);
+  if (known) return memcpy(name, known->name, sizeof known->name), true;
+  vlImage *image = t->image ? NULL : vl_export_decode(x, t), *made = NULL;
+  const vlImage *from = t->image ? t->image : image;
+  if (!from) return false;
+  uint32_t channel[4], have = vl_image_color(from, channel), per = t->spectrum ? 3 : 1;
+  float *row = vl_alloc_array(x->context, from->width, 4 * sizeof *row);
+  vlImageDef def = vl_default_image_def(from->width, from->height, per);
+  def.type = VL_PIXEL_F32;
+  bool fine = row && vl_image_create(x->context, &def, &made) == VL_OK;
+  if (!fine) vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  if (fine && t->encoding_given && image) image->encoding = t->encoding;
+  for (uint32_t y = 0; fine && y < from->height; y++) {
+    float *to = vl_image_row(made, y);
+    vl_image_row_to_float(from, y, channel, have, row);
+    for (uint32_t i = 0; i < from->width; i++) {
+      const float *v = row + (size_t)i * have;
+      float rgba[4] = {v[0], have > 2 ? v[1] : v[0], have > 2 ? v[2] : v[0],
+                       have == 4   ? v[3]
+                       : have == 2 ? v[1]
+                                   : 1.0f};
+      if (per == 3) {
+        for (int k = 0; k < 3; k++) to[3 * i + (uint32_t)k] = under_coat(rgba[k] * t->tint[k], change.turned_back);
+        continue;
+      }
+      float value =
+          t->bias + (t->channel < 0 ? (rgba[0] + rgba[1] + rgba[2]) / 3 : rgba[t->channel] * t->tint[t->channel]);
+      if (!isnan(t->cutoff)) value = value >= (float)t->cutoff ? 1.0f : 0.0f;
+      to[i] = change.squared ? value * value : value;
+    }
+  }
+  char *bytes = NULL;
+  size_t size;
+  fine =
+      fine && vl_export_pack(x, made, ".exr", &bytes, &size) && write_picture(x, t, variant, bytes, size, ".exr", name);
+  vl_free(x->context, bytes);
+  vl_free(x->context, row);
+  vl_image_destroy(made);
+  vl_image_destroy(image);
+  return fine;
+}
+
+static void put_mapping(vlExport *x, const vlTextureDef *t) {
+  static const char *const names[] = {"uv", "spherical", "cylindrical", "planar"};
+  double m[6];
+  vl_export_st_from_uv(t, m);
+  PUT(" \"string mapping\" \"%s\"", names[t->mapping]);
+  if (t->mapping == VL_MAPPING_UV) {
+    if (m[1] != 0 || m[3] != 0) vl_export_lose(x, "textures that are turned: only moved and scaled");
+    PUT(" \"float uscale\" [%.9g] \"float vscale\" [%.9g] \"float udelta\" [%.9g] \"float vdelta\" [%.9g]", m[0], m[4],
+        m[2], m[5]);
+  }
+  if (t->mapping == VL_MAPPING_PLANAR)
+    PUT(" \"vector3 v1\" [%.9g %.9g %.9g] \"vector3 v2\" [%.9g %.9g %.9g] \"float udelta\" [%.9g] \"float vdelta\" "
+        "[%.9g]",
+        (double)t->planar_v1[0], (double)t->planar_v1[1], (double)t->planar_v1[2], (double)t->planar_v2[0],
+        (double)t->planar_v2[1], (double)t->planar_v2[2], (double)t->du, (double)t->dv);
+  if (t->uv_set) vl_export_lose(x, "uv sets beyond the first: the first stands in");
+}
+
+static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
+  static const char *const wraps[] = {"repeat", "black", "clamp", "octahedralsphere", "repeat"}, *const filters[] = {
+                                                                                                     "point",
+                                                                                                     "bilinear",
+                                                                                                     "trilinear",
+                                                                                                     "ewa"};
+  bool even = t->tint[0] == t->tint[1] && t->tint[1] == t->tint[2];
+  bool plain = t->spectrum ? even : t->channel < 0 && t->bias == 0 && isnan(t->cutoff) && !change.squared;
+  plain = plain && change.turned_back == 0;
+  char name[300];
+  if (!(plain ? vl_pbrt_picture(x, t, false, name) : work(x, t, change, name))) return false;
+  if (t->wrap == VL_WRAP_MIRROR) vl_export_lose(x, "pictures that repeat in a mirror: repeated plainly");
+  if (t->wrap_t_given && t->wrap_t != t->wrap) vl_export_lose(x, "wrap modes of their own for each axis: that of s");
+  if (t->colors) vl_export_lose(x, "colours of vertices: left out");
+  double scale = (double)t->scale * (plain && t->spectrum ? (double)t->tint[0] : 1);
+  PUT(" \"string filename\" \"%s\" \"string wrap\" \"%s\" \"string filter\" \"%s\"", name, wraps[t->wrap],
+      filters[t->filter]);
+  if (scale != 1) PUT(" \"float scale\" [%.9g]", change.squared ? scale * scale : scale);
+  if (t->invert) PUT(" \"bool invert\" true");
+  if (plain && t->encoding_given) {
+    if (t->encoding == VL_ENCODING_GAMMA)
+      PUT(" \"string encoding\" \"gamma %.9g\"", (double)t->gamma);
+    else
+      PUT(" \"string encoding\" \"%s\"", t->encoding == VL_ENCODING_LINEAR ? "linear" : "sRGB");
+  }
+  return true;
+}
+
+/* ---- textures ---------------------------------------------------------------------------------------------------- */
+
+static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char name[64]);
+
+static bool inner(vlExport *x, const vlTextureDef *t, int k, int depth, vlPbrtInput *result) {
+  const vlFloatInput *floats[] = {&t->float_a, &t->float_b, &t->float_c, &t->float_d, &t->amount};
+  const vlSpectrumInput *spectra[] = {&t->spectrum_a, &t->spectrum_b, &t->spectrum_c, &t->spectrum_d};
+  bool color = t->spectrum && k < 4;
+  uint32_t id = color ? spectra[k]->texture.index : floats[k]->texture.index;
+  *result = (vlPbrtInput){0};
+  result->number = color ? 0 : floats[k]->value;
+  if (color) result->spectrum = spectra[k]->value;
+  return !id || put_texture(x, id, as_is, depth + 1, result->texture);
+}
+
+static void put_inner(vlExport *x, const vlTextureDef *t, const char *name, const vlPbrtInput *input) {
+  if (t->spectrum)
+    vl_pbrt_put_color(x, name, input);
+  else
+    vl_pbrt_put_number(x, name, input);
+}
+
+/* Written anew for each use: names are counted by their place in the file. */
+static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char name[64]) {
+  static const char *const kinds[] = {"constant", "scale", "mix", "checkerboard", "imagemap"};
+  static const char *const names[4][2] = {{"value", NULL}, {"tex", NULL}, {"tex1", "tex2"}, {"tex1", "tex2"}};
+  const vlTextureDef *t = &x->scene->textures.items[id - 1];
+  if (depth > 16) return vl_export_fail(x, VL_ERROR_SCENE, "textures stand in each other too deep");
+  if (t->kind > VL_TEXTURE_IMAGE || (change.squared && t->kind != VL_TEXTURE_IMAGE)) {
+    vl_export_lose(x, t->kind == VL_TEXTURE_VERTEX_COLOR ? "colours of vertices: left out"
+                                                         : "computed textures (noise, dots, ...): a value stands in");
+    name[0] = 0;
+    return true;
+  }
+  vlPbrtInput a = {0}, b = {0}, amount = {0};
+  if (t->kind != VL_TEXTURE_IMAGE && !inner(x, t, 0, depth, &a)) return false;
+  if ((t->kind == VL_TEXTURE_MIX || t->kind == VL_TEXTURE_CHECKERBOARD) && !inner(x, t, 1, depth, &b)) return false;
+  if ((t->kind == VL_TEXTURE_SCALE || t->kind == VL_TEXTURE_MIX) && !inner(x, t, 4, depth, &amount)) return false;
+  snprintf(name, 64, "texture%u-%zu", id, x->text.data.count);
+  vlMat4 world_from_texture;
+  bool placed = t->mapping != VL_MAPPING_UV || (t->kind == VL_TEXTURE_CHECKERBOARD && t->dimension == 3);
+  placed = placed && vl_mat4_inverse(vl_mat4_load(t->texture_from_world), &world_from_texture);
+  if (placed) {
+    PUT("AttributeBegin\n");
+    vl_pbrt_matrix(x, world_from_texture.m);
+  }
+  PUT("Texture \"%s\" \"%s\" \"%s\"", name, t->spectrum ? "spectrum" : "float", kinds[t->kind]);
+  if (t->kind == VL_TEXTURE_IMAGE) {
+    if (!put_image(x, t, change)) return false;
+  } else {
+    put_inner(x, t, names[t->kind][0], &a);
+    if (names[t->kind][1]) put_inner(x, t, names[t->kind][1], &b);
+  }
+  if (t->kind == VL_TEXTURE_SCALE) vl_pbrt_put_number(x, "scale", &amount);
+  if (t->kind == VL_TEXTURE_MIX) vl_pbrt_put_number(x, "amount", &amount);
+  if (t->kind == VL_TEXTURE_CHECKERBOARD && t->dimension == 3) PUT(" \"integer dimension\" [3]");
+  if (t->kind == VL_TEXTURE_IMAGE || (t->kind == VL_TEXTURE_CHECKERBOARD && t->dimension != 3)) put_mapping(x, t);
+  PUT(placed ? "\nAttributeEnd\n" : "\n");
+  return true;
+}
+
+/* ---- inputs ------------------------------------------------------------------------------------------------------ */
+
+bool vl_pbrt_prepare_number(vlExport *x, const vlFloatInput *input, bool squared, vlPbrtInput *result) {
+  *result = (vlPbrtInput){0};
+  if (input->texture.index && !put_texture(x, input->texture.index, (Change){squared, 0}, 0, result->texture))
+    return false;
+  float v = result->texture[0] ? 0 : vl_export_number(x, input);
+  result->number = squared ? v * v : v;
+  return true;
+}
+
+static bool prepare_color(vlExport *x, const vlSpectrumInput *input, Change change, vlPbrtInput *result) {
+  float rgb[3];
+  *result = (vlPbrtInput){.spectrum = input->value};
+  if (input->texture.index && !put_texture(x, input->texture.index, change, 0, result->texture)) return false;
+  if (result->texture[0] || (!input->texture.index && change.turned_back == 0)) return true;
+  vl_export_rgb(x, input, rgb);
+  for (int i = 0; i < 3; i++) rgb[i] = under_coat(rgb[i], change.turned_back);
+  result->spectrum = vl_spectrum_rgb(rgb[0], rgb[1], rgb[2]);
+  return true;
+}
+
+bool vl_pbrt_prepare_color(vlExport *x, const vlSpectrumInput *input, vlPbrtInput *result) {
+  return prepare_color(x, input, as_is, result);
+}
+
+/* A coat sends a share G of what comes from a diffuse base back to it: colour c (1 - G) / (1 - c G) is seen. From
+ * outside the mean of Fresnel's reflection is F, and 1 - G = (1 - F) / eta^2. */
+bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, double eta, vlPbrtInput *result) {
+  enum { STEPS = 64 };
+  double f = 0;
+  for (int i = 0; i < STEPS; i++) {
+    double c = (i + 0.5) / STEPS, t = sqrt(1 - (1 - c * c) / (eta * eta));
+    double s = (c - eta * t) / (c + eta * t), p = (eta * c - t) / (eta * c + t);
+    f += 2 * c / STEPS * 0.5 * (s * s + p * p);
+  }
+  return prepare_color(x, input, (Change){false, (float)(1 - (1 - f) / (eta * eta))}, result);
+}
+
+void vl_pbrt_put_number(vlExport *x, const char *name, const vlPbrtInput *input) {
+  if (input->texture[0])
+    PUT(" \"texture %s\" \"%s\"", name, input->texture);
+  else
+    PUT(" \"float %s\" [%.9g]", name, (double)input->number);
+}
+
+void vl_pbrt_put_color(vlExport *x, const char *name, const vlPbrtInput *input) {
+  if (input->texture[0])
+    PUT(" \"texture %s\" \"%s\"", name, input->texture);
+  else
+    vl_pbrt_spectrum(x, name, &input->spectrum);
+}

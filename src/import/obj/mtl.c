@@ -1,0 +1,282 @@
+/* import/obj/mtl.c: material libraries of OBJ files to numbers (vlMtl). Statements that velo has no use for are passed
+ * over; what is broken is an error with its line. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "import/obj/obj.h"
+#include "import/pbrt/token.h"
+
+vlMtl vl_mtl_default(void) {
+  vlMtl m = {.kd = {0.8f, 0.8f, 0.8f}, .ks = {NAN, NAN, NAN}, .tf = {NAN, NAN, NAN}, .illum = -1};
+  m.ns = m.ni = m.d = m.pr = m.pm = m.ps = m.pc = m.pcr = m.aniso = m.anisor = NAN;
+  return m;
+}
+
+static bool is_word(const char *word, size_t n, const char *name) {
+  return strlen(name) == n && strncasecmp(word, name, n) == 0;
+}
+
+/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+
+static bool exists(const char *path) {
+  struct stat info;
+  return stat(path, &info) == 0 && S_ISREG(info.st_mode);
+}
+
+/* The file, or one of its name beside the library: paths are often of another machine. Null: none, said. */
+static bool find_picture(vlObj *obj, char *name, const char **path) {
+  static const char *const known[] = {".png", ".jpg", ".jpeg", ".tga", ".exr", ".hdr", ".pfm",
+                                      ".bmp", ".gif", ".ppm",  ".pgm", ".qoi", ".pnm"};
+  char whole[4096];
+  *path = NULL;
+  for (char *p = name; *p; p++)
+    if (*p == '\\') *p = '/';
+  const char *slash = strrchr(name, '/');
+  bool found = vl_path_join(obj->path, name, whole, sizeof whole) && exists(whole);
+  if (!found && slash) found = vl_path_join(obj->path, slash + 1, whole, sizeof whole) && exists(whole);
+  if (!found) {
+    vl_obj_warn(obj, VL_LOG_WARNING, "there is no picture \"%.200s\"; done without", name);
+    return true;
+  }
+  bool readable = false;
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++) readable |= vl_ends_with(whole, known[i]);
+  if (!readable) {
+    vl_obj_warn(obj, VL_LOG_WARNING, "\"%.200s\": velo does not read pictures of this kind; done without", name);
+    return true;
+  }
+  *path = whole;
+  return vl_scene_copy_string(obj->scene, path);
+}
+
+static bool option_numbers(vlObj *obj, const char *name, uint32_t least, uint32_t most, double *values) {
+  char *at = obj->at;
+  uint32_t count = 0;
+  for (; count < most; count++) { /* as many as there are: what follows is a name or an option */
+    uint32_t one;
+    at = obj->at;
+    if (!vl_obj_numbers(obj, 1, &values[count], &one) || !one) {
+      obj->at = at;
+      break;
+    }
+  }
+  return count >= least || vl_obj_fail(obj, "%s: %u numbers, %u are needed", name, count, least);
+}
+
+static bool option_word(vlObj *obj, const char *name, const char **word, size_t *n) {
+  return (*n = vl_obj_word(obj, word)) || vl_obj_fail(obj, "%s: its value is missing", name);
+}
+
+/* One option before the name of a picture; false where none stands there or it is broken (*fine). */
+static bool read_option(vlObj *obj, vlMtlMap *map, bool *fine) {
+  static const char *const words[] = {"-blendu", "-blendv", "-cc", "-type"}, *const numbers[] = {"-boost", "-texres"};
+  const char *word, *value;
+  char *at = obj->at;
+  size_t n = vl_obj_word(obj, &word), size;
+  double v[3] = {0, 0, 0};
+  *fine = true;
+  if (n < 2 || word[0] != '-') return obj->at = at, false;
+  if (is_word(word, n, "-o") || is_word(word, n, "-s") || is_word(word, n, "-t")) {
+    bool offset = word[1] == 'o', scale = word[1] == 's';
+    v[0] = v[1] = v[2] = scale ? 1 : 0;
+    *fine = option_numbers(obj, "-o, -s, -t", 1, 3, v);
+    for (int i = 0; i < 2 && offset; i++) map->offset[i] = (float)v[i];
+    for (int i = 0; i < 2 && scale; i++) map->scale[i] = (float)v[i];
+    return true;
+  }
+  if (is_word(word, n, "-mm")) {
+    v[1] = 1;
+    *fine = option_numbers(obj, "-mm", 2, 2, v);
+    map->base = (float)v[0], map->gain = (float)v[1];
+    return true;
+  }
+  if (is_word(word, n, "-bm")) {
+    *fine = option_numbers(obj, "-bm", 1, 1, v);
+    map->bump = (float)v[0];
+    return true;
+  }
+  if (is_word(word, n, "-clamp")) {
+    *fine = option_word(obj, "-clamp", &value, &size);
+    map->clamp = *fine && is_word(value, size, "on");
+    return true;
+  }
+  if (is_word(word, n, "-imfchan")) {
+    *fine = option_word(obj, "-imfchan", &value, &size);
+    const char *at_channel = *fine ? strchr("rgbm", *value) : NULL;
+    map->channel = *fine && size == 1 && at_channel ? (int)(at_channel - "rgbm") : -1;
+    return true;
+  }
+  for (int i = 0; i < 4; i++)
+    if (is_word(word, n, words[i])) return *fine = option_word(obj, words[i], &value, &size), true;
+  for (int i = 0; i < 2; i++)
+    if (is_word(word, n, numbers[i])) return *fine = option_numbers(obj, numbers[i], 1, 1, v), true;
+  obj->at = at;
+  return false;
+}
+
+static bool read_map(vlObj *obj, vlMtl *m, vlMtlMapKind kind) {
+  vlMtlMap map = {.scale = {1, 1}, .gain = 1, .bump = 1, .channel = -1};
+  bool fine;
+  while (read_option(obj, &map, &fine))
+    if (!fine) return false;
+  if (!fine) return false;
+  char *name = vl_obj_rest(obj);
+  if (!*name) return vl_obj_fail(obj, "the name of a picture is missing");
+  if (!find_picture(obj, name, &map.path)) return false;
+  if (map.path) m->maps[kind] = map;
+  return true;
+}
+
+/* ---- numbers ----------------------------------------------------------------------------------------------------- */
+
+static bool read_color(vlObj *obj, const char *name, float color[3]) {
+  double v[3];
+  uint32_t count;
+  const char *word;
+  char *at = obj->at;
+  size_t n = vl_obj_word(obj, &word);
+  if (is_word(word, n, "spectral")) {
+    vl_obj_warn(obj, VL_LOG_WARNING, "%s spectral: velo does not read .rfl files", name);
+    return true;
+  }
+  bool xyz = is_word(word, n, "xyz");
+  if (!xyz) obj->at = at;
+  if (!vl_obj_numbers(obj, 3, v, &count) || (count != 1 && count != 3))
+    return vl_obj_fail(obj, "%s needs 1 or 3 numbers", name);
+  if (count == 1) v[1] = v[2] = v[0];
+  static const double rgb_from_xyz[9] = {3.2404542, -1.5371385, -0.4985314, -0.9692660, 1.8760108,
+                                         0.0415560, 0.0556434,  -0.2040259, 1.0572252};
+  for (int i = 0; i < 3; i++) {
+    double x =
+        xyz ? rgb_from_xyz[3 * i] * v[0] + rgb_from_xyz[3 * i + 1] * v[1] + rgb_from_xyz[3 * i + 2] * v[2] : v[i];
+    color[i] = x > 0 ? (float)x : 0.0f;
+  }
+  return true;
+}
+
+static bool read_number(vlObj *obj, const char *name, float *value) {
+  double v;
+  uint32_t count;
+  if (!vl_obj_numbers(obj, 1, &v, &count) || count != 1) return vl_obj_fail(obj, "%s needs a number", name);
+  *value = (float)v;
+  return true;
+}
+
+static bool read_statement(vlObj *obj, uint32_t *current) {
+  static const struct {
+    const char *name;
+    vlMtlMapKind kind;
+  } maps[] = {{"map_Kd", VL_MTL_KD},      {"map_Ke", VL_MTL_KE},     {"map_Ks", VL_MTL_KS}, {"map_d", VL_MTL_D},
+              {"map_opacity", VL_MTL_D},  {"map_Bump", VL_MTL_BUMP}, {"bump", VL_MTL_BUMP}, {"norm", VL_MTL_NORMAL},
+              {"map_Kn", VL_MTL_NORMAL},  {"map_Pr", VL_MTL_PR},     {"map_Pm", VL_MTL_PM}, {"map_Ps", VL_MTL_PS},
+              {"map_emissive", VL_MTL_KE}};
+  const char *word;
+  size_t n = vl_obj_word(obj, &word);
+  if (n == 0) return true;
+  if (is_word(word, n, "newmtl")) {
+    *current = vl_obj_material(obj, vl_obj_rest(obj));
+    if (*current == UINT32_MAX) return false;
+    vlObjMaterial *fresh = &obj->materials.items[*current];
+    if (!fresh->defined) fresh->mtl = vl_mtl_default();
+    fresh->defined = true;
+    return true;
+  }
+  vlMtl *m = &obj->materials.items[*current].mtl, unused = vl_mtl_default();
+  if (*current == 0) m = &unused; /* before the first newmtl */
+  const struct {
+    const char *name;
+    float *to;
+  } colors[] = {{"Kd", m->kd}, {"Ks", m->ks}, {"Ke", m->ke}, {"Tf", m->tf}},
+    numbers[] = {{"Ns", &m->ns}, {"Ni", &m->ni}, {"d", &m->d},     {"Pr", &m->pr},       {"Pm", &m->pm},
+                 {"Pc", &m->pc}, {"Ps", &m->ps}, {"Pcr", &m->pcr}, {"aniso", &m->aniso}, {"anisor", &m->anisor}};
+  for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
+    if (is_word(word, n, colors[i].name)) return read_color(obj, colors[i].name, colors[i].to);
+  if (is_word(word, n, "d")) { /* d -halo 0.5 */
+    char *at = obj->at;
+    const char *halo;
+    size_t k = vl_obj_word(obj, &halo);
+    if (!is_word(halo, k, "-halo")) obj->at = at;
+  }
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+    if (is_word(word, n, numbers[i].name)) return read_number(obj, numbers[i].name, numbers[i].to);
+  for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
+    if (is_word(word, n, maps[i].name)) return read_map(obj, m, maps[i].kind);
+  float value = 0;
+  if (is_word(word, n, "Tr")) {
+    if (!read_number(obj, "Tr", &value)) return false;
+    if (isnan(m->d)) m->d = 1.0f - value;
+    return true;
+  }
+  if (is_word(word, n, "illum")) {
+    if (!read_number(obj, "illum", &value)) return false;
+    m->illum = value >= 0 && value <= 10 ? (int)value : 2;
+    return true;
+  }
+  return true; /* Ka, map_Ka, decal, disp, refl, ...: of other ways to render */
+}
+
+/* ---- the file ---------------------------------------------------------------------------------------------------- */
+
+static bool read_library(vlObj *obj, char *name) {
+  char path[4096];
+  for (size_t i = 0; i < obj->libraries.count; i++)
+    if (strcmp(obj->libraries.items[i], name) == 0) return true;
+  if (obj->libraries.count >= VL_OBJ_LIBRARIES)
+    return vl_obj_fail(obj, "mtllib: more than %d libraries", VL_OBJ_LIBRARIES);
+  for (char *p = name; *p; p++)
+    if (*p == '\\') *p = '/';
+  const char *kept = name, *slash = strrchr(name, '/');
+  const char **slot = VL_PUSH(obj->context, &obj->libraries);
+  if (!slot) return vl_obj_fail_memory(obj);
+  if (!vl_scene_copy_string(obj->scene, &kept)) return false;
+  *slot = kept;
+  bool found = vl_path_join(obj->path, name, path, sizeof path) && exists(path);
+  if (!found && slash) found = vl_path_join(obj->path, slash + 1, path, sizeof path) && exists(path);
+  if (!found) {
+    vl_obj_warn(obj, VL_LOG_WARNING, "mtllib: there is no file \"%.200s\"; done without", name);
+    return true;
+  }
+  vlError error;
+  vl_error_clear(&error);
+  char *data;
+  size_t size;
+  vlResult r = vl_file_read(obj->context, path, true, &data, &size, &error);
+  if (r != VL_OK) {
+    vl_scene_fail(obj->scene, r, (vlSource){obj->path, obj->line, 1}, "%s", error.message);
+    return false;
+  }
+  /* The library's statements take the place of the file's own. */
+  const char *own_path = obj->path;
+  uint32_t own_line = obj->line, own_more = obj->more_lines, current = 0;
+  obj->path = path, obj->line = obj->more_lines = 0;
+  char *from = data;
+  bool fine = true;
+  while (fine && vl_obj_statement(obj, &from, data + size)) fine = read_statement(obj, &current);
+  vl_free(obj->context, data);
+  obj->path = own_path, obj->line = own_line, obj->more_lines = own_more;
+  return fine;
+}
+
+bool vl_obj_read_libraries(vlObj *obj) {
+  char *line_start = obj->line_start, *at = obj->at, *end = obj->end, whole[4096];
+  char *rest = vl_obj_rest(obj);
+  bool fine = true;
+  if (!*rest) return vl_obj_fail(obj, "mtllib: the name of a file is missing");
+  if (vl_path_join(obj->path, rest, whole, sizeof whole) && exists(whole)) { /* a name with blanks */
+    fine = read_library(obj, rest);
+  } else {
+    char *next = rest;
+    while (fine && *next) {
+      char *name = next;
+      while (*next && *next != ' ' && *next != '\t') next++;
+      if (*next) *next++ = 0;
+      while (*next == ' ' || *next == '\t') next++;
+      if (*name) fine = read_library(obj, name);
+    }
+  }
+  obj->line_start = line_start, obj->at = at, obj->end = end;
+  return fine;
+}

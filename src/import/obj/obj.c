@@ -1,0 +1,399 @@
+/* import/obj/obj.c: Wavefront OBJ: its statements to arrays of corners. See obj.h. */
+#include "import/obj/obj.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "import/import.h"
+#include "import/pbrt/token.h"
+#include "import/plain.h"
+
+enum { MAX_PARTS = 4096, MAX_MATERIALS = 1 << 20 };
+enum { TOLD_LINES = 1, TOLD_CURVES = 2, TOLD_UNKNOWN = 4 };
+
+/* ---- errors ------------------------------------------------------------------------------------------------------ */
+
+bool vl_obj_fail(vlObj *obj, const char *format, ...) {
+  char text[500];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  uint32_t column = obj->line ? (uint32_t)(obj->at - obj->line_start) + 1 : 0;
+  vl_scene_fail(obj->scene, VL_ERROR_SCENE, (vlSource){obj->path, obj->line, column}, "%s", text);
+  return false;
+}
+
+void vl_obj_warn(vlObj *obj, vlLogLevel level, const char *format, ...) {
+  char text[500];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  vlError where = {.line = obj->line, .column = obj->line ? 1 : 0};
+  snprintf(where.file, sizeof where.file, "%s", obj->path);
+  vl_log(obj->context, level, &where, "%s", text);
+}
+
+bool vl_obj_fail_memory(vlObj *obj) {
+  vl_scene_fail(obj->scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+  return false;
+}
+
+/* ---- statements -------------------------------------------------------------------------------------------------- */
+
+static bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+bool vl_obj_statement(vlObj *obj, char **from, char *end) {
+  obj->nothing[0] = 0;
+  obj->line_start = obj->at = obj->end = obj->nothing;
+  if (*from >= end) return false;
+  char *p = *from, *stop = p;
+  uint32_t lines = 0;
+  for (;;) {
+    stop = memchr(stop, '\n', (size_t)(end - stop));
+    lines++;
+    if (!stop) break;
+    char *before = stop - 1;
+    if (before >= p && *before == '\r') before--;
+    if (before < p || *before != '\\') break;
+    memset(before, ' ', (size_t)(stop + 1 - before)); /* a line that goes on */
+    stop++;
+    if (stop >= end) {
+      stop = NULL;
+      break;
+    }
+  }
+  obj->line_start = obj->at = p;
+  obj->end = stop ? stop : end;
+  obj->line += 1 + obj->more_lines;
+  obj->more_lines = lines - 1;
+  *from = stop ? stop + 1 : end;
+  /* A comment goes to the end of the line. Names may hold a #, so only one after a blank counts. */
+  for (char *hash = p; (hash = memchr(hash, '#', (size_t)(obj->end - hash))); hash++)
+    if (hash == p || is_blank(hash[-1])) {
+      obj->end = hash;
+      break;
+    }
+  return true;
+}
+
+static void skip_blanks(vlObj *obj) {
+  while (obj->at < obj->end && is_blank(*obj->at)) obj->at++;
+}
+
+size_t vl_obj_word(vlObj *obj, const char **word) {
+  skip_blanks(obj);
+  *word = obj->at;
+  while (obj->at < obj->end && !is_blank(*obj->at)) obj->at++;
+  return (size_t)(obj->at - *word);
+}
+
+char *vl_obj_rest(vlObj *obj) {
+  skip_blanks(obj);
+  char *end = obj->end;
+  while (end > obj->at && is_blank(end[-1])) end--;
+  *end = 0; /* the newline, the comment's sign, a blank or the file's own zero */
+  return obj->at;
+}
+
+bool vl_obj_numbers(vlObj *obj, uint32_t most, double *values, uint32_t *count) {
+  *count = 0;
+  for (;;) {
+    skip_blanks(obj);
+    if (obj->at >= obj->end || *count == most) return true;
+    const char *p = obj->at;
+    if (!vl_number_scan(&p, obj->end, &values[*count]) || (p < obj->end && !is_blank(*p))) return false;
+    if (!isfinite((float)values[*count])) return false;
+    obj->at += p - obj->at;
+    ++*count;
+  }
+}
+
+static bool numbers(vlObj *obj, const char *what, uint32_t least, uint32_t most, double *values, uint32_t *count) {
+  if (!vl_obj_numbers(obj, most, values, count)) {
+    const char *word;
+    char *at = obj->at;
+    size_t n = vl_obj_word(obj, &word);
+    obj->at = at;
+    return vl_obj_fail(obj, "%s: \"%.*s\" is not a finite number", what, n > 40 ? 40 : (int)n, word);
+  }
+  return *count >= least || vl_obj_fail(obj, "%s: %u numbers, %u are needed", what, *count, least);
+}
+
+/* ---- vertices ---------------------------------------------------------------------------------------------------- */
+
+static float linear_from_srgb(double v) {
+  double x = v < 0 ? 0 : v > 1 ? 1 : v;
+  return (float)(x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4));
+}
+
+/* x y z, x y z w, or x y z r g b (in sRGB, as the programs that write them have it). */
+static bool read_vertex(vlObj *obj) {
+  double v[7];
+  uint32_t count;
+  if (!numbers(obj, "v", 3, 7, v, &count)) return false;
+  if (obj->positions.count / 3 >= 0x7ffffff0u) return vl_obj_fail(obj, "too many vertices");
+  if (!VL_RESERVE(obj->context, &obj->positions, 3)) return vl_obj_fail_memory(obj);
+  size_t before = obj->positions.count;
+  for (int i = 0; i < 3; i++) {
+    obj->positions.items[obj->positions.count++] = (float)v[i];
+    obj->low[i] = fmin(obj->low[i], v[i]), obj->high[i] = fmax(obj->high[i], v[i]);
+  }
+  if (count < 6 && obj->colors.count == 0) return true;
+  size_t missing = before - obj->colors.count;
+  if (!VL_RESERVE(obj->context, &obj->colors, missing + 3)) return vl_obj_fail_memory(obj);
+  for (size_t i = 0; i < missing; i++) obj->colors.items[obj->colors.count++] = 1.0f;
+  for (int i = 0; i < 3; i++) obj->colors.items[obj->colors.count++] = count < 6 ? 1.0f : linear_from_srgb(v[3 + i]);
+  return true;
+}
+
+static bool read_uv(vlObj *obj) {
+  double v[3] = {0, 0, 0};
+  uint32_t count;
+  if (!numbers(obj, "vt", 1, 3, v, &count)) return false;
+  if (obj->uvs.count / 2 >= 0x7ffffff0u) return vl_obj_fail(obj, "too many uvs");
+  if (!VL_RESERVE(obj->context, &obj->uvs, 2)) return vl_obj_fail_memory(obj);
+  for (int i = 0; i < 2; i++) obj->uvs.items[obj->uvs.count++] = (float)v[i];
+  return true;
+}
+
+static bool read_normal(vlObj *obj) {
+  double v[3];
+  uint32_t count;
+  if (!numbers(obj, "vn", 3, 3, v, &count)) return false;
+  if (obj->normals.count / 3 >= 0x7ffffff0u) return vl_obj_fail(obj, "too many normals");
+  if (!VL_RESERVE(obj->context, &obj->normals, 3)) return vl_obj_fail_memory(obj);
+  for (int i = 0; i < 3; i++) obj->normals.items[obj->normals.count++] = (float)v[i];
+  return true;
+}
+
+/* ---- faces ------------------------------------------------------------------------------------------------------- */
+
+/* A whole number from 1, or from -1 backwards. 0 in *index: none stands there. */
+static bool read_index(vlObj *obj, const char *what, size_t count, uint32_t *index) {
+  char *p = obj->at;
+  bool negative = p < obj->end && *p == '-';
+  if (negative) p++;
+  uint64_t value = 0;
+  char *digits = p;
+  for (; p < obj->end && *p >= '0' && *p <= '9'; p++)
+    if (value < 1u << 31) value = value * 10 + (uint64_t)(*p - '0');
+  *index = 0;
+  if (p == digits && !negative) return true;
+  if (value == 0 || value > count)
+    return vl_obj_fail(obj, "f: names %s %s%llu, but there are %zu so far", what, negative ? "-" : "",
+                       (unsigned long long)value, count);
+  *index = (uint32_t)(negative ? count + 1 - value : value);
+  obj->at = p;
+  return true;
+}
+
+static bool read_corner(vlObj *obj, vlObjCorner *c) {
+  char *start = obj->at;
+  *c = (vlObjCorner){0, 0, 0};
+  if (!read_index(obj, "vertex", obj->positions.count / 3, &c->v)) return false;
+  bool fine = c->v != 0;
+  if (fine && obj->at < obj->end && *obj->at == '/') {
+    obj->at++;
+    if (!read_index(obj, "uv", obj->uvs.count / 2, &c->vt)) return false;
+    if (obj->at < obj->end && *obj->at == '/') {
+      obj->at++;
+      if (!read_index(obj, "normal", obj->normals.count / 3, &c->vn)) return false;
+    }
+  }
+  if (fine && (obj->at >= obj->end || is_blank(*obj->at))) return true;
+  const char *word;
+  obj->at = start;
+  size_t n = vl_obj_word(obj, &word);
+  obj->at = start;
+  return vl_obj_fail(obj, "f: \"%.*s\" is no corner (v, v/vt, v//vn or v/vt/vn)", n > 40 ? 40 : (int)n, word);
+}
+
+/* Faces that follow each other with one material in one object; past MAX_PARTS, all of a material. */
+static bool open_part(vlObj *obj) {
+  if (obj->part_open) return true;
+  vlObjMaterial *m = &obj->materials.items[obj->material];
+  obj->part_open = true;
+  if (obj->parts.count >= MAX_PARTS && m->part) {
+    obj->part = m->part - 1;
+    return true;
+  }
+  vlObjPart *part = VL_PUSH(obj->context, &obj->parts);
+  if (!part) return vl_obj_fail_memory(obj);
+  part->material = obj->material;
+  m->part = (uint32_t)obj->parts.count;
+  obj->part = m->part - 1;
+  return true;
+}
+
+static bool read_face(vlObj *obj) {
+  obj->polygon.count = 0;
+  for (;;) {
+    skip_blanks(obj);
+    if (obj->at >= obj->end) break;
+    vlObjCorner *c = VL_PUSH(obj->context, &obj->polygon);
+    if (!c) return vl_obj_fail_memory(obj);
+    if (!read_corner(obj, c)) return false;
+  }
+  size_t n = obj->polygon.count;
+  uint32_t triangles;
+  if (n < 3) return vl_obj_fail(obj, "f: %zu corners, a face needs 3", n);
+  if (!open_part(obj) || !vl_obj_triangulate(obj, &triangles)) return false;
+  vlObjPart *part = &obj->parts.items[obj->part];
+  if (obj->triangle_part.count + triangles > 0x3fffffffu) return vl_obj_fail(obj, "too many faces");
+  if (!VL_RESERVE(obj->context, &obj->corners, 3 * (size_t)triangles) ||
+      !VL_RESERVE(obj->context, &obj->triangle_part, triangles) ||
+      !VL_RESERVE(obj->context, &obj->triangle_smooth, triangles))
+    return vl_obj_fail_memory(obj);
+  for (uint32_t i = 0; i < 3 * triangles; i++) {
+    vlObjCorner c = obj->polygon.items[obj->ears.items[i]];
+    obj->corners.items[obj->corners.count++] = c;
+    part->normals |= c.vn != 0 || obj->smooth != 0;
+    part->uvs |= c.vt != 0;
+  }
+  for (uint32_t i = 0; i < triangles; i++) {
+    obj->triangle_part.items[obj->triangle_part.count++] = obj->part;
+    obj->triangle_smooth.items[obj->triangle_smooth.count++] = obj->smooth;
+  }
+  part->triangles += triangles;
+  return true;
+}
+
+/* ---- what faces are of ------------------------------------------------------------------------------------------- */
+
+uint32_t vl_obj_material(vlObj *obj, const char *name) {
+  uint32_t hash = 2166136261u;
+  for (const char *p = name; *p; p++) hash = (hash ^ (uint8_t)*p) * 16777619u;
+  uint32_t *head = &obj->heads[(hash ^ hash >> 15) % VL_OBJ_HEADS];
+  for (uint32_t i = *head; i; i = obj->materials.items[i - 1].next)
+    if (strcmp(obj->materials.items[i - 1].name, name) == 0) return i - 1;
+  const char *kept = name;
+  if (obj->materials.count >= MAX_MATERIALS) return vl_obj_fail(obj, "too many materials"), UINT32_MAX;
+  if (!vl_scene_copy_string(obj->scene, &kept)) return UINT32_MAX;
+  vlObjMaterial *m = VL_PUSH(obj->context, &obj->materials);
+  if (!m) return vl_obj_fail_memory(obj), UINT32_MAX;
+  m->name = kept;
+  m->mtl = vl_mtl_default();
+  m->next = *head;
+  *head = (uint32_t)obj->materials.count;
+  return *head - 1;
+}
+
+static bool use_material(vlObj *obj) {
+  uint32_t index = vl_obj_material(obj, vl_obj_rest(obj));
+  if (index == UINT32_MAX) return false;
+  obj->part_open = obj->part_open && obj->material == index;
+  obj->material = index;
+  if (!obj->materials.items[index].line) obj->materials.items[index].line = obj->line;
+  return true;
+}
+
+static bool use_smoothing(vlObj *obj) {
+  double value;
+  uint32_t count;
+  obj->smooth = vl_obj_numbers(obj, 1, &value, &count) && count && value >= 1 && value < 4e9 ? (uint32_t)value : 0;
+  const char *word;
+  char *at = obj->at;
+  if (vl_obj_word(obj, &word) == 2 && memcmp(word, "on", 2) == 0) obj->smooth = 1;
+  obj->at = at;
+  return true;
+}
+
+static void once(vlObj *obj, uint32_t bit, const char *what, size_t length) {
+  static const char *const texts[3] = {"points and lines are not drawn", "curves and surfaces are not drawn",
+                                       "unknown statement, passed over (as others like it)"};
+  if (obj->told & bit) return;
+  obj->told |= bit;
+  vl_obj_warn(obj, bit == TOLD_LINES ? VL_LOG_INFO : VL_LOG_WARNING, "\"%.*s\": %s", length > 30 ? 30 : (int)length,
+              what, texts[bit >> 1]);
+}
+
+static bool read_statement(vlObj *obj) {
+  static const char *const curves[] = {"vp",   "cstype", "deg",  "bmat", "step", "curv", "curv2", "surf", "parm",
+                                       "trim", "hole",   "scrv", "sp",   "end",  "con",  "ctech", "stech"};
+  static const char *const silent[] = {"mg",         "bevel",     "c_interp", "d_interp", "lod",
+                                       "shadow_obj", "trace_obj", "maplib",   "usemap"};
+  const char *word;
+  size_t n = vl_obj_word(obj, &word);
+  if (n == 0) return true;
+  if (n == 1) switch (*word) {
+      case 'v': return read_vertex(obj);
+      case 'f': return read_face(obj);
+      case 's': return use_smoothing(obj);
+      case 'g':
+      case 'o': obj->part_open = false; return true;
+      case 'l':
+      case 'p': once(obj, TOLD_LINES, word, n); return true;
+      default: break;
+    }
+  if (n == 2 && word[0] == 'v' && word[1] == 't') return read_uv(obj);
+  if (n == 2 && word[0] == 'v' && word[1] == 'n') return read_normal(obj);
+  if (n == 2 && word[0] == 'f' && word[1] == 'o') return read_face(obj); /* an old word for f */
+  if (n == 6 && memcmp(word, "usemtl", 6) == 0) return use_material(obj);
+  if (n == 6 && memcmp(word, "mtllib", 6) == 0) return vl_obj_read_libraries(obj);
+  for (size_t i = 0; i < sizeof silent / sizeof *silent; i++)
+    if (strlen(silent[i]) == n && memcmp(word, silent[i], n) == 0) return true;
+  for (size_t i = 0; i < sizeof curves / sizeof *curves; i++)
+    if (strlen(curves[i]) == n && memcmp(word, curves[i], n) == 0) return once(obj, TOLD_CURVES, word, n), true;
+  for (size_t i = 0; i < n; i++)
+    if ((unsigned char)word[i] < 32) return vl_obj_fail(obj, "not an OBJ file: byte %d here", (unsigned char)word[i]);
+  once(obj, TOLD_UNKNOWN, word, n);
+  return true;
+}
+
+static void free_all(vlObj *obj) {
+  vlContext *c = obj->context;
+  VL_ARRAY_FREE(c, &obj->positions);
+  VL_ARRAY_FREE(c, &obj->colors);
+  VL_ARRAY_FREE(c, &obj->uvs);
+  VL_ARRAY_FREE(c, &obj->normals);
+  VL_ARRAY_FREE(c, &obj->corners);
+  VL_ARRAY_FREE(c, &obj->triangle_part);
+  VL_ARRAY_FREE(c, &obj->triangle_smooth);
+  VL_ARRAY_FREE(c, &obj->parts);
+  VL_ARRAY_FREE(c, &obj->materials);
+  VL_ARRAY_FREE(c, &obj->polygon);
+  VL_ARRAY_FREE(c, &obj->ears);
+  VL_ARRAY_FREE(c, &obj->libraries);
+  vl_free(c, obj);
+}
+
+vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
+  (void)def;
+  vl_import_plain_settings(scene);
+  char *data;
+  size_t size;
+  vlError reading;
+  vl_error_clear(&reading);
+  vlResult r = vl_file_read(scene->context, path, true, &data, &size, &reading);
+  if (r != VL_OK) {
+    vl_scene_fail(scene, r, (vlSource){0}, "%s", reading.message);
+    return vl_scene_result(scene, error);
+  }
+  vlObj *obj = vl_alloc_zero(scene->context, 1, sizeof *obj);
+  if (!obj) {
+    vl_free(scene->context, data);
+    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+    return vl_scene_result(scene, error);
+  }
+  obj->context = scene->context, obj->scene = scene, obj->path = path;
+  for (int i = 0; i < 3; i++) obj->low[i] = INFINITY, obj->high[i] = -INFINITY;
+  bool fine = vl_obj_material(obj, "") == 0;
+  if (fine) obj->materials.items[0].defined = true;
+  char *from = data;
+  while (fine && vl_obj_statement(obj, &from, data + size)) fine = read_statement(obj);
+  if (fine) {
+    obj->line = 0;
+    fine = vl_obj_add_shapes(obj);
+  }
+  if (fine && obj->parts.count == 0) vl_obj_warn(obj, VL_LOG_WARNING, "draws nothing");
+  free_all(obj);
+  vl_free(scene->context, data);
+  return vl_scene_result(scene, error);
+}

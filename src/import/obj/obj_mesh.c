@@ -1,0 +1,204 @@
+/* import/obj/obj_mesh.c: corners to meshes: normals where smoothing groups ask for them, corners that are alike become
+ * one vertex, each part one shape. */
+#include <math.h>
+#include <string.h>
+
+#include "import/obj/obj.h"
+#include "math/hash.h"
+
+/* ---- normals ----------------------------------------------------------------------------------------------------- */
+
+static const float *position(const vlObj *obj, uint32_t v) {
+  return obj->positions.items + 3 * (size_t)(v - 1);
+}
+
+/* Not normalised; its length is twice the area. */
+static void face_normal(const vlObj *obj, const vlObjCorner *c, double n[3]) {
+  const float *a = position(obj, c[0].v), *b = position(obj, c[1].v), *d = position(obj, c[2].v);
+  double e[3], f[3];
+  for (int i = 0; i < 3; i++) e[i] = (double)b[i] - a[i], f[i] = (double)d[i] - a[i];
+  for (int i = 0; i < 3; i++) n[i] = e[(i + 1) % 3] * f[(i + 2) % 3] - e[(i + 2) % 3] * f[(i + 1) % 3];
+}
+
+static double angle_at(const vlObj *obj, const vlObjCorner *c, int i) {
+  const float *a = position(obj, c[i].v), *b = position(obj, c[(i + 1) % 3].v), *d = position(obj, c[(i + 2) % 3].v);
+  double ee = 0, ff = 0, ef = 0;
+  for (int k = 0; k < 3; k++) {
+    double e = (double)b[k] - a[k], f = (double)d[k] - a[k];
+    ee += e * e, ff += f * f, ef += e * f;
+  }
+  double x = ef / sqrt(ee * ff);
+  return x < 1 ? x > -1 ? acos(x) : 3.14159265358979323846 : 0;
+}
+
+static bool push_normal(vlObj *obj, const double n[3], uint32_t *number) {
+  if (obj->normals.count / 3 >= 0x7ffffff0u) return vl_obj_fail(obj, "too many normals");
+  if (!VL_RESERVE(obj->context, &obj->normals, 3)) return vl_obj_fail_memory(obj);
+  for (int i = 0; i < 3; i++) obj->normals.items[obj->normals.count++] = (float)n[i];
+  *number = (uint32_t)(obj->normals.count / 3);
+  return true;
+}
+
+static void unit(double n[3]) {
+  double l = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  if (l > 0 && isfinite(l))
+    for (int i = 0; i < 3; i++) n[i] /= l;
+  else
+    n[0] = n[1] = 0, n[2] = 1;
+}
+
+static size_t table_size(size_t items) {
+  size_t size = 16;
+  while (size < 2 * items) size *= 2;
+  return size;
+}
+
+typedef struct Smooth {
+  uint32_t v, group, normal;
+} Smooth;
+
+/* Corners without a normal get one: in a smoothing group that of all its faces at the vertex, weighted by their angles;
+ * else, where other faces of the part have normals, the face's own. */
+static bool make_normals(vlObj *obj) {
+  size_t triangles = obj->triangle_part.count, wanted = 0;
+  for (size_t t = 0; t < triangles; t++)
+    for (size_t k = 0; k < 3; k++) wanted += obj->triangle_smooth.items[t] && !obj->corners.items[3 * t + k].vn;
+  size_t size = table_size(wanted), first = obj->normals.count;
+  Smooth *table = vl_alloc_zero(obj->context, size, sizeof *table);
+  if (!table) return vl_obj_fail_memory(obj);
+  bool fine = true;
+  for (size_t t = 0; fine && t < triangles; t++) {
+    vlObjCorner *c = obj->corners.items + 3 * t;
+    uint32_t group = obj->triangle_smooth.items[t], flat = 0;
+    double n[3];
+    if (c[0].vn && c[1].vn && c[2].vn) continue;
+    if (!group && !obj->parts.items[obj->triangle_part.items[t]].normals) continue;
+    face_normal(obj, c, n);
+    unit(n);
+    for (int k = 0; fine && k < 3; k++) {
+      if (c[k].vn) continue;
+      if (!group) {
+        fine = flat || push_normal(obj, n, &flat);
+        c[k].vn = flat;
+        continue;
+      }
+      size_t slot = vl_hash2(c[k].v, group) & (size - 1);
+      while (table[slot].normal && (table[slot].v != c[k].v || table[slot].group != group))
+        slot = (slot + 1) & (size - 1);
+      const double zero[3] = {0, 0, 0};
+      if (!table[slot].normal) {
+        table[slot].v = c[k].v, table[slot].group = group;
+        fine = push_normal(obj, zero, &table[slot].normal);
+        if (!fine) break;
+      }
+      c[k].vn = table[slot].normal;
+      double weight = angle_at(obj, c, k);
+      float *sum = obj->normals.items + 3 * (size_t)(c[k].vn - 1);
+      for (int i = 0; i < 3; i++) sum[i] += (float)(weight * n[i]);
+    }
+  }
+  vl_free(obj->context, table);
+  for (size_t i = first; fine && i < obj->normals.count; i += 3) {
+    double n[3] = {obj->normals.items[i], obj->normals.items[i + 1], obj->normals.items[i + 2]};
+    unit(n);
+    for (size_t k = 0; k < 3; k++) obj->normals.items[i + k] = (float)n[k];
+  }
+  return fine;
+}
+
+/* ---- parts ------------------------------------------------------------------------------------------------------- */
+
+/* Triangle numbers, those of a part together. */
+static bool sort_by_part(vlObj *obj, uint32_t **order) {
+  size_t triangles = obj->triangle_part.count;
+  *order = vl_alloc_array(obj->context, triangles + 1, sizeof **order);
+  if (!*order) return vl_obj_fail_memory(obj);
+  uint32_t first = 0;
+  for (size_t i = 0; i < obj->parts.count; i++) {
+    obj->parts.items[i].first = first;
+    first += obj->parts.items[i].triangles;
+    obj->parts.items[i].triangles = 0;
+  }
+  for (size_t t = 0; t < triangles; t++) {
+    vlObjPart *part = &obj->parts.items[obj->triangle_part.items[t]];
+    (*order)[part->first + part->triangles++] = (uint32_t)t;
+  }
+  return true;
+}
+
+/* indices: 3 a triangle; kept: the corners that stay. Blocks. */
+static bool weld(vlObj *obj, const vlObjPart *part, const uint32_t *order, uint32_t **indices, vlObjCorner **kept,
+                 uint32_t *vertices) {
+  size_t count = 3 * (size_t)part->triangles, size = table_size(count), n = 0;
+  *indices = vl_alloc_array(obj->context, count, sizeof **indices);
+  *kept = vl_alloc_array(obj->context, count, sizeof **kept);
+  uint32_t *table = vl_alloc_zero(obj->context, size, sizeof *table);
+  if (!*indices || !*kept || !table) {
+    vl_free(obj->context, table);
+    return vl_obj_fail_memory(obj);
+  }
+  for (size_t i = 0; i < count; i++) {
+    vlObjCorner c = obj->corners.items[3 * (size_t)order[part->first + i / 3] + i % 3];
+    size_t slot = vl_hash3(c.v, c.vt, c.vn) & (size - 1);
+    for (;; slot = (slot + 1) & (size - 1)) {
+      if (!table[slot]) {
+        (*kept)[n] = c;
+        table[slot] = (uint32_t)++n;
+        break;
+      }
+      const vlObjCorner *k = &(*kept)[table[slot] - 1];
+      if (k->v == c.v && k->vt == c.vt && k->vn == c.vn) break;
+    }
+    (*indices)[i] = table[slot] - 1;
+  }
+  vl_free(obj->context, table);
+  *vertices = (uint32_t)n;
+  return true;
+}
+
+static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order) {
+  vlObjMaterial *m = &obj->materials.items[part->material];
+  if (!vl_obj_make_material(obj, m)) return false;
+  uint32_t *indices = NULL, n = 0;
+  vlObjCorner *kept = NULL;
+  float *arrays[4] = {NULL, NULL, NULL, NULL};
+  const bool wanted[4] = {true, part->normals, part->uvs, obj->colors.count > 0};
+  static const size_t sizes[4] = {3, 3, 2, 4};
+  bool fine = weld(obj, part, order, &indices, &kept, &n);
+  for (int k = 0; fine && k < 4; k++) {
+    if (!wanted[k]) continue;
+    arrays[k] = vl_alloc_zero(obj->context, n, sizes[k] * sizeof(float));
+    fine = arrays[k] || vl_obj_fail_memory(obj);
+  }
+  for (size_t i = 0; fine && i < n; i++) {
+    vlObjCorner c = kept[i];
+    memcpy(arrays[0] + 3 * i, obj->positions.items + 3 * (size_t)(c.v - 1), 3 * sizeof(float));
+    if (arrays[1]) memcpy(arrays[1] + 3 * i, obj->normals.items + 3 * (size_t)(c.vn - 1), 3 * sizeof(float));
+    if (arrays[2] && c.vt) memcpy(arrays[2] + 2 * i, obj->uvs.items + 2 * (size_t)(c.vt - 1), 2 * sizeof(float));
+    for (size_t k = 0; arrays[3] && k < 4; k++) {
+      size_t at = 3 * (size_t)(c.v - 1) + k;
+      arrays[3][4 * i + k] = k < 3 && at < obj->colors.count ? obj->colors.items[at] : 1.0f;
+    }
+  }
+  vl_free(obj->context, kept);
+  if (!fine) {
+    for (int k = 0; k < 4; k++) vl_free(obj->context, arrays[k]);
+    vl_free(obj->context, indices);
+    return false;
+  }
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.source.file = obj->path;
+  def.material = m->material, def.emission = m->emission, def.alpha = m->alpha;
+  def.vertices = n, def.faces = part->triangles;
+  def.positions = arrays[0], def.normals = arrays[1], def.uvs = arrays[2], def.colors = arrays[3];
+  def.indices = indices;
+  return vl_scene_adopt_shape(obj->scene, &def).index != 0;
+}
+
+bool vl_obj_add_shapes(vlObj *obj) {
+  uint32_t *order = NULL;
+  bool fine = make_normals(obj) && sort_by_part(obj, &order);
+  for (size_t i = 0; fine && i < obj->parts.count; i++) fine = add_part(obj, &obj->parts.items[i], order);
+  vl_free(obj->context, order);
+  return fine;
+}

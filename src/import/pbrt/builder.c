@@ -1,0 +1,274 @@
+/* import/pbrt/builder.c: the statements of a pbrt file to a scene: what may stand where, who obeys, and the run through
+ * a whole file. */
+#include "import/pbrt/builder.h"
+
+#include <string.h>
+
+#include "import/import.h"
+
+static const char *directive_name(vlDirective d) {
+  switch (d) {
+    case VL_DIR_ATTRIBUTE_BEGIN: return "AttributeBegin";
+    case VL_DIR_ATTRIBUTE_END: return "AttributeEnd";
+    case VL_DIR_TRANSFORM_BEGIN: return "TransformBegin";
+    case VL_DIR_TRANSFORM_END: return "TransformEnd";
+    case VL_DIR_REVERSE_ORIENTATION: return "ReverseOrientation";
+    case VL_DIR_WORLD_BEGIN: return "WorldBegin";
+    case VL_DIR_OBJECT_END: return "ObjectEnd";
+    case VL_DIR_IMPORT_BEGIN: return "Import";
+    case VL_DIR_TRANSFORM_TIMES: return "TransformTimes";
+    case VL_DIR_NAMED_MATERIAL: return "NamedMaterial";
+    case VL_DIR_OBJECT_BEGIN: return "ObjectBegin";
+    case VL_DIR_OBJECT_INSTANCE: return "ObjectInstance";
+    case VL_DIR_FILM: return "Film";
+    case VL_DIR_SAMPLER: return "Sampler";
+    case VL_DIR_INTEGRATOR: return "Integrator";
+    case VL_DIR_PIXEL_FILTER: return "PixelFilter";
+    case VL_DIR_ACCELERATOR: return "Accelerator";
+    case VL_DIR_CAMERA: return "Camera";
+    case VL_DIR_MATERIAL: return "Material";
+    case VL_DIR_MAKE_NAMED_MATERIAL: return "MakeNamedMaterial";
+    case VL_DIR_AREA_LIGHT_SOURCE: return "AreaLightSource";
+    case VL_DIR_LIGHT_SOURCE: return "LightSource";
+    case VL_DIR_SHAPE: return "Shape";
+    case VL_DIR_TEXTURE: return "Texture";
+    default: return "this directive";
+  }
+}
+
+/* A choice before WorldBegin; the last one given counts. */
+static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
+  if (choice->given)
+    vl_import_remark(import, s->place, "%s a second time: this one counts", directive_name(s->directive));
+  vl_param_list_free(import->context, &choice->params);
+  choice->given = true;
+  choice->place = s->place;
+  choice->space = import->state.space;
+  choice->kind = vl_import_keep(import, s->names[0]);
+  return choice->kind && vl_scene_copy_source(import->scene, &choice->place) &&
+         vl_import_keep_params(import, s, &choice->params);
+}
+
+static bool camera(vlImport *import, const vlStatement *s) {
+  vlMat4 world_from_camera[2];
+  if (!choose(import, s, &import->camera)) return false;
+  memcpy(import->camera_from_world, import->state.ctm, sizeof import->state.ctm);
+  if (!vl_mat4_inverse(import->state.ctm[0], &world_from_camera[0]) ||
+      !vl_mat4_inverse(import->state.ctm[1], &world_from_camera[1]))
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Camera: the current transform is singular");
+  for (size_t i = 0; i < import->medium_links.count;) /* the last camera counts */
+    if (import->medium_links.items[i].target == 'c')
+      import->medium_links.items[i] = import->medium_links.items[--import->medium_links.count];
+    else
+      i++;
+  if (!vl_import_note_media(import, 'c', 0, s->place)) return false;
+  return vl_import_name_system(import, "camera", world_from_camera);
+}
+
+static bool medium_interface(vlImport *import, const vlStatement *s) {
+  import->state.inside = vl_import_keep(import, s->names[0]);
+  import->state.outside = vl_import_keep(import, s->names[1]);
+  return import->state.inside && import->state.outside;
+}
+
+static bool color_space(vlImport *import, const vlStatement *s) {
+  if (vl_import_color_space(s->names[0], &import->state.space)) return true;
+  return vl_import_fail(import, VL_ERROR_SCENE, s->place,
+                        "unknown colour space \"%.40s\" (known: srgb, dci-p3, rec2020, aces2065-1)", s->names[0]);
+}
+
+static bool world_begin(vlImport *import) {
+  import->in_world = true;
+  import->state.ctm[0] = import->state.ctm[1] = vl_mat4_identity();
+  import->state.active = 3;
+  return vl_import_name_system(import, "world", import->state.ctm) && vl_import_film(import) &&
+         vl_import_camera(import) && vl_import_sampling(import);
+}
+
+static void note_space(vlImport *import, const vlStatement *s) {
+  for (size_t i = 0; i < s->params->list.count; i++) s->params->list.items[i]->space = import->state.space;
+}
+
+/* ---- statements ------------------------------------------------------------------------------------------------- */
+
+static bool in_right_part(vlImport *import, const vlStatement *s) {
+  switch (s->directive) {
+    case VL_DIR_WORLD_BEGIN:
+      if (!import->in_world) return true;
+      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "WorldBegin a second time");
+    case VL_DIR_TRANSFORM_TIMES:
+    case VL_DIR_FILM:
+    case VL_DIR_SAMPLER:
+    case VL_DIR_INTEGRATOR:
+    case VL_DIR_PIXEL_FILTER:
+    case VL_DIR_ACCELERATOR:
+    case VL_DIR_CAMERA:
+      if (!import->in_world) return true;
+      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s must come before WorldBegin",
+                            directive_name(s->directive));
+    case VL_DIR_ATTRIBUTE_BEGIN:
+    case VL_DIR_ATTRIBUTE_END:
+    case VL_DIR_TRANSFORM_BEGIN:
+    case VL_DIR_TRANSFORM_END:
+    case VL_DIR_REVERSE_ORIENTATION:
+    case VL_DIR_OBJECT_END:
+    case VL_DIR_IMPORT_BEGIN:
+    case VL_DIR_NAMED_MATERIAL:
+    case VL_DIR_OBJECT_BEGIN:
+    case VL_DIR_OBJECT_INSTANCE:
+    case VL_DIR_MATERIAL:
+    case VL_DIR_MAKE_NAMED_MATERIAL:
+    case VL_DIR_AREA_LIGHT_SOURCE:
+    case VL_DIR_LIGHT_SOURCE:
+    case VL_DIR_SHAPE:
+    case VL_DIR_TEXTURE:
+      if (import->in_world) return true;
+      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s must come after WorldBegin",
+                            directive_name(s->directive));
+    default: return true;
+  }
+}
+
+static bool obey(vlImport *import, const vlStatement *s) {
+  note_space(import, s);
+  switch (s->directive) {
+    case VL_DIR_ATTRIBUTE_BEGIN:
+    case VL_DIR_TRANSFORM_BEGIN: return vl_import_push(import, 'a', s->place); /* pbrt-v4: both keep the whole state */
+    case VL_DIR_ATTRIBUTE_END:
+    case VL_DIR_TRANSFORM_END: return vl_import_pop(import, 'a', directive_name(s->directive), s->place);
+    case VL_DIR_IMPORT_BEGIN: return vl_import_push(import, 'i', s->place);
+    case VL_DIR_IMPORT_END: {
+      const vlStackEntry *top = &import->stack.items[import->stack.count - 1];
+      if (top->kind == 'i') return vl_import_restore(import), true;
+      return vl_import_fail(import, VL_ERROR_SCENE, top->place, "%s is never closed",
+                            top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
+    }
+    case VL_DIR_ACTIVE_ALL: return import->state.active = 3, true;
+    case VL_DIR_ACTIVE_START: return import->state.active = 1, true;
+    case VL_DIR_ACTIVE_END: return import->state.active = 2, true;
+    case VL_DIR_REVERSE_ORIENTATION:
+      return import->state.reverse_orientation = !import->state.reverse_orientation, true;
+    case VL_DIR_WORLD_BEGIN: return world_begin(import);
+    case VL_DIR_OBJECT_BEGIN: return vl_import_object_begin(import, s);
+    case VL_DIR_OBJECT_END: return vl_import_object_end(import, s);
+    case VL_DIR_OBJECT_INSTANCE: return vl_import_object_instance(import, s);
+    case VL_DIR_IDENTITY:
+    case VL_DIR_TRANSLATE:
+    case VL_DIR_SCALE:
+    case VL_DIR_ROTATE:
+    case VL_DIR_LOOK_AT:
+    case VL_DIR_TRANSFORM:
+    case VL_DIR_CONCAT_TRANSFORM: return vl_import_transform(import, s);
+    case VL_DIR_TRANSFORM_TIMES: return vl_import_times(import, s);
+    case VL_DIR_COORDINATE_SYSTEM: return vl_import_name_system(import, s->names[0], import->state.ctm);
+    case VL_DIR_COORD_SYS_TRANSFORM: return vl_import_use_system(import, s);
+    case VL_DIR_COLOR_SPACE: return color_space(import, s);
+    case VL_DIR_NAMED_MATERIAL: return vl_import_named_material(import, s);
+    case VL_DIR_MEDIUM_INTERFACE: return medium_interface(import, s);
+    case VL_DIR_OPTION: return vl_import_option(import, s);
+    case VL_DIR_ATTRIBUTE: return vl_import_attribute(import, s);
+    case VL_DIR_FILM: return choose(import, s, &import->film);
+    case VL_DIR_SAMPLER: return choose(import, s, &import->sampler);
+    case VL_DIR_INTEGRATOR: return choose(import, s, &import->integrator);
+    case VL_DIR_PIXEL_FILTER: return choose(import, s, &import->filter);
+    case VL_DIR_ACCELERATOR: return choose(import, s, &import->accelerator);
+    case VL_DIR_CAMERA: return camera(import, s);
+    case VL_DIR_MAKE_NAMED_MEDIUM: return vl_import_medium(import, s);
+    case VL_DIR_MATERIAL: return vl_import_material(import, s);
+    case VL_DIR_MAKE_NAMED_MATERIAL: return vl_import_make_named_material(import, s);
+    case VL_DIR_AREA_LIGHT_SOURCE: return vl_import_area_light(import, s);
+    case VL_DIR_LIGHT_SOURCE: return vl_import_light(import, s);
+    case VL_DIR_SHAPE: return vl_import_shape(import, s);
+    case VL_DIR_TEXTURE: return vl_import_texture(import, s);
+  }
+  return true;
+}
+
+/* For a doctor a wrong statement is left out. The name of a medium stays known, so that it is told once. */
+static bool statement(void *user, const vlStatement *s) {
+  vlImport *import = user;
+  bool misplaced = !in_right_part(import, s);
+  if (!misplaced && obey(import, s)) return true;
+  if (misplaced && !import->in_world) { /* a fragment: all that follows would be as wrong */
+    import->problems = VL_IMPORT_PROBLEMS;
+    return false;
+  }
+  if (!vl_import_recover(import)) return false;
+  uint32_t index;
+  if (s->directive != VL_DIR_MAKE_NAMED_MEDIUM || vl_names_find(&import->media, s->names[0], &index)) return true;
+  const char *name = vl_import_keep(import, s->names[0]);
+  return name && (vl_names_add(import->context, &import->media, name, 0) || vl_import_fail_memory(import));
+}
+
+static void parse_error(void *user, vlResult code, vlSource place, const char *message) {
+  vl_import_fail(user, code, place, "%s", message);
+}
+
+static bool recover(void *user) {
+  return vl_import_recover(user);
+}
+
+/* ---- a whole file -------------------------------------------------------------------------------------------------
+ */
+
+static void free_pending(vlContext *context, vlPending *items, size_t count) {
+  for (size_t i = 0; i < count; i++) vl_param_list_free(context, &items[i].params);
+}
+
+static void release(vlImport *import) {
+  vlContext *context = import->context;
+  free_pending(context, import->textures.items, import->textures.count);
+  free_pending(context, import->materials.items, import->materials.count);
+  VL_ARRAY_FREE(context, &import->textures);
+  VL_ARRAY_FREE(context, &import->materials);
+  vlChoice *choices[] = {&import->camera,     &import->film,   &import->sampler,
+                         &import->integrator, &import->filter, &import->accelerator};
+  for (size_t i = 0; i < sizeof choices / sizeof *choices; i++) vl_param_list_free(context, &choices[i]->params);
+  for (int t = 0; t < VL_ATTR_TARGETS; t++) vl_param_list_free(context, &import->attributes[t]);
+  vlNameTable *tables[] = {&import->coordinate_systems, &import->float_textures, &import->spectrum_textures,
+                           &import->named_materials,    &import->objects,        &import->media};
+  for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) vl_free(context, tables[i]->slots);
+  for (size_t i = 0; i < import->strings.count; i++) vl_free(context, import->strings.items[i]);
+  VL_ARRAY_FREE(context, &import->strings);
+  VL_ARRAY_FREE(context, &import->stack);
+  VL_ARRAY_FREE(context, &import->matrices);
+  VL_ARRAY_FREE(context, &import->moving);
+  vl_import_free_curves(import);
+  vl_import_free_meshes(import);
+  VL_ARRAY_FREE(context, &import->object_list);
+  VL_ARRAY_FREE(context, &import->links);
+  VL_ARRAY_FREE(context, &import->mesh_files);
+  VL_ARRAY_FREE(context, &import->medium_links);
+}
+
+static vlResult run(vlScene *scene, const char *path, const char *data, size_t size, const vlLoadDef *def,
+                    vlError *error) {
+  if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
+  vlImport *import = vl_alloc_zero(scene->context, 1, sizeof *import);
+  if (!import) return vl_fail_memory(error);
+  import->context = scene->context;
+  import->scene = scene;
+  import->permissive = def && def->permissive;
+  import->first = path;
+  import->state.ctm[0] = import->state.ctm[1] = vl_mat4_identity();
+  import->state.active = 3;
+  import->times[1] = 1.0;
+  import->edge_scale = 1.0;
+  import->state.space = VL_SPACE_SRGB;
+  vlParseTarget target = {import, statement, parse_error, recover};
+  bool fine = data ? vl_parse_memory(import->context, data, size, path, &target)
+                   : vl_parse_file(import->context, path, &target);
+  if (fine) vl_import_finish(import);
+  release(import);
+  vl_free(scene->context, import);
+  return vl_scene_result(scene, error);
+}
+
+vlResult vl_import_pbrt(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
+  return run(scene, path, NULL, 0, def, error);
+}
+
+vlResult vl_import_pbrt_memory(vlScene *scene, const char *data, size_t size, const char *name, const vlLoadDef *def,
+                               vlError *error) {
+  return run(scene, name, data, size, def, error);
+}

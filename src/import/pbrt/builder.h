@@ -1,0 +1,287 @@
+/* import/pbrt/builder.h: what the files of this room that turn pbrt statements into a scene share. Statements come in
+ * file order; camera, film and the like are settled at WorldBegin; textures and materials wait until everything is
+ * read, since pbrt allows to name a material before it is made, and shapes are told their materials then. */
+#ifndef IMPORT_PBRT_BUILDER_H
+#define IMPORT_PBRT_BUILDER_H
+
+#include "import/pbrt/parse.h"
+#include "math/transform.h"
+#include "scene/scene.h"
+
+typedef enum vlAttributeTarget {
+  VL_ATTR_SHAPE,
+  VL_ATTR_LIGHT,
+  VL_ATTR_MATERIAL,
+  VL_ATTR_MEDIUM,
+  VL_ATTR_TEXTURE,
+  VL_ATTR_TARGETS
+} vlAttributeTarget;
+
+typedef struct vlGraphicsState {
+  vlMat4 ctm[2];   /* at the start and the end of the shutter */
+  uint32_t active; /* bit 0 start, bit 1 end */
+  bool reverse_orientation;
+  vlColorSpace space;
+  uint32_t material;         /* 1 + index in import->materials, 0: default; or */
+  const char *material_name; /* a named material, resolved at the end */
+  vlSource material_place;
+  vlEmissionId emission;
+  bool emission_given;
+  const char *inside, *outside;       /* media */
+  size_t attributes[VL_ATTR_TARGETS]; /* how many of import->attributes[target] apply */
+} vlGraphicsState;
+
+typedef struct vlStackEntry {
+  char kind; /* 'a' attribute, 't' transform, 'o' object, 'i' import */
+  vlSource place;
+  vlGraphicsState state;
+} vlStackEntry;
+
+typedef struct vlNamed {
+  const char *name;
+  uint32_t index;
+} vlNamed;
+
+typedef struct vlTransforms {
+  vlMat4 at[2];
+} vlTransforms;
+
+/* Small open hash of strings to indices; strings belong to someone else. */
+typedef struct vlNameTable {
+  vlNamed *slots;
+  uint32_t capacity, count;
+} vlNameTable;
+bool vl_names_add(vlContext *context, vlNameTable *table, const char *name, uint32_t index); /* false: out of memory */
+bool vl_names_find(const vlNameTable *table, const char *name, uint32_t *index);
+const char *vl_names_nearest(const vlNameTable *table, const char *name);
+
+/* A texture or material that waits. */
+typedef enum vlPendingState { VL_PENDING, VL_IN_PROGRESS, VL_DONE } vlPendingState;
+typedef struct vlPending {
+  const char *name; /* may be null (plain materials) */
+  const char *kind; /* null: parameter "type" says it (MakeNamedMaterial) */
+  bool spectrum;    /* textures */
+  vlSource place;
+  vlColorSpace space;
+  vlMat4 ctm; /* textures */
+  vlParamList params;
+  vlPendingState state;
+  uint32_t id; /* in the scene, when done; 0: skipped */
+  bool is_interface;
+} vlPending;
+
+/* What a shape will be told at the end. */
+typedef struct vlShapeLink {
+  uint32_t shape; /* index in scene->shapes */
+  uint32_t material;
+  const char *material_name;
+  vlSource material_place;
+  const char *alpha; /* float texture */
+  vlSource alpha_place;
+  const char *displacement; /* float texture */
+  vlSource displacement_place;
+} vlShapeLink;
+
+/* A mesh file that is read at the end (meshes.c); `shape` is the place kept for it. */
+typedef struct vlMeshFile {
+  const char *path;
+  vlSource place;
+  vlShapeDef def;
+  vlShapeLink link;
+  uint32_t shape;
+} vlMeshFile;
+
+typedef struct vlObject {
+  const char *name;
+  vlGroupId group;
+  bool defined;
+  vlSource place; /* where it was first named */
+} vlObject;
+
+/* Media that are looked up at the end: target 's' shape (index in scene->shapes), 'l' light, 'c' camera. */
+typedef struct vlMediumLink {
+  char target;
+  uint32_t index;
+  const char *inside, *outside; /* empty: vacuum */
+  vlSource place;
+} vlMediumLink;
+
+/* Curves that become one shape, while they are gathered. */
+typedef struct vlCurveRun {
+  bool open;
+  vlShapeDef def;
+  vlShapeLink link;
+  const char *inside, *outside; /* media */
+  VL_ARRAY(float) points;
+  VL_ARRAY(float) widths;
+  VL_ARRAY(float) normals;
+} vlCurveRun;
+
+/* Small meshes that become one, while they are gathered (mesh_run.c). */
+enum { VL_MESH_RUNS = 16, VL_MESH_RUN_FROM = 4096 };
+typedef struct vlMeshRun {
+  bool open;
+  vlShapeDef def; /* normals, uvs: not null where there are any */
+  vlShapeLink link;
+  const char *inside, *outside; /* media */
+  VL_ARRAY(float) positions;
+  VL_ARRAY(float) normals;
+  VL_ARRAY(float) uvs;
+  VL_ARRAY(uint32_t) indices;
+} vlMeshRun;
+
+/* Shapes under an animated transform. */
+typedef struct vlMovingGroup {
+  vlGroupId group, object; /* object: the one they are part of, 0: none */
+  vlMat4 ctm[2];
+  vlSource place;
+} vlMovingGroup;
+
+/* A directive before WorldBegin, kept until then. */
+typedef struct vlChoice {
+  bool given;
+  const char *kind;
+  vlSource place;
+  vlColorSpace space;
+  vlParamList params;
+} vlChoice;
+
+struct vlImport {
+  vlContext *context;
+  vlScene *scene;
+  bool permissive;
+  const char *first; /* path of the first file */
+  bool in_world;
+  vlGraphicsState state;
+  VL_ARRAY(vlStackEntry) stack;
+  vlParamList attributes[VL_ATTR_TARGETS]; /* a stack, cut when the state that added to it ends */
+  vlNameTable coordinate_systems;          /* to index in matrices */
+  VL_ARRAY(vlTransforms) matrices;
+  VL_ARRAY(vlPending) textures;
+  VL_ARRAY(vlPending) materials;
+  vlNameTable float_textures, spectrum_textures, named_materials, objects;
+  VL_ARRAY(vlObject) object_list;
+  VL_ARRAY(vlShapeLink) links;
+  VL_ARRAY(vlMeshFile) mesh_files;
+  VL_ARRAY(char *) strings; /* kept until the end */
+  bool in_object;           /* between ObjectBegin and ObjectEnd */
+  vlGroupId object;
+  double film_diagonal; /* mm */
+  vlChoice camera, film, sampler, integrator, filter, accelerator;
+  vlMat4 camera_from_world[2]; /* at the start and the end */
+  vlNameTable media;           /* to ids in the scene */
+  VL_ARRAY(vlMediumLink) medium_links;
+  double times[2]; /* of the two current transforms, seconds */
+  VL_ARRAY(vlMovingGroup) moving;
+  vlCurveRun curves;
+  vlMeshRun mesh_runs[VL_MESH_RUNS];
+  uint32_t next_run;
+  double edge_scale; /* Option "displacementedgescale" */
+  uint32_t depth;    /* of textures or materials that resolve each other */
+  uint32_t problems; /* told so far */
+};
+enum { VL_IMPORT_DEPTH = 200, VL_IMPORT_PROBLEMS = 1000 };
+
+/* ---- errors, warnings, copies (report.c) ------------------------------------------------------------------------- */
+bool vl_import_fail(vlImport *import, vlResult code, vlSource place, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+bool vl_import_fail_memory(vlImport *import);
+void vl_import_warn(vlImport *import, vlLogLevel level, vlSource place, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/* For a doctor (vl_scene_diagnose): tells the scene's error, which is none from here on. false: none listens, or the
+ * error ends everything. */
+bool vl_import_recover(vlImport *import);
+/* For a doctor only: what is right, and yet perhaps not meant. */
+void vl_import_remark(vlImport *import, vlSource place, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Valid pbrt that velo does not understand: an error, or a warning and true when permissive. */
+bool vl_import_unsupported(vlImport *import, vlSource place, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Name of a kind of thing that is not among `known`: `later` holds pbrt's names that are not understood yet. */
+bool vl_import_unknown(vlImport *import, vlSource place, const char *thing, const char *name, const char *const *known,
+                       size_t known_count, const char *const *later, size_t later_count);
+const char *vl_import_keep(vlImport *import,
+                           const char *text); /* copy that lives until the end; null when out of memory */
+vlDict vl_import_dict(vlImport *import, const char *what, vlSource place, vlColorSpace space, const vlParamList *own,
+                      const vlParamList *attributes);
+/* Path of the file that a string parameter names; false and an error when it cannot be read or is too long. */
+bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t size);
+bool vl_import_color_space(const char *name, vlColorSpace *space);
+
+/* Copies of the parameters, marked optional, at the end of `to`. */
+bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamList *to);
+/* What applies to this kind of directive now. */
+const vlParamList *vl_import_attributes(vlImport *import, vlAttributeTarget target);
+/* State (state.c). */
+bool vl_import_transform(vlImport *import, const vlStatement *s); /* Translate, LookAt, Transform, ... */
+bool vl_import_name_system(vlImport *import, const char *name, const vlMat4 m[2]);
+bool vl_import_use_system(vlImport *import, const vlStatement *s);
+bool vl_import_push(vlImport *import, char kind, vlSource place);
+bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource place);
+void vl_import_restore(vlImport *import);
+/* Motion (motion.c). The current transform of what cannot move; a warning where start and end differ. */
+bool vl_import_ctm(vlImport *import, vlSource place, vlMat4 *ctm);
+bool vl_import_times(vlImport *import, const vlStatement *s); /* TransformTimes */
+bool vl_import_moves(const vlImport *import);                 /* do the current transforms differ? */
+/* The group for a shape under the current, animated transform; the shape's own transform is the identity then. */
+bool vl_import_moving_group(vlImport *import, vlSource place, vlGroupId *group);
+bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2], vlSource place);
+bool vl_import_finish_motion(vlImport *import); /* moving parts of objects, when all instances are known */
+
+/* ---- parts ------------------------------------------------------------------------------------------------------ */
+bool vl_import_camera(vlImport *import); /* the choices made before WorldBegin, to scene settings; camera after film */
+bool vl_import_film(vlImport *import);
+bool vl_import_sampling(vlImport *import); /* sampler, filter, integrator */
+bool vl_import_option(vlImport *import, const vlStatement *s);
+
+/* The spectrum of a parameter (rgb, spectrum, blackbody); sampled values belong to the import's strings. */
+bool vl_import_spectrum(vlImport *import, vlParam *param, vlSpectrum *spectrum);
+/* Radiance or intensity parameter of a light. */
+bool vl_import_light_spectrum(vlDict *dict, const char *name, vlSpectrum *spectrum, bool *given);
+/* A number or a float texture; a spectrum or a spectrum texture. given may be null. false after an error. */
+bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, bool *given);
+bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input, bool albedo, bool *given);
+
+bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource place, vlTextureId *id);
+bool vl_import_finish_texture(vlImport *import, uint32_t index); /* resolves what it refers to first */
+bool vl_import_finish_material(vlImport *import, uint32_t index);
+bool vl_import_principled(vlDict *dict, vlMaterialDef *def); /* the parameters of that kind */
+bool vl_import_hair(vlDict *dict, vlMaterialDef *def);
+bool vl_import_subsurface(vlDict *dict, vlMaterialDef *def);
+/* Absorption and scattering per millimetre of the substance that parameter `name` names (scattering.h). */
+bool vl_import_scattering_preset(vlDict *dict, const char *name, vlSpectrum *absorption, vlSpectrum *scattering,
+                                 bool *given);
+bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface);
+
+/* Parameters live on after their statement: file names are kept by the scene. */
+bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to);
+bool vl_import_attribute(vlImport *import, const vlStatement *s);
+bool vl_import_object_begin(vlImport *import, const vlStatement *s);
+bool vl_import_object_end(vlImport *import, const vlStatement *s);
+bool vl_import_object_instance(vlImport *import, const vlStatement *s);
+bool vl_import_material(vlImport *import, const vlStatement *s);
+bool vl_import_make_named_material(vlImport *import, const vlStatement *s);
+bool vl_import_named_material(vlImport *import, const vlStatement *s);
+bool vl_import_texture(vlImport *import, const vlStatement *s);
+bool vl_import_finish(vlImport *import); /* when all statements are read */
+
+bool vl_import_light(vlImport *import, const vlStatement *s);
+bool vl_import_area_light(vlImport *import, const vlStatement *s);
+bool vl_import_shape(vlImport *import, const vlStatement *s);
+bool vl_import_note_mesh(vlImport *import, const char *path, vlSource place, const vlShapeDef *def,
+                         const vlShapeLink *link);
+bool vl_import_read_meshes(vlImport *import); /* all that were noted */
+/* The def's arrays are given away. */
+bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link);
+bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link);
+bool vl_import_flush_curves(vlImport *import); /* before any other shape, and at the end */
+void vl_import_free_curves(vlImport *import);
+/* taken: a copy of the mesh is part of a run. */
+bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *def, const vlShapeLink *link, bool *taken);
+bool vl_import_flush_meshes(vlImport *import); /* at the end */
+void vl_import_free_meshes(vlImport *import);
+bool vl_import_medium(vlImport *import, const vlStatement *s);
+/* The media of the current state are those of a shape ('s'), a light ('l'), the camera ('c'). */
+bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource place);
+bool vl_import_finish_media(vlImport *import);
+
+#endif

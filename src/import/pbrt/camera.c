@@ -1,0 +1,396 @@
+/* import/pbrt/camera.c: the Camera directive to a vlCameraDef: pbrt's perspective, orthographic and spherical cameras,
+ * the lecture's pinhole and thin lens in its own words, and in the same words velo's further projections and calibrated
+ * lenses. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "import/pbrt/builder.h"
+#include "import/pbrt/lens.h"
+
+static const double degrees = 0.017453292519943295;
+
+/* Up to REALISTIC in pbrt's words, from PINHOLE on in the lecture's. */
+typedef enum Kind {
+  PERSPECTIVE,
+  ORTHOGRAPHIC,
+  SPHERICAL,
+  REALISTIC,
+  PINHOLE,
+  THIN_LENS,
+  FISHEYE,
+  EQUIRECTANGULAR,
+  EQUAL_AREA,
+  CYLINDRICAL,
+  CUBE,
+  PANINI,
+  OPENCV,
+  OPENCV_FISHEYE,
+  COLMAP,
+  FOV,
+  DIVISION,
+  UNIFIED,
+  EUCM,
+  DOUBLE_SPHERE,
+  KINDS
+} Kind;
+static const char *const kinds[KINDS] = {
+    "perspective",     "orthographic", "spherical",   "realistic", "pinhole", "thinlens",    "fisheye",
+    "equirectangular", "equalarea",    "cylindrical", "cube",      "panini",  "opencv",      "opencvfisheye",
+    "colmap",          "fov",          "division",    "unified",   "eucm",    "doublesphere"};
+
+/* velo's camera has y down; pbrt's y up, both x right, z forward. The world's numbers stay as they are: pbrt reads them
+ * as left-handed, so that seen from velo its cameras mirror. */
+static bool pose_from(vlImport *import, const vlMat4 *ctm, double pose[16]) {
+  vlMat4 m;
+  if (!vl_mat4_inverse(*ctm, &m))
+    return vl_import_fail(import, VL_ERROR_SCENE, import->camera.place, "Camera: the current transform is singular");
+  for (int row = 0; row < 3; row++) {
+    for (int column = 0; column < 4; column++)
+      pose[4 * row + column] = m.m[4 * row + column] * (column == 1 ? -1.0 : 1.0);
+  }
+  bool affine = ctm->m[12] == 0.0 && ctm->m[13] == 0.0 && ctm->m[14] == 0.0;
+  for (int column = 0; column < 4; column++) {
+    double v = m.m[12 + column] * (column == 1 ? -1.0 : 1.0);
+    pose[12 + column] = affine ? (column == 3 ? 1.0 : 0.0) : v;
+  }
+  double w = affine ? m.m[15] : 1.0; /* a transform's last number need not be 1 */
+  for (int i = 0; i < 12; i++) pose[i] /= w;
+  return true;
+}
+
+static bool pose_from_ctm(vlImport *import, vlCameraDef *def) {
+  const vlMat4 *ctm = import->camera_from_world;
+  def->has_matrix = true;
+  if (!pose_from(import, &ctm[0], def->world_from_camera)) return false;
+  if (memcmp(&ctm[0], &ctm[1], sizeof *ctm) == 0) return true;
+  def->has_matrix_close = true;
+  def->pose_times[0] = import->times[0], def->pose_times[1] = import->times[1];
+  return pose_from(import, &ctm[1], def->world_from_camera_close);
+}
+
+static bool read_shutter(vlDict *dict, vlCameraDef *def) {
+  vl_dict_double(dict, "shutteropen", &def->shutter_open);
+  vl_dict_double(dict, "shutterclose", &def->shutter_close);
+  if (def->shutter_close > def->shutter_open || dict->import->scene->error.code != VL_OK)
+    return dict->import->scene->error.code == VL_OK;
+  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
+                        "%s: the shutter does not open: it closes at %g, opens at %g", dict->what, def->shutter_close,
+                        def->shutter_open);
+}
+
+/* pbrt's cameras (book 5.2). The window on the screen is -1 to 1 along the smaller side, unless given. */
+static bool read_pbrt(vlDict *dict, vlCameraDef *def, Kind kind) {
+  vlImport *import = dict->import;
+  double frame = (double)def->width / def->height, fov = 90.0, window[4], focus = 1e6;
+  bool given = vl_dict_double(dict, "frameaspectratio", &frame);
+  if (given && !(frame > 0.0))
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"frameaspectratio\" must be above 0", dict->what);
+  double x = frame > 1.0 ? frame : 1.0, y = frame > 1.0 ? 1.0 : 1.0 / frame;
+  double standard[4] = {-x, x, -y, y};
+  memcpy(window, standard, sizeof window);
+  given = vl_dict_floats(dict, "screenwindow", 4, window) || given;
+  if (given || kind == ORTHOGRAPHIC) {
+    def->screen_min_x = window[0];
+    def->screen_max_x = window[1];
+    def->screen_min_y = window[2];
+    def->screen_max_y = window[3];
+  }
+  if (kind == PERSPECTIVE) {
+    vl_dict_double(dict, "fov", &fov);
+    def->fov = fov * degrees;
+    def->fov_axis = VL_FOV_SMALLER;
+  } else {
+    def->projection = VL_PROJECTION_ORTHOGRAPHIC;
+  }
+  vl_dict_double(dict, "lensradius", &def->lens_radius);
+  if (vl_dict_double(dict, "focaldistance", &focus) || def->lens_radius != 0.0) def->focus_distance = focus;
+  return read_shutter(dict, def) && vl_dict_done(dict) && pose_from_ctm(import, def);
+}
+
+/* pbrt's spherical camera: the whole sphere, whatever the frame. Its poles are up and down; its equirectangular picture
+ * begins at the right and turns left (seen in its left-handed axes), its equal-area one has the zenith in the middle.
+ * velo's own maps look ahead in the middle: the axes are exchanged. */
+static bool read_spherical(vlDict *dict, vlCameraDef *def) {
+  static const char *const mappings[] = {"equalarea", "equirectangular"};
+  static const double axes[2][9] = {{1, 0, 0, 0, 0, -1, 0, 1, 0}, {0, 0, -1, 0, 1, 0, -1, 0, 0}};
+  int mapping = 0;
+  double unused;
+  vl_dict_choice(dict, "mapping", mappings, 2, &mapping);
+  vl_dict_double(dict, "lensradius", &unused); /* read and not used, as pbrt does */
+  vl_dict_double(dict, "focaldistance", &unused);
+  vl_dict_double(dict, "frameaspectratio", &unused);
+  double window[4];
+  vl_dict_floats(dict, "screenwindow", 4, window);
+  def->projection = mapping ? VL_PROJECTION_EQUIRECTANGULAR : VL_PROJECTION_EQUAL_AREA;
+  if (!read_shutter(dict, def) || !vl_dict_done(dict) || !pose_from_ctm(dict->import, def)) return false;
+  double *m = def->world_from_camera;
+  for (int row = 0; row < 3; row++) {
+    double old[3] = {m[4 * row], m[4 * row + 1], m[4 * row + 2]};
+    for (int column = 0; column < 3; column++)
+      m[4 * row + column] =
+          old[0] * axes[mapping][column] + old[1] * axes[mapping][3 + column] + old[2] * axes[mapping][6 + column];
+  }
+  return true;
+}
+
+/* The shutter's curve, by a name or by points (at, value, at, value, ...), and the rows' readout: velo's own words. */
+static bool read_curve(vlDict *dict, vlCameraDef *def) {
+  static const char *const curves[] = {"box", "triangle", "trapezoid"};
+  static const char *const directions[] = {"down", "up", "right", "left"};
+  int curve = 0, direction = 0;
+  double rise = 0.1;
+  vl_dict_choice(dict, "shuttercurve", curves, 3, &curve);
+  bool risen = vl_dict_double(dict, "shutterrise", &rise);
+  vlParam *points = vl_dict_find(dict, "shutterpoints", VL_BIT_FLOAT);
+  vl_dict_double(dict, "readout", &def->readout);
+  vl_dict_choice(dict, "readoutdirection", directions, 4, &direction);
+  def->readout_direction = (vlReadout)direction;
+  if (dict->import->scene->error.code != VL_OK) return false;
+  if (risen && (curve != 2 || !(rise > 0.0 && rise <= 0.5)))
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
+                          "%s: \"shutterrise\" is the share, above 0 and at most 0.5, in which a trapezoid rises and "
+                          "falls",
+                          dict->what);
+  if (points) {
+    size_t n = vl_param_count(points);
+    if (curve || n % 2 || n < 4 || n > 2 * VL_SHUTTER_POINTS)
+      return vl_import_fail(dict->import, VL_ERROR_SCENE, points->place,
+                            "%s: \"shutterpoints\" are 2 to %d pairs (share of the time, how far open), instead of "
+                            "\"shuttercurve\"",
+                            dict->what, (int)VL_SHUTTER_POINTS);
+    def->shutter_points = (uint32_t)(n / 2);
+    for (size_t i = 0; i < n; i++) (i % 2 ? def->shutter_value : def->shutter_at)[i / 2] = points->exact[i];
+  } else if (curve) {
+    const double at[4] = {0.0, curve == 1 ? 0.5 : rise, curve == 1 ? 1.0 : 1.0 - rise, 1.0};
+    const double value[4] = {0.0, 1.0, curve == 1 ? 0.0 : 1.0, 0.0};
+    def->shutter_points = curve == 1 ? 3 : 4;
+    memcpy(def->shutter_at, at, sizeof at);
+    memcpy(def->shutter_value, value, sizeof value);
+  }
+  return true;
+}
+
+/* "coefficients", as many as there are; vl_camera_make judges their number. */
+static bool read_coefficients(vlDict *dict, const char *name, double *values, uint32_t *count) {
+  vlParam *p = vl_dict_find(dict, name, VL_BIT_FLOAT);
+  if (!p) return false;
+  size_t n = vl_param_count(p);
+  if (n > 14)
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->place,
+                          "%s: \"%s\" has %zu numbers; at most 14 have a meaning", dict->what, name, n);
+  for (size_t i = 0; i < n; i++) values[i] = p->exact[i];
+  *count = (uint32_t)n;
+  return true;
+}
+
+/* What sets a projection or a calibrated lens apart from the pinhole. */
+static bool read_model(vlDict *dict, vlCameraDef *def, Kind kind) {
+  static const char *const mappings[] = {"equidistant", "equisolid", "stereographic", "orthographic"};
+  int mapping = 0;
+  double window[4];
+  if (vl_dict_double(dict, "maxangle", &def->max_angle)) def->max_angle *= degrees;
+  switch (kind) {
+    case FISHEYE:
+      vl_dict_choice(dict, "mapping", mappings, 4, &mapping);
+      def->projection = (vlProjection)(VL_PROJECTION_EQUIDISTANT + mapping);
+      break;
+    case EQUIRECTANGULAR: {
+      static const char *const limits[] = {"longitude", "latitude"}; /* degrees; right and up count as above zero */
+      def->projection = VL_PROJECTION_EQUIRECTANGULAR;
+      window[0] = -180.0, window[1] = 180.0, window[2] = -90.0, window[3] = 90.0;
+      bool given = vl_dict_floats(dict, limits[0], 2, window);
+      given = vl_dict_floats(dict, limits[1], 2, window + 2) || given;
+      if (given) {
+        def->screen_min_x = window[0] * degrees, def->screen_max_x = window[1] * degrees;
+        def->screen_min_y = window[2] * degrees, def->screen_max_y = window[3] * degrees;
+      }
+      break;
+    }
+    case EQUAL_AREA: def->projection = VL_PROJECTION_EQUAL_AREA; break;
+    case CYLINDRICAL: def->projection = VL_PROJECTION_CYLINDRICAL; break;
+    case CUBE: {
+      static const char *const layouts[] = {"row", "cross"};
+      int layout = 0;
+      def->projection = VL_PROJECTION_CUBE;
+      vl_dict_choice(dict, "layout", layouts, 2, &layout);
+      def->shape[0] = layout;
+      break;
+    }
+    case PANINI:
+      def->projection = VL_PROJECTION_PANINI;
+      vl_dict_double(dict, "panini", &def->shape[0]);
+      break;
+    case OPENCV:
+      def->distortion = VL_DISTORTION_OPENCV;
+      if (!read_coefficients(dict, "coefficients", def->distortion_coefficients, &def->distortion_count))
+        def->distortion = VL_DISTORTION_NONE;
+      break;
+    case OPENCV_FISHEYE:
+      def->projection = VL_PROJECTION_EQUIDISTANT;
+      if (read_coefficients(dict, "coefficients", def->distortion_coefficients, &def->distortion_count))
+        def->distortion = VL_DISTORTION_RADIAL;
+      break;
+    case COLMAP: {
+      const char *model = "PINHOLE";
+      double values[14];
+      uint32_t count = 0;
+      vlError error = {0};
+      vl_dict_string(dict, "model", &model);
+      read_coefficients(dict, "parameters", values, &count);
+      if (dict->import->scene->error.code == VL_OK && vl_camera_def_colmap(def, model, values, count, &error) != VL_OK)
+        return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %s", dict->what,
+                              error.message + strlen("camera: "));
+      break;
+    }
+    case FOV:
+      def->projection = VL_PROJECTION_FOV;
+      vl_dict_double(dict, "omega", &def->shape[0]);
+      break;
+    case DIVISION:
+      def->projection = VL_PROJECTION_DIVISION;
+      vl_dict_double(dict, "lambda", &def->shape[0]);
+      break;
+    case UNIFIED:
+      def->projection = VL_PROJECTION_UNIFIED;
+      vl_dict_double(dict, "xi", &def->shape[0]);
+      if (read_coefficients(dict, "coefficients", def->distortion_coefficients, &def->distortion_count))
+        def->distortion = VL_DISTORTION_OPENCV;
+      break;
+    case EUCM:
+      def->projection = VL_PROJECTION_EUCM;
+      vl_dict_double(dict, "alpha", &def->shape[0]);
+      vl_dict_double(dict, "beta", &def->shape[1]);
+      break;
+    case DOUBLE_SPHERE:
+      def->projection = VL_PROJECTION_DOUBLE_SPHERE;
+      vl_dict_double(dict, "xi", &def->shape[0]);
+      vl_dict_double(dict, "alpha", &def->shape[1]);
+      break;
+    default: break;
+  }
+  return dict->import->scene->error.code == VL_OK;
+}
+
+/* Two eyes: the render makes both of this camera, or the one that is said. */
+static void read_stereo(vlDict *dict, vlCameraDef *def) {
+  static const char *const modes[] = {"none", "parallel", "off-axis", "toe-in", "omnidirectional"};
+  static const char *const eyes[] = {"both", "left", "right"};
+  int mode = VL_STEREO_NONE, eye = VL_EYE_BOTH;
+  vl_dict_choice(dict, "stereo", modes, 5, &mode);
+  vl_dict_choice(dict, "stereoeye", eyes, 3, &eye);
+  vl_dict_double(dict, "interocular", &def->stereo.interocular);
+  vl_dict_double(dict, "convergence", &def->stereo.convergence);
+  def->stereo.mode = (vlStereoMode)mode;
+  def->stereo_eye = (vlEye)eye;
+}
+
+/* The lecture's camera: eye, lookat, up, roll; d, zoom, s or a field of view; exposure time. Its world is right-handed.
+ */
+static bool read_lecture(vlDict *dict, vlCameraDef *def, Kind kind) {
+  static const char *const axes[] = {"vertical", "horizontal", "diagonal", "smaller", "larger"};
+  vlImport *import = dict->import;
+  int axis = VL_FOV_SMALLER;
+  vl_dict_vector(dict, "eye", VL_PARAM_POINT3, def->eye);
+  vl_dict_vector(dict, "lookat", VL_PARAM_POINT3, def->lookat);
+  vl_dict_vector(dict, "up", VL_PARAM_VECTOR3, def->up);
+  if (vl_dict_double(dict, "roll", &def->roll)) def->roll *= degrees;
+  vl_dict_vector(dict, "eyeclose", VL_PARAM_POINT3, def->eye_close);
+  vl_dict_vector(dict, "lookatclose", VL_PARAM_POINT3, def->lookat_close);
+  vl_dict_vector(dict, "upclose", VL_PARAM_VECTOR3, def->up_close);
+  if (vl_dict_double(dict, "rollclose", &def->roll_close)) def->roll_close *= degrees;
+  vl_dict_double(dict, "d", &def->view_distance);
+  vl_dict_double(dict, "zoom", &def->zoom);
+  vl_dict_double(dict, "pixelsize", &def->pixel_size);
+  if (vl_dict_double(dict, "fov", &def->fov)) def->fov *= degrees;
+  vl_dict_choice(dict, "fovaxis", axes, 5, &axis);
+  def->fov_axis = (vlFovAxis)axis;
+  vl_dict_double(dict, "focallength", &def->focal_mm);
+  vl_dict_double(dict, "sensorwidth", &def->sensor_width_mm);
+  vl_dict_double(dict, "fx", &def->fx);
+  vl_dict_double(dict, "fy", &def->fy);
+  vl_dict_double(dict, "cx", &def->cx);
+  vl_dict_double(dict, "cy", &def->cy);
+  vl_dict_double(dict, "skew", &def->skew);
+  vl_dict_double(dict, "exposuretime", &def->exposure_time);
+  vl_dict_double(dict, "near", &def->near_plane);
+  vl_dict_double(dict, "far", &def->far_plane);
+  read_stereo(dict, def);
+  if (kind >= FISHEYE && !read_model(dict, def, kind)) return false;
+  if (kind != PINHOLE && !vl_import_lens(dict, def)) return false;
+  vl_dict_bool(dict, "vignetting", &def->lens.vignetting);
+  if (!read_shutter(dict, def) || !read_curve(dict, def) || !vl_dict_done(dict)) return false;
+  const vlMat4 identity = vl_mat4_identity();
+  for (int i = 0; i < 16; i++)
+    if (import->camera_from_world[0].m[i] != identity.m[i] || import->camera_from_world[1].m[i] != identity.m[i])
+      return vl_import_fail(import, VL_ERROR_SCENE, dict->place,
+                            "%s: its pose is given by eye, lookat and up; transforms before it have no meaning",
+                            dict->what);
+  return true;
+}
+
+/* The camera that results, for errors at their place. */
+static bool check(vlImport *import, const char *what, const vlCameraDef *def) {
+  vlCamera camera;
+  vlError error = {0};
+  const char *warning = NULL;
+  if (vl_camera_make(def, &camera, &warning, &error) != VL_OK) {
+    const char *text = strncmp(error.message, "camera: ", 8) == 0 ? error.message + 8 : error.message;
+    return vl_import_fail(import, VL_ERROR_SCENE, import->camera.place, "%s: %s", what, text);
+  }
+  if (warning && camera.outside > 0.0)
+    vl_import_warn(import, VL_LOG_WARNING, import->camera.place,
+                   "%s: the lens folds or its model ends inside the picture: %.2g %% of it sees nothing (alpha 0)",
+                   what, 100.0 * camera.outside);
+  else if (warning)
+    vl_import_warn(import, VL_LOG_WARNING, import->camera.place, "%s", warning);
+  return true;
+}
+
+/* "camera" as a coordinate system: pbrt's axes, x right, y up, z forward. */
+static bool name_lecture_system(vlImport *import, const vlCameraDef *def) {
+  vlCamera camera;
+  vlError error;
+  uint32_t index;
+  if (vl_camera_make(def, &camera, NULL, &error) != VL_OK ||
+      !vl_names_find(&import->coordinate_systems, "camera", &index))
+    return true;
+  vlMat4 m = vl_mat4_load(camera.world_from_camera);
+  for (int row = 0; row < 3; row++) m.m[4 * row + 1] = -m.m[4 * row + 1];
+  import->matrices.items[index].at[0] = import->matrices.items[index].at[1] = m;
+  return true;
+}
+
+bool vl_import_camera(vlImport *import) {
+  vlSceneSettings *settings = vl_scene_settings(import->scene);
+  const vlChoice *choice = &import->camera;
+  char what[96];
+  snprintf(what, sizeof what, "Camera \"%.60s\"", choice->given ? choice->kind : "perspective");
+  vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
+  vlCameraDef def = vl_default_camera_def(settings->width, settings->height);
+  int kind = choice->given ? -1 : PERSPECTIVE;
+  for (int i = 0; choice->given && i < KINDS; i++)
+    if (strcmp(choice->kind, kinds[i]) == 0) kind = i;
+  for (int i = 0; i < 2 && !choice->given; i++) import->camera_from_world[i] = vl_mat4_identity();
+  settings->camera_source = choice->place;
+  if (kind < 0) { /* permissive: pbrt's perspective camera from the same place */
+    if (!vl_import_unknown(import, choice->place, "camera", choice->kind, kinds, KINDS, NULL, 0)) return false;
+    vl_dict_skip(&dict);
+    def.fov = 90.0 * degrees;
+    if (!pose_from_ctm(import, &def)) return false;
+  } else if (kind == PERSPECTIVE || kind == ORTHOGRAPHIC) {
+    if (!read_pbrt(&dict, &def, (Kind)kind)) return false;
+  } else if (kind == SPHERICAL) {
+    if (!read_spherical(&dict, &def)) return false;
+  } else if (kind == REALISTIC) {
+    if (!vl_import_optics(&dict, &def, import->film_diagonal)) return false;
+    if (!read_shutter(&dict, &def) || !vl_dict_done(&dict) || !pose_from_ctm(import, &def)) return false;
+  } else if (!read_lecture(&dict, &def, (Kind)kind)) {
+    return false;
+  }
+  if (!check(import, what, &def)) return false;
+  settings->camera = def;
+  /* pbrt's sensor: the longer the shutter is open, the brighter; the lecture says it with its own factor. */
+  if (kind >= PERSPECTIVE && kind < PINHOLE) settings->exposure *= (float)(def.shutter_close - def.shutter_open);
+  return kind < PINHOLE || name_lecture_system(import, &def);
+}

@@ -1,0 +1,177 @@
+/* import/pbrt/entity.c: statements whose parameters outlive them: attributes, objects, and the textures and materials
+ * that wait until everything is read. */
+#include <string.h>
+
+#include "import/pbrt/builder.h"
+
+/* ---- parameters that outlive their directive -------------------------------------------------------------------- */
+
+/* The statement's parameters go on living: their file names are kept by the scene, their colour space is known. */
+bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to) {
+  for (size_t i = 0; i < s->params->list.count; i++)
+    if (!vl_scene_copy_source(import->scene, &s->params->list.items[i]->place)) return false;
+  *to = *s->params;
+  *s->params = (vlParamList){0};
+  return true;
+}
+
+static bool keep_source(vlImport *import, vlSource *place) {
+  return vl_scene_copy_source(import->scene, place);
+}
+
+/* ---- state ------------------------------------------------------------------------------------------------------ */
+
+bool vl_import_attribute(vlImport *import, const vlStatement *s) {
+  static const char *const targets[] = {"shape", "light", "material", "medium", "texture"};
+  int target = -1;
+  for (int i = 0; i < VL_ATTR_TARGETS; i++)
+    if (strcmp(s->names[0], targets[i]) == 0) target = i;
+  if (target < 0)
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
+                          "Attribute: unknown target \"%.40s\" (known: shape, light, material, medium, texture)",
+                          s->names[0]);
+  vlParamList params = {0};
+  if (!vl_import_keep_params(import, s, &params)) return false;
+  bool fine = true;
+  for (size_t i = 0; i < params.list.count; i++) {
+    vlParam **slot = fine ? VL_PUSH(import->context, &import->attributes[target].list) : NULL;
+    params.list.items[i]->optional = true;
+    if (slot)
+      *slot = params.list.items[i];
+    else
+      fine = false, vl_param_free(import->context, params.list.items[i]);
+  }
+  VL_ARRAY_FREE(import->context, &params.list);
+  import->state.attributes[target] = import->attributes[target].list.count;
+  return fine || vl_import_fail_memory(import);
+}
+
+/* ---- objects ---------------------------------------------------------------------------------------------------- */
+
+/* An object may be placed before it is made: its group is there from its first mention. */
+static vlObject *find_object(vlImport *import, const char *name, vlSource place) {
+  uint32_t index;
+  if (vl_names_find(&import->objects, name, &index)) return &import->object_list.items[index];
+  const char *kept = vl_import_keep(import, name);
+  if (!kept || !keep_source(import, &place)) return NULL;
+  vlGroupId group = vl_scene_add_group(import->scene, kept);
+  if (!group.index) return NULL;
+  vlObject *object = VL_PUSH(import->context, &import->object_list);
+  if (!object || !vl_names_add(import->context, &import->objects, kept, (uint32_t)import->object_list.count - 1)) {
+    vl_import_fail_memory(import);
+    return NULL;
+  }
+  *object = (vlObject){.name = kept, .group = group, .place = place};
+  return object;
+}
+
+bool vl_import_object_begin(vlImport *import, const vlStatement *s) {
+  if (import->in_object)
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "ObjectBegin inside of an object: objects do not nest");
+  vlObject *object = find_object(import, s->names[0], s->place);
+  if (!object) return false;
+  if (object->defined)
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "object \"%.80s\" is defined a second time", s->names[0]);
+  object->defined = true;
+  import->in_object = true;
+  import->object = object->group;
+  return vl_import_push(import, 'o', s->place);
+}
+
+bool vl_import_object_end(vlImport *import, const vlStatement *s) {
+  if (!vl_import_pop(import, 'o', "ObjectEnd", s->place)) return false;
+  import->in_object = false;
+  import->object = (vlGroupId){0};
+  return true;
+}
+
+bool vl_import_object_instance(vlImport *import, const vlStatement *s) {
+  if (import->in_object)
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "ObjectInstance inside of an object: objects do not nest");
+  const vlObject *object = find_object(import, s->names[0], s->place);
+  return object && vl_import_add_instance(import, object->group, import->state.ctm, s->place);
+}
+
+/* ---- what waits ------------------------------------------------------------------------------------------------- */
+
+static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttributeTarget target, bool is_texture) {
+  vlPending *p =
+      is_texture ? VL_PUSH(import->context, &import->textures) : VL_PUSH(import->context, &import->materials);
+  if (!p) {
+    vl_import_fail_memory(import);
+    return NULL;
+  }
+  vlParamList own = {0};
+  p->place = s->place;
+  p->space = import->state.space;
+  p->ctm = import->state.ctm[0];
+  if (!keep_source(import, &p->place) || !vl_import_copy_params(import, &import->attributes[target], &p->params) ||
+      !vl_import_keep_params(import, s, &own))
+    return NULL;
+  bool fine = true;
+  for (size_t i = 0; i < own.list.count; i++) { /* after the attributes: the last one given wins */
+    vlParam **slot = fine ? VL_PUSH(import->context, &p->params.list) : NULL;
+    if (slot)
+      *slot = own.list.items[i];
+    else
+      fine = false, vl_param_free(import->context, own.list.items[i]);
+  }
+  VL_ARRAY_FREE(import->context, &own.list);
+  if (!fine) vl_import_fail_memory(import);
+  return fine ? p : NULL;
+}
+
+bool vl_import_material(vlImport *import, const vlStatement *s) {
+  vlPending *p = add_pending(import, s, VL_ATTR_MATERIAL, false);
+  if (!p || !(p->kind = vl_import_keep(import, s->names[0]))) return false;
+  import->state.material = (uint32_t)import->materials.count;
+  import->state.material_name = NULL;
+  return true;
+}
+
+bool vl_import_make_named_material(vlImport *import, const vlStatement *s) {
+  uint32_t index;
+  if (vl_names_find(&import->named_materials, s->names[0], &index))
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
+                          "material \"%.80s\" is made a second time (first in line %u)", s->names[0],
+                          import->materials.items[index].place.line);
+  vlPending *p = add_pending(import, s, VL_ATTR_MATERIAL, false);
+  if (!p || !(p->name = vl_import_keep(import, s->names[0]))) return false;
+  if (vl_names_add(import->context, &import->named_materials, p->name, (uint32_t)import->materials.count - 1))
+    return true;
+  return vl_import_fail_memory(import);
+}
+
+bool vl_import_named_material(vlImport *import, const vlStatement *s) {
+  uint32_t index;
+  import->state.material = 0;
+  import->state.material_place = s->place;
+  if (vl_names_find(&import->named_materials, s->names[0], &index)) {
+    import->state.material_name = import->materials.items[index].name;
+    return keep_source(import, &import->state.material_place);
+  }
+  import->state.material_name = vl_import_keep(import, s->names[0]);
+  return import->state.material_name && keep_source(import, &import->state.material_place);
+}
+
+bool vl_import_texture(vlImport *import, const vlStatement *s) {
+  bool spectrum = strcmp(s->names[1], "spectrum") == 0 || strcmp(s->names[1], "color") == 0;
+  if (!spectrum && strcmp(s->names[1], "float") != 0)
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
+                          "Texture \"%.60s\": the type must be \"float\" or \"spectrum\", not \"%.40s\"", s->names[0],
+                          s->names[1]);
+  vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;
+  uint32_t index;
+  if (vl_names_find(table, s->names[0], &index))
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
+                          "%s texture \"%.80s\" is made a second time (first in line %u)",
+                          spectrum ? "spectrum" : "float", s->names[0], import->textures.items[index].place.line);
+  vlPending *p = add_pending(import, s, VL_ATTR_TEXTURE, true);
+  if (!p) return false;
+  p->spectrum = spectrum;
+  if (!vl_import_ctm(import, s->place, &p->ctm) || !(p->name = vl_import_keep(import, s->names[0])) ||
+      !(p->kind = vl_import_keep(import, s->names[2])))
+    return false;
+  if (vl_names_add(import->context, table, p->name, (uint32_t)import->textures.count - 1)) return true;
+  return vl_import_fail_memory(import);
+}

@@ -1,0 +1,217 @@
+/* import/pbrt/film.c: Film, Option and media. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "import/pbrt/builder.h"
+#include "import/pbrt/token.h"
+
+enum { MAX_SIDE = 1 << 20 };
+
+/* pbrt: pixelbounds x0 x1 y0 y1 in pixels; cropwindow the same in fractions, rounded up, and it wins. */
+static bool read_crop(vlDict *dict, vlSceneSettings *s) {
+  vlImport *import = dict->import;
+  double w = s->width, h = s->height, box[4] = {0, w, 0, h}, crop[4];
+  vlParam *pixels = vl_dict_find(dict, "pixelbounds", 1u << VL_PARAM_INTEGER);
+  vlSource place = dict->place;
+  if (pixels) {
+    place = pixels->place;
+    if (pixels->integers.count != 4)
+      return vl_import_fail(import, VL_ERROR_SCENE, place, "%s: parameter \"pixelbounds\" takes 4 values, found %zu",
+                            dict->what, pixels->integers.count);
+    for (int i = 0; i < 4; i++) {
+      double v = pixels->integers.items[i], top = i < 2 ? w : h;
+      box[i] = v < 0 ? 0 : v > top ? top : v;
+    }
+  }
+  if (vl_dict_floats(dict, "cropwindow", 4, crop)) {
+    for (int i = 0; i < 4; i += 2) {
+      double size = i ? h : w, a = crop[i] < crop[i + 1] ? crop[i] : crop[i + 1],
+             b = crop[i] < crop[i + 1] ? crop[i + 1] : crop[i];
+      a = a < 0 ? 0 : a > 1 ? 1 : a;
+      b = b < 0 ? 0 : b > 1 ? 1 : b;
+      /* in single precision as pbrt computes it, so that the same pixels come out */
+      box[i] = ceilf((float)size * (float)a);
+      box[i + 1] = ceilf((float)size * (float)b);
+    }
+  }
+  if (!(box[0] < box[1] && box[2] < box[3]))
+    return vl_import_fail(import, VL_ERROR_SCENE, place, "%s: the crop window holds no pixel", dict->what);
+  s->crop[0] = (uint32_t)box[0];
+  s->crop[2] = (uint32_t)box[1];
+  s->crop[1] = (uint32_t)box[2];
+  s->crop[3] = (uint32_t)box[3];
+  return import->scene->error.code == VL_OK;
+}
+
+/* pbrt has the measured curves of these; velo has not. pbrt's white is daylight of 6500 K then, unless the file says
+ * another: the fallback has the same. Exposure is the same for all sensors (book 5.4.2: they are scaled to see white of
+ * equal luminance). */
+static bool check_sensor(vlDict *dict, double *white) {
+  static const char *const measured[] = {"canon_eos_100d",      "canon_eos_1dx_mkii", "canon_eos_200d",
+                                         "canon_eos_200d_mkii", "canon_eos_5d",       "canon_eos_5d_mkii",
+                                         "canon_eos_5d_mkiii",  "canon_eos_5d_mkiv",  "canon_eos_5ds",
+                                         "canon_eos_m",         "hasselblad_l1d_20c", "nikon_d810",
+                                         "nikon_d850",          "sony_ilce_6400",     "sony_ilce_7m3",
+                                         "sony_ilce_7rm3",      "sony_ilce_9",        "cie1931"};
+  enum { COUNT = sizeof measured / sizeof *measured };
+  vlImport *import = dict->import;
+  const char *sensor = "cie1931";
+  vlParam *p = vl_dict_find(dict, "sensor", 1u << VL_PARAM_STRING);
+  if (!vl_dict_string(dict, "sensor", &sensor) || strcmp(sensor, "cie1931") == 0) return true;
+  *white = 6500.0;
+  for (int i = 0; i < COUNT - 1; i++)
+    if (strcmp(sensor, measured[i]) == 0)
+      return vl_import_unsupported(import, p->place,
+                                   "%s: the measured colour curves of sensor \"%s\" are not part of velo; without "
+                                   "\"sensor\", or permissively (--permissive), cie1931 takes the picture",
+                                   dict->what, sensor);
+  return vl_import_unknown(import, p->place, "sensor", sensor, measured, COUNT, NULL, 0);
+}
+
+/* The sensor, its white, its limit. */
+static bool read_sensor(vlDict *dict) {
+  vlImport *import = dict->import;
+  double white = 0.0, usual = 0.0, top = INFINITY;
+  if (!check_sensor(dict, &usual)) return false;
+  if (vl_dict_double(dict, "whitebalance", &white) && white != 0.0 && !(white >= 1000.0 && white <= 1e5))
+    return vl_import_fail(import, VL_ERROR_SCENE, vl_dict_find(dict, "whitebalance", VL_BIT_FLOAT)->place,
+                          "%s: \"whitebalance\" is %g; it must be 0 (none) or 1000 to 100000 kelvin", dict->what,
+                          white);
+  vl_scene_settings(import->scene)->white_balance = white != 0.0 ? white : usual;
+  if (vl_dict_double(dict, "maxcomponentvalue", &top) && !(top >= 0.0))
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"maxcomponentvalue\" must not be negative",
+                          dict->what);
+  vl_scene_settings(import->scene)->max_component = top < 1e30 ? (float)top : INFINITY;
+  return import->scene->error.code == VL_OK;
+}
+
+/* Buckets of wavelengths beside the colours. */
+static bool read_spectrum(vlDict *dict, vlSceneSettings *s) {
+  uint32_t count = 16;
+  double low = 360.0, high = 830.0;
+  vl_dict_count(dict, "nbuckets", 1, &count);
+  vl_dict_double(dict, "lambdamin", &low);
+  vl_dict_double(dict, "lambdamax", &high);
+  if (dict->import->scene->error.code != VL_OK) return false;
+  if (count > 1000)
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %u buckets are too many (1000 at most)",
+                          dict->what, count);
+  if (!(low >= 360.0 && low < high && high <= 830.0))
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
+                          "%s: wavelengths from %g to %g nm; they must lie inside of 360 to 830", dict->what, low,
+                          high);
+  s->buckets = count, s->lambda_min = low, s->lambda_max = high;
+  return true;
+}
+
+bool vl_import_film(vlImport *import) {
+  static const char *const kinds[] = {"rgb", "gbuffer", "spectral"};
+  vlSceneSettings *s = vl_scene_settings(import->scene);
+  const vlChoice *choice = &import->film;
+  char what[96];
+  snprintf(what, sizeof what, "Film \"%.60s\"", choice->given ? choice->kind : "rgb");
+  vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
+  bool buffers = choice->given && strcmp(choice->kind, "gbuffer") == 0;
+  bool spectral = choice->given && strcmp(choice->kind, "spectral") == 0;
+  bool known = !choice->given || buffers || spectral || strcmp(choice->kind, "rgb") == 0;
+  if (!known && !vl_import_unknown(import, choice->place, "film", choice->kind, kinds, 3, NULL, 0)) return false;
+  s->width = 1280;
+  s->height = 720;
+  s->space = choice->given ? choice->space : VL_SPACE_SRGB;
+  double iso = 100.0, time = 1.0, ratio = 1.0;
+  bool half = true;
+  const char *output = "";
+  vlParam *file = vl_dict_find(&dict, "filename", 1u << VL_PARAM_STRING);
+  vl_dict_count(&dict, "xresolution", 1, &s->width);
+  vl_dict_count(&dict, "yresolution", 1, &s->height);
+  vl_dict_string(&dict, "filename", &output);
+  import->film_diagonal = 35.0;
+  vl_dict_double(&dict, "diagonal", &import->film_diagonal); /* matters to realistic cameras only */
+  vl_dict_bool(&dict, "savefp16", &half);                    /* how the file is written: the program's business */
+  vl_dict_double(&dict, "iso", &iso);
+  vl_dict_double(&dict, "exposuretime", &time);
+  vl_dict_double(&dict, "imagingratio", &ratio);
+  if (import->scene->error.code != VL_OK) return false;
+  if (s->width > MAX_SIDE || s->height > MAX_SIDE)
+    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: %u x %u pixels are too many", what, s->width,
+                          s->height);
+  if (strlen(output) >= sizeof s->output)
+    return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: the file name is too long", what);
+  snprintf(s->output, sizeof s->output, "%s", output);
+  s->exposure = (float)(iso / 100.0 * time * ratio);
+  if (!(s->exposure >= 0.0f) || !isfinite(s->exposure))
+    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: the exposure is negative or not finite", what);
+  if (!read_crop(&dict, s) || !read_sensor(&dict) || (spectral && !read_spectrum(&dict, s))) return false;
+  if (buffers) {
+    static const char *const systems[] = {"camera", "world"};
+    int system = 0;
+    vl_dict_choice(&dict, "coordinatesystem", systems, 2, &system);
+    s->gbuffer = system ? VL_GBUFFER_WORLD : VL_GBUFFER_CAMERA;
+  }
+  if (!known) vl_dict_skip(&dict);
+  return vl_dict_done(&dict);
+}
+
+/* ---- options ---------------------------------------------------------------------------------------------------- */
+
+/* pbrt compares option names without case, blanks, dashes and underscores. */
+static void normalise(const char *name, char *result, size_t size) {
+  size_t n = 0;
+  for (; *name && n + 1 < size; name++)
+    if (*name != '-' && *name != '_') result[n++] = *name >= 'A' && *name <= 'Z' ? (char)(*name - 'A' + 'a') : *name;
+  result[n] = 0;
+}
+
+bool vl_import_option(vlImport *import, const vlStatement *s) {
+  vlSceneSettings *settings = vl_scene_settings(import->scene);
+  const struct {
+    const char *name;
+    bool *value; /* null: changes the picture, and velo has nothing of the kind */
+  } switches[] = {{"disablepixeljitter", &settings->centred},
+                  {"disabletexturefiltering", &settings->sharp_textures},
+                  {"disablewavelengthjitter", &settings->same_wavelengths},
+                  {"forcediffuse", NULL}};
+  static const char *const harmless[] = {"msereferenceimage", "msereferenceout", "pixelstats", "wavefront",
+                                         "rendercoordsys"};
+  char name[64];
+  const char *value = s->names[1];
+  normalise(s->names[0], name, sizeof name);
+  if (strcmp(name, "seed") == 0) {
+    double seed;
+    if (!vl_number_parse(value, strlen(value), &seed) || seed != floor(seed) || fabs(seed) > 4294967295.0)
+      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"seed\": \"%.40s\" is not an integer", value);
+    settings->sampler_seed = (uint32_t)(int64_t)seed;
+    return true;
+  }
+  if (strcmp(name, "displacementedgescale") == 0) {
+    if (vl_number_parse(value, strlen(value), &import->edge_scale) && import->edge_scale > 0.0) return true;
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": \"%.40s\" is not a number above 0", name,
+                          value);
+  }
+  for (size_t i = 0; i < sizeof switches / sizeof *switches; i++) {
+    if (strcmp(name, switches[i].name) != 0) continue;
+    bool on = strcmp(value, "true") == 0;
+    if (!on && strcmp(value, "false") != 0)
+      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": expected true or false, found \"%.40s\"",
+                            switches[i].name, value);
+    if (switches[i].value) *switches[i].value = on;
+    return switches[i].value || !on ||
+           vl_import_unsupported(import, s->place, "Option \"%s\": velo cannot; its materials stay what they are",
+                                 name);
+  }
+  for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++)
+    if (strcmp(name, harmless[i]) == 0) return true;
+  static const char *const known[] = {"seed",
+                                      "displacementedgescale",
+                                      "disablepixeljitter",
+                                      "disabletexturefiltering",
+                                      "disablewavelengthjitter",
+                                      "forcediffuse",
+                                      "msereferenceimage",
+                                      "msereferenceout",
+                                      "pixelstats",
+                                      "wavefront",
+                                      "rendercoordsys"};
+  return vl_import_unknown(import, s->place, "option", s->names[0], known, sizeof known / sizeof *known, NULL, 0);
+}

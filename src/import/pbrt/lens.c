@@ -1,0 +1,117 @@
+/* import/pbrt/lens.c: see lens.h. Openings' pictures and lens files become objects that the scene owns. */
+#include "import/pbrt/lens.h"
+
+#include <string.h>
+
+static const double degrees = 0.017453292519943295;
+
+static bool scene_ok(const vlDict *dict) {
+  return dict->import->scene->error.code == VL_OK;
+}
+
+static bool fail_with(vlDict *dict, vlSource place, vlResult code, const vlError *error) {
+  if (code == VL_ERROR_MEMORY) return vl_import_fail_memory(dict->import);
+  if (error->file[0] && error->line > 0) {
+    vlSource there = {error->file, error->line, error->column};
+    return vl_import_fail(dict->import, code, there, "%s", error->message);
+  }
+  return vl_import_fail(dict->import, code == VL_ERROR_ARGUMENT ? VL_ERROR_SCENE : code, place, "%s: %s%s%s",
+                        dict->what, error->file[0] ? error->file : "", error->file[0] ? ": " : "", error->message);
+}
+
+/* The mean of red, green and blue, as pbrt takes it; or the only channel. */
+static vlResult aperture_from_image(vlImport *import, const vlImage *image, vlAperture **aperture, vlError *error) {
+  uint32_t w = vl_image_width(image), h = vl_image_height(image);
+  int c[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"), vl_image_find_channel(image, "B")};
+  if (c[0] < 0 || c[1] < 0 || c[2] < 0) c[0] = c[1] = c[2] = 0;
+  float *values = vl_alloc_array(import->context, (size_t)w * h, sizeof *values);
+  if (!values) return VL_ERROR_MEMORY;
+  for (uint32_t y = 0; y < h; y++)
+    for (uint32_t x = 0; x < w; x++) {
+      float sum = 0.0f;
+      for (int k = 0; k < 3; k++) sum += vl_image_get(image, x, y, (uint32_t)c[k]);
+      values[(size_t)y * w + x] = sum / 3.0f;
+    }
+  vlResult result = vl_aperture_create(import->context, w, h, values, aperture, error);
+  vl_free(import->context, values);
+  return result;
+}
+
+/* A name or a file; "circle" or "circular": none. */
+static bool read_aperture(vlDict *dict, const vlAperture **aperture) {
+  static const char *const names[] = {"gaussian", "square", "pentagon", "star"};
+  vlImport *import = dict->import;
+  const char *name = "circle";
+  vlParam *p = vl_dict_find(dict, "aperture", 1u << VL_PARAM_STRING);
+  if (!vl_dict_string(dict, "aperture", &name) || strcmp(name, "circle") == 0 || strcmp(name, "circular") == 0 ||
+      name[0] == 0)
+    return scene_ok(dict);
+  vlAperture **place = VL_PUSH(import->context, &import->scene->apertures);
+  if (!place) return vl_import_fail_memory(import);
+  vlError error = {0};
+  vlResult result = VL_OK;
+  bool named = false;
+  for (int i = 0; i < 4; i++) named = named || strcmp(name, names[i]) == 0;
+  if (named) {
+    result = vl_aperture_create_named(import->context, name, place, &error);
+  } else {
+    char path[4096];
+    vlImage *image = NULL;
+    if (!vl_import_path(import, p, path, sizeof path)) return false;
+    result = vl_image_read(import->context, path, &image, &error);
+    if (result == VL_OK) result = aperture_from_image(import, image, place, &error);
+    vl_image_destroy(image);
+  }
+  if (result != VL_OK) return fail_with(dict, p->place, result, &error);
+  *aperture = *place;
+  return true;
+}
+
+bool vl_import_lens(vlDict *dict, vlCameraDef *def) {
+  vlLensDef *d = &def->lens;
+  vl_dict_double(dict, "lensradius", &def->lens_radius);
+  vl_dict_double(dict, "focusdistance", &def->focus_distance);
+  vl_dict_double(dict, "focaldistance", &def->focus_distance); /* pbrt's word for it */
+  vl_dict_double(dict, "fnumber", &d->f_number);
+  vl_dict_double(dict, "unitmm", &d->unit_mm);
+  vl_dict_vector(dict, "focuspoint", VL_PARAM_POINT3, d->focus_point);
+  vl_dict_floats(dict, "focuspixel", 2, d->focus_pixel);
+  vl_dict_count(dict, "blades", 0, &d->blades);
+  if (vl_dict_double(dict, "bladerotation", &d->rotation)) d->rotation *= degrees;
+  vl_dict_double(dict, "apertureratio", &d->ratio);
+  const struct {
+    const char *name;
+    double *value;
+  } angles[] = {
+      {"tiltx", &d->tilt_x}, {"tilty", &d->tilt_y}, {"lenstiltx", &d->lens_tilt_x}, {"lenstilty", &d->lens_tilt_y}};
+  for (size_t i = 0; i < sizeof angles / sizeof *angles; i++)
+    if (vl_dict_double(dict, angles[i].name, angles[i].value)) *angles[i].value *= degrees;
+  vl_dict_double(dict, "iso", &d->iso);
+  vl_dict_double(dict, "seconds", &d->seconds);
+  return read_aperture(dict, &d->aperture);
+}
+
+/* Defaults are pbrt's. */
+bool vl_import_optics(vlDict *dict, vlCameraDef *def, double film_diagonal) {
+  vlImport *import = dict->import;
+  vlOpticsDef optics = vl_default_optics_def();
+  const char *file = NULL;
+  char path[4096];
+  optics.aperture_diameter = 1.0;
+  optics.film_diagonal = film_diagonal;
+  vl_dict_double(dict, "aperturediameter", &optics.aperture_diameter);
+  vl_dict_double(dict, "focusdistance", &optics.focus_distance);
+  vlParam *p = vl_dict_find(dict, "lensfile", 1u << VL_PARAM_STRING);
+  vl_dict_string(dict, "lensfile", &file);
+  if (!scene_ok(dict)) return false;
+  if (!p) return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string lensfile\" is missing", dict->what);
+  if (!vl_import_path(import, p, path, sizeof path) || !read_aperture(dict, &optics.aperture)) return false;
+  vlOptics **place = VL_PUSH(import->context, &import->scene->optics);
+  if (!place) return vl_import_fail_memory(import);
+  vlError error = {0};
+  vlResult result = vl_optics_load(import->context, path, &optics, place, &error);
+  if (result != VL_OK) return fail_with(dict, p->place, result, &error);
+  def->projection = VL_PROJECTION_OPTICS;
+  def->lens.optics = *place;
+  return true;
+}

@@ -1,0 +1,267 @@
+/* import/pbrt/medium.c: MakeNamedMedium to the scene, and which media shapes, lights and the camera lie in. Names are
+ * looked up at the end, since pbrt allows to name a medium before it is made. Parameters and defaults are pbrt-v4's. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "import/pbrt/builder.h"
+#include "import/pbrt/scattering.h"
+
+static const char *const kinds[] = {"homogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"};
+static const vlMediumKind kind_values[] = {VL_MEDIUM_HOMOGENEOUS, VL_MEDIUM_GRID, VL_MEDIUM_RGB_GRID, VL_MEDIUM_CLOUD,
+                                           VL_MEDIUM_NANOVDB};
+enum { KINDS = 5 };
+
+/* ---- parameters ------------------------------------------------------------------------------------------------- */
+
+static bool read_spectrum(vlDict *dict, const char *name, vlSpectrum *spectrum, bool *given) {
+  vlParam *p = vl_dict_find(dict, name, VL_BITS_SPECTRUM);
+  if (given) *given = p != NULL;
+  if (!p) return dict->import->scene->error.code == VL_OK;
+  return vl_import_spectrum(dict->import, p, spectrum);
+}
+
+bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum *absorption, vlSpectrum *scattering,
+                                 bool *given) {
+  const char *name = NULL, *names[64];
+  size_t count = 0;
+  *given = false;
+  if (!vl_dict_string(dict, parameter, &name)) return dict->import->scene->error.code == VL_OK;
+  *given = name[0] != 0;
+  for (const vlScattering *s; *given && count < 64 && (s = vl_scattering_preset(count)); count++) {
+    names[count] = s->name;
+    if (strcmp(s->name, name) != 0) continue;
+    *absorption = vl_spectrum_rgb(s->absorption[0], s->absorption[1], s->absorption[2]);
+    *scattering = vl_spectrum_rgb(s->scattering[0], s->scattering[1], s->scattering[2]);
+    return true;
+  }
+  if (!*given) return true;
+  vlSource at = vl_dict_find(dict, parameter, 1u << VL_PARAM_STRING)->place;
+  const char *near = vl_nearest_name(name, names, count);
+  if (near)
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%.80s\" (did you mean \"%s\"?)",
+                          dict->what, name, near);
+  return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%.80s\"", dict->what, name);
+}
+
+static bool read_sigmas(vlDict *dict, vlMediumDef *def) {
+  return read_spectrum(dict, "sigma_a", &def->sigma_a, NULL) && read_spectrum(dict, "sigma_s", &def->sigma_s, NULL);
+}
+
+static bool read_scattering(vlDict *dict, vlMediumDef *def) {
+  bool preset;
+  if (!vl_import_scattering_preset(dict, "preset", &def->sigma_a, &def->sigma_s, &preset)) return false;
+  vlMediumDef own = *def;
+  if (!read_sigmas(dict, &own)) return false;
+  if (!preset) *def = own; /* pbrt: a preset wins */
+  return true;
+}
+
+static bool read_homogeneous(vlDict *dict, vlMediumDef *def) {
+  if (!read_scattering(dict, def)) return false;
+  vl_dict_float(dict, "Lescale", &def->emission_scale);
+  return read_spectrum(dict, "Le", &def->emission, NULL);
+}
+
+static bool read_box(vlDict *dict, vlMediumDef *def) {
+  double a[3], b[3];
+  bool given = vl_dict_vector(dict, "p0", VL_PARAM_POINT3, a);
+  for (int i = 0; given && i < 3; i++) def->low[i] = (float)a[i];
+  given = vl_dict_vector(dict, "p1", VL_PARAM_POINT3, b);
+  for (int i = 0; given && i < 3; i++) def->high[i] = (float)b[i];
+  for (int i = 0; i < 3; i++) { /* pbrt's boxes sort their corners */
+    if (!(def->low[i] > def->high[i])) continue;
+    float t = def->low[i];
+    def->low[i] = def->high[i];
+    def->high[i] = t;
+  }
+  return dict->import->scene->error.code == VL_OK;
+}
+
+static bool read_resolution(vlDict *dict, vlMediumDef *def) {
+  vl_dict_count(dict, "nx", 1, &def->nx);
+  vl_dict_count(dict, "ny", 1, &def->ny);
+  vl_dict_count(dict, "nz", 1, &def->nz);
+  return dict->import->scene->error.code == VL_OK;
+}
+
+/* `per` numbers for each cell; null when not given. */
+static bool read_cells(vlDict *dict, const char *name, vlParamType type, const vlMediumDef *def, const float **values) {
+  vlParam *p = vl_dict_find(dict, name, 1u << type);
+  if (!p) return dict->import->scene->error.code == VL_OK;
+  size_t per = type == VL_PARAM_RGB ? 3 : 1, count = p->floats.count / per;
+  double cells = (double)def->nx * def->ny * def->nz;
+  if (p->floats.count % per || (double)count != cells)
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->place,
+                          "%s: \"%s\" holds %zu numbers, but nx * ny * nz = %u * %u * %u cells need %.0f", dict->what,
+                          name, p->floats.count, def->nx, def->ny, def->nz, cells * (double)per);
+  *values = p->floats.items;
+  return true;
+}
+
+static void read_temperature(vlDict *dict, vlMediumDef *def) {
+  vl_dict_float(dict, "temperaturecutoff", &def->temperature_offset); /* the old name */
+  vl_dict_float(dict, "temperatureoffset", &def->temperature_offset);
+  vl_dict_float(dict, "temperaturescale", &def->temperature_scale);
+}
+
+static bool missing(vlDict *dict, const char *what) {
+  if (!vl_dict_done(dict)) return false; /* a misspelt one */
+  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %s is missing", dict->what, what);
+}
+
+static bool read_grid(vlDict *dict, vlMediumDef *def) {
+  bool glows;
+  if (!read_scattering(dict, def) || !read_box(dict, def) || !read_resolution(dict, def) ||
+      !read_cells(dict, "density", VL_PARAM_FLOAT, def, &def->density) ||
+      !read_cells(dict, "temperature", VL_PARAM_FLOAT, def, &def->temperature) ||
+      !read_spectrum(dict, "Le", &def->emission, &glows))
+    return false;
+  vlParam *scale = vl_dict_find(dict, "Lescale", 1u << VL_PARAM_FLOAT);
+  if (scale && scale->floats.count == 1)
+    def->emission_scale = scale->floats.items[0];
+  else if (!read_cells(dict, "Lescale", VL_PARAM_FLOAT, def, &def->emission_scales))
+    return false;
+  read_temperature(dict, def);
+  if (glows && def->temperature)
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
+                          "%s: give either \"Le\" or \"temperature\", not both", dict->what);
+  return def->density || missing(dict, "\"float density\"");
+}
+
+static bool read_rgb_grid(vlDict *dict, vlMediumDef *def) {
+  if (!read_box(dict, def) || !read_resolution(dict, def) ||
+      !read_cells(dict, "sigma_a", VL_PARAM_RGB, def, &def->rgb_a) ||
+      !read_cells(dict, "sigma_s", VL_PARAM_RGB, def, &def->rgb_s) ||
+      !read_cells(dict, "Le", VL_PARAM_RGB, def, &def->rgb_emission))
+    return false;
+  vl_dict_float(dict, "Lescale", &def->emission_scale);
+  return def->rgb_a || def->rgb_s || missing(dict, "\"rgb sigma_a\" or \"rgb sigma_s\" (a colour for each cell)");
+}
+
+static bool read_cloud(vlDict *dict, vlMediumDef *def) {
+  vl_dict_float(dict, "density", &def->cloud_density);
+  vl_dict_float(dict, "wispiness", &def->wispiness);
+  vl_dict_float(dict, "frequency", &def->frequency);
+  return read_sigmas(dict, def) && read_box(dict, def);
+}
+
+static bool read_nanovdb(vlDict *dict, vlMediumDef *def) {
+  vlImport *import = dict->import;
+  vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
+  vl_dict_string(dict, "gridname", &def->grid);
+  vl_dict_string(dict, "temperaturename", &def->temperature_grid);
+  vl_dict_float(dict, "LeScale", &def->emission_scale); /* the old name */
+  vl_dict_float(dict, "Lescale", &def->emission_scale);
+  read_temperature(dict, def);
+  if (!read_sigmas(dict, def)) return false;
+  if (!file) return missing(dict, "\"string filename\"");
+  char path[4096];
+  if (!vl_import_path(import, file, path, sizeof path)) return false;
+  def->path = vl_import_keep(import, path);
+  return def->path != NULL;
+}
+
+bool vl_import_medium(vlImport *import, const vlStatement *s) {
+  uint32_t index;
+  char what[96];
+  const char *type = NULL;
+  snprintf(what, sizeof what, "MakeNamedMedium \"%.60s\"", s->names[0]);
+  if (vl_names_find(&import->media, s->names[0], &index))
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "medium \"%.80s\" is made a second time", s->names[0]);
+  vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
+                               vl_import_attributes(import, VL_ATTR_MEDIUM));
+  if (!vl_dict_string(&dict, "type", &type)) {
+    if (import->scene->error.code != VL_OK) return false;
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s: \"string type\" is missing", what);
+  }
+  int kind = -1;
+  for (int i = 0; i < KINDS; i++)
+    if (strcmp(type, kinds[i]) == 0) kind = i;
+  const char *name = vl_import_keep(import, s->names[0]);
+  if (!name) return false;
+  vlMediumId id = {0};
+  if (kind < 0) { /* permissive: vacuum */
+    if (!vl_import_unknown(import, s->place, "medium type", type, kinds, KINDS, NULL, 0)) return false;
+  } else {
+    vlMediumDef def = vl_default_medium_def(kind_values[kind]);
+    vlMat4 ctm;
+    def.name = name;
+    def.source = s->place;
+    def.space = import->state.space;
+    vl_dict_float(&dict, "scale", &def.scale);
+    vl_dict_float(&dict, "g", &def.g);
+    bool fine = vl_import_ctm(import, s->place, &ctm);
+    switch (def.kind) {
+      case VL_MEDIUM_GRID: fine = fine && read_grid(&dict, &def); break;
+      case VL_MEDIUM_RGB_GRID: fine = fine && read_rgb_grid(&dict, &def); break;
+      case VL_MEDIUM_CLOUD: fine = fine && read_cloud(&dict, &def); break;
+      case VL_MEDIUM_NANOVDB: fine = fine && read_nanovdb(&dict, &def); break;
+      default: fine = fine && read_homogeneous(&dict, &def); break;
+    }
+    if (!fine || !vl_dict_done(&dict)) return false;
+    memcpy(def.world_from_medium, ctm.m, sizeof def.world_from_medium);
+    id = vl_scene_add_medium(import->scene, &def);
+    if (!id.index) return false;
+  }
+  return vl_names_add(import->context, &import->media, name, id.index) || vl_import_fail_memory(import);
+}
+
+/* ---- who lies in them ------------------------------------------------------------------------------------------- */
+
+bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource place) {
+  const char *inside = target == 's' && import->state.inside ? import->state.inside : "";
+  const char *outside = import->state.outside ? import->state.outside : "";
+  if (!inside[0] && !outside[0]) return true;
+  vlMediumLink *link = VL_PUSH(import->context, &import->medium_links);
+  if (!link) return vl_import_fail_memory(import);
+  *link = (vlMediumLink){target, index, inside, outside, place};
+  return vl_scene_copy_source(import->scene, &link->place);
+}
+
+static bool find(vlImport *import, const char *name, vlSource place, vlMediumId *id) {
+  id->index = 0;
+  if (!name[0] || vl_names_find(&import->media, name, &id->index)) return true;
+  const char *near = vl_names_nearest(&import->media, name);
+  if (near)
+    return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no medium \"%.80s\" (did you mean \"%s\"?)", name,
+                          near);
+  return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no medium \"%.80s\"", name);
+}
+
+/* pbrt's surface integrators do as if there were no media, and warn; of these velo's tracers that follow light both
+ * ways do not. */
+static void warn_surface_integrator(vlImport *import, const vlMediumLink *link) {
+  const vlChoice *integrator = &import->integrator;
+  vlTracer tracer = vl_scene_settings(import->scene)->tracer;
+  if (tracer == VL_TRACER_VOLPATH || tracer == VL_TRACER_BIDIRECTIONAL || !integrator->given) return;
+  bool through = tracer == VL_TRACER_SPPM || tracer == VL_TRACER_LIGHT_PATH;
+  vl_import_warn(import, VL_LOG_WARNING, link->place,
+                 through
+                     ? "integrator \"%s\" of pbrt looks past participating media (here \"%.60s\"), velo's goes through"
+                     : "integrator \"%s\" looks past participating media (here \"%.60s\"), as in pbrt",
+                 integrator->kind, link->inside[0] ? link->inside : link->outside);
+}
+
+bool vl_import_finish_media(vlImport *import) {
+  vlScene *scene = import->scene;
+  for (size_t i = 0; i < import->medium_links.count; i++) {
+    const vlMediumLink *link = &import->medium_links.items[i];
+    vlMediumId inside, outside;
+    if (!find(import, link->inside, link->place, &inside) || !find(import, link->outside, link->place, &outside)) {
+      if (!vl_import_recover(import)) return false;
+      continue;
+    }
+    if (link->target == 's') {
+      scene->shapes.items[link->index].inside = inside;
+      scene->shapes.items[link->index].outside = outside;
+    } else if (link->target == 'l') {
+      scene->lights.items[link->index].medium = outside;
+    } else {
+      vl_scene_settings(scene)->camera_medium = outside;
+    }
+  }
+  if (import->medium_links.count) warn_surface_integrator(import, &import->medium_links.items[0]);
+  return true;
+}

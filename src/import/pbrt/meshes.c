@@ -1,0 +1,175 @@
+/* import/pbrt/meshes.c: mesh files. While statements are read only their names are noted and places for their shapes
+ * kept; at the end all files are read on all workers, and their shapes take those places in the order of the
+ * statements: ids, and which error is told, do not depend on the workers. */
+#include <string.h>
+
+#include "base/error.h"
+#include "import/pbrt/builder.h"
+#include "import/ply/ply.h"
+
+typedef struct Job {
+  vlPlyMesh mesh;
+  vlError error;
+  vlResult result;
+} Job;
+
+typedef struct Work {
+  vlImport *import;
+  Job *jobs;
+  uint32_t first; /* of import->mesh_files */
+} Work;
+
+bool vl_import_note_mesh(vlImport *import, const char *path, vlSource place, const vlShapeDef *def,
+                         const vlShapeLink *link) {
+  vlScene *scene = import->scene;
+  vlMeshFile *file = VL_PUSH(import->context, &import->mesh_files);
+  if (!file) return vl_import_fail_memory(import);
+  *file = (vlMeshFile){.place = place, .def = *def, .link = *link, .shape = (uint32_t)scene->shapes.count};
+  if (!(file->path = vl_import_keep(import, path)) || !vl_scene_copy_source(scene, &file->place) ||
+      !vl_scene_copy_source(scene, &file->def.source))
+    return false;
+  vlShapeDef *slot = scene->shapes.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->shapes) : NULL;
+  if (!slot) return vl_import_fail_memory(import);
+  *slot = file->def; /* without faces until then */
+  return true;
+}
+
+static void read_one(void *user, uint32_t index, uint32_t worker) {
+  (void)worker;
+  const Work *work = user;
+  Job *job = &work->jobs[index];
+  job->result = vl_ply_read(work->import->context, work->import->mesh_files.items[work->first + index].path, &job->mesh,
+                            &job->error);
+}
+
+/* Patches become triangles: only those can be displaced. */
+static bool only_triangles(vlImport *import, vlPlyMesh *mesh) {
+  if (!mesh->quads) return true;
+  size_t old = 3 * (size_t)mesh->triangles, quads = mesh->quads;
+  if (old / 3 + 2 * quads > 0x7fffffff) return vl_import_fail_memory(import);
+  uint32_t *indices = vl_realloc_array(import->context, mesh->triangle_indices, old + 6 * quads, sizeof *indices);
+  if (!indices) return vl_import_fail_memory(import);
+  for (size_t i = 0; i < quads; i++) {
+    const uint32_t *q = mesh->quad_indices + 4 * i, t[6] = {q[0], q[1], q[3], q[0], q[3], q[2]};
+    memcpy(indices + old + 6 * i, t, sizeof t);
+  }
+  mesh->triangle_indices = indices;
+  mesh->triangles += (uint32_t)(2 * quads);
+  vl_free(import->context, mesh->quad_indices);
+  mesh->quad_indices = NULL;
+  mesh->quads = 0;
+  return true;
+}
+
+/* A mesh of both kinds becomes two shapes that share nothing: the patches come first and are copied. */
+static bool add_mesh(vlImport *import, const vlMeshFile *file, Job *job) {
+  vlPlyMesh *mesh = &job->mesh;
+  if (job->result != VL_OK) {
+    vlSource inside = {job->error.file, job->error.line, job->error.column};
+    return vl_import_fail(import, job->result, job->error.file[0] ? inside : file->place, "%s", job->error.message);
+  }
+  vlShapeDef def = file->def;
+  if (file->link.displacement && !only_triangles(import, mesh)) return false;
+  def.vertices = mesh->vertices;
+  def.positions = mesh->positions;
+  def.normals = mesh->normals;
+  def.uvs = mesh->uvs;
+  if (mesh->triangles && mesh->quads) {
+    vlShapeDef copy = def;
+    copy.kind = VL_SHAPE_BILINEAR;
+    copy.faces = mesh->quads;
+    copy.indices = mesh->quad_indices;
+    if (!vl_scene_add_shape(import->scene, &copy).index) return false;
+    vl_free(import->context, mesh->quad_indices);
+    mesh->quad_indices = NULL;
+  }
+  def.kind = mesh->triangles ? VL_SHAPE_TRIANGLES : VL_SHAPE_BILINEAR;
+  def.faces = mesh->triangles ? mesh->triangles : mesh->quads;
+  def.indices = mesh->triangles ? mesh->triangle_indices : mesh->quad_indices;
+  *mesh = (vlPlyMesh){0}; /* the arrays change hands, also on failure */
+  return vl_scene_adopt_shape(import->scene, &def).index != 0;
+}
+
+/* What was noted for the shape at an old place is said of all that came there. first[old], first[old + 1]: new places.
+ */
+static bool move_links(vlImport *import, const uint32_t *first) {
+  size_t n = import->medium_links.count;
+  for (size_t i = 0; i < n; i++) {
+    vlMediumLink link = import->medium_links.items[i];
+    if (link.target != 's') continue;
+    uint32_t old = link.index, count = first[old + 1] - first[old];
+    import->medium_links.items[i].index = first[old];
+    if (!count) import->medium_links.items[i].target = 0; /* left out */
+    for (uint32_t k = 1; k < count; k++) {
+      vlMediumLink *more = VL_PUSH(import->context, &import->medium_links);
+      if (!more) return vl_import_fail_memory(import);
+      *more = link;
+      more->index = first[old] + k;
+    }
+  }
+  size_t links = import->links.count;
+  for (size_t i = 0; i < links; i++) import->links.items[i].shape = first[import->links.items[i].shape];
+  for (size_t i = 0; i < import->mesh_files.count; i++) {
+    const vlMeshFile *file = &import->mesh_files.items[i];
+    const vlShapeLink *l = &file->link;
+    if (!l->material && !l->material_name && !l->alpha && !l->displacement) continue;
+    for (uint32_t k = first[file->shape]; k < first[file->shape + 1]; k++) {
+      vlShapeLink *more = VL_PUSH(import->context, &import->links);
+      if (!more) return vl_import_fail_memory(import);
+      *more = *l;
+      more->shape = k;
+    }
+  }
+  return true;
+}
+
+/* Files are read in runs, so that what waits to change hands stays small beside what the scene holds. */
+enum { RUN = 256 };
+
+static bool place_shapes(vlImport *import, const vlShapeDef *old, size_t count, uint32_t *first) {
+  vlScene *scene = import->scene;
+  Job *jobs = vl_alloc_array(import->context, RUN, sizeof *jobs);
+  if (!jobs) return vl_import_fail_memory(import);
+  uint32_t next = 0, read = 0, from = 0;
+  bool fine = true;
+  for (size_t i = 0; i < count && fine; i++) {
+    first[i] = (uint32_t)scene->shapes.count;
+    if (next < import->mesh_files.count && import->mesh_files.items[next].shape == i) {
+      if (next == read) {
+        Work work = {import, jobs, next};
+        uint32_t left = (uint32_t)import->mesh_files.count - next;
+        from = next;
+        read = next + (left < RUN ? left : RUN);
+        memset(jobs, 0, RUN * sizeof *jobs);
+        vl_parallel_for(import->context, read - from, read_one, &work);
+      }
+      fine = add_mesh(import, &import->mesh_files.items[next], &jobs[next - from]) || vl_import_recover(import);
+      next++;
+    } else {
+      vlShapeDef *slot = VL_PUSH(scene->context, &scene->shapes);
+      if (slot)
+        *slot = old[i];
+      else
+        fine = vl_import_fail_memory(import);
+    }
+  }
+  first[count] = (uint32_t)scene->shapes.count;
+  for (uint32_t k = from; k < read; k++) vl_ply_free(import->context, &jobs[k - from].mesh);
+  vl_free(import->context, jobs);
+  return fine;
+}
+
+bool vl_import_read_meshes(vlImport *import) {
+  vlScene *scene = import->scene;
+  if (!import->mesh_files.count) return true;
+  size_t count = scene->shapes.count;
+  vlShapeDef *old = scene->shapes.items;
+  uint32_t *first = vl_alloc_array(import->context, count + 1, sizeof *first);
+  if (!first) return vl_import_fail_memory(import);
+  scene->shapes.items = NULL;
+  scene->shapes.count = scene->shapes.capacity = 0;
+  bool fine = place_shapes(import, old, count, first) && move_links(import, first);
+  vl_free(import->context, old);
+  vl_free(import->context, first);
+  return fine;
+}

@@ -1,0 +1,97 @@
+/* import/pbrt/param.h: parameters of a directive as parsed, and the typed questions that the builder asks of them. A
+ * parameter that nobody asked for, or of the wrong type or count, is an error at its place that names the nearest
+ * accepted one. */
+#ifndef IMPORT_PBRT_PARAM_H
+#define IMPORT_PBRT_PARAM_H
+
+#include "base/array.h"
+#include "velo/scene.h"
+
+typedef enum vlParamType {
+  VL_PARAM_INTEGER,
+  VL_PARAM_FLOAT,
+  VL_PARAM_BOOL,
+  VL_PARAM_STRING,
+  VL_PARAM_POINT2,
+  VL_PARAM_VECTOR2,
+  VL_PARAM_POINT3,
+  VL_PARAM_VECTOR3,
+  VL_PARAM_NORMAL,
+  VL_PARAM_SPECTRUM,
+  VL_PARAM_RGB,
+  VL_PARAM_BLACKBODY,
+  VL_PARAM_TEXTURE,
+  VL_PARAM_TYPES
+} vlParamType;
+
+/* "point3", ... The old spellings point, vector, color are read as point3, vector3, rgb. */
+const char *vl_param_type_name(vlParamType type);
+bool vl_param_type_find(const char *text, size_t length, vlParamType *type);
+/* Nearest type name for an error, or null. */
+const char *vl_param_type_nearest(const char *text);
+
+typedef struct vlParam {
+  vlParamType type;
+  char *name;
+  vlSource place; /* of the declaration; file is not owned */
+  /* One of these is filled: integers for type integer, floats for the other numbers. */
+  VL_ARRAY(float) floats;
+  VL_ARRAY(int32_t) integers;
+  VL_ARRAY(char *) strings;
+  VL_ARRAY(uint8_t) bools;
+  double exact[16]; /* the first numbers again, unrounded */
+  vlColorSpace space;
+  bool used;
+  bool optional; /* from Attribute: may go unused or have another type */
+} vlParam;
+
+typedef struct vlParamList {
+  VL_ARRAY(vlParam *) list;
+} vlParamList;
+
+void vl_param_free(vlContext *context, vlParam *param);
+void vl_param_list_free(vlContext *context, vlParamList *params);
+size_t vl_param_count(const vlParam *param); /* values of any kind */
+
+/* ---- questions -------------------------------------------------------------------------------------------------- */
+
+typedef struct vlImport vlImport;
+
+/* One directive's parameters with the attributes that apply, the later given first. Lives on the stack; asked names are
+ * string literals. */
+typedef struct vlDict {
+  vlImport *import;
+  const char *what; /* 'Shape "sphere"', for errors */
+  vlSource place;   /* of the directive */
+  vlColorSpace space;
+  const vlParamList *own, *attributes; /* attributes may be null */
+  const char *asked[64];
+  uint32_t asked_count;
+} vlDict;
+
+enum { VL_BIT_FLOAT = 1 << VL_PARAM_FLOAT, VL_BIT_TEXTURE = 1 << VL_PARAM_TEXTURE };
+enum { VL_BITS_SPECTRUM = 1 << VL_PARAM_RGB | 1 << VL_PARAM_SPECTRUM | 1 << VL_PARAM_BLACKBODY };
+
+/* The parameter `name` whose type is among the bits; null when it is not given. A given one of another type is an
+ * error. */
+vlParam *vl_dict_find(vlDict *dict, const char *name, uint32_t type_bits);
+/* These leave *value alone when the parameter is not given; return whether it was. */
+bool vl_dict_float(vlDict *dict, const char *name, float *value);
+bool vl_dict_double(vlDict *dict, const char *name, double *value);
+bool vl_dict_integer(vlDict *dict, const char *name, int32_t *value);
+bool vl_dict_count(vlDict *dict, const char *name, int32_t least, uint32_t *value); /* integer >= least */
+bool vl_dict_bool(vlDict *dict, const char *name, bool *value);
+bool vl_dict_string(vlDict *dict, const char *name, const char **value);
+bool vl_dict_vector(vlDict *dict, const char *name, vlParamType type, double value[3]);
+bool vl_dict_floats(vlDict *dict, const char *name, size_t count, double *value); /* exactly count, at most 16 */
+/* One of the names; index of it in *value. */
+bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, size_t count, int *value);
+/* Texture name given for `name`, null if it is not a texture. */
+vlParam *vl_dict_texture(vlDict *dict, const char *name);
+
+/* Error for every parameter that was not asked for. false after an error. */
+bool vl_dict_done(vlDict *dict);
+/* All parameters count as asked for: of things that are skipped. */
+void vl_dict_skip(vlDict *dict);
+
+#endif

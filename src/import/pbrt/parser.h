@@ -1,0 +1,47 @@
+/* import/pbrt/parser.h: what the two halves of the parser share: a file being read, its next token, errors at a place.
+ * parse_params.c reads parameters, parse.c directives and files. */
+#ifndef IMPORT_PBRT_PARSER_H
+#define IMPORT_PBRT_PARSER_H
+
+#include <sys/stat.h>
+
+#include "import/pbrt/parse.h"
+#include "import/pbrt/token.h"
+
+typedef struct vlParser {
+  vlContext *context;
+  const vlParseTarget *target;
+  const char *first; /* path of the first file */
+  uint32_t includes;
+} vlParser;
+
+typedef struct vlParserFile {
+  vlParser *parser;
+  struct vlParserFile *parent;
+  bool included; /* by Include: a list of parameters may go on in the parent */
+  const char *path;
+  dev_t device;
+  ino_t inode;
+  uint32_t depth;
+  vlTokenizer tokens;
+  bool has_token;
+  vlToken token;
+} vlParserFile;
+
+/* What stands there, short and printable. */
+typedef struct vlShown {
+  char text[48];
+} vlShown;
+
+vlShown vl_parse_show(const vlToken *token);
+vlSource vl_parse_place(const vlParserFile *file, const vlToken *token);
+bool vl_parse_fail(const vlParserFile *file, vlSource place, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+bool vl_parse_fail_memory(const vlParserFile *file);
+vlToken vl_parse_peek(vlParserFile *file);
+vlToken vl_parse_take(vlParserFile *file); /* the end stays */
+bool vl_parse_is_word(const vlToken *token, const char *word);
+/* All that follow a directive; past the end of an included file also those that stand after its Include. */
+bool vl_parse_params(vlParserFile *file, vlParamList *params);
+
+#endif

@@ -1,0 +1,186 @@
+/* import/pbrt/report.c: what the parts of the builder share: errors and warnings with their places, kept strings,
+ * paths, copies of parameters. */
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "import/pbrt/builder.h"
+
+/* ---- errors ----------------------------------------------------------------------------------------------------- */
+
+bool vl_import_fail(vlImport *import, vlResult code, vlSource place, const char *format, ...) {
+  char text[512];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  vl_scene_fail(import->scene, code, place, "%s", text);
+  return false;
+}
+
+bool vl_import_fail_memory(vlImport *import) {
+  return vl_import_fail(import, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+}
+
+static void log_text(vlImport *import, vlLogLevel level, vlSource place, const char *text) {
+  vlError where = {0};
+  vl_fail_at(&where, VL_OK, place.file, place.line, place.column, "%s", "");
+  vl_log(import->context, level, &where, "%s", text);
+}
+
+void vl_import_warn(vlImport *import, vlLogLevel level, vlSource place, const char *format, ...) {
+  char text[512];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  log_text(import, level, place, text);
+}
+
+bool vl_import_recover(vlImport *import) {
+  vlScene *scene = import->scene;
+  if (!scene->problem || scene->error.code == VL_ERROR_MEMORY || scene->error.code == VL_OK) return false;
+  if (++import->problems > VL_IMPORT_PROBLEMS) return false;
+  vlError problem = scene->error;
+  vl_error_clear(&scene->error);
+  scene->problem(scene->problem_user, &problem);
+  return true;
+}
+
+void vl_import_remark(vlImport *import, vlSource place, const char *format, ...) {
+  if (!import->scene->problem) return;
+  char text[400];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  vlError remark = {0};
+  vl_fail_at(&remark, VL_OK, place.file, place.line, place.column, "%s", text);
+  import->scene->problem(import->scene->problem_user, &remark);
+}
+
+bool vl_import_unsupported(vlImport *import, vlSource place, const char *format, ...) {
+  char text[400];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  if (!import->permissive) return vl_import_fail(import, VL_ERROR_SCENE, place, "%s", text);
+  log_text(import, VL_LOG_WARNING, place, text);
+  return true;
+}
+
+bool vl_import_unknown(vlImport *import, vlSource place, const char *thing, const char *name, const char *const *known,
+                       size_t known_count, const char *const *later, size_t later_count) {
+  for (size_t i = 0; i < later_count; i++)
+    if (strcmp(name, later[i]) == 0)
+      return vl_import_unsupported(import, place, "%s \"%s\" is not understood yet", thing, name);
+  const char *near = vl_nearest_name(name, known, known_count);
+  if (!near) near = vl_nearest_name(name, later, later_count);
+  if (near)
+    return vl_import_unsupported(import, place, "unknown %s \"%.80s\" (did you mean \"%s\"?)", thing, name, near);
+  return vl_import_unsupported(import, place, "unknown %s \"%.80s\"", thing, name);
+}
+
+const char *vl_import_keep(vlImport *import, const char *text) {
+  char **slot = VL_PUSH(import->context, &import->strings);
+  if (slot) *slot = vl_strdup(import->context, text);
+  if (slot && *slot) return *slot;
+  vl_import_fail_memory(import);
+  return NULL;
+}
+
+vlDict vl_import_dict(vlImport *import, const char *what, vlSource place, vlColorSpace space, const vlParamList *own,
+                      const vlParamList *attributes) {
+  return (vlDict){.import = import, .what = what, .place = place, .space = space, .own = own, .attributes = attributes};
+}
+
+bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t size) {
+  if (param->strings.count != 1)
+    return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\" takes one file name, found %zu", param->name,
+                          param->strings.count);
+  if (param->strings.items[0][0] == 0)
+    return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\" is an empty file name", param->name);
+  if (!vl_parse_find_file(param->place.file, import->first, param->strings.items[0], path, size))
+    return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\": file name too long", param->name);
+  if (access(path, R_OK) == 0) return true;
+  char *data;
+  size_t count;
+  vlError error = {0};
+  vlResult result = vl_file_read(import->context, path, false, &data, &count, &error); /* for its words */
+  vl_free(import->context, data);
+  if (result != VL_OK) return vl_import_fail(import, result, param->place, "%s", error.message);
+  return vl_import_fail(import, VL_ERROR_IO, param->place, "cannot read %s", path);
+}
+
+bool vl_import_color_space(const char *name, vlColorSpace *space) {
+  static const struct {
+    const char *name;
+    vlColorSpace space;
+  } spaces[] = {{"srgb", VL_SPACE_SRGB},
+                {"dci-p3", VL_SPACE_DCI_P3},
+                {"rec2020", VL_SPACE_REC2020},
+                {"aces2065-1", VL_SPACE_ACES2065_1}};
+  for (size_t i = 0; i < sizeof spaces / sizeof *spaces; i++) {
+    if (strlen(name) == strlen(spaces[i].name) && vl_ends_with(name, spaces[i].name)) { /* case ignored, as in pbrt */
+      *space = spaces[i].space;
+      return true;
+    }
+  }
+  return false;
+}
+
+/* ---- copies of parameters --------------------------------------------------------------------------------------- */
+
+static bool copy_bytes(vlContext *context, const void *from, size_t count, size_t size, void *items, size_t *n,
+                       size_t *capacity) {
+  void *copy = NULL;
+  if (count) {
+    copy = vl_alloc_array(context, count, size);
+    if (!copy) return false;
+    memcpy(copy, from, count * size);
+  }
+  memcpy(items, &copy, sizeof copy);
+  *n = *capacity = count;
+  return true;
+}
+
+static bool copy_param(vlContext *context, const vlParam *from, vlParam *to) {
+  to->type = from->type;
+  to->place = from->place;
+  to->space = from->space;
+  to->optional = true;
+  memcpy(to->exact, from->exact, sizeof to->exact);
+  to->name = vl_strdup(context, from->name);
+  bool fine = to->name &&
+              copy_bytes(context, from->floats.items, from->floats.count, sizeof(float), &to->floats.items,
+                         &to->floats.count, &to->floats.capacity) &&
+              copy_bytes(context, from->integers.items, from->integers.count, sizeof(int32_t), &to->integers.items,
+                         &to->integers.count, &to->integers.capacity) &&
+              copy_bytes(context, from->bools.items, from->bools.count, 1, &to->bools.items, &to->bools.count,
+                         &to->bools.capacity);
+  for (size_t i = 0; i < from->strings.count && fine; i++) {
+    char **slot = VL_PUSH(context, &to->strings);
+    fine = slot && (*slot = vl_strdup(context, from->strings.items[i]));
+  }
+  return fine;
+}
+
+bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamList *to) {
+  for (size_t i = 0; i < from->list.count; i++) {
+    vlParam *param = vl_alloc_zero(import->context, 1, sizeof *param);
+    vlParam **slot = param ? VL_PUSH(import->context, &to->list) : NULL;
+    if (slot)
+      *slot = param;
+    else
+      vl_free(import->context, param);
+    if (!slot || !copy_param(import->context, from->list.items[i], param)) return vl_import_fail_memory(import);
+  }
+  return true;
+}
+
+const vlParamList *vl_import_attributes(vlImport *import, vlAttributeTarget target) {
+  return &import->attributes[target];
+}

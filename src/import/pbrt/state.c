@@ -1,0 +1,125 @@
+/* import/pbrt/state.c: the graphics state of pbrt: current transforms, named coordinate systems, the stack. */
+#include <math.h>
+#include <string.h>
+
+#include "import/pbrt/builder.h"
+
+/* ---- transforms ------------------------------------------------------------------------------------------------- */
+
+static void set_ctm(vlImport *import, vlMat4 m) {
+  for (int i = 0; i < 2; i++)
+    if (import->state.active & 1u << i) import->state.ctm[i] = m;
+}
+
+static void apply(vlImport *import, vlMat4 m) {
+  for (int i = 0; i < 2; i++)
+    if (import->state.active & 1u << i) import->state.ctm[i] = vl_mat4_multiply(import->state.ctm[i], m);
+}
+
+/* pbrt's LookAt (book 3.9.2): camera from world, x right, y up, z forward. */
+static bool look_at(vlImport *import, const vlStatement *s) {
+  const double *e = s->numbers, *l = s->numbers + 3, *u = s->numbers + 6;
+  double d[3] = {l[0] - e[0], l[1] - e[1], l[2] - e[2]};
+  double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  if (!(length > 0.0))
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "LookAt: the eye and the point it looks at are the same");
+  for (int i = 0; i < 3; i++) d[i] /= length;
+  double r[3] = {u[1] * d[2] - u[2] * d[1], u[2] * d[0] - u[0] * d[2], u[0] * d[1] - u[1] * d[0]};
+  double size = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+  double up = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+  if (!(up > 0.0)) return vl_import_fail(import, VL_ERROR_SCENE, s->place, "LookAt: the up vector is zero");
+  if (!(size > 1e-12 * up))
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "LookAt: the up vector is parallel to the view direction");
+  for (int i = 0; i < 3; i++) r[i] /= size;
+  double n[3] = {d[1] * r[2] - d[2] * r[1], d[2] * r[0] - d[0] * r[2], d[0] * r[1] - d[1] * r[0]};
+  vlMat4 world_from_camera = {{r[0], n[0], d[0], e[0], r[1], n[1], d[1], e[1], r[2], n[2], d[2], e[2], 0, 0, 0, 1}}, m;
+  vl_mat4_inverse(world_from_camera, &m);
+  apply(import, m);
+  return true;
+}
+
+bool vl_import_transform(vlImport *import, const vlStatement *s) {
+  const double *v = s->numbers;
+  vlMat4 m = vl_mat4_identity();
+  switch (s->directive) {
+    case VL_DIR_IDENTITY: set_ctm(import, m); return true;
+    case VL_DIR_TRANSLATE: apply(import, vl_mat4_translate(v[0], v[1], v[2])); return true;
+    case VL_DIR_SCALE: apply(import, vl_mat4_scale(v[0], v[1], v[2])); return true;
+    case VL_DIR_ROTATE:
+      if (v[1] == 0.0 && v[2] == 0.0 && v[3] == 0.0)
+        return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Rotate: the axis is zero");
+      apply(import, vl_mat4_rotate(v[0] * 0.017453292519943295, v[1], v[2], v[3]));
+      return true;
+    case VL_DIR_LOOK_AT: return look_at(import, s);
+    default: break;
+  }
+  for (int i = 0; i < 4; i++) /* files hold columns one after the other */
+    for (int j = 0; j < 4; j++) m.m[4 * i + j] = v[4 * j + i];
+  if (s->directive == VL_DIR_TRANSFORM)
+    set_ctm(import, m);
+  else
+    apply(import, m);
+  return true;
+}
+
+bool vl_import_name_system(vlImport *import, const char *name, const vlMat4 m[2]) {
+  const char *kept = vl_import_keep(import, name);
+  vlTransforms *slot = kept ? VL_PUSH(import->context, &import->matrices) : NULL;
+  if (!slot) return vl_import_fail_memory(import);
+  slot->at[0] = m[0], slot->at[1] = m[1];
+  if (vl_names_add(import->context, &import->coordinate_systems, kept, (uint32_t)import->matrices.count - 1))
+    return true;
+  return vl_import_fail_memory(import);
+}
+
+bool vl_import_use_system(vlImport *import, const vlStatement *s) {
+  uint32_t index;
+  if (vl_names_find(&import->coordinate_systems, s->names[0], &index)) {
+    for (int i = 0; i < 2; i++) import->state.ctm[i] = import->matrices.items[index].at[i];
+    return true;
+  }
+  const char *near = vl_names_nearest(&import->coordinate_systems, s->names[0]);
+  if (near)
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
+                          "there is no coordinate system \"%.80s\" (did you mean \"%s\"?)", s->names[0], near);
+  return vl_import_fail(import, VL_ERROR_SCENE, s->place, "there is no coordinate system \"%.80s\"", s->names[0]);
+}
+
+/* ---- the stack -------------------------------------------------------------------------------------------------- */
+
+bool vl_import_push(vlImport *import, char kind, vlSource place) {
+  if (import->stack.count > 100000)
+    return vl_import_fail(import, VL_ERROR_SCENE, place, "attributes are nested more than 100000 deep");
+  vlStackEntry *entry = VL_PUSH(import->context, &import->stack);
+  if (!entry) return vl_import_fail_memory(import);
+  *entry = (vlStackEntry){kind, place, import->state};
+  return vl_scene_copy_source(import->scene, &entry->place);
+}
+
+void vl_import_restore(vlImport *import) {
+  import->state = import->stack.items[--import->stack.count].state;
+  for (int t = 0; t < VL_ATTR_TARGETS; t++) {
+    vlParamList *params = &import->attributes[t];
+    while (params->list.count > import->state.attributes[t])
+      vl_param_free(import->context, params->list.items[--params->list.count]);
+  }
+}
+
+bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource place) {
+  static const struct {
+    char kind;
+    const char *name;
+  } openers[] = {{'a', "AttributeBegin"}, {'o', "ObjectBegin"}, {'i', "Import"}};
+  const vlStackEntry *top = import->stack.count ? &import->stack.items[import->stack.count - 1] : NULL;
+  if (!top || (top->kind != kind && top->kind == 'i'))
+    return vl_import_fail(import, VL_ERROR_SCENE, place, "%s without its beginning", directive);
+  if (top->kind != kind) {
+    const char *open = "";
+    for (size_t i = 0; i < 3; i++)
+      if (openers[i].kind == top->kind) open = openers[i].name;
+    return vl_import_fail(import, VL_ERROR_SCENE, place, "%s: the %s of line %u must be closed first", directive, open,
+                          top->place.line);
+  }
+  vl_import_restore(import);
+  return true;
+}

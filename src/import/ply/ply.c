@@ -1,0 +1,212 @@
+/* import/ply/ply.c: see ply.h. The body is walked once, by the table that the header became. */
+#include "import/ply/ply.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "import/pbrt/token.h"
+#include "import/ply/ply_reader.h"
+
+/* ---- body ------------------------------------------------------------------------------------------------------- */
+
+static bool is_space(char c) {
+  return c == ' ' || c == '\n' || c == '\r' || c == '\t';
+}
+
+/* The next number of text. "nan" and "inf" are read too: what becomes of them is the caller's business. */
+static bool read_text(vlPlyReader *r, double *value) {
+  while (r->at < r->end && is_space(*r->at)) r->line += *r->at++ == '\n';
+  const char *start = r->at, *p = start;
+  if (vl_number_scan(&p, r->end, value) && (p == r->end || is_space(*p))) {
+    r->at = p;
+    return true;
+  }
+  if (r->at >= r->end) return vl_ply_fail(r, "the file ends too early");
+  const char *stop = start;
+  while (stop < r->end && !is_space(*stop)) stop++;
+  const char *word = start + (*start == '-' || *start == '+');
+  size_t length = (size_t)(stop - word);
+  if (length >= 3 && length <= 8 &&
+      (strncmp(word, "nan", 3) == 0 || strncmp(word, "NaN", 3) == 0 || strncmp(word, "inf", 3) == 0 ||
+       strncmp(word, "Inf", 3) == 0)) {
+    *value = word[0] == 'i' || word[0] == 'I' ? INFINITY : NAN;
+    r->at = stop;
+    return true;
+  }
+  return vl_ply_fail(r, "expected a number, found \"%.*s\"", (int)(stop - start < 30 ? stop - start : 30), start);
+}
+
+/* A binary value whose bytes are there. */
+static double load(const char *at, vlPlyType type, vlPlyFormat format) {
+  unsigned char b[8];
+  uint32_t n = vl_ply_type_size(type);
+  if (format == VL_PLY_BIG)
+    for (uint32_t i = 0; i < n; i++) b[i] = (unsigned char)at[n - 1 - i];
+  else
+    memcpy(b, at, n);
+  switch (type) {
+    case VL_PLY_I8: return (int8_t)b[0];
+    case VL_PLY_U8: return b[0];
+    case VL_PLY_I16: {
+      int16_t v;
+      memcpy(&v, b, 2);
+      return v;
+    }
+    case VL_PLY_U16: {
+      uint16_t v;
+      memcpy(&v, b, 2);
+      return v;
+    }
+    case VL_PLY_I32: {
+      int32_t v;
+      memcpy(&v, b, 4);
+      return v;
+    }
+    case VL_PLY_U32: {
+      uint32_t v;
+      memcpy(&v, b, 4);
+      return v;
+    }
+    case VL_PLY_F32: {
+      float v;
+      memcpy(&v, b, 4);
+      return (double)v;
+    }
+    default: {
+      double v;
+      memcpy(&v, b, 8);
+      return v;
+    }
+  }
+}
+
+bool vl_ply_read_value(vlPlyReader *r, vlPlyType type, double *value) {
+  if (r->format == VL_PLY_ASCII) return read_text(r, value);
+  if ((size_t)(r->end - r->at) < vl_ply_type_size(type)) return vl_ply_fail(r, "the file ends too early");
+  *value = load(r->at, type, r->format);
+  r->at += vl_ply_type_size(type);
+  return true;
+}
+
+/* Length of a list, with the bytes of its items known to be there. */
+bool vl_ply_read_length(vlPlyReader *r, const vlPlyProperty *p, uint64_t *length) {
+  double value;
+  if (!vl_ply_read_value(r, p->count_type, &value)) return false;
+  if (!(value >= 0.0) || value != floor(value)) return vl_ply_fail(r, "%g is not the length of a list", value);
+  uint64_t left = (uint64_t)(r->end - r->at), item = r->format == VL_PLY_ASCII ? 2 : vl_ply_type_size(p->type);
+  if (value > (double)(left / item + 1))
+    return vl_ply_fail(r, "a list promises %.0f values, but only %llu bytes follow", value, (unsigned long long)left);
+  *length = (uint64_t)value;
+  return true;
+}
+
+static bool skip_rows(vlPlyReader *r, const vlPlyElement *e) {
+  double ignored;
+  if (r->format != VL_PLY_ASCII && !e->has_list) return r->at += e->count * e->row_size, true;
+  if (e->property_count == 0) return true;
+  for (uint64_t i = 0; i < e->count; i++)
+    for (uint32_t j = 0; j < e->property_count; j++) {
+      const vlPlyProperty *p = &e->properties[j];
+      uint64_t n = 1;
+      if (p->is_list && !vl_ply_read_length(r, p, &n)) return false;
+      for (uint64_t k = 0; k < n; k++)
+        if (!vl_ply_read_value(r, p->type, &ignored)) return false;
+    }
+  return true;
+}
+
+static bool read_body(vlPlyReader *r) {
+  if (r->format != VL_PLY_ASCII)
+    r->line = 0;
+  else
+    r->line++;
+  for (uint32_t i = 0; i < r->element_count; i++) {
+    const vlPlyElement *e = &r->elements[i];
+    uint64_t left = (uint64_t)(r->end - r->at);
+    /* The last value of a text needs no blank after it. */
+    if (e->row_size && e->count > (left + 1) / e->row_size)
+      return vl_ply_fail(r, "the header promises %llu of element %s, but only %llu bytes follow",
+                         (unsigned long long)e->count, e->name, (unsigned long long)left);
+    bool fine = e->kind == VL_PLY_VERTEX ? vl_ply_read_vertices(r, e)
+                : e->kind == VL_PLY_FACE ? vl_ply_read_faces(r, e)
+                                         : skip_rows(r, e);
+    if (!fine) return false;
+  }
+  return true;
+}
+
+/* Faces that came before their vertices could not be checked on the way. */
+static bool check(vlPlyReader *r) {
+  const vlPlyMesh *m = r->mesh;
+  r->line = 0;
+  if (!r->has_vertices || m->vertices == 0) return vl_ply_fail(r, "the mesh has no vertices");
+  if (m->triangles == 0 && m->quads == 0) return vl_ply_fail(r, "the mesh has no faces");
+  for (size_t i = 0; i < 3 * (size_t)m->triangles; i++)
+    if (m->triangle_indices[i] >= m->vertices)
+      return vl_ply_fail(r, "a face names vertex %u, but there are %u vertices", m->triangle_indices[i], m->vertices);
+  for (size_t i = 0; i < 4 * (size_t)m->quads; i++)
+    if (m->quad_indices[i] >= m->vertices)
+      return vl_ply_fail(r, "a face names vertex %u, but there are %u vertices", m->quad_indices[i], m->vertices);
+  return true;
+}
+
+/* Arrays without slack, or null when empty. */
+static bool fit(vlPlyReader *r, uint32_t **items, size_t capacity, size_t count) {
+  if (count == 0) {
+    vl_free(r->context, *items);
+    *items = NULL;
+    return true;
+  }
+  if (count == capacity) return true;
+  uint32_t *fresh = vl_realloc_array(r->context, *items, count, sizeof *fresh);
+  if (!fresh) return vl_ply_fail_memory(r);
+  *items = fresh;
+  return true;
+}
+
+void vl_ply_free(vlContext *context, vlPlyMesh *mesh) {
+  vl_free(context, mesh->positions);
+  vl_free(context, mesh->normals);
+  vl_free(context, mesh->uvs);
+  vl_free(context, mesh->colors);
+  vl_free(context, mesh->triangle_indices);
+  vl_free(context, mesh->quad_indices);
+  *mesh = (vlPlyMesh){0};
+}
+
+vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size, vlPlyMesh *mesh,
+                      vlError *error) {
+  vlError local;
+  if (!error) error = &local;
+  vl_error_clear(error);
+  *mesh = (vlPlyMesh){0};
+  vlPlyReader r = {.context = context, .name = name, .at = data, .end = data + size, .mesh = mesh, .error = error};
+  r.elements = vl_alloc_array(context, VL_PLY_MAX_ELEMENTS, sizeof *r.elements);
+  bool fine = r.elements ? true : vl_ply_fail_memory(&r);
+  fine = fine && vl_ply_read_header(&r) && read_body(&r) && check(&r) &&
+         fit(&r, &mesh->triangle_indices, r.triangle_capacity, 3 * (size_t)mesh->triangles) &&
+         fit(&r, &mesh->quad_indices, r.quad_capacity, 4 * (size_t)mesh->quads);
+  vl_free(context, r.elements);
+  VL_ARRAY_FREE(context, &r.face);
+  if (!fine) vl_ply_free(context, mesh);
+  return fine ? VL_OK : error->code;
+}
+
+vlResult vl_ply_read_colored(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error) {
+  char *data;
+  size_t size;
+  *mesh = (vlPlyMesh){0};
+  vlResult result = vl_file_read(context, path, true, &data, &size, error);
+  if (result != VL_OK) return result;
+  result = vl_ply_parse(context, path, data, size, mesh, error);
+  vl_free(context, data);
+  return result;
+}
+
+vlResult vl_ply_read(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error) {
+  vlResult result = vl_ply_read_colored(context, path, mesh, error);
+  vl_free(context, mesh->colors);
+  mesh->colors = NULL;
+  return result;
+}

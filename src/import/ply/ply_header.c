@@ -1,0 +1,183 @@
+/* import/ply/ply_header.c: the header of a PLY file to a table of elements and properties; errors. */
+#include <stdio.h>
+#include <string.h>
+
+#include "import/ply/ply_reader.h"
+
+bool vl_ply_fail(vlPlyReader *r, const char *format, ...) {
+  char text[400];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  vl_fail_at(r->error, VL_ERROR_SCENE, r->name, r->line, r->line ? 1 : 0, "PLY: %s", text);
+  return false;
+}
+
+bool vl_ply_fail_memory(vlPlyReader *r) {
+  vl_fail_memory(r->error);
+  return false;
+}
+
+/* ---- header ----------------------------------------------------------------------------------------------------- */
+
+typedef struct Words {
+  char text[1024];
+  char *word[8];
+  uint32_t count;
+} Words;
+
+/* The next line, cut into words. */
+static bool next_line(vlPlyReader *r, Words *w) {
+  const char *start = r->at;
+  while (r->at < r->end && *r->at != '\n' && *r->at != '\r') r->at++;
+  if (r->at >= r->end) return vl_ply_fail(r, "the header has no end_header");
+  size_t length = (size_t)(r->at - start);
+  r->at += r->at[0] == '\r' && r->at + 1 < r->end && r->at[1] == '\n' ? 2 : 1;
+  r->line++;
+  if (length >= sizeof w->text) length = sizeof w->text - 1;
+  memcpy(w->text, start, length);
+  w->text[length] = 0;
+  w->count = 0;
+  char *p = w->text;
+  for (;;) {
+    while (*p == ' ' || *p == '\t') *p++ = 0;
+    if (!*p || w->count == 8) return true;
+    w->word[w->count++] = p;
+    while (*p && *p != ' ' && *p != '\t') p++;
+  }
+}
+
+static bool find_type(const char *name, vlPlyType *type) {
+  static const char *const names[2][VL_PLY_TYPES] = {
+      {"char", "uchar", "short", "ushort", "int", "uint", "float", "double"},
+      {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"}};
+  for (int i = 0; i < 2; i++)
+    for (int t = 0; t < VL_PLY_TYPES; t++)
+      if (strcmp(name, names[i][t]) == 0) return *type = (vlPlyType)t, true;
+  return false;
+}
+
+static vlPlyRole vertex_role(const char *name) {
+  static const struct {
+    const char *name;
+    vlPlyRole role;
+  } roles[] = {{"x", VL_PLY_X},
+               {"y", VL_PLY_Y},
+               {"z", VL_PLY_Z},
+               {"nx", VL_PLY_NX},
+               {"ny", VL_PLY_NY},
+               {"nz", VL_PLY_NZ},
+               {"u", VL_PLY_U},
+               {"v", VL_PLY_V},
+               {"s", VL_PLY_U},
+               {"t", VL_PLY_V},
+               {"texture_u", VL_PLY_U},
+               {"texture_v", VL_PLY_V},
+               {"texture_s", VL_PLY_U},
+               {"texture_t", VL_PLY_V},
+               {"red", VL_PLY_RED},
+               {"green", VL_PLY_GREEN},
+               {"blue", VL_PLY_BLUE},
+               {"alpha", VL_PLY_ALPHA},
+               {"r", VL_PLY_RED},
+               {"g", VL_PLY_GREEN},
+               {"b", VL_PLY_BLUE},
+               {"diffuse_red", VL_PLY_RED},
+               {"diffuse_green", VL_PLY_GREEN},
+               {"diffuse_blue", VL_PLY_BLUE}};
+  for (size_t i = 0; i < sizeof roles / sizeof *roles; i++)
+    if (strcmp(name, roles[i].name) == 0) return roles[i].role;
+  return VL_PLY_NOTHING;
+}
+
+static bool read_element(vlPlyReader *r, const Words *w) {
+  if (w->count != 3) return vl_ply_fail(r, "an element line has the form \"element name count\"");
+  if (r->element_count == VL_PLY_MAX_ELEMENTS) return vl_ply_fail(r, "more than %d elements", VL_PLY_MAX_ELEMENTS);
+  vlPlyElement *e = &r->elements[r->element_count++];
+  memset(e, 0, sizeof *e);
+  snprintf(e->name, sizeof e->name, "%s", w->word[1]);
+  e->kind = strcmp(w->word[1], "vertex") == 0 ? VL_PLY_VERTEX
+            : strcmp(w->word[1], "face") == 0 ? VL_PLY_FACE
+                                              : VL_PLY_OTHER;
+  const char *p = w->word[2];
+  for (; *p >= '0' && *p <= '9' && e->count < 1000000000000000ull; p++) e->count = e->count * 10 + (uint64_t)(*p - '0');
+  if (*p || p == w->word[2]) return vl_ply_fail(r, "element %.30s: \"%.30s\" is not a count", e->name, w->word[2]);
+  for (uint32_t i = 0; i + 1 < r->element_count; i++)
+    if (e->kind != VL_PLY_OTHER && r->elements[i].kind == e->kind)
+      return vl_ply_fail(r, "element %s appears twice", e->name);
+  return true;
+}
+
+static bool read_property(vlPlyReader *r, const Words *w) {
+  if (r->element_count == 0) return vl_ply_fail(r, "a property before any element");
+  vlPlyElement *e = &r->elements[r->element_count - 1];
+  if (e->property_count == VL_PLY_MAX_PROPERTIES)
+    return vl_ply_fail(r, "element %s has more than %d properties", e->name, VL_PLY_MAX_PROPERTIES);
+  vlPlyProperty *p = &e->properties[e->property_count++];
+  bool list = w->count == 5 && strcmp(w->word[1], "list") == 0;
+  *p = (vlPlyProperty){.is_list = list};
+  if (!list && w->count != 3)
+    return vl_ply_fail(r, "a property line has the form \"property type name\" or \"property list type type name\"");
+  if (!find_type(w->word[list ? 3 : 1], &p->type))
+    return vl_ply_fail(r, "unknown type \"%.30s\"", w->word[list ? 3 : 1]);
+  if (list && !find_type(w->word[2], &p->count_type)) return vl_ply_fail(r, "unknown type \"%.30s\"", w->word[2]);
+  if (list && p->count_type >= VL_PLY_F32) return vl_ply_fail(r, "the length of a list must be of an integer type");
+  const char *name = w->word[list ? 4 : 2];
+  if (e->kind == VL_PLY_VERTEX && !list) p->role = vertex_role(name);
+  if (e->kind == VL_PLY_FACE && list && (strcmp(name, "vertex_indices") == 0 || strcmp(name, "vertex_index") == 0)) {
+    if (p->type >= VL_PLY_F32) return vl_ply_fail(r, "%s must be of an integer type", name);
+    p->role = VL_PLY_INDICES;
+  }
+  e->has_list = e->has_list || list;
+  return true;
+}
+
+static bool read_format(vlPlyReader *r, const Words *w) {
+  if (w->count == 3 && strcmp(w->word[1], "ascii") == 0)
+    r->format = VL_PLY_ASCII;
+  else if (w->count == 3 && strcmp(w->word[1], "binary_little_endian") == 0)
+    r->format = VL_PLY_LITTLE;
+  else if (w->count == 3 && strcmp(w->word[1], "binary_big_endian") == 0)
+    r->format = VL_PLY_BIG;
+  else
+    return vl_ply_fail(r, "unknown format \"%.40s\" (known: ascii, binary_little_endian, binary_big_endian)",
+                       w->count > 1 ? w->word[1] : "");
+  return true;
+}
+
+/* A row's bytes; in text each value takes a digit and a blank at least. */
+static void measure(const vlPlyReader *r, vlPlyElement *e) {
+  e->row_size = 0;
+  for (uint32_t i = 0; i < e->property_count; i++) {
+    const vlPlyProperty *p = &e->properties[i];
+    e->row_size += r->format == VL_PLY_ASCII ? 2 : vl_ply_type_size(p->is_list ? p->count_type : p->type);
+  }
+}
+
+bool vl_ply_read_header(vlPlyReader *r) {
+  Words w;
+  bool has_format = false;
+  r->line = 0;
+  if (r->end - r->at < 4 || memcmp(r->at, "ply", 3) != 0 || (r->at[3] != '\n' && r->at[3] != '\r'))
+    return r->line = 1, vl_ply_fail(r, "the file does not begin with \"ply\"");
+  if (!next_line(r, &w)) return false;
+  for (;;) {
+    if (!next_line(r, &w)) return false;
+    bool fine = true;
+    if (w.count == 0 || strcmp(w.word[0], "comment") == 0 || strcmp(w.word[0], "obj_info") == 0) continue;
+    if (strcmp(w.word[0], "end_header") == 0) break;
+    if (strcmp(w.word[0], "format") == 0)
+      fine = has_format = read_format(r, &w);
+    else if (strcmp(w.word[0], "element") == 0)
+      fine = read_element(r, &w);
+    else if (strcmp(w.word[0], "property") == 0)
+      fine = read_property(r, &w);
+    else
+      fine = vl_ply_fail(r, "unknown word \"%.40s\" in the header", w.word[0]);
+    if (!fine) return false;
+  }
+  if (!has_format) return vl_ply_fail(r, "the header has no format line");
+  for (uint32_t i = 0; i < r->element_count; i++) measure(r, &r->elements[i]);
+  return true;
+}

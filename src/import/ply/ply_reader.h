@@ -1,0 +1,93 @@
+/* import/ply/ply_reader.h: what the files that read PLY share: the header as a small table of elements and properties,
+ * and the place in the file. ply_header.c fills the table, ply_rows.c walks vertices and faces, ply.c the whole. */
+#ifndef IMPORT_PLY_PLY_READER_H
+#define IMPORT_PLY_PLY_READER_H
+
+#include "base/array.h"
+#include "base/error.h"
+#include "import/ply/ply.h"
+
+enum { VL_PLY_MAX_ELEMENTS = 32, VL_PLY_MAX_PROPERTIES = 256 };
+
+typedef enum vlPlyType {
+  VL_PLY_I8,
+  VL_PLY_U8,
+  VL_PLY_I16,
+  VL_PLY_U16,
+  VL_PLY_I32,
+  VL_PLY_U32,
+  VL_PLY_F32,
+  VL_PLY_F64,
+  VL_PLY_TYPES
+} vlPlyType;
+
+typedef enum vlPlyFormat { VL_PLY_ASCII, VL_PLY_LITTLE, VL_PLY_BIG } vlPlyFormat;
+
+/* What a property is to us. */
+typedef enum vlPlyRole {
+  VL_PLY_NOTHING,
+  VL_PLY_X,
+  VL_PLY_Y,
+  VL_PLY_Z,
+  VL_PLY_NX,
+  VL_PLY_NY,
+  VL_PLY_NZ,
+  VL_PLY_U,
+  VL_PLY_V,
+  VL_PLY_RED,
+  VL_PLY_GREEN,
+  VL_PLY_BLUE,
+  VL_PLY_ALPHA,
+  VL_PLY_INDICES,
+  VL_PLY_ROLES
+} vlPlyRole;
+
+typedef struct vlPlyProperty {
+  vlPlyType type, count_type;
+  bool is_list;
+  vlPlyRole role;
+} vlPlyProperty;
+
+typedef enum vlPlyElementKind { VL_PLY_OTHER, VL_PLY_VERTEX, VL_PLY_FACE } vlPlyElementKind;
+
+typedef struct vlPlyElement {
+  vlPlyElementKind kind;
+  char name[32];
+  uint64_t count;
+  vlPlyProperty properties[VL_PLY_MAX_PROPERTIES];
+  uint32_t property_count;
+  bool has_list;
+  uint64_t row_size; /* bytes of a row: exact when there is no list in a binary file, else at least so many */
+} vlPlyElement;
+
+typedef struct vlPlyReader {
+  vlContext *context;
+  const char *name;
+  const char *at, *end;
+  uint32_t line; /* of text; 0 in a binary body */
+  vlPlyFormat format;
+  vlPlyElement *elements;
+  uint32_t element_count;
+  vlPlyMesh *mesh;
+  bool has_vertices;
+  size_t triangle_capacity, quad_capacity; /* numbers */
+  VL_ARRAY(uint32_t) face;
+  vlError *error;
+} vlPlyReader;
+
+/* Bytes of a value. */
+static inline uint32_t vl_ply_type_size(vlPlyType type) {
+  return type <= VL_PLY_U8 ? 1 : type <= VL_PLY_U16 ? 2 : type <= VL_PLY_F32 ? 4 : 8;
+}
+
+bool vl_ply_fail(vlPlyReader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+bool vl_ply_fail_memory(vlPlyReader *r);
+bool vl_ply_read_header(vlPlyReader *r); /* up to the body */
+/* The next value of that type, text or binary. */
+bool vl_ply_read_value(vlPlyReader *r, vlPlyType type, double *value);
+/* Length of a list, with the bytes of its items known to be there. */
+bool vl_ply_read_length(vlPlyReader *r, const vlPlyProperty *p, uint64_t *length);
+bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e);
+bool vl_ply_read_faces(vlPlyReader *r, const vlPlyElement *e);
+
+#endif

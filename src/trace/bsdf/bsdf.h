@@ -1,0 +1,110 @@
+/* trace/bsdf/bsdf.h: BSDFs over batches of one kind. All directions in the local shading frame, z the shading normal;
+ * wo and wi point away from the surface. Channel-wise: 4 wavelengths or R, G, B and nothing; the code does not know
+ * which.
+ *
+ *   eval:   value[c] = f(wo, wi) |cos wi|, pdf = density of sampling wi (solid angle); specular (delta) parts are 0
+ *   sample: wi; weight[c] = f |cos| / pdf; pdf (for delta parts: the discrete probability's, flag set); flags
+ * Radiance is transported (camera paths): transmission into a denser medium carries 1/eta^2 (pbrt book 9.5.2).
+ * References: pbrt-v4 book chapter 9; Walter et al. 2007; Heitz 2018 / Dupuy and Benyoub 2023 (visible normals). */
+#ifndef TRACE_BSDF_BSDF_H
+#define TRACE_BSDF_BSDF_H
+
+#include "base/isa.h"
+#include "velo/base.h"
+#include "world/material/coat.h"
+#include "world/material/measured.h"
+
+typedef enum vlBsdfKind {
+  VL_BSDF_DIFFUSE,
+  VL_BSDF_CONDUCTOR,  /* eta, k; rough or smooth by lane (alpha < 1e-3 both: smooth) */
+  VL_BSDF_DIELECTRIC, /* eta_s > 0 interior over exterior; rough or smooth by lane */
+  VL_BSDF_THIN_DIELECTRIC,
+  VL_BSDF_COATED_DIFFUSE, /* rough or smooth dielectric coat over a diffuse base, table of its transmittances */
+  VL_BSDF_PRINCIPLED,     /* many layers: docs/principled.md */
+  VL_BSDF_DIFFUSE_TRANSMISSION,
+  VL_BSDF_LAYERED, /* rough or smooth dielectric coat over metal or a diffuse base, by random walks between them */
+  VL_BSDF_HAIR,
+  VL_BSDF_MEASURED,
+  VL_BSDF_KINDS
+} vlBsdfKind;
+
+/* Rows of the principled material; its base colour is reflectance, its roughness alpha_x and alpha_y (at least 1e-3).
+ * F0 is the dielectric's, without metal. COAT_X, Y, Z: the coat's normal, unit, z > 0. */
+enum {
+  VL_P_METALLIC,
+  VL_P_F0,
+  VL_P_F90 = VL_P_F0 + 4,
+  VL_P_TRANSMISSION,
+  VL_P_THIN, /* 1: a sheet, or nothing passes; 0: a solid of index eta_s */
+  VL_P_DIFFUSE_TRANSMISSION,
+  VL_P_THROUGH, /* colour of that */
+  VL_P_COAT = VL_P_THROUGH + 4,
+  VL_P_COAT_ALPHA,
+  VL_P_COAT_X,
+  VL_P_COAT_Y,
+  VL_P_COAT_Z,
+  VL_P_SHEEN,
+  VL_P_SHEEN_ALPHA = VL_P_SHEEN + 4,
+  VL_P_FILM,
+  VL_P_FILM_INDEX,
+  VL_P_FILM_NM,
+  VL_PRINCIPLED_ROWS
+};
+
+/* Other kinds use the same rows for parameters of their own. */
+enum { VL_T_TRANSMITTANCE /* 4 */ };
+enum {
+  VL_L_METAL, /* 1: the base is metal of eta, k (over the coat's index); 0: diffuse, of reflectance */
+  VL_L_BASE_X,
+  VL_L_BASE_Y, /* alpha of the metal; that of the coat is alpha_x, alpha_y */
+  VL_L_THICKNESS,
+  VL_L_G,
+  VL_L_ALBEDO,
+  VL_L_DEPTH = VL_L_ALBEDO + 4, /* steps of a walk */
+  VL_L_WALKS
+};
+enum {
+  VL_H_SIGMA_A,
+  VL_H_ACROSS = VL_H_SIGMA_A + 4, /* where the hair is met, -1 to 1 */
+  VL_H_BETA_M,
+  VL_H_BETA_N,
+  VL_H_ALPHA, /* radians */
+  VL_H_ROWS
+};
+enum { VL_S_SIGMA /* extinction, 4 */, VL_S_ALBEDO = VL_S_SIGMA + 4 /* 4 */ }; /* of bodies (subsurface.hot.c) */
+
+enum {
+  VL_SAMPLED_SPECULAR = 1,     /* delta: eval knows nothing of it */
+  VL_SAMPLED_TRANSMISSION = 2, /* wi on the other side of the surface */
+  VL_SAMPLED_NONE = 4          /* no direction: the path ends; weight is 0 */
+};
+
+/* One array a parameter, VL_PAD(n) lanes; a kind reads only what it names. */
+typedef struct vlBsdfParams {
+  float *reflectance[4];    /* diffuse, coated diffuse: albedo of the base in [0,1] */
+  float *eta[4], *k[4];     /* conductor */
+  float *alpha_x, *alpha_y; /* conductor, dielectric, coat */
+  float *eta_s;             /* dielectric, thin, coat */
+  const vlCoatTable **coat; /* coated diffuse */
+  float *principled[VL_PRINCIPLED_ROWS];
+  const uint32_t *seed; /* layered: of the walks' random numbers */
+  const vlMeasured *const *measured;
+  const float *lambda[4]; /* principled, measured: wavelengths, nm; null in RGB mode */
+} vlBsdfParams;
+
+typedef struct vlBsdfDirections {
+  float *x, *y, *z;
+} vlBsdfDirections;
+
+typedef struct vlBsdfKernels {
+  /* for kind: eval and sample */
+  void (*eval)(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
+               float *const value[4], float *pdf);
+  void (*sample)(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
+                 const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+                 uint32_t *flags, float *eta_scale /* relative eta of a transmission squared, else 1: for roulette */);
+} vlBsdfKernels;
+extern const vlBsdfKernels vl_bsdf_kernels_v2, vl_bsdf_kernels_v3, vl_bsdf_kernels_v4;
+const vlBsdfKernels *vl_bsdf_kernels(vlIsa isa);
+
+#endif

@@ -1,0 +1,271 @@
+/* trace/ground_truth/ground_truth.hot.c: ground truth of a batch of rays: who is met, how far away in double, normals,
+ * albedo.
+ *
+ *   exact rays -> rounded to float -> ids (Embree) -> distance in double, from the exact ray and the surface itself
+ *                                                  -> the stages of the tracers: normals, uv, textures at 64
+ * wavelengths
+ *
+ * What a hit is (interfaces are passed, mixed materials decided by a hash of the ray) is what the tracers say it is. */
+#include "trace/ground_truth/scratch.h"
+#include "world/material/bssrdf.h"
+#include "world/material/measured_lookup.h"
+#include "world/shape/moving.h"
+#include "world/shape/surface_point.h"
+
+/* ---- how far, in double ------------------------------------------------------------------------------------------ */
+
+typedef struct Exact {
+  double x, y, z;
+} Exact;
+static inline Exact exact_sub(Exact a, Exact b) {
+  return (Exact){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+static inline Exact exact_cross(Exact a, Exact b) {
+  return (Exact){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+static inline double exact_dot(Exact a, Exact b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static Exact exact_corner(const vlWorldShape *s, const vlWorldInstance *q, float time, uint32_t vertex) {
+  float room[3];
+  const float *x = vl_vertex_at(s, vertex, time, room);
+  if (!q) return (Exact){x[0], x[1], x[2]};
+  double r[3];
+  for (int i = 0; i < 3; i++) {
+    const float *m = q->from_group + 4 * i;
+    r[i] = (double)m[0] * x[0] + (double)m[1] * x[1] + (double)m[2] * x[2] + m[3];
+  }
+  return (Exact){r[0], r[1], r[2]};
+}
+
+/* To the triangle's plane; held between its corners, since on a grazing plane the rounding of the ray that found the
+ * triangle may put the exact ray's crossing far outside. */
+static double triangle_distance(const vlWorldShape *s, const vlWorldInstance *q, float time, uint32_t prim, Exact o,
+                                Exact d, double otherwise) {
+  const uint32_t *f = s->indices + 3 * (size_t)prim;
+  Exact a = exact_sub(exact_corner(s, q, time, f[0]), o), b = exact_sub(exact_corner(s, q, time, f[1]), o),
+        c = exact_sub(exact_corner(s, q, time, f[2]), o);
+  Exact n = exact_cross(exact_sub(b, a), exact_sub(c, a));
+  double along = exact_dot(d, n), t = exact_dot(a, n) / along;
+  if (!(along != 0.0) || !(t - t == 0.0)) return otherwise;
+  double ta = exact_dot(a, d), tb = exact_dot(b, d), tc = exact_dot(c, d);
+  double low = ta < tb ? ta : tb, high = ta < tb ? tb : ta;
+  low = low < tc ? low : tc, high = high > tc ? high : tc;
+  t = t < low ? low : t;
+  return t > high ? high : t;
+}
+
+/* The crossing of a curved shape near t, where the rounded ray found it. */
+static double curved_distance(const vlWorldShape *s, const vlWorldInstance *q, uint32_t prim, Exact o, Exact d,
+                              double t) {
+  double go[3] = {o.x, o.y, o.z}, gd[3] = {d.x, d.y, d.z};
+  if (q) vl_ray_to_group(q, go, gd);
+  vlShapeHit hit;
+  for (double reach = 0x1p-21; reach < 1e-2; reach *= 32.0) /* grazing rays move their crossing further */
+    if (vl_shape_intersect(s, prim, go, gd, t * (1.0 - reach), t * (1.0 + reach) + 1e-37, &hit)) return hit.t;
+  return t;
+}
+
+static double exact_distance(const vlWorld *world, const vlTruthBatch *batch, uint32_t lane, const vlHits *h,
+                             uint32_t i, double t) {
+  const vlWorldShape *s = &world->shapes.items[h->shape[i]];
+  vlWorldInstance room;
+  const vlWorldInstance *q =
+      h->instance[i] == VL_NONE ? NULL : vl_instance_at(&world->instances.items[h->instance[i]], batch->time, &room);
+  Exact o = {batch->o[0][lane], batch->o[1][lane], batch->o[2][lane]};
+  Exact d = {batch->d[0][lane], batch->d[1][lane], batch->d[2][lane]};
+  return s->kind == VL_SHAPE_TRIANGLES ? triangle_distance(s, q, batch->time, h->prim[i], o, d, t)
+                                       : curved_distance(s, q, h->prim[i], o, d, h->t[i]);
+}
+
+/* ---- what it looks like ------------------------------------------------------------------------------------------ */
+
+static void keep_frames(vlTruthScratch *s, uint32_t n, bool back) {
+  vlSurface *f = &s->trace.surface;
+  float *rows[6] = {f->nx, f->ny, f->nz, f->ux, f->uy, f->uz};
+  for (int k = 0; k < 6; k++)
+    for (uint32_t i = 0; i < n; i++) {
+      float *from = back ? s->kept[k] : rows[k], *to = back ? rows[k] : s->kept[k];
+      to[i] = from[i];
+    }
+}
+
+/* Reflectance of one lane at channel c: conductors and what was measured straight on; of bodies what comes back out of
+ * them; what lets light through reflects or transmits all. */
+static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, float lambda, int c, uint32_t i) {
+  if (m->reflectance >= 0) return sh->reflectance[c][i];
+  if (m->measured) return vl_measured_albedo(m->measured, c, lambda);
+  if (m->subsurface) {
+    vlSpline albedo = vl_bssrdf_albedo(m->subsurface->table, sh->principled[VL_S_ALBEDO + c][i]);
+    return vl_bssrdf_effective(m->subsurface->table, &albedo);
+  }
+  if (m->kind != VL_MATERIAL_CONDUCTOR && m->kind != VL_MATERIAL_COATED_CONDUCTOR) return 1.0f;
+  float n = sh->eta[c][i], k = sh->k[c][i];
+  return ((n - 1.0f) * (n - 1.0f) + k * k) / ((n + 1.0f) * (n + 1.0f) + k * k);
+}
+
+static void add_albedo(const vlWorld *world, const vlTruthDef *def, uint32_t set, uint32_t n, vlTraceScratch *s,
+                       vlTruthBatch *batch) {
+  for (uint32_t i = 0; i < n; i++) {
+    const vlWorldMaterial *m = &world->materials.items[s->hits_b.material[i]];
+    uint32_t lane = s->b.lane[i];
+    for (int c = 0; c < 4; c++) {
+      float a = albedo_at(m, &s->shade, s->b.lambda[c][i], c, i);
+      for (int k = 0; k < 3; k++) batch->albedo[k][lane] += a * def->weight[set][c][k];
+    }
+  }
+}
+
+static void shade(const vlWorld *world, const vlTruthDef *def, uint32_t n, vlTruthScratch *scratch,
+                  vlTruthBatch *batch) {
+  vlTraceScratch *s = &scratch->trace;
+  keep_frames(scratch, n, false);
+  for (uint32_t set = 0; set < def->sets; set++) {
+    if (set) keep_frames(scratch, n, true);
+    for (int c = 0; c < 4; c++)
+      for (uint32_t i = 0; i < n; i++) s->b.lambda[c][i] = def->lambda[set][c], s->b.beta[c][i] = 1.0f;
+    for (uint32_t first = 0, last; first < n; first = last) {
+      uint32_t material = s->hits_b.material[first];
+      for (last = first + 1; last < n && s->hits_b.material[last] == material;) last++;
+      VL_HOT(vl_stage_material)(world, first, last, material, s);
+    }
+    if (def->albedo) add_albedo(world, def, set, n, s, batch);
+  }
+}
+
+/* ---- the batch --------------------------------------------------------------------------------------------------- */
+
+static void start(const vlTruthDef *def, vlTruthBatch *batch, vlPaths *p) {
+  for (uint32_t i = 0; i < batch->n; i++) {
+    p->ox[i] = (float)batch->o[0][i], p->oy[i] = (float)batch->o[1][i], p->oz[i] = (float)batch->o[2][i];
+    p->dx[i] = (float)batch->d[0][i], p->dy[i] = (float)batch->d[1][i], p->dz[i] = (float)batch->d[2][i];
+    p->cone[i] = def->pixel_width, p->spread[i] = def->pixel_spread;
+    p->lane[i] = i;
+    p->specular[i] = 1;
+    for (int c = 0; c < 4; c++) p->lambda[c][i] = def->lambda[0][c], p->beta[c][i] = 0.0f;
+    batch->distance[i] = VL_INFINITY;
+    for (int k = 0; k < 3; k++) batch->n_shading[k][i] = batch->n_geometric[k][i] = batch->albedo[k][i] = 0.0f;
+    batch->uv[0][i] = batch->uv[1][i] = 0.0f;
+    batch->object[i] = batch->material[i] = batch->instance[i] = batch->primitive[i] = 0;
+  }
+}
+
+/* Lanes of a that met something, close together in b. */
+static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s, vlTruthBatch *batch) {
+  const vlPaths *a = &s->a;
+  vlPaths *b = &s->b;
+  vlHits *h = &s->hits_a, *g = &s->hits_b;
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (h->shape[i] == VL_NONE) continue;
+    uint32_t k = count++;
+    b->ox[k] = a->ox[i], b->oy[k] = a->oy[i], b->oz[k] = a->oz[i];
+    b->dx[k] = a->dx[i], b->dy[k] = a->dy[i], b->dz[k] = a->dz[i];
+    b->cone[k] = a->cone[i], b->spread[k] = a->spread[i];
+    b->lane[k] = i;
+    g->shape[k] = h->shape[i], g->prim[k] = h->prim[i], g->instance[k] = h->instance[i], g->t[k] = h->t[i];
+    g->material[k] = h->material[i];
+    batch->object[i] = h->shape[i] + 1;
+    batch->material[i] = world->shapes.items[h->shape[i]].material + 1;
+    batch->instance[i] = h->instance[i] == VL_NONE ? 0 : h->instance[i] + 1;
+    batch->primitive[i] = h->prim[i] + 1;
+  }
+  return count;
+}
+
+static void trace(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *scratch, vlTruthBatch *batch) {
+  vlTraceScratch *s = &scratch->trace;
+  start(def, batch, &s->a);
+  s->a.time = s->b.time = world->moves ? scratch->time : NULL;
+  for (uint32_t i = 0; world->moves && i < VL_ROW_SIZE; i++) scratch->time[i] = batch->time;
+  if (batch->n == 0) return;
+  /* Light that the rays run into is of no interest here. */
+  vlTraceBatch rays = {.n = batch->n, .t_min = batch->t_min, .t_max = batch->t_max};
+  for (int c = 0; c < 4; c++) rays.radiance[c] = scratch->light[c];
+  vlTraceDef trace_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
+  vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
+  VL_HOT(vl_stage_hits)(&tracing, batch->n, true);
+  uint32_t n = gather_hits(world, batch->n, s, batch);
+  if (n == 0) return;
+  VL_HOT(vl_stage_surface)(world, n, &s->b, &s->hits_b, &s->corners, &s->surface);
+  if (def->shading || def->albedo) shade(world, def, n, scratch, batch);
+  const vlSurface *f = &s->surface;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = s->b.lane[i];
+    batch->distance[lane] = exact_distance(world, batch, lane, &s->hits_b, i, f->t[i]);
+    batch->n_shading[0][lane] = f->nx[i], batch->n_shading[1][lane] = f->ny[i], batch->n_shading[2][lane] = f->nz[i];
+    batch->n_geometric[0][lane] = f->gx[i], batch->n_geometric[1][lane] = f->gy[i];
+    batch->n_geometric[2][lane] = f->gz[i];
+    batch->uv[0][lane] = f->u[i], batch->uv[1][lane] = f->v[i];
+  }
+}
+
+/* ---- who is met ---------------------------------------------------------------------------------------------------
+ */
+
+static void hits(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *scratch, const vlTruthHits *to) {
+  vlTraceScratch *s = &scratch->trace;
+  vlPaths *p = &s->a;
+  uint32_t n = to->n;
+  if (n == 0) return;
+  for (uint32_t i = 0; i < n; i++) {
+    p->ox[i] = to->ox[i], p->oy[i] = to->oy[i], p->oz[i] = to->oz[i];
+    p->dx[i] = to->dx[i], p->dy[i] = to->dy[i], p->dz[i] = to->dz[i];
+    p->cone[i] = def->pixel_width, p->spread[i] = def->pixel_spread;
+    p->specular[i] = 1;
+    p->lane[i] = i;
+    for (int c = 0; c < 4; c++) p->lambda[c][i] = def->lambda[0][c], p->beta[c][i] = 0.0f;
+  }
+  p->time = to->time;
+  vlTraceBatch rays = {.n = n, .t_min = to->t_min, .t_max = to->t_max};
+  for (int c = 0; c < 4; c++) rays.radiance[c] = scratch->light[c];
+  vlTraceDef trace_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
+  vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
+  VL_HOT(vl_stage_hits)(&tracing, n, true);
+  const vlHits *h = &s->hits_a;
+  for (uint32_t i = 0; i < n; i++) {
+    bool hit = h->shape[i] != VL_NONE;
+    to->object[i] = hit ? h->shape[i] + 1 : 0;
+    to->material[i] = hit ? world->shapes.items[h->shape[i]].material + 1 : 0;
+    to->instance[i] = hit && h->instance[i] != VL_NONE ? h->instance[i] + 1 : 0;
+    if (!to->distance) continue;
+    to->distance[i] = VL_INFINITY;
+    if (!hit) continue;
+    vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+    float time = vl_path_time(p, i);
+    to->distance[i] = VL_HOT(vl_point_at_time)(world, time, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]).t;
+  }
+}
+
+/* As interfaces are passed (hits.hot.c): past each surface by what its point may be wrong. */
+static void layers(const vlWorld *world, const vlTruthBatch *batch, uint32_t lane, vlTruthLayers *to) {
+  float o[3], d[3], t_min = batch->t_min[lane];
+  for (int k = 0; k < 3; k++) o[k] = (float)batch->o[k][lane], d[k] = (float)batch->d[k][lane];
+  to->count = 0;
+  for (int step = 0; step < VL_TRUTH_LAYERS; step++) {
+    uint32_t shape, prim, instance;
+    float t;
+    vlRays ray = {.ox = o,
+                  .oy = o + 1,
+                  .oz = o + 2,
+                  .dx = d,
+                  .dy = d + 1,
+                  .dz = d + 2,
+                  .t_min = &t_min,
+                  .t_max = batch->t_max + lane,
+                  .time = &batch->time};
+    vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t);
+    if (shape == VL_NONE) return;
+    vlVec3 from = {o[0], o[1], o[2]}, along = {d[0], d[1], d[2]};
+    vlPoint at = VL_HOT(vl_point_at_time)(world, batch->time, from, along, shape, prim, instance, t);
+    uint32_t object = shape + 1, placed = instance == VL_NONE ? 0 : instance + 1, k = 0;
+    while (k < to->count && (to->object[k] != object || to->instance[k] != placed)) k++;
+    bool seen = world->materials.items[world->shapes.items[shape].material].kind != VL_MATERIAL_INTERFACE;
+    if (k == to->count && seen) to->object[k] = object, to->instance[k] = placed, to->count++;
+    float margin = 2.0f * at.offset / vl_max(vl_abs(vl_dot(at.g, along)), 0.01f) + 0x1p-22f * vl_abs(at.t);
+    t_min = vl_max(at.t, t_min) + vl_max(margin, 1e-30f);
+  }
+}
+
+const vlTruthKernels VL_HOT(vl_truth_kernels) = {trace, hits, layers};

@@ -1,0 +1,15 @@
+/* trace/ground_truth/scratch.h: working memory of truth.hot.c; private to trace. */
+#ifndef TRACE_GROUND_TRUTH_SCRATCH_H
+#define TRACE_GROUND_TRUTH_SCRATCH_H
+
+#include "trace/ground_truth/ground_truth.h"
+#include "trace/stages.h"
+
+struct vlTruthScratch {
+  vlTraceScratch trace;
+  VL_ROW float light[4][VL_ROW_SIZE]; /* radiance that nobody asks for */
+  VL_ROW float time[VL_ROW_SIZE];
+  VL_ROW float kept[6][VL_ROW_SIZE]; /* shading normal and dpdu before bump maps turned them */
+};
+
+#endif

@@ -1,0 +1,285 @@
+/* trace/light/emission_sample.hot.c: where light sets out: rays of all kinds of lights, and their densities (pbrt book
+ * 12, 3rd edition 16.1.2). Scalar: each lane has a light of its own. */
+#include "math/octahedral.h"
+#include "math/warp.h"
+#include "trace/two_way/stages.h"
+#include "world/light/portal.h"
+#include "world/shape/surface_point.h"
+#include "world/texture/texture_lookup.h"
+
+static float choice_of(const vlTwoWay *way, uint32_t light) {
+  return way->choice[light + 1] - way->choice[light];
+}
+
+static float spot_factor(const vlWorldLight *light, float c) {
+  float a = light->cos_end, b = light->cos_start;
+  if (a == b) return c < a ? 0.0f : 1.0f;
+  float t = vl_clamp((c - a) / (b - a), 0.0f, 1.0f);
+  return light->cone_squared ? t * t : t * t * (3.0f - 2.0f * t);
+}
+
+/* 1 - cosine of the cone that a light at a point shines into; 2: everywhere, as a projection whose frame is skewed. */
+static float span_of(const vlWorldLight *light) {
+  if (light->kind == VL_WL_SPOT) return 1.0f - light->cos_end;
+  if (light->kind != VL_WL_PROJECTION) return 2.0f;
+  const float *m = light->corners;
+  float length2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+  for (int i = 0; i < 3; i++) {
+    const float *a = m + 3 * i, *b = m + 3 * ((i + 1) % 3);
+    float own = a[0] * a[0] + a[1] * a[1] + a[2] * a[2], skew = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    if (vl_abs(own - length2) > 1e-4f * length2 || vl_abs(skew) > 1e-4f * length2) return 2.0f;
+  }
+  return vl_min(1.001f * (1.0f - light->cos_end), 2.0f);
+}
+
+static float world_disk(const vlWorld *world) { /* area of a disk that hides the world */
+  return VL_PI * world->radius * world->radius;
+}
+
+/* Density of an area light's points. */
+static float point_density(const vlWorld *world, const vlWorldLight *light, vlVec3 p) {
+  const vlWorldShape *s = &world->shapes.items[light->shape];
+  if (s->kind == VL_SHAPE_TRIANGLES) return light->area > 0.0f ? 1.0f / light->area : 0.0f;
+  vlSurfacePoint point;
+  point.p[0] = p.x, point.p[1] = p.y, point.p[2] = p.z;
+  return (float)vl_shape_pdf(s, light->prim, &point);
+}
+
+/* Pictures of the sky have a density that leaves out what is dim (other ways find that better): half of the light's
+ * paths go by it, half from anywhere. */
+static float sky_density(const vlWorld *world, const vlWorldLight *light, vlVec3 w) {
+  float pdf = VL_HOT(vl_infinite_pdf)(world, light, vl_vec3(0, 0, 0), w);
+  return light->environment == VL_NONE ? pdf : 0.5f * (pdf + VL_INV_4PI);
+}
+
+static const vlPortal *portal_of(const vlWorld *world, const vlWorldLight *light) {
+  return light->environment == VL_NONE ? NULL : world->environments.items[light->environment].portal;
+}
+
+/* Through a portal all paths go, from any of its directions by their light: per area across w. */
+static float portal_density(const vlPortal *portal, vlVec3 w) {
+  vlPortalWindow whole = vl_portal_whole(portal);
+  float across = portal->width * portal->height * vl_portal_local(portal, w).z;
+  return across > 0.0f ? vl_portal_pdf(portal, &whole, w) / across : 0.0f;
+}
+
+float VL_HOT(vl_emission_density)(const vlWorld *world, const vlTwoWay *way, uint32_t index, vlVec3 w, float distance,
+                                  const vlPoint *at) {
+  const vlWorldLight *light = &world->lights.items[index];
+  float p = choice_of(way, index);
+  if (!(p > 0.0f)) return 0.0f;
+  switch (light->kind) {
+    case VL_WL_POINT:
+    case VL_WL_GONIOMETRIC:
+    case VL_WL_SPOT:
+    case VL_WL_PROJECTION: {
+      float span = span_of(light);
+      float c = -vl_dot(w, vl_vec3(light->direction[0], light->direction[1], light->direction[2]));
+      return span == 2.0f || c >= 1.0f - span ? p * VL_INV_2PI / (span * distance * distance) : 0.0f;
+    }
+    case VL_WL_DISTANT: return p / world_disk(world);
+    case VL_WL_INFINITE:
+      if (portal_of(world, light)) return p * portal_density(portal_of(world, light), w);
+      return p * sky_density(world, light, w) / world_disk(world);
+    case VL_WL_AREA:
+      return p * VL_INV_PI * point_density(world, light, at->p) *
+             (world->emitted.items[light->emitted].two_sided ? 0.5f : 1.0f);
+    default: return 0.0f;
+  }
+}
+
+/* ---- area lights ------------------------------------------------------------------------------------------------- */
+
+typedef struct Spot {
+  vlVec3 p, n;
+  float pdf, u, v;
+} Spot;
+
+static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float u, float v) {
+  static const float unit[6] = {0, 0, 1, 0, 1, 1};
+  const float *q = light->corners;
+  const uint32_t *f = s->indices + 3 * (size_t)light->prim;
+  vlVec2 b01 = vl_warp_triangle(u, v);
+  float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
+  Spot r = {vl_vec3(0, 0, 0), vl_vec3(light->direction[0], light->direction[1], light->direction[2]), 0, 0, 0};
+  vlVec3 ns = vl_vec3(0, 0, 0);
+  const float *uvs = s->glow_uvs ? s->glow_uvs : s->uvs;
+  for (int k = 0; k < 3; k++) {
+    r.p = vl_add(r.p, vl_mul(vl_vec3(q[3 * k], q[3 * k + 1], q[3 * k + 2]), b[k]));
+    const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
+    r.u += b[k] * t[0], r.v += b[k] * t[1];
+    if (light->one_sided_normals) continue;
+    const float *x = s->normals + 3 * (size_t)f[k];
+    ns = vl_add(ns, vl_mul(vl_vec3(x[0], x[1], x[2]), b[k]));
+  }
+  if (vl_dot(r.n, ns) < 0.0f) r.n = vl_neg(r.n);
+  r.pdf = light->area > 0.0f ? 1.0f / light->area : 0.0f;
+  return r;
+}
+
+static Spot on_shape(const vlWorldLight *light, const vlWorldShape *s, float u, float v) {
+  vlSurfacePoint point;
+  double pdf;
+  vl_shape_sample(s, light->prim, u, v, &point, &pdf);
+  return (Spot){vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
+                vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), (float)pdf, point.uv[0], point.uv[1]};
+}
+
+static void from_area(const vlWorld *world, const vlWorldLight *light, const float lambda[4], float u, float v, float s,
+                      float t, vlEmission *out) {
+  const vlEmitted *e = &world->emitted.items[light->emitted];
+  const vlWorldShape *shape = &world->shapes.items[light->shape];
+  Spot at = shape->kind == VL_SHAPE_TRIANGLES ? on_triangle(light, shape, u, v) : on_shape(light, shape, u, v);
+  if (!(at.pdf > 0.0f)) return;
+  float sides = 1.0f;
+  vlVec3 side = at.n;
+  if (e->two_sided) {
+    sides = 2.0f;
+    bool back = s >= 0.5f;
+    s = vl_min(2.0f * (back ? s - 0.5f : s), VL_ONE_MINUS_EPSILON);
+    if (back) side = vl_neg(side);
+  }
+  vlVec3 local = vl_warp_cosine_hemisphere(s, t);
+  if (!(local.z > 0.0f)) return;
+  out->d = vl_normalize(vl_from_local(vl_frame_from_z(side), local));
+  float size = vl_abs(at.p.x) + vl_abs(at.p.y) + vl_abs(at.p.z);
+  out->o = vl_offset_origin(at.p, side, 16.0f * 0x1p-24f * size, out->d);
+  out->at = at.p, out->n = at.n;
+  VL_HOT(vl_emitted_at)(world, e, lambda, at.u, 1.0f - at.v, false, out->flux);
+  float scale = VL_PI * sides / at.pdf;
+  if (shape->alpha >= 0 && !light->invisible) {
+    float place[3] = {at.p.x, at.p.y, at.p.z};
+    scale *= vl_clamp(vl_texture_float_at(world, shape->alpha, at.u, at.v, place, NULL), 0.0f, 1.0f);
+  }
+  for (int c = 0; c < 4; c++) out->flux[c] *= scale;
+  out->density = VL_INV_PI * at.pdf / sides;
+  out->delta = light->invisible;
+  out->valid = true;
+}
+
+/* ---- light from far away ----------------------------------------------------------------------------------------- */
+
+static vlVec3 turn(const float m[9], vlVec3 d) {
+  return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
+                 m[6] * d.x + m[7] * d.y + m[8] * d.z);
+}
+
+/* A direction of the sky, to the density of vl_infinite_pdf. */
+static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light, const float lambda[4], float u, float v,
+                            float *pdf, float radiance[4]) {
+  const vlEmitted *e = &world->emitted.items[light->emitted];
+  if (light->environment == VL_NONE) {
+    *pdf = VL_INV_4PI;
+    VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, true, radiance);
+    return vl_warp_sphere(u, v);
+  }
+  if (u < 0.5f) {
+    vlVec3 w = vl_warp_sphere(2.0f * u, v);
+    VL_HOT(vl_infinite_at)(world, light, vl_vec3(0, 0, 0), w, lambda, radiance);
+    *pdf = sky_density(world, light, w);
+    return w;
+  }
+  u = vl_min(2.0f * u - 1.0f, VL_ONE_MINUS_EPSILON);
+  const vlEnvironment *env = &world->environments.items[light->environment];
+  float dx, dy;
+  uint32_t y = vl_find_cell(env->marginal_cdf, env->size, v, &dy);
+  uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
+  float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
+  *pdf = 0.5f * (env->pdf[(size_t)y * env->size + x] + 1.0f) * VL_INV_4PI;
+  VL_HOT(vl_emitted_at)(world, e, lambda, s, t, true, radiance);
+  return vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
+}
+
+/* Through a disk that hides the world, across w. */
+static void from_afar(const vlWorld *world, vlVec3 w, float u, float v, vlEmission *out) {
+  vlDiskPoint disk = vl_warp_disk(u, v);
+  vlFrame frame = vl_frame_from_z(w);
+  float r = world->radius;
+  vlVec3 at = vl_add(vl_mul(frame.x, r * disk.x), vl_mul(frame.y, r * disk.y));
+  at = vl_add(at, vl_mul(w, r));
+  out->o = vl_add(vl_vec3(world->center[0], world->center[1], world->center[2]), at);
+  out->d = vl_neg(w);
+  out->at = w;
+  out->valid = true;
+}
+
+/* Through the portal, from beyond the world. */
+static void through_portal(const vlWorld *world, const vlWorldLight *light, const vlPortal *portal,
+                           const float lambda[4], float u, float v, float s, float t, vlEmission *out) {
+  vlPortalWindow whole = vl_portal_whole(portal);
+  vlVec3 w = vl_portal_sample(portal, &whole, s, t);
+  float density = portal_density(portal, w);
+  if (!(density > 0.0f)) return;
+  vlVec3 at = vl_vec3(portal->corner[0], portal->corner[1], portal->corner[2]);
+  at = vl_add(at, vl_portal_world(portal, vl_vec3(u * portal->width, v * portal->height, 0)));
+  vlVec3 away = vl_sub(at, vl_vec3(world->center[0], world->center[1], world->center[2]));
+  out->o = vl_add(at, vl_mul(w, vl_length(away) + world->radius));
+  out->d = vl_neg(w);
+  out->at = w;
+  VL_HOT(vl_infinite_at)(world, light, vl_sub(at, w), w, lambda, out->flux);
+  for (int c = 0; c < 4; c++) out->flux[c] /= density;
+  out->density = density;
+  out->valid = true;
+}
+
+vlEmission VL_HOT(vl_emission_sample)(const vlWorld *world, const vlTwoWay *way, const float lambda[4], float u_choice,
+                                      float u, float v, float s, float t) {
+  vlEmission r;
+  __builtin_memset(&r, 0, sizeof r);
+  float within;
+  r.light = vl_find_cell(way->choice, (uint32_t)world->lights.count, u_choice, &within);
+  float p = choice_of(way, r.light);
+  if (!(p > 0.0f)) return r;
+  const vlWorldLight *light = &world->lights.items[r.light];
+  const vlEmitted *e = &world->emitted.items[light->emitted];
+  vlVec3 direction = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
+  vlVec3 position = vl_vec3(light->position[0], light->position[1], light->position[2]);
+  switch (light->kind) {
+    case VL_WL_POINT:
+    case VL_WL_SPOT:
+    case VL_WL_GONIOMETRIC:
+    case VL_WL_PROJECTION: {
+      bool picture = light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION;
+      float span = span_of(light), factor = 2.0f * VL_PI * span;
+      vlVec2 st = {0, 0};
+      if (span == 2.0f) {
+        r.d = vl_warp_sphere(s, t);
+      } else {
+        vlVec3 local = vl_warp_cone(s, t, span);
+        r.d = vl_normalize(vl_from_local(vl_frame_from_z(direction), local));
+        if (light->kind == VL_WL_SPOT) factor *= spot_factor(light, local.z);
+      }
+      if (picture) factor *= VL_HOT(vl_beam)(world, light, vl_neg(r.d), &st);
+      r.o = r.at = position;
+      VL_HOT(vl_emitted_at)(world, e, lambda, st.x, st.y, picture, r.flux);
+      for (int c = 0; c < 4; c++) r.flux[c] *= factor;
+      r.density = 1.0f / (2.0f * VL_PI * span);
+      r.delta = r.valid = true;
+      break;
+    }
+    case VL_WL_DISTANT:
+      from_afar(world, direction, u, v, &r);
+      VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, false, r.flux);
+      for (int c = 0; c < 4; c++) r.flux[c] *= world_disk(world);
+      r.density = 1.0f / world_disk(world);
+      r.delta = true;
+      break;
+    case VL_WL_INFINITE: {
+      if (portal_of(world, light)) {
+        through_portal(world, light, portal_of(world, light), lambda, u, v, s, t, &r);
+        break;
+      }
+      float pdf;
+      from_afar(world, sky_direction(world, light, lambda, s, t, &pdf, r.flux), u, v, &r);
+      if (!(pdf > 0.0f)) return (vlEmission){.valid = false};
+      for (int c = 0; c < 4; c++) r.flux[c] *= world_disk(world) / pdf;
+      r.density = pdf / world_disk(world);
+      break;
+    }
+    case VL_WL_AREA: from_area(world, light, lambda, u, v, s, t, &r); break;
+    default: break;
+  }
+  for (int c = 0; c < 4; c++) r.flux[c] /= p;
+  r.density *= p;
+  return r;
+}

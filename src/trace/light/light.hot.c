@@ -1,0 +1,398 @@
+/* trace/light/light.hot.c: choosing a light and a point on it, and the densities that multiple importance sampling asks
+ * for (pbrt book 12). Scalar per lane: the tree walk and the kinds of lights diverge. */
+#include "math/octahedral.h"
+#include "math/warp.h"
+#include "trace/stages.h"
+#include "world/light/portal.h"
+#include "world/shape/surface_point.h"
+#include "world/texture/texture_lookup.h"
+
+void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *e, const float lambda[4], float s, float t, bool sky,
+                           float out[4]) {
+  if (e->image < 0) {
+    for (int c = 0; c < 4; c++) out[c] = vl_spectral_at(&e->spectrum, c, lambda[c]);
+    return;
+  }
+  const vlMipmap *mip = world->images.items[e->image].mipmap;
+  vlTexel x;
+  if (e->node > 0) {
+    vlTexturePoint at = {s, 1.0f - t, vl_vec3(0, 0, 0), vl_vec3(0, 0, 1), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
+    x = vl_texture_rgba(&world->nodes.items[e->node - 1], mip, at);
+  } else {
+    x = sky ? vl_nearest(mip, 0, s, t, VL_WRAP_OCTAHEDRAL) : vl_bilinear(mip, 0, s, t, VL_WRAP_CLAMP);
+  }
+  float rgb[3];
+  for (int k = 0; k < 3; k++) {
+    float y = e->image_scale * x.c[mip->channels < 3 && e->node == 0 ? 0 : k];
+    rgb[k] = y > 0.0f ? y : 0.0f;
+  }
+  if (world->def.color == VL_COLOR_RGB) {
+    for (int c = 0; c < 4; c++) out[c] = c < 3 ? rgb[c] * e->spectrum.scale : 0.0f;
+    return;
+  }
+  float scale = 2.0f * vl_max(rgb[0], vl_max(rgb[1], rgb[2])), inv = scale > 0.0f ? 1.0f / scale : 0.0f;
+  vlSigmoid sigmoid = vl_rgb_table_lookup(vl_rgb_table(e->space), rgb[0] * inv, rgb[1] * inv, rgb[2] * inv);
+  for (int c = 0; c < 4; c++)
+    out[c] = scale * vl_sigmoid(sigmoid, lambda[c]) * vl_spectral_at(&e->spectrum, c, lambda[c]);
+}
+
+/* ---- the sky ----------------------------------------------------------------------------------------------------- */
+
+static vlVec3 turn(const float m[9], vlVec3 d) {
+  return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
+                 m[6] * d.x + m[7] * d.y + m[8] * d.z);
+}
+
+void VL_HOT(vl_infinite_at)(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d, const float lambda[4],
+                            float out[4]) {
+  vlVec2 st = {0, 0};
+  if (light->environment != VL_NONE) {
+    const vlEnvironment *env = &world->environments.items[light->environment];
+    st = vl_octahedral_encode(vl_normalize(turn(env->light_from_world, d)));
+    if (env->portal && !vl_portal_shows(env->portal, o, d)) {
+      for (int c = 0; c < 4; c++) out[c] = 0.0f;
+      return;
+    }
+  }
+  VL_HOT(vl_emitted_at)(world, &world->emitted.items[light->emitted], lambda, st.x, st.y, true, out);
+}
+
+float VL_HOT(vl_infinite_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d) {
+  if (light->environment == VL_NONE) return 0.25f * VL_INV_PI;
+  const vlEnvironment *env = &world->environments.items[light->environment];
+  vlPortalWindow window;
+  if (env->portal)
+    return vl_portal_shows(env->portal, o, d) && vl_portal_window(env->portal, o, &window)
+               ? vl_portal_pdf(env->portal, &window, d)
+               : 0.0f;
+  vlVec2 st = vl_octahedral_encode(vl_normalize(turn(env->light_from_world, d)));
+  uint32_t x = (uint32_t)(st.x * (float)env->size), y = (uint32_t)(st.y * (float)env->size);
+  x = x < env->size ? x : env->size - 1, y = y < env->size ? y : env->size - 1;
+  return env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
+}
+
+/* ---- area lights ------------------------------------------------------------------------------------------------- */
+
+typedef struct Sample {
+  vlVec3 p, n; /* on the light */
+  float pdf;   /* per solid angle */
+  float u, v;
+} Sample;
+
+/* Centre and radius of a whole sphere under a similarity, or false. Not with holes, through which the far side shows.
+ */
+static bool whole_sphere(const vlWorldShape *s, vlVec3 *center, float *radius) {
+  if (s->kind != VL_SHAPE_SPHERE || s->alpha >= 0 || s->z_min > -s->radius || s->z_max < s->radius ||
+      s->phi_max < 6.2831f)
+    return false;
+  const double *m = s->from_shape;
+  double l[3];
+  for (int i = 0; i < 3; i++) l[i] = m[i] * m[i] + m[4 + i] * m[4 + i] + m[8 + i] * m[8 + i];
+  if (l[1] > l[0] * 1.0001 || l[1] < l[0] * 0.9999 || l[2] > l[0] * 1.0001 || l[2] < l[0] * 0.9999) return false;
+  for (int i = 0; i < 3; i++) { /* no shear: the axes stay at right angles */
+    int j = (i + 1) % 3;
+    double skew = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
+    if (skew > l[0] * 0.0001 || skew < -l[0] * 0.0001) return false;
+  }
+  *center = vl_vec3((float)m[3], (float)m[7], (float)m[11]);
+  *radius = s->radius * (float)__builtin_sqrt(l[0]);
+  return true;
+}
+
+/* 1 - cos of the half angle of a sphere seen from outside, without cancellation. */
+static inline float one_minus_cos_cone(float sin2) {
+  return sin2 / (1.0f + __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2)));
+}
+
+static Sample sample_cone(vlVec3 center, float radius, bool inside_out, vlVec3 from, float u, float v) {
+  vlVec3 to = vl_sub(center, from);
+  float d2 = vl_length2(to), d = __builtin_sqrtf(d2);
+  float sin2_max = radius * radius / d2, span = one_minus_cos_cone(sin2_max);
+  float one_minus_cos = span * u, cos_t = 1.0f - one_minus_cos;
+  float sin2_t = vl_max(0.0f, one_minus_cos * (2.0f - one_minus_cos));
+  /* Angle at the centre between the axis and the point (pbrt book 6.2.4). */
+  float sin_max = __builtin_sqrtf(sin2_max);
+  float cos_a = sin2_t / sin_max + cos_t * __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2_t / sin2_max));
+  float sin_a = __builtin_sqrtf(vl_max(0.0f, 1.0f - cos_a * cos_a));
+  vlSinCos phi = vl_sincos_turn(v);
+  vlFrame frame = vl_frame_from_z(vl_mul(to, -1.0f / d));
+  vlVec3 n = vl_from_local(frame, vl_vec3(sin_a * phi.cos, sin_a * phi.sin, cos_a));
+  Sample s = {vl_add(center, vl_mul(n, radius)), inside_out ? vl_neg(n) : n, 1.0f / (2.0f * VL_PI * span), 0, 0};
+  return s;
+}
+
+static float solid_pdf(float pdf_area, vlVec3 from, vlVec3 p, vlVec3 n) {
+  vlVec3 to = vl_sub(p, from);
+  float d2 = vl_length2(to), cosine = vl_abs(vl_dot(n, to));
+  return cosine > 0.0f ? pdf_area * d2 * __builtin_sqrtf(d2) / cosine : 0.0f;
+}
+
+/* Near triangles are sampled by solid angle, where the area's density would vary over them without bound; far ones by
+ * area, which is cheaper. Both sides of multiple importance sampling ask this one question. */
+typedef struct Near {
+  vlSphericalTriangle cap;
+  bool near;
+} Near;
+
+static Near near_triangle(const vlWorldLight *light, vlVec3 from) {
+  const float *q = light->corners;
+  Near r;
+  r.near = false;
+  vlVec3 a = vl_vec3(q[0] - from.x, q[1] - from.y, q[2] - from.z),
+         b = vl_vec3(q[3] - from.x, q[4] - from.y, q[5] - from.z);
+  vlVec3 c = vl_vec3(q[6] - from.x, q[7] - from.y, q[8] - from.z);
+  float d2 = vl_length2(vl_add(vl_add(a, b), c)) * (1.0f / 9.0f);
+  if (!(light->area > 0.05f * d2)) return r;
+  r.cap = vl_spherical_triangle(vl_normalize(a), vl_normalize(b), vl_normalize(c));
+  r.near = r.cap.solid_angle > 1e-3f && r.cap.solid_angle < 6.22f;
+  return r;
+}
+
+/* Where the direction w from `from` meets the light's plane, as weights of its corners. */
+static vlVec3 plane_weights(const float *q, vlVec3 from, vlVec3 w) {
+  vlVec3 a = vl_vec3(q[0] - from.x, q[1] - from.y, q[2] - from.z),
+         b = vl_vec3(q[3] - from.x, q[4] - from.y, q[5] - from.z);
+  vlVec3 c = vl_vec3(q[6] - from.x, q[7] - from.y, q[8] - from.z);
+  float b0 = vl_abs(vl_dot(w, vl_cross(b, c))), b1 = vl_abs(vl_dot(w, vl_cross(c, a))),
+        b2 = vl_abs(vl_dot(w, vl_cross(a, b)));
+  float sum = b0 + b1 + b2, inv = sum > 0.0f ? 1.0f / sum : 0.0f;
+  return vl_vec3(b0 * inv, b1 * inv, 1.0f - (b0 + b1) * inv);
+}
+
+static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, bool with_uv, vlVec3 from, float u,
+                              float v) {
+  const float *q = light->corners;
+  vlVec3 p[3] = {vl_vec3(q[0], q[1], q[2]), vl_vec3(q[3], q[4], q[5]), vl_vec3(q[6], q[7], q[8])};
+  vlVec2 b01 = vl_warp_triangle(u, v);
+  float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
+  Near near = near_triangle(light, from);
+  if (near.near) {
+    vlVec3 w = plane_weights(q, from, vl_warp_spherical_triangle(near.cap, u, v));
+    b[0] = w.x, b[1] = w.y, b[2] = w.z;
+  }
+  Sample r;
+  r.p = vl_add(vl_add(vl_mul(p[0], b[0]), vl_mul(p[1], b[1])), vl_mul(p[2], b[2]));
+  r.n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
+  r.u = r.v = 0;
+  r.pdf = near.near            ? 1.0f / near.cap.solid_angle
+          : light->area > 0.0f ? solid_pdf(1.0f / light->area, from, r.p, r.n)
+                               : 0.0f;
+  const uint32_t *f = s->indices + 3 * (size_t)light->prim;
+  if (!light->one_sided_normals) {
+    vlVec3 ns = vl_vec3(0, 0, 0);
+    for (int k = 0; k < 3; k++) {
+      const float *x = s->normals + 3 * (size_t)f[k];
+      ns = vl_add(ns, vl_mul(vl_vec3(x[0], x[1], x[2]), b[k]));
+    }
+    if (vl_dot(r.n, ns) < 0.0f) r.n = vl_neg(r.n);
+  }
+  if (with_uv) {
+    static const float unit[6] = {0, 0, 1, 0, 1, 1};
+    const float *uvs = s->glow_uvs ? s->glow_uvs : s->uvs;
+    for (int k = 0; k < 3; k++) {
+      const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
+      r.u += b[k] * t[0], r.v += b[k] * t[1];
+    }
+  }
+  return r;
+}
+
+vlVec2 VL_HOT(vl_glow_uv)(const vlWorld *world, const vlWorldLight *light, const vlPoint *at) {
+  const vlWorldShape *s = &world->shapes.items[light->shape];
+  vlVec2 uv = {at->u, at->v};
+  if (!s->glow_uvs) return uv;
+  const float *q = light->corners;
+  vlVec3 a = vl_vec3(q[0], q[1], q[2]), e1 = vl_sub(vl_vec3(q[3], q[4], q[5]), a),
+         e2 = vl_sub(vl_vec3(q[6], q[7], q[8]), a);
+  vlVec3 g = vl_cross(e1, e2), way = vl_sub(at->p, a);
+  float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
+  float b1 = vl_dot(vl_cross(way, e2), g) * inv, b2 = vl_dot(vl_cross(e1, way), g) * inv;
+  const uint32_t *f = s->indices + 3 * (size_t)light->prim;
+  const float *t0 = s->glow_uvs + 2 * (size_t)f[0], *t1 = s->glow_uvs + 2 * (size_t)f[1],
+              *t2 = s->glow_uvs + 2 * (size_t)f[2];
+  uv.x = (1.0f - b1 - b2) * t0[0] + b1 * t1[0] + b2 * t2[0];
+  uv.y = (1.0f - b1 - b2) * t0[1] + b1 * t1[1] + b2 * t2[1];
+  return uv;
+}
+
+static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec3 from, float u, float v) {
+  const vlWorldShape *s = &world->shapes.items[light->shape];
+  bool with_uv = world->emitted.items[light->emitted].image >= 0;
+  if (s->kind == VL_SHAPE_TRIANGLES) return sample_triangle(light, s, with_uv || s->alpha >= 0, from, u, v);
+  vlVec3 center;
+  float radius;
+  if (whole_sphere(s, &center, &radius)) {
+    vlVec3 to = vl_sub(center, from);
+    if (vl_length2(to) > radius * radius * 1.0001f) {
+      Sample r = sample_cone(center, radius, vl_shape_reversed(s), from, u, v);
+      if (with_uv) { /* uv by way of the shape */
+        vlShapeHit hit = {.t = 0};
+        vlSurfacePoint point;
+        for (int i = 0; i < 3; i++)
+          hit.p[i] = s->to_shape[4 * i] * r.p.x + s->to_shape[4 * i + 1] * r.p.y + s->to_shape[4 * i + 2] * r.p.z +
+                     s->to_shape[4 * i + 3];
+        vl_shape_point(s, light->prim, &hit, &point);
+        r.u = point.uv[0], r.v = point.uv[1];
+      }
+      return r;
+    }
+  }
+  vlSurfacePoint point;
+  double pdf;
+  vl_shape_sample(s, light->prim, u, v, &point, &pdf);
+  Sample r;
+  r.p = vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]);
+  r.n = vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]);
+  r.u = point.uv[0], r.v = point.uv[1];
+  r.pdf = solid_pdf((float)pdf, from, r.p, r.n);
+  return r;
+}
+
+float VL_HOT(vl_area_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at) {
+  const vlWorldShape *s = &world->shapes.items[light->shape];
+  if (s->kind == VL_SHAPE_TRIANGLES) {
+    Near near = near_triangle(light, from);
+    if (near.near) return 1.0f / near.cap.solid_angle;
+    return light->area > 0.0f ? solid_pdf(1.0f / light->area, from, at->p, at->g) : 0.0f;
+  }
+  vlVec3 center;
+  float radius;
+  if (whole_sphere(s, &center, &radius)) {
+    float d2 = vl_length2(vl_sub(center, from));
+    if (d2 > radius * radius * 1.0001f) return 1.0f / (2.0f * VL_PI * one_minus_cos_cone(radius * radius / d2));
+  }
+  vlSurfacePoint point;
+  point.p[0] = at->p.x, point.p[1] = at->p.y, point.p[2] = at->p.z;
+  return solid_pdf((float)vl_shape_pdf(s, light->prim, &point), from, at->p, at->g);
+}
+
+/* ---- one sample a lane ------------------------------------------------------------------------------------------- */
+
+static float spot_edge(const vlWorldLight *light, float x) {
+  float a = light->cos_end, b = light->cos_start;
+  if (a == b) return x < a ? 0.0f : 1.0f;
+  float t = vl_clamp((x - a) / (b - a), 0.0f, 1.0f);
+  return light->cone_squared ? t * t : t * t * (3.0f - 2.0f * t);
+}
+
+float VL_HOT(vl_beam)(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st) {
+  vlVec3 d = vl_normalize(turn(light->corners, vl_neg(w)));
+  *st = (vlVec2){0, 0};
+  if (light->kind == VL_WL_GONIOMETRIC) {
+    const vlMipmap *mip = world->images.items[light->picture].mipmap;
+    vlVec2 at = vl_octahedral_encode(d);
+    vlTexel x = vl_nearest(mip, 0, at.x, at.y, VL_WRAP_OCTAHEDRAL);
+    return vl_max(0.0f, mip->channels < 3 ? x.c[0] : (x.c[0] + x.c[1] + x.c[2]) / 3.0f);
+  }
+  float x = d.x / d.z / light->slide[0], y = d.y / d.z / light->slide[1];
+  if (!(d.z > 1e-3f) || !(vl_abs(x) <= 1.0f) || !(vl_abs(y) <= 1.0f)) return 0.0f;
+  *st = (vlVec2){0.5f * (x + 1.0f), 0.5f * (y + 1.0f)};
+  return 1.0f;
+}
+
+static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, vlVec3 p, float u, float v,
+                       vlLightSamples *out) {
+  out->pdf[i] = 0.0f;
+  out->wx[i] = out->wy[i] = out->wz[i] = 0.0f;
+  vlLightChoice chosen = {out->light[i], out->pmf[i]};
+  if (chosen.light == VL_INNER || !(chosen.pmf > 0.0f)) return;
+  const vlWorldLight *light = &world->lights.items[chosen.light];
+  const vlEmitted *e = &world->emitted.items[light->emitted];
+  float lambda[4], radiance[4];
+  vl_path_lambda(paths, i, lambda);
+  vlVec3 w, target;
+  float pdf = 0.0f;
+  out->delta[i] = 0;
+  out->distant[i] = 0;
+  switch (light->kind) {
+    case VL_WL_POINT:
+    case VL_WL_SPOT:
+    case VL_WL_GONIOMETRIC:
+    case VL_WL_PROJECTION: {
+      target = vl_vec3(light->position[0], light->position[1], light->position[2]);
+      vlVec3 to = vl_sub(target, p);
+      float d2 = vl_length2(to);
+      w = vl_normalize(to);
+      float factor = d2 > 0.0f ? 1.0f / d2 : 0.0f;
+      if (light->kind == VL_WL_SPOT) {
+        float c = -vl_dot(w, vl_vec3(light->direction[0], light->direction[1], light->direction[2]));
+        factor *= spot_edge(light, c);
+      }
+      vlVec2 st = {0, 0};
+      if (light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION)
+        factor *= VL_HOT(vl_beam)(world, light, w, &st);
+      VL_HOT(vl_emitted_at)(world, e, lambda, st.x, st.y, true, radiance);
+      for (int c = 0; c < 4; c++) radiance[c] *= factor;
+      pdf = 1.0f;
+      out->delta[i] = 1;
+      break;
+    }
+    case VL_WL_DISTANT:
+      w = target = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
+      VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, false, radiance);
+      pdf = 1.0f;
+      out->delta[i] = 1;
+      out->distant[i] = 1;
+      break;
+    case VL_WL_INFINITE: {
+      out->distant[i] = 1;
+      if (light->environment == VL_NONE) {
+        w = vl_warp_sphere(u, v);
+        pdf = 0.25f * VL_INV_PI;
+        VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, true, radiance);
+      } else if (world->environments.items[light->environment].portal) {
+        const vlPortal *portal = world->environments.items[light->environment].portal;
+        vlPortalWindow window;
+        if (!vl_portal_window(portal, p, &window)) return;
+        w = vl_portal_sample(portal, &window, u, v);
+        pdf = VL_HOT(vl_infinite_pdf)(world, light, p, w);
+        VL_HOT(vl_infinite_at)(world, light, p, w, lambda, radiance);
+      } else {
+        const vlEnvironment *env = &world->environments.items[light->environment];
+        float dx, dy;
+        uint32_t y = vl_find_cell(env->marginal_cdf, env->size, v, &dy);
+        uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
+        float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
+        w = vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
+        pdf = env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
+        VL_HOT(vl_emitted_at)(world, e, lambda, s, t, true, radiance);
+      }
+      target = w;
+      break;
+    }
+    default: {
+      Sample q = sample_area(world, light, p, u, v);
+      w = vl_normalize(vl_sub(q.p, p));
+      target = q.p;
+      pdf = q.pdf;
+      float facing = -vl_dot(w, q.n);
+      if (!(facing > 0.0f) && !(e->two_sided && facing < 0.0f)) pdf = 0.0f;
+      if (!(pdf > 0.0f)) return;
+      VL_HOT(vl_emitted_at)(world, e, lambda, q.u, 1.0f - q.v, false, radiance);
+      const vlWorldShape *shape = &world->shapes.items[light->shape];
+      if (light->invisible) {
+        out->delta[i] = 1;
+      } else if (shape->alpha >= 0) {
+        float at[3] = {q.p.x, q.p.y, q.p.z};
+        float cover = vl_clamp(vl_texture_float_at(world, shape->alpha, q.u, q.v, at, NULL), 0.0f, 1.0f);
+        for (int c = 0; c < 4; c++) radiance[c] *= cover;
+      }
+      /* The end of the shadow ray is moved off the light by the bound of the rounding error of its points. */
+      float size = vl_abs(q.p.x) + vl_abs(q.p.y) + vl_abs(q.p.z);
+      target = vl_offset_origin(q.p, facing < 0.0f ? vl_neg(q.n) : q.n, 16.0f * 0x1p-24f * size, vl_neg(w));
+      break;
+    }
+  }
+  if (!(pdf > 0.0f) || !(pdf < VL_INFINITY)) return;
+  float total = pdf * chosen.pmf, inv = 1.0f / total;
+  out->pdf[i] = total;
+  out->wx[i] = w.x, out->wy[i] = w.y, out->wz[i] = w.z;
+  out->tx[i] = target.x, out->ty[i] = target.y, out->tz[i] = target.z;
+  for (int c = 0; c < 4; c++) out->radiance[c][i] = radiance[c] * inv;
+}
+
+void VL_HOT(vl_stage_lights)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *f,
+                             const float *u_choice, const float *u, const float *v, vlLightSamples *out) {
+  VL_HOT(vl_stage_light_choice)(&world->tree, n, f, u_choice, out);
+  for (uint32_t i = 0; i < n; i++) sample_one(world, i, paths, vl_vec3(f->px[i], f->py[i], f->pz[i]), u[i], v[i], out);
+}

@@ -1,0 +1,172 @@
+/* trace/material/material.hot.c: a run of lanes with one material: bump and normal maps, BSDF parameters from its
+ * textures; then shading frames for all. */
+#include "trace/texture/texture_run.h"
+
+/* ---- bump and normal maps: both turn the shading normal and dpdu ------------------------------------------------- */
+
+static vlVec3 facing(vlVec3 n, vlVec3 side) {
+  return vl_dot(n, side) < 0.0f ? vl_neg(n) : n;
+}
+
+/* dndu and dndv of the interpolated normals of lane i's triangle: 0 without normals, without uv. */
+static void triangle_normal_slopes(vlTraceScratch *s, uint32_t i) {
+  const vlCorners *c = &s->corners;
+  vlSurface *f = &s->surface;
+  vlVec3 p[3], n[3];
+  for (int k = 0; k < 3; k++) {
+    p[k] = vl_lane3(c->p[3 * k], c->p[3 * k + 1], c->p[3 * k + 2], i);
+    n[k] = vl_lane3(c->n[3 * k], c->n[3 * k + 1], c->n[3 * k + 2], i);
+  }
+  vlVec3 e1 = vl_sub(p[1], p[0]), e2 = vl_sub(p[2], p[0]), g = vl_cross(e1, e2);
+  vlVec3 way = vl_sub(vl_lane3(f->px, f->py, f->pz, i), p[0]), m1 = vl_sub(n[1], n[0]), m2 = vl_sub(n[2], n[0]);
+  float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
+  float b1 = vl_dot(vl_cross(way, e2), g) * inv, b2 = vl_dot(vl_cross(e1, way), g) * inv;
+  float length = vl_length(vl_add(n[0], vl_add(vl_mul(m1, b1), vl_mul(m2, b2))));
+  float u1 = c->uv[2][i] - c->uv[0][i], v1 = c->uv[3][i] - c->uv[1][i];
+  float u2 = c->uv[4][i] - c->uv[0][i], v2 = c->uv[5][i] - c->uv[1][i], det = (u1 * v2 - v1 * u2) * length;
+  float scale = f->uv_scale[i] > 0.0f && vl_abs(det) > 0.0f ? 1.0f / det : 0.0f;
+  vlVec3 ns = vl_lane3(f->nx, f->ny, f->nz, i);
+  vlVec3 du = vl_mul(vl_sub(vl_mul(m1, v2), vl_mul(m2, v1)), scale);
+  vlVec3 dv = vl_mul(vl_sub(vl_mul(m2, u1), vl_mul(m1, u2)), scale);
+  du = vl_sub(du, vl_mul(ns, vl_dot(du, ns))), dv = vl_sub(dv, vl_mul(ns, vl_dot(dv, ns)));
+  f->dn[0][i] = du.x, f->dn[1][i] = du.y, f->dn[2][i] = du.z;
+  f->dn[3][i] = dv.x, f->dn[4][i] = dv.y, f->dn[5][i] = dv.z;
+}
+
+/* The surface p + h n: its slopes are dpdu + h' n + h dndu, and so with v; h' by differences (pbrt book 10.5.3). */
+static void bump(vlTextureRun *r, int32_t node) { /* VL_BUMP_ROWS rows of its own */
+  vlSurface *f = &r->s->surface;
+  float *h = vl_texture_row(r), *hu = vl_texture_row(r), *hv = vl_texture_row(r), *step = vl_texture_row(r);
+  float *su = vl_texture_row(r), *sv = vl_texture_row(r), *x = vl_texture_row(r), *y = vl_texture_row(r),
+        *z = vl_texture_row(r);
+  VL_HOT(vl_texture_float)(r, node, h);
+  for (uint32_t i = r->first; i < r->last; i++) {
+    float w = 0.5f * f->width[i] * f->uv_scale[i];
+    step[i] = w > 1e-6f ? w : 0.0005f;
+  }
+  r->shift_u = su, r->shift_v = sv, r->shift_x = x, r->shift_y = y, r->shift_z = z;
+  for (uint32_t i = r->first; i < r->last; i++)
+    su[i] = step[i], sv[i] = 0.0f, x[i] = step[i] * f->ux[i], y[i] = step[i] * f->uy[i], z[i] = step[i] * f->uz[i];
+  VL_HOT(vl_texture_float)(r, node, hu);
+  for (uint32_t i = r->first; i < r->last; i++)
+    su[i] = 0.0f, sv[i] = step[i], x[i] = step[i] * f->vx[i], y[i] = step[i] * f->vy[i], z[i] = step[i] * f->vz[i];
+  VL_HOT(vl_texture_float)(r, node, hv);
+  r->shift_u = NULL;
+  for (uint32_t i = r->first; i < r->last; i++) {
+    if (r->world->shapes.items[r->s->hits_b.shape[i]].kind == VL_SHAPE_TRIANGLES) triangle_normal_slopes(r->s, i);
+    vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
+    vlVec3 du = vl_add(vl_vec3(f->ux[i], f->uy[i], f->uz[i]), vl_mul(n, (hu[i] - h[i]) / step[i]));
+    vlVec3 dv = vl_add(vl_vec3(f->vx[i], f->vy[i], f->vz[i]), vl_mul(n, (hv[i] - h[i]) / step[i]));
+    du = vl_add(du, vl_mul(vl_vec3(f->dn[0][i], f->dn[1][i], f->dn[2][i]), h[i]));
+    dv = vl_add(dv, vl_mul(vl_vec3(f->dn[3][i], f->dn[4][i], f->dn[5][i]), h[i]));
+    vlVec3 m = vl_cross(du, dv);
+    if (!(vl_length2(m) > 0.0f)) continue;
+    m = facing(vl_normalize(m), n);
+    f->nx[i] = m.x, f->ny[i] = m.y, f->nz[i] = m.z;
+    f->ux[i] = du.x, f->uy[i] = du.y, f->uz[i] = du.z;
+  }
+}
+
+static void normal_map(vlTextureRun *r, int32_t image) {
+  vlSurface *f = &r->s->surface;
+  const vlMipmap *mip = r->world->images.items[image].mipmap;
+  if (mip->channels < 3) return;
+  for (uint32_t i = r->first; i < r->last; i++) {
+    vlTexel t = vl_bilinear(mip, 0, f->u[i], 1.0f - f->v[i], VL_WRAP_REPEAT);
+    vlVec3 local = vl_normalize(vl_vec3(2 * t.c[0] - 1, 2 * t.c[1] - 1, 2 * t.c[2] - 1));
+    vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]), u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]);
+    vlVec3 x = vl_normalize(vl_sub(u, vl_mul(n, vl_dot(u, n))));
+    vlFrame frame = {x, vl_cross(n, x), n};
+    vlVec3 m = vl_normalize(vl_from_local(frame, local));
+    if (!(vl_length2(m) > 0.0f)) continue;
+    f->nx[i] = m.x, f->ny[i] = m.y, f->nz[i] = m.z;
+  }
+}
+
+/* ---- parameters -------------------------------------------------------------------------------------------------- */
+
+static void roughness(vlTextureRun *r, const vlWorldMaterial *m, int32_t node, float *alpha) {
+  VL_HOT(vl_texture_float)(r, node, alpha);
+  for (uint32_t i = r->first; i < r->last; i++) {
+    float x = alpha[i] > 0.0f ? alpha[i] : 0.0f;
+    alpha[i] = m->remap ? __builtin_sqrtf(x) : x;
+  }
+}
+
+static void spectrum_rows(vlTextureRun *r, int32_t node, float rows[4][VL_ROW_SIZE]) {
+  float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
+  VL_HOT(vl_texture_spectrum)(r, node, out);
+}
+
+void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material,
+                               vlTraceScratch *s) {
+  const vlWorldMaterial *m = &world->materials.items[material];
+  vlShade *shade = &s->shade;
+  vlTextureRun r = {world, s, &s->b, &s->surface, first, last, 0, NULL, NULL, NULL, NULL, NULL};
+  for (uint32_t i = first; m->hair && i < last; i++) s->surface.all_round[i] = 1.0f;
+  if (m->displacement >= 0) bump(&r, m->displacement);
+  if (m->normal_map >= 0) normal_map(&r, m->normal_map);
+  r.top = 0;
+  if (m->kind == VL_MATERIAL_PRINCIPLED) VL_HOT(vl_stage_principled)(&r, m);
+  if (m->reflectance >= 0) {
+    spectrum_rows(&r, m->reflectance, shade->reflectance);
+    for (int c = 0; c < 4; c++)
+      for (uint32_t i = first; i < last; i++) shade->reflectance[c][i] = vl_clamp(shade->reflectance[c][i], 0.0f, 1.0f);
+  }
+  bool metal = m->kind == VL_MATERIAL_CONDUCTOR || m->kind == VL_MATERIAL_COATED_CONDUCTOR;
+  if (metal && m->use_reflectance) {
+    /* eta = 1, k = 2 sqrt(R / (1 - R)) reflects R straight on (pbrt book 9.3.6's convention of the conductor material).
+     */
+    for (int c = 0; c < 4; c++)
+      for (uint32_t i = first; i < last; i++) {
+        float x = vl_clamp(shade->reflectance[c][i], 0.0f, 0.9999f);
+        shade->eta[c][i] = 1.0f;
+        shade->k[c][i] = 2.0f * __builtin_sqrtf(x / (1.0f - x));
+      }
+  } else {
+    if (m->eta >= 0) spectrum_rows(&r, m->eta, shade->eta);
+    if (m->k >= 0) spectrum_rows(&r, m->k, shade->k);
+  }
+  if (m->u_roughness >= 0) {
+    roughness(&r, m, m->u_roughness, shade->alpha_x);
+    roughness(&r, m, m->v_roughness, shade->alpha_y);
+  }
+  if (m->layers) VL_HOT(vl_stage_layers)(&r, m);
+  if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) VL_HOT(vl_stage_translucent)(&r, m);
+  if (m->hair) VL_HOT(vl_stage_hair)(&r, m);
+  for (uint32_t i = first; i < last && m->measured; i++) shade->measured[i] = m->measured;
+  if (m->subsurface) VL_HOT(vl_stage_bodies)(&r, m);
+  for (uint32_t i = first; i < last && m->kind != VL_MATERIAL_PRINCIPLED && !m->hair; i++) {
+    shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
+    shade->coat[i] = m->coat;
+  }
+  if (m->dispersive) { /* each wavelength goes its own way: the hero alone is followed, with the weight of all four */
+    vlPaths *p = &s->b;
+    for (uint32_t i = first; i < last; i++) {
+      /* That the hero is alone is told by equal wavelengths: weights may be zero for other reasons. */
+      bool alone = p->lambda[1][i] == p->lambda[0][i];
+      p->beta[0][i] *= alone ? 1.0f : 4.0f;
+      p->beta[1][i] = p->beta[2][i] = p->beta[3][i] = 0.0f;
+      p->lambda[1][i] = p->lambda[2][i] = p->lambda[3][i] = p->lambda[0][i];
+    }
+  }
+}
+
+void VL_HOT(vl_stage_frames)(uint32_t n, const vlPaths *paths, const vlSurface *f, vlShade *shade) {
+  uint32_t padded = VL_PAD(n);
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    vlVec3 nn = vl_vec3(f->nx[i], f->ny[i], f->nz[i]), u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]);
+    vlVec3 t = vl_sub(u, vl_mul(nn, vl_dot(u, nn)));
+    float ok = vl_length2(t) > 1e-12f * vl_length2(u) ? 1.0f : 0.0f;
+    vlFrame any = vl_frame_from_z(nn);
+    t = vl_normalize(t);
+    t.x = ok > 0.0f ? t.x : any.x.x, t.y = ok > 0.0f ? t.y : any.x.y, t.z = ok > 0.0f ? t.z : any.x.z;
+    vlVec3 b = vl_cross(nn, t);
+    shade->tx[i] = t.x, shade->ty[i] = t.y, shade->tz[i] = t.z;
+    shade->bx[i] = b.x, shade->by[i] = b.y, shade->bz[i] = b.z;
+    vlVec3 wo = vl_vec3(-paths->dx[i], -paths->dy[i], -paths->dz[i]);
+    shade->wo[0][i] = vl_dot(wo, t), shade->wo[1][i] = vl_dot(wo, b), shade->wo[2][i] = vl_dot(wo, nn);
+  }
+}

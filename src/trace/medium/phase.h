@@ -1,0 +1,25 @@
+/* trace/medium/phase.h: the phase function of Henyey and Greenstein (1941; pbrt book 11.3.1). Normalised over the
+ * sphere, sampled exactly: its value is its density. */
+#ifndef TRACE_MEDIUM_PHASE_H
+#define TRACE_MEDIUM_PHASE_H
+
+#include "math/warp.h"
+
+/* cosine: between the directions of flight before and after. Per steradian. */
+static inline float vl_phase(float g, float cosine) {
+  float denominator = vl_max(1.0f + g * g - 2.0f * g * cosine, 1e-12f);
+  return VL_INV_4PI * (1.0f - g * g) / (denominator * __builtin_sqrtf(denominator));
+}
+
+/* Direction of flight after; d: before, of unit length. */
+static inline vlVec3 vl_phase_sample(float g, vlVec3 d, float u, float v) {
+  float square = (1.0f - g * g) / (1.0f - g + 2.0f * g * u);
+  float near = 1.0f - 2.0f * u, cosine = -near + 1.5f * g * (1.0f - near * near); /* first order in g */
+  if (vl_abs(g) > 1e-3f) cosine = (1.0f + g * g - square * square) / (2.0f * g);
+  cosine = vl_clamp(cosine, -1.0f, 1.0f);
+  float sine = __builtin_sqrtf((1.0f - cosine) * (1.0f + cosine));
+  vlSinCos a = vl_sincos_turn(v);
+  return vl_normalize(vl_from_local(vl_frame_from_z(d), vl_vec3(sine * a.cos, sine * a.sin, cosine)));
+}
+
+#endif

@@ -1,0 +1,323 @@
+/* trace/medium/volume.hot.c: path tracing through participating media: the path tracer's stages for what happens on
+ * surfaces, and between them flights (medium.hot.c) that scatter in media or cross interfaces (pbrt book 14.2.3). All
+ * lanes of a batch are at the same scattering of their paths, in a medium or on a surface:
+ *
+ *   a: rays -> travel -> emission -> those that scatter in media: light samples, phase function -> volume.scattered
+ *                                 -> those on surfaces: as in path.hot.c, b -> a
+ *   a <- both
+ *
+ * Weights: beta over the mean of the rescaled densities u (of the path as it was sampled) and l (as light sampling
+ * would have had its last piece). */
+#include "trace/medium/volume.h"
+#include "trace/medium/phase.h"
+
+/* ---- what a lane carries ----------------------------------------------------------------------------------------- */
+
+static void store_flight(vlPaths *p, vlVolumeRows *v, uint32_t i, const vlFlight *f) {
+  for (int c = 0; c < 4; c++) {
+    p->beta[c][i] = f->beta[c];
+    v->u[c][i] = f->u[c];
+    v->l[c][i] = f->l[c];
+  }
+}
+
+void VL_HOT(vl_volume_permute)(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n) {
+  for (int c = 0; c < 4; c++)
+    for (uint32_t k = 0; k < n; k++) b->u[c][k] = a->u[c][order[k]], b->l[c][k] = a->l[c][order[k]];
+  for (uint32_t k = 0; k < n; k++) b->medium[k] = a->medium[order[k]];
+}
+
+/* A path that follows its hero alone is judged by that one's density, if that is what its flights are sampled by. */
+void VL_HOT(vl_volume_normalise)(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i) {
+  float u[4];
+  bool alone = !t->from_light && !vl_volume_rgb(t) && p->lambda[1][i] == p->lambda[0][i];
+  for (int c = 0; c < 4; c++) u[c] = v->u[alone ? 0 : c][i];
+  float inv = 1.0f / vl_flight_mean(u, vl_volume_rgb(t) ? 3 : 4);
+  for (int c = 0; c < 4; c++) {
+    v->u[c][i] = u[c] * inv;
+    p->beta[c][i] *= inv;
+  }
+}
+
+/* ---- travel ------------------------------------------------------------------------------------------------------ */
+
+/* One lane of a, from medium to medium through interfaces, to what happens to it. Its origin stays that of its last
+ * scattering, which densities of light sampling ask for. */
+static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission, const float *t_min_row,
+                        const float *t_max_row) {
+  const vlWorld *world = t->world;
+  vlPaths *p = &t->s->a;
+  vlHits *h = &t->s->hits_a;
+  vlVolumeScratch *v = &t->s->volume;
+  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+  float t_min = t_min_row ? t_min_row[i] : 0.0f, given[4] = {0, 0, 0, 0};
+  vlFlight f = vl_volume_flight(t, p, &v->a, i, depth, VL_KEY_FLIGHT);
+  f.first = t->s->shade.u0[i];
+  uint32_t medium = v->a.medium[i], event = VL_AT_END;
+  for (int step = 0; step < 1024; step++) { /* no ray needs so many */
+    bool hit = h->shape[i] != VL_NONE;
+    bool passes = hit && vl_is_interface(world, h->shape[i]);
+    vlPoint at = {.t = t_max_row ? t_max_row[i] : VL_INFINITY};
+    if (hit && (passes || medium != VL_NONE)) at = VL_HOT(vl_hit_point)(world, p, h, i);
+    vlFlightEnd end = VL_FLIGHT_PASSED;
+    if (medium != VL_NONE)
+      end = VL_HOT(vl_fly)(&world->media.items[medium], o, d, t_min, at.t, emission, &f, given, &v->t[i]);
+    if (end != VL_FLIGHT_PASSED) {
+      event = end == VL_FLIGHT_SCATTERED ? VL_IN_MEDIUM : VL_AT_END;
+      break;
+    }
+    if (!passes) {
+      event = hit ? VL_ON_SURFACE : VL_IN_SKY;
+      break;
+    }
+    medium = vl_medium_beyond(&world->shapes.items[h->shape[i]], at.g, d, medium);
+    t_min = vl_past_surface(&at, d, t_min);
+    VL_HOT(vl_closest_beyond)(t, p, h, i, t_min, t_max_row);
+  }
+  store_flight(p, &v->a, i, &f);
+  v->a.medium[i] = medium;
+  v->event[i] = (uint8_t)event;
+  v->odds[p->lane[i]] = vl_some_odds(f.odds);
+  for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += given[c];
+  if (event == VL_ON_SURFACE)
+    h->material[i] = VL_HOT(vl_hit_material)(world, p, h, i);
+  else
+    h->shape[i] = VL_NONE;
+}
+
+void VL_HOT(vl_volume_travel)(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
+  vlTraceScratch *s = t->s;
+  vlPaths *p = &s->a;
+  bool camera = depth == 0 && !t->from_light;
+  const float *t_min = camera ? t->batch->t_min : NULL, *t_max = camera ? t->batch->t_max : NULL;
+  VL_HOT(vl_closest_hits)(t, n, camera);
+  if (!camera) t->batch->bounce_rays += n;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_BOUNCE + depth * VL_DIM_STRIDE + VL_DIM_FLIGHT,
+                     s->shade.u0);
+  for (uint32_t i = 0; i < n; i++) travel_lane(t, i, depth, emission, t_min, t_max);
+  for (uint32_t i = 0; camera && i < n; i++) t->batch->alpha[i] = s->volume.event[i] == VL_IN_SKY ? 0.0f : 1.0f;
+}
+
+/* ---- light that rays run into ------------------------------------------------------------------------------------ */
+
+/* light_pdf: of light sampling; 0 where none competes. */
+static void add_light(vlTracing *t, uint32_t i, const float radiance[4], float light_pdf) {
+  const vlPaths *p = &t->s->a;
+  const vlVolumeRows *v = &t->s->volume.a;
+  float density[4];
+  for (int c = 0; c < 4; c++) density[c] = v->u[c][i] + (light_pdf > 0.0f ? v->l[c][i] * light_pdf : 0.0f);
+  float inv = 1.0f / vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
+  for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * radiance[c] * inv;
+}
+
+static void add_sky(vlTracing *t, uint32_t i) {
+  for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
+    vlMetLight met = VL_HOT(vl_meet_sky)(t->world, &t->s->a, i, k);
+    add_light(t, i, met.radiance, met.pdf);
+  }
+}
+
+static void add_glow(vlTracing *t, uint32_t i) {
+  vlMetLight met;
+  if (VL_HOT(vl_meet_glow)(t->world, &t->s->a, &t->s->hits_a, i, &met)) add_light(t, i, met.radiance, met.pdf);
+}
+
+static void emission(vlTracing *t, uint32_t n) {
+  const vlHits *h = &t->s->hits_a;
+  for (uint32_t i = 0; i < n; i++) {
+    uint8_t event = t->s->volume.event[i];
+    if (event == VL_IN_SKY) add_sky(t, i);
+    if (event == VL_ON_SURFACE && t->world->shapes.items[h->shape[i]].first_light != VL_NONE) add_glow(t, i);
+  }
+}
+
+/* ---- scattering in media ----------------------------------------------------------------------------------------- */
+
+static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = &s->volume;
+  const vlPaths *p = &v->scattered;
+  if (t->world->lights.count == 0) return;
+  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (!(s->light.pdf[i] > 0.0f)) continue;
+    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i), w = vl_lane3(s->light.wx, s->light.wy, s->light.wz, i);
+    float phase = vl_phase(t->world->media.items[v->c.medium[i]].g, vl_dot(d, w));
+    const float value[4] = {phase, phase, phase, phase};
+    count = VL_HOT(vl_volume_push_shadow)(t, p, &v->c, i, vl_lane3(p->ox, p->oy, p->oz, i), value, phase,
+                                          v->c.medium[i], count);
+  }
+  VL_HOT(vl_volume_shadows)(t, p, &v->c, count, depth);
+}
+
+uint32_t VL_HOT(vl_volume_phase_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = &s->volume;
+  vlPaths *p = &v->scattered;
+  vlShade *sh = &s->shade;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_ROULETTE, sh->u0);
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV, sh->u1, sh->u2);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    float most = vl_max(vl_max(p->beta[0][i], p->beta[1][i]), vl_max(p->beta[2][i], p->beta[3][i]));
+    float sum = p->beta[0][i] + p->beta[1][i] + p->beta[2][i] + p->beta[3][i];
+    if (sum != sum) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film counts it */
+    float carried = most * p->eta_scale[i];
+    float survive = depth > 1 && carried < 1.0f ? carried : 1.0f;
+    if (!(most > 0.0f) || !(sh->u0[i] < survive)) continue;
+    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+    float g = t->world->media.items[v->c.medium[i]].g;
+    vlVec3 w = vl_phase_sample(g, d, sh->u1[i], sh->u2[i]);
+    float pdf = vl_phase(g, vl_dot(d, w));
+    for (int c = 0; c < 4; c++) {
+      p->beta[c][i] /= survive;
+      v->c.l[c][i] = v->c.u[c][i] / pdf;
+    }
+    p->dx[i] = w.x, p->dy[i] = w.y, p->dz[i] = w.z;
+    p->pdf[i] = pdf;
+    p->specular[i] = 0;
+    vl_note_scattered(t, p->lane[i]);
+    s->order[count++] = i;
+  }
+  return count;
+}
+
+uint32_t VL_HOT(vl_volume_gather)(vlTracing *t, uint32_t n) {
+  vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = &s->volume;
+  vlPaths *p = &v->scattered;
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++)
+    if (v->event[i] == VL_IN_MEDIUM) s->order[count++] = i;
+  if (count == 0) return 0;
+  VL_HOT(vl_permute_paths)(&s->a, p, s->order, count);
+  VL_HOT(vl_volume_permute)(&v->a, &v->c, s->order, count);
+  for (uint32_t i = 0; i < count; i++) {
+    VL_HOT(vl_volume_normalise)(t, p, &v->c, i);
+    float distance = v->t[s->order[i]];
+    p->ox[i] += distance * p->dx[i], p->oy[i] += distance * p->dy[i], p->oz[i] += distance * p->dz[i];
+    p->cone[i] = vl_abs(p->cone[i] + p->spread[i] * distance), p->spread[i] = t->def->pixel_spread;
+    p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
+    s->surface.px[i] = p->ox[i], s->surface.py[i] = p->oy[i], s->surface.pz[i] = p->oz[i];
+    s->surface.nx[i] = s->surface.ny[i] = s->surface.nz[i] = 0.0f; /* light comes from everywhere */
+    s->surface.all_round[i] = 1.0f;
+  }
+  return count;
+}
+
+/* The lanes of a that scatter in media, to their next rays in volume.scattered. Returns how many go on; s->order names
+ * them. */
+static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
+  uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, count = VL_HOT(vl_volume_gather)(t, n);
+  if (count == 0) return 0;
+  phase_light(t, count, depth, dimension);
+  return VL_HOT(vl_volume_phase_scatter)(t, count, depth + 1, dimension);
+}
+
+/* ---- scattering on surfaces -------------------------------------------------------------------------------------- */
+
+static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  const vlPaths *p = &s->b;
+  const vlShade *sh = &s->shade;
+  const vlLightSamples *l = &s->light;
+  if (t->world->lights.count == 0) return;
+  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
+  VL_HOT(vl_stage_light_bsdf)(t, n);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (!(l->pdf[i] > 0.0f)) continue;
+    const float value[4] = {sh->value[0][i], sh->value[1][i], sh->value[2][i], sh->value[3][i]};
+    float sum = value[0] + value[1] + value[2] + value[3];
+    if (!(sum > 0.0f) && sum == sum) continue;
+    /* What goes into a body is looked for where it leaves. */
+    bool into = t->world->has_subsurface && t->world->materials.items[s->hits_b.material[i]].subsurface &&
+                (sh->wi[2][i] < 0.0f) != (sh->wo[2][i] < 0.0f);
+    if (into) continue;
+    vlVec3 at = vl_lane3(s->surface.px, s->surface.py, s->surface.pz, i);
+    vlVec3 g = vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w = vl_lane3(l->wx, l->wy, l->wz, i);
+    vlVec3 o = vl_offset_origin(at, g, s->surface.offset[i], w);
+    const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
+    count = VL_HOT(vl_volume_push_shadow)(t, p, &s->volume.b, i, o, value, sh->pdf[i],
+                                          vl_medium_beyond(shape, g, w, s->volume.b.medium[i]), count);
+  }
+  VL_HOT(vl_volume_shadows)(t, p, &s->volume.b, count, depth);
+}
+
+void VL_HOT(vl_volume_sorted)(vlTracing *t, uint32_t n) {
+  vlVolumeScratch *v = &t->s->volume;
+  if (t->world->media.count || t->world->has_subsurface) VL_HOT(vl_volume_permute)(&v->a, &v->b, t->s->order, n);
+}
+
+void VL_HOT(vl_volume_go_on)(vlTracing *t, uint32_t count) {
+  vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = &s->volume;
+  if (!t->world->media.count && !t->world->has_subsurface) return;
+  VL_HOT(vl_volume_permute)(&v->b, &v->a, s->order, count);
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = s->order[k];
+    float pdf = s->a.pdf[k], inv = pdf > 0.0f ? 1.0f / pdf : 0.0f;
+    for (int c = 0; c < 4; c++) v->a.l[c][k] = v->a.u[c][k] * inv;
+    v->a.medium[k] = vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]],
+                                      vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i),
+                                      vl_lane3(s->a.dx, s->a.dy, s->a.dz, k), v->a.medium[k]);
+  }
+}
+
+static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = &s->volume;
+  uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
+  n = VL_HOT(vl_stage_sort)(t, n);
+  if (n == 0) return 0;
+  VL_HOT(vl_volume_sorted)(t, n);
+  VL_HOT(vl_stage_shade)(t, n);
+  VL_HOT(vl_stage_regularize)(t, n);
+  for (uint32_t i = 0; i < n; i++) VL_HOT(vl_volume_normalise)(t, &s->b, &v->b, i);
+  surface_light(t, n, depth, dimension);
+  uint32_t count = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
+  VL_HOT(vl_volume_go_on)(t, count);
+  return t->world->has_subsurface ? VL_HOT(vl_stage_subsurface)(t, count, depth) : count;
+}
+
+/* ---- the tracer -------------------------------------------------------------------------------------------------- */
+
+uint32_t VL_HOT(vl_volume_append)(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n) {
+  vlPaths *a = &t->s->a;
+  const vlPaths *b = &t->s->volume.scattered;
+  vlVolumeRows *va = &t->s->volume.a;
+  const vlVolumeRows *vb = &t->s->volume.c;
+  for (uint32_t k = 0; k < count; k++, n++) {
+    uint32_t i = order[k];
+    vl_path_copy(b, i, a, n);
+    vl_volume_copy(vb, i, va, n);
+  }
+  return n;
+}
+
+void VL_HOT(vl_volume_start)(vlTracing *t, uint32_t n, const uint32_t *medium) {
+  vlPaths *p = &t->s->a;
+  vlVolumeRows *rows = &t->s->volume.a;
+  for (uint32_t i = 0; i < n; i++) {
+    for (int c = 0; c < 4; c++) rows->u[c][i] = rows->l[c][i] = 1.0f;
+    rows->medium[i] = medium ? medium[p->lane[i]] : t->world->camera_medium;
+    if (vl_volume_rgb(t)) p->beta[3][i] = 0.0f;
+  }
+}
+
+void VL_HOT(vl_volume_tracer)(vlTracing *t) {
+  vlTraceScratch *s = t->s;
+  uint32_t n = t->batch->n;
+  VL_HOT(vl_volume_start)(t, n, NULL);
+  for (uint32_t depth = 0; n > 0; depth++) {
+    VL_HOT(vl_volume_travel)(t, n, depth, depth < t->def->max_depth);
+    emission(t, n);
+    if (depth >= t->def->max_depth) break;
+    uint32_t inside = scatter_in_media(t, n, depth);
+    uint32_t *kept = s->volume.kept;
+    for (uint32_t k = 0; k < inside; k++) kept[k] = s->order[k];
+    n = scatter_on_surfaces(t, n, depth);
+    n = VL_HOT(vl_volume_append)(t, kept, inside, n);
+  }
+}

@@ -1,0 +1,49 @@
+/* trace/sampler/sampler.c: what a sampler works out once: how spp samples are laid out in cells, how many bits an index
+ * has. */
+#include "trace/sampler/sampler.h"
+
+static uint32_t bits_for(uint32_t count) { /* least b with 2^b >= count */
+  return count > 1 ? 32u - (uint32_t)__builtin_clz(count - 1) : 0;
+}
+
+static uint32_t floor_sqrt(uint32_t x) {
+  uint32_t r = 0;
+  while ((uint64_t)(r + 1) * (r + 1) <= x) r++;
+  return r;
+}
+
+void vl_sampler_init(vlSampler *sampler, vlSamplerKind kind, uint32_t seed, uint32_t width, uint32_t height,
+                     uint32_t spp) {
+  enum { SET_MAX = 1 << 20 };
+  uint32_t count = spp ? spp : 1;
+  uint32_t set = count < SET_MAX ? count : SET_MAX, root = floor_sqrt(set);
+  /* Rows and columns: a factorisation not flatter than 1:2 where there is one; else about sqrt(set) rows, of which the
+   * last are shorter by one cell. */
+  uint32_t rows = root;
+  while (rows > 1 && set % rows != 0) rows--;
+  if (set / rows > 2 * rows) rows = set - root * root > root ? root + 1 : root;
+  uint32_t columns = (set + rows - 1) / rows;
+  uint32_t bits = bits_for(set + 2 * root + 2); /* multi-jittered counts up to grid_x * grid_y */
+  *sampler = (vlSampler){
+      .kind = kind,
+      .seed = seed,
+      .spp = count,
+      .width = width,
+      .height = height,
+      .set = set,
+      .log2_spp = count <= 0x80000000u ? bits_for(count) : 31,
+      .morton_bits = 2 * bits_for(width > height ? width : height),
+      .grid_x = columns,
+      .grid_y = rows,
+      .wide = rows - (rows * columns - set),
+      .jitter_bits = bits < 14 ? 22 - bits : 8,
+  };
+}
+
+const vlSamplerKernels *vl_sampler_kernels(vlIsa isa) {
+  switch (isa) {
+    case VL_ISA_V4: return &vl_sampler_kernels_v4;
+    case VL_ISA_V3: return &vl_sampler_kernels_v3;
+    default: return &vl_sampler_kernels_v2;
+  }
+}

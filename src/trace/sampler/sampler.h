@@ -1,0 +1,53 @@
+/* trace/sampler/sampler.h: the sampler of the lecture: numbers in [0, 1) that depend on (seed, pixel, sample index,
+ * dimension) alone. Batches: one call fills one dimension (or pair) for n paths. Data flows (pixel, index) -> u.
+ *
+ * Dimensions are counted in numbers: a 1-D call at dimension d uses d, a 2-D call d and d+1. A dimension is always
+ * asked for in the same way (1-D or 2-D).
+ *
+ *   independent      hashed numbers
+ *   regular          centres of equal cells: the one kind that is not random; its order is, so that dimensions mix
+ *   stratified       one number in each of spp equal cells ("jittered")
+ *   nrooks           one in each of spp rows and of spp columns
+ *   multi-jittered   one in each cell, row and column (Kensler 2013)
+ *   hammersley       (i/n, radical inverse), jittered in x, digits scrambled in y
+ *   halton           radical inverses in the primes, Owen-scrambled for each pixel
+ *   sobol            Sobol' pairs, Owen-scrambled and shuffled for each pixel and pair (Burley 2020)
+ *   zsobol           the same along the Morton curve of the pixels, so that the error of neighbours differs (Ahmed and
+ *                    Wonka 2020): blue noise over the picture
+ *
+ * Stratified kinds cut exactly spp cells, whatever spp is. An index of spp or above starts a new, independent set
+ * (independent, sobol: goes on in the sequence). */
+#ifndef TRACE_SAMPLER_SAMPLER_H
+#define TRACE_SAMPLER_SAMPLER_H
+
+#include "base/isa.h"
+#include "velo/scene.h"
+
+typedef struct vlSampler {
+  vlSamplerKind kind;
+  uint32_t seed;
+  uint32_t spp;            /* samples a pixel shall get in the end */
+  uint32_t width, height;  /* whole picture */
+  uint32_t set;            /* samples in a set of the stratified kinds: spp, at most 2^20 */
+  uint32_t log2_spp;       /* rounded up; zsobol: index bits below the Morton code */
+  uint32_t morton_bits;    /* of the picture's Morton codes */
+  uint32_t grid_x, grid_y; /* rows of grid_x or (the last grid_y - wide) of grid_x - 1 cells: set cells in all */
+  uint32_t wide;           /* how many rows have grid_x cells */
+  uint32_t jitter_bits;    /* random bits below a cell's number; cell and jitter together are exact in a float */
+} vlSampler;
+
+/* Any spp >= 1 works with every kind (0 counts as 1). Pixels up to 65536 x 65536. */
+void vl_sampler_init(vlSampler *sampler, vlSamplerKind kind, uint32_t seed, uint32_t width, uint32_t height,
+                     uint32_t spp);
+
+/* px, py: pixel; index: sample index in [0, spp). Arrays hold VL_PAD(n) elements; padding lanes are computed too. */
+typedef struct vlSamplerKernels {
+  void (*get_1d)(const vlSampler *sampler, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index,
+                 uint32_t dimension, float *u);
+  void (*get_2d)(const vlSampler *sampler, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index,
+                 uint32_t dimension, float *u, float *v);
+} vlSamplerKernels;
+extern const vlSamplerKernels vl_sampler_kernels_v2, vl_sampler_kernels_v3, vl_sampler_kernels_v4;
+const vlSamplerKernels *vl_sampler_kernels(vlIsa isa);
+
+#endif

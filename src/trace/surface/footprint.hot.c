@@ -1,0 +1,21 @@
+/* trace/surface/footprint.hot.c: what a pixel's width becomes on a surface: the cone round a ray cuts it in an ellipse,
+ * as wide as the cone across the ray's plane, longer along it the more it grazes. Its two axes in uv choose how
+ * pictures are filtered (world/texture/texture_lookup.h). */
+#include "trace/stages.h"
+
+void VL_HOT(vl_stage_footprints)(uint32_t n, const vlPaths *paths, vlSurface *f) {
+  uint32_t padded = VL_PAD(n);
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    vlVec3 d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]), g = vl_vec3(f->gx[i], f->gy[i], f->gz[i]);
+    vlVec3 u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]), v = vl_vec3(f->vx[i], f->vy[i], f->vz[i]);
+    vlFootprint r = vl_footprint_of(d, g, f->width[i]);
+    /* X = a u + b v by least squares; u and v lie in the surface, nearly. */
+    float uu = vl_dot(u, u), uv = vl_dot(u, v), vv = vl_dot(v, v), det = uu * vv - uv * uv;
+    float inv = det > 0.0f && f->uv_scale[i] > 0.0f ? 1.0f / det : 0.0f;
+    float au = vl_dot(r.across, u), av = vl_dot(r.across, v), bu = vl_dot(r.along, u), bv = vl_dot(r.along, v);
+    f->across_u[i] = (vv * au - uv * av) * inv, f->across_v[i] = (uu * av - uv * au) * inv;
+    f->along_u[i] = (vv * bu - uv * bv) * inv, f->along_v[i] = (uu * bv - uv * bu) * inv;
+  }
+}

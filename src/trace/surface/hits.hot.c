@@ -1,0 +1,120 @@
+/* trace/surface/hits.hot.c: rays to what they meet: ids, interfaces passed, mixed materials decided, and the light that
+ * the rays run into, weighed against that of light sampling (pbrt book 13.4). */
+#include "math/hash.h"
+#include "trace/stages.h"
+
+/* ---- light that rays run into ------------------------------------------------------------------------------------ */
+
+/* What light sampling could have found, too, counts in part. */
+static void add_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlMetLight *met) {
+  float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
+  for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met->radiance[c] * weight;
+}
+
+static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i) {
+  for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
+    vlMetLight met = VL_HOT(vl_meet_sky)(t->world, p, i, k);
+    add_met(t, p, i, &met);
+  }
+}
+
+/* The point that a path's ray meets. */
+vlPoint VL_HOT(vl_hit_point)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
+  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+  return VL_HOT(vl_point_at_time)(world, vl_path_time(p, i), o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
+}
+
+static void add_glow(vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t i) {
+  vlMetLight met;
+  if (VL_HOT(vl_meet_glow)(t->world, p, h, i, &met)) add_met(t, p, i, &met);
+}
+
+/* What the n rays of a run into: the sky where nothing is hit, or a surface that glows. */
+void VL_HOT(vl_stage_emission)(vlTracing *t, uint32_t n) {
+  const vlHits *h = &t->s->hits_a;
+  for (uint32_t i = 0; i < n; i++) {
+    if (h->shape[i] == VL_NONE)
+      add_sky(t, &t->s->a, i);
+    else if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE)
+      add_glow(t, &t->s->a, h, i);
+  }
+}
+
+/* ---- hits -------------------------------------------------------------------------------------------------------- */
+
+/* The material a hit really has: mixes are decided by a hash of the ray, so that the choice needs no sampler dimension.
+ */
+uint32_t VL_HOT(vl_hit_material)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
+  uint32_t material = world->shapes.items[h->shape[i]].material;
+  while (world->materials.items[material].kind == VL_MATERIAL_MIX) { /* parts come before: it ends */
+    const vlWorldMaterial *m = &world->materials.items[material];
+    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+    vlPoint at = VL_HOT(vl_hit_point)(world, p, h, i);
+    float position[3] = {at.p.x, at.p.y, at.p.z};
+    float amount = vl_texture_float_at(world, m->amount, at.u, at.v, position, NULL);
+    uint32_t hash = vl_hash3(vl_float_bits(d.x), vl_float_bits(d.y), vl_float_bits(d.z));
+    hash = vl_hash3(hash, vl_float_bits(at.p.x), vl_float_bits(at.p.y));
+    hash = vl_hash3(hash, vl_float_bits(at.p.z), material);
+    material = m->mix[vl_unit_float(hash) < amount ? 1 : 0];
+  }
+  return material;
+}
+
+void VL_HOT(vl_closest_hits)(vlTracing *t, uint32_t n, bool camera) {
+  vlPaths *p = &t->s->a;
+  vlHits *h = &t->s->hits_a;
+  const float *t_min = camera ? t->batch->t_min : NULL, *t_max = camera ? t->batch->t_max : NULL;
+  vlRays rays = {p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, p->time ? t->s->time : NULL};
+  for (uint32_t i = 0; rays.time && i < n; i++) t->s->time[i] = vl_path_time(p, i);
+  vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
+}
+
+void VL_HOT(vl_closest_beyond)(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min, const float *t_max) {
+  float time = vl_path_time(p, i);
+  vlRays ray = {p->ox + i,
+                p->oy + i,
+                p->oz + i,
+                p->dx + i,
+                p->dy + i,
+                p->dz + i,
+                &t_min,
+                t_max ? t_max + i : NULL,
+                p->time ? &time : NULL};
+  vl_accel_closest(t->world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i, h->t + i);
+  t->batch->bounce_rays++;
+}
+
+/* Interface surfaces bend nothing: the same ray goes on behind them. It keeps its start, which the weights of multiple
+ * importance sampling ask for, and its end. */
+static void pass_interfaces(vlTracing *t, vlPaths *p, vlHits *h, uint32_t i, const float *t_max) {
+  const vlWorld *world = t->world;
+  float t_min = 0;
+  for (int step = 0; h->shape[i] != VL_NONE; step++) {
+    if (world->materials.items[world->shapes.items[h->shape[i]].material].kind != VL_MATERIAL_INTERFACE) return;
+    if (step == 1024) h->shape[i] = VL_NONE; /* no ray needs so many */
+    if (h->shape[i] == VL_NONE) return;
+    if (world->shapes.items[h->shape[i]].first_light != VL_NONE) add_glow(t, p, h, i);
+    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+    vlPoint at = VL_HOT(vl_hit_point)(world, p, h, i);
+    t_min = vl_past_surface(&at, d, t_min);
+    VL_HOT(vl_closest_beyond)(t, p, h, i, t_min, t_max);
+  }
+}
+
+/* Rays of a: ids of what they meet, of which material. */
+void VL_HOT(vl_stage_hits)(vlTracing *t, uint32_t n, bool camera) {
+  vlPaths *p = &t->s->a;
+  vlHits *h = &t->s->hits_a;
+  VL_HOT(vl_closest_hits)(t, n, camera);
+  if (!camera) t->batch->bounce_rays += n;
+  for (uint32_t i = 0; i < n; i++) {
+    if (h->shape[i] == VL_NONE) continue;
+    if (t->world->has_interfaces) pass_interfaces(t, p, h, i, camera ? t->batch->t_max : NULL);
+    if (h->shape[i] != VL_NONE) h->material[i] = VL_HOT(vl_hit_material)(t->world, p, h, i);
+  }
+}
+
+/* 1 where the camera's ray meets a surface. */
+void VL_HOT(vl_stage_alpha)(vlTracing *t) {
+  for (uint32_t i = 0; i < t->batch->n; i++) t->batch->alpha[i] = t->s->hits_a.shape[i] == VL_NONE ? 0.0f : 1.0f;
+}

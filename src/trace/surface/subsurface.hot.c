@@ -1,0 +1,354 @@
+/* trace/surface/subsurface.hot.c: light that enters a surface and leaves it elsewhere, by the profiles of
+ * world/material/bssrdf.h and with pbrt's estimator (pbrt book, 3rd edition, 15.4). What happens to the paths that a
+ * surface of such a material has let in (volume.hot.c gives them to us before they fly on):
+ *
+ *   a, those refracted -> probes: segments through the body near where light came in -> all surfaces of the material on
+ *   them, one of each chosen -> exits in a: vlSurface, light samples, new directions -> a, with the paths of the others
+ *
+ * A probe goes along the normal (half of them) or one of two tangents, at a distance that the profile of the hero
+ * wavelength gives; the density of the point found is that of all three directions together, and by each wavelength. */
+#include "math/fresnel.h"
+#include "math/warp.h"
+#include "trace/medium/volume.h"
+#include "trace/texture/texture_run.h"
+#include "world/material/bssrdf.h"
+
+/* Surfaces of a probe that are looked at: no body is so crumpled. */
+enum { MOST_CROSSINGS = 1024 };
+
+/* Where the light came in. */
+typedef struct Entry {
+  const vlBssrdfTable *table;
+  vlVec3 p, n;
+  float sigma[4], albedo[4];
+} Entry;
+
+static Entry entry_of(const vlTracing *t, uint32_t j) {
+  const vlSubsurfaceScratch *x = &t->s->subsurface;
+  Entry e = {t->world->materials.items[x->material[j]].subsurface->table,
+             vl_lane3(x->px, x->py, x->pz, j),
+             vl_lane3(x->nx, x->ny, x->nz, j),
+             {0},
+             {0}};
+  for (int c = 0; c < 4; c++) e.sigma[c] = x->sigma[c][j], e.albedo[c] = x->albedo[c][j];
+  return e;
+}
+
+/* Those of the n paths of a (lanes s->order of the surfaces behind them) that went in become the probes of b. Returns
+ * how many; a is kept in the scratch. */
+static uint32_t take_refracted(vlTracing *t, uint32_t n) {
+  vlTraceScratch *s = t->s;
+  vlSubsurfaceScratch *x = &s->subsurface;
+  const vlShade *sh = &s->shade;
+  uint32_t count = 0;
+  for (uint32_t k = 0; k < n; k++) {
+    uint32_t i = s->order[k], material = s->hits_b.material[i];
+    bool in = t->world->materials.items[material].subsurface && (sh->flags[i] & VL_SAMPLED_TRANSMISSION);
+    x->alive[k] = !in;
+    if (!in) continue;
+    uint32_t j = count++;
+    x->place[j] = k;
+    x->material[j] = material;
+    x->px[j] = s->surface.px[i], x->py[j] = s->surface.py[i], x->pz[j] = s->surface.pz[i];
+    x->nx[j] = s->surface.nx[i], x->ny[j] = s->surface.ny[i], x->nz[j] = s->surface.nz[i];
+    for (int c = 0; c < 4; c++) {
+      x->sigma[c][j] = sh->principled[VL_S_SIGMA + c][i];
+      x->albedo[c][j] = sh->principled[VL_S_ALBEDO + c][i];
+    }
+    x->squeezed[j] = sh->eta_scale[i];
+    x->medium[j] = s->volume.b.medium[i];
+  }
+  if (count == 0) return 0;
+  x->paths = s->a;
+  x->rows = s->volume.a;
+  VL_HOT(vl_permute_paths)(&x->paths, &s->b, x->place, count);
+  VL_HOT(vl_volume_permute)(&x->rows, &s->volume.b, x->place, count);
+  for (uint32_t j = 0; j < count; j++) {
+    s->volume.b.medium[j] = x->medium[j]; /* where the path comes from, and goes back to */
+    s->b.eta_scale[j] /= x->squeezed[j];
+  }
+  return count;
+}
+
+/* A segment of half a length to either side of o, cut to the sphere round everything: rays begin no farther away than
+ * there is something to meet. */
+static void cut_probe(const vlTracing *t, uint32_t j, vlVec3 o, vlVec3 along, float half) {
+  vlSubsurfaceScratch *x = &t->s->subsurface;
+  vlPaths *p = &t->s->b;
+  const float *c = t->world->center;
+  float radius = 1.001f * t->world->radius;
+  vlVec3 to = vl_sub(vl_vec3(c[0], c[1], c[2]), o);
+  float middle = vl_dot(to, along), inside = radius * radius - vl_length2(vl_sub(to, vl_mul(along, middle)));
+  float reach = inside > 0.0f ? __builtin_sqrtf(inside) : 0.0f;
+  float start = vl_max(-half, middle - reach), end = vl_min(half, middle + reach);
+  o = vl_add(o, vl_mul(along, start));
+  p->ox[j] = o.x, p->oy[j] = o.y, p->oz[j] = o.z;
+  p->dx[j] = along.x, p->dy[j] = along.y, p->dz[j] = along.z;
+  x->length[j] = end > start ? end - start : 0.0f;
+}
+
+/* The segments: origin and direction of the paths of b, x->length (0: none). */
+static void aim_probes(vlTracing *t, uint32_t n, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  vlSubsurfaceScratch *x = &s->subsurface;
+  vlPaths *p = &s->b;
+  vlShade *sh = &s->shade;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_PROBE_AXIS, sh->u0);
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_PROBE, sh->u1, sh->u2);
+  for (uint32_t j = 0; j < n; j++) {
+    Entry e = entry_of(t, j);
+    int hero = vl_volume_hero(t, p, j);
+    vlSpline albedo = vl_bssrdf_albedo(e.table, e.albedo[hero]);
+    float near = vl_bssrdf_sample(e.table, &albedo, sh->u1[j]), far = vl_bssrdf_sample(e.table, &albedo, 0.999f);
+    x->length[j] = x->t_min[j] = 0.0f;
+    x->found[j] = 0;
+    if (!(e.sigma[hero] > 0.0f) || !(near >= 0.0f) || !(near < far)) continue;
+    vlFrame f = vl_frame_from_z(e.n);
+    vlVec3 along = sh->u0[j] < 0.25f ? f.x : sh->u0[j] < 0.5f ? f.y : f.z;
+    vlVec3 side = sh->u0[j] < 0.25f ? f.y : sh->u0[j] < 0.5f ? f.z : f.x;
+    vlVec3 other = sh->u0[j] < 0.25f ? f.z : sh->u0[j] < 0.5f ? f.x : f.y;
+    vlSinCos turn = vl_sincos_turn(sh->u2[j]);
+    float inv = 1.0f / e.sigma[hero], half = __builtin_sqrtf((far - near) * (far + near)) * inv;
+    vlVec3 o = vl_add(vl_mul(side, near * inv * turn.cos), vl_mul(other, near * inv * turn.sin));
+    if (near * inv < 4.0f * t->world->radius) cut_probe(t, j, vl_add(e.p, o), along, half);
+  }
+}
+
+/* One crossing of probe j: hits_b has its ids. false: it was the last. */
+static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
+  vlTraceScratch *s = t->s;
+  vlSubsurfaceScratch *x = &s->subsurface;
+  vlHits *h = &s->hits_b;
+  if (h->shape[j] == VL_NONE) return false;
+  vlPoint at = VL_HOT(vl_hit_point)(t->world, &s->b, h, j);
+  if (VL_HOT(vl_hit_material)(t->world, &s->b, h, j) == x->material[j]) {
+    uint32_t count = ++x->found[j];
+    float u = vl_unit_float(vl_hash2(vl_volume_key(t, &s->b, j, depth, VL_KEY_PROBE), count));
+    if (u * (float)count < 1.0f) { /* of all crossings each stays with the same chance */
+      x->hits.shape[j] = h->shape[j], x->hits.prim[j] = h->prim[j], x->hits.instance[j] = h->instance[j];
+      x->hits.t[j] = h->t[j];
+    }
+  }
+  x->t_min[j] = vl_past_surface(&at, vl_lane3(s->b.dx, s->b.dy, s->b.dz, j), x->t_min[j]);
+  return x->t_min[j] < x->length[j];
+}
+
+/* All that the probes cross, crossing by crossing in one batch: x->found, and one of each in x->hits. */
+static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTraceScratch *s = t->s;
+  vlSubsurfaceScratch *x = &s->subsurface;
+  const vlPaths *p = &s->b;
+  vlShadowRays *q = &s->shadow;
+  vlHits *to = &s->hits_a;
+  uint32_t *under_way = s->slot, active = 0;
+  for (uint32_t j = 0; j < n; j++)
+    if (x->length[j] > 0.0f) under_way[active++] = j;
+  for (int step = 0; active > 0 && step < MOST_CROSSINGS; step++) {
+    for (uint32_t k = 0; k < active; k++) {
+      uint32_t j = under_way[k];
+      q->ox[k] = p->ox[j], q->oy[k] = p->oy[j], q->oz[k] = p->oz[j];
+      q->dx[k] = p->dx[j], q->dy[k] = p->dy[j], q->dz[k] = p->dz[j];
+      x->from[k] = x->t_min[j];
+      q->t_max[k] = x->length[j];
+      q->time[k] = vl_path_time(p, j);
+    }
+    vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, x->from, q->t_max, p->time ? q->time : NULL};
+    vl_accel_closest(t->world, active, &rays, false, to->shape, to->prim, to->instance, to->t);
+    t->batch->bounce_rays += active;
+    uint32_t left = 0;
+    for (uint32_t k = 0; k < active; k++) {
+      uint32_t j = under_way[k];
+      s->hits_b.shape[j] = to->shape[k], s->hits_b.prim[j] = to->prim[k];
+      s->hits_b.instance[j] = to->instance[k], s->hits_b.t[j] = to->t[k];
+      if (note_crossing(t, j, depth)) under_way[left++] = j;
+    }
+    active = left;
+  }
+}
+
+/* ---- exits ------------------------------------------------------------------------------------------------------- */
+
+/* Probes that found something become paths of a, x->entry says which. Returns how many. */
+static uint32_t gather_exits(vlTracing *t, uint32_t n) {
+  vlTraceScratch *s = t->s;
+  vlSubsurfaceScratch *x = &s->subsurface;
+  uint32_t count = 0;
+  for (uint32_t j = 0; j < n; j++)
+    if (x->found[j]) x->entry[count++] = j;
+  VL_HOT(vl_permute_paths)(&s->b, &s->a, x->entry, count);
+  VL_HOT(vl_volume_permute)(&s->volume.b, &s->volume.a, x->entry, count);
+  for (uint32_t i = 0; i < count; i++) {
+    uint32_t j = x->entry[i];
+    s->hits_b.shape[i] = x->hits.shape[j], s->hits_b.prim[i] = x->hits.prim[j];
+    s->hits_b.instance[i] = x->hits.instance[j], s->hits_b.t[i] = x->hits.t[j];
+    s->hits_b.material[i] = x->material[j];
+  }
+  if (count) VL_HOT(vl_stage_surface)(t->world, count, &s->a, &s->hits_b, &s->corners, &s->surface);
+  return count;
+}
+
+/* What arrives at exit i of what came in, over the density of having gone there: by the hero to beta, by the others to
+ * u. A path that cannot have gone there carries nothing any more. Lengths are the hero's mean free paths. */
+static void weigh_exit(vlTracing *t, uint32_t i) {
+  vlTraceScratch *s = t->s;
+  vlPaths *p = &s->a;
+  vlVolumeRows *rows = &s->volume.a;
+  const vlSurface *f = &s->surface;
+  uint32_t j = s->subsurface.entry[i];
+  Entry e = entry_of(t, j);
+  int hero = vl_volume_hero(t, p, i);
+  vlFrame frame = vl_frame_from_z(e.n);
+  vlVec3 d = vl_sub(vl_lane3(f->px, f->py, f->pz, i), e.p), g = vl_lane3(f->gx, f->gy, f->gz, i);
+  float x = vl_dot(d, frame.x), y = vl_dot(d, frame.y), z = vl_dot(d, frame.z);
+  const float across[3] = {__builtin_sqrtf(y * y + z * z), __builtin_sqrtf(z * z + x * x),
+                           __builtin_sqrtf(x * x + y * y)};
+  const float facing[3] = {0.25f * vl_abs(vl_dot(g, frame.x)), 0.25f * vl_abs(vl_dot(g, frame.y)),
+                           0.5f * vl_abs(vl_dot(g, frame.z))};
+  float r = vl_length(d), arrives[4], density[4];
+  for (int c = 0; c < 4; c++) {
+    float ratio = e.sigma[c] / e.sigma[hero];
+    vlSpline albedo = vl_bssrdf_albedo(e.table, e.albedo[c]);
+    float area = ratio * ratio, whole = vl_bssrdf_effective(e.table, &albedo), sum = 0.0f;
+    arrives[c] = density[c] = 0.0f;
+    if (!(e.sigma[c] > 0.0f) || !(area < 1e30f) || !(whole > 0.0f)) continue;
+    for (int k = 0; k < 3; k++) sum += facing[k] * vl_bssrdf_at(e.table, &albedo, across[k] * e.sigma[c]);
+    arrives[c] = area * vl_bssrdf_at(e.table, &albedo, r * e.sigma[c]);
+    density[c] = area * sum / whole;
+  }
+  float inv = density[hero] > 0.0f ? (float)s->subsurface.found[j] / density[hero] : 0.0f;
+  for (int c = 0; c < 4; c++) {
+    p->beta[c][i] *= arrives[c] * inv;
+    rows->u[c][i] *= density[hero] > 0.0f ? density[c] / density[hero] : 1.0f;
+  }
+  VL_HOT(vl_volume_normalise)(t, p, rows, i);
+}
+
+/* Light passes the surface outwards as if it came from everywhere below alike: the share that is not reflected. (The
+ * factor eta^2 takes back what its squeezing by refraction took from radiance on the way in.) */
+static float exit_value(const vlBssrdfTable *table, float cosine) {
+  float passes = 1.0f - vl_fresnel_dielectric(cosine, table->eta).reflected;
+  return table->eta * table->eta * passes * VL_INV_PI / table->leaves;
+}
+
+static const vlBssrdfTable *table_at(const vlTracing *t, uint32_t i) {
+  return t->world->materials.items[t->s->hits_b.material[i]].subsurface->table;
+}
+
+static bool carries(const vlPaths *p, uint32_t i) {
+  return vl_max(vl_max(p->beta[0][i], p->beta[1][i]), vl_max(p->beta[2][i], p->beta[3][i])) > 0.0f;
+}
+
+static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  const vlPaths *p = &s->a;
+  const vlSurface *f = &s->surface;
+  const vlLightSamples *l = &s->light;
+  vlVolumeRows *rows = &s->volume.a;
+  if (t->world->lights.count == 0) return;
+  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
+    float cosine = vl_dot(w, vl_lane3(f->nx, f->ny, f->nz, i));
+    if (!(l->pdf[i] > 0.0f) || !(cosine > 0.0f) || !carries(p, i)) continue;
+    float v = exit_value(table_at(t, i), cosine) * cosine;
+    const float value[4] = {v, v, v, v};
+    vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), g, f->offset[i], w);
+    const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
+    count = VL_HOT(vl_volume_push_shadow)(t, p, rows, i, o, value, cosine * VL_INV_PI,
+                                          vl_medium_beyond(shape, g, w, rows->medium[i]), count);
+  }
+  VL_HOT(vl_volume_shadows)(t, p, rows, count, depth);
+}
+
+/* Their next rays, back to where their paths were. */
+static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  vlSubsurfaceScratch *x = &s->subsurface;
+  vlPaths *p = &s->a;
+  const vlSurface *f = &s->surface;
+  vlVolumeRows *rows = &s->volume.a;
+  vlShade *sh = &s->shade;
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_EXIT_UV, sh->u1, sh->u2);
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t place = x->place[x->entry[i]];
+    float sum = p->beta[0][i] + p->beta[1][i] + p->beta[2][i] + p->beta[3][i];
+    if (sum != sum) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film counts it */
+    vlVec3 local = vl_warp_cosine_hemisphere(sh->u1[i], sh->u2[i]);
+    if (!carries(p, i) || !(local.z > 0.0f)) continue;
+    vlVec3 nn = vl_lane3(f->nx, f->ny, f->nz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
+    vlVec3 w = vl_normalize(vl_from_local(vl_frame_from_z(nn), local));
+    vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), g, f->offset[i], w);
+    float weight = exit_value(table_at(t, i), local.z) * VL_PI, pdf = local.z * VL_INV_PI;
+    p->ox[i] = o.x, p->oy[i] = o.y, p->oz[i] = o.z;
+    p->dx[i] = w.x, p->dy[i] = w.y, p->dz[i] = w.z;
+    p->pdf[i] = pdf;
+    p->specular[i] = 0;
+    p->cone[i] = vl_abs(p->cone[i]), p->spread[i] = t->def->pixel_spread;
+    vl_note_scattered(t, p->lane[i]);
+    p->from_nx[i] = nn.x, p->from_ny[i] = nn.y, p->from_nz[i] = nn.z;
+    for (int c = 0; c < 4; c++) p->beta[c][i] *= weight, rows->l[c][i] = rows->u[c][i] / pdf;
+    rows->medium[i] = vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]], g, w, rows->medium[i]);
+    vl_path_copy(p, i, &x->paths, place);
+    vl_volume_copy(rows, i, &x->rows, place);
+    x->alive[place] = 1;
+  }
+}
+
+uint32_t VL_HOT(vl_stage_subsurface)(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTraceScratch *s = t->s;
+  vlSubsurfaceScratch *x = &s->subsurface;
+  uint32_t dimension = VL_DIM_SUBSURFACE + depth * VL_DIM_STRIDE;
+  uint32_t probes = take_refracted(t, n);
+  if (probes == 0) return n;
+  aim_probes(t, probes, dimension);
+  follow_probes(t, probes, depth);
+  uint32_t exits = gather_exits(t, probes);
+  for (uint32_t i = 0; i < exits; i++) weigh_exit(t, i);
+  if (exits) {
+    light_exits(t, exits, depth, dimension);
+    leave(t, exits, dimension);
+  }
+  uint32_t count = 0;
+  for (uint32_t k = 0; k < n; k++) {
+    s->order[count] = k;
+    count += x->alive[k];
+  }
+  VL_HOT(vl_permute_paths)(&x->paths, &s->a, s->order, count);
+  VL_HOT(vl_volume_permute)(&x->rows, &s->volume.a, s->order, count);
+  return count;
+}
+
+/* ---- the material ------------------------------------------------------------------------------------------------ */
+
+static void spectrum(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {
+  float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
+  VL_HOT(vl_texture_spectrum)(r, node, out);
+}
+
+/* Coefficients of a run of lanes: extinction and albedo, from absorption and scattering, or from the reflectance of a
+ * thick body and the mean free path. */
+void VL_HOT(vl_stage_bodies)(vlTextureRun *r, const vlWorldMaterial *m) {
+  const vlWorldSubsurface *b = m->subsurface;
+  vlShade *sh = &r->s->shade;
+  float(*sigma)[VL_ROW_SIZE] = sh->principled + VL_S_SIGMA, (*albedo)[VL_ROW_SIZE] = sh->principled + VL_S_ALBEDO;
+  const float most = 1e15f; /* per unit of length: its square is still a number */
+  if (b->mfp >= 0) {
+    spectrum(r, b->mfp, sigma);
+    for (int c = 0; c < 4; c++)
+      for (uint32_t i = r->first; i < r->last; i++) {
+        float length = vl_max(m->scale * sigma[c][i], 1.0f / most);
+        sigma[c][i] = 1.0f / length;
+        albedo[c][i] = vl_bssrdf_invert(b->table, sh->reflectance[c][i]);
+      }
+    return;
+  }
+  spectrum(r, b->sigma_a, sigma);
+  spectrum(r, b->sigma_s, albedo);
+  for (int c = 0; c < 4; c++)
+    for (uint32_t i = r->first; i < r->last; i++) {
+      float a = vl_clamp(m->scale * sigma[c][i], 0.0f, most), s = vl_clamp(m->scale * albedo[c][i], 0.0f, most);
+      sigma[c][i] = a + s;
+      albedo[c][i] = a + s > 0.0f ? vl_min(s / (a + s), 1.0f) : 0.0f;
+    }
+}

@@ -1,0 +1,399 @@
+/* trace/surface/surface.hot.c: from ids to surface points, in our own arithmetic (Embree's t, u, v differ between its
+ * instruction sets). Triangles: gather the corners, then one vector loop. Other shapes: world/shape/surface_point.c,
+ * one by one. */
+#include "math/transform.h"
+#include "trace/stages.h"
+#include "world/shape/moving.h"
+#include "world/shape/surface_point.h"
+
+/* gamma_n = n eps / (1 - n eps), the bound of n roundings (pbrt book 6.8.1). */
+#define GAMMA(n) ((n)*0x1p-24f / (1.0f - (n)*0x1p-24f))
+
+typedef struct Corner {
+  vlVec3 p;
+  float error;
+} Corner;
+
+static inline Corner move_corner(const float m[12], const float *x) {
+  vlVec3 p = vl_vec3(m[0] * x[0] + m[1] * x[1] + m[2] * x[2] + m[3], m[4] * x[0] + m[5] * x[1] + m[6] * x[2] + m[7],
+                     m[8] * x[0] + m[9] * x[1] + m[10] * x[2] + m[11]);
+  float e = 0;
+  for (int i = 0; i < 3; i++) {
+    float sum =
+        vl_abs(m[4 * i] * x[0]) + vl_abs(m[4 * i + 1] * x[1]) + vl_abs(m[4 * i + 2] * x[2]) + vl_abs(m[4 * i + 3]);
+    e = sum > e ? sum : e;
+  }
+  return (Corner){p, e * GAMMA(4)};
+}
+/* Normals by the inverse transpose: rows of to_group are columns here. */
+static inline vlVec3 move_normal(const float inverse[12], const float *n) {
+  return vl_vec3(inverse[0] * n[0] + inverse[4] * n[1] + inverse[8] * n[2],
+                 inverse[1] * n[0] + inverse[5] * n[1] + inverse[9] * n[2],
+                 inverse[2] * n[0] + inverse[6] * n[1] + inverse[10] * n[2]);
+}
+
+static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uint32_t i, vlCorners *c) {
+  const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+  const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
+  uint32_t instance = hits->instance[i];
+  static const float unit[6] = {0, 0, 1, 0, 1, 1};
+  c->error[i] = 0;
+  c->flip[i] = s->flip ? -1.0f : 1.0f;
+  for (int k = 0; k < 3; k++) {
+    const float *x = s->positions + 3 * (size_t)f[k];
+    const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
+    for (int j = 0; j < 3; j++) c->p[3 * k + j][i] = x[j];
+    c->uv[2 * k][i] = t[0];
+    c->uv[2 * k + 1][i] = t[1];
+    for (int j = 0; j < 3; j++) c->n[3 * k + j][i] = s->normals ? s->normals[3 * (size_t)f[k] + j] : 0.0f;
+  }
+  if (instance == VL_NONE) return;
+  const vlWorldInstance *q = &world->instances.items[instance];
+  if (q->keys || s->steps > 1) return;
+  c->flip[i] = s->flip != q->mirrored ? -1.0f : 1.0f;
+  for (int k = 0; k < 3; k++) {
+    Corner moved = move_corner(q->from_group, s->positions + 3 * (size_t)f[k]);
+    c->p[3 * k][i] = moved.p.x, c->p[3 * k + 1][i] = moved.p.y, c->p[3 * k + 2][i] = moved.p.z;
+    c->error[i] = moved.error > c->error[i] ? moved.error : c->error[i];
+    if (s->normals) {
+      vlVec3 n = move_normal(q->to_group, s->normals + 3 * (size_t)f[k]);
+      c->n[3 * k][i] = n.x, c->n[3 * k + 1][i] = n.y, c->n[3 * k + 2][i] = n.z;
+    }
+  }
+}
+
+/* Corners at a time, of what moves; normals zero without. */
+typedef struct MovedTriangle {
+  vlVec3 p[3], n[3];
+  float error;
+  bool mirrored;
+} MovedTriangle;
+
+static MovedTriangle move_triangle(const vlWorldShape *s, const vlWorldInstance *instance, uint32_t prim, float time) {
+  const uint32_t *f = s->indices + 3 * (size_t)prim;
+  vlWorldInstance room;
+  const vlWorldInstance *q = instance ? vl_instance_at(instance, time, &room) : NULL;
+  MovedTriangle r;
+  r.error = 0;
+  r.mirrored = q && q->mirrored;
+  for (int k = 0; k < 3; k++) {
+    float point_room[3], normal_room[3];
+    const float *x = vl_vertex_at(s, f[k], time, point_room);
+    const float *y = s->normals ? vl_normal_at(s, f[k], time, normal_room) : NULL;
+    float error = s->steps > 1 ? vl_moving_vertex_error(s, f[k], time) : 0.0f;
+    r.p[k] = vl_vec3(x[0], x[1], x[2]);
+    r.n[k] = y ? vl_vec3(y[0], y[1], y[2]) : vl_vec3(0, 0, 0);
+    if (q) {
+      Corner moved = move_corner(q->from_group, x);
+      float size = 0;
+      for (int i = 0; i < 9; i++) size = vl_max(size, vl_abs(q->from_group[i + i / 3]));
+      float doubt = q->doubt[0] * vl_abs(x[0]) + q->doubt[1] * vl_abs(x[1]) + q->doubt[2] * vl_abs(x[2]) + q->doubt[3];
+      r.p[k] = moved.p;
+      error = moved.error + doubt + 3.0f * size * error;
+      if (y) r.n[k] = move_normal(q->to_group, y);
+    }
+    r.error = vl_max(r.error, error);
+  }
+  return r;
+}
+
+static inline bool triangle_moves(const vlWorld *world, uint32_t shape, uint32_t instance) {
+  return world->shapes.items[shape].steps > 1 || (instance != VL_NONE && world->instances.items[instance].keys);
+}
+
+/* The same as gather_triangle, of what moves. */
+static void gather_moving(const vlWorld *world, const vlHits *hits, float time, uint32_t i, vlCorners *c) {
+  const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+  const vlWorldInstance *q = hits->instance[i] == VL_NONE ? NULL : &world->instances.items[hits->instance[i]];
+  MovedTriangle r = move_triangle(s, q, hits->prim[i], time);
+  for (int k = 0; k < 3; k++) {
+    c->p[3 * k][i] = r.p[k].x, c->p[3 * k + 1][i] = r.p[k].y, c->p[3 * k + 2][i] = r.p[k].z;
+    c->n[3 * k][i] = r.n[k].x, c->n[3 * k + 1][i] = r.n[k].y, c->n[3 * k + 2][i] = r.n[k].z;
+  }
+  c->error[i] = r.error;
+  c->flip[i] = s->flip != r.mirrored ? -1.0f : 1.0f;
+}
+
+typedef struct TriangleUv {
+  float u0, v0, u1, v1, u2, v2;
+} TriangleUv;
+
+typedef struct Triangle {
+  vlVec3 p, g, n, u, v;
+  float s, t, dist, offset, uv_scale, bend;
+} Triangle;
+
+/* By component: a choice between structs would be a jump. */
+static inline vlVec3 select3(bool which, vlVec3 a, vlVec3 b) {
+  return vl_vec3(which ? a.x : b.x, which ? a.y : b.y, which ? a.z : b.z);
+}
+
+/* The point of a triangle that a ray meets. Barycentric coordinates are ratios of volumes spanned with the ray
+ * (signs as in Woop et al. 2013); what falls outside by rounding is put on the edge. */
+static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, vlVec3 d, vlVec3 p0, vlVec3 p1,
+                                                                     vlVec3 p2, vlVec3 n0, vlVec3 n1, vlVec3 n2,
+                                                                     TriangleUv uv, float corner_error, float flip) {
+  vlVec3 a = vl_sub(p0, o), b = vl_sub(p1, o), c = vl_sub(p2, o);
+  float b0 = vl_dot(d, vl_cross(b, c)), b1 = vl_dot(d, vl_cross(c, a)), b2 = vl_dot(d, vl_cross(a, b));
+  float sum = b0 + b1 + b2;
+  float sign = sum < 0.0f ? -1.0f : 1.0f;
+  b0 = vl_max(b0 * sign, 0.0f), b1 = vl_max(b1 * sign, 0.0f), b2 = vl_max(b2 * sign, 0.0f);
+  sum = b0 + b1 + b2;
+  float inv = sum > 0.0f ? 1.0f / sum : 0.0f;
+  b0 = sum > 0.0f ? b0 * inv : 1.0f, b1 = b1 * inv, b2 = b2 * inv;
+  Triangle r;
+  r.p = vl_add(vl_add(vl_mul(p0, b0), vl_mul(p1, b1)), vl_mul(p2, b2));
+  float ex = vl_abs(b0 * p0.x) + vl_abs(b1 * p1.x) + vl_abs(b2 * p2.x);
+  float ey = vl_abs(b0 * p0.y) + vl_abs(b1 * p1.y) + vl_abs(b2 * p2.y);
+  float ez = vl_abs(b0 * p0.z) + vl_abs(b1 * p1.z) + vl_abs(b2 * p2.z);
+  vlVec3 e02 = vl_sub(p0, p2), e12 = vl_sub(p1, p2);
+  vlVec3 cross = vl_cross(e02, e12);
+  vlVec3 g = vl_normalize(cross);
+  /* pbrt's bound of the point's error (book 6.8.3), projected on the normal; and the error of the distance that Embree
+   * will find when it meets this triangle again from here: its plane stands on corner 0, its normal is rounded, so that
+   * the error grows with the way from that corner. Both doubled. */
+  vlVec3 way = vl_sub(r.p, p0);
+  float reach = vl_abs(way.x) + vl_abs(way.y) + vl_abs(way.z);
+  r.offset = 2.0f * (GAMMA(7) * (vl_abs(g.x) * ex + vl_abs(g.y) * ey + vl_abs(g.z) * ez) + GAMMA(5) * reach +
+                     corner_error * (vl_abs(g.x) + vl_abs(g.y) + vl_abs(g.z)));
+  r.dist = vl_dot(vl_sub(r.p, o), d);
+  vlVec3 ns = vl_add(vl_add(vl_mul(n0, b0), vl_mul(n1, b1)), vl_mul(n2, b2));
+  float has_n = vl_length2(ns) > 0.0f ? 1.0f : 0.0f;
+  /* Mean curvature, by how the normals turn along the three edges. */
+  vlVec3 e01 = vl_sub(p0, p1), n02 = vl_sub(n0, n2), n12 = vl_sub(n1, n2), n01 = vl_sub(n0, n1);
+  float k0 = vl_dot(n02, e02) / vl_max(vl_length2(e02), 1e-37f),
+        k1 = vl_dot(n12, e12) / vl_max(vl_length2(e12), 1e-37f);
+  float k2 = vl_dot(n01, e01) / vl_max(vl_length2(e01), 1e-37f);
+  r.bend = has_n > 0.0f ? (k0 + k1 + k2) / (3.0f * vl_length(ns)) : 0.0f;
+  ns = vl_normalize(ns);
+  /* With vertex normals the geometric one goes to their side; without, the face order and flip decide. */
+  float towards = vl_dot(g, ns) < 0.0f ? -1.0f : 1.0f;
+  float side = has_n > 0.0f ? towards : flip;
+  r.g = vl_mul(g, side);
+  r.n = select3(has_n > 0.0f, ns, r.g);
+  r.s = b0 * uv.u0 + b1 * uv.u1 + b2 * uv.u2;
+  r.t = b0 * uv.v0 + b1 * uv.v1 + b2 * uv.v2;
+  float u02 = uv.u0 - uv.u2, v02 = uv.v0 - uv.v2, u12 = uv.u1 - uv.u2, v12 = uv.v1 - uv.v2;
+  float det = u02 * v12 - v02 * u12;
+  float area2 = vl_length(cross);
+  float inv_det = vl_abs(det) > 1e-30f ? 1.0f / det : 0.0f;
+  vlVec3 du = vl_mul(vl_sub(vl_mul(e02, v12), vl_mul(e12, v02)), inv_det);
+  vlVec3 dv = vl_mul(vl_sub(vl_mul(e12, u02), vl_mul(e02, u12)), inv_det);
+  vlFrame frame = vl_frame_from_z(r.n);
+  float ok = vl_length2(du) > 0.0f ? 1.0f : 0.0f;
+  r.u = select3(ok > 0.0f, du, frame.x);
+  r.v = select3(ok > 0.0f, dv, frame.y);
+  r.uv_scale = area2 > 0.0f ? __builtin_sqrtf(vl_abs(det) / area2) : 0.0f;
+  return r;
+}
+
+/* How far from the surface the point's own error may put a ray that leaves it. */
+static float point_error(const vlSurfacePoint *q) {
+  return (float)(__builtin_fabs(q->n[0]) * q->error[0] + __builtin_fabs(q->n[1]) * q->error[1] +
+                 __builtin_fabs(q->n[2]) * q->error[2]);
+}
+
+/* Mean curvature from the derivatives of point and normal (Weingarten's equations). */
+static float mean_curvature(const vlSurfacePoint *q) {
+  const double *u = q->dpdu, *v = q->dpdv, *a = q->dndu, *b = q->dndv;
+  double e = u[0] * u[0] + u[1] * u[1] + u[2] * u[2], f = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+  double g = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  double l = a[0] * u[0] + a[1] * u[1] + a[2] * u[2], n = b[0] * v[0] + b[1] * v[1] + b[2] * v[2];
+  double m = a[0] * v[0] + a[1] * v[1] + a[2] * v[2], det = e * g - f * f;
+  return det > 0 ? (float)(0.5 * (l * g - 2 * m * f + n * e) / det) : 0.0f;
+}
+
+static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, vlVec3 o, vlVec3 d) {
+  out->px[i] = (float)q->p[0], out->py[i] = (float)q->p[1], out->pz[i] = (float)q->p[2];
+  out->gx[i] = (float)q->n[0], out->gy[i] = (float)q->n[1], out->gz[i] = (float)q->n[2];
+  out->nx[i] = (float)q->ns[0], out->ny[i] = (float)q->ns[1], out->nz[i] = (float)q->ns[2];
+  out->ux[i] = (float)q->dpdu[0], out->uy[i] = (float)q->dpdu[1], out->uz[i] = (float)q->dpdu[2];
+  out->vx[i] = (float)q->dpdv[0], out->vy[i] = (float)q->dpdv[1], out->vz[i] = (float)q->dpdv[2];
+  for (int k = 0; k < 3; k++) out->dn[k][i] = (float)q->dndu[k], out->dn[3 + k][i] = (float)q->dndv[k];
+  out->bend[i] = mean_curvature(q);
+  out->u[i] = q->uv[0], out->v[i] = q->uv[1];
+  vlVec3 p = vl_vec3(out->px[i], out->py[i], out->pz[i]);
+  out->t[i] = vl_dot(vl_sub(p, o), d);
+  out->offset[i] = 2.0f * GAMMA(7) * (vl_abs(out->gx[i] * p.x) + vl_abs(out->gy[i] * p.y) + vl_abs(out->gz[i] * p.z)) +
+                   point_error(q);
+  float area = vl_length(vl_cross(vl_lane3(out->ux, out->uy, out->uz, i), vl_lane3(out->vx, out->vy, out->vz, i)));
+  out->uv_scale[i] = area > 0.0f ? 1.0f / __builtin_sqrtf(area) : 0.0f;
+}
+
+/* A sphere, disk, cylinder or patch: meet it again in group space, bring the point to the world. t, found by the same
+ * arithmetic, says which crossing is meant. */
+static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
+                                  uint32_t instance, float t) {
+  const vlWorldShape *s = &world->shapes.items[shape];
+  double go[3] = {o.x, o.y, o.z}, gd[3] = {d.x, d.y, d.z};
+  vlWorldInstance room;
+  const vlWorldInstance *q =
+      instance == VL_NONE ? NULL : vl_instance_at(&world->instances.items[instance], time, &room);
+  if (q) vl_ray_to_group(q, go, gd);
+  vlShapeHit hit;
+  vlSurfacePoint point;
+  if (vl_shape_intersect(s, prim, go, gd, t * (1 - 0x1p-21), t * (1 + 0x1p-21) + 1e-37, &hit)) {
+    vl_shape_point(s, prim, &hit, &point);
+  } else { /* cannot be: the same ray met it with the same arithmetic */
+    double pdf;
+    vl_shape_sample(s, prim, 0.5f, 0.5f, &point, &pdf);
+  }
+  if (!q) return point;
+  const float *m = q->from_group, *w = q->to_group;
+  vlSurfacePoint r = point;
+  for (int i = 0; i < 3; i++) {
+    r.p[i] = (double)m[4 * i] * point.p[0] + (double)m[4 * i + 1] * point.p[1] + (double)m[4 * i + 2] * point.p[2] +
+             m[4 * i + 3];
+    r.dpdu[i] =
+        (double)m[4 * i] * point.dpdu[0] + (double)m[4 * i + 1] * point.dpdu[1] + (double)m[4 * i + 2] * point.dpdu[2];
+    r.dpdv[i] =
+        (double)m[4 * i] * point.dpdv[0] + (double)m[4 * i + 1] * point.dpdv[1] + (double)m[4 * i + 2] * point.dpdv[2];
+    r.dndu[i] = (double)w[i] * point.dndu[0] + (double)w[4 + i] * point.dndu[1] + (double)w[8 + i] * point.dndu[2];
+    r.dndv[i] = (double)w[i] * point.dndv[0] + (double)w[4 + i] * point.dndv[1] + (double)w[8 + i] * point.dndv[2];
+    r.n[i] = (double)w[i] * point.n[0] + (double)w[4 + i] * point.n[1] + (double)w[8 + i] * point.n[2];
+    r.error[i] = __builtin_fabs((double)m[4 * i]) * point.error[0] +
+                 __builtin_fabs((double)m[4 * i + 1]) * point.error[1] +
+                 __builtin_fabs((double)m[4 * i + 2]) * point.error[2];
+    r.ns[i] = (double)w[i] * point.ns[0] + (double)w[4 + i] * point.ns[1] + (double)w[8 + i] * point.ns[2];
+  }
+  double ln = __builtin_sqrt(r.n[0] * r.n[0] + r.n[1] * r.n[1] + r.n[2] * r.n[2]);
+  double ls = __builtin_sqrt(r.ns[0] * r.ns[0] + r.ns[1] * r.ns[1] + r.ns[2] * r.ns[2]);
+  for (int i = 0; i < 3; i++) r.n[i] /= ln > 0 ? ln : 1, r.ns[i] /= ls > 0 ? ls : 1;
+  vl_normal_derivative(r.ns, ls, r.dndu);
+  vl_normal_derivative(r.ns, ls, r.dndv);
+  return r;
+}
+
+/* Vertex tangents (pbrt's S), interpolated. */
+static void apply_tangents(const vlWorld *world, const vlHits *hits, float time, uint32_t i, const vlCorners *c,
+                           vlSurface *out) {
+  const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+  const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
+  vlVec3 p = vl_vec3(out->px[i], out->py[i], out->pz[i]), k[3];
+  for (int j = 0; j < 3; j++) k[j] = vl_vec3(c->p[3 * j][i], c->p[3 * j + 1][i], c->p[3 * j + 2][i]);
+  vlVec3 g = vl_cross(vl_sub(k[1], k[0]), vl_sub(k[2], k[0]));
+  float total = vl_length2(g);
+  if (!(total > 0.0f)) return;
+  float b1 = vl_dot(vl_cross(vl_sub(p, k[0]), vl_sub(k[2], k[0])), g) / total;
+  float b2 = vl_dot(vl_cross(vl_sub(k[1], k[0]), vl_sub(p, k[0])), g) / total;
+  float w[3] = {1.0f - b1 - b2, b1, b2};
+  vlVec3 t = vl_vec3(0, 0, 0);
+  for (int j = 0; j < 3; j++) {
+    const float *x = s->tangents + 3 * (size_t)f[j];
+    t = vl_add(t, vl_mul(vl_vec3(x[0], x[1], x[2]), w[j]));
+  }
+  bool mirrored = false;
+  if (hits->instance[i] != VL_NONE) {
+    vlWorldInstance room;
+    const vlWorldInstance *q = vl_instance_at(&world->instances.items[hits->instance[i]], time, &room);
+    const float *m = q->from_group;
+    mirrored = q->mirrored;
+    t = vl_vec3(m[0] * t.x + m[1] * t.y + m[2] * t.z, m[4] * t.x + m[5] * t.y + m[6] * t.z,
+                m[8] * t.x + m[9] * t.y + m[10] * t.z);
+  }
+  if (!(vl_length2(t) > 0.0f)) return;
+  vlVec3 v = vl_cross(vl_vec3(out->nx[i], out->ny[i], out->nz[i]), t);
+  if (s->tangent_signs && (s->tangent_signs[f[0]] < 0.0f) != mirrored) v = vl_neg(v);
+  out->ux[i] = t.x, out->uy[i] = t.y, out->uz[i] = t.z;
+  out->vx[i] = v.x, out->vy[i] = v.y, out->vz[i] = v.z;
+}
+
+void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits, vlCorners *c,
+                              vlSurface *out) {
+  bool others = false;
+  for (uint32_t i = 0; i < n; i++) {
+    const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+    if (s->kind == VL_SHAPE_TRIANGLES) gather_triangle(world, hits, i, c);
+    if (world->moves && s->kind == VL_SHAPE_TRIANGLES && triangle_moves(world, hits->shape[i], hits->instance[i]))
+      gather_moving(world, hits, vl_path_time(paths, i), i, c);
+    others = others || s->kind != VL_SHAPE_TRIANGLES || s->tangents;
+  }
+  uint32_t padded = VL_PAD(n);
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]), d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
+    TriangleUv uv = {c->uv[0][i], c->uv[1][i], c->uv[2][i], c->uv[3][i], c->uv[4][i], c->uv[5][i]};
+    Triangle r =
+        triangle_point(o, d, vl_vec3(c->p[0][i], c->p[1][i], c->p[2][i]), vl_vec3(c->p[3][i], c->p[4][i], c->p[5][i]),
+                       vl_vec3(c->p[6][i], c->p[7][i], c->p[8][i]), vl_vec3(c->n[0][i], c->n[1][i], c->n[2][i]),
+                       vl_vec3(c->n[3][i], c->n[4][i], c->n[5][i]), vl_vec3(c->n[6][i], c->n[7][i], c->n[8][i]), uv,
+                       c->error[i], c->flip[i]);
+    out->px[i] = r.p.x, out->py[i] = r.p.y, out->pz[i] = r.p.z;
+    out->gx[i] = r.g.x, out->gy[i] = r.g.y, out->gz[i] = r.g.z;
+    out->nx[i] = r.n.x, out->ny[i] = r.n.y, out->nz[i] = r.n.z;
+    out->ux[i] = r.u.x, out->uy[i] = r.u.y, out->uz[i] = r.u.z;
+    out->vx[i] = r.v.x, out->vy[i] = r.v.y, out->vz[i] = r.v.z;
+    out->u[i] = r.s, out->v[i] = r.t;
+    out->t[i] = r.dist;
+    out->offset[i] = r.offset;
+    out->uv_scale[i] = r.uv_scale;
+    out->bend[i] = r.bend;
+  }
+  for (uint32_t i = 0; others && i < n; i++) {
+    const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+    vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]), d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
+    if (s->kind != VL_SHAPE_TRIANGLES) {
+      vlSurfacePoint q = other_point(world, vl_path_time(paths, i), o, d, hits->shape[i], hits->prim[i],
+                                     hits->instance[i], hits->t[i]);
+      store_point(out, i, &q, o, d);
+    }
+  }
+  for (uint32_t i = 0; i < padded; i++) {
+    out->width[i] = vl_abs(paths->cone[i] + paths->spread[i] * out->t[i]);
+    out->all_round[i] = 0.0f;
+  }
+  if (world->images.count) VL_HOT(vl_stage_footprints)(n, paths, out);
+  /* After footprints, which want the derivatives of the point: tangents have another length. */
+  for (uint32_t i = 0; others && i < n; i++) {
+    const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+    if (s->kind == VL_SHAPE_TRIANGLES && s->tangents) apply_tangents(world, hits, vl_path_time(paths, i), i, c, out);
+  }
+}
+
+vlPoint VL_HOT(vl_point_at_time)(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
+                                 uint32_t instance, float t_hit) {
+  const vlWorldShape *s = &world->shapes.items[shape];
+  vlPoint r;
+  if (s->kind == VL_SHAPE_TRIANGLES) {
+    static const float unit[6] = {0, 0, 1, 0, 1, 1};
+    const uint32_t *f = s->indices + 3 * (size_t)prim;
+    const vlWorldInstance *q = instance == VL_NONE ? NULL : &world->instances.items[instance];
+    vlVec3 p[3], nn[3];
+    float uv[6];
+    float error = 0;
+    for (int k = 0; k < 3; k++) {
+      const float *x = s->positions + 3 * (size_t)f[k];
+      p[k] = vl_vec3(x[0], x[1], x[2]);
+      nn[k] = vl_vec3(0, 0, 0);
+      if (q) {
+        Corner moved = move_corner(q->from_group, x);
+        p[k] = moved.p;
+        error = vl_max(error, moved.error);
+      }
+      if (s->normals) {
+        const float *y = s->normals + 3 * (size_t)f[k];
+        nn[k] = q ? move_normal(q->to_group, y) : vl_vec3(y[0], y[1], y[2]);
+      }
+      for (int j = 0; j < 2; j++) uv[2 * k + j] = s->uvs ? s->uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
+    }
+    if (triangle_moves(world, shape, instance)) {
+      MovedTriangle moving = move_triangle(s, q, prim, time);
+      for (int k = 0; k < 3; k++) p[k] = moving.p[k], nn[k] = moving.n[k];
+      error = moving.error;
+    }
+    Triangle t = triangle_point(o, d, p[0], p[1], p[2], nn[0], nn[1], nn[2],
+                                (TriangleUv){uv[0], uv[1], uv[2], uv[3], uv[4], uv[5]}, error,
+                                s->flip != (q && q->mirrored) ? -1.0f : 1.0f);
+    return (vlPoint){t.p, t.g, t.n, t.s, t.t, t.dist, t.offset};
+  }
+  vlSurfacePoint q = other_point(world, time, o, d, shape, prim, instance, t_hit);
+  r.p = vl_vec3((float)q.p[0], (float)q.p[1], (float)q.p[2]);
+  r.g = vl_vec3((float)q.n[0], (float)q.n[1], (float)q.n[2]);
+  r.n = vl_vec3((float)q.ns[0], (float)q.ns[1], (float)q.ns[2]);
+  r.u = q.uv[0], r.v = q.uv[1];
+  r.t = vl_dot(vl_sub(r.p, o), d);
+  r.offset =
+      2.0f * GAMMA(7) * (vl_abs(r.g.x * r.p.x) + vl_abs(r.g.y * r.p.y) + vl_abs(r.g.z * r.p.z)) + point_error(&q);
+  return r;
+}

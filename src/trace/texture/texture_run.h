@@ -1,0 +1,97 @@
+/* trace/texture/texture_run.h: textures evaluated node by node over a run of lanes; private to the hot files of trace.
+ */
+#ifndef TRACE_TEXTURE_TEXTURE_RUN_H
+#define TRACE_TEXTURE_TEXTURE_RUN_H
+
+#include "trace/stages.h"
+#include "world/texture/texture_noise.h"
+
+/* A run of lanes and a stack of scratch rows for nested textures. */
+typedef struct vlTextureRun {
+  const vlWorld *world;
+  vlTraceScratch *s;
+  const vlPaths *paths;
+  const vlSurface *surface;
+  uint32_t first, last;
+  uint32_t top;                                                 /* first free row */
+  const float *shift_u, *shift_v, *shift_x, *shift_y, *shift_z; /* added to uv and position (bump), or null */
+} vlTextureRun;
+
+/* Results go to lanes [first, last) of out (rows of the whole batch). */
+void VL_HOT(vl_texture_float)(vlTextureRun *r, int32_t node, float *out);
+void VL_HOT(vl_texture_spectrum)(vlTextureRun *r, int32_t node, float *const out[4]);
+/* A scratch row; the caller gives it back by restoring r->top. */
+static inline float *vl_texture_row(vlTextureRun *r) {
+  return r->s
+      ->rows[r->top < VL_TEXTURE_ROWS - 1 ? r->top++ : r->top]; /* enough: world/texture/texture.c limits nesting */
+}
+
+/* What the corners of lane i's triangle carry: uv sets, colours. */
+static inline void vl_texture_lane_corner(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
+                                          vlTexturePoint *at) {
+  const vlCorners *c = &r->s->corners;
+  const vlHits *h = &r->s->hits_b;
+  vlTextureCorner where = {&r->world->shapes.items[h->shape[i]], h->prim[i], {1, 0, 0}};
+  vlVec3 k[3];
+  for (int j = 0; j < 3; j++) k[j] = vl_vec3(c->p[3 * j][i], c->p[3 * j + 1][i], c->p[3 * j + 2][i]);
+  vlVec3 e1 = vl_sub(k[1], k[0]), e2 = vl_sub(k[2], k[0]), g = vl_cross(e1, e2), way = vl_sub(at->p, k[0]);
+  float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
+  where.weights[1] = vl_dot(vl_cross(way, e2), g) * inv;
+  where.weights[2] = vl_dot(vl_cross(e1, way), g) * inv;
+  where.weights[0] = 1.0f - where.weights[1] - where.weights[2];
+  vl_texture_at_corner(node, &where, at);
+}
+
+/* The footprint's axes in (s, t): those of the first uv set are there; for all else a step along each axis is looked
+ * at.
+ */
+static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
+                                        vlTexturePoint *at) {
+  const vlSurface *f = r->surface;
+  if (vl_texture_over_uv(node)) {
+    float axes[4] = {f->across_u[i], f->across_v[i], f->along_u[i], f->along_v[i]};
+    vl_texture_axes_of_uv(node, axes, at);
+    return;
+  }
+  const vlPaths *p = r->paths;
+  vlFootprint print = vl_footprint_of(vl_lane3(p->dx, p->dy, p->dz, i), at->n, at->width);
+  vlVec2 here = vl_texture_st(node, *at);
+  vlTexturePoint step = *at;
+  for (int k = 0; k < 2; k++) {
+    step.p = vl_add(at->p, k ? print.along : print.across);
+    if (vl_texture_needs_corner(node)) vl_texture_lane_corner(r, node, i, &step);
+    vlVec2 there = vl_texture_st(node, step);
+    float s = there.x - here.x, t = there.y - here.y;
+    if (node->mapping == VL_MAPPING_SPHERICAL || node->mapping == VL_MAPPING_CYLINDRICAL) /* past the seam */
+      s -= __builtin_rintf(s), t -= node->mapping == VL_MAPPING_SPHERICAL ? __builtin_rintf(t) : 0.0f;
+    at->axes[2 * k] = s, at->axes[2 * k + 1] = t;
+  }
+}
+
+static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vlTextureNode *node, uint32_t i) {
+  const vlSurface *f = r->surface;
+  vlTexturePoint at = {.color = {1, 1, 1, 1}};
+  at.u = f->u[i], at.v = f->v[i];
+  at.p = vl_vec3(f->px[i], f->py[i], f->pz[i]);
+  at.n = vl_vec3(f->gx[i], f->gy[i], f->gz[i]); /* the true surface's, as pbrt's */
+  at.width = f->width[i];
+  if (r->shift_u) {
+    at.u += r->shift_u[i], at.v += r->shift_v[i];
+    at.p = vl_add(at.p, vl_vec3(r->shift_x[i], r->shift_y[i], r->shift_z[i]));
+  }
+  if (vl_texture_needs_corner(node)) vl_texture_lane_corner(r, node, i, &at);
+  if (node->kind == VL_NODE_IMAGE) vl_texture_lane_axes(r, node, i, &at);
+  return at;
+}
+
+/* Rows of the materials with walks between layers (after their textured eta, k and roughness), and of those that let
+ * diffuse light through (after their reflectance). */
+void VL_HOT(vl_stage_layers)(vlTextureRun *r, const vlWorldMaterial *m);
+void VL_HOT(vl_stage_translucent)(vlTextureRun *r, const vlWorldMaterial *m);
+void VL_HOT(vl_stage_bodies)(vlTextureRun *r, const vlWorldMaterial *m); /* after their reflectance */
+void VL_HOT(vl_stage_hair)(vlTextureRun *r, const vlWorldMaterial *m);   /* as those; its index, too */
+/* The principled material's rows of a run; the coat's normal stays in the world until there are frames. */
+void VL_HOT(vl_stage_principled)(vlTextureRun *r, const vlWorldMaterial *m);
+void VL_HOT(vl_stage_coat_frames)(const vlSurface *surface, vlShade *shade, uint32_t first, uint32_t last);
+
+#endif

@@ -1,0 +1,225 @@
+/* trace/tracer/path.hot.c: path tracing with next-event estimation, multiple importance sampling (power heuristic) and
+ * Russian roulette (pbrt book 13.4), bounce by bounce over a batch. */
+#include "trace/stages.h"
+
+/* ---- runs of one BSDF -------------------------------------------------------------------------------------------- */
+
+static vlBsdfKind bsdf_kind(const vlWorldMaterial *m) {
+  if (m->layers) return VL_BSDF_LAYERED;
+  switch (m->kind) {
+    case VL_MATERIAL_CONDUCTOR: return VL_BSDF_CONDUCTOR;
+    case VL_MATERIAL_SUBSURFACE:
+    case VL_MATERIAL_DIELECTRIC: return VL_BSDF_DIELECTRIC;
+    case VL_MATERIAL_THIN_DIELECTRIC: return VL_BSDF_THIN_DIELECTRIC;
+    case VL_MATERIAL_COATED_DIFFUSE: return VL_BSDF_COATED_DIFFUSE;
+    case VL_MATERIAL_PRINCIPLED: return VL_BSDF_PRINCIPLED;
+    case VL_MATERIAL_DIFFUSE_TRANSMISSION: return VL_BSDF_DIFFUSE_TRANSMISSION;
+    case VL_MATERIAL_HAIR: return VL_BSDF_HAIR;
+    case VL_MATERIAL_MEASURED: return VL_BSDF_MEASURED;
+    default: return VL_BSDF_DIFFUSE;
+  }
+}
+
+/* Calls for each run of lanes that share a BSDF kind, with parameter rows shifted to the run. Runs need not start at a
+ * multiple of the vector width: elements are computed one by one, whatever the loop's shape. */
+typedef struct Run {
+  vlBsdfKind kind;
+  uint32_t first, last;
+} Run;
+
+static Run next_kind(const vlWorld *world, const vlHits *h, uint32_t first, uint32_t n) {
+  Run r = {bsdf_kind(&world->materials.items[h->material[first]]), first, first + 1};
+  while (r.last < n && bsdf_kind(&world->materials.items[h->material[r.last]]) == r.kind) r.last++;
+  return r;
+}
+
+static vlBsdfParams params_of(vlTracing *t, uint32_t first) {
+  vlShade *s = &t->s->shade;
+  vlBsdfParams p;
+  for (int c = 0; c < 4; c++) {
+    p.reflectance[c] = s->reflectance[c] + first;
+    p.eta[c] = s->eta[c] + first;
+    p.k[c] = s->k[c] + first;
+    p.lambda[c] = t->world->def.color == VL_COLOR_RGB ? NULL : t->s->b.lambda[c] + first;
+  }
+  for (int k = 0; k < VL_PRINCIPLED_ROWS; k++) p.principled[k] = s->principled[k] + first;
+  p.alpha_x = s->alpha_x + first;
+  p.alpha_y = s->alpha_y + first;
+  p.eta_s = s->eta_s + first;
+  p.coat = s->coat + first;
+  p.seed = s->seed + first;
+  p.measured = s->measured + first;
+  return p;
+}
+
+/* ---- direct light ------------------------------------------------------------------------------------------------ */
+
+void VL_HOT(vl_stage_light_bsdf)(vlTracing *t, uint32_t n) {
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  const vlLightSamples *l = &s->light;
+  uint32_t padded = VL_PAD(n);
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    float x = l->wx[i], y = l->wy[i], z = l->wz[i];
+    sh->wi[0][i] = x * sh->tx[i] + y * sh->ty[i] + z * sh->tz[i];
+    sh->wi[1][i] = x * sh->bx[i] + y * sh->by[i] + z * sh->bz[i];
+    sh->wi[2][i] = x * s->surface.nx[i] + y * s->surface.ny[i] + z * s->surface.nz[i];
+  }
+  for (uint32_t first = 0; first < n;) {
+    Run r = next_kind(t->world, &s->hits_b, first, n);
+    vlBsdfParams params = params_of(t, first);
+    vlBsdfDirections wo = {sh->wo[0] + first, sh->wo[1] + first, sh->wo[2] + first};
+    vlBsdfDirections wi = {sh->wi[0] + first, sh->wi[1] + first, sh->wi[2] + first};
+    float *const value[4] = {sh->value[0] + first, sh->value[1] + first, sh->value[2] + first, sh->value[3] + first};
+    t->bsdf->eval(r.kind, r.last - first, &params, wo, wi, value, sh->pdf + first);
+    first = r.last;
+  }
+}
+
+void VL_HOT(vl_stage_light_samples)(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension) {
+  vlShade *sh = &t->s->shade;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT, sh->u0);
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
+  VL_HOT(vl_stage_lights)(t->world, n, p, &t->s->surface, sh->u0, sh->u1, sh->u2, &t->s->light);
+}
+
+/* Light samples, weighed by the BSDF, become shadow rays; those that arrive add their radiance. */
+static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
+  const vlWorld *world = t->world;
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  if (world->lights.count == 0) return;
+  vlPaths *p = &s->b;
+  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
+  VL_HOT(vl_stage_light_bsdf)(t, n);
+  const vlLightSamples *l = &s->light;
+  vlShadowRays *q = &s->shadow;
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (!(l->pdf[i] > 0.0f)) continue;
+    float sum = sh->value[0][i] + sh->value[1][i] + sh->value[2][i] + sh->value[3][i];
+    if (!(sum > 0.0f) && sum == sum) continue;
+    float weight = l->delta[i] ? 1.0f : vl_power_heuristic(l->pdf[i], sh->pdf[i]);
+    vlVec3 at = vl_vec3(s->surface.px[i], s->surface.py[i], s->surface.pz[i]);
+    vlVec3 g = vl_vec3(s->surface.gx[i], s->surface.gy[i], s->surface.gz[i]), w = vl_vec3(l->wx[i], l->wy[i], l->wz[i]);
+    vlVec3 o = vl_offset_origin(at, g, s->surface.offset[i], w);
+    vlVec3 d = l->distant[i] ? w : vl_vec3(l->tx[i] - o.x, l->ty[i] - o.y, l->tz[i] - o.z);
+    q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
+    q->dx[count] = d.x, q->dy[count] = d.y, q->dz[count] = d.z;
+    q->t_max[count] = l->distant[i] ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
+    for (int c = 0; c < 4; c++) q->radiance[c][count] = p->beta[c][i] * sh->value[c][i] * l->radiance[c][i] * weight;
+    if (p->time) q->time[count] = vl_path_time(p, i);
+    q->lane[count++] = p->lane[i];
+  }
+  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
+  vl_accel_occluded(world, count, &rays, q->occluded);
+  t->batch->shadow_rays += count;
+  for (uint32_t k = 0; k < count; k++)
+    if (!q->occluded[k])
+      for (int c = 0; c < 4; c++) t->batch->radiance[c][q->lane[k]] += q->radiance[c][k];
+}
+
+/* ---- the next direction ------------------------------------------------------------------------------------------ */
+
+/* Width and spread of the cone that leaves a surface. Mirrors and smooth interfaces bend it by their curvature across
+ * the plane of incidence (Coddington's sagittal equations), the lesser of two, so that nothing is blurred; all else
+ * starts again with the camera's spread, though what it spreads over is wider. */
+static inline vlVec2 cone_after(float pixel_spread, float cone, float spread, float distance, float bend, float wo_z,
+                                float wi_z, float eta_scale, uint32_t specular) {
+  float width = cone + spread * distance;
+  float sign = width < 0.0f ? -1.0f : 1.0f; /* past a focus */
+  width = width * sign, spread = spread * sign;
+  float side = wo_z < 0.0f ? -1.0f : 1.0f, k = bend * side, in = wo_z * side, out = vl_abs(wi_z);
+  float ratio = eta_scale > 0.0f ? 1.0f / __builtin_sqrtf(eta_scale) : 1.0f; /* of the indices, before over behind */
+  float reflected = spread + 2.0f * k * in * width;
+  float refracted = ratio * spread - k * (out - ratio * in) * width;
+  float smooth = wi_z * side > 0.0f ? reflected : refracted;
+  return (vlVec2){width, specular ? smooth : pixel_spread};
+}
+
+uint32_t VL_HOT(vl_stage_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  vlPaths *p = &s->b;
+  const vlSurface *f = &s->surface;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LOBE, sh->u0);
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV, sh->u1, sh->u2);
+  for (uint32_t first = 0; first < n;) {
+    Run r = next_kind(t->world, &s->hits_b, first, n);
+    vlBsdfParams params = params_of(t, first);
+    vlBsdfDirections wo = {sh->wo[0] + first, sh->wo[1] + first, sh->wo[2] + first};
+    vlBsdfDirections wi = {sh->wi[0] + first, sh->wi[1] + first, sh->wi[2] + first};
+    float *const weight[4] = {sh->value[0] + first, sh->value[1] + first, sh->value[2] + first, sh->value[3] + first};
+    t->bsdf->sample(r.kind, r.last - first, &params, wo, sh->u0 + first, sh->u1 + first, sh->u2 + first, wi, weight,
+                    sh->pdf + first, sh->flags + first, sh->eta_scale + first);
+    first = r.last;
+  }
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_ROULETTE, sh->u0);
+  uint32_t padded = VL_PAD(n);
+  uint32_t *alive = s->slot;
+  float *broken = s->rows[0];
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    float x = sh->wi[0][i], y = sh->wi[1][i], z = sh->wi[2][i];
+    vlVec3 w = vl_vec3(x * sh->tx[i] + y * sh->bx[i] + z * f->nx[i], x * sh->ty[i] + y * sh->by[i] + z * f->ny[i],
+                       x * sh->tz[i] + y * sh->bz[i] + z * f->nz[i]);
+    w = vl_normalize(w);
+    vlVec3 o =
+        vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]), vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
+    float b0 = p->beta[0][i] * sh->value[0][i], b1 = p->beta[1][i] * sh->value[1][i];
+    float b2 = p->beta[2][i] * sh->value[2][i], b3 = p->beta[3][i] * sh->value[3][i];
+    float eta = p->eta_scale[i] * sh->eta_scale[i];
+    float most = vl_max(vl_max(b0, b1), vl_max(b2, b3));
+    /* Roulette from the second bounce on, by what the path carries (times the squeezing of solid angles by refraction).
+     */
+    float carried = most * eta;
+    float survive = depth > 1 && carried < 1.0f ? carried : 1.0f;
+    uint32_t lives = most > 0.0f && !(sh->flags[i] & VL_SAMPLED_NONE) && sh->u0[i] < survive ? 1 : 0;
+    float inv = survive > 0.0f ? 1.0f / survive : 0.0f;
+    float sum = b0 + b1 + b2 + b3;
+    alive[i] = lives;
+    broken[i] = sum == sum ? 0.0f : 1.0f;
+    p->ox[i] = o.x, p->oy[i] = o.y, p->oz[i] = o.z;
+    p->dx[i] = w.x, p->dy[i] = w.y, p->dz[i] = w.z;
+    p->beta[0][i] = b0 * inv, p->beta[1][i] = b1 * inv, p->beta[2][i] = b2 * inv, p->beta[3][i] = b3 * inv;
+    p->pdf[i] = sh->pdf[i];
+    p->specular[i] = sh->flags[i] & VL_SAMPLED_SPECULAR;
+    p->eta_scale[i] = eta;
+    vlVec2 cone = cone_after(t->def->pixel_spread, p->cone[i], p->spread[i], f->t[i], f->bend[i], sh->wo[2][i], z,
+                             sh->eta_scale[i], sh->flags[i] & VL_SAMPLED_SPECULAR);
+    p->cone[i] = cone.x, p->spread[i] = cone.y;
+    float c = 1.0f - f->all_round[i];
+    p->from_nx[i] = c * f->nx[i], p->from_ny[i] = c * f->ny[i], p->from_nz[i] = c * f->nz[i];
+  }
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    s->order[count] = i;
+    count += alive[i];
+    if (alive[i] && !(sh->flags[i] & VL_SAMPLED_SPECULAR)) vl_note_scattered(t, p->lane[i]);
+    if (broken[i] > 0.0f) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film counts it */
+  }
+  VL_HOT(vl_permute_paths)(p, &s->a, s->order, count);
+  return count;
+}
+
+/* ---- the path tracer --------------------------------------------------------------------------------------------- */
+
+void VL_HOT(vl_path_tracer)(vlTracing *t) {
+  uint32_t n = t->batch->n;
+  for (uint32_t depth = 0; n > 0; depth++) {
+    VL_HOT(vl_stage_hits)(t, n, depth == 0);
+    if (depth == 0) VL_HOT(vl_stage_alpha)(t);
+    VL_HOT(vl_stage_emission)(t, n);
+    if (depth >= t->def->max_depth) break;
+    n = VL_HOT(vl_stage_sort)(t, n);
+    if (n == 0) break;
+    uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
+    VL_HOT(vl_stage_shade)(t, n);
+    VL_HOT(vl_stage_regularize)(t, n);
+    direct_light(t, n, dimension);
+    n = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
+  }
+}

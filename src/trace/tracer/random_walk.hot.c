@@ -1,0 +1,45 @@
+/* trace/tracer/random_walk.hot.c: the simplest estimator there is (pbrt book 1.3.6): at each hit on to anywhere, and
+ * light only where the walk runs into it. Deltas are never met: smooth things are black. It is here to be compared
+ * with. */
+#include "math/warp.h"
+#include "trace/two_way/stages.h"
+
+void VL_HOT(vl_random_walk_tracer)(vlTracing *t) {
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  vlPaths *p = &s->b;
+  const vlSurface *f = &s->surface;
+  uint32_t n = t->batch->n;
+  for (uint32_t depth = 0; n > 0; depth++) {
+    VL_HOT(vl_stage_hits)(t, n, depth == 0);
+    if (depth == 0) VL_HOT(vl_stage_alpha)(t);
+    VL_HOT(vl_stage_emission)(t, n); /* all rays are marked specular: nothing competes */
+    if (depth >= t->def->max_depth) break;
+    n = VL_HOT(vl_stage_sort)(t, n);
+    if (n == 0) break;
+    VL_HOT(vl_stage_shade)(t, n);
+    uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, count = 0;
+    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV, sh->u1, sh->u2);
+    for (uint32_t i = 0; i < VL_PAD(n); i++) {
+      vlVec3 w = vl_warp_sphere(sh->u1[i], sh->u2[i]);
+      s->light.wx[i] = w.x, s->light.wy[i] = w.y, s->light.wz[i] = w.z;
+    }
+    VL_HOT(vl_stage_light_bsdf)(t, n);
+    for (uint32_t i = 0; i < n; i++) {
+      float most = 0.0f;
+      for (int c = 0; c < 4; c++) {
+        p->beta[c][i] *= sh->value[c][i] * (4.0f * VL_PI);
+        most = vl_max(most, p->beta[c][i]);
+      }
+      vlVec3 w = vl_normalize(vl_lane3(s->light.wx, s->light.wy, s->light.wz, i));
+      vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), vl_lane3(f->gx, f->gy, f->gz, i), f->offset[i], w);
+      p->ox[i] = o.x, p->oy[i] = o.y, p->oz[i] = o.z;
+      p->dx[i] = w.x, p->dy[i] = w.y, p->dz[i] = w.z;
+      p->cone[i] = f->width[i], p->spread[i] = t->def->pixel_spread;
+      s->order[count] = i;
+      count += most > 0.0f;
+    }
+    VL_HOT(vl_permute_paths)(p, &s->a, s->order, count);
+    n = count;
+  }
+}

@@ -1,0 +1,93 @@
+/* trace/tracer/shade.hot.c: hits sorted by material, so that each run of lanes is shaded by one. */
+#include "trace/texture/texture_run.h"
+
+/* ---- sorting ----------------------------------------------------------------------------------------------------- */
+
+/* Moves path order[k] of a to place k of b. */
+void VL_HOT(vl_permute_paths)(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n) {
+#define MOVE(field) \
+  VL_SIMD           \
+  for (uint32_t k = 0; k < n; k++) b->field[k] = a->field[order[k]]
+  MOVE(ox);
+  MOVE(oy);
+  MOVE(oz);
+  MOVE(dx);
+  MOVE(dy);
+  MOVE(dz);
+  for (int c = 0; c < 4; c++) {
+    MOVE(beta[c]);
+    MOVE(lambda[c]);
+  }
+  MOVE(pdf);
+  MOVE(from_nx);
+  MOVE(from_ny);
+  MOVE(from_nz);
+  MOVE(eta_scale);
+  MOVE(cone);
+  MOVE(spread);
+  MOVE(specular);
+  MOVE(px);
+  MOVE(py);
+  MOVE(index);
+  MOVE(lane);
+}
+static void permute_hits(const vlHits *a, vlHits *b, const uint32_t *order, uint32_t n) {
+  MOVE(shape);
+  MOVE(prim);
+  MOVE(instance);
+  MOVE(material);
+  MOVE(t);
+#undef MOVE
+}
+
+/* Paths of a that hit something go to b, those of one material together (and materials of one kind): a counting sort
+ * that keeps the order of the tile. Returns how many. */
+uint32_t VL_HOT(vl_stage_sort)(vlTracing *t, uint32_t n) {
+  const vlWorld *world = t->world;
+  vlTraceScratch *s = t->s;
+  uint32_t materials = (uint32_t)world->materials.count, count = 0;
+  if (materials <= VL_BATCH) {
+    uint32_t *start = s->slot;
+    for (uint32_t m = 0; m <= materials && m < VL_BATCH; m++) start[m] = 0;
+    uint32_t total = 0;
+    for (uint32_t i = 0; i < n; i++)
+      if (s->hits_a.shape[i] != VL_NONE) start[world->rank[s->hits_a.material[i]]]++;
+    for (uint32_t m = 0; m < materials; m++) {
+      uint32_t c = start[m];
+      start[m] = total;
+      total += c;
+    }
+    for (uint32_t i = 0; i < n; i++)
+      if (s->hits_a.shape[i] != VL_NONE) s->order[start[world->rank[s->hits_a.material[i]]]++] = i;
+    count = total;
+  } else { /* more materials than lanes: insertion by rank, stable */
+    for (uint32_t i = 0; i < n; i++) {
+      if (s->hits_a.shape[i] == VL_NONE) continue;
+      uint32_t k = count++, rank = world->rank[s->hits_a.material[i]];
+      for (; k > 0 && world->rank[s->hits_a.material[s->order[k - 1]]] > rank; k--) s->order[k] = s->order[k - 1];
+      s->order[k] = i;
+    }
+  }
+  VL_HOT(vl_permute_paths)(&s->a, &s->b, s->order, count);
+  permute_hits(&s->hits_a, &s->hits_b, s->order, count);
+  return count;
+}
+
+/* ---- shading ----------------------------------------------------------------------------------------------------- */
+
+/* Surfaces, materials, frames of the n sorted hits. */
+void VL_HOT(vl_stage_shade)(vlTracing *t, uint32_t n) {
+  vlTraceScratch *s = t->s;
+  VL_HOT(vl_stage_surface)(t->world, n, &s->b, &s->hits_b, &s->corners, &s->surface);
+  for (uint32_t first = 0, last; first < n; first = last) {
+    uint32_t material = s->hits_b.material[first];
+    for (last = first + 1; last < n && s->hits_b.material[last] == material;) last++;
+    VL_HOT(vl_stage_material)(t->world, first, last, material, s);
+  }
+  VL_HOT(vl_stage_frames)(n, &s->b, &s->surface, &s->shade);
+  for (uint32_t first = 0, last; first < n; first = last) {
+    const vlWorldMaterial *m = &t->world->materials.items[s->hits_b.material[first]];
+    for (last = first + 1; last < n && s->hits_b.material[last] == s->hits_b.material[first];) last++;
+    if (m->principled && m->principled->has_coat) VL_HOT(vl_stage_coat_frames)(&s->surface, &s->shade, first, last);
+  }
+}

@@ -1,0 +1,127 @@
+/* trace/tracer/tracers.hot.c: a batch from its camera rays to its radiance: the path tracer (path.hot.c), and beside it
+ * the tracers that look no further than the first hit: raycast and ambient occlusion. */
+#include "math/warp.h"
+#include "trace/two_way/stages.h"
+
+static void start_paths(vlTracing *t) {
+  vlTraceBatch *b = t->batch;
+  vlPaths *p = &t->s->a;
+  uint32_t padded = VL_PAD(b->n);
+  t->s->a.time = t->s->b.time = t->s->volume.scattered.time = b->time;
+  if (b->lambda[0]) {
+    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->shade.u0);
+    float shared = t->def->two_way ? t->def->two_way->shared : -1.0f;
+    if (t->def->same_wavelengths && shared < 0.0f) shared = 0.5f;
+    for (uint32_t i = 0; shared >= 0.0f && i < padded; i++) t->s->shade.u0[i] = shared;
+    const vlColorKernels *color = vl_color_kernels(t->def->isa);
+    if (t->def->lambda_span > 0.0f)
+      color->uniform_wavelengths(t->def->lambda_low, t->def->lambda_span, b->n, t->s->shade.u0, b->lambda, b->inv_pdf);
+    else
+      color->visible_wavelengths(b->n, t->s->shade.u0, b->lambda, b->inv_pdf);
+  }
+  for (uint32_t i = 0; i < padded; i++) {
+    p->ox[i] = b->ox[i], p->oy[i] = b->oy[i], p->oz[i] = b->oz[i];
+    p->dx[i] = b->dx[i], p->dy[i] = b->dy[i], p->dz[i] = b->dz[i];
+    p->pdf[i] = 1.0f;
+    p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
+    p->eta_scale[i] = 1.0f;
+    p->cone[i] = t->def->pixel_width, p->spread[i] = t->def->pixel_spread;
+    p->specular[i] = 1;
+    p->px[i] = b->px[i], p->py[i] = b->py[i], p->index[i] = b->index[i];
+    p->lane[i] = i;
+    t->s->scattered[i] = 0;
+  }
+  for (int c = 0; c < 4; c++)
+    for (uint32_t i = 0; i < padded; i++) {
+      p->beta[c][i] = 1.0f;
+      p->lambda[c][i] = b->lambda[c] ? b->lambda[c][i] : 0.0f;
+      b->radiance[c][i] = 0.0f;
+    }
+}
+
+/* What the eye's ray meets first: emission where it glows, else reflectance times the cosine. */
+static void raycast_tracer(vlTracing *t) {
+  const vlWorld *world = t->world;
+  vlTraceScratch *s = t->s;
+  uint32_t n = t->batch->n;
+  VL_HOT(vl_stage_hits)(t, n, true);
+  VL_HOT(vl_stage_alpha)(t);
+  VL_HOT(vl_stage_emission)(t, n);
+  n = VL_HOT(vl_stage_sort)(t, n);
+  VL_HOT(vl_stage_shade)(t, n);
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = s->b.lane[i];
+    const vlWorldMaterial *m = &world->materials.items[s->hits_b.material[i]];
+    if (world->shapes.items[s->hits_b.shape[i]].first_light != VL_NONE) continue;
+    float lambda[4];
+    vl_path_lambda(&s->b, i, lambda);
+    for (int c = 0; c < 4; c++) {
+      float reflectance = m->reflectance >= 0 ? s->shade.reflectance[c][i] : 0.8f;
+      float cosine = vl_abs(s->shade.wo[2][i]);
+      t->batch->radiance[c][lane] += reflectance * cosine * vl_spectral_at(&world->white, c, lambda[c]);
+    }
+  }
+}
+
+/* How open the sky is round each point (pbrt's ambient occlusion): one ray a sample, white where it goes free. */
+static void ambient_occlusion_tracer(vlTracing *t) {
+  const vlWorld *world = t->world;
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  uint32_t n = t->batch->n;
+  VL_HOT(vl_stage_hits)(t, n, true);
+  VL_HOT(vl_stage_alpha)(t);
+  n = VL_HOT(vl_stage_sort)(t, n);
+  VL_HOT(vl_stage_shade)(t, n);
+  t->sampler->get_2d(t->def->sampler, n, s->b.px, s->b.py, s->b.index, VL_DIM_BOUNCE + VL_DIM_BSDF_UV, sh->u1, sh->u2);
+  vlShadowRays *q = &s->shadow;
+  for (uint32_t i = 0; i < n; i++) {
+    vlVec3 nn = vl_vec3(s->surface.gx[i], s->surface.gy[i], s->surface.gz[i]); /* of the true surface, as pbrt's */
+    vlVec3 d = vl_vec3(s->b.dx[i], s->b.dy[i], s->b.dz[i]);
+    if (vl_dot(nn, d) > 0.0f) nn = vl_neg(nn);
+    bool cosine = t->def->ao_cosine;
+    vlVec3 local = cosine ? vl_warp_cosine_hemisphere(sh->u1[i], sh->u2[i]) : vl_warp_hemisphere(sh->u1[i], sh->u2[i]);
+    vlVec3 w = vl_from_local(vl_frame_from_z(nn), local);
+    vlVec3 o = vl_offset_origin(vl_vec3(s->surface.px[i], s->surface.py[i], s->surface.pz[i]),
+                                vl_vec3(s->surface.gx[i], s->surface.gy[i], s->surface.gz[i]), s->surface.offset[i], w);
+    float lambda[4];
+    vl_path_lambda(&s->b, i, lambda);
+    q->ox[i] = o.x, q->oy[i] = o.y, q->oz[i] = o.z, q->dx[i] = w.x, q->dy[i] = w.y, q->dz[i] = w.z;
+    q->t_max[i] = t->def->ao_distance;
+    /* Uniform directions: cos / pi over the density 1 / (2 pi). */
+    for (int c = 0; c < 4; c++)
+      q->radiance[c][i] = (cosine ? 1.0f : 2.0f * local.z) * vl_spectral_at(&world->white, c, lambda[c]);
+  }
+  for (uint32_t i = 0; s->b.time && i < n; i++) q->time[i] = vl_path_time(&s->b, i);
+  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, s->b.time ? q->time : NULL};
+  vl_accel_occluded(world, n, &rays, q->occluded);
+  t->batch->shadow_rays += n;
+  for (uint32_t i = 0; i < n; i++)
+    if (!q->occluded[i])
+      for (int c = 0; c < 4; c++) t->batch->radiance[c][s->b.lane[i]] += q->radiance[c][i];
+}
+
+static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTraceBatch *batch) {
+  vlTracing t = {world, def, scratch, batch, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa), false};
+  start_paths(&t);
+  switch (def->tracer) {
+    case VL_TRACER_RAYCAST: raycast_tracer(&t); break;
+    case VL_TRACER_AMBIENT_OCCLUSION: ambient_occlusion_tracer(&t); break;
+    case VL_TRACER_VOLPATH:
+      if (world->media.count > 0 || world->has_subsurface) {
+        VL_HOT(vl_volume_tracer)(&t);
+        break;
+      }
+      VL_HOT(vl_path_tracer)(&t);
+      break;
+    case VL_TRACER_RANDOM_WALK: VL_HOT(vl_random_walk_tracer)(&t); break;
+    default:
+      if (def->two_way)
+        VL_HOT(vl_two_way_tracer)(&t);
+      else
+        VL_HOT(vl_path_tracer)(&t);
+      break;
+  }
+}
+
+const vlTraceKernels VL_HOT(vl_trace_kernels) = {trace, VL_HOT(vl_light_tracer), VL_HOT(vl_light_media)};

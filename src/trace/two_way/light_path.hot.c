@@ -1,0 +1,226 @@
+/* trace/two_way/light_path.hot.c: paths from the lights. At every vertex that scatters they leave a photon and look
+ * whether the eye sees them; weights as two_way.h says. BSDFs carry radiance towards the eye, so the light's paths take
+ * them the other way round (Veach 1997, 5.3): no squeezing by refraction, and a correction for shading normals. */
+#include "math/warp.h"
+#include "trace/two_way/stages.h"
+
+/* Longer ones would hardly live, and need memory for what they leave. */
+enum { LIGHT_BOUNCES = 255 };
+
+void VL_HOT(vl_stage_reverse)(vlTracing *t, vlTwoWayRows *r, uint32_t n, const float wi[3][VL_ROW_SIZE]) {
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  const vlSurface *f = &s->surface;
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
+    float x = sh->wo[0][i], y = sh->wo[1][i], z = sh->wo[2][i];
+    s->light.wx[i] = x * sh->tx[i] + y * sh->bx[i] + z * f->nx[i];
+    s->light.wy[i] = x * sh->ty[i] + y * sh->by[i] + z * f->ny[i];
+    s->light.wz[i] = x * sh->tz[i] + y * sh->bz[i] + z * f->nz[i];
+    r->wo[0][i] = x, r->wo[1][i] = y, r->wo[2][i] = z;
+    float a = wi[0][i], b = wi[1][i], c = wi[2][i];
+    sh->wo[0][i] = a, sh->wo[1][i] = b, sh->wo[2][i] = c;
+  }
+  VL_HOT(vl_stage_light_bsdf)(t, n);
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
+    r->rev[i] = sh->pdf[i];
+    for (int k = 0; k < 3; k++) sh->wo[k][i] = r->wo[k][i];
+  }
+}
+
+/* ---- setting out ------------------------------------------------------------------------------------------------- */
+
+/* Wavelengths of the batch's paths to rows 4..7, 1 / densities to rows 8..11. */
+static void wavelengths(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
+  const vlTwoWay *way = t->def->two_way;
+  float *u = t->s->shade.u0;
+  float *const lambda[4] = {r->rows[4], r->rows[5], r->rows[6], r->rows[7]};
+  float *const inv_pdf[4] = {r->rows[8], r->rows[9], r->rows[10], r->rows[11]};
+  t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, u);
+  for (uint32_t i = 0; way->shared >= 0.0f && i < VL_PAD(b->n); i++) u[i] = way->shared;
+  vl_color_kernels(t->def->isa)->visible_wavelengths(b->n, u, lambda, inv_pdf);
+}
+
+/* false: from infinitely far through a medium nothing comes. */
+static bool start_medium(const vlTracing *t, const vlEmission *e, uint32_t *medium) {
+  const vlWorldLight *light = &t->world->lights.items[e->light];
+  *medium = t->def->two_way->medium[e->light];
+  if (light->kind == VL_WL_AREA) *medium = vl_medium_beyond(&t->world->shapes.items[light->shape], e->n, e->d, *medium);
+  return *medium == VL_NONE || (light->kind != VL_WL_INFINITE && light->kind != VL_WL_DISTANT);
+}
+
+static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
+  const vlWorld *world = t->world;
+  vlTraceScratch *s = t->s;
+  vlPaths *p = &s->a;
+  uint32_t n = b->n, count = 0;
+  bool rgb = world->def.color == VL_COLOR_RGB;
+  if (!rgb) wavelengths(t, r, b);
+  float *u = s->shade.u0, *u1 = s->shade.u1, *v1 = s->shade.u2, *u2 = s->rows[0], *v2 = s->rows[1];
+  t->sampler->get_1d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_TIME, u);
+  t->sampler->get_2d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_FILM, u1, v1);
+  t->sampler->get_2d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_LENS, u2, v2);
+  p->time = s->b.time = s->volume.scattered.time = b->time;
+  for (uint32_t i = 0; i < n; i++) {
+    float lambda[4];
+    for (int c = 0; c < 4; c++) lambda[c] = rgb ? 0.0f : r->rows[4 + c][i];
+    vlEmission e = VL_HOT(vl_emission_sample)(world, t->def->two_way, lambda, u[i], u1[i], v1[i], u2[i], v2[i]);
+    float most = vl_max(vl_max(e.flux[0], e.flux[1]), vl_max(e.flux[2], e.flux[3]));
+    if (!e.valid || !(most > 0.0f) || !(most < VL_INFINITY)) continue;
+    uint32_t *medium = s->volume.shadow_medium; /* free so far */
+    if (vl_has_media(t) && !start_medium(t, &e, &medium[i])) continue;
+    uint32_t k = count++;
+    p->ox[k] = e.o.x, p->oy[k] = e.o.y, p->oz[k] = e.o.z;
+    p->dx[k] = e.d.x, p->dy[k] = e.d.y, p->dz[k] = e.d.z;
+    p->pdf[k] = 1.0f;
+    p->from_nx[k] = p->from_ny[k] = p->from_nz[k] = 0.0f;
+    p->eta_scale[k] = 1.0f;
+    p->cone[k] = p->spread[k] = 0.0f;
+    p->specular[k] = 1;
+    p->px[k] = b->px[i], p->py[k] = b->py[i], p->index[k] = b->index[i];
+    p->lane[k] = i;
+    for (int c = 0; c < 4; c++) {
+      p->beta[c][k] = 1.0f, p->lambda[c][k] = lambda[c];
+      r->flux[c][i] = e.flux[c];
+    }
+    r->light[i] = e.light;
+    r->density[i] = e.density;
+    r->carry[i] = e.delta ? 0.0f : 1.0f; /* over density and cosine: arrive() divides */
+    r->lx[i] = e.at.x, r->ly[i] = e.at.y, r->lz[i] = e.at.z;
+    r->lnx[i] = e.n.x, r->lny[i] = e.n.y, r->lnz[i] = e.n.z;
+  }
+  return count;
+}
+
+float VL_HOT(vl_light_asked)(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w) {
+  const vlWorldLight *light = &world->lights.items[r->light[lane]];
+  float pmf = vl_light_pmf(&world->tree, p, n, r->light[lane]);
+  if (light->kind == VL_WL_INFINITE) return pmf * VL_HOT(vl_infinite_pdf)(world, light, p, w);
+  if (light->kind != VL_WL_AREA) return pmf;
+  vlPoint at;
+  __builtin_memset(&at, 0, sizeof at);
+  at.p = vl_vec3(r->lx[lane], r->ly[lane], r->lz[lane]);
+  at.g = at.n = vl_vec3(r->lnx[lane], r->lny[lane], r->lnz[lane]);
+  return pmf * VL_HOT(vl_area_pdf)(world, light, p, &at);
+}
+
+/* The n shaded lanes: a, b of the ways that begin on the light's side. */
+static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
+  const vlSurface *f = &t->s->surface;
+  const vlPaths *p = &t->s->b;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = p->lane[i];
+    vlVec3 w = vl_neg(vl_lane3(p->dx, p->dy, p->dz, i));
+    float cosine = vl_abs(vl_dot(w, vl_lane3(f->gx, f->gy, f->gz, i)));
+    float inv = cosine > 0.0f ? 1.0f / cosine : 0.0f;
+    r->cosine[i] = cosine;
+    r->b[i] = 0.0f;
+    if (depth == 0) {
+      float density = vl_light_density(t, r, lane, f->t[i]);
+      inv = density > 0.0f ? inv / density : 0.0f;
+      r->b[i] = inv / vl_last_odds(t, lane) *
+                VL_HOT(vl_light_asked)(t->world, r, lane, vl_lane3(f->px, f->py, f->pz, i),
+                                       vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), 1.0f - f->all_round[i]), w);
+    }
+    r->a[i] = r->carry[lane] * inv;
+  }
+}
+
+/* ---- what they leave --------------------------------------------------------------------------------------------- */
+
+static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth) {
+  const vlPaths *p = &t->s->b;
+  const vlSurface *f = &t->s->surface;
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (vl_all_specular(t->world, t->s, i) || !(r->cosine[i] > 0.0f)) continue;
+    vlPhoton *x = &r->photons[count];
+    uint32_t lane = p->lane[i];
+    x->p[0] = f->px[i], x->p[1] = f->py[i], x->p[2] = f->pz[i];
+    x->w[0] = -p->dx[i], x->w[1] = -p->dy[i], x->w[2] = -p->dz[i];
+    float inv = 1.0f / r->cosine[i], sum = 0.0f;
+    for (int c = 0; c < 4; c++) sum += x->power[c] = p->beta[c][i] * r->flux[c][lane] * inv;
+    x->a = r->a[i], x->b = r->b[i];
+    x->bounce = depth + 1;
+    x->id = b->first + lane;
+    x->alone = vl_hero_alone(p, i);
+    x->medium = 0;
+    count += sum > 0.0f && sum < VL_INFINITY;
+  }
+  if (count) b->store(b->user, count, r->photons);
+}
+
+/* ---- onwards ----------------------------------------------------------------------------------------------------- */
+
+static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  const vlSurface *f = &s->surface;
+  const vlPaths *p = &s->b;
+  uint32_t count = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
+  VL_HOT(vl_volume_go_on)(t, count);
+  float(*wi)[VL_ROW_SIZE] = s->rows + 1;
+  float *ns = s->rows[4]; /* |wo . shading normal| over |wi . it| */
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
+    for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
+    r->pdf[i] = sh->pdf[i];
+    float z = vl_abs(sh->wi[2][i]);
+    ns[i] = z > 0.0f ? vl_abs(sh->wo[2][i]) / z : 0.0f;
+  }
+  VL_HOT(vl_stage_reverse)(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  float merged = t->def->two_way->merged;
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = s->order[k], lane = s->a.lane[k];
+    float cosine = vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), vl_lane3(f->gx, f->gy, f->gz, i)));
+    float pdf = r->pdf[i];
+    r->carry[lane] = sh->flags[i] & VL_SAMPLED_SPECULAR
+                         ? r->a[i] * cosine
+                         : (pdf > 0.0f ? (r->a[i] * r->rev[i] + r->b[i] + merged) * cosine / pdf : 0.0f);
+    float turn = r->cosine[i] > 0.0f ? ns[i] * cosine / r->cosine[i] * sh->eta_scale[i] : 0.0f;
+    for (int c = 0; c < 4; c++) s->a.beta[c][k] *= turn;
+    s->a.eta_scale[k] = 1.0f;
+  }
+  return count;
+}
+
+static uint32_t on_surfaces(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
+                            uint32_t dimension, bool last) {
+  n = VL_HOT(vl_stage_sort)(t, n);
+  if (n == 0) return 0;
+  VL_HOT(vl_volume_sorted)(t, n);
+  VL_HOT(vl_stage_shade)(t, n);
+  for (uint32_t i = 0; vl_has_media(t) && i < n; i++) VL_HOT(vl_volume_normalise)(t, &t->s->b, &t->s->volume.b, i);
+  arrive(t, r, n, depth);
+  if (t->def->two_way->merge) leave_photons(t, r, b, n, depth);
+  VL_HOT(vl_show)(t, r, b, n, depth, dimension);
+  return last ? 0 : scatter(t, r, n, depth, dimension);
+}
+
+void VL_HOT(vl_light_tracer)(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTwoWayRows *r,
+                             vlLightBatch *batch) {
+  vlTraceDef own = *def;
+  own.sampler = &def->two_way->sampler;
+  own.pixel_spread = own.pixel_width = 0.0f; /* textures in full */
+  vlTraceBatch rest;                         /* of the stages' own: light that interfaces give, counts */
+  __builtin_memset(&rest, 0, sizeof rest);
+  rest.n = batch->n;
+  rest.eyes = batch->eyes;
+  for (int c = 0; c < 4; c++) rest.radiance[c] = r->rows[c];
+  vlTracing t = {world, &own, scratch, &rest, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa), true};
+  uint32_t n = set_out(&t, r, batch), most = def->max_depth < LIGHT_BOUNCES ? def->max_depth : LIGHT_BOUNCES;
+  bool media = vl_has_media(&t);
+  if (media) VL_HOT(vl_volume_start)(&t, n, scratch->volume.shadow_medium);
+  for (uint32_t depth = 0; n > 0 && depth < most; depth++) {
+    if (media)
+      VL_HOT(vl_volume_travel)(&t, n, depth, false);
+    else
+      VL_HOT(vl_stage_hits)(&t, n, false);
+    uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, inside = 0, *kept = scratch->volume.kept;
+    bool last = depth + 1 == most;
+    if (media) inside = VL_HOT(vl_light_in_media)(&t, r, batch, n, depth, dimension, last);
+    for (uint32_t k = 0; k < inside; k++) kept[k] = scratch->order[k];
+    n = on_surfaces(&t, r, batch, n, depth, dimension, last);
+    if (media) n = VL_HOT(vl_volume_append)(&t, kept, inside, n);
+  }
+  batch->bounce_rays += rest.bounce_rays;
+  batch->shadow_rays += rest.shadow_rays;
+}

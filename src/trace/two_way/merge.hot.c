@@ -1,0 +1,162 @@
+/* trace/two_way/merge.hot.c: photons near the eye's vertices. The flux of N light paths through a disk of radius r
+ * round the vertex stands for that at the vertex (two_way.h): biased by what changes over the disk, and less with each
+ * pass.
+ *
+ * Diffuse surfaces are the many and are added up at once; for the other kinds photons are listed, and each lane's next
+ * one goes through the BSDFs with those of the other lanes. In media the ball of radius r takes the disk's place. */
+#include "trace/medium/phase.h"
+#include "trace/two_way/stages.h"
+
+/* Photons within the radius of p, of one medium (vlPhoton.medium), cell by cell: cells are as wide as the ball. */
+typedef struct Near {
+  vlVec3 p;
+  uint32_t medium, most; /* most: bounces that the photon may have */
+  int32_t corner[3], cell[3];
+  uint32_t next, end;
+  int k;
+} Near;
+
+static Near near_start(const vlPhotonMap *map, vlVec3 p, uint32_t medium, uint32_t most) {
+  float radius = __builtin_sqrtf(map->radius2);
+  return (Near){.p = p,
+                .medium = medium,
+                .most = most,
+                .corner = {vl_photon_cell(p.x - radius, map->inv_cell), vl_photon_cell(p.y - radius, map->inv_cell),
+                           vl_photon_cell(p.z - radius, map->inv_cell)}};
+}
+
+static bool near_fits(const vlPhotonMap *map, const Near *near, const vlPhoton *x) {
+  vlVec3 to = vl_vec3(x->p[0] - near->p.x, x->p[1] - near->p.y, x->p[2] - near->p.z);
+  if (!(vl_length2(to) < map->radius2) || x->bounce > near->most || x->medium != near->medium) return false;
+  for (int k = 0; k < 3; k++)
+    if (vl_photon_cell(x->p[k], map->inv_cell) != near->cell[k]) return false; /* another cell of the bucket */
+  return true;
+}
+
+/* The next one's index, or VL_NONE. */
+static uint32_t near_next(const vlPhotonMap *map, Near *near) {
+  for (;;) {
+    while (near->next < near->end) {
+      uint32_t j = near->next++;
+      if (near_fits(map, near, &map->photons[j])) return j;
+    }
+    if (near->k == 8) return VL_NONE;
+    for (int i = 0; i < 3; i++) near->cell[i] = near->corner[i] + (near->k >> i & 1);
+    uint32_t bucket = vl_photon_bucket(near->cell[0], near->cell[1], near->cell[2], map->buckets);
+    near->next = map->start[bucket], near->end = map->start[bucket + 1];
+    near->k++;
+  }
+}
+
+/* What this lane's photon brings: the weight, and the factor that the hero's being alone twice makes. */
+static float pair_weight(const vlTracing *t, uint32_t i, const vlPhoton *x, float forth, float back) {
+  const vlTwoWay *way = t->def->two_way;
+  const vlTwoWayRows *r = t->batch->two_way;
+  float others = r->a[i] * back + r->b[i] + x->a * forth + x->b;
+  /* of H / (H + others), over H */
+  float weight = 1.0f / ((x->medium ? way->merged_volume : way->merged) + others);
+  return x->alone && vl_hero_alone(x->medium ? &t->s->volume.scattered : &t->s->b, i) ? 0.25f * weight : weight;
+}
+
+static void add_diffuse(vlTracing *t, uint32_t i, const vlPhoton *x, float sum[4]) {
+  const vlTraceScratch *s = t->s;
+  const vlShade *sh = &s->shade;
+  float zo = sh->wo[2][i], zi = x->w[0] * s->surface.nx[i] + x->w[1] * s->surface.ny[i] + x->w[2] * s->surface.nz[i];
+  if (!(zo * zi > 0.0f)) return;
+  float forth = vl_abs(zi) * VL_INV_PI, back = vl_abs(zo) * VL_INV_PI;
+  float weight = pair_weight(t, i, x, forth, back) * forth;
+  for (int c = 0; c < 4; c++) sum[c] += sh->reflectance[c][i] * x->power[c] * weight;
+}
+
+/* Each lane's listed photons, one of each lane at a time. */
+static void add_listed(vlTracing *t, uint32_t n) {
+  vlTwoWayRows *r = t->batch->two_way;
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  const vlPaths *p = &s->b;
+  const vlPhoton *photons = t->def->two_way->map.photons;
+  float(*wi)[VL_ROW_SIZE] = s->rows, (*value)[VL_ROW_SIZE] = s->rows + 3, *forth = s->rows[7];
+  uint32_t most = 0;
+  for (uint32_t i = 0; i < n; i++) most = r->count[i] > most ? r->count[i] : most;
+  for (uint32_t round = 0; round < most; round++) {
+    for (uint32_t i = 0; i < n; i++) {
+      bool has = round < r->count[i];
+      const float *w = has ? photons[r->pair[r->first[i] + round]].w : NULL;
+      s->light.wx[i] = has ? w[0] : s->surface.nx[i];
+      s->light.wy[i] = has ? w[1] : s->surface.ny[i];
+      s->light.wz[i] = has ? w[2] : s->surface.nz[i];
+    }
+    VL_HOT(vl_stage_light_bsdf)(t, n);
+    for (uint32_t i = 0; i < VL_PAD(n); i++) {
+      for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
+      for (int c = 0; c < 4; c++) value[c][i] = sh->value[c][i];
+      forth[i] = sh->pdf[i];
+    }
+    VL_HOT(vl_stage_reverse)(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+    for (uint32_t i = 0; i < n; i++) {
+      if (round >= r->count[i]) continue;
+      const vlPhoton *x = &photons[r->pair[r->first[i] + round]];
+      float weight = pair_weight(t, i, x, forth[i], r->rev[i]);
+      for (int c = 0; c < 4; c++)
+        t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * value[c][i] * x->power[c] * weight;
+    }
+  }
+  for (uint32_t i = 0; i < n; i++) r->count[i] = 0;
+}
+
+static uint32_t most_bounces(const vlTracing *t, uint32_t lane, uint32_t depth) {
+  bool apart = t->def->two_way->apart;
+  return t->def->max_depth - (depth - (apart ? t->batch->two_way->smooth[lane] : 0));
+}
+
+void VL_HOT(vl_stage_merge)(vlTracing *t, uint32_t n, uint32_t depth) {
+  const vlPhotonMap *map = &t->def->two_way->map;
+  vlTraceScratch *s = t->s;
+  const vlSurface *f = &s->surface;
+  const vlPaths *p = &s->b;
+  vlTwoWayRows *r = t->batch->two_way;
+  uint32_t listed = 0;
+  if (!map->buckets) return;
+  for (uint32_t i = 0; i < n; i++) r->count[i] = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (vl_all_specular(t->world, s, i)) continue;
+    bool diffuse = t->world->materials.items[s->hits_b.material[i]].kind == VL_MATERIAL_DIFFUSE;
+    float sum[4] = {0, 0, 0, 0};
+    Near near = near_start(map, vl_lane3(f->px, f->py, f->pz, i), 0, most_bounces(t, p->lane[i], depth));
+    r->first[i] = listed;
+    for (uint32_t j; (j = near_next(map, &near)) != VL_NONE;) {
+      if (diffuse) {
+        add_diffuse(t, i, &map->photons[j], sum);
+        continue;
+      }
+      if (listed == VL_MERGE_PAIRS) {
+        add_listed(t, n);
+        listed = r->first[i] = 0;
+      }
+      r->pair[listed++] = j;
+      r->count[i]++;
+    }
+    for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * sum[c];
+  }
+  if (listed) add_listed(t, n);
+}
+
+void VL_HOT(vl_stage_merge_media)(vlTracing *t, uint32_t n, uint32_t depth) {
+  const vlPhotonMap *map = &t->def->two_way->map;
+  const vlVolumeScratch *v = &t->s->volume;
+  const vlPaths *p = &v->scattered;
+  if (!map->buckets) return;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = p->lane[i], medium = v->c.medium[i];
+    float sum[4] = {0, 0, 0, 0}, g = t->world->media.items[medium].g;
+    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+    Near near = near_start(map, vl_lane3(p->ox, p->oy, p->oz, i), 1 + medium, most_bounces(t, lane, depth));
+    for (uint32_t j; (j = near_next(map, &near)) != VL_NONE;) {
+      const vlPhoton *x = &map->photons[j];
+      float phase = vl_phase(g, vl_dot(d, vl_vec3(x->w[0], x->w[1], x->w[2])));
+      float weight = pair_weight(t, i, x, phase, phase) * phase;
+      for (int c = 0; c < 4; c++) sum[c] += x->power[c] * weight;
+    }
+    for (int c = 0; c < 4; c++) t->batch->radiance[c][lane] += p->beta[c][i] * sum[c];
+  }
+}

@@ -1,0 +1,134 @@
+/* trace/two_way/splat.hot.c: light's paths that the eye sees: where on the film their vertices fall, how much of their
+ * light comes there, and its weight against the other ways (two_way.h). */
+#include "math/warp.h"
+#include "trace/two_way/stages.h"
+
+vlSight VL_HOT(vl_look)(const vlEyeView *eye, vlVec3 p, float u, float v) {
+  vlSight r;
+  __builtin_memset(&r, 0, sizeof r);
+  r.from = eye->position;
+  float lx = 0.0f, ly = 0.0f;
+  if (eye->lens_radius > 0.0f) {
+    vlDiskPoint lens = vl_warp_disk(u, v);
+    lx = eye->lens_radius * lens.x, ly = eye->lens_radius * lens.y;
+    r.from = vl_add(r.from, vl_add(vl_mul(eye->right, lx), vl_mul(eye->down, ly)));
+  }
+  vlVec3 to = vl_sub(p, r.from);
+  float x = vl_dot(to, eye->right), y = vl_dot(to, eye->down), z = vl_dot(to, eye->ahead);
+  if (!(z > 0.0f) || z < eye->near_plane || z > eye->far_plane) return r;
+  float d2 = vl_length2(to), d = __builtin_sqrtf(d2), c = z / d;
+  float inv = 1.0f / z, bend = eye->lens_radius > 0.0f ? 1.0f / eye->focus : 0.0f;
+  r.x = eye->cx + eye->fx * (x * inv + lx * bend);
+  r.y = eye->cy + eye->fy * (y * inv + ly * bend);
+  r.seen = r.x > eye->low_x && r.x < eye->high_x && r.y > eye->low_y && r.y < eye->high_y;
+  r.w = vl_mul(to, -1.0f / d);
+  r.per_square = 1.0f / (vl_eye_pixel(eye, c) * d2);
+  r.end = 1.0f - eye->near_plane * inv;
+  return r;
+}
+
+bool VL_HOT(vl_two_way_arrives)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlTwoWayRows *r,
+                                uint32_t k, uint32_t depth, float passes[4], float *scale) {
+  vlTraceScratch *s = t->s;
+  float odds = 1.0f, mean = 1.0f;
+  for (int c = 0; c < 4; c++) passes[c] = 1.0f;
+  if (s->shadow.occluded[k]) return false;
+  if (vl_has_media(t)) {
+    vlFlight f = VL_HOT(vl_volume_shadow_flight)(t, p, rows, k, depth);
+    float density[4];
+    for (int c = 0; c < 4; c++) passes[c] = f.beta[c], density[c] = s->volume.density[c][k] * f.l[c];
+    odds = f.odds, mean = vl_flight_mean(density, f.channels);
+    if (!(vl_max(vl_max(passes[0], passes[1]), vl_max(passes[2], passes[3])) > 0.0f)) return false;
+  }
+  *scale = 1.0f / ((r->own[k] + odds * r->others[k]) * mean);
+  return true;
+}
+
+void VL_HOT(vl_two_way_splats)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p,
+                               const vlVolumeRows *rows, uint32_t count, uint32_t depth) {
+  vlTraceScratch *s = t->s;
+  vlShadowRays *q = &s->shadow;
+  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
+  vl_accel_occluded(t->world, count, &rays, q->occluded);
+  b->shadow_rays += count;
+  float *value[4], *lambda[4], *inv_pdf[4];
+  for (int c = 0; c < 4; c++) value[c] = r->rows[c], lambda[c] = s->rows[c], inv_pdf[c] = s->rows[4 + c];
+  uint32_t visible = 0;
+  for (uint32_t k = 0; k < count; k++) {
+    float passes[4], scale;
+    if (!VL_HOT(vl_two_way_arrives)(t, p, rows, r, k, depth, passes, &scale)) continue;
+    uint32_t lane = q->lane[k], m = visible++;
+    r->x[m] = r->x[k], r->y[m] = r->y[k];
+    for (int c = 0; c < 4; c++) {
+      value[c][m] = q->radiance[c][k] * passes[c] * scale;
+      lambda[c][m] = r->rows[4 + c][lane], inv_pdf[c][m] = r->rows[8 + c][lane];
+    }
+  }
+  if (visible) b->splat(b->user, visible, r->x, r->y, value, lambda, inv_pdf);
+}
+
+/* Shadow ray `count` of surface lane i, from `at` to where the eye is. */
+static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float end) {
+  vlTraceScratch *s = t->s;
+  const vlSurface *f = &s->surface;
+  vlShadowRays *q = &s->shadow;
+  vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
+  vlVec3 o = vl_offset_origin(at, g, f->offset[i], vl_sub(target, at));
+  vlVec3 d = vl_sub(target, o);
+  q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
+  q->t_max[count] = vl_min(end, VL_ONE_MINUS_EPSILON);
+  if (vl_has_media(t)) { /* of unit length: interfaces on the way are met at distances */
+    vlVolumeScratch *v = &s->volume;
+    q->t_max[count] = vl_min(end, 1.0f - 0x1p-21f) * vl_length(d);
+    d = vl_normalize(d);
+    v->shadow_medium[count] = vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]], g, d, v->b.medium[i]);
+    v->from[count] = i;
+    for (int c = 0; c < 4; c++) v->density[c][count] = v->b.u[c][i];
+  }
+  q->dx[count] = d.x, q->dy[count] = d.y, q->dz[count] = d.z;
+  q->time[count] = vl_path_time(&s->b, i);
+  q->lane[count] = s->b.lane[i];
+}
+
+void VL_HOT(vl_show)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth, uint32_t dimension) {
+  const vlTwoWay *way = t->def->two_way;
+  if (!way->eye.sees) return;
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  const vlSurface *f = &s->surface;
+  const vlPaths *p = &s->b;
+  vlShadowRays *q = &s->shadow;
+  if (way->eye.lens_radius > 0.0f)
+    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
+  float(*wi)[VL_ROW_SIZE] = s->rows; /* the textures' stack is free */
+  float *per_square = s->rows[3], *end = s->rows[4];
+  float *fx = s->rows[5], *fy = s->rows[6], *fz = s->rows[7];
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
+    uint32_t lane = p->lane[i < n ? i : n - 1];
+    vlSight sight = VL_HOT(vl_look)(vl_eye_of(t, lane), vl_lane3(f->px, f->py, f->pz, i), sh->u1[i], sh->u2[i]);
+    vlVec3 w = sight.w;
+    wi[0][i] = w.x * sh->tx[i] + w.y * sh->ty[i] + w.z * sh->tz[i];
+    wi[1][i] = w.x * sh->bx[i] + w.y * sh->by[i] + w.z * sh->bz[i];
+    wi[2][i] = vl_dot(w, vl_lane3(f->nx, f->ny, f->nz, i));
+    float cosine = vl_abs(vl_dot(w, vl_lane3(f->gx, f->gy, f->gz, i)));
+    per_square[i] = sight.seen ? cosine * sight.per_square : 0.0f; /* density of the eye's first vertex here */
+    end[i] = sight.end;
+    r->x[i] = sight.x, r->y[i] = sight.y;
+    fx[i] = sight.from.x, fy[i] = sight.from.y, fz[i] = sight.from.z;
+  }
+  VL_HOT(vl_stage_reverse)(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    float sum = sh->value[0][i] + sh->value[1][i] + sh->value[2][i] + sh->value[3][i];
+    if (!(per_square[i] > 0.0f) || !(sum > 0.0f) || !(r->cosine[i] > 0.0f)) continue;
+    push(t, i, count, vl_vec3(fx[i], fy[i], fz[i]), end[i]);
+    r->others[count] = way->light_only ? 0.0f : way->merged + r->a[i] * r->rev[i] + r->b[i];
+    r->own[count] = way->paths / per_square[i]; /* S_1: this way, over P_1 L_1 as the others */
+    uint32_t lane = p->lane[i];
+    float inv = 1.0f / r->cosine[i];
+    for (int c = 0; c < 4; c++) q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * sh->value[c][i] * inv;
+    r->x[count] = r->x[i], r->y[count] = r->y[i];
+    count++;
+  }
+  VL_HOT(vl_two_way_splats)(t, r, b, p, &s->volume.b, count, depth);
+}

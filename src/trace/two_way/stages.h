@@ -1,0 +1,149 @@
+/* trace/two_way/stages.h: what the hot files of the two-way tracers share; private to them. */
+#ifndef TRACE_TWO_WAY_STAGES_H
+#define TRACE_TWO_WAY_STAGES_H
+
+#include "math/ggx.h"
+#include "trace/medium/volume.h"
+#include "trace/stages.h"
+#include "trace/two_way/two_way.h"
+
+enum { VL_MERGE_PAIRS = 4 * VL_BATCH };
+
+/* Per path, by lane (its element of the batch, wherever sorting puts it): */
+typedef struct vlTwoWayRows {
+  VL_ROW float carry[VL_ROW_SIZE];     /* (S + H) cos / fwd of the vertex that was left; two_way.h */
+  VL_ROW float flux[4][VL_ROW_SIZE];   /* of a light's path when it set out; its beta starts from 1 */
+  VL_ROW uint32_t smooth[VL_ROW_SIZE]; /* vertices that do not count as bounces: vlTwoWay.apart */
+  VL_ROW float density[VL_ROW_SIZE];   /* vl_emission_density, of a light's first ray, and */
+  VL_ROW uint32_t light[VL_ROW_SIZE];
+  VL_ROW float lx[VL_ROW_SIZE], ly[VL_ROW_SIZE], lz[VL_ROW_SIZE];    /* where on it, or its direction */
+  VL_ROW float lnx[VL_ROW_SIZE], lny[VL_ROW_SIZE], lnz[VL_ROW_SIZE]; /* its normal there */
+  /* by element of the sorted batch */
+  VL_ROW float a[VL_ROW_SIZE], b[VL_ROW_SIZE]; /* S = a rev + b */
+  VL_ROW float rev[VL_ROW_SIZE];               /* vl_stage_reverse */
+  VL_ROW float cosine[VL_ROW_SIZE];            /* of the ray that came, with the geometric normal; media: extinction */
+  VL_ROW float wo[3][VL_ROW_SIZE], pdf[VL_ROW_SIZE];
+  VL_ROW float x[VL_ROW_SIZE], y[VL_ROW_SIZE];        /* film points, then of splats */
+  VL_ROW float own[VL_ROW_SIZE], others[VL_ROW_SIZE]; /* of shadow rays: density of this way and of the others */
+  VL_ROW float rows[12][VL_ROW_SIZE]; /* value, wavelength, 1 / density of splats; wavelengths of the batch */
+  VL_ROW uint32_t first[VL_ROW_SIZE + 1], count[VL_ROW_SIZE];
+  uint32_t pair[VL_MERGE_PAIRS]; /* photons, those of a lane together */
+  vlPhoton photons[VL_BATCH];
+} vlTwoWayRows;
+
+#ifdef VL_ISA_SUFFIX
+void VL_HOT(vl_two_way_tracer)(vlTracing *t);
+void VL_HOT(vl_random_walk_tracer)(vlTracing *t);
+void VL_HOT(vl_light_tracer)(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTwoWayRows *rows,
+                             vlLightBatch *batch);
+/* Adds the light of the photons near the n shaded lanes, depth: bounces of the eye's path so far. */
+void VL_HOT(vl_stage_merge)(vlTracing *t, uint32_t n, uint32_t depth);
+void VL_HOT(vl_stage_merge_media)(vlTracing *t, uint32_t n, uint32_t depth);
+void VL_HOT(vl_light_media)(const vlWorld *world, const float eye[3], uint32_t *medium);
+
+/* The lanes of a that scatter in media (volume.scattered): light samples, merging, directions; s->order names those
+ * that go on. Of the eye's paths, and of light's, which leave photons and splats; last: none goes on. */
+uint32_t VL_HOT(vl_eye_in_media)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
+uint32_t VL_HOT(vl_light_in_media)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
+                                   uint32_t dimension, bool last);
+/* Light samples as `count` shadow rays: adds what arrives, weighed: own over own + odds others. */
+void VL_HOT(vl_two_way_shadows)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count,
+                                uint32_t depth);
+/* The n shaded lanes, as far as the eye sees them, become splats. */
+void VL_HOT(vl_show)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth, uint32_t dimension);
+/* Shadow rays towards the eye become splats; their radiance over own + odds others. */
+void VL_HOT(vl_two_way_splats)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p,
+                               const vlVolumeRows *rows, uint32_t count, uint32_t depth);
+/* Density with which next event would have asked for the light that this lane's path came from. */
+float VL_HOT(vl_light_asked)(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w);
+
+/* Where the eye would see a point from a point on its lens. */
+typedef struct vlSight {
+  bool seen;
+  vlVec3 w;         /* towards it */
+  vlVec3 from;      /* where on the lens */
+  float x, y;       /* film */
+  float end;        /* share of the way up to the near plane */
+  float per_square; /* 1 / (solid angle of a pixel * distance squared) */
+} vlSight;
+vlSight VL_HOT(vl_look)(const vlEyeView *eye, vlVec3 p, float u, float v);
+
+/* Densities of sampling wo had the path come from the directions wi (local, rows of n), to rows->rev; and the BSDFs'
+ * values f(wi, wo) |cos wo| to shade.value. shade.wo stays, shade.wi and shade.pdf and light.w do not. */
+void VL_HOT(vl_stage_reverse)(vlTracing *t, vlTwoWayRows *rows, uint32_t n, const float wi[3][VL_ROW_SIZE]);
+
+/* A ray of light sets out. */
+typedef struct vlEmission {
+  bool valid;
+  vlVec3 o, d;
+  vlVec3 at, n; /* point and normal on an area light; else at is what the density asks for: vl_emission_density */
+  float flux[4];
+  float density; /* as vl_emission_density has it, without the distance of point lights */
+  bool delta;    /* no ray can run into it */
+  uint32_t light;
+} vlEmission;
+vlEmission VL_HOT(vl_emission_sample)(const vlWorld *world, const vlTwoWay *way, const float lambda[4], float u_choice,
+                                      float u, float v, float s, float t);
+/* Density of the light's paths that arrive at p from w (unit, towards the light; distance d), per area across them and
+ * solid angle of w; of lights that are deltas per area alone. It is to be multiplied by p's cosine. */
+float VL_HOT(vl_emission_density)(const vlWorld *world, const vlTwoWay *way, uint32_t light, vlVec3 w, float distance,
+                                  const vlPoint *at);
+#endif
+
+/* Where all that scatters is a delta: nothing can be connected. */
+static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s, uint32_t i) {
+  switch (world->materials.items[s->hits_b.material[i]].kind) {
+    case VL_MATERIAL_THIN_DIELECTRIC: return true;
+    case VL_MATERIAL_CONDUCTOR: return vl_ggx_is_smooth(s->shade.alpha_x[i], s->shade.alpha_y[i]);
+    case VL_MATERIAL_SUBSURFACE:
+    case VL_MATERIAL_DIELECTRIC:
+      return vl_ggx_is_smooth(s->shade.alpha_x[i], s->shade.alpha_y[i]) || s->shade.eta_s[i] == 1.0f;
+    default: return false;
+  }
+}
+
+static inline bool vl_has_media(const vlTracing *t) {
+  return t->world->media.count > 0;
+}
+/* Of the path's last flight. */
+static inline float vl_last_odds(const vlTracing *t, uint32_t lane) {
+  return vl_has_media(t) ? t->s->volume.odds[lane] : 1.0f;
+}
+static inline const vlEyeView *vl_eye_of(const vlTracing *t, uint32_t lane) {
+  return t->batch->eyes ? &t->batch->eyes[lane] : &t->def->two_way->eye;
+}
+/* Of light's first ray, at that distance. */
+static inline float vl_light_density(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane, float distance) {
+  vlWorldLightKind kind = t->world->lights.items[r->light[lane]].kind;
+  bool point = kind == VL_WL_POINT || kind == VL_WL_SPOT || kind == VL_WL_GONIOMETRIC || kind == VL_WL_PROJECTION;
+  return point ? r->density[lane] / (distance * distance) : r->density[lane];
+}
+
+/* Solid angle of a pixel round the direction whose cosine with the axis is c: its side at distance 1 is 1/f. */
+static inline float vl_eye_pixel(const vlEyeView *eye, float c) {
+  return c * c * c / (eye->fx * eye->fy);
+}
+
+/* The photon map's cells and their buckets. */
+static inline int32_t vl_photon_cell(float x, float inv_cell) {
+  float c = vl_clamp(x * inv_cell, -1e9f, 1e9f);
+  int32_t i = (int32_t)c;
+  return i - ((float)i > c);
+}
+static inline uint32_t vl_photon_bucket(int32_t x, int32_t y, int32_t z, uint32_t buckets) {
+  uint32_t h = (uint32_t)x * 73856093u ^ (uint32_t)y * 19349663u ^ (uint32_t)z * 83492791u;
+  h ^= h >> 15;
+  return h & (buckets - 1);
+}
+
+/* What comes through along shadow ray k, which meets no surface: `passes` of each wavelength, `scale` of all, the
+ * weight against the other ways. false: nothing. */
+bool VL_HOT(vl_two_way_arrives)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlTwoWayRows *r,
+                                uint32_t k, uint32_t depth, float passes[4], float *scale);
+
+/* The hero is alone: material.hot.c tells it so. */
+static inline bool vl_hero_alone(const vlPaths *p, uint32_t i) {
+  return p->lambda[0][i] == p->lambda[1][i] && p->lambda[0][i] > 0.0f;
+}
+
+#endif

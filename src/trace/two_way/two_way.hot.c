@@ -1,0 +1,225 @@
+/* trace/two_way/two_way.hot.c: the eye's side of the two-way tracers: path tracing whose next event and whose lights
+ * met are weighed against what the light's paths bring (two_way.h). Beside it the random walk, which asks for nothing.
+ */
+#include "math/warp.h"
+#include "trace/two_way/stages.h"
+
+/* ---- light that paths run into ----------------------------------------------------------------------------------- */
+
+/* density: of the light's paths that would come here. */
+static float hit_weight(const vlTracing *t, const vlPaths *p, uint32_t i, float asked, float density) {
+  uint32_t lane = p->lane[i];
+  asked = p->specular[i] || !(asked > 0.0f) ? 0.0f : asked / (p->pdf[i] * vl_last_odds(t, lane));
+  return 1.0f / (1.0f + asked + t->batch->two_way->carry[lane] * density);
+}
+
+static void add_radiance(vlTracing *t, const vlPaths *p, uint32_t i, const float radiance[4], float weight) {
+  if (vl_has_media(t)) {
+    float u[4];
+    for (int c = 0; c < 4; c++) u[c] = t->s->volume.a.u[c][i];
+    weight /= vl_flight_mean(u, vl_volume_rgb(t) ? 3 : 4);
+  }
+  for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * radiance[c] * weight;
+}
+
+/* distance: to the light; at: the point of an area light. */
+static void add_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlMetLight *met, float distance,
+                    const vlPoint *at, bool first) {
+  float weight = 1.0f;
+  if (!first) {
+    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+    weight = hit_weight(t, p, i, met->pdf,
+                        VL_HOT(vl_emission_density)(t->world, t->def->two_way, met->light, d, distance, at));
+  }
+  add_radiance(t, p, i, met->radiance, weight);
+}
+
+static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
+  for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
+    vlMetLight met = VL_HOT(vl_meet_sky)(t->world, p, i, k);
+    add_met(t, p, i, &met, VL_INFINITY, NULL, first);
+  }
+}
+
+static void add_glow(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
+  vlMetLight met;
+  if (VL_HOT(vl_meet_glow)(t->world, p, &t->s->hits_a, i, &met)) add_met(t, p, i, &met, met.at.t, &met.at, first);
+}
+
+/* first: the eye's own rays; also what weighs nothing against anything. */
+static void emission(vlTracing *t, uint32_t n, bool first) {
+  const vlHits *h = &t->s->hits_a;
+  for (uint32_t i = 0; i < n; i++) {
+    uint8_t event = t->s->volume.event[i];
+    if (vl_has_media(t) && event != VL_IN_SKY && event != VL_ON_SURFACE) continue;
+    if (h->shape[i] == VL_NONE)
+      add_sky(t, &t->s->a, i, first);
+    else if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE)
+      add_glow(t, &t->s->a, i, first);
+  }
+}
+
+/* ---- one vertex -------------------------------------------------------------------------------------------------- */
+
+/* a, b of the ways that begin on the eye's side. */
+static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTwoWayRows *r = t->batch->two_way;
+  const vlSurface *f = &t->s->surface;
+  const vlPaths *p = &t->s->b;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = p->lane[i];
+    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+    float cosine = vl_abs(vl_dot(d, vl_lane3(f->gx, f->gy, f->gz, i))), inv = cosine > 0.0f ? 1.0f / cosine : 0.0f;
+    r->cosine[i] = cosine;
+    r->a[i] = depth == 0 ? 0.0f : r->carry[lane] * inv;
+    r->b[i] = 0.0f;
+    const vlEyeView *eye = vl_eye_of(t, lane);
+    if (depth > 0 || !eye->sees) continue;
+    float pixel = vl_eye_pixel(eye, vl_dot(d, eye->ahead));
+    r->b[i] = t->def->two_way->paths * pixel * f->t[i] * f->t[i] * inv / vl_last_odds(t, lane);
+  }
+}
+
+/* Lane i's light sample as shadow ray `count`, over own + others. */
+static uint32_t push_shadow(vlTracing *t, uint32_t i, vlVec3 o, uint32_t count) {
+  vlTraceScratch *s = t->s;
+  const vlShade *sh = &s->shade;
+  const vlLightSamples *l = &s->light;
+  vlShadowRays *q = &s->shadow;
+  vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
+  if (vl_has_media(t)) {
+    const float value[4] = {sh->value[0][i], sh->value[1][i], sh->value[2][i], sh->value[3][i]};
+    uint32_t medium =
+        vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]],
+                         vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w, s->volume.b.medium[i]);
+    return VL_HOT(vl_volume_push_shadow)(t, &s->b, &s->volume.b, i, o, value, sh->pdf[i], medium, count);
+  }
+  vlVec3 d = l->distant[i] ? w : vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
+  q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
+  q->dx[count] = d.x, q->dy[count] = d.y, q->dz[count] = d.z;
+  q->t_max[count] = l->distant[i] ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
+  for (int c = 0; c < 4; c++) q->radiance[c][count] = s->b.beta[c][i] * sh->value[c][i] * l->radiance[c][i] * l->pdf[i];
+  q->time[count] = vl_path_time(&s->b, i);
+  q->lane[count] = s->b.lane[i];
+  return count + 1;
+}
+
+static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  const vlWorld *world = t->world;
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  vlTwoWayRows *r = t->batch->two_way;
+  const vlTwoWay *way = t->def->two_way;
+  if (world->lights.count == 0) return;
+  vlPaths *p = &s->b;
+  const vlSurface *f = &s->surface;
+  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
+  VL_HOT(vl_stage_light_bsdf)(t, n);
+  const vlLightSamples *l = &s->light;
+  float(*wi)[VL_ROW_SIZE] = s->rows;
+  float *pdf = s->rows[3], *light_ways = s->rows[4];
+  uint32_t count = 0, *lane_of = r->count;
+  for (uint32_t i = 0; i < VL_PAD(n); i++)
+    for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
+  for (uint32_t i = 0; i < n; i++) {
+    if (!(l->pdf[i] > 0.0f)) continue;
+    float sum = sh->value[0][i] + sh->value[1][i] + sh->value[2][i] + sh->value[3][i];
+    if (!(sum > 0.0f) && sum == sum) continue;
+    vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
+    vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
+    vlPoint point;
+    __builtin_memset(&point, 0, sizeof point);
+    point.p = vl_lane3(l->tx, l->ty, l->tz, i);
+    light_ways[count] = vl_abs(vl_dot(w, g)) *
+                        VL_HOT(vl_emission_density)(world, way, l->light[i], w, vl_length(vl_sub(point.p, at)), &point);
+    pdf[count] = l->delta[i] ? 0.0f : sh->pdf[i];
+    r->own[count] = l->pdf[i];
+    lane_of[count] = i;
+    count = push_shadow(t, i, vl_offset_origin(at, g, f->offset[i], w), count);
+  }
+  VL_HOT(vl_stage_reverse)(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = lane_of[k];
+    r->others[k] = pdf[k] + (way->merged + r->a[i] * r->rev[i] + r->b[i]) * light_ways[k];
+  }
+  VL_HOT(vl_two_way_shadows)(t, p, &s->volume.b, count, depth);
+}
+
+static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  vlShade *sh = &s->shade;
+  vlTwoWayRows *r = t->batch->two_way;
+  const vlSurface *f = &s->surface;
+  const vlPaths *p = &s->b;
+  uint32_t count = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
+  VL_HOT(vl_volume_go_on)(t, count);
+  float(*wi)[VL_ROW_SIZE] = s->rows + 1;
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
+    for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
+    r->pdf[i] = sh->pdf[i];
+  }
+  VL_HOT(vl_stage_reverse)(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  const vlTwoWay *way = t->def->two_way;
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = s->order[k];
+    float cosine = vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), vl_lane3(f->gx, f->gy, f->gz, i)));
+    float pdf = r->pdf[i];
+    uint32_t lane = s->a.lane[k], *smooth = &r->smooth[lane];
+    if (way->apart && s->a.specular[k] && *smooth == depth && depth < t->def->max_depth) *smooth = depth + 1;
+    r->carry[lane] = sh->flags[i] & VL_SAMPLED_SPECULAR
+                         ? r->a[i] * cosine
+                         : (pdf > 0.0f ? (r->a[i] * r->rev[i] + r->b[i] + way->merged) * cosine / pdf : 0.0f);
+  }
+  return count;
+}
+
+/* Where smooth beginnings do not count each path has a last bounce of its own. */
+static void end_long(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTraceScratch *s = t->s;
+  uint32_t *smooth = t->batch->two_way->smooth;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = s->a.lane[i];
+    if (depth == 0) smooth[lane] = 0;
+    if (depth - smooth[lane] < t->def->max_depth) continue;
+    s->hits_a.shape[i] = VL_NONE;
+    s->volume.event[i] = VL_AT_END;
+  }
+}
+
+/* ---- the tracers ------------------------------------------------------------------------------------------------- */
+
+/* The sorted lanes, on surfaces. Returns how many go on. */
+static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  n = VL_HOT(vl_stage_sort)(t, n);
+  if (n == 0) return 0;
+  VL_HOT(vl_volume_sorted)(t, n);
+  VL_HOT(vl_stage_shade)(t, n);
+  for (uint32_t i = 0; vl_has_media(t) && i < n; i++) VL_HOT(vl_volume_normalise)(t, &t->s->b, &t->s->volume.b, i);
+  arrive(t, n, depth);
+  direct_light(t, n, depth, dimension);
+  if (t->def->two_way->merge) VL_HOT(vl_stage_merge)(t, n, depth);
+  return scatter(t, n, depth, dimension);
+}
+
+void VL_HOT(vl_two_way_tracer)(vlTracing *t) {
+  const vlTwoWay *way = t->def->two_way;
+  uint32_t n = t->batch->n, most = (way->apart ? 2 : 1) * t->def->max_depth;
+  bool media = vl_has_media(t);
+  if (media) VL_HOT(vl_volume_start)(t, n, NULL);
+  for (uint32_t depth = 0; n > 0; depth++) {
+    if (media) {
+      VL_HOT(vl_volume_travel)(t, n, depth, depth < most);
+    } else {
+      VL_HOT(vl_stage_hits)(t, n, depth == 0);
+      if (depth == 0) VL_HOT(vl_stage_alpha)(t);
+    }
+    emission(t, n, depth == 0);
+    if (way->light_only || depth >= most) break;
+    if (way->apart) end_long(t, n, depth);
+    uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, inside = 0, *kept = t->s->volume.kept;
+    if (media) inside = VL_HOT(vl_eye_in_media)(t, n, depth, dimension);
+    for (uint32_t k = 0; k < inside; k++) kept[k] = t->s->order[k];
+    n = on_surfaces(t, n, depth, dimension);
+    if (media) n = VL_HOT(vl_volume_append)(t, kept, inside, n);
+  }
+}

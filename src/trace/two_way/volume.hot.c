@@ -1,0 +1,189 @@
+/* trace/two_way/volume.hot.c: light followed both ways where it scatters in media (two_way.h): the vertices of the
+ * eye's paths and of light's that are no surfaces. Their phase function is its own density, both ways. */
+#include "trace/medium/phase.h"
+#include "trace/two_way/stages.h"
+
+void VL_HOT(vl_two_way_shadows)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count,
+                                uint32_t depth) {
+  vlShadowRays *q = &t->s->shadow;
+  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
+  vl_accel_occluded(t->world, count, &rays, q->occluded);
+  t->batch->shadow_rays += count;
+  for (uint32_t k = 0; k < count; k++) {
+    float passes[4], scale;
+    if (!VL_HOT(vl_two_way_arrives)(t, p, rows, t->batch->two_way, k, depth, passes, &scale)) continue;
+    for (int c = 0; c < 4; c++) t->batch->radiance[c][q->lane[k]] += q->radiance[c][k] * passes[c] * scale;
+  }
+}
+
+static float extinction(const vlTracing *t, uint32_t i) {
+  const vlVolumeScratch *v = &t->s->volume;
+  const vlPaths *p = &v->scattered;
+  return vl_medium_extinction(&t->world->media.items[v->c.medium[i]], vl_lane3(p->ox, p->oy, p->oz, i));
+}
+
+static float phase_of(const vlTracing *t, uint32_t i, vlVec3 w) { /* w: from here */
+  const vlVolumeScratch *v = &t->s->volume;
+  return vl_phase(t->world->media.items[v->c.medium[i]].g,
+                  vl_dot(vl_lane3(v->scattered.dx, v->scattered.dy, v->scattered.dz, i), w));
+}
+
+/* ---- the eye's side ---------------------------------------------------------------------------------------------- */
+
+static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
+  const vlVolumeScratch *v = &t->s->volume;
+  const vlPaths *p = &v->scattered;
+  vlTwoWayRows *r = t->batch->two_way;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = p->lane[i];
+    const vlEyeView *eye = vl_eye_of(t, lane);
+    float dense = extinction(t, i), distance = v->t[t->s->order[i]];
+    r->cosine[i] = dense;
+    r->a[i] = depth == 0 ? 0.0f : r->carry[lane] / dense;
+    r->b[i] = 0.0f;
+    if (depth > 0 || !eye->sees) continue;
+    float c = vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), eye->ahead);
+    r->b[i] = t->def->two_way->paths * vl_eye_pixel(eye, c) * distance * distance / (dense * v->odds[lane]);
+  }
+}
+
+static void light_samples(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  const vlWorld *world = t->world;
+  const vlTwoWay *way = t->def->two_way;
+  vlVolumeScratch *v = &t->s->volume;
+  const vlPaths *p = &v->scattered;
+  vlTwoWayRows *r = t->batch->two_way;
+  const vlLightSamples *l = &t->s->light;
+  if (world->lights.count == 0) return;
+  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (!(l->pdf[i] > 0.0f)) continue;
+    vlVec3 at = vl_lane3(p->ox, p->oy, p->oz, i), w = vl_lane3(l->wx, l->wy, l->wz, i);
+    float phase = phase_of(t, i, w);
+    const float value[4] = {phase, phase, phase, phase};
+    vlPoint point;
+    __builtin_memset(&point, 0, sizeof point);
+    point.p = vl_lane3(l->tx, l->ty, l->tz, i);
+    float density = VL_HOT(vl_emission_density)(world, way, l->light[i], w, vl_length(vl_sub(point.p, at)), &point);
+    r->own[count] = l->pdf[i];
+    r->others[count] =
+        (l->delta[i] ? 0.0f : phase) + (way->merged_volume + r->a[i] * phase + r->b[i]) * density * r->cosine[i];
+    count = VL_HOT(vl_volume_push_shadow)(t, p, &v->c, i, at, value, phase, v->c.medium[i], count);
+  }
+  VL_HOT(vl_two_way_shadows)(t, p, &v->c, count, depth);
+}
+
+/* New directions, and what travels with them. */
+static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth, uint32_t dimension) {
+  const vlPaths *p = &t->s->volume.scattered;
+  uint32_t count = VL_HOT(vl_volume_phase_scatter)(t, n, depth + 1, dimension);
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = t->s->order[k];
+    float pdf = p->pdf[i];
+    r->carry[p->lane[i]] = (r->a[i] * pdf + r->b[i] + t->def->two_way->merged_volume) * r->cosine[i] / pdf;
+  }
+  return count;
+}
+
+uint32_t VL_HOT(vl_eye_in_media)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  n = VL_HOT(vl_volume_gather)(t, n);
+  if (n == 0) return 0;
+  arrive(t, n, depth);
+  light_samples(t, n, depth, dimension);
+  if (t->def->two_way->merge) VL_HOT(vl_stage_merge_media)(t, n, depth);
+  return scatter(t, t->batch->two_way, n, depth, dimension);
+}
+
+/* ---- the light's side -------------------------------------------------------------------------------------------- */
+
+static void arrive_from_light(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
+  const vlVolumeScratch *v = &t->s->volume;
+  const vlPaths *p = &v->scattered;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = p->lane[i];
+    float dense = extinction(t, i), inv = 1.0f / dense;
+    r->cosine[i] = dense;
+    r->b[i] = 0.0f;
+    if (depth == 0) {
+      float density = vl_light_density(t, r, lane, v->t[t->s->order[i]]);
+      vlVec3 w = vl_neg(vl_lane3(p->dx, p->dy, p->dz, i));
+      inv = density > 0.0f ? inv / density : 0.0f;
+      r->b[i] = inv / v->odds[lane] *
+                VL_HOT(vl_light_asked)(t->world, r, lane, vl_lane3(p->ox, p->oy, p->oz, i), vl_vec3(0, 0, 0), w);
+    }
+    r->a[i] = r->carry[lane] * inv;
+  }
+}
+
+/* What a channel brings that does not scatter here is not looked for. */
+static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth) {
+  const vlVolumeScratch *v = &t->s->volume;
+  const vlPaths *p = &v->scattered;
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    const vlWorldMedium *m = &t->world->media.items[v->c.medium[i]];
+    vlPhoton *x = &r->photons[count];
+    uint32_t lane = p->lane[i];
+    float lambda[4], sum = 0.0f;
+    vl_path_lambda(p, i, lambda);
+    vlVec3 at = vl_lane3(p->ox, p->oy, p->oz, i);
+    vlMediumLight k = vl_medium_coefficients(m, lambda);
+    if (m->kind != VL_MEDIUM_HOMOGENEOUS) k = vl_medium_at(m, &k, lambda, at, false);
+    x->p[0] = at.x, x->p[1] = at.y, x->p[2] = at.z;
+    x->w[0] = -p->dx[i], x->w[1] = -p->dy[i], x->w[2] = -p->dz[i];
+    for (int c = 0; c < 4; c++) sum += x->power[c] = k.s[c] > 0.0f ? p->beta[c][i] * r->flux[c][lane] / k.s[c] : 0.0f;
+    x->a = r->a[i], x->b = r->b[i];
+    x->bounce = depth + 1;
+    x->id = b->first + lane;
+    x->alone = vl_hero_alone(p, i);
+    x->medium = 1 + v->c.medium[i];
+    count += sum > 0.0f && sum < VL_INFINITY;
+  }
+  if (count) b->store(b->user, count, r->photons);
+}
+
+static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth, uint32_t dimension) {
+  const vlTwoWay *way = t->def->two_way;
+  if (!way->eye.sees) return;
+  vlVolumeScratch *v = &t->s->volume;
+  const vlPaths *p = &v->scattered;
+  vlShade *sh = &t->s->shade;
+  vlShadowRays *q = &t->s->shadow;
+  if (way->eye.lens_radius > 0.0f)
+    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = p->lane[i];
+    vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i);
+    vlSight sight = VL_HOT(vl_look)(vl_eye_of(t, lane), o, sh->u1[i], sh->u2[i]);
+    if (!sight.seen) continue;
+    float phase = phase_of(t, i, sight.w);
+    q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
+    q->dx[count] = sight.w.x, q->dy[count] = sight.w.y, q->dz[count] = sight.w.z;
+    q->t_max[count] = vl_min(sight.end, 1.0f - 0x1p-21f) * vl_length(vl_sub(sight.from, o));
+    q->time[count] = vl_path_time(p, i);
+    q->lane[count] = lane;
+    r->own[count] = way->paths / sight.per_square;
+    r->others[count] = way->light_only ? 0.0f : r->cosine[i] * (way->merged_volume + r->a[i] * phase + r->b[i]);
+    for (int c = 0; c < 4; c++) {
+      q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * phase;
+      v->density[c][count] = v->c.u[c][i];
+    }
+    v->shadow_medium[count] = v->c.medium[i];
+    v->from[count] = i;
+    r->x[count] = sight.x, r->y[count] = sight.y;
+    count++;
+  }
+  VL_HOT(vl_two_way_splats)(t, r, b, p, &v->c, count, depth);
+}
+
+uint32_t VL_HOT(vl_light_in_media)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
+                                   uint32_t dimension, bool last) {
+  n = VL_HOT(vl_volume_gather)(t, n);
+  if (n == 0) return 0;
+  arrive_from_light(t, r, n, depth);
+  if (t->def->two_way->merge) leave_photons(t, r, b, n, depth);
+  show(t, r, b, n, depth, dimension);
+  return last ? 0 : scatter(t, r, n, depth, dimension);
+}

@@ -1,0 +1,395 @@
+/* world/accel/accel.c: the one file that knows Embree (3.13 or 4). Triangles are Embree's; other shapes are user
+ * geometry intersected by surface_point.c. Alpha and interface surfaces are decided in filters, by a hash of ray and
+ * primitive, so that the order of traversal does not matter. Inside instances Embree hands out the ray in the group's
+ * space, by its own arithmetic, which differs between instruction sets: callbacks look the ray up in the world by its
+ * id instead and move it themselves. */
+#include "world/accel/accel.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "world/accel/bundle.h"
+#include "world/accel/local_ray.h"
+#include "world/shape/surface_point.h"
+#include "world/world.h"
+
+#if VELO_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+/* Embree's accessors of packets of any size are C++ only; this is the layout that its manual gives: row k of N values.
+ */
+enum { TNEAR = 3, TFAR = 8, ID = 10, PRIM = 5, GEOM = 6, INST = 7, HIT = 12 };
+static inline float *ray_row(void *ray, unsigned n, int row, unsigned i) {
+  return (float *)ray + (size_t)row * n + i;
+}
+static inline unsigned *hit_row(void *hit, unsigned n, int row, unsigned i) {
+  return (unsigned *)hit + (size_t)row * n + i;
+}
+
+typedef struct AccelGeometry {
+  const vlWorld *world;
+  const vlWorldShape *shape;
+  const uint32_t *members; /* of a bundle: the shapes that its primitives are, one each; else null */
+} AccelGeometry;
+
+/* The shape of a primitive, whose number in it replaces that in the geometry. */
+static const vlWorldShape *shape_of(const AccelGeometry *g, uint32_t *prim) {
+  if (!g->members) return g->shape;
+  const vlWorldShape *s = &g->world->shapes.items[g->members[*prim]];
+  *prim = 0;
+  return s;
+}
+
+/* What Embree carries along: the rays of the call. */
+#if VELO_EMBREE_MAJOR >= 4
+typedef struct RTCRayQueryContext EmbreeContext;
+#else
+typedef struct RTCIntersectContext EmbreeContext;
+#endif
+typedef struct Query {
+  EmbreeContext context; /* first: Embree hands back its address */
+  const vlRays *rays;
+} Query;
+
+static vlLocalRay local_ray(const vlWorld *world, const EmbreeContext *context, unsigned id, unsigned inst) {
+  uint32_t instance = inst == RTC_INVALID_GEOMETRY_ID ? VL_NONE : inst - world->groups.items[0].count;
+  return vl_local_ray(world, ((const Query *)(const void *)context)->rays, id, instance);
+}
+
+unsigned vl_accel_enter(void) {
+#if defined(__SSE__)
+  unsigned state = _mm_getcsr();
+  _mm_setcsr(state | 0x8040u); /* flush to zero, denormals are zero */
+  return state;
+#else
+  return 0;
+#endif
+}
+
+void vl_accel_leave(unsigned state) {
+#if defined(__SSE__)
+  _mm_setcsr(state);
+#else
+  (void)state;
+#endif
+}
+
+/* ---- filters ----------------------------------------------------------------------------------------------------- */
+
+static bool filter_rejects(const AccelGeometry *g, const struct RTCFilterFunctionNArguments *args, unsigned i,
+                           bool shadow) {
+  if (shadow && g->shape->pass_shadow) return true;
+  if (g->shape->alpha < 0 && !g->shape->one_sided) return false;
+  float uv[2], p[3];
+  vlTextureCorner where;
+  vlLocalRay r =
+      local_ray(g->world, args->context, *hit_row(args->ray, args->N, ID, i), *hit_row(args->hit, args->N, INST, i));
+  uint32_t prim = *hit_row(args->hit, args->N, PRIM, i);
+  where.shape = g->shape, where.prim = prim;
+  bool behind = vl_local_triangle(g->shape, prim, &r, uv, p, where.weights);
+  if (behind && g->shape->one_sided) return true;
+  return g->shape->alpha >= 0 && vl_alpha_passes(g->world, g->shape, &r, prim, 0, uv[0], uv[1], p, &where);
+}
+
+static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
+  for (unsigned i = 0; i < args->N; i++)
+    if (args->valid[i] == -1 && filter_rejects(args->geometryUserPtr, args, i, false)) args->valid[i] = 0;
+}
+
+static void filter_occluded(const struct RTCFilterFunctionNArguments *args) {
+  for (unsigned i = 0; i < args->N; i++)
+    if (args->valid[i] == -1 && filter_rejects(args->geometryUserPtr, args, i, true)) args->valid[i] = 0;
+}
+
+/* ---- user geometry ----------------------------------------------------------------------------------------------- */
+
+static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
+  const AccelGeometry *g = args->geometryUserPtr;
+  float low[3], high[3];
+  uint32_t prim = args->primID;
+  const vlWorldShape *shape = shape_of(g, &prim);
+  vl_world_prim_bounds(shape, prim, low, high);
+  args->bounds_o->lower_x = low[0], args->bounds_o->lower_y = low[1], args->bounds_o->lower_z = low[2];
+  args->bounds_o->upper_x = high[0], args->bounds_o->upper_y = high[1], args->bounds_o->upper_z = high[2];
+}
+
+static bool user_hit(const AccelGeometry *g, const EmbreeContext *context, void *ray, unsigned n, unsigned i,
+                     uint32_t prim, bool shadow, double *t) {
+  const vlWorldShape *shape = shape_of(g, &prim);
+  if (shadow && shape->pass_shadow) return false;
+  vlLocalRay r = local_ray(g->world, context, *hit_row(ray, n, ID, i), context->instID[0]);
+  double t_min = *ray_row(ray, n, TNEAR, i), t_max = *ray_row(ray, n, TFAR, i);
+  vlShapeHit hit;
+  while (vl_shape_intersect(shape, prim, r.o, r.d, t_min, t_max, &hit)) {
+    if (shape->alpha >= 0) {
+      vlSurfacePoint point;
+      vl_shape_point(shape, prim, &hit, &point);
+      float p[3] = {(float)point.p[0], (float)point.p[1], (float)point.p[2]};
+      if (vl_alpha_passes(g->world, shape, &r, prim, (float)hit.t, point.uv[0], point.uv[1], p, NULL)) {
+        t_min = hit.t * (1 + 1e-12);
+        continue;
+      }
+    }
+    *t = hit.t;
+    return true;
+  }
+  return false;
+}
+
+static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
+  const AccelGeometry *g = args->geometryUserPtr;
+  void *ray = args->rayhit, *hit = ray_row(ray, args->N, HIT, 0);
+  for (unsigned i = 0; i < args->N; i++) {
+    double t;
+    if (args->valid[i] != -1 || !user_hit(g, args->context, ray, args->N, i, args->primID, false, &t)) continue;
+    *ray_row(ray, args->N, TFAR, i) = (float)t;
+    *hit_row(hit, args->N, GEOM, i) = args->geomID;
+    *hit_row(hit, args->N, PRIM, i) = args->primID;
+    *hit_row(hit, args->N, INST, i) = args->context->instID[0];
+  }
+}
+
+static void user_occluded(const struct RTCOccludedFunctionNArguments *args) {
+  const AccelGeometry *g = args->geometryUserPtr;
+  for (unsigned i = 0; i < args->N; i++) {
+    double t;
+    if (args->valid[i] == -1 && user_hit(g, args->context, args->ray, args->N, i, args->primID, true, &t))
+      *ray_row(args->ray, args->N, TFAR, i) = -INFINITY;
+  }
+}
+
+/* ---- building ---------------------------------------------------------------------------------------------------- */
+
+static void make_user_geometry(RTCGeometry geometry, uint32_t count) {
+  rtcSetGeometryUserPrimitiveCount(geometry, count);
+  rtcSetGeometryBoundsFunction(geometry, user_bounds, NULL);
+  rtcSetGeometryIntersectFunction(geometry, user_intersect);
+  rtcSetGeometryOccludedFunction(geometry, user_occluded);
+}
+
+/* count: of a bundle. */
+static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, AccelGeometry *g, uint32_t count,
+                             vlError *error) {
+  const vlWorldShape *s = g->shape;
+  bool triangles = s->kind == VL_SHAPE_TRIANGLES;
+  RTCGeometry geometry = rtcNewGeometry(device, triangles ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_USER);
+  if (!geometry) return vl_fail_memory(error);
+  rtcSetGeometryUserData(geometry, g);
+  if (triangles) {
+    rtcSetGeometryTimeStepCount(geometry, s->steps);
+    for (uint32_t k = 0; k < s->steps; k++)
+      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3, s->positions,
+                                 12 * (size_t)k * s->vertices, 12, s->vertices);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s->indices, 0, 12, s->faces);
+    if (s->alpha >= 0 || s->one_sided) rtcSetGeometryIntersectFilterFunction(geometry, filter_closest);
+    if (s->alpha >= 0 || s->one_sided || s->pass_shadow)
+      rtcSetGeometryOccludedFilterFunction(geometry, filter_occluded);
+  } else {
+    make_user_geometry(geometry, g->members ? count : s->faces);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+  return VL_OK;
+}
+
+static vlResult attach_instance(RTCDevice device, RTCScene scene, RTCScene target, unsigned id,
+                                const vlWorldInstance *q, vlError *error) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  if (!geometry) return vl_fail_memory(error);
+  rtcSetGeometryInstancedScene(geometry, target);
+  uint32_t steps = q->keys ? q->keys : 1;
+  rtcSetGeometryTimeStepCount(geometry, steps);
+  for (uint32_t k = 0; k < steps; k++) /* matrices between two are straight between them, as in moving.c */
+    rtcSetGeometryTransform(geometry, k, RTC_FORMAT_FLOAT3X4_ROW_MAJOR,
+                            q->keys ? q->path + 12 * (size_t)k : q->from_group);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+  return VL_OK;
+}
+
+static RTCScene new_scene(RTCDevice device) {
+  RTCScene scene = rtcNewScene(device);
+  if (scene) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  return scene;
+}
+
+vlResult vl_accel_build(vlWorld *world, vlError *error) {
+  vlAccel *a = &world->accel;
+  char config[64];
+  snprintf(config, sizeof config, "threads=%u", vl_context_threads(world->context));
+  RTCDevice device = rtcNewDevice(config);
+  if (!device)
+    return vl_fail(error, VL_ERROR_MEMORY, "Embree gives no device (error %d)", (int)rtcGetDeviceError(NULL));
+  a->device = device;
+  AccelGeometry *geometries = vl_alloc_array(world->context, world->shapes.count + 1, sizeof *geometries);
+  a->groups = vl_alloc_zero(world->context, world->groups.count, sizeof *a->groups);
+  a->user_data = geometries;
+  a->bundles = vl_alloc_zero(world->context, world->groups.count, sizeof *a->bundles);
+  a->members = vl_alloc_array(world->context, world->shapes.count + 1, sizeof *a->members);
+  if (!geometries || !a->groups || !a->bundles || !a->members) return vl_fail_memory(error);
+  uint32_t bundled_count = 0;
+  a->group_count = (uint32_t)world->groups.count;
+  for (size_t i = 0; i < world->shapes.count; i++)
+    geometries[i] = (AccelGeometry){world, &world->shapes.items[i], NULL};
+  for (size_t k = world->groups.count; k-- > 0;) { /* the world itself, group 0, comes last */
+    const vlWorldGroup *group = &world->groups.items[k];
+    RTCScene scene = new_scene(device);
+    if (!scene) return vl_fail_memory(error);
+    a->groups[k] = scene;
+    vlResult r = VL_OK;
+    vlAccelBundle *bundle = &a->bundles[k];
+    bundled_count += vl_accel_find_bundle(world, group, bundle, a->members + bundled_count);
+    for (uint32_t i = 0; r == VL_OK && i < group->count; i++) {
+      AccelGeometry *g = &geometries[group->shapes[i]];
+      if (bundle->members && i > bundle->geometry && vl_accel_bundled(g->shape)) continue; /* part of it */
+      if (bundle->members && i == bundle->geometry) g->members = bundle->members;
+      r = attach_shape(device, scene, i, g, bundle->count, error);
+    }
+    for (size_t i = 0; k == 0 && r == VL_OK && i < world->instances.count; i++) {
+      const vlWorldInstance *instance = &world->instances.items[i];
+      r = attach_instance(device, scene, a->groups[instance->group], group->count + (unsigned)i, instance, error);
+    }
+    if (r != VL_OK) return r;
+    rtcCommitScene(scene);
+  }
+  a->scene = a->groups[0];
+  enum RTCError code = rtcGetDeviceError(device);
+  if (code == RTC_ERROR_OUT_OF_MEMORY) return vl_fail_memory(error);
+  if (code != RTC_ERROR_NONE) return vl_fail(error, VL_ERROR_SCENE, "Embree refuses the scene (error %d)", (int)code);
+  return VL_OK;
+}
+
+void vl_accel_destroy(vlContext *context, vlAccel *a) {
+  for (uint32_t k = 0; k < a->group_count; k++)
+    if (a->groups[k]) rtcReleaseScene(a->groups[k]);
+  if (a->device) rtcReleaseDevice(a->device);
+  vl_free(context, a->groups);
+  vl_free(context, a->user_data);
+  vl_free(context, a->bundles);
+  vl_free(context, a->members);
+  memset(a, 0, sizeof *a);
+}
+
+/* ---- tracing ----------------------------------------------------------------------------------------------------- */
+
+/* A query; arguments tells Embree 4 of it. */
+#if VELO_EMBREE_MAJOR >= 4
+#define BEGIN_QUERY(query, r, coherent)                                                               \
+  Query query;                                                                                        \
+  rtcInitRayQueryContext(&query.context);                                                             \
+  query.rays = (r);                                                                                   \
+  struct RTCIntersectArguments closest_arguments;                                                     \
+  rtcInitIntersectArguments(&closest_arguments);                                                      \
+  closest_arguments.context = &query.context;                                                         \
+  closest_arguments.flags = (coherent) ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT; \
+  struct RTCOccludedArguments any_arguments;                                                          \
+  rtcInitOccludedArguments(&any_arguments);                                                           \
+  any_arguments.context = &query.context;                                                             \
+  (void)closest_arguments, (void)any_arguments
+#define INTERSECT1(scene, ray) rtcIntersect1((scene), (ray), &closest_arguments)
+#define OCCLUDED1(scene, ray) rtcOccluded1((scene), (ray), &any_arguments)
+#define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), (ray), &closest_arguments)
+#else
+#define BEGIN_QUERY(query, r, coherent)    \
+  Query query;                             \
+  rtcInitIntersectContext(&query.context); \
+  query.rays = (r);                        \
+  query.context.flags = (coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT
+#define INTERSECT1(scene, ray) rtcIntersect1((scene), &query.context, (ray))
+#define OCCLUDED1(scene, ray) rtcOccluded1((scene), &query.context, (ray))
+#define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), &query.context, (ray))
+#endif
+
+static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsigned inst, uint32_t *shape,
+                      uint32_t *prim_out, uint32_t *instance) {
+  if (geom == RTC_INVALID_GEOMETRY_ID) {
+    *shape = *prim_out = *instance = VL_NONE;
+    return;
+  }
+  uint32_t group = 0;
+  *instance = VL_NONE;
+  if (inst != RTC_INVALID_GEOMETRY_ID) {
+    *instance = inst - world->groups.items[0].count;
+    group = world->instances.items[*instance].group;
+  }
+  const vlAccelBundle *bundle = &world->accel.bundles[group];
+  bool bundled_hit = bundle->members && geom == bundle->geometry;
+  *shape = bundled_hit ? bundle->members[prim] : world->groups.items[group].shapes[geom];
+  *prim_out = bundled_hit ? 0 : prim;
+}
+
+static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32_t *shape, uint32_t *prim,
+                       uint32_t *instance, float *t) {
+  BEGIN_QUERY(query, r, true);
+  for (uint32_t first = 0; first < n; first += 16) {
+    struct RTCRayHit16 q;
+    int valid[16] __attribute__((aligned(64)));
+    for (uint32_t k = 0; k < 16; k++) {
+      uint32_t i = first + k < n ? first + k : n - 1;
+      /* Embree takes no rays from beyond its range (nor NaN): they meet nothing. Only cameras stand so far away; the
+       * world itself ends before (shapes.c). */
+      bool near = fabsf(r->ox[i]) < 1.8e18f && fabsf(r->oy[i]) < 1.8e18f && fabsf(r->oz[i]) < 1.8e18f;
+      valid[k] = first + k < n && near ? -1 : 0;
+      q.ray.org_x[k] = r->ox[i], q.ray.org_y[k] = r->oy[i], q.ray.org_z[k] = r->oz[i];
+      q.ray.dir_x[k] = r->dx[i], q.ray.dir_y[k] = r->dy[i], q.ray.dir_z[k] = r->dz[i];
+      q.ray.tnear[k] = r->t_min ? r->t_min[i] : 0.0f;
+      q.ray.tfar[k] = r->t_max ? r->t_max[i] : INFINITY;
+      q.ray.time[k] = r->time ? r->time[i] : 0, q.ray.mask[k] = (unsigned)-1, q.ray.id[k] = i, q.ray.flags[k] = 0;
+      q.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+      q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
+    INTERSECT16(valid, world->accel.scene, &q);
+    for (uint32_t k = 0; k < 16 && first + k < n; k++) t[first + k] = q.ray.tfar[k];
+    for (uint32_t k = 0; k < 16 && first + k < n; k++)
+      store_ids(world, q.hit.geomID[k], q.hit.primID[k], q.hit.instID[0][k], &shape[first + k], &prim[first + k],
+                &instance[first + k]);
+  }
+}
+
+static void fill_ray(struct RTCRay *q, const vlRays *r, uint32_t i) {
+  q->org_x = r->ox[i], q->org_y = r->oy[i], q->org_z = r->oz[i];
+  q->dir_x = r->dx[i], q->dir_y = r->dy[i], q->dir_z = r->dz[i];
+  q->tnear = r->t_min ? r->t_min[i] : 0.0f;
+  q->tfar = r->t_max ? r->t_max[i] : INFINITY;
+  q->time = r->time ? r->time[i] : 0, q->mask = (unsigned)-1, q->id = i, q->flags = 0;
+}
+
+void vl_accel_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
+                      uint32_t *prim, uint32_t *instance, float *t) {
+  if (world->accel.log) world->accel.log(world->accel.log_user, coherent ? 0 : 1, n, rays);
+  if (coherent) {
+    closest_16(world, n, rays, shape, prim, instance, t);
+    return;
+  }
+  BEGIN_QUERY(query, rays, false);
+  for (uint32_t i = 0; i < n; i++) {
+    struct RTCRayHit q;
+    fill_ray(&q.ray, rays, i);
+    q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    INTERSECT1(world->accel.scene, &q);
+    t[i] = q.ray.tfar;
+    store_ids(world, q.hit.geomID, q.hit.primID, q.hit.instID[0], &shape[i], &prim[i], &instance[i]);
+  }
+}
+
+void vl_accel_occluded(const vlWorld *world, uint32_t n, const vlRays *rays, uint8_t *occluded) {
+  if (world->accel.log) world->accel.log(world->accel.log_user, 2, n, rays);
+  BEGIN_QUERY(query, rays, false);
+  for (uint32_t i = 0; i < n; i++) {
+    struct RTCRay q;
+    fill_ray(&q, rays, i);
+    OCCLUDED1(world->accel.scene, &q);
+    occluded[i] = q.tfar < 0;
+  }
+}

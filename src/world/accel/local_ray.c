@@ -1,0 +1,58 @@
+/* world/accel/local_ray.c: see local_ray.h. */
+#include "world/accel/local_ray.h"
+
+#include "math/hash.h"
+#include "world/shape/moving.h"
+
+vlLocalRay vl_local_ray(const vlWorld *world, const vlRays *r, uint32_t i, uint32_t instance) {
+  vlLocalRay q = {instance,
+                  r->time ? r->time[i] : 0,
+                  {r->ox[i], r->oy[i], r->oz[i]},
+                  {r->dx[i], r->dy[i], r->dz[i]},
+                  {r->ox[i], r->oy[i], r->oz[i]},
+                  {r->dx[i], r->dy[i], r->dz[i]}};
+  if (instance != VL_NONE) {
+    vlWorldInstance moved;
+    vl_ray_to_group(vl_instance_at(&world->instances.items[instance], q.time, &moved), q.o, q.d);
+  }
+  return q;
+}
+
+static float ray_hash(const vlLocalRay *r, uint32_t shape, uint32_t prim, float t) {
+  uint32_t h = vl_hash2(vl_hash2(shape, prim), r->instance);
+  for (int i = 0; i < 3; i++)
+    h = vl_hash2(h, vl_float_bits(r->world_o[i])), h = vl_hash2(h, vl_float_bits(r->world_d[i]));
+  return vl_unit_float(vl_hash2(h, vl_float_bits(t)));
+}
+
+bool vl_alpha_passes(const vlWorld *world, const vlWorldShape *shape, const vlLocalRay *r, uint32_t prim, float t,
+                     float u, float v, const float p[3], const vlTextureCorner *where) {
+  float alpha = vl_texture_float_at(world, shape->alpha, u, v, p, where);
+  return ray_hash(r, (uint32_t)(shape - world->shapes.items), prim, t) >= alpha;
+}
+
+bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r, float uv[2], float p[3], float b[3]) {
+  const uint32_t *f = s->indices + 3 * (size_t)prim;
+  vlVec3 ray_o = vl_vec3((float)r->o[0], (float)r->o[1], (float)r->o[2]);
+  vlVec3 ray_d = vl_vec3((float)r->d[0], (float)r->d[1], (float)r->d[2]), c[3];
+  float room[3][3];
+  const float *corner[3];
+  for (int k = 0; k < 3; k++) {
+    const float *x = corner[k] = vl_vertex_at(s, f[k], r->time, room[k]);
+    c[k] = vl_sub(vl_vec3(x[0], x[1], x[2]), ray_o);
+  }
+  float b0 = vl_dot(ray_d, vl_cross(c[1], c[2])), b1 = vl_dot(ray_d, vl_cross(c[2], c[0])),
+        b2 = vl_dot(ray_d, vl_cross(c[0], c[1]));
+  float sum = b0 + b1 + b2, inv = sum != 0 ? 1 / sum : 0;
+  b0 *= inv, b1 *= inv, b2 *= inv;
+  static const float unit[6] = {0, 0, 1, 0, 1, 1};
+  b[0] = b0, b[1] = b1, b[2] = b2;
+  uv[0] = uv[1] = 0;
+  for (int k = 0; k < 3; k++) {
+    const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
+    uv[0] += b[k] * t[0];
+    uv[1] += b[k] * t[1];
+  }
+  for (int i = 0; i < 3; i++) p[i] = b0 * corner[0][i] + b1 * corner[1][i] + b2 * corner[2][i];
+  return s->flip ? sum < 0 : sum > 0; /* sum is the direction times the normal of the face order */
+}

@@ -1,0 +1,167 @@
+/* world/light/light_tree.h: choosing a light: a binary tree over all bounded lights, walked with the importance that
+ * each branch has for the point to be lit (Conty Estevez and Kulla 2018; pbrt book 12.6.3). Lights without bounds
+ * (distant, infinite) share one slot each beside the tree. Building: light_tree.c; walking: inline, for the hot loops.
+ */
+#ifndef WORLD_LIGHT_LIGHT_TREE_H
+#define WORLD_LIGHT_LIGHT_TREE_H
+
+#include "math/vec.h"
+#include "velo/render.h"
+
+/* What a set of lights sends out: from where, in which cone of directions, how much. */
+typedef struct vlLightBounds {
+  float low[3], high[3];
+  float axis[3];
+  float cos_o; /* cosine of the cone of normals round axis */
+  float cos_e; /* cosine of how far beyond a normal light goes */
+  float power;
+  bool two_sided;
+} vlLightBounds;
+
+typedef struct vlLightNode {
+  float center[3];
+  float half_diagonal; /* of the bounds */
+  float axis[3];
+  float cos_o, sin_o, cos_e;
+  float power;
+  float two_sided; /* 1 or 0 */
+  uint32_t light;  /* leaf: index of the light; VL_INNER: children at left and left + 1 */
+  uint32_t left;
+  float low[3], high[3];
+} vlLightNode;
+#define VL_INNER 0xffffffffu
+
+typedef struct vlLightTree {
+  vlLightSampler kind;
+  vlLightNode *nodes;
+  uint32_t node_count;
+  uint64_t *trails; /* per light: left/right decisions from the root, lowest bit first */
+  uint32_t light_count;
+  uint32_t *unbounded; /* lights beside the tree */
+  uint32_t unbounded_count;
+  uint32_t *slot; /* per light: index in unbounded, or VL_INNER */
+  float *cdf;     /* power and uniform: light_count + 1 */
+} vlLightTree;
+
+vlResult vl_light_tree_build(struct vlWorld *world, vlError *error);
+
+/* What the importance of a node reads, by value. Nodes are read as rows of floats, so that a batch can gather them. */
+enum { VL_LIGHT_NODE_FLOATS = sizeof(vlLightNode) / sizeof(float) };
+typedef struct vlLightCluster {
+  float cx, cy, cz, half_diagonal, ax, ay, az, cos_o, sin_o, cos_e, power, two_sided;
+} vlLightCluster;
+static inline vlLightCluster vl_light_cluster(const float *nodes, uint32_t at) {
+  return (vlLightCluster){nodes[at],     nodes[at + 1], nodes[at + 2], nodes[at + 3], nodes[at + 4],  nodes[at + 5],
+                          nodes[at + 6], nodes[at + 7], nodes[at + 8], nodes[at + 9], nodes[at + 10], nodes[at + 11]};
+}
+
+/* Importance of a node for a point p with normal n (zero vector: none). No branches: it runs over batches, too. */
+static inline __attribute__((always_inline)) float vl_light_importance(vlLightCluster b, vlVec3 p, vlVec3 n) {
+  vlVec3 to = vl_sub(p, vl_vec3(b.cx, b.cy, b.cz));
+  float d2 = vl_length2(to);
+  float r = b.half_diagonal;
+  float d2_limited = vl_max(d2, r); /* as in the book: not less than half the diagonal */
+  vlVec3 wi = vl_normalize(to);
+  float cos_w = vl_dot(vl_vec3(b.ax, b.ay, b.az), wi);
+  cos_w = b.two_sided > 0.0f ? vl_abs(cos_w) : cos_w;
+  float sin_w = __builtin_sqrtf(vl_max(0.0f, 1.0f - cos_w * cos_w));
+  /* Angle that the bounds subtend at p: everything, when p is inside their sphere. */
+  float inside = d2 > r * r ? 0.0f : 1.0f;
+  float sin2_b = r * r / vl_max(d2, 1e-37f);
+  float cos_b = __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2_b)), sin_b = __builtin_sqrtf(sin2_b);
+  cos_b = inside > 0.0f ? -1.0f : cos_b;
+  sin_b = inside > 0.0f ? 0.0f : sin_b;
+  /* theta_x = max(0, theta_w - theta_o), theta_p = max(0, theta_x - theta_b), by differences of cosines. */
+  float cos_x = cos_w * b.cos_o + sin_w * b.sin_o, sin_x = sin_w * b.cos_o - cos_w * b.sin_o;
+  sin_x = cos_w > b.cos_o ? 0.0f : sin_x;
+  cos_x = cos_w > b.cos_o ? 1.0f : cos_x;
+  float cos_p = cos_x * cos_b + sin_x * sin_b;
+  cos_p = cos_x > cos_b ? 1.0f : cos_p;
+  float importance = b.power * cos_p / d2_limited;
+  float has_n = vl_abs(n.x) + vl_abs(n.y) + vl_abs(n.z);
+  float cos_i = vl_abs(vl_dot(wi, n));
+  float sin_i = __builtin_sqrtf(vl_max(0.0f, 1.0f - cos_i * cos_i));
+  float turned = vl_max(0.0f, cos_i * cos_b + sin_i * sin_b);
+  turned = cos_i > cos_b ? 1.0f : turned;
+  importance *= has_n > 0.0f ? turned : 1.0f;
+  importance = cos_p > b.cos_e ? importance : 0.0f;
+  return importance > 0.0f && importance < VL_INFINITY ? importance : 0.0f;
+}
+static inline float vl_light_node_importance(const vlLightNode *node, vlVec3 p, vlVec3 n) {
+  return vl_light_importance(vl_light_cluster((const float *)node, 0), p, n);
+}
+
+typedef struct vlLightChoice {
+  uint32_t light; /* VL_INNER: none */
+  float pmf;
+} vlLightChoice;
+
+static inline vlLightChoice vl_light_choose_cdf(const vlLightTree *tree, float u) {
+  uint32_t low = 0, high = tree->light_count; /* cdf[low] <= u < cdf[high] */
+  while (high - low > 1) {
+    uint32_t mid = (low + high) / 2;
+    if (tree->cdf[mid] <= u)
+      low = mid;
+    else
+      high = mid;
+  }
+  return (vlLightChoice){low, tree->cdf[low + 1] - tree->cdf[low]};
+}
+
+/* Down from an inner node that was reached with probability pmf; u in [0,1) is used up on the way. */
+static inline vlLightChoice vl_light_walk(const vlLightTree *tree, const vlLightNode *node, vlVec3 p, vlVec3 n, float u,
+                                          float pmf) {
+  while (node->light == VL_INNER) {
+    const vlLightNode *a = tree->nodes + node->left, *b = a + 1;
+    float ia = vl_light_node_importance(a, p, n), ib = vl_light_node_importance(b, p, n);
+    if (!(ia + ib > 0.0f)) return (vlLightChoice){VL_INNER, 0.0f};
+    float pa = ia / (ia + ib);
+    bool left = u < pa;
+    float part = left ? pa : 1.0f - pa;
+    u = vl_min((left ? u : u - pa) / part, VL_ONE_MINUS_EPSILON);
+    pmf *= part;
+    node = left ? a : b;
+  }
+  return (vlLightChoice){node->light, pmf};
+}
+
+static inline vlLightChoice vl_light_choose(const vlLightTree *tree, vlVec3 p, vlVec3 n, float u) {
+  vlLightChoice none = {VL_INNER, 0.0f};
+  if (tree->light_count == 0) return none;
+  if (tree->kind != VL_LIGHT_SAMPLER_BVH) return vl_light_choose_cdf(tree, u);
+  uint32_t slots = tree->unbounded_count + (tree->node_count ? 1 : 0);
+  float p_unbounded = (float)tree->unbounded_count / (float)slots;
+  if (u < p_unbounded) {
+    uint32_t i = (uint32_t)(u * (float)slots);
+    i = i < tree->unbounded_count ? i : tree->unbounded_count - 1;
+    return (vlLightChoice){tree->unbounded[i], 1.0f / (float)slots};
+  }
+  if (!tree->node_count) return none;
+  u = vl_min((u - p_unbounded) / (1.0f - p_unbounded), VL_ONE_MINUS_EPSILON);
+  const vlLightNode *root = tree->nodes;
+  if (root->light != VL_INNER && !(vl_light_node_importance(root, p, n) > 0.0f)) return none;
+  return vl_light_walk(tree, root, p, n, u, 1.0f / (float)slots);
+}
+
+/* Probability with which vl_light_choose picks this light. */
+static inline float vl_light_pmf(const vlLightTree *tree, vlVec3 p, vlVec3 n, uint32_t light) {
+  if (tree->kind != VL_LIGHT_SAMPLER_BVH) return tree->cdf[light + 1] - tree->cdf[light];
+  uint32_t slots = tree->unbounded_count + (tree->node_count ? 1 : 0);
+  float pmf = 1.0f / (float)slots;
+  if (tree->slot[light] != VL_INNER) return pmf;
+  uint64_t trail = tree->trails[light];
+  const vlLightNode *node = tree->nodes;
+  if (node->light != VL_INNER) return vl_light_node_importance(node, p, n) > 0.0f ? pmf : 0.0f;
+  while (node->light == VL_INNER) {
+    const vlLightNode *a = tree->nodes + node->left, *b = a + 1;
+    float ia = vl_light_node_importance(a, p, n), ib = vl_light_node_importance(b, p, n);
+    float pa = ia + ib > 0.0f ? ia / (ia + ib) : 0.0f;
+    float pb = ia + ib > 0.0f ? 1.0f - pa : 0.0f;
+    pmf *= trail & 1 ? pb : pa;
+    node = trail & 1 ? b : a;
+    trail >>= 1;
+  }
+  return pmf;
+}
+
+#endif

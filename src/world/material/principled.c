@@ -1,0 +1,84 @@
+/* world/material/principled.c: the principled material's inputs compiled into texture nodes. */
+#include "world/material/principled.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "scene/scene.h"
+#include "world/world.h"
+
+/* Cauchy's n = a + b / lambda^2 (nm) through n_d with the Abbe number 20 / dispersion, at the lines d, F and C. */
+static void cauchy(float n, float dispersion, vlWorldPrincipled *p) {
+  const double d = 587.6, f = 486.1, c = 656.3;
+  double abbe = 20.0 / (double)dispersion;
+  double b = ((double)n - 1) / (abbe * (1 / (f * f) - 1 / (c * c)));
+  p->cauchy_b = (float)b;
+  p->cauchy_a = (float)((double)n - b / (d * d));
+}
+
+static vlResult normal_node(vlWorld *world, const vlScene *scene, vlTextureId id, int32_t *node, vlError *error) {
+  *node = -1;
+  if (!id.index) return VL_OK;
+  vlSpectrumInput input = vl_spectrum_input(vl_spectrum_constant(0.0f));
+  input.texture = id;
+  return vl_world_spectrum_node(world, scene, input, VL_ROLE_UNBOUNDED, node, error);
+}
+
+static bool is_zero(vlFloatInput input) {
+  return !input.texture.index && !(input.value > 0.0f);
+}
+
+vlResult vl_world_principled(vlWorld *world, const vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
+                             vlError *error) {
+  const vlPrincipledDef *d = &def->principled;
+  vlWorldPrincipled *p = vl_world_block(world, 1, sizeof *p);
+  if (!p) return vl_fail_memory(error);
+  m->principled = p;
+  float ior;
+  if (!vl_spectrum_is_constant(&def->eta.value, &ior) || !(ior >= 0.0f) || !isfinite(ior))
+    return vl_fail(error, VL_ERROR_SCENE, "principled material: the index of refraction must be one number");
+  /* 0: as dense as can be; below 1 it would lie inside something denser, which the layers do not know */
+  float root = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
+  p->f0 = root * root;
+  m->eta_s = ior > 0.0f ? ior : 1.5f;
+  p->thin = d->thin_walled || fabsf(m->eta_s - 1.0f) < 1e-3f || is_zero(d->transmission);
+  m->dispersive = !p->thin && d->dispersion > 0.0f && world->def.color == VL_COLOR_SPECTRAL;
+  if (m->dispersive) cauchy(m->eta_s, d->dispersion, p);
+  p->film_index = d->iridescence_ior;
+  p->normal_scale = d->normal_scale, p->coat_normal_scale = d->clearcoat_normal_scale;
+  const struct {
+    vlFloatInput input;
+    int32_t *node;
+  } floats[] = {{d->metallic, &p->metallic},
+                {d->roughness, &p->roughness},
+                {d->anisotropy, &p->anisotropy},
+                {d->anisotropy_rotation, &p->anisotropy_rotation},
+                {d->specular, &p->specular},
+                {d->transmission, &p->transmission},
+                {d->diffuse_transmission, &p->diffuse_transmission},
+                {d->clearcoat, &p->clearcoat},
+                {d->clearcoat_roughness, &p->clearcoat_roughness},
+                {d->sheen_roughness, &p->sheen_roughness},
+                {d->iridescence, &p->iridescence},
+                {d->iridescence_thickness, &p->iridescence_thickness}};
+  vlResult r = vl_world_spectrum_node(world, scene, def->reflectance, VL_ROLE_ALBEDO, &m->reflectance, error);
+  for (size_t i = 0; r == VL_OK && i < sizeof floats / sizeof *floats; i++)
+    r = vl_world_float_node(world, scene, floats[i].input, floats[i].node, error);
+  if (r == VL_OK)
+    r = vl_world_spectrum_node(world, scene, d->specular_color, VL_ROLE_UNBOUNDED, &p->specular_color, error);
+  if (r == VL_OK)
+    r = vl_world_spectrum_node(world, scene, d->diffuse_transmission_color, VL_ROLE_ALBEDO, &p->through, error);
+  if (r == VL_OK) r = vl_world_spectrum_node(world, scene, d->sheen_color, VL_ROLE_ALBEDO, &p->sheen, error);
+  if (r == VL_OK) r = normal_node(world, scene, d->normal, &p->normal, error);
+  if (r == VL_OK) r = normal_node(world, scene, d->clearcoat_normal, &p->coat_normal, error);
+  /* What stays off for good need not be looked up. */
+  p->has_coat = !is_zero(d->clearcoat), p->has_film = !is_zero(d->iridescence);
+  p->has_anisotropy = !is_zero(d->anisotropy), p->has_through = !is_zero(d->diffuse_transmission);
+  const vlSpectrum *sheen = &d->sheen_color.value;
+  float grey;
+  bool no_sheen = (vl_spectrum_is_constant(sheen, &grey) && !(grey > 0.0f)) ||
+                  (sheen->kind == VL_SPECTRUM_RGB && !(sheen->rgb[0] + sheen->rgb[1] + sheen->rgb[2] > 0.0f));
+  p->has_sheen = d->sheen_color.texture.index || !no_sheen;
+  return r;
+}

@@ -1,0 +1,110 @@
+/* world/material/principled.h: what the principled material needs of tables: how much a rough layer reflects in all
+ * directions together, so that what lies below gets the rest and nothing is lost or won.
+ *
+ *   specular  E(w) = F0 a(w) + F90 b(w): GGX with single scattering and Schlick's Fresnel term, split into its two ends
+ *             (Karis 2013, "Real Shading in Unreal Engine 4"); a + b: for F = 1
+ *   sheen     the "Charlie" distribution with its shadowing (Estevez and Kulla 2017, "Production Friendly Microfacet
+ *             Sheen BRDF")
+ *   loss      of light that meets a rough body of glass from outside or inside: what single scattering, reflected and
+ *             refracted together, fails to send on (Walter et al. 2007 with the Schlick term of that index)
+ * Means are over the cosine-weighted hemisphere: int E 2 cos dcos (Kulla and Conty 2017). */
+#ifndef WORLD_MATERIAL_PRINCIPLED_H
+#define WORLD_MATERIAL_PRINCIPLED_H
+
+#include "math/approx.h"
+#include "math/vec.h"
+
+enum { VL_ALBEDO_COS = 64, VL_ALBEDO_ALPHA = 32, VL_LOSS_COS = 32, VL_LOSS_ALPHA = 16, VL_LOSS_ETA = 16 };
+#define VL_LOSS_MOST_ROOT 0.5f /* of (eta - 1) / (eta + 1): eta 3 */
+
+/* Row: sqrt(alpha) in equal steps over [0, 1]; column: sqrt(cos) likewise. Linear between. */
+typedef struct vlPrincipledTables {
+  float a[VL_ALBEDO_ALPHA][VL_ALBEDO_COS], b[VL_ALBEDO_ALPHA][VL_ALBEDO_COS];
+  float a_mean[VL_ALBEDO_ALPHA], b_mean[VL_ALBEDO_ALPHA];
+  float sheen[VL_ALBEDO_ALPHA][VL_ALBEDO_COS], sheen_mean[VL_ALBEDO_ALPHA];
+  /* First the side: 0 outside, 1 inside; then (eta - 1) / (eta + 1) in equal steps; then as above. */
+  float loss[2][VL_LOSS_ETA][VL_LOSS_ALPHA][VL_LOSS_COS], loss_mean[2][VL_LOSS_ETA][VL_LOSS_ALPHA];
+} vlPrincipledTables;
+
+/* Computed by tools/albedo_tables as the library is built. The sheen's exceeds 1 where it is narrow and light grazes:
+ * there it must be scaled down; its mean is of min(E, 1). */
+extern const vlPrincipledTables vl_principled_tables;
+
+/* Where a value lies between two entries. */
+typedef struct vlAlbedoPlace {
+  uint32_t first;
+  float t;
+} vlAlbedoPlace;
+static inline vlAlbedoPlace vl_albedo_place(float x, uint32_t count) {
+  float c = x > 0.0f ? x : 0.0f; /* NaN to 0 too */
+  c = __builtin_sqrtf(c < 1.0f ? c : 1.0f) * (float)(count - 1);
+  uint32_t first = (uint32_t)c;
+  first = first < count - 2 ? first : count - 2;
+  return (vlAlbedoPlace){first, c - (float)first};
+}
+static inline float vl_albedo_at(const float table[][VL_ALBEDO_COS], vlAlbedoPlace alpha, vlAlbedoPlace cosine) {
+  const float *p = table[alpha.first] + cosine.first, *q = p + VL_ALBEDO_COS;
+  float low = p[0] + cosine.t * (p[1] - p[0]), high = q[0] + cosine.t * (q[1] - q[0]);
+  return low + alpha.t * (high - low);
+}
+static inline float vl_albedo_mean(const float *mean, vlAlbedoPlace alpha) {
+  return mean[alpha.first] + alpha.t * (mean[alpha.first + 1] - mean[alpha.first]);
+}
+
+/* The index's place in the tables of losses; eta >= 1. */
+static inline vlAlbedoPlace vl_loss_place(float eta) {
+  float c = (eta - 1.0f) / (eta + 1.0f) * ((float)(VL_LOSS_ETA - 1) / VL_LOSS_MOST_ROOT);
+  c = c > 0.0f ? c : 0.0f;
+  uint32_t first = c < (float)(VL_LOSS_ETA - 2) ? (uint32_t)c : VL_LOSS_ETA - 2;
+  float t = c - (float)first;
+  return (vlAlbedoPlace){first, t < 1.0f ? t : 1.0f};
+}
+static inline float vl_loss_at(uint32_t side, vlAlbedoPlace eta, vlAlbedoPlace alpha, vlAlbedoPlace cosine) {
+  float ends[2];
+  for (uint32_t k = 0; k < 2; k++) {
+    const float *p = vl_principled_tables.loss[side][eta.first + k][alpha.first] + cosine.first, *q = p + VL_LOSS_COS;
+    float low = p[0] + cosine.t * (p[1] - p[0]), high = q[0] + cosine.t * (q[1] - q[0]);
+    ends[k] = low + alpha.t * (high - low);
+  }
+  return ends[0] + eta.t * (ends[1] - ends[0]);
+}
+static inline float vl_loss_mean(uint32_t side, vlAlbedoPlace eta, vlAlbedoPlace alpha) {
+  const float(*mean)[VL_LOSS_ALPHA] = vl_principled_tables.loss_mean[side] + eta.first;
+  float low = vl_albedo_mean(mean[0], alpha), high = vl_albedo_mean(mean[1], alpha);
+  return low + eta.t * (high - low);
+}
+
+static inline float vl_schlick_weight(float cosine) {
+  float m = 1.0f - cosine;
+  m = m > 0.0f ? m : 0.0f;
+  float m2 = m * m;
+  return m2 * m2 * m;
+}
+
+/* ---- sheen ------------------------------------------------------------------------------------------------------- */
+
+/* Narrower is not told apart from none. */
+#define VL_SHEEN_ALPHA 0.005f
+
+/* ln of 1 + Lambda's fit, L(x) of Estevez and Kulla: curves for alpha 0 and 1, mixed by (1 - alpha)^2. */
+static inline float vl_sheen_curve(float x, float alpha) {
+  float s = (1.0f - alpha) * (1.0f - alpha), t = 1.0f - s;
+  float a = 25.3245f * s + 21.5473f * t, b = 3.32435f * s + 3.82987f * t, c = 0.16801f * s + 0.19823f * t;
+  float d = -1.27393f * s - 1.97760f * t, e = -4.85967f * s - 4.32054f * t;
+  return a / (1.0f + b * vl_pow(x, c)) + d * x + e;
+}
+static inline float vl_sheen_lambda(float cosine, float alpha) {
+  float half = vl_sheen_curve(0.5f, alpha), c = cosine < 0.5f ? cosine : 1.0f - cosine;
+  float curve = vl_sheen_curve(c > 1e-6f ? c : 1e-6f, alpha);
+  return vl_exp(cosine < 0.5f ? curve : 2.0f * half - curve);
+}
+/* f cos_i for cosines > 0; h: cosine of the half vector. */
+static inline float vl_sheen(float o, float i, float h, float alpha) {
+  alpha = alpha > VL_SHEEN_ALPHA ? alpha : VL_SHEEN_ALPHA;
+  float inverse = 1.0f / alpha, sin2 = 1.0f - h * h;
+  float d = (2.0f + inverse) * vl_pow(sin2 > 1e-12f ? sin2 : 1e-12f, 0.5f * inverse) * (0.5f * VL_INV_PI);
+  float g = 1.0f / (1.0f + vl_sheen_lambda(o, alpha) + vl_sheen_lambda(i, alpha));
+  return d * g / (4.0f * (o > 1e-6f ? o : 1e-6f));
+}
+
+#endif

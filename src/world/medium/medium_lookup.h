@@ -1,0 +1,277 @@
+/* world/medium/medium_lookup.h: what a medium is at a point, and the way of a ray through its majorants. Inline, by
+ * value, for the hot files of trace. pbrt book 11.4. */
+#ifndef WORLD_MEDIUM_MEDIUM_LOOKUP_H
+#define WORLD_MEDIUM_MEDIUM_LOOKUP_H
+
+#include "math/noise.h"
+#include "world/world.h"
+
+static inline vlVec3 vl_medium_point(const float m[12], vlVec3 p) {
+  return vl_vec3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+                 m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]);
+}
+static inline vlVec3 vl_medium_vector(const float m[12], vlVec3 d) {
+  return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[4] * d.x + m[5] * d.y + m[6] * d.z,
+                 m[8] * d.x + m[9] * d.y + m[10] * d.z);
+}
+
+/* ---- grids ------------------------------------------------------------------------------------------------------- */
+
+/* The eight neighbours of a point and their weights. */
+typedef struct vlTrilinear {
+  int32_t x, y, z;
+  float fx, fy, fz;
+} vlTrilinear;
+static inline vlTrilinear vl_trilinear(float x, float y, float z) {
+  float ix = __builtin_floorf(x), iy = __builtin_floorf(y), iz = __builtin_floorf(z);
+  return (vlTrilinear){(int32_t)ix, (int32_t)iy, (int32_t)iz, x - ix, y - iy, z - iz};
+}
+static inline float vl_trilinear_weight(vlTrilinear at, int k) {
+  return (k & 1 ? at.fx : 1.0f - at.fx) * (k & 2 ? at.fy : 1.0f - at.fy) * (k & 4 ? at.fz : 1.0f - at.fz);
+}
+/* Number of the cell of neighbour k; VL_NONE outside of the grid. */
+static inline size_t vl_dense_cell(const vlDenseGrid *g, vlTrilinear at, int k) {
+  int32_t x = at.x + (k & 1), y = at.y + (k >> 1 & 1), z = at.z + (k >> 2);
+  bool inside = x >= 0 && y >= 0 && z >= 0 && x < (int32_t)g->nx && y < (int32_t)g->ny && z < (int32_t)g->nz;
+  return inside ? ((size_t)z * g->ny + (size_t)y) * g->nx + (size_t)x : (size_t)-1;
+}
+/* q: in the unit cube. */
+static inline vlTrilinear vl_dense_at_point(const vlDenseGrid *g, vlVec3 q) {
+  return vl_trilinear(q.x * (float)g->nx - 0.5f, q.y * (float)g->ny - 0.5f, q.z * (float)g->nz - 0.5f);
+}
+static inline float vl_dense_lookup(const vlDenseGrid *g, vlVec3 q) {
+  vlTrilinear at = vl_dense_at_point(g, q);
+  float sum = 0;
+  for (int k = 0; k < 8; k++) {
+    size_t cell = vl_dense_cell(g, at, k);
+    if (cell != (size_t)-1) sum += vl_trilinear_weight(at, k) * g->values[cell];
+  }
+  return sum;
+}
+
+static inline float vl_sparse_value(const vlSparseGrid *g, int32_t x, int32_t y, int32_t z) {
+  int64_t bx = (int64_t)x - g->low[0], by = (int64_t)y - g->low[1], bz = (int64_t)z - g->low[2];
+  bx >>= 7, by >>= 7, bz >>= 7;
+  if (bx < 0 || by < 0 || bz < 0 || bx >= g->size[0] || by >= g->size[1] || bz >= g->size[2]) return g->tiles[0];
+  uint32_t block = g->blocks[((size_t)bz * g->size[1] + (size_t)by) * g->size[0] + (size_t)bx];
+  if (block & VL_SPARSE_TILE) return g->tiles[block & ~VL_SPARSE_TILE];
+  uint32_t ux = (uint32_t)x & 127u, uy = (uint32_t)y & 127u, uz = (uint32_t)z & 127u;
+  uint32_t brick = g->bricks[(size_t)block * VL_BLOCK_BRICKS + ((size_t)(uz >> 3) * 16 + (uy >> 3)) * 16 + (ux >> 3)];
+  if (brick & VL_SPARSE_TILE) return g->tiles[brick & ~VL_SPARSE_TILE];
+  return g->values[(size_t)brick * VL_BRICK_VALUES + ((uz & 7) * 8 + (uy & 7)) * 8 + (ux & 7)];
+}
+/* p: medium space. */
+static inline float vl_sparse_lookup(const vlSparseGrid *g, vlVec3 p) {
+  vlVec3 q = vl_medium_point(g->index_from_medium, p);
+  float limit = 1e9f;
+  if (!(vl_abs(q.x) < limit && vl_abs(q.y) < limit && vl_abs(q.z) < limit)) return g->tiles[0];
+  vlTrilinear at = vl_trilinear(q.x, q.y, q.z);
+  float sum = 0;
+  for (int k = 0; k < 8; k++)
+    sum += vl_trilinear_weight(at, k) * vl_sparse_value(g, at.x + (k & 1), at.y + (k >> 1 & 1), at.z + (k >> 2));
+  return sum;
+}
+
+/* pbrt-v4's procedural cloud (book 11.4.2's last medium): fractal noise, wisped, thinner with height. */
+static inline float vl_cloud_density(const vlWorldMedium *m, vlVec3 p) {
+  vlVec3 q = vl_mul(p, m->frequency);
+  float omega = 0.05f * m->wispiness, frequency = 10.0f;
+  for (int i = 0; m->wispiness > 0.0f && i < 2; i++) {
+    vlVec3 at = vl_mul(q, frequency);
+    const float delta = 0.01f;
+    float n = vl_noise(at.x, at.y, at.z);
+    vlVec3 slope =
+        vl_vec3((vl_noise(at.x + delta, at.y, at.z) - n) / delta, (vl_noise(at.x, at.y + delta, at.z) - n) / delta,
+                (vl_noise(at.x, at.y, at.z + delta) - n) / delta);
+    q = vl_add(q, vl_mul(slope, omega));
+    omega *= 0.5f;
+    frequency *= 1.99f;
+  }
+  float sum = 0;
+  omega = 0.5f, frequency = 1.0f;
+  for (int i = 0; i < 5; i++) {
+    sum += omega * vl_noise(frequency * q.x, frequency * q.y, frequency * q.z);
+    omega *= 0.5f;
+    frequency *= 1.99f;
+  }
+  float d = vl_clamp((1.0f - p.y) * 4.5f * m->cloud_density * sum, 0.0f, 1.0f);
+  return vl_clamp(d + 2.0f * vl_max(0.0f, 0.5f - p.y), 0.0f, 1.0f);
+}
+
+/* ---- emission ---------------------------------------------------------------------------------------------------- */
+
+/* Planck's law over its maximum, as spectra of black bodies have it (color/spectrum.c). nm, kelvin. */
+static inline float vl_blackbody_at(float lambda, float kelvin) {
+  float x = 1.438776877e7f / (lambda * kelvin), r = x * (1.0f / 4.965114231744276f);
+  float r2 = r * r;
+  return x < 85.0f ? r2 * r2 * r * 142.32492f / (vl_exp(x) - 1.0f) : 0.0f;
+}
+
+static inline void vl_medium_blackbody(const vlWorldMedium *m, const float lambda[4], float value, float scale,
+                                       float le[4]) {
+  float kelvin = (value - m->temperature_offset) * m->temperature_scale;
+  if (!(kelvin > 100.0f)) return;
+  if (m->blackbody_rgb) {
+    float at = vl_clamp(vl_ln(kelvin * (1.0f / VL_BLACKBODY_LOW)) * (32.0f / 0.69314718f), 0.0f,
+                        (float)(VL_BLACKBODY_STEPS - 1));
+    int32_t k = (int32_t)at;
+    k = k < VL_BLACKBODY_STEPS - 2 ? k : VL_BLACKBODY_STEPS - 2;
+    float f = at - (float)k;
+    const float *a = m->blackbody_rgb + 3 * k;
+    for (int c = 0; c < 3; c++) le[c] = scale * (a[c] + f * (a[c + 3] - a[c]));
+    return;
+  }
+  for (int c = 0; c < 4; c++) le[c] = scale * vl_blackbody_at(lambda[c], kelvin);
+}
+
+/* ---- the medium at a point --------------------------------------------------------------------------------------- */
+
+static inline float vl_medium_spectral(const vlSpectral *s, int channel, float lambda) {
+  switch (s->kind) {
+    case VL_SPECTRAL_SIGMOID: return s->scale * vl_sigmoid(s->sigmoid, lambda);
+    case VL_SPECTRAL_DENSE: return s->scale * vl_dense_at(s->dense, lambda);
+    case VL_SPECTRAL_RGB: return channel < 3 ? s->scale * s->rgb[channel] : 0.0f;
+    default: return s->scale;
+  }
+}
+
+/* A grid of colours, interpolated after they became spectra. */
+static inline void vl_rgb_lookup(const vlWorldMedium *m, const vlDenseGrid *g, const float lambda[4], vlVec3 q,
+                                 float scale, float out[4]) {
+  vlTrilinear at = vl_dense_at_point(g, q);
+  bool rgb = m->illuminant.kind == VL_SPECTRAL_RGB;
+  for (int c = 0; c < 4; c++) out[c] = 0;
+  for (int k = 0; k < 8; k++) {
+    size_t cell = vl_dense_cell(g, at, k);
+    if (cell == (size_t)-1) continue;
+    const float *v = g->values + 4 * cell;
+    float w = vl_trilinear_weight(at, k) * scale;
+    vlSigmoid sigmoid = {v[0], v[1], v[2]};
+    for (int c = 0; c < 4; c++) out[c] += w * (rgb ? (c < 3 ? v[c] : 0.0f) : v[3] * vl_sigmoid(sigmoid, lambda[c]));
+  }
+}
+
+/* Coefficients at 4 channels: what does not depend on the place, worked out once for a flight; and there. */
+typedef struct vlMediumLight {
+  float a[4], s[4], le[4];
+} vlMediumLight;
+
+static inline vlMediumLight vl_medium_coefficients(const vlWorldMedium *m, const float lambda[4]) {
+  vlMediumLight r;
+  for (int c = 0; c < 4; c++) {
+    r.a[c] = vl_medium_spectral(&m->sigma_a, c, lambda[c]);
+    r.s[c] = vl_medium_spectral(&m->sigma_s, c, lambda[c]);
+    r.le[c] = m->emits ? vl_medium_spectral(&m->emission, c, lambda[c]) : 0.0f;
+  }
+  return r;
+}
+
+static inline vlMediumLight vl_rgb_medium_at(const vlWorldMedium *m, const float lambda[4], vlVec3 q, bool emission) {
+  vlMediumLight r;
+  for (int c = 0; c < 4; c++) r.a[c] = r.s[c] = m->rgb_scale, r.le[c] = 0.0f;
+  if (m->rgb_a.values) vl_rgb_lookup(m, &m->rgb_a, lambda, q, m->rgb_scale, r.a);
+  if (m->rgb_s.values) vl_rgb_lookup(m, &m->rgb_s, lambda, q, m->rgb_scale, r.s);
+  if (!emission || !m->rgb_emission.values) return r;
+  vl_rgb_lookup(m, &m->rgb_emission, lambda, q, m->rgb_emission_scale, r.le);
+  for (int c = 0; c < 4; c++) r.le[c] *= vl_medium_spectral(&m->illuminant, c, lambda[c]);
+  return r;
+}
+
+/* p: world. whole: vl_medium_coefficients. Kinds but homogeneous. */
+static inline vlMediumLight vl_medium_at(const vlWorldMedium *m, const vlMediumLight *whole, const float lambda[4],
+                                         vlVec3 world_p, bool emission) {
+  vlVec3 p = vl_medium_point(m->medium_from_world, world_p);
+  vlVec3 q = vl_vec3((p.x - m->low[0]) / (m->high[0] - m->low[0]), (p.y - m->low[1]) / (m->high[1] - m->low[1]),
+                     (p.z - m->low[2]) / (m->high[2] - m->low[2]));
+  if (m->kind == VL_MEDIUM_RGB_GRID) return vl_rgb_medium_at(m, lambda, q, emission);
+  float density = m->kind == VL_MEDIUM_GRID      ? vl_dense_lookup(&m->density, q)
+                  : m->kind == VL_MEDIUM_NANOVDB ? vl_sparse_lookup(m->sparse, p)
+                                                 : vl_cloud_density(m, p);
+  density = density > 0.0f ? density : 0.0f;
+  vlMediumLight r;
+  for (int c = 0; c < 4; c++) r.a[c] = density * whole->a[c], r.s[c] = density * whole->s[c], r.le[c] = 0.0f;
+  if (!emission || !m->emits) return r;
+  float scale = m->emission_scales.values ? vl_dense_lookup(&m->emission_scales, q) : 1.0f;
+  if (m->temperature.values)
+    vl_medium_blackbody(m, lambda, vl_dense_lookup(&m->temperature, q), scale * m->temperature_emission, r.le);
+  else if (m->sparse_temperature)
+    vl_medium_blackbody(m, lambda, vl_sparse_lookup(m->sparse_temperature, p), scale * m->temperature_emission, r.le);
+  else
+    for (int c = 0; c < 4; c++) r.le[c] = scale * whole->le[c];
+  return r;
+}
+
+/* One number for how dense a medium is at a place (world space), of sigma_t at three wavelengths that never change, or
+ * of R, G, B: for weights that must not depend on a path's wavelengths. Above 0. */
+static inline float vl_extinction_of(const vlMediumLight *x) {
+  return vl_max((x->a[0] + x->s[0] + x->a[1] + x->s[1] + x->a[2] + x->s[2]) * (1.0f / 3.0f), 1e-20f);
+}
+static const float vl_extinction_lambda[4] = {450.0f, 540.0f, 610.0f, 610.0f};
+static inline float vl_medium_mean_extinction(const vlWorldMedium *m) {
+  vlMediumLight whole = vl_medium_coefficients(m, vl_extinction_lambda);
+  return vl_extinction_of(&whole);
+}
+static inline float vl_medium_extinction(const vlWorldMedium *m, vlVec3 p) {
+  if (m->kind == VL_MEDIUM_HOMOGENEOUS) return m->extinction;
+  vlMediumLight whole = vl_medium_coefficients(m, vl_extinction_lambda);
+  vlMediumLight at = vl_medium_at(m, &whole, vl_extinction_lambda, p, false);
+  return vl_extinction_of(&at);
+}
+
+/* ---- majorants --------------------------------------------------------------------------------------------------- */
+
+/* A ray's way through the cells of majorants (Amanatides and Woo 1987; pbrt book 11.4.2). */
+typedef struct vlMajorantWalk {
+  const vlWorldMedium *medium;
+  float t, end;
+  float next[3], step[3]; /* where the ray leaves its cell along each axis, and how far cells are apart */
+  int32_t at[3], way[3];
+} vlMajorantWalk;
+
+/* o, d: world. false: [t0, t1] misses the box. */
+static inline bool vl_majorant_start(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1,
+                                     vlMajorantWalk *w) {
+  vlVec3 po = vl_medium_point(m->medium_from_world, o), pd = vl_medium_vector(m->medium_from_world, d);
+  const float from[3] = {po.x, po.y, po.z}, along[3] = {pd.x, pd.y, pd.z};
+  for (int i = 0; i < 3; i++) {
+    if (along[i] == 0.0f) {
+      if (from[i] < m->low[i] || from[i] > m->high[i]) return false;
+      continue;
+    }
+    float a = (m->low[i] - from[i]) / along[i], b = (m->high[i] - from[i]) / along[i];
+    t0 = vl_max(t0, vl_min(a, b)), t1 = vl_min(t1, vl_max(a, b));
+  }
+  if (!(t0 < t1)) return false;
+  w->medium = m;
+  w->t = t0, w->end = t1;
+  for (int i = 0; i < 3; i++) {
+    float n = (float)m->cells[i], scale = n / (m->high[i] - m->low[i]);
+    float here = (from[i] + t0 * along[i] - m->low[i]) * scale, speed = along[i] * scale;
+    int32_t k = (int32_t)vl_clamp(here, 0.0f, n - 1.0f);
+    w->at[i] = k;
+    w->way[i] = speed < 0.0f ? -1 : 1;
+    w->step[i] = speed != 0.0f ? vl_abs(1.0f / speed) : VL_INFINITY;
+    w->next[i] = speed != 0.0f ? t0 + ((float)(speed > 0.0f ? k + 1 : k) - here) / speed : VL_INFINITY;
+  }
+  return true;
+}
+
+/* The next piece of the way and its majorant; false at its end. */
+static inline bool vl_majorant_next(vlMajorantWalk *w, float *t0, float *t1, float *majorant) {
+  const vlWorldMedium *m = w->medium;
+  if (!(w->t < w->end)) return false;
+  *majorant = m->majorants[((size_t)w->at[2] * m->cells[1] + (size_t)w->at[1]) * m->cells[0] + (size_t)w->at[0]];
+  int axis = w->next[0] < w->next[1] ? (w->next[0] < w->next[2] ? 0 : 2) : (w->next[1] < w->next[2] ? 1 : 2);
+  *t0 = w->t;
+  *t1 = vl_max(vl_min(w->next[axis], w->end), w->t);
+  w->t = *t1;
+  w->at[axis] += w->way[axis];
+  w->next[axis] += w->step[axis];
+  if (w->at[axis] < 0 || w->at[axis] >= (int32_t)m->cells[axis]) {
+    *t1 = w->end; /* rounding may have left a sliver */
+    w->t = w->end;
+  }
+  return true;
+}
+
+#endif

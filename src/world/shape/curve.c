@@ -1,0 +1,318 @@
+/* world/shape/curve.c: curves with a width: pieces of cubic Bezier segments, met where the ray comes nearest to the
+ * axis.
+ *
+ * As in pbrt-v4 (book 6.7), whose pictures these are: a flat curve faces every ray, a cylinder differs from it by its
+ * normal alone, a ribbon is narrower by the cosine between its normal and the ray. The point is the ray's, at the depth
+ * of the axis, and wrong by the width: rays that leave start that far away. In shape space where nothing else is said.
+ */
+#include "world/shape/curve.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "math/approx.h"
+#include "world/shape/double3.h"
+
+/* Four Bezier points as the ray sees them: x and y across, z along. */
+typedef struct Cubic {
+  double x[4], y[4], z[4];
+} Cubic;
+
+bool vl_curve_copy(vlWorld *world, const vlShapeDef *def, vlWorldShape *s) {
+  size_t n = def->faces;
+  enum { MOST_PIECES = 1 << 23 }; /* a box costs Embree more memory than the curve itself */
+  s->curve = def->curve;
+  s->split = def->split_depth < 6 ? def->split_depth : 6;
+  while (s->split && (n << s->split) > MOST_PIECES) s->split--;
+  s->vertices = (uint32_t)(4 * n);
+  s->faces = (uint32_t)(n << s->split);
+  s->positions = vl_world_block(world, 12 * n, sizeof(float));
+  s->widths = vl_world_block(world, 2 * n, sizeof(float));
+  if (!s->positions || !s->widths) return false;
+  memcpy(s->positions, def->positions, 12 * n * sizeof(float));
+  memcpy(s->widths, def->widths, 2 * n * sizeof(float));
+  if (def->curve != VL_CURVE_RIBBON) return true;
+  if (!(s->normals = vl_world_block(world, 6 * n, sizeof(float)))) return false;
+  memcpy(s->normals, def->normals, 6 * n * sizeof(float));
+  return true;
+}
+
+static double width_at(const vlWorldShape *s, uint32_t segment, double u) {
+  const float *w = s->widths + 2 * (size_t)segment;
+  return (1 - u) * w[0] + u * w[1];
+}
+
+/* Where a piece starts and ends on its segment. */
+static void piece_range(const vlWorldShape *s, uint32_t prim, double *u0, double *u1) {
+  uint32_t count = 1u << s->split, k = prim & (count - 1);
+  *u0 = (double)k / count, *u1 = (double)(k + 1) / count;
+}
+
+static inline double mix(double a, double b, double t) {
+  return (1 - t) * a + t * b;
+}
+
+/* The polar form: value of the blossom of c at three parameters. */
+static inline double blossom(const double c[4], double a, double b, double e) {
+  double p0 = mix(c[0], c[1], a), p1 = mix(c[1], c[2], a), p2 = mix(c[2], c[3], a);
+  return mix(mix(p0, p1, b), mix(p1, p2, b), e);
+}
+
+static inline void cut(const double c[4], double u0, double u1, double r[4]) {
+  r[0] = blossom(c, u0, u0, u0);
+  r[1] = blossom(c, u0, u0, u1);
+  r[2] = blossom(c, u0, u1, u1);
+  r[3] = blossom(c, u1, u1, u1);
+}
+
+void vl_curve_bounds(const vlWorldShape *s, uint32_t prim, double low[3], double high[3]) {
+  uint32_t segment = prim >> s->split;
+  const float *p = s->positions + 12 * (size_t)segment;
+  double u0, u1, c[3][4], q[3][4];
+  piece_range(s, prim, &u0, &u1);
+  for (int k = 0; k < 4; k++) {
+    double from[3] = {p[3 * k], p[3 * k + 1], p[3 * k + 2]}, to[3];
+    vl_map_point(s->from_shape, from, to);
+    for (int i = 0; i < 3; i++) c[i][k] = to[i];
+  }
+  double radius = 0.5 * fmax(width_at(s, segment, u0), width_at(s, segment, u1));
+  for (int i = 0; i < 3; i++) {
+    const double *m = s->from_shape + 4 * i;
+    double reach = radius * sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]); /* of the image of a ball */
+    cut(c[i], u0, u1, q[i]);
+    low[i] = fmin(fmin(q[i][0], q[i][1]), fmin(q[i][2], q[i][3])) - reach;
+    high[i] = fmax(fmax(q[i][0], q[i][1]), fmax(q[i][2], q[i][3])) + reach;
+  }
+}
+
+/* ---- meeting a ray ----------------------------------------------------------------------------------------------- */
+
+typedef struct Search {
+  const vlWorldShape *shape;
+  uint32_t segment;
+  double d[3];         /* unit */
+  double z_min, z_max; /* along it; z_max goes down with every hit */
+  double flat;         /* how far leaves may be from straight lines */
+  double u, v;
+  bool found;
+} Search;
+
+/* Normals of a ribbon's ends, led round the angle between them. */
+static void ribbon_normal(const vlWorldShape *s, uint32_t segment, double u, double n[3]) {
+  const float *a = s->normals + 6 * (size_t)segment, *b = a + 3;
+  double from[3] = {a[0], a[1], a[2]}, to[3] = {b[0], b[1], b[2]};
+  vl_normalize3(from), vl_normalize3(to);
+  float angle = vl_acos(vl_clamp((float)vl_dot3(from, to), -1, 1));
+  double f = 1 - u, t = u;
+  if (angle > 1e-3f) f = vl_sincos((float)(1 - u) * angle).sin, t = vl_sincos((float)u * angle).sin;
+  for (int i = 0; i < 3; i++) n[i] = f * from[i] + t * to[i];
+  vl_normalize3(n);
+}
+
+static double seen_width(const vlWorldShape *s, uint32_t segment, double u, const double d[3]) {
+  double width = width_at(s, segment, u);
+  if (s->curve != VL_CURVE_RIBBON) return width;
+  double n[3];
+  ribbon_normal(s, segment, u, n);
+  return width * fabs(vl_dot3(n, d));
+}
+
+static inline double range_low(const double c[4]) {
+  return fmin(fmin(c[0], c[1]), fmin(c[2], c[3]));
+}
+static inline double range_high(const double c[4]) {
+  return fmax(fmax(c[0], c[1]), fmax(c[2], c[3]));
+}
+
+static inline double bezier(const double c[4], double w) {
+  double r = 1 - w;
+  return r * r * (r * c[0] + 3 * w * c[1]) + w * w * (3 * r * c[2] + w * c[3]);
+}
+static inline double bezier_slope(const double c[4], double w) {
+  double r = 1 - w;
+  return 3 * (r * r * (c[1] - c[0]) + 2 * r * w * (c[2] - c[1]) + w * w * (c[3] - c[2]));
+}
+static inline double bezier_bend(const double c[4], double w) {
+  return 6 * ((1 - w) * (c[2] - 2 * c[1] + c[0]) + w * (c[3] - 2 * c[2] + c[1]));
+}
+
+/* The foot of the perpendicular from the ray: half the squared distance has slope x x' + y y'. */
+static double find_foot(const Cubic *c, double w) {
+  double low = 0, high = 1;
+  for (int step = 0; step < 40; step++) {
+    double x = bezier(c->x, w), y = bezier(c->y, w), dx = bezier_slope(c->x, w), dy = bezier_slope(c->y, w);
+    double f = x * dx + y * dy;
+    double slope = dx * dx + dy * dy + x * bezier_bend(c->x, w) + y * bezier_bend(c->y, w);
+    if (f > 0)
+      high = w;
+    else
+      low = w;
+    double next = slope > 0 ? w - f / slope : -1;
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    if (fabs(next - w) < 1e-10) return next;
+    w = next;
+  }
+  return w;
+}
+
+static void leaf(Search *q, const Cubic *c, double u0, double u1, double half) {
+  /* The distance must fall at the start and rise at the end: else the nearest point belongs to a neighbour, or lies
+   * past the end of the curve, which is cut straight across. */
+  if (c->x[0] * (c->x[1] - c->x[0]) + c->y[0] * (c->y[1] - c->y[0]) > 0) return;
+  if (c->x[3] * (c->x[3] - c->x[2]) + c->y[3] * (c->y[3] - c->y[2]) < 0) return;
+  double sx = c->x[3] - c->x[0], sy = c->y[3] - c->y[0], l2 = sx * sx + sy * sy;
+  double w = l2 > 0 ? -(c->x[0] * sx + c->y[0] * sy) / l2 : 0.5;
+  w = w > 0 ? (w < 1 ? w : 1) : 0;
+  double nx = c->x[0] + w * sx, ny = c->y[0] + w * sy, reach = half + q->flat;
+  if (nx * nx + ny * ny > reach * reach) return;
+  w = find_foot(c, w);
+  double x = bezier(c->x, w), y = bezier(c->y, w), z = bezier(c->z, w);
+  double u = mix(u0, u1, w), width = seen_width(q->shape, q->segment, u, q->d), distance2 = x * x + y * y;
+  if (!(distance2 <= 0.25 * width * width) || !(z > q->z_min && z < q->z_max)) return;
+  double side = bezier_slope(c->y, w) * x - bezier_slope(c->x, w) * y; /* of the ray, seen along the curve */
+  double across = width > 0 ? sqrt(distance2) / width : 0;
+  q->z_max = z;
+  q->u = u;
+  q->v = side > 0 ? 0.5 + across : 0.5 - across;
+  q->found = true;
+}
+
+static bool misses(const Search *q, const Cubic *c, double half) {
+  return range_low(c->x) > half || range_high(c->x) < -half || range_low(c->y) > half || range_high(c->y) < -half ||
+         range_low(c->z) > q->z_max || range_high(c->z) < q->z_min;
+}
+
+static void split(const double c[4], double a[4], double b[4]) {
+  double m = 0.5 * (c[1] + c[2]);
+  a[0] = c[0], a[1] = 0.5 * (c[0] + c[1]), a[2] = 0.5 * (a[1] + m);
+  b[3] = c[3], b[2] = 0.5 * (c[2] + c[3]), b[1] = 0.5 * (m + b[2]);
+  a[3] = b[0] = 0.5 * (a[2] + b[1]);
+}
+
+static void search(Search *q, const Cubic *c, double u0, double u1, int depth) {
+  double half = 0.5 * fmax(width_at(q->shape, q->segment, u0), width_at(q->shape, q->segment, u1));
+  if (misses(q, c, half)) return;
+  if (depth == 0) {
+    leaf(q, c, u0, u1, half);
+    return;
+  }
+  Cubic a, b;
+  double middle = 0.5 * (u0 + u1);
+  split(c->x, a.x, b.x), split(c->y, a.y, b.y), split(c->z, a.z, b.z);
+  search(q, &a, u0, middle, depth - 1);
+  search(q, &b, middle, u1, depth - 1);
+}
+
+/* So many halvings that leaves are straight to a twentieth of the width (pbrt book 6.7.2). */
+static int depth_for(const Cubic *c, double width, double *flat) {
+  double bend = 0;
+  for (int i = 0; i < 2; i++) {
+    bend = fmax(bend, fabs(c->x[i] - 2 * c->x[i + 1] + c->x[i + 2]));
+    bend = fmax(bend, fabs(c->y[i] - 2 * c->y[i + 1] + c->y[i + 2]));
+  }
+  double error = 1.0607 * bend; /* sqrt(2) 6 bend / 8 */
+  int depth = 0;
+  for (; depth < 10 && error > 0.05 * width; depth++) error *= 0.25;
+  *flat = error;
+  return depth;
+}
+
+bool vl_curve_intersect(const vlWorldShape *s, uint32_t prim, const double go[3], const double gd[3], double t_min,
+                        double t_max, vlShapeHit *hit) {
+  double o[3], x[3], y[3], u0, u1;
+  Search q = {.shape = s, .segment = prim >> s->split};
+  vl_map_point(s->to_shape, go, o);
+  vl_map_vector(s->to_shape, gd, q.d);
+  double length = vl_normalize3(q.d);
+  if (!(length > 0)) return false;
+  /* A basis across the ray (Duff et al. 2017). */
+  double sign = q.d[2] < 0 ? -1 : 1, a = -1 / (sign + q.d[2]), b = q.d[0] * q.d[1] * a;
+  x[0] = 1 + sign * q.d[0] * q.d[0] * a, x[1] = sign * b, x[2] = -sign * q.d[0];
+  y[0] = b, y[1] = sign + q.d[1] * q.d[1] * a, y[2] = -q.d[1];
+  const float *p = s->positions + 12 * (size_t)q.segment;
+  Cubic whole, c;
+  for (int k = 0; k < 4; k++) {
+    double r[3] = {p[3 * k] - o[0], p[3 * k + 1] - o[1], p[3 * k + 2] - o[2]};
+    whole.x[k] = vl_dot3(r, x), whole.y[k] = vl_dot3(r, y), whole.z[k] = vl_dot3(r, q.d);
+  }
+  piece_range(s, prim, &u0, &u1);
+  cut(whole.x, u0, u1, c.x), cut(whole.y, u0, u1, c.y), cut(whole.z, u0, u1, c.z);
+  q.z_min = t_min * length, q.z_max = t_max * length;
+  double width = fmax(width_at(s, q.segment, u0), width_at(s, q.segment, u1));
+  if (misses(&q, &c, 0.5 * width)) return false;
+  int depth = depth_for(&c, width, &q.flat);
+  search(&q, &c, u0, u1, depth);
+  if (!q.found) return false;
+  hit->t = q.z_max / length;
+  hit->a = q.u, hit->b = q.v;
+  for (int i = 0; i < 3; i++) hit->p[i] = o[i] + q.z_max * q.d[i], hit->d[i] = q.d[i];
+  return hit->t > t_min && hit->t < t_max;
+}
+
+/* ---- what it is like there --------------------------------------------------------------------------------------- */
+
+static void scale_to(double v[3], double length) {
+  double l = vl_normalize3(v);
+  for (int i = 0; i < 3; i++) v[i] = l > 0 ? v[i] * length : 0;
+}
+
+void vl_curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
+  uint32_t segment = prim >> s->split;
+  const float *p = s->positions + 12 * (size_t)segment;
+  double u = hit->a, v = hit->b, along[3], across[3], n[3], width = width_at(s, segment, u);
+  for (int i = 0; i < 3; i++) {
+    double c[4] = {p[i], p[3 + i], p[6 + i], p[9 + i]};
+    along[i] = bezier_slope(c, u);
+    if (!(fabs(along[i]) > 0)) along[i] = (c[3] - c[0]) * 1e-6; /* where two points coincide */
+  }
+  if (!(vl_dot3(along, along) > 0)) { /* a curve without length: any direction across the ray */
+    double axis[3] = {fabs(hit->d[0]) < 0.6, fabs(hit->d[0]) >= 0.6, 0};
+    vl_cross3(hit->d, axis, along);
+  }
+  if (s->curve == VL_CURVE_RIBBON) {
+    ribbon_normal(s, segment, u, n);
+    vl_cross3(n, along, across);
+    scale_to(across, seen_width(s, segment, u, hit->d));
+  } else {
+    vl_cross3(hit->d, along, across);
+    scale_to(across, width);
+  }
+  if (s->curve == VL_CURVE_CYLINDER) { /* turned about the curve by up to a quarter to each side */
+    double axis[3] = {along[0], along[1], along[2]}, up[3];
+    double dot = vl_dot3(along, hit->d), l2 = vl_dot3(along, along);
+    for (int i = 0; i < 3; i++) axis[i] = along[i] - dot * hit->d[i]; /* as the ray sees it */
+    scale_to(axis, 1);
+    vl_cross3(axis, across, up);
+    vlSinCos turn = vl_sincos((float)((0.5 - v) * 3.14159265358979323846));
+    for (int i = 0; i < 3; i++) across[i] = l2 > 0 ? across[i] * turn.cos + up[i] * turn.sin : across[i];
+  }
+  vl_cross3(along, across, n);
+  if (!(vl_normalize3(n) > 0))
+    for (int i = 0; i < 3; i++) n[i] = hit->d[i];
+  vl_map_point(s->from_shape, hit->p, point->p);
+  vl_map_vector(s->from_shape, along, point->dpdu);
+  vl_map_vector(s->from_shape, across, point->dpdv);
+  for (int i = 0; i < 3; i++) point->dndu[i] = point->dndv[i] = 0;
+  vl_map_normal(s->to_shape, n, point->n);
+  vl_normalize3(point->n);
+  double side = vl_shape_reversed(s) ? -1 : 1;
+  for (int i = 0; i < 3; i++) {
+    const double *m = s->from_shape + 4 * i;
+    point->n[i] *= side;
+    point->ns[i] = point->n[i];
+    point->error[i] = width * (fabs(m[0]) + fabs(m[1]) + fabs(m[2]));
+  }
+  point->uv[0] = (float)u, point->uv[1] = (float)v;
+}
+
+void vl_curve_middle(const vlWorldShape *s, uint32_t prim, vlSurfacePoint *point) {
+  const float *p = s->positions + 12 * (size_t)(prim >> s->split);
+  double u0, u1;
+  piece_range(s, prim, &u0, &u1);
+  vlShapeHit hit = {.a = 0.5 * (u0 + u1), .b = 0.5, .d = {0, 0, 1}};
+  for (int i = 0; i < 3; i++) {
+    double c[4] = {p[i], p[3 + i], p[6 + i], p[9 + i]};
+    hit.p[i] = bezier(c, hit.a);
+  }
+  vl_curve_point(s, prim, &hit, point);
+}

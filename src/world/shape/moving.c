@@ -1,0 +1,284 @@
+/* world/shape/moving.c: motions of the scene -> keys at even times, and where things are between them. See moving.h. */
+#include "world/shape/moving.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "math/motion.h"
+#include "scene/scene.h"
+#include "world/shape/double3.h"
+
+/* ---- when -------------------------------------------------------------------------------------------------------- */
+
+float vl_world_time(const vlWorld *world, double seconds) {
+  if (!world->moves) return 0;
+  double t = (seconds - world->time_open) / (world->time_close - world->time_open);
+  return t > 0 ? (t < 1 ? (float)t : 1) : 0;
+}
+
+static void note_times(vlWorld *world, double from, double to) {
+  world->time_open = !world->moves || from < world->time_open ? from : world->time_open;
+  world->time_close = !world->moves || to > world->time_close ? to : world->time_close;
+  world->moves = true;
+}
+
+static bool keys_differ(const vlSceneInstance *source) {
+  for (uint32_t k = 1; k < source->keys; k++)
+    if (memcmp(source->poses, source->poses + 16 * (size_t)k, 16 * sizeof *source->poses) != 0) return true;
+  return false;
+}
+
+void vl_world_find_times(vlWorld *world, const vlScene *scene) {
+  for (size_t i = 0; i < scene->instances.count; i++) {
+    const vlSceneInstance *source = &scene->instances.items[i];
+    if (keys_differ(source)) note_times(world, source->times[0], source->times[source->keys - 1]);
+  }
+  for (size_t i = 0; i < scene->shapes.count; i++) {
+    const vlShapeDef *def = &scene->shapes.items[i];
+    if (def->positions_close) note_times(world, def->times[0], def->times[1]);
+  }
+}
+
+enum { MOST_STEPS = 128 }; /* Embree knows 129 keys */
+
+uint32_t vl_world_time_steps(const vlWorld *world, double from, double to) {
+  double span = world->time_close - world->time_open;
+  for (uint32_t steps = 1; steps <= MOST_STEPS; steps++) {
+    double a = (from - world->time_open) / span * steps, b = (to - world->time_open) / span * steps;
+    if (fabs(a - round(a)) < 1e-6 && fabs(b - round(b)) < 1e-6) return steps;
+  }
+  return 0;
+}
+
+/* ---- instances --------------------------------------------------------------------------------------------------- */
+
+/* The true motion, in double: between each key and the next. */
+typedef struct Motion {
+  const vlSceneInstance *source;
+  vlMotion *between;
+  double open, span; /* of the world's time, seconds */
+} Motion;
+
+static vlAffine true_pose(const Motion *motion, double time) {
+  const vlSceneInstance *source = motion->source;
+  double seconds = motion->open + time * motion->span;
+  uint32_t k = 0, last = source->keys - 2;
+  for (uint32_t high = last; k < high;) { /* the last key that is not later */
+    uint32_t middle = k + (high - k + 1) / 2;
+    if (seconds >= source->times[middle])
+      k = middle;
+    else
+      high = middle - 1;
+  }
+  double f = (seconds - source->times[k]) / (source->times[k + 1] - source->times[k]);
+  return vl_motion_between(&motion->between[k], f > 0 ? (f < 1 ? f : 1) : 0);
+}
+
+/* Square of how far a corner of the box is from one pose to halfway (or so) between two others. */
+static double corner_distance(const vlAffine *at, const vlAffine *a, const vlAffine *b, double f, const float low[3],
+                              const float high[3]) {
+  double m[9], t[3], most = 0;
+  for (int i = 0; i < 9; i++) m[i] = at->m[i] - ((1 - f) * a->m[i] + f * b->m[i]);
+  for (int i = 0; i < 3; i++) t[i] = at->p[i] - ((1 - f) * a->p[i] + f * b->p[i]);
+  for (int c = 0; c < 8; c++) {
+    double p[3] = {c & 1 ? low[0] : high[0], c & 2 ? low[1] : high[1], c & 4 ? low[2] : high[2]}, q[3];
+    for (int i = 0; i < 3; i++) q[i] = m[3 * i] * p[0] + m[3 * i + 1] * p[1] + m[3 * i + 2] * p[2] + t[i];
+    most = fmax(most, vl_dot3(q, q));
+  }
+  return most;
+}
+
+/* Farthest that a corner of the box strays from the true motion, looked for at three times in each step. */
+static double strayed(const Motion *motion, uint32_t steps, const float low[3], const float high[3]) {
+  double most = 0;
+  vlAffine ends[2];
+  ends[1] = true_pose(motion, 0);
+  for (uint32_t k = 0; k < steps; k++) {
+    ends[0] = ends[1];
+    ends[1] = true_pose(motion, (k + 1.0) / steps);
+    for (int part = 1; part < 4; part++) {
+      double f = part / 4.0;
+      vlAffine at = true_pose(motion, (k + f) / steps);
+      most = fmax(most, corner_distance(&at, &ends[0], &ends[1], f, low, high));
+    }
+  }
+  return sqrt(most);
+}
+
+/* Straying allowed, of the size of what moves. Half a turn, which is the most that two keys can say, strays 1e-4 of the
+ * radius in 128 steps; slower turns are held to this. */
+static const double tolerance = 1e-5;
+
+static uint32_t choose_steps(const Motion *motion, const float low[3], const float high[3]) {
+  static const uint8_t tries[] = {1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128};
+  vlAffine start = true_pose(motion, 0);
+  double size = 0;
+  for (int i = 0; i < 3; i++) {
+    double row = 0;
+    for (int j = 0; j < 3; j++) row += fabs(start.m[3 * i + j]) * (high[j] - low[j]);
+    size = fmax(size, row);
+  }
+  double least = 1; /* straying falls with the square of the steps: those that surely do not do are passed over */
+  for (size_t i = 0; i < sizeof tries; i++) {
+    if (tries[i] < least && tries[i] < MOST_STEPS) continue;
+    double far = strayed(motion, tries[i], low, high);
+    if (far <= tolerance * size) return tries[i];
+    if (i == 0 && motion->source->keys == 2 && size > 0) least = 0.7 * sqrt(far / (tolerance * size));
+  }
+  return MOST_STEPS;
+}
+
+/* Both sides compute a (1 - f) + b f with f = time * steps less a whole number: three roundings of the sum, and f off
+ * by a rounding of time * steps. Twice that, for two sides. */
+static void find_doubt(vlWorldInstance *q) {
+  const float eps = 0x1p-24f;
+  float steps = (float)(q->keys - 1);
+  for (uint32_t k = 0; k + 1 < q->keys; k++) {
+    const float *a = q->path + 12 * (size_t)k, *b = a + 12;
+    for (int i = 0; i < 12; i++) {
+      float size = fabsf(a[i]) + fabsf(b[i]), error = 2 * eps * (3 * size + 2 * steps * fabsf(b[i] - a[i]));
+      q->doubt[i % 4] = error > q->doubt[i % 4] ? error : q->doubt[i % 4];
+    }
+  }
+}
+
+static vlResult fill_path(const Motion *motion, float *path, uint32_t steps, vlError *error) {
+  for (uint32_t k = 0; k <= steps; k++) {
+    vlAffine at = true_pose(motion, (double)k / steps);
+    for (int i = 0; i < 12; i++) {
+      float x = (float)(i % 4 == 3 ? at.p[i / 4] : at.m[3 * (i / 4) + i % 4]);
+      path[12 * (size_t)k + i] = x;
+      const vlSource *source = &motion->source->source;
+      if (!isfinite(x))
+        return vl_fail_at(error, VL_ERROR_SCENE, source->file, source->line, source->column,
+                          "the instance's motion leaves the range of floats");
+    }
+  }
+  return VL_OK;
+}
+
+vlResult vl_world_add_motion(vlWorld *world, const vlSceneInstance *source, const float low[3], const float high[3],
+                             vlWorldInstance *q, vlError *error) {
+  q->keys = 0;
+  if (!keys_differ(source)) return VL_OK;
+  Motion motion = {source, vl_alloc_array(world->context, source->keys, sizeof(vlMotion)), world->time_open,
+                   world->time_close - world->time_open};
+  if (!motion.between) return vl_fail_memory(error);
+  for (uint32_t k = 0; k + 1 < source->keys; k++) /* the scene has seen that there is one */
+    vl_motion_make(source->poses + 16 * (size_t)k, source->poses + 16 * (size_t)(k + 1), &motion.between[k]);
+  uint32_t steps = choose_steps(&motion, low, high);
+  float *path = vl_world_block(world, 12 * (size_t)(steps + 1), sizeof *path);
+  vlResult r = path ? fill_path(&motion, path, steps, error) : vl_fail_memory(error);
+  vl_free(world->context, motion.between);
+  if (r != VL_OK) return r;
+  q->keys = steps + 1;
+  q->path = path;
+  find_doubt(q);
+  vlWorldInstance start;
+  vl_instance_move(q, 0, &start);
+  memcpy(q->from_group, start.from_group, sizeof q->from_group);
+  memcpy(q->to_group, start.to_group, sizeof q->to_group);
+  return VL_OK;
+}
+
+void vl_instance_move(const vlWorldInstance *q, float time, vlWorldInstance *moved) {
+  vlTimeStep k = vl_time_step(time, q->keys);
+  const float *a = q->path + 12 * (size_t)k.first, *b = a + 12;
+  float *m = moved->from_group, *w = moved->to_group;
+  moved->group = q->group;
+  moved->mirrored = q->mirrored;
+  moved->keys = 0;
+  moved->path = NULL;
+  memcpy(moved->doubt, q->doubt, sizeof moved->doubt);
+  for (int i = 0; i < 12; i++) m[i] = a[i] * (1.0f - k.part) + b[i] * k.part;
+  double x[3] = {m[0], m[4], m[8]}, y[3] = {m[1], m[5], m[9]}, z[3] = {m[2], m[6], m[10]}, rows[3][3];
+  vl_cross3(y, z, rows[0]);
+  vl_cross3(z, x, rows[1]);
+  vl_cross3(x, y, rows[2]);
+  double volume = vl_dot3(x, rows[0]), inverse = volume != 0 ? 1 / volume : 0;
+  for (int i = 0; i < 3; i++) {
+    double move = 0;
+    for (int j = 0; j < 3; j++) {
+      double e = rows[i][j] * inverse;
+      w[4 * i + j] = (float)e;
+      move += e * m[4 * j + 3];
+    }
+    w[4 * i + 3] = (float)-move;
+  }
+}
+
+/* ---- vertices ---------------------------------------------------------------------------------------------------- */
+
+float vl_moving_vertex_error(const vlWorldShape *s, uint32_t vertex, float time) {
+  vlTimeStep k = vl_time_step(time, s->steps);
+  const float *a = s->positions + 3 * ((size_t)k.first * s->vertices + vertex), *b = a + 3 * (size_t)s->vertices;
+  float worst = 0, steps = (float)(s->steps - 1);
+  for (int i = 0; i < 3; i++) {
+    float error = 2 * 0x1p-24f * (3 * (fabsf(a[i]) + fabsf(b[i])) + 2 * steps * fabsf(b[i] - a[i]));
+    worst = error > worst ? error : worst;
+  }
+  return worst;
+}
+
+/* ---- what becomes of a point ------------------------------------------------------------------------------------- */
+
+static void map(const float m[12], const double p[3], double q[3]) {
+  for (int i = 0; i < 3; i++)
+    q[i] = (double)m[4 * i] * p[0] + (double)m[4 * i + 1] * p[1] + (double)m[4 * i + 2] * p[2] + (double)m[4 * i + 3];
+}
+
+/* The way back, not rounded to float as to_group is. */
+static void unmap(const float m[12], const double p[3], double q[3]) {
+  double x[3], y[3], z[3], r[3], n[3];
+  for (int i = 0; i < 3; i++)
+    x[i] = m[4 * i], y[i] = m[4 * i + 1], z[i] = m[4 * i + 2], r[i] = p[i] - (double)m[4 * i + 3];
+  vl_cross3(y, z, n);
+  double volume = vl_dot3(x, n);
+  q[0] = vl_dot3(r, n) / volume;
+  vl_cross3(z, x, n);
+  q[1] = vl_dot3(r, n) / volume;
+  vl_cross3(x, y, n);
+  q[2] = vl_dot3(r, n) / volume;
+}
+
+static void corners(const vlWorldShape *s, uint32_t prim, float time, double c[3][3]) {
+  for (int k = 0; k < 3; k++) {
+    float room[3];
+    const float *x = vl_vertex_at(s, s->indices[3 * (size_t)prim + k], time, room);
+    for (int i = 0; i < 3; i++) c[k][i] = x[i];
+  }
+}
+
+/* A point near a triangle keeps its barycentric coordinates. */
+static void follow_triangle(const vlWorldShape *s, uint32_t prim, float from, float to, double p[3]) {
+  double c[3][3], a[3], b[3], r[3], n[3], x[3];
+  corners(s, prim, from, c);
+  for (int i = 0; i < 3; i++) a[i] = c[1][i] - c[0][i], b[i] = c[2][i] - c[0][i], r[i] = p[i] - c[0][i];
+  vl_cross3(a, b, n);
+  double area = vl_dot3(n, n);
+  if (!(area > 0)) return;
+  vl_cross3(r, b, x);
+  double u = vl_dot3(x, n) / area;
+  vl_cross3(a, r, x);
+  double v = vl_dot3(x, n) / area;
+  corners(s, prim, to, c);
+  for (int i = 0; i < 3; i++) p[i] = (1 - u - v) * c[0][i] + u * c[1][i] + v * c[2][i];
+}
+
+void vl_world_follow(const vlWorld *world, uint32_t shape, uint32_t prim, uint32_t instance, double from_seconds,
+                     double to_seconds, const double point[3], double moved[3]) {
+  const vlWorldShape *s = &world->shapes.items[shape];
+  const vlWorldInstance *q = instance == VL_NONE ? NULL : &world->instances.items[instance];
+  float from = vl_world_time(world, from_seconds), to = vl_world_time(world, to_seconds);
+  double p[3] = {point[0], point[1], point[2]}, g[3];
+  memcpy(moved, p, sizeof p);
+  bool flows = s->steps > 1, goes = q && q->keys;
+  if (from == to || (!flows && !goes)) return;
+  vlWorldInstance room;
+  memcpy(g, p, sizeof g);
+  if (q) unmap(vl_instance_at(q, from, &room)->from_group, p, g);
+  if (flows) follow_triangle(s, prim, from, to, g);
+  memcpy(moved, g, sizeof g);
+  if (q) map(vl_instance_at(q, to, &room)->from_group, g, moved);
+}

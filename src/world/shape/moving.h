@@ -1,0 +1,69 @@
+/* world/shape/moving.h: where things are at a time. A motion is compiled into keys spread evenly over the world's time,
+ * close enough that straight lines between them are the true motion (moving.c says how close); both Embree and the
+ * functions here go along these lines, so that what Embree's ids name is where we compute it, but for rounding.
+ *
+ * time: the world's, 0 to 1 from world->time_open to world->time_close. */
+#ifndef WORLD_SHAPE_MOVING_H
+#define WORLD_SHAPE_MOVING_H
+
+#include "world/world.h"
+
+/* Seconds to the world's time, held between 0 and 1. */
+float vl_world_time(const vlWorld *world, double seconds);
+
+/* Compiles a motion of the scene: keys, path, the pose at time 0. `low`, `high`: box of what moves, group space. */
+struct vlSceneInstance;
+vlResult vl_world_add_motion(vlWorld *world, const struct vlSceneInstance *source, const float low[3],
+                             const float high[3], vlWorldInstance *instance, vlError *error);
+/* Fills world->moves, time_open, time_close from what the scene says. */
+void vl_world_find_times(vlWorld *world, const struct vlScene *scene);
+/* How many steps make the times [from, to] fall on keys; 0: there is no such number. */
+uint32_t vl_world_time_steps(const vlWorld *world, double from, double to);
+
+/* *moved is `at rest` from then on, where q is at that time. */
+void vl_instance_move(const vlWorldInstance *q, float time, vlWorldInstance *moved);
+static inline const vlWorldInstance *vl_instance_at(const vlWorldInstance *q, float time, vlWorldInstance *moved) {
+  if (q->keys == 0) return q;
+  vl_instance_move(q, time, moved);
+  return moved;
+}
+
+typedef struct vlTimeStep {
+  uint32_t first; /* between this key and the next */
+  float part;     /* of the way */
+} vlTimeStep;
+static inline vlTimeStep vl_time_step(float time, uint32_t keys) {
+  float at = time * (float)(keys - 1);
+  int32_t last = (int32_t)keys - 2, first = (int32_t)at;
+  first = first > last ? last : first;
+  first = first < 0 ? 0 : first;
+  return (vlTimeStep){(uint32_t)first, at - (float)first};
+}
+
+/* Three numbers of vertex `vertex` of rows (positions or normals) of a shape with several steps. */
+static inline void vl_moving_vertex(const vlWorldShape *s, const float *rows, uint32_t vertex, float time,
+                                    float out[3]) {
+  vlTimeStep k = vl_time_step(time, s->steps);
+  const float *a = rows + 3 * ((size_t)k.first * s->vertices + vertex), *b = a + 3 * (size_t)s->vertices;
+  for (int i = 0; i < 3; i++) out[i] = a[i] * (1.0f - k.part) + b[i] * k.part;
+}
+/* Bound of its rounding error, ours and Embree's. */
+float vl_moving_vertex_error(const vlWorldShape *s, uint32_t vertex, float time);
+
+/* Position of a vertex; `room` holds it where it must be computed. */
+static inline const float *vl_vertex_at(const vlWorldShape *s, uint32_t vertex, float time, float room[3]) {
+  if (s->steps <= 1) return s->positions + 3 * (size_t)vertex;
+  vl_moving_vertex(s, s->positions, vertex, time, room);
+  return room;
+}
+static inline const float *vl_normal_at(const vlWorldShape *s, uint32_t vertex, float time, float room[3]) {
+  if (s->steps <= 1) return s->normals + 3 * (size_t)vertex;
+  vl_moving_vertex(s, s->normals, vertex, time, room);
+  return room;
+}
+
+/* Where a point of a surface, found at one time, is at another (seconds, world space): what optical flow asks. */
+void vl_world_follow(const vlWorld *world, uint32_t shape, uint32_t prim, uint32_t instance, double from_seconds,
+                     double to_seconds, const double point[3], double moved[3]);
+
+#endif

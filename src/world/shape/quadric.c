@@ -1,0 +1,177 @@
+/* world/shape/quadric.c: sphere, disk and cylinder: met by a ray, described at a point, sampled by area. In shape space
+ * where nothing else is said. */
+#include "world/shape/quadric.h"
+
+#include <math.h>
+
+#include "math/approx.h"
+
+static double angle_of(const double p[3]) {
+  double phi = vl_atan2((float)p[1], (float)p[0]);
+  return phi < 0 ? phi + 2 * M_PI : phi;
+}
+
+/* Is this point of the full quadric part of the shape? */
+static bool inside_limits(const vlWorldShape *s, const double p[3]) {
+  if (s->kind == VL_SHAPE_SPHERE &&
+      ((s->z_min > -s->radius && p[2] < s->z_min) || (s->z_max < s->radius && p[2] > s->z_max)))
+    return false;
+  if (s->kind == VL_SHAPE_CYLINDER && (p[2] < s->z_min || p[2] > s->z_max)) return false;
+  if (s->kind == VL_SHAPE_DISK) {
+    double r2 = p[0] * p[0] + p[1] * p[1];
+    if (r2 > (double)s->radius * s->radius || r2 < (double)s->inner_radius * s->inner_radius) return false;
+  }
+  return s->phi_max >= 6.2831f || angle_of(p) <= s->phi_max;
+}
+
+static bool try_root(const vlWorldShape *s, const double o[3], const double d[3], double t, double t_min, double t_max,
+                     vlShapeHit *hit) {
+  if (!(t > t_min && t < t_max)) return false;
+  double p[3] = {o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
+  /* Put the point on the surface: removes the error that grows with t. */
+  double r2 = p[0] * p[0] + p[1] * p[1] + (s->kind == VL_SHAPE_SPHERE ? p[2] * p[2] : 0);
+  if (s->kind == VL_SHAPE_DISK) {
+    p[2] = s->height;
+  } else if (r2 > 0) {
+    double f = s->radius / sqrt(r2);
+    p[0] *= f, p[1] *= f;
+    if (s->kind == VL_SHAPE_SPHERE) p[2] *= f;
+  }
+  if (!inside_limits(s, p)) return false;
+  hit->t = t;
+  for (int i = 0; i < 3; i++) hit->p[i] = p[i];
+  return true;
+}
+
+bool vl_quadric_intersect(const vlWorldShape *s, const double go[3], const double gd[3], double t_min, double t_max,
+                          vlShapeHit *hit) {
+  double o[3], d[3];
+  vl_map_point(s->to_shape, go, o);
+  vl_map_vector(s->to_shape, gd, d);
+  if (s->kind == VL_SHAPE_DISK) return d[2] != 0 && try_root(s, o, d, (s->height - o[2]) / d[2], t_min, t_max, hit);
+  bool sphere = s->kind == VL_SHAPE_SPHERE;
+  double r = s->radius;
+  double a = d[0] * d[0] + d[1] * d[1] + (sphere ? d[2] * d[2] : 0);
+  double half_b = o[0] * d[0] + o[1] * d[1] + (sphere ? o[2] * d[2] : 0);
+  if (!(a > 0)) return false;
+  /* Discriminant through the vector from the axis to the nearest point of the ray (pbrt book 6.8.3): no cancellation.
+   */
+  double k = half_b / a, l2 = 0;
+  for (int i = 0; i < (sphere ? 3 : 2); i++) {
+    double e = o[i] - k * d[i];
+    l2 += e * e;
+  }
+  double disc = a * (r - sqrt(l2)) * (r + sqrt(l2));
+  if (disc < 0) return false;
+  double root = sqrt(disc), q = half_b < 0 ? -half_b + root : -half_b - root;
+  double c = o[0] * o[0] + o[1] * o[1] + (sphere ? o[2] * o[2] : 0) - r * r;
+  double t0 = q / a, t1 = q != 0 ? c / q : t0;
+  if (t0 > t1) {
+    double t = t0;
+    t0 = t1;
+    t1 = t;
+  }
+  return try_root(s, o, d, t0, t_min, t_max, hit) || try_root(s, o, d, t1, t_min, t_max, hit);
+}
+
+/* Partial derivatives over (u, v) in shape space, and uv. */
+static void quadric_derivatives(const vlWorldShape *s, const double p[3], double dpdu[3], double dpdv[3], float uv[2]) {
+  double phi = angle_of(p);
+  uv[0] = (float)(phi / s->phi_max);
+  dpdu[0] = -s->phi_max * p[1], dpdu[1] = s->phi_max * p[0], dpdu[2] = 0;
+  if (s->kind == VL_SHAPE_SPHERE) {
+    double r = s->radius;
+    double low = vl_acos(vl_clamp((float)(s->z_min / r), -1, 1)),
+           high = vl_acos(vl_clamp((float)(s->z_max / r), -1, 1));
+    double theta = vl_acos(vl_clamp((float)(p[2] / r), -1, 1));
+    uv[1] = (float)((theta - low) / (high - low));
+    double radial = sqrt(p[0] * p[0] + p[1] * p[1]);
+    double cos_phi = radial > 0 ? p[0] / radial : 1, sin_phi = radial > 0 ? p[1] / radial : 0;
+    if (!(radial > 0)) dpdu[0] = 0, dpdu[1] = s->phi_max * 1e-12; /* at the poles any direction will do */
+    dpdv[0] = (high - low) * p[2] * cos_phi, dpdv[1] = (high - low) * p[2] * sin_phi, dpdv[2] = -(high - low) * radial;
+  } else if (s->kind == VL_SHAPE_CYLINDER) {
+    uv[1] = (float)((p[2] - s->z_min) / (s->z_max - s->z_min));
+    dpdv[0] = 0, dpdv[1] = 0, dpdv[2] = s->z_max - s->z_min;
+  } else {
+    double radial = sqrt(p[0] * p[0] + p[1] * p[1]);
+    uv[1] = (float)((s->radius - radial) / (s->radius - s->inner_radius));
+    double f = radial > 0 ? (s->inner_radius - s->radius) / radial : 0;
+    dpdv[0] = p[0] * f, dpdv[1] = p[1] * f, dpdv[2] = 0;
+    if (!(radial > 0)) dpdu[1] = s->phi_max * 1e-12, dpdv[0] = -1;
+  }
+}
+
+/* The normal transforms to the outside whatever the handedness; pbrt's flip is told by reverse orientation xor mirror,
+ * and its cross product dpdu x dpdv mirrors too: both together leave the reverse orientation alone. flip holds the xor.
+ */
+bool vl_shape_reversed(const vlWorldShape *s) {
+  return s->flip != (vl_determinant3(s->from_shape) < 0);
+}
+
+static void quadric_normal(const vlWorldShape *s, const double p[3], double n[3]) {
+  n[0] = s->kind == VL_SHAPE_DISK ? 0 : p[0] / s->radius;
+  n[1] = s->kind == VL_SHAPE_DISK ? 0 : p[1] / s->radius;
+  n[2] = s->kind == VL_SHAPE_DISK ? 1 : s->kind == VL_SHAPE_SPHERE ? p[2] / s->radius : 0;
+}
+
+void vl_quadric_point(const vlWorldShape *s, const double p[3], vlSurfacePoint *point) {
+  double dpdu[3], dpdv[3], n[3];
+  quadric_derivatives(s, p, dpdu, dpdv, point->uv);
+  quadric_normal(s, p, n);
+  vl_map_point(s->from_shape, p, point->p);
+  vl_map_vector(s->from_shape, dpdu, point->dpdu);
+  vl_map_vector(s->from_shape, dpdv, point->dpdv);
+  vl_map_normal(s->to_shape, n, point->n);
+  double length = vl_normalize3(point->n), side = vl_shape_reversed(s) ? -1 : 1;
+  double bend = s->kind == VL_SHAPE_DISK || !(s->radius > 0) ? 0 : 1.0 / s->radius;
+  if (s->kind == VL_SHAPE_CYLINDER) dpdv[2] = 0; /* the normal turns with what is across the axis */
+  for (int i = 0; i < 3; i++) dpdu[i] *= bend, dpdv[i] *= bend;
+  vl_map_normal(s->to_shape, dpdu, point->dndu);
+  vl_map_normal(s->to_shape, dpdv, point->dndv);
+  vl_normal_derivative(point->n, length, point->dndu);
+  vl_normal_derivative(point->n, length, point->dndv);
+  for (int i = 0; i < 3; i++) {
+    point->ns[i] = point->n[i] = side * point->n[i];
+    point->dndu[i] *= side, point->dndv[i] *= side;
+  }
+}
+
+/* Density over area of points uniform in shape-space area: the map stretches area by |det M| |M^-T n|. */
+static double area_stretch(const vlWorldShape *s, const double n_shape[3]) {
+  double n[3];
+  vl_map_normal(s->to_shape, n_shape, n);
+  return fabs(vl_determinant3(s->from_shape)) * sqrt(vl_dot3(n, n));
+}
+
+static double shape_area(const vlWorldShape *s) {
+  if (s->kind == VL_SHAPE_DISK)
+    return 0.5 * s->phi_max * ((double)s->radius * s->radius - (double)s->inner_radius * s->inner_radius);
+  return (double)s->phi_max * s->radius * (s->z_max - s->z_min);
+}
+
+void vl_quadric_sample(const vlWorldShape *shape, float u, float v, vlSurfacePoint *point, double *pdf) {
+  double p[3];
+  vlSinCos a = vl_sincos((float)(u * shape->phi_max));
+  if (shape->kind == VL_SHAPE_DISK) {
+    double inner2 = (double)shape->inner_radius * shape->inner_radius, outer2 = (double)shape->radius * shape->radius;
+    double r = sqrt(inner2 + v * (outer2 - inner2));
+    p[0] = r * a.cos, p[1] = r * a.sin, p[2] = shape->height;
+  } else {
+    double z = shape->z_min + v * ((double)shape->z_max - shape->z_min);
+    double r =
+        shape->kind == VL_SHAPE_SPHERE ? sqrt(fmax(0, (double)shape->radius * shape->radius - z * z)) : shape->radius;
+    p[0] = r * a.cos, p[1] = r * a.sin, p[2] = z;
+  }
+  vl_quadric_point(shape, p, point);
+  double n[3];
+  quadric_normal(shape, p, n);
+  *pdf = 1 / (shape_area(shape) * area_stretch(shape, n));
+}
+
+double vl_quadric_pdf(const vlWorldShape *shape, const double at[3]) {
+  double p[3], n[3];
+  vl_map_point(shape->to_shape, at, p);
+  quadric_normal(shape, p, n);
+  if (shape->kind != VL_SHAPE_DISK) vl_normalize3(n);
+  return 1 / (shape_area(shape) * area_stretch(shape, n));
+}

@@ -1,0 +1,347 @@
+/* world/shape/shapes.c: scene shapes -> world shapes: vertices moved to group space, groups and instances laid out,
+ * bounds.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "math/transform.h"
+#include "scene/scene.h"
+#include "world/shape/curve.h"
+#include "world/shape/displace.h"
+#include "world/shape/moving.h"
+#include "world/shape/surface_point.h"
+#include "world/world.h"
+
+void *vl_world_block(vlWorld *world, size_t count, size_t size) {
+  void **slot = VL_PUSH(world->context, &world->blocks);
+  if (!slot) return NULL;
+  *slot = vl_alloc_array(world->context, count ? count : 1, size);
+  return *slot;
+}
+
+static void store_affine_f(const vlMat4 *m, float r[12]) {
+  for (int i = 0; i < 12; i++) r[i] = (float)m->m[i];
+}
+static void store_affine_d(const vlMat4 *m, double r[12]) {
+  for (int i = 0; i < 12; i++) r[i] = m->m[i];
+}
+
+static vlResult fail_shape(const vlShapeDef *def, vlError *error, const char *what) {
+  return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column, "%s", what);
+}
+
+static bool is_identity(const vlMat4 *m) {
+  vlMat4 e = vl_mat4_identity();
+  return memcmp(e.m, m->m, sizeof e.m) == 0;
+}
+
+/* positions or normals at one end of a motion, moved to group space. */
+typedef struct Rows {
+  const float *from;
+  bool normals;
+} Rows;
+
+static bool move_rows(const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse, Rows rows, float *to) {
+  bool fine = true;
+  for (size_t i = 0; i < def->vertices; i++) {
+    double p[3] = {rows.from[3 * i], rows.from[3 * i + 1], rows.from[3 * i + 2]}, q[3], f = 1;
+    if (rows.normals) {
+      vl_mat4_normal(inverse, p, q);
+      double l = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
+      f = l > 0 ? 1 / l : 0;
+      if (def->reverse_orientation) f = -f;
+    } else {
+      vl_mat4_point(m, p, q);
+    }
+    for (int k = 0; k < 3; k++) {
+      to[3 * i + k] = (float)(rows.normals ? q[k] * f : q[k]);
+      fine = fine && (rows.normals || isfinite(to[3 * i + k]));
+    }
+  }
+  return fine;
+}
+
+/* Spreads what was made for the two ends of a motion, the first and the last of `steps` sets, over the sets between. */
+static void spread(const vlWorld *world, const vlShapeDef *def, float *rows, uint32_t steps) {
+  size_t n = 3 * (size_t)def->vertices;
+  double span = world->time_close - world->time_open, first = (def->times[0] - world->time_open) / span,
+         last = (def->times[1] - world->time_open) / span;
+  for (uint32_t k = 1; k + 1 < steps; k++) {
+    double f = ((double)k / (steps - 1) - first) / (last - first);
+    f = f > 1e-6 ? (f < 1 - 1e-6 ? f : 1) : 0;
+    for (size_t i = 0; i < n; i++) rows[k * n + i] = (float)(rows[i] * (1 - f) + rows[(steps - 1) * n + i] * f);
+  }
+}
+
+static vlResult add_vertex_motion(vlWorld *world, const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse,
+                                  vlWorldShape *s, vlError *error) {
+  size_t n = 3 * (size_t)def->vertices;
+  uint32_t steps = vl_world_time_steps(world, def->times[0], def->times[1]);
+  if (steps == 0)
+    return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+                      "vertices move from %g to %g seconds, other things from %g to %g: no even steps lead through all",
+                      def->times[0], def->times[1], world->time_open, world->time_close);
+  s->steps = steps + 1;
+  float *positions = vl_world_block(world, s->steps * n + 4, sizeof(float)), *normals = NULL;
+  if (!positions) return vl_fail_memory(error);
+  if (s->normals && !(normals = vl_world_block(world, s->steps * n, sizeof(float)))) return vl_fail_memory(error);
+  memset(positions + s->steps * n, 0, 4 * sizeof(float));
+  memcpy(positions, s->positions, n * sizeof(float));
+  if (!move_rows(def, m, inverse, (Rows){def->positions_close, false}, positions + steps * n))
+    return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");
+  spread(world, def, positions, s->steps);
+  s->positions = positions;
+  if (!normals) return VL_OK;
+  memcpy(normals, s->normals, n * sizeof(float));
+  move_rows(def, m, inverse, (Rows){def->normals_close, true}, normals + steps * n);
+  spread(world, def, normals, s->steps);
+  s->normals = normals;
+  return VL_OK;
+}
+
+/* false: out of memory. */
+static bool copy_rows(vlWorld *world, const float *from, size_t count, size_t width, float **to) {
+  if (!from) return true;
+  if (!(*to = vl_world_block(world, count * width, sizeof(float)))) return false;
+  memcpy(*to, from, count * width * sizeof(float));
+  return true;
+}
+
+static vlResult move_mesh(vlWorld *world, const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse,
+                          vlWorldShape *s, vlError *error) {
+  size_t n = def->vertices, corners = def->kind == VL_SHAPE_BILINEAR ? 4 : 3;
+  bool same = is_identity(m);
+  s->vertices = def->vertices;
+  s->faces = def->faces;
+  s->positions = vl_world_block(world, 3 * n + 4, sizeof(float));
+  s->indices = vl_world_block(world, corners * def->faces + 4, sizeof(uint32_t));
+  if (!s->positions || !s->indices) return vl_fail_memory(error);
+  memset(s->positions + 3 * n, 0, 4 * sizeof(float));
+  memcpy(s->indices, def->indices, corners * def->faces * sizeof(uint32_t));
+  if (def->normals && !(s->normals = vl_world_block(world, 3 * n, sizeof(float)))) return vl_fail_memory(error);
+  if (def->tangents && !(s->tangents = vl_world_block(world, 3 * n, sizeof(float)))) return vl_fail_memory(error);
+  if (def->uvs) {
+    if (!(s->uvs = vl_world_block(world, 2 * n, sizeof(float)))) return vl_fail_memory(error);
+    memcpy(s->uvs, def->uvs, 2 * n * sizeof(float));
+  }
+  s->one_sided = def->one_sided && def->kind == VL_SHAPE_TRIANGLES;
+  if (def->kind == VL_SHAPE_TRIANGLES &&
+      (!copy_rows(world, def->tangent_signs, n, 1, &s->tangent_signs) ||
+       !copy_rows(world, def->colors, n, 4, &s->colors) || !copy_rows(world, def->more_uvs[0], n, 2, &s->more_uvs[0]) ||
+       !copy_rows(world, def->more_uvs[1], n, 2, &s->more_uvs[1]) ||
+       !copy_rows(world, def->more_uvs[2], n, 2, &s->more_uvs[2])))
+    return vl_fail_memory(error);
+  bool mirrored = vl_mat4_determinant3(*m) < 0; /* n x t turns over against what both of them do */
+  for (size_t i = 0; mirrored && s->tangent_signs && i < n; i++) s->tangent_signs[i] = -s->tangent_signs[i];
+  if (same) memcpy(s->positions, def->positions, 3 * n * sizeof(float));
+  if (!same && !move_rows(def, m, inverse, (Rows){def->positions, false}, s->positions))
+    return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");
+  if (def->normals) move_rows(def, m, inverse, (Rows){def->normals, true}, s->normals);
+  for (size_t i = 0; def->tangents && i < n; i++) {
+    double p[3] = {def->tangents[3 * i], def->tangents[3 * i + 1], def->tangents[3 * i + 2]}, q[3];
+    vl_mat4_vector(m, p, q);
+    for (int k = 0; k < 3; k++) s->tangents[3 * i + k] = (float)q[k];
+  }
+  return def->positions_close && def->kind == VL_SHAPE_TRIANGLES ? add_vertex_motion(world, def, m, inverse, s, error)
+                                                                 : VL_OK;
+}
+
+static vlResult constant_node(vlWorld *world, const vlScene *scene, float value, int32_t *node, vlError *error) {
+  return vl_world_float_node(world, scene, vl_float_input(value), node, error);
+}
+
+/* A mix of a material with an interface is that material with holes: what is there of it times the shape's alpha. */
+static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShapeDef *def, vlWorldShape *s,
+                              vlError *error) {
+  const vlWorldMaterial *m = &world->materials.items[s->material];
+  if (m->kind != VL_MATERIAL_MIX || !(m->absent[0] || m->absent[1])) return VL_OK;
+  bool first = m->absent[0], both = first && m->absent[1];
+  s->material = m->mix[first && !both ? 1 : 0];
+  if (both) return VL_OK;
+  if (def->inside.index != def->outside.index)
+    return fail_shape(def, error, "a mix with an interface cannot divide two media");
+  int32_t share = m->amount, whole = s->alpha, none;
+  vlResult r = constant_node(world, scene, 0.0f, &none, error);
+  if (r == VL_OK && whole < 0) r = constant_node(world, scene, 1.0f, &whole, error);
+  /* amount is the share of the second part */
+  return r == VL_OK ? vl_world_mix_node(world, first ? none : whole, first ? whole : none, share, &s->alpha, error) : r;
+}
+
+static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef *def, vlWorldShape *s,
+                          vlError *error) {
+  vlMat4 m = vl_mat4_load(def->group_from_shape), inverse;
+  if (!vl_mat4_inverse(m, &inverse)) return fail_shape(def, error, "the shape's transform is singular");
+  bool mirrored = vl_mat4_determinant3(m) < 0;
+  memset(s, 0, sizeof *s);
+  s->kind = def->kind;
+  s->material = def->material.index; /* 0 is the default material */
+  s->first_light = VL_NONE;
+  s->flip = def->reverse_orientation != mirrored;
+  s->alpha = -1; /* opaque */
+  if (def->alpha.texture.index || def->alpha.value < 1) {
+    vlResult r = vl_world_float_node(world, scene, def->alpha, &s->alpha, error);
+    if (r != VL_OK) return r;
+  }
+  vlResult cut = cut_interface(world, scene, def, s, error);
+  if (cut != VL_OK) return cut;
+  s->pass_shadow = world->materials.items[s->material].kind == VL_MATERIAL_INTERFACE;
+  world->has_subsurface = world->has_subsurface || world->materials.items[s->material].has_subsurface;
+  s->radius = def->radius, s->inner_radius = def->inner_radius, s->height = def->height, s->phi_max = def->phi_max;
+  s->z_min = def->z_min < def->z_max ? def->z_min : def->z_max;
+  s->z_max = def->z_min < def->z_max ? def->z_max : def->z_min;
+  if (def->kind == VL_SHAPE_SPHERE) {
+    s->z_min = s->z_min < -s->radius ? -s->radius : s->z_min;
+    s->z_max = s->z_max > s->radius ? s->radius : s->z_max;
+  }
+  s->faces = s->steps = 1;
+  store_affine_d(&m, s->from_shape);
+  store_affine_d(&inverse, s->to_shape);
+  if (def->kind == VL_SHAPE_TRIANGLES && def->displacement.texture.index) {
+    vlShapeDef fine;
+    vlResult r = vl_world_displace(world, scene, def, &m, &fine, error);
+    if (r != VL_OK) return r;
+    r = move_mesh(world, &fine, &m, &inverse, s, error);
+    vl_world_displace_free(world, &fine);
+    return r;
+  }
+  if (def->kind == VL_SHAPE_TRIANGLES || def->kind == VL_SHAPE_BILINEAR)
+    return move_mesh(world, def, &m, &inverse, s, error);
+  if (def->kind == VL_SHAPE_CURVES && !vl_curve_copy(world, def, s)) return vl_fail_memory(error);
+  return VL_OK;
+}
+
+static void grow_bounds(float low[3], float high[3], const float p[3]) {
+  for (int i = 0; i < 3; i++) {
+    low[i] = p[i] < low[i] ? p[i] : low[i];
+    high[i] = p[i] > high[i] ? p[i] : high[i];
+  }
+}
+
+static void shape_bounds(const vlWorldShape *s, float low[3], float high[3]) {
+  if (s->kind == VL_SHAPE_CURVES) {
+    for (uint32_t i = 0; i < s->faces; i++) {
+      float a[3], b[3];
+      vl_world_prim_bounds(s, i, a, b);
+      grow_bounds(low, high, a);
+      grow_bounds(low, high, b);
+    }
+  } else if (s->positions) {
+    for (size_t i = 0; i < (size_t)s->steps * s->vertices; i++) grow_bounds(low, high, s->positions + 3 * i);
+  } else {
+    float a[3], b[3];
+    vl_world_prim_bounds(s, 0, a, b);
+    grow_bounds(low, high, a);
+    grow_bounds(low, high, b);
+  }
+}
+
+static void set_group_bounds(const vlWorld *world, vlWorldGroup *group) {
+  for (int i = 0; i < 3; i++) group->low[i] = INFINITY, group->high[i] = -INFINITY;
+  for (uint32_t i = 0; i < group->count; i++)
+    shape_bounds(&world->shapes.items[group->shapes[i]], group->low, group->high);
+}
+
+static void instance_bounds(const vlWorld *world, const vlWorldInstance *instance, float low[3], float high[3]) {
+  const float *a = world->groups.items[instance->group].low, *b = world->groups.items[instance->group].high;
+  for (uint32_t key = 0; key == 0 || key < instance->keys; key++) {
+    const float *m = instance->keys ? instance->path + 12 * (size_t)key : instance->from_group;
+    for (int c = 0; a[0] <= b[0] && c < 8; c++) {
+      float p[3] = {c & 1 ? a[0] : b[0], c & 2 ? a[1] : b[1], c & 4 ? a[2] : b[2]}, q[3];
+      for (int i = 0; i < 3; i++) q[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+      grow_bounds(low, high, q);
+    }
+  }
+}
+
+/* Rays can be followed to 1e18. */
+static vlResult check_reach(const float low[3], const float high[3], const vlSource *source, vlError *error) {
+  for (int i = 0; i < 3; i++)
+    if (low[i] <= high[i] && !(low[i] > -1e18f && high[i] < 1e18f))
+      return vl_fail_at(error, VL_ERROR_SCENE, source->file, source->line, source->column,
+                        "the shape reaches from %g to %g: rays can be followed to 1e18 at most", (double)low[i],
+                        (double)high[i]);
+  return VL_OK;
+}
+
+static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *error) {
+  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  const vlWorldGroup *root = &world->groups.items[0];
+  for (uint32_t i = 0; i < root->count; i++) {
+    shape_bounds(&world->shapes.items[root->shapes[i]], low, high);
+    vlResult r = check_reach(low, high, &scene->shapes.items[root->shapes[i]].source, error);
+    if (r != VL_OK) return r;
+  }
+  for (size_t i = 0, k = 0; k < world->instances.count; i++) {
+    if (world->groups.items[scene->instances.items[i].group.index].count == 0) continue;
+    instance_bounds(world, &world->instances.items[k++], low, high);
+    vlResult r = check_reach(low, high, &scene->instances.items[i].source, error);
+    if (r != VL_OK) return r;
+  }
+  for (int i = 0; i < 3; i++) {
+    if (low[i] > high[i]) low[i] = high[i] = 0;
+    world->bounds_min[i] = low[i], world->bounds_max[i] = high[i];
+    world->center[i] = 0.5f * (low[i] + high[i]);
+  }
+  float d[3] = {high[0] - world->center[0], high[1] - world->center[1], high[2] - world->center[2]};
+  world->radius = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  return VL_OK;
+}
+
+static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *error) {
+  for (size_t i = 0; i < scene->instances.count; i++) {
+    const vlSceneInstance *source = &scene->instances.items[i];
+    if (world->groups.items[source->group.index].count == 0) continue;
+    vlWorldInstance *instance = VL_PUSH(world->context, &world->instances);
+    if (!instance) return vl_fail_memory(error);
+    memset(instance, 0, sizeof *instance);
+    vlMat4 m = vl_mat4_load(source->world_from_group), inverse;
+    if (!vl_mat4_inverse(m, &inverse))
+      return vl_fail_at(error, VL_ERROR_SCENE, source->source.file, source->source.line, source->source.column,
+                        "the instance's transform is singular");
+    instance->group = source->group.index;
+    instance->mirrored = vl_mat4_determinant3(m) < 0;
+    store_affine_f(&m, instance->from_group);
+    store_affine_f(&inverse, instance->to_group);
+    if (source->keys == 0) continue;
+    const vlWorldGroup *group = &world->groups.items[source->group.index];
+    vlResult r = vl_world_add_motion(world, source, group->low, group->high, instance, error);
+    if (r != VL_OK) return r;
+  }
+  return VL_OK;
+}
+
+vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *error) {
+  size_t group_count = scene->groups.count + 1;
+  vl_world_find_times(world, scene);
+  if (!VL_RESERVE(world->context, &world->shapes, scene->shapes.count) ||
+      !VL_RESERVE(world->context, &world->groups, group_count))
+    return vl_fail_memory(error);
+  world->groups.count = group_count;
+  for (size_t i = 0; i < scene->shapes.count; i++) {
+    const vlShapeDef *def = &scene->shapes.items[i];
+    vlResult r = add_shape(world, scene, def, &world->shapes.items[i], error);
+    if (r != VL_OK) return r;
+    world->shapes.count = i + 1;
+    if (def->faces || (def->kind != VL_SHAPE_TRIANGLES && def->kind != VL_SHAPE_BILINEAR))
+      world->groups.items[def->group.index].count++;
+    world->info.primitives += world->shapes.items[i].faces;
+    if (def->kind == VL_SHAPE_TRIANGLES) world->info.triangles += world->shapes.items[i].faces;
+  }
+  for (size_t k = 0; k < group_count; k++) {
+    vlWorldGroup *group = &world->groups.items[k];
+    if (!(group->shapes = vl_world_block(world, group->count, sizeof(uint32_t)))) return vl_fail_memory(error);
+    group->count = 0;
+  }
+  for (size_t i = 0; i < scene->shapes.count; i++) {
+    const vlShapeDef *def = &scene->shapes.items[i];
+    if (!def->faces && (def->kind == VL_SHAPE_TRIANGLES || def->kind == VL_SHAPE_BILINEAR)) continue;
+    vlWorldGroup *group = &world->groups.items[def->group.index];
+    group->shapes[group->count++] = (uint32_t)i;
+  }
+  for (size_t k = 0; k < group_count; k++) set_group_bounds(world, &world->groups.items[k]);
+  vlResult r = add_instances(world, scene, error);
+  if (r == VL_OK) r = set_world_bounds(world, scene, error);
+  world->info.instances = world->instances.count;
+  return r;
+}

@@ -1,0 +1,109 @@
+/* world/shape/surface_point.c: the shapes that are not of triangles, whichever they are (quadric.c, patch.c); bounds
+ * and area of all. */
+#include "world/shape/surface_point.h"
+
+#include <string.h>
+
+#include "world/shape/curve.h"
+#include "world/shape/double3.h"
+#include "world/shape/patch.h"
+#include "world/shape/quadric.h"
+
+void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]) {
+  const float *m = instance->to_group;
+  double p[3] = {o[0], o[1], o[2]}, v[3] = {d[0], d[1], d[2]};
+  for (int i = 0; i < 3; i++) {
+    o[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+    d[i] = m[4 * i] * v[0] + m[4 * i + 1] * v[1] + m[4 * i + 2] * v[2];
+  }
+}
+
+bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3], const double d[3], double t_min,
+                        double t_max, vlShapeHit *hit) {
+  hit->a = hit->b = 0;
+  if (shape->kind == VL_SHAPE_CURVES) return vl_curve_intersect(shape, prim, o, d, t_min, t_max, hit);
+  return shape->kind == VL_SHAPE_BILINEAR ? vl_patch_intersect(shape, prim, o, d, t_min, t_max, hit)
+                                          : vl_quadric_intersect(shape, o, d, t_min, t_max, hit);
+}
+
+void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
+  memset(point->error, 0, sizeof point->error);
+  if (shape->kind == VL_SHAPE_CURVES)
+    vl_curve_point(shape, prim, hit, point);
+  else if (shape->kind == VL_SHAPE_BILINEAR)
+    vl_patch_point(shape, prim, hit->a, hit->b, point);
+  else
+    vl_quadric_point(shape, hit->p, point);
+}
+
+void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
+  memset(point->error, 0, sizeof point->error);
+  *pdf = 0;
+  if (shape->kind == VL_SHAPE_CURVES)
+    vl_curve_middle(shape, prim, point);
+  else if (shape->kind == VL_SHAPE_BILINEAR)
+    vl_patch_sample(shape, prim, u, v, point, pdf);
+  else
+    vl_quadric_sample(shape, u, v, point, pdf);
+}
+
+double vl_shape_pdf(const vlWorldShape *shape, uint32_t prim, const vlSurfacePoint *point) {
+  return shape->kind == VL_SHAPE_BILINEAR ? vl_patch_pdf(shape, prim, point->p) : vl_quadric_pdf(shape, point->p);
+}
+
+/* ---- bounds and area, also of triangles -------------------------------------------------------------------------- */
+
+float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim) {
+  if (shape->kind == VL_SHAPE_TRIANGLES) {
+    const uint32_t *f = shape->indices + 3 * (size_t)prim;
+    double a[3], b[3], n[3];
+    for (int i = 0; i < 3; i++) {
+      double o = shape->positions[3 * (size_t)f[0] + i];
+      a[i] = shape->positions[3 * (size_t)f[1] + i] - o;
+      b[i] = shape->positions[3 * (size_t)f[2] + i] - o;
+    }
+    vl_cross3(a, b, n);
+    return (float)(0.5 * sqrt(vl_dot3(n, n)));
+  }
+  /* Mean of 1/pdf over a grid of parameters: exact for similarity transforms and parallelograms. */
+  double sum = 0;
+  const int steps = 16;
+  for (int i = 0; i < steps; i++)
+    for (int j = 0; j < steps; j++) {
+      vlSurfacePoint point;
+      double pdf;
+      vl_shape_sample(shape, prim, ((float)i + 0.5f) / steps, ((float)j + 0.5f) / steps, &point, &pdf);
+      sum += pdf > 0 ? 1 / pdf : 0;
+    }
+  return (float)(sum / (steps * steps));
+}
+
+void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3], float high[3]) {
+  double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+  int corners = shape->kind == VL_SHAPE_TRIANGLES ? 3 : shape->kind == VL_SHAPE_BILINEAR ? 4 : 0;
+  for (int k = 0; k < corners; k++)
+    for (int i = 0; i < 3; i++) {
+      double x = shape->positions[3 * (size_t)shape->indices[(size_t)corners * prim + k] + i];
+      lo[i] = x < lo[i] ? x : lo[i];
+      hi[i] = x > hi[i] ? x : hi[i];
+    }
+  if (shape->kind == VL_SHAPE_CURVES) {
+    vl_curve_bounds(shape, prim, lo, hi);
+  } else if (!corners) {
+    double r = shape->radius;
+    double z0 = shape->kind == VL_SHAPE_DISK ? shape->height : shape->z_min;
+    double z1 = shape->kind == VL_SHAPE_DISK ? shape->height : shape->z_max;
+    for (int k = 0; k < 8; k++) {
+      double p[3] = {k & 1 ? r : -r, k & 2 ? r : -r, k & 4 ? z1 : z0}, g[3];
+      vl_map_point(shape->from_shape, p, g);
+      for (int i = 0; i < 3; i++) {
+        lo[i] = g[i] < lo[i] ? g[i] : lo[i];
+        hi[i] = g[i] > hi[i] ? g[i] : hi[i];
+      }
+    }
+  }
+  for (int i = 0; i < 3; i++) { /* outwards by a float step, for the rounding */
+    low[i] = nextafterf((float)lo[i], -INFINITY);
+    high[i] = nextafterf((float)hi[i], INFINITY);
+  }
+}

@@ -1,0 +1,48 @@
+/* world/shape/surface_point.h: sphere, disk, cylinder, bilinear patch and curve: where a ray meets them, what the
+ * surface is like there, and points spread over them by area. Double inside; scalar: such shapes are few. Triangles
+ * live in trace (batches). Conventions (parametrisation, normals): pbrt book 6.2-6.4 and 6.6. */
+#ifndef WORLD_SHAPE_SURFACE_POINT_H
+#define WORLD_SHAPE_SURFACE_POINT_H
+
+#include "world/world.h"
+
+typedef struct vlShapeHit {
+  double t;    /* along the (not normalised) ray */
+  double a, b; /* bilinear patches, curves: parameters; else unused */
+  double p[3]; /* shape space */
+  double d[3]; /* curves: the ray's direction in shape space, unit */
+} vlShapeHit;
+
+/* A ray of the world in the space of an instance's group; t stays what it is. */
+void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]);
+
+/* Nearest hit in (t_min, t_max) of a ray in group space. */
+bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3], const double d[3], double t_min,
+                        double t_max, vlShapeHit *hit);
+
+/* All in group space; n is unit, oriented as pbrt orients it (flip applied); uv as textures see it. */
+typedef struct vlSurfacePoint {
+  double p[3];
+  double n[3];  /* geometric normal */
+  double ns[3]; /* shading normal: vertex normals interpolated, else n */
+  double dpdu[3], dpdv[3];
+  double dndu[3], dndv[3]; /* of ns; curves: 0, they are thin */
+  double error[3];         /* of curves, how far off p may be along each axis; else 0: rounding alone */
+  float uv[2];
+} vlSurfacePoint;
+/* The derivative of a unit normal n = m / |m|, |m| = length, from that of m: what points along n goes. */
+static inline void vl_normal_derivative(const double n[3], double length, double d[3]) {
+  double along = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
+  for (int i = 0; i < 3; i++) d[i] = length > 0 ? (d[i] - along * n[i]) / length : 0;
+}
+/* Does the outward normal of a sphere, disk or cylinder point inwards: reverse orientation alone, see surface_point.c.
+ */
+bool vl_shape_reversed(const vlWorldShape *shape);
+void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point);
+
+/* A point spread uniformly over the parameters, with its density per unit area in group space. */
+void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf);
+/* The density that vl_shape_sample gives to a point already found. */
+double vl_shape_pdf(const vlWorldShape *shape, uint32_t prim, const vlSurfacePoint *point);
+
+#endif

@@ -1,0 +1,489 @@
+/* world/texture/texture.c: scene textures -> nodes; pictures read once per file; the one-point evaluation that alpha
+ * needs. */
+#include "world/texture/texture.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "scene/scene.h"
+#include "world/texture/texture_noise.h"
+#include "world/world.h"
+
+/* MAX_NESTING bounds recursion here, VL_NODE_ROWS what may nest by the room it takes: no level may disturb another. */
+enum { MAX_NESTING = 32, ROLES = 4, ROLE_FLOAT = 3 };
+
+/* ---- constant spectra -------------------------------------------------------------------------------------------- */
+
+vlResult vl_spectral_compile(vlWorld *world, const vlSpectrum *spectrum, vlSpectrumRole role, vlSpectral *result,
+                             vlError *error) {
+  memset(result, 0, sizeof *result);
+  result->scale = 1;
+  if (world->def.color == VL_COLOR_RGB) {
+    result->kind = VL_SPECTRAL_RGB;
+    return vl_spectrum_to_rgb(spectrum, role, VL_SPACE_SRGB, result->rgb, error);
+  }
+  float value;
+  if (role != VL_ROLE_ILLUMINANT && vl_spectrum_is_constant(spectrum, &value)) {
+    result->kind = VL_SPECTRAL_CONSTANT;
+    result->scale = value;
+    return VL_OK;
+  }
+  if (spectrum->kind == VL_SPECTRUM_RGB && role == VL_ROLE_ALBEDO) {
+    result->kind = VL_SPECTRAL_SIGMOID;
+    result->scale = spectrum->scale;
+    result->sigmoid = vl_sigmoid_from_rgb(spectrum->space, spectrum->rgb[0], spectrum->rgb[1], spectrum->rgb[2]);
+    return VL_OK;
+  }
+  float *dense = vl_world_block(world, VL_LAMBDA_COUNT, sizeof(float));
+  if (!dense) return vl_fail_memory(error);
+  result->kind = VL_SPECTRAL_DENSE;
+  result->dense = dense;
+  return vl_spectrum_dense(spectrum, role, dense, error);
+}
+
+/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+
+static bool same_image(const vlWorldImage *a, const vlTextureDef *def) {
+  bool same_file = a->path && def->path && strcmp(a->path, def->path) == 0;
+  return (same_file || (a->data && a->data == def->data)) && a->encoding_given == def->encoding_given &&
+         (!a->encoding_given || (a->encoding == def->encoding && a->gamma == def->gamma));
+}
+
+static bool is_covered(const vlImage *image, uint32_t alpha) {
+  for (uint32_t y = 0; y < image->height; y++) {
+    if (image->type == VL_PIXEL_U8) {
+      const uint8_t *row = vl_image_const_row(image, y);
+      uint32_t least = 255;
+      for (uint32_t x = 0; x < image->width; x++) {
+        uint32_t v = row[(size_t)x * image->channels + alpha];
+        least = v < least ? v : least;
+      }
+      if (least < 255) return false;
+      continue;
+    }
+    for (uint32_t x = 0; x < image->width; x++)
+      if (!(vl_image_get(image, x, y, alpha) >= 1.0f)) return false;
+  }
+  return true;
+}
+
+/* Colour and, where it is not 1 everywhere, coverage; grey without. Names decide (EXR sorts its channels). */
+static void choose_channels(const vlImage *image, bool keep_coverage, vlMipmapDef *mip) {
+  int r = vl_image_find_channel(image, "R"), g = vl_image_find_channel(image, "G"),
+      b = vl_image_find_channel(image, "B");
+  int a = vl_image_find_channel(image, "A");
+  if (r < 0 || g < 0 || b < 0) {
+    int y = vl_image_find_channel(image, "Y");
+    mip->channel[0] = y < 0 ? 0 : (uint32_t)y;
+    mip->channel[1] = a < 0 ? 0 : (uint32_t)a;
+    mip->count = a >= 0 && keep_coverage ? 2 : 1;
+    return;
+  }
+  bool covered = a < 0 || is_covered(image, (uint32_t)a);
+  uint32_t channels[4] = {(uint32_t)r, (uint32_t)g, (uint32_t)b, (uint32_t)(a < 0 ? 0 : a)};
+  mip->count = a >= 0 && !covered ? 4 : 3;
+  memcpy(mip->channel, channels, sizeof channels);
+}
+
+/* Where a picture comes from: a file, a file in memory, or given. */
+typedef struct Picture {
+  const char *name; /* for errors, where there is no path */
+  const char *path;
+  const void *data;
+  size_t size;
+  const vlImage *given;
+  const vlEncoding *encoding; /* null: the picture's own */
+  float gamma;
+  bool pyramid, keep_coverage;
+} Picture;
+
+static vlResult load_picture(vlContext *context, const Picture *p, vlMipmap **mipmap, vlError *error) {
+  const vlImage *given = p->given;
+  vlImage *image = NULL;
+  vlResult r = VL_OK;
+  if (p->data)
+    r = vl_image_read_memory(context, p->name ? p->name : "picture", p->data, p->size, &image, error);
+  else if (!given)
+    r = vl_image_read(context, p->path, &image, error);
+  if (r != VL_OK) return r;
+  given = image ? image : given;
+  vlMipmapDef mip;
+  memset(&mip, 0, sizeof mip);
+  choose_channels(given, p->keep_coverage, &mip);
+  mip.only_finest = !p->pyramid;
+  mip.own_encoding = p->encoding != NULL;
+  mip.encoding = p->encoding ? *p->encoding : VL_ENCODING_LINEAR;
+  mip.gamma = p->gamma;
+  if ((r = vl_mipmap_create(given, &mip, mipmap)) == VL_ERROR_MEMORY)
+    vl_fail_memory(error);
+  else if (r != VL_OK)
+    vl_fail(error, r, "%s: cannot be used as a texture", p->path ? p->path : "image");
+  vl_image_destroy(image);
+  return r;
+}
+
+static int32_t push_picture(vlWorld *world, vlMipmap *mipmap, vlError *error) {
+  vlWorldImage *entry = VL_PUSH(world->context, &world->images);
+  if (!entry) {
+    vl_mipmap_destroy(mipmap);
+    vl_fail_memory(error);
+    return -1;
+  }
+  entry->mipmap = mipmap;
+  return (int32_t)world->images.count - 1;
+}
+
+int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
+                           float gamma, bool pyramid, vlError *error) {
+  vlMipmap *mipmap = NULL;
+  Picture p = {NULL, path, NULL, 0, given, encoding, gamma, pyramid, false};
+  if (load_picture(world->context, &p, &mipmap, error) != VL_OK) return -1;
+  return push_picture(world, mipmap, error);
+}
+
+static Picture picture_of(const vlTextureDef *def) {
+  return (Picture){def->name,      def->path,  def->data,
+                   def->data_size, def->image, def->encoding_given ? &def->encoding : NULL,
+                   def->gamma,     true,       def->data != NULL};
+}
+
+/* The picture is known by its name (or place) and encoding from here on. */
+static bool name_picture(vlWorld *world, vlWorldImage *entry, const vlTextureDef *def) {
+  entry->encoding = def->encoding;
+  entry->encoding_given = def->encoding_given;
+  entry->gamma = def->gamma;
+  entry->data = def->data;
+  if (!def->path) return true;
+  size_t size = strlen(def->path) + 1;
+  char *copy = vl_world_block(world, size, 1);
+  if (copy) memcpy(copy, def->path, size);
+  entry->path = copy;
+  return copy != NULL;
+}
+
+typedef struct Preload {
+  vlContext *context;
+  const vlTextureDef **defs;
+  vlMipmap **mipmaps;
+} Preload;
+
+static void preload_one(void *user, uint32_t index, uint32_t worker) {
+  (void)worker;
+  const Preload *job = user;
+  Picture p = picture_of(job->defs[index]);
+  vlError unsaid; /* who asks for the picture finds the error again, and says it with the place */
+  load_picture(job->context, &p, &job->mipmaps[index], &unsaid);
+}
+
+static bool listed(const vlTextureDef **defs, size_t count, const vlTextureDef *def) {
+  for (size_t i = 0; i < count; i++) {
+    vlWorldImage like = {NULL,          defs[i]->path, defs[i]->data, defs[i]->encoding, defs[i]->encoding_given,
+                         defs[i]->gamma};
+    if (same_image(&like, def)) return true;
+  }
+  return false;
+}
+
+vlResult vl_world_preload_images(vlWorld *world, const vlScene *scene, vlError *error) {
+  enum { MOST = 4096 }; /* looked for one by one */
+  size_t most = scene->textures.count < MOST ? scene->textures.count : MOST, count = 0;
+  Preload job = {world->context, vl_alloc_array(world->context, most + 1, sizeof *job.defs),
+                 vl_alloc_zero(world->context, most + 1, sizeof *job.mipmaps)};
+  bool ok = job.defs && job.mipmaps;
+  for (size_t i = 0; ok && i < scene->textures.count && count < most; i++) {
+    const vlTextureDef *def = &scene->textures.items[i];
+    if (def->kind == VL_TEXTURE_IMAGE && (def->path || def->data) && !listed(job.defs, count, def))
+      job.defs[count++] = def;
+  }
+  if (ok && count > 1) vl_parallel_for(world->context, (uint32_t)count, preload_one, &job);
+  for (size_t i = 0; ok && i < count; i++) {
+    if (!job.mipmaps[i]) continue;
+    int32_t index = push_picture(world, job.mipmaps[i], error);
+    job.mipmaps[i] = NULL;
+    ok = index >= 0 && name_picture(world, &world->images.items[index], job.defs[i]);
+  }
+  for (size_t i = 0; job.mipmaps && i < count; i++) vl_mipmap_destroy(job.mipmaps[i]);
+  vl_free(world->context, job.defs);
+  vl_free(world->context, job.mipmaps);
+  return ok ? VL_OK : vl_fail_memory(error);
+}
+
+static int32_t image_of(vlWorld *world, const vlTextureDef *def, vlError *error) {
+  for (size_t i = 0; i < world->images.count; i++)
+    if (same_image(&world->images.items[i], def)) return (int32_t)i;
+  vlError inner;
+  vl_error_clear(&inner);
+  Picture picture = picture_of(def);
+  vlMipmap *mipmap = NULL;
+  int32_t index = -1;
+  if (load_picture(world->context, &picture, &mipmap, &inner) == VL_OK) index = push_picture(world, mipmap, &inner);
+  if (index < 0) {
+    vl_fail_at(error, inner.code ? inner.code : VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+               "%s", inner.message);
+    return -1;
+  }
+  if (!name_picture(world, &world->images.items[index], def)) {
+    vl_fail_memory(error);
+    return -1;
+  }
+  return index;
+}
+
+/* ---- nodes ------------------------------------------------------------------------------------------------------- */
+
+typedef struct Compile {
+  vlWorld *world;
+  const vlScene *scene;
+  int32_t *memo; /* scene texture * ROLES -> node + 1 */
+  vlError *error;
+} Compile;
+
+static int32_t push_node(vlWorld *world, const vlTextureNode *node) {
+  vlTextureNode *slot = VL_PUSH(world->context, &world->nodes);
+  if (!slot) return VL_TEXTURE_NO_MEMORY;
+  *slot = *node;
+  return (int32_t)world->nodes.count - 1;
+}
+
+static vlTextureNode empty_node(vlNodeKind kind) {
+  vlTextureNode node;
+  memset(&node, 0, sizeof node);
+  node.kind = kind;
+  node.a = node.b = node.c = node.d = node.amount = node.image = -1;
+  node.visits = 1;
+  node.plain = true;
+  node.channel = -1;
+  node.cutoff = NAN;
+  return node;
+}
+
+static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting);
+
+static int32_t compile_float(Compile *c, vlFloatInput input, int nesting) {
+  if (input.texture.index) return compile_texture(c, input.texture.index, ROLE_FLOAT, nesting + 1);
+  vlTextureNode node = empty_node(VL_NODE_FLOAT);
+  node.value = input.value;
+  int32_t n = push_node(c->world, &node);
+  if (n == VL_TEXTURE_NO_MEMORY) vl_fail_memory(c->error);
+  return n;
+}
+
+static int32_t compile_spectrum(Compile *c, vlSpectrumInput input, int role, int nesting) {
+  if (input.texture.index) return compile_texture(c, input.texture.index, role, nesting + 1);
+  vlTextureNode node = empty_node(VL_NODE_SPECTRUM);
+  node.is_spectrum = true;
+  node.role = (vlSpectrumRole)role;
+  if (vl_spectral_compile(c->world, &input.value, (vlSpectrumRole)role, &node.spectrum, c->error) != VL_OK) return -1;
+  int32_t n = push_node(c->world, &node);
+  if (n == VL_TEXTURE_NO_MEMORY) vl_fail_memory(c->error);
+  return n;
+}
+
+static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f, vlSpectrumInput s, int role,
+                             int nesting) {
+  return def->spectrum ? compile_spectrum(c, s, role, nesting) : compile_float(c, f, nesting);
+}
+
+/* Rows that a node takes for itself (as trace/material/material.hot.c pushes them) and for the hungriest of its inputs;
+ * nodes that are visited for it. false: too many. */
+static bool weigh(const vlWorld *world, vlTextureNode *node) {
+  uint32_t own = 0, most = 0, visits = 1;
+  switch (node->kind) {
+    case VL_NODE_SCALE: own = 1; break;
+    case VL_NODE_MIX:
+    case VL_NODE_CHECKERBOARD:
+    case VL_NODE_DOTS:
+    case VL_NODE_DIRECTION_MIX: own = node->is_spectrum ? 5 : 2; break;
+    case VL_NODE_BILERP: own = node->is_spectrum ? 8 : 5; break;
+    default: break;
+  }
+  const int32_t input[5] = {node->a, node->b, node->c, node->d, node->amount};
+  for (int i = 0; i < 5; i++) {
+    if (input[i] < 0) continue;
+    const vlTextureNode *n = &world->nodes.items[input[i]];
+    most = n->rows > most ? n->rows : most;
+    visits += n->visits;
+  }
+  if (own + most > VL_NODE_ROWS || visits > VL_NODE_VISITS) return false;
+  node->rows = (uint8_t)(own + most);
+  node->visits = (uint16_t)visits;
+  return true;
+}
+
+static vlResult image_spectrum(vlWorld *world, vlTextureNode *node, vlError *error) {
+  node->spectrum.scale = 1;
+  if (node->role != VL_ROLE_ILLUMINANT || world->def.color == VL_COLOR_RGB) return VL_OK;
+  node->spectrum.kind = VL_SPECTRAL_DENSE;
+  node->spectrum.dense = vl_space_illuminant(node->space);
+  (void)error;
+  return VL_OK;
+}
+
+/* What textures of pictures and vertex colours have beyond the picture. */
+static void fill_picture_node(const vlTextureDef *def, vlTextureNode *node) {
+  node->wrap = def->wrap, node->filter = def->filter, node->scale = def->scale, node->invert = def->invert;
+  node->wrap_t = def->wrap_t_given ? def->wrap_t : def->wrap;
+  node->colors = def->colors || def->kind == VL_TEXTURE_VERTEX_COLOR;
+  node->channel = (int8_t)def->channel;
+  node->uv_set = (uint8_t)def->uv_set;
+  node->bias = def->bias, node->cutoff = (float)def->cutoff;
+  memcpy(node->tint, def->tint, sizeof node->tint);
+  node->st_given = def->st_from_uv_given;
+  memcpy(node->st, def->st_from_uv, sizeof node->st);
+  node->st_scale = sqrtf(fmaxf(node->st[0] * node->st[0] + node->st[3] * node->st[3],
+                               node->st[1] * node->st[1] + node->st[4] * node->st[4]));
+  bool tinted = def->tint[0] != 1 || def->tint[1] != 1 || def->tint[2] != 1 || def->tint[3] != 1;
+  node->plain = !tinted && !node->colors && def->channel < 0 && def->bias == 0 && isnan(def->cutoff);
+}
+
+static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting) {
+  const vlTextureDef *def = &c->scene->textures.items[index - 1];
+  if (!def->spectrum) role = ROLE_FLOAT;
+  int32_t *memo = &c->memo[(index - 1) * ROLES + (uint32_t)role];
+  if (*memo) return *memo - 1;
+  if (nesting > MAX_NESTING) {
+    vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+               "textures are nested more than %d deep", MAX_NESTING);
+    return -1;
+  }
+  vlTextureNode node = empty_node(VL_NODE_FLOAT);
+  node.is_spectrum = def->spectrum;
+  node.role = def->spectrum ? (vlSpectrumRole)role : VL_ROLE_UNBOUNDED;
+  node.space = def->space;
+  node.mapping = def->mapping;
+  node.su = def->su, node.sv = def->sv, node.du = def->du, node.dv = def->dv;
+  memcpy(node.v1, def->planar_v1, sizeof node.v1);
+  memcpy(node.v2, def->planar_v2, sizeof node.v2);
+  for (int i = 0; i < 12; i++) node.texture_from_world[i] = (float)def->texture_from_world[i];
+  node.dimension = def->dimension;
+  node.octaves = def->octaves, node.omega = def->omega, node.variation = def->variation;
+  memcpy(node.direction, def->direction, sizeof node.direction);
+  fill_picture_node(def, &node);
+  int inputs = 0;
+  bool amount = false;
+  switch (def->kind) {
+    case VL_TEXTURE_CONSTANT: {
+      int32_t n = compile_input(c, def, def->float_a, def->spectrum_a, role, nesting);
+      if (n >= 0) *memo = n + 1;
+      return n;
+    }
+    case VL_TEXTURE_SCALE: node.kind = VL_NODE_SCALE, inputs = 1, amount = true; break;
+    case VL_TEXTURE_MIX: node.kind = VL_NODE_MIX, inputs = 2, amount = true; break;
+    case VL_TEXTURE_DIRECTION_MIX: node.kind = VL_NODE_DIRECTION_MIX, inputs = 2; break;
+    case VL_TEXTURE_CHECKERBOARD: node.kind = VL_NODE_CHECKERBOARD, inputs = 2; break;
+    case VL_TEXTURE_BILERP: node.kind = VL_NODE_BILERP, inputs = 4; break;
+    case VL_TEXTURE_IMAGE: node.kind = VL_NODE_IMAGE; break;
+    case VL_TEXTURE_FBM: node.kind = VL_NODE_FBM; break;
+    case VL_TEXTURE_WRINKLED: node.kind = VL_NODE_WRINKLED; break;
+    case VL_TEXTURE_WINDY: node.kind = VL_NODE_WINDY; break;
+    case VL_TEXTURE_MARBLE: node.kind = VL_NODE_MARBLE; break;
+    case VL_TEXTURE_DOTS: node.kind = VL_NODE_DOTS, inputs = 2; break;
+    case VL_TEXTURE_VERTEX_COLOR: node.kind = VL_NODE_VERTEX_COLOR; break;
+  }
+  int32_t *slots[4] = {&node.a, &node.b, &node.c, &node.d};
+  vlFloatInput floats[4] = {def->float_a, def->float_b, def->float_c, def->float_d};
+  vlSpectrumInput spectra[4] = {def->spectrum_a, def->spectrum_b, def->spectrum_c, def->spectrum_d};
+  for (int i = 0; i < inputs; i++)
+    if ((*slots[i] = compile_input(c, def, floats[i], spectra[i], role, nesting)) < 0) return *slots[i];
+  if (amount && (node.amount = compile_float(c, def->amount, nesting)) < 0) return node.amount;
+  if (node.kind == VL_NODE_IMAGE) {
+    if ((node.image = image_of(c->world, def, c->error)) < 0) return -1;
+    const vlMipmap *mip = c->world->images.items[node.image].mipmap;
+    if (mip->space_told) node.space = mip->space;
+  }
+  if (node.kind == VL_NODE_IMAGE || node.kind == VL_NODE_VERTEX_COLOR || node.kind == VL_NODE_MARBLE)
+    if (def->spectrum && image_spectrum(c->world, &node, c->error) != VL_OK) return -1;
+  if (!weigh(c->world, &node)) {
+    vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+               "textures are nested too deep");
+    return -1;
+  }
+  int32_t n = push_node(c->world, &node);
+  if (n == VL_TEXTURE_NO_MEMORY)
+    vl_fail_memory(c->error);
+  else
+    *memo = n + 1;
+  return n;
+}
+
+/* The memo lives as long as the build. */
+static vlResult with_compile(vlWorld *world, const vlScene *scene, Compile *c, vlError *error) {
+  if (!world->texture_memo) {
+    world->texture_memo = vl_world_block(world, (scene->textures.count + 1) * ROLES, sizeof(int32_t));
+    if (!world->texture_memo) return vl_fail_memory(error);
+    memset(world->texture_memo, 0, (scene->textures.count + 1) * ROLES * sizeof(int32_t));
+  }
+  *c = (Compile){world, scene, world->texture_memo, error};
+  return VL_OK;
+}
+
+vlResult vl_world_float_node(vlWorld *world, const vlScene *scene, vlFloatInput input, int32_t *node, vlError *error) {
+  Compile c;
+  vlError inner;
+  vl_error_clear(&inner);
+  vlResult r = with_compile(world, scene, &c, &inner);
+  if (r == VL_OK && (*node = compile_float(&c, input, 0)) < 0) r = inner.code ? inner.code : VL_ERROR_SCENE;
+  if (r != VL_OK && error) *error = inner;
+  return r;
+}
+
+vlResult vl_world_spectrum_node(vlWorld *world, const vlScene *scene, vlSpectrumInput input, vlSpectrumRole role,
+                                int32_t *node, vlError *error) {
+  Compile c;
+  vlError inner;
+  vl_error_clear(&inner);
+  vlResult r = with_compile(world, scene, &c, &inner);
+  if (r == VL_OK && (*node = compile_spectrum(&c, input, (int)role, 0)) < 0)
+    r = inner.code ? inner.code : VL_ERROR_SCENE;
+  if (r != VL_OK && error) *error = inner;
+  return r;
+}
+
+/* ---- one point, for alpha ---------------------------------------------------------------------------------------- */
+
+float vl_texture_float_at(const vlWorld *world, int32_t index, float u, float v, const float p[3],
+                          const vlTextureCorner *where) {
+  const vlTextureNode *node = &world->nodes.items[index];
+  vlTexturePoint at = {u, v, vl_vec3(p[0], p[1], p[2]), vl_vec3(0, 0, 1), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
+  if (vl_texture_needs_corner(node)) vl_texture_at_corner(node, where, &at);
+  switch (node->kind) {
+    case VL_NODE_FLOAT: return node->value;
+    case VL_NODE_SCALE:
+      return vl_texture_float_at(world, node->a, u, v, p, where) *
+             vl_texture_float_at(world, node->amount, u, v, p, where);
+    case VL_NODE_MIX: {
+      float t = vl_texture_float_at(world, node->amount, u, v, p, where);
+      return (1 - t) * vl_texture_float_at(world, node->a, u, v, p, where) +
+             t * vl_texture_float_at(world, node->b, u, v, p, where);
+    }
+    case VL_NODE_FBM:
+    case VL_NODE_WRINKLED:
+    case VL_NODE_WINDY: return vl_texture_noise(node, at);
+    case VL_NODE_DOTS:
+    case VL_NODE_CHECKERBOARD: {
+      float t = node->kind == VL_NODE_DOTS ? vl_texture_dots(node, at) : vl_texture_checker(node, at);
+      return (1 - t) * vl_texture_float_at(world, node->a, u, v, p, where) +
+             t * vl_texture_float_at(world, node->b, u, v, p, where);
+    }
+    case VL_NODE_BILERP: {
+      vlVec2 st = vl_texture_st(node, at);
+      float a = vl_texture_float_at(world, node->a, u, v, p, where),
+            b = vl_texture_float_at(world, node->b, u, v, p, where);
+      float c = vl_texture_float_at(world, node->c, u, v, p, where),
+            d = vl_texture_float_at(world, node->d, u, v, p, where);
+      return (1 - st.x) * (1 - st.y) * a + (1 - st.x) * st.y * b + st.x * (1 - st.y) * c + st.x * st.y * d;
+    }
+    case VL_NODE_IMAGE: return vl_texture_image_float(node, world->images.items[node->image].mipmap, at);
+    case VL_NODE_VERTEX_COLOR: return vl_texture_channel(node, NULL, at);
+    default: return vl_texture_float_at(world, node->a, u, v, p, where);
+  }
+}
+
+vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node, vlError *error) {
+  vlTextureNode mix = empty_node(VL_NODE_MIX);
+  mix.a = a, mix.b = b, mix.amount = amount;
+  if (!weigh(world, &mix)) return vl_fail(error, VL_ERROR_SCENE, "textures are nested too deep");
+  *node = push_node(world, &mix);
+  return *node == VL_TEXTURE_NO_MEMORY ? vl_fail_memory(error) : VL_OK;
+}

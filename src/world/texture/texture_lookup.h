@@ -1,0 +1,276 @@
+/* world/texture/texture_lookup.h: one texture point: coordinates, checkerboard, picture with filter. Inline, by value:
+ * the batch evaluator of trace and the alpha test share it. pbrt book 10.2-10.4. */
+#ifndef WORLD_TEXTURE_TEXTURE_LOOKUP_H
+#define WORLD_TEXTURE_TEXTURE_LOOKUP_H
+
+#include "world/world.h"
+
+/* Where a texture is asked for: uv, world position and normal, and the footprint: the width of a pixel in world units,
+ * and for pictures the two axes of the ellipse that it is in (s, t). color: of the shape's vertices there; read only by
+ * nodes that ask for it. */
+typedef struct vlTexturePoint {
+  float u, v;
+  vlVec3 p, n;
+  float width;
+  float axes[4]; /* s, t of one, s, t of the other; whole widths */
+  float color[4];
+} vlTexturePoint;
+
+/* Does the node ask for more than the first uv set? */
+static inline bool vl_texture_needs_corner(const vlTextureNode *node) {
+  return node->uv_set != 0 || node->colors;
+}
+
+/* The uv set and the vertex colour that the node asks for, at a point of a triangle. */
+static inline void vl_texture_at_corner(const vlTextureNode *node, const vlTextureCorner *where, vlTexturePoint *at) {
+  for (int c = 0; c < 4; c++) at->color[c] = 1.0f;
+  if (!where || where->shape->kind != VL_SHAPE_TRIANGLES) return;
+  const vlWorldShape *s = where->shape;
+  const uint32_t *f = s->indices + 3 * (size_t)where->prim;
+  const float *uvs = node->uv_set ? s->more_uvs[node->uv_set - 1] : NULL;
+  if (uvs) {
+    at->u = at->v = 0;
+    for (int k = 0; k < 3; k++) {
+      at->u += where->weights[k] * uvs[2 * (size_t)f[k]];
+      at->v += where->weights[k] * uvs[2 * (size_t)f[k] + 1];
+    }
+  }
+  for (int c = 0; node->colors && s->colors && c < 4; c++) {
+    float sum = 0;
+    for (int k = 0; k < 3; k++) sum += where->weights[k] * s->colors[4 * (size_t)f[k] + (size_t)c];
+    at->color[c] = sum > 0.0f ? sum : 0.0f;
+  }
+}
+
+static inline vlVec3 vl_texture_space(const vlTextureNode *node, vlVec3 p) {
+  const float *m = node->texture_from_world;
+  return vl_vec3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+                 m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]);
+}
+
+static inline vlVec2 vl_texture_st(const vlTextureNode *node, vlTexturePoint at) {
+  if (node->st_given)
+    return (vlVec2){node->st[0] * at.u + node->st[1] * at.v + node->st[2],
+                    node->st[3] * at.u + node->st[4] * at.v + node->st[5]};
+  if (node->mapping == VL_MAPPING_UV) return (vlVec2){node->su * at.u + node->du, node->sv * at.v + node->dv};
+  vlVec3 q = vl_texture_space(node, at.p);
+  if (node->mapping == VL_MAPPING_PLANAR)
+    return (vlVec2){node->du + q.x * node->v1[0] + q.y * node->v1[1] + q.z * node->v1[2],
+                    node->dv + q.x * node->v2[0] + q.y * node->v2[1] + q.z * node->v2[2]};
+  float phi = vl_atan2(q.y, q.x);
+  if (node->mapping == VL_MAPPING_CYLINDRICAL) return (vlVec2){(VL_PI + phi) * (0.5f * VL_INV_PI), q.z};
+  phi = phi < 0 ? phi + 2 * VL_PI : phi;
+  vlVec3 d = vl_normalize(q);
+  return (vlVec2){vl_acos(vl_clamp(d.z, -1, 1)) * VL_INV_PI, phi * (0.5f * VL_INV_PI)};
+}
+
+/* Are s, t an affine map of the first uv set? */
+static inline bool vl_texture_over_uv(const vlTextureNode *node) {
+  return node->uv_set == 0 && (node->st_given || node->mapping == VL_MAPPING_UV);
+}
+/* Axes in uv become axes in (s, t). */
+static inline void vl_texture_axes_of_uv(const vlTextureNode *node, const float uv[4], vlTexturePoint *at) {
+  for (int k = 0; k < 4; k += 2) {
+    at->axes[k] = node->st_given ? node->st[0] * uv[k] + node->st[1] * uv[k + 1] : node->su * uv[k];
+    at->axes[k + 1] = node->st_given ? node->st[3] * uv[k] + node->st[4] * uv[k + 1] : node->sv * uv[k + 1];
+  }
+}
+
+/* Share of the second texture, 0 or 1 (pbrt filters checks only over ray differentials; the samples of a pixel do it
+ * here). */
+static inline float vl_texture_checker(const vlTextureNode *node, vlTexturePoint at) {
+  if (node->dimension == 3) {
+    vlVec3 q = vl_texture_space(node, at.p);
+    int64_t sum = (int64_t)__builtin_floorf(q.x) + (int64_t)__builtin_floorf(q.y) + (int64_t)__builtin_floorf(q.z);
+    return sum & 1 ? 1.0f : 0.0f;
+  }
+  vlVec2 st = vl_texture_st(node, at);
+  int64_t sum = (int64_t)__builtin_floorf(st.x) + (int64_t)__builtin_floorf(st.y);
+  return sum & 1 ? 1.0f : 0.0f;
+}
+
+/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+
+/* Maps an integer texel coordinate by the wrap mode; -1: outside (black). */
+static inline int32_t vl_wrap_index(int32_t i, int32_t n, vlWrap wrap) {
+  if (i >= 0 && i < n) return i;
+  if (wrap == VL_WRAP_CLAMP) return i < 0 ? 0 : n - 1;
+  if (wrap == VL_WRAP_BLACK) return -1;
+  if (wrap == VL_WRAP_MIRROR) {
+    int64_t period = 2 * (int64_t)n, m = i % period;
+    m = m < 0 ? m + period : m;
+    return (int32_t)(m < n ? m : period - 1 - m);
+  }
+  int32_t m = i % n;
+  return m < 0 ? m + n : m;
+}
+
+typedef struct vlTexel {
+  float c[4];
+} vlTexel;
+
+static inline vlTexel vl_texel_2(const vlMipmap *mip, uint32_t level, int32_t x, int32_t y, vlWrap wrap,
+                                 vlWrap wrap_t) {
+  int32_t w = (int32_t)mip->levels[level].width, h = (int32_t)mip->levels[level].height;
+  if (wrap == VL_WRAP_OCTAHEDRAL) { /* the square's edges fold onto themselves (pbrt book 3.8.3) */
+    if (x < 0)
+      x = -x - 1, y = h - 1 - y;
+    else if (x >= w)
+      x = 2 * w - 1 - x, y = h - 1 - y;
+    if (y < 0)
+      x = w - 1 - x, y = -y - 1;
+    else if (y >= h)
+      x = w - 1 - x, y = 2 * h - 1 - y;
+    wrap = wrap_t = VL_WRAP_CLAMP;
+  }
+  x = vl_wrap_index(x, w, wrap);
+  y = vl_wrap_index(y, h, wrap_t);
+  vlTexel black = {{0, 0, 0, 0}};
+  if (x < 0 || y < 0) return black;
+  vlTexel t = black;
+  for (uint32_t i = 0; i < mip->channels; i++) t.c[i] = vl_mip_texel(mip, level, (uint32_t)x, (uint32_t)y, i);
+  return t;
+}
+
+static inline vlTexel vl_texel(const vlMipmap *mip, uint32_t level, int32_t x, int32_t y, vlWrap wrap) {
+  return vl_texel_2(mip, level, x, y, wrap, wrap);
+}
+
+static inline int32_t vl_to_index(float x) { /* floor, safe for any float */
+  float f = __builtin_floorf(x);
+  f = f > 1e9f ? 1e9f : f;
+  f = f < -1e9f ? -1e9f : f;
+  return f == f ? (int32_t)f : 0;
+}
+
+/* s, t with (0, 0) the top left corner of the picture. */
+static inline vlTexel vl_bilinear_2(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap, vlWrap wrap_t) {
+  float x = s * (float)mip->levels[level].width - 0.5f, y = t * (float)mip->levels[level].height - 0.5f;
+  int32_t xi = vl_to_index(x), yi = vl_to_index(y);
+  float dx = x - (float)xi, dy = y - (float)yi;
+  vlTexel a = vl_texel_2(mip, level, xi, yi, wrap, wrap_t), b = vl_texel_2(mip, level, xi + 1, yi, wrap, wrap_t);
+  vlTexel c = vl_texel_2(mip, level, xi, yi + 1, wrap, wrap_t),
+          d = vl_texel_2(mip, level, xi + 1, yi + 1, wrap, wrap_t), r;
+  for (int i = 0; i < 4; i++)
+    r.c[i] = (1 - dx) * (1 - dy) * a.c[i] + dx * (1 - dy) * b.c[i] + (1 - dx) * dy * c.c[i] + dx * dy * d.c[i];
+  return r;
+}
+
+static inline vlTexel vl_bilinear(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap) {
+  return vl_bilinear_2(mip, level, s, t, wrap, wrap);
+}
+
+static inline vlTexel vl_nearest_2(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap, vlWrap wrap_t) {
+  return vl_texel_2(mip, level, vl_to_index(s * (float)mip->levels[level].width),
+                    vl_to_index(t * (float)mip->levels[level].height), wrap, wrap_t);
+}
+static inline vlTexel vl_nearest(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap) {
+  return vl_nearest_2(mip, level, s, t, wrap, wrap);
+}
+
+/* log2 of a positive float to about 1e-3, for choosing a level. */
+static inline float vl_log2_rough(float x) {
+  return vl_ln(x) * 1.44269504f;
+}
+
+/* How a picture is filtered over an ellipse: blurred to its shorter axis by the choice of a level (a mip map's are
+ * blurred all ways alike), along the longer one by several taps. */
+enum { VL_FILTER_TAPS = 8 };
+typedef struct vlFilterPlan {
+  float level; /* at least 0 */
+  uint32_t taps;
+  float s, t; /* the whole way of the taps */
+} vlFilterPlan;
+static inline vlFilterPlan vl_filter_plan(const vlMipmap *mip, const float axes[4]) {
+  float w = (float)mip->levels[0].width, h = (float)mip->levels[0].height;
+  float as = axes[0] * w, at = axes[1] * h, bs = axes[2] * w, bt = axes[3] * h; /* in texels */
+  float a2 = as * as + at * at, b2 = bs * bs + bt * bt;
+  bool first = a2 > b2;
+  float long2 = first ? a2 : b2;
+  vlFilterPlan plan = {0.0f, 1, 0.0f, 0.0f};
+  if (!(long2 > 1.0f && long2 < 1e30f)) { /* no texel is skipped */
+    plan.level = long2 >= 1e30f ? (float)(mip->level_count - 1) : 0.0f;
+    return plan;
+  }
+  float longer = __builtin_sqrtf(long2), shorter = vl_abs(as * bt - at * bs) / longer; /* of equal area */
+  shorter = vl_max(shorter, 1.0f);
+  plan.level = vl_min(vl_log2_rough(shorter), (float)(mip->level_count - 1));
+  plan.taps = (uint32_t)vl_min(longer / shorter * 0.99999f, (float)(VL_FILTER_TAPS - 1)) + 1;
+  plan.s = first ? axes[0] : axes[2], plan.t = first ? axes[1] : axes[3];
+  return plan;
+}
+
+/* One tap at a level between two, in between if both is set. */
+static inline vlTexel vl_filter_tap(const vlTextureNode *node, const vlMipmap *mip, float level, bool both, float s,
+                                    float t) {
+  uint32_t l = (uint32_t)level;
+  float f = level - (float)l;
+  vlTexel a = vl_bilinear_2(mip, l, s, t, node->wrap, node->wrap_t);
+  if (!both || !(f > 0.0f)) return a;
+  vlTexel b = vl_bilinear_2(mip, l + 1, s, t, node->wrap, node->wrap_t);
+  for (int i = 0; i < 4; i++) a.c[i] = (1 - f) * a.c[i] + f * b.c[i];
+  return a;
+}
+
+/* A picture texture: t of the texture counts from the bottom, rows from the top. Point takes a texel of the finer
+ * level, bilinear is bilinear on it, trilinear (and EWA) blend two levels; these take several taps. */
+static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  vlVec2 st = vl_texture_st(node, at);
+  float s = st.x, t = 1.0f - st.y;
+  vlFilterPlan plan = vl_filter_plan(mip, at.axes);
+  vlTexel r;
+  if (node->filter == VL_FILTER_POINT) {
+    r = vl_nearest_2(mip, (uint32_t)plan.level, s, t, node->wrap, node->wrap_t);
+  } else {
+    bool both = node->filter != VL_FILTER_BILINEAR;
+    float inv = 1.0f / (float)plan.taps, first = 0.5f * inv - 0.5f;
+    r = vl_filter_tap(node, mip, plan.level, both, s + first * plan.s, t - first * plan.t);
+    for (uint32_t k = 1; k < plan.taps; k++) {
+      float x = first + (float)k * inv;
+      vlTexel more = vl_filter_tap(node, mip, plan.level, both, s + x * plan.s, t - x * plan.t);
+      for (int i = 0; i < 4; i++) r.c[i] += more.c[i];
+    }
+    for (int i = 0; plan.taps > 1 && i < 4; i++) r.c[i] *= inv;
+  }
+  for (int i = 0; i < 4; i++) {
+    float x = r.c[i] * node->scale;
+    x = node->invert ? 1.0f - x : x;
+    r.c[i] = x < 0.0f ? 0.0f : x;
+  }
+  return r;
+}
+
+/* All four channels, tinted: grey stands for red, green and blue, coverage is 1 where there is none. mip null: the
+ * vertex colour alone. */
+static inline vlTexel vl_texture_rgba(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  vlTexel t = {{1, 1, 1, 1}};
+  if (mip) {
+    uint32_t n = mip->channels;
+    t = vl_texture_image(node, mip, at);
+    if (n < 3) t.c[3] = n == 2 ? t.c[1] : 1.0f, t.c[1] = t.c[2] = t.c[0];
+    if (n == 3) t.c[3] = 1.0f;
+  }
+  for (int c = 0; c < 4; c++) t.c[c] *= node->colors ? node->tint[c] * at.color[c] : node->tint[c];
+  return t;
+}
+
+/* Float textures that are not plain. */
+static inline float vl_texture_channel(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  vlTexel t = vl_texture_rgba(node, mip, at);
+  float x = node->bias;
+  if (node->channel >= 0)
+    x += t.c[node->channel];
+  else
+    x += mip && mip->channels == 4 ? t.c[3] : (t.c[0] + t.c[1] + t.c[2]) * (1.0f / 3.0f);
+  return node->cutoff == node->cutoff ? (x >= node->cutoff ? 1.0f : 0.0f) : x;
+}
+
+/* Float from a picture: grey as it is, colour by its mean, four channels by their alpha (pbrt's rule). */
+static inline float vl_texture_image_float(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  if (!node->plain) return vl_texture_channel(node, mip, at);
+  vlTexel t = vl_texture_image(node, mip, at);
+  uint32_t channels = mip->channels;
+  return channels == 1 ? t.c[0] : channels == 4 ? t.c[3] : (t.c[0] + t.c[1] + t.c[2]) * (1.0f / 3.0f);
+}
+
+#endif

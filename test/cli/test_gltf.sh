@@ -51,11 +51,17 @@ check metered "$VELO" render plain.gltf --resolution 16x12 --spp 1 --exposure au
 expect_text metered_tells 'EV, as metered'
 expect_code 2 bad_exposure "$VELO" render plain.gltf --exposure bright
 # A white surface in white surroundings cannot be seen to be brighter than they are; without light all is black.
+"$VELO" image convert near.exr near.pfm
+"$VELO" image convert far.exr far.pfm
 python3 - <<'END' && pass levels || fail levels
 import sys
-import OpenImageIO as oiio
-a = oiio.ImageBuf("near.exr").get_pixels()
-f = oiio.ImageBuf("far.exr").get_pixels()
+import numpy as np
+def read(name):  # rows from the bottom up; the check below is even in that
+    head, size, scale, data = open(name, "rb").read().split(b"\n", 3)
+    w, h = map(int, size.split())
+    return np.frombuffer(data, "<f4" if float(scale) < 0 else ">f4").reshape(h, w, 3)[::-1]
+a = read("near.pfm")
+f = read("far.pfm")
 h = a.shape[0]
 inside, outside = a[h * 3 // 8:h * 5 // 8, h * 3 // 8:h * 5 // 8, :3].mean(), a[:h // 16, :, :3].mean()
 print(inside, outside, abs(f[:, :, :3]).max())
@@ -63,22 +69,20 @@ sys.exit(not (abs(outside - 1) < 0.02 and 0.9 < inside < 1.02 and abs(f[:, :, :3
 END
 # Surroundings from a picture: twice as wide as high, or square; turning it by half a turn and the picture itself agree.
 python3 - <<'END'
-import numpy as np, OpenImageIO as oiio
+import numpy as np
 p = np.zeros((32, 64, 3), np.float32)
 p[:, :, 0] = np.linspace(0.1, 1, 64)[None, :]
 p[:, :, 1] = np.linspace(0.2, 2, 32)[:, None]
-for name, q in (("a.exr", p), ("b.exr", np.roll(p, 32, axis=1)), ("odd.exr", p[:, :40])):
-    o = oiio.ImageOutput.create(name)
-    o.open(name, oiio.ImageSpec(q.shape[1], q.shape[0], 3, oiio.FLOAT))
-    o.write_image(np.ascontiguousarray(q))
-    o.close()
+for name, q in (("a.pfm", p), ("b.pfm", np.roll(p, 32, axis=1)), ("odd.pfm", p[:, :40])):
+    with open(name, "wb") as file:
+        file.write(b"PF\n%d %d\n-1.0\n" % (q.shape[1], q.shape[0]) + q[::-1].astype("<f4").tobytes())
 END
-check env_a "$VELO" render square.gltf --camera far --resolution 48x48 --spp 8 --environment a.exr --environment-rotation 180 -o ea.exr --quiet
-check env_b "$VELO" render square.gltf --camera far --resolution 48x48 --spp 8 --environment b.exr -o eb.exr --quiet
+check env_a "$VELO" render square.gltf --camera far --resolution 48x48 --spp 8 --environment a.pfm --environment-rotation 180 -o ea.exr --quiet
+check env_b "$VELO" render square.gltf --camera far --resolution 48x48 --spp 8 --environment b.pfm -o eb.exr --quiet
 check env_same "$VELO" image diff ea.exr eb.exr --threshold mse=0.001
-check env_strength "$VELO" render square.gltf --camera far --resolution 48x48 --spp 8 --environment b.exr --environment-strength 2 -o ec.exr --quiet
+check env_strength "$VELO" render square.gltf --camera far --resolution 48x48 --spp 8 --environment b.pfm --environment-strength 2 -o ec.exr --quiet
 expect_code 1 env_stronger "$VELO" image diff eb.exr ec.exr --threshold mse=0.001
-expect_code 3 env_odd "$VELO" render square.gltf --environment odd.exr
+expect_code 3 env_odd "$VELO" render square.gltf --environment odd.pfm
 expect_text env_odd_says '40 x 32: a picture of the surroundings must be twice as wide as high, or square'
 expect_code 4 env_missing "$VELO" render square.gltf --environment nowhere.hdr
 check ground "$VELO" render plain.gltf --resolution 16x16 --spp 1 --ground --environment sky -o ground.png --quiet

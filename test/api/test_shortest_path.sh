@@ -43,10 +43,14 @@ for change in 's/"float whitebalance" 3200//' 's/"float maxcomponentvalue" 0.7//
   if cmp -s a.pfm b.pfm; then fail "it counts: $change"; else pass "it counts: $change"; fi
 done
 
-# A file without camera and light: both complete it.
-printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >triangle.obj
-"$by_library" triangle.obj a.pfm && "$VELO" render triangle.obj --quiet -o b.pfm
-same "an OBJ file" a.pfm b.pfm
+# A glTF file whose camera only velo's extras hold, with its size.
+write_scene lens.pbrt
+sed -i 's/^Camera "perspective"/Camera "perspective" "float lensradius" 0.1 "float focaldistance" 4/' lens.pbrt
+run "$VELO" scene convert lens.pbrt lens.gltf
+check "the lens is in the extras" grep -q '"velo"' lens.gltf
+both "a glTF file with a lens" lens.gltf
+run "$VELO" image info --json a.pfm
+expect_text "the size of the extras" '"width": 64, "height": 48'
 
 # The README shows these calls.
 awk '/^## Embedding/ { on = 1 } on && /^```c$/ { code = 1; next } code && /^```$/ { exit } code' "$VELO_SOURCE_DIR/README.md" >readme.c

@@ -18,12 +18,13 @@ expect_code 0 "the installed program runs" "$prefix/bin/velo" --version
 expect_text "--version: the version" "velo $version"
 expect_text "--version: the compiler" "compiler          "
 expect_text "--version: instruction sets" "instruction sets  x86-64-v2, x86-64-v3, x86-64-v4; here x86-64-v"
-for library in Embree OpenEXR libpng libjpeg zlib jansson libyaml expat libwebp meshoptimizer; do
-  check "--version: $library" sh -c "printf '%s' \"\$1\" | grep -qE '$library [0-9]+[.0-9]*'" sh "$out"
+lines=$out
+for library in Embree OpenEXR libpng libjpeg-turbo zlib jansson libyaml expat libwebp meshoptimizer; do
+  check "--version: $library" sh -c "printf '%s' \"\$1\" | grep -qE '$library [0-9]+[.0-9]*'" sh "$lines"
 done
 if commit=$(git -C "$VELO_SOURCE_DIR" rev-parse --short=12 HEAD 2>/dev/null) &&
   [ -z "$(git -C "$VELO_SOURCE_DIR" rev-parse --show-cdup)" ]; then
-  check "--version: a commit" sh -c "printf '%s' \"\$1\" | grep -qE '^commit            [0-9a-f]{7}|^commit            v?[0-9.]+'" sh "$out"
+  check "--version: a commit" sh -c "printf '%s' \"\$1\" | grep -qE '^commit            [0-9a-f]{7}|^commit            v?[0-9.]+'" sh "$lines"
 fi
 soname=$(readelf -d "$prefix/lib/libvelo.so" | sed -n 's/.*SONAME.*\[\(.*\)\]/\1/p')
 check "the SONAME is of the ABI ($soname)" test "$soname" = "libvelo.so.$abi"

@@ -119,8 +119,12 @@ typedef struct vlContextDef {
   void *parallel_for_user;
 } vlContextDef;
 
-VL_API vlContextDef vl_default_context_def(void);
-/* Fails with ARGUMENT, MEMORY or UNSUPPORTED (an isa that this machine lacks). */
+/* abi: VL_ABI_VERSION of the headers that the program was compiled with, which the cookie carries: vl_context_create
+ * refuses a program that was compiled for another ABI version than the library's. C and C++ write
+ * vl_default_context_def(). */
+VL_API vlContextDef vl_default_context_def_abi(uint32_t abi);
+#define vl_default_context_def() vl_default_context_def_abi(VL_ABI_VERSION)
+/* Fails with ARGUMENT (a def of another ABI version, too), MEMORY or UNSUPPORTED (an isa that this machine lacks). */
 VL_API vlResult vl_context_create(const vlContextDef *def, vlContext **context);
 /* All objects made from the context must be gone. Null is allowed. */
 VL_API void vl_context_destroy(vlContext *context);

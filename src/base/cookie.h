@@ -6,7 +6,8 @@
 
 #include "velo/base.h"
 
-#define VL_COOKIE(kind) (0x76000000 | VL_ABI_VERSION << 8 | (kind))
+#define VL_COOKIE_OF(kind, abi) (0x76000000 | ((abi)&0xffff) << 8 | (kind))
+#define VL_COOKIE(kind) VL_COOKIE_OF(kind, VL_ABI_VERSION)
 
 enum {
   VL_COOKIE_CONTEXT = VL_COOKIE(0x01),

@@ -53,7 +53,11 @@ static void a_def_of_another_abi_is_refused(void **state) {
   uint32_t good = context_def.cookie;
   context_def.cookie = next_abi(good);
   assert_int_equal(vl_context_create(&context_def, &context), VL_ERROR_ARGUMENT);
-  context_def.cookie = good;
+  context_def = vl_default_context_def_abi(VL_ABI_VERSION + 1); /* a program compiled with other headers */
+  assert_int_equal(vl_context_create(&context_def, &context), VL_ERROR_ARGUMENT);
+  assert_null(context);
+  context_def = vl_default_context_def();
+  assert_int_equal(context_def.cookie, good);
   assert_int_equal(vl_context_create(&context_def, &context), VL_OK);
 
   vlFilmDef film_def = vl_default_film_def(4, 4);

@@ -88,6 +88,13 @@ END
 check "the picture shows the world" /usr/bin/python3 "$work/look.py" "$work/a.exr"
 check "so does the PNG" test -s "$work/a.png"
 
+# ---- a program that was compiled with the headers of another ABI version is refused ----
+cp -r "$prefix/include" "$work/newer"
+sed -i 's/^#define VL_VERSION_MINOR .*/#define VL_VERSION_MINOR 99/' "$work/newer/velo/base.h"
+check "compiles with other headers" gcc -std=c17 -I"$work/newer" "$example" -L"$prefix/lib" -lvelo -Wl,-rpath,"$prefix/lib" -o "$work/newer/program"
+expect_code 1 "another ABI is refused" "$work/newer/program" "$work/c.png"
+expect_text "another ABI: the context says so" "context"
+
 # ---- uninstall: into a folder that holds other files ----
 removed=$work/removed
 mkdir -p "$removed/lib/pkgconfig" "$removed/bin"

@@ -232,7 +232,7 @@ void vl_parallel_for(vlContext *context, uint32_t count, vlParallelBody *body, v
 vlContextDef vl_default_context_def_abi(uint32_t abi) {
   long cores = sysconf(_SC_NPROCESSORS_ONLN);
   return (vlContextDef){
-      .cookie = VL_COOKIE_OF(0x01, abi),
+      .cookie = VL_COOKIE_OF(VL_COOKIE_CONTEXT & 0xff, abi),
       .allocator = {NULL, default_allocate, default_reallocate, default_release},
       .threads = cores > 0 ? (uint32_t)cores : 1,
       .isa = VL_ISA_AUTO,

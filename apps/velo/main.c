@@ -8,6 +8,10 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "velo/velo.h"
+
+/* Of git, of the source that the program was built from; empty where there was none. Written by cmake/commit.cmake. */
+extern const char velo_commit[];
 
 /* Names of two words come last: "image diff" is found by its first and second word. */
 static const Command *const commands[] = {&render_command,           &scene_info_command,      &scene_check_command,
@@ -101,6 +105,29 @@ static int help(int argc, char **argv) {
   return STATUS_OK;
 }
 
+/* One line for the version, then one for each fact about the build. */
+static int print_version(void) {
+  static const char *const sets[] = {[VL_ISA_V2] = "v2", [VL_ISA_V3] = "v3", [VL_ISA_V4] = "v4"};
+  const vlVersion *version = vl_version();
+  printf("velo %s\n", version->text);
+  if (velo_commit[0]) printf("commit            %s\n", velo_commit);
+  printf("compiler          %s\n", version->compiler);
+  printf("instruction sets  %s", version->instruction_sets);
+  vlContextDef def = vl_default_context_def();
+  def.threads = 1;
+  vlContext *context;
+  if (vl_context_create(&def, &context) == VL_OK) {
+    printf("; here x86-64-%s", sets[vl_context_isa(context)]);
+    vl_context_destroy(context);
+  }
+  printf("\nlibraries         ");
+  const vlLibrary *library;
+  for (uint32_t i = 0; (library = vl_version_library(i)); i++)
+    printf("%s%s%s%s", i ? ", " : "", library->name, library->version[0] ? " " : "", library->version);
+  putchar('\n');
+  return STATUS_OK;
+}
+
 static int run(int argc, char **argv) {
   if (argc < 2) {
     print_overview();
@@ -108,8 +135,7 @@ static int run(int argc, char **argv) {
   }
   const char *first = argv[1];
   if (strcmp(first, "--version") == 0) {
-    printf("velo %d.%d.%d\n", VL_VERSION_MAJOR, VL_VERSION_MINOR, VL_VERSION_PATCH);
-    return STATUS_OK;
+    return print_version();
   }
   if (strcmp(first, "help") == 0) return help(argc - 2, argv + 2);
   if (strcmp(first, "--help") == 0 || strcmp(first, "-h") == 0) return help(argc - 2, argv + 2);

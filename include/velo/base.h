@@ -29,9 +29,31 @@ extern "C" {
 #define VL_API
 #endif
 
+/* Version of these headers (semantic versioning). The build reads it here. */
 #define VL_VERSION_MAJOR 0
 #define VL_VERSION_MINOR 1
 #define VL_VERSION_PATCH 0
+/* Version of the binary interface: sizes and fields of structs, numbers of enumerators, signatures. It changes with the
+ * minor version before 1.0, with the major version from then on; the shared library's SONAME changes with it
+ * (libvelo.so.0.1). Each def's cookie carries it: a def of another ABI version is VL_ERROR_ARGUMENT. */
+#define VL_ABI_VERSION (VL_VERSION_MAJOR ? VL_VERSION_MAJOR << 8 : VL_VERSION_MINOR)
+
+/* What the library that runs was built as. All strings are constant. */
+typedef struct vlVersion {
+  uint32_t major, minor, patch;
+  uint32_t abi;                 /* VL_ABI_VERSION; differs from the headers' if a program runs with another library */
+  const char *text;             /* "0.1.0" */
+  const char *compiler;         /* "gcc 12.2.0" */
+  const char *instruction_sets; /* that it has code for: "x86-64-v2, x86-64-v3, x86-64-v4" */
+} vlVersion;
+/* Never null. May be called from any thread, before there is a context. */
+VL_API const vlVersion *vl_version(void);
+/* The libraries that libvelo was built with, index from 0; null past the end. version is that of their headers, ""
+ * where they name none. Constant. */
+typedef struct vlLibrary {
+  const char *name, *version; /* "Embree", "3.13.5" */
+} vlLibrary;
+VL_API const vlLibrary *vl_version_library(uint32_t index);
 
 /* What a fallible call returns. The numbers are stable. */
 typedef enum vlResult {
@@ -98,8 +120,12 @@ typedef struct vlContextDef {
   void *parallel_for_user;
 } vlContextDef;
 
-VL_API vlContextDef vl_default_context_def(void);
-/* Fails with ARGUMENT, MEMORY or UNSUPPORTED (an isa that this machine lacks). */
+/* abi: VL_ABI_VERSION of the headers that the program was compiled with, which the cookie carries: vl_context_create
+ * refuses a program that was compiled for another ABI version than the library's. C and C++ write
+ * vl_default_context_def(). */
+VL_API vlContextDef vl_default_context_def_abi(uint32_t abi);
+#define vl_default_context_def() vl_default_context_def_abi(VL_ABI_VERSION)
+/* Fails with ARGUMENT (a def of another ABI version, too), MEMORY or UNSUPPORTED (an isa that this machine lacks). */
 VL_API vlResult vl_context_create(const vlContextDef *def, vlContext **context);
 /* All objects made from the context must be gone. Null is allowed. */
 VL_API void vl_context_destroy(vlContext *context);

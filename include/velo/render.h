@@ -144,9 +144,34 @@ typedef struct vlRenderStats {
 VL_API vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                           vlRenderStats *stats, vlError *error);
 
-/* Def from the scene file's own settings. */
-VL_API vlRenderDef vl_scene_render_def(const vlScene *scene);
-VL_API vlFilmDef vl_scene_film_def(const vlScene *scene);
+/* ---- what a scene's file says about all these ------------------------------------------------------------------- */
+
+/* How the image of a scene is taken: the defs of the calls that take it, each complete and ready to be passed on. A new
+ * scene has the defaults of a pbrt-v4 file that says nothing (1280 x 720 pixels); an importer writes what its file
+ * says.
+ *
+ *   vlSceneDefs *defs = vl_scene_defs(scene);
+ *   vl_world_build(scene, &defs->build, &world, &error);
+ *   vl_camera_make(&defs->camera, &camera, NULL, &error);
+ *   vl_film_create(context, &defs->film, &film);
+ *   vl_render(world, &camera, film, &defs->render, NULL, &error);
+ *   vl_film_develop(film, &defs->develop, &image);
+ *
+ * A copy stays valid after the scene, save for what the scene owns: camera.lens.aperture, camera.lens.optics,
+ * camera_source.file. Not thread-safe. */
+struct vlSceneDefs {
+  vlCameraDef camera; /* width and height are the film's */
+  vlFilmDef film;
+  vlBuildDef build;
+  vlRenderDef render;
+  vlDevelopDef develop;     /* exposure: the file's sensor (ISO, imaging ratio, seconds) as one factor */
+  vlMediumId camera_medium; /* the medium around the camera; index 0: vacuum. Read when the world is built */
+  vlGbuffer gbuffer;        /* pbrt's film of that name: ground truth channels are wanted, in this space */
+  char output[512];         /* name of the image file that the scene's file asks for; empty: none */
+  vlSource camera_source;   /* where the file describes the camera, for errors of vl_camera_make; file may be null */
+  bool camera_missing;      /* the file describes no camera: vl_scene_complete makes one */
+  bool light_missing;       /* nor light from all around */
+};
 
 #ifdef __cplusplus
 }

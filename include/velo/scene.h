@@ -471,44 +471,14 @@ typedef enum vlGbuffer { VL_GBUFFER_NONE, VL_GBUFFER_CAMERA, VL_GBUFFER_WORLD } 
 typedef enum vlColorMode { VL_COLOR_SPECTRAL, VL_COLOR_RGB } vlColorMode;
 typedef enum vlLightSampler { VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER, VL_LIGHT_SAMPLER_UNIFORM } vlLightSampler;
 
-typedef struct vlSceneSettings {
-  vlCameraDef camera;
-  vlSource camera_source; /* where the file says so, for errors of vl_camera_make; file may be null */
-  uint32_t width, height;
-  uint32_t crop[4];     /* x0, y0, x1, y1 in pixels (x1, y1 exclusive) */
-  char output[512];     /* file name the scene asks for; may be empty */
-  float exposure;       /* sensor: imaging ratio, ISO etc. folded; default 1 */
-  bool camera_missing;  /* the file has none: vl_scene_complete makes one */
-  bool light_missing;   /* nor light from all around */
-  bool camera_in_full;  /* a glTF file holds more of it than glTF can say: vl_camera_read reads that */
-  vlColorSpace space;   /* of the output picture */
-  double white_balance; /* kelvin, 0: none */
-  float max_component;  /* of a sample, times exposure; infinity: as it is */
-  vlPixelFilter filter;
-  vlSamplerKind sampler;
-  uint32_t spp;
-  uint32_t sampler_seed;
-  vlTracer tracer;
-  uint32_t max_depth; /* bounces; pbrt default 5 */
-  float ao_distance;  /* ambient occlusion: reach in scene units; infinity default */
-  bool ao_cosine;
-  double merge_radius; /* vlRenderDef.merge_radius, light_paths (velo/render.h) */
-  uint32_t light_paths;
-  vlLightSampler light_sampler;
-  bool regularize; /* vlBuildDef.regularize */
-  vlColorMode color;
-  vlMediumId camera_medium; /* that the camera stands in */
-  uint32_t buckets;         /* of spectra beside the picture (velo/render.h); 0: none */
-  double lambda_min, lambda_max;
-  bool centred, same_wavelengths, sharp_textures; /* velo/render.h */
-  vlGbuffer gbuffer; /* pbrt's film of that name: ground truth is wanted, too, in this space; the program writes it */
-} vlSceneSettings;
-/* Never null; may be changed. */
-VL_API vlSceneSettings *vl_scene_settings(vlScene *scene);
+/* How the image is taken: camera, film, build, render and develop, as the scene's file says (velo/render.h). The scene
+ * owns it, and what its pointers point at; never null. May be changed until the scene is destroyed. */
+typedef struct vlSceneDefs vlSceneDefs;
+VL_API vlSceneDefs *vl_scene_defs(vlScene *scene);
 /* Camera, picture size and crop of another scene of the same context; what its lens needs passes over, so that `from`
  * may go. ARGUMENT, MEMORY. */
 VL_API vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error);
-/* Focuses the settings' camera, one with a lens of many elements, at a distance from its film. ARGUMENT, MEMORY. */
+/* Focuses the scene's camera, one with a lens of many elements, at a distance from its film. ARGUMENT, MEMORY. */
 VL_API vlResult vl_scene_refocus(vlScene *scene, double distance, vlError *error);
 
 VL_API vlResult vl_scene_create(vlContext *context, vlScene **scene);
@@ -535,7 +505,7 @@ VL_API vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef 
 
 /* What a scene that a file describes may lack: a camera, light, a ground to stand on. */
 typedef enum vlEnvironmentKind {
-  VL_ENVIRONMENT_AUTO,   /* the studio where the settings say light_missing; dim where there are lamps */
+  VL_ENVIRONMENT_AUTO,   /* the studio where vlSceneDefs.light_missing; dim where there are lamps */
   VL_ENVIRONMENT_NONE,   /* none is added */
   VL_ENVIRONMENT_STUDIO, /* neutral: soft lights in a grey room, brighter than it above and in front */
   VL_ENVIRONMENT_SKY,    /* a clear sky and the sun */
@@ -544,7 +514,7 @@ typedef enum vlEnvironmentKind {
 } vlEnvironmentKind;
 typedef struct vlCompleteDef {
   uint32_t cookie;
-  uint32_t width, height; /* of the picture, for framing and where the file says none; 0: the settings' */
+  uint32_t width, height; /* of the picture, for framing and where the file says none; 0: the film's */
   vlEnvironmentKind environment;
   const char *path; /* a picture twice as wide as high (longitude, latitude; its centre lies ahead of one who looks
                      * along -front) or square (equal-area octahedral) */
@@ -555,7 +525,7 @@ typedef struct vlCompleteDef {
   bool reframe;           /* a new camera even where the file has one */
 } vlCompleteDef;
 VL_API vlCompleteDef vl_default_complete_def(void);
-/* Adds what is missing (settings' camera_missing, light_missing) or asked for. The camera sees everything from the
+/* Adds what is missing (vlSceneDefs.camera_missing, light_missing) or asked for. The camera sees everything from the
  * front, a little from the right and above. def may be null. Errors: as vl_scene_result; MISSING, IO (path). */
 VL_API vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *def, vlError *error);
 

@@ -229,10 +229,10 @@ void vl_parallel_for(vlContext *context, uint32_t count, vlParallelBody *body, v
 
 /* ---- life -------------------------------------------------------------------------------------------------------- */
 
-vlContextDef vl_default_context_def(void) {
+vlContextDef vl_default_context_def_abi(uint32_t abi) {
   long cores = sysconf(_SC_NPROCESSORS_ONLN);
   return (vlContextDef){
-      .cookie = VL_COOKIE_CONTEXT,
+      .cookie = VL_COOKIE_OF(VL_COOKIE_CONTEXT & 0xff, abi),
       .allocator = {NULL, default_allocate, default_reallocate, default_release},
       .threads = cores > 0 ? (uint32_t)cores : 1,
       .isa = VL_ISA_AUTO,

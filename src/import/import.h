@@ -11,10 +11,11 @@ vlResult vl_import_pbrt(vlScene *scene, const char *path, const vlLoadDef *def, 
 vlResult vl_import_pbrt_memory(vlScene *scene, const char *data, size_t size, const char *name, const vlLoadDef *def,
                                vlError *error);
 
-/* A glTF 2.0 file (.gltf or .glb, by its content). Where it has no camera or light the scene's settings say so. */
+/* A glTF 2.0 file (.gltf or .glb, by its content). Where it has no camera or light the scene's defs say so. */
 vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 
-/* Plain geometry: Wavefront OBJ with its MTL libraries, and PLY. The settings say that camera and light are missing. */
+/* Plain geometry: Wavefront OBJ with its MTL libraries, and PLY. The scene's defs say that camera and light are
+ * missing. */
 vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 

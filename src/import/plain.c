@@ -1,4 +1,5 @@
-/* import/plain.c: geometry without a scene around it: a PLY file as the whole scene; settings for files that say none.
+/* import/plain.c: geometry without a scene around it: a PLY file as the whole scene; what is taken where the file says
+ * nothing.
  */
 #include "import/plain.h"
 
@@ -8,10 +9,10 @@
 #include "import/ply/ply.h"
 
 void vl_import_plain_settings(vlScene *scene) {
-  vlSceneSettings *s = vl_scene_settings(scene);
-  s->spp = 64;
-  s->tracer = VL_TRACER_VOLPATH;
-  s->max_depth = 12; /* light goes through glass */
+  vlSceneDefs *s = vl_scene_defs(scene);
+  s->render.spp = 64;
+  s->render.tracer = VL_TRACER_VOLPATH;
+  s->render.max_depth = 12; /* light goes through glass */
   s->camera_missing = true;
   s->light_missing = true;
 }

@@ -74,7 +74,7 @@ static void judge(vlCheck *c, const vlSolid *solid, const double *eye, const vlM
   const vlShapeDef *d = solid->shape;
   const vlMaterialDef *m = vl_check_material(c, d->material);
   vlCheckName name = vl_check_material_name(m);
-  vlMediumId medium = c->scene->settings.camera_medium;
+  vlMediumId medium = c->scene->defs.camera_medium;
   bool media = d->inside.index != d->outside.index;
   if (!vl_solid_holds(solid, eye)) return;
   if (media && d->inside.index != medium.index)
@@ -84,8 +84,8 @@ static void judge(vlCheck *c, const vlSolid *solid, const double *eye, const vlM
   else if (!media && m && m->kind == VL_MATERIAL_DIELECTRIC)
     vl_check_add(c, VL_FINDING_CAMERA_INSIDE, VL_SEVERITY_WARNING, d->source,
                  "the camera stands in the body of %s and looks out through its surface", name.text);
-  else if (!lets_light_pass(c, d) && !d->emission.index && c->scene->settings.tracer != VL_TRACER_RAYCAST &&
-           c->scene->settings.tracer != VL_TRACER_AMBIENT_OCCLUSION && !holds_light(c, solid, group_from_world))
+  else if (!lets_light_pass(c, d) && !d->emission.index && c->scene->defs.render.tracer != VL_TRACER_RAYCAST &&
+           c->scene->defs.render.tracer != VL_TRACER_AMBIENT_OCCLUSION && !holds_light(c, solid, group_from_world))
     vl_check_add(c, VL_FINDING_CAMERA_INSIDE, VL_SEVERITY_WARNING, d->source,
                  "the camera stands in this closed body of %s, and no light is in there: the picture stays black",
                  name.text);
@@ -129,8 +129,8 @@ static void check_group(vlCheck *c, uint32_t group, const Box *boxes, const doub
 static void check_camera(vlCheck *c, const Box *boxes) {
   const vlScene *s = c->scene;
   double eye[3], p[3];
-  if (s->settings.camera_missing) return;
-  eye_of(&s->settings.camera, eye);
+  if (s->defs.camera_missing) return;
+  eye_of(&s->defs.camera, eye);
   check_group(c, 0, boxes, eye, NULL);
   Box *groups = vl_alloc_array(c->context, s->groups.count + 1, sizeof *groups);
   if (!groups) c->no_memory = true;

@@ -106,7 +106,7 @@ static void find_used(vlCheck *c) {
     use(c->medium_used, d->outside.index);
   }
   for (size_t i = 0; i < s->lights.count; i++) use(c->medium_used, s->lights.items[i].medium.index);
-  use(c->medium_used, s->settings.camera_medium.index);
+  use(c->medium_used, s->defs.camera_medium.index);
   for (size_t i = 0; i < s->emissions.count; i++) use(c->texture_used, s->emissions.items[i].texture.index);
   for (size_t i = 0; i < s->instances.count; i++) use(c->group_used, s->instances.items[i].group.index);
   vlTextureId inputs[VL_CHECK_INPUTS];

@@ -103,12 +103,12 @@ static void widen(void *user, const double p[3]) {
 static bool frame_camera(vlScene *scene, const vlCompleteDef *def, const Box *box, const Box *boxes) {
   const double azimuth = 0.45, elevation = 0.3, fov = 0.6, margin = 0.9;
   double right[3], up[3], front[3];
-  vlSceneSettings *s = &scene->settings;
+  vlSceneDefs *s = &scene->defs;
   if (!vl_scene_axes(def, right, up, front)) {
     vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "camera: the axes up and front make no sense");
     return false;
   }
-  double half = tan(0.5 * fov), aspect = (double)s->width / s->height;
+  double half = tan(0.5 * fov), aspect = (double)s->film.width / s->film.height;
   Frame f = {.tan_x = margin * half * (aspect > 1 ? aspect : 1),
              .tan_y = margin * half * (aspect > 1 ? 1 : 1 / aspect)};
   for (int i = 0; i < 3; i++) {
@@ -126,7 +126,7 @@ static bool frame_camera(vlScene *scene, const vlCompleteDef *def, const Box *bo
     d = fmax((f.sides[0] + f.sides[1]) / (2 * f.tan_x), (f.sides[2] + f.sides[3]) / (2 * f.tan_y));
   }
   if (!(d > 0) || !isfinite(d)) d = 1;
-  vlCameraDef camera = vl_default_camera_def(s->width, s->height);
+  vlCameraDef camera = vl_default_camera_def(s->film.width, s->film.height);
   camera.shutter_open = s->camera.shutter_open, camera.shutter_close = s->camera.shutter_close;
   camera.fov = fov;
   camera.fov_axis = VL_FOV_SMALLER;
@@ -181,12 +181,12 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
   if (!scene || def.cookie != VL_COOKIE_COMPLETE)
     return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_complete: no scene, or a def not from vl_default_complete_def");
   if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
-  vlSceneSettings *s = &scene->settings;
+  vlSceneDefs *s = &scene->defs;
   bool camera = s->camera_missing || def.reframe;
   if (camera && def.width && def.height) {
     const uint32_t whole[4] = {0, 0, def.width, def.height};
-    s->width = def.width, s->height = def.height;
-    memcpy(s->crop, whole, sizeof whole);
+    s->film.width = def.width, s->film.height = def.height;
+    memcpy(s->film.crop, whole, sizeof whole);
   }
   Box *boxes = NULL, box = nothing;
   bool ok = true;

@@ -1,4 +1,4 @@
-/* scene/lens.c: the lens of the settings' camera: a scene owns what its camera only points at. */
+/* scene/lens.c: the lens of the scene's camera: a scene owns what its camera only points at. */
 #include <string.h>
 
 #include "base/error.h"
@@ -19,18 +19,18 @@ vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
     scene->apertures.items[scene->apertures.count++] = from->apertures.items[i];
   for (size_t i = 0; i < from->optics.count; i++) scene->optics.items[scene->optics.count++] = from->optics.items[i];
   from->apertures.count = from->optics.count = 0;
-  vlSceneSettings *to = &scene->settings;
-  const vlSceneSettings *s = &from->settings;
+  vlSceneDefs *to = &scene->defs;
+  const vlSceneDefs *s = &from->defs;
   to->camera = s->camera;
-  to->width = s->width, to->height = s->height;
-  memcpy(to->crop, s->crop, sizeof to->crop);
+  to->film.width = s->film.width, to->film.height = s->film.height;
+  memcpy(to->film.crop, s->film.crop, sizeof to->film.crop);
   return VL_OK;
 }
 
 vlResult vl_scene_refocus(vlScene *scene, double distance, vlError *error) {
   vl_error_clear(error);
   if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_refocus: null argument");
-  vlCameraDef *camera = &scene->settings.camera;
+  vlCameraDef *camera = &scene->defs.camera;
   if (!camera->lens.optics) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_refocus: the camera's lens is thin");
   if (!VL_RESERVE(scene->context, &scene->optics, 1)) return vl_fail_memory(error);
   vlOptics *optics;

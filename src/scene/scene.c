@@ -1,7 +1,6 @@
-/* scene/scene.c: life of a scene: creating, destroying, its sticky error, its settings and its counts. */
+/* scene/scene.c: life of a scene: creating, destroying, its sticky error, its defs and its counts. */
 #include "scene/scene.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -15,31 +14,13 @@ vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const cha
   return vl_fail_at(&scene->error, code, source.file, source.line, source.column, "%s", text);
 }
 
-static vlSceneSettings default_settings(void) {
-  vlSceneSettings s = {
-      .width = 1280, /* pbrt's film */
-      .height = 720,
-      .exposure = 1.0f,
-      .max_component = INFINITY,
-      .space = VL_SPACE_SRGB,
-      .filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN),
-      .sampler = VL_SAMPLER_ZSOBOL,
-      .spp = 16,
-      .tracer = VL_TRACER_PATH,
-      .max_depth = 5,
-      .ao_distance = __builtin_inff(),
-      .merge_radius = VL_UNSET,
-      .light_paths = 0xffffffffu, /* VL_AS_MANY_AS_PIXELS */
-      .ao_cosine = true,
-      .light_sampler = VL_LIGHT_SAMPLER_BVH,
-      .color = VL_COLOR_SPECTRAL,
-      .lambda_min = 360,
-      .lambda_max = 830,
-  };
-  s.crop[2] = s.width;
-  s.crop[3] = s.height;
-  s.camera = vl_default_camera_def(s.width, s.height);
-  return s;
+static vlSceneDefs default_defs(void) {
+  const uint32_t width = 1280, height = 720; /* pbrt's film */
+  return (vlSceneDefs){.camera = vl_default_camera_def(width, height),
+                       .film = vl_default_film_def(width, height),
+                       .build = vl_default_build_def(),
+                       .render = vl_default_render_def(),
+                       .develop = vl_default_develop_def()};
 }
 
 vlResult vl_scene_create(vlContext *context, vlScene **result) {
@@ -48,7 +29,7 @@ vlResult vl_scene_create(vlContext *context, vlScene **result) {
   vlScene *scene = vl_alloc_zero(context, 1, sizeof *scene);
   if (!scene) return VL_ERROR_MEMORY;
   scene->context = context;
-  scene->settings = default_settings();
+  scene->defs = default_defs();
   *result = scene;
   return VL_OK;
 }
@@ -82,8 +63,8 @@ vlResult vl_scene_result(const vlScene *scene, vlError *error) {
   return scene->error.code;
 }
 
-vlSceneSettings *vl_scene_settings(vlScene *scene) {
-  return &scene->settings;
+vlSceneDefs *vl_scene_defs(vlScene *scene) {
+  return &scene->defs;
 }
 
 void vl_scene_info(const vlScene *scene, vlSceneInfo *info) {

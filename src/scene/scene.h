@@ -9,6 +9,7 @@
 #include "base/context.h"
 #include "base/error.h"
 #include "velo/check.h"
+#include "velo/render.h"
 #include "velo/scene.h"
 
 typedef struct vlSceneGroup {
@@ -38,8 +39,9 @@ struct vlScene {
   VL_ARRAY(vlShapeDef) shapes;
   VL_ARRAY(vlSceneGroup) groups;
   VL_ARRAY(vlSceneInstance) instances;
-  vlSceneSettings settings;
-  VL_ARRAY(vlAperture *) apertures; /* that the settings' camera may have */
+  vlSceneDefs defs;
+  bool camera_in_full;              /* a glTF file has a camera beyond glTF in its extras: vl_scene_load reads it */
+  VL_ARRAY(vlAperture *) apertures; /* that defs.camera may have */
   VL_ARRAY(vlOptics *) optics;
   /* Everything the stored defs point at (strings, spectra, meshes), freed with the scene. */
   VL_ARRAY(void *) blocks;

@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "velo/scene.h"
+#include "velo/render.h"
 
 static vlCameraRecord read_as(const char *path, vlCameraDialect dialect, const char *frame) {
   vlCameraRecord record;
@@ -244,10 +244,7 @@ static void test_pbrt(void **state) {
   vlScene *scene;
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   if (vl_scene_load(scene, path_of("s.pbrt"), NULL, &error) != VL_OK) fail_msg("%s", error.message);
-  vlSceneSettings *settings = vl_scene_settings(scene);
-  settings->camera.width = settings->width;
-  settings->camera.height = settings->height;
-  compare(&r.camera, &settings->camera, 1e-3); /* pbrt's parameters are single precision */
+  compare(&r.camera, &vl_scene_defs(scene)->camera, 1e-3); /* pbrt's parameters are single precision */
   vl_scene_destroy(scene);
 }
 

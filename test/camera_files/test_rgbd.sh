@@ -6,6 +6,6 @@ if ! $python -c 'import cv2, OpenImageIO' 2>/dev/null; then
   skip "rgbd" "python3-opencv or python3-openimageio is not installed"
   exit 77
 fi
-check "rgbd" $python "$VELO_SOURCE_DIR/test/camera/rgbd.py" "$VELO" "$work"
+check "rgbd" $python "$VELO_SOURCE_DIR/test/camera_files/rgbd.py" "$VELO" "$work"
 printf '%s\n' "$out"
 finish

@@ -17,13 +17,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   vlResult result = vl_scene_load(scene, fuzz_file("input.pbrt", data, size), &load, &error);
   if (result == VL_OK) result = vl_world_build(scene, &build, &world, &error);
   if (result == VL_OK) {
-    vlSceneSettings *settings = vl_scene_settings(scene);
-    vlCameraDef def = settings->camera;
+    vlSceneDefs *defs = vl_scene_defs(scene);
+    vlCameraDef def = defs->camera;
     def.width = def.height = SIDE;
     vlCamera camera;
     vlFilmDef film_def = vl_default_film_def(SIDE, SIDE);
-    film_def.filter = settings->filter;
-    vlRenderDef render = vl_scene_render_def(scene);
+    film_def.filter = defs->film.filter;
+    vlRenderDef render = vl_scene_defs(scene)->render;
     render.spp = 2;
     render.max_depth = render.max_depth > 6 ? 6 : render.max_depth;
     if (vl_camera_make(&def, &camera, NULL, &error) == VL_OK && vl_film_create(context, &film_def, &film) == VL_OK)

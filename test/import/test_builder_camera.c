@@ -1,4 +1,4 @@
-/* test/import/test_builder_camera.c: what statements mean: pbrt's and the lecture's cameras, and the settings of the
+/* test/import/test_builder_camera.c: what statements mean: pbrt's and the lecture's cameras, and the defs of the
  * picture. */
 #include "import/load.h"
 
@@ -16,7 +16,7 @@ static vlCamera camera_of(Loaded *l, const char *text) {
   vlCamera camera;
   vlError error;
   load_fine(l, text);
-  vlResult result = vl_camera_make(&vl_scene_settings(l->scene)->camera, &camera, NULL, &error);
+  vlResult result = vl_camera_make(&vl_scene_defs(l->scene)->camera, &camera, NULL, &error);
   if (result != VL_OK) print_message("%s\n", error.message);
   assert_int_equal(result, VL_OK);
   return camera;
@@ -39,8 +39,8 @@ static void pbrt_cameras(void **state) {
   assert_seen(&c, 0, 0, 1, 100, 50);
   assert_seen(&c, 1, 0, 1, 150, 50);
   assert_seen(&c, 0, 1, 1, 100, 0);
-  assert_string_equal(vl_scene_settings(l.scene)->camera_source.file, "t.pbrt");
-  assert_int_equal(vl_scene_settings(l.scene)->camera_source.line, 2);
+  assert_string_equal(vl_scene_defs(l.scene)->camera_source.file, "t.pbrt");
+  assert_int_equal(vl_scene_defs(l.scene)->camera_source.line, 2);
   end_load(&l);
   /* portrait: fov across */
   c = camera_of(&l, "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 200\nCamera \"perspective\"\n" W);
@@ -91,7 +91,7 @@ static void pbrt_cameras(void **state) {
   assert_near(c.focus_distance, 7, 0);
   assert_near(c.shutter_open, 1, 0);
   assert_near(c.shutter_close, 3, 0);
-  assert_near(vl_scene_settings(l.scene)->exposure, 2, 0); /* pbrt's imaging ratio counts the time */
+  assert_near(vl_scene_defs(l.scene)->develop.exposure, 2, 0); /* pbrt's imaging ratio counts the time */
   end_load(&l);
   c = camera_of(&l, "Camera \"perspective\" \"float lensradius\" 0.5\n" W);
   assert_near(c.focus_distance, 1e6, 0);
@@ -146,21 +146,21 @@ static void lecture_cameras(void **state) {
   end_load(&l);
 }
 
-static void picture_settings(void **state) {
+static void scene_defs(void **state) {
   (void)state;
   Loaded l;
   load_fine(&l, W);
-  const vlSceneSettings *s = vl_scene_settings(l.scene);
-  assert_int_equal(s->width, 1280);
-  assert_int_equal(s->height, 720);
-  assert_int_equal(s->spp, 16);
-  assert_int_equal(s->sampler, VL_SAMPLER_ZSOBOL);
-  assert_int_equal(s->tracer, VL_TRACER_VOLPATH);
-  assert_int_equal(s->max_depth, 5);
-  assert_int_equal(s->filter.kind, VL_PIXEL_FILTER_GAUSSIAN);
-  assert_near(s->filter.radius_x, 1.5, 0);
-  assert_near(s->filter.sigma, 0.5, 0);
-  assert_near(s->exposure, 1, 0);
+  const vlSceneDefs *s = vl_scene_defs(l.scene);
+  assert_int_equal(s->film.width, 1280);
+  assert_int_equal(s->film.height, 720);
+  assert_int_equal(s->render.spp, 16);
+  assert_int_equal(s->render.sampler, VL_SAMPLER_ZSOBOL);
+  assert_int_equal(s->render.tracer, VL_TRACER_VOLPATH);
+  assert_int_equal(s->render.max_depth, 5);
+  assert_int_equal(s->film.filter.kind, VL_PIXEL_FILTER_GAUSSIAN);
+  assert_near(s->film.filter.radius_x, 1.5, 0);
+  assert_near(s->film.filter.sigma, 0.5, 0);
+  assert_near(s->develop.exposure, 1, 0);
   end_load(&l);
   load_fine(
       &l,
@@ -173,39 +173,39 @@ static void picture_settings(void **state) {
       "PixelFilter \"mitchell\" \"float xradius\" 3 \"float B\" .5 \"float C\" .25\n"
       "Integrator \"volpath\" \"integer maxdepth\" 12 \"string lightsampler\" \"power\" \"bool regularize\" true\n"
       "Accelerator \"kdtree\" \"integer intersectcost\" 5\nTransformTimes 0 1\n" W);
-  s = vl_scene_settings(l.scene);
-  assert_int_equal(s->crop[0], 11); /* rounded up, as pbrt */
-  assert_int_equal(s->crop[2], 50);
-  assert_int_equal(s->crop[1], 0);
-  assert_int_equal(s->crop[3], 11);
+  s = vl_scene_defs(l.scene);
+  assert_int_equal(s->film.crop[0], 11); /* rounded up, as pbrt */
+  assert_int_equal(s->film.crop[2], 50);
+  assert_int_equal(s->film.crop[1], 0);
+  assert_int_equal(s->film.crop[3], 11);
   assert_string_equal(s->output, "out.exr");
-  assert_near(s->exposure, 2, 0);
-  assert_int_equal(s->space, VL_SPACE_REC2020);
-  assert_int_equal(s->sampler, VL_SAMPLER_STRATIFIED);
-  assert_int_equal(s->spp, 15);
-  assert_int_equal(s->sampler_seed, 17);
-  assert_near(s->filter.radius_x, 3, 0);
-  assert_near(s->filter.radius_y, 2, 0);
-  assert_near(s->filter.c, .25, 0);
-  assert_int_equal(s->max_depth, 12);
-  assert_int_equal(s->light_sampler, VL_LIGHT_SAMPLER_POWER);
-  assert_true(s->regularize);
+  assert_near(s->develop.exposure, 2, 0);
+  assert_int_equal(s->film.space, VL_SPACE_REC2020);
+  assert_int_equal(s->render.sampler, VL_SAMPLER_STRATIFIED);
+  assert_int_equal(s->render.spp, 15);
+  assert_int_equal(s->render.seed, 17);
+  assert_near(s->film.filter.radius_x, 3, 0);
+  assert_near(s->film.filter.radius_y, 2, 0);
+  assert_near(s->film.filter.c, .25, 0);
+  assert_int_equal(s->render.max_depth, 12);
+  assert_int_equal(s->build.light_sampler, VL_LIGHT_SAMPLER_POWER);
+  assert_true(s->build.regularize);
   end_load(&l);
   load_fine(
       &l,
       "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 50 \"integer pixelbounds\" [ 10 20 -5 500 ]\n"
       "Integrator \"ambientocclusion\" \"float maxdistance\" 4 \"bool cossample\" false\n"
       "Sampler \"paddedsobol\" \"integer pixelsamples\" 8 \"integer seed\" 3 \"string randomization\" \"owen\"\n" W);
-  s = vl_scene_settings(l.scene);
-  assert_int_equal(s->crop[0], 10);
-  assert_int_equal(s->crop[1], 0);
-  assert_int_equal(s->crop[2], 20);
-  assert_int_equal(s->crop[3], 50);
-  assert_int_equal(s->tracer, VL_TRACER_AMBIENT_OCCLUSION);
-  assert_near(s->ao_distance, 4, 0);
-  assert_false(s->ao_cosine);
-  assert_int_equal(s->sampler, VL_SAMPLER_SOBOL);
-  assert_int_equal(s->sampler_seed, 3);
+  s = vl_scene_defs(l.scene);
+  assert_int_equal(s->film.crop[0], 10);
+  assert_int_equal(s->film.crop[1], 0);
+  assert_int_equal(s->film.crop[2], 20);
+  assert_int_equal(s->film.crop[3], 50);
+  assert_int_equal(s->render.tracer, VL_TRACER_AMBIENT_OCCLUSION);
+  assert_near(s->render.ao_distance, 4, 0);
+  assert_false(s->render.ao_cosine);
+  assert_int_equal(s->render.sampler, VL_SAMPLER_SOBOL);
+  assert_int_equal(s->render.seed, 3);
   assert_non_null(strstr(l.log, "info t.pbrt:3:1: sampler \"paddedsobol\""));
   end_load(&l);
   load_fine(&l, W
@@ -231,8 +231,8 @@ static void picture_settings(void **state) {
     char text[128];
     snprintf(text, sizeof text, "Sampler \"%s\" \"integer pixelsamples\" 9\n" W, samplers[i].name);
     load_fine(&l, text);
-    assert_int_equal(vl_scene_settings(l.scene)->sampler, samplers[i].kind);
-    assert_int_equal(vl_scene_settings(l.scene)->spp, 9);
+    assert_int_equal(vl_scene_defs(l.scene)->render.sampler, samplers[i].kind);
+    assert_int_equal(vl_scene_defs(l.scene)->render.spp, 9);
     end_load(&l);
   }
   const struct {
@@ -250,14 +250,14 @@ static void picture_settings(void **state) {
     char text[128];
     snprintf(text, sizeof text, "PixelFilter \"%s\"\n" W, filters[i].name);
     load_fine(&l, text);
-    assert_int_equal(vl_scene_settings(l.scene)->filter.kind, filters[i].kind);
-    assert_near(vl_scene_settings(l.scene)->filter.radius_x, filters[i].radius, 0);
+    assert_int_equal(vl_scene_defs(l.scene)->film.filter.kind, filters[i].kind);
+    assert_near(vl_scene_defs(l.scene)->film.filter.radius_x, filters[i].radius, 0);
     end_load(&l);
   }
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(pbrt_cameras), cmocka_unit_test(camera_system),
-                                     cmocka_unit_test(lecture_cameras), cmocka_unit_test(picture_settings)};
+                                     cmocka_unit_test(lecture_cameras), cmocka_unit_test(scene_defs)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -293,7 +293,7 @@ static void media(void **state) {
   assert_near(m[2].rgb_a[1], 2, 0);
   assert_near(m[2].emission_scale, 7, 0);
   assert_near(m[3].wispiness, 3, 0);
-  assert_int_equal(vl_scene_settings(l.scene)->camera_medium.index, 1);
+  assert_int_equal(vl_scene_defs(l.scene)->camera_medium.index, 1);
   assert_int_equal(l.scene->lights.items[0].medium.index, 1);
   assert_int_equal(s[0].inside.index, 2);
   assert_int_equal(s[0].outside.index, 1);

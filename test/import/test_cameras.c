@@ -9,8 +9,7 @@ static vlCamera camera_of(Loaded *l, const char *text) {
   vlCamera camera;
   vlError error;
   load_fine(l, text);
-  if (vl_camera_make(&vl_scene_settings(l->scene)->camera, &camera, NULL, &error) != VL_OK)
-    fail_msg("%s", error.message);
+  if (vl_camera_make(&vl_scene_defs(l->scene)->camera, &camera, NULL, &error) != VL_OK) fail_msg("%s", error.message);
   end_load(l);
   return camera;
 }
@@ -102,7 +101,7 @@ static void stereo_and_the_cross(void **state) {
   load_fine(&l, FILM
             "Camera \"pinhole\" \"string stereo\" \"off-axis\" \"float interocular\" 0.2 \"float convergence\" 4 "
             "\"string stereoeye\" \"left\"\n" W);
-  const vlCameraDef *def = &vl_scene_settings(l.scene)->camera;
+  const vlCameraDef *def = &vl_scene_defs(l.scene)->camera;
   assert_true(def->stereo.mode == VL_STEREO_OFF_AXIS && def->stereo_eye == VL_EYE_LEFT);
   assert_true(def->stereo.interocular == (double)0.2f || def->stereo.interocular == 0.2);
   assert_true(def->stereo.convergence == 4);

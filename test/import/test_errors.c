@@ -362,7 +362,7 @@ static void permissive(void **state) {
   assert_int_equal(info.shapes, 2);
   assert_int_equal(info.materials, 2);
   assert_int_equal(info.lights, 0);
-  assert_int_equal(vl_scene_settings(l.scene)->max_depth, 9);
+  assert_int_equal(vl_scene_defs(l.scene)->render.max_depth, 9);
   assert_int_equal(l.scene->materials.items[l.scene->shapes.items[0].material.index - 1].kind, VL_MATERIAL_DIFFUSE);
   const char *said[] = {"warning t.pbrt:2:1: unknown camera",
                         "warning t.pbrt:3:1: integrator",

@@ -12,7 +12,7 @@ static void containers(void **state) {
   Loaded l;
   fine(&l, g, rest);
   assert_int_equal(shape(&l, 0)->faces, 2);
-  assert_true(l.scene->settings.camera_missing && l.scene->settings.light_missing);
+  assert_true(l.scene->defs.camera_missing && l.scene->defs.light_missing);
   end_load(&l);
   size_t size;
   uint8_t *binary = gltf_binary(g, rest, &size);
@@ -299,15 +299,15 @@ static void cameras(void **state) {
     def.camera = wanted[i];
     load(&l, g, rest, &def);
     assert_int_equal(l.result, VL_OK);
-    const vlSceneSettings *s = &l.scene->settings;
+    const vlSceneDefs *s = &l.scene->defs;
     assert_false(s->camera_missing);
     vlCamera camera;
     vlCameraDef made = s->camera;
-    made.width = s->width, made.height = s->height;
+    made.width = s->film.width, made.height = s->film.height;
     assert_int_equal(vl_camera_make(&made, &camera, NULL, NULL), VL_OK);
     double pixel[2], z, point[3] = {0, 0, 0};
     if (i < 3) {
-      assert_near((double)s->width / s->height, 0.5, 1e-2);
+      assert_near((double)s->film.width / s->film.height, 0.5, 1e-2);
       point[1] = 5 * tan(0.25); /* the upper edge of the picture */
       assert_true(vl_camera_project(&camera, point, pixel, &z));
       assert_near(pixel[1], 0, 1e-6);
@@ -315,7 +315,7 @@ static void cameras(void **state) {
     } else {
       point[0] = 2, point[2] = -1; /* the right edge; the node's scale makes nothing larger */
       assert_true(vl_camera_project(&camera, point, pixel, &z));
-      assert_near(pixel[0], s->width, 1e-6);
+      assert_near(pixel[0], s->film.width, 1e-6);
       assert_near(z, 1, 1e-9);
     }
     end_load(&l);
@@ -340,9 +340,9 @@ static void completion(void **state) {
   def.width = 300, def.height = 200;
   def.ground = true;
   assert_int_equal(vl_scene_complete(l.scene, &def, NULL), VL_OK);
-  const vlSceneSettings *s = &l.scene->settings;
+  const vlSceneDefs *s = &l.scene->defs;
   assert_false(s->camera_missing || s->light_missing);
-  assert_int_equal(s->width, 300);
+  assert_int_equal(s->film.width, 300);
   assert_int_equal(l.scene->lights.count, 1);
   assert_int_equal(l.scene->shapes.count, 2);
   vlCamera camera;

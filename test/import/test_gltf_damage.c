@@ -91,8 +91,8 @@ static vlResult try_file(const uint8_t *data, size_t size, char message[512]) {
   if (r == VL_OK) r = vl_world_build(l.scene, NULL, &world, &l.error);
   vlCamera camera, small;
   if (r == VL_OK) {
-    vlCameraDef def = l.scene->settings.camera;
-    def.width = l.scene->settings.width, def.height = l.scene->settings.height;
+    vlCameraDef def = l.scene->defs.camera;
+    def.width = l.scene->defs.film.width, def.height = l.scene->defs.film.height;
     r = vl_camera_make(&def, &camera, NULL, &l.error);
   }
   if (r == VL_OK) r = vl_camera_resize(&camera, 8, 8, &small);

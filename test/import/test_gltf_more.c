@@ -39,7 +39,7 @@ static void motion(void **state) {
   is_near(instance->times[last], 1, 1e-12);
   is_near(instance->poses[3], 2, 1e-6);
   is_near(instance->poses[16 * last + 3], 4, 1e-6);
-  const vlCameraDef *camera = &l.scene->settings.camera;
+  const vlCameraDef *camera = &l.scene->defs.camera;
   assert_true(camera->has_matrix_close);
   is_near(camera->world_from_camera[3], 2, 1e-6);
   is_near(camera->world_from_camera_close[3], 4, 1e-6);
@@ -49,7 +49,7 @@ static void motion(void **state) {
   def.time_close = VL_UNSET; /* one moment: all is still */
   fine_with(&l, g, moved, &def);
   assert_int_equal(l.scene->instances.count, 0);
-  assert_false(l.scene->settings.camera.has_matrix_close);
+  assert_false(l.scene->defs.camera.has_matrix_close);
   end_load(&l);
   def.time_close = 0.5;
   load(&l, g, moved, &def);
@@ -230,7 +230,7 @@ static void surroundings(void **state) {
             "\"specularImages\":[[0,1,2,3,4,5]]}]}}," SQUARE_MESH,
             NULL);
   assert_int_equal(l.scene->lights.count, 1);
-  assert_false(l.scene->settings.light_missing);
+  assert_false(l.scene->defs.light_missing);
   const vlLightDef *light = &l.scene->lights.items[0];
   is_near((double)light->scale, 2, 0);
   is_near(light->world_from_light[1], -1, 1e-6); /* its up is the world's -x */

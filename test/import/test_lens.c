@@ -13,7 +13,7 @@ static void thin_lens_words(void **state) {
             "\"float sensorwidth\" 36 \"float fnumber\" 2 \"float focuspixel\" [10 20] \"integer blades\" 6 "
             "\"float bladerotation\" 30 \"float apertureratio\" 2 \"float tiltx\" 10 \"float tilty\" -5 "
             "\"bool vignetting\" true \"float iso\" 200 \"float seconds\" 0.01\n" W);
-  const vlCameraDef *d = &vl_scene_settings(l.scene)->camera;
+  const vlCameraDef *d = &vl_scene_defs(l.scene)->camera;
   vlCamera c;
   vlError error;
   if (vl_camera_make(d, &c, NULL, &error) != VL_OK) fail_msg("%s", error.message);
@@ -25,13 +25,13 @@ static void thin_lens_words(void **state) {
   load_fine(
       &l, FILM
       "Camera \"fisheye\" \"float lensradius\" 0.1 \"point3 focuspoint\" [0 0 -3] \"string aperture\" \"star\"\n" W);
-  if (vl_camera_make(&vl_scene_settings(l.scene)->camera, &c, NULL, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_camera_make(&vl_scene_defs(l.scene)->camera, &c, NULL, &error) != VL_OK) fail_msg("%s", error.message);
   assert_true(c.focus_distance == 3 && c.lens.aperture);
   end_load(&l);
   load_fine(&l, FILM
             "Camera \"thinlens\" \"float fov\" 40 \"float focallength\" 50 \"float fnumber\" 4 "
             "\"float lenstiltx\" 5 \"float unitmm\" 1 \"string aperture\" \"circle\"\n" W);
-  if (vl_camera_make(&vl_scene_settings(l.scene)->camera, &c, NULL, &error) != VL_OK) fail_msg("%s", error.message);
+  if (vl_camera_make(&vl_scene_defs(l.scene)->camera, &c, NULL, &error) != VL_OK) fail_msg("%s", error.message);
   assert_true(fabs(c.lens_radius - 6.25) < 1e-12 && !c.lens.aperture);
   assert_true(fabs(c.lens.hinge[1] - sin(0.0872664626) / 50) < 1e-9);
   end_load(&l);
@@ -45,7 +45,7 @@ static void realistic(void **state) {
             "Camera \"realistic\" \"string lensfile\" \"" GAUSS
             "\" \"float aperturediameter\" 8 \"float focusdistance\" 1.5 \"string aperture\" \"pentagon\" "
             "\"float shutterclose\" 0.5\n" W);
-  const vlSceneSettings *s = vl_scene_settings(l.scene);
+  const vlSceneDefs *s = vl_scene_defs(l.scene);
   vlCamera c;
   vlError error;
   if (vl_camera_make(&s->camera, &c, NULL, &error) != VL_OK) fail_msg("%s", error.message);
@@ -53,7 +53,7 @@ static void realistic(void **state) {
   assert_int_equal(c.projection, VL_PROJECTION_OPTICS);
   vl_optics_info(c.lens.optics, &info);
   assert_true(fabs(info.film_diagonal - 0.043) < 1e-12 && info.focus_distance == 1.5);
-  assert_true(s->exposure == 0.5f);
+  assert_true(s->develop.exposure == 0.5f);
   end_load(&l);
 }
 

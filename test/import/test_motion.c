@@ -64,7 +64,7 @@ static void cameras_move(void **state) {
   load_fine(&l,
             "TransformTimes 1 3\nLookAt 0 0 -5 0 0 0 0 1 0\nActiveTransform EndTime\nTranslate 2 0 0\n"
             "Camera \"perspective\" \"float shutteropen\" 1 \"float shutterclose\" 2\n" W);
-  const vlCameraDef *def = &vl_scene_settings(l.scene)->camera;
+  const vlCameraDef *def = &vl_scene_defs(l.scene)->camera;
   assert_int_equal(vl_camera_make(def, &camera, NULL, NULL), VL_OK);
   assert_true(camera.moves && camera.pose_times[0] == 1 && camera.pose_times[1] == 3);
   assert_pose(camera.world_from_camera, 0, 0, -5);
@@ -75,7 +75,7 @@ static void cameras_move(void **state) {
       "Camera \"pinhole\" \"point3 eye\" [0 0 5] \"point3 eyeclose\" [1 0 5] \"float rollclose\" 90\n"
       "\"float shutteropen\" 1 \"float shutterclose\" 2 \"float readout\" 0.5 \"string readoutdirection\" \"up\"\n"
       "\"string shuttercurve\" \"trapezoid\" \"float shutterrise\" 0.25\n" W);
-  def = &vl_scene_settings(l.scene)->camera;
+  def = &vl_scene_defs(l.scene)->camera;
   assert_int_equal(vl_camera_make(def, &camera, NULL, NULL), VL_OK);
   assert_true(camera.moves && camera.pose_times[0] == 1 && camera.pose_times[1] == 2.5);
   assert_pose(camera.world_from_camera_close, 1, 0, 5);

@@ -75,7 +75,7 @@ static void corners(void **state) {
     assert_int_equal(d->faces, 2);
     assert_int_equal(d->vertices, 4);
     assert_int_equal(d->normals != NULL, i == 4);
-    assert_true(vl_scene_settings(l.scene)->camera_missing && vl_scene_settings(l.scene)->light_missing);
+    assert_true(vl_scene_defs(l.scene)->camera_missing && vl_scene_defs(l.scene)->light_missing);
     end_load(&l);
   }
 }
@@ -166,7 +166,7 @@ static void colors(void **state) {
   assert_int_equal(d->faces, 2);
   assert_float_equal(d->colors[0], 1, 0);
   assert_float_equal(d->colors[5], 0.21586, 1e-4);
-  assert_true(vl_scene_settings(l.scene)->camera_missing);
+  assert_true(vl_scene_defs(l.scene)->camera_missing);
   end_load(&l);
 }
 

@@ -128,9 +128,9 @@ static void cornell_box(void **state) {
   if (absent()) skip();
   Loaded l;
   load(&l, "cornell-box/cornell-box.pbrt", false);
-  const vlSceneSettings *s = vl_scene_settings(l.scene);
-  assert_int_equal(s->sampler, VL_SAMPLER_SOBOL);
-  assert_int_equal(s->filter.kind, VL_PIXEL_FILTER_GAUSSIAN);
+  const vlSceneDefs *s = vl_scene_defs(l.scene);
+  assert_int_equal(s->render.sampler, VL_SAMPLER_SOBOL);
+  assert_int_equal(s->film.filter.kind, VL_PIXEL_FILTER_GAUSSIAN);
   vlCamera camera;
   vlError error;
   assert_int_equal(vl_camera_make(&s->camera, &camera, NULL, &error), VL_OK);
@@ -141,10 +141,10 @@ static void cornell_box(void **state) {
   double pixel[2], z;
   assert_true(vl_camera_project(&camera, (double[]){0, 1, 0}, pixel, &z));
   assert_near(z, 6.8, 1e-6);
-  assert_near(pixel[0], s->width / 2.0, 1e-4);
+  assert_near(pixel[0], s->film.width / 2.0, 1e-4);
   /* seen from there the red wall is at x = -1: on the left */
   assert_true(vl_camera_project(&camera, (double[]){-1, 1, 0}, pixel, &z));
-  assert_true(pixel[0] < s->width / 2.0);
+  assert_true(pixel[0] < s->film.width / 2.0);
   end_load(&l);
 }
 

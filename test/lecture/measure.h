@@ -68,14 +68,14 @@ static inline Picture render_changed(const char *name, uint32_t width, uint32_t 
   build.color = VL_COLOR_RGB;
   ok(vl_world_build(scene, &build, &world, &error), &error);
   vlCamera camera;
-  vlCameraDef camera_def = vl_scene_settings(scene)->camera;
+  vlCameraDef camera_def = vl_scene_defs(scene)->camera;
   if (change) change(&camera_def, user);
   ok(vl_camera_make(&camera_def, &camera, NULL, &error), &error);
   ok(vl_camera_resize(&camera, width, height, &p.camera), &error);
   vlFilmDef film_def = vl_default_film_def(width, height);
   film_def.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
   ok(vl_film_create(p.context, &film_def, &film), &error);
-  vlRenderDef render = vl_scene_render_def(scene);
+  vlRenderDef render = vl_scene_defs(scene)->render;
   assert_int_equal(render.tracer, VL_TRACER_RAYCAST);
   render.spp = 256;
   vlRenderStats stats;

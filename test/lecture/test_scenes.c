@@ -75,7 +75,7 @@ static void cameras_are_the_slides(void **state) {
       fail_msg("%s: %s:%u:%u: %s", scenes[k].name, error.file, error.line, error.column, error.message);
     vlCamera camera;
     const char *warning;
-    if (vl_camera_make(&vl_scene_settings(scene)->camera, &camera, &warning, &error) != VL_OK)
+    if (vl_camera_make(&vl_scene_defs(scene)->camera, &camera, &warning, &error) != VL_OK)
       fail_msg("%s: %s", scenes[k].name, error.message);
     assert_null(warning);
     assert_true(fabs(camera.fx / scenes[k].f - 1) < 1e-7 && fabs(camera.fy / scenes[k].f - 1) < 1e-7);

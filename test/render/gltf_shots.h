@@ -67,10 +67,10 @@ static UNUSED Picture shoot(const Gltf *g, const char *rest, const Shot *shot) {
   vlCompleteDef complete = vl_default_complete_def();
   complete.environment = shot->room == VL_ENVIRONMENT_AUTO ? VL_ENVIRONMENT_WHITE : shot->room;
   if (vl_scene_complete(s.scene, &complete, &error) != VL_OK) fail_msg("%s", error.message);
-  s.camera = vl_scene_settings(s.scene)->camera;
+  s.camera = vl_scene_defs(s.scene)->camera;
   s.camera.width = s.camera.height = 32;
   s.build.color = shot->spectral ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
-  s.render.tracer = vl_scene_settings(s.scene)->tracer;
+  s.render.tracer = vl_scene_defs(s.scene)->render.tracer;
   s.render.spp = shot->spp ? shot->spp : 64;
   s.render.max_depth = shot->depth ? shot->depth : 64;
   Picture p = stage_finish(&s);

@@ -32,10 +32,10 @@ static void both_ways(const Gltf *g, const char *rest, Picture *own, Picture *wr
     complete.environment = VL_ENVIRONMENT_WHITE;
     if (pass == 0 && vl_scene_complete(s.scene, &complete, &error) != VL_OK) fail_msg("%s", error.message);
     if (pass == 0 && vl_scene_save(s.scene, to, NULL, &error) != VL_OK) fail_msg("%s", error.message);
-    s.camera = vl_scene_settings(s.scene)->camera;
+    s.camera = vl_scene_defs(s.scene)->camera;
     s.camera.width = s.camera.height = 32;
     s.build.color = VL_COLOR_RGB;
-    s.render.tracer = vl_scene_settings(s.scene)->tracer;
+    s.render.tracer = vl_scene_defs(s.scene)->render.tracer;
     s.render.spp = 64;
     s.render.max_depth = 32;
     *(pass ? written : own) = stage_finish(&s);

@@ -129,7 +129,7 @@ static void single_scattering(void **state) {
       for (int i = 0; i < 3; i++) def.low[i] = -200, def.high[i] = 200;
     }
     add_point(&s, (float)lamp[0], (float)lamp[1], (float)lamp[2], 1);
-    vl_scene_settings(s.scene)->camera_medium = add_medium(&s, &def);
+    vl_scene_defs(s.scene)->camera_medium = add_medium(&s, &def);
     Picture p = stage_finish(&s);
     assert_ratio("single scattering", picture_mean(&p, 1), expected, 6e-3);
     picture_free(&p);
@@ -234,7 +234,7 @@ static Picture rich(vlContext *context, const void *what) {
   add_point(&s, 1, 2, -1, 5);
   vlMediumDef dust = fog(0.01f, 0.05f, 0.2f);
   vlMediumId air = add_medium(&s, &dust);
-  vl_scene_settings(s.scene)->camera_medium = air;
+  vl_scene_defs(s.scene)->camera_medium = air;
   vlMediumDef def = white_medium(VL_MEDIUM_GRID);
   def.emission = vl_spectrum_rgb(0.5f, 0.1f, 0.1f), def.sigma_a = vl_spectrum_rgb(0.1f, 0.3f, 0.6f);
   add_ball(&s, -3, 0.9f, interface(&s), add_medium(&s, &def), air);

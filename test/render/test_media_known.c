@@ -88,7 +88,7 @@ static void nested(void **state) {
       if (turn && (k + turn) % 3) uniform(&def, 50);
       id[k] = add_medium(&s, &def);
     }
-    vl_scene_settings(s.scene)->camera_medium = id[0];
+    vl_scene_defs(s.scene)->camera_medium = id[0];
     add_ball(&s, 0, 1, interface(&s), id[0], id[1]);
     add_ball(&s, 0, 3, interface(&s), id[1], id[2]);
     add_ball(&s, 0, 6, interface(&s), id[2], (vlMediumId){0});
@@ -108,7 +108,7 @@ static void lamp_in_shell(void **state) {
     vlMediumDef a = fog(0.5f, 0, 0), b = fog(0.3f, 0, 0);
     vlMediumId inner = {0}, outer = {0};
     if (with) inner = add_medium(&s, &a), outer = add_medium(&s, &b);
-    vl_scene_settings(s.scene)->camera_medium = inner;
+    vl_scene_defs(s.scene)->camera_medium = inner;
     add_ball(&s, 0, 4, interface(&s), inner, outer);
     Quad wall = quad_at(0, 0, -2, 1, 0, 0, 0, 1, 0);
     wall.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
@@ -253,7 +253,7 @@ static void voxels(void **state) {
     if (way == 2) set_matrix(def.world_from_medium, 0, 1, 0, -32, 0, 0, 1, -32, -1.5, 0, 0, 0);
     vlMediumId id = add_medium(&s, &def);
     add_ball(&s, 0, 1000, interface(&s), id, (vlMediumId){0});
-    vl_scene_settings(s.scene)->camera_medium = id;
+    vl_scene_defs(s.scene)->camera_medium = id;
     add_sky(&s, 1);
     Picture p = stage_finish(&s);
     assert_ratio("voxels", picture_mean(&p, 1), exp(-0.002 * 7 * 64 * (way == 2 ? 1.5 : 1)), 0.01);

@@ -38,7 +38,7 @@ static Picture room(int kind, float u, float v, bool regularize, bool first, uin
     s.render.tracer = VL_TRACER_VOLPATH;
     vlMediumDef air = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
     air.sigma_s = vl_spectrum_constant(0), air.sigma_a = vl_spectrum_constant(0.1f);
-    vl_scene_settings(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &air);
+    vl_scene_defs(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &air);
   }
   vlMaterialId grey = add_diffuse(&s, 0.5f, 0.5f, 0.5f), other = shiny(&s, kind, u, v);
   Quad wall = quad_at(0, 0, -1, 3, 0, 0, 0, 3, 0), back = quad_at(0, 0, 1, -3, 0, 0, 0, 3, 0);
@@ -123,13 +123,13 @@ static void in_a_medium(void **state) {
     s.render.tracer = VL_TRACER_VOLPATH;
     vlMediumDef fog = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
     fog.sigma_s = vl_spectrum_constant(0.5f), fog.sigma_a = vl_spectrum_constant(0);
-    vl_scene_settings(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &fog);
+    vl_scene_defs(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &fog);
     Quad mirror = quad_at(0, 0, -2, 3, 0, 0, 0, 3, 0);
     mirror.material = shiny(&s, CONDUCTOR, 0, 0);
     add_quad(&s, &mirror);
     vlLightDef lamp = vl_default_light_def(VL_LIGHT_POINT);
     lamp.from[0] = 0.4f, lamp.from[2] = -1;
-    lamp.medium = vl_scene_settings(s.scene)->camera_medium;
+    lamp.medium = vl_scene_defs(s.scene)->camera_medium;
     vl_scene_add_light(s.scene, &lamp);
     Picture p = stage_finish(&s);
     mean[on] = picture_mean(&p, 1);

@@ -238,7 +238,7 @@ static void in_fog(void **state) {
     vlMediumDef thin = fog(0.3f);
     if (with) {
       vlMediumId id = vl_scene_add_medium(s.scene, &thin);
-      vl_scene_settings(s.scene)->camera_medium = id;
+      vl_scene_defs(s.scene)->camera_medium = id;
     }
     Picture p = stage_finish(&s);
     mean[with] = picture_mean(&p, 1);
@@ -337,7 +337,7 @@ static Picture rich(vlContext *context, const void *color) {
   add_point(&s, 1, 2, -1, 5);
   vlMediumDef dust = fog(0.02f);
   dust.sigma_s = vl_spectrum_rgb(0.03f, 0.05f, 0.08f);
-  vl_scene_settings(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &dust);
+  vl_scene_defs(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &dust);
   vlMaterialDef skin = reflecting(vl_spectrum_rgb(0.8f, 0.5f, 0.4f), 1), marble = body(0.02f, 8);
   skin.subsurface.mfp = vl_spectrum_input(vl_spectrum_rgb(0.3f, 0.1f, 0.05f));
   skin.u_roughness = skin.v_roughness = vl_float_input(0.3f);

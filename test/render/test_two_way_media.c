@@ -114,7 +114,7 @@ static Stage room(const void *user, vlTracer tracer) {
   vlMediumId medium = add_medium(&s, c->air), none = {0};
   vlEmissionId no_glow = {0};
   if (c->air == FOG) {
-    vl_scene_settings(s.scene)->camera_medium = medium;
+    vl_scene_defs(s.scene)->camera_medium = medium;
   } else if (c->air == WALLED) {
     add_window(&s, medium);
   } else {

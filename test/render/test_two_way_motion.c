@@ -65,7 +65,7 @@ static Stage room(const void *user, vlTracer tracer) {
   if (c->fog) {
     vlMediumDef def = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
     def.sigma_a = vl_spectrum_constant(0.02f), def.sigma_s = vl_spectrum_constant(0.15f);
-    vl_scene_settings(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &def);
+    vl_scene_defs(s.scene)->camera_medium = vl_scene_add_medium(s.scene, &def);
   }
   return s;
 }

@@ -33,7 +33,7 @@ static vlResult load(const unsigned char *file, size_t size, vlError *error, voi
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   vlMediumDef def = vl_default_medium_def(VL_MEDIUM_NANOVDB);
   def.path = file_name();
-  vl_scene_settings(scene)->camera_medium = vl_scene_add_medium(scene, &def);
+  vl_scene_defs(scene)->camera_medium = vl_scene_add_medium(scene, &def);
   vlResult r = vl_world_build(scene, NULL, &world, error);
   if (r == VL_OK && look) look(&world->media.items[0]);
   vl_world_destroy(world);

@@ -35,10 +35,8 @@ static int load_scene_camera(vlContext *context, const char *path, vlCameraRecor
   vlResult result = vl_scene_create(context, &scene);
   if (result == VL_OK) result = vl_scene_load(scene, path, &load, &error);
   if (result == VL_OK) {
-    const vlSceneSettings *from = vl_scene_settings(scene);
+    const vlSceneDefs *from = vl_scene_defs(scene);
     *record = (vlCameraRecord){.camera = from->camera, .dialect = VL_CAMERA_DIALECT_PBRT, .frames = 1};
-    record->camera.width = from->width;
-    record->camera.height = from->height;
   }
   int status = result == VL_OK ? -1 : report_error(&error, result, path);
   /* what a camera only points at goes with its scene */

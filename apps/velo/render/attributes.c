@@ -164,7 +164,7 @@ static void set_camera(Header *header, const Job *job) {
   vl_camera_at(&job->camera, job_channels_time(job), &held);
   set_camera_matrices(header, c);
   if (c->projection == VL_PROJECTION_PERSPECTIVE && is_linear(c)) {
-    double sensor = job->settings->camera.sensor_width_mm;
+    double sensor = job->defs->camera.sensor_width_mm;
     double mm = (sensor > 0 ? sensor : 36.0) / c->width;
     set_float(header, "pinholeFocalLength", c->fx * mm);
     set_v2(header, "sensorOverallDimensions", c->width * mm, c->height * mm);
@@ -178,8 +178,8 @@ static void set_camera(Header *header, const Job *job) {
   set_matrix(header, "velo.worldFromCamera", VL_ATTRIBUTE_M44D, c->world_from_camera);
   set_text(header, "velo.projection", vl_projection_name(c->projection));
   if (isfinite(c->limit)) set_double(header, "velo.limit", c->limit);
-  set_model(header, c, &job->settings->camera);
-  set_stereo(header, c, &job->settings->camera.stereo);
+  set_model(header, c, &job->defs->camera);
+  set_stereo(header, c, &job->defs->camera.stereo);
   set_float(header, "velo.lensRadius", c->lens_radius);
   set_lens(header, c);
   if (isfinite(c->focus_distance)) set_float(header, "focus", c->focus_distance);
@@ -190,10 +190,13 @@ static void set_camera(Header *header, const Job *job) {
 
 vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
   Header header = {.image = image, .result = VL_OK};
-  const uint32_t *crop = job->film.crop;
+  const vlFilmDef *film = &job->defs->film;
+  const vlBuildDef *build = &job->defs->build;
+  const vlRenderDef *render = &job->defs->render;
+  const uint32_t *crop = film->crop;
   const vlCamera *c = &job->camera;
   char software[32];
-  snprintf(software, sizeof software, "velo %d.%d.%d", VL_VERSION_MAJOR, VL_VERSION_MINOR, VL_VERSION_PATCH);
+  snprintf(software, sizeof software, "velo %s", vl_version()->text);
   set_text(&header, "software", software);
   set_window(&header, "displayWindow", 0, 0, c->width, c->height);
   set_window(&header, "dataWindow", crop[0], crop[1], crop[2], crop[3]);
@@ -203,17 +206,17 @@ vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
   const char *slash = strrchr(job->path, '/');
   set_text(&header, "velo.scene", slash ? slash + 1 : job->path);
   set_int(&header, "samplesPerPixel", spp);
-  set_text(&header, "velo.sampler", choice_name(sampler_choices, (int)job->render.sampler));
-  set_double(&header, "velo.seed", job->render.seed); /* unsigned: does not fit EXR's int */
-  set_text(&header, "velo.filter", choice_name(filter_choices, (int)job->film.filter.kind));
-  set_v2(&header, "velo.filterRadius", job->film.filter.radius_x, job->film.filter.radius_y);
-  set_text(&header, "velo.tracer", choice_name(tracer_choices, (int)job->render.tracer));
-  set_int(&header, "velo.maxDepth", job->render.max_depth);
-  set_text(&header, "velo.color", choice_name(color_choices, (int)job->settings->color));
-  if (job->build.regularize) set_int(&header, "velo.regularize", 1);
-  if (job->render.merge_radius > 0) set_double(&header, "velo.mergeRadius", job->render.merge_radius);
-  if (job->render.light_paths != VL_AS_MANY_AS_PIXELS) set_double(&header, "velo.lightPaths", job->render.light_paths);
-  set_text(&header, "velo.lightSampler", choice_name(light_sampler_choices, (int)job->settings->light_sampler));
+  set_text(&header, "velo.sampler", choice_name(sampler_choices, (int)render->sampler));
+  set_double(&header, "velo.seed", render->seed); /* unsigned: does not fit EXR's int */
+  set_text(&header, "velo.filter", choice_name(filter_choices, (int)film->filter.kind));
+  set_v2(&header, "velo.filterRadius", film->filter.radius_x, film->filter.radius_y);
+  set_text(&header, "velo.tracer", choice_name(tracer_choices, (int)render->tracer));
+  set_int(&header, "velo.maxDepth", render->max_depth);
+  set_text(&header, "velo.color", choice_name(color_choices, (int)build->color));
+  if (build->regularize) set_int(&header, "velo.regularize", 1);
+  if (render->merge_radius > 0) set_double(&header, "velo.mergeRadius", render->merge_radius);
+  if (render->light_paths != VL_AS_MANY_AS_PIXELS) set_double(&header, "velo.lightPaths", render->light_paths);
+  set_text(&header, "velo.lightSampler", choice_name(light_sampler_choices, (int)build->light_sampler));
   return header.result;
 }
 

@@ -108,7 +108,7 @@ static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
     if (!c->box_list[k]) return report_error(NULL, VL_ERROR_MEMORY, NULL);
   }
   vlBoxesDef def = vl_default_boxes_def(job->camera.width, job->camera.height);
-  memcpy(def.crop, job->film.crop, sizeof def.crop);
+  memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
   vlError error = {0};
   vlResult result = vl_world_boxes(world, &job->camera, &def, c->box_list[0], c->box_list[1], &error);
   return result == VL_OK ? STATUS_OK : report_error(&error, result, job->path);
@@ -129,8 +129,8 @@ bool channels_any(const Channels *c) {
 }
 
 void channels_take(Channels *c, Job *job) {
-  bool wanted = job->settings->gbuffer != VL_GBUFFER_NONE;
-  c->spectrum = job->film.buckets > 0;
+  bool wanted = job->defs->gbuffer != VL_GBUFFER_NONE;
+  c->spectrum = job->defs->film.buckets > 0;
   c->gbuffer = wanted && !c->bits;
   if (wanted && c->bits) report_note("--channels are written in place of the film's gbuffer");
 }
@@ -143,17 +143,17 @@ int channels_render(Channels *c, vlContext *context, const vlWorld *world, const
   shutter_ends(c, job);
   vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
   def.channels = c->bits;
-  def.space = job->film.space;
+  def.space = job->defs->film.space;
   def.samples = vl_film_spp(film);
   def.mode = c->mode;
   def.ranks = c->ranks;
   def.film = film;
-  def.render = &job->render;
-  def.exposure = job->settings->exposure;
+  def.render = &job->defs->render;
+  def.exposure = job->defs->develop.exposure;
   def.time = job_channels_time(job);
   if (c->bits & VL_CHANNEL_FORWARD) def.forward = &c->others[0];
   if (c->bits & VL_CHANNEL_BACKWARD) def.backward = &c->others[1];
-  memcpy(def.crop, job->film.crop, sizeof def.crop);
+  memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
   vlError error = {0};
   vlResult result = vl_render_channels(world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
   if (result != VL_OK) return report_error(&error, result, job->path);

@@ -16,16 +16,16 @@ typedef struct Facts {
 static Facts gather(const Job *job, const vlScene *scene, const vlWorld *world) {
   const double degrees = 57.295779513082320877;
   const vlCamera *c = &job->camera;
-  const vlSceneSettings *s = job->settings;
+  const vlSceneDefs *defs = job->defs;
   Facts f = {
       .projection = c->projection == VL_PROJECTION_PERSPECTIVE && c->lens_radius > 0
                         ? "thin lens"
                         : vl_projection_name(c->projection),
-      .sampler = choice_name(sampler_choices, (int)job->render.sampler),
-      .tracer = choice_name(tracer_choices, (int)job->render.tracer),
-      .filter = choice_name(filter_choices, (int)job->film.filter.kind),
-      .light_sampler = choice_name(light_sampler_choices, (int)s->light_sampler),
-      .color = choice_name(color_choices, (int)s->color),
+      .sampler = choice_name(sampler_choices, (int)defs->render.sampler),
+      .tracer = choice_name(tracer_choices, (int)defs->render.tracer),
+      .filter = choice_name(filter_choices, (int)defs->film.filter.kind),
+      .light_sampler = choice_name(light_sampler_choices, (int)defs->build.light_sampler),
+      .color = choice_name(color_choices, (int)defs->build.color),
   };
   f.fov_x = degrees * (atan(c->cx / c->fx) + atan((c->width - c->cx) / c->fx));
   f.fov_y = degrees * (atan(c->cy / c->fy) + atan((c->height - c->cy) / c->fy));
@@ -43,17 +43,18 @@ static Facts gather(const Job *job, const vlScene *scene, const vlWorld *world) 
 
 static void describe_json(const Job *job, const Facts *f, const char *const *outputs, int output_count) {
   const vlCamera *c = &job->camera;
+  const vlRenderDef *render = &job->defs->render;
   Json json = report_json_begin("plan");
   json_text(&json, "scene", job->path);
   json_integer(&json, "width", c->width);
   json_integer(&json, "height", c->height);
   json_begin(&json, "crop", '[');
-  for (int i = 0; i < 4; i++) json_integer(&json, NULL, job->film.crop[i]);
+  for (int i = 0; i < 4; i++) json_integer(&json, NULL, job->defs->film.crop[i]);
   json_end(&json, ']');
-  json_integer(&json, "spp", job->render.spp);
-  json_number(&json, "time_limit", job->render.time_limit);
-  json_integer(&json, "seed", job->render.seed);
-  json_integer(&json, "max_depth", job->render.max_depth);
+  json_integer(&json, "spp", render->spp);
+  json_number(&json, "time_limit", render->time_limit);
+  json_integer(&json, "seed", render->seed);
+  json_integer(&json, "max_depth", render->max_depth);
   json_text(&json, "tracer", f->tracer);
   json_text(&json, "sampler", f->sampler);
   json_text(&json, "filter", f->filter);
@@ -91,7 +92,8 @@ void job_describe(const Job *job, vlContext *context, const vlScene *scene, cons
     return;
   }
   const vlCamera *c = &job->camera;
-  const uint32_t *crop = job->film.crop;
+  const vlRenderDef *render = &job->defs->render;
+  const uint32_t *crop = job->defs->film.crop;
   char triangles[32], bytes[32], build[32];
   format_count(triangles, sizeof triangles, (double)f.world.triangles);
   format_count(bytes, sizeof bytes, (double)f.world.bytes);
@@ -110,10 +112,10 @@ void job_describe(const Job *job, vlContext *context, const vlScene *scene, cons
   if (crop[0] || crop[1] || crop[2] != c->width || crop[3] != c->height)
     printf(", of these x %u to %u, y %u to %u", crop[0], crop[2], crop[1], crop[3]);
   printf(", filter %s, colour %s\n", f.filter, f.color);
-  printf("sampling  %u spp, sampler %s, seed %u", job->render.spp, f.sampler, job->render.seed);
-  if (job->render.time_limit > 0) printf(", at most %g s", job->render.time_limit);
-  printf("\ntracer    %s, max depth %u, lights by %s%s\n", f.tracer, job->render.max_depth, f.light_sampler,
-         job->build.regularize ? ", regularised" : "");
+  printf("sampling  %u spp, sampler %s, seed %u", render->spp, f.sampler, render->seed);
+  if (render->time_limit > 0) printf(", at most %g s", render->time_limit);
+  printf("\ntracer    %s, max depth %u, lights by %s%s\n", f.tracer, render->max_depth, f.light_sampler,
+         job->defs->build.regularize ? ", regularised" : "");
   printf("machine   %u threads, x86-64-v%d\n", vl_context_threads(context), (int)vl_context_isa(context));
   for (int i = 0; i < output_count; i++) printf("%s %s\n", i ? "         " : "output   ", outputs[i]);
 }

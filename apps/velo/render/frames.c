@@ -17,7 +17,7 @@ static const double y_up[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}
 
 bool frames_wanted(const Arguments *arguments, const Job *job) {
   if (arguments->values[RENDER_TRAJECTORY].given) return true;
-  return job && job->settings->camera.stereo.mode != VL_STEREO_NONE;
+  return job && job->defs->camera.stereo.mode != VL_STEREO_NONE;
 }
 
 /* ---- the command line -------------------------------------------------------------------------------------------- */
@@ -79,11 +79,11 @@ static void multiply(const double a[16], const double b[16], double result[16]) 
 /* The film of an earlier camera of the same size, else one of its own. */
 static int make_film(Frames *frames, vlContext *context, FrameCamera *camera) {
   for (FrameCamera *other = frames->cameras; other < camera; other++)
-    if (memcmp(&other->job.film, &camera->job.film, sizeof camera->job.film) == 0) {
+    if (memcmp(&other->job.defs->film, &camera->job.defs->film, sizeof camera->job.defs->film) == 0) {
       camera->film = other->film;
       return -1;
     }
-  vlResult result = vl_film_create(context, &camera->job.film, &camera->film);
+  vlResult result = vl_film_create(context, &camera->job.defs->film, &camera->film);
   camera->owns_film = result == VL_OK;
   return result == VL_OK ? -1 : report_error(NULL, result, camera->job.path);
 }
@@ -95,7 +95,7 @@ static int add_camera(Frames *frames, vlContext *context, const Job *job, const 
   camera->job = *job;
   if (record) {
     snprintf(camera->name, sizeof camera->name, "%s", record->name);
-    int status = job_take_camera(&camera->job, &camera->settings, &record->camera, path, arguments);
+    int status = job_take_camera(&camera->job, &camera->defs, &record->camera, path, arguments);
     if (status >= 0) return status;
   }
   /* what only one picture's camera has, its place and its motion, makes room for the frames' poses */
@@ -111,7 +111,7 @@ static int add_camera(Frames *frames, vlContext *context, const Job *job, const 
     result = vl_camera_move(&base, turned ? y_up : identity, &base, &error);
   }
   for (int i = 0; i < frames->views && result == VL_OK; i++)
-    result = vl_camera_eye(&base, &camera->job.settings->camera.stereo, frames->eyes[i], &camera->eyes[i], &error);
+    result = vl_camera_eye(&base, &camera->job.defs->camera.stereo, frames->eyes[i], &camera->eyes[i], &error);
   if (result == VL_OK) return make_film(frames, context, camera);
   vlError place = camera->job.camera_place;
   snprintf(place.message, sizeof place.message, "%s", error.message);
@@ -156,7 +156,7 @@ static int choose_frames(Frames *frames, const Arguments *arguments) {
 int frames_load(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments) {
   static const char *const names[2] = {"left", "right"};
   const OptionValue *v = arguments->values;
-  const vlCameraDef *def = &job->settings->camera;
+  const vlCameraDef *def = &job->defs->camera;
   bool stereo = def->stereo.mode != VL_STEREO_NONE, both = stereo && def->stereo_eye == VL_EYE_BOTH;
   memset(frames, 0, sizeof *frames);
   frames->step = 1;

@@ -10,7 +10,7 @@
 /* One camera without its place: at the origin of a frame. */
 typedef struct FrameCamera {
   char name[256];
-  vlSceneSettings settings; /* job's */
+  vlSceneDefs defs; /* job.defs points here where the camera is not the scene's own */
   Job job;
   vlCamera eyes[2]; /* where they stand from the frame */
   double mount[16]; /* of a rig: frame from camera */

@@ -87,15 +87,15 @@ static int render_view(Run *run, const Frame *frame, int view, FramePicture *pic
   if (result != VL_OK) return report_error(&error, result, place);
   int status = lens_autofocus(job, NULL, run->world);
   if (status >= 0) return status;
-  job->render.progress = on_progress;
-  job->render.progress_user = run;
+  job->defs->render.progress = on_progress;
+  job->defs->render.progress_user = run;
   vl_film_clear(film);
-  result = vl_render(run->world, &job->camera, film, &job->render, &stats, &error);
+  result = vl_render(run->world, &job->camera, film, &job->defs->render, &stats, &error);
   add_stats(&run->total, &stats);
   if (result == VL_CANCELLED || signals_pending()) return 128 + signals_pending();
   if (result != VL_OK) return report_failure(STATUS_OTHER, "%s: %s", place, error.message);
   vlDevelopDef develop = vl_default_develop_def();
-  develop.exposure = job->settings->exposure;
+  develop.exposure = job->defs->develop.exposure;
   result = vl_film_develop(film, &develop, &picture->images[view]);
   if (result != VL_OK) return report_error(NULL, result, NULL);
   picture->spp = vl_film_spp(film);
@@ -153,7 +153,7 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world, cons
     show(&run, &picture.frame);
     int code = STATUS_OK;
     for (int v = 0; v < frames->views && code == STATUS_OK; v++) {
-      progress_start(&run.progress, picture.frame.camera->job.render.time_limit);
+      progress_start(&run.progress, picture.frame.camera->job.defs->render.time_limit);
       code = render_view(&run, &picture.frame, v, &picture);
     }
     if (code == STATUS_OK)

@@ -114,11 +114,11 @@ static vlResult truth_of(const vlWorld *world, const Job *job, const vlFilm *fil
   vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
   def.channels = VL_CHANNEL_P | VL_CHANNEL_N | VL_CHANNEL_NG | VL_CHANNEL_UV | VL_CHANNEL_ALBEDO | VL_CHANNEL_RAY |
                  VL_CHANNEL_DISTANCE | VL_CHANNEL_ERROR;
-  memcpy(def.crop, job->film.crop, sizeof def.crop);
-  def.space = job->film.space;
+  memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
+  def.space = job->defs->film.space;
   def.film = film;
-  def.render = &job->render;
-  def.exposure = job->settings->exposure;
+  def.render = &job->defs->render;
+  def.exposure = job->defs->develop.exposure;
   def.time = job_channels_time(job);
   return vl_render_channels(world, &job->camera, &def, truth, NULL, error);
 }
@@ -127,7 +127,7 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
   vlImage *truth = NULL, *picture = NULL;
   vlError error = {0};
   vlDevelopDef develop = vl_default_develop_def();
-  develop.exposure = job->settings->exposure;
+  develop.exposure = job->defs->develop.exposure;
   vlResult result = truth_of(world, job, film, &truth, &error);
   if (result == VL_OK) result = vl_film_develop(film, &develop, &picture);
   if (result == VL_OK) {
@@ -155,7 +155,7 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
                 .ray = vl_image_find_channel(truth, "ray.X"),
                 .distance = vl_image_find_channel(truth, "distance.Y"),
                 .error = vl_image_find_channel(truth, "error.R"),
-                .world = job->settings->gbuffer == VL_GBUFFER_WORLD,
+                .world = job->defs->gbuffer == VL_GBUFFER_WORLD,
                 .shrink = fmax(0.125, 1 / sqrt(spp)), /* pbrt's differentials shrink with the samples */
                 .samples = spp};
     memcpy(s.m, held.camera_from_world, sizeof s.m);

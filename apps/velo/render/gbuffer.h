@@ -4,8 +4,8 @@
 
 #include "render/job.h"
 
-/* New picture, after the render into film (with vlFilmDef.errors). In the space that the settings say. STATUS_OK or the
- * exit code. */
+/* New picture, after the render into film (with vlFilmDef.errors). In the space that the scene's gbuffer says.
+ * STATUS_OK or the exit code. */
 int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film, vlImage **image);
 
 #endif

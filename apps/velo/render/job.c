@@ -1,4 +1,4 @@
-/* render/job.c: see job.h. Scene file's settings + command line → camera and defs of the render. */
+/* render/job.c: see job.h. The scene's defs + command line → the defs and the camera of the render. */
 #include "render/job.h"
 
 #include <math.h>
@@ -66,25 +66,24 @@ const Choice isa_choices[] = {{"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_IS
 
 /* ---- overrides --------------------------------------------------------------------------------------------------- */
 
-/* Where the settings' camera stands, copied: the source's string dies with its scene. */
-static vlError camera_place(const vlSceneSettings *settings, const char *path) {
-  vlSource source = settings->camera_source;
+/* Where the scene's camera is described, copied: the source's string dies with its scene. */
+static vlError camera_place(const vlSceneDefs *defs, const char *path) {
+  vlSource source = defs->camera_source;
   vlError place = {.line = source.file ? source.line : 0, .column = source.file ? source.column : 0};
   snprintf(place.file, sizeof place.file, "%s", source.file ? source.file : path);
   return place;
 }
 
 /* Camera and picture size of a camera file. */
-static int take_camera_file(Job *job, vlContext *context, vlSceneSettings *settings, const char *path,
-                            const char *frame) {
+static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, const char *path, const char *frame) {
   vlCameraRecord record;
   int status = camera_load(context, path, 0, frame, &record);
   if (status >= 0) return status;
-  settings->camera = record.camera;
-  settings->width = record.camera.width;
-  settings->height = record.camera.height;
-  const uint32_t whole[4] = {0, 0, settings->width, settings->height};
-  memcpy(settings->crop, whole, sizeof whole);
+  defs->camera = record.camera;
+  defs->film.width = record.camera.width;
+  defs->film.height = record.camera.height;
+  const uint32_t whole[4] = {0, 0, defs->film.width, defs->film.height};
+  memcpy(defs->film.crop, whole, sizeof whole);
   job->camera_place = (vlError){0};
   snprintf(job->camera_place.file, sizeof job->camera_place.file, "%s", path);
   return -1;
@@ -94,7 +93,7 @@ static int take_camera_file(Job *job, vlContext *context, vlSceneSettings *setti
 static int take_camera(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
   const OptionValue *frame = &arguments->values[RENDER_FRAME];
   if (!camera_is_scene(path))
-    return take_camera_file(job, context, vl_scene_settings(scene), path, frame->given ? frame->text : NULL);
+    return take_camera_file(job, context, vl_scene_defs(scene), path, frame->given ? frame->text : NULL);
   vlScene *other = NULL;
   vlError error = {0};
   vlResult result = vl_scene_create(context, &other);
@@ -102,7 +101,7 @@ static int take_camera(Job *job, vlContext *context, vlScene *scene, const char 
   load.permissive = arguments->values[RENDER_PERMISSIVE].given;
   if (result == VL_OK) result = vl_scene_load(other, path, &load, &error);
   if (result == VL_OK) {
-    job->camera_place = camera_place(vl_scene_settings(other), path);
+    job->camera_place = camera_place(vl_scene_defs(other), path);
     result = vl_scene_take_camera(scene, other, &error);
   }
   int status = result == VL_OK ? -1 : report_error(&error, result, path);
@@ -116,29 +115,29 @@ static uint32_t crop_pixel(uint32_t size, double fraction) {
   return pixel < size ? (uint32_t)pixel : size;
 }
 
-static int override_crop(vlSceneSettings *settings, const Arguments *arguments) {
+static int override_crop(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *crop = &arguments->values[RENDER_CROP], *window = &arguments->values[RENDER_CROPWINDOW];
-  uint32_t width = settings->width, height = settings->height;
+  uint32_t width = defs->film.width, height = defs->film.height;
   if (crop->given && window->given) return report_usage("--crop and --cropwindow exclude each other");
   if (crop->given) {
     if (crop->integers[2] > width || crop->integers[3] > height)
       return report_usage("--crop \"%s\": the picture has only %u x %u pixels", crop->text, width, height);
-    for (int i = 0; i < 4; i++) settings->crop[i] = (uint32_t)crop->integers[i];
+    for (int i = 0; i < 4; i++) defs->film.crop[i] = (uint32_t)crop->integers[i];
   } else if (window->given) {
-    settings->crop[0] = crop_pixel(width, window->numbers[0]);
-    settings->crop[2] = crop_pixel(width, window->numbers[1]);
-    settings->crop[1] = crop_pixel(height, window->numbers[2]);
-    settings->crop[3] = crop_pixel(height, window->numbers[3]);
-    if (settings->crop[0] >= settings->crop[2] || settings->crop[1] >= settings->crop[3])
+    defs->film.crop[0] = crop_pixel(width, window->numbers[0]);
+    defs->film.crop[2] = crop_pixel(width, window->numbers[1]);
+    defs->film.crop[1] = crop_pixel(height, window->numbers[2]);
+    defs->film.crop[3] = crop_pixel(height, window->numbers[3]);
+    if (defs->film.crop[0] >= defs->film.crop[2] || defs->film.crop[1] >= defs->film.crop[3])
       return report_usage("--cropwindow \"%s\": holds no pixel of %u x %u", window->text, width, height);
   }
   return -1;
 }
 
 /* Keeps the scene's own crop window at the same fractions of the picture. */
-static void override_size(vlSceneSettings *settings, uint32_t width, uint32_t height) {
-  double sx = (double)width / settings->width, sy = (double)height / settings->height;
-  uint32_t *crop = settings->crop;
+static void override_size(vlSceneDefs *defs, uint32_t width, uint32_t height) {
+  double sx = (double)width / defs->film.width, sy = (double)height / defs->film.height;
+  uint32_t *crop = defs->film.crop;
   for (int i = 0; i < 4; i++) {
     uint32_t limit = i & 1 ? height : width;
     double pixel = ceil(crop[i] * (i & 1 ? sy : sx) - 1e-6);
@@ -146,8 +145,8 @@ static void override_size(vlSceneSettings *settings, uint32_t width, uint32_t he
   }
   if (crop[0] == crop[2]) crop[crop[0] ? 0 : 2] += crop[0] ? (uint32_t)-1 : 1u;
   if (crop[1] == crop[3]) crop[crop[1] ? 1 : 3] += crop[1] ? (uint32_t)-1 : 1u;
-  settings->width = width;
-  settings->height = height;
+  defs->film.width = width;
+  defs->film.height = height;
 }
 
 /* Samplers that lay out a fixed number of samples over the pixel cannot go on without end. */
@@ -156,32 +155,32 @@ static bool sampler_is_open(vlSamplerKind kind) {
          kind == VL_SAMPLER_ZSOBOL;
 }
 
-static void override_sampling(vlSceneSettings *settings, const Arguments *arguments) {
+static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  if (v[RENDER_TRACER].given) settings->tracer = (vlTracer)v[RENDER_TRACER].integer;
-  if (v[RENDER_MERGE_RADIUS].given) settings->merge_radius = v[RENDER_MERGE_RADIUS].number;
-  if (v[RENDER_LIGHT_PATHS].given) settings->light_paths = (uint32_t)v[RENDER_LIGHT_PATHS].integer;
-  if (v[RENDER_SAMPLER].given) settings->sampler = (vlSamplerKind)v[RENDER_SAMPLER].integer;
-  if (v[RENDER_FILTER].given) settings->filter = vl_default_pixel_filter((vlPixelFilterKind)v[RENDER_FILTER].integer);
-  if (v[RENDER_LIGHT_SAMPLER].given) settings->light_sampler = (vlLightSampler)v[RENDER_LIGHT_SAMPLER].integer;
-  if (v[RENDER_REGULARIZE].given) settings->regularize = v[RENDER_REGULARIZE].integer == 1;
-  if (v[RENDER_COLOR].given) settings->color = (vlColorMode)v[RENDER_COLOR].integer;
-  if (v[RENDER_MAX_DEPTH].given) settings->max_depth = (uint32_t)v[RENDER_MAX_DEPTH].integer;
-  if (v[RENDER_SEED].given) settings->sampler_seed = (uint32_t)v[RENDER_SEED].integer;
+  if (v[RENDER_TRACER].given) defs->render.tracer = (vlTracer)v[RENDER_TRACER].integer;
+  if (v[RENDER_MERGE_RADIUS].given) defs->render.merge_radius = v[RENDER_MERGE_RADIUS].number;
+  if (v[RENDER_LIGHT_PATHS].given) defs->render.light_paths = (uint32_t)v[RENDER_LIGHT_PATHS].integer;
+  if (v[RENDER_SAMPLER].given) defs->render.sampler = (vlSamplerKind)v[RENDER_SAMPLER].integer;
+  if (v[RENDER_FILTER].given) defs->film.filter = vl_default_pixel_filter((vlPixelFilterKind)v[RENDER_FILTER].integer);
+  if (v[RENDER_LIGHT_SAMPLER].given) defs->build.light_sampler = (vlLightSampler)v[RENDER_LIGHT_SAMPLER].integer;
+  if (v[RENDER_REGULARIZE].given) defs->build.regularize = v[RENDER_REGULARIZE].integer == 1;
+  if (v[RENDER_COLOR].given) defs->build.color = (vlColorMode)v[RENDER_COLOR].integer;
+  if (v[RENDER_MAX_DEPTH].given) defs->render.max_depth = (uint32_t)v[RENDER_MAX_DEPTH].integer;
+  if (v[RENDER_SEED].given) defs->render.seed = (uint32_t)v[RENDER_SEED].integer;
   if (v[RENDER_SPP].given) {
-    settings->spp = (uint32_t)v[RENDER_SPP].integer;
+    defs->render.spp = (uint32_t)v[RENDER_SPP].integer;
   } else if (v[RENDER_TIME].given) {
-    if (sampler_is_open(settings->sampler))
-      settings->spp = 65536;
+    if (sampler_is_open(defs->render.sampler))
+      defs->render.spp = 65536;
     else
       report_warning(
           "the sampler %s lays out a fixed number of samples: ends at %u spp even if --time is not over; give --spp",
-          choice_name(sampler_choices, (int)settings->sampler), settings->spp);
+          choice_name(sampler_choices, (int)defs->render.sampler), defs->render.spp);
   }
 }
 
 /* N[:MIN:MAX] */
-static int override_spectrum(vlSceneSettings *settings, const Arguments *arguments) {
+static int override_spectrum(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = &arguments->values[RENDER_SPECTRUM];
   if (v->given) {
     unsigned count;
@@ -197,9 +196,9 @@ static int override_spectrum(vlSceneSettings *settings, const Arguments *argumen
           "--spectrum \"%s\": must be N or N:MIN:MAX, N at most 1000 buckets from MIN to MAX, inside of "
           "360 to 830 nm",
           v->text);
-    settings->buckets = count, settings->lambda_min = low, settings->lambda_max = high;
+    defs->film.buckets = count, defs->film.lambda_min = low, defs->film.lambda_max = high;
   }
-  if (settings->buckets && settings->color == VL_COLOR_RGB)
+  if (defs->film.buckets && defs->build.color == VL_COLOR_RGB)
     return report_usage("--color rgb: there is no spectrum then%s",
                         v->given ? "" : " (--spectrum 0 leaves the scene's out)");
   return -1;
@@ -223,53 +222,45 @@ static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t heigh
 }
 
 /* The eyes are made last of all, in frames.c: the camera is the one between them. */
-static int override_stereo(vlSceneSettings *settings, const Arguments *arguments) {
+static int override_stereo(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  vlStereo *stereo = &settings->camera.stereo;
+  vlStereo *stereo = &defs->camera.stereo;
   if (v[RENDER_STEREO].given) stereo->mode = (vlStereoMode)v[RENDER_STEREO].integer;
   bool none = stereo->mode == VL_STEREO_NONE;
   if (none && (v[RENDER_INTEROCULAR].given || v[RENDER_CONVERGENCE].given || v[RENDER_EYE].given))
     return report_usage("--interocular, --convergence and --eye go with --stereo MODE");
   if (v[RENDER_INTEROCULAR].given) stereo->interocular = v[RENDER_INTEROCULAR].number;
   if (v[RENDER_CONVERGENCE].given) stereo->convergence = v[RENDER_CONVERGENCE].number;
-  if (v[RENDER_EYE].given) settings->camera.stereo_eye = (vlEye)v[RENDER_EYE].integer;
+  if (v[RENDER_EYE].given) defs->camera.stereo_eye = (vlEye)v[RENDER_EYE].integer;
   return -1;
 }
 
 /* Size, crop and camera as the command line has them. The camera is made at the size it was described for and then
  * resized, which keeps the framing. */
-static int fit_camera(Job *job, vlSceneSettings *settings, const Arguments *arguments) {
+static int fit_camera(Job *job, vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *size = &arguments->values[RENDER_RESOLUTION];
-  vlCameraDef camera = settings->camera;
-  camera.width = settings->width;
-  camera.height = settings->height;
+  vlCameraDef camera = defs->camera;
   camera.stereo_eye = VL_EYE_BOTH;
-  if (size->given) override_size(settings, (uint32_t)size->integers[0], (uint32_t)size->integers[1]);
-  int status = override_crop(settings, arguments);
-  if (status < 0) status = make_camera(job, camera, settings->width, settings->height);
+  if (size->given) override_size(defs, (uint32_t)size->integers[0], (uint32_t)size->integers[1]);
+  int status = override_crop(defs, arguments);
+  if (status < 0) status = make_camera(job, camera, defs->film.width, defs->film.height);
   return status < 0 ? lens_focus_on(&job->camera, arguments) : status;
 }
 
-int job_take_camera(Job *job, vlSceneSettings *settings, const vlCameraDef *def, const char *path,
-                    const Arguments *arguments) {
-  vlStereo stereo = job->settings->camera.stereo;
-  *settings = *job->settings;
-  settings->camera = *def;
-  settings->camera.stereo = stereo;
-  settings->width = def->width;
-  settings->height = def->height;
+int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const char *path, const Arguments *arguments) {
+  vlStereo stereo = job->defs->camera.stereo;
+  *defs = *job->defs;
+  defs->camera = *def;
+  defs->camera.stereo = stereo;
+  defs->film.width = def->width;
+  defs->film.height = def->height;
   const uint32_t whole[4] = {0, 0, def->width, def->height};
-  memcpy(settings->crop, whole, sizeof whole);
+  memcpy(defs->film.crop, whole, sizeof whole);
   job->camera_place = (vlError){.line = 0};
   snprintf(job->camera_place.file, sizeof job->camera_place.file, "%s", path);
-  job->settings = settings;
-  int status = lens_override(NULL, settings, arguments);
-  if (status < 0) status = fit_camera(job, settings, arguments);
-  if (status >= 0) return status;
-  job->film.width = settings->width;
-  job->film.height = settings->height;
-  memcpy(job->film.crop, settings->crop, sizeof job->film.crop);
-  return -1;
+  job->defs = defs;
+  int status = lens_override(NULL, defs, arguments);
+  return status < 0 ? fit_camera(job, defs, arguments) : status;
 }
 
 /* "open", "middle", "close" or seconds. */
@@ -298,29 +289,21 @@ double job_channels_time(const Job *job) {
 
 int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  vlSceneSettings *settings = vl_scene_settings(scene);
+  vlSceneDefs *defs = vl_scene_defs(scene);
   job->path = path;
-  job->settings = settings;
-  job->camera_place = camera_place(settings, path);
+  job->defs = defs;
+  job->camera_place = camera_place(defs, path);
   if (v[RENDER_CAMERA].given && !scene_camera_is_own(path, arguments)) {
     int status = take_camera(job, context, scene, v[RENDER_CAMERA].text, arguments);
     if (status >= 0) return status;
   }
   int status = read_channels_time(job, arguments);
-  if (status < 0) status = override_stereo(settings, arguments);
-  if (status < 0) status = lens_override(scene, settings, arguments);
-  if (status < 0) status = fit_camera(job, settings, arguments);
+  if (status < 0) status = override_stereo(defs, arguments);
+  if (status < 0) status = lens_override(scene, defs, arguments);
+  if (status < 0) status = fit_camera(job, defs, arguments);
   if (status >= 0) return status;
-  override_sampling(settings, arguments);
-  status = override_spectrum(settings, arguments);
-  if (status >= 0) return status;
-  job->film = vl_scene_film_def(scene);
-  job->render = vl_scene_render_def(scene);
-  if (v[RENDER_TIME].given) job->render.time_limit = v[RENDER_TIME].number;
-  job->build = vl_default_build_def();
-  job->build.color = settings->color;
-  job->build.light_sampler = settings->light_sampler;
-  job->build.regularize = settings->regularize;
-  job->build.imitate_pbrt = v[RENDER_IMITATE_PBRT].given;
-  return -1;
+  override_sampling(defs, arguments);
+  if (v[RENDER_TIME].given) defs->render.time_limit = v[RENDER_TIME].number;
+  if (v[RENDER_IMITATE_PBRT].given) defs->build.imitate_pbrt = true;
+  return override_spectrum(defs, arguments);
 }

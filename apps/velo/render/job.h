@@ -68,26 +68,23 @@ extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light
 extern const Option render_options[];
 
 typedef struct Job {
-  const char *path;                /* of the scene file */
-  const vlSceneSettings *settings; /* resolved; live in the scene */
-  vlError camera_place;            /* where the camera stands in its file; only file, line and column are used */
-  vlCamera camera;
-  vlFilmDef film;
-  vlBuildDef build;
-  vlRenderDef render;
+  const char *path; /* of the scene file */
+  /* The scene's own, overridden; of a rig's camera a copy. defs->camera keeps the size that it was described for. */
+  vlSceneDefs *defs;
+  vlError camera_place; /* where the camera stands in its file; only file, line and column are used */
+  vlCamera camera;      /* of the film's size */
   double channels_share,
       channels_seconds; /* when ground truth is seen: share of the shutter's time, unless seconds are set */
 } Job;
 
-/* Overrides the scene's settings and makes camera and defs. -1: go on; else the exit code, all has been said. */
+/* Overrides the scene's defs and makes the camera. -1: go on; else the exit code, the error has been reported. */
 int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments);
 
 /* The time of the ground truth, and of the camera in the header, in seconds. */
 double job_channels_time(const Job *job);
 
-/* The job with another camera, of a file: *settings, which must outlive it, become the scene's with this camera. */
-int job_take_camera(Job *job, vlSceneSettings *settings, const vlCameraDef *def, const char *path,
-                    const Arguments *arguments);
+/* The job with another camera, of a file: *defs, which must outlive it, become the job's with this camera. */
+int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const char *path, const Arguments *arguments);
 
 /* What would be rendered, on stdout (or as a JSON line). */
 void job_describe(const Job *job, vlContext *context, const vlScene *scene, const vlWorld *world,

@@ -19,11 +19,11 @@ static bool read_point(const char *text, double point[2]) {
   return end != second && *end == 0 && isfinite(point[0]) && isfinite(point[1]);
 }
 
-static int refocus(vlScene *scene, const vlSceneSettings *settings, double distance) {
+static int refocus(vlScene *scene, const vlSceneDefs *defs, double distance) {
   vlError error = {0};
   vlResult result = vl_scene_refocus(scene, distance, &error);
   if (result == VL_OK) return -1;
-  const vlSource *place = &settings->camera_source;
+  const vlSource *place = &defs->camera_source;
   if (place->file) {
     snprintf(error.file, sizeof error.file, "%s", place->file);
     error.line = place->line, error.column = place->column;
@@ -31,9 +31,9 @@ static int refocus(vlScene *scene, const vlSceneSettings *settings, double dista
   return report_error(&error, result == VL_ERROR_ARGUMENT ? VL_ERROR_SCENE : result, NULL);
 }
 
-int lens_override(vlScene *scene, vlSceneSettings *settings, const Arguments *arguments) {
+int lens_override(vlScene *scene, vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  vlCameraDef *def = &settings->camera;
+  vlCameraDef *def = &defs->camera;
   double point[2];
   if (v[RENDER_FOCUS_PIXEL].given && v[RENDER_FOCUS_DISTANCE].given)
     return report_usage("--focus-pixel and --focus-distance exclude each other");
@@ -45,7 +45,7 @@ int lens_override(vlScene *scene, vlSceneSettings *settings, const Arguments *ar
     def->focus_distance = VL_UNSET;
   }
   if (v[RENDER_FOCUS_DISTANCE].given) {
-    if (def->lens.optics) return refocus(scene, settings, v[RENDER_FOCUS_DISTANCE].number);
+    if (def->lens.optics) return refocus(scene, defs, v[RENDER_FOCUS_DISTANCE].number);
     def->focus_distance = v[RENDER_FOCUS_DISTANCE].number;
   }
   if (v[RENDER_LENS_RADIUS].given) def->lens_radius = v[RENDER_LENS_RADIUS].number, def->lens.f_number = VL_UNSET;
@@ -87,9 +87,9 @@ int lens_autofocus(Job *job, vlScene *scene, const vlWorld *world) {
     camera->focus_distance = distance;
     return -1;
   }
-  int status = refocus(scene, job->settings, distance);
+  int status = refocus(scene, job->defs, distance);
   if (status >= 0) return status;
-  vlCameraDef def = job->settings->camera;
+  vlCameraDef def = job->defs->camera;
   vlCamera made;
   def.width = camera->width, def.height = camera->height;
   result = vl_camera_make(&def, &made, NULL, &error);

@@ -42,7 +42,7 @@ typedef struct Render {
 
 static int write_picture(Render *render, bool progress) {
   vlDevelopDef develop = vl_default_develop_def();
-  develop.exposure = render->job.settings->exposure;
+  develop.exposure = render->job.defs->develop.exposure;
   vlImage *image = NULL;
   uint32_t spp = vl_film_spp(render->film);
   vlResult result = vl_film_develop(render->film, &develop, &image);
@@ -165,7 +165,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   status = job_make(&render->job, render->context, render->scene, path, arguments);
   if (status >= 0) return status;
   if (render->outputs.count == 0) {
-    choose_output(render, path, render->job.settings->output);
+    choose_output(render, path, render->job.defs->output);
     status = outputs_check_folders(&render->outputs);
     if (status >= 0) return status;
   }
@@ -173,7 +173,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   warn_of_channels(render);
   status = channels_load(&render->channels, render->context, &render->job);
   if (status >= 0) return status;
-  render->job.film.errors =
+  render->job.defs->film.errors =
       (render->channels.bits & VL_CHANNEL_ERROR || render->channels.gbuffer) && has_layers(render);
   render->many = frames_wanted(arguments, &render->job);
   if (render->many) {
@@ -181,7 +181,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     if (status < 0) status = frames_check_names(&render->frames, &render->outputs);
     if (status >= 0) return status;
   }
-  vlResult result = vl_world_build_last(render->scene, &render->job.build, &render->world, &error);
+  vlResult result = vl_world_build_last(render->scene, &render->job.defs->build, &render->world, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   if (arguments->values[RENDER_VERBOSE].given) {
     size_t peak;
@@ -236,13 +236,13 @@ static int render_and_write(Render *render) {
   Job *job = &render->job;
   vlError error = {0};
   vlRenderStats stats = {0};
-  vlResult result = vl_film_create(render->context, &job->film, &render->film);
+  vlResult result = vl_film_create(render->context, &job->defs->film, &render->film);
   if (result != VL_OK) return report_error(NULL, result, job->path);
-  progress_start(&render->progress, job->render.time_limit);
-  job->render.progress = on_progress;
-  job->render.progress_user = render;
+  progress_start(&render->progress, job->defs->render.time_limit);
+  job->defs->render.progress = on_progress;
+  job->defs->render.progress_user = render;
   signals_remember();
-  result = vl_render(render->world, &job->camera, render->film, &job->render, &stats, &error);
+  result = vl_render(render->world, &job->camera, render->film, &job->defs->render, &stats, &error);
   report_status_line(NULL);
   report_not_finite(&stats);
   if (result != VL_OK && result != VL_CANCELLED) return report_error(&error, result, job->path);
@@ -258,7 +258,7 @@ static int render_and_write(Render *render) {
     return 128 + number;
   }
   if (number && status == STATUS_OK) {
-    if (spp < job->render.spp) report_note("interrupted after %u of %u spp", spp, job->render.spp);
+    if (spp < job->defs->render.spp) report_note("interrupted after %u of %u spp", spp, job->defs->render.spp);
     status = 128 + number;
   }
   if (status == STATUS_OK || status > 128) report_result(render, &stats, status);

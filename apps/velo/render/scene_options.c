@@ -42,9 +42,9 @@ static void choose_environment(const char *text, vlCompleteDef *def) {
 }
 
 /* The lecture's parameters of the camera that was made. d: the view plane's distance at which a pixel is 1 wide. */
-static void tell_camera(const vlSceneSettings *s) {
+static void tell_camera(const vlSceneDefs *s) {
   const vlCameraDef *c = &s->camera;
-  double d = 0.5 * (s->width < s->height ? s->width : s->height) / tan(0.5 * c->fov);
+  double d = 0.5 * (s->film.width < s->film.height ? s->film.width : s->film.height) / tan(0.5 * c->fov);
   report_note(
       "no camera in the file: eye (%.5g, %.5g, %.5g), lookat (%.5g, %.5g, %.5g), up (%.3g, %.3g, %.3g), d %.5g "
       "pixels",
@@ -88,9 +88,9 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   if (result != VL_OK) return report_error(&error, result, path);
 
   vlCompleteDef complete = vl_default_complete_def();
-  vlSceneSettings *settings = vl_scene_settings(*scene);
-  bool camera = settings->camera_missing && (!v[RENDER_CAMERA].given || load.camera);
-  settings->camera_missing = camera; /* another file has it */
+  vlSceneDefs *defs = vl_scene_defs(*scene);
+  bool camera = defs->camera_missing && (!v[RENDER_CAMERA].given || load.camera);
+  defs->camera_missing = camera; /* another file has it */
   vlSceneInfo info;
   vl_scene_info(*scene, &info);
   *lamps = info.lights > 0 && (ends_with(path, ".gltf") || ends_with(path, ".glb"));
@@ -105,18 +105,6 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   complete.ground = v[RENDER_GROUND].given;
   result = vl_scene_complete(*scene, &complete, &error);
   if (result != VL_OK) return report_error(&error, result, path);
-  if (camera) tell_camera(settings);
-  if (settings->camera_in_full) {
-    vlCameraFileDef def = vl_default_camera_file_def();
-    def.dialect = VL_CAMERA_DIALECT_GLTF;
-    def.frame = load.camera;
-    vlCameraRecord record;
-    result = vl_camera_read(context, path, &def, &record, &error);
-    if (result != VL_OK) return report_error(&error, result, path);
-    const uint32_t whole[4] = {0, 0, record.camera.width, record.camera.height};
-    settings->camera = record.camera;
-    settings->width = whole[2], settings->height = whole[3];
-    memcpy(settings->crop, whole, sizeof whole);
-  }
+  if (camera) tell_camera(defs);
   return -1;
 }

@@ -55,8 +55,8 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   save.lost = tell;
   vlResult result = vl_scene_create(context, &scene);
   if (result == VL_OK) result = vl_scene_load(scene, from, &load, &error);
-  const vlSceneSettings *settings = scene ? vl_scene_settings(scene) : NULL;
-  if (result == VL_OK && (pbrt || v[CONVERT_COMPLETE].given) && (settings->camera_missing || settings->light_missing)) {
+  const vlSceneDefs *defs = scene ? vl_scene_defs(scene) : NULL;
+  if (result == VL_OK && (pbrt || v[CONVERT_COMPLETE].given) && (defs->camera_missing || defs->light_missing)) {
     result = vl_scene_complete(scene, NULL, &error);
     if (result == VL_OK) report_note("%s lacks a camera or light: those that velo render would make are written", from);
   }

@@ -72,7 +72,7 @@ static void print_lights(const Facts *f) {
 }
 
 static void print_text(const Facts *f) {
-  const vlSceneSettings *s = vl_scene_settings(f->scene);
+  const vlSceneDefs *defs = vl_scene_defs(f->scene);
   double eye[3];
   printf("file        %s\n", f->path);
   count("shapes", f->info.shapes);
@@ -87,15 +87,18 @@ static void print_text(const Facts *f) {
   if (f->low[0] <= f->high[0])
     printf("bounds      (%.5g, %.5g, %.5g) to (%.5g, %.5g, %.5g)\n", f->low[0], f->low[1], f->low[2], f->high[0],
            f->high[1], f->high[2]);
-  eye_of(&s->camera, eye);
-  if (s->camera_missing)
+  eye_of(&defs->camera, eye);
+  if (defs->camera_missing)
     printf("camera      none: velo render makes one\n");
   else
-    printf("camera      %s at (%.5g, %.5g, %.5g)\n", vl_projection_name(s->camera.projection), eye[0], eye[1], eye[2]);
-  printf("film        %u x %u", s->width, s->height);
-  if (s->crop[0] || s->crop[1] || s->crop[2] != s->width || s->crop[3] != s->height)
-    printf(", of it %u,%u to %u,%u", s->crop[0], s->crop[1], s->crop[2], s->crop[3]);
-  printf(", %u samples a pixel, %s, at most %u bounces\n", s->spp, tracer_name(s->tracer), s->max_depth);
+    printf("camera      %s at (%.5g, %.5g, %.5g)\n", vl_projection_name(defs->camera.projection), eye[0], eye[1],
+           eye[2]);
+  printf("film        %u x %u", defs->film.width, defs->film.height);
+  if (defs->film.crop[0] || defs->film.crop[1] || defs->film.crop[2] != defs->film.width ||
+      defs->film.crop[3] != defs->film.height)
+    printf(", of it %u,%u to %u,%u", defs->film.crop[0], defs->film.crop[1], defs->film.crop[2], defs->film.crop[3]);
+  printf(", %u samples a pixel, %s, at most %u bounces\n", defs->render.spp, tracer_name(defs->render.tracer),
+         defs->render.max_depth);
   print_lights(f);
   uint32_t unused = 0;
   for (uint32_t i = 0; i < vl_check_count(f->check); i++) {
@@ -123,7 +126,7 @@ static void json_place(Json *json, const vlSource *source) {
 
 static void print_json(const Facts *f) {
   Json json = {.out = stdout};
-  const vlSceneSettings *s = vl_scene_settings(f->scene);
+  const vlSceneDefs *defs = vl_scene_defs(f->scene);
   double eye[3];
   json_begin(&json, NULL, '{');
   json_text(&json, "file", f->path);
@@ -139,20 +142,20 @@ static void print_json(const Facts *f) {
   if (f->low[0] <= f->high[0]) json_box(&json, NULL, f->low), json_box(&json, NULL, f->high);
   json_end(&json, ']');
   json_begin(&json, "camera", '{');
-  json_bool(&json, "missing", s->camera_missing);
-  json_text(&json, "projection", vl_projection_name(s->camera.projection));
-  eye_of(&s->camera, eye);
+  json_bool(&json, "missing", defs->camera_missing);
+  json_text(&json, "projection", vl_projection_name(defs->camera.projection));
+  eye_of(&defs->camera, eye);
   json_box(&json, "eye", eye);
   json_end(&json, '}');
   json_begin(&json, "film", '{');
-  json_integer(&json, "width", s->width);
-  json_integer(&json, "height", s->height);
+  json_integer(&json, "width", defs->film.width);
+  json_integer(&json, "height", defs->film.height);
   json_begin(&json, "crop", '[');
-  for (int i = 0; i < 4; i++) json_integer(&json, NULL, s->crop[i]);
+  for (int i = 0; i < 4; i++) json_integer(&json, NULL, defs->film.crop[i]);
   json_end(&json, ']');
-  json_integer(&json, "spp", s->spp);
-  json_text(&json, "tracer", tracer_name(s->tracer));
-  json_integer(&json, "max_depth", s->max_depth);
+  json_integer(&json, "spp", defs->render.spp);
+  json_text(&json, "tracer", tracer_name(defs->render.tracer));
+  json_integer(&json, "max_depth", defs->render.max_depth);
   json_end(&json, '}');
   uint32_t n = vl_scene_light_count(f->scene);
   json_integer(&json, "light_count", n);

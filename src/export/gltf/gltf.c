@@ -228,9 +228,9 @@ static bool put_instances(vlExport *x, json_t *roots, const json_int_t *mesh_of)
 }
 
 static bool is_mirrored(const vlExport *x) {
-  const vlCameraDef *c = &x->scene->settings.camera;
+  const vlCameraDef *c = &x->scene->defs.camera;
   vlCamera camera;
-  if (x->scene->settings.camera_missing || vl_camera_make(c, &camera, NULL, NULL) != VL_OK) return false;
+  if (x->scene->defs.camera_missing || vl_camera_make(c, &camera, NULL, NULL) != VL_OK) return false;
   return vl_mat4_determinant3(vl_mat4_load(camera.world_from_camera)) < 0;
 }
 

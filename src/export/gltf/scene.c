@@ -45,13 +45,12 @@ static void square_up(double m[16]) {
 }
 
 bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
-  const vlSceneSettings *s = &x->scene->settings;
-  if (s->camera_missing) return true;
-  vlCameraRecord record = {.camera = s->camera, .name = "Camera"};
-  record.camera.width = s->width, record.camera.height = s->height;
+  const vlSceneDefs *defs = &x->scene->defs;
+  if (defs->camera_missing) return true;
+  vlCameraRecord record = {.camera = defs->camera, .name = "Camera"};
   if (mirror) {
     vlCamera camera;
-    vlResult r = vl_camera_make(&s->camera, &camera, NULL, x->error);
+    vlResult r = vl_camera_make(&defs->camera, &camera, NULL, x->error);
     if (r != VL_OK) return x->result = r, false;
     record.camera.has_matrix = true;
     memcpy(record.camera.world_from_camera, camera.world_from_camera, sizeof camera.world_from_camera);

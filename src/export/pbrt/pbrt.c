@@ -40,8 +40,8 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
   }
   memcpy(rgb, s->rgb, sizeof rgb);
   for (int i = 0; i < 3; i++) rgb[i] *= s->scale;
-  if (s->space != x->scene->settings.space)
-    vl_spectrum_to_rgb(s, VL_ROLE_UNBOUNDED, x->scene->settings.space, rgb, NULL);
+  if (s->space != x->scene->defs.film.space)
+    vl_spectrum_to_rgb(s, VL_ROLE_UNBOUNDED, x->scene->defs.film.space, rgb, NULL);
   PUT(" \"rgb %s\" [%.9g %.9g %.9g]", name, (double)rgb[0], (double)rgb[1], (double)rgb[2]);
 }
 
@@ -50,26 +50,30 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
 /* The film's parameters beyond its size, which the camera's file has. pbrt's picture is as bright as the shutter is
  * open long; shutter: those seconds. */
 static void put_film(vlExport *x, double shutter) {
-  const vlSceneSettings *s = &x->scene->settings;
-  double exposure = (double)s->exposure * s->camera.exposure_time / shutter;
-  if (s->gbuffer == VL_GBUFFER_WORLD) PUT("  \"string coordinatesystem\" \"world\"\n");
-  if (s->buckets && !s->gbuffer)
-    PUT("  \"integer nbuckets\" [%u] \"float lambdamin\" [%.9g] \"float lambdamax\" [%.9g]\n", s->buckets,
-        s->lambda_min, s->lambda_max);
+  const vlSceneDefs *defs = &x->scene->defs;
+  const vlFilmDef *film = &defs->film;
+  double exposure = (double)defs->develop.exposure * defs->camera.exposure_time / shutter;
+  /* pbrt limits what its sensor measures, the film what falls on it. */
+  double most = (double)film->max_component * (defs->develop.exposure > 0 ? (double)defs->develop.exposure : 1);
+  if (defs->gbuffer == VL_GBUFFER_WORLD) PUT("  \"string coordinatesystem\" \"world\"\n");
+  if (film->buckets && !defs->gbuffer)
+    PUT("  \"integer nbuckets\" [%u] \"float lambdamin\" [%.9g] \"float lambdamax\" [%.9g]\n", film->buckets,
+        film->lambda_min, film->lambda_max);
   if (fabs(exposure - 1) > 1e-7) PUT("  \"float iso\" [%.9g]\n", 100 * exposure);
-  if (s->white_balance > 0) PUT("  \"float whitebalance\" [%.9g]\n", s->white_balance);
-  if (s->max_component < 1e30f) PUT("  \"float maxcomponentvalue\" [%.9g]\n", (double)s->max_component);
-  if (s->crop[0] || s->crop[1] || s->crop[2] != s->width || s->crop[3] != s->height)
-    PUT("  \"integer pixelbounds\" [%u %u %u %u]\n", s->crop[0], s->crop[2], s->crop[1], s->crop[3]);
-  if (s->output[0] && !strpbrk(s->output, "\"\\\n")) PUT("  \"string filename\" \"%s\"\n", s->output);
-  if (s->centred) PUT("Option \"disablepixeljitter\" true\n");
-  if (s->same_wavelengths) PUT("Option \"disablewavelengthjitter\" true\n");
-  if (s->sharp_textures) PUT("Option \"disabletexturefiltering\" true\n");
+  if (film->white_balance > 0) PUT("  \"float whitebalance\" [%.9g]\n", film->white_balance);
+  if (film->max_component < 1e30f) PUT("  \"float maxcomponentvalue\" [%.9g]\n", most);
+  const uint32_t *crop = film->crop;
+  if (crop[0] || crop[1] || crop[2] != film->width || crop[3] != film->height)
+    PUT("  \"integer pixelbounds\" [%u %u %u %u]\n", crop[0], crop[2], crop[1], crop[3]);
+  if (defs->output[0] && !strpbrk(defs->output, "\"\\\n")) PUT("  \"string filename\" \"%s\"\n", defs->output);
+  if (defs->render.centred) PUT("Option \"disablepixeljitter\" true\n");
+  if (defs->render.same_wavelengths) PUT("Option \"disablewavelengthjitter\" true\n");
+  if (defs->render.sharp_textures) PUT("Option \"disabletexturefiltering\" true\n");
 }
 
 /* The camera's file is a whole scene: what stands before its world. */
-static const char *film_kind(const vlSceneSettings *s) {
-  return s->gbuffer ? "gbuffer" : s->buckets ? "spectral" : "rgb";
+static const char *film_kind(const vlSceneDefs *defs) {
+  return defs->gbuffer ? "gbuffer" : defs->film.buckets ? "spectral" : "rgb";
 }
 static void put_head(vlExport *x, const char *text, size_t size) {
   static const char film[] = "Film \"rgb\"";
@@ -77,7 +81,7 @@ static void put_head(vlExport *x, const char *text, size_t size) {
   size_t end = world ? (size_t)(world - text) : size, start = 0;
   if (at && (size_t)(at - text) < end) {
     vl_bytes_put(x->context, &x->text, text, (size_t)(at - text));
-    PUT("Film \"%s\"", film_kind(&x->scene->settings));
+    PUT("Film \"%s\"", film_kind(&x->scene->defs));
     start = (size_t)(at - text) + sizeof film - 1;
   }
   vl_bytes_put(x->context, &x->text, text + start, end - start);
@@ -88,9 +92,8 @@ static bool put_camera(vlExport *x) {
                                        "cy",           "skew",          "distortion",
                                        "projection",   "lens_radius",   "focus_distance",
                                        "shutter_open", "shutter_close", "exposure_time"};
-  const vlSceneSettings *s = &x->scene->settings;
-  vlCameraRecord record = {.camera = s->camera};
-  record.camera.width = s->width, record.camera.height = s->height;
+  const vlSceneDefs *defs = &x->scene->defs;
+  vlCameraRecord record = {.camera = defs->camera};
   record.camera.exposure_time = 1; /* the film says it */
   vlCameraFileDef def = vl_default_camera_file_def();
   def.dialect = VL_CAMERA_DIALECT_PBRT;
@@ -113,9 +116,10 @@ static bool put_camera(vlExport *x) {
     put_head(x, text, size);
   } else {
     vl_export_lose(x, "the camera: left out");
-    PUT("Film \"%s\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n", film_kind(s), s->width, s->height);
+    PUT("Film \"%s\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n", film_kind(defs), defs->film.width,
+        defs->film.height);
   }
-  double shutter = s->camera.shutter_close - s->camera.shutter_open;
+  double shutter = defs->camera.shutter_close - defs->camera.shutter_open;
   bool told = r == VL_OK && shutter > 0 && strstr(text, "shutterclose");
   vl_free(x->context, text);
   put_film(x, told ? shutter : 1);
@@ -127,18 +131,19 @@ static void put_sampling(vlExport *x) {
                                          NULL,          "halton", "sobol",      "zsobol"};
   static const char *const filters[] = {"box", "triangle", "gaussian", "mitchell", "sinc", NULL};
   static const char *const lights[] = {"bvh", "power", "uniform"};
-  const vlSceneSettings *s = &x->scene->settings;
-  const char *sampler = s->sampler < 9 ? samplers[s->sampler] : NULL;
+  const vlRenderDef *render = &x->scene->defs.render;
+  const vlBuildDef *build = &x->scene->defs.build;
+  const char *sampler = render->sampler < 9 ? samplers[render->sampler] : NULL;
   if (!sampler) vl_export_lose(x, "the sampler: zsobol in its place");
-  uint32_t side = (uint32_t)(sqrt((double)s->spp) + 0.5);
-  bool square = side * side == s->spp;
+  uint32_t side = (uint32_t)(sqrt((double)render->spp) + 0.5);
+  bool square = side * side == render->spp;
   PUT("Sampler \"%s\"", sampler ? sampler : "zsobol");
-  if (sampler && s->sampler == VL_SAMPLER_STRATIFIED)
-    PUT(" \"integer xsamples\" [%u] \"integer ysamples\" [%u]", square ? side : s->spp, square ? side : 1);
+  if (sampler && render->sampler == VL_SAMPLER_STRATIFIED)
+    PUT(" \"integer xsamples\" [%u] \"integer ysamples\" [%u]", square ? side : render->spp, square ? side : 1);
   else
-    PUT(" \"integer pixelsamples\" [%u]", s->spp);
-  if (s->sampler_seed) PUT(" \"integer seed\" [%u]", s->sampler_seed);
-  const vlPixelFilter *f = &s->filter;
+    PUT(" \"integer pixelsamples\" [%u]", render->spp);
+  if (render->seed) PUT(" \"integer seed\" [%u]", render->seed);
+  const vlPixelFilter *f = &x->scene->defs.film.filter;
   const char *filter = f->kind < 6 ? filters[f->kind] : NULL;
   if (!filter) vl_export_lose(x, "the pixel filter: gaussian in its place");
   PUT("\nPixelFilter \"%s\" \"float xradius\" [%.9g] \"float yradius\" [%.9g]", filter ? filter : "gaussian",
@@ -146,12 +151,12 @@ static void put_sampling(vlExport *x) {
   if (f->kind == VL_PIXEL_FILTER_GAUSSIAN) PUT(" \"float sigma\" [%.9g]", (double)f->sigma);
   if (f->kind == VL_PIXEL_FILTER_MITCHELL) PUT(" \"float B\" [%.9g] \"float C\" [%.9g]", (double)f->b, (double)f->c);
   if (f->kind == VL_PIXEL_FILTER_LANCZOS) PUT(" \"float tau\" [%.9g]", (double)f->tau);
-  bool path = s->tracer == VL_TRACER_PATH, volume = s->tracer == VL_TRACER_VOLPATH;
+  bool path = render->tracer == VL_TRACER_PATH, volume = render->tracer == VL_TRACER_VOLPATH;
   if (!path && !volume) vl_export_lose(x, "the tracer: volpath in its place");
-  PUT("\nIntegrator \"%s\" \"integer maxdepth\" [%u]", path ? "path" : "volpath", s->max_depth);
-  if (s->light_sampler != VL_LIGHT_SAMPLER_BVH && s->light_sampler < 3)
-    PUT(" \"string lightsampler\" \"%s\"", lights[s->light_sampler]);
-  if (s->regularize) PUT(" \"bool regularize\" true");
+  PUT("\nIntegrator \"%s\" \"integer maxdepth\" [%u]", path ? "path" : "volpath", render->max_depth);
+  if (build->light_sampler != VL_LIGHT_SAMPLER_BVH && build->light_sampler < 3)
+    PUT(" \"string lightsampler\" \"%s\"", lights[build->light_sampler]);
+  if (build->regularize) PUT(" \"bool regularize\" true");
   PUT("\n");
 }
 
@@ -235,10 +240,10 @@ static bool put_groups(vlExport *x) {
 bool vl_export_pbrt(vlExport *x) {
   const vlScene *s = x->scene;
   PUT("# written by velo\n");
-  if (s->settings.space != VL_SPACE_SRGB && (unsigned)s->settings.space < 4)
-    PUT("ColorSpace \"%s\"\n", spaces[s->settings.space]);
+  if (s->defs.film.space != VL_SPACE_SRGB && (unsigned)s->defs.film.space < 4)
+    PUT("ColorSpace \"%s\"\n", spaces[s->defs.film.space]);
   for (size_t i = 0; i < s->media.count; i++) put_medium(x, i);
-  if (s->settings.camera_medium.index) PUT("MediumInterface \"\" \"medium%u\"\n", s->settings.camera_medium.index);
+  if (s->defs.camera_medium.index) PUT("MediumInterface \"\" \"medium%u\"\n", s->defs.camera_medium.index);
   if (!put_camera(x)) return false;
   put_sampling(x);
   PUT("WorldBegin\n");

@@ -9,13 +9,13 @@
 enum { HEIGHT = 720, SIDE = 1280 }; /* glTF knows no pixels */
 
 static void set_size(vlGltf *g, double aspect) {
-  vlSceneSettings *s = vl_scene_settings(g->scene);
+  vlSceneDefs *s = vl_scene_defs(g->scene);
   double width = SIDE, height = SIDE / aspect;
   if (height > HEIGHT) height = HEIGHT, width = HEIGHT * aspect;
-  s->width = width >= 1 ? (uint32_t)(width + 0.5) : 1;
-  s->height = height >= 1 ? (uint32_t)(height + 0.5) : 1;
-  const uint32_t whole[4] = {0, 0, s->width, s->height};
-  memcpy(s->crop, whole, sizeof whole);
+  s->film.width = width >= 1 ? (uint32_t)(width + 0.5) : 1;
+  s->film.height = height >= 1 ? (uint32_t)(height + 0.5) : 1;
+  const uint32_t whole[4] = {0, 0, s->film.width, s->film.height};
+  memcpy(s->film.crop, whole, sizeof whole);
 }
 
 static bool take_perspective(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlCameraDef *def) {
@@ -81,12 +81,12 @@ static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
   if (def.has_matrix_close) set_pose(&node->keys[VL_GLTF_KEYS - 1], def.world_from_camera_close);
   if (!(fabs(vl_mat4_determinant3(vl_mat4_load(def.world_from_camera))) > 1e-9))
     return vl_gltf_fail(g, at, "its node's transform is singular");
-  vlSceneSettings *s = vl_scene_settings(g->scene);
-  def.width = s->width, def.height = s->height;
+  vlSceneDefs *s = vl_scene_defs(g->scene);
+  def.width = s->film.width, def.height = s->film.height;
   s->camera = def;
   s->camera_source.file = NULL;
   s->camera_missing = false;
-  s->camera_in_full = json_object_get(json_object_get(json, "extras"), "velo") != NULL;
+  g->scene->camera_in_full = json_object_get(json_object_get(json, "extras"), "velo") != NULL;
   return true;
 }
 

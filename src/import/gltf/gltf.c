@@ -27,10 +27,10 @@ bool vl_gltf_choose_variant(vlGltf *g) {
 }
 
 static void set_defaults(vlScene *scene) {
-  vlSceneSettings *s = vl_scene_settings(scene);
-  s->spp = 64;
-  s->tracer = VL_TRACER_VOLPATH;
-  s->max_depth = 12; /* light goes through glass */
+  vlSceneDefs *s = vl_scene_defs(scene);
+  s->render.spp = 64;
+  s->render.tracer = VL_TRACER_VOLPATH;
+  s->render.max_depth = 12; /* light goes through glass */
   s->camera_missing = true;
   s->light_missing = true;
 }

@@ -84,7 +84,7 @@ static bool add_cube(vlGltf *g, const Cube *cube, const double rotation[4], doub
   light.image = image;
   bool ok = vl_scene_add_light(g->scene, &light).index != 0;
   vl_image_destroy(image);
-  if (ok) vl_scene_settings(g->scene)->light_missing = false;
+  if (ok) vl_scene_defs(g->scene)->light_missing = false;
   return ok;
 }
 

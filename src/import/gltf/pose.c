@@ -32,7 +32,7 @@ bool vl_gltf_pose(vlGltf *g) {
       n->weights = NULL;
     }
   }
-  vlCameraDef *camera = &vl_scene_settings(g->scene)->camera;
+  vlCameraDef *camera = &vl_scene_defs(g->scene)->camera;
   camera->shutter_open = 0, camera->shutter_close = g->close - g->open;
   return true;
 }

@@ -228,7 +228,8 @@ bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[
 bool vl_import_finish_motion(vlImport *import); /* moving parts of objects, when all instances are known */
 
 /* ---- parts ------------------------------------------------------------------------------------------------------ */
-bool vl_import_camera(vlImport *import); /* the choices made before WorldBegin, to scene settings; camera after film */
+bool vl_import_camera(
+    vlImport *import); /* the choices made before WorldBegin, to the scene's defs; camera after film */
 bool vl_import_film(vlImport *import);
 bool vl_import_sampling(vlImport *import); /* sampler, filter, integrator */
 bool vl_import_option(vlImport *import, const vlStatement *s);

@@ -362,17 +362,17 @@ static bool name_lecture_system(vlImport *import, const vlCameraDef *def) {
 }
 
 bool vl_import_camera(vlImport *import) {
-  vlSceneSettings *settings = vl_scene_settings(import->scene);
+  vlSceneDefs *defs = vl_scene_defs(import->scene);
   const vlChoice *choice = &import->camera;
   char what[96];
   snprintf(what, sizeof what, "Camera \"%.60s\"", choice->given ? choice->kind : "perspective");
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
-  vlCameraDef def = vl_default_camera_def(settings->width, settings->height);
+  vlCameraDef def = vl_default_camera_def(defs->film.width, defs->film.height);
   int kind = choice->given ? -1 : PERSPECTIVE;
   for (int i = 0; choice->given && i < KINDS; i++)
     if (strcmp(choice->kind, kinds[i]) == 0) kind = i;
   for (int i = 0; i < 2 && !choice->given; i++) import->camera_from_world[i] = vl_mat4_identity();
-  settings->camera_source = choice->place;
+  defs->camera_source = choice->place;
   if (kind < 0) { /* permissive: pbrt's perspective camera from the same place */
     if (!vl_import_unknown(import, choice->place, "camera", choice->kind, kinds, KINDS, NULL, 0)) return false;
     vl_dict_skip(&dict);
@@ -389,8 +389,10 @@ bool vl_import_camera(vlImport *import) {
     return false;
   }
   if (!check(import, what, &def)) return false;
-  settings->camera = def;
+  defs->camera = def;
   /* pbrt's sensor: the longer the shutter is open, the brighter; the lecture says it with its own factor. */
-  if (kind >= PERSPECTIVE && kind < PINHOLE) settings->exposure *= (float)(def.shutter_close - def.shutter_open);
+  if (kind >= PERSPECTIVE && kind < PINHOLE) defs->develop.exposure *= (float)(def.shutter_close - def.shutter_open);
+  /* pbrt limits what its sensor measures, the film what falls on it. */
+  if (defs->develop.exposure > 0.0f) defs->film.max_component /= defs->develop.exposure;
   return kind < PINHOLE || name_lecture_system(import, &def);
 }

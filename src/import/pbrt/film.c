@@ -9,9 +9,9 @@
 enum { MAX_SIDE = 1 << 20 };
 
 /* pbrt: pixelbounds x0 x1 y0 y1 in pixels; cropwindow the same in fractions, rounded up, and it wins. */
-static bool read_crop(vlDict *dict, vlSceneSettings *s) {
+static bool read_crop(vlDict *dict, vlSceneDefs *s) {
   vlImport *import = dict->import;
-  double w = s->width, h = s->height, box[4] = {0, w, 0, h}, crop[4];
+  double w = s->film.width, h = s->film.height, box[4] = {0, w, 0, h}, crop[4];
   vlParam *pixels = vl_dict_find(dict, "pixelbounds", 1u << VL_PARAM_INTEGER);
   vlSource place = dict->place;
   if (pixels) {
@@ -37,10 +37,10 @@ static bool read_crop(vlDict *dict, vlSceneSettings *s) {
   }
   if (!(box[0] < box[1] && box[2] < box[3]))
     return vl_import_fail(import, VL_ERROR_SCENE, place, "%s: the crop window holds no pixel", dict->what);
-  s->crop[0] = (uint32_t)box[0];
-  s->crop[2] = (uint32_t)box[1];
-  s->crop[1] = (uint32_t)box[2];
-  s->crop[3] = (uint32_t)box[3];
+  s->film.crop[0] = (uint32_t)box[0];
+  s->film.crop[2] = (uint32_t)box[1];
+  s->film.crop[1] = (uint32_t)box[2];
+  s->film.crop[3] = (uint32_t)box[3];
   return import->scene->error.code == VL_OK;
 }
 
@@ -78,16 +78,16 @@ static bool read_sensor(vlDict *dict) {
     return vl_import_fail(import, VL_ERROR_SCENE, vl_dict_find(dict, "whitebalance", VL_BIT_FLOAT)->place,
                           "%s: \"whitebalance\" is %g; it must be 0 (none) or 1000 to 100000 kelvin", dict->what,
                           white);
-  vl_scene_settings(import->scene)->white_balance = white != 0.0 ? white : usual;
+  vl_scene_defs(import->scene)->film.white_balance = white != 0.0 ? white : usual;
   if (vl_dict_double(dict, "maxcomponentvalue", &top) && !(top >= 0.0))
     return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"maxcomponentvalue\" must not be negative",
                           dict->what);
-  vl_scene_settings(import->scene)->max_component = top < 1e30 ? (float)top : INFINITY;
+  vl_scene_defs(import->scene)->film.max_component = top < 1e30 ? (float)top : INFINITY;
   return import->scene->error.code == VL_OK;
 }
 
 /* Buckets of wavelengths beside the colours. */
-static bool read_spectrum(vlDict *dict, vlSceneSettings *s) {
+static bool read_spectrum(vlDict *dict, vlSceneDefs *s) {
   uint32_t count = 16;
   double low = 360.0, high = 830.0;
   vl_dict_count(dict, "nbuckets", 1, &count);
@@ -101,13 +101,13 @@ static bool read_spectrum(vlDict *dict, vlSceneSettings *s) {
     return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
                           "%s: wavelengths from %g to %g nm; they must lie inside of 360 to 830", dict->what, low,
                           high);
-  s->buckets = count, s->lambda_min = low, s->lambda_max = high;
+  s->film.buckets = count, s->film.lambda_min = low, s->film.lambda_max = high;
   return true;
 }
 
 bool vl_import_film(vlImport *import) {
   static const char *const kinds[] = {"rgb", "gbuffer", "spectral"};
-  vlSceneSettings *s = vl_scene_settings(import->scene);
+  vlSceneDefs *s = vl_scene_defs(import->scene);
   const vlChoice *choice = &import->film;
   char what[96];
   snprintf(what, sizeof what, "Film \"%.60s\"", choice->given ? choice->kind : "rgb");
@@ -116,15 +116,15 @@ bool vl_import_film(vlImport *import) {
   bool spectral = choice->given && strcmp(choice->kind, "spectral") == 0;
   bool known = !choice->given || buffers || spectral || strcmp(choice->kind, "rgb") == 0;
   if (!known && !vl_import_unknown(import, choice->place, "film", choice->kind, kinds, 3, NULL, 0)) return false;
-  s->width = 1280;
-  s->height = 720;
-  s->space = choice->given ? choice->space : VL_SPACE_SRGB;
+  s->film.width = 1280;
+  s->film.height = 720;
+  s->film.space = choice->given ? choice->space : VL_SPACE_SRGB;
   double iso = 100.0, time = 1.0, ratio = 1.0;
   bool half = true;
   const char *output = "";
   vlParam *file = vl_dict_find(&dict, "filename", 1u << VL_PARAM_STRING);
-  vl_dict_count(&dict, "xresolution", 1, &s->width);
-  vl_dict_count(&dict, "yresolution", 1, &s->height);
+  vl_dict_count(&dict, "xresolution", 1, &s->film.width);
+  vl_dict_count(&dict, "yresolution", 1, &s->film.height);
   vl_dict_string(&dict, "filename", &output);
   import->film_diagonal = 35.0;
   vl_dict_double(&dict, "diagonal", &import->film_diagonal); /* matters to realistic cameras only */
@@ -133,14 +133,14 @@ bool vl_import_film(vlImport *import) {
   vl_dict_double(&dict, "exposuretime", &time);
   vl_dict_double(&dict, "imagingratio", &ratio);
   if (import->scene->error.code != VL_OK) return false;
-  if (s->width > MAX_SIDE || s->height > MAX_SIDE)
-    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: %u x %u pixels are too many", what, s->width,
-                          s->height);
+  if (s->film.width > MAX_SIDE || s->film.height > MAX_SIDE)
+    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: %u x %u pixels are too many", what, s->film.width,
+                          s->film.height);
   if (strlen(output) >= sizeof s->output)
     return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: the file name is too long", what);
   snprintf(s->output, sizeof s->output, "%s", output);
-  s->exposure = (float)(iso / 100.0 * time * ratio);
-  if (!(s->exposure >= 0.0f) || !isfinite(s->exposure))
+  s->develop.exposure = (float)(iso / 100.0 * time * ratio);
+  if (!(s->develop.exposure >= 0.0f) || !isfinite(s->develop.exposure))
     return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: the exposure is negative or not finite", what);
   if (!read_crop(&dict, s) || !read_sensor(&dict) || (spectral && !read_spectrum(&dict, s))) return false;
   if (buffers) {
@@ -164,13 +164,13 @@ static void normalise(const char *name, char *result, size_t size) {
 }
 
 bool vl_import_option(vlImport *import, const vlStatement *s) {
-  vlSceneSettings *settings = vl_scene_settings(import->scene);
+  vlSceneDefs *defs = vl_scene_defs(import->scene);
   const struct {
     const char *name;
     bool *value; /* null: changes the picture, and velo has nothing of the kind */
-  } switches[] = {{"disablepixeljitter", &settings->centred},
-                  {"disabletexturefiltering", &settings->sharp_textures},
-                  {"disablewavelengthjitter", &settings->same_wavelengths},
+  } switches[] = {{"disablepixeljitter", &defs->render.centred},
+                  {"disabletexturefiltering", &defs->render.sharp_textures},
+                  {"disablewavelengthjitter", &defs->render.same_wavelengths},
                   {"forcediffuse", NULL}};
   static const char *const harmless[] = {"msereferenceimage", "msereferenceout", "pixelstats", "wavefront",
                                          "rendercoordsys"};
@@ -181,7 +181,7 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
     double seed;
     if (!vl_number_parse(value, strlen(value), &seed) || seed != floor(seed) || fabs(seed) > 4294967295.0)
       return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"seed\": \"%.40s\" is not an integer", value);
-    settings->sampler_seed = (uint32_t)(int64_t)seed;
+    defs->render.seed = (uint32_t)(int64_t)seed;
     return true;
   }
   if (strcmp(name, "displacementedgescale") == 0) {

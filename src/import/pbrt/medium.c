@@ -234,7 +234,7 @@ static bool find(vlImport *import, const char *name, vlSource place, vlMediumId 
  * ways do not. */
 static void warn_surface_integrator(vlImport *import, const vlMediumLink *link) {
   const vlChoice *integrator = &import->integrator;
-  vlTracer tracer = vl_scene_settings(import->scene)->tracer;
+  vlTracer tracer = vl_scene_defs(import->scene)->render.tracer;
   if (tracer == VL_TRACER_VOLPATH || tracer == VL_TRACER_BIDIRECTIONAL || !integrator->given) return;
   bool through = tracer == VL_TRACER_SPPM || tracer == VL_TRACER_LIGHT_PATH;
   vl_import_warn(import, VL_LOG_WARNING, link->place,
@@ -259,7 +259,7 @@ bool vl_import_finish_media(vlImport *import) {
     } else if (link->target == 'l') {
       scene->lights.items[link->index].medium = outside;
     } else {
-      vl_scene_settings(scene)->camera_medium = outside;
+      vl_scene_defs(scene)->camera_medium = outside;
     }
   }
   if (import->medium_links.count) warn_surface_integrator(import, &import->medium_links.items[0]);

@@ -1,4 +1,4 @@
-/* import/pbrt/sampling.c: Sampler, PixelFilter, Integrator and Accelerator to the scene's settings. Defaults are
+/* import/pbrt/sampling.c: Sampler, PixelFilter, Integrator and Accelerator to the scene's defs. Defaults are
  * pbrt-v4's.
  */
 #include <math.h>
@@ -34,7 +34,7 @@ static const SamplerName samplers[] = {
 };
 enum { SAMPLERS = sizeof samplers / sizeof *samplers };
 
-static bool read_grid(vlDict *dict, vlSceneSettings *s) {
+static bool read_grid(vlDict *dict, vlSceneDefs *s) {
   uint32_t x = 4, y = 4;
   bool jitter = true;
   bool given = vl_dict_count(dict, "xsamples", 1, &x);
@@ -42,16 +42,16 @@ static bool read_grid(vlDict *dict, vlSceneSettings *s) {
   vl_dict_bool(dict, "jitter", &jitter);
   if ((uint64_t)x * y > 0x7fffffff)
     return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: too many samples", dict->what);
-  if (!jitter) s->sampler = VL_SAMPLER_REGULAR;
+  if (!jitter) s->render.sampler = VL_SAMPLER_REGULAR;
   /* Not pbrt's, but the same word for all samplers. */
-  if (!vl_dict_count(dict, "pixelsamples", 1, &s->spp) || given) s->spp = x * y;
+  if (!vl_dict_count(dict, "pixelsamples", 1, &s->render.spp) || given) s->render.spp = x * y;
   return true;
 }
 
-static bool read_sampler(vlImport *import, vlSceneSettings *s) {
+static bool read_sampler(vlImport *import, vlSceneDefs *s) {
   const vlChoice *choice = &import->sampler;
-  s->sampler = VL_SAMPLER_ZSOBOL;
-  s->spp = 16;
+  s->render.sampler = VL_SAMPLER_ZSOBOL;
+  s->render.spp = 16;
   if (!choice->given) return true;
   char what[96];
   snprintf(what, sizeof what, "Sampler \"%.60s\"", choice->kind);
@@ -63,15 +63,15 @@ static bool read_sampler(vlImport *import, vlSceneSettings *s) {
     if (strcmp(choice->kind, names[i]) == 0) sampler = &samplers[i];
   }
   if (!sampler) return vl_import_unknown(import, choice->place, "sampler", choice->kind, names, SAMPLERS, NULL, 0);
-  s->sampler = sampler->kind;
-  s->spp = sampler->spp;
+  s->render.sampler = sampler->kind;
+  s->render.spp = sampler->spp;
   if (sampler->instead)
     vl_import_warn(import, VL_LOG_INFO, choice->place, "sampler \"%s\": \"%s\" is taken in its place", sampler->name,
                    sampler->instead);
   int32_t seed;
-  if (vl_dict_integer(&dict, "seed", &seed)) s->sampler_seed = (uint32_t)seed;
+  if (vl_dict_integer(&dict, "seed", &seed)) s->render.seed = (uint32_t)seed;
   if (sampler->grid && !read_grid(&dict, s)) return false;
-  if (!sampler->grid) vl_dict_count(&dict, "pixelsamples", 1, &s->spp);
+  if (!sampler->grid) vl_dict_count(&dict, "pixelsamples", 1, &s->render.spp);
   static const char *const randomizations[] = {"none", "permutedigits", "fastowen", "owen"};
   int randomization = 2;
   bool scrambled =
@@ -84,13 +84,13 @@ static bool read_sampler(vlImport *import, vlSceneSettings *s) {
 
 /* ---- pixel filter ----------------------------------------------------------------------------------------------- */
 
-static bool read_filter(vlImport *import, vlSceneSettings *s) {
+static bool read_filter(vlImport *import, vlSceneDefs *s) {
   static const char *const names[] = {"box", "triangle", "gaussian", "mitchell", "sinc", "lanczos", "blackmanharris"};
   static const vlPixelFilterKind values[] = {
       VL_PIXEL_FILTER_BOX,     VL_PIXEL_FILTER_TRIANGLE, VL_PIXEL_FILTER_GAUSSIAN,       VL_PIXEL_FILTER_MITCHELL,
       VL_PIXEL_FILTER_LANCZOS, VL_PIXEL_FILTER_LANCZOS,  VL_PIXEL_FILTER_BLACKMAN_HARRIS};
   const vlChoice *choice = &import->filter;
-  s->filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
+  s->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
   if (!choice->given) return true;
   char what[96];
   snprintf(what, sizeof what, "PixelFilter \"%.60s\"", choice->kind);
@@ -99,17 +99,17 @@ static bool read_filter(vlImport *import, vlSceneSettings *s) {
   for (int i = 0; i < 7; i++)
     if (strcmp(choice->kind, names[i]) == 0) kind = i;
   if (kind < 0) return vl_import_unknown(import, choice->place, "pixel filter", choice->kind, names, 7, NULL, 0);
-  s->filter = vl_default_pixel_filter(values[kind]);
-  vl_dict_float(&dict, "xradius", &s->filter.radius_x);
-  vl_dict_float(&dict, "yradius", &s->filter.radius_y);
-  if (values[kind] == VL_PIXEL_FILTER_GAUSSIAN) vl_dict_float(&dict, "sigma", &s->filter.sigma);
-  if (values[kind] == VL_PIXEL_FILTER_LANCZOS) vl_dict_float(&dict, "tau", &s->filter.tau);
+  s->film.filter = vl_default_pixel_filter(values[kind]);
+  vl_dict_float(&dict, "xradius", &s->film.filter.radius_x);
+  vl_dict_float(&dict, "yradius", &s->film.filter.radius_y);
+  if (values[kind] == VL_PIXEL_FILTER_GAUSSIAN) vl_dict_float(&dict, "sigma", &s->film.filter.sigma);
+  if (values[kind] == VL_PIXEL_FILTER_LANCZOS) vl_dict_float(&dict, "tau", &s->film.filter.tau);
   if (values[kind] == VL_PIXEL_FILTER_MITCHELL) {
-    vl_dict_float(&dict, "B", &s->filter.b);
-    vl_dict_float(&dict, "C", &s->filter.c);
+    vl_dict_float(&dict, "B", &s->film.filter.b);
+    vl_dict_float(&dict, "C", &s->film.filter.c);
   }
   if (!vl_dict_done(&dict)) return false;
-  const vlPixelFilter *f = &s->filter;
+  const vlPixelFilter *f = &s->film.filter;
   if (!(f->radius_x > 0.0f && f->radius_y > 0.0f && f->radius_x <= 64.0f && f->radius_y <= 64.0f))
     return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: the radius must be above 0 and at most 64 pixels",
                           what);
@@ -121,16 +121,16 @@ static bool read_filter(vlImport *import, vlSceneSettings *s) {
 /* ---- integrator ------------------------------------------------------------------------------------------------- */
 
 /* Longer paths than vl_render follows carry nothing that shows. */
-static void read_depth(vlDict *dict, vlSceneSettings *s) {
+static void read_depth(vlDict *dict, vlSceneDefs *s) {
   enum { MOST = 4096 };
-  vl_dict_count(dict, "maxdepth", 0, &s->max_depth);
-  if (s->max_depth <= MOST) return;
+  vl_dict_count(dict, "maxdepth", 0, &s->render.max_depth);
+  if (s->render.max_depth <= MOST) return;
   vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, "maxdepth", 1u << VL_PARAM_INTEGER)->place,
-                 "%s: \"maxdepth\" %u: %d is taken", dict->what, s->max_depth, MOST);
-  s->max_depth = MOST;
+                 "%s: \"maxdepth\" %u: %d is taken", dict->what, s->render.max_depth, MOST);
+  s->render.max_depth = MOST;
 }
 
-static bool read_path(vlDict *dict, vlSceneSettings *s) {
+static bool read_path(vlDict *dict, vlSceneDefs *s) {
   static const char *const light_samplers[] = {"bvh", "power", "uniform", "exhaustive"};
   vlImport *import = dict->import;
   bool yes = true;
@@ -140,9 +140,9 @@ static bool read_path(vlDict *dict, vlSceneSettings *s) {
     if (sampler == 3)
       vl_import_warn(import, VL_LOG_INFO, vl_dict_find(dict, "lightsampler", 1u << VL_PARAM_STRING)->place,
                      "%s: light sampler \"exhaustive\": \"bvh\" is taken in its place", dict->what);
-    s->light_sampler = sampler == 3 ? VL_LIGHT_SAMPLER_BVH : (vlLightSampler)sampler;
+    s->build.light_sampler = sampler == 3 ? VL_LIGHT_SAMPLER_BVH : (vlLightSampler)sampler;
   }
-  vl_dict_bool(dict, "regularize", &s->regularize);
+  vl_dict_bool(dict, "regularize", &s->build.regularize);
   if (strstr(dict->what, "simple")) { /* how a simple path samples does not change what it converges to */
     vl_dict_bool(dict, "samplelights", &yes);
     vl_dict_bool(dict, "samplebsdf", &yes);
@@ -151,22 +151,22 @@ static bool read_path(vlDict *dict, vlSceneSettings *s) {
 }
 
 /* Of sppm; of the others the words alone are looked at. */
-static bool read_merging(vlDict *dict, vlSceneSettings *s) {
+static bool read_merging(vlDict *dict, vlSceneDefs *s) {
   float radius = 0;
   vlParam *given = vl_dict_find(dict, "radius", VL_BIT_FLOAT);
   if (given && vl_dict_float(dict, "radius", &radius)) {
     if (!(radius > 0.0f) || !(radius < __builtin_inff()))
       return vl_import_fail(dict->import, VL_ERROR_SCENE, given->place, "%s: \"radius\" must be above 0", dict->what);
-    s->merge_radius = (double)radius;
+    s->render.merge_radius = (double)radius;
   }
   int32_t photons = -1; /* as many as pixels */
   if (vl_dict_integer(dict, "photonsperiteration", &photons) && photons > 0)
-    s->light_paths = photons < 1 << 24 ? (uint32_t)photons : 1u << 24;
+    s->render.light_paths = photons < 1 << 24 ? (uint32_t)photons : 1u << 24;
   return true;
 }
 
 /* pbrt's two-way integrators by velo's own: of what steers theirs, radius and photons do. */
-static bool read_two_way(vlDict *dict, vlSceneSettings *s, const char *kind) {
+static bool read_two_way(vlDict *dict, vlSceneDefs *s, const char *kind) {
   static const struct {
     const char *name;
     vlTracer tracer;
@@ -182,7 +182,7 @@ static bool read_two_way(vlDict *dict, vlSceneSettings *s, const char *kind) {
   vlImport *import = dict->import;
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     if (strcmp(kind, kinds[i].name) != 0) continue;
-    s->tracer = kinds[i].tracer;
+    s->render.tracer = kinds[i].tracer;
     read_depth(dict, s);
     if (!kinds[i].by) break;
     bool yes;
@@ -198,14 +198,14 @@ static bool read_two_way(vlDict *dict, vlSceneSettings *s, const char *kind) {
   return vl_dict_done(dict);
 }
 
-static bool read_integrator(vlImport *import, vlSceneSettings *s) {
+static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   static const char *const names[] = {"path", "simplepath", "volpath", "simplevolpath", "raycast",   "ambientocclusion",
                                       "bdpt", "mlt",        "sppm",    "lightpath",     "randomwalk"};
   enum { KINDS = sizeof names / sizeof *names };
   static const char *const later[] = {"function"};
   const vlChoice *choice = &import->integrator;
-  s->tracer = VL_TRACER_VOLPATH;
-  s->max_depth = 5;
+  s->render.tracer = VL_TRACER_VOLPATH;
+  s->render.max_depth = 5;
   if (!choice->given) return true;
   char what[96];
   snprintf(what, sizeof what, "Integrator \"%.60s\"", choice->kind);
@@ -221,16 +221,16 @@ static bool read_integrator(vlImport *import, vlSceneSettings *s) {
     return import->scene->error.code == VL_OK;
   }
   if (kind < 4) {
-    s->tracer = kind < 2 ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
+    s->render.tracer = kind < 2 ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
     return read_path(&dict, s) && vl_dict_done(&dict);
   }
   if (kind > 5) return read_two_way(&dict, s, choice->kind);
-  s->tracer = kind == 4 ? VL_TRACER_RAYCAST : VL_TRACER_AMBIENT_OCCLUSION;
+  s->render.tracer = kind == 4 ? VL_TRACER_RAYCAST : VL_TRACER_AMBIENT_OCCLUSION;
   if (kind == 5) {
-    vl_dict_bool(&dict, "cossample", &s->ao_cosine);
+    vl_dict_bool(&dict, "cossample", &s->render.ao_cosine);
     vlParam *p = vl_dict_find(&dict, "maxdistance", VL_BIT_FLOAT);
-    vl_dict_float(&dict, "maxdistance", &s->ao_distance);
-    if (!(s->ao_distance > 0.0f))
+    vl_dict_float(&dict, "maxdistance", &s->render.ao_distance);
+    if (!(s->render.ao_distance > 0.0f))
       return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: \"maxdistance\" must be above 0", what);
   }
   return vl_dict_done(&dict);
@@ -245,6 +245,6 @@ static bool check_accelerator(vlImport *import) {
 }
 
 bool vl_import_sampling(vlImport *import) {
-  vlSceneSettings *s = vl_scene_settings(import->scene);
+  vlSceneDefs *s = vl_scene_defs(import->scene);
   return read_sampler(import, s) && read_filter(import, s) && read_integrator(import, s) && check_accelerator(import);
 }

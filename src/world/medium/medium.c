@@ -363,7 +363,7 @@ vlResult vl_world_add_media(vlWorld *world, const vlScene *scene, vlError *error
   uint32_t *compiled = vl_world_block(world, scene->media.count + 1, sizeof *compiled);
   if (!compiled) return vl_fail_memory(error);
   memset(compiled, 0, (scene->media.count + 1) * sizeof *compiled);
-  vlResult r = use(world, scene, compiled, scene->settings.camera_medium, &world->camera_medium, error);
+  vlResult r = use(world, scene, compiled, scene->defs.camera_medium, &world->camera_medium, error);
   for (size_t i = 0; r == VL_OK && i < scene->shapes.count; i++) {
     const vlShapeDef *def = &scene->shapes.items[i];
     vlWorldShape *shape = &world->shapes.items[i];

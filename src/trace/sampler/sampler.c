@@ -44,6 +44,8 @@ const vlSamplerKernels *vl_sampler_kernels(vlIsa isa) {
   switch (isa) {
     case VL_ISA_V4: return &vl_sampler_kernels_v4;
     case VL_ISA_V3: return &vl_sampler_kernels_v3;
-    default: return &vl_sampler_kernels_v2;
+    case VL_ISA_V2:
+    case VL_ISA_AUTO: break; /* the context has chosen: never AUTO */
   }
+  return &vl_sampler_kernels_v2;
 }

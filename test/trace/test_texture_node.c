@@ -211,7 +211,7 @@ static void assert_light(Fixture *f, float expected) {
     s->surface.nx[i] = s->surface.ny[i] = 0, s->surface.nz[i] = -1;
     s->shade.u0[i] = stat_float(&rng), s->shade.u1[i] = stat_float(&rng), s->shade.u2[i] = stat_float(&rng);
   }
-  VL_HOT(vl_stage_lights)(f->world, VL_BATCH, &s->b, &s->surface, s->shade.u0, s->shade.u1, s->shade.u2, &s->light);
+  vl_stage_lights(f->world, VL_BATCH, &s->b, &s->surface, s->shade.u0, s->shade.u1, s->shade.u2, &s->light);
   for (uint32_t i = 0; i < VL_BATCH; i++) {
     assert_true(s->light.pdf[i] > 0);
     float radiance = s->light.radiance[0][i] * s->light.pdf[i];
@@ -253,7 +253,7 @@ static void lights_with_alpha(void **state) {
   vl_image_destroy(image);
   build(&f);
   float white[4], lambda[4] = {0};
-  VL_HOT(vl_emitted_at)(f.world, &f.world->emitted.items[0], lambda, 0.5f, 0.5f, false, white);
+  vl_emitted_at(f.world, &f.world->emitted.items[0], lambda, 0.5f, 0.5f, false, white);
   assert_true(white[0] > 0.5f);
   assert_light(&f, 0.25f * white[0]);
   end(&f);
@@ -280,7 +280,7 @@ static void mix_by_vertex_color(void **state) {
     vlTraceScratch *s = f.scratch;
     s->a.ox[0] = 0.2f, s->a.oy[0] = 0.3f, s->a.oz[0] = 5, s->a.dz[0] = -1;
     s->hits_a.shape[0] = s->hits_a.prim[0] = 0, s->hits_a.instance[0] = VL_NONE;
-    uint32_t m = VL_HOT(vl_hit_material)(f.world, &s->a, &s->hits_a, 0);
+    uint32_t m = vl_hit_material(f.world, &s->a, &s->hits_a, 0);
     assert_int_equal(f.world->materials.items[m].kind, second ? VL_MATERIAL_CONDUCTOR : VL_MATERIAL_DIFFUSE);
     end(&f);
   }

@@ -13,13 +13,13 @@ static void seeds(vlTextureRun *r) {
   }
 }
 
-void VL_HOT(vl_stage_layers)(vlTextureRun *r, const vlWorldMaterial *m) {
+void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldLayers *l = m->layers;
   vlShade *shade = &r->s->shade;
   float(*rows)[VL_ROW_SIZE] = shade->principled;
   vl_rows_albedo(r, l->albedo, 1.0f, rows + VL_L_ALBEDO);
-  VL_HOT(vl_texture_float)(r, l->thickness, rows[VL_L_THICKNESS]);
-  VL_HOT(vl_texture_float)(r, l->g, rows[VL_L_G]);
+  vl_texture_float(r, l->thickness, rows[VL_L_THICKNESS]);
+  vl_texture_float(r, l->g, rows[VL_L_G]);
   for (uint32_t i = r->first; i < r->last; i++) {
     rows[VL_L_METAL][i] = l->metal ? 1.0f : 0.0f;
     rows[VL_L_THICKNESS][i] = vl_max(rows[VL_L_THICKNESS][i], 1.17549435e-38f); /* pbrt's least */
@@ -44,7 +44,7 @@ void VL_HOT(vl_stage_layers)(vlTextureRun *r, const vlWorldMaterial *m) {
   seeds(r);
 }
 
-void VL_HOT(vl_stage_translucent)(vlTextureRun *r, const vlWorldMaterial *m) {
+void vl_stage_translucent(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *shade = &r->s->shade;
   vl_rows_albedo(r, m->transmittance, m->scale, shade->principled + VL_T_TRANSMITTANCE);
   for (int c = 0; c < 4; c++)

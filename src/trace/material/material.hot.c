@@ -39,7 +39,7 @@ static void bump(vlTextureRun *r, int32_t node) { /* VL_BUMP_ROWS rows of its ow
   float *h = vl_texture_row(r), *hu = vl_texture_row(r), *hv = vl_texture_row(r), *step = vl_texture_row(r);
   float *su = vl_texture_row(r), *sv = vl_texture_row(r), *x = vl_texture_row(r), *y = vl_texture_row(r),
         *z = vl_texture_row(r);
-  VL_HOT(vl_texture_float)(r, node, h);
+  vl_texture_float(r, node, h);
   for (uint32_t i = r->first; i < r->last; i++) {
     float w = 0.5f * f->width[i] * f->uv_scale[i];
     step[i] = w > 1e-6f ? w : 0.0005f;
@@ -47,10 +47,10 @@ static void bump(vlTextureRun *r, int32_t node) { /* VL_BUMP_ROWS rows of its ow
   r->shift_u = su, r->shift_v = sv, r->shift_x = x, r->shift_y = y, r->shift_z = z;
   for (uint32_t i = r->first; i < r->last; i++)
     su[i] = step[i], sv[i] = 0.0f, x[i] = step[i] * f->ux[i], y[i] = step[i] * f->uy[i], z[i] = step[i] * f->uz[i];
-  VL_HOT(vl_texture_float)(r, node, hu);
+  vl_texture_float(r, node, hu);
   for (uint32_t i = r->first; i < r->last; i++)
     su[i] = 0.0f, sv[i] = step[i], x[i] = step[i] * f->vx[i], y[i] = step[i] * f->vy[i], z[i] = step[i] * f->vz[i];
-  VL_HOT(vl_texture_float)(r, node, hv);
+  vl_texture_float(r, node, hv);
   r->shift_u = NULL;
   for (uint32_t i = r->first; i < r->last; i++) {
     if (r->world->shapes.items[r->s->hits_b.shape[i]].kind == VL_SHAPE_TRIANGLES) triangle_normal_slopes(r->s, i);
@@ -85,8 +85,7 @@ static void normal_map(vlTextureRun *r, int32_t image) {
 
 /* ---- parameters -------------------------------------------------------------------------------------------------- */
 
-void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material,
-                               vlTraceScratch *s) {
+void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s) {
   const vlWorldMaterial *m = &world->materials.items[material];
   vlShade *shade = &s->shade;
   vlTextureRun r = {world, s, &s->b, &s->surface, first, last, 0, NULL, NULL, NULL, NULL, NULL};
@@ -94,7 +93,7 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
   if (m->displacement >= 0) bump(&r, m->displacement);
   if (m->normal_map >= 0) normal_map(&r, m->normal_map);
   r.top = 0;
-  if (m->kind == VL_MATERIAL_PRINCIPLED) VL_HOT(vl_stage_principled)(&r, m);
+  if (m->kind == VL_MATERIAL_PRINCIPLED) vl_stage_principled(&r, m);
   if (m->reflectance >= 0) vl_rows_albedo(&r, m->reflectance, 1.0f, shade->reflectance);
   bool metal = m->kind == VL_MATERIAL_CONDUCTOR || m->kind == VL_MATERIAL_COATED_CONDUCTOR;
   if (metal && m->use_reflectance) {
@@ -114,11 +113,11 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
     vl_row_alpha(&r, m, m->u_roughness, shade->alpha_x);
     vl_row_alpha(&r, m, m->v_roughness, shade->alpha_y);
   }
-  if (m->layers) VL_HOT(vl_stage_layers)(&r, m);
-  if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) VL_HOT(vl_stage_translucent)(&r, m);
-  if (m->hair) VL_HOT(vl_stage_hair)(&r, m);
+  if (m->layers) vl_stage_layers(&r, m);
+  if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) vl_stage_translucent(&r, m);
+  if (m->hair) vl_stage_hair(&r, m);
   for (uint32_t i = first; i < last && m->measured; i++) shade->measured[i] = m->measured;
-  if (m->subsurface) VL_HOT(vl_stage_bodies)(&r, m);
+  if (m->subsurface) vl_stage_bodies(&r, m);
   for (uint32_t i = first; i < last && m->kind != VL_MATERIAL_PRINCIPLED && !m->hair; i++) {
     shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
     shade->coat[i] = m->coat;
@@ -135,7 +134,7 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
   }
 }
 
-void VL_HOT(vl_stage_frames)(uint32_t n, const vlPaths *paths, const vlSurface *f, vlShade *shade) {
+void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *f, vlShade *shade) {
   uint32_t padded = VL_PAD(n);
   /* must vectorise */
   VL_SIMD

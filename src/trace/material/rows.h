@@ -8,7 +8,7 @@
 /* A spectrum at the four wavelengths. */
 static inline void vl_rows_spectrum(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {
   float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
-  VL_HOT(vl_texture_spectrum)(r, node, out);
+  vl_texture_spectrum(r, node, out);
 }
 
 /* The same, times scale, cut to [0, 1]. */
@@ -21,7 +21,7 @@ static inline void vl_rows_albedo(vlTextureRun *r, int32_t node, float scale, fl
 /* The microfacets' alpha from a roughness texture: its square root where the material says so (pbrt's remaproughness).
  */
 static inline void vl_row_alpha(vlTextureRun *r, const vlWorldMaterial *m, int32_t node, float *alpha) {
-  VL_HOT(vl_texture_float)(r, node, alpha);
+  vl_texture_float(r, node, alpha);
   for (uint32_t i = r->first; i < r->last; i++) {
     float x = alpha[i] > 0.0f ? alpha[i] : 0.0f;
     alpha[i] = m->remap ? __builtin_sqrtf(x) : x;

@@ -29,7 +29,7 @@ static void bilerp_weights(const vlTextureRun *r, const vlTextureNode *node, flo
 /* Shares of the second input, in a row of the stack. */
 static const float *amount_share(vlTextureRun *r, const vlTextureNode *node) {
   float *share = vl_texture_row(r);
-  VL_HOT(vl_texture_float)(r, node->amount, share);
+  vl_texture_float(r, node->amount, share);
   return share;
 }
 static const float *checkerboard_share(vlTextureRun *r, const vlTextureNode *node) {
@@ -53,15 +53,15 @@ static const float *direction_share(vlTextureRun *r, const vlTextureNode *node) 
 /* The two inputs of a node by the share of the second. */
 static void mix_floats(vlTextureRun *r, const vlTextureNode *node, const float *share, float *out) {
   float *b = vl_texture_row(r);
-  VL_HOT(vl_texture_float)(r, node->a, out);
-  VL_HOT(vl_texture_float)(r, node->b, b);
+  vl_texture_float(r, node->a, out);
+  vl_texture_float(r, node->b, b);
   for (uint32_t i = r->first; i < r->last; i++) out[i] = vl_node_mix(out[i], b[i], share[i]);
 }
 
 static void scale_floats(vlTextureRun *r, const vlTextureNode *node, float *out) {
   float *w = vl_texture_row(r);
-  VL_HOT(vl_texture_float)(r, node->a, out);
-  VL_HOT(vl_texture_float)(r, node->amount, w);
+  vl_texture_float(r, node->a, out);
+  vl_texture_float(r, node->amount, w);
   for (uint32_t i = r->first; i < r->last; i++) out[i] = vl_node_scale(out[i], w[i]);
 }
 
@@ -70,12 +70,12 @@ static void bilerp_floats(vlTextureRun *r, const vlTextureNode *node, float *out
   bilerp_weights(r, node, w);
   const int32_t inputs[4] = {node->a, node->b, node->c, node->d};
   for (int k = 0; k < 4; k++) {
-    VL_HOT(vl_texture_float)(r, inputs[k], x);
+    vl_texture_float(r, inputs[k], x);
     for (uint32_t i = r->first; i < r->last; i++) out[i] = vl_node_bilerp_add(k ? out[i] : 0.0f, w[k][i], x[i]);
   }
 }
 
-void VL_HOT(vl_texture_float)(vlTextureRun *r, int32_t index, float *out) {
+void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
   switch (node->kind) {
@@ -174,16 +174,16 @@ static void marble_spectrum(const vlTextureRun *r, const vlTextureNode *node, fl
 /* As mix_floats, scale_floats and bilerp_floats. */
 static void mix_spectra(vlTextureRun *r, const vlTextureNode *node, const float *share, float *const out[4]) {
   float *b[4] = {vl_texture_row(r), vl_texture_row(r), vl_texture_row(r), vl_texture_row(r)};
-  VL_HOT(vl_texture_spectrum)(r, node->a, out);
-  VL_HOT(vl_texture_spectrum)(r, node->b, b);
+  vl_texture_spectrum(r, node->a, out);
+  vl_texture_spectrum(r, node->b, b);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++) out[c][i] = vl_node_mix(out[c][i], b[c][i], share[i]);
 }
 
 static void scale_spectra(vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {
   float *w = vl_texture_row(r);
-  VL_HOT(vl_texture_spectrum)(r, node->a, out);
-  VL_HOT(vl_texture_float)(r, node->amount, w);
+  vl_texture_spectrum(r, node->a, out);
+  vl_texture_float(r, node->amount, w);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++) out[c][i] = vl_node_scale(out[c][i], w[i]);
 }
@@ -194,14 +194,14 @@ static void bilerp_spectra(vlTextureRun *r, const vlTextureNode *node, float *co
   bilerp_weights(r, node, w);
   const int32_t inputs[4] = {node->a, node->b, node->c, node->d};
   for (int k = 0; k < 4; k++) {
-    VL_HOT(vl_texture_spectrum)(r, inputs[k], x);
+    vl_texture_spectrum(r, inputs[k], x);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++)
         out[c][i] = vl_node_bilerp_add(k ? out[c][i] : 0.0f, w[k][i], x[c][i]);
   }
 }
 
-void VL_HOT(vl_texture_spectrum)(vlTextureRun *r, int32_t index, float *const out[4]) {
+void vl_texture_spectrum(vlTextureRun *r, int32_t index, float *const out[4]) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
   switch (node->kind) {

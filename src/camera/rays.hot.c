@@ -211,5 +211,4 @@ static void rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s
   if (c->when.timed) vl_camera_time_rays(c, VL_PAD(n), s, r);
 }
 
-extern const vlCameraKernels vl_camera_kernels;
-const vlCameraKernels vl_camera_kernels = {rays, vl_camera_unproject_chunk, vl_camera_project_chunk};
+const vlCameraKernels vl_camera_kernel_table = {rays, vl_camera_unproject_chunk, vl_camera_project_chunk};

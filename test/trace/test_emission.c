@@ -12,7 +12,6 @@
 
 #include "statistics.h"
 
-#define VL_ISA_SUFFIX v2
 #include "trace/two_way/stages.h"
 #include "velo/velo.h"
 

@@ -13,7 +13,6 @@
 
 #include "statistics.h"
 
-#define VL_ISA_SUFFIX v2
 #include "trace/stages.h"
 #include "velo/velo.h"
 

@@ -54,4 +54,4 @@ static void sample(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBs
   }
 }
 
-const vlBsdfKernels vl_bsdf_kernels = {eval, sample};
+const vlBsdfKernels vl_bsdf_kernel_table = {eval, sample};

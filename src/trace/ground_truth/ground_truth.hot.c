@@ -268,4 +268,4 @@ static void layers(const vlWorld *world, const vlTruthBatch *batch, uint32_t lan
   }
 }
 
-const vlTruthKernels vl_truth_kernels = {trace, hits, layers};
+const vlTruthKernels vl_truth_kernel_table = {trace, hits, layers};

@@ -121,11 +121,11 @@ static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *s
     case VL_TRACER_SPPM:
     case VL_TRACER_LIGHT_PATH:
       if (def->two_way)
-        vl_two_way_tracer(&t);
+        vl_bidirectional_tracer(&t);
       else
         vl_path_tracer(&t);
       break;
   }
 }
 
-const vlTraceKernels vl_trace_kernels = {trace, vl_light_tracer, vl_light_media};
+const vlTraceKernels vl_trace_kernel_table = {trace, vl_light_tracer, vl_light_media};

@@ -31,7 +31,7 @@ typedef struct vlTwoWayRows {
   vlPhoton photons[VL_BATCH];
 } vlTwoWayRows;
 
-void vl_two_way_tracer(vlTracing *t);
+void vl_bidirectional_tracer(vlTracing *t);
 void vl_random_walk_tracer(vlTracing *t);
 void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTwoWayRows *rows,
                      vlLightBatch *batch);

@@ -200,7 +200,7 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth, uint32_t d
   return scatter(t, n, depth, dimension);
 }
 
-void vl_two_way_tracer(vlTracing *t) {
+void vl_bidirectional_tracer(vlTracing *t) {
   const vlTwoWay *way = t->def->two_way;
   uint32_t n = t->batch->n, most = (way->apart ? 2 : 1) * t->def->max_depth;
   bool media = vl_has_media(t);

@@ -33,14 +33,6 @@ static inline void *fail_allocate(void *user, size_t size) {
   return block;
 }
 
-static inline void *fail_reallocate(void *user, void *block, size_t size) {
-  failAllocator *state = user;
-  if (fail_now(state)) return NULL;
-  void *fresh = realloc(block, size);
-  if (fresh && !block) atomic_fetch_add(&state->blocks, 1);
-  return fresh;
-}
-
 static inline void fail_release(void *user, void *block) {
   failAllocator *state = user;
   if (block) atomic_fetch_sub(&state->blocks, 1);
@@ -53,7 +45,7 @@ static inline void fail_after(failAllocator *state, long n) {
 }
 
 static inline vlAllocator fail_allocator(failAllocator *state) {
-  return (vlAllocator){state, fail_allocate, fail_reallocate, fail_release};
+  return (vlAllocator){state, fail_allocate, fail_release};
 }
 
 /* The out-of-memory loop round body, with a context of one thread; the run without a refusal is at least the least-th.

@@ -92,11 +92,10 @@ typedef enum vlLogLevel { VL_LOG_ERROR = 0, VL_LOG_WARNING = 1, VL_LOG_INFO = 2,
  * thread, never from two at once. */
 typedef void vlLogFn(void *user, vlLogLevel level, const vlError *where, const char *message);
 
-/* All memory of the library goes through this. realloc with size 0 is never called. Thread-safe. */
+/* All memory of the library goes through this. Thread-safe. */
 typedef struct vlAllocator {
   void *user;
   void *(*allocate)(void *user, size_t size); /* aligned as malloc */
-  void *(*reallocate)(void *user, void *block, size_t size);
   void (*release)(void *user, void *block);
 } vlAllocator;
 

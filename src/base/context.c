@@ -50,10 +50,6 @@ static void *default_allocate(void *user, size_t size) {
   (void)user;
   return malloc(size);
 }
-static void *default_reallocate(void *user, void *block, size_t size) {
-  (void)user;
-  return realloc(block, size);
-}
 static void default_release(void *user, void *block) {
   (void)user;
   free(block);
@@ -84,10 +80,6 @@ void *vl_alloc(vlContext *context, size_t size) {
 void *vl_alloc_array(vlContext *context, size_t count, size_t size) {
   if (size && count > SIZE_MAX / 2 / size) return NULL;
   return vl_alloc(context, count * size);
-}
-
-void *vl_alloc_aligned(vlContext *context, size_t count, size_t size) {
-  return vl_alloc_array(context, count, size);
 }
 
 void *vl_alloc_zero(vlContext *context, size_t count, size_t size) {
@@ -233,7 +225,7 @@ vlContextDef vl_default_context_def_abi(uint32_t abi) {
   long cores = sysconf(_SC_NPROCESSORS_ONLN);
   return (vlContextDef){
       .cookie = VL_COOKIE_OF(VL_COOKIE_CONTEXT & 0xff, abi),
-      .allocator = {NULL, default_allocate, default_reallocate, default_release},
+      .allocator = {NULL, default_allocate, default_release},
       .threads = cores > 0 ? (uint32_t)cores : 1,
       .isa = VL_ISA_AUTO,
   };

@@ -12,8 +12,6 @@
 void *vl_alloc(vlContext *context, size_t size);
 void *vl_alloc_zero(vlContext *context, size_t count, size_t size);
 void *vl_alloc_array(vlContext *context, size_t count, size_t size);
-/* 64-byte aligned (for vector loads); release with vl_free as any other. */
-void *vl_alloc_aligned(vlContext *context, size_t count, size_t size);
 void *vl_realloc_array(vlContext *context, void *block, size_t count, size_t size);
 void vl_free(vlContext *context, void *block);
 char *vl_strdup(vlContext *context, const char *text); /* null for null or on failure */

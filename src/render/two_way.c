@@ -187,8 +187,8 @@ static vlResult grow(vlTwoWayRun *run, uint64_t wanted, vlError *error) {
   vl_free(run->context, run->photons);
   vl_free(run->context, run->sorted);
   vl_free(run->context, run->start);
-  run->photons = vl_alloc_aligned(run->context, capacity, sizeof *run->photons);
-  run->sorted = vl_alloc_aligned(run->context, capacity, sizeof *run->sorted);
+  run->photons = vl_alloc_array(run->context, capacity, sizeof *run->photons);
+  run->sorted = vl_alloc_array(run->context, capacity, sizeof *run->sorted);
   run->start = vl_alloc_array(run->context, (size_t)buckets + 1, sizeof *run->start);
   bool good = run->photons && run->sorted && run->start;
   run->capacity = good ? (uint32_t)capacity : 0;
@@ -236,8 +236,8 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlError *error) {
 static vlResult make_workers(vlTwoWayRun *run, vlError *error) {
   uint32_t threads = vl_context_threads(run->context);
   size_t size = (vl_two_way_rows_size() + 63) & ~(size_t)63;
-  run->workers = vl_alloc_aligned(run->context, threads, sizeof *run->workers);
-  run->memory = vl_alloc_aligned(run->context, threads, size);
+  run->workers = vl_alloc_array(run->context, threads, sizeof *run->workers);
+  run->memory = vl_alloc_array(run->context, threads, size);
   if (!run->workers || !run->memory) return vl_fail_memory(error);
   memset((void *)run->workers, 0, threads * sizeof *run->workers);
   memset(run->memory, 0, threads * size);

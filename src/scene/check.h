@@ -28,9 +28,6 @@ void vl_check_inside(vlCheck *check);   /* the camera and media in bodies */
 /* ---- helpers ------------------------------------------------------------------------------------------------------
  */
 
-static inline const vlTextureDef *vl_check_texture(const vlCheck *check, vlTextureId id) {
-  return id.index ? &check->scene->textures.items[id.index - 1] : NULL;
-}
 /* Null: the default diffuse. */
 static inline const vlMaterialDef *vl_check_material(const vlCheck *check, vlMaterialId id) {
   return id.index ? &check->scene->materials.items[id.index - 1] : NULL;

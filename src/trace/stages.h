@@ -312,15 +312,6 @@ static inline void vl_path_lambda(const vlPaths *p, uint32_t i, float lambda[4])
   for (int c = 0; c < 4; c++) lambda[c] = p->lambda[c][i];
 }
 
-static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambda) {
-  switch (s->kind) {
-    case VL_SPECTRAL_SIGMOID: return s->scale * vl_sigmoid(s->sigmoid, lambda);
-    case VL_SPECTRAL_DENSE: return s->scale * vl_dense_at(s->dense, lambda);
-    case VL_SPECTRAL_RGB: return channel < 3 ? s->scale * s->rgb[channel] : 0.0f;
-    default: return s->scale;
-  }
-}
-
 /* One float further from zero side given by d's sign: x rounded towards +inf (d > 0) or -inf (d < 0). */
 static inline float vl_nudge(float x, float d) {
   int32_t i = (int32_t)vl_float_bits(x);

@@ -378,10 +378,6 @@ static void *allocate(void *user, size_t size) {
   (void)user;
   return calls++ == fails_at ? NULL : malloc(size);
 }
-static void *reallocate(void *user, void *block, size_t size) {
-  (void)user;
-  return calls++ == fails_at ? NULL : realloc(block, size);
-}
 static void release(void *user, void *block) {
   (void)user;
   free(block);
@@ -389,7 +385,7 @@ static void release(void *user, void *block) {
 static void no_memory(void **state) {
   (void)state;
   vlContextDef def = vl_default_context_def();
-  def.allocator = (vlAllocator){NULL, allocate, reallocate, release};
+  def.allocator = (vlAllocator){NULL, allocate, release};
   def.threads = 1;
   vlContext *c;
   fails_at = -1;

@@ -65,7 +65,8 @@ static Face *faces_of(const char *text, size_t *count, size_t *shapes) {
       }
       v[24] = s->flip, v[25] = (float)world->materials.items[s->material].kind;
       v[26] = s->first_light != VL_NONE;
-      v[27] = s->alpha < 0 ? 1 : vl_texture_float_at(world, s->alpha, 0, 0, v, NULL);
+      vlTextureQuery at = {0, 0, {v[0], v[1], v[2]}, {0, 0, 1}, NULL};
+      v[27] = s->alpha < 0 ? 1 : vl_texture_float_at(world, s->alpha, &at);
     }
   }
   qsort(faces, *count, sizeof *faces, by_bytes);

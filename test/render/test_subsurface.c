@@ -410,10 +410,6 @@ static void *take(void *user, size_t size) {
   Purse *p = user;
   return p->left-- > 0 ? malloc(size) : NULL;
 }
-static void *retake(void *user, void *block, size_t size) {
-  Purse *p = user;
-  return p->left-- > 0 ? realloc(block, size) : NULL;
-}
 static void give_back(void *user, void *block) {
   (void)user;
   free(block);
@@ -427,7 +423,7 @@ static void memory(void **state) {
     Purse purse = {1000000};
     vlContextDef def = vl_default_context_def();
     def.threads = 1;
-    def.allocator.allocate = take, def.allocator.reallocate = retake, def.allocator.release = give_back;
+    def.allocator.allocate = take, def.allocator.release = give_back;
     def.allocator.user = &purse;
     Stage s = {.build = vl_default_build_def()};
     assert_int_equal(vl_context_create(&def, &s.context), VL_OK);

@@ -14,12 +14,6 @@ static void *purse_allocate(void *user, size_t size) {
   if (p->left > 0) p->left--;
   return malloc(size);
 }
-static void *purse_reallocate(void *user, void *block, size_t size) {
-  Purse *p = user;
-  if (p->left == 0) return NULL;
-  if (p->left > 0) p->left--;
-  return realloc(block, size);
-}
 static void purse_release(void *user, void *block) {
   (void)user;
   free(block);
@@ -99,7 +93,7 @@ static Stage purse_stage(Purse *purse) {
   vl_context_destroy(s.context);
   vlContextDef def = vl_default_context_def();
   def.threads = 2;
-  def.allocator = (vlAllocator){purse, purse_allocate, purse_reallocate, purse_release};
+  def.allocator = (vlAllocator){purse, purse_allocate, purse_release};
   assert_int_equal(vl_context_create(&def, &s.context), VL_OK);
   assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
   return s;

@@ -29,12 +29,6 @@ static void *purse_allocate(void *user, size_t size) {
   p->alive++;
   return malloc(size);
 }
-static void *purse_reallocate(void *user, void *block, size_t size) {
-  Purse *p = user;
-  if (!pay(p, size)) return NULL;
-  if (!block) p->alive++;
-  return realloc(block, size);
-}
 static void purse_release(void *user, void *block) {
   Purse *p = user;
   if (block) p->alive--;
@@ -42,7 +36,7 @@ static void purse_release(void *user, void *block) {
 }
 static vlContext *open_context(Purse *purse) {
   vlContextDef def = vl_default_context_def();
-  def.allocator = (vlAllocator){purse, purse_allocate, purse_reallocate, purse_release};
+  def.allocator = (vlAllocator){purse, purse_allocate, purse_release};
   vlContext *context = NULL;
   assert_int_equal(vl_context_create(&def, &context), VL_OK);
   return context;

@@ -72,7 +72,7 @@ void vl_bsdf_thin_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     float zo = oz[i], c = vl_abs(zo);
     float r = vl_fresnel_slab(vl_fresnel_dielectric(c, eta[i]).reflected);
-    int reflect = u_lobe[i]<r, valid = c> 0.0f;
+    int reflect = (u_lobe[i] < r), valid = (c > 0.0f);
     float p = reflect ? r : 1.0f - r, w = valid ? 1.0f : 0.0f;
     uint32_t f = reflect ? (uint32_t)VL_SAMPLED_SPECULAR : (uint32_t)(VL_SAMPLED_SPECULAR | VL_SAMPLED_TRANSMISSION);
     ix[i] = -ox[i];

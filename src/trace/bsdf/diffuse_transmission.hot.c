@@ -50,7 +50,7 @@ void vl_bsdf_translucent_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDi
     float a0 = r0[i], a1 = r1[i], a2 = r2[i], a3 = r3[i], b0 = t0[i], b1 = t1[i], b2 = t2[i], b3 = t3[i];
     float p = share(a0, a1, a2, a3, b0, b1, b2, b3);
     vlVec3 d = vl_cosine_direction(u[i], v[i]);
-    int reflect = u_lobe[i]<p, valid = vl_abs(zo)> 0.0f;
+    int reflect = (u_lobe[i] < p), valid = (vl_abs(zo) > 0.0f);
     float up = reflect ? 1.0f : 0.0f, down = 1.0f - up, on = valid ? 1.0f : 0.0f;
     float chosen = p * up + (1.0f - p) * down, scale = on / (chosen > 1e-30f ? chosen : 1e-30f);
     float z = zo < 0.0f ? -d.z : d.z;

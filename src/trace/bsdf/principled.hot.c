@@ -81,25 +81,32 @@ static inline Facet coat_facet(vlVec3 o, vlVec3 w, vlVec3 n, float alpha) {
   return (Facet){valid ? g : 0.0f, valid ? p : 0.0f, f, oh, f, 0.0f};
 }
 
-/* Whether a chunk has a coat is a constant in each of two loops. */
-static inline __attribute__((always_inline)) void combine_loop(const vlPrincipledSlice *s, const vlPrincipledLanes *l,
-                                                               vlBsdfDirections wo, vlBsdfDirections wi,
-                                                               float *const value[4], float *pdf, uint32_t first,
-                                                               bool has_coat) {
+/* What all four channels of a pair of directions share. */
+typedef struct Pair {
+  float facet[VL_PRINCIPLED_CHUNK];  /* value of the base's microfacets without Fresnel's term */
+  float weight[VL_PRINCIPLED_CHUNK]; /* Schlick's weight */
+  float opaque[VL_PRINCIPLED_CHUNK]; /* Schlick's weight as if light came from outside */
+  float total[VL_PRINCIPLED_CHUNK];  /* 1: total reflection */
+  float hide_mirror[VL_PRINCIPLED_CHUNK], hide_matt[VL_PRINCIPLED_CHUNK]; /* factors of the layers above, */
+  float hide_through[VL_PRINCIPLED_CHUNK];                                /* each lobe's */
+  float coat[VL_PRINCIPLED_CHUNK];                                        /* value of the clear coat */
+  float cosine[VL_PRINCIPLED_CHUNK];                                      /* |wi.z| / pi */
+  float again[VL_PRINCIPLED_CHUNK];                                       /* between microfacets, f cos_i */
+  float upper[VL_PRINCIPLED_CHUNK], lower[VL_PRINCIPLED_CHUNK];           /* 1: wi lies on wo's side, on the other */
+} Pair;
+
+/* The pair, and the density of sampling wi. Whether a chunk has a coat is a constant in each of two loops. */
+static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSlice *s, const vlPrincipledLanes *l,
+                                                            vlBsdfDirections wo, vlBsdfDirections wi, Pair *out,
+                                                            float *pdf, uint32_t first, bool has_coat) {
   const float *ox = wo.x + first, *oy = wo.y + first, *ix = wi.x + first, *iy = wi.y + first, *iz = wi.z + first;
   const float *ax = s->alpha_x, *ay = s->alpha_y, *index = s->eta;
   const float *metallic = s->row[VL_P_METALLIC], *f90s = s->row[VL_P_F90], *clears = s->row[VL_P_TRANSMISSION];
-  const float *thins = s->row[VL_P_THIN], *shares_row = s->row[VL_P_DIFFUSE_TRANSMISSION], *films = s->row[VL_P_FILM];
-  const float *coats = s->row[VL_P_COAT], *coat_alpha = s->row[VL_P_COAT_ALPHA];
+  const float *thins = s->row[VL_P_THIN], *coats = s->row[VL_P_COAT], *coat_alpha = s->row[VL_P_COAT_ALPHA];
   const float *cx = s->row[VL_P_COAT_X], *cy = s->row[VL_P_COAT_Y], *cz = s->row[VL_P_COAT_Z];
   const float *f0s = s->row[VL_P_F0], *b0 = s->base[0], *b1 = s->base[1], *b2 = s->base[2], *b3 = s->base[3];
   float *density = pdf + first;
   uint32_t count = VL_WHOLE(s->count);
-  float hide_mirrors[VL_PRINCIPLED_CHUNK], hide_matts[VL_PRINCIPLED_CHUNK], hide_throughs[VL_PRINCIPLED_CHUNK];
-  float facets[VL_PRINCIPLED_CHUNK], weights[VL_PRINCIPLED_CHUNK], totals[VL_PRINCIPLED_CHUNK],
-      opaques[VL_PRINCIPLED_CHUNK];
-  float upper_on[VL_PRINCIPLED_CHUNK], lower_on[VL_PRINCIPLED_CHUNK], coat_values[VL_PRINCIPLED_CHUNK];
-  float cosines[VL_PRINCIPLED_CHUNK], agains[VL_PRINCIPLED_CHUNK];
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     float side = l->side[i], inside = l->inside[i], thin = thins[i];
@@ -116,16 +123,17 @@ static inline __attribute__((always_inline)) void combine_loop(const vlPrinciple
     float co = l->coat_o[i], ci = l->coat_i[i], so = l->sheen_o[i], si = l->sheen_i[i];
     float mirror = over_mirror(co, ci) * over_mirror(so, si);
     float matt = over_matt(co, ci, l->coat_mean[i]) * over_matt(so, si, l->sheen_mean[i]);
-    hide_mirrors[i] = inside > 0.0f ? 1.0f : mirror;
-    hide_matts[i] = inside > 0.0f ? 1.0f : matt;
+    out->hide_mirror[i] = inside > 0.0f ? 1.0f : mirror;
+    out->hide_matt[i] = inside > 0.0f ? 1.0f : matt;
     /* Light that passes meets the layers once, on the upper side. */
-    hide_throughs[i] = side < 0.0f ? (1.0f - ci) * (1.0f - si) : (1.0f - co) * (1.0f - so);
-    facets[i] = facet.value, weights[i] = facet.fresnel, totals[i] = facet.total, opaques[i] = facet.opaque;
-    coat_values[i] = coat_value;
+    out->hide_through[i] = side < 0.0f ? (1.0f - ci) * (1.0f - si) : (1.0f - co) * (1.0f - so);
+    out->facet[i] = facet.value, out->weight[i] = facet.fresnel, out->total[i] = facet.total,
+    out->opaque[i] = facet.opaque;
+    out->coat[i] = coat_value;
     float cosine = vl_abs(w.z) * VL_INV_PI;
-    cosines[i] = cosine;
+    out->cosine[i] = cosine;
     /* between microfacets: Kulla and Conty */
-    agains[i] = (1.0f - l->one_o[i]) * (1.0f - l->one_i[i]) / (1.0f - l->one_mean[i]) * cosine;
+    out->again[i] = (1.0f - l->one_o[i]) * (1.0f - l->one_i[i]) / (1.0f - l->one_mean[i]) * cosine;
     float base = 0.25f * ((b0[i] + b1[i]) + (b2[i] + b3[i])), both = l->specular[i] + l->refract[i];
     float mirrors =
         vl_principled_mirrors(facet.outer, facet.total > 0.0f, f0s[i], f90s[i], metallic[i], clears[i], base);
@@ -134,43 +142,48 @@ static inline __attribute__((always_inline)) void combine_loop(const vlPrinciple
     float above = forth * facet.pdf + l->diffuse[i] * cosine + l->coat[i] * coat_pdf;
     float below = through * facet.pdf + l->through[i] * cosine;
     float on = valid ? 1.0f : 0.0f, up = reflect ? on : 0.0f; /* products, since gcc makes branches of selects */
-    upper_on[i] = up;
-    lower_on[i] = on - up;
+    out->upper[i] = up;
+    out->lower[i] = on - up;
     density[i] = above * up + below * (on - up);
   }
-  for (int c = 0; c < 4; c++) {
-    const float *bases = s->base[c], *normals = s->row[VL_P_F0 + c], *throughs = s->row[VL_P_THROUGH + c];
-    const float *sheens = s->row[VL_P_SHEEN + c];
-    float *result = value[c] + first;
-    /* must vectorise */
-    VL_SIMD for (uint32_t i = 0; i < count; i++) {
-      float metal = metallic[i], dielectric = 1.0f - metal, clear = clears[i], shares = shares_row[i];
-      float f90 = f90s[i], film = films[i], base = bases[i], f0 = normals[i], again = agains[i], facet = facets[i];
-      float m0 = f0 + metal * (base - f0), m90 = f90 + metal * (1.0f - f90);
-      float f = m0 + (m90 - m0) * opaques[i];
-      f = f + film * (l->film[c][i] - f);
-      float fd = f0 + (f90 - f0) * weights[i], fo = f0 + (f90 - f0) * opaques[i]; /* of the dielectric alone */
-      fd = fd + film * (l->film[c][i] - fd), fo = fo + film * (l->film[c][i] - fo);
-      float within = totals[i] > 0.0f ? 1.0f : fd; /* inside only what passes light is denser than beyond */
-      f = f + l->inside[i] * dielectric * clear * (within - fo);
-      float matt = (1.0f - l->energy_o[c][i]) * (1.0f - l->energy_i[c][i]) / (1.0f - l->energy_mean[c][i]) *
-                   cosines[i] * dielectric * (1.0f - clear);
-      float metal_mean = base + (1.0f - base) * (1.0f / 21.0f), sheet_mean = f0 + (f90 - f0) * (1.0f / 21.0f);
-      float metal_again = metal_mean * metal_mean * l->one_mean[i] / (1.0f - metal_mean * (1.0f - l->one_mean[i]));
-      float sheet_again = dielectric * clear * thins[i] * again;
-      float body = dielectric * clear, body_pass = 1.0f - sheet_mean; /* between microfacets of both sides */
-      float body_up = body * l->again_up[i] * (1.0f - l->again_pass[i] * body_pass);
-      float body_down = body * l->again_down[i] * body_pass * base;
-      float bare = 1.0f - l->inside[i];
-      float fuzz = sheens[i] * l->sheen_value[i] * bare * over_matt(l->coat_o[i], l->coat_i[i], l->coat_mean[i]);
-      float upper = hide_mirrors[i] * f * facet +
-                    hide_matts[i] * (matt * (1.0f - shares) * base + metal * metal_again * again +
+}
+
+/* One channel of f cos_i from the pair. */
+static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLanes *l, const Pair *p, int c,
+                                float *result) {
+  const float *metallic = s->row[VL_P_METALLIC], *f90s = s->row[VL_P_F90], *clears = s->row[VL_P_TRANSMISSION];
+  const float *thins = s->row[VL_P_THIN], *shares_row = s->row[VL_P_DIFFUSE_TRANSMISSION], *films = s->row[VL_P_FILM];
+  uint32_t count = VL_WHOLE(s->count);
+  const float *bases = s->base[c], *normals = s->row[VL_P_F0 + c], *throughs = s->row[VL_P_THROUGH + c];
+  const float *sheens = s->row[VL_P_SHEEN + c];
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    float metal = metallic[i], dielectric = 1.0f - metal, clear = clears[i], shares = shares_row[i];
+    float f90 = f90s[i], film = films[i], base = bases[i], f0 = normals[i], again = p->again[i], facet = p->facet[i];
+    float m0 = f0 + metal * (base - f0), m90 = f90 + metal * (1.0f - f90);
+    float f = m0 + (m90 - m0) * p->opaque[i];
+    f = f + film * (l->film[c][i] - f);
+    float fd = f0 + (f90 - f0) * p->weight[i], fo = f0 + (f90 - f0) * p->opaque[i]; /* of the dielectric alone */
+    fd = fd + film * (l->film[c][i] - fd), fo = fo + film * (l->film[c][i] - fo);
+    float within = p->total[i] > 0.0f ? 1.0f : fd; /* inside only what passes light is denser than beyond */
+    f = f + l->inside[i] * dielectric * clear * (within - fo);
+    float matt = (1.0f - l->energy_o[c][i]) * (1.0f - l->energy_i[c][i]) / (1.0f - l->energy_mean[c][i]) *
+                 p->cosine[i] * dielectric * (1.0f - clear);
+    float metal_mean = base + (1.0f - base) * (1.0f / 21.0f), sheet_mean = f0 + (f90 - f0) * (1.0f / 21.0f);
+    float metal_again = metal_mean * metal_mean * l->one_mean[i] / (1.0f - metal_mean * (1.0f - l->one_mean[i]));
+    float sheet_again = dielectric * clear * thins[i] * again;
+    float body = dielectric * clear, body_pass = 1.0f - sheet_mean; /* between microfacets of both sides */
+    float body_up = body * l->again_up[i] * (1.0f - l->again_pass[i] * body_pass);
+    float body_down = body * l->again_down[i] * body_pass * base;
+    float bare = 1.0f - l->inside[i];
+    float fuzz = sheens[i] * l->sheen_value[i] * bare * over_matt(l->coat_o[i], l->coat_i[i], l->coat_mean[i]);
+    float upper = p->hide_mirror[i] * f * facet +
+                  p->hide_matt[i] * (matt * (1.0f - shares) * base + metal * metal_again * again +
                                      sheet_again * sheet_mean + body_up) +
-                    coat_values[i] + fuzz;
-      float lower = hide_throughs[i] * (dielectric * clear * base * (1.0f - fd) * facet + matt * shares * throughs[i] +
+                  p->coat[i] + fuzz;
+    float lower = p->hide_through[i] * (dielectric * clear * base * (1.0f - fd) * facet + matt * shares * throughs[i] +
                                         sheet_again * (1.0f - sheet_mean) * base + body_down);
-      result[i] = upper * upper_on[i] + lower * lower_on[i];
-    }
+    result[i] = upper * p->upper[i] + lower * p->lower[i];
   }
 }
 
@@ -178,10 +191,12 @@ static inline __attribute__((always_inline)) void combine_loop(const vlPrinciple
 static __attribute__((noinline)) void combine(const vlPrincipledSlice *s, const vlPrincipledLanes *l,
                                               vlBsdfDirections wo, vlBsdfDirections wi, float *const value[4],
                                               float *pdf, uint32_t first) {
+  Pair pair;
   if (s->coat)
-    combine_loop(s, l, wo, wi, value, pdf, first, true);
+    pair_loop(s, l, wo, wi, &pair, pdf, first, true);
   else
-    combine_loop(s, l, wo, wi, value, pdf, first, false);
+    pair_loop(s, l, wo, wi, &pair, pdf, first, false);
+  for (int c = 0; c < 4; c++) channel_loop(s, l, &pair, c, value[c] + first);
 }
 
 void vl_bsdf_principled_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,

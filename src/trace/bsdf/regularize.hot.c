@@ -18,7 +18,13 @@ void vl_stage_regularize(vlTracing *t, uint32_t n) {
       case VL_MATERIAL_COATED_DIFFUSE:
       case VL_MATERIAL_COATED_CONDUCTOR:
       case VL_MATERIAL_PRINCIPLED: break;
-      default: continue;
+      case VL_MATERIAL_DIFFUSE:
+      case VL_MATERIAL_DIFFUSE_TRANSMISSION:
+      case VL_MATERIAL_THIN_DIELECTRIC:
+      case VL_MATERIAL_HAIR:
+      case VL_MATERIAL_MEASURED:
+      case VL_MATERIAL_MIX:
+      case VL_MATERIAL_INTERFACE: continue;
     }
     sh->alpha_x[i] = vl_ggx_widened(sh->alpha_x[i]);
     sh->alpha_y[i] = vl_ggx_widened(sh->alpha_y[i]);

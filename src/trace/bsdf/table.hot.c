@@ -1,6 +1,23 @@
 /* trace/bsdf/table.hot.c: from a batch's kind to its kernel, one table an instruction set. */
 #include "trace/bsdf/local.h"
 
+/* No BSDF: NaN. The film drops such samples and counts them (vlRenderStats.not_finite). */
+static void no_value(uint32_t n, float *const value[4], float *pdf) {
+  for (uint32_t i = 0; i < n; i++) {
+    for (int c = 0; c < 4; c++) value[c][i] = __builtin_nanf("");
+    pdf[i] = 0.0f;
+  }
+}
+
+static void no_sample(uint32_t n, vlBsdfDirections wi, float *const weight[4], float *pdf, uint32_t *flags,
+                      float *eta_scale) {
+  no_value(n, weight, pdf);
+  for (uint32_t i = 0; i < n; i++) {
+    wi.x[i] = wi.y[i] = 0.0f, wi.z[i] = 1.0f;
+    pdf[i] = eta_scale[i] = 1.0f, flags[i] = 0;
+  }
+}
+
 static void eval(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
                  float *const value[4], float *pdf) {
   switch (kind) {
@@ -14,7 +31,7 @@ static void eval(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdf
     case VL_BSDF_LAYERED: vl_bsdf_layered_eval(n, params, wo, wi, value, pdf); break;
     case VL_BSDF_HAIR: vl_bsdf_hair_eval(n, params, wo, wi, value, pdf); break;
     case VL_BSDF_MEASURED: vl_bsdf_measured_eval(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_KINDS: break;
+    case VL_BSDF_KINDS: no_value(n, value, pdf); break;
   }
 }
 
@@ -33,7 +50,7 @@ static void sample(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBs
     case VL_BSDF_LAYERED: VL_SAMPLE(vl_bsdf_layered_sample); break;
     case VL_BSDF_HAIR: VL_SAMPLE(vl_bsdf_hair_sample); break;
     case VL_BSDF_MEASURED: VL_SAMPLE(vl_bsdf_measured_sample); break;
-    case VL_BSDF_KINDS: break;
+    case VL_BSDF_KINDS: no_sample(n, wi, weight, pdf, flags, eta_scale); break;
   }
 }
 

@@ -2,6 +2,7 @@
  * 12, 3rd edition 16.1.2). Scalar: each lane has a light of its own. */
 #include "math/octahedral.h"
 #include "math/warp.h"
+#include "trace/light/coverage.h"
 #include "trace/two_way/stages.h"
 #include "world/light/portal.h"
 #include "world/shape/surface_point.h"
@@ -84,8 +85,8 @@ float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t in
     case VL_WL_AREA:
       return p * VL_INV_PI * point_density(world, light, at->p) *
              (world->emitted.items[light->emitted].two_sided ? 0.5f : 1.0f);
-    default: return 0.0f;
   }
+  return 0.0f;
 }
 
 /* ---- area lights ------------------------------------------------------------------------------------------------- */
@@ -93,6 +94,7 @@ float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t in
 typedef struct Spot {
   vlVec3 p, n;
   float pdf, u, v;
+  float weights[3]; /* of a triangle's corners */
 } Spot;
 
 static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float u, float v) {
@@ -101,7 +103,8 @@ static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float 
   const uint32_t *f = s->indices + 3 * (size_t)light->prim;
   vlVec2 b01 = vl_warp_triangle(u, v);
   float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
-  Spot r = {vl_vec3(0, 0, 0), vl_vec3(light->direction[0], light->direction[1], light->direction[2]), 0, 0, 0};
+  Spot r = {vl_vec3(0, 0, 0),  vl_vec3(light->direction[0], light->direction[1], light->direction[2]), 0, 0, 0,
+            {b[0], b[1], b[2]}};
   vlVec3 ns = vl_vec3(0, 0, 0);
   const float *uvs = s->glow_uvs ? s->glow_uvs : s->uvs;
   for (int k = 0; k < 3; k++) {
@@ -122,7 +125,11 @@ static Spot on_shape(const vlWorldLight *light, const vlWorldShape *s, float u, 
   double pdf;
   vl_shape_sample(s, light->prim, u, v, &point, &pdf);
   return (Spot){vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
-                vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), (float)pdf, point.uv[0], point.uv[1]};
+                vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]),
+                (float)pdf,
+                point.uv[0],
+                point.uv[1],
+                {0, 0, 0}};
 }
 
 static void from_area(const vlWorld *world, const vlWorldLight *light, const float lambda[4], float u, float v, float s,
@@ -147,10 +154,8 @@ static void from_area(const vlWorld *world, const vlWorldLight *light, const flo
   out->at = at.p, out->n = at.n;
   vl_emitted_at(world, e, lambda, at.u, 1.0f - at.v, false, out->flux);
   float scale = VL_PI * sides / at.pdf;
-  if (shape->alpha >= 0 && !light->invisible) {
-    float place[3] = {at.p.x, at.p.y, at.p.z};
-    scale *= vl_clamp(vl_texture_float_at(world, shape->alpha, at.u, at.v, place, NULL), 0.0f, 1.0f);
-  }
+  if (shape->alpha >= 0 && !light->invisible)
+    scale *= vl_light_coverage(world, light, at.p, at.n, at.u, at.v, at.weights);
   for (int c = 0; c < 4; c++) out->flux[c] *= scale;
   out->density = VL_INV_PI * at.pdf / sides;
   out->delta = light->invisible;
@@ -277,7 +282,6 @@ vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const f
       break;
     }
     case VL_WL_AREA: from_area(world, light, lambda, u, v, s, t, &r); break;
-    default: break;
   }
   for (int c = 0; c < 4; c++) r.flux[c] /= p;
   r.density *= p;

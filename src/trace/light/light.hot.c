@@ -2,6 +2,7 @@
  * for (pbrt book 12). Scalar per lane: the tree walk and the kinds of lights diverge. */
 #include "math/octahedral.h"
 #include "math/warp.h"
+#include "trace/light/coverage.h"
 #include "trace/stages.h"
 #include "world/light/portal.h"
 #include "world/shape/surface_point.h"
@@ -77,6 +78,7 @@ typedef struct Sample {
   vlVec3 p, n; /* on the light */
   float pdf;   /* per solid angle */
   float u, v;
+  float weights[3]; /* of a triangle's corners */
 } Sample;
 
 /* Centre and radius of a whole sphere under a similarity, or false. Not with holes, through which the far side shows.
@@ -117,7 +119,8 @@ static Sample sample_cone(vlVec3 center, float radius, bool inside_out, vlVec3 f
   vlSinCos phi = vl_sincos_turn(v);
   vlFrame frame = vl_frame_from_z(vl_mul(to, -1.0f / d));
   vlVec3 n = vl_from_local(frame, vl_vec3(sin_a * phi.cos, sin_a * phi.sin, cos_a));
-  Sample s = {vl_add(center, vl_mul(n, radius)), inside_out ? vl_neg(n) : n, 1.0f / (2.0f * VL_PI * span), 0, 0};
+  Sample s = {
+      vl_add(center, vl_mul(n, radius)), inside_out ? vl_neg(n) : n, 1.0f / (2.0f * VL_PI * span), 0, 0, {0, 0, 0}};
   return s;
 }
 
@@ -174,6 +177,7 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
   r.p = vl_add(vl_add(vl_mul(p[0], b[0]), vl_mul(p[1], b[1])), vl_mul(p[2], b[2]));
   r.n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
   r.u = r.v = 0;
+  for (int k = 0; k < 3; k++) r.weights[k] = b[k];
   r.pdf = near.near            ? 1.0f / near.cap.solid_angle
           : light->area > 0.0f ? solid_pdf(1.0f / light->area, from, r.p, r.n)
                                : 0.0f;
@@ -218,7 +222,7 @@ vlVec2 vl_glow_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint
 static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec3 from, float u, float v) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   bool with_uv = world->emitted.items[light->emitted].image >= 0;
-  if (s->kind == VL_SHAPE_TRIANGLES) return sample_triangle(light, s, with_uv || s->alpha >= 0, from, u, v);
+  if (s->kind == VL_SHAPE_TRIANGLES) return sample_triangle(light, s, with_uv, from, u, v);
   vlVec3 center;
   float radius;
   if (whole_sphere(s, &center, &radius)) {
@@ -244,6 +248,7 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
   r.p = vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]);
   r.n = vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]);
   r.u = point.uv[0], r.v = point.uv[1];
+  r.weights[0] = r.weights[1] = r.weights[2] = 0;
   r.pdf = solid_pdf((float)pdf, from, r.p, r.n);
   return r;
 }
@@ -290,104 +295,123 @@ float vl_beam(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 
   return 1.0f;
 }
 
+/* What a light sends to a point, by a sample of it. pdf: 0 where there is none. */
+typedef struct Arrival {
+  vlVec3 w, target;
+  float pdf, radiance[4];
+  bool delta, distant;
+} Arrival;
+
+/* Point, spot, goniometric and projection lights. */
+static Arrival from_position(const vlWorld *world, const vlWorldLight *light, const float lambda[4], vlVec3 p) {
+  Arrival r = {.pdf = 1.0f, .delta = true};
+  r.target = vl_vec3(light->position[0], light->position[1], light->position[2]);
+  vlVec3 to = vl_sub(r.target, p);
+  float d2 = vl_length2(to);
+  r.w = vl_normalize(to);
+  float factor = d2 > 0.0f ? 1.0f / d2 : 0.0f;
+  if (light->kind == VL_WL_SPOT) {
+    float c = -vl_dot(r.w, vl_vec3(light->direction[0], light->direction[1], light->direction[2]));
+    factor *= spot_edge(light, c);
+  }
+  vlVec2 st = {0, 0};
+  if (light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION) factor *= vl_beam(world, light, r.w, &st);
+  vl_emitted_at(world, &world->emitted.items[light->emitted], lambda, st.x, st.y, true, r.radiance);
+  for (int c = 0; c < 4; c++) r.radiance[c] *= factor;
+  return r;
+}
+
+static Arrival from_direction(const vlWorld *world, const vlWorldLight *light, const float lambda[4]) {
+  Arrival r = {.pdf = 1.0f, .delta = true, .distant = true};
+  r.w = r.target = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
+  vl_emitted_at(world, &world->emitted.items[light->emitted], lambda, 0, 0, false, r.radiance);
+  return r;
+}
+
+/* The sky: uniform, through a portal, or by its image. */
+static Arrival from_sky(const vlWorld *world, const vlWorldLight *light, const float lambda[4], vlVec3 p, float u,
+                        float v) {
+  const vlEmitted *e = &world->emitted.items[light->emitted];
+  Arrival r = {.pdf = 0.0f, .distant = true};
+  if (light->environment == VL_NONE) {
+    r.w = r.target = vl_warp_sphere(u, v);
+    r.pdf = 0.25f * VL_INV_PI;
+    vl_emitted_at(world, e, lambda, 0, 0, true, r.radiance);
+    return r;
+  }
+  const vlEnvironment *env = &world->environments.items[light->environment];
+  if (env->portal) {
+    vlPortalWindow window;
+    if (!vl_portal_window(env->portal, p, &window)) return r;
+    r.w = r.target = vl_portal_sample(env->portal, &window, u, v);
+    r.pdf = vl_infinite_pdf(world, light, p, r.w);
+    vl_infinite_at(world, light, p, r.w, lambda, r.radiance);
+    return r;
+  }
+  float dx, dy;
+  uint32_t y = vl_find_cell(env->marginal_cdf, env->size, v, &dy);
+  uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
+  float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
+  r.w = r.target = vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
+  r.pdf = env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
+  vl_emitted_at(world, e, lambda, s, t, true, r.radiance);
+  return r;
+}
+
+static Arrival from_area(const vlWorld *world, const vlWorldLight *light, const float lambda[4], vlVec3 p, float u,
+                         float v) {
+  const vlEmitted *e = &world->emitted.items[light->emitted];
+  Arrival r = {.pdf = 0.0f};
+  Sample q = sample_area(world, light, p, u, v);
+  r.w = vl_normalize(vl_sub(q.p, p));
+  float facing = -vl_dot(r.w, q.n);
+  if (!(facing > 0.0f) && !(e->two_sided && facing < 0.0f)) return r;
+  if (!(q.pdf > 0.0f)) return r;
+  r.pdf = q.pdf;
+  vl_emitted_at(world, e, lambda, q.u, 1.0f - q.v, false, r.radiance);
+  if (light->invisible) {
+    r.delta = true;
+  } else if (world->shapes.items[light->shape].alpha >= 0) {
+    float cover = vl_light_coverage(world, light, q.p, q.n, q.u, q.v, q.weights);
+    for (int c = 0; c < 4; c++) r.radiance[c] *= cover;
+  }
+  /* The end of the shadow ray is moved off the light by the bound of the rounding error of its points. */
+  float size = vl_abs(q.p.x) + vl_abs(q.p.y) + vl_abs(q.p.z);
+  r.target = vl_offset_origin(q.p, facing < 0.0f ? vl_neg(q.n) : q.n, 16.0f * 0x1p-24f * size, vl_neg(r.w));
+  return r;
+}
+
+static Arrival arrival(const vlWorld *world, const vlWorldLight *light, const float lambda[4], vlVec3 p, float u,
+                       float v) {
+  switch (light->kind) {
+    case VL_WL_POINT:
+    case VL_WL_SPOT:
+    case VL_WL_GONIOMETRIC:
+    case VL_WL_PROJECTION: return from_position(world, light, lambda, p);
+    case VL_WL_DISTANT: return from_direction(world, light, lambda);
+    case VL_WL_INFINITE: return from_sky(world, light, lambda, p, u, v);
+    case VL_WL_AREA: break;
+  }
+  return from_area(world, light, lambda, p, u, v);
+}
+
 static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, vlVec3 p, float u, float v,
                        vlLightSamples *out) {
   out->pdf[i] = 0.0f;
   out->wx[i] = out->wy[i] = out->wz[i] = 0.0f;
   vlLightChoice chosen = {out->light[i], out->pmf[i]};
   if (chosen.light == VL_INNER || !(chosen.pmf > 0.0f)) return;
-  const vlWorldLight *light = &world->lights.items[chosen.light];
-  const vlEmitted *e = &world->emitted.items[light->emitted];
-  float lambda[4], radiance[4];
+  float lambda[4];
   vl_path_lambda(paths, i, lambda);
-  vlVec3 w, target;
-  float pdf = 0.0f;
-  out->delta[i] = 0;
-  out->distant[i] = 0;
-  switch (light->kind) {
-    case VL_WL_POINT:
-    case VL_WL_SPOT:
-    case VL_WL_GONIOMETRIC:
-    case VL_WL_PROJECTION: {
-      target = vl_vec3(light->position[0], light->position[1], light->position[2]);
-      vlVec3 to = vl_sub(target, p);
-      float d2 = vl_length2(to);
-      w = vl_normalize(to);
-      float factor = d2 > 0.0f ? 1.0f / d2 : 0.0f;
-      if (light->kind == VL_WL_SPOT) {
-        float c = -vl_dot(w, vl_vec3(light->direction[0], light->direction[1], light->direction[2]));
-        factor *= spot_edge(light, c);
-      }
-      vlVec2 st = {0, 0};
-      if (light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION) factor *= vl_beam(world, light, w, &st);
-      vl_emitted_at(world, e, lambda, st.x, st.y, true, radiance);
-      for (int c = 0; c < 4; c++) radiance[c] *= factor;
-      pdf = 1.0f;
-      out->delta[i] = 1;
-      break;
-    }
-    case VL_WL_DISTANT:
-      w = target = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
-      vl_emitted_at(world, e, lambda, 0, 0, false, radiance);
-      pdf = 1.0f;
-      out->delta[i] = 1;
-      out->distant[i] = 1;
-      break;
-    case VL_WL_INFINITE: {
-      out->distant[i] = 1;
-      if (light->environment == VL_NONE) {
-        w = vl_warp_sphere(u, v);
-        pdf = 0.25f * VL_INV_PI;
-        vl_emitted_at(world, e, lambda, 0, 0, true, radiance);
-      } else if (world->environments.items[light->environment].portal) {
-        const vlPortal *portal = world->environments.items[light->environment].portal;
-        vlPortalWindow window;
-        if (!vl_portal_window(portal, p, &window)) return;
-        w = vl_portal_sample(portal, &window, u, v);
-        pdf = vl_infinite_pdf(world, light, p, w);
-        vl_infinite_at(world, light, p, w, lambda, radiance);
-      } else {
-        const vlEnvironment *env = &world->environments.items[light->environment];
-        float dx, dy;
-        uint32_t y = vl_find_cell(env->marginal_cdf, env->size, v, &dy);
-        uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
-        float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
-        w = vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
-        pdf = env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
-        vl_emitted_at(world, e, lambda, s, t, true, radiance);
-      }
-      target = w;
-      break;
-    }
-    default: {
-      Sample q = sample_area(world, light, p, u, v);
-      w = vl_normalize(vl_sub(q.p, p));
-      target = q.p;
-      pdf = q.pdf;
-      float facing = -vl_dot(w, q.n);
-      if (!(facing > 0.0f) && !(e->two_sided && facing < 0.0f)) pdf = 0.0f;
-      if (!(pdf > 0.0f)) return;
-      vl_emitted_at(world, e, lambda, q.u, 1.0f - q.v, false, radiance);
-      const vlWorldShape *shape = &world->shapes.items[light->shape];
-      if (light->invisible) {
-        out->delta[i] = 1;
-      } else if (shape->alpha >= 0) {
-        float at[3] = {q.p.x, q.p.y, q.p.z};
-        float cover = vl_clamp(vl_texture_float_at(world, shape->alpha, q.u, q.v, at, NULL), 0.0f, 1.0f);
-        for (int c = 0; c < 4; c++) radiance[c] *= cover;
-      }
-      /* The end of the shadow ray is moved off the light by the bound of the rounding error of its points. */
-      float size = vl_abs(q.p.x) + vl_abs(q.p.y) + vl_abs(q.p.z);
-      target = vl_offset_origin(q.p, facing < 0.0f ? vl_neg(q.n) : q.n, 16.0f * 0x1p-24f * size, vl_neg(w));
-      break;
-    }
-  }
-  if (!(pdf > 0.0f) || !(pdf < VL_INFINITY)) return;
-  float total = pdf * chosen.pmf, inv = 1.0f / total;
+  Arrival a = arrival(world, &world->lights.items[chosen.light], lambda, p, u, v);
+  out->delta[i] = a.delta;
+  out->distant[i] = a.distant;
+  if (!(a.pdf > 0.0f) || !(a.pdf < VL_INFINITY)) return;
+  float total = a.pdf * chosen.pmf, inv = 1.0f / total;
   out->pdf[i] = total;
-  out->wx[i] = w.x, out->wy[i] = w.y, out->wz[i] = w.z;
-  out->tx[i] = target.x, out->ty[i] = target.y, out->tz[i] = target.z;
-  for (int c = 0; c < 4; c++) out->radiance[c][i] = radiance[c] * inv;
+  out->wx[i] = a.w.x, out->wy[i] = a.w.y, out->wz[i] = a.w.z;
+  out->tx[i] = a.target.x, out->ty[i] = a.target.y, out->tz[i] = a.target.z;
+  for (int c = 0; c < 4; c++) out->radiance[c][i] = a.radiance[c] * inv;
 }
 
 void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *f, const float *u_choice,

@@ -1,10 +1,5 @@
 /* trace/material/hair.hot.c: the hair material's parameters over a run of lanes. */
-#include "trace/texture/texture_run.h"
-
-static void colour(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {
-  float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
-  vl_texture_spectrum(r, node, out);
-}
+#include "trace/material/rows.h"
 
 /* sigma_a by which a mass of hairs shows a colour (Chiang et al. 2016, equation 9). */
 static void from_reflectance(vlTextureRun *r, float (*rows)[VL_ROW_SIZE]) {
@@ -32,16 +27,16 @@ void vl_stage_hair(vlTextureRun *r, const vlWorldMaterial *m) {
     rows[VL_H_ACROSS][i] = vl_clamp(2.0f * r->surface->v[i] - 1.0f, -1.0f, 1.0f);
     shade->eta_s[i] = vl_clamp(shade->eta_s[i], 1.0001f, 10.0f);
   }
-  if (h->sigma_a >= 0) colour(r, h->sigma_a, rows + VL_H_SIGMA_A);
+  if (h->sigma_a >= 0) vl_rows_spectrum(r, h->sigma_a, rows + VL_H_SIGMA_A);
   if (m->reflectance >= 0) from_reflectance(r, rows);
   if (h->eumelanin >= 0) {
     float(*extra)[VL_ROW_SIZE] = rows + VL_H_ROWS;
     float *share = vl_texture_row(r);
-    colour(r, h->eumelanin, rows + VL_H_SIGMA_A);
+    vl_rows_spectrum(r, h->eumelanin, rows + VL_H_SIGMA_A);
     vl_texture_float(r, h->eumelanin_share, share);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++) rows[VL_H_SIGMA_A + c][i] *= vl_max(share[i], 0.0f);
-    colour(r, h->pheomelanin, extra);
+    vl_rows_spectrum(r, h->pheomelanin, extra);
     vl_texture_float(r, h->pheomelanin_share, share);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++) rows[VL_H_SIGMA_A + c][i] += extra[c][i] * vl_max(share[i], 0.0f);

@@ -1,22 +1,7 @@
 /* trace/material/layers.hot.c: parameters, over a run of lanes, of the materials with random walks between layers and
  * of those that let diffuse light through. */
 #include "math/hash.h"
-#include "trace/texture/texture_run.h"
-
-static void colour(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE], float scale) {
-  float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
-  vl_texture_spectrum(r, node, out);
-  for (int c = 0; c < 4; c++)
-    for (uint32_t i = r->first; i < r->last; i++) rows[c][i] = vl_clamp(scale * rows[c][i], 0.0f, 1.0f);
-}
-
-static void alpha(vlTextureRun *r, const vlWorldMaterial *m, int32_t node, float *row) {
-  vl_texture_float(r, node, row);
-  for (uint32_t i = r->first; i < r->last; i++) {
-    float x = row[i] > 0.0f ? row[i] : 0.0f;
-    row[i] = m->remap ? __builtin_sqrtf(x) : x;
-  }
-}
+#include "trace/material/rows.h"
 
 /* Random numbers of a hit's own: of the pixel, its sample and the ray. */
 static void seeds(vlTextureRun *r) {
@@ -32,7 +17,7 @@ void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldLayers *l = m->layers;
   vlShade *shade = &r->s->shade;
   float(*rows)[VL_ROW_SIZE] = shade->principled;
-  colour(r, l->albedo, rows + VL_L_ALBEDO, 1.0f);
+  vl_rows_albedo(r, l->albedo, 1.0f, rows + VL_L_ALBEDO);
   vl_texture_float(r, l->thickness, rows[VL_L_THICKNESS]);
   vl_texture_float(r, l->g, rows[VL_L_G]);
   for (uint32_t i = r->first; i < r->last; i++) {
@@ -47,8 +32,8 @@ void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
       rows[VL_L_BASE_X][i] = shade->alpha_x[i];
       rows[VL_L_BASE_Y][i] = shade->alpha_y[i];
     }
-    alpha(r, m, l->coat_u, shade->alpha_x);
-    alpha(r, m, l->coat_v, shade->alpha_y);
+    vl_row_alpha(r, m, l->coat_u, shade->alpha_x);
+    vl_row_alpha(r, m, l->coat_v, shade->alpha_y);
     float inverse = 1.0f / m->eta_s; /* the metal lies in the coat's medium */
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++) {
@@ -61,7 +46,7 @@ void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
 
 void vl_stage_translucent(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *shade = &r->s->shade;
-  colour(r, m->transmittance, shade->principled + VL_T_TRANSMITTANCE, m->scale);
+  vl_rows_albedo(r, m->transmittance, m->scale, shade->principled + VL_T_TRANSMITTANCE);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++)
       shade->reflectance[c][i] = vl_clamp(m->scale * shade->reflectance[c][i], 0.0f, 1.0f);

@@ -1,6 +1,6 @@
 /* trace/material/material.hot.c: a run of lanes with one material: bump and normal maps, BSDF parameters from its
  * textures; then shading frames for all. */
-#include "trace/texture/texture_run.h"
+#include "trace/material/rows.h"
 
 /* ---- bump and normal maps: both turn the shading normal and dpdu ------------------------------------------------- */
 
@@ -85,19 +85,6 @@ static void normal_map(vlTextureRun *r, int32_t image) {
 
 /* ---- parameters -------------------------------------------------------------------------------------------------- */
 
-static void roughness(vlTextureRun *r, const vlWorldMaterial *m, int32_t node, float *alpha) {
-  vl_texture_float(r, node, alpha);
-  for (uint32_t i = r->first; i < r->last; i++) {
-    float x = alpha[i] > 0.0f ? alpha[i] : 0.0f;
-    alpha[i] = m->remap ? __builtin_sqrtf(x) : x;
-  }
-}
-
-static void spectrum_rows(vlTextureRun *r, int32_t node, float rows[4][VL_ROW_SIZE]) {
-  float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
-  vl_texture_spectrum(r, node, out);
-}
-
 void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s) {
   const vlWorldMaterial *m = &world->materials.items[material];
   vlShade *shade = &s->shade;
@@ -107,11 +94,7 @@ void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint
   if (m->normal_map >= 0) normal_map(&r, m->normal_map);
   r.top = 0;
   if (m->kind == VL_MATERIAL_PRINCIPLED) vl_stage_principled(&r, m);
-  if (m->reflectance >= 0) {
-    spectrum_rows(&r, m->reflectance, shade->reflectance);
-    for (int c = 0; c < 4; c++)
-      for (uint32_t i = first; i < last; i++) shade->reflectance[c][i] = vl_clamp(shade->reflectance[c][i], 0.0f, 1.0f);
-  }
+  if (m->reflectance >= 0) vl_rows_albedo(&r, m->reflectance, 1.0f, shade->reflectance);
   bool metal = m->kind == VL_MATERIAL_CONDUCTOR || m->kind == VL_MATERIAL_COATED_CONDUCTOR;
   if (metal && m->use_reflectance) {
     /* eta = 1, k = 2 sqrt(R / (1 - R)) reflects R straight on (pbrt book 9.3.6's convention of the conductor material).
@@ -123,12 +106,12 @@ void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint
         shade->k[c][i] = 2.0f * __builtin_sqrtf(x / (1.0f - x));
       }
   } else {
-    if (m->eta >= 0) spectrum_rows(&r, m->eta, shade->eta);
-    if (m->k >= 0) spectrum_rows(&r, m->k, shade->k);
+    if (m->eta >= 0) vl_rows_spectrum(&r, m->eta, shade->eta);
+    if (m->k >= 0) vl_rows_spectrum(&r, m->k, shade->k);
   }
   if (m->u_roughness >= 0) {
-    roughness(&r, m, m->u_roughness, shade->alpha_x);
-    roughness(&r, m, m->v_roughness, shade->alpha_y);
+    vl_row_alpha(&r, m, m->u_roughness, shade->alpha_x);
+    vl_row_alpha(&r, m, m->v_roughness, shade->alpha_y);
   }
   if (m->layers) vl_stage_layers(&r, m);
   if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) vl_stage_translucent(&r, m);

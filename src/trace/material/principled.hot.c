@@ -1,7 +1,7 @@
 /* trace/material/principled.hot.c: the principled material's parameters over a run of lanes: its textures, its normal
  * maps, its tangent. */
 #include "world/material/principled.h"
-#include "trace/texture/texture_run.h"
+#include "trace/material/rows.h"
 
 static void fill(float *row, uint32_t first, uint32_t last, float x) {
   for (uint32_t i = first; i < last; i++) row[i] = x;
@@ -10,13 +10,6 @@ static void fill(float *row, uint32_t first, uint32_t last, float x) {
 static void share(vlTextureRun *r, int32_t node, float *row) {
   vl_texture_float(r, node, row);
   for (uint32_t i = r->first; i < r->last; i++) row[i] = vl_clamp(row[i], 0.0f, 1.0f);
-}
-
-static void colour(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {
-  float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
-  vl_texture_spectrum(r, node, out);
-  for (int c = 0; c < 4; c++)
-    for (uint32_t i = r->first; i < r->last; i++) rows[c][i] = vl_clamp(rows[c][i], 0.0f, 1.0f);
 }
 
 /* ---- normals ----------------------------------------------------------------------------------------------------- */
@@ -88,7 +81,7 @@ static void layers(vlTextureRun *r, const vlWorldPrincipled *p, float (*rows)[VL
     }
   }
   if (p->has_sheen) {
-    colour(r, p->sheen, rows + VL_P_SHEEN);
+    vl_rows_albedo(r, p->sheen, 1.0f, rows + VL_P_SHEEN);
     share(r, p->sheen_roughness, rows[VL_P_SHEEN_ALPHA]);
     for (uint32_t i = first; i < last; i++) {
       float x = rows[VL_P_SHEEN_ALPHA][i];
@@ -116,7 +109,7 @@ void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m) {
   fill(rows[VL_P_DIFFUSE_TRANSMISSION], first, last, 0.0f);
   if (p->has_through) {
     share(r, p->diffuse_transmission, rows[VL_P_DIFFUSE_TRANSMISSION]);
-    colour(r, p->through, rows + VL_P_THROUGH);
+    vl_rows_albedo(r, p->through, 1.0f, rows + VL_P_THROUGH);
   } else {
     for (int c = 0; c < 4; c++) fill(rows[VL_P_THROUGH + c], first, last, 0.0f);
   }

@@ -31,7 +31,12 @@ static void get_1d(const vlSampler *s, uint32_t n, const int32_t *px, const int3
     case VL_SAMPLER_INDEPENDENT: independent_1d(s, count, px, py, index, dimension, u); return;
     case VL_SAMPLER_SOBOL: vl_sobol_pixel(0, s, count, px, py, index, dimension, u, u); return;
     case VL_SAMPLER_ZSOBOL: vl_zsobol(0, s, count, px, py, index, dimension, u, u); return;
-    default: break;
+    case VL_SAMPLER_REGULAR:
+    case VL_SAMPLER_STRATIFIED:
+    case VL_SAMPLER_NROOKS:
+    case VL_SAMPLER_MULTI_JITTERED:
+    case VL_SAMPLER_HAMMERSLEY:
+    case VL_SAMPLER_HALTON: break; /* in chunks, below */
   }
   uint32_t seed = vl_dimension_seed(s, dimension, 0);
   vlSamplerChunk chunk;
@@ -41,7 +46,13 @@ static void get_1d(const vlSampler *s, uint32_t n, const int32_t *px, const int3
     switch (s->kind) {
       case VL_SAMPLER_REGULAR: vl_cells_1d(0, s, &chunk, u + k); break;
       case VL_SAMPLER_HALTON: vl_halton_1d(s, &chunk, dimension, u + k); break;
-      default: vl_cells_1d(1, s, &chunk, u + k); break;
+      case VL_SAMPLER_STRATIFIED:
+      case VL_SAMPLER_NROOKS:
+      case VL_SAMPLER_MULTI_JITTERED:
+      case VL_SAMPLER_HAMMERSLEY: vl_cells_1d(1, s, &chunk, u + k); break;
+      case VL_SAMPLER_INDEPENDENT:
+      case VL_SAMPLER_SOBOL:
+      case VL_SAMPLER_ZSOBOL: break; /* above */
     }
   }
 }
@@ -57,7 +68,11 @@ static void get_2d(const vlSampler *s, uint32_t n, const int32_t *px, const int3
       get_1d(s, n, px, py, index, dimension, u);
       get_1d(s, n, px, py, index, dimension + 1, v);
       return;
-    default: break;
+    case VL_SAMPLER_REGULAR:
+    case VL_SAMPLER_STRATIFIED:
+    case VL_SAMPLER_NROOKS:
+    case VL_SAMPLER_MULTI_JITTERED:
+    case VL_SAMPLER_HAMMERSLEY: break; /* in chunks, below */
   }
   uint32_t seed = vl_dimension_seed(s, dimension, 0);
   vlSamplerChunk chunk;
@@ -69,7 +84,11 @@ static void get_2d(const vlSampler *s, uint32_t n, const int32_t *px, const int3
       case VL_SAMPLER_NROOKS: vl_nrooks_2d(s, &chunk, u + k, v + k); break;
       case VL_SAMPLER_MULTI_JITTERED: vl_multi_jittered_2d(s, &chunk, u + k, v + k); break;
       case VL_SAMPLER_HAMMERSLEY: vl_hammersley_2d(s, &chunk, u + k, v + k); break;
-      default: vl_grid_2d(1, s, &chunk, u + k, v + k); break;
+      case VL_SAMPLER_STRATIFIED: vl_grid_2d(1, s, &chunk, u + k, v + k); break;
+      case VL_SAMPLER_INDEPENDENT:
+      case VL_SAMPLER_SOBOL:
+      case VL_SAMPLER_ZSOBOL:
+      case VL_SAMPLER_HALTON: break; /* above */
     }
   }
 }

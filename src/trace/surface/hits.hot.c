@@ -2,6 +2,7 @@
  * the rays run into, weighed against that of light sampling (pbrt book 13.4). */
 #include "math/hash.h"
 #include "trace/stages.h"
+#include "world/accel/local_ray.h"
 
 /* ---- light that rays run into ------------------------------------------------------------------------------------ */
 
@@ -42,6 +43,18 @@ void vl_stage_emission(vlTracing *t, uint32_t n) {
 
 /* ---- hits -------------------------------------------------------------------------------------------------------- */
 
+/* What the corners of the triangle that a path's ray meets carry there; unused by other shapes. */
+static vlTextureCorner hit_corner(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
+  vlTextureCorner corner = {&world->shapes.items[h->shape[i]], h->prim[i], {1, 0, 0}};
+  if (corner.shape->kind != VL_SHAPE_TRIANGLES) return corner;
+  float time = vl_path_time(p, i);
+  vlRays rays = {p->ox + i, p->oy + i, p->oz + i, p->dx + i, p->dy + i, p->dz + i, NULL, NULL, &time};
+  vlLocalRay ray = vl_local_ray(world, &rays, 0, h->instance[i]);
+  vlTextureQuery at;
+  vl_local_triangle(corner.shape, corner.prim, &ray, &at, corner.weights);
+  return corner;
+}
+
 /* The material a hit really has: mixes are decided by a hash of the ray, so that the choice needs no sampler dimension.
  */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
@@ -50,8 +63,9 @@ uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h
     const vlWorldMaterial *m = &world->materials.items[material];
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = vl_hit_point(world, p, h, i);
-    float position[3] = {at.p.x, at.p.y, at.p.z};
-    float amount = vl_texture_float_at(world, m->amount, at.u, at.v, position, NULL);
+    vlTextureCorner corner = hit_corner(world, p, h, i);
+    vlTextureQuery query = {at.u, at.v, at.p, at.g, &corner};
+    float amount = vl_texture_float_at(world, m->amount, &query);
     uint32_t hash = vl_hash3(vl_float_bits(d.x), vl_float_bits(d.y), vl_float_bits(d.z));
     hash = vl_hash3(hash, vl_float_bits(at.p.x), vl_float_bits(at.p.y));
     hash = vl_hash3(hash, vl_float_bits(at.p.z), material);

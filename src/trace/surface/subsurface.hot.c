@@ -9,8 +9,8 @@
  * wavelength gives; the density of the point found is that of all three directions together, and by each wavelength. */
 #include "math/fresnel.h"
 #include "math/warp.h"
+#include "trace/material/rows.h"
 #include "trace/medium/volume.h"
-#include "trace/texture/texture_run.h"
 #include "world/material/bssrdf.h"
 
 /* Surfaces of a probe that are looked at: no body is so crumpled. */
@@ -321,11 +321,6 @@ uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* ---- the material ------------------------------------------------------------------------------------------------ */
 
-static void spectrum(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {
-  float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
-  vl_texture_spectrum(r, node, out);
-}
-
 /* Coefficients of a run of lanes: extinction and albedo, from absorption and scattering, or from the reflectance of a
  * thick body and the mean free path. */
 void vl_stage_bodies(vlTextureRun *r, const vlWorldMaterial *m) {
@@ -334,7 +329,7 @@ void vl_stage_bodies(vlTextureRun *r, const vlWorldMaterial *m) {
   float(*sigma)[VL_ROW_SIZE] = sh->principled + VL_S_SIGMA, (*albedo)[VL_ROW_SIZE] = sh->principled + VL_S_ALBEDO;
   const float most = 1e15f; /* per unit of length: its square is still a number */
   if (b->mfp >= 0) {
-    spectrum(r, b->mfp, sigma);
+    vl_rows_spectrum(r, b->mfp, sigma);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++) {
         float length = vl_max(m->scale * sigma[c][i], 1.0f / most);
@@ -343,8 +338,8 @@ void vl_stage_bodies(vlTextureRun *r, const vlWorldMaterial *m) {
       }
     return;
   }
-  spectrum(r, b->sigma_a, sigma);
-  spectrum(r, b->sigma_s, albedo);
+  vl_rows_spectrum(r, b->sigma_a, sigma);
+  vl_rows_spectrum(r, b->sigma_s, albedo);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++) {
       float a = vl_clamp(m->scale * sigma[c][i], 0.0f, most), s = vl_clamp(m->scale * albedo[c][i], 0.0f, most);

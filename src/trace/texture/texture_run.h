@@ -4,7 +4,7 @@
 #define TRACE_TEXTURE_TEXTURE_RUN_H
 
 #include "trace/stages.h"
-#include "world/texture/texture_noise.h"
+#include "world/texture/texture_node.h"
 
 /* A run of lanes and a stack of scratch rows for nested textures. */
 typedef struct vlTextureRun {

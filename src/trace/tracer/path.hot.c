@@ -7,7 +7,9 @@
 static vlBsdfKind bsdf_kind(const vlWorldMaterial *m) {
   if (m->layers) return VL_BSDF_LAYERED;
   switch (m->kind) {
+    case VL_MATERIAL_DIFFUSE: return VL_BSDF_DIFFUSE;
     case VL_MATERIAL_CONDUCTOR: return VL_BSDF_CONDUCTOR;
+    case VL_MATERIAL_COATED_CONDUCTOR: return VL_BSDF_LAYERED;
     case VL_MATERIAL_SUBSURFACE:
     case VL_MATERIAL_DIELECTRIC: return VL_BSDF_DIELECTRIC;
     case VL_MATERIAL_THIN_DIELECTRIC: return VL_BSDF_THIN_DIELECTRIC;
@@ -16,8 +18,10 @@ static vlBsdfKind bsdf_kind(const vlWorldMaterial *m) {
     case VL_MATERIAL_DIFFUSE_TRANSMISSION: return VL_BSDF_DIFFUSE_TRANSMISSION;
     case VL_MATERIAL_HAIR: return VL_BSDF_HAIR;
     case VL_MATERIAL_MEASURED: return VL_BSDF_MEASURED;
-    default: return VL_BSDF_DIFFUSE;
+    case VL_MATERIAL_MIX:
+    case VL_MATERIAL_INTERFACE: break; /* vl_stage_hits leaves none */
   }
+  return VL_BSDF_KINDS; /* no BSDF: NaN, which the film counts */
 }
 
 /* Calls for each run of lanes that share a BSDF kind, with parameter rows shifted to the run. Runs need not start at a

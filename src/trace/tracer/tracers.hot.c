@@ -115,7 +115,11 @@ static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *s
       vl_path_tracer(&t);
       break;
     case VL_TRACER_RANDOM_WALK: vl_random_walk_tracer(&t); break;
-    default:
+    case VL_TRACER_PATH:
+    case VL_TRACER_BIDIRECTIONAL:
+    case VL_TRACER_MERGING:
+    case VL_TRACER_SPPM:
+    case VL_TRACER_LIGHT_PATH:
       if (def->two_way)
         vl_bidirectional_tracer(&t);
       else

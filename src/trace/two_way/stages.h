@@ -95,8 +95,17 @@ static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s
     case VL_MATERIAL_SUBSURFACE:
     case VL_MATERIAL_DIELECTRIC:
       return vl_ggx_is_smooth(s->shade.alpha_x[i], s->shade.alpha_y[i]) || s->shade.eta_s[i] == 1.0f;
-    default: return false;
+    case VL_MATERIAL_DIFFUSE:
+    case VL_MATERIAL_COATED_DIFFUSE:
+    case VL_MATERIAL_MIX:
+    case VL_MATERIAL_PRINCIPLED:
+    case VL_MATERIAL_DIFFUSE_TRANSMISSION:
+    case VL_MATERIAL_COATED_CONDUCTOR:
+    case VL_MATERIAL_HAIR:
+    case VL_MATERIAL_MEASURED:
+    case VL_MATERIAL_INTERFACE: break;
   }
+  return false;
 }
 
 static inline bool vl_has_media(const vlTracing *t) {

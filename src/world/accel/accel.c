@@ -88,15 +88,15 @@ static bool filter_rejects(const AccelGeometry *g, const struct RTCFilterFunctio
                            bool shadow) {
   if (shadow && g->shape->pass_shadow) return true;
   if (g->shape->alpha < 0 && !g->shape->one_sided) return false;
-  float uv[2], p[3];
-  vlTextureCorner where;
+  vlTextureCorner corner = {.shape = g->shape};
+  vlTextureQuery at = {.corner = &corner};
   vlLocalRay r =
       local_ray(g->world, args->context, *hit_row(args->ray, args->N, ID, i), *hit_row(args->hit, args->N, INST, i));
   uint32_t prim = *hit_row(args->hit, args->N, PRIM, i);
-  where.shape = g->shape, where.prim = prim;
-  bool behind = vl_local_triangle(g->shape, prim, &r, uv, p, where.weights);
+  corner.prim = prim;
+  bool behind = vl_local_triangle(g->shape, prim, &r, &at, corner.weights);
   if (behind && g->shape->one_sided) return true;
-  return g->shape->alpha >= 0 && vl_alpha_passes(g->world, g->shape, &r, prim, 0, uv[0], uv[1], p, &where);
+  return g->shape->alpha >= 0 && vl_alpha_passes(g->world, g->shape, &r, prim, 0, &at);
 }
 
 static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
@@ -132,8 +132,9 @@ static bool user_hit(const AccelGeometry *g, const EmbreeContext *context, void 
     if (shape->alpha >= 0) {
       vlSurfacePoint point;
       vl_shape_point(shape, prim, &hit, &point);
-      float p[3] = {(float)point.p[0], (float)point.p[1], (float)point.p[2]};
-      if (vl_alpha_passes(g->world, shape, &r, prim, (float)hit.t, point.uv[0], point.uv[1], p, NULL)) {
+      vlTextureQuery at = {point.uv[0], point.uv[1], vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
+                           vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
+      if (vl_alpha_passes(g->world, shape, &r, prim, (float)hit.t, &at)) {
         t_min = hit.t * (1 + 1e-12);
         continue;
       }

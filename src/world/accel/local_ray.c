@@ -26,12 +26,12 @@ static float ray_hash(const vlLocalRay *r, uint32_t shape, uint32_t prim, float 
 }
 
 bool vl_alpha_passes(const vlWorld *world, const vlWorldShape *shape, const vlLocalRay *r, uint32_t prim, float t,
-                     float u, float v, const float p[3], const vlTextureCorner *where) {
-  float alpha = vl_texture_float_at(world, shape->alpha, u, v, p, where);
+                     const vlTextureQuery *at) {
+  float alpha = vl_texture_float_at(world, shape->alpha, at);
   return ray_hash(r, (uint32_t)(shape - world->shapes.items), prim, t) >= alpha;
 }
 
-bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r, float uv[2], float p[3], float b[3]) {
+bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r, vlTextureQuery *at, float b[3]) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
   vlVec3 ray_o = vl_vec3((float)r->o[0], (float)r->o[1], (float)r->o[2]);
   vlVec3 ray_d = vl_vec3((float)r->d[0], (float)r->d[1], (float)r->d[2]), c[3];
@@ -47,12 +47,15 @@ bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r
   b0 *= inv, b1 *= inv, b2 *= inv;
   static const float unit[6] = {0, 0, 1, 0, 1, 1};
   b[0] = b0, b[1] = b1, b[2] = b2;
-  uv[0] = uv[1] = 0;
+  at->u = at->v = 0;
   for (int k = 0; k < 3; k++) {
     const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
-    uv[0] += b[k] * t[0];
-    uv[1] += b[k] * t[1];
+    at->u += b[k] * t[0];
+    at->v += b[k] * t[1];
   }
+  float p[3];
   for (int i = 0; i < 3; i++) p[i] = b0 * corner[0][i] + b1 * corner[1][i] + b2 * corner[2][i];
+  at->p = vl_vec3(p[0], p[1], p[2]);
+  at->n = vl_cross(vl_sub(c[1], c[0]), vl_sub(c[2], c[0]));
   return s->flip ? sum < 0 : sum > 0; /* sum is the direction times the normal of the face order */
 }

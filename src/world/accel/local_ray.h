@@ -20,9 +20,10 @@ vlLocalRay vl_local_ray(const vlWorld *world, const vlRays *rays, uint32_t i, ui
 /* Whether a shape lets the ray through, by a hash of ray and primitive, so that the order of traversal does not matter.
  * t: of shapes that a ray can meet twice, so that each crossing is decided for itself; 0 of triangles. */
 bool vl_alpha_passes(const vlWorld *world, const vlWorldShape *shape, const vlLocalRay *ray, uint32_t prim, float t,
-                     float u, float v, const float p[3], const vlTextureCorner *where);
+                     const vlTextureQuery *at);
 
-/* uv and position where the ray meets triangle prim, and the weights of its corners. true: from behind. */
-bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r, float uv[2], float p[3], float b[3]);
+/* Where the ray meets triangle prim: uv, position and normal (at, its corner excepted), and the weights of the
+ * triangle's corners. true: from behind. */
+bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r, vlTextureQuery *at, float b[3]);
 
 #endif

@@ -335,7 +335,8 @@ static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m
     case VL_MEDIUM_HOMOGENEOUS: m->extinction = vl_medium_mean_extinction(m); return VL_OK;
     case VL_MEDIUM_CLOUD: m->emits = false; return compile_cloud(world, def, m, error);
     case VL_MEDIUM_NANOVDB: m->emits = false; return compile_nanovdb(world, def, m, error);
-    default: r = compile_grid(world, def, m, error); break;
+    case VL_MEDIUM_GRID:
+    case VL_MEDIUM_RGB_GRID: r = compile_grid(world, def, m, error); break;
   }
   return r == VL_OK && def->temperature ? compile_temperature(world, def, m, error) : r;
 }

@@ -126,15 +126,6 @@ static inline void vl_medium_blackbody(const vlWorldMedium *m, const float lambd
 
 /* ---- the medium at a point --------------------------------------------------------------------------------------- */
 
-static inline float vl_medium_spectral(const vlSpectral *s, int channel, float lambda) {
-  switch (s->kind) {
-    case VL_SPECTRAL_SIGMOID: return s->scale * vl_sigmoid(s->sigmoid, lambda);
-    case VL_SPECTRAL_DENSE: return s->scale * vl_dense_at(s->dense, lambda);
-    case VL_SPECTRAL_RGB: return channel < 3 ? s->scale * s->rgb[channel] : 0.0f;
-    default: return s->scale;
-  }
-}
-
 /* A grid of colours, interpolated after they became spectra. */
 static inline void vl_rgb_lookup(const vlWorldMedium *m, const vlDenseGrid *g, const float lambda[4], vlVec3 q,
                                  float scale, float out[4]) {
@@ -159,9 +150,9 @@ typedef struct vlMediumLight {
 static inline vlMediumLight vl_medium_coefficients(const vlWorldMedium *m, const float lambda[4]) {
   vlMediumLight r;
   for (int c = 0; c < 4; c++) {
-    r.a[c] = vl_medium_spectral(&m->sigma_a, c, lambda[c]);
-    r.s[c] = vl_medium_spectral(&m->sigma_s, c, lambda[c]);
-    r.le[c] = m->emits ? vl_medium_spectral(&m->emission, c, lambda[c]) : 0.0f;
+    r.a[c] = vl_spectral_at(&m->sigma_a, c, lambda[c]);
+    r.s[c] = vl_spectral_at(&m->sigma_s, c, lambda[c]);
+    r.le[c] = m->emits ? vl_spectral_at(&m->emission, c, lambda[c]) : 0.0f;
   }
   return r;
 }
@@ -173,7 +164,7 @@ static inline vlMediumLight vl_rgb_medium_at(const vlWorldMedium *m, const float
   if (m->rgb_s.values) vl_rgb_lookup(m, &m->rgb_s, lambda, q, m->rgb_scale, r.s);
   if (!emission || !m->rgb_emission.values) return r;
   vl_rgb_lookup(m, &m->rgb_emission, lambda, q, m->rgb_emission_scale, r.le);
-  for (int c = 0; c < 4; c++) r.le[c] *= vl_medium_spectral(&m->illuminant, c, lambda[c]);
+  for (int c = 0; c < 4; c++) r.le[c] *= vl_spectral_at(&m->illuminant, c, lambda[c]);
   return r;
 }
 

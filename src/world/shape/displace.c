@@ -185,13 +185,19 @@ static bool start(Cutter *c, const vlShapeDef *def) {
 }
 
 static void move(Cutter *c, const vlWorld *world, int32_t node) {
+  vlMat4 inverse;
+  bool invertible = vl_mat4_inverse(*c->m, &inverse);
   for (size_t i = 0; i < c->p.count / 3; i++) {
     float *p = c->p.items + 3 * i;
     double at[3] = {p[0], p[1], p[2]}, q[3];
     vl_mat4_point(c->m, at, q);
-    float where[3] = {(float)q[0], (float)q[1], (float)q[2]};
-    float d = vl_texture_float_at(world, node, c->uv.items[2 * i], c->uv.items[2 * i + 1], where, NULL);
-    for (int k = 0; k < 3; k++) p[k] += d * c->n.items[3 * i + k];
+    const float *n = c->n.items + 3 * i;
+    double along[3] = {n[0], n[1], n[2]}, normal[3] = {0, 0, 0};
+    if (invertible) vl_mat4_normal(&inverse, along, normal);
+    vlTextureQuery where = {c->uv.items[2 * i], c->uv.items[2 * i + 1], vl_vec3((float)q[0], (float)q[1], (float)q[2]),
+                            vl_vec3((float)normal[0], (float)normal[1], (float)normal[2]), NULL};
+    float d = vl_texture_float_at(world, node, &where);
+    for (int k = 0; k < 3; k++) p[k] += d * n[k];
   }
 }
 

@@ -1,5 +1,5 @@
-/* world/texture/texture.c: scene textures -> nodes; pictures read once per file; the one-point evaluation that alpha
- * needs. */
+/* world/texture/texture.c: scene textures -> nodes; images read once per file; the single query (alpha, amounts,
+ * displacement). */
 #include "world/texture/texture.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
-#include "world/texture/texture_noise.h"
+#include "world/texture/texture_node.h"
 #include "world/world.h"
 
 /* MAX_NESTING bounds recursion here, VL_NODE_ROWS what may nest by the room it takes: no level may disturb another. */
@@ -285,7 +285,7 @@ static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f
   return def->spectrum ? compile_spectrum(c, s, role, nesting) : compile_float(c, f, nesting);
 }
 
-/* Rows that a node takes for itself (as trace/material/material.hot.c pushes them) and for the hungriest of its inputs;
+/* Rows that a node takes for itself (as trace/texture/texture.hot.c takes them) and for the hungriest of its inputs;
  * nodes that are visited for it. false: too many. */
 static bool weigh(const vlWorld *world, vlTextureNode *node) {
   uint32_t own = 0, most = 0, visits = 1;
@@ -296,7 +296,14 @@ static bool weigh(const vlWorld *world, vlTextureNode *node) {
     case VL_NODE_DOTS:
     case VL_NODE_DIRECTION_MIX: own = node->is_spectrum ? 5 : 2; break;
     case VL_NODE_BILERP: own = node->is_spectrum ? 8 : 5; break;
-    default: break;
+    case VL_NODE_FLOAT:
+    case VL_NODE_SPECTRUM:
+    case VL_NODE_IMAGE:
+    case VL_NODE_VERTEX_COLOR:
+    case VL_NODE_FBM:
+    case VL_NODE_WRINKLED:
+    case VL_NODE_WINDY:
+    case VL_NODE_MARBLE: break; /* no inputs */
   }
   const int32_t input[5] = {node->a, node->b, node->c, node->d, node->amount};
   for (int i = 0; i < 5; i++) {
@@ -440,44 +447,44 @@ vlResult vl_world_spectrum_node(vlWorld *world, const vlScene *scene, vlSpectrum
   return r;
 }
 
-/* ---- one point, for alpha ---------------------------------------------------------------------------------------- */
+/* ---- one point --------------------------------------------------------------------------------------------------- */
 
-float vl_texture_float_at(const vlWorld *world, int32_t index, float u, float v, const float p[3],
-                          const vlTextureCorner *where) {
+/* The point as the node sees it: its uv set, the vertex colour, the normal if the node reads it. No footprint. */
+static vlTexturePoint point_of(const vlTextureNode *node, const vlTextureQuery *q) {
+  vlTexturePoint at = {q->u, q->v, q->p, vl_vec3(0, 0, 0), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
+  if (vl_texture_needs_corner(node)) vl_texture_at_corner(node, q->corner, &at);
+  if (node->kind == VL_NODE_DIRECTION_MIX) at.n = vl_normalize(q->n);
+  return at;
+}
+
+float vl_texture_float_at(const vlWorld *world, int32_t index, const vlTextureQuery *q) {
   const vlTextureNode *node = &world->nodes.items[index];
-  vlTexturePoint at = {u, v, vl_vec3(p[0], p[1], p[2]), vl_vec3(0, 0, 1), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
-  if (vl_texture_needs_corner(node)) vl_texture_at_corner(node, where, &at);
+  vlTexturePoint at = point_of(node, q);
+  float share = 0;
   switch (node->kind) {
     case VL_NODE_FLOAT: return node->value;
+    case VL_NODE_IMAGE: return vl_node_image_float(node, world->images.items[node->image].mipmap, at);
+    case VL_NODE_VERTEX_COLOR: return vl_node_vertex_color_float(node, at);
+    case VL_NODE_FBM: return vl_texture_fbm(node, at);
+    case VL_NODE_WRINKLED: return vl_texture_wrinkled(node, at);
+    case VL_NODE_WINDY: return vl_texture_windy(node, at);
     case VL_NODE_SCALE:
-      return vl_texture_float_at(world, node->a, u, v, p, where) *
-             vl_texture_float_at(world, node->amount, u, v, p, where);
-    case VL_NODE_MIX: {
-      float t = vl_texture_float_at(world, node->amount, u, v, p, where);
-      return (1 - t) * vl_texture_float_at(world, node->a, u, v, p, where) +
-             t * vl_texture_float_at(world, node->b, u, v, p, where);
-    }
-    case VL_NODE_FBM:
-    case VL_NODE_WRINKLED:
-    case VL_NODE_WINDY: return vl_texture_noise(node, at);
-    case VL_NODE_DOTS:
-    case VL_NODE_CHECKERBOARD: {
-      float t = node->kind == VL_NODE_DOTS ? vl_texture_dots(node, at) : vl_texture_checker(node, at);
-      return (1 - t) * vl_texture_float_at(world, node->a, u, v, p, where) +
-             t * vl_texture_float_at(world, node->b, u, v, p, where);
-    }
+      return vl_node_scale(vl_texture_float_at(world, node->a, q), vl_texture_float_at(world, node->amount, q));
     case VL_NODE_BILERP: {
-      vlVec2 st = vl_texture_st(node, at);
-      float a = vl_texture_float_at(world, node->a, u, v, p, where),
-            b = vl_texture_float_at(world, node->b, u, v, p, where);
-      float c = vl_texture_float_at(world, node->c, u, v, p, where),
-            d = vl_texture_float_at(world, node->d, u, v, p, where);
-      return (1 - st.x) * (1 - st.y) * a + (1 - st.x) * st.y * b + st.x * (1 - st.y) * c + st.x * st.y * d;
+      vlBilerpWeights k = vl_node_bilerp(node, at);
+      const int32_t input[4] = {node->a, node->b, node->c, node->d};
+      float sum = 0;
+      for (int i = 0; i < 4; i++) sum = vl_node_bilerp_add(sum, k.w[i], vl_texture_float_at(world, input[i], q));
+      return sum;
     }
-    case VL_NODE_IMAGE: return vl_texture_image_float(node, world->images.items[node->image].mipmap, at);
-    case VL_NODE_VERTEX_COLOR: return vl_texture_channel(node, NULL, at);
-    default: return vl_texture_float_at(world, node->a, u, v, p, where);
+    case VL_NODE_MIX: share = vl_texture_float_at(world, node->amount, q); break;
+    case VL_NODE_CHECKERBOARD: share = vl_node_checkerboard(node, at); break;
+    case VL_NODE_DOTS: share = vl_texture_dots(node, at); break;
+    case VL_NODE_DIRECTION_MIX: share = vl_node_direction_mix(node, at); break;
+    case VL_NODE_SPECTRUM:
+    case VL_NODE_MARBLE: return NAN; /* colours: vl_scene_add_texture refuses them where a float is wanted */
   }
+  return vl_node_mix(vl_texture_float_at(world, node->a, q), vl_texture_float_at(world, node->b, q), share);
 }
 
 vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node, vlError *error) {

@@ -21,7 +21,18 @@ typedef struct vlSpectral {
   float rgb[3];
 } vlSpectral;
 
-/* Scratch rows that a texture may need while it is evaluated over a batch (trace/material/material.hot.c), and how many
+/* At one channel, whose wavelength is lambda (nm; not read in RGB mode). */
+static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambda) {
+  switch (s->kind) {
+    case VL_SPECTRAL_SIGMOID: return s->scale * vl_sigmoid(s->sigmoid, lambda);
+    case VL_SPECTRAL_DENSE: return s->scale * vl_dense_at(s->dense, lambda);
+    case VL_SPECTRAL_RGB: return channel < 3 ? s->scale * s->rgb[channel] : 0.0f;
+    case VL_SPECTRAL_CONSTANT: break;
+  }
+  return s->scale;
+}
+
+/* Scratch rows that a texture may need while it is evaluated over a batch (trace/texture/texture.hot.c), and how many
  * nodes may be visited for it (inputs that are shared are evaluated each time): these bound nesting. */
 enum { VL_NODE_ROWS = 64, VL_NODE_VISITS = 4096 };
 
@@ -94,9 +105,16 @@ typedef struct vlTextureCorner {
   uint32_t prim;
   float weights[3];
 } vlTextureCorner;
-/* A float texture at one point, for alpha (called from the accelerator): uv, world position. Unfiltered. where: null
- * when only the first uv set is known. */
-float vl_texture_float_at(const struct vlWorld *world, int32_t node, float u, float v, const float p[3],
-                          const vlTextureCorner *where);
+/* Where a float texture is wanted at one point: the first uv set, position, geometric normal (of any length, either
+ * side), all in the space of the shape's group; for shapes outside of groups that is the world. corner: null where the
+ * shape has no triangles. */
+typedef struct vlTextureQuery {
+  float u, v;
+  vlVec3 p, n;
+  const vlTextureCorner *corner;
+} vlTextureQuery;
+/* A float texture at one point: alpha, the amount of mixed materials, displacement. Unfiltered; else the same bits as
+ * vl_texture_float over a batch. */
+float vl_texture_float_at(const struct vlWorld *world, int32_t node, const vlTextureQuery *query);
 
 #endif

@@ -1,5 +1,5 @@
-/* world/texture/texture_lookup.h: one texture point: coordinates, checkerboard, picture with filter. Inline, by value:
- * the batch evaluator of trace and the alpha test share it. pbrt book 10.2-10.4. */
+/* world/texture/texture_lookup.h: one texture point: coordinates, filtered image. Inline, by value: the batch evaluator
+ * of trace and the single query share it by way of texture_node.h. pbrt book 10.2-10.4. */
 #ifndef WORLD_TEXTURE_TEXTURE_LOOKUP_H
 #define WORLD_TEXTURE_TEXTURE_LOOKUP_H
 
@@ -74,19 +74,6 @@ static inline void vl_texture_axes_of_uv(const vlTextureNode *node, const float 
     at->axes[k] = node->st_given ? node->st[0] * uv[k] + node->st[1] * uv[k + 1] : node->su * uv[k];
     at->axes[k + 1] = node->st_given ? node->st[3] * uv[k] + node->st[4] * uv[k + 1] : node->sv * uv[k + 1];
   }
-}
-
-/* Share of the second texture, 0 or 1 (pbrt filters checks only over ray differentials; the samples of a pixel do it
- * here). */
-static inline float vl_texture_checker(const vlTextureNode *node, vlTexturePoint at) {
-  if (node->dimension == 3) {
-    vlVec3 q = vl_texture_space(node, at.p);
-    int64_t sum = (int64_t)__builtin_floorf(q.x) + (int64_t)__builtin_floorf(q.y) + (int64_t)__builtin_floorf(q.z);
-    return sum & 1 ? 1.0f : 0.0f;
-  }
-  vlVec2 st = vl_texture_st(node, at);
-  int64_t sum = (int64_t)__builtin_floorf(st.x) + (int64_t)__builtin_floorf(st.y);
-  return sum & 1 ? 1.0f : 0.0f;
 }
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
@@ -252,25 +239,6 @@ static inline vlTexel vl_texture_rgba(const vlTextureNode *node, const vlMipmap 
   }
   for (int c = 0; c < 4; c++) t.c[c] *= node->colors ? node->tint[c] * at.color[c] : node->tint[c];
   return t;
-}
-
-/* Float textures that are not plain. */
-static inline float vl_texture_channel(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
-  vlTexel t = vl_texture_rgba(node, mip, at);
-  float x = node->bias;
-  if (node->channel >= 0)
-    x += t.c[node->channel];
-  else
-    x += mip && mip->channels == 4 ? t.c[3] : (t.c[0] + t.c[1] + t.c[2]) * (1.0f / 3.0f);
-  return node->cutoff == node->cutoff ? (x >= node->cutoff ? 1.0f : 0.0f) : x;
-}
-
-/* Float from a picture: grey as it is, colour by its mean, four channels by their alpha (pbrt's rule). */
-static inline float vl_texture_image_float(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
-  if (!node->plain) return vl_texture_channel(node, mip, at);
-  vlTexel t = vl_texture_image(node, mip, at);
-  uint32_t channels = mip->channels;
-  return channels == 1 ? t.c[0] : channels == 4 ? t.c[3] : (t.c[0] + t.c[1] + t.c[2]) * (1.0f / 3.0f);
 }
 
 #endif

@@ -14,12 +14,17 @@ static inline float vl_texture_space_width(const vlTextureNode *node, vlTextureP
   return at.width * __builtin_sqrtf(vl_max(x, vl_max(y, z)));
 }
 
-/* Float textures. */
-static inline float vl_texture_noise(const vlTextureNode *node, vlTexturePoint at) {
+static inline float vl_texture_fbm(const vlTextureNode *node, vlTexturePoint at) {
+  return vl_fractal_noise(vl_texture_space(node, at.p), vl_texture_space_width(node, at), node->omega, node->octaves);
+}
+
+static inline float vl_texture_wrinkled(const vlTextureNode *node, vlTexturePoint at) {
+  return vl_turbulence(vl_texture_space(node, at.p), vl_texture_space_width(node, at), node->omega, node->octaves);
+}
+
+static inline float vl_texture_windy(const vlTextureNode *node, vlTexturePoint at) {
   vlVec3 p = vl_texture_space(node, at.p);
   float width = vl_texture_space_width(node, at);
-  if (node->kind == VL_NODE_FBM) return vl_fractal_noise(p, width, node->omega, node->octaves);
-  if (node->kind == VL_NODE_WRINKLED) return vl_turbulence(p, width, node->omega, node->octaves);
   float wind = vl_fractal_noise(vl_mul(p, 0.1f), 0.1f * width, 0.5f, 3);
   return vl_abs(wind) * vl_fractal_noise(p, width, 0.5f, 6);
 }

@@ -1,0 +1,97 @@
+/* world/texture/texture_node.h: the value of each kind of texture node at one point. Inline, by value. Two evaluators
+ * share these functions, so that they agree to the bit: trace/texture/texture.hot.c over a batch, texture.c for a
+ * single query. Both switch over vlNodeKind without a default: a kind that one of them lacks does not compile. */
+#ifndef WORLD_TEXTURE_TEXTURE_NODE_H
+#define WORLD_TEXTURE_TEXTURE_NODE_H
+
+#include "world/texture/texture_noise.h"
+
+/* ---- nodes with inputs ------------------------------------------------------------------------------------------- */
+
+/* VL_NODE_SCALE */
+static inline float vl_node_scale(float a, float amount) {
+  return a * amount;
+}
+
+/* VL_NODE_MIX, VL_NODE_CHECKERBOARD, VL_NODE_DOTS and VL_NODE_DIRECTION_MIX. share: of the second input. */
+static inline float vl_node_mix(float a, float b, float share) {
+  return (1 - share) * a + share * b;
+}
+
+/* VL_NODE_CHECKERBOARD: share of the second input, 0 or 1. (pbrt filters checks only over ray differentials; the
+ * samples of a pixel do it here.) */
+static inline float vl_node_checkerboard(const vlTextureNode *node, vlTexturePoint at) {
+  if (node->dimension == 3) {
+    vlVec3 q = vl_texture_space(node, at.p);
+    int64_t sum = (int64_t)__builtin_floorf(q.x) + (int64_t)__builtin_floorf(q.y) + (int64_t)__builtin_floorf(q.z);
+    return sum & 1 ? 1.0f : 0.0f;
+  }
+  vlVec2 st = vl_texture_st(node, at);
+  int64_t sum = (int64_t)__builtin_floorf(st.x) + (int64_t)__builtin_floorf(st.y);
+  return sum & 1 ? 1.0f : 0.0f;
+}
+
+/* VL_NODE_DIRECTION_MIX: share of the second input: the first one's is the cosine between normal and direction. */
+static inline float vl_node_direction_mix(const vlTextureNode *node, vlTexturePoint at) {
+  return 1.0f - vl_abs(vl_dot(at.n, vl_vec3(node->direction[0], node->direction[1], node->direction[2])));
+}
+
+/* VL_NODE_BILERP: weights of the four inputs a, b, c, d, and their sum, one input after the other from 0. */
+typedef struct vlBilerpWeights {
+  float w[4];
+} vlBilerpWeights;
+static inline vlBilerpWeights vl_node_bilerp(const vlTextureNode *node, vlTexturePoint at) {
+  vlVec2 st = vl_texture_st(node, at);
+  return (vlBilerpWeights){{(1 - st.x) * (1 - st.y), (1 - st.x) * st.y, st.x * (1 - st.y), st.x * st.y}};
+}
+static inline float vl_node_bilerp_add(float sum, float weight, float input) {
+  return sum + weight * input;
+}
+
+/* ---- floats ------------------------------------------------------------------------------------------------------ */
+
+/* A number out of red, green, blue and coverage: the channel that the node names; without one coverage of images that
+ * have it, else the mean. mip null: the vertex colour alone. */
+static inline float vl_texture_channel(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  vlTexel t = vl_texture_rgba(node, mip, at);
+  float x = node->bias;
+  if (node->channel >= 0)
+    x += t.c[node->channel];
+  else
+    x += mip && mip->channels == 4 ? t.c[3] : (t.c[0] + t.c[1] + t.c[2]) * (1.0f / 3.0f);
+  return node->cutoff == node->cutoff ? (x >= node->cutoff ? 1.0f : 0.0f) : x;
+}
+
+/* VL_NODE_IMAGE: grey as it is, colour by its mean, four channels by their alpha (pbrt's rule). */
+static inline float vl_node_image_float(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  if (!node->plain) return vl_texture_channel(node, mip, at);
+  vlTexel t = vl_texture_image(node, mip, at);
+  uint32_t channels = mip->channels;
+  return channels == 1 ? t.c[0] : channels == 4 ? t.c[3] : (t.c[0] + t.c[1] + t.c[2]) * (1.0f / 3.0f);
+}
+
+/* VL_NODE_VERTEX_COLOR */
+static inline float vl_node_vertex_color_float(const vlTextureNode *node, vlTexturePoint at) {
+  return vl_texture_channel(node, NULL, at);
+}
+
+/* VL_NODE_FBM, VL_NODE_WRINKLED and VL_NODE_WINDY: texture_noise.h. */
+
+/* ---- colours, linear RGB ----------------------------------------------------------------------------------------- */
+
+/* VL_NODE_IMAGE */
+static inline vlVec3 vl_node_image_rgb(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  vlTexel t = node->plain ? vl_texture_image(node, mip, at) : vl_texture_rgba(node, mip, at);
+  bool grey = node->plain && mip->channels < 3;
+  return vl_vec3(t.c[0], grey ? t.c[0] : t.c[1], grey ? t.c[0] : t.c[2]);
+}
+
+/* VL_NODE_VERTEX_COLOR */
+static inline vlVec3 vl_node_vertex_color_rgb(const vlTextureNode *node, vlTexturePoint at) {
+  vlTexel t = vl_texture_rgba(node, NULL, at);
+  return vl_vec3(t.c[0], t.c[1], t.c[2]);
+}
+
+/* VL_NODE_MARBLE: texture_noise.h. */
+
+#endif

@@ -166,6 +166,8 @@ static void put_medium(vlExport *x, size_t i) {
     PUT(" \"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [0 0 0]\n");
     return;
   }
+  if (m->rgb_absorption && m->sigma_a.kind == VL_SPECTRUM_RGB)
+    vl_export_lose(x, "absorption by RGB channel: pbrt absorbs by wavelength, which differs where it is deep");
   vl_pbrt_spectrum(x, "sigma_a", &m->sigma_a);
   vl_pbrt_spectrum(x, "sigma_s", &m->sigma_s);
   PUT(" \"float scale\" [%.9g] \"float g\" [%.9g]", (double)m->scale, (double)m->g);

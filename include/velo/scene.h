@@ -486,6 +486,7 @@ typedef struct vlSceneSettings {
   bool light_missing;   /* nor light from all around */
   bool camera_in_full;  /* a glTF file holds more of it than glTF can say: vl_camera_read reads that */
   vlColorSpace space;   /* of the output picture */
+  const char *sensor;   /* vlFilmDef.sensor; lives as long as the settings */
   double white_balance; /* kelvin, 0: none */
   float max_component;  /* of a sample, times exposure; infinity: as it is */
   vlPixelFilter filter;

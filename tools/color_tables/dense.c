@@ -247,6 +247,9 @@ bool write_spectra(FILE *file, const space spaces[SPACE_COUNT]) {
   if (!make_channels(&spaces[0], shares)) return false;
   fprintf(file, "/* Written by tools/color_tables. */\n#include \"color/tables.h\"\n\n");
   fprintf(file, "const double vl_table_y_integral = %.17g;\n", y_integral(&all));
+  fprintf(file, "const double vl_table_daylight[3][VL_DAYLIGHT_COUNT] = {");
+  for (int k = 0; k < 3; k++) write_doubles(file, daylight[k], DAYLIGHT_COUNT);
+  fprintf(file, "};\n");
   fprintf(file, "const float vl_table_cie[3][VL_LAMBDA_COUNT] = {");
   for (int k = 0; k < 3; k++) {
     fprintf(file, "\n  {");

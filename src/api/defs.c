@@ -28,6 +28,7 @@ vlFilmDef vl_scene_film_def(const vlScene *scene) {
   memcpy(def.crop, s->crop, sizeof def.crop);
   def.filter = s->filter;
   def.space = s->space;
+  def.sensor = s->sensor;
   def.white_balance = s->white_balance;
   def.buckets = s->buckets;
   def.lambda_min = s->lambda_min;

@@ -55,8 +55,12 @@ typedef struct vlFilmDef {
   vlPixelFilter filter;
   vlColorSpace space;   /* of the developed picture */
   double white_balance; /* kelvin: daylight of this colour temperature comes out white; 0 (default): as it is */
-  /* A sample with one of X, Y, Z above this is made darker until none is: against fireflies, and biased. Default
-   * infinity. */
+  /* Whose colours: null (default) or "cie1931", the standard observer; or a measured camera, vl_sensor_name. Its values
+   * become XYZ by the matrix that fits 24 reflectances under its white, daylight of white_balance kelvin (0: 6500
+   * then), pbrt book 5.4.2. Worlds in RGB mode have no spectra: the standard observer takes them, with that white. */
+  const char *sensor;
+  /* A sample with one of X, Y, Z (the sensor's red, green, blue) above this is made darker until none is: against
+   * fireflies, and biased. Default infinity. */
   float max_component;
   bool errors; /* remember what vl_film_errors needs: three times the memory; default false */
   /* Spectra beside the colours: so many buckets of equal width from lambda_min to lambda_max (nm, inside of 360 to 830;
@@ -65,6 +69,8 @@ typedef struct vlFilmDef {
   uint32_t buckets;
   double lambda_min, lambda_max;
 } vlFilmDef;
+/* Names for vlFilmDef.sensor, index from 0; null past the end. They live forever. */
+VL_API const char *vl_sensor_name(uint32_t index);
 VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);
 VL_API vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film);
 VL_API void vl_film_destroy(vlFilm *film);

@@ -279,6 +279,10 @@ typedef struct vlMediumDef {
   vlSpectrum sigma_a, sigma_s; /* absorption, scattering; default 1; not of RGB grids */
   float scale;                 /* factor on both */
   float g;                     /* mean cosine of scattering, -1 to 1 */
+  /* sigma_a holds for each channel of linear sRGB: of a channel exp(-sigma_a x) is left after a way x, as glTF means
+   * it, in both colour modes, however long the way is and however many pieces it has (docs/media.md). Homogeneous media
+   * without emission, sigma_a an RGB value or a constant. Default false: sigma_a is a spectrum, as in pbrt. */
+  bool rgb_absorption;
   /* Radiance given out where light is absorbed (sigma_a times this per length), divided by its own luminance as that of
    * lights; times emission_scale. Homogeneous and grid. */
   vlSpectrum emission;

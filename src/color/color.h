@@ -48,6 +48,12 @@ double vl_spectrum_photometric(const vlSpectrum *spectrum, vlError *error);
 vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlColorSpace space, float rgb[3],
                             vlError *error);
 
+/* How the channels of linear sRGB share each wavelength (Mallett and Yuksel 2019): three spectra within [0, 1],
+ * together 1, whose colours under the space's illuminant are (1,0,0), (0,1,0), (0,0,1). r, g, b, 0 of each nm. What
+ * passes a share of each channel, T_r, T_g, T_b, passes T(lambda) = sum_i share_i(lambda) T_i: in [0, 1] where T_i are,
+ * and of that colour exactly, however small they are. */
+extern const float vl_channel_shares[VL_LAMBDA_COUNT * 4];
+
 /* Row-major 3x3. */
 void vl_rgb_from_xyz(vlColorSpace space, float m[9]);
 void vl_xyz_from_rgb(vlColorSpace space, float m[9]);
@@ -65,6 +71,17 @@ static inline float vl_dense_at(const float *dense, float lambda) {
   float value = a + (x - (float)i) * (b - a);
   value = x >= 0.0f ? value : 0.0f;
   return x <= 470.0f ? value : 0.0f;
+}
+
+/* T(lambda) of the shares t of linear sRGB's channels; linear between whole nm. */
+static inline float vl_channels_at(const float t[3], float lambda) {
+  float x = lambda - 360.0f;
+  int i = (int)x;
+  i = i < VL_LAMBDA_COUNT - 2 ? i : VL_LAMBDA_COUNT - 2;
+  i = i > 0 ? i : 0;
+  const float *s = vl_channel_shares + 4 * i;
+  float a = s[0] * t[0] + s[1] * t[1] + s[2] * t[2], b = s[4] * t[0] + s[5] * t[1] + s[6] * t[2];
+  return a + (x - (float)i) * (b - a);
 }
 
 /* Hero wavelengths: lambda with density proportional to the observer's sensitivity (Radziszewski et al. 2009, pbrt book

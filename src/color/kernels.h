@@ -18,9 +18,9 @@ typedef struct vlColorKernels {
   void (*uniform_wavelengths)(float low, float span, uint32_t n, const float *u, float *const lambda[4],
                               float *const inv_pdf[4]);
   /* XYZ = 1/4 sum_c cmf(lambda_c) L_c inv_pdf_c, then RGB = m XYZ; m row-major (vl_rgb_from_xyz). Not divided by the
-   * integral of Y: lights are (vl_spectrum_photometric). */
-  void (*rgb_from_radiance)(const float m[9], uint32_t n, const float *const radiance[4], const float *const lambda[4],
-                            const float *const inv_pdf[4], float *r, float *g, float *b);
+   * integral of Y: lights are (vl_spectrum_photometric). cmf: VL_LAMBDA_COUNT * 4, as vl_cie_xyz0. */
+  void (*rgb_from_radiance)(const float *cmf, const float m[9], uint32_t n, const float *const radiance[4],
+                            const float *const lambda[4], const float *const inv_pdf[4], float *r, float *g, float *b);
   /* out = scale * sigmoid(c0, c1, c2; lambda) of each path's own coefficients. scale may be null: 1. */
   void (*sigmoid_eval)(uint32_t n, const float *c0, const float *c1, const float *c2, const float *scale,
                        const float *const lambda[4], float *const out[4]);

@@ -45,21 +45,21 @@ typedef struct xyz {
   float x, y, z;
 } xyz;
 
-static inline xyz add_wavelength(xyz s, float radiance, float lambda, float inv_pdf) {
+static inline xyz add_wavelength(const float *cmf, xyz s, float radiance, float lambda, float inv_pdf) {
   float p = lambda - 360.0f;
   int j = (int)p;
   j = j < VL_LAMBDA_COUNT - 2 ? j : VL_LAMBDA_COUNT - 2;
   j = j > 0 ? j : 0;
   float t = p - (float)j, w = radiance * inv_pdf;
   j = 4 * j;
-  float x = vl_cie_xyz0[j], y = vl_cie_xyz0[j + 1], z = vl_cie_xyz0[j + 2];
-  s.x = s.x + w * (x + t * (vl_cie_xyz0[j + 4] - x));
-  s.y = s.y + w * (y + t * (vl_cie_xyz0[j + 5] - y));
-  s.z = s.z + w * (z + t * (vl_cie_xyz0[j + 6] - z));
+  float x = cmf[j], y = cmf[j + 1], z = cmf[j + 2];
+  s.x = s.x + w * (x + t * (cmf[j + 4] - x));
+  s.y = s.y + w * (y + t * (cmf[j + 5] - y));
+  s.z = s.z + w * (z + t * (cmf[j + 6] - z));
   return s;
 }
 
-static void rgb_from_radiance(const float m[9], uint32_t n, const float *const radiance[4],
+static void rgb_from_radiance(const float *cmf, const float m[9], uint32_t n, const float *const radiance[4],
                               const float *const lambda[4], const float *const inv_pdf[4], float *r, float *g,
                               float *b) {
   uint32_t count = VL_PAD(n);
@@ -71,10 +71,10 @@ static void rgb_from_radiance(const float m[9], uint32_t n, const float *const r
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     xyz s = {0.0f, 0.0f, 0.0f};
-    s = add_wavelength(s, l0[i], w0[i], p0[i]);
-    s = add_wavelength(s, l1[i], w1[i], p1[i]);
-    s = add_wavelength(s, l2[i], w2[i], p2[i]);
-    s = add_wavelength(s, l3[i], w3[i], p3[i]);
+    s = add_wavelength(cmf, s, l0[i], w0[i], p0[i]);
+    s = add_wavelength(cmf, s, l1[i], w1[i], p1[i]);
+    s = add_wavelength(cmf, s, l2[i], w2[i], p2[i]);
+    s = add_wavelength(cmf, s, l3[i], w3[i], p3[i]);
     r[i] = q[0] * s.x + q[1] * s.y + q[2] * s.z;
     g[i] = q[3] * s.x + q[4] * s.y + q[5] * s.z;
     b[i] = q[6] * s.x + q[7] * s.y + q[8] * s.z;

@@ -20,6 +20,10 @@ typedef struct vlSpaceTable {
 } vlSpaceTable;
 extern const vlSpaceTable vl_table_spaces[4];
 
+/* CIE 15: S0, S1, S2 of daylight, 360 to 830 nm in steps of 10 nm. */
+enum { VL_DAYLIGHT_COUNT = 48 };
+extern const double vl_table_daylight[3][VL_DAYLIGHT_COUNT];
+
 extern const double vl_table_y_integral; /* sum of Y over all nm */
 extern const float vl_table_cie[3][VL_LAMBDA_COUNT];
 

@@ -2,6 +2,7 @@
 #include "film/expose.h"
 
 #include "color/kernels.h"
+#include "math/transform.h"
 
 static void multiply3(const float a[9], const float b[9], float c[9]) {
   for (int i = 0; i < 3; i++)
@@ -24,10 +25,24 @@ static void convert(vlColorSpace space, const float *balance, const vlExposure *
   }
 }
 
-/* As pbrt's maxcomponentvalue: of the sensor's values, which are X, Y, Z. */
-static void limit(vlColorSpace space, float most, uint32_t n, float *r, float *g, float *b) {
-  float m[9];
-  vl_xyz_from_rgb(space, m);
+/* The way back from the film's red, green, blue to the sensor's values. Without a white balance the sensor's X, Y, Z.
+ */
+static void values_from_rgb(const vlFilm *film, const float *xyz_from_sensor, float m[9]) {
+  float to[9], product[9];
+  double whole[9], back[9];
+  if (!xyz_from_sensor) {
+    vl_xyz_from_rgb(vl_film_def(film)->space, m);
+    return;
+  }
+  vl_rgb_from_xyz(vl_film_def(film)->space, to);
+  multiply3(to, xyz_from_sensor, product);
+  for (int i = 0; i < 9; i++) whole[i] = (double)product[i];
+  vl_mat3_inverse(whole, back);
+  for (int i = 0; i < 9; i++) m[i] = (float)back[i];
+}
+
+/* As pbrt's maxcomponentvalue: of the sensor's values, which m finds from r, g, b. */
+static void limit(const float m[9], float most, uint32_t n, float *r, float *g, float *b) {
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     float x = m[0] * r[i] + m[1] * g[i] + m[2] * b[i], y = m[3] * r[i] + m[4] * g[i] + m[5] * b[i];
     float z = m[6] * r[i] + m[7] * g[i] + m[8] * b[i], top = x > y ? x : y;
@@ -39,16 +54,20 @@ static void limit(vlColorSpace space, float most, uint32_t n, float *r, float *g
 
 void vl_film_expose(const vlFilm *film, vlIsa isa, const vlExposure *e, float *r, float *g, float *b) {
   vlColorSpace space = vl_film_def(film)->space;
-  const float *balance = vl_film_balance(film);
+  const vlFilmSensor *sensor = e->lambda[0] ? vl_film_sensor(film) : NULL;
+  const float *balance = sensor ? sensor->xyz : vl_film_balance(film);
+  float m[9], to[9];
   if (e->lambda[0]) {
-    float m[9], to[9];
     vl_rgb_from_xyz(space, balance ? to : m);
     if (balance) multiply3(to, balance, m);
-    vl_color_kernels(isa)->rgb_from_radiance(m, e->n, e->radiance, e->lambda, e->inv_pdf, r, g, b);
+    vl_color_kernels(isa)->rgb_from_radiance(sensor ? sensor->curves : vl_cie_xyz0, m, e->n, e->radiance, e->lambda,
+                                             e->inv_pdf, r, g, b);
   } else {
     convert(space, balance, e, r, g, b);
   }
   float f = e->exposure;
   for (uint32_t i = 0; f != 1.0f && i < VL_PAD(e->n); i++) r[i] *= f, g[i] *= f, b[i] *= f;
-  if (vl_film_def(film)->max_component < 3e38f) limit(space, vl_film_def(film)->max_component, e->n, r, g, b);
+  if (!(vl_film_def(film)->max_component < 3e38f)) return;
+  values_from_rgb(film, balance, m);
+  limit(m, vl_film_def(film)->max_component, e->n, r, g, b);
 }

@@ -1,6 +1,6 @@
 /* film/film.c: making films, passes, merging. */
 #include "base/cookie.h"
-#include "color/color.h"
+#include "color/sensor.h"
 #include "film/sums.h"
 #include "film/white.h"
 
@@ -19,6 +19,25 @@ vlFilmDef vl_default_film_def(uint32_t width, uint32_t height) {
                      .max_component = INFINITY,
                      .lambda_min = VL_LAMBDA_MIN,
                      .lambda_max = VL_LAMBDA_MIN + VL_LAMBDA_COUNT - 1};
+}
+
+/* The sensor's curves and matrix; its name becomes one that lives forever, and its white what pbrt takes by default. */
+static vlResult set_sensor(vlFilm *film) {
+  vlFilmDef *def = &film->def;
+  if (!def->sensor || strcmp(def->sensor, vl_sensor_name(0)) == 0) {
+    def->sensor = NULL;
+    return VL_OK;
+  }
+  const vlSensorCurves *curves = vl_sensor_find(def->sensor);
+  if (!curves) return VL_ERROR_ARGUMENT;
+  film->sensor = vl_alloc_array(film->context, 1, sizeof *film->sensor);
+  if (!film->sensor) return VL_ERROR_MEMORY;
+  def->sensor = curves->name;
+  if (def->white_balance == 0.0) def->white_balance = 6500.0;
+  double xyz[9];
+  vl_sensor_make(curves, def->white_balance, def->space, film->sensor->curves, xyz);
+  for (int i = 0; i < 9; i++) film->sensor->xyz[i] = (float)xyz[i];
+  return VL_OK;
 }
 
 vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film) {
@@ -42,8 +61,14 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
   made->width = c[2] - c[0];
   made->height = c[3] - c[1];
   made->pass = 1;
-  if (def->white_balance > 0.0) vl_white_balance(def->white_balance, def->space, made->balance);
+  vlResult result = set_sensor(made);
+  if (result != VL_OK) {
+    vl_free(context, made);
+    return result;
+  }
+  if (made->def.white_balance > 0.0) vl_white_balance(made->def.white_balance, def->space, made->balance);
   if (!vl_filter_compile(&def->filter, &made->filter)) {
+    vl_free(context, made->sensor);
     vl_free(context, made);
     return VL_ERROR_ARGUMENT;
   }
@@ -58,6 +83,7 @@ void vl_film_destroy(vlFilm *film) {
   vl_free(context, film->back);
   vl_free(context, film->stamp);
   vl_free(context, film->scratch);
+  vl_free(context, film->sensor);
   for (int i = 0; i < 2; i++) vl_free(context, film->moments[i]);
   vl_film_spectrum_free(film);
   vl_free(context, film);
@@ -74,6 +100,9 @@ const vlFilmDef *vl_film_def(const vlFilm *film) {
 }
 const float *vl_film_balance(const vlFilm *film) {
   return film->def.white_balance > 0.0 ? film->balance : NULL;
+}
+const vlFilmSensor *vl_film_sensor(const vlFilm *film) {
+  return film->sensor;
 }
 const vlFilterTable *vl_film_filter(const vlFilm *film) {
   return &film->filter;
@@ -153,8 +182,8 @@ vlResult vl_film_merge(vlFilm *film, const vlFilm *other) {
   if (film->def.width != other->def.width || film->def.height != other->def.height ||
       memcmp(film->def.crop, other->def.crop, sizeof film->def.crop) != 0 || film->def.space != other->def.space ||
       film->spp > UINT32_MAX - other->spp || (film->def.errors && !other->def.errors) ||
-      film->def.buckets != other->def.buckets || film->def.lambda_min != other->def.lambda_min ||
-      film->def.lambda_max != other->def.lambda_max)
+      film->def.buckets != other->def.buckets || film->def.sensor != other->def.sensor ||
+      film->def.lambda_min != other->def.lambda_min || film->def.lambda_max != other->def.lambda_max)
     return VL_ERROR_ARGUMENT;
   if (!vl_film_spectrum_merge(film, other)) return VL_ERROR_MEMORY;
   if (film->def.errors && other->moments[0]) {

@@ -5,6 +5,7 @@
 #define FILM_FILM_H
 
 #include "base/isa.h"
+#include "color/color.h"
 #include "velo/render.h"
 
 /* What a batch of samples adds. Channels are linear, in the film's colour space: red, green, blue, alpha. Pixel
@@ -36,6 +37,14 @@ void vl_film_add_spectra(vlFilm *film, const vlFilmSpectra *samples);
 const vlFilmDef *vl_film_def(const vlFilm *film);
 /* Row-major, acts on XYZ; null: none. */
 const float *vl_film_balance(const vlFilm *film);
+/* A measured camera in place of the standard observer: its curves as vl_cie_xyz0 has them, and the matrix from its
+ * values to XYZ, white balance included, row-major. */
+typedef struct vlFilmSensor {
+  float curves[4 * VL_LAMBDA_COUNT];
+  float xyz[9];
+} vlFilmSensor;
+/* Null: the standard observer. */
+const vlFilmSensor *vl_film_sensor(const vlFilm *film);
 void vl_film_set_spp(vlFilm *film, uint32_t spp); /* called by render after each whole pass */
 
 /* A pass that is given up leaves no trace. Two sets of sums take turns: a pixel's first sample in a pass copies its

@@ -52,7 +52,8 @@ struct vlFilm {
   vlFilmSpectrum spectrum;   /* with def.buckets */
   vlFilterTable filter;
   float balance[9]; /* of white, on XYZ; with def.white_balance */
-  void *scratch;    /* of those who render into it: kept for the next time */
+  vlFilmSensor *sensor;
+  void *scratch; /* of those who render into it: kept for the next time */
   size_t scratch_size;
 };
 

@@ -1,29 +1,23 @@
 /* film/white.c: see white.h. */
 #include "film/white.h"
 
-#include <math.h>
-
-#include "color/color.h"
+#include "color/sensor.h"
 #include "math/transform.h"
 
 /* Lam, "Metamerism and colour constancy" (Bradford, 1985): XYZ to the responses of sharpened cones. */
 static const double cones[9] = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
 
-/* CIE 15: chromaticity of daylight; the temperature is corrected for today's value of Planck's second constant. Light
- * below 4000 K is a blackbody's. */
+/* Of vl_daylight, without the rounding of its table. */
 static void chromaticity(double kelvin, double xy[2]) {
-  double t = kelvin * 1.4388 / 1.4380, x;
+  double t = kelvin * 1.4388 / 1.4380, sum[3] = {0, 0, 0}, light[VL_LAMBDA_COUNT];
   if (t >= 4000.0) {
-    x = t <= 7000.0 ? -4.6070e9 / (t * t * t) + 2.9678e6 / (t * t) + 0.09911e3 / t + 0.244063
-                    : -2.0064e9 / (t * t * t) + 1.9018e6 / (t * t) + 0.24748e3 / t + 0.237040;
-    xy[0] = x, xy[1] = -3.0 * x * x + 2.870 * x - 0.275;
+    vl_daylight_xy(t, xy);
     return;
   }
-  double sum[3] = {0, 0, 0};
+  vl_daylight(kelvin, light);
   for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
-    double metres = (VL_LAMBDA_MIN + i) * 1e-9, light = pow(metres * 1e7, -5.0) / expm1(1.438776877e-2 / (metres * t));
-    sum[0] += light * (double)vl_cie_x()[i], sum[1] += light * (double)vl_cie_y()[i];
-    sum[2] += light * (double)vl_cie_z()[i];
+    sum[0] += light[i] * (double)vl_cie_x()[i], sum[1] += light[i] * (double)vl_cie_y()[i];
+    sum[2] += light[i] * (double)vl_cie_z()[i];
   }
   xy[0] = sum[0] / (sum[0] + sum[1] + sum[2]), xy[1] = sum[1] / (sum[0] + sum[1] + sum[2]);
 }

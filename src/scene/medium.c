@@ -69,6 +69,15 @@ static bool check_spectrum(vlScene *scene, const vlMediumDef *d, const vlSpectru
   return false;
 }
 
+static bool check_rgb_absorption(vlScene *scene, const vlMediumDef *d) {
+  bool dark = d->emission_scale == 0.0f || d->emission.scale == 0.0f ||
+              (d->emission.kind == VL_SPECTRUM_CONSTANT && d->emission.value == 0.0f);
+  if (d->kind != VL_MEDIUM_HOMOGENEOUS) return bad(scene, d, "only a homogeneous medium can absorb by RGB channel");
+  if (d->sigma_a.kind != VL_SPECTRUM_RGB && d->sigma_a.kind != VL_SPECTRUM_CONSTANT)
+    return bad(scene, d, "to absorb by RGB channel its sigma_a must be an RGB value or a constant");
+  return dark || bad(scene, d, "a medium that absorbs by RGB channel cannot emit");
+}
+
 static bool check_medium(vlScene *scene, const vlMediumDef *d) {
   const float numbers[] = {d->scale,   d->g,       d->emission_scale, d->temperature_offset, d->temperature_scale,
                            d->low[0],  d->low[1],  d->low[2],         d->cloud_density,      d->wispiness,
@@ -84,6 +93,7 @@ static bool check_medium(vlScene *scene, const vlMediumDef *d) {
   if (!check_spectrum(scene, d, &d->sigma_a, "sigma_a") || !check_spectrum(scene, d, &d->sigma_s, "sigma_s") ||
       !check_spectrum(scene, d, &d->emission, "emission"))
     return false;
+  if (d->rgb_absorption && !check_rgb_absorption(scene, d)) return false;
   bool boxed = d->kind == VL_MEDIUM_GRID || d->kind == VL_MEDIUM_RGB_GRID || d->kind == VL_MEDIUM_CLOUD;
   for (int i = 0; boxed && i < 3; i++)
     if (!(d->low[i] < d->high[i])) return bad(scene, d, "its box has no room: p0 must be below p1 in x, y and z");

@@ -111,6 +111,9 @@ enum { VL_BUMP_ROWS = 9, VL_TEXTURE_ROWS = VL_NODE_ROWS + VL_BUMP_ROWS };
  * direction was sampled (u), and as light sampling would have had it (l), and the medium that the ray starts in. */
 typedef struct vlVolumeRows {
   VL_ROW float u[4][VL_ROW_SIZE], l[4][VL_ROW_SIZE];
+  /* Share of each channel of linear sRGB that media absorbing by channel have let pass since the path began; of a
+   * wavelength vl_channels_at of these, which is in beta. */
+  VL_ROW float passed[3][VL_ROW_SIZE];
   VL_ROW uint32_t medium[VL_ROW_SIZE]; /* VL_NONE: vacuum */
 } vlVolumeRows;
 

@@ -205,6 +205,7 @@ struct vlWorld {
   int32_t *texture_memo;               /* while building: scene texture and role -> node */
   uint32_t *rank;                      /* of materials: those of one kind together */
   bool has_interfaces, has_subsurface; /* some material is one; some shape has one */
+  bool absorbs_by_channel;             /* some medium does: vlWorldMedium.by_channel */
   uint32_t camera_medium;              /* index into media, VL_NONE: vacuum */
   bool moves;                          /* something does; else no ray need know its time */
   double time_open, time_close;        /* seconds: the world's times 0 and 1; before and after everything rests */

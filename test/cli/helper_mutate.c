@@ -13,11 +13,16 @@ static int fail(const char *what) {
   return 2;
 }
 
+/* Whole numbers get 1 more. */
 static void change(vlImage *image, int channel, float factor) {
+  const char *name = vl_image_channel_name(image, (uint32_t)channel);
+  bool whole = strncmp(name, "id.", 3) == 0 || strncmp(name, "samples", 7) == 0 || strstr(name, ".hidden");
   size_t pixels = (size_t)vl_image_width(image) * vl_image_height(image), step = vl_image_channels(image);
   for (size_t i = 0; i < pixels; i++) {
     if (vl_image_type(image) == VL_PIXEL_U32)
       ((uint32_t *)vl_image_pixels(image))[i * step + (size_t)channel]++;
+    else if (whole)
+      ((float *)vl_image_pixels(image))[i * step + (size_t)channel] += 1.0f;
     else
       ((float *)vl_image_pixels(image))[i * step + (size_t)channel] *= factor;
   }

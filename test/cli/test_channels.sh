@@ -44,12 +44,13 @@ import json
 
 for name in ("all", "crop"):
     info = json.load(open(name + ".json"))
-    types = dict(zip(info["channels"], info["types"]))
+    types = dict(zip(info["channels"], info.get("types") or [info["type"]] * len(info["channels"])))
     assert len(types) == 30, types
     for channel, kind in types.items():
-        whole = channel.startswith("id.") or channel == "samples"
+        if channel.startswith("id.") or channel.startswith("samples"):
+            assert channel.endswith(".Y"), channel
         half = name == "crop" and len(channel) == 1 and channel != "Z"
-        assert kind == ("32-bit integer" if whole else "16-bit float" if half else "32-bit float"), (name, channel, kind)
+        assert kind == ("16-bit float" if half else "32-bit float"), (name, channel, kind)
 ids = json.load(open("all.exr.ids.json"))
 assert ids["picture"] == "all.exr"
 kinds = sorted(o["type"] for o in ids["objects"].values())
@@ -66,7 +67,11 @@ check types_and_ids python3 layout.py
 # An independent reader finds the same, and P times worldToNDC is the pixel.
 if command -v oiiotool >/dev/null; then
   oiiotool --info -v all.exr >oiio.txt 2>&1
-  check oiio_types grep -q 'id.object (uint)' oiio.txt
+  check oiio_types grep -q 'float openexr' oiio.txt
+  check oiio_names grep -q 'id.object.Y' oiio.txt
+  # An integer beside floats would be shown as a share of 2^32.
+  oiiotool all.exr --ch id.object.Y --printstats >ids.txt
+  check oiio_shows_ids grep -Eq 'Max: [1-9]' ids.txt
   oiiotool all.exr --ch Z,P.X,P.Y,P.Z -o zp.exr
   oiiotool --info --dumpdata zp.exr >dump.txt # 9 decimals
   cat >ndc.py <<'CODE'

@@ -52,11 +52,19 @@ while IFS= read -r line; do
   quietly "$count: $(printf '%.60s' "$line")" variant.pbrt
 done <options.txt
 
-# What velo has not is told by its name; permissively something plain stands in.
-sed 's/"string sensor" "cie1931"/"string sensor" "canon_eos_100d"/' format.pbrt >sensor.pbrt
+# A measured camera has its own colours, whoever names it; one that nobody knows is an error, permissively cie1931.
+sed 's/"string sensor" "cie1931"/"string sensor" "canon_eos_100d"/' format.pbrt >measured.pbrt
+check measured "$VELO" render measured.pbrt -o measured.exr --quiet
+check sensor_option "$VELO" render format.pbrt --sensor canon_eos_100d -o option.exr --quiet
+check sensor_both_ways "$VELO" image diff measured.exr option.exr --threshold differing=0
+expect_code 2 sensor_unknown_option "$VELO" render format.pbrt --sensor canon_eos_100e -o no.exr --quiet
+expect_text sensor_option_nearest 'did you mean "canon_eos_100d"?'
+sed 's/"string sensor" "cie1931"/"string sensor" "canon_eos_100e"/' format.pbrt >sensor.pbrt
 expect_code 3 sensor "$VELO" render sensor.pbrt -o no.exr --quiet
-expect_text sensor_says 'the measured colour curves of sensor "canon_eos_100d" are not part of velo'
+expect_text sensor_says 'unknown sensor "canon_eos_100e" (did you mean "canon_eos_100d"?)'
 check sensor_permissive "$VELO" render sensor.pbrt -o sensor.exr --permissive --quiet
+expect_code 1 measured_differs "$VELO" image diff measured.exr sensor.exr --threshold differing=0
+# What velo has not is told by its name.
 sed 's/"float whitebalance" 0/"float whitebalance" 6500/' format.pbrt >white.pbrt
 check white "$VELO" render white.pbrt -o white.exr --quiet
 check as_cie1931_by_daylight "$VELO" image diff sensor.exr white.exr --threshold differing=0

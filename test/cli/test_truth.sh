@@ -24,8 +24,8 @@ check ranks_agree "$VELO" image check ranks.exr
 # Each channel that something else depends on: a change of a part in 100000 is found.
 mutate=$VELO_BINARY_DIR/bin/helper_mutate
 if [ -x "$mutate" ]; then
-  for channel in Z distance.Y P.X P.Y P.Z N.Y Ng.Y ray.X ray.Z film.X id.object id.material samples forward.U forward.V \
-    forward.hidden CryptoObject00.R CryptoObject00.G CryptoMaterial00.R CryptoMaterial00.G A; do
+  for channel in Z distance.Y P.X P.Y P.Z N.Y Ng.Y ray.X ray.Z film.X id.object.Y id.material.Y samples.Y forward.U \
+    forward.V forward.hidden.Y CryptoObject00.R CryptoObject00.G CryptoMaterial00.R CryptoMaterial00.G A; do
     check "change_$channel" "$mutate" a.exr changed.exr "$channel" 1.00001
     expect_code 1 "notices_$channel" "$VELO" image check changed.exr --flow b.exr
   done

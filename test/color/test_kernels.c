@@ -52,7 +52,7 @@ static void run(const vlColorKernels *k, float (*result)[PAD]) {
   KEEP4(x.out);
   float m[9];
   vl_rgb_from_xyz(VL_SPACE_SRGB, m);
-  k->rgb_from_radiance(m, N, o, l, p, x.r, x.g, x.b);
+  k->rgb_from_radiance(vl_cie_xyz0, m, N, o, l, p, x.r, x.g, x.b);
   KEEP(x.r), KEEP(x.g), KEEP(x.b);
   k->sigmoid_from_rgb(vl_rgb_table(VL_SPACE_SRGB), N, input.r, input.g, input.b, x.c0, x.c1, x.c2);
   KEEP(x.c0), KEEP(x.c1), KEEP(x.c2);
@@ -155,7 +155,7 @@ static void test_white(void **state) {
     for (int c = 0; c < 4; c++)
       for (int i = 0; i < PAD; i++) x.out[c][i] *= scale;
     vl_rgb_from_xyz((vlColorSpace)space, m);
-    k->rgb_from_radiance(m, PAD, o, l, p, x.r, x.g, x.b);
+    k->rgb_from_radiance(vl_cie_xyz0, m, PAD, o, l, p, x.r, x.g, x.b);
     double sum[3] = {0};
     for (int i = 0; i < PAD; i++)
       sum[0] += (double)x.r[i] / PAD, sum[1] += (double)x.g[i] / PAD, sum[2] += (double)x.b[i] / PAD;

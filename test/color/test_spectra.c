@@ -319,6 +319,31 @@ static void test_errors(void **state) {
   expect(NULL, VL_ERROR_ARGUMENT, "null");
 }
 
+/* Each channel's share within [0, 1], all together 1, their colours the primaries; so any transmittances by channel are
+ * a spectrum of exactly that colour. */
+static void test_channels(void **state) {
+  (void)state;
+  const float *light = vl_space_illuminant(VL_SPACE_SRGB);
+  const float passed[4][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1e-3f, 0.2f, 1}};
+  float m[9];
+  vl_rgb_from_xyz(VL_SPACE_SRGB, m);
+  for (int k = 0; k < 4; k++) {
+    double xyz[3] = {0, 0, 0}, y = 0;
+    for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
+      const float *share = vl_channel_shares + 4 * i;
+      double t = (double)vl_channels_at(passed[k], (float)(VL_LAMBDA_MIN + i)), l = (double)light[i];
+      assert_true(t >= 0 && t <= 1 && share[3] == 0);
+      assert_true(fabs((double)share[0] + (double)share[1] + (double)share[2] - 1) < 2e-7);
+      xyz[0] += t * l * (double)vl_cie_x()[i], xyz[1] += t * l * (double)vl_cie_y()[i];
+      xyz[2] += t * l * (double)vl_cie_z()[i], y += l * (double)vl_cie_y()[i];
+    }
+    for (int c = 0; c < 3; c++) {
+      double seen = ((double)m[3 * c] * xyz[0] + (double)m[3 * c + 1] * xyz[1] + (double)m[3 * c + 2] * xyz[2]) / y;
+      assert_true(fabs(seen - (double)passed[k][c]) < 2e-6);
+    }
+  }
+}
+
 static void test_names(void **state) {
   (void)state;
   unsigned count = 0;
@@ -338,7 +363,7 @@ int main(void) {
       cmocka_unit_test(test_observer), cmocka_unit_test(test_illuminants), cmocka_unit_test(test_spaces),
       cmocka_unit_test(test_metals),   cmocka_unit_test(test_glasses),     cmocka_unit_test(test_gold_file),
       cmocka_unit_test(test_meaning),  cmocka_unit_test(test_lights),      cmocka_unit_test(test_errors),
-      cmocka_unit_test(test_names),
+      cmocka_unit_test(test_names),    cmocka_unit_test(test_channels),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

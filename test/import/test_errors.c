@@ -251,9 +251,8 @@ static const struct {
      "t.pbrt:1:12: Film \"rgb\": parameter \"xresolution\" must be at least 1, it is 0"},
     {"Film \"rgb\" \"integer xresolution\" 2000000\n" W, "t.pbrt:1:1: Film \"rgb\": 2000000 x 720 pixels are too many"},
     {"Film \"rgb\" \"float cropwindow\" [0.5 0.5 0 1]\n" W, "t.pbrt:1:1: Film \"rgb\": the crop window holds no pixel"},
-    {"Film \"rgb\" \"string sensor\" \"canon_eos_5d\"\n" W,
-     "t.pbrt:1:12: Film \"rgb\": the measured colour curves of sensor \"canon_eos_5d\" are not part of velo; without "
-     "\"sensor\", or permissively (--permissive), cie1931 takes the picture"},
+    {"Film \"rgb\" \"string sensor\" \"canon_eos_5e\"\n" W,
+     "t.pbrt:1:12: unknown sensor \"canon_eos_5e\" (did you mean \"canon_eos_5d\"?)"},
     {"Film \"rgb\" \"string sensor\" \"cie1913\"\n" W,
      "t.pbrt:1:12: unknown sensor \"cie1913\" (did you mean \"cie1931\"?)"},
     {"Film \"rgb\" \"float whitebalance\" 50\n" W,

@@ -242,9 +242,14 @@ void make_spectra(space spaces[SPACE_COUNT]) {
   make_spaces(&all, spaces);
 }
 
-void write_spectra(FILE *file, const space spaces[SPACE_COUNT]) {
+bool write_spectra(FILE *file, const space spaces[SPACE_COUNT]) {
+  static float shares[LAMBDA_COUNT][3];
+  if (!make_channels(&spaces[0], shares)) return false;
   fprintf(file, "/* Written by tools/color_tables. */\n#include \"color/tables.h\"\n\n");
   fprintf(file, "const double vl_table_y_integral = %.17g;\n", y_integral(&all));
+  fprintf(file, "const double vl_table_daylight[3][VL_DAYLIGHT_COUNT] = {");
+  for (int k = 0; k < 3; k++) write_doubles(file, daylight[k], DAYLIGHT_COUNT);
+  fprintf(file, "};\n");
   fprintf(file, "const float vl_table_cie[3][VL_LAMBDA_COUNT] = {");
   for (int k = 0; k < 3; k++) {
     fprintf(file, "\n  {");
@@ -254,6 +259,11 @@ void write_spectra(FILE *file, const space spaces[SPACE_COUNT]) {
   fprintf(file, "\n};\n__attribute__((aligned(64))) const float vl_cie_xyz0[VL_LAMBDA_COUNT * 4] = {");
   for (int i = 0; i < LAMBDA_COUNT; i++) {
     float v[4] = {all.cie[0][i], all.cie[1][i], all.cie[2][i], 0};
+    write_floats(file, v, 4, 1);
+  }
+  fprintf(file, "\n};\n__attribute__((aligned(64))) const float vl_channel_shares[VL_LAMBDA_COUNT * 4] = {");
+  for (int i = 0; i < LAMBDA_COUNT; i++) {
+    float v[4] = {shares[i][0], shares[i][1], shares[i][2], 0};
     write_floats(file, v, 4, 1);
   }
   fprintf(file, "\n};\nconst uint32_t vl_table_named_count = %d;\nconst vlNamedTable vl_table_named[] = {", all.count);
@@ -271,4 +281,5 @@ void write_spectra(FILE *file, const space spaces[SPACE_COUNT]) {
     fprintf(file, "%d},", spaces[i].illuminant);
   }
   fprintf(file, "\n};\n");
+  return true;
 }

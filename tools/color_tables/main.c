@@ -18,7 +18,7 @@ int main(int argc, char **argv) {
   const char *path = argv[argc - 1];
   FILE *file = fopen(path, "wb");
   bool good = file;
-  if (file && !rgb) write_spectra(file, spaces);
+  if (file && !rgb) good = write_spectra(file, spaces);
   if (file && rgb) {
     size_t count = (size_t)3 * VL_RGB_TABLE_Z * VL_RGB_TABLE_XY * VL_RGB_TABLE_XY * 3;
     float *coefficients = calloc(count, sizeof *coefficients);

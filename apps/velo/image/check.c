@@ -57,15 +57,23 @@ static int find_parts(const vlImage *image, const char *name, const char *parts)
   return first;
 }
 
+/* Ids and counts: NAME.Y, in older files NAME. */
+static int find_whole(const vlImage *image, const char *name) {
+  char visible[64];
+  snprintf(visible, sizeof visible, "%s.Y", name);
+  int at = vl_image_find_channel(image, visible);
+  return at >= 0 ? at : vl_image_find_channel(image, name);
+}
+
 static void find_channels(Check *c) {
   const vlImage *image = c->image;
   c->z = vl_image_find_channel(image, "Z");
   c->distance = vl_image_find_channel(image, "distance.Y");
-  c->object = vl_image_find_channel(image, "id.object");
-  c->material = vl_image_find_channel(image, "id.material");
-  c->primitive = vl_image_find_channel(image, "id.primitive");
-  c->instance = vl_image_find_channel(image, "id.instance");
-  c->samples = vl_image_find_channel(image, "samples");
+  c->object = find_whole(image, "id.object");
+  c->material = find_whole(image, "id.material");
+  c->primitive = find_whole(image, "id.primitive");
+  c->instance = find_whole(image, "id.instance");
+  c->samples = find_whole(image, "samples");
   c->alpha = vl_image_find_channel(image, "A");
   c->p = find_parts(image, "P.", "XYZ");
   c->n = find_parts(image, "N.", "XYZ");
@@ -75,8 +83,8 @@ static void find_channels(Check *c) {
   c->film = find_parts(image, "film.", "XY");
   c->flow[0] = find_parts(image, "forward.", "UV");
   c->flow[1] = find_parts(image, "backward.", "UV");
-  c->hidden[0] = vl_image_find_channel(image, "forward.hidden");
-  c->hidden[1] = vl_image_find_channel(image, "backward.hidden");
+  c->hidden[0] = find_whole(image, "forward.hidden");
+  c->hidden[1] = find_whole(image, "backward.hidden");
   c->albedo = find_parts(image, "albedo.", "RGB"); /* as the reader sorts colours */
   c->error = find_parts(image, "error.", "RGB");
 }
@@ -105,12 +113,19 @@ static void read_header(Check *c) {
     c->matte_is_alpha = c->matte_is_alpha || strcmp(a.string, positive[i]) == 0;
 }
 
+/* Whole numbers: 32-bit floats below 2^24, else integers. */
+static void check_whole_type(Check *c, int channel) {
+  if (channel < 0) return;
+  vlPixelType type = vl_image_stored_type(c->image, (uint32_t)channel);
+  check_note(c, RULE_TYPES, type == VL_PIXEL_F32 || type == VL_PIXEL_U32 ? 0 : (double)INFINITY);
+}
+
 static void check_type(Check *c, int channel, int parts, vlPixelType type) {
   for (int k = 0; k < parts && channel >= 0; k++)
     check_note(c, RULE_TYPES, vl_image_stored_type(c->image, (uint32_t)(channel + k)) == type ? 0 : (double)INFINITY);
 }
 
-/* Depths and positions as 32-bit floats, ids as integers. */
+/* Depths and positions as 32-bit floats, ids as these or as integers. */
 static void check_types(Check *c) {
   const int ones[] = {c->z, c->distance}, twos[] = {c->uv, c->film, c->flow[0], c->flow[1]},
             threes[] = {c->p, c->n, c->ng, c->ray, c->albedo, c->error},
@@ -119,7 +134,7 @@ static void check_types(Check *c) {
   for (size_t i = 0; i < sizeof ones / sizeof *ones; i++) check_type(c, ones[i], 1, VL_PIXEL_F32);
   for (size_t i = 0; i < sizeof twos / sizeof *twos; i++) check_type(c, twos[i], 2, VL_PIXEL_F32);
   for (size_t i = 0; i < sizeof threes / sizeof *threes; i++) check_type(c, threes[i], 3, VL_PIXEL_F32);
-  for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) check_type(c, ids[i], 1, VL_PIXEL_U32);
+  for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) check_whole_type(c, ids[i]);
   for (int k = 0; k < 3; k++)
     for (uint32_t r = 0; r < c->mattes[k].ranks; r++) {
       check_type(c, c->mattes[k].id[r], 1, VL_PIXEL_F32);

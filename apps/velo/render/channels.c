@@ -156,6 +156,7 @@ int channels_render(Channels *c, vlContext *context, const vlWorld *world, const
   memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
   vlError error = {0};
   vlResult result = vl_render_channels(world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
+  if (result == VL_OK) result = channels_make_visible(context, &c->layers[1]);
   if (result != VL_OK) return report_error(&error, result, job->path);
   return c->boxes ? find_boxes(c, world, job) : STATUS_OK;
 }

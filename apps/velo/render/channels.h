@@ -32,6 +32,8 @@ int channels_load(Channels *c, vlContext *context, const Job *job);
 bool channels_any(const Channels *c);
 /* The pass, after the picture. STATUS_OK or the exit code. */
 int channels_render(Channels *c, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film);
+/* Names and types of ids (vl_render_channels' second picture) as files have them; MEMORY. */
+vlResult channels_make_visible(vlContext *context, vlImage **ids);
 /* What the layers' header says, into the picture's. */
 vlResult channels_describe(const Channels *c, vlImage *image);
 /* Writes PATH.ids.json: type, name, material, place in its file and, if wanted, boxes of each id in the picture.

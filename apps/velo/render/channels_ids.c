@@ -13,9 +13,12 @@ static void mark_ids(const vlImage *ids, const char *name, bool *seen, uint32_t 
   int channel = vl_image_find_channel(ids, name);
   if (channel < 0) return;
   size_t pixels = (size_t)vl_image_width(ids) * vl_image_height(ids), step = vl_image_channels(ids);
-  const uint32_t *value = (const uint32_t *)vl_image_const_pixels(ids) + channel;
-  for (size_t i = 0; i < pixels; i++, value += step)
-    if (*value <= count) seen[*value] = true;
+  const uint32_t *whole = vl_image_const_pixels(ids);
+  const float *floats = vl_image_const_pixels(ids); /* channels_make_visible */
+  for (size_t i = 0, at = (size_t)channel; i < pixels; i++, at += step) {
+    uint32_t value = vl_image_type(ids) == VL_PIXEL_U32 ? whole[at] : (uint32_t)floats[at];
+    if (value <= count) seen[value] = true;
+  }
 }
 
 static void put_numbers(Json *json, const char *key, const double *numbers, int count) {
@@ -80,9 +83,9 @@ static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const C
   static const struct {
     const char *channel, *key;
     vlIdKind kind;
-  } kinds[] = {{"id.object", "objects", VL_ID_OBJECT},
-               {"id.material", "materials", VL_ID_MATERIAL},
-               {"id.instance", "instances", VL_ID_INSTANCE}};
+  } kinds[] = {{"id.object.Y", "objects", VL_ID_OBJECT},
+               {"id.material.Y", "materials", VL_ID_MATERIAL},
+               {"id.instance.Y", "instances", VL_ID_INSTANCE}};
   const char *slash = strrchr(path, '/');
   Json json = {.out = file};
   json_begin(&json, NULL, '{');
@@ -114,8 +117,8 @@ int channels_write_ids(const Channels *c, const Channels *right, const vlWorld *
   char target[4200], temporary[4240];
   const vlImage *ids = c->layers[1];
   if (!ids) return STATUS_OK;
-  bool any = vl_image_find_channel(ids, "id.object") >= 0 || vl_image_find_channel(ids, "id.material") >= 0 ||
-             vl_image_find_channel(ids, "id.instance") >= 0;
+  bool any = vl_image_find_channel(ids, "id.object.Y") >= 0 || vl_image_find_channel(ids, "id.material.Y") >= 0 ||
+             vl_image_find_channel(ids, "id.instance.Y") >= 0;
   if (!any) return STATUS_OK;
   if (snprintf(target, sizeof target, "%s.ids.json", path) >= (int)sizeof target)
     return report_failure(STATUS_IO, "cannot write %s.ids.json: %s", path, strerror(ENAMETOOLONG));

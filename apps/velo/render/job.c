@@ -45,6 +45,28 @@ const Choice filter_choices[] = {{"box", VL_PIXEL_FILTER_BOX},
                                  {"blackmanharris", VL_PIXEL_FILTER_BLACKMAN_HARRIS},
                                  {"blackman-harris", VL_PIXEL_FILTER_BLACKMAN_HARRIS},
                                  {NULL, 0}};
+const Choice sensor_choices[] = {
+    /* vl_sensor_name of each number */
+    {"cie1931", 0},
+    {"canon_eos_100d", 1},
+    {"canon_eos_1dx_mkii", 2},
+    {"canon_eos_200d", 3},
+    {"canon_eos_200d_mkii", 4},
+    {"canon_eos_5d", 5},
+    {"canon_eos_5d_mkii", 6},
+    {"canon_eos_5d_mkiii", 7},
+    {"canon_eos_5d_mkiv", 8},
+    {"canon_eos_5ds", 9},
+    {"canon_eos_m", 10},
+    {"hasselblad_l1d_20c", 11},
+    {"nikon_d810", 12},
+    {"nikon_d850", 13},
+    {"sony_ilce_6400", 14},
+    {"sony_ilce_7m3", 15},
+    {"sony_ilce_7rm3", 16},
+    {"sony_ilce_9", 17},
+    {NULL, 0},
+};
 const Choice light_sampler_choices[] = {
     {"bvh", VL_LIGHT_SAMPLER_BVH}, {"power", VL_LIGHT_SAMPLER_POWER}, {"uniform", VL_LIGHT_SAMPLER_UNIFORM}, {NULL, 0}};
 const Choice regularize_choices[] = {{"off", 0}, {"on", 1}, {NULL, 0}};
@@ -164,6 +186,7 @@ static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
   if (v[RENDER_FILTER].given) defs->film.filter = vl_default_pixel_filter((vlPixelFilterKind)v[RENDER_FILTER].integer);
   if (v[RENDER_LIGHT_SAMPLER].given) defs->build.light_sampler = (vlLightSampler)v[RENDER_LIGHT_SAMPLER].integer;
   if (v[RENDER_REGULARIZE].given) defs->build.regularize = v[RENDER_REGULARIZE].integer == 1;
+  if (v[RENDER_SENSOR].given) defs->film.sensor = vl_sensor_name((uint32_t)v[RENDER_SENSOR].integer);
   if (v[RENDER_COLOR].given) defs->build.color = (vlColorMode)v[RENDER_COLOR].integer;
   if (v[RENDER_MAX_DEPTH].given) defs->render.max_depth = (uint32_t)v[RENDER_MAX_DEPTH].integer;
   if (v[RENDER_SEED].given) defs->render.seed = (uint32_t)v[RENDER_SEED].integer;

@@ -25,6 +25,7 @@ enum {
   RENDER_LIGHT_PATHS,
   RENDER_MAX_DEPTH,
   RENDER_COLOR,
+  RENDER_SENSOR,
   RENDER_VIEW,
   RENDER_EXPOSURE,
   RENDER_SPECTRUM,
@@ -62,7 +63,7 @@ enum {
   RENDER_SCENE
 };
 
-extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[],
+extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[], sensor_choices[],
     regularize_choices[], color_choices[], view_choices[], isa_choices[], stereo_choices[], eye_choices[];
 
 extern const Option render_options[];

@@ -83,6 +83,8 @@ const Option render_options[] = {
      "fireflies, and softer caustics; default: as the scene says, or:",
      0, 0, regularize_choices},
     {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME", "what light is made of:", 0, 0, color_choices},
+    {RENDER_SENSOR, 0, "sensor", OPTION_CHOICE, "NAME",
+     "which camera's colours; white is daylight of 6500 K, unless the\nscene says another:", 0, 0, sensor_choices},
     {RENDER_VIEW, 0, "view", OPTION_CHOICE, "NAME", "how light becomes display values (.png .jpg .tga):", 0, 0,
      view_choices},
     {RENDER_FOCUS_PIXEL, 0, "focus-pixel", OPTION_TEXT, "X,Y",

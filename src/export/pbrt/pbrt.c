@@ -60,6 +60,7 @@ static void put_film(vlExport *x, double shutter) {
     PUT("  \"integer nbuckets\" [%u] \"float lambdamin\" [%.9g] \"float lambdamax\" [%.9g]\n", film->buckets,
         film->lambda_min, film->lambda_max);
   if (fabs(exposure - 1) > 1e-7) PUT("  \"float iso\" [%.9g]\n", 100 * exposure);
+  if (film->sensor && !strpbrk(film->sensor, "\"\\\n")) PUT("  \"string sensor\" \"%s\"\n", film->sensor);
   if (film->white_balance > 0) PUT("  \"float whitebalance\" [%.9g]\n", film->white_balance);
   if (film->max_component < 1e30f) PUT("  \"float maxcomponentvalue\" [%.9g]\n", most);
   const uint32_t *crop = film->crop;
@@ -171,6 +172,8 @@ static void put_medium(vlExport *x, size_t i) {
     PUT(" \"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [0 0 0]\n");
     return;
   }
+  if (m->rgb_absorption && m->sigma_a.kind == VL_SPECTRUM_RGB)
+    vl_export_lose(x, "absorption by RGB channel: pbrt absorbs by wavelength, which differs where it is deep");
   vl_pbrt_spectrum(x, "sigma_a", &m->sigma_a);
   vl_pbrt_spectrum(x, "sigma_s", &m->sigma_s);
   PUT(" \"float scale\" [%.9g] \"float g\" [%.9g]", (double)m->scale, (double)m->g);

@@ -6,7 +6,8 @@
 #include "image/image.h"
 #include "import/gltf/gltf.h"
 
-/* White light through `attenuationDistance` of it takes on `attenuationColor`: sigma_a = -ln(colour) / distance. */
+/* White light through `attenuationDistance` of it takes on `attenuationColor`: sigma_a = -ln(colour) / distance, a law
+ * of each channel. */
 bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfMaterial *result) {
   double distance = INFINITY, color[3] = {1, 1, 1}, most = 0;
   float sigma[3];
@@ -24,6 +25,7 @@ bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltf
   def.source.file = g->path;
   def.sigma_a = vl_spectrum_rgb(sigma[0], sigma[1], sigma[2]);
   def.sigma_s = vl_spectrum_constant(0.0f);
+  def.rgb_absorption = true;
   result->inside = vl_scene_add_medium(g->scene, &def);
   return result->inside.index != 0;
 }

@@ -5,6 +5,7 @@
 
 #include "import/pbrt/builder.h"
 #include "import/pbrt/token.h"
+#include "velo/render.h"
 
 enum { MAX_SIDE = 1 << 20 };
 
@@ -44,36 +45,30 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
   return import->scene->error.code == VL_OK;
 }
 
-/* pbrt has the measured curves of these; velo has not. pbrt's white is daylight of 6500 K then, unless the file says
- * another: the fallback has the same. Exposure is the same for all sensors (book 5.4.2: they are scaled to see white of
- * equal luminance). */
-static bool check_sensor(vlDict *dict, double *white) {
-  static const char *const measured[] = {"canon_eos_100d",      "canon_eos_1dx_mkii", "canon_eos_200d",
-                                         "canon_eos_200d_mkii", "canon_eos_5d",       "canon_eos_5d_mkii",
-                                         "canon_eos_5d_mkiii",  "canon_eos_5d_mkiv",  "canon_eos_5ds",
-                                         "canon_eos_m",         "hasselblad_l1d_20c", "nikon_d810",
-                                         "nikon_d850",          "sony_ilce_6400",     "sony_ilce_7m3",
-                                         "sony_ilce_7rm3",      "sony_ilce_9",        "cie1931"};
-  enum { COUNT = sizeof measured / sizeof *measured };
+/* A measured camera's white is daylight of 6500 K, unless the file says another; permissively that also goes for a
+ * name that nobody knows, which the standard observer stands for. */
+static bool read_sensor_name(vlDict *dict, double *white) {
+  enum { MOST = 64 };
+  const char *names[MOST], *name = vl_sensor_name(0);
+  uint32_t count = 0;
   vlImport *import = dict->import;
-  const char *sensor = "cie1931";
+  while (count < MOST && vl_sensor_name(count)) names[count] = vl_sensor_name(count), count++;
   vlParam *p = vl_dict_find(dict, "sensor", 1u << VL_PARAM_STRING);
-  if (!vl_dict_string(dict, "sensor", &sensor) || strcmp(sensor, "cie1931") == 0) return true;
+  if (!vl_dict_string(dict, "sensor", &name) || strcmp(name, names[0]) == 0) return true;
   *white = 6500.0;
-  for (int i = 0; i < COUNT - 1; i++)
-    if (strcmp(sensor, measured[i]) == 0)
-      return vl_import_unsupported(import, p->place,
-                                   "%s: the measured colour curves of sensor \"%s\" are not part of velo; without "
-                                   "\"sensor\", or permissively (--permissive), cie1931 takes the picture",
-                                   dict->what, sensor);
-  return vl_import_unknown(import, p->place, "sensor", sensor, measured, COUNT, NULL, 0);
+  for (uint32_t i = 1; i < count; i++)
+    if (strcmp(name, names[i]) == 0) {
+      vl_scene_defs(import->scene)->film.sensor = names[i];
+      return true;
+    }
+  return vl_import_unknown(import, p->place, "sensor", name, names, count, NULL, 0);
 }
 
 /* The sensor, its white, its limit. */
 static bool read_sensor(vlDict *dict) {
   vlImport *import = dict->import;
   double white = 0.0, usual = 0.0, top = INFINITY;
-  if (!check_sensor(dict, &usual)) return false;
+  if (!read_sensor_name(dict, &usual)) return false;
   if (vl_dict_double(dict, "whitebalance", &white) && white != 0.0 && !(white >= 1000.0 && white <= 1e5))
     return vl_import_fail(import, VL_ERROR_SCENE, vl_dict_find(dict, "whitebalance", VL_BIT_FLOAT)->place,
                           "%s: \"whitebalance\" is %g; it must be 0 (none) or 1000 to 100000 kelvin", dict->what,

@@ -14,6 +14,7 @@ typedef struct vlFlight {
   int hero, channels;  /* 4 wavelengths, or 3 of RGB */
   float first;         /* the first random number, -1: like the others */
   uint32_t key, count; /* of random numbers: they depend on both alone */
+  float passed[3];     /* vlVolumeRows.passed */
   float odds; /* of coming through by flight against by what light sampling does, one number for all channels */
 } vlFlight;
 

@@ -20,6 +20,19 @@ static inline float largest(const float v[4]) {
   return vl_max(vl_max(v[0], v[1]), vl_max(v[2], v[3]));
 }
 
+/* Absorption by channel of linear sRGB over a length: the path's whole way so far decides how much of each wavelength
+ * is left, T = sum_i share_i(lambda) passed_i, so that pieces of a way add up to what it would be in one. */
+static void absorb_by_channel(const vlWorldMedium *m, float length, vlFlight *f) {
+  float left[3];
+  if (!m->by_channel) return;
+  for (int i = 0; i < 3; i++) left[i] = f->passed[i] * vl_exp(-m->sigma_rgb[i] * length);
+  for (int c = 0; c < 4; c++) {
+    float before = vl_channels_at(f->passed, f->lambda[c]), after = vl_channels_at(left, f->lambda[c]);
+    f->beta[c] *= before > 0.0f ? after / before : 0.0f;
+  }
+  for (int i = 0; i < 3; i++) f->passed[i] = left[i];
+}
+
 /* ---- homogeneous ------------------------------------------------------------------------------------------------- */
 
 static vlFlightEnd fly_homogeneous(const vlWorldMedium *m, float t0, float t1, bool emission, vlFlight *f,
@@ -35,6 +48,7 @@ static vlFlightEnd fly_homogeneous(const vlWorldMedium *m, float t0, float t1, b
   }
   if (!m->scatters) {
     for (int c = 0; c < 4; c++) f->beta[c] *= passes[c];
+    absorb_by_channel(m, length, f);
     return largest(f->beta) > 0.0f ? VL_FLIGHT_PASSED : VL_FLIGHT_ENDED;
   }
   float depth = exponential(vl_flight_random(f));
@@ -42,6 +56,7 @@ static vlFlightEnd fly_homogeneous(const vlWorldMedium *m, float t0, float t1, b
     float distance = vl_min(depth / sigma[h], length);
     shift(sigma, h, distance, factor);
     *t = t0 + distance;
+    absorb_by_channel(m, distance, f);
     f->odds *= vl_exp(-m->extinction * distance);
     for (int c = 0; c < 4; c++) {
       f->beta[c] *= factor[c] * k.s[c] / sigma[h];
@@ -50,6 +65,7 @@ static vlFlightEnd fly_homogeneous(const vlWorldMedium *m, float t0, float t1, b
     return largest(f->beta) > 0.0f ? VL_FLIGHT_SCATTERED : VL_FLIGHT_ENDED;
   }
   shift(sigma, h, length, factor);
+  absorb_by_channel(m, length, f);
   f->odds *= vl_exp(-m->extinction * length);
   for (int c = 0; c < 4; c++) {
     f->beta[c] *= factor[c];
@@ -67,6 +83,7 @@ static void attenuate_homogeneous(const vlWorldMedium *m, float t0, float t1, vl
     f->beta[c] *= passes;
     f->u[c] *= m->scatters ? passes : 1.0f;
   }
+  absorb_by_channel(m, length, f);
   if (m->scatters) f->odds *= vl_exp(-m->extinction * length);
 }
 

@@ -44,11 +44,13 @@ static inline vlFlight vl_volume_flight(const vlTracing *t, const vlPaths *p, co
     f.u[c] = v->u[c][i];
     f.l[c] = v->l[c][i];
   }
+  for (int k = 0; k < 3; k++) f.passed[k] = v->passed[k][i];
   return f;
 }
 
 static inline void vl_volume_copy(const vlVolumeRows *a, uint32_t i, vlVolumeRows *b, uint32_t k) {
   for (int c = 0; c < 4; c++) b->u[c][k] = a->u[c][i], b->l[c][k] = a->l[c][i];
+  for (int c = 0; c < 3; c++) b->passed[c][k] = a->passed[c][i];
   b->medium[k] = a->medium[i];
 }
 

@@ -19,11 +19,14 @@ static void store_flight(vlPaths *p, vlVolumeRows *v, uint32_t i, const vlFlight
     v->u[c][i] = f->u[c];
     v->l[c][i] = f->l[c];
   }
+  for (int k = 0; k < 3; k++) v->passed[k][i] = f->passed[k];
 }
 
 void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n) {
   for (int c = 0; c < 4; c++)
     for (uint32_t k = 0; k < n; k++) b->u[c][k] = a->u[c][order[k]], b->l[c][k] = a->l[c][order[k]];
+  for (int c = 0; c < 3; c++)
+    for (uint32_t k = 0; k < n; k++) b->passed[c][k] = a->passed[c][order[k]];
   for (uint32_t k = 0; k < n; k++) b->medium[k] = a->medium[order[k]];
 }
 
@@ -300,6 +303,7 @@ void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium) {
   vlVolumeRows *rows = &t->s->volume.a;
   for (uint32_t i = 0; i < n; i++) {
     for (int c = 0; c < 4; c++) rows->u[c][i] = rows->l[c][i] = 1.0f;
+    for (int c = 0; c < 3; c++) rows->passed[c][i] = 1.0f;
     rows->medium[i] = medium ? medium[p->lane[i]] : t->world->camera_medium;
     if (vl_volume_rgb(t)) p->beta[3][i] = 0.0f;
   }

@@ -58,6 +58,22 @@ static float pair_weight(const vlTracing *t, uint32_t i, const vlPhoton *x, floa
   return x->alone && vl_hero_alone(x->medium ? &t->s->volume.scattered : &t->s->b, i) ? 0.25f * weight : weight;
 }
 
+/* The photon's power as it joins the eye's path i: what media absorb by channel of the whole path is not the product of
+ * what they absorb of its two parts. */
+static void joined_power(const vlTracing *t, uint32_t i, const vlPhoton *x, float power[4]) {
+  for (int c = 0; c < 4; c++) power[c] = x->power[c];
+  if (!t->world->absorbs_by_channel) return;
+  const vlVolumeRows *v = x->medium ? &t->s->volume.c : &t->s->volume.b;
+  const vlPaths *p = x->medium ? &t->s->volume.scattered : &t->s->b;
+  float light[3], eye[3] = {v->passed[0][i], v->passed[1][i], v->passed[2][i]}, both[3];
+  vl_unpack_passed(x->passed, light);
+  for (int k = 0; k < 3; k++) both[k] = light[k] * eye[k];
+  for (int c = 0; c < 4; c++) {
+    float lambda = p->lambda[c][i], apart = vl_channels_at(light, lambda) * vl_channels_at(eye, lambda);
+    power[c] *= apart > 0.0f ? vl_channels_at(both, lambda) / apart : 0.0f;
+  }
+}
+
 static void add_diffuse(vlTracing *t, uint32_t i, const vlPhoton *x, float sum[4]) {
   const vlTraceScratch *s = t->s;
   const vlShade *sh = &s->shade;
@@ -65,7 +81,9 @@ static void add_diffuse(vlTracing *t, uint32_t i, const vlPhoton *x, float sum[4
   if (!(zo * zi > 0.0f)) return;
   float forth = vl_abs(zi) * VL_INV_PI, back = vl_abs(zo) * VL_INV_PI;
   float weight = pair_weight(t, i, x, forth, back) * forth;
-  for (int c = 0; c < 4; c++) sum[c] += sh->reflectance[c][i] * x->power[c] * weight;
+  float power[4];
+  joined_power(t, i, x, power);
+  for (int c = 0; c < 4; c++) sum[c] += sh->reflectance[c][i] * power[c] * weight;
 }
 
 /* Each lane's listed photons, one of each lane at a time. */
@@ -96,9 +114,9 @@ static void add_listed(vlTracing *t, uint32_t n) {
     for (uint32_t i = 0; i < n; i++) {
       if (round >= r->count[i]) continue;
       const vlPhoton *x = &photons[r->pair[r->first[i] + round]];
-      float weight = pair_weight(t, i, x, forth[i], r->rev[i]);
-      for (int c = 0; c < 4; c++)
-        t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * value[c][i] * x->power[c] * weight;
+      float weight = pair_weight(t, i, x, forth[i], r->rev[i]), power[4];
+      joined_power(t, i, x, power);
+      for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * value[c][i] * power[c] * weight;
     }
   }
   for (uint32_t i = 0; i < n; i++) r->count[i] = 0;
@@ -154,8 +172,9 @@ void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth) {
     for (uint32_t j; (j = near_next(map, &near)) != VL_NONE;) {
       const vlPhoton *x = &map->photons[j];
       float phase = vl_phase(g, vl_dot(d, vl_vec3(x->w[0], x->w[1], x->w[2])));
-      float weight = pair_weight(t, i, x, phase, phase) * phase;
-      for (int c = 0; c < 4; c++) sum[c] += x->power[c] * weight;
+      float weight = pair_weight(t, i, x, phase, phase) * phase, power[4];
+      joined_power(t, i, x, power);
+      for (int c = 0; c < 4; c++) sum[c] += power[c] * weight;
     }
     for (int c = 0; c < 4; c++) t->batch->radiance[c][lane] += p->beta[c][i] * sum[c];
   }

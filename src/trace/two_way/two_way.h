@@ -39,11 +39,12 @@ typedef struct vlEyeView {
 typedef struct vlPhoton {
   float p[3], w[3]; /* w: towards where the light came from */
   float power[4];
-  float a, b;      /* ways that begin further on the light's side: a * rev + b, over this vertex */
-  uint32_t bounce; /* from 1: vertices of the light's path so far, without the one on the light */
-  uint32_t id;     /* unique in a pass, whatever the order of work */
-  uint32_t alone;  /* the hero wavelength alone is left, with the weight of all */
-  uint32_t medium; /* 1 + the medium that it scatters in; power is then divided by sigma_s. 0: on a surface */
+  float a, b;           /* ways that begin further on the light's side: a * rev + b, over this vertex */
+  uint32_t bounce : 31; /* from 1: vertices of the light's path so far, without the one on the light */
+  uint32_t alone : 1;   /* the hero wavelength alone is left, with the weight of all */
+  uint32_t id;          /* unique in a pass, whatever the order of work */
+  uint32_t passed;      /* vlVolumeRows.passed, packed (stages.h); means something where vlWorld.absorbs_by_channel */
+  uint32_t medium;      /* 1 + the medium that it scatters in; power is then divided by sigma_s. 0: on a surface */
 } vlPhoton;
 _Static_assert(sizeof(vlPhoton) == 64, "a photon is one cache line");
 

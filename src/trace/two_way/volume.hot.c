@@ -136,6 +136,7 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     x->bounce = depth + 1;
     x->id = b->first + lane;
     x->alone = vl_hero_alone(p, i);
+    x->passed = t->world->absorbs_by_channel ? vl_pack_passed(&v->c, i) : 0;
     x->medium = 1 + v->c.medium[i];
     count += sum > 0.0f && sum < VL_INFINITY;
   }

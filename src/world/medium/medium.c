@@ -39,6 +39,19 @@ static vlResult compile_sigma(vlWorld *world, const vlMediumDef *def, const vlSp
   return r;
 }
 
+/* Absorption by channel of linear sRGB is kept apart from the spectra: flights are sampled by sigma_s alone, and what
+ * is absorbed on the way becomes weight. In RGB mode, and where all channels are equal, sigma_a says the same. */
+static vlResult compile_absorption(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
+  if (!def->rgb_absorption || world->def.color == VL_COLOR_RGB || def->sigma_a.kind != VL_SPECTRUM_RGB ||
+      (def->sigma_a.rgb[0] == def->sigma_a.rgb[1] && def->sigma_a.rgb[0] == def->sigma_a.rgb[2]))
+    return compile_sigma(world, def, &def->sigma_a, &m->sigma_a, error);
+  vlSpectrum none = vl_spectrum_constant(0.0f);
+  vlResult r = vl_spectrum_to_rgb(&def->sigma_a, VL_ROLE_UNBOUNDED, VL_SPACE_SRGB, m->sigma_rgb, error);
+  for (int c = 0; c < 3; c++) m->sigma_rgb[c] *= def->scale;
+  m->by_channel = world->absorbs_by_channel = true;
+  return r == VL_OK ? compile_sigma(world, def, &none, &m->sigma_a, error) : r;
+}
+
 static vlResult compile_emission(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
   vlResult r = vl_spectral_compile(world, &def->emission, VL_ROLE_ILLUMINANT, &m->emission, error);
   if (r != VL_OK) return r;
@@ -324,7 +337,7 @@ static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m
   if (!vl_mat4_inverse(vl_mat4_load(def->world_from_medium), &inverse))
     return vl_fail(error, VL_ERROR_SCENE, "the medium's transform is singular");
   for (int i = 0; i < 12; i++) m->medium_from_world[i] = (float)inverse.m[i];
-  vlResult r = compile_sigma(world, def, &def->sigma_a, &m->sigma_a, error);
+  vlResult r = compile_absorption(world, def, m, error);
   if (r == VL_OK) r = compile_sigma(world, def, &def->sigma_s, &m->sigma_s, error);
   if (r == VL_OK) r = compile_emission(world, def, m, error);
   if (r != VL_OK) return r;

@@ -34,6 +34,8 @@ typedef struct vlWorldMedium {
   vlSpectral emission;         /* luminance as said, scale included */
   float g;
   bool scatters, emits, grey; /* grey: the majorant is the same for all channels */
+  bool by_channel;            /* absorbs by channel of linear sRGB: vlMediumDef.rgb_absorption, in spectral mode */
+  float sigma_rgb[3];         /* by_channel: absorption, scale included; sigma_a is 0 */
   float extinction;           /* homogeneous: vl_medium_extinction */
   float medium_from_world[12];
   float low[3], high[3]; /* medium space; kinds but homogeneous */

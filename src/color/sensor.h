@@ -1,0 +1,35 @@
+/* color/sensor.h: measured camera sensors: curves, and the matrix from what they see to XYZ (pbrt book 5.4.2). */
+#ifndef COLOR_SENSOR_H
+#define COLOR_SENSOR_H
+
+#include "color/color.h"
+
+enum { VL_SENSOR_SAMPLES = 35, VL_CHECKER_PATCHES = 24, VL_CHECKER_SAMPLES = 36 };
+
+/* 380 to 720 nm in steps of 10 nm, red, green, blue at each; linear between, 0 outside. */
+typedef struct vlSensorCurves {
+  char name[24];
+  float rgb[VL_SENSOR_SAMPLES * 3];
+} vlSensorCurves;
+extern const vlSensorCurves vl_sensor_curves[]; /* ascending by name */
+extern const uint32_t vl_sensor_count;
+/* Reflectances, 380 to 730 nm in steps of 10 nm. */
+extern const float vl_checker_patches[VL_CHECKER_PATCHES][VL_CHECKER_SAMPLES];
+
+/* Null: no measured sensor of that name. */
+const vlSensorCurves *vl_sensor_find(const char *name);
+
+/* The sensor's curves every nm, interleaved as vl_cie_xyz0 (r, g, b, 0; VL_LAMBDA_COUNT * 4), and the matrix from the
+ * integrals of radiance times these to XYZ (row-major): by least squares over the patches, their values under daylight
+ * of `kelvin` against their XYZ under the space's illuminant. Where the sensor's green is that of a white surface under
+ * that daylight of luminance Y, so is Y of the result. */
+void vl_sensor_make(const vlSensorCurves *curves, double kelvin, vlColorSpace space, float *observer,
+                    double xyz_from_sensor[9]);
+
+/* Light of a colour temperature every nm, in no particular unit: the CIE's daylight, below 4000 K a black body. The
+ * temperature is corrected for today's value of Planck's second constant. */
+void vl_daylight(double kelvin, double light[VL_LAMBDA_COUNT]);
+/* Chromaticity of the CIE's daylight; kelvin: corrected, at least 4000. */
+void vl_daylight_xy(double kelvin, double xy[2]);
+
+#endif

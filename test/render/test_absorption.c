@@ -79,7 +79,7 @@ static void see_wall(bool merged, bool absorbs, double mean[3]) {
   if (merged) s.render.merge_radius = 0.4, s.render.light_paths = 512;
   vlMediumDef none = fog(0, 0, 0);
   vlMediumId medium = absorbs ? glass_of(&s, 2 * 5, attenuation, 0) : add_medium(&s, &none); /* 5 units a length of 1 */
-  vl_scene_settings(s.scene)->camera_medium = medium;
+  vl_scene_defs(s.scene)->camera_medium = medium;
   add_ball(&s, -102, 100, add_diffuse(&s, 0.5f, 0.5f, 0.5f), (vlMediumId){0}, medium);
   vlLightDef lamp = vl_default_light_def(VL_LIGHT_POINT);
   lamp.color = vl_spectrum_rgb(1, 1, 1);
@@ -139,7 +139,7 @@ static void total_reflection(void **state) {
     vlMediumId inside = glass_of(&s, 4, attenuation, 0);
     add_box(&s, (float[3]){-0.2f, -0.2f, -4}, (float[3]){0.2f, 0.2f, 1}, vl_scene_add_material(s.scene, &glass),
             inside);
-    vl_scene_settings(s.scene)->camera_medium = inside;
+    vl_scene_defs(s.scene)->camera_medium = inside;
     pictures[mode] = stage_finish(&s);
   }
   assert_true(picture_mean(&pictures[1], 0) < 0.5 * picture_mean(&pictures[1], 2)); /* it is deep */

@@ -210,6 +210,7 @@ vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
   set_text(&header, "velo.tracer", choice_name(tracer_choices, (int)job->render.tracer));
   set_int(&header, "velo.maxDepth", job->render.max_depth);
   set_text(&header, "velo.color", choice_name(color_choices, (int)job->settings->color));
+  set_text(&header, "velo.bits", choice_name(bits_choices, (int)job->build.bits));
   if (job->build.regularize) set_int(&header, "velo.regularize", 1);
   if (job->render.merge_radius > 0) set_double(&header, "velo.mergeRadius", job->render.merge_radius);
   if (job->render.light_paths != VL_AS_MANY_AS_PIXELS) set_double(&header, "velo.lightPaths", job->render.light_paths);

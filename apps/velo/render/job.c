@@ -62,6 +62,7 @@ const Choice stereo_choices[] = {{"none", VL_STEREO_NONE},
                                  {"ods", VL_STEREO_OMNIDIRECTIONAL},
                                  {NULL, 0}};
 const Choice eye_choices[] = {{"both", VL_EYE_BOTH}, {"left", VL_EYE_LEFT}, {"right", VL_EYE_RIGHT}, {NULL, 0}};
+const Choice bits_choices[] = {{"portable", VL_BITS_PORTABLE}, {"fast", VL_BITS_FAST}, {NULL, 0}};
 const Choice isa_choices[] = {{"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {NULL, 0}};
 
 /* ---- overrides --------------------------------------------------------------------------------------------------- */
@@ -319,6 +320,7 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   if (v[RENDER_TIME].given) job->render.time_limit = v[RENDER_TIME].number;
   job->build = vl_default_build_def();
   job->build.color = settings->color;
+  if (v[RENDER_BITS].given) job->build.bits = (vlBits)v[RENDER_BITS].integer;
   job->build.light_sampler = settings->light_sampler;
   job->build.regularize = settings->regularize;
   job->build.imitate_pbrt = v[RENDER_IMITATE_PBRT].given;

@@ -15,6 +15,11 @@ extern "C" {
 /* ---- world ------------------------------------------------------------------------------------------------------ */
 
 typedef struct vlWorld vlWorld;
+/* What is promised of the image's bits. PORTABLE: the same scene, options and version give the same bits on every
+ * x86-64 machine, for any number of threads, and a crop the same pixels as the whole. FAST: the same on machines for
+ * which Embree, which finds what rays meet, picks the same instruction set; elsewhere a few pixels differ, where
+ * surfaces lie in one plane or a ray meets an edge. docs/decisions/0011-the-bits-of-embree.md has the numbers. */
+typedef enum vlBits { VL_BITS_PORTABLE, VL_BITS_FAST } vlBits;
 typedef struct vlBuildDef {
   uint32_t cookie;
   vlColorMode color; /* spectral (default) or RGB; fixed at build */
@@ -25,6 +30,9 @@ typedef struct vlBuildDef {
    * 0.3 become twice as large, from 0.1 to 0.3): no fireflies of caustics, and not all of their light. Of the path and
    * volume tracers. Default false. */
   bool regularize;
+  /* Default portable. The environment variable VELO_EMBREE=sse4.2|avx|avx2|avx512 forces Embree's instruction set, for
+   * tests: portable takes the first two. One that does not fit or is not there: UNSUPPORTED from the build. */
+  vlBits bits;
 } vlBuildDef;
 VL_API vlBuildDef vl_default_build_def(void);
 /* Compiles the scene, with the pictures that it names. The scene may be destroyed afterwards, the context not. The

@@ -20,6 +20,8 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   vlBuildDef d = def ? *def : vl_default_build_def();
   if (d.cookie != VL_COOKIE_BUILD)
     return vl_fail(error, VL_ERROR_ARGUMENT, "vl_world_build: the def was not made by vl_default_build_def");
+  if (d.bits != VL_BITS_PORTABLE && d.bits != VL_BITS_FAST)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_world_build: no such kind of bits");
   vlResult r = vl_scene_result(scene, error);
   if (r != VL_OK) return r;
   if (scene->meshes_dropped)

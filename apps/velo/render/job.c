@@ -84,6 +84,7 @@ const Choice stereo_choices[] = {{"none", VL_STEREO_NONE},
                                  {"ods", VL_STEREO_OMNIDIRECTIONAL},
                                  {NULL, 0}};
 const Choice eye_choices[] = {{"both", VL_EYE_BOTH}, {"left", VL_EYE_LEFT}, {"right", VL_EYE_RIGHT}, {NULL, 0}};
+const Choice bits_choices[] = {{"portable", VL_BITS_PORTABLE}, {"fast", VL_BITS_FAST}, {NULL, 0}};
 const Choice isa_choices[] = {{"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {NULL, 0}};
 
 /* ---- overrides --------------------------------------------------------------------------------------------------- */
@@ -327,6 +328,7 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   if (status >= 0) return status;
   override_sampling(defs, arguments);
   if (v[RENDER_TIME].given) defs->render.time_limit = v[RENDER_TIME].number;
+  if (v[RENDER_BITS].given) defs->build.bits = (vlBits)v[RENDER_BITS].integer;
   if (v[RENDER_IMITATE_PBRT].given) defs->build.imitate_pbrt = true;
   return override_spectrum(defs, arguments);
 }

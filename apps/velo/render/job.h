@@ -37,6 +37,7 @@ enum {
   RENDER_LOG_JSON,
   RENDER_VERBOSE,
   RENDER_ISA,
+  RENDER_BITS,
   RENDER_CHANNELS,
   RENDER_CHANNELS_MODE,
   RENDER_CHANNELS_TIME,
@@ -64,7 +65,8 @@ enum {
 };
 
 extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[], sensor_choices[],
-    regularize_choices[], color_choices[], view_choices[], isa_choices[], stereo_choices[], eye_choices[];
+    regularize_choices[], color_choices[], view_choices[], isa_choices[], bits_choices[], stereo_choices[],
+    eye_choices[];
 
 extern const Option render_options[];
 

@@ -146,6 +146,10 @@ const Option render_options[] = {
      "instruction set, x86-64-...; default: the machine's best. The\n"
      "picture does not depend on it:",
      0, 0, isa_choices},
+    {RENDER_BITS, 0, "bits", OPTION_CHOICE, "NAME",
+     "portable: the same image on every machine (default); fast: a few\n"
+     "pixels may differ between machines, for less time:",
+     0, 0, bits_choices},
     {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "warn about what is not understood instead of refusing it",
      0, 0, NULL},
     {RENDER_IMITATE_PBRT, 0, "imitate-pbrt", OPTION_FLAG, NULL,

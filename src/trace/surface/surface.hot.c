@@ -128,6 +128,15 @@ static inline vlVec3 select3(bool which, vlVec3 a, vlVec3 b) {
   return vl_vec3(which ? a.x : b.x, which ? a.y : b.y, which ? a.z : b.z);
 }
 
+/* Times the power of two that brings the largest component between 1 and 2: the squares of cross products of tiny or
+ * huge triangles would leave float's range. Exact, so that what stays in range keeps its bits. */
+static inline vlVec3 near_one(vlVec3 v) {
+  float largest = vl_max(vl_max(vl_abs(v.x), vl_abs(v.y)), vl_abs(v.z));
+  uint32_t exponent = vl_float_bits(largest) & 0x7f800000u;
+  float scale = vl_bits_float(0x7f000000u - (exponent < 0x7e800000u ? exponent : 0x7e800000u));
+  return vl_mul(v, scale);
+}
+
 /* The point of a triangle that a ray meets. Barycentric coordinates are ratios of volumes spanned with the ray
  * (signs as in Woop et al. 2013); what falls outside by rounding is put on the edge. */
 static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, vlVec3 d, vlVec3 p0, vlVec3 p1,
@@ -148,7 +157,7 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   float ez = vl_abs(b0 * p0.z) + vl_abs(b1 * p1.z) + vl_abs(b2 * p2.z);
   vlVec3 e02 = vl_sub(p0, p2), e12 = vl_sub(p1, p2);
   vlVec3 cross = vl_cross(e02, e12);
-  vlVec3 g = vl_normalize(cross);
+  vlVec3 g = vl_normalize(near_one(cross));
   /* pbrt's bound of the point's error (book 6.8.3), projected on the normal; and the error of the distance that Embree
    * will find when it meets this triangle again from here: its plane stands on corner 0, its normal is rounded, so that
    * the error grows with the way from that corner. Both doubled. */

@@ -2,16 +2,23 @@
  * geometry intersected by surface_point.c. Alpha and interface surfaces are decided in filters, by a hash of ray and
  * primitive, so that the order of traversal does not matter. Inside instances Embree hands out the ray in the group's
  * space, by its own arithmetic, which differs between instruction sets: callbacks look the ray up in the world by its
- * id instead and move it themselves. */
+ * id instead and move it themselves.
+ *
+ * Portable bits (docs/decisions/0011-the-bits-of-embree.md): Embree runs a set without fused multiply-add, and a filter
+ * decides which of several hits is the nearest (nearest.h). */
 #include "world/accel/accel.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/error.h"
+#include "base/isa.h"
 #include "world/accel/bundle.h"
 #include "world/accel/local_ray.h"
+#include "world/accel/nearest.h"
+#include "world/shape/moving.h"
 #include "world/shape/surface_point.h"
 #include "world/world.h"
 
@@ -26,7 +33,19 @@
 
 /* Embree's accessors of packets of any size are C++ only; this is the layout that its manual gives: row k of N values.
  */
-enum { TNEAR = 3, TFAR = 8, ID = 10, PRIM = 5, GEOM = 6, INST = 7, HIT = 12 };
+enum {
+  ORIGIN = 0,
+  TNEAR = 3,
+  DIRECTION = 4,
+  TIME = 7,
+  TFAR = 8,
+  ID = 10,
+  NORMAL = 0,
+  PRIM = 5,
+  GEOM = 6,
+  INST = 7,
+  HIT = 12
+};
 static inline float *ray_row(void *ray, unsigned n, int row, unsigned i) {
   return (float *)ray + (size_t)row * n + i;
 }
@@ -57,7 +76,16 @@ typedef struct RTCIntersectContext EmbreeContext;
 typedef struct Query {
   EmbreeContext context; /* first: Embree hands back its address */
   const vlRays *rays;
+  vlNearest *nearest; /* of rays first, first + 1, ...; null: Embree's own choice counts */
+  uint32_t first;
 } Query;
+
+/* Offers a hit of the ray with this id. Returns the farthest t where hits still matter; negative: not taken. */
+static float offer(const EmbreeContext *context, unsigned id, float t, unsigned inst, unsigned geom, unsigned prim) {
+  const Query *q = (const Query *)(const void *)context;
+  if (!q->nearest) return t;
+  return vl_nearest_offer(q->nearest + (id - q->first), t, inst, geom, prim) ? t * VL_NEAREST_WINDOW : -1.0f;
+}
 
 static vlLocalRay local_ray(const vlWorld *world, const EmbreeContext *context, unsigned id, unsigned inst) {
   uint32_t instance = inst == RTC_INVALID_GEOMETRY_ID ? VL_NONE : inst - world->groups.items[0].count;
@@ -99,9 +127,29 @@ static bool filter_rejects(const AccelGeometry *g, const struct RTCFilterFunctio
   return g->shape->alpha >= 0 && vl_alpha_passes(g->world, g->shape, &r, prim, 0, &at);
 }
 
+/* Whether a hit is the nearest so far. */
+static bool is_nearest(const struct RTCFilterFunctionNArguments *args, unsigned i) {
+  if (!((const Query *)(const void *)args->context)->nearest) return true;
+  const vlWorldShape *s = ((const AccelGeometry *)args->geometryUserPtr)->shape;
+  unsigned n = args->N, prim = *hit_row(args->hit, n, PRIM, i);
+  float normal[3], o[3], d[3], room[3];
+  for (int k = 0; k < 3; k++) {
+    normal[k] = *ray_row(args->hit, n, NORMAL + k, i);
+    o[k] = *ray_row(args->ray, n, ORIGIN + k, i);
+    d[k] = *ray_row(args->ray, n, DIRECTION + k, i);
+  }
+  const float *corner = vl_vertex_at(s, s->indices[3 * (size_t)prim], *ray_row(args->ray, n, TIME, i), room);
+  float limit = offer(args->context, *hit_row(args->ray, n, ID, i), vl_plane_distance(corner, normal, o, d),
+                      *hit_row(args->hit, n, INST, i), *hit_row(args->hit, n, GEOM, i), prim);
+  if (limit < 0) return false;
+  *ray_row(args->ray, n, TFAR, i) = limit;
+  return true;
+}
+
 static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
   for (unsigned i = 0; i < args->N; i++)
-    if (args->valid[i] == -1 && filter_rejects(args->geometryUserPtr, args, i, false)) args->valid[i] = 0;
+    if (args->valid[i] == -1 && (filter_rejects(args->geometryUserPtr, args, i, false) || !is_nearest(args, i)))
+      args->valid[i] = 0;
 }
 
 static void filter_occluded(const struct RTCFilterFunctionNArguments *args) {
@@ -151,7 +199,10 @@ static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
   for (unsigned i = 0; i < args->N; i++) {
     double t;
     if (args->valid[i] != -1 || !user_hit(g, args->context, ray, args->N, i, args->primID, false, &t)) continue;
-    *ray_row(ray, args->N, TFAR, i) = (float)t;
+    float limit = offer(args->context, *hit_row(ray, args->N, ID, i), (float)t, args->context->instID[0], args->geomID,
+                        args->primID);
+    if (limit < 0) continue;
+    *ray_row(ray, args->N, TFAR, i) = limit;
     *hit_row(hit, args->N, GEOM, i) = args->geomID;
     *hit_row(hit, args->N, PRIM, i) = args->primID;
     *hit_row(hit, args->N, INST, i) = args->context->instID[0];
@@ -190,7 +241,8 @@ static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, Acce
       rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3, s->positions,
                                  12 * (size_t)k * s->vertices, 12, s->vertices);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s->indices, 0, 12, s->faces);
-    if (s->alpha >= 0 || s->one_sided) rtcSetGeometryIntersectFilterFunction(geometry, filter_closest);
+    if (s->alpha >= 0 || s->one_sided || g->world->def.bits == VL_BITS_PORTABLE)
+      rtcSetGeometryIntersectFilterFunction(geometry, filter_closest);
     if (s->alpha >= 0 || s->one_sided || s->pass_shadow)
       rtcSetGeometryOccludedFilterFunction(geometry, filter_occluded);
   } else {
@@ -224,10 +276,56 @@ static RTCScene new_scene(RTCDevice device) {
   return scene;
 }
 
+#if defined(__x86_64__)
+/* Embree's instruction sets; fused: with fused multiply-add, whose hits at edges differ from those without. */
+typedef struct EmbreeSet {
+  const char *name;
+  bool there, fused;
+} EmbreeSet;
+
+/* The set that is to be forced, null: Embree's own choice. Portable: the widest without fused multiply-add; the
+ * environment variable VELO_EMBREE overrides both. */
+static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
+  __builtin_cpu_init();
+  const EmbreeSet sets[] = {
+      {"sse4.2", true, false},
+      {"avx", __builtin_cpu_supports("avx"), false},
+      {"avx2", vl_isa_best() >= VL_ISA_V3, true},
+      {"avx512", vl_isa_best() >= VL_ISA_V4, true},
+  };
+  const char *wish = getenv("VELO_EMBREE");
+  *name = NULL;
+  if (!wish || !*wish) {
+    if (bits == VL_BITS_PORTABLE) *name = sets[sets[1].there ? 1 : 0].name;
+    return VL_OK;
+  }
+  for (size_t k = 0; k < sizeof sets / sizeof *sets; k++) {
+    if (strcmp(wish, sets[k].name) != 0) continue;
+    if (!sets[k].there)
+      return vl_fail(error, VL_ERROR_UNSUPPORTED, "VELO_EMBREE=%s: this machine does not have it", wish);
+    if (sets[k].fused && bits == VL_BITS_PORTABLE)
+      return vl_fail(error, VL_ERROR_UNSUPPORTED, "VELO_EMBREE=%s: portable bits need sse4.2 or avx", wish);
+    *name = sets[k].name;
+    return VL_OK;
+  }
+  return vl_fail(error, VL_ERROR_ARGUMENT, "VELO_EMBREE=%s: not one of sse4.2, avx, avx2, avx512", wish);
+}
+#else
+static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
+  (void)bits, (void)error;
+  *name = NULL;
+  return VL_OK;
+}
+#endif
+
 vlResult vl_accel_build(vlWorld *world, vlError *error) {
   vlAccel *a = &world->accel;
   char config[64];
-  snprintf(config, sizeof config, "threads=%u", vl_context_threads(world->context));
+  const char *set;
+  vlResult chosen = choose_set(world->def.bits, &set, error);
+  if (chosen != VL_OK) return chosen;
+  snprintf(config, sizeof config, "threads=%u%s%s", vl_context_threads(world->context), set ? ",isa=" : "",
+           set ? set : "");
   RTCDevice device = rtcNewDevice(config);
   if (!device)
     return vl_fail(error, VL_ERROR_MEMORY, "Embree gives no device (error %d)", (int)rtcGetDeviceError(NULL));
@@ -288,7 +386,7 @@ void vl_accel_destroy(vlContext *context, vlAccel *a) {
 #define BEGIN_QUERY(query, r, coherent)                                                               \
   Query query;                                                                                        \
   rtcInitRayQueryContext(&query.context);                                                             \
-  query.rays = (r);                                                                                   \
+  query.rays = (r), query.nearest = NULL, query.first = 0;                                            \
   struct RTCIntersectArguments closest_arguments;                                                     \
   rtcInitIntersectArguments(&closest_arguments);                                                      \
   closest_arguments.context = &query.context;                                                         \
@@ -301,10 +399,10 @@ void vl_accel_destroy(vlContext *context, vlAccel *a) {
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), (ray), &any_arguments)
 #define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), (ray), &closest_arguments)
 #else
-#define BEGIN_QUERY(query, r, coherent)    \
-  Query query;                             \
-  rtcInitIntersectContext(&query.context); \
-  query.rays = (r);                        \
+#define BEGIN_QUERY(query, r, coherent)                    \
+  Query query;                                             \
+  rtcInitIntersectContext(&query.context);                 \
+  query.rays = (r), query.nearest = NULL, query.first = 0; \
   query.context.flags = (coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), &query.context, (ray))
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), &query.context, (ray))
@@ -332,7 +430,11 @@ static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsign
 static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32_t *shape, uint32_t *prim,
                        uint32_t *instance, float *t) {
   BEGIN_QUERY(query, r, true);
+  vlNearest nearest[16];
+  if (world->def.bits == VL_BITS_PORTABLE) query.nearest = nearest;
   for (uint32_t first = 0; first < n; first += 16) {
+    query.first = first;
+    for (uint32_t k = 0; k < 16; k++) nearest[k].t = INFINITY;
     struct RTCRayHit16 q;
     int valid[16] __attribute__((aligned(64)));
     for (uint32_t k = 0; k < 16; k++) {
@@ -350,7 +452,7 @@ static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32
       q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
     INTERSECT16(valid, world->accel.scene, &q);
-    for (uint32_t k = 0; k < 16 && first + k < n; k++) t[first + k] = q.ray.tfar[k];
+    for (uint32_t k = 0; k < 16 && first + k < n; k++) t[first + k] = query.nearest ? nearest[k].t : q.ray.tfar[k];
     for (uint32_t k = 0; k < 16 && first + k < n; k++)
       store_ids(world, q.hit.geomID[k], q.hit.primID[k], q.hit.instID[0][k], &shape[first + k], &prim[first + k],
                 &instance[first + k]);
@@ -373,13 +475,17 @@ void vl_accel_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool
     return;
   }
   BEGIN_QUERY(query, rays, false);
+  vlNearest nearest;
+  if (world->def.bits == VL_BITS_PORTABLE) query.nearest = &nearest;
   for (uint32_t i = 0; i < n; i++) {
+    query.first = i;
+    nearest.t = INFINITY;
     struct RTCRayHit q;
     fill_ray(&q.ray, rays, i);
     q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     INTERSECT1(world->accel.scene, &q);
-    t[i] = q.ray.tfar;
+    t[i] = query.nearest ? nearest.t : q.ray.tfar;
     store_ids(world, q.hit.geomID, q.hit.primID, q.hit.instID[0], &shape[i], &prim[i], &instance[i]);
   }
 }

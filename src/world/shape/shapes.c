@@ -264,18 +264,57 @@ static vlResult check_reach(const float low[3], const float high[3], const vlSou
   return VL_OK;
 }
 
+/* Below these edges distances of near hits, a length times an area, are flushed to zero in Embree, and a triangle hides
+ * light from itself: an offset of 6e-7 edges times twice the area must stay above 2^-126 (docs/conventions.md). */
+#define SMALLEST_EDGE 1e-10f
+
+/* Warns of the first shape whose triangles are too small, by a guess from its box. */
+static void check_edges(const vlWorld *world, const float low[3], const float high[3], uint64_t triangles,
+                        const vlSource *source, bool *warned) {
+  if (*warned || triangles == 0 || !(low[0] <= high[0])) return;
+  float extent = fmaxf(fmaxf(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+  float edge = extent / sqrtf(fmaxf(0.5f * (float)triangles, 1.0f));
+  if (!(edge < SMALLEST_EDGE) || extent == 0) return;
+  vlError where;
+  vl_fail_at(&where, VL_ERROR_SCENE, source->file, source->line, source->column, " ");
+  vl_log(world->context, VL_LOG_WARNING, &where,
+         "triangles of about %.2g: edges below %g may hide light from themselves; use a smaller unit of length",
+         (double)edge, (double)SMALLEST_EDGE);
+  *warned = true;
+}
+
+static uint64_t group_triangles(const vlWorld *world, const vlWorldGroup *group) {
+  uint64_t sum = 0;
+  for (uint32_t i = 0; i < group->count; i++) {
+    const vlWorldShape *s = &world->shapes.items[group->shapes[i]];
+    if (s->kind == VL_SHAPE_TRIANGLES) sum += s->faces;
+  }
+  return sum;
+}
+
 static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *error) {
   float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   const vlWorldGroup *root = &world->groups.items[0];
+  bool warned = false;
   for (uint32_t i = 0; i < root->count; i++) {
-    shape_bounds(&world->shapes.items[root->shapes[i]], low, high);
-    vlResult r = check_reach(low, high, &scene->shapes.items[root->shapes[i]].source, error);
+    const vlWorldShape *s = &world->shapes.items[root->shapes[i]];
+    const vlSource *source = &scene->shapes.items[root->shapes[i]].source;
+    float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
+    shape_bounds(s, a, b);
+    check_edges(world, a, b, s->kind == VL_SHAPE_TRIANGLES ? s->faces : 0, source, &warned);
+    if (a[0] <= b[0]) grow_bounds(low, high, a), grow_bounds(low, high, b);
+    vlResult r = check_reach(low, high, source, error);
     if (r != VL_OK) return r;
   }
   for (size_t i = 0, k = 0; k < world->instances.count; i++) {
     if (world->groups.items[scene->instances.items[i].group.index].count == 0) continue;
-    instance_bounds(world, &world->instances.items[k++], low, high);
-    vlResult r = check_reach(low, high, &scene->instances.items[i].source, error);
+    const vlSource *source = &scene->instances.items[i].source;
+    const vlWorldInstance *instance = &world->instances.items[k++];
+    float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
+    instance_bounds(world, instance, a, b);
+    check_edges(world, a, b, group_triangles(world, &world->groups.items[instance->group]), source, &warned);
+    if (a[0] <= b[0]) grow_bounds(low, high, a), grow_bounds(low, high, b);
+    vlResult r = check_reach(low, high, source, error);
     if (r != VL_OK) return r;
   }
   for (int i = 0; i < 3; i++) {

@@ -23,7 +23,8 @@ typedef struct vlWorldShape {
   uint32_t material;    /* index into materials */
   uint32_t first_light; /* light of prim 0; prim i has first_light + i; VL_NONE */
   int32_t alpha;        /* texture node, -1: opaque */
-  bool flip;            /* the geometric normal of face order is to be flipped (reverse orientation xor mirrored) */
+  bool flip;            /* reverse orientation xor the shape's own transform mirrors: turns a triangle's or patch's normal
+                         * of face order in group space, and a quadric's or curve's dpdu x dpdv of shape space */
   bool pass_shadow;     /* interface material: shadow rays pass */
   uint32_t inside,
       outside; /* media on both sides (the geometric normal's is outside), VL_NONE: vacuum; equal: no change */

@@ -160,12 +160,12 @@ static void sides(void **state) {
       def.emission = add_glow(&s, 2, two_sided);
       def.reverse_orientation = reverse;
       /* Normals of the flat ones point to the camera, of the round ones away from it. A mirror (x to -x) turns over
-       * triangles' order, and pbrt turns it back; normals of the round ones stay outside. */
+       * triangles' order, and pbrt turns it back; normals of quadrics stay outside, and pbrt turns them. */
       set_matrix(def.group_from_shape, mirrored ? -1 : 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -2);
       if (kind == 4) set_matrix(def.group_from_shape, mirrored ? -1 : 1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, -2);
       vl_scene_add_shape(s.scene, &def);
       Picture q = stage_finish(&s);
-      bool lit = two_sided || (reverse != (kind < 3));
+      bool lit = two_sided || (reverse != (kind < 3)) != (kind > 1 && mirrored);
       char what[64];
       snprintf(what, sizeof what, "kind %d, mode %d", kind, mode);
       assert_near(what, picture_mean(&q, 1), lit ? 2 : 0, 2e-2);

@@ -224,7 +224,7 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
   if (whole_sphere(s, &center, &radius)) {
     vlVec3 to = vl_sub(center, from);
     if (vl_length2(to) > radius * radius * 1.0001f) {
-      Sample r = sample_cone(center, radius, vl_shape_reversed(s), from, u, v);
+      Sample r = sample_cone(center, radius, s->flip, from, u, v);
       if (with_uv) { /* uv by way of the shape */
         vlShapeHit hit = {.t = 0};
         vlSurfacePoint point;

@@ -35,9 +35,6 @@ static inline void vl_normal_derivative(const double n[3], double length, double
   double along = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
   for (int i = 0; i < 3; i++) d[i] = length > 0 ? (d[i] - along * n[i]) / length : 0;
 }
-/* Does the outward normal of a sphere, disk or cylinder point inwards: reverse orientation alone, see surface_point.c.
- */
-bool vl_shape_reversed(const vlWorldShape *shape);
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point);
 
 /* A point spread uniformly over the parameters, with its density per unit area in group space. */

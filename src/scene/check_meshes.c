@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "math/transform.h"
 #include "scene/body.h"
 #include "scene/check.h"
 

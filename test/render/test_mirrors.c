@@ -135,12 +135,8 @@ static void off(const Scene *s, double h, double at[3]) {
 }
 
 /* extra: before the shape, of the world; attributes: of the shape. */
-static double shoot(const Scene *s, const double eye[3], const double to[3], const char *extra, const char *attributes,
-                    uint32_t spp, uint32_t depth) {
-  char path[] = "/tmp/velo-mirrors-XXXXXX.pbrt";
-  int file = mkstemps(path, 5);
-  assert_true(file >= 0);
-  FILE *f = fdopen(file, "w");
+static void put_scene(FILE *f, const Scene *s, const double eye[3], const double to[3], const char *extra,
+                      const char *attributes) {
   bool group = s->place == INSTANCE || s->place == OWN_IN_INSTANCE || s->place == OWN_IN_MOVING;
   fprintf(f, "LookAt %.9g %.9g %.9g %.9g %.9g %.9g .31 .82 .47\nCamera \"perspective\" \"float fov\" 2\n", eye[0],
           eye[1], eye[2], to[0], to[1], to[2]);
@@ -162,12 +158,13 @@ static double shoot(const Scene *s, const double eye[3], const double to[3], con
   else
     fprintf(f, "Shape %s\n", s->kind->shape);
   fprintf(f, "AttributeEnd\n");
-  fclose(f);
+}
+
+static double shoot_file(const char *path, uint32_t spp, uint32_t depth) {
   Stage stage = stage_open(2, 2);
   vlError error;
   memset(&error, 0, sizeof error);
-  if (vl_scene_load(stage.scene, path, NULL, &error) != VL_OK) fail_msg("%s: %s", s->kind->shape, error.message);
-  unlink(path);
+  if (vl_scene_load(stage.scene, path, NULL, &error) != VL_OK) fail_msg("%s: %s", path, error.message);
   stage.camera = vl_scene_settings(stage.scene)->camera;
   stage.camera.width = stage.camera.height = 2;
   stage.build.color = VL_COLOR_RGB;
@@ -176,6 +173,23 @@ static double shoot(const Scene *s, const double eye[3], const double to[3], con
   Picture q = stage_finish(&stage);
   double mean = picture_mean(&q, 1);
   picture_free(&q);
+  return mean;
+}
+
+static FILE *open_file(char *path) {
+  int file = mkstemps(path, 5);
+  assert_true(file >= 0);
+  return fdopen(file, "w");
+}
+
+static double shoot(const Scene *s, const double eye[3], const double to[3], const char *extra, const char *attributes,
+                    uint32_t spp, uint32_t depth) {
+  char path[] = "/tmp/velo-mirrors-XXXXXX.pbrt";
+  FILE *f = open_file(path);
+  put_scene(f, s, eye, to, extra, attributes);
+  fclose(f);
+  double mean = shoot_file(path, spp, depth);
+  unlink(path);
   return mean;
 }
 

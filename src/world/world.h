@@ -158,6 +158,7 @@ typedef struct vlWorldLight {
   bool cone_squared;        /* between them t^2; else smooth */
   uint32_t environment;     /* infinite with a picture: index; VL_NONE: uniform */
   float power;              /* for choosing: watts-like, luminance */
+  bool outer_side;          /* an invisible whole sphere: light's paths set out from its outside alone, see light.hot.c */
   bool invisible;           /* area, of coverage 0 throughout: no ray meets it, it shines all the same (as pbrt's) */
   uint32_t picture;         /* goniometric, projection: image; corners hold the map from world directions to theirs */
   float slide[2];           /* projection: half its sides at distance 1 */

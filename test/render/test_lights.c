@@ -438,6 +438,43 @@ static void invisible_light(void **state) {
   assert_ratio("invisible light", mean[1], mean[0], 5e-3);
 }
 
+/* A whole sphere of coverage 0: from outside its near side lights the floor, whether it shines inwards, too, or not;
+ * one that shines inwards alone lights what is in it. All ways to find the light agree. */
+static void invisible_sphere(void **state) {
+  (void)state;
+  static const vlTracer tracers[] = {VL_TRACER_PATH, VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL, VL_TRACER_LIGHT_PATH};
+  for (int around = 0; around < 2; around++)
+    for (int kind = 0; kind < 4; kind++)
+      for (size_t t = 0; t < sizeof tracers / sizeof tracers[0]; t++) {
+        bool two_sided = kind & 1, reverse = kind & 2;
+        if (around && tracers[t] == VL_TRACER_LIGHT_PATH) continue; /* its paths set out from the outside */
+        Stage s = floor_stage(false);
+        s.render.spp = 256;
+        s.camera.projection =
+            VL_PROJECTION_PERSPECTIVE; /* the same view; light's paths do not find orthographic eyes */
+        s.camera.eye[2] = 3;
+        s.camera.fov = 2 * atan(1.0 / 3);
+        s.render.tracer = tracers[t];
+        vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
+        set_matrix(def.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, around ? 0 : 1);
+        def.radius = around ? 30 : 0.5f, def.z_min = -def.radius, def.z_max = def.radius;
+        def.alpha = vl_float_input(0);
+        def.emission = add_glow(&s, 1, two_sided);
+        def.reverse_orientation = reverse;
+        vl_scene_add_shape(s.scene, &def);
+        Picture p = stage_finish(&s);
+        bool lit = two_sided || reverse == (around == 1);
+        double mean = 0; /* of what a sphere sends to a plane: pi r^2 h / d^3 */
+        for (uint32_t i = 0; i < SIZE * SIZE; i++)
+          mean += 0.25 * pow(1 + pow(at_x(i % SIZE), 2) + pow(at_y(i / SIZE), 2), -1.5) / (SIZE * SIZE);
+        char what[64];
+        snprintf(what, sizeof what, "invisible sphere %d, kind %d, tracer %d", around, kind, (int)tracers[t]);
+        double expected = lit ? 0.5 * (around ? 1 : mean) : 0;
+        assert_near(what, picture_mean(&p, 1), expected, (tracers[t] == VL_TRACER_LIGHT_PATH ? 0.1 : 0.02) * expected);
+        picture_free(&p);
+      }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(point_and_spot),
@@ -454,6 +491,7 @@ int main(void) {
       cmocka_unit_test(light_samplers_agree),
       cmocka_unit_test(sheared_sphere_light),
       cmocka_unit_test(invisible_light),
+      cmocka_unit_test(invisible_sphere),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -361,6 +361,9 @@ static vlResult add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t 
     light->area = area;
     light->invisible = shape->alpha >= 0 && world->nodes.items[shape->alpha].kind == VL_NODE_FLOAT &&
                        world->nodes.items[shape->alpha].value == 0;
+    vlVec3 center;
+    float radius;
+    light->outer_side = light->invisible && vl_whole_sphere(shape, &center, &radius);
     light->environment = VL_NONE;
     float l = e->image >= 0 ? e->image_scale * mean_image_luminance(world->images.items[e->image].mipmap) * own : own;
     if (e->node && shape->kind == VL_SHAPE_TRIANGLES) l = face_luminance(world, shape, i, e) * own;

@@ -102,7 +102,8 @@ static void quadric_derivatives(const vlWorldShape *s, const double p[3], double
 }
 
 /* dpdu x dpdv in shape space. The map to group space (inverse transpose) keeps it outside whatever the handedness; flip
- * (reverse orientation xor mirrored) turns it afterwards, as in pbrt: a mirrored sphere alone has its normals inside. */
+ * (reverse orientation xor mirrored) turns it afterwards, as in pbrt: a mirrored sphere alone has its normals inside.
+ */
 static void quadric_normal(const vlWorldShape *s, const double p[3], double n[3]) {
   n[0] = s->kind == VL_SHAPE_DISK ? 0 : p[0] / s->radius;
   n[1] = s->kind == VL_SHAPE_DISK ? 0 : p[1] / s->radius;

@@ -37,6 +37,23 @@ static inline void vl_normal_derivative(const double n[3], double length, double
 }
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point);
 
+/* Centre and radius of a whole sphere under a similarity, in group space; else false. */
+static inline bool vl_whole_sphere(const vlWorldShape *s, vlVec3 *center, float *radius) {
+  if (s->kind != VL_SHAPE_SPHERE || s->z_min > -s->radius || s->z_max < s->radius || s->phi_max < 6.2831f) return false;
+  const double *m = s->from_shape;
+  double l[3];
+  for (int i = 0; i < 3; i++) l[i] = m[i] * m[i] + m[4 + i] * m[4 + i] + m[8 + i] * m[8 + i];
+  if (l[1] > l[0] * 1.0001 || l[1] < l[0] * 0.9999 || l[2] > l[0] * 1.0001 || l[2] < l[0] * 0.9999) return false;
+  for (int i = 0; i < 3; i++) { /* no shear: the axes stay at right angles */
+    int j = (i + 1) % 3;
+    double skew = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
+    if (skew > l[0] * 0.0001 || skew < -l[0] * 0.0001) return false;
+  }
+  *center = vl_vec3((float)m[3], (float)m[7], (float)m[11]);
+  *radius = s->radius * (float)__builtin_sqrt(l[0]);
+  return true;
+}
+
 /* A point spread uniformly over the parameters, with its density per unit area in group space. */
 void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf);
 /* The density that vl_shape_sample gives to a point already found. */

@@ -21,7 +21,7 @@
 typedef struct vlWorldShape {
   vlShapeKind kind;
   uint32_t material;    /* index into materials */
-  uint32_t first_light; /* light of prim 0; prim i has first_light + i; VL_NONE */
+  uint32_t first_light; /* VL_NONE: no light; else see vl_shape_light */
   int32_t alpha;        /* texture node, -1: opaque */
   bool flip;            /* reverse orientation xor the shape's own transform mirrors: turns a triangle's or patch's normal
                          * of face order in group space, and a quadric's or curve's dpdu x dpdv of shape space */
@@ -34,6 +34,7 @@ typedef struct vlWorldShape {
   uint32_t *indices;
   /* Triangles, may be null: bitangent = sign n x tangent; uv sets 1 to 3; 4 a vertex; uvs of the emission's picture */
   float *tangent_signs, *more_uvs[3], *colors, *glow_uvs;
+  uint32_t *light_of; /* by prim, VL_NONE: none; null: prim i is light first_light + i */
   bool one_sided; /* rays pass through from behind */
   uint32_t steps; /* of positions and normals, one set after the other, evenly over the world's time; 1: at rest */
   /* sphere, disk, cylinder: parameters as in vlShapeDef, and the affine maps, row-major 3x4 */
@@ -44,6 +45,12 @@ typedef struct vlWorldShape {
   float *widths;
   double from_shape[12], to_shape[12]; /* group space <-> shape space */
 } vlWorldShape;
+
+/* The light that a prim is, or VL_NONE. */
+static inline uint32_t vl_shape_light(const vlWorldShape *s, uint32_t prim) {
+  if (s->first_light == VL_NONE) return VL_NONE;
+  return s->light_of ? s->light_of[prim] : s->first_light + prim;
+}
 
 typedef struct vlWorldGroup {
   uint32_t *shapes; /* world shape index of each Embree geometry id */

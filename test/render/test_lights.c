@@ -475,6 +475,72 @@ static void invisible_sphere(void **state) {
       }
 }
 
+/* A ceiling of 8 x 8 cells of two triangles over 2 x 2 repeats of a 32 x 32 picture, black but for the texels of `lit`
+ * (x, y, width, height), which are 1; dim: of the black ones. Lights: how many faces became some. */
+static Picture shining_ceiling(const uint32_t lit[4], float dim, vlTextureFilter filter, uint64_t *lights) {
+  enum { CELLS = 8, SIDE = 32 };
+  static float p[3 * (CELLS + 1) * (CELLS + 1)], uv[2 * (CELLS + 1) * (CELLS + 1)], rgb[3 * SIDE * SIDE];
+  static uint32_t f[6 * CELLS * CELLS];
+  Stage s = floor_stage(false);
+  s.render.spp = 256;
+  size_t n = 0;
+  for (uint32_t j = 0; j <= CELLS; j++)
+    for (uint32_t i = 0; i <= CELLS; i++) {
+      size_t k = j * (CELLS + 1) + i;
+      p[3 * k] = (float)i / CELLS - 0.5f, p[3 * k + 1] = (float)j / CELLS - 0.5f, p[3 * k + 2] = 1;
+      uv[2 * k] = 2.0f * (float)i / CELLS, uv[2 * k + 1] = 2.0f * (float)j / CELLS;
+      if (i == CELLS || j == CELLS) continue;
+      uint32_t a = (uint32_t)k, b = a + CELLS + 1;
+      const uint32_t two[6] = {a, b, a + 1, a + 1, b, b + 1};
+      for (int c = 0; c < 6; c++) f[n++] = two[c];
+    }
+  for (uint32_t k = 0; k < SIDE * SIDE; k++) {
+    uint32_t x = k % SIDE, y = k / SIDE;
+    bool on = x >= lit[0] && x < lit[0] + lit[2] && y >= lit[1] && y < lit[1] + lit[3];
+    for (int c = 0; c < 3; c++) rgb[3 * k + (uint32_t)c] = on ? 1 : dim;
+  }
+  vlTextureDef picture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+  vlImage *image = make_image(&s, SIDE, SIDE, rgb);
+  picture.image = image, picture.filter = filter;
+  vlEmissionDef glow = vl_default_emission_def();
+  glow.texture = vl_scene_add_texture(s.scene, &picture);
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.vertices = (CELLS + 1) * (CELLS + 1), def.faces = 2 * CELLS * CELLS;
+  def.positions = p, def.uvs = uv, def.indices = f;
+  def.emission = vl_scene_add_emission(s.scene, &glow);
+  vl_scene_add_shape(s.scene, &def);
+  vl_image_destroy(image);
+  vlWorld *world;
+  vlWorldInfo info;
+  assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_OK);
+  vl_world_info(world, &info);
+  *lights = info.lights;
+  vl_world_destroy(world);
+  return stage_finish(&s);
+}
+
+/* Faces over black texels are no lights, and what the others send is found as if all were. */
+static void black_faces_are_no_lights(void **state) {
+  (void)state;
+  /* A cell is 8 texels wide, each texel stands in 4 cells. How many of the 128 triangles it touches, by hand: one amid
+   * the lower left triangle of a cell; two on the diagonal; all; none; one at a cell's left side, to which bilinear
+   * lookups come from the next cell, too (of the next repeat, at the picture's edge). */
+  static const struct {
+    uint32_t lit[4], faces;
+  } cases[] = {{{1, 28, 1, 1}, 4}, {{3, 28, 2, 1}, 8}, {{0, 0, 32, 32}, 128}, {{0, 0, 0, 0}, 0}, {{0, 28, 1, 1}, 8}};
+  for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++)
+    for (int filter = 0; filter < 2; filter++) {
+      uint64_t few, all;
+      vlTextureFilter kind = filter ? VL_FILTER_BILINEAR : VL_FILTER_POINT;
+      Picture a = shining_ceiling(cases[k].lit, 0, kind, &few), b = shining_ceiling(cases[k].lit, 1e-9f, kind, &all);
+      assert_int_equal(all, 128);
+      assert_int_equal(few, cases[k].faces);
+      assert_near("light of a few faces", picture_mean(&a, 1), picture_mean(&b, 1), 0.02 * picture_mean(&b, 1));
+      assert_true(few == 0 || picture_mean(&a, 1) > 1e-5);
+      picture_free(&a), picture_free(&b);
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(point_and_spot),
@@ -492,6 +558,7 @@ int main(void) {
       cmocka_unit_test(sheared_sphere_light),
       cmocka_unit_test(invisible_light),
       cmocka_unit_test(invisible_sphere),
+      cmocka_unit_test(black_faces_are_no_lights),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

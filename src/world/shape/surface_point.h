@@ -37,10 +37,8 @@ static inline void vl_normal_derivative(const double n[3], double length, double
 }
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point);
 
-/* Centre and radius of a whole sphere under a similarity, in group space; else false. */
-static inline bool vl_whole_sphere(const vlWorldShape *s, vlVec3 *center, float *radius) {
-  if (s->kind != VL_SHAPE_SPHERE || s->z_min > -s->radius || s->z_max < s->radius || s->phi_max < 6.2831f) return false;
-  const double *m = s->from_shape;
+/* Does the map keep angles? *scale: how much longer lengths become. */
+static inline bool vl_is_similarity(const double m[12], double *scale) {
   double l[3];
   for (int i = 0; i < 3; i++) l[i] = m[i] * m[i] + m[4 + i] * m[4 + i] + m[8 + i] * m[8 + i];
   if (l[1] > l[0] * 1.0001 || l[1] < l[0] * 0.9999 || l[2] > l[0] * 1.0001 || l[2] < l[0] * 0.9999) return false;
@@ -49,8 +47,19 @@ static inline bool vl_whole_sphere(const vlWorldShape *s, vlVec3 *center, float 
     double skew = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
     if (skew > l[0] * 0.0001 || skew < -l[0] * 0.0001) return false;
   }
+  *scale = __builtin_sqrt(l[0]);
+  return true;
+}
+
+/* Centre and radius of a whole sphere under a similarity, in group space; else false. */
+static inline bool vl_whole_sphere(const vlWorldShape *s, vlVec3 *center, float *radius) {
+  const double *m = s->from_shape;
+  double scale;
+  if (s->kind != VL_SHAPE_SPHERE || s->z_min > -s->radius || s->z_max < s->radius || s->phi_max < 6.2831f ||
+      !vl_is_similarity(m, &scale))
+    return false;
   *center = vl_vec3((float)m[3], (float)m[7], (float)m[11]);
-  *radius = s->radius * (float)__builtin_sqrt(l[0]);
+  *radius = s->radius * (float)scale;
   return true;
 }
 

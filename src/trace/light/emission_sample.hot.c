@@ -48,8 +48,8 @@ static float point_density(const vlWorld *world, const vlWorldLight *light, vlVe
 /* Pictures of the sky have a density that leaves out what is dim (other ways find that better): half of the light's
  * paths go by it, half from anywhere. */
 static float sky_density(const vlWorld *world, const vlWorldLight *light, vlVec3 w) {
-  float pdf = VL_HOT(vl_infinite_pdf)(world, light, vl_vec3(0, 0, 0), w);
-  return light->environment == VL_NONE ? pdf : 0.5f * (pdf + VL_INV_4PI);
+  if (light->environment == VL_NONE) return VL_INV_4PI;
+  return 0.5f * (VL_HOT(vl_infinite_pdf)(world, light, vl_vec3(0, 0, 0), w) + VL_INV_4PI);
 }
 
 static const vlPortal *portal_of(const vlWorld *world, const vlWorldLight *light) {

@@ -58,7 +58,7 @@ void VL_HOT(vl_infinite_at)(const vlWorld *world, const vlWorldLight *light, vlV
 }
 
 float VL_HOT(vl_infinite_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d) {
-  if (light->environment == VL_NONE) return 0.25f * VL_INV_PI;
+  if (light->environment == VL_NONE) return world->def.imitate_pbrt ? 0.0f : 0.25f * VL_INV_PI;
   const vlEnvironment *env = &world->environments.items[light->environment];
   vlPortalWindow window;
   if (env->portal)
@@ -323,6 +323,7 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
     case VL_WL_INFINITE: {
       out->distant[i] = 1;
       if (light->environment == VL_NONE) {
+        if (world->def.imitate_pbrt) return; /* pbrt-v4 leaves a uniform sky to the BSDF's samples */
         w = vl_warp_sphere(u, v);
         pdf = 0.25f * VL_INV_PI;
         VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, true, radiance);

@@ -23,9 +23,9 @@ typedef struct vlWorldShape {
   uint32_t material;    /* index into materials */
   uint32_t first_light; /* VL_NONE: no light; else see vl_shape_light */
   int32_t alpha;        /* texture node, -1: opaque */
-  bool flip;            /* reverse orientation xor the shape's own transform mirrors: turns a triangle's or patch's normal
-                         * of face order in group space, and a quadric's or curve's dpdu x dpdv of shape space */
-  bool pass_shadow;     /* interface material: shadow rays pass */
+  bool flip;        /* reverse orientation xor the shape's own transform mirrors: turns a triangle's or patch's normal
+                     * of face order in group space, and a quadric's or curve's dpdu x dpdv of shape space */
+  bool pass_shadow; /* interface material: shadow rays pass */
   uint32_t inside,
       outside; /* media on both sides (the geometric normal's is outside), VL_NONE: vacuum; equal: no change */
   /* triangles (3 indices a face) and bilinear patches (4): positions end in 16 spare bytes for Embree */
@@ -35,8 +35,8 @@ typedef struct vlWorldShape {
   /* Triangles, may be null: bitangent = sign n x tangent; uv sets 1 to 3; 4 a vertex; uvs of the emission's picture */
   float *tangent_signs, *more_uvs[3], *colors, *glow_uvs;
   uint32_t *light_of; /* by prim, VL_NONE: none; null: prim i is light first_light + i */
-  bool one_sided; /* rays pass through from behind */
-  uint32_t steps; /* of positions and normals, one set after the other, evenly over the world's time; 1: at rest */
+  bool one_sided;     /* rays pass through from behind */
+  uint32_t steps;     /* of positions and normals, one set after the other, evenly over the world's time; 1: at rest */
   /* sphere, disk, cylinder: parameters as in vlShapeDef, and the affine maps, row-major 3x4 */
   float radius, inner_radius, z_min, z_max, phi_max, height;
   /* curves: 4 points and 2 widths a segment, ribbons 2 normals, all in shape space; a prim is a piece of a segment */
@@ -165,12 +165,12 @@ typedef struct vlWorldLight {
   bool cone_squared;        /* between them t^2; else smooth */
   uint32_t environment;     /* infinite with a picture: index; VL_NONE: uniform */
   float power;              /* for choosing: watts-like, luminance */
-  bool outer_side;          /* an invisible whole sphere: light's paths set out from its outside alone, see light.hot.c */
-  bool invisible;           /* area, of coverage 0 throughout: no ray meets it, it shines all the same (as pbrt's) */
-  uint32_t picture;         /* goniometric, projection: image; corners hold the map from world directions to theirs */
-  float slide[2];           /* projection: half its sides at distance 1 */
-  float corners[9];         /* area, triangle: its corners, and */
-  bool one_sided_normals;   /* direction is the normal to the lit side all over it */
+  bool outer_side;        /* an invisible whole sphere: light's paths set out from its outside alone, see light.hot.c */
+  bool invisible;         /* area, of coverage 0 throughout: no ray meets it, it shines all the same (as pbrt's) */
+  uint32_t picture;       /* goniometric, projection: image; corners hold the map from world directions to theirs */
+  float slide[2];         /* projection: half its sides at distance 1 */
+  float corners[9];       /* area, triangle: its corners, and */
+  bool one_sided_normals; /* direction is the normal to the lit side all over it */
 } vlWorldLight;
 
 /* A picture of the sky in pbrt's equal-area octahedral square, with a distribution over its texels. */

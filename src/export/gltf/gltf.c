@@ -134,8 +134,8 @@ static bool put_attributes(vlExport *x, const vlExportMesh *m, json_t *attribute
   return true;
 }
 
-/* Do the normals that vl_export_mesh makes turn over? A mirroring transform turns those of spheres, disks and cylinders,
- * too (velo/scene.h); glTF's nodes never do. */
+/* Do the normals that vl_export_mesh makes turn over? A mirroring transform turns those of spheres, disks and
+ * cylinders, too (velo/scene.h); glTF's nodes never do. */
 static bool is_turned(const vlShapeDef *d) {
   bool quadric = d->kind == VL_SHAPE_SPHERE || d->kind == VL_SHAPE_DISK || d->kind == VL_SHAPE_CYLINDER;
   return d->reverse_orientation != (quadric && vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0);

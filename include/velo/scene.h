@@ -378,10 +378,15 @@ typedef struct vlShapeDef {
   vlShapeKind kind;
   vlGroupId group;             /* 0: the world; else part of a group that instances place */
   double group_from_shape[16]; /* shape space to group (or world) space */
-  bool reverse_orientation;    /* pbrt's: flips the normal; also flipped where the transform mirrors */
-  vlMaterialId material;       /* 0: a default diffuse 0.5 */
-  vlFloatInput alpha;          /* coverage; value 1: opaque */
-  vlEmissionId emission;       /* 0: none */
+  /* pbrt-v4's rule for the side of normals: dpdu x dpdv (of a triangle: by the order of its corners) in shape space
+   * goes by the inverse transpose to group space, and is flipped there if reverse_orientation differs from
+   * "group_from_shape mirrors". So a mirrored mesh keeps its outside, but a sphere, disk, cylinder or curve under a
+   * mirroring group_from_shape turns its normals over. Instances never flip: the side goes with the shape. Vertex
+   * normals decide where there are some; only reverse_orientation turns them. */
+  bool reverse_orientation;
+  vlMaterialId material; /* 0: a default diffuse 0.5 */
+  vlFloatInput alpha;    /* coverage; value 1: opaque */
+  vlEmissionId emission; /* 0: none */
   /* Media on both sides; the normal points to the outside. Equal ones (so nothing at all, too) say that the shape lies
    * in whatever medium is there. */
   vlMediumId inside, outside;

@@ -42,6 +42,7 @@ void vl_blades_points(const vlBlades *blades, uint32_t n, const float *u, const 
 struct vlAperture {
   vlContext *context;
   uint32_t width, height;
+  double reach2;  /* square of vl_aperture_reach */
   float *values;  /* scaled: their mean is pi / 4 */
   float *rows;    /* height + 1: share of the light above each row's upper edge */
   float *columns; /* height x (width + 1): the same from the left inside each row */
@@ -70,6 +71,23 @@ double vl_aperture_value(const vlAperture *a, double x, double y) {
   double upper = (1.0 - sx) * value_of(a, ix, iy) + sx * value_of(a, ix + 1, iy);
   double lower = (1.0 - sx) * value_of(a, ix, iy + 1) + sx * value_of(a, ix + 1, iy + 1);
   return (1.0 - sy) * upper + sy * lower;
+}
+
+double vl_aperture_reach2(const vlAperture *a) {
+  return a->reach2;
+}
+
+/* Bilinear values reach from a texel's middle to those of its neighbours, and end with the square. */
+static double find_reach2(const vlAperture *a) {
+  double most = 0;
+  for (uint32_t y = 0; y < a->height; y++)
+    for (uint32_t x = 0; x < a->width; x++) {
+      if (!(a->values[(size_t)y * a->width + x] > 0)) continue;
+      double px = fmin(1, (fabs(2 * (x + 0.5) - a->width) + 2) / a->width);
+      double py = fmin(1, (fabs(2 * (y + 0.5) - a->height) + 2) / a->height);
+      most = fmax(most, px * px + py * py);
+    }
+  return most;
 }
 
 static vlResult check(uint32_t width, uint32_t height, const float *values, double *sum, vlError *error) {
@@ -137,6 +155,7 @@ vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height,
   accumulate(sums, height, a->rows);
   double scale = 0.25 * pi * (double)cells / sum;
   for (size_t i = 0; i < cells; i++) a->values[i] = (float)(scale * (double)values[i]);
+  a->reach2 = find_reach2(a);
   vl_free(context, sums);
   *aperture = a;
   return VL_OK;

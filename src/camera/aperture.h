@@ -20,5 +20,7 @@ void vl_blades_points(const vlBlades *blades, uint32_t n, const float *u, const 
 void vl_aperture_points(const vlAperture *aperture, uint32_t n, const float *u, const float *v, float *x, float *y);
 /* The picture at a point, bilinear, 0 outside, so scaled that its mean over the square is pi / 4: a round opening's. */
 double vl_aperture_value(const vlAperture *aperture, double x, double y);
+/* The square of the largest distance from the middle at which it is above 0; 2 at most. */
+double vl_aperture_reach2(const vlAperture *aperture);
 
 #endif

@@ -6,21 +6,28 @@
 #include "color/rgb_table.h"
 #include "color/tables.h"
 
-/* The colour under the space's illuminant, and its derivatives by c0, c1, c2 (row: component). */
-static void shown(const double weight[3][VL_LAMBDA_COUNT], const double c[3], double rgb[3], double jacobian[9]) {
-  memset(rgb, 0, 3 * sizeof *rgb);
-  memset(jacobian, 0, 9 * sizeof *jacobian);
-  for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
+/* Sums in four parts, always the same ones: the compiler may add them side by side. */
+enum { PARTS = 4, PADDED = (VL_LAMBDA_COUNT + PARTS - 1) / PARTS * PARTS };
+
+static double dot(const double *a, const double *b) {
+  double sum[PARTS] = {0};
+  for (int i = 0; i < PADDED; i += PARTS)
+    for (int k = 0; k < PARTS; k++) sum[k] += a[i + k] * b[i + k];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+/* The colour under the space's illuminant, and its derivatives by c0, c1, c2 (row: component). Weights end in zeros. */
+static void shown(const double weight[3][PADDED], const double c[3], double rgb[3], double jacobian[9]) {
+  double s[PADDED], slope[3][PADDED];
+  for (int i = 0; i < PADDED; i++) {
     double t = i * (1.0 / (VL_LAMBDA_COUNT - 1)), x = (c[0] * t + c[1]) * t + c[2];
-    double square = 1 + x * x, root = __builtin_sqrt(square);
-    double s = 0.5 + 0.5 * (x / root), d = 0.5 / (root * square);
-    for (int k = 0; k < 3; k++) {
-      double w = weight[k][i] * d;
-      rgb[k] += weight[k][i] * s;
-      jacobian[3 * k] += w * t * t;
-      jacobian[3 * k + 1] += w * t;
-      jacobian[3 * k + 2] += w;
-    }
+    double inv = 1 / __builtin_sqrt(1 + x * x), d = 0.5 * inv * inv * inv;
+    s[i] = 0.5 + 0.5 * x * inv;
+    slope[0][i] = d * t * t, slope[1][i] = d * t, slope[2][i] = d;
+  }
+  for (int k = 0; k < 3; k++) {
+    rgb[k] = dot(weight[k], s);
+    for (int j = 0; j < 3; j++) jacobian[3 * k + j] = dot(weight[k], slope[j]);
   }
 }
 
@@ -34,12 +41,10 @@ static double worst_of(const double a[3], const double b[3]) {
 }
 
 /* How far off the spectrum is as floats compute it. */
-static double error_of(const double weight[3][VL_LAMBDA_COUNT], vlSigmoid s, const double target[3]) {
-  double rgb[3] = {0};
-  for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
-    double v = (double)vl_sigmoid(s, (float)(VL_LAMBDA_MIN + i));
-    for (int k = 0; k < 3; k++) rgb[k] += weight[k][i] * v;
-  }
+static double error_of(const double weight[3][PADDED], vlSigmoid s, const double target[3]) {
+  double rgb[3], v[PADDED];
+  for (int i = 0; i < PADDED; i++) v[i] = (double)vl_sigmoid(s, (float)(VL_LAMBDA_MIN + i));
+  for (int k = 0; k < 3; k++) rgb[k] = dot(weight[k], v);
   return worst_of(rgb, target);
 }
 
@@ -61,10 +66,11 @@ vlSigmoid vl_sigmoid_from_rgb(vlColorSpace space, float r, float g, float b) {
 
   const vlSpaceTable *table = &vl_table_spaces[space];
   const float *light = vl_table_named[table->illuminant].values, rgb[3] = {r, g, b};
-  double weight[3][VL_LAMBDA_COUNT], target[3];
+  double weight[3][PADDED], target[3];
   for (int k = 0; k < 3; k++) {
     const double *m = table->rgb_from_xyz + 3 * k;
     target[k] = rgb[k] > 0 ? (rgb[k] < 1 ? (double)rgb[k] : 1.0) : 0.0;
+    for (int i = VL_LAMBDA_COUNT; i < PADDED; i++) weight[k][i] = 0;
     for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
       weight[k][i] =
           (m[0] * (double)vl_table_cie[0][i] + m[1] * (double)vl_table_cie[1][i] + m[2] * (double)vl_table_cie[2][i]) *

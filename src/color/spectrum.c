@@ -156,8 +156,11 @@ static void integrate(const float *dense, const float *light, double xyz[3]) {
 double vl_spectrum_photometric(const vlSpectrum *spectrum, vlError *error) {
   float dense[VL_LAMBDA_COUNT];
   double xyz[3];
+  if (spectrum->kind == VL_SPECTRUM_RGB) {
+    if (check(spectrum, error) != VL_OK) return 0;
+    return vl_table_named[vl_table_spaces[spectrum->space].illuminant].y;
+  }
   if (vl_spectrum_dense(spectrum, VL_ROLE_ILLUMINANT, dense, error) != VL_OK) return 0;
-  if (spectrum->kind == VL_SPECTRUM_RGB) return vl_table_named[vl_table_spaces[spectrum->space].illuminant].y;
   integrate(dense, NULL, xyz);
   return xyz[1];
 }

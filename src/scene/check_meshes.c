@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "math/transform.h"
 #include "scene/body.h"
 #include "scene/check.h"
 
@@ -197,7 +198,7 @@ static void check_sphere(vlCheck *c, const vlShapeDef *d) {
   if ((double)d->phi_max < whole || d->z_min > -d->radius || d->z_max < d->radius)
     vl_check_add(c, VL_FINDING_OPEN_DIELECTRIC, VL_SEVERITY_WARNING, d->source,
                  "the body of %s is not closed: the sphere is a part of one", name.text);
-  else if (d->reverse_orientation)
+  else if (d->reverse_orientation != (vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0))
     vl_check_add(c, VL_FINDING_INVERTED_DIELECTRIC, VL_SEVERITY_WARNING, d->source,
                  "normals point into the sphere of %s: light is bent the wrong way", name.text);
 }

@@ -21,10 +21,11 @@
 typedef struct vlWorldShape {
   vlShapeKind kind;
   uint32_t material;    /* index into materials */
-  uint32_t first_light; /* light of prim 0; prim i has first_light + i; VL_NONE */
+  uint32_t first_light; /* VL_NONE: no light; else see vl_shape_light */
   int32_t alpha;        /* texture node, -1: opaque */
-  bool flip;            /* the geometric normal of face order is to be flipped (reverse orientation xor mirrored) */
-  bool pass_shadow;     /* interface material: shadow rays pass */
+  bool flip;        /* reverse orientation xor the shape's own transform mirrors: turns a triangle's or patch's normal
+                     * of face order in group space, and a quadric's or curve's dpdu x dpdv of shape space */
+  bool pass_shadow; /* interface material: shadow rays pass */
   uint32_t inside,
       outside; /* media on both sides (the geometric normal's is outside), VL_NONE: vacuum; equal: no change */
   /* triangles (3 indices a face) and bilinear patches (4): positions end in 16 spare bytes for Embree */
@@ -33,8 +34,9 @@ typedef struct vlWorldShape {
   uint32_t *indices;
   /* Triangles, may be null: bitangent = sign n x tangent; uv sets 1 to 3; 4 a vertex; uvs of the emission's picture */
   float *tangent_signs, *more_uvs[3], *colors, *glow_uvs;
-  bool one_sided; /* rays pass through from behind */
-  uint32_t steps; /* of positions and normals, one set after the other, evenly over the world's time; 1: at rest */
+  uint32_t *light_of; /* by prim, VL_NONE: none; null: prim i is light first_light + i */
+  bool one_sided;     /* rays pass through from behind */
+  uint32_t steps;     /* of positions and normals, one set after the other, evenly over the world's time; 1: at rest */
   /* sphere, disk, cylinder: parameters as in vlShapeDef, and the affine maps, row-major 3x4 */
   float radius, inner_radius, z_min, z_max, phi_max, height;
   /* curves: 4 points and 2 widths a segment, ribbons 2 normals, all in shape space; a prim is a piece of a segment */
@@ -43,6 +45,12 @@ typedef struct vlWorldShape {
   float *widths;
   double from_shape[12], to_shape[12]; /* group space <-> shape space */
 } vlWorldShape;
+
+/* The light that a prim is, or VL_NONE. */
+static inline uint32_t vl_shape_light(const vlWorldShape *s, uint32_t prim) {
+  if (s->first_light == VL_NONE) return VL_NONE;
+  return s->light_of ? s->light_of[prim] : s->first_light + prim;
+}
 
 typedef struct vlWorldGroup {
   uint32_t *shapes; /* world shape index of each Embree geometry id */
@@ -157,11 +165,12 @@ typedef struct vlWorldLight {
   bool cone_squared;        /* between them t^2; else smooth */
   uint32_t environment;     /* infinite with a picture: index; VL_NONE: uniform */
   float power;              /* for choosing: watts-like, luminance */
-  bool invisible;           /* area, of coverage 0 throughout: no ray meets it, it shines all the same (as pbrt's) */
-  uint32_t picture;         /* goniometric, projection: image; corners hold the map from world directions to theirs */
-  float slide[2];           /* projection: half its sides at distance 1 */
-  float corners[9];         /* area, triangle: its corners, and */
-  bool one_sided_normals;   /* direction is the normal to the lit side all over it */
+  bool outer_side;        /* an invisible whole sphere: light's paths set out from its outside alone, see light.hot.c */
+  bool invisible;         /* area, of coverage 0 throughout: no ray meets it, it shines all the same (as pbrt's) */
+  uint32_t picture;       /* goniometric, projection: image; corners hold the map from world directions to theirs */
+  float slide[2];         /* projection: half its sides at distance 1 */
+  float corners[9];       /* area, triangle: its corners, and */
+  bool one_sided_normals; /* direction is the normal to the lit side all over it */
 } vlWorldLight;
 
 /* A picture of the sky in pbrt's equal-area octahedral square, with a distribution over its texels. */

@@ -107,6 +107,14 @@ scene inverted.pbrt "$glass" 'ReverseOrientation' "Shape \"trianglemesh\" $cube 
 finds 1 inverted_body ':6:1: warning: normals point into the body.*\[inverted-dielectric\]' inverted.pbrt
 scene inner.pbrt "$glass" 'ReverseOrientation' 'Shape "sphere"'
 finds 1 inverted_sphere ':6:1: warning: normals point into.*\[inverted-dielectric\]' inner.pbrt
+scene mirror_sphere.pbrt "$glass" 'Scale 1 1 -1' 'Shape "sphere"'
+finds 1 mirrored_sphere ':6:1: warning: normals point into.*\[inverted-dielectric\]' mirror_sphere.pbrt
+scene mirror_reversed.pbrt "$glass" 'Scale 1 1 -1' 'ReverseOrientation' 'Shape "sphere"'
+clean mirrored_reversed_sphere mirror_reversed.pbrt
+"$VELO" scene convert mirror_sphere.pbrt mirror_sphere.gltf >/dev/null 2>&1
+finds 1 mirrored_sphere_as_a_mesh 'normals point into the body.*\[inverted-dielectric\]' mirror_sphere.gltf
+"$VELO" scene convert mirror_reversed.pbrt mirror_reversed.gltf >/dev/null 2>&1
+finds 0 mirrored_reversed_sphere_as_a_mesh '^nothing found' mirror_reversed.gltf
 
 fog='MakeNamedMedium "a" "string type" "homogeneous" MakeNamedMedium "b" "string type" "homogeneous" Material "interface"'
 scene overlap.pbrt "$fog" 'MediumInterface "a" ""' 'Shape "sphere"' 'Translate 1 0 0 MediumInterface "b" ""' 'Shape "sphere"'

@@ -160,12 +160,12 @@ static void sides(void **state) {
       def.emission = add_glow(&s, 2, two_sided);
       def.reverse_orientation = reverse;
       /* Normals of the flat ones point to the camera, of the round ones away from it. A mirror (x to -x) turns over
-       * triangles' order, and pbrt turns it back; normals of the round ones stay outside. */
+       * triangles' order, and pbrt turns it back; normals of quadrics stay outside, and pbrt turns them. */
       set_matrix(def.group_from_shape, mirrored ? -1 : 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -2);
       if (kind == 4) set_matrix(def.group_from_shape, mirrored ? -1 : 1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, -2);
       vl_scene_add_shape(s.scene, &def);
       Picture q = stage_finish(&s);
-      bool lit = two_sided || (reverse != (kind < 3));
+      bool lit = two_sided || (reverse != (kind < 3)) != (kind > 1 && mirrored);
       char what[64];
       snprintf(what, sizeof what, "kind %d, mode %d", kind, mode);
       assert_near(what, picture_mean(&q, 1), lit ? 2 : 0, 2e-2);
@@ -438,6 +438,141 @@ static void invisible_light(void **state) {
   assert_ratio("invisible light", mean[1], mean[0], 5e-3);
 }
 
+/* A whole sphere of coverage 0: from outside its near side lights the floor, whether it shines inwards, too, or not;
+ * one that shines inwards alone lights what is in it. All ways to find the light agree. */
+static void invisible_sphere(void **state) {
+  (void)state;
+  static const vlTracer tracers[] = {VL_TRACER_PATH, VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL, VL_TRACER_LIGHT_PATH};
+  for (int around = 0; around < 2; around++)
+    for (int kind = 0; kind < 4; kind++)
+      for (size_t t = 0; t < sizeof tracers / sizeof tracers[0]; t++) {
+        bool two_sided = kind & 1, reverse = kind & 2;
+        if (around && tracers[t] == VL_TRACER_LIGHT_PATH) continue; /* its paths set out from the outside */
+        Stage s = floor_stage(false);
+        s.render.spp = 256;
+        s.camera.projection =
+            VL_PROJECTION_PERSPECTIVE; /* the same view; light's paths do not find orthographic eyes */
+        s.camera.eye[2] = 3;
+        s.camera.fov = 2 * atan(1.0 / 3);
+        s.render.tracer = tracers[t];
+        vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
+        set_matrix(def.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, around ? 0 : 1);
+        def.radius = around ? 30 : 0.5f, def.z_min = -def.radius, def.z_max = def.radius;
+        def.alpha = vl_float_input(0);
+        def.emission = add_glow(&s, 1, two_sided);
+        def.reverse_orientation = reverse;
+        vl_scene_add_shape(s.scene, &def);
+        Picture p = stage_finish(&s);
+        bool lit = two_sided || reverse == (around == 1);
+        double mean = 0; /* of what a sphere sends to a plane: pi r^2 h / d^3 */
+        for (uint32_t i = 0; i < SIZE * SIZE; i++)
+          mean += 0.25 * pow(1 + pow(at_x(i % SIZE), 2) + pow(at_y(i / SIZE), 2), -1.5) / (SIZE * SIZE);
+        char what[64];
+        snprintf(what, sizeof what, "invisible sphere %d, kind %d, tracer %d", around, kind, (int)tracers[t]);
+        double expected = lit ? 0.5 * (around ? 1 : mean) : 0;
+        assert_near(what, picture_mean(&p, 1), expected, (tracers[t] == VL_TRACER_LIGHT_PATH ? 0.1 : 0.02) * expected);
+        picture_free(&p);
+      }
+}
+
+/* pbrt-v4 shows rough coats too bright where it finds light by sampling lights, not where the BSDF's samples find it,
+ * as all of a uniform sky (docs/decisions/0006): a white base under a coat of alpha 0.4 sends back 0.59 of that sky. */
+static void imitation_errs_where_pbrt_does(void **state) {
+  (void)state;
+  double mean[2][2];
+  for (int sun = 0; sun < 2; sun++)
+    for (int imitate = 0; imitate < 2; imitate++) {
+      Stage s = stage_open(SIZE, SIZE);
+      s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
+      s.camera.eye[2] = 0.01;
+      s.build.color = VL_COLOR_RGB;
+      s.build.imitate_pbrt = imitate;
+      s.render.max_depth = 3;
+      s.render.spp = 256;
+      vlMaterialDef coat = vl_default_material_def(VL_MATERIAL_COATED_DIFFUSE);
+      coat.reflectance = vl_spectrum_input(vl_spectrum_constant(1));
+      coat.u_roughness = coat.v_roughness = vl_float_input(0.4f), coat.remap_roughness = false;
+      Quad q = quad_at(0, 0, 0, 40, 0, 0, 0, 40, 0);
+      q.material = vl_scene_add_material(s.scene, &coat);
+      add_quad(&s, &q);
+      vlLightDef light = vl_default_light_def(sun ? VL_LIGHT_DISTANT : VL_LIGHT_INFINITE);
+      light.from[2] = 1, light.to[2] = 0;
+      vl_scene_add_light(s.scene, &light);
+      Picture p = stage_finish(&s);
+      mean[sun][imitate] = picture_mean(&p, 1);
+      picture_free(&p);
+    }
+  assert_near("furnace", mean[0][0], 0.59, 0.03);
+  assert_ratio("furnace, imitating", mean[0][1], mean[0][0], 2e-3);
+  assert_true(mean[1][1] > 1.02 * mean[1][0]);
+}
+
+/* A ceiling of 8 x 8 cells of two triangles over 2 x 2 repeats of a 32 x 32 picture, black but for the texels of `lit`
+ * (x, y, width, height), which are 1; dim: of the black ones. Lights: how many faces became some. */
+static Picture shining_ceiling(const uint32_t lit[4], float dim, vlTextureFilter filter, uint64_t *lights) {
+  enum { CELLS = 8, SIDE = 32 };
+  static float p[3 * (CELLS + 1) * (CELLS + 1)], uv[2 * (CELLS + 1) * (CELLS + 1)], rgb[3 * SIDE * SIDE];
+  static uint32_t f[6 * CELLS * CELLS];
+  Stage s = floor_stage(false);
+  s.render.spp = 256;
+  size_t n = 0;
+  for (uint32_t j = 0; j <= CELLS; j++)
+    for (uint32_t i = 0; i <= CELLS; i++) {
+      size_t k = j * (CELLS + 1) + i;
+      p[3 * k] = (float)i / CELLS - 0.5f, p[3 * k + 1] = (float)j / CELLS - 0.5f, p[3 * k + 2] = 1;
+      uv[2 * k] = 2.0f * (float)i / CELLS, uv[2 * k + 1] = 2.0f * (float)j / CELLS;
+      if (i == CELLS || j == CELLS) continue;
+      uint32_t a = (uint32_t)k, b = a + CELLS + 1;
+      const uint32_t two[6] = {a, b, a + 1, a + 1, b, b + 1};
+      for (int c = 0; c < 6; c++) f[n++] = two[c];
+    }
+  for (uint32_t k = 0; k < SIDE * SIDE; k++) {
+    uint32_t x = k % SIDE, y = k / SIDE;
+    bool on = x >= lit[0] && x < lit[0] + lit[2] && y >= lit[1] && y < lit[1] + lit[3];
+    for (int c = 0; c < 3; c++) rgb[3 * k + (uint32_t)c] = on ? 1 : dim;
+  }
+  vlTextureDef picture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+  vlImage *image = make_image(&s, SIDE, SIDE, rgb);
+  picture.image = image, picture.filter = filter;
+  vlEmissionDef glow = vl_default_emission_def();
+  glow.texture = vl_scene_add_texture(s.scene, &picture);
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.vertices = (CELLS + 1) * (CELLS + 1), def.faces = 2 * CELLS * CELLS;
+  def.positions = p, def.uvs = uv, def.indices = f;
+  def.emission = vl_scene_add_emission(s.scene, &glow);
+  vl_scene_add_shape(s.scene, &def);
+  vl_image_destroy(image);
+  vlWorld *world;
+  vlWorldInfo info;
+  assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_OK);
+  vl_world_info(world, &info);
+  *lights = info.lights;
+  vl_world_destroy(world);
+  return stage_finish(&s);
+}
+
+/* Faces over black texels are no lights, and what the others send is found as if all were. */
+static void black_faces_are_no_lights(void **state) {
+  (void)state;
+  /* A cell is 8 texels wide, each texel stands in 4 cells. How many of the 128 triangles it touches, by hand: one amid
+   * the lower left triangle of a cell; two on the diagonal; all; none; one at a cell's left side, to which bilinear
+   * lookups come from the next cell, too (of the next repeat, at the picture's edge). */
+  static const struct {
+    uint32_t lit[4], faces;
+  } cases[] = {{{1, 28, 1, 1}, 4}, {{3, 28, 2, 1}, 8}, {{0, 0, 32, 32}, 128}, {{0, 0, 0, 0}, 0}, {{0, 28, 1, 1}, 8}};
+  for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++)
+    for (int filter = 0; filter < 2; filter++) {
+      uint64_t few, all;
+      vlTextureFilter kind = filter ? VL_FILTER_BILINEAR : VL_FILTER_POINT;
+      Picture a = shining_ceiling(cases[k].lit, 0, kind, &few), b = shining_ceiling(cases[k].lit, 1e-9f, kind, &all);
+      assert_int_equal(all, 128);
+      assert_int_equal(few, cases[k].faces);
+      assert_near("light of a few faces", picture_mean(&a, 1), picture_mean(&b, 1), 0.02 * picture_mean(&b, 1) + 1e-9);
+      assert_true(few == 0 || picture_mean(&a, 1) > 1e-5);
+      picture_free(&a), picture_free(&b);
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(point_and_spot),
@@ -454,6 +589,9 @@ int main(void) {
       cmocka_unit_test(light_samplers_agree),
       cmocka_unit_test(sheared_sphere_light),
       cmocka_unit_test(invisible_light),
+      cmocka_unit_test(invisible_sphere),
+      cmocka_unit_test(black_faces_are_no_lights),
+      cmocka_unit_test(imitation_errs_where_pbrt_does),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

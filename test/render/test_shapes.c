@@ -92,8 +92,9 @@ static void instances_are_baked_geometry(void **state) {
         vlMaterialId material = vl_scene_add_material(s.scene, &def);
         double baked[16];
         multiply(outer[m], inner, baked);
-        if (way == 0) {
-          add_kind(&s, kind, (vlGroupId){0}, baked, material, reverse);
+        if (way == 0) { /* a shape's own mirror turns the normals of quadrics, an instance's does not */
+          bool quadric = kind == SPHERE || kind == PART_SPHERE || kind == DISK || kind == CYLINDER;
+          add_kind(&s, kind, (vlGroupId){0}, baked, material, reverse != (quadric && m > 1));
         } else {
           vlGroupId group = vl_scene_add_group(s.scene, "group");
           add_kind(&s, kind, group, inner, material, reverse);

@@ -134,10 +134,17 @@ static bool put_attributes(vlExport *x, const vlExportMesh *m, json_t *attribute
   return true;
 }
 
+/* Do the normals that vl_export_mesh makes turn over? A mirroring transform turns those of spheres, disks and
+ * cylinders, too (velo/scene.h); glTF's nodes never do. */
+static bool is_turned(const vlShapeDef *d) {
+  bool quadric = d->kind == VL_SHAPE_SPHERE || d->kind == VL_SHAPE_DISK || d->kind == VL_SHAPE_CYLINDER;
+  return d->reverse_orientation != (quadric && vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0);
+}
+
 /* *index -1: nothing to draw. */
 static bool put_mesh(vlExport *x, const vlShapeDef *d, json_int_t *index) {
   vlExportMesh mesh;
-  bool colors, tangents;
+  bool colors, tangents, turned = is_turned(d);
   *index = -1;
   if (vl_gltf_is_hidden(x, d)) {
     vl_export_lose(x, "surfaces that only part media (material interface): left out");
@@ -151,8 +158,8 @@ static bool put_mesh(vlExport *x, const vlShapeDef *d, json_int_t *index) {
   }
   json_int_t material = vl_gltf_put_material(x, d, &colors, &tangents);
   json_t *attributes = json_object();
-  bool fine = put_attributes(x, &mesh, attributes, d->reverse_orientation, colors, tangents);
-  json_int_t indices = fine ? put_indices(x, &mesh, d->reverse_orientation) : -1;
+  bool fine = put_attributes(x, &mesh, attributes, turned, colors, tangents);
+  json_int_t indices = fine ? put_indices(x, &mesh, turned) : -1;
   json_t *primitive = json_pack("{s:o,s:I}", "attributes", attributes, "indices", indices);
   if (material >= 0) json_object_set_new(primitive, "material", json_integer(material));
   *index = vl_gltf_put(x, "meshes", json_pack("{s:[o]}", "primitives", primitive));

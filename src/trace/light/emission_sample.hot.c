@@ -49,8 +49,8 @@ static float point_density(const vlWorld *world, const vlWorldLight *light, vlVe
 /* Pictures of the sky have a density that leaves out what is dim (other ways find that better): half of the light's
  * paths go by it, half from anywhere. */
 static float sky_density(const vlWorld *world, const vlWorldLight *light, vlVec3 w) {
-  float pdf = vl_infinite_pdf(world, light, vl_vec3(0, 0, 0), w);
-  return light->environment == VL_NONE ? pdf : 0.5f * (pdf + VL_INV_4PI);
+  if (light->environment == VL_NONE) return VL_INV_4PI;
+  return 0.5f * (vl_infinite_pdf(world, light, vl_vec3(0, 0, 0), w) + VL_INV_4PI);
 }
 
 static const vlPortal *portal_of(const vlWorld *world, const vlWorldLight *light) {
@@ -62,6 +62,19 @@ static float portal_density(const vlPortal *portal, vlVec3 w) {
   vlPortalWindow whole = vl_portal_whole(portal);
   float across = portal->width * portal->height * vl_portal_local(portal, w).z;
   return across > 0.0f ? vl_portal_pdf(portal, &whole, w) / across : 0.0f;
+}
+
+/* Does the outside of a whole sphere shine? */
+static bool shines_outwards(const vlWorld *world, const vlWorldLight *light) {
+  return world->emitted.items[light->emitted].two_sided || !world->shapes.items[light->shape].flip;
+}
+
+/* The share of an area light's paths that set out on the side that is seen in direction w. */
+static float side_share(const vlWorld *world, const vlWorldLight *light, vlVec3 p, vlVec3 w) {
+  const vlWorldShape *s = &world->shapes.items[light->shape];
+  if (!light->outer_side) return world->emitted.items[light->emitted].two_sided ? 0.5f : 1.0f;
+  vlVec3 center = vl_vec3((float)s->from_shape[3], (float)s->from_shape[7], (float)s->from_shape[11]);
+  return shines_outwards(world, light) && vl_dot(vl_sub(p, center), w) < 0.0f ? 1.0f : 0.0f;
 }
 
 float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t index, vlVec3 w, float distance,
@@ -82,9 +95,7 @@ float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t in
     case VL_WL_INFINITE:
       if (portal_of(world, light)) return p * portal_density(portal_of(world, light), w);
       return p * sky_density(world, light, w) / world_disk(world);
-    case VL_WL_AREA:
-      return p * VL_INV_PI * point_density(world, light, at->p) *
-             (world->emitted.items[light->emitted].two_sided ? 0.5f : 1.0f);
+    case VL_WL_AREA: return p * VL_INV_PI * point_density(world, light, at->p) * side_share(world, light, at->p, w);
   }
   return 0.0f;
 }
@@ -137,10 +148,10 @@ static void from_area(const vlWorld *world, const vlWorldLight *light, const flo
   const vlEmitted *e = &world->emitted.items[light->emitted];
   const vlWorldShape *shape = &world->shapes.items[light->shape];
   Spot at = shape->kind == VL_SHAPE_TRIANGLES ? on_triangle(light, shape, u, v) : on_shape(light, shape, u, v);
-  if (!(at.pdf > 0.0f)) return;
+  if (!(at.pdf > 0.0f) || (light->outer_side && !shines_outwards(world, light))) return;
   float sides = 1.0f;
-  vlVec3 side = at.n;
-  if (e->two_sided) {
+  vlVec3 side = light->outer_side && shape->flip ? vl_neg(at.n) : at.n;
+  if (e->two_sided && !light->outer_side) {
     sides = 2.0f;
     bool back = s >= 0.5f;
     s = vl_min(2.0f * (back ? s - 0.5f : s), VL_ONE_MINUS_EPSILON);

@@ -16,7 +16,8 @@ vlMetLight vl_meet_sky(const vlWorld *world, const vlPaths *p, uint32_t i, size_
 }
 
 bool vl_meet_glow(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlMetLight *met) {
-  met->light = world->shapes.items[h->shape[i]].first_light + h->prim[i];
+  met->light = vl_shape_light(&world->shapes.items[h->shape[i]], h->prim[i]);
+  if (met->light == VL_NONE) return false;
   const vlWorldLight *light = &world->lights.items[met->light];
   const vlEmitted *e = &world->emitted.items[light->emitted];
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);

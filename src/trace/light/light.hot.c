@@ -59,7 +59,7 @@ void vl_infinite_at(const vlWorld *world, const vlWorldLight *light, vlVec3 o, v
 }
 
 float vl_infinite_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d) {
-  if (light->environment == VL_NONE) return 0.25f * VL_INV_PI;
+  if (light->environment == VL_NONE) return world->def.imitate_pbrt ? 0.0f : 0.25f * VL_INV_PI;
   const vlEnvironment *env = &world->environments.items[light->environment];
   vlPortalWindow window;
   if (env->portal)
@@ -81,24 +81,10 @@ typedef struct Sample {
   float weights[3]; /* of a triangle's corners */
 } Sample;
 
-/* Centre and radius of a whole sphere under a similarity, or false. Not with holes, through which the far side shows.
- */
-static bool whole_sphere(const vlWorldShape *s, vlVec3 *center, float *radius) {
-  if (s->kind != VL_SHAPE_SPHERE || s->alpha >= 0 || s->z_min > -s->radius || s->z_max < s->radius ||
-      s->phi_max < 6.2831f)
-    return false;
-  const double *m = s->from_shape;
-  double l[3];
-  for (int i = 0; i < 3; i++) l[i] = m[i] * m[i] + m[4 + i] * m[4 + i] + m[8 + i] * m[8 + i];
-  if (l[1] > l[0] * 1.0001 || l[1] < l[0] * 0.9999 || l[2] > l[0] * 1.0001 || l[2] < l[0] * 0.9999) return false;
-  for (int i = 0; i < 3; i++) { /* no shear: the axes stay at right angles */
-    int j = (i + 1) % 3;
-    double skew = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
-    if (skew > l[0] * 0.0001 || skew < -l[0] * 0.0001) return false;
-  }
-  *center = vl_vec3((float)m[3], (float)m[7], (float)m[11]);
-  *radius = s->radius * (float)__builtin_sqrt(l[0]);
-  return true;
+/* A whole sphere that is opaque, or is not there but for its light (pbrt-v4: from outside its near side shines, from
+ * inside all of it; the far side does not shine through). Not with holes, through which the far side shows. */
+static bool round_light(const vlWorldShape *s, const vlWorldLight *light, vlVec3 *center, float *radius) {
+  return (s->alpha < 0 || light->invisible) && vl_whole_sphere(s, center, radius);
 }
 
 /* 1 - cos of the half angle of a sphere seen from outside, without cancellation. */
@@ -225,10 +211,10 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
   if (s->kind == VL_SHAPE_TRIANGLES) return sample_triangle(light, s, with_uv, from, u, v);
   vlVec3 center;
   float radius;
-  if (whole_sphere(s, &center, &radius)) {
+  if (round_light(s, light, &center, &radius)) {
     vlVec3 to = vl_sub(center, from);
     if (vl_length2(to) > radius * radius * 1.0001f) {
-      Sample r = sample_cone(center, radius, vl_shape_reversed(s), from, u, v);
+      Sample r = sample_cone(center, radius, s->flip, from, u, v);
       if (with_uv) { /* uv by way of the shape */
         vlShapeHit hit = {.t = 0};
         vlSurfacePoint point;
@@ -262,7 +248,7 @@ float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, 
   }
   vlVec3 center;
   float radius;
-  if (whole_sphere(s, &center, &radius)) {
+  if (round_light(s, light, &center, &radius)) {
     float d2 = vl_length2(vl_sub(center, from));
     if (d2 > radius * radius * 1.0001f) return 1.0f / (2.0f * VL_PI * one_minus_cos_cone(radius * radius / d2));
   }
@@ -334,6 +320,7 @@ static Arrival from_sky(const vlWorld *world, const vlWorldLight *light, const f
   const vlEmitted *e = &world->emitted.items[light->emitted];
   Arrival r = {.pdf = 0.0f, .distant = true};
   if (light->environment == VL_NONE) {
+    if (world->def.imitate_pbrt) return r; /* pbrt-v4 leaves a uniform sky to the BSDF's samples */
     r.w = r.target = vl_warp_sphere(u, v);
     r.pdf = 0.25f * VL_INV_PI;
     vl_emitted_at(world, e, lambda, 0, 0, true, r.radiance);

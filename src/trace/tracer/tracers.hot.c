@@ -52,7 +52,7 @@ static void raycast_tracer(vlTracing *t) {
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = s->b.lane[i];
     const vlWorldMaterial *m = &world->materials.items[s->hits_b.material[i]];
-    if (world->shapes.items[s->hits_b.shape[i]].first_light != VL_NONE) continue;
+    if (vl_shape_light(&world->shapes.items[s->hits_b.shape[i]], s->hits_b.prim[i]) != VL_NONE) continue;
     float lambda[4];
     vl_path_lambda(&s->b, i, lambda);
     for (int c = 0; c < 4; c++) {

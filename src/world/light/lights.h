@@ -16,6 +16,10 @@ vlColorSpace vl_light_picture_space(const vlWorld *world, int32_t image, vlColor
 float vl_light_luminance(const vlSpectral *spectrum);
 float vl_light_texel_luminance(vlTexel t, uint32_t channels);
 
+/* One for each face that shines of a shape with an emission (shape_lights.c). compiled: by emission of the scene, index
+ * into world->emitted of what shapes share; VL_NONE: not yet. */
+vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t shape, uint32_t *compiled,
+                                   vlError *error);
 /* Points whose light a picture shapes: goniometric and projection (beam.c). */
 vlResult vl_world_add_beam(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e, vlError *error);
 /* The portal of a pictured sky, whose directions env knows; power: of the light that passes through it (portal.c). */

@@ -295,7 +295,7 @@ void vl_curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *hit,
   for (int i = 0; i < 3; i++) point->dndu[i] = point->dndv[i] = 0;
   vl_map_normal(s->to_shape, n, point->n);
   vl_normalize3(point->n);
-  double side = vl_shape_reversed(s) ? -1 : 1;
+  double side = s->flip ? -1 : 1;
   for (int i = 0; i < 3; i++) {
     const double *m = s->from_shape + 4 * i;
     point->n[i] *= side;

@@ -101,13 +101,9 @@ static void quadric_derivatives(const vlWorldShape *s, const double p[3], double
   }
 }
 
-/* The normal transforms to the outside whatever the handedness; pbrt's flip is told by reverse orientation xor mirror,
- * and its cross product dpdu x dpdv mirrors too: both together leave the reverse orientation alone. flip holds the xor.
+/* dpdu x dpdv in shape space. The map to group space (inverse transpose) keeps it outside whatever the handedness; flip
+ * (reverse orientation xor mirrored) turns it afterwards, as in pbrt: a mirrored sphere alone has its normals inside.
  */
-bool vl_shape_reversed(const vlWorldShape *s) {
-  return s->flip != (vl_determinant3(s->from_shape) < 0);
-}
-
 static void quadric_normal(const vlWorldShape *s, const double p[3], double n[3]) {
   n[0] = s->kind == VL_SHAPE_DISK ? 0 : p[0] / s->radius;
   n[1] = s->kind == VL_SHAPE_DISK ? 0 : p[1] / s->radius;
@@ -122,7 +118,7 @@ void vl_quadric_point(const vlWorldShape *s, const double p[3], vlSurfacePoint *
   vl_map_vector(s->from_shape, dpdu, point->dpdu);
   vl_map_vector(s->from_shape, dpdv, point->dpdv);
   vl_map_normal(s->to_shape, n, point->n);
-  double length = vl_normalize3(point->n), side = vl_shape_reversed(s) ? -1 : 1;
+  double length = vl_normalize3(point->n), side = s->flip ? -1 : 1;
   double bend = s->kind == VL_SHAPE_DISK || !(s->radius > 0) ? 0 : 1.0 / s->radius;
   if (s->kind == VL_SHAPE_CYLINDER) dpdv[2] = 0; /* the normal turns with what is across the axis */
   for (int i = 0; i < 3; i++) dpdu[i] *= bend, dpdv[i] *= bend;

@@ -65,9 +65,11 @@ float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim) {
     vl_cross3(a, b, n);
     return (float)(0.5 * sqrt(vl_dot3(n, n)));
   }
-  /* Mean of 1/pdf over a grid of parameters: exact for similarity transforms and parallelograms. */
-  double sum = 0;
-  const int steps = 16;
+  /* Mean of 1/pdf over a grid of parameters, exact for parallelograms; one point where it is the same everywhere. */
+  double sum = 0, scale;
+  bool even = shape->kind == VL_SHAPE_DISK || (shape->kind != VL_SHAPE_BILINEAR && shape->kind != VL_SHAPE_CURVES &&
+                                               vl_is_similarity(shape->from_shape, &scale));
+  const int steps = even ? 1 : 16;
   for (int i = 0; i < steps; i++)
     for (int j = 0; j < steps; j++) {
       vlSurfacePoint point;

@@ -35,10 +35,33 @@ static inline void vl_normal_derivative(const double n[3], double length, double
   double along = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
   for (int i = 0; i < 3; i++) d[i] = length > 0 ? (d[i] - along * n[i]) / length : 0;
 }
-/* Does the outward normal of a sphere, disk or cylinder point inwards: reverse orientation alone, see surface_point.c.
- */
-bool vl_shape_reversed(const vlWorldShape *shape);
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point);
+
+/* Does the map keep angles? *scale: how much longer lengths become. */
+static inline bool vl_is_similarity(const double m[12], double *scale) {
+  double l[3];
+  for (int i = 0; i < 3; i++) l[i] = m[i] * m[i] + m[4 + i] * m[4 + i] + m[8 + i] * m[8 + i];
+  if (l[1] > l[0] * 1.0001 || l[1] < l[0] * 0.9999 || l[2] > l[0] * 1.0001 || l[2] < l[0] * 0.9999) return false;
+  for (int i = 0; i < 3; i++) { /* no shear: the axes stay at right angles */
+    int j = (i + 1) % 3;
+    double skew = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
+    if (skew > l[0] * 0.0001 || skew < -l[0] * 0.0001) return false;
+  }
+  *scale = __builtin_sqrt(l[0]);
+  return true;
+}
+
+/* Centre and radius of a whole sphere under a similarity, in group space; else false. */
+static inline bool vl_whole_sphere(const vlWorldShape *s, vlVec3 *center, float *radius) {
+  const double *m = s->from_shape;
+  double scale;
+  if (s->kind != VL_SHAPE_SPHERE || s->z_min > -s->radius || s->z_max < s->radius || s->phi_max < 6.2831f ||
+      !vl_is_similarity(m, &scale))
+    return false;
+  *center = vl_vec3((float)m[3], (float)m[7], (float)m[11]);
+  *radius = s->radius * (float)scale;
+  return true;
+}
 
 /* A point spread uniformly over the parameters, with its density per unit area in group space. */
 void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf);

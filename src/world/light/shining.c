@@ -1,0 +1,132 @@
+/* world/light/shining.c: see shining.h. Emissions are looked up at the finest level, bilinearly or at the nearest texel
+ * (trace/light/light.hot.c): a triangle touches the texels whose middle is less than a texel away from it in both
+ * directions. Row by row: what of the triangle lies in the band that reaches the row has a range of columns. */
+#include "world/light/shining.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/context.h"
+#include "world/texture/texture_lookup.h"
+
+static bool texel_shines(const vlMipmap *mip, const vlTextureNode *node, uint32_t x, uint32_t y) {
+  uint32_t n = mip->channels < 3 ? 1 : 3;
+  bool shines = false;
+  for (uint32_t c = 0; c < 3; c++) {
+    float tint = node ? node->scale * node->tint[c] : 1.0f;
+    shines |= vl_mip_texel(mip, 0, x, y, c < n ? c : 0) * tint > 0.0f;
+  }
+  return shines;
+}
+
+bool vl_shining_make(const vlWorld *world, const vlEmitted *e, vlShining *s) {
+  memset(s, 0, sizeof *s);
+  if (e->image < 0 || !world->images.items[e->image].mipmap) return true;
+  const vlMipmap *mip = world->images.items[e->image].mipmap;
+  s->node = e->node > 0 ? &world->nodes.items[e->node - 1] : NULL;
+  s->wrap = s->node ? s->node->wrap : VL_WRAP_CLAMP;
+  s->wrap_t = s->node ? s->node->wrap_t : VL_WRAP_CLAMP;
+  if (s->wrap == VL_WRAP_OCTAHEDRAL || s->wrap_t == VL_WRAP_OCTAHEDRAL) return true;
+  if (s->node && (s->node->invert || !(s->node->st_given || s->node->mapping == VL_MAPPING_UV))) return true;
+  s->width = mip->levels[0].width, s->height = mip->levels[0].height;
+  s->words = (s->width + 63) / 64;
+  s->bits = vl_alloc_zero(world->context, (size_t)s->words * s->height, sizeof *s->bits);
+  if (!s->bits) return false;
+  for (uint32_t y = 0; y < s->height; y++)
+    for (uint32_t x = 0; x < s->width; x++) {
+      if (!texel_shines(mip, s->node, x, y)) continue;
+      s->bits[(size_t)y * s->words + x / 64] |= 1ull << x % 64;
+      s->any = true;
+    }
+  return true;
+}
+
+void vl_shining_free(const vlWorld *world, vlShining *s) {
+  vl_free(world->context, s->bits);
+  memset(s, 0, sizeof *s);
+}
+
+/* Is a bit set in columns [from, to] of a row of the picture? */
+static bool row_shines(const vlShining *s, int32_t row, int32_t from, int32_t to) {
+  row = vl_wrap_index(row, (int32_t)s->height, s->wrap_t);
+  if (row < 0) return false;
+  const uint64_t *bits = s->bits + (size_t)row * s->words;
+  int32_t n = (int32_t)s->width;
+  if (to - from >= 2 * n) from = 0, to = n - 1; /* all of them, however they wrap */
+  if (from < 0 || to >= n) {
+    bool shines = false;
+    for (int32_t x = from; x <= to && !shines; x++) {
+      int32_t k = vl_wrap_index(x, n, s->wrap);
+      shines = k >= 0 && (bits[k / 64] >> k % 64 & 1);
+    }
+    return shines;
+  }
+  uint64_t sum = 0;
+  for (int32_t w = from / 64; w <= to / 64; w++) {
+    uint64_t mask = ~0ull;
+    if (w == from / 64) mask &= ~0ull << from % 64;
+    if (w == to / 64) mask &= ~0ull >> (63 - to % 64);
+    sum |= bits[w] & mask;
+  }
+  return sum != 0;
+}
+
+/* The range of x of the triangle's part with low <= y <= high; empty: first > last. */
+static void band(const double x[3], const double y[3], double low, double high, double *first, double *last) {
+  *first = INFINITY, *last = -INFINITY;
+  for (int k = 0; k < 3; k++) {
+    int j = (k + 1) % 3;
+    double at[4] = {NAN, NAN, NAN, NAN};
+    if (y[k] >= low && y[k] <= high) at[0] = x[k];
+    for (int edge = 0; edge < 2; edge++) {
+      double level = edge ? high : low, d = y[j] - y[k];
+      if ((y[k] < level) != (y[j] < level)) at[1 + edge] = x[k] + (x[j] - x[k]) * ((level - y[k]) / d);
+    }
+    for (int i = 0; i < 3; i++) *first = fmin(*first, at[i]), *last = fmax(*last, at[i]); /* NAN loses */
+  }
+}
+
+static bool triangle_shines(const vlShining *s, const float uv[3][2]) {
+  double x[3], y[3], size = 0, x_low = INFINITY, x_high = -INFINITY, y_low = INFINITY, y_high = -INFINITY;
+  for (int k = 0; k < 3; k++) {
+    vlVec2 st = {uv[k][0], uv[k][1]};
+    vlTexturePoint at = {st.x, st.y, vl_vec3(0, 0, 0), vl_vec3(0, 0, 1), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
+    if (s->node) st = vl_texture_st(s->node, at);
+    x[k] = (double)st.x * s->width, y[k] = (1.0 - (double)st.y) * s->height;
+    x_low = fmin(x_low, x[k]), x_high = fmax(x_high, x[k]), y_low = fmin(y_low, y[k]), y_high = fmax(y_high, y[k]);
+    size = fmax(size, fmax(fabs(x[k]), fabs(y[k])));
+  }
+  if (!(size < 1e8) || isnan(x[0] + x[1] + x[2] + y[0] + y[1] + y[2])) return true;
+  double hair = 0.01 + 1e-5 * size; /* lookups interpolate uv in float */
+  if (y_high - y_low > 2.0 * s->height || x_high - x_low > 2.0 * s->width) return s->any;
+  int32_t from = (int32_t)floor(y_low - 0.5 - hair), to = (int32_t)floor(y_high + 0.5 + hair);
+  bool shines = false;
+  for (int32_t row = from; row <= to && !shines; row++) {
+    double first, last;
+    band(x, y, row - 0.5 - hair, row + 1.5 + hair, &first, &last);
+    if (first <= last)
+      shines = row_shines(s, row, (int32_t)floor(first - 0.5 - hair), (int32_t)floor(last + 0.5 + hair));
+  }
+  return shines;
+}
+
+bool vl_shining_face(const vlShining *s, const vlWorldShape *shape, uint32_t prim) {
+  if (!s->bits) return true;
+  static const float unit[2][4][2] = {{{0, 0}, {1, 0}, {1, 1}, {0, 0}}, {{0, 0}, {1, 0}, {0, 1}, {1, 1}}};
+  static const int parts[4][3] = {{0, 1, 2}, {1, 2, 3}, {0, 1, 3}, {0, 2, 3}}; /* a patch covers no more */
+  bool patch = shape->kind == VL_SHAPE_BILINEAR, shines = false;
+  int corners = patch ? 4 : 3;
+  const float *uvs = shape->glow_uvs ? shape->glow_uvs : shape->uvs;
+  const uint32_t *f = shape->indices + (size_t)corners * prim;
+  float uv[4][2];
+  for (int k = 0; k < corners; k++)
+    for (int i = 0; i < 2; i++) uv[k][i] = uvs ? uvs[2 * (size_t)f[k] + (size_t)i] : unit[patch][k][i];
+  for (int i = 0; i < (patch ? 4 : 1) && !shines; i++) {
+    const float(*c)[2] = (const float(*)[2])uv;
+    const float corner[3][2] = {{c[parts[i][0]][0], c[parts[i][0]][1]},
+                                {c[parts[i][1]][0], c[parts[i][1]][1]},
+                                {c[parts[i][2]][0], c[parts[i][2]][1]}};
+    shines = triangle_shines(s, corner);
+  }
+  return shines;
+}

@@ -32,6 +32,10 @@ bool report_is_quiet(void) {
   return state.verbosity == REPORT_QUIET;
 }
 
+bool report_is_verbose(void) {
+  return state.verbosity == REPORT_VERBOSE;
+}
+
 bool report_is_terminal(void) {
   return state.terminal;
 }

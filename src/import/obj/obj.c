@@ -371,7 +371,7 @@ vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, v
   size_t size;
   vlError reading;
   vl_error_clear(&reading);
-  vlResult r = vl_file_read(scene->context, path, true, &data, &size, &reading);
+  vlResult r = vl_file_read_given(scene->context, path, true, &data, &size, &reading);
   if (r != VL_OK) {
     vl_scene_fail(scene, r, (vlSource){0}, "%s", reading.message);
     return vl_scene_result(scene, error);

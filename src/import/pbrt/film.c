@@ -6,7 +6,7 @@
 #include "import/pbrt/builder.h"
 #include "import/pbrt/token.h"
 
-enum { MAX_SIDE = 1 << 20 };
+enum { MAX_SIDE = 65536 }; /* as films have */
 
 /* pbrt: pixelbounds x0 x1 y0 y1 in pixels; cropwindow the same in fractions, rounded up, and it wins. */
 static bool read_crop(vlDict *dict, vlSceneSettings *s) {
@@ -134,8 +134,8 @@ bool vl_import_film(vlImport *import) {
   vl_dict_double(&dict, "imagingratio", &ratio);
   if (import->scene->error.code != VL_OK) return false;
   if (s->width > MAX_SIDE || s->height > MAX_SIDE)
-    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: %u x %u pixels are too many", what, s->width,
-                          s->height);
+    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: %u x %u pixels, %d each way are possible", what,
+                          s->width, s->height, MAX_SIDE);
   if (strlen(output) >= sizeof s->output)
     return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: the file name is too long", what);
   snprintf(s->output, sizeof s->output, "%s", output);

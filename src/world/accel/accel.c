@@ -223,6 +223,10 @@ static RTCScene new_scene(RTCDevice device) {
   return scene;
 }
 
+static bool on_memory(void *context, ssize_t bytes, bool taken) {
+  return vl_count_foreign(context, (int64_t)bytes, taken);
+}
+
 vlResult vl_accel_build(vlWorld *world, vlError *error) {
   vlAccel *a = &world->accel;
   char config[64];
@@ -231,6 +235,7 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
   if (!device)
     return vl_fail(error, VL_ERROR_MEMORY, "Embree gives no device (error %d)", (int)rtcGetDeviceError(NULL));
   a->device = device;
+  rtcSetDeviceMemoryMonitorFunction(device, on_memory, world->context);
   AccelGeometry *geometries = vl_alloc_array(world->context, world->shapes.count + 1, sizeof *geometries);
   a->groups = vl_alloc_zero(world->context, world->groups.count, sizeof *a->groups);
   a->user_data = geometries;

@@ -132,10 +132,12 @@ bool output_part_path(const char *path, char *part, size_t size) {
 }
 
 void output_remove_part(const char *path) {
-  char part[PATH_MAX + 64], ids[PATH_MAX + 80];
+  char part[PATH_MAX + 64], ids[PATH_MAX + 80], own[PATH_MAX + 80];
   if (!output_part_path(path, part, sizeof part)) return;
   unlink(part);
-  if (output_holds_layers(path) && output_ids_path(part, ids, sizeof ids)) unlink(ids);
+  if (!output_holds_layers(path) || !output_ids_path(part, ids, sizeof ids) || !output_ids_path(path, own, sizeof own))
+    return;
+  if (strcmp(ids, own) != 0) unlink(ids); /* the same where both names were cut */
 }
 
 bool output_ids_path(const char *path, char *ids, size_t size) {

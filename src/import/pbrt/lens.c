@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "image/image.h"
+
 static const double degrees = 0.017453292519943295;
 
 static bool scene_ok(const vlDict *dict) {

@@ -87,8 +87,9 @@ static const Command help_command = {
     .name = "help",
     .usage = "[COMMAND]",
     .summary = "the options of a command",
-    .text = "Prints the commands, or what COMMAND does: its options in sections, and examples. The first word of "
-            "commands of two words (image, scene, camera) prints all of them.",
+    .text =
+        "Prints the commands, or what COMMAND does: its options in sections, and examples. The first word of "
+        "commands of two words (image, scene, camera) prints all of them.",
     .examples = "velo help render\nvelo help image diff",
     .options = no_options,
 };

@@ -25,10 +25,10 @@ void vl_file_unmap(const char *data, size_t size);
 typedef struct vlFileWriter {
   int descriptor;
   int failed_errno;
-  char path[4096];   /* as given, for messages */
-  char target[4096]; /* the file that is replaced: links followed; empty: written in place */
+  char path[4096];           /* as given, for messages */
+  char target[4096];         /* the file that is replaced: links followed; empty: written in place */
   char temporary[4096 + 64]; /* empty: it has no name yet */
-  bool replaces; /* a file is there already, with these permissions */
+  bool replaces;             /* a file is there already, with these permissions */
   mode_t mode;
   uid_t owner;
   gid_t group;

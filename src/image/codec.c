@@ -275,8 +275,7 @@ static vlResult check_layers(const vlImage *const *images, uint32_t count, vlErr
 vlResult vl_image_write_layers(const vlImage *const *images, uint32_t count, const char *path, const vlWriteDef *write,
                                vlError *error) {
   vlWriteDef def = write ? *write : vl_default_write_def();
-  if (!images || count == 0 || count > 64)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "image: needs 1 to 64 pictures");
+  if (!images || count == 0 || count > 64) return vl_fail(error, VL_ERROR_ARGUMENT, "image: needs 1 to 64 pictures");
   vlResult result = check_write(images[0], path, &def, error);
   if (result == VL_OK) result = check_layers(images, count, error);
   if (result != VL_OK) return result;

@@ -47,8 +47,8 @@ vlResult vl_codec_create(const vlImageFile *file, uint32_t width, uint32_t heigh
 /* The same for any def. */
 vlResult vl_codec_make(const vlImageFile *file, const vlImageDef *def, vlImage **image);
 
-/* Row y of the channels that are shown (vl_image_shown) as 8 bits: 8-bit pictures as they are, 16-bit ones rounded, others through sRGB's curve
- * (alpha without). scratch: width*count floats. */
+/* Row y of the channels that are shown (vl_image_shown) as 8 bits: 8-bit pictures as they are, 16-bit ones rounded,
+ * others through sRGB's curve (alpha without). scratch: width*count floats. */
 void vl_codec_row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count, float *scratch,
                        uint8_t *result);
 

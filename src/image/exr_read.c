@@ -153,8 +153,7 @@ static vlResult layout(Reader *r) {
   r->user_type = halves == r->count ? EXR_PIXEL_HALF : integers == r->count ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
   r->user_size = halves == r->count ? 2 : 4;
   if (r->user_type == EXR_PIXEL_FLOAT && integers)
-    vl_log(file->context, VL_LOG_INFO, NULL,
-           "%s: integers beside floats are read as floats, exact up to 2^24",
+    vl_log(file->context, VL_LOG_INFO, NULL, "%s: integers beside floats are read as floats, exact up to 2^24",
            file->name);
 
   int64_t width = (int64_t)r->window.max.x - r->window.min.x + 1,

@@ -62,17 +62,15 @@ static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlE
   bool errors = (def->channels & VL_CHANNEL_ERROR) != 0;
   if (!counts && !errors) return VL_OK;
   if (!def->film || (counts && !def->render))
-    return vl_fail(
-        error, VL_ERROR_ARGUMENT,
-        "ground truth: Cryptomatte, standard errors and modes other than the centre need the picture's "
-        "film and how it was rendered");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "ground truth: Cryptomatte, standard errors and modes other than the centre need the picture's "
+                   "film and how it was rendered");
   const vlFilmDef *film = vl_film_def(def->film);
   if (counts && def->render->cookie != VL_COOKIE_RENDER)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "ground truth: the render def was not made by vl_default_render_def");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: the render def was not made by vl_default_render_def");
   if (film->width != camera->width || film->height != camera->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: camera (%u x %u) and film (%u x %u) differ",
-                   camera->width, camera->height, film->width, film->height);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: camera (%u x %u) and film (%u x %u) differ", camera->width,
+                   camera->height, film->width, film->height);
   if (counts && vl_film_spp(def->film) == 0)
     return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: the film has no samples yet");
   if (errors && (!film->errors || memcmp(film->crop, def->crop, sizeof film->crop) != 0))
@@ -90,9 +88,8 @@ static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChan
     return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: no such channels: %#x", def->channels);
   const uint32_t *c = def->crop;
   if (c[0] >= c[2] || c[1] >= c[3] || c[2] > camera->width || c[3] > camera->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "ground truth: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels", c[0], c[1], c[2],
-                   c[3], camera->width, camera->height);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels",
+                   c[0], c[1], c[2], c[3], camera->width, camera->height);
   if ((unsigned)def->mode > VL_CHANNEL_MODE_COVERAGE || def->ranks < 2 || def->ranks > MAX_RANKS || def->ranks % 2)
     return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: mode %d or %u ranks: there is no such thing",
                    (int)def->mode, def->ranks);

@@ -1,5 +1,5 @@
-/* render/stop.h: how a pass over many tasks is given up: the caller's callback is asked about ten times a second, on the
- * thread that called; a deadline is seen by every worker. */
+/* render/stop.h: how a pass over many tasks is given up: the caller's callback is asked about ten times a second, on
+ * the thread that called; a deadline is seen by every worker. */
 #ifndef RENDER_STOP_H
 #define RENDER_STOP_H
 

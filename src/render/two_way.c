@@ -324,8 +324,8 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
 uint64_t vl_two_way_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def) {
   enum { VERTICES = 4 }; /* that a path leaves, about */
   uint64_t pixels = (uint64_t)film->width * film->height;
-  uint64_t paths = def->light_paths == VL_AS_MANY_AS_PIXELS ? (pixels < MOST_PATHS ? pixels : MOST_PATHS)
-                                                            : def->light_paths;
+  uint64_t paths =
+      def->light_paths == VL_AS_MANY_AS_PIXELS ? (pixels < MOST_PATHS ? pixels : MOST_PATHS) : def->light_paths;
   uint64_t photons = paths * VERTICES < MOST_PHOTONS ? paths * VERTICES : MOST_PHOTONS;
   uint64_t window = (uint64_t)(film->crop[2] - film->crop[0]) * (film->crop[3] - film->crop[1]);
   uint64_t bytes = window * sizeof(*((vlSplats *)0)->pixels);

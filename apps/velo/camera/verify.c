@@ -244,8 +244,9 @@ const Command camera_verify_command = {
         "Renders a board in many poses through the camera, finds the corners in the pictures to a hundredth of\n"
         "a pixel, and compares them with where the camera's equations, written a second time, put them. Exit\n"
         "code 1 when one is off by more than the threshold, or corners are missing.",
-    .examples = "velo camera verify --camera camera.yaml\n"
-                "velo camera verify --camera room.pbrt",
+    .examples =
+        "velo camera verify --camera camera.yaml\n"
+        "velo camera verify --camera room.pbrt",
     .options = verify_options,
     .min_operands = 0,
     .max_operands = 0,

@@ -65,10 +65,10 @@ typedef struct Section {
 } Section;
 
 typedef struct Command {
-  const char *name;    /* "image diff"; null ends a list */
-  const char *usage;   /* what follows the name: "FILE [options]" */
-  const char *summary; /* one line */
-  const char *text;    /* the help page between usage and options */
+  const char *name;     /* "image diff"; null ends a list */
+  const char *usage;    /* what follows the name: "FILE [options]" */
+  const char *summary;  /* one line */
+  const char *text;     /* the help page between usage and options */
   const char *examples; /* lines of the help page, after the options */
   const Option *options;
   const Section *sections; /* null: the options are one section */

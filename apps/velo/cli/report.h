@@ -20,6 +20,8 @@ enum {
 typedef enum Verbosity { REPORT_QUIET = -1, REPORT_NORMAL = 0, REPORT_VERBOSE = 1 } Verbosity;
 
 void report_setup(bool json, Verbosity verbosity);
+/* Out of memory is reported with what the context holds, and with the limit (0: none). Null: no longer. */
+void report_memory_of(const vlContext *context, size_t limit);
 bool report_is_json(void);
 bool report_is_quiet(void);
 bool report_is_verbose(void);

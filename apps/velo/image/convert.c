@@ -207,8 +207,9 @@ const Command image_convert_command = {
     .text =
         "Writes FILE as RESULT; the suffix of RESULT chooses the format: .exr .hdr .pfm (linear),\n"
         ".png .jpg .tga (display).",
-    .examples = "velo image convert room.exr room.png --view agx --exposure 1\n"
-                "velo image convert room.exr depth.png --channel Z --scale 1000",
+    .examples =
+        "velo image convert room.exr room.png --view agx --exposure 1\n"
+        "velo image convert room.exr depth.png --channel Z --scale 1000",
     .options = convert_options,
     .min_operands = 2,
     .max_operands = 2,

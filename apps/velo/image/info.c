@@ -212,8 +212,9 @@ const Command image_info_command = {
     .usage = "FILE [options]",
     .summary = "format, size, channels and attributes of a picture",
     .text = "Prints what FILE is and holds. Matrices are in OpenEXR's order (row vectors).",
-    .examples = "velo image info room.exr\n"
-                "velo image info --json room.exr",
+    .examples =
+        "velo image info room.exr\n"
+        "velo image info --json room.exr",
     .options = info_options,
     .min_operands = 1,
     .max_operands = 1,

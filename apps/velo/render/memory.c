@@ -10,6 +10,19 @@
 #include "cli/report.h"
 #include "render/progress.h"
 
+/* ---- the process --------------------------------------------------------------------------------------------------
+ */
+
+/* Bytes of the process now: of addresses, and of memory in use. */
+static void process_size(uint64_t *addresses, uint64_t *resident) {
+  unsigned long long pages[2] = {0, 0};
+  FILE *file = fopen("/proc/self/statm", "r");
+  if (file && fscanf(file, "%llu %llu", &pages[0], &pages[1]) != 2) pages[0] = pages[1] = 0;
+  if (file) fclose(file);
+  uint64_t page = (uint64_t)sysconf(_SC_PAGESIZE);
+  *addresses = pages[0] * page, *resident = pages[1] * page;
+}
+
 /* ---- who needs how much ------------------------------------------------------------------------------------------ */
 
 static void add(MemoryPlan *plan, const char *what, uint64_t bytes) {
@@ -68,7 +81,10 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
     layers |= output_holds_layers(outputs->paths[i]);
   }
   uint64_t values = layers ? truth_values(channels, job->film.buckets) : 0;
-  add(plan, "scene", vl_context_memory(context, NULL));
+  uint64_t held = vl_context_memory(context, NULL), addresses, resident;
+  process_size(&addresses, &resident);
+  add(plan, "program", resident > held ? resident - held : 0);
+  add(plan, "scene", held);
   add(plan, "film", film_bytes(job, frames));
   add(plan, "rendering", vl_render_memory(world, &job->film, &job->render));
   add(plan, "image", copies * pixels * (eight_bit ? 20 : 16));
@@ -77,16 +93,6 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
 }
 
 /* ---- does it fit ------------------------------------------------------------------------------------------------- */
-
-/* Bytes of the process now: of addresses, and of memory in use. */
-static void process_size(uint64_t *addresses, uint64_t *resident) {
-  unsigned long long pages[2] = {0, 0};
-  FILE *file = fopen("/proc/self/statm", "r");
-  if (file && fscanf(file, "%llu %llu", &pages[0], &pages[1]) != 2) pages[0] = pages[1] = 0;
-  if (file) fclose(file);
-  uint64_t page = (uint64_t)sysconf(_SC_PAGESIZE);
-  *addresses = pages[0] * page, *resident = pages[1] * page;
-}
 
 /* What the process may have in all, by the machine and by its control group (version 2). */
 static uint64_t machine_bytes(void) {
@@ -119,16 +125,16 @@ static int too_much(const MemoryPlan *plan, uint64_t limit, const char *who) {
 }
 
 int memory_check(const MemoryPlan *plan, uint64_t limit) {
-  uint64_t addresses, resident, held = plan->count ? plan->needs[0].bytes : 0, more = plan->total - held;
+  uint64_t addresses, resident;
   process_size(&addresses, &resident);
   if (limit && plan->total > limit) return too_much(plan, limit, "--max-memory allows");
   struct rlimit most;
-  static const int limits[] = {RLIMIT_AS, RLIMIT_DATA};
-  for (int i = 0; i < 2; i++)
-    if (getrlimit(limits[i], &most) == 0 && most.rlim_cur != RLIM_INFINITY &&
-        (i == 0 ? addresses : resident) + more > most.rlim_cur)
-      return too_much(plan, most.rlim_cur, "the process may have");
-  if (resident + more > machine_bytes()) return too_much(plan, machine_bytes(), "the machine has");
+  if (getrlimit(RLIMIT_DATA, &most) == 0 && most.rlim_cur != RLIM_INFINITY && plan->total > most.rlim_cur)
+    return too_much(plan, most.rlim_cur, "the process may have");
+  uint64_t reserved = addresses > resident ? addresses - resident : 0; /* addresses without memory: stacks, code */
+  if (getrlimit(RLIMIT_AS, &most) == 0 && most.rlim_cur != RLIM_INFINITY && plan->total + reserved > most.rlim_cur)
+    return too_much(plan, most.rlim_cur > reserved ? most.rlim_cur - reserved : 0, "the process may have");
+  if (plan->total > machine_bytes()) return too_much(plan, machine_bytes(), "the machine has");
   return -1;
 }
 

@@ -7,7 +7,7 @@
 #include "render/job.h"
 #include "render/outputs.h"
 
-enum { MEMORY_NEEDS = 8 };
+enum { MEMORY_NEEDS = 9 };
 
 typedef struct MemoryPlan {
   struct {

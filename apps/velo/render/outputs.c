@@ -157,7 +157,8 @@ static void report_progress_failure(Outputs *outputs, int i, vlResult result, co
   if (failing && !outputs->files[i].failing)
     report_warning("progress image: %s; tried again later",
                    error->message[0] ? error->message : vl_result_name(result));
-  if (!failing && outputs->files[i].failing) report_note("the progress image of %s is written again", outputs->paths[i]);
+  if (!failing && outputs->files[i].failing)
+    report_note("the progress image of %s is written again", outputs->paths[i]);
   outputs->files[i].failing = failing;
 }
 
@@ -171,8 +172,7 @@ static void keep_part(Outputs *outputs, int i, const char *part, OutputStage sta
     report_note("%s holds the image of %u samples per pixel", part, outputs->files[i].part_spp);
 }
 
-static vlResult write_one(const Outputs *outputs, const vlImage *image, bool layers, const char *path,
-                          vlError *error) {
+static vlResult write_one(const Outputs *outputs, const vlImage *image, bool layers, const char *path, vlError *error) {
   vlWriteDef write = vl_default_write_def();
   write.half = outputs->half;
   const vlImage *images[5] = {image};

@@ -62,7 +62,8 @@ static void describe(const vlProgress *now, double remaining, double rate, int r
   format_seconds(number, sizeof number, remaining);
   format_count(speed, sizeof speed, rate);
   if (isfinite(remaining)) snprintf(left, sizeof left, "  %s left", number);
-  int n = snprintf(text, size, "%u/%u spp  %s paths/s  %s elapsed%s", now->spp_done, now->spp_total, speed, elapsed, left);
+  int n =
+      snprintf(text, size, "%u/%u spp  %s paths/s  %s elapsed%s", now->spp_done, now->spp_total, speed, elapsed, left);
   if (n > room) n = snprintf(text, size, "%u/%u spp  %s elapsed%s", now->spp_done, now->spp_total, elapsed, left);
   if (n > room) n = snprintf(text, size, "%u/%u spp%s", now->spp_done, now->spp_total, left);
   if (n > room) snprintf(text, size, "%s", *left ? left + 2 : "");

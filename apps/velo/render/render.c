@@ -35,10 +35,10 @@ typedef struct Render {
   double last_write, write_cost;
   double start, render_start; /* of the command, of the first pass */
   double time_limit;          /* --time; 0: none */
-  Channels channels; /* of ground truth */
-  Frames frames;     /* of a trajectory, a rig, two eyes */
+  Channels channels;          /* of ground truth */
+  Frames frames;              /* of a trajectory, a rig, two eyes */
   MemoryPlan memory;
-  bool many;         /* there are such */
+  bool many; /* there are such */
 } Render;
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
@@ -68,8 +68,7 @@ static void list_files(const Render *render, OutputStage stage, char *text, size
   text[0] = 0;
   for (int i = 0; i < render->outputs.count; i++) {
     size_t n = strlen(text);
-    snprintf(text + n, size - n, "%s%s", i ? ", " : "",
-             output_written(&render->outputs, i, stage, part, sizeof part));
+    snprintf(text + n, size - n, "%s%s", i ? ", " : "", output_written(&render->outputs, i, stage, part, sizeof part));
   }
 }
 
@@ -189,6 +188,7 @@ static int prepare(Render *render, const Arguments *arguments) {
     return report_usage("--isa %s: this machine does not have it", v[RENDER_ISA].text);
   if (result == VL_ERROR_UNSUPPORTED || result == VL_ERROR_ARGUMENT)
     return report_usage("the environment variable VELO_ISA must be v2, v3 or v4, and the machine must have it");
+  if (result == VL_OK) report_memory_of(render->context, def.max_memory);
   return result == VL_OK ? -1 : report_error(NULL, result, NULL);
 }
 
@@ -403,6 +403,7 @@ static int run_render(const Command *command, const Arguments *arguments) {
   vl_film_destroy(render.film);
   vl_world_destroy(render.world);
   vl_scene_destroy(render.scene);
+  report_memory_of(NULL, 0);
   vl_context_destroy(render.context);
   return status;
 }
@@ -415,8 +416,9 @@ const Command render_command = {
         "Renders FILE. Options override what the file says. After the first pass, and then every ten\n"
         "seconds or so, the image is written as it is to NAME.part.EXT; when the render is done it\n"
         "replaces NAME.EXT. Ctrl-C ends the render and leaves what is done in NAME.part.EXT.",
-    .examples = "velo render room.pbrt -o room.exr -o room.png --spp 256\n"
-                "velo render model.glb --resolution 1280x720 --time 5m -o model.png",
+    .examples =
+        "velo render room.pbrt -o room.exr -o room.png --spp 256\n"
+        "velo render model.glb --resolution 1280x720 --time 5m -o model.png",
     .options = render_options,
     .sections = render_sections,
     .min_operands = 1,

@@ -198,8 +198,9 @@ const Command scene_check_command = {
         "that a mesh does not have; surfaces that give back more light than they get; a camera inside\n"
         "of a body; lights of power 0. Renders nothing.\n\n"
         "exit codes: 0 nothing but notes; 1 warnings; 3, 4, 5 an error, with which velo render would end",
-    .examples = "velo scene check room.pbrt\n"
-                "velo scene check --json --no-pictures model.glb",
+    .examples =
+        "velo scene check room.pbrt\n"
+        "velo scene check --json --no-pictures model.glb",
     .options = options,
     .min_operands = 1,
     .max_operands = 1,

@@ -78,8 +78,9 @@ const Command scene_convert_command = {
     .text =
         "Reads A (.pbrt, .gltf, .glb, .obj, .ply) and writes it as B, in the format of its suffix. What B's format\n"
         "cannot hold, or only nearly, is told: one line for each kind, with how often it was met.",
-    .examples = "velo scene convert room.pbrt room.glb\n"
-                "velo scene convert model.gltf model.pbrt",
+    .examples =
+        "velo scene convert room.pbrt room.glb\n"
+        "velo scene convert model.gltf model.pbrt",
     .options = convert_options,
     .min_operands = 2,
     .max_operands = 2,

@@ -233,8 +233,9 @@ const Command scene_info_command = {
         "Reads a scene and prints what it describes; builds and renders nothing. The power of a light is the "
         "luminance\n"
         "that it sends out, over area and solid angle; of distant and infinite ones into a sphere round the scene.",
-    .examples = "velo scene info room.pbrt\n"
-                "velo scene info --json model.glb",
+    .examples =
+        "velo scene info room.pbrt\n"
+        "velo scene info --json model.glb",
     .options = options,
     .min_operands = 1,
     .max_operands = 1,

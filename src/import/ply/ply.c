@@ -34,7 +34,7 @@ static bool read_text(vlPlyReader *r, double *value) {
     r->at = stop;
     return true;
   }
-  return vl_ply_fail(r, "expected a number, found \"%.*s\"", (int)(stop - start < 30 ? stop - start : 30), start);
+  return vl_ply_fail(r, "expected a number, found \"%.*s\"", (int)(stop - start < 12 ? stop - start : 12), start);
 }
 
 /* A binary value whose bytes are there. */

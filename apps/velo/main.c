@@ -23,8 +23,9 @@ static void print_overview(void) {
   printf("  %-15s  %s\n", "help COMMAND", "the options of a command");
   printf("  %-15s  %s\n\n", "--version", "the version");
   printf(
-      "exit codes: 0 done, 1 findings of scene check, image diff or check over a threshold, or out of\n"
-      "memory, 2 wrong command line, 3 wrong scene or picture, 4 missing file, 5 reading or writing failed,\n"
+      "exit codes: 0 done, 1 findings of scene check, image diff or check over a\n"
+      "threshold, or out of memory, 2 wrong command line, 3 wrong scene or image,\n"
+      "4 missing file, 5 reading or writing failed,\n"
       "128 + signal stopped by it: 129 SIGHUP, 130 Ctrl-C, 143 SIGTERM\n");
 }
 

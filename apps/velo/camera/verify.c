@@ -239,7 +239,7 @@ static const Option verify_options[] = {
 const Command camera_verify_command = {
     .name = "camera verify",
     .usage = "--camera FILE [options]",
-    .summary = "render a chessboard through a camera and measure where its corners are",
+    .summary = "render a chessboard through a camera, measure its corners",
     .text =
         "Renders a board in many poses through the camera, finds the corners in the pictures to a hundredth of\n"
         "a pixel, and compares them with where the camera's equations, written a second time, put them. Exit\n"

@@ -77,10 +77,12 @@ static void print_examples(const char *text) {
 }
 
 void options_print_help(const Command *command) {
-  printf("usage: velo %s %s\n\n", command->name, command->usage);
+  int column = printf("usage: velo %s", command->name);
+  print_wrapped(command->usage, column + 1, column);
+  printf("\n");
   print_wrapped(command->text, 0, 0);
-  if (command->options && command->options->name && !command->sections) printf("\noptions:\n");
-  for (const Option *o = command->options; o && o->name; o++) {
+  if (!command->sections) printf("\noptions:\n");
+  for (const Option *o = command->options; o->name; o++) {
     for (const Section *s = command->sections; s && s->title; s++)
       if (s->first == o->id) printf("\n%s:\n", s->title);
     print_option(o);

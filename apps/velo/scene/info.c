@@ -228,7 +228,7 @@ static const Option options[] = {
 const Command scene_info_command = {
     .name = "scene info",
     .usage = "FILE [options]",
-    .summary = "what a scene holds: counts, bounds, camera, lights, unused names",
+    .summary = "what a scene holds: counts, bounds, camera, lights",
     .text =
         "Reads a scene and prints what it describes; builds and renders nothing. The power of a light is the "
         "luminance\n"

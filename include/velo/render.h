@@ -127,7 +127,7 @@ typedef struct vlRenderDef {
   double merge_radius;
   uint32_t light_paths;
   /* Seconds, 0: none. Passes are sized by what is left, and one that is not done by then is dropped; but the first
-   * pass of a film is finished. The callback may change it while the render runs. */
+   * pass of each call is finished. The callback may change it while the render runs. */
   double time_limit;
   vlProgressFn *progress;
   void *progress_user;

@@ -231,7 +231,7 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
     r->first_sample = vl_film_spp(film);
     double end = def->time_limit > 0 ? r->start + def->time_limit : 0;
     double left = end > 0 ? end - vl_seconds() : INFINITY;
-    r->stop.deadline = r->first_sample > 0 ? end : 0;
+    r->stop.deadline = r->first_sample > r->spp_before ? end : 0;
     r->pass_samples = r->two_way ? 1 : pass_size(r->first_sample, def->spp, seconds_per_sample, left);
     vl_render_choose_blocks(r);
     if (r->two_way) r->film_rays.shared = vl_two_way_time(r->two_way, r->first_sample);

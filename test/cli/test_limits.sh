@@ -117,6 +117,12 @@ texture ../elsewhere/otu.png >near.pbrt
 run "$V" render near.pbrt --sandbox . $small
 [ "$code" = 4 ] && [[ $err != *'"out.png"'* ]] && pass sandbox_tells_no_names || { fail sandbox_tells_no_names; show near; }
 refused 4 sandbox_that_is_none 'no such folder' "$V" render in.png.pbrt --sandbox nowhere $small
+for command in 'scene check' 'scene info'; do
+  run "$V" $command include.pbrt --sandbox .
+  [ "$code" = 5 ] && pass "sandbox_$command" || { fail "sandbox_$command"; show "$command"; }
+done
+run "$V" scene convert link.png.pbrt ../converted.gltf --sandbox .
+[ "$code" = 5 ] && pass sandbox_convert || { fail "sandbox_convert ($code)"; show convert; }
 cd ..
 
 # ---- what messages repeat of files -----------------------------------------------------------------------------------

@@ -134,8 +134,8 @@ bool vl_import_film(vlImport *import) {
   vl_dict_double(&dict, "imagingratio", &ratio);
   if (import->scene->error.code != VL_OK) return false;
   if (s->width > MAX_SIDE || s->height > MAX_SIDE)
-    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: %u x %u pixels, %d each way are possible", what,
-                          s->width, s->height, MAX_SIDE);
+    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: %u x %u pixels are too many, at most %d each way",
+                          what, s->width, s->height, MAX_SIDE);
   if (strlen(output) >= sizeof s->output)
     return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: the file name is too long", what);
   snprintf(s->output, sizeof s->output, "%s", output);

@@ -206,6 +206,7 @@ static int check_sizes(const Render *render) {
   vlResult result = vl_film_create(render->context, film, &film_made);
   vl_film_destroy(film_made);
   if (result == VL_OK) return -1;
+  if (result == VL_ERROR_MEMORY) return report_error(NULL, result, render->job.path);
   return report_failure(STATUS_SCENE, "%s: no film of %u x %u pixels with these settings is possible: %s",
                         render->job.path, film->width, film->height, vl_result_name(result));
 }

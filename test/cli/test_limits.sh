@@ -42,6 +42,15 @@ run "$V" render scene.pbrt --spp 1 -v -o a.exr
 expect_text memory_in_notes 'memory: '
 expect_text peak_in_notes 'at most, '
 
+# Whatever the process may have, it ends with an image or with one line.
+wrong=
+for kilobytes in 90000 150000 180000 205000 210000 220000 250000 300000; do
+  run bash -c "ulimit -v $kilobytes; exec \"\$0\" \"\$@\"" "$V" render scene.pbrt --resolution 300x300 --spp 1 --quiet -o limit.exr
+  [ "$code" = 0 ] || { [ "$code" = 1 ] && [ "$(printf '%s\n' "$err" | wc -l)" = 1 ]; } || wrong="$wrong $kilobytes:$code"
+done
+[ -z "$wrong" ] && pass limits_of_the_process || fail "limits_of_the_process ($wrong)"
+[ -z "$(find . -name '*.tmp')" ] && pass no_temporary_files || fail no_temporary_files
+
 python3 - <<'PY'
 import struct, zlib
 def png(name, width, height):

@@ -225,11 +225,12 @@ static RTCScene new_scene(RTCDevice device) {
 }
 
 /* Embree's threads end the process when they get no memory while they build. So it is looked before whether the process
- * may have as many addresses as they take: a reservation costs nothing and is given back. */
+ * may have as many addresses as they take, with stacks and the heaps of threads: a reservation costs nothing and is
+ * given back. */
 static bool has_room(const vlWorld *world) {
   size_t primitives = 0;
   for (size_t i = 0; i < world->shapes.count; i++) primitives += (size_t)world->shapes.items[i].faces + 1;
-  size_t bytes = ((size_t)64 << 20) + ((size_t)24 << 20) * vl_context_threads(world->context) + 256 * primitives;
+  size_t bytes = ((size_t)64 << 20) + ((size_t)72 << 20) * vl_context_threads(world->context) + 256 * primitives;
   void *block = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (block == MAP_FAILED) return false;
   munmap(block, bytes);

@@ -75,8 +75,8 @@ static void chief_rays(const vlCameraCompiled *c, uint32_t count, vlDirections *
   }
 }
 
-void VL_HOT(vl_camera_optics)(const vlCameraCompiled *c, uint32_t count, const float *lens_u, const float *lens_v,
-                              vlDirections *d, double *seen, float *weight) {
+void vl_camera_optics(const vlCameraCompiled *c, uint32_t count, const float *lens_u, const float *lens_v,
+                      vlDirections *d, double *seen, float *weight) {
   const vlOptics *o = c->optics;
   Bundle b;
   if (!c->has_lens) {

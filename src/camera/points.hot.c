@@ -44,7 +44,7 @@ static inline __attribute__((always_inline)) void plane_loop(vlProjection kind, 
   }
 }
 
-void VL_HOT(vl_camera_directions)(const vlCameraCompiled *c, uint32_t count, vlDirections *d) {
+void vl_camera_directions(const vlCameraCompiled *c, uint32_t count, vlDirections *d) {
   const double skew_ratio = c->skew_ratio, inv_fx = c->inv_fx, inv_fy = c->inv_fy;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
@@ -94,8 +94,7 @@ static inline __attribute__((always_inline)) void plain_loop(const int orthograp
   }
 }
 
-void VL_HOT(vl_camera_unproject_chunk)(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in,
-                                       vlCameraPoints *out) {
+void vl_camera_unproject_chunk(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in, vlCameraPoints *out) {
   uint32_t count = VL_PAD(n);
   if (c->optics) {
     vl_optics_unproject_chunk(c, count, in, out);
@@ -110,7 +109,7 @@ void VL_HOT(vl_camera_unproject_chunk)(const vlCameraCompiled *c, uint32_t n, co
       vlPlanePoint p = vl_pixel_to_plane(c, d.x[i], d.y[i]);
       d.face[i] = vl_cube_cell(p.x, p.y);
     }
-    VL_HOT(vl_camera_directions)(c, count, &d);
+    vl_camera_directions(c, count, &d);
     if (c->eye_circle != 0.0)
       place_loop(1, c, count, d.dx, d.dy, d.dz, d.valid, out);
     else
@@ -136,8 +135,8 @@ static inline __attribute__((always_inline)) void project_loop(vlProjection kind
   }
 }
 
-void VL_HOT(vl_camera_project_chunk)(const vlCameraCompiled *camera, uint32_t n, const vlCameraPoints *in,
-                                     vlCameraPixels *out) {
+void vl_camera_project_chunk(const vlCameraCompiled *camera, uint32_t n, const vlCameraPoints *in,
+                             vlCameraPixels *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   uint32_t count = VL_PAD(n);
   if (c->optics) {

@@ -112,7 +112,7 @@ static void staged_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
       d.x[i] = x + (double)film_x[i];
       d.y[i] = y + (double)film_y[i];
     }
-    VL_HOT(vl_camera_directions)(c, n, &d);
+    vl_camera_directions(c, n, &d);
     if (c->shaped) {
       float x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK];
       vl_lens_points(c, n, s->lens_u + first, s->lens_v + first, x, y);
@@ -165,8 +165,7 @@ static void optics_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
       d.x[i] = (double)s->pixel_x[k] - c->cx + (double)s->film_x[k];
       d.y[i] = (double)s->pixel_y[k] - c->cy + (double)s->film_y[k];
     }
-    VL_HOT(vl_camera_optics)
-    (c, n, s->lens_u + first, s->lens_v + first, &d, seen, r->weight ? r->weight + first : NULL);
+    vl_camera_optics(c, n, s->lens_u + first, s->lens_v + first, &d, seen, r->weight ? r->weight + first : NULL);
     place_loop(OPTICS, 0, c, first, n, &d, s, r);
     for (uint32_t i = 0; r->valid && i < n; i++) r->valid[first + i] = (float)seen[i];
   }
@@ -209,9 +208,7 @@ static void rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s
   } else {
     still_rays(c, n, s, r);
   }
-  if (c->when.timed) VL_HOT(vl_camera_time_rays)(c, VL_PAD(n), s, r);
+  if (c->when.timed) vl_camera_time_rays(c, VL_PAD(n), s, r);
 }
 
-extern const vlCameraKernels VL_HOT(vl_camera_kernels);
-const vlCameraKernels VL_HOT(vl_camera_kernels) = {rays, VL_HOT(vl_camera_unproject_chunk),
-                                                   VL_HOT(vl_camera_project_chunk)};
+const vlCameraKernels vl_camera_kernel_table = {rays, vl_camera_unproject_chunk, vl_camera_project_chunk};

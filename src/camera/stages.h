@@ -12,19 +12,16 @@ typedef struct vlDirections {
 } vlDirections;
 
 /* count is padded. */
-void VL_HOT(vl_camera_directions)(const vlCameraCompiled *c, uint32_t count, vlDirections *d);
+void vl_camera_directions(const vlCameraCompiled *c, uint32_t count, vlDirections *d);
 /* Times of n rays (n padded), of a camera whose `when` is timed; takes those of a camera that moves from camera space
  * to the world. */
-void VL_HOT(vl_camera_time_rays)(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s,
-                                 const vlCameraRays *r);
-void VL_HOT(vl_camera_unproject_chunk)(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in,
-                                       vlCameraPoints *out);
-void VL_HOT(vl_camera_project_chunk)(const vlCameraCompiled *c, uint32_t n, const vlCameraPoints *in,
-                                     vlCameraPixels *out);
+void vl_camera_time_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r);
+void vl_camera_unproject_chunk(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in, vlCameraPoints *out);
+void vl_camera_project_chunk(const vlCameraCompiled *c, uint32_t n, const vlCameraPoints *in, vlCameraPixels *out);
 /* A lens of many elements. In: d->x, d->y, pixels from the principal point; lens_u, lens_v. Out: rays in camera space,
  * unit length: d->x, d->y are where they start in the plane z = 0; d->valid: 0 where the lens stops them; seen: 0 where
  * no light comes at all; weight (may be null): what they count. count is padded. */
-void VL_HOT(vl_camera_optics)(const vlCameraCompiled *c, uint32_t count, const float *lens_u, const float *lens_v,
-                              vlDirections *d, double *seen, float *weight);
+void vl_camera_optics(const vlCameraCompiled *c, uint32_t count, const float *lens_u, const float *lens_v,
+                      vlDirections *d, double *seen, float *weight);
 
 #endif

@@ -42,8 +42,7 @@ static void move_chunk(const vlCameraTime *time, uint32_t count, const double *w
   }
 }
 
-void VL_HOT(vl_camera_time_rays)(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s,
-                                 const vlCameraRays *r) {
+void vl_camera_time_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, const vlCameraRays *r) {
   const vlCameraTime *t = &c->when;
   double when[VL_CAMERA_CHUNK];
   for (uint32_t first = 0; first < count; first += VL_CAMERA_CHUNK) {

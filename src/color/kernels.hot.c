@@ -183,8 +183,7 @@ static void sigmoid_from_light(const vlRgbTable *table, uint32_t n, const float 
   }
 }
 
-extern const vlColorKernels VL_HOT(vl_color_kernels);
-const vlColorKernels VL_HOT(vl_color_kernels) = {
+const vlColorKernels vl_color_kernel_table = {
     visible_wavelengths, uniform_wavelengths, rgb_from_radiance, sigmoid_eval,       light_eval,
     dense_eval,          dense_gather,        sigmoid_from_rgb,  sigmoid_from_light,
 };

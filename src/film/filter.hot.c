@@ -86,5 +86,4 @@ static void sample(const vlFilterTable *filter, uint32_t n, const float *u, cons
   }
 }
 
-extern const vlFilterKernels VL_HOT(vl_filter_kernels);
-const vlFilterKernels VL_HOT(vl_filter_kernels) = {sample};
+const vlFilterKernels vl_filter_kernel_table = {sample};

@@ -173,61 +173,59 @@ typedef struct vlTracing {
   bool from_light; /* the paths are light's */
 } vlTracing;
 
-#ifdef VL_ISA_SUFFIX
 /* ---- stages ------------------------------------------------------------------------------------------------------ */
 
 /* Ids and materials of what the n rays of a meet (hits_a); camera: the first rays, with their t_min and t_max. */
-void VL_HOT(vl_stage_hits)(vlTracing *t, uint32_t n, bool camera);
+void vl_stage_hits(vlTracing *t, uint32_t n, bool camera);
 /* Ids of what the n rays of a meet (hits_a); camera: with the batch's t_min and t_max. */
-void VL_HOT(vl_closest_hits)(vlTracing *t, uint32_t n, bool camera);
+void vl_closest_hits(vlTracing *t, uint32_t n, bool camera);
 /* Lane i's ray once more, from t_min on (t_max: the batch's row, or null): into h, and counted. */
-void VL_HOT(vl_closest_beyond)(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min, const float *t_max);
+void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min, const float *t_max);
 /* The material that a hit really has, where it is mixed. */
-uint32_t VL_HOT(vl_hit_material)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
+uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
 /* Adds the light that the rays of a run into: sky and glowing surfaces. */
-void VL_HOT(vl_stage_emission)(vlTracing *t, uint32_t n);
+void vl_stage_emission(vlTracing *t, uint32_t n);
 /* The batch's alpha, from its camera rays' hits. */
-void VL_HOT(vl_stage_alpha)(vlTracing *t);
+void vl_stage_alpha(vlTracing *t);
 /* Paths of a that hit something go to b, those of one material together. Returns how many. */
-uint32_t VL_HOT(vl_stage_sort)(vlTracing *t, uint32_t n);
+uint32_t vl_stage_sort(vlTracing *t, uint32_t n);
 /* Surfaces, materials, frames of the n sorted hits. */
-void VL_HOT(vl_stage_shade)(vlTracing *t, uint32_t n);
+void vl_stage_shade(vlTracing *t, uint32_t n);
 /* Path order[k] of a becomes path k of b. */
-void VL_HOT(vl_permute_paths)(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n);
+void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n);
 /* Where the world asks for it: wider lobes for those of the n shaded lanes whose paths were scattered by more than
  * mirrors (regularize.hot.c); and notes that the path of a lane of the batch was. */
-void VL_HOT(vl_stage_regularize)(vlTracing *t, uint32_t n);
+void vl_stage_regularize(vlTracing *t, uint32_t n);
 static inline void vl_note_scattered(const vlTracing *t, uint32_t lane) {
   if (t->world->def.regularize) t->s->scattered[lane] = 1;
 }
 /* The BSDFs of the n shaded lanes for the directions of their light samples, to shade.value and shade.pdf. */
-void VL_HOT(vl_stage_light_bsdf)(vlTracing *t, uint32_t n);
+void vl_stage_light_bsdf(vlTracing *t, uint32_t n);
 /* One light sample for each of n paths on s->surface, by the random numbers of `dimension`. */
-void VL_HOT(vl_stage_light_samples)(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension);
+void vl_stage_light_samples(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension);
 /* Samples the BSDFs of the n lanes of b and writes the paths that go on into a: path k was lane s->order[k]. Returns
  * how many. depth: which bounce this is, from 1. */
-uint32_t VL_HOT(vl_stage_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
-void VL_HOT(vl_path_tracer)(vlTracing *t);
-void VL_HOT(vl_volume_tracer)(vlTracing *t); /* volume.hot.c: through participating media, and bodies */
+uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
+void vl_path_tracer(vlTracing *t);
+void vl_volume_tracer(vlTracing *t); /* volume.hot.c: through participating media, and bodies */
 /* Those of the n paths of a (path k from lane s->order[k] of the surfaces, sampled just now) that went into a body of a
  * subsurface material leave it again, with light where they do; or end. Returns how many of all go on. */
-uint32_t VL_HOT(vl_stage_subsurface)(vlTracing *t, uint32_t n, uint32_t depth);
+uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth);
 
 /* The surfaces that paths->o, d meet, from ids alone. */
-void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits,
-                              vlCorners *corners, vlSurface *surface);
+void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits, vlCorners *corners,
+                      vlSurface *surface);
 /* The footprints' axes in uv, of surfaces that are there. */
-void VL_HOT(vl_stage_footprints)(uint32_t n, const vlPaths *paths, vlSurface *surface);
+void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *surface);
 /* Textures, bump and normal maps, frames, wo, parameters; runs: lanes [first, last) of one material. */
-void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material,
-                               vlTraceScratch *s);
-void VL_HOT(vl_stage_frames)(uint32_t n, const vlPaths *paths, const vlSurface *surface, vlShade *shade);
+void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s);
+void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *surface, vlShade *shade);
 /* Which light each lane asks: light->light and light->pmf. */
-void VL_HOT(vl_stage_light_choice)(const vlLightTree *tree, uint32_t n, const vlSurface *surface, const float *u,
-                                   vlLightSamples *light);
+void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *surface, const float *u,
+                           vlLightSamples *light);
 /* One light sample for each lane. */
-void VL_HOT(vl_stage_lights)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *surface,
-                             const float *u_choice, const float *u, const float *v, vlLightSamples *light);
+void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *surface,
+                     const float *u_choice, const float *u, const float *v, vlLightSamples *light);
 
 /* One surface point in scalar, for the few lanes that need it alone (hit lights, mixed materials). t: as in vlHits. */
 typedef struct vlPoint {
@@ -240,17 +238,17 @@ static inline float vl_past_surface(const vlPoint *at, vlVec3 d, float t_min) {
   return vl_max(at->t, t_min) + vl_max(margin, 1e-30f);
 }
 /* The point that lane i's ray meets. */
-vlPoint VL_HOT(vl_hit_point)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
-vlPoint VL_HOT(vl_point_at_time)(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
-                                 uint32_t instance, float t);
-static inline vlPoint VL_HOT(vl_point_at)(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
-                                          uint32_t instance, float t) {
-  return VL_HOT(vl_point_at_time)(world, 0.0f, o, d, shape, prim, instance, t);
+vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
+vlPoint vl_point_at_time(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
+                         uint32_t instance, float t);
+static inline vlPoint vl_point_at(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
+                                  uint32_t instance, float t) {
+  return vl_point_at_time(world, 0.0f, o, d, shape, prim, instance, t);
 }
 
 /* Emitted radiance at 4 channels: of a light's colour (image: at s, t of its picture). */
-void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *emitted, const float lambda[4], float s, float t,
-                           bool sky, float out[4]);
+void vl_emitted_at(const vlWorld *world, const vlEmitted *emitted, const float lambda[4], float s, float t, bool sky,
+                   float out[4]);
 /* A light that a ray has run into. pdf: of light sampling, from where the ray began, for the direction of the ray; 0
  * after what is specular. */
 typedef struct vlMetLight {
@@ -259,21 +257,19 @@ typedef struct vlMetLight {
   vlPoint at; /* of area lights */
 } vlMetLight;
 /* Infinite light k of the world; the surface that glows at hit i: false where it is dark on that side. */
-vlMetLight VL_HOT(vl_meet_sky)(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k);
-bool VL_HOT(vl_meet_glow)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlMetLight *met);
+vlMetLight vl_meet_sky(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k);
+bool vl_meet_glow(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlMetLight *met);
 /* uv of the emission's picture at a point of an area light that a ray has met. */
-vlVec2 VL_HOT(vl_glow_uv)(const vlWorld *world, const vlWorldLight *light, const vlPoint *at);
+vlVec2 vl_glow_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint *at);
 /* Radiance of a light that a ray from o in direction d misses everything to see; and the density of sampling it. */
-void VL_HOT(vl_infinite_at)(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d, const float lambda[4],
-                            float out[4]);
-float VL_HOT(vl_infinite_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d);
+void vl_infinite_at(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d, const float lambda[4],
+                    float out[4]);
+float vl_infinite_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d);
 /* How much of a goniometric or projection light's colour its picture lets out towards -w, and where on a slide it is.
  */
-float VL_HOT(vl_beam)(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st);
+float vl_beam(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st);
 /* Density, per solid angle from `from`, of sampling this point of an area light (choice not included). */
-float VL_HOT(vl_area_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at);
-
-#endif
+float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at);
 
 /* Element i of a to k of b. */
 static inline void vl_path_copy(const vlPaths *a, uint32_t i, vlPaths *b, uint32_t k) {

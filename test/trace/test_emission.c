@@ -12,7 +12,6 @@
 
 #include "statistics.h"
 
-#define VL_ISA_SUFFIX v2
 #include "trace/two_way/stages.h"
 #include "velo/velo.h"
 
@@ -60,7 +59,7 @@ static vlEmission one(const Fixture *f, statRng *rng) {
   const float lambda[4] = {0, 0, 0, 0};
   float u[5];
   for (int i = 0; i < 5; i++) u[i] = stat_float(rng);
-  return VL_HOT(vl_emission_sample)(f->world, &f->way, lambda, u[0], u[1], u[2], u[3], u[4]);
+  return vl_emission_sample(f->world, &f->way, lambda, u[0], u[1], u[2], u[3], u[4]);
 }
 
 /* Mean of the flux, in standard errors from what it shall be. `slack`: share by which the expectation may be off. */
@@ -87,8 +86,8 @@ static void density_is_told(Fixture *f, const char *what, unsigned seed) {
     vlPoint at;
     memset(&at, 0, sizeof at);
     at.p = e.at, at.g = at.n = e.n;
-    double told = (double)VL_HOT(vl_emission_density)(f->world, &f->way, e.light, vl_neg(e.d), 1.0f,
-                                                      light->kind == VL_WL_AREA ? &at : NULL);
+    double told = (double)vl_emission_density(f->world, &f->way, e.light, vl_neg(e.d), 1.0f,
+                                              light->kind == VL_WL_AREA ? &at : NULL);
     if (!(fabs(told - (double)e.density) <= 1e-4 * told))
       fail_msg("%s: density %g with the path, %g told", what, (double)e.density, told);
   }

@@ -13,7 +13,6 @@
 
 #include "statistics.h"
 
-#define VL_ISA_SUFFIX v2
 #include "trace/stages.h"
 #include "velo/velo.h"
 
@@ -73,15 +72,14 @@ static double density(void *user, const double d[3]) {
   for (size_t k = 0; k < f->world->infinite_lights.count; k++) {
     uint32_t index = f->world->infinite_lights.items[k];
     pdf += (double)vl_light_pmf(&f->world->tree, f->p, f->n, index) *
-           VL_HOT(vl_infinite_pdf)(f->world, &f->world->lights.items[index], f->p, dir);
+           vl_infinite_pdf(f->world, &f->world->lights.items[index], f->p, dir);
   }
   if (shape == VL_NONE || f->world->shapes.items[shape].first_light == VL_NONE) return pdf;
   uint32_t index = f->world->shapes.items[shape].first_light + prim;
   const vlWorldLight *light = &f->world->lights.items[index];
-  vlPoint at = VL_HOT(vl_point_at)(f->world, f->p, dir, shape, prim, instance, t);
+  vlPoint at = vl_point_at(f->world, f->p, dir, shape, prim, instance, t);
   if (vl_dot(at.g, dir) >= 0 && !f->world->emitted.items[light->emitted].two_sided) return pdf;
-  return pdf +
-         (double)VL_HOT(vl_area_pdf)(f->world, light, f->p, &at) * vl_light_pmf(&f->world->tree, f->p, f->n, index);
+  return pdf + (double)vl_area_pdf(f->world, light, f->p, &at) * vl_light_pmf(&f->world->tree, f->p, f->n, index);
 }
 
 /* Light samples weighed by 1 / pdf measure the solid angle of what they reach in each cell of the sphere; uniform
@@ -117,7 +115,7 @@ static uint32_t sample_all(Fixture *f, Cell *cells, unsigned seed) {
       s->surface.nx[i] = f->n.x, s->surface.ny[i] = f->n.y, s->surface.nz[i] = f->n.z;
       s->shade.u0[i] = stat_float(&rng), s->shade.u1[i] = stat_float(&rng), s->shade.u2[i] = stat_float(&rng);
     }
-    VL_HOT(vl_stage_lights)(f->world, VL_BATCH, &s->b, &s->surface, s->shade.u0, s->shade.u1, s->shade.u2, &s->light);
+    vl_stage_lights(f->world, VL_BATCH, &s->b, &s->surface, s->shade.u0, s->shade.u1, s->shade.u2, &s->light);
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       const vlLightSamples *l = &s->light;
       if (!(l->pdf[i] > 0)) continue;

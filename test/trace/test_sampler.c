@@ -262,8 +262,8 @@ static void test_bits(void **state) {
     for (uint32_t spp = 1; spp < 400; spp = spp * 3 + 1) {
       vlSampler s;
       vl_sampler_init(&s, (vlSamplerKind)kind, 123, 65536, 65536, spp);
-      vl_sampler_kernels_v2.get_2d(&s, BATCH, px, py, index, 6, ru, rv);
-      vl_sampler_kernels_v2.get_1d(&s, BATCH, px, py, index, 8, rw);
+      vl_sampler_kernel_table.get_2d(&s, BATCH, px, py, index, 6, ru, rv);
+      vl_sampler_kernel_table.get_1d(&s, BATCH, px, py, index, 8, rw);
       for (vlIsa isa = VL_ISA_V2; isa <= vl_isa_best(); isa++) {
         const vlSamplerKernels *k = vl_sampler_kernels(isa);
         k->get_2d(&s, BATCH, px, py, index, 6, u_, v_);
@@ -280,9 +280,9 @@ static void test_bits(void **state) {
       if (kind != VL_SAMPLER_REGULAR || spp > 4) { /* seeds and dimensions differ */
         vlSampler t = s;
         t.seed++;
-        vl_sampler_kernels_v2.get_2d(&t, BATCH, px, py, index, 6, u_, v_);
+        vl_sampler_kernel_table.get_2d(&t, BATCH, px, py, index, 6, u_, v_);
         assert_true(memcmp(ru, u_, sizeof u_) != 0);
-        vl_sampler_kernels_v2.get_2d(&s, BATCH, px, py, index, 4, u_, v_);
+        vl_sampler_kernel_table.get_2d(&s, BATCH, px, py, index, 4, u_, v_);
         assert_true(memcmp(ru, u_, sizeof u_) != 0);
       }
     }

@@ -219,8 +219,8 @@ PASS combine(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, vlBsdfDire
   }
 }
 
-void VL_HOT(vl_bsdf_coat_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                               float *const value[4], float *pdf) {
+void vl_bsdf_coat_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
+                       float *const value[4], float *pdf) {
   Lanes lanes;
   for (uint32_t first = 0; first < n; first += CHUNK) {
     Slice s = slice_of(params, n, first);
@@ -293,9 +293,9 @@ PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
   }
 }
 
-void VL_HOT(vl_bsdf_coat_sample)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                                 const float *u, const float *v, vlBsdfDirections wi, float *const weight[4],
-                                 float *pdf, uint32_t *flags, float *eta_scale) {
+void vl_bsdf_coat_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
+                         const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+                         uint32_t *flags, float *eta_scale) {
   Lanes lanes;
   for (uint32_t first = 0; first < n; first += CHUNK) {
     Slice s = slice_of(params, n, first);

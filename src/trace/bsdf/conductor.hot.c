@@ -1,8 +1,8 @@
 /* trace/bsdf/conductor.hot.c: metal, smooth or of GGX microfacets, single scattering (pbrt book 9.3.6, 9.6.5). */
 #include "trace/bsdf/local.h"
 
-void VL_HOT(vl_bsdf_conductor_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                                    float *const value[4], float *pdf) {
+void vl_bsdf_conductor_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
+                            float *const value[4], float *pdf) {
   const float *ox = wo.x, *oy = wo.y, *oz = wo.z, *ix = wi.x, *iy = wi.y, *iz = wi.z;
   const float *ax = params->alpha_x, *ay = params->alpha_y;
   const float *e0 = params->eta[0], *e1 = params->eta[1], *e2 = params->eta[2], *e3 = params->eta[3];
@@ -30,9 +30,9 @@ void VL_HOT(vl_bsdf_conductor_eval)(uint32_t n, const vlBsdfParams *params, vlBs
   }
 }
 
-void VL_HOT(vl_bsdf_conductor_sample)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                                      const float *u, const float *v, vlBsdfDirections wi, float *const weight[4],
-                                      float *pdf, uint32_t *flags, float *eta_scale) {
+void vl_bsdf_conductor_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
+                              const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+                              uint32_t *flags, float *eta_scale) {
   (void)u_lobe;
   const float *ox = wo.x, *oy = wo.y, *oz = wo.z, *ax = params->alpha_x, *ay = params->alpha_y;
   const float *e0 = params->eta[0], *e1 = params->eta[1], *e2 = params->eta[2], *e3 = params->eta[3];

@@ -3,8 +3,8 @@
  * the sample's weight G/G1 for both, for transmission over eta^2: radiance is squeezed into a smaller solid angle. */
 #include "trace/bsdf/local.h"
 
-void VL_HOT(vl_bsdf_dielectric_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                                     float *const value[4], float *pdf) {
+void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
+                             float *const value[4], float *pdf) {
   const float *ox = wo.x, *oy = wo.y, *oz = wo.z, *ix = wi.x, *iy = wi.y, *iz = wi.z;
   const float *ax = params->alpha_x, *ay = params->alpha_y, *index = params->eta_s;
   float *v0 = value[0], *v1 = value[1], *v2 = value[2], *v3 = value[3];
@@ -46,9 +46,9 @@ void VL_HOT(vl_bsdf_dielectric_eval)(uint32_t n, const vlBsdfParams *params, vlB
   }
 }
 
-void VL_HOT(vl_bsdf_dielectric_sample)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                                       const float *u, const float *v, vlBsdfDirections wi, float *const weight[4],
-                                       float *pdf, uint32_t *flags, float *eta_scale) {
+void vl_bsdf_dielectric_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
+                               const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+                               uint32_t *flags, float *eta_scale) {
   const float *ox = wo.x, *oy = wo.y, *oz = wo.z;
   const float *ax = params->alpha_x, *ay = params->alpha_y, *index = params->eta_s;
   float *ix = wi.x, *iy = wi.y, *iz = wi.z;

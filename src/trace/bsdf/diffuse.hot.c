@@ -2,8 +2,8 @@
  * whose inner reflections are summed (pbrt book 9.2, 9.5.1). */
 #include "trace/bsdf/local.h"
 
-void VL_HOT(vl_bsdf_diffuse_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                                  float *const value[4], float *pdf) {
+void vl_bsdf_diffuse_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
+                          float *const value[4], float *pdf) {
   const float *oz = wo.z, *iz = wi.z;
   const float *r0 = params->reflectance[0], *r1 = params->reflectance[1];
   const float *r2 = params->reflectance[2], *r3 = params->reflectance[3];
@@ -22,9 +22,9 @@ void VL_HOT(vl_bsdf_diffuse_eval)(uint32_t n, const vlBsdfParams *params, vlBsdf
   }
 }
 
-void VL_HOT(vl_bsdf_diffuse_sample)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                                    const float *u, const float *v, vlBsdfDirections wi, float *const weight[4],
-                                    float *pdf, uint32_t *flags, float *eta_scale) {
+void vl_bsdf_diffuse_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
+                            const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+                            uint32_t *flags, float *eta_scale) {
   (void)u_lobe;
   const float *oz = wo.z;
   const float *r0 = params->reflectance[0], *r1 = params->reflectance[1];
@@ -52,17 +52,17 @@ void VL_HOT(vl_bsdf_diffuse_sample)(uint32_t n, const vlBsdfParams *params, vlBs
 }
 
 /* Both directions of a pane are delta functions. */
-void VL_HOT(vl_bsdf_thin_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                               float *const value[4], float *pdf) {
+void vl_bsdf_thin_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
+                       float *const value[4], float *pdf) {
   (void)params, (void)wo, (void)wi;
   float *v0 = value[0], *v1 = value[1], *v2 = value[2], *v3 = value[3];
   uint32_t count = VL_PAD(n);
   for (uint32_t i = 0; i < count; i++) v0[i] = v1[i] = v2[i] = v3[i] = pdf[i] = 0.0f;
 }
 
-void VL_HOT(vl_bsdf_thin_sample)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                                 const float *u, const float *v, vlBsdfDirections wi, float *const weight[4],
-                                 float *pdf, uint32_t *flags, float *eta_scale) {
+void vl_bsdf_thin_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
+                         const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+                         uint32_t *flags, float *eta_scale) {
   (void)u, (void)v;
   const float *ox = wo.x, *oy = wo.y, *oz = wo.z, *eta = params->eta_s;
   float *ix = wi.x, *iy = wi.y, *iz = wi.z;

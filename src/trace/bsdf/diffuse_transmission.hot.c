@@ -9,8 +9,8 @@ static inline float share(float r0, float r1, float r2, float r3, float t0, floa
   return sum > 0.0f ? r / sum : 1.0f;
 }
 
-void VL_HOT(vl_bsdf_translucent_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                                      float *const value[4], float *pdf) {
+void vl_bsdf_translucent_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
+                              float *const value[4], float *pdf) {
   const float *oz = wo.z, *iz = wi.z;
   const float *r0 = params->reflectance[0], *r1 = params->reflectance[1];
   const float *r2 = params->reflectance[2], *r3 = params->reflectance[3];
@@ -33,9 +33,9 @@ void VL_HOT(vl_bsdf_translucent_eval)(uint32_t n, const vlBsdfParams *params, vl
   }
 }
 
-void VL_HOT(vl_bsdf_translucent_sample)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
-                                        const float *u_lobe, const float *u, const float *v, vlBsdfDirections wi,
-                                        float *const weight[4], float *pdf, uint32_t *flags, float *eta_scale) {
+void vl_bsdf_translucent_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
+                                const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+                                uint32_t *flags, float *eta_scale) {
   const float *oz = wo.z;
   const float *r0 = params->reflectance[0], *r1 = params->reflectance[1];
   const float *r2 = params->reflectance[2], *r3 = params->reflectance[3];

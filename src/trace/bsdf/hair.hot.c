@@ -123,8 +123,8 @@ static inline float hair_value(const Hair *h, vlVec3 wi, float value[4]) {
   return pdf;
 }
 
-void VL_HOT(vl_bsdf_hair_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                               float *const value[4], float *pdf) {
+void vl_bsdf_hair_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
+                       float *const value[4], float *pdf) {
   for (uint32_t i = 0; i < n; i++) {
     Hair h = hair_of(params, i, vl_vec3(wo.x[i], wo.y[i], wo.z[i]));
     float f[4], p = hair_value(&h, vl_vec3(wi.x[i], wi.y[i], wi.z[i]), f);
@@ -134,9 +134,9 @@ void VL_HOT(vl_bsdf_hair_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDir
   }
 }
 
-void VL_HOT(vl_bsdf_hair_sample)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                                 const float *u, const float *v, vlBsdfDirections wi, float *const weight[4],
-                                 float *pdf, uint32_t *flags, float *eta_scale) {
+void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
+                         const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+                         uint32_t *flags, float *eta_scale) {
   for (uint32_t i = 0; i < n; i++) {
     Hair h = hair_of(params, i, vl_vec3(wo.x[i], wo.y[i], wo.z[i]));
     int p = 0;

@@ -214,8 +214,8 @@ static void scattered(const Layers *l, vlVec3 o, vlVec3 w, uint32_t seed, float 
   for (int c = 0; c < 4; c++) value[c] = coat + f[c] * scale;
 }
 
-void VL_HOT(vl_bsdf_layered_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                                  float *const value[4], float *pdf) {
+void vl_bsdf_layered_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
+                          float *const value[4], float *pdf) {
   for (uint32_t i = 0; i < n; i++) {
     pdf[i] = 0.0f;
     for (int c = 0; c < 4; c++) value[c][i] = 0.0f;
@@ -230,9 +230,9 @@ void VL_HOT(vl_bsdf_layered_eval)(uint32_t n, const vlBsdfParams *params, vlBsdf
   }
 }
 
-void VL_HOT(vl_bsdf_layered_sample)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                                    const float *u, const float *v, vlBsdfDirections wi, float *const weight[4],
-                                    float *pdf, uint32_t *flags, float *eta_scale) {
+void vl_bsdf_layered_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
+                            const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+                            uint32_t *flags, float *eta_scale) {
   for (uint32_t i = 0; i < n; i++) {
     Layers l = layers_of(params, i);
     vlVec3 o = vl_vec3(wo.x[i], wo.y[i], vl_abs(wo.z[i]));

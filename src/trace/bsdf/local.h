@@ -18,12 +18,12 @@
 #define VL_WHOLE(count) ((count) & ~15u)
 #endif
 
-#define VL_BSDF_DECLARE(kind)                                                                                          \
-  void VL_HOT(vl_bsdf_##kind##_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi, \
-                                     float *const value[4], float *pdf);                                               \
-  void VL_HOT(vl_bsdf_##kind##_sample)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,                    \
-                                       const float *u_lobe, const float *u, const float *v, vlBsdfDirections wi,       \
-                                       float *const weight[4], float *pdf, uint32_t *flags, float *eta_scale)
+#define VL_BSDF_DECLARE(kind)                                                                                    \
+  void vl_bsdf_##kind##_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,   \
+                             float *const value[4], float *pdf);                                                 \
+  void vl_bsdf_##kind##_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe, \
+                               const float *u, const float *v, vlBsdfDirections wi, float *const weight[4],      \
+                               float *pdf, uint32_t *flags, float *eta_scale)
 VL_BSDF_DECLARE(diffuse);
 VL_BSDF_DECLARE(conductor);
 VL_BSDF_DECLARE(dielectric);

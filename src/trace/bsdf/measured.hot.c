@@ -86,8 +86,8 @@ static inline void lambdas_of(const vlBsdfParams *params, uint32_t i, float lamb
   for (int c = 0; c < 4; c++) lambda[c] = params->lambda[c] ? params->lambda[c][i] : 0.0f;
 }
 
-void VL_HOT(vl_bsdf_measured_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                                   float *const value[4], float *pdf) {
+void vl_bsdf_measured_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
+                           float *const value[4], float *pdf) {
   for (uint32_t i = 0; i < n; i++) {
     for (int c = 0; c < 4; c++) value[c][i] = 0.0f;
     pdf[i] = 0.0f;
@@ -106,9 +106,9 @@ void VL_HOT(vl_bsdf_measured_eval)(uint32_t n, const vlBsdfParams *params, vlBsd
   }
 }
 
-void VL_HOT(vl_bsdf_measured_sample)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                                     const float *u, const float *v, vlBsdfDirections wi, float *const weight[4],
-                                     float *pdf, uint32_t *flags, float *eta_scale) {
+void vl_bsdf_measured_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
+                             const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+                             uint32_t *flags, float *eta_scale) {
   (void)u_lobe;
   for (uint32_t i = 0; i < n; i++) {
     for (int c = 0; c < 4; c++) weight[c][i] = 0.0f;

@@ -39,10 +39,9 @@ typedef struct vlPrincipledLanes {
 
 /* Tables at wo, and the lobes' chances; at wi, with the film's and the sheen's values for the pair. z of wi as given
  * (world side), directions of the whole batch shifted by first. */
-void VL_HOT(vl_principled_view)(const vlPrincipledSlice *s, vlBsdfDirections wo, uint32_t first,
-                                vlPrincipledLanes *lanes);
-void VL_HOT(vl_principled_light)(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBsdfDirections wi, uint32_t first,
-                                 vlPrincipledLanes *lanes);
+void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo, uint32_t first, vlPrincipledLanes *lanes);
+void vl_principled_light(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBsdfDirections wi, uint32_t first,
+                         vlPrincipledLanes *lanes);
 
 /* The coat's normal as seen from wo's side, where z is up. */
 static inline vlVec3 vl_principled_coat(const vlPrincipledSlice *s, uint32_t i, float side) {

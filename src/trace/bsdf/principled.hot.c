@@ -184,13 +184,13 @@ static __attribute__((noinline)) void combine(const vlPrincipledSlice *s, const 
     combine_loop(s, l, wo, wi, value, pdf, first, false);
 }
 
-void VL_HOT(vl_bsdf_principled_eval)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
-                                     float *const value[4], float *pdf) {
+void vl_bsdf_principled_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
+                             float *const value[4], float *pdf) {
   vlPrincipledLanes lanes;
   for (uint32_t first = 0; first < n; first += VL_PRINCIPLED_CHUNK) {
     vlPrincipledSlice s = slice_of(params, n, first);
-    VL_HOT(vl_principled_view)(&s, wo, first, &lanes);
-    VL_HOT(vl_principled_light)(&s, wo, wi, first, &lanes);
+    vl_principled_view(&s, wo, first, &lanes);
+    vl_principled_light(&s, wo, wi, first, &lanes);
     combine(&s, &lanes, wo, wi, value, pdf, first);
   }
 }
@@ -250,15 +250,15 @@ static __attribute__((noinline)) void choose(const vlPrincipledSlice *s, const v
   }
 }
 
-void VL_HOT(vl_bsdf_principled_sample)(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
-                                       const float *u, const float *v, vlBsdfDirections wi, float *const weight[4],
-                                       float *pdf, uint32_t *flags, float *eta_scale) {
+void vl_bsdf_principled_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
+                               const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+                               uint32_t *flags, float *eta_scale) {
   vlPrincipledLanes lanes;
   for (uint32_t first = 0; first < n; first += VL_PRINCIPLED_CHUNK) {
     vlPrincipledSlice s = slice_of(params, n, first);
-    VL_HOT(vl_principled_view)(&s, wo, first, &lanes);
+    vl_principled_view(&s, wo, first, &lanes);
     choose(&s, &lanes, wo, u_lobe, u, v, wi, eta_scale, first);
-    VL_HOT(vl_principled_light)(&s, wo, wi, first, &lanes);
+    vl_principled_light(&s, wo, wi, first, &lanes);
     combine(&s, &lanes, wo, wi, weight, pdf, first);
     for (uint32_t i = 0; i < s.count; i++) {
       uint32_t k = first + i;

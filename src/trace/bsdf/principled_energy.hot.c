@@ -254,7 +254,7 @@ static __attribute__((noinline)) void weigh(const vlPrincipledSlice *s, const fl
   }
 }
 
-void VL_HOT(vl_principled_view)(const vlPrincipledSlice *s, vlBsdfDirections wo, uint32_t first, vlPrincipledLanes *l) {
+void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo, uint32_t first, vlPrincipledLanes *l) {
   const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first, *thin = s->row[VL_P_THIN];
   float a[VL_PRINCIPLED_CHUNK], b[VL_PRINCIPLED_CHUNK], coat_cos[VL_PRINCIPLED_CHUNK];
   uint32_t count = VL_WHOLE(s->count);
@@ -287,8 +287,8 @@ void VL_HOT(vl_principled_view)(const vlPrincipledSlice *s, vlBsdfDirections wo,
   weigh(s, coat_cos, l);
 }
 
-void VL_HOT(vl_principled_light)(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBsdfDirections wi, uint32_t first,
-                                 vlPrincipledLanes *l) {
+void vl_principled_light(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBsdfDirections wi, uint32_t first,
+                         vlPrincipledLanes *l) {
   const float *ox = wo.x + first, *oy = wo.y + first, *ix = wi.x + first, *iy = wi.y + first, *iz = wi.z + first;
   float a[VL_PRINCIPLED_CHUNK], b[VL_PRINCIPLED_CHUNK], z[VL_PRINCIPLED_CHUNK];
   uint32_t count = VL_WHOLE(s->count);

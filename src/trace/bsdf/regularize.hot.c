@@ -4,7 +4,7 @@
 #include "math/ggx.h"
 #include "trace/stages.h"
 
-void VL_HOT(vl_stage_regularize)(vlTracing *t, uint32_t n) {
+void vl_stage_regularize(vlTracing *t, uint32_t n) {
   if (!t->world->def.regularize) return;
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;

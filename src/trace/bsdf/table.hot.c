@@ -4,21 +4,21 @@
 static void eval(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
                  float *const value[4], float *pdf) {
   switch (kind) {
-    case VL_BSDF_DIFFUSE: VL_HOT(vl_bsdf_diffuse_eval)(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_CONDUCTOR: VL_HOT(vl_bsdf_conductor_eval)(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_DIELECTRIC: VL_HOT(vl_bsdf_dielectric_eval)(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_THIN_DIELECTRIC: VL_HOT(vl_bsdf_thin_eval)(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_COATED_DIFFUSE: VL_HOT(vl_bsdf_coat_eval)(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_PRINCIPLED: VL_HOT(vl_bsdf_principled_eval)(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_DIFFUSE_TRANSMISSION: VL_HOT(vl_bsdf_translucent_eval)(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_LAYERED: VL_HOT(vl_bsdf_layered_eval)(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_HAIR: VL_HOT(vl_bsdf_hair_eval)(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_MEASURED: VL_HOT(vl_bsdf_measured_eval)(n, params, wo, wi, value, pdf); break;
+    case VL_BSDF_DIFFUSE: vl_bsdf_diffuse_eval(n, params, wo, wi, value, pdf); break;
+    case VL_BSDF_CONDUCTOR: vl_bsdf_conductor_eval(n, params, wo, wi, value, pdf); break;
+    case VL_BSDF_DIELECTRIC: vl_bsdf_dielectric_eval(n, params, wo, wi, value, pdf); break;
+    case VL_BSDF_THIN_DIELECTRIC: vl_bsdf_thin_eval(n, params, wo, wi, value, pdf); break;
+    case VL_BSDF_COATED_DIFFUSE: vl_bsdf_coat_eval(n, params, wo, wi, value, pdf); break;
+    case VL_BSDF_PRINCIPLED: vl_bsdf_principled_eval(n, params, wo, wi, value, pdf); break;
+    case VL_BSDF_DIFFUSE_TRANSMISSION: vl_bsdf_translucent_eval(n, params, wo, wi, value, pdf); break;
+    case VL_BSDF_LAYERED: vl_bsdf_layered_eval(n, params, wo, wi, value, pdf); break;
+    case VL_BSDF_HAIR: vl_bsdf_hair_eval(n, params, wo, wi, value, pdf); break;
+    case VL_BSDF_MEASURED: vl_bsdf_measured_eval(n, params, wo, wi, value, pdf); break;
     case VL_BSDF_KINDS: break;
   }
 }
 
-#define VL_SAMPLE(name) VL_HOT(name)(n, params, wo, u_lobe, u, v, wi, weight, pdf, flags, eta_scale)
+#define VL_SAMPLE(name) name(n, params, wo, u_lobe, u, v, wi, weight, pdf, flags, eta_scale)
 static void sample(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
                    const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
                    uint32_t *flags, float *eta_scale) {
@@ -37,4 +37,4 @@ static void sample(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBs
   }
 }
 
-const vlBsdfKernels VL_HOT(vl_bsdf_kernels) = {eval, sample};
+const vlBsdfKernels vl_bsdf_kernel_table = {eval, sample};

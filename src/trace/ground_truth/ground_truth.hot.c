@@ -128,7 +128,7 @@ static void shade(const vlWorld *world, const vlTruthDef *def, uint32_t n, vlTru
     for (uint32_t first = 0, last; first < n; first = last) {
       uint32_t material = s->hits_b.material[first];
       for (last = first + 1; last < n && s->hits_b.material[last] == material;) last++;
-      VL_HOT(vl_stage_material)(world, first, last, material, s);
+      vl_stage_material(world, first, last, material, s);
     }
     if (def->albedo) add_albedo(world, def, set, n, s, batch);
   }
@@ -185,10 +185,10 @@ static void trace(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *s
   for (int c = 0; c < 4; c++) rays.radiance[c] = scratch->light[c];
   vlTraceDef trace_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
   vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
-  VL_HOT(vl_stage_hits)(&tracing, batch->n, true);
+  vl_stage_hits(&tracing, batch->n, true);
   uint32_t n = gather_hits(world, batch->n, s, batch);
   if (n == 0) return;
-  VL_HOT(vl_stage_surface)(world, n, &s->b, &s->hits_b, &s->corners, &s->surface);
+  vl_stage_surface(world, n, &s->b, &s->hits_b, &s->corners, &s->surface);
   if (def->shading || def->albedo) shade(world, def, n, scratch, batch);
   const vlSurface *f = &s->surface;
   for (uint32_t i = 0; i < n; i++) {
@@ -222,7 +222,7 @@ static void hits(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *sc
   for (int c = 0; c < 4; c++) rays.radiance[c] = scratch->light[c];
   vlTraceDef trace_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
   vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
-  VL_HOT(vl_stage_hits)(&tracing, n, true);
+  vl_stage_hits(&tracing, n, true);
   const vlHits *h = &s->hits_a;
   for (uint32_t i = 0; i < n; i++) {
     bool hit = h->shape[i] != VL_NONE;
@@ -234,7 +234,7 @@ static void hits(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *sc
     if (!hit) continue;
     vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
     float time = vl_path_time(p, i);
-    to->distance[i] = VL_HOT(vl_point_at_time)(world, time, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]).t;
+    to->distance[i] = vl_point_at_time(world, time, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]).t;
   }
 }
 
@@ -258,7 +258,7 @@ static void layers(const vlWorld *world, const vlTruthBatch *batch, uint32_t lan
     vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t);
     if (shape == VL_NONE) return;
     vlVec3 from = {o[0], o[1], o[2]}, along = {d[0], d[1], d[2]};
-    vlPoint at = VL_HOT(vl_point_at_time)(world, batch->time, from, along, shape, prim, instance, t);
+    vlPoint at = vl_point_at_time(world, batch->time, from, along, shape, prim, instance, t);
     uint32_t object = shape + 1, placed = instance == VL_NONE ? 0 : instance + 1, k = 0;
     while (k < to->count && (to->object[k] != object || to->instance[k] != placed)) k++;
     bool seen = world->materials.items[world->shapes.items[shape].material].kind != VL_MATERIAL_INTERFACE;
@@ -268,4 +268,4 @@ static void layers(const vlWorld *world, const vlTruthBatch *batch, uint32_t lan
   }
 }
 
-const vlTruthKernels VL_HOT(vl_truth_kernels) = {trace, hits, layers};
+const vlTruthKernels vl_truth_kernel_table = {trace, hits, layers};

@@ -48,7 +48,7 @@ static float point_density(const vlWorld *world, const vlWorldLight *light, vlVe
 /* Pictures of the sky have a density that leaves out what is dim (other ways find that better): half of the light's
  * paths go by it, half from anywhere. */
 static float sky_density(const vlWorld *world, const vlWorldLight *light, vlVec3 w) {
-  float pdf = VL_HOT(vl_infinite_pdf)(world, light, vl_vec3(0, 0, 0), w);
+  float pdf = vl_infinite_pdf(world, light, vl_vec3(0, 0, 0), w);
   return light->environment == VL_NONE ? pdf : 0.5f * (pdf + VL_INV_4PI);
 }
 
@@ -63,8 +63,8 @@ static float portal_density(const vlPortal *portal, vlVec3 w) {
   return across > 0.0f ? vl_portal_pdf(portal, &whole, w) / across : 0.0f;
 }
 
-float VL_HOT(vl_emission_density)(const vlWorld *world, const vlTwoWay *way, uint32_t index, vlVec3 w, float distance,
-                                  const vlPoint *at) {
+float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t index, vlVec3 w, float distance,
+                          const vlPoint *at) {
   const vlWorldLight *light = &world->lights.items[index];
   float p = choice_of(way, index);
   if (!(p > 0.0f)) return 0.0f;
@@ -145,7 +145,7 @@ static void from_area(const vlWorld *world, const vlWorldLight *light, const flo
   float size = vl_abs(at.p.x) + vl_abs(at.p.y) + vl_abs(at.p.z);
   out->o = vl_offset_origin(at.p, side, 16.0f * 0x1p-24f * size, out->d);
   out->at = at.p, out->n = at.n;
-  VL_HOT(vl_emitted_at)(world, e, lambda, at.u, 1.0f - at.v, false, out->flux);
+  vl_emitted_at(world, e, lambda, at.u, 1.0f - at.v, false, out->flux);
   float scale = VL_PI * sides / at.pdf;
   if (shape->alpha >= 0 && !light->invisible) {
     float place[3] = {at.p.x, at.p.y, at.p.z};
@@ -170,12 +170,12 @@ static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light, con
   const vlEmitted *e = &world->emitted.items[light->emitted];
   if (light->environment == VL_NONE) {
     *pdf = VL_INV_4PI;
-    VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, true, radiance);
+    vl_emitted_at(world, e, lambda, 0, 0, true, radiance);
     return vl_warp_sphere(u, v);
   }
   if (u < 0.5f) {
     vlVec3 w = vl_warp_sphere(2.0f * u, v);
-    VL_HOT(vl_infinite_at)(world, light, vl_vec3(0, 0, 0), w, lambda, radiance);
+    vl_infinite_at(world, light, vl_vec3(0, 0, 0), w, lambda, radiance);
     *pdf = sky_density(world, light, w);
     return w;
   }
@@ -186,7 +186,7 @@ static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light, con
   uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
   float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
   *pdf = 0.5f * (env->pdf[(size_t)y * env->size + x] + 1.0f) * VL_INV_4PI;
-  VL_HOT(vl_emitted_at)(world, e, lambda, s, t, true, radiance);
+  vl_emitted_at(world, e, lambda, s, t, true, radiance);
   return vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
 }
 
@@ -216,14 +216,14 @@ static void through_portal(const vlWorld *world, const vlWorldLight *light, cons
   out->o = vl_add(at, vl_mul(w, vl_length(away) + world->radius));
   out->d = vl_neg(w);
   out->at = w;
-  VL_HOT(vl_infinite_at)(world, light, vl_sub(at, w), w, lambda, out->flux);
+  vl_infinite_at(world, light, vl_sub(at, w), w, lambda, out->flux);
   for (int c = 0; c < 4; c++) out->flux[c] /= density;
   out->density = density;
   out->valid = true;
 }
 
-vlEmission VL_HOT(vl_emission_sample)(const vlWorld *world, const vlTwoWay *way, const float lambda[4], float u_choice,
-                                      float u, float v, float s, float t) {
+vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const float lambda[4], float u_choice, float u,
+                              float v, float s, float t) {
   vlEmission r;
   __builtin_memset(&r, 0, sizeof r);
   float within;
@@ -249,9 +249,9 @@ vlEmission VL_HOT(vl_emission_sample)(const vlWorld *world, const vlTwoWay *way,
         r.d = vl_normalize(vl_from_local(vl_frame_from_z(direction), local));
         if (light->kind == VL_WL_SPOT) factor *= spot_factor(light, local.z);
       }
-      if (picture) factor *= VL_HOT(vl_beam)(world, light, vl_neg(r.d), &st);
+      if (picture) factor *= vl_beam(world, light, vl_neg(r.d), &st);
       r.o = r.at = position;
-      VL_HOT(vl_emitted_at)(world, e, lambda, st.x, st.y, picture, r.flux);
+      vl_emitted_at(world, e, lambda, st.x, st.y, picture, r.flux);
       for (int c = 0; c < 4; c++) r.flux[c] *= factor;
       r.density = 1.0f / (2.0f * VL_PI * span);
       r.delta = r.valid = true;
@@ -259,7 +259,7 @@ vlEmission VL_HOT(vl_emission_sample)(const vlWorld *world, const vlTwoWay *way,
     }
     case VL_WL_DISTANT:
       from_afar(world, direction, u, v, &r);
-      VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, false, r.flux);
+      vl_emitted_at(world, e, lambda, 0, 0, false, r.flux);
       for (int c = 0; c < 4; c++) r.flux[c] *= world_disk(world);
       r.density = 1.0f / world_disk(world);
       r.delta = true;

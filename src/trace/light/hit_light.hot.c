@@ -2,33 +2,33 @@
  * weigh against each other, each in its own way. Scalar: each lane meets a light of its own. */
 #include "trace/stages.h"
 
-vlMetLight VL_HOT(vl_meet_sky)(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k) {
+vlMetLight vl_meet_sky(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k) {
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
   vlMetLight met = {.light = world->infinite_lights.items[k]};
   const vlWorldLight *light = &world->lights.items[met.light];
   float lambda[4];
   vl_path_lambda(p, i, lambda);
-  VL_HOT(vl_infinite_at)(world, light, o, d, lambda, met.radiance);
+  vl_infinite_at(world, light, o, d, lambda, met.radiance);
   if (!p->specular[i])
-    met.pdf = VL_HOT(vl_infinite_pdf)(world, light, o, d) *
+    met.pdf = vl_infinite_pdf(world, light, o, d) *
               vl_light_pmf(&world->tree, o, vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), met.light);
   return met;
 }
 
-bool VL_HOT(vl_meet_glow)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlMetLight *met) {
+bool vl_meet_glow(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlMetLight *met) {
   met->light = world->shapes.items[h->shape[i]].first_light + h->prim[i];
   const vlWorldLight *light = &world->lights.items[met->light];
   const vlEmitted *e = &world->emitted.items[light->emitted];
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  met->at = VL_HOT(vl_hit_point)(world, p, h, i);
+  met->at = vl_hit_point(world, p, h, i);
   if (!(vl_dot(d, met->at.g) < 0.0f) && !e->two_sided) return false;
   float lambda[4];
   vl_path_lambda(p, i, lambda);
-  vlVec2 uv = VL_HOT(vl_glow_uv)(world, light, &met->at);
-  VL_HOT(vl_emitted_at)(world, e, lambda, uv.x, 1.0f - uv.y, false, met->radiance);
+  vlVec2 uv = vl_glow_uv(world, light, &met->at);
+  vl_emitted_at(world, e, lambda, uv.x, 1.0f - uv.y, false, met->radiance);
   met->pdf = 0.0f;
   if (!p->specular[i])
-    met->pdf = VL_HOT(vl_area_pdf)(world, light, o, &met->at) *
+    met->pdf = vl_area_pdf(world, light, o, &met->at) *
                vl_light_pmf(&world->tree, o, vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), met->light);
   return true;
 }

@@ -7,8 +7,8 @@
 #include "world/shape/surface_point.h"
 #include "world/texture/texture_lookup.h"
 
-void VL_HOT(vl_emitted_at)(const vlWorld *world, const vlEmitted *e, const float lambda[4], float s, float t, bool sky,
-                           float out[4]) {
+void vl_emitted_at(const vlWorld *world, const vlEmitted *e, const float lambda[4], float s, float t, bool sky,
+                   float out[4]) {
   if (e->image < 0) {
     for (int c = 0; c < 4; c++) out[c] = vl_spectral_at(&e->spectrum, c, lambda[c]);
     return;
@@ -43,8 +43,8 @@ static vlVec3 turn(const float m[9], vlVec3 d) {
                  m[6] * d.x + m[7] * d.y + m[8] * d.z);
 }
 
-void VL_HOT(vl_infinite_at)(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d, const float lambda[4],
-                            float out[4]) {
+void vl_infinite_at(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d, const float lambda[4],
+                    float out[4]) {
   vlVec2 st = {0, 0};
   if (light->environment != VL_NONE) {
     const vlEnvironment *env = &world->environments.items[light->environment];
@@ -54,10 +54,10 @@ void VL_HOT(vl_infinite_at)(const vlWorld *world, const vlWorldLight *light, vlV
       return;
     }
   }
-  VL_HOT(vl_emitted_at)(world, &world->emitted.items[light->emitted], lambda, st.x, st.y, true, out);
+  vl_emitted_at(world, &world->emitted.items[light->emitted], lambda, st.x, st.y, true, out);
 }
 
-float VL_HOT(vl_infinite_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d) {
+float vl_infinite_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d) {
   if (light->environment == VL_NONE) return 0.25f * VL_INV_PI;
   const vlEnvironment *env = &world->environments.items[light->environment];
   vlPortalWindow window;
@@ -197,7 +197,7 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
   return r;
 }
 
-vlVec2 VL_HOT(vl_glow_uv)(const vlWorld *world, const vlWorldLight *light, const vlPoint *at) {
+vlVec2 vl_glow_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint *at) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   vlVec2 uv = {at->u, at->v};
   if (!s->glow_uvs) return uv;
@@ -248,7 +248,7 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
   return r;
 }
 
-float VL_HOT(vl_area_pdf)(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at) {
+float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   if (s->kind == VL_SHAPE_TRIANGLES) {
     Near near = near_triangle(light, from);
@@ -275,7 +275,7 @@ static float spot_edge(const vlWorldLight *light, float x) {
   return light->cone_squared ? t * t : t * t * (3.0f - 2.0f * t);
 }
 
-float VL_HOT(vl_beam)(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st) {
+float vl_beam(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st) {
   vlVec3 d = vl_normalize(turn(light->corners, vl_neg(w)));
   *st = (vlVec2){0, 0};
   if (light->kind == VL_WL_GONIOMETRIC) {
@@ -319,9 +319,8 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
         factor *= spot_edge(light, c);
       }
       vlVec2 st = {0, 0};
-      if (light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION)
-        factor *= VL_HOT(vl_beam)(world, light, w, &st);
-      VL_HOT(vl_emitted_at)(world, e, lambda, st.x, st.y, true, radiance);
+      if (light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION) factor *= vl_beam(world, light, w, &st);
+      vl_emitted_at(world, e, lambda, st.x, st.y, true, radiance);
       for (int c = 0; c < 4; c++) radiance[c] *= factor;
       pdf = 1.0f;
       out->delta[i] = 1;
@@ -329,7 +328,7 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
     }
     case VL_WL_DISTANT:
       w = target = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
-      VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, false, radiance);
+      vl_emitted_at(world, e, lambda, 0, 0, false, radiance);
       pdf = 1.0f;
       out->delta[i] = 1;
       out->distant[i] = 1;
@@ -339,14 +338,14 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
       if (light->environment == VL_NONE) {
         w = vl_warp_sphere(u, v);
         pdf = 0.25f * VL_INV_PI;
-        VL_HOT(vl_emitted_at)(world, e, lambda, 0, 0, true, radiance);
+        vl_emitted_at(world, e, lambda, 0, 0, true, radiance);
       } else if (world->environments.items[light->environment].portal) {
         const vlPortal *portal = world->environments.items[light->environment].portal;
         vlPortalWindow window;
         if (!vl_portal_window(portal, p, &window)) return;
         w = vl_portal_sample(portal, &window, u, v);
-        pdf = VL_HOT(vl_infinite_pdf)(world, light, p, w);
-        VL_HOT(vl_infinite_at)(world, light, p, w, lambda, radiance);
+        pdf = vl_infinite_pdf(world, light, p, w);
+        vl_infinite_at(world, light, p, w, lambda, radiance);
       } else {
         const vlEnvironment *env = &world->environments.items[light->environment];
         float dx, dy;
@@ -355,7 +354,7 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
         float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
         w = vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
         pdf = env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
-        VL_HOT(vl_emitted_at)(world, e, lambda, s, t, true, radiance);
+        vl_emitted_at(world, e, lambda, s, t, true, radiance);
       }
       target = w;
       break;
@@ -368,7 +367,7 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
       float facing = -vl_dot(w, q.n);
       if (!(facing > 0.0f) && !(e->two_sided && facing < 0.0f)) pdf = 0.0f;
       if (!(pdf > 0.0f)) return;
-      VL_HOT(vl_emitted_at)(world, e, lambda, q.u, 1.0f - q.v, false, radiance);
+      vl_emitted_at(world, e, lambda, q.u, 1.0f - q.v, false, radiance);
       const vlWorldShape *shape = &world->shapes.items[light->shape];
       if (light->invisible) {
         out->delta[i] = 1;
@@ -391,8 +390,8 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
   for (int c = 0; c < 4; c++) out->radiance[c][i] = radiance[c] * inv;
 }
 
-void VL_HOT(vl_stage_lights)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *f,
-                             const float *u_choice, const float *u, const float *v, vlLightSamples *out) {
-  VL_HOT(vl_stage_light_choice)(&world->tree, n, f, u_choice, out);
+void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *f, const float *u_choice,
+                     const float *u, const float *v, vlLightSamples *out) {
+  vl_stage_light_choice(&world->tree, n, f, u_choice, out);
   for (uint32_t i = 0; i < n; i++) sample_one(world, i, paths, vl_vec3(f->px[i], f->py[i], f->pz[i]), u[i], v[i], out);
 }

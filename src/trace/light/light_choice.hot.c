@@ -63,8 +63,8 @@ static void descend(const float *restrict nodes, uint32_t padded, const vlSurfac
   }
 }
 
-void VL_HOT(vl_stage_light_choice)(const vlLightTree *tree, uint32_t n, const vlSurface *f, const float *u,
-                                   vlLightSamples *out) {
+void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *f, const float *u,
+                           vlLightSamples *out) {
   if (tree->kind != VL_LIGHT_SAMPLER_BVH || tree->node_count < 3) { /* nothing to walk */
     for (uint32_t i = 0; i < n; i++) {
       vlLightChoice c = vl_light_choose(tree, vl_vec3(f->px[i], f->py[i], f->pz[i]), facing_light(f, i), u[i]);

@@ -12,7 +12,7 @@ static uint32_t closest(const vlWorld *world, vlVec3 o, vlVec3 d, float t_min, f
   float t = 0.0f;
   vlRays ray = {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, &t_min, &t_max, NULL};
   vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t);
-  if (shape != VL_NONE) *at = VL_HOT(vl_point_at)(world, o, d, shape, prim, instance, t);
+  if (shape != VL_NONE) *at = vl_point_at(world, o, d, shape, prim, instance, t);
   return shape;
 }
 
@@ -77,7 +77,7 @@ static vlVec3 beside(const vlWorld *world, const vlWorldLight *light) {
   return vl_add(p, vl_mul(n, 1e-4f * (1e-3f * world->radius + vl_abs(p.x) + vl_abs(p.y) + vl_abs(p.z))));
 }
 
-void VL_HOT(vl_light_media)(const vlWorld *world, const float eye[3], uint32_t *medium) {
+void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium) {
   for (size_t i = 0; i < world->lights.count; i++) {
     const vlWorldLight *light = &world->lights.items[i];
     bool far = light->kind == VL_WL_DISTANT || light->kind == VL_WL_INFINITE;

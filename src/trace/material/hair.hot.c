@@ -3,7 +3,7 @@
 
 static void colour(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {
   float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
-  VL_HOT(vl_texture_spectrum)(r, node, out);
+  vl_texture_spectrum(r, node, out);
 }
 
 /* sigma_a by which a mass of hairs shows a colour (Chiang et al. 2016, equation 9). */
@@ -19,14 +19,14 @@ static void from_reflectance(vlTextureRun *r, float (*rows)[VL_ROW_SIZE]) {
   }
 }
 
-void VL_HOT(vl_stage_hair)(vlTextureRun *r, const vlWorldMaterial *m) {
+void vl_stage_hair(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldHair *h = m->hair;
   vlShade *shade = &r->s->shade;
   float(*rows)[VL_ROW_SIZE] = shade->principled;
-  VL_HOT(vl_texture_float)(r, h->beta_m, rows[VL_H_BETA_M]);
-  VL_HOT(vl_texture_float)(r, h->beta_n, rows[VL_H_BETA_N]);
-  VL_HOT(vl_texture_float)(r, h->alpha, rows[VL_H_ALPHA]);
-  VL_HOT(vl_texture_float)(r, h->eta, shade->eta_s);
+  vl_texture_float(r, h->beta_m, rows[VL_H_BETA_M]);
+  vl_texture_float(r, h->beta_n, rows[VL_H_BETA_N]);
+  vl_texture_float(r, h->alpha, rows[VL_H_ALPHA]);
+  vl_texture_float(r, h->eta, shade->eta_s);
   for (uint32_t i = r->first; i < r->last; i++) {
     rows[VL_H_ALPHA][i] *= 0.017453292f;
     rows[VL_H_ACROSS][i] = vl_clamp(2.0f * r->surface->v[i] - 1.0f, -1.0f, 1.0f);
@@ -38,11 +38,11 @@ void VL_HOT(vl_stage_hair)(vlTextureRun *r, const vlWorldMaterial *m) {
     float(*extra)[VL_ROW_SIZE] = rows + VL_H_ROWS;
     float *share = vl_texture_row(r);
     colour(r, h->eumelanin, rows + VL_H_SIGMA_A);
-    VL_HOT(vl_texture_float)(r, h->eumelanin_share, share);
+    vl_texture_float(r, h->eumelanin_share, share);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++) rows[VL_H_SIGMA_A + c][i] *= vl_max(share[i], 0.0f);
     colour(r, h->pheomelanin, extra);
-    VL_HOT(vl_texture_float)(r, h->pheomelanin_share, share);
+    vl_texture_float(r, h->pheomelanin_share, share);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++) rows[VL_H_SIGMA_A + c][i] += extra[c][i] * vl_max(share[i], 0.0f);
   }

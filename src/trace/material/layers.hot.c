@@ -5,13 +5,13 @@
 
 static void colour(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE], float scale) {
   float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
-  VL_HOT(vl_texture_spectrum)(r, node, out);
+  vl_texture_spectrum(r, node, out);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++) rows[c][i] = vl_clamp(scale * rows[c][i], 0.0f, 1.0f);
 }
 
 static void alpha(vlTextureRun *r, const vlWorldMaterial *m, int32_t node, float *row) {
-  VL_HOT(vl_texture_float)(r, node, row);
+  vl_texture_float(r, node, row);
   for (uint32_t i = r->first; i < r->last; i++) {
     float x = row[i] > 0.0f ? row[i] : 0.0f;
     row[i] = m->remap ? __builtin_sqrtf(x) : x;
@@ -28,13 +28,13 @@ static void seeds(vlTextureRun *r) {
   }
 }
 
-void VL_HOT(vl_stage_layers)(vlTextureRun *r, const vlWorldMaterial *m) {
+void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldLayers *l = m->layers;
   vlShade *shade = &r->s->shade;
   float(*rows)[VL_ROW_SIZE] = shade->principled;
   colour(r, l->albedo, rows + VL_L_ALBEDO, 1.0f);
-  VL_HOT(vl_texture_float)(r, l->thickness, rows[VL_L_THICKNESS]);
-  VL_HOT(vl_texture_float)(r, l->g, rows[VL_L_G]);
+  vl_texture_float(r, l->thickness, rows[VL_L_THICKNESS]);
+  vl_texture_float(r, l->g, rows[VL_L_G]);
   for (uint32_t i = r->first; i < r->last; i++) {
     rows[VL_L_METAL][i] = l->metal ? 1.0f : 0.0f;
     rows[VL_L_THICKNESS][i] = vl_max(rows[VL_L_THICKNESS][i], 1.17549435e-38f); /* pbrt's least */
@@ -59,7 +59,7 @@ void VL_HOT(vl_stage_layers)(vlTextureRun *r, const vlWorldMaterial *m) {
   seeds(r);
 }
 
-void VL_HOT(vl_stage_translucent)(vlTextureRun *r, const vlWorldMaterial *m) {
+void vl_stage_translucent(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *shade = &r->s->shade;
   colour(r, m->transmittance, shade->principled + VL_T_TRANSMITTANCE, m->scale);
   for (int c = 0; c < 4; c++)

@@ -39,7 +39,7 @@ static void bump(vlTextureRun *r, int32_t node) { /* VL_BUMP_ROWS rows of its ow
   float *h = vl_texture_row(r), *hu = vl_texture_row(r), *hv = vl_texture_row(r), *step = vl_texture_row(r);
   float *su = vl_texture_row(r), *sv = vl_texture_row(r), *x = vl_texture_row(r), *y = vl_texture_row(r),
         *z = vl_texture_row(r);
-  VL_HOT(vl_texture_float)(r, node, h);
+  vl_texture_float(r, node, h);
   for (uint32_t i = r->first; i < r->last; i++) {
     float w = 0.5f * f->width[i] * f->uv_scale[i];
     step[i] = w > 1e-6f ? w : 0.0005f;
@@ -47,10 +47,10 @@ static void bump(vlTextureRun *r, int32_t node) { /* VL_BUMP_ROWS rows of its ow
   r->shift_u = su, r->shift_v = sv, r->shift_x = x, r->shift_y = y, r->shift_z = z;
   for (uint32_t i = r->first; i < r->last; i++)
     su[i] = step[i], sv[i] = 0.0f, x[i] = step[i] * f->ux[i], y[i] = step[i] * f->uy[i], z[i] = step[i] * f->uz[i];
-  VL_HOT(vl_texture_float)(r, node, hu);
+  vl_texture_float(r, node, hu);
   for (uint32_t i = r->first; i < r->last; i++)
     su[i] = 0.0f, sv[i] = step[i], x[i] = step[i] * f->vx[i], y[i] = step[i] * f->vy[i], z[i] = step[i] * f->vz[i];
-  VL_HOT(vl_texture_float)(r, node, hv);
+  vl_texture_float(r, node, hv);
   r->shift_u = NULL;
   for (uint32_t i = r->first; i < r->last; i++) {
     if (r->world->shapes.items[r->s->hits_b.shape[i]].kind == VL_SHAPE_TRIANGLES) triangle_normal_slopes(r->s, i);
@@ -86,7 +86,7 @@ static void normal_map(vlTextureRun *r, int32_t image) {
 /* ---- parameters -------------------------------------------------------------------------------------------------- */
 
 static void roughness(vlTextureRun *r, const vlWorldMaterial *m, int32_t node, float *alpha) {
-  VL_HOT(vl_texture_float)(r, node, alpha);
+  vl_texture_float(r, node, alpha);
   for (uint32_t i = r->first; i < r->last; i++) {
     float x = alpha[i] > 0.0f ? alpha[i] : 0.0f;
     alpha[i] = m->remap ? __builtin_sqrtf(x) : x;
@@ -95,11 +95,10 @@ static void roughness(vlTextureRun *r, const vlWorldMaterial *m, int32_t node, f
 
 static void spectrum_rows(vlTextureRun *r, int32_t node, float rows[4][VL_ROW_SIZE]) {
   float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
-  VL_HOT(vl_texture_spectrum)(r, node, out);
+  vl_texture_spectrum(r, node, out);
 }
 
-void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material,
-                               vlTraceScratch *s) {
+void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s) {
   const vlWorldMaterial *m = &world->materials.items[material];
   vlShade *shade = &s->shade;
   vlTextureRun r = {world, s, &s->b, &s->surface, first, last, 0, NULL, NULL, NULL, NULL, NULL};
@@ -107,7 +106,7 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
   if (m->displacement >= 0) bump(&r, m->displacement);
   if (m->normal_map >= 0) normal_map(&r, m->normal_map);
   r.top = 0;
-  if (m->kind == VL_MATERIAL_PRINCIPLED) VL_HOT(vl_stage_principled)(&r, m);
+  if (m->kind == VL_MATERIAL_PRINCIPLED) vl_stage_principled(&r, m);
   if (m->reflectance >= 0) {
     spectrum_rows(&r, m->reflectance, shade->reflectance);
     for (int c = 0; c < 4; c++)
@@ -131,11 +130,11 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
     roughness(&r, m, m->u_roughness, shade->alpha_x);
     roughness(&r, m, m->v_roughness, shade->alpha_y);
   }
-  if (m->layers) VL_HOT(vl_stage_layers)(&r, m);
-  if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) VL_HOT(vl_stage_translucent)(&r, m);
-  if (m->hair) VL_HOT(vl_stage_hair)(&r, m);
+  if (m->layers) vl_stage_layers(&r, m);
+  if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) vl_stage_translucent(&r, m);
+  if (m->hair) vl_stage_hair(&r, m);
   for (uint32_t i = first; i < last && m->measured; i++) shade->measured[i] = m->measured;
-  if (m->subsurface) VL_HOT(vl_stage_bodies)(&r, m);
+  if (m->subsurface) vl_stage_bodies(&r, m);
   for (uint32_t i = first; i < last && m->kind != VL_MATERIAL_PRINCIPLED && !m->hair; i++) {
     shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
     shade->coat[i] = m->coat;
@@ -152,7 +151,7 @@ void VL_HOT(vl_stage_material)(const vlWorld *world, uint32_t first, uint32_t la
   }
 }
 
-void VL_HOT(vl_stage_frames)(uint32_t n, const vlPaths *paths, const vlSurface *f, vlShade *shade) {
+void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *f, vlShade *shade) {
   uint32_t padded = VL_PAD(n);
   /* must vectorise */
   VL_SIMD

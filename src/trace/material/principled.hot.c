@@ -8,13 +8,13 @@ static void fill(float *row, uint32_t first, uint32_t last, float x) {
 }
 
 static void share(vlTextureRun *r, int32_t node, float *row) {
-  VL_HOT(vl_texture_float)(r, node, row);
+  vl_texture_float(r, node, row);
   for (uint32_t i = r->first; i < r->last; i++) row[i] = vl_clamp(row[i], 0.0f, 1.0f);
 }
 
 static void colour(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {
   float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
-  VL_HOT(vl_texture_spectrum)(r, node, out);
+  vl_texture_spectrum(r, node, out);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++) rows[c][i] = vl_clamp(rows[c][i], 0.0f, 1.0f);
 }
@@ -97,13 +97,13 @@ static void layers(vlTextureRun *r, const vlWorldPrincipled *p, float (*rows)[VL
   }
   if (p->has_film) {
     share(r, p->iridescence, rows[VL_P_FILM]);
-    VL_HOT(vl_texture_float)(r, p->iridescence_thickness, rows[VL_P_FILM_NM]);
+    vl_texture_float(r, p->iridescence_thickness, rows[VL_P_FILM_NM]);
     fill(rows[VL_P_FILM_INDEX], first, last, p->film_index);
     for (uint32_t i = first; i < last; i++) rows[VL_P_FILM_NM][i] = vl_max(rows[VL_P_FILM_NM][i], 0.0f);
   }
 }
 
-void VL_HOT(vl_stage_principled)(vlTextureRun *r, const vlWorldMaterial *m) {
+void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldPrincipled *p = m->principled;
   vlShade *shade = &r->s->shade;
   float(*rows)[VL_ROW_SIZE] = shade->principled;
@@ -121,7 +121,7 @@ void VL_HOT(vl_stage_principled)(vlTextureRun *r, const vlWorldMaterial *m) {
     for (int c = 0; c < 4; c++) fill(rows[VL_P_THROUGH + c], first, last, 0.0f);
   }
   float *const f0[4] = {rows[VL_P_F0], rows[VL_P_F0 + 1], rows[VL_P_F0 + 2], rows[VL_P_F0 + 3]};
-  VL_HOT(vl_texture_spectrum)(r, p->specular_color, f0);
+  vl_texture_spectrum(r, p->specular_color, f0);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = first; i < last; i++) f0[c][i] = vl_clamp(p->f0 * f0[c][i], 0.0f, 1.0f) * rows[VL_P_F90][i];
   layers(r, p, rows);
@@ -132,7 +132,7 @@ void VL_HOT(vl_stage_principled)(vlTextureRun *r, const vlWorldMaterial *m) {
   }
   if (p->has_anisotropy) {
     float *angle = vl_texture_row(r);
-    VL_HOT(vl_texture_float)(r, p->anisotropy_rotation, angle);
+    vl_texture_float(r, p->anisotropy_rotation, angle);
     turn_tangent(r, angle);
     share(r, p->anisotropy, angle);
     for (uint32_t i = first; i < last; i++)
@@ -145,7 +145,7 @@ void VL_HOT(vl_stage_principled)(vlTextureRun *r, const vlWorldMaterial *m) {
 }
 
 /* The coat's normals of a run from world space into the shading frames. */
-void VL_HOT(vl_stage_coat_frames)(const vlSurface *f, vlShade *shade, uint32_t first, uint32_t last) {
+void vl_stage_coat_frames(const vlSurface *f, vlShade *shade, uint32_t first, uint32_t last) {
   float(*rows)[VL_ROW_SIZE] = shade->principled;
   for (uint32_t i = first; i < last; i++) {
     vlVec3 c = vl_vec3(rows[VL_P_COAT_X][i], rows[VL_P_COAT_Y][i], rows[VL_P_COAT_Z][i]);

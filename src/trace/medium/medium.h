@@ -28,13 +28,11 @@ static inline float vl_flight_mean(const float v[4], int channels) {
 
 typedef enum vlFlightEnd { VL_FLIGHT_PASSED, VL_FLIGHT_SCATTERED, VL_FLIGHT_ENDED } vlFlightEnd;
 
-#ifdef VL_ISA_SUFFIX
 /* Along o + t d (d of unit length), t in [t0, t1]: passed, or scattered at *t. emission: adds what the medium gives out
  * to radiance. */
-vlFlightEnd VL_HOT(vl_fly)(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, bool emission, vlFlight *f,
-                           float radiance[4], float *t);
+vlFlightEnd vl_fly(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, bool emission, vlFlight *f,
+                   float radiance[4], float *t);
 /* Transmittance to f->beta; f->u, f->l: densities of flying through and of this, over that of this. */
-void VL_HOT(vl_attenuate)(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, vlFlight *f);
-#endif
+void vl_attenuate(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, vlFlight *f);
 
 #endif

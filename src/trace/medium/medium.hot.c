@@ -208,14 +208,14 @@ static void attenuate_through(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float 
 
 /* ---- any --------------------------------------------------------------------------------------------------------- */
 
-vlFlightEnd VL_HOT(vl_fly)(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, bool emission, vlFlight *f,
-                           float radiance[4], float *t) {
+vlFlightEnd vl_fly(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, bool emission, vlFlight *f,
+                   float radiance[4], float *t) {
   if (!(t1 > t0)) return VL_FLIGHT_PASSED;
   if (m->kind == VL_MEDIUM_HOMOGENEOUS) return fly_homogeneous(m, t0, t1, emission, f, radiance, t);
   return fly_through(m, o, d, t0, t1, emission, f, radiance, t);
 }
 
-void VL_HOT(vl_attenuate)(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, vlFlight *f) {
+void vl_attenuate(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, vlFlight *f) {
   if (!(t1 > t0)) return;
   if (m->kind == VL_MEDIUM_HOMOGENEOUS)
     attenuate_homogeneous(m, t0, t1, f);

@@ -62,36 +62,32 @@ static inline bool vl_is_interface(const vlWorld *world, uint32_t shape) {
   return world->materials.items[world->shapes.items[shape].material].kind == VL_MATERIAL_INTERFACE;
 }
 
-#ifdef VL_ISA_SUFFIX
 /* The n rays of a through media and interfaces to what happens to them; depth: of it; emission: adds what media on the
  * way give out. Densities in volume.a; origins stay those of the last scattering. */
-void VL_HOT(vl_volume_travel)(vlTracing *t, uint32_t n, uint32_t depth, bool emission);
-void VL_HOT(vl_volume_permute)(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n);
+void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission);
+void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n);
 /* beta is the path's weight from here on; the densities' mean is 1. */
-void VL_HOT(vl_volume_normalise)(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i);
+void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i);
 /* The lanes of a that scatter in media, normalised, at their places, to volume.scattered and .c; the surface's point is
  * theirs, for light sampling. s->order: which lanes of a. Returns how many. */
-uint32_t VL_HOT(vl_volume_gather)(vlTracing *t, uint32_t n);
+uint32_t vl_volume_gather(vlTracing *t, uint32_t n);
 /* New directions by the phase function, roulette as on surfaces. Returns how many go on; s->order names them. */
-uint32_t VL_HOT(vl_volume_phase_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
+uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
 /* The n paths of a set out: from these media (by lane), or null: from the camera. */
-void VL_HOT(vl_volume_start)(vlTracing *t, uint32_t n, const uint32_t *medium);
+void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium);
 /* volume.b of the n sorted lanes; and, after scattering on surfaces, volume.a of the `count` lanes s->order. Nothing
  * where there are neither media nor bodies. */
-void VL_HOT(vl_volume_sorted)(vlTracing *t, uint32_t n);
-void VL_HOT(vl_volume_go_on)(vlTracing *t, uint32_t count);
+void vl_volume_sorted(vlTracing *t, uint32_t n);
+void vl_volume_go_on(vlTracing *t, uint32_t count);
 /* Paths order[k] of volume.scattered to the end of the n of a. Returns how many there are then. */
-uint32_t VL_HOT(vl_volume_append)(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n);
+uint32_t vl_volume_append(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n);
 /* Shadow ray k's way: transmittance to beta, densities over that of light sampling. */
-vlFlight VL_HOT(vl_volume_shadow_flight)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t k,
-                                         uint32_t depth);
+vlFlight vl_volume_shadow_flight(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t k, uint32_t depth);
 /* Lane i's light sample as shadow ray `count`, from o; value: what the scattering passes on, pdf its density. Returns
  * the next count. */
-uint32_t VL_HOT(vl_volume_push_shadow)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,
-                                       const float value[4], float pdf, uint32_t medium, uint32_t count);
+uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,
+                               const float value[4], float pdf, uint32_t medium, uint32_t count);
 /* Adds what arrives along them. */
-void VL_HOT(vl_volume_shadows)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count,
-                               uint32_t depth);
-#endif
+void vl_volume_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth);
 
 #endif

@@ -21,14 +21,14 @@ static void store_flight(vlPaths *p, vlVolumeRows *v, uint32_t i, const vlFlight
   }
 }
 
-void VL_HOT(vl_volume_permute)(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n) {
+void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n) {
   for (int c = 0; c < 4; c++)
     for (uint32_t k = 0; k < n; k++) b->u[c][k] = a->u[c][order[k]], b->l[c][k] = a->l[c][order[k]];
   for (uint32_t k = 0; k < n; k++) b->medium[k] = a->medium[order[k]];
 }
 
 /* A path that follows its hero alone is judged by that one's density, if that is what its flights are sampled by. */
-void VL_HOT(vl_volume_normalise)(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i) {
+void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i) {
   float u[4];
   bool alone = !t->from_light && !vl_volume_rgb(t) && p->lambda[1][i] == p->lambda[0][i];
   for (int c = 0; c < 4; c++) u[c] = v->u[alone ? 0 : c][i];
@@ -58,10 +58,9 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission,
     bool hit = h->shape[i] != VL_NONE;
     bool passes = hit && vl_is_interface(world, h->shape[i]);
     vlPoint at = {.t = t_max_row ? t_max_row[i] : VL_INFINITY};
-    if (hit && (passes || medium != VL_NONE)) at = VL_HOT(vl_hit_point)(world, p, h, i);
+    if (hit && (passes || medium != VL_NONE)) at = vl_hit_point(world, p, h, i);
     vlFlightEnd end = VL_FLIGHT_PASSED;
-    if (medium != VL_NONE)
-      end = VL_HOT(vl_fly)(&world->media.items[medium], o, d, t_min, at.t, emission, &f, given, &v->t[i]);
+    if (medium != VL_NONE) end = vl_fly(&world->media.items[medium], o, d, t_min, at.t, emission, &f, given, &v->t[i]);
     if (end != VL_FLIGHT_PASSED) {
       event = end == VL_FLIGHT_SCATTERED ? VL_IN_MEDIUM : VL_AT_END;
       break;
@@ -72,7 +71,7 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission,
     }
     medium = vl_medium_beyond(&world->shapes.items[h->shape[i]], at.g, d, medium);
     t_min = vl_past_surface(&at, d, t_min);
-    VL_HOT(vl_closest_beyond)(t, p, h, i, t_min, t_max_row);
+    vl_closest_beyond(t, p, h, i, t_min, t_max_row);
   }
   store_flight(p, &v->a, i, &f);
   v->a.medium[i] = medium;
@@ -80,17 +79,17 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission,
   v->odds[p->lane[i]] = vl_some_odds(f.odds);
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += given[c];
   if (event == VL_ON_SURFACE)
-    h->material[i] = VL_HOT(vl_hit_material)(world, p, h, i);
+    h->material[i] = vl_hit_material(world, p, h, i);
   else
     h->shape[i] = VL_NONE;
 }
 
-void VL_HOT(vl_volume_travel)(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
+void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
   vlTraceScratch *s = t->s;
   vlPaths *p = &s->a;
   bool camera = depth == 0 && !t->from_light;
   const float *t_min = camera ? t->batch->t_min : NULL, *t_max = camera ? t->batch->t_max : NULL;
-  VL_HOT(vl_closest_hits)(t, n, camera);
+  vl_closest_hits(t, n, camera);
   if (!camera) t->batch->bounce_rays += n;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_BOUNCE + depth * VL_DIM_STRIDE + VL_DIM_FLIGHT,
                      s->shade.u0);
@@ -112,14 +111,14 @@ static void add_light(vlTracing *t, uint32_t i, const float radiance[4], float l
 
 static void add_sky(vlTracing *t, uint32_t i) {
   for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
-    vlMetLight met = VL_HOT(vl_meet_sky)(t->world, &t->s->a, i, k);
+    vlMetLight met = vl_meet_sky(t->world, &t->s->a, i, k);
     add_light(t, i, met.radiance, met.pdf);
   }
 }
 
 static void add_glow(vlTracing *t, uint32_t i) {
   vlMetLight met;
-  if (VL_HOT(vl_meet_glow)(t->world, &t->s->a, &t->s->hits_a, i, &met)) add_light(t, i, met.radiance, met.pdf);
+  if (vl_meet_glow(t->world, &t->s->a, &t->s->hits_a, i, &met)) add_light(t, i, met.radiance, met.pdf);
 }
 
 static void emission(vlTracing *t, uint32_t n) {
@@ -138,20 +137,20 @@ static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   vlVolumeScratch *v = &s->volume;
   const vlPaths *p = &v->scattered;
   if (t->world->lights.count == 0) return;
-  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
+  vl_stage_light_samples(t, n, p, dimension);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (!(s->light.pdf[i] > 0.0f)) continue;
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i), w = vl_lane3(s->light.wx, s->light.wy, s->light.wz, i);
     float phase = vl_phase(t->world->media.items[v->c.medium[i]].g, vl_dot(d, w));
     const float value[4] = {phase, phase, phase, phase};
-    count = VL_HOT(vl_volume_push_shadow)(t, p, &v->c, i, vl_lane3(p->ox, p->oy, p->oz, i), value, phase,
-                                          v->c.medium[i], count);
+    count =
+        vl_volume_push_shadow(t, p, &v->c, i, vl_lane3(p->ox, p->oy, p->oz, i), value, phase, v->c.medium[i], count);
   }
-  VL_HOT(vl_volume_shadows)(t, p, &v->c, count, depth);
+  vl_volume_shadows(t, p, &v->c, count, depth);
 }
 
-uint32_t VL_HOT(vl_volume_phase_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = &s->volume;
   vlPaths *p = &v->scattered;
@@ -183,7 +182,7 @@ uint32_t VL_HOT(vl_volume_phase_scatter)(vlTracing *t, uint32_t n, uint32_t dept
   return count;
 }
 
-uint32_t VL_HOT(vl_volume_gather)(vlTracing *t, uint32_t n) {
+uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = &s->volume;
   vlPaths *p = &v->scattered;
@@ -191,10 +190,10 @@ uint32_t VL_HOT(vl_volume_gather)(vlTracing *t, uint32_t n) {
   for (uint32_t i = 0; i < n; i++)
     if (v->event[i] == VL_IN_MEDIUM) s->order[count++] = i;
   if (count == 0) return 0;
-  VL_HOT(vl_permute_paths)(&s->a, p, s->order, count);
-  VL_HOT(vl_volume_permute)(&v->a, &v->c, s->order, count);
+  vl_permute_paths(&s->a, p, s->order, count);
+  vl_volume_permute(&v->a, &v->c, s->order, count);
   for (uint32_t i = 0; i < count; i++) {
-    VL_HOT(vl_volume_normalise)(t, p, &v->c, i);
+    vl_volume_normalise(t, p, &v->c, i);
     float distance = v->t[s->order[i]];
     p->ox[i] += distance * p->dx[i], p->oy[i] += distance * p->dy[i], p->oz[i] += distance * p->dz[i];
     p->cone[i] = vl_abs(p->cone[i] + p->spread[i] * distance), p->spread[i] = t->def->pixel_spread;
@@ -209,10 +208,10 @@ uint32_t VL_HOT(vl_volume_gather)(vlTracing *t, uint32_t n) {
 /* The lanes of a that scatter in media, to their next rays in volume.scattered. Returns how many go on; s->order names
  * them. */
 static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
-  uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, count = VL_HOT(vl_volume_gather)(t, n);
+  uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, count = vl_volume_gather(t, n);
   if (count == 0) return 0;
   phase_light(t, count, depth, dimension);
-  return VL_HOT(vl_volume_phase_scatter)(t, count, depth + 1, dimension);
+  return vl_volume_phase_scatter(t, count, depth + 1, dimension);
 }
 
 /* ---- scattering on surfaces -------------------------------------------------------------------------------------- */
@@ -223,8 +222,8 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   const vlShade *sh = &s->shade;
   const vlLightSamples *l = &s->light;
   if (t->world->lights.count == 0) return;
-  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
-  VL_HOT(vl_stage_light_bsdf)(t, n);
+  vl_stage_light_samples(t, n, p, dimension);
+  vl_stage_light_bsdf(t, n);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (!(l->pdf[i] > 0.0f)) continue;
@@ -239,22 +238,22 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     vlVec3 g = vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w = vl_lane3(l->wx, l->wy, l->wz, i);
     vlVec3 o = vl_offset_origin(at, g, s->surface.offset[i], w);
     const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
-    count = VL_HOT(vl_volume_push_shadow)(t, p, &s->volume.b, i, o, value, sh->pdf[i],
-                                          vl_medium_beyond(shape, g, w, s->volume.b.medium[i]), count);
+    count = vl_volume_push_shadow(t, p, &s->volume.b, i, o, value, sh->pdf[i],
+                                  vl_medium_beyond(shape, g, w, s->volume.b.medium[i]), count);
   }
-  VL_HOT(vl_volume_shadows)(t, p, &s->volume.b, count, depth);
+  vl_volume_shadows(t, p, &s->volume.b, count, depth);
 }
 
-void VL_HOT(vl_volume_sorted)(vlTracing *t, uint32_t n) {
+void vl_volume_sorted(vlTracing *t, uint32_t n) {
   vlVolumeScratch *v = &t->s->volume;
-  if (t->world->media.count || t->world->has_subsurface) VL_HOT(vl_volume_permute)(&v->a, &v->b, t->s->order, n);
+  if (t->world->media.count || t->world->has_subsurface) vl_volume_permute(&v->a, &v->b, t->s->order, n);
 }
 
-void VL_HOT(vl_volume_go_on)(vlTracing *t, uint32_t count) {
+void vl_volume_go_on(vlTracing *t, uint32_t count) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = &s->volume;
   if (!t->world->media.count && !t->world->has_subsurface) return;
-  VL_HOT(vl_volume_permute)(&v->b, &v->a, s->order, count);
+  vl_volume_permute(&v->b, &v->a, s->order, count);
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k];
     float pdf = s->a.pdf[k], inv = pdf > 0.0f ? 1.0f / pdf : 0.0f;
@@ -269,21 +268,21 @@ static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = &s->volume;
   uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
-  n = VL_HOT(vl_stage_sort)(t, n);
+  n = vl_stage_sort(t, n);
   if (n == 0) return 0;
-  VL_HOT(vl_volume_sorted)(t, n);
-  VL_HOT(vl_stage_shade)(t, n);
-  VL_HOT(vl_stage_regularize)(t, n);
-  for (uint32_t i = 0; i < n; i++) VL_HOT(vl_volume_normalise)(t, &s->b, &v->b, i);
+  vl_volume_sorted(t, n);
+  vl_stage_shade(t, n);
+  vl_stage_regularize(t, n);
+  for (uint32_t i = 0; i < n; i++) vl_volume_normalise(t, &s->b, &v->b, i);
   surface_light(t, n, depth, dimension);
-  uint32_t count = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
-  VL_HOT(vl_volume_go_on)(t, count);
-  return t->world->has_subsurface ? VL_HOT(vl_stage_subsurface)(t, count, depth) : count;
+  uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension);
+  vl_volume_go_on(t, count);
+  return t->world->has_subsurface ? vl_stage_subsurface(t, count, depth) : count;
 }
 
 /* ---- the tracer -------------------------------------------------------------------------------------------------- */
 
-uint32_t VL_HOT(vl_volume_append)(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n) {
+uint32_t vl_volume_append(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n) {
   vlPaths *a = &t->s->a;
   const vlPaths *b = &t->s->volume.scattered;
   vlVolumeRows *va = &t->s->volume.a;
@@ -296,7 +295,7 @@ uint32_t VL_HOT(vl_volume_append)(vlTracing *t, const uint32_t *order, uint32_t 
   return n;
 }
 
-void VL_HOT(vl_volume_start)(vlTracing *t, uint32_t n, const uint32_t *medium) {
+void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium) {
   vlPaths *p = &t->s->a;
   vlVolumeRows *rows = &t->s->volume.a;
   for (uint32_t i = 0; i < n; i++) {
@@ -306,18 +305,18 @@ void VL_HOT(vl_volume_start)(vlTracing *t, uint32_t n, const uint32_t *medium) {
   }
 }
 
-void VL_HOT(vl_volume_tracer)(vlTracing *t) {
+void vl_volume_tracer(vlTracing *t) {
   vlTraceScratch *s = t->s;
   uint32_t n = t->batch->n;
-  VL_HOT(vl_volume_start)(t, n, NULL);
+  vl_volume_start(t, n, NULL);
   for (uint32_t depth = 0; n > 0; depth++) {
-    VL_HOT(vl_volume_travel)(t, n, depth, depth < t->def->max_depth);
+    vl_volume_travel(t, n, depth, depth < t->def->max_depth);
     emission(t, n);
     if (depth >= t->def->max_depth) break;
     uint32_t inside = scatter_in_media(t, n, depth);
     uint32_t *kept = s->volume.kept;
     for (uint32_t k = 0; k < inside; k++) kept[k] = s->order[k];
     n = scatter_on_surfaces(t, n, depth);
-    n = VL_HOT(vl_volume_append)(t, kept, inside, n);
+    n = vl_volume_append(t, kept, inside, n);
   }
 }

@@ -2,8 +2,8 @@
  * samples, weighed against what scattering alone would have found (pbrt book 14.2.3). */
 #include "trace/medium/volume.h"
 
-uint32_t VL_HOT(vl_volume_push_shadow)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,
-                                       const float value[4], float pdf, uint32_t medium, uint32_t count) {
+uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,
+                               const float value[4], float pdf, uint32_t medium, uint32_t count) {
   vlShadowRays *q = &t->s->shadow;
   const vlLightSamples *l = &t->s->light;
   vlVolumeScratch *v = &t->s->volume;
@@ -49,8 +49,8 @@ static void pass_media(vlTracing *t, uint32_t k, vlFlight *f) {
     }
     if (shape != VL_NONE && !vl_is_interface(world, shape)) break; /* cannot be: it is not occluded */
     vlPoint at = {.t = q->t_max[k]};
-    if (shape != VL_NONE) at = VL_HOT(vl_point_at_time)(world, q->time[k], o, d, shape, prim, instance, t_hit);
-    if (medium != VL_NONE) VL_HOT(vl_attenuate)(&world->media.items[medium], o, d, t_min, at.t, f);
+    if (shape != VL_NONE) at = vl_point_at_time(world, q->time[k], o, d, shape, prim, instance, t_hit);
+    if (medium != VL_NONE) vl_attenuate(&world->media.items[medium], o, d, t_min, at.t, f);
     if (shape == VL_NONE || !(vl_max(vl_max(f->beta[0], f->beta[1]), vl_max(f->beta[2], f->beta[3])) > 0.0f)) return;
     medium = vl_medium_beyond(&world->shapes.items[shape], at.g, d, medium);
     t_min = vl_past_surface(&at, d, t_min);
@@ -58,8 +58,7 @@ static void pass_media(vlTracing *t, uint32_t k, vlFlight *f) {
   for (int c = 0; c < 4; c++) f->beta[c] = 0.0f;
 }
 
-vlFlight VL_HOT(vl_volume_shadow_flight)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t k,
-                                         uint32_t depth) {
+vlFlight vl_volume_shadow_flight(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t k, uint32_t depth) {
   vlFlight f = vl_volume_flight(t, p, rows, t->s->volume.from[k], depth, VL_KEY_SHADOW);
   for (int c = 0; c < 4; c++) f.beta[c] = f.u[c] = f.l[c] = 1.0f;
   pass_media(t, k, &f);
@@ -67,8 +66,7 @@ vlFlight VL_HOT(vl_volume_shadow_flight)(vlTracing *t, const vlPaths *p, const v
   return f;
 }
 
-void VL_HOT(vl_volume_shadows)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count,
-                               uint32_t depth) {
+void vl_volume_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth) {
   vlShadowRays *q = &t->s->shadow;
   const vlVolumeScratch *v = &t->s->volume;
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
@@ -76,7 +74,7 @@ void VL_HOT(vl_volume_shadows)(vlTracing *t, const vlPaths *p, const vlVolumeRow
   t->batch->shadow_rays += count;
   for (uint32_t k = 0; k < count; k++) {
     if (q->occluded[k]) continue;
-    vlFlight f = VL_HOT(vl_volume_shadow_flight)(t, p, rows, k, depth);
+    vlFlight f = vl_volume_shadow_flight(t, p, rows, k, depth);
     float density[4];
     for (int c = 0; c < 4; c++) density[c] = v->density[c][k] * (f.l[c] * v->light_pdf[k] + f.u[c] * v->pdf[k]);
     float inv = 1.0f / vl_flight_mean(density, f.channels);

@@ -74,5 +74,4 @@ static void get_2d(const vlSampler *s, uint32_t n, const int32_t *px, const int3
   }
 }
 
-extern const vlSamplerKernels VL_HOT(vl_sampler_kernels);
-const vlSamplerKernels VL_HOT(vl_sampler_kernels) = {get_1d, get_2d};
+const vlSamplerKernels vl_sampler_kernel_table = {get_1d, get_2d};

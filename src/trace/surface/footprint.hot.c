@@ -3,7 +3,7 @@
  * pictures are filtered (world/texture/texture_lookup.h). */
 #include "trace/stages.h"
 
-void VL_HOT(vl_stage_footprints)(uint32_t n, const vlPaths *paths, vlSurface *f) {
+void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *f) {
   uint32_t padded = VL_PAD(n);
   /* must vectorise */
   VL_SIMD

@@ -13,24 +13,24 @@ static void add_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlMetLight
 
 static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i) {
   for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
-    vlMetLight met = VL_HOT(vl_meet_sky)(t->world, p, i, k);
+    vlMetLight met = vl_meet_sky(t->world, p, i, k);
     add_met(t, p, i, &met);
   }
 }
 
 /* The point that a path's ray meets. */
-vlPoint VL_HOT(vl_hit_point)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
+vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  return VL_HOT(vl_point_at_time)(world, vl_path_time(p, i), o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
+  return vl_point_at_time(world, vl_path_time(p, i), o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
 }
 
 static void add_glow(vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t i) {
   vlMetLight met;
-  if (VL_HOT(vl_meet_glow)(t->world, p, h, i, &met)) add_met(t, p, i, &met);
+  if (vl_meet_glow(t->world, p, h, i, &met)) add_met(t, p, i, &met);
 }
 
 /* What the n rays of a run into: the sky where nothing is hit, or a surface that glows. */
-void VL_HOT(vl_stage_emission)(vlTracing *t, uint32_t n) {
+void vl_stage_emission(vlTracing *t, uint32_t n) {
   const vlHits *h = &t->s->hits_a;
   for (uint32_t i = 0; i < n; i++) {
     if (h->shape[i] == VL_NONE)
@@ -44,12 +44,12 @@ void VL_HOT(vl_stage_emission)(vlTracing *t, uint32_t n) {
 
 /* The material a hit really has: mixes are decided by a hash of the ray, so that the choice needs no sampler dimension.
  */
-uint32_t VL_HOT(vl_hit_material)(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
+uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   uint32_t material = world->shapes.items[h->shape[i]].material;
   while (world->materials.items[material].kind == VL_MATERIAL_MIX) { /* parts come before: it ends */
     const vlWorldMaterial *m = &world->materials.items[material];
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
-    vlPoint at = VL_HOT(vl_hit_point)(world, p, h, i);
+    vlPoint at = vl_hit_point(world, p, h, i);
     float position[3] = {at.p.x, at.p.y, at.p.z};
     float amount = vl_texture_float_at(world, m->amount, at.u, at.v, position, NULL);
     uint32_t hash = vl_hash3(vl_float_bits(d.x), vl_float_bits(d.y), vl_float_bits(d.z));
@@ -60,7 +60,7 @@ uint32_t VL_HOT(vl_hit_material)(const vlWorld *world, const vlPaths *p, const v
   return material;
 }
 
-void VL_HOT(vl_closest_hits)(vlTracing *t, uint32_t n, bool camera) {
+void vl_closest_hits(vlTracing *t, uint32_t n, bool camera) {
   vlPaths *p = &t->s->a;
   vlHits *h = &t->s->hits_a;
   const float *t_min = camera ? t->batch->t_min : NULL, *t_max = camera ? t->batch->t_max : NULL;
@@ -69,7 +69,7 @@ void VL_HOT(vl_closest_hits)(vlTracing *t, uint32_t n, bool camera) {
   vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
 }
 
-void VL_HOT(vl_closest_beyond)(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min, const float *t_max) {
+void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min, const float *t_max) {
   float time = vl_path_time(p, i);
   vlRays ray = {p->ox + i,
                 p->oy + i,
@@ -95,26 +95,26 @@ static void pass_interfaces(vlTracing *t, vlPaths *p, vlHits *h, uint32_t i, con
     if (h->shape[i] == VL_NONE) return;
     if (world->shapes.items[h->shape[i]].first_light != VL_NONE) add_glow(t, p, h, i);
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
-    vlPoint at = VL_HOT(vl_hit_point)(world, p, h, i);
+    vlPoint at = vl_hit_point(world, p, h, i);
     t_min = vl_past_surface(&at, d, t_min);
-    VL_HOT(vl_closest_beyond)(t, p, h, i, t_min, t_max);
+    vl_closest_beyond(t, p, h, i, t_min, t_max);
   }
 }
 
 /* Rays of a: ids of what they meet, of which material. */
-void VL_HOT(vl_stage_hits)(vlTracing *t, uint32_t n, bool camera) {
+void vl_stage_hits(vlTracing *t, uint32_t n, bool camera) {
   vlPaths *p = &t->s->a;
   vlHits *h = &t->s->hits_a;
-  VL_HOT(vl_closest_hits)(t, n, camera);
+  vl_closest_hits(t, n, camera);
   if (!camera) t->batch->bounce_rays += n;
   for (uint32_t i = 0; i < n; i++) {
     if (h->shape[i] == VL_NONE) continue;
     if (t->world->has_interfaces) pass_interfaces(t, p, h, i, camera ? t->batch->t_max : NULL);
-    if (h->shape[i] != VL_NONE) h->material[i] = VL_HOT(vl_hit_material)(t->world, p, h, i);
+    if (h->shape[i] != VL_NONE) h->material[i] = vl_hit_material(t->world, p, h, i);
   }
 }
 
 /* 1 where the camera's ray meets a surface. */
-void VL_HOT(vl_stage_alpha)(vlTracing *t) {
+void vl_stage_alpha(vlTracing *t) {
   for (uint32_t i = 0; i < t->batch->n; i++) t->batch->alpha[i] = t->s->hits_a.shape[i] == VL_NONE ? 0.0f : 1.0f;
 }

@@ -61,8 +61,8 @@ static uint32_t take_refracted(vlTracing *t, uint32_t n) {
   if (count == 0) return 0;
   x->paths = s->a;
   x->rows = s->volume.a;
-  VL_HOT(vl_permute_paths)(&x->paths, &s->b, x->place, count);
-  VL_HOT(vl_volume_permute)(&x->rows, &s->volume.b, x->place, count);
+  vl_permute_paths(&x->paths, &s->b, x->place, count);
+  vl_volume_permute(&x->rows, &s->volume.b, x->place, count);
   for (uint32_t j = 0; j < count; j++) {
     s->volume.b.medium[j] = x->medium[j]; /* where the path comes from, and goes back to */
     s->b.eta_scale[j] /= x->squeezed[j];
@@ -120,8 +120,8 @@ static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
   vlSubsurfaceScratch *x = &s->subsurface;
   vlHits *h = &s->hits_b;
   if (h->shape[j] == VL_NONE) return false;
-  vlPoint at = VL_HOT(vl_hit_point)(t->world, &s->b, h, j);
-  if (VL_HOT(vl_hit_material)(t->world, &s->b, h, j) == x->material[j]) {
+  vlPoint at = vl_hit_point(t->world, &s->b, h, j);
+  if (vl_hit_material(t->world, &s->b, h, j) == x->material[j]) {
     uint32_t count = ++x->found[j];
     float u = vl_unit_float(vl_hash2(vl_volume_key(t, &s->b, j, depth, VL_KEY_PROBE), count));
     if (u * (float)count < 1.0f) { /* of all crossings each stays with the same chance */
@@ -175,15 +175,15 @@ static uint32_t gather_exits(vlTracing *t, uint32_t n) {
   uint32_t count = 0;
   for (uint32_t j = 0; j < n; j++)
     if (x->found[j]) x->entry[count++] = j;
-  VL_HOT(vl_permute_paths)(&s->b, &s->a, x->entry, count);
-  VL_HOT(vl_volume_permute)(&s->volume.b, &s->volume.a, x->entry, count);
+  vl_permute_paths(&s->b, &s->a, x->entry, count);
+  vl_volume_permute(&s->volume.b, &s->volume.a, x->entry, count);
   for (uint32_t i = 0; i < count; i++) {
     uint32_t j = x->entry[i];
     s->hits_b.shape[i] = x->hits.shape[j], s->hits_b.prim[i] = x->hits.prim[j];
     s->hits_b.instance[i] = x->hits.instance[j], s->hits_b.t[i] = x->hits.t[j];
     s->hits_b.material[i] = x->material[j];
   }
-  if (count) VL_HOT(vl_stage_surface)(t->world, count, &s->a, &s->hits_b, &s->corners, &s->surface);
+  if (count) vl_stage_surface(t->world, count, &s->a, &s->hits_b, &s->corners, &s->surface);
   return count;
 }
 
@@ -220,7 +220,7 @@ static void weigh_exit(vlTracing *t, uint32_t i) {
     p->beta[c][i] *= arrives[c] * inv;
     rows->u[c][i] *= density[hero] > 0.0f ? density[c] / density[hero] : 1.0f;
   }
-  VL_HOT(vl_volume_normalise)(t, p, rows, i);
+  vl_volume_normalise(t, p, rows, i);
 }
 
 /* Light passes the surface outwards as if it came from everywhere below alike: the share that is not reflected. (The
@@ -245,7 +245,7 @@ static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   const vlLightSamples *l = &s->light;
   vlVolumeRows *rows = &s->volume.a;
   if (t->world->lights.count == 0) return;
-  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
+  vl_stage_light_samples(t, n, p, dimension);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
@@ -255,10 +255,10 @@ static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
     const float value[4] = {v, v, v, v};
     vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), g, f->offset[i], w);
     const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
-    count = VL_HOT(vl_volume_push_shadow)(t, p, rows, i, o, value, cosine * VL_INV_PI,
-                                          vl_medium_beyond(shape, g, w, rows->medium[i]), count);
+    count = vl_volume_push_shadow(t, p, rows, i, o, value, cosine * VL_INV_PI,
+                                  vl_medium_beyond(shape, g, w, rows->medium[i]), count);
   }
-  VL_HOT(vl_volume_shadows)(t, p, rows, count, depth);
+  vl_volume_shadows(t, p, rows, count, depth);
 }
 
 /* Their next rays, back to where their paths were. */
@@ -295,7 +295,7 @@ static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
   }
 }
 
-uint32_t VL_HOT(vl_stage_subsurface)(vlTracing *t, uint32_t n, uint32_t depth) {
+uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = &s->subsurface;
   uint32_t dimension = VL_DIM_SUBSURFACE + depth * VL_DIM_STRIDE;
@@ -314,8 +314,8 @@ uint32_t VL_HOT(vl_stage_subsurface)(vlTracing *t, uint32_t n, uint32_t depth) {
     s->order[count] = k;
     count += x->alive[k];
   }
-  VL_HOT(vl_permute_paths)(&x->paths, &s->a, s->order, count);
-  VL_HOT(vl_volume_permute)(&x->rows, &s->volume.a, s->order, count);
+  vl_permute_paths(&x->paths, &s->a, s->order, count);
+  vl_volume_permute(&x->rows, &s->volume.a, s->order, count);
   return count;
 }
 
@@ -323,12 +323,12 @@ uint32_t VL_HOT(vl_stage_subsurface)(vlTracing *t, uint32_t n, uint32_t depth) {
 
 static void spectrum(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {
   float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
-  VL_HOT(vl_texture_spectrum)(r, node, out);
+  vl_texture_spectrum(r, node, out);
 }
 
 /* Coefficients of a run of lanes: extinction and albedo, from absorption and scattering, or from the reflectance of a
  * thick body and the mean free path. */
-void VL_HOT(vl_stage_bodies)(vlTextureRun *r, const vlWorldMaterial *m) {
+void vl_stage_bodies(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldSubsurface *b = m->subsurface;
   vlShade *sh = &r->s->shade;
   float(*sigma)[VL_ROW_SIZE] = sh->principled + VL_S_SIGMA, (*albedo)[VL_ROW_SIZE] = sh->principled + VL_S_ALBEDO;

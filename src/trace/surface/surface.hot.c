@@ -298,8 +298,8 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
   out->vx[i] = v.x, out->vy[i] = v.y, out->vz[i] = v.z;
 }
 
-void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits, vlCorners *c,
-                              vlSurface *out) {
+void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits, vlCorners *c,
+                      vlSurface *out) {
   bool others = false;
   for (uint32_t i = 0; i < n; i++) {
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
@@ -343,7 +343,7 @@ void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *p
     out->width[i] = vl_abs(paths->cone[i] + paths->spread[i] * out->t[i]);
     out->all_round[i] = 0.0f;
   }
-  if (world->images.count) VL_HOT(vl_stage_footprints)(n, paths, out);
+  if (world->images.count) vl_stage_footprints(n, paths, out);
   /* After footprints, which want the derivatives of the point: tangents have another length. */
   for (uint32_t i = 0; others && i < n; i++) {
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
@@ -351,8 +351,8 @@ void VL_HOT(vl_stage_surface)(const vlWorld *world, uint32_t n, const vlPaths *p
   }
 }
 
-vlPoint VL_HOT(vl_point_at_time)(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
-                                 uint32_t instance, float t_hit) {
+vlPoint vl_point_at_time(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
+                         uint32_t instance, float t_hit) {
   const vlWorldShape *s = &world->shapes.items[shape];
   vlPoint r;
   if (s->kind == VL_SHAPE_TRIANGLES) {

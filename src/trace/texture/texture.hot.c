@@ -5,7 +5,7 @@
 /* Weight of the second input of mix-like nodes, in w. */
 static void mix_weight(vlTextureRun *r, const vlTextureNode *node, float *w) {
   if (node->kind == VL_NODE_MIX) {
-    VL_HOT(vl_texture_float)(r, node->amount, w);
+    vl_texture_float(r, node->amount, w);
     return;
   }
   for (uint32_t i = r->first; i < r->last; i++) {
@@ -27,7 +27,7 @@ static void bilerp_weights(vlTextureRun *r, const vlTextureNode *node, float *co
   }
 }
 
-void VL_HOT(vl_texture_float)(vlTextureRun *r, int32_t index, float *out) {
+void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
   switch (node->kind) {
@@ -48,8 +48,8 @@ void VL_HOT(vl_texture_float)(vlTextureRun *r, int32_t index, float *out) {
       break;
     case VL_NODE_SCALE: {
       float *w = vl_texture_row(r);
-      VL_HOT(vl_texture_float)(r, node->a, out);
-      VL_HOT(vl_texture_float)(r, node->amount, w);
+      vl_texture_float(r, node->a, out);
+      vl_texture_float(r, node->amount, w);
       for (uint32_t i = r->first; i < r->last; i++) out[i] = out[i] * w[i];
       break;
     }
@@ -59,8 +59,8 @@ void VL_HOT(vl_texture_float)(vlTextureRun *r, int32_t index, float *out) {
     case VL_NODE_DIRECTION_MIX: {
       float *w = vl_texture_row(r), *b = vl_texture_row(r);
       mix_weight(r, node, w);
-      VL_HOT(vl_texture_float)(r, node->a, out);
-      VL_HOT(vl_texture_float)(r, node->b, b);
+      vl_texture_float(r, node->a, out);
+      vl_texture_float(r, node->b, b);
       for (uint32_t i = r->first; i < r->last; i++) out[i] = (1 - w[i]) * out[i] + w[i] * b[i];
       break;
     }
@@ -70,7 +70,7 @@ void VL_HOT(vl_texture_float)(vlTextureRun *r, int32_t index, float *out) {
       bilerp_weights(r, node, w);
       int32_t inputs[4] = {node->a, node->b, node->c, node->d};
       for (int k = 0; k < 4; k++) {
-        VL_HOT(vl_texture_float)(r, inputs[k], x);
+        vl_texture_float(r, inputs[k], x);
         for (uint32_t i = r->first; i < r->last; i++) out[i] = (k ? out[i] : 0.0f) + w[k][i] * x[i];
       }
       break;
@@ -137,7 +137,7 @@ static void image_spectrum(vlTextureRun *r, const vlTextureNode *node, float *co
   }
 }
 
-void VL_HOT(vl_texture_spectrum)(vlTextureRun *r, int32_t index, float *const out[4]) {
+void vl_texture_spectrum(vlTextureRun *r, int32_t index, float *const out[4]) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
   switch (node->kind) {
@@ -147,8 +147,8 @@ void VL_HOT(vl_texture_spectrum)(vlTextureRun *r, int32_t index, float *const ou
     case VL_NODE_VERTEX_COLOR: image_spectrum(r, node, out); break;
     case VL_NODE_SCALE: {
       float *w = vl_texture_row(r);
-      VL_HOT(vl_texture_spectrum)(r, node->a, out);
-      VL_HOT(vl_texture_float)(r, node->amount, w);
+      vl_texture_spectrum(r, node->a, out);
+      vl_texture_float(r, node->amount, w);
       for (int c = 0; c < 4; c++)
         for (uint32_t i = r->first; i < r->last; i++) out[c][i] = out[c][i] * w[i];
       break;
@@ -160,8 +160,8 @@ void VL_HOT(vl_texture_spectrum)(vlTextureRun *r, int32_t index, float *const ou
       float *w = vl_texture_row(r),
             *b[4] = {vl_texture_row(r), vl_texture_row(r), vl_texture_row(r), vl_texture_row(r)};
       mix_weight(r, node, w);
-      VL_HOT(vl_texture_spectrum)(r, node->a, out);
-      VL_HOT(vl_texture_spectrum)(r, node->b, b);
+      vl_texture_spectrum(r, node->a, out);
+      vl_texture_spectrum(r, node->b, b);
       for (int c = 0; c < 4; c++)
         for (uint32_t i = r->first; i < r->last; i++) out[c][i] = (1 - w[i]) * out[c][i] + w[i] * b[c][i];
       break;
@@ -172,7 +172,7 @@ void VL_HOT(vl_texture_spectrum)(vlTextureRun *r, int32_t index, float *const ou
       bilerp_weights(r, node, w);
       int32_t inputs[4] = {node->a, node->b, node->c, node->d};
       for (int k = 0; k < 4; k++) {
-        VL_HOT(vl_texture_spectrum)(r, inputs[k], x);
+        vl_texture_spectrum(r, inputs[k], x);
         for (int c = 0; c < 4; c++)
           for (uint32_t i = r->first; i < r->last; i++) out[c][i] = (k ? out[c][i] : 0.0f) + w[k][i] * x[c][i];
       }

@@ -18,8 +18,8 @@ typedef struct vlTextureRun {
 } vlTextureRun;
 
 /* Results go to lanes [first, last) of out (rows of the whole batch). */
-void VL_HOT(vl_texture_float)(vlTextureRun *r, int32_t node, float *out);
-void VL_HOT(vl_texture_spectrum)(vlTextureRun *r, int32_t node, float *const out[4]);
+void vl_texture_float(vlTextureRun *r, int32_t node, float *out);
+void vl_texture_spectrum(vlTextureRun *r, int32_t node, float *const out[4]);
 /* A scratch row; the caller gives it back by restoring r->top. */
 static inline float *vl_texture_row(vlTextureRun *r) {
   return r->s
@@ -86,12 +86,12 @@ static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vl
 
 /* Rows of the materials with walks between layers (after their textured eta, k and roughness), and of those that let
  * diffuse light through (after their reflectance). */
-void VL_HOT(vl_stage_layers)(vlTextureRun *r, const vlWorldMaterial *m);
-void VL_HOT(vl_stage_translucent)(vlTextureRun *r, const vlWorldMaterial *m);
-void VL_HOT(vl_stage_bodies)(vlTextureRun *r, const vlWorldMaterial *m); /* after their reflectance */
-void VL_HOT(vl_stage_hair)(vlTextureRun *r, const vlWorldMaterial *m);   /* as those; its index, too */
+void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m);
+void vl_stage_translucent(vlTextureRun *r, const vlWorldMaterial *m);
+void vl_stage_bodies(vlTextureRun *r, const vlWorldMaterial *m); /* after their reflectance */
+void vl_stage_hair(vlTextureRun *r, const vlWorldMaterial *m);   /* as those; its index, too */
 /* The principled material's rows of a run; the coat's normal stays in the world until there are frames. */
-void VL_HOT(vl_stage_principled)(vlTextureRun *r, const vlWorldMaterial *m);
-void VL_HOT(vl_stage_coat_frames)(const vlSurface *surface, vlShade *shade, uint32_t first, uint32_t last);
+void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m);
+void vl_stage_coat_frames(const vlSurface *surface, vlShade *shade, uint32_t first, uint32_t last);
 
 #endif

@@ -54,7 +54,7 @@ static vlBsdfParams params_of(vlTracing *t, uint32_t first) {
 
 /* ---- direct light ------------------------------------------------------------------------------------------------ */
 
-void VL_HOT(vl_stage_light_bsdf)(vlTracing *t, uint32_t n) {
+void vl_stage_light_bsdf(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;
   const vlLightSamples *l = &s->light;
@@ -78,11 +78,11 @@ void VL_HOT(vl_stage_light_bsdf)(vlTracing *t, uint32_t n) {
   }
 }
 
-void VL_HOT(vl_stage_light_samples)(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension) {
+void vl_stage_light_samples(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension) {
   vlShade *sh = &t->s->shade;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT, sh->u0);
   t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
-  VL_HOT(vl_stage_lights)(t->world, n, p, &t->s->surface, sh->u0, sh->u1, sh->u2, &t->s->light);
+  vl_stage_lights(t->world, n, p, &t->s->surface, sh->u0, sh->u1, sh->u2, &t->s->light);
 }
 
 /* Light samples, weighed by the BSDF, become shadow rays; those that arrive add their radiance. */
@@ -92,8 +92,8 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
   vlShade *sh = &s->shade;
   if (world->lights.count == 0) return;
   vlPaths *p = &s->b;
-  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
-  VL_HOT(vl_stage_light_bsdf)(t, n);
+  vl_stage_light_samples(t, n, p, dimension);
+  vl_stage_light_bsdf(t, n);
   const vlLightSamples *l = &s->light;
   vlShadowRays *q = &s->shadow;
   uint32_t count = 0;
@@ -139,7 +139,7 @@ static inline vlVec2 cone_after(float pixel_spread, float cone, float spread, fl
   return (vlVec2){width, specular ? smooth : pixel_spread};
 }
 
-uint32_t VL_HOT(vl_stage_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;
   vlPaths *p = &s->b;
@@ -201,25 +201,25 @@ uint32_t VL_HOT(vl_stage_scatter)(vlTracing *t, uint32_t n, uint32_t depth, uint
     if (alive[i] && !(sh->flags[i] & VL_SAMPLED_SPECULAR)) vl_note_scattered(t, p->lane[i]);
     if (broken[i] > 0.0f) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film counts it */
   }
-  VL_HOT(vl_permute_paths)(p, &s->a, s->order, count);
+  vl_permute_paths(p, &s->a, s->order, count);
   return count;
 }
 
 /* ---- the path tracer --------------------------------------------------------------------------------------------- */
 
-void VL_HOT(vl_path_tracer)(vlTracing *t) {
+void vl_path_tracer(vlTracing *t) {
   uint32_t n = t->batch->n;
   for (uint32_t depth = 0; n > 0; depth++) {
-    VL_HOT(vl_stage_hits)(t, n, depth == 0);
-    if (depth == 0) VL_HOT(vl_stage_alpha)(t);
-    VL_HOT(vl_stage_emission)(t, n);
+    vl_stage_hits(t, n, depth == 0);
+    if (depth == 0) vl_stage_alpha(t);
+    vl_stage_emission(t, n);
     if (depth >= t->def->max_depth) break;
-    n = VL_HOT(vl_stage_sort)(t, n);
+    n = vl_stage_sort(t, n);
     if (n == 0) break;
     uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
-    VL_HOT(vl_stage_shade)(t, n);
-    VL_HOT(vl_stage_regularize)(t, n);
+    vl_stage_shade(t, n);
+    vl_stage_regularize(t, n);
     direct_light(t, n, dimension);
-    n = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
+    n = vl_stage_scatter(t, n, depth + 1, dimension);
   }
 }

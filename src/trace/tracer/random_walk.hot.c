@@ -4,27 +4,27 @@
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
-void VL_HOT(vl_random_walk_tracer)(vlTracing *t) {
+void vl_random_walk_tracer(vlTracing *t) {
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;
   vlPaths *p = &s->b;
   const vlSurface *f = &s->surface;
   uint32_t n = t->batch->n;
   for (uint32_t depth = 0; n > 0; depth++) {
-    VL_HOT(vl_stage_hits)(t, n, depth == 0);
-    if (depth == 0) VL_HOT(vl_stage_alpha)(t);
-    VL_HOT(vl_stage_emission)(t, n); /* all rays are marked specular: nothing competes */
+    vl_stage_hits(t, n, depth == 0);
+    if (depth == 0) vl_stage_alpha(t);
+    vl_stage_emission(t, n); /* all rays are marked specular: nothing competes */
     if (depth >= t->def->max_depth) break;
-    n = VL_HOT(vl_stage_sort)(t, n);
+    n = vl_stage_sort(t, n);
     if (n == 0) break;
-    VL_HOT(vl_stage_shade)(t, n);
+    vl_stage_shade(t, n);
     uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, count = 0;
     t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV, sh->u1, sh->u2);
     for (uint32_t i = 0; i < VL_PAD(n); i++) {
       vlVec3 w = vl_warp_sphere(sh->u1[i], sh->u2[i]);
       s->light.wx[i] = w.x, s->light.wy[i] = w.y, s->light.wz[i] = w.z;
     }
-    VL_HOT(vl_stage_light_bsdf)(t, n);
+    vl_stage_light_bsdf(t, n);
     for (uint32_t i = 0; i < n; i++) {
       float most = 0.0f;
       for (int c = 0; c < 4; c++) {
@@ -39,7 +39,7 @@ void VL_HOT(vl_random_walk_tracer)(vlTracing *t) {
       s->order[count] = i;
       count += most > 0.0f;
     }
-    VL_HOT(vl_permute_paths)(p, &s->a, s->order, count);
+    vl_permute_paths(p, &s->a, s->order, count);
     n = count;
   }
 }

@@ -4,7 +4,7 @@
 /* ---- sorting ----------------------------------------------------------------------------------------------------- */
 
 /* Moves path order[k] of a to place k of b. */
-void VL_HOT(vl_permute_paths)(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n) {
+void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n) {
 #define MOVE(field) \
   VL_SIMD           \
   for (uint32_t k = 0; k < n; k++) b->field[k] = a->field[order[k]]
@@ -42,7 +42,7 @@ static void permute_hits(const vlHits *a, vlHits *b, const uint32_t *order, uint
 
 /* Paths of a that hit something go to b, those of one material together (and materials of one kind): a counting sort
  * that keeps the order of the tile. Returns how many. */
-uint32_t VL_HOT(vl_stage_sort)(vlTracing *t, uint32_t n) {
+uint32_t vl_stage_sort(vlTracing *t, uint32_t n) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
   uint32_t materials = (uint32_t)world->materials.count, count = 0;
@@ -68,7 +68,7 @@ uint32_t VL_HOT(vl_stage_sort)(vlTracing *t, uint32_t n) {
       s->order[k] = i;
     }
   }
-  VL_HOT(vl_permute_paths)(&s->a, &s->b, s->order, count);
+  vl_permute_paths(&s->a, &s->b, s->order, count);
   permute_hits(&s->hits_a, &s->hits_b, s->order, count);
   return count;
 }
@@ -76,18 +76,18 @@ uint32_t VL_HOT(vl_stage_sort)(vlTracing *t, uint32_t n) {
 /* ---- shading ----------------------------------------------------------------------------------------------------- */
 
 /* Surfaces, materials, frames of the n sorted hits. */
-void VL_HOT(vl_stage_shade)(vlTracing *t, uint32_t n) {
+void vl_stage_shade(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
-  VL_HOT(vl_stage_surface)(t->world, n, &s->b, &s->hits_b, &s->corners, &s->surface);
+  vl_stage_surface(t->world, n, &s->b, &s->hits_b, &s->corners, &s->surface);
   for (uint32_t first = 0, last; first < n; first = last) {
     uint32_t material = s->hits_b.material[first];
     for (last = first + 1; last < n && s->hits_b.material[last] == material;) last++;
-    VL_HOT(vl_stage_material)(t->world, first, last, material, s);
+    vl_stage_material(t->world, first, last, material, s);
   }
-  VL_HOT(vl_stage_frames)(n, &s->b, &s->surface, &s->shade);
+  vl_stage_frames(n, &s->b, &s->surface, &s->shade);
   for (uint32_t first = 0, last; first < n; first = last) {
     const vlWorldMaterial *m = &t->world->materials.items[s->hits_b.material[first]];
     for (last = first + 1; last < n && s->hits_b.material[last] == s->hits_b.material[first];) last++;
-    if (m->principled && m->principled->has_coat) VL_HOT(vl_stage_coat_frames)(&s->surface, &s->shade, first, last);
+    if (m->principled && m->principled->has_coat) vl_stage_coat_frames(&s->surface, &s->shade, first, last);
   }
 }

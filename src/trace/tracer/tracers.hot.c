@@ -44,11 +44,11 @@ static void raycast_tracer(vlTracing *t) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
   uint32_t n = t->batch->n;
-  VL_HOT(vl_stage_hits)(t, n, true);
-  VL_HOT(vl_stage_alpha)(t);
-  VL_HOT(vl_stage_emission)(t, n);
-  n = VL_HOT(vl_stage_sort)(t, n);
-  VL_HOT(vl_stage_shade)(t, n);
+  vl_stage_hits(t, n, true);
+  vl_stage_alpha(t);
+  vl_stage_emission(t, n);
+  n = vl_stage_sort(t, n);
+  vl_stage_shade(t, n);
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = s->b.lane[i];
     const vlWorldMaterial *m = &world->materials.items[s->hits_b.material[i]];
@@ -69,10 +69,10 @@ static void ambient_occlusion_tracer(vlTracing *t) {
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;
   uint32_t n = t->batch->n;
-  VL_HOT(vl_stage_hits)(t, n, true);
-  VL_HOT(vl_stage_alpha)(t);
-  n = VL_HOT(vl_stage_sort)(t, n);
-  VL_HOT(vl_stage_shade)(t, n);
+  vl_stage_hits(t, n, true);
+  vl_stage_alpha(t);
+  n = vl_stage_sort(t, n);
+  vl_stage_shade(t, n);
   t->sampler->get_2d(t->def->sampler, n, s->b.px, s->b.py, s->b.index, VL_DIM_BOUNCE + VL_DIM_BSDF_UV, sh->u1, sh->u2);
   vlShadowRays *q = &s->shadow;
   for (uint32_t i = 0; i < n; i++) {
@@ -109,19 +109,19 @@ static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *s
     case VL_TRACER_AMBIENT_OCCLUSION: ambient_occlusion_tracer(&t); break;
     case VL_TRACER_VOLPATH:
       if (world->media.count > 0 || world->has_subsurface) {
-        VL_HOT(vl_volume_tracer)(&t);
+        vl_volume_tracer(&t);
         break;
       }
-      VL_HOT(vl_path_tracer)(&t);
+      vl_path_tracer(&t);
       break;
-    case VL_TRACER_RANDOM_WALK: VL_HOT(vl_random_walk_tracer)(&t); break;
+    case VL_TRACER_RANDOM_WALK: vl_random_walk_tracer(&t); break;
     default:
       if (def->two_way)
-        VL_HOT(vl_two_way_tracer)(&t);
+        vl_bidirectional_tracer(&t);
       else
-        VL_HOT(vl_path_tracer)(&t);
+        vl_path_tracer(&t);
       break;
   }
 }
 
-const vlTraceKernels VL_HOT(vl_trace_kernels) = {trace, VL_HOT(vl_light_tracer), VL_HOT(vl_light_media)};
+const vlTraceKernels vl_trace_kernel_table = {trace, vl_light_tracer, vl_light_media};

@@ -7,7 +7,7 @@
 /* Longer ones would hardly live, and need memory for what they leave. */
 enum { LIGHT_BOUNCES = 255 };
 
-void VL_HOT(vl_stage_reverse)(vlTracing *t, vlTwoWayRows *r, uint32_t n, const float wi[3][VL_ROW_SIZE]) {
+void vl_stage_reverse(vlTracing *t, vlTwoWayRows *r, uint32_t n, const float wi[3][VL_ROW_SIZE]) {
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;
   const vlSurface *f = &s->surface;
@@ -20,7 +20,7 @@ void VL_HOT(vl_stage_reverse)(vlTracing *t, vlTwoWayRows *r, uint32_t n, const f
     float a = wi[0][i], b = wi[1][i], c = wi[2][i];
     sh->wo[0][i] = a, sh->wo[1][i] = b, sh->wo[2][i] = c;
   }
-  VL_HOT(vl_stage_light_bsdf)(t, n);
+  vl_stage_light_bsdf(t, n);
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     r->rev[i] = sh->pdf[i];
     for (int k = 0; k < 3; k++) sh->wo[k][i] = r->wo[k][i];
@@ -63,7 +63,7 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
   for (uint32_t i = 0; i < n; i++) {
     float lambda[4];
     for (int c = 0; c < 4; c++) lambda[c] = rgb ? 0.0f : r->rows[4 + c][i];
-    vlEmission e = VL_HOT(vl_emission_sample)(world, t->def->two_way, lambda, u[i], u1[i], v1[i], u2[i], v2[i]);
+    vlEmission e = vl_emission_sample(world, t->def->two_way, lambda, u[i], u1[i], v1[i], u2[i], v2[i]);
     float most = vl_max(vl_max(e.flux[0], e.flux[1]), vl_max(e.flux[2], e.flux[3]));
     if (!e.valid || !(most > 0.0f) || !(most < VL_INFINITY)) continue;
     uint32_t *medium = s->volume.shadow_medium; /* free so far */
@@ -91,16 +91,16 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
   return count;
 }
 
-float VL_HOT(vl_light_asked)(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w) {
+float vl_light_asked(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w) {
   const vlWorldLight *light = &world->lights.items[r->light[lane]];
   float pmf = vl_light_pmf(&world->tree, p, n, r->light[lane]);
-  if (light->kind == VL_WL_INFINITE) return pmf * VL_HOT(vl_infinite_pdf)(world, light, p, w);
+  if (light->kind == VL_WL_INFINITE) return pmf * vl_infinite_pdf(world, light, p, w);
   if (light->kind != VL_WL_AREA) return pmf;
   vlPoint at;
   __builtin_memset(&at, 0, sizeof at);
   at.p = vl_vec3(r->lx[lane], r->ly[lane], r->lz[lane]);
   at.g = at.n = vl_vec3(r->lnx[lane], r->lny[lane], r->lnz[lane]);
-  return pmf * VL_HOT(vl_area_pdf)(world, light, p, &at);
+  return pmf * vl_area_pdf(world, light, p, &at);
 }
 
 /* The n shaded lanes: a, b of the ways that begin on the light's side. */
@@ -118,8 +118,8 @@ static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
       float density = vl_light_density(t, r, lane, f->t[i]);
       inv = density > 0.0f ? inv / density : 0.0f;
       r->b[i] = inv / vl_last_odds(t, lane) *
-                VL_HOT(vl_light_asked)(t->world, r, lane, vl_lane3(f->px, f->py, f->pz, i),
-                                       vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), 1.0f - f->all_round[i]), w);
+                vl_light_asked(t->world, r, lane, vl_lane3(f->px, f->py, f->pz, i),
+                               vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), 1.0f - f->all_round[i]), w);
     }
     r->a[i] = r->carry[lane] * inv;
   }
@@ -156,8 +156,8 @@ static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t dept
   vlShade *sh = &s->shade;
   const vlSurface *f = &s->surface;
   const vlPaths *p = &s->b;
-  uint32_t count = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
-  VL_HOT(vl_volume_go_on)(t, count);
+  uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension);
+  vl_volume_go_on(t, count);
   float(*wi)[VL_ROW_SIZE] = s->rows + 1;
   float *ns = s->rows[4]; /* |wo . shading normal| over |wi . it| */
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
@@ -166,7 +166,7 @@ static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t dept
     float z = vl_abs(sh->wi[2][i]);
     ns[i] = z > 0.0f ? vl_abs(sh->wo[2][i]) / z : 0.0f;
   }
-  VL_HOT(vl_stage_reverse)(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
   float merged = t->def->two_way->merged;
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k], lane = s->a.lane[k];
@@ -184,19 +184,19 @@ static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t dept
 
 static uint32_t on_surfaces(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
                             uint32_t dimension, bool last) {
-  n = VL_HOT(vl_stage_sort)(t, n);
+  n = vl_stage_sort(t, n);
   if (n == 0) return 0;
-  VL_HOT(vl_volume_sorted)(t, n);
-  VL_HOT(vl_stage_shade)(t, n);
-  for (uint32_t i = 0; vl_has_media(t) && i < n; i++) VL_HOT(vl_volume_normalise)(t, &t->s->b, &t->s->volume.b, i);
+  vl_volume_sorted(t, n);
+  vl_stage_shade(t, n);
+  for (uint32_t i = 0; vl_has_media(t) && i < n; i++) vl_volume_normalise(t, &t->s->b, &t->s->volume.b, i);
   arrive(t, r, n, depth);
   if (t->def->two_way->merge) leave_photons(t, r, b, n, depth);
-  VL_HOT(vl_show)(t, r, b, n, depth, dimension);
+  vl_show(t, r, b, n, depth, dimension);
   return last ? 0 : scatter(t, r, n, depth, dimension);
 }
 
-void VL_HOT(vl_light_tracer)(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTwoWayRows *r,
-                             vlLightBatch *batch) {
+void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTwoWayRows *r,
+                     vlLightBatch *batch) {
   vlTraceDef own = *def;
   own.sampler = &def->two_way->sampler;
   own.pixel_spread = own.pixel_width = 0.0f; /* textures in full */
@@ -208,18 +208,18 @@ void VL_HOT(vl_light_tracer)(const vlWorld *world, const vlTraceDef *def, vlTrac
   vlTracing t = {world, &own, scratch, &rest, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa), true};
   uint32_t n = set_out(&t, r, batch), most = def->max_depth < LIGHT_BOUNCES ? def->max_depth : LIGHT_BOUNCES;
   bool media = vl_has_media(&t);
-  if (media) VL_HOT(vl_volume_start)(&t, n, scratch->volume.shadow_medium);
+  if (media) vl_volume_start(&t, n, scratch->volume.shadow_medium);
   for (uint32_t depth = 0; n > 0 && depth < most; depth++) {
     if (media)
-      VL_HOT(vl_volume_travel)(&t, n, depth, false);
+      vl_volume_travel(&t, n, depth, false);
     else
-      VL_HOT(vl_stage_hits)(&t, n, false);
+      vl_stage_hits(&t, n, false);
     uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, inside = 0, *kept = scratch->volume.kept;
     bool last = depth + 1 == most;
-    if (media) inside = VL_HOT(vl_light_in_media)(&t, r, batch, n, depth, dimension, last);
+    if (media) inside = vl_light_in_media(&t, r, batch, n, depth, dimension, last);
     for (uint32_t k = 0; k < inside; k++) kept[k] = scratch->order[k];
     n = on_surfaces(&t, r, batch, n, depth, dimension, last);
-    if (media) n = VL_HOT(vl_volume_append)(&t, kept, inside, n);
+    if (media) n = vl_volume_append(&t, kept, inside, n);
   }
   batch->bounce_rays += rest.bounce_rays;
   batch->shadow_rays += rest.shadow_rays;

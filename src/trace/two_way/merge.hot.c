@@ -86,13 +86,13 @@ static void add_listed(vlTracing *t, uint32_t n) {
       s->light.wy[i] = has ? w[1] : s->surface.ny[i];
       s->light.wz[i] = has ? w[2] : s->surface.nz[i];
     }
-    VL_HOT(vl_stage_light_bsdf)(t, n);
+    vl_stage_light_bsdf(t, n);
     for (uint32_t i = 0; i < VL_PAD(n); i++) {
       for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
       for (int c = 0; c < 4; c++) value[c][i] = sh->value[c][i];
       forth[i] = sh->pdf[i];
     }
-    VL_HOT(vl_stage_reverse)(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+    vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
     for (uint32_t i = 0; i < n; i++) {
       if (round >= r->count[i]) continue;
       const vlPhoton *x = &photons[r->pair[r->first[i] + round]];
@@ -109,7 +109,7 @@ static uint32_t most_bounces(const vlTracing *t, uint32_t lane, uint32_t depth) 
   return t->def->max_depth - (depth - (apart ? t->batch->two_way->smooth[lane] : 0));
 }
 
-void VL_HOT(vl_stage_merge)(vlTracing *t, uint32_t n, uint32_t depth) {
+void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlPhotonMap *map = &t->def->two_way->map;
   vlTraceScratch *s = t->s;
   const vlSurface *f = &s->surface;
@@ -141,7 +141,7 @@ void VL_HOT(vl_stage_merge)(vlTracing *t, uint32_t n, uint32_t depth) {
   if (listed) add_listed(t, n);
 }
 
-void VL_HOT(vl_stage_merge_media)(vlTracing *t, uint32_t n, uint32_t depth) {
+void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlPhotonMap *map = &t->def->two_way->map;
   const vlVolumeScratch *v = &t->s->volume;
   const vlPaths *p = &v->scattered;

@@ -3,7 +3,7 @@
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
-vlSight VL_HOT(vl_look)(const vlEyeView *eye, vlVec3 p, float u, float v) {
+vlSight vl_look(const vlEyeView *eye, vlVec3 p, float u, float v) {
   vlSight r;
   __builtin_memset(&r, 0, sizeof r);
   r.from = eye->position;
@@ -27,14 +27,14 @@ vlSight VL_HOT(vl_look)(const vlEyeView *eye, vlVec3 p, float u, float v) {
   return r;
 }
 
-bool VL_HOT(vl_two_way_arrives)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlTwoWayRows *r,
-                                uint32_t k, uint32_t depth, float passes[4], float *scale) {
+bool vl_two_way_arrives(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlTwoWayRows *r, uint32_t k,
+                        uint32_t depth, float passes[4], float *scale) {
   vlTraceScratch *s = t->s;
   float odds = 1.0f, mean = 1.0f;
   for (int c = 0; c < 4; c++) passes[c] = 1.0f;
   if (s->shadow.occluded[k]) return false;
   if (vl_has_media(t)) {
-    vlFlight f = VL_HOT(vl_volume_shadow_flight)(t, p, rows, k, depth);
+    vlFlight f = vl_volume_shadow_flight(t, p, rows, k, depth);
     float density[4];
     for (int c = 0; c < 4; c++) passes[c] = f.beta[c], density[c] = s->volume.density[c][k] * f.l[c];
     odds = f.odds, mean = vl_flight_mean(density, f.channels);
@@ -44,8 +44,8 @@ bool VL_HOT(vl_two_way_arrives)(vlTracing *t, const vlPaths *p, const vlVolumeRo
   return true;
 }
 
-void VL_HOT(vl_two_way_splats)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p,
-                               const vlVolumeRows *rows, uint32_t count, uint32_t depth) {
+void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p, const vlVolumeRows *rows,
+                       uint32_t count, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlShadowRays *q = &s->shadow;
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
@@ -56,7 +56,7 @@ void VL_HOT(vl_two_way_splats)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, c
   uint32_t visible = 0;
   for (uint32_t k = 0; k < count; k++) {
     float passes[4], scale;
-    if (!VL_HOT(vl_two_way_arrives)(t, p, rows, r, k, depth, passes, &scale)) continue;
+    if (!vl_two_way_arrives(t, p, rows, r, k, depth, passes, &scale)) continue;
     uint32_t lane = q->lane[k], m = visible++;
     r->x[m] = r->x[k], r->y[m] = r->y[k];
     for (int c = 0; c < 4; c++) {
@@ -90,7 +90,7 @@ static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float 
   q->lane[count] = s->b.lane[i];
 }
 
-void VL_HOT(vl_show)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth, uint32_t dimension) {
+void vl_show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth, uint32_t dimension) {
   const vlTwoWay *way = t->def->two_way;
   if (!way->eye.sees) return;
   vlTraceScratch *s = t->s;
@@ -105,7 +105,7 @@ void VL_HOT(vl_show)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n,
   float *fx = s->rows[5], *fy = s->rows[6], *fz = s->rows[7];
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     uint32_t lane = p->lane[i < n ? i : n - 1];
-    vlSight sight = VL_HOT(vl_look)(vl_eye_of(t, lane), vl_lane3(f->px, f->py, f->pz, i), sh->u1[i], sh->u2[i]);
+    vlSight sight = vl_look(vl_eye_of(t, lane), vl_lane3(f->px, f->py, f->pz, i), sh->u1[i], sh->u2[i]);
     vlVec3 w = sight.w;
     wi[0][i] = w.x * sh->tx[i] + w.y * sh->ty[i] + w.z * sh->tz[i];
     wi[1][i] = w.x * sh->bx[i] + w.y * sh->by[i] + w.z * sh->bz[i];
@@ -116,7 +116,7 @@ void VL_HOT(vl_show)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n,
     r->x[i] = sight.x, r->y[i] = sight.y;
     fx[i] = sight.from.x, fy[i] = sight.from.y, fz[i] = sight.from.z;
   }
-  VL_HOT(vl_stage_reverse)(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     float sum = sh->value[0][i] + sh->value[1][i] + sh->value[2][i] + sh->value[3][i];
@@ -130,5 +130,5 @@ void VL_HOT(vl_show)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n,
     r->x[count] = r->x[i], r->y[count] = r->y[i];
     count++;
   }
-  VL_HOT(vl_two_way_splats)(t, r, b, p, &s->volume.b, count, depth);
+  vl_two_way_splats(t, r, b, p, &s->volume.b, count, depth);
 }

@@ -31,31 +31,29 @@ typedef struct vlTwoWayRows {
   vlPhoton photons[VL_BATCH];
 } vlTwoWayRows;
 
-#ifdef VL_ISA_SUFFIX
-void VL_HOT(vl_two_way_tracer)(vlTracing *t);
-void VL_HOT(vl_random_walk_tracer)(vlTracing *t);
-void VL_HOT(vl_light_tracer)(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTwoWayRows *rows,
-                             vlLightBatch *batch);
+void vl_bidirectional_tracer(vlTracing *t);
+void vl_random_walk_tracer(vlTracing *t);
+void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTwoWayRows *rows,
+                     vlLightBatch *batch);
 /* Adds the light of the photons near the n shaded lanes, depth: bounces of the eye's path so far. */
-void VL_HOT(vl_stage_merge)(vlTracing *t, uint32_t n, uint32_t depth);
-void VL_HOT(vl_stage_merge_media)(vlTracing *t, uint32_t n, uint32_t depth);
-void VL_HOT(vl_light_media)(const vlWorld *world, const float eye[3], uint32_t *medium);
+void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth);
+void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth);
+void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium);
 
 /* The lanes of a that scatter in media (volume.scattered): light samples, merging, directions; s->order names those
  * that go on. Of the eye's paths, and of light's, which leave photons and splats; last: none goes on. */
-uint32_t VL_HOT(vl_eye_in_media)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
-uint32_t VL_HOT(vl_light_in_media)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
-                                   uint32_t dimension, bool last);
+uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
+uint32_t vl_light_in_media(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
+                           uint32_t dimension, bool last);
 /* Light samples as `count` shadow rays: adds what arrives, weighed: own over own + odds others. */
-void VL_HOT(vl_two_way_shadows)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count,
-                                uint32_t depth);
+void vl_two_way_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth);
 /* The n shaded lanes, as far as the eye sees them, become splats. */
-void VL_HOT(vl_show)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth, uint32_t dimension);
+void vl_show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth, uint32_t dimension);
 /* Shadow rays towards the eye become splats; their radiance over own + odds others. */
-void VL_HOT(vl_two_way_splats)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p,
-                               const vlVolumeRows *rows, uint32_t count, uint32_t depth);
+void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p, const vlVolumeRows *rows,
+                       uint32_t count, uint32_t depth);
 /* Density with which next event would have asked for the light that this lane's path came from. */
-float VL_HOT(vl_light_asked)(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w);
+float vl_light_asked(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w);
 
 /* Where the eye would see a point from a point on its lens. */
 typedef struct vlSight {
@@ -66,11 +64,11 @@ typedef struct vlSight {
   float end;        /* share of the way up to the near plane */
   float per_square; /* 1 / (solid angle of a pixel * distance squared) */
 } vlSight;
-vlSight VL_HOT(vl_look)(const vlEyeView *eye, vlVec3 p, float u, float v);
+vlSight vl_look(const vlEyeView *eye, vlVec3 p, float u, float v);
 
 /* Densities of sampling wo had the path come from the directions wi (local, rows of n), to rows->rev; and the BSDFs'
  * values f(wi, wo) |cos wo| to shade.value. shade.wo stays, shade.wi and shade.pdf and light.w do not. */
-void VL_HOT(vl_stage_reverse)(vlTracing *t, vlTwoWayRows *rows, uint32_t n, const float wi[3][VL_ROW_SIZE]);
+void vl_stage_reverse(vlTracing *t, vlTwoWayRows *rows, uint32_t n, const float wi[3][VL_ROW_SIZE]);
 
 /* A ray of light sets out. */
 typedef struct vlEmission {
@@ -82,13 +80,12 @@ typedef struct vlEmission {
   bool delta;    /* no ray can run into it */
   uint32_t light;
 } vlEmission;
-vlEmission VL_HOT(vl_emission_sample)(const vlWorld *world, const vlTwoWay *way, const float lambda[4], float u_choice,
-                                      float u, float v, float s, float t);
+vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const float lambda[4], float u_choice, float u,
+                              float v, float s, float t);
 /* Density of the light's paths that arrive at p from w (unit, towards the light; distance d), per area across them and
  * solid angle of w; of lights that are deltas per area alone. It is to be multiplied by p's cosine. */
-float VL_HOT(vl_emission_density)(const vlWorld *world, const vlTwoWay *way, uint32_t light, vlVec3 w, float distance,
-                                  const vlPoint *at);
-#endif
+float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t light, vlVec3 w, float distance,
+                          const vlPoint *at);
 
 /* Where all that scatters is a delta: nothing can be connected. */
 static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s, uint32_t i) {
@@ -138,8 +135,8 @@ static inline uint32_t vl_photon_bucket(int32_t x, int32_t y, int32_t z, uint32_
 
 /* What comes through along shadow ray k, which meets no surface: `passes` of each wavelength, `scale` of all, the
  * weight against the other ways. false: nothing. */
-bool VL_HOT(vl_two_way_arrives)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlTwoWayRows *r,
-                                uint32_t k, uint32_t depth, float passes[4], float *scale);
+bool vl_two_way_arrives(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlTwoWayRows *r, uint32_t k,
+                        uint32_t depth, float passes[4], float *scale);
 
 /* The hero is alone: material.hot.c tells it so. */
 static inline bool vl_hero_alone(const vlPaths *p, uint32_t i) {

@@ -28,22 +28,21 @@ static void add_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlMetLight
   float weight = 1.0f;
   if (!first) {
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
-    weight = hit_weight(t, p, i, met->pdf,
-                        VL_HOT(vl_emission_density)(t->world, t->def->two_way, met->light, d, distance, at));
+    weight = hit_weight(t, p, i, met->pdf, vl_emission_density(t->world, t->def->two_way, met->light, d, distance, at));
   }
   add_radiance(t, p, i, met->radiance, weight);
 }
 
 static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
   for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
-    vlMetLight met = VL_HOT(vl_meet_sky)(t->world, p, i, k);
+    vlMetLight met = vl_meet_sky(t->world, p, i, k);
     add_met(t, p, i, &met, VL_INFINITY, NULL, first);
   }
 }
 
 static void add_glow(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
   vlMetLight met;
-  if (VL_HOT(vl_meet_glow)(t->world, p, &t->s->hits_a, i, &met)) add_met(t, p, i, &met, met.at.t, &met.at, first);
+  if (vl_meet_glow(t->world, p, &t->s->hits_a, i, &met)) add_met(t, p, i, &met, met.at.t, &met.at, first);
 }
 
 /* first: the eye's own rays; also what weighs nothing against anything. */
@@ -92,7 +91,7 @@ static uint32_t push_shadow(vlTracing *t, uint32_t i, vlVec3 o, uint32_t count) 
     uint32_t medium =
         vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]],
                          vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w, s->volume.b.medium[i]);
-    return VL_HOT(vl_volume_push_shadow)(t, &s->b, &s->volume.b, i, o, value, sh->pdf[i], medium, count);
+    return vl_volume_push_shadow(t, &s->b, &s->volume.b, i, o, value, sh->pdf[i], medium, count);
   }
   vlVec3 d = l->distant[i] ? w : vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
   q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
@@ -113,8 +112,8 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
   if (world->lights.count == 0) return;
   vlPaths *p = &s->b;
   const vlSurface *f = &s->surface;
-  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
-  VL_HOT(vl_stage_light_bsdf)(t, n);
+  vl_stage_light_samples(t, n, p, dimension);
+  vl_stage_light_bsdf(t, n);
   const vlLightSamples *l = &s->light;
   float(*wi)[VL_ROW_SIZE] = s->rows;
   float *pdf = s->rows[3], *light_ways = s->rows[4];
@@ -130,19 +129,19 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
     vlPoint point;
     __builtin_memset(&point, 0, sizeof point);
     point.p = vl_lane3(l->tx, l->ty, l->tz, i);
-    light_ways[count] = vl_abs(vl_dot(w, g)) *
-                        VL_HOT(vl_emission_density)(world, way, l->light[i], w, vl_length(vl_sub(point.p, at)), &point);
+    light_ways[count] =
+        vl_abs(vl_dot(w, g)) * vl_emission_density(world, way, l->light[i], w, vl_length(vl_sub(point.p, at)), &point);
     pdf[count] = l->delta[i] ? 0.0f : sh->pdf[i];
     r->own[count] = l->pdf[i];
     lane_of[count] = i;
     count = push_shadow(t, i, vl_offset_origin(at, g, f->offset[i], w), count);
   }
-  VL_HOT(vl_stage_reverse)(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = lane_of[k];
     r->others[k] = pdf[k] + (way->merged + r->a[i] * r->rev[i] + r->b[i]) * light_ways[k];
   }
-  VL_HOT(vl_two_way_shadows)(t, p, &s->volume.b, count, depth);
+  vl_two_way_shadows(t, p, &s->volume.b, count, depth);
 }
 
 static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
@@ -151,14 +150,14 @@ static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   vlTwoWayRows *r = t->batch->two_way;
   const vlSurface *f = &s->surface;
   const vlPaths *p = &s->b;
-  uint32_t count = VL_HOT(vl_stage_scatter)(t, n, depth + 1, dimension);
-  VL_HOT(vl_volume_go_on)(t, count);
+  uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension);
+  vl_volume_go_on(t, count);
   float(*wi)[VL_ROW_SIZE] = s->rows + 1;
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
     r->pdf[i] = sh->pdf[i];
   }
-  VL_HOT(vl_stage_reverse)(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
   const vlTwoWay *way = t->def->two_way;
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k];
@@ -190,36 +189,36 @@ static void end_long(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* The sorted lanes, on surfaces. Returns how many go on. */
 static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
-  n = VL_HOT(vl_stage_sort)(t, n);
+  n = vl_stage_sort(t, n);
   if (n == 0) return 0;
-  VL_HOT(vl_volume_sorted)(t, n);
-  VL_HOT(vl_stage_shade)(t, n);
-  for (uint32_t i = 0; vl_has_media(t) && i < n; i++) VL_HOT(vl_volume_normalise)(t, &t->s->b, &t->s->volume.b, i);
+  vl_volume_sorted(t, n);
+  vl_stage_shade(t, n);
+  for (uint32_t i = 0; vl_has_media(t) && i < n; i++) vl_volume_normalise(t, &t->s->b, &t->s->volume.b, i);
   arrive(t, n, depth);
   direct_light(t, n, depth, dimension);
-  if (t->def->two_way->merge) VL_HOT(vl_stage_merge)(t, n, depth);
+  if (t->def->two_way->merge) vl_stage_merge(t, n, depth);
   return scatter(t, n, depth, dimension);
 }
 
-void VL_HOT(vl_two_way_tracer)(vlTracing *t) {
+void vl_bidirectional_tracer(vlTracing *t) {
   const vlTwoWay *way = t->def->two_way;
   uint32_t n = t->batch->n, most = (way->apart ? 2 : 1) * t->def->max_depth;
   bool media = vl_has_media(t);
-  if (media) VL_HOT(vl_volume_start)(t, n, NULL);
+  if (media) vl_volume_start(t, n, NULL);
   for (uint32_t depth = 0; n > 0; depth++) {
     if (media) {
-      VL_HOT(vl_volume_travel)(t, n, depth, depth < most);
+      vl_volume_travel(t, n, depth, depth < most);
     } else {
-      VL_HOT(vl_stage_hits)(t, n, depth == 0);
-      if (depth == 0) VL_HOT(vl_stage_alpha)(t);
+      vl_stage_hits(t, n, depth == 0);
+      if (depth == 0) vl_stage_alpha(t);
     }
     emission(t, n, depth == 0);
     if (way->light_only || depth >= most) break;
     if (way->apart) end_long(t, n, depth);
     uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, inside = 0, *kept = t->s->volume.kept;
-    if (media) inside = VL_HOT(vl_eye_in_media)(t, n, depth, dimension);
+    if (media) inside = vl_eye_in_media(t, n, depth, dimension);
     for (uint32_t k = 0; k < inside; k++) kept[k] = t->s->order[k];
     n = on_surfaces(t, n, depth, dimension);
-    if (media) n = VL_HOT(vl_volume_append)(t, kept, inside, n);
+    if (media) n = vl_volume_append(t, kept, inside, n);
   }
 }

@@ -3,15 +3,14 @@
 #include "trace/medium/phase.h"
 #include "trace/two_way/stages.h"
 
-void VL_HOT(vl_two_way_shadows)(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count,
-                                uint32_t depth) {
+void vl_two_way_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth) {
   vlShadowRays *q = &t->s->shadow;
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
   vl_accel_occluded(t->world, count, &rays, q->occluded);
   t->batch->shadow_rays += count;
   for (uint32_t k = 0; k < count; k++) {
     float passes[4], scale;
-    if (!VL_HOT(vl_two_way_arrives)(t, p, rows, t->batch->two_way, k, depth, passes, &scale)) continue;
+    if (!vl_two_way_arrives(t, p, rows, t->batch->two_way, k, depth, passes, &scale)) continue;
     for (int c = 0; c < 4; c++) t->batch->radiance[c][q->lane[k]] += q->radiance[c][k] * passes[c] * scale;
   }
 }
@@ -55,7 +54,7 @@ static void light_samples(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   vlTwoWayRows *r = t->batch->two_way;
   const vlLightSamples *l = &t->s->light;
   if (world->lights.count == 0) return;
-  VL_HOT(vl_stage_light_samples)(t, n, p, dimension);
+  vl_stage_light_samples(t, n, p, dimension);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (!(l->pdf[i] > 0.0f)) continue;
@@ -65,19 +64,19 @@ static void light_samples(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     vlPoint point;
     __builtin_memset(&point, 0, sizeof point);
     point.p = vl_lane3(l->tx, l->ty, l->tz, i);
-    float density = VL_HOT(vl_emission_density)(world, way, l->light[i], w, vl_length(vl_sub(point.p, at)), &point);
+    float density = vl_emission_density(world, way, l->light[i], w, vl_length(vl_sub(point.p, at)), &point);
     r->own[count] = l->pdf[i];
     r->others[count] =
         (l->delta[i] ? 0.0f : phase) + (way->merged_volume + r->a[i] * phase + r->b[i]) * density * r->cosine[i];
-    count = VL_HOT(vl_volume_push_shadow)(t, p, &v->c, i, at, value, phase, v->c.medium[i], count);
+    count = vl_volume_push_shadow(t, p, &v->c, i, at, value, phase, v->c.medium[i], count);
   }
-  VL_HOT(vl_two_way_shadows)(t, p, &v->c, count, depth);
+  vl_two_way_shadows(t, p, &v->c, count, depth);
 }
 
 /* New directions, and what travels with them. */
 static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth, uint32_t dimension) {
   const vlPaths *p = &t->s->volume.scattered;
-  uint32_t count = VL_HOT(vl_volume_phase_scatter)(t, n, depth + 1, dimension);
+  uint32_t count = vl_volume_phase_scatter(t, n, depth + 1, dimension);
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = t->s->order[k];
     float pdf = p->pdf[i];
@@ -86,12 +85,12 @@ static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t dept
   return count;
 }
 
-uint32_t VL_HOT(vl_eye_in_media)(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
-  n = VL_HOT(vl_volume_gather)(t, n);
+uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+  n = vl_volume_gather(t, n);
   if (n == 0) return 0;
   arrive(t, n, depth);
   light_samples(t, n, depth, dimension);
-  if (t->def->two_way->merge) VL_HOT(vl_stage_merge_media)(t, n, depth);
+  if (t->def->two_way->merge) vl_stage_merge_media(t, n, depth);
   return scatter(t, t->batch->two_way, n, depth, dimension);
 }
 
@@ -110,7 +109,7 @@ static void arrive_from_light(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_
       vlVec3 w = vl_neg(vl_lane3(p->dx, p->dy, p->dz, i));
       inv = density > 0.0f ? inv / density : 0.0f;
       r->b[i] = inv / v->odds[lane] *
-                VL_HOT(vl_light_asked)(t->world, r, lane, vl_lane3(p->ox, p->oy, p->oz, i), vl_vec3(0, 0, 0), w);
+                vl_light_asked(t->world, r, lane, vl_lane3(p->ox, p->oy, p->oz, i), vl_vec3(0, 0, 0), w);
     }
     r->a[i] = r->carry[lane] * inv;
   }
@@ -156,7 +155,7 @@ static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uin
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
     vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i);
-    vlSight sight = VL_HOT(vl_look)(vl_eye_of(t, lane), o, sh->u1[i], sh->u2[i]);
+    vlSight sight = vl_look(vl_eye_of(t, lane), o, sh->u1[i], sh->u2[i]);
     if (!sight.seen) continue;
     float phase = phase_of(t, i, sight.w);
     q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
@@ -175,12 +174,12 @@ static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uin
     r->x[count] = sight.x, r->y[count] = sight.y;
     count++;
   }
-  VL_HOT(vl_two_way_splats)(t, r, b, p, &v->c, count, depth);
+  vl_two_way_splats(t, r, b, p, &v->c, count, depth);
 }
 
-uint32_t VL_HOT(vl_light_in_media)(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
-                                   uint32_t dimension, bool last) {
-  n = VL_HOT(vl_volume_gather)(t, n);
+uint32_t vl_light_in_media(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
+                           uint32_t dimension, bool last) {
+  n = vl_volume_gather(t, n);
   if (n == 0) return 0;
   arrive_from_light(t, r, n, depth);
   if (t->def->two_way->merge) leave_photons(t, r, b, n, depth);

@@ -68,6 +68,8 @@ typedef struct vlFilmDef {
 VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);
 VL_API vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film);
 VL_API void vl_film_destroy(vlFilm *film);
+/* Bytes that a film of this def holds while it is rendered into. */
+VL_API uint64_t vl_film_memory(const vlFilmDef *def);
 /* As new: no samples. Keeps its memory, for the next picture of the same size. Not while a render runs. */
 VL_API void vl_film_clear(vlFilm *film);
 /* Samples that each pixel has (whole passes). */
@@ -97,7 +99,7 @@ VL_API vlResult vl_film_spectrum(const vlFilm *film, vlImage **image);
 /* Called after each pass, and about ten times a second inside one, on the thread that called vl_render. */
 typedef struct vlProgress {
   uint32_t spp_done, spp_total;
-  double elapsed, remaining; /* seconds; remaining is an estimate */
+  double elapsed, remaining; /* seconds; remaining is an estimate, infinity before there is one */
   double fraction;           /* of the work, 0 to 1; also between passes */
   uint64_t paths, rays;
   bool pass_done; /* the film may be read; false: just a sign of life from inside a pass, the film must not be read */
@@ -124,7 +126,9 @@ typedef struct vlRenderDef {
    * at most 2^20. */
   double merge_radius;
   uint32_t light_paths;
-  double time_limit; /* seconds, 0: none; ends after the pass in which it passes */
+  /* Seconds, 0: none. Passes are sized by what is left, and one that is not done by then is dropped; but the first
+   * pass of each call is finished. The callback may change it while the render runs. */
+  double time_limit;
   vlProgressFn *progress;
   void *progress_user;
 } vlRenderDef;
@@ -143,6 +147,10 @@ typedef struct vlRenderStats {
  * sizes, too; a film with buckets and a world in RGB), MEMORY. Films with buckets are filled from the eye alone. */
 VL_API vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                           vlRenderStats *stats, vlError *error);
+
+/* Bytes that vl_render takes beside the film, for its workers and for paths from the lights; the latter are an
+ * estimate, since their number shows in the first pass. */
+VL_API uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def);
 
 /* Def from the scene file's own settings. */
 VL_API vlRenderDef vl_scene_render_def(const vlScene *scene);

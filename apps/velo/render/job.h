@@ -59,13 +59,17 @@ enum {
   RENDER_ENVIRONMENT_STRENGTH,
   RENDER_GROUND,
   RENDER_SHUTTER,
-  RENDER_SCENE
+  RENDER_SCENE,
+  RENDER_MAX_MEMORY,
+  RENDER_MAX_TEXTURE,
+  RENDER_SANDBOX
 };
 
 extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[],
     regularize_choices[], color_choices[], view_choices[], isa_choices[], stereo_choices[], eye_choices[];
 
 extern const Option render_options[];
+extern const Section render_sections[];
 
 typedef struct Job {
   const char *path;                /* of the scene file */

@@ -27,9 +27,10 @@ static void print_overview(void) {
   printf("  %-15s  %s\n", "help COMMAND", "the options of a command");
   printf("  %-15s  %s\n\n", "--version", "the version");
   printf(
-      "exit codes: 0 done, 1 findings of scene check, image diff or check over a threshold, or out of\n"
-      "memory, 2 wrong command line, 3 wrong scene or picture, 4 missing file, 5 reading or writing failed,\n"
-      "130 and 143 stopped by a signal\n");
+      "exit codes: 0 done, 1 findings of scene check, image diff or check over a\n"
+      "threshold, or out of memory, 2 wrong command line, 3 wrong scene or image,\n"
+      "4 missing file, 5 reading or writing failed,\n"
+      "128 + signal stopped by it: 129 SIGHUP, 130 Ctrl-C, 143 SIGTERM\n");
 }
 
 /* How many words of argv the command's name takes; 0: another command. */
@@ -85,10 +86,24 @@ static int unknown_command(int argc, char **argv) {
                       *near ? near : "; \"velo help\" lists the commands");
 }
 
+/* Only for its help page. */
+static const Option no_options[] = {{0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+static const Command help_command = {
+    .name = "help",
+    .usage = "[COMMAND]",
+    .summary = "the options of a command",
+    .text =
+        "Prints the commands, or what COMMAND does: its options in sections, and examples. The first word of "
+        "commands of two words (image, scene, camera) prints all of them.",
+    .examples = "velo help render\nvelo help image diff",
+    .options = no_options,
+};
+
 static int help(int argc, char **argv) {
   int words, count;
   const char *names[COMMANDS];
   const Command *command = find_command(argc, argv, &words);
+  if (!command && argc == 1 && strcmp(argv[0], "help") == 0) command = &help_command;
   if (command) {
     options_print_help(command);
   } else if (argc == 0) {
@@ -149,9 +164,10 @@ static int run(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
-  /* A picture must never be opened as descriptor 0, 1 or 2 and then be written into by messages. */
+  /* A file must never be opened as descriptor 0, 1 or 2 and then be written into by messages. What is printed on a
+   * stdout that was closed fails: its stand-in cannot be written. */
   for (int fd = 0; fd <= 2; fd++)
-    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0) return STATUS_IO;
+    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd == 1 ? O_RDONLY : O_RDWR) < 0) return STATUS_IO;
   signal(SIGPIPE, SIG_IGN); /* a reader that went away must not end a render, */
   signal(SIGXFSZ, SIG_IGN); /* and a file that grows too large is an error like a full disk */
   signals_install();

@@ -106,6 +106,9 @@ typedef void vlParallelForFn(void *user, uint32_t count, vlParallelBody *body, v
 /* Instruction sets of the hot loops. Every one gives the same bits. */
 typedef enum vlIsa { VL_ISA_AUTO = 0, VL_ISA_V2 = 2, VL_ISA_V3 = 3, VL_ISA_V4 = 4 } vlIsa;
 
+/* Asked about ten times a second by calls that take long, on the thread that called: true to give up. */
+typedef bool vlStopFn(void *user);
+
 typedef struct vlContext vlContext;
 
 typedef struct vlContextDef {
@@ -117,6 +120,12 @@ typedef struct vlContextDef {
   vlIsa isa;                     /* default VL_ISA_AUTO; the environment variable VELO_ISA=v2|v3|v4 overrides AUTO */
   vlParallelForFn *parallel_for; /* null: the built-in pool */
   void *parallel_for_user;
+  size_t max_memory;           /* bytes that may be held, Embree's included; beyond it VL_ERROR_MEMORY. 0: no limit */
+  uint64_t max_texture_pixels; /* of one image that a scene names, before it is decoded; default 2^28. 0: no limit */
+  /* Folders, copied: files that a scene names must lie beneath one of them once symbolic links are followed. Files
+   * given by the caller himself (the scene's own, cameras, vl_image_read) may lie anywhere. Default: no restriction. */
+  const char *const *sandbox;
+  uint32_t sandbox_count;
 } vlContextDef;
 
 /* abi: VL_ABI_VERSION of the headers that the program was compiled with, which the cookie carries: vl_context_create
@@ -124,14 +133,23 @@ typedef struct vlContextDef {
  * vl_default_context_def(). */
 VL_API vlContextDef vl_default_context_def_abi(uint32_t abi);
 #define vl_default_context_def() vl_default_context_def_abi(VL_ABI_VERSION)
-/* Fails with ARGUMENT (a def of another ABI version, too), MEMORY or UNSUPPORTED (an isa that this machine lacks). */
+/* Fails with ARGUMENT (a def of another ABI version, too), MEMORY,
+ * MISSING (a folder of the sandbox) or UNSUPPORTED (an isa that this machine lacks). */
 VL_API vlResult vl_context_create(const vlContextDef *def, vlContext **context);
 /* All objects made from the context must be gone. Null is allowed. */
 VL_API void vl_context_destroy(vlContext *context);
 VL_API vlIsa vl_context_isa(const vlContext *context);
 VL_API uint32_t vl_context_threads(const vlContext *context);
-/* Bytes held now and at most, as counted by the allocator. */
+/* Bytes held now and at most: what came from the allocator, and Embree's. */
 VL_API size_t vl_context_memory(const vlContext *context, size_t *peak);
+
+/* Writes a file whole or not at all, as every writer of the library does: to a temporary beside it, synced, renamed.
+ * A symbolic link is followed, permissions of a file that is replaced are kept. IO; error may be null. */
+VL_API vlResult vl_write_file(const char *path, const void *data, size_t size, vlError *error);
+/* Files are written to a temporary (.velo-PID-N.tmp) in the folder of the target and then renamed. This removes those
+ * that writers left which ended in the middle (killed, power lost) from the folder of `path` (of the file that a link
+ * leads to); those under way in any living process stay. */
+VL_API void vl_remove_leftovers(const char *path);
 
 /* "Not given" for a double in a def. */
 #define VL_UNSET ((double)__builtin_nanf(""))

@@ -28,6 +28,8 @@ typedef struct vlBoxesDef {
   uint32_t cookie;
   uint32_t crop[4]; /* x0, y0, x1, y1, exclusive; default all */
   double time;      /* seconds; unset: the middle of the shutter's time */
+  vlStopFn *stop;   /* to give up with VL_CANCELLED; default null: never */
+  void *stop_user;
 } vlBoxesDef;
 VL_API vlBoxesDef vl_default_boxes_def(uint32_t width, uint32_t height);
 

@@ -71,6 +71,8 @@ typedef struct vlChannelsDef {
   float exposure;                     /* of the developed picture, for ERROR; default 1 */
   const vlCamera *forward, *backward; /* the other cameras of FORWARD and BACKWARD */
   double time;                        /* seconds: when all of it is seen; unset: in the middle of the shutter's time */
+  vlStopFn *stop;                     /* to give up with VL_CANCELLED; default null: never */
+  void *stop_user;
 } vlChannelsDef;
 VL_API vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height);
 

@@ -82,6 +82,9 @@ VL_API vlResult vl_image_find_attribute(const vlImage *image, const char *name, 
  * file carries is refused before allocating. */
 VL_API vlResult vl_image_read(vlContext *context, const char *path, vlImage **image, vlError *error);
 
+/* The same without its pixels: vl_image_pixels is null. Of the file no more is read than that takes. */
+VL_API vlResult vl_image_read_header(vlContext *context, const char *path, vlImage **image, vlError *error);
+
 /* Of an OpenEXR file only these channels (other formats: all). They keep a type that all of them have: so ids stay
  * VL_PIXEL_U32 beside colours that are floats, where vl_image_read makes floats of both (exact up to 2^24). SCENE when
  * the file lacks one of them. */
@@ -108,6 +111,10 @@ VL_API vlResult vl_image_write(const vlImage *image, const char *path, const vlW
  * differ. Attributes are the first picture's; `half` touches the first picture alone. */
 VL_API vlResult vl_image_write_layers(const vlImage *const *images, uint32_t count, const char *path,
                                       const vlWriteDef *write, vlError *error);
+
+/* The channels that files and displays of colours alone show of an image: R G B (A), or Y (A); without those the first
+ * layer that has R, G and B ("diffuse.R"), else the first channel, as grey. How many: 1 to 4. */
+VL_API uint32_t vl_image_shown(const vlImage *image, uint32_t channel[4]);
 
 /* How a linear picture becomes display values. */
 typedef enum vlView { VL_VIEW_STANDARD, VL_VIEW_KHRONOS_NEUTRAL, VL_VIEW_AGX, VL_VIEW_RAW } vlView;

@@ -18,7 +18,7 @@ typedef struct vlWorld vlWorld;
 /* What is promised of the image's bits. PORTABLE: the same scene, options and version give the same bits on every
  * x86-64 machine, for any number of threads, and a crop the same pixels as the whole. FAST: the same on machines for
  * which Embree, which finds what rays meet, picks the same instruction set; elsewhere a few pixels differ, where
- * surfaces lie in one plane or a ray meets an edge. docs/decisions/0011-the-bits-of-embree.md has the numbers. */
+ * surfaces lie in one plane or a ray meets an edge. docs/decisions/0013-the-bits-of-embree.md has the numbers. */
 typedef enum vlBits { VL_BITS_PORTABLE, VL_BITS_FAST } vlBits;
 typedef struct vlBuildDef {
   uint32_t cookie;
@@ -82,6 +82,8 @@ VL_API const char *vl_sensor_name(uint32_t index);
 VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);
 VL_API vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film);
 VL_API void vl_film_destroy(vlFilm *film);
+/* Bytes that a film of this def holds while it is rendered into. */
+VL_API uint64_t vl_film_memory(const vlFilmDef *def);
 /* As new: no samples. Keeps its memory, for the next picture of the same size. Not while a render runs. */
 VL_API void vl_film_clear(vlFilm *film);
 /* Samples that each pixel has (whole passes). */
@@ -111,7 +113,7 @@ VL_API vlResult vl_film_spectrum(const vlFilm *film, vlImage **image);
 /* Called after each pass, and about ten times a second inside one, on the thread that called vl_render. */
 typedef struct vlProgress {
   uint32_t spp_done, spp_total;
-  double elapsed, remaining; /* seconds; remaining is an estimate */
+  double elapsed, remaining; /* seconds; remaining is an estimate, infinity before there is one */
   double fraction;           /* of the work, 0 to 1; also between passes */
   uint64_t paths, rays;
   bool pass_done; /* the film may be read; false: just a sign of life from inside a pass, the film must not be read */
@@ -138,7 +140,9 @@ typedef struct vlRenderDef {
    * at most 2^20. */
   double merge_radius;
   uint32_t light_paths;
-  double time_limit; /* seconds, 0: none; ends after the pass in which it passes */
+  /* Seconds, 0: none. Passes are sized by what is left, and one that is not done by then is dropped; but the first
+   * pass of each call is finished. The callback may change it while the render runs. */
+  double time_limit;
   vlProgressFn *progress;
   void *progress_user;
 } vlRenderDef;
@@ -157,6 +161,10 @@ typedef struct vlRenderStats {
  * sizes, too; a film with buckets and a world in RGB), MEMORY. Films with buckets are filled from the eye alone. */
 VL_API vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                           vlRenderStats *stats, vlError *error);
+
+/* Bytes that vl_render takes beside the film, for its workers and for paths from the lights; the latter are an
+ * estimate, since their number shows in the first pass. */
+VL_API uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def);
 
 /* ---- what a scene's file says about all these ------------------------------------------------------------------- */
 

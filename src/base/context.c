@@ -1,6 +1,7 @@
 /* base/context.c: allocator with count, log, worker pool. See context.h. */
 #include "base/context.h"
 
+#include <limits.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -30,6 +31,7 @@ struct vlContext {
   vlIsa isa;
   atomic_size_t held, peak;
   pthread_mutex_t log_mutex, run_mutex;
+  char **sandbox; /* def.sandbox_count folders, links followed */
   Pool pool;
 };
 
@@ -59,21 +61,37 @@ static BlockHeader *header_of(void *block) {
   return (BlockHeader *)(void *)((char *)block - sizeof(BlockHeader));
 }
 
-static void count_memory(vlContext *context, size_t add, size_t sub) {
-  size_t now = atomic_fetch_add(&context->held, add - sub) + (add - sub);
+/* false: beyond the limit, not counted. */
+static bool count_memory(vlContext *context, size_t add, size_t sub) {
+  size_t now = atomic_fetch_add(&context->held, add - sub) + (add - sub), most = context->def.max_memory;
+  if (most && add && now > most) {
+    atomic_fetch_sub(&context->held, add);
+    return false;
+  }
   size_t peak = atomic_load(&context->peak);
   while (now > peak && !atomic_compare_exchange_weak(&context->peak, &peak, now)) {
   }
+  return true;
+}
+
+bool vl_count_foreign(vlContext *context, int64_t bytes, bool taken) {
+  if (bytes < 0) return count_memory(context, 0, (size_t)-bytes);
+  if (count_memory(context, (size_t)bytes, 0)) return true;
+  if (taken) atomic_fetch_add(&context->held, (size_t)bytes);
+  return taken;
 }
 
 /* Every block is 64-byte aligned: one rule, and vector loads are always welcome. */
 void *vl_alloc(vlContext *context, size_t size) {
   if (size > SIZE_MAX / 2) return NULL;
+  if (!count_memory(context, size, 0)) return NULL;
   char *raw = context->def.allocator.allocate(context->def.allocator.user, size + 2 * HEADER);
-  if (!raw) return NULL;
+  if (!raw) {
+    count_memory(context, 0, size);
+    return NULL;
+  }
   char *block = (char *)(((uintptr_t)raw + sizeof(BlockHeader) + HEADER - 1) & ~(uintptr_t)(HEADER - 1));
   *header_of(block) = (BlockHeader){size, raw};
-  count_memory(context, size, 0);
   return block;
 }
 
@@ -219,6 +237,45 @@ void vl_parallel_for(vlContext *context, uint32_t count, vlParallelBody *body, v
   pthread_mutex_unlock(&context->run_mutex);
 }
 
+/* ---- the sandbox ------------------------------------------------------------------------------------------------- */
+
+/* Whole parts of the path: /a/b is not beneath /a/bc. */
+static bool is_beneath(const char *path, const char *folder) {
+  size_t n = strlen(folder);
+  if (n && folder[n - 1] == '/') n--;
+  return strncmp(path, folder, n) == 0 && (path[n] == '/' || !path[n]);
+}
+
+bool vl_context_allows(const vlContext *context, const char *path) {
+  char real[PATH_MAX];
+  if (!context->def.sandbox_count) return true;
+  if (!realpath(path, real)) return false;
+  for (uint32_t i = 0; i < context->def.sandbox_count; i++)
+    if (is_beneath(real, context->sandbox[i])) return true;
+  return false;
+}
+
+bool vl_context_has_sandbox(const vlContext *context) {
+  return context->def.sandbox_count > 0;
+}
+
+uint64_t vl_context_max_texture_pixels(const vlContext *context) {
+  return context->def.max_texture_pixels;
+}
+
+static void free_sandbox(vlContext *context) {
+  for (uint32_t i = 0; context->sandbox && i < context->def.sandbox_count; i++) free(context->sandbox[i]);
+  free(context->sandbox);
+}
+
+static vlResult copy_sandbox(vlContext *context) {
+  uint32_t count = context->def.sandbox_count;
+  if (count && !(context->sandbox = calloc(count, sizeof *context->sandbox))) return VL_ERROR_MEMORY;
+  for (uint32_t i = 0; i < count; i++)
+    if (!(context->sandbox[i] = realpath(context->def.sandbox[i], NULL))) return VL_ERROR_MISSING;
+  return VL_OK;
+}
+
 /* ---- life -------------------------------------------------------------------------------------------------------- */
 
 vlContextDef vl_default_context_def_abi(uint32_t abi) {
@@ -228,6 +285,7 @@ vlContextDef vl_default_context_def_abi(uint32_t abi) {
       .allocator = {NULL, default_allocate, default_release},
       .threads = cores > 0 ? (uint32_t)cores : 1,
       .isa = VL_ISA_AUTO,
+      .max_texture_pixels = UINT64_C(1) << 28,
   };
 }
 
@@ -248,8 +306,10 @@ vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
   context->isa = isa;
   pthread_mutex_init(&context->log_mutex, NULL);
   pthread_mutex_init(&context->run_mutex, NULL);
-  r = d.parallel_for ? VL_OK : pool_start(&context->pool, d.threads);
+  r = copy_sandbox(context);
+  if (r == VL_OK && !d.parallel_for) r = pool_start(&context->pool, d.threads);
   if (r != VL_OK) {
+    free_sandbox(context);
     d.allocator.release(d.allocator.user, context);
     return r;
   }
@@ -262,6 +322,7 @@ void vl_context_destroy(vlContext *context) {
   if (!context->def.parallel_for) pool_stop(&context->pool);
   pthread_mutex_destroy(&context->log_mutex);
   pthread_mutex_destroy(&context->run_mutex);
+  free_sandbox(context);
   context->def.allocator.release(context->def.allocator.user, context);
 }
 

@@ -16,6 +16,14 @@ void *vl_realloc_array(vlContext *context, void *block, size_t count, size_t siz
 void vl_free(vlContext *context, void *block);
 char *vl_strdup(vlContext *context, const char *text); /* null for null or on failure */
 
+/* Memory that another library takes (bytes below 0: gives back) for this context. false: beyond the limit, and not
+ * counted; what is taken already is counted in any case. */
+bool vl_count_foreign(vlContext *context, int64_t bytes, bool taken);
+/* May a scene name this file? Its links are followed. True where there is no sandbox. */
+bool vl_context_allows(const vlContext *context, const char *path);
+bool vl_context_has_sandbox(const vlContext *context);
+uint64_t vl_context_max_texture_pixels(const vlContext *context);
+
 /* Log a warning/info; where may be null. printf-like. */
 void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

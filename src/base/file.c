@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -111,22 +112,47 @@ static vlResult gunzip_all(vlContext *context, const char *path, char **data, si
   return VL_OK;
 }
 
-vlResult vl_file_read(vlContext *context, const char *path, bool gunzip, char **data, size_t *size, vlError *error) {
+/* What a file is that has no end, or none that can be waited for; null: a file, or a pipe where these are good. */
+static const char *not_a_file(const struct stat *info, bool pipes) {
+  if (S_ISDIR(info->st_mode)) return "is a folder";
+  if (S_ISCHR(info->st_mode) || S_ISBLK(info->st_mode)) return "is a device";
+  if (S_ISSOCK(info->st_mode)) return "is a socket";
+  return S_ISFIFO(info->st_mode) && !pipes ? "is a pipe" : NULL;
+}
+
+/* Looked at before it is opened, since opening a pipe waits and opening a device may do something; and after, since the
+ * name may mean another file by then. */
+static int open_file(vlContext *context, const char *path, bool given, vlError *error) {
+  struct stat info;
+  if (stat(path, &info) != 0) {
+    int code = errno;
+    if (given || !vl_context_has_sandbox(context)) return fail_open(path, code, error), -1;
+    return vl_fail(error, VL_ERROR_MISSING, "no such file: %s", path), -1; /* no names from elsewhere */
+  }
+  if (!given && !vl_context_allows(context, path))
+    return vl_fail(error, VL_ERROR_IO, "cannot read %s: it lies outside of the sandbox", path), -1;
+  const char *what = not_a_file(&info, given);
+  int fd = what ? -1 : open(path, O_RDONLY | O_CLOEXEC | (given ? 0 : O_NONBLOCK));
+  if (!what && fd < 0) return fail_open(path, errno, error), -1;
+  if (!what && fstat(fd, &info) != 0) what = strerror(errno);
+  if (!what) what = not_a_file(&info, given);
+  if (!what) return fd;
+  if (fd >= 0) close(fd);
+  return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, what), -1;
+}
+
+static vlResult read_file(vlContext *context, const char *path, bool given, bool gunzip, char **data, size_t *size,
+                          vlError *error) {
   *data = NULL;
   *size = 0;
-  int fd = open(path, O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return fail_open(path, errno, error);
-  struct stat info;
-  bool known = fstat(fd, &info) == 0;
-  const char *what = !known                  ? strerror(errno)
-                     : S_ISDIR(info.st_mode) ? "is a folder"
-                     : S_ISCHR(info.st_mode) ? "is a device"
-                     : S_ISBLK(info.st_mode) ? "is a device"
-                                             : NULL;
-  if (what) { /* a device, that a stranger's file may name, never ends */
-    close(fd);
-    return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, what);
+  vlError opening = {0};
+  int fd = open_file(context, path, given, &opening);
+  if (fd < 0) {
+    if (error) *error = opening;
+    return opening.code;
   }
+  struct stat info;
+  if (fstat(fd, &info) != 0) info.st_size = 0;
   size_t capacity = info.st_size > 0 ? (size_t)info.st_size : 65536, used = 0;
   char *block = vl_alloc(context, capacity + 1);
   vlResult result = block ? VL_OK : vl_fail_memory(error);
@@ -166,69 +192,39 @@ vlResult vl_file_read(vlContext *context, const char *path, bool gunzip, char **
   return VL_OK;
 }
 
-vlResult vl_file_open_write(vlFileWriter *writer, const char *path, vlError *error) {
-  writer->failed_errno = 0;
-  writer->descriptor = -1;
-  int n = snprintf(writer->path, sizeof writer->path, "%s", path);
-  if (n < 0 || (size_t)n >= sizeof writer->path) return vl_fail(error, VL_ERROR_IO, "cannot write: path too long");
+vlResult vl_file_read(vlContext *context, const char *path, bool gunzip, char **data, size_t *size, vlError *error) {
+  return read_file(context, path, false, gunzip, data, size, error);
+}
+
+vlResult vl_file_read_given(vlContext *context, const char *path, bool gunzip, char **data, size_t *size,
+                            vlError *error) {
+  return read_file(context, path, true, gunzip, data, size, error);
+}
+
+vlResult vl_file_map(const char *path, const char **data, size_t *size, vlError *error) {
+  *data = NULL;
   struct stat info;
-  if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) { /* a device or pipe cannot be replaced, only written to */
-    writer->temporary[0] = 0;
-    writer->descriptor = S_ISDIR(info.st_mode) ? (errno = EISDIR, -1) : open(path, O_WRONLY | O_CLOEXEC);
-    if (writer->descriptor >= 0) return VL_OK;
-    return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(errno));
+  if (stat(path, &info) != 0) return fail_open(path, errno, error);
+  if (!S_ISREG(info.st_mode)) return VL_OK;
+  int fd = open(path, O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return fail_open(path, errno, error);
+  if (fstat(fd, &info) != 0) info.st_size = 0;
+  size_t length = (size_t)info.st_size;
+  /* Zeros first, then the file over them: so a zero byte follows even where the file fills its last page. */
+  char *block = mmap(NULL, length + 1, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  bool good = block != MAP_FAILED;
+  if (good && length && mmap(block, length, PROT_READ, MAP_PRIVATE | MAP_FIXED, fd, 0) == MAP_FAILED) {
+    munmap(block, length + 1);
+    good = false;
   }
-  for (unsigned i = 0; i < 100; i++) {
-    snprintf(writer->temporary, sizeof writer->temporary, "%s.%ld.%u.tmp", path, (long)getpid(), i);
-    writer->descriptor = open(writer->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (writer->descriptor >= 0) return VL_OK;
-    if (errno != EEXIST) break;
-  }
-  return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(errno));
+  int code = errno;
+  close(fd);
+  if (!good) return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(code));
+  *data = block;
+  *size = length;
+  return VL_OK;
 }
 
-void vl_file_write(vlFileWriter *writer, const void *data, size_t size) {
-  const char *bytes = data;
-  while (size && !writer->failed_errno) {
-    ssize_t n = write(writer->descriptor, bytes, size);
-    if (n < 0) {
-      if (errno != EINTR) writer->failed_errno = errno;
-    } else {
-      bytes += n;
-      size -= (size_t)n;
-    }
-  }
-}
-
-void vl_file_write_at(vlFileWriter *writer, const void *data, size_t size, uint64_t offset) {
-  const char *bytes = data;
-  while (size && !writer->failed_errno) {
-    ssize_t n = pwrite(writer->descriptor, bytes, size, (off_t)offset);
-    if (n < 0) {
-      if (errno != EINTR) writer->failed_errno = errno;
-    } else {
-      bytes += n;
-      offset += (uint64_t)n;
-      size -= (size_t)n;
-    }
-  }
-}
-
-vlResult vl_file_commit(vlFileWriter *writer, vlError *error) {
-  if (!writer->failed_errno && fsync(writer->descriptor) != 0 && errno != EINVAL && errno != EROFS)
-    writer->failed_errno = errno;
-  if (close(writer->descriptor) != 0 && !writer->failed_errno) writer->failed_errno = errno;
-  writer->descriptor = -1;
-  if (!writer->failed_errno && writer->temporary[0] && rename(writer->temporary, writer->path) != 0)
-    writer->failed_errno = errno;
-  if (!writer->failed_errno) return VL_OK;
-  if (writer->temporary[0]) unlink(writer->temporary);
-  return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", writer->path, strerror(writer->failed_errno));
-}
-
-void vl_file_abandon(vlFileWriter *writer) {
-  if (writer->descriptor < 0) return;
-  close(writer->descriptor);
-  writer->descriptor = -1;
-  if (writer->temporary[0]) unlink(writer->temporary);
+void vl_file_unmap(const char *data, size_t size) {
+  if (data) munmap((void *)(uintptr_t)data, size + 1);
 }

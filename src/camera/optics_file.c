@@ -42,7 +42,7 @@ static vlResult read(Reader *r, vlLensSurface *surfaces, uint32_t *count, vlErro
     double value;
     if (!number(r->at, length, &value))
       return vl_fail_at(error, VL_ERROR_SCENE, r->path, r->line, column, "lens file: \"%.*s\" is not a number",
-                        length < 40 ? (int)length : 40, r->at);
+                        length < 12 ? (int)length : 12, r->at);
     if (n == 4 * VL_MOST_SURFACES)
       return vl_fail_at(error, VL_ERROR_SCENE, r->path, r->line, column, "lens file: more than %d surfaces",
                         VL_MOST_SURFACES);

@@ -75,7 +75,7 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
 static vlResult read_cameras(const vlCameraFile *file, const char *path, const double *id, vlCameraRecord *record) {
   char *text;
   size_t size;
-  vlResult result = vl_file_read(file->context, path, false, &text, &size, file->error);
+  vlResult result = vl_file_read_given(file->context, path, false, &text, &size, file->error);
   if (result != VL_OK) return result;
   Lines lines = {text, text + size, 0};
   bool found = false;
@@ -111,7 +111,7 @@ static vlResult read_image_line(const vlCameraFile *file, const char *path, uint
 static vlResult read_images(const vlCameraFile *file, const char *path, double *id, vlCameraRecord *record) {
   char *text;
   size_t size;
-  vlResult result = vl_file_read(file->context, path, false, &text, &size, file->error);
+  vlResult result = vl_file_read_given(file->context, path, false, &text, &size, file->error);
   if (result != VL_OK) return result;
   Lines lines = {text, text + size, 0};
   bool taken = false;
@@ -201,7 +201,7 @@ vlResult vl_trajectory_read_colmap(vlTrajectory *t, const vlCameraFile *file) {
   if (!find_files(file->path, paths[0], paths[1])) return vl_camera_wrong(file, "colmap: the name is too long");
   vlResult result = VL_OK;
   for (int i = 0; i < 2 && result == VL_OK; i++)
-    result = vl_file_read(file->context, paths[i], false, &texts[i], &sizes[i], file->error);
+    result = vl_file_read_given(file->context, paths[i], false, &texts[i], &sizes[i], file->error);
   if (result == VL_OK) result = read_all_cameras(t, file, paths[0], texts[0], sizes[0], &ids);
   if (result == VL_OK) result = read_all_images(t, file, paths[1], texts[1], sizes[1], &ids);
   for (int i = 0; i < 2; i++) vl_free(file->context, texts[i]);

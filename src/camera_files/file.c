@@ -137,7 +137,7 @@ static vlResult read_tree(vlCameraFile *file, const char *text, size_t size, vlC
 static vlResult read_file(vlCameraFile *file, vlCameraRecord *record) {
   char *text;
   size_t size;
-  vlResult result = vl_file_read(file->context, file->path, false, &text, &size, file->error);
+  vlResult result = vl_file_read_given(file->context, file->path, false, &text, &size, file->error);
   if (result != VL_OK) return result;
   vlCameraDialect found = dialect_of_text(text, size), wish = file->def->dialect;
   if (found && wish && found != wish) {

@@ -140,7 +140,7 @@ static vlResult read_any(vlTrajectory *t, const vlCameraFile *file) {
   char *text;
   size_t size;
   bool single = true;
-  vlResult result = vl_file_read(file->context, file->path, false, &text, &size, file->error);
+  vlResult result = vl_file_read_given(file->context, file->path, false, &text, &size, file->error);
   if (result != VL_OK) return result;
   if (is_tree(file->path, text)) {
     result = read_tree(t, file, text, size, &single);

@@ -88,7 +88,7 @@ vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t) {
   vl_error_clear(&error);
   vlResult r =
       t->data ? vl_image_read_memory(x->context, t->name ? t->name : "picture", t->data, t->data_size, &image, &error)
-              : vl_image_read(x->context, t->path, &image, &error);
+              : vl_image_read_named(x->context, t->path, &image, &error);
   if (r != VL_OK && x->result == VL_OK) /* what is wrong is the scene's picture, not the file that is written */
     x->result = vl_fail_at(x->error, r, t->source.file, t->source.line, t->source.column, "%s", error.message);
   return image;
@@ -162,7 +162,7 @@ vlResult vl_scene_save(const vlScene *scene, const char *path, const vlSaveDef *
   vl_error_clear(error);
   vlSaveDef plain = vl_default_save_def();
   if (!scene || !path || (def && def->cookie != VL_COOKIE_SAVE))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_save: no scene or path, or a def not from vl_default_save_def");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene save: no scene or path, or a def not from vl_default_save_def");
   if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
   bool pbrt = vl_ends_with(path, ".pbrt"), binary = vl_ends_with(path, ".glb");
   if (!pbrt && !binary && !vl_ends_with(path, ".gltf"))

@@ -76,6 +76,14 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
   return VL_OK;
 }
 
+uint64_t vl_film_memory(const vlFilmDef *def) {
+  uint64_t pixels = (uint64_t)(def->crop[2] - def->crop[0]) * (def->crop[3] - def->crop[1]);
+  uint64_t each = 2 * sizeof(vlFilmPixel) + sizeof(uint32_t);
+  if (def->errors) each += 2 * sizeof(vlFilmMoments);
+  if (def->buckets) each += 2 * (uint64_t)def->buckets * (sizeof(vlInt128) + sizeof(int64_t)) + sizeof(uint32_t);
+  return pixels * each;
+}
+
 void vl_film_destroy(vlFilm *film) {
   if (!film) return;
   vlContext *context = film->context;

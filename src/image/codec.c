@@ -45,18 +45,25 @@ vlResult vl_codec_create(const vlImageFile *file, uint32_t width, uint32_t heigh
   vlImageDef def = vl_default_image_def(width, height, channels);
   def.type = type;
   def.encoding = encoding;
-  vlResult result = vl_image_create(file->context, &def, image);
-  if (result == VL_ERROR_MEMORY) return vl_fail_memory(file->error);
-  if (result != VL_OK)
-    return vl_fail(file->error, result, "%s: a picture of %ux%u pixels is not possible", file->name, width, height);
-  return VL_OK;
+  vlResult result = vl_codec_make(file, &def, image);
+  if (result != VL_OK || !file->header) return result;
+  *file->header = *image;
+  *image = NULL;
+  return VL_CANCELLED;
 }
 
-vlResult vl_codec_color(const vlImage *image, const char *format, uint32_t channel[4], uint32_t *count,
-                        vlError *error) {
-  *count = vl_image_color(image, channel);
-  if (*count) return VL_OK;
-  return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write as %s: the picture has no channels R, G, B or Y", format);
+vlResult vl_codec_make(const vlImageFile *file, const vlImageDef *def, vlImage **image) {
+  if (file->most_pixels && (uint64_t)def->width * def->height > file->most_pixels)
+    return vl_fail(file->error, VL_ERROR_SCENE, "%s: %ux%u pixels, more than the %llu that a texture may have",
+                   file->name, def->width, def->height, (unsigned long long)file->most_pixels);
+  vlResult result = vl_image_create_parts(file->context, def, !file->header, image);
+  if (result == VL_ERROR_MEMORY)
+    return vl_fail(file->error, result, "out of memory: %s has %ux%u pixels of %zu bytes", file->name, def->width,
+                   def->height, def->channels * vl_pixel_size(def->type));
+  if (result != VL_OK)
+    return vl_fail(file->error, result, "%s: an image of %ux%u pixels with these channels is not possible", file->name,
+                   def->width, def->height);
+  return VL_OK;
 }
 
 static void row_8bit_from_16(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count,
@@ -101,6 +108,10 @@ static vlResult read_memory(const vlImageFile *f, vlImage **image) {
   for (uint32_t i = 0; i < vl_codec_count; i++) {
     if (!vl_codecs[i].probe(file.data, size)) continue;
     vlResult result = vl_codecs[i].read(&file, image);
+    if (file.header && *file.header) {
+      *image = *file.header;
+      return VL_OK;
+    }
     if (result != VL_OK) {
       vl_image_destroy(*image);
       *image = NULL;
@@ -114,8 +125,48 @@ static vlResult read_memory(const vlImageFile *f, vlImage **image) {
 
 vlResult vl_image_read_memory(vlContext *context, const char *name, const void *data, size_t size, vlImage **image,
                               vlError *error) {
-  vlImageFile file = {.context = context, .name = name, .data = data, .size = size, .error = error};
+  vlImageFile file = {.context = context,
+                      .name = name,
+                      .data = data,
+                      .size = size,
+                      .error = error,
+                      .most_pixels = vl_context_max_texture_pixels(context)};
   return read_memory(&file, image);
+}
+
+vlResult vl_image_read_named(vlContext *context, const char *path, vlImage **image, vlError *error) {
+  vl_error_clear(error);
+  *image = NULL;
+  char *data;
+  size_t size;
+  vlResult result = vl_file_read(context, path, false, &data, &size, error);
+  if (result != VL_OK) return result;
+  result = vl_image_read_memory(context, path, data, size, image, error);
+  vl_free(context, data);
+  return result;
+}
+
+vlResult vl_image_read_header(vlContext *context, const char *path, vlImage **image, vlError *error) {
+  if (image) *image = NULL;
+  if (!context || !path || !image) return vl_fail(error, VL_ERROR_ARGUMENT, "image: null argument");
+  vl_error_clear(error);
+  const char *mapped;
+  char *data = NULL;
+  size_t size;
+  vlResult result = vl_file_map(path, &mapped, &size, error);
+  if (result == VL_OK && !mapped) result = vl_file_read_given(context, path, false, &data, &size, error);
+  if (result != VL_OK) return result;
+  vlImage *header = NULL;
+  vlImageFile file = {.context = context,
+                      .name = path,
+                      .data = (const uint8_t *)(mapped ? mapped : data),
+                      .size = size,
+                      .error = error,
+                      .header = &header};
+  result = read_memory(&file, image);
+  vl_file_unmap(mapped, size);
+  vl_free(context, data);
+  return result;
 }
 
 static vlResult read_file(vlContext *context, const char *path, const char *const *wanted, uint32_t count,
@@ -123,9 +174,15 @@ static vlResult read_file(vlContext *context, const char *path, const char *cons
   vl_error_clear(error);
   char *data;
   size_t size;
-  vlResult result = vl_file_read(context, path, false, &data, &size, error);
+  vlResult result = vl_file_read_given(context, path, false, &data, &size, error);
   if (result != VL_OK) return result;
-  vlImageFile file = {context, path, (const uint8_t *)data, size, error, wanted, count};
+  vlImageFile file = {.context = context,
+                      .name = path,
+                      .data = (const uint8_t *)data,
+                      .size = size,
+                      .error = error,
+                      .wanted = wanted,
+                      .wanted_count = count};
   result = read_memory(&file, image);
   vl_free(context, data);
   return result;
@@ -133,7 +190,7 @@ static vlResult read_file(vlContext *context, const char *path, const char *cons
 
 vlResult vl_image_read(vlContext *context, const char *path, vlImage **image, vlError *error) {
   if (image) *image = NULL;
-  if (!context || !path || !image) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_read: null argument");
+  if (!context || !path || !image) return vl_fail(error, VL_ERROR_ARGUMENT, "image: null argument");
   return read_file(context, path, NULL, 0, image, error);
 }
 
@@ -141,7 +198,7 @@ vlResult vl_image_read_channels(vlContext *context, const char *path, const char
                                 vlImage **image, vlError *error) {
   if (image) *image = NULL;
   if (!context || !path || !image || !names || !count)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_read_channels: null argument, or no names");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "image: null argument, or no names");
   vlResult result = read_file(context, path, names, count, image, error);
   for (uint32_t i = 0; result == VL_OK && i < count; i++) {
     if (names[i] && vl_image_find_channel(*image, names[i]) >= 0) continue;
@@ -167,9 +224,9 @@ static const vlCodec *codec_of_suffix(const char *path) {
 
 static vlResult check_write(const vlImage *image, const char *path, const vlWriteDef *def, vlError *error) {
   if (!image || !path || def->cookie != VL_COOKIE_WRITE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_write: null argument, or a def not from vl_default_write_def");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "image: null argument, or a def not from vl_default_write_def");
   if (def->compression < 0 || def->compression > 1 || def->quality < 1 || def->quality > 100)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_write: compression is 0 or 1, quality 1 to 100");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "image: compression is 0 or 1, quality 1 to 100");
   vl_error_clear(error);
   return VL_OK;
 }
@@ -202,7 +259,7 @@ vlResult vl_image_write(const vlImage *image, const char *path, const vlWriteDef
 
 static vlResult check_layers(const vlImage *const *images, uint32_t count, vlError *error) {
   for (uint32_t k = 0; k < count; k++) {
-    if (!images[k]) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_write_layers: null argument");
+    if (!images[k]) return vl_fail(error, VL_ERROR_ARGUMENT, "image: null argument");
     if (images[k]->width != images[0]->width || images[k]->height != images[0]->height)
       return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write layers of %ux%u and %ux%u pixels into one file",
                      images[0]->width, images[0]->height, images[k]->width, images[k]->height);
@@ -218,8 +275,7 @@ static vlResult check_layers(const vlImage *const *images, uint32_t count, vlErr
 vlResult vl_image_write_layers(const vlImage *const *images, uint32_t count, const char *path, const vlWriteDef *write,
                                vlError *error) {
   vlWriteDef def = write ? *write : vl_default_write_def();
-  if (!images || count == 0 || count > 64)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_image_write_layers: needs 1 to 64 pictures");
+  if (!images || count == 0 || count > 64) return vl_fail(error, VL_ERROR_ARGUMENT, "image: needs 1 to 64 pictures");
   vlResult result = check_write(images[0], path, &def, error);
   if (result == VL_OK) result = check_layers(images, count, error);
   if (result != VL_OK) return result;

@@ -16,6 +16,8 @@ typedef struct vlImageFile {
   vlError *error;
   const char *const *wanted; /* names of the channels to read; null: all. OpenEXR alone looks at it */
   uint32_t wanted_count;
+  uint64_t most_pixels; /* 0: any */
+  vlImage **header;     /* where only the header is wanted: vl_codec_create puts it there and ends the reading */
 } vlImageFile;
 
 typedef struct vlCodec {
@@ -38,15 +40,15 @@ vlResult vl_codec_unsupported(const vlImageFile *file, const char *format, const
  * them; else SCENE, "promises WxH pixels, more than its N bytes can hold". Also refuses empty pictures. */
 vlResult vl_codec_promise(const vlImageFile *file, const char *format, uint64_t width, uint64_t height, double need,
                           double ratio);
-/* Default names; fills the error. */
+/* Default names; fills the error. CANCELLED when only the header was wanted: the decoder has nothing more to do. */
 vlResult vl_codec_create(const vlImageFile *file, uint32_t width, uint32_t height, uint32_t channels, vlPixelType type,
                          vlEncoding encoding, vlImage **image);
 
-/* The colour channels for a format that holds only these; ARGUMENT with a message when there are none. count: 1 to 4.
- */
-vlResult vl_codec_color(const vlImage *image, const char *format, uint32_t channel[4], uint32_t *count, vlError *error);
-/* Row y of those channels as 8 bits: 8-bit pictures as they are, 16-bit ones rounded, others through sRGB's curve
- * (alpha without). scratch: width*count floats. */
+/* The same for any def. */
+vlResult vl_codec_make(const vlImageFile *file, const vlImageDef *def, vlImage **image);
+
+/* Row y of the channels that are shown (vl_image_shown) as 8 bits: 8-bit pictures as they are, 16-bit ones rounded,
+ * others through sRGB's curve (alpha without). scratch: width*count floats. */
 void vl_codec_row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count, float *scratch,
                        uint8_t *result);
 

@@ -153,8 +153,7 @@ static vlResult layout(Reader *r) {
   r->user_type = halves == r->count ? EXR_PIXEL_HALF : integers == r->count ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
   r->user_size = halves == r->count ? 2 : 4;
   if (r->user_type == EXR_PIXEL_FLOAT && integers)
-    vl_log(file->context, VL_LOG_INFO, NULL,
-           "%s: integers beside floats are read as floats, exact up to 2^24 (vl_image_read_channels keeps them)",
+    vl_log(file->context, VL_LOG_INFO, NULL, "%s: integers beside floats are read as floats, exact up to 2^24",
            file->name);
 
   int64_t width = (int64_t)r->window.max.x - r->window.min.x + 1,
@@ -331,7 +330,11 @@ static vlResult create(Reader *r) {
     def.type = r->user_type == EXR_PIXEL_HALF   ? VL_PIXEL_F16
                : r->user_type == EXR_PIXEL_UINT ? VL_PIXEL_U32
                                                 : VL_PIXEL_F32;
-    result = vl_image_create(context, &def, &r->image);
+    result = vl_codec_make(r->base.file, &def, &r->image);
+    if (result != VL_OK) {
+      vl_free(context, names);
+      return result;
+    }
   }
   vl_free(context, names);
   if (result == VL_OK && !(r->image->stored = vl_alloc_zero(context, r->count, 1))) result = VL_ERROR_MEMORY;
@@ -343,6 +346,11 @@ static vlResult create(Reader *r) {
                                                              : VL_PIXEL_F32;
   }
   if (result == VL_OK) result = vl_exr_attributes_in(r->exr, r->image);
+  if (result == VL_OK && r->base.file->header) {
+    *r->base.file->header = r->image;
+    r->image = NULL;
+    return VL_CANCELLED;
+  }
   if (result == VL_ERROR_MEMORY) return vl_fail_memory(r->base.file->error);
   return result == VL_OK ? VL_OK : vl_codec_broken(r->base.file, "OpenEXR", "its channels are not possible");
 }
@@ -352,7 +360,7 @@ static vlResult read_all(Reader *r) {
   uint32_t step_x = r->tiled ? (uint32_t)r->tile_width : r->width,
            step_y = (uint32_t)(r->tiled ? r->tile_height : r->lines);
   /* All chunks must be there before memory is taken for the pixels. */
-  for (uint32_t pass = 0; pass < 2 && result == VL_OK; pass++) {
+  for (uint32_t pass = r->base.file->header ? 1 : 0; pass < 2 && result == VL_OK; pass++) {
     if (pass == 1) result = create(r);
     for (uint64_t y = 0, row = 0; y < r->height && result == VL_OK; y += step_y, row++)
       for (uint64_t x = 0, column = 0; x < r->width && result == VL_OK; x += step_x, column++) {

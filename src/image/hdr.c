@@ -187,9 +187,8 @@ static size_t write_plane(const uint8_t *rgbe, uint32_t width, uint32_t c, uint8
 
 vlResult vl_hdr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error) {
   (void)def;
-  uint32_t channel[4], count;
-  vlResult result = vl_codec_color(image, "HDR", channel, &count, error);
-  if (result != VL_OK) return result;
+  uint32_t channel[4], count = vl_image_shown(image, channel);
+  vlResult result = VL_OK;
   uint32_t colors = count >= 3 ? 3 : 1, width = image->width;
   float *row = vl_alloc_array(image->context, width, colors * sizeof(float));
   uint8_t *rgbe = vl_alloc_array(image->context, width, 4),

@@ -1,6 +1,7 @@
 /* image/image.c: making pictures, their attributes, and reading their values. */
 #include "image/image.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,6 +66,10 @@ static vlResult copy_names(vlContext *context, const char *const *names, uint32_
 }
 
 vlResult vl_image_create(vlContext *context, const vlImageDef *def, vlImage **image) {
+  return vl_image_create_parts(context, def, true, image);
+}
+
+vlResult vl_image_create_parts(vlContext *context, const vlImageDef *def, bool pixels, vlImage **image) {
   if (!image) return VL_ERROR_ARGUMENT;
   *image = NULL;
   if (!context || !def || def->cookie != VL_COOKIE_IMAGE || def->width == 0 || def->height == 0)
@@ -87,7 +92,7 @@ vlResult vl_image_create(vlContext *context, const vlImageDef *def, vlImage **im
   made->gamma = made->encoding == VL_ENCODING_GAMMA ? def->gamma : 1.0f;
   const char *const *names = def->names ? def->names : DEFAULT_NAMES[def->channels - 1];
   vlResult result = copy_names(context, names, def->channels, &made->names);
-  if (result == VL_OK) {
+  if (result == VL_OK && pixels) {
     made->pixels = vl_alloc_zero(context, row, def->height);
     if (!made->pixels) result = VL_ERROR_MEMORY;
   }
@@ -145,6 +150,32 @@ int vl_image_find_channel(const vlImage *image, const char *name) {
   for (uint32_t i = 0; name && i < image->channels; i++)
     if (strcmp(image->names[i], name) == 0) return (int)i;
   return -1;
+}
+
+/* The first layer that has R, G and B ("diffuse.R"). */
+static bool find_layer(const vlImage *image, uint32_t channel[4]) {
+  for (uint32_t i = 0; i < image->channels; i++) {
+    const char *name = image->names[i], *dot = strrchr(name, '.');
+    if (!dot || strcmp(dot, ".R") != 0) continue;
+    bool all = true;
+    for (int c = 0; c < 3; c++) {
+      char full[NAME_MAX_LENGTH + 1];
+      snprintf(full, sizeof full, "%.*s.%c", (int)(dot - name), name, "RGB"[c]);
+      int found = vl_image_find_channel(image, full);
+      all = all && found >= 0;
+      channel[c] = found >= 0 ? (uint32_t)found : 0;
+    }
+    if (all) return true;
+  }
+  return false;
+}
+
+uint32_t vl_image_shown(const vlImage *image, uint32_t channel[4]) {
+  uint32_t count = vl_image_color(image, channel);
+  if (count) return count;
+  if (find_layer(image, channel)) return 3;
+  channel[0] = 0;
+  return 1;
 }
 
 uint32_t vl_image_color(const vlImage *image, uint32_t channel[4]) {

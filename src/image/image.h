@@ -26,6 +26,8 @@ struct vlImage {
   VL_ARRAY(vlImageAttribute) attributes;
 };
 
+/* As vl_image_create; the pixels are left out (null) where pixels is false. */
+vlResult vl_image_create_parts(vlContext *context, const vlImageDef *def, bool pixels, vlImage **image);
 /* Bytes of one value. */
 size_t vl_pixel_size(vlPixelType type);
 /* Bytes of one row. */
@@ -43,7 +45,9 @@ void vl_image_row_to_float(const vlImage *image, uint32_t y, const uint32_t *cha
 /* The whole picture so; width*height*count floats, released with vl_free. */
 vlResult vl_image_to_float(const vlImage *image, const uint32_t *channel, uint32_t count, float **result);
 
-/* As vl_image_read, from a file's bytes in memory; name is used in messages. */
+/* As vl_image_read, for a file that a scene names: no pipes, within the context's sandbox and its limit of pixels. */
+vlResult vl_image_read_named(vlContext *context, const char *path, vlImage **image, vlError *error);
+/* As vl_image_read_named, from a file's bytes in memory; name is used in messages. */
 vlResult vl_image_read_memory(vlContext *context, const char *name, const void *data, size_t size, vlImage **image,
                               vlError *error);
 

@@ -113,6 +113,8 @@ static vlResult decode(Jpeg *j, struct jpeg_decompress_struct *d, const vlImageF
   double need = (double)d->image_width * d->image_height * channels;
   vlResult result = vl_codec_promise(file, "JPEG", d->image_width, d->image_height, need, 2500.0);
   if (result != VL_OK) return result;
+  if (file->header) /* starting may read all of a progressive file */
+    return vl_codec_create(file, d->image_width, d->image_height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB, &j->image);
   jpeg_start_decompress(d);
   result = vl_codec_create(file, d->output_width, d->output_height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB, &j->image);
   if (result != VL_OK) return result;
@@ -164,9 +166,7 @@ static void destination_end(j_compress_ptr c) {
 
 static vlResult encode(Jpeg *j, struct jpeg_compress_struct *c, const vlImage *image, const vlWriteDef *def,
                        vlError *error) {
-  uint32_t channel[4], count;
-  vlResult result = vl_codec_color(image, "JPEG", channel, &count, error);
-  if (result != VL_OK) return result;
+  uint32_t channel[4], count = vl_image_shown(image, channel);
   count = count >= 3 ? 3 : 1; /* alpha has no place */
   if (image->width > JPEG_MAX_DIMENSION || image->height > JPEG_MAX_DIMENSION)
     return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write %s: JPEG holds at most %ldx%ld pixels", j->writer->path,

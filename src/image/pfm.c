@@ -71,9 +71,7 @@ vlResult vl_pfm_read(const vlImageFile *file, vlImage **image) {
 
 vlResult vl_pfm_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error) {
   (void)def;
-  uint32_t channel[4], count;
-  vlResult result = vl_codec_color(image, "PFM", channel, &count, error);
-  if (result != VL_OK) return result;
+  uint32_t channel[4], count = vl_image_shown(image, channel);
   count = count >= 3 ? 3 : 1;
   float *row = vl_alloc_array(image->context, image->width, count * sizeof *row);
   if (!row) return vl_fail_memory(error);

@@ -130,9 +130,7 @@ static void swap_row(const uint16_t *from, const vlImage *image, const uint32_t 
 static vlResult encode(Png *p, const vlImage *image, vlError *error) {
   static const int KINDS[5] = {0, PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
                                PNG_COLOR_TYPE_RGB_ALPHA};
-  uint32_t channel[4], count;
-  vlResult result = vl_codec_color(image, "PNG", channel, &count, error);
-  if (result != VL_OK) return result;
+  uint32_t channel[4], count = vl_image_shown(image, channel);
   if (setjmp(png_jmpbuf(p->png))) {
     if (p->memory) return vl_fail_memory(error);
     return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", p->writer->path, p->message);

@@ -142,9 +142,8 @@ vlResult vl_tga_read(const vlImageFile *file, vlImage **image) {
 
 vlResult vl_tga_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error) {
   (void)def;
-  uint32_t channel[4], count;
-  vlResult result = vl_codec_color(image, "TGA", channel, &count, error);
-  if (result != VL_OK) return result;
+  uint32_t channel[4], count = vl_image_shown(image, channel);
+  vlResult result = VL_OK;
   if (image->width > 65535 || image->height > 65535)
     return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write %s: TGA holds at most 65535x65535 pixels", writer->path);
   if (count == 2) count = 1; /* few programs read grey with alpha */

@@ -83,8 +83,7 @@ vlResult vl_image_view(const vlImage *image, vlView view, float exposure, uint64
   if (result) *result = NULL;
   if (!image || !result || (unsigned)view > VL_VIEW_RAW || !(exposure > -200.0f && exposure < 200.0f))
     return VL_ERROR_ARGUMENT;
-  uint32_t channel[4], count = vl_image_color(image, channel);
-  if (count == 0) return VL_ERROR_ARGUMENT;
+  uint32_t channel[4], count = vl_image_shown(image, channel);
   count = count >= 3 ? 3 : 1;
   vlImageDef def = vl_default_image_def(image->width, image->height, count);
   def.type = VL_PIXEL_U8;

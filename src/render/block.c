@@ -1,7 +1,6 @@
 /* render/block.c: see block.h. */
 #include "render/block.h"
 
-#include "base/file.h"
 #include "film/expose.h"
 
 enum { TILE_PIXELS = VL_RENDER_TILE * VL_RENDER_TILE };
@@ -137,21 +136,17 @@ void vl_render_choose_blocks(vlRenderRun *r) {
 void vl_render_block(void *user, uint32_t block, uint32_t worker) {
   vlRenderRun *r = user;
   vlRenderWorker *w = &r->workers[worker];
-  if (atomic_load(&r->cancelled)) return;
+  if (vl_stop_check(&r->stop)) return;
   unsigned state = vl_accel_enter();
   uint32_t end = r->first_sample + r->pass_samples;
-  for (uint32_t s = r->first_sample; s < end && !atomic_load(&r->cancelled);) {
+  for (uint32_t s = r->first_sample; s < end && !atomic_load(&r->stop.stopped);) {
     uint32_t most = VL_BATCH / TILE_PIXELS / (r->span_x * r->span_y), count = end - s < most ? end - s : most;
     uint32_t n = list_samples(r, w, block, s, count);
     if (n) render_batch(r, w, n);
     s += count;
-    if (worker == 0 && pthread_equal(pthread_self(), r->caller) && vl_seconds() - r->last_sign > 0.1) {
-      vl_accel_leave(state);
-      r->last_sign = vl_seconds();
-      double share = (double)atomic_load(&r->blocks_done) / vl_render_block_count(r);
-      if (!vl_render_report(r, false, r->first_sample + share * r->pass_samples)) atomic_store(&r->cancelled, true);
-      state = vl_accel_enter();
-    }
+    vl_accel_leave(state); /* the callback is not ours */
+    vl_stop_check(&r->stop);
+    state = vl_accel_enter();
   }
   vl_accel_leave(state);
   atomic_fetch_add(&r->blocks_done, 1);

@@ -8,11 +8,11 @@
 #ifndef RENDER_BLOCK_H
 #define RENDER_BLOCK_H
 
-#include <pthread.h>
 #include <stdatomic.h>
 
 #include "film/film.h"
 #include "render/film_rays.h"
+#include "render/stop.h"
 #include "render/two_way.h"
 #include "trace/trace.h"
 #include "velo/render.h"
@@ -43,9 +43,8 @@ typedef struct vlRenderRun {
   uint32_t first_sample, pass_samples;
   vlRenderWorker *workers;
   atomic_uint blocks_done;
-  atomic_bool cancelled;
-  pthread_t caller;
-  double start, last_sign;
+  vlStop stop;
+  double start;
   uint32_t spp_before;
 } vlRenderRun;
 

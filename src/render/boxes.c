@@ -66,6 +66,7 @@ static void count_tile(void *user, uint32_t tile, uint32_t worker) {
   vlChannelWorker *w = &c->workers[worker];
   vlTruthBatch *b = w->batch;
   uint32_t n = 0, x, y;
+  if (vl_stop_check(c->stop)) return;
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     double o[3], d[3];
     if (!vl_channel_pixel(c, tile, k, &x, &y) || !vl_camera_unproject(&c->camera, x + 0.5, y + 0.5, o, d)) continue;
@@ -99,6 +100,7 @@ static void put_box(void *user, uint32_t index, uint32_t worker) {
   Pass *p = user;
   (void)worker;
   const vlChannelPass *c = &p->channels;
+  if (vl_stop_check(c->stop)) return;
   uint32_t objects = p->boxes[0] ? p->ids[0] : 0, k = index >= objects, id = index - (k ? objects : 0) + 1;
   vlIdBox *box = &p->boxes[k][id - 1];
   memset(box, 0, sizeof *box);
@@ -171,13 +173,11 @@ vlResult vl_world_boxes(const vlWorld *world, const vlCamera *camera, const vlBo
                         vlIdBox *instances, vlError *error) {
   vl_error_clear(error);
   if (!world || !camera || !def || def->cookie != VL_COOKIE_BOXES)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "vl_world_boxes: null argument, or a def not made by vl_default_boxes_def");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: null argument, or a def not made by vl_default_boxes_def");
   const uint32_t *crop = def->crop;
   if (crop[0] >= crop[2] || crop[1] >= crop[3] || crop[2] > camera->width || crop[3] > camera->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "vl_world_boxes: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels", crop[0], crop[1],
-                   crop[2], crop[3], camera->width, camera->height);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels",
+                   crop[0], crop[1], crop[2], crop[3], camera->width, camera->height);
   Pass pass, *p = &pass;
   memset(p, 0, sizeof *p);
   vlChannelPass *c = &p->channels;
@@ -189,6 +189,9 @@ vlResult vl_world_boxes(const vlWorld *world, const vlCamera *camera, const vlBo
   p->ids[0] = vl_world_id_count(world, VL_ID_OBJECT), p->ids[1] = vl_world_id_count(world, VL_ID_INSTANCE);
   c->world = world;
   c->def = &p->def;
+  vlStop stop;
+  vl_stop_init(&stop, def->stop, def->stop_user);
+  c->stop = &stop;
   vl_channel_prepare(c, camera);
   p->time = vl_world_time(world, c->time);
   vlResult result = make_room(p, error);
@@ -196,6 +199,7 @@ vlResult vl_world_boxes(const vlWorld *world, const vlCamera *camera, const vlBo
     vl_parallel_for(world->context, c->tiles, count_tile, p);
     look_at_groups(p);
     vl_parallel_for(world->context, (objects ? p->ids[0] : 0) + (instances ? p->ids[1] : 0), put_box, p);
+    if (atomic_load(&stop.stopped)) result = vl_fail(error, VL_CANCELLED, "stopped");
   }
   free_room(p);
   return result;

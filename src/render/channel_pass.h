@@ -4,6 +4,7 @@
 
 #include "render/cryptomatte.h"
 #include "render/film_rays.h"
+#include "render/stop.h"
 #include "trace/ground_truth/ground_truth.h"
 #include "velo/channels.h"
 
@@ -78,6 +79,7 @@ typedef struct vlChannelPass {
   vlImage *images[2];                  /* floats, ids */
   uint32_t step[2];                    /* values of a pixel */
   vlChannelWorker *workers;
+  vlStop *stop;
   vlFilmRays choice, picture; /* rays of the picture's samples through the middle of the lens, and as they are */
   uint32_t spp;               /* of the picture */
   vlCryptomatte crypto[3];
@@ -118,6 +120,6 @@ void vl_channel_flow(const vlChannelPass *p, vlChannelWorker *w, int which);
  * from. */
 void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, const vlChannelEnds *ends, float *t_min,
                      float *t_max);
-void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker);
+void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker); /* does nothing once it is stopped */
 
 #endif

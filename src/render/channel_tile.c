@@ -117,6 +117,7 @@ static void put_film(const vlChannelPass *p, const vlChannelWorker *w, uint32_t 
 void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
   const vlChannelPass *p = pass;
   vlChannelWorker *w = &p->workers[worker];
+  if (vl_stop_check(p->stop)) return;
   clear_tile(p, w, tile);
   unsigned state = vl_accel_enter();
   if (w->tallies) vl_channel_count(p, w, tile);

@@ -62,46 +62,43 @@ static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlE
   bool errors = (def->channels & VL_CHANNEL_ERROR) != 0;
   if (!counts && !errors) return VL_OK;
   if (!def->film || (counts && !def->render))
-    return vl_fail(
-        error, VL_ERROR_ARGUMENT,
-        "vl_render_channels: Cryptomatte, standard errors and modes other than the centre need the picture's "
-        "film and how it was rendered");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "ground truth: Cryptomatte, standard errors and modes other than the centre need the picture's "
+                   "film and how it was rendered");
   const vlFilmDef *film = vl_film_def(def->film);
   if (counts && def->render->cookie != VL_COOKIE_RENDER)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "vl_render_channels: the render def was not made by vl_default_render_def");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: the render def was not made by vl_default_render_def");
   if (film->width != camera->width || film->height != camera->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render_channels: camera (%u x %u) and film (%u x %u) differ",
-                   camera->width, camera->height, film->width, film->height);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: camera (%u x %u) and film (%u x %u) differ", camera->width,
+                   camera->height, film->width, film->height);
   if (counts && vl_film_spp(def->film) == 0)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render_channels: the film has no samples yet");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: the film has no samples yet");
   if (errors && (!film->errors || memcmp(film->crop, def->crop, sizeof film->crop) != 0))
     return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "vl_render_channels: standard errors need a film of the same crop that was made for them");
+                   "ground truth: standard errors need a film of the same crop that was made for them");
   return VL_OK;
 }
 
 static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChannelsDef *def, vlImage **floats,
                       vlImage **ids, vlError *error) {
-  if (!world || !camera || !def) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render_channels: null argument");
+  if (!world || !camera || !def) return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: null argument");
   if (def->cookie != VL_COOKIE_CHANNELS)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render_channels: the def was not made by vl_default_channels_def");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: the def was not made by vl_default_channels_def");
   if (def->channels == 0 || def->channels >> VL_CHANNEL_COUNT)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render_channels: no such channels: %#x", def->channels);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: no such channels: %#x", def->channels);
   const uint32_t *c = def->crop;
   if (c[0] >= c[2] || c[1] >= c[3] || c[2] > camera->width || c[3] > camera->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "vl_render_channels: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels", c[0], c[1], c[2],
-                   c[3], camera->width, camera->height);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels",
+                   c[0], c[1], c[2], c[3], camera->width, camera->height);
   if ((unsigned)def->mode > VL_CHANNEL_MODE_COVERAGE || def->ranks < 2 || def->ranks > MAX_RANKS || def->ranks % 2)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render_channels: mode %d or %u ranks: there is no such thing",
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: mode %d or %u ranks: there is no such thing",
                    (int)def->mode, def->ranks);
   if (((def->channels & VL_CHANNEL_FORWARD) && !def->forward) ||
       ((def->channels & VL_CHANNEL_BACKWARD) && !def->backward))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render_channels: flow needs the other camera");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: flow needs the other camera");
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
     if ((def->channels >> i & 1) && ((channels[i].floats && !floats) || (channels[i].ids && !ids)))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render_channels: no place for the picture that is wanted");
+      return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: no place for the picture that is wanted");
   return check_film(camera, def, error);
 }
 
@@ -141,7 +138,7 @@ static vlResult make_images(vlChannelPass *p, vlError *error) {
     def.type = id ? VL_PIXEL_U32 : VL_PIXEL_F32;
     vlResult r = vl_image_create(p->world->context, &def, &p->images[id]);
     if (r == VL_ERROR_MEMORY) return vl_fail_memory(error);
-    if (r != VL_OK) return vl_fail(error, r, "vl_render_channels: the picture cannot be made");
+    if (r != VL_OK) return vl_fail(error, r, "ground truth: the picture cannot be made");
   }
   return VL_OK;
 }
@@ -153,7 +150,7 @@ static vlResult copy_errors(const vlChannelPass *p, vlError *error) {
   vlImage *image;
   vlResult r = vl_film_errors(p->def->film, &def, &image);
   if (r == VL_ERROR_MEMORY) return vl_fail_memory(error);
-  if (r != VL_OK) return vl_fail(error, r, "vl_render_channels: the film does not tell standard errors");
+  if (r != VL_OK) return vl_fail(error, r, "ground truth: the film does not tell standard errors");
   size_t pixels = (size_t)vl_image_width(image) * vl_image_height(image);
   const float *from = vl_image_const_pixels(image);
   for (size_t i = 0; i < pixels; i++) memcpy(vl_channel_floats(p, i, VL_INDEX_ERROR), from + 3 * i, 3 * sizeof *from);
@@ -277,8 +274,11 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera, const 
   if (result != VL_OK) return result;
   vlChannelPass pass, *p = &pass;
   memset(p, 0, sizeof *p);
+  vlStop stop;
+  vl_stop_init(&stop, def->stop, def->stop_user);
   p->world = world;
   p->def = def;
+  p->stop = &stop;
   vl_channel_prepare(p, camera);
   result = make_images(p, error);
   if (result == VL_OK) result = copy_errors(p, error);
@@ -286,7 +286,7 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera, const 
   if (result == VL_OK) result = open_mattes(p, error);
   if (result == VL_OK) {
     vl_parallel_for(world->context, p->tiles, vl_channel_tile, p);
-    result = describe_mattes(p, error);
+    result = atomic_load(&stop.stopped) ? vl_fail(error, VL_CANCELLED, "stopped") : describe_mattes(p, error);
   }
   free_all(p);
   if (result != VL_OK) {

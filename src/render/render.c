@@ -11,6 +11,7 @@
 #include "velo/focus.h"
 
 enum { MAX_PASS = 16, PASS_SECONDS = 5 };
+static const double NEARLY = 0.97; /* of the time limit: no pass begins for what is left */
 
 static void count_rays(const vlRenderRun *r, uint64_t *paths, uint64_t *rays) {
   *paths = *rays = 0;
@@ -30,7 +31,7 @@ bool vl_render_report(vlRenderRun *r, bool pass_done, double done_samples) {
   p.spp_total = r->def->spp;
   p.elapsed = vl_seconds() - r->start;
   p.fraction = total > 0 ? (done_samples - r->spp_before) / total : 1;
-  p.remaining = p.fraction > 0 ? p.elapsed * (1 - p.fraction) / p.fraction : 0;
+  p.remaining = p.fraction > 0 ? p.elapsed * (1 - p.fraction) / p.fraction : INFINITY;
   if (r->def->time_limit > 0 && p.elapsed + p.remaining > r->def->time_limit) {
     p.remaining = fmax(0, r->def->time_limit - p.elapsed);
     p.fraction = fmax(p.fraction, fmin(1, p.elapsed / r->def->time_limit));
@@ -40,29 +41,43 @@ bool vl_render_report(vlRenderRun *r, bool pass_done, double done_samples) {
   return r->def->progress(r->def->progress_user, &p);
 }
 
+/* A sign of life from inside a pass. */
+static bool ask_to_stop(void *user) {
+  vlRenderRun *r = user;
+  double share = (double)atomic_load(&r->blocks_done) / vl_render_block_count(r);
+  return !vl_render_report(r, false, r->first_sample + share * r->pass_samples);
+}
+
 static vlResult check_arguments(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                                 vlError *error) {
-  if (!world || !camera || !film) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: null argument");
+  if (!world || !camera || !film) return vl_fail(error, VL_ERROR_ARGUMENT, "render: null argument");
   if (def->cookie != VL_COOKIE_RENDER)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: the def was not made by vl_default_render_def");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: the def was not made by vl_default_render_def");
   const vlFilmDef *f = vl_film_def(film);
   if (camera->width != f->width || camera->height != f->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: camera (%u x %u) and film (%u x %u) differ", camera->width,
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: camera (%u x %u) and film (%u x %u) differ", camera->width,
                    camera->height, f->width, f->height);
   if (f->buckets && world->def.color == VL_COLOR_RGB)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: a world in RGB has no spectra for the film");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: a world in RGB has no spectra for the film");
   if (def->max_depth > 4096)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: max_depth %u is above 4096", def->max_depth);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: max_depth %u is above 4096", def->max_depth);
   if (def->merge_radius <= 0 || def->merge_radius > 3e38)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: merge_radius %g is not a radius", def->merge_radius);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: merge_radius %g is not a radius", def->merge_radius);
   if (def->light_paths != VL_AS_MANY_AS_PIXELS && def->light_paths > VL_MOST_LIGHT_PATHS)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_render: light_paths %u is above %u", def->light_paths,
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: light_paths %u is above %u", def->light_paths,
                    VL_MOST_LIGHT_PATHS);
   return VL_OK;
 }
 
 static size_t round_up(size_t size) {
   return (size + 63) & ~(size_t)63;
+}
+
+uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def) {
+  size_t rows = round_up((size_t)VL_RENDER_ROWS * VL_ROW_SIZE * sizeof(float));
+  uint64_t each = round_up(vl_trace_scratch_size()) + rows;
+  uint64_t bytes = vl_context_threads(world->context) * each;
+  return vl_two_way_tracer(def->tracer) ? bytes + vl_two_way_memory(world, film, def) : bytes;
 }
 
 /* In one block that stays with the film: many small pictures one after the other need no fresh memory. */
@@ -145,11 +160,11 @@ static void prepare(vlRenderRun *r, const vlCamera *camera) {
 }
 
 /* Passes of 1, 1, 2, 4, ... samples: a first picture at once, then fewer interruptions; but no longer than
- * PASS_SECONDS, for that much is lost when a pass is given up. How samples are split into passes does not show in the
- * picture. */
-static uint32_t pass_size(uint32_t done, uint32_t total, double seconds_per_sample) {
+ * PASS_SECONDS, for that much is lost when a pass is given up, and no longer than half of the time that is left. How
+ * samples are split into passes does not show in the picture. */
+static uint32_t pass_size(uint32_t done, uint32_t total, double seconds_per_sample, double left) {
   uint32_t size = done == 0 ? 1 : done < MAX_PASS ? done : MAX_PASS;
-  double fit = seconds_per_sample > 0 ? PASS_SECONDS / seconds_per_sample : MAX_PASS;
+  double fit = seconds_per_sample > 0 ? fmin(PASS_SECONDS, 0.5 * left) / seconds_per_sample : MAX_PASS;
   if (fit < size) size = fit > 1 ? (uint32_t)fit : 1;
   return size < total - done ? size : total - done;
 }
@@ -199,8 +214,8 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
   r->world = world;
   r->film = film;
   r->def = def;
-  r->caller = pthread_self();
-  r->start = r->last_sign = vl_seconds();
+  r->start = vl_seconds();
+  vl_stop_init(&r->stop, ask_to_stop, r);
   r->spp_before = vl_film_spp(film);
   vlCamera focused = *camera;
   if ((result = vl_camera_autofocus(world, &focused, error)) != VL_OK) return result;
@@ -214,19 +229,22 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
       break;
     }
     r->first_sample = vl_film_spp(film);
-    r->pass_samples = r->two_way ? 1 : pass_size(r->first_sample, def->spp, seconds_per_sample);
+    double end = def->time_limit > 0 ? r->start + def->time_limit : 0;
+    double left = end > 0 ? end - vl_seconds() : INFINITY;
+    r->stop.deadline = r->first_sample > r->spp_before ? end : 0;
+    r->pass_samples = r->two_way ? 1 : pass_size(r->first_sample, def->spp, seconds_per_sample, left);
     vl_render_choose_blocks(r);
     if (r->two_way) r->film_rays.shared = vl_two_way_time(r->two_way, r->first_sample);
-    if (r->two_way && (result = vl_two_way_light(r->two_way, r->first_sample, error)) != VL_OK) {
-      vl_film_abandon_pass(film);
-      break;
-    }
-    double pass_start = vl_seconds();
     atomic_store(&r->blocks_done, 0);
-    vl_parallel_for(world->context, vl_render_block_count(r), vl_render_block, r);
-    if (atomic_load(&r->cancelled)) {
+    if (r->two_way) result = vl_two_way_light(r->two_way, r->first_sample, &r->stop, error);
+    double pass_start = vl_seconds();
+    if (result == VL_OK) vl_parallel_for(world->context, vl_render_block_count(r), vl_render_block, r);
+    if (result != VL_OK || atomic_load(&r->stop.stopped)) {
       vl_film_abandon_pass(film);
-      result = vl_fail(error, VL_CANCELLED, "stopped");
+      if (atomic_load(&r->stop.late))
+        result = VL_OK; /* the time is over */
+      else if (result == VL_OK || result == VL_CANCELLED)
+        result = vl_fail(error, VL_CANCELLED, "stopped");
       break;
     }
     vl_film_commit_pass(film);
@@ -234,7 +252,7 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
     vl_film_set_spp(film, r->first_sample + r->pass_samples);
     if (!vl_render_report(r, true, vl_film_spp(film)) && vl_film_spp(film) < def->spp)
       result = vl_fail(error, VL_CANCELLED, "stopped");
-    if (def->time_limit > 0 && vl_seconds() - r->start >= def->time_limit) break;
+    if (def->time_limit > 0 && vl_seconds() - r->start >= NEARLY * def->time_limit) break;
   }
   if (stats && r->workers) fill_stats(r, stats);
   vl_two_way_destroy(r->two_way);

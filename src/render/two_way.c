@@ -52,6 +52,7 @@ struct vlTwoWayRun {
   vlPhoton *photons, *sorted;
   uint32_t *start, capacity, buckets;
   atomic_uint_least64_t stored;
+  vlStop *stop;
   bool starts; /* there is light that paths can start from */
 };
 
@@ -158,6 +159,7 @@ static void light_block(void *user, uint32_t block, uint32_t worker) {
   Worker *w = &run->workers[worker];
   uint32_t first = block * VL_BATCH, left = run->paths - first, n = left < VL_BATCH ? left : VL_BATCH;
   uint32_t width = run->film_def->width;
+  if (vl_stop_check(run->stop)) return;
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     uint32_t path = first + (i < n ? i : n - 1), pixel = path % run->pixels;
     w->px[i] = (int32_t)(pixel % width), w->py[i] = (int32_t)(pixel / width);
@@ -207,16 +209,18 @@ static void set_radius(vlTwoWayRun *run, uint32_t index) {
   way->map.radius2 = radius * radius;
 }
 
-vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlError *error) {
+vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlError *error) {
   if (!run->starts) return VL_OK;
   vlTwoWay *way = &run->way;
   run->index = index;
+  run->stop = stop;
   run->paths = run->most_paths;
   if (way->merge) way->shared = shared_number(run->trace.sampler->seed, index);
   for (;;) {
     set_radius(run, index);
     atomic_store(&run->stored, 0);
     vl_parallel_for(run->context, (run->paths + VL_BATCH - 1) / VL_BATCH, light_block, run);
+    if (atomic_load(&stop->stopped)) return vl_fail(error, VL_CANCELLED, "stopped");
     uint64_t stored = atomic_load(&run->stored);
     if (!way->merge) return VL_OK;
     if (stored <= run->capacity) {
@@ -315,6 +319,18 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   if (result == VL_OK && way->merge) result = grow(run, FIRST_PHOTONS, error);
   set_radius(run, 0);
   return result;
+}
+
+uint64_t vl_two_way_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def) {
+  enum { VERTICES = 4 }; /* that a path leaves, about */
+  uint64_t pixels = (uint64_t)film->width * film->height;
+  uint64_t paths =
+      def->light_paths == VL_AS_MANY_AS_PIXELS ? (pixels < MOST_PATHS ? pixels : MOST_PATHS) : def->light_paths;
+  uint64_t photons = paths * VERTICES < MOST_PHOTONS ? paths * VERTICES : MOST_PHOTONS;
+  uint64_t window = (uint64_t)(film->crop[2] - film->crop[0]) * (film->crop[3] - film->crop[1]);
+  uint64_t bytes = window * sizeof(*((vlSplats *)0)->pixels);
+  if (def->tracer == VL_TRACER_MERGING || def->tracer == VL_TRACER_SPPM) bytes += photons * 2 * sizeof(vlPhoton);
+  return bytes + vl_context_threads(world->context) * vl_two_way_rows_size();
 }
 
 void vl_two_way_destroy(vlTwoWayRun *run) {

@@ -7,6 +7,7 @@
 #include "camera/rays.h"
 #include "film/film.h"
 #include "render/film_rays.h"
+#include "render/stop.h"
 #include "trace/two_way/two_way.h"
 
 typedef struct vlTwoWayRun vlTwoWayRun;
@@ -20,6 +21,8 @@ bool vl_two_way_tracer(vlTracer tracer);
  * have their times; it stays. MEMORY. */
 vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                            const vlTraceDef *trace, const vlFilmRays *rays, vlTwoWayRun **run, vlError *error);
+/* Bytes that it will take, about. */
+uint64_t vl_two_way_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def);
 void vl_two_way_destroy(vlTwoWayRun *run);
 const vlTwoWay *vl_two_way_of(const vlTwoWayRun *run);
 /* Memory of a worker, for vlTraceBatch. */
@@ -33,8 +36,8 @@ float vl_two_way_time(const vlTwoWayRun *run, uint32_t index);
 /* The camera at the times that the n numbers u stand for, and those times, the world's (VL_PAD(n); may be null): the
  * worker's own memory. Null where the camera does not move or light does not see it. */
 const vlEyeView *vl_two_way_eyes(const vlTwoWayRun *run, uint32_t worker, uint32_t n, const float *u, float *time);
-/* The light's paths of sample `index`. MEMORY. */
-vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlError *error);
+/* The light's paths of sample `index`. MEMORY, CANCELLED. */
+vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlError *error);
 /* Moves what the pixels got to their samples (of filter weight `weight`): each pixel once a pass, any thread. */
 void vl_two_way_take(vlTwoWayRun *run, uint32_t n, const int32_t *px, const int32_t *py, const float *weight, float *r,
                      float *g, float *b);

@@ -68,7 +68,7 @@ static bool sort(vlCheck *check) {
 vlResult vl_scene_check(const vlScene *scene, const vlCheckDef *def, vlCheck **result, vlError *error) {
   vl_error_clear(error);
   if (result) *result = NULL;
-  if (!scene || !result) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_check: null argument");
+  if (!scene || !result) return vl_fail(error, VL_ERROR_ARGUMENT, "scene check: null argument");
   if (def && def->cookie != VL_COOKIE_CHECK)
     return vl_fail(error, VL_ERROR_ARGUMENT, "the def does not come from vl_default_check_def()");
   if (scene->error.code != VL_OK) return vl_scene_result(scene, error);

@@ -7,10 +7,10 @@
 /* Room first, so that nothing has two owners when memory is out. */
 vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
   vl_error_clear(error);
-  if (!scene || !from) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_take_camera: null argument");
+  if (!scene || !from) return vl_fail(error, VL_ERROR_ARGUMENT, "scene take camera: null argument");
   vlContext *context = scene->context;
   if (from->context != context)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_take_camera: the scenes are of different contexts");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene take camera: the scenes are of different contexts");
   if (scene == from) return VL_OK;
   if (!VL_RESERVE(context, &scene->apertures, from->apertures.count) ||
       !VL_RESERVE(context, &scene->optics, from->optics.count))
@@ -29,9 +29,9 @@ vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
 
 vlResult vl_scene_refocus(vlScene *scene, double distance, vlError *error) {
   vl_error_clear(error);
-  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_refocus: null argument");
+  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "scene refocus: null argument");
   vlCameraDef *camera = &scene->defs.camera;
-  if (!camera->lens.optics) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_refocus: the camera's lens is thin");
+  if (!camera->lens.optics) return vl_fail(error, VL_ERROR_ARGUMENT, "scene refocus: the camera's lens is thin");
   if (!VL_RESERVE(scene->context, &scene->optics, 1)) return vl_fail_memory(error);
   vlOptics *optics;
   vlResult result = vl_optics_refocus(scene->context, camera->lens.optics, distance, &optics, error);

@@ -14,14 +14,14 @@ vlBuildDef vl_default_build_def(void) {
 /* giving: the same scene, when its meshes may go on the way; or null. */
 static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *def, vlWorld **result, vlError *error) {
   vl_error_clear(error);
-  if (!result) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_world_build: null argument");
+  if (!result) return vl_fail(error, VL_ERROR_ARGUMENT, "world build: null argument");
   *result = NULL;
-  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_world_build: null argument");
+  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "world build: null argument");
   vlBuildDef d = def ? *def : vl_default_build_def();
   if (d.cookie != VL_COOKIE_BUILD)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_world_build: the def was not made by vl_default_build_def");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: the def was not made by vl_default_build_def");
   if (d.bits != VL_BITS_PORTABLE && d.bits != VL_BITS_FAST)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vl_world_build: no such kind of bits");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: no such kind of bits");
   vlResult r = vl_scene_result(scene, error);
   if (r != VL_OK) return r;
   if (scene->meshes_dropped)

@@ -9,14 +9,15 @@ if ! is_plain_build; then
 fi
 cat >"$work/first.py" <<'CODE'
 import os, signal, subprocess, sys, time
-program, scene, picture = sys.argv[1:]
+program, scene, image = sys.argv[1:]
+part = image.replace(".png", ".part.png")
 best = 99
 for attempt in range(5):
-    if os.path.exists(picture):
-        os.remove(picture)
+    if os.path.exists(part):
+        os.remove(part)
     start = time.monotonic()
-    process = subprocess.Popen([program, "render", scene, "-o", picture, "--spp", "16777216", "--quiet"])
-    while not os.path.exists(picture) and time.monotonic() - start < 10:
+    process = subprocess.Popen([program, "render", scene, "-o", image, "--spp", "16777216", "--quiet"])
+    while not os.path.exists(part) and time.monotonic() - start < 10:
         time.sleep(0.002)
     best = min(best, time.monotonic() - start)
     process.send_signal(signal.SIGINT)

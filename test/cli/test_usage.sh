@@ -60,6 +60,48 @@ usage threshold_value 'must be a number' image diff a.exr b.exr --threshold flip
 
 expect_code 2 nothing_at_all "$VELO"
 check help "$VELO" help
+# Every page fits 80 columns and has two examples.
+"$VELO" help >pages.txt
+wide=$(awk 'length($0) > 80' pages.txt)
+for command in render 'scene info' 'scene check' 'scene convert' 'image info' 'image diff' 'image convert' 'image check' 'camera project' \
+  'camera unproject' 'camera info' 'camera convert' 'camera verify' 'camera vanishing' help; do
+  run "$VELO" help $command
+  wide="$wide$(printf '%s\n' "$out" | awk 'length($0) > 80')"
+  [ "$code" = 0 ] && [ "$(printf '%s\n' "$out" | sed '1,/^examples:/d' | grep -c '^  velo ')" = 2 ] && pass "help_$command" || { fail "help_$command"; show help; }
+done
+[ -z "$wide" ] && pass help_in_80_columns || fail "help_in_80_columns ($wide)"
+expect_code 0 help_render_sections "$VELO" help render
+expect_text help_render_has_sections 'ground truth beside the image (.exr):'
+# A first image of a trajectory knows no time that is left, nor does the first line of the scene of script/render speak
+# of pbrt.
+printf 'eye_x,eye_y,eye_z,lookat_x,lookat_y,lookat_z\n0,1.2,4,0,0.6,0\n1,1,4,0,0.6,0\n' >poses.csv
+run "$VELO" render scene.pbrt --trajectory poses.csv -o 'pose_%d.exr'
+case "$err" in *"0.00 s left"*) fail trajectory_begins ;; *) pass trajectory_begins ;; esac
+run "$VELO" render "$VELO_SOURCE_DIR/scenes/lecture/pinhole.pbrt" --spp 1 -o first.png
+case "$err" in *pbrt-v4*) fail first_line ;; *) pass first_line ;; esac
+# On a narrow terminal the time that is left stays.
+cat >narrow.py <<'PY'
+import fcntl, os, pty, struct, sys, termios
+pid, fd = pty.fork()
+if pid == 0:
+    fcntl.ioctl(2, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 50, 0, 0))
+    os.environ["TERM"] = "xterm"
+    os.execv(sys.argv[1], [sys.argv[1], "render", "scene.pbrt", "--time", "2s", "-o", "narrow.exr"])
+text = b""
+while True:
+    try:
+        got = os.read(fd, 4096)
+    except OSError:
+        break
+    if not got:
+        break
+    text += got
+os.waitpid(pid, 0)
+lines = [line for line in text.decode().replace("\033[K", "").split("\r") if "%" in line and "spp" in line]
+assert lines and any("left" in line for line in lines) and max(map(len, lines)) <= 50, lines
+PY
+run python3 narrow.py "$VELO"
+[ "$code" = 0 ] && pass narrow_terminal || { fail narrow_terminal; show narrow; }
 check help_render "$VELO" help render
 expect_text help_render_lists_options "--cropwindow"
 check render_help "$VELO" render --help

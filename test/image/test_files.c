@@ -306,7 +306,7 @@ static void test_refusals(void **state) {
   assert_null(back);
   assert_int_equal(vl_image_read(context, folder(), &back, &error), VL_ERROR_IO);
 
-  /* A picture without colours goes into EXR only. */
+  /* Of an image without colours formats that hold nothing else get the first channel, as grey. */
   const char *const names[2] = {"N.X", "Z"};
   vlImageDef def = vl_default_image_def(2, 2, 2);
   def.names = names;
@@ -316,8 +316,11 @@ static void test_refusals(void **state) {
     char name[64];
     snprintf(name, sizeof name, "depth.%s", SUFFIXES[i]);
     vlResult result = vl_image_write(depth, in_folder(name, path), NULL, &error);
-    assert_int_equal(result, i == 0 ? VL_OK : VL_ERROR_ARGUMENT);
-    assert_int_equal(access(path, F_OK), i == 0 ? 0 : -1);
+    assert_int_equal(result, VL_OK);
+    assert_int_equal(vl_image_read(context, path, &back, &error), VL_OK);
+    assert_int_equal(vl_image_width(back), 2);
+    vl_image_destroy(back);
+    unlink(path);
   }
   vl_image_destroy(depth);
   vl_image_destroy(image);

@@ -35,7 +35,7 @@ static const struct {
     /* parameters */
     {W "Shape \"sphere\" \"radius\" 1", "t.pbrt:2:16: parameter \"radius\" is not of the form \"type name\""},
     {W "Shape \"sphere\" \"float radius big\" 1",
-     "t.pbrt:2:16: parameter \"float radius big\" is not of the form \"type name\""},
+     "t.pbrt:2:16: parameter \"float radius...\" is not of the form \"type name\""},
     {W "Shape \"sphere\" \"flaot radius\" 1",
      "t.pbrt:2:16: unknown parameter type \"flaot\" (did you mean \"float\"?)"},
     {W "Shape \"sphere\" \"float radius\"",
@@ -249,7 +249,8 @@ static const struct {
     /* picture */
     {"Film \"rgb\" \"integer xresolution\" 0\n" W,
      "t.pbrt:1:12: Film \"rgb\": parameter \"xresolution\" must be at least 1, it is 0"},
-    {"Film \"rgb\" \"integer xresolution\" 2000000\n" W, "t.pbrt:1:1: Film \"rgb\": 2000000 x 720 pixels are too many"},
+    {"Film \"rgb\" \"integer xresolution\" 2000000\n" W,
+     "t.pbrt:1:1: Film \"rgb\": 2000000 x 720 pixels are too many, at most 65536 each way"},
     {"Film \"rgb\" \"float cropwindow\" [0.5 0.5 0 1]\n" W, "t.pbrt:1:1: Film \"rgb\": the crop window holds no pixel"},
     {"Film \"rgb\" \"string sensor\" \"canon_eos_5e\"\n" W,
      "t.pbrt:1:12: unknown sensor \"canon_eos_5e\" (did you mean \"canon_eos_5d\"?)"},

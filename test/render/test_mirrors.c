@@ -165,10 +165,10 @@ static double shoot_file(const char *path, uint32_t spp, uint32_t depth) {
   vlError error;
   memset(&error, 0, sizeof error);
   if (vl_scene_load(stage.scene, path, NULL, &error) != VL_OK) fail_msg("%s: %s", path, error.message);
-  stage.camera = vl_scene_settings(stage.scene)->camera;
+  stage.camera = vl_scene_defs(stage.scene)->camera;
   stage.camera.width = stage.camera.height = 2;
   stage.build.color = VL_COLOR_RGB;
-  stage.render.tracer = vl_scene_settings(stage.scene)->tracer;
+  stage.render.tracer = vl_scene_defs(stage.scene)->render.tracer;
   stage.render.spp = spp, stage.render.max_depth = depth;
   Picture q = stage_finish(&stage);
   double mean = picture_mean(&q, 1);

@@ -145,6 +145,9 @@ const Command camera_convert_command = {
     .text =
         "Reads the camera IN and writes it as OUT. Pixel origin and axes are converted; what OUT's dialect\n"
         "cannot hold is refused by name.",
+    .examples =
+        "velo camera convert camera.yaml camera.json\n"
+        "velo camera convert room.pbrt camera.yaml",
     .options = convert_options,
     .min_operands = 2,
     .max_operands = 2,

@@ -148,6 +148,9 @@ const Command camera_info_command = {
     .text =
         "FILE is a camera in any dialect of `velo camera convert`, or a scene. Without a sensor of its own the\n"
         "camera is given one 36 mm wide.",
+    .examples =
+        "velo camera info camera.yaml\n"
+        "velo camera info --json room.pbrt",
     .options = info_options,
     .min_operands = 1,
     .max_operands = 1,

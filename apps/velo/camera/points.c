@@ -141,6 +141,9 @@ const Command camera_project_command = {
     .text =
         "POINTS.csv (- is stdin) has a line x,y,z for each point of the world. Prints u,v,z,valid: column and\n"
         "row in the picture, depth along the view axis, and 1 where the camera can see in that direction.",
+    .examples =
+        "velo camera project --camera camera.yaml points.csv\n"
+        "velo camera project --camera room.pbrt points.csv",
     .options = points_options,
     .min_operands = 1,
     .max_operands = 1,
@@ -154,6 +157,9 @@ const Command camera_unproject_command = {
     .text =
         "PIXELS.csv (- is stdin) has a line u,v for each place in the picture. Prints ox,oy,oz,dx,dy,dz,valid:\n"
         "where the ray starts, its direction of length 1, and 1 where the camera sees anything.",
+    .examples =
+        "velo camera unproject --camera camera.yaml pixels.csv\n"
+        "velo camera unproject --camera room.pbrt pixels.csv",
     .options = points_options,
     .min_operands = 1,
     .max_operands = 1,

@@ -383,6 +383,9 @@ const Command camera_vanishing_command = {
         "scene), pixels from the picture's corner, and the horizon; --overlay draws them: lines along x red,\n"
         "y green, z blue, the horizon yellow. With --from it finds focal length, principal point and rotation\n"
         "from two vanishing points and a known principal point, or from three.",
+    .examples =
+        "velo camera vanishing room.pbrt\n"
+        "velo camera vanishing --from 10,200 900,210 --size 640x480",
     .options = vanishing_options,
     .min_operands = 0,
     .max_operands = 2,

@@ -239,11 +239,14 @@ static const Option verify_options[] = {
 const Command camera_verify_command = {
     .name = "camera verify",
     .usage = "--camera FILE [options]",
-    .summary = "render a chessboard through a camera and measure where its corners are",
+    .summary = "render a chessboard through a camera, measure its corners",
     .text =
         "Renders a board in many poses through the camera, finds the corners in the pictures to a hundredth of\n"
         "a pixel, and compares them with where the camera's equations, written a second time, put them. Exit\n"
         "code 1 when one is off by more than the threshold, or corners are missing.",
+    .examples =
+        "velo camera verify --camera camera.yaml\n"
+        "velo camera verify --camera room.pbrt",
     .options = verify_options,
     .min_operands = 0,
     .max_operands = 0,

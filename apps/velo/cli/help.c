@@ -1,60 +1,92 @@
-/* cli/help.c: the help page of a command, from its table. See options.h. */
+/* cli/help.c: the help page of a command, from its table: usage, what it does, options in sections, examples. See
+ * options.h. */
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/options.h"
 
-enum { HELP_COLUMN = 32, HELP_WIDTH = 100 };
+enum { HELP_COLUMN = 30, HELP_WIDTH = 80 };
 
-/* The text with its own line breaks, each line indented to the help column; *column says where the first one starts. */
-static void print_indented(const char *text, int column) {
+/* Words of the text, wrapped; lines begin at `indent`, the first one where *column says. A line break of the text is a
+ * blank, two are the end of a paragraph; a line that begins with a blank stays as it is. */
+static void print_wrapped(const char *text, int indent, int column) {
   while (*text) {
-    size_t n = strcspn(text, "\n");
-    printf("%*s%.*s\n", HELP_COLUMN - column, "", (int)n, text);
-    text += n + (text[n] == '\n');
-    column = 0;
-  }
-}
-
-/* "a, b (or c), d": accepted names, aliases in parentheses, wrapped. */
-static void print_choices(const Choice *choices) {
-  int column = HELP_COLUMN;
-  printf("%*s", HELP_COLUMN, "");
-  for (const Choice *c = choices; c->name;) {
-    char word[128];
-    int n = snprintf(word, sizeof word, "%s", c->name);
-    const Choice *alias = c + 1;
-    for (; alias->name && alias->value == c->value; alias++)
-      n += snprintf(word + n, sizeof word - (size_t)n, "%s%s", alias == c + 1 ? " (or " : ", ", alias->name);
-    if (alias > c + 1) n += snprintf(word + n, sizeof word - (size_t)n, ")");
-    if (alias->name) n += snprintf(word + n, sizeof word - (size_t)n, ",");
-    if (column + n + 1 > HELP_WIDTH) {
-      printf("\n%*s", HELP_COLUMN, "");
-      column = HELP_COLUMN;
+    size_t blanks = strspn(text, " "), n = strcspn(text, " \n");
+    if (*text == '\n') {
+      bool paragraph = text[1] == '\n' || text[1] == ' ';
+      if (paragraph) {
+        printf(text[1] == '\n' ? "\n\n" : "\n");
+        column = 0;
+      }
+      text += text[1] == '\n' ? 2 : 1;
+      continue;
     }
-    printf("%s%s", column > HELP_COLUMN ? " " : "", word);
-    column += n + 1;
-    c = alias;
+    if (blanks && column > 0) {
+      text += blanks;
+      continue;
+    }
+    n = blanks + strcspn(text + blanks, " \n");
+    if (column > indent && column + 1 + (int)n > HELP_WIDTH) {
+      printf("\n");
+      column = 0;
+    }
+    int gap = column < indent ? indent - column : column > 0 && column > indent ? 1 : 0;
+    printf("%*s%.*s", gap, "", (int)n, text);
+    column += gap + (int)n;
+    text += n;
   }
   printf("\n");
 }
 
-void options_print_help(const Command *command) {
-  printf("usage: velo %s %s\n\n%s\n", command->name, command->usage, command->text);
-  if (!command->options->name) return;
-  printf("\noptions:\n");
-  for (const Option *o = command->options; o->name; o++) {
-    char head[80];
-    int n = o->letter ? snprintf(head, sizeof head, "  -%c, --%s", o->letter, o->name)
-                      : snprintf(head, sizeof head, "      --%s", o->name);
-    if (o->value) n += snprintf(head + n, sizeof head - (size_t)n, " %s", o->value);
-    printf("%s", head);
-    if (n + 2 > HELP_COLUMN) {
-      printf("\n");
-      n = 0;
-    }
-    print_indented(o->help, n);
-    if (o->choices) print_choices(o->choices);
+/* "a, b (or c), d": accepted names, aliases in parentheses. */
+static void print_choices(const Choice *choices) {
+  char list[1200] = "";
+  for (const Choice *c = choices; c->name;) {
+    size_t n = strlen(list);
+    const Choice *alias = c + 1;
+    n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", n ? " " : "", c->name);
+    for (; alias->name && alias->value == c->value; alias++)
+      n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", alias == c + 1 ? " (or " : ", ", alias->name);
+    snprintf(list + n, sizeof list - n, "%s%s", alias > c + 1 ? ")" : "", alias->name ? "," : "");
+    c = alias;
   }
-  printf("  -h, --help%*sthis page\n", HELP_COLUMN - 12, "");
+  print_wrapped(list, HELP_COLUMN, 0);
+}
+
+static void print_option(const Option *o) {
+  char head[80];
+  int n = o->letter ? snprintf(head, sizeof head, "  -%c, --%s", o->letter, o->name)
+                    : snprintf(head, sizeof head, "      --%s", o->name);
+  if (o->value) n += snprintf(head + n, sizeof head - (size_t)n, " %s", o->value);
+  printf("%s", head);
+  if (n + 2 > HELP_COLUMN) {
+    printf("\n");
+    n = 0;
+  }
+  print_wrapped(o->help, HELP_COLUMN, n);
+  if (o->choices) print_choices(o->choices);
+}
+
+static void print_examples(const char *text) {
+  printf("\nexamples:\n");
+  while (text && *text) {
+    size_t n = strcspn(text, "\n");
+    printf("  %.*s\n", (int)n, text);
+    text += n + (text[n] == '\n');
+  }
+}
+
+void options_print_help(const Command *command) {
+  int column = printf("usage: velo %s", command->name);
+  print_wrapped(command->usage, column + 1, column);
+  printf("\n");
+  print_wrapped(command->text, 0, 0);
+  if (!command->sections) printf("\noptions:\n");
+  for (const Option *o = command->options; o->name; o++) {
+    for (const Section *s = command->sections; s && s->title; s++)
+      if (s->first == o->id) printf("\n%s:\n", s->title);
+    print_option(o);
+  }
+  printf("%s  -h, --help%*sthis page\n", command->sections ? "\n" : "", HELP_COLUMN - 12, "");
+  print_examples(command->examples);
 }

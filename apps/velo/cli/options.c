@@ -106,6 +106,23 @@ static bool read_time(const char *text, double *seconds) {
   return *seconds > 0 && isfinite(*seconds);
 }
 
+/* 500M, 2G, 1.5GB: thousands; KiB, MiB, GiB: 1024. */
+static bool read_bytes(const char *text, int64_t *bytes) {
+  static const char units[] = "kMGT";
+  const char *unit = text + strspn(text, "0123456789.");
+  double number, factor = 1;
+  if (!read_number(text, unit, &number)) return false;
+  const char *found = *unit ? strchr(units, *unit == 'K' ? 'k' : *unit) : NULL;
+  if (found) {
+    bool binary = unit[1] == 'i';
+    for (const char *u = units; u <= found; u++) factor *= binary ? 1024 : 1000;
+    unit += 1 + binary;
+  }
+  if (*unit == 'B') unit++;
+  *bytes = number * factor < 9e18 ? (int64_t)(number * factor) : INT64_MAX;
+  return !*unit && *bytes > 0;
+}
+
 static bool read_size(const Option *option, const char *text, int64_t size[2]) {
   const char *x = strpbrk(text, "xX");
   if (!x || !read_integer(text, x, &size[0]) || !read_integer(x + 1, NULL, &size[1])) return false;
@@ -169,6 +186,9 @@ static int read_value(const Option *option, const char *text, Arguments *argumen
     case OPTION_TIME:
       if (read_time(text, &value->number)) break;
       return bad_value(option, text, "must be a time above 0 such as 30, 30s, 5m or 1h30m");
+    case OPTION_BYTES:
+      if (read_bytes(text, &value->integer)) break;
+      return bad_value(option, text, "must be a size such as 500M, 2G or 1.5GiB");
     case OPTION_SIZE:
       if (read_size(option, text, value->integers)) break;
       snprintf(wanted, sizeof wanted, "must be WIDTHxHEIGHT, each from %.0f to %.0f", option->min, option->max);
@@ -196,6 +216,11 @@ static int read_value(const Option *option, const char *text, Arguments *argumen
       if (!*text) return bad_value(option, text, "must not be empty");
       if (arguments->text_count == MAX_TEXTS) return report_usage("--%s: at most %d", option->name, MAX_TEXTS);
       arguments->texts[arguments->text_count++] = text;
+      break;
+    case OPTION_FOLDERS:
+      if (!*text) return bad_value(option, text, "must not be empty");
+      if (arguments->folder_count == MAX_TEXTS) return report_usage("--%s: at most %d", option->name, MAX_TEXTS);
+      arguments->folders[arguments->folder_count++] = text;
       break;
   }
   value->given = true;

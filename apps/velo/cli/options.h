@@ -11,12 +11,14 @@ typedef enum OptionKind {
   OPTION_INTEGER,   /* min..max */
   OPTION_NUMBER,    /* min..max */
   OPTION_TIME,      /* seconds: 30, 30s, 5m, 1h30m */
+  OPTION_BYTES,     /* 500M, 2G, 1.5GiB; integer */
   OPTION_SIZE,      /* WxH, each min..max */
   OPTION_CROP,      /* x0,y0,x1,y1, whole numbers */
   OPTION_FRACTIONS, /* x0,x1,y0,y1 in 0..1 */
   OPTION_CHOICE,    /* one of choices */
   OPTION_TEXT,
-  OPTION_TEXTS /* may be given several times; at most one such option a command */
+  OPTION_TEXTS,  /* may be given several times; at most one such option a command */
+  OPTION_FOLDERS /* likewise, another one */
 } OptionKind;
 
 typedef struct Choice {
@@ -50,16 +52,26 @@ typedef struct Arguments {
   OptionValue values[MAX_OPTIONS];
   const char *texts[MAX_TEXTS];
   int text_count;
+  const char *folders[MAX_TEXTS];
+  int folder_count;
   const char *operands[MAX_OPERANDS];
   int operand_count;
 } Arguments;
 
+/* A heading of the help page, before the option of that id. */
+typedef struct Section {
+  int first;         /* id */
+  const char *title; /* null ends the list */
+} Section;
+
 typedef struct Command {
-  const char *name;    /* "image diff"; null ends a list */
-  const char *usage;   /* what follows the name: "FILE [options]" */
-  const char *summary; /* one line */
-  const char *text;    /* the help page between usage and options */
+  const char *name;     /* "image diff"; null ends a list */
+  const char *usage;    /* what follows the name: "FILE [options]" */
+  const char *summary;  /* one line */
+  const char *text;     /* the help page between usage and options */
+  const char *examples; /* lines of the help page, after the options */
   const Option *options;
+  const Section *sections; /* null: the options are one section */
   int min_operands, max_operands;
   int (*run)(const struct Command *command, const Arguments *arguments);
 } Command;

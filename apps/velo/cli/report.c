@@ -13,6 +13,8 @@ static struct {
   bool json, terminal, line_shown;
   unsigned logged; /* warnings and notes of the library */
   Verbosity verbosity;
+  const vlContext *context; /* whose memory is reported; may be null */
+  size_t memory_limit;
   char *json_text;
   size_t json_size;
 } state;
@@ -24,12 +26,21 @@ void report_setup(bool json, Verbosity verbosity) {
   state.terminal = !json && isatty(STDERR_FILENO) && term && *term && strcmp(term, "dumb") != 0;
 }
 
+void report_memory_of(const vlContext *context, size_t limit) {
+  state.context = context;
+  state.memory_limit = limit;
+}
+
 bool report_is_json(void) {
   return state.json;
 }
 
 bool report_is_quiet(void) {
   return state.verbosity == REPORT_QUIET;
+}
+
+bool report_is_verbose(void) {
+  return state.verbosity == REPORT_VERBOSE;
 }
 
 bool report_is_terminal(void) {
@@ -143,6 +154,16 @@ static int status_of(vlResult result) {
 int report_error(const vlError *error, vlResult result, const char *file) {
   int status = status_of(result);
   const char *message = error && error->message[0] ? error->message : vl_result_name(result);
+  char longer[700];
+  if (result == VL_ERROR_MEMORY && state.context) {
+    size_t peak;
+    vl_context_memory(state.context, &peak);
+    int n = snprintf(longer, sizeof longer, "%s; at most %.1f MB were held", message, (double)peak * 1e-6);
+    if (state.memory_limit && n > 0 && n < (int)sizeof longer)
+      snprintf(longer + n, sizeof longer - (size_t)n, ", --max-memory allows %.1f MB",
+               (double)state.memory_limit * 1e-6);
+    message = longer;
+  }
   /* Messages about files that cannot be opened name them already. */
   if (file && strstr(message, file)) file = NULL;
   say(NULL, status, error, file, message);

@@ -7,7 +7,7 @@
 #include "cli/json.h"
 #include "velo/velo.h"
 
-/* What velo returns to the shell; 128 + signal after SIGINT (130) and SIGTERM (143). */
+/* What velo returns to the shell; 128 + signal after SIGHUP (129), SIGINT (130), SIGXCPU (152) and SIGTERM (143). */
 enum {
   STATUS_OK = 0,      /* done, every file written whole */
   STATUS_OTHER = 1,   /* image diff: over a threshold; anywhere: out of memory */
@@ -20,8 +20,11 @@ enum {
 typedef enum Verbosity { REPORT_QUIET = -1, REPORT_NORMAL = 0, REPORT_VERBOSE = 1 } Verbosity;
 
 void report_setup(bool json, Verbosity verbosity);
+/* Out of memory is reported with what the context holds, and with the limit (0: none). Null: no longer. */
+void report_memory_of(const vlContext *context, size_t limit);
 bool report_is_json(void);
 bool report_is_quiet(void);
+bool report_is_verbose(void);
 /* stderr is a terminal that can redraw a line, and people read it. */
 bool report_is_terminal(void);
 int report_terminal_columns(void);

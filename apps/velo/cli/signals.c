@@ -2,10 +2,16 @@
 #include "cli/signals.h"
 
 #include <signal.h>
+#include <stdatomic.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
-static volatile sig_atomic_t pending, remember;
+enum { MOST_SIGNALS = 2 }; /* one more ends the program */
+
+static atomic_int pending, count;
+static atomic_bool remember;
+static _Atomic time_t last; /* seconds of the last one that counted */
 
 /* Only calls that are safe in a handler. */
 static void say(const char *text) {
@@ -18,25 +24,39 @@ static void handle(int number) {
     say("\nvelo: interrupted; nothing was rendered yet, nothing is written\n");
     _exit(128 + number);
   }
-  if (pending) _exit(128 + number);
-  pending = number;
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  int none = 0;
+  if (atomic_compare_exchange_strong(&pending, &none, number)) {
+    last = now.tv_sec;
+    count = 1;
+  } else if (now.tv_sec > last + 1) {
+    last = now.tv_sec;
+    if (++count > MOST_SIGNALS) _exit(128 + pending);
+  }
 }
 
 void signals_install(void) {
-  struct sigaction action;
-  memset(&action, 0, sizeof action);
-  sigemptyset(&action.sa_mask);
-  action.sa_flags = SA_RESTART;
-  action.sa_handler = handle;
-  /* Also where the shell had SIGINT ignored (background jobs of scripts): who sends it, means it. */
-  sigaction(SIGINT, &action, NULL);
-  sigaction(SIGTERM, &action, NULL);
+  static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+    struct sigaction action, before;
+    memset(&action, 0, sizeof action);
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = SA_RESTART;
+    action.sa_handler = handle;
+    if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler == SIG_IGN) continue;
+    sigaction(numbers[i], &action, NULL);
+  }
 }
 
 void signals_remember(void) {
-  remember = 1;
+  remember = true;
 }
 
 int signals_pending(void) {
   return pending;
+}
+
+int signals_count(void) {
+  return count;
 }

@@ -303,6 +303,9 @@ const Command image_check_command = {
         "depths are measured against the largest of |P|, |origin| and distance, pixels against the larger side\n"
         "of the picture. Cryptomatte's ids are looked up in its manifest, its coverages compared with alpha.\n"
         "Exit code 1 when an error is above the threshold.",
+    .examples =
+        "velo image check truth.exr\n"
+        "velo image check --json truth.exr",
     .options = check_options,
     .min_operands = 1,
     .max_operands = 1,

@@ -181,7 +181,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
     vlResult result = vl_image_write(image, outputs.paths[0], NULL, &error);
     status = result == VL_OK ? STATUS_OK : report_error(&error, result, outputs.paths[0]);
   }
-  if (status < 0) status = outputs_write(context, &outputs, image, false);
+  if (status < 0) status = outputs_write(context, &outputs, image, 0, OUTPUT_FINISHED);
   vl_image_destroy(image);
   vl_context_destroy(context);
   return status;
@@ -207,6 +207,9 @@ const Command image_convert_command = {
     .text =
         "Writes FILE as RESULT; the suffix of RESULT chooses the format: .exr .hdr .pfm (linear),\n"
         ".png .jpg .tga (display).",
+    .examples =
+        "velo image convert room.exr room.png --view agx --exposure 1\n"
+        "velo image convert room.exr depth.png --channel Z --scale 1000",
     .options = convert_options,
     .min_operands = 2,
     .max_operands = 2,

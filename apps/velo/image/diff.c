@@ -160,6 +160,9 @@ const Command image_diff_command = {
         "  psnr       dB, for a peak of 1         flip       mean FLIP, 67 pixels per degree\n"
         "  meanratio  of mean luminances          maxabs     largest difference of a value\n"
         "  differing  pixels that differ at all   notfinite  pixels with inf or nan, left out above",
+    .examples =
+        "velo image diff reference.exr room.exr\n"
+        "velo image diff reference.png room.png --threshold flip=0.01 -o heat.png",
     .options = diff_options,
     .min_operands = 2,
     .max_operands = 2,

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/report.h"
+
 /* CIE xy of red, green, blue and white; ITU-R BT.709. */
 static const double rec709[8] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
 
@@ -81,10 +83,22 @@ static vlResult to_rec709(vlContext *context, const vlImage *image, const int rg
   return VL_OK;
 }
 
+/* Of an image without R, G, B or Y something else is shown: say what. */
+static void tell_shown(const vlImage *image) {
+  uint32_t channel[4], count = vl_image_shown(image, channel);
+  const char *first = vl_image_channel_name(image, channel[0]), *dot = strrchr(first, '.');
+  if (vl_image_channels(image) == 1 || strcmp(first, "Y") == 0 || strcmp(first, "R") == 0) return;
+  if (count >= 3)
+    report_note("the image has no channels R, G, B or Y: the layer \"%.*s\" is shown", (int)(dot - first), first);
+  else
+    report_note("the image has no channels R, G, B or Y: the channel \"%s\" is shown as grey", first);
+}
+
 vlResult display_image(vlContext *context, const vlImage *image, vlView view, float exposure, vlImage **result) {
   const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
                       vl_image_find_channel(image, "B")};
   double m[9];
+  tell_shown(image);
   if (rgb[0] < 0 || rgb[1] < 0 || rgb[2] < 0 || !rec709_matrix(image, m))
     return vl_image_view(image, view, exposure, NULL, result);
   vlImage *converted = NULL;

@@ -188,7 +188,9 @@ static int run_info(const Command *command, const Arguments *arguments) {
   vlContext *context = NULL;
   vlImage *image = NULL;
   int status = image_context(&context);
-  if (status < 0) status = image_load(context, arguments->operands[0], &image);
+  vlError error = {0};
+  vlResult result = status < 0 ? vl_image_read_header(context, arguments->operands[0], &image, &error) : VL_OK;
+  if (result != VL_OK) status = report_error(&error, result, arguments->operands[0]);
   if (status < 0) {
     if (arguments->values[INFO_JSON].given)
       print_json(arguments->operands[0], image);
@@ -210,6 +212,9 @@ const Command image_info_command = {
     .usage = "FILE [options]",
     .summary = "format, size, channels and attributes of a picture",
     .text = "Prints what FILE is and holds. Matrices are in OpenEXR's order (row vectors).",
+    .examples =
+        "velo image info room.exr\n"
+        "velo image info --json room.exr",
     .options = info_options,
     .min_operands = 1,
     .max_operands = 1,

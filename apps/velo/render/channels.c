@@ -7,6 +7,7 @@
 
 #include "camera/camera.h"
 #include "cli/report.h"
+#include "cli/signals.h"
 #include "render/gbuffer.h"
 
 const Choice channel_mode_choices[] = {{"centre", VL_CHANNEL_MODE_CENTRE},
@@ -101,6 +102,16 @@ int channels_load(Channels *c, vlContext *context, const Job *job) {
   return -1;
 }
 
+/* Another signal than those that came before the pass. */
+static bool stop_asked(void *user) {
+  return signals_count() > *(const int *)user;
+}
+
+static int fail_pass(const vlError *error, vlResult result, const Job *job) {
+  if (result == VL_OK) return STATUS_OK;
+  return result == VL_CANCELLED ? 128 + signals_pending() : report_error(error, result, job->path);
+}
+
 static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
   static const vlIdKind kinds[2] = {VL_ID_OBJECT, VL_ID_INSTANCE};
   for (int k = 0; k < 2; k++) {
@@ -109,9 +120,11 @@ static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
   }
   vlBoxesDef def = vl_default_boxes_def(job->camera.width, job->camera.height);
   memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
+  int signals = signals_count();
+  def.stop = stop_asked, def.stop_user = &signals;
   vlError error = {0};
   vlResult result = vl_world_boxes(world, &job->camera, &def, c->box_list[0], c->box_list[1], &error);
-  return result == VL_OK ? STATUS_OK : report_error(&error, result, job->path);
+  return fail_pass(&error, result, job);
 }
 
 /* Where no other camera is named, flow is that of the shutter's time: from the moment of the channels to its end, and
@@ -155,9 +168,10 @@ int channels_render(Channels *c, vlContext *context, const vlWorld *world, const
   if (c->bits & VL_CHANNEL_BACKWARD) def.backward = &c->others[1];
   memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
   vlError error = {0};
+  int signals = signals_count();
+  def.stop = stop_asked, def.stop_user = &signals;
   vlResult result = vl_render_channels(world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
-  if (result == VL_OK) result = channels_make_visible(context, &c->layers[1]);
-  if (result != VL_OK) return report_error(&error, result, job->path);
+  if (result != VL_OK) return fail_pass(&error, result, job);
   return c->boxes ? find_boxes(c, world, job) : STATUS_OK;
 }
 

@@ -30,7 +30,7 @@ void channels_take(Channels *c, Job *job);
 int channels_load(Channels *c, vlContext *context, const Job *job);
 /* Is there anything that only .exr files hold? */
 bool channels_any(const Channels *c);
-/* The pass, after the picture. STATUS_OK or the exit code. */
+/* The pass, after the picture. STATUS_OK or the exit code: 128 + signal when a signal that comes meanwhile ends it. */
 int channels_render(Channels *c, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film);
 /* Names and types of ids (vl_render_channels' second picture) as files have them; MEMORY. */
 vlResult channels_make_visible(vlContext *context, vlImage **ids);

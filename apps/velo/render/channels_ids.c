@@ -3,11 +3,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "cli/report.h"
 #include "render/channels.h"
+#include "render/outputs.h"
 
 static void mark_ids(const vlImage *ids, const char *name, bool *seen, uint32_t count) {
   int channel = vl_image_find_channel(ids, name);
@@ -112,33 +111,23 @@ static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const C
   return fflush(file) == 0 && !ferror(file);
 }
 
-/* Written beside the target, synced, renamed: whole or as before. */
+/* In memory first, then as a whole. */
 int channels_write_ids(const Channels *c, const Channels *right, const vlWorld *world, const char *path) {
-  char target[4200], temporary[4240];
+  char target[4200];
   const vlImage *ids = c->layers[1];
   if (!ids) return STATUS_OK;
   bool any = vl_image_find_channel(ids, "id.object.Y") >= 0 || vl_image_find_channel(ids, "id.material.Y") >= 0 ||
              vl_image_find_channel(ids, "id.instance.Y") >= 0;
   if (!any) return STATUS_OK;
-  if (snprintf(target, sizeof target, "%s.ids.json", path) >= (int)sizeof target)
+  if (!output_ids_path(path, target, sizeof target))
     return report_failure(STATUS_IO, "cannot write %s.ids.json: %s", path, strerror(ENAMETOOLONG));
-  snprintf(temporary, sizeof temporary, "%s.XXXXXX", target);
-  int descriptor = mkstemp(temporary);
-  FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
-  if (!file) {
-    int code = errno;
-    if (descriptor >= 0) close(descriptor), unlink(temporary);
-    return report_failure(STATUS_IO, "cannot write %s: %s", target, strerror(code));
-  }
-  errno = 0;
-  bool good = put_all(file, world, c, right, path) && fsync(descriptor) == 0;
-  mode_t mask = umask(0);
-  umask(mask);
-  good = good && fchmod(descriptor, 0666 & ~mask) == 0;
-  int code = errno;
-  if (fclose(file) != 0 && good) good = false, code = errno;
-  if (good && rename(temporary, target) != 0) good = false, code = errno;
-  if (good) return STATUS_OK;
-  unlink(temporary);
-  return report_failure(STATUS_IO, "cannot write %s: %s", target, strerror(code ? code : EIO));
+  char *text = NULL;
+  size_t size = 0;
+  FILE *file = open_memstream(&text, &size);
+  bool good = file && put_all(file, world, c, right, path);
+  if (file && fclose(file) != 0) good = false;
+  vlError error = {0};
+  vlResult result = good ? vl_write_file(target, text, size, &error) : VL_ERROR_MEMORY;
+  free(text);
+  return result == VL_OK ? STATUS_OK : report_error(&error, result, target);
 }

@@ -142,15 +142,18 @@ static int write_pattern(FrameWriter *w, FramePicture *p, const char *pattern, b
   bool two = w->frames->views == 2;
   int status = STATUS_OK;
   for (int view = 0; view < (by_view ? w->frames->views : 1); view++) {
-    char path[4096];
+    char name[4096], part[4200], *path = name;
     vlError error = {0};
-    frames_path(w->frames, &p->frame, pattern, view, path, sizeof path);
+    frames_path(w->frames, &p->frame, pattern, view, name, sizeof name);
+    if (p->stopped && output_part_path(name, part, sizeof part)) path = part;
     int code = STATUS_OK;
     if (output_holds_layers(path))
       code = channels_write_ids(&p->channels[view], two && !by_view ? &p->channels[1] : NULL, w->world, path);
     vlResult result =
         two && !by_view ? write_both(w, p, path, &def, &error) : write_one(w, p, view, path, &def, &error);
     if (result != VL_OK) code = report_error(&error, result, path);
+    if (code == STATUS_OK && p->stopped) report_note("the image under way is in %s", path);
+    if (code == STATUS_OK && !p->stopped) output_remove_part(name);
     if (status == STATUS_OK) status = code;
   }
   return status;
@@ -189,10 +192,11 @@ static void *work(void *user) {
     FramePicture *picture = &w->queue[w->first]; /* stays counted, so that nobody writes over it */
     pthread_mutex_unlock(&w->mutex);
     int status = write_picture(w, picture);
+    bool stopped = picture->stopped;
     frame_picture_free(picture);
     pthread_mutex_lock(&w->mutex);
     if (status == STATUS_OK)
-      w->written++;
+      w->written += !stopped;
     else if (w->status == STATUS_OK)
       w->status = status;
     w->first = (w->first + 1) % QUEUE;

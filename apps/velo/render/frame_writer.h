@@ -11,6 +11,7 @@ typedef struct FramePicture {
   Channels channels[2];
   vlImage *images[2];
   uint32_t spp;
+  bool stopped; /* not finished: it goes to NAME.part.EXT */
   bool renamed; /* the layers have their view in their names */
 } FramePicture;
 
@@ -20,7 +21,8 @@ typedef struct FrameWriter FrameWriter;
 FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const Frames *frames, const Outputs *outputs);
 /* Waits while too many are under way. Takes what the picture holds. */
 void frame_writer_put(FrameWriter *writer, const FramePicture *picture);
-/* Waits for all; the exit code of the first failure, or STATUS_OK. *written: pictures whose files are all whole. */
+/* Waits for all; the exit code of the first failure, or STATUS_OK. *written: finished images whose files are all whole.
+ */
 int frame_writer_finish(FrameWriter *writer, uint32_t *written);
 void frame_picture_free(FramePicture *picture);
 

@@ -1,5 +1,6 @@
 /* render/frames_render.c: the frames one after the other. A frame that fails stops nothing: what is written stays, the
  * others are rendered, and the exit code tells. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -34,7 +35,7 @@ static void show(Run *run, const Frame *frame) {
   if (run->count == 1 || report_is_quiet() || now - run->last_shown < (report_is_terminal() ? 0.1 : 5.0)) return;
   run->last_shown = now;
   char text[200], elapsed[32], left[32];
-  double each = run->done ? (now - run->start) / run->done : 0;
+  double each = run->done ? (now - run->start) / run->done : INFINITY; /* not known yet */
   if (report_is_json()) {
     Json json = report_json_begin("progress");
     json_integer(&json, "frame", frame->number);
@@ -47,11 +48,13 @@ static void show(Run *run, const Frame *frame) {
   }
   format_seconds(elapsed, sizeof elapsed, now - run->start);
   format_seconds(left, sizeof left, each * (run->count - run->done));
-  snprintf(text, sizeof text, "frame %u: %u/%u frames  %s elapsed  %s left", frame->number, run->done, run->count,
-           elapsed, left);
+  bool narrow = report_is_terminal() && report_terminal_columns() < 60;
+  int n = snprintf(text, sizeof text, "frame %u: %u/%u", frame->number, run->done, run->count);
+  if (!narrow) n += snprintf(text + n, sizeof text - (size_t)n, " frames  %s elapsed", elapsed);
+  if (run->done) snprintf(text + n, sizeof text - (size_t)n, "  %s left", left);
   if (report_is_terminal())
     report_status_line(text);
-  else
+  else if (run->done)
     report_note("%3.0f %%  %s", 100.0 * run->done / run->count, text);
 }
 
@@ -74,7 +77,14 @@ static void add_stats(vlRenderStats *total, const vlRenderStats *more) {
   total->not_finite += more->not_finite;
 }
 
-/* One eye's picture and channels. VL_CANCELLED: interrupted, nothing is kept. */
+static int develop(const Job *job, const vlFilm *film, vlImage **image) {
+  vlDevelopDef def = vl_default_develop_def();
+  def.exposure = job->defs->develop.exposure;
+  vlResult result = vl_film_develop(film, &def, image);
+  return result == VL_OK ? STATUS_OK : report_error(NULL, result, NULL);
+}
+
+/* One eye's image and channels. When it is interrupted: 128 + signal, and an image if there is a whole pass. */
 static int render_view(Run *run, const Frame *frame, int view, FramePicture *picture) {
   char place[200];
   vlError error = {0};
@@ -92,15 +102,25 @@ static int render_view(Run *run, const Frame *frame, int view, FramePicture *pic
   vl_film_clear(film);
   result = vl_render(run->world, &job->camera, film, &job->defs->render, &stats, &error);
   add_stats(&run->total, &stats);
-  if (result == VL_CANCELLED || signals_pending()) return 128 + signals_pending();
-  if (result != VL_OK) return report_failure(STATUS_OTHER, "%s: %s", place, error.message);
-  vlDevelopDef develop = vl_default_develop_def();
-  develop.exposure = job->defs->develop.exposure;
-  result = vl_film_develop(film, &develop, &picture->images[view]);
-  if (result != VL_OK) return report_error(NULL, result, NULL);
+  if (result != VL_OK && result != VL_CANCELLED) return report_failure(STATUS_OTHER, "%s: %s", place, error.message);
   picture->spp = vl_film_spp(film);
+  if (picture->spp && (status = develop(job, film, &picture->images[view])) != STATUS_OK && status < 128) return status;
+  if (result == VL_CANCELLED) return 128 + signals_pending();
   picture->channels[view] = *run->channels;
   return run->layers ? channels_render(&picture->channels[view], run->context, run->world, job, film) : STATUS_OK;
+}
+
+/* What there is of a frame that was interrupted, for NAME.part.EXT: an eye that was not begun is black. */
+static bool keep_stopped(Run *run, FramePicture *picture) {
+  if (!picture->images[0]) return false;
+  for (int v = 1; v < run->frames->views; v++) {
+    if (picture->images[v]) continue;
+    vlFilm *film = picture->frame.camera->film;
+    picture->jobs[v] = picture->jobs[0];
+    vl_film_clear(film);
+    if (develop(&picture->jobs[v], film, &picture->images[v]) != STATUS_OK) return false;
+  }
+  return picture->stopped = true;
 }
 
 static void report_end(const Run *run, uint32_t written, int status) {
@@ -147,6 +167,8 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world, cons
   signals_remember();
   int status = STATUS_OK;
   for (uint32_t i = 0; i < run.count && status < 128; i++) {
+    if (signals_pending()) status = 128 + signals_pending();
+    if (status >= 128) break;
     FramePicture picture;
     memset(&picture, 0, sizeof picture);
     picture.frame = frames_at(frames, i);
@@ -156,7 +178,7 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world, cons
       progress_start(&run.progress, picture.frame.camera->job.defs->render.time_limit);
       code = render_view(&run, &picture.frame, v, &picture);
     }
-    if (code == STATUS_OK)
+    if (code == STATUS_OK || (code >= 128 && keep_stopped(&run, &picture)))
       frame_writer_put(writer, &picture);
     else
       frame_picture_free(&picture);

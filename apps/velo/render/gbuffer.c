@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "cli/signals.h"
 
 static const char *const names[] = {"Albedo.R",
                                     "Albedo.G",
@@ -110,7 +111,12 @@ static void fill(const Source *s, uint32_t x, uint32_t y, float out[COUNT]) {
   out[DZ + 1] = (float)slope(s, x, y, x, y + 1 < s->height ? y + 1 : y ? y - 1 : y, p, n);
 }
 
+static bool stop_asked(void *user) {
+  return signals_count() > *(const int *)user;
+}
+
 static vlResult truth_of(const vlWorld *world, const Job *job, const vlFilm *film, vlImage **truth, vlError *error) {
+  int signals = signals_count();
   vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
   def.channels = VL_CHANNEL_P | VL_CHANNEL_N | VL_CHANNEL_NG | VL_CHANNEL_UV | VL_CHANNEL_ALBEDO | VL_CHANNEL_RAY |
                  VL_CHANNEL_DISTANCE | VL_CHANNEL_ERROR;
@@ -120,6 +126,7 @@ static vlResult truth_of(const vlWorld *world, const Job *job, const vlFilm *fil
   def.render = &job->defs->render;
   def.exposure = job->defs->develop.exposure;
   def.time = job_channels_time(job);
+  def.stop = stop_asked, def.stop_user = &signals;
   return vl_render_channels(world, &job->camera, &def, truth, NULL, error);
 }
 
@@ -165,5 +172,6 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
   }
   vl_image_destroy(truth);
   vl_image_destroy(picture);
+  if (result == VL_CANCELLED) return 128 + signals_pending();
   return result == VL_OK ? STATUS_OK : report_error(&error, result, job->path);
 }

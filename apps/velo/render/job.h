@@ -61,7 +61,10 @@ enum {
   RENDER_ENVIRONMENT_STRENGTH,
   RENDER_GROUND,
   RENDER_SHUTTER,
-  RENDER_SCENE
+  RENDER_SCENE,
+  RENDER_MAX_MEMORY,
+  RENDER_MAX_TEXTURE,
+  RENDER_SANDBOX
 };
 
 extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[], sensor_choices[],
@@ -69,6 +72,7 @@ extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light
     eye_choices[];
 
 extern const Option render_options[];
+extern const Section render_sections[];
 
 typedef struct Job {
   const char *path; /* of the scene file */

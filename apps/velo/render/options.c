@@ -13,8 +13,9 @@ const Option render_options[] = {
      0, 0, NULL},
     {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel", 1, 1 << 24, NULL},
     {RENDER_TIME, 0, "time", OPTION_TIME, "TIME",
-     "stop after the pass in which this time is over: 30, 30s, 5m,\n"
-     "1h30m. Without --spp as many samples as fit into it",
+     "end after this time, loading and writing included (of a\n"
+     "trajectory: after it for each image): 30, 30s, 5m, 1h30m. Without\n"
+     "--spp as many samples as fit into it",
      0, 0, NULL},
     {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH", "picture size in pixels; the framing stays", 1, 65536,
      NULL},
@@ -150,6 +151,15 @@ const Option render_options[] = {
      "portable: the same image on every machine (default); fast: a few\n"
      "pixels may differ between machines, for less time:",
      0, 0, bits_choices},
+    {RENDER_MAX_MEMORY, 0, "max-memory", OPTION_BYTES, "SIZE",
+     "memory that may be held: 500M, 2G, 1.5GiB. What needs more fails at\nonce and says what needs how much", 0, 0,
+     NULL},
+    {RENDER_MAX_TEXTURE, 0, "max-texture-pixels", OPTION_INTEGER, "N",
+     "pixels that one image of a texture may have; default 268435456", 1, 1e15, NULL},
+    {RENDER_SANDBOX, 0, "sandbox", OPTION_FOLDERS, "DIR",
+     "for scenes of strangers: the files that a scene names must lie in\nDIR or beneath it, links followed; several "
+     "times for several",
+     0, 0, NULL},
     {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "warn about what is not understood instead of refusing it",
      0, 0, NULL},
     {RENDER_IMITATE_PBRT, 0, "imitate-pbrt", OPTION_FLAG, NULL,
@@ -162,3 +172,13 @@ const Option render_options[] = {
     {RENDER_VERBOSE, 'v', "verbose", OPTION_FLAG, NULL, "more about loading and building", 0, 0, NULL},
     {RENDER_LOG_JSON, 0, "log-json", OPTION_FLAG, NULL, "messages as JSON, one object a line, on stderr", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Section render_sections[] = {{RENDER_OUTPUT, "the image and when it is done"},
+                                   {RENDER_CAMERA, "camera and scene"},
+                                   {RENDER_TRAJECTORY, "many images: trajectories, rigs, two eyes"},
+                                   {RENDER_TRACER, "light and samples"},
+                                   {RENDER_COLOR, "colour, focus, exposure"},
+                                   {RENDER_CHANNELS, "ground truth beside the image (.exr)"},
+                                   {RENDER_THREADS, "the machine"},
+                                   {RENDER_PERMISSIVE, "the scene's file, and what is printed"},
+                                   {0, NULL}};

@@ -2,7 +2,9 @@
 #include "render/outputs.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
@@ -13,11 +15,14 @@
 #include "image/display.h"
 #include "render/exposure.h"
 
+enum { LONGEST_NAME = 255 }; /* bytes, of a file in its folder */
+
 static const struct Suffix {
   const char *name;
   bool eight_bit;
-} suffixes[] = {{"exr", false}, {"png", true},  {"jpg", true}, {"jpeg", true},
-                {"hdr", false}, {"pfm", false}, {"tga", true}};
+  uint32_t largest; /* pixels each way */
+} suffixes[] = {{"exr", false, 1 << 26}, {"png", true, 1 << 30},  {"jpg", true, 65500}, {"jpeg", true, 65500},
+                {"hdr", false, 1 << 30}, {"pfm", false, 1 << 30}, {"tga", true, 65535}};
 
 bool output_suffix(const char *path, bool *eight_bit) {
   const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
@@ -27,6 +32,13 @@ bool output_suffix(const char *path, bool *eight_bit) {
       return true;
     }
   return false;
+}
+
+uint32_t output_largest_side(const char *path) {
+  const char *dot = strrchr(path, '.');
+  for (size_t i = 0; dot && i < sizeof suffixes / sizeof *suffixes; i++)
+    if (strcasecmp(dot + 1, suffixes[i].name) == 0) return suffixes[i].largest;
+  return UINT32_MAX;
 }
 
 bool output_holds_layers(const char *path) {
@@ -72,53 +84,130 @@ int outputs_check_folders(const Outputs *outputs) {
       if (access(path, W_OK) != 0) return fail_write(path, errno);
       continue;
     }
+    if (stat(path, &info) == 0 && access(path, W_OK) != 0) return fail_write(path, errno);
+    if (strlen(slash ? slash + 1 : path) > LONGEST_NAME) return fail_write(path, ENAMETOOLONG);
+    char target[PATH_MAX]; /* a link is followed: the folder of its file counts */
+    if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode) && realpath(path, target)) {
+      slash = strrchr(target, '/');
+      snprintf(folder, sizeof folder, "%.*s", slash > target ? (int)(slash - target) : 1, target);
+    }
     if (stat(folder, &info) != 0)
       return report_failure(STATUS_IO, "cannot write %s: folder %s: %s", path, folder, strerror(errno));
     if (!S_ISDIR(info.st_mode)) return fail_write(path, ENOTDIR);
     if (access(folder, W_OK | X_OK) != 0)
       return report_failure(STATUS_IO, "cannot write %s: folder %s: %s", path, folder, strerror(errno));
+    vl_remove_leftovers(path);
   }
   return -1;
 }
 
-/* A picture that is not finished may be replaced by the next one only where a name is renamed over, not in a pipe. */
+/* ---- names ------------------------------------------------------------------------------------------------------- */
+
+/* The first `keep` bytes of the path and `tail`; fewer of them where the name would be too long. */
+static bool name_beside(const char *path, size_t keep, const char *tail, char *result, size_t size) {
+  const char *slash = strrchr(path, '/');
+  size_t folder = slash ? (size_t)(slash + 1 - path) : 0;
+  if (keep > folder + LONGEST_NAME - strlen(tail)) {
+    keep = folder + LONGEST_NAME - strlen(tail);
+    while (keep > folder && ((unsigned char)path[keep] & 0xc0) == 0x80) keep--; /* not inside a letter of UTF-8 */
+  }
+  return snprintf(result, size, "%.*s%s", (int)keep, path, tail) < (int)size;
+}
+
+/* Only a file that can be renamed over has something else in its place for a while. */
 static bool is_plain_file(const char *path) {
   struct stat info;
   return stat(path, &info) != 0 || S_ISREG(info.st_mode);
 }
 
-int outputs_write(vlContext *context, const Outputs *outputs, const vlImage *image, bool progress) {
+bool output_part_path(const char *path, char *part, size_t size) {
+  char target[PATH_MAX], tail[32];
+  struct stat info;
+  if (!is_plain_file(path)) return false;
+  if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode) && realpath(path, target)) path = target;
+  const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+  size_t stem = dot ? (size_t)(dot - path) : strlen(path);
+  snprintf(tail, sizeof tail, ".part%.20s", dot ? dot : "");
+  return name_beside(path, stem, tail, part, size);
+}
+
+void output_remove_part(const char *path) {
+  char part[PATH_MAX + 64], ids[PATH_MAX + 80], own[PATH_MAX + 80];
+  if (!output_part_path(path, part, sizeof part)) return;
+  unlink(part);
+  if (!output_holds_layers(path) || !output_ids_path(part, ids, sizeof ids) || !output_ids_path(path, own, sizeof own))
+    return;
+  if (strcmp(ids, own) != 0) unlink(ids); /* the same where both names were cut */
+}
+
+bool output_ids_path(const char *path, char *ids, size_t size) {
+  return name_beside(path, strlen(path), ".ids.json", ids, size);
+}
+
+const char *output_written(const Outputs *outputs, int i, OutputStage stage, char *part, size_t size) {
+  const char *path = outputs->paths[i];
+  return stage != OUTPUT_FINISHED && output_part_path(path, part, size) ? part : path;
+}
+
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
+
+/* One output that failed once is reported once, and again when it is written again. */
+static void report_progress_failure(Outputs *outputs, int i, vlResult result, const vlError *error) {
+  bool failing = result != VL_OK;
+  if (failing && !outputs->files[i].failing)
+    report_warning("progress image: %s; tried again later",
+                   error->message[0] ? error->message : vl_result_name(result));
+  if (!failing && outputs->files[i].failing)
+    report_note("the progress image of %s is written again", outputs->paths[i]);
+  outputs->files[i].failing = failing;
+}
+
+/* What is on disk after a write: NAME.part.EXT goes only when NAME.EXT is there, and says of what it is worth. */
+static void keep_part(Outputs *outputs, int i, const char *part, OutputStage stage, bool written, uint32_t spp) {
+  if (stage != OUTPUT_FINISHED && written)
+    outputs->files[i].part_spp = spp;
+  else if (written)
+    output_remove_part(outputs->paths[i]);
+  else if (stage != OUTPUT_PROGRESS && outputs->files[i].part_spp && access(part, F_OK) == 0)
+    report_note("%s holds the image of %u samples per pixel", part, outputs->files[i].part_spp);
+}
+
+static vlResult write_one(const Outputs *outputs, const vlImage *image, bool layers, const char *path, vlError *error) {
   vlWriteDef write = vl_default_write_def();
   write.half = outputs->half;
+  const vlImage *images[5] = {image};
+  uint32_t count = 1;
+  for (int k = 0; k < 4 && layers; k++)
+    if (outputs->layers[k]) images[count++] = outputs->layers[k];
+  return count > 1 ? vl_image_write_layers(images, count, path, &write, error)
+                   : vl_image_write(images[0], path, &write, error);
+}
+
+int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, uint32_t spp, OutputStage stage) {
   float exposure = outputs->meter ? exposure_meter(image) : outputs->exposure;
   vlImage *display = NULL; /* made once, when the first file wants it */
   int status = STATUS_OK;
   for (int i = 0; i < outputs->count; i++) {
     const char *path = outputs->paths[i];
-    bool eight_bit = false;
+    char part[PATH_MAX + 64];
+    bool eight_bit = false, has_part = output_part_path(path, part, sizeof part);
     output_suffix(path, &eight_bit);
-    if (progress && !is_plain_file(path)) continue;
+    if (stage == OUTPUT_PROGRESS && !has_part) continue;
     vlError error = {0};
     vlResult result = VL_OK;
     if (eight_bit && !display) {
       result = display_image(context, image, outputs->view, exposure, &display);
-      if (outputs->meter && !progress) exposure_tell(exposure);
+      if (outputs->meter && stage != OUTPUT_PROGRESS) exposure_tell(exposure);
     }
-    const vlImage *images[5] = {eight_bit ? display : image};
-    uint32_t count = 1;
-    for (int k = 0; k < 4 && output_holds_layers(path); k++)
-      if (outputs->layers[k]) images[count++] = outputs->layers[k];
+    const char *to = has_part && stage != OUTPUT_FINISHED ? part : path;
     if (result == VL_OK)
-      result = count > 1 ? vl_image_write_layers(images, count, path, &write, &error)
-                         : vl_image_write(images[0], path, &write, &error);
-    if (result == VL_OK) continue;
-    if (progress) {
-      report_warning("progress picture: %s", error.message[0] ? error.message : vl_result_name(result));
-      if (status == STATUS_OK) status = STATUS_IO;
-    } else {
-      int code = report_error(&error, result, path);
+      result = write_one(outputs, eight_bit ? display : image, output_holds_layers(path), to, &error);
+    if (stage == OUTPUT_PROGRESS) report_progress_failure(outputs, i, result, &error);
+    if (stage != OUTPUT_PROGRESS && result != VL_OK) {
+      int code = report_error(&error, result, to);
       if (status == STATUS_OK) status = code;
     }
+    if (has_part) keep_part(outputs, i, part, stage, result == VL_OK, spp);
   }
   vl_image_destroy(display);
   return status;

@@ -55,6 +55,20 @@ static void estimate(const Progress *progress, const vlProgress *now, double *fr
   }
 }
 
+/* The longest of the texts for which there is room: what is left is the last to go. */
+static void describe(const vlProgress *now, double remaining, double rate, int room, char *text, size_t size) {
+  char elapsed[32], left[40] = "", speed[32], number[32];
+  format_seconds(elapsed, sizeof elapsed, now->elapsed);
+  format_seconds(number, sizeof number, remaining);
+  format_count(speed, sizeof speed, rate);
+  if (isfinite(remaining)) snprintf(left, sizeof left, "  %s left", number);
+  int n =
+      snprintf(text, size, "%u/%u spp  %s paths/s  %s elapsed%s", now->spp_done, now->spp_total, speed, elapsed, left);
+  if (n > room) n = snprintf(text, size, "%u/%u spp  %s elapsed%s", now->spp_done, now->spp_total, elapsed, left);
+  if (n > room) n = snprintf(text, size, "%u/%u spp%s", now->spp_done, now->spp_total, left);
+  if (n > room) snprintf(text, size, "%s", *left ? left + 2 : "");
+}
+
 static void draw_bar(double fraction, const char *text) {
   char line[512], bar[64];
   int columns = report_terminal_columns();
@@ -101,12 +115,10 @@ void progress_show(Progress *progress, const vlProgress *now) {
     report_json_end(&json);
     return;
   }
-  char text[160], elapsed[32], left[32], speed[32];
-  format_seconds(elapsed, sizeof elapsed, now->elapsed);
-  format_seconds(left, sizeof left, remaining);
-  format_count(speed, sizeof speed, rate);
-  snprintf(text, sizeof text, "%u/%u spp  %s paths/s  %s elapsed  %s left", now->spp_done, now->spp_total, speed,
-           elapsed, left);
+  enum { PERCENT = 8 };
+  char text[160];
+  int room = report_is_terminal() ? report_terminal_columns() - PERCENT : (int)sizeof text;
+  describe(now, remaining, rate, room, text, sizeof text);
   if (report_is_terminal())
     draw_bar(fraction, text);
   else

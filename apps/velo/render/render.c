@@ -1,6 +1,6 @@
 /* render/render.c: `velo render`: load → build → make → render → develop → write. The first pass is written at once,
- * later ones now and then, so that there is a picture to look at; a signal stops the render and keeps its whole passes.
- */
+ * later ones now and then, so that there is an image to look at; a signal stops the render and keeps its whole passes.
+ * Only a render that reached its samples or its time replaces an earlier image (outputs.h). */
 #include <stdio.h>
 #include <string.h>
 
@@ -13,6 +13,7 @@
 #include "render/frames.h"
 #include "render/job.h"
 #include "render/lens_options.h"
+#include "render/memory.h"
 #include "render/outputs.h"
 #include "render/progress.h"
 #include "render/scene_options.h"
@@ -29,18 +30,20 @@ typedef struct Render {
   Outputs outputs;
   char default_output[600];
   Progress progress;
-  uint32_t written_spp; /* of the progress pictures */
-  bool written_whole;   /* all of them */
-  bool write_failed;    /* said once */
+  uint32_t written_spp; /* of the progress images */
+  bool part_named;      /* where they are was reported */
   double last_write, write_cost;
-  Channels channels; /* of ground truth */
-  Frames frames;     /* of a trajectory, a rig, two eyes */
-  bool many;         /* there are such */
+  double start, render_start; /* of the command, of the first pass */
+  double time_limit;          /* --time; 0: none */
+  Channels channels;          /* of ground truth */
+  Frames frames;              /* of a trajectory, a rig, two eyes */
+  MemoryPlan memory;
+  bool many; /* there are such */
 } Render;
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 
-static int write_picture(Render *render, bool progress) {
+static int write_image(Render *render, OutputStage stage) {
   vlDevelopDef develop = vl_default_develop_def();
   develop.exposure = render->job.defs->develop.exposure;
   vlImage *image = NULL;
@@ -48,27 +51,61 @@ static int write_picture(Render *render, bool progress) {
   vlResult result = vl_film_develop(render->film, &develop, &image);
   if (result == VL_OK) result = attributes_set(image, &render->job, spp);
   if (result == VL_OK) result = channels_describe(&render->channels, image);
-  int status = result == VL_OK ? outputs_write(render->context, &render->outputs, image, progress)
-                               : report_error(NULL, result, NULL);
+  int status = STATUS_OK;
+  if (result == VL_OK)
+    status = outputs_write(render->context, &render->outputs, image, spp, stage);
+  else if (stage == OUTPUT_PROGRESS)
+    report_warning("progress image: %s", vl_result_name(result));
+  else
+    status = report_error(NULL, result, NULL);
   vl_image_destroy(image);
-  render->written_spp = spp;
-  render->written_whole = status == STATUS_OK;
   return status;
 }
 
-static void write_progress_picture(Render *render, const vlProgress *now) {
+/* "a.exr, b.png" */
+static void list_files(const Render *render, OutputStage stage, char *text, size_t size) {
+  char part[5000];
+  text[0] = 0;
+  for (int i = 0; i < render->outputs.count; i++) {
+    size_t n = strlen(text);
+    snprintf(text + n, size - n, "%s%s", i ? ", " : "", output_written(&render->outputs, i, stage, part, sizeof part));
+  }
+}
+
+/* Said once, of renders that take longer than their first images. */
+static void name_parts(Render *render, const vlProgress *now) {
+  char files[1200];
+  if (render->part_named || now->remaining < WRITE_EVERY) return;
+  render->part_named = true;
+  list_files(render, OUTPUT_PROGRESS, files, sizeof files);
+  report_note("the image so far is in %s", files);
+}
+
+/* The command shall end after its --time: what is left once the image will be written, as the last one was. */
+static void limit_time(Render *render) {
+  if (!(render->time_limit > 0)) return;
+  double left = render->time_limit - (render->render_start - render->start) - render->write_cost;
+  render->job.defs->render.time_limit = left > 1e-3 ? left : 1e-3;
+}
+
+static void write_progress_image(Render *render, const vlProgress *now) {
   double start = monotonic_seconds(), wait = WRITE_SHARE * render->write_cost;
-  if (now->spp_done >= now->spp_total || render->write_failed) return;
+  bool ends = now->spp_done >= now->spp_total || now->remaining <= 2 * render->write_cost;
+  if (ends && render->time_limit > 0) return; /* the last image comes at once */
+  if (now->spp_done >= now->spp_total) return;
   if (render->written_spp && start - render->last_write < (wait > WRITE_EVERY ? wait : WRITE_EVERY)) return;
-  if (write_picture(render, true) != STATUS_OK) render->write_failed = true;
+  write_image(render, OUTPUT_PROGRESS);
+  name_parts(render, now);
+  render->written_spp = vl_film_spp(render->film);
   render->last_write = monotonic_seconds();
   render->write_cost = render->last_write - start;
+  limit_time(render);
 }
 
 static bool on_progress(void *user, const vlProgress *now) {
   Render *render = user;
   progress_show(&render->progress, now);
-  if (now->pass_done && !signals_pending()) write_progress_picture(render, now);
+  if (now->pass_done && !signals_pending()) write_progress_image(render, now);
   return !signals_pending();
 }
 
@@ -115,9 +152,6 @@ static int render_channels(Render *render) {
   Channels *channels = &render->channels;
   int status = channels_render(channels, render->context, render->world, &render->job, render->film);
   for (int k = 0; k < CHANNEL_LAYERS; k++) render->outputs.layers[k] = channels->layers[k];
-  for (int i = 0; i < render->outputs.count && status == STATUS_OK; i++)
-    if (channels->bits && output_holds_layers(render->outputs.paths[i]))
-      status = channels_write_ids(channels, NULL, render->world, render->outputs.paths[i]);
   return status;
 }
 
@@ -145,12 +179,36 @@ static int prepare(Render *render, const Arguments *arguments) {
   def.log = report_log;
   if (v[RENDER_THREADS].given) def.threads = (uint32_t)v[RENDER_THREADS].integer;
   if (v[RENDER_ISA].given) def.isa = (vlIsa)v[RENDER_ISA].integer;
+  if (v[RENDER_MAX_MEMORY].given) def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
+  if (v[RENDER_MAX_TEXTURE].given) def.max_texture_pixels = (uint64_t)v[RENDER_MAX_TEXTURE].integer;
+  def.sandbox = arguments->folders, def.sandbox_count = (uint32_t)arguments->folder_count;
   vlResult result = vl_context_create(&def, &render->context);
+  if (result == VL_ERROR_MISSING) return report_failure(STATUS_MISSING, "--sandbox: there is no such folder");
   if (result == VL_ERROR_UNSUPPORTED && v[RENDER_ISA].given)
     return report_usage("--isa %s: this machine does not have it", v[RENDER_ISA].text);
   if (result == VL_ERROR_UNSUPPORTED || result == VL_ERROR_ARGUMENT)
     return report_usage("the environment variable VELO_ISA must be v2, v3 or v4, and the machine must have it");
+  if (result == VL_OK) report_memory_of(render->context, def.max_memory);
   return result == VL_OK ? -1 : report_error(NULL, result, NULL);
+}
+
+/* Found before the render: what could not be written after it. */
+static int check_sizes(const Render *render) {
+  const vlFilmDef *film = &render->job.defs->film;
+  uint32_t width = film->crop[2] - film->crop[0], height = film->crop[3] - film->crop[1];
+  for (int i = 0; i < render->outputs.count; i++) {
+    uint32_t most = output_largest_side(render->outputs.paths[i]);
+    if (width > most || height > most)
+      return report_usage("output \"%s\": %u x %u pixels, this format holds at most %u each way",
+                          render->outputs.paths[i], width, height, most);
+  }
+  vlFilm *film_made = NULL; /* no memory is taken before the first pass */
+  vlResult result = vl_film_create(render->context, film, &film_made);
+  vl_film_destroy(film_made);
+  if (result == VL_OK) return -1;
+  if (result == VL_ERROR_MEMORY) return report_error(NULL, result, render->job.path);
+  return report_failure(STATUS_SCENE, "%s: no film of %u x %u pixels with these settings is possible: %s",
+                        render->job.path, film->width, film->height, vl_result_name(result));
 }
 
 static int load_and_build(Render *render, const char *path, const Arguments *arguments) {
@@ -169,6 +227,8 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     status = outputs_check_folders(&render->outputs);
     if (status >= 0) return status;
   }
+  status = check_sizes(render);
+  if (status >= 0) return status;
   channels_take(&render->channels, &render->job);
   warn_of_channels(render);
   status = channels_load(&render->channels, render->context, &render->job);
@@ -184,15 +244,29 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   vlResult result = vl_world_build_last(render->scene, &render->job.defs->build, &render->world, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   if (arguments->values[RENDER_VERBOSE].given) {
-    size_t peak;
     char bytes[32];
-    vl_context_memory(render->context, &peak);
-    format_count(bytes, sizeof bytes, (double)peak);
-    report_note("loaded in %.3f s, built in %.3f s, %sB at most; %u threads, x86-64-v%d", loaded - start,
+    format_count(bytes, sizeof bytes, (double)vl_context_memory(render->context, NULL));
+    report_note("loaded in %.3f s, built in %.3f s, %sB held; %u threads, x86-64-v%d", loaded - start,
                 monotonic_seconds() - loaded, bytes, vl_context_threads(render->context),
                 (int)vl_context_isa(render->context));
   }
   return -1;
+}
+
+/* Before anything is rendered, so that nothing fails for want of memory after hours. */
+static int reckon_memory(Render *render, const Arguments *arguments) {
+  const OptionValue *limit = &arguments->values[RENDER_MAX_MEMORY];
+  uint64_t most = limit->given ? (uint64_t)limit->integer : 0;
+  memory_plan(&render->memory, render->context, render->world, &render->job, &render->outputs, &render->channels,
+              render->many ? &render->frames : NULL);
+  if (report_is_json()) memory_report_json(&render->memory, most);
+  if (arguments->values[RENDER_VERBOSE].given) {
+    char list[400], total[32];
+    memory_list(&render->memory, list, sizeof list);
+    format_count(total, sizeof total, (double)render->memory.total);
+    report_note("memory: %sB are needed: %s", total, list);
+  }
+  return memory_check(&render->memory, most);
 }
 
 static void report_not_finite(const vlRenderStats *stats) {
@@ -201,13 +275,22 @@ static void report_not_finite(const vlRenderStats *stats) {
                    (unsigned long long)stats->not_finite, stats->worst_x, stats->worst_y);
 }
 
-static void report_result(const Render *render, const vlRenderStats *stats, int status) {
+static void report_memory(const Render *render) {
+  char peak[32], needed[32];
+  format_count(peak, sizeof peak, (double)memory_peak());
+  format_count(needed, sizeof needed, (double)render->memory.total);
+  if (report_is_verbose()) report_note("memory: %sB at most, %sB were reckoned", peak, needed);
+}
+
+static void report_result(const Render *render, const vlRenderStats *stats, OutputStage stage, int status) {
   const Outputs *outputs = &render->outputs;
   uint64_t rays = stats->camera_rays + stats->bounce_rays + stats->shadow_rays;
   uint32_t spp = vl_film_spp(render->film);
   if (report_is_json()) {
+    char part[5000];
     Json json = report_json_begin("result");
     json_integer(&json, "status", status);
+    json_bool(&json, "finished", stage == OUTPUT_FINISHED);
     json_integer(&json, "spp", spp);
     json_number(&json, "seconds", stats->seconds);
     json_integer(&json, "paths", (int64_t)stats->paths);
@@ -215,21 +298,55 @@ static void report_result(const Render *render, const vlRenderStats *stats, int 
     json_integer(&json, "bounce_rays", (int64_t)stats->bounce_rays);
     json_integer(&json, "shadow_rays", (int64_t)stats->shadow_rays);
     json_integer(&json, "not_finite", (int64_t)stats->not_finite);
+    json_integer(&json, "memory_needed", (int64_t)render->memory.total);
+    json_integer(&json, "memory_peak", (int64_t)memory_peak());
     json_begin(&json, "files", '[');
-    for (int i = 0; i < outputs->count && spp; i++) json_text(&json, NULL, outputs->paths[i]);
+    for (int i = 0; i < outputs->count && spp; i++)
+      json_text(&json, NULL, output_written(outputs, i, stage, part, sizeof part));
     json_end(&json, ']');
     report_json_end(&json);
     return;
   }
-  char time[32], speed[32], ray_count[32], files[1200] = "";
+  char time[32], speed[32], ray_count[32], files[1200];
   format_seconds(time, sizeof time, stats->seconds);
   format_count(speed, sizeof speed, stats->seconds > 0 ? (double)stats->paths / stats->seconds : 0);
   format_count(ray_count, sizeof ray_count, (double)rays);
-  for (int i = 0; i < outputs->count; i++) {
-    size_t n = strlen(files);
-    snprintf(files + n, sizeof files - n, "%s%s", i ? ", " : "", outputs->paths[i]);
-  }
+  list_files(render, stage, files, sizeof files);
   report_note("%u spp in %s, %s paths/s, %s rays; wrote %s", spp, time, speed, ray_count, files);
+  report_memory(render);
+}
+
+/* A first pass is finished whatever it takes. */
+static void report_late(const Render *render, uint32_t spp) {
+  double elapsed = monotonic_seconds() - render->start;
+  char wanted[32], taken[32];
+  if (!(render->time_limit > 0) || spp != 1 || elapsed < 1.05 * render->time_limit || signals_pending()) return;
+  format_seconds(wanted, sizeof wanted, render->time_limit);
+  format_seconds(taken, sizeof taken, elapsed);
+  report_note("the first sample of each pixel was done after %s, --time was %s", taken, wanted);
+}
+
+/* The last image, with what belongs to it. A stopped render is on disk before its ground truth is begun, which another
+ * signal ends. *stage: what was written in the end. */
+static int write_last(Render *render, OutputStage *stage) {
+  int written = STATUS_OK;
+  if (*stage == OUTPUT_STOPPED && has_layers(render)) written = write_image(render, *stage);
+  int status = render_channels(render);
+  if (status > 128) {
+    *stage = OUTPUT_STOPPED;
+    memset(render->outputs.layers, 0, sizeof render->outputs.layers);
+    report_note("interrupted before the ground truth was done: the image has none");
+  } else if (status != STATUS_OK) {
+    return status;
+  }
+  for (int i = 0; i < render->outputs.count && status == STATUS_OK; i++) {
+    char part[5000];
+    if (render->channels.bits && output_holds_layers(render->outputs.paths[i]))
+      written = channels_write_ids(&render->channels, NULL, render->world,
+                                   output_written(&render->outputs, i, *stage, part, sizeof part));
+  }
+  int code = write_image(render, *stage);
+  return code != STATUS_OK ? code : written != STATUS_OK ? written : status;
 }
 
 static int render_and_write(Render *render) {
@@ -238,7 +355,10 @@ static int render_and_write(Render *render) {
   vlRenderStats stats = {0};
   vlResult result = vl_film_create(render->context, &job->defs->film, &render->film);
   if (result != VL_OK) return report_error(NULL, result, job->path);
-  progress_start(&render->progress, job->defs->render.time_limit);
+  render->time_limit = job->defs->render.time_limit;
+  render->render_start = monotonic_seconds();
+  progress_start(&render->progress, render->time_limit);
+  limit_time(render);
   job->defs->render.progress = on_progress;
   job->defs->render.progress_user = render;
   signals_remember();
@@ -248,20 +368,16 @@ static int render_and_write(Render *render) {
   if (result != VL_OK && result != VL_CANCELLED) return report_error(&error, result, job->path);
 
   uint32_t spp = vl_film_spp(render->film);
-  int status = STATUS_OK;
-  if (spp) status = render_channels(render);
-  if (spp && status == STATUS_OK && (!(render->written_whole && render->written_spp == spp) || has_layers(render)))
-    status = write_picture(render, false);
-  int number = signals_pending();
-  if (number && !spp) {
-    report_failure(128 + number, "interrupted before the first pass was done; nothing is written");
-    return 128 + number;
+  OutputStage stage = result == VL_OK ? OUTPUT_FINISHED : OUTPUT_STOPPED;
+  if (!spp) {
+    report_failure(128 + signals_pending(), "interrupted before the first pass was done; nothing is written");
+    return 128 + signals_pending();
   }
-  if (number && status == STATUS_OK) {
-    if (spp < job->defs->render.spp) report_note("interrupted after %u of %u spp", spp, job->defs->render.spp);
-    status = 128 + number;
-  }
-  if (status == STATUS_OK || status > 128) report_result(render, &stats, status);
+  if (stage == OUTPUT_STOPPED) report_note("interrupted after %u of %u spp", spp, job->defs->render.spp);
+  int status = write_last(render, &stage);
+  if (status == STATUS_OK) report_late(render, spp);
+  if (signals_pending() && status == STATUS_OK) status = 128 + signals_pending();
+  if (status == STATUS_OK || status > 128) report_result(render, &stats, stage, status);
   return status;
 }
 
@@ -269,8 +385,10 @@ static int run_render(const Command *command, const Arguments *arguments) {
   (void)command;
   Render render;
   memset(&render, 0, sizeof render);
+  render.start = monotonic_seconds();
   int status = prepare(&render, arguments);
   if (status < 0) status = load_and_build(&render, arguments->operands[0], arguments);
+  if (status < 0) status = reckon_memory(&render, arguments);
   if (status < 0 && !render.many) status = lens_autofocus(&render.job, render.scene, render.world);
   if (status < 0 && arguments->values[RENDER_DRY_RUN].given) {
     job_describe(&render.job, render.context, render.scene, render.world, render.outputs.paths, render.outputs.count);
@@ -286,6 +404,7 @@ static int run_render(const Command *command, const Arguments *arguments) {
   vl_film_destroy(render.film);
   vl_world_destroy(render.world);
   vl_scene_destroy(render.scene);
+  report_memory_of(NULL, 0);
   vl_context_destroy(render.context);
   return status;
 }
@@ -293,11 +412,16 @@ static int run_render(const Command *command, const Arguments *arguments) {
 const Command render_command = {
     .name = "render",
     .usage = "FILE [options]",
-    .summary = "render a scene file (.pbrt, .gltf, .glb, .obj, .ply) into pictures",
+    .summary = "render a scene (.pbrt, .gltf, .glb, .obj, .ply) into images",
     .text =
         "Renders FILE. Options override what the file says. After the first pass, and then every ten\n"
-        "seconds or so, the pictures are written as they are; Ctrl-C writes the whole passes that are done.",
+        "seconds or so, the image is written as it is to NAME.part.EXT; when the render is done it\n"
+        "replaces NAME.EXT. Ctrl-C ends the render and leaves what is done in NAME.part.EXT.",
+    .examples =
+        "velo render room.pbrt -o room.exr -o room.png --spp 256\n"
+        "velo render model.glb --resolution 1280x720 --time 5m -o model.png",
     .options = render_options,
+    .sections = render_sections,
     .min_operands = 1,
     .max_operands = 1,
     .run = run_render,

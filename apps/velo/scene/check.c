@@ -8,7 +8,7 @@
 #include "cli/report.h"
 #include "scene/scene.h"
 
-enum { CHECK_JSON, CHECK_NO_PICTURES, CHECK_ALL, CHECK_PERMISSIVE };
+enum { CHECK_JSON, CHECK_NO_PICTURES, CHECK_ALL, CHECK_PERMISSIVE, CHECK_SANDBOX };
 enum { SHOWN = 10 }; /* of one kind, without --all */
 
 /* Owned copy of a finding, so that those told while loading stand beside the others. */
@@ -163,7 +163,7 @@ static int run(const Command *command, const Arguments *arguments) {
   (void)command;
   vlContext *context = NULL;
   List list = {0};
-  int status = scene_context(&context, logged, &list);
+  int status = scene_context(&context, arguments, logged, &list);
   if (status < 0) status = look(context, arguments, &list);
   if (status < 0) {
     status = status_of(&list);
@@ -185,6 +185,7 @@ static const Option options[] = {
      0, 0, NULL},
     {CHECK_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "what velo does not understand yet is a note, not an error",
      0, 0, NULL},
+    SCENE_SANDBOX_OPTION(CHECK_SANDBOX),
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command scene_check_command = {
@@ -198,6 +199,9 @@ const Command scene_check_command = {
         "that a mesh does not have; surfaces that give back more light than they get; a camera inside\n"
         "of a body; lights of power 0. Renders nothing.\n\n"
         "exit codes: 0 nothing but notes; 1 warnings; 3, 4, 5 an error, with which velo render would end",
+    .examples =
+        "velo scene check room.pbrt\n"
+        "velo scene check --json --no-pictures model.glb",
     .options = options,
     .min_operands = 1,
     .max_operands = 1,

@@ -8,7 +8,15 @@
 #include "scene/scene.h"
 #include "velo/export.h"
 
-enum { CONVERT_STRICT, CONVERT_PERMISSIVE, CONVERT_CAMERA, CONVERT_VARIANT, CONVERT_AT, CONVERT_COMPLETE };
+enum {
+  CONVERT_STRICT,
+  CONVERT_PERMISSIVE,
+  CONVERT_CAMERA,
+  CONVERT_VARIANT,
+  CONVERT_AT,
+  CONVERT_COMPLETE,
+  CONVERT_SANDBOX
+};
 
 static const Option convert_options[] = {
     {CONVERT_STRICT, 0, "strict", OPTION_FLAG, NULL, "what B cannot hold is an error; nothing is written", 0, 0, NULL},
@@ -20,6 +28,7 @@ static const Option convert_options[] = {
     {CONVERT_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: this variant of its materials", 0, 0, NULL},
     {CONVERT_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
      "what velo does not understand yet is a warning, not an error", 0, 0, NULL},
+    SCENE_SANDBOX_OPTION(CONVERT_SANDBOX),
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 static void tell(void *user, const char *what, uint64_t count) {
@@ -43,7 +52,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   if (!pbrt && !ends_with(to, ".gltf") && !ends_with(to, ".glb"))
     return report_usage("%s: unknown kind of file to write (known: .gltf, .glb, .pbrt)", to);
   if (strcmp(from, to) == 0) return report_usage("%s: a file cannot be converted into itself", to);
-  int status = scene_context(&context, report_log, NULL);
+  int status = scene_context(&context, arguments, report_log, NULL);
   if (status >= 0) return status;
   vlLoadDef load = vl_default_load_def();
   load.permissive = v[CONVERT_PERMISSIVE].given;
@@ -78,6 +87,9 @@ const Command scene_convert_command = {
     .text =
         "Reads A (.pbrt, .gltf, .glb, .obj, .ply) and writes it as B, in the format of its suffix. What B's format\n"
         "cannot hold, or only nearly, is told: one line for each kind, with how often it was met.",
+    .examples =
+        "velo scene convert room.pbrt room.glb\n"
+        "velo scene convert model.gltf model.pbrt",
     .options = convert_options,
     .min_operands = 2,
     .max_operands = 2,

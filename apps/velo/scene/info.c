@@ -9,17 +9,19 @@
 #include "cli/report.h"
 #include "scene/scene.h"
 
-int scene_context(vlContext **context, vlLogFn *log, void *log_user) {
+int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log, void *log_user) {
   vlContextDef def = vl_default_context_def();
   def.log = log;
   def.log_user = log_user;
+  def.sandbox = arguments->folders, def.sandbox_count = (uint32_t)arguments->folder_count;
   vlResult result = vl_context_create(&def, context);
+  if (result == VL_ERROR_MISSING) return report_failure(STATUS_MISSING, "--sandbox: there is no such folder");
   if (result == VL_ERROR_UNSUPPORTED || result == VL_ERROR_ARGUMENT)
     return report_usage("the environment variable VELO_ISA must be v2, v3 or v4, and the machine must have it");
   return result == VL_OK ? -1 : report_error(NULL, result, NULL);
 }
 
-enum { INFO_JSON, INFO_PERMISSIVE };
+enum { INFO_JSON, INFO_PERMISSIVE, INFO_SANDBOX };
 enum { LIGHTS = 20, LIGHTS_JSON = 1000 }; /* listed */
 
 typedef struct Facts {
@@ -191,7 +193,7 @@ static int run(const Command *command, const Arguments *arguments) {
   Facts f = {.path = arguments->operands[0]};
   vlContext *context = NULL;
   vlError error = {0};
-  int status = scene_context(&context, report_log, NULL);
+  int status = scene_context(&context, arguments, report_log, NULL);
   if (status >= 0) return status;
   vlLoadDef load = vl_default_load_def();
   load.permissive = arguments->values[INFO_PERMISSIVE].given;
@@ -226,16 +228,20 @@ static int run(const Command *command, const Arguments *arguments) {
 static const Option options[] = {
     {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
     {INFO_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "leave out what velo does not understand yet", 0, 0, NULL},
+    SCENE_SANDBOX_OPTION(INFO_SANDBOX),
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command scene_info_command = {
     .name = "scene info",
     .usage = "FILE [options]",
-    .summary = "what a scene holds: counts, bounds, camera, lights, unused names",
+    .summary = "what a scene holds: counts, bounds, camera, lights",
     .text =
         "Reads a scene and prints what it describes; builds and renders nothing. The power of a light is the "
         "luminance\n"
         "that it sends out, over area and solid angle; of distant and infinite ones into a sphere round the scene.",
+    .examples =
+        "velo scene info room.pbrt\n"
+        "velo scene info --json model.glb",
     .options = options,
     .min_operands = 1,
     .max_operands = 1,

@@ -97,7 +97,7 @@ bool vl_gltf_open(vlGltf *g) {
   char *data;
   vlError error;
   vl_error_clear(&error);
-  vlResult r = vl_file_read(g->context, g->path, false, &data, &g->file_size, &error);
+  vlResult r = vl_file_read_given(g->context, g->path, false, &data, &g->file_size, &error);
   if (r != VL_OK) {
     vl_scene_fail(g->scene, r, (vlSource){0}, "%s", error.message);
     return false;

@@ -121,7 +121,7 @@ static bool numbers(vlObj *obj, const char *what, uint32_t least, uint32_t most,
     char *at = obj->at;
     size_t n = vl_obj_word(obj, &word);
     obj->at = at;
-    return vl_obj_fail(obj, "%s: \"%.*s\" is not a finite number", what, n > 40 ? 40 : (int)n, word);
+    return vl_obj_fail(obj, "%s: \"%.*s\" is not a finite number", what, n > 12 ? 12 : (int)n, word);
   }
   return *count >= least || vl_obj_fail(obj, "%s: %u numbers, %u are needed", what, *count, least);
 }
@@ -212,7 +212,7 @@ static bool read_corner(vlObj *obj, vlObjCorner *c) {
   obj->at = start;
   size_t n = vl_obj_word(obj, &word);
   obj->at = start;
-  return vl_obj_fail(obj, "f: \"%.*s\" is no corner (v, v/vt, v//vn or v/vt/vn)", n > 40 ? 40 : (int)n, word);
+  return vl_obj_fail(obj, "f: \"%.*s\" is no corner (v, v/vt, v//vn or v/vt/vn)", n > 12 ? 12 : (int)n, word);
 }
 
 /* Faces that follow each other with one material in one object; past MAX_PARTS, all of a material. */
@@ -310,7 +310,7 @@ static void once(vlObj *obj, uint32_t bit, const char *what, size_t length) {
                                        "unknown statement, passed over (as others like it)"};
   if (obj->told & bit) return;
   obj->told |= bit;
-  vl_obj_warn(obj, bit == TOLD_LINES ? VL_LOG_INFO : VL_LOG_WARNING, "\"%.*s\": %s", length > 30 ? 30 : (int)length,
+  vl_obj_warn(obj, bit == TOLD_LINES ? VL_LOG_INFO : VL_LOG_WARNING, "\"%.*s\": %s", length > 12 ? 12 : (int)length,
               what, texts[bit >> 1]);
 }
 
@@ -371,7 +371,7 @@ vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, v
   size_t size;
   vlError reading;
   vl_error_clear(&reading);
-  vlResult r = vl_file_read(scene->context, path, true, &data, &size, &reading);
+  vlResult r = vl_file_read_given(scene->context, path, true, &data, &size, &reading);
   if (r != VL_OK) {
     vl_scene_fail(scene, r, (vlSource){0}, "%s", reading.message);
     return vl_scene_result(scene, error);

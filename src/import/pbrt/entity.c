@@ -28,7 +28,7 @@ bool vl_import_attribute(vlImport *import, const vlStatement *s) {
     if (strcmp(s->names[0], targets[i]) == 0) target = i;
   if (target < 0)
     return vl_import_fail(import, VL_ERROR_SCENE, s->place,
-                          "Attribute: unknown target \"%.40s\" (known: shape, light, material, medium, texture)",
+                          "Attribute: unknown target \"%.12s\" (known: shape, light, material, medium, texture)",
                           s->names[0]);
   vlParamList params = {0};
   if (!vl_import_keep_params(import, s, &params)) return false;
@@ -158,7 +158,7 @@ bool vl_import_texture(vlImport *import, const vlStatement *s) {
   bool spectrum = strcmp(s->names[1], "spectrum") == 0 || strcmp(s->names[1], "color") == 0;
   if (!spectrum && strcmp(s->names[1], "float") != 0)
     return vl_import_fail(import, VL_ERROR_SCENE, s->place,
-                          "Texture \"%.60s\": the type must be \"float\" or \"spectrum\", not \"%.40s\"", s->names[0],
+                          "Texture \"%.60s\": the type must be \"float\" or \"spectrum\", not \"%.12s\"", s->names[0],
                           s->names[1]);
   vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;
   uint32_t index;

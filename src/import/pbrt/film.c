@@ -7,7 +7,7 @@
 #include "import/pbrt/token.h"
 #include "velo/render.h"
 
-enum { MAX_SIDE = 1 << 20 };
+enum { MAX_SIDE = 65536 }; /* as films have */
 
 /* pbrt: pixelbounds x0 x1 y0 y1 in pixels; cropwindow the same in fractions, rounded up, and it wins. */
 static bool read_crop(vlDict *dict, vlSceneDefs *s) {
@@ -129,8 +129,8 @@ bool vl_import_film(vlImport *import) {
   vl_dict_double(&dict, "imagingratio", &ratio);
   if (import->scene->error.code != VL_OK) return false;
   if (s->film.width > MAX_SIDE || s->film.height > MAX_SIDE)
-    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: %u x %u pixels are too many", what, s->film.width,
-                          s->film.height);
+    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: %u x %u pixels are too many, at most %d each way",
+                          what, s->film.width, s->film.height, MAX_SIDE);
   if (strlen(output) >= sizeof s->output)
     return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: the file name is too long", what);
   snprintf(s->output, sizeof s->output, "%s", output);
@@ -175,20 +175,20 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
   if (strcmp(name, "seed") == 0) {
     double seed;
     if (!vl_number_parse(value, strlen(value), &seed) || seed != floor(seed) || fabs(seed) > 4294967295.0)
-      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"seed\": \"%.40s\" is not an integer", value);
+      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"seed\": \"%.12s\" is not an integer", value);
     defs->render.seed = (uint32_t)(int64_t)seed;
     return true;
   }
   if (strcmp(name, "displacementedgescale") == 0) {
     if (vl_number_parse(value, strlen(value), &import->edge_scale) && import->edge_scale > 0.0) return true;
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": \"%.40s\" is not a number above 0", name,
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": \"%.12s\" is not a number above 0", name,
                           value);
   }
   for (size_t i = 0; i < sizeof switches / sizeof *switches; i++) {
     if (strcmp(name, switches[i].name) != 0) continue;
     bool on = strcmp(value, "true") == 0;
     if (!on && strcmp(value, "false") != 0)
-      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": expected true or false, found \"%.40s\"",
+      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": expected true or false, found \"%.12s\"",
                             switches[i].name, value);
     if (switches[i].value) *switches[i].value = on;
     return switches[i].value || !on ||

@@ -299,7 +299,8 @@ static bool parse_path(vlParser *parser, vlParserFile *parent, vlSource at, cons
   char *data;
   size_t size;
   vlError error = {0};
-  vlResult result = vl_file_read(parser->context, path, true, &data, &size, &error);
+  vlResult result = parent ? vl_file_read(parser->context, path, true, &data, &size, &error)
+                           : vl_file_read_given(parser->context, path, true, &data, &size, &error);
   if (result != VL_OK) {
     target->error(target->user, result, at, error.message);
     return parent && target->recover && target->recover(target->user);

@@ -28,7 +28,7 @@ bool vl_parse_fail_memory(const vlParserFile *file) {
   return false;
 }
 
-/* What stands there, short and printable. */
+/* What stands there, printable; no more than tells the author where to look, since a scene may include any file. */
 vlShown vl_parse_show(const vlToken *token) {
   vlShown s;
   size_t n = 0;
@@ -37,11 +37,11 @@ vlShown vl_parse_show(const vlToken *token) {
     return s;
   }
   s.text[n++] = '"';
-  for (size_t i = 0; i < token->length && n < sizeof s.text - 6; i++) {
+  for (size_t i = 0; i < token->length && i < VL_MOST_SHOWN; i++) {
     unsigned char c = (unsigned char)token->text[i];
     s.text[n++] = c < 32 || c == 127 ? '?' : (char)c;
-    if (n == sizeof s.text - 6 && i + 1 < token->length) s.text[n++] = '.', s.text[n++] = '.', s.text[n++] = '.';
   }
+  if (token->length > VL_MOST_SHOWN) s.text[n++] = '.', s.text[n++] = '.', s.text[n++] = '.';
   s.text[n++] = '"';
   s.text[n] = 0;
   return s;
@@ -90,7 +90,7 @@ static bool declare(vlParserFile *file, const vlToken *token, vlParam *param) {
                          vl_parse_show(token).text);
   if (!vl_param_type_find(type, type_length, &param->type)) {
     char text[64];
-    snprintf(text, sizeof text, "%.*s", (int)(type_length < 60 ? type_length : 60), type);
+    snprintf(text, sizeof text, "%.*s", (int)(type_length < VL_MOST_SHOWN ? type_length : VL_MOST_SHOWN), type);
     const char *near = vl_param_type_nearest(text);
     if (near)
       return vl_parse_fail(file, param->place, "unknown parameter type \"%s\" (did you mean \"%s\"?)", text, near);

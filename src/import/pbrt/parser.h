@@ -28,6 +28,7 @@ typedef struct vlParserFile {
   vlToken token;
 } vlParserFile;
 
+enum { VL_MOST_SHOWN = 12 }; /* characters of a file in a message */
 /* What stands there, short and printable. */
 typedef struct vlShown {
   char text[48];

@@ -73,7 +73,7 @@ static bool read_encoding(vlDict *dict, vlTextureDef *def) {
     def->encoding = VL_ENCODING_GAMMA;
   } else {
     return vl_import_fail(dict->import, VL_ERROR_SCENE, p->place,
-                          "%s: unknown encoding \"%.40s\" (known: sRGB, linear, gamma followed by a number)",
+                          "%s: unknown encoding \"%.12s\" (known: sRGB, linear, gamma followed by a number)",
                           dict->what, text);
   }
   return true;

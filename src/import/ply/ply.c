@@ -34,7 +34,7 @@ static bool read_text(vlPlyReader *r, double *value) {
     r->at = stop;
     return true;
   }
-  return vl_ply_fail(r, "expected a number, found \"%.*s\"", (int)(stop - start < 30 ? stop - start : 30), start);
+  return vl_ply_fail(r, "expected a number, found \"%.*s\"", (int)(stop - start < 12 ? stop - start : 12), start);
 }
 
 /* A binary value whose bytes are there. */
@@ -193,19 +193,24 @@ vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, si
   return fine ? VL_OK : error->code;
 }
 
-vlResult vl_ply_read_colored(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error) {
+static vlResult read_file(vlContext *context, const char *path, bool given, vlPlyMesh *mesh, vlError *error) {
   char *data;
   size_t size;
   *mesh = (vlPlyMesh){0};
-  vlResult result = vl_file_read(context, path, true, &data, &size, error);
+  vlResult result = given ? vl_file_read_given(context, path, true, &data, &size, error)
+                          : vl_file_read(context, path, true, &data, &size, error);
   if (result != VL_OK) return result;
   result = vl_ply_parse(context, path, data, size, mesh, error);
   vl_free(context, data);
   return result;
 }
 
+vlResult vl_ply_read_given(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error) {
+  return read_file(context, path, true, mesh, error);
+}
+
 vlResult vl_ply_read(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error) {
-  vlResult result = vl_ply_read_colored(context, path, mesh, error);
+  vlResult result = read_file(context, path, false, mesh, error);
   vl_free(context, mesh->colors);
   mesh->colors = NULL;
   return result;

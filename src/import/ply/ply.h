@@ -16,9 +16,10 @@ typedef struct vlPlyMesh {
   uint32_t *quad_indices;     /* 4 a patch, p00 p10 p01 p11 */
 } vlPlyMesh;
 
-/* All arrays are blocks of the context. Errors: MISSING, IO, MEMORY, SCENE (with the line for text and header). */
-vlResult vl_ply_read_colored(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error);
-/* The same without colours. */
+/* All arrays are blocks of the context. Errors: MISSING, IO, MEMORY, SCENE (with the line for text and header). _given:
+ * a file that the caller names himself, with its colours (base/file.h). */
+vlResult vl_ply_read_given(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error);
+/* A file that a scene names, without colours. */
 vlResult vl_ply_read(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error);
 /* name: for errors. data[size] must be a zero byte; it is not changed. */
 vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size, vlPlyMesh *mesh,

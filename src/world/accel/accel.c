@@ -4,7 +4,7 @@
  * space, by its own arithmetic, which differs between instruction sets: callbacks look the ray up in the world by its
  * id instead and move it themselves.
  *
- * Portable bits (docs/decisions/0011-the-bits-of-embree.md): Embree runs a set without fused multiply-add, and a filter
+ * Portable bits (docs/decisions/0013-the-bits-of-embree.md): Embree runs a set without fused multiply-add, and a filter
  * decides which of several hits is the nearest (nearest.h). */
 #include "world/accel/accel.h"
 
@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #include "base/error.h"
 #include "base/isa.h"
@@ -318,9 +319,27 @@ static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
 }
 #endif
 
+/* Embree's threads end the process when they get no memory while they build. So it is looked before whether the process
+ * may have as many addresses as they take, with stacks and the heaps of threads: a reservation costs nothing and is
+ * given back. */
+static bool has_room(const vlWorld *world) {
+  size_t primitives = 0;
+  for (size_t i = 0; i < world->shapes.count; i++) primitives += (size_t)world->shapes.items[i].faces + 1;
+  size_t bytes = ((size_t)64 << 20) + ((size_t)72 << 20) * vl_context_threads(world->context) + 256 * primitives;
+  void *block = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (block == MAP_FAILED) return false;
+  munmap(block, bytes);
+  return true;
+}
+
+static bool on_memory(void *context, ssize_t bytes, bool taken) {
+  return vl_count_foreign(context, (int64_t)bytes, taken);
+}
+
 vlResult vl_accel_build(vlWorld *world, vlError *error) {
   vlAccel *a = &world->accel;
   char config[64];
+  if (!has_room(world)) return vl_fail_memory(error);
   const char *set;
   vlResult chosen = choose_set(world->def.bits, &set, error);
   if (chosen != VL_OK) return chosen;
@@ -330,6 +349,7 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
   if (!device)
     return vl_fail(error, VL_ERROR_MEMORY, "Embree gives no device (error %d)", (int)rtcGetDeviceError(NULL));
   a->device = device;
+  rtcSetDeviceMemoryMonitorFunction(device, on_memory, world->context);
   AccelGeometry *geometries = vl_alloc_array(world->context, world->shapes.count + 1, sizeof *geometries);
   a->groups = vl_alloc_zero(world->context, world->groups.count, sizeof *a->groups);
   a->user_data = geometries;

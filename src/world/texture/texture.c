@@ -105,7 +105,7 @@ static vlResult load_picture(vlContext *context, const Picture *p, vlMipmap **mi
   if (p->data)
     r = vl_image_read_memory(context, p->name ? p->name : "picture", p->data, p->size, &image, error);
   else if (!given)
-    r = vl_image_read(context, p->path, &image, error);
+    r = vl_image_read_named(context, p->path, &image, error);
   if (r != VL_OK) return r;
   given = image ? image : given;
   vlMipmapDef mip;

@@ -1,0 +1,152 @@
+/* render/memory.c: see memory.h. */
+#include "render/memory.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/sysinfo.h>
+#include <unistd.h>
+
+#include "cli/report.h"
+#include "render/progress.h"
+
+/* ---- the process --------------------------------------------------------------------------------------------------
+ */
+
+/* Bytes of the process now: of addresses, and of memory in use. */
+static void process_size(uint64_t *addresses, uint64_t *resident) {
+  unsigned long long pages[2] = {0, 0};
+  FILE *file = fopen("/proc/self/statm", "r");
+  if (file && fscanf(file, "%llu %llu", &pages[0], &pages[1]) != 2) pages[0] = pages[1] = 0;
+  if (file) fclose(file);
+  uint64_t page = (uint64_t)sysconf(_SC_PAGESIZE);
+  *addresses = pages[0] * page, *resident = pages[1] * page;
+}
+
+/* ---- who needs how much ------------------------------------------------------------------------------------------ */
+
+static void add(MemoryPlan *plan, const char *what, uint64_t bytes) {
+  if (!bytes) return;
+  plan->needs[plan->count].what = what;
+  plan->needs[plan->count++].bytes = bytes;
+  plan->total += bytes;
+}
+
+/* Values of 4 bytes that the ground truth of a pixel has. */
+static uint64_t truth_values(const Channels *c, uint32_t buckets) {
+  static const uint8_t values[VL_CHANNEL_COUNT] = {1, 1, 3, 3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 2, 3, 3, 3};
+  enum { GBUFFER = 48 }; /* its channels, and those that they are made of */
+  uint64_t sum = c->gbuffer ? GBUFFER : 0;
+  for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
+    if (c->bits & 1u << i) sum += i >= 17 ? 2 * c->ranks : values[i];
+  return sum + (c->spectrum ? buckets : 0);
+}
+
+/* OpenEXR files are packed in pieces of 16 rows, two for each worker, three copies of each. */
+static uint64_t writing(vlContext *context, const Outputs *outputs, uint64_t width, uint64_t height, uint64_t values) {
+  uint64_t most = 0, rows = 32 * (uint64_t)vl_context_threads(context);
+  if (rows > height) rows = height;
+  for (int i = 0; i < outputs->count; i++) {
+    uint64_t bytes = 12 * width * (output_holds_layers(outputs->paths[i]) ? rows * (4 + values) : 16);
+    if (bytes > most) most = bytes;
+  }
+  return most;
+}
+
+static uint64_t film_bytes(const Job *job, const Frames *frames) {
+  if (!frames) return vl_film_memory(&job->defs->film);
+  uint64_t sum = 0;
+  for (uint32_t i = 0; i < frames->camera_count; i++)
+    if (frames->cameras[i].owns_film) sum += vl_film_memory(&frames->cameras[i].job.defs->film);
+  return sum;
+}
+
+void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, const Job *job, const Outputs *outputs,
+                 const Channels *channels, const Frames *frames) {
+  enum { WAITING = 6 }; /* images of a trajectory that are rendered, wait or are written at once */
+  memset(plan, 0, sizeof *plan);
+  const uint32_t *crop = job->defs->film.crop;
+  uint64_t width = crop[2] - crop[0], height = crop[3] - crop[1], pixels = width * height, copies = 1;
+  for (uint32_t i = 0; frames && i < frames->camera_count; i++) {
+    const uint32_t *c = frames->cameras[i].job.defs->film.crop;
+    uint64_t other = (uint64_t)(c[2] - c[0]) * (c[3] - c[1]);
+    if (other > pixels) pixels = other, width = c[2] - c[0], height = c[3] - c[1];
+  }
+  if (frames) copies = (frames_count(frames) < WAITING ? frames_count(frames) : WAITING) * (uint64_t)frames->views;
+  bool eight_bit = false, layers = false;
+  for (int i = 0; i < outputs->count; i++) {
+    bool display = false;
+    output_suffix(outputs->paths[i], &display);
+    eight_bit |= display;
+    layers |= output_holds_layers(outputs->paths[i]);
+  }
+  uint64_t values = layers ? truth_values(channels, job->defs->film.buckets) : 0;
+  uint64_t held = vl_context_memory(context, NULL), addresses, resident;
+  process_size(&addresses, &resident);
+  add(plan, "program", resident > held ? resident - held : 0);
+  add(plan, "scene", held);
+  add(plan, "film", film_bytes(job, frames));
+  add(plan, "rendering", vl_render_memory(world, &job->defs->film, &job->defs->render));
+  add(plan, "image", copies * pixels * (eight_bit ? 20 : 16));
+  add(plan, "ground truth", copies * pixels * values * 4);
+  add(plan, "writing", writing(context, outputs, width, height, values));
+}
+
+/* ---- does it fit ------------------------------------------------------------------------------------------------- */
+
+/* What the process may have in all, by the machine and by its control group (version 2). */
+static uint64_t machine_bytes(void) {
+  struct sysinfo info;
+  uint64_t most = UINT64_MAX;
+  if (sysinfo(&info) == 0) most = ((uint64_t)info.totalram + info.totalswap) * info.mem_unit;
+  FILE *file = fopen("/sys/fs/cgroup/memory.max", "r");
+  unsigned long long limit;
+  if (file && fscanf(file, "%llu", &limit) == 1 && limit < most) most = limit;
+  if (file) fclose(file);
+  return most;
+}
+
+void memory_list(const MemoryPlan *plan, char *text, size_t size) {
+  text[0] = 0;
+  for (int i = 0; i < plan->count; i++) {
+    char bytes[32];
+    size_t n = strlen(text);
+    format_count(bytes, sizeof bytes, (double)plan->needs[i].bytes);
+    snprintf(text + n, size - n, "%s%s %sB", i ? ", " : "", plan->needs[i].what, bytes);
+  }
+}
+
+static int too_much(const MemoryPlan *plan, uint64_t limit, const char *who) {
+  char list[400], needed[32], most[32];
+  memory_list(plan, list, sizeof list);
+  format_count(needed, sizeof needed, (double)plan->total);
+  format_count(most, sizeof most, (double)limit);
+  return report_failure(STATUS_OTHER, "out of memory: this needs %sB, and %s %sB: %s", needed, who, most, list);
+}
+
+int memory_check(const MemoryPlan *plan, uint64_t limit) {
+  uint64_t addresses, resident;
+  process_size(&addresses, &resident);
+  if (limit && plan->total > limit) return too_much(plan, limit, "--max-memory allows");
+  struct rlimit most;
+  if (getrlimit(RLIMIT_DATA, &most) == 0 && most.rlim_cur != RLIM_INFINITY && plan->total > most.rlim_cur)
+    return too_much(plan, most.rlim_cur, "the process may have");
+  uint64_t reserved = addresses > resident ? addresses - resident : 0; /* addresses without memory: stacks, code */
+  if (getrlimit(RLIMIT_AS, &most) == 0 && most.rlim_cur != RLIM_INFINITY && plan->total + reserved > most.rlim_cur)
+    return too_much(plan, most.rlim_cur > reserved ? most.rlim_cur - reserved : 0, "the process may have");
+  if (plan->total > machine_bytes()) return too_much(plan, machine_bytes(), "the machine has");
+  return -1;
+}
+
+void memory_report_json(const MemoryPlan *plan, uint64_t limit) {
+  Json json = report_json_begin("memory");
+  for (int i = 0; i < plan->count; i++) json_integer(&json, plan->needs[i].what, (int64_t)plan->needs[i].bytes);
+  json_integer(&json, "total", (int64_t)plan->total);
+  if (limit) json_integer(&json, "limit", (int64_t)limit);
+  report_json_end(&json);
+}
+
+uint64_t memory_peak(void) {
+  struct rusage usage;
+  return getrusage(RUSAGE_SELF, &usage) == 0 ? (uint64_t)usage.ru_maxrss * 1024 : 0;
+}

@@ -1,0 +1,203 @@
+/* base/file_write.c: files written whole or not at all. See file.h. */
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "base/file.h"
+
+/* Temporaries are named by the process alone, so that the longest names can be written; their writer holds a lock on
+ * them, so that one without a lock is a dead writer's. */
+#define PREFIX ".velo-"
+#define SUFFIX ".tmp"
+enum { MOST_LINKS = 40, MOST_TRIES = 1000 };
+
+/* The length of the folder's part, with its slash; 0: the current folder. */
+static size_t folder_length(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* The file that `path` stands for when its symbolic links are followed; it need not exist. false: errno. */
+static bool follow_links(const char *path, char *target, size_t size) {
+  char link[4096];
+  if (strlen(path) >= size) return errno = ENAMETOOLONG, false;
+  memcpy(target, path, strlen(path) + 1);
+  for (int i = 0; i < MOST_LINKS; i++) {
+    ssize_t n = readlink(target, link, sizeof link);
+    if (n < 0) return true; /* no link; opening it will tell what else is wrong */
+    size_t folder = n > 0 && link[0] == '/' ? 0 : folder_length(target);
+    if (folder + (size_t)n >= size) return errno = ENAMETOOLONG, false;
+    memcpy(target + folder, link, (size_t)n);
+    target[folder + (size_t)n] = 0;
+  }
+  return errno = ELOOP, false;
+}
+
+static void name_temporary(vlFileWriter *writer, unsigned number) {
+  snprintf(writer->temporary, sizeof writer->temporary, "%.*s" PREFIX "%ld-%u" SUFFIX,
+           (int)folder_length(writer->target), writer->target, (long)getpid(), number);
+}
+
+/* A file without a name, which goes with its process however that ends. Not every file system has them. */
+static bool open_nameless(vlFileWriter *writer) {
+  char folder[4096];
+  if (access("/proc/self/fd", X_OK) != 0) return false; /* by which it gets its name */
+  snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(writer->target), writer->target);
+  writer->descriptor = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+  return writer->descriptor >= 0;
+}
+
+/* Its name, of a temporary, for as long as it takes to rename it. false: errno. */
+static bool give_name(vlFileWriter *writer) {
+  char self[64];
+  snprintf(self, sizeof self, "/proc/self/fd/%d", writer->descriptor);
+  for (unsigned i = 0; i < MOST_TRIES; i++) {
+    name_temporary(writer, i);
+    if (linkat(AT_FDCWD, self, AT_FDCWD, writer->temporary, AT_SYMLINK_FOLLOW) == 0) return true;
+    if (errno != EEXIST) break;
+  }
+  writer->temporary[0] = 0;
+  return false;
+}
+
+/* A new file with a lock on it. false: errno. */
+static bool open_temporary(vlFileWriter *writer) {
+  if (open_nameless(writer)) {
+    flock(writer->descriptor, LOCK_EX | LOCK_NB);
+    return true;
+  }
+  for (unsigned i = 0; i < MOST_TRIES; i++) {
+    name_temporary(writer, i);
+    writer->descriptor = open(writer->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (writer->descriptor < 0 && errno == EEXIST) continue;
+    if (writer->descriptor < 0) return false;
+    struct stat info; /* another process may have taken it for a dead writer's before it was locked */
+    bool locked = flock(writer->descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+    if (locked && fstat(writer->descriptor, &info) == 0 && info.st_nlink > 0) return true;
+    close(writer->descriptor);
+    writer->descriptor = -1;
+  }
+  return errno = EEXIST, false;
+}
+
+static bool is_temporary(const char *name) {
+  size_t length = strlen(name), prefix = sizeof PREFIX - 1, suffix = sizeof SUFFIX - 1;
+  if (length <= prefix + suffix || strncmp(name, PREFIX, prefix) != 0) return false;
+  return strcmp(name + length - suffix, SUFFIX) == 0 &&
+         strspn(name + prefix, "0123456789-") == length - prefix - suffix;
+}
+
+void vl_remove_leftovers(const char *path) {
+  char target[4096], folder[4096];
+  if (!path || !follow_links(path, target, sizeof target)) return;
+  snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(target), target);
+  DIR *directory = opendir(folder);
+  if (!directory) return;
+  struct dirent *entry;
+  while ((entry = readdir(directory))) {
+    if (!is_temporary(entry->d_name)) continue;
+    int fd = openat(dirfd(directory), entry->d_name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (fd < 0) continue;
+    struct stat mine, named;
+    if (flock(fd, LOCK_EX | LOCK_NB) == 0 && fstat(fd, &mine) == 0 && S_ISREG(mine.st_mode) &&
+        fstatat(dirfd(directory), entry->d_name, &named, AT_SYMLINK_NOFOLLOW) == 0 && mine.st_ino == named.st_ino &&
+        mine.st_dev == named.st_dev)
+      unlinkat(dirfd(directory), entry->d_name, 0);
+    close(fd);
+  }
+  closedir(directory);
+}
+
+vlResult vl_file_open_write(vlFileWriter *writer, const char *path, vlError *error) {
+  writer->failed_errno = 0;
+  writer->descriptor = -1;
+  writer->target[0] = writer->temporary[0] = 0;
+  int n = snprintf(writer->path, sizeof writer->path, "%s", path);
+  if (n < 0 || (size_t)n >= sizeof writer->path) return vl_fail(error, VL_ERROR_IO, "cannot write: path too long");
+  struct stat info;
+  bool there = stat(path, &info) == 0;
+  writer->replaces = there && S_ISREG(info.st_mode);
+  if (writer->replaces) writer->mode = info.st_mode & 0777, writer->owner = info.st_uid, writer->group = info.st_gid;
+  if (there && S_ISDIR(info.st_mode)) {
+    errno = EISDIR;
+  } else if (there && !S_ISREG(info.st_mode)) { /* a device or pipe cannot be replaced, only written to */
+    writer->descriptor = open(path, O_WRONLY | O_CLOEXEC);
+  } else if ((!writer->replaces || access(path, W_OK) == 0) &&
+             follow_links(path, writer->target, sizeof writer->target)) {
+    open_temporary(writer);
+  }
+  if (writer->descriptor >= 0) return VL_OK;
+  return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(errno));
+}
+
+void vl_file_write(vlFileWriter *writer, const void *data, size_t size) {
+  const char *bytes = data;
+  while (size && !writer->failed_errno) {
+    ssize_t n = write(writer->descriptor, bytes, size);
+    if (n < 0) {
+      if (errno != EINTR) writer->failed_errno = errno;
+    } else {
+      bytes += n;
+      size -= (size_t)n;
+    }
+  }
+}
+
+void vl_file_write_at(vlFileWriter *writer, const void *data, size_t size, uint64_t offset) {
+  const char *bytes = data;
+  while (size && !writer->failed_errno) {
+    ssize_t n = pwrite(writer->descriptor, bytes, size, (off_t)offset);
+    if (n < 0) {
+      if (errno != EINTR) writer->failed_errno = errno;
+    } else {
+      bytes += n;
+      offset += (uint64_t)n;
+      size -= (size_t)n;
+    }
+  }
+}
+
+/* As far as the user and the file system allow it. */
+static void keep_permissions(const vlFileWriter *writer) {
+  if (fchown(writer->descriptor, writer->owner, writer->group) != 0 &&
+      fchown(writer->descriptor, (uid_t)-1, writer->group) != 0)
+    errno = 0;
+  if (fchmod(writer->descriptor, writer->mode) != 0) errno = 0;
+}
+
+vlResult vl_file_commit(vlFileWriter *writer, vlError *error) {
+  bool renames = writer->target[0];
+  if (renames && writer->replaces) keep_permissions(writer);
+  if (!writer->failed_errno && fsync(writer->descriptor) != 0 && errno != EINVAL && errno != EROFS)
+    writer->failed_errno = errno;
+  if (!writer->failed_errno && renames && !writer->temporary[0] && !give_name(writer)) writer->failed_errno = errno;
+  if (!writer->failed_errno && renames && rename(writer->temporary, writer->target) != 0) writer->failed_errno = errno;
+  if (writer->failed_errno && writer->temporary[0]) unlink(writer->temporary);
+  if (close(writer->descriptor) != 0 && !writer->failed_errno) writer->failed_errno = errno;
+  writer->descriptor = -1; /* closed last: with it goes the lock */
+  if (!writer->failed_errno) return VL_OK;
+  return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", writer->path, strerror(writer->failed_errno));
+}
+
+void vl_file_abandon(vlFileWriter *writer) {
+  if (writer->descriptor < 0) return;
+  if (writer->temporary[0]) unlink(writer->temporary);
+  close(writer->descriptor);
+  writer->descriptor = -1;
+}
+
+vlResult vl_write_file(const char *path, const void *data, size_t size, vlError *error) {
+  vlFileWriter writer;
+  if (!path || (!data && size)) return vl_fail(error, VL_ERROR_ARGUMENT, "file: null argument");
+  vlResult result = vl_file_open_write(&writer, path, error);
+  if (result != VL_OK) return result;
+  vl_file_write(&writer, data, size);
+  return vl_file_commit(&writer, error);
+}

@@ -1,0 +1,184 @@
+#!/usr/bin/env bash
+# What a scene may not do to who renders it: take all memory, hang, read files elsewhere, print what they hold. And what
+# it costs to know: memory is reckoned before the render, --time is kept, headers are read alone.
+. "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
+. "$VELO_SOURCE_DIR/test/cli/common.sh"
+cd "$work" || exit 1
+write_scene scene.pbrt
+V=$VELO
+
+# refused CODE NAME TEXT COMMAND...: exit code, one line with TEXT.
+refused() {
+  local wanted=$1 name=$2 text=$3
+  shift 3
+  run timeout 20 "$@"
+  if [ "$code" = "$wanted" ] && [ "$(printf '%s\n' "$err" | wc -l)" = 1 ] && [[ $err == "velo: "*"$text"* ]]; then
+    pass "$name"
+  else
+    fail "$name (wanted exit code $wanted and one line with: $text)"
+    show "$*"
+  fi
+}
+
+# ---- memory ----------------------------------------------------------------------------------------------------------
+long="--spp 16777216 --quiet -o a.exr"
+refused 1 too_large_for_the_limit 'film 132 MB' "$V" render scene.pbrt --resolution 1000x1000 --max-memory 100M $long
+refused 1 limit_in_other_units 'film 132 MB' "$V" render scene.pbrt --resolution 1000x1000 --max-memory 100MiB $long
+refused 1 truth_is_reckoned 'ground truth' "$V" render scene.pbrt --resolution 300x300 --channels all,crypto --max-memory 30M $long
+refused 1 trajectory_is_reckoned 'out of memory: this needs' "$V" render scene.pbrt --stereo parallel --resolution 1000x1000 --max-memory 100M $long
+refused 1 too_large_for_the_process 'the process may have' bash -c "ulimit -v 298000; exec \"\$0\" \"\$@\"" "$V" render scene.pbrt --resolution 2000x2000 $long
+refused 1 building_is_limited '--max-memory allows' "$V" render scene.pbrt --max-memory 1k $long
+refused 2 size_that_is_none 'must be a size' "$V" render scene.pbrt --max-memory 12parsecs
+check inside_the_limit "$V" render scene.pbrt --max-memory 200M --quiet -o a.exr
+run "$V" render scene.pbrt --resolution 600x600 --spp 2 --channels all --log-json -o a.exr
+if printf '%s\n' "$err" | python3 -c '
+import json, sys
+lines = [json.loads(line) for line in sys.stdin]
+plan = next(line for line in lines if line["event"] == "memory")
+result = lines[-1]
+assert plan["film"] > 40e6 and plan["total"] == result["memory_needed"], plan
+assert 0.4 * result["memory_peak"] < result["memory_needed"] < 2.5 * result["memory_peak"], result'; then pass memory_in_json; else fail memory_in_json; show json; fi
+run "$V" render scene.pbrt --spp 1 -v -o a.exr
+expect_text memory_in_notes 'memory: '
+expect_text peak_in_notes 'at most, '
+
+# Whatever the process may have, it ends with an image or with one line.
+wrong=
+for kilobytes in 90000 150000 180000 205000 210000 220000 250000 300000; do
+  run bash -c "ulimit -v $kilobytes; exec \"\$0\" \"\$@\"" "$V" render scene.pbrt --resolution 300x300 --spp 1 --quiet -o limit.exr
+  [ "$code" = 0 ] || { [ "$code" = 1 ] && [ "$(printf '%s\n' "$err" | wc -l)" = 1 ]; } || wrong="$wrong $kilobytes:$code"
+done
+[ -z "$wrong" ] && pass limits_of_the_process || fail "limits_of_the_process ($wrong)"
+[ -z "$(find . -name '*.tmp')" ] && pass no_temporary_files || fail no_temporary_files
+
+python3 - <<'PY'
+import struct, zlib
+def png(name, width, height):
+    row = b"\0" + bytes((width + 7) // 8)
+    pack = zlib.compressobj(9)
+    data = b"".join(pack.compress(row) for _ in range(height)) + pack.flush()
+    chunk = lambda kind, body: struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    with open(name, "wb") as f:
+        f.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 1, 0, 0, 0, 0)) + chunk(b"IDAT", data) + chunk(b"IEND", b""))
+png("bomb.png", 30000, 20000)
+png("wide.png", 3000, 2000)
+PY
+texture() {
+  printf '%s\n' 'Camera "perspective"' 'WorldBegin' "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"$1\"" \
+    'Material "diffuse" "texture reflectance" "t"' 'Shape "sphere"'
+}
+texture bomb.png >bomb.pbrt
+refused 3 pixel_budget '30000x20000 pixels, more than' "$V" render bomb.pbrt $long
+texture wide.png >wide.pbrt
+refused 3 own_pixel_budget '3000x2000 pixels, more than the 5000000' "$V" render wide.pbrt --max-texture-pixels 5000000 $long
+check within_the_budget "$V" render wide.pbrt --max-texture-pixels 6000000 --spp 1 --resolution 8x8 --quiet -o a.exr
+run_measured "$V" image info bomb.png
+[ "$code" = 0 ] && [[ $out == *"30000 x 20000"* ]] && pass header_alone || { fail header_alone; show info; }
+if is_plain_build; then
+  [ "$kilobytes" -lt 40000 ] && pass header_alone_in_little_memory || fail "header_alone_in_little_memory ($kilobytes KB)"
+fi
+for suffix in exr png jpg hdr pfm tga; do
+  "$V" render scene.pbrt --spp 1 --quiet -o "format.$suffix"
+  run "$V" image info "format.$suffix"
+  [[ $out == *"64 x 48"* ]] && pass "header_of_$suffix" || { fail "header_of_$suffix"; show info; }
+done
+
+run bash -c '"$0" image info <(cat format.exr)' "$V"
+[[ $out == *"64 x 48"* ]] && pass header_of_a_pipe || { fail header_of_a_pipe; show info; }
+
+# ---- files that never end --------------------------------------------------------------------------------------------
+mkfifo pipe
+python3 -c 'import socket; socket.socket(socket.AF_UNIX).bind("socket")'
+ln -s /dev/zero device
+for kind in pipe socket device; do
+  texture $kind >named.pbrt
+  refused 5 "texture_is_a_$kind" "is a $kind" "$V" render named.pbrt $long
+  printf '%s\n' 'Camera "perspective"' 'WorldBegin' "Shape \"plymesh\" \"string filename\" \"$kind\"" >named.pbrt
+  refused 5 "mesh_is_a_$kind" "is a $kind" "$V" render named.pbrt $long
+  printf '%s\n' 'Camera "perspective"' 'WorldBegin' "Include \"$kind\"" >named.pbrt
+  refused 3 "include_is_a_$kind" "$kind is not a regular file" "$V" render named.pbrt $long
+  printf '{"asset":{"version":"2.0"},"buffers":[{"uri":"%s","byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0}' $kind >named.gltf
+  refused 5 "buffer_is_a_$kind" "is a $kind" "$V" render named.gltf $long
+done
+mkfifo given.pbrt
+cat scene.pbrt >given.pbrt &
+run "$V" render given.pbrt --spp 1 --quiet -o given.exr
+[ "$code" = 0 ] && [ -s given.exr ] && pass a_pipe_that_is_given_is_read || { fail a_pipe_that_is_given_is_read; show pipe; }
+
+# ---- a sandbox -------------------------------------------------------------------------------------------------------
+mkdir box elsewhere
+cp wide.png box/in.png
+cp wide.png elsewhere/out.png
+ln -s ../elsewhere/out.png box/link.png
+ln -s ../box/in.png elsewhere/back.png
+cd box || exit 1
+small="--spp 1 --resolution 8x8 --quiet -o ../a.exr"
+for name in in.png ../elsewhere/out.png link.png "$work/elsewhere/out.png" ../elsewhere/back.png; do texture "$name" >"$(basename "$name").pbrt"; done
+check sandbox_inside "$V" render in.png.pbrt --sandbox . $small
+check sandbox_link_that_leads_inside "$V" render back.png.pbrt --sandbox . $small
+refused 5 sandbox_outside 'outside of the sandbox' "$V" render out.png.pbrt --sandbox . $small
+refused 5 sandbox_link 'outside of the sandbox' "$V" render link.png.pbrt --sandbox . $small
+check sandbox_two_folders "$V" render out.png.pbrt --sandbox . --sandbox ../elsewhere $small
+check no_sandbox "$V" render link.png.pbrt $small
+printf '%s\n' 'Camera "perspective"' 'WorldBegin' 'Include "/etc/passwd"' >include.pbrt
+refused 5 sandbox_include 'outside of the sandbox' "$V" render include.pbrt --sandbox . $small
+texture ../elsewhere/otu.png >near.pbrt
+run "$V" render near.pbrt --sandbox . $small
+[ "$code" = 4 ] && [[ $err != *'"out.png"'* ]] && pass sandbox_tells_no_names || { fail sandbox_tells_no_names; show near; }
+refused 4 sandbox_that_is_none 'no such folder' "$V" render in.png.pbrt --sandbox nowhere $small
+for command in 'scene check' 'scene info'; do
+  run "$V" $command include.pbrt --sandbox .
+  [ "$code" = 5 ] && pass "sandbox_$command" || { fail "sandbox_$command"; show "$command"; }
+done
+run "$V" scene convert link.png.pbrt ../converted.gltf --sandbox .
+expect_text sandbox_convert 'pictures that cannot be read: left out (1)'
+cd ..
+
+# ---- what messages repeat of files -----------------------------------------------------------------------------------
+secret=correcthorsebatterystaple
+printf '%s\n' "$secret more" >secret.txt
+silent() {
+  run "$V" render "$2" $long
+  [ "$code" = 3 ] && [[ $err != *correcthorseb* ]] && pass "$1" || { fail "$1"; show "$2"; }
+}
+printf '%s\n' 'Camera "perspective"' 'WorldBegin' 'Include "secret.txt"' >echo.pbrt
+silent include_is_not_repeated echo.pbrt
+printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n%s\n' "$secret" >echo.ply
+silent ply_is_not_repeated echo.ply
+printf 'ply\n%s\n' "$secret" >head.ply
+silent ply_header_is_not_repeated head.ply
+printf 'v %s 0 0\n' "$secret" >echo.obj
+silent obj_is_not_repeated echo.obj
+printf '{%s' "$secret" >echo.gltf
+silent json_is_not_repeated echo.gltf
+
+# ---- places and reasons ----------------------------------------------------------------------------------------------
+sed 's/"integer xresolution" \[64\]/"integer xresolution" [70000]/' scene.pbrt >wide_film.pbrt
+refused 3 wide_film 'wide_film.pbrt:3:' "$V" render wide_film.pbrt --quiet
+refused 3 wide_film_dry 'wide_film.pbrt:3:' "$V" render wide_film.pbrt --dry-run
+run "$V" scene check wide_film.pbrt
+[ "$code" = 3 ] && pass wide_film_checked || fail wide_film_checked
+refused 2 too_wide_for_jpeg '65500' "$V" render scene.pbrt --resolution 65536x1 --dry-run -o a.jpg
+"$V" render scene.pbrt --spp 1 --quiet --channels Z -o depth.exr
+"$V" image convert depth.exr z.exr --channel Z
+run "$V" image convert z.exr z.png
+[ "$code" = 0 ] && pass image_of_one_channel || { fail image_of_one_channel; show convert; }
+
+# ---- time ------------------------------------------------------------------------------------------------------------
+# The best of three: a busy machine may be late once.
+kept() {
+  local name=$1 best=
+  shift
+  for _ in 1 2 3; do
+    run_measured "$V" render scene.pbrt --resolution 640x480 --time 6s --quiet -o time.exr "$@"
+    [ "$code" = 0 ] && [ "$milliseconds" -gt 5700 ] && [ "$milliseconds" -lt 6300 ] && best=yes && break
+  done
+  [ -n "$best" ] && pass "$name" || fail "$name ($milliseconds ms of 6000)"
+}
+if is_plain_build; then
+  kept time_is_kept
+  kept time_is_kept_both_ways --tracer bidirectional
+fi
+run "$V" render scene.pbrt --resolution 1600x1200 --time 0.1s -o late.exr
+[ "$code" = 0 ] && [[ $err == *"the first sample of each pixel was done after"* ]] && pass late_is_reported || { fail late_is_reported; show late; }
+finish

@@ -1,6 +1,6 @@
 /* test/trace/test_texture_node.c: textures at one point: the single query gives the batch evaluator's bits for every
- * kind of float texture, on every instruction set; alpha, lights and mixed materials read the normal, the uv set and
- * the vertex colours of the place. */
+ * kind of float texture (the batch of the lowest instruction set; test_bits.c compares the sets); alpha, lights and
+ * mixed materials read the normal, the uv set and the vertex colours of the place. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,9 +14,6 @@
 
 #include "trace/texture/texture_run.h"
 #include "velo/velo.h"
-
-void vl_texture_float_v3(vlTextureRun *r, int32_t node, float *out);
-void vl_texture_float_v4(vlTextureRun *r, int32_t node, float *out);
 
 enum { KINDS = VL_TEXTURE_VERTEX_COLOR + 1 };
 
@@ -128,25 +125,20 @@ static void same_bits(void **state) {
   build(&f);
   static vlTextureQuery queries[VL_BATCH];
   static vlTextureCorner corners[VL_BATCH];
-  static float out[3][VL_ROW_SIZE];
-  vlIsa best = vl_isa_best();
+  static float out[VL_ROW_SIZE];
   assert_int_equal(f.world->shapes.count, KINDS - 1);
   for (uint32_t k = 0; k < f.world->shapes.count; k++) {
     int32_t node = f.world->shapes.items[k].alpha;
     assert_true(node >= 0);
     vlTextureRun run = fill_lanes(&f, k, &rng, queries, corners);
-    vl_texture_float_v2(&run, node, out[0]);
-    memcpy(out[1], out[0], sizeof *out), memcpy(out[2], out[0], sizeof *out);
-    if (best >= VL_ISA_V3) vl_texture_float_v3(&run, node, out[1]);
-    if (best >= VL_ISA_V4) vl_texture_float_v4(&run, node, out[2]);
+    vl_texture_float(&run, node, out);
     assert_int_equal(run.top, 0);
     float least = INFINITY, most = -INFINITY;
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       float one = vl_texture_float_at(f.world, node, &queries[i]);
-      for (int isa = 0; isa < 3; isa++)
-        if (memcmp(&one, &out[isa][i], sizeof one))
-          fail_msg("node kind %d: %.9g alone, %.9g in a batch of set %d", (int)f.world->nodes.items[node].kind,
-                   (double)one, (double)out[isa][i], isa + 2);
+      if (memcmp(&one, &out[i], sizeof one))
+        fail_msg("node kind %d: %.9g alone, %.9g in a batch", (int)f.world->nodes.items[node].kind, (double)one,
+                 (double)out[i]);
       least = fminf(least, one), most = fmaxf(most, one);
     }
     bool constant = f.world->nodes.items[node].kind == VL_NODE_FLOAT;

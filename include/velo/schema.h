@@ -43,18 +43,19 @@ typedef enum vlParameterRole {
 } vlParameterRole;
 
 enum {
-  VL_PARAMETER_REQUIRED = 1,     /* has no default */
-  VL_PARAMETER_NO_TEXTURE = 2,   /* an input that takes no texture */
-  VL_PARAMETER_NUMBER = 4,       /* a spectrum that may be written as one number */
-  VL_PARAMETER_ONE_NUMBER = 8,   /* a spectrum that must be one number */
-  VL_PARAMETER_UNSET = 16,       /* a double that may be VL_UNSET, which is the default */
-  VL_PARAMETER_RGB = 32,         /* the default spectrum is RGB: all three numbers of `value` */
-  VL_PARAMETER_CLAMPED = 64,     /* values out of range are cut to it when they are used; else they are errors */
-  VL_PARAMETER_ABOVE_LOW = 128,  /* low itself is out of range */
-  VL_PARAMETER_BELOW_HIGH = 256, /* high itself is out of range */
-  VL_PARAMETER_INFINITE = 512,   /* may be infinite */
-  VL_PARAMETER_RULE = 1024,      /* the generic readers and writers of files leave it to a function of the kind */
-  VL_PARAMETER_SHORTHAND = 2048  /* in files only: sets members that other parameters set one by one */
+  VL_PARAMETER_REQUIRED = 1,       /* has no default */
+  VL_PARAMETER_NO_TEXTURE = 2,     /* an input that takes no texture */
+  VL_PARAMETER_NUMBER = 4,         /* a spectrum that may be written as one number */
+  VL_PARAMETER_ONE_NUMBER = 8,     /* a spectrum that must be one number */
+  VL_PARAMETER_UNSET = 16,         /* a double that may be VL_UNSET, which is the default */
+  VL_PARAMETER_RGB = 32,           /* the default spectrum is RGB: all three numbers of `value` */
+  VL_PARAMETER_CLAMPED = 64,       /* values out of range are cut to it when they are used; else they are errors */
+  VL_PARAMETER_ABOVE_LOW = 128,    /* low itself is out of range */
+  VL_PARAMETER_BELOW_HIGH = 256,   /* high itself is out of range */
+  VL_PARAMETER_INFINITE = 512,     /* may be infinite */
+  VL_PARAMETER_RULE = 1024,        /* the generic readers and writers of files leave it to a function of the kind */
+  VL_PARAMETER_FILE_NUMBER = 4096, /* pbrt files say a number, never a texture; a def may */
+  VL_PARAMETER_SHORTHAND = 2048    /* in files only: sets members that other parameters set one by one */
 };
 
 typedef struct vlParameter {
@@ -66,16 +67,16 @@ typedef struct vlParameter {
   vlParameterType type;
   vlParameterRole role;
   uint32_t flags;
-  size_t offset;    /* of the value, in bytes from the start of the def */
-  size_t second;    /* of another member that gets the same value; 0: none */
-  double factor;    /* value in the def = factor * value in files; 0 is read as 1 */
-  double value[3];  /* default: a number (of a bool 0 or 1, of a choice its index), or three. In the def's unit */
-  const char *text; /* default of strings; name of a spectrum (vl_spectrum_name) */
-  double low, high; /* range, in the def's unit; no limits where both are 0 */
+  size_t offset, size; /* of the value, in bytes from the start of the def */
+  size_t second;       /* of another member that gets the same value; 0: none */
+  double factor;       /* value in the def = factor * value in files; 0 is read as 1 */
+  double value[3];     /* default: a number (of a bool 0 or 1, of a choice its index), or three. In the def's unit */
+  const char *text;    /* default of strings; name of a spectrum (vl_spectrum_name) */
+  double low, high;    /* range, in the def's unit; no limits where both are 0 */
   const char *const *choices; /* names in files, ending with null; index = value of the enum */
 } vlParameter;
 
-/* What the code asks of a kind, in the family's own bits (VL_MATERIAL_TRAIT_... and the like). */
+/* What the code asks of a kind, in the family's own bits (VL_MATERIAL_OPAQUE and the like). */
 typedef struct vlKindRow {
   const char *name;        /* in pbrt files; null: files cannot name it */
   const char *alias;       /* another name that files may use; null: none */

@@ -137,8 +137,9 @@ static const struct {
      "or "
      "\"texture\", not \"float\""},
     {W "Material \"subsurface\" \"float eta\" 4",
-     "t.pbrt:2:1: eta: the index of refraction of a body must be one number between 0.5 and 2.5"},
-    {W "Material \"subsurface\" \"float g\" 1", "t.pbrt:2:1: g: must be a number between -1 and 1"},
+     "t.pbrt:2:23: Material \"subsurface\": parameter \"eta\" must be at least 0.5 and at most 2.5, it is 4"},
+    {W "Material \"subsurface\" \"float g\" 1",
+     "t.pbrt:2:23: Material \"subsurface\": parameter \"g\" must be above -1 and below 1, it is 1"},
     {W "Material \"measured\"", "t.pbrt:2:1: Material \"measured\": \"string filename\" is missing"},
     {W "MakeNamedMaterial \"a\"", "t.pbrt:2:1: MakeNamedMaterial \"a\": \"string type\" is missing"},
     {W "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"a\" \"string type\" \"diffuse\"",

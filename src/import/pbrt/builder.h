@@ -254,9 +254,6 @@ bool vl_import_given(const vlKindRow *row, const bool *given, const char *name);
 bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource place, vlTextureId *id);
 bool vl_import_finish_texture(vlImport *import, uint32_t index); /* resolves what it refers to first */
 bool vl_import_finish_material(vlImport *import, uint32_t index);
-bool vl_import_principled(vlDict *dict, vlMaterialDef *def); /* the parameters of that kind */
-bool vl_import_hair(vlDict *dict, vlMaterialDef *def);
-bool vl_import_subsurface(vlDict *dict, vlMaterialDef *def);
 /* Absorption and scattering per millimetre of the substance that parameter `name` names (scattering.h). */
 bool vl_import_scattering_preset(vlDict *dict, const char *name, vlSpectrum *absorption, vlSpectrum *scattering,
                                  bool *given);

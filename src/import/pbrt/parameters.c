@@ -1,19 +1,21 @@
 /* import/pbrt/parameters.c: the parameters of a directive to the members of a def, as the row of its kind says. */
 #include <assert.h>
 #include <string.h>
+#include <strings.h>
 
 #include "import/pbrt/builder.h"
 
-enum { MOST_CHOICES = 32 };
-
+/* As pbrt, without regard to upper and lower case. */
 static bool read_choice(vlDict *dict, const char *name, const vlParameter *p, int *at) {
-  const char *names[MOST_CHOICES];
-  size_t count = 0;
-  while (count < MOST_CHOICES && p->choices[count]) {
-    names[count] = p->choices[count];
-    count++;
+  const char *text;
+  int count = 0;
+  if (!vl_dict_string(dict, name, &text)) return false;
+  for (; p->choices[count]; count++) {
+    if (strcasecmp(text, p->choices[count]) != 0) continue;
+    *at = count;
+    return true;
   }
-  return vl_dict_choice(dict, name, names, count, at);
+  return vl_dict_choice(dict, name, p->choices, (size_t)count, at); /* for its words */
 }
 
 static bool read_string(vlDict *dict, const char *name, const vlParameter *p, const char **at) {
@@ -87,7 +89,7 @@ static bool read_one(vlDict *dict, const char *name, const vlParameter *p, char 
     case VL_PARAMETER_FILE: return read_string(dict, name, p, at);
     case VL_PARAMETER_SPECTRUM: return read_spectrum(dict, name, at);
     case VL_PARAMETER_FLOAT_INPUT:
-      if (p->flags & VL_PARAMETER_NO_TEXTURE) return read_number_input(dict, name, at);
+      if (p->flags & (VL_PARAMETER_NO_TEXTURE | VL_PARAMETER_FILE_NUMBER)) return read_number_input(dict, name, at);
       return vl_import_float_input(dict, name, at, &given) && given;
     case VL_PARAMETER_SPECTRUM_INPUT: return read_spectrum_input(dict, name, p, at);
     case VL_PARAMETER_EITHER_INPUT:

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static const vlKindFamily *const families[] = {&vl_pixel_filter_family};
+static const vlKindFamily *const families[] = {&vl_material_family, &vl_texture_family, &vl_pixel_filter_family};
 
 const vlKindFamily *vl_kind_family(uint32_t index) {
   return index < sizeof families / sizeof *families ? families[index] : NULL;
@@ -82,34 +82,15 @@ void vl_row_set_defaults(const vlKindRow *row, void *def) {
 
 /* ---- members ----------------------------------------------------------------------------------------------------- */
 
-static size_t size_of(const vlParameter *p) {
-  switch (p->type) {
-    case VL_PARAMETER_BOOL: return sizeof(bool);
-    case VL_PARAMETER_COUNT: return sizeof(uint32_t);
-    case VL_PARAMETER_FLOAT: return sizeof(float);
-    case VL_PARAMETER_DOUBLE: return sizeof(double);
-    case VL_PARAMETER_FLOAT3: return 3 * sizeof(float);
-    case VL_PARAMETER_CHOICE: return sizeof(int);
-    case VL_PARAMETER_STRING:
-    case VL_PARAMETER_FILE: return sizeof(const char *);
-    case VL_PARAMETER_SPECTRUM: return sizeof(vlSpectrum);
-    case VL_PARAMETER_EITHER_INPUT:
-    case VL_PARAMETER_FLOAT_INPUT: return sizeof(vlFloatInput);
-    case VL_PARAMETER_SPECTRUM_INPUT: return sizeof(vlSpectrumInput);
-    case VL_PARAMETER_TEXTURE: return sizeof(vlTextureId);
-    case VL_PARAMETER_BLOCK: return 0;
-  }
-  return 0;
-}
 _Static_assert(sizeof(vlWrap) == sizeof(int), "choices are stored as int");
 
 void vl_row_copy_members(const vlKindRow *row, const void *from, void *to) {
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
-    memcpy((char *)to + p->offset, (const char *)from + p->offset, size_of(p));
+    memcpy((char *)to + p->offset, (const char *)from + p->offset, p->size);
     if (p->second)
       memcpy((char *)to + p->second, (const char *)from + p->second,
-             p->type == VL_PARAMETER_EITHER_INPUT ? sizeof(vlSpectrumInput) : size_of(p));
+             p->type == VL_PARAMETER_EITHER_INPUT ? sizeof(vlSpectrumInput) : p->size);
   }
 }
 

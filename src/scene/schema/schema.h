@@ -60,9 +60,12 @@
                                  .rows = variable##_rows};
 #define VL_KIND_CONSTANT(NAME, name) #NAME,
 
+/* The size of a table with an entry per kind: `0 VL_MATERIAL_KINDS(VL_COUNT_KIND)`. */
+#define VL_COUNT_KIND(NAME, name) +1
+
 /* ---- families ---------------------------------------------------------------------------------------------------- */
 
-extern const vlKindFamily vl_pixel_filter_family;
+extern const vlKindFamily vl_material_family, vl_texture_family, vl_pixel_filter_family;
 
 /* The row of a kind; null when the family has no such kind. */
 const vlKindRow *vl_kind_row(const vlKindFamily *family, int kind);

@@ -97,9 +97,18 @@ typedef struct vlWorldSubsurface {
   const struct vlBssrdfTable *table;
 } vlWorldSubsurface;
 
+/* Where all that a material scatters is a delta. */
+typedef enum vlSmooth {
+  VL_SMOOTH_NEVER,
+  VL_SMOOTH_BY_ALPHA,          /* where its alphas are */
+  VL_SMOOTH_BY_ALPHA_OR_INDEX, /* and where its relative index of refraction is 1 */
+  VL_SMOOTH_ALWAYS
+} vlSmooth;
+
 typedef struct vlWorldMaterial {
   vlMaterialKind kind;
   vlBsdfKind bsdf;
+  vlSmooth smooth;
   uint32_t traits;             /* of the kind: VL_MATERIAL_OPAQUE and so on */
   const void *own;             /* what its kind alone needs (vlWorldLayers, vlWorldHair, ...): a block of the world */
   bool no_cosine;              /* light counts alike from wherever it comes */

@@ -12,10 +12,11 @@
 
 /* A parameter of VL_PARAMETER_##TYPE at member `path` of Def; file_name may be NULL. VL_DEFAULT, VL_RANGE or VL_FROM
  * and further initialisers may follow. A member of another C type is a warning at compile time. */
-#define VL_PARAMETER(TYPE, Def, file_name, path, text_line, ...)                                   \
-  {                                                                                                \
-    .type = VL_PARAMETER_##TYPE, .name = file_name, .member = #path,                               \
-    .offset = VL_TYPED_OFFSET(VL_POINTER_##TYPE, Def, path), .description = text_line, __VA_ARGS__ \
+#define VL_PARAMETER(TYPE, Def, file_name, path, text_line, ...)                                        \
+  {                                                                                                     \
+    .type = VL_PARAMETER_##TYPE, .name = file_name, .member = #path,                                    \
+    .offset = VL_TYPED_OFFSET(VL_POINTER_##TYPE, Def, path), .size = sizeof(((const Def *)NULL)->path), \
+    .description = text_line, __VA_ARGS__                                                               \
   }
 #define VL_DEFAULT(...) .value = {__VA_ARGS__}
 #define VL_RANGE(least, most) .low = (least), .high = (most)

@@ -90,18 +90,11 @@ float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t li
 /* Where all that scatters is a delta: nothing can be connected. */
 static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s, uint32_t i) {
   const float *x = s->shade.alpha_x, *y = s->shade.alpha_y;
-  switch (world->materials.items[s->hits_b.material[i]].bsdf) {
-    case VL_BSDF_THIN_DIELECTRIC: return true;
-    case VL_BSDF_CONDUCTOR: return vl_ggx_is_smooth(x[i], y[i]);
-    case VL_BSDF_DIELECTRIC: return vl_ggx_is_smooth(x[i], y[i]) || s->shade.eta_s[i] == 1.0f;
-    case VL_BSDF_DIFFUSE:
-    case VL_BSDF_COATED_DIFFUSE:
-    case VL_BSDF_PRINCIPLED:
-    case VL_BSDF_DIFFUSE_TRANSMISSION:
-    case VL_BSDF_LAYERED:
-    case VL_BSDF_HAIR:
-    case VL_BSDF_MEASURED:
-    case VL_BSDF_KIND_COUNT: return false;
+  switch (world->materials.items[s->hits_b.material[i]].smooth) {
+    case VL_SMOOTH_NEVER: return false;
+    case VL_SMOOTH_BY_ALPHA: return vl_ggx_is_smooth(x[i], y[i]);
+    case VL_SMOOTH_BY_ALPHA_OR_INDEX: return vl_ggx_is_smooth(x[i], y[i]) || s->shade.eta_s[i] == 1.0f;
+    case VL_SMOOTH_ALWAYS: return true;
   }
   return false;
 }

@@ -141,18 +141,21 @@ vlResult vl_compile_coated_diffuse_material(const vlMaterialBuild *b) {
 
 vlResult vl_compile_conductor_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_CONDUCTOR;
+  b->m->smooth = VL_SMOOTH_BY_ALPHA;
   vlResult r = vl_material_roughness(b);
   return r == VL_OK ? vl_material_metal(b) : r;
 }
 
 vlResult vl_compile_dielectric_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_DIELECTRIC;
+  b->m->smooth = VL_SMOOTH_BY_ALPHA_OR_INDEX;
   vlResult r = vl_material_roughness(b);
   return r == VL_OK ? vl_material_index(b, &b->def->eta, true) : r;
 }
 
 vlResult vl_compile_thin_dielectric_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_THIN_DIELECTRIC;
+  b->m->smooth = VL_SMOOTH_ALWAYS;
   return vl_material_index(b, &b->def->eta, false);
 }
 

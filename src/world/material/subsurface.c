@@ -19,6 +19,7 @@ vlResult vl_compile_subsurface_material(const vlMaterialBuild *b) {
   vlWorldSubsurface *s = vl_world_block(b->world, 1, sizeof *s);
   if (!s) return vl_fail_memory(b->error);
   m->bsdf = VL_BSDF_DIELECTRIC;
+  m->smooth = VL_SMOOTH_BY_ALPHA_OR_INDEX;
   s->sigma_a = s->sigma_s = s->mfp = -1;
   m->scale = b->def->scale;
   m->eta_s = b->def->eta.value.value * b->def->eta.value.scale;

@@ -206,7 +206,7 @@ static const struct {
      "t.pbrt:2:23: Material \"dielectric\": parameter \"eta\" must be of type \"float\" or \"spectrum\" or \"rgb\" or "
      "\"blackbody\", not \"texture\""},
     {W "Texture \"a\" \"spectrum\" \"checkerboard\" \"integer dimension\" 4",
-     "t.pbrt:2:39: Texture \"a\" (checkerboard): \"dimension\" must be 2 or 3, it is 4"},
+     "t.pbrt:2:39: Texture \"a\" (checkerboard): parameter \"dimension\" must be at least 2 and at most 3, it is 4"},
     {W "Texture \"a\" \"spectrum\" \"imagemap\"",
      "t.pbrt:2:1: Texture \"a\" (imagemap): \"string filename\" is missing"},
     {W "Texture \"a\" \"spectrum\" \"imagemap\" \"string filname\" \"x.png\"",

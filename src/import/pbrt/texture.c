@@ -48,14 +48,17 @@ static bool check_mapping(const Reading *r, const vlTextureDef *def) {
                     {"udelta", {true, false, false, true}},  {"vdelta", {true, false, false, true}},
                     {"v1", {false, false, false, true}},     {"v2", {false, false, false, true}}};
   bool solid = def->kind == VL_TEXTURE_CHECKERBOARD && def->dimension == 3;
-  if (solid && vl_import_given(r->row, r->given, "mapping"))
-    return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->place,
+  const vlParam *mapping = solid ? vl_dict_find(r->dict, "mapping", ~0u) : NULL;
+  if (mapping && !mapping->optional)
+    return vl_import_fail(r->dict->import, VL_ERROR_SCENE, mapping->place,
                           "%s: \"mapping\" has no effect with \"dimension\" 3", r->dict->what);
   for (size_t i = 0; i < sizeof parameters / sizeof *parameters; i++) {
     const char *name = parameters[i].name;
-    if ((parameters[i].in[def->mapping] && !solid) || !vl_import_given(r->row, r->given, name)) continue;
-    return vl_import_fail(r->dict->import, VL_ERROR_SCENE, vl_dict_find(r->dict, name, ~0u)->place,
-                          "%s: \"%s\" has no effect with this mapping", r->dict->what, name);
+    if (parameters[i].in[def->mapping] && !solid) continue;
+    const vlParam *p = vl_import_given(r->row, r->given, name) ? vl_dict_find(r->dict, name, ~0u) : NULL;
+    if (p && !p->optional) /* from Attribute it may go unused */
+      return vl_import_fail(r->dict->import, VL_ERROR_SCENE, p->place, "%s: \"%s\" has no effect with this mapping",
+                            r->dict->what, name);
   }
   return true;
 }

@@ -338,11 +338,6 @@ static void fill_picture_node(const vlTextureDef *def, vlTextureNode *node) {
   node->plain = !tinted && !node->colors && def->channel < 0 && def->bias == 0 && isnan(def->cutoff);
 }
 
-/* A kind of texture without a node of its name does not compile. A constant is its input's node. */
-#define VL_NODE_CONSTANT VL_NODE_FLOAT
-#define NODE(NAME, name) [VL_TEXTURE_##NAME] = VL_NODE_##NAME,
-static const vlNodeKind node_kinds[] = {VL_TEXTURE_KINDS(NODE)};
-
 /* The inputs that the kind's row names, in its order: a, b, c, d; and the amount. Below 0: an error. */
 static int32_t compile_inputs(Compile *c, const vlTextureDef *def, int role, int nesting, vlTextureNode *node) {
   const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)def->kind);
@@ -386,7 +381,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
     if (n >= 0) *memo = n + 1;
     return n;
   }
-  node.kind = node_kinds[def->kind];
+  node.kind = (vlNodeKind)def->kind;
   int32_t failed = compile_inputs(c, def, role, nesting, &node);
   if (failed < 0) return failed;
   if (node.kind == VL_NODE_IMAGE) {

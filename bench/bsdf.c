@@ -1,5 +1,5 @@
 /* bench/bsdf.c: nanoseconds for one evaluation and one sample of each BSDF, by instruction set, in batches, against the
- * same code one lane at a time (compiled here without vectors). Lines end in the ratio of the two. Usage: bench_bsdf
+ * same code one lane at a time (compiled without vectors). Lines end in the ratio of the two. Usage: bench_bsdf
  * [lanes] (default 512). Each number is the best of several rounds. */
 #include <math.h>
 #include <stdio.h>
@@ -9,50 +9,14 @@
 #include "base/context.h"
 #include "trace/bsdf/bsdf.h"
 
-/* The kernels once more, one lane at a time: no padding, and no vectors. */
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC push_options
-#pragma GCC optimize("no-tree-vectorize", "no-tree-slp-vectorize")
-#pragma GCC target("sse4.2")
-#endif
-#undef VL_PAD
-#define VL_PAD(n) (n)
-#define VL_WHOLE(n) (n)
-#undef VL_SIMD
-#define VL_SIMD
-#define VL_ISA_SUFFIX one
-#define eval eval_one
-#define sample sample_one
-const vlBsdfKernels vl_bsdf_kernels_one;
-#include "../src/trace/bsdf/coat.hot.c"
-#include "../src/trace/bsdf/conductor.hot.c"
-#include "../src/trace/bsdf/dielectric.hot.c"
-#include "../src/trace/bsdf/diffuse.hot.c"
-#include "../src/trace/bsdf/hair.hot.c"
-#include "../src/trace/bsdf/layered.hot.c"
-#define turned measured_turned /* so have they of these */
-#include "../src/trace/bsdf/measured.hot.c"
-#undef turned
-#include "../src/trace/bsdf/diffuse_transmission.hot.c"
-#define slice_of principled_slice_of /* the coat's file has functions of these names, too */
-#define look_up principled_look_up
-#define weigh principled_weigh
-#define combine principled_combine
-#define choose principled_choose
-#include "../src/trace/bsdf/principled.hot.c"
-#include "../src/trace/bsdf/principled_energy.hot.c"
-#include "../src/trace/bsdf/table.hot.c"
-#undef eval
-#undef sample
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC pop_options
-#endif
+/* The kernels once more, one lane at a time: no padding and no vectors (VL_SCALAR, CMakeLists.txt). */
+extern const vlBsdfKernels vl_bsdf_kernel_table_scalar;
 
 enum { MOST = 4096, ROUNDS = 7 };
 
 typedef struct {
   /* rows a little longer than a power of two, or all would share the cache's same few sets */
-  float in[24][MOST + 80], out[14][MOST + 80], principled[VL_PRINCIPLED_ROWS][MOST + 80];
+  float in[24][MOST + 80], out[14][MOST + 80], own[VL_BSDF_ROWS][MOST + 80];
   const vlCoatTable *coat[MOST];
   uint32_t flags[MOST];
 } Arrays;
@@ -85,7 +49,7 @@ static void pass(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, u
                     .eta_s = IN(14),
                     .coat = a->coat + first,
                     .seed = a->flags + first};
-  for (int j = 0; j < VL_PRINCIPLED_ROWS; j++) p.principled[j] = a->principled[j] + first;
+  for (int j = 0; j < VL_BSDF_ROWS; j++) p.own[j] = a->own[j] + first;
   vlBsdfDirections wo = {IN(15), IN(16), IN(17)}, wi = {IN(18), IN(19), IN(20)}, out = {OUT(0), OUT(1), OUT(2)};
   float *value[4] = {OUT(3), OUT(4), OUT(5), OUT(6)}, *weight[4] = {OUT(8), OUT(9), OUT(10), OUT(11)};
   if (what & 1) k->eval(kind, n, &p, wo, wi, value, OUT(7));
@@ -123,9 +87,9 @@ int main(int argc, char **argv) {
     a->in[12][i] = a->in[13][i] = 0.1f;
     a->in[14][i] = 1.5f;
     a->coat[i] = coat;
-    a->principled[VL_P_F90][i] = a->principled[VL_P_THIN][i] = a->principled[VL_P_COAT_Z][i] = 1.0f;
-    for (int c = 0; c < 4; c++) a->principled[VL_P_F0 + c][i] = 0.04f;
-    a->principled[VL_P_METALLIC][i] = a->in[8][i] / 5;
+    a->own[VL_P_F90][i] = a->own[VL_P_THIN][i] = a->own[VL_P_COAT_Z][i] = 1.0f;
+    for (int c = 0; c < 4; c++) a->own[VL_P_F0 + c][i] = 0.04f;
+    a->own[VL_P_METALLIC][i] = a->in[8][i] / 5;
     direction(a, 15, i);
     direction(a, 18, i);
   }
@@ -151,7 +115,7 @@ int main(int argc, char **argv) {
     for (uint32_t i = 0; i < n; i++) a->coat[i] = rows[r].coat;
     for (int what = 1; what <= 3; what++) {
       const char *names[] = {"eval", "sample", "both"};
-      double one = cost(&vl_bsdf_kernels_one, rows[r].kind, what, a, n, 1), last = one;
+      double one = cost(&vl_bsdf_kernel_table_scalar, rows[r].kind, what, a, n, 1), last = one;
       printf("%-18s %-8s %8.1f", what == 1 ? rows[r].name : "", names[what - 1], one);
       for (int isa = 2; isa <= (int)vl_isa_best(); isa++) {
         last = cost(vl_bsdf_kernels((vlIsa)isa), rows[r].kind, what, a, n, n);

@@ -16,7 +16,7 @@ enum { MOST = 4096, ROUNDS = 7 };
 
 typedef struct {
   /* rows a little longer than a power of two, or all would share the cache's same few sets */
-  float in[24][MOST + 80], out[14][MOST + 80], principled[VL_PRINCIPLED_ROWS][MOST + 80];
+  float in[24][MOST + 80], out[14][MOST + 80], own[VL_BSDF_ROWS][MOST + 80];
   const vlCoatTable *coat[MOST];
   uint32_t flags[MOST];
 } Arrays;
@@ -49,7 +49,7 @@ static void pass(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, u
                     .eta_s = IN(14),
                     .coat = a->coat + first,
                     .seed = a->flags + first};
-  for (int j = 0; j < VL_PRINCIPLED_ROWS; j++) p.principled[j] = a->principled[j] + first;
+  for (int j = 0; j < VL_BSDF_ROWS; j++) p.own[j] = a->own[j] + first;
   vlBsdfDirections wo = {IN(15), IN(16), IN(17)}, wi = {IN(18), IN(19), IN(20)}, out = {OUT(0), OUT(1), OUT(2)};
   float *value[4] = {OUT(3), OUT(4), OUT(5), OUT(6)}, *weight[4] = {OUT(8), OUT(9), OUT(10), OUT(11)};
   if (what & 1) k->eval(kind, n, &p, wo, wi, value, OUT(7));
@@ -87,9 +87,9 @@ int main(int argc, char **argv) {
     a->in[12][i] = a->in[13][i] = 0.1f;
     a->in[14][i] = 1.5f;
     a->coat[i] = coat;
-    a->principled[VL_P_F90][i] = a->principled[VL_P_THIN][i] = a->principled[VL_P_COAT_Z][i] = 1.0f;
-    for (int c = 0; c < 4; c++) a->principled[VL_P_F0 + c][i] = 0.04f;
-    a->principled[VL_P_METALLIC][i] = a->in[8][i] / 5;
+    a->own[VL_P_F90][i] = a->own[VL_P_THIN][i] = a->own[VL_P_COAT_Z][i] = 1.0f;
+    for (int c = 0; c < 4; c++) a->own[VL_P_F0 + c][i] = 0.04f;
+    a->own[VL_P_METALLIC][i] = a->in[8][i] / 5;
     direction(a, 15, i);
     direction(a, 18, i);
   }

@@ -14,11 +14,11 @@
 extern const char velo_commit[];
 
 /* Names of two words come last: "image diff" is found by its first and second word. */
-static const Command *const commands[] = {&render_command,           &scene_info_command,      &scene_check_command,
-                                          &scene_convert_command,    &image_info_command,      &image_diff_command,
-                                          &image_convert_command,    &image_check_command,     &camera_project_command,
-                                          &camera_unproject_command, &camera_info_command,     &camera_convert_command,
-                                          &camera_verify_command,    &camera_vanishing_command};
+static const Command *const commands[] = {
+    &render_command,         &scene_info_command,     &scene_check_command,      &scene_convert_command,
+    &scene_kinds_command,    &image_info_command,     &image_diff_command,       &image_convert_command,
+    &image_check_command,    &camera_project_command, &camera_unproject_command, &camera_info_command,
+    &camera_convert_command, &camera_verify_command,  &camera_vanishing_command};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_overview(void) {

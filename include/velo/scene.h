@@ -85,21 +85,33 @@ VL_API vlSpectrumInput vl_spectrum_input(vlSpectrum value);
 
 /* ---- textures -------------------------------------------------------------------------------------------------- */
 
+/* X(NAME, name) for each kind; what it is and its parameters: velo/schema.h. */
+#define VL_TEXTURE_KINDS(X)                                                                                          \
+  X(CONSTANT, constant)                                                                                              \
+  X(SCALE, scale)                                                                                                    \
+  X(MIX, mix)                                                                                                        \
+  X(CHECKERBOARD, checkerboard)                                                                                      \
+  X(IMAGE, image)                                                                                                    \
+  X(DIRECTION_MIX, direction_mix)                                                                                    \
+  X(BILERP, bilerp)                                                                                                  \
+  X(FBM, fbm)                   /* float: noise of several sizes in texture_from_world, as the next two */           \
+  X(WRINKLED, wrinkled)         /* float */                                                                          \
+  X(WINDY, windy)               /* float; octaves and roughness are its own */                                       \
+  X(MARBLE, marble)             /* colour; scale and variation of its veins */                                       \
+  X(DOTS, dots)                 /* a outside of the dots, b inside */                                                \
+  X(VERTEX_COLOR, vertex_color) /* the colours of the shape's vertices, with tint, channel, bias, cutoff as an image \
+                                 */
 typedef enum vlTextureKind {
-  VL_TEXTURE_CONSTANT,
-  VL_TEXTURE_SCALE,
-  VL_TEXTURE_MIX,
-  VL_TEXTURE_CHECKERBOARD,
-  VL_TEXTURE_IMAGE,
-  VL_TEXTURE_DIRECTION_MIX,
-  VL_TEXTURE_BILERP,
-  VL_TEXTURE_FBM,         /* float: noise of several sizes in texture_from_world, as the next two */
-  VL_TEXTURE_WRINKLED,    /* float */
-  VL_TEXTURE_WINDY,       /* float; octaves and roughness are its own */
-  VL_TEXTURE_MARBLE,      /* colour; scale and variation of its veins */
-  VL_TEXTURE_DOTS,        /* a outside of the dots, b inside */
-  VL_TEXTURE_VERTEX_COLOR /* the colours of the shape's vertices, with tint, channel, bias and cutoff as a picture */
+#define VL_KIND(NAME, name) VL_TEXTURE_##NAME,
+  VL_TEXTURE_KINDS(VL_KIND)
+#undef VL_KIND
 } vlTextureKind;
+
+/* Traits of kinds (vlKindRow.traits). */
+enum {
+  VL_TEXTURE_FLOAT_ONLY = 1, /* there is no colour texture of the kind */
+  VL_TEXTURE_COLOR_ONLY = 2  /* there is no float texture of the kind */
+};
 typedef enum vlWrap { VL_WRAP_REPEAT, VL_WRAP_BLACK, VL_WRAP_CLAMP, VL_WRAP_OCTAHEDRAL, VL_WRAP_MIRROR } vlWrap;
 typedef enum vlTextureFilter {
   VL_FILTER_POINT,     /* nearest texel of the level that fits the footprint */
@@ -161,21 +173,35 @@ VL_API vlTextureId vl_scene_add_texture(vlScene *scene, const vlTextureDef *def)
 
 /* ---- materials ------------------------------------------------------------------------------------------------- */
 
+/* X(NAME, name) for each kind; what it is and its parameters: velo/schema.h. */
+#define VL_MATERIAL_KINDS(X)                                                                                          \
+  X(DIFFUSE, diffuse)                                                                                                 \
+  X(COATED_DIFFUSE, coated_diffuse)                                                                                   \
+  X(CONDUCTOR, conductor)                                                                                             \
+  X(DIELECTRIC, dielectric)                                                                                           \
+  X(THIN_DIELECTRIC, thin_dielectric)                                                                                 \
+  X(MIX, mix)                                                                                                         \
+  X(PRINCIPLED, principled) /* many layers in one: glTF's metallic-roughness with its extensions */                   \
+  X(DIFFUSE_TRANSMISSION, diffuse_transmission)                                                                       \
+  X(COATED_CONDUCTOR, coated_conductor)                                                                               \
+  X(HAIR, hair)                                                                                                       \
+  X(MEASURED, measured)     /* reflection from a file */                                                              \
+  X(SUBSURFACE, subsurface) /* a solid that light enters and leaves elsewhere: VL_TRACER_VOLPATH, others see glass */ \
+  X(INTERFACE, interface)
 typedef enum vlMaterialKind {
-  VL_MATERIAL_DIFFUSE,
-  VL_MATERIAL_COATED_DIFFUSE,
-  VL_MATERIAL_CONDUCTOR,
-  VL_MATERIAL_DIELECTRIC,
-  VL_MATERIAL_THIN_DIELECTRIC,
-  VL_MATERIAL_MIX,
-  VL_MATERIAL_PRINCIPLED, /* many layers in one: glTF's metallic-roughness with its extensions */
-  VL_MATERIAL_DIFFUSE_TRANSMISSION,
-  VL_MATERIAL_COATED_CONDUCTOR,
-  VL_MATERIAL_HAIR,
-  VL_MATERIAL_MEASURED,   /* reflection from a file */
-  VL_MATERIAL_SUBSURFACE, /* a body that light enters and leaves elsewhere: VL_TRACER_VOLPATH shows it, others glass */
-  VL_MATERIAL_INTERFACE
+#define VL_KIND(NAME, name) VL_MATERIAL_##NAME,
+  VL_MATERIAL_KINDS(VL_KIND)
+#undef VL_KIND
 } vlMaterialKind;
+
+/* Traits of kinds (vlKindRow.traits). */
+enum {
+  VL_MATERIAL_OPAQUE = 1,   /* no light passes to the other side */
+  VL_MATERIAL_METAL = 2,    /* coloured by a conductor's reflection: has no albedo of its own */
+  VL_MATERIAL_ROUGH = 4,    /* has microfacets with an alpha */
+  VL_MATERIAL_REFRACTS = 8, /* a closed shape of it bends light */
+  VL_MATERIAL_ABSENT = 16   /* no surface */
+};
 
 /* The principled material, in the words of glTF 2.0 and its KHR_materials extensions; docs/principled.md has the
  * formulas. Its base colour is vlMaterialDef's reflectance, its index of refraction (one number; 0: as dense as can be)
@@ -460,13 +486,18 @@ typedef enum vlSamplerKind {
   VL_SAMPLER_SOBOL,
   VL_SAMPLER_ZSOBOL
 } vlSamplerKind;
+/* X(NAME, name) for each kind; what it is and its parameters: velo/schema.h. */
+#define VL_PIXEL_FILTER_KINDS(X) \
+  X(BOX, box)                    \
+  X(TRIANGLE, triangle)          \
+  X(GAUSSIAN, gaussian)          \
+  X(MITCHELL, mitchell)          \
+  X(LANCZOS, lanczos)            \
+  X(BLACKMAN_HARRIS, blackman_harris)
 typedef enum vlPixelFilterKind {
-  VL_PIXEL_FILTER_BOX,
-  VL_PIXEL_FILTER_TRIANGLE,
-  VL_PIXEL_FILTER_GAUSSIAN,
-  VL_PIXEL_FILTER_MITCHELL,
-  VL_PIXEL_FILTER_LANCZOS,
-  VL_PIXEL_FILTER_BLACKMAN_HARRIS
+#define VL_KIND(NAME, name) VL_PIXEL_FILTER_##NAME,
+  VL_PIXEL_FILTER_KINDS(VL_KIND)
+#undef VL_KIND
 } vlPixelFilterKind;
 typedef struct vlPixelFilter {
   vlPixelFilterKind kind;

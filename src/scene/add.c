@@ -1,9 +1,11 @@
 /* scene/add.c: textures, materials, emissions and lights come in: checked, then copied. Ids may only name what was
  * added before, so neither textures nor mixed materials can form a circle. */
 #include <math.h>
+#include <stdio.h>
 
 #include "base/cookie.h"
 #include "scene/scene.h"
+#include "scene/schema/schema.h"
 
 enum { MAX_OBJECTS = 0x7fffffff };
 
@@ -44,98 +46,46 @@ static bool check_texture(vlScene *scene, vlTextureId id, bool spectrum, vlSourc
   return true;
 }
 
-static bool take_float(vlScene *scene, const vlFloatInput *input, vlSource source, const char *what) {
-  if (!check_texture(scene, input->texture, false, source, what)) return false;
-  return input->texture.index || isfinite(input->value) || bad(scene, source, what, "value is not finite");
-}
-
-static bool take_spectrum(vlScene *scene, vlSpectrumInput *input, vlSource source, const char *what) {
-  if (!check_texture(scene, input->texture, true, source, what)) return false;
-  if (input->texture.index) {
-    input->value = vl_spectrum_constant(1.0f);
-    return true;
-  }
-  return vl_scene_copy_spectrum(scene, &input->value, source, what);
-}
-
 /* ---- textures --------------------------------------------------------------------------------------------------- */
 
-static bool check_texture_def(vlScene *scene, const vlTextureDef *d) {
-  if ((unsigned)d->kind > VL_TEXTURE_VERTEX_COLOR) return bad(scene, d->source, "texture", "unknown kind");
-  if (!is_finite_matrix(d->texture_from_world)) return bad(scene, d->source, "texture", "transform is not finite");
-  const float numbers[] = {d->su,
-                           d->sv,
-                           d->du,
-                           d->dv,
-                           d->scale,
-                           d->direction[0],
-                           d->direction[1],
-                           d->direction[2],
-                           d->planar_v1[0],
-                           d->planar_v1[1],
-                           d->planar_v1[2],
-                           d->planar_v2[0],
-                           d->planar_v2[1],
-                           d->planar_v2[2],
-                           d->bias,
-                           d->omega,
-                           d->variation,
-                           d->tint[0],
-                           d->tint[1],
-                           d->tint[2],
-                           d->tint[3],
-                           d->st_from_uv[0],
-                           d->st_from_uv[1],
-                           d->st_from_uv[2],
-                           d->st_from_uv[3],
-                           d->st_from_uv[4],
-                           d->st_from_uv[5]};
-  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-    if (!isfinite(numbers[i])) return bad(scene, d->source, "texture", "a number is not finite");
-  if (d->octaves > 64) return bad(scene, d->source, "texture", "noise has at most 64 octaves");
-  bool noise = d->kind == VL_TEXTURE_FBM || d->kind == VL_TEXTURE_WRINKLED || d->kind == VL_TEXTURE_WINDY;
-  if ((noise && d->spectrum) || (d->kind == VL_TEXTURE_MARBLE && !d->spectrum))
-    return bad(scene, d->source, "texture", "noise is a float texture, marble a colour");
-  if (d->kind == VL_TEXTURE_CHECKERBOARD && d->dimension != 2 && d->dimension != 3)
-    return bad(scene, d->source, "checkerboard", "dimension must be 2 or 3");
-  if (d->kind == VL_TEXTURE_IMAGE) {
-    if (!!d->path + !!d->image + !!d->data != 1)
-      return bad(scene, d->source, "image texture", "needs either a file name or a picture");
-    if (d->channel < -1 || d->channel > 3) return bad(scene, d->source, "image texture", "its channels are 0 to 3");
-    if (d->uv_set > 3) return bad(scene, d->source, "image texture", "uv sets are 0 to 3");
-    if (d->encoding_given && d->encoding == VL_ENCODING_GAMMA && !(d->gamma > 0.0f && isfinite(d->gamma)))
-      return bad(scene, d->source, "image texture", "gamma must be above 0");
-  }
+static bool all_finite(const float *numbers, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (!isfinite(numbers[i])) return false;
   return true;
 }
 
+/* What the rows do not say. */
+static bool check_texture_def(vlScene *scene, const vlTextureDef *d, const vlKindRow *row) {
+  char what[64];
+  snprintf(what, sizeof what, "%s texture", row->name ? row->name : "vertex colour");
+  if (!is_finite_matrix(d->texture_from_world)) return bad(scene, d->source, what, "transform is not finite");
+  if (!all_finite(d->tint, 4) || !all_finite(d->st_from_uv, 6))
+    return bad(scene, d->source, what, "a number is not finite");
+  if (d->spectrum && (row->traits & VL_TEXTURE_FLOAT_ONLY))
+    return bad(scene, d->source, what, "there is none of colours, only of floats");
+  if (!d->spectrum && (row->traits & VL_TEXTURE_COLOR_ONLY))
+    return bad(scene, d->source, what, "there is none of floats, only of colours");
+  if (d->channel < -1 || d->channel > 3) return bad(scene, d->source, what, "its channels are 0 to 3");
+  if (d->kind == VL_TEXTURE_IMAGE && !!d->path + !!d->image + !!d->data != 1)
+    return bad(scene, d->source, what, "needs either a file name or an image");
+  return true;
+}
+
+/* What the kind's row does not name is left out. */
 static vlTextureId add_texture(vlScene *scene, const vlTextureDef *def, bool adopt) {
   const vlTextureId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_TEXTURE, scene->textures.count, (vlSource){0}, "texture"))
     return none;
-  vlTextureDef d = *def;
-  if (!vl_scene_copy_source(scene, &d.source) || !check_texture_def(scene, &d)) return none;
-  /* how many of the inputs a kind reads: constant and scale one, most two, bilerp four, a picture none */
-  int inputs = d.kind == VL_TEXTURE_BILERP                                   ? 4
-               : d.kind == VL_TEXTURE_IMAGE                                  ? 0
-               : d.kind == VL_TEXTURE_VERTEX_COLOR                           ? 0
-               : d.kind >= VL_TEXTURE_FBM && d.kind <= VL_TEXTURE_MARBLE     ? 0
-               : d.kind == VL_TEXTURE_CONSTANT || d.kind == VL_TEXTURE_SCALE ? 1
-                                                                             : 2;
-  vlFloatInput *floats[4] = {&d.float_a, &d.float_b, &d.float_c, &d.float_d};
-  vlSpectrumInput *spectra[4] = {&d.spectrum_a, &d.spectrum_b, &d.spectrum_c, &d.spectrum_d};
-  for (int i = 0; i < 4; i++) {
-    bool used = i < inputs;
-    if (used && !d.spectrum && !take_float(scene, floats[i], d.source, "texture input")) return none;
-    if (used && d.spectrum && !take_spectrum(scene, spectra[i], d.source, "texture input")) return none;
-    if (!used || d.spectrum) *floats[i] = vl_float_input(0.0f);
-    if (!used || !d.spectrum) *spectra[i] = vl_spectrum_input(vl_spectrum_constant(0.0f));
-  }
-  bool uses_amount = d.kind == VL_TEXTURE_SCALE || d.kind == VL_TEXTURE_MIX;
-  if (!uses_amount) d.amount = vl_float_input(0.0f);
-  if (!take_float(scene, &d.amount, d.source, "amount")) return none;
-  if (d.kind != VL_TEXTURE_IMAGE) d.path = NULL, d.image = NULL, d.data = NULL;
-  if (!vl_scene_copy_string(scene, &d.name) || !vl_scene_copy_string(scene, &d.path)) return none;
+  const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)def->kind);
+  if (!row) return bad(scene, def->source, "texture", "unknown kind"), none;
+  char what[64];
+  snprintf(what, sizeof what, "%s texture", row->name ? row->name : "vertex colour");
+  vlTextureDef d = vl_default_texture_def(def->kind, def->spectrum);
+  d.name = def->name, d.source = def->source;
+  vl_row_copy_members(row, def, &d);
+  if (!vl_scene_copy_source(scene, &d.source) || !check_texture_def(scene, &d, row) ||
+      !vl_row_take(scene, row, &d, d.spectrum, d.source, what) || !vl_scene_copy_string(scene, &d.name))
+    return none;
   if (!adopt && (!vl_scene_copy_image(scene, &d.image) || !vl_scene_copy_block(scene, d.data, d.data_size, 1, &d.data)))
     return none;
   vlTextureDef *slot = VL_PUSH(scene->context, &scene->textures);
@@ -154,7 +104,7 @@ vlTextureId vl_scene_adopt_texture(vlScene *scene, const vlTextureDef *def) {
 
 /* ---- materials -------------------------------------------------------------------------------------------------- */
 
-static bool take_mix(vlScene *scene, vlMaterialDef *d) {
+static bool check_mix(vlScene *scene, const vlMaterialDef *d) {
   for (int i = 0; i < 2; i++) {
     uint32_t index = d->materials[i].index;
     if (index == 0) return bad(scene, d->source, "mix material", "needs two materials");
@@ -164,91 +114,22 @@ static bool take_mix(vlScene *scene, vlMaterialDef *d) {
   return true;
 }
 
-static bool take_normal_map(vlScene *scene, vlTextureId id, vlSource at) {
-  if (id.index > scene->textures.count) return bad(scene, at, "normal map", "there is no such texture (add it first)");
-  if (id.index && !scene->textures.items[id.index - 1].spectrum)
-    return bad(scene, at, "normal map", "must be a colour texture");
-  return true;
-}
-
-static bool take_principled(vlScene *scene, vlPrincipledDef *d, vlSource at) {
-  if (!isfinite(d->dispersion) || d->dispersion < 0.0f || !(d->iridescence_ior >= 1.0f) ||
-      !isfinite(d->iridescence_ior) || !isfinite(d->normal_scale) || !isfinite(d->clearcoat_normal_scale))
-    return bad(scene, at, "principled material", "dispersion, a film's index or a normal map's scale makes no sense");
-  return take_float(scene, &d->metallic, at, "metallic") && take_float(scene, &d->roughness, at, "roughness") &&
-         take_float(scene, &d->anisotropy, at, "anisotropy") &&
-         take_float(scene, &d->anisotropy_rotation, at, "anisotropy rotation") &&
-         take_float(scene, &d->specular, at, "specular") &&
-         take_spectrum(scene, &d->specular_color, at, "specular colour") &&
-         take_float(scene, &d->transmission, at, "transmission") &&
-         take_float(scene, &d->diffuse_transmission, at, "diffuse transmission") &&
-         take_spectrum(scene, &d->diffuse_transmission_color, at, "diffuse transmission colour") &&
-         take_float(scene, &d->clearcoat, at, "clear coat") &&
-         take_float(scene, &d->clearcoat_roughness, at, "clear coat roughness") &&
-         take_spectrum(scene, &d->sheen_color, at, "sheen colour") &&
-         take_float(scene, &d->sheen_roughness, at, "sheen roughness") &&
-         take_float(scene, &d->iridescence, at, "iridescence") &&
-         take_float(scene, &d->iridescence_thickness, at, "iridescence thickness") &&
-         take_normal_map(scene, d->normal, at) && take_normal_map(scene, d->clearcoat_normal, at);
-}
-
-static bool take_hair(vlScene *scene, vlHairDef *d, vlSource at) {
-  if ((unsigned)d->color > VL_HAIR_MELANIN) return bad(scene, at, "hair material", "its colour is of no known kind");
-  return take_spectrum(scene, &d->sigma_a, at, "sigma_a") && take_float(scene, &d->eumelanin, at, "eumelanin") &&
-         take_float(scene, &d->pheomelanin, at, "pheomelanin") && take_float(scene, &d->eta, at, "eta") &&
-         take_float(scene, &d->beta_m, at, "beta_m") && take_float(scene, &d->beta_n, at, "beta_n") &&
-         take_float(scene, &d->alpha, at, "alpha");
-}
-
-static bool take_subsurface(vlScene *scene, vlMaterialDef *d, vlSource at) {
-  const vlSpectrum *eta = &d->eta.value;
-  float index = eta->value * eta->scale;
-  if (d->kind == VL_MATERIAL_SUBSURFACE) {
-    /* what the profile's polynomials are good for */
-    if (d->eta.texture.index || eta->kind != VL_SPECTRUM_CONSTANT || !(index >= 0.5f && index <= 2.5f))
-      return bad(scene, at, "eta", "the index of refraction of a body must be one number between 0.5 and 2.5");
-    if (d->g.texture.index || !(d->g.value > -1.0f && d->g.value < 1.0f))
-      return bad(scene, at, "g", "must be a number between -1 and 1");
-  }
-  return take_spectrum(scene, &d->subsurface.sigma_a, at, "sigma_a") &&
-         take_spectrum(scene, &d->subsurface.sigma_s, at, "sigma_s") &&
-         take_spectrum(scene, &d->subsurface.mfp, at, "mfp");
-}
-
+/* What the kind's row does not name is left out. */
 vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   const vlMaterialId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_MATERIAL, scene->materials.count, (vlSource){0}, "material"))
     return none;
-  vlMaterialDef d = *def;
-  vlSource at = d.source;
-  if ((unsigned)d.kind > VL_MATERIAL_INTERFACE) return bad(scene, at, "material", "unknown kind"), none;
-  if (d.kind == VL_MATERIAL_MIX && !take_mix(scene, &d)) return none;
-  if (d.kind != VL_MATERIAL_MIX) d.materials[0].index = d.materials[1].index = 0;
-  bool dielectric = d.kind == VL_MATERIAL_DIELECTRIC || d.kind == VL_MATERIAL_THIN_DIELECTRIC ||
-                    d.kind == VL_MATERIAL_COATED_DIFFUSE || d.kind == VL_MATERIAL_PRINCIPLED;
-  if (d.coat_eta.texture.index) return bad(scene, at, "coat's eta", "index of refraction cannot be textured"), none;
-  if (dielectric && d.eta.texture.index) return bad(scene, at, "eta", "index of refraction cannot be textured"), none;
-  bool coated = d.kind == VL_MATERIAL_COATED_DIFFUSE || d.kind == VL_MATERIAL_COATED_CONDUCTOR;
-  if (coated && (d.max_depth == 0 || d.samples == 0))
-    return bad(scene, at, "coated material", "max depth and samples must be at least 1"), none;
-  if (!isfinite(d.scale) || d.scale < 0.0f) return bad(scene, at, "material", "its scale makes no sense"), none;
-  if (d.kind == VL_MATERIAL_MEASURED && !d.measured)
-    return bad(scene, at, "measured material", "its file is not named"), none;
-  if (d.kind != VL_MATERIAL_PRINCIPLED) d.principled = vl_default_material_def(VL_MATERIAL_DIFFUSE).principled;
-  if (!take_principled(scene, &d.principled, at) || !take_hair(scene, &d.hair, at) || !take_subsurface(scene, &d, at))
+  const vlKindRow *row = vl_kind_row(&vl_material_family, (int)def->kind);
+  if (!row) return bad(scene, def->source, "material", "unknown kind"), none;
+  if (def->kind == VL_MATERIAL_MIX && !check_mix(scene, def)) return none;
+  char what[64];
+  snprintf(what, sizeof what, "%s material", row->name);
+  vlMaterialDef d = {.cookie = def->cookie, .kind = def->kind, .name = def->name, .source = def->source};
+  vl_row_copy_members(row, def, &d);
+  if (!vl_scene_copy_source(scene, &d.source) || !vl_row_take(scene, row, &d, true, def->source, what) ||
+      !vl_scene_copy_string(scene, &d.name))
     return none;
-  if (!vl_scene_copy_source(scene, &d.source) || !take_spectrum(scene, &d.reflectance, at, "reflectance") ||
-      !take_float(scene, &d.u_roughness, at, "u roughness") || !take_float(scene, &d.v_roughness, at, "v roughness") ||
-      !take_spectrum(scene, &d.eta, at, "eta") || !take_spectrum(scene, &d.k, at, "k") ||
-      !take_float(scene, &d.thickness, at, "thickness") || !take_float(scene, &d.g, at, "g") ||
-      !take_spectrum(scene, &d.albedo, at, "albedo") || !take_float(scene, &d.amount, at, "amount") ||
-      !take_float(scene, &d.displacement, at, "displacement") ||
-      !take_spectrum(scene, &d.transmittance, at, "transmittance") ||
-      !take_float(scene, &d.coat_u_roughness, at, "coat's u roughness") ||
-      !take_float(scene, &d.coat_v_roughness, at, "coat's v roughness") ||
-      !take_spectrum(scene, &d.coat_eta, at, "coat's eta") || !vl_scene_copy_string(scene, &d.name) ||
-      !vl_scene_copy_string(scene, &d.normal_map) || !vl_scene_copy_string(scene, &d.measured))
-    return none;
+  if (d.kind == VL_MATERIAL_MIX) d.materials[0] = def->materials[0], d.materials[1] = def->materials[1];
   vlMaterialDef *slot = VL_PUSH(scene->context, &scene->materials);
   if (!slot) return out_of_memory(scene), none;
   *slot = d;

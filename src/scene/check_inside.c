@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "scene/check.h"
+#include "scene/schema/schema.h"
 #include "scene/solid.h"
 
 typedef struct Box {
@@ -27,8 +28,7 @@ static bool lets_light_pass(const vlCheck *c, const vlShapeDef *d) {
   const vlMaterialDef *m = vl_check_material(c, d->material);
   if (d->alpha.texture.index || d->alpha.value < 1 || d->one_sided) return true;
   if (!m) return false;
-  return m->kind != VL_MATERIAL_DIFFUSE && m->kind != VL_MATERIAL_COATED_DIFFUSE && m->kind != VL_MATERIAL_CONDUCTOR &&
-         m->kind != VL_MATERIAL_COATED_CONDUCTOR && m->kind != VL_MATERIAL_SUBSURFACE;
+  return !(vl_kind_row(&vl_material_family, (int)m->kind)->traits & VL_MATERIAL_OPAQUE);
 }
 
 /* Of the world's own lights; those in instances are not looked at: they count as being inside. */

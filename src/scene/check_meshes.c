@@ -7,6 +7,7 @@
 #include "math/transform.h"
 #include "scene/body.h"
 #include "scene/check.h"
+#include "scene/schema/schema.h"
 
 /* ---- degenerate -------------------------------------------------------------------------------------------------- */
 
@@ -137,7 +138,7 @@ static void check_uv(vlCheck *c, const vlShapeDef *d, const Needs *n) {
 
 static bool is_body(const vlCheck *c, const vlShapeDef *d) {
   const vlMaterialDef *m = vl_check_material(c, d->material);
-  return m && (m->kind == VL_MATERIAL_DIELECTRIC || m->kind == VL_MATERIAL_SUBSURFACE ||
+  return m && ((vl_kind_row(&vl_material_family, (int)m->kind)->traits & VL_MATERIAL_REFRACTS) ||
                (m->kind == VL_MATERIAL_PRINCIPLED && !m->principled.thin_walled &&
                 (m->principled.transmission.texture.index || m->principled.transmission.value > 0)));
 }

@@ -11,6 +11,7 @@
 #include "color/color.h"
 #include "image/image.h"
 #include "scene/check.h"
+#include "scene/schema/schema.h"
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 
@@ -27,15 +28,25 @@ static bool file_is_there(vlCheck *c, const char *path, vlSource source) {
   return r == VL_OK;
 }
 
+/* All files that a row's parameters name. */
+static void look_for_files_of(vlCheck *c, const vlKindFamily *family, int kind, const void *def, vlSource source) {
+  const vlKindRow *row = vl_kind_row(family, kind);
+  for (uint32_t i = 0; i < row->parameter_count; i++) {
+    const vlParameter *p = &row->parameters[i];
+    if (p->type != VL_PARAMETER_FILE) continue;
+    const char *path = *(const char *const *)(const void *)((const char *)def + p->offset);
+    if (path) file_is_there(c, path, source);
+  }
+}
+
 static void look_for_files(vlCheck *c) {
   const vlScene *s = c->scene;
   for (size_t i = 0; i < s->textures.count; i++)
-    if (s->textures.items[i].path) file_is_there(c, s->textures.items[i].path, s->textures.items[i].source);
+    look_for_files_of(c, &vl_texture_family, (int)s->textures.items[i].kind, &s->textures.items[i],
+                      s->textures.items[i].source);
   for (size_t i = 0; i < s->materials.count; i++)
-    if (s->materials.items[i].normal_map)
-      file_is_there(c, s->materials.items[i].normal_map, s->materials.items[i].source);
-  for (size_t i = 0; i < s->materials.count; i++)
-    if (s->materials.items[i].measured) file_is_there(c, s->materials.items[i].measured, s->materials.items[i].source);
+    look_for_files_of(c, &vl_material_family, (int)s->materials.items[i].kind, &s->materials.items[i],
+                      s->materials.items[i].source);
   for (size_t i = 0; i < s->lights.count; i++)
     if (s->lights.items[i].path) file_is_there(c, s->lights.items[i].path, s->lights.items[i].source);
   for (size_t i = 0; i < s->emissions.count; i++)

@@ -77,7 +77,7 @@ typedef struct vlShade {
   VL_ROW float reflectance[4][VL_ROW_SIZE], eta[4][VL_ROW_SIZE], k[4][VL_ROW_SIZE];
   VL_ROW float alpha_x[VL_ROW_SIZE], alpha_y[VL_ROW_SIZE], eta_s[VL_ROW_SIZE];
   const vlCoatTable *coat[VL_ROW_SIZE];
-  VL_ROW float principled[VL_PRINCIPLED_ROWS][VL_ROW_SIZE]; /* trace/bsdf/bsdf.h names them */
+  VL_ROW float own[VL_BSDF_ROWS][VL_ROW_SIZE]; /* trace/bsdf/bsdf.h names them */
   VL_ROW uint32_t seed[VL_ROW_SIZE];
   const vlMeasured *measured[VL_ROW_SIZE];
   VL_ROW float value[4][VL_ROW_SIZE], pdf[VL_ROW_SIZE], eta_scale[VL_ROW_SIZE];

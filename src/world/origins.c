@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
+#include "scene/schema/schema.h"
 #include "velo/channels.h"
 #include "world/world.h"
 
@@ -17,25 +18,6 @@ static const char *shape_type(vlShapeKind kind) {
     case VL_SHAPE_CURVES: return "curves";
   }
   return "shape";
-}
-
-static const char *material_type(vlMaterialKind kind) {
-  switch (kind) {
-    case VL_MATERIAL_DIFFUSE: return "diffuse";
-    case VL_MATERIAL_COATED_DIFFUSE: return "coateddiffuse";
-    case VL_MATERIAL_CONDUCTOR: return "conductor";
-    case VL_MATERIAL_DIELECTRIC: return "dielectric";
-    case VL_MATERIAL_THIN_DIELECTRIC: return "thindielectric";
-    case VL_MATERIAL_MIX: return "mix";
-    case VL_MATERIAL_PRINCIPLED: return "principled";
-    case VL_MATERIAL_DIFFUSE_TRANSMISSION: return "diffusetransmission";
-    case VL_MATERIAL_COATED_CONDUCTOR: return "coatedconductor";
-    case VL_MATERIAL_HAIR: return "hair";
-    case VL_MATERIAL_MEASURED: return "measured";
-    case VL_MATERIAL_SUBSURFACE: return "subsurface";
-    case VL_MATERIAL_INTERFACE: return "interface";
-  }
-  return "material";
 }
 
 static const char *copy_text(vlWorld *world, const char *text) {
@@ -133,7 +115,7 @@ vlResult vl_world_id_info(const vlWorld *world, vlIdKind kind, uint32_t id, vlId
       break;
     case VL_ID_MATERIAL:
       o = &world->material_origins[id - 1];
-      info->type = material_type(world->materials.items[id - 1].kind);
+      info->type = vl_kind_row(&vl_material_family, (int)world->materials.items[id - 1].kind)->name;
       break;
     case VL_ID_INSTANCE:
       o = &world->instance_origins[id - 1];

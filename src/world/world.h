@@ -11,6 +11,7 @@
 #include "color/color.h"
 #include "velo/render.h"
 #include "world/accel/accel.h"
+#include "world/material/bsdf_kind.h"
 #include "world/material/coat.h"
 #include "world/material/measured.h"
 #include "world/medium/medium.h"
@@ -104,9 +105,22 @@ typedef struct vlWorldSubsurface {
   const struct vlBssrdfTable *table;
 } vlWorldSubsurface;
 
+/* Where all that a material scatters is a delta. */
+typedef enum vlSmooth {
+  VL_SMOOTH_NEVER,
+  VL_SMOOTH_BY_ALPHA,          /* where its alphas are */
+  VL_SMOOTH_BY_ALPHA_OR_INDEX, /* and where its relative index of refraction is 1 */
+  VL_SMOOTH_ALWAYS
+} vlSmooth;
+
 typedef struct vlWorldMaterial {
   vlMaterialKind kind;
-  int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
+  vlBsdfKind bsdf;
+  vlSmooth smooth;
+  uint32_t traits;             /* of the kind: VL_MATERIAL_OPAQUE and so on */
+  const void *own;             /* what its kind alone needs (vlWorldLayers, vlWorldHair, ...): a block of the world */
+  bool no_cosine;              /* light counts alike from wherever it comes */
+  int32_t reflectance, eta, k; /* spectrum nodes, -1: not used */
   int32_t u_roughness, v_roughness, amount; /* float nodes */
   uint32_t mix[2];
   bool absent[2]; /* parts of a mix that are interfaces: shapes take the other, with a coverage (shapes.c) */
@@ -120,8 +134,6 @@ typedef struct vlWorldMaterial {
   const vlWorldPrincipled *principled; /* null for other kinds */
   int32_t transmittance;               /* diffuse transmission: spectrum node; and the factor on both */
   float scale;
-  const vlWorldLayers *layers; /* null: none, or in closed form */
-  const vlWorldHair *hair;
   const vlMeasured *measured; /* may be shared; the world frees it */
   const vlWorldSubsurface *subsurface;
   bool has_subsurface; /* it, or a part of a mix */
@@ -236,14 +248,6 @@ vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount,
 /* Reads a picture (or takes the one given); encoding null: the file's own. Index, or -1 with the error set. */
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
                            float gamma, bool pyramid, vlError *error);
-vlResult vl_world_principled(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
-                             vlError *error);
-vlResult vl_world_layers(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
-                         vlError *error);
-vlResult vl_world_subsurface(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
-                             vlError *error);
-vlResult vl_world_hair(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
-                       vlError *error);
 /* Reads the scene's pictures on all workers; errors are left to who asks for the picture. */
 vlResult vl_world_preload_images(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_materials(vlWorld *world, const struct vlScene *scene, vlError *error);

@@ -44,6 +44,45 @@ check body_b "$VELO" render body2.pbrt -o body_b.exr --quiet
 check body_same "$VELO" image diff body_a.exr body_b.exr --threshold differing=0
 check body_gltf "$VELO" scene convert body.pbrt body.gltf
 expect_text body_gltf_tells 'subsurface: as a rough dielectric'
+# Computed textures, and hair by each of its colours.
+cat >kinds.pbrt <<'END'
+LookAt 0 0 6  0 0 0  0 1 0
+Camera "perspective"
+Film "rgb" "integer xresolution" 32 "integer yresolution" 24 "string filename" "kinds.exr"
+Sampler "zsobol" "integer pixelsamples" 4
+WorldBegin
+LightSource "infinite"
+LightSource "distant" "point3 from" [ 1 2 3 ]
+AttributeBegin
+  Scale .2 .3 .2
+  Texture "fbm" "float" "fbm" "integer octaves" 4 "float roughness" .7
+  Texture "wrinkled" "float" "wrinkled"
+  Texture "windy" "float" "windy"
+  Texture "marble" "spectrum" "marble" "float scale" 2 "float variation" .4
+AttributeEnd
+Texture "dots" "spectrum" "dots" "rgb inside" [ .8 .2 .1 ] "rgb outside" [ .1 .2 .3 ] "float uscale" 8 "float vscale" 8
+Texture "bilerp" "spectrum" "bilerp" "rgb v00" [ .1 .9 .1 ] "rgb v11" [ .9 .1 .1 ] "string mapping" "spherical"
+Texture "direction" "spectrum" "directionmix" "texture tex1" "dots" "texture tex2" "marble" "vector3 dir" [ 1 1 0 ]
+Texture "mix" "spectrum" "mix" "texture tex1" "direction" "texture tex2" "bilerp" "texture amount" "fbm"
+Material "diffuse" "texture reflectance" "mix"
+Shape "sphere" "float radius" .9
+Material "coateddiffuse" "texture reflectance" "marble" "texture displacement" "windy" "texture roughness" "wrinkled"
+Translate 1.9 0 0
+Shape "sphere" "float radius" .9
+Material "hair" "float eumelanin" .4 "float pheomelanin" .2 "float beta_m" .5 "float alpha" 3
+Translate -3.8 0 0
+Shape "sphere" "float radius" .9
+Material "hair" "rgb color" [ .6 .4 .2 ]
+Translate 1.5 1.5 0
+Shape "sphere" "float radius" .6
+Material "hair" "rgb sigma_a" [ .2 .4 .8 ] "float eta" 1.4
+Translate 1.5 0 0
+Shape "sphere" "float radius" .6
+END
+check kinds_pbrt "$VELO" scene convert kinds.pbrt kinds2.pbrt --strict
+check kinds_a "$VELO" render kinds.pbrt -o kinds_a.exr --quiet
+check kinds_b "$VELO" render kinds2.pbrt -o kinds_b.exr --quiet
+check kinds_same "$VELO" image diff kinds_a.exr kinds_b.exr --threshold differing=0
 check pbrt_gltf "$VELO" scene convert scene.pbrt scene.gltf
 expect_text pbrt_gltf_tells 'not held: light from all around: left out (1)'
 check pbrt_glb "$VELO" scene convert scene.pbrt scene.glb

@@ -137,8 +137,9 @@ static const struct {
      "or "
      "\"texture\", not \"float\""},
     {W "Material \"subsurface\" \"float eta\" 4",
-     "t.pbrt:2:1: eta: the index of refraction of a body must be one number between 0.5 and 2.5"},
-    {W "Material \"subsurface\" \"float g\" 1", "t.pbrt:2:1: g: must be a number between -1 and 1"},
+     "t.pbrt:2:23: Material \"subsurface\": parameter \"eta\" must be at least 0.5 and at most 2.5, it is 4"},
+    {W "Material \"subsurface\" \"float g\" 1",
+     "t.pbrt:2:23: Material \"subsurface\": parameter \"g\" must be above -1 and below 1, it is 1"},
     {W "Material \"measured\"", "t.pbrt:2:1: Material \"measured\": \"string filename\" is missing"},
     {W "MakeNamedMaterial \"a\"", "t.pbrt:2:1: MakeNamedMaterial \"a\": \"string type\" is missing"},
     {W "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"a\" \"string type\" \"diffuse\"",
@@ -205,7 +206,7 @@ static const struct {
      "t.pbrt:2:23: Material \"dielectric\": parameter \"eta\" must be of type \"float\" or \"spectrum\" or \"rgb\" or "
      "\"blackbody\", not \"texture\""},
     {W "Texture \"a\" \"spectrum\" \"checkerboard\" \"integer dimension\" 4",
-     "t.pbrt:2:39: Texture \"a\" (checkerboard): \"dimension\" must be 2 or 3, it is 4"},
+     "t.pbrt:2:39: Texture \"a\" (checkerboard): parameter \"dimension\" must be at least 2 and at most 3, it is 4"},
     {W "Texture \"a\" \"spectrum\" \"imagemap\"",
      "t.pbrt:2:1: Texture \"a\" (imagemap): \"string filename\" is missing"},
     {W "Texture \"a\" \"spectrum\" \"imagemap\" \"string filname\" \"x.png\"",
@@ -273,7 +274,7 @@ static const struct {
      "t.pbrt:1:18: Sampler \"halton\": \"randomization\" cannot be \"some\" (known: none, permutedigits, fastowen, "
      "owen)"},
     {"PixelFilter \"box\" \"float xradius\" 0\n" W,
-     "t.pbrt:1:1: PixelFilter \"box\": the radius must be above 0 and at most 64 pixels"},
+     "t.pbrt:1:19: PixelFilter \"box\": parameter \"xradius\" must be above 0 and at most 64, it is 0"},
     {"PixelFilter \"box\" \"float sigma\" 1\n" W, "t.pbrt:1:19: PixelFilter \"box\": unknown parameter \"sigma\""},
     {"Integrator \"path\" \"bool regularise\" true\n" W,
      "t.pbrt:1:19: Integrator \"path\": unknown parameter \"regularise\" (did you mean \"regularize\"?)"},

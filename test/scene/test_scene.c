@@ -198,11 +198,13 @@ static void bad_materials_and_lights(void **state) {
   vlMaterialDef m = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   m.reflectance.value = vl_spectrum_rgb(1, NAN, 0);
   vl_scene_add_material(scene, &m);
-  refuses(VL_ERROR_SCENE, "reflectance: rgb value is not finite");
+  refuses(VL_ERROR_SCENE, "diffuse material: parameter \"reflectance\": rgb value is not finite");
   m = vl_default_material_def(VL_MATERIAL_CONDUCTOR);
   m.eta.value = vl_spectrum_named("metal-Au-eda");
   vl_scene_add_material(scene, &m);
-  refuses(VL_ERROR_SCENE, "eta: no spectrum is named \"metal-Au-eda\" (did you mean \"metal-Au-eta\"?)");
+  refuses(
+      VL_ERROR_SCENE,
+      "conductor material: parameter \"eta\": no spectrum is named \"metal-Au-eda\" (did you mean \"metal-Au-eta\"?)");
   m = vl_default_material_def(VL_MATERIAL_MIX);
   vl_scene_add_material(scene, &m);
   refuses(VL_ERROR_SCENE, "mix material: needs two materials");
@@ -212,16 +214,17 @@ static void bad_materials_and_lights(void **state) {
   vlTextureDef t = vl_default_texture_def(VL_TEXTURE_SCALE, false);
   t.float_a.texture.index = 1;
   vl_scene_add_texture(scene, &t);
-  refuses(VL_ERROR_SCENE, "texture input: there is no such texture");
+  refuses(VL_ERROR_SCENE, "scale texture: parameter \"tex\" names a texture that does not exist (add it first)");
   t = vl_default_texture_def(VL_TEXTURE_CONSTANT, false);
   vlTextureId number = vl_scene_add_texture(scene, &t);
   m = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   m.reflectance.texture = number;
   vl_scene_add_material(scene, &m);
-  refuses(VL_ERROR_SCENE, "reflectance: needs a spectrum texture, this is a float texture");
+  refuses(VL_ERROR_SCENE,
+          "diffuse material: parameter \"reflectance\" needs a spectrum texture, this is a float texture");
   t = vl_default_texture_def(VL_TEXTURE_IMAGE, false);
   vl_scene_add_texture(scene, &t);
-  refuses(VL_ERROR_SCENE, "image texture: needs either a file name or a picture");
+  refuses(VL_ERROR_SCENE, "imagemap texture: needs either a file name or an image");
   vlLightDef l = vl_default_light_def(VL_LIGHT_DISTANT);
   l.to[2] = 0;
   vl_scene_add_light(scene, &l);

@@ -12,7 +12,7 @@ enum { BATCH = 1024 };
 typedef struct Batch {
   float reflectance[4][BATCH], eta[4][BATCH], k[4][BATCH], alpha_x[BATCH], alpha_y[BATCH], eta_s[BATCH];
   const vlCoatTable *coat[BATCH];
-  float principled[VL_PRINCIPLED_ROWS][BATCH], lambda[4][BATCH];
+  float own[VL_BSDF_ROWS][BATCH], lambda[4][BATCH];
   uint32_t seed[BATCH];
   const vlMeasured *measured[BATCH];
   float ox[BATCH], oy[BATCH], oz[BATCH], ix[BATCH], iy[BATCH], iz[BATCH], lobe[BATCH], u[BATCH], v[BATCH];
@@ -25,7 +25,7 @@ typedef struct Surface {
   vlBsdfKind kind;
   float reflectance, eta, k, alpha_x, alpha_y, eta_s;
   const vlCoatTable *coat;
-  const float *principled; /* VL_PRINCIPLED_ROWS values */
+  const float *own; /* VL_BSDF_ROWS values */
   const vlMeasured *measured;
 } Surface;
 
@@ -33,7 +33,7 @@ static inline vlBsdfParams batch_params(Batch *b) {
   vlBsdfParams p;
   for (int c = 0; c < 4; c++) p.reflectance[c] = b->reflectance[c], p.eta[c] = b->eta[c], p.k[c] = b->k[c];
   p.alpha_x = b->alpha_x, p.alpha_y = b->alpha_y, p.eta_s = b->eta_s, p.coat = b->coat;
-  for (int k = 0; k < VL_PRINCIPLED_ROWS; k++) p.principled[k] = b->principled[k];
+  for (int k = 0; k < VL_BSDF_ROWS; k++) p.own[k] = b->own[k];
   for (int c = 0; c < 4; c++) p.lambda[c] = b->lambda[c];
   p.seed = b->seed;
   p.measured = b->measured;
@@ -47,7 +47,7 @@ static inline void batch_surface(Batch *b, uint32_t i, const Surface *s) {
   }
   b->alpha_x[i] = s->alpha_x, b->alpha_y[i] = s->alpha_y, b->eta_s[i] = s->eta_s, b->coat[i] = s->coat;
   b->measured[i] = s->measured;
-  for (int k = 0; s->principled && k < VL_PRINCIPLED_ROWS; k++) b->principled[k][i] = s->principled[k];
+  for (int k = 0; s->own && k < VL_BSDF_ROWS; k++) b->own[k][i] = s->own[k];
   for (int c = 0; c < 4; c++) b->lambda[c][i] = 420.0f + 80.0f * (float)c;
 }
 /* theta from +z; past pi/2 from below */

@@ -20,7 +20,7 @@ static int build_coats(void **state) {
   return !s->coats[0] || !s->coats[1] || !s->coats[2] || !s->coats[3];
 }
 
-static const float through[VL_PRINCIPLED_ROWS] = {
+static const float through[VL_BSDF_ROWS] = {
     [VL_T_TRANSMITTANCE] = 0.5f, [VL_T_TRANSMITTANCE + 1] = 0.2f, [VL_T_TRANSMITTANCE + 2] = 0.4f};
 
 enum { SURFACES = 16 };
@@ -53,7 +53,7 @@ static Surface surface(const State *s, int i) {
        .alpha_x = 0.1f,
        .alpha_y = 0.4f,
        .coat = s->coats[3]},
-      {.kind = VL_BSDF_DIFFUSE_TRANSMISSION, .reflectance = 0.3f, .principled = through},
+      {.kind = VL_BSDF_DIFFUSE_TRANSMISSION, .reflectance = 0.3f, .own = through},
       /* for the tests that do not integrate over the sphere */
       {.kind = VL_BSDF_CONDUCTOR, .eta = 0.2f, .k = 3.9f, .alpha_x = 0.01f, .alpha_y = 0.02f},
       {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f, .alpha_x = 0.01f, .alpha_y = 0.02f},

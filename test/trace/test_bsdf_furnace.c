@@ -36,10 +36,10 @@ static void white_furnace(void **state) {
   assert_int_equal(vl_coat_build(s->context, 1.5f, 0.0f, 1000, 0, 0, &clear), VL_OK);
   assert_int_equal(vl_coat_build(s->context, 2.4f, 0.0f, 1000, 0, 0, &dense), VL_OK);
   assert_int_equal(vl_coat_build(s->context, 1.5f, 0.01f, 1000, 0.4f, 0.4f, &frosted), VL_OK);
-  float through[VL_PRINCIPLED_ROWS] = {0};
+  float through[VL_BSDF_ROWS] = {0};
   for (int c = 0; c < 4; c++) through[VL_T_TRANSMITTANCE + c] = 0.7f;
   const Surface lossless[] = {
-      {.kind = VL_BSDF_DIFFUSE_TRANSMISSION, .reflectance = 0.3f, .principled = through},
+      {.kind = VL_BSDF_DIFFUSE_TRANSMISSION, .reflectance = 0.3f, .own = through},
       {.kind = VL_BSDF_DIFFUSE, .reflectance = 1},
       {.kind = VL_BSDF_CONDUCTOR, .eta = 1, .k = 1e7f},
       {.kind = VL_BSDF_CONDUCTOR, .eta = 0, .k = 2.0f}, /* real part 0: all of it comes back */

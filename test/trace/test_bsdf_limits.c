@@ -42,10 +42,10 @@ static int free_all(void **state) {
 static void reciprocity(void **state) {
   const State *s = *state;
   Batch *b = s->batch, *c = s->other;
-  float through[VL_PRINCIPLED_ROWS] = {0};
+  float through[VL_BSDF_ROWS] = {0};
   through[VL_T_TRANSMITTANCE + 2] = 0.7f;
   const Surface all[] = {{.kind = VL_BSDF_DIFFUSE, .reflectance = 0.7f},
-                         {.kind = VL_BSDF_DIFFUSE_TRANSMISSION, .reflectance = 0.2f, .principled = through},
+                         {.kind = VL_BSDF_DIFFUSE_TRANSMISSION, .reflectance = 0.2f, .own = through},
                          {.kind = VL_BSDF_CONDUCTOR, .eta = 0.2f, .k = 3.9f, .alpha_x = 0.2f, .alpha_y = 0.5f},
                          {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f, .alpha_x = 0.4f, .alpha_y = 0.3f},
                          {.kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 0.6f, .eta_s = 1.5f, .coat = s->coats[0]},
@@ -107,19 +107,19 @@ static void fill(const State *s, Batch *b, statRng *rng, vlBsdfKind kind) {
     b->alpha_x[j] = stat_bits(rng) & 1 ? stat_float(rng) : pick(rng, alphas, 8);
     b->alpha_y[j] = stat_bits(rng) & 1 ? b->alpha_x[j] : pick(rng, alphas, 8);
     b->eta_s[j] = pick(rng, etas, 7);
-    for (int k = 0; k < VL_PRINCIPLED_ROWS; k++)
-      b->principled[k][j] = stat_bits(rng) & 3 ? stat_float(rng) : (float)(stat_bits(rng) & 1);
+    for (int k = 0; k < VL_BSDF_ROWS; k++)
+      b->own[k][j] = stat_bits(rng) & 3 ? stat_float(rng) : (float)(stat_bits(rng) & 1);
     for (int c = 0; c < 4; c++) b->lambda[c][j] = 360 + 470 * stat_float(rng);
-    b->principled[VL_P_THIN][j] = (float)(stat_bits(rng) & 1);
-    b->principled[VL_P_FILM_INDEX][j] = 1 + stat_float(rng);
-    b->principled[VL_P_FILM_NM][j] = stat_bits(rng) & 3 ? 1000 * stat_float(rng) : 0;
+    b->own[VL_P_THIN][j] = (float)(stat_bits(rng) & 1);
+    b->own[VL_P_FILM_INDEX][j] = 1 + stat_float(rng);
+    b->own[VL_P_FILM_NM][j] = stat_bits(rng) & 3 ? 1000 * stat_float(rng) : 0;
     double n[3];
     stat_direction(rng, n);
-    b->principled[VL_P_COAT_X][j] = (float)n[0], b->principled[VL_P_COAT_Y][j] = (float)n[1];
-    b->principled[VL_P_COAT_Z][j] = (float)fabs(n[2]);
+    b->own[VL_P_COAT_X][j] = (float)n[0], b->own[VL_P_COAT_Y][j] = (float)n[1];
+    b->own[VL_P_COAT_Z][j] = (float)fabs(n[2]);
     if (kind == VL_BSDF_LAYERED) {
-      b->principled[VL_L_BASE_X][j] = pick(rng, alphas, 8), b->principled[VL_L_BASE_Y][j] = pick(rng, alphas, 8);
-      b->principled[VL_L_DEPTH][j] = 10, b->principled[VL_L_WALKS][j] = 1;
+      b->own[VL_L_BASE_X][j] = pick(rng, alphas, 8), b->own[VL_L_BASE_Y][j] = pick(rng, alphas, 8);
+      b->own[VL_L_DEPTH][j] = 10, b->own[VL_L_WALKS][j] = 1;
     }
     b->seed[j] = (uint32_t)stat_bits(rng);
     b->coat[j] = s->coats[stat_bits(rng) % 4];
@@ -146,7 +146,7 @@ static void never_nan(void **state) {
   Batch *b = s->batch;
   statRng rng = stat_rng(21);
   for (int turn = 0; turn < 1000; turn++) {
-    vlBsdfKind kind = (vlBsdfKind)(turn % VL_BSDF_KINDS);
+    vlBsdfKind kind = (vlBsdfKind)(turn % VL_BSDF_KIND_COUNT);
     fill(s, b, &rng, kind);
     batch_eval(s->kernels, kind, BATCH, b);
     for (uint32_t j = 0; j < BATCH; j++)
@@ -183,7 +183,7 @@ static void same_bits(void **state) {
     assert_ptr_not_equal(base, wide);
     statRng rng = stat_rng(31);
     for (int turn = 0; turn < 100; turn++) {
-      vlBsdfKind kind = (vlBsdfKind)(turn % VL_BSDF_KINDS);
+      vlBsdfKind kind = (vlBsdfKind)(turn % VL_BSDF_KIND_COUNT);
       uint32_t n = turn < 50 ? BATCH : 1 + (uint32_t)(stat_bits(&rng) % BATCH);
       fill(s, s->batch, &rng, kind);
       memcpy(s->other, s->batch, sizeof *s->batch);
@@ -212,7 +212,7 @@ static void lanes_alone(void **state) {
   const State *s = *state;
   Batch *b = s->batch, *c = s->other;
   statRng rng = stat_rng(41);
-  for (int k = 0; k < VL_BSDF_KINDS; k++) {
+  for (int k = 0; k < VL_BSDF_KIND_COUNT; k++) {
     vlBsdfKind kind = (vlBsdfKind)k;
     fill(s, b, &rng, kind);
     *c = *b;
@@ -221,7 +221,7 @@ static void lanes_alone(void **state) {
       for (int d = 0; d < 4; d++)
         c->reflectance[d][j] = b->reflectance[d][i], c->eta[d][j] = b->eta[d][i], c->k[d][j] = b->k[d][i];
       for (int d = 0; d < 4; d++) c->lambda[d][j] = b->lambda[d][i];
-      for (int r = 0; r < VL_PRINCIPLED_ROWS; r++) c->principled[r][j] = b->principled[r][i];
+      for (int r = 0; r < VL_BSDF_ROWS; r++) c->own[r][j] = b->own[r][i];
       c->alpha_x[j] = b->alpha_x[i], c->alpha_y[j] = b->alpha_y[i], c->eta_s[j] = b->eta_s[i], c->coat[j] = b->coat[i];
       c->ox[j] = b->ox[i], c->oy[j] = b->oy[i], c->oz[j] = b->oz[i];
       c->measured[j] = b->measured[i];

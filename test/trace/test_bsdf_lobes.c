@@ -164,11 +164,11 @@ static void coats(void **state) {
       l.surface.kind = VL_BSDF_COATED_DIFFUSE, l.surface.eta_s = 1.5f, l.surface.reflectance = 0.5f;
       l.surface.coat = table;
       look_at(&l, "coated diffuse", 0.9, (uint64_t)(300 + a * COSINES + c));
-      float rows[VL_PRINCIPLED_ROWS] = {[VL_L_BASE_X] = 0.3f, [VL_L_BASE_Y] = 0.3f, [VL_L_THICKNESS] = 0.2f};
+      float rows[VL_BSDF_ROWS] = {[VL_L_BASE_X] = 0.3f, [VL_L_BASE_Y] = 0.3f, [VL_L_THICKNESS] = 0.2f};
       rows[VL_L_DEPTH] = 10, rows[VL_L_WALKS] = 1;
       for (int metal = 0; metal < 2; metal++) {
         rows[VL_L_METAL] = (float)metal;
-        l.surface.kind = VL_BSDF_LAYERED, l.surface.eta = 0.2f, l.surface.k = 3, l.surface.principled = rows;
+        l.surface.kind = VL_BSDF_LAYERED, l.surface.eta = 0.2f, l.surface.k = 3, l.surface.own = rows;
         look_at(&l, metal ? "coated conductor" : "walked coat", 0.9, (uint64_t)(400 + a * COSINES + c));
       }
     }
@@ -181,12 +181,12 @@ static void principled(void **state) {
   for (int a = 0; a < ALPHAS; a++)
     for (int c = 0; c < COSINES; c++) {
       Lobe l = lobe_of(*state, a, c);
-      float rows[VL_PRINCIPLED_ROWS] = {[VL_P_METALLIC] = 0.8f, [VL_P_F90] = 1, [VL_P_THIN] = 1, [VL_P_COAT_Z] = 1};
+      float rows[VL_BSDF_ROWS] = {[VL_P_METALLIC] = 0.8f, [VL_P_F90] = 1, [VL_P_THIN] = 1, [VL_P_COAT_Z] = 1};
       for (int k = 0; k < 4; k++) rows[VL_P_F0 + k] = 0.04f;
       rows[VL_P_COAT] = 0.3f, rows[VL_P_COAT_ALPHA] = 0.4f, rows[VL_P_SHEEN_ALPHA] = 0.3f;
       rows[VL_P_FILM_INDEX] = 1.3f;
       l.surface.kind = VL_BSDF_PRINCIPLED, l.surface.eta_s = 1.5f, l.surface.reflectance = 0.8f;
-      l.surface.principled = rows;
+      l.surface.own = rows;
       look_at(&l, "principled", 0.9, (uint64_t)(500 + a * COSINES + c));
     }
 }
@@ -196,7 +196,7 @@ static void reciprocity(void **state) {
   const State *s = *state;
   Batch *b = s->batch, *c = s->other;
   const vlBsdfKind kinds[] = {VL_BSDF_CONDUCTOR, VL_BSDF_DIELECTRIC, VL_BSDF_COATED_DIFFUSE, VL_BSDF_PRINCIPLED};
-  float rows[VL_PRINCIPLED_ROWS] = {[VL_P_METALLIC] = 0.8f, [VL_P_F90] = 1, [VL_P_THIN] = 1, [VL_P_COAT_Z] = 1};
+  float rows[VL_BSDF_ROWS] = {[VL_P_METALLIC] = 0.8f, [VL_P_F90] = 1, [VL_P_THIN] = 1, [VL_P_COAT_Z] = 1};
   for (int k = 0; k < 4; k++) rows[VL_P_F0 + k] = 0.04f;
   rows[VL_P_COAT_ALPHA] = 0.4f, rows[VL_P_SHEEN_ALPHA] = 0.3f, rows[VL_P_FILM_INDEX] = 1.3f;
   statRng rng = stat_rng(77);
@@ -206,7 +206,7 @@ static void reciprocity(void **state) {
     assert_int_equal(vl_coat_build(s->context, 1.5f, 0.1f, 10, mean, mean, &table), VL_OK);
     for (int k = 0; k < 4; k++) {
       Surface surface = {.kind = kinds[k], .eta = 0.2f, .k = 3, .reflectance = 0.6f, .eta_s = 1.5f, .coat = table};
-      if (kinds[k] == VL_BSDF_PRINCIPLED) surface.principled = rows;
+      if (kinds[k] == VL_BSDF_PRINCIPLED) surface.own = rows;
       surface.alpha_x = (float)alphas[a][0], surface.alpha_y = (float)alphas[a][1];
       /* pairs that the lobe joins: sampled ones */
       for (uint32_t j = 0; j < BATCH; j++) {

@@ -10,10 +10,10 @@
 #include "bsdf_state.h"
 
 static void put(Batch *b, uint32_t i, float sigma_a, float h, float beta_m, float beta_n, float alpha) {
-  float rows[VL_PRINCIPLED_ROWS] = {0};
+  float rows[VL_BSDF_ROWS] = {0};
   for (int c = 0; c < 4; c++) rows[VL_H_SIGMA_A + c] = sigma_a * (float)(c + 1);
   rows[VL_H_ACROSS] = h, rows[VL_H_BETA_M] = beta_m, rows[VL_H_BETA_N] = beta_n, rows[VL_H_ALPHA] = alpha;
-  Surface s = {.eta_s = 1.55f, .principled = rows};
+  Surface s = {.eta_s = 1.55f, .own = rows};
   batch_surface(b, i, &s);
 }
 

@@ -38,7 +38,7 @@ static const Stack stacks[] = {
 enum { STACKS = sizeof stacks / sizeof *stacks };
 
 static void put(Batch *b, uint32_t i, const Stack *t, uint32_t seed) {
-  float rows[VL_PRINCIPLED_ROWS] = {0};
+  float rows[VL_BSDF_ROWS] = {0};
   rows[VL_L_METAL] = t->metal ? 1.0f : 0.0f, rows[VL_L_BASE_X] = t->base_x, rows[VL_L_BASE_Y] = t->base_y;
   rows[VL_L_THICKNESS] = t->thickness, rows[VL_L_G] = t->g;
   for (int c = 0; c < 4; c++) rows[VL_L_ALBEDO + c] = t->albedo;
@@ -49,7 +49,7 @@ static void put(Batch *b, uint32_t i, const Stack *t, uint32_t seed) {
                .alpha_x = t->alpha,
                .alpha_y = t->alpha,
                .eta_s = t->eta_s,
-               .principled = rows};
+               .own = rows};
   batch_surface(b, i, &s);
   b->seed[i] = seed;
 }

@@ -133,8 +133,8 @@ static const Look looks[] = {
 };
 enum { LOOKS = sizeof looks / sizeof *looks };
 
-static Surface surface_of(const Look *l, float rows[VL_PRINCIPLED_ROWS]) {
-  memset(rows, 0, VL_PRINCIPLED_ROWS * sizeof *rows);
+static Surface surface_of(const Look *l, float rows[VL_BSDF_ROWS]) {
+  memset(rows, 0, VL_BSDF_ROWS * sizeof *rows);
   rows[VL_P_METALLIC] = l->metallic;
   rows[VL_P_F90] = 1;
   rows[VL_P_TRANSMISSION] = l->transmission;
@@ -154,7 +154,7 @@ static Surface surface_of(const Look *l, float rows[VL_PRINCIPLED_ROWS]) {
                    .eta_s = index,
                    .alpha_x = alpha + (1 - alpha) * l->anisotropy * l->anisotropy,
                    .alpha_y = alpha,
-                   .principled = rows};
+                   .own = rows};
 }
 
 /* Channel 0 of the base is white where base is 1 (batch_surface darkens the others). */
@@ -163,7 +163,7 @@ static void furnace(void **state) {
   Batch *b = s->batch;
   static const double cosines[] = {0.98, 0.7, 0.4, 0.15, -0.3, -0.85};
   for (int k = 0; k < LOOKS; k++) {
-    float rows[VL_PRINCIPLED_ROWS];
+    float rows[VL_BSDF_ROWS];
     Surface surface = surface_of(&looks[k], rows);
     for (int t = 0; t < 6; t++) {
       statRng rng = stat_rng((uint64_t)(k * 6 + t));
@@ -194,7 +194,7 @@ static void reciprocity(void **state) {
   State *s = *state;
   Batch *a = s->batch, *b = s->other;
   for (int k = 0; k < LOOKS; k++) {
-    float rows[VL_PRINCIPLED_ROWS];
+    float rows[VL_BSDF_ROWS];
     Surface surface = surface_of(&looks[k], rows);
     if (looks[k].roughness == 0) continue; /* values of sharp peaks are rounded more */
     statRng rng = stat_rng((uint64_t)(1000 + k));
@@ -252,7 +252,7 @@ static void chi_square(void **state) {
     for (int t = 0; t < 3; t++) {
       int k = 0;
       while (strcmp(looks[k].name, names[q]) != 0) k++;
-      float rows[VL_PRINCIPLED_ROWS];
+      float rows[VL_BSDF_ROWS];
       Surface surface = surface_of(&looks[k], rows);
       statRng rng = stat_rng((uint64_t)(q * 3 + t + 31));
       statSphere hist = stat_sphere_new(24, 32);
@@ -285,7 +285,7 @@ static void sampled_is_evaluated(void **state) {
   Batch *a = s->batch, *b = s->other;
   for (int k = 0; k < LOOKS; k++) {
     if (looks[k].roughness == 0) continue;
-    float rows[VL_PRINCIPLED_ROWS];
+    float rows[VL_BSDF_ROWS];
     Surface surface = surface_of(&looks[k], rows);
     statRng rng = stat_rng((uint64_t)(500 + k));
     for (uint32_t j = 0; j < BATCH; j++) {
@@ -313,7 +313,7 @@ static void sampled_is_evaluated(void **state) {
 /* Reflection of a smooth film on black, by what the specular lobe sends back at one angle. */
 static double film_reflection(State *s, float nm, float index, double cosine, uint32_t channel) {
   Look look = {.metallic = 1, .roughness = 0, .film = 1, .film_nm = nm, .base = 0.04f};
-  float rows[VL_PRINCIPLED_ROWS];
+  float rows[VL_BSDF_ROWS];
   Surface surface = surface_of(&look, rows);
   rows[VL_P_FILM_INDEX] = index;
   Batch *b = s->batch;
@@ -348,7 +348,7 @@ static void off_is_off(void **state) {
   State *s = *state;
   Batch *a = s->batch, *b = s->other;
   Look look = {.roughness = 0.4f, .metallic = 0.2f, .base = 0.8f};
-  float plain[VL_PRINCIPLED_ROWS], other[VL_PRINCIPLED_ROWS];
+  float plain[VL_BSDF_ROWS], other[VL_BSDF_ROWS];
   Surface surface = surface_of(&look, plain), same = surface_of(&look, other);
   other[VL_P_COAT_ALPHA] = 0.3f, other[VL_P_COAT_X] = 0.6f, other[VL_P_COAT_Z] = 0.8f, other[VL_P_SHEEN_ALPHA] = 0.2f;
   other[VL_P_FILM_NM] = 700, other[VL_P_FILM_INDEX] = 2;

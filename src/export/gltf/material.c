@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "export/export.h"
+#include "scene/schema/schema.h"
 
 /* ---- inputs ------------------------------------------------------------------------------------------------------ */
 
@@ -221,56 +222,76 @@ static void put_glass(vlExport *x, json_t *material, const vlMaterialDef *m, vlM
     vl_export_lose(x, "indices of refraction by wavelength: that at 589 nm");
 }
 
-static void put_other(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+static double own_roughness(vlExport *x, const vlMaterialDef *m) {
+  return sqrt((double)vl_export_alpha(x, m, &m->u_roughness));
+}
+
+static void put_diffuse(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+  (void)inside;
+  put_base(x, material, &m->reflectance, coverage, 0, 1);
+  set_number(extension(x, material, "KHR_materials_specular"), "specularFactor", 0);
+}
+
+static void put_coated(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+  (void)inside;
+  vl_export_lose(x, "coateddiffuse: as a rough dielectric");
+  put_base(x, material, &m->reflectance, coverage, 0, own_roughness(x, m));
+  put_ior(x, material, vl_export_eta(&m->eta.value));
+}
+
+static void put_conductor(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
   float rgb[3];
   vlSpectrumInput color = m->reflectance;
-  double roughness = sqrt((double)vl_export_alpha(x, m, &m->u_roughness));
-  switch (m->kind) {
-    case VL_MATERIAL_DIFFUSE:
-      put_base(x, material, &color, coverage, 0, 1);
-      set_number(extension(x, material, "KHR_materials_specular"), "specularFactor", 0);
-      return;
-    case VL_MATERIAL_COATED_DIFFUSE:
-      vl_export_lose(x, "coateddiffuse: as a rough dielectric");
-      put_base(x, material, &color, coverage, 0, roughness);
-      put_ior(x, material, vl_export_eta(&m->eta.value));
-      return;
-    case VL_MATERIAL_CONDUCTOR:
-    case VL_MATERIAL_COATED_CONDUCTOR:
-      vl_export_metal_rgb(x, m, rgb);
-      if (!m->use_reflectance) color = vl_spectrum_input(vl_spectrum_rgb(rgb[0], rgb[1], rgb[2]));
-      if (!m->use_reflectance) vl_export_lose(x, "metals by eta and k: their colour at normal incidence");
-      put_base(x, material, &color, coverage, 1, roughness);
-      if (m->kind == VL_MATERIAL_COATED_CONDUCTOR) {
-        vl_export_lose(x, "coatedconductor: as a metal with a clear coat");
-        set_number(extension(x, material, "KHR_materials_clearcoat"), "clearcoatFactor", 1);
-        set_number(extension(x, material, "KHR_materials_clearcoat"), "clearcoatRoughnessFactor",
-                   unit(sqrt((double)vl_export_alpha(x, m, &m->coat_u_roughness))));
-      }
-      return;
-    case VL_MATERIAL_DIELECTRIC:
-    case VL_MATERIAL_THIN_DIELECTRIC: put_glass(x, material, m, inside, coverage); return;
-    case VL_MATERIAL_DIFFUSE_TRANSMISSION:
-      vl_export_lose(x, "diffusetransmission: reflected and passed light share one colour");
-      put_base(x, material, &color, coverage, 0, 1);
-      set_number(extension(x, material, "KHR_materials_specular"), "specularFactor", 0);
-      set_number(extension(x, material, "KHR_materials_diffuse_transmission"), "diffuseTransmissionFactor", 0.5);
-      put_color(x, extension(x, material, "KHR_materials_diffuse_transmission"), "diffuseTransmissionColorFactor",
-                "diffuseTransmissionColorTexture", true, &m->transmittance, -1);
-      return;
-    case VL_MATERIAL_SUBSURFACE:
-      vl_export_lose(x, "subsurface: as a rough dielectric, its colour grey where no reflectance says it");
-      if (!m->subsurface.from_reflectance) color = vl_spectrum_input(vl_spectrum_constant(0.5f));
-      put_base(x, material, &color, coverage, 0, roughness);
-      put_ior(x, material, vl_export_eta(&m->eta.value));
-      return;
-    default:
-      vl_export_lose(x, "materials of kinds that glTF has not: grey");
-      color = vl_spectrum_input(vl_spectrum_constant(0.5f));
-      put_base(x, material, &color, coverage, 0, 1);
-      return;
-  }
+  (void)inside;
+  vl_export_metal_rgb(x, m, rgb);
+  if (!m->use_reflectance) color = vl_spectrum_input(vl_spectrum_rgb(rgb[0], rgb[1], rgb[2]));
+  if (!m->use_reflectance) vl_export_lose(x, "metals by eta and k: their colour at normal incidence");
+  put_base(x, material, &color, coverage, 1, own_roughness(x, m));
 }
+
+static void put_coated_conductor(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside,
+                                 double coverage) {
+  put_conductor(x, material, m, inside, coverage);
+  vl_export_lose(x, "coatedconductor: as a metal with a clear coat");
+  set_number(extension(x, material, "KHR_materials_clearcoat"), "clearcoatFactor", 1);
+  set_number(extension(x, material, "KHR_materials_clearcoat"), "clearcoatRoughnessFactor",
+             unit(sqrt((double)vl_export_alpha(x, m, &m->coat_u_roughness))));
+}
+
+static void put_leaf(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+  (void)inside;
+  vl_export_lose(x, "diffusetransmission: reflected and passed light share one colour");
+  put_base(x, material, &m->reflectance, coverage, 0, 1);
+  set_number(extension(x, material, "KHR_materials_specular"), "specularFactor", 0);
+  set_number(extension(x, material, "KHR_materials_diffuse_transmission"), "diffuseTransmissionFactor", 0.5);
+  put_color(x, extension(x, material, "KHR_materials_diffuse_transmission"), "diffuseTransmissionColorFactor",
+            "diffuseTransmissionColorTexture", true, &m->transmittance, -1);
+}
+
+static void put_subsurface(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+  vlSpectrumInput color = m->reflectance;
+  (void)inside;
+  vl_export_lose(x, "subsurface: as a rough dielectric, its colour grey where no reflectance says it");
+  if (!m->subsurface.from_reflectance) color = vl_spectrum_input(vl_spectrum_constant(0.5f));
+  put_base(x, material, &color, coverage, 0, own_roughness(x, m));
+  put_ior(x, material, vl_export_eta(&m->eta.value));
+}
+
+static void put_grey(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
+  const vlSpectrumInput grey = vl_spectrum_input(vl_spectrum_constant(0.5f));
+  (void)m, (void)inside;
+  vl_export_lose(x, "materials of kinds that glTF has not: grey");
+  put_base(x, material, &grey, coverage, 0, 1);
+}
+
+/* inside: the medium there. Kinds that are not named: put_grey. */
+typedef void Put(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage);
+static Put *const puts_of_kind[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {
+    [VL_MATERIAL_DIFFUSE] = put_diffuse,       [VL_MATERIAL_COATED_DIFFUSE] = put_coated,
+    [VL_MATERIAL_CONDUCTOR] = put_conductor,   [VL_MATERIAL_COATED_CONDUCTOR] = put_coated_conductor,
+    [VL_MATERIAL_DIELECTRIC] = put_glass,      [VL_MATERIAL_THIN_DIELECTRIC] = put_glass,
+    [VL_MATERIAL_PRINCIPLED] = put_principled, [VL_MATERIAL_DIFFUSE_TRANSMISSION] = put_leaf,
+    [VL_MATERIAL_SUBSURFACE] = put_subsurface};
 
 /* ---- emission ---------------------------------------------------------------------------------------------------- */
 
@@ -342,10 +363,8 @@ json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors, 
   put_coverage(x, json, &d->alpha, &coverage);
   vlMaterialDef plain = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   if (!m) m = &plain;
-  if (m->kind == VL_MATERIAL_PRINCIPLED)
-    put_principled(x, json, m, d->inside, coverage);
-  else
-    put_other(x, json, m, d->inside, coverage);
+  Put *put = puts_of_kind[m->kind] ? puts_of_kind[m->kind] : put_grey;
+  put(x, json, m, d->inside, coverage);
   if (m->displacement.texture.index) vl_export_lose(x, "bump maps: left out");
   if (m->normal_map) {
     vlTextureDef picture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);

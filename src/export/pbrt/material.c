@@ -5,56 +5,6 @@
 
 #include "export/pbrt/pbrt.h"
 
-typedef struct Inputs {
-  vlPbrtInput color, second, albedo, u, v, coat_u, coat_v, thickness, g, amount, relief, sigma_a, sigma_s, mfp;
-} Inputs;
-
-/* "" for what has no texture, else its directives are written here, before the material's. */
-static bool prepare(vlExport *x, const vlMaterialDef *m, Inputs *in) {
-  return vl_pbrt_prepare_color(x, &m->reflectance, &in->color) &&
-         vl_pbrt_prepare_color(x, &m->transmittance, &in->second) &&
-         vl_pbrt_prepare_color(x, &m->albedo, &in->albedo) &&
-         vl_pbrt_prepare_number(x, &m->u_roughness, false, &in->u) &&
-         vl_pbrt_prepare_number(x, &m->v_roughness, false, &in->v) &&
-         vl_pbrt_prepare_number(x, &m->coat_u_roughness, false, &in->coat_u) &&
-         vl_pbrt_prepare_number(x, &m->coat_v_roughness, false, &in->coat_v) &&
-         vl_pbrt_prepare_number(x, &m->thickness, false, &in->thickness) &&
-         vl_pbrt_prepare_number(x, &m->g, false, &in->g) && vl_pbrt_prepare_number(x, &m->amount, false, &in->amount) &&
-         vl_pbrt_prepare_color(x, &m->subsurface.sigma_a, &in->sigma_a) &&
-         vl_pbrt_prepare_color(x, &m->subsurface.sigma_s, &in->sigma_s) &&
-         vl_pbrt_prepare_color(x, &m->subsurface.mfp, &in->mfp);
-}
-
-static void put_eta(vlExport *x, const char *name, const vlSpectrum *eta) {
-  if (eta->kind == VL_SPECTRUM_CONSTANT)
-    PUT(" \"float %s\" [%.9g]", name, (double)eta->value * (double)eta->scale);
-  else
-    vl_pbrt_spectrum(x, name, eta);
-}
-
-static void put_roughness(vlExport *x, const vlMaterialDef *m, const Inputs *in) {
-  vl_pbrt_put_number(x, "uroughness", &in->u);
-  vl_pbrt_put_number(x, "vroughness", &in->v);
-  PUT(" \"bool remaproughness\" %s", m->remap_roughness ? "true" : "false");
-}
-
-static void put_coat(vlExport *x, const vlMaterialDef *m, const Inputs *in) {
-  vl_pbrt_put_number(x, "thickness", &in->thickness);
-  vl_pbrt_put_number(x, "g", &in->g);
-  vl_pbrt_put_color(x, "albedo", &in->albedo);
-  PUT(" \"integer maxdepth\" [%u] \"integer nsamples\" [%u]", m->max_depth, m->samples);
-}
-
-static void put_metal(vlExport *x, const vlMaterialDef *m, const Inputs *in, const char *eta, const char *k) {
-  if (m->use_reflectance) {
-    vl_pbrt_put_color(x, "reflectance", &in->color);
-    return;
-  }
-  if (m->eta.texture.index || m->k.texture.index) vl_export_lose(x, "textured eta and k: values stand in");
-  vl_pbrt_spectrum(x, eta, &m->eta.value);
-  vl_pbrt_spectrum(x, k, &m->k.value);
-}
-
 /* ---- principled -------------------------------------------------------------------------------------------------- */
 
 static bool is_on(const vlFloatInput *input) {
@@ -180,92 +130,51 @@ static bool put_principled(vlExport *x, const vlMaterialDef *m, uint32_t id) {
 
 /* ---- pbrt's own -------------------------------------------------------------------------------------------------- */
 
+/* Of what may be said in several ways, the one that counts is written, always. */
+static vlPbrtWished one_of(bool counts) {
+  return counts ? VL_PBRT_ALWAYS : VL_PBRT_NEVER;
+}
+
+static vlPbrtWished metal_wish(const void *def, const vlParameter *p) {
+  const vlMaterialDef *m = def;
+  if (p->offset == offsetof(vlMaterialDef, reflectance)) return one_of(m->use_reflectance);
+  if (p->offset == offsetof(vlMaterialDef, eta) || p->offset == offsetof(vlMaterialDef, k))
+    return one_of(!m->use_reflectance);
+  return VL_PBRT_UNLESS_DEFAULT;
+}
+
+static vlPbrtWished hair_wish(const void *def, const vlParameter *p) {
+  vlHairColor color = ((const vlMaterialDef *)def)->hair.color;
+  if (p->offset == offsetof(vlMaterialDef, hair.sigma_a)) return one_of(color == VL_HAIR_SIGMA_A);
+  if (p->offset == offsetof(vlMaterialDef, reflectance)) return one_of(color == VL_HAIR_REFLECTANCE);
+  if (p->offset == offsetof(vlMaterialDef, hair.eumelanin) || p->offset == offsetof(vlMaterialDef, hair.pheomelanin))
+    return one_of(color == VL_HAIR_MELANIN);
+  return VL_PBRT_UNLESS_DEFAULT;
+}
+
+static vlPbrtWished subsurface_wish(const void *def, const vlParameter *p) {
+  bool from_reflectance = ((const vlMaterialDef *)def)->subsurface.from_reflectance;
+  if (p->offset == offsetof(vlMaterialDef, reflectance) || p->offset == offsetof(vlMaterialDef, subsurface.mfp))
+    return one_of(from_reflectance);
+  if (p->offset == offsetof(vlMaterialDef, subsurface.sigma_a) ||
+      p->offset == offsetof(vlMaterialDef, subsurface.sigma_s))
+    return one_of(!from_reflectance);
+  return VL_PBRT_UNLESS_DEFAULT;
+}
+
+static vlPbrtWish *const wishes[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {[VL_MATERIAL_CONDUCTOR] = metal_wish,
+                                                                       [VL_MATERIAL_COATED_CONDUCTOR] = metal_wish,
+                                                                       [VL_MATERIAL_HAIR] = hair_wish,
+                                                                       [VL_MATERIAL_SUBSURFACE] = subsurface_wish};
+
 static bool put_own(vlExport *x, const vlMaterialDef *m, uint32_t id) {
-  Inputs in;
-  char normal[300] = "", measured[300] = "";
-  if (!prepare(x, m, &in)) return false;
-  if (m->displacement.texture.index && !vl_pbrt_prepare_number(x, &m->displacement, false, &in.relief)) return false;
-  if (m->normal_map) {
-    vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
-    t.path = m->normal_map;
-    if (!vl_pbrt_picture(x, &t, false, normal)) return false;
-  }
-  if (m->kind == VL_MATERIAL_MEASURED) { /* copied as pictures are */
-    vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
-    t.path = m->measured;
-    if (!vl_pbrt_picture(x, &t, false, measured)) return false;
-  }
-  PUT("MakeNamedMaterial \"material%u\" \"string type\" ", id);
-  switch (m->kind) {
-    case VL_MATERIAL_DIFFUSE:
-      PUT("\"diffuse\"");
-      vl_pbrt_put_color(x, "reflectance", &in.color);
-      break;
-    case VL_MATERIAL_COATED_DIFFUSE:
-      PUT("\"coateddiffuse\"");
-      vl_pbrt_put_color(x, "reflectance", &in.color);
-      put_roughness(x, m, &in);
-      put_eta(x, "eta", &m->eta.value);
-      put_coat(x, m, &in);
-      break;
-    case VL_MATERIAL_CONDUCTOR:
-      PUT("\"conductor\"");
-      put_metal(x, m, &in, "eta", "k");
-      put_roughness(x, m, &in);
-      break;
-    case VL_MATERIAL_COATED_CONDUCTOR:
-      PUT("\"coatedconductor\"");
-      put_metal(x, m, &in, "conductor.eta", "conductor.k");
-      vl_pbrt_put_number(x, "conductor.uroughness", &in.u);
-      vl_pbrt_put_number(x, "conductor.vroughness", &in.v);
-      vl_pbrt_put_number(x, "interface.uroughness", &in.coat_u);
-      vl_pbrt_put_number(x, "interface.vroughness", &in.coat_v);
-      PUT(" \"bool remaproughness\" %s", m->remap_roughness ? "true" : "false");
-      put_eta(x, "interface.eta", &m->coat_eta.value);
-      put_coat(x, m, &in);
-      break;
-    case VL_MATERIAL_DIELECTRIC:
-      PUT("\"dielectric\"");
-      put_eta(x, "eta", &m->eta.value);
-      put_roughness(x, m, &in);
-      break;
-    case VL_MATERIAL_THIN_DIELECTRIC:
-      PUT("\"thindielectric\"");
-      put_eta(x, "eta", &m->eta.value);
-      break;
-    case VL_MATERIAL_DIFFUSE_TRANSMISSION:
-      PUT("\"diffusetransmission\"");
-      vl_pbrt_put_color(x, "reflectance", &in.color);
-      vl_pbrt_put_color(x, "transmittance", &in.second);
-      PUT(" \"float scale\" [%.9g]", (double)m->scale);
-      break;
-    case VL_MATERIAL_MIX:
-      PUT("\"mix\" \"string materials\" [\"material%u\" \"material%u\"]", m->materials[0].index, m->materials[1].index);
-      vl_pbrt_put_number(x, "amount", &in.amount);
-      break;
-    case VL_MATERIAL_MEASURED: PUT("\"measured\" \"string filename\" \"%s\"", measured); break;
-    case VL_MATERIAL_SUBSURFACE:
-      PUT("\"subsurface\"");
-      if (m->subsurface.from_reflectance) {
-        vl_pbrt_put_color(x, "reflectance", &in.color);
-        vl_pbrt_put_color(x, "mfp", &in.mfp);
-      } else {
-        vl_pbrt_put_color(x, "sigma_a", &in.sigma_a);
-        vl_pbrt_put_color(x, "sigma_s", &in.sigma_s);
-      }
-      PUT(" \"float scale\" [%.9g]", (double)m->scale);
-      vl_pbrt_put_number(x, "g", &in.g);
-      put_eta(x, "eta", &m->eta.value);
-      put_roughness(x, m, &in);
-      break;
-    case VL_MATERIAL_INTERFACE: PUT("\"interface\""); break;
-    default:
-      vl_export_lose(x, "materials of further kinds: grey");
-      PUT("\"diffuse\"");
-      break;
-  }
-  if (m->displacement.texture.index && in.relief.texture[0]) vl_pbrt_put_number(x, "displacement", &in.relief);
-  if (normal[0]) PUT(" \"string normalmap\" \"%s\"", normal);
+  vlPbrtParameter list[VL_PBRT_PARAMETERS];
+  const vlKindRow *row = vl_kind_row(&vl_material_family, (int)m->kind);
+  if (!vl_pbrt_prepare(x, row, m, true, wishes[m->kind], 0, list)) return false;
+  PUT("MakeNamedMaterial \"material%u\" \"string type\" \"%s\"", id, row->name);
+  if (m->kind == VL_MATERIAL_MIX)
+    PUT(" \"string materials\" [\"material%u\" \"material%u\"]", m->materials[0].index, m->materials[1].index);
+  vl_pbrt_put(x, row, m, true, list);
   PUT("\n");
   return true;
 }

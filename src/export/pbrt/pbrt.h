@@ -3,6 +3,7 @@
 #define EXPORT_PBRT_PBRT_H
 
 #include "export/export.h"
+#include "scene/schema/schema.h"
 
 #define PUT(...) vl_bytes_print(x->context, &x->text, __VA_ARGS__)
 
@@ -29,5 +30,22 @@ bool vl_pbrt_prepare_color(vlExport *x, const vlSpectrumInput *input, vlPbrtInpu
 bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, double eta, vlPbrtInput *result);
 void vl_pbrt_put_number(vlExport *x, const char *name, const vlPbrtInput *input);
 void vl_pbrt_put_color(vlExport *x, const char *name, const vlPbrtInput *input);
+/* The same for inputs as they are; depth: of textures in textures. */
+bool vl_pbrt_inner_number(vlExport *x, const vlFloatInput *input, int depth, vlPbrtInput *result);
+bool vl_pbrt_inner_color(vlExport *x, const vlSpectrumInput *input, int depth, vlPbrtInput *result);
+
+/* All parameters that a row names, in two steps as above (parameters.c): those that differ from their defaults, unless
+ * `wish` (may be null) says otherwise. list: an entry per parameter of the row. spectrum: of EITHER_INPUT, the half. */
+enum { VL_PBRT_PARAMETERS = 64 };
+typedef struct vlPbrtParameter {
+  bool wanted;
+  vlPbrtInput input;
+  char file[300];
+} vlPbrtParameter;
+typedef enum vlPbrtWished { VL_PBRT_UNLESS_DEFAULT, VL_PBRT_ALWAYS, VL_PBRT_NEVER } vlPbrtWished;
+typedef vlPbrtWished vlPbrtWish(const void *def, const vlParameter *parameter);
+bool vl_pbrt_prepare(vlExport *x, const vlKindRow *row, const void *def, bool spectrum, vlPbrtWish *wish, int depth,
+                     vlPbrtParameter *list);
+void vl_pbrt_put(vlExport *x, const vlKindRow *row, const void *def, bool spectrum, const vlPbrtParameter *list);
 
 #endif

@@ -161,62 +161,65 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
 /* ---- textures ---------------------------------------------------------------------------------------------------- */
 
 static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char name[64]);
+static bool prepare_color(vlExport *x, const vlSpectrumInput *input, Change change, vlPbrtInput *result);
 
-static bool inner(vlExport *x, const vlTextureDef *t, int k, int depth, vlPbrtInput *result) {
-  const vlFloatInput *floats[] = {&t->float_a, &t->float_b, &t->float_c, &t->float_d, &t->amount};
-  const vlSpectrumInput *spectra[] = {&t->spectrum_a, &t->spectrum_b, &t->spectrum_c, &t->spectrum_d};
-  bool color = t->spectrum && k < 4;
-  uint32_t id = color ? spectra[k]->texture.index : floats[k]->texture.index;
-  *result = (vlPbrtInput){0};
-  result->number = color ? 0 : floats[k]->value;
-  if (color) result->spectrum = spectra[k]->value;
-  return !id || put_texture(x, id, as_is, depth + 1, result->texture);
+/* Where the kind or the mapping asks for it, the texture's space. */
+static bool is_placed(const vlTextureDef *t, const vlKindRow *row, vlMat4 *world_from_texture) {
+  bool mapped = vl_row_find(row, "mapping") != NULL, placed = !mapped;
+  for (uint32_t i = 0; i < row->parameter_count && !mapped; i++)
+    if (row->parameters[i].offset == offsetof(vlTextureDef, texture_from_world)) mapped = true;
+  if (!mapped) return false;
+  placed = placed || t->mapping != VL_MAPPING_UV || (t->kind == VL_TEXTURE_CHECKERBOARD && t->dimension == 3);
+  return placed && vl_mat4_inverse(vl_mat4_load(t->texture_from_world), world_from_texture);
 }
 
-static void put_inner(vlExport *x, const vlTextureDef *t, const char *name, const vlPbrtInput *input) {
-  if (t->spectrum)
-    vl_pbrt_put_color(x, name, input);
-  else
-    vl_pbrt_put_number(x, name, input);
+/* The mapping's parameters are written by put_mapping. */
+static vlPbrtWished wish(const void *def, const vlParameter *p) {
+  static const char *const of_mapping[] = {"mapping", "uscale", "vscale", "udelta", "vdelta", "v1", "v2"};
+  (void)def;
+  for (size_t i = 0; i < sizeof of_mapping / sizeof *of_mapping; i++)
+    if (p->name && strcmp(p->name, of_mapping[i]) == 0) return VL_PBRT_NEVER;
+  return VL_PBRT_UNLESS_DEFAULT;
 }
 
-/* Written anew for each use: names are counted by their place in the file. */
+/* Written anew for each use: names are counted by their place in the file. name is empty where there is none. */
 static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char name[64]) {
-  static const char *const kinds[] = {"constant", "scale", "mix", "checkerboard", "imagemap"};
-  static const char *const names[4][2] = {{"value", NULL}, {"tex", NULL}, {"tex1", "tex2"}, {"tex1", "tex2"}};
   const vlTextureDef *t = &x->scene->textures.items[id - 1];
+  const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)t->kind);
+  vlPbrtParameter list[VL_PBRT_PARAMETERS];
+  bool image = t->kind == VL_TEXTURE_IMAGE;
   if (depth > 16) return vl_export_fail(x, VL_ERROR_SCENE, "textures stand in each other too deep");
-  if (t->kind > VL_TEXTURE_IMAGE || (change.squared && t->kind != VL_TEXTURE_IMAGE)) {
-    vl_export_lose(x, t->kind == VL_TEXTURE_VERTEX_COLOR ? "colours of vertices: left out"
-                                                         : "computed textures (noise, dots, ...): a value stands in");
+  if (!row->name || (change.squared && !image)) {
+    vl_export_lose(x, row->name ? "squares of computed textures: a value stands in" : "colours of vertices: left out");
     name[0] = 0;
     return true;
   }
-  vlPbrtInput a = {0}, b = {0}, amount = {0};
-  if (t->kind != VL_TEXTURE_IMAGE && !inner(x, t, 0, depth, &a)) return false;
-  if ((t->kind == VL_TEXTURE_MIX || t->kind == VL_TEXTURE_CHECKERBOARD) && !inner(x, t, 1, depth, &b)) return false;
-  if ((t->kind == VL_TEXTURE_SCALE || t->kind == VL_TEXTURE_MIX) && !inner(x, t, 4, depth, &amount)) return false;
+  if (!image && !vl_pbrt_prepare(x, row, t, t->spectrum, wish, depth + 1, list)) return false;
   snprintf(name, 64, "texture%u-%zu", id, x->text.data.count);
   vlMat4 world_from_texture;
-  bool placed = t->mapping != VL_MAPPING_UV || (t->kind == VL_TEXTURE_CHECKERBOARD && t->dimension == 3);
-  placed = placed && vl_mat4_inverse(vl_mat4_load(t->texture_from_world), &world_from_texture);
+  bool placed = is_placed(t, row, &world_from_texture);
   if (placed) {
     PUT("AttributeBegin\n");
     vl_pbrt_matrix(x, world_from_texture.m);
   }
-  PUT("Texture \"%s\" \"%s\" \"%s\"", name, t->spectrum ? "spectrum" : "float", kinds[t->kind]);
-  if (t->kind == VL_TEXTURE_IMAGE) {
-    if (!put_image(x, t, change)) return false;
-  } else {
-    put_inner(x, t, names[t->kind][0], &a);
-    if (names[t->kind][1]) put_inner(x, t, names[t->kind][1], &b);
-  }
-  if (t->kind == VL_TEXTURE_SCALE) vl_pbrt_put_number(x, "scale", &amount);
-  if (t->kind == VL_TEXTURE_MIX) vl_pbrt_put_number(x, "amount", &amount);
-  if (t->kind == VL_TEXTURE_CHECKERBOARD && t->dimension == 3) PUT(" \"integer dimension\" [3]");
-  if (t->kind == VL_TEXTURE_IMAGE || (t->kind == VL_TEXTURE_CHECKERBOARD && t->dimension != 3)) put_mapping(x, t);
+  PUT("Texture \"%s\" \"%s\" \"%s\"", name, t->spectrum ? "spectrum" : "float", row->name);
+  if (image && !put_image(x, t, change)) return false;
+  if (!image) vl_pbrt_put(x, row, t, t->spectrum, list);
+  bool solid = t->kind == VL_TEXTURE_CHECKERBOARD && t->dimension == 3;
+  if (vl_row_find(row, "mapping") && !solid) put_mapping(x, t);
   PUT(placed ? "\nAttributeEnd\n" : "\n");
   return true;
+}
+
+bool vl_pbrt_inner_number(vlExport *x, const vlFloatInput *input, int depth, vlPbrtInput *result) {
+  *result = (vlPbrtInput){.number = input->value};
+  return !input->texture.index || put_texture(x, input->texture.index, as_is, depth, result->texture);
+}
+
+bool vl_pbrt_inner_color(vlExport *x, const vlSpectrumInput *input, int depth, vlPbrtInput *result) {
+  if (depth == 0) return prepare_color(x, input, as_is, result);
+  *result = (vlPbrtInput){.spectrum = input->value};
+  return !input->texture.index || put_texture(x, input->texture.index, as_is, depth, result->texture);
 }
 
 /* ---- inputs ------------------------------------------------------------------------------------------------------ */

@@ -1,31 +1,9 @@
-/* import/pbrt/material.c: Material and MakeNamedMaterial entities to the scene, a mix after its parts. Parameters and
- * defaults are pbrt-v4's. */
+/* import/pbrt/material.c: Material and MakeNamedMaterial entities to the scene, a mix after its parts. The parameters
+ * are those of the rows (scene/schema/materials.c). */
+#include <assert.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "import/pbrt/builder.h"
-
-static const char *const kinds[] = {
-    "diffuse",    "coateddiffuse",       "conductor",       "dielectric", "thindielectric", "mix",        "interface",
-    "principled", "diffusetransmission", "coatedconductor", "hair",       "measured",       "subsurface", "",
-    "none"};
-static const vlMaterialKind kind_values[] = {VL_MATERIAL_DIFFUSE,
-                                             VL_MATERIAL_COATED_DIFFUSE,
-                                             VL_MATERIAL_CONDUCTOR,
-                                             VL_MATERIAL_DIELECTRIC,
-                                             VL_MATERIAL_THIN_DIELECTRIC,
-                                             VL_MATERIAL_MIX,
-                                             VL_MATERIAL_INTERFACE,
-                                             VL_MATERIAL_PRINCIPLED,
-                                             VL_MATERIAL_DIFFUSE_TRANSMISSION,
-                                             VL_MATERIAL_COATED_CONDUCTOR,
-                                             VL_MATERIAL_HAIR,
-                                             VL_MATERIAL_MEASURED,
-                                             VL_MATERIAL_SUBSURFACE,
-                                             VL_MATERIAL_INTERFACE,
-                                             VL_MATERIAL_INTERFACE};
-_Static_assert(sizeof kinds / sizeof *kinds == sizeof kind_values / sizeof *kind_values, "a kind for each name");
-enum { KINDS = sizeof kinds / sizeof *kinds, NAMES = KINDS - 2 };
 
 bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface) {
   uint32_t index;
@@ -44,96 +22,45 @@ bool vl_import_material_id(vlImport *import, const char *name, vlSource place, v
   return true;
 }
 
-/* The ways to name roughness: of both directions, and of each, which fall back on it. */
-static const char *const plain_roughness[3] = {"roughness", "uroughness", "vroughness"};
-static const char *const metal_roughness[3] = {"conductor.roughness", "conductor.uroughness", "conductor.vroughness"};
-static const char *const coat_roughness[3] = {"interface.roughness", "interface.uroughness", "interface.vroughness"};
+/* ---- what a table cannot say ------------------------------------------------------------------------------------- */
 
-static bool read_rough(vlDict *dict, const char *const names[3], vlFloatInput *u, vlFloatInput *v) {
-  vlFloatInput both = vl_float_input(0.0f);
-  bool has_u = false, has_v = false;
-  if (!vl_import_float_input(dict, names[1], u, &has_u) || !vl_import_float_input(dict, names[2], v, &has_v) ||
-      !vl_import_float_input(dict, names[0], &both, NULL))
-    return false;
-  if (!has_u) *u = both;
-  if (!has_v) *v = both;
-  return true;
+/* The parameters of one material: row and which of them the file gives. */
+typedef struct Reading {
+  vlDict *dict;
+  const vlKindRow *row;
+  const bool *given;
+} Reading;
+
+static bool refuse(const Reading *r, const char *what) {
+  return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->place, "%s: %s", r->dict->what, what);
 }
 
-static bool read_roughness(vlDict *dict, vlMaterialDef *def) {
-  if (!read_rough(dict, plain_roughness, &def->u_roughness, &def->v_roughness)) return false;
-  vl_dict_bool(dict, "remaproughness", &def->remap_roughness);
-  return true;
+static bool given(const Reading *r, const char *name) {
+  return vl_import_given(r->row, r->given, name);
 }
 
-/* An index of refraction: a number or a spectrum, not a texture. */
-static bool read_index(vlDict *dict, const char *name, vlSpectrumInput *input) {
-  vlParam *p = vl_dict_find(dict, name, VL_BIT_FLOAT | VL_BITS_SPECTRUM);
-  if (!p) return dict->import->scene->error.code == VL_OK;
-  *input = (vlSpectrumInput){0};
-  if (p->type != VL_PARAM_FLOAT) return vl_import_spectrum(dict->import, p, &input->value);
-  float eta = 1.5f;
-  bool given = vl_dict_float(dict, name, &eta);
-  input->value = vl_spectrum_constant(eta);
-  return given;
+static bool finish_metal(const Reading *r, vlMaterialDef *def, const char *eta, const char *k) {
+  def->use_reflectance = given(r, "reflectance");
+  if (!def->use_reflectance || (!given(r, eta) && !given(r, k))) return true;
+  return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->place,
+                        "%s: give either \"reflectance\" or \"%s\" and \"%s\", not both", r->dict->what, eta, k);
 }
 
-static bool read_eta(vlDict *dict, vlMaterialDef *def) {
-  return read_index(dict, "eta", &def->eta);
+static bool finish_conductor(const Reading *r, vlMaterialDef *def) {
+  return finish_metal(r, def, "eta", "k");
 }
 
-static bool read_metal(vlDict *dict, vlMaterialDef *def, const char *eta_name, const char *k_name) {
-  bool eta, k;
-  if (!vl_import_spectrum_input(dict, eta_name, &def->eta, false, &eta) ||
-      !vl_import_spectrum_input(dict, k_name, &def->k, false, &k) ||
-      !vl_import_spectrum_input(dict, "reflectance", &def->reflectance, true, &def->use_reflectance))
-    return false;
-  if (def->use_reflectance && (eta || k))
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
-                          "%s: give either \"reflectance\" or \"%s\" and \"%s\", not both", dict->what, eta_name,
-                          k_name);
-  return true;
+static bool finish_coated_conductor(const Reading *r, vlMaterialDef *def) {
+  return finish_metal(r, def, "conductor.eta", "conductor.k");
 }
 
-static bool read_conductor(vlDict *dict, vlMaterialDef *def) {
-  return read_metal(dict, def, "eta", "k") && read_roughness(dict, def);
-}
-
-/* What lies between a coat and its base. */
-static bool read_medium(vlDict *dict, vlMaterialDef *def) {
-  return vl_import_float_input(dict, "thickness", &def->thickness, NULL) &&
-         vl_import_float_input(dict, "g", &def->g, NULL) &&
-         vl_import_spectrum_input(dict, "albedo", &def->albedo, true, NULL) &&
-         (vl_dict_count(dict, "maxdepth", 1, &def->max_depth), vl_dict_count(dict, "nsamples", 1, &def->samples),
-          dict->import->scene->error.code == VL_OK);
-}
-
-static bool read_coated_conductor(vlDict *dict, vlMaterialDef *def) {
-  vl_dict_bool(dict, "remaproughness", &def->remap_roughness);
-  return read_metal(dict, def, "conductor.eta", "conductor.k") &&
-         read_rough(dict, metal_roughness, &def->u_roughness, &def->v_roughness) &&
-         read_rough(dict, coat_roughness, &def->coat_u_roughness, &def->coat_v_roughness) &&
-         read_index(dict, "interface.eta", &def->coat_eta) && read_medium(dict, def);
-}
-
-static bool read_diffuse_transmission(vlDict *dict, vlMaterialDef *def) {
-  vl_dict_float(dict, "scale", &def->scale);
-  return vl_import_spectrum_input(dict, "reflectance", &def->reflectance, true, NULL) &&
-         vl_import_spectrum_input(dict, "transmittance", &def->transmittance, true, NULL);
-}
-
-static bool read_mix(vlDict *dict, vlMaterialDef *def) {
-  vlImport *import = dict->import;
-  vlParam *p = vl_dict_find(dict, "materials", 1u << VL_PARAM_STRING);
-  if (!vl_import_float_input(dict, "amount", &def->amount, NULL)) return false;
-  if (!p) {
-    if (!vl_dict_done(dict)) return false;
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string materials\" (two names) is missing",
-                          dict->what);
-  }
+static bool finish_mix(const Reading *r, vlMaterialDef *def) {
+  vlImport *import = r->dict->import;
+  vlParam *p = vl_dict_find(r->dict, "materials", 1u << VL_PARAM_STRING);
+  if (!p) return vl_dict_done(r->dict) && refuse(r, "\"string materials\" (two names) is missing");
   if (p->strings.count != 2)
     return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: parameter \"materials\" takes 2 values, found %zu",
-                          dict->what, p->strings.count);
+                          r->dict->what, p->strings.count);
   for (int i = 0; i < 2; i++) {
     bool is_interface;
     if (!vl_import_material_id(import, p->strings.items[i], p->place, &def->materials[i], &is_interface)) return false;
@@ -141,95 +68,76 @@ static bool read_mix(vlDict *dict, vlMaterialDef *def) {
   return true;
 }
 
-static bool read_coat(vlDict *dict, vlMaterialDef *def) {
-  return vl_import_spectrum_input(dict, "reflectance", &def->reflectance, true, NULL) && read_roughness(dict, def) &&
-         read_eta(dict, def) && read_medium(dict, def);
+/* As in pbrt, the first of sigma_a, reflectance and the melanins counts. */
+static bool finish_hair(const Reading *r, vlMaterialDef *def) {
+  bool sigma = given(r, "sigma_a"), reflectance = given(r, "reflectance"), pheomelanin = given(r, "pheomelanin");
+  bool melanin = given(r, "eumelanin") || pheomelanin;
+  if (pheomelanin && !given(r, "eumelanin")) def->hair.eumelanin = vl_float_input(0.0f);
+  def->hair.color = sigma ? VL_HAIR_SIGMA_A : reflectance ? VL_HAIR_REFLECTANCE : VL_HAIR_MELANIN;
+  if (sigma + reflectance + melanin > 1)
+    vl_import_warn(r->dict->import, VL_LOG_WARNING, r->dict->place,
+                   "%s: its colour is given in several ways; sigma_a comes before reflectance, that before melanin",
+                   r->dict->what);
+  return true;
 }
 
-/* Bumps: what every surface but a mix may have. */
-static bool read_relief(vlDict *dict, vlMaterialDef *def) {
-  vlImport *import = dict->import;
-  if (!vl_import_float_input(dict, "displacement", &def->displacement, NULL)) return false;
-  vlParam *p = vl_dict_find(dict, "normalmap", 1u << VL_PARAM_STRING);
-  if (!p) return import->scene->error.code == VL_OK;
-  char path[4096];
-  if (p->strings.items[0][0] == 0) return true;
-  if (!vl_import_path(import, p, path, sizeof path)) return false;
-  def->normal_map = vl_import_keep(import, path);
-  return def->normal_map != NULL;
+/* What the solid is made of is said in one of four ways, as in pbrt. */
+static bool finish_subsurface(const Reading *r, vlMaterialDef *def) {
+  vlSubsurfaceDef *d = &def->subsurface;
+  bool a = given(r, "sigma_a"), s = given(r, "sigma_s"), mfp = given(r, "mfp"), named;
+  vlSpectrum preset_a, preset_s;
+  d->from_reflectance = given(r, "reflectance");
+  if (!vl_import_scattering_preset(r->dict, "name", &preset_a, &preset_s, &named)) return false;
+  if (named + (a || s) + (d->from_reflectance || mfp) > 1)
+    return refuse(
+        r, "give only one of \"name\", \"sigma_a\" and \"sigma_s\", \"reflectance\" (and \"mfp\"): each says all");
+  if (a != s)
+    return refuse(r, a ? "\"sigma_s\" is missing beside \"sigma_a\"" : "\"sigma_a\" is missing beside \"sigma_s\"");
+  if (mfp && !d->from_reflectance) return refuse(r, "\"reflectance\" is missing beside \"mfp\"");
+  if (!named) return true;
+  d->sigma_a = vl_spectrum_input(preset_a), d->sigma_s = vl_spectrum_input(preset_s);
+  if (def->g.value == 0.0f) return true;
+  vl_import_warn(r->dict->import, VL_LOG_WARNING, r->dict->place,
+                 "%s: \"g\" is ignored beside \"name\": measured scattering is that of g = 0", r->dict->what);
+  def->g = vl_float_input(0.0f);
+  return true;
 }
 
-static bool read_measured(vlDict *dict, vlMaterialDef *def) {
-  vlImport *import = dict->import;
-  vlParam *p = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
-  char path[4096];
-  if (!p)
-    return import->scene->error.code == VL_OK &&
-           vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string filename\" is missing", dict->what);
-  if (!vl_import_path(import, p, path, sizeof path)) return false;
-  def->measured = vl_import_keep(import, path);
-  return def->measured != NULL;
-}
+/* Run after the row's parameters are read; null: none is needed. */
+typedef bool Rule(const Reading *r, vlMaterialDef *def);
+static Rule *const rules[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {
+    [VL_MATERIAL_CONDUCTOR] = finish_conductor,
+    [VL_MATERIAL_COATED_CONDUCTOR] = finish_coated_conductor,
+    [VL_MATERIAL_MIX] = finish_mix,
+    [VL_MATERIAL_HAIR] = finish_hair,
+    [VL_MATERIAL_SUBSURFACE] = finish_subsurface};
+
+/* ---- materials --------------------------------------------------------------------------------------------------- */
 
 static bool read_material(vlDict *dict, vlMaterialDef *def) {
-  switch (def->kind) {
-    case VL_MATERIAL_DIFFUSE:
-      if (!vl_import_spectrum_input(dict, "reflectance", &def->reflectance, true, NULL)) return false;
-      break;
-    case VL_MATERIAL_COATED_DIFFUSE:
-      if (!read_coat(dict, def)) return false;
-      break;
-    case VL_MATERIAL_CONDUCTOR:
-      if (!read_conductor(dict, def)) return false;
-      break;
-    case VL_MATERIAL_DIELECTRIC:
-      if (!read_eta(dict, def) || !read_roughness(dict, def)) return false;
-      break;
-    case VL_MATERIAL_THIN_DIELECTRIC:
-      if (!read_eta(dict, def)) return false;
-      break;
-    case VL_MATERIAL_MIX:
-      if (!read_mix(dict, def)) return false;
-      break;
-    case VL_MATERIAL_PRINCIPLED:
-      if (!vl_import_principled(dict, def)) return false;
-      break;
-    case VL_MATERIAL_DIFFUSE_TRANSMISSION:
-      if (!read_diffuse_transmission(dict, def)) return false;
-      break;
-    case VL_MATERIAL_COATED_CONDUCTOR:
-      if (!read_coated_conductor(dict, def)) return false;
-      break;
-    case VL_MATERIAL_HAIR:
-      if (!vl_import_hair(dict, def)) return false;
-      break;
-    case VL_MATERIAL_MEASURED:
-      if (!read_measured(dict, def)) return false;
-      break;
-    case VL_MATERIAL_SUBSURFACE:
-      if (!vl_import_subsurface(dict, def) || !read_roughness(dict, def)) return false;
-      break;
-    case VL_MATERIAL_INTERFACE: break;
-  }
-  if (def->kind != VL_MATERIAL_MIX && def->kind != VL_MATERIAL_INTERFACE && !read_relief(dict, def)) return false;
-  return vl_dict_done(dict);
+  enum { MOST = 64 };
+  bool is_given[MOST];
+  const vlKindRow *row = vl_kind_row(&vl_material_family, (int)def->kind);
+  const Reading r = {dict, row, is_given};
+  assert(row->parameter_count <= MOST);
+  return vl_import_parameters(dict, row, def, true, is_given) && (!rules[def->kind] || rules[def->kind](&r, def)) &&
+         vl_dict_done(dict);
 }
 
+/* -1 where the name is none that velo knows. false after an error. */
 static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict, int *kind) {
   const char *type = pending->kind;
+  vlSource place = pending->place;
   if (!type) { /* MakeNamedMaterial */
     if (!vl_dict_string(dict, "type", &type)) {
       if (import->scene->error.code != VL_OK) return false;
-      return vl_import_fail(import, VL_ERROR_SCENE, pending->place,
-                            "MakeNamedMaterial \"%.60s\": \"string type\" is missing", pending->name);
+      return vl_import_fail(import, VL_ERROR_SCENE, place, "MakeNamedMaterial \"%.60s\": \"string type\" is missing",
+                            pending->name);
     }
+    place = vl_dict_find(dict, "type", 1u << VL_PARAM_STRING)->place;
   }
-  *kind = -1;
-  for (int i = 0; i < KINDS; i++)
-    if (strcmp(type, kinds[i]) == 0) *kind = i;
-  vlSource place = pending->place;
-  if (*kind < 0 && !pending->kind) place = vl_dict_find(dict, "type", 1u << VL_PARAM_STRING)->place;
-  return *kind >= 0 || vl_import_unknown(import, place, "material", type, kinds, NAMES, NULL, 0);
+  *kind = type[0] ? vl_kind_find(&vl_material_family, type) : VL_MATERIAL_INTERFACE; /* pbrt-v3's spelling */
+  return *kind >= 0 || vl_import_unknown_kind(import, place, &vl_material_family, type);
 }
 
 static bool finish(vlImport *import, uint32_t index) {
@@ -242,7 +150,7 @@ static bool finish(vlImport *import, uint32_t index) {
   vlDict dict = vl_import_dict(import, what, pending->place, pending->space, &pending->params, NULL);
   int kind = -1;
   if (!find_kind(import, pending, &dict, &kind)) return false;
-  vlMaterialDef def = vl_default_material_def(kind < 0 ? VL_MATERIAL_DIFFUSE : kind_values[kind]);
+  vlMaterialDef def = vl_default_material_def(kind < 0 ? VL_MATERIAL_DIFFUSE : (vlMaterialKind)kind);
   def.name = pending->name;
   def.source = pending->place;
   if (kind >= 0 && !read_material(&dict, &def)) return false;

@@ -1,17 +1,10 @@
 /* import/pbrt/texture.c: Texture entities to the scene, in the order in which they refer to each other. */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "import/pbrt/builder.h"
-
-static const char *const kinds[] = {"constant", "scale", "mix",      "directionmix", "bilerp", "checkerboard",
-                                    "imagemap", "fbm",   "wrinkled", "windy",        "marble", "dots"};
-static const vlTextureKind kind_values[] = {VL_TEXTURE_CONSTANT,      VL_TEXTURE_SCALE,  VL_TEXTURE_MIX,
-                                            VL_TEXTURE_DIRECTION_MIX, VL_TEXTURE_BILERP, VL_TEXTURE_CHECKERBOARD,
-                                            VL_TEXTURE_IMAGE,         VL_TEXTURE_FBM,    VL_TEXTURE_WRINKLED,
-                                            VL_TEXTURE_WINDY,         VL_TEXTURE_MARBLE, VL_TEXTURE_DOTS};
-enum { KINDS = sizeof kinds / sizeof *kinds };
 
 bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource place, vlTextureId *id) {
   const vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;
@@ -36,27 +29,38 @@ bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlS
   return true;
 }
 
-static bool read_mapping(vlDict *dict, vlTextureDef *def, const vlMat4 *texture_from_world, bool three) {
-  static const char *const names[] = {"uv", "spherical", "cylindrical", "planar"};
-  memcpy(def->texture_from_world, texture_from_world->m, sizeof def->texture_from_world);
-  if (three) return true; /* cubes of texture space */
-  int mapping = 0;
-  double v[3];
-  vl_dict_choice(dict, "mapping", names, 4, &mapping);
-  def->mapping = (vlMapping)mapping;
-  if (mapping == 0) {
-    vl_dict_float(dict, "uscale", &def->su);
-    vl_dict_float(dict, "vscale", &def->sv);
+/* ---- what a table cannot say ------------------------------------------------------------------------------------- */
+
+/* The parameters of one texture: its row, and which of them the file gives. */
+typedef struct Reading {
+  vlDict *dict;
+  const vlKindRow *row;
+  const bool *given;
+  const vlMat4 *world_from_texture;
+} Reading;
+
+/* A parameter that does not belong to the mapping is an error, as any unknown one. */
+static bool check_mapping(const Reading *r, const vlTextureDef *def) {
+  static const struct {
+    const char *name;
+    bool in[4]; /* by mapping */
+  } parameters[] = {{"uscale", {true, false, false, false}}, {"vscale", {true, false, false, false}},
+                    {"udelta", {true, false, false, true}},  {"vdelta", {true, false, false, true}},
+                    {"v1", {false, false, false, true}},     {"v2", {false, false, false, true}}};
+  bool solid = def->kind == VL_TEXTURE_CHECKERBOARD && def->dimension == 3;
+  const vlParam *mapping = solid ? vl_dict_find(r->dict, "mapping", ~0u) : NULL;
+  if (mapping && !mapping->optional)
+    return vl_import_fail(r->dict->import, VL_ERROR_SCENE, mapping->place,
+                          "%s: \"mapping\" has no effect with \"dimension\" 3", r->dict->what);
+  for (size_t i = 0; i < sizeof parameters / sizeof *parameters; i++) {
+    const char *name = parameters[i].name;
+    if (parameters[i].in[def->mapping] && !solid) continue;
+    const vlParam *p = vl_import_given(r->row, r->given, name) ? vl_dict_find(r->dict, name, ~0u) : NULL;
+    if (p && !p->optional) /* from Attribute it may go unused */
+      return vl_import_fail(r->dict->import, VL_ERROR_SCENE, p->place, "%s: \"%s\" has no effect with this mapping",
+                            r->dict->what, name);
   }
-  if (mapping == 0 || mapping == 3) {
-    vl_dict_float(dict, "udelta", &def->du);
-    vl_dict_float(dict, "vdelta", &def->dv);
-  }
-  if (mapping == 3 && vl_dict_vector(dict, "v1", VL_PARAM_VECTOR3, v))
-    for (int i = 0; i < 3; i++) def->planar_v1[i] = (float)v[i];
-  if (mapping == 3 && vl_dict_vector(dict, "v2", VL_PARAM_VECTOR3, v))
-    for (int i = 0; i < 3; i++) def->planar_v2[i] = (float)v[i];
-  return dict->import->scene->error.code == VL_OK;
+  return true;
 }
 
 /* "sRGB", "linear", "gamma 2.2" */
@@ -79,114 +83,51 @@ static bool read_encoding(vlDict *dict, vlTextureDef *def) {
   return true;
 }
 
-static bool read_image(vlDict *dict, vlTextureDef *def) {
-  static const char *const wraps[] = {"repeat", "black", "clamp", "octahedralsphere"};
-  static const char *const filters[] = {"point", "bilinear", "trilinear", "ewa", "EWA"};
-  vlImport *import = dict->import;
-  vlParam *p = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
-  int wrap = VL_WRAP_REPEAT, filter = VL_FILTER_BILINEAR;
+static bool finish_image(const Reading *r, vlTextureDef *def) {
   float anisotropy = 8.0f;
-  char path[4096];
-  vl_dict_choice(dict, "wrap", wraps, 4, &wrap);
-  vl_dict_choice(dict, "filter", filters, 5, &filter);
-  vl_dict_float(dict, "maxanisotropy", &anisotropy); /* how far the ewa filter goes: velo chooses itself */
-  vl_dict_float(dict, "scale", &def->scale);
-  vl_dict_bool(dict, "invert", &def->invert);
-  if (!read_encoding(dict, def) || import->scene->error.code != VL_OK) return false;
-  def->wrap = (vlWrap)wrap;
-  def->filter = filter > VL_FILTER_EWA ? VL_FILTER_EWA : (vlTextureFilter)filter;
-  if (!vl_dict_done(dict)) return false; /* a misspelt "filename" is told as such */
-  if (!p) return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string filename\" is missing", dict->what);
-  if (!vl_import_path(import, p, path, sizeof path)) return false;
-  def->path = vl_import_keep(import, path);
-  return def->path != NULL;
+  vl_dict_float(r->dict, "maxanisotropy", &anisotropy); /* how far the ewa filter goes: velo chooses itself */
+  if (!read_encoding(r->dict, def) || !vl_dict_done(r->dict)) return false; /* a misspelt "filename" is told as such */
+  return def->path || vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->place,
+                                     "%s: \"string filename\" is missing", r->dict->what);
 }
 
-static bool read_inputs(vlDict *dict, vlTextureDef *def) {
-  static const char *const names[][5] = {
-      {"value"}, {"tex"}, {"tex1", "tex2"}, {"tex1", "tex2"}, {"v00", "v01", "v10", "v11"}, {"tex1", "tex2"}, {NULL},
-      {NULL},    {NULL},  {NULL},           {NULL},           {"outside", "inside"}};
-  vlFloatInput *floats[4] = {&def->float_a, &def->float_b, &def->float_c, &def->float_d};
-  vlSpectrumInput *spectra[4] = {&def->spectrum_a, &def->spectrum_b, &def->spectrum_c, &def->spectrum_d};
-  size_t kind = 0;
-  while (kind_values[kind] != def->kind) kind++;
-  for (int i = 0; names[kind][i]; i++) {
-    bool fine = def->spectrum ? vl_import_spectrum_input(dict, names[kind][i], spectra[i], false, NULL)
-                              : vl_import_float_input(dict, names[kind][i], floats[i], NULL);
-    if (!fine) return false;
-  }
+static bool finish_direction_mix(const Reading *r, vlTextureDef *def) {
+  double d[3], world[3];
+  for (int i = 0; i < 3; i++) d[i] = (double)def->direction[i];
+  vlParam *p = vl_dict_find(r->dict, "dir", ~0u);
+  for (int i = 0; p && i < 3; i++) d[i] = p->exact[i];
+  vl_mat4_vector(r->world_from_texture, d, world);
+  double length = sqrt(world[0] * world[0] + world[1] * world[1] + world[2] * world[2]);
+  if (!(length > 0.0))
+    return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->place, "%s: \"dir\" is zero", r->dict->what);
+  for (int i = 0; i < 3; i++) def->direction[i] = (float)(world[i] / length);
   return true;
 }
 
-static bool read_noise(vlDict *dict, vlTextureDef *def, const vlMat4 *texture_from_world) {
-  static const char *const types[] = {"float", "float", "float", "spectrum"};
-  const char *type = types[def->kind - VL_TEXTURE_FBM];
-  if (def->spectrum != (def->kind == VL_TEXTURE_MARBLE))
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: this is a %s texture only", dict->what, type);
-  uint32_t most = 64;
-  if (def->kind != VL_TEXTURE_WINDY) {
-    vl_dict_count(dict, "octaves", 0, &def->octaves);
-    vl_dict_float(dict, "roughness", &def->omega);
-  }
-  if (def->kind == VL_TEXTURE_MARBLE) {
-    vl_dict_float(dict, "scale", &def->scale);
-    vl_dict_float(dict, "variation", &def->variation);
-  }
-  def->octaves = def->octaves < most ? def->octaves : most; /* finer ones are below any footprint */
-  return read_mapping(dict, def, texture_from_world, true);
-}
+/* Run after the row's parameters are read; null: none is needed. */
+typedef bool Rule(const Reading *r, vlTextureDef *def);
+static Rule *const rules[0 VL_TEXTURE_KINDS(VL_COUNT_KIND)] = {
+    [VL_TEXTURE_IMAGE] = finish_image, [VL_TEXTURE_DIRECTION_MIX] = finish_direction_mix};
+
+/* ---- textures ---------------------------------------------------------------------------------------------------- */
 
 static bool read_texture(vlDict *dict, vlTextureDef *def, const vlPending *pending) {
+  enum { MOST = 64 };
+  bool is_given[MOST];
+  const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)def->kind);
+  const Reading r = {dict, row, is_given, &pending->ctm};
   vlMat4 texture_from_world;
+  assert(row->parameter_count <= MOST);
   if (!vl_mat4_inverse(pending->ctm, &texture_from_world))
     return vl_import_fail(dict->import, VL_ERROR_SCENE, pending->place, "%s: the current transform is singular",
                           dict->what);
-  if (!read_inputs(dict, def)) return false;
-  switch (def->kind) {
-    case VL_TEXTURE_VERTEX_COLOR: /* not a texture of pbrt */
-    case VL_TEXTURE_CONSTANT: break;
-    case VL_TEXTURE_SCALE:
-      if (!vl_import_float_input(dict, "scale", &def->amount, NULL)) return false;
-      break;
-    case VL_TEXTURE_MIX:
-      if (!vl_import_float_input(dict, "amount", &def->amount, NULL)) return false;
-      break;
-    case VL_TEXTURE_DIRECTION_MIX: {
-      double d[3] = {0, 1, 0}, world[3];
-      vl_dict_vector(dict, "dir", VL_PARAM_VECTOR3, d);
-      vl_mat4_vector(&pending->ctm, d, world);
-      double length = sqrt(world[0] * world[0] + world[1] * world[1] + world[2] * world[2]);
-      if (!(length > 0.0))
-        return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: \"dir\" is zero", dict->what);
-      for (int i = 0; i < 3; i++) def->direction[i] = (float)(world[i] / length);
-      break;
-    }
-    case VL_TEXTURE_FBM:
-    case VL_TEXTURE_WRINKLED:
-    case VL_TEXTURE_WINDY:
-    case VL_TEXTURE_MARBLE:
-      if (!read_noise(dict, def, &texture_from_world)) return false;
-      break;
-    case VL_TEXTURE_DOTS:
-    case VL_TEXTURE_BILERP:
-      if (!read_mapping(dict, def, &texture_from_world, false)) return false;
-      break;
-    case VL_TEXTURE_CHECKERBOARD: {
-      int32_t dimension = 2;
-      vlParam *p = vl_dict_find(dict, "dimension", 1u << VL_PARAM_INTEGER);
-      vl_dict_integer(dict, "dimension", &dimension);
-      if (dimension != 2 && dimension != 3)
-        return vl_import_fail(dict->import, VL_ERROR_SCENE, p->place, "%s: \"dimension\" must be 2 or 3, it is %d",
-                              dict->what, dimension);
-      def->dimension = (uint32_t)dimension;
-      if (!read_mapping(dict, def, &texture_from_world, dimension == 3)) return false;
-      break;
-    }
-    case VL_TEXTURE_IMAGE:
-      if (!read_mapping(dict, def, &texture_from_world, false) || !read_image(dict, def)) return false;
-      break;
-  }
-  return vl_dict_done(dict);
+  memcpy(def->texture_from_world, texture_from_world.m, sizeof def->texture_from_world);
+  if (row->traits & (def->spectrum ? VL_TEXTURE_FLOAT_ONLY : VL_TEXTURE_COLOR_ONLY))
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: this is a %s texture only", dict->what,
+                          def->spectrum ? "float" : "spectrum");
+  return vl_import_parameters(dict, row, def, def->spectrum, is_given) &&
+         (!vl_row_find(row, "mapping") || check_mapping(&r, def)) && (!rules[def->kind] || rules[def->kind](&r, def)) &&
+         vl_dict_done(dict);
 }
 
 static bool finish(vlImport *import, uint32_t index) {
@@ -194,10 +135,8 @@ static bool finish(vlImport *import, uint32_t index) {
   char what[128];
   snprintf(what, sizeof what, "Texture \"%.60s\" (%.40s)", pending->name, pending->kind);
   vlDict dict = vl_import_dict(import, what, pending->place, pending->space, &pending->params, NULL);
-  int kind = -1;
-  for (int i = 0; i < KINDS; i++)
-    if (strcmp(pending->kind, kinds[i]) == 0) kind = i;
-  vlTextureDef def = vl_default_texture_def(kind < 0 ? VL_TEXTURE_CONSTANT : kind_values[kind], pending->spectrum);
+  int kind = vl_kind_find(&vl_texture_family, pending->kind);
+  vlTextureDef def = vl_default_texture_def(kind < 0 ? VL_TEXTURE_CONSTANT : (vlTextureKind)kind, pending->spectrum);
   def.name = pending->name;
   def.source = pending->place;
   def.space = def.kind == VL_TEXTURE_IMAGE ? VL_SPACE_SRGB : pending->space; /* pictures say their own, or are sRGB */
@@ -205,7 +144,7 @@ static bool finish(vlImport *import, uint32_t index) {
     if (strcmp(pending->kind, "ptex") == 0) {
       if (!vl_import_unsupported(import, pending->place, "texture \"ptex\": Ptex files are not supported"))
         return false;
-    } else if (!vl_import_unknown(import, pending->place, "texture", pending->kind, kinds, KINDS, NULL, 0)) {
+    } else if (!vl_import_unknown_kind(import, pending->place, &vl_texture_family, pending->kind)) {
       return false;
     }
     def.spectrum_a = vl_spectrum_input(vl_spectrum_constant(0.5f));

@@ -11,22 +11,13 @@
 
 #include "base/isa.h"
 #include "velo/base.h"
+#include "world/material/bsdf_kind.h"
 #include "world/material/coat.h"
 #include "world/material/measured.h"
 
-typedef enum vlBsdfKind {
-  VL_BSDF_DIFFUSE,
-  VL_BSDF_CONDUCTOR,  /* eta, k; rough or smooth by lane (alpha < 1e-3 both: smooth) */
-  VL_BSDF_DIELECTRIC, /* eta_s > 0 interior over exterior; rough or smooth by lane */
-  VL_BSDF_THIN_DIELECTRIC,
-  VL_BSDF_COATED_DIFFUSE, /* rough or smooth dielectric coat over a diffuse base, table of its transmittances */
-  VL_BSDF_PRINCIPLED,     /* many layers: docs/principled.md */
-  VL_BSDF_DIFFUSE_TRANSMISSION,
-  VL_BSDF_LAYERED, /* rough or smooth dielectric coat over metal or a diffuse base, by random walks between them */
-  VL_BSDF_HAIR,
-  VL_BSDF_MEASURED,
-  VL_BSDF_KINDS
-} vlBsdfKind;
+/* Rows that each kind numbers for itself: VL_P_ of the principled kind, and so on below. A kind that is alone in its
+ * file may number them there. */
+enum { VL_BSDF_ROWS = 26 };
 
 /* Rows of the principled material; its base colour is reflectance, its roughness alpha_x and alpha_y (at least 1e-3).
  * F0 is the dielectric's, without metal. COAT_X, Y, Z: the coat's normal, unit, z > 0. */
@@ -47,11 +38,11 @@ enum {
   VL_P_SHEEN_ALPHA = VL_P_SHEEN + 4,
   VL_P_FILM,
   VL_P_FILM_INDEX,
-  VL_P_FILM_NM,
-  VL_PRINCIPLED_ROWS
+  VL_P_FILM_NM
 };
+_Static_assert((int)VL_P_FILM_NM < (int)VL_BSDF_ROWS, "enough rows");
 
-/* Other kinds use the same rows for parameters of their own. */
+/* Diffuse transmission, layers, hair, subsurface. */
 enum { VL_T_TRANSMITTANCE /* 4 */ };
 enum {
   VL_L_METAL, /* 1: the base is metal of eta, k (over the coat's index); 0: diffuse, of reflectance */
@@ -86,8 +77,8 @@ typedef struct vlBsdfParams {
   float *alpha_x, *alpha_y; /* conductor, dielectric, coat */
   float *eta_s;             /* dielectric, thin, coat */
   const vlCoatTable **coat; /* coated diffuse */
-  float *principled[VL_PRINCIPLED_ROWS];
-  const uint32_t *seed; /* layered: of the walks' random numbers */
+  float *own[VL_BSDF_ROWS]; /* see there */
+  const uint32_t *seed;     /* layered: of the walks' random numbers */
   const vlMeasured *const *measured;
   const float *lambda[4]; /* principled, measured: wavelengths, nm; null in RGB mode */
 } vlBsdfParams;

@@ -14,8 +14,8 @@ void vl_bsdf_translucent_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDire
   const float *oz = wo.z, *iz = wi.z;
   const float *r0 = params->reflectance[0], *r1 = params->reflectance[1];
   const float *r2 = params->reflectance[2], *r3 = params->reflectance[3];
-  const float *t0 = params->principled[VL_T_TRANSMITTANCE], *t1 = params->principled[VL_T_TRANSMITTANCE + 1];
-  const float *t2 = params->principled[VL_T_TRANSMITTANCE + 2], *t3 = params->principled[VL_T_TRANSMITTANCE + 3];
+  const float *t0 = params->own[VL_T_TRANSMITTANCE], *t1 = params->own[VL_T_TRANSMITTANCE + 1];
+  const float *t2 = params->own[VL_T_TRANSMITTANCE + 2], *t3 = params->own[VL_T_TRANSMITTANCE + 3];
   float *v0 = value[0], *v1 = value[1], *v2 = value[2], *v3 = value[3];
   uint32_t count = VL_PAD(n);
   /* must vectorise */
@@ -39,8 +39,8 @@ void vl_bsdf_translucent_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDi
   const float *oz = wo.z;
   const float *r0 = params->reflectance[0], *r1 = params->reflectance[1];
   const float *r2 = params->reflectance[2], *r3 = params->reflectance[3];
-  const float *t0 = params->principled[VL_T_TRANSMITTANCE], *t1 = params->principled[VL_T_TRANSMITTANCE + 1];
-  const float *t2 = params->principled[VL_T_TRANSMITTANCE + 2], *t3 = params->principled[VL_T_TRANSMITTANCE + 3];
+  const float *t0 = params->own[VL_T_TRANSMITTANCE], *t1 = params->own[VL_T_TRANSMITTANCE + 1];
+  const float *t2 = params->own[VL_T_TRANSMITTANCE + 2], *t3 = params->own[VL_T_TRANSMITTANCE + 3];
   float *ix = wi.x, *iy = wi.y, *iz = wi.z;
   float *w0 = weight[0], *w1 = weight[1], *w2 = weight[2], *w3 = weight[3];
   uint32_t count = VL_PAD(n);

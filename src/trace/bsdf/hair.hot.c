@@ -62,9 +62,9 @@ static inline float logistic(const Hair *h, float x) {
 
 static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
   Hair r;
-  float h = vl_clamp(q->principled[VL_H_ACROSS][i], -1.0f, 1.0f), eta = q->eta_s[i];
-  float bm = vl_clamp(q->principled[VL_H_BETA_M][i], 1e-2f, 1.0f);
-  float bn = vl_clamp(q->principled[VL_H_BETA_N][i], 1e-2f, 1.0f);
+  float h = vl_clamp(q->own[VL_H_ACROSS][i], -1.0f, 1.0f), eta = q->eta_s[i];
+  float bm = vl_clamp(q->own[VL_H_BETA_M][i], 1e-2f, 1.0f);
+  float bn = vl_clamp(q->own[VL_H_BETA_N][i], 1e-2f, 1.0f);
   r.sin_o = vl_clamp(wo.x, -1.0f, 1.0f);
   r.cos_o = __builtin_sqrtf((1.0f - r.sin_o) * (1.0f + r.sin_o));
   r.phi_o = vl_atan2(wo.z, wo.y);
@@ -89,7 +89,7 @@ static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
   float way = 2.0f * cos_gt / cos_t, total = 0.0f;
   for (int p = 0; p < LOBES; p++) r.share[p] = 0.0f;
   for (int c = 0; c < 4; c++) {
-    float t = vl_exp(-vl_min(vl_max(q->principled[VL_H_SIGMA_A + c][i], 0.0f) * way, 80.0f));
+    float t = vl_exp(-vl_min(vl_max(q->own[VL_H_SIGMA_A + c][i], 0.0f) * way, 80.0f));
     r.a[0][c] = f;
     r.a[1][c] = square(1.0f - f) * t;
     r.a[2][c] = r.a[1][c] * t * f;
@@ -99,7 +99,7 @@ static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
   total = total > 0.0f ? 1.0f / total : 0.0f;
   for (int p = 0; p < LOBES; p++) r.share[p] *= total;
   /* scales tilt each lobe by a multiple of alpha: -2, 1, 4 */
-  vlSinCos tilt = vl_sincos(q->principled[VL_H_ALPHA][i]);
+  vlSinCos tilt = vl_sincos(q->own[VL_H_ALPHA][i]);
   float s2 = 2.0f * tilt.cos * tilt.sin, c2 = square(tilt.cos) - square(tilt.sin);
   float s4 = 2.0f * c2 * s2, c4 = square(c2) - square(s2);
   r.sin_p[0] = r.sin_o * c2 - r.cos_o * s2, r.cos_p[0] = vl_abs(r.cos_o * c2 + r.sin_o * s2);

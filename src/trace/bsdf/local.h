@@ -20,22 +20,15 @@
 #define VL_WHOLE(count) (count)
 #endif
 
-#define VL_BSDF_DECLARE(kind)                                                                                    \
-  void vl_bsdf_##kind##_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,   \
-                             float *const value[4], float *pdf);                                                 \
-  void vl_bsdf_##kind##_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe, \
-                               const float *u, const float *v, vlBsdfDirections wi, float *const weight[4],      \
-                               float *pdf, uint32_t *flags, float *eta_scale)
-VL_BSDF_DECLARE(diffuse);
-VL_BSDF_DECLARE(conductor);
-VL_BSDF_DECLARE(dielectric);
-VL_BSDF_DECLARE(thin);
-VL_BSDF_DECLARE(coat);
-VL_BSDF_DECLARE(principled);
-VL_BSDF_DECLARE(translucent);
-VL_BSDF_DECLARE(layered);
-VL_BSDF_DECLARE(hair);
-VL_BSDF_DECLARE(measured);
+typedef void vlBsdfEval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
+                        float *const value[4], float *pdf);
+typedef void vlBsdfSample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
+                          const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
+                          uint32_t *flags, float *eta_scale);
+#define VL_BSDF_DECLARE(NAME, name) \
+  vlBsdfEval vl_bsdf_##name##_eval; \
+  vlBsdfSample vl_bsdf_##name##_sample;
+VL_BSDF_KINDS(VL_BSDF_DECLARE)
 
 /* Cosine-weighted direction about +z. u, v in [0, 1). z > 0 always, so that no sample is lost. */
 static inline vlVec3 vl_cosine_direction(float u, float v) {

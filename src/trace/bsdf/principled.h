@@ -10,7 +10,7 @@ enum { VL_PRINCIPLED_CHUNK = 64 };
 
 /* Parameters of a chunk, shifted to its first lane. */
 typedef struct vlPrincipledSlice {
-  const float *row[VL_PRINCIPLED_ROWS];
+  const float *row[VL_BSDF_ROWS];
   const float *base[4], *alpha_x, *alpha_y, *eta;
   const float *lambda[4];        /* null in RGB mode */
   uint32_t count;                /* whole vectors */

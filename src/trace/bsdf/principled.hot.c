@@ -10,7 +10,7 @@ static vlPrincipledSlice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t fi
   vlPrincipledSlice s;
   uint32_t left = VL_PAD(n) - first;
   s.count = left < VL_PRINCIPLED_CHUNK ? left : VL_PRINCIPLED_CHUNK;
-  for (int k = 0; k < VL_PRINCIPLED_ROWS; k++) s.row[k] = p->principled[k] + first;
+  for (int k = 0; k < VL_BSDF_ROWS; k++) s.row[k] = p->own[k] + first;
   for (int c = 0; c < 4; c++) {
     s.base[c] = p->reflectance[c] + first;
     s.lambda[c] = p->lambda[c] ? p->lambda[c] + first : NULL;

@@ -11,29 +11,14 @@ void vl_stage_regularize(vlTracing *t, uint32_t n) {
   for (uint32_t i = 0; i < n; i++) {
     if (!s->scattered[s->b.lane[i]]) continue;
     const vlWorldMaterial *m = &t->world->materials.items[s->hits_b.material[i]];
-    switch (m->kind) {
-      case VL_MATERIAL_CONDUCTOR:
-      case VL_MATERIAL_DIELECTRIC:
-      case VL_MATERIAL_SUBSURFACE:
-      case VL_MATERIAL_COATED_DIFFUSE:
-      case VL_MATERIAL_COATED_CONDUCTOR:
-      case VL_MATERIAL_PRINCIPLED: break;
-      case VL_MATERIAL_DIFFUSE:
-      case VL_MATERIAL_DIFFUSE_TRANSMISSION:
-      case VL_MATERIAL_THIN_DIELECTRIC:
-      case VL_MATERIAL_HAIR:
-      case VL_MATERIAL_MEASURED:
-      case VL_MATERIAL_MIX:
-      case VL_MATERIAL_INTERFACE: continue;
-    }
+    if (!(m->traits & VL_MATERIAL_ROUGH)) continue;
     sh->alpha_x[i] = vl_ggx_widened(sh->alpha_x[i]);
     sh->alpha_y[i] = vl_ggx_widened(sh->alpha_y[i]);
     if (m->widened) sh->coat[i] = m->widened;
-    if (m->layers && m->layers->metal) {
-      sh->principled[VL_L_BASE_X][i] = vl_ggx_widened(sh->principled[VL_L_BASE_X][i]);
-      sh->principled[VL_L_BASE_Y][i] = vl_ggx_widened(sh->principled[VL_L_BASE_Y][i]);
+    if (m->bsdf == VL_BSDF_LAYERED && ((const vlWorldLayers *)m->own)->metal) {
+      sh->own[VL_L_BASE_X][i] = vl_ggx_widened(sh->own[VL_L_BASE_X][i]);
+      sh->own[VL_L_BASE_Y][i] = vl_ggx_widened(sh->own[VL_L_BASE_Y][i]);
     }
-    if (m->kind == VL_MATERIAL_PRINCIPLED)
-      sh->principled[VL_P_COAT_ALPHA][i] = vl_ggx_widened(sh->principled[VL_P_COAT_ALPHA][i]);
+    if (m->bsdf == VL_BSDF_PRINCIPLED) sh->own[VL_P_COAT_ALPHA][i] = vl_ggx_widened(sh->own[VL_P_COAT_ALPHA][i]);
   }
 }

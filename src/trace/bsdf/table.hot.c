@@ -1,57 +1,21 @@
 /* trace/bsdf/table.hot.c: from a batch's kind to its kernel, one table an instruction set. */
 #include "trace/bsdf/local.h"
 
-/* No BSDF: NaN. The film drops such samples and counts them (vlRenderStats.not_finite). */
-static void no_value(uint32_t n, float *const value[4], float *pdf) {
-  for (uint32_t i = 0; i < n; i++) {
-    for (int c = 0; c < 4; c++) value[c][i] = __builtin_nanf("");
-    pdf[i] = 0.0f;
-  }
-}
+#define EVAL(NAME, name) [VL_BSDF_##NAME] = vl_bsdf_##name##_eval,
+static vlBsdfEval *const evals[] = {VL_BSDF_KINDS(EVAL)};
 
-static void no_sample(uint32_t n, vlBsdfDirections wi, float *const weight[4], float *pdf, uint32_t *flags,
-                      float *eta_scale) {
-  no_value(n, weight, pdf);
-  for (uint32_t i = 0; i < n; i++) {
-    wi.x[i] = wi.y[i] = 0.0f, wi.z[i] = 1.0f;
-    pdf[i] = eta_scale[i] = 1.0f, flags[i] = 0;
-  }
-}
+#define SAMPLE(NAME, name) [VL_BSDF_##NAME] = vl_bsdf_##name##_sample,
+static vlBsdfSample *const samples[] = {VL_BSDF_KINDS(SAMPLE)};
 
 static void eval(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
                  float *const value[4], float *pdf) {
-  switch (kind) {
-    case VL_BSDF_DIFFUSE: vl_bsdf_diffuse_eval(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_CONDUCTOR: vl_bsdf_conductor_eval(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_DIELECTRIC: vl_bsdf_dielectric_eval(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_THIN_DIELECTRIC: vl_bsdf_thin_eval(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_COATED_DIFFUSE: vl_bsdf_coat_eval(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_PRINCIPLED: vl_bsdf_principled_eval(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_DIFFUSE_TRANSMISSION: vl_bsdf_translucent_eval(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_LAYERED: vl_bsdf_layered_eval(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_HAIR: vl_bsdf_hair_eval(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_MEASURED: vl_bsdf_measured_eval(n, params, wo, wi, value, pdf); break;
-    case VL_BSDF_KINDS: no_value(n, value, pdf); break;
-  }
+  evals[kind](n, params, wo, wi, value, pdf);
 }
 
-#define VL_SAMPLE(name) name(n, params, wo, u_lobe, u, v, wi, weight, pdf, flags, eta_scale)
 static void sample(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
                    const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
                    uint32_t *flags, float *eta_scale) {
-  switch (kind) {
-    case VL_BSDF_DIFFUSE: VL_SAMPLE(vl_bsdf_diffuse_sample); break;
-    case VL_BSDF_CONDUCTOR: VL_SAMPLE(vl_bsdf_conductor_sample); break;
-    case VL_BSDF_DIELECTRIC: VL_SAMPLE(vl_bsdf_dielectric_sample); break;
-    case VL_BSDF_THIN_DIELECTRIC: VL_SAMPLE(vl_bsdf_thin_sample); break;
-    case VL_BSDF_COATED_DIFFUSE: VL_SAMPLE(vl_bsdf_coat_sample); break;
-    case VL_BSDF_PRINCIPLED: VL_SAMPLE(vl_bsdf_principled_sample); break;
-    case VL_BSDF_DIFFUSE_TRANSMISSION: VL_SAMPLE(vl_bsdf_translucent_sample); break;
-    case VL_BSDF_LAYERED: VL_SAMPLE(vl_bsdf_layered_sample); break;
-    case VL_BSDF_HAIR: VL_SAMPLE(vl_bsdf_hair_sample); break;
-    case VL_BSDF_MEASURED: VL_SAMPLE(vl_bsdf_measured_sample); break;
-    case VL_BSDF_KINDS: no_sample(n, wi, weight, pdf, flags, eta_scale); break;
-  }
+  samples[kind](n, params, wo, u_lobe, u, v, wi, weight, pdf, flags, eta_scale);
 }
 
 const vlBsdfKernels vl_bsdf_kernel_table = {eval, sample};

@@ -97,10 +97,10 @@ static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, float
   if (m->reflectance >= 0) return sh->reflectance[c][i];
   if (m->measured) return vl_measured_albedo(m->measured, c, lambda);
   if (m->subsurface) {
-    vlSpline albedo = vl_bssrdf_albedo(m->subsurface->table, sh->principled[VL_S_ALBEDO + c][i]);
+    vlSpline albedo = vl_bssrdf_albedo(m->subsurface->table, sh->own[VL_S_ALBEDO + c][i]);
     return vl_bssrdf_effective(m->subsurface->table, &albedo);
   }
-  if (m->kind != VL_MATERIAL_CONDUCTOR && m->kind != VL_MATERIAL_COATED_CONDUCTOR) return 1.0f;
+  if (!(m->traits & VL_MATERIAL_METAL)) return 1.0f;
   float n = sh->eta[c][i], k = sh->k[c][i];
   return ((n - 1.0f) * (n - 1.0f) + k * k) / ((n + 1.0f) * (n + 1.0f) + k * k);
 }

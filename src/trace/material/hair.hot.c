@@ -15,9 +15,9 @@ static void from_reflectance(vlTextureRun *r, float (*rows)[VL_ROW_SIZE]) {
 }
 
 void vl_stage_hair(vlTextureRun *r, const vlWorldMaterial *m) {
-  const vlWorldHair *h = m->hair;
+  const vlWorldHair *h = m->own;
   vlShade *shade = &r->s->shade;
-  float(*rows)[VL_ROW_SIZE] = shade->principled;
+  float(*rows)[VL_ROW_SIZE] = shade->own;
   vl_texture_float(r, h->beta_m, rows[VL_H_BETA_M]);
   vl_texture_float(r, h->beta_n, rows[VL_H_BETA_N]);
   vl_texture_float(r, h->alpha, rows[VL_H_ALPHA]);

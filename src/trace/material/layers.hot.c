@@ -14,9 +14,9 @@ static void seeds(vlTextureRun *r) {
 }
 
 void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
-  const vlWorldLayers *l = m->layers;
+  const vlWorldLayers *l = m->own;
   vlShade *shade = &r->s->shade;
-  float(*rows)[VL_ROW_SIZE] = shade->principled;
+  float(*rows)[VL_ROW_SIZE] = shade->own;
   vl_rows_albedo(r, l->albedo, 1.0f, rows + VL_L_ALBEDO);
   vl_texture_float(r, l->thickness, rows[VL_L_THICKNESS]);
   vl_texture_float(r, l->g, rows[VL_L_G]);
@@ -46,7 +46,7 @@ void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
 
 void vl_stage_translucent(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *shade = &r->s->shade;
-  vl_rows_albedo(r, m->transmittance, m->scale, shade->principled + VL_T_TRANSMITTANCE);
+  vl_rows_albedo(r, m->transmittance, m->scale, shade->own + VL_T_TRANSMITTANCE);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++)
       shade->reflectance[c][i] = vl_clamp(m->scale * shade->reflectance[c][i], 0.0f, 1.0f);

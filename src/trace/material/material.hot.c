@@ -85,53 +85,118 @@ static void normal_map(vlTextureRun *r, int32_t image) {
 
 /* ---- parameters -------------------------------------------------------------------------------------------------- */
 
+static void reflectance(vlTextureRun *r, const vlWorldMaterial *m) {
+  vlShade *shade = &r->s->shade;
+  if (m->reflectance < 0) return;
+  vl_rows_albedo(r, m->reflectance, 1.0f, shade->reflectance);
+}
+
+static void metal(vlTextureRun *r, const vlWorldMaterial *m) {
+  vlShade *shade = &r->s->shade;
+  if (!m->use_reflectance) {
+    vl_rows_spectrum(r, m->eta, shade->eta);
+    vl_rows_spectrum(r, m->k, shade->k);
+    return;
+  }
+  /* eta = 1, k = 2 sqrt(R / (1 - R)) reflects R straight on (pbrt book 9.3.6's convention of the conductor material).
+   */
+  for (int c = 0; c < 4; c++)
+    for (uint32_t i = r->first; i < r->last; i++) {
+      float x = vl_clamp(shade->reflectance[c][i], 0.0f, 0.9999f);
+      shade->eta[c][i] = 1.0f;
+      shade->k[c][i] = 2.0f * __builtin_sqrtf(x / (1.0f - x));
+    }
+}
+
+static void alphas(vlTextureRun *r, const vlWorldMaterial *m) {
+  vl_row_alpha(r, m, m->u_roughness, r->s->shade.alpha_x);
+  vl_row_alpha(r, m, m->v_roughness, r->s->shade.alpha_y);
+}
+
+static void index_of_refraction(vlTextureRun *r, const vlWorldMaterial *m) {
+  vlShade *shade = &r->s->shade;
+  if (m->dispersive) vl_rows_spectrum(r, m->eta, shade->eta);
+  for (uint32_t i = r->first; i < r->last; i++) shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
+}
+
+void vl_parameters_diffuse(vlTextureRun *r, const vlWorldMaterial *m) {
+  reflectance(r, m);
+}
+
+void vl_parameters_conductor(vlTextureRun *r, const vlWorldMaterial *m) {
+  reflectance(r, m);
+  metal(r, m);
+  alphas(r, m);
+}
+
+void vl_parameters_dielectric(vlTextureRun *r, const vlWorldMaterial *m) {
+  reflectance(r, m);
+  alphas(r, m);
+  if (m->subsurface) vl_stage_bodies(r, m);
+  index_of_refraction(r, m);
+}
+
+void vl_parameters_thin(vlTextureRun *r, const vlWorldMaterial *m) {
+  index_of_refraction(r, m);
+}
+
+void vl_parameters_coat(vlTextureRun *r, const vlWorldMaterial *m) {
+  reflectance(r, m);
+  alphas(r, m);
+  index_of_refraction(r, m);
+  for (uint32_t i = r->first; i < r->last; i++) r->s->shade.coat[i] = m->coat;
+}
+
+void vl_parameters_layered(vlTextureRun *r, const vlWorldMaterial *m) {
+  reflectance(r, m);
+  if (m->traits & VL_MATERIAL_METAL) metal(r, m);
+  alphas(r, m);
+  vl_stage_layers(r, m);
+  index_of_refraction(r, m);
+}
+
+void vl_parameters_translucent(vlTextureRun *r, const vlWorldMaterial *m) {
+  reflectance(r, m);
+  vl_stage_translucent(r, m);
+}
+
+void vl_parameters_hair(vlTextureRun *r, const vlWorldMaterial *m) {
+  reflectance(r, m);
+  vl_stage_hair(r, m);
+}
+
+void vl_parameters_measured(vlTextureRun *r, const vlWorldMaterial *m) {
+  for (uint32_t i = r->first; i < r->last; i++) r->s->shade.measured[i] = m->measured;
+}
+
+void vl_parameters_principled(vlTextureRun *r, const vlWorldMaterial *m) {
+  vl_stage_principled(r, m);
+  reflectance(r, m);
+}
+
+#define PARAMETERS(NAME, name) [VL_BSDF_##NAME] = vl_parameters_##name,
+static vlParametersFn *const parameters[] = {VL_BSDF_KINDS(PARAMETERS)};
+
+/* Each wavelength goes its own way: the hero alone is followed, with the weight of all four. */
+static void follow_hero(vlPaths *p, uint32_t first, uint32_t last) {
+  for (uint32_t i = first; i < last; i++) {
+    /* That the hero is alone is told by equal wavelengths: weights may be zero for other reasons. */
+    bool alone = p->lambda[1][i] == p->lambda[0][i];
+    p->beta[0][i] *= alone ? 1.0f : 4.0f;
+    p->beta[1][i] = p->beta[2][i] = p->beta[3][i] = 0.0f;
+    p->lambda[1][i] = p->lambda[2][i] = p->lambda[3][i] = p->lambda[0][i];
+  }
+}
+
 void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s) {
   const vlWorldMaterial *m = &world->materials.items[material];
-  vlShade *shade = &s->shade;
   vlTextureRun r = {world, s, &s->b, &s->surface, first, last, 0, NULL, NULL, NULL, NULL, NULL};
-  for (uint32_t i = first; m->hair && i < last; i++) s->surface.all_round[i] = 1.0f;
+  for (uint32_t i = first; m->no_cosine && i < last; i++) s->surface.all_round[i] = 1.0f;
   if (m->displacement >= 0) bump(&r, m->displacement);
   if (m->normal_map >= 0) normal_map(&r, m->normal_map);
   r.top = 0;
-  if (m->kind == VL_MATERIAL_PRINCIPLED) vl_stage_principled(&r, m);
-  if (m->reflectance >= 0) vl_rows_albedo(&r, m->reflectance, 1.0f, shade->reflectance);
-  bool metal = m->kind == VL_MATERIAL_CONDUCTOR || m->kind == VL_MATERIAL_COATED_CONDUCTOR;
-  if (metal && m->use_reflectance) {
-    /* eta = 1, k = 2 sqrt(R / (1 - R)) reflects R straight on (pbrt book 9.3.6's convention of the conductor material).
-     */
-    for (int c = 0; c < 4; c++)
-      for (uint32_t i = first; i < last; i++) {
-        float x = vl_clamp(shade->reflectance[c][i], 0.0f, 0.9999f);
-        shade->eta[c][i] = 1.0f;
-        shade->k[c][i] = 2.0f * __builtin_sqrtf(x / (1.0f - x));
-      }
-  } else {
-    if (m->eta >= 0) vl_rows_spectrum(&r, m->eta, shade->eta);
-    if (m->k >= 0) vl_rows_spectrum(&r, m->k, shade->k);
-  }
-  if (m->u_roughness >= 0) {
-    vl_row_alpha(&r, m, m->u_roughness, shade->alpha_x);
-    vl_row_alpha(&r, m, m->v_roughness, shade->alpha_y);
-  }
-  if (m->layers) vl_stage_layers(&r, m);
-  if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) vl_stage_translucent(&r, m);
-  if (m->hair) vl_stage_hair(&r, m);
-  for (uint32_t i = first; i < last && m->measured; i++) shade->measured[i] = m->measured;
-  if (m->subsurface) vl_stage_bodies(&r, m);
-  for (uint32_t i = first; i < last && m->kind != VL_MATERIAL_PRINCIPLED && !m->hair; i++) {
-    shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
-    shade->coat[i] = m->coat;
-  }
-  if (m->dispersive) { /* each wavelength goes its own way: the hero alone is followed, with the weight of all four */
-    vlPaths *p = &s->b;
-    for (uint32_t i = first; i < last; i++) {
-      /* That the hero is alone is told by equal wavelengths: weights may be zero for other reasons. */
-      bool alone = p->lambda[1][i] == p->lambda[0][i];
-      p->beta[0][i] *= alone ? 1.0f : 4.0f;
-      p->beta[1][i] = p->beta[2][i] = p->beta[3][i] = 0.0f;
-      p->lambda[1][i] = p->lambda[2][i] = p->lambda[3][i] = p->lambda[0][i];
-    }
-  }
+  parameters[m->bsdf](&r, m);
+  if (m->dispersive) follow_hero(&s->b, first, last);
 }
 
 void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *f, vlShade *shade) {

@@ -35,7 +35,7 @@ static bool is_map(const vlTextureRun *r, int32_t node) {
 /* The coat has the vertices' normal unless it has a map of its own; kept in world space until frames stand. */
 static void normals(vlTextureRun *r, const vlWorldPrincipled *p) {
   vlSurface *f = &r->s->surface;
-  float(*rows)[VL_ROW_SIZE] = r->s->shade.principled;
+  float(*rows)[VL_ROW_SIZE] = r->s->shade.own;
   if (p->has_coat) {
     bool map = is_map(r, p->coat_normal);
     for (uint32_t i = r->first; i < r->last; i++) {
@@ -99,7 +99,7 @@ static void layers(vlTextureRun *r, const vlWorldPrincipled *p, float (*rows)[VL
 void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldPrincipled *p = m->principled;
   vlShade *shade = &r->s->shade;
-  float(*rows)[VL_ROW_SIZE] = shade->principled;
+  float(*rows)[VL_ROW_SIZE] = shade->own;
   uint32_t first = r->first, last = r->last;
   normals(r, p);
   share(r, p->metallic, rows[VL_P_METALLIC]);
@@ -139,7 +139,7 @@ void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m) {
 
 /* The coat's normals of a run from world space into the shading frames. */
 void vl_stage_coat_frames(const vlSurface *f, vlShade *shade, uint32_t first, uint32_t last) {
-  float(*rows)[VL_ROW_SIZE] = shade->principled;
+  float(*rows)[VL_ROW_SIZE] = shade->own;
   for (uint32_t i = first; i < last; i++) {
     vlVec3 c = vl_vec3(rows[VL_P_COAT_X][i], rows[VL_P_COAT_Y][i], rows[VL_P_COAT_Z][i]);
     if (!(rows[VL_P_COAT][i] > 0.0f)) c = vl_vec3(f->nx[i], f->ny[i], f->nz[i]);

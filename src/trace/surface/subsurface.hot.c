@@ -52,8 +52,8 @@ static uint32_t take_refracted(vlTracing *t, uint32_t n) {
     x->px[j] = s->surface.px[i], x->py[j] = s->surface.py[i], x->pz[j] = s->surface.pz[i];
     x->nx[j] = s->surface.nx[i], x->ny[j] = s->surface.ny[i], x->nz[j] = s->surface.nz[i];
     for (int c = 0; c < 4; c++) {
-      x->sigma[c][j] = sh->principled[VL_S_SIGMA + c][i];
-      x->albedo[c][j] = sh->principled[VL_S_ALBEDO + c][i];
+      x->sigma[c][j] = sh->own[VL_S_SIGMA + c][i];
+      x->albedo[c][j] = sh->own[VL_S_ALBEDO + c][i];
     }
     x->squeezed[j] = sh->eta_scale[i];
     x->medium[j] = s->volume.b.medium[i];
@@ -326,7 +326,7 @@ uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth) {
 void vl_stage_bodies(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldSubsurface *b = m->subsurface;
   vlShade *sh = &r->s->shade;
-  float(*sigma)[VL_ROW_SIZE] = sh->principled + VL_S_SIGMA, (*albedo)[VL_ROW_SIZE] = sh->principled + VL_S_ALBEDO;
+  float(*sigma)[VL_ROW_SIZE] = sh->own + VL_S_SIGMA, (*albedo)[VL_ROW_SIZE] = sh->own + VL_S_ALBEDO;
   const float most = 1e15f; /* per unit of length: its square is still a number */
   if (b->mfp >= 0) {
     vl_rows_spectrum(r, b->mfp, sigma);

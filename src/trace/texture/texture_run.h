@@ -84,14 +84,14 @@ static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vl
   return at;
 }
 
-/* Rows of the materials with walks between layers (after their textured eta, k and roughness), and of those that let
- * diffuse light through (after their reflectance). */
-void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m);
-void vl_stage_translucent(vlTextureRun *r, const vlWorldMaterial *m);
-void vl_stage_bodies(vlTextureRun *r, const vlWorldMaterial *m); /* after their reflectance */
-void vl_stage_hair(vlTextureRun *r, const vlWorldMaterial *m);   /* as those; its index, too */
-/* The principled material's rows of a run; the coat's normal stays in the world until there are frames. */
-void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m);
+/* Parameters of the BSDFs over a run of lanes of material m, from its textures: one function per kind of the list. */
+typedef void vlParametersFn(vlTextureRun *r, const vlWorldMaterial *m);
+#define VL_DECLARE_PARAMETERS(NAME, name) vlParametersFn vl_parameters_##name;
+VL_BSDF_KINDS(VL_DECLARE_PARAMETERS)
+
+/* Parts of them. Layers: after the textured eta, k and roughness; translucent, bodies, hair: after the reflectance. The
+ * coat's normal of the principled material stays in the world until there are frames. */
+vlParametersFn vl_stage_layers, vl_stage_translucent, vl_stage_bodies, vl_stage_hair, vl_stage_principled;
 void vl_stage_coat_frames(const vlSurface *surface, vlShade *shade, uint32_t first, uint32_t last);
 
 #endif

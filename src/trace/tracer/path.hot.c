@@ -4,26 +4,6 @@
 
 /* ---- runs of one BSDF -------------------------------------------------------------------------------------------- */
 
-static vlBsdfKind bsdf_kind(const vlWorldMaterial *m) {
-  if (m->layers) return VL_BSDF_LAYERED;
-  switch (m->kind) {
-    case VL_MATERIAL_DIFFUSE: return VL_BSDF_DIFFUSE;
-    case VL_MATERIAL_CONDUCTOR: return VL_BSDF_CONDUCTOR;
-    case VL_MATERIAL_COATED_CONDUCTOR: return VL_BSDF_LAYERED;
-    case VL_MATERIAL_SUBSURFACE:
-    case VL_MATERIAL_DIELECTRIC: return VL_BSDF_DIELECTRIC;
-    case VL_MATERIAL_THIN_DIELECTRIC: return VL_BSDF_THIN_DIELECTRIC;
-    case VL_MATERIAL_COATED_DIFFUSE: return VL_BSDF_COATED_DIFFUSE;
-    case VL_MATERIAL_PRINCIPLED: return VL_BSDF_PRINCIPLED;
-    case VL_MATERIAL_DIFFUSE_TRANSMISSION: return VL_BSDF_DIFFUSE_TRANSMISSION;
-    case VL_MATERIAL_HAIR: return VL_BSDF_HAIR;
-    case VL_MATERIAL_MEASURED: return VL_BSDF_MEASURED;
-    case VL_MATERIAL_MIX:
-    case VL_MATERIAL_INTERFACE: break; /* vl_stage_hits leaves none */
-  }
-  return VL_BSDF_KINDS; /* no BSDF: NaN, which the film counts */
-}
-
 /* Calls for each run of lanes that share a BSDF kind, with parameter rows shifted to the run. Runs need not start at a
  * multiple of the vector width: elements are computed one by one, whatever the loop's shape. */
 typedef struct Run {
@@ -32,8 +12,8 @@ typedef struct Run {
 } Run;
 
 static Run next_kind(const vlWorld *world, const vlHits *h, uint32_t first, uint32_t n) {
-  Run r = {bsdf_kind(&world->materials.items[h->material[first]]), first, first + 1};
-  while (r.last < n && bsdf_kind(&world->materials.items[h->material[r.last]]) == r.kind) r.last++;
+  Run r = {world->materials.items[h->material[first]].bsdf, first, first + 1};
+  while (r.last < n && world->materials.items[h->material[r.last]].bsdf == r.kind) r.last++;
   return r;
 }
 
@@ -46,7 +26,7 @@ static vlBsdfParams params_of(vlTracing *t, uint32_t first) {
     p.k[c] = s->k[c] + first;
     p.lambda[c] = t->world->def.color == VL_COLOR_RGB ? NULL : t->s->b.lambda[c] + first;
   }
-  for (int k = 0; k < VL_PRINCIPLED_ROWS; k++) p.principled[k] = s->principled[k] + first;
+  for (int k = 0; k < VL_BSDF_ROWS; k++) p.own[k] = s->own[k] + first;
   p.alpha_x = s->alpha_x + first;
   p.alpha_y = s->alpha_y + first;
   p.eta_s = s->eta_s + first;

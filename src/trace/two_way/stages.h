@@ -89,21 +89,12 @@ float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t li
 
 /* Where all that scatters is a delta: nothing can be connected. */
 static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s, uint32_t i) {
-  switch (world->materials.items[s->hits_b.material[i]].kind) {
-    case VL_MATERIAL_THIN_DIELECTRIC: return true;
-    case VL_MATERIAL_CONDUCTOR: return vl_ggx_is_smooth(s->shade.alpha_x[i], s->shade.alpha_y[i]);
-    case VL_MATERIAL_SUBSURFACE:
-    case VL_MATERIAL_DIELECTRIC:
-      return vl_ggx_is_smooth(s->shade.alpha_x[i], s->shade.alpha_y[i]) || s->shade.eta_s[i] == 1.0f;
-    case VL_MATERIAL_DIFFUSE:
-    case VL_MATERIAL_COATED_DIFFUSE:
-    case VL_MATERIAL_MIX:
-    case VL_MATERIAL_PRINCIPLED:
-    case VL_MATERIAL_DIFFUSE_TRANSMISSION:
-    case VL_MATERIAL_COATED_CONDUCTOR:
-    case VL_MATERIAL_HAIR:
-    case VL_MATERIAL_MEASURED:
-    case VL_MATERIAL_INTERFACE: break;
+  const float *x = s->shade.alpha_x, *y = s->shade.alpha_y;
+  switch (world->materials.items[s->hits_b.material[i]].smooth) {
+    case VL_SMOOTH_NEVER: return false;
+    case VL_SMOOTH_BY_ALPHA: return vl_ggx_is_smooth(x[i], y[i]);
+    case VL_SMOOTH_BY_ALPHA_OR_INDEX: return vl_ggx_is_smooth(x[i], y[i]) || s->shade.eta_s[i] == 1.0f;
+    case VL_SMOOTH_ALWAYS: return true;
   }
   return false;
 }

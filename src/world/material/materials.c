@@ -2,15 +2,23 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/error.h"
 #include "math/ggx.h"
-#include "scene/scene.h"
-#include "world/world.h"
+#include "scene/schema/schema.h"
+#include "world/material/compile.h"
 
-static vlResult fail(const vlMaterialDef *def, vlError *error, const char *what) {
-  return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+vlResult vl_material_fail(const vlMaterialBuild *b, const char *what) {
+  const vlMaterialDef *def = b->def;
+  return vl_fail_at(b->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
                     "material \"%s\": %s", def->name ? def->name : "", what);
 }
+
+vlResult vl_material_floats(const vlMaterialBuild *b, const vlMaterialFloat *floats, size_t count) {
+  vlResult r = VL_OK;
+  for (size_t i = 0; r == VL_OK && i < count; i++) r = vl_material_float(b, floats[i].input, floats[i].node);
+  return r;
+}
+
+/* ---- coats ------------------------------------------------------------------------------------------------------- */
 
 static float alpha_of(float roughness, bool remap) {
   return remap ? sqrtf(roughness > 0 ? roughness : 0) : roughness;
@@ -73,96 +81,145 @@ static bool in_closed_form(const vlMaterialDef *def) {
   return !def->albedo.texture.index && black && !def->thickness.texture.index;
 }
 
-static vlResult dielectric_eta(vlWorld *world, const vlScene *scene, const vlMaterialDef *def,
-                               const vlSpectrumInput *eta, vlWorldMaterial *m, vlError *error) {
-  if (eta->texture.index) return fail(def, error, "a textured index of refraction is not supported");
+/* ---- what several kinds have ------------------------------------------------------------------------------------- */
+
+vlResult vl_material_roughness(const vlMaterialBuild *b) {
+  const vlMaterialFloat floats[] = {{b->def->u_roughness, &b->m->u_roughness},
+                                    {b->def->v_roughness, &b->m->v_roughness}};
+  return vl_material_floats(b, floats, 2);
+}
+
+vlResult vl_material_metal(const vlMaterialBuild *b) {
+  b->m->use_reflectance = b->def->use_reflectance;
+  if (b->def->use_reflectance) return vl_material_spectrum(b, b->def->reflectance, VL_ROLE_ALBEDO, &b->m->reflectance);
+  vlResult r = vl_material_spectrum(b, b->def->eta, VL_ROLE_UNBOUNDED, &b->m->eta);
+  return r == VL_OK ? vl_material_spectrum(b, b->def->k, VL_ROLE_UNBOUNDED, &b->m->k) : r;
+}
+
+vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta, bool disperses) {
+  vlWorldMaterial *m = b->m;
   float value;
   if (vl_spectrum_is_constant(&eta->value, &value)) {
-    if (!(value > 0) || !isfinite(value)) return fail(def, error, "the index of refraction must be a positive number");
+    if (!(value > 0) || !isfinite(value))
+      return vl_material_fail(b, "the index of refraction must be a positive number");
     m->eta_s = value;
     return VL_OK;
   }
-  if (def->kind == VL_MATERIAL_COATED_DIFFUSE || def->kind == VL_MATERIAL_COATED_CONDUCTOR ||
-      def->kind == VL_MATERIAL_THIN_DIELECTRIC || world->def.color == VL_COLOR_RGB) {
-    /* One number stands for the glass: the index at the sodium line, as catalogues give it. */
-    float dense[VL_LAMBDA_COUNT];
-    vlResult r = vl_spectrum_dense(&eta->value, VL_ROLE_UNBOUNDED, dense, error);
-    if (r != VL_OK) return r;
-    m->eta_s = vl_dense_at(dense, 589.3f);
-    if (!(m->eta_s > 0)) return fail(def, error, "the index of refraction must be positive");
-    if (world->def.color != VL_COLOR_RGB)
-      vl_log(world->context, VL_LOG_WARNING, NULL,
-             "material \"%s\": dispersion of this kind is not supported, the index at 589.3 nm is used",
-             def->name ? def->name : "");
-    return VL_OK;
+  bool spectral = b->world->def.color != VL_COLOR_RGB;
+  if (spectral && disperses) {
+    m->dispersive = true;
+    return vl_material_spectrum(b, *eta, VL_ROLE_UNBOUNDED, &m->eta);
   }
-  m->dispersive = true;
-  m->eta_s = 1.5f;
-  return vl_world_spectrum_node(world, scene, *eta, VL_ROLE_UNBOUNDED, &m->eta, error);
+  /* One number stands for the glass: the index at the sodium line, as catalogues give it. */
+  float dense[VL_LAMBDA_COUNT];
+  vlResult r = vl_spectrum_dense(&eta->value, VL_ROLE_UNBOUNDED, dense, b->error);
+  if (r != VL_OK) return r;
+  m->eta_s = vl_dense_at(dense, 589.3f);
+  if (!(m->eta_s > 0)) return vl_material_fail(b, "the index of refraction must be positive");
+  if (spectral)
+    vl_log(b->world->context, VL_LOG_WARNING, NULL,
+           "material \"%s\": dispersion of this kind is not supported, the index at 589.3 nm is used",
+           b->def->name ? b->def->name : "");
+  return VL_OK;
+}
+
+/* ---- a function per kind ----------------------------------------------------------------------------------------- */
+
+vlResult vl_compile_diffuse_material(const vlMaterialBuild *b) {
+  b->m->bsdf = VL_BSDF_DIFFUSE;
+  return vl_material_spectrum(b, b->def->reflectance, VL_ROLE_ALBEDO, &b->m->reflectance);
+}
+
+vlResult vl_compile_coated_diffuse_material(const vlMaterialBuild *b) {
+  b->m->bsdf = VL_BSDF_COATED_DIFFUSE;
+  vlResult r = vl_material_spectrum(b, b->def->reflectance, VL_ROLE_ALBEDO, &b->m->reflectance);
+  if (r == VL_OK) r = vl_material_roughness(b);
+  if (r == VL_OK) r = vl_material_index(b, &b->def->eta, false);
+  if (r != VL_OK) return r;
+  return in_closed_form(b->def) ? coat_of(b->world, b->def, b->m, b->error) : vl_material_layers(b, false);
+}
+
+vlResult vl_compile_conductor_material(const vlMaterialBuild *b) {
+  b->m->bsdf = VL_BSDF_CONDUCTOR;
+  b->m->smooth = VL_SMOOTH_BY_ALPHA;
+  vlResult r = vl_material_roughness(b);
+  return r == VL_OK ? vl_material_metal(b) : r;
+}
+
+vlResult vl_compile_dielectric_material(const vlMaterialBuild *b) {
+  b->m->bsdf = VL_BSDF_DIELECTRIC;
+  b->m->smooth = VL_SMOOTH_BY_ALPHA_OR_INDEX;
+  vlResult r = vl_material_roughness(b);
+  return r == VL_OK ? vl_material_index(b, &b->def->eta, true) : r;
+}
+
+vlResult vl_compile_thin_dielectric_material(const vlMaterialBuild *b) {
+  b->m->bsdf = VL_BSDF_THIN_DIELECTRIC;
+  b->m->smooth = VL_SMOOTH_ALWAYS;
+  return vl_material_index(b, &b->def->eta, false);
+}
+
+vlResult vl_compile_diffuse_transmission_material(const vlMaterialBuild *b) {
+  b->m->bsdf = VL_BSDF_DIFFUSE_TRANSMISSION;
+  b->m->scale = b->def->scale;
+  vlResult r = vl_material_spectrum(b, b->def->reflectance, VL_ROLE_ALBEDO, &b->m->reflectance);
+  return r == VL_OK ? vl_material_spectrum(b, b->def->transmittance, VL_ROLE_ALBEDO, &b->m->transmittance) : r;
+}
+
+vlResult vl_compile_measured_material(const vlMaterialBuild *b) {
+  b->m->bsdf = VL_BSDF_MEASURED;
+  return measured_of(b->world, b->def, b->m, b->error);
+}
+
+/* Hits have the BSDF of one of the parts. */
+vlResult vl_compile_mix_material(const vlMaterialBuild *b) {
+  vlWorldMaterial *m = b->m;
+  for (int i = 0; i < 2; i++) {
+    m->mix[i] = b->def->materials[i].index;
+    const vlWorldMaterial *part = &b->world->materials.items[m->mix[i]];
+    m->absent[i] = part->kind == VL_MATERIAL_INTERFACE;
+    m->has_subsurface = m->has_subsurface || part->has_subsurface;
+    if (part->kind == VL_MATERIAL_MIX && (part->absent[0] || part->absent[1]))
+      return vl_material_fail(b, "a mix with an interface cannot be a part of another mix");
+  }
+  return vl_material_float(b, b->def->amount, &m->amount);
+}
+
+/* Never shaded. */
+vlResult vl_compile_interface_material(const vlMaterialBuild *b) {
+  b->m->bsdf = VL_BSDF_DIFFUSE;
+  return VL_OK;
+}
+
+#define COMPILE(NAME, name) [VL_MATERIAL_##NAME] = vl_compile_##name##_material,
+static vlCompileMaterial *const compile[] = {VL_MATERIAL_KINDS(COMPILE)};
+enum { KINDS = sizeof compile / sizeof *compile };
+
+static vlResult bumps(const vlMaterialBuild *b) {
+  vlResult r = VL_OK;
+  if (b->def->displacement.texture.index) r = vl_material_float(b, b->def->displacement, &b->m->displacement);
+  if (r != VL_OK || !b->def->normal_map) return r;
+  vlEncoding linear = VL_ENCODING_LINEAR;
+  b->m->normal_map = vl_world_add_image(b->world, b->def->normal_map, NULL, &linear, 1, false, b->error);
+  return b->m->normal_map >= 0 ? VL_OK : b->error && b->error->code ? b->error->code : VL_ERROR_SCENE;
 }
 
 static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMaterialDef *def, vlError *error) {
-  vlWorldMaterial material, *m = &material;
-  memset(m, 0, sizeof *m);
-  m->kind = def->kind;
-  m->reflectance = m->eta = m->k = m->u_roughness = m->v_roughness = m->amount = m->displacement = m->normal_map =
-      m->transmittance = -1;
-  m->remap = def->remap_roughness;
-  m->eta_s = 1.5f;
-  vlResult r = VL_OK;
-  bool metal = def->kind == VL_MATERIAL_CONDUCTOR || def->kind == VL_MATERIAL_COATED_CONDUCTOR;
-  bool rough = metal || def->kind == VL_MATERIAL_DIELECTRIC || def->kind == VL_MATERIAL_COATED_DIFFUSE ||
-               def->kind == VL_MATERIAL_SUBSURFACE;
-  if (def->kind == VL_MATERIAL_DIFFUSE || def->kind == VL_MATERIAL_COATED_DIFFUSE ||
-      def->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION || (metal && def->use_reflectance))
-    r = vl_world_spectrum_node(world, scene, def->reflectance, VL_ROLE_ALBEDO, &m->reflectance, error);
-  m->use_reflectance = def->use_reflectance;
-  if (r == VL_OK && rough) r = vl_world_float_node(world, scene, def->u_roughness, &m->u_roughness, error);
-  if (r == VL_OK && rough) r = vl_world_float_node(world, scene, def->v_roughness, &m->v_roughness, error);
-  if (r == VL_OK && metal && !def->use_reflectance) {
-    r = vl_world_spectrum_node(world, scene, def->eta, VL_ROLE_UNBOUNDED, &m->eta, error);
-    if (r == VL_OK) r = vl_world_spectrum_node(world, scene, def->k, VL_ROLE_UNBOUNDED, &m->k, error);
-  }
-  if (r == VL_OK && (def->kind == VL_MATERIAL_DIELECTRIC || def->kind == VL_MATERIAL_THIN_DIELECTRIC ||
-                     def->kind == VL_MATERIAL_COATED_DIFFUSE))
-    r = dielectric_eta(world, scene, def, &def->eta, m, error);
-  if (r == VL_OK && def->kind == VL_MATERIAL_COATED_CONDUCTOR)
-    r = dielectric_eta(world, scene, def, &def->coat_eta, m, error);
-  if (r == VL_OK && def->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) {
-    m->scale = def->scale;
-    r = vl_world_spectrum_node(world, scene, def->transmittance, VL_ROLE_ALBEDO, &m->transmittance, error);
-  }
-  if (r == VL_OK &&
-      (def->kind == VL_MATERIAL_COATED_CONDUCTOR || (def->kind == VL_MATERIAL_COATED_DIFFUSE && !in_closed_form(def))))
-    r = vl_world_layers(world, scene, def, m, error);
-  else if (r == VL_OK && def->kind == VL_MATERIAL_COATED_DIFFUSE)
-    r = coat_of(world, def, m, error);
-  if (r == VL_OK && def->kind == VL_MATERIAL_SUBSURFACE) r = vl_world_subsurface(world, scene, def, m, error);
-  if (r == VL_OK && def->kind == VL_MATERIAL_HAIR) r = vl_world_hair(world, scene, def, m, error);
-  if (r == VL_OK && def->kind == VL_MATERIAL_MEASURED) r = measured_of(world, def, m, error);
-  if (def->kind == VL_MATERIAL_PRINCIPLED) r = vl_world_principled(world, scene, def, m, error);
-  if (r == VL_OK && def->kind == VL_MATERIAL_MIX) {
-    m->mix[0] = def->materials[0].index, m->mix[1] = def->materials[1].index;
-    for (int i = 0; i < 2; i++) {
-      const vlWorldMaterial *part = &world->materials.items[m->mix[i]];
-      m->absent[i] = part->kind == VL_MATERIAL_INTERFACE;
-      m->has_subsurface = m->has_subsurface || part->has_subsurface;
-      if (part->kind == VL_MATERIAL_MIX && (part->absent[0] || part->absent[1]))
-        return fail(def, error, "a mix with an interface cannot be a part of another mix");
-    }
-    r = vl_world_float_node(world, scene, def->amount, &m->amount, error);
-  }
-  if (r == VL_OK && def->displacement.texture.index)
-    r = vl_world_float_node(world, scene, def->displacement, &m->displacement, error);
-  if (r == VL_OK && def->normal_map) {
-    vlEncoding linear = VL_ENCODING_LINEAR;
-    m->normal_map = vl_world_add_image(world, def->normal_map, NULL, &linear, 1, false, error);
-    if (m->normal_map < 0) r = error && error->code ? error->code : VL_ERROR_SCENE;
-  }
+  vlWorldMaterial m;
+  memset(&m, 0, sizeof m);
+  m.kind = def->kind;
+  m.traits = vl_kind_row(&vl_material_family, (int)def->kind)->traits;
+  m.reflectance = m.eta = m.k = m.u_roughness = m.v_roughness = m.amount = -1;
+  m.displacement = m.normal_map = m.transmittance = -1;
+  m.remap = def->remap_roughness;
+  m.eta_s = 1.5f;
+  const vlMaterialBuild b = {world, scene, def, &m, error};
+  vlResult r = compile[def->kind](&b);
+  if (r == VL_OK) r = bumps(&b);
   if (r == VL_OK) {
     vlWorldMaterial *slot = VL_PUSH(world->context, &world->materials);
     if (slot)
-      *slot = *m;
+      *slot = m;
     else
       r = vl_fail_memory(error);
   }
@@ -177,7 +234,7 @@ vlResult vl_world_add_materials(vlWorld *world, const vlScene *scene, vlError *e
   if (r == VL_OK && !(world->rank = vl_world_block(world, world->materials.count, sizeof(uint32_t))))
     return vl_fail_memory(error);
   uint32_t next = 0;
-  for (int kind = 0; r == VL_OK && kind <= VL_MATERIAL_INTERFACE; kind++)
+  for (int kind = 0; r == VL_OK && kind < KINDS; kind++)
     for (size_t i = 0; i < world->materials.count; i++)
       if ((int)world->materials.items[i].kind == kind) world->rank[i] = next++;
   for (size_t i = 0; i < world->materials.count; i++)

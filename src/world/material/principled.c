@@ -4,9 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/error.h"
-#include "scene/scene.h"
-#include "world/world.h"
+#include "world/material/compile.h"
 
 /* Cauchy's n = a + b / lambda^2 (nm) through n_d with the Abbe number 20 / dispersion, at the lines d, F and C. */
 static void cauchy(float n, float dispersion, vlWorldPrincipled *p) {
@@ -29,11 +27,16 @@ static bool is_zero(vlFloatInput input) {
   return !input.texture.index && !(input.value > 0.0f);
 }
 
-vlResult vl_world_principled(vlWorld *world, const vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
-                             vlError *error) {
+vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
+  vlWorld *world = b->world;
+  const vlScene *scene = b->scene;
+  const vlMaterialDef *def = b->def;
+  vlWorldMaterial *m = b->m;
+  vlError *error = b->error;
   const vlPrincipledDef *d = &def->principled;
   vlWorldPrincipled *p = vl_world_block(world, 1, sizeof *p);
   if (!p) return vl_fail_memory(error);
+  m->bsdf = VL_BSDF_PRINCIPLED;
   m->principled = p;
   float ior;
   if (!vl_spectrum_is_constant(&def->eta.value, &ior) || !(ior >= 0.0f) || !isfinite(ior))
@@ -47,24 +50,20 @@ vlResult vl_world_principled(vlWorld *world, const vlScene *scene, const vlMater
   if (m->dispersive) cauchy(m->eta_s, d->dispersion, p);
   p->film_index = d->iridescence_ior;
   p->normal_scale = d->normal_scale, p->coat_normal_scale = d->clearcoat_normal_scale;
-  const struct {
-    vlFloatInput input;
-    int32_t *node;
-  } floats[] = {{d->metallic, &p->metallic},
-                {d->roughness, &p->roughness},
-                {d->anisotropy, &p->anisotropy},
-                {d->anisotropy_rotation, &p->anisotropy_rotation},
-                {d->specular, &p->specular},
-                {d->transmission, &p->transmission},
-                {d->diffuse_transmission, &p->diffuse_transmission},
-                {d->clearcoat, &p->clearcoat},
-                {d->clearcoat_roughness, &p->clearcoat_roughness},
-                {d->sheen_roughness, &p->sheen_roughness},
-                {d->iridescence, &p->iridescence},
-                {d->iridescence_thickness, &p->iridescence_thickness}};
+  const vlMaterialFloat floats[] = {{d->metallic, &p->metallic},
+                                    {d->roughness, &p->roughness},
+                                    {d->anisotropy, &p->anisotropy},
+                                    {d->anisotropy_rotation, &p->anisotropy_rotation},
+                                    {d->specular, &p->specular},
+                                    {d->transmission, &p->transmission},
+                                    {d->diffuse_transmission, &p->diffuse_transmission},
+                                    {d->clearcoat, &p->clearcoat},
+                                    {d->clearcoat_roughness, &p->clearcoat_roughness},
+                                    {d->sheen_roughness, &p->sheen_roughness},
+                                    {d->iridescence, &p->iridescence},
+                                    {d->iridescence_thickness, &p->iridescence_thickness}};
   vlResult r = vl_world_spectrum_node(world, scene, def->reflectance, VL_ROLE_ALBEDO, &m->reflectance, error);
-  for (size_t i = 0; r == VL_OK && i < sizeof floats / sizeof *floats; i++)
-    r = vl_world_float_node(world, scene, floats[i].input, floats[i].node, error);
+  if (r == VL_OK) r = vl_material_floats(b, floats, sizeof floats / sizeof *floats);
   if (r == VL_OK)
     r = vl_world_spectrum_node(world, scene, d->specular_color, VL_ROLE_UNBOUNDED, &p->specular_color, error);
   if (r == VL_OK)

@@ -1,9 +1,7 @@
 /* world/material/subsurface.c: inputs of the subsurface material; its profile is shared by those of the same index and
  * g. */
-#include "base/error.h"
-#include "scene/scene.h"
 #include "world/material/bssrdf.h"
-#include "world/world.h"
+#include "world/material/compile.h"
 
 static const vlBssrdfTable *table_of(vlWorld *world, float eta, float g) {
   for (size_t i = 0; i < world->materials.count; i++) {
@@ -15,24 +13,27 @@ static const vlBssrdfTable *table_of(vlWorld *world, float eta, float g) {
   return table;
 }
 
-vlResult vl_world_subsurface(vlWorld *world, const vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
-                             vlError *error) {
-  const vlSubsurfaceDef *d = &def->subsurface;
-  vlWorldSubsurface *b = vl_world_block(world, 1, sizeof *b);
-  if (!b) return vl_fail_memory(error);
-  b->sigma_a = b->sigma_s = b->mfp = -1;
-  m->scale = def->scale;
-  m->eta_s = def->eta.value.value * def->eta.value.scale;
-  if (!(b->table = table_of(world, m->eta_s, def->g.value))) return vl_fail_memory(error);
-  vlResult r;
+vlResult vl_compile_subsurface_material(const vlMaterialBuild *b) {
+  const vlSubsurfaceDef *d = &b->def->subsurface;
+  vlWorldMaterial *m = b->m;
+  vlWorldSubsurface *s = vl_world_block(b->world, 1, sizeof *s);
+  if (!s) return vl_fail_memory(b->error);
+  m->bsdf = VL_BSDF_DIELECTRIC;
+  m->smooth = VL_SMOOTH_BY_ALPHA_OR_INDEX;
+  s->sigma_a = s->sigma_s = s->mfp = -1;
+  m->scale = b->def->scale;
+  m->eta_s = b->def->eta.value.value * b->def->eta.value.scale;
+  vlResult r = vl_material_roughness(b);
+  if (r != VL_OK) return r;
+  if (!(s->table = table_of(b->world, m->eta_s, b->def->g.value))) return vl_fail_memory(b->error);
   if (d->from_reflectance) {
-    r = vl_world_spectrum_node(world, scene, def->reflectance, VL_ROLE_ALBEDO, &m->reflectance, error);
-    if (r == VL_OK) r = vl_world_spectrum_node(world, scene, d->mfp, VL_ROLE_UNBOUNDED, &b->mfp, error);
+    r = vl_material_spectrum(b, b->def->reflectance, VL_ROLE_ALBEDO, &m->reflectance);
+    if (r == VL_OK) r = vl_material_spectrum(b, d->mfp, VL_ROLE_UNBOUNDED, &s->mfp);
   } else {
-    r = vl_world_spectrum_node(world, scene, d->sigma_a, VL_ROLE_UNBOUNDED, &b->sigma_a, error);
-    if (r == VL_OK) r = vl_world_spectrum_node(world, scene, d->sigma_s, VL_ROLE_UNBOUNDED, &b->sigma_s, error);
+    r = vl_material_spectrum(b, d->sigma_a, VL_ROLE_UNBOUNDED, &s->sigma_a);
+    if (r == VL_OK) r = vl_material_spectrum(b, d->sigma_s, VL_ROLE_UNBOUNDED, &s->sigma_s);
   }
-  m->subsurface = b;
+  m->subsurface = s;
   m->has_subsurface = true;
   return r;
 }

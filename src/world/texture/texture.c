@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
+#include "scene/schema/schema.h"
 #include "world/texture/texture_node.h"
 #include "world/world.h"
 
@@ -344,6 +345,21 @@ static void fill_picture_node(const vlTextureDef *def, vlTextureNode *node) {
   node->plain = !tinted && !node->colors && def->channel < 0 && def->bias == 0 && isnan(def->cutoff);
 }
 
+/* The inputs that the kind's row names, in its order: a, b, c, d; and the amount. Below 0: an error. */
+static int32_t compile_inputs(Compile *c, const vlTextureDef *def, int role, int nesting, vlTextureNode *node) {
+  const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)def->kind);
+  int32_t *slots[4] = {&node->a, &node->b, &node->c, &node->d}, n = 0;
+  uint32_t used = 0;
+  for (uint32_t i = 0; i < row->parameter_count && n >= 0; i++) {
+    const vlParameter *p = &row->parameters[i];
+    const void *f = (const char *)def + p->offset, *s = (const char *)def + p->second;
+    if (p->type == VL_PARAMETER_EITHER_INPUT)
+      n = *slots[used++] = compile_input(c, def, *(const vlFloatInput *)f, *(const vlSpectrumInput *)s, role, nesting);
+    if (p->type == VL_PARAMETER_FLOAT_INPUT) n = node->amount = compile_float(c, *(const vlFloatInput *)f, nesting);
+  }
+  return n;
+}
+
 static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting) {
   const vlTextureDef *def = &c->scene->textures.items[index - 1];
   if (!def->spectrum) role = ROLE_FLOAT;
@@ -364,36 +380,17 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   memcpy(node.v2, def->planar_v2, sizeof node.v2);
   for (int i = 0; i < 12; i++) node.texture_from_world[i] = (float)def->texture_from_world[i];
   node.dimension = def->dimension;
-  node.octaves = def->octaves, node.omega = def->omega, node.variation = def->variation;
+  node.octaves = def->octaves < 64 ? def->octaves : 64, node.omega = def->omega, node.variation = def->variation;
   memcpy(node.direction, def->direction, sizeof node.direction);
   fill_picture_node(def, &node);
-  int inputs = 0;
-  bool amount = false;
-  switch (def->kind) {
-    case VL_TEXTURE_CONSTANT: {
-      int32_t n = compile_input(c, def, def->float_a, def->spectrum_a, role, nesting);
-      if (n >= 0) *memo = n + 1;
-      return n;
-    }
-    case VL_TEXTURE_SCALE: node.kind = VL_NODE_SCALE, inputs = 1, amount = true; break;
-    case VL_TEXTURE_MIX: node.kind = VL_NODE_MIX, inputs = 2, amount = true; break;
-    case VL_TEXTURE_DIRECTION_MIX: node.kind = VL_NODE_DIRECTION_MIX, inputs = 2; break;
-    case VL_TEXTURE_CHECKERBOARD: node.kind = VL_NODE_CHECKERBOARD, inputs = 2; break;
-    case VL_TEXTURE_BILERP: node.kind = VL_NODE_BILERP, inputs = 4; break;
-    case VL_TEXTURE_IMAGE: node.kind = VL_NODE_IMAGE; break;
-    case VL_TEXTURE_FBM: node.kind = VL_NODE_FBM; break;
-    case VL_TEXTURE_WRINKLED: node.kind = VL_NODE_WRINKLED; break;
-    case VL_TEXTURE_WINDY: node.kind = VL_NODE_WINDY; break;
-    case VL_TEXTURE_MARBLE: node.kind = VL_NODE_MARBLE; break;
-    case VL_TEXTURE_DOTS: node.kind = VL_NODE_DOTS, inputs = 2; break;
-    case VL_TEXTURE_VERTEX_COLOR: node.kind = VL_NODE_VERTEX_COLOR; break;
+  if (def->kind == VL_TEXTURE_CONSTANT) { /* its input's node stands for it */
+    int32_t n = compile_input(c, def, def->float_a, def->spectrum_a, role, nesting);
+    if (n >= 0) *memo = n + 1;
+    return n;
   }
-  int32_t *slots[4] = {&node.a, &node.b, &node.c, &node.d};
-  vlFloatInput floats[4] = {def->float_a, def->float_b, def->float_c, def->float_d};
-  vlSpectrumInput spectra[4] = {def->spectrum_a, def->spectrum_b, def->spectrum_c, def->spectrum_d};
-  for (int i = 0; i < inputs; i++)
-    if ((*slots[i] = compile_input(c, def, floats[i], spectra[i], role, nesting)) < 0) return *slots[i];
-  if (amount && (node.amount = compile_float(c, def->amount, nesting)) < 0) return node.amount;
+  node.kind = (vlNodeKind)def->kind;
+  int32_t failed = compile_inputs(c, def, role, nesting, &node);
+  if (failed < 0) return failed;
   if (node.kind == VL_NODE_IMAGE) {
     if ((node.image = image_of(c->world, def, c->error)) < 0) return -1;
     const vlMipmap *mip = c->world->images.items[node.image].mipmap;

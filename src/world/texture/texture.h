@@ -36,21 +36,13 @@ static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambd
  * nodes may be visited for it (inputs that are shared are evaluated each time): these bound nesting. */
 enum { VL_NODE_ROWS = 64, VL_NODE_VISITS = 4096 };
 
+/* A node per kind of texture; constants are their input's: a number or, for colours, a spectrum. */
 typedef enum vlNodeKind {
-  VL_NODE_FLOAT,
-  VL_NODE_SPECTRUM,
-  VL_NODE_SCALE,
-  VL_NODE_MIX,
-  VL_NODE_CHECKERBOARD,
-  VL_NODE_IMAGE,
-  VL_NODE_DIRECTION_MIX,
-  VL_NODE_BILERP,
-  VL_NODE_VERTEX_COLOR,
-  VL_NODE_FBM,
-  VL_NODE_WRINKLED,
-  VL_NODE_WINDY,
-  VL_NODE_MARBLE,
-  VL_NODE_DOTS
+#define VL_KIND(NAME, name) VL_NODE_##NAME,
+  VL_TEXTURE_KINDS(VL_KIND)
+#undef VL_KIND
+      VL_NODE_SPECTRUM,
+  VL_NODE_FLOAT = VL_NODE_CONSTANT
 } vlNodeKind;
 
 typedef struct vlTextureNode {

@@ -1,0 +1,156 @@
+/* scene/kinds.c: `velo scene kinds`: what scene files may say, from the rows of velo/schema.h: kinds of materials,
+ * textures and so on with their parameters, as the Markdown tables of the documentation, or as a dictionary for a
+ * fuzzer. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "velo/schema.h"
+
+enum { KINDS_DICTIONARY };
+
+static const char *type_name(const vlParameter *p) {
+  switch (p->type) {
+    case VL_PARAMETER_BOOL: return "bool";
+    case VL_PARAMETER_COUNT: return "integer";
+    case VL_PARAMETER_FLOAT:
+    case VL_PARAMETER_DOUBLE: return "float";
+    case VL_PARAMETER_FLOAT3: return "vector3";
+    case VL_PARAMETER_CHOICE:
+    case VL_PARAMETER_STRING:
+    case VL_PARAMETER_FILE:
+    case VL_PARAMETER_BLOCK: return "string";
+    case VL_PARAMETER_SPECTRUM: return "spectrum";
+    case VL_PARAMETER_FLOAT_INPUT:
+      return p->flags & (VL_PARAMETER_NO_TEXTURE | VL_PARAMETER_FILE_NUMBER) ? "float" : "float, texture";
+    case VL_PARAMETER_SPECTRUM_INPUT:
+      if (p->flags & VL_PARAMETER_ONE_NUMBER) return "float";
+      if (p->flags & VL_PARAMETER_NUMBER) return "float, spectrum";
+      return p->flags & VL_PARAMETER_NO_TEXTURE ? "spectrum" : "spectrum, texture";
+    case VL_PARAMETER_EITHER_INPUT: return "the texture's, texture";
+    case VL_PARAMETER_TEXTURE: return "texture";
+  }
+  return "";
+}
+
+static void print_default(const vlParameter *p) {
+  const double k = p->factor != 0 ? 1 / p->factor : 1;
+  if (p->flags & VL_PARAMETER_REQUIRED) {
+    printf("required");
+  } else if (p->flags & (VL_PARAMETER_SHORTHAND | VL_PARAMETER_UNSET) || p->type == VL_PARAMETER_BLOCK ||
+             p->type == VL_PARAMETER_TEXTURE) {
+    printf("–");
+  } else if (p->type == VL_PARAMETER_BOOL) {
+    printf("%s", p->value[0] != 0 ? "true" : "false");
+  } else if (p->type == VL_PARAMETER_CHOICE) {
+    printf("%s", p->choices[(int)p->value[0]]);
+  } else if (p->text) {
+    printf("%s", p->text);
+  } else if (p->type == VL_PARAMETER_STRING || p->type == VL_PARAMETER_FILE) {
+    printf("–");
+  } else if (p->type == VL_PARAMETER_FLOAT3 || p->flags & VL_PARAMETER_RGB) {
+    printf("%g %g %g", p->value[0], p->value[1], p->value[2]);
+  } else {
+    printf("%g", k * p->value[0]);
+  }
+}
+
+static void print_range(const vlParameter *p) {
+  const double k = p->factor != 0 ? 1 / p->factor : 1;
+  if (p->type == VL_PARAMETER_CHOICE) {
+    for (int i = 0; p->choices[i]; i++) printf("%s%s", i ? ", " : "", p->choices[i]);
+  } else if (p->low != 0 || p->high != 0) {
+    bool whole = p->type == VL_PARAMETER_COUNT && p->high >= 4294967295.0;
+    if (isinf(p->high) || whole)
+      printf("%s %g", p->flags & VL_PARAMETER_ABOVE_LOW ? ">" : "≥", k * p->low);
+    else
+      printf("%s%g to %g%s", p->flags & VL_PARAMETER_ABOVE_LOW ? "> " : "", k * p->low, k * p->high,
+             p->flags & VL_PARAMETER_BELOW_HIGH ? ", excluded" : "");
+    if (p->flags & VL_PARAMETER_CLAMPED) printf(", clamped");
+  }
+}
+
+static void print_row(const vlKindRow *row) {
+  printf("**`%s`**%s%s%s: %s.\n\n", row->name, row->alias ? " (also `" : "", row->alias ? row->alias : "",
+         row->alias ? "`)" : "", row->description);
+  bool any = false;
+  for (uint32_t i = 0; i < row->parameter_count; i++) {
+    const vlParameter *p = &row->parameters[i];
+    if (!p->name) continue;
+    if (!any) printf("| parameter | type | default | range | |\n| --- | --- | --- | --- | --- |\n");
+    any = true;
+    printf("| `%s`", p->name);
+    if (p->alias) printf(" (also `%s`)", p->alias);
+    printf(" | %s | ", type_name(p));
+    print_default(p);
+    printf("%s%s | ", p->unit ? " " : "", p->unit ? p->unit : "");
+    print_range(p);
+    printf(" | %s |\n", p->description);
+  }
+  if (any) printf("\n");
+}
+
+static void print_tables(const vlKindFamily *family) {
+  for (uint32_t i = 0; i < family->kind_count; i++)
+    if (family->rows[i]->name) print_row(family->rows[i]);
+}
+
+/* One word per line, each quoted, with the quotes that files put around it. */
+static void print_word(const char *type, const char *name) {
+  if (name) printf("\"\\\"%s%s%s\\\"\"\n", type, type[0] ? " " : "", name);
+}
+
+static void print_words(const vlKindFamily *family) {
+  printf("# %s\n\"%s\"\n", family->name, family->directive);
+  for (uint32_t i = 0; i < family->kind_count; i++) {
+    const vlKindRow *row = family->rows[i];
+    print_word("", row->name);
+    print_word("", row->alias);
+    for (uint32_t k = 0; k < row->parameter_count; k++) {
+      const vlParameter *p = &row->parameters[k];
+      char type[32];
+      snprintf(type, sizeof type, "%s", type_name(p));
+      type[strcspn(type, ",")] = 0;
+      if (p->type == VL_PARAMETER_EITHER_INPUT) snprintf(type, sizeof type, "float");
+      print_word(type, p->name);
+      print_word(type, p->alias);
+      for (int c = 0; p->name && p->choices && p->choices[c]; c++) print_word("", p->choices[c]);
+    }
+  }
+}
+
+static int run(const Command *command, const Arguments *arguments) {
+  (void)command;
+  const char *wanted = arguments->operand_count ? arguments->operands[0] : NULL;
+  bool dictionary = arguments->values[KINDS_DICTIONARY].given, found = false;
+  const vlKindFamily *family;
+  for (uint32_t i = 0; (family = vl_kind_family(i)); i++) {
+    if (wanted && strcmp(wanted, family->name) != 0) continue;
+    found = true;
+    if (dictionary)
+      print_words(family);
+    else if (wanted)
+      print_tables(family);
+    else
+      printf("%s\n", family->name);
+  }
+  if (!found) return report_usage("there is no family of kinds \"%s\" (velo scene kinds lists them)", wanted);
+  return fflush(stdout) != 0 || ferror(stdout) ? report_failure(STATUS_IO, "cannot write to stdout") : STATUS_OK;
+}
+
+static const Option options[] = {
+    {KINDS_DICTIONARY, 0, "dictionary", OPTION_FLAG, NULL, "words for a fuzzer, one per line", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command scene_kinds_command = {
+    .name = "scene kinds",
+    .usage = "[FAMILY] [options]",
+    .summary = "what pbrt files may say: kinds of materials, textures, ... and their parameters",
+    .text = "Without FAMILY: the families. With one: a Markdown table for each of its kinds.",
+    .options = options,
+    .min_operands = 0,
+    .max_operands = 1,
+    .run = run,
+};

@@ -1,0 +1,26 @@
+/* world/material/bsdf_kind.h: the kinds of BSDF that materials are made of. Each has, in trace, a function for its
+ * parameters (trace/material) and two kernels (trace/bsdf), which the list names: vl_parameters_NAME,
+ * vl_bsdf_NAME_eval, vl_bsdf_NAME_sample. A material's compile function chooses its kind. */
+#ifndef WORLD_MATERIAL_BSDF_KIND_H
+#define WORLD_MATERIAL_BSDF_KIND_H
+
+#define VL_BSDF_KINDS(X)                                                                                           \
+  X(DIFFUSE, diffuse)                                                                                              \
+  X(CONDUCTOR, conductor)   /* eta, k; rough or smooth by lane (alpha < 1e-3 both: smooth) */                      \
+  X(DIELECTRIC, dielectric) /* eta_s > 0 interior over exterior; rough or smooth by lane */                        \
+  X(THIN_DIELECTRIC, thin)                                                                                         \
+  X(COATED_DIFFUSE, coat)   /* rough or smooth dielectric coat over a diffuse base, table of its transmittances */ \
+  X(PRINCIPLED, principled) /* many layers: docs/principled.md */                                                  \
+  X(DIFFUSE_TRANSMISSION, translucent)                                                                             \
+  X(LAYERED, layered) /* rough or smooth dielectric coat over metal or a diffuse base, by random walks */          \
+  X(HAIR, hair)                                                                                                    \
+  X(MEASURED, measured)
+
+typedef enum vlBsdfKind {
+#define VL_KIND(NAME, name) VL_BSDF_##NAME,
+  VL_BSDF_KINDS(VL_KIND)
+#undef VL_KIND
+      VL_BSDF_KIND_COUNT
+} vlBsdfKind;
+
+#endif

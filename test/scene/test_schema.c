@@ -1,0 +1,136 @@
+/* test/scene/test_schema.c: the rows of all families: well formed, defaults in range, and what reads them. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "scene/scene.h"
+#include "scene/schema/schema.h"
+
+static void well_formed(void **state) {
+  (void)state;
+  const vlKindFamily *family;
+  uint32_t families = 0;
+  for (; (family = vl_kind_family(families)); families++) {
+    assert_true(family->kind_count > 0 && family->name && family->thing && family->directive);
+    for (uint32_t i = 0; i < family->kind_count; i++) {
+      const vlKindRow *row = family->rows[i];
+      assert_non_null(row);
+      assert_true(row->description && row->description[0] && family->constants[i]);
+      assert_true(row->parameter_count <= 64); /* readers have room for so many */
+      if (row->name) assert_int_equal(vl_kind_find(family, row->name), i);
+      if (row->alias) assert_int_equal(vl_kind_find(family, row->alias), i);
+      for (uint32_t k = 0; k < row->parameter_count; k++) {
+        const vlParameter *p = &row->parameters[k];
+        assert_true(p->member && p->description && p->description[0]);
+        assert_true(p->low <= p->high);
+        if (p->name) assert_ptr_equal(vl_row_find(row, p->name), p); /* no name twice */
+        if (p->type == VL_PARAMETER_CHOICE) assert_non_null(p->choices);
+        if (p->type == VL_PARAMETER_EITHER_INPUT) assert_true(p->second);
+        if (!(p->flags & VL_PARAMETER_SHORTHAND)) assert_true(p->size);
+      }
+    }
+  }
+  assert_true(families >= 3);
+  assert_null(vl_kind_family(families));
+}
+
+/* Every default is in range, and is known as the default. */
+static void check_defaults(const vlKindRow *row, const void *def) {
+  char message[200];
+  for (uint32_t k = 0; k < row->parameter_count; k++) {
+    const vlParameter *p = &row->parameters[k];
+    if (p->flags & (VL_PARAMETER_SHORTHAND | VL_PARAMETER_REQUIRED) || p->type == VL_PARAMETER_BLOCK) continue;
+    if (!vl_parameter_check(p, def, row->description, message)) fail_msg("%s", message);
+    for (int half = 0; half < 2; half++)
+      if (!vl_parameter_is_default(p, def, half)) fail_msg("%s: %s is not the default", row->description, p->member);
+  }
+}
+
+static void defaults(void **state) {
+  (void)state;
+  for (uint32_t i = 0; i < vl_material_family.kind_count; i++) {
+    vlMaterialDef def = vl_default_material_def((vlMaterialKind)i);
+    check_defaults(vl_material_family.rows[i], &def);
+  }
+  for (uint32_t i = 0; i < vl_texture_family.kind_count; i++) {
+    vlTextureDef def = vl_default_texture_def((vlTextureKind)i, i & 1);
+    check_defaults(vl_texture_family.rows[i], &def);
+  }
+  for (uint32_t i = 0; i < vl_pixel_filter_family.kind_count; i++) {
+    vlPixelFilter def = vl_default_pixel_filter((vlPixelFilterKind)i);
+    check_defaults(vl_pixel_filter_family.rows[i], &def);
+  }
+  /* some of pbrt's, by hand */
+  assert_true(vl_default_material_def(VL_MATERIAL_SUBSURFACE).eta.value.value == 1.33f);
+  assert_string_equal(vl_default_material_def(VL_MATERIAL_COATED_CONDUCTOR).eta.value.name, "metal-Cu-eta");
+  assert_true(vl_default_material_def(VL_MATERIAL_HAIR).hair.eumelanin.value == 1.3f);
+  vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, true);
+  assert_true(checks.dimension == 2 && checks.spectrum_a.value.value == 1 && checks.spectrum_b.value.value == 0);
+}
+
+/* A number of each parameter that has a range, just outside of it: refused, and the message names it. */
+static void out_of_range(void **state) {
+  (void)state;
+  vlContext *context;
+  assert_int_equal(vl_context_create(NULL, &context), VL_OK);
+  uint32_t tried = 0;
+  for (uint32_t i = 0; i < vl_material_family.kind_count; i++) {
+    const vlKindRow *row = vl_material_family.rows[i];
+    for (uint32_t k = 0; k < row->parameter_count; k++) {
+      const vlParameter *p = &row->parameters[k];
+      vlMaterialDef def = vl_default_material_def((vlMaterialKind)i);
+      float *number = (float *)((char *)&def + p->offset);
+      if ((p->low == 0 && p->high == 0) || p->flags & (VL_PARAMETER_CLAMPED | VL_PARAMETER_SHORTHAND)) continue;
+      if (p->type == VL_PARAMETER_FLOAT_INPUT) number = &((vlFloatInput *)(void *)number)->value;
+      if (p->type == VL_PARAMETER_SPECTRUM_INPUT) {
+        ((vlSpectrumInput *)(void *)number)->value = vl_spectrum_constant(0);
+        number = &((vlSpectrumInput *)(void *)number)->value.value;
+      }
+      if (p->type == VL_PARAMETER_COUNT)
+        *(uint32_t *)(void *)number = (uint32_t)p->low - 1;
+      else
+        *number = (float)p->low - (p->flags & VL_PARAMETER_ABOVE_LOW ? 0 : 0.1f);
+      vlScene *scene;
+      vlError error = {0};
+      assert_int_equal(vl_scene_create(context, &scene), VL_OK);
+      if (i == VL_MATERIAL_MEASURED) def.measured = "x.bsdf";
+      assert_int_equal(vl_scene_add_material(scene, &def).index, 0);
+      assert_int_equal(vl_scene_result(scene, &error), VL_ERROR_SCENE);
+      if (!strstr(error.message, p->name ? p->name : p->member)) fail_msg("%s: %s", p->member, error.message);
+      vl_scene_destroy(scene);
+      tried++;
+    }
+  }
+  assert_true(tried > 15);
+  vl_context_destroy(context);
+}
+
+/* A kind's def keeps what its row names and nothing else. */
+static void other_members_are_left_out(void **state) {
+  (void)state;
+  vlContext *context;
+  vlScene *scene;
+  assert_int_equal(vl_context_create(NULL, &context), VL_OK);
+  assert_int_equal(vl_scene_create(context, &scene), VL_OK);
+  vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
+  def.reflectance.value = vl_spectrum_constant(0.25f);
+  def.thickness = vl_float_input(7);
+  def.measured = "nothing.bsdf";
+  assert_int_equal(vl_scene_add_material(scene, &def).index, 1);
+  const vlMaterialDef *kept = &scene->materials.items[0];
+  assert_true(kept->reflectance.value.value == 0.25f && kept->thickness.value == 0 && !kept->measured);
+  vl_scene_destroy(scene);
+  vl_context_destroy(context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(well_formed), cmocka_unit_test(defaults),
+                                     cmocka_unit_test(out_of_range), cmocka_unit_test(other_members_are_left_out)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

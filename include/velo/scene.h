@@ -470,13 +470,18 @@ typedef enum vlSamplerKind {
   VL_SAMPLER_SOBOL,
   VL_SAMPLER_ZSOBOL
 } vlSamplerKind;
+/* X(NAME, name) for each kind; what it is and its parameters: velo/schema.h. */
+#define VL_PIXEL_FILTER_KINDS(X) \
+  X(BOX, box)                    \
+  X(TRIANGLE, triangle)          \
+  X(GAUSSIAN, gaussian)          \
+  X(MITCHELL, mitchell)          \
+  X(LANCZOS, lanczos)            \
+  X(BLACKMAN_HARRIS, blackman_harris)
 typedef enum vlPixelFilterKind {
-  VL_PIXEL_FILTER_BOX,
-  VL_PIXEL_FILTER_TRIANGLE,
-  VL_PIXEL_FILTER_GAUSSIAN,
-  VL_PIXEL_FILTER_MITCHELL,
-  VL_PIXEL_FILTER_LANCZOS,
-  VL_PIXEL_FILTER_BLACKMAN_HARRIS
+#define VL_KIND(NAME, name) VL_PIXEL_FILTER_##NAME,
+  VL_PIXEL_FILTER_KINDS(VL_KIND)
+#undef VL_KIND
 } vlPixelFilterKind;
 typedef struct vlPixelFilter {
   vlPixelFilterKind kind;

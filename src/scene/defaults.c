@@ -169,21 +169,6 @@ vlShapeDef vl_default_shape_def(vlShapeKind kind) {
   return def;
 }
 
-vlPixelFilter vl_default_pixel_filter(vlPixelFilterKind kind) {
-  vlPixelFilter f = {.kind = kind, .sigma = 0.5f, .b = 1.0f / 3.0f, .c = 1.0f / 3.0f, .tau = 3.0f};
-  float radius = 0.5f;
-  switch (kind) {
-    case VL_PIXEL_FILTER_BOX: radius = 0.5f; break;
-    case VL_PIXEL_FILTER_TRIANGLE: radius = 2.0f; break;
-    case VL_PIXEL_FILTER_GAUSSIAN: radius = 1.5f; break;
-    case VL_PIXEL_FILTER_MITCHELL: radius = 2.0f; break;
-    case VL_PIXEL_FILTER_LANCZOS: radius = 4.0f; break;
-    case VL_PIXEL_FILTER_BLACKMAN_HARRIS: radius = 2.0f; break; /* not one of pbrt's */
-  }
-  f.radius_x = f.radius_y = radius;
-  return f;
-}
-
 vlLoadDef vl_default_load_def(void) {
   return (vlLoadDef){.cookie = VL_COOKIE_LOAD, .time = VL_UNSET, .time_close = VL_UNSET};
 }

@@ -273,7 +273,7 @@ static const struct {
      "t.pbrt:1:18: Sampler \"halton\": \"randomization\" cannot be \"some\" (known: none, permutedigits, fastowen, "
      "owen)"},
     {"PixelFilter \"box\" \"float xradius\" 0\n" W,
-     "t.pbrt:1:1: PixelFilter \"box\": the radius must be above 0 and at most 64 pixels"},
+     "t.pbrt:1:19: PixelFilter \"box\": parameter \"xradius\" must be above 0 and at most 64, it is 0"},
     {"PixelFilter \"box\" \"float sigma\" 1\n" W, "t.pbrt:1:19: PixelFilter \"box\": unknown parameter \"sigma\""},
     {"Integrator \"path\" \"bool regularise\" true\n" W,
      "t.pbrt:1:19: Integrator \"path\": unknown parameter \"regularise\" (did you mean \"regularize\"?)"},

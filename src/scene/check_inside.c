@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "scene/check.h"
+#include "scene/schema/schema.h"
 #include "scene/solid.h"
 
 typedef struct Box {
@@ -37,7 +38,7 @@ static bool holds_light(const vlCheck *c, const vlSolid *solid, const vlMat4 *gr
   double p[3], q[3];
   for (size_t i = 0; i < s->lights.count; i++) {
     const vlLightDef *l = &s->lights.items[i];
-    if (l->kind == VL_LIGHT_DISTANT || l->kind == VL_LIGHT_INFINITE) continue;
+    if (vl_kind_row(&vl_light_family, (int)l->kind)->traits & VL_LIGHT_TRAIT_FAR) continue;
     vlMat4 m = vl_mat4_load(l->world_from_light);
     for (int k = 0; k < 3; k++) p[k] = l->from[k];
     vl_mat4_point(&m, p, q);

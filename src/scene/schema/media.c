@@ -2,65 +2,56 @@
 #include "base/cookie.h"
 #include "scene/schema/schema.h"
 
-/* clang-format off */
-#define SCALE \
-  {.name = "scale", VL_PLACE(vlMediumDef, scale), .type = VL_PARAMETER_FLOAT, .value = {1}, VL_FROM(0), \
-   .description = "factor on sigma_a and sigma_s"}
-#define ASYMMETRY \
-  {.name = "g", VL_PLACE(vlMediumDef, g), .type = VL_PARAMETER_FLOAT, VL_RANGE(-1, 1), \
-   .description = "mean cosine of scattering (Henyey-Greenstein)"}
-#define SIGMA(file_name, field, text) \
-  {.name = (file_name), VL_PLACE(vlMediumDef, field), .type = VL_PARAMETER_SPECTRUM, .role = VL_PARAMETER_UNBOUNDED, \
-   .unit = "1 / length", .value = {1}, VL_FROM(0), .description = (text)}
-#define SIGMAS \
-  SIGMA("sigma_a", sigma_a, "absorption coefficient"), SIGMA("sigma_s", sigma_s, "scattering coefficient")
-#define PRESET \
-  {.name = "preset", VL_PLACE(vlMediumDef, sigma_a), .type = VL_PARAMETER_STRING, \
-   .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND, \
-   .description = "a measured substance, in place of sigma_a and sigma_s (per millimetre)"}
-#define EMISSION(more_flags) \
-  {.name = "Le", VL_PLACE(vlMediumDef, emission), .type = VL_PARAMETER_SPECTRUM, .role = VL_PARAMETER_ILLUMINANT, \
-   VL_FROM(0), .description = "radiance emitted where light is absorbed"}, \
-  {.name = "Lescale", VL_PLACE(vlMediumDef, emission_scale), .type = VL_PARAMETER_FLOAT, .value = {1}, VL_FROM(0), \
-   .flags = (more_flags), .description = "factor on the emission"}
-#define BOX \
-  {.name = "p0", VL_PLACE(vlMediumDef, low), .type = VL_PARAMETER_FLOAT3, .unit = "length", \
-   .description = "a corner of the box, in medium space"}, \
-  {.name = "p1", VL_PLACE(vlMediumDef, high), .type = VL_PARAMETER_FLOAT3, .unit = "length", .value = {1, 1, 1}, \
-   .description = "the opposite corner"}
-#define CELLS(file_name, field, axis) \
-  {.name = (file_name), VL_PLACE(vlMediumDef, field), .type = VL_PARAMETER_COUNT, .unit = "cells", .value = {1}, \
-   VL_RANGE(1, 16384), .description = "cells along " axis}
-#define RESOLUTION CELLS("nx", nx, "x"), CELLS("ny", ny, "y"), CELLS("nz", nz, "z")
-#define VALUES(file_name, field, text) \
-  {.name = (file_name), VL_PLACE(vlMediumDef, field), .type = VL_PARAMETER_BLOCK, .description = (text)}
-#define TEMPERATURE \
-  {.name = "temperatureoffset", .alias = "temperaturecutoff", VL_PLACE(vlMediumDef, temperature_offset), \
-   .type = VL_PARAMETER_FLOAT, .unit = "K", .description = "kelvin = (temperature - offset) * scale"}, \
-  {.name = "temperaturescale", VL_PLACE(vlMediumDef, temperature_scale), .type = VL_PARAMETER_FLOAT, .value = {1}, \
-   .description = "see temperatureoffset"}
-#define FACTOR(file_name, field, number, text) \
-  {.name = (file_name), VL_PLACE(vlMediumDef, field), .type = VL_PARAMETER_FLOAT, .value = {number}, VL_FROM(0), \
-   .description = (text)}
-/* clang-format on */
+#define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlMediumDef, __VA_ARGS__)
+#define FACTOR(name, member, text, ...) PARAMETER(FLOAT, name, member, text, VL_DEFAULT(__VA_ARGS__), VL_FROM(0))
+#define SCALE FACTOR("scale", scale, "factor on sigma_a and sigma_s", 1)
+#define ASYMMETRY PARAMETER(FLOAT, "g", g, "mean cosine of scattering (Henyey and Greenstein)", VL_RANGE(-1, 1))
+#define SIGMA(name, member, text)                                                                    \
+  PARAMETER(SPECTRUM, name, member, text, VL_DEFAULT(1), VL_FROM(0), .role = VL_PARAMETER_UNBOUNDED, \
+            .unit = "1 / length")
+#define SIGMAS SIGMA("sigma_a", sigma_a, "absorption coefficient"), SIGMA("sigma_s", sigma_s, "scattering coefficient")
+/* A name in files that stands for two members. */
+#define PRESET                                                                                     \
+  {                                                                                                \
+    .type = VL_PARAMETER_STRING, .name = "preset", .member = "sigma_a, sigma_s",                   \
+    .offset = offsetof(vlMediumDef, sigma_a), .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND, \
+    .description = "a measured substance, per millimetre; in place of sigma_a and sigma_s"         \
+  }
+#define EMISSION                                                                              \
+  PARAMETER(SPECTRUM, "Le", emission, "radiance emitted where light is absorbed", VL_FROM(0), \
+            .role = VL_PARAMETER_ILLUMINANT)
+#define BOX                                                                               \
+  PARAMETER(FLOAT3, "p0", low, "a corner of the box, in medium space", .unit = "length"), \
+      PARAMETER(FLOAT3, "p1", high, "the opposite corner", .unit = "length", VL_DEFAULT(1, 1, 1))
+#define CELLS(name, member, text) \
+  PARAMETER(COUNT, name, member, text, .unit = "cells", VL_DEFAULT(1), VL_RANGE(1, 16384))
+#define RESOLUTION CELLS("nx", nx, "cells along x"), CELLS("ny", ny, "cells along y"), CELLS("nz", nz, "cells along z")
+#define VALUES(name, member, text) PARAMETER(BLOCK, name, member, text, .unit = NULL)
+#define TEMPERATURE                                                                                    \
+  PARAMETER(FLOAT, "temperatureoffset", temperature_offset, "kelvin = (temperature - offset) * scale", \
+            .alias = "temperaturecutoff", .unit = "K"),                                                \
+      PARAMETER(FLOAT, "temperaturescale", temperature_scale, "see temperatureoffset", VL_DEFAULT(1))
 
-static const vlParameter homogeneous_parameters[] = {SIGMAS, PRESET, SCALE, ASYMMETRY, EMISSION(0)};
-VL_KIND_ROW(homogeneous, .identifier = "HOMOGENEOUS", .name = "homogeneous", .description = "the same everywhere")
+static const vlParameter homogeneous_parameters[] = {
+    SIGMAS, PRESET, SCALE, ASYMMETRY, EMISSION, FACTOR("Lescale", emission_scale, "factor on the emission", 1)};
+VL_KIND_ROW(homogeneous, .name = "homogeneous", .description = "the same everywhere", .traits = 0)
 
 static const vlParameter grid_parameters[] = {
     SIGMAS,
     PRESET,
     SCALE,
     ASYMMETRY,
-    EMISSION(VL_PARAMETER_RULE), /* one number, or one per cell */
     BOX,
     RESOLUTION,
-    VALUES("density", density, "factor on sigma_a and sigma_s, one number per cell"),
-    VALUES("Lescale", emission_scales, "factor on the emission, one number per cell"),
-    VALUES("temperature", temperature, "of a black body, in place of Le: one number per cell"),
-    TEMPERATURE};
-VL_KIND_ROW(grid, .identifier = "GRID", .name = "uniformgrid",
-            .description = "sigma_a and sigma_s times a density on a grid over a box",
+    VALUES("density", density, "factor on sigma_a and sigma_s per cell"),
+    EMISSION,
+    PARAMETER(FLOAT, "Lescale", emission_scale, "factor on the emission; or one number per cell", VL_DEFAULT(1),
+              VL_FROM(0), .flags = VL_PARAMETER_RULE),
+    VALUES(NULL, emission_scales, "factor on the emission per cell"),
+    VALUES("temperature", temperature, "of a black body per cell; in place of Le"),
+    TEMPERATURE,
+};
+VL_KIND_ROW(grid, .name = "uniformgrid", .description = "sigma_a and sigma_s times a density on a grid over a box",
             .traits = VL_MEDIUM_TRAIT_BOX | VL_MEDIUM_TRAIT_CELLS)
 
 static const vlParameter rgb_grid_parameters[] = {
@@ -71,54 +62,40 @@ static const vlParameter rgb_grid_parameters[] = {
     VALUES("sigma_a", rgb_a, "absorption coefficient, RGB per cell"),
     VALUES("sigma_s", rgb_s, "scattering coefficient, RGB per cell"),
     VALUES("Le", rgb_emission, "radiance emitted where light is absorbed, RGB per cell"),
-    FACTOR("Lescale", emission_scale, 1, "factor on the emission")};
-VL_KIND_ROW(rgb_grid, .identifier = "RGB_GRID", .name = "rgbgrid",
-            .description = "sigma_a and sigma_s themselves on a grid over a box",
-            .traits = VL_MEDIUM_TRAIT_BOX | VL_MEDIUM_TRAIT_CELLS | VL_MEDIUM_TRAIT_OWN_SIGMA)
+    FACTOR("Lescale", emission_scale, "factor on the emission", 1),
+};
+VL_KIND_ROW(rgb_grid, .name = "rgbgrid", .description = "sigma_a and sigma_s themselves on a grid over a box",
+            .traits = VL_MEDIUM_TRAIT_BOX | VL_MEDIUM_TRAIT_CELLS)
 
 static const vlParameter cloud_parameters[] = {
     SIGMAS,
     SCALE,
     ASYMMETRY,
     BOX,
-    FACTOR("density", cloud_density, 1, "factor on the noise's density"),
-    FACTOR("wispiness", wispiness, 1, "how far noise displaces the cloud"),
-    FACTOR("frequency", frequency, 5, "of the noise")};
-VL_KIND_ROW(cloud, .identifier = "CLOUD", .name = "cloud", .description = "a cloud of noise in a box",
+    FACTOR("density", cloud_density, "factor on the noise's density", 1),
+    FACTOR("wispiness", wispiness, "how far noise displaces the cloud", 1),
+    FACTOR("frequency", frequency, "of the noise", 5),
+};
+VL_KIND_ROW(cloud, .name = "cloud", .description = "sigma_a and sigma_s times a cloud of noise in a box",
             .traits = VL_MEDIUM_TRAIT_BOX)
 
 static const vlParameter nanovdb_parameters[] = {
     SIGMAS,
     SCALE,
     ASYMMETRY,
-    {.name = "filename",
-     VL_PLACE(vlMediumDef, path),
-     .type = VL_PARAMETER_FILE,
-     .flags = VL_PARAMETER_REQUIRED,
-     .description = "a NanoVDB file"},
-    {.name = "gridname",
-     VL_PLACE(vlMediumDef, grid),
-     .type = VL_PARAMETER_STRING,
-     .description = "name of the density's grid; unset: density"},
-    {.name = "temperaturename",
-     VL_PLACE(vlMediumDef, temperature_grid),
-     .type = VL_PARAMETER_STRING,
-     .description = "name of the temperature's grid; unset: temperature, which may be absent"},
-    {.name = "Lescale",
-     .alias = "LeScale",
-     VL_PLACE(vlMediumDef, emission_scale),
-     .type = VL_PARAMETER_FLOAT,
-     .value = {1},
-     VL_FROM(0),
-     .description = "factor on the emission of a black body"},
-    TEMPERATURE};
-VL_KIND_ROW(nanovdb, .identifier = "NANOVDB", .name = "nanovdb",
-            .description = "sigma_a and sigma_s times a density from a NanoVDB file")
+    PARAMETER(FILE, "filename", path, "a NanoVDB file", .flags = VL_PARAMETER_REQUIRED),
+    PARAMETER(STRING, "gridname", grid, "name of the density's grid; unset: density", .text = NULL),
+    PARAMETER(STRING, "temperaturename", temperature_grid,
+              "name of the temperature's grid; unset: temperature, which may be absent", .text = NULL),
+    PARAMETER(FLOAT, "Lescale", emission_scale, "factor on the emission of black bodies", VL_DEFAULT(1), VL_FROM(0),
+              .alias = "LeScale"),
+    TEMPERATURE,
+};
+VL_KIND_ROW(nanovdb, .name = "nanovdb", .description = "sigma_a and sigma_s times a density from a NanoVDB file",
+            .traits = 0)
 
 #define ROW(NAME, name) [VL_MEDIUM_##NAME] = &name##_row,
-static const vlKindRow *const rows[] = {VL_MEDIUM_KINDS(ROW)};
-
-const vlKindFamily vl_medium_family = {"media", "medium type", "MakeNamedMedium", sizeof rows / sizeof *rows, rows};
+VL_KIND_FAMILY(vl_medium_family, VL_MEDIUM_KINDS, ROW, "media", "medium type", "MakeNamedMedium")
 
 vlMediumDef vl_default_medium_def(vlMediumKind kind) {
   vlMediumDef def = {

@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-static const vlKindFamily *const families[] = {&vl_pixel_filter_family};
+static const vlKindFamily *const families[] = {&vl_pixel_filter_family, &vl_light_family, &vl_emission_family,
+                                               &vl_shape_family, &vl_medium_family};
 
 const vlKindFamily *vl_kind_family(uint32_t index) {
   return index < sizeof families / sizeof *families ? families[index] : NULL;

@@ -63,6 +63,14 @@
 /* ---- families ---------------------------------------------------------------------------------------------------- */
 
 extern const vlKindFamily vl_pixel_filter_family;
+extern const vlKindFamily vl_light_family;    /* vlLightDef */
+extern const vlKindFamily vl_emission_family; /* vlEmissionDef: one kind */
+extern const vlKindFamily vl_shape_family;    /* vlShapeDef */
+extern const vlKindFamily vl_medium_family;   /* vlMediumDef */
+
+/* Power of a light of that def, as pbrt counts it: luminance is that of its colour, scale and
+ * included; radius: of a sphere round the scene. NaN: an image decides. */
+double vl_light_power(const vlLightDef *def, double luminance, double radius);
 
 /* The row of a kind; null when the family has no such kind. */
 const vlKindRow *vl_kind_row(const vlKindFamily *family, int kind);

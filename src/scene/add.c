@@ -266,6 +266,7 @@ vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
     return none;
   vlEmissionDef d = *def;
   if (!vl_row_take(scene, vl_kind_row(&vl_emission_family, 0), &d, true, d.source, "emission")) return none;
+  if (d.power < 0.0) return bad(scene, d.source, "emission", "power must not be negative"), none;
   if (d.texture.index && scene->textures.items[d.texture.index - 1].kind != VL_TEXTURE_IMAGE)
     return bad(scene, d.source, "emission", "its texture must be an image"), none;
   if (!vl_scene_copy_source(scene, &d.source)) return none;
@@ -304,6 +305,8 @@ static bool check_portal(vlScene *scene, const vlLightDef *d) {
 
 static bool check_light(vlScene *scene, const vlLightDef *d, const vlKindRow *row) {
   if (d->medium.index > scene->media.count) return bad(scene, d->source, "light", "there is no such medium");
+  if (d->power < 0.0) return bad(scene, d->source, "light", "power must not be negative");
+  if (d->illuminance < 0.0) return bad(scene, d->source, "light", "illuminance must not be negative");
   if (!is_finite_matrix(d->world_from_light)) return bad(scene, d->source, "light", "transform is not finite");
   bool same = d->from[0] == d->to[0] && d->from[1] == d->to[1] && d->from[2] == d->to[2];
   if ((row->traits & VL_LIGHT_TRAIT_AIMS) && same)

@@ -23,10 +23,20 @@ static bool read_portal(vlDict *dict, vlLightDef *def, const vlParam *portal) {
   return true;
 }
 
+/* The radiance has one source. */
+static bool check_source(vlDict *dict, const vlKindRow *row) {
+  if (!vl_row_find(row, "L") || !vl_row_find(row, "filename")) return true;
+  vlParam *color = vl_dict_find(dict, "L", VL_BITS_SPECTRUM);
+  vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
+  if (color && file && file->strings.items[0][0])
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, file->place, "%s: give either \"L\" or \"filename\", not both",
+                          dict->what);
+  return dict->import->scene->error.code == VL_OK;
+}
+
 /* What the row does not say. given: per parameter of the row. */
 static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given, vlLightDef *def) {
   vlImport *import = dict->import;
-  vlParam *file = vl_row_find(row, "filename") ? vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING) : NULL;
   vlParam *portal = vl_row_find(row, "portal") ? vl_dict_find(dict, "portal", 1u << VL_PARAM_POINT3) : NULL;
   bool far = row->traits & VL_LIGHT_TRAIT_FAR, has_color = vl_row_find(row, far ? "L" : "I") != NULL;
   bool color_given = has_color && vl_import_given(row, given, far ? "L" : "I");
@@ -38,9 +48,6 @@ static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given, 
     vl_import_warn(import, VL_LOG_WARNING, dict->place,
                    "%s: \"I\" has no effect, as in pbrt: the image is the intensity", dict->what);
   if (!vl_dict_done(dict)) return false;
-  if (far && color_given && def->path)
-    return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: give either \"L\" or \"filename\", not both",
-                          dict->what);
   if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !def->path)
     return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string filename\" is missing", dict->what);
   return true;
@@ -74,8 +81,8 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
   vlMat4 ctm;
   def.source = s->place;
   def.space = import->state.space;
-  if (!vl_import_ctm(import, s->place, &ctm) || !vl_import_parameters(&dict, row, &def, true, given) ||
-      !finish_light(&dict, row, given, &def))
+  if (!vl_import_ctm(import, s->place, &ctm) || !check_source(&dict, row) ||
+      !vl_import_parameters(&dict, row, &def, true, given) || !finish_light(&dict, row, given, &def))
     return false;
   memcpy(def.world_from_light, ctm.m, sizeof def.world_from_light);
   if (def.path) def.space = VL_SPACE_SRGB; /* an image that does not say its own: whatever ColorSpace says, as pbrt */
@@ -101,13 +108,10 @@ bool vl_import_area_light(vlImport *import, const vlStatement *s) {
   const vlKindRow *row = vl_kind_row(&vl_emission_family, kind);
   vlEmissionDef def = vl_default_emission_def();
   def.source = s->place;
-  if (!vl_import_parameters(&dict, row, &def, true, given) || !vl_dict_done(&dict)) return false;
-  bool has_color = vl_import_given(row, given, "L");
-  if (!has_color) def.radiance.space = dict.space; /* the colour space's white */
+  if (!check_source(&dict, row) || !vl_import_parameters(&dict, row, &def, true, given) || !vl_dict_done(&dict))
+    return false;
+  if (!vl_import_given(row, given, "L")) def.radiance.space = dict.space; /* the colour space's white */
   drop_target(&def.power);
-  if (has_color && def.image)
-    return vl_import_fail(import, VL_ERROR_SCENE, vl_dict_find(&dict, "filename", 1u << VL_PARAM_STRING)->place,
-                          "%s: give either \"L\" or \"filename\", not both", what);
   import->state.emission = vl_scene_add_emission(import->scene, &def);
   return import->state.emission.index != 0;
 }

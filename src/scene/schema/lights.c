@@ -17,10 +17,10 @@
 #define SCALE PARAMETER(FLOAT, "scale", scale, "factor on the intensity or radiance", VL_DEFAULT(1))
 #define POWER                                                                                            \
   PARAMETER(DOUBLE, "power", power, "of the whole light, times scale; in place of its own", .unit = "W", \
-            .flags = VL_PARAMETER_UNSET, VL_FROM(0))
+            .flags = VL_PARAMETER_UNSET)
 #define ILLUMINANCE                                                                                                    \
   PARAMETER(DOUBLE, "illuminance", illuminance, "of a surface that faces the light, times scale; in place of its own", \
-            .unit = "lx", .flags = VL_PARAMETER_UNSET, VL_FROM(0))
+            .unit = "lx", .flags = VL_PARAMETER_UNSET)
 #define FROM(text) PARAMETER(FLOAT3, "from", from, text, .unit = "length")
 #define TO(text) PARAMETER(FLOAT3, "to", to, text, .unit = "length", VL_DEFAULT(0, 0, 1))
 #define IMAGE(line)                                                                        \
@@ -141,7 +141,7 @@ static const vlParameter diffuse_parameters[] = {
     PARAMETER(FLOAT, "scale", scale, "factor on the radiance", VL_DEFAULT(1)),
     PARAMETER(BOOL, "twosided", two_sided, "both sides of the surface emit", VL_DEFAULT(0)),
     PARAMETER(DOUBLE, "power", power, "of each face, times scale; in place of its own", .unit = "W",
-              .flags = VL_PARAMETER_UNSET, VL_FROM(0)),
+              .flags = VL_PARAMETER_UNSET),
     PARAMETER(FILE, "filename", image, "image of the radiance over uv; in place of L", .text = NULL),
     PARAMETER(TEXTURE, NULL, texture, "an image texture of the radiance over uv; in place of L", .unit = NULL),
 };

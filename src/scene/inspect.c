@@ -58,7 +58,7 @@ static double shape_area(const vlShapeDef *d) {
     return turn * r * ((double)d->z_max - (double)d->z_min) * scale * scale;
   if (d->kind == VL_SHAPE_DISK)
     return 0.5 * turn * (r * r - (double)d->inner_radius * (double)d->inner_radius) * scale * scale;
-  if (d->kind != VL_SHAPE_TRIANGLES && d->kind != VL_SHAPE_BILINEAR) return NAN;
+  if (!vl_shape_is_mesh(d->kind)) return NAN;
   uint32_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
   for (uint32_t i = 0; i < d->faces; i++) {
     double p[4][3];
@@ -92,7 +92,7 @@ static bool given(double x) {
 
 static vlLightInfo shape_light(const vlScene *s, const vlShapeDef *d) {
   const vlEmissionDef *e = &s->emissions.items[d->emission.index - 1];
-  bool meshed = d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR;
+  bool meshed = vl_shape_is_mesh(d->kind);
   vlLightInfo info = {.kind = "area", .source = d->source, .faces = meshed ? d->faces : 1};
   info.picture = e->image || e->texture.index;
   info.power = given(e->power) ? e->power * (double)info.faces

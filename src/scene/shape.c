@@ -157,7 +157,7 @@ static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
 }
 
 static void drop_unused(vlShapeDef *d) {
-  if (d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR) {
+  if (vl_shape_is_mesh(d->kind)) {
     d->widths = NULL;
     return;
   }

@@ -72,6 +72,9 @@ extern const vlKindFamily vl_medium_family;   /* vlMediumDef */
  * included; radius: of a sphere round the scene. NaN: an image decides. */
 double vl_light_power(const vlLightDef *def, double luminance, double radius);
 
+/* Has the kind vertices and faces (VL_SHAPE_TRAIT_MESH)? */
+bool vl_shape_is_mesh(vlShapeKind kind);
+
 /* The row of a kind; null when the family has no such kind. */
 const vlKindRow *vl_kind_row(const vlKindFamily *family, int kind);
 /* The kind with this name or alias in files; -1: none. */

@@ -109,6 +109,10 @@ VL_KIND_ROW(curves, .name = "curve", .description = "cubic curves with a width, 
 #define ROW(NAME, name) [VL_SHAPE_##NAME] = &name##_row,
 VL_KIND_FAMILY(vl_shape_family, VL_SHAPE_KINDS, ROW, "shapes", "shape", "Shape")
 
+bool vl_shape_is_mesh(vlShapeKind kind) {
+  return (vl_kind_row(&vl_shape_family, (int)kind)->traits & VL_SHAPE_TRAIT_MESH) != 0;
+}
+
 vlShapeDef vl_default_shape_def(vlShapeKind kind) {
   vlShapeDef def = {.cookie = VL_COOKIE_SHAPE, .kind = kind, .alpha = vl_float_input(1.0f), .times = {0.0, 1.0}};
   const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)kind);

@@ -70,7 +70,7 @@ typedef struct vlParameter {
   size_t second;    /* of another member that gets the same value; 0: none */
   double factor;    /* value in the def = factor * value in files; 0 is read as 1 */
   double value[3];  /* default: a number (of a bool 0 or 1, of a choice its index), or three. In the def's unit */
-  const char *text; /* default of strings; name of a spectrum (vl_spectrum_name) */
+  const char *text; /* default of strings; name of a spectrum (vl_spectrum_name); of a BLOCK: its type in files */
   double low, high; /* range, in the def's unit; no limits where both are 0 */
   const char *const *choices; /* names in files, ending with null; index = value of the enum */
 } vlParameter;

@@ -21,8 +21,8 @@
 #define ILLUMINANCE                                                                                                    \
   PARAMETER(DOUBLE, "illuminance", illuminance, "of a surface that faces the light, times scale; in place of its own", \
             .unit = "lx", .flags = VL_PARAMETER_UNSET)
-#define FROM(text) PARAMETER(FLOAT3, "from", from, text, .unit = "length")
-#define TO(text) PARAMETER(FLOAT3, "to", to, text, .unit = "length", VL_DEFAULT(0, 0, 1))
+#define FROM(text) PARAMETER(FLOAT3, "from", from, text, .unit = NULL)
+#define TO(text) PARAMETER(FLOAT3, "to", to, text, VL_DEFAULT(0, 0, 1))
 #define IMAGE(line)                                                                        \
   PARAMETER(FILE, "filename", path, line, .unit = NULL),                                   \
       PARAMETER(BLOCK, NULL, image, "the image itself, in place of a file", .unit = NULL), \
@@ -58,7 +58,7 @@ static const vlParameter infinite_parameters[] = {
     ILLUMINANCE,
     IMAGE("an equal-area octahedral map of the radiance, square; in place of L"),
     PARAMETER(BLOCK, "portal", portal, "4 corners of a rectangle in the world through which alone the light comes",
-              .unit = "length"),
+              .text = "4 point3"),
 };
 VL_KIND_ROW(infinite, .name = "infinite", .description = "light from all around", .traits = VL_LIGHT_TRAIT_FAR)
 

@@ -8,7 +8,7 @@
 #define ASYMMETRY PARAMETER(FLOAT, "g", g, "mean cosine of scattering (Henyey and Greenstein)", VL_RANGE(-1, 1))
 #define SIGMA(name, member, text)                                                                    \
   PARAMETER(SPECTRUM, name, member, text, VL_DEFAULT(1), VL_FROM(0), .role = VL_PARAMETER_UNBOUNDED, \
-            .unit = "1 / length")
+            .unit = "per length")
 #define SIGMAS SIGMA("sigma_a", sigma_a, "absorption coefficient"), SIGMA("sigma_s", sigma_s, "scattering coefficient")
 /* A name in files that stands for two members. */
 #define PRESET                                                                                     \
@@ -20,13 +20,13 @@
 #define EMISSION                                                                              \
   PARAMETER(SPECTRUM, "Le", emission, "radiance emitted where light is absorbed", VL_FROM(0), \
             .role = VL_PARAMETER_ILLUMINANT)
-#define BOX                                                                               \
-  PARAMETER(FLOAT3, "p0", low, "a corner of the box, in medium space", .unit = "length"), \
-      PARAMETER(FLOAT3, "p1", high, "the opposite corner", .unit = "length", VL_DEFAULT(1, 1, 1))
+#define BOX                                                                           \
+  PARAMETER(FLOAT3, "p0", low, "a corner of the box, in medium space", .unit = NULL), \
+      PARAMETER(FLOAT3, "p1", high, "the opposite corner", VL_DEFAULT(1, 1, 1))
 #define CELLS(name, member, text) \
   PARAMETER(COUNT, name, member, text, .unit = "cells", VL_DEFAULT(1), VL_RANGE(1, 16384))
 #define RESOLUTION CELLS("nx", nx, "cells along x"), CELLS("ny", ny, "cells along y"), CELLS("nz", nz, "cells along z")
-#define VALUES(name, member, text) PARAMETER(BLOCK, name, member, text, .unit = NULL)
+#define VALUES(name, member, type_in_files, line) PARAMETER(BLOCK, name, member, line, .text = type_in_files)
 #define TEMPERATURE                                                                                    \
   PARAMETER(FLOAT, "temperatureoffset", temperature_offset, "kelvin = (temperature - offset) * scale", \
             .alias = "temperaturecutoff", .unit = "K"),                                                \
@@ -43,12 +43,12 @@ static const vlParameter grid_parameters[] = {
     ASYMMETRY,
     BOX,
     RESOLUTION,
-    VALUES("density", density, "factor on sigma_a and sigma_s per cell"),
+    VALUES("density", density, "float array", "factor on sigma_a and sigma_s per cell"),
     EMISSION,
     PARAMETER(FLOAT, "Lescale", emission_scale, "factor on the emission; or one number per cell", VL_DEFAULT(1),
               VL_FROM(0), .flags = VL_PARAMETER_RULE),
-    VALUES(NULL, emission_scales, "factor on the emission per cell"),
-    VALUES("temperature", temperature, "of a black body per cell; in place of Le"),
+    VALUES(NULL, emission_scales, NULL, "factor on the emission per cell"),
+    VALUES("temperature", temperature, "float array", "of a black body per cell; in place of Le"),
     TEMPERATURE,
 };
 VL_KIND_ROW(grid, .name = "uniformgrid", .description = "sigma_a and sigma_s times a density on a grid over a box",
@@ -59,9 +59,9 @@ static const vlParameter rgb_grid_parameters[] = {
     ASYMMETRY,
     BOX,
     RESOLUTION,
-    VALUES("sigma_a", rgb_a, "absorption coefficient, RGB per cell"),
-    VALUES("sigma_s", rgb_s, "scattering coefficient, RGB per cell"),
-    VALUES("Le", rgb_emission, "radiance emitted where light is absorbed, RGB per cell"),
+    VALUES("sigma_a", rgb_a, "rgb array", "absorption coefficient, RGB per cell"),
+    VALUES("sigma_s", rgb_s, "rgb array", "scattering coefficient, RGB per cell"),
+    VALUES("Le", rgb_emission, "rgb array", "radiance emitted where light is absorbed, RGB per cell"),
     FACTOR("Lescale", emission_scale, "factor on the emission", 1),
 };
 VL_KIND_ROW(rgb_grid, .name = "rgbgrid", .description = "sigma_a and sigma_s themselves on a grid over a box",

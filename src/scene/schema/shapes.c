@@ -6,7 +6,7 @@
 #define DEGREES (3.14159265358979323846 / 180)
 
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlShapeDef, __VA_ARGS__)
-#define ARRAY(name, member, text) PARAMETER(BLOCK, name, member, text, .unit = NULL)
+#define ARRAY(name, member, type_in_files, line) PARAMETER(BLOCK, name, member, line, .text = type_in_files)
 #define LENGTH(name, member, text, ...) PARAMETER(FLOAT, name, member, text, .unit = "length", VL_DEFAULT(__VA_ARGS__))
 /* Names in files that stand for arrays of the def. */
 #define IN_FILES(TYPE, file_name, place, text, ...)                                                          \
@@ -24,21 +24,23 @@
 
 static const vlParameter triangles_parameters[] = {
     ALPHA,
-    ARRAY("P", positions, "vertices"),
-    ARRAY("indices", indices, "3 vertices per triangle; unset: one triangle"),
-    ARRAY("N", normals, "shading normal per vertex"),
-    ARRAY("S", tangents, "tangent per vertex"),
-    ARRAY("uv", uvs, "texture coordinates per vertex"),
-    ARRAY(NULL, tangent_signs, "per vertex: the bitangent is sign * n x tangent"),
-    ARRAY(NULL, more_uvs, "further sets of texture coordinates, 1 to 3"),
-    ARRAY(NULL, colors, "linear RGB and coverage per vertex"),
-    ARRAY(NULL, positions_close, "vertices at times[1]"),
-    ARRAY(NULL, normals_close, "normals at times[1]"),
-    ARRAY(NULL, times, "of the two sets of vertices, seconds"),
+    ARRAY("P", positions, "point3 array", "vertices"),
+    ARRAY("indices", indices, "integer array", "3 vertices per triangle; unset: one triangle"),
+    ARRAY("N", normals, "normal array", "shading normal per vertex"),
+    ARRAY("S", tangents, "vector3 array", "tangent per vertex"),
+    ARRAY("uv", uvs, "point2 array", "texture coordinates per vertex"),
+    ARRAY(NULL, tangent_signs, NULL, "per vertex: the bitangent is sign * n x tangent"),
+    ARRAY(NULL, more_uvs, NULL, "further sets of texture coordinates, 1 to 3"),
+    ARRAY(NULL, colors, NULL, "linear RGB and coverage per vertex"),
+    ARRAY(NULL, positions_close, NULL, "vertices at times[1]"),
+    ARRAY(NULL, normals_close, NULL, "normals at times[1]"),
+    ARRAY(NULL, times, NULL, "of the two sets of vertices, seconds"),
     PARAMETER(BOOL, NULL, one_sided, "rays pass through the backs", VL_DEFAULT(0)),
-    PARAMETER(FLOAT_INPUT, "displacement", displacement, "float texture that moves the surface along its normals",
-              .unit = "length", .flags = VL_PARAMETER_RULE),
-    PARAMETER(FLOAT, "edgelength", edge_length, "displaced triangles are divided until no edge is longer",
+    PARAMETER(FLOAT_INPUT, "displacement", displacement,
+              "in files of plymesh: a float texture that moves the surface along its normals", .unit = "length",
+              .flags = VL_PARAMETER_RULE),
+    PARAMETER(FLOAT, "edgelength", edge_length,
+              "in files of plymesh: displaced triangles are divided until no edge is longer",
               .alias = "displacement.edgelength", .unit = "length", VL_DEFAULT(1), VL_FROM(0),
               .flags = VL_PARAMETER_ABOVE_LOW),
 };
@@ -47,10 +49,10 @@ VL_KIND_ROW(triangles, .name = "trianglemesh", .description = "a mesh of triangl
 
 static const vlParameter bilinear_parameters[] = {
     ALPHA,
-    ARRAY("P", positions, "vertices"),
-    ARRAY("indices", indices, "4 vertices per patch: p00 p10 p01 p11; unset: one patch"),
-    ARRAY("N", normals, "shading normal per vertex"),
-    ARRAY("uv", uvs, "texture coordinates per vertex"),
+    ARRAY("P", positions, "point3 array", "vertices"),
+    ARRAY("indices", indices, "integer array", "4 vertices per patch: p00 p10 p01 p11; unset: one patch"),
+    ARRAY("N", normals, "normal array", "shading normal per vertex"),
+    ARRAY("uv", uvs, "point2 array", "texture coordinates per vertex"),
 };
 VL_KIND_ROW(bilinear, .name = "bilinearmesh", .description = "a mesh of bilinear patches",
             .traits = VL_SHAPE_TRAIT_MESH | VL_SHAPE_TRAIT_EMITS)
@@ -92,14 +94,14 @@ static const vlParameter curves_parameters[] = {
     ALPHA,
     PARAMETER(CHOICE, "type", curve, "facing each ray; so, too, with a tube's normal; or lying across N",
               .choices = curve_kinds),
-    ARRAY("P", positions, "control points; in the def 4 Bezier points per segment"),
+    ARRAY("P", positions, "point3 array", "control points; in the def 4 Bezier points per segment"),
     IN_FILES(CHOICE, "basis", positions, "of the control points", .choices = curve_bases),
     IN_FILES(COUNT, "degree", positions, "of the control points", VL_DEFAULT(3), VL_RANGE(2, 3)),
-    ARRAY(NULL, widths, "at both ends of each segment"),
+    ARRAY(NULL, widths, NULL, "at both ends of each segment"),
     IN_FILES(FLOAT, "width", widths, "of the whole curve", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
     IN_FILES(FLOAT, "width0", widths, "at its start; unset: width", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
     IN_FILES(FLOAT, "width1", widths, "at its end; unset: width", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
-    ARRAY("N", normals, "of ribbons, at both ends of each segment"),
+    ARRAY("N", normals, "normal array", "of ribbons, at both ends of each segment"),
     PARAMETER(COUNT, "splitdepth", split_depth,
               "segments are cut into 2^splitdepth pieces, at most 10: for speed alone", VL_DEFAULT(3),
               .flags = VL_PARAMETER_RULE),

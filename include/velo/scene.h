@@ -260,9 +260,9 @@ VL_API vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *d
 
 /* ---- participating media --------------------------------------------------------------------------------------- */
 
-/* X(NAME, name) for each kind; its parameters: velo/schema.h. Homogeneous: the same everywhere. Grid: sigma_a and sigma_s
- * times a density on a grid over a box; RGB grid: sigma_a and sigma_s themselves on a grid. Cloud: times a procedural
- * density (pbrt-v4's cloud). NanoVDB: times a density from a NanoVDB file. */
+/* X(NAME, name) for each kind; its parameters: velo/schema.h. Homogeneous: the same everywhere. Grid: sigma_a and
+ * sigma_s times a density on a grid over a box; RGB grid: sigma_a and sigma_s themselves on a grid. Cloud: times a
+ * procedural density (pbrt-v4's cloud). NanoVDB: times a density from a NanoVDB file. */
 #define VL_MEDIUM_KINDS(X)    \
   X(HOMOGENEOUS, homogeneous) \
   X(GRID, grid)               \
@@ -367,8 +367,8 @@ VL_API vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def);
 
 /* ---- shapes ---------------------------------------------------------------------------------------------------- */
 
-/* X(NAME, name) for each kind; what it is and its parameters: velo/schema.h. Curves are hairs and the like: cubic Bezier
- * segments with a width. */
+/* X(NAME, name) for each kind; what it is and its parameters: velo/schema.h. Curves are hairs and the like: cubic
+ * Bezier segments with a width. */
 #define VL_SHAPE_KINDS(X) \
   X(TRIANGLES, triangles) \
   X(BILINEAR, bilinear)   \

@@ -36,7 +36,7 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
         PUT("%s%.9g %.9g", i ? " " : "", (double)s->wavelengths[i], k * (double)s->values[i]);
       PUT("]");
       return;
-    default: break;
+    case VL_SPECTRUM_RGB: break;
   }
   memcpy(rgb, s->rgb, sizeof rgb);
   for (int i = 0; i < 3; i++) rgb[i] *= s->scale;

@@ -1,5 +1,5 @@
-/* trace/light/emission_sample.hot.c: rays that leave lights, by the kind of light, and their densities (pbrt book 12, 3rd
- * edition 16.1.2); infinite and area lights. Scalar: each lane has a light of its own. */
+/* trace/light/emission_sample.hot.c: rays that leave lights, by the kind of light, and their densities (pbrt book 12,
+ * 3rd edition 16.1.2); infinite and area lights. Scalar: each lane has a light of its own. */
 #include "math/octahedral.h"
 #include "math/warp.h"
 #include "trace/light/kinds.h"
@@ -107,7 +107,8 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   const vlEmitted *e = q->emitted;
   float s = q->s, t = q->t;
   const vlWorldShape *shape = &world->shapes.items[light->shape];
-  Spot at = shape->kind == VL_SHAPE_TRIANGLES ? on_triangle(light, shape, q->u, q->v) : on_shape(light, shape, q->u, q->v);
+  Spot at =
+      shape->kind == VL_SHAPE_TRIANGLES ? on_triangle(light, shape, q->u, q->v) : on_shape(light, shape, q->u, q->v);
   if (!(at.pdf > 0.0f)) return;
   float sides = 1.0f;
   vlVec3 side = at.n;

@@ -1,5 +1,5 @@
-/* trace/light/goniometric.hot.c: lights at a point whose intensity is times an image's, by direction (pbrt book 12.2.3):
- * an equal-area octahedral square (book 3.8.3). */
+/* trace/light/goniometric.hot.c: lights at a point whose intensity is times an image's, by direction (pbrt
+ * book 12.2.3): an equal-area octahedral square (book 3.8.3). */
 #include "math/octahedral.h"
 #include "trace/light/kinds.h"
 #include "world/texture/texture_lookup.h"

@@ -39,13 +39,13 @@ typedef struct vlEmissionQuery {
   float u, v, s, t; /* random numbers in [0, 1): u, v for the position, s, t for the direction */
 } vlEmissionQuery;
 
-/* emit: fills an emission that is all zero; it stays invalid where the light sends nothing. Its flux is over the density
- * of its own numbers, without the choice of the light.
- * emit_pdf: as vl_emission_density; p: probability of the choice of the light, a factor of the result. */
-#define VL_LIGHT_KIND_FUNCTIONS(K, k)                                                                                  \
-  void vl_light_sample_##k(const vlLightQuery *q, vlLightSample *out);                                                 \
-  void vl_light_emit_##k(const vlEmissionQuery *q, vlEmission *out);                                                   \
-  float vl_light_emit_pdf_##k(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance,      \
+/* emit: fills an emission that is all zero; it stays invalid where the light sends nothing. Its flux is over the
+ * density of its own numbers, without the choice of the light. emit_pdf: as vl_emission_density; p: probability of the
+ * choice of the light, a factor of the result. */
+#define VL_LIGHT_KIND_FUNCTIONS(K, k)                                                                             \
+  void vl_light_sample_##k(const vlLightQuery *q, vlLightSample *out);                                            \
+  void vl_light_emit_##k(const vlEmissionQuery *q, vlEmission *out);                                              \
+  float vl_light_emit_pdf_##k(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance, \
                               const vlPoint *at);
 VL_WORLD_LIGHT_KINDS(VL_LIGHT_KIND_FUNCTIONS)
 #undef VL_LIGHT_KIND_FUNCTIONS

@@ -94,6 +94,7 @@ void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium) 
       if (light->delta) w = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
       p = vl_add(vl_vec3(world->center[0], world->center[1], world->center[2]), vl_mul(w, 2.0f * world->radius));
     }
-    if (!ask_around(world, p, light->far, &medium[i])) medium[i] = on_the_way(world, vl_vec3(eye[0], eye[1], eye[2]), p);
+    if (!ask_around(world, p, light->far, &medium[i]))
+      medium[i] = on_the_way(world, vl_vec3(eye[0], eye[1], eye[2]), p);
   }
 }

@@ -176,8 +176,7 @@ vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorl
   return r;
 }
 
-typedef vlResult CompileLight(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,
-                              vlError *error);
+typedef vlResult CompileLight(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e, vlError *error);
 #define COMPILE(K, k) [VL_LIGHT_##K] = vl_compile_light_##k,
 static CompileLight *const compile[] = {VL_LIGHT_KINDS(COMPILE)};
 #undef COMPILE

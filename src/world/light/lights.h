@@ -18,7 +18,7 @@ float vl_light_texel_luminance(vlTexel t, uint32_t channels);
 
 /* A function per kind of the scene's lights: colour, power and what the kind alone has. Position, direction (unit; of a
  * light far away towards it) and traits are set before. */
-#define VL_LIGHT_KIND_COMPILES(K, k)                                                                           \
+#define VL_LIGHT_KIND_COMPILES(K, k)                                                                      \
   vlResult vl_compile_light_##k(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e, \
                                 vlError *error);
 VL_LIGHT_KINDS(VL_LIGHT_KIND_COMPILES)

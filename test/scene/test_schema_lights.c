@@ -167,7 +167,7 @@ static void dropped(void **state) {
   light.path = "a.exr", light.fov = NAN;
   assert_int_not_equal(vl_scene_add_light(scene, &light).index, 0);
   assert_null(scene->lights.items[0].path);
-  assert_true(scene->lights.items[0].fov == 0.0f);
+  assert_true(scene->lights.items[0].fov == vl_default_light_def(VL_LIGHT_POINT).fov);
   vlMediumDef medium = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
   medium.density = corners, medium.path = "a.nvdb", medium.frequency = -1;
   assert_int_not_equal(vl_scene_add_medium(scene, &medium).index, 0);

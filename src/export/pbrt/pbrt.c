@@ -157,6 +157,15 @@ static void put_sampling(vlExport *x) {
 
 /* ---- lights ------------------------------------------------------------------------------------------------------ */
 
+/* The transform; the position goes into it where pbrt's kind has no "from". */
+static void put_place(vlExport *x, const vlKindRow *row, const vlLightDef *d) {
+  double m[16];
+  memcpy(m, d->world_from_light, sizeof m);
+  for (int i = 0; i < 3 && !vl_row_find(row, "from"); i++)
+    for (int k = 0; k < 3; k++) m[4 * i + 3] += m[4 * i + k] * (double)d->from[k];
+  vl_pbrt_matrix(x, m);
+}
+
 static bool put_light(vlExport *x, const vlLightDef *d) {
   const vlKindRow *row = vl_kind_row(&vl_light_family, (int)d->kind);
   char name[300] = "";
@@ -166,7 +175,7 @@ static bool put_light(vlExport *x, const vlLightDef *d) {
     if (!vl_pbrt_picture(x, &t, true, name)) return false;
   }
   PUT("AttributeBegin\n");
-  vl_pbrt_matrix(x, d->world_from_light);
+  put_place(x, row, d);
   if (d->medium.index) PUT("  MediumInterface \"\" \"medium%u\"\n", d->medium.index);
   PUT("  LightSource \"%s\"", row->name);
   vl_pbrt_row(x, row, d, false, name[0] ? "L" : NULL);

@@ -22,6 +22,8 @@
   PARAMETER(DOUBLE, "illuminance", illuminance, "of a surface that faces the light, times scale; in place of its own", \
             .unit = "lx", .flags = VL_PARAMETER_UNSET)
 #define FROM(text) PARAMETER(FLOAT3, "from", from, text, .unit = NULL)
+/* Of kinds that files place by their transform alone. */
+#define POSITION PARAMETER(FLOAT3, NULL, from, "position", .unit = NULL)
 #define TO(text) PARAMETER(FLOAT3, "to", to, text, VL_DEFAULT(0, 0, 1))
 #define IMAGE(line)                                                                        \
   PARAMETER(FILE, "filename", path, line, .unit = NULL),                                   \
@@ -63,13 +65,15 @@ static const vlParameter infinite_parameters[] = {
 VL_KIND_ROW(infinite, .name = "infinite", .description = "light from all around", .traits = VL_LIGHT_TRAIT_FAR)
 
 static const vlParameter goniometric_parameters[] = {
-    INTENSITY, SCALE, POWER, IMAGE("required: an equal-area octahedral map of the factor on the intensity, square")};
+    INTENSITY, SCALE, POWER, POSITION,
+    IMAGE("required: an equal-area octahedral map of the factor on the intensity, square")};
 VL_KIND_ROW(goniometric, .name = "goniometric", .description = "a point whose intensity an image gives by direction",
             .traits = VL_LIGHT_TRAIT_AT_POINT | VL_LIGHT_TRAIT_DELTA | VL_LIGHT_TRAIT_IMAGE)
 
 static const vlParameter projection_parameters[] = {
     SCALE,
     POWER,
+    POSITION,
     IMAGE("required: the image, whose values are the intensity"),
     PARAMETER(FLOAT, "fov", fov, "angle across the image's smaller side", ANGLE(90 * DEGREES), VL_RANGE(0, 3.1415),
               .flags = VL_PARAMETER_ABOVE_LOW | VL_PARAMETER_BELOW_HIGH),
@@ -81,9 +85,8 @@ VL_KIND_ROW(projection, .name = "projection", .description = "a point that throw
 VL_KIND_FAMILY(vl_light_family, VL_LIGHT_KINDS, ROW, "lights", "light", "LightSource")
 
 vlLightDef vl_default_light_def(vlLightKind kind) {
-  vlLightDef def = {.cookie = VL_COOKIE_LIGHT, .kind = kind, .scale = 1.0f, .power = VL_UNSET, .illuminance = VL_UNSET};
-  const vlKindRow *row = vl_kind_row(&vl_light_family, (int)kind);
-  if (row) vl_row_set_defaults(row, &def);
+  vlLightDef def = {.cookie = VL_COOKIE_LIGHT, .kind = kind};
+  vl_family_set_defaults(&vl_light_family, (int)kind, &def);
   for (int i = 0; i < 16; i += 5) def.world_from_light[i] = 1.0;
   return def;
 }

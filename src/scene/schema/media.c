@@ -98,10 +98,8 @@ VL_KIND_ROW(nanovdb, .name = "nanovdb", .description = "sigma_a and sigma_s time
 VL_KIND_FAMILY(vl_medium_family, VL_MEDIUM_KINDS, ROW, "media", "medium type", "MakeNamedMedium")
 
 vlMediumDef vl_default_medium_def(vlMediumKind kind) {
-  vlMediumDef def = {
-      .cookie = VL_COOKIE_MEDIUM, .kind = kind, .emission_scale = 1.0f, .temperature_scale = 1.0f, .scale = 1.0f};
-  const vlKindRow *row = vl_kind_row(&vl_medium_family, (int)kind);
-  if (row) vl_row_set_defaults(row, &def);
+  vlMediumDef def = {.cookie = VL_COOKIE_MEDIUM, .kind = kind};
+  vl_family_set_defaults(&vl_medium_family, (int)kind, &def);
   for (int i = 0; i < 16; i += 5) def.world_from_medium[i] = 1.0;
   return def;
 }

@@ -81,6 +81,12 @@ void vl_row_set_defaults(const vlKindRow *row, void *def) {
   }
 }
 
+void vl_family_set_defaults(const vlKindFamily *family, int kind, void *def) {
+  const vlKindRow *own = vl_kind_row(family, kind);
+  for (uint32_t i = 0; i < family->kind_count; i++) vl_row_set_defaults(family->rows[i], def);
+  if (own) vl_row_set_defaults(own, def);
+}
+
 /* ---- members ----------------------------------------------------------------------------------------------------- */
 
 static size_t size_of(const vlParameter *p) {

@@ -88,6 +88,9 @@ const vlParameter *vl_row_find(const vlKindRow *row, const char *name);
 
 /* Gives the members that the row names their defaults; leaves the others alone. */
 void vl_row_set_defaults(const vlKindRow *row, void *def);
+/* Gives all members that any row of the family names their defaults, those of `kind` last: a def may change its kind.
+ */
+void vl_family_set_defaults(const vlKindFamily *family, int kind, void *def);
 /* Copies the members that the row names; what they point at is shared. */
 void vl_row_copy_members(const vlKindRow *row, const void *from, void *to);
 /* Checks the members that the row names (ranges, finite numbers, textures that exist and have the right type, choices)

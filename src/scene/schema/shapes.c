@@ -116,9 +116,8 @@ bool vl_shape_is_mesh(vlShapeKind kind) {
 }
 
 vlShapeDef vl_default_shape_def(vlShapeKind kind) {
-  vlShapeDef def = {.cookie = VL_COOKIE_SHAPE, .kind = kind, .alpha = vl_float_input(1.0f), .times = {0.0, 1.0}};
-  const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)kind);
-  if (row) vl_row_set_defaults(row, &def);
+  vlShapeDef def = {.cookie = VL_COOKIE_SHAPE, .kind = kind, .times = {0.0, 1.0}};
+  vl_family_set_defaults(&vl_shape_family, (int)kind, &def);
   for (int i = 0; i < 16; i += 5) def.group_from_shape[i] = 1.0;
   return def;
 }

@@ -1,5 +1,5 @@
 /* bench/bsdf.c: nanoseconds for one evaluation and one sample of each BSDF, by instruction set, in batches, against the
- * same code one lane at a time (compiled here without vectors). Lines end in the ratio of the two. Usage: bench_bsdf
+ * same code one lane at a time (compiled without vectors). Lines end in the ratio of the two. Usage: bench_bsdf
  * [lanes] (default 512). Each number is the best of several rounds. */
 #include <math.h>
 #include <stdio.h>
@@ -9,44 +9,8 @@
 #include "base/context.h"
 #include "trace/bsdf/bsdf.h"
 
-/* The kernels once more, one lane at a time: no padding, and no vectors. */
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC push_options
-#pragma GCC optimize("no-tree-vectorize", "no-tree-slp-vectorize")
-#pragma GCC target("sse4.2")
-#endif
-#undef VL_PAD
-#define VL_PAD(n) (n)
-#define VL_WHOLE(n) (n)
-#undef VL_SIMD
-#define VL_SIMD
-#define VL_ISA_SUFFIX one
-#define eval eval_one
-#define sample sample_one
-const vlBsdfKernels vl_bsdf_kernels_one;
-#include "../src/trace/bsdf/coat.hot.c"
-#include "../src/trace/bsdf/conductor.hot.c"
-#include "../src/trace/bsdf/dielectric.hot.c"
-#include "../src/trace/bsdf/diffuse.hot.c"
-#include "../src/trace/bsdf/hair.hot.c"
-#include "../src/trace/bsdf/layered.hot.c"
-#define turned measured_turned /* so have they of these */
-#include "../src/trace/bsdf/measured.hot.c"
-#undef turned
-#include "../src/trace/bsdf/diffuse_transmission.hot.c"
-#define slice_of principled_slice_of /* the coat's file has functions of these names, too */
-#define look_up principled_look_up
-#define weigh principled_weigh
-#define combine principled_combine
-#define choose principled_choose
-#include "../src/trace/bsdf/principled.hot.c"
-#include "../src/trace/bsdf/principled_energy.hot.c"
-#include "../src/trace/bsdf/table.hot.c"
-#undef eval
-#undef sample
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC pop_options
-#endif
+/* The kernels once more, one lane at a time: no padding and no vectors (VL_SCALAR, CMakeLists.txt). */
+extern const vlBsdfKernels vl_bsdf_kernel_table_scalar;
 
 enum { MOST = 4096, ROUNDS = 7 };
 
@@ -151,7 +115,7 @@ int main(int argc, char **argv) {
     for (uint32_t i = 0; i < n; i++) a->coat[i] = rows[r].coat;
     for (int what = 1; what <= 3; what++) {
       const char *names[] = {"eval", "sample", "both"};
-      double one = cost(&vl_bsdf_kernels_one, rows[r].kind, what, a, n, 1), last = one;
+      double one = cost(&vl_bsdf_kernel_table_scalar, rows[r].kind, what, a, n, 1), last = one;
       printf("%-18s %-8s %8.1f", what == 1 ? rows[r].name : "", names[what - 1], one);
       for (int isa = 2; isa <= (int)vl_isa_best(); isa++) {
         last = cost(vl_bsdf_kernels((vlIsa)isa), rows[r].kind, what, a, n, n);

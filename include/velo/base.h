@@ -22,7 +22,8 @@
 extern "C" {
 #endif
 
-#if defined(VL_BUILD_SHARED) && defined(__GNUC__)
+/* Stands before every function that the library exports. */
+#if defined(__GNUC__)
 #define VL_API __attribute__((visibility("default")))
 #else
 #define VL_API

@@ -1,5 +1,5 @@
 /* base/isa.h: instruction sets. Hot files are compiled once per set with VL_ISA_SUFFIX = v2, v3 or v4; their outside
- * functions are named VL_HOT(name) (name_v3, ...) and gathered in one constant table per room and set. */
+ * functions are named name (name_v3, ...) and gathered in one constant table per room and set. */
 #ifndef BASE_ISA_H
 #define BASE_ISA_H
 
@@ -10,15 +10,36 @@
 vlResult vl_isa_choose(vlIsa wish, vlIsa *isa);
 vlIsa vl_isa_best(void);
 
-#define VL_CONCAT2(a, b) a##_##b
-#define VL_CONCAT(a, b) VL_CONCAT2(a, b)
-#define VL_HOT(name) VL_CONCAT(name, VL_ISA_SUFFIX)
+/* Declares the kernel table of hot files, PREFIX_kernel_table, as it is called in the hot file that defines it and,
+ * once per instruction set, outside; and PREFIX_kernels(isa), the table of a set. The build joins the hot files of a
+ * set into one object in which only these tables are global (CMakeLists.txt has their list). */
+#if defined(__x86_64__)
+#define VL_KERNEL_TABLE(type, prefix)                                                          \
+  extern const type prefix##_kernel_table, prefix##_kernel_table_v2, prefix##_kernel_table_v3, \
+      prefix##_kernel_table_v4;                                                                \
+  static inline const type *prefix##_kernels(vlIsa isa) {                                      \
+    return isa == VL_ISA_V4   ? &prefix##_kernel_table_v4                                      \
+           : isa == VL_ISA_V3 ? &prefix##_kernel_table_v3                                      \
+                              : &prefix##_kernel_table_v2;                                     \
+  }
+#else
+#define VL_KERNEL_TABLE(type, prefix)                                  \
+  extern const type prefix##_kernel_table, prefix##_kernel_table_base; \
+  static inline const type *prefix##_kernels(vlIsa isa) {              \
+    (void)isa;                                                         \
+    return &prefix##_kernel_table_base;                                \
+  }
+#endif
 
-/* Batches are padded to this many elements, so that vector loops have no remainder. */
+/* Batches are padded to VL_LANES elements, so that vector loops have no remainder. Put VL_SIMD before a loop over a
+ * batch: its iterations do not depend on each other. With VL_SCALAR, for benchmarks, batches are not padded. */
 enum { VL_LANES = 16 };
+#ifndef VL_SCALAR
 #define VL_PAD(n) (((n) + 15u) & ~15u)
-
-/* Put before a loop over a batch: the iterations do not depend on each other. */
 #define VL_SIMD _Pragma("omp simd")
+#else
+#define VL_PAD(n) (n)
+#define VL_SIMD
+#endif
 
 #endif

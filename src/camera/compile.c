@@ -10,14 +10,6 @@
 /* Pixels that a plane which closes on itself goes on for beyond its edges; no filter is wider. */
 static const double overhang = 16.0;
 
-const vlCameraKernels *vl_camera_kernels(vlIsa isa) {
-  switch (isa) {
-    case VL_ISA_V4: return &vl_camera_kernels_v4;
-    case VL_ISA_V3: return &vl_camera_kernels_v3;
-    default: return &vl_camera_kernels_v2;
-  }
-}
-
 /* The angle that the central pixel subtends. */
 static double central_spread(const vlCameraCompiled *c) {
   double size = sqrt(c->inv_fx * c->inv_fy);

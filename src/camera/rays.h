@@ -104,9 +104,7 @@ typedef struct vlCameraKernels {
 } vlCameraKernels;
 
 /* One table per instruction set; all give the same bits. */
-extern const vlCameraKernels vl_camera_kernels_v2, vl_camera_kernels_v3, vl_camera_kernels_v4;
-/* AUTO is not a set: anything but V3 and V4 gives V2's table. */
-const vlCameraKernels *vl_camera_kernels(vlIsa isa);
+VL_KERNEL_TABLE(vlCameraKernels, vl_camera)
 
 /* Are there weights other than 1? */
 static inline bool vl_camera_weighted(const vlCameraCompiled *c) {

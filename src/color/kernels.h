@@ -40,8 +40,7 @@ typedef struct vlColorKernels {
   void (*sigmoid_from_light)(const vlRgbTable *table, uint32_t n, const float *r, const float *g, const float *b,
                              float *scale, float *c0, float *c1, float *c2);
 } vlColorKernels;
-extern const vlColorKernels vl_color_kernels_v2, vl_color_kernels_v3, vl_color_kernels_v4;
-const vlColorKernels *vl_color_kernels(vlIsa isa);
+VL_KERNEL_TABLE(vlColorKernels, vl_color)
 
 /* The observer interleaved for rgb_from_radiance: x, y, z, 0 of each nm, VL_LAMBDA_COUNT * 4 floats. */
 extern const float vl_cie_xyz0[VL_LAMBDA_COUNT * 4];

@@ -32,7 +32,3 @@ void vl_xyz_from_rgb(vlColorSpace space, float m[9]) {
 void vl_space_chromaticities(vlColorSpace space, float xy[8]) {
   for (int i = 0; i < 8; i++) xy[i] = (float)space_table(space)->xy[i];
 }
-
-const vlColorKernels *vl_color_kernels(vlIsa isa) {
-  return isa == VL_ISA_V4 ? &vl_color_kernels_v4 : isa == VL_ISA_V3 ? &vl_color_kernels_v3 : &vl_color_kernels_v2;
-}

@@ -175,11 +175,3 @@ vlResult vl_film_merge(vlFilm *film, const vlFilm *other) {
   film->spp += other->spp;
   return VL_OK;
 }
-
-const vlFilterKernels *vl_filter_kernels(vlIsa isa) {
-  switch (isa) {
-    case VL_ISA_V4: return &vl_filter_kernels_v4;
-    case VL_ISA_V3: return &vl_filter_kernels_v3;
-    default: return &vl_filter_kernels_v2;
-  }
-}

@@ -61,7 +61,6 @@ typedef struct vlFilterKernels {
   void (*sample)(const vlFilterTable *filter, uint32_t n, const float *u, const float *v, float *dx, float *dy,
                  float *weight);
 } vlFilterKernels;
-extern const vlFilterKernels vl_filter_kernels_v2, vl_filter_kernels_v3, vl_filter_kernels_v4;
-const vlFilterKernels *vl_filter_kernels(vlIsa isa);
+VL_KERNEL_TABLE(vlFilterKernels, vl_filter)
 
 #endif

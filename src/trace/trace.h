@@ -85,7 +85,6 @@ typedef struct vlTraceKernels {
   /* Which medium each light's paths start in, as far as its shape does not tell; eye: where the camera is. */
   void (*light_media)(const vlWorld *world, const float eye[3], uint32_t *medium);
 } vlTraceKernels;
-extern const vlTraceKernels vl_trace_kernels_v2, vl_trace_kernels_v3, vl_trace_kernels_v4;
-const vlTraceKernels *vl_trace_kernels(vlIsa isa);
+VL_KERNEL_TABLE(vlTraceKernels, vl_trace)
 
 #endif

@@ -7,6 +7,7 @@
 #include "import/pbrt/parse.h"
 #include "math/transform.h"
 #include "scene/scene.h"
+#include "scene/schema/schema.h"
 
 typedef enum vlAttributeTarget {
   VL_ATTR_SHAPE,
@@ -199,6 +200,8 @@ bool vl_import_unsupported(vlImport *import, vlSource place, const char *format,
 /* Name of a kind of thing that is not among `known`: `later` holds pbrt's names that are not understood yet. */
 bool vl_import_unknown(vlImport *import, vlSource place, const char *thing, const char *name, const char *const *known,
                        size_t known_count, const char *const *later, size_t later_count);
+/* The same, the names being those of the family's kinds. */
+bool vl_import_unknown_kind(vlImport *import, vlSource place, const vlKindFamily *family, const char *name);
 const char *vl_import_keep(vlImport *import,
                            const char *text); /* copy that lives until the end; null when out of memory */
 vlDict vl_import_dict(vlImport *import, const char *what, vlSource place, vlColorSpace space, const vlParamList *own,
@@ -235,11 +238,16 @@ bool vl_import_option(vlImport *import, const vlStatement *s);
 
 /* The spectrum of a parameter (rgb, spectrum, blackbody); sampled values belong to the import's strings. */
 bool vl_import_spectrum(vlImport *import, vlParam *param, vlSpectrum *spectrum);
-/* Radiance or intensity parameter of a light. */
-bool vl_import_light_spectrum(vlDict *dict, const char *name, vlSpectrum *spectrum, bool *given);
 /* A number or a float texture; a spectrum or a spectrum texture. given may be null. false after an error. */
 bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, bool *given);
 bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input, bool albedo, bool *given);
+
+/* Reads what the row names into the members of def (parameters.c); a parameter that is not given leaves its member
+ * alone. spectrum: of EITHER_INPUT, the half that is read. given: one per parameter of the row, whether the file gives
+ * it; may be null. Parameters with VL_PARAMETER_RULE, and BLOCKs, are left to the caller. false after an error. */
+bool vl_import_parameters(vlDict *dict, const vlKindRow *row, void *def, bool spectrum, bool *given);
+/* Was the parameter of that name given? The name must be one of the row's. */
+bool vl_import_given(const vlKindRow *row, const bool *given, const char *name);
 
 bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource place, vlTextureId *id);
 bool vl_import_finish_texture(vlImport *import, uint32_t index); /* resolves what it refers to first */

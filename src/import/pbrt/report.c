@@ -84,6 +84,12 @@ bool vl_import_unknown(vlImport *import, vlSource place, const char *thing, cons
   return vl_import_unsupported(import, place, "unknown %s \"%.80s\"", thing, name);
 }
 
+bool vl_import_unknown_kind(vlImport *import, vlSource place, const vlKindFamily *family, const char *name) {
+  const char *names[64];
+  size_t count = vl_kind_names(family, names, sizeof names / sizeof *names);
+  return vl_import_unknown(import, place, family->thing, name, names, count, NULL, 0);
+}
+
 const char *vl_import_keep(vlImport *import, const char *text) {
   char **slot = VL_PUSH(import->context, &import->strings);
   if (slot) *slot = vl_strdup(import->context, text);

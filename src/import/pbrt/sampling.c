@@ -85,37 +85,17 @@ static bool read_sampler(vlImport *import, vlSceneSettings *s) {
 /* ---- pixel filter ----------------------------------------------------------------------------------------------- */
 
 static bool read_filter(vlImport *import, vlSceneSettings *s) {
-  static const char *const names[] = {"box", "triangle", "gaussian", "mitchell", "sinc", "lanczos", "blackmanharris"};
-  static const vlPixelFilterKind values[] = {
-      VL_PIXEL_FILTER_BOX,     VL_PIXEL_FILTER_TRIANGLE, VL_PIXEL_FILTER_GAUSSIAN,       VL_PIXEL_FILTER_MITCHELL,
-      VL_PIXEL_FILTER_LANCZOS, VL_PIXEL_FILTER_LANCZOS,  VL_PIXEL_FILTER_BLACKMAN_HARRIS};
   const vlChoice *choice = &import->filter;
   s->filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
   if (!choice->given) return true;
   char what[96];
   snprintf(what, sizeof what, "PixelFilter \"%.60s\"", choice->kind);
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
-  int kind = -1;
-  for (int i = 0; i < 7; i++)
-    if (strcmp(choice->kind, names[i]) == 0) kind = i;
-  if (kind < 0) return vl_import_unknown(import, choice->place, "pixel filter", choice->kind, names, 7, NULL, 0);
-  s->filter = vl_default_pixel_filter(values[kind]);
-  vl_dict_float(&dict, "xradius", &s->filter.radius_x);
-  vl_dict_float(&dict, "yradius", &s->filter.radius_y);
-  if (values[kind] == VL_PIXEL_FILTER_GAUSSIAN) vl_dict_float(&dict, "sigma", &s->filter.sigma);
-  if (values[kind] == VL_PIXEL_FILTER_LANCZOS) vl_dict_float(&dict, "tau", &s->filter.tau);
-  if (values[kind] == VL_PIXEL_FILTER_MITCHELL) {
-    vl_dict_float(&dict, "B", &s->filter.b);
-    vl_dict_float(&dict, "C", &s->filter.c);
-  }
-  if (!vl_dict_done(&dict)) return false;
-  const vlPixelFilter *f = &s->filter;
-  if (!(f->radius_x > 0.0f && f->radius_y > 0.0f && f->radius_x <= 64.0f && f->radius_y <= 64.0f))
-    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: the radius must be above 0 and at most 64 pixels",
-                          what);
-  if (!(f->sigma > 0.0f && f->tau > 0.0f))
-    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: sigma and tau must be above 0", what);
-  return true;
+  int kind = vl_kind_find(&vl_pixel_filter_family, choice->kind);
+  if (kind < 0) return vl_import_unknown_kind(import, choice->place, &vl_pixel_filter_family, choice->kind);
+  s->filter = vl_default_pixel_filter((vlPixelFilterKind)kind);
+  const vlKindRow *row = vl_kind_row(&vl_pixel_filter_family, kind);
+  return vl_import_parameters(&dict, row, &s->filter, false, NULL) && vl_dict_done(&dict);
 }
 
 /* ---- integrator ------------------------------------------------------------------------------------------------- */

@@ -104,7 +104,6 @@ typedef struct vlBsdfKernels {
                  const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
                  uint32_t *flags, float *eta_scale /* relative eta of a transmission squared, else 1: for roulette */);
 } vlBsdfKernels;
-extern const vlBsdfKernels vl_bsdf_kernels_v2, vl_bsdf_kernels_v3, vl_bsdf_kernels_v4;
-const vlBsdfKernels *vl_bsdf_kernels(vlIsa isa);
+VL_KERNEL_TABLE(vlBsdfKernels, vl_bsdf)
 
 #endif

@@ -14,8 +14,10 @@
 #include "trace/bsdf/bsdf.h"
 
 /* A count of whole vectors, so that the compiler sees it and makes no remainder loop. */
-#ifndef VL_WHOLE
+#ifndef VL_SCALAR
 #define VL_WHOLE(count) ((count) & ~15u)
+#else
+#define VL_WHOLE(count) (count)
 #endif
 
 #define VL_BSDF_DECLARE(kind)                                                                                    \

@@ -10,10 +10,6 @@ size_t vl_truth_scratch_size(void) {
   return sizeof(struct vlTruthScratch);
 }
 
-const vlTruthKernels *vl_truth_kernels(vlIsa isa) {
-  return isa == VL_ISA_V4 ? &vl_truth_kernels_v4 : isa == VL_ISA_V3 ? &vl_truth_kernels_v3 : &vl_truth_kernels_v2;
-}
-
 static void plan_rgb(vlColorSpace space, vlTruthDef *def) {
   float to[9], from[9];
   vl_rgb_from_xyz(space, to);

@@ -59,7 +59,6 @@ typedef struct vlTruthKernels {
   /* Of lane `lane` of a batch that was traced: the crossings behind (and with) what it met, each surface once. */
   void (*layers)(const vlWorld *world, const vlTruthBatch *batch, uint32_t lane, vlTruthLayers *layers);
 } vlTruthKernels;
-extern const vlTruthKernels vl_truth_kernels_v2, vl_truth_kernels_v3, vl_truth_kernels_v4;
-const vlTruthKernels *vl_truth_kernels(vlIsa isa);
+VL_KERNEL_TABLE(vlTruthKernels, vl_truth)
 
 #endif

@@ -1,8 +1,8 @@
-/* trace/light/light.hot.c: choosing a light and a point on it, and the densities that multiple importance sampling asks
- * for (pbrt book 12). Scalar per lane: the tree walk and the kinds of lights diverge. */
+/* trace/light/light.hot.c: a light sample for each lane, by the kind of its light; infinite and area lights, and the
+ * densities that multiple importance sampling needs of them (pbrt book 12). Scalar per lane: kinds diverge. */
 #include "math/octahedral.h"
 #include "math/warp.h"
-#include "trace/stages.h"
+#include "trace/light/kinds.h"
 #include "world/light/portal.h"
 #include "world/shape/surface_point.h"
 #include "world/texture/texture_lookup.h"
@@ -268,26 +268,62 @@ float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, 
 
 /* ---- one sample a lane ------------------------------------------------------------------------------------------- */
 
-static float spot_edge(const vlWorldLight *light, float x) {
-  float a = light->cos_end, b = light->cos_start;
-  if (a == b) return x < a ? 0.0f : 1.0f;
-  float t = vl_clamp((x - a) / (b - a), 0.0f, 1.0f);
-  return light->cone_squared ? t * t : t * t * (3.0f - 2.0f * t);
+void vl_light_sample_infinite(const vlLightQuery *q, vlLightSample *out) {
+  const vlWorld *world = q->world;
+  const vlWorldLight *light = q->light;
+  out->distant = true;
+  if (light->environment == VL_NONE) {
+    out->w = vl_warp_sphere(q->u, q->v);
+    out->pdf = 0.25f * VL_INV_PI;
+    vl_emitted_at(world, q->emitted, q->lambda, 0, 0, true, out->radiance);
+  } else if (world->environments.items[light->environment].portal) {
+    const vlPortal *portal = world->environments.items[light->environment].portal;
+    vlPortalWindow window;
+    if (!vl_portal_window(portal, q->p, &window)) return;
+    out->w = vl_portal_sample(portal, &window, q->u, q->v);
+    out->pdf = vl_infinite_pdf(world, light, q->p, out->w);
+    vl_infinite_at(world, light, q->p, out->w, q->lambda, out->radiance);
+  } else {
+    const vlEnvironment *env = &world->environments.items[light->environment];
+    float dx, dy;
+    uint32_t y = vl_find_cell(env->marginal_cdf, env->size, q->v, &dy);
+    uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, q->u, &dx);
+    float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
+    out->w = vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
+    out->pdf = env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
+    vl_emitted_at(world, q->emitted, q->lambda, s, t, true, out->radiance);
+  }
+  out->target = out->w;
 }
 
-float vl_beam(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st) {
-  vlVec3 d = vl_normalize(turn(light->corners, vl_neg(w)));
-  *st = (vlVec2){0, 0};
-  if (light->kind == VL_WL_GONIOMETRIC) {
-    const vlMipmap *mip = world->images.items[light->picture].mipmap;
-    vlVec2 at = vl_octahedral_encode(d);
-    vlTexel x = vl_nearest(mip, 0, at.x, at.y, VL_WRAP_OCTAHEDRAL);
-    return vl_max(0.0f, mip->channels < 3 ? x.c[0] : (x.c[0] + x.c[1] + x.c[2]) / 3.0f);
+void vl_light_sample_area(const vlLightQuery *q, vlLightSample *out) {
+  const vlWorldLight *light = q->light;
+  Sample at = sample_area(q->world, light, q->p, q->u, q->v);
+  vlVec3 w = vl_normalize(vl_sub(at.p, q->p));
+  float facing = -vl_dot(w, at.n);
+  if (!(facing > 0.0f) && !(q->emitted->two_sided && facing < 0.0f)) return;
+  if (!(at.pdf > 0.0f)) return;
+  vl_emitted_at(q->world, q->emitted, q->lambda, at.u, 1.0f - at.v, false, out->radiance);
+  const vlWorldShape *shape = &q->world->shapes.items[light->shape];
+  if (light->invisible) {
+    out->delta = true;
+  } else if (shape->alpha >= 0) {
+    float place[3] = {at.p.x, at.p.y, at.p.z};
+    float cover = vl_clamp(vl_texture_float_at(q->world, shape->alpha, at.u, at.v, place, NULL), 0.0f, 1.0f);
+    for (int c = 0; c < 4; c++) out->radiance[c] *= cover;
   }
-  float x = d.x / d.z / light->slide[0], y = d.y / d.z / light->slide[1];
-  if (!(d.z > 1e-3f) || !(vl_abs(x) <= 1.0f) || !(vl_abs(y) <= 1.0f)) return 0.0f;
-  *st = (vlVec2){0.5f * (x + 1.0f), 0.5f * (y + 1.0f)};
-  return 1.0f;
+  /* The end of the shadow ray is moved off the light by the bound of the rounding error of its points. */
+  float size = vl_abs(at.p.x) + vl_abs(at.p.y) + vl_abs(at.p.z);
+  out->target = vl_offset_origin(at.p, facing < 0.0f ? vl_neg(at.n) : at.n, 16.0f * 0x1p-24f * size, vl_neg(w));
+  out->w = w;
+  out->pdf = at.pdf;
+}
+
+static inline void sample_kind(const vlLightQuery *q, vlLightSample *out) {
+#define SAMPLE(K, k) \
+  case VL_WL_##K: vl_light_sample_##k(q, out); break;
+  switch (q->light->kind) { VL_WORLD_LIGHT_KINDS(SAMPLE) }
+#undef SAMPLE
 }
 
 static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, vlVec3 p, float u, float v,
@@ -297,97 +333,21 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
   vlLightChoice chosen = {out->light[i], out->pmf[i]};
   if (chosen.light == VL_INNER || !(chosen.pmf > 0.0f)) return;
   const vlWorldLight *light = &world->lights.items[chosen.light];
-  const vlEmitted *e = &world->emitted.items[light->emitted];
-  float lambda[4], radiance[4];
+  float lambda[4];
   vl_path_lambda(paths, i, lambda);
-  vlVec3 w, target;
-  float pdf = 0.0f;
-  out->delta[i] = 0;
-  out->distant[i] = 0;
-  switch (light->kind) {
-    case VL_WL_POINT:
-    case VL_WL_SPOT:
-    case VL_WL_GONIOMETRIC:
-    case VL_WL_PROJECTION: {
-      target = vl_vec3(light->position[0], light->position[1], light->position[2]);
-      vlVec3 to = vl_sub(target, p);
-      float d2 = vl_length2(to);
-      w = vl_normalize(to);
-      float factor = d2 > 0.0f ? 1.0f / d2 : 0.0f;
-      if (light->kind == VL_WL_SPOT) {
-        float c = -vl_dot(w, vl_vec3(light->direction[0], light->direction[1], light->direction[2]));
-        factor *= spot_edge(light, c);
-      }
-      vlVec2 st = {0, 0};
-      if (light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION) factor *= vl_beam(world, light, w, &st);
-      vl_emitted_at(world, e, lambda, st.x, st.y, true, radiance);
-      for (int c = 0; c < 4; c++) radiance[c] *= factor;
-      pdf = 1.0f;
-      out->delta[i] = 1;
-      break;
-    }
-    case VL_WL_DISTANT:
-      w = target = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
-      vl_emitted_at(world, e, lambda, 0, 0, false, radiance);
-      pdf = 1.0f;
-      out->delta[i] = 1;
-      out->distant[i] = 1;
-      break;
-    case VL_WL_INFINITE: {
-      out->distant[i] = 1;
-      if (light->environment == VL_NONE) {
-        w = vl_warp_sphere(u, v);
-        pdf = 0.25f * VL_INV_PI;
-        vl_emitted_at(world, e, lambda, 0, 0, true, radiance);
-      } else if (world->environments.items[light->environment].portal) {
-        const vlPortal *portal = world->environments.items[light->environment].portal;
-        vlPortalWindow window;
-        if (!vl_portal_window(portal, p, &window)) return;
-        w = vl_portal_sample(portal, &window, u, v);
-        pdf = vl_infinite_pdf(world, light, p, w);
-        vl_infinite_at(world, light, p, w, lambda, radiance);
-      } else {
-        const vlEnvironment *env = &world->environments.items[light->environment];
-        float dx, dy;
-        uint32_t y = vl_find_cell(env->marginal_cdf, env->size, v, &dy);
-        uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
-        float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
-        w = vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
-        pdf = env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
-        vl_emitted_at(world, e, lambda, s, t, true, radiance);
-      }
-      target = w;
-      break;
-    }
-    default: {
-      Sample q = sample_area(world, light, p, u, v);
-      w = vl_normalize(vl_sub(q.p, p));
-      target = q.p;
-      pdf = q.pdf;
-      float facing = -vl_dot(w, q.n);
-      if (!(facing > 0.0f) && !(e->two_sided && facing < 0.0f)) pdf = 0.0f;
-      if (!(pdf > 0.0f)) return;
-      vl_emitted_at(world, e, lambda, q.u, 1.0f - q.v, false, radiance);
-      const vlWorldShape *shape = &world->shapes.items[light->shape];
-      if (light->invisible) {
-        out->delta[i] = 1;
-      } else if (shape->alpha >= 0) {
-        float at[3] = {q.p.x, q.p.y, q.p.z};
-        float cover = vl_clamp(vl_texture_float_at(world, shape->alpha, q.u, q.v, at, NULL), 0.0f, 1.0f);
-        for (int c = 0; c < 4; c++) radiance[c] *= cover;
-      }
-      /* The end of the shadow ray is moved off the light by the bound of the rounding error of its points. */
-      float size = vl_abs(q.p.x) + vl_abs(q.p.y) + vl_abs(q.p.z);
-      target = vl_offset_origin(q.p, facing < 0.0f ? vl_neg(q.n) : q.n, 16.0f * 0x1p-24f * size, vl_neg(w));
-      break;
-    }
-  }
-  if (!(pdf > 0.0f) || !(pdf < VL_INFINITY)) return;
-  float total = pdf * chosen.pmf, inv = 1.0f / total;
+  vlLightQuery q = {world, light, &world->emitted.items[light->emitted], lambda, p, u, v};
+  vlLightSample sample;
+  sample.pdf = 0.0f;
+  sample.delta = sample.distant = false;
+  sample_kind(&q, &sample);
+  out->delta[i] = sample.delta;
+  out->distant[i] = sample.distant;
+  if (!(sample.pdf > 0.0f) || !(sample.pdf < VL_INFINITY)) return;
+  float total = sample.pdf * chosen.pmf, inv = 1.0f / total;
   out->pdf[i] = total;
-  out->wx[i] = w.x, out->wy[i] = w.y, out->wz[i] = w.z;
-  out->tx[i] = target.x, out->ty[i] = target.y, out->tz[i] = target.z;
-  for (int c = 0; c < 4; c++) out->radiance[c][i] = radiance[c] * inv;
+  out->wx[i] = sample.w.x, out->wy[i] = sample.w.y, out->wz[i] = sample.w.z;
+  out->tx[i] = sample.target.x, out->ty[i] = sample.target.y, out->tz[i] = sample.target.z;
+  for (int c = 0; c < 4; c++) out->radiance[c][i] = sample.radiance[c] * inv;
 }
 
 void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *f, const float *u_choice,

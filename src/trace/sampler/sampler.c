@@ -39,11 +39,3 @@ void vl_sampler_init(vlSampler *sampler, vlSamplerKind kind, uint32_t seed, uint
       .jitter_bits = bits < 14 ? 22 - bits : 8,
   };
 }
-
-const vlSamplerKernels *vl_sampler_kernels(vlIsa isa) {
-  switch (isa) {
-    case VL_ISA_V4: return &vl_sampler_kernels_v4;
-    case VL_ISA_V3: return &vl_sampler_kernels_v3;
-    default: return &vl_sampler_kernels_v2;
-  }
-}

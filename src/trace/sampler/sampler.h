@@ -47,7 +47,6 @@ typedef struct vlSamplerKernels {
   void (*get_2d)(const vlSampler *sampler, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index,
                  uint32_t dimension, float *u, float *v);
 } vlSamplerKernels;
-extern const vlSamplerKernels vl_sampler_kernels_v2, vl_sampler_kernels_v3, vl_sampler_kernels_v4;
-const vlSamplerKernels *vl_sampler_kernels(vlIsa isa);
+VL_KERNEL_TABLE(vlSamplerKernels, vl_sampler)
 
 #endif

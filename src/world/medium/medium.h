@@ -34,6 +34,8 @@ typedef struct vlWorldMedium {
   vlSpectral emission;         /* luminance as said, scale included */
   float g;
   bool scatters, emits, grey; /* grey: the majorant is the same for all channels */
+  bool uniform;               /* the same everywhere: no box, no majorants */
+  bool own_sigma;             /* coefficients are looked up, and sigma_a and sigma_s are not read */
   float extinction;           /* homogeneous: vl_medium_extinction */
   float medium_from_world[12];
   float low[3], high[3]; /* medium space; kinds but homogeneous */

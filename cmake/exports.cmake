@@ -1,0 +1,17 @@
+# cmake -DHEADERS=FOLDER -DOUTPUT=FILE -P exports.cmake: a linker version script that exports the functions that the public
+# headers mark with VL_API, and nothing else.
+file(GLOB headers ${HEADERS}/*.h)
+set(names)
+foreach(header ${headers})
+  file(READ ${header} text)
+  string(REPLACE ";" " " text "${text}")
+  string(REGEX MATCHALL "VL_API[^(;/]*[ *]vl_[a-z0-9_]+\\(" declarations "${text}")
+  foreach(declaration ${declarations})
+    string(REGEX REPLACE ".*[ *](vl_[a-z0-9_]+)\\($" "\\1" name "${declaration}")
+    list(APPEND names ${name})
+  endforeach()
+endforeach()
+list(SORT names)
+list(REMOVE_DUPLICATES names)
+list(JOIN names ";\n    " text)
+file(WRITE ${OUTPUT} "{\n  global:\n    ${text};\n  local:\n    *;\n};\n")

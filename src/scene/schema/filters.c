@@ -1,0 +1,48 @@
+/* scene/schema/filters.c: the pixel filters. Their sizes are pbrt-v4's; Blackman-Harris is not one of pbrt's. */
+#include "scene/schema/schema.h"
+
+#define PARAMETER(name, member, text, ...) VL_PARAMETER(FLOAT, vlPixelFilter, name, member, text, __VA_ARGS__)
+#define PIXELS(...) VL_DEFAULT(__VA_ARGS__), .unit = "pixels", .flags = VL_PARAMETER_ABOVE_LOW
+#define RADII(size)                                                                \
+  PARAMETER("xradius", radius_x, "half its width", PIXELS(size), VL_RANGE(0, 64)), \
+      PARAMETER("yradius", radius_y, "half its height", PIXELS(size), VL_RANGE(0, 64))
+
+static const vlParameter box_parameters[] = {RADII(0.5)};
+VL_KIND_ROW(box, .name = "box", .description = "the mean over a rectangle")
+
+static const vlParameter triangle_parameters[] = {RADII(2)};
+VL_KIND_ROW(triangle, .name = "triangle", .description = "falls linearly from the centre")
+
+static const vlParameter gaussian_parameters[] = {
+    RADII(1.5),
+    PARAMETER("sigma", sigma, "standard deviation", PIXELS(0.5), VL_RANGE(0, 1e6)),
+};
+VL_KIND_ROW(gaussian, .name = "gaussian", .description = "a Gaussian, less its value at the radius")
+
+static const vlParameter mitchell_parameters[] = {
+    RADII(2),
+    PARAMETER("B", b, "B of Mitchell and Netravali", VL_DEFAULT(1.0 / 3.0), VL_RANGE(-10, 10)),
+    PARAMETER("C", c, "C of Mitchell and Netravali", VL_DEFAULT(1.0 / 3.0), VL_RANGE(-10, 10)),
+};
+VL_KIND_ROW(mitchell, .name = "mitchell", .description = "the cubic filter of Mitchell and Netravali")
+
+static const vlParameter lanczos_parameters[] = {
+    RADII(4),
+    PARAMETER("tau", tau, "how many periods of the sinc the window spans", VL_DEFAULT(3), VL_RANGE(0, 1e6),
+              .flags = VL_PARAMETER_ABOVE_LOW),
+};
+VL_KIND_ROW(lanczos, .name = "sinc", .alias = "lanczos",
+            .description = "a sinc in a window that is a sinc, too (Lanczos)")
+
+static const vlParameter blackman_harris_parameters[] = {RADII(2)};
+VL_KIND_ROW(blackman_harris, .name = "blackmanharris", .description = "the window of Blackman and Harris")
+
+#define ROW(NAME, name) [VL_PIXEL_FILTER_##NAME] = &name##_row,
+VL_KIND_FAMILY(vl_pixel_filter_family, VL_PIXEL_FILTER_KINDS, ROW, "filters", "pixel filter", "PixelFilter")
+
+vlPixelFilter vl_default_pixel_filter(vlPixelFilterKind kind) {
+  vlPixelFilter filter = {.kind = kind};
+  const vlKindRow *row = vl_kind_row(&vl_pixel_filter_family, (int)kind);
+  if (row) vl_row_set_defaults(row, &filter);
+  return filter;
+}

@@ -1,0 +1,186 @@
+/* scene/schema/schema.c: the families, their rows by name, and defaults. */
+#include "scene/schema/schema.h"
+
+#include <string.h>
+
+static const vlKindFamily *const families[] = {&vl_pixel_filter_family, &vl_light_family, &vl_emission_family,
+                                               &vl_shape_family, &vl_medium_family};
+
+const vlKindFamily *vl_kind_family(uint32_t index) {
+  return index < sizeof families / sizeof *families ? families[index] : NULL;
+}
+
+const vlKindRow *vl_kind_row(const vlKindFamily *family, int kind) {
+  return kind >= 0 && (uint32_t)kind < family->kind_count ? family->rows[kind] : NULL;
+}
+
+static bool is_named(const char *name, const char *alias, const char *text) {
+  return (name && strcmp(name, text) == 0) || (alias && strcmp(alias, text) == 0);
+}
+
+int vl_kind_find(const vlKindFamily *family, const char *name) {
+  for (uint32_t i = 0; i < family->kind_count; i++)
+    if (is_named(family->rows[i]->name, family->rows[i]->alias, name)) return (int)i;
+  return -1;
+}
+
+size_t vl_kind_names(const vlKindFamily *family, const char **names, size_t most) {
+  size_t count = 0;
+  for (uint32_t i = 0; i < family->kind_count && count < most; i++)
+    if (family->rows[i]->name) names[count++] = family->rows[i]->name;
+  return count;
+}
+
+const vlParameter *vl_row_find(const vlKindRow *row, const char *name) {
+  for (uint32_t i = 0; i < row->parameter_count; i++)
+    if (is_named(row->parameters[i].name, row->parameters[i].alias, name)) return &row->parameters[i];
+  return NULL;
+}
+
+/* ---- defaults ---------------------------------------------------------------------------------------------------- */
+
+static vlSpectrum default_spectrum(const vlParameter *p) {
+  if (p->text) return vl_spectrum_named(p->text);
+  if (p->flags & VL_PARAMETER_RGB) return vl_spectrum_rgb((float)p->value[0], (float)p->value[1], (float)p->value[2]);
+  return vl_spectrum_constant((float)p->value[0]);
+}
+
+static void set_default(const vlParameter *p, void *at) {
+  double number = p->value[0];
+  switch (p->type) {
+    case VL_PARAMETER_BOOL: *(bool *)at = number != 0; break;
+    case VL_PARAMETER_COUNT: *(uint32_t *)at = (uint32_t)number; break;
+    case VL_PARAMETER_FLOAT: *(float *)at = (float)number; break;
+    case VL_PARAMETER_DOUBLE: *(double *)at = p->flags & VL_PARAMETER_UNSET ? VL_UNSET : number; break;
+    case VL_PARAMETER_FLOAT3:
+      for (int i = 0; i < 3; i++) ((float *)at)[i] = (float)p->value[i];
+      break;
+    case VL_PARAMETER_CHOICE: *(int *)at = (int)number; break;
+    case VL_PARAMETER_STRING:
+    case VL_PARAMETER_FILE: *(const char **)at = p->text; break;
+    case VL_PARAMETER_SPECTRUM: *(vlSpectrum *)at = default_spectrum(p); break;
+    case VL_PARAMETER_EITHER_INPUT:
+    case VL_PARAMETER_FLOAT_INPUT: *(vlFloatInput *)at = vl_float_input((float)number); break;
+    case VL_PARAMETER_SPECTRUM_INPUT: *(vlSpectrumInput *)at = vl_spectrum_input(default_spectrum(p)); break;
+    case VL_PARAMETER_TEXTURE: *(vlTextureId *)at = (vlTextureId){0}; break;
+    case VL_PARAMETER_BLOCK: break;
+  }
+}
+
+void vl_row_set_defaults(const vlKindRow *row, void *def) {
+  for (uint32_t i = 0; i < row->parameter_count; i++) {
+    const vlParameter *p = &row->parameters[i];
+    if (p->flags & VL_PARAMETER_SHORTHAND) continue;
+    set_default(p, (char *)def + p->offset);
+    if (!p->second) continue;
+    void *second = (char *)def + p->second;
+    if (p->type == VL_PARAMETER_EITHER_INPUT)
+      *(vlSpectrumInput *)second = vl_spectrum_input(default_spectrum(p));
+    else
+      set_default(p, second);
+  }
+}
+
+void vl_family_set_defaults(const vlKindFamily *family, int kind, void *def) {
+  const vlKindRow *own = vl_kind_row(family, kind);
+  for (uint32_t i = 0; i < family->kind_count; i++) vl_row_set_defaults(family->rows[i], def);
+  if (own) vl_row_set_defaults(own, def);
+}
+
+/* ---- members ----------------------------------------------------------------------------------------------------- */
+
+static size_t size_of(const vlParameter *p) {
+  switch (p->type) {
+    case VL_PARAMETER_BOOL: return sizeof(bool);
+    case VL_PARAMETER_COUNT: return sizeof(uint32_t);
+    case VL_PARAMETER_FLOAT: return sizeof(float);
+    case VL_PARAMETER_DOUBLE: return sizeof(double);
+    case VL_PARAMETER_FLOAT3: return 3 * sizeof(float);
+    case VL_PARAMETER_CHOICE: return sizeof(int);
+    case VL_PARAMETER_STRING:
+    case VL_PARAMETER_FILE: return sizeof(const char *);
+    case VL_PARAMETER_SPECTRUM: return sizeof(vlSpectrum);
+    case VL_PARAMETER_EITHER_INPUT:
+    case VL_PARAMETER_FLOAT_INPUT: return sizeof(vlFloatInput);
+    case VL_PARAMETER_SPECTRUM_INPUT: return sizeof(vlSpectrumInput);
+    case VL_PARAMETER_TEXTURE: return sizeof(vlTextureId);
+    case VL_PARAMETER_BLOCK: return 0;
+  }
+  return 0;
+}
+_Static_assert(sizeof(vlWrap) == sizeof(int), "choices are stored as int");
+
+void vl_row_copy_members(const vlKindRow *row, const void *from, void *to) {
+  for (uint32_t i = 0; i < row->parameter_count; i++) {
+    const vlParameter *p = &row->parameters[i];
+    memcpy((char *)to + p->offset, (const char *)from + p->offset, size_of(p));
+    if (p->second)
+      memcpy((char *)to + p->second, (const char *)from + p->second,
+             p->type == VL_PARAMETER_EITHER_INPUT ? sizeof(vlSpectrumInput) : size_of(p));
+  }
+}
+
+static bool spectrum_number(const vlSpectrum *s, double *number) {
+  *number = (double)(s->value * s->scale);
+  return s->kind == VL_SPECTRUM_CONSTANT;
+}
+
+bool vl_parameter_number(const vlParameter *p, const void *def, double *number) {
+  const void *at = (const char *)def + p->offset;
+  switch (p->type) {
+    case VL_PARAMETER_BOOL: return *number = *(const bool *)at, true;
+    case VL_PARAMETER_COUNT: return *number = *(const uint32_t *)at, true;
+    case VL_PARAMETER_FLOAT: return *number = (double)*(const float *)at, true;
+    case VL_PARAMETER_DOUBLE: return *number = *(const double *)at, true;
+    case VL_PARAMETER_CHOICE: return *number = *(const int *)at, true;
+    case VL_PARAMETER_SPECTRUM: return spectrum_number(at, number);
+    case VL_PARAMETER_EITHER_INPUT:
+    case VL_PARAMETER_FLOAT_INPUT:
+      *number = (double)((const vlFloatInput *)at)->value;
+      return !((const vlFloatInput *)at)->texture.index;
+    case VL_PARAMETER_SPECTRUM_INPUT: {
+      const vlSpectrumInput *input = at;
+      return !input->texture.index && spectrum_number(&input->value, number);
+    }
+    case VL_PARAMETER_FLOAT3:
+    case VL_PARAMETER_STRING:
+    case VL_PARAMETER_FILE:
+    case VL_PARAMETER_TEXTURE:
+    case VL_PARAMETER_BLOCK: return false;
+  }
+  return false;
+}
+
+static bool same_spectrum(const vlSpectrum *a, const vlSpectrum *b) {
+  if (a->kind != b->kind || a->scale != b->scale) return false;
+  switch (a->kind) {
+    case VL_SPECTRUM_CONSTANT: return a->value == b->value;
+    case VL_SPECTRUM_RGB: return a->space == b->space && memcmp(a->rgb, b->rgb, sizeof a->rgb) == 0;
+    case VL_SPECTRUM_BLACKBODY: return a->kelvin == b->kelvin;
+    case VL_SPECTRUM_SAMPLED: return false; /* no default is */
+    case VL_SPECTRUM_NAMED: return strcmp(a->name, b->name) == 0;
+  }
+  return false;
+}
+
+bool vl_parameter_is_default(const vlParameter *p, const void *def, bool spectrum) {
+  const void *at = (const char *)def + (spectrum && p->type == VL_PARAMETER_EITHER_INPUT ? p->second : p->offset);
+  const vlSpectrum usual = default_spectrum(p);
+  double number;
+  if ((p->type == VL_PARAMETER_EITHER_INPUT && spectrum) || p->type == VL_PARAMETER_SPECTRUM_INPUT)
+    return !((const vlSpectrumInput *)at)->texture.index &&
+           same_spectrum(&((const vlSpectrumInput *)at)->value, &usual);
+  if (p->type == VL_PARAMETER_SPECTRUM) return same_spectrum(at, &usual);
+  if (p->type == VL_PARAMETER_FLOAT3) {
+    const float *v = at;
+    return v[0] == (float)p->value[0] && v[1] == (float)p->value[1] && v[2] == (float)p->value[2];
+  }
+  if (p->type == VL_PARAMETER_STRING || p->type == VL_PARAMETER_FILE) {
+    const char *text = *(const char *const *)at;
+    return text && p->text ? strcmp(text, p->text) == 0 : text == p->text;
+  }
+  if (p->type == VL_PARAMETER_TEXTURE) return !((const vlTextureId *)at)->index;
+  if (!vl_parameter_number(p, def, &number)) return false;
+  if (p->flags & VL_PARAMETER_UNSET) return number != number;
+  return (float)number == (float)p->value[0];
+}

@@ -1,0 +1,164 @@
+/* scene/schema/take.c: a def is checked by its row, and what it points at is copied into the scene. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "scene/scene.h"
+#include "scene/schema/schema.h"
+
+/* ---- numbers ----------------------------------------------------------------------------------------------------- */
+
+static bool has_range(const vlParameter *p) {
+  return p->low != 0 || p->high != 0;
+}
+
+static bool in_range(const vlParameter *p, double x) {
+  if (p->flags & VL_PARAMETER_ABOVE_LOW ? !(x > p->low) : !(x >= p->low)) return false;
+  return p->flags & VL_PARAMETER_BELOW_HIGH ? x < p->high : x <= p->high;
+}
+
+/* "above 0 and at most 64" */
+static void put_range(const vlParameter *p, char *text, size_t size) {
+  const char *low = p->flags & VL_PARAMETER_ABOVE_LOW ? "above" : "at least";
+  const char *high = p->flags & VL_PARAMETER_BELOW_HIGH ? "below" : "at most";
+  double k = p->factor != 0 ? 1 / p->factor : 1;
+  if (isinf(p->high))
+    snprintf(text, size, "%s %g", low, k * p->low);
+  else if (isinf(p->low))
+    snprintf(text, size, "%s %g", high, k * p->high);
+  else
+    snprintf(text, size, "%s %g and %s %g", low, k * p->low, high, k * p->high);
+}
+
+static const char *shown_name(const vlParameter *p) {
+  return p->name ? p->name : p->member;
+}
+
+static bool check_number(const vlParameter *p, double x, const char *what, char message[200]) {
+  if ((p->flags & VL_PARAMETER_UNSET) && isnan(x)) return true;
+  bool finite = isfinite(x) || ((p->flags & VL_PARAMETER_INFINITE) && isinf(x));
+  if (!finite) {
+    snprintf(message, 200, "%s: parameter \"%s\" is not finite", what, shown_name(p));
+    return false;
+  }
+  if (!has_range(p) || (p->flags & VL_PARAMETER_CLAMPED) || in_range(p, x)) return true;
+  char range[80];
+  put_range(p, range, sizeof range);
+  snprintf(message, 200, "%s: parameter \"%s\" must be %s, it is %g", what, shown_name(p), range,
+           p->factor != 0 ? x / p->factor : x);
+  return false;
+}
+
+static uint32_t count_of(const char *const *choices) {
+  uint32_t n = 0;
+  while (choices && choices[n]) n++;
+  return n;
+}
+
+bool vl_parameter_check(const vlParameter *p, const void *def, const char *what, char message[200]) {
+  const char *at = (const char *)def + p->offset;
+  double x;
+  if (p->type == VL_PARAMETER_FLOAT3) {
+    for (int i = 0; i < 3; i++)
+      if (!check_number(p, (double)((const float *)(const void *)at)[i], what, message)) return false;
+    return true;
+  }
+  if (p->type == VL_PARAMETER_CHOICE) {
+    int choice = *(const int *)(const void *)at;
+    if (choice >= 0 && (uint32_t)choice < count_of(p->choices)) return true;
+    snprintf(message, 200, "%s: parameter \"%s\" has no choice %d", what, shown_name(p), choice);
+    return false;
+  }
+  if ((p->type == VL_PARAMETER_STRING || p->type == VL_PARAMETER_FILE) && (p->flags & VL_PARAMETER_REQUIRED)) {
+    if (*(const char *const *)(const void *)at) return true;
+    snprintf(message, 200, "%s: parameter \"%s\" is missing", what, shown_name(p));
+    return false;
+  }
+  return !vl_parameter_number(p, def, &x) || check_number(p, x, what, message);
+}
+
+/* ---- what defs point at ------------------------------------------------------------------------------------------ */
+
+typedef struct Take {
+  vlScene *scene;
+  vlSource source;
+  const char *what;
+} Take;
+
+static bool bad(const Take *t, const vlParameter *p, const char *why) {
+  vl_scene_fail(t->scene, VL_ERROR_SCENE, t->source, "%s: parameter \"%s\" %s", t->what, shown_name(p), why);
+  return false;
+}
+
+static bool take_texture(const Take *t, const vlParameter *p, vlTextureId id, bool spectrum) {
+  if (!id.index) return true;
+  if (p->flags & VL_PARAMETER_NO_TEXTURE) return bad(t, p, "cannot be textured");
+  if (id.index > t->scene->textures.count) return bad(t, p, "names a texture that does not exist (add it first)");
+  if (t->scene->textures.items[id.index - 1].spectrum == spectrum) return true;
+  return bad(t, p,
+             spectrum ? "needs a spectrum texture, this is a float texture"
+                      : "needs a float texture, this is a spectrum texture");
+}
+
+static bool take_spectrum(const Take *t, const vlParameter *p, vlSpectrum *s) {
+  char what[160];
+  snprintf(what, sizeof what, "%s: parameter \"%s\"", t->what, shown_name(p));
+  if (!vl_scene_copy_spectrum(t->scene, s, t->source, what)) return false;
+  return !(p->flags & VL_PARAMETER_ONE_NUMBER) || s->kind == VL_SPECTRUM_CONSTANT || bad(t, p, "must be one number");
+}
+
+static bool take_spectrum_input(const Take *t, const vlParameter *p, vlSpectrumInput *input) {
+  if (!take_texture(t, p, input->texture, true)) return false;
+  if (!input->texture.index) return take_spectrum(t, p, &input->value);
+  input->value = vl_spectrum_constant(1.0f);
+  return true;
+}
+
+static bool take_member(const Take *t, const vlParameter *p, void *at) {
+  switch (p->type) {
+    case VL_PARAMETER_STRING:
+    case VL_PARAMETER_FILE: return vl_scene_copy_string(t->scene, at);
+    case VL_PARAMETER_SPECTRUM: return take_spectrum(t, p, at);
+    case VL_PARAMETER_EITHER_INPUT:
+    case VL_PARAMETER_FLOAT_INPUT: return take_texture(t, p, ((vlFloatInput *)at)->texture, false);
+    case VL_PARAMETER_SPECTRUM_INPUT: return take_spectrum_input(t, p, at);
+    case VL_PARAMETER_TEXTURE: return take_texture(t, p, *(vlTextureId *)at, true);
+    case VL_PARAMETER_BOOL:
+    case VL_PARAMETER_COUNT:
+    case VL_PARAMETER_FLOAT:
+    case VL_PARAMETER_DOUBLE:
+    case VL_PARAMETER_FLOAT3:
+    case VL_PARAMETER_CHOICE:
+    case VL_PARAMETER_BLOCK: return true;
+  }
+  return true;
+}
+
+static bool take_parameter(const Take *t, const vlParameter *p, char *def, bool spectrum) {
+  if (p->type == VL_PARAMETER_EITHER_INPUT) { /* the half that is not read is emptied */
+    if (!spectrum) {
+      *(vlSpectrumInput *)(void *)(def + p->second) = (vlSpectrumInput){0};
+    } else {
+      *(vlFloatInput *)(void *)(def + p->offset) = (vlFloatInput){0};
+      return take_spectrum_input(t, p, (vlSpectrumInput *)(void *)(def + p->second));
+    }
+  } else if (p->second && !take_member(t, p, def + p->second)) {
+    return false;
+  }
+  return take_member(t, p, def + p->offset);
+}
+
+bool vl_row_take(vlScene *scene, const vlKindRow *row, void *def, bool spectrum, vlSource source, const char *what) {
+  const Take t = {scene, source, what};
+  char message[200];
+  for (uint32_t i = 0; i < row->parameter_count; i++) {
+    const vlParameter *p = &row->parameters[i];
+    if (p->flags & VL_PARAMETER_SHORTHAND) continue;
+    if (!take_parameter(&t, p, def, spectrum)) return false;
+    if (vl_parameter_check(p, def, what, message)) continue;
+    vl_scene_fail(scene, VL_ERROR_SCENE, source, "%s", message);
+    return false;
+  }
+  return true;
+}

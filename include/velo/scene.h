@@ -286,12 +286,19 @@ VL_API vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *d
 
 /* ---- participating media --------------------------------------------------------------------------------------- */
 
+/* X(NAME, name) for each kind; its parameters: velo/schema.h. Homogeneous: the same everywhere. Grid: sigma_a and
+ * sigma_s times a density on a grid over a box; RGB grid: sigma_a and sigma_s themselves on a grid. Cloud: times a
+ * procedural density (pbrt-v4's cloud). NanoVDB: times a density from a NanoVDB file. */
+#define VL_MEDIUM_KINDS(X)    \
+  X(HOMOGENEOUS, homogeneous) \
+  X(GRID, grid)               \
+  X(RGB_GRID, rgb_grid)       \
+  X(CLOUD, cloud)             \
+  X(NANOVDB, nanovdb)
 typedef enum vlMediumKind {
-  VL_MEDIUM_HOMOGENEOUS, /* the same everywhere */
-  VL_MEDIUM_GRID,        /* sigma_a and sigma_s times a density on a grid over a box */
-  VL_MEDIUM_RGB_GRID,    /* sigma_a and sigma_s themselves on a grid */
-  VL_MEDIUM_CLOUD,       /* times a procedural density (pbrt-v4's cloud) */
-  VL_MEDIUM_NANOVDB      /* times a density from a NanoVDB file */
+#define VL_KIND(NAME, name) VL_MEDIUM_##NAME,
+  VL_MEDIUM_KINDS(VL_KIND)
+#undef VL_KIND
 } vlMediumKind;
 
 /* What fills the space between surfaces (pbrt book 11). Coefficients are per world unit of length, whatever the
@@ -348,14 +355,20 @@ typedef struct vlEmissionDef {
 VL_API vlEmissionDef vl_default_emission_def(void);
 VL_API vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def);
 
+/* X(NAME, name) for each kind; what it is and its parameters: velo/schema.h. A goniometric light's image is an
+ * equal-area octahedral square (pbrt book 3.8.3) whose axis is the light's y; a projection light throws its image along
+ * z, y up, and the image is the intensity. */
+#define VL_LIGHT_KINDS(X)     \
+  X(POINT, point)             \
+  X(SPOT, spot)               \
+  X(DISTANT, distant)         \
+  X(INFINITE, infinite)       \
+  X(GONIOMETRIC, goniometric) \
+  X(PROJECTION, projection)
 typedef enum vlLightKind {
-  VL_LIGHT_POINT,
-  VL_LIGHT_SPOT,
-  VL_LIGHT_DISTANT,
-  VL_LIGHT_INFINITE,
-  VL_LIGHT_GONIOMETRIC, /* a point whose intensity is times a picture's, by direction: an equal-area octahedral square
-                         * (pbrt book 3.8.3) whose axis is the light's y */
-  VL_LIGHT_PROJECTION   /* a point that throws its picture along z, y up; the picture is the intensity */
+#define VL_KIND(NAME, name) VL_LIGHT_##NAME,
+  VL_LIGHT_KINDS(VL_KIND)
+#undef VL_KIND
 } vlLightKind;
 typedef struct vlLightDef {
   uint32_t cookie;
@@ -384,13 +397,19 @@ VL_API vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def);
 
 /* ---- shapes ---------------------------------------------------------------------------------------------------- */
 
+/* X(NAME, name) for each kind; what it is and its parameters: velo/schema.h. Curves are hairs and the like: cubic
+ * Bezier segments with a width. */
+#define VL_SHAPE_KINDS(X) \
+  X(TRIANGLES, triangles) \
+  X(BILINEAR, bilinear)   \
+  X(SPHERE, sphere)       \
+  X(DISK, disk)           \
+  X(CYLINDER, cylinder)   \
+  X(CURVES, curves)
 typedef enum vlShapeKind {
-  VL_SHAPE_TRIANGLES,
-  VL_SHAPE_BILINEAR,
-  VL_SHAPE_SPHERE,
-  VL_SHAPE_DISK,
-  VL_SHAPE_CYLINDER,
-  VL_SHAPE_CURVES /* hairs and the like: cubic Bezier segments with a width */
+#define VL_KIND(NAME, name) VL_SHAPE_##NAME,
+  VL_SHAPE_KINDS(VL_KIND)
+#undef VL_KIND
 } vlShapeKind;
 typedef enum vlCurveKind {
   VL_CURVE_FLAT,     /* faces every ray */

@@ -71,7 +71,7 @@ typedef struct vlParameter {
   size_t second;       /* of another member that gets the same value; 0: none */
   double factor;       /* value in the def = factor * value in files; 0 is read as 1 */
   double value[3];     /* default: a number (of a bool 0 or 1, of a choice its index), or three. In the def's unit */
-  const char *text;    /* default of strings; name of a spectrum (vl_spectrum_name) */
+  const char *text;    /* default of strings; name of a spectrum (vl_spectrum_name); of a BLOCK: its type in files */
   double low, high;    /* range, in the def's unit; no limits where both are 0 */
   const char *const *choices; /* names in files, ending with null; index = value of the enum */
 } vlParameter;
@@ -94,6 +94,28 @@ typedef struct vlKindFamily {
   const char *const *constants; /* "COATED_DIFFUSE": how the names of the enum's constants end */
   const vlKindRow *const *rows; /* one per kind, never null */
 } vlKindFamily;
+
+/* Traits of lights. */
+enum {
+  VL_LIGHT_TRAIT_AT_POINT = 1, /* all its light leaves one point */
+  VL_LIGHT_TRAIT_FAR = 2,      /* it is infinitely far away, so it stands in no medium */
+  VL_LIGHT_TRAIT_DELTA = 4,    /* no ray can meet it. One that is not a delta is far, too: rays that miss all see it */
+  VL_LIGHT_TRAIT_AIMS = 8,     /* its `from` and `to` must differ */
+  VL_LIGHT_TRAIT_IMAGE = 16    /* it needs an image */
+};
+
+/* Traits of shapes. */
+enum {
+  VL_SHAPE_TRAIT_MESH = 1,    /* vertices and faces that name them */
+  VL_SHAPE_TRAIT_QUADRIC = 2, /* given by numbers: radius, z_min, z_max, height, inner_radius, phi_max */
+  VL_SHAPE_TRAIT_EMITS = 4    /* may be an area light */
+};
+
+/* Traits of media. */
+enum {
+  VL_MEDIUM_TRAIT_BOX = 1,  /* lies in the box from `low` to `high` */
+  VL_MEDIUM_TRAIT_CELLS = 2 /* which is a grid of nx * ny * nz cells */
+};
 
 /* Index from 0; null past the end. */
 VL_API const vlKindFamily *vl_kind_family(uint32_t index);

@@ -86,12 +86,13 @@ bool vl_export_mesh(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
                          .indices = d->indices};
   mesh->uvs[0] = d->uvs;
   for (int k = 0; k < 3; k++) mesh->uvs[k + 1] = d->more_uvs[k];
-  if (d->kind == VL_SHAPE_TRIANGLES) return true;
-  if (d->kind == VL_SHAPE_BILINEAR) return patches(x, d, mesh);
-  if (d->kind == VL_SHAPE_SPHERE || d->kind == VL_SHAPE_DISK || d->kind == VL_SHAPE_CYLINDER) {
-    vl_export_lose(x, "spheres, disks, cylinders: as triangles");
-    return facets(x, d, mesh);
+  switch (d->kind) {
+    case VL_SHAPE_TRIANGLES: return true;
+    case VL_SHAPE_BILINEAR: return patches(x, d, mesh);
+    case VL_SHAPE_SPHERE:
+    case VL_SHAPE_DISK:
+    case VL_SHAPE_CYLINDER: vl_export_lose(x, "spheres, disks, cylinders: as triangles"); return facets(x, d, mesh);
+    case VL_SHAPE_CURVES: vl_export_lose(x, "curves: left out"); break;
   }
-  vl_export_lose(x, "curves: left out");
   return false;
 }

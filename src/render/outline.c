@@ -101,17 +101,26 @@ static void add_curves(Points *p, const vlWorldShape *s) {
 }
 
 static void add_shape(Points *p, const vlWorldShape *s, float time) {
-  if (s->kind == VL_SHAPE_CURVES)
-    add_curves(p, s);
-  else if (s->kind == VL_SHAPE_TRIANGLES || s->kind == VL_SHAPE_BILINEAR)
-    add_vertices(p, s, time);
-  else
-    add_round(p, s);
+  switch (s->kind) {
+    case VL_SHAPE_TRIANGLES:
+    case VL_SHAPE_BILINEAR: add_vertices(p, s, time); break;
+    case VL_SHAPE_SPHERE:
+    case VL_SHAPE_DISK:
+    case VL_SHAPE_CYLINDER: add_round(p, s); break;
+    case VL_SHAPE_CURVES: add_curves(p, s); break;
+  }
 }
 
 uint64_t vl_box_points(const vlWorldShape *s) {
-  if (s->kind == VL_SHAPE_CURVES) return 8 * (uint64_t)s->faces;
-  return s->kind == VL_SHAPE_TRIANGLES || s->kind == VL_SHAPE_BILINEAR ? s->vertices : (uint64_t)RINGS * AROUND;
+  switch (s->kind) {
+    case VL_SHAPE_TRIANGLES:
+    case VL_SHAPE_BILINEAR: return s->vertices;
+    case VL_SHAPE_SPHERE:
+    case VL_SHAPE_DISK:
+    case VL_SHAPE_CYLINDER: return (uint64_t)RINGS * AROUND;
+    case VL_SHAPE_CURVES: return 8 * (uint64_t)s->faces;
+  }
+  return 0;
 }
 
 static Points begin(const vlCamera *camera, vlIdBox *box, const float *place) {

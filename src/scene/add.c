@@ -2,6 +2,7 @@
  * added before, so neither textures nor mixed materials can form a circle. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/cookie.h"
 #include "scene/scene.h"
@@ -34,16 +35,6 @@ static bool bad(vlScene *scene, vlSource source, const char *what, const char *w
 static bool out_of_memory(vlScene *scene) {
   vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
   return false;
-}
-
-static bool check_texture(vlScene *scene, vlTextureId id, bool spectrum, vlSource source, const char *what) {
-  if (id.index == 0) return true;
-  if (id.index > scene->textures.count) return bad(scene, source, what, "there is no such texture");
-  if (scene->textures.items[id.index - 1].spectrum != spectrum)
-    return bad(scene, source, what,
-               spectrum ? "needs a spectrum texture, this is a float texture"
-                        : "needs a float texture, this is a spectrum texture");
-  return true;
 }
 
 /* ---- textures --------------------------------------------------------------------------------------------------- */
@@ -138,24 +129,16 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
 
 /* ---- light ------------------------------------------------------------------------------------------------------ */
 
-static bool finite_or_unset(double x) {
-  return isnan(x) || (isfinite(x) && x >= 0.0);
-}
-
 vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
   const vlEmissionId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_EMISSION, scene->emissions.count, (vlSource){0}, "emission"))
     return none;
   vlEmissionDef d = *def;
-  if (!isfinite(d.scale)) return bad(scene, d.source, "emission", "scale is not finite"), none;
-  if (!finite_or_unset(d.power))
-    return bad(scene, d.source, "emission", "power must not be negative or infinite"), none;
-  if (!check_texture(scene, d.texture, true, d.source, "emission")) return none;
+  if (!vl_row_take(scene, vl_kind_row(&vl_emission_family, 0), &d, true, d.source, "emission")) return none;
+  if (d.power < 0.0) return bad(scene, d.source, "emission", "power must not be negative"), none;
   if (d.texture.index && scene->textures.items[d.texture.index - 1].kind != VL_TEXTURE_IMAGE)
-    return bad(scene, d.source, "emission", "its texture must be a picture"), none;
-  if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_spectrum(scene, &d.radiance, d.source, "radiance") ||
-      !vl_scene_copy_string(scene, &d.image))
-    return none;
+    return bad(scene, d.source, "emission", "its texture must be an image"), none;
+  if (!vl_scene_copy_source(scene, &d.source)) return none;
   vlEmissionDef *slot = VL_PUSH(scene->context, &scene->emissions);
   if (!slot) return out_of_memory(scene), none;
   *slot = d;
@@ -189,27 +172,17 @@ static bool check_portal(vlScene *scene, const vlLightDef *d) {
   return true;
 }
 
-static bool check_light(vlScene *scene, const vlLightDef *d) {
-  if ((unsigned)d->kind > VL_LIGHT_PROJECTION) return bad(scene, d->source, "light", "unknown kind");
-  if (!isfinite(d->scale)) return bad(scene, d->source, "light", "scale is not finite");
+static bool check_light(vlScene *scene, const vlLightDef *d, const vlKindRow *row) {
   if (d->medium.index > scene->media.count) return bad(scene, d->source, "light", "there is no such medium");
-  if (!finite_or_unset(d->power)) return bad(scene, d->source, "light", "power must not be negative or infinite");
-  if (!finite_or_unset(d->illuminance))
-    return bad(scene, d->source, "light", "illuminance must not be negative or infinite");
+  if (d->power < 0.0) return bad(scene, d->source, "light", "power must not be negative");
+  if (d->illuminance < 0.0) return bad(scene, d->source, "light", "illuminance must not be negative");
   if (!is_finite_matrix(d->world_from_light)) return bad(scene, d->source, "light", "transform is not finite");
-  for (int i = 0; i < 3; i++)
-    if (!isfinite(d->from[i]) || !isfinite(d->to[i])) return bad(scene, d->source, "light", "from or to is not finite");
-  bool aims = d->kind == VL_LIGHT_SPOT || d->kind == VL_LIGHT_DISTANT;
-  if (aims && d->from[0] == d->to[0] && d->from[1] == d->to[1] && d->from[2] == d->to[2])
+  bool same = d->from[0] == d->to[0] && d->from[1] == d->to[1] && d->from[2] == d->to[2];
+  if ((row->traits & VL_LIGHT_TRAIT_AIMS) && same)
     return bad(scene, d->source, "light", "from and to are the same point: it has no direction");
-  if (d->kind == VL_LIGHT_SPOT &&
-      (!(d->cone_angle > 0.0f && d->cone_angle <= 3.1415928f) || !(d->cone_delta >= 0.0f) || !isfinite(d->cone_delta)))
-    return bad(scene, d->source, "spot light",
-               "cone angle must be above 0 and at most 180 degrees, its delta not negative");
-  if (d->kind >= VL_LIGHT_GONIOMETRIC && !d->path && !d->image)
-    return bad(scene, d->source, "light", "needs a picture");
-  if (d->kind == VL_LIGHT_PROJECTION && !(d->fov > 0.0f && d->fov < 3.1415f))
-    return bad(scene, d->source, "projection light", "field of view must be above 0 and below 180 degrees");
+  if (d->path && d->image) return bad(scene, d->source, "light", "has both a file name and an image");
+  if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !d->path && !d->image)
+    return bad(scene, d->source, "light", "needs an image");
   return !d->has_portal || check_portal(scene, d);
 }
 
@@ -217,12 +190,21 @@ vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
   const vlLightId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_LIGHT, scene->lights.count, (vlSource){0}, "light"))
     return none;
-  vlLightDef d = *def;
-  if (!check_light(scene, &d)) return none;
-  if (d.kind < VL_LIGHT_INFINITE) d.path = NULL, d.image = NULL;
-  if (d.path && d.image) return bad(scene, d.source, "light", "has both a file name and a picture"), none;
-  if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_spectrum(scene, &d.color, d.source, "light colour") ||
-      !vl_scene_copy_string(scene, &d.path) || !vl_scene_copy_image(scene, &d.image))
+  const vlKindRow *row = vl_kind_row(&vl_light_family, (int)def->kind);
+  if (!row) return bad(scene, def->source, "light", "unknown kind"), none;
+  char what[80];
+  snprintf(what, sizeof what, "%s light", row->name);
+  vlLightDef d = vl_default_light_def(def->kind); /* what the kind does not read stays at its default */
+  vl_row_copy_members(row, def, &d);
+  d.source = def->source;
+  memcpy(d.world_from_light, def->world_from_light, sizeof d.world_from_light);
+  d.medium = def->medium;
+  d.space = def->space;
+  d.has_portal = def->has_portal;
+  memcpy(d.portal, def->portal, sizeof d.portal);
+  if (vl_row_find(row, "filename")) d.image = def->image;
+  if (!vl_row_take(scene, row, &d, true, d.source, what) || !check_light(scene, &d, row) ||
+      !vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_image(scene, &d.image))
     return none;
   vlLightDef *slot = VL_PUSH(scene->context, &scene->lights);
   if (!slot) return out_of_memory(scene), none;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "math/transform.h"
+#include "scene/schema/schema.h"
 
 void vl_body_free(const vlScene *scene, vlBody *b) {
   vl_free(scene->context, b->points);
@@ -41,10 +42,6 @@ static uint64_t hash_point(const double p[3]) {
 }
 
 /* ---- gathering --------------------------------------------------------------------------------------------------- */
-
-static bool meshed(const vlShapeDef *d) {
-  return d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR;
-}
 
 /* Moves a shape's vertices to group space; welded[i]: corner of vertex i. */
 static void weld(const vlShapeDef *d, vlBody *b, uint32_t *table, uint32_t mask, uint32_t *welded) {
@@ -108,7 +105,7 @@ static bool gather(const vlScene *scene, const uint32_t *shapes, size_t count, v
   size_t vertices = 0, faces = 0, most = 0;
   for (size_t i = 0; i < count; i++) {
     const vlShapeDef *d = &scene->shapes.items[shapes[i]];
-    if (!meshed(d)) continue;
+    if (!vl_shape_is_mesh(d->kind)) continue;
     vertices += d->vertices;
     faces += (d->kind == VL_SHAPE_TRIANGLES ? 1 : 2) * (size_t)d->faces;
     most = d->vertices > most ? d->vertices : most;
@@ -122,7 +119,7 @@ static bool gather(const vlScene *scene, const uint32_t *shapes, size_t count, v
   bool fine = table && welded && b->points && b->faces3;
   for (size_t i = 0; i < count && fine; i++) {
     const vlShapeDef *d = &scene->shapes.items[shapes[i]];
-    if (!meshed(d)) continue;
+    if (!vl_shape_is_mesh(d->kind)) continue;
     weld(d, b, table, size - 1, welded);
     add_faces(d, b, welded);
   }

@@ -37,7 +37,7 @@ static bool holds_light(const vlCheck *c, const vlSolid *solid, const vlMat4 *gr
   double p[3], q[3];
   for (size_t i = 0; i < s->lights.count; i++) {
     const vlLightDef *l = &s->lights.items[i];
-    if (l->kind == VL_LIGHT_DISTANT || l->kind == VL_LIGHT_INFINITE) continue;
+    if (vl_kind_row(&vl_light_family, (int)l->kind)->traits & VL_LIGHT_TRAIT_FAR) continue;
     vlMat4 m = vl_mat4_load(l->world_from_light);
     for (int k = 0; k < 3; k++) p[k] = l->from[k];
     vl_mat4_point(&m, p, q);
@@ -104,14 +104,13 @@ static void check_group(vlCheck *c, uint32_t group, const Box *boxes, const doub
   for (size_t i = 0; i < s->shapes.count && !c->no_memory; i++) {
     const vlShapeDef *d = &s->shapes.items[i];
     if (d->group.index != group || !box_holds(&boxes[i], eye)) continue;
-    bool meshed = d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR;
+    bool meshed = vl_shape_is_mesh(d->kind);
     size_t count = 0;
     if (meshed && done[d->material.index]) continue;
     if (!meshed) shapes[count++] = (uint32_t)i;
     for (size_t j = i; meshed && j < s->shapes.count; j++) {
       const vlShapeDef *e = &s->shapes.items[j];
-      bool same = e->group.index == group && e->material.index == d->material.index &&
-                  (e->kind == VL_SHAPE_TRIANGLES || e->kind == VL_SHAPE_BILINEAR);
+      bool same = e->group.index == group && e->material.index == d->material.index && vl_shape_is_mesh(e->kind);
       if (same) shapes[count++] = (uint32_t)j;
     }
     if (meshed) done[d->material.index] = 1;

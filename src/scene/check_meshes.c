@@ -42,7 +42,7 @@ static void check_degenerate(vlCheck *c, const vlShapeDef *d) {
     }
     tell_share(c, d, flat, d->faces, "patches have no area");
   }
-  if (!d->normals || (d->kind != VL_SHAPE_TRIANGLES && d->kind != VL_SHAPE_BILINEAR)) return;
+  if (!d->normals || !vl_shape_is_mesh(d->kind)) return;
   for (uint32_t i = 0; i < d->vertices; i++) {
     const float *n = d->normals + 3 * (size_t)i;
     no_length += n[0] == 0 && n[1] == 0 && n[2] == 0;
@@ -223,8 +223,7 @@ static void check_bodies(vlCheck *c) {
     size_t count = 0;
     bool round = false; /* disks and cylinders may close it: nobody can tell */
     for (j = i; j < n && keys[j].group == keys[i].group && keys[j].material == keys[i].material; j++) {
-      vlShapeKind kind = s->shapes.items[keys[j].shape].kind;
-      round |= kind != VL_SHAPE_TRIANGLES && kind != VL_SHAPE_BILINEAR;
+      round |= !vl_shape_is_mesh(s->shapes.items[keys[j].shape].kind);
       shapes[count++] = keys[j].shape;
     }
     if (!round) check_body(c, shapes, count);

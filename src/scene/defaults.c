@@ -51,45 +51,6 @@ vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
   return def;
 }
 
-vlEmissionDef vl_default_emission_def(void) {
-  return (vlEmissionDef){
-      .cookie = VL_COOKIE_EMISSION, .radiance = vl_spectrum_rgb(1, 1, 1), .scale = 1.0f, .power = VL_UNSET};
-}
-
-vlLightDef vl_default_light_def(vlLightKind kind) {
-  vlLightDef def = {
-      .cookie = VL_COOKIE_LIGHT,
-      .kind = kind,
-      .color = vl_spectrum_rgb(1, 1, 1),
-      .scale = 1.0f,
-      .power = VL_UNSET,
-      .illuminance = VL_UNSET,
-      .to = {0, 0, 1},
-      .cone_angle = 30.0f * 3.14159265358979f / 180.0f,
-      .cone_delta = 5.0f * 3.14159265358979f / 180.0f,
-      .fov = 0.5f * 3.14159265358979f,
-  };
-  memcpy(def.world_from_light, identity, sizeof identity);
-  return def;
-}
-
-vlShapeDef vl_default_shape_def(vlShapeKind kind) {
-  vlShapeDef def = {
-      .cookie = VL_COOKIE_SHAPE,
-      .kind = kind,
-      .alpha = vl_float_input(1.0f),
-      .radius = 1.0f,
-      .z_min = -1.0f,
-      .z_max = 1.0f,
-      .phi_max = 2.0f * 3.14159265358979f,
-      .times = {0.0, 1.0},
-      .split_depth = 3,
-      .edge_length = 1.0f,
-  };
-  memcpy(def.group_from_shape, identity, sizeof identity);
-  return def;
-}
-
 vlLoadDef vl_default_load_def(void) {
   return (vlLoadDef){.cookie = VL_COOKIE_LOAD, .time = VL_UNSET, .time_close = VL_UNSET};
 }

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "color/color.h"
+#include "scene/schema/schema.h"
 #include "scene/solid.h"
 #include "velo/check.h"
 
@@ -57,7 +58,7 @@ static double shape_area(const vlShapeDef *d) {
     return turn * r * ((double)d->z_max - (double)d->z_min) * scale * scale;
   if (d->kind == VL_SHAPE_DISK)
     return 0.5 * turn * (r * r - (double)d->inner_radius * (double)d->inner_radius) * scale * scale;
-  if (d->kind != VL_SHAPE_TRIANGLES && d->kind != VL_SHAPE_BILINEAR) return NAN;
+  if (!vl_shape_is_mesh(d->kind)) return NAN;
   uint32_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
   for (uint32_t i = 0; i < d->faces; i++) {
     double p[4][3];
@@ -91,7 +92,7 @@ static bool given(double x) {
 
 static vlLightInfo shape_light(const vlScene *s, const vlShapeDef *d) {
   const vlEmissionDef *e = &s->emissions.items[d->emission.index - 1];
-  bool meshed = d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR;
+  bool meshed = vl_shape_is_mesh(d->kind);
   vlLightInfo info = {.kind = "area", .source = d->source, .faces = meshed ? d->faces : 1};
   info.picture = e->image || e->texture.index;
   info.power = given(e->power) ? e->power * (double)info.faces
@@ -102,26 +103,12 @@ static vlLightInfo shape_light(const vlScene *s, const vlShapeDef *d) {
 }
 
 static vlLightInfo light(const vlScene *s, const vlLightDef *l) {
-  static const char *const kinds[] = {"point", "spot", "distant", "infinite", "goniometric", "projection"};
-  vlLightInfo info = {.kind = (unsigned)l->kind < 6 ? kinds[l->kind] : "other", .source = l->source};
+  vlLightInfo info = {.kind = vl_kind_row(&vl_light_family, (int)l->kind)->name, .source = l->source};
+  double low[3], high[3], radius2 = 0;
   info.picture = l->path || l->image;
-  double low[3], high[3], radius2 = 0, y = luminance(&l->color) * (double)l->scale;
-  if (l->kind == VL_LIGHT_POINT) {
-    info.power = 4 * pi * y;
-  } else if (l->kind == VL_LIGHT_SPOT) {
-    double inner = cos((double)l->cone_angle - (double)l->cone_delta), outer = cos((double)l->cone_angle);
-    info.power = 2 * pi * y * ((1 - inner) + 0.5 * (inner - outer));
-  } else if (l->kind == VL_LIGHT_DISTANT || l->kind == VL_LIGHT_INFINITE) {
-    vl_scene_bounds(s, low, high);
-    for (int k = 0; k < 3; k++) radius2 += high[k] > low[k] ? 0.25 * (high[k] - low[k]) * (high[k] - low[k]) : 0;
-    bool distant = l->kind == VL_LIGHT_DISTANT;
-    if (given(l->illuminance)) y = distant ? l->illuminance : l->illuminance / pi;
-    info.power = (distant ? pi : 4 * pi * pi) * radius2 * y;
-  } else {
-    info.power = NAN;
-  }
-  if (info.picture) info.power = NAN;
-  if (given(l->power)) info.power = l->power;
+  vl_scene_bounds(s, low, high);
+  for (int k = 0; k < 3; k++) radius2 += high[k] > low[k] ? 0.25 * (high[k] - low[k]) * (high[k] - low[k]) : 0;
+  info.power = vl_light_power(l, luminance(&l->color) * (double)l->scale, sqrt(radius2));
   return info;
 }
 

@@ -1,31 +1,11 @@
-/* scene/medium.c: participating media come in: checked, then copied. Defaults are pbrt-v4's. */
+/* scene/medium.c: participating media come in: checked, then copied. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/cookie.h"
 #include "scene/scene.h"
-
-vlMediumDef vl_default_medium_def(vlMediumKind kind) {
-  vlMediumDef def = {
-      .cookie = VL_COOKIE_MEDIUM,
-      .kind = kind,
-      .sigma_a = vl_spectrum_constant(1.0f),
-      .sigma_s = vl_spectrum_constant(1.0f),
-      .scale = 1.0f,
-      .emission = vl_spectrum_constant(0.0f),
-      .emission_scale = 1.0f,
-      .nx = 1,
-      .ny = 1,
-      .nz = 1,
-      .high = {1, 1, 1},
-      .temperature_scale = 1.0f,
-      .cloud_density = 1.0f,
-      .wispiness = 1.0f,
-      .frequency = 5.0f,
-  };
-  for (int i = 0; i < 16; i += 5) def.world_from_medium[i] = 1.0;
-  return def;
-}
+#include "scene/schema/schema.h"
 
 static bool bad(vlScene *scene, const vlMediumDef *d, const char *why) {
   vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%.80s\": %s", d->name ? d->name : "", why);
@@ -46,8 +26,6 @@ static bool check_values(vlScene *scene, const vlMediumDef *d, const float *v, s
 }
 
 static bool check_grid(vlScene *scene, const vlMediumDef *d) {
-  if (d->nx == 0 || d->ny == 0 || d->nz == 0) return bad(scene, d, "nx, ny and nz must be at least 1");
-  if (d->nx > 16384 || d->ny > 16384 || d->nz > 16384) return bad(scene, d, "nx, ny and nz must be at most 16384");
   if (d->kind == VL_MEDIUM_GRID && !d->density) return bad(scene, d, "the grid has no density");
   if (d->kind == VL_MEDIUM_RGB_GRID && !d->rgb_a && !d->rgb_s)
     return bad(scene, d, "the grid has neither sigma_a nor sigma_s");
@@ -78,36 +56,24 @@ static bool check_rgb_absorption(vlScene *scene, const vlMediumDef *d) {
   return dark || bad(scene, d, "a medium that absorbs by RGB channel cannot emit");
 }
 
-static bool check_medium(vlScene *scene, const vlMediumDef *d) {
-  const float numbers[] = {d->scale,   d->g,       d->emission_scale, d->temperature_offset, d->temperature_scale,
-                           d->low[0],  d->low[1],  d->low[2],         d->cloud_density,      d->wispiness,
-                           d->high[0], d->high[1], d->high[2],        d->frequency};
-  if ((unsigned)d->kind > VL_MEDIUM_NANOVDB) return bad(scene, d, "unknown kind");
-  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-    if (!isfinite(numbers[i])) return bad(scene, d, "a number is not finite");
+static bool check_medium(vlScene *scene, const vlMediumDef *d, const vlKindRow *row) {
   for (int i = 0; i < 16; i++)
     if (!isfinite(d->world_from_medium[i])) return bad(scene, d, "transform is not finite");
-  if (d->scale < 0.0f) return bad(scene, d, "scale is negative");
-  if (d->emission_scale < 0.0f) return bad(scene, d, "scale of the emission is negative");
-  if (d->g < -1.0f || d->g > 1.0f) return bad(scene, d, "g must lie between -1 and 1");
   if (!check_spectrum(scene, d, &d->sigma_a, "sigma_a") || !check_spectrum(scene, d, &d->sigma_s, "sigma_s") ||
       !check_spectrum(scene, d, &d->emission, "emission"))
     return false;
-  if (d->rgb_absorption && !check_rgb_absorption(scene, d)) return false;
-  bool boxed = d->kind == VL_MEDIUM_GRID || d->kind == VL_MEDIUM_RGB_GRID || d->kind == VL_MEDIUM_CLOUD;
-  for (int i = 0; boxed && i < 3; i++)
+  for (int i = 0; (row->traits & VL_MEDIUM_TRAIT_BOX) && i < 3; i++)
     if (!(d->low[i] < d->high[i])) return bad(scene, d, "its box has no room: p0 must be below p1 in x, y and z");
-  if (d->kind == VL_MEDIUM_CLOUD && (d->cloud_density < 0.0f || d->frequency < 0.0f || d->wispiness < 0.0f))
-    return bad(scene, d, "density, frequency and wispiness must not be negative");
-  if (d->kind == VL_MEDIUM_NANOVDB && (!d->path || !d->path[0])) return bad(scene, d, "it has no file name");
-  return (d->kind != VL_MEDIUM_GRID && d->kind != VL_MEDIUM_RGB_GRID) || check_grid(scene, d);
+  if (d->path && !d->path[0]) return bad(scene, d, "it has no file name");
+  return !(row->traits & VL_MEDIUM_TRAIT_CELLS) || check_grid(scene, d);
 }
 
-/* Arrays that a kind does not read are not copied. */
-static void drop_unused(vlMediumDef *d) {
-  if (d->kind != VL_MEDIUM_GRID) d->density = d->emission_scales = d->temperature = NULL;
-  if (d->kind != VL_MEDIUM_RGB_GRID) d->rgb_a = d->rgb_s = d->rgb_emission = NULL;
-  if (d->kind != VL_MEDIUM_NANOVDB) d->path = d->grid = d->temperature_grid = NULL;
+/* Values per cell, of the kinds that have them. */
+static void copy_cells(const vlMediumDef *from, vlMediumDef *to) {
+  bool own = to->kind == VL_MEDIUM_RGB_GRID;
+  if (to->kind == VL_MEDIUM_GRID)
+    to->density = from->density, to->emission_scales = from->emission_scales, to->temperature = from->temperature;
+  if (own) to->rgb_a = from->rgb_a, to->rgb_s = from->rgb_s, to->rgb_emission = from->rgb_emission;
 }
 
 vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
@@ -118,21 +84,25 @@ vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
                   "medium: the def does not come from vl_default_medium_def()");
     return none;
   }
-  vlMediumDef d = *def;
-  drop_unused(&d);
-  if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_string(scene, &d.name) || !check_medium(scene, &d))
-    return none;
-  if (!vl_scene_copy_spectrum(scene, &d.sigma_a, d.source, "sigma_a") ||
-      !vl_scene_copy_spectrum(scene, &d.sigma_s, d.source, "sigma_s") ||
-      !vl_scene_copy_spectrum(scene, &d.emission, d.source, "emission"))
+  const vlKindRow *row = vl_kind_row(&vl_medium_family, (int)def->kind);
+  if (!row) return bad(scene, def, "unknown kind"), none;
+  if (def->rgb_absorption && !check_rgb_absorption(scene, def)) return none;
+  char what[120];
+  snprintf(what, sizeof what, "medium \"%.80s\"", def->name ? def->name : "");
+  vlMediumDef d = vl_default_medium_def(def->kind); /* what the kind does not read stays at its default */
+  vl_row_copy_members(row, def, &d);
+  d.name = def->name;
+  d.source = def->source;
+  d.space = def->space;
+  memcpy(d.world_from_medium, def->world_from_medium, sizeof d.world_from_medium);
+  copy_cells(def, &d);
+  if (!vl_row_take(scene, row, &d, true, d.source, what)) return none;
+  if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_string(scene, &d.name) || !check_medium(scene, &d, row))
     return none;
   size_t cells = (size_t)d.nx * d.ny * d.nz;
   const float **grids[6] = {&d.density, &d.emission_scales, &d.temperature, &d.rgb_a, &d.rgb_s, &d.rgb_emission};
   for (int i = 0; i < 6; i++)
     if (!vl_scene_copy_block(scene, *grids[i], cells, (i < 3 ? 1 : 3) * sizeof(float), grids[i])) return none;
-  if (!vl_scene_copy_string(scene, &d.path) || !vl_scene_copy_string(scene, &d.grid) ||
-      !vl_scene_copy_string(scene, &d.temperature_grid))
-    return none;
   vlMediumDef *slot = scene->media.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->media) : NULL;
   if (!slot) {
     vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");

@@ -6,6 +6,7 @@
 #include "base/cookie.h"
 #include "math/motion.h"
 #include "scene/scene.h"
+#include "scene/schema/schema.h"
 
 static vlResult bad(vlScene *scene, const vlShapeDef *d, const char *why) {
   return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s", why);
@@ -86,9 +87,7 @@ static bool check_curves(vlScene *scene, const vlShapeDef *d) {
   if (d->faces == 0 || !d->positions || !d->widths) return bad(scene, d, "curves have no segments"), false;
   if (d->faces > 0x1fffffff || d->vertices != 4 * d->faces)
     return bad(scene, d, "curves need four points for each segment"), false;
-  if (d->curve > VL_CURVE_RIBBON) return bad(scene, d, "unknown kind of curves"), false;
   if (d->curve == VL_CURVE_RIBBON && !d->normals) return bad(scene, d, "ribbons need normals"), false;
-  if (d->emission.index) return bad(scene, d, "curves cannot be area lights"), false;
   if (first_not_finite(d->widths, 2 * (size_t)d->faces) < 2 * (size_t)d->faces ||
       (d->normals && first_not_finite(d->normals, 6 * (size_t)d->faces) < 6 * (size_t)d->faces))
     return bad(scene, d, "a width or normal of a curve is not finite"), false;
@@ -97,16 +96,10 @@ static bool check_curves(vlScene *scene, const vlShapeDef *d) {
   return check_floats(scene, d, d->positions, 3, "position");
 }
 
+/* What the ranges of the row do not say. */
 static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
-  const float numbers[] = {d->radius, d->inner_radius, d->z_min, d->z_max, d->height, d->phi_max};
-  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-    if (!isfinite(numbers[i])) return bad(scene, d, "a number of the shape is not finite"), false;
-  if (!(d->radius > 0.0f))
-    return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "radius must be above 0, it is %g", (double)d->radius),
-           false;
-  if (!(d->phi_max > 0.0f)) return bad(scene, d, "phimax must be above 0"), false;
-  if (d->kind == VL_SHAPE_DISK && (d->inner_radius < 0.0f || d->inner_radius >= d->radius))
-    return bad(scene, d, "inner radius must lie between 0 and the radius"), false;
+  if (d->kind == VL_SHAPE_DISK && d->inner_radius >= d->radius)
+    return bad(scene, d, "inner radius must be less than the radius"), false;
   if (d->kind != VL_SHAPE_DISK && !(d->z_min < d->z_max)) return bad(scene, d, "zmin must be below zmax"), false;
   if (d->kind == VL_SHAPE_SPHERE && (d->z_min >= d->radius || d->z_max <= -d->radius))
     return bad(scene, d, "zmin and zmax leave nothing of the sphere"), false;
@@ -118,23 +111,20 @@ static bool check_displacement(vlScene *scene, const vlShapeDef *d) {
   if (!index) return true;
   if (d->kind != VL_SHAPE_TRIANGLES || d->positions_close)
     return bad(scene, d, "displacement: only triangles at rest can be displaced"), false;
-  if (index > scene->textures.count || scene->textures.items[index - 1].spectrum)
-    return bad(scene, d, "displacement needs a float texture"), false;
-  if (!(d->edge_length > 0.0f) || !isfinite(d->edge_length))
-    return bad(scene, d, "displacement: the edge length must be above 0"), false;
   return true;
 }
 
-static bool check_shape(vlScene *scene, const vlShapeDef *d) {
+static bool check_shape(vlScene *scene, vlShapeDef *d) {
+  const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)d->kind);
+  if (!row) return bad(scene, d, "unknown kind of shape"), false;
+  if (!vl_row_take(scene, row, d, false, d->source, row->name)) return false;
+  if (d->emission.index && !(row->traits & VL_SHAPE_TRAIT_EMITS))
+    return bad(scene, d, "shapes of this kind cannot be area lights"), false;
   if (d->group.index > scene->groups.count) return bad(scene, d, "there is no such group"), false;
   if (d->material.index > scene->materials.count) return bad(scene, d, "there is no such material"), false;
   if (d->emission.index > scene->emissions.count) return bad(scene, d, "there is no such emission"), false;
   if (d->inside.index > scene->media.count || d->outside.index > scene->media.count)
     return bad(scene, d, "there is no such medium"), false;
-  if (d->alpha.texture.index > scene->textures.count) return bad(scene, d, "alpha: there is no such texture"), false;
-  if (d->alpha.texture.index && scene->textures.items[d->alpha.texture.index - 1].spectrum)
-    return bad(scene, d, "alpha needs a float texture, this is a spectrum texture"), false;
-  if (!d->alpha.texture.index && !isfinite(d->alpha.value)) return bad(scene, d, "alpha is not finite"), false;
   if (!check_displacement(scene, d)) return false;
   const double *m = d->group_from_shape;
   for (int i = 0; i < 16; i++)
@@ -151,7 +141,7 @@ static bool check_shape(vlScene *scene, const vlShapeDef *d) {
     case VL_SHAPE_CYLINDER: return check_quadric(scene, d);
     case VL_SHAPE_CURVES: return check_curves(scene, d);
   }
-  return bad(scene, d, "unknown kind of shape"), false;
+  return false;
 }
 
 /* The def's arrays are owned by the scene or absent from here on. */
@@ -167,8 +157,10 @@ static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
 }
 
 static void drop_unused(vlShapeDef *d) {
-  if (d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR) d->widths = NULL;
-  if (d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR) return;
+  if (vl_shape_is_mesh(d->kind)) {
+    d->widths = NULL;
+    return;
+  }
   if (d->kind == VL_SHAPE_CURVES) {
     if (d->curve != VL_CURVE_RIBBON) d->normals = NULL;
     d->tangents = d->uvs = d->positions_close = d->normals_close = NULL;

@@ -268,9 +268,6 @@ vlVec2 vl_glow_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint
 void vl_infinite_at(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d, const float lambda[4],
                     float out[4]);
 float vl_infinite_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d);
-/* How much of a goniometric or projection light's colour its picture lets out towards -w, and where on a slide it is.
- */
-float vl_beam(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st);
 /* Density, per solid angle from `from`, of sampling this point of an area light (choice not included). */
 float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at);
 

@@ -9,15 +9,10 @@
 #include "world/world.h"
 
 static const char *shape_type(vlShapeKind kind) {
-  switch (kind) {
-    case VL_SHAPE_TRIANGLES: return "triangles";
-    case VL_SHAPE_BILINEAR: return "bilinear";
-    case VL_SHAPE_SPHERE: return "sphere";
-    case VL_SHAPE_DISK: return "disk";
-    case VL_SHAPE_CYLINDER: return "cylinder";
-    case VL_SHAPE_CURVES: return "curves";
-  }
-  return "shape";
+#define NAME(K, k) [VL_SHAPE_##K] = #k,
+  static const char *const names[] = {VL_SHAPE_KINDS(NAME)};
+#undef NAME
+  return names[kind];
 }
 
 static const char *copy_text(vlWorld *world, const char *text) {

@@ -156,29 +156,29 @@ typedef struct vlEmitted {
   bool two_sided;
 } vlEmitted;
 
-typedef enum vlWorldLightKind {
-  VL_WL_POINT,
-  VL_WL_SPOT,
-  VL_WL_DISTANT,
-  VL_WL_INFINITE,
-  VL_WL_AREA,
-  VL_WL_GONIOMETRIC,
-  VL_WL_PROJECTION
-} vlWorldLightKind;
+/* The scene's kinds, under the same numbers, and faces of shapes that emit. X(NAME, name). */
+#define VL_WORLD_LIGHT_KINDS(X) VL_LIGHT_KINDS(X) X(AREA, area)
+#define VL_WORLD_LIGHT_KIND(K, k) VL_WL_##K,
+typedef enum vlWorldLightKind { VL_WORLD_LIGHT_KINDS(VL_WORLD_LIGHT_KIND) } vlWorldLightKind;
+#undef VL_WORLD_LIGHT_KIND
 
 typedef struct vlWorldLight {
   vlWorldLightKind kind;
   uint32_t emitted;         /* index into emitted */
-  uint32_t shape, prim;     /* area */
+  uint32_t shape, prim;     /* area; else shape is VL_NONE */
   float area;               /* area: of the primitive, in the world */
   float position[3];        /* point, spot */
   float direction[3];       /* spot: axis away from the light; distant: towards the light */
   float cos_start, cos_end; /* spot: full inside start, nothing outside end */
   bool cone_squared;        /* between them t^2; else smooth */
+  bool has_cone;            /* shines into the outer cone about its direction only */
+  bool at_point;            /* all its light leaves its position */
+  bool far;                 /* infinitely far away */
   uint32_t environment;     /* infinite with a picture: index; VL_NONE: uniform */
   float power;              /* for choosing: watts-like, luminance */
   bool outer_side;        /* an invisible whole sphere: light's paths set out from its outside alone, see light.hot.c */
   bool invisible;         /* area, of coverage 0 throughout: no ray meets it, it shines all the same (as pbrt's) */
+  bool delta;             /* a kind that no ray can meet */
   uint32_t picture;       /* goniometric, projection: image; corners hold the map from world directions to theirs */
   float slide[2];         /* projection: half its sides at distance 1 */
   float corners[9];       /* area, triangle: its corners, and */

@@ -164,7 +164,8 @@ static void bad_shapes(void **state) {
   BAD(d.group.index = 1, "there is no such group");
   BAD(d.material.index = 1, "there is no such material");
   BAD(d.emission.index = 1, "there is no such emission");
-  BAD(d.alpha.texture.index = 1, "alpha: there is no such texture");
+  BAD(d.alpha.texture.index = 1,
+      "trianglemesh: parameter \"alpha\" names a texture that does not exist (add it first)");
   BAD(d.group_from_shape[3] = NAN, "transform of the shape is not finite");
   BAD(d.group_from_shape[0] = 0, "transform of the shape is singular: it flattens the shape");
 #undef BAD
@@ -174,12 +175,12 @@ static void bad_shapes(void **state) {
     float value;
     const char *message;
   } quadrics[] = {
-      {VL_SHAPE_SPHERE, offsetof(vlShapeDef, radius), 0, "radius must be above 0, it is 0"},
-      {VL_SHAPE_DISK, offsetof(vlShapeDef, radius), -2, "radius must be above 0, it is -2"},
-      {VL_SHAPE_CYLINDER, offsetof(vlShapeDef, radius), NAN, "a number of the shape is not finite"},
-      {VL_SHAPE_DISK, offsetof(vlShapeDef, inner_radius), 1, "inner radius must lie between 0 and the radius"},
+      {VL_SHAPE_SPHERE, offsetof(vlShapeDef, radius), 0, "sphere: parameter \"radius\" must be above 0, it is 0"},
+      {VL_SHAPE_DISK, offsetof(vlShapeDef, radius), -2, "disk: parameter \"radius\" must be above 0, it is -2"},
+      {VL_SHAPE_CYLINDER, offsetof(vlShapeDef, radius), NAN, "cylinder: parameter \"radius\" is not finite"},
+      {VL_SHAPE_DISK, offsetof(vlShapeDef, inner_radius), 1, "inner radius must be less than the radius"},
       {VL_SHAPE_CYLINDER, offsetof(vlShapeDef, z_min), 1, "zmin must be below zmax"},
-      {VL_SHAPE_SPHERE, offsetof(vlShapeDef, phi_max), 0, "phimax must be above 0"}};
+      {VL_SHAPE_SPHERE, offsetof(vlShapeDef, phi_max), 0, "sphere: parameter \"phimax\" must be above 0, it is 0"}};
   for (size_t i = 0; i < sizeof quadrics / sizeof *quadrics; i++) {
     d = vl_default_shape_def(quadrics[i].kind);
     memcpy((char *)&d + quadrics[i].offset, &quadrics[i].value, sizeof(float));
@@ -232,7 +233,7 @@ static void bad_materials_and_lights(void **state) {
   l = vl_default_light_def(VL_LIGHT_POINT);
   l.power = INFINITY;
   vl_scene_add_light(scene, &l);
-  refuses(VL_ERROR_SCENE, "light: power must not be negative or infinite");
+  refuses(VL_ERROR_SCENE, "point light: parameter \"power\" is not finite");
   l.cookie = 0;
   vl_scene_add_light(scene, &l);
   refuses(VL_ERROR_ARGUMENT, "light: the def does not come from vl_default_light_def()");
@@ -240,7 +241,7 @@ static void bad_materials_and_lights(void **state) {
   vlEmissionDef e = vl_default_emission_def();
   e.radiance = (vlSpectrum){.kind = VL_SPECTRUM_SAMPLED, .scale = 1, .count = 2, .wavelengths = down, .values = down};
   vl_scene_add_emission(scene, &e);
-  refuses(VL_ERROR_SCENE, "radiance: wavelengths of the sampled spectrum are not ascending");
+  refuses(VL_ERROR_SCENE, "emission: parameter \"L\": wavelengths of the sampled spectrum are not ascending");
 }
 
 static void names_of_spectra(void **state) {

@@ -148,6 +148,22 @@ static void points(void **state) {
 }
 
 /* Through a disk that hides the world: nothing of it is missed, and each part has as much. */
+/* A cone of 180 degrees has an edge, too: behind the light. */
+static void whole_cone(void **state) {
+  (void)state;
+  Fixture *f = begin();
+  add_ball(f, 1);
+  vlLightDef def = vl_default_light_def(VL_LIGHT_SPOT);
+  def.cone_angle = (float)M_PI;
+  def.cone_delta = 2;
+  assert_int_not_equal(vl_scene_add_light(f->scene, &def).index, 0);
+  build(f);
+  double start = cos(M_PI - 2);
+  power_is(f, "spot of 180 degrees", 2 * M_PI * ((1 - start) + (start + 1) / 2), 0, 31);
+  density_is_told(f, "spot of 180 degrees", 32);
+  end(f);
+}
+
 static void check_disk(Fixture *f, vlVec3 w, unsigned seed) {
   enum { RINGS = 6, PARTS = 8 };
   uint32_t counts[RINGS * PARTS] = {0};
@@ -369,8 +385,8 @@ static void together(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(points),   cmocka_unit_test(distant), cmocka_unit_test(skies),    cmocka_unit_test(portal),
-      cmocka_unit_test(surfaces), cmocka_unit_test(places),  cmocka_unit_test(together),
+      cmocka_unit_test(points), cmocka_unit_test(whole_cone), cmocka_unit_test(distant), cmocka_unit_test(skies),
+      cmocka_unit_test(portal), cmocka_unit_test(surfaces),   cmocka_unit_test(places),  cmocka_unit_test(together),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -101,12 +101,14 @@ static json_t *light_node(const vlLightDef *d, json_int_t index) {
 }
 
 bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
-  static const char *const types[] = {"point", "spot", "directional"};
+  /* KHR_lights_punctual's; null: it has none */
+  static const char *const types[] = {
+      [VL_LIGHT_POINT] = "point", [VL_LIGHT_SPOT] = "spot", [VL_LIGHT_DISTANT] = "directional"};
   json_t *lights = json_array();
   for (size_t i = 0; i < x->scene->lights.count; i++) {
     const vlLightDef *d = &x->scene->lights.items[i];
     float rgb[3];
-    if (d->kind > VL_LIGHT_DISTANT) {
+    if (d->kind >= sizeof types / sizeof *types || !types[d->kind]) {
       vl_export_lose(x, d->kind == VL_LIGHT_INFINITE ? "light from all around: left out"
                                                      : "lights of kinds that glTF has not: left out");
       continue;

@@ -1,4 +1,4 @@
-/* export/pbrt/pbrt.c: a scene as pbrt-v4's language: what stands before WorldBegin, the order of the rest, media,
+/* export/pbrt/pbrt.c: a scene as pbrt-v4's language: what stands before WorldBegin, the order of the rest,
  * lights. */
 #include <math.h>
 #include <stdio.h>
@@ -36,7 +36,7 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
         PUT("%s%.9g %.9g", i ? " " : "", (double)s->wavelengths[i], k * (double)s->values[i]);
       PUT("]");
       return;
-    default: break;
+    case VL_SPECTRUM_RGB: break;
   }
   memcpy(rgb, s->rgb, sizeof rgb);
   for (int i = 0; i < 3; i++) rgb[i] *= s->scale;
@@ -161,59 +161,31 @@ static void put_sampling(vlExport *x) {
   PUT("\n");
 }
 
-/* ---- media, lights ----------------------------------------------------------------------------------------------- */
+/* ---- lights ------------------------------------------------------------------------------------------------------ */
 
-static void put_medium(vlExport *x, size_t i) {
-  const vlMediumDef *m = &x->scene->media.items[i];
-  if (m->kind != VL_MEDIUM_HOMOGENEOUS) vl_export_lose(x, "media that vary in space: empty");
-  bool empty = m->kind != VL_MEDIUM_HOMOGENEOUS;
-  PUT("MakeNamedMedium \"medium%zu\" \"string type\" \"homogeneous\"", i + 1);
-  if (empty) {
-    PUT(" \"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [0 0 0]\n");
-    return;
-  }
-  if (m->rgb_absorption && m->sigma_a.kind == VL_SPECTRUM_RGB)
-    vl_export_lose(x, "absorption by RGB channel: pbrt absorbs by wavelength, which differs where it is deep");
-  vl_pbrt_spectrum(x, "sigma_a", &m->sigma_a);
-  vl_pbrt_spectrum(x, "sigma_s", &m->sigma_s);
-  PUT(" \"float scale\" [%.9g] \"float g\" [%.9g]", (double)m->scale, (double)m->g);
-  if (m->emission_scale > 0 && !(m->emission.kind == VL_SPECTRUM_CONSTANT && m->emission.value == 0)) {
-    vl_pbrt_spectrum(x, "Le", &m->emission);
-    PUT(" \"float Lescale\" [%.9g]", (double)m->emission_scale);
-  }
-  PUT("\n");
+/* The transform; the position goes into it where pbrt's kind has no "from". */
+static void put_place(vlExport *x, const vlKindRow *row, const vlLightDef *d) {
+  double m[16];
+  memcpy(m, d->world_from_light, sizeof m);
+  for (int i = 0; i < 3 && !vl_row_find(row, "from"); i++)
+    for (int k = 0; k < 3; k++) m[4 * i + 3] += m[4 * i + k] * (double)d->from[k];
+  vl_pbrt_matrix(x, m);
 }
 
 static bool put_light(vlExport *x, const vlLightDef *d) {
-  static const char *const kinds[] = {"point", "spot", "distant", "infinite"};
+  const vlKindRow *row = vl_kind_row(&vl_light_family, (int)d->kind);
   char name[300] = "";
-  if ((unsigned)d->kind > VL_LIGHT_INFINITE) {
-    vl_export_lose(x, "lights of further kinds: left out");
-    return true;
-  }
-  if (d->kind == VL_LIGHT_INFINITE && (d->path || d->image)) {
+  if (d->path || d->image) {
     vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     t.path = d->path, t.image = d->image;
     if (!vl_pbrt_picture(x, &t, true, name)) return false;
   }
   PUT("AttributeBegin\n");
-  vl_pbrt_matrix(x, d->world_from_light);
+  put_place(x, row, d);
   if (d->medium.index) PUT("  MediumInterface \"\" \"medium%u\"\n", d->medium.index);
-  PUT("  LightSource \"%s\" \"float scale\" [%.9g]", kinds[d->kind], (double)d->scale);
-  if (name[0])
-    PUT(" \"string filename\" \"%s\"", name);
-  else
-    vl_pbrt_spectrum(x, d->kind <= VL_LIGHT_SPOT ? "I" : "L", &d->color);
-  if (d->kind <= VL_LIGHT_DISTANT && (d->kind == VL_LIGHT_DISTANT || d->from[0] || d->from[1] || d->from[2]))
-    PUT(" \"point3 from\" [%.9g %.9g %.9g]", (double)d->from[0], (double)d->from[1], (double)d->from[2]);
-  if (d->kind == VL_LIGHT_SPOT || d->kind == VL_LIGHT_DISTANT)
-    PUT(" \"point3 to\" [%.9g %.9g %.9g]", (double)d->to[0], (double)d->to[1], (double)d->to[2]);
-  const double degrees = 57.295779513082323;
-  if (d->kind == VL_LIGHT_SPOT)
-    PUT(" \"float coneangle\" [%.9g] \"float conedeltaangle\" [%.9g]", degrees * (double)d->cone_angle,
-        degrees * (double)d->cone_delta);
-  if (!isnan(d->power)) PUT(" \"float power\" [%.9g]", d->power);
-  if (!isnan(d->illuminance)) PUT(" \"float illuminance\" [%.9g]", d->illuminance);
+  PUT("  LightSource \"%s\"", row->name);
+  vl_pbrt_row(x, row, d, false, name[0] ? "L" : NULL);
+  if (name[0]) PUT(" \"string filename\" \"%s\"", name);
   for (int i = 0; d->has_portal && i < 12; i++)
     PUT("%s%.9g%s", i ? " " : " \"point3 portal\" [", (double)d->portal[i / 3][i % 3], i == 11 ? "]" : "");
   PUT("\nAttributeEnd\n");
@@ -245,7 +217,8 @@ bool vl_export_pbrt(vlExport *x) {
   PUT("# written by velo\n");
   if (s->defs.film.space != VL_SPACE_SRGB && (unsigned)s->defs.film.space < 4)
     PUT("ColorSpace \"%s\"\n", spaces[s->defs.film.space]);
-  for (size_t i = 0; i < s->media.count; i++) put_medium(x, i);
+  for (size_t i = 0; i < s->media.count; i++)
+    if (!vl_pbrt_medium(x, i)) return false;
   if (s->defs.camera_medium.index) PUT("MediumInterface \"\" \"medium%u\"\n", s->defs.camera_medium.index);
   if (!put_camera(x)) return false;
   put_sampling(x);

@@ -11,6 +11,11 @@
 void vl_pbrt_matrix(vlExport *x, const double m[16]);
 /* A parameter of that name. */
 void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s);
+/* The members of a def that differ from the row's defaults (all: every one that is set); not arrays, files and inputs,
+ * and not the one named skip (may be null). */
+void vl_pbrt_row(vlExport *x, const vlKindRow *row, const void *def, bool all, const char *skip);
+/* "medium<index + 1>", before WorldBegin. */
+bool vl_pbrt_medium(vlExport *x, size_t index);
 /* "material<id>", and what it refers to. */
 bool vl_pbrt_material(vlExport *x, uint32_t id);
 bool vl_pbrt_shape(vlExport *x, size_t index);

@@ -7,8 +7,6 @@
 
 enum { INLINE_FACES = 64 };
 
-static const double degrees = 57.295779513082323;
-
 static void put_floats(vlExport *x, const char *type, const char *name, const float *v, size_t count) {
   if (!v) return;
   PUT("\n    \"%s %s\" [", type, name);
@@ -68,17 +66,15 @@ static bool put_kind(vlExport *x, const vlShapeDef *d, size_t index) {
       return true;
     case VL_SHAPE_SPHERE:
     case VL_SHAPE_CYLINDER:
-      PUT("  Shape \"%s\" \"float radius\" [%.9g] \"float zmin\" [%.9g] \"float zmax\" [%.9g] \"float phimax\" [%.9g]",
-          d->kind == VL_SHAPE_SPHERE ? "sphere" : "cylinder", (double)d->radius, (double)d->z_min, (double)d->z_max,
-          degrees * (double)d->phi_max);
+    case VL_SHAPE_DISK: {
+      const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)d->kind);
+      PUT("  Shape \"%s\"", row->name);
+      vl_pbrt_row(x, row, d, true, NULL);
       return true;
-    case VL_SHAPE_DISK:
-      PUT("  Shape \"disk\" \"float radius\" [%.9g] \"float innerradius\" [%.9g] \"float height\" [%.9g] \"float "
-          "phimax\" [%.9g]",
-          (double)d->radius, (double)d->inner_radius, (double)d->height, degrees * (double)d->phi_max);
-      return true;
-    default: return true;
+    }
+    case VL_SHAPE_CURVES: return true; /* left out before */
   }
+  return true;
 }
 
 /* pbrt's glowing pictures do not repeat: uvs that lie in another cell of the plane move to the first, where every
@@ -124,20 +120,19 @@ static bool put_emission(vlExport *x, const vlEmissionDef *e) {
       vl_export_lose(x, "tints of pictures that glow: left out");
   }
   if ((t || e->image) && !vl_pbrt_picture(x, t ? t : &picture, false, name)) return false;
-  PUT("  AreaLightSource \"diffuse\" \"float scale\" [%.9g]", scale);
-  if (name[0])
-    PUT(" \"string filename\" \"%s\"", name);
-  else
-    vl_pbrt_spectrum(x, "L", &e->radiance);
-  if (e->two_sided) PUT(" \"bool twosided\" true");
-  if (!isnan(e->power)) PUT(" \"float power\" [%.9g]", e->power);
+  vlEmissionDef scaled = *e;
+  const vlKindRow *row = vl_kind_row(&vl_emission_family, 0);
+  scaled.scale = (float)scale;
+  PUT("  AreaLightSource \"%s\"", row->name);
+  vl_pbrt_row(x, row, &scaled, false, name[0] ? "L" : NULL);
+  if (name[0]) PUT(" \"string filename\" \"%s\"", name);
   PUT("\n");
   return true;
 }
 
 bool vl_pbrt_shape(vlExport *x, size_t index) {
   const vlShapeDef *d = &x->scene->shapes.items[index];
-  if ((unsigned)d->kind > VL_SHAPE_CYLINDER) {
+  if (d->kind == VL_SHAPE_CURVES) {
     vl_export_lose(x, "curves: left out");
     return true;
   }

@@ -239,8 +239,6 @@ bool vl_import_option(vlImport *import, const vlStatement *s);
 
 /* The spectrum of a parameter (rgb, spectrum, blackbody); sampled values belong to the import's strings. */
 bool vl_import_spectrum(vlImport *import, vlParam *param, vlSpectrum *spectrum);
-/* Radiance or intensity parameter of a light. */
-bool vl_import_light_spectrum(vlDict *dict, const char *name, vlSpectrum *spectrum, bool *given);
 /* A number or a float texture; a spectrum or a spectrum texture. given may be null. false after an error. */
 bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, bool *given);
 bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input, bool albedo, bool *given);

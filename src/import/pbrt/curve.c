@@ -146,12 +146,12 @@ static bool read_normals(vlDict *dict, vlCurveKind kind, Curve *c) {
 }
 
 bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link) {
-  static const char *const kinds[] = {"flat", "cylinder", "ribbon"}, *const bases[] = {"bezier", "bspline"};
+  static const char *const bases[] = {"bezier", "bspline"};
   vlImport *import = dict->import;
   Curve c = {.degree = 3};
-  int kind = 0, basis = 0;
+  int basis = 0;
   float width = 1.0f;
-  vl_dict_choice(dict, "type", kinds, 3, &kind);
+  if (!vl_import_parameters(dict, vl_kind_row(&vl_shape_family, VL_SHAPE_CURVES), def, false, NULL)) return false;
   vl_dict_choice(dict, "basis", bases, 2, &basis);
   vl_dict_count(dict, "degree", 2, &c.degree);
   vl_dict_float(dict, "width", &width);
@@ -164,7 +164,6 @@ bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link) {
     double depth = split->type == VL_PARAM_INTEGER ? split->integers.items[0] : split->floats.items[0];
     def->split_depth = depth > 0 ? (uint32_t)(depth < 10 ? depth : 10) : 0;
   }
-  def->curve = (vlCurveKind)kind;
   c.spline = basis == 1;
   if (c.degree > 3)
     return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: the degree must be 2 or 3, not %u", dict->what,

@@ -6,20 +6,9 @@
 #include "color/color.h"
 #include "import/pbrt/builder.h"
 
-static const double degrees = 0.017453292519943295;
-
-static void read_points(vlDict *dict, vlLightDef *def, bool aims) {
-  double v[3];
-  if (vl_dict_vector(dict, "from", VL_PARAM_POINT3, v))
-    for (int i = 0; i < 3; i++) def->from[i] = (float)v[i];
-  if (aims && vl_dict_vector(dict, "to", VL_PARAM_POINT3, v))
-    for (int i = 0; i < 3; i++) def->to[i] = (float)v[i];
-}
-
 /* pbrt: a value that is not above zero counts as not given. */
-static void read_target(vlDict *dict, const char *name, double *value) {
-  double v;
-  if (vl_dict_double(dict, name, &v) && v > 0.0) *value = v;
+static void drop_target(double *value) {
+  if (!(*value > 0.0)) *value = VL_UNSET;
 }
 
 /* In the world's space, whatever the current transform: as pbrt. */
@@ -34,73 +23,34 @@ static bool read_portal(vlDict *dict, vlLightDef *def, const vlParam *portal) {
   return true;
 }
 
-static bool read_infinite(vlDict *dict, vlLightDef *def, bool has_color) {
-  vlImport *import = dict->import;
+/* The radiance has one source. */
+static bool check_source(vlDict *dict, const vlKindRow *row) {
+  if (!vl_row_find(row, "L") || !vl_row_find(row, "filename")) return true;
+  vlParam *color = vl_dict_find(dict, "L", VL_BITS_SPECTRUM);
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
-  vlParam *portal = vl_dict_find(dict, "portal", 1u << VL_PARAM_POINT3);
-  read_target(dict, "illuminance", &def->illuminance);
-  if (portal && !read_portal(dict, def, portal)) return false;
-  if (!file) return true;
-  if (has_color)
-    return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: give either \"L\" or \"filename\", not both",
+  if (color && file && file->strings.items[0][0])
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, file->place, "%s: give either \"L\" or \"filename\", not both",
                           dict->what);
-  char path[4096];
-  if (!vl_dict_done(dict) || !vl_import_path(import, file, path, sizeof path)) return false;
-  def->path = vl_import_keep(import, path);
-  return def->path != NULL;
+  return dict->import->scene->error.code == VL_OK;
 }
 
-/* Goniometric and projection lights stand at the origin of their space, and need a picture. */
-static bool read_beam(vlDict *dict, vlLightDef *def) {
+/* What the row does not say. given: per parameter of the row. */
+static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given, vlLightDef *def) {
   vlImport *import = dict->import;
-  vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
-  double fov = 90.0;
-  read_target(dict, "power", &def->power);
-  if (def->kind == VL_LIGHT_PROJECTION && vl_dict_find(dict, "I", VL_BITS_SPECTRUM))
+  vlParam *portal = vl_row_find(row, "portal") ? vl_dict_find(dict, "portal", 1u << VL_PARAM_POINT3) : NULL;
+  bool far = row->traits & VL_LIGHT_TRAIT_FAR, has_color = vl_row_find(row, far ? "L" : "I") != NULL;
+  bool color_given = has_color && vl_import_given(row, given, far ? "L" : "I");
+  if (has_color && !color_given) def->color.space = dict->space; /* the colour space's white */
+  drop_target(&def->power);
+  drop_target(&def->illuminance);
+  if (portal && !read_portal(dict, def, portal)) return false;
+  if (!has_color && vl_dict_find(dict, "I", VL_BITS_SPECTRUM))
     vl_import_warn(import, VL_LOG_WARNING, dict->place,
-                   "%s: \"I\" has no effect, as in pbrt: the picture is the intensity", dict->what);
-  if (def->kind == VL_LIGHT_PROJECTION && vl_dict_double(dict, "fov", &fov)) def->fov = (float)(fov * degrees);
+                   "%s: \"I\" has no effect, as in pbrt: the image is the intensity", dict->what);
   if (!vl_dict_done(dict)) return false;
-  if (!file)
+  if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !def->path)
     return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string filename\" is missing", dict->what);
-  char path[4096];
-  if (!vl_import_path(import, file, path, sizeof path)) return false;
-  def->path = vl_import_keep(import, path);
-  return def->path != NULL;
-}
-
-static bool read_light(vlDict *dict, vlLightDef *def) {
-  bool given = false;
-  bool intensity = def->kind == VL_LIGHT_POINT || def->kind == VL_LIGHT_SPOT || def->kind == VL_LIGHT_GONIOMETRIC;
-  if (def->kind != VL_LIGHT_PROJECTION && !vl_import_light_spectrum(dict, intensity ? "I" : "L", &def->color, &given))
-    return false;
-  vl_dict_float(dict, "scale", &def->scale);
-  switch (def->kind) {
-    case VL_LIGHT_POINT:
-      read_points(dict, def, false);
-      read_target(dict, "power", &def->power);
-      break;
-    case VL_LIGHT_SPOT: {
-      double angle = 30.0, delta = 5.0;
-      read_points(dict, def, true);
-      read_target(dict, "power", &def->power);
-      vl_dict_double(dict, "coneangle", &angle);
-      vl_dict_double(dict, "conedeltaangle", &delta);
-      def->cone_angle = (float)(angle * degrees);
-      def->cone_delta = (float)(delta * degrees);
-      break;
-    }
-    case VL_LIGHT_DISTANT:
-      read_points(dict, def, true);
-      read_target(dict, "illuminance", &def->illuminance);
-      break;
-    case VL_LIGHT_INFINITE:
-      if (!read_infinite(dict, def, given)) return false;
-      break;
-    case VL_LIGHT_GONIOMETRIC:
-    case VL_LIGHT_PROJECTION: return read_beam(dict, def);
-  }
-  return vl_dict_done(dict);
+  return true;
 }
 
 /* Portals are for pictures: of a sky that is one colour, one of one pixel (as pbrt does). */
@@ -115,57 +65,53 @@ static bool plain_sky(vlImport *import, const vlLightDef *def, vlImage **sky) {
   return true;
 }
 
+enum { MOST_PARAMETERS = 32 };
+
 bool vl_import_light(vlImport *import, const vlStatement *s) {
-  static const char *const kinds[] = {"point", "spot", "distant", "infinite", "goniometric", "projection"};
   char what[96];
+  bool given[MOST_PARAMETERS];
   snprintf(what, sizeof what, "LightSource \"%.60s\"", s->names[0]);
   vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_LIGHT));
-  int kind = -1;
-  for (int i = 0; i < 6; i++)
-    if (strcmp(s->names[0], kinds[i]) == 0) kind = i;
-  if (kind < 0)
-    return vl_import_unknown(import, s->place, "light", s->names[0], kinds, 6, NULL, 0); /* permissive: left out */
+  int kind = vl_kind_find(&vl_light_family, s->names[0]);
+  if (kind < 0) /* permissive: left out */
+    return vl_import_unknown_kind(import, s->place, &vl_light_family, s->names[0]);
+  const vlKindRow *row = vl_kind_row(&vl_light_family, kind);
   vlLightDef def = vl_default_light_def((vlLightKind)kind);
   vlMat4 ctm;
   def.source = s->place;
   def.space = import->state.space;
-  if (!vl_import_ctm(import, s->place, &ctm) || !read_light(&dict, &def)) return false;
+  if (!vl_import_ctm(import, s->place, &ctm) || !check_source(&dict, row) ||
+      !vl_import_parameters(&dict, row, &def, true, given) || !finish_light(&dict, row, given, &def))
+    return false;
   memcpy(def.world_from_light, ctm.m, sizeof def.world_from_light);
-  if (def.path) def.space = VL_SPACE_SRGB; /* a picture that does not say its own: whatever ColorSpace says, as pbrt */
+  if (def.path) def.space = VL_SPACE_SRGB; /* an image that does not say its own: whatever ColorSpace says, as pbrt */
   vlImage *sky = NULL;
   if (def.has_portal && !def.path && !plain_sky(import, &def, &sky)) return false;
   def.image = sky;
   vlLightId id = vl_scene_add_light(import->scene, &def);
   vl_image_destroy(sky);
-  return id.index != 0 && (kind == VL_LIGHT_DISTANT || kind == VL_LIGHT_INFINITE ||
-                           vl_import_note_media(import, 'l', id.index - 1, s->place));
+  return id.index != 0 &&
+         ((row->traits & VL_LIGHT_TRAIT_FAR) || vl_import_note_media(import, 'l', id.index - 1, s->place));
 }
 
 bool vl_import_area_light(vlImport *import, const vlStatement *s) {
-  static const char *const kinds[] = {"diffuse"};
   char what[96];
+  bool given[MOST_PARAMETERS];
   snprintf(what, sizeof what, "AreaLightSource \"%.60s\"", s->names[0]);
   vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_LIGHT));
   import->state.emission = (vlEmissionId){0};
   if (s->names[0][0] == 0) return true; /* pbrt: no area light from here on */
-  if (strcmp(s->names[0], "diffuse") != 0)
-    return vl_import_unknown(import, s->place, "area light", s->names[0], kinds, 1, NULL, 0);
+  int kind = vl_kind_find(&vl_emission_family, s->names[0]);
+  if (kind < 0) return vl_import_unknown_kind(import, s->place, &vl_emission_family, s->names[0]);
+  const vlKindRow *row = vl_kind_row(&vl_emission_family, kind);
   vlEmissionDef def = vl_default_emission_def();
   def.source = s->place;
-  bool given;
-  if (!vl_import_light_spectrum(&dict, "L", &def.radiance, &given)) return false;
-  vl_dict_float(&dict, "scale", &def.scale);
-  vl_dict_bool(&dict, "twosided", &def.two_sided);
-  read_target(&dict, "power", &def.power);
-  vlParam *file = vl_dict_find(&dict, "filename", 1u << VL_PARAM_STRING);
-  if (!vl_dict_done(&dict)) return false;
-  if (file && given)
-    return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: give either \"L\" or \"filename\", not both", what);
-  char path[4096];
-  if (file && !vl_import_path(import, file, path, sizeof path)) return false;
-  if (file) def.image = path;
+  if (!check_source(&dict, row) || !vl_import_parameters(&dict, row, &def, true, given) || !vl_dict_done(&dict))
+    return false;
+  if (!vl_import_given(row, given, "L")) def.radiance.space = dict.space; /* the colour space's white */
+  drop_target(&def.power);
   import->state.emission = vl_scene_add_emission(import->scene, &def);
   return import->state.emission.index != 0;
 }

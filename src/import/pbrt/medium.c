@@ -8,19 +8,7 @@
 #include "import/pbrt/builder.h"
 #include "import/pbrt/scattering.h"
 
-static const char *const kinds[] = {"homogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"};
-static const vlMediumKind kind_values[] = {VL_MEDIUM_HOMOGENEOUS, VL_MEDIUM_GRID, VL_MEDIUM_RGB_GRID, VL_MEDIUM_CLOUD,
-                                           VL_MEDIUM_NANOVDB};
-enum { KINDS = 5 };
-
 /* ---- parameters ------------------------------------------------------------------------------------------------- */
-
-static bool read_spectrum(vlDict *dict, const char *name, vlSpectrum *spectrum, bool *given) {
-  vlParam *p = vl_dict_find(dict, name, VL_BITS_SPECTRUM);
-  if (given) *given = p != NULL;
-  if (!p) return dict->import->scene->error.code == VL_OK;
-  return vl_import_spectrum(dict->import, p, spectrum);
-}
 
 bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum *absorption, vlSpectrum *scattering,
                                  bool *given) {
@@ -45,45 +33,23 @@ bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum
   return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%.80s\"", dict->what, name);
 }
 
-static bool read_sigmas(vlDict *dict, vlMediumDef *def) {
-  return read_spectrum(dict, "sigma_a", &def->sigma_a, NULL) && read_spectrum(dict, "sigma_s", &def->sigma_s, NULL);
-}
-
-static bool read_scattering(vlDict *dict, vlMediumDef *def) {
-  bool preset;
-  if (!vl_import_scattering_preset(dict, "preset", &def->sigma_a, &def->sigma_s, &preset)) return false;
-  vlMediumDef own = *def;
-  if (!read_sigmas(dict, &own)) return false;
-  if (!preset) *def = own; /* pbrt: a preset wins */
+/* A preset wins over sigma_a and sigma_s, as in pbrt. */
+static bool read_preset(vlDict *dict, vlMediumDef *def) {
+  vlSpectrum absorption, scattering;
+  bool given;
+  if (!vl_import_scattering_preset(dict, "preset", &absorption, &scattering, &given)) return false;
+  if (given) def->sigma_a = absorption, def->sigma_s = scattering;
   return true;
 }
 
-static bool read_homogeneous(vlDict *dict, vlMediumDef *def) {
-  if (!read_scattering(dict, def)) return false;
-  vl_dict_float(dict, "Lescale", &def->emission_scale);
-  return read_spectrum(dict, "Le", &def->emission, NULL);
-}
-
-static bool read_box(vlDict *dict, vlMediumDef *def) {
-  double a[3], b[3];
-  bool given = vl_dict_vector(dict, "p0", VL_PARAM_POINT3, a);
-  for (int i = 0; given && i < 3; i++) def->low[i] = (float)a[i];
-  given = vl_dict_vector(dict, "p1", VL_PARAM_POINT3, b);
-  for (int i = 0; given && i < 3; i++) def->high[i] = (float)b[i];
-  for (int i = 0; i < 3; i++) { /* pbrt's boxes sort their corners */
+/* pbrt's boxes sort their corners. */
+static void sort_box(vlMediumDef *def) {
+  for (int i = 0; i < 3; i++) {
     if (!(def->low[i] > def->high[i])) continue;
     float t = def->low[i];
     def->low[i] = def->high[i];
     def->high[i] = t;
   }
-  return dict->import->scene->error.code == VL_OK;
-}
-
-static bool read_resolution(vlDict *dict, vlMediumDef *def) {
-  vl_dict_count(dict, "nx", 1, &def->nx);
-  vl_dict_count(dict, "ny", 1, &def->ny);
-  vl_dict_count(dict, "nz", 1, &def->nz);
-  return dict->import->scene->error.code == VL_OK;
 }
 
 /* `per` numbers for each cell; null when not given. */
@@ -100,67 +66,63 @@ static bool read_cells(vlDict *dict, const char *name, vlParamType type, const v
   return true;
 }
 
-static void read_temperature(vlDict *dict, vlMediumDef *def) {
-  vl_dict_float(dict, "temperaturecutoff", &def->temperature_offset); /* the old name */
-  vl_dict_float(dict, "temperatureoffset", &def->temperature_offset);
-  vl_dict_float(dict, "temperaturescale", &def->temperature_scale);
-}
-
 static bool missing(vlDict *dict, const char *what) {
   if (!vl_dict_done(dict)) return false; /* a misspelt one */
   return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %s is missing", dict->what, what);
 }
 
-static bool read_grid(vlDict *dict, vlMediumDef *def) {
-  bool glows;
-  if (!read_scattering(dict, def) || !read_box(dict, def) || !read_resolution(dict, def) ||
-      !read_cells(dict, "density", VL_PARAM_FLOAT, def, &def->density) ||
-      !read_cells(dict, "temperature", VL_PARAM_FLOAT, def, &def->temperature) ||
-      !read_spectrum(dict, "Le", &def->emission, &glows))
+/* What the rows do not say, a function per kind. given: per parameter of the row. */
+typedef bool ReadMedium(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def);
+
+static bool read_homogeneous(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
+  (void)row, (void)given;
+  return read_preset(dict, def);
+}
+
+static bool read_grid(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
+  if (!read_preset(dict, def) || !read_cells(dict, "density", VL_PARAM_FLOAT, def, &def->density) ||
+      !read_cells(dict, "temperature", VL_PARAM_FLOAT, def, &def->temperature))
     return false;
   vlParam *scale = vl_dict_find(dict, "Lescale", 1u << VL_PARAM_FLOAT);
   if (scale && scale->floats.count == 1)
     def->emission_scale = scale->floats.items[0];
   else if (!read_cells(dict, "Lescale", VL_PARAM_FLOAT, def, &def->emission_scales))
     return false;
-  read_temperature(dict, def);
-  if (glows && def->temperature)
+  if (vl_import_given(row, given, "Le") && def->temperature)
     return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
                           "%s: give either \"Le\" or \"temperature\", not both", dict->what);
   return def->density || missing(dict, "\"float density\"");
 }
 
-static bool read_rgb_grid(vlDict *dict, vlMediumDef *def) {
-  if (!read_box(dict, def) || !read_resolution(dict, def) ||
-      !read_cells(dict, "sigma_a", VL_PARAM_RGB, def, &def->rgb_a) ||
+static bool read_rgb_grid(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
+  (void)row, (void)given;
+  if (!read_cells(dict, "sigma_a", VL_PARAM_RGB, def, &def->rgb_a) ||
       !read_cells(dict, "sigma_s", VL_PARAM_RGB, def, &def->rgb_s) ||
       !read_cells(dict, "Le", VL_PARAM_RGB, def, &def->rgb_emission))
     return false;
-  vl_dict_float(dict, "Lescale", &def->emission_scale);
   return def->rgb_a || def->rgb_s || missing(dict, "\"rgb sigma_a\" or \"rgb sigma_s\" (a colour for each cell)");
 }
 
-static bool read_cloud(vlDict *dict, vlMediumDef *def) {
-  vl_dict_float(dict, "density", &def->cloud_density);
-  vl_dict_float(dict, "wispiness", &def->wispiness);
-  vl_dict_float(dict, "frequency", &def->frequency);
-  return read_sigmas(dict, def) && read_box(dict, def);
+static bool read_cloud(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
+  (void)dict, (void)row, (void)given, (void)def;
+  return true;
 }
 
-static bool read_nanovdb(vlDict *dict, vlMediumDef *def) {
-  vlImport *import = dict->import;
-  vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
-  vl_dict_string(dict, "gridname", &def->grid);
-  vl_dict_string(dict, "temperaturename", &def->temperature_grid);
-  vl_dict_float(dict, "LeScale", &def->emission_scale); /* the old name */
-  vl_dict_float(dict, "Lescale", &def->emission_scale);
-  read_temperature(dict, def);
-  if (!read_sigmas(dict, def)) return false;
-  if (!file) return missing(dict, "\"string filename\"");
-  char path[4096];
-  if (!vl_import_path(import, file, path, sizeof path)) return false;
-  def->path = vl_import_keep(import, path);
-  return def->path != NULL;
+static bool read_nanovdb(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
+  (void)dict, (void)row, (void)given, (void)def;
+  return true;
+}
+
+#define READ(NAME, name) [VL_MEDIUM_##NAME] = read_##name,
+static ReadMedium *const read_kind[] = {VL_MEDIUM_KINDS(READ)};
+#undef READ
+
+static bool read_medium(vlDict *dict, int kind, vlMediumDef *def) {
+  const vlKindRow *row = vl_kind_row(&vl_medium_family, kind);
+  bool given[32];
+  if (!vl_import_parameters(dict, row, def, true, given)) return false;
+  if (row->traits & VL_MEDIUM_TRAIT_BOX) sort_box(def);
+  return read_kind[kind](dict, row, given, def) && vl_dict_done(dict);
 }
 
 bool vl_import_medium(vlImport *import, const vlStatement *s) {
@@ -176,31 +138,19 @@ bool vl_import_medium(vlImport *import, const vlStatement *s) {
     if (import->scene->error.code != VL_OK) return false;
     return vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s: \"string type\" is missing", what);
   }
-  int kind = -1;
-  for (int i = 0; i < KINDS; i++)
-    if (strcmp(type, kinds[i]) == 0) kind = i;
+  int kind = vl_kind_find(&vl_medium_family, type);
   const char *name = vl_import_keep(import, s->names[0]);
   if (!name) return false;
   vlMediumId id = {0};
   if (kind < 0) { /* permissive: vacuum */
-    if (!vl_import_unknown(import, s->place, "medium type", type, kinds, KINDS, NULL, 0)) return false;
+    if (!vl_import_unknown_kind(import, s->place, &vl_medium_family, type)) return false;
   } else {
-    vlMediumDef def = vl_default_medium_def(kind_values[kind]);
+    vlMediumDef def = vl_default_medium_def((vlMediumKind)kind);
     vlMat4 ctm;
     def.name = name;
     def.source = s->place;
     def.space = import->state.space;
-    vl_dict_float(&dict, "scale", &def.scale);
-    vl_dict_float(&dict, "g", &def.g);
-    bool fine = vl_import_ctm(import, s->place, &ctm);
-    switch (def.kind) {
-      case VL_MEDIUM_GRID: fine = fine && read_grid(&dict, &def); break;
-      case VL_MEDIUM_RGB_GRID: fine = fine && read_rgb_grid(&dict, &def); break;
-      case VL_MEDIUM_CLOUD: fine = fine && read_cloud(&dict, &def); break;
-      case VL_MEDIUM_NANOVDB: fine = fine && read_nanovdb(&dict, &def); break;
-      default: fine = fine && read_homogeneous(&dict, &def); break;
-    }
-    if (!fine || !vl_dict_done(&dict)) return false;
+    if (!vl_import_ctm(import, s->place, &ctm) || !read_medium(&dict, kind, &def)) return false;
     memcpy(def.world_from_medium, ctm.m, sizeof def.world_from_medium);
     id = vl_scene_add_medium(import->scene, &def);
     if (!id.index) return false;

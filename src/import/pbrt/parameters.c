@@ -29,6 +29,15 @@ static bool read_string(vlDict *dict, const char *name, const vlParameter *p, co
   return *at != NULL;
 }
 
+/* In the def's unit; rounded once. */
+static bool read_float(vlDict *dict, const char *name, const vlParameter *p, float *at) {
+  double number;
+  if (p->factor == 0) return vl_dict_float(dict, name, at);
+  if (!vl_dict_double(dict, name, &number)) return false;
+  *at = (float)(number * p->factor);
+  return true;
+}
+
 /* A point, a vector or a normal. */
 static bool read_float3(vlDict *dict, const char *name, float at[3]) {
   double v[3];
@@ -81,7 +90,7 @@ static bool read_one(vlDict *dict, const char *name, const vlParameter *p, char 
   switch (p->type) {
     case VL_PARAMETER_BOOL: return vl_dict_bool(dict, name, at);
     case VL_PARAMETER_COUNT: return vl_dict_count(dict, name, (int32_t)p->low, at);
-    case VL_PARAMETER_FLOAT: return vl_dict_float(dict, name, at);
+    case VL_PARAMETER_FLOAT: return read_float(dict, name, p, at);
     case VL_PARAMETER_DOUBLE: return vl_dict_double(dict, name, at);
     case VL_PARAMETER_FLOAT3: return read_float3(dict, name, at);
     case VL_PARAMETER_CHOICE: return read_choice(dict, name, p, at);
@@ -105,7 +114,6 @@ static bool read_one(vlDict *dict, const char *name, const vlParameter *p, char 
 static void convert(const vlParameter *p, char *def) {
   if (p->factor == 0) return;
   void *at = def + p->offset;
-  if (p->type == VL_PARAMETER_FLOAT) *(float *)at *= (float)p->factor;
   if (p->type == VL_PARAMETER_DOUBLE) *(double *)at *= p->factor;
   if (p->type == VL_PARAMETER_FLOAT_INPUT) ((vlFloatInput *)at)->value *= (float)p->factor;
 }

@@ -5,11 +5,6 @@
 #include "import/pbrt/builder.h"
 #include "import/pbrt/loop.h"
 
-static const double degrees = 0.017453292519943295;
-static const char *const kinds[] = {"trianglemesh", "bilinearmesh", "plymesh",    "sphere",
-                                    "disk",         "cylinder",     "loopsubdiv", "curve"};
-enum { KINDS = 8, TRIANGLES = 0, BILINEAR, PLY, SPHERE, DISK, CYLINDER, LOOP, CURVE };
-
 /* Takes the array out of the parameter: a block of the context without slack. */
 static bool take_floats(vlImport *import, vlParam *p, const float **result) {
   float *items = p->floats.items;
@@ -129,30 +124,26 @@ static bool read_loop(vlDict *dict, vlShapeDef *def) {
   return true;
 }
 
-static bool read_quadric(vlDict *dict, vlShapeDef *def, int kind) {
-  double phi_max = 360.0;
-  vl_dict_float(dict, "radius", &def->radius);
-  def->z_min = kind == SPHERE ? -def->radius : -1.0f;
-  def->z_max = kind == SPHERE ? def->radius : 1.0f;
-  if (kind != DISK) {
-    vl_dict_float(dict, "zmin", &def->z_min);
-    vl_dict_float(dict, "zmax", &def->z_max);
-    if (def->z_min > def->z_max) { /* pbrt sorts them */
-      float t = def->z_min;
-      def->z_min = def->z_max;
-      def->z_max = t;
-    }
-    if (kind == SPHERE) { /* and clamps them */
-      if (def->z_min < -def->radius) def->z_min = -def->radius;
-      if (def->z_max > def->radius) def->z_max = def->radius;
-    }
-  } else {
-    vl_dict_float(dict, "height", &def->height);
-    vl_dict_float(dict, "innerradius", &def->inner_radius);
+static bool read_quadric(vlDict *dict, vlShapeDef *def) {
+  const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)def->kind);
+  const float whole = vl_default_shape_def(def->kind).phi_max;
+  bool given[32];
+  if (!vl_import_parameters(dict, row, def, false, given)) return false;
+  if (def->phi_max > whole) def->phi_max = whole;
+  if (def->kind == VL_SHAPE_SPHERE) {
+    if (!vl_import_given(row, given, "zmin")) def->z_min = -def->radius;
+    if (!vl_import_given(row, given, "zmax")) def->z_max = def->radius;
   }
-  vl_dict_double(dict, "phimax", &phi_max);
-  def->phi_max = (float)((phi_max > 360.0 ? 360.0 : phi_max) * degrees);
-  return dict->import->scene->error.code == VL_OK;
+  if (def->z_min > def->z_max) { /* pbrt sorts them */
+    float t = def->z_min;
+    def->z_min = def->z_max;
+    def->z_max = t;
+  }
+  if (def->kind == VL_SHAPE_SPHERE) { /* and clamps them */
+    if (def->z_min < -def->radius) def->z_min = -def->radius;
+    if (def->z_max > def->radius) def->z_max = def->radius;
+  }
+  return true;
 }
 
 /* ---- shapes enter ----------------------------------------------------------------------------------------------- */
@@ -220,25 +211,106 @@ static bool note_media(vlImport *import, size_t first, vlSource place) {
   return true;
 }
 
+/* Reads the parameters that are not alpha and gives the shape to the scene. taken: the def's arrays are given away. */
+typedef bool EnterShape(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken);
+
+static bool enter(vlDict *dict, const vlShapeDef *def, const vlShapeLink *link, bool *taken) {
+  if (!vl_dict_done(dict)) return false;
+  *taken = true;
+  return vl_import_add_shape(dict->import, def, link);
+}
+
+static bool enter_triangles(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
+  bool gathered = false;
+  if (!read_mesh(dict, def, 3) || !vl_dict_done(dict)) return false;
+  if (!vl_import_gather_mesh(dict->import, def, link, &gathered)) return false;
+  return gathered || enter(dict, def, link, taken);
+}
+
+static bool enter_bilinear(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
+  return read_mesh(dict, def, 4) && enter(dict, def, link, taken);
+}
+
+static bool enter_sphere(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
+  return read_quadric(dict, def) && enter(dict, def, link, taken);
+}
+
+static bool enter_disk(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
+  return read_quadric(dict, def) && enter(dict, def, link, taken);
+}
+
+static bool enter_cylinder(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
+  return read_quadric(dict, def) && enter(dict, def, link, taken);
+}
+
+static bool enter_curves(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
+  *taken = true;
+  return vl_import_curve(dict, def, link);
+}
+
+static bool enter_loop(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
+  return read_loop(dict, def) && enter(dict, def, link, taken);
+}
+
+static bool enter_ply(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
+  vlShapeLink own = *link;
+  *taken = true;
+  return note_ply(dict, def, &own);
+}
+
+#define ENTER(NAME, name) [VL_SHAPE_##NAME] = enter_##name,
+static EnterShape *const enter_kind[] = {VL_SHAPE_KINDS(ENTER)};
+#undef ENTER
+
+/* pbrt's shapes that are other ways to say triangles. */
+static const struct {
+  const char *name;
+  EnterShape *enter;
+} meshes[] = {{"plymesh", enter_ply}, {"loopsubdiv", enter_loop}};
+enum { MESHES = sizeof meshes / sizeof *meshes };
+
+static EnterShape *find_shape(const char *name, vlShapeKind *kind) {
+  int own = vl_kind_find(&vl_shape_family, name);
+  *kind = own < 0 ? VL_SHAPE_TRIANGLES : (vlShapeKind)own;
+  if (own >= 0) return enter_kind[own];
+  for (size_t i = 0; i < MESHES; i++)
+    if (strcmp(meshes[i].name, name) == 0) return meshes[i].enter;
+  return NULL;
+}
+
+static bool unknown_shape(vlImport *import, const vlStatement *s) {
+  const char *names[64];
+  size_t count = vl_kind_names(&vl_shape_family, names, 64 - MESHES);
+  for (size_t i = 0; i < MESHES; i++) names[count++] = meshes[i].name;
+  return vl_import_unknown(import, s->place, "shape", s->names[0], names, count, NULL, 0); /* permissive: left out */
+}
+
+/* Who cannot emit gives no light. */
+static void drop_emission(vlImport *import, vlSource place, bool moves, vlShapeDef *def) {
+  if (!def->emission.index) return;
+  if (import->in_object)
+    vl_import_warn(import, VL_LOG_WARNING, place, "area lights inside of objects give no light (as in pbrt)");
+  else if (moves)
+    vl_import_warn(import, VL_LOG_WARNING, place, "an area light that moves (ActiveTransform) gives no light");
+  else
+    return;
+  def->emission.index = 0;
+}
+
 bool vl_import_shape(vlImport *import, const vlStatement *s) {
   char what[96];
   snprintf(what, sizeof what, "Shape \"%.60s\"", s->names[0]);
   vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_SHAPE));
-  int kind = -1;
-  for (int i = 0; i < KINDS; i++)
-    if (strcmp(s->names[0], kinds[i]) == 0) kind = i;
-  if (kind < 0)
-    return vl_import_unknown(import, s->place, "shape", s->names[0], kinds, KINDS, NULL, 0); /* permissive: left out */
-  static const vlShapeKind shape_kinds[KINDS] = {VL_SHAPE_TRIANGLES, VL_SHAPE_BILINEAR, VL_SHAPE_TRIANGLES,
-                                                 VL_SHAPE_SPHERE,    VL_SHAPE_DISK,     VL_SHAPE_CYLINDER,
-                                                 VL_SHAPE_TRIANGLES, VL_SHAPE_CURVES};
-  vlShapeDef def = vl_default_shape_def(shape_kinds[kind]);
+  vlShapeKind kind;
+  EnterShape *function = find_shape(s->names[0], &kind);
+  if (!function) return unknown_shape(import, s);
+  vlShapeDef def = vl_default_shape_def(kind);
   vlShapeLink link = {.material = import->state.material,
                       .material_name = import->state.material_name,
                       .material_place = import->state.material_place};
   vlMat4 ctm = vl_mat4_identity();
-  bool moves = vl_import_moves(import);
+  bool moves = vl_import_moves(import), taken = false;
   def.source = s->place;
   def.group = import->object;
   def.reverse_orientation = import->state.reverse_orientation;
@@ -246,25 +318,11 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
   if ((!moves && !vl_import_ctm(import, s->place, &ctm)) || !read_alpha(&dict, &def, &link)) return false;
   memcpy(def.group_from_shape, ctm.m, sizeof def.group_from_shape);
   def.emission = import->state.emission;
-  if (def.emission.index && import->in_object) {
-    vl_import_warn(import, VL_LOG_WARNING, s->place, "area lights inside of objects give no light (as in pbrt)");
-    def.emission.index = 0;
-  }
-  if (def.emission.index && moves) {
-    vl_import_warn(import, VL_LOG_WARNING, s->place, "an area light that moves (ActiveTransform) gives no light");
-    def.emission.index = 0;
-  }
-  if (kind == CURVE) return vl_import_curve(&dict, &def, &link);
-  if (!vl_import_flush_curves(import)) return false;
+  drop_emission(import, s->place, moves, &def);
+  if (kind != VL_SHAPE_CURVES && !vl_import_flush_curves(import)) return false;
   size_t before = import->scene->shapes.count;
-  if (kind == PLY) return note_ply(&dict, &def, &link) && note_media(import, before, s->place);
-  bool fine = kind == LOOP     ? read_loop(&dict, &def)
-              : kind >= SPHERE ? read_quadric(&dict, &def, kind)
-                               : read_mesh(&dict, &def, kind == TRIANGLES ? 3 : 4);
-  fine = fine && vl_dict_done(&dict);
-  bool gathered = false;
-  if (fine && kind == TRIANGLES && !vl_import_gather_mesh(import, &def, &link, &gathered)) fine = false;
-  if (fine && !gathered) return vl_import_add_shape(import, &def, &link) && note_media(import, before, s->place);
-  free_arrays(import, &def);
-  return fine;
+  bool fine = function(&dict, &def, &link, &taken);
+  if (!taken) free_arrays(import, &def);
+  /* curves enter later, with their media */
+  return fine && (kind == VL_SHAPE_CURVES || note_media(import, before, s->place));
 }

@@ -122,17 +122,6 @@ bool vl_import_spectrum(vlImport *import, vlParam *p, vlSpectrum *spectrum) {
   return read_named(import, p, spectrum);
 }
 
-bool vl_import_light_spectrum(vlDict *dict, const char *name, vlSpectrum *spectrum, bool *given) {
-  vlParam *p = vl_dict_find(dict, name, VL_BITS_SPECTRUM);
-  *given = p != NULL;
-  if (!p) {
-    *spectrum = vl_spectrum_rgb(1, 1, 1); /* the colour space's white */
-    spectrum->space = dict->space;
-    return dict->import->scene->error.code == VL_OK;
-  }
-  return vl_import_spectrum(dict->import, p, spectrum);
-}
-
 bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, bool *given) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find(dict, name, VL_BIT_FLOAT | VL_BIT_TEXTURE);

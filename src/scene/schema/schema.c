@@ -3,7 +3,9 @@
 
 #include <string.h>
 
-static const vlKindFamily *const families[] = {&vl_material_family, &vl_texture_family, &vl_pixel_filter_family};
+static const vlKindFamily *const families[] = {&vl_material_family,    &vl_texture_family, &vl_light_family,
+                                               &vl_emission_family,    &vl_shape_family,   &vl_medium_family,
+                                               &vl_pixel_filter_family};
 
 const vlKindFamily *vl_kind_family(uint32_t index) {
   return index < sizeof families / sizeof *families ? families[index] : NULL;
@@ -78,6 +80,12 @@ void vl_row_set_defaults(const vlKindRow *row, void *def) {
     else
       set_default(p, second);
   }
+}
+
+void vl_family_set_defaults(const vlKindFamily *family, int kind, void *def) {
+  const vlKindRow *own = vl_kind_row(family, kind);
+  for (uint32_t i = 0; i < family->kind_count; i++) vl_row_set_defaults(family->rows[i], def);
+  if (own) vl_row_set_defaults(own, def);
 }
 
 /* ---- members ----------------------------------------------------------------------------------------------------- */

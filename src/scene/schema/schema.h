@@ -67,6 +67,17 @@
 /* ---- families ---------------------------------------------------------------------------------------------------- */
 
 extern const vlKindFamily vl_material_family, vl_texture_family, vl_pixel_filter_family;
+extern const vlKindFamily vl_light_family;    /* vlLightDef */
+extern const vlKindFamily vl_emission_family; /* vlEmissionDef: one kind */
+extern const vlKindFamily vl_shape_family;    /* vlShapeDef */
+extern const vlKindFamily vl_medium_family;   /* vlMediumDef */
+
+/* Power of a light of that def, as pbrt counts it: luminance is that of its colour, scale and
+ * included; radius: of a sphere round the scene. NaN: an image decides. */
+double vl_light_power(const vlLightDef *def, double luminance, double radius);
+
+/* Has the kind vertices and faces (VL_SHAPE_TRAIT_MESH)? */
+bool vl_shape_is_mesh(vlShapeKind kind);
 
 /* The row of a kind; null when the family has no such kind. */
 const vlKindRow *vl_kind_row(const vlKindFamily *family, int kind);
@@ -81,6 +92,9 @@ const vlParameter *vl_row_find(const vlKindRow *row, const char *name);
 
 /* Gives the members that the row names their defaults; leaves the others alone. */
 void vl_row_set_defaults(const vlKindRow *row, void *def);
+/* Gives all members that any row of the family names their defaults, those of `kind` last: a def may change its kind.
+ */
+void vl_family_set_defaults(const vlKindFamily *family, int kind, void *def);
 /* Copies the members that the row names; what they point at is shared. */
 void vl_row_copy_members(const vlKindRow *row, const void *from, void *to);
 /* Checks the members that the row names (ranges, finite numbers, textures that exist and have the right type, choices)

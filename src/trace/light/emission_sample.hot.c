@@ -1,40 +1,15 @@
-/* trace/light/emission_sample.hot.c: where light sets out: rays of all kinds of lights, and their densities (pbrt book
- * 12, 3rd edition 16.1.2). Scalar: each lane has a light of its own. */
+/* trace/light/emission_sample.hot.c: rays that leave lights, by the kind of light, and their densities (pbrt book 12,
+ * 3rd edition 16.1.2); infinite and area lights. Scalar: each lane has a light of its own. */
 #include "math/octahedral.h"
 #include "math/warp.h"
 #include "trace/light/coverage.h"
-#include "trace/two_way/stages.h"
+#include "trace/light/kinds.h"
 #include "world/light/portal.h"
 #include "world/shape/surface_point.h"
 #include "world/texture/texture_lookup.h"
 
 static float choice_of(const vlTwoWay *way, uint32_t light) {
   return way->choice[light + 1] - way->choice[light];
-}
-
-static float spot_factor(const vlWorldLight *light, float c) {
-  float a = light->cos_end, b = light->cos_start;
-  if (a == b) return c < a ? 0.0f : 1.0f;
-  float t = vl_clamp((c - a) / (b - a), 0.0f, 1.0f);
-  return light->cone_squared ? t * t : t * t * (3.0f - 2.0f * t);
-}
-
-/* 1 - cosine of the cone that a light at a point shines into; 2: everywhere, as a projection whose frame is skewed. */
-static float span_of(const vlWorldLight *light) {
-  if (light->kind == VL_WL_SPOT) return 1.0f - light->cos_end;
-  if (light->kind != VL_WL_PROJECTION) return 2.0f;
-  const float *m = light->corners;
-  float length2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
-  for (int i = 0; i < 3; i++) {
-    const float *a = m + 3 * i, *b = m + 3 * ((i + 1) % 3);
-    float own = a[0] * a[0] + a[1] * a[1] + a[2] * a[2], skew = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    if (vl_abs(own - length2) > 1e-4f * length2 || vl_abs(skew) > 1e-4f * length2) return 2.0f;
-  }
-  return vl_min(1.001f * (1.0f - light->cos_end), 2.0f);
-}
-
-static float world_disk(const vlWorld *world) { /* area of a disk that hides the world */
-  return VL_PI * world->radius * world->radius;
 }
 
 /* Density of an area light's points. */
@@ -77,26 +52,28 @@ static float side_share(const vlWorld *world, const vlWorldLight *light, vlVec3 
   return shines_outwards(world, light) && vl_dot(vl_sub(p, center), w) < 0.0f ? 1.0f : 0.0f;
 }
 
+float vl_light_emit_pdf_infinite(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance,
+                                 const vlPoint *at) {
+  (void)distance, (void)at;
+  if (portal_of(world, light)) return p * portal_density(portal_of(world, light), w);
+  return p * sky_density(world, light, w) / vl_light_disk(world);
+}
+
+float vl_light_emit_pdf_area(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance,
+                             const vlPoint *at) {
+  (void)distance;
+  return p * VL_INV_PI * point_density(world, light, at->p) * side_share(world, light, at->p, w);
+}
+
 float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t index, vlVec3 w, float distance,
                           const vlPoint *at) {
   const vlWorldLight *light = &world->lights.items[index];
   float p = choice_of(way, index);
   if (!(p > 0.0f)) return 0.0f;
-  switch (light->kind) {
-    case VL_WL_POINT:
-    case VL_WL_GONIOMETRIC:
-    case VL_WL_SPOT:
-    case VL_WL_PROJECTION: {
-      float span = span_of(light);
-      float c = -vl_dot(w, vl_vec3(light->direction[0], light->direction[1], light->direction[2]));
-      return span == 2.0f || c >= 1.0f - span ? p * VL_INV_2PI / (span * distance * distance) : 0.0f;
-    }
-    case VL_WL_DISTANT: return p / world_disk(world);
-    case VL_WL_INFINITE:
-      if (portal_of(world, light)) return p * portal_density(portal_of(world, light), w);
-      return p * sky_density(world, light, w) / world_disk(world);
-    case VL_WL_AREA: return p * VL_INV_PI * point_density(world, light, at->p) * side_share(world, light, at->p, w);
-  }
+#define DENSITY(K, k) \
+  case VL_WL_##K: return vl_light_emit_pdf_##k(world, light, p, w, distance, at);
+  switch (light->kind) { VL_WORLD_LIGHT_KINDS(DENSITY) }
+#undef DENSITY
   return 0.0f;
 }
 
@@ -143,11 +120,14 @@ static Spot on_shape(const vlWorldLight *light, const vlWorldShape *s, float u, 
                 {0, 0, 0}};
 }
 
-static void from_area(const vlWorld *world, const vlWorldLight *light, const float lambda[4], float u, float v, float s,
-                      float t, vlEmission *out) {
-  const vlEmitted *e = &world->emitted.items[light->emitted];
+void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
+  const vlWorld *world = q->world;
+  const vlWorldLight *light = q->light;
+  const vlEmitted *e = q->emitted;
+  float s = q->s, t = q->t;
   const vlWorldShape *shape = &world->shapes.items[light->shape];
-  Spot at = shape->kind == VL_SHAPE_TRIANGLES ? on_triangle(light, shape, u, v) : on_shape(light, shape, u, v);
+  Spot at =
+      shape->kind == VL_SHAPE_TRIANGLES ? on_triangle(light, shape, q->u, q->v) : on_shape(light, shape, q->u, q->v);
   if (!(at.pdf > 0.0f) || (light->outer_side && !shines_outwards(world, light))) return;
   float sides = 1.0f;
   vlVec3 side = light->outer_side && shape->flip ? vl_neg(at.n) : at.n;
@@ -163,7 +143,7 @@ static void from_area(const vlWorld *world, const vlWorldLight *light, const flo
   float size = vl_abs(at.p.x) + vl_abs(at.p.y) + vl_abs(at.p.z);
   out->o = vl_offset_origin(at.p, side, 16.0f * 0x1p-24f * size, out->d);
   out->at = at.p, out->n = at.n;
-  vl_emitted_at(world, e, lambda, at.u, 1.0f - at.v, false, out->flux);
+  vl_emitted_at(world, e, q->lambda, at.u, 1.0f - at.v, false, out->flux);
   float scale = VL_PI * sides / at.pdf;
   if (shape->alpha >= 0 && !light->invisible)
     scale *= vl_light_coverage(world, light, at.p, at.n, at.u, at.v, at.weights);
@@ -206,8 +186,7 @@ static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light, con
   return vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
 }
 
-/* Through a disk that hides the world, across w. */
-static void from_afar(const vlWorld *world, vlVec3 w, float u, float v, vlEmission *out) {
+void vl_light_emit_from_afar(const vlWorld *world, vlVec3 w, float u, float v, vlEmission *out) {
   vlDiskPoint disk = vl_warp_disk(u, v);
   vlFrame frame = vl_frame_from_z(w);
   float r = world->radius;
@@ -238,6 +217,22 @@ static void through_portal(const vlWorld *world, const vlWorldLight *light, cons
   out->valid = true;
 }
 
+void vl_light_emit_infinite(const vlEmissionQuery *q, vlEmission *out) {
+  const vlWorld *world = q->world;
+  const vlPortal *portal = portal_of(world, q->light);
+  if (portal) {
+    through_portal(world, q->light, portal, q->lambda, q->u, q->v, q->s, q->t, out);
+    return;
+  }
+  float pdf;
+  vl_light_emit_from_afar(world, sky_direction(world, q->light, q->lambda, q->s, q->t, &pdf, out->flux), q->u, q->v,
+                          out);
+  out->valid = pdf > 0.0f;
+  if (!out->valid) return;
+  for (int c = 0; c < 4; c++) out->flux[c] *= vl_light_disk(world) / pdf;
+  out->density = pdf / vl_light_disk(world);
+}
+
 vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const float lambda[4], float u_choice, float u,
                               float v, float s, float t) {
   vlEmission r;
@@ -247,53 +242,11 @@ vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const f
   float p = choice_of(way, r.light);
   if (!(p > 0.0f)) return r;
   const vlWorldLight *light = &world->lights.items[r.light];
-  const vlEmitted *e = &world->emitted.items[light->emitted];
-  vlVec3 direction = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
-  vlVec3 position = vl_vec3(light->position[0], light->position[1], light->position[2]);
-  switch (light->kind) {
-    case VL_WL_POINT:
-    case VL_WL_SPOT:
-    case VL_WL_GONIOMETRIC:
-    case VL_WL_PROJECTION: {
-      bool picture = light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION;
-      float span = span_of(light), factor = 2.0f * VL_PI * span;
-      vlVec2 st = {0, 0};
-      if (span == 2.0f) {
-        r.d = vl_warp_sphere(s, t);
-      } else {
-        vlVec3 local = vl_warp_cone(s, t, span);
-        r.d = vl_normalize(vl_from_local(vl_frame_from_z(direction), local));
-        if (light->kind == VL_WL_SPOT) factor *= spot_factor(light, local.z);
-      }
-      if (picture) factor *= vl_beam(world, light, vl_neg(r.d), &st);
-      r.o = r.at = position;
-      vl_emitted_at(world, e, lambda, st.x, st.y, picture, r.flux);
-      for (int c = 0; c < 4; c++) r.flux[c] *= factor;
-      r.density = 1.0f / (2.0f * VL_PI * span);
-      r.delta = r.valid = true;
-      break;
-    }
-    case VL_WL_DISTANT:
-      from_afar(world, direction, u, v, &r);
-      vl_emitted_at(world, e, lambda, 0, 0, false, r.flux);
-      for (int c = 0; c < 4; c++) r.flux[c] *= world_disk(world);
-      r.density = 1.0f / world_disk(world);
-      r.delta = true;
-      break;
-    case VL_WL_INFINITE: {
-      if (portal_of(world, light)) {
-        through_portal(world, light, portal_of(world, light), lambda, u, v, s, t, &r);
-        break;
-      }
-      float pdf;
-      from_afar(world, sky_direction(world, light, lambda, s, t, &pdf, r.flux), u, v, &r);
-      if (!(pdf > 0.0f)) return (vlEmission){.valid = false};
-      for (int c = 0; c < 4; c++) r.flux[c] *= world_disk(world) / pdf;
-      r.density = pdf / world_disk(world);
-      break;
-    }
-    case VL_WL_AREA: from_area(world, light, lambda, u, v, s, t, &r); break;
-  }
+  vlEmissionQuery q = {world, light, &world->emitted.items[light->emitted], lambda, u, v, s, t};
+#define EMIT(K, k) \
+  case VL_WL_##K: vl_light_emit_##k(&q, &r); break;
+  switch (light->kind) { VL_WORLD_LIGHT_KINDS(EMIT) }
+#undef EMIT
   for (int c = 0; c < 4; c++) r.flux[c] /= p;
   r.density *= p;
   return r;

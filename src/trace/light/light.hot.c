@@ -1,9 +1,9 @@
-/* trace/light/light.hot.c: choosing a light and a point on it, and the densities that multiple importance sampling asks
- * for (pbrt book 12). Scalar per lane: the tree walk and the kinds of lights diverge. */
+/* trace/light/light.hot.c: a light sample for each lane, by the kind of its light; infinite and area lights, and the
+ * densities that multiple importance sampling needs of them (pbrt book 12). Scalar per lane: kinds diverge. */
 #include "math/octahedral.h"
 #include "math/warp.h"
 #include "trace/light/coverage.h"
-#include "trace/stages.h"
+#include "trace/light/kinds.h"
 #include "world/light/portal.h"
 #include "world/shape/surface_point.h"
 #include "world/texture/texture_lookup.h"
@@ -259,127 +259,62 @@ float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, 
 
 /* ---- one sample a lane ------------------------------------------------------------------------------------------- */
 
-static float spot_edge(const vlWorldLight *light, float x) {
-  float a = light->cos_end, b = light->cos_start;
-  if (a == b) return x < a ? 0.0f : 1.0f;
-  float t = vl_clamp((x - a) / (b - a), 0.0f, 1.0f);
-  return light->cone_squared ? t * t : t * t * (3.0f - 2.0f * t);
-}
-
-float vl_beam(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st) {
-  vlVec3 d = vl_normalize(turn(light->corners, vl_neg(w)));
-  *st = (vlVec2){0, 0};
-  if (light->kind == VL_WL_GONIOMETRIC) {
-    const vlMipmap *mip = world->images.items[light->picture].mipmap;
-    vlVec2 at = vl_octahedral_encode(d);
-    vlTexel x = vl_nearest(mip, 0, at.x, at.y, VL_WRAP_OCTAHEDRAL);
-    return vl_max(0.0f, mip->channels < 3 ? x.c[0] : (x.c[0] + x.c[1] + x.c[2]) / 3.0f);
-  }
-  float x = d.x / d.z / light->slide[0], y = d.y / d.z / light->slide[1];
-  if (!(d.z > 1e-3f) || !(vl_abs(x) <= 1.0f) || !(vl_abs(y) <= 1.0f)) return 0.0f;
-  *st = (vlVec2){0.5f * (x + 1.0f), 0.5f * (y + 1.0f)};
-  return 1.0f;
-}
-
-/* What a light sends to a point, by a sample of it. pdf: 0 where there is none. */
-typedef struct Arrival {
-  vlVec3 w, target;
-  float pdf, radiance[4];
-  bool delta, distant;
-} Arrival;
-
-/* Point, spot, goniometric and projection lights. */
-static Arrival from_position(const vlWorld *world, const vlWorldLight *light, const float lambda[4], vlVec3 p) {
-  Arrival r = {.pdf = 1.0f, .delta = true};
-  r.target = vl_vec3(light->position[0], light->position[1], light->position[2]);
-  vlVec3 to = vl_sub(r.target, p);
-  float d2 = vl_length2(to);
-  r.w = vl_normalize(to);
-  float factor = d2 > 0.0f ? 1.0f / d2 : 0.0f;
-  if (light->kind == VL_WL_SPOT) {
-    float c = -vl_dot(r.w, vl_vec3(light->direction[0], light->direction[1], light->direction[2]));
-    factor *= spot_edge(light, c);
-  }
-  vlVec2 st = {0, 0};
-  if (light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION) factor *= vl_beam(world, light, r.w, &st);
-  vl_emitted_at(world, &world->emitted.items[light->emitted], lambda, st.x, st.y, true, r.radiance);
-  for (int c = 0; c < 4; c++) r.radiance[c] *= factor;
-  return r;
-}
-
-static Arrival from_direction(const vlWorld *world, const vlWorldLight *light, const float lambda[4]) {
-  Arrival r = {.pdf = 1.0f, .delta = true, .distant = true};
-  r.w = r.target = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
-  vl_emitted_at(world, &world->emitted.items[light->emitted], lambda, 0, 0, false, r.radiance);
-  return r;
-}
-
-/* The sky: uniform, through a portal, or by its image. */
-static Arrival from_sky(const vlWorld *world, const vlWorldLight *light, const float lambda[4], vlVec3 p, float u,
-                        float v) {
-  const vlEmitted *e = &world->emitted.items[light->emitted];
-  Arrival r = {.pdf = 0.0f, .distant = true};
+void vl_light_sample_infinite(const vlLightQuery *q, vlLightSample *out) {
+  const vlWorld *world = q->world;
+  const vlWorldLight *light = q->light;
+  out->distant = true;
   if (light->environment == VL_NONE) {
-    if (world->def.imitate_pbrt) return r; /* pbrt-v4 leaves a uniform sky to the BSDF's samples */
-    r.w = r.target = vl_warp_sphere(u, v);
-    r.pdf = 0.25f * VL_INV_PI;
-    vl_emitted_at(world, e, lambda, 0, 0, true, r.radiance);
-    return r;
-  }
-  const vlEnvironment *env = &world->environments.items[light->environment];
-  if (env->portal) {
+    if (world->def.imitate_pbrt) return; /* pbrt-v4 leaves a uniform sky to the BSDF's samples */
+    out->w = vl_warp_sphere(q->u, q->v);
+    out->pdf = 0.25f * VL_INV_PI;
+    vl_emitted_at(world, q->emitted, q->lambda, 0, 0, true, out->radiance);
+  } else if (world->environments.items[light->environment].portal) {
+    const vlPortal *portal = world->environments.items[light->environment].portal;
     vlPortalWindow window;
-    if (!vl_portal_window(env->portal, p, &window)) return r;
-    r.w = r.target = vl_portal_sample(env->portal, &window, u, v);
-    r.pdf = vl_infinite_pdf(world, light, p, r.w);
-    vl_infinite_at(world, light, p, r.w, lambda, r.radiance);
-    return r;
+    if (!vl_portal_window(portal, q->p, &window)) return;
+    out->w = vl_portal_sample(portal, &window, q->u, q->v);
+    out->pdf = vl_infinite_pdf(world, light, q->p, out->w);
+    vl_infinite_at(world, light, q->p, out->w, q->lambda, out->radiance);
+  } else {
+    const vlEnvironment *env = &world->environments.items[light->environment];
+    float dx, dy;
+    uint32_t y = vl_find_cell(env->marginal_cdf, env->size, q->v, &dy);
+    uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, q->u, &dx);
+    float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
+    out->w = vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
+    out->pdf = env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
+    vl_emitted_at(world, q->emitted, q->lambda, s, t, true, out->radiance);
   }
-  float dx, dy;
-  uint32_t y = vl_find_cell(env->marginal_cdf, env->size, v, &dy);
-  uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
-  float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
-  r.w = r.target = vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
-  r.pdf = env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
-  vl_emitted_at(world, e, lambda, s, t, true, r.radiance);
-  return r;
+  out->target = out->w;
 }
 
-static Arrival from_area(const vlWorld *world, const vlWorldLight *light, const float lambda[4], vlVec3 p, float u,
-                         float v) {
-  const vlEmitted *e = &world->emitted.items[light->emitted];
-  Arrival r = {.pdf = 0.0f};
-  Sample q = sample_area(world, light, p, u, v);
-  r.w = vl_normalize(vl_sub(q.p, p));
-  float facing = -vl_dot(r.w, q.n);
-  if (!(facing > 0.0f) && !(e->two_sided && facing < 0.0f)) return r;
-  if (!(q.pdf > 0.0f)) return r;
-  r.pdf = q.pdf;
-  vl_emitted_at(world, e, lambda, q.u, 1.0f - q.v, false, r.radiance);
+void vl_light_sample_area(const vlLightQuery *q, vlLightSample *out) {
+  const vlWorldLight *light = q->light;
+  Sample at = sample_area(q->world, light, q->p, q->u, q->v);
+  vlVec3 w = vl_normalize(vl_sub(at.p, q->p));
+  float facing = -vl_dot(w, at.n);
+  if (!(facing > 0.0f) && !(q->emitted->two_sided && facing < 0.0f)) return;
+  if (!(at.pdf > 0.0f)) return;
+  vl_emitted_at(q->world, q->emitted, q->lambda, at.u, 1.0f - at.v, false, out->radiance);
+  const vlWorldShape *shape = &q->world->shapes.items[light->shape];
   if (light->invisible) {
-    r.delta = true;
-  } else if (world->shapes.items[light->shape].alpha >= 0) {
-    float cover = vl_light_coverage(world, light, q.p, q.n, q.u, q.v, q.weights);
-    for (int c = 0; c < 4; c++) r.radiance[c] *= cover;
+    out->delta = true;
+  } else if (shape->alpha >= 0) {
+    float cover = vl_light_coverage(q->world, light, at.p, at.n, at.u, at.v, at.weights);
+    for (int c = 0; c < 4; c++) out->radiance[c] *= cover;
   }
   /* The end of the shadow ray is moved off the light by the bound of the rounding error of its points. */
-  float size = vl_abs(q.p.x) + vl_abs(q.p.y) + vl_abs(q.p.z);
-  r.target = vl_offset_origin(q.p, facing < 0.0f ? vl_neg(q.n) : q.n, 16.0f * 0x1p-24f * size, vl_neg(r.w));
-  return r;
+  float size = vl_abs(at.p.x) + vl_abs(at.p.y) + vl_abs(at.p.z);
+  out->target = vl_offset_origin(at.p, facing < 0.0f ? vl_neg(at.n) : at.n, 16.0f * 0x1p-24f * size, vl_neg(w));
+  out->w = w;
+  out->pdf = at.pdf;
 }
 
-static Arrival arrival(const vlWorld *world, const vlWorldLight *light, const float lambda[4], vlVec3 p, float u,
-                       float v) {
-  switch (light->kind) {
-    case VL_WL_POINT:
-    case VL_WL_SPOT:
-    case VL_WL_GONIOMETRIC:
-    case VL_WL_PROJECTION: return from_position(world, light, lambda, p);
-    case VL_WL_DISTANT: return from_direction(world, light, lambda);
-    case VL_WL_INFINITE: return from_sky(world, light, lambda, p, u, v);
-    case VL_WL_AREA: break;
-  }
-  return from_area(world, light, lambda, p, u, v);
+static inline void sample_kind(const vlLightQuery *q, vlLightSample *out) {
+#define SAMPLE(K, k) \
+  case VL_WL_##K: vl_light_sample_##k(q, out); break;
+  switch (q->light->kind) { VL_WORLD_LIGHT_KINDS(SAMPLE) }
+#undef SAMPLE
 }
 
 static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, vlVec3 p, float u, float v,
@@ -388,17 +323,22 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
   out->wx[i] = out->wy[i] = out->wz[i] = 0.0f;
   vlLightChoice chosen = {out->light[i], out->pmf[i]};
   if (chosen.light == VL_INNER || !(chosen.pmf > 0.0f)) return;
+  const vlWorldLight *light = &world->lights.items[chosen.light];
   float lambda[4];
   vl_path_lambda(paths, i, lambda);
-  Arrival a = arrival(world, &world->lights.items[chosen.light], lambda, p, u, v);
-  out->delta[i] = a.delta;
-  out->distant[i] = a.distant;
-  if (!(a.pdf > 0.0f) || !(a.pdf < VL_INFINITY)) return;
-  float total = a.pdf * chosen.pmf, inv = 1.0f / total;
+  vlLightQuery q = {world, light, &world->emitted.items[light->emitted], lambda, p, u, v};
+  vlLightSample sample;
+  sample.pdf = 0.0f;
+  sample.delta = sample.distant = false;
+  sample_kind(&q, &sample);
+  out->delta[i] = sample.delta;
+  out->distant[i] = sample.distant;
+  if (!(sample.pdf > 0.0f) || !(sample.pdf < VL_INFINITY)) return;
+  float total = sample.pdf * chosen.pmf, inv = 1.0f / total;
   out->pdf[i] = total;
-  out->wx[i] = a.w.x, out->wy[i] = a.w.y, out->wz[i] = a.w.z;
-  out->tx[i] = a.target.x, out->ty[i] = a.target.y, out->tz[i] = a.target.z;
-  for (int c = 0; c < 4; c++) out->radiance[c][i] = a.radiance[c] * inv;
+  out->wx[i] = sample.w.x, out->wy[i] = sample.w.y, out->wz[i] = sample.w.z;
+  out->tx[i] = sample.target.x, out->ty[i] = sample.target.y, out->tz[i] = sample.target.z;
+  for (int c = 0; c < 4; c++) out->radiance[c][i] = sample.radiance[c] * inv;
 }
 
 void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *f, const float *u_choice,

@@ -80,21 +80,21 @@ static vlVec3 beside(const vlWorld *world, const vlWorldLight *light) {
 void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium) {
   for (size_t i = 0; i < world->lights.count; i++) {
     const vlWorldLight *light = &world->lights.items[i];
-    bool far = light->kind == VL_WL_DISTANT || light->kind == VL_WL_INFINITE;
     vlVec3 p = vl_vec3(light->position[0], light->position[1], light->position[2]);
     medium[i] = VL_NONE;
-    if (light->kind == VL_WL_AREA) {
+    if (light->shape != VL_NONE) {
       if (borders(&world->shapes.items[light->shape])) continue; /* it tells itself */
-      if (i > 0 && world->lights.items[i - 1].kind == VL_WL_AREA && world->lights.items[i - 1].shape == light->shape) {
+      if (i > 0 && world->lights.items[i - 1].shape == light->shape) {
         medium[i] = medium[i - 1];
         continue;
       }
       p = beside(world, light);
-    } else if (far) {
+    } else if (light->far) {
       vlVec3 w = vl_vec3(0, 0, 1);
-      if (light->kind == VL_WL_DISTANT) w = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
+      if (light->delta) w = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
       p = vl_add(vl_vec3(world->center[0], world->center[1], world->center[2]), vl_mul(w, 2.0f * world->radius));
     }
-    if (!ask_around(world, p, far, &medium[i])) medium[i] = on_the_way(world, vl_vec3(eye[0], eye[1], eye[2]), p);
+    if (!ask_around(world, p, light->far, &medium[i]))
+      medium[i] = on_the_way(world, vl_vec3(eye[0], eye[1], eye[2]), p);
   }
 }

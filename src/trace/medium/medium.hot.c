@@ -107,13 +107,13 @@ static void pass(const vlWorldMedium *m, const float majorant[4], float length, 
 
 /* The share of null collisions is the same for all channels but in RGB grids, where it is left out of the odds. */
 static inline float null_odds(const vlWorldMedium *m, float none, float majorant) {
-  return m->kind == VL_MEDIUM_RGB_GRID ? 1.0f : none / majorant;
+  return m->own_sigma ? 1.0f : none / majorant;
 }
 
 static bool start_tracking(const vlWorldMedium *m, const vlMediumLight *whole, vlVec3 o, vlVec3 d, float t0, float t1,
                            vlFlight *f, Tracking *k) {
   if (!vl_majorant_start(m, o, d, t0, t1, &k->walk)) return false;
-  for (int c = 0; c < 4; c++) k->unit[c] = m->kind == VL_MEDIUM_RGB_GRID ? 1.0f : whole->a[c] + whole->s[c];
+  for (int c = 0; c < 4; c++) k->unit[c] = m->own_sigma ? 1.0f : whole->a[c] + whole->s[c];
   k->t = k->end = t0;
   k->collisions = 0;
   k->depth = exponential(vl_flight_random(f));
@@ -228,13 +228,13 @@ static void attenuate_through(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float 
 vlFlightEnd vl_fly(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, bool emission, vlFlight *f,
                    float radiance[4], float *t) {
   if (!(t1 > t0)) return VL_FLIGHT_PASSED;
-  if (m->kind == VL_MEDIUM_HOMOGENEOUS) return fly_homogeneous(m, t0, t1, emission, f, radiance, t);
+  if (m->uniform) return fly_homogeneous(m, t0, t1, emission, f, radiance, t);
   return fly_through(m, o, d, t0, t1, emission, f, radiance, t);
 }
 
 void vl_attenuate(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, vlFlight *f) {
   if (!(t1 > t0)) return;
-  if (m->kind == VL_MEDIUM_HOMOGENEOUS)
+  if (m->uniform)
     attenuate_homogeneous(m, t0, t1, f);
   else
     attenuate_through(m, o, d, t0, t1, f);

@@ -44,8 +44,8 @@ static void wavelengths(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
 static bool start_medium(const vlTracing *t, const vlEmission *e, uint32_t *medium) {
   const vlWorldLight *light = &t->world->lights.items[e->light];
   *medium = t->def->two_way->medium[e->light];
-  if (light->kind == VL_WL_AREA) *medium = vl_medium_beyond(&t->world->shapes.items[light->shape], e->n, e->d, *medium);
-  return *medium == VL_NONE || (light->kind != VL_WL_INFINITE && light->kind != VL_WL_DISTANT);
+  if (light->shape != VL_NONE) *medium = vl_medium_beyond(&t->world->shapes.items[light->shape], e->n, e->d, *medium);
+  return *medium == VL_NONE || !light->far;
 }
 
 static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
@@ -94,8 +94,8 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
 float vl_light_asked(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w) {
   const vlWorldLight *light = &world->lights.items[r->light[lane]];
   float pmf = vl_light_pmf(&world->tree, p, n, r->light[lane]);
-  if (light->kind == VL_WL_INFINITE) return pmf * vl_infinite_pdf(world, light, p, w);
-  if (light->kind != VL_WL_AREA) return pmf;
+  if (light->delta) return pmf;
+  if (light->far) return pmf * vl_infinite_pdf(world, light, p, w);
   vlPoint at;
   __builtin_memset(&at, 0, sizeof at);
   at.p = vl_vec3(r->lx[lane], r->ly[lane], r->lz[lane]);

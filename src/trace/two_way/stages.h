@@ -111,9 +111,7 @@ static inline const vlEyeView *vl_eye_of(const vlTracing *t, uint32_t lane) {
 }
 /* Of light's first ray, at that distance. */
 static inline float vl_light_density(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane, float distance) {
-  vlWorldLightKind kind = t->world->lights.items[r->light[lane]].kind;
-  bool point = kind == VL_WL_POINT || kind == VL_WL_SPOT || kind == VL_WL_GONIOMETRIC || kind == VL_WL_PROJECTION;
-  return point ? r->density[lane] / (distance * distance) : r->density[lane];
+  return t->world->lights.items[r->light[lane]].at_point ? r->density[lane] / (distance * distance) : r->density[lane];
 }
 
 /* Solid angle of a pixel round the direction whose cosine with the axis is c: its side at distance 1 is 1/f. */

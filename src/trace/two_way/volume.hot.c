@@ -128,7 +128,7 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     vl_path_lambda(p, i, lambda);
     vlVec3 at = vl_lane3(p->ox, p->oy, p->oz, i);
     vlMediumLight k = vl_medium_coefficients(m, lambda);
-    if (m->kind != VL_MEDIUM_HOMOGENEOUS) k = vl_medium_at(m, &k, lambda, at, false);
+    if (!m->uniform) k = vl_medium_at(m, &k, lambda, at, false);
     x->p[0] = at.x, x->p[1] = at.y, x->p[2] = at.z;
     x->w[0] = -p->dx[i], x->w[1] = -p->dy[i], x->w[2] = -p->dz[i];
     for (int c = 0; c < 4; c++) sum += x->power[c] = k.s[c] > 0.0f ? p->beta[c][i] * r->flux[c][lane] / k.s[c] : 0.0f;

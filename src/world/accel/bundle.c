@@ -2,8 +2,10 @@
  * each costs more than they do. */
 #include "world/accel/bundle.h"
 
+#include "scene/schema/schema.h"
+
 bool vl_accel_bundled(const vlWorldShape *s) {
-  return s->kind == VL_SHAPE_SPHERE || s->kind == VL_SHAPE_DISK || s->kind == VL_SHAPE_CYLINDER;
+  return (vl_kind_row(&vl_shape_family, (int)s->kind)->traits & VL_SHAPE_TRAIT_QUADRIC) != 0;
 }
 
 uint32_t vl_accel_find_bundle(const vlWorld *world, const vlWorldGroup *group, vlAccelBundle *bundle,

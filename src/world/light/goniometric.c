@@ -84,12 +84,24 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   return VL_OK;
 }
 
-vlResult vl_world_add_beam(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e, vlError *error) {
+/* The light's image; null: an error. */
+static const vlMipmap *add_image(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlError *error) {
   int32_t image = vl_world_add_image(world, def->path, def->image, NULL, 1, false, error);
-  if (image < 0) return error && error->code ? error->code : VL_ERROR_SCENE;
   light->picture = (uint32_t)image;
-  const vlMipmap *mip = world->images.items[image].mipmap;
-  light->kind = def->kind == VL_LIGHT_GONIOMETRIC ? VL_WL_GONIOMETRIC : VL_WL_PROJECTION;
-  return light->kind == VL_WL_GONIOMETRIC ? add_goniometric(world, def, mip, light, e, error)
-                                          : add_projection(world, def, mip, light, e, error);
+  return image < 0 ? NULL : world->images.items[image].mipmap;
+}
+
+vlResult vl_compile_light_goniometric(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,
+                                      vlError *error) {
+  const vlMipmap *mip = add_image(world, def, light, error);
+  if (!mip) return error && error->code ? error->code : VL_ERROR_SCENE;
+  return add_goniometric(world, def, mip, light, e, error);
+}
+
+vlResult vl_compile_light_projection(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,
+                                     vlError *error) {
+  const vlMipmap *mip = add_image(world, def, light, error);
+  if (!mip) return error && error->code ? error->code : VL_ERROR_SCENE;
+  light->has_cone = true;
+  return add_projection(world, def, mip, light, e, error);
 }

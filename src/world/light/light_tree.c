@@ -182,13 +182,13 @@ static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLigh
   for (int i = 0; i < 3; i++) b->low[i] = b->high[i] = light->position[i], b->axis[i] = i == 2;
   b->cos_o = -1; /* points shine everywhere */
   b->cos_e = 0;
-  if (light->kind == VL_WL_SPOT || light->kind == VL_WL_PROJECTION) {
+  if (light->has_cone) {
     for (int i = 0; i < 3; i++) b->axis[i] = light->direction[i];
     float to = acosf(light->cos_start), te = acosf(light->cos_end);
     b->cos_o = light->cos_start;
     b->cos_e = fminf(cosf(te - to), 0.999f); /* a hard edge has no width, and rounding none to lose */
   }
-  if (light->kind == VL_WL_AREA) {
+  if (light->shape != VL_NONE) {
     const vlWorldShape *shape = &world->shapes.items[light->shape];
     vl_world_prim_bounds(shape, light->prim, b->low, b->high);
     b->two_sided = world->emitted.items[light->emitted].two_sided;
@@ -237,7 +237,7 @@ vlResult vl_light_tree_build(vlWorld *world, vlError *error) {
     const vlWorldLight *light = &world->lights.items[i];
     tree->slot[i] = VL_INNER;
     tree->trails[i] = 0;
-    if (light->kind == VL_WL_INFINITE || light->kind == VL_WL_DISTANT) {
+    if (light->far) {
       tree->slot[i] = tree->unbounded_count;
       tree->unbounded[tree->unbounded_count++] = i;
     } else {

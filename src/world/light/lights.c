@@ -9,6 +9,7 @@
 #include "math/octahedral.h"
 #include "math/transform.h"
 #include "scene/scene.h"
+#include "scene/schema/schema.h"
 #include "world/light/lights.h"
 #include "world/shape/surface_point.h"
 #include "world/texture/texture_lookup.h"
@@ -134,7 +135,8 @@ static vlResult build_environment(vlWorld *world, vlEnvironment *env, double *me
   return VL_OK;
 }
 
-static vlResult add_infinite(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e, vlError *error) {
+vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,
+                                   vlError *error) {
   light->environment = VL_NONE;
   float area = VL_PI * world->radius * world->radius;
   if (!def->path && !def->image) {
@@ -175,9 +177,15 @@ static vlResult add_infinite(vlWorld *world, const vlLightDef *def, vlWorldLight
   return r;
 }
 
+typedef vlResult CompileLight(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e, vlError *error);
+#define COMPILE(K, k) [VL_LIGHT_##K] = vl_compile_light_##k,
+static CompileLight *const compile[] = {VL_LIGHT_KINDS(COMPILE)};
+#undef COMPILE
+
 static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error) {
   vlWorldLight *light = VL_PUSH(world->context, &world->lights);
   vlEmitted *e = VL_PUSH(world->context, &world->emitted);
+  const vlKindRow *row = vl_kind_row(&vl_light_family, (int)def->kind);
   if (!light || !e) return vl_fail_memory(error);
   e->image = -1;
   light->emitted = (uint32_t)world->emitted.count - 1;
@@ -186,53 +194,25 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
   double from[3] = {def->from[0], def->from[1], def->from[2]}, to[3] = {def->to[0], def->to[1], def->to[2]}, a[3], b[3];
   vl_mat4_point(&m, from, a);
   vl_mat4_point(&m, to, b);
-  double l = 0, sign = def->kind == VL_LIGHT_DISTANT ? -1 : 1;
+  double l = 0, sign = row->traits & VL_LIGHT_TRAIT_FAR ? -1 : 1; /* the direction of one far away is towards it */
   for (int i = 0; i < 3; i++) l += (b[i] - a[i]) * (b[i] - a[i]);
   l = sqrt(l);
-  if (!(l > 0) && (def->kind == VL_LIGHT_DISTANT || def->kind == VL_LIGHT_SPOT))
+  if (!(l > 0) && (row->traits & VL_LIGHT_TRAIT_AIMS))
     return vl_fail(error, VL_ERROR_SCENE, "the light has no direction: \"from\" and \"to\" are the same point");
   for (int i = 0; i < 3; i++) {
     light->position[i] = (float)a[i];
     light->direction[i] = l > 0 ? (float)(sign * (b[i] - a[i]) / l) : 0;
   }
-  bool has_power = def->power == def->power;
-  float factor = def->scale;
-  vlResult r = VL_OK;
-  switch (def->kind) {
-    case VL_LIGHT_POINT:
-      light->kind = VL_WL_POINT;
-      if (has_power) factor *= (float)(def->power / (4 * M_PI));
-      r = vl_light_color(world, &def->color, factor, e, error);
-      light->power = 4 * VL_PI * vl_light_luminance(&e->spectrum);
-      break;
-    case VL_LIGHT_SPOT: {
-      light->kind = VL_WL_SPOT;
-      light->cos_end = cosf(def->cone_angle);
-      light->cos_start = cosf(def->cone_angle - def->cone_delta);
-      light->cone_squared = def->cone_squared;
-      float solid = 2 * VL_PI * ((1 - light->cos_start) + (light->cos_start - light->cos_end) / 2);
-      if (has_power) factor *= (float)(def->power / solid);
-      r = vl_light_color(world, &def->color, factor, e, error);
-      light->power = 4 * VL_PI * vl_light_luminance(&e->spectrum);
-      break;
-    }
-    case VL_LIGHT_DISTANT:
-      light->kind = VL_WL_DISTANT;
-      if (def->illuminance == def->illuminance) factor *= (float)def->illuminance;
-      r = vl_light_color(world, &def->color, factor, e, error);
-      light->power = VL_PI * world->radius * world->radius * vl_light_luminance(&e->spectrum);
-      break;
-    case VL_LIGHT_INFINITE: {
-      light->kind = VL_WL_INFINITE;
-      r = add_infinite(world, def, light, e, error);
-      uint32_t *slot = VL_PUSH(world->context, &world->infinite_lights);
-      if (!slot) return vl_fail_memory(error);
-      *slot = (uint32_t)world->lights.count - 1;
-      break;
-    }
-    case VL_LIGHT_GONIOMETRIC:
-    case VL_LIGHT_PROJECTION: r = vl_world_add_beam(world, def, light, e, error); break;
+  light->kind = (vlWorldLightKind)def->kind;
+  light->at_point = (row->traits & VL_LIGHT_TRAIT_AT_POINT) != 0;
+  light->far = (row->traits & VL_LIGHT_TRAIT_FAR) != 0;
+  light->delta = (row->traits & VL_LIGHT_TRAIT_DELTA) != 0;
+  if (!light->delta) { /* rays that miss everything see it */
+    uint32_t *slot = VL_PUSH(world->context, &world->infinite_lights);
+    if (!slot) return vl_fail_memory(error);
+    *slot = (uint32_t)world->lights.count - 1;
   }
+  vlResult r = compile[def->kind](world, def, light, e, error);
   return vl_world_placed(def->source, error, r);
 }
 

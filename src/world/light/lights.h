@@ -20,8 +20,13 @@ float vl_light_texel_luminance(vlTexel t, uint32_t channels);
  * into world->emitted of what shapes share; VL_NONE: not yet. */
 vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t shape, uint32_t *compiled,
                                    vlError *error);
-/* Points whose light a picture shapes: goniometric and projection (beam.c). */
-vlResult vl_world_add_beam(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e, vlError *error);
+/* A function per kind of the scene's lights: colour, power and what the kind alone has. Position, direction (unit; of a
+ * light far away towards it) and traits are set before. */
+#define VL_LIGHT_KIND_COMPILES(K, k)                                                                      \
+  vlResult vl_compile_light_##k(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e, \
+                                vlError *error);
+VL_LIGHT_KINDS(VL_LIGHT_KIND_COMPILES)
+#undef VL_LIGHT_KIND_COMPILES
 /* The portal of a pictured sky, whose directions env knows; power: of the light that passes through it (portal.c). */
 vlResult vl_world_add_portal(vlWorld *world, const vlLightDef *def, vlEnvironment *env, double *power, vlError *error);
 

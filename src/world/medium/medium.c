@@ -179,8 +179,8 @@ static float *new_majorants(vlWorld *world, vlWorldMedium *m, uint32_t x, uint32
   return majorants;
 }
 
-static vlResult compile_grid(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
-  bool rgb = def->kind == VL_MEDIUM_RGB_GRID;
+static vlResult compile_cells(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
+  bool rgb = m->own_sigma;
   memcpy(m->low, def->low, sizeof m->low);
   memcpy(m->high, def->high, sizeof m->high);
   if (!copy_grid(world, def, def->density, &m->density) ||
@@ -211,11 +211,22 @@ static vlResult compile_grid(vlWorld *world, const vlMediumDef *def, vlWorldMedi
   return VL_OK;
 }
 
+static vlResult compile_grid(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
+  vlResult r = compile_cells(world, def, m, error);
+  return r == VL_OK && def->temperature ? compile_temperature(world, def, m, error) : r;
+}
+
+static vlResult compile_rgb_grid(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
+  m->own_sigma = true;
+  return compile_cells(world, def, m, error);
+}
+
 /* Clouds get thinner with height: slabs. Noise stays within 1.04, its five octaves within 1.01. */
 static vlResult compile_cloud(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
   enum { SLABS = 16 };
   memcpy(m->low, def->low, sizeof m->low);
   memcpy(m->high, def->high, sizeof m->high);
+  m->emits = false;
   m->cloud_density = def->cloud_density;
   m->wispiness = def->wispiness;
   m->frequency = def->frequency;
@@ -306,6 +317,7 @@ static void bound_sparse(const vlWorldMedium *m, float *majorants, const double 
 
 static vlResult compile_nanovdb(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
   const char *name = def->grid ? def->grid : "density", *heat = def->temperature_grid;
+  m->emits = false;
   vlResult r = vl_nanovdb_read(world, def->path, name, &m->sparse, error);
   if (r == VL_OK && !m->sparse) return vl_fail(error, VL_ERROR_SCENE, "%s: it has no grid \"%.80s\"", def->path, name);
   if (r == VL_OK) r = vl_nanovdb_read(world, def->path, heat ? heat : "temperature", &m->sparse_temperature, error);
@@ -330,6 +342,18 @@ static vlResult compile_nanovdb(vlWorld *world, const vlMediumDef *def, vlWorldM
 
 /* ---- all --------------------------------------------------------------------------------------------------------- */
 
+static vlResult compile_homogeneous(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
+  (void)world, (void)def, (void)error;
+  m->uniform = true;
+  m->extinction = vl_medium_mean_extinction(m);
+  return VL_OK;
+}
+
+typedef vlResult CompileMedium(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error);
+#define COMPILE(K, k) [VL_MEDIUM_##K] = compile_##k,
+static CompileMedium *const compile_kind[] = {VL_MEDIUM_KINDS(COMPILE)};
+#undef COMPILE
+
 static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
   vlMat4 inverse;
   m->kind = def->kind;
@@ -344,14 +368,7 @@ static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m
   m->scatters = !is_zero(&m->sigma_s);
   m->grey = is_grey(&m->sigma_a) && is_grey(&m->sigma_s);
   m->temperature_emission = 1;
-  switch (def->kind) {
-    case VL_MEDIUM_HOMOGENEOUS: m->extinction = vl_medium_mean_extinction(m); return VL_OK;
-    case VL_MEDIUM_CLOUD: m->emits = false; return compile_cloud(world, def, m, error);
-    case VL_MEDIUM_NANOVDB: m->emits = false; return compile_nanovdb(world, def, m, error);
-    case VL_MEDIUM_GRID:
-    case VL_MEDIUM_RGB_GRID: r = compile_grid(world, def, m, error); break;
-  }
-  return r == VL_OK && def->temperature ? compile_temperature(world, def, m, error) : r;
+  return compile_kind[def->kind](world, def, m, error);
 }
 
 /* Index in world->media of a scene's medium, compiled at its first use. */

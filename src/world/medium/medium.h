@@ -36,6 +36,8 @@ typedef struct vlWorldMedium {
   bool scatters, emits, grey; /* grey: the majorant is the same for all channels */
   bool by_channel;            /* absorbs by channel of linear sRGB: vlMediumDef.rgb_absorption, in spectral mode */
   float sigma_rgb[3];         /* by_channel: absorption, scale included; sigma_a is 0 */
+  bool uniform;               /* the same everywhere: no box, no majorants */
+  bool own_sigma;             /* coefficients are looked up, and sigma_a and sigma_s are not read */
   float extinction;           /* homogeneous: vl_medium_extinction */
   float medium_from_world[12];
   float low[3], high[3]; /* medium space; kinds but homogeneous */

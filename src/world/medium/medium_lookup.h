@@ -168,16 +168,26 @@ static inline vlMediumLight vl_rgb_medium_at(const vlWorldMedium *m, const float
   return r;
 }
 
-/* p: world. whole: vl_medium_coefficients. Kinds but homogeneous. */
+/* Factor on the coefficients at a point; p: medium space, q: of the box 0 to 1. Of each kind that has one. */
+static inline float vl_medium_density(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
+  switch (m->kind) {
+    case VL_MEDIUM_GRID: return vl_dense_lookup(&m->density, q);
+    case VL_MEDIUM_CLOUD: return vl_cloud_density(m, p);
+    case VL_MEDIUM_NANOVDB: return vl_sparse_lookup(m->sparse, p);
+    case VL_MEDIUM_HOMOGENEOUS:
+    case VL_MEDIUM_RGB_GRID: break;
+  }
+  return 1.0f;
+}
+
+/* p: world. whole: vl_medium_coefficients. Media that are not uniform. */
 static inline vlMediumLight vl_medium_at(const vlWorldMedium *m, const vlMediumLight *whole, const float lambda[4],
                                          vlVec3 world_p, bool emission) {
   vlVec3 p = vl_medium_point(m->medium_from_world, world_p);
   vlVec3 q = vl_vec3((p.x - m->low[0]) / (m->high[0] - m->low[0]), (p.y - m->low[1]) / (m->high[1] - m->low[1]),
                      (p.z - m->low[2]) / (m->high[2] - m->low[2]));
-  if (m->kind == VL_MEDIUM_RGB_GRID) return vl_rgb_medium_at(m, lambda, q, emission);
-  float density = m->kind == VL_MEDIUM_GRID      ? vl_dense_lookup(&m->density, q)
-                  : m->kind == VL_MEDIUM_NANOVDB ? vl_sparse_lookup(m->sparse, p)
-                                                 : vl_cloud_density(m, p);
+  if (m->own_sigma) return vl_rgb_medium_at(m, lambda, q, emission);
+  float density = vl_medium_density(m, p, q);
   density = density > 0.0f ? density : 0.0f;
   vlMediumLight r;
   for (int c = 0; c < 4; c++) r.a[c] = density * whole->a[c], r.s[c] = density * whole->s[c], r.le[c] = 0.0f;
@@ -203,7 +213,7 @@ static inline float vl_medium_mean_extinction(const vlWorldMedium *m) {
   return vl_extinction_of(&whole);
 }
 static inline float vl_medium_extinction(const vlWorldMedium *m, vlVec3 p) {
-  if (m->kind == VL_MEDIUM_HOMOGENEOUS) return m->extinction;
+  if (m->uniform) return m->extinction;
   vlMediumLight whole = vl_medium_coefficients(m, vl_extinction_lambda);
   vlMediumLight at = vl_medium_at(m, &whole, vl_extinction_lambda, p, false);
   return vl_extinction_of(&at);

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "math/transform.h"
 #include "scene/scene.h"
+#include "scene/schema/schema.h"
 #include "world/shape/curve.h"
 #include "world/shape/displace.h"
 #include "world/shape/moving.h"
@@ -205,9 +206,14 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef
     vl_world_displace_free(world, &fine);
     return r;
   }
-  if (def->kind == VL_SHAPE_TRIANGLES || def->kind == VL_SHAPE_BILINEAR)
-    return move_mesh(world, def, &m, &inverse, s, error);
-  if (def->kind == VL_SHAPE_CURVES && !vl_curve_copy(world, def, s)) return vl_fail_memory(error);
+  switch (def->kind) {
+    case VL_SHAPE_TRIANGLES:
+    case VL_SHAPE_BILINEAR: return move_mesh(world, def, &m, &inverse, s, error);
+    case VL_SHAPE_CURVES: return vl_curve_copy(world, def, s) ? VL_OK : vl_fail_memory(error);
+    case VL_SHAPE_SPHERE:
+    case VL_SHAPE_DISK:
+    case VL_SHAPE_CYLINDER: break; /* all numbers are there */
+  }
   return VL_OK;
 }
 
@@ -362,8 +368,7 @@ vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *erro
     vlResult r = add_shape(world, scene, def, &world->shapes.items[i], error);
     if (r != VL_OK) return r;
     world->shapes.count = i + 1;
-    if (def->faces || (def->kind != VL_SHAPE_TRIANGLES && def->kind != VL_SHAPE_BILINEAR))
-      world->groups.items[def->group.index].count++;
+    if (def->faces || !vl_shape_is_mesh(def->kind)) world->groups.items[def->group.index].count++;
     world->info.primitives += world->shapes.items[i].faces;
     if (def->kind == VL_SHAPE_TRIANGLES) world->info.triangles += world->shapes.items[i].faces;
   }
@@ -374,7 +379,7 @@ vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *erro
   }
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *def = &scene->shapes.items[i];
-    if (!def->faces && (def->kind == VL_SHAPE_TRIANGLES || def->kind == VL_SHAPE_BILINEAR)) continue;
+    if (!def->faces && vl_shape_is_mesh(def->kind)) continue;
     vlWorldGroup *group = &world->groups.items[def->group.index];
     group->shapes[group->count++] = (uint32_t)i;
   }

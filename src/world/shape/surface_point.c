@@ -21,34 +21,52 @@ void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]) 
 bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3], const double d[3], double t_min,
                         double t_max, vlShapeHit *hit) {
   hit->a = hit->b = 0;
-  if (shape->kind == VL_SHAPE_CURVES) return vl_curve_intersect(shape, prim, o, d, t_min, t_max, hit);
-  return shape->kind == VL_SHAPE_BILINEAR ? vl_patch_intersect(shape, prim, o, d, t_min, t_max, hit)
-                                          : vl_quadric_intersect(shape, o, d, t_min, t_max, hit);
+  switch (shape->kind) {
+    case VL_SHAPE_BILINEAR: return vl_patch_intersect(shape, prim, o, d, t_min, t_max, hit);
+    case VL_SHAPE_SPHERE:
+    case VL_SHAPE_DISK:
+    case VL_SHAPE_CYLINDER: return vl_quadric_intersect(shape, o, d, t_min, t_max, hit);
+    case VL_SHAPE_CURVES: return vl_curve_intersect(shape, prim, o, d, t_min, t_max, hit);
+    case VL_SHAPE_TRIANGLES: break; /* trace/surface has them in batches */
+  }
+  return false;
 }
 
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
   memset(point->error, 0, sizeof point->error);
-  if (shape->kind == VL_SHAPE_CURVES)
-    vl_curve_point(shape, prim, hit, point);
-  else if (shape->kind == VL_SHAPE_BILINEAR)
-    vl_patch_point(shape, prim, hit->a, hit->b, point);
-  else
-    vl_quadric_point(shape, hit->p, point);
+  switch (shape->kind) {
+    case VL_SHAPE_BILINEAR: vl_patch_point(shape, prim, hit->a, hit->b, point); break;
+    case VL_SHAPE_SPHERE:
+    case VL_SHAPE_DISK:
+    case VL_SHAPE_CYLINDER: vl_quadric_point(shape, hit->p, point); break;
+    case VL_SHAPE_CURVES: vl_curve_point(shape, prim, hit, point); break;
+    case VL_SHAPE_TRIANGLES: break;
+  }
 }
 
 void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
   memset(point->error, 0, sizeof point->error);
   *pdf = 0;
-  if (shape->kind == VL_SHAPE_CURVES)
-    vl_curve_middle(shape, prim, point);
-  else if (shape->kind == VL_SHAPE_BILINEAR)
-    vl_patch_sample(shape, prim, u, v, point, pdf);
-  else
-    vl_quadric_sample(shape, u, v, point, pdf);
+  switch (shape->kind) {
+    case VL_SHAPE_BILINEAR: vl_patch_sample(shape, prim, u, v, point, pdf); break;
+    case VL_SHAPE_SPHERE:
+    case VL_SHAPE_DISK:
+    case VL_SHAPE_CYLINDER: vl_quadric_sample(shape, u, v, point, pdf); break;
+    case VL_SHAPE_CURVES: vl_curve_middle(shape, prim, point); break; /* they do not emit: only a point is needed */
+    case VL_SHAPE_TRIANGLES: break;
+  }
 }
 
 double vl_shape_pdf(const vlWorldShape *shape, uint32_t prim, const vlSurfacePoint *point) {
-  return shape->kind == VL_SHAPE_BILINEAR ? vl_patch_pdf(shape, prim, point->p) : vl_quadric_pdf(shape, point->p);
+  switch (shape->kind) {
+    case VL_SHAPE_BILINEAR: return vl_patch_pdf(shape, prim, point->p);
+    case VL_SHAPE_SPHERE:
+    case VL_SHAPE_DISK:
+    case VL_SHAPE_CYLINDER: return vl_quadric_pdf(shape, point->p);
+    case VL_SHAPE_CURVES:
+    case VL_SHAPE_TRIANGLES: break;
+  }
+  return 0;
 }
 
 /* ---- bounds and area, also of triangles -------------------------------------------------------------------------- */

@@ -1,0 +1,123 @@
+/* scene/schema/shapes.c: the shapes. Names and defaults are pbrt-v4's; its shapes "plymesh" and "loopsubdiv" are other
+ * ways to say triangles. */
+#include "base/cookie.h"
+#include "scene/schema/schema.h"
+
+#define DEGREES (3.14159265358979323846 / 180)
+
+#define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlShapeDef, __VA_ARGS__)
+#define ARRAY(name, member, type_in_files, line) PARAMETER(BLOCK, name, member, line, .text = type_in_files)
+#define LENGTH(name, member, text, ...) PARAMETER(FLOAT, name, member, text, .unit = "length", VL_DEFAULT(__VA_ARGS__))
+/* Names in files that stand for arrays of the def. */
+#define IN_FILES(TYPE, file_name, place, text, ...)                                                          \
+  {                                                                                                          \
+    .type = VL_PARAMETER_##TYPE, .name = file_name, .member = #place, .offset = offsetof(vlShapeDef, place), \
+    .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND, .description = text, __VA_ARGS__                    \
+  }
+#define ALPHA PARAMETER(FLOAT_INPUT, "alpha", alpha, "coverage, 0 to 1", VL_DEFAULT(1), .flags = VL_PARAMETER_RULE)
+#define RADIUS                                                                              \
+  PARAMETER(FLOAT, "radius", radius, "radius", .unit = "length", VL_DEFAULT(1), VL_FROM(0), \
+            .flags = VL_PARAMETER_ABOVE_LOW)
+#define PHI_MAX                                                                                        \
+  PARAMETER(FLOAT, "phimax", phi_max, "the part of the turn about z that is there", .unit = "degrees", \
+            .factor = DEGREES, VL_DEFAULT(360 * DEGREES), VL_FROM(0), .flags = VL_PARAMETER_ABOVE_LOW)
+
+static const vlParameter triangles_parameters[] = {
+    ALPHA,
+    ARRAY("P", positions, "point3 array", "vertices"),
+    ARRAY("indices", indices, "integer array", "3 vertices per triangle; unset: one triangle"),
+    ARRAY("N", normals, "normal array", "shading normal per vertex"),
+    ARRAY("S", tangents, "vector3 array", "tangent per vertex"),
+    ARRAY("uv", uvs, "point2 array", "texture coordinates per vertex"),
+    ARRAY(NULL, tangent_signs, NULL, "per vertex: the bitangent is sign * n x tangent"),
+    ARRAY(NULL, more_uvs, NULL, "further sets of texture coordinates, 1 to 3"),
+    ARRAY(NULL, colors, NULL, "linear RGB and coverage per vertex"),
+    ARRAY(NULL, positions_close, NULL, "vertices at times[1]"),
+    ARRAY(NULL, normals_close, NULL, "normals at times[1]"),
+    ARRAY(NULL, times, NULL, "of the two sets of vertices, seconds"),
+    PARAMETER(BOOL, NULL, one_sided, "rays pass through the backs", VL_DEFAULT(0)),
+    PARAMETER(FLOAT_INPUT, "displacement", displacement,
+              "in files of plymesh: a float texture that moves the surface along its normals", .unit = "length",
+              .flags = VL_PARAMETER_RULE),
+    PARAMETER(FLOAT, "edgelength", edge_length,
+              "in files of plymesh: displaced triangles are divided until no edge is longer",
+              .alias = "displacement.edgelength", .unit = "length", VL_DEFAULT(1), VL_FROM(0),
+              .flags = VL_PARAMETER_ABOVE_LOW),
+};
+VL_KIND_ROW(triangles, .name = "trianglemesh", .description = "a mesh of triangles",
+            .traits = VL_SHAPE_TRAIT_MESH | VL_SHAPE_TRAIT_EMITS)
+
+static const vlParameter bilinear_parameters[] = {
+    ALPHA,
+    ARRAY("P", positions, "point3 array", "vertices"),
+    ARRAY("indices", indices, "integer array", "4 vertices per patch: p00 p10 p01 p11; unset: one patch"),
+    ARRAY("N", normals, "normal array", "shading normal per vertex"),
+    ARRAY("uv", uvs, "point2 array", "texture coordinates per vertex"),
+};
+VL_KIND_ROW(bilinear, .name = "bilinearmesh", .description = "a mesh of bilinear patches",
+            .traits = VL_SHAPE_TRAIT_MESH | VL_SHAPE_TRAIT_EMITS)
+
+static const vlParameter sphere_parameters[] = {
+    ALPHA,
+    RADIUS,
+    LENGTH("zmin", z_min, "where it starts along z; unset in a file: -radius", -1),
+    LENGTH("zmax", z_max, "where it ends along z; unset in a file: radius", 1),
+    PHI_MAX,
+};
+VL_KIND_ROW(sphere, .name = "sphere", .description = "a sphere or a part of one",
+            .traits = VL_SHAPE_TRAIT_QUADRIC | VL_SHAPE_TRAIT_EMITS)
+
+static const vlParameter disk_parameters[] = {
+    ALPHA,
+    RADIUS,
+    PARAMETER(FLOAT, "innerradius", inner_radius, "of a hole; less than the radius", .unit = "length", VL_FROM(0)),
+    LENGTH("height", height, "where it is along z", 0),
+    PHI_MAX,
+};
+VL_KIND_ROW(disk, .name = "disk", .description = "a disk across z or a part of one",
+            .traits = VL_SHAPE_TRAIT_QUADRIC | VL_SHAPE_TRAIT_EMITS)
+
+static const vlParameter cylinder_parameters[] = {
+    ALPHA,
+    RADIUS,
+    LENGTH("zmin", z_min, "where it starts along z", -1),
+    LENGTH("zmax", z_max, "where it ends along z", 1),
+    PHI_MAX,
+};
+VL_KIND_ROW(cylinder, .name = "cylinder", .description = "a cylinder about z, open, or a part of one",
+            .traits = VL_SHAPE_TRAIT_QUADRIC | VL_SHAPE_TRAIT_EMITS)
+
+static const char *const curve_kinds[] = {"flat", "cylinder", "ribbon", NULL};
+static const char *const curve_bases[] = {"bezier", "bspline", NULL};
+
+static const vlParameter curves_parameters[] = {
+    ALPHA,
+    PARAMETER(CHOICE, "type", curve, "facing each ray; so, too, with a tube's normal; or lying across N",
+              .choices = curve_kinds),
+    ARRAY("P", positions, "point3 array", "control points; in the def 4 Bezier points per segment"),
+    IN_FILES(CHOICE, "basis", positions, "of the control points", .choices = curve_bases),
+    IN_FILES(COUNT, "degree", positions, "of the control points", VL_DEFAULT(3), VL_RANGE(2, 3)),
+    ARRAY(NULL, widths, NULL, "at both ends of each segment"),
+    IN_FILES(FLOAT, "width", widths, "of the whole curve", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
+    IN_FILES(FLOAT, "width0", widths, "at its start; unset: width", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
+    IN_FILES(FLOAT, "width1", widths, "at its end; unset: width", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
+    ARRAY("N", normals, "normal array", "of ribbons, at both ends of each segment"),
+    PARAMETER(COUNT, "splitdepth", split_depth,
+              "segments are cut into 2^splitdepth pieces, at most 10: for speed alone", VL_DEFAULT(3),
+              .flags = VL_PARAMETER_RULE),
+};
+VL_KIND_ROW(curves, .name = "curve", .description = "cubic curves with a width, as hairs are", .traits = 0)
+
+#define ROW(NAME, name) [VL_SHAPE_##NAME] = &name##_row,
+VL_KIND_FAMILY(vl_shape_family, VL_SHAPE_KINDS, ROW, "shapes", "shape", "Shape")
+
+bool vl_shape_is_mesh(vlShapeKind kind) {
+  return (vl_kind_row(&vl_shape_family, (int)kind)->traits & VL_SHAPE_TRAIT_MESH) != 0;
+}
+
+vlShapeDef vl_default_shape_def(vlShapeKind kind) {
+  vlShapeDef def = {.cookie = VL_COOKIE_SHAPE, .kind = kind, .times = {0.0, 1.0}};
+  vl_family_set_defaults(&vl_shape_family, (int)kind, &def);
+  for (int i = 0; i < 16; i += 5) def.group_from_shape[i] = 1.0;
+  return def;
+}

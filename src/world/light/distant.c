@@ -1,0 +1,11 @@
+/* world/light/distant.c: lights infinitely far away in one direction (pbrt book 12.3): scale, or illuminance. */
+#include "world/light/lights.h"
+
+vlResult vl_compile_light_distant(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,
+                                  vlError *error) {
+  float factor = def->scale;
+  if (def->illuminance == def->illuminance) factor *= (float)def->illuminance;
+  vlResult r = vl_light_color(world, &def->color, factor, e, error);
+  light->power = VL_PI * world->radius * world->radius * vl_light_luminance(&e->spectrum);
+  return r;
+}

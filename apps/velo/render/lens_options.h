@@ -15,7 +15,7 @@ enum {
   RENDER_SECONDS,
   RENDER_OPTIONS
 };
-_Static_assert(RENDER_OPTIONS <= MAX_OPTIONS, "Arguments.values has no room for an option");
+_Static_assert((int)RENDER_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
 
 /* Overrides the camera of defs; a lens of many elements is focused anew and belongs to the scene. -1: go on; else the
  * exit code. */

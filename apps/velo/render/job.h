@@ -64,7 +64,8 @@ enum {
   RENDER_SCENE,
   RENDER_MAX_MEMORY,
   RENDER_MAX_TEXTURE,
-  RENDER_SANDBOX
+  RENDER_SANDBOX,
+  RENDER_LENS /* the first of lens_options.h */
 };
 
 extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[], sensor_choices[],

@@ -7,13 +7,15 @@
 
 /* Indices into Arguments.values, behind those of job.h. */
 enum {
-  RENDER_FOCUS_PIXEL = 56,
+  RENDER_FOCUS_PIXEL = RENDER_LENS,
   RENDER_FOCUS_DISTANCE,
   RENDER_LENS_RADIUS,
   RENDER_F_NUMBER,
   RENDER_ISO,
-  RENDER_SECONDS
+  RENDER_SECONDS,
+  RENDER_OPTIONS
 };
+_Static_assert((int)RENDER_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
 
 /* Overrides the camera of defs; a lens of many elements is focused anew and belongs to the scene. -1: go on; else the
  * exit code. */

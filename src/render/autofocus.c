@@ -1,4 +1,5 @@
-/* render/autofocus.c: what a pixel sees, asked of the world by one exact ray, and the focus that suits it. */
+/* render/autofocus.c: autofocus. One exact ray per pixel gives the distance of the visible surface; the focus distance
+ * is chosen from these distances. */
 #include "velo/focus.h"
 
 #include <math.h>
@@ -9,7 +10,8 @@
 #include "camera/rays.h"
 #include "trace/ground_truth/ground_truth.h"
 
-/* The part of the ray between near and far plane, from the kernel that the image's rays come from. */
+/* The part of the ray between the near and far planes (t_min, t_max), from the kernel that makes the image's camera
+ * rays. */
 static void find_ends(const vlCamera *camera, vlIsa isa, double x, double y, float *t_min, float *t_max) {
   float rows[12][VL_LANES];
   int32_t px[VL_LANES], py[VL_LANES];

@@ -5,7 +5,7 @@
 
 enum { TILE_PIXELS = VL_RENDER_TILE * VL_RENDER_TILE };
 
-/* After those of the film's samples. */
+/* Rows after those of vlFilmRayRows. */
 enum Row {
   LAMBDA = VL_FILM_ROWS,
   INV_PDF = LAMBDA + 4,
@@ -30,7 +30,8 @@ static uint32_t morton_half(uint32_t m) {
   return (m | m >> 4) & 0x00ff00ffu;
 }
 
-/* Pixels of the block's tiles inside the crop window, times the samples of this batch. Returns the number of lanes. */
+/* Lists the samples of this batch: the pixels of the block's tiles inside the crop window, times the samples of the
+ * batch. Returns the number of lanes. */
 static uint32_t list_samples(const vlRenderRun *r, vlRenderWorker *w, uint32_t block, uint32_t first, uint32_t count) {
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
   int32_t *px = rows.px, *py = rows.py;
@@ -39,7 +40,7 @@ static uint32_t list_samples(const vlRenderRun *r, vlRenderWorker *w, uint32_t b
   uint32_t x0 = (r->tile_x0 + block % blocks_x * r->span_x) * VL_RENDER_TILE;
   uint32_t y0 = (r->tile_y0 + block / blocks_x * r->span_y) * VL_RENDER_TILE;
   for (uint32_t s = first; s < first + count; s++)
-    for (uint32_t m = 0; m < pixels; m++) { /* two tiles lie side by side, four in a square */
+    for (uint32_t m = 0; m < pixels; m++) { /* Morton order: two tiles lie side by side, four in a square */
       uint32_t x = x0 + morton_half(m), y = y0 + morton_half(m >> 1);
       if (x < r->crop[0] || y < r->crop[1] || x >= r->crop[2] || y >= r->crop[3]) continue;
       px[n] = (int32_t)x, py[n] = (int32_t)y, index[n] = s;
@@ -49,12 +50,13 @@ static uint32_t list_samples(const vlRenderRun *r, vlRenderWorker *w, uint32_t b
   return n;
 }
 
-/* One writer: no exchange is needed. */
+/* Each counter has one writing thread, so that load and store suffice; no atomic read-modify-write. */
 static void count_more(_Atomic uint64_t *total, uint64_t more) {
   atomic_store_explicit(total, atomic_load_explicit(total, memory_order_relaxed) + more, memory_order_relaxed);
 }
 
-/* Where the camera sees nothing (outside an image circle, beyond a fold), not even the sky is seen. */
+/* Where the camera has no ray (outside an image circle, beyond a fold) radiance and alpha are 0, even if the scene has
+ * a sky. */
 static void clear_invalid(uint32_t n, const float *valid, float *alpha, float *const radiance[4]) {
   for (uint32_t i = 0; i < n; i++) {
     if (valid[i] > 0.0f) continue;
@@ -63,7 +65,8 @@ static void clear_invalid(uint32_t n, const float *valid, float *alpha, float *c
   }
 }
 
-/* What a ray's light counts. What a part of the lens stops is black, not transparent. */
+/* Multiplies radiance by the camera ray's weight. Alpha stays 1 where the lens blocks a part of the light: vignetting
+ * is black, not transparent. */
 static void weigh(uint32_t n, const float *weight, const float *valid, float *alpha, float *const radiance[4]) {
   for (uint32_t i = 0; i < n; i++) {
     for (int c = 0; c < 4; c++) radiance[c][i] = weight[i] > 0.0f ? radiance[c][i] * weight[i] : 0.0f;
@@ -144,7 +147,7 @@ void vl_render_block(void *user, uint32_t block, uint32_t worker) {
     uint32_t n = list_samples(r, w, block, s, count);
     if (n) render_batch(r, w, n);
     s += count;
-    vl_accel_leave(state); /* the callback is not ours */
+    vl_accel_leave(state); /* the user's callback runs with its own floating-point state */
     vl_stop_check(&r->stop);
     state = vl_accel_enter();
   }

@@ -1,10 +1,10 @@
-/* render/block.h: one run of vl_render, and what its workers do of it: blocks of tiles.
+/* render/block.h: one run of vl_render, and how its workers render it: in blocks of tiles.
  *
  *   tile x samples -> film positions (filter) -> camera rays -> trace -> RGB -> film sums
  *
- * A batch is a tile of 16 x 16 pixels times up to 4 samples, or up to 4 tiles; pixels in Morton order so that 16
- * neighbours make a packet. What a sample is depends on (seed, pixel, index) alone, and the film adds exactly: no
- * grouping shows in the image. */
+ * A batch is a tile of 16 x 16 pixels times up to 4 samples, or up to 4 tiles. Pixels are in Morton order, so that 16
+ * neighbours make a packet. A sample depends on (seed, pixel, index) alone, and the film's sums are exact: the
+ * grouping into batches does not change the image. */
 #ifndef RENDER_BLOCK_H
 #define RENDER_BLOCK_H
 
@@ -22,7 +22,7 @@ enum { VL_RENDER_TILE = 16, VL_RENDER_ROWS = VL_FILM_ROWS + 16 };
 typedef struct vlRenderWorker {
   vlTraceScratch *scratch;
   float *rows;                                      /* VL_RENDER_ROWS arrays of VL_ROW_SIZE */
-  _Atomic uint64_t paths, bounce_rays, shadow_rays; /* written by the worker, read by the progress report meanwhile */
+  _Atomic uint64_t paths, bounce_rays, shadow_rays; /* written by the worker; the progress report reads them */
   uint64_t not_finite;
   int32_t bad_x, bad_y;
 } vlRenderWorker;
@@ -35,11 +35,11 @@ typedef struct vlRenderRun {
   float exposure_time;
   vlTraceDef trace;
   const vlTraceKernels *trace_kernels;
-  vlTwoWayRun *two_way; /* null: the light is only asked for */
+  vlTwoWayRun *two_way; /* null: a tracer without light paths */
   bool rgb_mode;
   uint32_t crop[4];
   uint32_t tiles_x, tiles_y, tile_x0, tile_y0;
-  uint32_t span_x, span_y; /* tiles of a block, what a worker takes at a time */
+  uint32_t span_x, span_y; /* tiles of a block, the unit of work of a worker */
   uint32_t first_sample, pass_samples;
   vlRenderWorker *workers;
   atomic_uint blocks_done;
@@ -48,14 +48,15 @@ typedef struct vlRenderRun {
   uint32_t spp_before;
 } vlRenderRun;
 
-/* Tiles are taken several at once where a pass has few samples, so that batches are full; but not so many that a worker
- * is idle. */
+/* Chooses the size of a block: several tiles where a pass has few samples, so that batches are full; not so many that a
+ * worker is idle. */
 void vl_render_choose_blocks(vlRenderRun *r);
 uint32_t vl_render_block_count(const vlRenderRun *r);
 /* A task of vl_parallel_for; user is the run. */
 void vl_render_block(void *user, uint32_t block, uint32_t worker);
 
-/* Tells the caller how far it is: false when it wants no more. The calling thread alone. render.c. */
+/* Reports the progress to the caller's callback. False: the callback asks to stop. Only on the thread that called
+ * vl_render. In render.c. */
 bool vl_render_report(vlRenderRun *r, bool pass_done, double done_samples);
 
 #endif

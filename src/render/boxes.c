@@ -1,6 +1,6 @@
-/* render/boxes.c: what is seen of each object and instance, and what would be if nothing stood before it: rays through
- * the pixels' centres that do not end at the first surface. Counts are sums and extremes of integers: no order shows.
- */
+/* render/boxes.c: bounding boxes and pixel counts of each object and instance: of its visible pixels, and of all pixels
+ * that it would cover with nothing in front of it. Rays through the pixels' centres collect all crossings, not only the
+ * first. Counts are sums and extremes of integers, so that the result does not depend on the order of work. */
 #include "render/boxes.h"
 
 #include <math.h>
@@ -12,10 +12,10 @@
 #include "render/channel_pass.h"
 #include "world/shape/moving.h"
 
-/* Round pixels: how many, and the box. */
+/* Number of pixels and their bounding box. */
 typedef struct Extent {
   atomic_ullong count;
-  atomic_uint low[2], high[2]; /* inclusive; as if counted from the other side: ~low, so that zero is empty */
+  atomic_uint low[2], high[2]; /* inclusive; low holds ~low, so that zero means empty */
 } Extent;
 typedef struct Count {
   Extent seen, all;
@@ -27,8 +27,8 @@ typedef struct Pass {
   Count *counts[2]; /* objects, instances */
   vlIdBox *boxes[2];
   uint32_t ids[2];
-  uint8_t *grouped; /* by object */
-  bool corners;     /* instances have too many points in all */
+  uint8_t *grouped; /* by object: it is in a group */
+  bool corners;     /* the instances have too many points in all: the corners of their boxes are used */
   float time;
 } Pass;
 
@@ -95,7 +95,7 @@ static void put_extent(Extent *e, uint64_t *count, uint32_t box[4]) {
   for (int k = 0; k < 2 && *count; k++) box[k] = ~atomic_load(&e->low[k]), box[2 + k] = atomic_load(&e->high[k]) + 1;
 }
 
-/* Ids of objects, then of instances. */
+/* A task of vl_parallel_for: the ids of the objects come first, then those of the instances. */
 static void put_box(void *user, uint32_t index, uint32_t worker) {
   Pass *p = user;
   (void)worker;
@@ -114,7 +114,7 @@ static void put_box(void *user, uint32_t index, uint32_t worker) {
     vl_box_of_object(c->world, &c->camera, p->time, id, p->grouped[id - 1], box);
 }
 
-/* Which objects are in groups; and whether the points of all instances that are in the image are too many. */
+/* Finds which objects are in groups, and whether the instances in the image have too many points in all. */
 static void look_at_groups(Pass *p) {
   const vlWorld *world = p->channels.world;
   const uint64_t most = 1 << 26;

@@ -1,4 +1,4 @@
-/* render/camera_view.c: see eye_view.h. */
+/* render/camera_view.c: see camera_view.h. */
 #include "render/camera_view.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "camera/rays.h"
 #include "trace/ground_truth/ground_truth.h"
 
-/* Lengths of the camera's axes, if they are alike and at right angles; else 0. */
+/* Length of the camera's axes if all have the same length and are at right angles; else 0. */
 static double axes_length(const double m[16]) {
   double length2[3];
   for (int i = 0; i < 3; i++) length2[i] = m[i] * m[i] + m[4 + i] * m[4 + i] + m[8 + i] * m[8 + i];

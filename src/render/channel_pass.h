@@ -1,4 +1,4 @@
-/* render/channel_pass.h: the pass of ground truth: what its files share. */
+/* render/channel_pass.h: the ground-truth pass: declarations shared by its files. */
 #ifndef RENDER_CHANNEL_PASS_H
 #define RENDER_CHANNEL_PASS_H
 
@@ -11,7 +11,7 @@
 enum { VL_CHANNEL_TILE = 32, VL_TILE_PIXELS = VL_CHANNEL_TILE * VL_CHANNEL_TILE };
 _Static_assert((int)VL_TILE_PIXELS <= (int)VL_BATCH, "a tile is a batch");
 
-/* Bits' numbers: places in the tables below. */
+/* Bit numbers of the channels: indices into the tables below. */
 enum {
   VL_INDEX_Z,
   VL_INDEX_DISTANCE,
@@ -30,17 +30,17 @@ enum {
   VL_INDEX_CRYPTO
 };
 
-/* How much of a pixel each of the things in it covers: a small hash table. A pixel that sees more things than it holds
- * loses the latest. */
+/* A small hash table: the weight of each id (object, material, instance) in one pixel. A pixel with more than
+ * VL_TALLY_MOST ids loses the later ones. */
 enum { VL_TALLY_SLOTS = 1024, VL_TALLY_MOST = 768 };
 typedef struct vlTallyEntry {
   uint64_t key;
   int64_t weight;  /* units of 2^-24 */
-  float off, x, y; /* the sample closest to the pixel's centre: square of its distance, and its point of the film */
-  uint32_t round;  /* the entry is good where it is the tally's */
+  float off, x, y; /* the sample closest to the pixel's centre: squared distance, film point */
+  uint32_t round;  /* the entry is valid where this equals the tally's round */
 } vlTallyEntry;
 typedef struct vlTally {
-  uint32_t round, count, last; /* last: the slot found before */
+  uint32_t round, count, last; /* last: the slot of the previous lookup */
   uint32_t used[VL_TALLY_MOST];
   vlTallyEntry slots[VL_TALLY_SLOTS];
 } vlTally;
@@ -49,16 +49,16 @@ typedef struct vlChannelWorker {
   vlGroundTruthScratch *scratch;
   vlGroundTruthBatch *batch;
   float *rows;               /* VL_CHANNEL_ROWS arrays of VL_ROW_SIZE */
-  vlTally *tallies;          /* three of Cryptomatte or one of the choice; null where nothing is counted */
-  vlGroundTruthBatch *other; /* what the other camera sees; null without flow */
-  uint32_t *lanes;           /* of `other`: which lane of the batch */
+  vlTally *tallies;          /* three for Cryptomatte or one for the choice of a point; null where nothing is counted */
+  vlGroundTruthBatch *other; /* hits of the other camera's rays; null without flow */
+  uint32_t *lanes;           /* for each lane of `other`: its lane of the batch */
   uint32_t x[VL_BATCH], y[VL_BATCH];
-  float film_x[VL_TILE_PIXELS], film_y[VL_TILE_PIXELS]; /* the point of each pixel of the tile */
-  float lane_x[VL_BATCH], lane_y[VL_BATCH];             /* and of each lane */
+  float film_x[VL_TILE_PIXELS], film_y[VL_TILE_PIXELS]; /* film point of each pixel of the tile */
+  float lane_x[VL_BATCH], lane_y[VL_BATCH];             /* film point of each lane */
 } vlChannelWorker;
 enum { VL_CHANNEL_ROWS = 28 };
 
-/* Where the rays of a camera begin and end. */
+/* t_min and t_max of a camera's rays. */
 typedef struct vlChannelEnds {
   const vlCameraCompiled *camera;
   const uint32_t *x, *y;
@@ -68,20 +68,20 @@ typedef struct vlChannelEnds {
 typedef struct vlChannelPass {
   const vlWorld *world;
   const vlChannelsDef *def;
-  vlCamera camera;            /* a pinhole, held at the time of all numbers */
-  double time, other_time[2]; /* seconds; of the pass and of the other cameras */
+  vlCamera camera;            /* a pinhole, held at the time of the pass */
+  double time, other_time[2]; /* seconds: of this pass, and of the other two cameras */
   vlCameraCompiled compiled;
   const vlCameraKernels *camera_kernels;
   const vlGroundTruthKernels *ground_truth_kernels;
   vlGroundTruthDef truth;
   uint32_t tiles_x, tile_x0, tile_y0, tiles;
-  uint32_t place[2][VL_CHANNEL_COUNT]; /* of each channel's first part among floats and ids */
+  uint32_t place[2][VL_CHANNEL_COUNT]; /* index of each channel's first component among the floats and among the ids */
   vlImage *images[2];                  /* floats, ids */
-  uint32_t step[2];                    /* values of a pixel */
+  uint32_t step[2];                    /* values per pixel */
   vlChannelWorker *workers;
   vlStop *stop;
-  vlFilmRays choice, image; /* rays of the image's samples through the middle of the lens, and as they are */
-  uint32_t spp;             /* of the image */
+  vlFilmRays choice, image; /* rays of the image's samples: through the middle of the lens, and unchanged */
+  uint32_t spp;             /* samples per pixel of the image */
   vlCryptomatte crypto[3];
   vlCamera other[2]; /* forward, backward */
   vlCameraCompiled other_compiled[2];
@@ -90,7 +90,7 @@ typedef struct vlChannelPass {
 static inline bool vl_channel_wanted(const vlChannelPass *p, uint32_t bits) {
   return (p->def->channels & bits) != 0;
 }
-/* Pixel k of a tile; false outside the crop window. */
+/* Coordinates of pixel k of a tile; false: outside the crop window. */
 static inline bool vl_channel_pixel(const vlChannelPass *p, uint32_t tile, uint32_t k, uint32_t *x, uint32_t *y) {
   *x = (p->tile_x0 + tile % p->tiles_x) * VL_CHANNEL_TILE + k % VL_CHANNEL_TILE;
   *y = (p->tile_y0 + tile / p->tiles_x) * VL_CHANNEL_TILE + k / VL_CHANNEL_TILE;
@@ -110,16 +110,16 @@ static inline float *vl_channel_row(vlChannelWorker *w, uint32_t row) {
   return w->rows + (size_t)row * VL_ROW_SIZE;
 }
 
-/* channels.c: cameras, kernels, tiles, from def and world. */
+/* In channels.c: sets cameras, kernels and tiles from def and world. */
 void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera);
-/* channel_samples.c: counts the image's samples: fills film_x and film_y of the tile, writes Cryptomatte. */
+/* In channel_samples.c: traces the image's samples of one tile; fills film_x and film_y of the tile and writes
+ * Cryptomatte. */
 void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile);
-/* flow.c: where the other cameras see what the n lanes of the batch met. */
+/* In flow.c: optical flow of the n lanes of the batch towards camera `which`. */
 void vl_channel_flow(const vlChannelPass *p, vlChannelWorker *w, int which);
-/* channel_tile.c: the part of the rays that near and far plane leave, from the very kernel the image's rays come
- * from. */
+/* In channel_tile.c: t_min and t_max of rays, from the kernel that makes the image's camera rays. */
 void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, const vlChannelEnds *ends, float *t_min,
                      float *t_max);
-void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker); /* does nothing once it is stopped */
+void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker); /* does nothing once the pass is stopped */
 
 #endif

@@ -1,15 +1,15 @@
-/* render/channel_samples.c: ground truth of a pixel's area: the image's own samples, sent out once more, say what
- * they meet first. From them come Cryptomatte's coverages, and the point of the film that a pixel's numbers are of
- * where that is not its centre.
+/* render/channel_samples.c: ground truth of a pixel's area. The image's own samples are traced once more, up to their
+ * first hit. They give Cryptomatte's coverages, and the film point that a pixel's values belong to where that is not
+ * its centre.
  *
- * All samples of a pixel stand one after the other, in the order of their indices; sums are of integers. */
+ * The samples of a pixel are consecutive, in the order of their indices; sums are of integers. */
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 
 #include "render/channel_pass.h"
 
-/* After those of the film's samples. */
+/* Rows after those of vlFilmRayRows. */
 enum Row { OBJECT = VL_FILM_ROWS, MATERIAL, INSTANCE, DISTANCE, ROWS };
 _Static_assert((int)ROWS <= (int)VL_CHANNEL_ROWS, "rows are shared");
 
@@ -25,7 +25,7 @@ static void tally_clear(vlTally *t) {
 static vlTallyEntry *tally_find(vlTally *t, uint64_t key) {
   vlTallyEntry *e = &t->slots[t->last];
   if (e->round == t->round && e->key == key) return e;
-  uint32_t at = (uint32_t)((key * UINT64_C(0x9e3779b97f4a7c15)) >> 54); /* 10 bits */
+  uint32_t at = (uint32_t)((key * UINT64_C(0x9e3779b97f4a7c15)) >> 54); /* top 10 bits */
   for (;; at = (at + 1) % VL_TALLY_SLOTS) {
     e = &t->slots[at];
     if (e->round == t->round && e->key != key) continue;
@@ -38,7 +38,8 @@ static vlTallyEntry *tally_find(vlTally *t, uint64_t key) {
   }
 }
 
-/* The heaviest entry; of several the one with the smallest key, which depends on no order. */
+/* The entry of the largest weight; of equal ones the one with the smallest key, so that the order of insertion does not
+ * matter. */
 static vlTallyEntry *tally_best(vlTally *t) {
   vlTallyEntry *best = NULL;
   for (uint32_t i = 0; i < t->count; i++) {
@@ -50,12 +51,12 @@ static vlTallyEntry *tally_best(vlTally *t) {
 
 /* ---- samples ----------------------------------------------------------------------------------------------------- */
 
-/* Which of the two: the choice of a point, or Cryptomatte. */
+/* What is counted: the choice of a film point, or Cryptomatte. */
 typedef struct Count {
   const vlFilmRays *rays;
   bool matte;
   int64_t total;            /* weight of the pixel's samples */
-  float off, x, y, nearest; /* of the choice: the closest to the centre, or the nearest */
+  float off, x, y, nearest; /* of the choice: the sample closest to the centre, or the nearest surface */
 } Count;
 
 static void add_choice(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t i, int64_t weight) {
@@ -93,7 +94,7 @@ static void add_matte(const vlChannelPass *p, vlChannelWorker *w, uint32_t i, in
   }
 }
 
-/* Rank after rank: the bits of a hash, and the share of the pixel. */
+/* Writes the ranks by decreasing weight: the hash as the bits of a float, and its share of the pixel. */
 static void put_matte(const vlChannelPass *p, vlChannelWorker *w, size_t at, int64_t total) {
   for (uint32_t k = 0; k < 3; k++) {
     if (!vl_channel_wanted(p, VL_CHANNEL_CRYPTO_OBJECT << k)) continue;
@@ -154,7 +155,7 @@ static void flush(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t
   p->ground_truth_kernels->hits(p->world, &p->truth, w->scratch, &hits);
   for (uint32_t i = 0; i < n; i++) {
     if (r.index[i] == 0) begin_pixel(w, c);
-    /* As the film adds them; what the negative lobes of a filter take away is nobody's. */
+    /* Weights are rounded as the film rounds them. Negative weights of a filter's lobes count for no id. */
     int64_t weight = r.weight[i] > 0.0f ? (int64_t)((double)r.weight[i] * 0x1p24 + 0.5) : 0;
     c->total += weight;
     if (c->matte)

@@ -1,7 +1,7 @@
-/* render/channel_tile.c: a tile of ground truth: one exact ray a pixel, what it meets, into the images.
+/* render/channel_tile.c: one tile of ground truth: one exact ray per pixel, and its first hit written to the images.
  *
- * All numbers of a pixel come from one double-precision ray: P = o + t d, z is P's depth, and so project(P) is the
- * pixel's point of the film. They are rounded to float once, each for itself. */
+ * All values of a pixel come from one double-precision ray: P = o + t d, z is P's depth, and project(P) is the pixel's
+ * film point. Each value is rounded to float once. */
 #include <math.h>
 #include <string.h>
 
@@ -42,7 +42,7 @@ void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, con
   memcpy(t_max, rays.t_max, n * sizeof(float));
 }
 
-/* Pixels of the tile inside the crop window that the camera has a ray for. */
+/* Lists the pixels of the tile inside the crop window that have a camera ray. */
 static uint32_t list_pixels(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
   uint32_t n = 0, x, y;
   vlGroundTruthBatch *b = w->batch;
@@ -89,7 +89,7 @@ static void put_ids(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_
     if (vl_channel_wanted(p, VL_CHANNEL_ID_OBJECT << k)) *vl_channel_ids(p, at, VL_INDEX_IDS + k) = values[k];
 }
 
-/* Pixels without a ray hold nothing too. */
+/* Clears the whole tile: pixels without a ray get the values of no hit, too. */
 static void clear_tile(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
   uint32_t x, y;
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {

@@ -1,5 +1,5 @@
-/* render/channels.c: ground truth: which channels there are, their images, and the ignore the tiles. A pass of its
- * own beside vl_render: no pixel of the image depends on it. */
+/* render/channels.c: ground truth: which channels there are, their images, and the pass over the tiles. This pass is
+ * separate from vl_render: no pixel of the image depends on it. */
 #include "velo/channels.h"
 
 #include <math.h>
@@ -14,8 +14,8 @@
 
 static const struct Channel {
   const char *name;
-  uint32_t floats, ids; /* how many; Cryptomatte's floats depend on the ranks */
-  const char *names[4]; /* floats, then ids */
+  uint32_t floats, ids; /* number of components; Cryptomatte's floats depend on the ranks */
+  const char *names[4]; /* of the floats, then of the ids */
 } channels[VL_CHANNEL_COUNT] = {
     {"Z", 1, 0, {"Z"}},
     {"distance", 1, 0, {"distance.Y"}},
@@ -55,7 +55,7 @@ vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height) {
                          .time = VL_UNSET};
 }
 
-/* ---- is it possible ---------------------------------------------------------------------------------------------- */
+/* ---- validation -------------------------------------------------------------------------------------------------- */
 
 static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlError *error) {
   bool counts = (def->channels & CRYPTO) || def->mode != VL_CHANNEL_MODE_CENTRE;
@@ -104,7 +104,7 @@ static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChan
 
 /* ---- images ---------------------------------------------------------------------------------------------------- */
 
-/* Names of the wanted channels of one kind; Cryptomatte's are the ranks' pairs, two in a layer. */
+/* Names of the requested channels of one kind. Cryptomatte's are pairs of ranks, two in a layer. */
 static uint32_t list_names(vlChannelPass *p, int id, const char *names[MAX_FLOATS], char crypto[MAX_FLOATS][24]) {
   uint32_t count = 0;
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++) {
@@ -210,7 +210,8 @@ static void free_all(vlChannelPass *p) {
   for (int k = 0; k < 3; k++) vl_cryptomatte_close(context, &p->crypto[k]);
 }
 
-/* The image's samples: as they are, and through the middle of the lens in the middle of the shutter's time. */
+/* Prepares the rays of the image's samples: unchanged, and through the middle of the lens at the middle of the
+ * shutter's time. */
 static void prepare_counting(vlChannelPass *p, const vlCamera *camera, vlIsa isa) {
   const vlChannelsDef *def = p->def;
   if (!(def->channels & CRYPTO) && def->mode == VL_CHANNEL_MODE_CENTRE) return;
@@ -225,7 +226,7 @@ static void prepare_counting(vlChannelPass *p, const vlCamera *camera, vlIsa isa
   vl_film_rays_clock(&p->choice, p->world);
 }
 
-/* The middle of the light: half of it has come in the middle of the image. */
+/* The time (s) by which half of the light has arrived at the middle of the image. */
 static double middle_time(const vlCamera *c) {
   return vl_camera_time(c, 0.5 * c->width, 0.5 * c->height, 0.5);
 }
@@ -251,7 +252,7 @@ void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
   }
   p->camera_kernels = vl_camera_kernels(isa);
   p->ground_truth_kernels = vl_ground_truth_kernels(isa);
-  const float footprint = 0.25f; /* as the image's samples have */
+  const float footprint = 0.25f; /* the same as for the image's samples */
   p->truth = (vlGroundTruthDef){.pixel_spread = footprint * p->compiled.pixel_spread,
                                 .pixel_width = footprint * p->compiled.pixel_width,
                                 .isa = isa,

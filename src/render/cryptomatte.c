@@ -35,7 +35,8 @@ static uint32_t murmur(const char *text) {
   return h ^ h >> 16;
 }
 
-/* The bits become those of a float: exponents of all zeros (denormal) or all ones (not a number) are avoided. */
+/* Cryptomatte's hash of a name. It is stored as the bits of a float, so exponents of all zeros (denormal) or all ones
+ * (infinity, NaN) are avoided. */
 uint32_t vl_cryptomatte_hash(const char *name) {
   uint32_t h = murmur(name), exponent = h >> 23 & 255;
   return exponent == 0 || exponent == 255 ? h ^ 1u << 23 : h;
@@ -45,7 +46,7 @@ uint32_t vl_cryptomatte_hash(const char *name) {
 
 enum { NAME_PART = 200, NAME_SIZE = NAME_PART + 32 };
 
-/* Bytes of the UTF-8 character that begins here; 0: it is none. */
+/* Number of bytes of the UTF-8 character at this place; 0: not valid UTF-8. */
 static size_t character(const char *at) {
   const unsigned char *b = (const unsigned char *)at;
   size_t n = b[0] < 0x80 ? 1 : b[0] >= 0xc2 && b[0] < 0xe0 ? 2 : (b[0] & 0xf0) == 0xe0 ? 3 : 0;
@@ -58,7 +59,7 @@ static size_t character(const char *at) {
   return n;
 }
 
-/* Scenes may call things anything; in the manifest a name is text without control characters, and not endless. */
+/* Scene names are arbitrary bytes. In the manifest a name is UTF-8 without control characters, of limited length. */
 static void clean(const char *from, char to[NAME_PART + 1]) {
   size_t n = 0;
   while (*from) {
@@ -73,7 +74,7 @@ static void clean(const char *from, char to[NAME_PART + 1]) {
   to[n] = 0;
 }
 
-/* What the scene calls it; where that names several things or nothing, with its id. */
+/* The scene's name of the id. Where that name is missing or not unique, the id is added. */
 static void make_name(const vlWorld *world, vlIdKind kind, uint32_t id, uint32_t tries, char name[NAME_SIZE]) {
   vlIdInfo info = {0};
   char part[NAME_PART + 1];
@@ -98,7 +99,8 @@ const char *vl_cryptomatte_type(vlIdKind kind) {
   return "CryptoAsset";
 }
 
-/* Among thousands of names two may well have the same 32 bits: the later one is called something else then. */
+/* Chooses a distinct hash for each id. Two of some thousand names may have the same 32 bits; then the later one gets
+ * another name. */
 static void choose_hashes(const vlWorld *world, vlCryptomatte *c, uint32_t *table, uint32_t mask) {
   char name[NAME_SIZE];
   for (uint32_t id = 1; id <= c->count; id++)
@@ -137,7 +139,7 @@ void vl_cryptomatte_close(vlContext *context, vlCryptomatte *c) {
 
 /* ---- the header -------------------------------------------------------------------------------------------------- */
 
-/* {"name":"0123abcd",...}; to may be null. Returns its length. */
+/* Writes {"name":"0123abcd",...}; to may be null. Returns its length in bytes. */
 static size_t write_manifest(const vlWorld *world, const vlCryptomatte *c, char *to) {
   char name[NAME_SIZE], entry[2 * NAME_SIZE + 16];
   size_t n = 0;
@@ -162,7 +164,7 @@ static size_t write_manifest(const vlWorld *world, const vlCryptomatte *c, char 
 }
 
 static vlResult set_text(vlImage *image, uint32_t key, const char *name, const char *text) {
-  char full[64]; /* the key is seven digits of eight */
+  char full[64]; /* the key is the first seven of the eight hexadecimal digits */
   snprintf(full, sizeof full, "cryptomatte/%07x/%s", key >> 4, name);
   vlAttribute attribute = {.name = full, .type = VL_ATTRIBUTE_STRING, .string = text};
   return vl_image_set_attribute(image, &attribute);

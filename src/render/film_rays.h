@@ -1,5 +1,5 @@
-/* render/film_rays.h: samples of the film to rays of the camera. The image's rays and those of the ground truth that
- * counts the image's own samples come from here: the same bits. */
+/* render/film_rays.h: film samples to camera rays. Both the image and the ground truth that counts the image's samples
+ * use this file, so that their rays are equal to the bit. */
 #ifndef RENDER_FILM_RAYS_H
 #define RENDER_FILM_RAYS_H
 
@@ -7,7 +7,7 @@
 #include "film/film.h"
 #include "trace/sampler/sampler.h"
 
-/* What a sample of the film becomes depends on these alone. */
+/* Everything that determines the ray of a film sample. */
 typedef struct vlFilmRays {
   vlCameraCompiled camera;
   vlSampler sampler;
@@ -15,15 +15,15 @@ typedef struct vlFilmRays {
   const vlCameraKernels *camera_kernels;
   const vlSamplerKernels *sampler_kernels;
   const vlFilterKernels *filter_kernels;
-  bool lens;    /* points on the lens are drawn */
-  bool centred; /* of pixel and lens, and in the middle of the shutter's time */
-  float shared; /* from 0 on: the number that all times are drawn by */
-  bool middle;  /* in the middle of the shutter's time, all of them */
-  bool moves;   /* something in the world does: times of rays are the world's, 0 to 1; else seconds */
+  bool lens;    /* lens points are sampled */
+  bool centred; /* centre of the pixel and of the lens, middle of the shutter's time */
+  float shared; /* from 0 on: all times are sampled by this number; below 0: each its own */
+  bool middle;  /* all times are the middle of the shutter's time */
+  bool moves;   /* the world has moving shapes: times of rays are the world's, 0 to 1; else seconds */
 } vlFilmRays;
 
-/* One element a sample, VL_PAD(n) of them: in are pixel and index of the sample in it; the rest comes out. film_x,
- * film_y: from the pixel's top left corner; weight: of the pixel filter. */
+/* One element per sample, VL_PAD(n) of them. In: the pixel and the sample's index in it; the rest is output. film_x,
+ * film_y: pixels from the pixel's top left corner; weight: of the pixel filter. */
 typedef struct vlFilmRayRows {
   int32_t *px, *py;
   uint32_t *index;
@@ -31,7 +31,7 @@ typedef struct vlFilmRayRows {
   vlCameraRays rays;
 } vlFilmRayRows;
 
-/* Where those arrays stand in a worker's rows of VL_ROW_SIZE numbers each; its own begin at VL_FILM_ROWS. */
+/* Places of those arrays in a worker's rows of VL_ROW_SIZE numbers each; a caller's own rows begin at VL_FILM_ROWS. */
 enum {
   VL_FILM_U,
   VL_FILM_V,
@@ -51,7 +51,7 @@ vlFilmRayRows vl_film_ray_rows(float *rows);
 
 void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTable *filter, const vlSampler *sampler,
                        vlIsa isa);
-/* Rays come with the world's time. */
+/* Rays get times of the world (0 to 1) where it has moving shapes. */
 void vl_film_rays_clock(vlFilmRays *f, const struct vlWorld *world);
 void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *rows);
 

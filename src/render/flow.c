@@ -1,22 +1,22 @@
-/* render/flow.c: optical flow: where another camera sees the point of the surface that a pixel shows, how far that is
- * on the film, and whether it really sees it: a ray from there decides.
+/* render/flow.c: optical flow: the film point at which another camera images the surface point of a pixel, its
+ * displacement on the film, and whether the point is visible from there, by a ray of the other camera.
  *
- *   P -> project -> (u, v) - the pixel's point;   other camera -> ray towards P -> what it meets first: P itself?
+ *   P -> project -> (u, v) - the pixel's point;   other camera -> ray towards P -> is the first hit P?
  *
- * A pixel of the sky has flow too: its direction is seen by the other camera, if nothing stands before it. */
+ * A pixel of the sky has flow, too: by its direction; it is visible if the other camera's ray meets nothing. */
 #include <math.h>
 #include <string.h>
 
 #include "render/channel_pass.h"
 #include "world/shape/moving.h"
 
-/* How much nearer than the point a crossing must be to hide it: rays are rounded to float, which moves them by some
- * 2^-23 of the numbers involved, and their crossing by 1 / cosine as much. */
+/* A hit hides the point if it is nearer by more than this tolerance, relative to the size of the numbers. Rays are
+ * rounded to float (2^-23), and their hit distance moves by 1 / cosine of that. */
 static const double TOLERANCE = 0x1p-19, LEAST_COSINE = 0.01;
 
 typedef struct Target {
   bool sky;
-  double point[3];     /* of the surface */
+  double point[3];     /* on the surface */
   double direction[3]; /* of the sky */
   double normal[3];
   double pixel[2]; /* in the other image */
@@ -26,7 +26,7 @@ static double length3(const double v[3]) {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* What lane i met, where it is at the other camera's time. */
+/* The target of lane i, moved to the other camera's time. */
 static Target target_of(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i, int which) {
   Target t = {.sky = b->object[i] == 0};
   for (int k = 0; k < 3; k++) {
@@ -40,8 +40,8 @@ static Target target_of(const vlChannelPass *p, const vlGroundTruthBatch *b, uin
   return t;
 }
 
-/* Where the other camera sees it. The sky is far, not infinitely so: far enough that the eyes of a camera that has many
- * are one. An orthographic camera sees one direction alone, in all of its pixels. */
+/* Projects the target with the other camera. The sky is at a large finite distance, so large that the eyes of a stereo
+ * camera coincide. An orthographic camera has one direction in all its pixels. */
 static bool find_pixel(const vlCamera *camera, Target *t) {
   double point[3], z;
   if (t->sky && camera->projection == VL_PROJECTION_ORTHOGRAPHIC) return false;
@@ -50,7 +50,7 @@ static bool find_pixel(const vlCamera *camera, Target *t) {
   return vl_camera_project(camera, point, t->pixel, &z);
 }
 
-/* The ray by which the other camera would see it, and its end; false where it has none. */
+/* The other camera's ray towards the target, and its length; false: it has none. */
 static bool aim(const vlCamera *camera, const Target *t, vlGroundTruthBatch *to, double *end) {
   double o[3], d[3];
   if (!vl_camera_unproject(camera, t->pixel[0], t->pixel[1], o, d)) return false;
@@ -62,7 +62,7 @@ static bool aim(const vlCamera *camera, const Target *t, vlGroundTruthBatch *to,
   return true;
 }
 
-/* What the ray met hides the point, unless it is the point. */
+/* Whether the ray's hit hides the point: true unless the hit is the point itself. */
 static bool hides(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t lane, const Target *t,
                   const vlGroundTruthBatch *other, uint32_t i, double end) {
   if (other->object[i] == 0) return false;
@@ -84,8 +84,8 @@ static vlHidden judge(const vlChannelPass *p, const vlGroundTruthBatch *b, uint3
   return hides(p, b, lane, t, other, i, end) ? VL_HIDDEN_BEHIND : VL_HIDDEN_NOT;
 }
 
-/* Lanes [first, last) of the batch that the other camera has a pixel for, as rays of that camera; first half of the
- * work, so that rays are traced together. */
+/* Makes the other camera's rays for those of the lanes [first, last) that project into it. The first half of the work,
+ * so that rays are traced together. */
 static void list_targets(const vlChannelPass *p, vlChannelWorker *w, int which, Target *targets, double *ends,
                          uint32_t first, uint32_t last) {
   const vlCamera *camera = &p->other[which];
@@ -123,7 +123,7 @@ static void flow_chunk(const vlChannelPass *p, vlChannelWorker *w, int which, ui
   vlChannelEnds cut = {&p->other_compiled[which], x, y, film_x, film_y};
   vl_channel_ends(p, w, other->n, &cut, other->t_min, other->t_max);
   other->time = vl_world_time(p->world, p->other_time[which]);
-  vlGroundTruthDef def = p->truth; /* neither bumps nor colours matter */
+  vlGroundTruthDef def = p->truth; /* bump maps and albedo are not needed */
   def.shading = def.albedo = false;
   p->ground_truth_kernels->trace(p->world, &def, w->scratch, other);
   for (uint32_t i = 0; i < other->n; i++) {

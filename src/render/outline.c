@@ -1,8 +1,8 @@
-/* render/outline.c: boxes of one object or instance: in space, and of its projection.
+/* render/outline.c: the box of one object or instance in space, and the box of its projection.
  *
- * The box of a projection is that of its corners: exact for triangles and bilinear patches where straight lines stay
- * straight (a linear function of a bilinear patch is largest at a corner). Round shapes give points of their rims and
- * of a fine grid. */
+ * The box of a projection is that of the projected corners: exact for triangles and bilinear patches where straight
+ * lines stay straight (a linear function on a bilinear patch is largest at a corner). Round shapes use points of their
+ * rims and of a fine grid. */
 #include <math.h>
 #include <string.h>
 
@@ -11,12 +11,12 @@
 
 enum { CHUNK = 256, AROUND = 256, RINGS = 64 };
 
-/* Points on their way to boxes, a chunk at a time. */
+/* Points to be added to the boxes, a chunk at a time. */
 typedef struct Points {
   const vlCamera *camera;
-  const float *place; /* of the instance: 3x4, or null */
+  const float *place; /* the instance's transform: 3x4, or null */
   vlIdBox *box;
-  bool space, outline, whole; /* what is wanted; all points so far had a pixel */
+  bool space, outline, whole; /* requested boxes; whole: all points so far projected */
   uint32_t count;
   double own[3 * CHUNK], world[3 * CHUNK];
 } Points;
@@ -42,7 +42,7 @@ static void flush(Points *p) {
   p->count = 0;
 }
 
-/* A point in the space of the shape's group. */
+/* Adds a point in the space of the shape's group. */
 static void add(Points *p, double x, double y, double z) {
   double *own = p->own + 3 * p->count, *world = p->world + 3 * p->count;
   own[0] = x, own[1] = y, own[2] = z;
@@ -61,7 +61,7 @@ static void add_vertices(Points *p, const vlWorldShape *s, float time) {
   }
 }
 
-/* A circle of radius r at height z in the shape's own space, as far round as the shape goes. */
+/* Adds points of a circle of radius r at height z in object space, over the shape's phi range. */
 static void add_ring(Points *p, const vlWorldShape *s, double r, double z) {
   const double *m = s->from_shape;
   for (int i = 0; i <= AROUND; i++) {
@@ -90,7 +90,7 @@ static void add_round(Points *p, const vlWorldShape *s) {
   }
 }
 
-/* The corners of the boxes of its pieces. */
+/* Adds the corners of the curve segments' boxes. */
 static void add_curves(Points *p, const vlWorldShape *s) {
   for (uint32_t i = 0; i < s->faces; i++) {
     float low[3], high[3];

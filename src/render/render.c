@@ -1,5 +1,5 @@
-/* render/render.c: where world, camera and film meet: a run of ignores the image, what it needs before and tells
- * meanwhile. A pass goes over blocks of tiles (block.h). */
+/* render/render.c: vl_render: prepares world, camera and film, runs the passes over the image and reports their
+ * progress. A pass goes over blocks of tiles (block.h). */
 #include <math.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@
 #include "velo/focus.h"
 
 enum { MAX_PASS = 16, PASS_SECONDS = 5 };
-static const double NEARLY = 0.97; /* of the time limit: no pass begins for what is left */
+static const double NEARLY = 0.97; /* share of the time limit after which no new pass begins */
 
 static void count_rays(const vlRenderRun *r, uint64_t *paths, uint64_t *rays) {
   *paths = *rays = 0;
@@ -41,7 +41,7 @@ bool vl_render_report(vlRenderRun *r, bool pass_done, double done_samples) {
   return r->def->progress(r->def->progress_user, &p);
 }
 
-/* A sign of life from inside a pass. */
+/* The callback during a pass: reports progress; true: stop. */
 static bool ask_to_stop(void *user) {
   vlRenderRun *r = user;
   double share = (double)atomic_load(&r->blocks_done) / vl_render_block_count(r);
@@ -80,7 +80,8 @@ uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlR
   return vl_two_way_tracer(def->tracer) ? bytes + vl_two_way_memory(world, film, def) : bytes;
 }
 
-/* In one block that stays with the film: many small images one after the other need no fresh memory. */
+/* Workers' memory is one block that the film keeps (vl_film_scratch), so that many small renders in a row need no new
+ * memory. */
 static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error) {
   uint32_t threads = vl_context_threads(context);
   size_t head = round_up(threads * sizeof *r->workers), scratch = round_up(vl_trace_scratch_size());
@@ -97,8 +98,8 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
   return VL_OK;
 }
 
-/* Light is followed both ways but through bodies of subsurface materials, and where each row of the image has a time
- * of its own; there by the tracer that can do that. */
+/* The tracer that is used. The two-way tracers do not support spectral films, subsurface materials, nor moving scenes
+ * with a readout time (rolling shutter). There volpath replaces them. */
 static vlTracer tracer_of(const vlRenderRun *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
   vlTracer tracer = r->def->tracer;
@@ -116,7 +117,7 @@ static vlTracer tracer_of(const vlRenderRun *r, const vlCamera *camera) {
   return VL_TRACER_VOLPATH;
 }
 
-/* Their passes have one sample, and paths from the lights before it. */
+/* The passes of two-way tracers have one sample; its light paths come first. */
 static vlResult prepare_two_way(vlRenderRun *r, const vlCamera *camera, vlError *error) {
   if (!vl_two_way_tracer(r->trace.tracer)) return VL_OK;
   vlResult result = vl_two_way_create(r->world, camera, r->film, r->def, &r->trace, &r->film_rays, &r->two_way, error);
@@ -139,8 +140,8 @@ static void prepare(vlRenderRun *r, const vlCamera *camera) {
   r->exposure_time = (float)camera->exposure_time;
   r->trace_kernels = vl_trace_kernels(isa);
   r->rgb_mode = world->def.color == VL_COLOR_RGB;
-  /* Footprints shrink with the samples of a pixel (pbrt book 10.1.3 scales by 1/sqrt(spp), at least 1/8); a fixed
-   * share, so that more samples continue the same image. */
+  /* Footprints shrink with the samples per pixel (pbrt book 10.1.3 scales by 1/sqrt(spp), at least 1/8). Here the
+   * factor is constant, so that more samples refine the same image. */
   const float footprint = r->def->sharp_textures ? 0.0f : 0.25f;
   r->trace = (vlTraceDef){.tracer = tracer_of(r, camera),
                           .sampler = &r->film_rays.sampler,
@@ -159,9 +160,9 @@ static void prepare(vlRenderRun *r, const vlCamera *camera) {
   r->tiles_y = (r->crop[3] + VL_RENDER_TILE - 1) / VL_RENDER_TILE - r->tile_y0;
 }
 
-/* Passes of 1, 1, 2, 4, ... samples: a first image at once, then fewer interruptions; but no longer than
- * PASS_SECONDS, for that much is lost when a pass is given up, and no longer than half of the time that is left. How
- * samples are split into passes does not show in the image. */
+/* Passes have 1, 1, 2, 4, ... samples, so that a first image exists early. A pass takes at most PASS_SECONDS, the work
+ * lost when it is abandoned, and at most half of the time that is left. The split into passes does not change the
+ * image. */
 static uint32_t pass_size(uint32_t done, uint32_t total, double seconds_per_sample, double left) {
   uint32_t size = done == 0 ? 1 : done < MAX_PASS ? done : MAX_PASS;
   double fit = seconds_per_sample > 0 ? fmin(PASS_SECONDS, 0.5 * left) / seconds_per_sample : MAX_PASS;
@@ -242,7 +243,7 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
     if (result != VL_OK || atomic_load(&r->stop.stopped)) {
       vl_film_abandon_pass(film);
       if (atomic_load(&r->stop.late))
-        result = VL_OK; /* the time is over */
+        result = VL_OK; /* the time limit is reached */
       else if (result == VL_OK || result == VL_CANCELLED)
         result = vl_fail(error, VL_CANCELLED, "stopped");
       break;

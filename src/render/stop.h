@@ -1,5 +1,5 @@
-/* render/stop.h: how a ignore many tasks is given up: the caller's callback is asked about ten times a second, on
- * the thread that called; a deadline is seen by every worker. */
+/* render/stop.h: how a pass over many tasks is abandoned. The caller's callback is called about ten times a second, on
+ * the thread that called vl_render; every worker checks the deadline. */
 #ifndef RENDER_STOP_H
 #define RENDER_STOP_H
 
@@ -9,13 +9,13 @@
 #include "base/file.h"
 
 typedef struct vlStop {
-  vlStopFn *ask; /* true: stop; null: never */
+  vlStopFn *ask; /* the callback; true: stop; null: none */
   void *user;
   pthread_t caller;
-  double last;         /* when it was asked; the caller's thread alone reads and writes it */
-  double deadline;     /* by vl_seconds(); 0: none. Constant while tasks run */
-  atomic_bool stopped; /* the tasks that are left do nothing */
-  atomic_bool late;    /* by the deadline */
+  double last;         /* time of its last call; only the caller's thread reads and writes it */
+  double deadline;     /* on the clock of vl_seconds(); 0: none. Constant while tasks run */
+  atomic_bool stopped; /* the remaining tasks do nothing */
+  atomic_bool late;    /* stopped by the deadline */
 } vlStop;
 
 static inline void vl_stop_init(vlStop *stop, vlStopFn *ask, void *user) {
@@ -28,7 +28,7 @@ static inline void vl_stop_init(vlStop *stop, vlStopFn *ask, void *user) {
   atomic_store(&stop->late, false);
 }
 
-/* Called by tasks, between pieces of work of some milliseconds. */
+/* True: stop. Tasks call it every few milliseconds of work. */
 static inline bool vl_stop_check(vlStop *stop) {
   if (atomic_load_explicit(&stop->stopped, memory_order_relaxed)) return true;
   double now = vl_seconds();

@@ -13,8 +13,8 @@
 #include "render/splats.h"
 
 enum {
-  MOST_PATHS = 1 << 20,   /* of light in a pass, if their number is not given */
-  MOST_PHOTONS = 1 << 23, /* 512 MB, and as much again sorted; a pass that would leave more has fewer paths */
+  MOST_PATHS = 1 << 20,   /* light paths in a pass, where the scene gives no number */
+  MOST_PHOTONS = 1 << 23, /* 512 MB, and the same again sorted; a pass that would store more gets fewer paths */
   FIRST_PHOTONS = 1 << 16
 };
 static const uint32_t light_seed = 0x6c696768u, time_seed = 0x74696d65u;
@@ -25,7 +25,7 @@ typedef struct Worker {
   int32_t px[VL_ROW_SIZE], py[VL_ROW_SIZE];
   uint32_t index[VL_ROW_SIZE];
   float u[VL_ROW_SIZE], time[VL_ROW_SIZE];
-  vlCameraView *eyes; /* VL_ROW_SIZE, of a camera that moves */
+  vlCameraView *eyes; /* VL_ROW_SIZE views, of a camera that moves */
   float color[3][VL_ROW_SIZE];
   uint64_t paths, bounce_rays, shadow_rays, not_finite;
   vlTwoWayRun *run;
@@ -40,20 +40,20 @@ struct vlTwoWayRun {
   vlTraceDef trace;
   const vlTraceKernels *kernels;
   Worker *workers;
-  char *memory; /* of the workers' rows */
+  char *memory; /* holds the workers' rows */
   vlCameraView *eyes;
   const vlFilmRays *rays;
   float *choice;
-  uint32_t *medium; /* of lights */
+  uint32_t *medium; /* by light: vlTwoWay.medium */
   vlSplats splats;
   float exposure, first_radius;
   uint32_t most_paths, paths, index;
-  uint32_t pixels, rounds; /* paths are samples of the film's pixels, by the light's sampler: so many of each */
+  uint32_t pixels, rounds; /* the light paths are `rounds` samples of each of `pixels` pixels of their own sampler */
   vlPhoton *photons, *sorted;
   uint32_t *start, capacity, buckets;
   atomic_uint_least64_t stored;
   vlStop *stop;
-  bool starts; /* there is light that paths can start from */
+  bool starts; /* some light can start paths */
 };
 
 bool vl_two_way_tracer(vlTracer tracer) {
@@ -100,7 +100,7 @@ void vl_two_way_take(vlTwoWayRun *run, uint32_t n, const int32_t *px, const int3
   vl_splats_take(&run->splats, n, px, py, weight, r, g, b);
 }
 
-/* ---- light's paths ----------------------------------------------------------------------------------------------- */
+/* ---- light paths ------------------------------------------------------------------------------------------------- */
 
 static void store(void *user, uint32_t n, const vlPhoton *photons) {
   Worker *w = user;
@@ -109,7 +109,7 @@ static void store(void *user, uint32_t n, const vlPhoton *photons) {
   if (at + n <= run->capacity) memcpy(run->photons + at, photons, n * sizeof *photons);
 }
 
-/* Van der Corput's sequence, turned by the seed: any number of passes has its wavelengths well spread. */
+/* Van der Corput's sequence, rotated by the seed: the wavelengths of any number of passes are evenly distributed. */
 static float shared_number(uint32_t seed, uint32_t index) {
   uint32_t x = index;
   x = x << 16 | x >> 16;
@@ -120,7 +120,7 @@ static float shared_number(uint32_t seed, uint32_t index) {
   return vl_unit_float(x + vl_hash2(seed, light_seed));
 }
 
-/* The same in base 3: in base 2 each wavelength would have a time of its own. */
+/* The same in base 3: with base 2, wavelength and time would be correlated. */
 float vl_two_way_time(const vlTwoWayRun *run, uint32_t index) {
   if (!run->way.merge) return -1.0f;
   double turn = vl_hash2(run->trace.sampler->seed, time_seed) * 0x1p-32, place = 1;
@@ -136,7 +136,7 @@ const vlCameraView *vl_two_way_cameras(const vlTwoWayRun *run, uint32_t worker, 
   if (!eyes && !time) return NULL;
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     double when = c->shutter_open + c->shutter_time * vl_shutter_share(t, (double)u[i]);
-    if (time) time[i] = when > 0 ? (when < 1 ? (float)when : 1.0f) : 0.0f; /* before and after, the world rests */
+    if (time) time[i] = when > 0 ? (when < 1 ? (float)when : 1.0f) : 0.0f; /* the world is at rest outside [0, 1] */
     if (!eyes) continue;
     double f = (when - t->pose_open) * t->pose_rate;
     eyes[i] = run->way.eye;
@@ -145,7 +145,7 @@ const vlCameraView *vl_two_way_cameras(const vlTwoWayRun *run, uint32_t worker, 
   return eyes;
 }
 
-/* The numbers that the times of light's paths stand for, one each. */
+/* Samples the numbers (w->u) from which the times of the n light paths follow. */
 static void draw_times(const vlTwoWayRun *run, uint32_t n, Worker *w) {
   const vlFilmRays *rays = run->rays;
   if (!rays->centred && rays->shared < 0.0f) {
@@ -199,8 +199,8 @@ static vlResult grow(vlTwoWayRun *run, uint64_t wanted, vlError *error) {
   return good ? VL_OK : vl_fail_memory(error);
 }
 
-/* Radii shrink so that both error and bias vanish: r_i^2 = r_1^2 i^(alpha - 1), alpha = 2/3 (Knaus and Zwicker 2011;
- * Georgiev et al. 2012). */
+/* The radius of a pass. Radii shrink so that both error and bias vanish: r_i^2 = r_1^2 i^(alpha - 1), alpha = 2/3
+ * (Knaus and Zwicker 2011; Georgiev et al. 2012). */
 static void set_radius(vlTwoWayRun *run, uint32_t index) {
   vlTwoWay *way = &run->way;
   float radius = run->first_radius * vl_pow((float)(index + 1), -1.0f / 6.0f);
@@ -229,14 +229,14 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlErro
                           run->buckets);
       return VL_OK;
     }
-    vl_splats_clear(&run->splats); /* the pass is done again, with more room or fewer paths */
+    vl_splats_clear(&run->splats); /* the pass is repeated with more memory or fewer paths */
     if (stored > MOST_PHOTONS) run->paths = run->paths / 2 > 1 ? run->paths / 2 : 1;
     vlResult result = grow(run, stored < MOST_PHOTONS ? stored : MOST_PHOTONS, error);
     if (result != VL_OK) return result;
   }
 }
 
-/* ---- making ------------------------------------------------------------------------------------------------------ */
+/* ---- creation ---------------------------------------------------------------------------------------------------- */
 
 static vlResult make_workers(vlTwoWayRun *run, vlError *error) {
   uint32_t threads = vl_context_threads(run->context);
@@ -261,7 +261,7 @@ static vlResult make_eyes(vlTwoWayRun *run, vlError *error) {
   return VL_OK;
 }
 
-/* What lights stand in: light's paths must know it from the start. */
+/* Finds the medium that surrounds each light, in which its light paths start. */
 static vlResult find_media(vlTwoWayRun *run, const vlCamera *camera, vlError *error) {
   const vlWorld *world = run->world;
   if (!world->media.count) return VL_OK;
@@ -312,7 +312,7 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   if (run->most_paths == 0) memset(run->choice, 0, (world->lights.count + 1) * sizeof *run->choice);
   if (run->starts) vl_camera_view(camera, f, &way->eye);
   if (result == VL_OK && way->eye.sees && rays->camera.when.moves) result = make_eyes(run, error);
-  if (result == VL_OK && way->merge && def->merge_radius > 0) /* so that its cube is a number */
+  if (result == VL_OK && way->merge && def->merge_radius > 0) /* clamped, so that its cube is finite */
     run->first_radius = (float)fmin(fmax(def->merge_radius, 1e-12), 1e9);
   else if (result == VL_OK && way->merge)
     result = vl_first_radius(world, camera, trace, &run->first_radius, error);
@@ -323,7 +323,7 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
 }
 
 uint64_t vl_two_way_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def) {
-  enum { VERTICES = 4 }; /* that a path leaves, about */
+  enum { VERTICES = 4 }; /* photons per light path, an estimate */
   uint64_t pixels = (uint64_t)film->width * film->height;
   uint64_t paths =
       def->light_paths == VL_AS_MANY_AS_PIXELS ? (pixels < MOST_PATHS ? pixels : MOST_PATHS) : def->light_paths;

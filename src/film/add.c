@@ -1,9 +1,9 @@
-/* film/add.c: samples into the exact sums. Integers only: the float's mantissa times the weight's is exact, and goes to
- * its place in the 128-bit sum by one multiplication. No branch hangs on the values. */
+/* film/add.c: adds samples to the exact sums, with integers only. The product of the float's mantissa and the weight's
+ * is exact; one multiplication shifts it to its place in the 128-bit sum. There are no branches on the values. */
 #include "film/sums.h"
 
 enum {
-  COLOR_LIMIT = (127 + 40) << 23, /* bits of 2^40; infinities and NaNs lie above, too */
+  COLOR_LIMIT = (127 + 40) << 23, /* bits of 2^40; infinities and NaNs are larger, too */
   WEIGHT_LIMIT = (127 + 4) << 23
 };
 

@@ -1,4 +1,4 @@
-/* film/develop.c: sums to an image. */
+/* film/develop.c: converts sums to an image. */
 #include "base/cookie.h"
 #include "color/color.h"
 #include "film/sums.h"
@@ -14,7 +14,8 @@ static vlResult set_numbers(vlImage *image, const char *name, vlAttributeType ty
   return vl_image_set_attribute(image, &a);
 }
 
-/* OpenEXR's notions: the colour space's primaries, and for a crop where it lies in the whole image (inclusive). */
+/* Writes OpenEXR's attributes: the colour space's primaries, and for a crop its place in the whole image (inclusive).
+ */
 static vlResult set_attributes(const vlFilm *film, vlImage *image) {
   float xy[8];
   double numbers[8];
@@ -48,12 +49,12 @@ vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **
     vl_image_destroy(made);
     return result;
   }
-  /* The quotient of the sums, in units of their last places, is right to 2^-51: where all samples of a pixel are the
-   * same float, rounding gives that float. */
+  /* The quotient of the sums is accurate to 2^-51: where all samples of a pixel are the same float, rounding gives that
+   * float. */
   float *out = vl_image_pixels(made);
   double color_unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS)), exposure = d.exposure;
   double alpha_unit = 1.0 / (double)(1 << (VL_ALPHA_BITS - VL_WEIGHT_BITS));
-  size_t count = film->front ? vl_film_pixels(film) : 0; /* else the image's zeros stand */
+  size_t count = film->front ? vl_film_pixels(film) : 0; /* without samples the image stays zero */
   for (size_t i = 0; i < count; i++) {
     const vlFilmPixel *p = film->front + i;
     if (p->weight <= 0) continue;

@@ -16,7 +16,8 @@ static void convert(vlColorSpace space, const float *balance, const vlExposure *
   if (balance) multiply3(to, balance, m);
   multiply3(balance ? m : to, from, product);
   for (int i = 0; i < 9; i++) m[i] = product[i];
-  for (int i = 0; space == VL_SPACE_SRGB && !balance && i < 9; i++) m[i] = i % 4 == 0; /* not the rounded product */
+  for (int i = 0; space == VL_SPACE_SRGB && !balance && i < 9; i++)
+    m[i] = i % 4 == 0; /* the exact identity, not the rounded product of two inverse matrices */
   const float *x = e->radiance[0], *y = e->radiance[1], *z = e->radiance[2];
   for (uint32_t i = 0; i < VL_PAD(e->n); i++) {
     r[i] = m[0] * x[i] + m[1] * y[i] + m[2] * z[i];
@@ -25,8 +26,8 @@ static void convert(vlColorSpace space, const float *balance, const vlExposure *
   }
 }
 
-/* The way back from the film's red, green, blue to the sensor's values. Without a white balance the sensor's X, Y, Z.
- */
+/* The matrix from the film's red, green, blue back to the sensor's values, for the clamp of the largest component.
+ * Without a white balance these are the sensor's X, Y, Z. */
 static void values_from_rgb(const vlFilm *film, const float *xyz_from_sensor, float m[9]) {
   float to[9], product[9];
   double whole[9], back[9];
@@ -41,7 +42,8 @@ static void values_from_rgb(const vlFilm *film, const float *xyz_from_sensor, fl
   for (int i = 0; i < 9; i++) m[i] = (float)back[i];
 }
 
-/* As pbrt's maxcomponentvalue: of the sensor's values, which m finds from r, g, b. */
+/* Scales colours whose largest component exceeds `most` (pbrt's maxcomponentvalue). Components are the sensor's values,
+ * which m computes from r, g, b. */
 static void limit(const float m[9], float most, uint32_t n, float *r, float *g, float *b) {
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     float x = m[0] * r[i] + m[1] * g[i] + m[2] * b[i], y = m[3] * r[i] + m[4] * g[i] + m[5] * b[i];

@@ -1,4 +1,4 @@
-/* film/film.c: making films, passes, merging. */
+/* film/film.c: creation of films, passes, merging. */
 #include "base/cookie.h"
 #include "color/sensor.h"
 #include "film/sums.h"
@@ -21,7 +21,7 @@ vlFilmDef vl_default_film_def(uint32_t width, uint32_t height) {
                      .lambda_max = VL_LAMBDA_MIN + VL_LAMBDA_COUNT - 1};
 }
 
-/* The sensor's curves and matrix; its name becomes one that lives forever, and its white what pbrt takes by default. */
+/* Sets the sensor's curves and matrix, its name as a static string, and pbrt's default white balance for it. */
 static vlResult set_sensor(vlFilm *film) {
   vlFilmDef *def = &film->def;
   if (!def->sensor || strcmp(def->sensor, vl_sensor_name(0)) == 0) {
@@ -129,7 +129,8 @@ vlResult vl_film_begin_pass(vlFilm *film) {
   return VL_OK;
 }
 
-/* A later pass must not take an old stamp for its own. */
+/* Ends the running pass and advances the pass number. When it wraps, all stamps are cleared, so that no old stamp is
+ * taken for current. */
 static void next_pass(vlFilm *film) {
   film->in_pass = false;
   if (++film->pass == 0) {
@@ -162,7 +163,7 @@ void vl_film_abandon_pass(vlFilm *film) {
   if (film->in_pass) next_pass(film);
 }
 
-/* Where there are two sets of sums one goes: the next pass begins as the first one does. */
+/* Clears the film. Where there are two sets of sums, one is freed: the next pass begins as the first one does. */
 void vl_film_clear(vlFilm *film) {
   if (!film || film->in_pass) return;
   film->spp = 0;

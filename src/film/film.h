@@ -1,6 +1,6 @@
-/* film/film.h: inside of the film. Sums are exact (128-bit fixed point): adding is associative, so no grouping of
- * samples into tiles, passes, threads or machines changes a bit (docs/decisions/0002-exact-film-sums.md). Filter
- * importance sampling: a sample touches one pixel. Data flows samples -> sums -> image. */
+/* film/film.h: private interface of the film. Sums are exact (128-bit fixed point). Addition is associative, so that no
+ * grouping of samples into tiles, passes, threads or machines changes a bit (docs/decisions/0002-exact-film-sums.md).
+ * With filter importance sampling a sample contributes to one pixel. Data flows samples -> sums -> image. */
 #ifndef FILM_FILM_H
 #define FILM_FILM_H
 
@@ -8,25 +8,25 @@
 #include "color/color.h"
 #include "velo/render.h"
 
-/* What a batch of samples adds. Channels are linear, in the film's colour space: red, green, blue, alpha. Pixel
- * coordinates are of the whole image, inside the crop window.
+/* A batch of samples. Channels are linear, in the film's colour space: red, green, blue, alpha. Pixel coordinates are
+ * of the whole image, inside the crop window.
  *
  * A sample whose colour, alpha or weight is not finite, or too large for the sums (colour 2^40, weight 16), adds
- * nothing and is counted. Negative colours are added: a few wavelengths of a spectrum are often outside the colour
+ * nothing and is counted. Negative colours are added: single samples of a few wavelengths are often outside the colour
  * space, and only their mean is inside. Alpha is clamped to [0, 1]. */
 typedef struct vlFilmSamples {
   uint32_t n;
   const int32_t *px, *py;
   const float *r, *g, *b, *a;
-  const float *weight; /* of the pixel filter: filter value / pdf, may be negative; taken to the nearest 2^-24 */
+  const float *weight; /* of the pixel filter: filter value / pdf, may be negative; rounded to a multiple of 2^-24 */
 } vlFilmSamples;
 
-/* Between begin_pass and commit_pass. Returns how many were dropped; *bad_x, *bad_y the first of them (may be null).
- * Concurrent calls must touch different pixels. Up to 2^31 samples a pixel. */
+/* Adds samples; between begin_pass and commit_pass. Returns the number of dropped samples; *bad_x, *bad_y (may be null)
+ * are the pixel of the first. Concurrent calls must add to different pixels. Up to 2^31 samples per pixel. */
 uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *samples, int32_t *bad_x, int32_t *bad_y);
 
-/* The same samples' spectra, before vl_film_add has them: radiance at 4 wavelengths (nm) each, as the scene sends it.
- * For films with buckets. What is not finite is left out, one sample as a whole. */
+/* The spectra of the same samples, added before vl_film_add: the scene's radiance at 4 wavelengths (nm) each, without
+ * the film's exposure. For films with buckets. A sample with a value that is not finite is dropped as a whole. */
 typedef struct vlFilmSpectra {
   uint32_t n;
   const int32_t *px, *py;
@@ -35,31 +35,31 @@ typedef struct vlFilmSpectra {
 void vl_film_add_spectra(vlFilm *film, const vlFilmSpectra *samples);
 
 const vlFilmDef *vl_film_def(const vlFilm *film);
-/* Row-major, acts on XYZ; null: none. */
+/* The white balance: a row-major 3x3 matrix that acts on XYZ; null: none. */
 const float *vl_film_balance(const vlFilm *film);
-/* A measured camera in place of the standard observer: its curves as vl_cie_xyz0 has them, and the matrix from its
- * values to XYZ, white balance included, row-major. */
+/* A measured camera sensor in place of the standard observer: its response curves, sampled as vl_cie_xyz0, and the
+ * row-major matrix from its values to XYZ, white balance included. */
 typedef struct vlFilmSensor {
   float curves[4 * VL_LAMBDA_COUNT];
   float xyz[9];
 } vlFilmSensor;
-/* Null: the standard observer. */
+/* The film's sensor; null: the standard observer. */
 const vlFilmSensor *vl_film_sensor(const vlFilm *film);
-void vl_film_set_spp(vlFilm *film, uint32_t spp); /* called by render after each whole pass */
+void vl_film_set_spp(vlFilm *film, uint32_t spp); /* render calls it after each whole pass */
 
-/* A pass that is given up leaves no trace. Two sets of sums take turns: a pixel's first sample in a pass copies its
- * sums from one set to the other, the rest adds there; commit swaps the sets, abandon forgets the second. Both cost
- * nothing but a look at each pixel's mark. begin_pass: MEMORY (the sets are made when first needed). */
+/* An abandoned pass leaves no trace. There are two sets of sums: a pixel's first sample in a pass copies its sums from
+ * the front set to the back set, and the pass adds there; commit swaps the sets, abandon drops the back set. The only
+ * cost is one test of the pixel's stamp. Error of begin_pass: MEMORY (the sets are allocated at first need). */
 vlResult vl_film_begin_pass(vlFilm *film);
 void vl_film_commit_pass(vlFilm *film);
 void vl_film_abandon_pass(vlFilm *film);
 
-/* Memory for those who add samples, kept with the film, so that a film that is rendered again and again costs no
- * allocation. Zero when it is new, else as it was left; null: out of memory. Valid until the next call. */
+/* Memory for the code that adds samples. It is kept with the film, so that repeated renders of one film allocate
+ * nothing. Zeroed when new, else unchanged since the last call; null: out of memory. Valid until the next call. */
 void *vl_film_scratch(vlFilm *film, size_t size);
 
-/* Adds the sums and the sample count of another film of the same size and crop: the same bytes as if all samples had
- * gone into one. Not inside a pass. ARGUMENT when they do not fit, MEMORY. */
+/* Adds the sums and the sample count of another film of the same size and crop. The sums are the same bits as if all
+ * samples had been added to one film. Not during a pass. Errors: ARGUMENT if the films differ in shape, MEMORY. */
 vlResult vl_film_merge(vlFilm *film, const vlFilm *other);
 
 /* Pixel filter sampling: u, v in [0,1)^2 to an offset (dx, dy) from the pixel centre, monotone in u and v, and the

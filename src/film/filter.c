@@ -7,7 +7,7 @@
 
 /* ---- elementary functions by their series: + - * / only ---------------------------------------------------------- */
 
-/* 1/k: a division in each term would take most of the time */
+/* 1/k: divisions in the series would be slow */
 static const double INVERSE[26] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,
                                    1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13,
                                    1.0 / 14, 1.0 / 15, 1.0 / 16, 1.0 / 17, 1.0 / 18, 1.0 / 19, 1.0 / 20,
@@ -21,7 +21,7 @@ static double series_exp(double x) { /* x <= 0 */
   for (; n < 0; n++) sum *= 0.5;
   return sum;
 }
-/* sin(pi x); exactly 0 at whole numbers. */
+/* sin(pi x); exactly 0 at integers. */
 static double series_sin_pi(double x) {
   double n = floor(x + 0.5), r = (x - n) * 3.14159265358979323846, r2 = r * r, sum = 1.0;
   for (int k = 22; k > 0; k -= 2) sum = 1.0 - sum * (r2 * INVERSE[k] * INVERSE[k + 1]);
@@ -47,7 +47,7 @@ double vl_filter_value(const vlPixelFilter *filter, int axis, double x) {
   switch (filter->kind) {
     case VL_PIXEL_FILTER_BOX: return 1.0;
     case VL_PIXEL_FILTER_TRIANGLE: return 1.0 - t;
-    case VL_PIXEL_FILTER_GAUSSIAN: { /* less its value at the radius */
+    case VL_PIXEL_FILTER_GAUSSIAN: { /* minus its value at the radius */
       double s = 0.5 / ((double)filter->sigma * filter->sigma);
       return series_exp(-s * x * x) - series_exp(-s * radius * radius);
     }
@@ -70,7 +70,7 @@ typedef struct Shape {
 static double magnitude(Shape s, double x) {
   return fabs(vl_filter_value(s.filter, s.axis, x));
 }
-/* Integral of |f| over [a, b], where f has one sign: Gauss-Legendre, 4 points. */
+/* Integral of |f| over [a, b], where f does not change sign: Gauss-Legendre, 4 points. */
 static double mass_between(Shape s, double a, double b) {
   double c = 0.5 * (a + b), h = 0.5 * (b - a);
   return h *
@@ -81,7 +81,8 @@ static double mass_between(Shape s, double a, double b) {
 enum { STEPS = 256, LOBES = 48 };
 typedef struct Lobe {
   double a, b, sign;
-  bool flat_a, flat_b;   /* f touches zero there, or ends: bins of equal mass would be wide where f is curved */
+  bool flat_a,
+      flat_b; /* f is zero at that end, or ends there: bins of equal mass would be too wide where f is curved */
   double sum[STEPS + 1]; /* mass up to a + (b - a) k / STEPS */
 } Lobe;
 
@@ -91,7 +92,7 @@ static void lobe_integrate(Shape s, Lobe *lobe) {
   for (int k = 0; k < STEPS; k++)
     lobe->sum[k + 1] = lobe->sum[k] + mass_between(s, lobe->a + step * k, lobe->a + step * (k + 1));
 }
-/* Where the lobe's mass reaches m: the step by search, then Newton kept inside the step. */
+/* The x at which the lobe's mass reaches m: a search for the step, then Newton's method inside the step. */
 static double lobe_invert(Shape s, const Lobe *lobe, double m) {
   int low = 0, high = STEPS;
   while (high - low > 1) {
@@ -118,7 +119,7 @@ static double lobe_invert(Shape s, const Lobe *lobe, double m) {
   return x;
 }
 
-/* Where f changes sign between a and b (sign * f > 0 at a). */
+/* The root of f between a and b, where f changes sign (sign * f > 0 at a). */
 static double find_root(Shape s, double a, double b, double sign) {
   for (int i = 0; i < 60; i++) {
     double mid = 0.5 * (a + b);
@@ -129,7 +130,7 @@ static double find_root(Shape s, double a, double b, double sign) {
   }
   return b;
 }
-/* Where |f| is least between a and b. */
+/* The minimum of |f| between a and b. */
 static double find_least(Shape s, double a, double b) {
   for (int i = 0; i < 100; i++) {
     double p = a + (b - a) / 3.0, q = b - (b - a) / 3.0;
@@ -141,8 +142,8 @@ static double find_least(Shape s, double a, double b) {
   return 0.5 * (a + b);
 }
 
-/* The lobes of [0, radius]: between the places where f changes sign or touches zero, found on a grid first. 0: too
- * many, or f is not above zero at its centre. */
+/* Finds the lobes of [0, radius], separated by the places where f changes sign or touches zero; a grid brackets them.
+ * Returns their number; 0: too many, or f is not above zero at its centre. */
 static int find_lobes(Shape s, double radius, Lobe *lobes) {
   enum { GRID = 1024 };
   double step = radius / GRID, top = vl_filter_value(s.filter, s.axis, 0.0), sign = 1.0, start = 0.0, last = 0.0;
@@ -173,7 +174,7 @@ static int find_lobes(Shape s, double radius, Lobe *lobes) {
   return count;
 }
 
-/* One more segment: bins of equal mass between m0 and m1 of the lobe. */
+/* Adds a segment: bins of equal mass between m0 and m1 of the lobe. */
 static void add_segment(Shape s, vlFilterAxis *axis, const Lobe *lobe, double m0, double m1, double before,
                         double total, uint32_t bins, double weight) {
   uint32_t k = axis->segments++;

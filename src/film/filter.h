@@ -1,7 +1,7 @@
-/* film/filter.h: a pixel filter compiled for sampling. Filters are products f(x) f(y) and even; half an axis is
- * described by the inverse of the cumulated |f|. It is cut in segments: the lobes (f's sign is constant in each), with
- * extra cuts near the ends where f touches zero without crossing it. A segment is cut in bins of equal mass; within a
- * bin the density goes linearly from f at one edge to f at the other. */
+/* film/filter.h: a pixel filter compiled for sampling. Filters are even products f(x) f(y). Half an axis is described
+ * by the inverse of the cumulated |f|. It is divided into segments: the lobes (f's sign is constant in each), divided
+ * again near ends where f touches zero without a change of sign. A segment has bins of equal mass; within a bin the
+ * density is linear from f at one edge to f at the other. */
 #ifndef FILM_FILTER_H
 #define FILM_FILTER_H
 
@@ -12,13 +12,13 @@ enum { VL_FILTER_SEGMENTS = 240, VL_FILTER_EDGES = 12288, VL_FILTER_RADIUS_MAX =
 typedef struct vlFilterAxis {
   float radius;
   uint32_t segments, edges;         /* none for the analytic filters */
-  float start[VL_FILTER_SEGMENTS];  /* mass before the segment, of 1 for the half axis */
-  float scale[VL_FILTER_SEGMENTS];  /* bins per mass */
+  float start[VL_FILTER_SEGMENTS];  /* mass before the segment; the half axis has mass 1 */
+  float scale[VL_FILTER_SEGMENTS];  /* bins per unit of mass */
   float sign[VL_FILTER_SEGMENTS];   /* the weight: +- integral of |f| / integral of f */
   int32_t base[VL_FILTER_SEGMENTS]; /* first edge */
-  int32_t last[VL_FILTER_SEGMENTS]; /* last bin, counted in the segment */
+  int32_t last[VL_FILTER_SEGMENTS]; /* index of the last bin in the segment */
   float x[VL_FILTER_EDGES];
-  float f[VL_FILTER_EDGES]; /* |f(x)|, any scale */
+  float f[VL_FILTER_EDGES]; /* |f(x)|, not normalised */
 } vlFilterAxis;
 
 struct vlFilterTable {
@@ -26,12 +26,12 @@ struct vlFilterTable {
   vlFilterAxis axis[2];
 };
 
-/* false when the parameters make no filter: not finite, radius not in (0, 32], no mass. */
+/* False if the parameters are not valid: not finite, radius not in (0, 32], no mass. */
 bool vl_filter_compile(const vlPixelFilter *filter, vlFilterTable *table);
 /* f of one axis, not normalised; 0 outside the radius. */
 double vl_filter_value(const vlPixelFilter *filter, int axis, double x);
 
-/* |weight| of every sample. */
+/* |weight|, the same for every sample. */
 static inline double vl_filter_weight(const vlFilterTable *filter) {
   double weight = 1;
   for (int i = 0; i < 2; i++)

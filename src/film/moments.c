@@ -1,13 +1,13 @@
-/* film/moments.c: second moments of a pixel's samples, and the standard errors that follow from them. Exact sums, so
- * that neither order nor grouping of the samples shows. */
+/* film/moments.c: second moments of a pixel's samples, and the standard errors that follow from them. The sums are
+ * exact, so that neither order nor grouping of the samples changes the result. */
 #include <math.h>
 #include <string.h>
 
 #include "base/cookie.h"
 #include "film/sums.h"
 
-/* value^2 in units of 2^-VL_SQUARE_BITS: 48 bits of mantissa at their place among 192. |value| < 2^40: with 2^31
- * samples the sum stays below 2^191. */
+/* Adds value^2 in units of 2^-VL_SQUARE_BITS: 48 bits of mantissa, shifted to their place among 192 bits. |value| <
+ * 2^40: with 2^31 samples the sum stays below 2^191. */
 static inline void add_square(uint64_t sum[3], float value) {
   uint32_t bits = vl_float_bits(value);
   int32_t field = (int32_t)(bits >> 23 & 255), exponent = field > 0 ? field : 1;
@@ -52,9 +52,9 @@ void vl_film_merge_moments(vlFilm *film, const vlFilm *other) {
   }
 }
 
-/* The image is sum(w v) / sum(w), and |w| is the same in all samples (filters are importance-sampled), so that the
- * variance of this ratio is sum(w^2 (v - mean)^2) / sum(w)^2 to first order, with n / (n - 1) for the mean that was
- * estimated from the same samples. Squares about the plain mean first, since the numbers differ least there. */
+/* The pixel is sum(w v) / sum(w), and |w| is the same in all samples (filters are importance-sampled). To first order
+ * the variance of this ratio is sum(w^2 (v - mean)^2) / sum(w)^2, times n / (n - 1) because the mean is estimated from
+ * the same samples. Squares are taken about the unweighted mean first, where cancellation is least. */
 static float standard_error(const vlFilmPixel *p, const vlFilmMoments *m, int c, double weight) {
   if (m->samples < 2 || p->weight <= 0) return INFINITY;
   double n = (double)m->samples, plain = (double)m->plain[c] * 0x1p-50 / n;
@@ -63,7 +63,7 @@ static float standard_error(const vlFilmPixel *p, const vlFilmMoments *m, int c,
                    ldexp((double)m->squares[c][0], -VL_SQUARE_BITS);
   double sum_w = (double)p->weight * 0x1p-24, mean = (double)p->color[c] * 0x1p-50 / sum_w;
   double spread = squares - n * plain * plain;
-  if (spread < squares * 0x1p-48) spread = 0; /* all alike: what is left is rounding */
+  if (spread < squares * 0x1p-48) spread = 0; /* all samples are equal; the rest is rounding */
   double off = plain - mean, variance = (spread + n * off * off) * (n / (n - 1)) * weight * weight / (sum_w * sum_w);
   return (float)sqrt(variance);
 }

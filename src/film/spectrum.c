@@ -1,6 +1,6 @@
-/* film/spectrum.c: spectra beside the colours: buckets of wavelengths of equal width, each with exact sums of its own
- * (docs/decisions/0002-exact-film-sums.md). Wavelengths come uniformly (trace), so that the mean of the samples that
- * fell into a bucket is the mean over the bucket. */
+/* film/spectrum.c: spectra in addition to colours: buckets of wavelengths of equal width, each with its own exact sums
+ * (docs/decisions/0002-exact-film-sums.md). Wavelengths are sampled uniformly (trace), so that the mean of the samples
+ * in a bucket is the mean over the bucket. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -105,7 +105,7 @@ bool vl_film_spectrum_merge(vlFilm *film, const vlFilm *other) {
 
 /* ---- develop ----------------------------------------------------------------------------------------------------- */
 
-/* "S0.374,688nm": the middle of the bucket; the comma, since a point separates layers. */
+/* "S0.374,688nm": the middle of the bucket. The decimal sign is a comma, since a point separates layers. */
 static void bucket_name(const vlFilm *film, uint32_t i, char name[32]) {
   const vlFilmDef *d = &film->def;
   snprintf(name, 32, "S0.%.3fnm", d->lambda_min + (i + 0.5) / d->buckets * (d->lambda_max - d->lambda_min));
@@ -136,7 +136,7 @@ static vlResult make_image(const vlFilm *film, vlImage **image) {
   return result;
 }
 
-/* The integral of the eye's Y, by which lights were divided. */
+/* The integral of the standard observer's Y, by which lights are normalised. */
 static double y_integral(void) {
   double sum = 0;
   for (int i = 0; i < VL_LAMBDA_COUNT; i++) sum += (double)vl_cie_y()[i];

@@ -1,4 +1,4 @@
-/* film/sums.h: the film's memory: exact sums of one pixel and the sets they stand in. */
+/* film/sums.h: the film's memory: the exact sums of one pixel, and the sets of sums. */
 #ifndef FILM_SUMS_H
 #define FILM_SUMS_H
 
@@ -9,8 +9,8 @@
 
 __extension__ typedef __int128 vlInt128;
 
-/* Bits below the point. Colours: |value| < 2^40, |weight| < 2^4, 2^31 samples: 76 bits and the sign above it, 50 below.
- * Weights and alpha: 2^4 2^31 and the sign above it. */
+/* Fraction bits. Colours: |value| < 2^40, |weight| < 2^4, 2^31 samples: 75 bits and the sign above the point, 50 below.
+ * Weights and alpha: 2^4 2^31 and the sign above the point. */
 enum { VL_COLOR_BITS = 50, VL_WEIGHT_BITS = 24, VL_ALPHA_BITS = 28 };
 
 /* Sums of weight * channel, and of weight: one cache line. */
@@ -20,8 +20,8 @@ typedef struct vlFilmPixel {
 } vlFilmPixel;
 _Static_assert(sizeof(vlFilmPixel) == 64, "a pixel's sums are one cache line");
 
-/* What standard errors need beside the sums: of each channel the plain sum and that of squares, and the samples.
- * Squares are exact, too: 192-bit fixed point, the lowest limb first. Two cache lines. */
+/* Additional sums for standard errors: of each channel the unweighted sum and the sum of squares, and the number of
+ * samples. Squares are exact, too: 192-bit fixed point, the lowest limb first. Two cache lines. */
 enum { VL_SQUARE_BITS = 80 };
 typedef struct vlFilmMoments {
   vlInt128 plain[3];
@@ -33,7 +33,7 @@ _Static_assert(sizeof(vlFilmMoments) == 128, "the compiler adds no bytes");
 /* Sums of weight * radiance and of weight for each bucket of each pixel (spectrum.c): front committed, back of the
  * running pass where stamp == pass. */
 typedef struct vlFilmSpectrum {
-  vlInt128 *sums[2]; /* front, back; null: not made yet */
+  vlInt128 *sums[2]; /* front, back; null: not allocated yet */
   int64_t *weights[2];
   uint32_t *stamp;
 } vlFilmSpectrum;
@@ -43,25 +43,25 @@ struct vlFilm {
   vlFilmDef def;
   uint32_t width, height; /* of the crop window */
   uint32_t spp;
-  vlFilmPixel *front; /* committed; null: all zero */
-  vlFilmPixel *back;  /* of the running pass, where stamp == pass; null until the first pass */
+  vlFilmPixel *front; /* committed sums; null: all zero */
+  vlFilmPixel *back;  /* sums of the running pass, valid where stamp == pass; null until the first pass */
   uint32_t *stamp;    /* the pass in which the pixel's back was last written */
   uint32_t pass;      /* counts from 1 */
   bool in_pass;
-  vlFilmMoments *moments[2]; /* front and back, with def.errors; a pixel's back is good where the sums' is */
+  vlFilmMoments *moments[2]; /* front and back, with def.errors; a pixel's back is valid where that of the sums is */
   vlFilmSpectrum spectrum;   /* with def.buckets */
   vlFilterTable filter;
-  float balance[9]; /* of white, on XYZ; with def.white_balance */
+  float balance[9]; /* white balance matrix for XYZ; with def.white_balance */
   vlFilmSensor *sensor;
-  void *scratch; /* of those who render into it: kept for the next time */
+  void *scratch; /* memory of vl_film_scratch */
   size_t scratch_size;
 };
 
-/* Of moments.c: one sample more; begins with the front where the pixel is new in the pass. */
+/* In moments.c: adds one sample; copies the front first where the pixel is new in the pass. */
 void vl_film_add_moments(vlFilm *film, size_t at, bool is_new, const float color[3]);
 void vl_film_merge_moments(vlFilm *film, const vlFilm *other);
 
-/* Of spectrum.c. begin: false when out of memory. */
+/* In spectrum.c. begin: false when out of memory. */
 bool vl_film_spectrum_begin(vlFilm *film);
 void vl_film_spectrum_commit(vlFilm *film);
 void vl_film_spectrum_clear(vlFilm *film);

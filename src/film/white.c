@@ -7,7 +7,7 @@
 /* Lam, "Metamerism and colour constancy" (Bradford, 1985): XYZ to the responses of sharpened cones. */
 static const double cones[9] = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
 
-/* Of vl_daylight, without the rounding of its table. */
+/* The chromaticity of vl_daylight, without the rounding of its table. */
 static void chromaticity(double kelvin, double xy[2]) {
   double t = kelvin * 1.4388 / 1.4380, sum[3] = {0, 0, 0}, light[VL_LAMBDA_COUNT];
   if (t >= 4000.0) {

@@ -1,10 +1,10 @@
-/* trace/two_way/light_path.hot.c: paths from the lights. At every vertex that scatters they leave a photon and look
- * whether the eye sees them; weights as two_way.h says. BSDFs carry radiance towards the eye, so the light's paths take
- * them the other way round (Veach 1997, 5.3): no squeezing by refraction, and a correction for shading normals. */
+/* trace/two_way/light_path.hot.c: paths from the lights. At every vertex that scatters, a light path stores a photon
+ * and connects to the camera; two_way.h has the weights. BSDFs carry radiance towards the camera, so light paths use
+ * their adjoint (Veach 1997, 5.3): no factor 1/eta^2 at refraction, and a correction for shading normals. */
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
-/* Longer ones would hardly live, and need memory for what they leave. */
+/* Longer paths carry almost nothing, and would need memory for their photons. */
 enum { LIGHT_BOUNCES = 255 };
 
 void vl_stage_reverse(vlTracing *t, vlTwoWayRows *r, uint32_t n, const float wi[3][VL_ROW_SIZE]) {
@@ -27,9 +27,9 @@ void vl_stage_reverse(vlTracing *t, vlTwoWayRows *r, uint32_t n, const float wi[
   }
 }
 
-/* ---- setting out ------------------------------------------------------------------------------------------------- */
+/* ---- start ------------------------------------------------------------------------------------------------------- */
 
-/* Wavelengths of the batch's paths to rows 4..7, 1 / densities to rows 8..11. */
+/* Writes the wavelengths of the batch's paths to rows 4..7, 1 / densities to rows 8..11. */
 static void wavelengths(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
   const vlTwoWay *way = t->def->two_way;
   float *u = t->s->shade.u0;
@@ -40,7 +40,7 @@ static void wavelengths(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
   vl_color_kernels(t->def->isa)->visible_wavelengths(b->n, u, lambda, inv_pdf);
 }
 
-/* false: from infinitely far through a medium nothing comes. */
+/* The medium that the path starts in. False: no light arrives from infinitely far through a medium. */
 static bool start_medium(const vlTracing *t, const vlEmission *e, uint32_t *medium) {
   const vlWorldLight *light = &t->world->lights.items[e->light];
   *medium = t->def->two_way->medium[e->light];
@@ -66,7 +66,7 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
     vlEmission e = vl_emission_sample(world, t->def->two_way, lambda, u[i], u1[i], v1[i], u2[i], v2[i]);
     float most = vl_max(vl_max(e.flux[0], e.flux[1]), vl_max(e.flux[2], e.flux[3]));
     if (!e.valid || !(most > 0.0f) || !(most < VL_INFINITY)) continue;
-    uint32_t *medium = s->volume.shadow_medium; /* free so far */
+    uint32_t *medium = s->volume.shadow_medium; /* not used yet */
     if (vl_has_media(t) && !start_medium(t, &e, &medium[i])) continue;
     uint32_t k = count++;
     p->ox[k] = e.o.x, p->oy[k] = e.o.y, p->oz[k] = e.o.z;
@@ -84,7 +84,7 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
     }
     r->light[i] = e.light;
     r->density[i] = e.density;
-    r->carry[i] = e.delta ? 0.0f : 1.0f; /* over density and cosine: arrive() divides */
+    r->carry[i] = e.delta ? 0.0f : 1.0f; /* without 1 / (density cosine), which arrive() applies */
     r->lx[i] = e.at.x, r->ly[i] = e.at.y, r->lz[i] = e.at.z;
     r->lnx[i] = e.n.x, r->lny[i] = e.n.y, r->lnz[i] = e.n.z;
   }
@@ -103,7 +103,7 @@ float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t 
   return pmf * vl_area_pdf(world, light, p, &at);
 }
 
-/* The n shaded lanes: a, b of the ways that begin on the light's side. */
+/* Sets a and b of the n shaded lanes: the strategies that begin on the light's side (two_way.h). */
 static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
   const vlSurface *f = &t->s->surface;
   const vlPaths *p = &t->s->b;
@@ -125,7 +125,7 @@ static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
   }
 }
 
-/* ---- what they leave --------------------------------------------------------------------------------------------- */
+/* ---- photons ----------------------------------------------------------------------------------------------------- */
 
 static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth) {
   const vlPaths *p = &t->s->b;
@@ -150,7 +150,7 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
   if (count) b->store(b->user, count, r->photons);
 }
 
-/* ---- onwards ----------------------------------------------------------------------------------------------------- */
+/* ---- the next vertex --------------------------------------------------------------------------------------------- */
 
 static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
@@ -200,8 +200,8 @@ void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch
                      vlLightBatch *batch) {
   vlTraceDef own = *def;
   own.sampler = &def->two_way->sampler;
-  own.pixel_spread = own.pixel_width = 0.0f; /* textures in full */
-  vlTraceBatch rest;                         /* of the stages' own: light that interfaces give, counts */
+  own.pixel_spread = own.pixel_width = 0.0f; /* textures at full resolution */
+  vlTraceBatch rest;                         /* for the stages only: receives counts and light that is not used */
   __builtin_memset(&rest, 0, sizeof rest);
   rest.n = batch->n;
   rest.eyes = batch->eyes;

@@ -1,16 +1,17 @@
-/* trace/two_way/merge.hot.c: photons near the eye's vertices. The flux of N light paths through a disk of radius r
- * round the vertex stands for that at the vertex (two_way.h): biased by what changes over the disk, and less with each
- * pass.
+/* trace/two_way/merge.hot.c: merging: photons near the vertices of camera paths. The flux of N light paths through a
+ * disk of radius r around the vertex estimates the flux at the vertex (two_way.h). The estimate is biased by what
+ * changes over the disk; the bias vanishes as r shrinks from pass to pass.
  *
- * Diffuse surfaces are the many and are added up at once; for the other kinds photons are listed, and each lane's next
- * one goes through the BSDFs with those of the other lanes. In media the ball of radius r takes the disk's place. */
+ * Photons on diffuse surfaces are the most frequent and are summed at once. For the other kinds photons are listed, and
+ * the next photon of each lane goes through the BSDFs in one batch. In media a ball of radius r replaces the disk. */
 #include "trace/medium/phase.h"
 #include "trace/two_way/stages.h"
 
-/* Photons within the radius of p, of one medium (vlPhoton.medium), cell by cell: cells are as wide as the ball. */
+/* An iterator over the photons within the radius of p, of one medium (vlPhoton.medium), cell by cell: cells are as wide
+ * as the ball. */
 typedef struct Near {
   vlVec3 p;
-  uint32_t medium, most; /* most: bounces that the photon may have */
+  uint32_t medium, most; /* most: largest number of bounces of a photon */
   int32_t corner[3], cell[3];
   uint32_t next, end;
   int k;
@@ -33,7 +34,7 @@ static bool near_fits(const vlPhotonMap *map, const Near *near, const vlPhoton *
   return true;
 }
 
-/* The next one's index, or VL_NONE. */
+/* Index of the next photon, or VL_NONE. */
 static uint32_t near_next(const vlPhotonMap *map, Near *near) {
   for (;;) {
     while (near->next < near->end) {
@@ -48,18 +49,19 @@ static uint32_t near_next(const vlPhotonMap *map, Near *near) {
   }
 }
 
-/* What this lane's photon brings: the weight, and the factor that the hero's being alone twice makes. */
+/* The weight of this lane's photon, times 1/4 where both paths have only the hero wavelength left: each carries the
+ * weight of all four. */
 static float pair_weight(const vlTracing *t, uint32_t i, const vlPhoton *x, float forth, float back) {
   const vlTwoWay *way = t->def->two_way;
   const vlTwoWayRows *r = t->batch->two_way;
   float others = r->a[i] * back + r->b[i] + x->a * forth + x->b;
-  /* of H / (H + others), over H */
+  /* the weight H / (H + others), divided by H */
   float weight = 1.0f / ((x->medium ? way->merged_volume : way->merged) + others);
   return x->alone && vl_hero_only(x->medium ? &t->s->volume.scattered : &t->s->b, i) ? 0.25f * weight : weight;
 }
 
-/* The photon's power as it joins the eye's path i: what media absorb by channel of the whole path is not the product of
- * what they absorb of its two parts. */
+/* The photon's power for camera path i. Absorption by RGB channel over the whole path is not the product of the
+ * absorptions of its two parts. */
 static void joined_power(const vlTracing *t, uint32_t i, const vlPhoton *x, float power[4]) {
   for (int c = 0; c < 4; c++) power[c] = x->power[c];
   if (!t->world->absorbs_by_channel) return;
@@ -86,7 +88,7 @@ static void add_diffuse(vlTracing *t, uint32_t i, const vlPhoton *x, float sum[4
   for (int c = 0; c < 4; c++) sum[c] += sh->reflectance[c][i] * power[c] * weight;
 }
 
-/* Each lane's listed photons, one of each lane at a time. */
+/* Adds the listed photons, one of each lane at a time. */
 static void add_listed(vlTracing *t, uint32_t n) {
   vlTwoWayRows *r = t->batch->two_way;
   vlTraceScratch *s = t->s;

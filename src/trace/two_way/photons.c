@@ -17,7 +17,7 @@ static bool comes_before(const vlPhoton *a, const vlPhoton *b) {
   return a->id != b->id ? a->id < b->id : a->bounce < b->bounce;
 }
 
-/* Heapsort: few in most buckets, but a stranger's scene may put all into one. */
+/* Heapsort. Most buckets are small, but a scene may put all photons into one. */
 static void sink(vlPhoton *x, uint32_t root, uint32_t count) {
   vlPhoton moving = x[root];
   for (uint32_t child; (child = 2 * root + 1) < count; root = child) {
@@ -51,7 +51,8 @@ void vl_photon_map_build(vlPhotonMap *map, const vlPhoton *photons, uint32_t cou
   memset(start, 0, ((size_t)buckets + 1) * sizeof *start);
   for (uint32_t i = 0; i < count; i++) start[bucket_of(map, &photons[i]) + 1]++;
   for (uint32_t b = 0; b < buckets; b++) start[b + 1] += start[b];
-  /* start[b] is where the bucket's next goes; in the end where b + 1 starts: shifted back by one. */
+  /* start[b] is the place of the bucket's next photon; at the end it equals start[b + 1], so it is shifted back by one.
+   */
   for (uint32_t i = 0; i < count; i++) sorted[start[bucket_of(map, &photons[i])]++] = photons[i];
   memmove(start + 1, start, (size_t)buckets * sizeof *start);
   start[0] = 0;

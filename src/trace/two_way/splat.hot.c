@@ -1,5 +1,5 @@
-/* trace/two_way/splat.hot.c: light's paths that the eye sees: where on the film their vertices fall, how much of their
- * light comes there, and its weight against the other ways (two_way.h). */
+/* trace/two_way/splat.hot.c: connections of light paths to the camera: the film point of each vertex, the radiance that
+ * arrives there, and its weight against the other strategies (two_way.h). */
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
@@ -67,7 +67,7 @@ void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlP
   if (visible) b->splat(b->user, visible, r->x, r->y, value, lambda, inv_pdf);
 }
 
-/* Shadow ray `count` of surface lane i, from `at` to where the eye is. */
+/* Adds shadow ray `count` of surface lane i, to the point `target` on the lens. */
 static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float end) {
   vlTraceScratch *s = t->s;
   const vlSurface *f = &s->surface;
@@ -77,7 +77,7 @@ static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float 
   vlVec3 d = vl_sub(target, o);
   q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
   q->t_max[count] = vl_min(end, VL_ONE_MINUS_EPSILON);
-  if (vl_has_media(t)) { /* of unit length: interfaces on the way are met at distances */
+  if (vl_has_media(t)) { /* unit length: distances to interfaces on the way are needed */
     vlVolumeScratch *v = &s->volume;
     q->t_max[count] = vl_min(end, 1.0f - 0x1p-21f) * vl_length(d);
     d = vl_normalize(d);
@@ -101,7 +101,7 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
   vlShadowRays *q = &s->shadow;
   if (way->eye.lens_radius > 0.0f)
     t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
-  float(*wi)[VL_ROW_SIZE] = s->rows; /* the textures' stack is free */
+  float(*wi)[VL_ROW_SIZE] = s->rows; /* the textures' stack is not in use */
   float *per_square = s->rows[3], *end = s->rows[4];
   float *fx = s->rows[5], *fy = s->rows[6], *fz = s->rows[7];
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
@@ -112,7 +112,7 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     wi[1][i] = w.x * sh->bx[i] + w.y * sh->by[i] + w.z * sh->bz[i];
     wi[2][i] = vl_dot(w, vl_lane3(f->nx, f->ny, f->nz, i));
     float cosine = vl_abs(vl_dot(w, vl_lane3(f->gx, f->gy, f->gz, i)));
-    per_square[i] = sight.seen ? cosine * sight.per_square : 0.0f; /* density of the eye's first vertex here */
+    per_square[i] = sight.seen ? cosine * sight.per_square : 0.0f; /* density of the camera path's first vertex here */
     end[i] = sight.end;
     r->x[i] = sight.x, r->y[i] = sight.y;
     fx[i] = sight.from.x, fy[i] = sight.from.y, fz[i] = sight.from.z;
@@ -124,7 +124,7 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     if (!(per_square[i] > 0.0f) || !(sum > 0.0f) || !(r->cosine[i] > 0.0f)) continue;
     push(t, i, count, vl_vec3(fx[i], fy[i], fz[i]), end[i]);
     r->others[count] = way->light_only ? 0.0f : way->merged + r->a[i] * r->rev[i] + r->b[i];
-    r->own[count] = way->paths / per_square[i]; /* S_1: this way, over P_1 L_1 as the others */
+    r->own[count] = way->paths / per_square[i]; /* S_1: this strategy, over P_1 L_1 as the others */
     uint32_t lane = p->lane[i];
     float inv = 1.0f / r->cosine[i];
     for (int c = 0; c < 4; c++) q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * sh->value[c][i] * inv;

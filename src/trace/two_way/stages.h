@@ -9,25 +9,25 @@
 
 enum { VL_MERGE_PAIRS = 4 * VL_BATCH };
 
-/* Per path, by lane (its element of the batch, wherever sorting puts it): */
+/* Rows by lane (the path's element of the batch, wherever sorting puts it): */
 typedef struct vlTwoWayRows {
-  VL_ROW float carry[VL_ROW_SIZE];     /* (S + H) cos / fwd of the vertex that was left; two_way.h */
-  VL_ROW float flux[4][VL_ROW_SIZE];   /* of a light's path when it set out; its beta starts from 1 */
-  VL_ROW uint32_t smooth[VL_ROW_SIZE]; /* vertices that do not count as bounces: vlTwoWay.apart */
-  VL_ROW float density[VL_ROW_SIZE];   /* vl_emission_density, of a light's first ray, and */
+  VL_ROW float carry[VL_ROW_SIZE];     /* (S + H) cos / fwd of the previous vertex; two_way.h */
+  VL_ROW float flux[4][VL_ROW_SIZE];   /* initial flux of a light path; its beta starts from 1 */
+  VL_ROW uint32_t smooth[VL_ROW_SIZE]; /* vertices not counted as bounces: vlTwoWay.apart */
+  VL_ROW float density[VL_ROW_SIZE];   /* vl_emission_density of a light path's first ray, and its light */
   VL_ROW uint32_t light[VL_ROW_SIZE];
-  VL_ROW float lx[VL_ROW_SIZE], ly[VL_ROW_SIZE], lz[VL_ROW_SIZE];    /* where on it, or its direction */
-  VL_ROW float lnx[VL_ROW_SIZE], lny[VL_ROW_SIZE], lnz[VL_ROW_SIZE]; /* its normal there */
-  /* by element of the sorted batch */
+  VL_ROW float lx[VL_ROW_SIZE], ly[VL_ROW_SIZE], lz[VL_ROW_SIZE];    /* point on the light, or its direction */
+  VL_ROW float lnx[VL_ROW_SIZE], lny[VL_ROW_SIZE], lnz[VL_ROW_SIZE]; /* the light's normal there */
+  /* rows by element of the sorted batch */
   VL_ROW float a[VL_ROW_SIZE], b[VL_ROW_SIZE]; /* S = a rev + b */
   VL_ROW float rev[VL_ROW_SIZE];               /* vl_stage_reverse */
-  VL_ROW float cosine[VL_ROW_SIZE];            /* of the ray that came, with the geometric normal; media: extinction */
+  VL_ROW float cosine[VL_ROW_SIZE];            /* of the incoming ray with the geometric normal; in media: extinction */
   VL_ROW float wo[3][VL_ROW_SIZE], pdf[VL_ROW_SIZE];
-  VL_ROW float x[VL_ROW_SIZE], y[VL_ROW_SIZE];        /* film points, then of splats */
-  VL_ROW float own[VL_ROW_SIZE], others[VL_ROW_SIZE]; /* of shadow rays: density of this way and of the others */
+  VL_ROW float x[VL_ROW_SIZE], y[VL_ROW_SIZE];        /* film points of lanes, then of splats */
+  VL_ROW float own[VL_ROW_SIZE], others[VL_ROW_SIZE]; /* of shadow rays: density of this strategy and of the others */
   VL_ROW float rows[12][VL_ROW_SIZE]; /* value, wavelength, 1 / density of splats; wavelengths of the batch */
   VL_ROW uint32_t first[VL_ROW_SIZE + 1], count[VL_ROW_SIZE];
-  uint32_t pair[VL_MERGE_PAIRS]; /* photons, those of a lane together */
+  uint32_t pair[VL_MERGE_PAIRS]; /* photon indices, those of a lane together */
   vlPhoton photons[VL_BATCH];
 } vlTwoWayRows;
 
@@ -35,60 +35,62 @@ void vl_bidirectional_tracer(vlTracing *t);
 void vl_random_walk_tracer(vlTracing *t);
 void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTwoWayRows *rows,
                      vlLightBatch *batch);
-/* Adds the light of the photons near the n shaded lanes, depth: bounces of the eye's path so far. */
+/* Adds the radiance of the photons near the n shaded lanes. depth: bounces of the camera path so far. */
 void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth);
 void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth);
 void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium);
 
-/* The lanes of a that scatter in media (volume.scattered): light samples, merging, directions; s->order names those
- * that go on. Of the eye's paths, and of light's, which leave photons and splats; last: none goes on. */
+/* The lanes of a that scatter in media (volume.scattered): light samples, merging, new directions. Returns the number
+ * of paths that go on; s->order names them. One function for camera paths, and one for light paths, which store photons
+ * and connect to the camera; last: no path goes on. */
 uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
 uint32_t vl_light_in_media(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
                            uint32_t dimension, bool last);
-/* Light samples as `count` shadow rays: adds what arrives, weighed: own over own + odds others. */
+/* Traces the light samples' `count` shadow rays and adds the radiance that arrives, weighted by own / (own + odds
+ * others). */
 void vl_two_way_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth);
-/* The n shaded lanes, as far as the eye sees them, become splats. */
+/* Connects the n shaded lanes to the camera; visible ones become splats. */
 void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
                           uint32_t dimension);
-/* Shadow rays towards the eye become splats; their radiance over own + odds others. */
+/* Traces the shadow rays towards the camera; visible ones become splats of weight own / (own + odds others). */
 void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p, const vlVolumeRows *rows,
                        uint32_t count, uint32_t depth);
-/* Density with which next event would have asked for the light that this lane's path came from. */
+/* Density with which next-event estimation would have sampled the light that this lane's path came from. */
 float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w);
 
-/* Where the eye would see a point from a point on its lens. */
+/* A camera sample: the connection of a point with a point on the lens. */
 typedef struct vlCameraSample {
   bool seen;
-  vlVec3 w;         /* towards it */
-  vlVec3 from;      /* where on the lens */
-  float x, y;       /* film */
-  float end;        /* share of the way up to the near plane */
+  vlVec3 w;         /* unit, towards the lens */
+  vlVec3 from;      /* point on the lens */
+  float x, y;       /* film point, pixels */
+  float end;        /* fraction of the way at which the near plane lies */
   float per_square; /* 1 / (solid angle of a pixel * distance squared) */
 } vlCameraSample;
 vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, float v);
 
-/* Densities of sampling wo had the path come from the directions wi (local, rows of n), to rows->rev; and the BSDFs'
- * values f(wi, wo) |cos wo| to shade.value. shade.wo stays, shade.wi and shade.pdf and light.w do not. */
+/* Computes the densities of sampling wo had the path come from the directions wi (local, rows of n), to rows->rev; and
+ * the BSDFs' values f(wi, wo) |cos wo| to shade.value. Keeps shade.wo; overwrites shade.wi, shade.pdf and light.w. */
 void vl_stage_reverse(vlTracing *t, vlTwoWayRows *rows, uint32_t n, const float wi[3][VL_ROW_SIZE]);
 
-/* A ray of light sets out. */
+/* A ray that leaves a light. */
 typedef struct vlEmission {
   bool valid;
   vlVec3 o, d;
-  vlVec3 at, n; /* point and normal on an area light; else at is what the density asks for: vl_emission_density */
+  vlVec3 at, n; /* point and normal on an area light; for other lights at is the point that vl_emission_density takes */
   float flux[4];
-  float density; /* as vl_emission_density has it, without the distance of point lights */
-  bool delta;    /* no ray can run into it */
+  float density; /* as vl_emission_density, without the distance of point lights */
+  bool delta;    /* no ray can hit the light */
   uint32_t light;
 } vlEmission;
 vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const float lambda[4], float u_choice, float u,
                               float v, float s, float t);
-/* Density of the light's paths that arrive at p from w (unit, towards the light; distance d), per area across them and
- * solid angle of w; of lights that are deltas per area alone. It is to be multiplied by p's cosine. */
+/* Density of the light paths that arrive at p from w (unit, towards the light; distance d): per area perpendicular to w
+ * and solid angle of w; for delta lights per area only. To be multiplied by p's cosine. */
 float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t light, vlVec3 w, float distance,
                           const vlPoint *at);
 
-/* Where all that scatters is a delta: nothing can be connected. */
+/* All BSDFs of the lanes are specular: nothing can be connected. */
 static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s, uint32_t i) {
   const float *x = s->shade.alpha_x, *y = s->shade.alpha_y;
   switch (world->materials.items[s->hits_b.material[i]].smooth) {
@@ -103,24 +105,25 @@ static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s
 static inline bool vl_has_media(const vlTracing *t) {
   return t->world->media.count > 0;
 }
-/* Of the path's last flight. */
+/* The odds (vlFlight.odds) of the path's last flight. */
 static inline float vl_last_odds(const vlTracing *t, uint32_t lane) {
   return vl_has_media(t) ? t->s->volume.odds[lane] : 1.0f;
 }
 static inline const vlCameraView *vl_eye_of(const vlTracing *t, uint32_t lane) {
   return t->batch->eyes ? &t->batch->eyes[lane] : &t->def->two_way->eye;
 }
-/* Of light's first ray, at that distance. */
+/* vl_emission_density of a light path's first ray, at that distance. */
 static inline float vl_light_density(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane, float distance) {
   return t->world->lights.items[r->light[lane]].at_point ? r->density[lane] / (distance * distance) : r->density[lane];
 }
 
-/* Solid angle of a pixel round the direction whose cosine with the axis is c: its side at distance 1 is 1/f. */
+/* Solid angle of a pixel around the direction whose cosine with the axis is c; the pixel's side at distance 1 is 1/f.
+ */
 static inline float vl_camera_view_pixel_area(const vlCameraView *eye, float c) {
   return c * c * c / (eye->fx * eye->fy);
 }
 
-/* The photon map's cells and their buckets. */
+/* Cell coordinates of the photon map, and the bucket of a cell. */
 static inline int32_t vl_photon_cell(float x, float inv_cell) {
   float c = vl_clamp(x * inv_cell, -1e9f, 1e9f);
   int32_t i = (int32_t)c;
@@ -132,13 +135,13 @@ static inline uint32_t vl_photon_bucket(int32_t x, int32_t y, int32_t z, uint32_
   return h & (buckets - 1);
 }
 
-/* What comes through along shadow ray k, which meets no surface: `passes` of each wavelength, `scale` of all, the
- * weight against the other ways. false: nothing. */
+/* The transmittance along shadow ray k, which hits no opaque surface: `passes` for each wavelength, `scale` for all,
+ * with the weight against the other strategies. False: nothing arrives. */
 bool vl_two_way_arrives(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlTwoWayRows *r, uint32_t k,
                         uint32_t depth, float passes[4], float *scale);
 
-/* What media that absorb by channel have let pass of a light's path, for a photon: only the ratios matter. The largest
- * is 1 (2 bits say which), -512 ln of the next two in 15 bits each: exact to 0.1 %, down to e^-64. */
+/* vlVolumeRows.passed of a light path, packed into 32 bits for a photon. Only ratios matter: the largest is 1 (2 bits
+ * say which), the other two are -512 ln in 15 bits each: exact to 0.1 %, down to e^-64. */
 static inline uint32_t vl_pack_passed(const vlVolumeRows *v, uint32_t i) {
   const float p[3] = {v->passed[0][i], v->passed[1][i], v->passed[2][i]};
   uint32_t largest = p[0] >= p[1] ? (p[0] >= p[2] ? 0 : 2) : p[1] >= p[2] ? 1 : 2, packed = largest;
@@ -156,7 +159,7 @@ static inline void vl_unpack_passed(uint32_t packed, float p[3]) {
     p[(largest + k) % 3] = vl_exp((float)(packed >> (2 + 15 * (k - 1)) & 32767u) * (-1.0f / 512.0f));
 }
 
-/* The hero is alone: material.hot.c tells it so. */
+/* Only the hero wavelength is left: material.hot.c marks this by equal wavelengths. */
 static inline bool vl_hero_only(const vlPaths *p, uint32_t i) {
   return p->lambda[0][i] == p->lambda[1][i] && p->lambda[0][i] > 0.0f;
 }

@@ -1,12 +1,11 @@
-/* trace/two_way/two_way.hot.c: the eye's side of the two-way tracers: path tracing whose next event and whose lights
- * met are weighed against what the light's paths bring (two_way.h). Beside it the random walk, which asks for nothing.
- */
+/* trace/two_way/two_way.hot.c: the camera side of the two-way tracers: path tracing in which light samples and hit
+ * lights are weighted against splats and merging (two_way.h). It also has the random walk, which samples no lights. */
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
-/* ---- light that paths run into ----------------------------------------------------------------------------------- */
+/* ---- lights that paths hit --------------------------------------------------------------------------------------- */
 
-/* density: of the light's paths that would come here. */
+/* density: of the light paths that arrive here. */
 static float hit_weight(const vlTracing *t, const vlPaths *p, uint32_t i, float asked, float density) {
   uint32_t lane = p->lane[i];
   asked = p->specular[i] || !(asked > 0.0f) ? 0.0f : asked / (p->pdf[i] * vl_last_odds(t, lane));
@@ -45,7 +44,7 @@ static void add_emission(vlTracing *t, const vlPaths *p, uint32_t i, bool first)
   if (vl_hit_emission(t->world, p, &t->s->hits_a, i, &met)) add_hit_light(t, p, i, &met, met.at.t, &met.at, first);
 }
 
-/* first: the eye's own rays; also what weighs nothing against anything. */
+/* first: camera rays, and rays without a competing strategy. */
 static void emission(vlTracing *t, uint32_t n, bool first) {
   const vlHits *h = &t->s->hits_a;
   for (uint32_t i = 0; i < n; i++) {
@@ -60,7 +59,7 @@ static void emission(vlTracing *t, uint32_t n, bool first) {
 
 /* ---- one vertex -------------------------------------------------------------------------------------------------- */
 
-/* a, b of the ways that begin on the eye's side. */
+/* Sets a and b: the strategies that begin on the camera's side (two_way.h). */
 static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTwoWayRows *r = t->batch->two_way;
   const vlSurface *f = &t->s->surface;
@@ -79,7 +78,7 @@ static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
   }
 }
 
-/* Lane i's light sample as shadow ray `count`, over own + others. */
+/* Adds lane i's light sample as shadow ray `count`; vl_two_way_shadows applies its weight. Returns the next count. */
 static uint32_t push_shadow(vlTracing *t, uint32_t i, vlVec3 o, uint32_t count) {
   vlTraceScratch *s = t->s;
   const vlShade *sh = &s->shade;
@@ -172,7 +171,7 @@ static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   return count;
 }
 
-/* Where smooth beginnings do not count each path has a last bounce of its own. */
+/* With vlTwoWay.apart each path has its own last bounce: ends those that reached it. */
 static void end_long(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
   uint32_t *smooth = t->batch->two_way->smooth;
@@ -187,7 +186,7 @@ static void end_long(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* ---- the tracers ------------------------------------------------------------------------------------------------- */
 
-/* The sorted lanes, on surfaces. Returns how many go on. */
+/* Scatters the sorted lanes on surfaces. Returns the number of paths that go on. */
 static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   n = vl_stage_sort(t, n);
   if (n == 0) return 0;

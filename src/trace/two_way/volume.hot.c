@@ -1,5 +1,5 @@
-/* trace/two_way/volume.hot.c: light followed both ways where it scatters in media (two_way.h): the vertices of the
- * eye's paths and of light's that are no surfaces. Their phase function is its own density, both ways. */
+/* trace/two_way/volume.hot.c: vertices in media, of camera and light paths (two_way.h). The phase function is its own
+ * density, both ways. */
 #include "trace/medium/phase.h"
 #include "trace/two_way/stages.h"
 
@@ -21,13 +21,13 @@ static float extinction(const vlTracing *t, uint32_t i) {
   return vl_medium_extinction(&t->world->media.items[v->c.medium[i]], vl_lane3(p->ox, p->oy, p->oz, i));
 }
 
-static float phase_of(const vlTracing *t, uint32_t i, vlVec3 w) { /* w: from here */
+static float phase_of(const vlTracing *t, uint32_t i, vlVec3 w) { /* w: unit, away from the vertex */
   const vlVolumeScratch *v = &t->s->volume;
   return vl_phase(t->world->media.items[v->c.medium[i]].g,
                   vl_dot(vl_lane3(v->scattered.dx, v->scattered.dy, v->scattered.dz, i), w));
 }
 
-/* ---- the eye's side ---------------------------------------------------------------------------------------------- */
+/* ---- camera paths ------------------------------------------------------------------------------------------------ */
 
 static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlVolumeScratch *v = &t->s->volume;
@@ -74,7 +74,7 @@ static void light_samples(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   vl_two_way_shadows(t, p, &v->c, count, depth);
 }
 
-/* New directions, and what travels with them. */
+/* Samples new directions and updates the carried densities. */
 static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth, uint32_t dimension) {
   const vlPaths *p = &t->s->volume.scattered;
   uint32_t count = vl_volume_phase_scatter(t, n, depth + 1, dimension);
@@ -95,7 +95,7 @@ uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
   return scatter(t, t->batch->two_way, n, depth, dimension);
 }
 
-/* ---- the light's side -------------------------------------------------------------------------------------------- */
+/* ---- light paths ------------------------------------------------------------------------------------------------- */
 
 static void arrive_from_light(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
   const vlVolumeScratch *v = &t->s->volume;
@@ -116,7 +116,7 @@ static void arrive_from_light(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_
   }
 }
 
-/* What a channel brings that does not scatter here is not looked for. */
+/* Stores photons. A channel that does not scatter here has no power. */
 static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth) {
   const vlVolumeScratch *v = &t->s->volume;
   const vlPaths *p = &v->scattered;

@@ -1,9 +1,9 @@
-/* trace/stages.h: the stages of a bounce and the arrays that run between them; private to the hot files of trace.
+/* trace/stages.h: the stages of a bounce and the arrays that they exchange; private to the hot files of trace.
  *
  *   vlPaths (rays) -> ids -> sorted by material -> vlSurface -> vlShade (frame, wo, BSDF parameters)
  *          -> light samples -> shadow rays -> radiance;  BSDF samples -> vlPaths of the next bounce
  *
- * Every array has VL_ROW_SIZE elements. Elements past n are stale but harmless (finite, indices valid). */
+ * Every array has VL_ROW_SIZE elements. Elements from n on are stale but harmless (finite, indices valid). */
 #ifndef TRACE_STAGES_H
 #define TRACE_STAGES_H
 
@@ -13,23 +13,24 @@
 
 #define VL_ROW __attribute__((aligned(64)))
 
-/* Paths under way: the ray, what it carries, and what the next hit needs for multiple importance sampling. */
+/* Paths: the ray, the throughput, and what multiple importance sampling needs at the next hit. */
 typedef struct vlPaths {
   VL_ROW float ox[VL_ROW_SIZE], oy[VL_ROW_SIZE], oz[VL_ROW_SIZE];
   VL_ROW float dx[VL_ROW_SIZE], dy[VL_ROW_SIZE], dz[VL_ROW_SIZE];
   VL_ROW float beta[4][VL_ROW_SIZE];
   VL_ROW float lambda[4][VL_ROW_SIZE];
-  VL_ROW float pdf[VL_ROW_SIZE]; /* of the direction, by the BSDF */
+  VL_ROW float pdf[VL_ROW_SIZE]; /* of the direction, by BSDF sampling, per solid angle */
   VL_ROW float from_nx[VL_ROW_SIZE], from_ny[VL_ROW_SIZE],
-      from_nz[VL_ROW_SIZE]; /* normal where the ray starts, for the light tree */
+      from_nz[VL_ROW_SIZE]; /* normal at the ray's origin, for the light tree */
   VL_ROW float eta_scale[VL_ROW_SIZE];
-  VL_ROW float cone[VL_ROW_SIZE];        /* width of the footprint at the ray's start, */
-  VL_ROW float spread[VL_ROW_SIZE];      /* and how it grows along it: below zero towards a focus */
-  VL_ROW uint32_t specular[VL_ROW_SIZE]; /* the ray came from the camera or a delta: no light sample competes */
+  VL_ROW float cone[VL_ROW_SIZE];   /* width of the footprint at the ray's origin, */
+  VL_ROW float spread[VL_ROW_SIZE]; /* and its growth per unit length: negative towards a focus */
+  VL_ROW uint32_t
+      specular[VL_ROW_SIZE]; /* the ray comes from the camera or a specular lobe: no light sample competes */
   VL_ROW int32_t px[VL_ROW_SIZE], py[VL_ROW_SIZE];
   VL_ROW uint32_t index[VL_ROW_SIZE];
-  VL_ROW uint32_t lane[VL_ROW_SIZE]; /* which element of the batch */
-  const float *time;                 /* by lane: the world's time; null where nothing moves */
+  VL_ROW uint32_t lane[VL_ROW_SIZE]; /* element of the batch */
+  const float *time;                 /* by lane: the world's time, 0 to 1; null where nothing moves */
 } vlPaths;
 static inline float vl_path_time(const vlPaths *p, uint32_t i) {
   return p->time ? p->time[p->lane[i]] : 0.0f;
@@ -37,7 +38,8 @@ static inline float vl_path_time(const vlPaths *p, uint32_t i) {
 
 typedef struct vlHits {
   VL_ROW uint32_t shape[VL_ROW_SIZE], prim[VL_ROW_SIZE], instance[VL_ROW_SIZE], material[VL_ROW_SIZE];
-  VL_ROW float t[VL_ROW_SIZE]; /* which crossing of shapes that are not of triangles (world/accel/accel.h) */
+  VL_ROW float
+      t[VL_ROW_SIZE]; /* for shapes other than triangles: distance, to identify the crossing (world/accel/accel.h) */
 } vlHits;
 
 typedef struct vlSurface {
@@ -48,24 +50,24 @@ typedef struct vlSurface {
   VL_ROW float ux[VL_ROW_SIZE], uy[VL_ROW_SIZE], uz[VL_ROW_SIZE]; /* dpdu */
   VL_ROW float vx[VL_ROW_SIZE], vy[VL_ROW_SIZE], vz[VL_ROW_SIZE]; /* dpdv */
   VL_ROW float u[VL_ROW_SIZE], v[VL_ROW_SIZE];
-  VL_ROW float
-      offset[VL_ROW_SIZE]; /* how far along the geometric normal a new ray must start to be clear of the surface */
+  VL_ROW float offset[VL_ROW_SIZE]; /* distance along the geometric normal by which a new ray's origin is moved off the
+                                       surface */
   VL_ROW float uv_scale[VL_ROW_SIZE];                        /* uv per world length */
-  VL_ROW float width[VL_ROW_SIZE];                           /* of the footprint, world units */
-  VL_ROW float across_u[VL_ROW_SIZE], across_v[VL_ROW_SIZE]; /* the footprint's axes in uv; where the world has */
-  VL_ROW float along_u[VL_ROW_SIZE], along_v[VL_ROW_SIZE];   /* images (footprint.hot.c) */
-  VL_ROW float curvature[VL_ROW_SIZE]; /* mean curvature, as the shading normal tells: above zero where it bulges */
-  VL_ROW float dn[6][VL_ROW_SIZE];     /* dndu, dndv; of triangles only where asked for (material.hot.c) */
+  VL_ROW float width[VL_ROW_SIZE];                           /* width of the footprint, world units */
+  VL_ROW float across_u[VL_ROW_SIZE], across_v[VL_ROW_SIZE]; /* the footprint's axes in uv, only where the world has */
+  VL_ROW float along_u[VL_ROW_SIZE], along_v[VL_ROW_SIZE];   /* image textures (footprint.hot.c) */
+  VL_ROW float curvature[VL_ROW_SIZE]; /* mean curvature of the shading normals: positive where convex */
+  VL_ROW float dn[6][VL_ROW_SIZE];     /* dndu, dndv; of triangles only with bump maps (material.hot.c) */
   VL_ROW float
-      no_cosine[VL_ROW_SIZE]; /* 1: light counts alike wherever it comes from; 0: by its cosine to the normal */
+      no_cosine[VL_ROW_SIZE]; /* 1: all directions of light count equally (media); 0: by the cosine to the normal */
 } vlSurface;
 
 /* Corners of the triangles of a batch, gathered. */
 typedef struct vlCorners {
-  VL_ROW float p[9][VL_ROW_SIZE]; /* x y z of corner 0, 1, 2; world space */
+  VL_ROW float p[9][VL_ROW_SIZE]; /* x y z of corners 0, 1, 2; world space */
   VL_ROW float n[9][VL_ROW_SIZE]; /* vertex normals, zero without */
   VL_ROW float uv[6][VL_ROW_SIZE];
-  VL_ROW float error[VL_ROW_SIZE]; /* bound of the rounding error that instancing put on the corners */
+  VL_ROW float error[VL_ROW_SIZE]; /* bound of the rounding error of the instance's transform */
   VL_ROW float flip[VL_ROW_SIZE];  /* 1 or -1 */
 } vlCorners;
 
@@ -73,11 +75,11 @@ typedef struct vlShade {
   VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE], tz[VL_ROW_SIZE]; /* frame: tangent; bitangent = n x t */
   VL_ROW float bx[VL_ROW_SIZE], by[VL_ROW_SIZE], bz[VL_ROW_SIZE];
   VL_ROW float wo[3][VL_ROW_SIZE]; /* local */
-  VL_ROW float wi[3][VL_ROW_SIZE]; /* local: of the light, then of the BSDF sample */
+  VL_ROW float wi[3][VL_ROW_SIZE]; /* local: of the light sample, then of the BSDF sample */
   VL_ROW float reflectance[4][VL_ROW_SIZE], eta[4][VL_ROW_SIZE], k[4][VL_ROW_SIZE];
   VL_ROW float alpha_x[VL_ROW_SIZE], alpha_y[VL_ROW_SIZE], eta_s[VL_ROW_SIZE];
   const vlCoatTable *coat[VL_ROW_SIZE];
-  VL_ROW float own[VL_BSDF_ROWS][VL_ROW_SIZE]; /* trace/bsdf/bsdf.h names them */
+  VL_ROW float own[VL_BSDF_ROWS][VL_ROW_SIZE]; /* named in trace/bsdf/bsdf.h */
   VL_ROW uint32_t seed[VL_ROW_SIZE];
   const vlMeasured *measured[VL_ROW_SIZE];
   VL_ROW float value[4][VL_ROW_SIZE], pdf[VL_ROW_SIZE], eta_scale[VL_ROW_SIZE];
@@ -86,13 +88,13 @@ typedef struct vlShade {
 } vlShade;
 
 typedef struct vlLightSamples {
-  VL_ROW uint32_t light[VL_ROW_SIZE]; /* chosen; VL_INNER: none */
+  VL_ROW uint32_t light[VL_ROW_SIZE]; /* index of the chosen light; VL_INNER: not chosen yet */
   VL_ROW float pmf[VL_ROW_SIZE];
   VL_ROW float wx[VL_ROW_SIZE], wy[VL_ROW_SIZE], wz[VL_ROW_SIZE]; /* towards the light, unit */
   VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE], tz[VL_ROW_SIZE]; /* point that must be visible */
   VL_ROW float radiance[4][VL_ROW_SIZE];                          /* already divided by the pdf */
   VL_ROW float pdf[VL_ROW_SIZE];                                  /* solid angle, choice included; 0: no sample */
-  VL_ROW uint32_t delta[VL_ROW_SIZE];                             /* a BSDF sample could not find it */
+  VL_ROW uint32_t delta[VL_ROW_SIZE];                             /* a delta light: a BSDF sample cannot hit it */
   VL_ROW uint32_t distant[VL_ROW_SIZE]; /* the target is infinitely far: t holds the direction */
 } vlLightSamples;
 
@@ -101,48 +103,48 @@ typedef struct vlShadowRays {
       t_max[VL_ROW_SIZE];
   VL_ROW float radiance[4][VL_ROW_SIZE];
   VL_ROW uint32_t lane[VL_ROW_SIZE];
-  VL_ROW float time[VL_ROW_SIZE]; /* where something moves */
+  VL_ROW float time[VL_ROW_SIZE]; /* the world's time, where something moves */
   uint8_t occluded[VL_ROW_SIZE];
 } vlShadowRays;
 
 enum { VL_BUMP_ROWS = 9, VL_TEXTURE_ROWS = VL_NODE_ROWS + VL_BUMP_ROWS };
 
-/* What paths through media carry besides (volume.hot.c): rescaled densities of the path (pbrt book 14.2.2) as the
- * direction was sampled (u), and as light sampling would have had it (l), and the medium that the ray starts in. */
+/* Additional data of paths through media (volume.hot.c): the rescaled densities of the path (pbrt book 14.2.2) as its
+ * direction was sampled (u) and as light sampling would have sampled it (l), and the medium at the ray's origin. */
 typedef struct vlVolumeRows {
   VL_ROW float u[4][VL_ROW_SIZE], l[4][VL_ROW_SIZE];
-  /* Share of each channel of linear sRGB that media absorbing by channel have let pass since the path began; of a
-   * wavelength vl_channels_at of these, which is in beta. */
+  /* Transmittance since the path began, for each channel of linear sRGB, of the media that absorb by channel; for a
+   * wavelength vl_channels_at of these, which is included in beta. */
   VL_ROW float passed[3][VL_ROW_SIZE];
   VL_ROW uint32_t medium[VL_ROW_SIZE]; /* VL_NONE: vacuum */
 } vlVolumeRows;
 
 typedef struct vlVolumeScratch {
-  vlPaths scattered;    /* those that go on from inside of media */
-  vlVolumeRows a, b, c; /* of the paths a, b and of those */
+  vlPaths scattered;    /* paths that scatter in media */
+  vlVolumeRows a, b, c; /* of the paths a, b and scattered */
   VL_ROW uint8_t event[VL_ROW_SIZE];
-  VL_ROW float t[VL_ROW_SIZE];    /* where on the ray a medium scatters */
-  VL_ROW float odds[VL_ROW_SIZE]; /* by lane: vlFlight.odds of its last flight */
-  /* shadow rays: densities of the light sample and of the scattering */
+  VL_ROW float t[VL_ROW_SIZE];    /* distance along the ray at which a medium scatters */
+  VL_ROW float odds[VL_ROW_SIZE]; /* by lane: vlFlight.odds of the last flight */
+  /* by shadow ray: densities of the light sample and of the scattering */
   VL_ROW float light_pdf[VL_ROW_SIZE], pdf[VL_ROW_SIZE], density[4][VL_ROW_SIZE];
   VL_ROW uint32_t shadow_medium[VL_ROW_SIZE], from[VL_ROW_SIZE];
-  VL_ROW uint32_t kept[VL_ROW_SIZE]; /* which of the scattered */
+  VL_ROW uint32_t kept[VL_ROW_SIZE]; /* indices of the scattered paths that go on */
 } vlVolumeScratch;
 
-/* Paths through bodies, while they are (subsurface.hot.c). Touched only where there are some. */
+/* Scratch for paths through subsurface materials (subsurface.hot.c). Touched only where there are some. */
 typedef struct vlSubsurfaceScratch {
-  vlPaths paths; /* all of the bounce, and */
+  vlPaths paths; /* copy of all paths of the bounce, */
   vlVolumeRows rows;
-  VL_ROW uint8_t alive[VL_ROW_SIZE]; /* which of them go on */
-  /* by probe: which of the paths it is, of which material, where it came in, where from */
+  VL_ROW uint8_t alive[VL_ROW_SIZE]; /* by path: it goes on */
+  /* by probe: index of its path, material, the medium of the path before it entered */
   VL_ROW uint32_t place[VL_ROW_SIZE], material[VL_ROW_SIZE], medium[VL_ROW_SIZE];
   VL_ROW float px[VL_ROW_SIZE], py[VL_ROW_SIZE], pz[VL_ROW_SIZE], nx[VL_ROW_SIZE], ny[VL_ROW_SIZE], nz[VL_ROW_SIZE];
   VL_ROW float sigma[4][VL_ROW_SIZE], albedo[4][VL_ROW_SIZE];
-  VL_ROW float entry_eta_scale[VL_ROW_SIZE];            /* its eta_scale by going in */
-  VL_ROW float length[VL_ROW_SIZE], t_min[VL_ROW_SIZE]; /* of the segment; what is left of it starts here */
-  VL_ROW uint32_t found[VL_ROW_SIZE];                   /* crossings so far, */
-  vlHits hits;                                          /* one of them */
-  VL_ROW uint32_t entry[VL_ROW_SIZE];                   /* by exit: its probe */
+  VL_ROW float entry_eta_scale[VL_ROW_SIZE];            /* factor of eta_scale from entering */
+  VL_ROW float length[VL_ROW_SIZE], t_min[VL_ROW_SIZE]; /* length of the segment; start of the part not yet searched */
+  VL_ROW uint32_t found[VL_ROW_SIZE];                   /* number of crossings so far, */
+  vlHits hits;                                          /* and one chosen crossing */
+  VL_ROW uint32_t entry[VL_ROW_SIZE];                   /* by exit: index of its probe */
   VL_ROW float from[VL_ROW_SIZE];
 } vlSubsurfaceScratch;
 
@@ -155,17 +157,17 @@ struct vlTraceScratch {
   vlLightSamples light;
   vlShadowRays shadow;
   VL_ROW float rows[VL_TEXTURE_ROWS][VL_ROW_SIZE]; /* a stack for nested textures */
-  VL_ROW float time[VL_ROW_SIZE];                  /* of the rays of a, where something moves */
+  VL_ROW float time[VL_ROW_SIZE];                  /* the world's time of the rays of a, where something moves */
   VL_ROW uint32_t order[VL_ROW_SIZE];
-  VL_ROW uint8_t scattered[VL_ROW_SIZE]; /* by lane of the batch, where the world is regularised: by no mirror */
-  VL_ROW uint32_t slot[VL_ROW_SIZE];     /* where each material's lanes start; then which lanes live on */
+  VL_ROW uint8_t scattered[VL_ROW_SIZE]; /* by lane of the batch, with regularisation: a non-specular lobe has scattered
+                                            the path */
+  VL_ROW uint32_t
+      slot[VL_ROW_SIZE]; /* first, the place where each material's lanes start; later, the lanes that go on */
   vlVolumeScratch volume;
   vlSubsurfaceScratch subsurface;
 };
 
-/* A batch on its way: what the stages work on. Paths and hits of a bounce arrive in a, are sorted into b, and go on in
- * a.
- */
+/* A batch in progress. Paths and hits of a bounce arrive in a, are sorted into b, and continue in a. */
 typedef struct vlTracing {
   const vlWorld *world;
   const vlTraceDef *def;
@@ -173,74 +175,79 @@ typedef struct vlTracing {
   vlTraceBatch *batch;
   const vlSamplerKernels *sampler;
   const vlBsdfKernels *bsdf;
-  bool from_light; /* the paths are light's */
+  bool from_light; /* the paths are light paths */
 } vlTracing;
 
 /* ---- stages ------------------------------------------------------------------------------------------------------ */
 
-/* Ids and materials of what the n rays of a meet (hits_a); camera: the first rays, with their t_min and t_max. */
+/* Finds the closest hits of the n rays of a: ids and materials, to hits_a. Interfaces are passed, mixed materials
+ * decided. camera: camera rays, with the batch's t_min and t_max. */
 void vl_stage_hits(vlTracing *t, uint32_t n, bool camera);
-/* Ids of what the n rays of a meet (hits_a); camera: with the batch's t_min and t_max. */
+/* Finds the closest hits of the n rays of a: ids only, to hits_a. camera: with the batch's t_min and t_max. */
 void vl_closest_hits(vlTracing *t, uint32_t n, bool camera);
-/* Lane i's ray once more, from t_min on (t_max: the batch's row, or null): into h, and counted. */
+/* Traces lane i's ray again, from t_min on (t_max: the batch's row, or null), into h; the ray is counted. */
 void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min, const float *t_max);
-/* The material that a hit really has, where it is mixed. */
+/* The material of a hit; resolves mixed materials. */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
-/* Adds the light that the rays of a run into: sky and emissive surfaces. */
+/* Adds the radiance of the lights that the rays of a hit: infinite lights and emissive surfaces. */
 void vl_stage_emission(vlTracing *t, uint32_t n);
-/* The batch's alpha, from its camera rays' hits. */
+/* Sets the batch's alpha from its camera rays' hits. */
 void vl_stage_alpha(vlTracing *t);
-/* Paths of a that hit something go to b, those of one material together. Returns how many. */
+/* Copies the paths of a with a hit to b, sorted by material. Returns their number. */
 uint32_t vl_stage_sort(vlTracing *t, uint32_t n);
-/* Surfaces, materials, frames of the n sorted hits. */
+/* Computes surfaces, materials and shading frames of the n sorted hits. */
 void vl_stage_shade(vlTracing *t, uint32_t n);
-/* Path order[k] of a becomes path k of b. */
+/* Copies path order[k] of a to path k of b. */
 void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n);
-/* Where the world asks for it: wider lobes for those of the n shaded lanes whose paths were scattered by more than
- * mirrors (regularize.hot.c); and notes that the path of a lane of the batch was. */
+/* Regularisation, where the world's definition enables it: makes lobes rougher for those of the n shaded lanes whose
+ * paths have been scattered by a non-specular lobe (regularize.hot.c), and records such scattering by lane of the
+ * batch. */
 void vl_stage_regularize(vlTracing *t, uint32_t n);
 static inline void vl_note_scattered(const vlTracing *t, uint32_t lane) {
   if (t->world->def.regularize) t->s->scattered[lane] = 1;
 }
-/* The BSDFs of the n shaded lanes for the directions of their light samples, to shade.value and shade.pdf. */
+/* Evaluates the BSDFs of the n shaded lanes for the directions of their light samples, to shade.value and shade.pdf. */
 void vl_stage_light_bsdf(vlTracing *t, uint32_t n);
-/* One light sample for each of n paths on s->surface, by the random numbers of `dimension`. */
+/* Takes one light sample for each of n paths on s->surface, with the random numbers of `dimension`. */
 void vl_stage_light_samples(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension);
-/* Samples the BSDFs of the n lanes of b and writes the paths that go on into a: path k was lane s->order[k]. Returns
- * how many. depth: which bounce this is, from 1. */
+/* Samples the BSDFs of the n lanes of b and writes the continuing paths into a: path k was lane s->order[k]. Returns
+ * their number. depth: the number of this bounce, from 1. */
 uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
 void vl_path_tracer(vlTracing *t);
-void vl_volume_tracer(vlTracing *t); /* volume.hot.c: through participating media, and bodies */
-/* Those of the n paths of a (path k from lane s->order[k] of the surfaces, sampled just now) that went into a body of a
- * subsurface material leave it again, with light where they do; or end. Returns how many of all go on. */
+void vl_volume_tracer(vlTracing *t); /* in volume.hot.c: participating media and subsurface materials */
+/* Subsurface scattering. Of the n paths of a (path k just sampled at lane s->order[k] of the surfaces) those that
+ * entered a subsurface material are moved to an exit point, with its light samples, or end. Returns the number of all
+ * paths that go on. */
 uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth);
 
-/* The surfaces that paths->o, d meet, from ids alone. */
+/* Computes the surface points that the rays meet, from ids alone. */
 void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits, vlCorners *corners,
                       vlSurface *surface);
-/* The footprints' axes in uv, of surfaces that are there. */
+/* Computes the footprints' axes in uv for surfaces already computed. */
 void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *surface);
-/* Textures, bump and normal maps, frames, wo, parameters; runs: lanes [first, last) of one material. */
+/* Evaluates textures, bump and normal maps, frames, wo and parameters; runs: lanes [first, last) of one material. */
 void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s);
 void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *surface, vlShade *shade);
-/* Which light each lane asks: light->light and light->pmf. */
+/* Chooses a light for each lane: light->light and light->pmf. */
 void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *surface, const float *u,
                            vlLightSamples *light);
-/* One light sample for each lane. */
+/* Takes one light sample for each lane. */
 void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *surface,
                      const float *u_choice, const float *u, const float *v, vlLightSamples *light);
 
-/* One surface point in scalar, for the few lanes that need it alone (hit lights, mixed materials). t: as in vlHits. */
+/* One surface point, scalar, for the few lanes that are computed one by one (hit lights, mixed materials). t: as in
+ * vlHits. */
 typedef struct vlPoint {
   vlVec3 p, g, n; /* geometric, shading normal */
   float u, v, t, offset;
 } vlPoint;
-/* Past a surface by what its point may be wrong, along the ray; ever forward. */
+/* The smallest t_min past a surface point along the ray, by the bound of the point's error; always larger than t_min.
+ */
 static inline float vl_past_surface(const vlPoint *at, vlVec3 d, float t_min) {
   float margin = 2.0f * at->offset / vl_max(vl_abs(vl_dot(at->g, d)), 0.01f) + 0x1p-22f * vl_abs(at->t);
   return vl_max(at->t, t_min) + vl_max(margin, 1e-30f);
 }
-/* The point that lane i's ray meets. */
+/* The surface point that lane i's ray meets. */
 vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
 vlPoint vl_point_at_time(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
                          uint32_t instance, float t);
@@ -249,29 +256,29 @@ static inline vlPoint vl_point_at(const vlWorld *world, vlVec3 o, vlVec3 d, uint
   return vl_point_at_time(world, 0.0f, o, d, shape, prim, instance, t);
 }
 
-/* Emitted radiance at 4 channels: of a light's colour (image: at s, t of its image). */
+/* Emitted radiance at 4 channels: of a light's colour, times its image at s, t where it has one. */
 void vl_emitted_at(const vlWorld *world, const vlEmitted *emitted, const float lambda[4], float s, float t, bool sky,
                    float out[4]);
-/* A light that a ray has run into. pdf: of light sampling, from where the ray began, for the direction of the ray; 0
- * after what is specular. */
+/* A light that a ray has hit. pdf: density of sampling it, per solid angle, from the ray's origin in the ray's
+ * direction; 0 after a specular lobe. */
 typedef struct vlHitLight {
   uint32_t light;
   float radiance[4], pdf;
-  vlPoint at; /* of area lights */
+  vlPoint at; /* the point, for area lights */
 } vlHitLight;
-/* Infinite light k of the world; the surface that emits light at hit i: false where it is dark on that side. */
+/* Infinite light k of the world; the emissive surface at hit i: false where this side does not emit. */
 vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k);
 bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlHitLight *met);
-/* uv of the emission's image at a point of an area light that a ray has met. */
+/* uv of the emission's image at a point of an area light that a ray has hit. */
 vlVec2 vl_emission_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint *at);
-/* Radiance of a light that a ray from o in direction d misses everything to see; and the density of sampling it. */
+/* Radiance of an infinite light for a ray from o in direction d that hits nothing, and the density of sampling it. */
 void vl_infinite_at(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d, const float lambda[4],
                     float out[4]);
 float vl_infinite_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d);
 /* Density, per solid angle from `from`, of sampling this point of an area light (choice not included). */
 float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at);
 
-/* Element i of a to k of b. */
+/* Copies element i of a to element k of b. */
 static inline void vl_path_copy(const vlPaths *a, uint32_t i, vlPaths *b, uint32_t k) {
   b->ox[k] = a->ox[i], b->oy[k] = a->oy[i], b->oz[k] = a->oz[i];
   b->dx[k] = a->dx[i], b->dy[k] = a->dy[i], b->dz[k] = a->dz[i];
@@ -293,8 +300,8 @@ static inline float vl_power_heuristic(float a, float b) {
 static inline vlVec3 vl_lane3(const float *x, const float *y, const float *z, uint32_t i) {
   return vl_vec3(x[i], y[i], z[i]);
 }
-/* What a cone of some width cuts out of a surface of normal g round a ray along d: the axes of the ellipse, whole
- * widths. Along the ray no longer than 64 times that across it. */
+/* The ellipse in which a cone of some width around a ray along d intersects a surface of normal g: its axes (full
+ * widths). The axis along the ray is at most 64 times that across it. */
 typedef struct vlFootprint {
   vlVec3 across, along;
 } vlFootprint;
@@ -312,14 +319,14 @@ static inline void vl_path_lambda(const vlPaths *p, uint32_t i, float lambda[4])
   for (int c = 0; c < 4; c++) lambda[c] = p->lambda[c][i];
 }
 
-/* One float further from zero side given by d's sign: x rounded towards +inf (d > 0) or -inf (d < 0). */
+/* The next float in the direction of d's sign: x rounded towards +inf (d > 0) or -inf (d < 0). */
 static inline float vl_nudge(float x, float d) {
   int32_t i = (int32_t)vl_float_bits(x);
   int32_t step = (d > 0.0f) == (i >= 0) ? 1 : -1;
   int32_t j = x == 0.0f ? (int32_t)(d > 0.0f ? 1u : 0x80000001u) : i + step;
   return d != 0.0f ? vl_bits_float((uint32_t)j) : x;
 }
-/* Start of a ray from p that leaves to the side of w (pbrt book 6.8.6). */
+/* Origin of a ray from p that leaves to the side of w (pbrt book 6.8.6). */
 static inline vlVec3 vl_offset_origin(vlVec3 p, vlVec3 g, float offset, vlVec3 w) {
   float side = vl_dot(w, g) < 0.0f ? -offset : offset;
   vlVec3 d = vl_mul(g, side);

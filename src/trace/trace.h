@@ -1,7 +1,7 @@
-/* trace/trace.h: rays in, radiance out, a batch at a time. Knows neither camera nor film.
+/* trace/trace.h: camera rays in, radiance out, a batch at a time. Independent of camera and film.
  *
- * A batch is at most VL_BATCH paths; all working memory is one vlTraceScratch per worker (some 800 KB, inside L2), so
- * nothing is allocated while rendering. Paths are independent of each other: the same path gives the same bits in any
+ * A batch is at most VL_BATCH paths. All working memory is one vlTraceScratch per worker (about 800 KB, inside L2), so
+ * that rendering allocates nothing. Paths are independent of each other: the same path gives the same bits in any
  * batch. */
 #ifndef TRACE_TRACE_H
 #define TRACE_TRACE_H
@@ -17,8 +17,8 @@ struct vlLightBatch;
 
 enum { VL_BATCH = 1024 };
 
-/* Elements of an array of a batch: one cache line more than the batch, so that element i of different arrays falls into
- * different sets of the first-level cache (rows of 4096 bytes would all fight for the same ones). */
+/* Elements of a batch's array: one cache line more than the batch, so that element i of different arrays maps to
+ * different sets of the L1 cache (rows of 4096 bytes would share one set). */
 enum { VL_ROW_SIZE = VL_BATCH + 16 };
 
 /* Dimensions of the sampler: the render loop uses those before VL_DIM_BOUNCE, bounce b starts at
@@ -29,15 +29,15 @@ enum {
   VL_DIM_TIME = 3,       /* 1 */
   VL_DIM_LENS = 4,       /* 2 */
   VL_DIM_BOUNCE = 6,
-  VL_DIM_LIGHT = 0,    /* 1: which */
-  VL_DIM_LIGHT_UV = 1, /* 2: where */
+  VL_DIM_LIGHT = 0,    /* 1: choice of the light */
+  VL_DIM_LIGHT_UV = 1, /* 2: point on the light */
   VL_DIM_LOBE = 3,     /* 1 */
   VL_DIM_BSDF_UV = 4,  /* 2 */
   VL_DIM_ROULETTE = 6, /* 1 */
-  VL_DIM_FLIGHT = 7,   /* 1: how far through a medium */
+  VL_DIM_FLIGHT = 7,   /* 1: distance of flight in a medium */
   VL_DIM_STRIDE = 8,
-  /* Where a bounce goes through a body (subsurface.hot.c), as many numbers again, from here on: light at its exit as
-   * above, and */
+  /* A bounce through a subsurface material (subsurface.hot.c) uses a second range of numbers that starts here: the
+     light sample at its exit as above, and */
   VL_DIM_SUBSURFACE = 1 << 20,
   VL_DIM_PROBE_AXIS = 3, /* 1 */
   VL_DIM_PROBE = 4,      /* 2 */
@@ -51,13 +51,14 @@ typedef struct vlTraceDef {
   uint32_t max_depth;
   float ao_distance;
   bool ao_cosine;
-  bool same_wavelengths;           /* of all paths */
-  float lambda_low, lambda_span;   /* nm; span above 0: wavelengths are uniform there, else as the eye sees */
+  bool same_wavelengths;         /* all paths have the same wavelengths */
+  float lambda_low, lambda_span; /* nm; span above 0: wavelengths are uniform in this range; else sampled by the visible
+                                    response (pbrt book 4.5.4) */
   float pixel_spread, pixel_width; /* footprint of a camera ray: width + spread * t */
-  const struct vlTwoWay *two_way;  /* of the tracers that follow light both ways (two_way.h), else null */
+  const struct vlTwoWay *two_way;  /* for the two-way tracers (two_way.h), else null */
 } vlTraceDef;
 
-/* Rays of the camera, world space, d of unit length, and what comes back. Arrays of VL_PAD(n), n <= VL_BATCH. */
+/* Camera rays (world space, d of unit length) and their results. Arrays of VL_PAD(n), n <= VL_BATCH. */
 typedef struct vlTraceBatch {
   uint32_t n;
   const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;
@@ -68,21 +69,21 @@ typedef struct vlTraceBatch {
   float *lambda[4];                  /* out, spectral: wavelengths, nm; RGB mode: null */
   float *inv_pdf[4];                 /* out, spectral: 1 / their density */
   float *alpha;                      /* out: 1 where the ray meets a surface */
-  uint64_t bounce_rays, shadow_rays; /* added to */
-  struct vlTwoWayRows *two_way;      /* with vlTraceDef.two_way: a worker's own memory, as vlTraceScratch is */
-  const struct vlCameraView *eyes;   /* with it, of a camera that moves: each lane's; else null */
+  uint64_t bounce_rays, shadow_rays; /* the batch's counts are added */
+  struct vlTwoWayRows *two_way;      /* with vlTraceDef.two_way: memory of one worker, like vlTraceScratch */
+  const struct vlCameraView *eyes;   /* with two_way and a camera that moves: the view of each lane; else null */
 } vlTraceBatch;
 
 typedef struct vlTraceScratch vlTraceScratch;
 size_t vl_trace_scratch_size(void); /* allocate 64-byte aligned, zeroed */
-size_t vl_two_way_rows_size(void);  /* the same */
+size_t vl_two_way_rows_size(void);  /* allocate 64-byte aligned, zeroed */
 
 typedef struct vlTraceKernels {
   void (*trace)(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTraceBatch *batch);
-  /* Paths from the lights (two_way.h); def->sampler is not asked, def->two_way->sampler is. */
+  /* Traces light paths (two_way.h). Their sampler is def->two_way->sampler; def->sampler is not used. */
   void (*light)(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, struct vlTwoWayRows *rows,
                 struct vlLightBatch *batch);
-  /* Which medium each light's paths start in, as far as its shape does not tell; eye: where the camera is. */
+  /* Finds the medium in which each light's paths start, unless its shape defines it; eye: the camera's position. */
   void (*light_media)(const vlWorld *world, const float eye[3], uint32_t *medium);
 } vlTraceKernels;
 VL_KERNEL_TABLE(vlTraceKernels, vl_trace)

@@ -1,4 +1,5 @@
-/* trace/ground_truth/ground_truth.c: the tables of the instruction sets, and how reflectances become albedo. */
+/* trace/ground_truth/ground_truth.c: the tables of the instruction sets, and the conversion of reflectances to albedo.
+ */
 #include "trace/ground_truth/ground_truth.h"
 
 #include <string.h>
@@ -13,7 +14,7 @@ size_t vl_ground_truth_scratch_size(void) {
 static void plan_rgb(vlColorSpace space, vlGroundTruthDef *def) {
   float to[9], from[9];
   vl_rgb_from_xyz(space, to);
-  vl_xyz_from_rgb(VL_SPACE_SRGB, from); /* reflectances are linear Rec.709 there */
+  vl_xyz_from_rgb(VL_SPACE_SRGB, from); /* in RGB mode reflectances are linear Rec.709 */
   for (int k = 0; k < 3; k++)
     for (int c = 0; c < 3; c++)
       def->weight[0][c][k] = space == VL_SPACE_SRGB
@@ -21,8 +22,8 @@ static void plan_rgb(vlColorSpace space, vlGroundTruthDef *def) {
                                  : to[3 * k] * from[c] + to[3 * k + 1] * from[3 + c] + to[3 * k + 2] * from[6 + c];
 }
 
-/* Quadrature over the visible wavelengths under the white of the colour space, so scaled that what reflects everything
- * is (1, 1, 1) (pbrt book 4.6.3: the colour of a reflectance under an illuminant). */
+/* Quadrature over the visible wavelengths under the white of the colour space, normalised so that reflectance 1 is (1,
+ * 1, 1) (pbrt book 4.6.3: the colour of a reflectance under an illuminant). */
 static void plan_spectral(vlColorSpace space, vlGroundTruthDef *def) {
   float m[9];
   vl_rgb_from_xyz(space, m);

@@ -1,5 +1,6 @@
-/* trace/ground_truth/ground_truth.h: ground truth: exact rays in, what they meet first out, a batch at a time. Apart
- * from the tracers, so that it may be slow and exact: distances are found in double against the surface itself. */
+/* trace/ground_truth/ground_truth.h: ground truth: exact rays in, their first hits out, a batch at a time. Separate
+ * from the tracers, since it may be slow and must be exact: distances are computed in double against the surface
+ * itself. */
 #ifndef TRACE_GROUND_TRUTH_GROUND_TRUTH_H
 #define TRACE_GROUND_TRUTH_GROUND_TRUTH_H
 
@@ -11,20 +12,20 @@ enum { VL_TRUTH_SETS = 16 };
 typedef struct vlGroundTruthDef {
   float pixel_spread, pixel_width; /* as in vlTraceDef */
   vlIsa isa;
-  bool shading, albedo; /* what is wanted of normals of shading (bump maps) and albedo */
+  bool shading, albedo; /* what to compute: normals of shading (with bump maps), albedo */
   uint32_t sets;
   float lambda[VL_TRUTH_SETS][4];
   float weight[VL_TRUTH_SETS][4][3];
 } vlGroundTruthDef;
 
-/* Fills sets, lambda and weight; one set of no weight where def wants no albedo. */
+/* Fills sets, lambda and weight; one set of weight 0 where def has no albedo. */
 void vl_ground_truth_plan_albedo(const vlWorld *world, vlColorSpace space, vlGroundTruthDef *def);
 
-/* Rays in double, d of unit length, n <= VL_BATCH; arrays of VL_ROW_SIZE. Where nothing is met: distance infinity, the
- * rest zero. Ids count from 1. */
+/* Rays in double, d of unit length, n <= VL_BATCH; arrays of VL_ROW_SIZE. No hit: distance infinity, the rest zero. Ids
+ * count from 1. */
 typedef struct vlGroundTruthBatch {
   uint32_t n;
-  float time; /* the world's, of all rays (world/shape/moving.h) */
+  float time; /* the world's time, of all rays */
   double o[3][VL_ROW_SIZE], d[3][VL_ROW_SIZE];
   float t_min[VL_ROW_SIZE], t_max[VL_ROW_SIZE];
   double distance[VL_ROW_SIZE];
@@ -32,18 +33,17 @@ typedef struct vlGroundTruthBatch {
   uint32_t object[VL_ROW_SIZE], material[VL_ROW_SIZE], instance[VL_ROW_SIZE], primitive[VL_ROW_SIZE];
 } vlGroundTruthBatch;
 
-/* Only who is met, by the very rays that the image's paths begin with: floats, VL_PAD(n) of them. distance (may be
- * null): in float, for choosing; infinity where nothing is met. Ids as above. */
+/* Only the ids of the first hits, for the same float rays with which the image's paths begin: arrays of VL_PAD(n).
+ * distance (may be null): as float, infinity for no hit. Ids count from 1. */
 typedef struct vlGroundTruthHits {
   uint32_t n;
   const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;
-  const float *time; /* the world's; null where nothing moves */
+  const float *time; /* the world's time; null where nothing moves */
   uint32_t *object, *material, *instance;
   float *distance;
 } vlGroundTruthHits;
 
-/* Everything on the way of one ray of a batch, seen or hidden behind the rest: how many crossings at most are looked
- * at. */
+/* All crossings of one ray of a batch, visible or hidden; at most this many. */
 enum { VL_TRUTH_LAYERS = 256 };
 typedef struct vlGroundTruthLayers {
   uint32_t count;
@@ -58,7 +58,7 @@ typedef struct vlGroundTruthKernels {
                 vlGroundTruthBatch *batch);
   void (*hits)(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTruthScratch *scratch,
                const vlGroundTruthHits *hits);
-  /* Of lane `lane` of a batch that was traced: the crossings behind (and with) what it met, each surface once. */
+  /* For lane `lane` of a traced batch: the crossings from its first hit on, each surface once. */
   void (*layers)(const vlWorld *world, const vlGroundTruthBatch *batch, uint32_t lane, vlGroundTruthLayers *layers);
 } vlGroundTruthKernels;
 VL_KERNEL_TABLE(vlGroundTruthKernels, vl_ground_truth)

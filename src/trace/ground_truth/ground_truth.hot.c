@@ -1,18 +1,16 @@
-/* trace/ground_truth/ground_truth.hot.c: ground truth of a batch of rays: who is met, how far away in double, normals,
- * albedo.
+/* trace/ground_truth/ground_truth.hot.c: ground truth of a batch of rays: ids, distance in double, normals, albedo.
  *
  *   exact rays -> rounded to float -> ids (Embree) -> distance in double, from the exact ray and the surface itself
- *                                                  -> the stages of the tracers: normals, uv, textures at 64
- * wavelengths
+ *                                                  -> the tracers' stages: normals, uv, textures (64 wavelengths)
  *
- * What a hit is (interfaces are passed, mixed materials decided by a hash of the ray) is what the tracers say it is. */
+ * Hits are those of the tracers: interfaces are passed, mixed materials are decided by a hash of the ray. */
 #include "trace/ground_truth/scratch.h"
 #include "world/material/bssrdf.h"
 #include "world/material/measured_lookup.h"
 #include "world/shape/moving.h"
 #include "world/shape/surface_point.h"
 
-/* ---- how far, in double ------------------------------------------------------------------------------------------ */
+/* ---- distance, in double ----------------------------------------------------------------------------------------- */
 
 typedef struct Exact {
   double x, y, z;
@@ -39,8 +37,8 @@ static Exact exact_corner(const vlWorldShape *s, const vlWorldInstance *q, float
   return (Exact){r[0], r[1], r[2]};
 }
 
-/* To the triangle's plane; held between its corners, since on a grazing plane the rounding of the ray that found the
- * triangle may put the exact ray's crossing far outside. */
+/* Distance to the triangle's plane, clamped to the distances of its corners: at grazing angles the float ray that found
+ * the triangle may differ so much that the exact ray's crossing lies far outside. */
 static double triangle_distance(const vlWorldShape *s, const vlWorldInstance *q, float time, uint32_t prim, Exact o,
                                 Exact d, double otherwise) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
@@ -56,13 +54,13 @@ static double triangle_distance(const vlWorldShape *s, const vlWorldInstance *q,
   return t > high ? high : t;
 }
 
-/* The crossing of a curved shape near t, where the rounded ray found it. */
+/* The crossing of a curved shape near t, where the float ray found it. */
 static double curved_distance(const vlWorldShape *s, const vlWorldInstance *q, uint32_t prim, Exact o, Exact d,
                               double t) {
   double go[3] = {o.x, o.y, o.z}, gd[3] = {d.x, d.y, d.z};
   if (q) vl_ray_to_group(q, go, gd);
   vlShapeHit hit;
-  for (double reach = 0x1p-21; reach < 1e-2; reach *= 32.0) /* grazing rays move their crossing further */
+  for (double reach = 0x1p-21; reach < 1e-2; reach *= 32.0) /* at grazing angles rounding moves the crossing further */
     if (vl_shape_intersect(s, prim, go, gd, t * (1.0 - reach), t * (1.0 + reach) + 1e-37, &hit)) return hit.t;
   return t;
 }
@@ -79,7 +77,7 @@ static double exact_distance(const vlWorld *world, const vlGroundTruthBatch *bat
                                        : curved_distance(s, q, h->prim[i], o, d, h->t[i]);
 }
 
-/* ---- what it looks like ------------------------------------------------------------------------------------------ */
+/* ---- albedo ------------------------------------------------------------------------------------------------------ */
 
 static void keep_frames(vlGroundTruthScratch *s, uint32_t n, bool back) {
   vlSurface *f = &s->trace.surface;
@@ -91,8 +89,8 @@ static void keep_frames(vlGroundTruthScratch *s, uint32_t n, bool back) {
     }
 }
 
-/* Reflectance of one lane at channel c: conductors and what was measured straight on; of bodies what comes back out of
- * them; what lets light through reflects or transmits all. */
+/* Albedo of one lane at channel c. Conductors and measured materials: reflectance at normal incidence. Subsurface
+ * materials: diffuse reflectance. Materials that transmit specularly: 1. */
 static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, float lambda, int c, uint32_t i) {
   if (m->reflectance >= 0) return sh->reflectance[c][i];
   if (m->measured) return vl_measured_albedo(m->measured, c, lambda);
@@ -151,7 +149,7 @@ static void start(const vlGroundTruthDef *def, vlGroundTruthBatch *batch, vlPath
   }
 }
 
-/* Lanes of a that met something, close together in b. */
+/* Copies the lanes of a with a hit to b, without gaps. */
 static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s, vlGroundTruthBatch *batch) {
   const vlPaths *a = &s->a;
   vlPaths *b = &s->b;
@@ -181,7 +179,7 @@ static void trace(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTru
   s->a.time = s->b.time = world->moves ? scratch->time : NULL;
   for (uint32_t i = 0; world->moves && i < VL_ROW_SIZE; i++) scratch->time[i] = batch->time;
   if (batch->n == 0) return;
-  /* Light that the rays run into is of no interest here. */
+  /* The radiance of the rays is not used. */
   vlTraceBatch rays = {.n = batch->n, .t_min = batch->t_min, .t_max = batch->t_max};
   for (int c = 0; c < 4; c++) rays.radiance[c] = scratch->light[c];
   vlTraceDef trace_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
@@ -202,8 +200,7 @@ static void trace(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTru
   }
 }
 
-/* ---- who is met ---------------------------------------------------------------------------------------------------
- */
+/* ---- ids only ---------------------------------------------------------------------------------------------------- */
 
 static void hits(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTruthScratch *scratch,
                  const vlGroundTruthHits *to) {
@@ -240,7 +237,7 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTrut
   }
 }
 
-/* As interfaces are passed (hits.hot.c): past each surface by what its point may be wrong. */
+/* Steps past each surface by the bound of its point's error, as hits.hot.c passes interfaces. */
 static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32_t lane, vlGroundTruthLayers *to) {
   float o[3], d[3], t_min = batch->t_min[lane];
   for (int k = 0; k < 3; k++) o[k] = (float)batch->o[k][lane], d[k] = (float)batch->d[k][lane];

@@ -1,4 +1,4 @@
-/* trace/ground_truth/scratch.h: working memory of truth.hot.c; private to trace. */
+/* trace/ground_truth/scratch.h: working memory of ground_truth.hot.c; private to trace. */
 #ifndef TRACE_GROUND_TRUTH_SCRATCH_H
 #define TRACE_GROUND_TRUTH_SCRATCH_H
 
@@ -7,9 +7,9 @@
 
 struct vlGroundTruthScratch {
   vlTraceScratch trace;
-  VL_ROW float light[4][VL_ROW_SIZE]; /* radiance that nobody asks for */
+  VL_ROW float light[4][VL_ROW_SIZE]; /* radiance, not used */
   VL_ROW float time[VL_ROW_SIZE];
-  VL_ROW float kept[6][VL_ROW_SIZE]; /* shading normal and dpdu before bump maps turned them */
+  VL_ROW float kept[6][VL_ROW_SIZE]; /* shading normal and dpdu without bump and normal maps */
 };
 
 #endif

@@ -69,7 +69,8 @@ void vl_stage_light_samples(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t
   vl_stage_lights(t->world, n, p, &t->s->surface, sh->u0, sh->u1, sh->u2, &t->s->light);
 }
 
-/* Light samples, weighed by the BSDF, become shadow rays; those that arrive add their radiance. */
+/* Makes shadow rays of the light samples, weighted by the BSDF and multiple importance sampling; unoccluded ones add
+ * their radiance. */
 static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
@@ -107,16 +108,17 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
 
 /* ---- the next direction ------------------------------------------------------------------------------------------ */
 
-/* Width and spread of the cone that leaves a surface. Mirrors and smooth interfaces bend it by their curvature across
- * the plane of incidence (Coddington's sagittal equations), the lesser of two, so that nothing is blurred; all else
- * starts again with the camera's spread, though what it spreads over is wider. */
+/* Width and spread of the cone that leaves a surface. Specular reflection and transmission change the spread by the
+ * curvature across the plane of incidence (Coddington's sagittal equations), the lesser change of the two planes, so
+ * that nothing is blurred. All other lobes restart with the camera's spread at the present width. */
 static inline vlVec2 cone_after(float pixel_spread, float cone, float spread, float distance, float bend, float wo_z,
                                 float wi_z, float eta_scale, uint32_t specular) {
   float width = cone + spread * distance;
   float sign = width < 0.0f ? -1.0f : 1.0f; /* past a focus */
   width = width * sign, spread = spread * sign;
   float side = wo_z < 0.0f ? -1.0f : 1.0f, k = bend * side, in = wo_z * side, out = vl_abs(wi_z);
-  float ratio = eta_scale > 0.0f ? 1.0f / __builtin_sqrtf(eta_scale) : 1.0f; /* of the indices, before over behind */
+  float ratio =
+      eta_scale > 0.0f ? 1.0f / __builtin_sqrtf(eta_scale) : 1.0f; /* ratio of the indices, incident over transmitted */
   float reflected = spread + 2.0f * k * in * width;
   float refracted = ratio * spread - k * (out - ratio * in) * width;
   float smooth = wi_z * side > 0.0f ? reflected : refracted;
@@ -157,8 +159,8 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     float b2 = p->beta[2][i] * sh->value[2][i], b3 = p->beta[3][i] * sh->value[3][i];
     float eta = p->eta_scale[i] * sh->eta_scale[i];
     float most = vl_max(vl_max(b0, b1), vl_max(b2, b3));
-    /* Roulette from the second bounce on, by what the path carries (times the squeezing of solid angles by refraction).
-     */
+    /* Russian roulette from the second bounce on, by the path's throughput times eta^2 of its refractions (pbrt
+     * book 14.2.3). */
     float carried = most * eta;
     float survive = depth > 1 && carried < 1.0f ? carried : 1.0f;
     uint32_t lives = most > 0.0f && !(sh->flags[i] & VL_SAMPLED_NONE) && sh->u0[i] < survive ? 1 : 0;
@@ -183,7 +185,7 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     s->order[count] = i;
     count += alive[i];
     if (alive[i] && !(sh->flags[i] & VL_SAMPLED_SPECULAR)) vl_note_scattered(t, p->lane[i]);
-    if (broken[i] > 0.0f) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film counts it */
+    if (broken[i] > 0.0f) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */
   }
   vl_permute_paths(p, &s->a, s->order, count);
   return count;

@@ -1,6 +1,6 @@
-/* trace/tracer/random_walk.hot.c: the simplest estimator there is (pbrt book 1.3.6): at each hit on to anywhere, and
- * light only where the walk runs into it. Deltas are never met: smooth things are black. It is here to be compared
- * with. */
+/* trace/tracer/random_walk.hot.c: the random walk (pbrt book 1.3.6), the simplest estimator, for comparison. Each
+ * bounce samples a uniform direction on the sphere; only lights that the walk hits contribute. Specular lobes are never
+ * sampled, so that specular surfaces are black. */
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
@@ -13,7 +13,7 @@ void vl_random_walk_tracer(vlTracing *t) {
   for (uint32_t depth = 0; n > 0; depth++) {
     vl_stage_hits(t, n, depth == 0);
     if (depth == 0) vl_stage_alpha(t);
-    vl_stage_emission(t, n); /* all rays are marked specular: nothing competes */
+    vl_stage_emission(t, n); /* all rays are marked specular, so that their weight is 1 */
     if (depth >= t->def->max_depth) break;
     n = vl_stage_sort(t, n);
     if (n == 0) break;

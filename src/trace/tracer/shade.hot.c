@@ -3,7 +3,6 @@
 
 /* ---- sorting ----------------------------------------------------------------------------------------------------- */
 
-/* Moves path order[k] of a to place k of b. */
 void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n) {
 #define MOVE(field) \
   VL_SIMD           \
@@ -40,8 +39,7 @@ static void permute_hits(const vlHits *a, vlHits *b, const uint32_t *order, uint
 #undef MOVE
 }
 
-/* Paths of a that hit something go to b, those of one material together (and materials of one kind): a counting sort
- * that keeps the order of the tile. Returns how many. */
+/* A counting sort by the material's rank (materials of one kind are adjacent) that keeps the order of the tile. */
 uint32_t vl_stage_sort(vlTracing *t, uint32_t n) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
@@ -75,7 +73,6 @@ uint32_t vl_stage_sort(vlTracing *t, uint32_t n) {
 
 /* ---- shading ----------------------------------------------------------------------------------------------------- */
 
-/* Surfaces, materials, frames of the n sorted hits. */
 void vl_stage_shade(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
   vl_stage_surface(t->world, n, &s->b, &s->hits_b, &s->corners, &s->surface);

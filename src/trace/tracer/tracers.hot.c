@@ -1,5 +1,5 @@
-/* trace/tracer/tracers.hot.c: a batch from its camera rays to its radiance: the path tracer (path.hot.c), and beside it
- * the tracers that look no further than the first hit: raycast and ambient occlusion. */
+/* trace/tracer/tracers.hot.c: the choice of the tracer, and the tracers that end at the first hit: raycast and ambient
+ * occlusion. The path tracer is in path.hot.c. */
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
@@ -39,7 +39,7 @@ static void start_paths(vlTracing *t) {
     }
 }
 
-/* What the eye's ray meets first: emission where it emits light, else reflectance times the cosine. */
+/* Raycast: the emission at the camera ray's first hit, else reflectance times the cosine to the ray. */
 static void raycast_tracer(vlTracing *t) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
@@ -63,7 +63,7 @@ static void raycast_tracer(vlTracing *t) {
   }
 }
 
-/* How open the sky is round each point (pbrt's ambient occlusion): one ray a sample, white where it goes free. */
+/* Ambient occlusion (pbrt's): one ray per sample from the first hit; white where it is not occluded. */
 static void ambient_occlusion_tracer(vlTracing *t) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
@@ -76,7 +76,7 @@ static void ambient_occlusion_tracer(vlTracing *t) {
   t->sampler->get_2d(t->def->sampler, n, s->b.px, s->b.py, s->b.index, VL_DIM_BOUNCE + VL_DIM_BSDF_UV, sh->u1, sh->u2);
   vlShadowRays *q = &s->shadow;
   for (uint32_t i = 0; i < n; i++) {
-    vlVec3 nn = vl_vec3(s->surface.gx[i], s->surface.gy[i], s->surface.gz[i]); /* of the true surface, as pbrt's */
+    vlVec3 nn = vl_vec3(s->surface.gx[i], s->surface.gy[i], s->surface.gz[i]); /* geometric normal, as in pbrt */
     vlVec3 d = vl_vec3(s->b.dx[i], s->b.dy[i], s->b.dz[i]);
     if (vl_dot(nn, d) > 0.0f) nn = vl_neg(nn);
     bool cosine = t->def->ao_cosine;
@@ -88,7 +88,7 @@ static void ambient_occlusion_tracer(vlTracing *t) {
     vl_path_lambda(&s->b, i, lambda);
     q->ox[i] = o.x, q->oy[i] = o.y, q->oz[i] = o.z, q->dx[i] = w.x, q->dy[i] = w.y, q->dz[i] = w.z;
     q->t_max[i] = t->def->ao_distance;
-    /* Uniform directions: cos / pi over the density 1 / (2 pi). */
+    /* Uniform sampling: cos / pi over the density 1 / (2 pi). */
     for (int c = 0; c < 4; c++)
       q->radiance[c][i] = (cosine ? 1.0f : 2.0f * local.z) * vl_spectral_at(&world->white, c, lambda[c]);
   }

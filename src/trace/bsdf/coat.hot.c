@@ -1,35 +1,35 @@
 /* trace/bsdf/coat.hot.c: a Lambertian base under a dielectric coat, in the closed form of world/material/coat.h: no
- * random walk, no noise of its own. Two lobes: the coat's reflection (a delta when it is smooth) and the base seen
- * through the coat.
+ * random walk, no additional noise. Two lobes: the coat's reflection (a delta when it is smooth) and the base under the
+ * coat.
  *
- * Work goes in chunks with a few ignores small arrays, since looking up T(w) does not vectorise (gcc makes no
- * gathers for generic x86-64, and lanes may have tables of their own): a scalar pass copies the four nodes of each lane
- * side by side, vector passes do all the rest. */
+ * Lanes are processed in chunks, in a few passes over small arrays, because the lookup of T(w) does not vectorise (gcc
+ * makes no gathers for generic x86-64, and lanes may have different tables): a scalar pass copies the four nodes of
+ * each lane side by side, vector passes do the rest. */
 #include <string.h>
 
 #include "trace/bsdf/local.h"
 
 enum { CHUNK = 64 };
 
-/* The passes stay functions of their own: where gcc sees the local arrays it moves their loads into the selects, and
- * the loop has branches. */
+/* The passes must not be inlined: where gcc sees the local arrays it moves their loads into the selects, and the loops
+ * get branches. */
 #define PASS static __attribute__((noinline)) void
 
-/* What the passes hand on, a chunk of lanes. */
+/* Data between the passes, for a chunk of lanes. */
 typedef struct {
   float transmittance_o[CHUNK], transmittance_i[CHUNK]; /* T(wo), T(wi) */
   float back[CHUNK], escape[CHUNK];
   int32_t bounces[CHUNK];
-  float coat_share[CHUNK]; /* chance of the coat's lobe */
+  float coat_share[CHUNK]; /* probability of the coat's lobe */
   float fresnel[CHUNK];    /* at wo */
-  float base[4][CHUNK];    /* base's f without T(wi) */
+  float base[4][CHUNK];    /* the base's f without T(wi) */
 } Lanes;
 
 /* One chunk's slice of the parameters. */
 typedef struct {
   const float *r0, *r1, *r2, *r3, *ax, *ay, *eta;
   const vlCoatTable *const *coat;
-  uint32_t count, live; /* lanes with padding (a multiple of VL_LANES), without (padding has no table) */
+  uint32_t count, live; /* number of lanes with padding (a multiple of VL_LANES), and without (padding has no table) */
 } Slice;
 
 static Slice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t first) {
@@ -46,9 +46,9 @@ static Slice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t first) {
                  n - first < count ? n - first : count};
 }
 
-enum { OF_WO, OF_WI, OF_LIGHT }; /* light: a wi that was not sampled here */
+enum { OF_WO, OF_WI, OF_LIGHT }; /* light: a wi that was not sampled by this BSDF */
 
-/* The rows that T is read from. */
+/* The table rows of T. */
 static const float (*rows_of(const vlCoatTable *table, int of))[VL_COAT_COS] {
   return of == OF_LIGHT && table->imitate ? table->imitation : table->transmittance;
 }
@@ -56,7 +56,7 @@ static const float (*rows_of(const vlCoatTable *table, int of))[VL_COAT_COS] {
 /* Four neighbouring nodes of T for each lane. */
 typedef struct {
   int32_t first[CHUNK];
-  float at[CHUNK]; /* place among them */
+  float at[CHUNK]; /* position between the nodes */
   float value[CHUNK][4];
 } Nodes;
 
@@ -70,16 +70,16 @@ static void fetch_row(const vlCoatTable *table, uint32_t count, Lanes *lanes, No
   for (uint32_t i = 0; i < count; i++) lanes->back[i] = back, lanes->escape[i] = escape, lanes->bounces[i] = bounces;
 }
 
-/* A table for each lane, or rows to mix. The same bits as above where there is nothing to mix. */
+/* A table for each lane, or interpolation between rows. The same bits as fetch_row where nothing is interpolated. */
 static void fetch_each(const Slice *s, Lanes *lanes, Nodes *nodes, int of) {
   for (uint32_t i = 0; i < s->count; i++) {
     const vlCoatTable *table = s->coat[i < s->live ? i : 0];
     uint32_t low = 0, high = 0;
     float t = 0.0f;
-    if (table->alphas > 1) { /* textured roughness: between two rows */
+    if (table->alphas > 1) { /* textured roughness: interpolates between two rows */
       float alpha = __builtin_sqrtf(vl_ggx_alpha(s->ax[i]) * vl_ggx_alpha(s->ay[i]));
       float row = (__builtin_sqrtf(alpha) - table->row_start) * table->row_scale;
-      row = row > 0.0f ? row : 0.0f; /* NaN to 0 too */
+      row = row > 0.0f ? row : 0.0f; /* NaN becomes 0, too */
       low = row < (float)(VL_COAT_ALPHA - 2) ? (uint32_t)row : VL_COAT_ALPHA - 2;
       high = low + 1;
       t = row - (float)low;
@@ -96,7 +96,7 @@ static void fetch_each(const Slice *s, Lanes *lanes, Nodes *nodes, int of) {
   }
 }
 
-/* T at the cosines z; for wo the tables' constants too. */
+/* T at the cosines z; for wo also the tables' constants. */
 PASS look_up(const Slice *s, const float *z, Lanes *lanes, float *through, int of) {
   Nodes nodes;
   uint32_t count = VL_WHOLE(s->count);
@@ -132,8 +132,8 @@ static inline float series(float x, int32_t k, const int bits) {
   return (1.0f - power) / (down > 1e-6f ? down : 1e-6f);
 }
 
-/* From T(wo): the base's strength by channel, and how to share samples between the lobes: by the light each
- * returns, the coat's judged as if smooth. */
+/* From T(wo): the base's f by channel, and the probabilities of the lobes in proportion to the energy that each
+ * reflects; the coat's is computed as if it were smooth. */
 static inline __attribute__((always_inline)) void weigh_loop(const Slice *s, const float *oz, Lanes *lanes,
                                                              const int bits) {
   const float *r0 = s->r0, *r1 = s->r1, *r2 = s->r2, *r3 = s->r3, *eta = s->eta;
@@ -172,10 +172,10 @@ PASS weigh(const Slice *s, const float *oz, Lanes *lanes) {
     weigh_loop(s, oz, lanes, 8);
 }
 
-/* Both lobes between o and w, both above the surface. */
+/* The coat's lobe between o and w, both above the surface. */
 typedef struct {
   float coat;     /* f |cos| of the coat's reflection, 0 when smooth */
-  float coat_pdf; /* of sampling w by that lobe alone */
+  float coat_pdf; /* density of sampling w by this lobe */
 } CoatLobe;
 static inline __attribute__((always_inline)) CoatLobe coat_lobe(vlVec3 o, vlVec3 w, float alpha_x, float alpha_y,
                                                                 float eta) {
@@ -202,8 +202,8 @@ PASS combine(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, vlBsdfDire
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     int valid = ((oz[i] > 0.0f) & (iz[i] > 0.0f)) | ((oz[i] < 0.0f) & (iz[i] < 0.0f));
-    /* Products with 0 or 1, not selects of results: compilers would put the loads into branches. What is multiplied by
-     * 0 is finite, since a pair that is not valid is taken for one along the normal. */
+    /* Products with 0 or 1 instead of selects: compilers would put the loads into branches. The factor of 0 must be
+     * finite, so pairs that are not valid are replaced by directions along the normal. */
     float on = valid ? 1.0f : 0.0f, off = 1.0f - on;
     float xo = ox[i], yo = oy[i], zo = vl_abs(oz[i]), xi = ix[i], yi = iy[i], zi = vl_abs(iz[i]);
     vlVec3 o = vl_vec3(xo * on, yo * on, zo * on + off), w = vl_vec3(xi * on, yi * on, zi * on + off);
@@ -231,7 +231,7 @@ void vl_bsdf_coat_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections 
   }
 }
 
-/* First half of sampling: the lobe and the direction. wi.z comes out as seen from wo's side. */
+/* First half of sampling: the lobe and the direction. wi.z is relative to wo's side. */
 PASS choose(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float *u_lobe, const float *u,
             const float *v, vlBsdfDirections wi, uint32_t first) {
   const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first;
@@ -255,7 +255,7 @@ PASS choose(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
   }
 }
 
-/* Second half: what the direction is worth, over both lobes' density. */
+/* Second half: the weight of the direction, over the density of both lobes. */
 PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float *u_lobe, vlBsdfDirections wi,
             float *const weight[4], float *density, uint32_t *flags, uint32_t first) {
   const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first, *lobe = u_lobe + first;
@@ -277,7 +277,7 @@ PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
     int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (eta[i] == 1.0f), mirror = (lobe[i] < p) & smooth;
     CoatLobe c = coat_lobe(o, w, ax[i], ay[i], eta[i]);
     float t = transmittance_i[i] * w.z;
-    float m = mirror ? 1.0f : 0.0f, k = 1.0f - m; /* c is 0 where the coat is smooth */
+    float m = mirror ? 1.0f : 0.0f, k = 1.0f - m; /* c is 0 for a smooth coat */
     float d = p * (c.coat_pdf + m) + (1.0f - p) * (w.z * VL_INV_PI) * k;
     float inverse = 1.0f / (d > 1e-30f ? d : 1e-30f);
     float top = c.coat + fresnel[i] * m, through = t * k;

@@ -1,7 +1,7 @@
 /* trace/bsdf/dielectric.hot.c: glass and water, smooth or of GGX microfacets, single scattering (pbrt book 9.5, 9.7;
- * Walter et al. 2007). Reflection or transmission is chosen by Fresnel at the microfacet that was sampled, which makes
- * the sample's weight G/G1 for both, for transmission over eta^2: radiance is entry_eta_scale into a smaller solid
- * angle. */
+ * Walter et al. 2007). Reflection or transmission is chosen by Fresnel's term at the sampled microfacet, so that the
+ * sample's weight is G/G1 for both, and for transmission divided by eta^2, since refraction compresses the solid angle.
+ */
 #include "trace/bsdf/local.h"
 
 void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
@@ -20,13 +20,13 @@ void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
     int reflect = w.z > 0.0f;
     int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (index[i] == 1.0f);
     int valid = (o.z > 0.0f) & (vl_abs(w.z) > 0.0f) & (smooth == 0);
-    /* The microfacet between wo and wi: half vector, generalised for transmission; turned to the upper side. */
+    /* The microfacet between wo and wi: half vector, generalised for transmission, on the upper side. */
     float s = reflect ? 1.0f : eta;
     vlVec3 h = vl_normalize(vl_vec3(o.x + s * w.x, o.y + s * w.y, o.z + s * w.z));
     float up = h.z < 0.0f ? -1.0f : 1.0f;
     h = vl_mul(h, up);
     float oh = vl_dot(o, h), ih = vl_dot(w, h);
-    /* It must show its front to wo, and for transmission its back to wi. */
+    /* Valid if its front faces wo, and for transmission its back faces wi. */
     valid = valid & (oh > 0.0f) & (reflect | (ih < 0.0f));
     float fr = vl_fresnel_dielectric(oh, eta).reflected;
     float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
@@ -71,7 +71,7 @@ void vl_bsdf_dielectric_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDir
     vlFresnel f = vl_fresnel_dielectric(oh, eta);
     float fr = index[i] == 1.0f ? 0.0f : f.reflected;
     int reflect = u_lobe[i] < fr;
-    /* wi = a h - b wo for both: mirrored, or bent by Snell's law */
+    /* wi = a h - b wo for both: reflection, or refraction by Snell's law */
     float b = reflect ? 1.0f : inverse;
     float cos_t = f.root * inverse, t = oh * inverse - cos_t;
     float a = reflect ? 2.0f * oh : t;

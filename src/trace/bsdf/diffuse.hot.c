@@ -1,5 +1,5 @@
-/* trace/bsdf/diffuse.hot.c: the kinds without roughness or coat: Lambert reflection, and the thin dielectric, a pane
- * whose inner reflections are summed (pbrt book 9.2, 9.5.1). */
+/* trace/bsdf/diffuse.hot.c: the kinds without roughness or coat: Lambertian reflection, and the thin dielectric, a pane
+ * with the sum of all internal reflections (pbrt book 9.2, 9.5.1). */
 #include "trace/bsdf/local.h"
 
 void vl_bsdf_diffuse_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
@@ -51,7 +51,7 @@ void vl_bsdf_diffuse_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirect
   }
 }
 
-/* Both directions of a pane are delta functions. */
+/* Reflection and transmission of a pane are deltas. */
 void vl_bsdf_thin_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
                        float *const value[4], float *pdf) {
   (void)params, (void)wo, (void)wi;

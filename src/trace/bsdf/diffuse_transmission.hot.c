@@ -1,8 +1,8 @@
-/* trace/bsdf/diffuse_transmission.hot.c: Lambert reflection and transmission (pbrt's diffusetransmission): which side
- * is chosen by the larger channels' shares. Values are even in the side, so that both faces look the same. */
+/* trace/bsdf/diffuse_transmission.hot.c: Lambertian reflection and transmission (pbrt's diffusetransmission). The side
+ * is chosen in proportion to the largest channel of each. Both faces have the same values. */
 #include "trace/bsdf/local.h"
 
-/* Chance of reflection; both 0: no matter. */
+/* Probability of reflection; any value if both are 0. */
 static inline float share(float r0, float r1, float r2, float r3, float t0, float t1, float t2, float t3) {
   float r = vl_max(vl_max(r0, r1), vl_max(r2, r3)), t = vl_max(vl_max(t0, t1), vl_max(t2, t3));
   float sum = r + t;

@@ -1,22 +1,23 @@
-/* trace/bsdf/hair.hot.c: light on and in a hair, a rough tilted glass cylinder that absorbs (Chiang, Bitterli, Tappan,
- * Burley 2016; pbrt book 9.9): reflection, transmission, one reflection inside, and all further ones together, each a
- * product of a longitudinal part M (von Mises-Fisher), an attenuation A and an azimuthal part N (trimmed logistic).
+/* trace/bsdf/hair.hot.c: scattering by a hair, a rough tilted dielectric cylinder that absorbs (Chiang, Bitterli,
+ * Tappan, Burley 2016; pbrt book 9.9): reflection, transmission, one internal reflection, and the sum of all further
+ * ones. Each is a product of a longitudinal part M (von Mises-Fisher), an attenuation A and an azimuthal part N
+ * (trimmed logistic).
  *
- * x runs along the hair, h in [-1, 1] across it. The far-field model is one of curves: its value is not symmetric in
- * the two directions, and light that passes needs no side. */
+ * x runs along the hair, h in [-1, 1] across it. In this far-field model of curves f is not symmetric in the two
+ * directions, and transmission does not depend on the side of the surface. */
 #include "trace/bsdf/local.h"
 
 enum { LOBES = 4 }; /* p = 0, 1, 2, and the rest */
 
-/* What a lane's hair is to light from wo. */
+/* The parameters of a lane's hair for wo. */
 typedef struct Hair {
   float sin_o, cos_o, phi_o;
   float gamma_o, gamma_t;
-  float s, norm, low;               /* of the logistic: its scale, 1 / its mass within a turn, its value at -pi */
+  float s, norm, low;               /* of the logistic: scale, 1 / its mass in one turn, its value at -pi */
   float v[LOBES];                   /* variances */
-  float sin_p[LOBES], cos_p[LOBES]; /* wo tilted by the scales */
+  float sin_p[LOBES], cos_p[LOBES]; /* wo tilted by the cuticle scales */
   float a[LOBES][4];                /* attenuations */
-  float share[LOBES];               /* of the samples */
+  float share[LOBES];               /* probabilities of the lobes */
 } Hair;
 
 static inline float square(float x) {
@@ -41,17 +42,17 @@ static inline float ln_bessel(float x) {
   return x > 3.75f ? b : a;
 }
 
-/* M: density of sin theta_i, over the hair's length (d'Eon et al. 2011). */
+/* M: density of sin theta_i along the hair (d'Eon et al. 2011). */
 static inline float longitudinal(float cos_i, float cos_o, float sin_i, float sin_o, float v) {
   float inverse = 1.0f / v;
   float e = ln_bessel(cos_i * cos_o * inverse) - sin_i * sin_o * inverse - inverse;
   return vl_exp(e > -80.0f ? e : -80.0f) * inverse / (1.0f - vl_exp(-2.0f * inverse));
 }
 
-static inline float turned(float x) { /* to [-pi, pi] */
+static inline float turned(float x) { /* wraps to [-pi, pi] */
   return x - 2.0f * VL_PI * __builtin_floorf(x * (0.5f * VL_INV_PI) + 0.5f);
 }
-/* Azimuth at which a smooth hair sends lobe p. */
+/* Azimuth of lobe p of a smooth hair. */
 static inline float azimuth(int p, const Hair *h) {
   return 2.0f * (float)p * h->gamma_t - 2.0f * h->gamma_o + (float)p * VL_PI;
 }
@@ -78,7 +79,7 @@ static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
   float edge = VL_PI / r.s;
   r.low = 1.0f / (1.0f + vl_exp(edge < 80.0f ? edge : 80.0f));
   r.norm = 1.0f / (1.0f - 2.0f * r.low);
-  /* inside */
+  /* the refracted direction */
   float sin_t = r.sin_o / eta, cos_t = __builtin_sqrtf(vl_max(1.0f - sin_t * sin_t, 1e-6f));
   float etap = __builtin_sqrtf(vl_max(eta * eta - r.sin_o * r.sin_o, 0.0f)) / vl_max(r.cos_o, 1e-4f);
   float sin_gt = vl_clamp(h / vl_max(etap, 1e-4f), -1.0f, 1.0f);
@@ -98,7 +99,7 @@ static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
   }
   total = total > 0.0f ? 1.0f / total : 0.0f;
   for (int p = 0; p < LOBES; p++) r.share[p] *= total;
-  /* scales tilt each lobe by a multiple of alpha: -2, 1, 4 */
+  /* cuticle scales tilt each lobe by a multiple of alpha: -2, 1, 4 */
   vlSinCos tilt = vl_sincos(q->own[VL_H_ALPHA][i]);
   float s2 = 2.0f * tilt.cos * tilt.sin, c2 = square(tilt.cos) - square(tilt.sin);
   float s4 = 2.0f * c2 * s2, c4 = square(c2) - square(s2);
@@ -142,7 +143,7 @@ void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
     int p = 0;
     float lobe = u_lobe[i];
     for (; p < LOBES - 1 && !(lobe < h.share[p]); p++) lobe -= h.share[p];
-    lobe = vl_clamp(lobe / vl_max(h.share[p], 1e-12f), 0.0f, VL_ONE_MINUS_EPSILON); /* a fresh number */
+    lobe = vl_clamp(lobe / vl_max(h.share[p], 1e-12f), 0.0f, VL_ONE_MINUS_EPSILON); /* uniform in [0, 1) again */
     float e = vl_exp(-2.0f / h.v[p]);
     float cosine = vl_clamp(1.0f + h.v[p] * vl_ln(vl_max(u[i] + (1.0f - u[i]) * e, 1e-30f)), -1.0f, 1.0f);
     float sine = __builtin_sqrtf((1.0f - cosine) * (1.0f + cosine));

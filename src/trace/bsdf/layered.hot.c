@@ -1,12 +1,12 @@
-/* trace/bsdf/layered.hot.c: a dielectric coat over metal or a diffuse base, with a medium between them that may
- * scatter. f is estimated by position-free random walks (Guo, Hasan, Zhao 2018; pbrt book 14.3), which begin at the
- * direction of view and are joined with the light's at every turn, both ways weighed by the densities with which each
- * samples the direction between the layers. What needs no walk is exact: the coat's own reflection, and a mirror under
- * a smooth coat.
+/* trace/bsdf/layered.hot.c: a dielectric coat over a metal or diffuse base, with a medium between them that may
+ * scatter. f is estimated by position-free random walks (Guo, Hasan, Zhao 2018; pbrt book 14.3). Walks begin at wo and
+ * are connected with wi at every vertex; both strategies that sample the direction between the layers are combined by
+ * multiple importance sampling. Terms that need no walk are exact: the coat's own reflection, and a mirror under a
+ * smooth coat.
  *
- * Directions are not found by walks but drawn from a density in closed form (the coat's microfacets, the base's seen
- * through a smooth coat, a cosine lobe), so that sampling and evaluation agree to the bit: the walks' numbers depend on
- * the lane's seed and both directions. Scalar: each lane takes its own way. */
+ * Directions are not sampled by walks but by a density in closed form (the coat's microfacets, the base's lobe through
+ * a smooth coat, a cosine lobe), so that sampling and evaluation agree to the bit: the walks' random numbers depend on
+ * the lane's seed and both directions. Scalar: walks diverge. */
 #include "trace/bsdf/layers.h"
 
 static inline float next(uint32_t *state) {
@@ -21,8 +21,8 @@ static inline float power(float a, float b) {
   return a2 < VL_INFINITY ? a2 / (a2 + b2) : 1.0f;
 }
 
-/* Light from a walk's end at the base or in the medium, where it flew along w: joined with the direction `to` under the
- * coat that leads to the light. height: over the base. */
+/* Connects the walk's vertex at the base, reached along w, with the direction `to` under the coat that leads to wi.
+ * height: over the base. */
 static void join_base(const Layers *l, vlVec3 w, const Step *to, const float beta[4], float f[4]) {
   if (l->mirror || !to->valid) return;
   float value[4], pdf;
@@ -30,8 +30,8 @@ static void join_base(const Layers *l, vlVec3 w, const Step *to, const float bet
   float weight = (l->smooth ? 1.0f : power(to->pdf, pdf)) * layers_pass(l->thickness, to->w);
   for (int c = 0; c < 4; c++) f[c] += beta[c] * value[c] * to->weight[c] * weight;
 }
-/* Between two mirrors light comes by every number of reflections, which no walk can join: their series, from above and
- * from below. */
+/* A vertex in the medium between a smooth coat and a mirror base: the sum over all numbers of reflections, from above
+ * and from below, which no walk can connect. */
 static void join_between_mirrors(const Layers *l, vlVec3 w, float height, const Step *to, const float beta[4],
                                  float f[4]) {
   if (!to->valid) return;
@@ -51,10 +51,10 @@ static void join_medium(const Layers *l, vlVec3 w, float height, const Step *to,
   if (!to->valid || (l->smooth && l->mirror)) return;
   float p = vl_phase(l->g, -vl_dot(w, to->w));
   float weight = p * (l->smooth ? 1.0f : power(to->pdf, p)) * layers_pass(l->thickness - height, to->w) /
-                 vl_max(-to->w.z, 1e-6f); /* no surface, no cosine */
+                 vl_max(-to->w.z, 1e-6f); /* a vertex in the medium has no cosine */
   for (int c = 0; c < 4; c++) f[c] += beta[c] * l->albedo[c] * to->weight[c] * weight;
 }
-/* The other way: w was sampled (with pdf; 0: by a delta) and goes up through a rough coat to the light at wi. */
+/* The other strategy: w was sampled (with pdf; 0: by a delta) and leaves upwards through a rough coat to wi. */
 static void join_coat(const Layers *l, vlVec3 w, float height, vlVec3 wi, const float beta[4], float pdf, float f[4]) {
   if (l->smooth || !(w.z > 0.0f)) return;
   float other, value = coat_transmit(l, wi, vl_neg(w), &other);
@@ -63,7 +63,7 @@ static void join_coat(const Layers *l, vlVec3 w, float height, vlVec3 wi, const 
   for (int c = 0; c < 4; c++) f[c] += beta[c] * weight;
 }
 
-/* A flight through the medium that may scatter: true where it ended inside. */
+/* A flight through a medium that may scatter; true: it scattered inside. */
 static bool fly(const Layers *l, vlVec3 *w, float *height, const Step *to, vlVec3 wi, float beta[4], uint32_t *state,
                 float f[4]) {
   float distance = -vl_ln(vl_max(1.0f - next(state), 1e-20f)) * vl_abs(w->z), z = *height;
@@ -82,7 +82,7 @@ static bool fly(const Layers *l, vlVec3 *w, float *height, const Step *to, vlVec
   return true;
 }
 
-/* One walk's estimate is added to f. o, wi: above. */
+/* Adds one walk's estimate to f. o, wi: both above. */
 static void walk(const Layers *l, vlVec3 o, vlVec3 wi, uint32_t *state, float f[4]) {
   float u = next(state), v = next(state);
   Step from = coat_enter(l, o, u, v);
@@ -117,14 +117,14 @@ static void walk(const Layers *l, vlVec3 o, vlVec3 wi, uint32_t *state, float f[
 
 /* ---- lobes ------------------------------------------------------------------------------------------------------- */
 
-/* What directions are drawn from: shares of the coat's reflection, of the base seen through the coat, of a cosine. */
+/* The lobes of sampling: probabilities of the coat's reflection, of the base under the coat, of a cosine lobe. */
 typedef struct Lobes {
   float coat, base, wide;
-  float mirror[4]; /* what a smooth coat, and metal under it, mirror together */
-  float bx, by;    /* of the base's lobe, inside */
+  float mirror[4]; /* reflectance of a smooth coat with smooth metal under it */
+  float bx, by;    /* alpha of the base's lobe, below the coat */
 } Lobes;
 
-static float refracted(float z, float eta) { /* cosine on the other side; 0: none */
+static float refracted(float z, float eta) { /* cosine after refraction; 0: total reflection */
   float s = 1.0f - (1.0f - z * z) / (eta * eta);
   return s > 0.0f ? __builtin_sqrtf(s) : 0.0f;
 }
@@ -140,7 +140,7 @@ static Lobes lobes_of(const Layers *l, vlVec3 o) {
     lobes.mirror[c] = f;
     if (!l->mirror || !(inside > 0.0f)) continue;
     float turn = r * pass * pass, sum = 0.0f, back = turn * (1.0f - f) * (1.0f - f);
-    for (uint32_t k = 0; k < l->depth; k += 2) { /* the base is met at every second step */
+    for (uint32_t k = 0; k < l->depth; k += 2) { /* every second step is at the base */
       sum += back;
       back *= turn * f;
     }
@@ -152,14 +152,14 @@ static Lobes lobes_of(const Layers *l, vlVec3 o) {
   lobes.base = l->metal && !all_mirror && inside > 0.0f ? 0.8f * below : 0.0f;
   lobes.wide = all_mirror ? haze : haze + below - lobes.base;
   if (all_mirror) lobes.coat = 0.25f * (lobes.mirror[0] + lobes.mirror[1] + lobes.mirror[2] + lobes.mirror[3]);
-  /* Where there is anything to find, some samples look for it. */
+  /* If f is not 0, each lobe gets some samples. */
   float sum = lobes.coat + lobes.base + lobes.wide;
   if (!(sum > 1e-6f)) lobes.coat = sum = 1.0f;
   bool matt = !all_mirror || l->scatters;
   lobes.coat /= sum, lobes.base /= sum, lobes.wide /= sum;
   if (matt) lobes.wide = 0.95f * lobes.wide + 0.05f, lobes.base *= 0.95f, lobes.coat *= 0.95f;
-  /* The coat is passed twice: each time a microfacet bends light by 1 - 1/eta of its slope; the metal's mirror turns it
-   * by twice its own. */
+  /* Light crosses the coat twice; each time a microfacet's slope deflects it by 1 - 1/eta of the slope. Reflection by
+   * the metal deflects it by twice its slope. */
   float bend = l->smooth ? 0.0f : 0.5f * (1.0f - 1.0f / l->eta) * (1.0f - 1.0f / l->eta);
   float bx = l->mirror ? 0.0f : l->bx, by = l->mirror ? 0.0f : l->by;
   lobes.bx = vl_clamp(__builtin_sqrtf(bx * bx + bend * l->ax * l->ax), 1e-3f, 1.0f);
@@ -167,7 +167,7 @@ static Lobes lobes_of(const Layers *l, vlVec3 o) {
   return lobes;
 }
 
-/* A direction as a smooth coat bends it, kept above; z 0: total reflection. */
+/* A direction refracted by a smooth coat, with z > 0; z 0: total reflection. */
 static vlVec3 bent(vlVec3 w, float eta) {
   return vl_vec3(w.x / eta, w.y / eta, refracted(w.z, eta));
 }
@@ -183,7 +183,7 @@ static float density(const Layers *l, const Lobes *lobes, vlVec3 o, vlVec3 w) {
   return lobes->coat * coat + lobes->base * base + lobes->wide * w.z * VL_INV_PI;
 }
 
-/* A direction above, or z <= 0. mirror: it is the delta. */
+/* Samples a direction above; z <= 0: none. mirror: it is the delta. */
 static vlVec3 draw(const Layers *l, const Lobes *lobes, vlVec3 o, float lobe, float u, float v, bool *mirror) {
   *mirror = false;
   if (lobe < lobes->coat) {
@@ -202,7 +202,7 @@ static vlVec3 draw(const Layers *l, const Lobes *lobes, vlVec3 o, float lobe, fl
 
 /* ---- kernels ----------------------------------------------------------------------------------------------------- */
 
-/* f cos between o and w above, of what is not a delta. */
+/* f cos between o and w, both above, without the delta. */
 static void scattered(const Layers *l, vlVec3 o, vlVec3 w, uint32_t seed, float value[4]) {
   float f[4] = {0, 0, 0, 0}, pdf, coat = coat_reflection(l, o, w, &pdf);
   if (!(l->smooth && l->mirror) || l->scatters) {

@@ -1,7 +1,8 @@
-/* trace/bsdf/layers.h: one lane's coat, base and what lies between, for the random walks of bsdf_layered.hot.c. Scalar.
+/* trace/bsdf/layers.h: the coat, the base and the medium between them of one lane, for the random walks of
+ * layered.hot.c. Scalar.
  *
- * The coat's outside is z > 0. Between the layers light flies in directions of either sign of z; the base reflects
- * upwards. "f": without the cosine. */
+ * The coat's outside is z > 0. Between the layers directions have either sign of z; the base reflects upwards. "f":
+ * without the cosine. */
 #ifndef TRACE_BSDF_LAYERS_H
 #define TRACE_BSDF_LAYERS_H
 
@@ -15,7 +16,7 @@ typedef struct Layers {
   int smooth;
   int metal, mirror; /* base: mirror is smooth metal */
   float bx, by, e[4], k[4], rho[4];
-  float thickness, g, albedo[4]; /* optical thickness; of the medium */
+  float thickness, g, albedo[4]; /* of the medium: optical thickness, asymmetry, single-scattering albedo */
   int scatters;
   uint32_t depth, walks;
 } Layers;
@@ -43,7 +44,7 @@ static inline Layers layers_of(const vlBsdfParams *p, uint32_t i) {
   return l;
 }
 
-/* Share of light that flies the distance unharmed. */
+/* Transmittance over a distance (optical thickness) along w. */
 static inline float layers_pass(float distance, vlVec3 w) {
   float z = vl_abs(w.z);
   return distance > 0.0f ? vl_exp(-distance / vl_max(z, 1e-6f)) : 1.0f;
@@ -58,7 +59,7 @@ typedef struct Step {
   int valid;
 } Step;
 
-/* From outside through the coat, without radiance's 1/eta^2: transmission is the only choice. */
+/* Transmission from outside through the coat, without radiance's factor 1/eta^2; reflection is not a choice. */
 static inline Step coat_enter(const Layers *l, vlVec3 o, float u, float v) {
   vlVec3 h = l->smooth ? vl_vec3(0, 0, 1) : vl_ggx_sample(o, l->ax, l->ay, u, v);
   float oh = vl_dot(o, h), inverse = 1.0f / l->eta;
@@ -75,8 +76,8 @@ static inline Step coat_enter(const Layers *l, vlVec3 o, float u, float v) {
   return s;
 }
 
-/* f of a rough coat between o outside and w below it, as coat_enter samples it. By reciprocity it is also f of radiance
- * that leaves from -w towards o. */
+/* f of transmission through a rough coat, between o outside and w below it, as coat_enter samples it. By reciprocity it
+ * is also f of radiance that travels from -w to o. */
 static inline float coat_transmit(const Layers *l, vlVec3 o, vlVec3 w, float *pdf) {
   float inverse = 1.0f / l->eta;
   vlVec3 h =
@@ -92,9 +93,9 @@ static inline float coat_transmit(const Layers *l, vlVec3 o, vlVec3 w, float *pd
   return (1.0f - vl_fresnel_dielectric(oh, l->eta).reflected) * g * *pdf / -w.z;
 }
 
-/* From below (w.z > 0) back down, reflection is the only choice. */
+/* Reflection of light from below (w.z > 0) back down; transmission is not a choice. */
 static inline Step coat_back(const Layers *l, vlVec3 w, float u, float v) {
-  vlVec3 o = vl_vec3(-w.x, -w.y, w.z); /* mirrored at the surface, as if from above */
+  vlVec3 o = vl_vec3(-w.x, -w.y, w.z); /* reflected at the surface, as if from above */
   vlVec3 h = l->smooth ? vl_vec3(0, 0, 1) : vl_ggx_sample(o, l->ax, l->ay, u, v);
   float oh = vl_dot(o, h);
   vlVec3 r = vl_reflect(o, h, oh);

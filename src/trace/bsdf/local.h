@@ -1,9 +1,9 @@
-/* trace/bsdf/local.h: what the BSDF files share: their entry points, one pair a kind and instruction set, gathered in
- * bsdf_table.hot.c, and the small functions all of them inline.
+/* trace/bsdf/local.h: declarations shared by the BSDF files: their entry points, one pair per kind and instruction set,
+ * collected in table.hot.c, and small inline functions.
  *
- * Shape of every kernel: one loop over the padded batch, both outcomes of each choice computed and selected, so that
- * it vectorises; local copies of the array pointers, so that the compiler need not reload them. Padding lanes may hold
- * anything. A lane whose wo lies in the surface (z = 0) has no value and no sample. Directions from below are mirrored
+ * Every kernel is one loop over the padded batch that computes both outcomes of each choice and selects one, so that it
+ * vectorises; array pointers are copied to locals, so that the compiler need not reload them. Padding lanes may hold
+ * any values. A lane whose wo lies in the surface (z = 0) has value 0 and no sample. Directions from below are mirrored
  * at the surface, z -> -z, on the way in and out: every kind here is even in z, dielectrics with eta -> 1/eta. */
 #ifndef TRACE_BSDF_LOCAL_H
 #define TRACE_BSDF_LOCAL_H
@@ -13,7 +13,7 @@
 #include "math/warp.h"
 #include "trace/bsdf/bsdf.h"
 
-/* A count of whole vectors, so that the compiler sees it and makes no remainder loop. */
+/* The count as a multiple of the vector width, visible to the compiler, so that it makes no remainder loop. */
 #ifndef VL_SCALAR
 #define VL_WHOLE(count) ((count) & ~15u)
 #else
@@ -30,14 +30,14 @@ typedef void vlBsdfSample(uint32_t n, const vlBsdfParams *params, vlBsdfDirectio
   vlBsdfSample vl_bsdf_##name##_sample;
 VL_BSDF_KINDS(VL_BSDF_DECLARE)
 
-/* Cosine-weighted direction about +z. u, v in [0, 1). z > 0 always, so that no sample is lost. */
+/* Cosine-weighted direction around +z. u, v in [0, 1). z > 0 always, so that no sample is lost. */
 static inline vlVec3 vl_cosine_direction(float u, float v) {
   vlDiskPoint d = vl_warp_disk(u, v);
   float z2 = (1.0f - d.r) * (1.0f + d.r);
   return vl_vec3(d.x, d.y, __builtin_sqrtf(z2 > 1e-12f ? z2 : 1e-12f));
 }
 
-/* wo mirrored at the normal h; oh = wo.h */
+/* wo reflected about the normal h; oh = wo.h */
 static inline vlVec3 vl_reflect(vlVec3 wo, vlVec3 h, float oh) {
   float s = 2.0f * oh;
   return vl_vec3(s * h.x - wo.x, s * h.y - wo.y, s * h.z - wo.z);

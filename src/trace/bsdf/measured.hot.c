@@ -1,16 +1,15 @@
-/* trace/bsdf/measured.hot.c: reflection as measured (world/material/measured.h), sampled as it was measured: random
- * numbers are warped by the luminance, then by the visible normals. One lane after the other: all of it is looking
- * things up.
+/* trace/bsdf/measured.hot.c: measured reflection (world/material/measured.h), sampled with its own tables: random
+ * numbers are warped by the luminance, then by the visible normals. Scalar: nearly all of it is table lookups.
  *
- * A surface met from below is turned about a line in it, together with both directions (as pbrt's). */
+ * For wo below the surface both directions are negated (as in pbrt). */
 #include "trace/bsdf/local.h"
 #include "world/material/measured_lookup.h"
 
-/* o as the file knows it, and what is known of light from there. */
+/* wo in the file's frame, and the table slices for it. */
 typedef struct Seen {
   vlVec3 o;
-  float turn_x, turn_y, turn_z; /* signs from the lane's directions to the file's */
-  float phi, area;              /* azimuth that others are counted from; 4 sigma */
+  float turn_x, turn_y, turn_z; /* signs that map the lane's directions to the file's */
+  float phi, area;              /* reference azimuth; 4 sigma */
   vlMeasuredSlices slices;
 } Seen;
 
@@ -20,11 +19,11 @@ static inline float elevation(vlVec3 w) {
 static inline float theta_to_u(float theta) {
   return __builtin_sqrtf(theta * (2.0f * VL_INV_PI));
 }
-static inline float phi_to_u(float phi) { /* any turn of it */
+static inline float phi_to_u(float phi) { /* of any number of turns */
   float u = phi * (0.5f * VL_INV_PI) + 0.5f;
   return u - __builtin_floorf(u);
 }
-static inline float opposite(float x, float side) { /* -1 where x is not on that side */
+static inline float opposite(float x, float side) { /* -1 where x is not on the given side */
   return x * side < 0.0f ? -1.0f : 1.0f;
 }
 
@@ -32,7 +31,7 @@ static inline vlVec3 turned(const Seen *s, vlVec3 w) {
   return vl_vec3(w.x * s->turn_x, w.y * s->turn_y, w.z * s->turn_z);
 }
 
-/* o.z is not 0. */
+/* o.z must not be 0. */
 static inline Seen seen_from(const vlMeasured *m, vlVec3 o) {
   Seen s;
   s.turn_x = s.turn_y = s.turn_z = o.z < 0.0f ? -1.0f : 1.0f;
@@ -50,7 +49,7 @@ static inline Seen seen_from(const vlMeasured *m, vlVec3 o) {
   return s;
 }
 
-/* f cos at the place (x, y) of the square of random numbers, which the warp takes to the normal (tx, py). */
+/* f cos at the point (x, y) of the unit square of random numbers, which the warp maps to the normal (tx, py). */
 static inline void value_at(const vlMeasured *m, const Seen *s, vlMeasuredPoint at, float tx, float py,
                             const float lambda[4], float value[4]) {
   float scale = 1.0f;
@@ -75,8 +74,8 @@ static inline void value_at(const vlMeasured *m, const Seen *s, vlMeasuredPoint 
   }
 }
 
-/* Density over directions of light for one over the square of normals: d(x) d(y) = dm / (2 pi^2 x sin), dm = dw / (4
- * o.m). */
+/* Converts a density over the square of normals to one over directions wi: d(x) d(y) = dm / (2 pi^2 x sin), dm = dw /
+ * (4 o.m). */
 static inline float over_directions(float density, float x, float sine, float oh) {
   float area = vl_max(2.0f * VL_PI * VL_PI * x * sine, 1e-6f) * 4.0f * vl_max(oh, 1e-9f);
   return vl_clamp(density / area, 0.0f, 1e30f);

@@ -1,9 +1,10 @@
-/* trace/bsdf/principled.hot.c: the principled material: five lobes - the base's microfacets, what is diffuse (with the
- * sheen and the light between microfacets), the clear coat, refraction, diffuse transmission - sampled one at a time,
- * weighed by the density of all. The layers' shares of the light come from bsdf_principled_energy.hot.c.
+/* trace/bsdf/principled.hot.c: the principled material. It has five lobes: the base's microfacets, the diffuse lobe
+ * (with the sheen and the multiple scattering between microfacets), the clear coat, refraction, diffuse transmission.
+ * One lobe is sampled, and the sample is weighted by the density of all. The layers' energies come from
+ * principled_energy.hot.c.
  *
- * Nothing is a delta: a mirror is microfacets of alpha 1e-3. Every value is symmetric in wo and wi (refraction but for
- * the square of the index). */
+ * There are no deltas: a mirror has microfacets of alpha 1e-3. f is symmetric in wo and wi (refraction up to the square
+ * of the index). */
 #include "trace/bsdf/principled.h"
 
 static vlPrincipledSlice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t first) {
@@ -27,9 +28,9 @@ static vlPrincipledSlice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t fi
   return s;
 }
 
-/* Light that goes through a layer to the base and back, with what the two send to and fro between them; o, i: shares
- * that the layer reflects at the two angles. Over a base that scatters everywhere the mean counts; over a mirror both
- * angles are the same, and of a rough one the larger share keeps it from giving more than it gets. */
+/* Factor for light that crosses a layer to the base and back, with all reflections between the two; o, i: the layer's
+ * albedos at the two angles. For a diffuse base the mean albedo enters. For a specular base both angles are the same;
+ * for a rough one the larger albedo is used, so that no energy is gained. */
 static inline float over_matt(float o, float i, float mean) {
   return (1.0f - o) * (1.0f - i) / (1.0f - mean);
 }
@@ -38,14 +39,15 @@ static inline float over_mirror(float o, float i) {
 }
 
 typedef struct Facet {
-  float value, pdf; /* without Fresnel's term */
+  float value, pdf; /* without the Fresnel term */
   float fresnel;    /* Schlick's weight */
   float outer;      /* cosine outside of the solid */
-  float opaque;     /* Schlick's weight as if light came from outside */
+  float opaque;     /* Schlick's weight for light from outside */
   float total;      /* 1: total reflection */
 } Facet;
 
-/* The base's microfacets, above (mirrored) or below (refracted; of a sheet mirrored, too). w.z < 0 below. */
+/* The base's microfacets. w.z > 0: reflection; w.z < 0: refraction, or for a thin sheet the mirror image of the
+ * reflection. */
 static inline Facet base_facet(vlVec3 o, vlVec3 w, float ax, float ay, float forth, float inside, float thin) {
   int reflect = w.z > 0.0f, straight = reflect | (thin > 0.0f);
   float eta = inside > 0.0f ? 1.0f / forth : forth, inverse = 1.0f / eta;
@@ -68,7 +70,7 @@ static inline Facet base_facet(vlVec3 o, vlVec3 w, float ax, float ay, float for
                  vl_schlick_weight(oh), total ? 1.0f : 0.0f};
 }
 
-/* The coat's, about its own normal n; F included. */
+/* The coat's microfacets, around its own normal n, with F. */
 static inline Facet coat_facet(vlVec3 o, vlVec3 w, vlVec3 n, float alpha) {
   vlVec3 h = vl_normalize(vl_add(o, w)), across = vl_cross(h, n);
   float oc = vl_dot(o, n), ic = vl_dot(w, n), hc = vl_dot(h, n), oh = vl_dot(o, h);
@@ -81,21 +83,22 @@ static inline Facet coat_facet(vlVec3 o, vlVec3 w, vlVec3 n, float alpha) {
   return (Facet){valid ? g : 0.0f, valid ? p : 0.0f, f, oh, f, 0.0f};
 }
 
-/* What all four channels of a pair of directions share. */
+/* The values of a pair of directions that all four channels share. */
 typedef struct Pair {
-  float facet[VL_PRINCIPLED_CHUNK];  /* value of the base's microfacets without Fresnel's term */
+  float facet[VL_PRINCIPLED_CHUNK];  /* value of the base's microfacets without the Fresnel term */
   float weight[VL_PRINCIPLED_CHUNK]; /* Schlick's weight */
-  float opaque[VL_PRINCIPLED_CHUNK]; /* Schlick's weight as if light came from outside */
+  float opaque[VL_PRINCIPLED_CHUNK]; /* Schlick's weight for light from outside */
   float total[VL_PRINCIPLED_CHUNK];  /* 1: total reflection */
   float hide_mirror[VL_PRINCIPLED_CHUNK], hide_matt[VL_PRINCIPLED_CHUNK]; /* factors of the layers above, */
-  float hide_through[VL_PRINCIPLED_CHUNK];                                /* each lobe's */
+  float hide_through[VL_PRINCIPLED_CHUNK];                                /* for each lobe */
   float coat[VL_PRINCIPLED_CHUNK];                                        /* value of the clear coat */
   float cosine[VL_PRINCIPLED_CHUNK];                                      /* |wi.z| / pi */
-  float again[VL_PRINCIPLED_CHUNK];                                       /* between microfacets, f cos_i */
-  float upper[VL_PRINCIPLED_CHUNK], lower[VL_PRINCIPLED_CHUNK];           /* 1: wi lies on wo's side, on the other */
+  float again[VL_PRINCIPLED_CHUNK];                             /* multiple scattering between microfacets, f cos_i */
+  float upper[VL_PRINCIPLED_CHUNK], lower[VL_PRINCIPLED_CHUNK]; /* 1: wi lies on wo's side; on the other side */
 } Pair;
 
-/* The pair, and the density of sampling wi. Whether a chunk has a coat is a constant in each of two loops. */
+/* The pair's values, and the density of sampling wi. has_coat is a constant, so that there are two loops without
+ * branches. */
 static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSlice *s, const vlPrincipledLanes *l,
                                                             vlBsdfDirections wo, vlBsdfDirections wi, Pair *out,
                                                             float *pdf, uint32_t first, bool has_coat) {
@@ -113,11 +116,11 @@ static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSl
     vlVec3 o = vl_vec3(ox[i], oy[i], l->z[i]), w = vl_vec3(ix[i], iy[i], iz[i] * side);
     int reflect = w.z > 0.0f, valid = (o.z > 0.0f) & (vl_abs(w.z) > 0.0f);
     Facet facet = base_facet(o, w, vl_ggx_alpha(ax[i]), vl_ggx_alpha(ay[i]), index[i], inside, thin);
-    float bare = 1.0f - inside, coat_value = 0.0f, coat_pdf = 0.0f; /* layers lie outside */
+    float bare = 1.0f - inside, coat_value = 0.0f, coat_pdf = 0.0f; /* the layers are on the outside */
     if (has_coat) {
       float on = coats[i] * bare;
       Facet coat = coat_facet(o, w, vl_vec3(cx[i] * side, cy[i] * side, cz[i]), vl_ggx_alpha(coat_alpha[i]));
-      coat_value = on > 0.0f ? coat.value * on : 0.0f; /* rows of other materials may be stale */
+      coat_value = on > 0.0f ? coat.value * on : 0.0f; /* rows of materials without a coat may be stale */
       coat_pdf = on > 0.0f ? coat.pdf : 0.0f;
     }
     float co = l->coat_o[i], ci = l->coat_i[i], so = l->sheen_o[i], si = l->sheen_i[i];
@@ -125,14 +128,14 @@ static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSl
     float matt = over_matt(co, ci, l->coat_mean[i]) * over_matt(so, si, l->sheen_mean[i]);
     out->hide_mirror[i] = inside > 0.0f ? 1.0f : mirror;
     out->hide_matt[i] = inside > 0.0f ? 1.0f : matt;
-    /* Light that passes meets the layers once, on the upper side. */
+    /* Transmitted light crosses the layers once, on the upper side. */
     out->hide_through[i] = side < 0.0f ? (1.0f - ci) * (1.0f - si) : (1.0f - co) * (1.0f - so);
     out->facet[i] = facet.value, out->weight[i] = facet.fresnel, out->total[i] = facet.total,
     out->opaque[i] = facet.opaque;
     out->coat[i] = coat_value;
     float cosine = vl_abs(w.z) * VL_INV_PI;
     out->cosine[i] = cosine;
-    /* between microfacets: Kulla and Conty */
+    /* multiple scattering between microfacets (Kulla and Conty 2017) */
     out->again[i] = (1.0f - l->one_o[i]) * (1.0f - l->one_i[i]) / (1.0f - l->one_mean[i]) * cosine;
     float base = 0.25f * ((b0[i] + b1[i]) + (b2[i] + b3[i])), both = l->specular[i] + l->refract[i];
     float mirrors =
@@ -141,14 +144,14 @@ static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSl
     float through = inside > 0.0f ? both * (1.0f - mirrors) : l->refract[i];
     float above = forth * facet.pdf + l->diffuse[i] * cosine + l->coat[i] * coat_pdf;
     float below = through * facet.pdf + l->through[i] * cosine;
-    float on = valid ? 1.0f : 0.0f, up = reflect ? on : 0.0f; /* products, since gcc makes branches of selects */
+    float on = valid ? 1.0f : 0.0f, up = reflect ? on : 0.0f; /* products: gcc would make branches of selects */
     out->upper[i] = up;
     out->lower[i] = on - up;
     density[i] = above * up + below * (on - up);
   }
 }
 
-/* One channel of f cos_i from the pair. */
+/* Computes one channel of f cos_i from the pair. */
 static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLanes *l, const Pair *p, int c,
                                 float *result) {
   const float *metallic = s->row[VL_P_METALLIC], *f90s = s->row[VL_P_F90], *clears = s->row[VL_P_TRANSMISSION];
@@ -163,16 +166,16 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
     float m0 = f0 + metal * (base - f0), m90 = f90 + metal * (1.0f - f90);
     float f = m0 + (m90 - m0) * p->opaque[i];
     f = f + film * (l->film[c][i] - f);
-    float fd = f0 + (f90 - f0) * p->weight[i], fo = f0 + (f90 - f0) * p->opaque[i]; /* of the dielectric alone */
+    float fd = f0 + (f90 - f0) * p->weight[i], fo = f0 + (f90 - f0) * p->opaque[i]; /* of the dielectric only */
     fd = fd + film * (l->film[c][i] - fd), fo = fo + film * (l->film[c][i] - fo);
-    float within = p->total[i] > 0.0f ? 1.0f : fd; /* inside only what passes light is denser than beyond */
+    float within = p->total[i] > 0.0f ? 1.0f : fd; /* inside, only the transmissive part is the denser medium */
     f = f + l->inside[i] * dielectric * clear * (within - fo);
     float matt = (1.0f - l->energy_o[c][i]) * (1.0f - l->energy_i[c][i]) / (1.0f - l->energy_mean[c][i]) *
                  p->cosine[i] * dielectric * (1.0f - clear);
     float metal_mean = base + (1.0f - base) * (1.0f / 21.0f), sheet_mean = f0 + (f90 - f0) * (1.0f / 21.0f);
     float metal_again = metal_mean * metal_mean * l->one_mean[i] / (1.0f - metal_mean * (1.0f - l->one_mean[i]));
     float sheet_again = dielectric * clear * thins[i] * again;
-    float body = dielectric * clear, body_pass = 1.0f - sheet_mean; /* between microfacets of both sides */
+    float body = dielectric * clear, body_pass = 1.0f - sheet_mean; /* between microfacets, on both sides */
     float body_up = body * l->again_up[i] * (1.0f - l->again_pass[i] * body_pass);
     float body_down = body * l->again_down[i] * body_pass * base;
     float bare = 1.0f - l->inside[i];
@@ -211,7 +214,7 @@ void vl_bsdf_principled_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
   }
 }
 
-/* The lobe and its direction. wi lies on the other side of wo for the last two. */
+/* Chooses the lobe and samples its direction. For the last two lobes wi lies on the other side of wo. */
 static __attribute__((noinline)) void choose(const vlPrincipledSlice *s, const vlPrincipledLanes *l,
                                              vlBsdfDirections wo, const float *u_lobe, const float *u, const float *v,
                                              vlBsdfDirections wi, float *eta_scale, uint32_t first) {

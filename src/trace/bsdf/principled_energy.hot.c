@@ -1,21 +1,21 @@
-/* trace/bsdf/principled_energy.hot.c: how the principled material's layers share the light: what each reflects in all
- * directions together (tables), the thin film, the sheen, and from it the chances of the lobes. Scalar, since tables
- * do not vectorise. */
+/* trace/bsdf/principled_energy.hot.c: the energies of the principled material's layers: their directional albedos
+ * (tables), the thin film, the sheen; and from these the probabilities of the lobes. Table lookups are scalar, since
+ * they do not vectorise. */
 #include "trace/bsdf/principled.h"
 
 /* ---- thin film --------------------------------------------------------------------------------------------------- */
 
-/* Two interfaces of one polarisation with all that goes to and fro between them. */
+/* Reflectance of two interfaces, for one polarisation, with all reflections between them. */
 static float interfere(float first, float second, float phase) {
   float product = first * second, sum = first * first + second * second + 2.0f * product * phase;
   float down = 1.0f + product * product + 2.0f * product * phase;
-  float r = sum / vl_max(down, 1e-9f); /* both vanish where two opposite total reflections meet at grazing angles */
+  float r = sum / vl_max(down, 1e-9f); /* both are 0 where two opposite total reflections meet at grazing angles */
   return vl_clamp(r, 0.0f, 1.0f);
 }
 
-/* Reflection of a film of index n2 and thickness d (nm) over a base that reflects f0 at normal incidence (taken as a
- * dielectric of that index), in air: Airy's sum, both polarisations. Belcour and Barla 2017, "A Practical Extension to
- * Microfacet Theory for the Modeling of Varying Iridescence", for one wavelength: nothing need be integrated. */
+/* Reflectance of a film of index n2 and thickness d (nm) over a base with reflectance f0 at normal incidence (as a
+ * dielectric of index n3), in air: Airy's sum, both polarisations. Belcour and Barla 2017, "A Practical Extension to
+ * Microfacet Theory for the Modeling of Varying Iridescence", for single wavelengths, so that no integral is needed. */
 static float airy(float cosine, float n2, float n3, float d, float lambda) {
   float sin2 = 1.0f - cosine * cosine;
   float c2 = __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2 / (n2 * n2)));
@@ -26,7 +26,7 @@ static float airy(float cosine, float n2, float n3, float d, float lambda) {
   return 0.5f * (interfere(s12, s23, phase) + interfere(p12, p23, phase));
 }
 
-/* Wavelengths that stand for R, G, B where there is no spectrum: three a channel, across its sensitivity. */
+/* Wavelengths (nm) for R, G, B in RGB mode: three per channel, across its sensitivity. */
 static const float rgb_lambda[3][3] = {{595, 615, 635}, {525, 545, 565}, {435, 452, 470}};
 
 static float film_reflection(const vlPrincipledSlice *s, uint32_t i, int channel, float cosine, float f0) {
@@ -42,12 +42,12 @@ static float film_reflection(const vlPrincipledSlice *s, uint32_t i, int channel
 
 /* ---- directional albedos ----------------------------------------------------------------------------------------- */
 
-/* The isotropic roughness that loses about as much light between its microfacets. */
+/* The isotropic alpha whose single scattering loses about the same energy. */
 static inline float base_alpha(float x, float y) {
   return 0.6f * vl_max(x, y) + 0.4f * vl_min(x, y);
 }
 
-/* Places in the tables of a chunk. */
+/* Table positions of a chunk. */
 typedef struct Places {
   int32_t alpha[VL_PRINCIPLED_CHUNK], cosine[VL_PRINCIPLED_CHUNK];
   float alpha_t[VL_PRINCIPLED_CHUNK], cosine_t[VL_PRINCIPLED_CHUNK];
@@ -69,7 +69,7 @@ static __attribute__((noinline)) void find_places(const vlPrincipledSlice *s, co
   }
 }
 
-/* Scalar: there are no gathers on every instruction set. */
+/* Scalar, since not every instruction set has gathers. */
 static __attribute__((noinline)) void look_up(const Places *p, uint32_t count, float *a, float *b) {
   const vlPrincipledTables *t = &vl_principled_tables;
   for (uint32_t i = 0; i < count; i++) {
@@ -109,7 +109,8 @@ static __attribute__((noinline)) void energies(const vlPrincipledSlice *s, const
   }
 }
 
-/* Under a film: its own reflection at that cosine; z null: the mean over cosines, Gauss-Legendre in cos^2. */
+/* Base energies with a thin film: the film's reflectance at that cosine; z null: the mean over cosines, Gauss-Legendre
+ * in cos^2. */
 static void film_energies(const vlPrincipledSlice *s, const float *z, const float *one,
                           float energy[4][VL_PRINCIPLED_CHUNK]) {
   for (uint32_t i = 0; i < s->count; i++) {
@@ -131,7 +132,7 @@ static float brightest(const vlPrincipledSlice *s, uint32_t row, uint32_t i) {
   return vl_max(vl_max(s->row[row][i], s->row[row + 1][i]), vl_max(s->row[row + 2][i], s->row[row + 3][i]));
 }
 
-/* What the coat reflects of light at z (null: the mean) to its normal. directions: up is wo's side. */
+/* The coat's albedo at cosine z (null: the mean) to its normal. directions: up is wo's side. */
 static void coat_energies(const vlPrincipledSlice *s, const vlPrincipledLanes *l, const float *x, const float *y,
                           const float *z, float *energy) {
   const vlPrincipledTables *t = &vl_principled_tables;
@@ -177,13 +178,13 @@ static void sheen_at_light(const vlPrincipledSlice *s, const float *ox, const fl
   }
 }
 
-/* ---- between the microfacets of a body --------------------------------------------------------------------------- */
+/* ---- multiple scattering in a transmissive solid's surface ------------------------------------------------------- */
 
-/* Kulla and Conty 2017 for a boundary that light passes: what single scattering loses at both directions, m(o) m(i),
- * scattered evenly to both sides. With L over the squared index constant all around (a furnace) each side must get its
- * loss back, and values must be the same both ways; M: mean of m, n: index:
- *   f_up(o, i) = (1 - p) m(o) m(i) / (pi M),  f_down(o, i) = n_o^2 T m(o) m(i) / (pi max(n^2 M_in, M_out)),
- *   p_out = T n^2 M_in / max(...),  p_in = T M_out / max(...),  T: mean of 1 - F from outside. */
+/* Kulla and Conty 2017 for a transmissive boundary: the energy m(o) m(i) that single scattering loses at both
+ * directions is scattered uniformly to both sides. If L over the squared index is constant everywhere (a furnace), each
+ * side must get back its loss, and f must be reciprocal. M: mean of m, n: index: f_up(o, i) = (1 - p) m(o) m(i) / (pi
+ * M),  f_down(o, i) = n_o^2 T m(o) m(i) / (pi max(n^2 M_in, M_out)), p_out = T n^2 M_in / max(...),  p_in = T M_out /
+ * max(...),  T: mean of 1 - F from outside. */
 static void losses_at_view(const vlPrincipledSlice *s, vlPrincipledLanes *l) {
   for (uint32_t i = 0; i < s->count; i++) {
     float eta = s->eta[i];
@@ -216,7 +217,7 @@ static void losses_at_light(const vlPrincipledSlice *s, const float *z, vlPrinci
   }
 }
 
-/* Chances of the lobes: about what each sends back; none of those that can shine is left at 0. */
+/* Probabilities of the lobes: in proportion to about the energy of each; above 0 for each lobe that can reflect. */
 static __attribute__((noinline)) void weigh(const vlPrincipledSlice *s, const float *coat_cos, vlPrincipledLanes *l) {
   const float *b0 = s->base[0], *b1 = s->base[1], *b2 = s->base[2], *b3 = s->base[3];
   const float *t0 = s->row[VL_P_THROUGH], *t1 = s->row[VL_P_THROUGH + 1], *t2 = s->row[VL_P_THROUGH + 2],

@@ -1,6 +1,6 @@
-/* trace/bsdf/regularize.hot.c: surfaces made rougher for paths that have been scattered (pbrt-v4's regularisation;
- * vlBuildDef says when): what a light sample cannot find then is found by chance a little off. What has no alpha stays
- * as it is. */
+/* trace/bsdf/regularize.hot.c: regularisation (pbrt-v4's; vlBuildDef enables it): rougher lobes for paths that have
+ * already been scattered, so that light samples can find light that only a nearly specular lobe could reach. Kinds
+ * without alpha are unchanged. */
 #include "math/ggx.h"
 #include "trace/stages.h"
 

@@ -1,5 +1,5 @@
-/* trace/light/emission_sample.hot.c: rays that leave lights, by the kind of light, and their densities (pbrt book 12,
- * 3rd edition 16.1.2); infinite and area lights. Scalar: each lane has a light of its own. */
+/* trace/light/emission_sample.hot.c: sampling of rays that leave infinite and area lights, and their densities (pbrt
+ * book 12, 3rd edition 16.1.2). Scalar: each lane has its own light. */
 #include "math/octahedral.h"
 #include "math/warp.h"
 #include "trace/light/coverage.h"
@@ -12,7 +12,7 @@ static float choice_of(const vlTwoWay *way, uint32_t light) {
   return way->choice[light + 1] - way->choice[light];
 }
 
-/* Density of an area light's points. */
+/* Density of an area light's points, per area. */
 static float point_density(const vlWorld *world, const vlWorldLight *light, vlVec3 p) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   if (s->kind == VL_SHAPE_TRIANGLES) return light->area > 0.0f ? 1.0f / light->area : 0.0f;
@@ -21,8 +21,8 @@ static float point_density(const vlWorld *world, const vlWorldLight *light, vlVe
   return (float)vl_shape_pdf(s, light->prim, &point);
 }
 
-/* Images of the sky have a density that leaves out what is dim (other ways find that better): half of the light's
- * paths go by it, half from anywhere. */
+/* The density of an environment image (per solid angle) excludes dim directions, which other strategies sample better.
+ * Half of the light paths use this density, the other half are uniform over the sphere. */
 static float sky_density(const vlWorld *world, const vlWorldLight *light, vlVec3 w) {
   if (light->environment == VL_NONE) return VL_INV_4PI;
   return 0.5f * (vl_infinite_pdf(world, light, vl_vec3(0, 0, 0), w) + VL_INV_4PI);
@@ -32,19 +32,20 @@ static const vlPortal *portal_of(const vlWorld *world, const vlWorldLight *light
   return light->environment == VL_NONE ? NULL : world->environments.items[light->environment].portal;
 }
 
-/* Through a portal all paths go, from any of its directions by their light: per area across w. */
+/* Density of light paths through a portal, with directions in proportion to their radiance: per area perpendicular to w
+ * and solid angle. */
 static float portal_density(const vlPortal *portal, vlVec3 w) {
   vlPortalWindow whole = vl_portal_whole(portal);
   float across = portal->width * portal->height * vl_portal_local(portal, w).z;
   return across > 0.0f ? vl_portal_pdf(portal, &whole, w) / across : 0.0f;
 }
 
-/* Does the outside of a whole sphere shine? */
+/* Whether the outside of a whole sphere emits. */
 static bool shines_outwards(const vlWorld *world, const vlWorldLight *light) {
   return world->emitted.items[light->emitted].two_sided || !world->shapes.items[light->shape].flip;
 }
 
-/* The share of an area light's paths that set out on the side that is seen in direction w. */
+/* The share of an area light's paths that start on the side visible from direction w. */
 static float side_share(const vlWorld *world, const vlWorldLight *light, vlVec3 p, vlVec3 w) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   if (!light->outer_side) return world->emitted.items[light->emitted].two_sided ? 0.5f : 1.0f;
@@ -82,7 +83,7 @@ float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t in
 typedef struct Spot {
   vlVec3 p, n;
   float pdf, u, v;
-  float weights[3]; /* of a triangle's corners */
+  float weights[3]; /* barycentric coordinates in a triangle */
 } Spot;
 
 static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float u, float v) {
@@ -153,14 +154,14 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   out->valid = true;
 }
 
-/* ---- light from far away ----------------------------------------------------------------------------------------- */
+/* ---- infinite lights --------------------------------------------------------------------------------------------- */
 
 static vlVec3 turn(const float m[9], vlVec3 d) {
   return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
                  m[6] * d.x + m[7] * d.y + m[8] * d.z);
 }
 
-/* A direction of the sky, to the density of vl_infinite_pdf. */
+/* Samples a direction of an infinite light with the density vl_infinite_pdf. */
 static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light, const float lambda[4], float u, float v,
                             float *pdf, float radiance[4]) {
   const vlEmitted *e = &world->emitted.items[light->emitted];
@@ -198,7 +199,7 @@ void vl_light_emit_from_afar(const vlWorld *world, vlVec3 w, float u, float v, v
   out->valid = true;
 }
 
-/* Through the portal, from beyond the world. */
+/* Samples a ray through the portal, from outside the world. */
 static void through_portal(const vlWorld *world, const vlWorldLight *light, const vlPortal *portal,
                            const float lambda[4], float u, float v, float s, float t, vlEmission *out) {
   vlPortalWindow whole = vl_portal_whole(portal);

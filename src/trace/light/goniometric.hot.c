@@ -1,10 +1,10 @@
-/* trace/light/goniometric.hot.c: lights at a point whose intensity is times an image's, by direction (pbrt
- * book 12.2.3): an equal-area octahedral square (book 3.8.3). */
+/* trace/light/goniometric.hot.c: goniometric lights: a point whose intensity is multiplied by an image over the
+ * direction (pbrt book 12.2.3), an equal-area octahedral square (book 3.8.3). */
 #include "math/octahedral.h"
 #include "trace/light/kinds.h"
 #include "world/texture/texture_lookup.h"
 
-/* Factor of the image for light that leaves along d. */
+/* The image's factor for light that leaves along d (world space). */
 static float image_factor(const vlWorld *world, const vlWorldLight *light, vlVec3 d) {
   vlVec3 local = vl_normalize(vl_light_local(light, d));
   const vlMipmap *mip = world->images.items[light->image].mipmap;

@@ -1,5 +1,5 @@
-/* trace/light/hit_light.hot.c: light that rays run into, and how light sampling would have found it: what all tracers
- * weigh against each other, each in its own way. Scalar: each lane meets a light of its own. */
+/* trace/light/hit_light.hot.c: radiance of lights that rays hit, and the density with which light sampling would have
+ * sampled them, for the weights of all tracers. Scalar: each lane hits its own light. */
 #include "trace/stages.h"
 
 vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k) {

@@ -1,36 +1,36 @@
-/* trace/light/kinds.h: what each kind of light computes. A kind of world/world.h's list has three functions:
+/* trace/light/kinds.h: the functions of each kind of light. A kind of world/world.h's list has three functions:
  *
  *   vl_light_sample_KIND     a direction from a point towards the light, and the radiance that arrives (pbrt book 12)
- *   vl_light_emit_KIND       a ray that leaves the light, for tracers that follow light both ways
+ *   vl_light_emit_KIND       a ray that leaves the light, for the two-way tracers
  *   vl_light_emit_pdf_KIND   the density of those rays
  *
- * A list with a kind that lacks one of them does not link. */
+ * A kind that lacks one of them is a link error. */
 #ifndef TRACE_LIGHT_KINDS_H
 #define TRACE_LIGHT_KINDS_H
 
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
-/* What a light sample depends on. */
+/* The input of a light sample. */
 typedef struct vlLightQuery {
   const vlWorld *world;
   const vlWorldLight *light;
-  const vlEmitted *emitted; /* the light's */
+  const vlEmitted *emitted; /* the light's emission */
   const float *lambda;      /* 4 wavelengths, nm */
-  vlVec3 p;                 /* the point that light arrives at, world space */
+  vlVec3 p;                 /* the point that receives light, world space */
   float u, v;               /* random numbers in [0, 1) */
 } vlLightQuery;
 
 typedef struct vlLightSample {
   vlVec3 w;          /* unit, towards the light */
-  vlVec3 target;     /* the point that must be visible; of a distant light w again */
-  float pdf;         /* per solid angle; 1 of a delta; 0 at the start: no sample */
-  float radiance[4]; /* that arrives from w */
-  bool delta;        /* no ray can meet the light; false at the start */
+  vlVec3 target;     /* the point that must be visible; for a distant light w again */
+  float pdf;         /* per solid angle; 1 for a delta; 0 at the start: no sample */
+  float radiance[4]; /* arriving from w */
+  bool delta;        /* no ray can hit the light; false at the start */
   bool distant;      /* the light is infinitely far; false at the start */
 } vlLightSample;
 
-/* What a ray that leaves a light depends on. */
+/* The input of a ray that leaves a light. */
 typedef struct vlEmissionQuery {
   const vlWorld *world;
   const vlWorldLight *light;
@@ -39,9 +39,9 @@ typedef struct vlEmissionQuery {
   float u, v, s, t; /* random numbers in [0, 1): u, v for the position, s, t for the direction */
 } vlEmissionQuery;
 
-/* emit: fills an emission that is all zero; it stays invalid where the light sends nothing. Its flux is over the
- * density of its own numbers, without the choice of the light. emit_pdf: as vl_emission_density; p: probability of the
- * choice of the light, a factor of the result. */
+/* emit: fills an emission that is all zero; it stays invalid where the light emits nothing. Its flux is divided by the
+ * density of its own random numbers, but not by the probability of the light. emit_pdf: as vl_emission_density; p:
+ * probability of the light, a factor of the result. */
 #define VL_LIGHT_KIND_FUNCTIONS(K, k)                                                                             \
   void vl_light_sample_##k(const vlLightQuery *q, vlLightSample *out);                                            \
   void vl_light_emit_##k(const vlEmissionQuery *q, vlEmission *out);                                              \
@@ -56,14 +56,14 @@ static inline vlVec3 vl_light_axis(const vlWorldLight *light) {
   return vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
 }
 
-/* A world direction in the light's frame, where an image shapes it. */
+/* A world direction in the light's frame, for lights with an image. */
 static inline vlVec3 vl_light_local(const vlWorldLight *light, vlVec3 d) {
   const float *m = light->corners;
   return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
                  m[6] * d.x + m[7] * d.y + m[8] * d.z);
 }
 
-/* Target, direction and density of a sample; the inverse square of the distance. */
+/* Sets target, direction and density of a sample; returns the inverse square of the distance. */
 static inline float vl_light_towards_point(const vlLightQuery *q, vlLightSample *out) {
   out->target = vl_vec3(q->light->position[0], q->light->position[1], q->light->position[2]);
   vlVec3 to = vl_sub(out->target, q->p);
@@ -74,8 +74,8 @@ static inline float vl_light_towards_point(const vlLightQuery *q, vlLightSample 
   return d2 > 0.0f ? 1.0f / d2 : 0.0f;
 }
 
-/* A ray from a point into a cone about the axis; span: 1 - cosine of the cone, 2: the whole sphere. The cosine with the
- * axis, of a cone. Its flux is factor = 2 pi span times the intensity. */
+/* Samples a ray from a point uniformly in a cone around the axis; span: 1 - cosine of the cone, 2 for the whole sphere.
+ * Returns the cosine with the axis (for a cone). Its flux is factor = 2 pi span times the intensity. */
 static inline float vl_light_emit_from_point(const vlEmissionQuery *q, float span, vlEmission *out) {
   float c = 1.0f;
   if (span == 2.0f) {
@@ -91,7 +91,7 @@ static inline float vl_light_emit_from_point(const vlEmissionQuery *q, float spa
   return c;
 }
 
-/* Density of those rays where one arrives from w, over that distance. */
+/* Density of those rays for one that arrives from w, over that distance. */
 static inline float vl_light_emit_pdf_from_point(const vlWorldLight *light, float span, float p, vlVec3 w,
                                                  float distance) {
   float c = -vl_dot(w, vl_light_axis(light));
@@ -100,11 +100,12 @@ static inline float vl_light_emit_pdf_from_point(const vlWorldLight *light, floa
 
 /* ---- lights infinitely far away ---------------------------------------------------------------------------------- */
 
-/* Area of a disk that hides the world. */
+/* Area of a disk that covers the world. */
 static inline float vl_light_disk(const vlWorld *world) {
   return VL_PI * world->radius * world->radius;
 }
-/* A ray that arrives from w (unit, towards the light) through that disk, across w: origin, direction, at. */
+/* Samples a ray that arrives from w (unit, towards the light) through that disk, perpendicular to w: its origin and
+ * direction, and the emission's `at`. */
 void vl_light_emit_from_afar(const vlWorld *world, vlVec3 w, float u, float v, vlEmission *out);
 
 #endif

@@ -1,5 +1,5 @@
-/* trace/light/light.hot.c: a light sample for each lane, by the kind of its light; infinite and area lights, and the
- * densities that multiple importance sampling needs of them (pbrt book 12). Scalar per lane: kinds diverge. */
+/* trace/light/light.hot.c: one light sample for each lane; infinite and area lights, and their densities for multiple
+ * importance sampling (pbrt book 12). Scalar: the kinds of light diverge. */
 #include "math/octahedral.h"
 #include "math/warp.h"
 #include "trace/light/coverage.h"
@@ -75,19 +75,20 @@ float vl_infinite_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 o,
 /* ---- area lights ------------------------------------------------------------------------------------------------- */
 
 typedef struct Sample {
-  vlVec3 p, n; /* on the light */
+  vlVec3 p, n; /* point and normal on the light */
   float pdf;   /* per solid angle */
   float u, v;
-  float weights[3]; /* of a triangle's corners */
+  float weights[3]; /* barycentric coordinates in a triangle */
 } Sample;
 
-/* A whole sphere that is opaque, or is not there but for its light (pbrt-v4: from outside its near side shines, from
- * inside all of it; the far side does not shine through). Not with holes, through which the far side shows. */
+/* Whether a light is a whole sphere that is opaque, or invisible but for its light (as in pbrt-v4: from outside its
+ * near side emits, from inside all of it; the far side is not visible through it). A sphere with alpha holes is
+ * excluded, since its far side is visible through them. */
 static bool round_light(const vlWorldShape *s, const vlWorldLight *light, vlVec3 *center, float *radius) {
   return (s->alpha < 0 || light->invisible) && vl_whole_sphere(s, center, radius);
 }
 
-/* 1 - cos of the half angle of a sphere seen from outside, without cancellation. */
+/* 1 - cos of the half angle of the cone of a sphere seen from outside, without cancellation. */
 static inline float one_minus_cos_cone(float sin2) {
   return sin2 / (1.0f + __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2)));
 }
@@ -116,8 +117,8 @@ static float solid_pdf(float pdf_area, vlVec3 from, vlVec3 p, vlVec3 n) {
   return cosine > 0.0f ? pdf_area * d2 * __builtin_sqrtf(d2) / cosine : 0.0f;
 }
 
-/* Near triangles are sampled by solid angle, where the area's density would vary over them without bound; far ones by
- * area, which is cheaper. Both sides of multiple importance sampling ask this one question. */
+/* Near triangles are sampled by solid angle, since the density of area sampling is unbounded over them; far ones by
+ * area, which is cheaper. Sampling and density both use this decision. */
 typedef struct Near {
   vlSphericalTriangle cap;
   bool near;
@@ -137,7 +138,7 @@ static Near near_triangle(const vlWorldLight *light, vlVec3 from) {
   return r;
 }
 
-/* Where the direction w from `from` meets the light's plane, as weights of its corners. */
+/* Intersection of the direction w from `from` with the triangle's plane, in barycentric coordinates. */
 static vlVec3 plane_weights(const float *q, vlVec3 from, vlVec3 w) {
   vlVec3 a = vl_vec3(q[0] - from.x, q[1] - from.y, q[2] - from.z),
          b = vl_vec3(q[3] - from.x, q[4] - from.y, q[5] - from.z);
@@ -215,7 +216,7 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
     vlVec3 to = vl_sub(center, from);
     if (vl_length2(to) > radius * radius * 1.0001f) {
       Sample r = sample_cone(center, radius, s->flip, from, u, v);
-      if (with_uv) { /* uv by way of the shape */
+      if (with_uv) { /* the shape computes uv */
         vlShapeHit hit = {.t = 0};
         vlSurfacePoint point;
         for (int i = 0; i < 3; i++)
@@ -257,14 +258,14 @@ float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, 
   return solid_pdf((float)vl_shape_pdf(s, light->prim, &point), from, at->p, at->g);
 }
 
-/* ---- one sample a lane ------------------------------------------------------------------------------------------- */
+/* ---- one sample per lane ----------------------------------------------------------------------------------------- */
 
 void vl_light_sample_infinite(const vlLightQuery *q, vlLightSample *out) {
   const vlWorld *world = q->world;
   const vlWorldLight *light = q->light;
   out->distant = true;
   if (light->environment == VL_NONE) {
-    if (world->def.imitate_pbrt) return; /* pbrt-v4 leaves a uniform sky to the BSDF's samples */
+    if (world->def.imitate_pbrt) return; /* pbrt-v4 samples a uniform sky by the BSDF only */
     out->w = vl_warp_sphere(q->u, q->v);
     out->pdf = 0.25f * VL_INV_PI;
     vl_emitted_at(world, q->emitted, q->lambda, 0, 0, true, out->radiance);
@@ -303,7 +304,7 @@ void vl_light_sample_area(const vlLightQuery *q, vlLightSample *out) {
     float cover = vl_light_coverage(q->world, light, at.p, at.n, at.u, at.v, at.weights);
     for (int c = 0; c < 4; c++) out->radiance[c] *= cover;
   }
-  /* The end of the shadow ray is moved off the light by the bound of the rounding error of its points. */
+  /* Moves the end of the shadow ray off the light by the bound of its points' rounding error. */
   float size = vl_abs(at.p.x) + vl_abs(at.p.y) + vl_abs(at.p.z);
   out->target = vl_offset_origin(at.p, facing < 0.0f ? vl_neg(at.n) : at.n, 16.0f * 0x1p-24f * size, vl_neg(w));
   out->w = w;

@@ -1,5 +1,6 @@
-/* trace/light/light_choice.hot.c: which light each lane of a batch asks: all lanes walk down the light tree together, a
- * level at a time. The same decisions as vl_light_choose (world/light/light_tree.h), which says why. */
+/* trace/light/light_choice.hot.c: the choice of a light for each lane of a batch. All lanes descend the light tree
+ * together, a level at a time. The decisions are those of vl_light_choose (world/light/light_tree.h), which explains
+ * them. */
 #include <stddef.h>
 
 #include "trace/stages.h"
@@ -8,18 +9,18 @@ enum { LIGHT_FIELD = 12, LEFT_FIELD = 13 };
 _Static_assert(offsetof(vlLightNode, light) == LIGHT_FIELD * sizeof(float), "layout of a node");
 _Static_assert(offsetof(vlLightNode, left) == LEFT_FIELD * sizeof(float), "layout of a node");
 
-/* The state of the walk: where each lane stands, and what is left of its random number. */
+/* The state of the descent, by lane: node and remaining random number. */
 typedef struct Walk {
   VL_ROW uint32_t node[VL_ROW_SIZE];
   VL_ROW float u[VL_ROW_SIZE];
 } Walk;
 
-/* The normal that light's cosine is taken to; 0 where light from all around counts alike. */
+/* The normal for the light's cosine; 0 where all directions count equally (media). */
 static inline vlVec3 facing_light(const vlSurface *f, uint32_t i) {
   return vl_mul(vl_vec3(f->nx[i], f->ny[i], f->nz[i]), 1.0f - f->no_cosine[i]);
 }
 
-/* Lanes that chose a light without bounds are done (light set); the others stand at the root. */
+/* Lanes that chose a light without bounds are done (light set); the others start at the root. */
 static void start(const vlLightTree *tree, uint32_t padded, const float *u, Walk *w, vlLightSamples *out) {
   float slots = (float)(tree->unbounded_count + 1), p_unbounded = (float)tree->unbounded_count / slots;
   uint32_t last = tree->unbounded_count ? tree->unbounded_count - 1 : 0;
@@ -34,8 +35,8 @@ static void start(const vlLightTree *tree, uint32_t padded, const float *u, Walk
   }
 }
 
-/* One level down for the lanes that have no light yet; what reaches a leaf has its light, what no branch lights pmf 0.
- */
+/* Descends one level for the lanes without a light. A lane at a leaf has its light; where neither child has importance,
+ * pmf becomes 0. */
 static void descend(const float *restrict nodes, uint32_t padded, const vlSurface *restrict f, Walk *restrict w,
                     vlLightSamples *restrict out) {
   /* must vectorise */
@@ -65,7 +66,7 @@ static void descend(const float *restrict nodes, uint32_t padded, const vlSurfac
 
 void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *f, const float *u,
                            vlLightSamples *out) {
-  if (tree->kind != VL_LIGHT_SAMPLER_BVH || tree->node_count < 3) { /* nothing to walk */
+  if (tree->kind != VL_LIGHT_SAMPLER_BVH || tree->node_count < 3) { /* no tree to descend */
     for (uint32_t i = 0; i < n; i++) {
       vlLightChoice c = vl_light_choose(tree, vl_vec3(f->px[i], f->py[i], f->pz[i]), facing_light(f, i), u[i]);
       out->light[i] = c.light;
@@ -80,11 +81,11 @@ void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface 
     descend((const float *)tree->nodes, padded, f, &w, out);
     waiting = 0;
     for (uint32_t i = 0; i < n; i++) {
-      if (!(out->pmf[i] > 0.0f)) out->light[i] = 0; /* lit by nothing: done */
+      if (!(out->pmf[i] > 0.0f)) out->light[i] = 0; /* no light reaches this lane: done */
       waiting += out->light[i] == VL_INNER;
     }
     if (waiting > n / 4) continue;
-    for (uint32_t i = 0; waiting > 0 && i < n; i++) { /* the last few go alone */
+    for (uint32_t i = 0; waiting > 0 && i < n; i++) { /* the last few lanes one by one */
       if (out->light[i] != VL_INNER) continue;
       vlLightChoice c = vl_light_walk(tree, tree->nodes + w.node[i], vl_vec3(f->px[i], f->py[i], f->pz[i]),
                                       facing_light(f, i), w.u[i], out->pmf[i]);

@@ -1,6 +1,7 @@
-/* trace/light/light_media.hot.c: what lights stand in. A surface that borders on two media tells which is on this side;
- * so a light asks in all directions, and if no such surface is met, the straight way from the camera tells. Eye's paths
- * find media in the same way, by the surfaces that they cross: both sides must agree on them. */
+/* trace/light/light_media.hot.c: the medium around each light. Surfaces between two media define the medium on each
+ * side. Rays in many directions from the light find such surfaces, and the most frequent medium is taken; if none is
+ * found, the straight line from the camera decides. Camera paths find media by the surfaces that they cross, so both
+ * sides must agree. */
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 #include "world/shape/surface_point.h"
@@ -20,7 +21,7 @@ static bool borders(const vlWorldShape *s) {
   return s->inside != s->outside;
 }
 
-/* The answer most often given; far: from outside the world towards its middle. */
+/* The medium found most often; false: none. far: p is outside the world, rays go towards its middle. */
 static bool surrounding_medium(const vlWorld *world, vlVec3 p, bool far, uint32_t *medium) {
   uint32_t answer[ANSWERS], votes[ANSWERS], answers = 0, best = 0;
   for (int k = 0; k < ASKED; k++) {
@@ -61,7 +62,7 @@ static uint32_t on_the_way(const vlWorld *world, vlVec3 eye, vlVec3 p) {
   return medium;
 }
 
-/* A point beside an area light. */
+/* A point next to an area light. */
 static vlVec3 beside(const vlWorld *world, const vlWorldLight *light) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   vlSurfacePoint point;
@@ -83,7 +84,7 @@ void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium) 
     vlVec3 p = vl_vec3(light->position[0], light->position[1], light->position[2]);
     medium[i] = VL_NONE;
     if (light->shape != VL_NONE) {
-      if (borders(&world->shapes.items[light->shape])) continue; /* it tells itself */
+      if (borders(&world->shapes.items[light->shape])) continue; /* its own interface defines the medium */
       if (i > 0 && world->lights.items[i - 1].shape == light->shape) {
         medium[i] = medium[i - 1];
         continue;

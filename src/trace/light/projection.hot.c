@@ -1,7 +1,7 @@
-/* trace/light/projection.hot.c: lights at a point that project an image along their axis (pbrt book 12.2.2). */
+/* trace/light/projection.hot.c: projection lights: a point that projects an image along its axis (pbrt book 12.2.2). */
 #include "trace/light/kinds.h"
 
-/* 1 where the image is in the direction d, at st of its unit square; else 0. */
+/* 1 where the image covers the direction d, at st of its unit square; else 0. */
 static float image_point(const vlWorldLight *light, vlVec3 d, vlVec2 *st) {
   vlVec3 local = vl_normalize(vl_light_local(light, d));
   *st = (vlVec2){0, 0};
@@ -11,7 +11,7 @@ static float image_point(const vlWorldLight *light, vlVec3 d, vlVec2 *st) {
   return 1.0f;
 }
 
-/* 1 - cosine of a cone about the image; 2, the whole sphere, where the light's frame is skewed. */
+/* 1 - cosine of a cone around the image; 2, the whole sphere, where the light's frame is skewed. */
 static float image_span(const vlWorldLight *light) {
   const float *m = light->corners;
   float length2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];

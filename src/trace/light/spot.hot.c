@@ -1,7 +1,8 @@
-/* trace/light/spot.hot.c: lights at a point that shine into a cone, whose edge falls off (pbrt book 12.2.1). */
+/* trace/light/spot.hot.c: spot lights: a point that emits into a cone with a smooth edge (pbrt book 12.2.1). */
 #include "trace/light/kinds.h"
 
-/* c: cosine with the axis. 1 inside of the inner cone, 0 outside of the outer one, between them the kind's own edge. */
+/* Falloff; c: cosine with the axis. 1 inside the inner cone, 0 outside the outer one, the light's own falloff between.
+ */
 static float edge(const vlWorldLight *light, float c) {
   float a = light->cos_end, b = light->cos_start;
   if (a == b) return c < a ? 0.0f : 1.0f;

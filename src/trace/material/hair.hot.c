@@ -1,7 +1,7 @@
 /* trace/material/hair.hot.c: the hair material's parameters over a run of lanes. */
 #include "trace/material/rows.h"
 
-/* sigma_a by which a mass of hairs shows a colour (Chiang et al. 2016, equation 9). */
+/* sigma_a that gives a volume of hair the reflectance (Chiang et al. 2016, equation 9). */
 static void from_reflectance(vlTextureRun *r, float (*rows)[VL_ROW_SIZE]) {
   vlShade *shade = &r->s->shade;
   for (uint32_t i = r->first; i < r->last; i++) {

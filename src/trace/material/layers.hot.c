@@ -1,9 +1,9 @@
-/* trace/material/layers.hot.c: parameters, over a run of lanes, of the materials with random walks between layers and
- * of those that let diffuse light through. */
+/* trace/material/layers.hot.c: parameters, over a run of lanes, of the layered materials (random walks) and of diffuse
+ * transmission. */
 #include "math/hash.h"
 #include "trace/material/rows.h"
 
-/* Random numbers of a hit's own: of the pixel, its sample and the ray. */
+/* A seed for each hit, from the pixel, its sample and the ray. */
 static void seeds(vlTextureRun *r) {
   const vlPaths *p = r->paths;
   for (uint32_t i = r->first; i < r->last; i++) {
@@ -22,7 +22,7 @@ void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
   vl_texture_float(r, l->g, rows[VL_L_G]);
   for (uint32_t i = r->first; i < r->last; i++) {
     rows[VL_L_METAL][i] = l->metal ? 1.0f : 0.0f;
-    rows[VL_L_THICKNESS][i] = vl_max(rows[VL_L_THICKNESS][i], 1.17549435e-38f); /* pbrt's least */
+    rows[VL_L_THICKNESS][i] = vl_max(rows[VL_L_THICKNESS][i], 1.17549435e-38f); /* pbrt's minimum */
     rows[VL_L_G][i] = vl_clamp(rows[VL_L_G][i], -0.999f, 0.999f);
     rows[VL_L_DEPTH][i] = (float)l->depth;
     rows[VL_L_WALKS][i] = (float)l->walks;
@@ -34,7 +34,7 @@ void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
     }
     vl_row_alpha(r, m, l->coat_u, shade->alpha_x);
     vl_row_alpha(r, m, l->coat_v, shade->alpha_y);
-    float inverse = 1.0f / m->eta_s; /* the metal lies in the coat's medium */
+    float inverse = 1.0f / m->eta_s; /* the metal's outside is the coat's medium */
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++) {
         shade->eta[c][i] *= inverse;

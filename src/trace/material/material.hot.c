@@ -1,14 +1,14 @@
-/* trace/material/material.hot.c: a run of lanes with one material: bump and normal maps, BSDF parameters from its
- * textures; then shading frames for all. */
+/* trace/material/material.hot.c: shading of a run of lanes with one material: bump and normal maps, BSDF parameters
+ * from textures; then shading frames for all lanes. */
 #include "trace/material/rows.h"
 
-/* ---- bump and normal maps: both turn the shading normal and dpdu ------------------------------------------------- */
+/* ---- bump and normal maps: both change the shading normal and dpdu ----------------------------------------------- */
 
 static vlVec3 facing(vlVec3 n, vlVec3 side) {
   return vl_dot(n, side) < 0.0f ? vl_neg(n) : n;
 }
 
-/* dndu and dndv of the interpolated normals of lane i's triangle: 0 without normals, without uv. */
+/* Computes dndu and dndv of the interpolated normals of lane i's triangle: 0 without normals or uv. */
 static void triangle_normal_slopes(vlTraceScratch *s, uint32_t i) {
   const vlCorners *c = &s->corners;
   vlSurface *f = &s->surface;
@@ -33,8 +33,9 @@ static void triangle_normal_slopes(vlTraceScratch *s, uint32_t i) {
   f->dn[3][i] = dv.x, f->dn[4][i] = dv.y, f->dn[5][i] = dv.z;
 }
 
-/* The surface p + h n: its slopes are dpdu + h' n + h dndu, and so with v; h' by differences (pbrt book 10.5.3). */
-static void bump(vlTextureRun *r, int32_t node) { /* VL_BUMP_ROWS rows of its own */
+/* Bump mapping: the surface p + h n has the derivatives dpdu + h' n + h dndu, and likewise in v; h' by finite
+ * differences (pbrt book 10.5.3). */
+static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
   vlSurface *f = &r->s->surface;
   float *h = vl_texture_row(r), *hu = vl_texture_row(r), *hv = vl_texture_row(r), *step = vl_texture_row(r);
   float *su = vl_texture_row(r), *sv = vl_texture_row(r), *x = vl_texture_row(r), *y = vl_texture_row(r),
@@ -98,8 +99,7 @@ static void metal(vlTextureRun *r, const vlWorldMaterial *m) {
     vl_rows_spectrum(r, m->k, shade->k);
     return;
   }
-  /* eta = 1, k = 2 sqrt(R / (1 - R)) reflects R straight on (pbrt book 9.3.6's convention of the conductor material).
-   */
+  /* eta = 1, k = 2 sqrt(R / (1 - R)) gives reflectance R at normal incidence (pbrt book 9.3.6's conductor material). */
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++) {
       float x = vl_clamp(shade->reflectance[c][i], 0.0f, 0.9999f);
@@ -177,10 +177,11 @@ void vl_parameters_principled(vlTextureRun *r, const vlWorldMaterial *m) {
 #define PARAMETERS(NAME, name) [VL_BSDF_##NAME] = vl_parameters_##name,
 static vlParametersFn *const parameters[] = {VL_BSDF_KINDS(PARAMETERS)};
 
-/* Each wavelength goes its own way: the hero alone is followed, with the weight of all four. */
+/* Dispersion: the directions depend on the wavelength. Only the hero wavelength is followed, with the weight of all
+ * four. */
 static void follow_hero(vlPaths *p, uint32_t first, uint32_t last) {
   for (uint32_t i = first; i < last; i++) {
-    /* That the hero is alone is told by equal wavelengths: weights may be zero for other reasons. */
+    /* Equal wavelengths mark a path with only the hero left: weights may be zero for other reasons. */
     bool alone = p->lambda[1][i] == p->lambda[0][i];
     p->beta[0][i] *= alone ? 1.0f : 4.0f;
     p->beta[1][i] = p->beta[2][i] = p->beta[3][i] = 0.0f;

@@ -1,5 +1,5 @@
-/* trace/material/principled.hot.c: the principled material's parameters over a run of lanes: its textures, its normal
- * maps, its tangent. */
+/* trace/material/principled.hot.c: the principled material's parameters over a run of lanes: textures, normal maps,
+ * tangent. */
 #include "world/material/principled.h"
 #include "trace/material/rows.h"
 
@@ -14,7 +14,7 @@ static void share(vlTextureRun *r, int32_t node, float *row) {
 
 /* ---- normals ----------------------------------------------------------------------------------------------------- */
 
-/* The mapped normal of a tangent-space image. Its green points along dpdv as glTF has it (up in the image). */
+/* The normal of a tangent-space normal map. Its green axis is along dpdv, as in glTF (up in the image). */
 static vlVec3 mapped(const vlTextureRun *r, const vlTextureNode *node, float scale, uint32_t i) {
   const vlSurface *f = &r->s->surface;
   vlTexel t = vl_texture_image(node, r->world->images.items[node->image].mipmap, vl_texture_point_of(r, node, i));
@@ -32,7 +32,8 @@ static bool is_map(const vlTextureRun *r, int32_t node) {
          r->world->images.items[r->world->nodes.items[node].image].mipmap->channels >= 3;
 }
 
-/* The coat has the vertices' normal unless it has a map of its own; kept in world space until frames stand. */
+/* The normals of base and coat. The coat has the interpolated vertex normal unless it has its own map; it stays in
+ * world space until the frames are computed. */
 static void normals(vlTextureRun *r, const vlWorldPrincipled *p) {
   vlSurface *f = &r->s->surface;
   float(*rows)[VL_ROW_SIZE] = r->s->shade.own;
@@ -52,7 +53,7 @@ static void normals(vlTextureRun *r, const vlWorldPrincipled *p) {
   }
 }
 
-/* dpdu turned about the normal: the tangent of the microfacets. */
+/* Rotates dpdu around the normal: the tangent of the anisotropic microfacets. */
 static void turn_tangent(vlTextureRun *r, const float *angle) {
   vlSurface *f = &r->s->surface;
   for (uint32_t i = r->first; i < r->last; i++) {
@@ -137,7 +138,7 @@ void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m) {
   }
 }
 
-/* The coat's normals of a run from world space into the shading frames. */
+/* Converts the coat's normals of a run from world space to the shading frames. */
 void vl_stage_coat_frames(const vlSurface *f, vlShade *shade, uint32_t first, uint32_t last) {
   float(*rows)[VL_ROW_SIZE] = shade->own;
   for (uint32_t i = first; i < last; i++) {

@@ -1,5 +1,5 @@
-/* trace/medium/medium.h: light on its way through one medium, lane by lane: where it scatters, how much of it passes.
- * The integral over paths with null collisions, sampled by the hero wavelength, weighed over all (pbrt book 14.2). */
+/* trace/medium/medium.h: free flights and transmittance in one medium, for one lane. The path integral with null
+ * collisions, sampled by the hero wavelength and weighted over all (pbrt book 14.2). */
 #ifndef TRACE_MEDIUM_MEDIUM_H
 #define TRACE_MEDIUM_MEDIUM_H
 
@@ -7,15 +7,16 @@
 #include "math/hash.h"
 #include "world/medium/medium_lookup.h"
 
-/* What a ray carries: throughput over the density of the path (sampled by channel `hero`), and the densities by which
- * the other channels (u), and light sampling (l) would have made it, over the same. */
+/* The state of a ray: beta, the throughput over the density of the path (sampled by channel `hero`); u, the densities
+ * with which the other channels would have sampled the path, and l, those with which light sampling would have, both
+ * over the same density. */
 typedef struct vlFlight {
   float beta[4], u[4], l[4], lambda[4];
-  int hero, channels;  /* 4 wavelengths, or 3 of RGB */
-  float first;         /* the first random number, -1: like the others */
-  uint32_t key, count; /* of random numbers: they depend on both alone */
+  int hero, channels;  /* channels: 4 wavelengths, or 3 in RGB mode */
+  float first;         /* the first random number; -1: hashed like the others */
+  uint32_t key, count; /* random numbers are hashes of both */
   float passed[3];     /* vlVolumeRows.passed */
-  float odds; /* of coming through by flight against by what light sampling does, one number for all channels */
+  float odds;          /* probability of passing by a flight, over that by light sampling; the same for all channels */
 } vlFlight;
 
 static inline float vl_flight_random(vlFlight *f) {
@@ -29,11 +30,12 @@ static inline float vl_flight_mean(const float v[4], int channels) {
 
 typedef enum vlFlightEnd { VL_FLIGHT_PASSED, VL_FLIGHT_SCATTERED, VL_FLIGHT_ENDED } vlFlightEnd;
 
-/* Along o + t d (d of unit length), t in [t0, t1]: passed, or scattered at *t. emission: adds what the medium gives out
- * to radiance. */
+/* A flight along o + t d (d of unit length), t in [t0, t1]: passed, or scattered at *t. emission: adds the medium's
+ * emission to radiance. */
 vlFlightEnd vl_fly(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, bool emission, vlFlight *f,
                    float radiance[4], float *t);
-/* Transmittance to f->beta; f->u, f->l: densities of flying through and of this, over that of this. */
+/* Multiplies f->beta by the transmittance; f->u: density of passing by a flight, f->l: of passing by this function,
+ * both over the latter. */
 void vl_attenuate(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, vlFlight *f);
 
 #endif

@@ -1,17 +1,17 @@
-/* trace/medium/medium.hot.c: free flights and transmittances (trace/medium/medium.h). Homogeneous media in closed form;
- * others by delta tracking (flights) and ratio tracking (transmittances) along their majorants: pbrt
- * book 11.2, 11.4, 14.2; null collisions as in Miller, Georgiev and Jarosz 2019. Media that only absorb are never a
- * matter of chance where they are homogeneous, and end no path where they are not. Scalar: flights diverge. */
+/* trace/medium/medium.hot.c: free flights and transmittance (trace/medium/medium.h). Homogeneous media in closed form;
+ * others by delta tracking (flights) and ratio tracking (transmittance) with their majorants: pbrt
+ * book 11.2, 11.4, 14.2; null collisions as in Miller, Georgiev and Jarosz 2019. Absorption without scattering is
+ * deterministic in homogeneous media, and ends no path in others. Scalar: flights diverge. */
 #include "trace/medium/medium.h"
 
-/* Collisions after which a flight is given up: a medium so far from its majorants that nothing else would end it. */
+/* The largest number of collisions of a flight; a bound for media whose majorants are far too large. */
 enum { MOST_COLLISIONS = 1 << 16 };
 
 static inline float exponential(float u) {
   return -vl_ln(1.0f - u);
 }
 
-/* exp(-(sigma_c - sigma_hero) length): how much more of the other channels passes. */
+/* exp(-(sigma_c - sigma_hero) length): transmittance relative to the hero. */
 static inline void shift(const float sigma[4], int hero, float length, float factor[4]) {
   for (int c = 0; c < 4; c++) factor[c] = vl_exp(-(sigma[c] - sigma[hero]) * length);
 }
@@ -20,8 +20,8 @@ static inline float largest(const float v[4]) {
   return vl_max(vl_max(v[0], v[1]), vl_max(v[2], v[3]));
 }
 
-/* Absorption by channel of linear sRGB over a length: the path's whole way so far decides how much of each wavelength
- * is left, T = sum_i share_i(lambda) passed_i, so that pieces of a way add up to what it would be in one. */
+/* Absorption by channel of linear sRGB over a length. The transmittance of a wavelength is T = sum_i share_i(lambda)
+ * passed_i over the whole path so far, so that the product over parts of a path is that of the whole. */
 static void absorb_by_channel(const vlWorldMedium *m, float length, vlFlight *f) {
   float left[3];
   if (!m->by_channel) return;
@@ -41,7 +41,7 @@ static vlFlightEnd fly_homogeneous(const vlWorldMedium *m, float t0, float t1, b
   float sigma[4], length = vl_min(t1 - t0, 1e30f), passes[4], factor[4];
   int h = f->hero;
   for (int c = 0; c < 4; c++) sigma[c] = k.a[c] + k.s[c], passes[c] = vl_exp(-sigma[c] * length);
-  if (emission && m->emits) { /* all that is given out on the way, whether or not the path goes so far */
+  if (emission && m->emits) { /* emission of the whole segment, whether or not the flight scatters before its end */
     float inv = 1.0f / vl_flight_mean(f->u, f->channels);
     for (int c = 0; c < 4; c++)
       if (sigma[c] > 0.0f) radiance[c] += f->beta[c] * k.le[c] * k.a[c] / sigma[c] * (1.0f - passes[c]) * inv;
@@ -70,7 +70,7 @@ static vlFlightEnd fly_homogeneous(const vlWorldMedium *m, float t0, float t1, b
   for (int c = 0; c < 4; c++) {
     f->beta[c] *= factor[c];
     f->u[c] *= factor[c];
-    f->l[c] /= passes[h]; /* light sampling takes the transmittance for granted */
+    f->l[c] /= passes[h]; /* light sampling uses the expected transmittance */
   }
   return VL_FLIGHT_PASSED;
 }
@@ -87,13 +87,13 @@ static void attenuate_homogeneous(const vlWorldMedium *m, float t0, float t1, vl
   if (m->scatters) f->odds *= vl_exp(-m->extinction * length);
 }
 
-/* ---- the others -------------------------------------------------------------------------------------------------- */
+/* ---- heterogeneous ----------------------------------------------------------------------------------------------- */
 
-/* Along the majorants until the next collision. */
+/* The state of tracking along the majorants. */
 typedef struct Tracking {
   vlMajorantWalk walk;
-  float unit[4];       /* majorant coefficients where the walk's majorant is 1 */
-  float t, end, depth; /* here, end of this cell, optical depth (of the hero) to the next collision */
+  float unit[4];       /* majorant coefficients for a majorant of 1 */
+  float t, end, depth; /* position, end of this cell, optical depth (of the hero) to the next collision */
   float majorant[4];   /* in this cell */
   uint32_t collisions;
 } Tracking;
@@ -105,7 +105,8 @@ static void pass(const vlWorldMedium *m, const float majorant[4], float length, 
   for (int c = 0; c < 4; c++) f->beta[c] *= factor[c], f->u[c] *= factor[c], f->l[c] *= factor[c];
 }
 
-/* The share of null collisions is the same for all channels but in RGB grids, where it is left out of the odds. */
+/* Factor of the odds at a null collision. The null probability is the same for all channels except in RGB grids, where
+ * it is left out of the odds. */
 static inline float null_odds(const vlWorldMedium *m, float none, float majorant) {
   return m->own_sigma ? 1.0f : none / majorant;
 }
@@ -120,7 +121,7 @@ static bool start_tracking(const vlWorldMedium *m, const vlMediumLight *whole, v
   return true;
 }
 
-/* false: the end of the way is reached. */
+/* Moves to the next collision; false: the end of the segment is reached. */
 static bool next_collision(const vlWorldMedium *m, vlFlight *f, Tracking *k) {
   for (;;) {
     float most = k->majorant[f->hero], length = k->end - k->t;
@@ -184,7 +185,7 @@ static vlFlightEnd sample_heterogeneous(const vlWorldMedium *m, vlVec3 o, vlVec3
       *t = k.t;
       return largest(f->beta) > 0.0f ? VL_FLIGHT_SCATTERED : VL_FLIGHT_ENDED;
     }
-    if (!(none[h] > 0.0f)) return VL_FLIGHT_ENDED; /* only rounding comes here */
+    if (!(none[h] > 0.0f)) return VL_FLIGHT_ENDED; /* only by rounding */
     f->odds *= null_odds(m, none[h], k.majorant[h]);
     for (int c = 0; c < 4; c++) {
       f->beta[c] *= none[c] / none[h];
@@ -223,7 +224,7 @@ static void attenuate_heterogeneous(const vlWorldMedium *m, vlVec3 o, vlVec3 d, 
   }
 }
 
-/* ---- any --------------------------------------------------------------------------------------------------------- */
+/* ---- any medium -------------------------------------------------------------------------------------------------- */
 
 vlFlightEnd vl_fly(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, bool emission, vlFlight *f,
                    float radiance[4], float *t) {

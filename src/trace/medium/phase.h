@@ -5,13 +5,13 @@
 
 #include "math/warp.h"
 
-/* cosine: between the directions of flight before and after. Per steradian. */
+/* Value per steradian; cosine: of the angle between the directions of flight before and after. */
 static inline float vl_phase(float g, float cosine) {
   float denominator = vl_max(1.0f + g * g - 2.0f * g * cosine, 1e-12f);
   return VL_INV_4PI * (1.0f - g * g) / (denominator * __builtin_sqrtf(denominator));
 }
 
-/* Direction of flight after; d: before, of unit length. */
+/* Samples the direction of flight after scattering; d: before, of unit length. */
 static inline vlVec3 vl_phase_sample(float g, vlVec3 d, float u, float v) {
   float square = (1.0f - g * g) / (1.0f - g + 2.0f * g * u);
   float near = 1.0f - 2.0f * u, cosine = -near + 1.5f * g * (1.0f - near * near); /* first order in g */

@@ -1,4 +1,4 @@
-/* trace/medium/volume.h: what the files of the tracer through media share: volume.hot.c and volume_shadow.hot.c. */
+/* trace/medium/volume.h: declarations shared by the files of the volumetric path tracer and the two-way tracers. */
 #ifndef TRACE_MEDIUM_VOLUME_H
 #define TRACE_MEDIUM_VOLUME_H
 
@@ -6,9 +6,9 @@
 #include "trace/stages.h"
 
 enum { VL_KEY_FLIGHT = 0, VL_KEY_SHADOW = 1, VL_KEY_HERO = 2, VL_KEY_PROBE = 3 };
-/* What happens to a ray: vlVolumeScratch.event. */
+/* The end of a ray: vlVolumeScratch.event. */
 enum { VL_ON_SURFACE, VL_IN_SKY, VL_IN_MEDIUM, VL_AT_END };
-/* Odds that weights can be worked out from. */
+/* Odds bounded above 0, so that weights are finite. */
 static inline float vl_some_odds(float odds) {
   return vl_max(odds, 1e-20f);
 }
@@ -17,15 +17,15 @@ static inline bool vl_volume_rgb(const vlTracing *t) {
   return t->world->def.color == VL_COLOR_RGB;
 }
 
-/* Random numbers that the sampler does not give. */
+/* The key of random numbers that do not come from the sampler. */
 static inline uint32_t vl_volume_key(const vlTracing *t, const vlPaths *p, uint32_t i, uint32_t depth,
                                      uint32_t purpose) {
   uint32_t pixel = vl_hash3((uint32_t)p->px[i], (uint32_t)p->py[i], p->index[i]);
   return vl_hash3(pixel, t->def->sampler->seed, 4 * depth + purpose);
 }
 
-/* The channel that flights are sampled by: the hero wavelength, which is chance enough; of RGB any, one for a path. Of
- * light's paths any, too: where they meet the eye's, neither's choice may tell of the other's. */
+/* The channel that samples flights: for camera paths the hero wavelength, which is random already; in RGB mode, and for
+ * light paths, one chosen at random per path. Where light paths meet camera paths, the choices must be independent. */
 static inline int vl_volume_hero(const vlTracing *t, const vlPaths *p, uint32_t i) {
   if (!vl_volume_rgb(t)) return t->from_light ? (int)(vl_volume_key(t, p, i, 0, VL_KEY_HERO) % 4) : 0;
   return (int)(vl_volume_key(t, p, i, 0, VL_KEY_HERO) % 3);
@@ -54,7 +54,7 @@ static inline void vl_volume_copy(const vlVolumeRows *a, uint32_t i, vlVolumeRow
   b->medium[k] = a->medium[i];
 }
 
-/* The medium beyond a surface in direction w. */
+/* The medium on the side of the surface to which w points. */
 static inline uint32_t vl_medium_beyond(const vlWorldShape *s, vlVec3 g, vlVec3 w, uint32_t here) {
   if (s->inside == s->outside) return here;
   return vl_dot(w, g) > 0.0f ? s->outside : s->inside;
@@ -64,32 +64,33 @@ static inline bool vl_is_interface(const vlWorld *world, uint32_t shape) {
   return world->materials.items[world->shapes.items[shape].material].kind == VL_MATERIAL_INTERFACE;
 }
 
-/* The n rays of a through media and interfaces to what happens to them; depth: of it; emission: adds what media on the
- * way give out. Densities in volume.a; origins stay those of the last scattering. */
+/* Traces the n rays of a through media and interfaces to their events. depth: of the bounce; emission: adds the
+ * emission of the media crossed. Densities go to volume.a; origins remain those of the last scattering. */
 void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission);
 void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n);
-/* beta is the path's weight from here on; the densities' mean is 1. */
+/* Normalises: the mean of the densities becomes 1, and beta the path's weight. */
 void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i);
-/* The lanes of a that scatter in media, normalised, at their places, to volume.scattered and .c; the surface's point is
- * theirs, for light sampling. s->order: which lanes of a. Returns how many. */
+/* Copies the lanes of a that scatter in media, normalised, at their points, to volume.scattered and .c; s->surface gets
+ * these points for light sampling. s->order: the lanes of a. Returns their number. */
 uint32_t vl_volume_gather(vlTracing *t, uint32_t n);
-/* New directions by the phase function, roulette as on surfaces. Returns how many go on; s->order names them. */
+/* Samples new directions by the phase function; Russian roulette as on surfaces. Returns the number of paths that go
+ * on; s->order names them. */
 uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
-/* The n paths of a set out: from these media (by lane), or null: from the camera. */
+/* Initialises the media of the n paths of a: `medium` by lane, or null: the camera's. */
 void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium);
-/* volume.b of the n sorted lanes; and, after scattering on surfaces, volume.a of the `count` lanes s->order. Nothing
- * where there are neither media nor bodies. */
+/* Copies volume.a to volume.b for the n sorted lanes; and, after scattering on surfaces, back to volume.a for the
+ * `count` lanes s->order. Does nothing where the world has neither media nor subsurface materials. */
 void vl_volume_sorted(vlTracing *t, uint32_t n);
 void vl_volume_go_on(vlTracing *t, uint32_t count);
-/* Paths order[k] of volume.scattered to the end of the n of a. Returns how many there are then. */
+/* Appends the paths order[k] of volume.scattered to the n paths of a. Returns their new number. */
 uint32_t vl_volume_append(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n);
-/* Shadow ray k's way: transmittance to beta, densities over that of light sampling. */
+/* The flight of shadow ray k: beta has the transmittance; densities are over that of light sampling. */
 vlFlight vl_volume_shadow_flight(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t k, uint32_t depth);
-/* Lane i's light sample as shadow ray `count`, from o; value: what the scattering passes on, pdf its density. Returns
- * the next count. */
+/* Adds lane i's light sample as shadow ray `count`, from o; value and pdf: of the scattering. Returns the next count.
+ */
 uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,
                                const float value[4], float pdf, uint32_t medium, uint32_t count);
-/* Adds what arrives along them. */
+/* Traces these shadow rays and adds the radiance that arrives. */
 void vl_volume_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth);
 
 #endif

@@ -1,17 +1,17 @@
-/* trace/medium/volume.hot.c: path tracing through participating media: the path tracer's stages for what happens on
- * surfaces, and between them flights (medium.hot.c) that scatter in media or cross interfaces (pbrt book 14.2.3). All
- * lanes of a batch are at the same scattering of their paths, in a medium or on a surface:
+/* trace/medium/volume.hot.c: path tracing through participating media. Surfaces use the path tracer's stages; between
+ * them are flights (medium.hot.c) that scatter in media or cross interfaces (pbrt book 14.2.3). All lanes of a batch
+ * are at the same depth, in a medium or on a surface:
  *
  *   a: rays -> travel -> emission -> those that scatter in media: light samples, phase function -> volume.scattered
  *                                 -> those on surfaces: as in path.hot.c, b -> a
  *   a <- both
  *
- * Weights: beta over the mean of the rescaled densities u (of the path as it was sampled) and l (as light sampling
- * would have had its last piece). */
+ * The weight is beta over the mean of the rescaled densities u (of the path as sampled) and l (as light sampling would
+ * have sampled its last segment). */
 #include "trace/medium/volume.h"
 #include "trace/medium/phase.h"
 
-/* ---- what a lane carries ----------------------------------------------------------------------------------------- */
+/* ---- weights and densities --------------------------------------------------------------------------------------- */
 
 static void store_flight(vlPaths *p, vlVolumeRows *v, uint32_t i, const vlFlight *f) {
   for (int c = 0; c < 4; c++) {
@@ -30,7 +30,7 @@ void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *o
   for (uint32_t k = 0; k < n; k++) b->medium[k] = a->medium[order[k]];
 }
 
-/* A path that follows its hero alone is judged by that one's density, if that is what its flights are sampled by. */
+/* A path with only the hero wavelength uses the hero's density, if the hero samples its flights. */
 void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i) {
   float u[4];
   bool alone = !t->from_light && !vl_volume_rgb(t) && p->lambda[1][i] == p->lambda[0][i];
@@ -44,8 +44,8 @@ void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32
 
 /* ---- travel ------------------------------------------------------------------------------------------------------ */
 
-/* One lane of a, from medium to medium through interfaces, to what happens to it. Its origin stays that of its last
- * scattering, which densities of light sampling ask for. */
+/* Traces one lane of a through media and interfaces to its event. Its origin remains that of its last scattering, which
+ * the densities of light sampling need. */
 static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission, const float *t_min_row,
                         const float *t_max_row) {
   const vlWorld *world = t->world;
@@ -57,7 +57,7 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission,
   vlFlight f = vl_volume_flight(t, p, &v->a, i, depth, VL_KEY_FLIGHT);
   f.first = t->s->shade.u0[i];
   uint32_t medium = v->a.medium[i], event = VL_AT_END;
-  for (int step = 0; step < 1024; step++) { /* no ray needs so many */
+  for (int step = 0; step < 1024; step++) { /* a bound; no ray crosses so many interfaces */
     bool hit = h->shape[i] != VL_NONE;
     bool passes = hit && vl_is_interface(world, h->shape[i]);
     vlPoint at = {.t = t_max_row ? t_max_row[i] : VL_INFINITY};
@@ -100,9 +100,9 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
   for (uint32_t i = 0; camera && i < n; i++) t->batch->alpha[i] = s->volume.event[i] == VL_IN_SKY ? 0.0f : 1.0f;
 }
 
-/* ---- light that rays run into ------------------------------------------------------------------------------------ */
+/* ---- lights that rays hit ---------------------------------------------------------------------------------------- */
 
-/* light_pdf: of light sampling; 0 where none competes. */
+/* light_pdf: of light sampling; 0 where it does not compete. */
 static void add_light(vlTracing *t, uint32_t i, const float radiance[4], float light_pdf) {
   const vlPaths *p = &t->s->a;
   const vlVolumeRows *v = &t->s->volume.a;
@@ -164,7 +164,7 @@ uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint3
   for (uint32_t i = 0; i < n; i++) {
     float most = vl_max(vl_max(p->beta[0][i], p->beta[1][i]), vl_max(p->beta[2][i], p->beta[3][i]));
     float sum = p->beta[0][i] + p->beta[1][i] + p->beta[2][i] + p->beta[3][i];
-    if (sum != sum) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film counts it */
+    if (sum != sum) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */
     float carried = most * p->eta_scale[i];
     float survive = depth > 1 && carried < 1.0f ? carried : 1.0f;
     if (!(most > 0.0f) || !(sh->u0[i] < survive)) continue;
@@ -202,13 +202,13 @@ uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
     p->cone[i] = vl_abs(p->cone[i] + p->spread[i] * distance), p->spread[i] = t->def->pixel_spread;
     p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
     s->surface.px[i] = p->ox[i], s->surface.py[i] = p->oy[i], s->surface.pz[i] = p->oz[i];
-    s->surface.nx[i] = s->surface.ny[i] = s->surface.nz[i] = 0.0f; /* light comes from everywhere */
+    s->surface.nx[i] = s->surface.ny[i] = s->surface.nz[i] = 0.0f; /* no normal: all directions count equally */
     s->surface.no_cosine[i] = 1.0f;
   }
   return count;
 }
 
-/* The lanes of a that scatter in media, to their next rays in volume.scattered. Returns how many go on; s->order names
+/* Scatters the lanes of a in media; the new rays go to volume.scattered. Returns the number that go on; s->order names
  * them. */
 static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
   uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, count = vl_volume_gather(t, n);
@@ -233,7 +233,7 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     const float value[4] = {sh->value[0][i], sh->value[1][i], sh->value[2][i], sh->value[3][i]};
     float sum = value[0] + value[1] + value[2] + value[3];
     if (!(sum > 0.0f) && sum == sum) continue;
-    /* What goes into a body is looked for where it leaves. */
+    /* Light samples through a subsurface material are taken at the exit (subsurface.hot.c). */
     bool into = t->world->has_subsurface && t->world->materials.items[s->hits_b.material[i]].subsurface &&
                 (sh->wi[2][i] < 0.0f) != (sh->wo[2][i] < 0.0f);
     if (into) continue;

@@ -1,5 +1,5 @@
-/* trace/medium/volume_shadow.hot.c: shadow rays through participating media and interfaces: what arrives of the light
- * samples, weighed against what scattering alone would have found (pbrt book 14.2.3). */
+/* trace/medium/volume_shadow.hot.c: shadow rays through participating media and interfaces: the radiance of light
+ * samples, weighted against that found by scattering (pbrt book 14.2.3). */
 #include "trace/medium/volume.h"
 
 uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,
@@ -9,7 +9,7 @@ uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRow
   vlVolumeScratch *v = &t->s->volume;
   vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
   float length = VL_INFINITY;
-  if (!l->distant[i]) { /* of unit length: interfaces on the way are met at distances */
+  if (!l->distant[i]) { /* unit length: distances to interfaces are needed */
     vlVec3 to = vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
     length = vl_length(to);
     w = vl_normalize(to);
@@ -30,7 +30,7 @@ uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRow
   return count + 1;
 }
 
-/* Transmittance of shadow ray k to f->beta, and its densities: through media and interfaces. */
+/* Multiplies f->beta by the transmittance of shadow ray k through media and interfaces, and updates its densities. */
 static void pass_media(vlTracing *t, uint32_t k, vlFlight *f) {
   const vlWorld *world = t->world;
   const vlShadowRays *q = &t->s->shadow;
@@ -47,7 +47,7 @@ static void pass_media(vlTracing *t, uint32_t k, vlFlight *f) {
       vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t_hit);
       t->batch->shadow_rays++;
     }
-    if (shape != VL_NONE && !vl_is_interface(world, shape)) break; /* cannot be: it is not occluded */
+    if (shape != VL_NONE && !vl_is_interface(world, shape)) break; /* cannot happen: the ray is not occluded */
     vlPoint at = {.t = q->t_max[k]};
     if (shape != VL_NONE) at = vl_point_at_time(world, q->time[k], o, d, shape, prim, instance, t_hit);
     if (medium != VL_NONE) vl_attenuate(&world->media.items[medium], o, d, t_min, at.t, f);

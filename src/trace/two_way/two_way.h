@@ -93,7 +93,7 @@ typedef struct vlLightBatch {
   void (*splat)(void *user, uint32_t n, const float *x, const float *y, float *const value[4], float *const lambda[4],
                 float *const inv_pdf[4]);
   void (*store)(void *user, uint32_t n, const vlPhoton *photons);
-  uint64_t bounce_rays, shadow_rays; /* added to */
+  uint64_t bounce_rays, shadow_rays; /* the batch's counts are added */
 } vlLightBatch;
 
 /* Cumulated probabilities of starting a light path, by power; light_count + 1 elements. False: no light emits. */

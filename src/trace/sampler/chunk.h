@@ -1,5 +1,5 @@
-/* trace/sampler/chunk.h: what the kinds of samplers share: batches are walked in chunks that fit the first-level cache;
- * each lane has a key (hash of seed, dimension and pixel) and an index within its set. */
+/* trace/sampler/chunk.h: functions shared by the kinds of samplers. Batches are processed in chunks that fit the L1
+ * cache; each lane has a key (hash of seed, dimension and pixel) and an index within its set. */
 #ifndef TRACE_SAMPLER_CHUNK_H
 #define TRACE_SAMPLER_CHUNK_H
 
@@ -17,7 +17,7 @@ typedef struct vlSamplerChunk {
   _Alignas(64) uint32_t index[VL_SAMPLER_CHUNK]; /* below the sampler's set */
 } vlSamplerChunk;
 
-/* Seed of a dimension; salt tells several seeds of one dimension apart. */
+/* Seed of a dimension; salt distinguishes several seeds of one dimension. */
 static inline uint32_t vl_dimension_seed(const vlSampler *s, uint32_t dimension, uint32_t salt) {
   return vl_hash3(s->seed, dimension, salt);
 }
@@ -39,7 +39,7 @@ static inline uint32_t vl_largest(uint32_t n, const uint32_t *a) {
   return largest;
 }
 
-/* Keys and indices; an index past the set's end goes on in another set, with another key. */
+/* Sets keys and indices. An index past the set's end belongs to another set, with another key. */
 static inline void vl_sampler_chunk(const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py,
                                     const uint32_t *index, uint32_t seed, vlSamplerChunk *chunk) {
   chunk->n = n;
@@ -74,7 +74,8 @@ static inline void vl_permute_lanes(uint32_t n, vlPermutation p, const uint32_t 
   }
 }
 
-/* Number t of cells of width 1/count with b jitter bits below, as a float in [0, 1). */
+/* Converts t, a cell's number followed by jitter bits, to a float in [0, 1); scale: 2^-(jitter bits) over the number of
+ * cells. */
 static inline float vl_cell_float(uint32_t t, float scale) {
   float u = (float)(int32_t)t * scale;
   return u < VL_ONE_MINUS_EPSILON ? u : VL_ONE_MINUS_EPSILON;

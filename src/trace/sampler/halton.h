@@ -1,18 +1,18 @@
-/* trace/sampler/halton.h: Halton's points, dimension d in the d-th prime, Owen-scrambled for each pixel and dimension:
- * each digit goes through a random permutation that hangs on the digits before it. Unscrambled, large bases draw lines
- * (pairs like 17, 19); this does not, in any pair. pbrt book 8.6 has the background. */
+/* trace/sampler/halton.h: Halton points, dimension d in the d-th prime, Owen-scrambled for each pixel and dimension:
+ * each digit is permuted by a random permutation that depends on the digits before it. Without scrambling, pairs of
+ * large bases (17, 19) are strongly correlated. pbrt book 8.6 has the background. */
 #ifndef TRACE_SAMPLER_HALTON_H
 #define TRACE_SAMPLER_HALTON_H
 
 #include "trace/sampler/chunk.h"
 
-/* [0, range) by a 16-bit number, range < 2^16. */
+/* Maps a 16-bit random number to [0, range), range < 2^16. */
 static inline uint32_t vl_scale16(uint32_t bits16, uint32_t range) {
   return bits16 * range >> 16;
 }
 
-/* Random bijection of [0, b), b prime, by hash h: affine, then swap-or-not (Hoang, Morris and Rogaway 2012), affine.
- * Affine maps alone have the pairwise statistics that make the variance small, but would leave lattices. */
+/* Random bijection of [0, b), b prime, from hash h: affine, then swap-or-not (Hoang, Morris and Rogaway 2012), affine.
+ * Affine maps alone have the pairwise statistics for a small variance, but would leave lattices. */
 static inline uint32_t vl_scramble_digit(uint32_t digit, uint32_t b, float inverse, uint32_t h) {
   uint32_t g = vl_hash(h + 0x632be5abu);
   uint32_t a = 1 + vl_scale16(h >> 16, b - 1), c = vl_scale16(h & 0xffffu, b), k = vl_scale16(g >> 16, b);
@@ -38,7 +38,7 @@ VL_SAMPLER_INLINE void vl_halton_1d(const vlSampler *s, const vlSamplerChunk *c,
   for (uint32_t i = 0; i < c->n; i++) rest[i] = c->index[i];
   for (uint32_t i = 0; i < c->n; i++) hash[i] = c->key[i];
   for (uint32_t i = 0; i < c->n; i++) sum[i] = 0.0f;
-  /* As many digits as the largest index has; all behind them are random: one number. */
+  /* As many digits as the largest index has; all further digits are one random number. */
   for (uint32_t left = s->set - 1; left > 0; left /= b) {
     scale *= inverse;
     /* must vectorise */

@@ -1,8 +1,8 @@
-/* trace/sampler/sampler.c: what a sampler works out once: how spp samples are laid out in cells, how many bits an index
- * has. */
+/* trace/sampler/sampler.c: the constants of a sampler: the layout of spp samples in cells, and the number of bits of an
+ * index. */
 #include "trace/sampler/sampler.h"
 
-static uint32_t bits_for(uint32_t count) { /* least b with 2^b >= count */
+static uint32_t bits_for(uint32_t count) { /* smallest b with 2^b >= count */
   return count > 1 ? 32u - (uint32_t)__builtin_clz(count - 1) : 0;
 }
 
@@ -17,8 +17,8 @@ void vl_sampler_init(vlSampler *sampler, vlSamplerKind kind, uint32_t seed, uint
   enum { SET_MAX = 1 << 20 };
   uint32_t count = spp ? spp : 1;
   uint32_t set = count < SET_MAX ? count : SET_MAX, root = floor_sqrt(set);
-  /* Rows and columns: a factorisation not flatter than 1:2 where there is one; else about sqrt(set) rows, of which the
-   * last are shorter by one cell. */
+  /* Rows and columns: a factorisation with an aspect ratio of at most 2, if there is one; else about sqrt(set) rows,
+   * the last of which are shorter by one cell. */
   uint32_t rows = root;
   while (rows > 1 && set % rows != 0) rows--;
   if (set / rows > 2 * rows) rows = set - root * root > root ? root + 1 : root;

@@ -1,22 +1,22 @@
-/* trace/sampler/sampler.h: the sampler of the lecture: numbers in [0, 1) that depend on (seed, pixel, sample index,
- * dimension) alone. Batches: one call fills one dimension (or pair) for n paths. Data flows (pixel, index) -> u.
+/* trace/sampler/sampler.h: samplers: numbers in [0, 1) that depend only on (seed, pixel, sample index, dimension).
+ * Batches: one call fills one dimension (or pair) for n paths. Data flows (pixel, index) -> u.
  *
- * Dimensions are counted in numbers: a 1-D call at dimension d uses d, a 2-D call d and d+1. A dimension is always
- * asked for in the same way (1-D or 2-D).
+ * Dimensions count numbers: a 1-D call at dimension d uses d, a 2-D call d and d+1. A dimension is always sampled in
+ * the same way (1-D or 2-D).
  *
  *   independent      hashed numbers
- *   regular          centres of equal cells: the one kind that is not random; its order is, so that dimensions mix
+ *   regular          centres of equal cells; only their order is random, so that dimensions are not correlated
  *   stratified       one number in each of spp equal cells ("jittered")
  *   nrooks           one in each of spp rows and of spp columns
  *   multi-jittered   one in each cell, row and column (Kensler 2013)
  *   hammersley       (i/n, radical inverse), jittered in x, digits scrambled in y
  *   halton           radical inverses in the primes, Owen-scrambled for each pixel
  *   sobol            Sobol' pairs, Owen-scrambled and shuffled for each pixel and pair (Burley 2020)
- *   zsobol           the same along the Morton curve of the pixels, so that the error of neighbours differs (Ahmed and
+ *   zsobol           the same along the Morton curve of the pixels, so that the errors of neighbours differ (Ahmed and
  *                    Wonka 2020): blue noise over the image
  *
- * Stratified kinds cut exactly spp cells, whatever spp is. An index of spp or above starts a new, independent set
- * (independent, sobol: goes on in the sequence). */
+ * Stratified kinds make exactly spp cells, for any spp. An index of spp or above starts a new, independent set
+ * (independent, sobol: continues the sequence). */
 #ifndef TRACE_SAMPLER_SAMPLER_H
 #define TRACE_SAMPLER_SAMPLER_H
 
@@ -26,17 +26,17 @@
 typedef struct vlSampler {
   vlSamplerKind kind;
   uint32_t seed;
-  uint32_t spp;            /* samples a pixel shall get in the end */
+  uint32_t spp;            /* total samples per pixel */
   uint32_t width, height;  /* whole image */
   uint32_t set;            /* samples in a set of the stratified kinds: spp, at most 2^20 */
   uint32_t log2_spp;       /* rounded up; zsobol: index bits below the Morton code */
   uint32_t morton_bits;    /* of the image's Morton codes */
   uint32_t grid_x, grid_y; /* rows of grid_x or (the last grid_y - wide) of grid_x - 1 cells: set cells in all */
-  uint32_t wide;           /* how many rows have grid_x cells */
+  uint32_t wide;           /* number of rows with grid_x cells */
   uint32_t jitter_bits;    /* random bits below a cell's number; cell and jitter together are exact in a float */
 } vlSampler;
 
-/* Any spp >= 1 works with every kind (0 counts as 1). Pixels up to 65536 x 65536. */
+/* Any spp >= 1 is valid for every kind (0 counts as 1). Images up to 65536 x 65536 pixels. */
 void vl_sampler_init(vlSampler *sampler, vlSamplerKind kind, uint32_t seed, uint32_t width, uint32_t height,
                      uint32_t spp);
 

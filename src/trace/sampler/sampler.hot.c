@@ -1,5 +1,5 @@
-/* trace/sampler/sampler.hot.c: all kinds of samplers in batches. Compiled once per instruction set. The kind is chosen
- * once per batch; the kinds that need several loops walk in chunks. */
+/* trace/sampler/sampler.hot.c: all kinds of samplers in batches. Compiled once per instruction set. The kind is
+ * selected once per batch; kinds with several loops work in chunks. */
 #include "trace/sampler/cells.h"
 #include "trace/sampler/halton.h"
 #include "trace/sampler/sobol.h"

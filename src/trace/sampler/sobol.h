@@ -1,5 +1,5 @@
-/* trace/sampler/sobol.h: Sobol's first two dimensions for each pair ("padding"), index shuffled and both numbers
- * Owen-scrambled: for each pixel anew (sobol), or along the Morton curve of the whole image (zsobol).
+/* trace/sampler/sobol.h: the first two Sobol' dimensions for each pair ("padding"), with the index shuffled and both
+ * numbers Owen-scrambled: independently for each pixel (sobol), or along the Morton curve of the whole image (zsobol).
  *
  * Bit reversals are most of the cost, so they are merged: with r = reverse(index), L = the reversed scrambles,
  *   shuffled index  j = reverse(L(r)),   first number  reverse(L(j)),   second  reverse(L(pascal j)). */
@@ -35,9 +35,9 @@ VL_SAMPLER_INLINE void vl_sobol_pixel(const int pair, const vlSampler *s, uint32
   }
 }
 
-/* i = morton(pixel) 2^s + sample. Its low 32 bits go through the shuffle; what is above them (images and sample
- * counts too large), and indices past 2^s, choose other scrambles. `wide`: whether there is such a thing in the batch:
- * the hash of 0 is 0, so that both forms give the same bits. */
+/* i = morton(pixel) 2^s + sample. Its low 32 bits are shuffled; the bits above them (very large images and sample
+ * counts), and indices past 2^s, select other scrambles. `wide`: whether the batch has such an index. The hash of 0 is
+ * 0, so that both forms give the same bits. */
 VL_SAMPLER_INLINE void vl_zsobol_lanes(const int pair, const int wide, vlSobolSeeds seed, uint32_t shift, uint32_t n,
                                        const int32_t *px, const int32_t *py, const uint32_t *index, float *u,
                                        float *v) {

@@ -1,12 +1,12 @@
-/* trace/surface/hits.hot.c: rays to what they meet: ids, interfaces passed, mixed materials decided, and the light that
- * the rays run into, weighed against that of light sampling (pbrt book 13.4). */
+/* trace/surface/hits.hot.c: closest hits of rays: ids, passage through interfaces, mixed materials; and the radiance of
+ * lights that rays hit, weighted against light sampling (pbrt book 13.4). */
 #include "math/hash.h"
 #include "trace/stages.h"
 #include "world/accel/local_ray.h"
 
-/* ---- light that rays run into ------------------------------------------------------------------------------------ */
+/* ---- lights that rays hit ---------------------------------------------------------------------------------------- */
 
-/* What light sampling could have found, too, counts in part. */
+/* Adds the light's radiance with the weight of multiple importance sampling. */
 static void add_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met) {
   float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met->radiance[c] * weight;
@@ -19,7 +19,6 @@ static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i) {
   }
 }
 
-/* The point that a path's ray meets. */
 vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
   return vl_point_at_time(world, vl_path_time(p, i), o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
@@ -30,7 +29,6 @@ static void add_emission(vlTracing *t, const vlPaths *p, const vlHits *h, uint32
   if (vl_hit_emission(t->world, p, h, i, &met)) add_hit_light(t, p, i, &met);
 }
 
-/* What the n rays of a run into: the sky where nothing is hit, or a surface that emits light. */
 void vl_stage_emission(vlTracing *t, uint32_t n) {
   const vlHits *h = &t->s->hits_a;
   for (uint32_t i = 0; i < n; i++) {
@@ -43,7 +41,7 @@ void vl_stage_emission(vlTracing *t, uint32_t n) {
 
 /* ---- hits -------------------------------------------------------------------------------------------------------- */
 
-/* What the corners of the triangle that a path's ray meets carry there; unused by other shapes. */
+/* Vertex attributes (uv sets, colours) at the hit of a path's ray; not used for other shapes than triangles. */
 static vlTextureCorner hit_corner(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   vlTextureCorner corner = {&world->shapes.items[h->shape[i]], h->prim[i], {1, 0, 0}};
   if (corner.shape->kind != VL_SHAPE_TRIANGLES) return corner;
@@ -55,11 +53,11 @@ static vlTextureCorner hit_corner(const vlWorld *world, const vlPaths *p, const 
   return corner;
 }
 
-/* The material a hit really has: mixes are decided by a hash of the ray, so that the choice needs no sampler dimension.
- */
+/* Mixed materials are decided by a hash of the ray, so that the choice needs no sampler dimension. */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   uint32_t material = world->shapes.items[h->shape[i]].material;
-  while (world->materials.items[material].kind == VL_MATERIAL_MIX) { /* parts come before: it ends */
+  while (world->materials.items[material].kind ==
+         VL_MATERIAL_MIX) { /* parts have smaller indices, so that the loop ends */
     const vlWorldMaterial *m = &world->materials.items[material];
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = vl_hit_point(world, p, h, i);
@@ -98,14 +96,14 @@ void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, fl
   t->batch->bounce_rays++;
 }
 
-/* Interface surfaces bend nothing: the same ray goes on behind them. It keeps its start, which the weights of multiple
- * importance sampling ask for, and its end. */
+/* Passes interface surfaces, which do not change the ray's direction. The ray keeps its origin, which multiple
+ * importance sampling needs, and its end. */
 static void pass_interfaces(vlTracing *t, vlPaths *p, vlHits *h, uint32_t i, const float *t_max) {
   const vlWorld *world = t->world;
   float t_min = 0;
   for (int step = 0; h->shape[i] != VL_NONE; step++) {
     if (world->materials.items[world->shapes.items[h->shape[i]].material].kind != VL_MATERIAL_INTERFACE) return;
-    if (step == 1024) h->shape[i] = VL_NONE; /* no ray needs so many */
+    if (step == 1024) h->shape[i] = VL_NONE; /* a bound; no ray crosses so many interfaces */
     if (h->shape[i] == VL_NONE) return;
     if (world->shapes.items[h->shape[i]].first_light != VL_NONE) add_emission(t, p, h, i);
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
@@ -115,7 +113,6 @@ static void pass_interfaces(vlTracing *t, vlPaths *p, vlHits *h, uint32_t i, con
   }
 }
 
-/* Rays of a: ids of what they meet, of which material. */
 void vl_stage_hits(vlTracing *t, uint32_t n, bool camera) {
   vlPaths *p = &t->s->a;
   vlHits *h = &t->s->hits_a;
@@ -128,7 +125,7 @@ void vl_stage_hits(vlTracing *t, uint32_t n, bool camera) {
   }
 }
 
-/* 1 where the camera's ray meets a surface. */
+/* Alpha is 1 where the camera ray hits a surface. */
 void vl_stage_alpha(vlTracing *t) {
   for (uint32_t i = 0; i < t->batch->n; i++) t->batch->alpha[i] = t->s->hits_a.shape[i] == VL_NONE ? 0.0f : 1.0f;
 }

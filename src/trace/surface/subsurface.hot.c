@@ -1,22 +1,23 @@
-/* trace/surface/subsurface.hot.c: light that enters a surface and leaves it elsewhere, by the profiles of
- * world/material/bssrdf.h and with pbrt's estimator (pbrt book, 3rd edition, 15.4). What happens to the paths that a
- * surface of such a material has let in (volume.hot.c gives them to us before they fly on):
+/* trace/surface/subsurface.hot.c: subsurface scattering: light that enters a surface and leaves it elsewhere, with the
+ * profiles of world/material/bssrdf.h and pbrt's estimator (pbrt book, 3rd edition, 15.4). It processes the paths that
+ * have entered a subsurface material, before volume.hot.c traces them further:
  *
- *   a, those refracted -> probes: segments through the body near where light came in -> all surfaces of the material on
- *   them, one of each chosen -> exits in a: vlSurface, light samples, new directions -> a, with the paths of the others
+ *   a, those refracted -> probes: segments through the solid near the entry -> all surfaces of the material on them,
+ * one of each chosen -> exits in a: vlSurface, light samples, new directions -> a, with the other paths
  *
- * A probe goes along the normal (half of them) or one of two tangents, at a distance that the profile of the hero
- * wavelength gives; the density of the point found is that of all three directions together, and by each wavelength. */
+ * A probe is parallel to the normal (half of them) or to one of two tangents, at a distance sampled by the hero
+ * wavelength's profile. The density of the point found is the sum over all three directions, and is computed for each
+ * wavelength. */
 #include "math/fresnel.h"
 #include "math/warp.h"
 #include "trace/material/rows.h"
 #include "trace/medium/volume.h"
 #include "world/material/bssrdf.h"
 
-/* Surfaces of a probe that are looked at: no body is so crumpled. */
+/* A bound on the surfaces on a probe. */
 enum { MOST_CROSSINGS = 1024 };
 
-/* Where the light came in. */
+/* The entry point. */
 typedef struct Entry {
   const vlBssrdfTable *table;
   vlVec3 p, n;
@@ -34,8 +35,8 @@ static Entry entry_of(const vlTracing *t, uint32_t j) {
   return e;
 }
 
-/* Those of the n paths of a (lanes s->order of the surfaces behind them) that went in become the probes of b. Returns
- * how many; a is kept in the scratch. */
+/* Copies those of the n paths of a (lanes s->order of the surfaces behind them) that entered the material to b, as
+ * probes. Returns their number; a is kept in the scratch. */
 static uint32_t take_refracted(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = &s->subsurface;
@@ -64,14 +65,14 @@ static uint32_t take_refracted(vlTracing *t, uint32_t n) {
   vl_permute_paths(&x->paths, &s->b, x->place, count);
   vl_volume_permute(&x->rows, &s->volume.b, x->place, count);
   for (uint32_t j = 0; j < count; j++) {
-    s->volume.b.medium[j] = x->medium[j]; /* where the path comes from, and goes back to */
+    s->volume.b.medium[j] = x->medium[j]; /* the medium outside, to which the path returns */
     s->b.eta_scale[j] /= x->entry_eta_scale[j];
   }
   return count;
 }
 
-/* A segment of half a length to either side of o, cut to the sphere round everything: rays begin no farther away than
- * there is something to meet. */
+/* A segment of half a length to either side of o, clipped to the sphere around the world, so that ray origins are not
+ * needlessly far away. */
 static void cut_probe(const vlTracing *t, uint32_t j, vlVec3 o, vlVec3 along, float half) {
   vlSubsurfaceScratch *x = &t->s->subsurface;
   vlPaths *p = &t->s->b;
@@ -87,7 +88,7 @@ static void cut_probe(const vlTracing *t, uint32_t j, vlVec3 o, vlVec3 along, fl
   x->length[j] = end > start ? end - start : 0.0f;
 }
 
-/* The segments: origin and direction of the paths of b, x->length (0: none). */
+/* Samples the probes: origin and direction of the paths of b, x->length (0: none). */
 static void aim_probes(vlTracing *t, uint32_t n, uint32_t dimension) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = &s->subsurface;
@@ -114,7 +115,7 @@ static void aim_probes(vlTracing *t, uint32_t n, uint32_t dimension) {
   }
 }
 
-/* One crossing of probe j: hits_b has its ids. false: it was the last. */
+/* Records one crossing of probe j, whose ids are in hits_b. False: it was the last. */
 static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = &s->subsurface;
@@ -124,7 +125,7 @@ static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
   if (vl_hit_material(t->world, &s->b, h, j) == x->material[j]) {
     uint32_t count = ++x->found[j];
     float u = vl_unit_float(vl_hash2(vl_volume_key(t, &s->b, j, depth, VL_KEY_PROBE), count));
-    if (u * (float)count < 1.0f) { /* of all crossings each stays with the same chance */
+    if (u * (float)count < 1.0f) { /* reservoir sampling: each crossing is kept with the same probability */
       x->hits.shape[j] = h->shape[j], x->hits.prim[j] = h->prim[j], x->hits.instance[j] = h->instance[j];
       x->hits.t[j] = h->t[j];
     }
@@ -133,7 +134,8 @@ static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
   return x->t_min[j] < x->length[j];
 }
 
-/* All that the probes cross, crossing by crossing in one batch: x->found, and one of each in x->hits. */
+/* Finds all crossings of the probes, one of each probe per batch: x->found counts them, x->hits has one of each probe.
+ */
 static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = &s->subsurface;
@@ -168,7 +170,7 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* ---- exits ------------------------------------------------------------------------------------------------------- */
 
-/* Probes that found something become paths of a, x->entry says which. Returns how many. */
+/* Copies the probes with a crossing to paths of a; x->entry has their probes. Returns their number. */
 static uint32_t gather_exits(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = &s->subsurface;
@@ -187,8 +189,8 @@ static uint32_t gather_exits(vlTracing *t, uint32_t n) {
   return count;
 }
 
-/* What arrives at exit i of what came in, over the density of having gone there: by the hero to beta, by the others to
- * u. A path that cannot have gone there carries nothing any more. Lengths are the hero's mean free paths. */
+/* The weight of exit i: the profile over the density of sampling the point; the hero's goes to beta, those of the other
+ * wavelengths to u. A path with density 0 carries nothing any more. Lengths are in the hero's mean free path. */
 static void weigh_exit(vlTracing *t, uint32_t i) {
   vlTraceScratch *s = t->s;
   vlPaths *p = &s->a;
@@ -223,8 +225,8 @@ static void weigh_exit(vlTracing *t, uint32_t i) {
   vl_volume_normalise(t, p, rows, i);
 }
 
-/* Light passes the surface outwards as if it came from everywhere below alike: the share that is not reflected. (The
- * factor eta^2 takes back what its squeezing by refraction took from radiance on the way in.) */
+/* The exit's directional factor: radiance from below is diffuse, and the share that is not reflected leaves. (The
+ * factor eta^2 cancels that of the refraction at the entry.) */
 static float exit_value(const vlBssrdfTable *table, float cosine) {
   float passes = 1.0f - vl_fresnel_dielectric(cosine, table->eta).reflected;
   return table->eta * table->eta * passes * VL_INV_PI / table->leaves;
@@ -261,7 +263,7 @@ static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   vl_volume_shadows(t, p, rows, count, depth);
 }
 
-/* Their next rays, back to where their paths were. */
+/* Samples the exits' next rays, and moves them to their paths' places. */
 static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = &s->subsurface;
@@ -273,7 +275,7 @@ static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
   for (uint32_t i = 0; i < n; i++) {
     uint32_t place = x->place[x->entry[i]];
     float sum = p->beta[0][i] + p->beta[1][i] + p->beta[2][i] + p->beta[3][i];
-    if (sum != sum) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film counts it */
+    if (sum != sum) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */
     vlVec3 local = vl_warp_cosine_hemisphere(sh->u1[i], sh->u2[i]);
     if (!carries(p, i) || !(local.z > 0.0f)) continue;
     vlVec3 nn = vl_lane3(f->nx, f->ny, f->nz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
@@ -322,12 +324,12 @@ uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth) {
 /* ---- the material ------------------------------------------------------------------------------------------------ */
 
 /* Coefficients of a run of lanes: extinction and albedo, from absorption and scattering, or from the reflectance of a
- * thick body and the mean free path. */
+ * thick solid and the mean free path. */
 void vl_stage_subsurface_inputs(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldSubsurface *b = m->subsurface;
   vlShade *sh = &r->s->shade;
   float(*sigma)[VL_ROW_SIZE] = sh->own + VL_S_SIGMA, (*albedo)[VL_ROW_SIZE] = sh->own + VL_S_ALBEDO;
-  const float most = 1e15f; /* per unit of length: its square is still a number */
+  const float most = 1e15f; /* per unit of length: its square is finite */
   if (b->mfp >= 0) {
     vl_rows_spectrum(r, b->mfp, sigma);
     for (int c = 0; c < 4; c++)

@@ -1,4 +1,4 @@
-/* trace/surface/surface.hot.c: from ids to surface points, in our own arithmetic (Embree's t, u, v differ between its
+/* trace/surface/surface.hot.c: surface points from ids, in our own arithmetic (Embree's t, u, v differ between its
  * instruction sets). Triangles: gather the corners, then one vector loop. Other shapes: world/shape/surface_point.c,
  * one by one. */
 #include "math/transform.h"
@@ -62,7 +62,7 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
   }
 }
 
-/* Corners at a time, of what moves; normals zero without. */
+/* Corners of a moving triangle at a time; normals are zero if it has none. */
 typedef struct MovedTriangle {
   vlVec3 p[3], n[3];
   float error;
@@ -101,7 +101,7 @@ static inline bool triangle_moves(const vlWorld *world, uint32_t shape, uint32_t
   return world->shapes.items[shape].steps > 1 || (instance != VL_NONE && world->instances.items[instance].keys);
 }
 
-/* The same as gather_triangle, of what moves. */
+/* gather_triangle for moving shapes. */
 static void gather_moving(const vlWorld *world, const vlHits *hits, float time, uint32_t i, vlCorners *c) {
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
   const vlWorldInstance *q = hits->instance[i] == VL_NONE ? NULL : &world->instances.items[hits->instance[i]];
@@ -123,13 +123,13 @@ typedef struct Triangle {
   float s, t, dist, offset, uv_scale, curvature;
 } Triangle;
 
-/* By component: a choice between structs would be a jump. */
+/* By component: a selection of structs would be a branch. */
 static inline vlVec3 select3(bool which, vlVec3 a, vlVec3 b) {
   return vl_vec3(which ? a.x : b.x, which ? a.y : b.y, which ? a.z : b.z);
 }
 
-/* Times the power of two that brings the largest component between 1 and 2: the squares of cross products of tiny or
- * huge triangles would leave float's range. Exact, so that what stays in range keeps its bits. */
+/* v times the power of two that brings the largest component into [1, 2): the squares of cross products of tiny or huge
+ * triangles would leave float's range. Exact, so that values in range keep their bits. */
 static inline vlVec3 near_one(vlVec3 v) {
   float largest = vl_max(vl_max(vl_abs(v.x), vl_abs(v.y)), vl_abs(v.z));
   uint32_t exponent = vl_float_bits(largest) & 0x7f800000u;
@@ -137,8 +137,8 @@ static inline vlVec3 near_one(vlVec3 v) {
   return vl_mul(v, scale);
 }
 
-/* The point of a triangle that a ray meets. Barycentric coordinates are ratios of volumes spanned with the ray
- * (signs as in Woop et al. 2013); what falls outside by rounding is put on the edge. */
+/* The point at which a ray hits a triangle. Barycentric coordinates are ratios of volumes spanned with the ray (signs
+ * as in Woop et al. 2013); points outside by rounding are clamped to the edge. */
 static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, vlVec3 d, vlVec3 p0, vlVec3 p1,
                                                                      vlVec3 p2, vlVec3 n0, vlVec3 n1, vlVec3 n2,
                                                                      TriangleUv uv, float corner_error, float flip) {
@@ -158,9 +158,9 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   vlVec3 e02 = vl_sub(p0, p2), e12 = vl_sub(p1, p2);
   vlVec3 cross = vl_cross(e02, e12);
   vlVec3 g = vl_normalize(near_one(cross));
-  /* pbrt's bound of the point's error (book 6.8.3), projected on the normal; and the error of the distance that Embree
-   * will find when it meets this triangle again from here: its plane stands on corner 0, its normal is rounded, so that
-   * the error grows with the way from that corner. Both doubled. */
+  /* pbrt's bound of the point's error (book 6.8.3), projected on the normal; plus the error of Embree's distance when a
+   * ray from here hits this triangle again: its plane goes through corner 0 and its normal is rounded, so that the
+   * error grows with the distance from that corner. Both are doubled. */
   vlVec3 way = vl_sub(r.p, p0);
   float reach = vl_abs(way.x) + vl_abs(way.y) + vl_abs(way.z);
   r.offset = 2.0f * (GAMMA(7) * (vl_abs(g.x) * ex + vl_abs(g.y) * ey + vl_abs(g.z) * ez) + GAMMA(5) * reach +
@@ -168,14 +168,14 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   r.dist = vl_dot(vl_sub(r.p, o), d);
   vlVec3 ns = vl_add(vl_add(vl_mul(n0, b0), vl_mul(n1, b1)), vl_mul(n2, b2));
   float has_n = vl_length2(ns) > 0.0f ? 1.0f : 0.0f;
-  /* Mean curvature, by how the normals turn along the three edges. */
+  /* Mean curvature, from the change of the normals along the three edges. */
   vlVec3 e01 = vl_sub(p0, p1), n02 = vl_sub(n0, n2), n12 = vl_sub(n1, n2), n01 = vl_sub(n0, n1);
   float k0 = vl_dot(n02, e02) / vl_max(vl_length2(e02), 1e-37f),
         k1 = vl_dot(n12, e12) / vl_max(vl_length2(e12), 1e-37f);
   float k2 = vl_dot(n01, e01) / vl_max(vl_length2(e01), 1e-37f);
   r.curvature = has_n > 0.0f ? (k0 + k1 + k2) / (3.0f * vl_length(ns)) : 0.0f;
   ns = vl_normalize(ns);
-  /* With vertex normals the geometric one goes to their side; without, the face order and flip decide. */
+  /* With vertex normals the geometric normal is on their side; without, vertex order and flip decide. */
   float towards = vl_dot(g, ns) < 0.0f ? -1.0f : 1.0f;
   float side = has_n > 0.0f ? towards : flip;
   r.g = vl_mul(g, side);
@@ -196,7 +196,7 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   return r;
 }
 
-/* How far from the surface the point's own error may put a ray that leaves it. */
+/* Bound of the distance from the surface of a ray's origin at the point. */
 static float point_error(const vlSurfacePoint *q) {
   return (float)(__builtin_fabs(q->n[0]) * q->error[0] + __builtin_fabs(q->n[1]) * q->error[1] +
                  __builtin_fabs(q->n[2]) * q->error[2]);
@@ -229,8 +229,8 @@ static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, vlV
   out->uv_scale[i] = area > 0.0f ? 1.0f / __builtin_sqrtf(area) : 0.0f;
 }
 
-/* A sphere, disk, cylinder or patch: meet it again in group space, bring the point to the world. t, found by the same
- * arithmetic, says which crossing is meant. */
+/* The surface point of a sphere, disk, cylinder or patch: intersects it again in group space and transforms the point
+ * to world space. t, computed by the same arithmetic, identifies the crossing. */
 static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
                                   uint32_t instance, float t) {
   const vlWorldShape *s = &world->shapes.items[shape];
@@ -243,7 +243,7 @@ static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vl
   vlSurfacePoint point;
   if (vl_shape_intersect(s, prim, go, gd, t * (1 - 0x1p-21), t * (1 + 0x1p-21) + 1e-37, &hit)) {
     vl_shape_point(s, prim, &hit, &point);
-  } else { /* cannot be: the same ray met it with the same arithmetic */
+  } else { /* cannot happen: the same ray hit it with the same arithmetic */
     double pdf;
     vl_shape_sample(s, prim, 0.5f, 0.5f, &point, &pdf);
   }
@@ -353,7 +353,7 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, co
     out->no_cosine[i] = 0.0f;
   }
   if (world->images.count) vl_stage_footprints(n, paths, out);
-  /* After footprints, which want the derivatives of the point: tangents have another length. */
+  /* After the footprints, which need the derivatives of the point: tangents have another length. */
   for (uint32_t i = 0; others && i < n; i++) {
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
     if (s->kind == VL_SHAPE_TRIANGLES && s->tangents) apply_tangents(world, hits, vl_path_time(paths, i), i, c, out);

@@ -1,14 +1,14 @@
-/* trace/texture/texture.hot.c: textures over a run of lanes that share a material: floats, and spectra at each lane's
- * four wavelengths. A node's inputs are evaluated into rows of a stack, then combined by the functions of
- * world/texture/texture_node.h. What cannot occur gives NaN: the film drops and counts it (vlRenderStats.not_finite).
- */
+/* trace/texture/texture.hot.c: evaluation of textures over a run of lanes that share a material: floats, and spectra at
+ * each lane's four wavelengths. A node's inputs are evaluated to rows of a stack, then combined by the functions of
+ * world/texture/texture_node.h. Undefined values are NaN: the film drops and counts such samples
+ * (vlRenderStats.not_finite). */
 #include "trace/texture/texture_run.h"
 
 /* ---- point functions over a run ---------------------------------------------------------------------------------- */
 
 typedef float PointFloat(const vlTextureNode *node, vlTexturePoint at);
 
-/* Inlined, f with it: one loop a kind. */
+/* Inlined together with f, so that there is one loop per kind. */
 static inline __attribute__((always_inline)) void each_lane(const vlTextureRun *r, const vlTextureNode *node,
                                                             PointFloat *f, float *out) {
   for (uint32_t i = r->first; i < r->last; i++) out[i] = f(node, vl_texture_point_of(r, node, i));
@@ -26,7 +26,7 @@ static void bilerp_weights(const vlTextureRun *r, const vlTextureNode *node, flo
   }
 }
 
-/* Shares of the second input, in a row of the stack. */
+/* The shares of the second input, as a row of the stack. */
 static const float *amount_share(vlTextureRun *r, const vlTextureNode *node) {
   float *share = vl_texture_row(r);
   vl_texture_float(r, node->amount, share);
@@ -50,7 +50,7 @@ static const float *direction_share(vlTextureRun *r, const vlTextureNode *node) 
 
 /* ---- floats ------------------------------------------------------------------------------------------------------ */
 
-/* The two inputs of a node by the share of the second. */
+/* Mixes the two inputs of a node by the share of the second. */
 static void mix_floats(vlTextureRun *r, const vlTextureNode *node, const float *share, float *out) {
   float *b = vl_texture_row(r);
   vl_texture_float(r, node->a, out);
@@ -97,7 +97,9 @@ void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
     case VL_NODE_DOTS: mix_floats(r, node, dots_share(r, node), out); break;
     case VL_NODE_DIRECTION_MIX: mix_floats(r, node, direction_share(r, node), out); break;
     case VL_NODE_SPECTRUM:
-    case VL_NODE_MARBLE: fill(r, __builtin_nanf(""), out); break; /* colours; vl_scene_add_texture refuses them here */
+    case VL_NODE_MARBLE:
+      fill(r, __builtin_nanf(""), out);
+      break; /* a colour texture; vl_scene_add_texture rejects it here */
   }
   r->top = top;
 }
@@ -122,7 +124,7 @@ static void constant_spectrum(const vlTextureRun *r, const vlSpectral *s, float 
   }
 }
 
-/* Colours at the wavelengths, by the node's role (pbrt book 10.4.1): albedos are clamped, others scaled. */
+/* Conversion of colours to spectra by the node's role (pbrt book 10.4.1): albedos are clamped, other colours scaled. */
 typedef struct Upsampling {
   bool rgb_mode, albedo;
   const vlRgbTable *table;
@@ -218,7 +220,7 @@ void vl_texture_spectrum(vlTextureRun *r, int32_t index, float *const out[4]) {
     case VL_NODE_FLOAT:
     case VL_NODE_FBM:
     case VL_NODE_WRINKLED:
-    case VL_NODE_WINDY: /* floats; vl_scene_add_texture refuses them here */
+    case VL_NODE_WINDY: /* float textures; vl_scene_add_texture rejects them here */
       for (int c = 0; c < 4; c++) fill(r, __builtin_nanf(""), out[c]);
       break;
   }

@@ -17,16 +17,16 @@ typedef struct vlTextureRun {
   const float *shift_u, *shift_v, *shift_x, *shift_y, *shift_z; /* added to uv and position (bump), or null */
 } vlTextureRun;
 
-/* Results go to lanes [first, last) of out (rows of the whole batch). */
+/* Evaluates a texture; results go to lanes [first, last) of out (rows of the whole batch). */
 void vl_texture_float(vlTextureRun *r, int32_t node, float *out);
 void vl_texture_spectrum(vlTextureRun *r, int32_t node, float *const out[4]);
-/* A scratch row; the caller gives it back by restoring r->top. */
+/* Takes a scratch row; the caller frees it by restoring r->top. */
 static inline float *vl_texture_row(vlTextureRun *r) {
-  return r->s
-      ->rows[r->top < VL_TEXTURE_ROWS - 1 ? r->top++ : r->top]; /* enough: world/texture/texture.c limits nesting */
+  return r->s->rows[r->top < VL_TEXTURE_ROWS - 1 ? r->top++
+                                                 : r->top]; /* never exceeded: world/texture/texture.c limits nesting */
 }
 
-/* What the corners of lane i's triangle carry: uv sets, colours. */
+/* Vertex attributes of lane i's triangle: uv sets, colours. */
 static inline void vl_texture_lane_corner(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
                                           vlTexturePoint *at) {
   const vlCorners *c = &r->s->corners;
@@ -42,9 +42,8 @@ static inline void vl_texture_lane_corner(const vlTextureRun *r, const vlTexture
   vl_texture_at_corner(node, &where, at);
 }
 
-/* The footprint's axes in (s, t): those of the first uv set are there; for all else a step along each axis is looked
- * at.
- */
+/* The footprint's axes in (s, t): for the first uv set those of the surface; for other mappings by a finite difference
+ * along each axis. */
 static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
                                         vlTexturePoint *at) {
   const vlSurface *f = r->surface;
@@ -62,7 +61,7 @@ static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNo
     if (vl_texture_needs_corner(node)) vl_texture_lane_corner(r, node, i, &step);
     vlVec2 there = vl_texture_st(node, step);
     float s = there.x - here.x, t = there.y - here.y;
-    if (node->mapping == VL_MAPPING_SPHERICAL || node->mapping == VL_MAPPING_CYLINDRICAL) /* past the seam */
+    if (node->mapping == VL_MAPPING_SPHERICAL || node->mapping == VL_MAPPING_CYLINDRICAL) /* across the seam */
       s -= __builtin_rintf(s), t -= node->mapping == VL_MAPPING_SPHERICAL ? __builtin_rintf(t) : 0.0f;
     at->axes[2 * k] = s, at->axes[2 * k + 1] = t;
   }
@@ -73,7 +72,7 @@ static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vl
   vlTexturePoint at = {.color = {1, 1, 1, 1}};
   at.u = f->u[i], at.v = f->v[i];
   at.p = vl_vec3(f->px[i], f->py[i], f->pz[i]);
-  at.n = vl_vec3(f->gx[i], f->gy[i], f->gz[i]); /* the true surface's, as pbrt's */
+  at.n = vl_vec3(f->gx[i], f->gy[i], f->gz[i]); /* geometric normal, as in pbrt */
   at.width = f->width[i];
   if (r->shift_u) {
     at.u += r->shift_u[i], at.v += r->shift_v[i];
@@ -84,13 +83,14 @@ static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vl
   return at;
 }
 
-/* Parameters of the BSDFs over a run of lanes of material m, from its textures: one function per kind of the list. */
+/* Evaluates the BSDF parameters over a run of lanes of material m, from its textures: one function per kind of the
+ * list. */
 typedef void vlParametersFn(vlTextureRun *r, const vlWorldMaterial *m);
 #define VL_DECLARE_PARAMETERS(NAME, name) vlParametersFn vl_parameters_##name;
 VL_BSDF_KINDS(VL_DECLARE_PARAMETERS)
 
-/* Parts of them. Layers: after the textured eta, k and roughness; translucent, bodies, hair: after the reflectance. The
- * coat's normal of the principled material stays in the world until there are frames. */
+/* Parts of these functions. Layers: after the textured eta, k and roughness; translucent, subsurface, hair: after the
+ * reflectance. The coat's normal of the principled material stays in world space until the frames are computed. */
 vlParametersFn vl_stage_layers, vl_stage_translucent, vl_stage_subsurface_inputs, vl_stage_hair, vl_stage_principled;
 void vl_stage_coat_frames(const vlSurface *surface, vlShade *shade, uint32_t first, uint32_t last);
 

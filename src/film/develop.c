@@ -14,8 +14,7 @@ static vlResult set_numbers(vlImage *image, const char *name, vlAttributeType ty
   return vl_image_set_attribute(image, &a);
 }
 
-/* Writes OpenEXR's attributes: the colour space's primaries, and for a crop its place in the whole image (inclusive).
- */
+/* Writes OpenEXR's attributes: the colour space's primaries, and a crop's place in the whole image (inclusive). */
 static vlResult set_attributes(const vlFilm *film, vlImage *image) {
   float xy[8];
   double numbers[8];

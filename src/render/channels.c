@@ -102,7 +102,7 @@ static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChan
   return check_film(camera, def, error);
 }
 
-/* ---- images ---------------------------------------------------------------------------------------------------- */
+/* ---- images ------------------------------------------------------------------------------------------------------ */
 
 /* Names of the requested channels of one kind. Cryptomatte's are pairs of ranks, two in a layer. */
 static uint32_t list_names(vlChannelPass *p, int id, const char *names[MAX_FLOATS], char crypto[MAX_FLOATS][24]) {

@@ -241,8 +241,7 @@ typedef struct vlPoint {
   vlVec3 p, g, n; /* geometric, shading normal */
   float u, v, t, offset;
 } vlPoint;
-/* The smallest t_min past a surface point along the ray, by the bound of the point's error; always larger than t_min.
- */
+/* The smallest t_min past a surface point along the ray, by the bound of the point's error; larger than t_min. */
 static inline float vl_past_surface(const vlPoint *at, vlVec3 d, float t_min) {
   float margin = 2.0f * at->offset / vl_max(vl_abs(vl_dot(at->g, d)), 0.01f) + 0x1p-22f * vl_abs(at->t);
   return vl_max(at->t, t_min) + vl_max(margin, 1e-30f);

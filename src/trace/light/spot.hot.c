@@ -1,8 +1,7 @@
 /* trace/light/spot.hot.c: spot lights: a point that emits into a cone with a smooth edge (pbrt book 12.2.1). */
 #include "trace/light/kinds.h"
 
-/* Falloff; c: cosine with the axis. 1 inside the inner cone, 0 outside the outer one, the light's own falloff between.
- */
+/* Falloff; c: cosine with the axis. 1 inside the inner cone, 0 outside the outer one, smooth between them. */
 static float edge(const vlWorldLight *light, float c) {
   float a = light->cos_end, b = light->cos_start;
   if (a == b) return c < a ? 0.0f : 1.0f;

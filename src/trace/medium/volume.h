@@ -86,8 +86,7 @@ void vl_volume_go_on(vlTracing *t, uint32_t count);
 uint32_t vl_volume_append(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n);
 /* The flight of shadow ray k: beta has the transmittance; densities are over that of light sampling. */
 vlFlight vl_volume_shadow_flight(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t k, uint32_t depth);
-/* Adds lane i's light sample as shadow ray `count`, from o; value and pdf: of the scattering. Returns the next count.
- */
+/* Adds lane i's light sample as shadow ray `count`, from o; value, pdf: of the scattering. Returns the next count. */
 uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,
                                const float value[4], float pdf, uint32_t medium, uint32_t count);
 /* Traces these shadow rays and adds the radiance that arrives. */

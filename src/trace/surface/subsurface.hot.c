@@ -134,8 +134,7 @@ static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
   return x->t_min[j] < x->length[j];
 }
 
-/* Finds all crossings of the probes, one of each probe per batch: x->found counts them, x->hits has one of each probe.
- */
+/* Finds all crossings of the probes, one of each probe per batch: x->found counts them, x->hits keeps one each. */
 static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = &s->subsurface;

@@ -117,7 +117,7 @@ static inline float vl_light_density(const vlTracing *t, const vlTwoWayRows *r, 
   return t->world->lights.items[r->light[lane]].at_point ? r->density[lane] / (distance * distance) : r->density[lane];
 }
 
-/* Solid angle of a pixel around the direction whose cosine with the axis is c; the pixel's side at distance 1 is 1/f.
+/* Solid angle of a pixel around the direction whose cosine with the axis is c. The pixel's side at distance 1 is 1 / f.
  */
 static inline float vl_camera_view_pixel_area(const vlCameraView *eye, float c) {
   return c * c * c / (eye->fx * eye->fy);

@@ -56,8 +56,7 @@ typedef struct vlPhotonMap {
   float radius2, inv_cell;
 } vlPhotonMap;
 
-/* Builds the map. sorted: count elements; start: buckets + 1. Cells are 2 radius wide. The map refers to both arrays.
- */
+/* Builds the map. sorted: count elements; start: buckets + 1. Cells are 2 radius wide. The map keeps both pointers. */
 void vl_photon_map_build(vlPhotonMap *map, const vlPhoton *photons, uint32_t count, float radius, vlPhoton *sorted,
                          uint32_t *start, uint32_t buckets);
 

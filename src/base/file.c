@@ -128,8 +128,7 @@ static int open_file(vlContext *context, const char *path, bool given, vlError *
   if (stat(path, &info) != 0) {
     int code = errno;
     if (given || !vl_context_has_sandbox(context)) return fail_open(path, code, error), -1;
-    return vl_fail(error, VL_ERROR_MISSING, "no such file: %s", path),
-           -1; /* no suggestion from outside of the sandbox */
+    return vl_fail(error, VL_ERROR_MISSING, "no such file: %s", path), -1; /* no names from outside */
   }
   if (!given && !vl_context_allows(context, path))
     return vl_fail(error, VL_ERROR_IO, "cannot read %s: it lies outside of the sandbox", path), -1;

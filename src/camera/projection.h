@@ -1,5 +1,5 @@
 /* camera/projection.h: all projections behind two functions. `kind` is a constant where these are inlined, so that a
- * batch chooses once. The plane points are ideal: distortion stands between them and the pixels. */
+ * batch chooses once. The plane points are ideal: distortion lies between them and the pixels. */
 #ifndef CAMERA_PROJECTION_H
 #define CAMERA_PROJECTION_H
 

@@ -1,5 +1,5 @@
-/* base/array.h: a growable array of any type, by macros. `VL_ARRAY(T)` is the type, zero is empty.
- *   VL_ARRAY(int) a = {0};  int *p = VL_PUSH(ctx, &a);  if (p) *p = 3;  for (size_t i = 0; i < a.count; i++) ... */
+/* base/array.h: a growable array of any type, by macros. `VL_ARRAY(T)` is the type; a zeroed array is empty.
+ *     VL_ARRAY(int) a = {0};  int *p = VL_PUSH(ctx, &a);  if (p) *p = 3;  for (size_t i = 0; i < a.count; i++) ... */
 #ifndef BASE_ARRAY_H
 #define BASE_ARRAY_H
 
@@ -11,12 +11,12 @@
     size_t count, capacity; \
   }
 
-/* Pointer to a new zeroed element at the end, or null when memory is out (the array is as before). */
+/* Pointer to a new zeroed element at the end, or null if memory is exhausted (the array is then unchanged). */
 #define VL_PUSH(context, array)                                                                                        \
   ((vl_array_grow((context), (void **)&(array)->items, &(array)->capacity, (array)->count, sizeof *(array)->items, 1)) \
        ? &(array)->items[(array)->count++]                                                                             \
        : NULL)
-/* Room for n more; bool. */
+/* Reserves capacity for n more elements. False if memory is exhausted. */
 #define VL_RESERVE(context, array, n) \
   vl_array_grow((context), (void **)&(array)->items, &(array)->capacity, (array)->count, sizeof *(array)->items, (n))
 #define VL_ARRAY_FREE(context, array) \

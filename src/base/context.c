@@ -1,4 +1,4 @@
-/* base/context.c: allocator with count, log, worker pool. See context.h. */
+/* base/context.c: counted allocation, log, worker pool. See context.h. */
 #include "base/context.h"
 
 #include <limits.h>
@@ -31,7 +31,7 @@ struct vlContext {
   vlIsa isa;
   atomic_size_t held, peak;
   pthread_mutex_t log_mutex, run_mutex;
-  char **sandbox; /* def.sandbox_count folders, links followed */
+  char **sandbox; /* def.sandbox_count folders, with symbolic links resolved */
   Pool pool;
 };
 
@@ -40,11 +40,11 @@ typedef struct PoolSlot {
   uint32_t worker;
 } PoolSlot;
 
-/* ---- memory: a header of 64 bytes before each block keeps its size, so that the count is exact ------------------- */
+/* ---- memory: a header of 64 bytes before each block holds its size, so that the count is exact ------------------- */
 
 enum { HEADER = 64 };
 typedef struct BlockHeader {
-  size_t size; /* of the user part */
+  size_t size; /* bytes of the user part */
   void *raw;   /* what the allocator returned */
 } BlockHeader;
 
@@ -61,7 +61,7 @@ static BlockHeader *header_of(void *block) {
   return (BlockHeader *)(void *)((char *)block - sizeof(BlockHeader));
 }
 
-/* false: beyond the limit, not counted. */
+/* Adds to and subtracts from the count. False: beyond the limit, nothing is counted. */
 static bool count_memory(vlContext *context, size_t add, size_t sub) {
   size_t now = atomic_fetch_add(&context->held, add - sub) + (add - sub), most = context->def.max_memory;
   if (most && add && now > most) {
@@ -81,7 +81,7 @@ bool vl_count_foreign(vlContext *context, int64_t bytes, bool taken) {
   return taken;
 }
 
-/* Every block is 64-byte aligned: one rule, and vector loads are always welcome. */
+/* Every block is 64-byte aligned, for vector loads. */
 void *vl_alloc(vlContext *context, size_t size) {
   if (size > SIZE_MAX / 2) return NULL;
   if (!count_memory(context, size, 0)) return NULL;
@@ -220,7 +220,7 @@ void vl_parallel_for(vlContext *context, uint32_t count, vlParallelFn *body, voi
     return;
   }
   Pool *pool = &context->pool;
-  pthread_mutex_lock(&context->run_mutex); /* one loop at a time, whoever calls */
+  pthread_mutex_lock(&context->run_mutex); /* one parallel loop at a time, from any thread */
   pthread_mutex_lock(&pool->mutex);
   pool->body = body;
   pool->loop_user = loop_user;
@@ -239,7 +239,7 @@ void vl_parallel_for(vlContext *context, uint32_t count, vlParallelFn *body, voi
 
 /* ---- the sandbox ------------------------------------------------------------------------------------------------- */
 
-/* Whole parts of the path: /a/b is not beneath /a/bc. */
+/* Whether a path lies in a folder. Compares whole components: /a/b is not beneath /a/bc. */
 static bool is_beneath(const char *path, const char *folder) {
   size_t n = strlen(folder);
   if (n && folder[n - 1] == '/') n--;
@@ -276,7 +276,8 @@ static vlResult copy_sandbox(vlContext *context) {
   return VL_OK;
 }
 
-/* ---- life -------------------------------------------------------------------------------------------------------- */
+/* ---- creation and destruction
+ * ------------------------------------------------------------------------------------- */
 
 vlContextDef vl_default_context_def_abi(uint32_t abi) {
   long cores = sysconf(_SC_NPROCESSORS_ONLN);

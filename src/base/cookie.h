@@ -1,6 +1,6 @@
-/* base/cookie.h: the marks that vl_default_*_def() leaves in a def, so that a def made by hand, or by a library of
- * another ABI version, is caught: 'v' in the highest byte, the ABI version in the two below it, the def's kind in the
- * lowest. */
+/* base/cookie.h: the cookies that vl_default_*_def() stores in a def, by which a def that was filled by hand, or by
+ * a library of another ABI version, is detected: 'v' in the highest byte, the ABI version in the two below it, the
+ * def's kind in the lowest. */
 #ifndef BASE_COOKIE_H
 #define BASE_COOKIE_H
 

@@ -21,7 +21,7 @@ double vl_seconds(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* The name in the folder of `path` that is nearest to its last part; empty when none is near. */
+/* The name in the folder of `path` that is nearest to its last component; empty if none is near. */
 static void nearest_file(const char *path, char *result, size_t size) {
   result[0] = 0;
   char folder[4096];
@@ -55,7 +55,7 @@ static vlResult fail_open(const char *path, int code, vlError *error) {
   return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(code));
 }
 
-/* Text packs 3 to 50 times; what unpacks to far more than that, and to much, was made to fill the memory. */
+/* Limits against decompression bombs: text compresses by a factor of 3 to 50. Output beyond both limits is refused. */
 enum { MAX_RATIO = 200, MAX_UNPACKED = 64 << 20 };
 
 static vlResult gunzip_all(vlContext *context, const char *path, char **data, size_t *size, vlError *error) {
@@ -91,10 +91,10 @@ static vlResult gunzip_all(vlContext *context, const char *path, char **data, si
     uInt before_in = z.avail_in;
     status = inflate(&z, Z_NO_FLUSH);
     used += room - z.avail_out;
-    if (status == Z_STREAM_END && (z.avail_in || left)) { /* gzip files may be several members, one after the other */
+    if (status == Z_STREAM_END && (z.avail_in || left)) { /* a gzip file may consist of several members */
       status = inflateReset2(&z, 15 + 16);
     } else if (status == Z_BUF_ERROR || (status == Z_OK && before_in == 0 && left == 0 && room == z.avail_out)) {
-      status = Z_DATA_ERROR; /* ended too early */
+      status = Z_DATA_ERROR; /* the stream ended too early */
     }
   }
   inflateEnd(&z);
@@ -112,7 +112,8 @@ static vlResult gunzip_all(vlContext *context, const char *path, char **data, si
   return VL_OK;
 }
 
-/* What a file is that has no end, or none that can be waited for; null: a file, or a pipe where these are good. */
+/* Why a file is refused: it has no end, or reading it may block. Null: a regular file, or a pipe if pipes are
+ * allowed. */
 static const char *not_a_file(const struct stat *info, bool pipes) {
   if (S_ISDIR(info->st_mode)) return "is a folder";
   if (S_ISCHR(info->st_mode) || S_ISBLK(info->st_mode)) return "is a device";
@@ -120,14 +121,14 @@ static const char *not_a_file(const struct stat *info, bool pipes) {
   return S_ISFIFO(info->st_mode) && !pipes ? "is a pipe" : NULL;
 }
 
-/* Looked at before it is opened, since opening a pipe waits and opening a device may do something; and after, since the
- * name may mean another file by then. */
+/* Checks the file's type before opening, since opening a pipe blocks and opening a device may have side effects; and
+ * again after opening, since the name may refer to another file by then. */
 static int open_file(vlContext *context, const char *path, bool given, vlError *error) {
   struct stat info;
   if (stat(path, &info) != 0) {
     int code = errno;
     if (given || !vl_context_has_sandbox(context)) return fail_open(path, code, error), -1;
-    return vl_fail(error, VL_ERROR_MISSING, "no such file: %s", path), -1; /* no names from elsewhere */
+    return vl_fail(error, VL_ERROR_MISSING, "no such file: %s", path), -1; /* no names from outside */
   }
   if (!given && !vl_context_allows(context, path))
     return vl_fail(error, VL_ERROR_IO, "cannot read %s: it lies outside of the sandbox", path), -1;
@@ -163,7 +164,7 @@ static vlResult read_file(vlContext *context, const char *path, bool given, bool
       result = vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(errno));
     } else if (got == 0) {
       break;
-    } else if ((used += (size_t)got) == capacity) { /* pipes tell no size; a full block may have more to come */
+    } else if ((used += (size_t)got) == capacity) { /* pipes have no size; after a full block there may be more */
       char probe;
       ssize_t more = read(fd, &probe, 1);
       if (more <= 0) break;
@@ -210,7 +211,7 @@ vlResult vl_file_map(const char *path, const char **data, size_t *size, vlError 
   if (fd < 0) return fail_open(path, errno, error);
   if (fstat(fd, &info) != 0) info.st_size = 0;
   size_t length = (size_t)info.st_size;
-  /* Zeros first, then the file over them: so a zero byte follows even where the file fills its last page. */
+  /* Maps zero pages first, then the file over them: a zero byte follows even if the file fills its last page. */
   char *block = mmap(NULL, length + 1, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   bool good = block != MAP_FAILED;
   if (good && length && mmap(block, length, PROT_READ, MAP_PRIVATE | MAP_FIXED, fd, 0) == MAP_FAILED) {

@@ -1,4 +1,4 @@
-/* base/file_write.c: files written whole or not at all. See file.h. */
+/* base/file_write.c: atomic writing of files. See file.h. */
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -12,26 +12,26 @@
 #include "base/error.h"
 #include "base/file.h"
 
-/* Temporaries are named by the process alone, so that the longest names can be written; their writer holds a lock on
- * them, so that one without a lock is a dead writer's. */
+/* Temporary files are named by the process id alone, so that targets with the longest names can be written. The
+ * writer holds a lock on its temporary file: one without a lock belongs to a process that has ended. */
 #define PREFIX ".velo-"
 #define SUFFIX ".tmp"
 enum { MOST_LINKS = 40, MOST_TRIES = 1000 };
 
-/* The length of the folder's part, with its slash; 0: the current folder. */
+/* Length of the folder's part of a path, including its slash; 0: the current folder. */
 static size_t folder_length(const char *path) {
   const char *slash = strrchr(path, '/');
   return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-/* The file that `path` stands for when its symbolic links are followed; it need not exist. false: errno. */
+/* Resolves the symbolic links of `path`; the target need not exist. False: errno is set. */
 static bool follow_links(const char *path, char *target, size_t size) {
   char link[4096];
   if (strlen(path) >= size) return errno = ENAMETOOLONG, false;
   memcpy(target, path, strlen(path) + 1);
   for (int i = 0; i < MOST_LINKS; i++) {
     ssize_t n = readlink(target, link, sizeof link);
-    if (n < 0) return true; /* no link; opening it will tell what else is wrong */
+    if (n < 0) return true; /* not a link; other errors are reported when it is opened */
     size_t folder = n > 0 && link[0] == '/' ? 0 : folder_length(target);
     if (folder + (size_t)n >= size) return errno = ENAMETOOLONG, false;
     memcpy(target + folder, link, (size_t)n);
@@ -45,16 +45,16 @@ static void name_temporary(vlFileWriter *writer, unsigned number) {
            (int)folder_length(writer->target), writer->target, (long)getpid(), number);
 }
 
-/* A file without a name, which goes with its process however that ends. Not every file system has them. */
+/* Opens a file without a name (O_TMPFILE), which disappears with its process. Not every file system supports them. */
 static bool open_nameless(vlFileWriter *writer) {
   char folder[4096];
-  if (access("/proc/self/fd", X_OK) != 0) return false; /* by which it gets its name */
+  if (access("/proc/self/fd", X_OK) != 0) return false; /* needed to name the file later */
   snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(writer->target), writer->target);
   writer->descriptor = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
   return writer->descriptor >= 0;
 }
 
-/* Its name, of a temporary, for as long as it takes to rename it. false: errno. */
+/* Links it to a temporary name, just before it is renamed. False: errno is set. */
 static bool give_name(vlFileWriter *writer) {
   char self[64];
   snprintf(self, sizeof self, "/proc/self/fd/%d", writer->descriptor);
@@ -67,7 +67,7 @@ static bool give_name(vlFileWriter *writer) {
   return false;
 }
 
-/* A new file with a lock on it. false: errno. */
+/* Opens a new file and locks it. False: errno is set. */
 static bool open_temporary(vlFileWriter *writer) {
   if (open_nameless(writer)) {
     flock(writer->descriptor, LOCK_EX | LOCK_NB);
@@ -78,7 +78,7 @@ static bool open_temporary(vlFileWriter *writer) {
     writer->descriptor = open(writer->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (writer->descriptor < 0 && errno == EEXIST) continue;
     if (writer->descriptor < 0) return false;
-    struct stat info; /* another process may have taken it for a dead writer's before it was locked */
+    struct stat info; /* another process may have removed it as abandoned before it was locked */
     bool locked = flock(writer->descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
     if (locked && fstat(writer->descriptor, &info) == 0 && info.st_nlink > 0) return true;
     close(writer->descriptor);
@@ -164,7 +164,7 @@ void vl_file_write_at(vlFileWriter *writer, const void *data, size_t size, uint6
   }
 }
 
-/* As far as the user and the file system allow it. */
+/* Keeps owner and permissions of the replaced file, as far as the user and the file system allow. */
 static void keep_permissions(const vlFileWriter *writer) {
   if (fchown(writer->descriptor, writer->owner, writer->group) != 0 &&
       fchown(writer->descriptor, (uid_t)-1, writer->group) != 0)
@@ -181,7 +181,7 @@ vlResult vl_file_commit(vlFileWriter *writer, vlError *error) {
   if (!writer->failed_errno && renames && rename(writer->temporary, writer->target) != 0) writer->failed_errno = errno;
   if (writer->failed_errno && writer->temporary[0]) unlink(writer->temporary);
   if (close(writer->descriptor) != 0 && !writer->failed_errno) writer->failed_errno = errno;
-  writer->descriptor = -1; /* closed last: with it goes the lock */
+  writer->descriptor = -1; /* closed last, because closing releases the lock */
   if (!writer->failed_errno) return VL_OK;
   return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", writer->path, strerror(writer->failed_errno));
 }

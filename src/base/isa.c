@@ -1,4 +1,5 @@
-/* base/isa.c: which instruction sets the machine has, by single features (clang 14 does not know the level names). */
+/* base/isa.c: detects the instruction sets of the processor by single features (clang 14 does not know the level
+ * names). */
 #include "base/isa.h"
 
 #include <stdlib.h>

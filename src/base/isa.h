@@ -1,18 +1,19 @@
-/* base/isa.h: instruction sets. Hot files are compiled once per set with VL_ISA_SUFFIX = v2, v3 or v4; their outside
- * functions are named name (name_v3, ...) and gathered in one constant table per room and set. */
+/* base/isa.h: instruction sets. Hot files are compiled once per set with VL_ISA_SUFFIX = v2, v3 or v4. Their
+ * external functions have the set's suffix (name_v3, ...) and are collected in one constant table per folder and
+ * set. */
 #ifndef BASE_ISA_H
 #define BASE_ISA_H
 
 #include "velo/base.h"
 
-/* The widest set this machine has, or the wish if the machine has it (else UNSUPPORTED). AUTO looks at the environment
- * variable VELO_ISA first. */
+/* Chooses the widest supported set for AUTO (the environment variable VELO_ISA overrides it), else the requested
+ * one. Errors: UNSUPPORTED if the processor lacks it. */
 vlResult vl_isa_choose(vlIsa wish, vlIsa *isa);
 vlIsa vl_isa_best(void);
 
-/* Declares the kernel table of hot files, PREFIX_kernel_table, as it is called in the hot file that defines it and,
- * once per instruction set, outside; and PREFIX_kernels(isa), the table of a set. The build joins the hot files of a
- * set into one object in which only these tables are global (CMakeLists.txt has their list). */
+/* Declares the kernel table of hot files: PREFIX_kernel_table, the name within the hot file that defines it; the
+ * same per instruction set, for all others; and PREFIX_kernels(isa), the table of a set. The build links the hot
+ * files of a set into one object in which only these tables are global (CMakeLists.txt has their list). */
 #if defined(__x86_64__)
 #define VL_KERNEL_TABLE(type, prefix)                                                          \
   extern const type prefix##_kernel_table, prefix##_kernel_table_v2, prefix##_kernel_table_v3, \
@@ -31,8 +32,8 @@ vlIsa vl_isa_best(void);
   }
 #endif
 
-/* Batches are padded to VL_LANES elements, so that vector loops have no remainder. Put VL_SIMD before a loop over a
- * batch: its iterations do not depend on each other. With VL_SCALAR, for benchmarks, batches are not padded. */
+/* Batches are padded to VL_LANES elements, so that vector loops have no remainder. VL_SIMD before a loop over a
+ * batch states that its iterations are independent. With VL_SCALAR, for benchmarks, batches are not padded. */
 enum { VL_LANES = 16 };
 #ifndef VL_SCALAR
 #define VL_PAD(n) (((n) + 15u) & ~15u)

@@ -1,4 +1,4 @@
-/* camera/aperture.c: openings that are not round: blade polygons and images. See aperture.h. */
+/* camera/aperture.c: apertures that are not round: blade polygons and images. See aperture.h. */
 #include "camera/aperture.h"
 
 #include <math.h>
@@ -24,8 +24,8 @@ void vl_blades_make(uint32_t count, double rotation, vlBlades *blades) {
   blades->x[blades->count] = blades->x[0], blades->y[blades->count] = blades->y[0];
 }
 
-/* u chooses one of the equal triangles between centre and side, its rest the place along the side; the square root of v
- * is the height: a triangle's area grows as the square of it. */
+/* u chooses one of the equal triangles between the centre and a side; its remainder is the position along the side.
+ * sqrt(v) is the height, because a triangle's area grows with the square of its height. */
 void vl_blades_points(const vlBlades *blades, uint32_t n, const float *u, const float *v, float *x, float *y) {
   for (uint32_t i = 0; i < n; i++) {
     double t = (double)u[i] * blades->count;
@@ -43,9 +43,9 @@ struct vlAperture {
   vlContext *context;
   uint32_t width, height;
   double reach2;  /* square of vl_aperture_reach */
-  float *values;  /* scaled: their mean is pi / 4 */
-  float *rows;    /* height + 1: share of the light above each row's upper edge */
-  float *columns; /* height x (width + 1): the same from the left inside each row */
+  float *values;  /* scaled so that their mean is pi / 4 */
+  float *rows;    /* height + 1: share of the total light above each row's upper edge */
+  float *columns; /* height x (width + 1): share of the row's light to the left of each column */
 };
 
 void vl_aperture_points(const vlAperture *a, uint32_t n, const float *u, const float *v, float *x, float *y) {
@@ -77,7 +77,7 @@ double vl_aperture_reach2(const vlAperture *a) {
   return a->reach2;
 }
 
-/* Bilinear values reach from a texel's middle to those of its neighbours, and end with the square. */
+/* The bilinear support of a texel reaches to the centres of its neighbours, but not beyond the square. */
 static double find_reach2(const vlAperture *a) {
   double most = 0;
   for (uint32_t y = 0; y < a->height; y++)
@@ -106,7 +106,7 @@ static vlResult check(uint32_t width, uint32_t height, const float *values, doub
   return VL_OK;
 }
 
-/* Sums so far, as shares of the whole; all zero, and unread, where there is no light. */
+/* Running sums as shares of the total. All zero, and not read, if the total is zero. */
 static void accumulate(const double *sums, uint32_t count, float *table) {
   double whole = 0.0, before = 0.0;
   for (uint32_t i = 0; i < count; i++) whole += sums[i];
@@ -115,7 +115,7 @@ static void accumulate(const double *sums, uint32_t count, float *table) {
     before += sums[i];
     table[i + 1] = whole > 0.0 ? (float)(before / whole) : 0.0f;
   }
-  /* from the last cell with light on all is 1, so that no rounding leads behind it */
+  /* entries from the last non-black cell on are exactly 1, so that rounding never selects a cell behind it */
   for (uint32_t i = count; whole > 0.0 && i > 0; i--) {
     table[i] = 1.0f;
     if (sums[i - 1] > 0.0) break;
@@ -172,7 +172,7 @@ void vl_aperture_destroy(vlAperture *a) {
 
 /* ---- pbrt's names ------------------------------------------------------------------------------------------------ */
 
-/* Even-odd: is the point inside the polygon? */
+/* Whether the point is inside the polygon (even-odd rule). */
 static bool inside(const double (*corners)[2], int count, double x, double y) {
   bool in = false;
   for (int i = 0, k = count - 1; i < count; k = i++) {
@@ -182,8 +182,8 @@ static bool inside(const double (*corners)[2], int count, double x, double y) {
   return in;
 }
 
-/* Shapes and sizes are pbrt-v4's; y up here. The pentagon stands on a side and reaches 0.8 of the radius; the star's
- * inner corners lie where the sides of its outer pentagon's diagonals cross, and one of them is to the right. */
+/* Shapes and sizes are pbrt-v4's; y points up here. The pentagon stands on a side and has radius 0.8. The star's
+ * inner corners are the intersections of its outer pentagon's diagonals; one of them is on the right. */
 static double named_value(int name, double x, double y) {
   double corners[10][2];
   if (name == 0) return fmax(0.0, exp(-(x * x + y * y)) - exp(-1.0));

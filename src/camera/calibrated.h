@@ -1,18 +1,18 @@
-/* camera/calibrated.h: closed-form models of wide calibrated lenses, both directions; what remains is the distortion's
- * (distortion.h). Each says which directions it can tell apart.
- *   FOV            Devernay and Faugeras, "Straight lines have to be straight", 2001; w the field of view
- *   division       Fitzgibbon, "Simultaneous linear estimation of multiple view geometry and lens distortion", 2001
- *   unified        Mei and Rives, "Single view point omnidirectional camera calibration from planar grids", 2007
- *   EUCM           Khomutenko, Garcia, Martinet, "An Enhanced Unified Camera Model", 2016
- *   double sphere  Usenko, Demmel, Cremers, "The Double Sphere Camera Model", 2018 (also the domains of the last two)
- */
+/* camera/calibrated.h: closed-form models of calibrated wide-angle lenses, both directions. Any remaining distortion is
+ * distortion.h's. Each function states its domain.
+ *     FOV            Devernay and Faugeras, "Straight lines have to be straight", 2001; w the field of view
+ *     division       Fitzgibbon, "Simultaneous linear estimation of multiple view geometry and lens distortion", 2001
+ *     unified        Mei and Rives, "Single view point omnidirectional camera calibration from planar grids", 2007
+ *     EUCM           Khomutenko, Garcia, Martinet, "An Enhanced Unified Camera Model", 2016
+ *     double sphere  Usenko, Demmel, Cremers, "The Double Sphere Camera Model", 2018 (also the domains of the last
+ *     two) */
 #ifndef CAMERA_CALIBRATED_H
 #define CAMERA_CALIBRATED_H
 
 #include "camera/plane.h"
 #include "math/approx_double.h"
 
-/* r = atan(2 tan(theta) tan(w/2)) / w; t = 2 tan(w/2). The half-space ahead. */
+/* r = atan(2 tan(theta) tan(w/2)) / w; t = 2 tan(w/2). Domain: the half-space z > 0. */
 static inline vlDirection vl_fov_unproject(double w, double t, double x, double y) {
   double r = vl_not_tiny(vl_length2(x, y)), angle = r * w;
   vlSinCosDouble a = vl_sincos_double(angle < 4.0 ? angle : 4.0);
@@ -24,15 +24,15 @@ static inline vlPlanePoint vl_fov_project(double w, double t, double x, double y
   return (vlPlanePoint){x * k, y * k, z > 0.0 ? 1.0 : 0.0};
 }
 
-/* Undistorted = distorted / (1 + lambda r^2). Barrel (lambda < 0) sees all but straight back; pincushion up to
- * r = 1/sqrt(lambda), where it folds. */
+/* Undistorted = distorted / (1 + lambda r^2). Domain: barrel (lambda < 0) all directions but straight back;
+ * pincushion up to r = 1/sqrt(lambda), where it folds. */
 static inline vlDirection vl_division_unproject(double lambda, double x, double y) {
   double r2 = x * x + y * y;
   return (vlDirection){x, y, 1.0 + lambda * r2, lambda * r2 <= 1.0 && r2 < 1e30 ? 1.0 : 0.0};
 }
 static inline vlPlanePoint vl_division_project(double lambda, double x, double y, double z) {
   double across2 = x * x + y * y, root = z * z - 4.0 * lambda * across2, s = vl_root(root);
-  /* 2/(z + s) where z >= 0; the same number without cancelling where z < 0 (then lambda < 0, s > |z|) */
+  /* 2/(z + s) for z >= 0; an equal expression without cancellation for z < 0 (then lambda < 0, s > |z|) */
   double ahead = 2.0 / vl_not_tiny(z + s), behind = (s - z) / vl_not_tiny(-2.0 * lambda * across2);
   double k = z < 0.0 ? behind : ahead;
   int valid = root >= 0.0 && (z > 0.0 || (lambda < 0.0 && across2 > 0.0));

@@ -1,4 +1,4 @@
-/* camera/camera.c: the public face of the room: def to camera, another resolution. */
+/* camera/camera.c: the public functions: a camera from its def; a camera at another resolution. */
 #include <math.h>
 
 #include "base/cookie.h"
@@ -61,7 +61,7 @@ static vlResult check_vector(const char *name, const double v[3], vlError *error
   return VL_OK;
 }
 
-/* All that is neither intrinsics nor pose. */
+/* Checks everything but intrinsics and pose. */
 static vlResult check_rest(const vlCameraDef *d, vlError *error) {
   if ((uint32_t)d->projection > VL_PROJECTION_OPTICS)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown projection %d", (int)d->projection);
@@ -128,8 +128,8 @@ vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t heigh
     return VL_ERROR_ARGUMENT;
   double before = camera->width < camera->height ? camera->width : camera->height;
   double scale = (width < height ? width : height) / before;
-  /* planes that hold the whole sphere, or a cube, are stretched: each side keeps what it spans */
-  if (camera->projection == VL_PROJECTION_OPTICS) { /* the film's diagonal stays */
+  /* planes that contain the whole sphere, or a cube, are stretched: each side keeps its angular range */
+  if (camera->projection == VL_PROJECTION_OPTICS) { /* the film's diagonal is kept */
     double w = width, h = height, w0 = camera->width, h0 = camera->height;
     scale = sqrt((w * w + h * h) / (w0 * w0 + h0 * h0));
   }
@@ -143,10 +143,10 @@ vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t heigh
   resized.fx *= scale_x;
   resized.fy *= scale_y;
   resized.skew *= scale_x;
-  /* the principal point keeps its place relative to the centre */
+  /* the principal point keeps its position relative to the centre */
   resized.cx = 0.5 * width + (camera->cx - 0.5 * camera->width) * scale_x;
   resized.cy = 0.5 * height + (camera->cy - 0.5 * camera->height) * scale_y;
-  for (int i = 0; i < 2; i++) /* unset stays unset */
+  for (int i = 0; i < 2; i++) /* unset values stay unset */
     resized.lens.focus_pixel[i] =
         (i ? resized.cy : resized.cx) +
         (camera->lens.focus_pixel[i] - (i ? camera->cy : camera->cx)) * (i ? scale_y : scale_x);

@@ -1,4 +1,4 @@
-/* camera/compile.c: vlCamera (the value the public face hands out) to vlCameraCompiled (what the batches read). */
+/* camera/compile.c: converts a vlCamera (public value) to a vlCameraCompiled (input of the batches). */
 #include <math.h>
 #include <string.h>
 
@@ -7,7 +7,7 @@
 #include "camera/rays.h"
 #include "math/approx_double.h"
 
-/* Pixels that a plane which closes on itself goes on for beyond its edges; no filter is wider. */
+/* Pixels by which a plane that closes on itself extends beyond its edges; no filter is wider. */
 static const double overhang = 16.0;
 
 /* The angle that the central pixel subtends. */
@@ -56,7 +56,7 @@ void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
       .focal = camera->fx,
       .inv_fx = 1.0 / camera->fx,
       .inv_fy = 1.0 / camera->fy,
-      /* + 0.0 turns -0 into 0, so that an axis that plays no part leaves no sign behind */
+      /* + 0.0 turns -0 into 0 */
       .rotation = {m[0] + 0.0, m[1] + 0.0, m[2] + 0.0, m[4] + 0.0, m[5] + 0.0, m[6] + 0.0, m[8] + 0.0, m[9] + 0.0,
                    m[10] + 0.0},
       .position = {m[3] + 0.0, m[7] + 0.0, m[11] + 0.0},

@@ -1,21 +1,21 @@
 /* camera/cube.h: the six faces of a cube in one image, both directions: right, left, up, down, front, back (the order
- * +x -x +y -y +z -z of cube maps with y up). Each face is a perspective view of 90 degrees and one unit of the plane
- * wide; right, left, front and back are upright; up's lower edge and down's upper edge meet front. The plane starts at
+ * +x -x +y -y +z -z of cube maps with y up). Each face is a perspective view of 90 degrees, one unit of the plane wide.
+ * Right, left, front and back are upright; up's lower edge and down's upper edge adjoin front. The plane's origin is
  * its top left corner. Two layouts:
  *
- *   0: a row, 6 x 1                        1: a cross, 4 x 3
- *      right left up down front back               up
- *                                            left front right back
- *                                                 down
+ *     0: a row, 6 x 1                        1: a cross, 4 x 3
+ *        right left up down front back               up
+ *                                              left front right back
+ *                                                   down
  *
- * A face's own view goes on beyond its edge, so that filters do not mix neighbours: the face is the pixel's, and given
- * apart, as the number of the plane's cell: column + 8 row. */
+ * A face's view continues beyond its edge, so that filters do not mix neighbouring faces: the face is chosen by the
+ * pixel and passed separately, as the number of the plane's cell: column + 8 row. */
 #ifndef CAMERA_CUBE_H
 #define CAMERA_CUBE_H
 
 #include "camera/plane.h"
 
-/* The cell that a plane point lies in; no face's where it lies far outside. */
+/* The cell that contains a plane point. Far outside of the layout it is the cell of no face. */
 static inline double vl_cube_cell(double x, double y) {
   double column = __builtin_floor(x);
   return (column >= 0.0 && column < 7.0 ? column : 7.0) + 8.0 * __builtin_floor(y);

@@ -1,6 +1,6 @@
-/* camera/cylindrical.h: a cylinder about the camera's vertical axis, both directions: longitude across (radians, -pi to
- * pi), the tangent of the latitude down. Vertical lines stay straight, the horizon is even. Beyond -pi and pi the plane
- * goes round by `over`, so that filters see no edge. */
+/* camera/cylindrical.h: a cylinder about the camera's vertical axis, both directions. x: longitude (radians, -pi to
+ * pi); y: tangent of the latitude, down. Vertical lines and the horizon stay straight. The plane continues around by
+ * `over` beyond -pi and pi, so that filters see no edge. */
 #ifndef CAMERA_CYLINDRICAL_H
 #define CAMERA_CYLINDRICAL_H
 
@@ -12,7 +12,7 @@ static inline vlDirection vl_cylindrical_unproject(double over, double x, double
   vlSinCosDouble lon = vl_sincos_double(inside ? x : 0.0);
   return (vlDirection){lon.sin, y, lon.cos, inside ? 1.0 : 0.0};
 }
-/* All but straight up and down. */
+/* All directions but straight up and down. */
 static inline vlPlanePoint vl_cylindrical_project(double x, double y, double z) {
   double across = vl_length2(x, z);
   return (vlPlanePoint){vl_atan2_double(x, z), y / vl_not_tiny(across), across > 0.0 ? 1.0 : 0.0};

@@ -1,13 +1,14 @@
-/* camera/distortion.h: what a calibrated lens does to the plane behind its ideal projection, both directions. One form
- * holds OpenCV's 14 coefficients (rational radial, tangential, thin prism, tilted sensor), OpenCV's and COLMAP's
- * fisheye polynomials and COLMAP's thin prism (OpenCV documentation, "Camera Calibration and 3D Reconstruction";
- * Brown, "Decentering distortion of lenses", 1966; Weng, Cohen, Herniou 1992; COLMAP, sensor/models.h):
+/* camera/distortion.h: distortion by a calibrated lens: maps ideal to real points of the projection's plane and back.
+ * One form covers OpenCV's 14 coefficients (rational radial, tangential, thin prism, tilted sensor), the fisheye
+ * polynomials of OpenCV and COLMAP, and COLMAP's thin prism (OpenCV documentation, "Camera Calibration and 3D
+ * Reconstruction"; Brown, "Decentering distortion of lenses", 1966; Weng, Cohen, Herniou 1992; COLMAP,
+ * sensor/models.h):
  *
- *   s = x^2 + y^2,  q = (1 + n0 s + n1 s^2 + n2 s^3 + n3 s^4) / (1 + d0 s + d1 s^2 + d2 s^3)
- *   u = x q + 2 p0 x y + p1 (s + 2 x^2) + t0 s + t1 s^2
- *   v = y q + p0 (s + 2 y^2) + 2 p1 x y + t2 s + t3 s^2,   then the sensor's tilt, a homography.
+ *     s = x^2 + y^2,  q = (1 + n0 s + n1 s^2 + n2 s^3 + n3 s^4) / (1 + d0 s + d1 s^2 + d2 s^3)
+ *     u = x q + 2 p0 x y + p1 (s + 2 x^2) + t0 s + t1 s^2
+ *     v = y q + p0 (s + 2 y^2) + 2 p1 x y + t2 s + t3 s^2,   then the sensor's tilt, a homography.
  *
- * Inside the disc of vlDistortionMap.radius the determinant of its derivative is positive, so nothing folds. */
+ * Within the disc of radius vlDistortionMap.radius the Jacobian determinant is positive: the map does not fold. */
 #ifndef CAMERA_DISTORTION_H
 #define CAMERA_DISTORTION_H
 
@@ -15,7 +16,7 @@
 #include "velo/camera.h"
 
 typedef struct vlDistorted {
-  double u, v, ux, uy, vx, vy; /* point and derivatives, without the tilt */
+  double u, v, ux, uy, vx, vy; /* point and derivatives, before the tilt */
 } vlDistorted;
 
 static inline vlDistorted vl_distort(const vlDistortionMap *m, double x, double y) {
@@ -25,7 +26,7 @@ static inline vlDistorted vl_distort(const vlDistortionMap *m, double x, double 
   double below = 1.0 + s * (d[0] + s * (d[1] + s * d[2]));
   double above1 = n[0] + s * (2.0 * n[1] + s * (3.0 * n[2] + s * (4.0 * n[3])));
   double below1 = d[0] + s * (2.0 * d[1] + s * (3.0 * d[2]));
-  double q = above / below, q1 = (above1 - q * below1) / below; /* and its derivative by s */
+  double q = above / below, q1 = (above1 - q * below1) / below; /* q1: derivative of q by s */
   double xy = x * y, tu = 2.0 * (t[0] + 2.0 * t[1] * s), tv = 2.0 * (t[2] + 2.0 * t[3] * s);
   vlDistorted r;
   r.u = x * q + 2.0 * p0 * xy + p1 * (s + 2.0 * x * x) + s * (t[0] + t[1] * s);
@@ -37,13 +38,13 @@ static inline vlDistorted vl_distort(const vlDistortionMap *m, double x, double 
   return r;
 }
 
-/* A homography, w > 0 inside its domain. */
+/* Applies the homography h; w > 0 inside its domain. */
 static inline vlPlanePoint vl_tilt(const double h[9], double x, double y) {
   double w = h[6] * x + h[7] * y + h[8], k = 1.0 / vl_not_tiny(w);
   return (vlPlanePoint){(h[0] * x + h[1] * y + h[2]) * k, (h[3] * x + h[4] * y + h[5]) * k, w > 1e-9 ? 1.0 : 0.0};
 }
 
-/* Ideal to real. */
+/* Maps an ideal point to the real one. */
 static inline vlPlanePoint vl_distortion_apply(const vlDistortionMap *m, double x, double y) {
   vlDistorted d = vl_distort(m, x, y);
   vlPlanePoint p = vl_tilt(m->tilt, d.u, d.v);
@@ -52,7 +53,8 @@ static inline vlPlanePoint vl_distortion_apply(const vlDistortionMap *m, double 
   return p;
 }
 
-/* One step of Newton's method towards the ideal point (x, y) whose untilted image is (u, v); kept inside the disc. */
+/* One Newton step towards the ideal point (x, y) that maps to (u, v) before the tilt; the result is kept inside the
+ * disc. */
 static inline vlPlanePoint vl_distortion_step(const vlDistortionMap *m, double x, double y, double u, double v) {
   vlDistorted d = vl_distort(m, x, y);
   double det = d.ux * d.vy - d.uy * d.vx, eu = u - d.u, ev = v - d.v;
@@ -62,13 +64,13 @@ static inline vlPlanePoint vl_distortion_step(const vlDistortionMap *m, double x
   return (vlPlanePoint){nx * shrink, ny * shrink, 1.0};
 }
 
-/* Where the steps begin. */
+/* The start of the Newton iteration. */
 static inline vlPlanePoint vl_distortion_start(const vlDistortionMap *m, double u, double v) {
   double r = vl_length2(u, v), k = r > m->radius ? m->radius / r : 1.0;
   return (vlPlanePoint){u * k, v * k, 1.0};
 }
 
-/* Whether the steps arrived: what (x, y) maps to is (u, v), to 1e-12. NaN is not. */
+/* 1 if the iteration converged: (x, y) maps to (u, v) to 1e-12; else 0, also for NaN. */
 static inline double vl_distortion_check(const vlDistortionMap *m, double x, double y, double u, double v) {
   vlDistorted d = vl_distort(m, x, y);
   double error = __builtin_fabs(d.u - u) + __builtin_fabs(d.v - v);

@@ -1,6 +1,6 @@
-/* camera/domain.c: how far a camera sees: the disc of the plane within which its lens does not fold and its projection
- * has a meaning, how many steps of Newton's method turn its distortion round there, and what share of the image lies
- * outside. */
+/* camera/domain.c: the domain of a camera: the disc of the plane within which its distortion does not fold and its
+ * projection is defined; the number of Newton steps that invert the distortion there; and the share of the image
+ * that lies outside. */
 #include <math.h>
 
 #include "base/error.h"
@@ -20,8 +20,8 @@ static double value_at(const double *p, int degree, double s) {
   return value;
 }
 
-/* All roots of p in (0, top], in order, into roots; between two roots of the derivative there is at most one, so none
- * is missed but pairs closer than rounding. Returns their number. */
+/* All roots of p in (0, top], ascending. Between two roots of the derivative there is at most one root, so that only
+ * pairs closer than rounding are missed. Returns their number. */
 static int positive_roots(const double *p, int degree, double top, double roots[DEGREE]) {
   if (degree < 1) return 0;
   double derivative[DEGREE], turns[DEGREE];
@@ -48,7 +48,7 @@ static int positive_roots(const double *p, int degree, double top, double roots[
   return count;
 }
 
-/* With s = r^2 and q = N/D, r q(s) grows as long as (N + 2 s N') D - 2 s N D' > 0 and D > 0. */
+/* With s = r^2 and q = N/D, r q(s) increases while (N + 2 s N') D - 2 s N D' > 0 and D > 0. */
 static double radial_fold(const vlDistortionMap *m) {
   const double n[5] = {1.0, m->numerator[0], m->numerator[1], m->numerator[2], m->numerator[3]};
   const double d[4] = {1.0, m->denominator[0], m->denominator[1], m->denominator[2]};
@@ -62,8 +62,8 @@ static double radial_fold(const vlDistortionMap *m) {
   return sqrt(first);
 }
 
-/* ---- the general case: along 64 directions, the first place where the determinant is no longer positive -------------
- */
+/* ---- the general case: along 64 directions, the first point with a determinant <= 0
+ * --------------------------------- */
 
 static bool unfolded(const vlDistortionMap *m, double x, double y) {
   vlDistorted d = vl_distort(m, x, y);
@@ -97,19 +97,19 @@ static double fold_radius(const vlDistortionMap *m, double most) {
   for (int i = 0; i < 4; i++) radial = radial && m->prism[i] == 0.0;
   double radius = fmin(radial_fold(m), most);
   if (radial) return radius;
-  /* tangential terms move the fold either way, so the search goes on past the radial one */
+  /* tangential terms shift the fold in both directions, so the search continues beyond the radial one */
   radius = most;
   for (int i = 0; i < DIRECTIONS; i++) {
     double angle = 2.0 * pi * i / DIRECTIONS;
     radius = fmin(radius, fold_along(m, cos(angle), sin(angle), radius));
   }
-  return radius < most ? 0.998 * radius : radius; /* between the directions */
+  return radius < most ? 0.998 * radius : radius; /* margin for folds between the directions */
 }
 
-/* ---- how many steps -------------------------------------------------------------------------------------------------
- */
+/* ---- number of Newton steps
+ * ----------------------------------------------------------------------------------------- */
 
-/* Until the inverse of (x, y)'s image is found; MAX_STEPS + 1: never. */
+/* Steps until the inverse of the distorted (x, y) is found; MAX_STEPS + 1: not found. */
 static uint32_t steps_for(const vlDistortionMap *m, double x, double y) {
   vlDistorted d = vl_distort(m, x, y);
   vlPlanePoint p = vl_distortion_start(m, d.u, d.v);
@@ -121,7 +121,8 @@ static uint32_t steps_for(const vlDistortionMap *m, double x, double y) {
   return step;
 }
 
-/* The plane's radius that the image can need: the first where the image lies beyond all its corners by half. */
+/* An upper bound of the plane radius that the image needs: the first radius that maps beyond all corners of the
+ * image by half. */
 static double needed_radius(const vlCamera *c) {
   const vlDistortionMap *m = &c->distortion;
   double corner = 0.0;
@@ -148,7 +149,7 @@ static uint32_t steps_everywhere(const vlCamera *c) {
   uint32_t steps = 1;
   for (int i = 0; i < 24; i++)
     for (int k = 1; k <= 40; k++) {
-      /* towards the edge ever closer: a fold is where Newton's method is slow */
+      /* denser towards the edge: near a fold Newton's method is slow */
       double share = k <= 32 ? k / 33.0 : 1.0 - pow(10.0, 30.5 - k);
       double r = most * share, angle = 2.0 * pi * (i + 0.3) / 24;
       uint32_t here = steps_for(m, r * cos(angle), r * sin(angle));
@@ -160,7 +161,7 @@ static uint32_t steps_everywhere(const vlCamera *c) {
 /* ---- the image ----------------------------------------------------------------------------------------------------
  */
 
-/* Of a lens of many elements: rings of the film that no light reaches. */
+/* For a lens of many elements: the share of the image in film rings that no light reaches. */
 static double dark_share(const vlCamera *camera, const vlCameraCompiled *c) {
   uint32_t dark = 0;
   for (int i = 0; i < GRID * GRID; i++) {
@@ -182,7 +183,7 @@ static double share_outside(const vlCamera *camera) {
     outside += vl_camera_direction(&c, x - c.cx, y - c.cy).valid == 0.0;
   }
   if (outside > 0) return outside / (double)(GRID * GRID);
-  /* the corners' pixels, which the grid may miss */
+  /* the corner pixels, which the grid may miss */
   for (int i = 0; i < 4; i++) {
     double x = i & 1 ? camera->width - 0.5 : 0.5, y = i & 2 ? camera->height - 0.5 : 0.5;
     outside += vl_camera_direction(&c, x - c.cx, y - c.cy).valid == 0.0;
@@ -219,7 +220,7 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
   if (kind == VL_PROJECTION_EQUIDISTANT) limit = pi;
   double radius;
   if (!vl_is_unset(angle)) {
-    /* straight back is nowhere in particular; a hair before it is */
+    /* the direction straight back is singular; a nearby one replaces it */
     bool seen = vl_camera_plane_radius(camera, angle < pi ? angle : pi * (1.0 - 1e-9), false, &radius);
     if (seen)
       limit = fmin(limit, radius * (1.0 + 1e-12));

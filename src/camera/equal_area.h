@@ -1,7 +1,7 @@
-/* camera/equal_area.h: the whole sphere in a square, every pixel the same solid angle, both directions (Clarberg, "Fast
- * Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008; pbrt book 3.8.3). The plane is -1 to 1 both ways; its
- * centre looks ahead, its corners back. A little beyond an edge (`over`) the plane goes on on the other half of that
- * edge, as the sphere does, so that filters see no edge. */
+/* camera/equal_area.h: the whole sphere in a square, every pixel the same solid angle, both directions (Clarberg,
+ * "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008; pbrt book 3.8.3). The plane is [-1, 1]^2; its
+ * centre is straight ahead, its corners are straight back. Slightly beyond an edge (`over`) the plane continues at
+ * the other half of that edge, as the sphere does, so that filters see no edge. */
 #ifndef CAMERA_EQUAL_AREA_H
 #define CAMERA_EQUAL_AREA_H
 
@@ -11,7 +11,7 @@
 static inline vlDirection vl_equal_area_unproject(double over, double x, double y) {
   double ax = __builtin_fabs(x), ay = __builtin_fabs(y);
   int inside = ax <= 1.0 + over && ay <= 1.0 + over;
-  /* beyond an edge: back inside, at the edge's other half */
+  /* beyond an edge: fold back to the edge's other half */
   double u = ax > 1.0 ? __builtin_copysign(2.0 - ax, x) : x, v = ax > 1.0 ? -y : y;
   double w = ay > 1.0 ? __builtin_copysign(2.0 - ay, v) : v;
   u = ay > 1.0 ? -u : u;
@@ -26,7 +26,7 @@ static inline vlDirection vl_equal_area_unproject(double over, double x, double 
 static inline vlPlanePoint vl_equal_area_project(double x, double y, double z) {
   double length = vl_length3(x, y, z), scale = 1.0 / vl_not_tiny(length);
   double ax = __builtin_fabs(x) * scale, ay = __builtin_fabs(y) * scale, az = __builtin_fabs(z) * scale;
-  double r = __builtin_sqrt((ax * ax + ay * ay) / (1.0 + az)); /* sqrt(1 - |z|) without cancelling */
+  double r = __builtin_sqrt((ax * ax + ay * ay) / (1.0 + az)); /* sqrt(1 - |z|) without cancellation */
   double phi = vl_atan2_double(ay, ax) * 0.63661977236758134308;
   double v = phi * r, u = r - v;
   double uu = z < 0.0 ? 1.0 - v : u, vv = z < 0.0 ? 1.0 - u : v;

@@ -1,7 +1,7 @@
-/* camera/equirectangular.h: longitude across, latitude down, both directions; radians. The plane's centre looks ahead.
- * Longitude goes from -pi to pi, latitude from -pi/2 (up) to pi/2. A little beyond, the plane goes on as the sphere
- * does (round it, and over the poles), so that filters see no edge: `over_x`, `over_y`, radians; project gives the
- * point within. */
+/* camera/equirectangular.h: longitude (x) and latitude (y) in radians, both directions. The plane's centre is
+ * straight ahead. Longitude is in [-pi, pi], latitude in [-pi/2 (up), pi/2]. Slightly beyond (`over_x`, `over_y`,
+ * radians) the plane continues as the sphere does (around it, and over the poles), so that filters see no edge. The
+ * projection returns the point within these ranges. */
 #ifndef CAMERA_EQUIRECTANGULAR_H
 #define CAMERA_EQUIRECTANGULAR_H
 

@@ -1,14 +1,15 @@
-/* camera/fisheye.h: the four classical fisheyes, both directions. They differ in how far from the centre, r, an angle
- * theta from the view axis lands: equidistant theta, equisolid 2 sin(theta/2), stereographic 2 tan(theta/2),
- * orthographic sin(theta); each is 1:1 at the centre (Ray, Applied Photographic Optics, 3rd ed., ch. 28; Miyamoto,
- * "Fish eye lens", 1964). Circular, cropped and diagonal framing are a matter of focal length and image circle. */
+/* camera/fisheye.h: the four classical fisheye projections, both directions. They differ in the radius r of a
+ * direction at angle theta from the view axis: equidistant theta, equisolid 2 sin(theta/2), stereographic 2
+ * tan(theta/2), orthographic sin(theta). Each has scale 1 at the centre (Ray, Applied Photographic Optics, 3rd ed.,
+ * ch. 28; Miyamoto, "Fish eye lens", 1964). Circular, cropped and diagonal framing follow from focal length and
+ * image circle. */
 #ifndef CAMERA_FISHEYE_H
 #define CAMERA_FISHEYE_H
 
 #include "camera/plane.h"
 #include "math/approx_double.h"
 
-/* All directions but the one straight back. */
+/* All directions but straight back. */
 static inline vlDirection vl_equidistant_unproject(double x, double y) {
   double r = vl_not_tiny(vl_length2(x, y));
   vlSinCosDouble a = vl_sincos_double(r < 4.0 ? r : 4.0);
@@ -21,7 +22,7 @@ static inline vlPlanePoint vl_equidistant_project(double x, double y, double z) 
   return (vlPlanePoint){x * k, y * k, across > 0.0 || z > 0.0 ? 1.0 : 0.0};
 }
 
-/* 1 + cos(theta) for a unit direction, without cancelling where it looks back. */
+/* 1 + cos(theta) for a unit direction, without cancellation near straight back. */
 static inline double vl_one_plus_cosine(double x, double y, double z) {
   double back = (x * x + y * y) / (1.0 + __builtin_fabs(z));
   return z < 0.0 ? back : 1.0 + z;
@@ -49,7 +50,7 @@ static inline vlPlanePoint vl_stereographic_project(double x, double y, double z
   return (vlPlanePoint){x * k, y * k, q > 1e-29 ? 1.0 : 0.0};
 }
 
-/* The half-space ahead. */
+/* Domain: the half-space z > 0. */
 static inline vlDirection vl_sine_unproject(double x, double y) {
   double r2 = x * x + y * y;
   return (vlDirection){x, y, vl_root(1.0 - r2), r2 <= 1.0 ? 1.0 : 0.0};

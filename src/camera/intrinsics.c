@@ -1,5 +1,5 @@
-/* camera/intrinsics.c: the many spellings of a focal length and a principal point, brought to one: fx, fy, skew, cx, cy
- * in pixels. */
+/* camera/intrinsics.c: converts the alternative parameters of a focal length and a principal point to fx, fy, skew,
+ * cx, cy in pixels. */
 #include <math.h>
 #include <stdio.h>
 
@@ -7,16 +7,16 @@
 #include "camera/parts.h"
 
 static const double pi = 3.14159265358979323846;
-static const double agreement = 1e-6; /* relative; the same number written with 7 digits passes */
+static const double agreement = 1e-6; /* relative; values written with 7 digits agree */
 
-/* What the ways given so far say about one quantity: the first value and the words for where it came from. */
+/* A quantity that several parameters may give: its first value, and the parameter that gave it (for messages). */
 typedef struct {
   const char *what; /* "focal length fx" */
-  double value;     /* unset until the first way */
+  double value;     /* unset until given */
   char from[160];
 } Quantity;
 
-/* Takes one more way's value; an error naming both when it disagrees with what is known. */
+/* Takes the value of one more parameter. An error names both parameters if it disagrees with the known value. */
 static vlResult take(Quantity *q, double value, const char *from, vlError *error) {
   if (vl_is_unset(value) || isinf(value))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s gives no finite %s", from, q->what);
@@ -32,7 +32,7 @@ static vlResult take(Quantity *q, double value, const char *from, vlError *error
   return VL_OK;
 }
 
-/* A given value must be finite and, where said, above zero. */
+/* Checks that a given value is finite and, if `positive`, above zero. */
 static vlResult check(const char *name, double value, bool positive, vlError *error) {
   if (vl_is_unset(value)) return VL_OK;
   if (isinf(value)) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is infinite", name);
@@ -80,8 +80,8 @@ static vlResult check_all(const vlCameraDef *d, vlError *error) {
   return VL_OK;
 }
 
-/* Half the window in pixels along the axis on which the field of view is measured. *horizontal, *vertical: which focal
- * lengths that says (both on the diagonal: square pixels). */
+/* Half the window in pixels along the axis of the field of view. *horizontal, *vertical: which focal lengths it
+ * determines (both for the diagonal: square pixels). */
 static double half_window(const vlCameraDef *d, bool *horizontal, bool *vertical) {
   double w = d->width, h = d->height;
   vlFovAxis axis = d->fov_axis;
@@ -92,7 +92,7 @@ static double half_window(const vlCameraDef *d, bool *horizontal, bool *vertical
   return 0.5 * (axis == VL_FOV_DIAGONAL ? sqrt(w * w + h * h) : axis == VL_FOV_VERTICAL ? h : w);
 }
 
-/* The four sides of the screen window, all or none. */
+/* Checks that either all four sides of the screen window are given, or none. */
 static vlResult screen_given(const vlCameraDef *d, bool *given, vlError *error) {
   int sides = !vl_is_unset(d->screen_min_x) + !vl_is_unset(d->screen_max_x) + !vl_is_unset(d->screen_min_y) +
               !vl_is_unset(d->screen_max_y);
@@ -115,7 +115,7 @@ typedef struct {
     if (try_result != VL_OK) return try_result; \
   } while (0)
 
-/* screen window (pbrt's): what the film covers, y up, on a plane at distance 1, stretched by tan(fov / 2). */
+/* The screen window (pbrt's): extent of the film, y up, on a plane at distance 1, scaled by tan(fov / 2). */
 static vlResult take_screen(const vlCameraDef *d, double tangent, const char *from, Gathered *g, vlError *error) {
   double across = d->screen_max_x - d->screen_min_x, down = d->screen_max_y - d->screen_min_y;
   TRY(take(&g->fx, d->width / across / tangent, from, error));
@@ -124,7 +124,7 @@ static vlResult take_screen(const vlCameraDef *d, double tangent, const char *fr
   return take(&g->cy, d->screen_max_y / down * d->height, "the screen window", error);
 }
 
-/* Half a field of view in the plane's unit, along an axis. */
+/* Half a field of view along an axis, in plane units. */
 static vlResult plane_half(const vlCameraDef *d, const vlCamera *camera, bool vertical, double *half, vlError *error) {
   vlProjection kind = d->projection;
   if (kind == VL_PROJECTION_PERSPECTIVE) {
@@ -137,7 +137,7 @@ static vlResult plane_half(const vlCameraDef *d, const vlCamera *camera, bool ve
   bool round = !(kind >= VL_PROJECTION_EQUIRECTANGULAR && kind <= VL_PROJECTION_PANINI);
   if (d->fov_axis == VL_FOV_DIAGONAL && !round)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a diagonal fov has no meaning for the %s projection", name);
-  /* all round: straight back, told from the side of the image */
+  /* 360 degrees: the direction straight back is singular; approach it from the image's side */
   double angle = 0.5 * d->fov < pi ? 0.5 * d->fov : pi * (1.0 - 1e-15);
   if (!vl_camera_plane_radius(camera, angle, vertical, half))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the %s projection cannot show a fov of %g degrees", name,
@@ -145,7 +145,7 @@ static vlResult plane_half(const vlCameraDef *d, const vlCamera *camera, bool ve
   return VL_OK;
 }
 
-/* Perspective, and all the others whose plane hangs on a focal length. */
+/* Focal lengths of perspective cameras and of all others whose plane scales with a focal length. */
 static vlResult gather_focal(const vlCameraDef *d, const vlCamera *camera, bool screen, Gathered *g, vlError *error) {
   char from[160];
   bool has_fov = !vl_is_unset(d->fov), has_d = !vl_is_unset(d->view_distance), has_mm = !vl_is_unset(d->focal_mm);
@@ -183,7 +183,7 @@ static vlResult gather_focal(const vlCameraDef *d, const vlCamera *camera, bool 
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: pixel size %g is given without the view distance d that it divides", size);
   }
-  /* with an f-number one of them may serve the lens alone, where the focal length in pixels is known */
+  /* with an f-number, one of them may describe the lens alone if the focal length in pixels is known */
   bool both = has_mm && !vl_is_unset(d->sensor_width_mm),
        known = !vl_is_unset(g->fx.value) || !vl_is_unset(g->fy.value);
   bool lens = !vl_is_unset(d->lens.f_number) || d->lens.lens_tilt_x != 0.0 || d->lens.lens_tilt_y != 0.0;
@@ -223,9 +223,9 @@ static vlResult gather_orthographic(const vlCameraDef *d, bool screen, Gathered 
   return VL_OK;
 }
 
-/* Nothing said. Perspective: 90 degrees across the smaller side; orthographic: -1 to 1 across it; both are half of it
- * in pixels. Fisheyes: 180 degrees across it. Planes of the whole sphere, the cylinder and the cube: all of it. The
- * rest: 90 degrees across the smaller side where the model sees that. */
+/* Default focal lengths. Perspective: 90 degrees across the smaller side; orthographic: -1 to 1 across it; for both
+ * fx is half of it in pixels. Fisheyes: 180 degrees across it. Planes of the whole sphere, the cylinder and the
+ * cube: all of it. The others: 90 degrees across the smaller side if the model covers that. */
 static void standard_focal(const vlCameraDef *d, const vlCamera *camera, Gathered *g) {
   double half = 0.5 * (d->width < d->height ? d->width : d->height), radius = 1.0;
   bool fisheye = d->projection >= VL_PROJECTION_EQUIDISTANT && d->projection <= VL_PROJECTION_SINE;
@@ -263,7 +263,7 @@ vlResult vl_camera_intrinsics(const vlCameraDef *d, vlCamera *camera, vlError *e
   if (!vl_is_unset(d->cy)) TRY(take(&g.cy, d->cy, "cy", error));
   TRY(orthographic ? gather_orthographic(d, screen, &g, error) : gather_focal(d, camera, screen, &g, error));
 
-  /* One focal length said: square pixels. */
+  /* a single focal length: square pixels */
   if (vl_is_unset(g.fx.value) && vl_is_unset(g.fy.value)) standard_focal(d, camera, &g);
   camera->fx = vl_is_unset(g.fx.value) ? g.fy.value : g.fx.value;
   camera->fy = vl_is_unset(g.fy.value) ? g.fx.value : g.fy.value;
@@ -271,7 +271,7 @@ vlResult vl_camera_intrinsics(const vlCameraDef *d, vlCamera *camera, vlError *e
   double centre = d->projection == VL_PROJECTION_CUBE ? 0.0 : 0.5; /* the faces start at the corner */
   camera->cx = vl_is_unset(g.cx.value) ? centre * d->width : g.cx.value;
   camera->cy = vl_is_unset(g.cy.value) ? centre * d->height : g.cy.value;
-  /* beyond these the arithmetic of the rays, and of their squares, would leave the numbers */
+  /* outside of these limits the rays' arithmetic would overflow or underflow */
   if (camera->fx > 1e30 || camera->fy > 1e30 || camera->fx < 1e-30 || camera->fy < 1e-30)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focal lengths of %g and %g pixels are out of range", camera->fx,
                    camera->fy);

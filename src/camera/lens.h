@@ -1,6 +1,5 @@
-/* camera/lens.h: the thin lens, applied once after the projection, the same for all of them. A disk in the plane z = 0:
- * whatever point of it a ray starts from, it meets the others in the plane of focus z = focus distance (pbrt
- * book 5.2.3). */
+/* camera/lens.h: the thin lens, applied after any projection: a disk in the plane z = 0. Rays of one film point that
+ * start at different points of the disk meet in the plane of focus z = focus distance (pbrt book 5.2.3). */
 #ifndef CAMERA_LENS_H
 #define CAMERA_LENS_H
 
@@ -11,9 +10,9 @@ typedef struct vlLensPoint {
   float x, y;
 } vlLensPoint;
 
-/* [0,1)^2 to the unit disk, area-preserving, square rings to circles (Shirley and Chiu, "A low distortion map between
- * disk and square", 1997). The angle inside a quarter stays within pi/4, so short Taylor polynomials serve for sine and
- * cosine (error below 4e-7 of the radius) and no branch is needed. */
+/* Maps [0,1)^2 to the unit disk, preserving area, concentric squares to circles (Shirley and Chiu, "A low distortion
+ * map between disk and square", 1997). The angle within a quarter stays within pi/4, so short Taylor polynomials
+ * replace sine and cosine (error below 4e-7 of the radius) without branches. */
 static inline vlLensPoint vl_lens_disk(float u, float v) {
   float a = 2.0f * u - 1.0f, b = 2.0f * v - 1.0f;
   float aa = a < 0.0f ? -a : a, bb = b < 0.0f ? -b : b;
@@ -28,8 +27,8 @@ static inline vlLensPoint vl_lens_disk(float u, float v) {
   return (vlLensPoint){wide ? along : across, wide ? across : along};
 }
 
-/* With r = o + s d and the point of focus at z = F: start at o + l, aim at o + d F/dz. depth = dz. Projections that see
- * more than what lies ahead focus on a sphere instead: d of unit length, depth = 1. */
+/* With r = o + s d and the point of focus at z = F: the ray starts at o + l and aims at o + d F/dz. depth = dz.
+ * Projections that see more than the half-space z > 0 focus on a sphere: d of unit length, depth = 1. */
 static inline vlCameraLocal vl_lens_apply_at(const vlCameraCompiled *c, vlCameraLocal r, vlLensPoint disk,
                                              double depth) {
   double lx = c->lens_radius * (double)disk.x, ly = c->lens_radius * (double)disk.y;
@@ -44,8 +43,8 @@ static inline vlCameraLocal vl_lens_apply(const vlCameraCompiled *c, vlCameraLoc
   return vl_lens_apply_at(c, r, disk, r.dz);
 }
 
-/* The general case, with the plane in focus p . focus = 1: the ray o + s d meets it at 1 / s = d . focus / (1 - o .
- * focus). lens: a point of the opening, in lens radii. */
+/* The general case, with the plane in focus p . focus = 1: the ray o + s d intersects it at 1 / s = d . focus / (1 -
+ * o . focus). lens: a point of the aperture, in lens radii. */
 static inline vlCameraLocal vl_lens_refract(const vlCameraCompiled *c, vlCameraLocal r, vlLensPoint lens) {
   double lx = c->lens_radius * (double)lens.x, ly = c->lens_radius * (double)lens.y;
   const double *a = c->focus;
@@ -58,7 +57,7 @@ static inline vlCameraLocal vl_lens_refract(const vlCameraCompiled *c, vlCameraL
   return r;
 }
 
-/* lens_points.c: n pairs of random numbers to points of a shaped opening. */
+/* lens_points.c: maps n pairs of random numbers to points of a shaped aperture. */
 void vl_lens_points(const vlCameraCompiled *c, uint32_t n, const float *u, const float *v, float *x, float *y);
 
 #endif

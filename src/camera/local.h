@@ -1,9 +1,9 @@
-/* camera/local.h: a ray in camera space, what every projection makes and the lens and the pose take. Camera space:
- * x right, y down, z forward. */
+/* camera/local.h: a ray in camera space: the output of every projection, the input of lens and pose. Camera space: x
+ * right, y down, z forward. */
 #ifndef CAMERA_LOCAL_H
 #define CAMERA_LOCAL_H
 
-/* Starts at (ox, oy, 0), goes along (dx, dy, dz), any length; dz > 0 for perspective and orthographic cameras. */
+/* Origin (ox, oy, 0), direction (dx, dy, dz) of any length; dz > 0 for perspective and orthographic cameras. */
 typedef struct vlCameraLocal {
   double ox, oy;
   double dx, dy, dz;

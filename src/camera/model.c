@@ -1,4 +1,4 @@
-/* camera/model.c: the numbers of a projection and of a lens's distortion, checked and brought to one form. */
+/* camera/model.c: checks the parameters of a projection and of a lens distortion, and converts them to one form. */
 #include <math.h>
 #include <string.h>
 
@@ -31,11 +31,11 @@ const char *vl_projection_name(vlProjection projection) {
 
 typedef struct {
   const char *name;
-  double least, most; /* both allowed */
+  double least, most; /* allowed range, inclusive */
   double standard;    /* unset: must be given */
 } ShapeNumber;
 
-/* Least and most: beyond them the equations have no meaning, or no precision. */
+/* Ranges of the shape parameters: outside of them the equations are undefined or lose precision. */
 static int shape_numbers(vlProjection projection, ShapeNumber n[2]) {
   switch (projection) {
     case VL_PROJECTION_CUBE: n[0] = (ShapeNumber){"layout", 0.0, 1.0, 0.0}; return 1;
@@ -82,7 +82,7 @@ static vlResult shape(const vlCameraDef *def, vlCamera *camera, vlError *error) 
   return VL_OK;
 }
 
-/* OpenCV's tilted sensor: rotation about x by tau_x, then y by tau_y, then back along the axis to the plane. */
+/* OpenCV's tilted sensor: rotation about x by tau_x, then y by tau_y, then projection along the axis onto the plane. */
 static void tilt(vlDistortionMap *m, double tau_x, double tau_y) {
   vlSinCosDouble x = vl_sincos_double(tau_x), y = vl_sincos_double(tau_y);
   const double about_x[9] = {1, 0, 0, 0, x.cos, x.sin, 0, -x.sin, x.cos};
@@ -144,7 +144,7 @@ static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *
     default: return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown distortion %d", (int)def->distortion);
   }
   for (uint32_t i = 0; i < n; i++)
-    if (k[i] != 0.0) m->steps = 1; /* all zero: no distortion */
+    if (k[i] != 0.0) m->steps = 1; /* if all are zero there is no distortion */
   return VL_OK;
 }
 

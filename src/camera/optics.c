@@ -1,5 +1,5 @@
-/* camera/optics.c: a lens of many elements from its prescription: checked, focused by the thick lens approximation
- * (pbrt book 5.4.2, 5.4.3), its pupils and chief rays found. */
+/* camera/optics.c: a lens of many elements: checks its prescription, focuses it by the thick lens approximation
+ * (pbrt book 5.4.2, 5.4.3), and finds its pupils and chief rays. */
 #include "camera/optics.h"
 
 #include <math.h>
@@ -50,14 +50,14 @@ static vlResult check(const vlOpticsDef *d, const vlLensSurface *s, vlError *err
   return VL_OK;
 }
 
-/* Index on the film's side of given surface i; of what is before the first: 1. */
+/* Index of refraction on the film's side of given surface i; 1 before the first surface. */
 static double index_behind(const vlOptics *o, int i) {
   double ior = i >= 0 ? o->given[i].ior : 1.0;
-  if (i >= 0 && o->given[i].radius == 0.0) return index_behind(o, i - 1); /* a stop changes nothing */
+  if (i >= 0 && o->given[i].radius == 0.0) return index_behind(o, i - 1); /* a stop has no index of its own */
   return ior == 0.0 ? 1.0 : ior;
 }
 
-/* Surfaces from the film's side, vertices for a rear surface at z = 0. */
+/* Orders the surfaces from the film's side; vertices relative to a rear surface at z = 0. */
 static void arrange(vlOptics *o) {
   double unit = o->def.unit_mm, z = 0.0;
   o->stop = 0, o->has_stop = false;
@@ -78,7 +78,8 @@ static void arrange(vlOptics *o) {
   }
 }
 
-/* Paraxial: [a b; c d] maps height and slope (times index) at the rear vertex to those behind surface `last`. */
+/* Paraxial ray transfer matrix: [a b; c d] maps height and (slope times index) at the rear vertex to those behind
+ * surface `last`. */
 typedef struct {
   double a, b, c, d;
 } Matrix;
@@ -98,23 +99,22 @@ static Matrix paraxial(const vlOptics *o, uint32_t first, uint32_t last) {
   return m;
 }
 
-/* Moves the lens so that what lies at the focus distance from the film is sharp on it. */
+/* Moves the lens so that objects at the focus distance from the film are in focus. */
 static vlResult focus(vlOptics *o, vlError *error) {
   Matrix m = paraxial(o, 0, o->count - 1);
   if (!(m.c < 0.0) || !isfinite(m.c))
     return vl_fail(error, VL_ERROR_ARGUMENT, "lens: it does not gather light (its focal length is %g)", -1.0 / m.c);
   double f = -1.0 / m.c, length = o->surfaces[o->count - 1].z;
-  /* principal planes, from the rear vertex: rear (a parallel ray from the scene) and front (one from the film) */
+  /* principal planes, from the rear vertex: rear (of a parallel ray from the scene) and front (of one from the film) */
   double rear = (1.0 - m.d) * f, front = length + (m.a - 1.0) * f, image = f;
   if (isfinite(o->def.focus_distance)) {
-    double rest = o->def.focus_distance - (front - rear); /* object to front plane and rear plane to film */
+    double rest = o->def.focus_distance - (front - rear); /* object to front plane, plus rear plane to film */
     if (!(rest >= 4.0 * f))
       return vl_fail(error, VL_ERROR_ARGUMENT,
                      "lens: it cannot focus at a distance of %g; the nearest for its focal length of %g is %g",
                      o->def.focus_distance, f, 4.0 * f + front - rear);
     image = 0.5 * (rest - sqrt(rest * (rest - 4.0 * f)));
-    /* the difference above loses digits for far objects: one step of Newton's method on image (rest - image) = f rest
-     */
+    /* The difference above loses digits for far objects: one Newton step on image (rest - image) = f rest. */
     image -= (image * (rest - image) - f * rest) / (rest - 2.0 * image);
     if (!isfinite(image)) image = 2.0 * f;
   }
@@ -132,7 +132,8 @@ static vlResult focus(vlOptics *o, vlError *error) {
                            .focus_distance = o->def.focus_distance,
                            .film_diagonal = 2.0 * o->half};
   if (o->has_stop && !o->def.aperture) {
-    /* a ray parallel to the axis before the lens meets the stop at d of its height, of the part in front of the stop */
+    /* a ray parallel to the axis in front of the lens has d times its height at the stop; d is of the part in front
+     * of it */
     double share = paraxial(o, o->stop, o->count - 1).d;
     o->info.f_number = f / (2.0 * sqrt(o->surfaces[o->stop].aperture2) / share);
   }

@@ -19,8 +19,8 @@ static inline void store(Bundle *b, uint32_t i, vlOpticsRay r) {
   b->alive[i] = r.alive;
 }
 
-/* From the film to a point of the exit pupil, as it is seen from there. The weight: cos^4 of the angle, times the
- * pupil's area over the square of its distance (pbrt book 5.4.6). */
+/* Rays from the film to points of the exit pupil, sampled for the film point. The weight is cos^4 of the angle times
+ * the pupil's area over the square of its distance (pbrt book 5.4.6). */
 static void start(const vlCameraCompiled *c, uint32_t count, const vlDirections *d, const float *lens_u,
                   const float *lens_v, Bundle *b) {
   const vlOptics *o = c->optics;
@@ -57,7 +57,7 @@ static void stop(const vlOptics *o, const vlOpticsSurface *surface, uint32_t cou
   double inv = 1.0 / __builtin_sqrt(s->aperture2);
   for (uint32_t i = 0; i < count; i++) {
     vlOpticsRay r = vl_optics_stop(s, 0, load(b, i));
-    /* the image stands upright as seen from behind the lens; y goes down in both */
+    /* the image is upright as seen from behind the lens; y points down in both */
     double open = r.alive > 0.0 ? vl_aperture_value(o->def.aperture, r.x * inv, r.y * inv) : 0.0;
     r.alive = open > 0.0 ? r.alive : 0.0;
     b->weight[i] *= open;
@@ -94,7 +94,7 @@ void vl_camera_optics(const vlCameraCompiled *c, uint32_t count, const float *le
   }
   for (uint32_t i = 0; i < count; i++) {
     int good = b.alive[i] > 0.0 && b.dz[i] > vl_optics_grazing;
-    double back = good ? b.z[i] / b.dz[i] : 0.0; /* the start told in the film's plane */
+    double back = good ? b.z[i] / b.dz[i] : 0.0; /* moves the origin to the film's plane */
     d->x[i] = good ? b.x[i] - back * b.dx[i] : 0.0;
     d->y[i] = good ? b.y[i] - back * b.dy[i] : 0.0;
     d->dx[i] = good ? b.dx[i] : 0.0;

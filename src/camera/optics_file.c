@@ -1,5 +1,5 @@
-/* camera/optics_file.c: pbrt's lens files: four numbers a surface (radius of curvature, thickness, index of refraction,
- * aperture diameter; mm), from the scene's side, # to the end of the line is a comment. */
+/* camera/optics_file.c: pbrt's lens files: four numbers per surface (radius of curvature, thickness, index of
+ * refraction, aperture diameter; mm), from the scene's side; # starts a comment. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,7 +24,7 @@ static void skip(Reader *r) {
   }
 }
 
-/* Plain decimals only; the whole word. */
+/* Parses a plain decimal; the whole word must match. */
 static bool number(const char *word, size_t length, double *value) {
   char text[64], *end;
   if (length == 0 || length >= sizeof text || strspn(word, "0123456789+-.eE") < length) return false;
@@ -79,6 +79,6 @@ vlResult vl_optics_load(vlContext *context, const char *path, const vlOpticsDef 
   result = vl_optics_create(context, &filled, optics, &inner);
   if (result == VL_ERROR_MEMORY) return vl_fail_memory(error);
   if (result == VL_OK) return VL_OK;
-  /* the file says the lens, the caller the rest */
+  /* the file gives the lens, the caller the other parameters */
   return vl_fail_at(error, VL_ERROR_SCENE, path, 0, 0, "%s", inner.message);
 }

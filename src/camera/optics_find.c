@@ -1,11 +1,11 @@
-/* camera/optics_find.c: what a lens of many elements shows of its pupil from each ring of the film, and its chief rays
- * (pbrt book 5.4.5). Once, when it is made. */
+/* camera/optics_find.c: the exit pupil bounds of a lens of many elements for each film ring, and its chief rays
+ * (pbrt book 5.4.5). Computed once, when the lens is made. */
 #include <math.h>
 #include <string.h>
 
 #include "camera/optics.h"
 
-/* Rays of a search over a window of the rear plane: its upper half, since the lens is round. */
+/* Rays of a search over a window of the rear plane: the upper half only, since the lens is rotationally symmetric. */
 enum { ACROSS = 40, DOWN = 20, ZOOMS = 24 };
 
 static bool passes(const vlOptics *o, double radius, double px, double py) {
@@ -14,8 +14,8 @@ static bool passes(const vlOptics *o, double radius, double px, double py) {
     const vlOpticsSurface *s = &o->surfaces[k];
     if (s->radius == 0.0) {
       r = vl_optics_stop(s, o->def.aperture == NULL, r);
-      /* An image stands upright whatever the film point's direction, but pupils turn with it: they hold the circle
-       * round all that the image lets through. */
+      /* Pupils rotate with the film point's direction, but an aperture image does not. The bounds must therefore
+       * contain the circle around the image's non-black part. */
       if (o->def.aperture && r.x * r.x + r.y * r.y > vl_aperture_reach2(o->def.aperture) * s->aperture2) return false;
     } else {
       r = vl_optics_refract(s, 1, r);
@@ -29,7 +29,7 @@ typedef struct {
   double x0, x1, y1;
 } Box;
 
-/* Grows the box by all points of the window that pass from this radius. */
+/* Extends the box by all points of the window through which rays from this film radius pass. */
 static bool search(const vlOptics *o, double radius, Box window, Box *found) {
   bool any = false;
   for (int i = 0; i <= ACROSS; i++)
@@ -47,8 +47,8 @@ static Box grown(Box b, Box window) {
   return (Box){b.x0 - dx, b.x1 + dx, b.y1 + dy};
 }
 
-/* The window closes in on the pupil until that no longer makes it much smaller. The chief ray is tried too: it finds
- * pupils that slip between the first points. */
+/* Shrinks the window towards the pupil until it becomes little smaller. The chief ray is tried too: it finds pupils
+ * that are smaller than the first grid's spacing. */
 static Box find_box(const vlOptics *o, double r0, double r1, bool *any) {
   double reach = 1.5 * sqrt(o->surfaces[0].aperture2);
   const double radii[3] = {r0, 0.5 * (r0 + r1), r1};
@@ -73,7 +73,7 @@ static Box find_box(const vlOptics *o, double r0, double r1, bool *any) {
   return window;
 }
 
-/* The least scale of the box's ellipse that holds all that passes, with a margin of two steps of the search. */
+/* The smallest scale of the box's ellipse that contains all passing rays, with a margin of two steps of the search. */
 static double fill_of(const vlOptics *o, double r0, double r1, Box b) {
   double cx = 0.5 * (b.x0 + b.x1), hx = 0.5 * (b.x1 - b.x0), most = 0.0;
   const double radii[3] = {r0, 0.5 * (r0 + r1), r1};
@@ -104,7 +104,8 @@ void vl_optics_find_pupils(vlOptics *o) {
 
 /* ---- chief rays -------------------------------------------------------------------------------------------------- */
 
-/* Openings do not count here: whether the light comes through is asked of the ray once it is found. */
+/* x at the stop of the ray from the film radius to p. Apertures are ignored here; whether light passes is tested
+ * once the ray is found. */
 static bool at_stop(const vlOptics *o, double radius, double p, double *x) {
   vlOpticsRay r = vl_optics_start(radius, 0.0, p, 0.0, o->rear);
   for (uint32_t k = 0; k <= o->stop; k++) {
@@ -120,7 +121,7 @@ bool vl_optics_chief(const vlOptics *o, double radius, double guess, vlChief *ch
   double a = guess, b = guess + step, fa, fb;
   *chief = (vlChief){.pupil = guess};
   if (!at_stop(o, radius, a, &fa) || !at_stop(o, radius, b, &fb)) return false;
-  /* the secant: the stop's height is nearly linear in the pupil's */
+  /* secant method: the height at the stop is nearly linear in that at the pupil */
   for (int i = 0; i < 40 && fabs(fb) > 1e-15 * size && fb != fa; i++) {
     double next = b - fb * (b - a) / (fb - fa);
     a = b, fa = fb, b = next;
@@ -143,7 +144,7 @@ void vl_optics_find_chiefs(vlOptics *o) {
   double guess = 0.0, before = 0.0;
   o->chief_step = 1.05 * o->half / VL_CHIEFS;
   for (int i = 0; i <= VL_CHIEFS; i++) {
-    double ahead = i > 1 ? 2.0 * guess - before : guess; /* goes on as it went */
+    double ahead = i > 1 ? 2.0 * guess - before : guess; /* linear extrapolation */
     vl_optics_chief(o, o->chief_step * i, ahead, &o->chiefs[i]);
     before = guess;
     guess = o->chiefs[i].pupil;

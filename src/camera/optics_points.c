@@ -1,5 +1,5 @@
-/* camera/optics_points.c: pixels to rays and points to pixels through a lens of many elements, by its chief rays: those
- * through the middle of the stop. The lens is round, so both are questions about one plane through the axis. */
+/* camera/optics_points.c: pixels to rays and points to pixels through a lens of many elements, by its chief rays
+ * (through the centre of the stop). The lens is rotationally symmetric, so both reduce to a plane through the axis. */
 #include <math.h>
 
 #include "camera/optics.h"
@@ -19,13 +19,13 @@ bool vl_optics_unproject(const vlOptics *o, double x, double y, vlCameraLocal *r
   double radius = sqrt(x * x + y * y), cosine = radius > 0.0 ? x / radius : 1.0, sine = radius > 0.0 ? y / radius : 0.0;
   vlChief c;
   if (!chief_at(o, radius, &c)) return false;
-  /* the film's point lies opposite: at -(x, y); so do the ray's start and direction */
+  /* the film point lies opposite, at -(x, y), and so do the ray's origin and direction */
   double inv = 1.0 / sqrt(1.0 + c.slope * c.slope);
   *ray = (vlCameraLocal){-c.x0 * cosine, -c.x0 * sine, -c.slope * inv * cosine, -c.slope * inv * sine, inv};
   return true;
 }
 
-/* How far the chief ray of a film radius passes outside the point (rho, z); grows with the radius. */
+/* By how much the chief ray of a film radius passes outside the point (rho, z). Increases with the radius. */
 static bool miss(const vlOptics *o, double radius, double rho, double z, double *value) {
   vlChief c;
   bool valid = chief_at(o, radius, &c);
@@ -43,7 +43,7 @@ bool vl_optics_project(const vlOptics *o, double x, double y, double z, double f
   if (i == VL_CHIEFS || !o->chiefs[i].valid || !o->chiefs[i + 1].valid) return false;
   double a = o->chief_step * i, b = o->chief_step * (i + 1), fa, fb, r = a;
   if (!miss(o, a, rho, z, &fa) || !miss(o, b, rho, z, &fb) || fa > 0.0) return false;
-  /* regula falsi, Illinois: between a and b there is one root */
+  /* regula falsi (Illinois): [a, b] brackets one root */
   int side = 0;
   for (int step = 0; step < 100 && b - a > 1e-15 * o->half; step++) {
     double f;

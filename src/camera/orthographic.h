@@ -1,6 +1,5 @@
-/* camera/orthographic.h: the orthographic projection: projectors are parallel to the view axis and
- * size does not depend on distance. fx, fy are pixels per scene unit. The way back, x and y as they are, stands with
- * the others in projection.h. */
+/* camera/orthographic.h: the orthographic projection: projectors are parallel to the view axis, and size does not
+ * depend on distance. fx, fy are pixels per scene unit. The inverse (x and y unchanged) is in projection.h. */
 #ifndef CAMERA_ORTHOGRAPHIC_H
 #define CAMERA_ORTHOGRAPHIC_H
 

@@ -1,13 +1,14 @@
-/* camera/panini.h: the general Panini projection, both directions: the world on a cylinder about the vertical axis,
- * seen from a point d behind its axis. d = 0 is the perspective, d = 1 the cylindrical stereographic, large d nears the
- * cylindrical orthographic. Verticals and all lines through the centre stay straight (Sharpless, Postle, German,
- * "Pannini: A New Projection for Rendering Wide Angle Perspective Images", 2010). */
+/* camera/panini.h: the general Panini projection, both directions: the scene projected onto a cylinder about the
+ * vertical axis, viewed from a distance d behind its axis. d = 0 is the perspective projection, d = 1 the
+ * cylindrical stereographic; large d approaches the cylindrical orthographic. Verticals and all lines through the
+ * centre stay straight (Sharpless, Postle, German, "Pannini: A New Projection for Rendering Wide Angle Perspective
+ * Images", 2010). */
 #ifndef CAMERA_PANINI_H
 #define CAMERA_PANINI_H
 
 #include "camera/plane.h"
 
-/* cos(longitude) must stay above this: for d <= 1 the plane is infinite there, for d > 1 it turns back. */
+/* Lower bound of cos(longitude): for d <= 1 the plane is infinite there, for d > 1 it folds. */
 static inline double vl_panini_edge(double d) {
   return d <= 1.0 ? -d : -1.0 / d;
 }

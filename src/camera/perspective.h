@@ -1,14 +1,14 @@
-/* camera/perspective.h: the perspective projection: all projectors meet in the centre of projection,
- * the view plane is flat. (The lecture's "pinhole camera"; Suffern, Ray Tracing from the Ground Up, ch. 8 and 9.)
- * The way back, x/z and y/z, stands with the others in projection.h. */
+/* camera/perspective.h: the perspective projection: all projectors meet in the centre of projection, the view plane
+ * is flat. (The lecture's "pinhole camera"; Suffern, Ray Tracing from the Ground Up, ch. 8 and 9.) The inverse (x/z
+ * and y/z) is in projection.h. */
 #ifndef CAMERA_PERSPECTIVE_H
 #define CAMERA_PERSPECTIVE_H
 
 #include "camera/local.h"
 #include "camera/rays.h"
 
-/* x, y: pixels from the principal point. The direction keeps the lecture's form, with the view plane at the distance fx
- * and pixels of size 1: (x_v, y_v, d), not divided by d; so no rounding stands between it and the slides. */
+/* x, y: pixels from the principal point. The direction has the lecture's form, with the view plane at distance fx
+ * and pixels of size 1: (x_v, y_v, d), not divided by d, so that no rounding is added to the lecture's formula. */
 static inline vlCameraLocal vl_perspective_unproject(const vlCameraCompiled *c, double x, double y) {
   vlCameraLocal r;
   r.ox = 0.0;

@@ -1,4 +1,4 @@
-/* camera/place.h: the pose, last of the four factors: from camera space into the world. */
+/* camera/place.h: the pose, last of the four factors of a camera: camera space to world space. */
 #ifndef CAMERA_PLACE_H
 #define CAMERA_PLACE_H
 
@@ -10,7 +10,7 @@
 typedef struct vlWorldRay {
   double ox, oy, oz, dx, dy, dz;
   double inv_length; /* 1 / |d| */
-  double length;     /* |d|; divided by d's depth in camera space: distance along the ray per depth */
+  double length;     /* |d|; divided by d's depth in camera space it is the distance along the ray per unit of depth */
 } vlWorldRay;
 
 static inline vlWorldRay vl_camera_place(const vlCameraCompiled *c, vlCameraLocal r) {
@@ -27,7 +27,7 @@ static inline vlWorldRay vl_camera_place(const vlCameraCompiled *c, vlCameraLoca
   return w;
 }
 
-/* The ray's start moved to its own eye. */
+/* The ray with its origin moved to its own eye position (omnidirectional stereo). */
 static inline vlWorldRay vl_camera_place_eye(const vlCameraCompiled *c, vlEyePlace eye, vlWorldRay w) {
   const double *m = c->rotation;
   w.ox += m[0] * eye.x + m[2] * eye.z;

@@ -1,7 +1,6 @@
-/* camera/plane.h: what the projections speak in: points of the plane, in pixels divided by the focal length and
- * measured from the principal point (x right, y down), and directions in camera space (x right, y down, z forward).
- * Both carry `valid`, 1 or 0, as a double, so that loops have lanes of one width. Where it is 0 the numbers mean
- * nothing. */
+/* camera/plane.h: types of the projections: points of the plane, in pixels divided by the focal length, relative to
+ * the principal point (x right, y down), and directions in camera space (x right, y down, z forward). Both have
+ * `valid`, 1 or 0, as a double, so that loops have lanes of one width. If it is 0, the other numbers are undefined. */
 #ifndef CAMERA_PLANE_H
 #define CAMERA_PLANE_H
 
@@ -14,7 +13,7 @@ typedef struct vlDirection {
   double x, y, z, valid;
 } vlDirection;
 
-/* Lengths that are divided by are at least this, so that 0/0 never arises and x/length stays exact for others. */
+/* Lower bound of lengths used as divisors: avoids 0/0, and leaves x/length exact for all larger lengths. */
 #define VL_TINY 1e-150
 
 static inline double vl_length2(double x, double y) {

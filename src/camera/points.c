@@ -1,4 +1,4 @@
-/* camera/points.c: pixels to rays and points to pixels, the public functions: one by one and in arrays. */
+/* camera/points.c: the public functions for pixels to rays and points to pixels, single and in arrays. */
 #include <math.h>
 
 #include "camera/optics.h"
@@ -145,8 +145,8 @@ void vl_camera_project_batch(const vlCamera *camera, size_t count, const double 
   }
 }
 
-/* Derivatives of the direction by central differences of fourth order: steps short enough for 1e-10 of any usual lens,
- * and long enough not to drown in rounding. */
+/* Derivatives of the direction by fourth-order central differences. The steps balance truncation (1e-10 for usual
+ * lenses) against rounding. */
 static bool slope(const vlCameraCompiled *c, double x, double y, double hx, double hy, double d[3]) {
   static const double weight[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12}, at[4] = {-2, -1, 1, 2};
   d[0] = d[1] = d[2] = 0.0;
@@ -166,7 +166,7 @@ double vl_camera_solid_angle(const vlCamera *camera, double x, double y) {
   double px = x - c.cx, py = y - c.cy, a[3], b[3];
   vlDirection d = vl_camera_direction(&c, px, py);
   if (d.valid == 0.0) return 0.0;
-  /* plane units: 1/10000 of a focal length, less where that would leave the domain */
+  /* plane units: 1/10000 of a focal length, smaller near the border of the domain */
   for (double h = 1e-4; h > 1e-7; h *= 0.1) {
     if (!slope(&c, px, py, h * c.fx, 0.0, a) || !slope(&c, px, py, 0.0, h * c.fy, b)) continue;
     double length = vl_length3(d.x, d.y, d.z);

@@ -1,12 +1,13 @@
-/* camera/points.h: a pixel to a direction and a point to a pixel, all factors but lens and pose, one point at a time.
- * The public functions call these; the batches (points.hot.c) run the same operations in stages, so the bits agree. */
+/* camera/points.h: a pixel to a direction and a point to a pixel: all factors except lens and pose, one point at a
+ * time. The public functions call these. The batches (points.hot.c) run the same operations in stages, so the bits
+ * agree. */
 #ifndef CAMERA_POINTS_H
 #define CAMERA_POINTS_H
 
 #include "camera/distortion.h"
 #include "camera/projection.h"
 
-/* Pixels from the principal point to the plane. */
+/* Maps pixels from the principal point to the plane. */
 static inline vlPlanePoint vl_pixel_to_plane(const vlCameraCompiled *c, double x, double y) {
   return (vlPlanePoint){(x - c->skew_ratio * y) * c->inv_fx, y * c->inv_fy, 1.0};
 }
@@ -16,8 +17,8 @@ static inline vlPlanePoint vl_plane_to_pixel(const vlCameraCompiled *c, vlPlaneP
   return (vlPlanePoint){valid ? x : 0.0, valid ? y : 0.0, valid ? 1.0 : 0.0};
 }
 
-/* Takes what the projection said: unit length but for perspective cameras (z = 1 there), and straight ahead where not
- * valid, so that nothing after this meets a zero or a NaN. */
+/* Finishes a projection's direction: unit length except for perspective cameras (z = 1), and straight ahead if it is
+ * not valid, so that no later stage sees a zero or a NaN. */
 static inline vlDirection vl_direction_finish(const int inclined, vlDirection d, double valid) {
   int good = d.valid > 0.0 && valid > 0.0;
   double k = inclined ? 1.0 : 1.0 / vl_not_tiny(vl_length3(d.x, d.y, d.z));
@@ -26,7 +27,7 @@ static inline vlDirection vl_direction_finish(const int inclined, vlDirection d,
 
 /* x, y: pixels from the principal point. */
 vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y);
-/* A point in camera space to the film. */
+/* Maps a point in camera space to the film. */
 vlPlanePoint vl_camera_film_point(const vlCameraCompiled *c, double x, double y, double z);
 
 #endif

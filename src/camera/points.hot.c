@@ -1,6 +1,6 @@
 /* camera/points.hot.c: pixels to directions and points to pixels in chunks of doubles, in stages: affine map,
- * distortion, projection. Each stage is a loop of its own, so that every projection goes with every lens at the price
- * of their sum. Compiled once per instruction set. */
+ * distortion, projection. Each stage is a separate loop, so that any projection combines with any lens without a
+ * loop per combination. Compiled once per instruction set. */
 #include "camera/optics_chunk.h"
 #include "camera/stages.h"
 
@@ -9,7 +9,7 @@
 #include "camera/place.h"
 #include "camera/points.h"
 
-/* Real plane points to ideal ones, in place; Newton's method in a fixed number of steps. */
+/* Real plane points to ideal ones, in place; a fixed number of Newton steps. */
 static void undistort(const vlDistortionMap *map, uint32_t count, double *x, double *y, double *valid) {
   const vlDistortionMap copy = *map, *m = &copy;
   double u[VL_CAMERA_CHUNK], v[VL_CAMERA_CHUNK];
@@ -75,7 +75,7 @@ static inline __attribute__((always_inline)) void place_loop(const int eyes, con
   }
 }
 
-/* Film points that are not finite are not valid; the others always are. */
+/* Only film points that are not finite are invalid. */
 static inline __attribute__((always_inline)) void plain_loop(const int orthographic, const vlCameraCompiled *camera,
                                                              uint32_t count, const vlCameraPixels *in,
                                                              vlCameraPoints *out) {

@@ -1,5 +1,5 @@
-/* camera/pose.c: where the camera stands and how it is turned: eye, lookat, up and roll (the lecture's compute_uvw), or
- * a matrix. */
+/* camera/pose.c: position and orientation of the camera, from eye, lookat, up and roll (the lecture's compute_uvw)
+ * or from a matrix. */
 #include <math.h>
 #include <string.h>
 
@@ -27,7 +27,7 @@ static double largest(Vec a) {
   return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
 }
 
-/* Scaled first, so that very long and very short vectors neither overflow nor vanish. A vector along an axis keeps
+/* Scaled first, so that very long and very short vectors neither overflow nor underflow. Axis-aligned vectors keep
  * exact zeros and ones. */
 static Vec normalized(Vec a) {
   double scale = largest(a);
@@ -36,7 +36,7 @@ static Vec normalized(Vec a) {
   return (Vec){a.x / length, a.y / length, a.z / length};
 }
 
-/* Below this sine between up and the view direction their cross product is mostly rounding. */
+/* If the sine between up and the view direction is below this, their cross product is mostly rounding. */
 static const double parallel_sine = 1e-9;
 
 /* u to the right, v up, w backwards, against the view direction: the lecture's viewing coordinates. */
@@ -62,8 +62,8 @@ static vlResult basis_from_lookat(const vlCameraDef *def, Basis *basis, const ch
       *warning =
           "camera: up is parallel to the view direction; the image's right is taken along the world's x axis (z when "
           "looking along x)";
-    /* x, or z where w is near x; its part across w. Looking straight down, the top of the image is -z, as on a map.
-     */
+    /* The component of x (of z if w is near x) perpendicular to w. When the camera looks straight down, the top of
+     * the image is -z, as on a map. */
     Vec axis = fabs(w.x) > 0.9 ? (Vec){0.0, 0.0, 1.0} : (Vec){1.0, 0.0, 0.0};
     double along = dot(axis, w);
     right = (Vec){axis.x - along * w.x, axis.y - along * w.y, axis.z - along * w.z};
@@ -82,7 +82,7 @@ static vlResult check_matrix(const vlMat4 *m, vlError *error) {
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: the last row of world_from_camera is %g %g %g %g; a pose has 0 0 0 1", a[12], a[13], a[14],
                    a[15]);
-  /* The volume of the three axes after each is brought to length 1: 0 when they lie in a plane. */
+  /* Volume of the three axes, each normalised: 0 if they are coplanar. */
   Vec x = {a[0], a[4], a[8]}, y = {a[1], a[5], a[9]}, z = {a[2], a[6], a[10]};
   double volume = 0.0, most = fmax(largest(x), fmax(largest(y), largest(z)));
   if (most > 1e30)
@@ -117,13 +117,13 @@ vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **w
     Basis b = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     result = basis_from_lookat(def, &b, warning, error);
     if (result != VL_OK) return result;
-    /* x = u, y = -v (down), z = -w (forward); 0 - v rather than -v keeps -0 out of the matrix */
+    /* x = u, y = -v (down), z = -w (forward); 0 - v instead of -v keeps -0 out of the matrix */
     m.m[0] = b.u.x, m.m[1] = 0.0 - b.v.x, m.m[2] = 0.0 - b.w.x, m.m[3] = def->eye[0];
     m.m[4] = b.u.y, m.m[5] = 0.0 - b.v.y, m.m[6] = 0.0 - b.w.y, m.m[7] = def->eye[1];
     m.m[8] = b.u.z, m.m[9] = 0.0 - b.v.z, m.m[10] = 0.0 - b.w.z, m.m[11] = def->eye[2];
   }
   if (def->roll != 0.0) {
-    /* about z, from x (right) towards y (down): clockwise as seen from behind the camera */
+    /* about z, from x (right) to y (down): clockwise as seen from behind the camera */
     vlMat4 turn = vl_mat4_identity();
     double s = sin(def->roll), c = cos(def->roll);
     turn.m[0] = c, turn.m[1] = -s;

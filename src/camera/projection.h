@@ -1,5 +1,5 @@
 /* camera/projection.h: all projections behind two functions. `kind` is a constant where these are inlined, so that a
- * batch chooses once. The plane points are ideal: distortion stands between them and the pixels. */
+ * batch chooses once. The plane points are ideal: distortion lies between them and the pixels. */
 #ifndef CAMERA_PROJECTION_H
 #define CAMERA_PROJECTION_H
 
@@ -12,7 +12,7 @@
 #include "camera/panini.h"
 #include "camera/rays.h"
 
-/* face: the cell of VL_PROJECTION_CUBE, else unread. */
+/* face: the cell of VL_PROJECTION_CUBE; unread for all others. */
 static inline __attribute__((always_inline)) vlDirection vl_plane_unproject(vlProjection kind,
                                                                             const vlCameraCompiled *c, double face,
                                                                             double x, double y) {
@@ -35,7 +35,7 @@ static inline __attribute__((always_inline)) vlDirection vl_plane_unproject(vlPr
     case VL_PROJECTION_UNIFIED: d = vl_unified_unproject(a[0], x, y); break;
     case VL_PROJECTION_EUCM: d = vl_eucm_unproject(a[0], a[1], x, y); break;
     case VL_PROJECTION_DOUBLE_SPHERE: d = vl_double_sphere_unproject(a[0], a[1], x, y); break;
-    case VL_PROJECTION_OPTICS: d.valid = 0.0; break; /* rays of optics go their own way */
+    case VL_PROJECTION_OPTICS: d.valid = 0.0; break; /* optics have their own functions (optics.h) */
   }
   d.valid = x * x + y * y <= c->limit2 ? d.valid : 0.0;
   return d;
@@ -91,7 +91,7 @@ static inline __attribute__((always_inline)) vlPlanePoint vl_plane_project(vlPro
     case VL_PROJECTION_OPTICS: CALL(VL_PROJECTION_OPTICS); break;                   \
   }
 
-/* Those that go all round, and so have omnidirectional stereo (eyes.h). */
+/* The projections of the whole circle of longitudes, which support omnidirectional stereo (eyes.h). */
 #define VL_EACH_ROUND_PROJECTION(projection, CALL)                          \
   switch (projection) {                                                     \
     case VL_PROJECTION_EQUAL_AREA: CALL(VL_PROJECTION_EQUAL_AREA); break;   \

@@ -1,10 +1,10 @@
-/* camera/rays.h: the camera as the render loop sees it: film samples in, rays out, a batch at a time.
+/* camera/rays.h: the camera's interface to the render loop: film samples in, rays out, a batch at a time.
  *
- *   film sample -> distortion (distortion.h) -> projection (projection.h and what it gathers) -> lens (lens.h)
- *   -> pose -> world-space ray
+ *     film sample -> distortion (distortion.h) -> projection (projection.h and what it includes) -> lens (lens.h)
+ *     -> pose -> world-space ray
  *
  * Each stage is a plain function by value; the projection is chosen once per batch. Positions and directions are
- * computed in double and rounded to float once, at the end: a ray is the nearest float to the exact formula. */
+ * computed in double and rounded to float once, at the end: a ray is the float nearest to the exact formula. */
 #ifndef CAMERA_RAYS_H
 #define CAMERA_RAYS_H
 
@@ -28,7 +28,7 @@ typedef struct vlCameraCompiled {
   double rotation[9];            /* row-major 3x3 part of world_from_camera (may scale or mirror) */
   double position[3];            /* of the camera in the world */
   double lens_radius, inv_focus; /* 1 / focus distance; 0: focused at infinity */
-  /* The plane in focus is p . focus = 1; read with shaped lenses and where `ahead` is set. */
+  /* The plane in focus is p . focus = 1; used by shaped lenses and if `ahead` is set. */
   double focus[3];
   double shutter_open, shutter_time; /* seconds */
   double near_plane, far_plane;      /* z in camera space */
@@ -37,34 +37,33 @@ typedef struct vlCameraCompiled {
    * spread 0. */
   float pixel_spread, pixel_width;
 
-  /* What follows serves all but the plain perspective and orthographic cameras. */
+  /* The fields below are used by all cameras except plain perspective and orthographic ones. */
   bool plain;            /* perspective without distortion, or orthographic: every film point is valid */
-  bool inclined;         /* perspective: depth along z, not distance, counts for lens and planes */
+  bool inclined;         /* perspective: lens and near/far planes use depth along z, not distance */
   double fx, fy, skew;   /* pixels */
   double shape[2];       /* of the projection; FOV: w and 2 tan(w/2) */
-  double over_x, over_y; /* how far a plane that closes on itself goes on beyond its edges, for filters */
+  double over_x, over_y; /* by how much a plane that closes on itself extends beyond its edges, for filters */
   double limit2;         /* square of the valid disc's radius in the plane */
   vlDistortionMap distortion;
   double camera_from_world[12];
-  /* A lens that is not a plain disc: its points are drawn by vl_lens_points, before the loop over the rays. */
+  /* A lens whose aperture is not a plain disc: vl_lens_points samples it, before the loop over the rays. */
   bool shaped;
-  bool ahead;      /* depth along z, not distance, counts for lens and planes */
+  bool ahead;      /* lens and near/far planes use depth along z, not distance */
   bool vignetting; /* rays have weights */
   vlBlades blades; /* none: count 0 */
   const vlAperture *aperture;
-  double lens_turn[2];    /* cosine and sine that turn the image */
-  double inv_ratio;       /* of the opening's width */
-  const vlOptics *optics; /* their rays go their own way: optics.hot.c */
-  double pitch;           /* side of a pixel on their film, scene units */
-  double eye_circle;      /* of omnidirectional stereo: the circle's radius, signed; 0: none */
+  double lens_turn[2];    /* cosine and sine of the aperture image's rotation */
+  double inv_ratio;       /* inverse of the aperture's width ratio */
+  const vlOptics *optics; /* lens of many elements; rays are made by optics.hot.c */
+  double pitch;           /* side of a pixel on the film of optics, scene units */
+  double eye_circle;      /* omnidirectional stereo: radius of the eye circle, signed; 0: none */
   vlCameraTime when;
 } vlCameraCompiled;
 
-/* All arrays hold VL_PAD(n) elements; those past n may hold anything, and what comes out for them means nothing.
- * A film position is pixel + film: the integer pixel (column, row from the top left) and the offset from that pixel's
- * top left corner, apart so that large images lose no precision. film may lie outside [0, 1) with wide filters.
- * lens_u, lens_v in [0, 1): not read without a lens. time in [0, 1): the share of the shutter's time that has passed.
- */
+/* All arrays hold VL_PAD(n) elements. Elements past n may hold anything; the results for them are undefined. A film
+ * position is pixel + film: the integer pixel (column, row from the top left) and the offset from that pixel's top
+ * left corner, kept apart so that large images lose no precision. film may lie outside [0, 1) with wide filters.
+ * lens_u, lens_v in [0, 1): not read without a lens. time in [0, 1): fraction of the shutter interval. */
 typedef struct vlCameraSamples {
   const float *film_x, *film_y;
   const int32_t *pixel_x, *pixel_y;
@@ -73,10 +72,9 @@ typedef struct vlCameraSamples {
 } vlCameraSamples;
 
 /* World space; d normalised; [t_min, t_max] from the near and far planes (0 and infinity without); time in seconds.
- * valid (may be null): 1, or 0 where the film point lies outside the camera's domain; t_max is -1 there, so that the
- * ray hits nothing, and d is some unit vector.
- * weight (may be null): what the light that comes back along the ray counts; written only if the camera is `weighted`.
- * 0 with valid 1: a part of the lens stops the ray (t_max is -1 then, too). */
+ * valid (may be null): 1, or 0 if the film point lies outside the camera's domain; then t_max is -1, so that the ray
+ * hits nothing, and d is an arbitrary unit vector. weight (may be null): factor on the radiance along the ray;
+ * written only if the camera is `weighted`. 0 with valid 1: a part of the lens blocks the ray (t_max is -1 too). */
 typedef struct vlCameraRays {
   float *ox, *oy, *oz, *dx, *dy, *dz;
   float *t_min, *t_max;
@@ -90,8 +88,8 @@ typedef struct vlCameraPixels {
   double x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK], z[VL_CAMERA_CHUNK], valid[VL_CAMERA_CHUNK];
 } vlCameraPixels;
 typedef struct vlCameraPoints {
-  double ox[VL_CAMERA_CHUNK], oy[VL_CAMERA_CHUNK], oz[VL_CAMERA_CHUNK]; /* unproject: where the ray starts */
-  double x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK], z[VL_CAMERA_CHUNK];    /* a point; unproject: a unit direction */
+  double ox[VL_CAMERA_CHUNK], oy[VL_CAMERA_CHUNK], oz[VL_CAMERA_CHUNK]; /* unproject: origin of the ray */
+  double x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK], z[VL_CAMERA_CHUNK]; /* project: a point; unproject: a unit direction */
   double valid[VL_CAMERA_CHUNK];
 } vlCameraPoints;
 
@@ -106,13 +104,13 @@ typedef struct vlCameraKernels {
 /* One table per instruction set; all give the same bits. */
 VL_KERNEL_TABLE(vlCameraKernels, vl_camera)
 
-/* Are there weights other than 1? */
+/* Whether rays may have weights other than 1. */
 static inline bool vl_camera_weighted(const vlCameraCompiled *c) {
   return c->vignetting || c->optics;
 }
 
 void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c);
-/* Another clock from here on: rays come with (seconds - origin) * scale. */
+/* Changes the clock: rays then carry the time (seconds - origin) * scale. */
 void vl_camera_retime(vlCameraCompiled *c, double origin, double scale);
 
 #endif

@@ -8,11 +8,11 @@
 #include "camera/place.h"
 #include "camera/stages.h"
 
-/* How the samples' lens_u and lens_v are meant: as random numbers, or as points of the opening already.
- * OPTICS: the directions start at d->x, d->y. */
+/* Meaning of the samples' lens_u and lens_v: random numbers (DISC) or points of the aperture (POINTS). OPTICS: rays
+ * start at d->x, d->y. */
 enum { NO_LENS, DISC, POINTS, OPTICS };
 
-/* One loop, inlined once for each projection and kind of lens: the two constants are decided before it. */
+/* The loop is inlined once per projection and kind of lens; both constants are chosen before it. */
 static inline __attribute__((always_inline)) void ray_loop(const int orthographic, const int lens,
                                                            const vlCameraCompiled *camera, uint32_t count,
                                                            const vlCameraSamples *s, const vlCameraRays *r) {
@@ -21,7 +21,7 @@ static inline __attribute__((always_inline)) void ray_loop(const int orthographi
   const int32_t *pixel_x = s->pixel_x, *pixel_y = s->pixel_y;
   float *ox = r->ox, *oy = r->oy, *oz = r->oz, *dx = r->dx, *dy = r->dy, *dz = r->dz;
   float *t_min = r->t_min, *t_max = r->t_max, *seconds = r->time;
-  /* planes z = near, far in distance along the ray, per length of its direction: its depth is the same for all */
+  /* the planes z = near, far as multiples of the unnormalised direction, whose depth is the same for all rays */
   double depth = orthographic ? 1.0 : c->focal, near_t = c->near_plane / depth, far_t = c->far_plane / depth;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
@@ -43,7 +43,7 @@ static inline __attribute__((always_inline)) void ray_loop(const int orthographi
   }
 }
 
-/* The rays of a chunk whose directions are known: samples from `first` on. */
+/* Finishes the rays of a chunk from known directions, for samples from `first` on. */
 static inline __attribute__((always_inline)) void place_loop(const int lens, const int eyes,
                                                              const vlCameraCompiled *camera, uint32_t first,
                                                              uint32_t count, const vlDirections *d,
@@ -59,7 +59,7 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlCameraLocal local = {0.0, 0.0, d->dx[i], d->dy[i], d->dz[i]};
-    /* perspective directions have z = 1, others unit length: the depth is 1 but for those that have planes */
+    /* Depth: dz for cameras with `ahead`, else 1 (perspective directions have z = 1, others unit length). */
     double ahead = local.dz > 1e-300 ? local.dz : 1e-300;
     double depth = flat * ahead + (1.0 - flat);
     if (lens == DISC) local = vl_lens_apply_at(c, local, vl_lens_disk(lens_u[i], lens_v[i]), depth);
@@ -80,7 +80,7 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
   }
 }
 
-/* Natural vignetting of a chunk: cos^4 of the angle between film point and axis, as seen from the lens's middle. */
+/* Natural vignetting of a chunk: cos^4 of the angle between film point and axis at the lens's centre. */
 static void weigh_plain(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, float *weight) {
   for (uint32_t i = 0; i < count; i++) {
     double x = (double)s->pixel_x[i] - c->cx + (double)s->film_x[i];
@@ -97,7 +97,7 @@ static void weigh_staged(uint32_t count, const vlDirections *d, float *weight) {
   }
 }
 
-/* All that is neither plain perspective nor orthographic. */
+/* Rays of all cameras that are neither plain perspective nor orthographic. */
 static void staged_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, const vlCameraRays *r) {
   const double cx = c->cx, cy = c->cy, inv_fx = c->inv_fx, inv_fy = c->inv_fy;
   vlDirections d;
@@ -133,7 +133,7 @@ static void staged_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
   }
 }
 
-/* A shaped lens on a plain camera. */
+/* Rays of a plain camera with a shaped lens. */
 static void shaped_rays(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, const vlCameraRays *r) {
   float x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK];
   for (uint32_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
@@ -198,7 +198,7 @@ static void still_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamp
   for (uint32_t i = 0; r->valid && i < count; i++) r->valid[i] = 1.0f;
 }
 
-/* Time comes last: a camera that moves makes its rays in its own space. */
+/* Time is applied last: a moving camera makes its rays in its own space. */
 static void rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r) {
   if (c->when.moves) {
     vlCameraCompiled here = *c;

@@ -1,4 +1,4 @@
-/* camera/stages.h: the stages of the batches that one hot file offers another. */
+/* camera/stages.h: stages of the batches that one hot file provides to another. */
 #ifndef CAMERA_STAGES_H
 #define CAMERA_STAGES_H
 
@@ -13,14 +13,14 @@ typedef struct vlDirections {
 
 /* count is padded. */
 void vl_camera_directions(const vlCameraCompiled *c, uint32_t count, vlDirections *d);
-/* Times of n rays (n padded), of a camera whose `when` is timed; takes those of a camera that moves from camera space
- * to the world. */
+/* Sets the times of n rays (n padded) of a camera whose `when` is timed; transforms the rays of a moving camera from
+ * camera space to the world. */
 void vl_camera_time_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r);
 void vl_camera_unproject_chunk(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in, vlCameraPoints *out);
 void vl_camera_project_chunk(const vlCameraCompiled *c, uint32_t n, const vlCameraPoints *in, vlCameraPixels *out);
-/* A lens of many elements. In: d->x, d->y, pixels from the principal point; lens_u, lens_v. Out: rays in camera space,
- * unit length: d->x, d->y are where they start in the plane z = 0; d->valid: 0 where the lens stops them; seen: 0 where
- * no light comes at all; weight (may be null): what they count. count is padded. */
+/* A lens of many elements. In: d->x, d->y, pixels from the principal point; lens_u, lens_v. Out: rays in camera
+ * space with unit directions; d->x, d->y: origin in the plane z = 0; d->valid: 0 if the lens blocks the ray; seen: 0
+ * if no light reaches the film point at all; weight (may be null): factor on the radiance. count is padded. */
 void vl_camera_optics(const vlCameraCompiled *c, uint32_t count, const float *lens_u, const float *lens_v,
                       vlDirections *d, double *seen, float *weight);
 

@@ -1,5 +1,5 @@
-/* camera/stereo.c: two cameras from one, and one camera in many places. An eye is a camera like any other; but for
- * omnidirectional stereo (eyes.h) it is made of what a camera has anyway: another pose and another principal point. */
+/* camera/stereo.c: two cameras from one, and one camera at several positions. An eye is an ordinary camera with
+ * another pose and principal point, except for omnidirectional stereo (eyes.h). */
 #include <math.h>
 #include <string.h>
 
@@ -39,7 +39,7 @@ static vlResult check_stereo(const vlCamera *c, const vlStereo *s, vlError *erro
   return VL_OK;
 }
 
-/* To the right by x, then turned to the right by an angle whose tangent is `turn`; camera space. */
+/* Translation to the right by x, then rotation to the right by an angle whose tangent is `turn`; camera space. */
 static vlMat4 eye_pose(double x, double turn) {
   vlMat4 m = vl_mat4_identity();
   double k = 1.0 / sqrt(1.0 + turn * turn);
@@ -68,7 +68,7 @@ vlResult vl_camera_eye(const vlCamera *camera, const vlStereo *stereo, vlEye eye
     status = vl_camera_pose_matrix(pose.m, &made, error);
     vlMat4 there = vl_mat4_multiply(vl_mat4_load(camera->world_from_camera_close), from_between);
     memcpy(made.world_from_camera_close, there.m, sizeof there.m);
-    /* the axis of the camera between the eyes meets the plane z = convergence in this pixel of both */
+    /* the axis of the camera between the eyes meets the plane z = convergence at the same pixel of both */
     if (stereo->mode == VL_STEREO_OFF_AXIS) made.cx += made.fx * meet;
   }
   if (status == VL_OK) *result = made;

@@ -1,5 +1,5 @@
-/* camera/thin_lens.c: the lens half of vl_camera_make: radius or f-number, the plane in focus, the opening's shape,
- * exposure by the camera's numbers. After intrinsics and pose. */
+/* camera/thin_lens.c: the lens part of vl_camera_make: radius or f-number, the plane in focus, the aperture's shape,
+ * exposure from the camera's settings. After intrinsics and pose. */
 #include <math.h>
 
 #include "base/error.h"
@@ -8,7 +8,8 @@
 
 static const double agreement = 1e-6;
 
-/* Projections that see only what lies ahead: planes of constant z stand where others have spheres around the eye. */
+/* Projections of the half-space z > 0 alone: near, far and focus are planes of constant z, for others spheres around
+ * the eye. */
 bool vl_camera_sees_ahead(vlProjection kind) {
   return kind <= VL_PROJECTION_ORTHOGRAPHIC || kind == VL_PROJECTION_SINE || kind == VL_PROJECTION_FOV ||
          kind == VL_PROJECTION_OPTICS;
@@ -56,7 +57,7 @@ static vlResult check(const vlCameraDef *def, vlError *error) {
   return VL_OK;
 }
 
-/* Millimetres; unset where the def does not say it. */
+/* Focal length in millimetres; unset if the def does not give it. */
 static double focal_length(const vlCameraDef *def, const vlCamera *camera) {
   if (given(def->focal_mm) || def->projection == VL_PROJECTION_ORTHOGRAPHIC) return def->focal_mm;
   return camera->fx * def->sensor_width_mm / def->width;
@@ -66,7 +67,7 @@ static vlResult radius(const vlCameraDef *def, double focal_mm, vlCamera *camera
   const vlLensDef *d = &def->lens;
   if (vl_is_unset(d->f_number)) return VL_OK;
   if (vl_is_unset(focal_mm)) {
-    if (given(d->iso)) return VL_OK; /* it speaks of the exposure alone */
+    if (given(d->iso)) return VL_OK; /* affects exposure alone */
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: f_number %g needs the focal length in millimetres (focal_mm or sensor_width_mm); or give "
                    "lens_radius",
@@ -101,7 +102,7 @@ static vlResult tilt(const vlCameraDef *def, double focal_mm, vlCamera *camera, 
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: lens_tilt needs the focal length in millimetres (focal_mm or sensor_width_mm); or give "
                    "tilt_x and tilt_y of the plane");
-  /* the hinge rule: the plane in focus meets the plane through the lens, parallel to the film, f / sin(tilt) away */
+  /* Hinge rule: the plane in focus meets the lens plane (parallel to the film) at distance f / sin(tilt). */
   camera->lens.hinge[0] = sin(d->lens_tilt_y) * d->unit_mm / focal_mm;
   camera->lens.hinge[1] = sin(d->lens_tilt_x) * d->unit_mm / focal_mm;
   return VL_OK;
@@ -169,7 +170,7 @@ static vlResult exposure(const vlCameraDef *def, vlCamera *camera, vlError *erro
   return VL_OK;
 }
 
-/* A lens of many elements says focal length, focus and opening itself. */
+/* A lens of many elements determines focal length, focus and aperture itself. */
 static vlResult optics(const vlCameraDef *def, vlCamera *camera, vlError *error) {
   const vlLensDef *d = &def->lens;
   if (def->projection != VL_PROJECTION_OPTICS || !d->optics)

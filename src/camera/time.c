@@ -1,5 +1,5 @@
-/* camera/time.c: the time half of vl_camera_make: shutter, curve, readout, the second pose; and a camera held still at
- * one time. */
+/* camera/time.c: the time part of vl_camera_make: shutter, curve, readout, the second pose; and a moving camera
+ * frozen at one time. */
 #include "camera/time.h"
 
 #include <math.h>
@@ -29,7 +29,7 @@ static vlResult check_curve(const vlCameraDef *d, vlError *error) {
   return VL_OK;
 }
 
-/* The second pose's parts that are not given are those of the first. */
+/* Parts of the second pose that are not given are taken from the first. */
 static bool second_pose(const vlCameraDef *def, vlCameraDef *close) {
   *close = *def;
   bool given = !vl_is_unset(def->roll_close);
@@ -48,7 +48,7 @@ static bool second_pose(const vlCameraDef *def, vlCameraDef *close) {
   return given;
 }
 
-/* On the way from the pose that the camera has to another. */
+/* Sets the motion from the camera's pose to another. */
 static vlResult go_to(const double close[16], vlCamera *camera, vlError *error) {
   const double *t = camera->pose_times;
   vlMotion motion;
@@ -111,7 +111,7 @@ void vl_camera_compile_time(const vlCamera *camera, vlCameraTime *t) {
     case VL_READOUT_RIGHT: t->per_column = columns; break;
     case VL_READOUT_LEFT: t->per_column = -columns; break;
   }
-  /* counted from the first pixel that is read, so that its exposure begins when the shutter opens */
+  /* relative to the first pixel that is read, whose exposure begins when the shutter opens */
   t->first_column = t->per_column < 0.0 ? camera->width - 1.0 : 0.0;
   t->first_row = t->per_row < 0.0 ? camera->height - 1.0 : 0.0;
   t->moves = camera->moves && vl_motion_make(camera->world_from_camera, camera->world_from_camera_close, &t->motion);

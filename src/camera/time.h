@@ -1,7 +1,7 @@
-/* camera/time.h: time, first of the four factors of a camera: when a sample's light arrives (shutter, its curve, the
- * rows' readout), and where the camera is then. Part of the compiled camera.
+/* camera/time.h: time, first of the four factors of a camera: when a sample's light arrives (shutter, its curve,
+ * rolling readout), and the camera's pose then. Part of the compiled camera.
  *
- *   random number -> curve -> share of the exposure -> seconds, later for rows that are read later -> pose */
+ *     random number -> curve -> fraction of the exposure -> seconds, later for rows that are read later -> pose */
 #ifndef CAMERA_TIME_H
 #define CAMERA_TIME_H
 
@@ -9,18 +9,19 @@
 #include "velo/camera.h"
 
 typedef struct vlCameraTime {
-  bool timed;                     /* there is more to it than open + u (close - open) */
-  bool moves;                     /* rays come out in camera space, and `motion` takes them to the world */
-  double per_column, per_row;     /* how much later a pixel's exposure begins than its neighbour's */
+  bool timed;                     /* time is not simply open + u (close - open) */
+  bool moves;                     /* rays are made in camera space; `motion` transforms them to the world */
+  double per_column, per_row;     /* seconds by which a pixel's exposure begins after its neighbour's */
   double first_column, first_row; /* the pixel that is read first */
-  double pose_open, pose_rate;    /* share of the motion: (when - pose_open) * pose_rate, held in [0, 1] */
+  double pose_open, pose_rate;    /* fraction of the motion: (when - pose_open) * pose_rate, clamped to [0, 1] */
   vlMotion motion;                /* of world_from_camera */
   uint32_t points;                /* of the shutter's curve; 0: fully open throughout */
-  double at[VL_SHUTTER_POINTS], value[VL_SHUTTER_POINTS], share[VL_SHUTTER_POINTS]; /* share of the light before `at` */
-  double area;                                                                      /* under the curve */
+  /* share: share of the light before `at`. */
+  double at[VL_SHUTTER_POINTS], value[VL_SHUTTER_POINTS], share[VL_SHUTTER_POINTS];
+  double area; /* under the curve */
 } vlCameraTime;
 
-/* The share of the exposure's time that has passed when the share u of its light has come: the inverse of the curve's
+/* The fraction of the exposure time after which the share u of its light has arrived: the inverse of the curve's
  * integral, a parabola between two points. */
 static inline double vl_shutter_share(const vlCameraTime *t, double u) {
   if (t->points == 0) return u;
@@ -33,7 +34,7 @@ static inline double vl_shutter_share(const vlCameraTime *t, double u) {
   return t->at[k] + (x < 1.0 ? x : 1.0) * width;
 }
 
-/* Fills *t from a made camera; what it says about the shutter's open and close is not in it. */
+/* Fills *t from a camera, except for the shutter's open and close times. */
 void vl_camera_compile_time(const vlCamera *camera, vlCameraTime *t);
 
 #endif

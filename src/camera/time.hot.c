@@ -1,5 +1,5 @@
-/* camera/time.hot.c: the rays of cameras for which time is more than a random number: shutter curves, rolling shutters,
- * cameras that move. Runs after the rays are made in camera space. Compiled once per instruction set. */
+/* camera/time.hot.c: times of rays for shutter curves, rolling shutters and moving cameras. Runs after the rays are
+ * made in camera space. Compiled once per instruction set. */
 #include "camera/rays.h"
 #include "camera/stages.h"
 
@@ -20,7 +20,7 @@ static inline Moved move_ray(vlAffine a, double ox, double oy, double oz, double
   return r;
 }
 
-/* Camera space to the world, each ray at its own time; t_min and t_max keep their places on it. */
+/* Camera space to the world, each ray at its own time; t_min and t_max are rescaled to stay at the same points. */
 static void move_chunk(const vlCameraTime *time, uint32_t count, const double *when, const vlCameraRays *r,
                        uint32_t first) {
   const vlCameraTime copy = *time, *t = &copy;

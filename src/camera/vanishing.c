@@ -1,5 +1,6 @@
-/* camera/vanishing.c: vanishing points of a camera, and a camera from vanishing points (Hartley and Zisserman, Multiple
- * View Geometry, 8.6 and 8.8: points of directions at right angles, seen from the eye, are at right angles). */
+/* camera/vanishing.c: vanishing points of a camera, and a camera from vanishing points (Hartley and Zisserman,
+ * Multiple View Geometry, 8.6 and 8.8: the viewing rays of vanishing points of orthogonal directions are
+ * orthogonal). */
 #include <math.h>
 
 #include "base/cookie.h"
@@ -8,7 +9,8 @@
 #include "camera/points.h"
 #include "velo/vanishing.h"
 
-/* Beyond so many focal lengths a vanishing point is infinitely far: 1e-9 radians from parallel to the view plane. */
+/* Vanishing points beyond this many focal lengths are at infinity: within 1e-9 radians of parallel to the view
+ * plane. */
 static const double infinitely_far = 1e9;
 
 static bool direction_of(const vlCamera *c, const double d[3], double v[3]) {
@@ -32,7 +34,7 @@ bool vl_camera_vanishing_point(const vlCamera *camera, const double direction[3]
   double across = vl_length2(v[0], v[1]);
   if (flat || (perspective && fabs(v[2]) * infinitely_far <= across)) {
     double x = camera->fx * v[0] + camera->skew * v[1], y = camera->fy * v[1], length = vl_length2(x, y);
-    if (across * infinitely_far <= fabs(v[2])) return true; /* orthographic, end on */
+    if (across * infinitely_far <= fabs(v[2])) return true; /* orthographic, seen end on */
     point->kind = VL_VANISHING_INFINITE;
     point->direction[0] = x / length + 0.0;
     point->direction[1] = y / length + 0.0;
@@ -63,7 +65,7 @@ bool vl_camera_vanishing_points(const vlCamera *camera, const double up[3], vlVa
     points->finite += points->axes[i].kind == VL_VANISHING_FINITE;
   }
   if (camera->projection != VL_PROJECTION_PERSPECTIVE) points->finite = 0;
-  /* normals go by the transpose: those of camera space are n = W^T up */
+  /* Normals transform by the transpose: in camera space n = W^T up. */
   for (int i = 0; i < 3; i++) {
     for (int k = 0; k < 3; k++) n[i] += camera->world_from_camera[4 * k + i] * up[k];
     largest = fmax(largest, fabs(n[i]));
@@ -113,8 +115,8 @@ static vlResult check(const vlVanishingDef *d, vlError *error) {
   return VL_OK;
 }
 
-/* Where the heights of the triangle meet: the principal point (Caprile and Torre 1990). Relative to the first corner,
- * so that little is lost to a far one. */
+/* Orthocentre of the triangle: the principal point (Caprile and Torre 1990). Relative to the first corner, so that a
+ * distant corner costs little precision. */
 static vlResult orthocentre(const vlVanishingDef *d, double p[2], vlError *error) {
   const double *a = d->points[0];
   double b[2] = {d->points[1][0] - a[0], d->points[1][1] - a[1]},
@@ -123,7 +125,7 @@ static vlResult orthocentre(const vlVanishingDef *d, double p[2], vlError *error
   double size = fmax(fmax(fabs(b[0]), fabs(b[1])), fmax(fabs(c[0]), fabs(c[1])));
   if (!(fabs(cross) > 1e-12 * size * size))
     return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: the three lie on one line; no camera has such");
-  /* h . (c - b) = 0 and h . b = b . c: h is along the normal of c - b */
+  /* h . (c - b) = 0 and h . b = b . c: h is parallel to the normal of c - b */
   p[0] = a[0] + dot * (c[1] - b[1]) / cross;
   p[1] = a[1] - dot * (c[0] - b[0]) / cross;
   return VL_OK;
@@ -147,7 +149,7 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
   if (result != VL_OK) return result;
   uint32_t pairs = def->count == 3 ? 3 : 1;
   if (def->count == 2 && !vl_is_unset(def->cx)) p[0] = def->cx, p[1] = def->cy;
-  double least = INFINITY; /* of the three equal values the one with the smallest terms, which rounding hurts least */
+  double least = INFINITY; /* of the three equal values, the one with the smallest terms has the least rounding error */
   for (uint32_t i = 0; i < pairs; i++) {
     const double *a = def->points[i], *b = def->points[(i + 1) % def->count];
     double x = (a[0] - p[0]) * (b[0] - p[0]), y = (a[1] - p[1]) * (b[1] - p[1]);
@@ -167,7 +169,7 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "vanishing points: the three have their principal point at (%.9g, %.9g), but (%.9g, %.9g) is given",
                    p[0], p[1], def->cx, def->cy);
-  /* columns of camera from world: where the world's axes point in camera space */
+  /* columns of camera from world: directions of the world's axes in camera space */
   double axes[3][3];
   for (int i = 0; i < 2; i++) {
     double *v = axes[def->axes[i]], sign = def->away[i] ? 1.0 : -1.0;
@@ -180,7 +182,7 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
   else
     cross3(axes[second], axes[first], axes[third]);
   normalize3(axes[third]);
-  /* at right angles to the last bit, whatever rounding left */
+  /* orthogonal to the last bit, despite rounding */
   cross3(axes[(second + 1) % 3], axes[(second + 2) % 3], axes[second]);
   normalize3(axes[second]);
   *camera = vl_default_camera_def(def->width, def->height);

@@ -1,7 +1,7 @@
-/* camera_files/blender.c: a camera of Blender as JSON, by Blender's own property names: bpy.types.Camera (type, lens,
+/* camera_files/blender.c: a Blender camera as JSON, with Blender's own property names: bpy.types.Camera (type, lens,
  * sensor_width, sensor_height, sensor_fit, shift_x, shift_y, ortho_scale, clip_start, clip_end), the object's
  * matrix_world, RenderSettings (resolution_x, resolution_y, pixel_aspect_x, pixel_aspect_y). Axes x right, y up, z
- * back. shift is in units of the side that the sensor is fitted to: +0.1 moves the axis left, and down. */
+ * back. shift is in units of the side that the sensor is fitted to: +0.1 moves the principal point left, and down. */
 #include <math.h>
 #include <string.h>
 
@@ -36,7 +36,7 @@ vlResult vl_camera_read_blender(const vlCameraFile *file, const json_t *tree, vl
   double ratio = aspect_y / aspect_x, w = d->width, h = d->height;
   bool vertical = fit && strcmp(fit, "VERTICAL") == 0;
   bool across = fit && strcmp(fit, "AUTO") != 0 ? !vertical : w >= ratio * h;
-  double side = across ? w : ratio * h; /* that the sensor is fitted to, in pixel widths */
+  double side = across ? w : ratio * h; /* the side that the sensor is fitted to, in pixel widths */
   d->fx = flat ? side / ortho : lens / (vertical ? sensor_height : sensor_width) * side;
   d->fy = d->fx / ratio;
   d->cx = 0.5 * w - shift_x * side;
@@ -58,7 +58,7 @@ vlResult vl_camera_write_blender(const vlCameraFile *file, const vlCameraRecord 
   result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
   if (result != VL_OK) return result;
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
-  /* the smaller of the two aspects is 1, as Blender wants it */
+  /* Blender requires that the smaller of the two aspects is 1 */
   double ratio = c.fx / c.fy, w = c.width, h = c.height, side = w >= ratio * h ? w : ratio * h;
   double sensor = d->sensor_width_mm > 0.0 ? d->sensor_width_mm : 36.0;
   vl_camera_flip_axes(c.world_from_camera, m);

@@ -13,11 +13,11 @@
 #include "camera_files/trajectory.h"
 
 typedef struct {
-  char *at, *end; /* of the text that is left */
+  char *at, *end; /* the unread text */
   uint32_t line;
 } Lines;
 
-/* The next line, ended by a zero; null at the end. Comments are ignored. */
+/* The next line, zero-terminated; null at the end. Skips comments. */
 static char *next_line(Lines *lines) {
   while (lines->at < lines->end) {
     char *line = lines->at, *stop = memchr(line, '\n', (size_t)(lines->end - line));
@@ -71,7 +71,7 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
   return VL_OK;
 }
 
-/* The camera with this id; null: the first. */
+/* Reads the camera with this id; id null: the first camera. */
 static vlResult read_cameras(const vlCameraFile *file, const char *path, const double *id, vlCameraRecord *record) {
   char *text;
   size_t size;
@@ -122,7 +122,7 @@ static vlResult read_images(const vlCameraFile *file, const char *path, double *
     if (!taken) result = read_image_line(file, path, lines.line, line, &found, record->frames, id, record);
     taken = taken || found;
     record->frames++;
-    next_line(&lines); /* its points */
+    next_line(&lines); /* skip the line of points */
   }
   if (result == VL_OK && !taken)
     result = vl_camera_wrong(file, "colmap: there is no image \"%.60s\" among the %u",
@@ -135,7 +135,7 @@ static vlResult read_images(const vlCameraFile *file, const char *path, double *
 
 typedef struct {
   double id;
-  int32_t index; /* of the trajectory's cameras */
+  int32_t index; /* index in the trajectory's cameras */
 } CameraId;
 typedef VL_ARRAY(CameraId) CameraIds;
 
@@ -171,7 +171,7 @@ static vlResult read_all_cameras(vlTrajectory *t, const vlCameraFile *file, cons
 static vlResult read_all_images(vlTrajectory *t, const vlCameraFile *file, const char *path, char *text, size_t size,
                                 const CameraIds *ids) {
   Lines lines = {text, text + size, 0};
-  vlCameraFileDef any = *file->def; /* every image is the one that is asked for */
+  vlCameraFileDef any = *file->def; /* no frame filter: every image is read */
   vlCameraFile copy = *file;
   copy.def = &any;
   any.frame = NULL;
@@ -187,7 +187,7 @@ static vlResult read_all_images(vlTrajectory *t, const vlCameraFile *file, const
     if (!id) return vl_frame_wrong(file, &place, "there is no camera %.0f in cameras.txt", wanted.id);
     result = vl_trajectory_add(t, file, &place, id->index, record.camera.world_from_camera, VL_UNSET);
     if (result != VL_OK) return result;
-    next_line(&lines); /* its points */
+    next_line(&lines); /* skip the line of points */
   }
   return VL_OK;
 }
@@ -209,14 +209,14 @@ vlResult vl_trajectory_read_colmap(vlTrajectory *t, const vlCameraFile *file) {
   return result;
 }
 
-/* A folder, or a name that only a folder can have. */
+/* Whether the path is a folder; a missing path counts as one unless its name ends in .txt. */
 static bool is_folder(const char *path) {
   struct stat status;
   if (stat(path, &status) == 0) return S_ISDIR(status.st_mode);
   return !vl_ends_with(path, ".txt");
 }
 
-/* Where the two files are, from either's name or the folder's. */
+/* Finds the paths of both files from the path of either, or of their folder. */
 static bool find_files(const char *path, char cameras[4096], char images[4096]) {
   int a, b;
   if (is_folder(path)) {
@@ -238,7 +238,7 @@ vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record)
   struct stat status;
   double id = 0.0;
   if (!find_files(file->path, cameras, images)) return vl_camera_wrong(file, "colmap: the name is too long");
-  /* cameras.txt alone: the camera in the origin, unless an image's pose was asked for */
+  /* cameras.txt alone: the camera is at the origin, unless an image's pose was requested */
   if (stat(images, &status) == 0 || file->def->frame || vl_ends_with(file->path, "images.txt")) {
     vlResult result = read_images(file, images, &id, record);
     return result == VL_OK ? read_cameras(file, cameras, &id, record) : result;

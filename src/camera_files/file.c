@@ -1,4 +1,4 @@
-/* camera_files/file.c: the public face: which dialect a file is in, reading and writing it whole. */
+/* camera_files/file.c: the public functions: detects the dialect of a file, reads and writes whole files. */
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -12,7 +12,7 @@ typedef struct {
   const char *name;
   vlCameraReadTree *read;
   vlCameraWriteText *write;
-  vlCameraReadText *read_text; /* of those that are neither JSON nor YAML */
+  vlCameraReadText *read_text; /* for dialects that are neither JSON nor YAML */
 } Dialect;
 
 static const Dialect dialects[VL_CAMERA_DIALECT_COUNT] = {
@@ -42,7 +42,7 @@ vlCameraFileDef vl_default_camera_file_def(void) {
   return (vlCameraFileDef){.cookie = VL_COOKIE_CAMERA_FILE};
 }
 
-/* A field that only one dialect has. */
+/* Detects the dialect of a tree by a field that only this dialect has. */
 static vlCameraDialect dialect_of(const json_t *tree) {
   static const struct {
     const char *key;
@@ -66,7 +66,7 @@ static vlCameraDialect dialect_of(const json_t *tree) {
   if (api) {
     for (int i = VL_CAMERA_DIALECT_OPENGL; i <= VL_CAMERA_DIALECT_D3D; i++)
       if (strcmp(api, dialects[i].name) == 0) return (vlCameraDialect)i;
-    return VL_CAMERA_DIALECT_OPENGL; /* whose reader names the three */
+    return VL_CAMERA_DIALECT_OPENGL; /* its reader names the three APIs */
   }
   for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
     if (json_object_get(tree, marks[i].key)) return marks[i].dialect;
@@ -97,9 +97,9 @@ static bool is_colmap_name(const char *path) {
   return vl_ends_with(path, "cameras.txt") || vl_ends_with(path, "images.txt");
 }
 
-/* By its first letters; AUTO: JSON or YAML. */
+/* Detects the dialect by the first characters; AUTO: JSON or YAML. */
 static vlCameraDialect dialect_of_text(const char *text, size_t size) {
-  size_t first = size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* UTF-8's mark */
+  size_t first = size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* skips a UTF-8 byte order mark */
   if (size >= first + 5 && memcmp(text + first, "#usda", 5) == 0) return VL_CAMERA_DIALECT_USD;
   first += strspn(text + first, " \t\r\n");
   if (first < size && text[first] == '<') return VL_CAMERA_DIALECT_MITSUBA;
@@ -116,7 +116,7 @@ static vlResult read_tree(vlCameraFile *file, const char *text, size_t size, vlC
   vlResult result = vl_camera_tree(file, text, size, &tree);
   if (result != VL_OK) return result;
   vlCameraDialect found = dialect_of(tree), wish = file->def->dialect;
-  /* every ROS file has OpenCV's fields too */
+  /* ROS files also have OpenCV's fields */
   bool related = wish == VL_CAMERA_DIALECT_OPENCV && found == VL_CAMERA_DIALECT_ROS;
   related = related || (wish == VL_CAMERA_DIALECT_ROS && found == VL_CAMERA_DIALECT_OPENCV);
   if (wish && found && wish != found && !related) {

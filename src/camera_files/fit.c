@@ -1,4 +1,4 @@
-/* camera_files/fit.c: what a dialect cannot hold is refused by name. */
+/* camera_files/fit.c: refuses by name what a dialect cannot express. */
 #include <math.h>
 #include <string.h>
 
@@ -23,7 +23,7 @@ static bool is_identity(const double m[16]) {
   return true;
 }
 
-/* Rotation and translation only, to rounding. */
+/* Whether the matrix is rotation and translation only, up to rounding. */
 static bool is_rigid(const double m[16]) {
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
@@ -33,7 +33,7 @@ static bool is_rigid(const double m[16]) {
   return vl_mat4_determinant3(vl_mat4_load(m)) > 0.0;
 }
 
-/* The same view, its image left for right: the x axis the other way. Left-handed worlds, pbrt's, need it. */
+/* The same view with the image mirrored horizontally: negates the x axis. For left-handed worlds such as pbrt's. */
 static void unmirror(vlCamera *c) {
   for (int i = 0; i < 4; i++) {
     c->world_from_camera[4 * i] = 0.0 - c->world_from_camera[4 * i];
@@ -112,7 +112,7 @@ bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count) 
   } else if (def->distortion != VL_DISTORTION_NONE) {
     return false;
   }
-  /* as many as were given, or as few as hold what is not zero */
+  /* the number given, or the smallest that includes all nonzero coefficients */
   uint32_t last = def->distortion == VL_DISTORTION_OPENCV ? def->distortion_count : 0;
   for (uint32_t i = 0; i < 14; i++)
     if (k[i] != 0.0 && i + 1 > last) last = i + 1;

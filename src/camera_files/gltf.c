@@ -1,14 +1,14 @@
-/* camera_files/gltf.c: glTF 2.0's cameras (section 3.10): a node's transform, world from camera, axes x right, y up, z
- * back, matrices column by column; yfov, aspectRatio of the field of view (perspective), xmag, ymag, half the image's
- * sides (orthographic). No pixels, no principal point. The camera in full stands in the camera's `extras`, in velo's
- * own JSON, and is what velo reads back. */
+/* camera_files/gltf.c: glTF 2.0's cameras (section 3.10): a node's transform, world from camera, axes x right, y up,
+ * z back, column-major matrices; yfov and aspectRatio (perspective); xmag and ymag, half the image's sides
+ * (orthographic). glTF has neither a size in pixels nor a principal point. The full camera is stored in the camera's
+ * `extras`, as velo's own JSON, from which velo reads it back. */
 #include <math.h>
 #include <string.h>
 
 #include "camera_files/files.h"
 #include "math/transform.h"
 
-/* A camera in glTF's numbers. */
+/* A camera in glTF's parameters. */
 typedef struct {
   bool flat;
   double aspect, yfov, xmag, ymag;
@@ -49,7 +49,7 @@ static vlResult local_matrix(const vlCameraFile *file, const json_t *node, vlMat
   return status;
 }
 
-/* From the world's root down to a node; *parents[i] is the node above i, -1 for none. */
+/* World matrix of a node. *parents[i] is the parent of node i, -1 for none. */
 static vlResult world_matrix(const vlCameraFile *file, const json_t *nodes, const int64_t *parents, int64_t index,
                              vlMat4 *result) {
   int64_t steps = 0, count = (int64_t)json_array_size(nodes);
@@ -104,7 +104,7 @@ static vlResult read_orthographic(const vlCameraFile *file, const json_t *lens, 
   if (result == VL_OK) result = vl_camera_number(file, lens, "ymag", &y);
   if (result == VL_OK) result = vl_camera_number(file, lens, "znear", &d->near_plane);
   if (result == VL_OK) result = vl_camera_number(file, lens, "zfar", &d->far_plane);
-  /* exporters write negative ones too: the image is as wide */
+  /* some exporters write negative values; the extent is the same */
   x = fabs(x), y = fabs(y);
   if (result == VL_OK && !(x > 0.0 && y > 0.0))
     return vl_camera_wrong(file, "gltf: \"xmag\" and \"ymag\" must not be zero");
@@ -120,7 +120,7 @@ static bool agree(double a, double b) {
   return fabs(a - b) <= 1e-6 * fmax(1.0, fmax(fabs(a), fabs(b)));
 }
 
-/* The extras hold the camera in full; glTF's own numbers must still be those that they were written with. */
+/* Reads the full camera from the extras. glTF's own numbers must still be those written with it. */
 static vlResult read_extras(const vlCameraFile *file, const json_t *extras, const vlMat4 *pose, const json_t *lens,
                             vlCameraRecord *record) {
   vlCamera camera;
@@ -238,7 +238,7 @@ vlResult vl_camera_write_gltf(const vlCameraFile *file, const vlCameraRecord *re
     vl_camera_put(text, "\"xmag\": %.17g, \"ymag\": %.17g", n.xmag, n.ymag);
   else
     vl_camera_put(text, "\"aspectRatio\": %.17g, \"yfov\": %.17g", n.aspect, n.yfov);
-  /* glTF demands a near plane, and a far one of orthographic cameras; the extras know that there are none */
+  /* glTF requires a near plane, and a far plane of orthographic cameras; the extras record that the camera has none */
   double near_plane = c.near_plane > 0.0 || n.flat ? c.near_plane : fmin(0.01, 1e-3 * c.far_plane);
   vl_camera_put(text, ", \"znear\": %.17g", near_plane);
   if (!isinf(c.far_plane) || n.flat)

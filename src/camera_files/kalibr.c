@@ -1,4 +1,4 @@
-/* camera_files/kalibr.c: Kalibr's camchain: cam0, cam1, ...; the world is cam0's space. OpenCV's axes; the first
+/* camera_files/kalibr.c: Kalibr's camchain: cam0, cam1, ...; world space is cam0's space. OpenCV's axes; the first
  * pixel's centre is (0, 0). */
 #include <stdio.h>
 #include <string.h>

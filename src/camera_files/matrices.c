@@ -1,7 +1,7 @@
-/* camera_files/matrices.c: the projection and view matrix of OpenGL, Vulkan and Direct3D, as JSON or YAML. What the
- * three disagree on stands in the file: `order` of the 16 numbers and `vectors` that the matrix acts on, clip_y (where
- * the image's top is) and clip_z (what near and far plane become). They are written for a view space x right, y up, z
- * back; read for any, since the matrix itself says which way it looks. */
+/* camera_files/matrices.c: the projection and view matrix of OpenGL, Vulkan and Direct3D, as JSON or YAML. The file
+ * states the conventions in which the three differ: `order` of the 16 numbers; `vectors` that the matrix acts on;
+ * clip_y (direction of the image's top); clip_z (values of the near and far plane). Written for a view space x
+ * right, y up, z back. Read for any view space, since the matrix itself determines the view direction. */
 #include <math.h>
 #include <string.h>
 
@@ -12,8 +12,8 @@
 typedef struct {
   const char *name;
   vlCameraDialect dialect;
-  bool down;       /* clip space's y */
-  double z_near;   /* what the near plane becomes; the far plane 1 */
+  bool down;       /* clip space's y points down */
+  double z_near;   /* clip z of the near plane; that of the far plane is 1 */
   bool rows_first; /* as written: row-major */
   bool row_vectors;
 } Api;
@@ -25,7 +25,7 @@ enum { API_COUNT = sizeof apis / sizeof *apis };
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
-/* A word that must be one of two. */
+/* A string that must be one of two words. */
 static vlResult choice(const vlCameraFile *file, const json_t *tree, const char *key, const char *yes, const char *no,
                        bool *value) {
   const json_t *field;
@@ -37,7 +37,7 @@ static vlResult choice(const vlCameraFile *file, const json_t *tree, const char 
   return vl_camera_wrong(file, "%s: \"%s\" must be \"%s\" or \"%s\"", file->dialect, key, yes, no);
 }
 
-/* 16 numbers as a list, as lists, or as a text of numbers; into rows that act on columns. */
+/* Reads 16 numbers from a list, lists, or a string; converts to row-major, acting on column vectors. */
 static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const char *key, bool transposed,
                             vlMat4 *matrix) {
   double m[16];
@@ -74,7 +74,7 @@ static vlResult planes(const vlCameraFile *file, bool flat, double a, double b, 
     double other = near_plane;
     near_plane = far_plane, far_plane = other;
   }
-  /* an infinite far plane in single precision */
+  /* the far plane is infinite, inexactly represented in single precision */
   if (!flat && far_plane < 0.0) far_plane = INFINITY;
   if (!(near_plane >= 0.0 && far_plane > near_plane))
     return vl_camera_wrong(file, "%s: \"projection_matrix\" has its near plane at %g and its far plane at %g",
@@ -98,7 +98,8 @@ static vlResult decompose(const vlCameraFile *file, const vlMat4 *projection, vl
   for (int i = 0; i < 16; i++) p[i] /= fabs(scale);
   double forward = flat ? 1.0 : scale > 0.0 ? 1.0 : -1.0;
   if (flat && scale < 0.0) return vl_camera_wrong(file, "%s: \"projection_matrix\" mirrors w", file->dialect);
-  /* orthographic: forward is where clip.z grows from the near plane on, against reversed z by the rule of all three */
+  /* orthographic: forward is where clip.z increases from the near plane; all three APIs define reversed z against
+   * that */
   if (flat) forward = p[10] < 0.0 ? -1.0 : 1.0;
   if (p[4] != 0.0 || p[8] != 0.0 || p[9] != 0.0 || (!flat && (p[3] != 0.0 || p[7] != 0.0)))
     return vl_camera_wrong(file, "%s: \"projection_matrix\" is not of the form of a camera's", file->dialect);
@@ -161,7 +162,7 @@ vlResult vl_camera_read_matrices(const vlCameraFile *file, const json_t *tree, v
   if (result == VL_OK) result = read_matrix(&own, tree, "projection_matrix", transposed, &projection);
   if (result == VL_OK) result = read_matrix(&own, tree, "view_matrix", transposed, &view);
   if (result == VL_OK) result = decompose(&own, &projection, view, down, zero_to_one ? 0.0 : -1.0, d);
-  /* the camera's own planes, where the matrix has some only because it must */
+  /* the camera's own planes, because the matrix may have planes only because it must */
   if (result == VL_OK) result = vl_camera_optional(&own, tree, "near_plane", &d->near_plane);
   if (result == VL_OK && json_is_null(json_object_get(tree, "far_plane")))
     d->far_plane = INFINITY;
@@ -173,7 +174,7 @@ vlResult vl_camera_read_matrices(const vlCameraFile *file, const json_t *tree, v
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
-/* View space x right, y up, z back, to clip space; acts on columns. */
+/* Projection matrix from view space (x right, y up, z back) to clip space, for column vectors. */
 static vlMat4 projection_of(const vlCamera *c, const Api *api) {
   bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   double w = c->width, h = c->height, up = api->down ? 1.0 : -1.0;
@@ -182,7 +183,7 @@ static vlMat4 projection_of(const vlCamera *c, const Api *api) {
   if (!(n > 0.0) && !flat) n = fmin(0.01, 1e-3 * f);
   if (flat && isinf(f)) f = n + 1e4;
   double lo = api->z_near;
-  /* clip.z = a z + b, z = -Z of view space: n to lo w, f to w */
+  /* clip.z = a z + b, z = -Z of view space: n maps to lo w, f to w */
   if (flat)
     a = (1.0 - lo) / (f - n), b = lo - a * n;
   else if (isinf(f))

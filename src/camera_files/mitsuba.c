@@ -1,7 +1,7 @@
-/* camera_files/mitsuba.c: a sensor of Mitsuba 3's XML: perspective, thinlens, orthographic (their pages in Mitsuba's
- * documentation, "Sensors"). Camera axes x left, y up, z forward; to_world: world from camera; operations in a
- * transform act in their order. Pixels count from the film's corner. principal_point_offset is what is added to a place
- * on the film, in film sides: the axis meets the film at 0.5 minus it. Names are taken in both spellings, to_world and
+/* camera_files/mitsuba.c: a sensor of Mitsuba 3's XML: perspective, thinlens, orthographic (Mitsuba's documentation,
+ * "Sensors"). Camera axes x left, y up, z forward; to_world: world from camera; operations in a transform apply in
+ * their order. Pixels count from the film's corner. principal_point_offset is added to a film position, in film
+ * sides: the axis meets the film at 0.5 minus the offset. Names are accepted in both spellings, to_world and
  * toWorld. */
 #include <ctype.h>
 #include <math.h>
@@ -17,7 +17,7 @@ static const double degree = 3.14159265358979323846 / 180.0;
 
 typedef struct {
   const vlCameraFile *file;
-  const json_t *root; /* whose <default> elements $names stand for */
+  const json_t *root; /* its <default> elements define the $names */
 } Scene;
 
 static const char *tag_of(const json_t *element) {
@@ -28,7 +28,7 @@ static uint32_t line_of(const json_t *element) {
   return (uint32_t)json_number_value(json_object_get(element, "#"));
 }
 
-/* Equal but for case and underscores. */
+/* Whether two names are equal up to case and underscores. */
 static bool same(const char *a, const char *b) {
   for (;; a++, b++) {
     while (*a == '_') a++;
@@ -38,7 +38,7 @@ static bool same(const char *a, const char *b) {
   }
 }
 
-/* An attribute's text, $name replaced by its default. Null: not there. */
+/* An attribute's text, with $name replaced by its default. Null: missing. */
 static vlResult attribute(const Scene *scene, const json_t *element, const char *key, const char **text) {
   const json_t *item;
   size_t i;
@@ -55,8 +55,7 @@ static vlResult attribute(const Scene *scene, const json_t *element, const char 
                             vl_camera_text(element, key));
 }
 
-/* count numbers, or one that stands for all of them; *found tells whether the attribute is there (may be null: must).
- */
+/* `count` numbers, or one that is used for all. *found: whether the attribute exists (null: it is required). */
 static vlResult numbers(const Scene *scene, const json_t *element, const char *key, uint32_t count, double *values,
                         bool *found) {
   const char *text;
@@ -78,7 +77,7 @@ static vlResult numbers(const Scene *scene, const json_t *element, const char *k
                             key, tag_of(element), count, count > 1 ? "s" : "");
 }
 
-/* The element with this name among a sensor's or film's parameters; null: none. */
+/* The element with this name among the parameters of a sensor or film; null: none. */
 static const json_t *parameter(const json_t *parent, const char *name) {
   size_t i;
   const json_t *item;
@@ -89,7 +88,7 @@ static const json_t *parameter(const json_t *parent, const char *name) {
   return NULL;
 }
 
-/* <float> or <integer>; *value stays where there is none. */
+/* Reads a <float> or <integer>; *value is unchanged if there is none. */
 static vlResult number(const Scene *scene, const json_t *parent, const char *name, double *value) {
   const json_t *item = parameter(parent, name);
   return item ? numbers(scene, item, "value", 1, value, NULL) : VL_OK;
@@ -104,7 +103,7 @@ static vlResult word(const Scene *scene, const json_t *parent, const char *name,
   return result;
 }
 
-/* x, y, z attributes, or one `value` of three (one for all). */
+/* Reads attributes x, y, z, or one `value` of three numbers (or one for all). */
 static vlResult triple(const Scene *scene, const json_t *op, double standard, double v[3]) {
   static const char *const keys[3] = {"x", "y", "z"};
   bool found = false;
@@ -183,12 +182,12 @@ static vlResult to_world(const Scene *scene, const json_t *sensor, vlMat4 *matri
   return VL_OK;
 }
 
-/* Width, height of the whole film and the crop of it that is the image. */
+/* Reads width and height of the full film, and the crop that is the image. */
 static vlResult read_film(const Scene *scene, const json_t *sensor, double size[2], double crop[4]) {
   static const char *const names[] = {"crop_offset_x", "crop_offset_y", "crop_width", "crop_height"};
   const json_t *film = NULL, *item;
   size_t i;
-  size[0] = 768.0, size[1] = 576.0; /* Mitsuba's own */
+  size[0] = 768.0, size[1] = 576.0; /* Mitsuba's default */
   json_array_foreach(json_object_get(sensor, "/"), i, item) if (strcmp(tag_of(item), "film") == 0) film = item;
   vlResult result = number(scene, film, "width", &size[0]);
   if (result == VL_OK) result = number(scene, film, "height", &size[1]);
@@ -204,7 +203,7 @@ static vlResult read_film(const Scene *scene, const json_t *sensor, double size[
   return VL_OK;
 }
 
-/* The focal length in pixels. */
+/* Computes the focal length in pixels. */
 static vlResult read_fov(const Scene *scene, const json_t *sensor, const double size[2], double *f) {
   static const char *const names[] = {"x", "y", "diagonal", "smaller", "larger"};
   double fov = VL_UNSET, w = size[0], h = size[1], diagonal = sqrt(w * w + h * h);
@@ -217,7 +216,7 @@ static vlResult read_fov(const Scene *scene, const json_t *sensor, const double 
   uint32_t line = line_of(sensor);
   if (!vl_is_unset(fov) && focal)
     return vl_camera_wrong_at(scene->file, line, 0, "mitsuba: fov and focal_length are given; there is room for one");
-  if (vl_is_unset(fov)) { /* of a 35 mm film, by its diagonal */
+  if (vl_is_unset(fov)) { /* 35 mm equivalent, by the film's diagonal */
     char *end = NULL;
     double mm = focal ? vl_camera_parse(focal, &end) : 50.0;
     if (!(mm > 0.0) || isinf(mm) || (focal && (end == focal || (*end && strcmp(end, "mm") != 0))))
@@ -267,7 +266,7 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDe
     return vl_camera_wrong_at(file, line_of(sensor), 0, "mitsuba: a thinlens needs its aperture_radius");
   if (kind == 1 && vl_is_unset(d->focus_distance)) d->focus_distance = isinf(d->far_plane) ? 1e4 : d->far_plane;
   d->fx = d->fy = f;
-  if (kind == 2) { /* the image is 2 units wide in camera space, which the matrix scales */
+  if (kind == 2) { /* orthographic: the image is 2 units wide in camera space, scaled by the matrix */
     double length[3];
     for (int k = 0; k < 3; k++) {
       length[k] = sqrt(m.m[k] * m.m[k] + m.m[4 + k] * m.m[4 + k] + m.m[8 + k] * m.m[8 + k]);

@@ -1,4 +1,4 @@
-/* camera_files/opencv.c: OpenCV's camera files and ROS's camera_info, which grew out of them. x right, y down, z
+/* camera_files/opencv.c: OpenCV's camera files, and ROS's camera_info, which derives from them. x right, y down, z
  * forward; camera from world; the first pixel's centre is (0, 0): velo's cx and cy are larger by 0.5. */
 #include <math.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "camera_files/files.h"
 
-/* The words for lens models in both dialects; null distortion: by the count of coefficients. */
+/* The names of lens models in both dialects; without a name the number of coefficients decides. */
 static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const char *coefficients, vlCameraDef *d) {
   static const char *const names[] = {"opencv",     "pinhole", "plumb_bob", "rational_polynomial",
                                       "thin_prism", "tilted",  "fisheye",   "equidistant",
@@ -62,8 +62,8 @@ static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const 
   return VL_OK;
 }
 
-/* A negative fy (the RGB-D sequences of ICL-NUIM have it): a camera whose y goes up, in a left-handed world. The same
- * pixels are those of fy > 0 and a pose that mirrors y. */
+/* A negative fy (as in ICL-NUIM's RGB-D sequences): a camera with y up, in a left-handed world. Converted to fy > 0
+ * and a pose that mirrors y, which gives the same pixels. */
 static vlResult turn_y(const vlCameraFile *file, vlCameraDef *d) {
   if (!(d->fy < 0.0)) return VL_OK;
   for (uint32_t i = 0; i < d->distortion_count; i++)
@@ -100,7 +100,7 @@ vlResult vl_camera_read_opencv(const vlCameraFile *file, const json_t *tree, vlC
 
 vlResult vl_camera_read_ros(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
-  /* the message's field names, in both ROS versions, or the file's */
+  /* field names of the ROS message (either version), or of the file */
   const char *k = json_object_get(tree, "K") ? "K" : json_object_get(tree, "k") ? "k" : "camera_matrix";
   const char *c = json_object_get(tree, "D") ? "D" : json_object_get(tree, "d") ? "d" : "distortion_coefficients";
   bool message = k[0] != 'c';
@@ -121,7 +121,7 @@ vlResult vl_camera_read_ros(const vlCameraFile *file, const json_t *tree, vlCame
   return result;
 }
 
-/* Which lens both write: the coefficients and whether it is the fisheye. */
+/* The lens as both dialects write it: coefficients, and whether it is a fisheye. */
 static vlResult lens_of(const vlCameraFile *file, const vlCameraDef *d, double k[14], uint32_t *n, bool *fisheye) {
   *fisheye = d->projection == VL_PROJECTION_EQUIDISTANT;
   *n = 0;
@@ -179,7 +179,7 @@ vlResult vl_camera_write_opencv(const vlCameraFile *file, const vlCameraRecord *
   vl_camera_put(text, "%%YAML:1.0\n---\nimage_width: %u\nimage_height: %u\n", c.width, c.height);
   put_matrix(text, "camera_matrix", 3, 3, m, true);
   if (fisheye) vl_camera_put(text, "distortion_model: fisheye\n");
-  if (n == 0) n = 4; /* FileStorage has no empty matrix; four zeros say the same */
+  if (n == 0) n = 4; /* FileStorage has no empty matrix; four zeros are equivalent */
   put_matrix(text, "distortion_coefficients", (int)n, 1, k, true);
   put_matrix(text, "rvec", 3, 1, v, true);
   put_matrix(text, "tvec", 3, 1, t, true);
@@ -197,7 +197,7 @@ vlResult vl_camera_write_ros(const vlCameraFile *file, const vlCameraRecord *rec
   if (n > 8) {
     bool present = false;
     for (int i = 8; i < 14; i++) present = present || k[i] != 0.0;
-    result = vl_camera_refuse(file, "distortion", present); /* s1 to s4, tilt: ROS has no name for them */
+    result = vl_camera_refuse(file, "distortion", present); /* s1 to s4, tilt: ROS has no such coefficients */
     if (result != VL_OK) return result;
     n = 8;
   }

@@ -21,7 +21,7 @@ vlResult vl_camera_write_pbrt(const vlCameraFile *file, const vlCameraRecord *re
       vl_camera_put(text, "%s%.17g", row + column ? " " : "", (row == 1 ? 0.0 - v : v) + 0.0);
     }
   vl_camera_put(text, "]\nCamera \"%s\"", flat ? "orthographic" : "perspective");
-  /* the window on the plane at distance 1: fov 90 degrees leaves it as it is */
+  /* the screen window is on the plane at distance 1: fov 90 degrees does not scale it */
   if (!flat) vl_camera_put(text, " \"float fov\" [90]");
   vl_camera_put(text, "\n  \"float screenwindow\" [%.17g %.17g %.17g %.17g]", -c.cx / c.fx, (c.width - c.cx) / c.fx,
                 (c.cy - c.height) / c.fy, c.cy / c.fy);

@@ -1,5 +1,5 @@
-/* camera_files/rotation.c: rotations as files write them: vectors (Rodrigues), quaternions, matrices; poses between the
- * two directions and axes. */
+/* camera_files/rotation.c: rotations in the representations of files: vectors (Rodrigues), quaternions, matrices;
+ * conversion of poses between directions and axes. */
 #include <math.h>
 #include <string.h>
 
@@ -18,7 +18,7 @@ void vl_rotation_from_vector(const double v[3], double r[9]) {
   r[6] = c * x * z - s * y, r[7] = c * y * z + s * x, r[8] = 1.0 - c * (x * x + y * y);
 }
 
-/* By the quaternion, which is well conditioned at every angle. */
+/* Through the quaternion, which is well conditioned at every angle. */
 void vl_rotation_to_vector(const double r[9], double v[3]) {
   double q[4];
   vl_rotation_to_quaternion(r, q);
@@ -37,7 +37,7 @@ bool vl_rotation_from_quaternion(const double q[4], double r[9]) {
   return true;
 }
 
-/* From the largest of the four, so that nothing small is divided by (Shepperd 1978); w >= 0. */
+/* Starts from the largest component, which avoids division by small numbers (Shepperd 1978); w >= 0. */
 void vl_rotation_to_quaternion(const double r[9], double q[4]) {
   double squares[4] = {1.0 + r[0] + r[4] + r[8], 1.0 + r[0] - r[4] - r[8], 1.0 - r[0] + r[4] - r[8],
                        1.0 - r[0] - r[4] + r[8]};

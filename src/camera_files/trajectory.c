@@ -1,5 +1,5 @@
-/* camera_files/trajectory.c: many frames from one file: which kind of file it is, the frames' checks, the public face.
- * Poses and cameras are kept apart, for thousands of frames share one camera. */
+/* camera_files/trajectory.c: trajectories, many frames from one file: detects the kind of file, checks the frames,
+ * public functions. Poses and cameras are stored apart, because thousands of frames may share one camera. */
 #include "camera_files/trajectory.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "base/file.h"
 #include "base/text.h"
 
-/* How far a pose's rotation may be from one: files write 4 digits and more. */
+/* Allowed deviation of a pose's matrix from a rotation: files have 4 digits or more. */
 static const double rotation_tolerance = 1e-3;
 
 vlResult vl_frame_wrong(const vlCameraFile *file, const vlFramePlace *place, const char *format, ...) {
@@ -26,7 +26,7 @@ vlResult vl_frame_wrong(const vlCameraFile *file, const vlFramePlace *place, con
                     place->frame, *name ? " (" : "", name, *name ? ")" : "", message);
 }
 
-/* Null where it is a rotation and a place. */
+/* What is wrong with a pose; null for a rotation and a translation. */
 static const char *pose_fault(const double m[16]) {
   for (int i = 0; i < 12; i++)
     if (!isfinite(m[i])) return "the pose holds a value that is not finite";
@@ -73,7 +73,7 @@ vlResult vl_trajectory_add_camera(vlTrajectory *t, const vlCameraFile *file, con
   if (t->cameras.count == INT32_MAX) return vl_camera_wrong(file, "too many cameras");
   vlCameraRecord *added = VL_PUSH(t->context, &t->cameras);
   if (!added) return vl_fail_memory(file->error);
-  memcpy(added, record, sizeof *added); /* padding too: it is compared */
+  memcpy(added, record, sizeof *added); /* including padding, because records are compared bytewise */
   *index = (int32_t)t->cameras.count - 1;
   return VL_OK;
 }
@@ -81,7 +81,7 @@ vlResult vl_trajectory_add_camera(vlTrajectory *t, const vlCameraFile *file, con
 /* ---- which file ----------------------------------------------------------------------------------------------------
  */
 
-/* One camera, one frame. */
+/* Reads a file with one camera as one frame. */
 static vlResult read_single(vlTrajectory *t, const vlCameraFile *file) {
   vlCameraRecord record;
   vlCamera camera;
@@ -96,7 +96,7 @@ static vlResult read_single(vlTrajectory *t, const vlCameraFile *file) {
   return result;
 }
 
-/* Of a JSON or YAML file; *single: it is left to vl_camera_read. */
+/* Reads a JSON or YAML file. *single: the file has one camera, for vl_camera_read. */
 static vlResult read_tree(vlTrajectory *t, const vlCameraFile *file, const char *text, size_t size, bool *single) {
   json_t *tree = NULL;
   vlResult result = vl_camera_tree(file, text, size, &tree);
@@ -120,7 +120,7 @@ static bool is_tree(const char *path, const char *text) {
          vl_ends_with(path, ".yaml") || vl_ends_with(path, ".yml");
 }
 
-/* Lists of numbers and words: CSV by its name, or text that begins like a list. */
+/* Whether the file is a list of poses: CSV by its name, or text that begins like one. */
 static bool is_list(const char *path, const char *text) {
   if (vl_ends_with(path, ".csv") || vl_ends_with(path, ".txt") || vl_ends_with(path, ".tsv")) return true;
   const char *first = text + strspn(text, " \t\r\n");

@@ -1,4 +1,4 @@
-/* camera_files/trajectory.h: what the readers of many frames fill. */
+/* camera_files/trajectory.h: types and functions that the trajectory readers share. */
 #ifndef CAMERA_FILES_TRAJECTORY_H
 #define CAMERA_FILES_TRAJECTORY_H
 
@@ -8,7 +8,7 @@
 typedef struct vlStoredFrame {
   double pose[12]; /* world from camera, three rows */
   double time;
-  size_t name; /* where it starts among the names */
+  size_t name; /* offset among the names */
   int32_t camera;
   uint32_t line;
 } vlStoredFrame;
@@ -20,7 +20,7 @@ struct vlTrajectory {
   VL_ARRAY(char) names;
 };
 
-/* A place in the file for messages: its name where it is not the file that was asked for, the line, which frame. */
+/* A frame's location for messages: the file if it is not the one that was opened, the line, the frame. */
 typedef struct vlFramePlace {
   const char *path;
   uint32_t line, frame;
@@ -29,14 +29,14 @@ typedef struct vlFramePlace {
 
 vlResult vl_frame_wrong(const vlCameraFile *file, const vlFramePlace *place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* *index of a camera like this but for its pose and name: the last one, or a new one. */
+/* Finds a camera equal to this one except for pose and name, or adds it. *index: its index. */
 vlResult vl_trajectory_add_camera(vlTrajectory *t, const vlCameraFile *file, const vlCameraRecord *record,
                                   int32_t *index);
-/* Checks the pose. */
+/* Adds a frame; checks its pose. */
 vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file, const vlFramePlace *place, int32_t camera,
                            const double world_from_camera[16], double time);
 
-/* One frame of transforms.json (nerf.c). */
+/* Reads one frame of transforms.json (nerf.c). */
 vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame, const json_t *tree,
                                    vlCameraRecord *record);
 

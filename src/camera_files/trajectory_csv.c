@@ -1,7 +1,7 @@
-/* camera_files/trajectory_csv.c: poses in lines of text. With a header that names the columns: CSV (comma, semicolon,
- * tab or blanks between them). Without one: TUM's lists (8 numbers: seconds, place, quaternion x y z w) and KITTI's (12
- * numbers: three rows of a matrix). All are world from camera, x right, y down, z forward, unless a comment before the
- * header says "axes: opengl" or "pose: camera_from_world". */
+/* camera_files/trajectory_csv.c: poses in lines of text. With a header that names the columns: CSV (separated by
+ * comma, semicolon, tab or blanks). Without one: TUM's lists (8 numbers: seconds, position, quaternion x y z w) and
+ * KITTI's (12 numbers: three rows of a matrix). All are world from camera, x right, y down, z forward, unless a
+ * comment before the header says "axes: opengl" or "pose: camera_from_world". */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@ enum { MOST_COLUMNS = 64 };
 
 enum Column {
   NAME,
-  NUMBER, /* kept for people: frames are counted in the order of the file */
+  NUMBER, /* not used: frames are numbered in the order of the file */
   TIME,
   TX,
   TY,
@@ -53,7 +53,7 @@ typedef struct Csv {
   const vlCameraFile *file;
   char separator; /* 0: blanks */
   uint32_t line;
-  int columns, of[MOST_COLUMNS]; /* which Column each is */
+  int columns, of[MOST_COLUMNS]; /* the Column of each field */
   bool has[COLUMNS], header;
   bool opengl, from_world;
 } Csv;
@@ -62,7 +62,8 @@ static vlResult wrong(const Csv *csv, uint32_t column, const char *format, const
   return vl_fail_at(csv->file->error, VL_ERROR_SCENE, csv->file->path, csv->line, column + 1, format, word);
 }
 
-/* The fields of a line in place; blanks and quotes around them go. Returns how many, MOST_COLUMNS + 1: too many. */
+/* Splits a line in place; removes surrounding blanks and quotes. Returns the number of fields; MOST_COLUMNS + 1: too
+ * many. */
 static int split(char *line, char separator, char *fields[MOST_COLUMNS]) {
   int count = 0;
   for (char *at = line; at;) {
@@ -95,7 +96,7 @@ static bool to_number(const char *text, double *value) {
   return end != text && *end == 0;
 }
 
-/* "# axes: opengl": false for a word that is not known. */
+/* Parses a comment such as "# axes: opengl"; false: an unknown value. */
 static bool take_comment(Csv *csv, const char *comment) {
   const struct {
     const char *key, *words[2];
@@ -129,7 +130,7 @@ static bool any(const Csv *csv, int first, int last) {
   return false;
 }
 
-/* One of the ways to say a pose, and that one whole. */
+/* Checks that exactly one representation of the pose is given, and completely. */
 static vlResult check_columns(const Csv *csv) {
   static const struct { int first, last; } ways[] = {{TX, QW}, {EYE_X, LOOKAT_Z}, {M00, M23}};
   int found = 0;
@@ -174,7 +175,7 @@ static vlResult read_header(Csv *csv, char *fields[], int count) {
   return check_columns(csv);
 }
 
-/* Lines of numbers alone. */
+/* Sets the columns of a file without header from the count of numbers per line. */
 static bool headless(Csv *csv, int count) {
   static const int tum[8] = {TIME, TX, TY, TZ, QX, QY, QZ, QW};
   if (count != 8 && count != 12) return false;
@@ -216,7 +217,7 @@ static vlResult pose_of(const Csv *csv, const vlFramePlace *place, const double 
       t[i] = v[M00 + 4 * i + 3];
     }
   }
-  double axes = csv->opengl ? -1.0 : 1.0; /* y up, z back: the camera's own y and z turn over */
+  double axes = csv->opengl ? -1.0 : 1.0; /* y up, z back: negates the camera's y and z axes */
   if (csv->from_world) {
     for (int i = 1; i < 3; i++) {
       for (int k = 0; k < 3; k++) r[3 * i + k] *= axes;
@@ -271,7 +272,7 @@ static vlResult read_line(Csv *csv, char *line) {
 vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char *text, size_t size) {
   Csv csv = {.trajectory = t, .file = file};
   char *end = text + size;
-  if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) text += 3; /* the mark that some programs begin files with */
+  if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) text += 3; /* byte order mark */
   for (char *line = text; line < end;) {
     char *stop = memchr(line, '\n', (size_t)(end - line)), *next = stop ? stop + 1 : end;
     if (stop) *stop = 0;

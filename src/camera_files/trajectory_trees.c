@@ -1,11 +1,11 @@
-/* camera_files/trajectory_trees.c: many frames of files that are trees: transforms.json, camchains, OpenCV's
- * calibrations. JSON keeps no lines once it is read: the line of a frame is found again in the text. */
+/* camera_files/trajectory_trees.c: trajectories in JSON and YAML files: transforms.json, camchains, OpenCV's
+ * calibrations. The JSON tree has no line numbers: the line of a frame is searched in the text. */
 #include <stdio.h>
 #include <string.h>
 
 #include "camera_files/trajectory.h"
 
-/* The line of the n-th (from 0) place where a key stands; 0: there are not so many. */
+/* The line of the n-th (from 0) occurrence of a key; 0: there are fewer. */
 static uint32_t line_of_key(const char *text, const char *key, uint32_t n) {
   const char *at = strstr(text, key);
   for (uint32_t i = 0; at && i < n; i++) at = strstr(at + 1, key);
@@ -14,7 +14,7 @@ static uint32_t line_of_key(const char *text, const char *key, uint32_t n) {
   return at ? line : 0;
 }
 
-/* The reader's own words, behind which frame it is; its place where it told one. */
+/* Prefixes the reader's message with the frame, and with its location if known. */
 static vlResult in_frame(const vlCameraFile *file, const vlFramePlace *place, vlResult result) {
   if (result != VL_ERROR_SCENE || !file->error) return result;
   vlError inner = *file->error;
@@ -58,7 +58,7 @@ vlResult vl_trajectory_read_nerf(vlTrajectory *t, const vlCameraFile *from, cons
   return VL_OK;
 }
 
-/* Each camera where it stands beside the first. */
+/* Each camera, with its pose relative to the first. */
 vlResult vl_trajectory_read_kalibr(vlTrajectory *t, const vlCameraFile *from, const json_t *tree) {
   enum { MOST = 1024 };
   vlCameraFileDef def = *from->def;
@@ -84,7 +84,7 @@ vlResult vl_trajectory_read_kalibr(vlTrajectory *t, const vlCameraFile *from, co
   return VL_OK;
 }
 
-/* "extrinsic_parameters" of OpenCV's calibration program: a row for each view, rvec and tvec: camera from world. */
+/* "extrinsic_parameters" of OpenCV's calibration program: one row per view, rvec and tvec: camera from world. */
 vlResult vl_trajectory_read_opencv(vlTrajectory *t, const vlCameraFile *from, const json_t *tree, const char *text) {
   vlCameraFile copy = *from, *file = &copy;
   file->dialect = "opencv";

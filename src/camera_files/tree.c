@@ -1,4 +1,4 @@
-/* camera_files/tree.c: values out of a file's tree, each error with the field's name; text that is put together. */
+/* camera_files/tree.c: reads values from a file's tree, with errors that name the field; collects text for writing. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -30,7 +30,7 @@ vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size,
   size_t first = strspn(text, " \t\r\n");
   vlResult result = VL_OK;
   *tree = NULL;
-  /* .glb: 12 bytes of header, then a chunk of JSON: its length, "JSON", the text */
+  /* .glb: a header of 12 bytes, then a JSON chunk: its length, "JSON", the text */
   if (size >= 20 && memcmp(text, "glTF", 4) == 0 && memcmp(text + 16, "JSON", 4) == 0) {
     const unsigned char *b = (const unsigned char *)text + 12;
     size_t length = (size_t)b[0] | (size_t)b[1] << 8 | (size_t)b[2] << 16 | (size_t)b[3] << 24;
@@ -122,7 +122,7 @@ vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord 
   return VL_OK;
 }
 
-/* Appends; lists in lists to a depth of two. */
+/* Appends the numbers of a list; nested lists to a depth of two. */
 static vlResult collect(const vlCameraFile *file, const json_t *list, const char *key, int depth, double *values,
                         uint32_t most, uint32_t *count) {
   size_t i;

@@ -1,7 +1,7 @@
 /* camera_files/usd.c: USD's camera (UsdGeomCamera, UsdGeomXformable) in its text form, .usda. Camera axes x right, y
- * up, z back; matrices act on row vectors, world from camera. Focal length, apertures and their offsets are in tenths
- * of a scene unit; the aperture's offset moves the window, so the axis goes the other way; y is up. The image's size
- * is the resolution of the file's RenderSettings or RenderProduct. */
+ * up, z back; matrices act on row vectors, world from camera. Focal length, apertures and their offsets are in
+ * tenths of a scene unit. The aperture's offset moves the window, so the principal point moves the other way; y is
+ * up. The image's size is the resolution of the file's RenderSettings or RenderProduct. */
 #include <math.h>
 #include <string.h>
 
@@ -11,9 +11,8 @@
 
 static const double degree = 3.14159265358979323846 / 180.0;
 
-/* ---- transforms: as column matrices, so that the first operation of an order is the outermost
- * ------------------------
- */
+/* ---- transforms: matrices for column vectors; the first operation of an order is the outermost
+ * -------------------- */
 
 typedef struct {
   const vlCameraFile *file;
@@ -29,7 +28,7 @@ static vlMat4 turn(int axis, double degrees) {
   return vl_mat4_rotate(degrees * degree, axis == 0, axis == 1, axis == 2);
 }
 
-/* xformOp:kind[:suffix], perhaps behind !invert! */
+/* Applies xformOp:kind[:suffix], optionally after !invert!. */
 static vlResult operation(const Operation *op, vlMat4 *m) {
   bool inverted = strncmp(op->name, "!invert!", 8) == 0;
   const char *key = op->name + (inverted ? 8 : 0), *kind = key + 8;
@@ -68,7 +67,7 @@ static vlResult operation(const Operation *op, vlMat4 *m) {
   return result;
 }
 
-/* Of one prim; *reset: what is above it does not count. */
+/* Transform of one prim. *reset: the transforms of its parents do not apply. */
 static vlResult local_matrix(const vlCameraFile *file, const json_t *prim, vlMat4 *m, bool *reset) {
   const json_t *order = json_object_get(prim, "xformOpOrder"), *item;
   size_t i;
@@ -92,7 +91,7 @@ static vlResult local_matrix(const vlCameraFile *file, const json_t *prim, vlMat
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
-/* A value that changes with time is no still camera's. */
+/* Refuses values that change with time. */
 static vlResult check_still(const vlCameraFile *file, const json_t *prim) {
   uint32_t line = (uint32_t)json_number_value(json_object_get(prim, "#"));
   const char *key;
@@ -106,7 +105,7 @@ static vlResult check_still(const vlCameraFile *file, const json_t *prim) {
 
 typedef struct {
   const vlCameraFile *file;
-  const json_t *camera, *resolution; /* the prim chosen, and the first resolution of the file */
+  const json_t *camera, *resolution; /* the chosen prim, and the first resolution of the file */
   vlMat4 pose;
   uint32_t frames;
 } Search;
@@ -177,7 +176,7 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   }
   if (result != VL_OK) return result;
   double w = d->width, h = d->height;
-  /* orthographic apertures are in tenths of a unit as well */
+  /* orthographic apertures are in tenths of a unit too */
   d->fx = flat ? 10.0 * (w / across) : focal * (w / across);
   d->fy = flat ? 10.0 * (h / down) : focal * (h / down);
   d->cx = 0.5 * w - offset_x * (w / across);
@@ -214,7 +213,7 @@ vlResult vl_camera_read_usd(const vlCameraFile *file, const char *text, size_t s
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
-/* USD's names are made of letters, digits and _. */
+/* Names in USD consist of letters, digits and _. */
 static void put_name(vlCameraText *text, const char *name) {
   if (!*name || (*name >= '0' && *name <= '9')) vl_camera_put(text, "Camera%s", *name ? "_" : "");
   for (; *name; name++) {
@@ -235,7 +234,7 @@ vlResult vl_camera_write_usd(const vlCameraFile *file, const vlCameraRecord *rec
   if (result == VL_OK) result = vl_camera_refuse(file, "lens_radius", flat && c.lens_radius > 0.0);
   if (result != VL_OK) return result;
   double w = c.width, h = c.height, m[16];
-  /* a metre is the unit: 36 mm are 0.36 tenths of it */
+  /* the scene unit is a metre: 36 mm are 0.36 tenths of it */
   double across = 0.01 * (d->sensor_width_mm > 0.0 ? d->sensor_width_mm : 36.0), focal = c.fx * (across / w);
   if (flat) across = 10.0 * w / c.fx, focal = 0.5;
   double down = flat ? 10.0 * h / c.fy : across * (h / w) * (c.fx / c.fy);

@@ -1,7 +1,7 @@
-/* camera_files/usda.c: USD's text form, as far as cameras need it, made into a tree: a prim is an object with its
- * properties by name (numbers, words and lists of them; tuples are lists), "<": its type, "@": its name, "#": its line,
- * "/": the prims in it; the root holds the layer's metadata by name. Kept are properties of cameras and render
- * settings and what places a prim; the rest, meshes above all, is ignored without being stored. */
+/* camera_files/usda.c: parses USD's text form, as far as cameras need it, into a tree. A prim is an object with its
+ * properties by name (numbers, words and lists of them; tuples are lists), "<": its type, "@": its name, "#": its
+ * line, "/": its child prims. The root holds the layer's metadata by name. Properties of cameras, render settings
+ * and transforms are kept; all others, above all meshes, are skipped without being stored. */
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -29,7 +29,7 @@ static bool memory(Parser *p) {
   return false;
 }
 
-/* Past blanks and comments; false at the end. */
+/* Skips blanks and comments; false at the end. */
 static bool skip(Parser *p) {
   for (; p->at < p->end; p->at++) {
     if (*p->at == '\n') {
@@ -53,7 +53,7 @@ static bool take(Parser *p, char c) {
   return true;
 }
 
-/* Letters, digits and what names are made of: xformOp:translate, double3, camera.name. */
+/* Length of the identifier at the current position: xformOp:translate, double3, camera.name. */
 static size_t word(Parser *p) {
   const char *s = p->at;
   while (s < p->end && (isalnum((unsigned char)*s) || strchr("_:.!", *s)) && *s) s++;
@@ -64,7 +64,7 @@ static bool equals(const char *text, size_t length, const char *wanted) {
   return strlen(wanted) == length && memcmp(text, wanted, length) == 0;
 }
 
-/* After the opening quote: one, or three of them. *text, *length: what stands between. */
+/* Parses a string after its opening quote (one or three). *text, *length: its contents. */
 static bool string(Parser *p, const char **text, size_t *length) {
   char quote = *p->at;
   size_t quotes = p->end - p->at >= 3 && p->at[1] == quote && p->at[2] == quote ? 3 : 1;
@@ -84,7 +84,7 @@ static bool string(Parser *p, const char **text, size_t *length) {
   return fail(p, "a string has no end");
 }
 
-/* Any value; *value (may be null: not kept) is a new reference, null where it is of no use here. */
+/* Parses any value. *value (may be null: not stored) is a new reference, or null for values that are not kept. */
 static bool value(Parser *p, int depth, json_t **result);
 
 static bool list(Parser *p, int depth, char close, json_t **result) {
@@ -108,7 +108,7 @@ static bool list(Parser *p, int depth, char close, json_t **result) {
   return p->result == VL_OK;
 }
 
-/* { ... } of a dictionary or of time samples, from the brace: ignored. */
+/* Skips { ... } of a dictionary or of time samples, from the brace. */
 static bool braces(Parser *p) {
   int depth = 0;
   do {
@@ -132,7 +132,7 @@ static bool value(Parser *p, int depth, json_t **result) {
   char c = *p->at;
   if (c == '(' || c == '[') return list(p, depth, c == '(' ? ')' : ']', result);
   if (c == '{') {
-    if (result) *result = json_true(); /* time samples: that they are there */
+    if (result) *result = json_true(); /* time samples: only their presence is recorded */
     return braces(p);
   }
   if (c == '"' || c == '\'') {
@@ -151,7 +151,7 @@ static bool value(Parser *p, int depth, json_t **result) {
   }
   if (isdigit((unsigned char)c) || strchr("+-.", c)) {
     char *end;
-    double number = strtod(p->at, &end); /* a zero byte stands after the file */
+    double number = strtod(p->at, &end); /* the text is zero-terminated */
     if (end == p->at) return fail(p, "a value is missing");
     if (result) *result = isfinite(number) ? json_real(number) : json_stringn(p->at, (size_t)(end - p->at));
     p->at = end;
@@ -164,14 +164,14 @@ static bool value(Parser *p, int depth, json_t **result) {
   return true;
 }
 
-/* ( ... ) behind a prim or a property, or at the layer's head; words of the head are kept in `into`. */
+/* Parses ( ... ) after a prim or property, or at the layer's head; values of the head are stored in `into`. */
 static bool metadata(Parser *p, json_t *into) {
   if (!take(p, '(')) return p->result == VL_OK;
   while (!take(p, ')')) {
     const char *name;
     size_t length;
     if (!skip(p)) return fail(p, "a parenthesis is not closed");
-    if (*p->at == '"' || *p->at == '\'') { /* the comment */
+    if (*p->at == '"' || *p->at == '\'') { /* a comment string */
       if (!string(p, &name, &length)) return false;
       continue;
     }
@@ -179,7 +179,7 @@ static bool metadata(Parser *p, json_t *into) {
     length = word(p);
     if (length == 0) return fail(p, "a name is missing in parentheses");
     p->at += length;
-    if (!take(p, '=')) continue; /* `prepend`, `delete`, ... stand before the name */
+    if (!take(p, '=')) continue; /* `prepend`, `delete`, ... precede the name */
     json_t *item = NULL;
     if (!value(p, 4, into ? &item : NULL)) {
       json_decref(item);
@@ -196,7 +196,7 @@ static bool is_kept(const json_t *prim, const char *name, size_t length) {
   return type && (strcmp(type, "Camera") == 0 || strncmp(type, "Render", 6) == 0);
 }
 
-/* [custom] [uniform] type name [= value] [(metadata)]: the last word of the line before = or ( is the name. */
+/* Parses [custom] [uniform] type name [= value] [(metadata)]: the last word before = or ( is the name. */
 static bool property(Parser *p, json_t *prim) {
   const char *name = p->at;
   size_t length = 0;
@@ -244,7 +244,7 @@ static bool body(Parser *p, json_t *self, int depth) {
   return true;
 }
 
-/* def [Type] "name" (metadata) { ... }, from its first word. */
+/* Parses def [Type] "name" (metadata) { ... }, from its first word. */
 static bool prim(Parser *p, json_t *parent, int depth) {
   const char *text = "", *type;
   size_t length = word(p), type_length;

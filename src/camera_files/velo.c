@@ -1,5 +1,5 @@
-/* camera_files/velo.c: velo's own JSON: every field of a camera def by its name, exactly; what is not given is not
- * written. Unknown fields are errors. */
+/* camera_files/velo.c: velo's own JSON: every field of a camera def by its name, exactly. Fields that are not given
+ * are not written. Unknown fields are errors. */
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -10,14 +10,15 @@
 static const char *const projections[] = {
     "perspective",     "orthographic", "equidistant", "equisolid",    "stereographic", "sine",
     "equirectangular", "equal-area",   "cylindrical", "cube",         "panini",        "fov",
-    "division",        "unified",      "eucm",        "double-sphere"}; /* no lens of many elements */
+    "division",        "unified",      "eucm",        "double-sphere"}; /* lenses of many elements are not supported */
 static const char *const distortions[] = {"none", "opencv", "radial", "thin-prism"};
 static const char *const axes[] = {"vertical", "horizontal", "diagonal", "smaller", "larger"};
 static const char *const readouts[] = {"down", "up", "right", "left"};
 static const char *const stereos[] = {"none", "parallel", "off-axis", "toe-in", "omnidirectional"};
 static const char *const eyes[] = {"both", "left", "right"};
 
-/* Fields of a def by their names in the file. count: numbers; more than one is a list, where null is unset. */
+/* A field of a def, with its name in the file. count: how many numbers; more than one is a list, in which null is
+ * unset. */
 typedef struct {
   const char *name;
   size_t offset;
@@ -87,7 +88,7 @@ static vlResult check_names(const vlCameraFile *file, const json_t *tree) {
   return VL_OK;
 }
 
-/* The place of a word in a list; *index stays when the field is not there. */
+/* Index of a field's word in a list; *index is unchanged if the field is missing. */
 static vlResult word(const vlCameraFile *file, const json_t *object, const char *key, const char *const *names,
                      uint32_t count, uint32_t *index) {
   if (!json_object_get(object, key)) return VL_OK;
@@ -115,7 +116,7 @@ static vlResult read_distortion(const vlCameraFile *file, const json_t *tree, vl
   return result;
 }
 
-/* One number, or a list with null for what is unset; *values stays when the field is not there. */
+/* Reads one number, or a list with null for unset; *values is unchanged if the field is missing. */
 static vlResult read_field(const vlCameraFile *file, const json_t *tree, const Field *field, double *values) {
   const json_t *list = json_object_get(tree, field->name);
   if (!list) return VL_OK;
@@ -136,7 +137,7 @@ static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const 
   return *given ? vl_camera_numbers(file, tree, key, m, 16, 16, NULL) : VL_OK;
 }
 
-/* Blades, vignetting, the shutter's curve, stereo. */
+/* Reads blades, vignetting, the shutter's curve, stereo. */
 static vlResult read_lens_and_time(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {
   uint32_t direction = 0, mode = 0, eye = 0, count = 0;
   double blades = 0.0, curve[2 * VL_SHUTTER_POINTS];
@@ -188,7 +189,7 @@ vlResult vl_camera_read_velo(const vlCameraFile *file, const json_t *tree, vlCam
   if (result == VL_OK) result = read_lens_and_time(file, tree, d);
   d->projection = (vlProjection)projection;
   d->fov_axis = (vlFovAxis)axis;
-  if (origin) { /* unset stays unset */
+  if (origin) { /* unset values stay unset */
     d->cx += 0.5, d->cy += 0.5;
     d->lens.focus_pixel[0] += 0.5, d->lens.focus_pixel[1] += 0.5;
   }
@@ -196,7 +197,7 @@ vlResult vl_camera_read_velo(const vlCameraFile *file, const json_t *tree, vlCam
   return result;
 }
 
-/* What differs from the default. */
+/* Writes a field if it differs from the default. */
 static void put_field(vlCameraText *text, const Field *field, const double *values, const double *standard) {
   bool differs = false;
   for (uint32_t i = 0; i < field->count; i++)

@@ -1,6 +1,6 @@
-/* camera_files/xml.c: XML by expat, made into a tree: an element is an object with its attributes by name, "<": its
- * tag, "#": its line, "/": the elements in it. Text is ignored. A document type is refused, and with it every
- * entity that a file could define; depth and number of elements are bounded. */
+/* camera_files/xml.c: parses XML by expat into a tree: an element is an object with its attributes by name, "<": its
+ * tag, "#": its line, "/": its child elements. Text is ignored. A document type is refused, and with it every entity
+ * that a file could define; depth and number of elements are bounded. */
 #include <expat.h>
 #include <string.h>
 
@@ -11,8 +11,8 @@ enum { MAX_DEPTH = 32, MAX_ELEMENTS = 20000 };
 typedef struct {
   const vlCameraFile *file;
   XML_Parser parser;
-  const char *const *wanted; /* tags of the root, or below it; others there are ignored with all in them */
-  json_t *open[MAX_DEPTH];   /* held by the one before */
+  const char *const *wanted; /* tags of the root, or below it; other elements there are ignored with their contents */
+  json_t *open[MAX_DEPTH];   /* each is owned by the one before it */
   int depth, skipped;        /* skipped: open elements that are ignored */
   uint32_t elements;
   vlResult result;
@@ -39,7 +39,7 @@ static bool is_wanted(const Builder *b, const char *tag) {
 
 static void on_start(void *data, const char *tag, const char **attributes) {
   Builder *b = data;
-  if (b->result != VL_OK) return; /* expat may go on to the end of its buffer */
+  if (b->result != VL_OK) return; /* expat may continue to the end of its buffer */
   if (b->skipped || !is_wanted(b, tag)) {
     b->skipped++;
     return;
@@ -58,7 +58,7 @@ static void on_start(void *data, const char *tag, const char **attributes) {
     failed |= json_object_set_new(element, attributes[0], json_string(attributes[1]));
   if (!failed && b->depth > 0) failed = json_array_append(json_object_get(b->open[b->depth - 1], "/"), element);
   if (failed) stop(b, vl_fail_memory(b->file->error));
-  if (b->depth > 0 || failed) json_decref(element); /* the root stays with the builder */
+  if (b->depth > 0 || failed) json_decref(element); /* the builder owns the root */
   if (!failed) b->open[b->depth++] = element;
 }
 
@@ -89,7 +89,7 @@ vlResult vl_camera_xml(const vlCameraFile *file, const char *text, size_t size, 
   XML_SetElementHandler(b.parser, on_start, on_end);
   XML_SetStartDoctypeDeclHandler(b.parser, on_document_type);
   XML_SetParamEntityParsing(b.parser, XML_PARAM_ENTITY_PARSING_NEVER);
-  enum { STEP = 1 << 24 }; /* expat counts in int */
+  enum { STEP = 1 << 24 }; /* expat's sizes are int */
   enum XML_Status status = XML_STATUS_OK;
   for (size_t at = 0; status == XML_STATUS_OK && at < size; at += STEP) {
     size_t n = size - at < STEP ? size - at : STEP;

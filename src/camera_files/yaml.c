@@ -1,5 +1,5 @@
-/* camera_files/yaml.c: YAML by libyaml, made into the tree that JSON gives. Anchors are refused: a small file could
- * grow without end by them. OpenCV's first line "%YAML:1.0" is no directive of YAML's and is ignored. */
+/* camera_files/yaml.c: parses YAML by libyaml into the same tree as JSON. Anchors are refused: with them a small
+ * file could expand without bound. OpenCV's first line "%YAML:1.0" is not a valid YAML directive and is ignored. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,8 +10,8 @@
 enum { MAX_DEPTH = 32 };
 
 typedef struct {
-  json_t *tree[MAX_DEPTH]; /* open lists and maps; each is held by the one before it */
-  char *key[MAX_DEPTH];    /* of the value to come, in maps */
+  json_t *tree[MAX_DEPTH]; /* open lists and maps; each is owned by the one before it */
+  char *key[MAX_DEPTH];    /* key of the next value, in maps */
   int depth;
   json_t *root;
 } Builder;
@@ -21,7 +21,7 @@ static vlResult wrong_at(const vlCameraFile *file, yaml_mark_t mark, const char 
                     what);
 }
 
-/* Plain numbers, true and false, nothing; the rest is text. */
+/* Converts plain numbers, booleans and null; everything else is text. */
 static json_t *scalar(const yaml_event_t *event) {
   const char *text = (const char *)event->data.scalar.value;
   size_t length = event->data.scalar.length;
@@ -38,7 +38,7 @@ static json_t *scalar(const yaml_event_t *event) {
   return json_stringn(text, length);
 }
 
-/* Takes the reference. */
+/* Adds a value to the innermost open list or map; takes the reference. */
 static vlResult add(const vlCameraFile *file, Builder *b, json_t *value, yaml_mark_t mark) {
   if (!value) return vl_fail_memory(file->error);
   if (b->depth == 0) {
@@ -85,7 +85,7 @@ vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size,
   yaml_parser_t parser;
   *tree = NULL;
   if (!yaml_parser_initialize(&parser)) return vl_fail_memory(file->error);
-  /* the line end stays, so that lines are counted right */
+  /* the line end is kept, for line numbers */
   size_t skip = size >= 6 && memcmp(text, "%YAML:", 6) == 0 ? strcspn(text, "\n") : 0;
   yaml_parser_set_input_string(&parser, (const unsigned char *)text + skip, size - skip);
   vlResult result = VL_OK;

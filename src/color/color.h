@@ -1,8 +1,7 @@
-/* color/color.h: spectra, colour spaces, and the way between spectra and RGB.
+/* color/color.h: spectra, colour spaces, and conversion between spectra and RGB.
  *
- * Wavelengths in nm, 360 to 830. A dense spectrum is 471 floats, one a nm, linear between. RGB reflectances become
- * smooth spectra s(l) = sigmoid(c0 l^2 + c1 l + c2) (Jakob and Hanika 2019), looked up in a table made at build time.
- */
+ * Wavelengths in nm, 360 to 830. A dense spectrum is 471 floats, one per nm, linear between. RGB reflectances become
+ * smooth spectra s(l) = sigmoid(c0 l^2 + c1 l + c2) (Jakob and Hanika 2019), by a table made at build time. */
 #ifndef COLOR_COLOR_H
 #define COLOR_COLOR_H
 
@@ -19,10 +18,10 @@ typedef struct vlSigmoid {
 static inline float vl_sigmoid(vlSigmoid s, float lambda) {
   float t = (lambda - 360.0f) * (1.0f / 470.0f);
   float x = (s.c0 * t + s.c1) * t + s.c2;
-  return 0.5f + 0.5f * (x / __builtin_sqrtf(1.0f + x * x)); /* never outside [0,1]: the root is never below |x| */
+  return 0.5f + 0.5f * (x / __builtin_sqrtf(1.0f + x * x)); /* within [0,1]: the root is never below |x| */
 }
-/* rgb in [0,1] of the space, clamped. Black, white and greys are constant spectra. Some microseconds: exact to 1e-6
- * where a reflectance can be of that colour at all; for texels there is vl_rgb_table_lookup (color/rgb_table.h). */
+/* rgb in [0,1] of the space, clamped. Black, white and greys give constant spectra. Takes some microseconds; exact
+ * to 1e-6 for colours that a reflectance can have. For texels use vl_rgb_table_lookup (color/rgb_table.h). */
 vlSigmoid vl_sigmoid_from_rgb(vlColorSpace space, float r, float g, float b);
 
 /* Dense tables, VL_LAMBDA_COUNT floats each: CIE 1931 2-degree observer, standard illuminant of a colour space. */
@@ -31,37 +30,38 @@ const float *vl_cie_y(void);
 const float *vl_cie_z(void);
 const float *vl_space_illuminant(vlColorSpace space);
 
-/* What a spectrum stands for, which decides how RGB becomes a spectrum (pbrt book 4.6.6). */
+/* The role of a spectrum, which determines how RGB becomes a spectrum (pbrt book 4.6.6). */
 typedef enum vlSpectrumRole { VL_ROLE_ALBEDO, VL_ROLE_UNBOUNDED, VL_ROLE_ILLUMINANT } vlSpectrumRole;
 
-/* Fills dense (VL_LAMBDA_COUNT) with the spectrum, its scale included; RGB illuminants times the space's illuminant.
- * Errors: SCENE for an unknown name (nearest named), wavelengths not ascending, values not finite. */
+/* Fills dense (VL_LAMBDA_COUNT) with the spectrum, including its scale; RGB illuminants are multiplied by the
+ * space's illuminant. Errors: SCENE for an unknown name (with the nearest one), wavelengths not ascending, values
+ * not finite. */
 vlResult vl_spectrum_dense(const vlSpectrum *spectrum, vlSpectrumRole role, float *dense, vlError *error);
-/* true when the spectrum has one value at all wavelengths (then *value). */
+/* Whether the spectrum is constant over all wavelengths; *value is then that constant. */
 bool vl_spectrum_is_constant(const vlSpectrum *spectrum, float *value);
-/* Integral of Y times s (for RGB illuminants: of the space's illuminant alone), pbrt's SpectrumToPhotometric: lights
- * are divided by it so that an RGB light of (1,1,1) has luminance 1. */
+/* Integral of Y times s (for RGB illuminants: of the space's illuminant alone), pbrt's SpectrumToPhotometric. Lights
+ * are divided by it, so that an RGB light of (1,1,1) has luminance 1. */
 double vl_spectrum_photometric(const vlSpectrum *spectrum, vlError *error);
-/* Linear RGB of the space for VL_COLOR_RGB mode. Albedo/unbounded: under the space's illuminant (RGB kinds: exact,
- * converted between spaces); illuminant: the light's own colour, luminance as in spectral mode after the photometric
- * division. */
+/* Linear RGB of the space, for VL_COLOR_RGB mode. Albedo and unbounded: the colour under the space's illuminant (RGB
+ * kinds: exact, converted between spaces). Illuminant: the light's own colour, with the same luminance as in
+ * spectral mode after the photometric division. */
 vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlColorSpace space, float rgb[3],
                             vlError *error);
 
-/* How the channels of linear sRGB share each wavelength (Mallett and Yuksel 2019): three spectra within [0, 1],
- * together 1, whose colours under the space's illuminant are (1,0,0), (0,1,0), (0,0,1). r, g, b, 0 of each nm. What
- * passes a share of each channel, T_r, T_g, T_b, passes T(lambda) = sum_i share_i(lambda) T_i: in [0, 1] where T_i are,
- * and of that colour exactly, however small they are. */
+/* Partition of each wavelength between the channels of linear sRGB (Mallett and Yuksel 2019): three spectra within
+ * [0, 1] with sum 1, whose colours under the space's illuminant are (1,0,0), (0,1,0), (0,0,1). r, g, b, 0 per nm. A
+ * medium with the channel transmittances T_r, T_g, T_b has T(lambda) = sum_i share_i(lambda) T_i: in [0, 1] if the
+ * T_i are, and of exactly that colour, however small they are. */
 extern const float vl_channel_shares[VL_LAMBDA_COUNT * 4];
 
-/* Row-major 3x3. */
+/* Matrix from XYZ to linear RGB of the space, row-major 3x3. */
 void vl_rgb_from_xyz(vlColorSpace space, float m[9]);
 void vl_xyz_from_rgb(vlColorSpace space, float m[9]);
-/* r_x r_y g_x g_y b_x b_y w_x w_y */
+/* xy chromaticities: r_x r_y g_x g_y b_x b_y w_x w_y. */
 void vl_space_chromaticities(vlColorSpace space, float xy[8]);
 
-/* Linear interpolation in a dense spectrum; 0 outside. (The index is clamped as an integer: clamped as a float it keeps
- * gcc from making a gather of it.) */
+/* Linear interpolation in a dense spectrum; 0 outside. (The index is clamped as an integer: if it were clamped as a
+ * float, gcc would not make a gather.) */
 static inline float vl_dense_at(const float *dense, float lambda) {
   float x = lambda - 360.0f;
   int i = (int)x;
@@ -73,7 +73,7 @@ static inline float vl_dense_at(const float *dense, float lambda) {
   return x <= 470.0f ? value : 0.0f;
 }
 
-/* T(lambda) of the shares t of linear sRGB's channels; linear between whole nm. */
+/* T(lambda) from transmittances t of linear sRGB's channels; linear between integer nm. */
 static inline float vl_channels_at(const float t[3], float lambda) {
   float x = lambda - 360.0f;
   int i = (int)x;
@@ -84,8 +84,8 @@ static inline float vl_channels_at(const float t[3], float lambda) {
   return a + (x - (float)i) * (b - a);
 }
 
-/* Hero wavelengths: lambda with density proportional to the observer's sensitivity (Radziszewski et al. 2009, pbrt book
- * 4.5.4). u in [0,1). */
+/* Hero wavelength sampling: lambda with density proportional to the observer's sensitivity (Radziszewski et al.
+ * 2009, pbrt book 4.5.4). u in [0,1). */
 static inline float vl_visible_lambda(float u) {
   float t = 0.85691062f - 1.82750197f * u;
   float atanh_t = 0.5f * vl_ln((1.0f + t) / (1.0f - t));

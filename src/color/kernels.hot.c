@@ -2,13 +2,13 @@
  */
 #include "color/kernels.h"
 
-/* u a quarter on for each channel, within 0 and 1. */
+/* u + channel / 4, wrapped to [0, 1). */
 static inline float turned(float u, int channel) {
   float v = u + 0.25f * (float)channel;
   return v >= 1.0f ? v - 1.0f : v;
 }
 
-/* The four hero wavelengths are u turned by quarters, so that they stratify the range together. The density is that of
+/* The four hero wavelengths are u rotated by quarters, so that they stratify the range. The density is that of
  * vl_visible_pdf: there 1 / cosh^2(atanh t) = 1 - t^2. */
 static void visible_wavelengths(uint32_t n, const float *u, float *const lambda[4], float *const inv_pdf[4]) {
   uint32_t count = VL_PAD(n);
@@ -19,7 +19,7 @@ static void visible_wavelengths(uint32_t n, const float *u, float *const lambda[
       float v = turned(u[i], c);
       float t = 0.85691062f - 1.82750197f * v;
       float x = 538.0f - 69.4444445f * vl_ln((1.0f + t) / (1.0f - t));
-      /* rounding may leave the range by a hair */
+      /* rounding may leave the range slightly */
       x = x > 360.0f ? x : 360.0f;
       l[i] = x < 830.0f ? x : 830.0f;
       p[i] = 253.819720f / (1.0f - t * t);

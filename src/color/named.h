@@ -2,9 +2,9 @@
 #ifndef COLOR_NAMED_H
 #define COLOR_NAMED_H
 
-/* Index from 0; null past the end. */
+/* Name by index, from 0; null past the end. */
 const char *vl_named_spectrum_name(unsigned index);
-/* Dense (471 values, velo's range) or null for an unknown name. Lives forever. */
+/* Dense spectrum (471 values, 360 to 830 nm), or null for an unknown name. Static storage. */
 const float *vl_named_spectrum(const char *name);
 
 #endif

@@ -1,12 +1,12 @@
-/* color/refine.c: single RGB values to spectra, exactly: the table's answer polished by Newton's method. For what is
- * done once (constants, lights); texels take the table as it is. Only + - * / sqrt in double: the same bits everywhere.
- */
+/* color/refine.c: exact conversion of single RGB values to spectra: the table's result refined by Newton's method.
+ * For constants and lights; texels use the table directly. Only + - * / sqrt in double: the same bits on every
+ * machine. */
 #include <string.h>
 
 #include "color/rgb_table.h"
 #include "color/tables.h"
 
-/* Sums in four parts, always the same ones: the compiler may add them side by side. */
+/* Sums are accumulated in four fixed parts, so that the compiler may vectorise them without reassociation. */
 enum { PARTS = 4, PADDED = (VL_LAMBDA_COUNT + PARTS - 1) / PARTS * PARTS };
 
 static double dot(const double *a, const double *b) {
@@ -16,7 +16,8 @@ static double dot(const double *a, const double *b) {
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/* The colour under the space's illuminant, and its derivatives by c0, c1, c2 (row: component). Weights end in zeros. */
+/* The colour under the space's illuminant, and its Jacobian by c0, c1, c2 (one row per component). Weights are
+ * padded with zeros. */
 static void shown(const double weight[3][PADDED], const double c[3], double rgb[3], double jacobian[9]) {
   double s[PADDED], slope[3][PADDED];
   for (int i = 0; i < PADDED; i++) {
@@ -40,7 +41,7 @@ static double worst_of(const double a[3], const double b[3]) {
   return worst;
 }
 
-/* How far off the spectrum is as floats compute it. */
+/* The error of the spectrum as computed in float. */
 static double error_of(const double weight[3][PADDED], vlSigmoid s, const double target[3]) {
   double rgb[3], v[PADDED];
   for (int i = 0; i < PADDED; i++) v[i] = (double)vl_sigmoid(s, (float)(VL_LAMBDA_MIN + i));
@@ -62,7 +63,7 @@ static bool solve(const double m[9], const double b[3], double x[3]) {
 vlSigmoid vl_sigmoid_from_rgb(vlColorSpace space, float r, float g, float b) {
   if ((unsigned)space > VL_SPACE_ACES2065_1) space = VL_SPACE_SRGB;
   vlSigmoid s = vl_rgb_table_lookup(vl_rgb_table(space), r, g, b);
-  if (s.c0 == 0 && s.c1 == 0) return s; /* greys are exact */
+  if (s.c0 == 0 && s.c1 == 0) return s; /* the table is exact for greys */
 
   const vlSpaceTable *table = &vl_table_spaces[space];
   const float *light = vl_table_named[table->illuminant].values, rgb[3] = {r, g, b};
@@ -80,7 +81,7 @@ vlSigmoid vl_sigmoid_from_rgb(vlColorSpace space, float r, float g, float b) {
   double c[3] = {(double)s.c0, (double)s.c1, (double)s.c2}, value[3], jacobian[9];
   shown(weight, c, value, jacobian);
   double error = worst_of(value, target);
-  /* Colours that no surface can have stay with the table's nearest. */
+  /* Colours that no reflectance can have keep the table's nearest one. */
   double factor = 1;
   for (int round = 0; round < 12 && error < 3e-3 && error > 1e-9 && factor > 0.05; round++) {
     double miss[3], step[3], next[3], next_value[3], next_jacobian[9];
@@ -99,7 +100,7 @@ vlSigmoid vl_sigmoid_from_rgb(vlColorSpace space, float r, float g, float b) {
     memcpy(value, next_value, sizeof value);
     memcpy(jacobian, next_jacobian, sizeof jacobian);
   }
-  /* coefficients that nearly cancel lose by rounding what was won */
+  /* rounding to float may lose the gain if coefficients nearly cancel */
   vlSigmoid refined = {(float)c[0], (float)c[1], (float)c[2]};
   return error_of(weight, refined, target) < error_of(weight, s, target) ? refined : s;
 }

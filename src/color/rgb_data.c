@@ -1,4 +1,4 @@
-/* color/rgb_data.c: the coefficient tables as the assembler includes them: read-only data of the object file. */
+/* color/rgb_data.c: the coefficient tables, included by the assembler as read-only data of the object file. */
 #include "color/tables.h"
 
 #define TABLE(space)                                                     \

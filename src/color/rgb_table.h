@@ -1,13 +1,14 @@
-/* color/rgb_table.h: lookup of the RGB to spectrum table (Jakob and Hanika 2019), for hot loops: branch-free,
- * vectorises with gathers, the same bits everywhere. The tables are constant data made by tools/color_tables when velo
- * is built.
+/* color/rgb_table.h: lookup in the RGB to spectrum table (Jakob and Hanika 2019), for hot loops: branch-free,
+ * vectorises with gathers, the same bits on every machine. The tables are constant data that tools/color_tables makes
+ * when velo is built.
  *
- * Three things differ from the paper and make a small table exact to 1e-3:
- *   - light colours use the complement: sigmoid(-x) = 1 - sigmoid(x), so the table of dark colours serves both ends and
- *     its resolution goes to black, where few spectra have most of the curvature;
- *   - what is stored is c sqrt(m (1 - m)), m the mean of r, g, b: near black c grows as m^-1/2, this stays smooth, and
- *     along the greys it is linear, so that greys come out as constants;
- *   - axes whose nodes crowd towards both ends (2 u^2), with weights linear in the colour itself. */
+ * Three differences from the paper make a small table exact to 1e-3:
+ *     - light colours use the complement, sigmoid(-x) = 1 - sigmoid(x): the table of dark colours serves both ends, and
+ *     its resolution increases towards black, where the coefficients vary most;
+ *     - the table stores c sqrt(m (1 - m)), m the mean of r, g, b: near black c grows as m^-1/2, while this product
+ *     stays smooth; along the greys it is linear, so that greys become constant spectra;
+ *     - the nodes of the axes are denser towards both ends (2 u^2), with interpolation weights linear in the colour
+ *     itself. */
 #ifndef COLOR_RGB_TABLE_H
 #define COLOR_RGB_TABLE_H
 
@@ -18,10 +19,10 @@ enum { VL_RGB_TABLE_XY = 40, VL_RGB_TABLE_Z = 48 };
 typedef struct vlRgbTable {
   const float *coefficients; /* [largest component 3][z][y][x][3]; z the largest, x and y the next two over it */
 } vlRgbTable;
-/* Lives forever. */
+/* Static storage. */
 const vlRgbTable *vl_rgb_table(vlColorSpace space);
 
-/* Position u in [0,1] of v in [0,1] on an axis, and the way back. */
+/* Position u in [0,1] of v in [0,1] on an axis, and the inverse. */
 static inline float vl_rgb_axis(float v) {
   float w = 1.0f - v, near = v < w ? v : w;
   float u = __builtin_sqrtf(0.5f * near);
@@ -34,7 +35,7 @@ static inline float vl_rgb_axis_value(float u) {
 
 typedef struct vlRgbCell {
   int index;
-  float t; /* share of the upper node */
+  float t; /* weight of the upper node */
 } vlRgbCell;
 static inline vlRgbCell vl_rgb_cell(float v, int size) {
   int i = (int)(vl_rgb_axis(v) * (float)(size - 1));
@@ -44,7 +45,8 @@ static inline vlRgbCell vl_rgb_cell(float v, int size) {
   return (vlRgbCell){i, (v - low) / (high - low)};
 }
 
-/* Where a colour lies: its cell, the shares of the upper nodes, and the factor on what is stored. Reads no memory. */
+/* Position of a colour in the table: its cell, the weights of the upper nodes, and the factor on the stored values.
+ * Reads no memory. */
 typedef struct vlRgbPlace {
   int index;
   float x, y, z, scale;
@@ -78,13 +80,13 @@ static inline __attribute__((always_inline)) vlRgbPlace vl_rgb_place(float r, fl
   int i = 3 * (((face * VL_RGB_TABLE_Z + cz.index) * VL_RGB_TABLE_XY + cy.index) * VL_RGB_TABLE_XY + cx.index);
   float m = (r + g + b) * (1.0f / 3.0f);
   float k = __builtin_sqrtf(m * (1.0f - m));
-  /* black: exactly -2^30, where the sigmoid is exactly 0 */
+  /* black: exactly -2^30, for which the sigmoid is exactly 0 */
   k = k > 4.656612873e-10f ? k : 4.656612873e-10f;
   float scale = (flip ? -1.0f : 1.0f) / k;
   return (vlRgbPlace){i, cx.t, cy.t, cz.t, scale};
 }
 
-/* Coefficient k of the three. */
+/* Interpolates coefficient k of the three. */
 static inline __attribute__((always_inline)) float vl_rgb_coefficient(const float *p, int k, vlRgbPlace at) {
   enum { X = 3, Y = 3 * VL_RGB_TABLE_XY, Z = 3 * VL_RGB_TABLE_XY * VL_RGB_TABLE_XY };
   int i = at.index + k;
@@ -98,8 +100,9 @@ static inline __attribute__((always_inline)) float vl_rgb_coefficient(const floa
   return at.scale * (a + at.z * (c - a));
 }
 
-/* Coefficients of the reflectance whose colour under the space's illuminant is r, g, b (clamped to [0,1]). In a loop
- * that clang shall vectorise, call the parts: it forgets that a loop is a simd loop for what is inlined twice over. */
+/* Coefficients of the reflectance with colour r, g, b (clamped to [0,1]) under the space's illuminant. Loops that
+ * must vectorise under clang call the parts instead: clang loses the simd pragma when this function is inlined
+ * through another. */
 static inline __attribute__((always_inline)) vlSigmoid vl_rgb_table_lookup(const vlRgbTable *table, float r, float g,
                                                                            float b) {
   vlRgbPlace at = vl_rgb_place(r, g, b);

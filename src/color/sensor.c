@@ -1,4 +1,4 @@
-/* color/sensor.c: see sensor.h. As pbrt-v4's PixelSensor, so that its scenes keep their colours. */
+/* color/sensor.c: see sensor.h. Matches pbrt-v4's PixelSensor, so that its scenes keep their colours. */
 #include "color/sensor.h"
 
 #include <math.h>
@@ -19,7 +19,7 @@ const char *vl_sensor_name(uint32_t index) {
   return index <= vl_sensor_count ? vl_sensor_curves[index - 1].name : NULL;
 }
 
-/* Samples 10 nm apart from 380 nm on: linear between, 0 outside. */
+/* Interpolates samples every 10 nm from 380 nm on: linear between, 0 outside. */
 static double sampled(const float *v, int count, int stride, int lambda) {
   int i = (lambda - 380) / 10;
   if (lambda < 380 || i > count - 1 || (i == count - 1 && lambda % 10)) return 0.0;
@@ -58,7 +58,7 @@ void vl_daylight(double kelvin, double light[VL_LAMBDA_COUNT]) {
 
 /* ---- the matrix -------------------------------------------------------------------------------------------------- */
 
-/* A patch (null: white) under a light, as three curves see it; curve k's value at nm i is curves[k][i * stride]. */
+/* Response of three curves to a patch (null: white) under a light; curve k's value at nm i is curves[k][i * stride]. */
 static void project(const float *patch, const double light[VL_LAMBDA_COUNT], const float *const curves[3], int stride,
                     double seen[3]) {
   memset(seen, 0, 3 * sizeof *seen);

@@ -1,4 +1,5 @@
-/* color/sensor.h: measured camera sensors: curves, and the matrix from what they see to XYZ (pbrt book 5.4.2). */
+/* color/sensor.h: measured camera sensors: sensitivity curves, and the matrix from sensor response to XYZ (pbrt book
+ * 5.4.2). */
 #ifndef COLOR_SENSOR_H
 #define COLOR_SENSOR_H
 
@@ -19,17 +20,17 @@ extern const float vl_checker_patches[VL_CHECKER_PATCHES][VL_CHECKER_SAMPLES];
 /* Null: no measured sensor of that name. */
 const vlSensorCurves *vl_sensor_find(const char *name);
 
-/* The sensor's curves every nm, interleaved as vl_cie_xyz0 (r, g, b, 0; VL_LAMBDA_COUNT * 4), and the matrix from the
- * integrals of radiance times these to XYZ (row-major): by least squares over the patches, their values under daylight
- * of `kelvin` against their XYZ under the space's illuminant. Where the sensor's green is that of a white surface under
- * that daylight of luminance Y, so is Y of the result. */
+/* The sensor's curves every nm, interleaved as in vl_cie_xyz0 (r, g, b, 0; VL_LAMBDA_COUNT * 4), and the row-major
+ * matrix from the integrals of radiance times these curves to XYZ. The matrix is a least-squares fit over the
+ * patches: their sensor values under daylight of `kelvin` to their XYZ under the space's illuminant. Scaled so that
+ * a white surface with luminance Y under that daylight gets Y. */
 void vl_sensor_make(const vlSensorCurves *curves, double kelvin, vlColorSpace space, float *observer,
                     double xyz_from_sensor[9]);
 
-/* Light of a colour temperature every nm, in no particular unit: the CIE's daylight, below 4000 K a black body. The
- * temperature is corrected for today's value of Planck's second constant. */
+/* Spectrum of a colour temperature every nm, in arbitrary units: CIE daylight; below 4000 K a black body. The
+ * temperature is corrected for the current value of Planck's second constant. */
 void vl_daylight(double kelvin, double light[VL_LAMBDA_COUNT]);
-/* Chromaticity of the CIE's daylight; kelvin: corrected, at least 4000. */
+/* Chromaticity of CIE daylight. kelvin: corrected, at least 4000. */
 void vl_daylight_xy(double kelvin, double xy[2]);
 
 #endif

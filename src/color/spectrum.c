@@ -1,4 +1,4 @@
-/* color/spectrum.c: what a vlSpectrum means: its values every nm, its luminance, its colour. */
+/* color/spectrum.c: evaluates a vlSpectrum: its values every nm, its luminance, its colour. */
 #include <math.h>
 #include <string.h>
 
@@ -16,7 +16,7 @@ static vlResult unknown_name(const char *name, vlError *error) {
   return vl_fail(error, VL_ERROR_SCENE, "unknown spectrum \"%s\"", name ? name : "");
 }
 
-/* Everything that can be wrong with a spectrum. */
+/* Validates a spectrum. */
 static vlResult check(const vlSpectrum *s, vlError *error) {
   if (!s) return vl_fail(error, VL_ERROR_ARGUMENT, "spectrum is null");
   if (!isfinite(s->scale)) return vl_fail(error, VL_ERROR_SCENE, "the spectrum's scale is not finite");
@@ -51,12 +51,12 @@ static vlResult check(const vlSpectrum *s, vlError *error) {
   return vl_fail(error, VL_ERROR_ARGUMENT, "unknown kind of spectrum %d", (int)s->kind);
 }
 
-/* Planck's law over its maximum (at Wien's wavelength): (lm / l)^5 (e^xm - 1) / (e^x - 1), x = hc / (l k T). */
+/* Planck's law divided by its maximum (at Wien's wavelength): (lm / l)^5 (e^xm - 1) / (e^x - 1), x = hc / (l k T). */
 static float blackbody(double lambda, double kelvin) {
   const double xm = 4.965114231744276, hc_k = 1.438776877e7; /* nm K */
   double x = hc_k / (lambda * kelvin);
   double value = pow(x / xm, 5) * expm1(xm) / expm1(x);
-  return isfinite(value) ? (float)value : 0.0f; /* cold: infinity over infinity */
+  return isfinite(value) ? (float)value : 0.0f; /* low temperatures: infinity over infinity */
 }
 
 static void sampled(const vlSpectrum *s, float *dense) {
@@ -75,8 +75,8 @@ static void sampled(const vlSpectrum *s, float *dense) {
   }
 }
 
-/* RGB by role: reflectance; or scale * reflectance of half the largest component, so that the sigmoid has room; and
- * that times the illuminant (pbrt book 4.6.6). */
+/* RGB by role. Albedo: reflectance. Unbounded: scale * reflectance, scale = 2 max(r, g, b), which keeps the sigmoid
+ * in its accurate range. Illuminant: the same times the illuminant (pbrt book 4.6.6). */
 static void from_rgb(const vlSpectrum *s, vlSpectrumRole role, float *dense) {
   float rgb[3], scale = s->scale, high = 0;
   for (int i = 0; i < 3; i++) {
@@ -114,7 +114,7 @@ vlResult vl_spectrum_dense(const vlSpectrum *spectrum, vlSpectrumRole role, floa
       break;
     }
   }
-  /* finite samples may still be too large together with the scale */
+  /* finite samples may overflow when scaled */
   for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
     if (!isfinite(dense[i])) return vl_fail(error, VL_ERROR_SCENE, "the spectrum's values are too large");
   }
@@ -165,8 +165,8 @@ double vl_spectrum_photometric(const vlSpectrum *spectrum, vlError *error) {
   return xyz[1];
 }
 
-/* Reflectances keep their meaning under another white (Bradford's cone responses, von Kries' scaling), lights their
- * colour; spaces of the same white agree. */
+/* Converts between spaces. Reflectances are adapted to the other white (Bradford cone responses, von Kries scaling);
+ * lights keep their colour. No difference if the whites are equal. */
 static void convert(vlColorSpace from, vlColorSpace to, bool adapt, const double rgb[3], double out[3]) {
   static const double cone[9] = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
   static const double back[9] = {0.9869929, -0.1470543, 0.1599627, 0.4323053, 0.5183603,
@@ -221,7 +221,7 @@ vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlC
     }
   }
   for (int i = 0; i < 3; i++) {
-    double v = out[i] > 0 ? out[i] : 0; /* colours outside the space */
+    double v = out[i] > 0 ? out[i] : 0; /* negative outside of the gamut */
     rgb[i] = (float)(role == VL_ROLE_ALBEDO && v > 1 ? 1 : v);
   }
   return VL_OK;

@@ -1,6 +1,6 @@
-/* math/approx.h: elementary functions in plain C that compilers vectorise, the same bits on every machine (only + - * /
- * sqrt and integer operations). Polynomials after Moshier's Cephes (single precision). Errors below are against the
- * exact value over the stated range. */
+/* math/approx.h: elementary functions in plain C that compilers vectorise, with the same bits on every machine (only
+ * + - * / sqrt and integer operations). Polynomials after Moshier's Cephes (single precision). Errors are relative
+ * to the exact value over the stated range. */
 #ifndef MATH_APPROX_H
 #define MATH_APPROX_H
 
@@ -87,7 +87,7 @@ static inline float vl_ln(float x) {
   float inf = __builtin_inff();
   result = x >= inf ? x : result;
   result = x < 1.17549435e-38f ? -inf : result;
-  return x >= 0.0f ? result : __builtin_nanf(""); /* so written, gcc vectorises it */
+  return x >= 0.0f ? result : __builtin_nanf(""); /* this form lets gcc vectorise it */
 }
 
 /* x^y for x >= 0; relative error about 3e-7 (1 + |y ln x|). 0^y = 0 for y > 0. */

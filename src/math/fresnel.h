@@ -1,18 +1,17 @@
-/* math/fresnel.h: share of light that a smooth interface reflects, unpolarised. By value, no branches: the hot loops
- * inline these. Cosines are taken against the (micro)normal on the side the light comes from, so >= 0.
- * Source: pbrt book 9.3.6 (dielectric: Fresnel's equations with Snell's law) and 9.3.7 (conductor: complex index; the
- * form without complex numbers is Born and Wolf, Principles of Optics, 14.2, as in Lagarde's memo on Fresnel
- * equations). */
+/* math/fresnel.h: reflectance of a smooth interface for unpolarised light. By value, no branches: the hot loops
+ * inline these. Cosines are with respect to the (micro)normal on the incident side, hence >= 0. Source: pbrt book
+ * 9.3.6 (dielectric: Fresnel's equations with Snell's law) and 9.3.7 (conductor: complex index; the form without
+ * complex numbers is Born and Wolf, Principles of Optics, 14.2, as in Lagarde's memo on Fresnel equations). */
 #ifndef MATH_FRESNEL_H
 #define MATH_FRESNEL_H
 
 typedef struct vlFresnel {
-  float reflected; /* share in [0, 1]; 1 in total internal reflection */
+  float reflected; /* reflectance in [0, 1]; 1 in total internal reflection */
   float root;      /* eta times the cosine of the refracted direction; 0 in total internal reflection */
 } vlFresnel;
 
-/* eta: index beyond the interface over the index on the side of the light, > 0. cos_i is clamped to [0, 1]. With
- * root = eta cos_t = sqrt(eta^2 - sin_i^2) only one division is left. */
+/* eta: index on the transmitted side over the index on the incident side, > 0. cos_i is clamped to [0, 1]. With root
+ * = eta cos_t = sqrt(eta^2 - sin_i^2) a single division suffices. */
 static inline vlFresnel vl_fresnel_dielectric(float cos_i, float eta) {
   float c = cos_i > 1.0f ? 1.0f : cos_i;
   c = c > 0.0f ? c : 0.0f;
@@ -25,12 +24,13 @@ static inline vlFresnel vl_fresnel_dielectric(float cos_i, float eta) {
   down = 1.0f / (down > 1e-30f ? down : 1e-30f);
   float rs = (c - root) * p * down, rp = (dense - root) * s * down;
   float r = 0.5f * (rs * rs + rp * rp);
-  /* where root = 0 both are 1 already; the select is for cos_i = 0 */
+  /* where root = 0 both are already 1; the select is for cos_i = 0 */
   return (vlFresnel){inside > 0.0f ? r : 1.0f, root};
 }
 
-/* Index eta + i k over vacuum, for one channel. Values past 1e6 count as 1e6 (their powers would overflow). With the
- * usual t1 ... t4: Rs = (t1 - t2)/(t1 + t2), Rp = Rs (t3 - t4)/(t3 + t4), so that their mean is Rs t3/(t3 + t4). */
+/* Complex index eta + i k relative to vacuum, for one channel. Values are clamped to 1e6 (their powers would
+ * overflow). With the usual t1 ... t4: Rs = (t1 - t2)/(t1 + t2), Rp = Rs (t3 - t4)/(t3 + t4), so that their mean is
+ * Rs t3/(t3 + t4). */
 static inline float vl_fresnel_conductor(float cos_i, float eta, float k) {
   float c = cos_i > 1.0f ? 1.0f : cos_i;
   float n = 1e6f < eta ? 1e6f : eta, m = 1e6f < k ? 1e6f : k;
@@ -40,13 +40,13 @@ static inline float vl_fresnel_conductor(float cos_i, float eta, float k) {
   float ab = __builtin_sqrtf(t0 * t0 + 4.0f * n2 * m2); /* a^2 + b^2 */
   float a2 = 0.5f * (ab + t0);
   float t2 = 2.0f * c * __builtin_sqrtf(a2 > 0.0f ? a2 : 0.0f);
-  float t1 = ab + c2 + 1e-20f; /* never 0/0: an index of 0 reflects all */
+  float t1 = ab + c2 + 1e-20f; /* avoids 0/0: an index of 0 reflects all */
   float t3 = c2 * ab + s2 * s2 + 1e-20f, t4 = t2 * s2;
   return (t1 - t2) * t3 / ((t1 + t2) * (t3 + t4));
 }
 
-/* A slab of two parallel interfaces with light going back and forth between them: R + T^2 R + T^2 R^3 ... = 2R/(1+R)
- * for T = 1 - R (pbrt book 9.5.1). */
+/* A thin slab of two parallel interfaces, with all orders of interreflection: R + T^2 R + T^2 R^3 ... = 2R/(1+R) for
+ * T = 1 - R (pbrt book 9.5.1). */
 static inline float vl_fresnel_slab(float reflected) {
   return 2.0f * reflected / (1.0f + reflected);
 }

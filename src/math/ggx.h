@@ -1,42 +1,44 @@
-/* math/ggx.h: Trowbridge-Reitz (GGX) microfacets, anisotropic, sampled by visible normals. By value, no branches.
- * All directions have z >= 0 (mirror the others first: the distribution is even in z) and unit length.
+/* math/ggx.h: Trowbridge-Reitz (GGX) microfacets, anisotropic, sampled by visible normals. By value, no branches. All
+ * directions have z >= 0 (mirror the others first: the distribution is even in z) and unit length.
  *
- * With L(w) = |(alpha_x w.x, alpha_y w.y, w.z)| Smith's functions become short, and finite at grazing angles:
- *   1 + Lambda(w) = (L + z) / 2z,  G1 = 2z / (L + z),  G(o, i) = 1 / (1 + Lambda_o + Lambda_i) = 2 zo zi / (Lo zi + Li
- * zo) (height-correlated; pbrt book 9.6.3). From it, with D the density of normals: reflection:  f cos_i = F D zi / (2
- * (Lo zi + Li zo)),  pdf(wi) = D / (2 (Lo + zo)),  f cos_i / pdf = F G/G1 References: Walter et al. 2007; Heitz 2014,
- * 2018; Dupuy and Benyoub 2023 (spherical caps); pbrt book 9.6. */
+ * With L(w) = |(alpha_x w.x, alpha_y w.y, w.z)| Smith's functions are short, and finite at grazing angles:
+ *     1 + Lambda(w) = (L + z) / 2z,  G1 = 2z / (L + z),
+ *     G(o, i) = 1 / (1 + Lambda_o + Lambda_i) = 2 zo zi / (Lo zi + Li zo)   (height-correlated; pbrt book 9.6.3).
+ * With D the density of normals, for reflection:
+ *     f cos_i = F D zi / (2 (Lo zi + Li zo)),  pdf(wi) = D / (2 (Lo + zo)),  f cos_i / pdf = F G/G1.
+ * References: Walter et al. 2007; Heitz 2014, 2018; Dupuy and Benyoub 2023 (spherical caps); pbrt book 9.6. */
 #ifndef MATH_GGX_H
 #define MATH_GGX_H
 
 #include "math/approx.h"
 #include "math/vec.h"
 
-/* Below this in both directions the surface counts as a mirror (as pbrt's EffectivelySmooth). */
+/* If both alphas are below this the surface is treated as smooth (as in pbrt's EffectivelySmooth). */
 #define VL_GGX_SMOOTH 1e-3f
 static inline int vl_ggx_is_smooth(float alpha_x, float alpha_y) {
   return (alpha_x < VL_GGX_SMOOTH) & (alpha_y < VL_GGX_SMOOTH);
 }
-/* A rough surface's narrow axis is not narrower than this. */
+/* Lower bound of a rough surface's smaller alpha. */
 static inline float vl_ggx_alpha(float alpha) {
   return alpha > 1e-4f ? alpha : 1e-4f;
 }
 
-/* Alpha of what is made rougher on request (pbrt-v4's regularisation). */
+/* Alpha after optional regularisation (pbrt-v4's). */
 static inline float vl_ggx_widened(float alpha) {
   float twice = 2.0f * alpha;
   twice = twice < 0.1f ? 0.1f : twice > 0.3f ? 0.3f : twice;
   return alpha < 0.3f ? twice : alpha;
 }
 
-/* L(w), see above. */
+/* L(w), defined above. */
 static inline float vl_ggx_length(vlVec3 w, float alpha_x, float alpha_y) {
   float x = alpha_x * w.x, y = alpha_y * w.y;
   return __builtin_sqrtf(x * x + y * y + w.z * w.z);
 }
 
-/* D(h) G1(w) / w.z = 2 D / (L + z), D the density of microfacet normals per solid angle and per area of the surface:
- * times w.h the density of h among those that w sees. Finite for h = 0 too (unit vectors are far from the bounds). */
+/* D(h) G1(w) / w.z = 2 D / (L + z), D the density of microfacet normals per solid angle and per area of the surface.
+ * Times w.h it is the density of the normals visible from w. Finite for h = 0 too (unit vectors are far from the
+ * bounds). */
 static inline float vl_ggx_visible(vlVec3 h, float alpha_x, float alpha_y, float z, float length) {
   float area = alpha_x * alpha_y, inverse = 1.0f / area;
   float x = h.x * (inverse * alpha_y), y = h.y * (inverse * alpha_x);
@@ -46,14 +48,15 @@ static inline float vl_ggx_visible(vlVec3 h, float alpha_x, float alpha_y, float
   return 2.0f * VL_INV_PI / (area * (e * e) * (down > 1e-9f ? down : 1e-9f));
 }
 
-/* G(wo, wi) / G1(wo): what a sample drawn by visible normals is worth, Fresnel apart. zo, zi > 0. */
+/* G(wo, wi) / G1(wo): weight of a sample drawn by visible normals, without the Fresnel term. zo, zi > 0. */
 static inline float vl_ggx_shadowing(float zo, float lo, float zi, float li) {
   float down = lo * zi + li * zo;
   return zi * (lo + zo) / (down > 0.0f ? down : 1.0f);
 }
 
-/* Normal with density D(h) G1(w) (w.h) / w.z. u, v in [0, 1). In the space where the surface is a unit hemisphere a
- * direction uniform on the cap that w lights, plus w, is the normal. Its z is the cap's z plus w's: no cancellation. */
+/* Samples a normal with density D(h) G1(w) (w.h) / w.z. u, v in [0, 1). In the space where the surface is a unit
+ * hemisphere, the normal is w plus a direction uniform on the spherical cap that w illuminates. Its z is the cap's z
+ * plus w's: no cancellation. */
 static inline vlVec3 vl_ggx_sample(vlVec3 w, float alpha_x, float alpha_y, float u, float v) {
   float wx = alpha_x * w.x, wy = alpha_y * w.y, wz = w.z;
   float l2 = wx * wx + wy * wy + wz * wz;

@@ -1,4 +1,4 @@
-/* math/motion.c: matrices taken apart into translation, rotation and stretch. See motion.h. */
+/* math/motion.c: decomposition of matrices into translation, rotation and stretch. See motion.h. */
 #include "math/motion.h"
 
 #include <math.h>
@@ -28,8 +28,8 @@ static double largest(const Mat3 *a) {
   return most;
 }
 
-/* The nearest rotation (a reflection where the matrix mirrors), by averaging with the inverse transpose until nothing
- * changes, scaled at each step so that stretches of any size converge within some ten (Higham 1986). */
+/* The nearest rotation (a reflection if the matrix mirrors), by averaging with the inverse transpose until
+ * convergence, with scaling at each step so that any stretch converges within about ten steps (Higham 1986). */
 static bool nearest_rotation(const Mat3 *a, Mat3 *r) {
   double size = largest(a);
   if (!(size > 0) || !isfinite(size)) return false;
@@ -49,7 +49,7 @@ static bool nearest_rotation(const Mat3 *a, Mat3 *r) {
   return fabs(fabs(determinant(r)) - 1) < 1e-9;
 }
 
-/* Unit quaternion of a rotation; the largest of its four parts is found first (Shepperd 1978). */
+/* Unit quaternion of a rotation; starts from its largest component (Shepperd 1978). */
 static void quaternion(const Mat3 *r, double q[4]) {
   const double *m = r->m;
   double part[4] = {1 + m[0] - m[4] - m[8], 1 - m[0] + m[4] - m[8], 1 - m[0] - m[4] + m[8], 1 + m[0] + m[4] + m[8]};

@@ -1,19 +1,20 @@
-/* math/motion.h: a pose on its way from one matrix to another: M = T R S, translation, rotation and stretch each going
- * its own way, translation and stretch straight, rotation by the shortest arc at even speed (pbrt's AnimatedTransform:
- * book 3rd ed. 2.9.3; polar decomposition: Shoemake and Duff, "Matrix animation and polar decomposition", 1992). Double
- * throughout; vl_motion_between is written for batch loops and everything else calls it, so the bits agree. */
+/* math/motion.h: interpolation between two matrices: M = T R S, with translation, rotation and stretch interpolated
+ * separately: translation and stretch linearly, rotation by the shortest arc at constant angular speed (pbrt's
+ * AnimatedTransform: book 3rd ed. 2.9.3; polar decomposition: Shoemake and Duff, "Matrix animation and polar
+ * decomposition", 1992). Double throughout. vl_motion_between is written for batch loops, and all other code calls
+ * it, so that the bits agree. */
 #ifndef MATH_MOTION_H
 #define MATH_MOTION_H
 
 #include "math/approx_double.h"
 #include "math/transform.h"
 
-/* Two poses, taken apart. Quaternions are x y z w, q1 on q0's side. */
+/* Two decomposed poses. Quaternions are x y z w, with q1 in q0's hemisphere. */
 typedef struct vlMotion {
   double t0[3], t1[3];    /* translations */
   double q0[4], q1[4];    /* rotations */
-  double s0[9], s1[9];    /* stretches; negative where the matrix mirrors */
-  double angle, inv_sine; /* between q0 and q1; inv_sine 0: none to speak of */
+  double s0[9], s1[9];    /* stretches; negative if the matrix mirrors */
+  double angle, inv_sine; /* angle between q0 and q1, radians; inv_sine 0: negligible angle */
 } vlMotion;
 
 /* An affine map without its last row. */
@@ -21,11 +22,11 @@ typedef struct vlAffine {
   double m[9], p[3];
 } vlAffine;
 
-/* false when one of the two is singular or not affine, or one mirrors and the other does not (no rotation leads from
- * one to the other). */
+/* False if one of the matrices is singular or not affine, or if exactly one of them mirrors (no rotation connects
+ * them). */
 bool vl_motion_make(const double open[16], const double close[16], vlMotion *motion);
 
-/* f in [0, 1]. */
+/* The pose at f in [0, 1]. */
 static inline vlAffine vl_motion_between(const vlMotion *a, double f) {
   double g = 1.0 - f;
   double sine_g = vl_sincos_double(g * a->angle).sin, sine_f = vl_sincos_double(f * a->angle).sin;
@@ -58,7 +59,7 @@ static inline vlAffine vl_motion_between(const vlMotion *a, double f) {
   return out;
 }
 
-/* The pose between two matrices as a matrix; f <= 0 and f >= 1 give the matrices themselves. false as above. */
+/* The interpolated pose as a matrix; f <= 0 and f >= 1 give the matrices themselves. False as above. */
 bool vl_motion_at(const double open[16], const double close[16], double f, double result[16]);
 
 #endif

@@ -34,15 +34,16 @@ static inline float vl_noise_mix(float t, float a, float b) {
   return (1.0f - t) * a + t * b;
 }
 
-/* In [-1, 1], 0 where all coordinates are integers; repeats every 256. Far out (1e9) and for NaN: of the point 0. */
+/* Noise in [-1, 1], 0 where all coordinates are integers; period 256. Coordinates beyond 1e9 and NaN give the value
+ * at 0. */
 static inline float vl_noise(float x, float y, float z) {
-  float all = vl_abs(x) + vl_abs(y) + vl_abs(z); /* a maximum would lose a NaN */
+  float all = vl_abs(x) + vl_abs(y) + vl_abs(z); /* vl_max would lose a NaN */
   float on = all < 1e9f ? 1.0f : 0.0f;
   x = on > 0.0f ? x : 0.0f, y = on > 0.0f ? y : 0.0f, z = on > 0.0f ? z : 0.0f;
   float fx = __builtin_floorf(x), fy = __builtin_floorf(y), fz = __builtin_floorf(z);
   uint32_t i = (uint32_t)(int32_t)fx, j = (uint32_t)(int32_t)fy, k = (uint32_t)(int32_t)fz;
   float dx = x - fx, dy = y - fy, dz = z - fz;
-  /* hashed one after the other, as the reference implementation adds */
+  /* hashed one after the other, in the order of the reference implementation */
   i &= 255, j &= 255, k &= 255;
   float w000 = vl_noise_gradient(i, j, k, dx, dy, dz), w100 = vl_noise_gradient(i + 1, j, k, dx - 1, dy, dz);
   float w010 = vl_noise_gradient(i, j + 1, k, dx, dy - 1, dz);
@@ -62,13 +63,13 @@ static inline float vl_smooth_step(float x, float low, float high) {
   return t * t * (3.0f - 2.0f * t);
 }
 
-/* Octaves that a footprint of this width leaves to see: those finer than it would only alias. */
+/* Number of octaves that are resolved by a footprint of this width; finer ones would alias. */
 static inline float vl_noise_octaves(float width, uint32_t octaves) {
   float n = -1.0f - 1.44269504f * vl_ln(vl_max(width, 1e-30f)); /* -1 - log2(width^2) / 2 */
   return vl_clamp(n, 0.0f, (float)octaves);
 }
 
-/* Sum of noise at falling sizes, each omega as strong as the one before. width: of the footprint. */
+/* Fractal sum: each octave has omega times the amplitude of the one before. width: of the footprint. */
 static inline float vl_fractal_noise(vlVec3 p, float width, float omega, uint32_t octaves) {
   float n = vl_noise_octaves(width, octaves), sum = 0.0f, size = 1.0f, strength = 1.0f;
   uint32_t whole = (uint32_t)n;
@@ -80,7 +81,7 @@ static inline float vl_fractal_noise(vlVec3 p, float width, float omega, uint32_
   return sum + strength * vl_smooth_step(n - (float)whole, 0.3f, 0.7f) * vl_noise(size * p.x, size * p.y, size * p.z);
 }
 
-/* The same of absolute values; octaves that are too fine count with their mean, 0.2. */
+/* The same with absolute values; octaves that are too fine contribute their mean, 0.2. */
 static inline float vl_turbulence(vlVec3 p, float width, float omega, uint32_t octaves) {
   float n = vl_noise_octaves(width, octaves), sum = 0.0f, size = 1.0f, strength = 1.0f;
   uint32_t whole = (uint32_t)n;

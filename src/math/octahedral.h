@@ -1,5 +1,5 @@
-/* math/octahedral.h: the equal-area map between the unit square and the sphere (Clarberg 2008; pbrt book 3.8.3), in
- * which images of the sky are stored. z > 0 is the inner diamond. */
+/* math/octahedral.h: the equal-area map between the unit square and the sphere (Clarberg 2008; pbrt book 3.8.3),
+ * used for environment images. z > 0 is the inner diamond. */
 #ifndef MATH_OCTAHEDRAL_H
 #define MATH_OCTAHEDRAL_H
 
@@ -17,7 +17,7 @@ static inline vlVec3 vl_octahedral_decode(float s, float t) {
   return vl_vec3(__builtin_copysignf(a.cos, u) * f, __builtin_copysignf(a.sin, v) * f, z);
 }
 
-/* d of unit length. */
+/* Maps a direction (unit) to the unit square. */
 static inline vlVec2 vl_octahedral_encode(vlVec3 d) {
   float x = vl_abs(d.x), y = vl_abs(d.y), z = vl_abs(d.z);
   float r = __builtin_sqrtf(vl_max(0.0f, 1.0f - z));

@@ -1,4 +1,4 @@
-/* math/transform.h: 4x4 matrices, row-major, column vectors, double: used while building, never in hot loops. */
+/* math/transform.h: 4x4 matrices, row-major, column vectors, double. Used while building, never in hot loops. */
 #ifndef MATH_TRANSFORM_H
 #define MATH_TRANSFORM_H
 
@@ -11,16 +11,16 @@ typedef struct vlMat4 {
 vlMat4 vl_mat4_identity(void);
 vlMat4 vl_mat4_load(const double m[16]);
 vlMat4 vl_mat4_multiply(vlMat4 a, vlMat4 b);
-/* false (and the identity) when singular. */
+/* Inverse. False (and the identity) if the matrix is singular. */
 bool vl_mat4_inverse(vlMat4 a, vlMat4 *inverse);
 vlMat4 vl_mat4_translate(double x, double y, double z);
 vlMat4 vl_mat4_scale(double x, double y, double z);
 vlMat4 vl_mat4_rotate(double radians, double x, double y, double z);
 double vl_mat4_determinant3(vlMat4 a); /* of the upper left 3x3 */
 bool vl_mat4_is_finite(vlMat4 a);
-void vl_mat4_point(const vlMat4 *a, const double p[3], double result[3]); /* divides by w where it is not 1 */
+void vl_mat4_point(const vlMat4 *a, const double p[3], double result[3]); /* divides by w if it is not 1 */
 void vl_mat4_vector(const vlMat4 *a, const double v[3], double result[3]);
-/* Normal by the inverse transpose; pass the inverse. Not normalised. */
+/* Transforms a normal; takes the inverse matrix, which acts transposed. Not normalised. */
 void vl_mat4_normal(const vlMat4 *inverse, const double n[3], double result[3]);
 
 /* 3x3, row-major. The inverse of a singular matrix is not finite. */

@@ -1,5 +1,5 @@
-/* math/vec.h: vec3 by value. Everything inline: the hot loops are made of these. No FMA, no reassociation: the order
- * of operations written here is the order of the bits. */
+/* math/vec.h: vec3 by value, inline, for the hot loops. No FMA, no reassociation: operations are evaluated in the
+ * order in which they are written. */
 #ifndef MATH_VEC_H
 #define MATH_VEC_H
 

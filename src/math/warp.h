@@ -1,9 +1,9 @@
-/* math/warp.h: from the unit square to disks, hemispheres, cones, triangles and spherical triangles, and back. (u, v)
- * in [0,1)^2 uniform gives the density that stands with each function. All keep neighbours together (low distortion),
- * so that well-spread points stay well spread. No branches, no libm: made for hot loops. The map of the whole sphere
- * used for images of the sky is math/octahedral.h.
+/* math/warp.h: maps from the unit square to disks, hemispheres, cones, triangles and spherical triangles, and inverses.
+ * Uniform (u, v) in [0,1)^2 give the stated density. All maps have low distortion, so that well-distributed points stay
+ * well distributed. No branches, no libm: for hot loops. The map of the whole sphere for environment images is
+ * math/octahedral.h.
  *
- * Directions are local, z up. Sources: pbrt book appendix A.5; others at their place. */
+ * Directions are local, z up. Sources: pbrt book appendix A.5; others are given at the function. */
 #ifndef MATH_WARP_H
 #define MATH_WARP_H
 
@@ -15,7 +15,7 @@
 
 /* ---- unit disk: density 1 / pi ----------------------------------------------------------------------------------- */
 
-/* Concentric squares to concentric circles (Shirley and Chiu 1997). r: its distance from the centre, signed. */
+/* Concentric squares to concentric circles (Shirley and Chiu 1997). r: signed distance from the centre. */
 typedef struct vlDiskPoint {
   float x, y, r;
 } vlDiskPoint;
@@ -39,7 +39,7 @@ static inline vlVec2 vl_unwarp_disk(float x, float y) {
 
 /* ---- hemisphere and sphere --------------------------------------------------------------------------------------- */
 
-/* Density cos(theta) / pi (Malley: the disk, lifted). z is right to the last bits near the horizon, too. */
+/* Density cos(theta) / pi (Malley's method). z is accurate to the last bits near the horizon too. */
 static inline vlVec3 vl_warp_cosine_hemisphere(float u, float v) {
   vlDiskPoint d = vl_warp_disk(u, v);
   float z = __builtin_sqrtf(vl_max(0.0f, (1.0f - d.r) * (1.0f + d.r)));
@@ -52,8 +52,8 @@ static inline vlVec2 vl_unwarp_cosine_hemisphere(vlVec3 w) {
   return vl_unwarp_disk(w.x, w.y);
 }
 
-/* Density 1 / (2 pi (1 - cos_max)) in the cone around z. The argument is 1 - cos_max, which small cones need:
- * sin^2 / (1 + cos). 1: hemisphere; 2: sphere. A point of the disk, lifted so that areas stay in proportion. */
+/* Density 1 / (2 pi (1 - cos_max)) in the cone around z. The argument is 1 - cos_max, which stays accurate for small
+ * cones: sin^2 / (1 + cos). 1: hemisphere; 2: sphere. An equal-area lift of the disk. */
 static inline vlVec3 vl_warp_cone(float u, float v, float one_minus_cos_max) {
   vlDiskPoint d = vl_warp_disk(u, v);
   float h = d.r * d.r * one_minus_cos_max; /* 1 - z */
@@ -71,7 +71,7 @@ static inline vlVec2 vl_unwarp_cone(vlVec3 w, float one_minus_cos_max) {
 static inline vlVec3 vl_warp_hemisphere(float u, float v) { /* density 1 / (2 pi) */
   return vl_warp_cone(u, v, 1.0f);
 }
-/* Density 1 / (4 pi). By latitude and longitude: u is the height, v the angle. */
+/* Density 1 / (4 pi). Cylindrical map: u gives the height, v the azimuth. */
 static inline vlVec3 vl_warp_sphere(float u, float v) {
   float r = 2.0f * __builtin_sqrtf(vl_max(0.0f, u * (1.0f - u)));
   vlSinCos a = vl_sincos_turn(v);
@@ -98,11 +98,14 @@ static inline vlVec2 vl_unwarp_triangle(float b0, float b1) {
 
 /* ---- spherical triangle: density 1 / solid angle ----------------------------------------------------------------- */
 
-/* Seen from the origin. After Arvo 1995, "Stratified Sampling of Spherical Triangles", without his angles: with c' on
- * the arc from a to c, c' = cos(s) a + sin(s) t, van Oosterom and Strackee's (1983) solid angle of (a, b, c'), tan(area
- * / 2) = det(a, b, c') / (1 + a.b + b.c' + c'.a), solved for s is   tan(s / 2) = (1 + a.b) tan / (det(a, b, t) - b.t
- * tan):   no inverse cosine, no loss for small triangles but that of the corners' own rounding (6e-8 / size; below a
- * solid angle of about 1e-6 sample the area). */
+/* A spherical triangle seen from the origin. After Arvo 1995, "Stratified Sampling of Spherical Triangles", but without
+ * computing angles. c' = cos(s) a + sin(s) t lies on the arc from a to c. Van Oosterom and Strackee's (1983) solid
+ * angle of (a, b, c'),
+ *     tan(area / 2) = det(a, b, c') / (1 + a.b + b.c' + c'.a),
+ * solved for s, is
+ *     tan(s / 2) = (1 + a.b) tan / (det(a, b, t) - b.t tan).
+ * This needs no inverse cosine and loses no precision for small triangles except by the rounding of their corners
+ * (6e-8 / size; below a solid angle of about 1e-6 sample the area instead). */
 typedef struct vlSphericalTriangle {
   vlVec3 a, b, t;
   float solid_angle;
@@ -127,8 +130,8 @@ static inline vlVec3 vl_warp_spherical_triangle(vlSphericalTriangle s, float u, 
   return vl_normalize(vl_add(vl_mul(s.b, 1.0f - h), vl_mul(side, __builtin_sqrtf(vl_max(0.0f, h * (2.0f - h))))));
 }
 
-/* Which of n intervals between ascending nodes (n + 1 of them) x falls into: the last i with nodes[i] <= x; below all,
- * 0; beyond all, n - 1. */
+/* Index of the interval that contains x, between n + 1 ascending nodes: the last i with nodes[i] <= x; 0 below all,
+ * n - 1 beyond all. */
 static inline uint32_t vl_find_interval(const float *nodes, uint32_t n, float x) {
   uint32_t low = 0, high = n;
   while (high - low > 1) {
@@ -141,9 +144,8 @@ static inline uint32_t vl_find_interval(const float *nodes, uint32_t n, float x)
   return low;
 }
 
-/* Cell [i, i + 1) of a cumulative table of n cells (n + 1 entries, from 0 to 1) in which u falls, and where in it,
- * below
- * 1. Cells of no width are never hit, but for tables that have no others. */
+/* Cell [i, i + 1) of a cumulative table of n cells (n + 1 entries, from 0 to 1) that contains u; *within: position
+ * in the cell, below 1. Cells of zero width are never chosen, unless all cells have zero width. */
 static inline uint32_t vl_find_cell(const float *cdf, uint32_t n, float u, float *within) {
   uint32_t low = vl_find_interval(cdf, n, u);
   float width = cdf[low + 1] - cdf[low];

@@ -1,4 +1,5 @@
-/* world/build.c: scene in, constant world out: materials (with their textures), shapes, lights, accelerator. */
+/* world/build.c: compiles a scene into a constant world: materials (with their textures), shapes, lights,
+ * accelerator. */
 #include <string.h>
 
 #include "base/cookie.h"
@@ -11,7 +12,7 @@ vlBuildDef vl_default_build_def(void) {
   return (vlBuildDef){.cookie = VL_COOKIE_BUILD, .color = VL_COLOR_SPECTRAL, .light_sampler = VL_LIGHT_SAMPLER_BVH};
 }
 
-/* giving: the same scene, when its meshes may go on the way; or null. */
+/* giving: the same scene if its meshes may be freed during the build, else null. */
 static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *def, vlWorld **result, vlError *error) {
   vl_error_clear(error);
   if (!result) return vl_fail(error, VL_ERROR_ARGUMENT, "world build: null argument");
@@ -39,7 +40,7 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   if (r == VL_OK) r = vl_world_add_media(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_origins(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_lights(world, scene, &local);
-  if (r == VL_OK && giving) vl_scene_drop_meshes(giving); /* before the accelerator takes its room */
+  if (r == VL_OK && giving) vl_scene_drop_meshes(giving); /* frees memory before the accelerator allocates */
   if (r == VL_OK) r = vl_accel_build(world, &local);
   world->texture_memo = NULL;
   if (r != VL_OK) {

@@ -1,5 +1,5 @@
-/* world/origins.c: what ids stand for: type, name and place in its file of each shape, material and instance. Nothing
- * of it is read while rendering. */
+/* world/origins.c: what ids refer to: type, name and source location of each shape, material and instance. Not read
+ * while rendering. */
 #include <string.h>
 
 #include "base/error.h"
@@ -22,10 +22,10 @@ static const char *copy_text(vlWorld *world, const char *text) {
   return copy;
 }
 
-/* Sources share their file names (scene/scene.h): each is copied once. */
+/* Sources share their file names (scene/scene.h): each name is copied once. */
 typedef struct Files {
-  const char **copies; /* of scene->files */
-  size_t last;         /* where the one before was found */
+  const char **copies; /* one per file in scene->files */
+  size_t last;         /* index of the previous lookup's result */
 } Files;
 
 static void copy_source(Files *files, const vlScene *scene, vlSource source, vlSource *copy) {
@@ -45,7 +45,7 @@ static vlResult fill(vlWorld *world, const vlScene *scene, Files *files) {
     vlWorldOrigin *o = &world->shape_origins[i];
     copy_source(files, scene, scene->shapes.items[i].source, &o->source);
   }
-  for (size_t i = 0; i < scene->materials.count; i++) { /* the world's first is the default material */
+  for (size_t i = 0; i < scene->materials.count; i++) { /* the world's first material is the default material */
     vlWorldOrigin *o = &world->material_origins[i + 1];
     const vlMaterialDef *def = &scene->materials.items[i];
     copy_source(files, scene, def->source, &o->source);
@@ -59,7 +59,7 @@ static vlResult fill(vlWorld *world, const vlScene *scene, Files *files) {
     if (name[0] && !names[i]) return VL_ERROR_MEMORY;
   }
   size_t next = 0;
-  for (size_t i = 0; i < scene->instances.count; i++) { /* those of empty groups are not in the world */
+  for (size_t i = 0; i < scene->instances.count; i++) { /* instances of empty groups are not in the world */
     const vlSceneInstance *instance = &scene->instances.items[i];
     uint32_t group = instance->group.index;
     if (world->groups.items[group].count == 0 || next >= world->instances.count) continue;

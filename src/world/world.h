@@ -1,9 +1,9 @@
-/* world/world.h: the compiled world: flat, constant, index-based. Built from a scene (build.c), read by trace. Nothing
- * here changes while rendering.
+/* world/world.h: the compiled world: flat arrays addressed by index. build.c makes it from a scene, trace reads it.
+ * Constant while rendering.
  *
- * A surface point is named by (shape, prim, instance): shape indexes world->shapes, prim the face in it, instance
- * world->instances or VL_NONE. Shapes of the world itself hold world-space vertices; shapes of groups hold group space.
- */
+ * A surface point is identified by (shape, prim, instance): shape indexes world->shapes, prim is the face in it,
+ * instance indexes world->instances or is VL_NONE. Vertices of shapes outside of groups are in world space; those of
+ * groups are in group space. */
 #ifndef WORLD_WORLD_H
 #define WORLD_WORLD_H
 
@@ -24,30 +24,32 @@ typedef struct vlWorldShape {
   uint32_t material;    /* index into materials */
   uint32_t first_light; /* VL_NONE: no light; else see vl_shape_light */
   int32_t alpha;        /* texture node, -1: opaque */
-  bool flip;        /* reverse orientation xor the shape's own transform mirrors: turns a triangle's or patch's normal
-                     * of face order in group space, and a quadric's or curve's dpdu x dpdv of shape space */
-  bool pass_shadow; /* interface material: shadow rays pass */
-  uint32_t inside,
-      outside; /* media on both sides (the geometric normal's is outside), VL_NONE: vacuum; equal: no change */
-  /* triangles (3 indices a face) and bilinear patches (4): positions end in 16 spare bytes for Embree */
+  /* Reverse orientation xor a mirroring shape transform: flips a triangle's or patch's face-order normal in group
+   * space, and a quadric's or curve's dpdu x dpdv in shape space. */
+  bool flip;
+  bool pass_shadow;         /* interface material: shadow rays pass */
+  uint32_t inside, outside; /* media; the geometric normal points outside; VL_NONE: vacuum; equal: no change */
+  /* Triangles (3 indices per face) and bilinear patches (4). positions end in 16 padding bytes for Embree. */
   uint32_t vertices, faces;
   float *positions, *normals, *tangents, *uvs;
   uint32_t *indices;
-  /* Triangles, may be null: bitangent = sign n x tangent; uv sets 1 to 3; 4 a vertex; uvs of the emission's image */
+  /* Triangles; each may be null. Bitangent = sign n x tangent; uv sets 1 to 3; colours, 4 per vertex; uvs of the
+   * emission's image. */
   float *tangent_signs, *more_uvs[3], *colors, *emission_uvs;
-  uint32_t *light_of; /* by prim, VL_NONE: none; null: prim i is light first_light + i */
+  uint32_t *light_of; /* per prim, VL_NONE: none; null: prim i is light first_light + i */
   bool one_sided;     /* rays pass through from behind */
-  uint32_t steps;     /* of positions and normals, one set after the other, evenly over the world's time; 1: at rest */
-  /* sphere, disk, cylinder: parameters as in vlShapeDef, and the affine maps, row-major 3x4 */
+  uint32_t steps;     /* sets of positions and normals, one after the other, at equal time steps; 1: at rest */
+  /* Sphere, disk, cylinder: parameters as in vlShapeDef, and the affine maps, row-major 3x4. */
   float radius, inner_radius, z_min, z_max, phi_max, height;
-  /* curves: 4 points and 2 widths a segment, ribbons 2 normals, all in shape space; a prim is a piece of a segment */
+  /* Curves: per segment 4 points and 2 widths, for ribbons 2 normals, all in shape space. A prim is a piece of a
+   * segment. */
   vlCurveKind curve;
   uint32_t split; /* faces = segments << split */
   float *widths;
   double from_shape[12], to_shape[12]; /* group space <-> shape space */
 } vlWorldShape;
 
-/* The light that a prim is, or VL_NONE. */
+/* The light of a prim, or VL_NONE. */
 static inline uint32_t vl_shape_light(const vlWorldShape *s, uint32_t prim) {
   if (s->first_light == VL_NONE) return VL_NONE;
   return s->light_of ? s->light_of[prim] : s->first_light + prim;
@@ -56,60 +58,62 @@ static inline uint32_t vl_shape_light(const vlWorldShape *s, uint32_t prim) {
 typedef struct vlWorldGroup {
   uint32_t *shapes; /* world shape index of each Embree geometry id */
   uint32_t count;
-  float low[3], high[3]; /* box round them at all times, group space; empty: low > high */
+  float low[3], high[3]; /* box at all times, group space; empty: low > high */
 } vlWorldGroup;
 
-/* What moves goes straight from key to key: Embree and we (moving.h) interpolate the same numbers the same way. */
+/* An instance. A moving instance is interpolated linearly between its keys: Embree and velo (moving.h) interpolate
+ * the same numbers in the same way. */
 typedef struct vlWorldInstance {
   uint32_t group;
   bool mirrored;
-  float from_group[12], to_group[12]; /* of one that moves: at the world's time 0 */
-  uint32_t keys;                      /* of path, evenly over the world's time; 0: at rest */
-  const float *path;                  /* 12 a key */
-  float doubt[4];                     /* bound of the rounding error of a moved matrix, by column; 0 of those at rest */
+  float from_group[12], to_group[12]; /* of a moving instance: at the world's time 0 */
+  uint32_t keys;                      /* of path, at equal steps of the world's time; 0: at rest */
+  const float *path;                  /* 12 floats per key */
+  float doubt[4];                     /* bound of the rounding error of an interpolated matrix, by column; 0 at rest */
 } vlWorldInstance;
 
 /* ---- materials --------------------------------------------------------------------------------------------------- */
 
-/* The principled material's inputs: float nodes, spectrum nodes; what stays off for good has its flag unset. */
+/* The principled material's inputs: float nodes and spectrum nodes. A lobe whose weight is always 0 has its flag
+ * unset. */
 typedef struct vlWorldPrincipled {
   int32_t metallic, roughness, anisotropy, anisotropy_rotation, specular, transmission, diffuse_transmission;
   int32_t clearcoat, clearcoat_roughness, sheen_roughness, iridescence, iridescence_thickness;
   int32_t specular_color, through, sheen; /* spectra */
   int32_t normal, coat_normal;            /* image nodes, -1: none */
   float normal_scale, coat_normal_scale, film_index;
-  float f0;                 /* reflection at normal incidence */
-  bool thin;                /* a sheet, or nothing passes */
-  float cauchy_a, cauchy_b; /* index of refraction where it disperses: a + b / lambda^2 */
+  float f0;                 /* Fresnel reflectance at normal incidence */
+  bool thin;                /* thin-walled, or nothing is transmitted */
+  float cauchy_a, cauchy_b; /* dispersive: index of refraction a + b / lambda^2 */
   bool has_coat, has_sheen, has_film, has_anisotropy, has_transmission;
 } vlWorldPrincipled;
 
-/* A coat over metal, or one that scatters over what is diffuse: looked at by random walks. Spectrum and float nodes. */
+/* A coat over metal, or a scattering coat over a diffuse base, evaluated by random walks. Spectrum and float nodes. */
 typedef struct vlWorldLayers {
   bool metal;
   int32_t albedo, thickness, g;
-  int32_t coat_u, coat_v; /* of metal; else the material's own roughness is the coat's */
+  int32_t coat_u, coat_v; /* of metal; else the coat has the material's own roughness */
   uint32_t depth, walks;
 } vlWorldLayers;
 
-/* Hair: spectrum nodes of one way to say its colour (-1: another), float nodes. */
+/* Hair: spectrum nodes of the alternative colour parameters (-1: not given), float nodes. */
 typedef struct vlWorldHair {
   int32_t sigma_a, eumelanin, pheomelanin;
   int32_t eumelanin_share, pheomelanin_share, eta, beta_m, beta_n, alpha;
 } vlWorldHair;
 
-/* Light that enters a body and leaves it elsewhere: spectrum nodes; mfp is set where the material's reflectance says
- * the rest. The material's scale is a factor on the sigmas, or on mfp. */
+/* Subsurface scattering: spectrum nodes. mfp is set if the material is given by reflectance and mean free path. The
+ * material's scale multiplies the sigmas, or mfp. */
 typedef struct vlWorldSubsurface {
   int32_t sigma_a, sigma_s, mfp;
   const struct vlBssrdfTable *table;
 } vlWorldSubsurface;
 
-/* Where all that a material scatters is a delta. */
+/* When all scattering of a material is specular (delta). */
 typedef enum vlSmooth {
   VL_SMOOTH_NEVER,
-  VL_SMOOTH_BY_ALPHA,          /* where its alphas are */
-  VL_SMOOTH_BY_ALPHA_OR_INDEX, /* and where its relative index of refraction is 1 */
+  VL_SMOOTH_BY_ALPHA,          /* if its alphas are small */
+  VL_SMOOTH_BY_ALPHA_OR_INDEX, /* also if its relative index of refraction is 1 */
   VL_SMOOTH_ALWAYS
 } vlSmooth;
 
@@ -117,29 +121,29 @@ typedef struct vlWorldMaterial {
   vlMaterialKind kind;
   vlBsdfKind bsdf;
   vlSmooth smooth;
-  uint32_t traits;             /* of the kind: VL_MATERIAL_OPAQUE and so on */
-  const void *own;             /* what its kind alone needs (vlWorldLayers, vlWorldHair, ...): a block of the world */
-  bool no_cosine;              /* light counts alike from wherever it comes */
-  int32_t reflectance, eta, k; /* spectrum nodes, -1: not used */
+  uint32_t traits; /* of the kind: VL_MATERIAL_OPAQUE and so on */
+  const void *own; /* data of this kind alone (vlWorldLayers, vlWorldHair, ...): a block owned by the world */
+  bool no_cosine;  /* throughput has no cosine factor */
+  int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
   int32_t u_roughness, v_roughness, amount; /* float nodes */
   uint32_t mix[2];
-  bool absent[2]; /* parts of a mix that are interfaces: shapes take the other, with a coverage (shapes.c) */
+  bool absent[2]; /* parts of a mix that are interfaces: shapes use the other part, with a coverage (shapes.c) */
   bool remap, use_reflectance;
-  bool dispersive;                     /* dielectrics: eta varies with wavelength */
+  bool dispersive;                     /* dielectrics: eta depends on wavelength */
   float eta_s;                         /* dielectrics with one eta */
   int32_t displacement;                /* float node, -1 */
   int32_t normal_map;                  /* image index, -1 */
   const vlCoatTable *coat;             /* may be shared; the world frees them */
-  const vlCoatTable *widened;          /* the same of the coat that is rougher (vlBuildDef.regularize), else null */
+  const vlCoatTable *widened;          /* the table of the coat widened by vlBuildDef.regularize, else null */
   const vlWorldPrincipled *principled; /* null for other kinds */
-  int32_t transmittance;               /* diffuse transmission: spectrum node; and the factor on both */
+  int32_t transmittance; /* diffuse transmission: spectrum node; scale multiplies reflectance and transmittance */
   float scale;
   const vlMeasured *measured; /* may be shared; the world frees it */
   const vlWorldSubsurface *subsurface;
-  bool has_subsurface; /* it, or a part of a mix */
+  bool has_subsurface; /* the material has subsurface scattering, or a part of the mix has */
 } vlWorldMaterial;
 
-/* Coats of the same numbers share a table. */
+/* Coats with equal parameters share a table. */
 typedef struct vlWorldCoat {
   vlCoatTable *table;
   uint32_t depth; /* max_depth of the material */
@@ -149,14 +153,14 @@ typedef struct vlWorldCoat {
 
 typedef struct vlEmitted {
   vlSpectral spectrum; /* normalised and scaled */
-  int32_t image; /* over uv (area) or directions (infinite), -1; then spectrum is the illuminant's normalised shape */
-  int32_t node;  /* 1 + image node over uv, whose image is image; 0: none */
+  int32_t image;       /* over uv (area) or directions (infinite), multiplied by spectrum (the illuminant); -1: none */
+  int32_t node;        /* 1 + index of the image node over uv that reads image; 0: none */
   float image_scale;
   vlColorSpace space;
   bool two_sided;
 } vlEmitted;
 
-/* The scene's kinds, under the same numbers, and faces of shapes that emit. X(NAME, name). */
+/* The scene's kinds, with the same numbers, and faces of emissive shapes. X(NAME, name). */
 #define VL_WORLD_LIGHT_KINDS(X) VL_LIGHT_KINDS(X) X(AREA, area)
 #define VL_WORLD_LIGHT_KIND(K, k) VL_WL_##K,
 typedef enum vlWorldLightKind { VL_WORLD_LIGHT_KINDS(VL_WORLD_LIGHT_KIND) } vlWorldLightKind;
@@ -166,26 +170,28 @@ typedef struct vlWorldLight {
   vlWorldLightKind kind;
   uint32_t emitted;         /* index into emitted */
   uint32_t shape, prim;     /* area; else shape is VL_NONE */
-  float area;               /* area: of the primitive, in the world */
+  float area;               /* area: of the primitive, world space */
   float position[3];        /* point, spot */
   float direction[3];       /* spot: axis away from the light; distant: towards the light */
-  float cos_start, cos_end; /* spot: full inside start, nothing outside end */
-  bool cone_squared;        /* between them t^2; else smooth */
-  bool has_cone;            /* shines into the outer cone about its direction only */
-  bool at_point;            /* all its light leaves its position */
+  float cos_start, cos_end; /* spot: full intensity within start, none beyond end */
+  bool cone_squared;        /* falloff between them is t^2; else smooth */
+  bool has_cone;            /* emits only into the outer cone about its direction */
+  bool at_point;            /* all its light starts at its position */
   bool far;                 /* infinitely far away */
   uint32_t environment;     /* infinite with an image: index; VL_NONE: uniform */
-  float power;              /* for choosing: watts-like, luminance */
-  bool outer_side;        /* an invisible whole sphere: light's paths set out from its outside alone, see light.hot.c */
-  bool invisible;         /* area, of coverage 0 throughout: no ray meets it, it shines all the same (as pbrt's) */
-  bool delta;             /* a kind that no ray can meet */
-  uint32_t image;         /* goniometric, projection: image; corners hold the map from world directions to theirs */
-  float image_extent[2];  /* projection: half its sides at distance 1 */
-  float corners[9];       /* area, triangle: its corners, and */
-  bool one_sided_normals; /* direction is the normal to the lit side all over it */
+  float power;              /* for light selection: radiant flux in luminance units */
+  /* an invisible full sphere: light paths start only on its outside, see light.hot.c */
+  bool outer_side;
+  /* area light of a shape with alpha 0 throughout: rays do not hit it, but it emits light (as in pbrt) */
+  bool invisible;
+  bool delta;     /* no ray can hit it */
+  uint32_t image; /* goniometric, projection: image index; corners hold the rotation from world to light directions */
+  float image_extent[2];  /* projection: half the image's sides at distance 1 */
+  float corners[9];       /* area, triangle: its corners */
+  bool one_sided_normals; /* direction is the normal of the emitting side at every point */
 } vlWorldLight;
 
-/* An image of the sky in pbrt's equal-area octahedral square, with a distribution over its texels. */
+/* An environment image in pbrt's equal-area octahedral square, with a distribution over its texels. */
 typedef struct vlEnvironment {
   int32_t image;
   uint32_t size;                                  /* of the distribution: size x size cells */
@@ -193,12 +199,12 @@ typedef struct vlEnvironment {
   float *marginal_cdf;                            /* size + 1 */
   float *pdf;                                     /* size * size: density over the unit square */
   float light_from_world[9], world_from_light[9]; /* rotations, row-major */
-  const struct vlPortal *portal; /* through which alone it is seen (world/light/portal.h); null: none */
+  const struct vlPortal *portal;                  /* the only opening to it (world/light/portal.h); null: none */
 } vlEnvironment;
 
 #include "world/light/light_tree.h"
 
-/* Where an id comes from, for people (origins.c). */
+/* Where an id comes from, for reports (origins.c). */
 typedef struct vlWorldOrigin {
   const char *name; /* may be null */
   vlSource source;
@@ -217,48 +223,49 @@ struct vlWorld {
   VL_ARRAY(vlWorldImage) images;
   VL_ARRAY(vlEmitted) emitted;
   VL_ARRAY(vlWorldLight) lights;
-  VL_ARRAY(uint32_t) infinite_lights; /* indices of lights that a missing ray sees */
+  VL_ARRAY(uint32_t) infinite_lights; /* indices of lights that rays hit when they miss all surfaces */
   VL_ARRAY(vlEnvironment) environments;
   VL_ARRAY(vlMeasured *) measured;
   VL_ARRAY(vlWorldCoat) coats;
-  VL_ARRAY(vlWorldMedium) media;       /* those that something lies in */
-  VL_ARRAY(void *) blocks;             /* dense spectra and the like */
-  int32_t *texture_memo;               /* while building: scene texture and role -> node */
-  uint32_t *rank;                      /* of materials: those of one kind together */
-  bool has_interfaces, has_subsurface; /* some material is one; some shape has one */
-  bool absorbs_by_channel;             /* some medium does: vlWorldMedium.by_channel */
+  VL_ARRAY(vlWorldMedium) media;       /* media in use */
+  VL_ARRAY(void *) blocks;             /* memory owned by the world: dense spectra and others */
+  int32_t *texture_memo;               /* during the build: scene texture and role -> node */
+  uint32_t *rank;                      /* of materials, sorted so that those of one kind are adjacent */
+  bool has_interfaces, has_subsurface; /* a material is an interface; a shape has subsurface scattering */
+  bool absorbs_by_channel;             /* a medium does: vlWorldMedium.by_channel */
   uint32_t camera_medium;              /* index into media, VL_NONE: vacuum */
-  bool moves;                          /* something does; else no ray need know its time */
-  double time_open, time_close;        /* seconds: the world's times 0 and 1; before and after everything rests */
-  vlWorldOrigin *shape_origins, *material_origins, *instance_origins; /* one for each element of those arrays */
-  vlSpectral white;                                                   /* radiance that shows as white */
+  bool moves;                          /* something moves; else rays need no time */
+  double time_open, time_close;        /* seconds at the world's times 0 and 1; outside of them nothing moves */
+  vlWorldOrigin *shape_origins, *material_origins, *instance_origins; /* one per element of those arrays */
+  vlSpectral white;                                                   /* radiance that is displayed as white */
   vlLightTree tree;
   vlAccel accel;
-  float bounds_min[3], bounds_max[3], center[3], radius; /* of all surfaces; a sphere round them */
+  float bounds_min[3], bounds_max[3], center[3], radius; /* bounds of all surfaces, and their bounding sphere */
   vlWorldInfo info;
 };
 
-/* The compiled form of a build in progress; each adds to the world and fails with the place. */
+/* Compiles an input of the scene into a node of a world under construction. Errors carry the source location. */
 vlResult vl_world_float_node(vlWorld *world, const struct vlScene *scene, vlFloatInput input, int32_t *node,
                              vlError *error);
 vlResult vl_world_spectrum_node(vlWorld *world, const struct vlScene *scene, vlSpectrumInput input, vlSpectrumRole role,
                                 int32_t *node, vlError *error);
-/* Of two float nodes by a third. */
+/* Interpolates between two float nodes by a third. */
 vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node, vlError *error);
-/* Reads an image (or takes the one given); encoding null: the file's own. Index, or -1 with the error set. */
+/* Reads an image (or uses the given one). encoding null: the file's own. Returns its index, or -1 with the error
+ * set. */
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
                            float gamma, bool pyramid, vlError *error);
-/* Reads the scene's images on all workers; errors are left to who asks for the image. */
+/* Reads the scene's images on all workers. Errors are ignored here: the user of the image reports them. */
 vlResult vl_world_preload_images(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_materials(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_shapes(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_lights(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_origins(vlWorld *world, const struct vlScene *scene, vlError *error);
 
-/* Area of one primitive in the space its vertices are in (with from_group where an instance places it). */
+/* Area of one primitive in the space of its vertices (times from_group if an instance places it). */
 float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim);
 void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3], float high[3]);
-/* r, with the place put to an error that was found deeper and has none. */
+/* Returns r. Adds the source location to an error that has none. */
 vlResult vl_world_placed(vlSource source, vlError *error, vlResult r);
 /* A new block owned by the world, or null. */
 void *vl_world_block(vlWorld *world, size_t count, size_t size);

@@ -1,11 +1,11 @@
-/* world/accel/accel.c: the one file that knows Embree (3.13 or 4). Triangles are Embree's; other shapes are user
- * geometry intersected by surface_point.c. Alpha and interface surfaces are decided in filters, by a hash of ray and
- * primitive, so that the order of traversal does not matter. Inside instances Embree hands out the ray in the group's
- * space, by its own arithmetic, which differs between instruction sets: callbacks look the ray up in the world by its
- * id instead and move it themselves.
+/* world/accel/accel.c: the one file that calls Embree (3.13 or 4). Triangles are Embree's own geometry; other shapes
+ * are user geometry, intersected by surface_point.c. Filters decide alpha and interface surfaces by a hash of ray and
+ * primitive, so that the result does not depend on the order of traversal. Inside instances Embree passes the ray in
+ * the group's space, transformed by its own arithmetic, which differs between instruction sets. The callbacks therefore
+ * read the world-space ray by its id and transform it themselves.
  *
- * Portable bits (docs/decisions/0013-the-bits-of-embree.md): Embree runs a set without fused multiply-add, and a filter
- * decides which of several hits is the nearest (nearest.h). */
+ * Reproducible results (docs/decisions/0013-the-bits-of-embree.md): Embree runs an instruction set without fused
+ * multiply-add, and a filter decides which of several hits is the nearest (nearest.h). */
 #include "world/accel/accel.h"
 
 #include <math.h>
@@ -32,8 +32,8 @@
 #include <xmmintrin.h>
 #endif
 
-/* Embree's accessors of packets of any size are C++ only; this is the layout that its manual gives: row k of N values.
- */
+/* Embree's accessors for packets of any size are C++ only. This is the layout that its manual gives: row k of N
+ * values. */
 enum {
   ORIGIN = 0,
   TNEAR = 3,
@@ -57,10 +57,10 @@ static inline unsigned *hit_row(void *hit, unsigned n, int row, unsigned i) {
 typedef struct AccelGeometry {
   const vlWorld *world;
   const vlWorldShape *shape;
-  const uint32_t *members; /* of a bundle: the shapes that its primitives are, one each; else null */
+  const uint32_t *members; /* of a bundle: shape index of each primitive; else null */
 } AccelGeometry;
 
-/* The shape of a primitive, whose number in it replaces that in the geometry. */
+/* The shape that contains a primitive. *prim becomes the primitive's index within that shape. */
 static const vlWorldShape *shape_of(const AccelGeometry *g, uint32_t *prim) {
   if (!g->members) return g->shape;
   const vlWorldShape *s = &g->world->shapes.items[g->members[*prim]];
@@ -68,20 +68,21 @@ static const vlWorldShape *shape_of(const AccelGeometry *g, uint32_t *prim) {
   return s;
 }
 
-/* What Embree carries along: the rays of the call. */
+/* Embree's query context, extended by the rays of the call. */
 #if VELO_EMBREE_MAJOR >= 4
 typedef struct RTCRayQueryContext EmbreeContext;
 #else
 typedef struct RTCIntersectContext EmbreeContext;
 #endif
 typedef struct Query {
-  EmbreeContext context; /* first: Embree hands back its address */
+  EmbreeContext context; /* first, because Embree passes its address to callbacks */
   const vlRays *rays;
-  vlNearest *nearest; /* of rays first, first + 1, ...; null: Embree's own choice counts */
+  vlNearest *nearest; /* of rays first, first + 1, ...; null: Embree's own nearest hit is used */
   uint32_t first;
 } Query;
 
-/* Offers a hit of the ray with this id. Returns the farthest t where hits still matter; negative: not taken. */
+/* Considers a hit of the ray with this id. Returns the largest t at which further hits matter, or a negative number
+ * if the hit is rejected. */
 static float offer(const EmbreeContext *context, unsigned id, float t, unsigned inst, unsigned geom, unsigned prim) {
   const Query *q = (const Query *)(const void *)context;
   if (!q->nearest) return t;
@@ -228,7 +229,7 @@ static void make_user_geometry(RTCGeometry geometry, uint32_t count) {
   rtcSetGeometryOccludedFunction(geometry, user_occluded);
 }
 
-/* count: of a bundle. */
+/* count: number of shapes of a bundle. */
 static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, AccelGeometry *g, uint32_t count,
                              vlError *error) {
   const vlWorldShape *s = g->shape;
@@ -262,7 +263,7 @@ static vlResult attach_instance(RTCDevice device, RTCScene scene, RTCScene targe
   rtcSetGeometryInstancedScene(geometry, target);
   uint32_t steps = q->keys ? q->keys : 1;
   rtcSetGeometryTimeStepCount(geometry, steps);
-  for (uint32_t k = 0; k < steps; k++) /* matrices between two are straight between them, as in moving.c */
+  for (uint32_t k = 0; k < steps; k++) /* matrices are interpolated linearly between keys, as in moving.c */
     rtcSetGeometryTransform(geometry, k, RTC_FORMAT_FLOAT3X4_ROW_MAJOR,
                             q->keys ? q->path + 12 * (size_t)k : q->from_group);
   rtcCommitGeometry(geometry);
@@ -278,14 +279,14 @@ static RTCScene new_scene(RTCDevice device) {
 }
 
 #if defined(__x86_64__)
-/* Embree's instruction sets; fused: with fused multiply-add, whose hits at edges differ from those without. */
+/* Embree's instruction sets. fused: uses fused multiply-add; its hits at edges differ from those of sets without. */
 typedef struct EmbreeSet {
   const char *name;
   bool there, fused;
 } EmbreeSet;
 
-/* The set that is to be forced, null: Embree's own choice. Portable: the widest without fused multiply-add; the
- * environment variable VELO_EMBREE overrides both. */
+/* The instruction set to force; null: Embree's own choice. Portable: the widest set without fused
+ * multiply-add. The environment variable VELO_EMBREE overrides both. */
 static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
   __builtin_cpu_init();
   const EmbreeSet sets[] = {
@@ -319,9 +320,9 @@ static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
 }
 #endif
 
-/* Embree's threads end the process when they get no memory while they build. So it is looked before whether the process
- * may have as many addresses as they take, with stacks and the heaps of threads: a reservation costs nothing and is
- * given back. */
+/* Whether the address space has room for Embree's threads (their stacks and heaps). Embree's threads end the process
+ * when they run out of memory during a build. The test reserves that much address space, which costs no memory, and
+ * releases it. */
 static bool has_room(const vlWorld *world) {
   size_t primitives = 0;
   for (size_t i = 0; i < world->shapes.count; i++) primitives += (size_t)world->shapes.items[i].faces + 1;
@@ -370,7 +371,7 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
     bundled_count += vl_accel_find_bundle(world, group, bundle, a->members + bundled_count);
     for (uint32_t i = 0; r == VL_OK && i < group->count; i++) {
       AccelGeometry *g = &geometries[group->shapes[i]];
-      if (bundle->members && i > bundle->geometry && vl_accel_bundled(g->shape)) continue; /* part of it */
+      if (bundle->members && i > bundle->geometry && vl_accel_bundled(g->shape)) continue; /* part of the bundle */
       if (bundle->members && i == bundle->geometry) g->members = bundle->members;
       r = attach_shape(device, scene, i, g, bundle->count, error);
     }
@@ -401,7 +402,7 @@ void vl_accel_destroy(vlContext *context, vlAccel *a) {
 
 /* ---- tracing ----------------------------------------------------------------------------------------------------- */
 
-/* A query; arguments tells Embree 4 of it. */
+/* Issues a query, with the arguments that Embree 4 expects. */
 #if VELO_EMBREE_MAJOR >= 4
 #define BEGIN_QUERY(query, r, coherent)                                                               \
   Query query;                                                                                        \
@@ -459,8 +460,8 @@ static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32
     int valid[16] __attribute__((aligned(64)));
     for (uint32_t k = 0; k < 16; k++) {
       uint32_t i = first + k < n ? first + k : n - 1;
-      /* Embree takes no rays from beyond its range (nor NaN): they meet nothing. Only cameras stand so far away; the
-       * world itself ends before (shapes.c). */
+      /* Embree does not accept rays from beyond its range, nor NaN: such rays miss everything. Only cameras can be
+       * that far away; the extent of the world is limited (shapes.c). */
       bool near = fabsf(r->ox[i]) < 1.8e18f && fabsf(r->oy[i]) < 1.8e18f && fabsf(r->oz[i]) < 1.8e18f;
       valid[k] = first + k < n && near ? -1 : 0;
       q.ray.org_x[k] = r->ox[i], q.ray.org_y[k] = r->oy[i], q.ray.org_z[k] = r->oz[i];

@@ -1,13 +1,13 @@
-/* world/accel/bundle.h: which shapes are one geometry of the accelerator together. */
+/* world/accel/bundle.h: which shapes share one geometry of the accelerator. */
 #ifndef WORLD_ACCEL_BUNDLE_H
 #define WORLD_ACCEL_BUNDLE_H
 
 #include "world/world.h"
 
-/* Can this shape be part of a bundle? */
+/* Whether this shape can be part of a bundle. */
 bool vl_accel_bundled(const vlWorldShape *shape);
-/* The bundle of a group; it stands at its first shape's id. members: room for the group's shapes; how many of them are
- * taken is returned. */
+/* Finds the bundle of a group; its geometry id is that of its first shape. members: room for all shapes of the
+ * group. Returns how many members were written. */
 uint32_t vl_accel_find_bundle(const vlWorld *world, const vlWorldGroup *group, vlAccelBundle *bundle,
                               uint32_t *members);
 

@@ -1,5 +1,5 @@
-/* world/accel/local_ray.h: rays in the space of the group that they meet, and what is decided there in velo's own
- * arithmetic, for accel.c: Embree's own numbers differ between instruction sets. */
+/* world/accel/local_ray.h: rays transformed to the space of the group that they intersect, and the decisions made
+ * there in velo's own arithmetic, for accel.c. Embree's own numbers differ between instruction sets. */
 #ifndef WORLD_ACCEL_LOCAL_RAY_H
 #define WORLD_ACCEL_LOCAL_RAY_H
 
@@ -14,16 +14,17 @@ typedef struct vlLocalRay {
   double o[3], d[3];
 } vlLocalRay;
 
-/* Ray i in the space of the instance's group; VL_NONE: of the world. */
+/* Ray i in the space of the instance's group; instance VL_NONE: world space. */
 vlLocalRay vl_local_ray(const vlWorld *world, const vlRays *rays, uint32_t i, uint32_t instance);
 
-/* Whether a shape lets the ray through, by a hash of ray and primitive, so that the order of traversal does not matter.
- * t: of shapes that a ray can meet twice, so that each crossing is decided for itself; 0 of triangles. */
+/* Whether a ray passes through a shape by its alpha: decided by a hash of ray and primitive, so that the result does
+ * not depend on the order of traversal. t: for shapes that a ray can intersect twice, so that each intersection is
+ * decided separately; 0 for triangles. */
 bool vl_alpha_passes(const vlWorld *world, const vlWorldShape *shape, const vlLocalRay *ray, uint32_t prim, float t,
                      const vlTextureQuery *at);
 
-/* Where the ray meets triangle prim: uv, position and normal (at, its corner excepted), and the weights of the
- * triangle's corners. true: from behind. */
+/* Where the ray intersects triangle prim: uv, position and normal (`at`, all but its corner), and the barycentric
+ * weights of the corners. Returns true if the ray comes from behind. */
 bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r, vlTextureQuery *at, float b[3]);
 
 #endif

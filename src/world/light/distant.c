@@ -1,4 +1,5 @@
-/* world/light/distant.c: lights infinitely far away in one direction (pbrt book 12.3): scale, or illuminance. */
+/* world/light/distant.c: distant lights, infinitely far away in one direction (pbrt book 12.3), set by scale or
+ * illuminance. */
 #include "world/light/lights.h"
 
 vlResult vl_compile_light_distant(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,

@@ -1,7 +1,7 @@
-/* world/light/goniometric.c: lights at a point whose intensity an image gives: goniometric (by direction, in an
- * equal-area octahedral square) and projection (as a slide). pbrt-v4's conventions: book 12.2; a goniometric diagram's
- * axis is the light's y, a slide is thrown along its z with y up. Power is that of all light that leaves (pbrt's, too).
- */
+/* world/light/goniometric.c: point lights whose intensity is given by an image: goniometric (by direction, in an
+ * equal-area octahedral square) and projection. Conventions are pbrt-v4's (book 12.2): the axis of a goniometric
+ * diagram is the light's y; a projection light's image is projected along its z with y up. Power is that of all
+ * emitted light, as in pbrt. */
 #include <math.h>
 
 #include "base/error.h"
@@ -9,7 +9,7 @@
 #include "world/light/lights.h"
 #include "world/texture/texture_lookup.h"
 
-/* Rows of the map from the world's directions to the light's; `order` and `sign` turn its axes. */
+/* Rows of the rotation from world directions to the light's; `order` and `sign` permute and flip its axes. */
 static bool set_frame(const vlLightDef *def, const int order[3], const float sign[3], vlWorldLight *light) {
   vlMat4 inverse;
   if (!vl_mat4_inverse(vl_mat4_load(def->world_from_light), &inverse)) return false;
@@ -67,7 +67,7 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
       double a = light->image_extent[0] * (2 * (x + 0.5) / w - 1), b = light->image_extent[1] * (2 * (y + 0.5) / h - 1);
       float value = vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels);
       if (!isfinite(value)) return bad_pixel(def, x, y, error);
-      sum += value > 0 ? value * pow(1 + a * a + b * b, -1.5) : 0; /* solid angle of an area of the plane z = 1 */
+      sum += value > 0 ? value * pow(1 + a * a + b * b, -1.5) : 0; /* solid angle per area of the plane z = 1 */
     }
   double flux = sum / ((double)w * h) * 4 * light->image_extent[0] * light->image_extent[1], factor = def->scale;
   if (def->power == def->power) factor *= flux > 0 ? def->power / flux : 0;
@@ -80,11 +80,11 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   for (int i = 0; i < 3; i++) light->direction[i] = (float)(axis[i] / l);
   light->cos_end = light->cos_start = (float)(1 / sqrt(1 + light->image_extent[0] * light->image_extent[0] +
                                                        light->image_extent[1] * light->image_extent[1]));
-  light->power = (float)(flux * factor / (2 * M_PI * (1 - light->cos_end)) * 4 * M_PI); /* as a spot's */
+  light->power = (float)(flux * factor / (2 * M_PI * (1 - light->cos_end)) * 4 * M_PI); /* as for a spot light */
   return VL_OK;
 }
 
-/* The light's image; null: an error. */
+/* The light's image; null on error. */
 static const vlMipmap *add_image(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlError *error) {
   int32_t image = vl_world_add_image(world, def->path, def->image, NULL, 1, false, error);
   light->image = (uint32_t)image;

@@ -24,7 +24,7 @@ typedef struct Cone {
 static Cone cone_union(Cone a, Cone b) {
   if (a.empty) return b;
   if (b.empty) return a;
-  /* Frequent and cheap: one is everything, or b a direction in a. The same answers as below. */
+  /* Frequent, cheap cases with the same results as below: one cone is the whole sphere, or b's direction lies in a. */
   if (a.cos_o <= -1) return a;
   if (b.cos_o <= -1) return b;
   if (b.cos_o >= 1 && vl_dot(a.axis, b.axis) >= a.cos_o) return a;
@@ -44,7 +44,7 @@ static Cone cone_union(Cone a, Cone b) {
   return (Cone){vl_normalize(w), cosf(to), false};
 }
 
-/* Makes a the bounds of both. In place, by comparisons: it is most of the build's time. */
+/* Extends a to bound both. In place and by comparisons, because most of the build's time is spent here. */
 static void absorb(vlLightBounds *a, const vlLightBounds *b) {
   if (b->power == 0) return;
   if (a->power == 0) {
@@ -55,7 +55,7 @@ static void absorb(vlLightBounds *a, const vlLightBounds *b) {
     a->low[i] = b->low[i] < a->low[i] ? b->low[i] : a->low[i];
     a->high[i] = b->high[i] > a->high[i] ? b->high[i] : a->high[i];
   }
-  if (a->cos_o > -1) { /* else it is everything already */
+  if (a->cos_o > -1) { /* else a's cone is the whole sphere already */
     Cone ca = {vl_vec3(a->axis[0], a->axis[1], a->axis[2]), a->cos_o, false};
     Cone cb = {vl_vec3(b->axis[0], b->axis[1], b->axis[2]), b->cos_o, false};
     Cone c = cone_union(ca, cb);
@@ -108,7 +108,7 @@ static float centroid(const Item *item, int dimension) {
   return 0.5f * (item->bounds.low[dimension] + item->bounds.high[dimension]);
 }
 
-/* Splits items so that the first part is [0, result); 0 < result < count. */
+/* Partitions items so that the first part is [0, result); 0 < result < count. */
 static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *all) {
   float clow[3] = {INFINITY, INFINITY, INFINITY}, chigh[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (uint32_t i = 0; i < count; i++)
@@ -128,7 +128,7 @@ static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *al
       b = b < 0 ? 0 : b >= BUCKETS ? BUCKETS - 1 : b;
       absorb(&buckets[b], &items[i].bounds);
     }
-    int filled[BUCKETS], fill_count = 0; /* most nodes are small and fill two or three */
+    int filled[BUCKETS], fill_count = 0; /* most nodes are small and fill two or three buckets */
     for (int b = 0; b < BUCKETS; b++)
       if (buckets[b].power != 0) filled[fill_count++] = b;
     vlLightBounds left = buckets[fill_count ? filled[0] : 0];
@@ -164,7 +164,7 @@ static vlLightBounds build_node(Builder *b, uint32_t at, Item *items, uint32_t c
   }
   vlLightBounds all = items[0].bounds;
   for (uint32_t i = 1; i < count; i++) absorb(&all, &items[i].bounds);
-  /* Trails have 64 bits: below a certain depth halve, so that depth stays bounded. */
+  /* Trails have 64 bits. Beyond a certain depth nodes are split at the median, which bounds the depth. */
   uint32_t middle = depth > MAX_DEPTH - 34 ? count / 2 : split_items(items, count, &all);
   uint32_t left = b->next;
   b->next += 2;
@@ -180,13 +180,13 @@ static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLigh
   memset(b, 0, sizeof *b);
   b->power = light->power;
   for (int i = 0; i < 3; i++) b->low[i] = b->high[i] = light->position[i], b->axis[i] = i == 2;
-  b->cos_o = -1; /* points shine everywhere */
+  b->cos_o = -1; /* point lights emit in all directions */
   b->cos_e = 0;
   if (light->has_cone) {
     for (int i = 0; i < 3; i++) b->axis[i] = light->direction[i];
     float to = acosf(light->cos_start), te = acosf(light->cos_end);
     b->cos_o = light->cos_start;
-    b->cos_e = fminf(cosf(te - to), 0.999f); /* a hard edge has no width, and rounding none to lose */
+    b->cos_e = fminf(cosf(te - to), 0.999f); /* 0.999: a hard edge has no width and leaves no margin for rounding */
   }
   if (light->shape != VL_NONE) {
     const vlWorldShape *shape = &world->shapes.items[light->shape];

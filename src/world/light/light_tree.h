@@ -1,19 +1,19 @@
-/* world/light/light_tree.h: choosing a light: a binary tree over all bounded lights, walked with the importance that
- * each branch has for the point to be lit (Conty Estevez and Kulla 2018; pbrt book 12.6.3). Lights without bounds
- * (distant, infinite) share one slot each beside the tree. Building: light_tree.c; walking: inline, for the hot loops.
- */
+/* world/light/light_tree.h: chooses a light by a binary tree over all bounded lights. At each node a branch is
+ * chosen by its importance for the point to be lit (Conty Estevez and Kulla 2018; pbrt book 12.6.3). Lights without
+ * bounds (distant, infinite) have one slot each beside the tree. light_tree.c builds the tree; traversal is inline,
+ * for the hot loops. */
 #ifndef WORLD_LIGHT_LIGHT_TREE_H
 #define WORLD_LIGHT_LIGHT_TREE_H
 
 #include "math/vec.h"
 #include "velo/render.h"
 
-/* What a set of lights sends out: from where, in which cone of directions, how much. */
+/* Bounds of the light that a set of lights emits: position, cone of directions, power. */
 typedef struct vlLightBounds {
   float low[3], high[3];
   float axis[3];
   float cos_o; /* cosine of the cone of normals round axis */
-  float cos_e; /* cosine of how far beyond a normal light goes */
+  float cos_e; /* cosine of the emission angle beyond the normals */
   float power;
   bool two_sided;
 } vlLightBounds;
@@ -37,15 +37,16 @@ typedef struct vlLightTree {
   uint32_t node_count;
   uint64_t *trails; /* per light: left/right decisions from the root, lowest bit first */
   uint32_t light_count;
-  uint32_t *unbounded; /* lights beside the tree */
+  uint32_t *unbounded; /* lights outside the tree */
   uint32_t unbounded_count;
   uint32_t *slot; /* per light: index in unbounded, or VL_INNER */
-  float *cdf;     /* power and uniform: light_count + 1 */
+  float *cdf;     /* power and uniform selection: light_count + 1 */
 } vlLightTree;
 
 vlResult vl_light_tree_build(struct vlWorld *world, vlError *error);
 
-/* What the importance of a node reads, by value. Nodes are read as rows of floats, so that a batch can gather them. */
+/* What the importance of a node depends on, by value. Nodes are read as rows of floats, so that a batch can gather
+ * them. */
 enum { VL_LIGHT_NODE_FLOATS = sizeof(vlLightNode) / sizeof(float) };
 typedef struct vlLightCluster {
   float cx, cy, cz, half_diagonal, ax, ay, az, cos_o, sin_o, cos_e, power, two_sided;
@@ -55,17 +56,18 @@ static inline vlLightCluster vl_light_cluster(const float *nodes, uint32_t at) {
                           nodes[at + 6], nodes[at + 7], nodes[at + 8], nodes[at + 9], nodes[at + 10], nodes[at + 11]};
 }
 
-/* Importance of a node for a point p with normal n (zero vector: none). No branches: it runs over batches, too. */
+/* Importance of a node for a point p with normal n (zero vector: none). Free of branches, so that loops over batches
+ * vectorise. */
 static inline __attribute__((always_inline)) float vl_light_importance(vlLightCluster b, vlVec3 p, vlVec3 n) {
   vlVec3 to = vl_sub(p, vl_vec3(b.cx, b.cy, b.cz));
   float d2 = vl_length2(to);
   float r = b.half_diagonal;
-  float d2_limited = vl_max(d2, r); /* as in the book: not less than half the diagonal */
+  float d2_limited = vl_max(d2, r); /* as in the book: at least half the diagonal */
   vlVec3 wi = vl_normalize(to);
   float cos_w = vl_dot(vl_vec3(b.ax, b.ay, b.az), wi);
   cos_w = b.two_sided > 0.0f ? vl_abs(cos_w) : cos_w;
   float sin_w = __builtin_sqrtf(vl_max(0.0f, 1.0f - cos_w * cos_w));
-  /* Angle that the bounds subtend at p: everything, when p is inside their sphere. */
+  /* Angle that the bounds subtend at p: the full sphere if p is inside their bounding sphere. */
   float inside = d2 > r * r ? 0.0f : 1.0f;
   float sin2_b = r * r / vl_max(d2, 1e-37f);
   float cos_b = __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2_b)), sin_b = __builtin_sqrtf(sin2_b);
@@ -108,7 +110,8 @@ static inline vlLightChoice vl_light_choose_cdf(const vlLightTree *tree, float u
   return (vlLightChoice){low, tree->cdf[low + 1] - tree->cdf[low]};
 }
 
-/* Down from an inner node that was reached with probability pmf; u in [0,1) is used up on the way. */
+/* Traverses the tree from an inner node that was reached with probability pmf; u in [0,1) is rescaled and reused at
+ * each level. */
 static inline vlLightChoice vl_light_walk(const vlLightTree *tree, const vlLightNode *node, vlVec3 p, vlVec3 n, float u,
                                           float pmf) {
   while (node->light == VL_INNER) {

@@ -1,6 +1,6 @@
-/* world/light/lights.c: scene lights and emissive shapes -> world lights, with the distribution over images of the
- * sky. Scales are pbrt-v4's (lights.cpp's conventions; book 12): spectra divided by their own luminance, times scale,
- * or set by power or illuminance. */
+/* world/light/lights.c: scene lights and emissive shapes -> world lights, with the sampling distributions of
+ * environment images. Scales are pbrt-v4's (lights.cpp; book 12): spectra are divided by their own luminance, times
+ * scale, or set by power or illuminance. */
 #include <math.h>
 #include <string.h>
 
@@ -69,12 +69,12 @@ float vl_light_texel_luminance(vlTexel t, uint32_t channels) {
   return channels < 3 ? t.c[0] : 0.2126f * t.c[0] + 0.7152f * t.c[1] + 0.0722f * t.c[2];
 }
 
-/* ---- the sky ----------------------------------------------------------------------------------------------------- */
+/* ---- environment images ------------------------------------------------------------------------------------------ */
 
 enum { MAX_CELLS = 1024 };
 
-/* A distribution over cells: mean luminance of the texels of each, less the mean of all (MIS compensation, Karlik et
- * al. 2019), so that light sampling leaves the flat part to the BSDF. */
+/* A distribution over cells: the mean luminance of each cell's texels minus the mean of all (MIS compensation,
+ * Karlik et al. 2019), so that the uniform part is left to BSDF sampling. */
 static vlResult build_environment(vlWorld *world, vlEnvironment *env, double *mean_luminance, double *illuminance,
                                   vlError *error) {
   const vlMipmap *mip = world->images.items[env->image].mipmap;
@@ -105,7 +105,7 @@ static vlResult build_environment(vlWorld *world, vlEnvironment *env, double *me
     }
   double mean = total / ((double)size * size);
   *mean_luminance = mean;
-  /* pbrt-v4 takes the upper half for a hemisphere that fills the square: half of what really arrives. */
+  /* pbrt-v4 takes the upper half for a hemisphere that fills the square: half of the true illuminance. */
   *illuminance = upper * (world->def.imitate_pbrt ? 2 : 4) * M_PI / ((double)size * size);
   bool flat = true;
   for (size_t i = 0; i < (size_t)size * size; i++) flat = flat && env->pdf[i] <= mean * 1.0001;
@@ -193,7 +193,7 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
   double from[3] = {def->from[0], def->from[1], def->from[2]}, to[3] = {def->to[0], def->to[1], def->to[2]}, a[3], b[3];
   vl_mat4_point(&m, from, a);
   vl_mat4_point(&m, to, b);
-  double l = 0, sign = row->traits & VL_LIGHT_TRAIT_FAR ? -1 : 1; /* the direction of one far away is towards it */
+  double l = 0, sign = row->traits & VL_LIGHT_TRAIT_FAR ? -1 : 1; /* far: the direction is towards the light */
   for (int i = 0; i < 3; i++) l += (b[i] - a[i]) * (b[i] - a[i]);
   l = sqrt(l);
   if (!(l > 0) && (row->traits & VL_LIGHT_TRAIT_AIMS))
@@ -206,7 +206,7 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
   light->at_point = (row->traits & VL_LIGHT_TRAIT_AT_POINT) != 0;
   light->far = (row->traits & VL_LIGHT_TRAIT_FAR) != 0;
   light->delta = (row->traits & VL_LIGHT_TRAIT_DELTA) != 0;
-  if (!light->delta) { /* rays that miss everything see it */
+  if (!light->delta) { /* rays that miss all surfaces hit it */
     uint32_t *slot = VL_PUSH(world->context, &world->infinite_lights);
     if (!slot) return vl_fail_memory(error);
     *slot = (uint32_t)world->lights.count - 1;

@@ -1,4 +1,4 @@
-/* world/light/lights.h: what the files that compile lights share. */
+/* world/light/lights.h: functions shared by the files that compile lights. */
 #ifndef WORLD_LIGHT_LIGHTS_H
 #define WORLD_LIGHT_LIGHTS_H
 
@@ -6,28 +6,29 @@
 #include "world/texture/texture_lookup.h"
 #include "world/world.h"
 
-/* A colour with luminance 1 (times what rgb or scale say), times factor. */
+/* A colour of luminance 1 (times its own rgb factor or scale), times factor. */
 vlResult vl_light_color(vlWorld *world, const vlSpectrum *color, float factor, vlEmitted *e, vlError *error);
-/* For images: the illuminant of the space, luminance 1; texels multiply it. */
+/* For images: the illuminant of the colour space with luminance 1; texels multiply it. */
 void vl_light_image_color(vlWorld *world, vlColorSpace space, float scale, vlEmitted *e);
-/* That of the image, where it says so, else this one. */
+/* The colour space that the image declares, else `otherwise`. */
 vlColorSpace vl_light_image_space(const vlWorld *world, int32_t image, vlColorSpace otherwise);
-/* That a constant emitted spectrum shows. */
+/* Luminance of a constant emitted spectrum. */
 float vl_light_luminance(const vlSpectral *spectrum);
 float vl_light_texel_luminance(vlTexel t, uint32_t channels);
 
-/* One for each face that shines of a shape with an emission (shape_lights.c). compiled: by emission of the scene, index
- * into world->emitted of what shapes share; VL_NONE: not yet. */
+/* Adds one light per emitting face of an emissive shape (shape_lights.c). compiled: per emission of the scene, the
+ * index into world->emitted that its shapes share; VL_NONE: not compiled yet. */
 vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t shape, uint32_t *compiled,
                                    vlError *error);
-/* A function per kind of the scene's lights: colour, power and what the kind alone has. Position, direction (unit; of a
- * light far away towards it) and traits are set before. */
+/* One function per kind of light in the scene: sets colour, power and what only this kind has. Position, direction
+ * (unit; for a far light, towards it) and traits are already set. */
 #define VL_LIGHT_KIND_COMPILES(K, k)                                                                      \
   vlResult vl_compile_light_##k(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e, \
                                 vlError *error);
 VL_LIGHT_KINDS(VL_LIGHT_KIND_COMPILES)
 #undef VL_LIGHT_KIND_COMPILES
-/* The portal of a imaged sky, whose directions env knows; power: of the light that passes through it (portal.c). */
+/* Adds the portal of an environment image whose directions env gives. power: of the light that passes through it
+ * (portal.c). */
 vlResult vl_world_add_portal(vlWorld *world, const vlLightDef *def, vlEnvironment *env, double *power, vlError *error);
 
 #endif

@@ -1,4 +1,4 @@
-/* world/light/point.c: lights at a point (pbrt book 12.2): scale, or power over the whole sphere. */
+/* world/light/point.c: point lights (pbrt book 12.2), set by scale or by power over the whole sphere. */
 #include <math.h>
 
 #include "world/light/lights.h"

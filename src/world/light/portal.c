@@ -1,5 +1,5 @@
-/* world/light/portal.c: see portal.h. The light of a cell is that of the image's texels in it, and a little of the
- * mean, so that no direction of the sky is left out for falling between the points that are looked at. */
+/* world/light/portal.c: see portal.h. The weight of a cell is the light of the image's samples in it, plus a small
+ * share of the mean, so that no direction has zero probability because it falls between the samples. */
 #include "world/light/portal.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "world/texture/texture_lookup.h"
 
 enum { MAX_CELLS = 1024 };
-static const double least_share = 0.02; /* of the mean light, for every cell */
+static const double least_share = 0.02; /* share of the mean light that every cell gets */
 
 static vlVec3 side(const float from[3], const float to[3], float *length) {
   vlVec3 d = vl_vec3(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
@@ -20,7 +20,7 @@ static vlVec3 side(const float from[3], const float to[3], float *length) {
   return vl_mul(d, 1.0f / *length);
 }
 
-/* pbrt's frame: x from the first corner to the last, y from the first to the second; light comes from x cross y. */
+/* pbrt's frame: x from the first corner to the last, y from the first to the second; light arrives from x cross y. */
 static void set_frame(const vlLightDef *def, vlPortal *portal) {
   vlVec3 x = side(def->portal[0], def->portal[3], &portal->width);
   vlVec3 y = side(def->portal[0], def->portal[1], &portal->height), z = vl_normalize(vl_cross(x, y));
@@ -40,7 +40,7 @@ static float seen(const vlEnvironment *env, const vlMipmap *mip, vlVec3 d) {
   return y > 0.0f ? y : 0.0f;
 }
 
-/* Points of a cell that are looked at, each way. */
+/* Bounds on the sample points of a cell, per axis. */
 enum { COARSEST = 2, FINEST = 4 };
 
 typedef struct Filling {
@@ -49,10 +49,10 @@ typedef struct Filling {
   vlPortal *portal;
   uint32_t fine;
   double *tangents; /* of the points' angles: size * fine */
-  double *passes;   /* of each row: what passes through a unit of the portal's area */
+  double *passes;   /* per row: light that passes through a unit of the portal's area */
 } Filling;
 
-/* The light of a row's cells, not yet summed. */
+/* The light of a row's cells, before summation. */
 static void fill_row(void *user, uint32_t j, uint32_t worker) {
   const Filling *f = user;
   uint32_t n = f->portal->size, fine = f->fine;
@@ -72,7 +72,7 @@ static void fill_row(void *user, uint32_t j, uint32_t worker) {
   }
 }
 
-/* All rows; *total: of all cells. */
+/* Fills all rows. *total: sum over all cells. */
 static bool fill(vlContext *context, Filling *f, double *total, double *passes) {
   uint32_t n = f->portal->size, points = n * f->fine;
   f->tangents = vl_alloc_array(context, points, sizeof *f->tangents);
@@ -108,7 +108,7 @@ vlResult vl_world_add_portal(vlWorld *world, const vlLightDef *def, vlEnvironmen
   if (!fill(world->context, &filling, &total, &passes)) return vl_fail_memory(error);
   double mean = total / (2 * M_PI);
   *power = passes * (double)portal->width * (double)portal->height;
-  if (!(mean > 0)) mean = 1; /* a black sky: any way of looking at it will do */
+  if (!(mean > 0)) mean = 1; /* a black environment: any distribution will do */
   for (uint32_t j = 0; j < n; j++) {
     double row = 0;
     for (uint32_t i = 0; i < n; i++) {

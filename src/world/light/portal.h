@@ -1,10 +1,10 @@
-/* world/light/portal.h: a window through which an image of the sky is seen: its rectified image and light sampling
- * in the part of it that a point sees. pbrt book (4th ed.) 12.5.3; sums over windows: A.5.6. Building: portal.c;
- * asking: inline, for the hot loops.
+/* world/light/portal.h: a portal through which an environment image is visible: the rectified image, and light sampling
+ * in the part of it that is visible from a point. pbrt book (4th ed.) 12.5.3; summed-area tables: A.5.6. portal.c
+ * builds it; the lookups are inline, for the hot loops.
  *
- * In the portal's frame (x, y along its sides, z towards the sky) a direction w has the angles alpha = atan(w.x / w.z),
- * beta = atan(w.y / w.z); (u, v) are these, from -90 to 90 degrees, as 0 to 1. Lines parallel to the sides stay
- * straight, so that what a point sees of the sky is a rectangle of the square. */
+ * In the portal's frame (x, y along its sides, z towards the environment) a direction w has the angles alpha =
+ * atan(w.x / w.z), beta = atan(w.y / w.z). (u, v) are these angles, mapped from [-90, 90] degrees to [0, 1]. Lines
+ * parallel to the sides stay straight, so that the visible part of the environment is a rectangle of the square. */
 #ifndef WORLD_LIGHT_PORTAL_H
 #define WORLD_LIGHT_PORTAL_H
 
@@ -13,13 +13,13 @@
 
 typedef struct vlPortal {
   float frame[9];  /* rows x, y, z: portal from world */
-  float corner[3]; /* world: where u and v are least */
+  float corner[3]; /* world space, where u and v are smallest */
   float width, height;
   uint32_t size; /* cells of the square: size x size */
   double *sums;  /* (size + 1)^2: light of the cells below and left of a corner, rows from v = 0 */
 } vlPortal;
 
-/* What of the square a point sees, in cells. */
+/* The rectangle of the square that is visible from a point, in cells. */
 typedef struct vlPortalWindow {
   double x0, y0, x1, y1;
 } vlPortalWindow;
@@ -38,7 +38,7 @@ static inline vlVec3 vl_portal_corner_from(const vlPortal *portal, vlVec3 o) {
   return vl_portal_local(portal, vl_sub(vl_vec3(portal->corner[0], portal->corner[1], portal->corner[2]), o));
 }
 
-/* Does a ray from o pass through the portal from its inner side? */
+/* Whether a ray from o along d passes through the portal from its inner side. */
 static inline bool vl_portal_shows(const vlPortal *portal, vlVec3 o, vlVec3 d) {
   vlVec3 c = vl_portal_corner_from(portal, o), w = vl_portal_local(portal, d);
   float x = w.x * c.z, y = w.y * c.z;
@@ -50,7 +50,7 @@ static inline double vl_portal_cell(const vlPortal *portal, float tangent) {
   return ((double)(vl_atan(tangent) * VL_INV_PI) + 0.5) * portal->size;
 }
 
-/* False where nothing is seen: behind the portal, or in its plane. */
+/* The window visible from o. False if nothing is visible: o is behind the portal or in its plane. */
 static inline bool vl_portal_window(const vlPortal *portal, vlVec3 o, vlPortalWindow *window) {
   vlVec3 c = vl_portal_corner_from(portal, o);
   if (!(c.z > 0.0f)) return false;
@@ -69,13 +69,13 @@ static inline uint32_t vl_portal_index(const vlPortal *portal, double x) {
   uint32_t i = x > 0 ? (uint32_t)x : 0;
   return i < portal->size ? i : portal->size - 1;
 }
-/* Of the cells left of column i, up to row y. */
+/* Sum of the cells left of column i, up to row y. */
 static inline double vl_portal_below(const vlPortal *portal, uint32_t i, double y) {
   uint32_t j = vl_portal_index(portal, y);
   const double *at = portal->sums + (size_t)j * (portal->size + 1) + i;
   return at[0] + (at[portal->size + 1] - at[0]) * (y - j);
 }
-/* Of those left of column i between two rows. */
+/* Sum of the cells left of column i, between the two rows of the window. */
 static inline double vl_portal_left(const vlPortal *portal, uint32_t i, const vlPortalWindow *w) {
   return vl_portal_below(portal, i, w->y1) - vl_portal_below(portal, i, w->y0);
 }
@@ -89,14 +89,14 @@ static inline double vl_portal_light(const vlPortal *portal, uint32_t x, uint32_
   return (high[1] - high[0]) - (low[1] - low[0]);
 }
 
-/* Solid angle of a unit of the (u, v) square where the direction's tangents are x, y: pi^2 (1 - w.x^2) (1 - w.y^2) /
- * w.z without cancellation. */
+/* Solid angle per unit of the (u, v) square where the direction's tangents are x, y: pi^2 (1 - w.x^2) (1 - w.y^2) /
+ * w.z, without cancellation. */
 static inline double vl_portal_solid_angle(double x, double y) {
   double square = 1.0 + x * x + y * y;
   return 9.869604401089358 * (1.0 + x * x) * (1.0 + y * y) / (square * __builtin_sqrt(square));
 }
 
-/* Density, per solid angle, of direction d (unit, of the portal's inner half space), with which a window is sampled. */
+/* Density per solid angle with which direction d (unit, in the portal's inner half space) is sampled from a window. */
 static inline float vl_portal_pdf(const vlPortal *portal, const vlPortalWindow *window, vlVec3 d) {
   vlVec3 w = vl_portal_local(portal, d);
   if (!(w.z > 1e-6f)) return 0.0f;
@@ -109,13 +109,13 @@ static inline float vl_portal_pdf(const vlPortal *portal, const vlPortalWindow *
   return (float)(light / all * n * n / vl_portal_solid_angle((double)tx, (double)ty));
 }
 
-/* A direction of the window by its light; zero where there is none. */
+/* Samples a direction of the window in proportion to its light. Returns the zero vector if the window is black. */
 static inline vlVec3 vl_portal_sample(const vlPortal *portal, const vlPortalWindow *w, float u, float v) {
   double from = vl_portal_left_of(portal, w->x0, w), to = vl_portal_left_of(portal, w->x1, w);
   if (!(to > from)) return vl_vec3(0, 0, 0);
   double wanted = from + (double)u * (to - from);
   uint32_t low = vl_portal_index(portal, w->x0), high = vl_portal_index(portal, w->x1);
-  while (low < high) { /* the first column whose right side is past what is wanted */
+  while (low < high) { /* the first column whose right side is past the target */
     uint32_t middle = (low + high) / 2;
     if (vl_portal_left(portal, middle + 1, w) > wanted)
       high = middle;

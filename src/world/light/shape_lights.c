@@ -1,4 +1,4 @@
-/* world/light/shape_lights.c: shapes with an emission -> world lights, one for each face that shines. */
+/* world/light/shape_lights.c: emissive shapes -> world lights, one per emitting face. */
 #include <math.h>
 #include <string.h>
 
@@ -41,7 +41,7 @@ static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmiss
   return VL_OK;
 }
 
-/* Mean luminance of an emission's texture over a triangle, about: where an image is dark, no light need be asked. */
+/* Approximate mean luminance of an emission's texture over a triangle. Faces where the image is black need no light. */
 static float face_luminance(const vlWorld *world, const vlWorldShape *s, uint32_t prim, const vlEmitted *e) {
   static const float inside[4][3] = {
       {1 / 3.0f, 1 / 3.0f, 1 / 3.0f}, {0.7f, 0.15f, 0.15f}, {0.15f, 0.7f, 0.15f}, {0.15f, 0.15f, 0.7f}};
@@ -64,8 +64,8 @@ static float face_luminance(const vlWorld *world, const vlWorldShape *s, uint32_
   return e->image_scale * (isfinite(sum) ? sum : 0);
 }
 
-/* Corners and lit side. The renderer turns the geometric normal to the side of the interpolated shading normal: where
- * the three vertex normals agree on the side, so does every point between. */
+/* Corners and emitting side. The renderer flips the geometric normal to the side of the interpolated shading normal:
+ * if the three vertex normals agree on the side, so do all points of the triangle. */
 static void triangle_light(const vlWorldShape *s, uint32_t prim, vlWorldLight *light) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
   vlVec3 p[3];
@@ -86,7 +86,8 @@ static void triangle_light(const vlWorldShape *s, uint32_t prim, vlWorldLight *l
   light->direction[0] = g.x, light->direction[1] = g.y, light->direction[2] = g.z;
 }
 
-/* The emission of a shape, compiled for it; or the one of an earlier shape of the same emission: *index as it is. */
+/* Compiles the emission of a shape into world->emitted, unless an earlier shape has compiled the same emission
+ * (*index is then set). */
 static vlResult add_shape_emission(vlWorld *world, const vlScene *scene, const vlEmissionDef *def, uint32_t *index,
                                    vlError *error) {
   if (*index != VL_NONE) return VL_OK;
@@ -99,7 +100,7 @@ static vlResult add_shape_emission(vlWorld *world, const vlScene *scene, const v
   return VL_OK;
 }
 
-/* Sets light_of where some faces are black: lights are numbered over the others alone. faces: how many shine. */
+/* Counts the emitting faces. Sets light_of if some faces are black: only the others are numbered as lights. */
 static vlResult choose_faces(vlWorld *world, vlWorldShape *shape, const vlEmitted *e, uint32_t *faces, vlError *error) {
   vlShining shining;
   if (!vl_shining_make(world, e, &shining)) return vl_fail_memory(error);
@@ -146,7 +147,7 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
   for (uint32_t i = 0, k = 0; k < faces; i++) {
     if (vl_shape_light(shape, i) == VL_NONE) continue;
     float area = vl_world_prim_area(shape, i);
-    if (has_power) { /* as in pbrt, for each primitive */
+    if (has_power) { /* power is per primitive, as in pbrt */
       if (k > 0) *shared = VL_NONE;
       if ((r = add_shape_emission(world, scene, emission, shared, error)) != VL_OK) return r;
       vlEmitted *e = &world->emitted.items[*shared];

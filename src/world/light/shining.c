@@ -1,6 +1,7 @@
-/* world/light/shining.c: see shining.h. Emissions are looked up at the finest level, bilinearly or at the nearest texel
- * (trace/light/light.hot.c): a triangle touches the texels whose middle is less than a texel away from it in both
- * directions. Row by row: what of the triangle lies in the band that reaches the row has a range of columns. */
+/* world/light/shining.c: see shining.h. Emission images are looked up at the finest level, bilinearly or at the
+ * nearest texel (trace/light/light.hot.c). A triangle can read the texels whose centre is less than a texel away
+ * from it in both directions. Per row of texels, the part of the triangle in the band that reaches the row gives a
+ * range of columns. */
 #include "world/light/shining.h"
 
 #include <math.h>
@@ -46,13 +47,13 @@ void vl_shining_free(const vlWorld *world, vlShining *s) {
   memset(s, 0, sizeof *s);
 }
 
-/* Is a bit set in columns [from, to] of a row of the image? */
+/* Whether a bit is set in columns [from, to] of a row of the image. */
 static bool row_shines(const vlShining *s, int32_t row, int32_t from, int32_t to) {
   row = vl_wrap_index(row, (int32_t)s->height, s->wrap_t);
   if (row < 0) return false;
   const uint64_t *bits = s->bits + (size_t)row * s->words;
   int32_t n = (int32_t)s->width;
-  if (to - from >= 2 * n) from = 0, to = n - 1; /* all of them, however they wrap */
+  if (to - from >= 2 * n) from = 0, to = n - 1; /* all columns, whatever the wrap mode */
   if (from < 0 || to >= n) {
     bool shines = false;
     for (int32_t x = from; x <= to && !shines; x++) {
@@ -71,7 +72,7 @@ static bool row_shines(const vlShining *s, int32_t row, int32_t from, int32_t to
   return sum != 0;
 }
 
-/* The range of x of the triangle's part with low <= y <= high; empty: first > last. */
+/* The x range of the triangle's part with low <= y <= high; empty: first > last. */
 static void band(const double x[3], const double y[3], double low, double high, double *first, double *last) {
   *first = INFINITY, *last = -INFINITY;
   for (int k = 0; k < 3; k++) {
@@ -82,7 +83,7 @@ static void band(const double x[3], const double y[3], double low, double high, 
       double level = edge ? high : low, d = y[j] - y[k];
       if ((y[k] < level) != (y[j] < level)) at[1 + edge] = x[k] + (x[j] - x[k]) * ((level - y[k]) / d);
     }
-    for (int i = 0; i < 3; i++) *first = fmin(*first, at[i]), *last = fmax(*last, at[i]); /* NAN loses */
+    for (int i = 0; i < 3; i++) *first = fmin(*first, at[i]), *last = fmax(*last, at[i]); /* fmin and fmax ignore NaN */
   }
 }
 
@@ -97,7 +98,7 @@ static bool triangle_shines(const vlShining *s, const float uv[3][2]) {
     size = fmax(size, fmax(fabs(x[k]), fabs(y[k])));
   }
   if (!(size < 1e8) || isnan(x[0] + x[1] + x[2] + y[0] + y[1] + y[2])) return true;
-  double hair = 0.01 + 1e-5 * size; /* lookups interpolate uv in float */
+  double hair = 0.01 + 1e-5 * size; /* margin, in texels: lookups interpolate uv in float */
   if (y_high - y_low > 2.0 * s->height || x_high - x_low > 2.0 * s->width) return s->any;
   int32_t from = (int32_t)floor(y_low - 0.5 - hair), to = (int32_t)floor(y_high + 0.5 + hair);
   bool shines = false;
@@ -113,7 +114,7 @@ static bool triangle_shines(const vlShining *s, const float uv[3][2]) {
 bool vl_shining_face(const vlShining *s, const vlWorldShape *shape, uint32_t prim) {
   if (!s->bits) return true;
   static const float unit[2][4][2] = {{{0, 0}, {1, 0}, {1, 1}, {0, 0}}, {{0, 0}, {1, 0}, {0, 1}, {1, 1}}};
-  static const int parts[4][3] = {{0, 1, 2}, {1, 2, 3}, {0, 1, 3}, {0, 2, 3}}; /* a patch covers no more */
+  static const int parts[4][3] = {{0, 1, 2}, {1, 2, 3}, {0, 1, 3}, {0, 2, 3}}; /* their union contains the patch */
   bool patch = shape->kind == VL_SHAPE_BILINEAR, shines = false;
   int corners = patch ? 4 : 3;
   const float *uvs = shape->emission_uvs ? shape->emission_uvs : shape->uvs;

@@ -1,4 +1,4 @@
-/* world/light/spot.c: lights at a point that shine into a cone (pbrt book 12.2.1): scale, or power over the cone. */
+/* world/light/spot.c: spot lights (pbrt book 12.2.1), set by scale or by power over the cone. */
 #include <math.h>
 
 #include "world/light/lights.h"

@@ -1,19 +1,19 @@
-/* world/material/bsdf_kind.h: the kinds of BSDF that materials are made of. Each has, in trace, a function for its
- * parameters (trace/material) and two kernels (trace/bsdf), which the list names: vl_parameters_NAME,
- * vl_bsdf_NAME_eval, vl_bsdf_NAME_sample. A material's compile function chooses its kind. */
+/* world/material/bsdf_kind.h: the kinds of BSDF that materials consist of. Each name stands for a parameter function
+ * in trace/material (vl_parameters_NAME) and two kernels in trace/bsdf (vl_bsdf_NAME_eval, vl_bsdf_NAME_sample). A
+ * material's compile function chooses its kind. */
 #ifndef WORLD_MATERIAL_BSDF_KIND_H
 #define WORLD_MATERIAL_BSDF_KIND_H
 
-#define VL_BSDF_KINDS(X)                                                                                           \
-  X(DIFFUSE, diffuse)                                                                                              \
-  X(CONDUCTOR, conductor)   /* eta, k; rough or smooth by lane (alpha < 1e-3 both: smooth) */                      \
-  X(DIELECTRIC, dielectric) /* eta_s > 0 interior over exterior; rough or smooth by lane */                        \
-  X(THIN_DIELECTRIC, thin)                                                                                         \
-  X(COATED_DIFFUSE, coat)   /* rough or smooth dielectric coat over a diffuse base, table of its transmittances */ \
-  X(PRINCIPLED, principled) /* many layers: docs/principled.md */                                                  \
-  X(DIFFUSE_TRANSMISSION, translucent)                                                                             \
-  X(LAYERED, layered) /* rough or smooth dielectric coat over metal or a diffuse base, by random walks */          \
-  X(HAIR, hair)                                                                                                    \
+#define VL_BSDF_KINDS(X)                                                                                       \
+  X(DIFFUSE, diffuse)                                                                                          \
+  X(CONDUCTOR, conductor)   /* eta, k; rough, or smooth per lane (both alphas < 1e-3) */                       \
+  X(DIELECTRIC, dielectric) /* eta_s > 0, interior over exterior; rough or smooth per lane */                  \
+  X(THIN_DIELECTRIC, thin)                                                                                     \
+  X(COATED_DIFFUSE, coat)   /* rough or smooth dielectric coat over a diffuse base; tabulated transmittance */ \
+  X(PRINCIPLED, principled) /* several layers: docs/principled.md */                                           \
+  X(DIFFUSE_TRANSMISSION, translucent)                                                                         \
+  X(LAYERED, layered) /* rough or smooth dielectric coat over metal or a diffuse base; random walks */         \
+  X(HAIR, hair)                                                                                                \
   X(MEASURED, measured)
 
 typedef enum vlBsdfKind {

@@ -1,14 +1,14 @@
-/* world/material/bssrdf.c: the tables of photon beam diffusion. Formulas: pbrt book, 3rd edition, 15.5.2 to 15.5.5; the
- * moments of Fresnel's reflectance by the polynomials of d'Eon and Irving 2011, "A Quantized-Diffusion Model for
- * Rendering Translucent Materials", which the images of pbrt are made with, too. */
+/* world/material/bssrdf.c: the tables of photon beam diffusion. Formulas: pbrt book, 3rd edition, 15.5.2 to 15.5.5.
+ * Fresnel moments: the polynomials of d'Eon and Irving 2011, "A Quantized-Diffusion Model for Rendering Translucent
+ * Materials", which pbrt uses too. */
 #include "world/material/bssrdf.h"
 
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
 
-/* int Fr(c) c dc and int Fr(c) c^2 dc over cosines 0 to 1; eta: index where the light comes from over that beyond, so
- * that inside of a body of 1.5 it is 1.5. */
+/* int Fr(c) c dc and int Fr(c) c^2 dc over cosines 0 to 1. eta: index on the incident side over the index on the
+ * other side: 1.5 inside a solid of index 1.5. */
 static double moment1(double eta) {
   double e = eta;
   if (e < 1) return 0.45966 + e * (-1.73965 + e * (3.37668 + e * (-3.904945 + e * (2.49277 - 0.68441 * e))));
@@ -21,7 +21,7 @@ static double moment2(double eta) {
          e * (404.557 + e * (-189.519 + e * (54.9327 + e * (-9.00603 + 0.63942 * e))));
 }
 
-/* Share of light that is reflected on its way out at this cosine. */
+/* Fresnel reflectance at this cosine of light that leaves the solid. */
 static double reflected_inside(double cosine, double eta) {
   double sin2 = eta * eta * (1 - cosine * cosine);
   if (sin2 >= 1) return 1;
@@ -35,7 +35,7 @@ static double phase(double cosine, double g) {
   return (1 - g * g) / (4 * pi * d * sqrt(d));
 }
 
-/* Optical depths of points along the beam, equally likely by its attenuation. */
+/* Optical depths of sample points along the beam, distributed by its attenuation. */
 enum { MOST_POINTS = 1000 };
 typedef struct Goniometric {
   int n;
@@ -48,12 +48,12 @@ static Goniometric make_goniometric(int n) {
   return b;
 }
 
-/* One dipole for each point of the beam. */
+/* Multiple scattering: one dipole per point of the beam. */
 static double multiple(double albedo, double g, double eta, double r, const Goniometric *beam) {
   double sigma_a = 1 - albedo, sigma_s = albedo * (1 - g), sigma_t = sigma_a + sigma_s;
   if (!(sigma_s > 0)) return 0;
   double reduced = sigma_s / sigma_t;
-  double diffusion = (2 * sigma_a + sigma_s) / (3 * sigma_t * sigma_t); /* Grosjean's */
+  double diffusion = (2 * sigma_a + sigma_s) / (3 * sigma_t * sigma_t); /* Grosjean's diffusion coefficient */
   double tr = sqrt(sigma_a / diffusion);
   double f1 = moment1(eta), f2 = moment2(eta);
   double extrapolated = -2 * diffusion * (1 + 3 * f2) / (1 - 2 * f1);
@@ -69,7 +69,7 @@ static double multiple(double albedo, double g, double eta, double r, const Goni
   return sum / beam->n;
 }
 
-/* Only points from which light can leave at this distance. */
+/* Single scattering. Only points from which light can leave at distance r contribute. */
 static double single(double albedo, double g, double eta, double r, const Goniometric *beam) {
   double critical = r * sqrt(eta > 1 ? eta * eta - 1 : 0), sum = 0;
   for (int i = 0; i < beam->n; i++) {
@@ -100,7 +100,7 @@ static void fill_row(void *user, uint32_t row, uint32_t worker) {
     if (i + 1 == VL_BSSRDF_RADII) break;
     float f[4];
     for (uint32_t k = 0; k < 4; k++) {
-      uint32_t j = i + k; /* one ahead, so that it does not go below zero */
+      uint32_t j = i + k; /* index plus one, so that it stays >= 0 */
       f[k] = t->profile[row][j < 1 ? 0 : j > VL_BSSRDF_RADII ? VL_BSSRDF_RADII - 1 : j - 1];
     }
     vlSplinePiece p = vl_spline_piece(t->radius, VL_BSSRDF_RADII, i, f);
@@ -114,7 +114,7 @@ void vl_bssrdf_build(vlContext *context, float eta, float g, vlBssrdfTable *t) {
   t->leaves = (float)(1 - 2 * moment1(1 / (double)eta));
   t->radius[0] = 0.0f;
   for (uint32_t i = 1; i < VL_BSSRDF_RADII; i++) t->radius[i] = i > 1 ? t->radius[i - 1] * 1.2f : 2.5e-3f;
-  for (uint32_t i = 0; i < VL_BSSRDF_ALBEDOS; i++) /* closer together where bodies are bright */
+  for (uint32_t i = 0; i < VL_BSSRDF_ALBEDOS; i++) /* denser for high albedos */
     t->albedo[i] = (float)((1 - exp(-8.0 * i / (VL_BSSRDF_ALBEDOS - 1))) / (1 - exp(-8.0)));
   vl_parallel_for(context, VL_BSSRDF_ALBEDOS, fill_row, t);
 }

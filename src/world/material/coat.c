@@ -1,14 +1,15 @@
-/* world/material/coat.c: the coat's tables by deterministic quadrature. The integrals over directions go through the
- * sampling of visible normals: the unit square of its two numbers, with weight G/G1 for what was drawn, so that the
- * nodes lie where the microfacets are for any roughness. */
+/* world/material/coat.c: the coat's tables by deterministic quadrature. Integrals over directions are integrals over
+ * the unit square of visible-normal sampling, with weight G/G1, so that the nodes lie where the microfacets are for
+ * any roughness. */
 #include "world/material/coat.h"
 
 #include "base/isa.h"
 #include "math/fresnel.h"
 #include "math/ggx.h"
 
-/* Azimuths by midpoints (half a turn: symmetric), elevations by Gauss-Legendre with v = 1 - s^2, denser at the long
- * tail of grazing microfacets. R has a kink at the critical angle inside and needs more of both; outer: its cosines. */
+/* Quadrature sizes. Azimuths: midpoint rule over half a turn (symmetric). Elevations: Gauss-Legendre with v = 1 -
+ * s^2, denser at the long tail of grazing microfacets. R has a kink at the inner critical angle and needs more of
+ * both. OUTER: cosines of the integral for R. */
 enum { TURNS = 12, HEIGHTS = 24, TURNS_BACK = 24, HEIGHTS_BACK = 40, GRID = TURNS_BACK * HEIGHTS_BACK, OUTER = 32 };
 
 typedef struct {
@@ -21,7 +22,7 @@ typedef struct {
   double x[OUTER], w[OUTER]; /* Gauss-Legendre on [0, 1] */
 } Rules;
 
-/* Nodes and weights on [0, 1], by Newton on the Legendre polynomial (book: Numerical Recipes 4.6). */
+/* Nodes and weights on [0, 1], by Newton's method on the Legendre polynomial (Numerical Recipes 4.6). */
 static void gauss_legendre(int n, double *x, double *w) {
   for (int i = 0; i < n; i++) {
     double z = -(double)vl_sincos(3.14159265f * ((float)i + 0.75f) / ((float)n + 0.5f)).cos, derivative = 1.0;
@@ -64,9 +65,10 @@ static inline float layer(float tau, float c) {
   return vl_exp(-tau / down);
 }
 
-/* Mean over the visible normals of direction cosine c: light that goes through the rough interface (transmit) or is
- * mirrored by it, then through the layer. eta: far side over near side. imitation (may be null): the same with the sum
- * of the two weights that pbrt-v4 gives a direction found by both its samplers, see coat.h. */
+/* Mean over the visible normals for direction cosine c: share of light that the rough interface transmits (transmit
+ * != 0) or reflects, attenuated by the layer. eta: far side over near side. imitation (may be null) receives the
+ * same mean with the sum of the two weights that pbrt-v4 gives a direction found by both of its samplers; see
+ * coat.h. */
 static double interface_mean(const Grid *grid, int transmit, float c, float eta, float alpha, float tau,
                              double *imitation) {
   float part[GRID], excess[GRID];
@@ -85,7 +87,8 @@ static double interface_mean(const Grid *grid, int transmit, float c, float eta,
     float g = vl_ggx_shadowing(o.z, lo, w.z, li) * layer(tau, w.z);
     float share = transmit ? 1.0f - f.reflected : f.reflected;
     part[i] = ((oh > 0.0f) & (w.z > 0.0f)) ? share * g : 0.0f;
-    /* densities of w: through the interface from outside, by the base's cosine, through the interface from inside */
+    /* Densities of w: transmission through the interface from outside (p), the base's cosine (d), transmission from
+     * inside (q). */
     float p = vl_ggx_visible(h, alpha, alpha, o.z, lo) * oh * cos_t / (t * t > 1e-30f ? t * t : 1e-30f);
     float q = p * (lo + o.z) / ((li + w.z) * eta * eta), d = w.z * VL_INV_PI;
     float base2 = d * d;
@@ -107,7 +110,7 @@ static double transmittance(const Rules *rules, float c, float eta, float alpha,
   return *imitation = t;
 }
 
-/* From inside; what came up through the layer at cosine c. */
+/* Reflectance of the interface from inside at cosine c; the layer is traversed up and down. */
 static double reflectance_inside(const Rules *rules, float c, float eta, float alpha, float tau) {
   if (eta == 1.0f) return 0.0;
   float l = layer(tau, c);
@@ -115,7 +118,8 @@ static double reflectance_inside(const Rules *rules, float c, float eta, float a
   return (double)(vl_fresnel_dielectric(c, 1.0f / eta).reflected * l * l);
 }
 
-/* R = int_0^1 2c r(c) dc, cut at the critical angle, beyond which a smooth coat's reflectance falls like a root. */
+/* R = int_0^1 2c r(c) dc. The integral is split at the critical angle, beyond which a smooth coat's reflectance
+ * falls like a square root. */
 static double back_share(const Rules *rules, float eta, float alpha, float tau) {
   double critical = eta > 1.0f ? (double)__builtin_sqrtf(1.0f - 1.0f / (eta * eta)) : 0.0, sum = 0.0;
   for (int i = 0; i < OUTER; i++) {

@@ -1,15 +1,16 @@
-/* world/material/coat.h: directional transmittance of a dielectric coat with an absorbing layer, tabulated as the world
- * is built.
+/* world/material/coat.h: directional transmittance of a dielectric coat with an absorbing layer, tabulated when the
+ * world is built.
  *
- * A coat (dielectric interface of roughness alpha, relative index eta) lies over a Lambertian base of albedo rho,
- * between them a layer of optical thickness tau that absorbs and does not scatter (pbrt's coateddiffuse with albedo 0).
- * Since the base forgets where light came from, the random walk between the two (pbrt book 14.3) has a closed form:
- *   f(wo, wi) = f_coat(wo, wi) + T(wo) T(wi) rho / (pi eta^2) * sum_{k < K} (rho R)^k
+ * A coat (dielectric interface of roughness alpha, relative index eta) lies over a Lambertian base of albedo rho.
+ * Between them is a layer of optical thickness tau that absorbs and does not scatter (pbrt's coateddiffuse with albedo
+ * 0). A Lambertian base does not depend on the incident direction, so the random walk between the two (pbrt book 14.3)
+ * has a closed form:
+ *     f(wo, wi) = f_coat(wo, wi) + T(wo) T(wi) rho / (pi eta^2) * sum_{k < K} (rho R)^k
  * T(w) = int f_t(w, w') |cos w'| exp(-tau/|cos w'|) dw', f_t without radiance's 1/eta^2: share of a beam from w that
- * reaches the base. R: share of the base's cosine-weighted light that the coat sends back to it, through the layer
- * twice. K: how often light meets the base. pbrt's walk of max_depth steps alternates base and coat, beginning at the
- * base: K = ceil(max_depth / 2). For a rough coat f_t and f_r are a rough dielectric's with single scattering, as
- * pbrt's: what the microfacets lose is lost here too. */
+ * reaches the base. R: share of the base's cosine-weighted light that the coat reflects back to it, attenuated by
+ * the layer twice. K: number of reflections at the base. pbrt's walk of max_depth steps alternates between base and
+ * coat, beginning at the base: K = ceil(max_depth / 2). For a rough coat f_t and f_r are those of a rough dielectric
+ * with single scattering, as in pbrt: the energy that the microfacets lose is lost here too. */
 #ifndef WORLD_MATERIAL_COAT_H
 #define WORLD_MATERIAL_COAT_H
 
@@ -23,28 +24,30 @@ typedef struct vlCoatTable {
   uint32_t alphas;  /* 1: alpha_min only; else VL_COAT_ALPHA rows in equal steps of sqrt(alpha) */
   float alpha_min, alpha_max;
   float row_start, row_scale; /* row = (sqrt(alpha) - row_start) * row_scale */
-  /* T at cos = (i / (VL_COAT_COS - 1))^4; cubic between */
+  /* T at cos = (i / (VL_COAT_COS - 1))^4; cubic interpolation between */
   float transmittance[VL_COAT_ALPHA][VL_COAT_COS];
-  /* pbrt-v4's walk finds the way out through a rough coat by two samplers at once; the density it compares one of them
-   * with belongs to light going the other way, so that the weights of the two sum to more than 1 and light that was
-   * sampled comes out too bright (0.3 % at alpha 0.01, 2 % at 0.1, 5 % at 0.2, 8 % at 0.4); light found by sampling the
-   * BSDF does not. The error is a function of wi alone: a T for wi with those weights. Read instead of transmittance by
-   * the BSDF's evaluation where `imitate` is set, to compare images with pbrt-v4's; vl_coat_build leaves it unset. */
+  /* A T for wi that reproduces an error of pbrt-v4. pbrt-v4's walk combines two samplers for the exit through a
+   * rough coat. The density that it compares one of them with belongs to light in the opposite direction, so that
+   * the two MIS weights sum to more than 1: light found by light sampling is too bright (0.3 % at alpha 0.01, 2 % at
+   * 0.1, 5 % at 0.2, 8 % at 0.4), light found by BSDF sampling is not. The error is a function of wi alone. The
+   * BSDF's evaluation reads this table instead of transmittance if `imitate` is set, for comparisons with pbrt-v4's
+   * images; vl_coat_build leaves `imitate` unset. */
   float imitation[VL_COAT_ALPHA][VL_COAT_COS];
   bool imitate;
   float back[VL_COAT_ALPHA];   /* R */
-  float escape[VL_COAT_ALPHA]; /* share of the base's light that leaves at once: int T 2cos dcos / eta^2 */
+  float escape[VL_COAT_ALPHA]; /* share of the base's light that leaves directly: int T 2cos dcos / eta^2 */
 } vlCoatTable;
 
-/* Isotropic alpha between alpha_min and alpha_max (equal for untextured roughness; of an anisotropic coat the geometric
- * mean). Below VL_GGX_SMOOTH (math/ggx.h) the interface is smooth. Deterministic quadrature; relative errors of T and R
- * 1e-4 up to alpha 0.1, 4e-4 up to 1 (eta > 1); between the rows of textured roughness 2e-3 for cos > 0.1, 1e-2 below.
- * 1.5 ms, textured 45 ms. Errors: ARGUMENT (eta <= 0, tau < 0, alpha_min > alpha_max, ...), MEMORY. */
+/* Builds the tables for isotropic alpha between alpha_min and alpha_max (equal for untextured roughness; for an
+ * anisotropic coat, the geometric mean). Below VL_GGX_SMOOTH (math/ggx.h) the interface is smooth. Deterministic
+ * quadrature; relative errors of T and R: 1e-4 up to alpha 0.1, 4e-4 up to 1 (eta > 1); between the rows of textured
+ * roughness 2e-3 for cos > 0.1, 1e-2 below. Takes 1.5 ms, textured 45 ms. Errors: ARGUMENT (eta <= 0, tau < 0,
+ * alpha_min > alpha_max, ...), MEMORY. */
 vlResult vl_coat_build(vlContext *context, float eta, float tau, uint32_t max_depth, float alpha_min, float alpha_max,
                        vlCoatTable **table);
 void vl_coat_free(vlContext *context, vlCoatTable *table);
 
-/* Where T(cos) lies: four nodes from `first` on, at place t in [0, 3] among them. */
+/* Position of T(cos) in the table: four nodes from `first` on, at t in [0, 3] among them. */
 typedef struct vlCoatPlace {
   int32_t first;
   float t;

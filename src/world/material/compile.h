@@ -1,5 +1,5 @@
-/* world/material/compile.h: from a material of the scene to one of the world: a function per kind, each of which
- * chooses the BSDF and compiles the inputs that it reads. */
+/* world/material/compile.h: compiles a material of the scene: one function per kind, which chooses the BSDF and
+ * compiles the inputs that it reads. */
 #ifndef WORLD_MATERIAL_COMPILE_H
 #define WORLD_MATERIAL_COMPILE_H
 
@@ -11,7 +11,7 @@ typedef struct vlMaterialBuild {
   vlWorld *world;
   const vlScene *scene;
   const vlMaterialDef *def;
-  vlWorldMaterial *m; /* nodes are -1, all else zero but kind, traits, remap, and eta_s, which is 1.5 */
+  vlWorldMaterial *m; /* nodes are -1; all else is zero except kind, traits, remap and eta_s (1.5) */
   vlError *error;
 } vlMaterialBuild;
 
@@ -19,7 +19,7 @@ typedef vlResult vlCompileMaterial(const vlMaterialBuild *b);
 #define VL_DECLARE_COMPILE(NAME, name) vlCompileMaterial vl_compile_##name##_material;
 VL_MATERIAL_KINDS(VL_DECLARE_COMPILE)
 
-/* Inputs as nodes. */
+/* Compiles an input into a texture node. */
 static inline vlResult vl_material_float(const vlMaterialBuild *b, vlFloatInput input, int32_t *node) {
   return vl_world_float_node(b->world, b->scene, input, node, b->error);
 }
@@ -33,12 +33,12 @@ typedef struct vlMaterialFloat {
 } vlMaterialFloat;
 vlResult vl_material_floats(const vlMaterialBuild *b, const vlMaterialFloat *floats, size_t count);
 
-/* What several kinds have: u_roughness and v_roughness; the metal's reflectance, or eta and k; the index of refraction
- * of a dielectric, as one number or (disperses: it may) a spectrum. */
+/* Inputs that several kinds share: u_roughness and v_roughness; a metal's reflectance, or its eta and k; a
+ * dielectric's index of refraction, as one number or (if disperses) a spectrum. */
 vlResult vl_material_roughness(const vlMaterialBuild *b);
 vlResult vl_material_metal(const vlMaterialBuild *b);
 vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta, bool disperses);
-/* The layers of a coat that are looked at by random walks; metal: of a coated conductor. */
+/* The layers of a coat that random walks evaluate. metal: of a coated conductor. */
 vlResult vl_material_layers(const vlMaterialBuild *b, bool metal);
 vlResult vl_material_fail(const vlMaterialBuild *b, const char *what);
 

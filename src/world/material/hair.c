@@ -3,7 +3,7 @@
 
 static vlResult compile_color(const vlMaterialBuild *b, vlWorldHair *h) {
   const vlHairDef *d = &b->def->hair;
-  /* absorption of either pigment per unit of concentration (d'Eon, Francois, Hill, Letteri, Aubry 2011) */
+  /* absorption of each pigment per unit of concentration (d'Eon, Francois, Hill, Letteri, Aubry 2011) */
   const vlSpectrumInput eu = vl_spectrum_input(vl_spectrum_rgb(0.419f, 0.697f, 1.37f));
   const vlSpectrumInput pheo = vl_spectrum_input(vl_spectrum_rgb(0.187f, 0.4f, 1.05f));
   switch (d->color) {

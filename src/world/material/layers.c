@@ -1,4 +1,4 @@
-/* world/material/layers.c: inputs of the materials whose layers are looked at by random walks
+/* world/material/layers.c: inputs of the materials whose layers are evaluated by random walks
  * (trace/bsdf/layered.hot.c). */
 #include "world/material/compile.h"
 
@@ -10,7 +10,8 @@ vlResult vl_material_layers(const vlMaterialBuild *b, bool metal) {
   b->m->own = l;
   l->metal = metal;
   l->coat_u = l->coat_v = -1;
-  /* More steps than a walk ever takes (it ends by roulette), more walks than an image's samples are worth. */
+  /* Limits: a walk never takes more steps (Russian roulette ends it), and more walks per evaluation gain nothing
+   * over more image samples. */
   l->depth = def->max_depth < 1000 ? def->max_depth : 1000;
   l->walks = def->samples < 256 ? def->samples : 256;
   const vlMaterialFloat floats[] = {{def->thickness, &l->thickness},

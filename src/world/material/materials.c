@@ -24,7 +24,7 @@ static float alpha_of(float roughness, bool remap) {
   return remap ? sqrtf(roughness > 0 ? roughness : 0) : roughness;
 }
 
-/* A coat's table of these alphas. */
+/* The coat table for this range of alphas. */
 static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWorldMaterial *m, float low, float high,
                            const vlCoatTable **table, vlError *error) {
   float thickness = def->thickness.value;
@@ -60,7 +60,7 @@ static vlResult coat_of(vlWorld *world, const vlMaterialDef *def, vlWorldMateria
   return coat_table(world, def, m, alpha, alpha, &m->widened, error);
 }
 
-/* What was measured: one file is read once. */
+/* Loads a measured material; each file is read once. */
 static vlResult measured_of(vlWorld *world, const vlMaterialDef *def, vlWorldMaterial *m, vlError *error) {
   for (size_t i = 0; i < world->measured.count && !m->measured; i++)
     if (strcmp(world->measured.items[i]->path, def->measured) == 0) m->measured = world->measured.items[i];
@@ -72,7 +72,7 @@ static vlResult measured_of(vlWorld *world, const vlMaterialDef *def, vlWorldMat
   return r;
 }
 
-/* A coat whose medium does not scatter, of one thickness. */
+/* Whether the coat has a closed form: its medium does not scatter, and its thickness is constant. */
 static bool in_closed_form(const vlMaterialDef *def) {
   const vlSpectrum *a = &def->albedo.value;
   float grey = 0;
@@ -110,7 +110,7 @@ vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta,
     m->dispersive = true;
     return vl_material_spectrum(b, *eta, VL_ROLE_UNBOUNDED, &m->eta);
   }
-  /* One number stands for the glass: the index at the sodium line, as catalogues give it. */
+  /* A single number stands for a glass: its index at the sodium line, as catalogues give it. */
   float dense[VL_LAMBDA_COUNT];
   vlResult r = vl_spectrum_dense(&eta->value, VL_ROLE_UNBOUNDED, dense, b->error);
   if (r != VL_OK) return r;
@@ -171,7 +171,7 @@ vlResult vl_compile_measured_material(const vlMaterialBuild *b) {
   return measured_of(b->world, b->def, b->m, b->error);
 }
 
-/* Hits have the BSDF of one of the parts. */
+/* Each hit takes the BSDF of one of the parts. */
 vlResult vl_compile_mix_material(const vlMaterialBuild *b) {
   vlWorldMaterial *m = b->m;
   for (int i = 0; i < 2; i++) {

@@ -1,4 +1,4 @@
-/* world/material/measured.c: a file of the RGL material database -> tables to look into and to sample. */
+/* world/material/measured.c: reads a file of the RGL material database into tables for lookup and sampling. */
 #include "world/material/measured.h"
 
 #include <math.h>
@@ -43,7 +43,7 @@ static vlResult find_field(Source *s, int which, vlError *error) {
     return vl_fail(error, VL_ERROR_SCENE, "%s: \"%s\" of the measured material should be %s of %u dimension%s", s->path,
                    name, wanted[which].type == VL_TENSOR_U8 ? "bytes" : "32-bit floats", wanted[which].rank,
                    wanted[which].rank == 1 ? "" : "s");
-  for (uint32_t i = 0; i < f->rank; i++) /* nothing overflows from here on: all values lie in a file */
+  for (uint32_t i = 0; i < f->rank; i++) /* guards against overflow: from here on all values lie within the file */
     if (f->shape[i] > INT32_MAX) return vl_fail(error, VL_ERROR_SCENE, "%s: \"%s\" is too large", s->path, name);
   for (uint64_t i = 0; f->type == VL_TENSOR_F32 && i < f->count; i++)
     if (!isfinite(value_of(f, i)))
@@ -63,7 +63,8 @@ static vlResult check_knots(const Source *s, int which, double low, double high,
   return VL_OK;
 }
 
-/* Its first dimensions are the knots of the fields given, its last two at least 2 x 2 nodes. */
+/* Checks that the first dimensions match the knots of the given fields, and that the last two have at least 2 x 2
+ * nodes. */
 static vlResult check_shape(const Source *s, int which, uint32_t knots, const int *of, vlError *error) {
   const vlTensorField *f = s->fields[which];
   for (uint32_t i = 0; i < knots; i++)
@@ -103,7 +104,7 @@ static vlMeasuredTable table_of(const vlTensorField *f, const float *values) {
   return (vlMeasuredTable){(uint32_t)f->shape[f->rank - 1], (uint32_t)f->shape[f->rank - 2], values, NULL, NULL};
 }
 
-/* One slice made a density: integral 1, with its integrals. Where there is nothing all places are alike. */
+/* Normalises one slice to integral 1 and computes its running integrals. A slice of zeros becomes uniform. */
 static void make_density(float *values, float *columns, float *rows, uint32_t w, uint32_t h) {
   double total = 0, dx = 1.0 / (w - 1), dy = 1.0 / (h - 1);
   for (uint32_t y = 0; y < h; y++)
@@ -152,8 +153,8 @@ static void find_symmetry(vlMeasured *m) {
 
 /* ---- spectra ----------------------------------------------------------------------------------------------------- */
 
-/* What each measured wavelength adds to sRGB's channels under daylight, 3 numbers each: the curve between them is made
- * of hats. A white surface has exactly 1. */
+/* Contribution of each measured wavelength to the channels of sRGB under daylight, 3 numbers each. The spectrum is
+ * interpolated linearly between the measured wavelengths. A white surface has exactly 1. */
 static void hat_rgb(const float *lambda, uint32_t n, double *weights) {
   const float *observer[3] = {vl_cie_x(), vl_cie_y(), vl_cie_z()}, *light = vl_space_illuminant(VL_SPACE_SRGB);
   float matrix[9];
@@ -190,7 +191,7 @@ static bool spectra_to_rgb(vlContext *context, vlMeasured *m, const vlTensorFiel
   return true;
 }
 
-/* The file's block becomes the spectra's. */
+/* The file's memory block is kept for the spectra, moved to its start and shrunk. */
 static void keep_spectra(vlContext *context, vlMeasured *m, Source *s) {
   const vlTensorField *f = s->fields[SPECTRA];
   size_t size = (size_t)f->count * sizeof(float);
@@ -201,7 +202,7 @@ static void keep_spectra(vlContext *context, vlMeasured *m, Source *s) {
   m->spectra.values = (const float *)(const void *)m->file;
 }
 
-/* The mean, over the square of random numbers, of what a sample is worth: of the first slice, o straight on. */
+/* Albedo at normal incidence: mean of the sample weights of the first slice over the square of random numbers. */
 static void find_albedo(vlMeasured *m, float *albedo) {
   const vlMeasuredTable *t = &m->spectra;
   const vlMeasuredSlices straight = {1, {0}, {1}};
@@ -212,7 +213,7 @@ static void find_albedo(vlMeasured *m, float *albedo) {
       for (uint32_t x = 0; x < t->width; x++) {
         double part = (x == 0 || x == t->width - 1 ? 0.5 : 1) * (y == 0 || y == t->height - 1 ? 0.5 : 1);
         double value = (double)t->values[k * size + (size_t)y * t->width + x];
-        if (!m->scaled) { /* f cos itself */
+        if (!m->scaled) { /* the table holds f cos itself */
           float u = (float)x / (float)(t->width - 1), v = (float)y / (float)(t->height - 1);
           vlMeasuredPoint n = vl_measured_sample(&m->vndf, straight, u, v);
           float d = vl_measured_in(&m->ndf, m->ndf.values, vl_measured_cell(&m->ndf, n.x, n.y));

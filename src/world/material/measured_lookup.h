@@ -1,7 +1,7 @@
-/* world/material/measured_lookup.h: looking into measured materials: functions that are bilinear over the unit square,
- * linear between the angles they are known for; evaluated, sampled by inversion (first the row, by the integral over
- * it, then the place in it), and back. What lies between angles is a mixture of densities: its integrals are mixed like
- * its values. By value, inline: the hot loops are made of these. */
+/* world/material/measured_lookup.h: lookups in measured materials: functions that are bilinear over the unit square
+ * and linear between the tabulated angles. They are evaluated, sampled by inversion (first the row, by its marginal,
+ * then the position within it), and inverted. Between angles the density is a mixture: its integrals are mixed with
+ * the same weights as its values. By value and inline, for the hot loops. */
 #ifndef WORLD_MATERIAL_MEASURED_LOOKUP_H
 #define WORLD_MATERIAL_MEASURED_LOOKUP_H
 
@@ -17,7 +17,8 @@ typedef struct vlMeasuredSlices {
   float weight[4];
 } vlMeasuredSlices;
 
-/* Interval [i, i + 1] of ascending knots that x falls into, and where; beyond the ends: at them. One knot: 0 at 0. */
+/* Interval [i, i + 1] of ascending knots that contains x, and the position t in it, clamped to [0, 1]. With one knot
+ * both are 0. */
 typedef struct vlMeasuredKnot {
   uint32_t i;
   float t;
@@ -41,16 +42,16 @@ static inline vlMeasuredSlices vl_measured_slices(const vlMeasured *m, float phi
   return s;
 }
 
-/* Element i of the mixture of arrays of `size` elements a slice. */
+/* Element i of the mixture of the slices; each slice has `size` elements. */
 static inline float vl_measured_mix(const float *data, size_t size, vlMeasuredSlices s, size_t i) {
   float sum = 0.0f;
   for (uint32_t k = 0; k < s.count; k++) sum += s.weight[k] * data[s.slice[k] * size + i];
   return sum;
 }
 
-/* Cell of the grid in which (x, y) lies, and where. */
+/* Cell of the grid that contains (x, y), and the position (s, t) in it. */
 typedef struct vlMeasuredCell {
-  size_t at; /* of its first node, in a slice */
+  size_t at; /* index of its first node within a slice */
   uint32_t column, row;
   float s, t;
 } vlMeasuredCell;
@@ -67,12 +68,12 @@ static inline float vl_measured_between(float a, float b, float t) {
   return (1.0f - t) * a + t * b;
 }
 
-/* One slice's value. */
+/* Value of one slice. */
 static inline float vl_measured_in(const vlMeasuredTable *table, const float *slice, vlMeasuredCell c) {
   const float *a = slice + c.at, *b = a + table->width;
   return vl_measured_between(vl_measured_between(a[0], a[1], c.s), vl_measured_between(b[0], b[1], c.s), c.t);
 }
-/* The mixture's. */
+/* Value of the mixture. */
 static inline float vl_measured_at(const vlMeasuredTable *table, vlMeasuredSlices s, float x, float y) {
   vlMeasuredCell c = vl_measured_cell(table, x, y);
   size_t size = (size_t)table->width * table->height;
@@ -82,7 +83,8 @@ static inline float vl_measured_at(const vlMeasuredTable *table, vlMeasuredSlice
   return sum;
 }
 
-/* Where in [0, 1] the integral of a + (b - a) t reaches `part` (stable whatever a and b are), and the integral. */
+/* Solves for the t in [0, 1] at which the integral of a + (b - a) t reaches `part` (stable for any a and b).
+ * vl_measured_part is the integral. */
 static inline float vl_measured_solve(float a, float b, float part) {
   float root = __builtin_sqrtf(vl_max(a * a + 2.0f * part * (b - a), 0.0f)), down = a + root;
   return down > 0.0f ? vl_clamp(2.0f * part / down, 0.0f, 1.0f) : 0.5f;
@@ -91,7 +93,7 @@ static inline float vl_measured_part(float a, float b, float t) {
   return t * (a + 0.5f * (b - a) * t);
 }
 
-/* The mixture along a line between two rows: of each slice both rows, where they start. */
+/* The mixture along a line between two rows: start and weight of both rows of each slice. */
 typedef struct vlMeasuredLine {
   uint32_t count;
   size_t at[8];
@@ -111,12 +113,12 @@ static inline float vl_measured_on(const vlMeasuredLine *line, const float *data
   return sum;
 }
 
-/* A point of the square, and the density there of those sampled. */
+/* A point of the square, and the sampling density there. */
 typedef struct vlMeasuredPoint {
   float x, y, pdf;
 } vlMeasuredPoint;
 
-/* (u, v) uniform in the unit square: x by u, y by v. */
+/* Samples a point from (u, v), uniform in the unit square: v gives y, u gives x. */
 static inline vlMeasuredPoint vl_measured_sample(const vlMeasuredTable *table, vlMeasuredSlices slices, float u,
                                                  float v) {
   uint32_t w = table->width, h = table->height, low = 0, high = h - 1;
@@ -148,14 +150,14 @@ static inline vlMeasuredPoint vl_measured_sample(const vlMeasuredTable *table, v
                            vl_measured_between(a, b, s)};
 }
 
-/* What comes back of light from straight on, at a channel of a wavelength (RGB: the channel itself). */
+/* Albedo at normal incidence, at a channel or wavelength (RGB: the channel itself). */
 static inline float vl_measured_albedo(const vlMeasured *m, int channel, float lambda) {
   if (!m->lambda) return channel < 3 ? m->albedo[channel] : 0.0f;
   vlMeasuredKnot k = vl_measured_knot(m->lambda, m->lambdas, lambda);
   return k.t > 0.0f ? vl_measured_between(m->albedo[k.i], m->albedo[k.i + 1], k.t) : m->albedo[k.i];
 }
 
-/* The (u, v) from which (x, y) is sampled, and its density. */
+/* The inverse of vl_measured_sample: the (u, v) from which (x, y) is sampled, and its density. */
 static inline vlMeasuredPoint vl_measured_invert(const vlMeasuredTable *table, vlMeasuredSlices slices, float x,
                                                  float y) {
   uint32_t w = table->width, h = table->height;

@@ -1,4 +1,4 @@
-/* world/material/principled.c: the principled material's inputs compiled into texture nodes. */
+/* world/material/principled.c: compiles the inputs of the principled material into texture nodes. */
 #include "world/material/principled.h"
 
 #include <math.h>
@@ -41,7 +41,8 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   float ior;
   if (!vl_spectrum_is_constant(&def->eta.value, &ior) || !(ior >= 0.0f) || !isfinite(ior))
     return vl_fail(error, VL_ERROR_SCENE, "principled material: the index of refraction must be one number");
-  /* 0: as dense as can be; below 1 it would lie inside something denser, which the layers do not know */
+  /* An index of 0 stands for infinity. Indices below 1 (a solid within a denser medium) are not modelled by the
+   * layers. */
   float root = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
   p->f0 = root * root;
   m->eta_s = ior > 0.0f ? ior : 1.5f;
@@ -71,7 +72,7 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   if (r == VL_OK) r = vl_world_spectrum_node(world, scene, d->sheen_color, VL_ROLE_ALBEDO, &p->sheen, error);
   if (r == VL_OK) r = normal_node(world, scene, d->normal, &p->normal, error);
   if (r == VL_OK) r = normal_node(world, scene, d->clearcoat_normal, &p->coat_normal, error);
-  /* What stays off for good need not be looked up. */
+  /* Lobes whose weight is always 0 need no lookups. */
   p->has_coat = !is_zero(d->clearcoat), p->has_film = !is_zero(d->iridescence);
   p->has_anisotropy = !is_zero(d->anisotropy), p->has_transmission = !is_zero(d->diffuse_transmission);
   const vlSpectrum *sheen = &d->sheen_color.value;

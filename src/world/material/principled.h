@@ -1,12 +1,12 @@
-/* world/material/principled.h: what the principled material needs of tables: how much a rough layer reflects in all
- * directions together, so that what lies below gets the rest and nothing is lost or won.
+/* world/material/principled.h: directional albedo tables of the principled material: how much a rough layer reflects in
+ * all directions together. The layers below receive the rest, so that energy is conserved.
  *
- *   specular  E(w) = F0 a(w) + F90 b(w): GGX with single scattering and Schlick's Fresnel term, split into its two ends
- *             (Karis 2013, "Real Shading in Unreal Engine 4"); a + b: for F = 1
- *   sheen     the "Charlie" distribution with its shadowing (Estevez and Kulla 2017, "Production Friendly Microfacet
- *             Sheen BRDF")
- *   loss      of light that meets a rough body of glass from outside or inside: what single scattering, reflected and
- *             refracted together, fails to send on (Walter et al. 2007 with the Schlick term of that index)
+ *     specular  E(w) = F0 a(w) + F90 b(w): GGX with single scattering and Schlick's Fresnel term, split-sum form (Karis
+ *     2013, "Real Shading in Unreal Engine 4"); a + b is E for F = 1
+ *     sheen     the "Charlie" distribution with its shadowing (Estevez and Kulla 2017, "Production Friendly Microfacet
+ *     Sheen BRDF")
+ *     loss      share of the light incident on rough glass, from outside or inside, that single scattering (reflection
+ *     and refraction together) loses (Walter et al. 2007 with the Schlick term of that index)
  * Means are over the cosine-weighted hemisphere: int E 2 cos dcos (Kulla and Conty 2017). */
 #ifndef WORLD_MATERIAL_PRINCIPLED_H
 #define WORLD_MATERIAL_PRINCIPLED_H
@@ -15,28 +15,28 @@
 #include "math/vec.h"
 
 enum { VL_ALBEDO_COS = 64, VL_ALBEDO_ALPHA = 32, VL_LOSS_COS = 32, VL_LOSS_ALPHA = 16, VL_LOSS_ETA = 16 };
-#define VL_LOSS_MOST_ROOT 0.5f /* of (eta - 1) / (eta + 1): eta 3 */
+#define VL_LOSS_MOST_ROOT 0.5f /* largest (eta - 1) / (eta + 1): eta 3 */
 
-/* Row: sqrt(alpha) in equal steps over [0, 1]; column: sqrt(cos) likewise. Linear between. */
+/* Row: sqrt(alpha) in equal steps over [0, 1]; column: sqrt(cos) likewise. Linear interpolation between. */
 typedef struct vlPrincipledTables {
   float a[VL_ALBEDO_ALPHA][VL_ALBEDO_COS], b[VL_ALBEDO_ALPHA][VL_ALBEDO_COS];
   float a_mean[VL_ALBEDO_ALPHA], b_mean[VL_ALBEDO_ALPHA];
   float sheen[VL_ALBEDO_ALPHA][VL_ALBEDO_COS], sheen_mean[VL_ALBEDO_ALPHA];
-  /* First the side: 0 outside, 1 inside; then (eta - 1) / (eta + 1) in equal steps; then as above. */
+  /* Side (0 outside, 1 inside), then (eta - 1) / (eta + 1) in equal steps, then as above. */
   float loss[2][VL_LOSS_ETA][VL_LOSS_ALPHA][VL_LOSS_COS], loss_mean[2][VL_LOSS_ETA][VL_LOSS_ALPHA];
 } vlPrincipledTables;
 
-/* Computed by tools/albedo_tables as the library is built. The sheen's exceeds 1 where it is narrow and light grazes:
- * there it must be scaled down; its mean is of min(E, 1). */
+/* tools/albedo_tables computes it when the library is built. The sheen's albedo exceeds 1 for narrow lobes at
+ * grazing angles, where it must be scaled down; its mean is of min(E, 1). */
 extern const vlPrincipledTables vl_principled_tables;
 
-/* Where a value lies between two entries. */
+/* Position of a value between two entries. */
 typedef struct vlAlbedoPlace {
   uint32_t first;
   float t;
 } vlAlbedoPlace;
 static inline vlAlbedoPlace vl_albedo_place(float x, uint32_t count) {
-  float c = x > 0.0f ? x : 0.0f; /* NaN to 0 too */
+  float c = x > 0.0f ? x : 0.0f; /* NaN becomes 0 */
   c = __builtin_sqrtf(c < 1.0f ? c : 1.0f) * (float)(count - 1);
   uint32_t first = (uint32_t)c;
   first = first < count - 2 ? first : count - 2;
@@ -51,7 +51,7 @@ static inline float vl_albedo_mean(const float *mean, vlAlbedoPlace alpha) {
   return mean[alpha.first] + alpha.t * (mean[alpha.first + 1] - mean[alpha.first]);
 }
 
-/* The index's place in the tables of losses; eta >= 1. */
+/* Position of the index in the tables of losses; eta >= 1. */
 static inline vlAlbedoPlace vl_loss_place(float eta) {
   float c = (eta - 1.0f) / (eta + 1.0f) * ((float)(VL_LOSS_ETA - 1) / VL_LOSS_MOST_ROOT);
   c = c > 0.0f ? c : 0.0f;
@@ -83,10 +83,10 @@ static inline float vl_schlick_weight(float cosine) {
 
 /* ---- sheen ------------------------------------------------------------------------------------------------------- */
 
-/* Narrower is not told apart from none. */
+/* Smaller alphas are clamped to this. */
 #define VL_SHEEN_ALPHA 0.005f
 
-/* ln of 1 + Lambda's fit, L(x) of Estevez and Kulla: curves for alpha 0 and 1, mixed by (1 - alpha)^2. */
+/* L(x) of Estevez and Kulla, the fit of ln(1 + Lambda): curves for alpha 0 and 1, interpolated by (1 - alpha)^2. */
 static inline float vl_sheen_curve(float x, float alpha) {
   float s = (1.0f - alpha) * (1.0f - alpha), t = 1.0f - s;
   float a = 25.3245f * s + 21.5473f * t, b = 3.32435f * s + 3.82987f * t, c = 0.16801f * s + 0.19823f * t;
@@ -98,7 +98,7 @@ static inline float vl_sheen_lambda(float cosine, float alpha) {
   float curve = vl_sheen_curve(c > 1e-6f ? c : 1e-6f, alpha);
   return vl_exp(cosine < 0.5f ? curve : 2.0f * half - curve);
 }
-/* f cos_i for cosines > 0; h: cosine of the half vector. */
+/* f cos_i. o, i: cosines of both directions, > 0; h: cosine of the half vector. */
 static inline float vl_sheen(float o, float i, float h, float alpha) {
   alpha = alpha > VL_SHEEN_ALPHA ? alpha : VL_SHEEN_ALPHA;
   float inverse = 1.0f / alpha, sin2 = 1.0f - h * h;

@@ -1,5 +1,5 @@
-/* world/material/subsurface.c: inputs of the subsurface material; its profile is shared by those of the same index and
- * g. */
+/* world/material/subsurface.c: inputs of the subsurface material. Materials with the same index and g share a
+ * profile. */
 #include "world/material/bssrdf.h"
 #include "world/material/compile.h"
 

@@ -8,7 +8,7 @@
 
 static const char magic[12] = "tensor_file";
 
-/* What is left of the head, field by field; taken is false from the first value on that is not there. */
+/* The unread rest of the header. `taken` becomes false at the first value that is missing. */
 typedef struct Reader {
   const char *at, *end;
   bool taken;

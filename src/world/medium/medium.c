@@ -1,5 +1,5 @@
-/* world/medium/medium.c: scene media -> world media: spectra, grids in the form that lookups read, majorants (pbrt
- * book 11.4). Only media that something lies in are compiled. */
+/* world/medium/medium.c: scene media -> world media: spectra, grids in the layout for lookups, majorants (pbrt book
+ * 11.4). Only media that are in use are compiled. */
 #include "world/medium/medium.h"
 
 #include <math.h>
@@ -31,7 +31,7 @@ static bool is_grey(const vlSpectral *s) {
 static vlResult compile_sigma(vlWorld *world, const vlMediumDef *def, const vlSpectrum *from, vlSpectral *to,
                               vlError *error) {
   vlSpectrum s = *from;
-  /* Equal components are a constant, which saves each flight its lookups. */
+  /* Equal components become a constant, which saves lookups per flight. */
   if (s.kind == VL_SPECTRUM_RGB && s.rgb[0] == s.rgb[1] && s.rgb[0] == s.rgb[2])
     s = (vlSpectrum){.kind = VL_SPECTRUM_CONSTANT, .scale = s.scale, .value = s.rgb[0]};
   vlResult r = vl_spectral_compile(world, &s, VL_ROLE_UNBOUNDED, to, error);
@@ -39,8 +39,8 @@ static vlResult compile_sigma(vlWorld *world, const vlMediumDef *def, const vlSp
   return r;
 }
 
-/* Absorption by channel of linear sRGB is kept apart from the spectra: flights are sampled by sigma_s alone, and what
- * is absorbed on the way becomes weight. In RGB mode, and where all channels are equal, sigma_a says the same. */
+/* Absorption by channel of linear sRGB is kept apart from the spectra: flights are sampled by sigma_s alone, and
+ * absorption along the way becomes path weight. In RGB mode, and if all channels are equal, sigma_a is used instead. */
 static vlResult compile_absorption(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
   if (!def->rgb_absorption || world->def.color == VL_COLOR_RGB || def->sigma_a.kind != VL_SPECTRUM_RGB ||
       (def->sigma_a.rgb[0] == def->sigma_a.rgb[1] && def->sigma_a.rgb[0] == def->sigma_a.rgb[2]))
@@ -64,7 +64,7 @@ static vlResult compile_emission(vlWorld *world, const vlMediumDef *def, vlWorld
   return VL_OK;
 }
 
-/* Temperatures: black bodies as pbrt-v4 means them, their maximum 1 whatever their luminance is. */
+/* Temperature: black bodies as in pbrt-v4, normalised to a maximum of 1, not to a luminance. */
 static vlResult compile_temperature(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
   m->emits = def->emission_scale > 0;
   m->temperature_offset = def->temperature_offset;
@@ -124,7 +124,7 @@ static void reach(double low, double high, uint32_t n, uint32_t *first, uint32_t
   *last = b < n - 1 ? (uint32_t)b : n - 1;
 }
 
-/* Largest value (`bound` of a cell) that lookups in the cell of majorants can give. */
+/* Upper bound of all lookups within a cell of the majorant grid. */
 static float dense_bound(const vlDenseGrid *g, const uint32_t cells[3], const uint32_t at[3], bool rgb) {
   const uint32_t n[3] = {g->nx, g->ny, g->nz};
   uint32_t a[3], b[3];
@@ -135,8 +135,8 @@ static float dense_bound(const vlDenseGrid *g, const uint32_t cells[3], const ui
       for (uint32_t x = a[0]; x <= b[0]; x++) {
         size_t k = ((size_t)z * n[1] + y) * n[0] + x;
         const float *v = g->values + 4 * k;
-        /* sigmoids stay below 1, and their scale is twice the colour's maximum: sampled, since half as much is likely
-         */
+        /* The scale of a sigmoid is twice the colour's maximum, so the scale alone would be a bound up to twice too
+         * large. The spectrum is sampled instead. */
         float bound = rgb ? 0 : g->values[k];
         if (rgb && v[3] > 0)
           for (int l = VL_LAMBDA_MIN; l <= VL_LAMBDA_MAX; l += 5)
@@ -190,7 +190,7 @@ static vlResult compile_cells(vlWorld *world, const vlMediumDef *def, vlWorldMed
       !copy_rgb_grid(world, def, def->rgb_emission, &m->rgb_emission))
     return vl_fail_memory(error);
   if (rgb) {
-    /* pbrt-v4 multiplies the illuminant of the space, scaled to the luminance of a spectrum that is 1 throughout. */
+    /* pbrt-v4 multiplies by the illuminant of the colour space, scaled to the luminance of a constant spectrum of 1. */
     double sum = 0, whole = 0;
     const float *y = vl_cie_y(), *illuminant = vl_space_illuminant(def->space);
     for (int i = 0; i < VL_LAMBDA_COUNT; i++) sum += (double)y[i] * (double)illuminant[i], whole += (double)y[i];
@@ -221,7 +221,8 @@ static vlResult compile_rgb_grid(vlWorld *world, const vlMediumDef *def, vlWorld
   return compile_cells(world, def, m, error);
 }
 
-/* Clouds get thinner with height: slabs. Noise stays within 1.04, its five octaves within 1.01. */
+/* Cloud density decreases with height: one majorant per slab. Noise is at most 1.04, the sum of its five octaves at
+ * most 1.01. */
 static vlResult compile_cloud(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
   enum { SLABS = 16 };
   memcpy(m->low, def->low, sizeof m->low);
@@ -274,7 +275,7 @@ static void raise(const vlWorldMedium *m, float *majorants, const double medium_
       }
 }
 
-/* Bricks in halves, so that a cell of majorants is not raised by what lies far from it. */
+/* Bounds a brick in octants, for tighter majorants. */
 static void raise_brick(const vlWorldMedium *m, float *majorants, const double medium_from_index[12],
                         const float *values, const int32_t corner[3]) {
   for (int part = 0; part < 8; part++) {
@@ -357,7 +358,7 @@ static CompileMedium *const compile_kind[] = {VL_MEDIUM_KINDS(COMPILE)};
 static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
   vlMat4 inverse;
   m->kind = def->kind;
-  m->g = vl_clamp(def->g, -0.99f, 0.99f); /* as pbrt-v4: beyond, a float tells too few directions apart */
+  m->g = vl_clamp(def->g, -0.99f, 0.99f); /* as in pbrt-v4; beyond that, float directions are too coarse */
   if (!vl_mat4_inverse(vl_mat4_load(def->world_from_medium), &inverse))
     return vl_fail(error, VL_ERROR_SCENE, "the medium's transform is singular");
   for (int i = 0; i < 12; i++) m->medium_from_world[i] = (float)inverse.m[i];
@@ -371,7 +372,7 @@ static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m
   return compile_kind[def->kind](world, def, m, error);
 }
 
-/* Index in world->media of a scene's medium, compiled at its first use. */
+/* Returns the index in world->media of a scene's medium, which is compiled at its first use. */
 static vlResult use(vlWorld *world, const vlScene *scene, uint32_t *compiled, vlMediumId id, uint32_t *index,
                     vlError *error) {
   *index = VL_NONE;

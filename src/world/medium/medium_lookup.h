@@ -1,5 +1,5 @@
-/* world/medium/medium_lookup.h: what a medium is at a point, and the way of a ray through its majorants. Inline, by
- * value, for the hot files of trace. pbrt book 11.4. */
+/* world/medium/medium_lookup.h: coefficients of a medium at a point, and traversal of its majorants by a ray.
+ * Inline, by value, for the hot files of trace. pbrt book 11.4. */
 #ifndef WORLD_MEDIUM_MEDIUM_LOOKUP_H
 #define WORLD_MEDIUM_MEDIUM_LOOKUP_H
 
@@ -29,13 +29,13 @@ static inline vlTrilinear vl_trilinear(float x, float y, float z) {
 static inline float vl_trilinear_weight(vlTrilinear at, int k) {
   return (k & 1 ? at.fx : 1.0f - at.fx) * (k & 2 ? at.fy : 1.0f - at.fy) * (k & 4 ? at.fz : 1.0f - at.fz);
 }
-/* Number of the cell of neighbour k; VL_NONE outside of the grid. */
+/* Index of the cell of neighbour k; (size_t)-1 outside of the grid. */
 static inline size_t vl_dense_cell(const vlDenseGrid *g, vlTrilinear at, int k) {
   int32_t x = at.x + (k & 1), y = at.y + (k >> 1 & 1), z = at.z + (k >> 2);
   bool inside = x >= 0 && y >= 0 && z >= 0 && x < (int32_t)g->nx && y < (int32_t)g->ny && z < (int32_t)g->nz;
   return inside ? ((size_t)z * g->ny + (size_t)y) * g->nx + (size_t)x : (size_t)-1;
 }
-/* q: in the unit cube. */
+/* q: position in the unit cube. */
 static inline vlTrilinear vl_dense_at_point(const vlDenseGrid *g, vlVec3 q) {
   return vl_trilinear(q.x * (float)g->nx - 0.5f, q.y * (float)g->ny - 0.5f, q.z * (float)g->nz - 0.5f);
 }
@@ -72,7 +72,8 @@ static inline float vl_sparse_lookup(const vlSparseGrid *g, vlVec3 p) {
   return sum;
 }
 
-/* pbrt-v4's procedural cloud (book 11.4.2's last medium): fractal noise, wisped, thinner with height. */
+/* pbrt-v4's procedural cloud (the last medium of book 11.4.2): fractal noise, distorted by wisps, thinner with
+ * height. */
 static inline float vl_cloud_density(const vlWorldMedium *m, vlVec3 p) {
   vlVec3 q = vl_mul(p, m->frequency);
   float omega = 0.05f * m->wispiness, frequency = 10.0f;
@@ -100,7 +101,8 @@ static inline float vl_cloud_density(const vlWorldMedium *m, vlVec3 p) {
 
 /* ---- emission ---------------------------------------------------------------------------------------------------- */
 
-/* Planck's law over its maximum, as spectra of black bodies have it (color/spectrum.c). nm, kelvin. */
+/* Planck's law divided by its maximum, as for black-body spectra (color/spectrum.c). lambda in nm, temperature in
+ * kelvin. */
 static inline float vl_blackbody_at(float lambda, float kelvin) {
   float x = 1.438776877e7f / (lambda * kelvin), r = x * (1.0f / 4.965114231744276f);
   float r2 = r * r;
@@ -126,7 +128,7 @@ static inline void vl_medium_blackbody(const vlWorldMedium *m, const float lambd
 
 /* ---- the medium at a point --------------------------------------------------------------------------------------- */
 
-/* A grid of colours, interpolated after they became spectra. */
+/* Adds a trilinear lookup in a grid of colours, each converted to a spectrum before interpolation. */
 static inline void vl_rgb_lookup(const vlWorldMedium *m, const vlDenseGrid *g, const float lambda[4], vlVec3 q,
                                  float scale, float out[4]) {
   vlTrilinear at = vl_dense_at_point(g, q);
@@ -142,7 +144,8 @@ static inline void vl_rgb_lookup(const vlWorldMedium *m, const vlDenseGrid *g, c
   }
 }
 
-/* Coefficients at 4 channels: what does not depend on the place, worked out once for a flight; and there. */
+/* Coefficients at 4 channels. vl_medium_coefficients gives the part that does not depend on position, once per
+ * flight; vl_medium_at gives the coefficients at a point. */
 typedef struct vlMediumLight {
   float a[4], s[4], le[4];
 } vlMediumLight;
@@ -168,7 +171,7 @@ static inline vlMediumLight vl_rgb_medium_at(const vlWorldMedium *m, const float
   return r;
 }
 
-/* Factor on the coefficients at a point; p: medium space, q: of the box 0 to 1. Of each kind that has one. */
+/* Density factor on the coefficients at a point; 1 for kinds without one. p: medium space; q: 0 to 1 over the box. */
 static inline float vl_medium_density(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
   switch (m->kind) {
     case VL_MEDIUM_GRID: return vl_dense_lookup(&m->density, q);
@@ -180,7 +183,7 @@ static inline float vl_medium_density(const vlWorldMedium *m, vlVec3 p, vlVec3 q
   return 1.0f;
 }
 
-/* p: world. whole: vl_medium_coefficients. Media that are not uniform. */
+/* Coefficients at a point (world space) of a medium that is not uniform. whole: from vl_medium_coefficients. */
 static inline vlMediumLight vl_medium_at(const vlWorldMedium *m, const vlMediumLight *whole, const float lambda[4],
                                          vlVec3 world_p, bool emission) {
   vlVec3 p = vl_medium_point(m->medium_from_world, world_p);
@@ -202,8 +205,8 @@ static inline vlMediumLight vl_medium_at(const vlWorldMedium *m, const vlMediumL
   return r;
 }
 
-/* One number for how dense a medium is at a place (world space), of sigma_t at three wavelengths that never change, or
- * of R, G, B: for weights that must not depend on a path's wavelengths. Above 0. */
+/* Scalar extinction of a medium at a point (world space), > 0: the mean of sigma_t at three fixed wavelengths, or of
+ * R, G, B. For weights that must not depend on a path's wavelengths. */
 static inline float vl_extinction_of(const vlMediumLight *x) {
   return vl_max((x->a[0] + x->s[0] + x->a[1] + x->s[1] + x->a[2] + x->s[2]) * (1.0f / 3.0f), 1e-20f);
 }
@@ -221,15 +224,15 @@ static inline float vl_medium_extinction(const vlWorldMedium *m, vlVec3 p) {
 
 /* ---- majorants --------------------------------------------------------------------------------------------------- */
 
-/* A ray's way through the cells of majorants (Amanatides and Woo 1987; pbrt book 11.4.2). */
+/* Traversal of the majorant grid by a ray (Amanatides and Woo 1987; pbrt book 11.4.2). */
 typedef struct vlMajorantWalk {
   const vlWorldMedium *medium;
   float t, end;
-  float next[3], step[3]; /* where the ray leaves its cell along each axis, and how far cells are apart */
+  float next[3], step[3]; /* t at which the ray leaves its cell along each axis, and t between cells */
   int32_t at[3], way[3];
 } vlMajorantWalk;
 
-/* o, d: world. false: [t0, t1] misses the box. */
+/* o, d: world space. False if [t0, t1] misses the box. */
 static inline bool vl_majorant_start(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1,
                                      vlMajorantWalk *w) {
   vlVec3 po = vl_medium_point(m->medium_from_world, o), pd = vl_medium_vector(m->medium_from_world, d);
@@ -257,7 +260,7 @@ static inline bool vl_majorant_start(const vlWorldMedium *m, vlVec3 o, vlVec3 d,
   return true;
 }
 
-/* The next piece of the way and its majorant; false at its end. */
+/* The next segment of the ray and its majorant; false at the end. */
 static inline bool vl_majorant_next(vlMajorantWalk *w, float *t0, float *t1, float *majorant) {
   const vlWorldMedium *m = w->medium;
   if (!(w->t < w->end)) return false;
@@ -269,7 +272,7 @@ static inline bool vl_majorant_next(vlMajorantWalk *w, float *t0, float *t1, flo
   w->at[axis] += w->way[axis];
   w->next[axis] += w->step[axis];
   if (w->at[axis] < 0 || w->at[axis] >= (int32_t)m->cells[axis]) {
-    *t1 = w->end; /* rounding may have left a sliver */
+    *t1 = w->end; /* rounding may leave a short rest */
     w->t = w->end;
   }
   return true;

@@ -1,6 +1,7 @@
-/* world/medium/nanovdb.c: a NanoVDB grid taken apart into the bricks that lookups read (world/medium/medium.h): the one
- * file that knows PNanoVDB.h. Its readers check every address; what points outside reads as zero. What a tree can hold
- * is bounded by its bytes, so that nodes which point at each other's children cost nothing either. */
+/* world/medium/nanovdb.c: converts a NanoVDB grid into the bricks that lookups read (world/medium/medium.h). The
+ * only file that uses PNanoVDB.h. Its readers check every address; addresses outside of the grid read as zero. The
+ * number of nodes is bounded by the grid's size in bytes, so that cyclic or shared nodes of a damaged file cannot
+ * exhaust memory. */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -17,10 +18,10 @@
 
 enum { MAX_TABLE = 1 << 24, MAX_BLOCKS = 1 << 20 };
 
-/* A block of 128^3 values: a lower node, or one value throughout. */
+/* A block of 128^3 values: a lower node, or a constant value. */
 typedef struct Block {
-  int32_t at[3]; /* in blocks */
-  uint64_t node; /* address, 0: value */
+  int32_t at[3]; /* in units of blocks */
+  uint64_t node; /* address; 0: constant value */
   float value;
 } Block;
 
@@ -34,7 +35,7 @@ typedef struct Tree {
   VL_ARRAY(float) tiles;
   VL_ARRAY(uint32_t) bricks;
   VL_ARRAY(float) values;
-  uint64_t most_bricks, nodes; /* nodes: lower ones, counted */
+  uint64_t most_bricks, nodes; /* nodes: number of lower nodes */
   vlError *error;
 } Tree;
 
@@ -97,7 +98,7 @@ static vlResult list_tile(Tree *t, const int32_t at[3], float value) {
   return r;
 }
 
-/* 21 bits of a root's key to the first block: keys hold coordinates shifted by 12, blocks are 2^7 wide. */
+/* Maps 21 bits of a root key to the first block: keys hold coordinates >> 12, blocks are 2^7 wide. */
 static int32_t block_of_key(uint64_t bits) {
   return (int32_t)(uint32_t)((bits & 0x1fffff) << 12) >> 7;
 }
@@ -146,7 +147,7 @@ static vlResult add_leaf(Tree *t, uint64_t address, uint32_t *entry) {
   float *to = t->values.items + t->values.count;
   pnanovdb_leaf_handle_t leaf = {address_of(address)};
   bool finite = true;
-  for (uint32_t n = 0; n < VL_BRICK_VALUES; n++) { /* z fastest there, x here */
+  for (uint32_t n = 0; n < VL_BRICK_VALUES; n++) { /* z fastest in the file, x fastest here */
     float v = float_at(t, pnanovdb_leaf_get_table_address(type, t->buffer, leaf, n));
     to[((n & 7) * 8 + (n >> 3 & 7)) * 8 + (n >> 6)] = v;
     finite = finite && isfinite(v);
@@ -175,7 +176,7 @@ static vlResult add_lower(Tree *t, uint64_t address, uint32_t *entry) {
   return VL_OK;
 }
 
-/* The table over the box of all blocks, and what it points at. */
+/* Builds the table over the box of all blocks, and its entries. */
 static vlResult build_table(Tree *t, vlSparseGrid *g) {
   int32_t low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
   for (size_t i = 0; i < t->blocks.count; i++)
@@ -207,7 +208,7 @@ static vlResult build_table(Tree *t, vlSparseGrid *g) {
 
 /* ---- the grid ---------------------------------------------------------------------------------------------------- */
 
-/* A growing array becomes a block of the world. */
+/* Moves a growing array into a block owned by the world. */
 static bool give(vlWorld *world, void *items, void *result_pointer) {
   void **slot = VL_PUSH(world->context, &world->blocks);
   if (!slot) return false;
@@ -266,7 +267,7 @@ vlResult vl_nanovdb_read(vlWorld *world, const char *path, const char *name, con
   r = g ? take_apart(&tree, g) : vl_fail_memory(error);
   vl_free(world->context, found.words);
   VL_ARRAY_FREE(world->context, &tree.blocks);
-  /* What the world now owns is not freed here. */
+  /* arrays that the world now owns are not freed here */
   if (r == VL_OK && give(world, tree.tiles.items, &g->tiles))
     tree.tiles.items = NULL;
   else if (r == VL_OK)

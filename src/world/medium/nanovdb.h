@@ -1,10 +1,11 @@
-/* world/medium/nanovdb.h: between nanovdb_file.c, which finds a grid in a file, and nanovdb.c, which takes it apart. */
+/* world/medium/nanovdb.h: interface between nanovdb_file.c, which finds a grid in a file, and nanovdb.c, which
+ * converts it. */
 #ifndef WORLD_MEDIUM_NANOVDB_H
 #define WORLD_MEDIUM_NANOVDB_H
 
 #include "base/context.h"
 
-/* The grid of that name, unpacked, 8-byte aligned; a block of the context; null: the file has none of that name. */
+/* An unpacked grid, 8-byte aligned, in a block of the context. words null: the file has no grid of that name. */
 typedef struct vlNanoGrid {
   uint64_t *words;
   size_t size; /* bytes */

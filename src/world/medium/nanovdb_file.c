@@ -1,6 +1,6 @@
-/* world/medium/nanovdb_file.c: NanoVDB's files: segments of a header, descriptions of grids, and the grids, plain or
- * packed by zlib. The layout is that of the format's version 32: header 16 bytes; description 176 bytes and a name;
- * then the grids in the same order. Nothing a file says is believed before it is held against the file's size. */
+/* world/medium/nanovdb_file.c: NanoVDB files: segments of a header, grid descriptions, and the grids, plain or
+ * compressed by zlib. The layout is that of format version 32: header 16 bytes; description 176 bytes and a name;
+ * then the grids in the same order. All sizes are checked against the file's size. */
 #include <stdio.h>
 #include <string.h>
 #include <zlib.h>
@@ -12,7 +12,7 @@
 enum { HEADER = 16, DESCRIPTION = 176, MAJOR = 32 };
 enum { CODEC_NONE = 0, CODEC_ZIP = 1, CODEC_BLOSC = 2 };
 
-static const char magic[7] = {'N', 'a', 'n', 'o', 'V', 'D', 'B'}; /* and a digit */
+static const char magic[7] = {'N', 'a', 'n', 'o', 'V', 'D', 'B'}; /* followed by a digit */
 
 static uint64_t read_u64(const char *p) {
   uint64_t v;
@@ -34,14 +34,14 @@ static vlResult damaged(const char *path, vlError *error) {
   return vl_fail(error, VL_ERROR_SCENE, "%s: the NanoVDB file is damaged: it ends before what it announces", path);
 }
 
-/* One grid's bytes: packed [data, packed), size when unpacked. */
+/* Unpacks one grid. Packed bytes: [data, data + packed); size: bytes when unpacked. */
 static vlResult unpack(vlContext *context, const char *path, uint16_t codec, const char *data, uint64_t packed,
                        uint64_t size, vlNanoGrid *grid, vlError *error) {
   if (codec == CODEC_BLOSC)
     return vl_fail(error, VL_ERROR_SCENE, "%s: the grid is packed by BLOSC; only plain and ZIP are understood", path);
   if (codec != CODEC_NONE && codec != CODEC_ZIP)
     return vl_fail(error, VL_ERROR_SCENE, "%s: the NanoVDB file names an unknown codec (%u)", path, codec);
-  /* zlib packs nothing tighter than 1 : 1032. */
+  /* zlib compresses at most 1032 : 1 */
   if (size > (codec == CODEC_ZIP ? packed * 1032 : packed) || size < 8) return damaged(path, error);
   grid->words = vl_alloc_array(context, (size + 7) / 8, 8);
   if (!grid->words) return vl_fail_memory(error);
@@ -61,7 +61,7 @@ static vlResult unpack(vlContext *context, const char *path, uint16_t codec, con
   return vl_fail(error, VL_ERROR_SCENE, "%s: the NanoVDB file is damaged: zlib cannot unpack the grid", path);
 }
 
-/* Grids of the segment at `at`: *next is where the one after it starts; 0: found. */
+/* Searches the segment at `at`. *next: start of the following segment; 0 if the grid was found. */
 static vlResult search_segment(vlContext *context, const char *path, const char *data, size_t size, size_t at,
                                const char *name, vlNanoGrid *grid, size_t *next, vlError *error) {
   if (size - at < HEADER) return damaged(path, error);
@@ -74,7 +74,7 @@ static vlResult search_segment(vlContext *context, const char *path, const char 
                    version >> 21, version >> 10 & 0x7ff, MAJOR);
   uint16_t codec = read_u16(head + 14);
   size_t description = at + HEADER, body = description;
-  for (uint32_t i = 0; i < count; i++) { /* the grids lie behind the last description */
+  for (uint32_t i = 0; i < count; i++) { /* the grids follow the last description */
     if (size - body < DESCRIPTION) return damaged(path, error);
     uint32_t length = read_u32(data + body + 136);
     if (size - body - DESCRIPTION < length) return damaged(path, error);

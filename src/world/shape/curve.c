@@ -1,10 +1,10 @@
-/* world/shape/curve.c: curves with a width: pieces of cubic Bezier segments, met where the ray comes nearest to the
- * axis.
+/* world/shape/curve.c: curves with a width: pieces of cubic Bezier segments. A ray is intersected at the point where it
+ * comes nearest to the axis.
  *
- * As in pbrt-v4 (book 6.7), whose images these are: a flat curve faces every ray, a cylinder differs from it by its
- * normal alone, a ribbon is narrower by the cosine between its normal and the ray. The point is the ray's, at the depth
- * of the axis, and wrong by the width: rays that leave start that far away. In shape space where nothing else is said.
- */
+ * Conventions are pbrt-v4's (book 6.7): a flat curve faces every ray; a cylinder differs from it by its normal
+ * alone; a ribbon is narrower by the cosine between its normal and the ray. The hit point lies on the ray, at the
+ * depth of the axis, so its error is up to the width: rays that leave start that far away. All in shape space unless
+ * stated otherwise. */
 #include "world/shape/curve.h"
 
 #include <math.h>
@@ -13,14 +13,14 @@
 #include "math/approx.h"
 #include "world/shape/double3.h"
 
-/* Four Bezier points as the ray sees them: x and y across, z along. */
+/* Bezier control points in ray coordinates: x and y across, z along the ray. */
 typedef struct Cubic {
   double x[4], y[4], z[4];
 } Cubic;
 
 bool vl_curve_copy(vlWorld *world, const vlShapeDef *def, vlWorldShape *s) {
   size_t n = def->faces;
-  enum { MOST_PIECES = 1 << 23 }; /* a box costs Embree more memory than the curve itself */
+  enum { MOST_PIECES = 1 << 23 }; /* a box takes more memory in Embree than the curve itself */
   s->curve = def->curve;
   s->split = def->split_depth < 6 ? def->split_depth : 6;
   while (s->split && (n << s->split) > MOST_PIECES) s->split--;
@@ -42,7 +42,7 @@ static double width_at(const vlWorldShape *s, uint32_t segment, double u) {
   return (1 - u) * w[0] + u * w[1];
 }
 
-/* Where a piece starts and ends on its segment. */
+/* Parameter range of a piece on its segment. */
 static void piece_range(const vlWorldShape *s, uint32_t prim, double *u0, double *u1) {
   uint32_t count = 1u << s->split, k = prim & (count - 1);
   *u0 = (double)k / count, *u1 = (double)(k + 1) / count;
@@ -52,7 +52,7 @@ static inline double mix(double a, double b, double t) {
   return (1 - t) * a + t * b;
 }
 
-/* The polar form: value of the blossom of c at three parameters. */
+/* The polar form: the blossom of c at three parameters. */
 static inline double blossom(const double c[4], double a, double b, double e) {
   double p0 = mix(c[0], c[1], a), p1 = mix(c[1], c[2], a), p2 = mix(c[2], c[3], a);
   return mix(mix(p0, p1, b), mix(p1, p2, b), e);
@@ -78,7 +78,7 @@ void vl_curve_bounds(const vlWorldShape *s, uint32_t prim, double low[3], double
   double radius = 0.5 * fmax(width_at(s, segment, u0), width_at(s, segment, u1));
   for (int i = 0; i < 3; i++) {
     const double *m = s->from_shape + 4 * i;
-    double reach = radius * sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]); /* of the image of a ball */
+    double reach = radius * sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]); /* extent of a transformed ball */
     cut(c[i], u0, u1, q[i]);
     low[i] = fmin(fmin(q[i][0], q[i][1]), fmin(q[i][2], q[i][3])) - reach;
     high[i] = fmax(fmax(q[i][0], q[i][1]), fmax(q[i][2], q[i][3])) + reach;
@@ -91,13 +91,13 @@ typedef struct Search {
   const vlWorldShape *shape;
   uint32_t segment;
   double d[3];         /* unit */
-  double z_min, z_max; /* along it; z_max goes down with every hit */
-  double flat;         /* how far leaves may be from straight lines */
+  double z_min, z_max; /* range of z along the ray; every hit lowers z_max */
+  double flat;         /* largest deviation of a leaf from a straight line */
   double u, v;
   bool found;
 } Search;
 
-/* Normals of a ribbon's ends, led round the angle between them. */
+/* Normal of a ribbon: spherical interpolation between the normals of the segment's ends. */
 static void ribbon_normal(const vlWorldShape *s, uint32_t segment, double u, double n[3]) {
   const float *a = s->normals + 6 * (size_t)segment, *b = a + 3;
   double from[3] = {a[0], a[1], a[2]}, to[3] = {b[0], b[1], b[2]};
@@ -136,7 +136,7 @@ static inline double bezier_bend(const double c[4], double w) {
   return 6 * ((1 - w) * (c[2] - 2 * c[1] + c[0]) + w * (c[3] - 2 * c[2] + c[1]));
 }
 
-/* The foot of the perpendicular from the ray: half the squared distance has slope x x' + y y'. */
+/* Parameter at which the distance to the ray is smallest: half the squared distance has the derivative x x' + y y'. */
 static double find_foot(const Cubic *c, double w) {
   double low = 0, high = 1;
   for (int step = 0; step < 40; step++) {
@@ -156,8 +156,8 @@ static double find_foot(const Cubic *c, double w) {
 }
 
 static void leaf(Search *q, const Cubic *c, double u0, double u1, double half) {
-  /* The distance must fall at the start and rise at the end: else the nearest point belongs to a neighbour, or lies
-   * past the end of the curve, which is cut straight across. */
+  /* The distance must decrease at the start and increase at the end. Otherwise the nearest point belongs to a
+   * neighbouring piece, or lies past the end of the curve, which is cut off perpendicularly. */
   if (c->x[0] * (c->x[1] - c->x[0]) + c->y[0] * (c->y[1] - c->y[0]) > 0) return;
   if (c->x[3] * (c->x[3] - c->x[2]) + c->y[3] * (c->y[3] - c->y[2]) < 0) return;
   double sx = c->x[3] - c->x[0], sy = c->y[3] - c->y[0], l2 = sx * sx + sy * sy;
@@ -169,7 +169,7 @@ static void leaf(Search *q, const Cubic *c, double u0, double u1, double half) {
   double x = bezier(c->x, w), y = bezier(c->y, w), z = bezier(c->z, w);
   double u = mix(u0, u1, w), width = seen_width(q->shape, q->segment, u, q->d), distance2 = x * x + y * y;
   if (!(distance2 <= 0.25 * width * width) || !(z > q->z_min && z < q->z_max)) return;
-  double side = bezier_slope(c->y, w) * x - bezier_slope(c->x, w) * y; /* of the ray, seen along the curve */
+  double side = bezier_slope(c->y, w) * x - bezier_slope(c->x, w) * y; /* side of the curve on which the ray passes */
   double across = width > 0 ? sqrt(distance2) / width : 0;
   q->z_max = z;
   q->u = u;
@@ -203,7 +203,8 @@ static void search(Search *q, const Cubic *c, double u0, double u1, int depth) {
   search(q, &b, middle, u1, depth - 1);
 }
 
-/* So many halvings that leaves are straight to a twentieth of the width (pbrt book 6.7.2). */
+/* Number of bisections after which leaves deviate from straight lines by less than a twentieth of the width (pbrt
+ * book 6.7.2). */
 static int depth_for(const Cubic *c, double width, double *flat) {
   double bend = 0;
   for (int i = 0; i < 2; i++) {
@@ -225,7 +226,7 @@ bool vl_curve_intersect(const vlWorldShape *s, uint32_t prim, const double go[3]
   vl_map_vector(s->to_shape, gd, q.d);
   double length = vl_normalize3(q.d);
   if (!(length > 0)) return false;
-  /* A basis across the ray (Duff et al. 2017). */
+  /* An orthonormal basis across the ray (Duff et al. 2017). */
   double sign = q.d[2] < 0 ? -1 : 1, a = -1 / (sign + q.d[2]), b = q.d[0] * q.d[1] * a;
   x[0] = 1 + sign * q.d[0] * q.d[0] * a, x[1] = sign * b, x[2] = -sign * q.d[0];
   y[0] = b, y[1] = sign + q.d[1] * q.d[1] * a, y[2] = -q.d[1];
@@ -263,7 +264,7 @@ void vl_curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *hit,
   for (int i = 0; i < 3; i++) {
     double c[4] = {p[i], p[3 + i], p[6 + i], p[9 + i]};
     along[i] = bezier_slope(c, u);
-    if (!(fabs(along[i]) > 0)) along[i] = (c[3] - c[0]) * 1e-6; /* where two points coincide */
+    if (!(fabs(along[i]) > 0)) along[i] = (c[3] - c[0]) * 1e-6; /* if two control points coincide */
   }
   if (!(vl_dot3(along, along) > 0)) { /* a curve without length: any direction across the ray */
     double axis[3] = {fabs(hit->d[0]) < 0.6, fabs(hit->d[0]) >= 0.6, 0};
@@ -277,10 +278,10 @@ void vl_curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *hit,
     vl_cross3(hit->d, along, across);
     scale_to(across, width);
   }
-  if (s->curve == VL_CURVE_CYLINDER) { /* turned about the curve by up to a quarter to each side */
+  if (s->curve == VL_CURVE_CYLINDER) { /* rotated about the curve by up to 90 degrees to each side */
     double axis[3] = {along[0], along[1], along[2]}, up[3];
     double dot = vl_dot3(along, hit->d), l2 = vl_dot3(along, along);
-    for (int i = 0; i < 3; i++) axis[i] = along[i] - dot * hit->d[i]; /* as the ray sees it */
+    for (int i = 0; i < 3; i++) axis[i] = along[i] - dot * hit->d[i]; /* component perpendicular to the ray */
     scale_to(axis, 1);
     vl_cross3(axis, across, up);
     vlSinCos turn = vl_sincos((float)((0.5 - v) * 3.14159265358979323846));

@@ -1,6 +1,7 @@
-/* world/shape/displace.c: meshes cut finer, until every edge is short enough, and moved along their normals by a
- * texture: as pbrt-v4 displaces PLY meshes. Every edge that is too long is halved, in both triangles at the same
- * vertex, so that nothing tears; the longest edge of a triangle goes first. Then new normals, of the moved surface. */
+/* world/shape/displace.c: subdivides meshes until every edge is short enough, and displaces the vertices along their
+ * normals by a texture, as pbrt-v4 displaces PLY meshes. Every edge that is too long is halved, in both triangles at
+ * the same vertex, so that no cracks appear; a triangle's longest edge is split first. Then the normals of the
+ * displaced surface are computed. */
 #include "world/shape/displace.h"
 
 #include <math.h>
@@ -8,7 +9,7 @@
 
 #include "base/error.h"
 
-enum { MOST_TRIANGLES = 1 << 22 }; /* some 600 MB with their hierarchy */
+enum { MOST_TRIANGLES = 1 << 22 }; /* about 600 MB with the BVH */
 
 typedef struct Edge {
   uint64_t key; /* lower vertex << 32 | higher; 0: free (no edge leads from 0 to 0) */
@@ -21,9 +22,9 @@ typedef struct Corners {
 
 typedef struct Cutter {
   vlContext *context;
-  const vlMat4 *m; /* lengths count in group space */
+  const vlMat4 *m; /* edge lengths are measured in group space */
   double longest2;
-  VL_ARRAY(float) p; /* 3 a vertex, shape space */
+  VL_ARRAY(float) p; /* 3 per vertex, shape space */
   VL_ARRAY(float) n;
   VL_ARRAY(float) uv;
   VL_ARRAY(uint32_t) indices;
@@ -83,7 +84,7 @@ static bool add_middle(Cutter *c, uint32_t a, uint32_t b, uint32_t *middle) {
   return true;
 }
 
-/* The vertex in the middle of an edge. */
+/* The vertex at the middle of an edge, created at first use. */
 static bool middle_of(Cutter *c, uint32_t a, uint32_t b, uint32_t *middle) {
   if (2 * (c->edge_count + 1) > c->edge_capacity && !grow_edges(c)) return false;
   uint64_t key = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
@@ -112,7 +113,7 @@ static bool push(Cutter *c, uint32_t a, uint32_t b, uint32_t d) {
   return top != NULL;
 }
 
-/* VL_ERROR_SCENE: there are too many. */
+/* VL_ERROR_SCENE: too many triangles. */
 static vlResult cut(Cutter *c, Corners first) {
   if (!push(c, first.v[0], first.v[1], first.v[2])) return VL_ERROR_MEMORY;
   while (c->stack.count) {
@@ -136,8 +137,8 @@ static vlResult cut(Cutter *c, Corners first) {
   return VL_OK;
 }
 
-/* Triangles that it takes at least: none with such edges is larger than the equilateral one, and every edge of a face
- * is cut. So what is far too fine fails at once. */
+/* Lower bound of the number of triangles: no triangle with edges that short is larger than the equilateral one, and
+ * every edge of a face is split. A far too fine subdivision thus fails at once. */
 static double least_triangles(const Cutter *c, const vlShapeDef *def) {
   double sum = 0;
   for (size_t f = 0; f < def->faces; f++) {
@@ -150,7 +151,7 @@ static double least_triangles(const Cutter *c, const vlShapeDef *def) {
   return sum;
 }
 
-/* Of vertices: the mean over their faces, by area. */
+/* Vertex normals: area-weighted mean over the adjacent faces. */
 static void find_normals(Cutter *c, const uint32_t *indices, size_t faces) {
   memset(c->n.items, 0, c->n.count * sizeof *c->n.items);
   for (size_t f = 0; f < faces; f++) {
@@ -201,7 +202,7 @@ static void move(Cutter *c, const vlWorld *world, int32_t node) {
   }
 }
 
-/* The context's array for good: the def's pointers are const, their owner's are not. */
+/* Takes ownership of an array: the def's pointers are const, but the caller owns the arrays. */
 static const void *take(void *items) {
   return items;
 }

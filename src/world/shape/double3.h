@@ -1,5 +1,4 @@
-/* world/shape/double3.h: three doubles, and affine maps of them (row-major 3x4), for shapes that are not of triangles.
- */
+/* world/shape/double3.h: vectors of three doubles and affine maps (row-major 3x4), for shapes other than triangles. */
 #ifndef WORLD_SHAPE_DOUBLE3_H
 #define WORLD_SHAPE_DOUBLE3_H
 

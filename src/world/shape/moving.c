@@ -1,4 +1,5 @@
-/* world/shape/moving.c: motions of the scene -> keys at even times, and where things are between them. See moving.h. */
+/* world/shape/moving.c: compiles motions of the scene into keys at equal time steps, and evaluates positions between
+ * them. See moving.h. */
 #include "world/shape/moving.h"
 
 #include <math.h>
@@ -40,7 +41,7 @@ void vl_world_find_times(vlWorld *world, const vlScene *scene) {
   }
 }
 
-enum { MOST_STEPS = 128 }; /* Embree knows 129 keys */
+enum { MOST_STEPS = 128 }; /* Embree supports 129 keys */
 
 uint32_t vl_world_time_steps(const vlWorld *world, double from, double to) {
   double span = world->time_close - world->time_open;
@@ -53,18 +54,18 @@ uint32_t vl_world_time_steps(const vlWorld *world, double from, double to) {
 
 /* ---- instances --------------------------------------------------------------------------------------------------- */
 
-/* The true motion, in double: between each key and the next. */
+/* The exact motion, in double: one segment between consecutive keys of the scene. */
 typedef struct Motion {
   const vlSceneInstance *source;
   vlMotion *between;
-  double open, span; /* of the world's time, seconds */
+  double open, span; /* world's time 0 and its length, seconds */
 } Motion;
 
 static vlAffine true_pose(const Motion *motion, double time) {
   const vlSceneInstance *source = motion->source;
   double seconds = motion->open + time * motion->span;
   uint32_t k = 0, last = source->keys - 2;
-  for (uint32_t high = last; k < high;) { /* the last key that is not later */
+  for (uint32_t high = last; k < high;) { /* the last key at or before `seconds` */
     uint32_t middle = k + (high - k + 1) / 2;
     if (seconds >= source->times[middle])
       k = middle;
@@ -75,7 +76,7 @@ static vlAffine true_pose(const Motion *motion, double time) {
   return vl_motion_between(&motion->between[k], f > 0 ? (f < 1 ? f : 1) : 0);
 }
 
-/* Square of how far a corner of the box is from one pose to halfway (or so) between two others. */
+/* Squared largest distance of a corner of the box between pose `at` and the linear interpolation of a and b at f. */
 static double corner_distance(const vlAffine *at, const vlAffine *a, const vlAffine *b, double f, const float low[3],
                               const float high[3]) {
   double m[9], t[3], most = 0;
@@ -89,7 +90,7 @@ static double corner_distance(const vlAffine *at, const vlAffine *a, const vlAff
   return most;
 }
 
-/* Farthest that a corner of the box strays from the true motion, looked for at three times in each step. */
+/* Largest deviation of a corner of the box from the exact motion, sampled at three times in each step. */
 static double strayed(const Motion *motion, uint32_t steps, const float low[3], const float high[3]) {
   double most = 0;
   vlAffine ends[2];
@@ -106,8 +107,8 @@ static double strayed(const Motion *motion, uint32_t steps, const float low[3], 
   return sqrt(most);
 }
 
-/* Straying allowed, of the size of what moves. Half a turn, which is the most that two keys can say, strays 1e-4 of the
- * radius in 128 steps; slower turns are held to this. */
+/* Allowed deviation, relative to the size of the moving object. Half a turn between two keys, the most that they can
+ * express, deviates by 1e-4 of the radius at 128 steps; slower rotations meet this tolerance. */
 static const double tolerance = 1e-5;
 
 static uint32_t choose_steps(const Motion *motion, const float low[3], const float high[3]) {
@@ -119,7 +120,8 @@ static uint32_t choose_steps(const Motion *motion, const float low[3], const flo
     for (int j = 0; j < 3; j++) row += fabs(start.m[3 * i + j]) * (high[j] - low[j]);
     size = fmax(size, row);
   }
-  double least = 1; /* straying falls with the square of the steps: those that surely do not do are ignored */
+  /* The deviation falls with the square of the number of steps: numbers that cannot suffice are skipped. */
+  double least = 1;
   for (size_t i = 0; i < sizeof tries; i++) {
     if (tries[i] < least && tries[i] < MOST_STEPS) continue;
     double far = strayed(motion, tries[i], low, high);
@@ -129,8 +131,8 @@ static uint32_t choose_steps(const Motion *motion, const float low[3], const flo
   return MOST_STEPS;
 }
 
-/* Both sides compute a (1 - f) + b f with f = time * steps less a whole number: three roundings of the sum, and f off
- * by a rounding of time * steps. Twice that, for two sides. */
+/* Embree and velo both compute a (1 - f) + b f with f = time * steps minus its integer part: three roundings of the
+ * sum, and f is off by one rounding of time * steps. The bound is doubled because both sides round. */
 static void find_doubt(vlWorldInstance *q) {
   const float eps = 0x1p-24f;
   float steps = (float)(q->keys - 1);
@@ -165,7 +167,7 @@ vlResult vl_world_add_motion(vlWorld *world, const vlSceneInstance *source, cons
   Motion motion = {source, vl_alloc_array(world->context, source->keys, sizeof(vlMotion)), world->time_open,
                    world->time_close - world->time_open};
   if (!motion.between) return vl_fail_memory(error);
-  for (uint32_t k = 0; k + 1 < source->keys; k++) /* the scene has seen that there is one */
+  for (uint32_t k = 0; k + 1 < source->keys; k++) /* the scene has checked that a motion exists */
     vl_motion_make(source->poses + 16 * (size_t)k, source->poses + 16 * (size_t)(k + 1), &motion.between[k]);
   uint32_t steps = choose_steps(&motion, low, high);
   float *path = vl_world_block(world, 12 * (size_t)(steps + 1), sizeof *path);
@@ -221,14 +223,15 @@ float vl_moving_vertex_error(const vlWorldShape *s, uint32_t vertex, float time)
   return worst;
 }
 
-/* ---- what becomes of a point ------------------------------------------------------------------------------------- */
+/* ---- following a point
+ * -------------------------------------------------------------------------------------------- */
 
 static void map(const float m[12], const double p[3], double q[3]) {
   for (int i = 0; i < 3; i++)
     q[i] = (double)m[4 * i] * p[0] + (double)m[4 * i + 1] * p[1] + (double)m[4 * i + 2] * p[2] + (double)m[4 * i + 3];
 }
 
-/* The way back, not rounded to float as to_group is. */
+/* The inverse map, not rounded to float as to_group is. */
 static void unmap(const float m[12], const double p[3], double q[3]) {
   double x[3], y[3], z[3], r[3], n[3];
   for (int i = 0; i < 3; i++)

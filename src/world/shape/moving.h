@@ -1,26 +1,28 @@
-/* world/shape/moving.h: where things are at a time. A motion is compiled into keys spread evenly over the world's time,
- * close enough that straight lines between them are the true motion (moving.c says how close); both Embree and the
- * functions here go along these lines, so that what Embree's ids name is where we compute it, but for rounding.
+/* world/shape/moving.h: positions of moving objects at a time. A motion is compiled into keys at equal steps of the
+ * world's time, dense enough that linear interpolation between them follows the exact motion (moving.c gives the
+ * tolerance). Embree and the functions here interpolate the same keys linearly, so that the primitive that Embree
+ * reports is where velo computes it, up to rounding.
  *
- * time: the world's, 0 to 1 from world->time_open to world->time_close. */
+ * time: the world's time, 0 to 1 from world->time_open to world->time_close. */
 #ifndef WORLD_SHAPE_MOVING_H
 #define WORLD_SHAPE_MOVING_H
 
 #include "world/world.h"
 
-/* Seconds to the world's time, held between 0 and 1. */
+/* Converts seconds to the world's time, clamped to [0, 1]. */
 float vl_world_time(const vlWorld *world, double seconds);
 
-/* Compiles a motion of the scene: keys, path, the pose at time 0. `low`, `high`: box of what moves, group space. */
+/* Compiles a motion of the scene: keys, path, the pose at time 0. `low`, `high`: box of the moving object, group
+ * space. */
 struct vlSceneInstance;
 vlResult vl_world_add_motion(vlWorld *world, const struct vlSceneInstance *source, const float low[3],
                              const float high[3], vlWorldInstance *instance, vlError *error);
-/* Fills world->moves, time_open, time_close from what the scene says. */
+/* Sets world->moves, time_open, time_close from the scene. */
 void vl_world_find_times(vlWorld *world, const struct vlScene *scene);
-/* How many steps make the times [from, to] fall on keys; 0: there is no such number. */
+/* Number of equal steps for which the times [from, to] fall on keys; 0: there is none. */
 uint32_t vl_world_time_steps(const vlWorld *world, double from, double to);
 
-/* *moved is `at rest` from then on, where q is at that time. */
+/* *moved becomes a resting instance with the pose of q at that time. */
 void vl_instance_move(const vlWorldInstance *q, float time, vlWorldInstance *moved);
 static inline const vlWorldInstance *vl_instance_at(const vlWorldInstance *q, float time, vlWorldInstance *moved) {
   if (q->keys == 0) return q;
@@ -29,8 +31,8 @@ static inline const vlWorldInstance *vl_instance_at(const vlWorldInstance *q, fl
 }
 
 typedef struct vlTimeStep {
-  uint32_t first; /* between this key and the next */
-  float part;     /* of the way */
+  uint32_t first; /* index of the key before the time */
+  float part;     /* fraction of the step, 0 to 1 */
 } vlTimeStep;
 static inline vlTimeStep vl_time_step(float time, uint32_t keys) {
   float at = time * (float)(keys - 1);
@@ -40,17 +42,17 @@ static inline vlTimeStep vl_time_step(float time, uint32_t keys) {
   return (vlTimeStep){(uint32_t)first, at - (float)first};
 }
 
-/* Three numbers of vertex `vertex` of rows (positions or normals) of a shape with several steps. */
+/* Row `vertex` (three floats) of positions or normals of a shape with several steps, at `time`. */
 static inline void vl_moving_vertex(const vlWorldShape *s, const float *rows, uint32_t vertex, float time,
                                     float out[3]) {
   vlTimeStep k = vl_time_step(time, s->steps);
   const float *a = rows + 3 * ((size_t)k.first * s->vertices + vertex), *b = a + 3 * (size_t)s->vertices;
   for (int i = 0; i < 3; i++) out[i] = a[i] * (1.0f - k.part) + b[i] * k.part;
 }
-/* Bound of its rounding error, ours and Embree's. */
+/* Bound of the vertex's rounding error, velo's and Embree's together. */
 float vl_moving_vertex_error(const vlWorldShape *s, uint32_t vertex, float time);
 
-/* Position of a vertex; `room` holds it where it must be computed. */
+/* Position of a vertex; `room` stores it if it must be computed. */
 static inline const float *vl_vertex_at(const vlWorldShape *s, uint32_t vertex, float time, float room[3]) {
   if (s->steps <= 1) return s->positions + 3 * (size_t)vertex;
   vl_moving_vertex(s, s->positions, vertex, time, room);
@@ -62,7 +64,7 @@ static inline const float *vl_normal_at(const vlWorldShape *s, uint32_t vertex, 
   return room;
 }
 
-/* Where a point of a surface, found at one time, is at another (seconds, world space): what optical flow asks. */
+/* Where a point of a surface, found at one time, is at another (seconds, world space). For optical flow. */
 void vl_world_follow(const vlWorld *world, uint32_t shape, uint32_t prim, uint32_t instance, double from_seconds,
                      double to_seconds, const double point[3], double moved[3]);
 

@@ -1,4 +1,5 @@
-/* world/shape/patch.c: the bilinear patch: met by a ray, described at parameters, sampled uniformly over them. */
+/* world/shape/patch.c: the bilinear patch: intersection, surface at given parameters, uniform sampling of the
+ * parameters. */
 #include "world/shape/patch.h"
 
 #include <math.h>
@@ -86,7 +87,7 @@ bool vl_patch_intersect(const vlWorldShape *s, uint32_t prim, const double o[3],
   return found;
 }
 
-/* Derivatives of the interpolated vertex normals, not yet of unit length. */
+/* Derivatives of the interpolated vertex normals, before normalisation. */
 static void normal_slopes(const vlWorldShape *s, const Patch *q, double u, double v, double dndu[3], double dndv[3]) {
   for (int i = 0; i < 3; i++) {
     double n[4];
@@ -96,8 +97,8 @@ static void normal_slopes(const vlWorldShape *s, const Patch *q, double u, doubl
   }
 }
 
-/* Derivatives over the patch's own parameters become those over its texture coordinates (pbrt book 6.6.2); where these
- * do not tell directions apart they stay. */
+/* Converts derivatives over the patch's parameters to derivatives over its texture coordinates (pbrt book 6.6.2). If
+ * the texture coordinates are degenerate, the derivatives are kept. */
 static void over_texture(const vlWorldShape *s, const Patch *q, double u, double v, vlSurfacePoint *point) {
   double du[2], dv[2];
   for (int i = 0; i < 2; i++) {
@@ -125,7 +126,7 @@ void vl_patch_point(const vlWorldShape *s, uint32_t prim, double u, double v, vl
   vl_cross3(point->dpdu, point->dpdv, point->n);
   length = vl_normalize3(point->n);
   for (int i = 0; i < 3; i++) mixed[i] = q.p00[i] - q.p10[i] - q.p01[i] + q.p11[i];
-  vl_cross3(point->dpdu, mixed, point->dndu); /* of dpdu x dpdv: dpdu does not change along u, dpdv not along v */
+  vl_cross3(point->dpdu, mixed, point->dndu); /* derivatives of dpdu x dpdv: dpdu is constant along u, dpdv along v */
   vl_cross3(mixed, point->dpdv, point->dndv);
   vl_normal_derivative(point->n, length, point->dndu);
   vl_normal_derivative(point->n, length, point->dndv);
@@ -151,14 +152,15 @@ void vl_patch_point(const vlWorldShape *s, uint32_t prim, double u, double v, vl
       normal_slopes(s, &q, u, v, point->dndu, point->dndv);
       vl_normal_derivative(ns, length, point->dndu);
       vl_normal_derivative(ns, length, point->dndv);
-      double side = vl_dot3(ns, point->n) < 0 ? -1 : 1; /* the geometric normal goes to the shading normal's side */
+      /* The geometric normal is flipped to the side of the shading normal. */
+      double side = vl_dot3(ns, point->n) < 0 ? -1 : 1;
       for (int i = 0; i < 3; i++) point->ns[i] = ns[i], point->n[i] *= side;
     }
   }
   if (s->uvs) over_texture(s, &q, u, v, point);
 }
 
-/* Per unit area, of parameters spread uniformly. */
+/* Density per unit area for uniformly sampled parameters. */
 static double density(const Patch *q, double u, double v) {
   double dpdu[3], dpdv[3], n[3];
   patch_derivatives(q, u, v, dpdu, dpdv);
@@ -174,7 +176,7 @@ void vl_patch_sample(const vlWorldShape *shape, uint32_t prim, float u, float v,
 }
 
 double vl_patch_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]) {
-  /* The parameters again, by Gauss-Newton steps from the middle; the density varies slowly. */
+  /* Recovers the parameters by Gauss-Newton steps from the centre; the density varies slowly. */
   Patch q = load_patch(shape, prim);
   double u = 0.5, v = 0.5;
   for (int step = 0; step < 20; step++) {

@@ -1,4 +1,4 @@
-/* world/shape/patch.h: the bilinear patch, for surface_point.c: see there. Its vertices are in group space. */
+/* world/shape/patch.h: the bilinear patch, for surface_point.c. Its vertices are in group space. */
 #ifndef WORLD_SHAPE_PATCH_H
 #define WORLD_SHAPE_PATCH_H
 

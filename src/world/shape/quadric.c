@@ -1,5 +1,5 @@
-/* world/shape/quadric.c: sphere, disk and cylinder: met by a ray, described at a point, sampled by area. In shape space
- * where nothing else is said. */
+/* world/shape/quadric.c: sphere, disk and cylinder: intersection, surface at a point, sampling by area. In shape
+ * space unless stated otherwise. */
 #include "world/shape/quadric.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@ static double angle_of(const double p[3]) {
   return phi < 0 ? phi + 2 * M_PI : phi;
 }
 
-/* Is this point of the full quadric part of the shape? */
+/* Whether a point of the full quadric is part of the shape. */
 static bool inside_limits(const vlWorldShape *s, const double p[3]) {
   if (s->kind == VL_SHAPE_SPHERE &&
       ((s->z_min > -s->radius && p[2] < s->z_min) || (s->z_max < s->radius && p[2] > s->z_max)))
@@ -28,7 +28,7 @@ static bool try_root(const vlWorldShape *s, const double o[3], const double d[3]
                      vlShapeHit *hit) {
   if (!(t > t_min && t < t_max)) return false;
   double p[3] = {o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
-  /* Put the point on the surface: removes the error that grows with t. */
+  /* Project the point onto the surface: removes the error that grows with t. */
   double r2 = p[0] * p[0] + p[1] * p[1] + (s->kind == VL_SHAPE_SPHERE ? p[2] * p[2] : 0);
   if (s->kind == VL_SHAPE_DISK) {
     p[2] = s->height;
@@ -54,8 +54,8 @@ bool vl_quadric_intersect(const vlWorldShape *s, const double go[3], const doubl
   double a = d[0] * d[0] + d[1] * d[1] + (sphere ? d[2] * d[2] : 0);
   double half_b = o[0] * d[0] + o[1] * d[1] + (sphere ? o[2] * d[2] : 0);
   if (!(a > 0)) return false;
-  /* Discriminant through the vector from the axis to the nearest point of the ray (pbrt book 6.8.3): no cancellation.
-   */
+  /* Discriminant from the vector between the axis and the nearest point of the ray (pbrt book 6.8.3), which avoids
+   * cancellation. */
   double k = half_b / a, l2 = 0;
   for (int i = 0; i < (sphere ? 3 : 2); i++) {
     double e = o[i] - k * d[i];
@@ -87,7 +87,7 @@ static void quadric_derivatives(const vlWorldShape *s, const double p[3], double
     uv[1] = (float)((theta - low) / (high - low));
     double radial = sqrt(p[0] * p[0] + p[1] * p[1]);
     double cos_phi = radial > 0 ? p[0] / radial : 1, sin_phi = radial > 0 ? p[1] / radial : 0;
-    if (!(radial > 0)) dpdu[0] = 0, dpdu[1] = s->phi_max * 1e-12; /* at the poles any direction will do */
+    if (!(radial > 0)) dpdu[0] = 0, dpdu[1] = s->phi_max * 1e-12; /* at the poles any direction is valid */
     dpdv[0] = (high - low) * p[2] * cos_phi, dpdv[1] = (high - low) * p[2] * sin_phi, dpdv[2] = -(high - low) * radial;
   } else if (s->kind == VL_SHAPE_CYLINDER) {
     uv[1] = (float)((p[2] - s->z_min) / (s->z_max - s->z_min));
@@ -101,9 +101,9 @@ static void quadric_derivatives(const vlWorldShape *s, const double p[3], double
   }
 }
 
-/* dpdu x dpdv in shape space. The map to group space (inverse transpose) keeps it outside whatever the handedness; flip
- * (reverse orientation xor mirrored) turns it afterwards, as in pbrt: a mirrored sphere alone has its normals inside.
- */
+/* dpdu x dpdv in shape space. Mapped to group space (inverse transpose) it stays outside whatever the handedness.
+ * flip (reverse orientation xor mirrored) reverses it afterwards, as in pbrt: a mirrored sphere without reverse
+ * orientation has inward normals. */
 static void quadric_normal(const vlWorldShape *s, const double p[3], double n[3]) {
   n[0] = s->kind == VL_SHAPE_DISK ? 0 : p[0] / s->radius;
   n[1] = s->kind == VL_SHAPE_DISK ? 0 : p[1] / s->radius;
@@ -120,7 +120,7 @@ void vl_quadric_point(const vlWorldShape *s, const double p[3], vlSurfacePoint *
   vl_map_normal(s->to_shape, n, point->n);
   double length = vl_normalize3(point->n), side = s->flip ? -1 : 1;
   double bend = s->kind == VL_SHAPE_DISK || !(s->radius > 0) ? 0 : 1.0 / s->radius;
-  if (s->kind == VL_SHAPE_CYLINDER) dpdv[2] = 0; /* the normal turns with what is across the axis */
+  if (s->kind == VL_SHAPE_CYLINDER) dpdv[2] = 0; /* the normal of a cylinder does not change along its axis */
   for (int i = 0; i < 3; i++) dpdu[i] *= bend, dpdv[i] *= bend;
   vl_map_normal(s->to_shape, dpdu, point->dndu);
   vl_map_normal(s->to_shape, dpdv, point->dndv);
@@ -132,7 +132,7 @@ void vl_quadric_point(const vlWorldShape *s, const double p[3], vlSurfacePoint *
   }
 }
 
-/* Density over area of points uniform in shape-space area: the map stretches area by |det M| |M^-T n|. */
+/* Factor by which the map from shape to group space stretches area: |det M| |M^-T n|. */
 static double area_stretch(const vlWorldShape *s, const double n_shape[3]) {
   double n[3];
   vl_map_normal(s->to_shape, n_shape, n);

@@ -1,6 +1,5 @@
-/* world/shape/shapes.c: scene shapes -> world shapes: vertices moved to group space, groups and instances laid out,
- * bounds.
- */
+/* world/shape/shapes.c: scene shapes -> world shapes: transforms vertices to group space, lays out groups and
+ * instances, computes bounds. */
 #include <math.h>
 #include <string.h>
 
@@ -37,7 +36,7 @@ static bool is_identity(const vlMat4 *m) {
   return memcmp(e.m, m->m, sizeof e.m) == 0;
 }
 
-/* positions or normals at one end of a motion, moved to group space. */
+/* Positions or normals at one end of a motion, transformed to group space. */
 typedef struct Rows {
   const float *from;
   bool normals;
@@ -63,7 +62,8 @@ static bool move_rows(const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inve
   return fine;
 }
 
-/* Spreads what was made for the two ends of a motion, the first and the last of `steps` sets, over the sets between. */
+/* Interpolates the rows of a motion's two ends, stored in the first and the last of `steps` sets, into the sets
+ * between. */
 static void spread(const vlWorld *world, const vlShapeDef *def, float *rows, uint32_t steps) {
   size_t n = 3 * (size_t)def->vertices;
   double span = world->time_close - world->time_open, first = (def->times[0] - world->time_open) / span,
@@ -133,7 +133,7 @@ static vlResult move_mesh(vlWorld *world, const vlShapeDef *def, const vlMat4 *m
        !copy_rows(world, def->more_uvs[1], n, 2, &s->more_uvs[1]) ||
        !copy_rows(world, def->more_uvs[2], n, 2, &s->more_uvs[2])))
     return vl_fail_memory(error);
-  bool mirrored = vl_mat4_determinant3(*m) < 0; /* n x t turns over against what both of them do */
+  bool mirrored = vl_mat4_determinant3(*m) < 0; /* a mirroring map flips n x t relative to the mapped n and t */
   for (size_t i = 0; mirrored && s->tangent_signs && i < n; i++) s->tangent_signs[i] = -s->tangent_signs[i];
   if (same) memcpy(s->positions, def->positions, 3 * n * sizeof(float));
   if (!same && !move_rows(def, m, inverse, (Rows){def->positions, false}, s->positions))
@@ -152,7 +152,8 @@ static vlResult constant_node(vlWorld *world, const vlScene *scene, float value,
   return vl_world_float_node(world, scene, vl_float_input(value), node, error);
 }
 
-/* A mix of a material with an interface is that material with holes: what is there of it times the shape's alpha. */
+/* A mix of a material with an interface is that material with holes: the material's share multiplies the shape's
+ * alpha. */
 static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShapeDef *def, vlWorldShape *s,
                               vlError *error) {
   const vlWorldMaterial *m = &world->materials.items[s->material];
@@ -212,7 +213,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef
     case VL_SHAPE_CURVES: return vl_curve_copy(world, def, s) ? VL_OK : vl_fail_memory(error);
     case VL_SHAPE_SPHERE:
     case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: break; /* all numbers are there */
+    case VL_SHAPE_CYLINDER: break; /* no arrays to copy */
   }
   return VL_OK;
 }
@@ -260,7 +261,7 @@ static void instance_bounds(const vlWorld *world, const vlWorldInstance *instanc
   }
 }
 
-/* Rays can be followed to 1e18. */
+/* Checks that the shape lies within 1e18, beyond which rays cannot be traced. */
 static vlResult check_reach(const float low[3], const float high[3], const vlSource *source, vlError *error) {
   for (int i = 0; i < 3; i++)
     if (low[i] <= high[i] && !(low[i] > -1e18f && high[i] < 1e18f))
@@ -270,11 +271,11 @@ static vlResult check_reach(const float low[3], const float high[3], const vlSou
   return VL_OK;
 }
 
-/* Below these edges distances of near hits, a length times an area, are flushed to zero in Embree, and a triangle hides
- * light from itself: an offset of 6e-7 edges times twice the area must stay above 2^-126 (docs/conventions.md). */
+/* With shorter edges, distances of near hits (a length times an area) are flushed to zero in Embree, and a triangle
+ * shadows itself: an offset of 6e-7 edges times twice the area must stay above 2^-126 (docs/conventions.md). */
 #define SMALLEST_EDGE 1e-10f
 
-/* Warns of the first shape whose triangles are too small, by a guess from its box. */
+/* Warns of the first shape whose triangles are too small, estimated from its box. */
 static void check_edges(const vlWorld *world, const float low[3], const float high[3], uint64_t triangles,
                         const vlSource *source, bool *warned) {
   if (*warned || triangles == 0 || !(low[0] <= high[0])) return;

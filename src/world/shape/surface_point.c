@@ -1,5 +1,5 @@
-/* world/shape/surface_point.c: the shapes that are not of triangles, whichever they are (quadric.c, patch.c); bounds
- * and area of all. */
+/* world/shape/surface_point.c: dispatches over the shapes that are not triangle meshes (quadric.c, patch.c,
+ * curve.c); bounds and area of all shapes. */
 #include "world/shape/surface_point.h"
 
 #include <string.h>
@@ -27,7 +27,7 @@ bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o
     case VL_SHAPE_DISK:
     case VL_SHAPE_CYLINDER: return vl_quadric_intersect(shape, o, d, t_min, t_max, hit);
     case VL_SHAPE_CURVES: return vl_curve_intersect(shape, prim, o, d, t_min, t_max, hit);
-    case VL_SHAPE_TRIANGLES: break; /* trace/surface has them in batches */
+    case VL_SHAPE_TRIANGLES: break; /* trace/surface intersects triangles in batches */
   }
   return false;
 }
@@ -83,7 +83,7 @@ float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim) {
     vl_cross3(a, b, n);
     return (float)(0.5 * sqrt(vl_dot3(n, n)));
   }
-  /* Mean of 1/pdf over a grid of parameters, exact for parallelograms; one point where it is the same everywhere. */
+  /* Mean of 1/pdf over a grid of parameters, exact for parallelograms; a single point if the density is constant. */
   double sum = 0, scale;
   bool even = shape->kind == VL_SHAPE_DISK || (shape->kind != VL_SHAPE_BILINEAR && shape->kind != VL_SHAPE_CURVES &&
                                                vl_is_similarity(shape->from_shape, &scale));
@@ -122,7 +122,7 @@ void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3]
       }
     }
   }
-  for (int i = 0; i < 3; i++) { /* outwards by a float step, for the rounding */
+  for (int i = 0; i < 3; i++) { /* widened by one float step for rounding */
     low[i] = nextafterf((float)lo[i], -INFINITY);
     high[i] = nextafterf((float)hi[i], INFINITY);
   }

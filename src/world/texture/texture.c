@@ -1,5 +1,5 @@
-/* world/texture/texture.c: scene textures -> nodes; images read once per file; the single query (alpha, amounts,
- * displacement). */
+/* world/texture/texture.c: scene textures -> nodes; reads each image file once; evaluates a float texture at one
+ * point (alpha, mix amounts, displacement). */
 #include "world/texture/texture.h"
 
 #include <math.h>
@@ -11,7 +11,8 @@
 #include "world/texture/texture_node.h"
 #include "world/world.h"
 
-/* MAX_NESTING bounds recursion here, VL_NODE_ROWS what may nest by the room it takes: no level may disturb another. */
+/* MAX_NESTING bounds recursion here. VL_NODE_ROWS bounds nesting by the scratch rows needed: no level may overwrite
+ * another's. */
 enum { MAX_NESTING = 32, ROLES = 4, ROLE_FLOAT = 3 };
 
 /* ---- constant spectra -------------------------------------------------------------------------------------------- */
@@ -69,7 +70,8 @@ static bool is_covered(const vlImage *image, uint32_t alpha) {
   return true;
 }
 
-/* Colour and, where it is not 1 everywhere, coverage; grey without. Names decide (EXR sorts its channels). */
+/* Selects colour channels and, unless it is 1 everywhere, alpha; a grey image has one channel. Selected by name,
+ * because EXR sorts its channels. */
 static void choose_channels(const vlImage *image, bool keep_coverage, vlMipmapDef *mip) {
   int r = vl_image_find_channel(image, "R"), g = vl_image_find_channel(image, "G"),
       b = vl_image_find_channel(image, "B");
@@ -87,9 +89,9 @@ static void choose_channels(const vlImage *image, bool keep_coverage, vlMipmapDe
   memcpy(mip->channel, channels, sizeof channels);
 }
 
-/* Where an image comes from: a file, a file in memory, or given. */
+/* Source of an image: a file, a file in memory, or an image in memory. */
 typedef struct Image {
-  const char *name; /* for errors, where there is no path */
+  const char *name; /* for error messages, if there is no path */
   const char *path;
   const void *data;
   size_t size;
@@ -149,7 +151,7 @@ static Image open_image(const vlTextureDef *def) {
                  def->gamma,     true,       def->data != NULL};
 }
 
-/* The image is known by its name (or place) and encoding from here on. */
+/* Records the path (or memory address) and the encoding by which the image is found again. */
 static bool name_image(vlWorld *world, vlWorldImage *entry, const vlTextureDef *def) {
   entry->encoding = def->encoding;
   entry->encoding_given = def->encoding_given;
@@ -173,7 +175,7 @@ static void preload_one(void *user, uint32_t index, uint32_t worker) {
   (void)worker;
   const Preload *job = user;
   Image p = open_image(job->defs[index]);
-  vlError unsaid; /* who asks for the image finds the error again, and says it with the place */
+  vlError unsaid; /* ignored: whoever uses the image meets the same error and reports it with its source location */
   load_image(job->context, &p, &job->mipmaps[index], &unsaid);
 }
 
@@ -187,7 +189,7 @@ static bool listed(const vlTextureDef **defs, size_t count, const vlTextureDef *
 }
 
 vlResult vl_world_preload_images(vlWorld *world, const vlScene *scene, vlError *error) {
-  enum { MOST = 4096 }; /* looked for one by one */
+  enum { MOST = 4096 }; /* duplicates are found by linear search */
   size_t most = scene->textures.count < MOST ? scene->textures.count : MOST, count = 0;
   Preload job = {world->context, vl_alloc_array(world->context, most + 1, sizeof *job.defs),
                  vl_alloc_zero(world->context, most + 1, sizeof *job.mipmaps)};
@@ -236,7 +238,7 @@ static int32_t image_of(vlWorld *world, const vlTextureDef *def, vlError *error)
 typedef struct Compile {
   vlWorld *world;
   const vlScene *scene;
-  int32_t *memo; /* scene texture * ROLES -> node + 1 */
+  int32_t *memo; /* scene texture * ROLES + role -> node + 1 */
   vlError *error;
 } Compile;
 
@@ -286,8 +288,8 @@ static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f
   return def->spectrum ? compile_spectrum(c, s, role, nesting) : compile_float(c, f, nesting);
 }
 
-/* Rows that a node takes for itself (as trace/texture/texture.hot.c takes them) and for the hungriest of its inputs;
- * nodes that are visited for it. false: too many. */
+/* Scratch rows that a node needs for itself (as trace/texture/texture.hot.c allocates them) and for its most
+ * demanding input, and the number of nodes that its evaluation visits. false: too many. */
 static bool weigh(const vlWorld *world, vlTextureNode *node) {
   uint32_t own = 0, most = 0, visits = 1;
   switch (node->kind) {
@@ -328,7 +330,7 @@ static vlResult image_spectrum(vlWorld *world, vlTextureNode *node, vlError *err
   return VL_OK;
 }
 
-/* What textures of images and vertex colours have beyond the image. */
+/* Parameters of image and vertex-colour textures other than the image. */
 static void fill_image_node(const vlTextureDef *def, vlTextureNode *node) {
   node->wrap = def->wrap, node->filter = def->filter, node->scale = def->scale, node->invert = def->invert;
   node->wrap_t = def->wrap_t_given ? def->wrap_t : def->wrap;
@@ -345,7 +347,7 @@ static void fill_image_node(const vlTextureDef *def, vlTextureNode *node) {
   node->plain = !tinted && !node->colors && def->channel < 0 && def->bias == 0 && isnan(def->cutoff);
 }
 
-/* The inputs that the kind's row names, in its order: a, b, c, d; and the amount. Below 0: an error. */
+/* Compiles the inputs that the kind's row names, in its order: a, b, c, d; and the amount. Below 0: an error. */
 static int32_t compile_inputs(Compile *c, const vlTextureDef *def, int role, int nesting, vlTextureNode *node) {
   const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)def->kind);
   int32_t *slots[4] = {&node->a, &node->b, &node->c, &node->d}, n = 0;
@@ -383,7 +385,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   node.octaves = def->octaves < 64 ? def->octaves : 64, node.omega = def->omega, node.variation = def->variation;
   memcpy(node.direction, def->direction, sizeof node.direction);
   fill_image_node(def, &node);
-  if (def->kind == VL_TEXTURE_CONSTANT) { /* its input's node stands for it */
+  if (def->kind == VL_TEXTURE_CONSTANT) { /* a constant texture compiles to its input's node */
     int32_t n = compile_input(c, def, def->float_a, def->spectrum_a, role, nesting);
     if (n >= 0) *memo = n + 1;
     return n;
@@ -411,7 +413,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   return n;
 }
 
-/* The memo lives as long as the build. */
+/* Compiles with a memo that lives as long as the build. */
 static vlResult with_compile(vlWorld *world, const vlScene *scene, Compile *c, vlError *error) {
   if (!world->texture_memo) {
     world->texture_memo = vl_world_block(world, (scene->textures.count + 1) * ROLES, sizeof(int32_t));
@@ -446,7 +448,7 @@ vlResult vl_world_spectrum_node(vlWorld *world, const vlScene *scene, vlSpectrum
 
 /* ---- one point --------------------------------------------------------------------------------------------------- */
 
-/* The point as the node sees it: its uv set, the vertex colour, the normal if the node reads it. No footprint. */
+/* The texture point for a node: its uv set, the vertex colour, the normal if the node reads it. No footprint. */
 static vlTexturePoint point_of(const vlTextureNode *node, const vlTextureQuery *q) {
   vlTexturePoint at = {q->u, q->v, q->p, vl_vec3(0, 0, 0), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
   if (vl_texture_needs_corner(node)) vl_texture_at_corner(node, q->corner, &at);
@@ -479,7 +481,7 @@ float vl_texture_float_at(const vlWorld *world, int32_t index, const vlTextureQu
     case VL_NODE_DOTS: share = vl_texture_dots(node, at); break;
     case VL_NODE_DIRECTION_MIX: share = vl_node_direction_mix(node, at); break;
     case VL_NODE_SPECTRUM:
-    case VL_NODE_MARBLE: return NAN; /* colours: vl_scene_add_texture refuses them where a float is wanted */
+    case VL_NODE_MARBLE: return NAN; /* colours; vl_scene_add_texture rejects them as float textures */
   }
   return vl_node_mix(vl_texture_float_at(world, node->a, q), vl_texture_float_at(world, node->b, q), share);
 }

@@ -1,5 +1,5 @@
-/* world/texture/texture.h: compiled textures: a flat list of nodes, inputs by index (always lower than the node's own).
- * Spectra are compiled for the place they stand in: an RGB albedo is another spectrum than an RGB illuminant. */
+/* world/texture/texture.h: compiled textures: a flat list of nodes with inputs by index (always lower than the
+ * node's own). Spectra are compiled for their role: an RGB albedo becomes another spectrum than an RGB illuminant. */
 #ifndef WORLD_TEXTURE_TEXTURE_H
 #define WORLD_TEXTURE_TEXTURE_H
 
@@ -21,7 +21,7 @@ typedef struct vlSpectral {
   float rgb[3];
 } vlSpectral;
 
-/* At one channel, whose wavelength is lambda (nm; not read in RGB mode). */
+/* Value at one channel, whose wavelength is lambda (nm; not read in RGB mode). */
 static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambda) {
   switch (s->kind) {
     case VL_SPECTRAL_SIGMOID: return s->scale * vl_sigmoid(s->sigmoid, lambda);
@@ -32,11 +32,11 @@ static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambd
   return s->scale;
 }
 
-/* Scratch rows that a texture may need while it is evaluated over a batch (trace/texture/texture.hot.c), and how many
- * nodes may be visited for it (inputs that are shared are evaluated each time): these bound nesting. */
+/* Limits of the scratch rows for evaluating a texture over a batch (trace/texture/texture.hot.c), and of the number
+ * of nodes visited (shared inputs are evaluated each time). They bound nesting. */
 enum { VL_NODE_ROWS = 64, VL_NODE_VISITS = 4096 };
 
-/* A node per kind of texture; constants are their input's: a number or, for colours, a spectrum. */
+/* One node kind per kind of texture. A constant compiles to its input: a number or, for colours, a spectrum. */
 typedef enum vlNodeKind {
 #define VL_KIND(NAME, name) VL_NODE_##NAME,
   VL_TEXTURE_KINDS(VL_KIND)
@@ -48,7 +48,7 @@ typedef enum vlNodeKind {
 typedef struct vlTextureNode {
   vlNodeKind kind;
   bool is_spectrum;
-  uint8_t rows; /* scratch rows that its evaluation needs, inputs included */
+  uint8_t rows; /* scratch rows for evaluation, including its inputs */
   uint16_t visits;
   vlSpectrumRole role;
   float value;                /* VL_NODE_FLOAT */
@@ -62,23 +62,24 @@ typedef struct vlTextureNode {
   vlTextureFilter filter;
   float scale;
   bool invert;
-  /* tint, bias, cutoff or vertex colours do something; channel of a float texture, -1: by the image */
+  /* plain: tint, bias, cutoff and vertex colours have no effect. Channel of a float texture; -1: chosen by the
+   * image. */
   bool plain, colors;
   int8_t channel;
   uint8_t uv_set;
   float tint[4], bias, cutoff; /* cutoff NaN: none */
   vlColorSpace space;
   vlMapping mapping;
-  bool st_given; /* s, t by st instead of su, sv, du, dv */
+  bool st_given; /* s, t from st instead of su, sv, du, dv */
   float su, sv, du, dv;
-  float st[6], st_scale; /* st_scale: the longest that a unit of uv becomes */
+  float st[6], st_scale; /* st_scale: the largest factor from uv to st lengths */
   float v1[3], v2[3];
   float texture_from_world[12];
 } vlTextureNode;
 
 typedef struct vlWorldImage {
   vlMipmap *mipmap;
-  const char *path; /* with the choices that change the pixels, for reading each file once; or */
+  const char *path; /* with the choices that change the pixels, so that each file is read once; or */
   const void *data; /* the file in memory */
   vlEncoding encoding;
   bool encoding_given;
@@ -86,26 +87,26 @@ typedef struct vlWorldImage {
 } vlWorldImage;
 
 struct vlWorld;
-/* What push gives when memory is out. */
+/* Returned by push when memory is exhausted. */
 enum { VL_TEXTURE_NO_MEMORY = -2 };
-/* Compiles a spectrum for its role; errors as vl_spectrum_dense. */
+/* Compiles a spectrum for its role; errors as for vl_spectrum_dense. */
 vlResult vl_spectral_compile(struct vlWorld *world, const vlSpectrum *spectrum, vlSpectrumRole role, vlSpectral *result,
                              vlError *error);
-/* A point of a triangle, for what its corners carry. */
+/* A point of a triangle, for interpolating vertex attributes. */
 typedef struct vlTextureCorner {
   const struct vlWorldShape *shape;
   uint32_t prim;
   float weights[3];
 } vlTextureCorner;
-/* Where a float texture is wanted at one point: the first uv set, position, geometric normal (of any length, either
- * side), all in the space of the shape's group; for shapes outside of groups that is the world. corner: null where the
- * shape has no triangles. */
+/* A point at which a float texture is evaluated: the first uv set, position, geometric normal (any length, either
+ * side), all in the space of the shape's group (world space for shapes outside of groups). corner: null if the shape
+ * has no triangles. */
 typedef struct vlTextureQuery {
   float u, v;
   vlVec3 p, n;
   const vlTextureCorner *corner;
 } vlTextureQuery;
-/* A float texture at one point: alpha, the amount of mixed materials, displacement. Unfiltered; else the same bits as
+/* A float texture at one point: alpha, mix amount, displacement. Unfiltered; otherwise bit-identical to
  * vl_texture_float over a batch. */
 float vl_texture_float_at(const struct vlWorld *world, int32_t node, const vlTextureQuery *query);
 

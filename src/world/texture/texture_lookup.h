@@ -1,27 +1,27 @@
-/* world/texture/texture_lookup.h: one texture point: coordinates, filtered image. Inline, by value: the batch evaluator
- * of trace and the single query share it by way of texture_node.h. pbrt book 10.2-10.4. */
+/* world/texture/texture_lookup.h: one texture point: coordinates and filtered image lookup. Inline and by value. The
+ * batch evaluator in trace and the single-point evaluator share it through texture_node.h. pbrt book 10.2-10.4. */
 #ifndef WORLD_TEXTURE_TEXTURE_LOOKUP_H
 #define WORLD_TEXTURE_TEXTURE_LOOKUP_H
 
 #include "world/world.h"
 
-/* Where a texture is asked for: uv, world position and normal, and the footprint: the width of a pixel in world units,
- * and for images the two axes of the ellipse that it is in (s, t). color: of the shape's vertices there; read only by
- * nodes that ask for it. */
+/* A point at which a texture is evaluated: uv, world position and normal, and the footprint: the width of a pixel in
+ * world units and, for images, the two axes of its ellipse in (s, t). color: interpolated vertex colour, read only
+ * by nodes that use it. */
 typedef struct vlTexturePoint {
   float u, v;
   vlVec3 p, n;
   float width;
-  float axes[4]; /* s, t of one, s, t of the other; whole widths */
+  float axes[4]; /* (s, t) of one axis, (s, t) of the other; full widths */
   float color[4];
 } vlTexturePoint;
 
-/* Does the node ask for more than the first uv set? */
+/* Whether the node reads more than the first uv set. */
 static inline bool vl_texture_needs_corner(const vlTextureNode *node) {
   return node->uv_set != 0 || node->colors;
 }
 
-/* The uv set and the vertex colour that the node asks for, at a point of a triangle. */
+/* Fills in the uv set and the vertex colour that the node reads, at a point of a triangle. */
 static inline void vl_texture_at_corner(const vlTextureNode *node, const vlTextureCorner *where, vlTexturePoint *at) {
   for (int c = 0; c < 4; c++) at->color[c] = 1.0f;
   if (!where || where->shape->kind != VL_SHAPE_TRIANGLES) return;
@@ -64,11 +64,11 @@ static inline vlVec2 vl_texture_st(const vlTextureNode *node, vlTexturePoint at)
   return (vlVec2){vl_acos(vl_clamp(d.z, -1, 1)) * VL_INV_PI, phi * (0.5f * VL_INV_PI)};
 }
 
-/* Are s, t an affine map of the first uv set? */
+/* Whether s, t are an affine map of the first uv set. */
 static inline bool vl_texture_over_uv(const vlTextureNode *node) {
   return node->uv_set == 0 && (node->st_given || node->mapping == VL_MAPPING_UV);
 }
-/* Axes in uv become axes in (s, t). */
+/* Converts axes in uv to axes in (s, t). */
 static inline void vl_texture_axes_of_uv(const vlTextureNode *node, const float uv[4], vlTexturePoint *at) {
   for (int k = 0; k < 4; k += 2) {
     at->axes[k] = node->st_given ? node->st[0] * uv[k] + node->st[1] * uv[k + 1] : node->su * uv[k];
@@ -130,7 +130,7 @@ static inline int32_t vl_to_index(float x) { /* floor, safe for any float */
   return f == f ? (int32_t)f : 0;
 }
 
-/* s, t with (0, 0) the top left corner of the image. */
+/* s, t: (0, 0) is the top left corner of the image. */
 static inline vlTexel vl_bilinear_2(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap, vlWrap wrap_t) {
   float x = s * (float)mip->levels[level].width - 0.5f, y = t * (float)mip->levels[level].height - 0.5f;
   int32_t xi = vl_to_index(x), yi = vl_to_index(y);
@@ -155,31 +155,31 @@ static inline vlTexel vl_nearest(const vlMipmap *mip, uint32_t level, float s, f
   return vl_nearest_2(mip, level, s, t, wrap, wrap);
 }
 
-/* log2 of a positive float to about 1e-3, for choosing a level. */
+/* log2 of a positive float, to about 1e-3, for choosing a mip level. */
 static inline float vl_log2_rough(float x) {
   return vl_ln(x) * 1.44269504f;
 }
 
-/* How an image is filtered over an ellipse: blurred to its shorter axis by the choice of a level (a mip map's are
- * blurred all ways alike), along the longer one by several taps. */
+/* Filtering over an ellipse: the mip level matches its shorter axis (mip levels are isotropic), several taps cover
+ * the longer one. */
 enum { VL_FILTER_TAPS = 8 };
 typedef struct vlFilterPlan {
-  float level; /* at least 0 */
+  float level; /* >= 0 */
   uint32_t taps;
-  float s, t; /* the whole way of the taps */
+  float s, t; /* distance between the first and the last tap */
 } vlFilterPlan;
 static inline vlFilterPlan vl_filter_plan(const vlMipmap *mip, const float axes[4]) {
   float w = (float)mip->levels[0].width, h = (float)mip->levels[0].height;
-  float as = axes[0] * w, at = axes[1] * h, bs = axes[2] * w, bt = axes[3] * h; /* in texels */
+  float as = axes[0] * w, at = axes[1] * h, bs = axes[2] * w, bt = axes[3] * h; /* axes in texels */
   float a2 = as * as + at * at, b2 = bs * bs + bt * bt;
   bool first = a2 > b2;
   float long2 = first ? a2 : b2;
   vlFilterPlan plan = {0.0f, 1, 0.0f, 0.0f};
-  if (!(long2 > 1.0f && long2 < 1e30f)) { /* no texel is skipped */
+  if (!(long2 > 1.0f && long2 < 1e30f)) { /* magnification: no texel is skipped */
     plan.level = long2 >= 1e30f ? (float)(mip->level_count - 1) : 0.0f;
     return plan;
   }
-  float longer = __builtin_sqrtf(long2), shorter = vl_abs(as * bt - at * bs) / longer; /* of equal area */
+  float longer = __builtin_sqrtf(long2), shorter = vl_abs(as * bt - at * bs) / longer; /* ellipse of equal area */
   shorter = vl_max(shorter, 1.0f);
   plan.level = vl_min(vl_log2_rough(shorter), (float)(mip->level_count - 1));
   plan.taps = (uint32_t)vl_min(longer / shorter * 0.99999f, (float)(VL_FILTER_TAPS - 1)) + 1;
@@ -187,7 +187,7 @@ static inline vlFilterPlan vl_filter_plan(const vlMipmap *mip, const float axes[
   return plan;
 }
 
-/* One tap at a level between two, in between if both is set. */
+/* One tap at a fractional level; blends two levels if the filter is trilinear. */
 static inline vlTexel vl_filter_tap(const vlTextureNode *node, const vlMipmap *mip, float level, bool both, float s,
                                     float t) {
   uint32_t l = (uint32_t)level;
@@ -199,8 +199,8 @@ static inline vlTexel vl_filter_tap(const vlTextureNode *node, const vlMipmap *m
   return a;
 }
 
-/* An image texture: t of the texture counts from the bottom, rows from the top. Point takes a texel of the finer
- * level, bilinear is bilinear on it, trilinear (and EWA) blend two levels; these take several taps. */
+/* An image texture: t counts from the bottom, rows from the top. Point reads a texel of the finer level, bilinear
+ * interpolates on it, trilinear (and EWA) blends two levels. The last two take several taps. */
 static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
   vlVec2 st = vl_texture_st(node, at);
   float s = st.x, t = 1.0f - st.y;
@@ -227,8 +227,8 @@ static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap
   return r;
 }
 
-/* All four channels, tinted: grey stands for red, green and blue, coverage is 1 where there is none. mip null: the
- * vertex colour alone. */
+/* All four channels, tinted: grey is copied to red, green and blue; coverage is 1 if the image has none. mip null:
+ * the vertex colour alone. */
 static inline vlTexel vl_texture_rgba(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
   vlTexel t = {{1, 1, 1, 1}};
   if (mip) {

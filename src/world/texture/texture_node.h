@@ -1,6 +1,6 @@
-/* world/texture/texture_node.h: the value of each kind of texture node at one point. Inline, by value. Two evaluators
- * share these functions, so that they agree to the bit: trace/texture/texture.hot.c over a batch, texture.c for a
- * single query. Both switch over vlNodeKind without a default: a kind that one of them lacks does not compile. */
+/* world/texture/texture_node.h: the value of each kind of texture node at one point. Inline and by value. Two
+ * evaluators share these functions and thus agree to the bit: trace/texture/texture.hot.c over a batch, texture.c at
+ * a single point. Both switch over vlNodeKind without a default: a missing kind does not compile. */
 #ifndef WORLD_TEXTURE_TEXTURE_NODE_H
 #define WORLD_TEXTURE_TEXTURE_NODE_H
 
@@ -18,8 +18,8 @@ static inline float vl_node_mix(float a, float b, float share) {
   return (1 - share) * a + share * b;
 }
 
-/* VL_NODE_CHECKERBOARD: share of the second input, 0 or 1. (pbrt filters checks only over ray differentials; the
- * samples of a pixel do it here.) */
+/* VL_NODE_CHECKERBOARD: share of the second input, 0 or 1. Unfiltered: the samples of a pixel antialias it. (pbrt
+ * filters it by ray differentials.) */
 static inline float vl_node_checkerboard(const vlTextureNode *node, vlTexturePoint at) {
   if (node->dimension == 3) {
     vlVec3 q = vl_texture_space(node, at.p);
@@ -31,12 +31,13 @@ static inline float vl_node_checkerboard(const vlTextureNode *node, vlTexturePoi
   return sum & 1 ? 1.0f : 0.0f;
 }
 
-/* VL_NODE_DIRECTION_MIX: share of the second input: the first one's is the cosine between normal and direction. */
+/* VL_NODE_DIRECTION_MIX: share of the second input. The share of the first is the cosine between the normal and the
+ * node's direction. */
 static inline float vl_node_direction_mix(const vlTextureNode *node, vlTexturePoint at) {
   return 1.0f - vl_abs(vl_dot(at.n, vl_vec3(node->direction[0], node->direction[1], node->direction[2])));
 }
 
-/* VL_NODE_BILERP: weights of the four inputs a, b, c, d, and their sum, one input after the other from 0. */
+/* VL_NODE_BILERP: weights of the four inputs a, b, c, d, which are summed in this order from 0. */
 typedef struct vlBilerpWeights {
   float w[4];
 } vlBilerpWeights;
@@ -50,8 +51,8 @@ static inline float vl_node_bilerp_add(float sum, float weight, float input) {
 
 /* ---- floats ------------------------------------------------------------------------------------------------------ */
 
-/* A number out of red, green, blue and coverage: the channel that the node names; without one coverage of images that
- * have it, else the mean. mip null: the vertex colour alone. */
+/* A float from red, green, blue and coverage: the channel that the node selects; by default coverage if the image
+ * has it, else the mean of the colours. mip null: the vertex colour alone. */
 static inline float vl_texture_channel(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
   vlTexel t = vl_texture_rgba(node, mip, at);
   float x = node->bias;

@@ -1,12 +1,12 @@
-/* world/texture/texture_noise.h: textures made of noise, one point: fbm, wrinkled, windy, marble, dots. Patterns and
- * constants are pbrt's, whose scenes use them (pbrt 3rd edition, 10.6; the fourth keeps them). */
+/* world/texture/texture_noise.h: noise textures at one point: fbm, wrinkled, windy, marble, dots. Patterns and
+ * constants are pbrt's (pbrt 3rd edition, 10.6; the fourth edition keeps them). */
 #ifndef WORLD_TEXTURE_TEXTURE_NOISE_H
 #define WORLD_TEXTURE_TEXTURE_NOISE_H
 
 #include "math/noise.h"
 #include "world/texture/texture_lookup.h"
 
-/* Width of the footprint in texture space: by the longest that a unit of the world becomes there. */
+/* Width of the footprint in texture space, by the largest factor of the map from world to texture space. */
 static inline float vl_texture_space_width(const vlTextureNode *node, vlTexturePoint at) {
   const float *m = node->texture_from_world;
   float x = m[0] * m[0] + m[4] * m[4] + m[8] * m[8], y = m[1] * m[1] + m[5] * m[5] + m[9] * m[9];
@@ -29,7 +29,7 @@ static inline float vl_texture_windy(const vlTextureNode *node, vlTexturePoint a
   return vl_abs(wind) * vl_fractal_noise(p, width, 0.5f, 6);
 }
 
-/* Colours along a vein, by a spline through nine. */
+/* Colours along a vein: a spline through nine colours. */
 static inline vlVec3 vl_texture_marble(const vlTextureNode *node, vlTexturePoint at) {
   static const float colors[9][3] = {{.58f, .58f, .6f}, {.58f, .58f, .6f}, {.58f, .58f, .6f},
                                      {.5f, .5f, .5f},   {.6f, .59f, .58f}, {.58f, .58f, .6f},
@@ -51,7 +51,8 @@ static inline vlVec3 vl_texture_marble(const vlTextureNode *node, vlTexturePoint
   return vl_vec3(out[0], out[1], out[2]);
 }
 
-/* 1 inside a dot, 0 outside. About half of the cells of a unit have one, of radius 0.35 and somewhere in it. */
+/* 1 inside a dot, 0 outside. About half of the unit cells have a dot, of radius 0.35, at a random position inside
+ * the cell. */
 static inline float vl_texture_dots(const vlTextureNode *node, vlTexturePoint at) {
   const float radius = 0.35f, shift = 0.5f - radius;
   vlVec2 st = vl_texture_st(node, at);

@@ -145,11 +145,11 @@ vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
   return (vlEmissionId){(uint32_t)scene->emissions.count};
 }
 
-/* A rectangle, and a picture to be seen through it. Tolerances as pbrt's. */
+/* A rectangle, and an image to be seen through it. Tolerances as pbrt's. */
 static bool check_portal(vlScene *scene, const vlLightDef *d) {
   double sides[4][3], lengths[4];
   if (d->kind != VL_LIGHT_INFINITE || (!d->path && !d->image))
-    return bad(scene, d->source, "light", "a portal is for an infinite light with a picture");
+    return bad(scene, d->source, "light", "a portal is for an infinite light with an image");
   for (int k = 0; k < 4; k++) {
     double sum = 0;
     for (int i = 0; i < 3; i++) {

@@ -94,18 +94,17 @@ static vlLightInfo shape_light(const vlScene *s, const vlShapeDef *d) {
   const vlEmissionDef *e = &s->emissions.items[d->emission.index - 1];
   bool meshed = vl_shape_is_mesh(d->kind);
   vlLightInfo info = {.kind = "area", .source = d->source, .faces = meshed ? d->faces : 1};
-  info.picture = e->image || e->texture.index;
+  info.image = e->image || e->texture.index;
   info.power = given(e->power) ? e->power * (double)info.faces
-               : info.picture
-                   ? NAN
-                   : pi * shape_area(d) * luminance(&e->radiance) * (double)e->scale * (e->two_sided ? 2 : 1);
+               : info.image    ? NAN
+                            : pi * shape_area(d) * luminance(&e->radiance) * (double)e->scale * (e->two_sided ? 2 : 1);
   return info;
 }
 
 static vlLightInfo light(const vlScene *s, const vlLightDef *l) {
   vlLightInfo info = {.kind = vl_kind_row(&vl_light_family, (int)l->kind)->name, .source = l->source};
   double low[3], high[3], radius2 = 0;
-  info.picture = l->path || l->image;
+  info.image = l->path || l->image;
   vl_scene_bounds(s, low, high);
   for (int k = 0; k < 3; k++) radius2 += high[k] > low[k] ? 0.25 * (high[k] - low[k]) * (high[k] - low[k]) : 0;
   info.power = vl_light_power(l, luminance(&l->color) * (double)l->scale, sqrt(radius2));

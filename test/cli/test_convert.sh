@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# velo scene convert: glTF to glTF keeps every bit of the picture, pbrt to pbrt too, between them it stays near; what is
+# velo scene convert: glTF to glTF keeps every bit of the image, pbrt to pbrt too, between them it stays near; what is
 # not held is told; what the specification forbids is not written: by tools/check_gltf, and by Khronos' validator where it
 # is installed (npm install --prefix build gltf-validator).
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
@@ -21,7 +21,7 @@ for name in film lecture portal; do
   check "render_${name}_again" "$VELO" render "$name.again.pbrt" -o b.exr --quiet
   check "same_$name" "$VELO" image diff a.exr b.exr --threshold maxabs=1e-5
 done
-# Lights, shapes and media of every kind but curves and NanoVDB: the same picture, to the bit.
+# Lights, shapes and media of every kind but curves and NanoVDB: the same image, to the bit.
 for name in lights media shapes; do
   check "convert_$name" "$VELO" scene convert "$VELO_SOURCE_DIR/scenes/features/$name.pbrt" "$name.pbrt" --strict
   check "render_$name" "$VELO" render "$VELO_SOURCE_DIR/scenes/features/$name.pbrt" -o a.exr --resolution 48x36 --spp 2 --quiet

@@ -11,7 +11,7 @@ static bool is_file_parameter(const vlParameter *p) {
 static bool prepare_file(vlExport *x, const char *path, char name[300]) {
   vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
   t.path = path;
-  return vl_pbrt_picture(x, &t, false, name); /* copied as images are */
+  return vl_pbrt_image(x, &t, false, name); /* copied as images are */
 }
 
 static bool prepare(vlExport *x, const vlParameter *p, const void *def, bool spectrum, int depth,

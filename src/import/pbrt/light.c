@@ -53,7 +53,7 @@ static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given, 
   return true;
 }
 
-/* Portals are for pictures: of a sky that is one colour, one of one pixel (as pbrt does). */
+/* Portals are for images: of a sky that is one colour, one of one pixel (as pbrt does). */
 static bool plain_sky(vlImport *import, const vlLightDef *def, vlImage **sky) {
   vlImageDef image = vl_default_image_def(1, 1, 3);
   vlError error = {0};

@@ -20,7 +20,7 @@
 /* What several kinds have. */
 #define BUMPS                                                                                 \
   INPUT("displacement", displacement, "height of a bump map, in the scene's unit of length"), \
-      FILE_NAME("normalmap", normal_map, "a picture of normals, in tangent space and linear")
+      FILE_NAME("normalmap", normal_map, "an image of normals, in tangent space and linear")
 #define REFLECTANCE(value, text) SPECTRUM("reflectance", reflectance, text, VL_DEFAULT(value), ALBEDO)
 #define REMAP BOOL("remaproughness", remap_roughness, "alpha is the square root of roughness", VL_DEFAULT(1))
 #define ROUGHNESS                                                                                             \

@@ -21,7 +21,7 @@ static float point_density(const vlWorld *world, const vlWorldLight *light, vlVe
   return (float)vl_shape_pdf(s, light->prim, &point);
 }
 
-/* Pictures of the sky have a density that leaves out what is dim (other ways find that better): half of the light's
+/* Images of the sky have a density that leaves out what is dim (other ways find that better): half of the light's
  * paths go by it, half from anywhere. */
 static float sky_density(const vlWorld *world, const vlWorldLight *light, vlVec3 w) {
   if (light->environment == VL_NONE) return VL_INV_4PI;
@@ -94,7 +94,7 @@ static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float 
   Spot r = {vl_vec3(0, 0, 0),  vl_vec3(light->direction[0], light->direction[1], light->direction[2]), 0, 0, 0,
             {b[0], b[1], b[2]}};
   vlVec3 ns = vl_vec3(0, 0, 0);
-  const float *uvs = s->glow_uvs ? s->glow_uvs : s->uvs;
+  const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
   for (int k = 0; k < 3; k++) {
     r.p = vl_add(r.p, vl_mul(vl_vec3(q[3 * k], q[3 * k + 1], q[3 * k + 2]), b[k]));
     const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;

@@ -7,7 +7,7 @@
 /* Factor of the image for light that leaves along d. */
 static float image_factor(const vlWorld *world, const vlWorldLight *light, vlVec3 d) {
   vlVec3 local = vl_normalize(vl_light_local(light, d));
-  const vlMipmap *mip = world->images.items[light->picture].mipmap;
+  const vlMipmap *mip = world->images.items[light->image].mipmap;
   vlVec2 at = vl_octahedral_encode(local);
   vlTexel x = vl_nearest(mip, 0, at.x, at.y, VL_WRAP_OCTAHEDRAL);
   return vl_max(0.0f, mip->channels < 3 ? x.c[0] : (x.c[0] + x.c[1] + x.c[2]) / 3.0f);

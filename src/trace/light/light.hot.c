@@ -178,7 +178,7 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
   }
   if (with_uv) {
     static const float unit[6] = {0, 0, 1, 0, 1, 1};
-    const float *uvs = s->glow_uvs ? s->glow_uvs : s->uvs;
+    const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
     for (int k = 0; k < 3; k++) {
       const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
       r.u += b[k] * t[0], r.v += b[k] * t[1];
@@ -187,10 +187,10 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
   return r;
 }
 
-vlVec2 vl_glow_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint *at) {
+vlVec2 vl_emission_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint *at) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   vlVec2 uv = {at->u, at->v};
-  if (!s->glow_uvs) return uv;
+  if (!s->emission_uvs) return uv;
   const float *q = light->corners;
   vlVec3 a = vl_vec3(q[0], q[1], q[2]), e1 = vl_sub(vl_vec3(q[3], q[4], q[5]), a),
          e2 = vl_sub(vl_vec3(q[6], q[7], q[8]), a);
@@ -198,8 +198,8 @@ vlVec2 vl_glow_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint
   float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
   float b1 = vl_dot(vl_cross(way, e2), g) * inv, b2 = vl_dot(vl_cross(e1, way), g) * inv;
   const uint32_t *f = s->indices + 3 * (size_t)light->prim;
-  const float *t0 = s->glow_uvs + 2 * (size_t)f[0], *t1 = s->glow_uvs + 2 * (size_t)f[1],
-              *t2 = s->glow_uvs + 2 * (size_t)f[2];
+  const float *t0 = s->emission_uvs + 2 * (size_t)f[0], *t1 = s->emission_uvs + 2 * (size_t)f[1],
+              *t2 = s->emission_uvs + 2 * (size_t)f[2];
   uv.x = (1.0f - b1 - b2) * t0[0] + b1 * t1[0] + b2 * t2[0];
   uv.y = (1.0f - b1 - b2) * t0[1] + b1 * t1[1] + b2 * t2[1];
   return uv;

@@ -5,7 +5,7 @@
 static float image_point(const vlWorldLight *light, vlVec3 d, vlVec2 *st) {
   vlVec3 local = vl_normalize(vl_light_local(light, d));
   *st = (vlVec2){0, 0};
-  float x = local.x / local.z / light->slide[0], y = local.y / local.z / light->slide[1];
+  float x = local.x / local.z / light->image_extent[0], y = local.y / local.z / light->image_extent[1];
   if (!(local.z > 1e-3f) || !(vl_abs(x) <= 1.0f) || !(vl_abs(y) <= 1.0f)) return 0.0f;
   *st = (vlVec2){0.5f * (x + 1.0f), 0.5f * (y + 1.0f)};
   return 1.0f;

@@ -132,7 +132,7 @@ void vl_parameters_conductor(vlTextureRun *r, const vlWorldMaterial *m) {
 void vl_parameters_dielectric(vlTextureRun *r, const vlWorldMaterial *m) {
   reflectance(r, m);
   alphas(r, m);
-  if (m->subsurface) vl_stage_bodies(r, m);
+  if (m->subsurface) vl_stage_subsurface_inputs(r, m);
   index_of_refraction(r, m);
 }
 
@@ -191,7 +191,7 @@ static void follow_hero(vlPaths *p, uint32_t first, uint32_t last) {
 void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s) {
   const vlWorldMaterial *m = &world->materials.items[material];
   vlTextureRun r = {world, s, &s->b, &s->surface, first, last, 0, NULL, NULL, NULL, NULL, NULL};
-  for (uint32_t i = first; m->no_cosine && i < last; i++) s->surface.all_round[i] = 1.0f;
+  for (uint32_t i = first; m->no_cosine && i < last; i++) s->surface.no_cosine[i] = 1.0f;
   if (m->displacement >= 0) bump(&r, m->displacement);
   if (m->normal_map >= 0) normal_map(&r, m->normal_map);
   r.top = 0;

@@ -91,7 +91,7 @@ VL_BSDF_KINDS(VL_DECLARE_PARAMETERS)
 
 /* Parts of them. Layers: after the textured eta, k and roughness; translucent, bodies, hair: after the reflectance. The
  * coat's normal of the principled material stays in the world until there are frames. */
-vlParametersFn vl_stage_layers, vl_stage_translucent, vl_stage_bodies, vl_stage_hair, vl_stage_principled;
+vlParametersFn vl_stage_layers, vl_stage_translucent, vl_stage_subsurface_inputs, vl_stage_hair, vl_stage_principled;
 void vl_stage_coat_frames(const vlSurface *surface, vlShade *shade, uint32_t first, uint32_t last);
 
 #endif

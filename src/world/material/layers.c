@@ -10,7 +10,7 @@ vlResult vl_material_layers(const vlMaterialBuild *b, bool metal) {
   b->m->own = l;
   l->metal = metal;
   l->coat_u = l->coat_v = -1;
-  /* More steps than a walk ever takes (it ends by roulette), more walks than a picture's samples are worth. */
+  /* More steps than a walk ever takes (it ends by roulette), more walks than an image's samples are worth. */
   l->depth = def->max_depth < 1000 ? def->max_depth : 1000;
   l->walks = def->samples < 256 ? def->samples : 256;
   const vlMaterialFloat floats[] = {{def->thickness, &l->thickness},

@@ -148,7 +148,10 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   int kind = vl_kind_find(&vl_tracer_family, stand_in(choice->kind));
   const vlKindRow *row = vl_kind_row(&vl_tracer_family, kind);
   if (!row) { /* permissive: a path tracer of that depth stands in */
-    if (!vl_import_unknown_kind(import, choice->place, &vl_tracer_family, choice->kind)) return false;
+    static const char *const later[] = {"function"};
+    const char *names[32];
+    size_t count = vl_kind_names(&vl_tracer_family, names, sizeof names / sizeof *names);
+    if (!vl_import_unknown(import, choice->place, "integrator", choice->kind, names, count, later, 1)) return false;
     read_depth(&dict, s);
     return import->scene->error.code == VL_OK;
   }

@@ -147,13 +147,13 @@ VL_KIND_ROW(colmap, .name = "colmap", .description = "a camera model of COLMAP's
 
 /* ---- one per projection; those without a name belong to a camera above ------------------------------------------- */
 
-VL_KIND_ROW_EMPTY(perspective, .name = NULL)
-VL_KIND_ROW_EMPTY(orthographic, .name = NULL)
-VL_KIND_ROW_EMPTY(equidistant, .name = NULL)
-VL_KIND_ROW_EMPTY(equisolid, .name = NULL)
-VL_KIND_ROW_EMPTY(stereographic, .name = NULL)
-VL_KIND_ROW_EMPTY(sine, .name = NULL)
-VL_KIND_ROW_EMPTY(optics, .name = NULL)
+VL_KIND_ROW_EMPTY(perspective, .description = "the camera perspective, pinhole or opencv")
+VL_KIND_ROW_EMPTY(orthographic, .description = "the camera orthographic")
+VL_KIND_ROW_EMPTY(equidistant, .description = "the camera fisheye")
+VL_KIND_ROW_EMPTY(equisolid, .description = "the camera fisheye")
+VL_KIND_ROW_EMPTY(stereographic, .description = "the camera fisheye")
+VL_KIND_ROW_EMPTY(sine, .description = "the camera fisheye")
+VL_KIND_ROW_EMPTY(optics, .description = "the camera realistic")
 static const vlParameter equirectangular_parameters[] = {
     MODEL, BLOCK("longitude", screen_min_x, "float", "limits, degrees; -180 180"),
     BLOCK("latitude", screen_min_y, "float", "limits, degrees; -90 90")};

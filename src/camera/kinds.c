@@ -52,76 +52,42 @@ static double unified_spread(const double shape[2]) {
 #define FISHEYE VL_PROJECTION_FISHEYE | VL_PROJECTION_CIRCLE | VL_PROJECTION_RADIAL
 #define CALIBRATED VL_PROJECTION_CALIBRATED | VL_PROJECTION_CIRCLE | VL_PROJECTION_RADIAL
 
-const vlProjectionRow vl_projection_perspective = {
-    .name = "perspective",
-    .key = "perspective",
-    .traits = VL_PROJECTION_AHEAD | VL_PROJECTION_CIRCLE | VL_PROJECTION_RADIAL,
-    .standard_focal = half_side};
-const vlProjectionRow vl_projection_orthographic = {
-    .name = "orthographic",
-    .key = "orthographic",
-    .traits = VL_PROJECTION_AHEAD | VL_PROJECTION_RADIAL | VL_PROJECTION_NO_DISTORTION,
-    .standard_focal = half_side};
-const vlProjectionRow vl_projection_equidistant = {
-    .name = "equidistant fisheye", .key = "equidistant", .traits = FISHEYE, .limit = 3.141592653589793};
-const vlProjectionRow vl_projection_equisolid = {.name = "equisolid fisheye", .key = "equisolid", .traits = FISHEYE};
-const vlProjectionRow vl_projection_stereographic = {
-    .name = "stereographic fisheye", .key = "stereographic", .traits = FISHEYE};
-const vlProjectionRow vl_projection_sine = {
-    .name = "orthographic fisheye", .key = "sine", .traits = VL_PROJECTION_AHEAD | FISHEYE};
-const vlProjectionRow vl_projection_equirectangular = {.name = "equirectangular",
-                                                       .key = "equirectangular",
-                                                       .traits = VL_PROJECTION_STRETCHED | VL_PROJECTION_NO_DISTORTION,
-                                                       .standard_focal = whole_sphere};
-const vlProjectionRow vl_projection_equal_area = {
-    .name = "equal-area",
-    .key = "equal-area",
-    .traits = VL_PROJECTION_STRETCHED | VL_PROJECTION_NO_FOV | VL_PROJECTION_NO_DISTORTION,
-    .spread = equal_area_spread,
-    .standard_focal = whole_square};
-const vlProjectionRow vl_projection_cylindrical = {
-    .name = "cylindrical", .key = "cylindrical", .standard_focal = whole_cylinder};
-const vlProjectionRow vl_projection_cube = {
-    .name = "cube",
-    .key = "cube",
-    .traits = VL_PROJECTION_STRETCHED | VL_PROJECTION_NO_FOV | VL_PROJECTION_NO_DISTORTION,
-    .count = 1,
-    .numbers = {{"layout", 0.0, 1.0, 0.0}},
-    .spread = cube_spread,
-    .standard_focal = whole_cube};
-const vlProjectionRow vl_projection_panini = {
-    .name = "Panini", .key = "panini", .count = 1, .numbers = {{"d", 0.0, 1e3, 1.0}}};
-const vlProjectionRow vl_projection_fov = {.name = "FOV",
-                                           .key = "fov",
-                                           .traits = VL_PROJECTION_AHEAD | CALIBRATED,
-                                           .count = 1,
-                                           .numbers = {{"w", 1e-6, 3.14, VL_UNSET}},
-                                           .spread = fov_spread};
-const vlProjectionRow vl_projection_division = {.name = "division",
-                                                .key = "division",
-                                                .traits = CALIBRATED,
-                                                .count = 1,
-                                                .numbers = {{"lambda", -1e3, 1e3, VL_UNSET}}};
-const vlProjectionRow vl_projection_unified = {.name = "unified",
-                                               .key = "unified",
-                                               .traits = CALIBRATED,
-                                               .count = 1,
-                                               .numbers = {{"xi", 0.0, 1e3, VL_UNSET}},
-                                               .spread = unified_spread};
-const vlProjectionRow vl_projection_eucm = {.name = "EUCM",
-                                            .key = "eucm",
-                                            .traits = CALIBRATED,
-                                            .count = 2,
-                                            .numbers = {{"alpha", 0.0, 1.0, VL_UNSET}, {"beta", 1e-6, 1e6, VL_UNSET}}};
-const vlProjectionRow vl_projection_double_sphere = {
-    .name = "double sphere",
-    .key = "double-sphere",
-    .traits = CALIBRATED,
-    .count = 2,
-    .numbers = {{"xi", -0.999, 0.999, VL_UNSET}, {"alpha", 0.0, 1.0, VL_UNSET}},
-    .spread = unified_spread};
-const vlProjectionRow vl_projection_optics = {
-    .name = "optics", .traits = VL_PROJECTION_AHEAD | VL_PROJECTION_CIRCLE | VL_PROJECTION_RADIAL};
+VL_PROJECTION_ROW(PERSPECTIVE, perspective, .name = "perspective", .key = "perspective",
+                  .traits = VL_PROJECTION_AHEAD | VL_PROJECTION_CIRCLE | VL_PROJECTION_RADIAL,
+                  .standard_focal = half_side);
+VL_PROJECTION_ROW(ORTHOGRAPHIC, orthographic, .name = "orthographic", .key = "orthographic",
+                  .traits = VL_PROJECTION_AHEAD | VL_PROJECTION_RADIAL | VL_PROJECTION_NO_DISTORTION,
+                  .standard_focal = half_side);
+VL_PROJECTION_ROW(EQUIDISTANT, equidistant, .name = "equidistant fisheye", .key = "equidistant", .traits = FISHEYE,
+                  .limit = 3.141592653589793);
+VL_PROJECTION_ROW(EQUISOLID, equisolid, .name = "equisolid fisheye", .key = "equisolid", .traits = FISHEYE);
+VL_PROJECTION_ROW(STEREOGRAPHIC, stereographic, .name = "stereographic fisheye", .key = "stereographic",
+                  .traits = FISHEYE);
+VL_PROJECTION_ROW(SINE, sine, .name = "orthographic fisheye", .key = "sine", .traits = VL_PROJECTION_AHEAD | FISHEYE);
+VL_PROJECTION_ROW(EQUIRECTANGULAR, equirectangular, .name = "equirectangular", .key = "equirectangular",
+                  .traits = VL_PROJECTION_STRETCHED | VL_PROJECTION_NO_DISTORTION, .standard_focal = whole_sphere);
+VL_PROJECTION_ROW(EQUAL_AREA, equal_area, .name = "equal-area", .key = "equal-area",
+                  .traits = VL_PROJECTION_STRETCHED | VL_PROJECTION_NO_FOV | VL_PROJECTION_NO_DISTORTION,
+                  .spread = equal_area_spread, .standard_focal = whole_square);
+VL_PROJECTION_ROW(CYLINDRICAL, cylindrical, .name = "cylindrical", .key = "cylindrical",
+                  .standard_focal = whole_cylinder);
+VL_PROJECTION_ROW(CUBE, cube, .name = "cube", .key = "cube",
+                  .traits = VL_PROJECTION_STRETCHED | VL_PROJECTION_NO_FOV | VL_PROJECTION_NO_DISTORTION, .count = 1,
+                  .numbers = {{"layout", 0.0, 1.0, 0.0}}, .spread = cube_spread, .standard_focal = whole_cube);
+VL_PROJECTION_ROW(PANINI, panini, .name = "Panini", .key = "panini", .count = 1, .numbers = {{"d", 0.0, 1e3, 1.0}});
+VL_PROJECTION_ROW(FOV, fov, .name = "FOV", .key = "fov", .traits = VL_PROJECTION_AHEAD | CALIBRATED, .count = 1,
+                  .numbers = {{"w", 1e-6, 3.14, VL_UNSET}}, .spread = fov_spread);
+VL_PROJECTION_ROW(DIVISION, division, .name = "division", .key = "division", .traits = CALIBRATED, .count = 1,
+                  .numbers = {{"lambda", -1e3, 1e3, VL_UNSET}});
+VL_PROJECTION_ROW(UNIFIED, unified, .name = "unified", .key = "unified", .traits = CALIBRATED, .count = 1,
+                  .numbers = {{"xi", 0.0, 1e3, VL_UNSET}}, .spread = unified_spread);
+VL_PROJECTION_ROW(EUCM, eucm, .name = "EUCM", .key = "eucm", .traits = CALIBRATED, .count = 2,
+                  .numbers = {{"alpha", 0.0, 1.0, VL_UNSET}, {"beta", 1e-6, 1e6, VL_UNSET}});
+VL_PROJECTION_ROW(DOUBLE_SPHERE, double_sphere, .name = "double sphere", .key = "double-sphere", .traits = CALIBRATED,
+                  .count = 2, .numbers = {{"xi", -0.999, 0.999, VL_UNSET}, {"alpha", 0.0, 1.0, VL_UNSET}},
+                  .spread = unified_spread);
+VL_PROJECTION_ROW(OPTICS, optics, .name = "optics",
+                  .traits = VL_PROJECTION_AHEAD | VL_PROJECTION_CIRCLE | VL_PROJECTION_RADIAL);
 
 #define ROW(NAME, name) [VL_PROJECTION_##NAME] = &vl_projection_##name,
 static const vlProjectionRow *const rows[] = {VL_PROJECTION_KINDS(ROW)};

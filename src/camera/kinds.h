@@ -35,6 +35,11 @@ typedef struct vlProjectionRow {
   void (*standard_focal)(const vlCameraDef *def, const vlCamera *camera, double focal[2]);
 } vlProjectionRow;
 
+/* Defines the row of a kind, which must be in the list. */
+#define VL_PROJECTION_ROW(NAME, variable, ...)                                \
+  _Static_assert(VL_PROJECTION_##NAME >= 0, "a kind of VL_PROJECTION_KINDS"); \
+  const vlProjectionRow vl_projection_##variable = {__VA_ARGS__}
+
 /* Each kind's row: those of kinds.c, or of a file of its own. */
 #define VL_PROJECTION_DECLARE(NAME, name) extern const vlProjectionRow vl_projection_##name;
 VL_PROJECTION_KINDS(VL_PROJECTION_DECLARE)

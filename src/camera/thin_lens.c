@@ -9,11 +9,6 @@
 static const double agreement = 1e-6;
 
 /* Projections that see only what lies ahead: planes of constant z stand where others have spheres around the eye. */
-bool vl_camera_sees_ahead(vlProjection kind) {
-  return kind <= VL_PROJECTION_ORTHOGRAPHIC || kind == VL_PROJECTION_SINE || kind == VL_PROJECTION_FOV ||
-         kind == VL_PROJECTION_OPTICS;
-}
-
 static bool given(double value) {
   return !vl_is_unset(value);
 }

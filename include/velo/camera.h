@@ -12,24 +12,29 @@ extern "C" {
 
 /* Which point of the plane a direction lands on: docs/cameras.md has the equations. The plane's unit is the focal
  * length (fx, fy pixels); for angles it is a radian. */
+/* X(NAME, name) for each projection; what pbrt files call it: velo/schema.h. */
+#define VL_PROJECTION_KINDS(X)                                                                                    \
+  X(PERSPECTIVE, perspective)                                                                                     \
+  X(ORTHOGRAPHIC, orthographic)                                                                                   \
+  X(EQUIDISTANT, equidistant)         /* fisheyes: r = theta */                                                   \
+  X(EQUISOLID, equisolid)             /* 2 sin(theta / 2) */                                                      \
+  X(STEREOGRAPHIC, stereographic)     /* 2 tan(theta / 2) */                                                      \
+  X(SINE, sine)                       /* the "orthographic" fisheye: sin(theta) */                                \
+  X(EQUIRECTANGULAR, equirectangular) /* longitude, latitude; limits are the screen window, in radians */         \
+  X(EQUAL_AREA, equal_area)           /* octahedral: the sphere in a square -1 to 1 */                            \
+  X(CYLINDRICAL, cylindrical)         /* longitude, tangent of the latitude */                                    \
+  X(CUBE, cube)                       /* six faces; shape: 0 (default) in a row, 1 in a cross: docs/cameras.md */ \
+  X(PANINI, panini)                   /* shape: d >= 0 */                                                         \
+  X(FOV, fov)                         /* shape: w, radians */                                                     \
+  X(DIVISION, division)               /* shape: lambda */                                                         \
+  X(UNIFIED, unified)                 /* shape: xi >= 0 (Mei) */                                                  \
+  X(EUCM, eucm)                       /* shape: alpha in [0, 1], beta > 0 */                                      \
+  X(DOUBLE_SPHERE, double_sphere)     /* shape: xi in (-1, 1), alpha in [0, 1] */                                 \
+  X(OPTICS, optics)                   /* a lens of many elements: lens.optics */
 typedef enum vlProjection {
-  VL_PROJECTION_PERSPECTIVE,
-  VL_PROJECTION_ORTHOGRAPHIC,
-  VL_PROJECTION_EQUIDISTANT,     /* fisheyes: r = theta */
-  VL_PROJECTION_EQUISOLID,       /* 2 sin(theta / 2) */
-  VL_PROJECTION_STEREOGRAPHIC,   /* 2 tan(theta / 2) */
-  VL_PROJECTION_SINE,            /* the "orthographic" fisheye: sin(theta) */
-  VL_PROJECTION_EQUIRECTANGULAR, /* longitude, latitude; limits are the screen window, in radians */
-  VL_PROJECTION_EQUAL_AREA,      /* octahedral: the sphere in a square -1 to 1 */
-  VL_PROJECTION_CYLINDRICAL,     /* longitude, tangent of the latitude */
-  VL_PROJECTION_CUBE,            /* six faces; shape: 0 (default) in a row, 1 in a cross: docs/cameras.md */
-  VL_PROJECTION_PANINI,          /* shape: d >= 0 */
-  VL_PROJECTION_FOV,             /* shape: w, radians */
-  VL_PROJECTION_DIVISION,        /* shape: lambda */
-  VL_PROJECTION_UNIFIED,         /* shape: xi >= 0 (Mei) */
-  VL_PROJECTION_EUCM,            /* shape: alpha in [0, 1], beta > 0 */
-  VL_PROJECTION_DOUBLE_SPHERE,   /* shape: xi in (-1, 1), alpha in [0, 1] */
-  VL_PROJECTION_OPTICS           /* a lens of many elements: lens.optics */
+#define VL_KIND(NAME, name) VL_PROJECTION_##NAME,
+  VL_PROJECTION_KINDS(VL_KIND)
+#undef VL_KIND
 } vlProjection;
 
 /* "perspective", "equidistant fisheye", ...; "unknown" for another number. */

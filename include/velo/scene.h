@@ -481,29 +481,39 @@ VL_API void vl_scene_add_moving_instance(vlScene *scene, vlGroupId group, uint32
 
 /* ---- how the image is to be taken: the scene file's own choices, defaults otherwise ---------------------------- */
 
+/* X(NAME, name) for each tracer; what pbrt files call it: velo/schema.h. Those that follow light both ways
+ * (docs/tracers.md): with solids that light goes through (VL_MATERIAL_SUBSURFACE), or where something moves while the
+ * camera's rows are read out, VL_TRACER_VOLPATH stands in. */
+#define VL_TRACER_KINDS(X)                                                                                            \
+  X(PATH, path) /* ignores media */                                                                                   \
+  X(RAYCAST, raycast)                                                                                                 \
+  X(AMBIENT_OCCLUSION, ambient_occlusion)                                                                             \
+  X(VOLPATH, volpath)             /* through media and solids; where there are none the same as PATH, to the bit */   \
+  X(BIDIRECTIONAL, bidirectional) /* paths from the camera, and paths from the lights that it sees; unbiased */       \
+  X(MERGING, merging)             /* and both meet at surfaces, within a radius that shrinks with each pass */        \
+  X(SPPM, sppm)                   /* the same; smooth surfaces on the camera's path are no bounces, as pbrt counts */ \
+  X(LIGHT_PATH, light_path)       /* from the lights alone: no light through or in what is smooth */                  \
+  X(RANDOM_WALK, random_walk)     /* samples no light and scatters all over the sphere: for comparison */
 typedef enum vlTracer {
-  VL_TRACER_PATH, /* looks past media */
-  VL_TRACER_RAYCAST,
-  VL_TRACER_AMBIENT_OCCLUSION,
-  VL_TRACER_VOLPATH, /* through media and bodies; where there are none the same as VL_TRACER_PATH, to the bit */
-  /* Light followed both ways (docs/tracers.md). With bodies that light goes through (VL_MATERIAL_SUBSURFACE), or where
-   * something moves while the camera's rows are read out: VL_TRACER_VOLPATH. */
-  VL_TRACER_BIDIRECTIONAL, /* paths from the eye, and paths from the lights that the eye sees; unbiased */
-  VL_TRACER_MERGING,       /* and both meet at surfaces, within a radius that shrinks with each pass */
-  VL_TRACER_SPPM,       /* the same; smooth surfaces that the eye looks through are no bounces, as pbrt's sppm counts */
-  VL_TRACER_LIGHT_PATH, /* from the lights alone: sees no light through or in what is smooth */
-  VL_TRACER_RANDOM_WALK /* asks for no light and scatters all over the sphere: for comparison */
+#define VL_KIND(NAME, name) VL_TRACER_##NAME,
+  VL_TRACER_KINDS(VL_KIND)
+#undef VL_KIND
 } vlTracer;
+/* X(NAME, name) for each sampler; what it is and what pbrt files call it: velo/schema.h. */
+#define VL_SAMPLER_KINDS(X)         \
+  X(INDEPENDENT, independent)       \
+  X(REGULAR, regular)               \
+  X(STRATIFIED, stratified)         \
+  X(NROOKS, nrooks)                 \
+  X(MULTI_JITTERED, multi_jittered) \
+  X(HAMMERSLEY, hammersley)         \
+  X(HALTON, halton)                 \
+  X(SOBOL, sobol)                   \
+  X(ZSOBOL, zsobol)
 typedef enum vlSamplerKind {
-  VL_SAMPLER_INDEPENDENT,
-  VL_SAMPLER_REGULAR,
-  VL_SAMPLER_STRATIFIED,
-  VL_SAMPLER_NROOKS,
-  VL_SAMPLER_MULTI_JITTERED,
-  VL_SAMPLER_HAMMERSLEY,
-  VL_SAMPLER_HALTON,
-  VL_SAMPLER_SOBOL,
-  VL_SAMPLER_ZSOBOL
+#define VL_KIND(NAME, name) VL_SAMPLER_##NAME,
+  VL_SAMPLER_KINDS(VL_KIND)
+#undef VL_KIND
 } vlSamplerKind;
 /* X(NAME, name) for each kind; what it is and its parameters: velo/schema.h. */
 #define VL_PIXEL_FILTER_KINDS(X) \

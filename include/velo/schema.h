@@ -23,6 +23,7 @@ typedef enum vlParameterType {
   VL_PARAMETER_FLOAT,          /* float */
   VL_PARAMETER_DOUBLE,         /* double */
   VL_PARAMETER_FLOAT3,         /* float[3]: a point, a vector */
+  VL_PARAMETER_DOUBLE3,        /* double[3]: the same */
   VL_PARAMETER_CHOICE,         /* an enum: one of `choices` */
   VL_PARAMETER_STRING,         /* const char * */
   VL_PARAMETER_FILE,           /* const char *: a path */
@@ -47,7 +48,7 @@ enum {
   VL_PARAMETER_NO_TEXTURE = 2,     /* an input that takes no texture */
   VL_PARAMETER_NUMBER = 4,         /* a spectrum that may be written as one number */
   VL_PARAMETER_ONE_NUMBER = 8,     /* a spectrum that must be one number */
-  VL_PARAMETER_UNSET = 16,         /* a double that may be VL_UNSET, which is the default */
+  VL_PARAMETER_UNSET = 16,         /* doubles that may be VL_UNSET, which is the default */
   VL_PARAMETER_RGB = 32,           /* the default spectrum is RGB: all three numbers of `value` */
   VL_PARAMETER_CLAMPED = 64,       /* values out of range are cut to it when they are used; else they are errors */
   VL_PARAMETER_ABOVE_LOW = 128,    /* low itself is out of range */
@@ -55,7 +56,8 @@ enum {
   VL_PARAMETER_INFINITE = 512,     /* may be infinite */
   VL_PARAMETER_RULE = 1024,        /* the generic readers and writers of files leave it to a function of the kind */
   VL_PARAMETER_FILE_NUMBER = 4096, /* pbrt files say a number, never a texture; a def may */
-  VL_PARAMETER_SHORTHAND = 2048    /* in files only: sets members that other parameters set one by one */
+  VL_PARAMETER_SHORTHAND = 2048,   /* in files only: sets members that other parameters set one by one */
+  VL_PARAMETER_VECTOR = 8192       /* three numbers that files call a vector; else a point */
 };
 
 typedef struct vlParameter {
@@ -94,6 +96,23 @@ typedef struct vlKindFamily {
   const char *const *constants; /* "COATED_DIFFUSE": how the names of the enum's constants end */
   const vlKindRow *const *rows; /* one per kind, never null */
 } vlKindFamily;
+
+/* Traits of samplers, tracers and pixel filters: which name pbrt-v4 itself reads. */
+enum { VL_TRAIT_PBRT_NAME = 1, VL_TRAIT_PBRT_ALIAS = 2 };
+
+/* Traits of samplers. */
+enum { VL_SAMPLER_TRAIT_OPEN = 4 /* can go on without end; the others lay out a fixed number of samples */ };
+
+/* What pbrt files call films. */
+#define VL_FILM_KINDS(X) \
+  X(RGB, rgb)            \
+  X(GBUFFER, gbuffer)    \
+  X(SPECTRAL, spectral)
+typedef enum vlFilmKind {
+#define VL_KIND(NAME, name) VL_FILM_##NAME,
+  VL_FILM_KINDS(VL_KIND)
+#undef VL_KIND
+} vlFilmKind;
 
 /* Traits of lights. */
 enum {

@@ -1,4 +1,5 @@
 /* api/load.c: vl_scene_load: the kind of a scene file by its name; the camera that velo wrote into a glTF file. */
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -10,17 +11,24 @@
 #include "scene/scene.h"
 #include "velo/camera_file.h"
 
+typedef vlResult Import(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
+
+#define FORMAT(suffix, name) {suffix, vl_import_##name},
+static const struct {
+  const char *suffix;
+  Import *import;
+} formats[] = {VL_SCENE_FORMATS(FORMAT)};
+enum { FORMATS = sizeof formats / sizeof *formats };
+
 /* glTF's own camera is a pinhole; velo's exporter puts what it is in truth into the extras. */
-static vlResult load_gltf(vlScene *scene, const char *path, const vlLoadDef *load, vlError *error) {
-  vlResult result = vl_import_gltf(scene, path, load, error);
-  if (result != VL_OK || !scene->camera_in_full) return result;
+static vlResult load_whole_camera(vlScene *scene, const char *path, const vlLoadDef *load, vlError *error) {
   vlCameraFileDef def = vl_default_camera_file_def();
   def.dialect = VL_CAMERA_DIALECT_GLTF;
   def.frame = load ? load->camera : NULL;
   vlCameraRecord record;
   vlError inside;
   vl_error_clear(&inside);
-  result = vl_camera_read(scene->context, path, &def, &record, &inside);
+  vlResult result = vl_camera_read(scene->context, path, &def, &record, &inside);
   if (result != VL_OK) {
     vl_scene_fail(scene, result, (vlSource){inside.file[0] ? inside.file : path, inside.line, inside.column}, "%s",
                   inside.message[0] ? inside.message : vl_result_name(result));
@@ -42,12 +50,17 @@ vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, v
   if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
   struct stat info;
   bool readable = stat(path, &info) == 0 && !S_ISDIR(info.st_mode);
-  if (!readable || vl_ends_with(path, ".pbrt") || vl_ends_with(path, ".pbrt.gz"))
-    return vl_import_pbrt(scene, path, def, error);
-  if (vl_ends_with(path, ".gltf") || vl_ends_with(path, ".glb")) return load_gltf(scene, path, def, error);
-  if (vl_ends_with(path, ".obj") || vl_ends_with(path, ".obj.gz")) return vl_import_obj(scene, path, def, error);
-  if (vl_ends_with(path, ".ply") || vl_ends_with(path, ".ply.gz")) return vl_import_ply(scene, path, def, error);
-  vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){0},
-                "%.300s: unknown kind of scene file (known: .pbrt, .pbrt.gz, .gltf, .glb, .obj, .ply)", path);
+  Import *import = readable ? NULL : vl_import_pbrt; /* it reports what is wrong with the file */
+  char known[200] = "";
+  for (int i = 0; i < FORMATS; i++) {
+    size_t n = strlen(known);
+    snprintf(known + n, sizeof known - n, "%s%s", i ? ", " : "", formats[i].suffix);
+    if (!import && vl_ends_with(path, formats[i].suffix)) import = formats[i].import;
+  }
+  if (import) {
+    vlResult result = import(scene, path, def, error);
+    return result == VL_OK && scene->camera_in_full ? load_whole_camera(scene, path, def, error) : result;
+  }
+  vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){0}, "%.300s: unknown kind of scene file (known: %s)", path, known);
   return vl_scene_result(scene, error);
 }

@@ -3,6 +3,7 @@
 
 #include "base/cookie.h"
 #include "base/error.h"
+#include "camera/kinds.h"
 #include "camera/parts.h"
 
 vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height) {
@@ -63,7 +64,7 @@ static vlResult check_vector(const char *name, const double v[3], vlError *error
 
 /* Checks everything but intrinsics and pose. */
 static vlResult check_rest(const vlCameraDef *d, vlError *error) {
-  if ((uint32_t)d->projection > VL_PROJECTION_OPTICS)
+  if (!vl_projection_row(d->projection))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown projection %d", (int)d->projection);
   if ((uint32_t)d->fov_axis > VL_FOV_LARGER)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown field-of-view axis %d", (int)d->fov_axis);
@@ -133,8 +134,7 @@ vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t heigh
     double w = width, h = height, w0 = camera->width, h0 = camera->height;
     scale = sqrt((w * w + h * h) / (w0 * w0 + h0 * h0));
   }
-  bool stretched = camera->projection == VL_PROJECTION_EQUIRECTANGULAR || camera->projection == VL_PROJECTION_CUBE ||
-                   camera->projection == VL_PROJECTION_EQUAL_AREA;
+  bool stretched = vl_projection_row(camera->projection)->traits & VL_PROJECTION_STRETCHED;
   double scale_x = stretched ? (double)width / camera->width : scale;
   double scale_y = stretched ? (double)height / camera->height : scale;
   vlCamera resized = *camera;

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "camera/kinds.h"
 #include "camera/optics.h"
 #include "camera/parts.h"
 #include "camera/rays.h"
@@ -13,14 +14,8 @@ static const double overhang = 16.0;
 /* The angle that the central pixel subtends. */
 static double central_spread(const vlCameraCompiled *c) {
   double size = sqrt(c->inv_fx * c->inv_fy);
-  switch (c->projection) {
-    case VL_PROJECTION_CUBE: return 2.0 * size;
-    case VL_PROJECTION_EQUAL_AREA: return 1.7724538509055159 * size; /* 4 pi over an area of 4 */
-    case VL_PROJECTION_UNIFIED:
-    case VL_PROJECTION_DOUBLE_SPHERE: return (1.0 + c->shape[0]) * size;
-    case VL_PROJECTION_FOV: return c->shape[0] / c->shape[1] * size;
-    default: return size;
-  }
+  const vlProjectionRow *row = vl_projection_row(c->projection);
+  return row->spread ? row->spread(c->shape) * size : size;
 }
 
 static void compile_lens(const vlCamera *camera, vlCameraCompiled *c) {

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/error.h"
+#include "camera/kinds.h"
 #include "camera/optics.h"
 #include "camera/parts.h"
 #include "camera/points.h"
@@ -196,17 +197,13 @@ void vl_camera_measure(vlCamera *camera) {
   camera->outside = share_outside(camera);
 }
 
-static bool has_circle(vlProjection p) {
-  return (p >= VL_PROJECTION_EQUIDISTANT && p <= VL_PROJECTION_SINE) || p >= VL_PROJECTION_FOV ||
-         p == VL_PROJECTION_PERSPECTIVE;
-}
-
 vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error) {
   vlProjection kind = def->projection;
-  bool fisheye = kind >= VL_PROJECTION_EQUIDISTANT && kind <= VL_PROJECTION_SINE;
-  double angle = def->max_angle, limit = INFINITY;
+  const vlProjectionRow *row = vl_projection_row(kind);
+  bool fisheye = row->traits & VL_PROJECTION_FISHEYE;
+  double angle = def->max_angle, limit = row->limit > 0.0 ? row->limit : INFINITY;
   if (!vl_is_unset(angle)) {
-    if (!has_circle(kind) || (kind == VL_PROJECTION_PERSPECTIVE && camera->distortion.steps == 0))
+    if (!(row->traits & VL_PROJECTION_CIRCLE) || (kind == VL_PROJECTION_PERSPECTIVE && camera->distortion.steps == 0))
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: max_angle has no meaning for the %s projection",
                      vl_projection_name(kind));
     if (!(angle > 0.0 && angle <= pi))
@@ -217,7 +214,6 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
               !vl_is_unset(def->focal_mm) || !vl_is_unset(def->screen_min_x);
   if (vl_is_unset(angle) && fisheye && !vl_is_unset(def->fov)) angle = 0.5 * def->fov;
   if (vl_is_unset(angle) && fisheye && !said) angle = 0.5 * pi;
-  if (kind == VL_PROJECTION_EQUIDISTANT) limit = pi;
   double radius;
   if (!vl_is_unset(angle)) {
     /* the direction straight back is singular; a nearby one replaces it */
@@ -232,7 +228,7 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
   vlDistortionMap *m = &camera->distortion;
   if (m->steps > 0) m->radius = fold_radius(m, fmin(limit, 1e4));
   vl_camera_measure(camera);
-  bool calibrated = m->steps > 0 || (kind >= VL_PROJECTION_FOV && kind != VL_PROJECTION_OPTICS);
+  bool calibrated = m->steps > 0 || row->traits & VL_PROJECTION_CALIBRATED;
   if (calibrated && vl_is_unset(def->max_angle) && camera->outside > 0.0 && warning && !*warning)
     *warning = "camera: the lens folds or its model ends inside the image; what lies beyond sees nothing (alpha 0)";
   return VL_OK;

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "base/error.h"
+#include "camera/kinds.h"
 #include "camera/parts.h"
 
 static const double pi = 3.14159265358979323846;
@@ -132,10 +133,10 @@ static vlResult plane_half(const vlCameraDef *d, const vlCamera *camera, bool ve
     return VL_OK;
   }
   const char *name = vl_projection_name(kind);
-  if (kind == VL_PROJECTION_CUBE || kind == VL_PROJECTION_EQUAL_AREA)
+  uint32_t traits = vl_projection_row(kind)->traits;
+  if (traits & VL_PROJECTION_NO_FOV)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a fov has no meaning for the %s projection", name);
-  bool round = !(kind >= VL_PROJECTION_EQUIRECTANGULAR && kind <= VL_PROJECTION_PANINI);
-  if (d->fov_axis == VL_FOV_DIAGONAL && !round)
+  if (d->fov_axis == VL_FOV_DIAGONAL && !(traits & VL_PROJECTION_RADIAL))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a diagonal fov has no meaning for the %s projection", name);
   /* 360 degrees: the direction straight back is singular; approach it from the image's side */
   double angle = 0.5 * d->fov < pi ? 0.5 * d->fov : pi * (1.0 - 1e-15);
@@ -223,30 +224,20 @@ static vlResult gather_orthographic(const vlCameraDef *d, bool screen, Gathered 
   return VL_OK;
 }
 
-/* Default focal lengths. Perspective: 90 degrees across the smaller side; orthographic: -1 to 1 across it; for both
- * fx is half of it in pixels. Fisheyes: 180 degrees across it. Planes of the whole sphere, the cylinder and the
- * cube: all of it. The others: 90 degrees across the smaller side if the model covers that. */
+/* No focal length is given: the projection's own. */
 static void standard_focal(const vlCameraDef *d, const vlCamera *camera, Gathered *g) {
-  double half = 0.5 * (d->width < d->height ? d->width : d->height), radius = 1.0;
-  bool fisheye = d->projection >= VL_PROJECTION_EQUIDISTANT && d->projection <= VL_PROJECTION_SINE;
-  g->fx.value = g->fy.value = half;
-  switch (d->projection) {
-    case VL_PROJECTION_PERSPECTIVE:
-    case VL_PROJECTION_ORTHOGRAPHIC: break;
-    case VL_PROJECTION_EQUIRECTANGULAR: g->fx.value = d->width / (2.0 * pi), g->fy.value = d->height / pi; break;
-    case VL_PROJECTION_EQUAL_AREA: g->fx.value = 0.5 * d->width, g->fy.value = 0.5 * d->height; break;
-    case VL_PROJECTION_CYLINDRICAL: g->fx.value = g->fy.value = d->width / (2.0 * pi); break;
-    case VL_PROJECTION_CUBE: {
-      bool cross = camera->shape[0] > 0.0;
-      g->fx.value = d->width / (cross ? 4.0 : 6.0), g->fy.value = d->height / (cross ? 3.0 : 1.0);
-      break;
-    }
-    default:
-      if (!vl_camera_plane_radius(camera, fisheye ? 0.5 * pi * (1.0 - 1e-15) : 0.25 * pi, d->width >= d->height,
-                                  &radius))
-        radius = 1.0;
-      g->fx.value = g->fy.value = half / radius;
+  const vlProjectionRow *row = vl_projection_row(d->projection);
+  double half = 0.5 * (d->width < d->height ? d->width : d->height), radius, focal[2];
+  if (row->standard_focal) {
+    row->standard_focal(d, camera, focal);
+    g->fx.value = focal[0], g->fy.value = focal[1];
+    return;
   }
+  /* across the smaller side 180 degrees of fisheyes, 90 of others where the model sees that */
+  bool fisheye = row->traits & VL_PROJECTION_FISHEYE;
+  if (!vl_camera_plane_radius(camera, fisheye ? 0.5 * pi * (1.0 - 1e-15) : 0.25 * pi, d->width >= d->height, &radius))
+    radius = 1.0;
+  g->fx.value = g->fy.value = half / radius;
 }
 
 vlResult vl_camera_intrinsics(const vlCameraDef *d, vlCamera *camera, vlError *error) {

@@ -4,61 +4,16 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "camera/kinds.h"
 #include "camera/parts.h"
 #include "camera/points.h"
 #include "math/transform.h"
 
-const char *vl_projection_name(vlProjection projection) {
-  static const char *const names[] = {"perspective",
-                                      "orthographic",
-                                      "equidistant fisheye",
-                                      "equisolid fisheye",
-                                      "stereographic fisheye",
-                                      "orthographic fisheye",
-                                      "equirectangular",
-                                      "equal-area",
-                                      "cylindrical",
-                                      "cube",
-                                      "Panini",
-                                      "FOV",
-                                      "division",
-                                      "unified",
-                                      "EUCM",
-                                      "double sphere",
-                                      "optics"};
-  return (uint32_t)projection < sizeof names / sizeof names[0] ? names[projection] : "unknown";
-}
-
-typedef struct {
-  const char *name;
-  double least, most; /* allowed range, inclusive */
-  double standard;    /* unset: must be given */
-} ShapeNumber;
-
-/* Ranges of the shape parameters: outside of them the equations are undefined or lose precision. */
-static int shape_numbers(vlProjection projection, ShapeNumber n[2]) {
-  switch (projection) {
-    case VL_PROJECTION_CUBE: n[0] = (ShapeNumber){"layout", 0.0, 1.0, 0.0}; return 1;
-    case VL_PROJECTION_PANINI: n[0] = (ShapeNumber){"d", 0.0, 1e3, 1.0}; return 1;
-    case VL_PROJECTION_FOV: n[0] = (ShapeNumber){"w", 1e-6, 3.14, VL_UNSET}; return 1;
-    case VL_PROJECTION_DIVISION: n[0] = (ShapeNumber){"lambda", -1e3, 1e3, VL_UNSET}; return 1;
-    case VL_PROJECTION_UNIFIED: n[0] = (ShapeNumber){"xi", 0.0, 1e3, VL_UNSET}; return 1;
-    case VL_PROJECTION_EUCM:
-      n[0] = (ShapeNumber){"alpha", 0.0, 1.0, VL_UNSET};
-      n[1] = (ShapeNumber){"beta", 1e-6, 1e6, VL_UNSET};
-      return 2;
-    case VL_PROJECTION_DOUBLE_SPHERE:
-      n[0] = (ShapeNumber){"xi", -0.999, 0.999, VL_UNSET};
-      n[1] = (ShapeNumber){"alpha", 0.0, 1.0, VL_UNSET};
-      return 2;
-    default: return 0;
-  }
-}
-
 static vlResult shape(const vlCameraDef *def, vlCamera *camera, vlError *error) {
-  const char *name = vl_projection_name(def->projection);
-  ShapeNumber n[2];
-  int count = shape_numbers(def->projection, n);
+  const vlProjectionRow *row = vl_projection_row(def->projection);
+  const char *name = row->name;
+  const vlShapeNumber *n = row->numbers;
+  int count = (int)row->count;
   camera->shape[0] = camera->shape[1] = 0.0;
   for (int i = 0; i < 2; i++) {
     double value = def->shape[i];
@@ -105,14 +60,16 @@ static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *
   if (def->distortion == VL_DISTORTION_NONE && n != 0)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %u distortion coefficients are given without a distortion", n);
   if (def->distortion == VL_DISTORTION_NONE) return VL_OK;
-  if (def->projection == VL_PROJECTION_ORTHOGRAPHIC || def->projection == VL_PROJECTION_CUBE ||
-      def->projection == VL_PROJECTION_EQUAL_AREA || def->projection == VL_PROJECTION_EQUIRECTANGULAR)
+  if (vl_projection_row(def->projection)->traits & VL_PROJECTION_NO_DISTORTION)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a distortion has no meaning for the %s projection",
                    vl_projection_name(def->projection));
   for (uint32_t i = 0; i < n && i < 14; i++)
     if (!isfinite(k[i]) || fabs(k[i]) > 1e30)
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: distortion coefficient %u is %g", i + 1, k[i]);
+  if ((uint32_t)def->distortion > VL_DISTORTION_THIN_PRISM)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown distortion %d", (int)def->distortion);
   switch (def->distortion) {
+    case VL_DISTORTION_NONE: break;
     case VL_DISTORTION_OPENCV: {
       if (n != 4 && n != 5 && n != 8 && n != 12 && n != 14)
         return vl_fail(error, VL_ERROR_ARGUMENT,
@@ -141,7 +98,6 @@ static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *
       m->tangential[0] = k[2], m->tangential[1] = k[3];
       m->prism[0] = k[6], m->prism[2] = k[7];
       break;
-    default: return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown distortion %d", (int)def->distortion);
   }
   for (uint32_t i = 0; i < n; i++)
     if (k[i] != 0.0) m->steps = 1; /* if all are zero there is no distortion */

@@ -53,9 +53,12 @@ void vl_camera_directions(const vlCameraCompiled *c, uint32_t count, vlDirection
     d->valid[i] = 1.0;
   }
   if (c->distortion.steps > 0) undistort(&c->distortion, count, d->x, d->y, d->valid);
-#define PLANE_LOOP(kind) plane_loop(kind, c, count, d)
-  VL_EACH_PROJECTION(c->projection, PLANE_LOOP)
+  switch (c->projection) {
+#define PLANE_LOOP(NAME, name) \
+  case VL_PROJECTION_##NAME: plane_loop(VL_PROJECTION_##NAME, c, count, d); break;
+    VL_PROJECTION_KINDS(PLANE_LOOP)
 #undef PLANE_LOOP
+  }
 }
 
 static inline __attribute__((always_inline)) void place_loop(const int eyes, const vlCameraCompiled *camera,
@@ -143,12 +146,16 @@ void vl_camera_project_chunk(const vlCameraCompiled *camera, uint32_t n, const v
     vl_optics_project_chunk(c, count, in, out);
     return;
   }
-#define PROJECT_LOOP(kind) project_loop(kind, 0, c, count, in, out)
-#define EYES_LOOP(kind) project_loop(kind, 1, c, count, in, out)
+#define PROJECT_LOOP(NAME, name)                              \
+  case VL_PROJECTION_##NAME:                                  \
+    project_loop(VL_PROJECTION_##NAME, 0, c, count, in, out); \
+    break;
+#define EYES_LOOP(NAME, name) \
+  if (c->projection == VL_PROJECTION_##NAME) project_loop(VL_PROJECTION_##NAME, 1, c, count, in, out);
   if (c->eye_circle != 0.0) {
-    VL_EACH_ROUND_PROJECTION(c->projection, EYES_LOOP)
+    VL_ROUND_PROJECTIONS(EYES_LOOP)
   } else {
-    VL_EACH_PROJECTION(c->projection, PROJECT_LOOP)
+    switch (c->projection) { VL_PROJECTION_KINDS(PROJECT_LOOP) }
   }
 #undef EYES_LOOP
 #undef PROJECT_LOOP

@@ -12,92 +12,74 @@
 #include "camera/panini.h"
 #include "camera/rays.h"
 
-/* face: the cell of VL_PROJECTION_CUBE; unread for all others. */
-static inline __attribute__((always_inline)) vlDirection vl_plane_unproject(vlProjection kind,
-                                                                            const vlCameraCompiled *c, double face,
-                                                                            double x, double y) {
-  const double *a = c->shape;
+/* The functions of a kind, vl_unproject_NAME and vl_project_NAME, in terms of the compiled camera c, its numbers a, a
+ * point of the plane (x, y) and the cell `face` of VL_PROJECTION_CUBE; or a point (x, y, z) in camera space. */
+#define VL_CAMERA_INLINE static inline __attribute__((always_inline))
+#define VL_PROJECTION_FUNCTIONS(name, unproject, project)                                                        \
+  VL_CAMERA_INLINE vlDirection vl_unproject_##name(const vlCameraCompiled *c, double face, double x, double y) { \
+    const double *a = c->shape;                                                                                  \
+    (void)a, (void)face;                                                                                         \
+    return unproject;                                                                                            \
+  }                                                                                                              \
+  VL_CAMERA_INLINE vlPlanePoint vl_project_##name(const vlCameraCompiled *c, double x, double y, double z) {     \
+    const double *a = c->shape;                                                                                  \
+    (void)a, (void)z;                                                                                            \
+    return project;                                                                                              \
+  }
+VL_PROJECTION_FUNCTIONS(perspective, ((vlDirection){x, y, 1.0, 1.0}),
+                        ((vlPlanePoint){x / z, y / z, z > 0.0 ? 1.0 : 0.0}))
+VL_PROJECTION_FUNCTIONS(orthographic, ((vlDirection){x, y, 1.0, 1.0}), ((vlPlanePoint){x, y, z >= 0.0 ? 1.0 : 0.0}))
+VL_PROJECTION_FUNCTIONS(equidistant, vl_equidistant_unproject(x, y), vl_equidistant_project(x, y, z))
+VL_PROJECTION_FUNCTIONS(equisolid, vl_equisolid_unproject(x, y), vl_equisolid_project(x, y, z))
+VL_PROJECTION_FUNCTIONS(stereographic, vl_stereographic_unproject(x, y), vl_stereographic_project(x, y, z))
+VL_PROJECTION_FUNCTIONS(sine, vl_sine_unproject(x, y), vl_sine_project(x, y, z))
+VL_PROJECTION_FUNCTIONS(equirectangular, vl_equirectangular_unproject(c->over_x, c->over_y, x, y),
+                        vl_equirectangular_project(x, y, z))
+VL_PROJECTION_FUNCTIONS(equal_area, vl_equal_area_unproject(c->over_x, x, y), vl_equal_area_project(x, y, z))
+VL_PROJECTION_FUNCTIONS(cylindrical, vl_cylindrical_unproject(c->over_x, x, y), vl_cylindrical_project(x, y, z))
+VL_PROJECTION_FUNCTIONS(cube, vl_cube_unproject(a[0], c->over_y, face, x, y), vl_cube_project(a[0], x, y, z))
+VL_PROJECTION_FUNCTIONS(panini, vl_panini_unproject(a[0], x, y), vl_panini_project(a[0], x, y, z))
+VL_PROJECTION_FUNCTIONS(fov, vl_fov_unproject(a[0], a[1], x, y), vl_fov_project(a[0], a[1], x, y, z))
+VL_PROJECTION_FUNCTIONS(division, vl_division_unproject(a[0], x, y), vl_division_project(a[0], x, y, z))
+VL_PROJECTION_FUNCTIONS(unified, vl_unified_unproject(a[0], x, y), vl_unified_project(a[0], x, y, z))
+VL_PROJECTION_FUNCTIONS(eucm, vl_eucm_unproject(a[0], a[1], x, y), vl_eucm_project(a[0], a[1], x, y, z))
+VL_PROJECTION_FUNCTIONS(double_sphere, vl_double_sphere_unproject(a[0], a[1], x, y),
+                        vl_double_sphere_project(a[0], a[1], x, y, z))
+/* Rays of a lens of many elements go their own way. */
+VL_PROJECTION_FUNCTIONS(optics, ((vlDirection){x, y, 1.0, 0.0}), ((vlPlanePoint){x, y, 0.0}))
+
+VL_CAMERA_INLINE vlDirection vl_plane_unproject(vlProjection kind, const vlCameraCompiled *c, double face, double x,
+                                                double y) {
   vlDirection d = {x, y, 1.0, 1.0};
   switch (kind) {
-    case VL_PROJECTION_PERSPECTIVE:
-    case VL_PROJECTION_ORTHOGRAPHIC: break;
-    case VL_PROJECTION_EQUIDISTANT: d = vl_equidistant_unproject(x, y); break;
-    case VL_PROJECTION_EQUISOLID: d = vl_equisolid_unproject(x, y); break;
-    case VL_PROJECTION_STEREOGRAPHIC: d = vl_stereographic_unproject(x, y); break;
-    case VL_PROJECTION_SINE: d = vl_sine_unproject(x, y); break;
-    case VL_PROJECTION_EQUIRECTANGULAR: d = vl_equirectangular_unproject(c->over_x, c->over_y, x, y); break;
-    case VL_PROJECTION_EQUAL_AREA: d = vl_equal_area_unproject(c->over_x, x, y); break;
-    case VL_PROJECTION_CYLINDRICAL: d = vl_cylindrical_unproject(c->over_x, x, y); break;
-    case VL_PROJECTION_CUBE: d = vl_cube_unproject(a[0], c->over_y, face, x, y); break;
-    case VL_PROJECTION_PANINI: d = vl_panini_unproject(a[0], x, y); break;
-    case VL_PROJECTION_FOV: d = vl_fov_unproject(a[0], a[1], x, y); break;
-    case VL_PROJECTION_DIVISION: d = vl_division_unproject(a[0], x, y); break;
-    case VL_PROJECTION_UNIFIED: d = vl_unified_unproject(a[0], x, y); break;
-    case VL_PROJECTION_EUCM: d = vl_eucm_unproject(a[0], a[1], x, y); break;
-    case VL_PROJECTION_DOUBLE_SPHERE: d = vl_double_sphere_unproject(a[0], a[1], x, y); break;
-    case VL_PROJECTION_OPTICS: d.valid = 0.0; break; /* optics have their own functions (optics.h) */
+#define VL_UNPROJECT_CASE(NAME, name) \
+  case VL_PROJECTION_##NAME: d = vl_unproject_##name(c, face, x, y); break;
+    VL_PROJECTION_KINDS(VL_UNPROJECT_CASE)
+#undef VL_UNPROJECT_CASE
   }
   d.valid = x * x + y * y <= c->limit2 ? d.valid : 0.0;
   return d;
 }
 
 /* A point in camera space to the plane. */
-static inline __attribute__((always_inline)) vlPlanePoint vl_plane_project(vlProjection kind, const vlCameraCompiled *c,
-                                                                           double x, double y, double z) {
-  const double *a = c->shape;
-  vlPlanePoint p = {x, y, z >= 0.0 ? 1.0 : 0.0};
+VL_CAMERA_INLINE vlPlanePoint vl_plane_project(vlProjection kind, const vlCameraCompiled *c, double x, double y,
+                                               double z) {
+  vlPlanePoint p = {x, y, 0.0};
   switch (kind) {
-    case VL_PROJECTION_PERSPECTIVE: p = (vlPlanePoint){x / z, y / z, z > 0.0 ? 1.0 : 0.0}; break;
-    case VL_PROJECTION_ORTHOGRAPHIC: break;
-    case VL_PROJECTION_EQUIDISTANT: p = vl_equidistant_project(x, y, z); break;
-    case VL_PROJECTION_EQUISOLID: p = vl_equisolid_project(x, y, z); break;
-    case VL_PROJECTION_STEREOGRAPHIC: p = vl_stereographic_project(x, y, z); break;
-    case VL_PROJECTION_SINE: p = vl_sine_project(x, y, z); break;
-    case VL_PROJECTION_EQUIRECTANGULAR: p = vl_equirectangular_project(x, y, z); break;
-    case VL_PROJECTION_EQUAL_AREA: p = vl_equal_area_project(x, y, z); break;
-    case VL_PROJECTION_CYLINDRICAL: p = vl_cylindrical_project(x, y, z); break;
-    case VL_PROJECTION_CUBE: p = vl_cube_project(a[0], x, y, z); break;
-    case VL_PROJECTION_PANINI: p = vl_panini_project(a[0], x, y, z); break;
-    case VL_PROJECTION_FOV: p = vl_fov_project(a[0], a[1], x, y, z); break;
-    case VL_PROJECTION_DIVISION: p = vl_division_project(a[0], x, y, z); break;
-    case VL_PROJECTION_UNIFIED: p = vl_unified_project(a[0], x, y, z); break;
-    case VL_PROJECTION_EUCM: p = vl_eucm_project(a[0], a[1], x, y, z); break;
-    case VL_PROJECTION_DOUBLE_SPHERE: p = vl_double_sphere_project(a[0], a[1], x, y, z); break;
-    case VL_PROJECTION_OPTICS: p.valid = 0.0; break;
+#define VL_PROJECT_CASE(NAME, name) \
+  case VL_PROJECTION_##NAME: p = vl_project_##name(c, x, y, z); break;
+    VL_PROJECTION_KINDS(VL_PROJECT_CASE)
+#undef VL_PROJECT_CASE
   }
   p.valid = p.x * p.x + p.y * p.y <= c->limit2 ? p.valid : 0.0;
   return p;
 }
 
-/* CALL(kind) with the compiled projection as a constant. */
-#define VL_EACH_PROJECTION(projection, CALL)                                        \
-  switch (projection) {                                                             \
-    case VL_PROJECTION_PERSPECTIVE: CALL(VL_PROJECTION_PERSPECTIVE); break;         \
-    case VL_PROJECTION_ORTHOGRAPHIC: CALL(VL_PROJECTION_ORTHOGRAPHIC); break;       \
-    case VL_PROJECTION_EQUIDISTANT: CALL(VL_PROJECTION_EQUIDISTANT); break;         \
-    case VL_PROJECTION_EQUISOLID: CALL(VL_PROJECTION_EQUISOLID); break;             \
-    case VL_PROJECTION_STEREOGRAPHIC: CALL(VL_PROJECTION_STEREOGRAPHIC); break;     \
-    case VL_PROJECTION_SINE: CALL(VL_PROJECTION_SINE); break;                       \
-    case VL_PROJECTION_EQUIRECTANGULAR: CALL(VL_PROJECTION_EQUIRECTANGULAR); break; \
-    case VL_PROJECTION_EQUAL_AREA: CALL(VL_PROJECTION_EQUAL_AREA); break;           \
-    case VL_PROJECTION_CYLINDRICAL: CALL(VL_PROJECTION_CYLINDRICAL); break;         \
-    case VL_PROJECTION_CUBE: CALL(VL_PROJECTION_CUBE); break;                       \
-    case VL_PROJECTION_PANINI: CALL(VL_PROJECTION_PANINI); break;                   \
-    case VL_PROJECTION_FOV: CALL(VL_PROJECTION_FOV); break;                         \
-    case VL_PROJECTION_DIVISION: CALL(VL_PROJECTION_DIVISION); break;               \
-    case VL_PROJECTION_UNIFIED: CALL(VL_PROJECTION_UNIFIED); break;                 \
-    case VL_PROJECTION_EUCM: CALL(VL_PROJECTION_EUCM); break;                       \
-    case VL_PROJECTION_DOUBLE_SPHERE: CALL(VL_PROJECTION_DOUBLE_SPHERE); break;     \
-    case VL_PROJECTION_OPTICS: CALL(VL_PROJECTION_OPTICS); break;                   \
-  }
-
-/* The projections of the whole circle of longitudes, which support omnidirectional stereo (eyes.h). */
-#define VL_EACH_ROUND_PROJECTION(projection, CALL)                          \
-  switch (projection) {                                                     \
-    case VL_PROJECTION_EQUAL_AREA: CALL(VL_PROJECTION_EQUAL_AREA); break;   \
-    case VL_PROJECTION_CYLINDRICAL: CALL(VL_PROJECTION_CYLINDRICAL); break; \
-    case VL_PROJECTION_CUBE: CALL(VL_PROJECTION_CUBE); break;               \
-    default: CALL(VL_PROJECTION_EQUIRECTANGULAR); break;                    \
-  }
+/* Those that go all round, and so have omnidirectional stereo (eyes.h). */
+#define VL_ROUND_PROJECTIONS(X)       \
+  X(EQUIRECTANGULAR, equirectangular) \
+  X(EQUAL_AREA, equal_area)           \
+  X(CYLINDRICAL, cylindrical)         \
+  X(CUBE, cube)
 
 #endif

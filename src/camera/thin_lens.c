@@ -8,13 +8,7 @@
 
 static const double agreement = 1e-6;
 
-/* Projections of the half-space z > 0 alone: near, far and focus are planes of constant z, for others spheres around
- * the eye. */
-bool vl_camera_sees_ahead(vlProjection kind) {
-  return kind <= VL_PROJECTION_ORTHOGRAPHIC || kind == VL_PROJECTION_SINE || kind == VL_PROJECTION_FOV ||
-         kind == VL_PROJECTION_OPTICS;
-}
-
+/* Projections that see only what lies ahead: planes of constant z stand where others have spheres around the eye. */
 static bool given(double value) {
   return !vl_is_unset(value);
 }

@@ -5,12 +5,16 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "camera/kinds.h"
 #include "camera_files/files.h"
 
-static const char *const projections[] = {
-    "perspective",     "orthographic", "equidistant", "equisolid",    "stereographic", "sine",
-    "equirectangular", "equal-area",   "cylindrical", "cube",         "panini",        "fov",
-    "division",        "unified",      "eucm",        "double-sphere"}; /* lenses of many elements are not supported */
+/* By vlProjection; "" for those that the file cannot hold: a lens of many elements. */
+#define COUNT_ONE(NAME, name) +1
+enum { PROJECTIONS = 0 VL_PROJECTION_KINDS(COUNT_ONE) };
+static const char *projection_key(vlProjection kind) {
+  const char *key = vl_projection_row(kind)->key;
+  return key ? key : "";
+}
 static const char *const distortions[] = {"none", "opencv", "radial", "thin-prism"};
 static const char *const axes[] = {"vertical", "horizontal", "diagonal", "smaller", "larger"};
 static const char *const readouts[] = {"down", "up", "right", "left"};
@@ -170,10 +174,12 @@ vlResult vl_camera_read_velo(const vlCameraFile *file, const json_t *tree, vlCam
   static const char *const origins[] = {"corner", "center"};
   vlCameraDef *d = &record->camera;
   uint32_t projection = 0, axis = VL_FOV_SMALLER, origin = 0, count = 0;
+  const char *projections[PROJECTIONS];
+  for (int i = 0; i < PROJECTIONS; i++) projections[i] = projection_key((vlProjection)i);
   vlResult result = check_names(file, tree);
   if (result == VL_OK) result = vl_camera_side(file, tree, "width", &d->width);
   if (result == VL_OK) result = vl_camera_side(file, tree, "height", &d->height);
-  if (result == VL_OK) result = word(file, tree, "projection", projections, 16, &projection);
+  if (result == VL_OK) result = word(file, tree, "projection", projections, PROJECTIONS, &projection);
   if (result == VL_OK) result = word(file, tree, "fov_axis", axes, 5, &axis);
   if (result == VL_OK) result = word(file, tree, "pixel_origin", origins, 2, &origin);
   for (size_t i = 0; i < NUMBERS && result == VL_OK; i++)
@@ -247,7 +253,7 @@ vlResult vl_camera_write_velo(const vlCameraFile *file, const vlCameraRecord *re
     vl_camera_put(text, ",\n");
   }
   vl_camera_put(text, "  \"pixel_origin\": \"corner\",\n  \"axes\": \"x right, y down, z forward\",\n");
-  vl_camera_put(text, "  \"projection\": \"%s\",\n  \"width\": %u,\n  \"height\": %u", projections[d.projection],
+  vl_camera_put(text, "  \"projection\": \"%s\",\n  \"width\": %u,\n  \"height\": %u", projection_key(d.projection),
                 d.width, d.height);
   for (size_t i = 0; i < NUMBERS; i++) put_field(text, &numbers[i], at(&d, &numbers[i]), at(&standard, &numbers[i]));
   if (!vl_is_unset(d.fov)) vl_camera_put(text, ",\n  \"fov_axis\": \"%s\"", axes[d.fov_axis]);

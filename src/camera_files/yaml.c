@@ -76,8 +76,13 @@ static vlResult take(const vlCameraFile *file, Builder *b, const yaml_event_t *e
     case YAML_MAPPING_END_EVENT: b->depth--; return VL_OK;
     case YAML_ALIAS_EVENT:
       return wrong_at(file, event->start_mark, "anchors of YAML are not taken; write the value out");
-    default: return VL_OK;
+    case YAML_NO_EVENT:
+    case YAML_STREAM_START_EVENT:
+    case YAML_STREAM_END_EVENT:
+    case YAML_DOCUMENT_START_EVENT:
+    case YAML_DOCUMENT_END_EVENT: break;
   }
+  return VL_OK;
 }
 
 vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {

@@ -51,7 +51,7 @@ static void join_strings(const exr_attr_string_vector_t *from, char *text, size_
 static bool convert(const exr_attribute_t *from, vlAttribute *to, char *text, size_t size) {
   memset(to, 0, sizeof *to);
   to->name = from->name;
-  switch (from->type) {
+  switch ((int)from->type) { /* the library may know more */
     case EXR_ATTR_FLOAT:
       to->type = VL_ATTRIBUTE_FLOAT;
       to->numbers[0] = from->f;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""docs/extending-lights.md: its light is added to a copy of the tree, which builds; the light is read, checked and rendered as
+"""docs/extending.md: its light is added to a copy of the tree, which builds; the light is read, checked and rendered as
 it should be; without any one of its parts the tree does not build."""
 import os
 import subprocess
@@ -97,7 +97,7 @@ def main():
     if not os.path.exists(os.path.join(ROOT, ".git")):
         print("skip light: needs the tree's list of files (git)")
         sys.exit(0)
-    parts = list(worked_example.parts(os.path.join(ROOT, "docs/extending-lights.md")))
+    parts = list(worked_example.parts(os.path.join(ROOT, "docs/extending.md"), "## A light", "## A shape")))
     edited = [p.path for p in parts if p.text is None]
     say("three files are edited", len(edited) == 3, "\n".join(edited))
     with tempfile.TemporaryDirectory(dir=os.environ.get("TMPDIR")) as scratch:

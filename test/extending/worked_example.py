@@ -42,10 +42,11 @@ def _hunks(body):
         yield before, after
 
 
-def parts(page):
-    """The parts of the page's blocks, in their order."""
+def parts(page, begin, end):
+    """The parts of the blocks between two headings of the page, in their order."""
     with open(page, encoding="utf-8") as file:
         text = file.read()
+    text = text[text.index("\n" + begin + "\n"):text.index("\n" + end + "\n")]
     for head, body in re.findall(r"^```(\S[^\n]*)\n(.*?)^```$", text, flags=re.M | re.S):
         new = re.match(r"c file=(\S+)$", head)
         if new:

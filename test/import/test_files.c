@@ -184,7 +184,8 @@ static void missing(void **state) {
   file_error("parts", VL_ERROR_IO, ":0:0: cannot read %/parts: is a folder");
   write_file("scene.stl", "solid");
   file_error("scene.stl", VL_ERROR_SCENE,
-             ":0:0: %/scene.stl: unknown kind of scene file (known: .pbrt, .pbrt.gz, .gltf, .glb, .obj, .ply)");
+             ":0:0: %/scene.stl: unknown kind of scene file (known: .pbrt, .pbrt.gz, .gltf, .glb, .obj, .obj.gz, .ply, "
+             ".ply.gz)");
 }
 
 static void packed(void **state) {

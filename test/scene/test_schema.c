@@ -11,6 +11,7 @@
 
 #include "scene/scene.h"
 #include "scene/schema/schema.h"
+#include "velo/render.h"
 
 static void well_formed(void **state) {
   (void)state;
@@ -75,6 +76,24 @@ static void defaults(void **state) {
 }
 
 /* A number of each parameter that has a range, just outside of it: refused, and the message names it. */
+/* What a file that is silent about camera, film, sampler and tracer has: the rows and the vl_default_*_def agree. */
+static void silent_file(void **state) {
+  (void)state;
+  vlContext *context;
+  vlScene *scene;
+  assert_int_equal(vl_context_create(NULL, &context), VL_OK);
+  assert_int_equal(vl_scene_create(context, &scene), VL_OK);
+  const vlSceneDefs *defs = vl_scene_defs(scene);
+  check_defaults(vl_film_family.rows[VL_FILM_RGB], defs);
+  check_defaults(vl_sampler_family.rows[defs->render.sampler], defs);
+  for (uint32_t i = 0; i < vl_tracer_family.kind_count; i++) check_defaults(vl_tracer_family.rows[i], defs);
+  vlCameraDef camera = vl_default_camera_def(1280, 720);
+  for (uint32_t i = VL_CAMERA_PBRT_PERSPECTIVE + 1; i < vl_camera_family.kind_count; i++)
+    check_defaults(vl_camera_family.rows[i], &camera);
+  vl_scene_destroy(scene);
+  vl_context_destroy(context);
+}
+
 static void out_of_range(void **state) {
   (void)state;
   vlContext *context;
@@ -131,6 +150,7 @@ static void other_members_are_left_out(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(well_formed), cmocka_unit_test(defaults),
-                                     cmocka_unit_test(out_of_range), cmocka_unit_test(other_members_are_left_out)};
+                                     cmocka_unit_test(silent_file), cmocka_unit_test(out_of_range),
+                                     cmocka_unit_test(other_members_are_left_out)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

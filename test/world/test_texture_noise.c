@@ -110,7 +110,7 @@ static void dots(void **state) {
       for (int i = 0; i < N * N; i++) {
         double u = u0 + (i % N + 0.5) / N - 0.5, v = v0 + (i / N + 0.5) / N - 0.5;
         vlTexturePoint at = {.u = (float)u, .v = (float)v, .n = vl_vec3(0, 0, 1), .color = {1, 1, 1, 1}};
-        bool in = vl_texture_dots(&node, at) > 0;
+        bool in = vl_node_dots(&node, at) > 0;
         if (pass == 0) {
           count += in, x += in ? u : 0, y += in ? v : 0;
         } else if (fabs(hypot(u - x, v - y) - 0.35) > 0.012) { /* one disk, about the middle of what is in */
@@ -131,7 +131,7 @@ static void marble(void **state) {
   for (int k = 0; k < 2; k++) { /* a vein's both ends, where the sine is -1 and 1 */
     vlTexturePoint at = {
         .p = vl_vec3(7, (float)(3.14159265 * (k - 0.5)), 5), .n = vl_vec3(0, 0, 1), .color = {1, 1, 1, 1}};
-    vlVec3 c = vl_texture_marble(&node, at);
+    vlVec3 c = vl_node_marble(&node, at);
     double want[2] = {1.5 * 0.58, 1.5 * 0.6};
     assert_true(fabs(c.x - want[0]) < 2e-3 && fabs(c.y - want[0]) < 2e-3 && fabs(c.z - want[1]) < 2e-3);
   }
@@ -141,7 +141,7 @@ static void marble(void **state) {
     vlTexturePoint at = {.p = vl_vec3((float)(20 * random_unit()), (float)(20 * random_unit()), 1),
                          .n = vl_vec3(0, 0, 1),
                          .color = {1, 1, 1, 1}};
-    vlVec3 c = vl_texture_marble(&node, at);
+    vlVec3 c = vl_node_marble(&node, at);
     low = fmin(low, c.x), high = fmax(high, c.x);
     assert_true(c.z >= c.x - 0.05f); /* never warmer than the warmest of the nine */
   }

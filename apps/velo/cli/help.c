@@ -64,7 +64,7 @@ static void print_option(const Option *o) {
     n = 0;
   }
   print_wrapped(o->help, HELP_COLUMN, n);
-  if (o->choices) print_choices(o->choices);
+  if (option_choices(o)) print_choices(option_choices(o));
 }
 
 static void print_examples(const char *text) {

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/kinds.h"
 #include "cli/report.h"
 
 /* ---- the nearest name -------------------------------------------------------------------------------------------- */
@@ -59,6 +60,10 @@ static int unknown_option(const Command *command, const char *name, const char *
   const char *near = did_you_mean("--", name, names, count);
   if (*near) return report_usage("unknown option \"%s%s\"%s", prefix, name, near);
   return report_usage("unknown option \"%s%s\"; \"velo help %s\" lists them", prefix, name, command->name);
+}
+
+const Choice *option_choices(const Option *option) {
+  return option->kind == OPTION_KIND ? kind_choices(option->choices->name) : option->choices;
 }
 
 const char *choice_name(const Choice *choices, int value) {
@@ -150,13 +155,14 @@ static int read_choice(const Option *option, const char *text, OptionValue *valu
   const char *names[32];
   char list[400] = "";
   int count = 0;
-  for (const Choice *c = option->choices; c->name; c++) {
+  const Choice *choices = option_choices(option);
+  for (const Choice *c = choices; c->name; c++) {
     if (strcmp(c->name, text) == 0) {
       value->integer = c->value;
       return -1;
     }
     if (count < 32) names[count++] = c->name;
-    if (c == option->choices || c->value != c[-1].value) {
+    if (c == choices || c->value != c[-1].value) {
       size_t n = strlen(list);
       snprintf(list + n, sizeof list - n, "%s%s", n ? ", " : "", c->name);
     }
@@ -204,6 +210,7 @@ static int read_value(const Option *option, const char *text, Arguments *argumen
           value->numbers[3] <= 1)
         break;
       return bad_value(option, text, "must be x0,x1,y0,y1, fractions from 0 to 1 with x0 < x1 and y0 < y1");
+    case OPTION_KIND:
     case OPTION_CHOICE: {
       int status = read_choice(option, text, value);
       if (status >= 0) return status;

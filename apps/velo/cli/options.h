@@ -16,6 +16,7 @@ typedef enum OptionKind {
   OPTION_CROP,      /* x0,y0,x1,y1, whole numbers */
   OPTION_FRACTIONS, /* x0,x1,y0,y1 in 0..1 */
   OPTION_CHOICE,    /* one of choices */
+  OPTION_KIND,      /* one of the kinds of the family that choices names */
   OPTION_TEXT,
   OPTION_TEXTS,  /* may be given several times; at most one such option a command */
   OPTION_FOLDERS /* likewise, another one */
@@ -81,6 +82,8 @@ int options_parse(const Command *command, int argc, char **argv, Arguments *argu
 void options_print_help(const Command *command);
 /* "render" → "; did you mean \"render\"?", or nothing. The result lives until the next call. */
 const char *did_you_mean(const char *prefix, const char *wrong, const char *const *names, int count);
+/* The names that an option takes; null: any text. */
+const Choice *option_choices(const Option *option);
 /* The name of a choice's value. */
 const char *choice_name(const Choice *choices, int value);
 

@@ -29,12 +29,15 @@ static bool text(const vlImage *image, const char *name, const char **value) {
   return true;
 }
 
+#define COUNT_ONE(NAME, name) +1
+enum { PROJECTIONS = 0 VL_PROJECTION_KINDS(COUNT_ONE) };
+
 /* Projection and lens; false for a name or a coefficient that is not understood. */
 static bool read_model(const vlImage *image, const char *projection, vlCameraDef *def) {
   static const char *const names[] = {"none", "opencv", "radial", "thinprism"};
   int kind = 0;
-  while (kind <= VL_PROJECTION_OPTICS && strcmp(vl_projection_name((vlProjection)kind), projection) != 0) kind++;
-  if (kind > VL_PROJECTION_OPTICS) return false;
+  while (kind < PROJECTIONS && strcmp(vl_projection_name((vlProjection)kind), projection) != 0) kind++;
+  if (kind == PROJECTIONS) return false;
   def->projection = (vlProjection)kind;
   number(image, "velo.shape0", &def->shape[0]);
   number(image, "velo.shape1", &def->shape[1]);

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/kinds.h"
+
 typedef struct Header {
   vlImage *image;
   vlResult result;  /* of the first that failed */
@@ -206,11 +208,11 @@ vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
   const char *slash = strrchr(job->path, '/');
   set_text(&header, "velo.scene", slash ? slash + 1 : job->path);
   set_int(&header, "samplesPerPixel", spp);
-  set_text(&header, "velo.sampler", choice_name(sampler_choices, (int)render->sampler));
+  set_text(&header, "velo.sampler", kind_name("samplers", (int)render->sampler));
   set_double(&header, "velo.seed", render->seed); /* unsigned: does not fit EXR's int */
-  set_text(&header, "velo.filter", choice_name(filter_choices, (int)film->filter.kind));
+  set_text(&header, "velo.filter", kind_name("filters", (int)film->filter.kind));
   set_v2(&header, "velo.filterRadius", film->filter.radius_x, film->filter.radius_y);
-  set_text(&header, "velo.tracer", choice_name(tracer_choices, (int)render->tracer));
+  set_text(&header, "velo.tracer", kind_name("tracers", (int)render->tracer));
   set_int(&header, "velo.maxDepth", render->max_depth);
   set_text(&header, "velo.color", choice_name(color_choices, (int)build->color));
   set_text(&header, "velo.bits", choice_name(bits_choices, (int)build->bits));

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/kinds.h"
 #include "cli/report.h"
 #include "render/job.h"
 #include "render/progress.h"
@@ -21,9 +22,9 @@ static Facts gather(const Job *job, const vlScene *scene, const vlWorld *world) 
       .projection = c->projection == VL_PROJECTION_PERSPECTIVE && c->lens_radius > 0
                         ? "thin lens"
                         : vl_projection_name(c->projection),
-      .sampler = choice_name(sampler_choices, (int)defs->render.sampler),
-      .tracer = choice_name(tracer_choices, (int)defs->render.tracer),
-      .filter = choice_name(filter_choices, (int)defs->film.filter.kind),
+      .sampler = kind_name("samplers", (int)defs->render.sampler),
+      .tracer = kind_name("tracers", (int)defs->render.tracer),
+      .filter = kind_name("filters", (int)defs->film.filter.kind),
       .light_sampler = choice_name(light_sampler_choices, (int)defs->build.light_sampler),
       .color = choice_name(color_choices, (int)defs->build.color),
   };

@@ -7,44 +7,11 @@
 #include <string.h>
 
 #include "camera/camera.h"
+#include "cli/kinds.h"
 #include "cli/report.h"
 #include "render/lens_options.h"
 #include "render/scene_options.h"
 
-const Choice tracer_choices[] = {{"path", VL_TRACER_PATH},
-                                 {"volpath", VL_TRACER_VOLPATH},
-                                 {"raycast", VL_TRACER_RAYCAST},
-                                 {"ambientocclusion", VL_TRACER_AMBIENT_OCCLUSION},
-                                 {"ao", VL_TRACER_AMBIENT_OCCLUSION},
-                                 {"bidirectional", VL_TRACER_BIDIRECTIONAL},
-                                 {"merging", VL_TRACER_MERGING},
-                                 {"sppm", VL_TRACER_SPPM},
-                                 {"lightpath", VL_TRACER_LIGHT_PATH},
-                                 {"randomwalk", VL_TRACER_RANDOM_WALK},
-                                 {NULL, 0}};
-const Choice sampler_choices[] = {{"zsobol", VL_SAMPLER_ZSOBOL},
-                                  {"sobol", VL_SAMPLER_SOBOL},
-                                  {"halton", VL_SAMPLER_HALTON},
-                                  {"hammersley", VL_SAMPLER_HAMMERSLEY},
-                                  {"multijittered", VL_SAMPLER_MULTI_JITTERED},
-                                  {"multi-jittered", VL_SAMPLER_MULTI_JITTERED},
-                                  {"nrooks", VL_SAMPLER_NROOKS},
-                                  {"n-rooks", VL_SAMPLER_NROOKS},
-                                  {"stratified", VL_SAMPLER_STRATIFIED},
-                                  {"jittered", VL_SAMPLER_STRATIFIED},
-                                  {"regular", VL_SAMPLER_REGULAR},
-                                  {"independent", VL_SAMPLER_INDEPENDENT},
-                                  {"random", VL_SAMPLER_INDEPENDENT},
-                                  {NULL, 0}};
-const Choice filter_choices[] = {{"box", VL_PIXEL_FILTER_BOX},
-                                 {"triangle", VL_PIXEL_FILTER_TRIANGLE},
-                                 {"gaussian", VL_PIXEL_FILTER_GAUSSIAN},
-                                 {"mitchell", VL_PIXEL_FILTER_MITCHELL},
-                                 {"lanczos", VL_PIXEL_FILTER_LANCZOS},
-                                 {"sinc", VL_PIXEL_FILTER_LANCZOS},
-                                 {"blackmanharris", VL_PIXEL_FILTER_BLACKMAN_HARRIS},
-                                 {"blackman-harris", VL_PIXEL_FILTER_BLACKMAN_HARRIS},
-                                 {NULL, 0}};
 const Choice sensor_choices[] = {
     /* vl_sensor_name of each number */
     {"cie1931", 0},
@@ -174,8 +141,8 @@ static void override_size(vlSceneDefs *defs, uint32_t width, uint32_t height) {
 
 /* Samplers that lay out a fixed number of samples over the pixel cannot go on without end. */
 static bool sampler_is_open(vlSamplerKind kind) {
-  return kind == VL_SAMPLER_INDEPENDENT || kind == VL_SAMPLER_HALTON || kind == VL_SAMPLER_SOBOL ||
-         kind == VL_SAMPLER_ZSOBOL;
+  const vlKindFamily *samplers = kind_family("samplers");
+  return (uint32_t)kind < samplers->kind_count && samplers->rows[kind]->traits & VL_SAMPLER_TRAIT_OPEN;
 }
 
 static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
@@ -199,7 +166,7 @@ static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
     else
       report_warning(
           "the sampler %s lays out a fixed number of samples: ends at %u spp even if --time is not over; give --spp",
-          choice_name(sampler_choices, (int)defs->render.sampler), defs->render.spp);
+          kind_name("samplers", (int)defs->render.sampler), defs->render.spp);
   }
 }
 

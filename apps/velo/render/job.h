@@ -68,9 +68,8 @@ enum {
   RENDER_LENS /* the first of lens_options.h */
 };
 
-extern const Choice tracer_choices[], sampler_choices[], filter_choices[], light_sampler_choices[], sensor_choices[],
-    regularize_choices[], color_choices[], view_choices[], isa_choices[], bits_choices[], stereo_choices[],
-    eye_choices[];
+extern const Choice light_sampler_choices[], sensor_choices[], regularize_choices[], color_choices[], view_choices[],
+    isa_choices[], bits_choices[], stereo_choices[], eye_choices[];
 
 extern const Option render_options[];
 extern const Section render_sections[];

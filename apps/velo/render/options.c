@@ -5,6 +5,9 @@
 #include "render/job.h"
 #include "render/lens_options.h"
 
+/* Families of velo/schema.h. */
+static const Choice tracers[] = {{"tracers", 0}}, samplers[] = {{"samplers", 0}}, filters[] = {{"filters", 0}};
+
 const Option render_options[] = {
     {RENDER_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
      "image to write; may be given several times. The suffix chooses\n"
@@ -63,7 +66,7 @@ const Option render_options[] = {
     {RENDER_CONVERGENCE, 0, "convergence", OPTION_NUMBER, "D",
      "depth where off-axis windows or toed-in axes meet, scene units", 1e-9, 1e12, NULL},
     {RENDER_EYE, 0, "eye", OPTION_CHOICE, "NAME", "which eyes' images:", 0, 0, eye_choices},
-    {RENDER_TRACER, 0, "tracer", OPTION_CHOICE, "NAME", "how light is followed:", 0, 0, tracer_choices},
+    {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME", "how light is followed:", 0, 0, tracers},
     {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "longest path, in bounces", 0, 4096, NULL},
     {RENDER_MERGE_RADIUS, 0, "merge-radius", OPTION_NUMBER, "R",
      "merging, sppm: within which paths from the eye and from the\nlights meet at first, scene units; default: two "
@@ -73,9 +76,9 @@ const Option render_options[] = {
      "bidirectional, merging, sppm, lightpath: paths from the lights\nfor each sample of the image; default: as many "
      "as pixels",
      0, 1 << 24, NULL},
-    {RENDER_SAMPLER, 0, "sampler", OPTION_CHOICE, "NAME", "how samples are placed:", 0, 0, sampler_choices},
+    {RENDER_SAMPLER, 0, "sampler", OPTION_KIND, "NAME", "how samples are placed:", 0, 0, samplers},
     {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "another number, other noise", 0, 4294967295.0, NULL},
-    {RENDER_FILTER, 0, "filter", OPTION_CHOICE, "NAME", "pixel filter, with pbrt's usual size:", 0, 0, filter_choices},
+    {RENDER_FILTER, 0, "filter", OPTION_KIND, "NAME", "pixel filter, with pbrt's usual size:", 0, 0, filters},
     {RENDER_LIGHT_SAMPLER, 0, "light-sampler", OPTION_CHOICE, "NAME", "how a light is chosen:", 0, 0,
      light_sampler_choices},
     {RENDER_REGULARIZE, 0, "regularize", OPTION_CHOICE, "NAME",

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "cli/commands.h"
+#include "cli/kinds.h"
 #include "cli/report.h"
 #include "scene/scene.h"
 
@@ -32,12 +33,6 @@ typedef struct Facts {
   double low[3], high[3], seconds;
   vlCheck *check; /* for the unused */
 } Facts;
-
-static const char *tracer_name(vlTracer tracer) {
-  static const char *const names[] = {"path",          "raycast", "ambientocclusion", "volpath",
-                                      "bidirectional", "merging", "light path",       "random walk"};
-  return (unsigned)tracer < 8 ? names[tracer] : "other";
-}
 
 static void print_plain(const char *text) {
   for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
@@ -99,8 +94,8 @@ static void print_text(const Facts *f) {
   if (defs->film.crop[0] || defs->film.crop[1] || defs->film.crop[2] != defs->film.width ||
       defs->film.crop[3] != defs->film.height)
     printf(", of it %u,%u to %u,%u", defs->film.crop[0], defs->film.crop[1], defs->film.crop[2], defs->film.crop[3]);
-  printf(", %u samples a pixel, %s, at most %u bounces\n", defs->render.spp, tracer_name(defs->render.tracer),
-         defs->render.max_depth);
+  printf(", %u samples a pixel, %s, at most %u bounces\n", defs->render.spp,
+         kind_name("tracers", (int)defs->render.tracer), defs->render.max_depth);
   print_lights(f);
   uint32_t unused = 0;
   for (uint32_t i = 0; i < vl_check_count(f->check); i++) {
@@ -156,7 +151,7 @@ static void print_json(const Facts *f) {
   for (int i = 0; i < 4; i++) json_integer(&json, NULL, defs->film.crop[i]);
   json_end(&json, ']');
   json_integer(&json, "spp", defs->render.spp);
-  json_text(&json, "tracer", tracer_name(defs->render.tracer));
+  json_text(&json, "tracer", kind_name("tracers", (int)defs->render.tracer));
   json_integer(&json, "max_depth", defs->render.max_depth);
   json_end(&json, '}');
   uint32_t n = vl_scene_light_count(f->scene);

@@ -18,10 +18,11 @@ static const char *type_name(const vlParameter *p) {
     case VL_PARAMETER_FLOAT:
     case VL_PARAMETER_DOUBLE: return "float";
     case VL_PARAMETER_FLOAT3: return "vector3";
+    case VL_PARAMETER_DOUBLE3: return p->flags & VL_PARAMETER_VECTOR ? "vector3" : "point3";
     case VL_PARAMETER_CHOICE:
     case VL_PARAMETER_STRING:
-    case VL_PARAMETER_FILE:
-    case VL_PARAMETER_BLOCK: return "string";
+    case VL_PARAMETER_FILE: return "string";
+    case VL_PARAMETER_BLOCK: return p->text ? p->text : "string";
     case VL_PARAMETER_SPECTRUM: return "spectrum";
     case VL_PARAMETER_FLOAT_INPUT:
       return p->flags & (VL_PARAMETER_NO_TEXTURE | VL_PARAMETER_FILE_NUMBER) ? "float" : "float, texture";
@@ -39,8 +40,8 @@ static void print_default(const vlParameter *p) {
   const double k = p->factor != 0 ? 1 / p->factor : 1;
   if (p->flags & VL_PARAMETER_REQUIRED) {
     printf("required");
-  } else if (p->flags & (VL_PARAMETER_SHORTHAND | VL_PARAMETER_UNSET) || p->type == VL_PARAMETER_BLOCK ||
-             p->type == VL_PARAMETER_TEXTURE) {
+  } else if ((p->flags & VL_PARAMETER_SHORTHAND && p->value[0] == 0) || p->flags & VL_PARAMETER_UNSET ||
+             p->type == VL_PARAMETER_BLOCK || p->type == VL_PARAMETER_TEXTURE) {
     printf("–");
   } else if (p->type == VL_PARAMETER_BOOL) {
     printf("%s", p->value[0] != 0 ? "true" : "false");
@@ -50,7 +51,7 @@ static void print_default(const vlParameter *p) {
     printf("%s", p->text);
   } else if (p->type == VL_PARAMETER_STRING || p->type == VL_PARAMETER_FILE) {
     printf("–");
-  } else if (p->type == VL_PARAMETER_FLOAT3 || p->flags & VL_PARAMETER_RGB) {
+  } else if (p->type == VL_PARAMETER_FLOAT3 || p->type == VL_PARAMETER_DOUBLE3 || p->flags & VL_PARAMETER_RGB) {
     printf("%g %g %g", p->value[0], p->value[1], p->value[2]);
   } else {
     printf("%g", k * p->value[0]);
@@ -112,7 +113,7 @@ static void print_words(const vlKindFamily *family) {
       const vlParameter *p = &row->parameters[k];
       char type[32];
       snprintf(type, sizeof type, "%s", type_name(p));
-      type[strcspn(type, ",")] = 0;
+      type[strcspn(type, ", ")] = 0;
       if (p->type == VL_PARAMETER_EITHER_INPUT) snprintf(type, sizeof type, "float");
       print_word(type, p->name);
       print_word(type, p->alias);
@@ -147,7 +148,7 @@ static const Option options[] = {
 const Command scene_kinds_command = {
     .name = "scene kinds",
     .usage = "[FAMILY] [options]",
-    .summary = "kinds of materials, lights, ... and their parameters",
+    .summary = "what pbrt files may say: kinds of things, their parameters",
     .text = "Without FAMILY: the families. With one: a Markdown table for each of its kinds.",
     .options = options,
     .min_operands = 0,

@@ -74,7 +74,8 @@ static void put_film(vlExport *x, double shutter) {
 
 /* The camera's file is a whole scene: what stands before its world. */
 static const char *film_kind(const vlSceneDefs *defs) {
-  return defs->gbuffer ? "gbuffer" : defs->film.buckets ? "spectral" : "rgb";
+  vlFilmKind kind = defs->gbuffer ? VL_FILM_GBUFFER : defs->film.buckets ? VL_FILM_SPECTRAL : VL_FILM_RGB;
+  return vl_kind_row(&vl_film_family, (int)kind)->name;
 }
 static void put_head(vlExport *x, const char *text, size_t size) {
   static const char film[] = "Film \"rgb\"";
@@ -127,37 +128,46 @@ static bool put_camera(vlExport *x) {
   return true;
 }
 
-static void put_sampling(vlExport *x) {
-  static const char *const samplers[] = {"independent", NULL,     "stratified", NULL,    NULL,
-                                         NULL,          "halton", "sobol",      "zsobol"};
-  static const char *const filters[] = {"box", "triangle", "gaussian", "mitchell", "sinc", NULL};
-  static const char *const lights[] = {"bvh", "power", "uniform"};
+/* The name by which pbrt knows the kind; null after a loss: it does not, and `instead` is written. */
+static const char *pbrt_name(vlExport *x, const vlKindFamily *family, int kind, const char *thing,
+                             const char *instead) {
+  const vlKindRow *row = vl_kind_row(family, kind);
+  if (row && row->traits & VL_TRAIT_PBRT_NAME) return row->name;
+  if (row && row->traits & VL_TRAIT_PBRT_ALIAS) return row->alias;
+  vl_export_lose(x, "the %s: %s in its place", thing, instead);
+  return NULL;
+}
+
+static void put_sampler(vlExport *x) {
   const vlRenderDef *render = &x->scene->defs.render;
-  const vlBuildDef *build = &x->scene->defs.build;
-  const char *sampler = render->sampler < 9 ? samplers[render->sampler] : NULL;
-  if (!sampler) vl_export_lose(x, "the sampler: zsobol in its place");
+  const char *name = pbrt_name(x, &vl_sampler_family, (int)render->sampler, "sampler", "zsobol");
   uint32_t side = (uint32_t)(sqrt((double)render->spp) + 0.5);
   bool square = side * side == render->spp;
-  PUT("Sampler \"%s\"", sampler ? sampler : "zsobol");
-  if (sampler && render->sampler == VL_SAMPLER_STRATIFIED)
+  PUT("Sampler \"%s\"", name ? name : "zsobol");
+  if (render->sampler == VL_SAMPLER_STRATIFIED)
     PUT(" \"integer xsamples\" [%u] \"integer ysamples\" [%u]", square ? side : render->spp, square ? side : 1);
   else
     PUT(" \"integer pixelsamples\" [%u]", render->spp);
   if (render->seed) PUT(" \"integer seed\" [%u]", render->seed);
-  const vlPixelFilter *f = &x->scene->defs.film.filter;
-  const char *filter = f->kind < 6 ? filters[f->kind] : NULL;
-  if (!filter) vl_export_lose(x, "the pixel filter: gaussian in its place");
-  PUT("\nPixelFilter \"%s\" \"float xradius\" [%.9g] \"float yradius\" [%.9g]", filter ? filter : "gaussian",
-      (double)f->radius_x, (double)f->radius_y);
-  if (f->kind == VL_PIXEL_FILTER_GAUSSIAN) PUT(" \"float sigma\" [%.9g]", (double)f->sigma);
-  if (f->kind == VL_PIXEL_FILTER_MITCHELL) PUT(" \"float B\" [%.9g] \"float C\" [%.9g]", (double)f->b, (double)f->c);
-  if (f->kind == VL_PIXEL_FILTER_LANCZOS) PUT(" \"float tau\" [%.9g]", (double)f->tau);
-  bool path = render->tracer == VL_TRACER_PATH, volume = render->tracer == VL_TRACER_VOLPATH;
-  if (!path && !volume) vl_export_lose(x, "the tracer: volpath in its place");
-  PUT("\nIntegrator \"%s\" \"integer maxdepth\" [%u]", path ? "path" : "volpath", render->max_depth);
-  if (build->light_sampler != VL_LIGHT_SAMPLER_BVH && build->light_sampler < 3)
-    PUT(" \"string lightsampler\" \"%s\"", lights[build->light_sampler]);
-  if (build->regularize) PUT(" \"bool regularize\" true");
+}
+
+static void put_filter(vlExport *x) {
+  vlPixelFilter filter = x->scene->defs.film.filter;
+  const char *name = pbrt_name(x, &vl_pixel_filter_family, (int)filter.kind, "pixel filter", "gaussian");
+  if (!name) filter.kind = VL_PIXEL_FILTER_GAUSSIAN;
+  PUT("\nPixelFilter \"%s\"", name ? name : "gaussian");
+  vl_pbrt_row(x, vl_kind_row(&vl_pixel_filter_family, (int)filter.kind), &filter, true, NULL);
+}
+
+static void put_tracer(vlExport *x) {
+  const vlSceneDefs *defs = &x->scene->defs;
+  const char *name = pbrt_name(x, &vl_tracer_family, (int)defs->render.tracer, "tracer", "volpath");
+  const vlKindRow *row = vl_kind_row(&vl_tracer_family, name ? (int)defs->render.tracer : VL_TRACER_VOLPATH);
+  PUT("\nIntegrator \"%s\"", name ? name : "volpath");
+  if (vl_row_find(row, "maxdepth")) PUT(" \"integer maxdepth\" [%u]", defs->render.max_depth);
+  if (vl_row_find(row, "photonsperiteration") && defs->render.light_paths != VL_AS_MANY_AS_PIXELS)
+    PUT(" \"integer photonsperiteration\" [%u]", defs->render.light_paths);
+  vl_pbrt_row(x, row, defs, false, "maxdepth");
   PUT("\n");
 }
 
@@ -221,7 +231,9 @@ bool vl_export_pbrt(vlExport *x) {
     if (!vl_pbrt_medium(x, i)) return false;
   if (s->defs.camera_medium.index) PUT("MediumInterface \"\" \"medium%u\"\n", s->defs.camera_medium.index);
   if (!put_camera(x)) return false;
-  put_sampling(x);
+  put_sampler(x);
+  put_filter(x);
+  put_tracer(x);
   PUT("WorldBegin\n");
   for (size_t i = 0; i < s->lights.count; i++)
     if (!put_light(x, &s->lights.items[i])) return false;

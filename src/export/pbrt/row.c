@@ -22,6 +22,12 @@ static void put_parameter(vlExport *x, const vlParameter *p, const void *def) {
     case VL_PARAMETER_FLOAT3:
       PUT(" \"point3 %s\" [%.9g %.9g %.9g]", p->name, (double)v[0], (double)v[1], (double)v[2]);
       break;
+    case VL_PARAMETER_DOUBLE3: {
+      const double *d = at;
+      PUT(" \"%s %s\" [%.17g %.17g %.17g]", p->flags & VL_PARAMETER_VECTOR ? "vector3" : "point3", p->name, d[0], d[1],
+          d[2]);
+      break;
+    }
     case VL_PARAMETER_CHOICE: PUT(" \"string %s\" \"%s\"", p->name, p->choices[*(const int *)at]); break;
     case VL_PARAMETER_STRING:
       if (*(const char *const *)at) PUT(" \"string %s\" \"%s\"", p->name, *(const char *const *)at);

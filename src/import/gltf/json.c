@@ -74,8 +74,10 @@ static const char *kind_of(const json_t *value) {
     case JSON_INTEGER:
     case JSON_REAL: return "a number";
     case JSON_NULL: return "null";
-    default: return "true or false";
+    case JSON_TRUE:
+    case JSON_FALSE: return "true or false";
   }
+  return "nothing";
 }
 
 static bool wrong_kind(vlGltf *g, const vlGltfPlace *at, const char *key, const char *wanted, const json_t *found) {

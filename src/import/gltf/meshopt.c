@@ -21,8 +21,9 @@ static int decode(Mode mode, void *out, size_t count, size_t stride, const uint8
   switch (mode) {
     case TRIANGLES: return meshopt_decodeIndexBuffer(out, count, stride, data, size);
     case INDICES: return meshopt_decodeIndexSequence(out, count, stride, data, size);
-    default: return meshopt_decodeVertexBuffer(out, count, stride, data, size);
+    case ATTRIBUTES: return meshopt_decodeVertexBuffer(out, count, stride, data, size);
   }
+  return -1;
 }
 
 bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *up, const json_t *json, vlGltfView *view) {

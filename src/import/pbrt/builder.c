@@ -32,8 +32,26 @@ static const char *directive_name(vlDirective d) {
     case VL_DIR_LIGHT_SOURCE: return "LightSource";
     case VL_DIR_SHAPE: return "Shape";
     case VL_DIR_TEXTURE: return "Texture";
-    default: return "this directive";
+    case VL_DIR_IDENTITY:
+    case VL_DIR_ACTIVE_ALL:
+    case VL_DIR_ACTIVE_START:
+    case VL_DIR_ACTIVE_END:
+    case VL_DIR_IMPORT_END:
+    case VL_DIR_TRANSLATE:
+    case VL_DIR_SCALE:
+    case VL_DIR_ROTATE:
+    case VL_DIR_LOOK_AT:
+    case VL_DIR_TRANSFORM:
+    case VL_DIR_CONCAT_TRANSFORM:
+    case VL_DIR_COORDINATE_SYSTEM:
+    case VL_DIR_COORD_SYS_TRANSFORM:
+    case VL_DIR_COLOR_SPACE:
+    case VL_DIR_MEDIUM_INTERFACE:
+    case VL_DIR_OPTION:
+    case VL_DIR_ATTRIBUTE:
+    case VL_DIR_MAKE_NAMED_MEDIUM: break;
   }
+  return "this directive";
 }
 
 /* A choice before WorldBegin; the last one given counts. */
@@ -125,8 +143,26 @@ static bool in_right_part(vlImport *import, const vlStatement *s) {
       if (import->in_world) return true;
       return vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s must come after WorldBegin",
                             directive_name(s->directive));
-    default: return true;
+    case VL_DIR_IDENTITY:
+    case VL_DIR_ACTIVE_ALL:
+    case VL_DIR_ACTIVE_START:
+    case VL_DIR_ACTIVE_END:
+    case VL_DIR_IMPORT_END:
+    case VL_DIR_TRANSLATE:
+    case VL_DIR_SCALE:
+    case VL_DIR_ROTATE:
+    case VL_DIR_LOOK_AT:
+    case VL_DIR_TRANSFORM:
+    case VL_DIR_CONCAT_TRANSFORM:
+    case VL_DIR_COORDINATE_SYSTEM:
+    case VL_DIR_COORD_SYS_TRANSFORM:
+    case VL_DIR_COLOR_SPACE:
+    case VL_DIR_MEDIUM_INTERFACE:
+    case VL_DIR_OPTION:
+    case VL_DIR_ATTRIBUTE:
+    case VL_DIR_MAKE_NAMED_MEDIUM: break; /* anywhere */
   }
+  return true;
 }
 
 static bool obey(vlImport *import, const vlStatement *s) {

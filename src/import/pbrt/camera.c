@@ -10,35 +10,6 @@
 
 static const double degrees = 0.017453292519943295;
 
-/* Up to REALISTIC in pbrt's words, from PINHOLE on in the lecture's. */
-typedef enum Kind {
-  PERSPECTIVE,
-  ORTHOGRAPHIC,
-  SPHERICAL,
-  REALISTIC,
-  PINHOLE,
-  THIN_LENS,
-  FISHEYE,
-  EQUIRECTANGULAR,
-  EQUAL_AREA,
-  CYLINDRICAL,
-  CUBE,
-  PANINI,
-  OPENCV,
-  OPENCV_FISHEYE,
-  COLMAP,
-  FOV,
-  DIVISION,
-  UNIFIED,
-  EUCM,
-  DOUBLE_SPHERE,
-  KINDS
-} Kind;
-static const char *const kinds[KINDS] = {
-    "perspective",     "orthographic", "spherical",   "realistic", "pinhole", "thinlens",    "fisheye",
-    "equirectangular", "equalarea",    "cylindrical", "cube",      "panini",  "opencv",      "opencvfisheye",
-    "colmap",          "fov",          "division",    "unified",   "eucm",    "doublesphere"};
-
 /* velo's camera has y down; pbrt's y up, both x right, z forward. The world's numbers stay as they are: pbrt reads them
  * as left-handed, so that seen from velo its cameras mirror. */
 static bool pose_from(vlImport *import, const vlMat4 *ctm, double pose[16]) {
@@ -69,9 +40,7 @@ static bool pose_from_ctm(vlImport *import, vlCameraDef *def) {
   return pose_from(import, &ctm[1], def->world_from_camera_close);
 }
 
-static bool read_shutter(vlDict *dict, vlCameraDef *def) {
-  vl_dict_double(dict, "shutteropen", &def->shutter_open);
-  vl_dict_double(dict, "shutterclose", &def->shutter_close);
+static bool check_shutter(vlDict *dict, vlCameraDef *def) {
   if (def->shutter_close > def->shutter_open || dict->import->scene->error.code != VL_OK)
     return dict->import->scene->error.code == VL_OK;
   return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
@@ -80,9 +49,9 @@ static bool read_shutter(vlDict *dict, vlCameraDef *def) {
 }
 
 /* pbrt's cameras (book 5.2). The window on the screen is -1 to 1 along the smaller side, unless given. */
-static bool read_pbrt(vlDict *dict, vlCameraDef *def, Kind kind) {
+static bool read_pbrt(vlDict *dict, vlCameraDef *def, bool flat) {
   vlImport *import = dict->import;
-  double frame = (double)def->width / def->height, fov = 90.0, window[4], focus = 1e6;
+  double frame = (double)def->width / def->height, window[4], focus = 1e6;
   bool given = vl_dict_double(dict, "frameaspectratio", &frame);
   if (given && !(frame > 0.0))
     return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"frameaspectratio\" must be above 0", dict->what);
@@ -90,22 +59,15 @@ static bool read_pbrt(vlDict *dict, vlCameraDef *def, Kind kind) {
   double standard[4] = {-x, x, -y, y};
   memcpy(window, standard, sizeof window);
   given = vl_dict_floats(dict, "screenwindow", 4, window) || given;
-  if (given || kind == ORTHOGRAPHIC) {
+  if (given || flat) {
     def->screen_min_x = window[0];
     def->screen_max_x = window[1];
     def->screen_min_y = window[2];
     def->screen_max_y = window[3];
   }
-  if (kind == PERSPECTIVE) {
-    vl_dict_double(dict, "fov", &fov);
-    def->fov = fov * degrees;
-    def->fov_axis = VL_FOV_SMALLER;
-  } else {
-    def->projection = VL_PROJECTION_ORTHOGRAPHIC;
-  }
-  vl_dict_double(dict, "lensradius", &def->lens_radius);
+  if (flat) def->projection = VL_PROJECTION_ORTHOGRAPHIC;
   if (vl_dict_double(dict, "focaldistance", &focus) || def->lens_radius != 0.0) def->focus_distance = focus;
-  return read_shutter(dict, def) && vl_dict_done(dict) && pose_from_ctm(import, def);
+  return check_shutter(dict, def) && vl_dict_done(dict) && pose_from_ctm(import, def);
 }
 
 /* pbrt's spherical camera: the whole sphere, whatever the frame. Its poles are up and down; its equirectangular image
@@ -123,7 +85,7 @@ static bool read_spherical(vlDict *dict, vlCameraDef *def) {
   double window[4];
   vl_dict_floats(dict, "screenwindow", 4, window);
   def->projection = mapping ? VL_PROJECTION_EQUIRECTANGULAR : VL_PROJECTION_EQUAL_AREA;
-  if (!read_shutter(dict, def) || !vl_dict_done(dict) || !pose_from_ctm(dict->import, def)) return false;
+  if (!check_shutter(dict, def) || !vl_dict_done(dict) || !pose_from_ctm(dict->import, def)) return false;
   double *m = def->world_from_camera;
   for (int row = 0; row < 3; row++) {
     double old[3] = {m[4 * row], m[4 * row + 1], m[4 * row + 2]};
@@ -137,15 +99,11 @@ static bool read_spherical(vlDict *dict, vlCameraDef *def) {
 /* The shutter's curve, by a name or by points (at, value, at, value, ...), and the rows' readout: velo's own words. */
 static bool read_curve(vlDict *dict, vlCameraDef *def) {
   static const char *const curves[] = {"box", "triangle", "trapezoid"};
-  static const char *const directions[] = {"down", "up", "right", "left"};
-  int curve = 0, direction = 0;
+  int curve = 0;
   double rise = 0.1;
   vl_dict_choice(dict, "shuttercurve", curves, 3, &curve);
   bool risen = vl_dict_double(dict, "shutterrise", &rise);
   vlParam *points = vl_dict_find(dict, "shutterpoints", VL_BIT_FLOAT);
-  vl_dict_double(dict, "readout", &def->readout);
-  vl_dict_choice(dict, "readoutdirection", directions, 4, &direction);
-  def->readout_direction = (vlReadout)direction;
   if (dict->import->scene->error.code != VL_OK) return false;
   if (risen && (curve != 2 || !(rise > 0.0 && rise <= 0.5)))
     return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
@@ -184,142 +142,62 @@ static bool read_coefficients(vlDict *dict, const char *name, double *values, ui
   return true;
 }
 
-/* What sets a projection or a calibrated lens apart from the pinhole. */
-static bool read_model(vlDict *dict, vlCameraDef *def, Kind kind) {
-  static const char *const mappings[] = {"equidistant", "equisolid", "stereographic", "orthographic"};
-  int mapping = 0;
-  double window[4];
-  if (vl_dict_double(dict, "maxangle", &def->max_angle)) def->max_angle *= degrees;
-  switch (kind) {
-    case FISHEYE:
-      vl_dict_choice(dict, "mapping", mappings, 4, &mapping);
-      def->projection = (vlProjection)(VL_PROJECTION_EQUIDISTANT + mapping);
-      break;
-    case EQUIRECTANGULAR: {
-      static const char *const limits[] = {"longitude", "latitude"}; /* degrees; right and up count as above zero */
-      def->projection = VL_PROJECTION_EQUIRECTANGULAR;
-      window[0] = -180.0, window[1] = 180.0, window[2] = -90.0, window[3] = 90.0;
-      bool given = vl_dict_floats(dict, limits[0], 2, window);
-      given = vl_dict_floats(dict, limits[1], 2, window + 2) || given;
-      if (given) {
-        def->screen_min_x = window[0] * degrees, def->screen_max_x = window[1] * degrees;
-        def->screen_min_y = window[2] * degrees, def->screen_max_y = window[3] * degrees;
-      }
-      break;
-    }
-    case EQUAL_AREA: def->projection = VL_PROJECTION_EQUAL_AREA; break;
-    case CYLINDRICAL: def->projection = VL_PROJECTION_CYLINDRICAL; break;
-    case CUBE: {
-      static const char *const layouts[] = {"row", "cross"};
-      int layout = 0;
-      def->projection = VL_PROJECTION_CUBE;
-      vl_dict_choice(dict, "layout", layouts, 2, &layout);
-      def->shape[0] = layout;
-      break;
-    }
-    case PANINI:
-      def->projection = VL_PROJECTION_PANINI;
-      vl_dict_double(dict, "panini", &def->shape[0]);
-      break;
-    case OPENCV:
-      def->distortion = VL_DISTORTION_OPENCV;
-      if (!read_coefficients(dict, "coefficients", def->distortion_coefficients, &def->distortion_count))
-        def->distortion = VL_DISTORTION_NONE;
-      break;
-    case OPENCV_FISHEYE:
-      def->projection = VL_PROJECTION_EQUIDISTANT;
-      if (read_coefficients(dict, "coefficients", def->distortion_coefficients, &def->distortion_count))
-        def->distortion = VL_DISTORTION_RADIAL;
-      break;
-    case COLMAP: {
-      const char *model = "PINHOLE";
-      double values[14];
-      uint32_t count = 0;
-      vlError error = {0};
-      vl_dict_string(dict, "model", &model);
-      read_coefficients(dict, "parameters", values, &count);
-      if (dict->import->scene->error.code == VL_OK && vl_camera_def_colmap(def, model, values, count, &error) != VL_OK)
-        return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %s", dict->what,
-                              error.message + strlen("camera: "));
-      break;
-    }
-    case FOV:
-      def->projection = VL_PROJECTION_FOV;
-      vl_dict_double(dict, "omega", &def->shape[0]);
-      break;
-    case DIVISION:
-      def->projection = VL_PROJECTION_DIVISION;
-      vl_dict_double(dict, "lambda", &def->shape[0]);
-      break;
-    case UNIFIED:
-      def->projection = VL_PROJECTION_UNIFIED;
-      vl_dict_double(dict, "xi", &def->shape[0]);
-      if (read_coefficients(dict, "coefficients", def->distortion_coefficients, &def->distortion_count))
-        def->distortion = VL_DISTORTION_OPENCV;
-      break;
-    case EUCM:
-      def->projection = VL_PROJECTION_EUCM;
-      vl_dict_double(dict, "alpha", &def->shape[0]);
-      vl_dict_double(dict, "beta", &def->shape[1]);
-      break;
-    case DOUBLE_SPHERE:
-      def->projection = VL_PROJECTION_DOUBLE_SPHERE;
-      vl_dict_double(dict, "xi", &def->shape[0]);
-      vl_dict_double(dict, "alpha", &def->shape[1]);
-      break;
-    default: break;
-  }
+/* The fisheye's mapping, or the cube's layout. */
+static int read_choice(vlDict *dict, const vlKindRow *row, const char *name) {
+  const vlParameter *p = vl_row_find(row, name);
+  int choice = 0;
+  size_t count = 0;
+  while (p->choices[count]) count++;
+  vl_dict_choice(dict, name, p->choices, count, &choice);
+  return choice;
+}
+
+static bool read_colmap(vlDict *dict, vlCameraDef *def) {
+  const char *model = "PINHOLE";
+  double values[14];
+  uint32_t count = 0;
+  vlError error = {0};
+  vl_dict_string(dict, "model", &model);
+  read_coefficients(dict, "parameters", values, &count);
+  if (dict->import->scene->error.code != VL_OK) return false;
+  if (vl_camera_def_colmap(def, model, values, count, &error) == VL_OK) return true;
+  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %s", dict->what,
+                        error.message + strlen("camera: "));
+}
+
+/* Degrees; right and up count as above zero. */
+static void read_limits(vlDict *dict, vlCameraDef *def) {
+  double window[4] = {-180.0, 180.0, -90.0, 90.0};
+  bool given = vl_dict_floats(dict, "longitude", 2, window);
+  given = vl_dict_floats(dict, "latitude", 2, window + 2) || given;
+  if (!given) return;
+  def->screen_min_x = window[0] * degrees, def->screen_max_x = window[1] * degrees;
+  def->screen_min_y = window[2] * degrees, def->screen_max_y = window[3] * degrees;
+}
+
+/* What the row of a projection or a calibrated lens cannot say. */
+static bool read_model(vlDict *dict, vlCameraDef *def, vlCameraKind kind, const vlKindRow *row) {
+  uint32_t *count = &def->distortion_count;
+  bool given = kind != VL_CAMERA_COLMAP && vl_row_find(row, "coefficients") &&
+               read_coefficients(dict, "coefficients", def->distortion_coefficients, count);
+  if (given) def->distortion = kind == VL_CAMERA_OPENCV_FISHEYE ? VL_DISTORTION_RADIAL : VL_DISTORTION_OPENCV;
+  if (kind == VL_CAMERA_COLMAP) return read_colmap(dict, def);
+  if (kind == VL_CAMERA_FISHEYE)
+    def->projection = (vlProjection)((int)VL_PROJECTION_EQUIDISTANT + read_choice(dict, row, "mapping"));
+  if (kind == VL_CAMERA_OPENCV_FISHEYE) def->projection = VL_PROJECTION_EQUIDISTANT;
+  if (kind >= VL_CAMERA_OF_PROJECTION) def->projection = (vlProjection)((int)kind - (int)VL_CAMERA_OF_PROJECTION);
+  if (vl_row_find(row, "longitude")) read_limits(dict, def);
+  if (vl_row_find(row, "layout")) def->shape[0] = read_choice(dict, row, "layout");
   return dict->import->scene->error.code == VL_OK;
 }
 
-/* Two eyes: the render makes both of this camera, or the one that is said. */
-static void read_stereo(vlDict *dict, vlCameraDef *def) {
-  static const char *const modes[] = {"none", "parallel", "off-axis", "toe-in", "omnidirectional"};
-  static const char *const eyes[] = {"both", "left", "right"};
-  int mode = VL_STEREO_NONE, eye = VL_EYE_BOTH;
-  vl_dict_choice(dict, "stereo", modes, 5, &mode);
-  vl_dict_choice(dict, "stereoeye", eyes, 3, &eye);
-  vl_dict_double(dict, "interocular", &def->stereo.interocular);
-  vl_dict_double(dict, "convergence", &def->stereo.convergence);
-  def->stereo.mode = (vlStereoMode)mode;
-  def->stereo_eye = (vlEye)eye;
-}
-
-/* The lecture's camera: eye, lookat, up, roll; d, zoom, s or a field of view; exposure time. Its world is right-handed.
- */
-static bool read_lecture(vlDict *dict, vlCameraDef *def, Kind kind) {
-  static const char *const axes[] = {"vertical", "horizontal", "diagonal", "smaller", "larger"};
+/* velo's words for all its cameras: eye, lookat, up, roll; d, zoom, s or a field of view; exposure time. Their world
+ * is right-handed. */
+static bool read_lecture(vlDict *dict, vlCameraDef *def, vlCameraKind kind, const vlKindRow *row) {
   vlImport *import = dict->import;
-  int axis = VL_FOV_SMALLER;
-  vl_dict_vector(dict, "eye", VL_PARAM_POINT3, def->eye);
-  vl_dict_vector(dict, "lookat", VL_PARAM_POINT3, def->lookat);
-  vl_dict_vector(dict, "up", VL_PARAM_VECTOR3, def->up);
-  if (vl_dict_double(dict, "roll", &def->roll)) def->roll *= degrees;
-  vl_dict_vector(dict, "eyeclose", VL_PARAM_POINT3, def->eye_close);
-  vl_dict_vector(dict, "lookatclose", VL_PARAM_POINT3, def->lookat_close);
-  vl_dict_vector(dict, "upclose", VL_PARAM_VECTOR3, def->up_close);
-  if (vl_dict_double(dict, "rollclose", &def->roll_close)) def->roll_close *= degrees;
-  vl_dict_double(dict, "d", &def->view_distance);
-  vl_dict_double(dict, "zoom", &def->zoom);
-  vl_dict_double(dict, "pixelsize", &def->pixel_size);
-  if (vl_dict_double(dict, "fov", &def->fov)) def->fov *= degrees;
-  vl_dict_choice(dict, "fovaxis", axes, 5, &axis);
-  def->fov_axis = (vlFovAxis)axis;
-  vl_dict_double(dict, "focallength", &def->focal_mm);
-  vl_dict_double(dict, "sensorwidth", &def->sensor_width_mm);
-  vl_dict_double(dict, "fx", &def->fx);
-  vl_dict_double(dict, "fy", &def->fy);
-  vl_dict_double(dict, "cx", &def->cx);
-  vl_dict_double(dict, "cy", &def->cy);
-  vl_dict_double(dict, "skew", &def->skew);
-  vl_dict_double(dict, "exposuretime", &def->exposure_time);
-  vl_dict_double(dict, "near", &def->near_plane);
-  vl_dict_double(dict, "far", &def->far_plane);
-  read_stereo(dict, def);
-  if (kind >= FISHEYE && !read_model(dict, def, kind)) return false;
-  if (kind != PINHOLE && !vl_import_lens(dict, def)) return false;
-  vl_dict_bool(dict, "vignetting", &def->lens.vignetting);
-  if (!read_shutter(dict, def) || !read_curve(dict, def) || !vl_dict_done(dict)) return false;
+  if (!read_model(dict, def, kind, row)) return false;
+  if (kind != VL_CAMERA_PINHOLE && !vl_import_lens(dict, def)) return false;
+  if (!check_shutter(dict, def) || !read_curve(dict, def) || !vl_dict_done(dict)) return false;
   const vlMat4 identity = vl_mat4_identity();
   for (int i = 0; i < 16; i++)
     if (import->camera_from_world[0].m[i] != identity.m[i] || import->camera_from_world[1].m[i] != identity.m[i])
@@ -361,6 +239,27 @@ static bool name_lecture_system(vlImport *import, const vlCameraDef *def) {
   return true;
 }
 
+/* By kind; false after an error. */
+static bool read_kind(vlDict *dict, vlCameraDef *def, vlCameraKind kind, const vlKindRow *row) {
+  vlImport *import = dict->import;
+  switch (kind) {
+    case VL_CAMERA_PBRT_PERSPECTIVE: return read_pbrt(dict, def, false);
+    case VL_CAMERA_PBRT_ORTHOGRAPHIC: return read_pbrt(dict, def, true);
+    case VL_CAMERA_SPHERICAL: return read_spherical(dict, def);
+    case VL_CAMERA_REALISTIC:
+      return vl_import_optics(dict, def, import->film_diagonal) && check_shutter(dict, def) && vl_dict_done(dict) &&
+             pose_from_ctm(import, def);
+    case VL_CAMERA_PINHOLE:
+    case VL_CAMERA_THIN_LENS:
+    case VL_CAMERA_FISHEYE:
+    case VL_CAMERA_OPENCV:
+    case VL_CAMERA_OPENCV_FISHEYE:
+    case VL_CAMERA_COLMAP:
+    case VL_CAMERA_OF_PROJECTION: break;
+  }
+  return read_lecture(dict, def, kind, row);
+}
+
 bool vl_import_camera(vlImport *import) {
   vlSceneDefs *defs = vl_scene_defs(import->scene);
   const vlChoice *choice = &import->camera;
@@ -368,31 +267,26 @@ bool vl_import_camera(vlImport *import) {
   snprintf(what, sizeof what, "Camera \"%.60s\"", choice->given ? choice->kind : "perspective");
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
   vlCameraDef def = vl_default_camera_def(defs->film.width, defs->film.height);
-  int kind = choice->given ? -1 : PERSPECTIVE;
-  for (int i = 0; choice->given && i < KINDS; i++)
-    if (strcmp(choice->kind, kinds[i]) == 0) kind = i;
+  int kind = choice->given ? vl_kind_find(&vl_camera_family, choice->kind) : (int)VL_CAMERA_PBRT_PERSPECTIVE;
+  const vlKindRow *row = vl_kind_row(&vl_camera_family, kind);
   for (int i = 0; i < 2 && !choice->given; i++) import->camera_from_world[i] = vl_mat4_identity();
   defs->camera_source = choice->place;
-  if (kind < 0) { /* permissive: pbrt's perspective camera from the same place */
-    if (!vl_import_unknown(import, choice->place, "camera", choice->kind, kinds, KINDS, NULL, 0)) return false;
+  if (!row) { /* permissive: pbrt's perspective camera from the same place */
+    if (!vl_import_unknown_kind(import, choice->place, &vl_camera_family, choice->kind)) return false;
     vl_dict_skip(&dict);
     def.fov = 90.0 * degrees;
     if (!pose_from_ctm(import, &def)) return false;
-  } else if (kind == PERSPECTIVE || kind == ORTHOGRAPHIC) {
-    if (!read_pbrt(&dict, &def, (Kind)kind)) return false;
-  } else if (kind == SPHERICAL) {
-    if (!read_spherical(&dict, &def)) return false;
-  } else if (kind == REALISTIC) {
-    if (!vl_import_optics(&dict, &def, import->film_diagonal)) return false;
-    if (!read_shutter(&dict, &def) || !vl_dict_done(&dict) || !pose_from_ctm(import, &def)) return false;
-  } else if (!read_lecture(&dict, &def, (Kind)kind)) {
-    return false;
+  } else {
+    vl_row_set_defaults(row, &def);
+    if (!vl_import_parameters(&dict, row, &def, false, NULL)) return false;
+    if (!read_kind(&dict, &def, (vlCameraKind)kind, row)) return false;
   }
   if (!check(import, what, &def)) return false;
   defs->camera = def;
-  /* pbrt's sensor: the longer the shutter is open, the brighter; the lecture says it with its own factor. */
-  if (kind >= PERSPECTIVE && kind < PINHOLE) defs->develop.exposure *= (float)(def.shutter_close - def.shutter_open);
+  /* pbrt's sensor: the longer the shutter is open, the brighter; velo's cameras say it with their own factor. */
+  bool pbrts = row && kind <= (int)VL_CAMERA_REALISTIC;
+  if (pbrts) defs->develop.exposure *= (float)(def.shutter_close - def.shutter_open);
   /* pbrt limits what its sensor measures, the film what falls on it. */
   if (defs->develop.exposure > 0.0f) defs->film.max_component /= defs->develop.exposure;
-  return kind < PINHOLE || name_lecture_system(import, &def);
+  return pbrts || !row || name_lecture_system(import, &def);
 }

@@ -7,8 +7,6 @@
 #include "import/pbrt/token.h"
 #include "velo/render.h"
 
-enum { MAX_SIDE = 65536 }; /* as films have */
-
 /* pbrt: pixelbounds x0 x1 y0 y1 in pixels; cropwindow the same in fractions, rounded up, and it wins. */
 static bool read_crop(vlDict *dict, vlSceneDefs *s) {
   vlImport *import = dict->import;
@@ -81,69 +79,65 @@ static bool read_sensor(vlDict *dict) {
   return import->scene->error.code == VL_OK;
 }
 
-/* Buckets of wavelengths beside the colours. */
-static bool read_spectrum(vlDict *dict, vlSceneDefs *s) {
-  uint32_t count = 16;
-  double low = 360.0, high = 830.0;
-  vl_dict_count(dict, "nbuckets", 1, &count);
-  vl_dict_double(dict, "lambdamin", &low);
-  vl_dict_double(dict, "lambdamax", &high);
-  if (dict->import->scene->error.code != VL_OK) return false;
-  if (count > 1000)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %u buckets are too many (1000 at most)",
-                          dict->what, count);
-  if (!(low >= 360.0 && low < high && high <= 830.0))
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
-                          "%s: wavelengths from %g to %g nm; they must lie inside of 360 to 830", dict->what, low,
-                          high);
-  s->film.buckets = count, s->film.lambda_min = low, s->film.lambda_max = high;
+/* What is not the row's alone: the file's name, factors of the exposure, the crop, the sensor. */
+static bool read_rest(vlDict *dict, vlSceneDefs *s) {
+  vlImport *import = dict->import;
+  double iso = 100.0, time = 1.0, ratio = 1.0;
+  bool half = true;
+  const char *output = "";
+  vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
+  vl_dict_string(dict, "filename", &output);
+  import->film_diagonal = 35.0;
+  vl_dict_double(dict, "diagonal", &import->film_diagonal); /* matters to realistic cameras only */
+  vl_dict_bool(dict, "savefp16", &half);                    /* how the file is written: the program's business */
+  vl_dict_double(dict, "iso", &iso);
+  vl_dict_double(dict, "exposuretime", &time);
+  vl_dict_double(dict, "imagingratio", &ratio);
+  if (import->scene->error.code != VL_OK) return false;
+  if (strlen(output) >= sizeof s->output)
+    return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: the file name is too long", dict->what);
+  snprintf(s->output, sizeof s->output, "%s", output);
+  s->develop.exposure = (float)(iso / 100.0 * time * ratio);
+  if (!(s->develop.exposure >= 0.0f) || !isfinite(s->develop.exposure))
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: the exposure is negative or not finite",
+                          dict->what);
+  return read_crop(dict, s) && read_sensor(dict);
+}
+
+/* What one film has and the others have not. */
+static bool read_kind(vlDict *dict, vlSceneDefs *s, vlFilmKind kind) {
+  const vlParameter *system = vl_row_find(vl_kind_row(&vl_film_family, (int)kind), "coordinatesystem");
+  int number = 0;
+  switch (kind) {
+    case VL_FILM_RGB: return true;
+    case VL_FILM_GBUFFER:
+      vl_dict_choice(dict, system->name, system->choices, 2, &number);
+      s->gbuffer = number ? VL_GBUFFER_WORLD : VL_GBUFFER_CAMERA;
+      return true;
+    case VL_FILM_SPECTRAL:
+      if (s->film.lambda_min < s->film.lambda_max) return true;
+      return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
+                            "%s: \"lambdamin\" is %g, it must be below \"lambdamax\", %g", dict->what,
+                            s->film.lambda_min, s->film.lambda_max);
+  }
   return true;
 }
 
 bool vl_import_film(vlImport *import) {
-  static const char *const kinds[] = {"rgb", "gbuffer", "spectral"};
   vlSceneDefs *s = vl_scene_defs(import->scene);
   const vlChoice *choice = &import->film;
   char what[96];
   snprintf(what, sizeof what, "Film \"%.60s\"", choice->given ? choice->kind : "rgb");
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
-  bool buffers = choice->given && strcmp(choice->kind, "gbuffer") == 0;
-  bool spectral = choice->given && strcmp(choice->kind, "spectral") == 0;
-  bool known = !choice->given || buffers || spectral || strcmp(choice->kind, "rgb") == 0;
-  if (!known && !vl_import_unknown(import, choice->place, "film", choice->kind, kinds, 3, NULL, 0)) return false;
-  s->film.width = 1280;
-  s->film.height = 720;
+  int kind = choice->given ? vl_kind_find(&vl_film_family, choice->kind) : VL_FILM_RGB;
+  bool known = kind >= 0;
+  if (!known && !vl_import_unknown_kind(import, choice->place, &vl_film_family, choice->kind)) return false;
+  if (!known) kind = VL_FILM_RGB;
+  const vlKindRow *row = vl_kind_row(&vl_film_family, kind);
+  vl_row_set_defaults(row, s);
   s->film.space = choice->given ? choice->space : VL_SPACE_SRGB;
-  double iso = 100.0, time = 1.0, ratio = 1.0;
-  bool half = true;
-  const char *output = "";
-  vlParam *file = vl_dict_find(&dict, "filename", 1u << VL_PARAM_STRING);
-  vl_dict_count(&dict, "xresolution", 1, &s->film.width);
-  vl_dict_count(&dict, "yresolution", 1, &s->film.height);
-  vl_dict_string(&dict, "filename", &output);
-  import->film_diagonal = 35.0;
-  vl_dict_double(&dict, "diagonal", &import->film_diagonal); /* matters to realistic cameras only */
-  vl_dict_bool(&dict, "savefp16", &half);                    /* how the file is written: the program's business */
-  vl_dict_double(&dict, "iso", &iso);
-  vl_dict_double(&dict, "exposuretime", &time);
-  vl_dict_double(&dict, "imagingratio", &ratio);
-  if (import->scene->error.code != VL_OK) return false;
-  if (s->film.width > MAX_SIDE || s->film.height > MAX_SIDE)
-    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: %u x %u pixels are too many, at most %d each way",
-                          what, s->film.width, s->film.height, MAX_SIDE);
-  if (strlen(output) >= sizeof s->output)
-    return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: the file name is too long", what);
-  snprintf(s->output, sizeof s->output, "%s", output);
-  s->develop.exposure = (float)(iso / 100.0 * time * ratio);
-  if (!(s->develop.exposure >= 0.0f) || !isfinite(s->develop.exposure))
-    return vl_import_fail(import, VL_ERROR_SCENE, choice->place, "%s: the exposure is negative or not finite", what);
-  if (!read_crop(&dict, s) || !read_sensor(&dict) || (spectral && !read_spectrum(&dict, s))) return false;
-  if (buffers) {
-    static const char *const systems[] = {"camera", "world"};
-    int system = 0;
-    vl_dict_choice(&dict, "coordinatesystem", systems, 2, &system);
-    s->gbuffer = system ? VL_GBUFFER_WORLD : VL_GBUFFER_CAMERA;
-  }
+  if (!vl_import_parameters(&dict, row, s, false, NULL) || !read_rest(&dict, s)) return false;
+  if (!read_kind(&dict, s, (vlFilmKind)kind)) return false;
   if (!known) vl_dict_skip(&dict);
   return vl_dict_done(&dict);
 }

@@ -5,8 +5,6 @@
 
 #include "image/image.h"
 
-static const double degrees = 0.017453292519943295;
-
 static bool scene_ok(const vlDict *dict) {
   return dict->import->scene->error.code == VL_OK;
 }
@@ -70,27 +68,8 @@ static bool read_aperture(vlDict *dict, const vlAperture **aperture) {
 }
 
 bool vl_import_lens(vlDict *dict, vlCameraDef *def) {
-  vlLensDef *d = &def->lens;
-  vl_dict_double(dict, "lensradius", &def->lens_radius);
-  vl_dict_double(dict, "focusdistance", &def->focus_distance);
-  vl_dict_double(dict, "focaldistance", &def->focus_distance); /* pbrt's word for it */
-  vl_dict_double(dict, "fnumber", &d->f_number);
-  vl_dict_double(dict, "unitmm", &d->unit_mm);
-  vl_dict_vector(dict, "focuspoint", VL_PARAM_POINT3, d->focus_point);
-  vl_dict_floats(dict, "focuspixel", 2, d->focus_pixel);
-  vl_dict_count(dict, "blades", 0, &d->blades);
-  if (vl_dict_double(dict, "bladerotation", &d->rotation)) d->rotation *= degrees;
-  vl_dict_double(dict, "apertureratio", &d->ratio);
-  const struct {
-    const char *name;
-    double *value;
-  } angles[] = {
-      {"tiltx", &d->tilt_x}, {"tilty", &d->tilt_y}, {"lenstiltx", &d->lens_tilt_x}, {"lenstilty", &d->lens_tilt_y}};
-  for (size_t i = 0; i < sizeof angles / sizeof *angles; i++)
-    if (vl_dict_double(dict, angles[i].name, angles[i].value)) *angles[i].value *= degrees;
-  vl_dict_double(dict, "iso", &d->iso);
-  vl_dict_double(dict, "seconds", &d->seconds);
-  return read_aperture(dict, &d->aperture);
+  vl_dict_floats(dict, "focuspixel", 2, def->lens.focus_pixel);
+  return read_aperture(dict, &def->lens.aperture);
 }
 
 /* Defaults are pbrt's. */

@@ -4,8 +4,7 @@
 
 #include "import/pbrt/builder.h"
 
-/* velo's words for the lens of any of its cameras: f-number, focus on a point or pixel, shape of the opening, tilt,
- * vignetting, exposure by the camera's numbers. */
+/* What the rows of cameras leave to a rule: the pixel in focus, the shape of the aperture. */
 bool vl_import_lens(vlDict *dict, vlCameraDef *def);
 /* pbrt's realistic camera: lens file, aperture, focus; film_diagonal in mm. */
 bool vl_import_optics(vlDict *dict, vlCameraDef *def, double film_diagonal);

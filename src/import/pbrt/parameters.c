@@ -93,6 +93,8 @@ static bool read_one(vlDict *dict, const char *name, const vlParameter *p, char 
     case VL_PARAMETER_FLOAT: return read_float(dict, name, p, at);
     case VL_PARAMETER_DOUBLE: return vl_dict_double(dict, name, at);
     case VL_PARAMETER_FLOAT3: return read_float3(dict, name, at);
+    case VL_PARAMETER_DOUBLE3:
+      return vl_dict_vector(dict, name, p->flags & VL_PARAMETER_VECTOR ? VL_PARAM_VECTOR3 : VL_PARAM_POINT3, at);
     case VL_PARAMETER_CHOICE: return read_choice(dict, name, p, at);
     case VL_PARAMETER_STRING:
     case VL_PARAMETER_FILE: return read_string(dict, name, p, at);

@@ -7,34 +7,35 @@
 
 #include "import/pbrt/builder.h"
 
+/* The row of the kind that the file names; null: it is unknown, which `good` says is an error or not. */
+static const vlKindRow *find_row(vlImport *import, const vlKindFamily *family, const vlChoice *choice, int *kind,
+                                 bool *good) {
+  *good = true;
+  *kind = vl_kind_find(family, choice->kind);
+  if (*kind < 0) *good = vl_import_unknown_kind(import, choice->place, family, choice->kind);
+  return vl_kind_row(family, *kind);
+}
+
+static bool is_alias(const vlKindRow *row, const vlChoice *choice) {
+  return row->alias && strcmp(row->alias, choice->kind) == 0;
+}
+
+/* pbrt's parameters without a meaning here: their types are checked. */
+static void skip_ignored(vlDict *dict, const vlKindRow *row) {
+  bool yes;
+  float number;
+  for (uint32_t i = 0; i < row->parameter_count; i++) {
+    const vlParameter *p = &row->parameters[i];
+    if (p->member[0]) continue;
+    if (p->type == VL_PARAMETER_BOOL) vl_dict_bool(dict, p->name, &yes);
+    if (p->type == VL_PARAMETER_FLOAT) vl_dict_float(dict, p->name, &number);
+    if (p->type == VL_PARAMETER_COUNT) vl_dict_find(dict, p->name, 1u << VL_PARAM_INTEGER);
+  }
+}
+
 /* ---- sampler ---------------------------------------------------------------------------------------------------- */
 
-typedef struct SamplerName {
-  const char *name;
-  vlSamplerKind kind;
-  bool grid;           /* xsamples, ysamples; else pixelsamples */
-  uint32_t spp;        /* default */
-  const char *instead; /* told as a note: what is taken for it */
-} SamplerName;
-
-static const SamplerName samplers[] = {
-    {"independent", VL_SAMPLER_INDEPENDENT, false, 4, NULL},
-    {"random", VL_SAMPLER_INDEPENDENT, false, 4, NULL},
-    {"regular", VL_SAMPLER_REGULAR, false, 16, NULL},
-    {"stratified", VL_SAMPLER_STRATIFIED, true, 16, NULL},
-    {"jittered", VL_SAMPLER_STRATIFIED, true, 16, NULL},
-    {"nrooks", VL_SAMPLER_NROOKS, false, 16, NULL},
-    {"multijittered", VL_SAMPLER_MULTI_JITTERED, false, 16, NULL},
-    {"hammersley", VL_SAMPLER_HAMMERSLEY, false, 16, NULL},
-    {"halton", VL_SAMPLER_HALTON, false, 16, NULL},
-    {"sobol", VL_SAMPLER_SOBOL, false, 16, NULL},
-    {"paddedsobol", VL_SAMPLER_SOBOL, false, 16, "sobol"},
-    {"zsobol", VL_SAMPLER_ZSOBOL, false, 16, NULL},
-    {"pmj02bn", VL_SAMPLER_ZSOBOL, false, 16, "zsobol"},
-};
-enum { SAMPLERS = sizeof samplers / sizeof *samplers };
-
-static bool read_grid(vlDict *dict, vlSceneDefs *s) {
+static bool read_grid(vlDict *dict, vlSceneDefs *s, bool spp_given) {
   uint32_t x = 4, y = 4;
   bool jitter = true;
   bool given = vl_dict_count(dict, "xsamples", 1, &x);
@@ -43,9 +44,15 @@ static bool read_grid(vlDict *dict, vlSceneDefs *s) {
   if ((uint64_t)x * y > 0x7fffffff)
     return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: too many samples", dict->what);
   if (!jitter) s->render.sampler = VL_SAMPLER_REGULAR;
-  /* Not pbrt's, but the same word for all samplers. */
-  if (!vl_dict_count(dict, "pixelsamples", 1, &s->render.spp) || given) s->render.spp = x * y;
+  if (given || !spp_given) s->render.spp = x * y; /* pixelsamples is not pbrt's here, but the same for all samplers */
   return true;
+}
+
+static void read_randomization(vlDict *dict, const vlParameter *p) {
+  int randomization = 2;
+  if (p && vl_dict_choice(dict, p->name, p->choices, 4, &randomization) && randomization == 0)
+    vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, 1u << VL_PARAM_STRING)->place,
+                   "%s: randomization \"none\": samples are scrambled all the same", dict->what);
 }
 
 static bool read_sampler(vlImport *import, vlSceneDefs *s) {
@@ -56,29 +63,20 @@ static bool read_sampler(vlImport *import, vlSceneDefs *s) {
   char what[96];
   snprintf(what, sizeof what, "Sampler \"%.60s\"", choice->kind);
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
-  const SamplerName *sampler = NULL;
-  const char *names[SAMPLERS];
-  for (int i = 0; i < SAMPLERS; i++) {
-    names[i] = samplers[i].name;
-    if (strcmp(choice->kind, names[i]) == 0) sampler = &samplers[i];
-  }
-  if (!sampler) return vl_import_unknown(import, choice->place, "sampler", choice->kind, names, SAMPLERS, NULL, 0);
-  s->render.sampler = sampler->kind;
-  s->render.spp = sampler->spp;
-  if (sampler->instead)
-    vl_import_warn(import, VL_LOG_INFO, choice->place, "sampler \"%s\": \"%s\" is taken in its place", sampler->name,
-                   sampler->instead);
+  int kind;
+  bool good, given[16];
+  const vlKindRow *row = find_row(import, &vl_sampler_family, choice, &kind, &good);
+  if (!row) return good;
+  s->render.sampler = (vlSamplerKind)kind;
+  vl_row_set_defaults(row, s);
+  if (is_alias(row, choice) && (kind == VL_SAMPLER_SOBOL || kind == VL_SAMPLER_ZSOBOL))
+    vl_import_warn(import, VL_LOG_INFO, choice->place, "sampler \"%s\": \"%s\" is taken in its place", row->alias,
+                   row->name);
   int32_t seed;
   if (vl_dict_integer(&dict, "seed", &seed)) s->render.seed = (uint32_t)seed;
-  if (sampler->grid && !read_grid(&dict, s)) return false;
-  if (!sampler->grid) vl_dict_count(&dict, "pixelsamples", 1, &s->render.spp);
-  static const char *const randomizations[] = {"none", "permutedigits", "fastowen", "owen"};
-  int randomization = 2;
-  bool scrambled =
-      sampler->kind == VL_SAMPLER_HALTON || sampler->kind == VL_SAMPLER_SOBOL || sampler->kind == VL_SAMPLER_ZSOBOL;
-  if (scrambled && vl_dict_choice(&dict, "randomization", randomizations, 4, &randomization) && randomization == 0)
-    vl_import_warn(import, VL_LOG_INFO, vl_dict_find(&dict, "randomization", 1u << VL_PARAM_STRING)->place,
-                   "%s: randomization \"none\": samples are scrambled all the same", what);
+  if (!vl_import_parameters(&dict, row, s, false, given)) return false;
+  if (kind == VL_SAMPLER_STRATIFIED && !read_grid(&dict, s, vl_import_given(row, given, "pixelsamples"))) return false;
+  read_randomization(&dict, vl_row_find(row, "randomization"));
   return vl_dict_done(&dict);
 }
 
@@ -110,79 +108,36 @@ static void read_depth(vlDict *dict, vlSceneDefs *s) {
   s->render.max_depth = MOST;
 }
 
-static bool read_path(vlDict *dict, vlSceneDefs *s) {
-  static const char *const light_samplers[] = {"bvh", "power", "uniform", "exhaustive"};
-  vlImport *import = dict->import;
-  bool yes = true;
+static void read_light_sampler(vlDict *dict, const vlKindRow *row, vlSceneDefs *s) {
+  const vlParameter *p = vl_row_find(row, "lightsampler");
   int sampler = 0;
-  read_depth(dict, s);
-  if (vl_dict_choice(dict, "lightsampler", light_samplers, 4, &sampler)) {
-    if (sampler == 3)
-      vl_import_warn(import, VL_LOG_INFO, vl_dict_find(dict, "lightsampler", 1u << VL_PARAM_STRING)->place,
-                     "%s: light sampler \"exhaustive\": \"bvh\" is taken in its place", dict->what);
-    s->build.light_sampler = sampler == 3 ? VL_LIGHT_SAMPLER_BVH : (vlLightSampler)sampler;
-  }
-  vl_dict_bool(dict, "regularize", &s->build.regularize);
-  if (strstr(dict->what, "simple")) { /* how a simple path samples does not change what it converges to */
-    vl_dict_bool(dict, "samplelights", &yes);
-    vl_dict_bool(dict, "samplebsdf", &yes);
-  }
-  return true;
+  if (!p || !vl_dict_choice(dict, p->name, p->choices, 4, &sampler)) return;
+  if (sampler == 3)
+    vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, 1u << VL_PARAM_STRING)->place,
+                   "%s: light sampler \"exhaustive\": \"bvh\" is taken in its place", dict->what);
+  s->build.light_sampler = sampler == 3 ? VL_LIGHT_SAMPLER_BVH : (vlLightSampler)sampler;
 }
 
-/* Of sppm; of the others the words alone are looked at. */
-static bool read_merging(vlDict *dict, vlSceneDefs *s) {
-  float radius = 0;
-  vlParam *given = vl_dict_find(dict, "radius", VL_BIT_FLOAT);
-  if (given && vl_dict_float(dict, "radius", &radius)) {
-    if (!(radius > 0.0f) || !(radius < __builtin_inff()))
-      return vl_import_fail(dict->import, VL_ERROR_SCENE, given->place, "%s: \"radius\" must be above 0", dict->what);
-    s->render.merge_radius = (double)radius;
-  }
+static void read_photons(vlDict *dict, const vlKindRow *row, vlSceneDefs *s) {
   int32_t photons = -1; /* as many as pixels */
-  if (vl_dict_integer(dict, "photonsperiteration", &photons) && photons > 0)
+  if (vl_row_find(row, "photonsperiteration") && vl_dict_integer(dict, "photonsperiteration", &photons) && photons > 0)
     s->render.light_paths = photons < 1 << 24 ? (uint32_t)photons : 1u << 24;
-  return true;
+}
+
+/* Names of pbrt's for which a tracer of another name stands in: a second alias. */
+static const char *stand_in(const char *name) {
+  return strcmp(name, "mlt") == 0 ? "bdpt" : name;
 }
 
 /* pbrt's two-way integrators by velo's own: of what steers theirs, radius and photons do. */
-static bool read_two_way(vlDict *dict, vlSceneDefs *s, const char *kind) {
-  static const struct {
-    const char *name;
-    vlTracer tracer;
-    const char *by;
-  } kinds[] = {{"bdpt", VL_TRACER_BIDIRECTIONAL, "bidirectional tracer"},
-               {"mlt", VL_TRACER_BIDIRECTIONAL, "bidirectional tracer"},
-               {"sppm", VL_TRACER_SPPM, "merging tracer"},
-               {"lightpath", VL_TRACER_LIGHT_PATH, NULL},
-               {"randomwalk", VL_TRACER_RANDOM_WALK, NULL}};
-  static const char *const bools[] = {"regularize", "visualizestrategies", "visualizeweights"};
-  static const char *const numbers[] = {"bootstrapsamples", "chains", "mutationsperpixel", "seed", "iterations"};
-  static const char *const floats[] = {"sigma", "largestepprobability"};
-  vlImport *import = dict->import;
-  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-    if (strcmp(kind, kinds[i].name) != 0) continue;
-    s->render.tracer = kinds[i].tracer;
-    read_depth(dict, s);
-    if (!kinds[i].by) break;
-    bool yes;
-    float number;
-    for (int k = 0; k < 3; k++) vl_dict_bool(dict, bools[k], &yes);
-    for (int k = 0; k < 2; k++) vl_dict_float(dict, floats[k], &number);
-    for (int k = 0; k < 5; k++) vl_dict_find(dict, numbers[k], 1u << VL_PARAM_INTEGER);
-    if (!read_merging(dict, s)) return false;
+static void remark_two_way(vlImport *import, const char *kind, vlTracer tracer) {
+  bool pbrts = strcmp(kind, "bdpt") == 0 || strcmp(kind, "mlt") == 0 || strcmp(kind, "sppm") == 0;
+  if (pbrts)
     vl_import_warn(import, VL_LOG_INFO, import->integrator.place, "integrator \"%s\": rendered by velo's %s", kind,
-                   kinds[i].by);
-    break;
-  }
-  return vl_dict_done(dict);
+                   tracer == VL_TRACER_SPPM ? "merging tracer" : "bidirectional tracer");
 }
 
 static bool read_integrator(vlImport *import, vlSceneDefs *s) {
-  static const char *const names[] = {"path", "simplepath", "volpath", "simplevolpath", "raycast",   "ambientocclusion",
-                                      "bdpt", "mlt",        "sppm",    "lightpath",     "randomwalk"};
-  enum { KINDS = sizeof names / sizeof *names };
-  static const char *const later[] = {"function"};
   const vlChoice *choice = &import->integrator;
   s->render.tracer = VL_TRACER_VOLPATH;
   s->render.max_depth = 5;
@@ -190,29 +145,23 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   char what[96];
   snprintf(what, sizeof what, "Integrator \"%.60s\"", choice->kind);
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
-  int kind = -1;
-  for (int i = 0; i < KINDS; i++)
-    if (strcmp(choice->kind, names[i]) == 0) kind = i;
-  if (kind < 0) { /* permissive: a path tracer of that depth stands in */
-    if (!vl_import_unknown(import, choice->place, "integrator", choice->kind, names, KINDS, later,
-                           sizeof later / sizeof *later))
-      return false;
+  int kind = vl_kind_find(&vl_tracer_family, stand_in(choice->kind));
+  const vlKindRow *row = vl_kind_row(&vl_tracer_family, kind);
+  if (!row) { /* permissive: a path tracer of that depth stands in */
+    static const char *const later[] = {"function"};
+    const char *names[32];
+    size_t count = vl_kind_names(&vl_tracer_family, names, sizeof names / sizeof *names);
+    if (!vl_import_unknown(import, choice->place, "integrator", choice->kind, names, count, later, 1)) return false;
     read_depth(&dict, s);
     return import->scene->error.code == VL_OK;
   }
-  if (kind < 4) {
-    s->render.tracer = kind < 2 ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
-    return read_path(&dict, s) && vl_dict_done(&dict);
-  }
-  if (kind > 5) return read_two_way(&dict, s, choice->kind);
-  s->render.tracer = kind == 4 ? VL_TRACER_RAYCAST : VL_TRACER_AMBIENT_OCCLUSION;
-  if (kind == 5) {
-    vl_dict_bool(&dict, "cossample", &s->render.ao_cosine);
-    vlParam *p = vl_dict_find(&dict, "maxdistance", VL_BIT_FLOAT);
-    vl_dict_float(&dict, "maxdistance", &s->render.ao_distance);
-    if (!(s->render.ao_distance > 0.0f))
-      return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: \"maxdistance\" must be above 0", what);
-  }
+  s->render.tracer = (vlTracer)kind;
+  if (!vl_import_parameters(&dict, row, s, false, NULL)) return false;
+  if (vl_row_find(row, "maxdepth")) read_depth(&dict, s);
+  read_light_sampler(&dict, row, s);
+  read_photons(&dict, row, s);
+  skip_ignored(&dict, row);
+  remark_two_way(import, choice->kind, s->render.tracer);
   return vl_dict_done(&dict);
 }
 

@@ -41,18 +41,18 @@ static bool look_at(vlImport *import, const vlStatement *s) {
 bool vl_import_transform(vlImport *import, const vlStatement *s) {
   const double *v = s->numbers;
   vlMat4 m = vl_mat4_identity();
-  switch (s->directive) {
-    case VL_DIR_IDENTITY: set_ctm(import, m); return true;
-    case VL_DIR_TRANSLATE: apply(import, vl_mat4_translate(v[0], v[1], v[2])); return true;
-    case VL_DIR_SCALE: apply(import, vl_mat4_scale(v[0], v[1], v[2])); return true;
-    case VL_DIR_ROTATE:
-      if (v[1] == 0.0 && v[2] == 0.0 && v[3] == 0.0)
-        return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Rotate: the axis is zero");
-      apply(import, vl_mat4_rotate(v[0] * 0.017453292519943295, v[1], v[2], v[3]));
-      return true;
-    case VL_DIR_LOOK_AT: return look_at(import, s);
-    default: break;
-  }
+  if (s->directive == VL_DIR_LOOK_AT) return look_at(import, s);
+  if (s->directive == VL_DIR_ROTATE && v[1] == 0.0 && v[2] == 0.0 && v[3] == 0.0)
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Rotate: the axis is zero");
+  if (s->directive == VL_DIR_IDENTITY)
+    set_ctm(import, m);
+  else if (s->directive == VL_DIR_TRANSLATE)
+    apply(import, vl_mat4_translate(v[0], v[1], v[2]));
+  else if (s->directive == VL_DIR_SCALE)
+    apply(import, vl_mat4_scale(v[0], v[1], v[2]));
+  else if (s->directive == VL_DIR_ROTATE)
+    apply(import, vl_mat4_rotate(v[0] * 0.017453292519943295, v[1], v[2], v[3]));
+  if (s->directive != VL_DIR_TRANSFORM && s->directive != VL_DIR_CONCAT_TRANSFORM) return true;
   for (int i = 0; i < 4; i++) /* files hold columns one after the other */
     for (int j = 0; j < 4; j++) m.m[4 * i + j] = v[4 * j + i];
   if (s->directive == VL_DIR_TRANSFORM)

@@ -73,12 +73,12 @@ static double load(const char *at, vlPlyType type, vlPlyFormat format) {
       memcpy(&v, b, 4);
       return (double)v;
     }
-    default: {
-      double v;
-      memcpy(&v, b, 8);
-      return v;
-    }
+    case VL_PLY_F64:
+    case VL_PLY_TYPES: break;
   }
+  double v;
+  memcpy(&v, b, 8);
+  return v;
 }
 
 bool vl_ply_read_value(vlPlyReader *r, vlPlyType type, double *value) {

@@ -60,7 +60,7 @@ static const vlParameter infinite_parameters[] = {
     ILLUMINANCE,
     IMAGE("an equal-area octahedral map of the radiance, square; in place of L"),
     PARAMETER(BLOCK, "portal", portal, "4 corners of a rectangle in the world through which alone the light comes",
-              .text = "4 point3"),
+              .text = "point3"),
 };
 VL_KIND_ROW(infinite, .name = "infinite", .description = "light from all around", .traits = VL_LIGHT_TRAIT_FAR)
 

@@ -3,9 +3,10 @@
 
 #include <string.h>
 
-static const vlKindFamily *const families[] = {&vl_material_family,    &vl_texture_family, &vl_light_family,
-                                               &vl_emission_family,    &vl_shape_family,   &vl_medium_family,
-                                               &vl_pixel_filter_family};
+static const vlKindFamily *const families[] = {&vl_material_family,     &vl_texture_family, &vl_light_family,
+                                               &vl_emission_family,     &vl_shape_family,   &vl_medium_family,
+                                               &vl_pixel_filter_family, &vl_sampler_family, &vl_tracer_family,
+                                               &vl_film_family,         &vl_camera_family};
 
 const vlKindFamily *vl_kind_family(uint32_t index) {
   return index < sizeof families / sizeof *families ? families[index] : NULL;
@@ -55,6 +56,9 @@ static void set_default(const vlParameter *p, void *at) {
     case VL_PARAMETER_DOUBLE: *(double *)at = p->flags & VL_PARAMETER_UNSET ? VL_UNSET : number; break;
     case VL_PARAMETER_FLOAT3:
       for (int i = 0; i < 3; i++) ((float *)at)[i] = (float)p->value[i];
+      break;
+    case VL_PARAMETER_DOUBLE3:
+      for (int i = 0; i < 3; i++) ((double *)at)[i] = p->flags & VL_PARAMETER_UNSET ? VL_UNSET : p->value[i];
       break;
     case VL_PARAMETER_CHOICE: *(int *)at = (int)number; break;
     case VL_PARAMETER_STRING:
@@ -125,6 +129,7 @@ bool vl_parameter_number(const vlParameter *p, const void *def, double *number) 
       return !input->texture.index && spectrum_number(&input->value, number);
     }
     case VL_PARAMETER_FLOAT3:
+    case VL_PARAMETER_DOUBLE3:
     case VL_PARAMETER_STRING:
     case VL_PARAMETER_FILE:
     case VL_PARAMETER_TEXTURE:
@@ -156,6 +161,11 @@ bool vl_parameter_is_default(const vlParameter *p, const void *def, bool spectru
   if (p->type == VL_PARAMETER_FLOAT3) {
     const float *v = at;
     return v[0] == (float)p->value[0] && v[1] == (float)p->value[1] && v[2] == (float)p->value[2];
+  }
+  if (p->type == VL_PARAMETER_DOUBLE3) {
+    const double *v = at;
+    if (p->flags & VL_PARAMETER_UNSET) return v[0] != v[0] && v[1] != v[1] && v[2] != v[2];
+    return v[0] == p->value[0] && v[1] == p->value[1] && v[2] == p->value[2];
   }
   if (p->type == VL_PARAMETER_STRING || p->type == VL_PARAMETER_FILE) {
     const char *text = *(const char *const *)at;

@@ -31,6 +31,7 @@
 #define VL_POINTER_FLOAT const float *
 #define VL_POINTER_DOUBLE const double *
 #define VL_POINTER_FLOAT3 const float(*)[3]
+#define VL_POINTER_DOUBLE3 const double(*)[3]
 #define VL_POINTER_CHOICE const void *
 #define VL_POINTER_STRING const char *const *
 #define VL_POINTER_FILE const char *const *
@@ -71,6 +72,28 @@ extern const vlKindFamily vl_light_family;    /* vlLightDef */
 extern const vlKindFamily vl_emission_family; /* vlEmissionDef: one kind */
 extern const vlKindFamily vl_shape_family;    /* vlShapeDef */
 extern const vlKindFamily vl_medium_family;   /* vlMediumDef */
+/* vlSceneDefs: */
+extern const vlKindFamily vl_sampler_family, vl_tracer_family, vl_film_family;
+
+/* What files call cameras (vlCameraDef): those of this list, then one per projection. */
+#define VL_CAMERA_KINDS(X)                \
+  X(PBRT_PERSPECTIVE, pbrt_perspective)   \
+  X(PBRT_ORTHOGRAPHIC, pbrt_orthographic) \
+  X(SPHERICAL, spherical)                 \
+  X(REALISTIC, realistic)                 \
+  X(PINHOLE, pinhole)                     \
+  X(THIN_LENS, thin_lens)                 \
+  X(FISHEYE, fisheye)                     \
+  X(OPENCV, opencv)                       \
+  X(OPENCV_FISHEYE, opencv_fisheye)       \
+  X(COLMAP, colmap)
+typedef enum vlCameraKind {
+#define VL_KIND(NAME, name) VL_CAMERA_##NAME,
+  VL_CAMERA_KINDS(VL_KIND)
+#undef VL_KIND
+      VL_CAMERA_OF_PROJECTION /* + vlProjection */
+} vlCameraKind;
+extern const vlKindFamily vl_camera_family;
 
 /* Power of a light of that def, as pbrt counts it: luminance is that of its colour, scale and
  * included; radius: of a sphere round the scene. NaN: an image decides. */

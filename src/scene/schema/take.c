@@ -129,6 +129,7 @@ static bool take_member(const Take *t, const vlParameter *p, void *at) {
     case VL_PARAMETER_FLOAT:
     case VL_PARAMETER_DOUBLE:
     case VL_PARAMETER_FLOAT3:
+    case VL_PARAMETER_DOUBLE3:
     case VL_PARAMETER_CHOICE:
     case VL_PARAMETER_BLOCK: return true;
   }

@@ -32,21 +32,30 @@ static const float *amount_share(vlTextureRun *r, const vlTextureNode *node) {
   vl_texture_float(r, node->amount, share);
   return share;
 }
-static const float *checkerboard_share(vlTextureRun *r, const vlTextureNode *node) {
-  float *share = vl_texture_row(r);
-  each_lane(r, node, vl_node_checkerboard, share);
-  return share;
-}
-static const float *dots_share(vlTextureRun *r, const vlTextureNode *node) {
-  float *share = vl_texture_row(r);
-  each_lane(r, node, vl_texture_dots, share);
-  return share;
-}
-static const float *direction_share(vlTextureRun *r, const vlTextureNode *node) {
-  float *share = vl_texture_row(r);
-  each_lane(r, node, vl_node_direction_mix, share);
-  return share;
-}
+#define POINT_SHARE(NAME, name)                                                  \
+  static const float *name##_share(vlTextureRun *r, const vlTextureNode *node) { \
+    float *share = vl_texture_row(r);                                            \
+    each_lane(r, node, vl_node_##name, share);                                   \
+    return share;                                                                \
+  }
+VL_SHARE_NODES(POINT_SHARE)
+
+/* Cases of the switches below. */
+#define NODE_CASE(NAME, name) case VL_NODE_##NAME:
+#define FLOAT_CASE(NAME, name)               \
+  case VL_NODE_##NAME:                       \
+    each_lane(r, node, vl_node_##name, out); \
+    break;
+#define MIX_FLOATS_CASE(NAME, name)                  \
+  case VL_NODE_##NAME:                               \
+    mix_floats(r, node, name##_share(r, node), out); \
+    break;
+#define COLOR_CASE(NAME, name)                \
+  case VL_NODE_##NAME:                        \
+    each_color(r, node, vl_node_##name, out); \
+    break;
+#define MIX_SPECTRA_CASE(NAME, name) \
+  case VL_NODE_##NAME: mix_spectra(r, node, name##_share(r, node), out); break;
 
 /* ---- floats ------------------------------------------------------------------------------------------------------ */
 
@@ -86,20 +95,20 @@ void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
         out[i] = vl_node_image_float(node, mip, vl_texture_point_of(r, node, i));
       break;
     }
-    case VL_NODE_VERTEX_COLOR: each_lane(r, node, vl_node_vertex_color_float, out); break;
-    case VL_NODE_FBM: each_lane(r, node, vl_texture_fbm, out); break;
-    case VL_NODE_WRINKLED: each_lane(r, node, vl_texture_wrinkled, out); break;
-    case VL_NODE_WINDY: each_lane(r, node, vl_texture_windy, out); break;
+    case VL_NODE_VERTEX_COLOR:
+      each_lane(r, node, vl_node_vertex_color_float, out);
+      break;
+      VL_FLOAT_NODES(FLOAT_CASE)
     case VL_NODE_SCALE: scale_floats(r, node, out); break;
     case VL_NODE_BILERP: bilerp_floats(r, node, out); break;
-    case VL_NODE_MIX: mix_floats(r, node, amount_share(r, node), out); break;
-    case VL_NODE_CHECKERBOARD: mix_floats(r, node, checkerboard_share(r, node), out); break;
-    case VL_NODE_DOTS: mix_floats(r, node, dots_share(r, node), out); break;
-    case VL_NODE_DIRECTION_MIX: mix_floats(r, node, direction_share(r, node), out); break;
+    case VL_NODE_MIX:
+      mix_floats(r, node, amount_share(r, node), out);
+      break;
+      VL_SHARE_NODES(MIX_FLOATS_CASE)
+      VL_COLOR_NODES(NODE_CASE)
     case VL_NODE_SPECTRUM:
-    case VL_NODE_MARBLE:
       fill(r, __builtin_nanf(""), out);
-      break; /* a colour texture; vl_scene_add_texture rejects it here */
+      break; /* colours; vl_scene_add_texture refuses them here */
   }
   r->top = top;
 }
@@ -167,10 +176,11 @@ static void vertex_color_spectrum(const vlTextureRun *r, const vlTextureNode *no
     upsample(r, &up, vl_node_vertex_color_rgb(node, vl_texture_point_of(r, node, i)), i, out);
 }
 
-static void marble_spectrum(const vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {
+typedef vlVec3 PointColor(const vlTextureNode *node, vlTexturePoint at);
+static inline __attribute__((always_inline)) void each_color(const vlTextureRun *r, const vlTextureNode *node,
+                                                             PointColor *f, float *const out[4]) {
   Upsampling up = upsampling_of(r, node);
-  for (uint32_t i = r->first; i < r->last; i++)
-    upsample(r, &up, vl_texture_marble(node, vl_texture_point_of(r, node, i)), i, out);
+  for (uint32_t i = r->first; i < r->last; i++) upsample(r, &up, f(node, vl_texture_point_of(r, node, i)), i, out);
 }
 
 /* As mix_floats, scale_floats and bilerp_floats. */
@@ -209,18 +219,18 @@ void vl_texture_spectrum(vlTextureRun *r, int32_t index, float *const out[4]) {
   switch (node->kind) {
     case VL_NODE_SPECTRUM: constant_spectrum(r, &node->spectrum, out); break;
     case VL_NODE_IMAGE: image_spectrum(r, node, out); break;
-    case VL_NODE_VERTEX_COLOR: vertex_color_spectrum(r, node, out); break;
-    case VL_NODE_MARBLE: marble_spectrum(r, node, out); break;
+    case VL_NODE_VERTEX_COLOR:
+      vertex_color_spectrum(r, node, out);
+      break;
+      VL_COLOR_NODES(COLOR_CASE)
     case VL_NODE_SCALE: scale_spectra(r, node, out); break;
     case VL_NODE_BILERP: bilerp_spectra(r, node, out); break;
-    case VL_NODE_MIX: mix_spectra(r, node, amount_share(r, node), out); break;
-    case VL_NODE_CHECKERBOARD: mix_spectra(r, node, checkerboard_share(r, node), out); break;
-    case VL_NODE_DOTS: mix_spectra(r, node, dots_share(r, node), out); break;
-    case VL_NODE_DIRECTION_MIX: mix_spectra(r, node, direction_share(r, node), out); break;
-    case VL_NODE_FLOAT:
-    case VL_NODE_FBM:
-    case VL_NODE_WRINKLED:
-    case VL_NODE_WINDY: /* float textures; vl_scene_add_texture rejects them here */
+    case VL_NODE_MIX:
+      mix_spectra(r, node, amount_share(r, node), out);
+      break;
+      VL_SHARE_NODES(MIX_SPECTRA_CASE)
+      VL_FLOAT_NODES(NODE_CASE)
+    case VL_NODE_FLOAT: /* floats; vl_scene_add_texture refuses them here */
       for (int c = 0; c < 4; c++) fill(r, __builtin_nanf(""), out[c]);
       break;
   }

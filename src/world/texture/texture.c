@@ -288,25 +288,26 @@ static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f
   return def->spectrum ? compile_spectrum(c, s, role, nesting) : compile_float(c, f, nesting);
 }
 
-/* Scratch rows that a node needs for itself (as trace/texture/texture.hot.c allocates them) and for its most
- * demanding input, and the number of nodes that its evaluation visits. false: too many. */
+#define NODE_CASE(NAME, name) case VL_NODE_##NAME:
+
+/* Rows that a node takes for itself (as trace/texture/texture.hot.c takes them) and for the hungriest of its inputs;
+ * nodes that are visited for it. false: too many. */
 static bool weigh(const vlWorld *world, vlTextureNode *node) {
   uint32_t own = 0, most = 0, visits = 1;
   switch (node->kind) {
-    case VL_NODE_SCALE: own = 1; break;
-    case VL_NODE_MIX:
-    case VL_NODE_CHECKERBOARD:
-    case VL_NODE_DOTS:
-    case VL_NODE_DIRECTION_MIX: own = node->is_spectrum ? 5 : 2; break;
+    case VL_NODE_SCALE:
+      own = 1;
+      break;
+      VL_SHARE_NODES(NODE_CASE)
+    case VL_NODE_MIX: own = node->is_spectrum ? 5 : 2; break;
     case VL_NODE_BILERP: own = node->is_spectrum ? 8 : 5; break;
     case VL_NODE_FLOAT:
     case VL_NODE_SPECTRUM:
     case VL_NODE_IMAGE:
     case VL_NODE_VERTEX_COLOR:
-    case VL_NODE_FBM:
-    case VL_NODE_WRINKLED:
-    case VL_NODE_WINDY:
-    case VL_NODE_MARBLE: break; /* no inputs */
+      VL_FLOAT_NODES(NODE_CASE)
+      VL_COLOR_NODES(NODE_CASE)
+      break; /* no inputs */
   }
   const int32_t input[5] = {node->a, node->b, node->c, node->d, node->amount};
   for (int i = 0; i < 5; i++) {
@@ -320,6 +321,11 @@ static bool weigh(const vlWorld *world, vlTextureNode *node) {
   node->visits = (uint16_t)visits;
   return true;
 }
+
+/* Colours that are brought to wavelengths where they are used. */
+#define GIVES_RGB(NAME, name) [VL_NODE_##NAME] = true,
+static const bool gives_rgb[VL_NODE_SPECTRUM + 1] = {
+    [VL_NODE_IMAGE] = true, [VL_NODE_VERTEX_COLOR] = true, VL_COLOR_NODES(GIVES_RGB)};
 
 static vlResult image_spectrum(vlWorld *world, vlTextureNode *node, vlError *error) {
   node->spectrum.scale = 1;
@@ -398,8 +404,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
     const vlMipmap *mip = c->world->images.items[node.image].mipmap;
     if (mip->space_told) node.space = mip->space;
   }
-  if (node.kind == VL_NODE_IMAGE || node.kind == VL_NODE_VERTEX_COLOR || node.kind == VL_NODE_MARBLE)
-    if (def->spectrum && image_spectrum(c->world, &node, c->error) != VL_OK) return -1;
+  if (def->spectrum && gives_rgb[node.kind] && image_spectrum(c->world, &node, c->error) != VL_OK) return -1;
   if (!weigh(c->world, &node)) {
     vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
                "textures are nested too deep");
@@ -464,9 +469,9 @@ float vl_texture_float_at(const vlWorld *world, int32_t index, const vlTextureQu
     case VL_NODE_FLOAT: return node->value;
     case VL_NODE_IMAGE: return vl_node_image_float(node, world->images.items[node->image].mipmap, at);
     case VL_NODE_VERTEX_COLOR: return vl_node_vertex_color_float(node, at);
-    case VL_NODE_FBM: return vl_texture_fbm(node, at);
-    case VL_NODE_WRINKLED: return vl_texture_wrinkled(node, at);
-    case VL_NODE_WINDY: return vl_texture_windy(node, at);
+#define FLOAT_CASE(NAME, name) \
+  case VL_NODE_##NAME: return vl_node_##name(node, at);
+      VL_FLOAT_NODES(FLOAT_CASE)
     case VL_NODE_SCALE:
       return vl_node_scale(vl_texture_float_at(world, node->a, q), vl_texture_float_at(world, node->amount, q));
     case VL_NODE_BILERP: {
@@ -477,11 +482,11 @@ float vl_texture_float_at(const vlWorld *world, int32_t index, const vlTextureQu
       return sum;
     }
     case VL_NODE_MIX: share = vl_texture_float_at(world, node->amount, q); break;
-    case VL_NODE_CHECKERBOARD: share = vl_node_checkerboard(node, at); break;
-    case VL_NODE_DOTS: share = vl_texture_dots(node, at); break;
-    case VL_NODE_DIRECTION_MIX: share = vl_node_direction_mix(node, at); break;
-    case VL_NODE_SPECTRUM:
-    case VL_NODE_MARBLE: return NAN; /* colours; vl_scene_add_texture rejects them as float textures */
+#define SHARE_CASE(NAME, name) \
+  case VL_NODE_##NAME: share = vl_node_##name(node, at); break;
+      VL_SHARE_NODES(SHARE_CASE)
+      VL_COLOR_NODES(NODE_CASE)
+    case VL_NODE_SPECTRUM: return NAN; /* colours: vl_scene_add_texture refuses them where a float is wanted */
   }
   return vl_node_mix(vl_texture_float_at(world, node->a, q), vl_texture_float_at(world, node->b, q), share);
 }

@@ -6,6 +6,21 @@
 
 #include "world/texture/texture_noise.h"
 
+/* Kinds of nodes whose value is one function of the point, vl_node_NAME(node, at), by what that is. Both evaluators
+ * take their cases from these lists; the other kinds have cases of their own. */
+/* A float. */
+#define VL_FLOAT_NODES(X) \
+  X(FBM, fbm)             \
+  X(WRINKLED, wrinkled)   \
+  X(WINDY, windy)
+/* A colour, linear RGB (vlVec3). */
+#define VL_COLOR_NODES(X) X(MARBLE, marble)
+/* The share of the second of two inputs, which are floats or spectra. */
+#define VL_SHARE_NODES(X)       \
+  X(CHECKERBOARD, checkerboard) \
+  X(DOTS, dots)                 \
+  X(DIRECTION_MIX, direction_mix)
+
 /* ---- nodes with inputs ------------------------------------------------------------------------------------------- */
 
 /* VL_NODE_SCALE */
@@ -76,8 +91,6 @@ static inline float vl_node_vertex_color_float(const vlTextureNode *node, vlText
   return vl_texture_channel(node, NULL, at);
 }
 
-/* VL_NODE_FBM, VL_NODE_WRINKLED and VL_NODE_WINDY: texture_noise.h. */
-
 /* ---- colours, linear RGB ----------------------------------------------------------------------------------------- */
 
 /* VL_NODE_IMAGE */
@@ -92,7 +105,5 @@ static inline vlVec3 vl_node_vertex_color_rgb(const vlTextureNode *node, vlTextu
   vlTexel t = vl_texture_rgba(node, NULL, at);
   return vl_vec3(t.c[0], t.c[1], t.c[2]);
 }
-
-/* VL_NODE_MARBLE: texture_noise.h. */
 
 #endif

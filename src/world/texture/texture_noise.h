@@ -14,23 +14,23 @@ static inline float vl_texture_space_width(const vlTextureNode *node, vlTextureP
   return at.width * __builtin_sqrtf(vl_max(x, vl_max(y, z)));
 }
 
-static inline float vl_texture_fbm(const vlTextureNode *node, vlTexturePoint at) {
+static inline float vl_node_fbm(const vlTextureNode *node, vlTexturePoint at) {
   return vl_fractal_noise(vl_texture_space(node, at.p), vl_texture_space_width(node, at), node->omega, node->octaves);
 }
 
-static inline float vl_texture_wrinkled(const vlTextureNode *node, vlTexturePoint at) {
+static inline float vl_node_wrinkled(const vlTextureNode *node, vlTexturePoint at) {
   return vl_turbulence(vl_texture_space(node, at.p), vl_texture_space_width(node, at), node->omega, node->octaves);
 }
 
-static inline float vl_texture_windy(const vlTextureNode *node, vlTexturePoint at) {
+static inline float vl_node_windy(const vlTextureNode *node, vlTexturePoint at) {
   vlVec3 p = vl_texture_space(node, at.p);
   float width = vl_texture_space_width(node, at);
   float wind = vl_fractal_noise(vl_mul(p, 0.1f), 0.1f * width, 0.5f, 3);
   return vl_abs(wind) * vl_fractal_noise(p, width, 0.5f, 6);
 }
 
-/* Colours along a vein: a spline through nine colours. */
-static inline vlVec3 vl_texture_marble(const vlTextureNode *node, vlTexturePoint at) {
+/* Colours along a vein, by a spline through nine. */
+static inline vlVec3 vl_node_marble(const vlTextureNode *node, vlTexturePoint at) {
   static const float colors[9][3] = {{.58f, .58f, .6f}, {.58f, .58f, .6f}, {.58f, .58f, .6f},
                                      {.5f, .5f, .5f},   {.6f, .59f, .58f}, {.58f, .58f, .6f},
                                      {.58f, .58f, .6f}, {.2f, .2f, .33f},  {.58f, .58f, .6f}};
@@ -51,9 +51,8 @@ static inline vlVec3 vl_texture_marble(const vlTextureNode *node, vlTexturePoint
   return vl_vec3(out[0], out[1], out[2]);
 }
 
-/* 1 inside a dot, 0 outside. About half of the unit cells have a dot, of radius 0.35, at a random position inside
- * the cell. */
-static inline float vl_texture_dots(const vlTextureNode *node, vlTexturePoint at) {
+/* 1 inside a dot, 0 outside. About half of the cells of a unit have one, of radius 0.35 and somewhere in it. */
+static inline float vl_node_dots(const vlTextureNode *node, vlTexturePoint at) {
   const float radius = 0.35f, shift = 0.5f - radius;
   vlVec2 st = vl_texture_st(node, at);
   float s = __builtin_floorf(st.x + 0.5f), t = __builtin_floorf(st.y + 0.5f);

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How soon after its start the program has a picture on disk. Usage: first_pass.py VELO SCENE [RESOLUTION] [TURNS]
+"""How soon after its start the program has an image on disk. Usage: first_pass.py VELO SCENE [RESOLUTION] [TURNS]
 Prints the best and the median of several starts; the machine should have nothing else to do."""
 import os
 import signal
@@ -10,10 +10,10 @@ import tempfile
 import time
 
 
-def once(program, scene, resolution, picture):
+def once(program, scene, resolution, image):
     start = time.monotonic()
-    process = subprocess.Popen([program, "render", scene, "-o", picture, "--resolution", resolution, "--spp", "16777216", "--quiet"])
-    while not os.path.exists(picture) and process.poll() is None:
+    process = subprocess.Popen([program, "render", scene, "-o", image, "--resolution", resolution, "--spp", "16777216", "--quiet"])
+    while not os.path.exists(image) and process.poll() is None:
         time.sleep(0.001)
     seconds = time.monotonic() - start
     process.send_signal(signal.SIGINT)

@@ -80,7 +80,7 @@ static void build_scene(vlScene *scene) {
   for (int i = 0; i < SPHERES; i++) add_sphere(scene, i, i % 3 == 0 ? grey : i % 3 == 1 ? red : blue);
   vlEmissionDef lamp = vl_default_emission_def();
   lamp.radiance = vl_spectrum_rgb(12, 12, 12);
-  vlEmissionId glow = vl_scene_add_emission(scene, &lamp), none = {0};
+  vlEmissionId emission = vl_scene_add_emission(scene, &lamp), none = {0};
   const float w = 5.5f;
   const float walls[5][12] = {{-w, -w, -w, w, -w, -w, w, -w, w, -w, -w, w},
                               {-w, w, -w, -w, w, w, w, w, w, w, w, -w},
@@ -89,7 +89,7 @@ static void build_scene(vlScene *scene) {
                               {-w, -w, -w, -w, w, -w, w, w, -w, w, -w, -w}};
   for (int i = 0; i < 5; i++) add_quad(scene, walls[i], i == 2 ? red : i == 3 ? blue : grey, none);
   const float top[12] = {-2, 5.4f, -2, 2, 5.4f, -2, 2, 5.4f, 2, -2, 5.4f, 2};
-  add_quad(scene, top, grey, glow);
+  add_quad(scene, top, grey, emission);
 }
 
 /* ---- the record -------------------------------------------------------------------------------------------------- */

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""How well pictures on surfaces are filtered: a checkerboard to the horizon, and seen in mirrors and through glass.
+"""How well images on surfaces are filtered: a checkerboard to the horizon, and seen in mirrors and through glass.
 
-    bench/texture_filter.py VELO [FOLDER] [--picture FILE]
+    bench/texture_filter.py VELO [FOLDER] [--image FILE]
 
-Needs numpy and cv2 (Debian: python3-opencv). The reference is the same picture 8 times as wide and high at 16 samples,
-averaged: its footprints are an eighth. Printed for each part of the picture: noise, as the mean square error over the
-squared mean; contrast, the regression of the picture on the reference (1: nothing is blurred). --picture: 1 sample of
-the procedural checkerboard (never filtered) above 1 and 16 samples of the picture texture."""
+Needs numpy and cv2 (Debian: python3-opencv). The reference is the same image 8 times as wide and high at 16 samples,
+averaged: its footprints are an eighth. Printed for each part of the image: noise, as the mean square error over the
+squared mean; contrast, the regression of the image on the reference (1: nothing is blurred). --image: 1 sample of
+the procedural checkerboard (never filtered) above 1 and 16 samples of the image texture."""
 import os
 import subprocess
 import sys
@@ -64,23 +64,23 @@ def render(velo, path, size, spp):
 
 def main():
     arguments = sys.argv[1:]
-    picture = None
-    if "--picture" in arguments:
-        at = arguments.index("--picture")
-        picture = arguments[at + 1]
+    image = None
+    if "--image" in arguments:
+        at = arguments.index("--image")
+        image = arguments[at + 1]
         del arguments[at:at + 2]
     velo, folder = arguments[0], arguments[1] if len(arguments) > 1 else "/tmp"
     cell = np.arange(1024) // 8
     grey = np.where((cell[:, None] + cell[None, :]) & 1, 230, 12).astype(np.uint8)
     cv2.imwrite(os.path.join(folder, "checks.png"), cv2.merge([grey] * 3))
     image = '"imagemap" "string filename" "checks.png" "string filter" "{}"'
-    if picture:
+    if image:
         procedural = '"checkerboard" "float uscale" 128 "float vscale" 128 "rgb tex1" [0.003 0.003 0.003] "rgb tex2" [0.8 0.8 0.8]'
         bare = render(velo, scene(folder, "bare", procedural, MIRRORS), (480, 270), 1)
         path = scene(folder, "filtered", image.format("trilinear"), MIRRORS)
         rows = [bare] + [render(velo, path, (480, 270), spp) for spp in (1, 16)]
         show = np.vstack([r[60:230] for r in rows])
-        cv2.imwrite(picture, np.clip(show * 1.6, 0, 1) ** (1 / 2.2) * 255, [cv2.IMWRITE_JPEG_QUALITY, 80])
+        cv2.imwrite(image, np.clip(show * 1.6, 0, 1) ** (1 / 2.2) * 255, [cv2.IMWRITE_JPEG_QUALITY, 80])
         return
     for name, things in (("plane", ""), ("mirrors", MIRRORS)):
         path = scene(folder, "reference", image.format("bilinear"), things)

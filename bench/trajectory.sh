@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What a frame costs: 1,000 frames of 64 x 64 pixels, 1 sample each, against the same samples in one picture: of 64 x 64
+# What a frame costs: 1,000 frames of 64 x 64 pixels, 1 sample each, against the same samples in one image: of 64 x 64
 # pixels with 1,000 samples, and of 2024 x 2024 with 1. Seconds of processor time and of the clock, the least of the
 # runs, with files written as OpenEXR (packed) and as PFM (not packed: hardly more than the rendering).
 # Usage: bench/trajectory.sh [VELO] [SCENE] [RUNS]

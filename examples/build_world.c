@@ -1,7 +1,7 @@
 /* build_world: a world made by hand with velo's public API, as the lecture's World::build makes one: a pinhole camera
  * with eye (300, 400, 500), lookat (0, 0, -50) and view-plane distance 400, some spheres on a plane, one lamp.
  *
- *   build_world PICTURE [PICTURE...]     the suffix chooses the format: .exr is linear light, .png is for the eye
+ *   build_world IMAGE [IMAGE...]     the suffix chooses the format: .exr is linear light, .png is for the eye
  *
  * It is compiled against an installed velo by:
  *   cc -std=c17 build_world.c $(pkg-config --cflags --libs velo) -o build_world
@@ -112,7 +112,7 @@ static vlCamera pinhole(uint32_t width, uint32_t height, double zoom) {
 int main(int count, char **arguments) {
   enum { WIDTH = 400, HEIGHT = 300 };
   if (count < 2) {
-    fprintf(stderr, "usage: build_world PICTURE [PICTURE...]\n");
+    fprintf(stderr, "usage: build_world IMAGE [IMAGE...]\n");
     return 2;
   }
 

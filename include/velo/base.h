@@ -99,9 +99,9 @@ typedef struct vlAllocator {
   void (*release)(void *user, void *block);
 } vlAllocator;
 
-/* Runs body(body_user, index, worker) for each index in [0, count); worker < worker_count passed to the context. */
-typedef void vlParallelBody(void *body_user, uint32_t index, uint32_t worker);
-typedef void vlParallelForFn(void *user, uint32_t count, vlParallelBody *body, void *body_user);
+/* Runs body(loop_user, index, worker) for each index in [0, count); worker < worker_count passed to the context. */
+typedef void vlParallelFn(void *loop_user, uint32_t index, uint32_t worker);
+typedef void vlParallelForFn(void *user, uint32_t count, vlParallelFn *body, void *loop_user);
 
 /* Instruction sets of the hot loops. Every one gives the same bits. */
 typedef enum vlIsa { VL_ISA_AUTO = 0, VL_ISA_V2 = 2, VL_ISA_V3 = 3, VL_ISA_V4 = 4 } vlIsa;

@@ -1,4 +1,4 @@
-/* velo/boxes.h: boxes around what a picture shows: in pixels round what is seen of each object and instance, and round
+/* velo/boxes.h: boxes around what an image shows: in pixels round what is seen of each object and instance, and round
  * all of it, seen or hidden; and in space. docs/ground-truth.md has the conventions. */
 #ifndef VELO_BOXES_H
 #define VELO_BOXES_H
@@ -10,11 +10,11 @@ extern "C" {
 #endif
 
 /* Pixels count by their centres, those of the crop window alone; boxes of pixels are x0, y0, x1, y1 in the whole
- * picture, exclusive: pixel edges; all 0 when there are none. */
+ * image, exclusive: pixel edges; all 0 when there are none. */
 typedef struct vlIdBox {
   uint64_t seen, all; /* pixels that show it; pixels that would, if nothing else were there */
   uint32_t seen_box[4], all_box[4];
-  /* Box of the projections of all its corners, x0 y0 x1 y1, may reach beyond the picture; not when part of it has no
+  /* Box of the projections of all its corners, x0 y0 x1 y1, may reach beyond the image; not when part of it has no
    * projection (behind the camera), nor for objects that are parts of instances. */
   bool has_outline;
   double outline[4];

@@ -58,7 +58,7 @@ typedef enum vlStereoMode {
   VL_STEREO_TOE_IN,
   VL_STEREO_OMNIDIRECTIONAL
 } vlStereoMode;
-/* Which picture a camera takes; BOTH: from between them, until vl_camera_stereo or vl_camera_eye makes two. */
+/* Which image a camera takes; BOTH: from between them, until vl_camera_stereo or vl_camera_eye makes two. */
 typedef enum vlEye { VL_EYE_BOTH, VL_EYE_LEFT, VL_EYE_RIGHT } vlEye;
 typedef struct vlStereo {
   vlStereoMode mode;
@@ -174,14 +174,14 @@ typedef struct vlCamera {
   double shape[2];
   double limit; /* radius of the plane's valid disc: image circle, the model's own end; infinity */
   vlDistortionMap distortion;
-  double outside;    /* share of the picture that sees nothing */
+  double outside;    /* share of the image that sees nothing */
   double eye_circle; /* omnidirectional stereo: the circle's radius, above 0 for the right eye; 0: one eye point */
 } vlCamera;
 
 /* Errors: ARGUMENT with a message (fov out of range, eye = lookat, disagreeing ways, NaN, singular matrix).
  * up parallel to the view direction: a defined fallback basis, and *warning set to a static text (may be null).
- * So too when a lens's distortion folds inside the picture, or its model ends there: `outside` then tells the share of
- * the picture that sees nothing. */
+ * So too when a lens's distortion folds inside the image, or its model ends there: `outside` then tells the share of
+ * the image that sees nothing. */
 VL_API vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error);
 
 /* One eye of a camera that stands between them; BOTH: the camera itself. Any number of cameras from one. ARGUMENT: a

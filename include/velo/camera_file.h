@@ -26,7 +26,7 @@ typedef enum vlCameraDialect {
   VL_CAMERA_DIALECT_D3D,
   VL_CAMERA_DIALECT_MITSUBA, /* a sensor in Mitsuba 3's XML */
   VL_CAMERA_DIALECT_USD,     /* a Camera in USD's text form, .usda */
-  VL_CAMERA_DIALECT_EXR,     /* the header of a picture that the program velo rendered; read by that program alone */
+  VL_CAMERA_DIALECT_EXR,     /* the header of an image that the program velo rendered; read by that program alone */
   VL_CAMERA_DIALECT_COUNT
 } vlCameraDialect;
 
@@ -39,8 +39,7 @@ typedef struct vlCameraFileDef {
   const char *frame;       /* of files with several cameras or poses: its name or its number from 0; null: the first */
   const char *const *drop; /* fields that writing may leave out */
   uint32_t drop_count;
-  uint32_t width,
-      height; /* the picture's, for dialects that hold none (glTF); 0: 720 rows of the file's aspect ratio */
+  uint32_t width, height; /* the image's, for dialects that hold none (glTF); 0: 720 rows of the file's aspect ratio */
 } vlCameraFileDef;
 
 VL_API vlCameraFileDef vl_default_camera_file_def(void);
@@ -49,8 +48,8 @@ typedef struct vlCameraRecord {
   vlCameraDef camera;
   vlCameraDialect dialect; /* that it was read as */
   uint32_t frames;         /* that the file holds */
-  bool size_assumed;       /* the file holds no picture size, and the def gave none */
-  char name[256];          /* of the camera or its picture; may be empty */
+  bool size_assumed;       /* the file holds no image size, and the def gave none */
+  char name[256];          /* of the camera or its image; may be empty */
 } vlCameraRecord;
 
 /* Null def: the default. Errors: MISSING, IO, MEMORY; SCENE: what the file says is wrong, with the field's name;

@@ -1,5 +1,5 @@
 /* velo/channels.h: ground truth: what each pixel sees, as numbers. Depth, position, normals, albedo, ids, flow: never
- * filtered, never mixed between neighbours, always 32-bit; and Cryptomatte, which counts the picture's own samples.
+ * filtered, never mixed between neighbours, always 32-bit; and Cryptomatte, which counts the image's own samples.
  * docs/ground-truth.md says what each channel means. */
 #ifndef VELO_CHANNELS_H
 #define VELO_CHANNELS_H
@@ -28,10 +28,10 @@ typedef enum vlChannel {
   VL_CHANNEL_ID_MATERIAL = 1 << 9,  /* id.material: 1 is the default material, then in the order of the file */
   VL_CHANNEL_ID_INSTANCE = 1 << 10, /* id.instance: from 1; 0 also for what is no part of an instance */
   VL_CHANNEL_ID_PRIMITIVE = 1 << 11, /* id.primitive: face of the shape, from 1 */
-  VL_CHANNEL_SAMPLES = 1 << 12,      /* samples: of the picture's pixel, as the def says */
+  VL_CHANNEL_SAMPLES = 1 << 12,      /* samples: of the image's pixel, as the def says */
   VL_CHANNEL_FILM = 1 << 13,         /* film.X film.Y: the point of the film, from the pixel's top left corner */
   /* These cost more, and are not among ALL. */
-  VL_CHANNEL_ERROR = 1 << 14,           /* error.R error.G error.B: standard error of the picture; needs a film with
+  VL_CHANNEL_ERROR = 1 << 14,           /* error.R error.G error.B: standard error of the image; needs a film with
                                          * vlFilmDef.errors; infinity below 2 samples */
   VL_CHANNEL_FORWARD = 1 << 15,         /* forward.U forward.V, pixels, to where `forward` sees the same point of the
                                          * same surface (or direction of the sky); uint forward.hidden: vlHidden */
@@ -43,13 +43,13 @@ typedef enum vlChannel {
 enum { VL_CHANNEL_COUNT = 20, VL_CHANNEL_ALL = (1 << 14) - 1 };
 
 /* Which of the pixel's points of the film the channels tell about. CENTRE: its exact centre. The others choose among
- * the points that the picture's samples have (through the middle of the lens, in the middle of the shutter's time).
+ * the points that the image's samples have (through the middle of the lens, in the middle of the shutter's time).
  * NEAREST: the one of smallest depth. COVERAGE: of the surface (object and instance, or nothing) whose samples weigh
  * most in the pixel filter, the one closest to the centre. */
 typedef enum vlChannelMode { VL_CHANNEL_MODE_CENTRE, VL_CHANNEL_MODE_NEAREST, VL_CHANNEL_MODE_COVERAGE } vlChannelMode;
 
 /* Whether the other camera sees what this pixel sees: it does; something stands before it; it lies outside the other
- * picture (or is cut by its near or far plane), the numbers are true all the same; no pixel could show it, U = V = 0.
+ * image (or is cut by its near or far plane), the numbers are true all the same; no pixel could show it, U = V = 0.
  */
 typedef enum vlHidden { VL_HIDDEN_NOT, VL_HIDDEN_BEHIND, VL_HIDDEN_OUTSIDE, VL_HIDDEN_NOWHERE } vlHidden;
 
@@ -64,11 +64,11 @@ typedef struct vlChannelsDef {
   uint32_t samples;   /* what the channel `samples` holds */
   vlChannelMode mode;
   uint32_t ranks; /* of Cryptomatte: an even number, 2 to 32; default 6 */
-  /* The picture's film and how it was rendered: ERROR, Cryptomatte and the modes that choose among the picture's
+  /* The image's film and how it was rendered: ERROR, Cryptomatte and the modes that choose among the image's
    * samples need them; else they may be null. */
   const vlFilm *film;
   const vlRenderDef *render;
-  float exposure;                     /* of the developed picture, for ERROR; default 1 */
+  float exposure;                     /* of the developed image, for ERROR; default 1 */
   const vlCamera *forward, *backward; /* the other cameras of FORWARD and BACKWARD */
   double time;                        /* seconds: when all of it is seen; unset: in the middle of the shutter's time */
   vlStopFn *stop;                     /* to give up with VL_CANCELLED; default null: never */
@@ -77,12 +77,12 @@ typedef struct vlChannelsDef {
 VL_API vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height);
 
 /* One ray through a point of each pixel, by default its exact centre, without lens, in the middle of the shutter's
- * time. New pictures of the crop window: VL_PIXEL_F32 with the channels that are numbers, VL_PIXEL_U32 with ids and
+ * time. New images of the crop window: VL_PIXEL_F32 with the channels that are numbers, VL_PIXEL_U32 with ids and
  * samples; null where the def wants none of the kind (the pointer may be null then). The same bits for any number of
  * threads, instruction set and crop. Pixels outside the camera's domain hold nothing, their ray is 0 0 0.
- * What moves is seen at one time (Cryptomatte: at the times of the picture's samples), by a camera held there, all rows
+ * What moves is seen at one time (Cryptomatte: at the times of the image's samples), by a camera held there, all rows
  * of a rolling shutter at once: vl_camera_at(camera, time). The middle of the shutter's time is when half of the light
- * has come to the middle of the picture: vl_camera_time. Flow leads to where the point of the surface is in the middle
+ * has come to the middle of the image: vl_camera_time. Flow leads to where the point of the surface is in the middle
  * of the other camera's time.
  * Cryptomatte's header (cryptomatte/.../name, hash, conversion, manifest) are attributes of *floats. Not from inside a
  * parallel body. */

@@ -13,9 +13,9 @@ extern "C" {
 
 typedef enum vlFindingKind {
   VL_FINDING_MISSING_FILE,        /* a file that the scene names is not there: the message names the nearest */
-  VL_FINDING_BROKEN_FILE,         /* a picture that cannot be read */
+  VL_FINDING_BROKEN_FILE,         /* an image that cannot be read */
   VL_FINDING_UNUSED,              /* a named texture, material, medium or object that nothing uses; an area light */
-  VL_FINDING_UNDONE,              /* a material that another one replaces before any shape takes it */
+  VL_FINDING_REPLACED,            /* a material that another one replaces before any shape takes it */
   VL_FINDING_OPEN_DIELECTRIC,     /* a body that light passes, whose surface has edges of one face only */
   VL_FINDING_INVERTED_DIELECTRIC, /* one whose normals point inwards */
   VL_FINDING_MEDIA,               /* bodies of media that overlap, or lie in each other and say something else */
@@ -34,7 +34,7 @@ VL_API const char *vl_finding_kind_name(vlFindingKind kind);
 
 typedef enum vlSeverity {
   VL_SEVERITY_ERROR,   /* the scene cannot be rendered so */
-  VL_SEVERITY_WARNING, /* the picture is probably not what was meant */
+  VL_SEVERITY_WARNING, /* the image is probably not what was meant */
   VL_SEVERITY_NOTE     /* harmless, and good to know */
 } vlSeverity;
 
@@ -51,7 +51,7 @@ typedef struct vlCheck vlCheck; /* a list of findings: errors first, then warnin
 typedef struct vlCheckDef {
   uint32_t cookie;
   bool names_only; /* unused names alone; default false */
-  bool pictures;   /* read the scene's pictures for their greatest values; default true. They are looked for anyway */
+  bool images;     /* read the scene's images for their greatest values; default true. They are looked for anyway */
 } vlCheckDef;
 VL_API vlCheckDef vl_default_check_def(void);
 /* def may be null. The scene must outlive the check. MEMORY; ARGUMENT; the scene's own error. */
@@ -75,14 +75,14 @@ VL_API vlResult vl_scene_diagnose(vlScene *scene, const char *path, const vlLoad
 /* ---- what a scene holds --------------------------------------------------------------------------------------------
  */
 
-/* A light, or all faces of a shape that glows. */
+/* A light, or all faces of a shape that emits light. */
 typedef struct vlLightInfo {
   const char *kind; /* point, spot, distant, infinite, area */
   vlSource source;
-  uint64_t faces; /* area lights: how many glow */
-  bool picture;   /* its radiance comes from one */
+  uint64_t faces; /* area lights: how many emission */
+  bool image;     /* its radiance comes from one */
   /* Luminance times area times solid angle, over all it sends out (of distant and infinite lights: into a sphere round
-   * the scene). NaN where a picture decides. */
+   * the scene). NaN where an image decides. */
   double power;
 } vlLightInfo;
 VL_API uint32_t vl_scene_light_count(const vlScene *scene);

@@ -18,8 +18,8 @@ typedef struct vlSaveDef {
   void *lost_user;
 } vlSaveDef;
 VL_API vlSaveDef vl_default_save_def(void);
-/* The suffix chooses: .gltf (buffer and pictures beside it, named after it), .glb (all in one), .pbrt (meshes and
- * pictures beside it). Each file is written whole or not at all. def may be null. Errors: ARGUMENT, IO, MEMORY;
+/* The suffix chooses: .gltf (buffer and images beside it, named after it), .glb (all in one), .pbrt (meshes and
+ * images beside it). Each file is written whole or not at all. def may be null. Errors: ARGUMENT, IO, MEMORY;
  * UNSUPPORTED with `strict`. */
 VL_API vlResult vl_scene_save(const vlScene *scene, const char *path, const vlSaveDef *def, vlError *error);
 

@@ -9,9 +9,9 @@
 extern "C" {
 #endif
 
-/* The focus distance that brings what the middle of the picture's point (x, y) sees into focus: as vlCameraDef's
+/* The focus distance that brings what the middle of the image's point (x, y) sees into focus: as vlCameraDef's
  * focus_distance takes it, for the camera's own tilt. Between near and far plane. A lens of many elements: the distance
- * from the film, as vl_optics_refocus takes it. ARGUMENT: a point outside the picture, one that sees nothing; MEMORY.
+ * from the film, as vl_optics_refocus takes it. ARGUMENT: a point outside the image, one that sees nothing; MEMORY.
  * Not from inside a parallel body. */
 VL_API vlResult vl_autofocus(const vlWorld *world, const vlCamera *camera, double x, double y, double *distance,
                              vlError *error);

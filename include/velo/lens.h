@@ -9,11 +9,11 @@
 extern "C" {
 #endif
 
-/* ---- the opening as a picture ----------------------------------------------------------------------------------- */
+/* ---- the opening as an image ----------------------------------------------------------------------------------- */
 
 /* Constant once made; any number of cameras may share it. It must outlive them. */
 typedef struct vlAperture vlAperture;
-/* width x height values, rows from the top, 0 closed; copied. The picture lies over the square -1 to 1 around the
+/* width x height values, rows from the top, 0 closed; copied. The image lies over the square -1 to 1 around the
  * opening's unit circle, upright: what is blurred behind the plane in focus shows it as it is. ARGUMENT: a side above
  * 4096, values that are negative or not finite, all of them zero. */
 VL_API vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height, const float *values,
@@ -65,7 +65,7 @@ typedef struct vlOpticsInfo {
   double rear_principal; /* from the film to the principal plane that angles are seen from */
   double focus_distance; /* from the film */
   double film_diagonal;
-  double f_number; /* focal length over the diameter of the entrance pupil; 0 with an aperture picture */
+  double f_number; /* focal length over the diameter of the entrance pupil; 0 with an aperture image */
 } vlOpticsInfo;
 /* What it was made of: def and its surfaces (room for 64). */
 VL_API void vl_optics_def(const vlOptics *optics, vlOpticsDef *def, vlLensSurface *surfaces);
@@ -82,9 +82,9 @@ typedef struct vlLensDef {
    * vl_render does so where it was not done). Unset: focus_distance says it. */
   double focus_point[3], focus_pixel[2];
   uint32_t blades; /* of a polygon inscribed in the opening's circle: 3 to 32; 0: round */
-  double rotation; /* radians, of blades or picture, clockwise as seen from behind the camera; 0: a corner is up */
+  double rotation; /* radians, of blades or image, clockwise as seen from behind the camera; 0: a corner is up */
   double ratio;    /* the opening's width is its height divided by this; anamorphic lenses 2; default 1 */
-  const vlAperture *aperture; /* picture of the opening, null: none */
+  const vlAperture *aperture; /* image of the opening, null: none */
   /* The plane in focus turned out of the parallel, about its point on the axis: x > 0 leans its top away, y > 0 its
    * left side; radians. Or the lens turned (Scheimpflug): x > 0 down, y > 0 to the right; the plane in focus then goes
    * through the line f / sin(lens_tilt) below (right of) the lens; needs the focal length in mm. Perspective and

@@ -35,9 +35,9 @@ typedef struct vlBuildDef {
   vlBits bits;
 } vlBuildDef;
 VL_API vlBuildDef vl_default_build_def(void);
-/* Compiles the scene, with the pictures that it names. The scene may be destroyed afterwards, the context not. The
+/* Compiles the scene, with the images that it names. The scene may be destroyed afterwards, the context not. The
  * world is constant: any number of threads and renders may share it. Errors: ARGUMENT, what vl_scene_result says, SCENE
- * (with the place), MISSING (pictures), IO, MEMORY; *world is null then. */
+ * (with the place), MISSING (images), IO, MEMORY; *world is null then. */
 VL_API vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **world, vlError *error);
 /* The same for a scene that no other world will be built of: its meshes go as soon as the world has them, so that both
  * are never in memory beside the accelerator. Another build of it is ARGUMENT. */
@@ -45,8 +45,8 @@ VL_API vlResult vl_world_build_last(vlScene *scene, const vlBuildDef *def, vlWor
 VL_API void vl_world_destroy(vlWorld *world);
 typedef struct vlWorldInfo {
   uint64_t triangles, primitives; /* triangles count among the primitives; those of groups once */
-  uint64_t instances, lights;     /* each glowing primitive is a light */
-  uint64_t texture_bytes;         /* of pictures, with their coarser levels */
+  uint64_t instances, lights;     /* each emissive primitive is a light */
+  uint64_t texture_bytes;         /* of images, with their coarser levels */
   uint64_t bytes; /* that the context held when the world was done, the scene's included; not Embree's */
   float bounds_min[3], bounds_max[3];
   double build_seconds;
@@ -58,10 +58,10 @@ VL_API void vl_world_info(const vlWorld *world, vlWorldInfo *info);
 typedef struct vlFilm vlFilm;
 typedef struct vlFilmDef {
   uint32_t cookie;
-  uint32_t width, height; /* the whole picture */
+  uint32_t width, height; /* the whole image */
   uint32_t crop[4];       /* x0, y0, x1, y1, exclusive; the pixels that are rendered */
   vlPixelFilter filter;
-  vlColorSpace space;   /* of the developed picture */
+  vlColorSpace space;   /* of the developed image */
   double white_balance; /* kelvin: daylight of this colour temperature comes out white; 0 (default): as it is */
   /* Whose colours: null (default) or "cie1931", the standard observer; or a measured camera, vl_sensor_name. Its values
    * become XYZ by the matrix that fits 24 reflectances under its white, daylight of white_balance kelvin (0: 6500
@@ -84,7 +84,7 @@ VL_API vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm 
 VL_API void vl_film_destroy(vlFilm *film);
 /* Bytes that a film of this def holds while it is rendered into. */
 VL_API uint64_t vl_film_memory(const vlFilmDef *def);
-/* As new: no samples. Keeps its memory, for the next picture of the same size. Not while a render runs. */
+/* As new: no samples. Keeps its memory, for the next image of the same size. Not while a render runs. */
 VL_API void vl_film_clear(vlFilm *film);
 /* Samples that each pixel has (whole passes). */
 VL_API uint32_t vl_film_spp(const vlFilm *film);
@@ -93,15 +93,15 @@ typedef struct vlDevelopDef {
   float exposure; /* factor on the linear values; default 1 */
 } vlDevelopDef;
 VL_API vlDevelopDef vl_default_develop_def(void);
-/* New float picture R G B A of the crop window: the weighted mean of the samples, linear, in the film's colour space; A
+/* New float image R G B A of the crop window: the weighted mean of the samples, linear, in the film's colour space; A
  * is the share of them that met a surface (R G B hold the sky behind, too). Zero where there is none. Not while a
  * render runs, except from its callback after a pass. def may be null. */
 VL_API vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **image);
-/* New float picture error.R error.G error.B of the crop window: the standard error of what vl_film_develop gives: the
+/* New float image error.R error.G error.B of the crop window: the standard error of what vl_film_develop gives: the
  * square root of the variance of the mean, estimated from the pixel's samples as if they were independent (those of
  * most samplers err less); infinity below 2 samples. ARGUMENT when the film was made without vlFilmDef.errors. */
 VL_API vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlImage **image);
-/* New float picture of the crop window with a channel for each of the film's buckets, in the names of Fichet,
+/* New float image of the crop window with a channel for each of the film's buckets, in the names of Fichet,
  * Pacanowski, Wilkie 2021 ("An OpenEXR layout for spectral images") for emitted light: S0.374,688nm for the one round
  * 374.688 nm. The mean radiance per wavelength in the bucket, in the unit in which a light of a constant spectrum and
  * luminance 1 has 1 at each (pbrt-v4's): neither white balance nor exposure nor max_component change it. ARGUMENT when

@@ -98,7 +98,7 @@ typedef enum vlTextureKind {
   VL_TEXTURE_WINDY,       /* float; octaves and roughness are its own */
   VL_TEXTURE_MARBLE,      /* colour; scale and variation of its veins */
   VL_TEXTURE_DOTS,        /* a outside of the dots, b inside */
-  VL_TEXTURE_VERTEX_COLOR /* the colours of the shape's vertices, with tint, channel, bias and cutoff as a picture */
+  VL_TEXTURE_VERTEX_COLOR /* the colours of the shape's vertices, with tint, channel, bias and cutoff as an image */
 } vlTextureKind;
 typedef enum vlWrap { VL_WRAP_REPEAT, VL_WRAP_BLACK, VL_WRAP_CLAMP, VL_WRAP_OCTAHEDRAL, VL_WRAP_MIRROR } vlWrap;
 typedef enum vlTextureFilter {
@@ -127,7 +127,7 @@ typedef struct vlTextureDef {
   /* image */
   const char *path;     /* read when the world is built (once per path); or */
   const vlImage *image; /* given directly, copied; or */
-  const void *data;     /* a picture file of data_size bytes in memory, copied */
+  const void *data;     /* an image file of data_size bytes in memory, copied */
   size_t data_size;
   vlWrap wrap;
   bool wrap_t_given; /* else as wrap */
@@ -139,7 +139,7 @@ typedef struct vlTextureDef {
   float scale; /* factor on image values; marble: on positions */
   bool invert;
   /* After filter, scale and invert: channels times tint, and times the colour of the shape's vertices. A float texture
-   * reads one channel (0 to 3; coverage is 1 where the picture has none; -1: grey, mean or coverage, by the picture)
+   * reads one channel (0 to 3; coverage is 1 where the image has none; -1: grey, mean or coverage, by the image)
    * and is bias + that; with a cutoff 1 from it on and 0 below (unset: none). */
   float tint[4];
   bool colors;
@@ -293,8 +293,8 @@ typedef struct vlMediumDef {
   uint32_t nx, ny, nz;
   float low[3], high[3]; /* of clouds, too */
   const float *density, *emission_scales;
-  const float *temperature;                    /* kelvin: a black body glows in place of `emission` */
-  float temperature_offset, temperature_scale; /* kelvin = (value - offset) * scale; below 100 nothing glows */
+  const float *temperature;                    /* kelvin: a black body emits light in place of `emission` */
+  float temperature_offset, temperature_scale; /* kelvin = (value - offset) * scale; below 100 nothing emits light */
   const float *rgb_a, *rgb_s, *rgb_emission;   /* RGB grid, 3 numbers a cell, of `space`; null coefficients: 1 */
   vlColorSpace space;
   float cloud_density, wispiness, frequency; /* cloud */
@@ -316,8 +316,8 @@ typedef struct vlEmissionDef {
   float scale;
   double power; /* watts (pbrt's "power"); VL_UNSET: from radiance */
   bool two_sided;
-  const char *image;   /* emission picture over uv, null: none; or */
-  vlTextureId texture; /* a colour texture of a picture (VL_TEXTURE_IMAGE), times scale; colour is ignored */
+  const char *image;   /* emission image over uv, null: none; or */
+  vlTextureId texture; /* a colour texture of an image (VL_TEXTURE_IMAGE), times scale; colour is ignored */
 } vlEmissionDef;
 VL_API vlEmissionDef vl_default_emission_def(void);
 VL_API vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def);
@@ -327,9 +327,9 @@ typedef enum vlLightKind {
   VL_LIGHT_SPOT,
   VL_LIGHT_DISTANT,
   VL_LIGHT_INFINITE,
-  VL_LIGHT_GONIOMETRIC, /* a point whose intensity is times a picture's, by direction: an equal-area octahedral square
+  VL_LIGHT_GONIOMETRIC, /* a point whose intensity is times an image's, by direction: an equal-area octahedral square
                          * (pbrt book 3.8.3) whose axis is the light's y */
-  VL_LIGHT_PROJECTION   /* a point that throws its picture along z, y up; the picture is the intensity */
+  VL_LIGHT_PROJECTION   /* a point that throws its image along z, y up; the image is the intensity */
 } vlLightKind;
 typedef struct vlLightDef {
   uint32_t cookie;
@@ -343,12 +343,12 @@ typedef struct vlLightDef {
   float from[3], to[3];         /* light space: point's position is from; spot and distant shine from -> to */
   float cone_angle, cone_delta; /* spot, radians */
   bool cone_squared;            /* its edge is t^2 in the cosine, as in glTF; else pbrt's smooth step 3t^2 - 2t^3 */
-  const char *path;             /* infinite: equal-area octahedral picture (pbrt book 3.8.3), square; null: uniform */
+  const char *path;             /* infinite: equal-area octahedral image (pbrt book 3.8.3), square; null: uniform */
   const vlImage *image;         /* or given directly, copied */
-  vlColorSpace space;           /* of the picture (radiance, times scale; colour is ignored) if it names none itself */
+  vlColorSpace space;           /* of the image (radiance, times scale; colour is ignored) if it names none itself */
   vlMediumId medium;            /* that it stands in */
-  float fov;                    /* projection: radians across the picture's smaller side; default a right angle */
-  /* Infinite with a picture: seen only through a rectangle of the world, its corners one after the other, in directions
+  float fov;                    /* projection: radians across the image's smaller side; default a right angle */
+  /* Infinite with an image: seen only through a rectangle of the world, its corners one after the other, in directions
    * to the side that (last - first) x (second - first) points to. What has no such light is dark. */
   bool has_portal;
   float portal[4][3];
@@ -404,7 +404,7 @@ typedef struct vlShapeDef {
   const float *colors;        /* 4 a vertex: linear R G B and coverage */
   bool one_sided;             /* triangles: rays pass through their backs */
   /* Triangles on the move: where the vertices (and normals) are at times[1], seconds, those above being for times[0];
-   * straight between, at rest before and after. May be null. Such a mesh cannot glow. */
+   * straight between, at rest before and after. May be null. Such a mesh cannot emit light. */
   const float *positions_close, *normals_close;
   double times[2]; /* default 0, 1 */
   /* Triangles at rest: a float texture moves them along their normals (index 0: none), once they are so fine that no
@@ -413,10 +413,10 @@ typedef struct vlShapeDef {
   float edge_length; /* default 1 */
   /* sphere, disk, cylinder: pbrt's, z axis, book 6.2-6.4; angles in radians */
   float radius, inner_radius, z_min, z_max, height, phi_max;
-  /* curves: `faces` segments, the 4 Bezier points of each in positions (vertices = 4 faces). They cannot glow. Of a
-   * picture's coordinates u goes along a segment, v from one side to the other. Ribbons: normals at both ends of each
+  /* curves: `faces` segments, the 4 Bezier points of each in positions (vertices = 4 faces). They cannot emit light. Of
+   * a image's coordinates u goes along a segment, v from one side to the other. Ribbons: normals at both ends of each
    * segment (6 numbers a face). Segments are cut into 2^split_depth pieces for speed, fewer where there are millions;
-   * the picture does not depend on it. */
+   * the image does not depend on it. */
   vlCurveKind curve;
   const float *widths;  /* 2 a face, at its ends, in shape space */
   uint32_t split_depth; /* default 3 */
@@ -434,7 +434,7 @@ VL_API void vl_scene_add_instance(vlScene *scene, vlGroupId group, const double 
 VL_API void vl_scene_add_moving_instance(vlScene *scene, vlGroupId group, uint32_t keys, const double *times,
                                          const double *world_from_group, vlSource source);
 
-/* ---- how the picture is to be taken: the scene file's own choices, defaults otherwise ---------------------------- */
+/* ---- how the image is to be taken: the scene file's own choices, defaults otherwise ---------------------------- */
 
 typedef enum vlTracer {
   VL_TRACER_PATH, /* looks past media */
@@ -484,7 +484,7 @@ typedef enum vlLightSampler { VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER, VL_L
  * owns it, and what its pointers point at; never null. May be changed until the scene is destroyed. */
 typedef struct vlSceneDefs vlSceneDefs;
 VL_API vlSceneDefs *vl_scene_defs(vlScene *scene);
-/* Camera, picture size and crop of another scene of the same context; what its lens needs passes over, so that `from`
+/* Camera, image size and crop of another scene of the same context; what its lens needs ignores, so that `from`
  * may go. ARGUMENT, MEMORY. */
 VL_API vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error);
 /* Focuses the scene's camera, one with a lens of many elements, at a distance from its film. ARGUMENT, MEMORY. */
@@ -523,12 +523,12 @@ typedef enum vlEnvironmentKind {
 } vlEnvironmentKind;
 typedef struct vlCompleteDef {
   uint32_t cookie;
-  uint32_t width, height; /* of the picture, for framing and where the file says none; 0: the film's */
+  uint32_t width, height; /* of the image, for framing and where the file says none; 0: the film's */
   vlEnvironmentKind environment;
-  const char *path; /* a picture twice as wide as high (longitude, latitude; its centre lies ahead of one who looks
-                     * along -front) or square (equal-area octahedral) */
-  double rotation;  /* radians about up, counter-clockwise from above */
-  float strength;   /* factor on the environment's radiance */
+  const char *path;       /* an image twice as wide as high (longitude, latitude; its centre lies ahead of one who looks
+                           * along -front) or square (equal-area octahedral) */
+  double rotation;        /* radians about up, counter-clockwise from above */
+  float strength;         /* factor on the environment's radiance */
   double up[3], front[3]; /* of the world; default +y, +z (glTF's) */
   bool ground;            /* a wide grey disk under everything */
   bool reframe;           /* a new camera even where the file has one */

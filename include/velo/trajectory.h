@@ -15,9 +15,9 @@ typedef struct vlTrajectory vlTrajectory;
 enum { VL_NO_CAMERA = -1 };
 
 typedef struct vlTrajectoryFrame {
-  const char *name; /* of the picture, as the file writes it; may be empty; lives as long as the trajectory */
-  int32_t camera;   /* for vl_trajectory_camera; VL_NO_CAMERA: the file gives a pose and no camera */
-  uint32_t line;    /* in the file, from 1; 0: not known */
+  const char *name;             /* of the image, as the file writes it; may be empty; lives as long as the trajectory */
+  int32_t camera;               /* for vl_trajectory_camera; VL_NO_CAMERA: the file gives a pose and no camera */
+  uint32_t line;                /* in the file, from 1; 0: not known */
   double world_from_camera[16]; /* a rotation to 1e-3 and a place, checked; velo's axes */
   double time;                  /* seconds; VL_UNSET: the file has none */
 } vlTrajectoryFrame;

@@ -11,14 +11,14 @@ extern "C" {
 typedef enum vlVanishing {
   VL_VANISHING_NONE,    /* seen end on by parallel projectors, or outside of what the projection sees */
   VL_VANISHING_FINITE,  /* at pixel */
-  VL_VANISHING_INFINITE /* the lines stay parallel in the picture */
+  VL_VANISHING_INFINITE /* the lines stay parallel in the image */
 } vlVanishing;
 
-/* Where the pictures of all lines of one direction meet. */
+/* Where the images of all lines of one direction meet. */
 typedef struct vlVanishingPoint {
   vlVanishing kind;
   bool behind;         /* the point is that of the lines' other end, which is the one before the camera */
-  double pixel[2];     /* FINITE; may lie outside the picture */
+  double pixel[2];     /* FINITE; may lie outside the image */
   double direction[2]; /* INFINITE: unit vector along the lines, x right, y down */
 } vlVanishingPoint;
 
@@ -45,14 +45,14 @@ VL_API bool vl_camera_vanishing_points(const vlCamera *camera, const double up[3
 /* The inverse. Square pixels, no skew, no distortion; finite points. */
 typedef struct vlVanishingDef {
   uint32_t cookie;
-  uint32_t width, height; /* of the picture */
+  uint32_t width, height; /* of the image */
   uint32_t count;         /* points: 2 with a known principal point, 3 give that too */
   double points[3][2];
   /* Which axis of the world each belongs to: 0 x, 1 y, 2 z, all different. away: its positive end is the one before
    * the camera; that of a third axis follows, since the world is right-handed. Default: x, z, y; away. */
   uint32_t axes[3];
   bool away[3];
-  double cx, cy; /* pixels; unset: two points: the picture's centre; three: found. Given with three they must agree */
+  double cx, cy; /* pixels; unset: two points: the image's centre; three: found. Given with three they must agree */
 } vlVanishingDef;
 
 VL_API vlVanishingDef vl_default_vanishing_def(uint32_t width, uint32_t height);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the pictures in textures/ (standard library only): letters.png, leaf.png, bricks_height.png, bricks_normal.png,
+"""Makes the images in textures/ (standard library only): letters.png, leaf.png, bricks_height.png, bricks_normal.png,
 sky.pfm. Run it in this folder; the results are kept in the repository."""
 import math, struct, zlib
 

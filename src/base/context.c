@@ -20,8 +20,8 @@ typedef struct Pool {
   bool stop;
   uint64_t generation;
   uint32_t running;
-  vlParallelBody *body;
-  void *body_user;
+  vlParallelFn *body;
+  void *loop_user;
   uint32_t count;
   atomic_uint next;
 } Pool;
@@ -156,7 +156,7 @@ static void pool_work(Pool *pool, uint32_t worker) {
   for (;;) {
     uint32_t index = atomic_fetch_add(&pool->next, 1);
     if (index >= pool->count) return;
-    pool->body(pool->body_user, index, worker);
+    pool->body(pool->loop_user, index, worker);
   }
 }
 
@@ -213,17 +213,17 @@ static vlResult pool_start(Pool *pool, uint32_t threads) {
   return VL_OK;
 }
 
-void vl_parallel_for(vlContext *context, uint32_t count, vlParallelBody *body, void *body_user) {
+void vl_parallel_for(vlContext *context, uint32_t count, vlParallelFn *body, void *loop_user) {
   if (count == 0) return;
   if (context->def.parallel_for) {
-    context->def.parallel_for(context->def.parallel_for_user, count, body, body_user);
+    context->def.parallel_for(context->def.parallel_for_user, count, body, loop_user);
     return;
   }
   Pool *pool = &context->pool;
   pthread_mutex_lock(&context->run_mutex); /* one loop at a time, whoever calls */
   pthread_mutex_lock(&pool->mutex);
   pool->body = body;
-  pool->body_user = body_user;
+  pool->loop_user = loop_user;
   pool->count = count;
   atomic_store(&pool->next, 0);
   pool->running = pool->thread_count;

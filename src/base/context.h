@@ -30,6 +30,6 @@ void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const ch
 
 /* Runs body for each index in [0, count) on the context's workers (or the caller's parallel_for). Returns when all are
  * done. Not from inside a body. */
-void vl_parallel_for(vlContext *context, uint32_t count, vlParallelBody *body, void *body_user);
+void vl_parallel_for(vlContext *context, uint32_t count, vlParallelFn *body, void *loop_user);
 
 #endif

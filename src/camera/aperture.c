@@ -1,4 +1,4 @@
-/* camera/aperture.c: openings that are not round: blade polygons and pictures. See aperture.h. */
+/* camera/aperture.c: openings that are not round: blade polygons and images. See aperture.h. */
 #include "camera/aperture.h"
 
 #include <math.h>
@@ -37,7 +37,7 @@ void vl_blades_points(const vlBlades *blades, uint32_t n, const float *u, const 
   }
 }
 
-/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+/* ---- images ---------------------------------------------------------------------------------------------------- */
 
 struct vlAperture {
   vlContext *context;
@@ -93,16 +93,16 @@ static double find_reach2(const vlAperture *a) {
 static vlResult check(uint32_t width, uint32_t height, const float *values, double *sum, vlError *error) {
   if (!values) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: null argument");
   if (width == 0 || height == 0 || width > LARGEST || height > LARGEST)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: a picture of %u x %u; each side must be 1 to %d", width, height,
+    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: an image of %u x %u; each side must be 1 to %d", width, height,
                    LARGEST);
   *sum = 0.0;
   for (size_t i = 0; i < (size_t)width * height; i++) {
     if (!(values[i] >= 0.0f) || isinf(values[i]))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: the picture's pixel %zu, %zu is %g; it must be 0 or above",
+      return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: the image's pixel %zu, %zu is %g; it must be 0 or above",
                      i % width, i / width, (double)values[i]);
     *sum += (double)values[i];
   }
-  if (!(*sum > 0.0)) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: the picture is black; no light would pass");
+  if (!(*sum > 0.0)) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: the image is black; no light would pass");
   return VL_OK;
 }
 

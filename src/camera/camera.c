@@ -68,7 +68,7 @@ static vlResult check_rest(const vlCameraDef *d, vlError *error) {
   if ((uint32_t)d->fov_axis > VL_FOV_LARGER)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown field-of-view axis %d", (int)d->fov_axis);
   if (d->width == 0 || d->height == 0 || d->width > 1u << 24 || d->height > 1u << 24)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a picture of %u x %u pixels; each side must be 1 to 16777216",
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: an image of %u x %u pixels; each side must be 1 to 16777216",
                    d->width, d->height);
   if (!d->has_matrix) {
     vlResult result = check_vector("eye", d->eye, error);

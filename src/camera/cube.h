@@ -1,4 +1,4 @@
-/* camera/cube.h: the six faces of a cube in one picture, both directions: right, left, up, down, front, back (the order
+/* camera/cube.h: the six faces of a cube in one image, both directions: right, left, up, down, front, back (the order
  * +x -x +y -y +z -z of cube maps with y up). Each face is a perspective view of 90 degrees and one unit of the plane
  * wide; right, left, front and back are upright; up's lower edge and down's upper edge meet front. The plane starts at
  * its top left corner. Two layouts:

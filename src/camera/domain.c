@@ -1,5 +1,5 @@
 /* camera/domain.c: how far a camera sees: the disc of the plane within which its lens does not fold and its projection
- * has a meaning, how many steps of Newton's method turn its distortion round there, and what share of the picture lies
+ * has a meaning, how many steps of Newton's method turn its distortion round there, and what share of the image lies
  * outside. */
 #include <math.h>
 
@@ -121,7 +121,7 @@ static uint32_t steps_for(const vlDistortionMap *m, double x, double y) {
   return step;
 }
 
-/* The plane's radius that the picture can need: the first where the image lies beyond all its corners by half. */
+/* The plane's radius that the image can need: the first where the image lies beyond all its corners by half. */
 static double needed_radius(const vlCamera *c) {
   const vlDistortionMap *m = &c->distortion;
   double corner = 0.0;
@@ -157,7 +157,7 @@ static uint32_t steps_everywhere(const vlCamera *c) {
   return steps + 1;
 }
 
-/* ---- the picture ----------------------------------------------------------------------------------------------------
+/* ---- the image ----------------------------------------------------------------------------------------------------
  */
 
 /* Of a lens of many elements: rings of the film that no light reaches. */
@@ -233,6 +233,6 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
   vl_camera_measure(camera);
   bool calibrated = m->steps > 0 || (kind >= VL_PROJECTION_FOV && kind != VL_PROJECTION_OPTICS);
   if (calibrated && vl_is_unset(def->max_angle) && camera->outside > 0.0 && warning && !*warning)
-    *warning = "camera: the lens folds or its model ends inside the picture; what lies beyond sees nothing (alpha 0)";
+    *warning = "camera: the lens folds or its model ends inside the image; what lies beyond sees nothing (alpha 0)";
   return VL_OK;
 }

@@ -137,7 +137,7 @@ static vlResult plane_half(const vlCameraDef *d, const vlCamera *camera, bool ve
   bool round = !(kind >= VL_PROJECTION_EQUIRECTANGULAR && kind <= VL_PROJECTION_PANINI);
   if (d->fov_axis == VL_FOV_DIAGONAL && !round)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a diagonal fov has no meaning for the %s projection", name);
-  /* all round: straight back, told from the side of the picture */
+  /* all round: straight back, told from the side of the image */
   double angle = 0.5 * d->fov < pi ? 0.5 * d->fov : pi * (1.0 - 1e-15);
   if (!vl_camera_plane_radius(camera, angle, vertical, half))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the %s projection cannot show a fov of %g degrees", name,

@@ -46,7 +46,7 @@ static inline vlCameraLocal vl_lens_apply(const vlCameraCompiled *c, vlCameraLoc
 
 /* The general case, with the plane in focus p . focus = 1: the ray o + s d meets it at 1 / s = d . focus / (1 - o .
  * focus). lens: a point of the opening, in lens radii. */
-static inline vlCameraLocal vl_lens_bend(const vlCameraCompiled *c, vlCameraLocal r, vlLensPoint lens) {
+static inline vlCameraLocal vl_lens_refract(const vlCameraCompiled *c, vlCameraLocal r, vlLensPoint lens) {
   double lx = c->lens_radius * (double)lens.x, ly = c->lens_radius * (double)lens.y;
   const double *a = c->focus;
   double plane = (a[0] * r.dx + a[1] * r.dy + a[2] * r.dz) / (1.0 - a[0] * r.ox - a[1] * r.oy);

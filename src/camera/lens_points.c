@@ -1,5 +1,5 @@
-/* camera/lens_points.c: points of an opening that is no plain disc: chosen by shape, turned, then squeezed. Not a hot
- * file: blades and pictures are looked up, not computed. */
+/* camera/lens_points.c: points of an opening that is no plain disc: chosen by shape, turned, then entry_eta_scale. Not
+ * a hot file: blades and images are looked up, not computed. */
 #include "camera/lens.h"
 
 void vl_lens_points(const vlCameraCompiled *c, uint32_t n, const float *u, const float *v, float *x, float *y) {

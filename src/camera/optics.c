@@ -46,7 +46,7 @@ static vlResult check(const vlOpticsDef *d, const vlLensSurface *s, vlError *err
   if (stops > 1) return vl_fail(error, VL_ERROR_ARGUMENT, "lens: %u aperture stops (radius 0); there is one", stops);
   if (stops == d->count) return vl_fail(error, VL_ERROR_ARGUMENT, "lens: it has no refracting surface");
   if (d->aperture && stops == 0)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "lens: an aperture picture needs a stop (a surface of radius 0)");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "lens: an aperture image needs a stop (a surface of radius 0)");
   return VL_OK;
 }
 

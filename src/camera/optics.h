@@ -97,7 +97,7 @@ static const double vl_optics_grazing = 1e-3;
 /* optics_find.c: fills pupils and chiefs. */
 void vl_optics_find_pupils(vlOptics *optics);
 void vl_optics_find_chiefs(vlOptics *optics);
-/* optics_points.c. x, y: a point of the film as the picture shows it, scene units from its middle (right and down; on
+/* optics_points.c. x, y: a point of the film as the image shows it, scene units from its middle (right and down; on
  * the film itself it lies opposite). The chief ray in camera space, its start in the film's plane; false where there is
  * none. */
 bool vl_optics_unproject(const vlOptics *optics, double x, double y, vlCameraLocal *ray);

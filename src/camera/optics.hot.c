@@ -57,7 +57,7 @@ static void stop(const vlOptics *o, const vlOpticsSurface *surface, uint32_t cou
   double inv = 1.0 / __builtin_sqrt(s->aperture2);
   for (uint32_t i = 0; i < count; i++) {
     vlOpticsRay r = vl_optics_stop(s, 0, load(b, i));
-    /* the picture stands upright as seen from behind the lens; y goes down in both */
+    /* the image stands upright as seen from behind the lens; y goes down in both */
     double open = r.alive > 0.0 ? vl_aperture_value(o->def.aperture, r.x * inv, r.y * inv) : 0.0;
     r.alive = open > 0.0 ? r.alive : 0.0;
     b->weight[i] *= open;

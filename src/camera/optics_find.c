@@ -14,8 +14,8 @@ static bool passes(const vlOptics *o, double radius, double px, double py) {
     const vlOpticsSurface *s = &o->surfaces[k];
     if (s->radius == 0.0) {
       r = vl_optics_stop(s, o->def.aperture == NULL, r);
-      /* A picture stands upright whatever the film point's direction, but pupils turn with it: they hold the circle
-       * round all that the picture lets through. */
+      /* An image stands upright whatever the film point's direction, but pupils turn with it: they hold the circle
+       * round all that the image lets through. */
       if (o->def.aperture && r.x * r.x + r.y * r.y > vl_aperture_reach2(o->def.aperture) * s->aperture2) return false;
     } else {
       r = vl_optics_refract(s, 1, r);

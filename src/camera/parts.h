@@ -14,7 +14,7 @@ static inline bool vl_is_unset(double value) {
 vlResult vl_camera_model(const vlCameraDef *def, vlCamera *camera, vlError *error);
 /* Fills limit, distortion.radius and steps, and outside. Last: it needs all the rest. */
 vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error);
-/* Fills distortion.steps and outside, which hang on the picture's size too. */
+/* Fills distortion.steps and outside, which hang on the image's size too. */
 void vl_camera_measure(vlCamera *camera);
 /* How far from the plane's centre a direction at an angle from the axis lands, before distortion; across or down.
  * false: the projection does not see it. */

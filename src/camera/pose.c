@@ -60,9 +60,9 @@ static vlResult basis_from_lookat(const vlCameraDef *def, Basis *basis, const ch
   if (sqrt(dot(right, right)) < parallel_sine) {
     if (warning)
       *warning =
-          "camera: up is parallel to the view direction; the picture's right is taken along the world's x axis (z when "
+          "camera: up is parallel to the view direction; the image's right is taken along the world's x axis (z when "
           "looking along x)";
-    /* x, or z where w is near x; its part across w. Looking straight down, the top of the picture is -z, as on a map.
+    /* x, or z where w is near x; its part across w. Looking straight down, the top of the image is -z, as on a map.
      */
     Vec axis = fabs(w.x) > 0.9 ? (Vec){0.0, 0.0, 1.0} : (Vec){1.0, 0.0, 0.0};
     double along = dot(axis, w);

@@ -52,7 +52,7 @@ typedef struct vlCameraCompiled {
   bool vignetting; /* rays have weights */
   vlBlades blades; /* none: count 0 */
   const vlAperture *aperture;
-  double lens_turn[2];    /* cosine and sine that turn the picture */
+  double lens_turn[2];    /* cosine and sine that turn the image */
   double inv_ratio;       /* of the opening's width */
   const vlOptics *optics; /* their rays go their own way: optics.hot.c */
   double pitch;           /* side of a pixel on their film, scene units */
@@ -62,7 +62,7 @@ typedef struct vlCameraCompiled {
 
 /* All arrays hold VL_PAD(n) elements; those past n may hold anything, and what comes out for them means nothing.
  * A film position is pixel + film: the integer pixel (column, row from the top left) and the offset from that pixel's
- * top left corner, apart so that large pictures lose no precision. film may lie outside [0, 1) with wide filters.
+ * top left corner, apart so that large images lose no precision. film may lie outside [0, 1) with wide filters.
  * lens_u, lens_v in [0, 1): not read without a lens. time in [0, 1): the share of the shutter's time that has passed.
  */
 typedef struct vlCameraSamples {

@@ -29,7 +29,7 @@ static inline __attribute__((always_inline)) void ray_loop(const int orthographi
     double y = (double)pixel_y[i] - c->cy + (double)film_y[i];
     vlCameraLocal local = orthographic ? vl_orthographic_unproject(c, x, y) : vl_perspective_unproject(c, x, y);
     if (lens == DISC) local = vl_lens_apply(c, local, vl_lens_disk(lens_u[i], lens_v[i]));
-    if (lens == POINTS) local = vl_lens_bend(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
+    if (lens == POINTS) local = vl_lens_refract(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
     vlWorldRay w = vl_camera_place(c, local);
     ox[i] = (float)w.ox;
     oy[i] = (float)w.oy;
@@ -63,7 +63,7 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
     double ahead = local.dz > 1e-300 ? local.dz : 1e-300;
     double depth = flat * ahead + (1.0 - flat);
     if (lens == DISC) local = vl_lens_apply_at(c, local, vl_lens_disk(lens_u[i], lens_v[i]), depth);
-    if (lens == POINTS) local = vl_lens_bend(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
+    if (lens == POINTS) local = vl_lens_refract(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
     if (lens == OPTICS) local.ox = d->x[i], local.oy = d->y[i];
     vlWorldRay w = vl_camera_place(c, local);
     if (eyes) w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, d->dx[i], d->dz[i]), w);

@@ -48,7 +48,7 @@ static vlResult check(const vlCameraDef *def, vlError *error) {
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %u blades; there are 0 (a round opening) or 3 to %d", d->blades,
                    VL_MOST_BLADES);
   if (d->blades != 0 && d->aperture)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %u blades and an aperture picture are given; give one of them",
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %u blades and an aperture image are given; give one of them",
                    d->blades);
   if (d->vignetting && def->projection != VL_PROJECTION_PERSPECTIVE)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: natural vignetting has no meaning for the %s projection",
@@ -132,7 +132,7 @@ static vlResult focus(const vlCameraDef *def, vlCamera *camera, vlError *error) 
   if (pixel) {
     for (int i = 0; i < 2; i++)
       if (!(d->focus_pixel[i] >= 0.0 && d->focus_pixel[i] <= (i ? def->height : def->width)))
-        return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focus_pixel %g, %g lies outside the picture of %u x %u",
+        return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focus_pixel %g, %g lies outside the image of %u x %u",
                        d->focus_pixel[0], d->focus_pixel[1], def->width, def->height);
     camera->lens.focus_pixel[0] = d->focus_pixel[0], camera->lens.focus_pixel[1] = d->focus_pixel[1];
   }
@@ -194,7 +194,7 @@ static vlResult optics(const vlCameraDef *def, vlCamera *camera, vlError *error)
                  {"iso", given(d->iso)},
                  {"blades", d->blades != 0},
                  {"ratio", d->ratio != 1.0},
-                 {"an aperture picture", d->aperture != NULL},
+                 {"an aperture image", d->aperture != NULL},
                  {"a tilt", d->tilt_x != 0.0 || d->tilt_y != 0.0 || d->lens_tilt_x != 0.0 || d->lens_tilt_y != 0.0}};
   for (size_t i = 0; i < sizeof foreign / sizeof *foreign; i++)
     if (foreign[i].there)

@@ -17,7 +17,7 @@ typedef struct {
   uint32_t line;
 } Lines;
 
-/* The next line, ended by a zero; null at the end. Comments are passed over. */
+/* The next line, ended by a zero; null at the end. Comments are ignored. */
 static char *next_line(Lines *lines) {
   while (lines->at < lines->end) {
     char *line = lines->at, *stop = memchr(line, '\n', (size_t)(lines->end - line));
@@ -87,7 +87,7 @@ static vlResult read_cameras(const vlCameraFile *file, const char *path, const d
     else if ((found = !id || number == *id))
       result = read_camera_line(file, path, &lines, line, &record->camera);
   }
-  if (result == VL_OK && !found) result = wrong_line(file, path, 0, "the camera of the picture is not there");
+  if (result == VL_OK && !found) result = wrong_line(file, path, 0, "the camera of the image is not there");
   vl_free(file->context, text);
   return result;
 }
@@ -97,7 +97,7 @@ static vlResult read_image_line(const vlCameraFile *file, const char *path, uint
   double v[9], r[9];
   for (int i = 0; i < 9; i++)
     if (!next_number(&rest, &v[i]))
-      return wrong_line(file, path, line, "a picture has 9 finite numbers: id, qw qx qy qz, tx ty tz, camera");
+      return wrong_line(file, path, line, "an image has 9 finite numbers: id, qw qx qy qz, tx ty tz, camera");
   rest += strspn(rest, " \t");
   *found = vl_camera_is_frame(file, index, rest);
   if (!*found) return VL_OK;
@@ -125,13 +125,13 @@ static vlResult read_images(const vlCameraFile *file, const char *path, double *
     next_line(&lines); /* its points */
   }
   if (result == VL_OK && !taken)
-    result = vl_camera_wrong(file, "colmap: there is no picture \"%.60s\" among the %u",
+    result = vl_camera_wrong(file, "colmap: there is no image \"%.60s\" among the %u",
                              file->def->frame ? file->def->frame : "0", record->frames);
   vl_free(file->context, text);
   return result;
 }
 
-/* ---- many pictures ----------------------------------------------------------------------------------------------- */
+/* ---- many images ----------------------------------------------------------------------------------------------- */
 
 typedef struct {
   double id;
@@ -171,7 +171,7 @@ static vlResult read_all_cameras(vlTrajectory *t, const vlCameraFile *file, cons
 static vlResult read_all_images(vlTrajectory *t, const vlCameraFile *file, const char *path, char *text, size_t size,
                                 const CameraIds *ids) {
   Lines lines = {text, text + size, 0};
-  vlCameraFileDef any = *file->def; /* every picture is the one that is asked for */
+  vlCameraFileDef any = *file->def; /* every image is the one that is asked for */
   vlCameraFile copy = *file;
   copy.def = &any;
   any.frame = NULL;
@@ -238,7 +238,7 @@ vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record)
   struct stat status;
   double id = 0.0;
   if (!find_files(file->path, cameras, images)) return vl_camera_wrong(file, "colmap: the name is too long");
-  /* cameras.txt alone: the camera in the origin, unless a picture's pose was asked for */
+  /* cameras.txt alone: the camera in the origin, unless an image's pose was asked for */
   if (stat(images, &status) == 0 || file->def->frame || vl_ends_with(file->path, "images.txt")) {
     vlResult result = read_images(file, images, &id, record);
     return result == VL_OK ? read_cameras(file, cameras, &id, record) : result;

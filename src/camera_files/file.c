@@ -173,7 +173,7 @@ vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFile
   if (result != VL_OK) return result;
   if (!record) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: null argument");
   if (def->dialect == VL_CAMERA_DIALECT_EXR)
-    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: pictures are read by vl_image_read");
+    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: images are read by vl_image_read");
   if (def->dialect == VL_CAMERA_DIALECT_PBRT)
     return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: pbrt scenes are read as scenes");
   vlCameraFile file = {context, path, dialects[def->dialect].name, def, error};
@@ -212,7 +212,7 @@ vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFil
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: the name \"%.200s\" does not say which dialect to write",
                    path);
   if (dialect == VL_CAMERA_DIALECT_EXR)
-    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: a picture's header is written with its picture");
+    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: an image's header is written with its image");
   vlCameraFile file = {context, path, dialects[dialect].name, def, error};
   if (dialect == VL_CAMERA_DIALECT_COLMAP) return vl_camera_write_colmap(&file, record);
   vlCameraText text = {.context = context};

@@ -40,9 +40,9 @@ vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const c
 vlResult vl_camera_number(const vlCameraFile *file, const json_t *object, const char *key, double *value);
 /* Leaves *value alone when the key is not there. */
 vlResult vl_camera_optional(const vlCameraFile *file, const json_t *object, const char *key, double *value);
-/* A picture's side. */
+/* An image's side. */
 vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const char *key, uint32_t *value);
-/* The picture's size where the file says none: the def's, or 720 rows of this aspect ratio (width / height). */
+/* The image's size where the file says none: the def's, or 720 rows of this aspect ratio (width / height). */
 vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord *record);
 /* A list, lists in a list, or FileStorage's {rows, cols, data}; least to most numbers. */
 vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key, double *values,

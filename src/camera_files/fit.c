@@ -33,7 +33,7 @@ static bool is_rigid(const double m[16]) {
   return vl_mat4_determinant3(vl_mat4_load(m)) > 0.0;
 }
 
-/* The same view, its picture left for right: the x axis the other way. Left-handed worlds, pbrt's, need it. */
+/* The same view, its image left for right: the x axis the other way. Left-handed worlds, pbrt's, need it. */
 static void unmirror(vlCamera *c) {
   for (int i = 0; i < 4; i++) {
     c->world_from_camera[4 * i] = 0.0 - c->world_from_camera[4 * i];

@@ -1,5 +1,5 @@
 /* camera_files/gltf.c: glTF 2.0's cameras (section 3.10): a node's transform, world from camera, axes x right, y up, z
- * back, matrices column by column; yfov, aspectRatio of the field of view (perspective), xmag, ymag, half the picture's
+ * back, matrices column by column; yfov, aspectRatio of the field of view (perspective), xmag, ymag, half the image's
  * sides (orthographic). No pixels, no principal point. The camera in full stands in the camera's `extras`, in velo's
  * own JSON, and is what velo reads back. */
 #include <math.h>
@@ -104,7 +104,7 @@ static vlResult read_orthographic(const vlCameraFile *file, const json_t *lens, 
   if (result == VL_OK) result = vl_camera_number(file, lens, "ymag", &y);
   if (result == VL_OK) result = vl_camera_number(file, lens, "znear", &d->near_plane);
   if (result == VL_OK) result = vl_camera_number(file, lens, "zfar", &d->far_plane);
-  /* exporters write negative ones too: the picture is as wide */
+  /* exporters write negative ones too: the image is as wide */
   x = fabs(x), y = fabs(y);
   if (result == VL_OK && !(x > 0.0 && y > 0.0))
     return vl_camera_wrong(file, "gltf: \"xmag\" and \"ymag\" must not be zero");

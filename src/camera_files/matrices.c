@@ -1,6 +1,6 @@
 /* camera_files/matrices.c: the projection and view matrix of OpenGL, Vulkan and Direct3D, as JSON or YAML. What the
  * three disagree on stands in the file: `order` of the 16 numbers and `vectors` that the matrix acts on, clip_y (where
- * the picture's top is) and clip_z (what near and far plane become). They are written for a view space x right, y up, z
+ * the image's top is) and clip_z (what near and far plane become). They are written for a view space x right, y up, z
  * back; read for any, since the matrix itself says which way it looks. */
 #include <math.h>
 #include <string.h>

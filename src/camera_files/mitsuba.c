@@ -183,7 +183,7 @@ static vlResult to_world(const Scene *scene, const json_t *sensor, vlMat4 *matri
   return VL_OK;
 }
 
-/* Width, height of the whole film and the crop of it that is the picture. */
+/* Width, height of the whole film and the crop of it that is the image. */
 static vlResult read_film(const Scene *scene, const json_t *sensor, double size[2], double crop[4]) {
   static const char *const names[] = {"crop_offset_x", "crop_offset_y", "crop_width", "crop_height"};
   const json_t *film = NULL, *item;
@@ -267,7 +267,7 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDe
     return vl_camera_wrong_at(file, line_of(sensor), 0, "mitsuba: a thinlens needs its aperture_radius");
   if (kind == 1 && vl_is_unset(d->focus_distance)) d->focus_distance = isinf(d->far_plane) ? 1e4 : d->far_plane;
   d->fx = d->fy = f;
-  if (kind == 2) { /* the picture is 2 units wide in camera space, which the matrix scales */
+  if (kind == 2) { /* the image is 2 units wide in camera space, which the matrix scales */
     double length[3];
     for (int k = 0; k < 3; k++) {
       length[k] = sqrt(m.m[k] * m.m[k] + m.m[4 + k] * m.m[4 + k] + m.m[8 + k] * m.m[8 + k]);

@@ -1,5 +1,5 @@
 /* camera_files/nerf.c: NeRF's transforms.json. Camera axes x right, y up, z back; world from camera; pixels count from
- * the picture's corner, as in velo. */
+ * the image's corner, as in velo. */
 #include <math.h>
 #include <string.h>
 

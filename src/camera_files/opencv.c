@@ -112,7 +112,7 @@ vlResult vl_camera_read_ros(const vlCameraFile *file, const json_t *tree, vlCame
   if (result == VL_OK) result = vl_camera_optional(file, tree, "binning_x", &binning[0]);
   if (result == VL_OK) result = vl_camera_optional(file, tree, "binning_y", &binning[1]);
   if (result == VL_OK && (binning[0] > 1.0 || binning[1] > 1.0))
-    return vl_camera_wrong(file, "ros: binning of %g x %g pixels is not taken; give the full picture's camera",
+    return vl_camera_wrong(file, "ros: binning of %g x %g pixels is not taken; give the full image's camera",
                            binning[0], binning[1]);
   double identity[9], none[3] = {0, 0, 0};
   vl_rotation_from_vector(none, identity);

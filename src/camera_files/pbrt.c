@@ -13,7 +13,7 @@ vlResult vl_camera_write_pbrt(const vlCameraFile *file, const vlCameraRecord *re
   result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
   if (result != VL_OK) return result;
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
-  vl_camera_put(text, "# pixels count from the picture's upper left corner; camera axes x right, y up, z forward\n");
+  vl_camera_put(text, "# pixels count from the image's upper left corner; camera axes x right, y up, z forward\n");
   vl_camera_put(text, "Transform [");
   for (int column = 0; column < 4; column++)
     for (int row = 0; row < 4; row++) {

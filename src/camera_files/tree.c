@@ -104,7 +104,7 @@ vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const ch
   vlResult result = vl_camera_number(file, object, key, &number);
   if (result != VL_OK) return result;
   if (!(number >= 1.0 && number <= 1 << 24) || number != floor(number))
-    return vl_camera_wrong(file, "%s: \"%s\" is %g; a picture's side is 1 to 16777216 whole pixels", file->dialect, key,
+    return vl_camera_wrong(file, "%s: \"%s\" is %g; an image's side is 1 to 16777216 whole pixels", file->dialect, key,
                            number);
   *value = (uint32_t)number;
   return VL_OK;
@@ -116,7 +116,7 @@ vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord 
   record->size_assumed = !def->width || !def->height;
   if (record->size_assumed) height = 720.0, width = floor(720.0 * aspect + 0.5);
   if (!(width >= 1.0 && width <= 1 << 24))
-    return vl_camera_wrong(file, "%s: an aspect ratio of %g gives no picture", file->dialect, aspect);
+    return vl_camera_wrong(file, "%s: an aspect ratio of %g gives no image", file->dialect, aspect);
   record->camera.width = (uint32_t)width;
   record->camera.height = (uint32_t)height;
   return VL_OK;

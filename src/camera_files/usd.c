@@ -1,6 +1,6 @@
 /* camera_files/usd.c: USD's camera (UsdGeomCamera, UsdGeomXformable) in its text form, .usda. Camera axes x right, y
  * up, z back; matrices act on row vectors, world from camera. Focal length, apertures and their offsets are in tenths
- * of a scene unit; the aperture's offset moves the window, so the axis goes the other way; y is up. The picture's size
+ * of a scene unit; the aperture's offset moves the window, so the axis goes the other way; y is up. The image's size
  * is the resolution of the file's RenderSettings or RenderProduct. */
 #include <math.h>
 #include <string.h>
@@ -170,8 +170,7 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
     result = vl_camera_numbers(file, s->resolution, "resolution", size, 2, 2, NULL);
     for (int i = 0; i < 2 && result == VL_OK; i++)
       if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
-        return vl_camera_wrong(file, "usd: a resolution of %g; a picture's side is 1 to 16777216 whole pixels",
-                               size[i]);
+        return vl_camera_wrong(file, "usd: a resolution of %g; an image's side is 1 to 16777216 whole pixels", size[i]);
     if (result == VL_OK) d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
   } else {
     result = vl_camera_size(file, across / down, record);
@@ -245,7 +244,7 @@ vlResult vl_camera_write_usd(const vlCameraFile *file, const vlCameraRecord *rec
   vl_camera_put(text, "#usda 1.0\n(\n    defaultPrim = \"");
   put_name(text, record->name);
   vl_camera_put(text,
-                "\"\n    doc = \"pixels count from the picture's upper left corner; camera axes x right, y up, z "
+                "\"\n    doc = \"pixels count from the image's upper left corner; camera axes x right, y up, z "
                 "back; matrices act on row vectors\"\n    metersPerUnit = 1\n");
   if (timed) vl_camera_put(text, "    timeCodesPerSecond = 1\n");
   vl_camera_put(text, "    upAxis = \"Y\"\n)\n\ndef Camera \"");

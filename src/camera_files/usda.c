@@ -1,7 +1,7 @@
 /* camera_files/usda.c: USD's text form, as far as cameras need it, made into a tree: a prim is an object with its
  * properties by name (numbers, words and lists of them; tuples are lists), "<": its type, "@": its name, "#": its line,
  * "/": the prims in it; the root holds the layer's metadata by name. Kept are properties of cameras and render
- * settings and what places a prim; the rest, meshes above all, is passed over without being stored. */
+ * settings and what places a prim; the rest, meshes above all, is ignored without being stored. */
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -108,7 +108,7 @@ static bool list(Parser *p, int depth, char close, json_t **result) {
   return p->result == VL_OK;
 }
 
-/* { ... } of a dictionary or of time samples, from the brace: passed over. */
+/* { ... } of a dictionary or of time samples, from the brace: ignored. */
 static bool braces(Parser *p) {
   int depth = 0;
   do {

@@ -1,5 +1,5 @@
 /* camera_files/xml.c: XML by expat, made into a tree: an element is an object with its attributes by name, "<": its
- * tag, "#": its line, "/": the elements in it. Text is passed over. A document type is refused, and with it every
+ * tag, "#": its line, "/": the elements in it. Text is ignored. A document type is refused, and with it every
  * entity that a file could define; depth and number of elements are bounded. */
 #include <expat.h>
 #include <string.h>
@@ -11,9 +11,9 @@ enum { MAX_DEPTH = 32, MAX_ELEMENTS = 20000 };
 typedef struct {
   const vlCameraFile *file;
   XML_Parser parser;
-  const char *const *wanted; /* tags of the root, or below it; others there are passed over with all in them */
+  const char *const *wanted; /* tags of the root, or below it; others there are ignored with all in them */
   json_t *open[MAX_DEPTH];   /* held by the one before */
-  int depth, skipped;        /* skipped: open elements that are passed over */
+  int depth, skipped;        /* skipped: open elements that are ignored */
   uint32_t elements;
   vlResult result;
 } Builder;

@@ -1,5 +1,5 @@
 /* camera_files/yaml.c: YAML by libyaml, made into the tree that JSON gives. Anchors are refused: a small file could
- * grow without end by them. OpenCV's first line "%YAML:1.0" is no directive of YAML's and is passed over. */
+ * grow without end by them. OpenCV's first line "%YAML:1.0" is no directive of YAML's and is ignored. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -87,9 +87,9 @@ vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t) {
   vlError error;
   vl_error_clear(&error);
   vlResult r =
-      t->data ? vl_image_read_memory(x->context, t->name ? t->name : "picture", t->data, t->data_size, &image, &error)
+      t->data ? vl_image_read_memory(x->context, t->name ? t->name : "image", t->data, t->data_size, &image, &error)
               : vl_image_read_named(x->context, t->path, &image, &error);
-  if (r != VL_OK && x->result == VL_OK) /* what is wrong is the scene's picture, not the file that is written */
+  if (r != VL_OK && x->result == VL_OK) /* what is wrong is the scene's image, not the file that is written */
     x->result = vl_fail_at(x->error, r, t->source.file, t->source.line, t->source.column, "%s", error.message);
   return image;
 }
@@ -113,7 +113,7 @@ static const char *kind_of(const char *data, size_t size) {
   return NULL;
 }
 
-bool vl_export_picture(vlExport *x, const vlTextureDef *t, char **data, size_t *size, const char **suffix) {
+bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *size, const char **suffix) {
   *data = NULL;
   if (t->data) {
     *data = vl_alloc_array(x->context, t->data_size + 1, 1);
@@ -131,7 +131,7 @@ bool vl_export_picture(vlExport *x, const vlTextureDef *t, char **data, size_t *
   vl_free(x->context, *data);
   *data = NULL;
   *suffix = ".png";
-  vl_export_lose(x, "picture of a kind other than PNG and JPEG: packed as PNG, 0 to 1 only");
+  vl_export_lose(x, "image of a kind other than PNG and JPEG: packed as PNG, 0 to 1 only");
   if (t->image) return vl_export_pack(x, t->image, ".png", data, size);
   vlImage *image = vl_export_decode(x, t);
   bool fine = image && vl_export_pack(x, image, ".png", data, size);
@@ -149,7 +149,7 @@ static void start(vlExport *x, bool dry) {
 }
 
 static void finish(vlExport *x) {
-  VL_ARRAY_FREE(x->context, &x->pictures);
+  VL_ARRAY_FREE(x->context, &x->images);
   VL_ARRAY_FREE(x->context, &x->buffer.data);
   VL_ARRAY_FREE(x->context, &x->looks);
   VL_ARRAY_FREE(x->context, &x->text.data);

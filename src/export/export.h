@@ -22,14 +22,14 @@ typedef struct vlBytes {
   bool full; /* memory was out */
 } vlBytes;
 
-/* A picture that was written: by what the scene's texture holds. */
-typedef struct vlExportPicture {
-  const void *data; /* of a picture file in memory, or the vlImage; or */
+/* An image that was written: by what the scene's texture holds. */
+typedef struct vlExportImage {
+  const void *data; /* of an image file in memory, or the vlImage; or */
   const char *path;
   uint32_t variant; /* hash of what was done to it; 0: as it is */
   json_int_t index; /* glTF: image */
   char name[300];   /* pbrt: file */
-} vlExportPicture;
+} vlExportImage;
 
 /* glTF: a material as shapes use it. */
 typedef struct vlExportLook {
@@ -52,7 +52,7 @@ typedef struct vlExport {
   vlLoss losses[VL_EXPORT_LOSSES];
   uint32_t loss_count;
   char stem[200]; /* of the file's name, for those beside it */
-  VL_ARRAY(vlExportPicture) pictures;
+  VL_ARRAY(vlExportImage) images;
   /* glTF */
   bool binary;
   json_t *root;
@@ -73,11 +73,11 @@ void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...)
 bool vl_export_file(vlExport *x, const char *name, const void *data, size_t size);
 /* Path of a file beside the scene's. */
 bool vl_export_path(vlExport *x, const char *name, char *path, size_t size);
-/* The picture of a texture, decoded. */
+/* The image of a texture, decoded. */
 vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t);
 /* Its bytes as they are where it is PNG or JPEG (*suffix), else packed as PNG; a block of the context. */
-bool vl_export_picture(vlExport *x, const vlTextureDef *t, char **data, size_t *size, const char **suffix);
-/* A picture as the bytes of a file of that suffix. */
+bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *size, const char **suffix);
+/* An image as the bytes of a file of that suffix. */
 bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char **data, size_t *size);
 
 /* ---- values.c ---------------------------------------------------------------------------------------------------- */
@@ -87,7 +87,7 @@ bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char 
 void vl_export_light_rgb(const vlSpectrum *s, float rgb[3]);
 void vl_export_rgb(vlExport *x, const vlSpectrumInput *input, float rgb[3]);
 float vl_export_number(vlExport *x, const vlFloatInput *input);
-/* The texture of an input when it is a picture; else null. */
+/* The texture of an input when it is an image; else null. */
 const vlTextureDef *vl_export_texture(const vlExport *x, vlTextureId id);
 /* (s, t) = 2x3 matrix times (u, v, 1). */
 void vl_export_st_from_uv(const vlTextureDef *t, double m[6]);
@@ -122,7 +122,7 @@ json_t *vl_gltf_array_of(const float *values, size_t count);
 /* Index of the material; -1: none. */
 json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors, bool *tangents);
 bool vl_gltf_is_hidden(const vlExport *x, const vlShapeDef *d);
-/* textureInfo of a picture; null: none. */
+/* textureInfo of an image; null: none. */
 json_t *vl_gltf_texture_info(vlExport *x, const vlTextureDef *t, bool linear);
 bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror);
 bool vl_gltf_put_lights(vlExport *x, json_t *nodes);

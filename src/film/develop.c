@@ -1,4 +1,4 @@
-/* film/develop.c: sums to a picture. */
+/* film/develop.c: sums to an image. */
 #include "base/cookie.h"
 #include "color/color.h"
 #include "film/sums.h"
@@ -14,7 +14,7 @@ static vlResult set_numbers(vlImage *image, const char *name, vlAttributeType ty
   return vl_image_set_attribute(image, &a);
 }
 
-/* OpenEXR's notions: the colour space's primaries, and for a crop where it lies in the whole picture (inclusive). */
+/* OpenEXR's notions: the colour space's primaries, and for a crop where it lies in the whole image (inclusive). */
 static vlResult set_attributes(const vlFilm *film, vlImage *image) {
   float xy[8];
   double numbers[8];
@@ -53,7 +53,7 @@ vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **
   float *out = vl_image_pixels(made);
   double color_unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS)), exposure = d.exposure;
   double alpha_unit = 1.0 / (double)(1 << (VL_ALPHA_BITS - VL_WEIGHT_BITS));
-  size_t count = film->front ? vl_film_pixels(film) : 0; /* else the picture's zeros stand */
+  size_t count = film->front ? vl_film_pixels(film) : 0; /* else the image's zeros stand */
   for (size_t i = 0; i < count; i++) {
     const vlFilmPixel *p = film->front + i;
     if (p->weight <= 0) continue;

@@ -1,6 +1,6 @@
 /* film/film.h: inside of the film. Sums are exact (128-bit fixed point): adding is associative, so no grouping of
  * samples into tiles, passes, threads or machines changes a bit (docs/decisions/0002-exact-film-sums.md). Filter
- * importance sampling: a sample touches one pixel. Data flows samples -> sums -> picture. */
+ * importance sampling: a sample touches one pixel. Data flows samples -> sums -> image. */
 #ifndef FILM_FILM_H
 #define FILM_FILM_H
 
@@ -9,7 +9,7 @@
 #include "velo/render.h"
 
 /* What a batch of samples adds. Channels are linear, in the film's colour space: red, green, blue, alpha. Pixel
- * coordinates are of the whole picture, inside the crop window.
+ * coordinates are of the whole image, inside the crop window.
  *
  * A sample whose colour, alpha or weight is not finite, or too large for the sums (colour 2^40, weight 16), adds
  * nothing and is counted. Negative colours are added: a few wavelengths of a spectrum are often outside the colour

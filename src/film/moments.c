@@ -52,7 +52,7 @@ void vl_film_merge_moments(vlFilm *film, const vlFilm *other) {
   }
 }
 
-/* The picture is sum(w v) / sum(w), and |w| is the same in all samples (filters are importance-sampled), so that the
+/* The image is sum(w v) / sum(w), and |w| is the same in all samples (filters are importance-sampled), so that the
  * variance of this ratio is sum(w^2 (v - mean)^2) / sum(w)^2 to first order, with n / (n - 1) for the mean that was
  * estimated from the same samples. Squares about the plain mean first, since the numbers differ least there. */
 static float standard_error(const vlFilmPixel *p, const vlFilmMoments *m, int c, double weight) {

@@ -39,7 +39,7 @@ static vlResult parse(const vlImageFile *file, Bmp *b) {
     b->palette_bytes = 3;
   } else {
     int32_t width = (int32_t)le32(d + 18), height = (int32_t)le32(d + 22);
-    if (width <= 0 || height == 0 || height == INT32_MIN) return vl_codec_broken(file, "BMP", "its picture is empty");
+    if (width <= 0 || height == 0 || height == INT32_MIN) return vl_codec_broken(file, "BMP", "its image is empty");
     b->width = (uint32_t)width;
     b->from_top = height < 0;
     b->height = (uint32_t)(height < 0 ? -height : height);

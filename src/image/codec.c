@@ -33,7 +33,7 @@ vlResult vl_codec_unsupported(const vlImageFile *file, const char *format, const
 
 vlResult vl_codec_promise(const vlImageFile *file, const char *format, uint64_t width, uint64_t height, double need,
                           double ratio) {
-  if (width == 0 || height == 0) return vl_codec_broken(file, format, "its picture is empty");
+  if (width == 0 || height == 0) return vl_codec_broken(file, format, "its image is empty");
   if (need <= ratio * (double)file->size) return VL_OK;
   return vl_fail(file->error, VL_ERROR_SCENE,
                  "%s: broken %s file: promises %llux%llu pixels, more than its %zu bytes can hold", file->name, format,
@@ -118,9 +118,9 @@ static vlResult read_memory(const vlImageFile *f, vlImage **image) {
     }
     return result;
   }
-  if (size == 0) return vl_fail(error, VL_ERROR_SCENE, "%s: empty file, not a picture", name);
+  if (size == 0) return vl_fail(error, VL_ERROR_SCENE, "%s: empty file, not an image", name);
   return vl_fail(error, VL_ERROR_SCENE,
-                 "%s: not a picture (known are OpenEXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM, QOI and WebP)", name);
+                 "%s: not an image (known are OpenEXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM, QOI and WebP)", name);
 }
 
 vlResult vl_image_read_memory(vlContext *context, const char *name, const void *data, size_t size, vlImage **image,
@@ -275,7 +275,7 @@ static vlResult check_layers(const vlImage *const *images, uint32_t count, vlErr
 vlResult vl_image_write_layers(const vlImage *const *images, uint32_t count, const char *path, const vlWriteDef *write,
                                vlError *error) {
   vlWriteDef def = write ? *write : vl_default_write_def();
-  if (!images || count == 0 || count > 64) return vl_fail(error, VL_ERROR_ARGUMENT, "image: needs 1 to 64 pictures");
+  if (!images || count == 0 || count > 64) return vl_fail(error, VL_ERROR_ARGUMENT, "image: needs 1 to 64 images");
   vlResult result = check_write(images[0], path, &def, error);
   if (result == VL_OK) result = check_layers(images, count, error);
   if (result != VL_OK) return result;

@@ -1,4 +1,4 @@
-/* image/codec.h: file formats behind one table. Reading goes from bytes in memory to a picture, writing from a picture
+/* image/codec.h: file formats behind one table. Reading goes from bytes in memory to an image, writing from an image
  * to a vlFileWriter. Messages start with the file's name. */
 #ifndef IMAGE_CODEC_H
 #define IMAGE_CODEC_H
@@ -37,7 +37,7 @@ vlResult vl_codec_broken(const vlImageFile *file, const char *format, const char
 /* UNSUPPORTED: "name: PNG file with <what> is not supported". */
 vlResult vl_codec_unsupported(const vlImageFile *file, const char *format, const char *what);
 /* OK when the file is large enough for `need` bytes of pixels when each byte of it can stand for at most `ratio` of
- * them; else SCENE, "promises WxH pixels, more than its N bytes can hold". Also refuses empty pictures. */
+ * them; else SCENE, "promises WxH pixels, more than its N bytes can hold". Also refuses empty images. */
 vlResult vl_codec_promise(const vlImageFile *file, const char *format, uint64_t width, uint64_t height, double need,
                           double ratio);
 /* Default names; fills the error. CANCELLED when only the header was wanted: the decoder has nothing more to do. */
@@ -47,7 +47,7 @@ vlResult vl_codec_create(const vlImageFile *file, uint32_t width, uint32_t heigh
 /* The same for any def. */
 vlResult vl_codec_make(const vlImageFile *file, const vlImageDef *def, vlImage **image);
 
-/* Row y of the channels that are shown (vl_image_shown) as 8 bits: 8-bit pictures as they are, 16-bit ones rounded,
+/* Row y of the channels that are shown (vl_image_shown) as 8 bits: 8-bit images as they are, 16-bit ones rounded,
  * others through sRGB's curve (alpha without). scratch: width*count floats. */
 void vl_codec_row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count, float *scratch,
                        uint8_t *result);

@@ -1,4 +1,4 @@
-/* image/compare.c: numbers that say how far a picture is from a reference. Sums run in a fixed order. */
+/* image/compare.c: numbers that say how far an image is from a reference. Sums run in a fixed order. */
 #include <math.h>
 
 #include "base/error.h"
@@ -112,11 +112,11 @@ vlResult vl_image_compare(const vlImage *a, const vlImage *b, vlImageDiff *diff,
   vl_error_clear(error);
   *diff = (vlImageDiff){0};
   if (a->width != b->width || a->height != b->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "the pictures differ in size: %ux%u and %ux%u", a->width, a->height,
+    return vl_fail(error, VL_ERROR_ARGUMENT, "the images differ in size: %ux%u and %ux%u", a->width, a->height,
                    b->width, b->height);
   uint32_t channel[4];
   if (!vl_image_color(a, channel) || !vl_image_color(b, channel))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "a picture without channels R, G, B or Y cannot be compared");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "an image without channels R, G, B or Y cannot be compared");
   Pair p = {.image = a, .count = (size_t)a->width * a->height};
   vlResult result = compare(&p, a, b, diff, heat);
   vl_free(a->context, p.a);

@@ -123,7 +123,7 @@ vlResult vl_exr_attributes_in(exr_const_context_t exr, vlImage *image) {
     vlResult result = vl_image_set_attribute(image, &to);
     if (result == VL_ERROR_MEMORY) return result;
   }
-  if (plain == 2) return VL_OK; /* both windows are the picture itself */
+  if (plain == 2) return VL_OK; /* both windows are the image itself */
   for (int i = 0; i < 2; i++)
     if (vl_image_set_attribute(image, &windows[i]) == VL_ERROR_MEMORY) return VL_ERROR_MEMORY;
   return VL_OK;

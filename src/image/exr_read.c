@@ -1,5 +1,5 @@
 /* image/exr_read.c: OpenEXR through OpenEXRCore: the first part, scanlines or tiles (their finest level), all
- * compressions. The picture is the data window; where it is not the display window both are kept as attributes.
+ * compressions. The image is the data window; where it is not the display window both are kept as attributes.
  *
  * Channel order: R G B A (Y A) first, then the others as in the file (alphabetical). One type for all: halves stay
  * halves and ids stay integers when all channels are so, any mixture becomes float. */

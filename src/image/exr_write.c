@@ -1,7 +1,7 @@
 /* image/exr_write.c: OpenEXR through OpenEXRCore: one part of scanlines, ZIP or uncompressed. One thread, fixed level
- * of compression, no time stamp: the same picture gives the same bytes. Halves for pictures of halves, or for the
- * colours (R G B A Y, also of layers: "diffuse.R") when asked; 8 and 16-bit pictures are written as light. Several
- * pictures of one size become one file of all their channels. */
+ * of compression, no time stamp: the same image gives the same bytes. Halves for images of halves, or for the
+ * colours (R G B A Y, also of layers: "diffuse.R") when asked; 8 and 16-bit images are written as light. Several
+ * images of one size become one file of all their channels. */
 #include <limits.h>
 #include <string.h>
 
@@ -20,11 +20,11 @@ typedef struct Slot {
 enum { MAX_SLOTS = 64 };
 /* OpenEXRCore writes a header in some 200 pieces: what follows on what stands here goes to the file as one. */
 enum { GATHERED = 1 << 16 };
-/* Pictures of no more bytes are not packed: deflating them takes longer than rendering does, and saves a block or two
+/* Images of no more bytes are not packed: deflating them takes longer than rendering does, and saves a block or two
  * of the disk. */
 enum { SMALL = 1 << 16 };
 
-/* A channel of the file: which of the pictures has it, and where. */
+/* A channel of the file: which of the images has it, and where. */
 typedef struct Channel {
   const vlImage *image;
   uint32_t index;

@@ -20,8 +20,8 @@ typedef struct Vec {
 /* Planes of width*height floats. */
 typedef struct Flip {
   uint32_t width, height;
-  float *color[2][3]; /* Y Cx Cz of both pictures, filtered in place */
-  float *feature[2];  /* edges of the first picture, later the larger feature difference; second plane for points */
+  float *color[2][3]; /* Y Cx Cz of both images, filtered in place */
+  float *feature[2];  /* edges of the first image, later the larger feature difference; second plane for points */
   float *work[3];
 } Flip;
 
@@ -181,7 +181,7 @@ static void feature_difference(Flip *f, float *padded) {
     const Kernel *k = shape ? &point : &edge;
     for (int i = 0; i < 2; i++) {
       for (size_t n = 0; n < count; n++) f->work[2][n] = (f->color[i][0][n] + 16.0f) / 116.0f;
-      /* work: 0 rows, 1 along x, 2 luminance; the second picture's strength overwrites the luminance at last */
+      /* work: 0 rows, 1 along x, 2 luminance; the second image's strength overwrites the luminance at last */
       feature_strength(f, f->work[2], k, &smooth, i ? f->work[2] : f->feature[1], padded);
     }
     for (size_t n = 0; n < count; n++) {
@@ -236,7 +236,7 @@ vlResult vl_flip(vlContext *context, uint32_t width, uint32_t height, const floa
       f.color[i][2][n] = c.z;
     }
   }
-  feature_difference(&f, padded); /* before the filter: features are those of the pictures themselves */
+  feature_difference(&f, padded); /* before the filter: features are those of the images themselves */
   color_filter(&f, padded);
   combine(&f, flip);
   vl_free(context, planes);

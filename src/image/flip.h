@@ -1,4 +1,4 @@
-/* image/flip.h: the FLIP error of two pictures (Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild:
+/* image/flip.h: the FLIP error of two images (Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild:
  * "FLIP: A Difference Evaluator for Alternating Images", HPG 2020), the version for low dynamic range. */
 #ifndef IMAGE_FLIP_H
 #define IMAGE_FLIP_H

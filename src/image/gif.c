@@ -1,4 +1,4 @@
-/* image/gif.c: the first picture of a GIF (87a, 89a), interlaced or not; a transparent colour or an uncovered screen
+/* image/gif.c: the first image of a GIF (87a, 89a), interlaced or not; a transparent colour or an uncovered screen
  * makes alpha. Unpacked by LZW: codes of 3 to 12 bits name strings made of an earlier string and one more byte. */
 #include <string.h>
 
@@ -105,7 +105,7 @@ static vlResult unpack(Gif *g, Lzw *z, vlImage *image) {
   return VL_OK;
 }
 
-/* Up to the first picture; false when there is none. */
+/* Up to the first image; false when there is none. */
 static bool find_frame(Gif *g) {
   const uint8_t *d = g->file->data;
   size_t size = g->file->size;
@@ -148,7 +148,7 @@ static bool find_frame(Gif *g) {
 
 vlResult vl_gif_read(const vlImageFile *file, vlImage **image) {
   Gif g = {.file = file, .transparent = -1};
-  if (!find_frame(&g)) return vl_codec_broken(file, "GIF", "no picture in it");
+  if (!find_frame(&g)) return vl_codec_broken(file, "GIF", "no image in it");
   uint32_t width = le16(file->data + 6), height = le16(file->data + 8);
   if (width == 0 || height == 0) { /* some writers leave the screen empty */
     width = g.left + g.width;

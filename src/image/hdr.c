@@ -1,4 +1,4 @@
-/* image/hdr.c: Radiance's RGBE pictures (Ward, "Real Pixels", Graphics Gems II): flat, old and new run lengths; written
+/* image/hdr.c: Radiance's RGBE images (Ward, "Real Pixels", Graphics Gems II): flat, old and new run lengths; written
  * with new ones. A pixel is three mantissas and one exponent: value = m 2^(e - 136). The EXPOSURE line is not applied,
  * as in the field's renderers. */
 #include <math.h>

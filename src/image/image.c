@@ -1,4 +1,4 @@
-/* image/image.c: making pictures, their attributes, and reading their values. */
+/* image/image.c: making images, their attributes, and reading their values. */
 #include "image/image.h"
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* image/image.h: what other rooms may know of a picture besides velo/image.h: its struct, whole rows as linear floats,
+/* image/image.h: what other rooms may know of an image besides velo/image.h: its struct, whole rows as linear floats,
  * reading from memory. */
 #ifndef IMAGE_IMAGE_H
 #define IMAGE_IMAGE_H
@@ -22,7 +22,7 @@ struct vlImage {
   float gamma;
   char **names;    /* channels strings in one block with the pointers */
   void *pixels;    /* rows from the top, interleaved, no padding */
-  uint8_t *stored; /* vlPixelType of each channel in the file it came from; null: as the picture's */
+  uint8_t *stored; /* vlPixelType of each channel in the file it came from; null: as the image's */
   VL_ARRAY(vlImageAttribute) attributes;
 };
 
@@ -36,13 +36,13 @@ void *vl_image_row(vlImage *image, uint32_t y);
 const void *vl_image_const_row(const vlImage *image, uint32_t y);
 
 /* Which channels are the colour: Y -> 1, Y A -> 2, R G B -> 3, R G B A -> 4 indices in channel[], that number returned.
- * A picture of one channel of any name counts as Y. 0: there is no colour. */
+ * An image of one channel of any name counts as Y. 0: there is no colour. */
 uint32_t vl_image_color(const vlImage *image, uint32_t channel[4]);
 
 /* Row y of the chosen channels as linear floats, interleaved: width*count values. A channel called A (or ending in .A)
  * is never put through a curve. */
 void vl_image_row_to_float(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count, float *result);
-/* The whole picture so; width*height*count floats, released with vl_free. */
+/* The whole image so; width*height*count floats, released with vl_free. */
 vlResult vl_image_to_float(const vlImage *image, const uint32_t *channel, uint32_t count, float **result);
 
 /* As vl_image_read, for a file that a scene names: no pipes, within the context's sandbox and its limit of pixels. */

@@ -25,7 +25,7 @@ typedef struct Jpeg {
   uint8_t buffer[16384];
 } Jpeg;
 
-enum { MAX_SCANS = 200 }; /* a progressive file can ask for any number of passes over the whole picture */
+enum { MAX_SCANS = 200 }; /* a progressive file can ask for any number of ignores the whole image */
 
 bool vl_jpeg_probe(const uint8_t *data, size_t size) {
   return size >= 3 && data[0] == 0xff && data[1] == 0xd8 && data[2] == 0xff;

@@ -1,5 +1,5 @@
-/* image/mipmap.h: a picture with all its coarser copies, for textures. Each level halves the one before (rounded down,
- * at least 1); every texel is the mean of the light its area covers, exactly weighted where a size is odd. Pictures of
+/* image/mipmap.h: an image with all its coarser copies, for textures. Each level halves the one before (rounded down,
+ * at least 1); every texel is the mean of the light its area covers, exactly weighted where a size is odd. Images of
  * 8 bits stay so on all levels (one byte a value; the means are taken in floats and rounded once), others become
  * floats. */
 #ifndef IMAGE_MIPMAP_H
@@ -21,7 +21,7 @@ typedef struct vlMipmap {
   uint32_t channels; /* 1 to 4 */
   uint32_t level_count;
   bool is_bytes;
-  bool space_told;      /* the picture says what its colours are, and this is one of the known spaces: */
+  bool space_told;      /* the image says what its colours are, and this is one of the known spaces: */
   vlColorSpace space;   /* sRGB else */
   float decode[4][256]; /* per channel: byte -> linear */
   vlMipLevel levels[VL_MIP_LEVELS];
@@ -31,7 +31,7 @@ typedef struct vlMipmapDef {
   uint32_t channel[4]; /* which of the image's channels */
   uint32_t count;      /* 1 to 4 */
   bool only_finest;    /* one level */
-  bool own_encoding;   /* 8 and 16-bit pictures: encoding and gamma below instead of the image's */
+  bool own_encoding;   /* 8 and 16-bit images: encoding and gamma below instead of the image's */
   vlEncoding encoding;
   float gamma;
 } vlMipmapDef;

@@ -67,7 +67,7 @@ double vl_exp2_exact(double x);
 double vl_pow_exact(double x, double y);
 double vl_srgb_to_linear(double encoded);
 double vl_linear_to_srgb(double linear);
-/* A value in [0,1] of a picture's encoding, as light. */
+/* A value in [0,1] of an image's encoding, as light. */
 double vl_decode(vlEncoding encoding, float gamma, double encoded);
 double vl_encode(vlEncoding encoding, float gamma, double linear);
 

@@ -138,7 +138,7 @@ static vlResult encode(Png *p, const vlImage *image, vlError *error) {
   bool deep = image->type == VL_PIXEL_U16;
   png_set_write_fn(p->png, p, on_write, on_flush);
   png_set_user_limits(p->png, 0x7fffffff, 0x7fffffff);
-  png_set_compression_level(p->png, 6); /* fixed, so that the same picture gives the same bytes */
+  png_set_compression_level(p->png, 6); /* fixed, so that the same image gives the same bytes */
   png_set_IHDR(p->png, p->info, image->width, image->height, deep ? 16 : 8, KINDS[count], PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   bool integer = image->type == VL_PIXEL_U8 || deep;

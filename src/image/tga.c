@@ -108,7 +108,7 @@ static vlResult read_pixels(const vlImageFile *file, const Tga *t, vlImage *imag
   return VL_OK;
 }
 
-/* Many writers leave the fourth byte 0 and say so in the header: those pictures have no alpha. */
+/* Many writers leave the fourth byte 0 and say so in the header: those images have no alpha. */
 static bool alpha_is_empty(const Tga *t, const vlImage *image) {
   if (t->flags & 15) return false;
   const uint8_t *p = image->pixels;

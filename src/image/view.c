@@ -1,5 +1,5 @@
 /* image/view.c: from linear light to display values. Works on linear Rec.709 channels R G B, or Y; the result is 8-bit
- * sRGB. Only arithmetic with fixed bits (math/approx.h, tables), so pictures are the same on every machine. */
+ * sRGB. Only arithmetic with fixed bits (math/approx.h, tables), so images are the same on every machine. */
 #include "base/error.h"
 #include "image/image.h"
 #include "image/pixel.h"

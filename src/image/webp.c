@@ -6,7 +6,7 @@
 
 #include "image/codec.h"
 
-/* One colour all over takes no bits at all, so that a small file may rightly be a large picture: up to this many bytes
+/* One colour all over takes no bits at all, so that a small file may rightly be a large image: up to this many bytes
  * it is believed. */
 enum { BELIEVED = 1 << 24 };
 

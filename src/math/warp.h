@@ -1,7 +1,7 @@
 /* math/warp.h: from the unit square to disks, hemispheres, cones, triangles and spherical triangles, and back. (u, v)
  * in [0,1)^2 uniform gives the density that stands with each function. All keep neighbours together (low distortion),
  * so that well-spread points stay well spread. No branches, no libm: made for hot loops. The map of the whole sphere
- * used for pictures of the sky is math/octahedral.h.
+ * used for images of the sky is math/octahedral.h.
  *
  * Directions are local, z up. Sources: pbrt book appendix A.5; others at their place. */
 #ifndef MATH_WARP_H

@@ -9,7 +9,7 @@
 #include "camera/rays.h"
 #include "trace/ground_truth/ground_truth.h"
 
-/* The part of the ray between near and far plane, from the kernel that the picture's rays come from. */
+/* The part of the ray between near and far plane, from the kernel that the image's rays come from. */
 static void find_ends(const vlCamera *camera, vlIsa isa, double x, double y, float *t_min, float *t_max) {
   float rows[12][VL_LANES];
   int32_t px[VL_LANES], py[VL_LANES];
@@ -42,17 +42,17 @@ static vlResult look(const vlWorld *world, const vlCamera *camera, double x, dou
   double o[3], d[3];
   if (!vl_camera_unproject(&pinhole, x, y, o, d))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focus on pixel %g, %g: the camera sees nothing there", x, y);
-  vlTruthScratch *scratch = vl_alloc_zero(world->context, 1, vl_truth_scratch_size());
-  vlTruthBatch *batch = vl_alloc_zero(world->context, 1, sizeof *batch);
+  vlGroundTruthScratch *scratch = vl_alloc_zero(world->context, 1, vl_ground_truth_scratch_size());
+  vlGroundTruthBatch *batch = vl_alloc_zero(world->context, 1, sizeof *batch);
   vlResult result = scratch && batch ? VL_OK : vl_fail_memory(error);
   if (result == VL_OK) {
-    vlTruthDef def = {.isa = isa};
-    vl_truth_plan_albedo(world, VL_SPACE_SRGB, &def);
+    vlGroundTruthDef def = {.isa = isa};
+    vl_ground_truth_plan_albedo(world, VL_SPACE_SRGB, &def);
     batch->n = 1;
     for (int i = 0; i < 3; i++) batch->o[i][0] = o[i], batch->d[i][0] = d[i];
     find_ends(&pinhole, isa, x, y, &batch->t_min[0], &batch->t_max[0]);
     unsigned state = vl_accel_enter();
-    vl_truth_kernels(isa)->trace(world, &def, scratch, batch);
+    vl_ground_truth_kernels(isa)->trace(world, &def, scratch, batch);
     vl_accel_leave(state);
     double t = batch->distance[0];
     for (int i = 0; i < 3; i++) point[i] = o[i] + t * d[i];
@@ -69,7 +69,7 @@ vlResult vl_autofocus(const vlWorld *world, const vlCamera *camera, double x, do
   vl_error_clear(error);
   if (!world || !camera || !distance) return vl_fail(error, VL_ERROR_ARGUMENT, "autofocus: null argument");
   if (!(x >= 0 && y >= 0 && x <= camera->width && y <= camera->height))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focus on pixel %g, %g: outside the picture of %u x %u", x, y,
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focus on pixel %g, %g: outside the image of %u x %u", x, y,
                    camera->width, camera->height);
   double point[3], f;
   vlResult result = look(world, camera, x, y, point, error);

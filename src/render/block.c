@@ -98,7 +98,7 @@ static void render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   }
   if (r->two_way) {
     batch.two_way = vl_two_way_rows(r->two_way, (uint32_t)(w - r->workers));
-    batch.eyes = vl_two_way_eyes(r->two_way, (uint32_t)(w - r->workers), n, rows.time, NULL);
+    batch.eyes = vl_two_way_cameras(r->two_way, (uint32_t)(w - r->workers), n, rows.time, NULL);
   }
   r->trace_kernels->trace(r->world, &r->trace, w->scratch, &batch);
   if (vl_camera_weighted(camera)) weigh(n, rays.weight, rays.valid, batch.alpha, batch.radiance);

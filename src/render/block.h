@@ -4,7 +4,7 @@
  *
  * A batch is a tile of 16 x 16 pixels times up to 4 samples, or up to 4 tiles; pixels in Morton order so that 16
  * neighbours make a packet. What a sample is depends on (seed, pixel, index) alone, and the film adds exactly: no
- * grouping shows in the picture. */
+ * grouping shows in the image. */
 #ifndef RENDER_BLOCK_H
 #define RENDER_BLOCK_H
 

@@ -45,8 +45,8 @@ static void note(Extent *e, uint32_t x, uint32_t y) {
   raise(&e->high[0], x), raise(&e->high[1], y);
 }
 
-static void note_pixel(Pass *p, const vlTruthBatch *b, uint32_t lane, const vlTruthLayers *layers, uint32_t x,
-                       uint32_t y) {
+static void note_pixel(Pass *p, const vlGroundTruthBatch *b, uint32_t lane, const vlGroundTruthLayers *layers,
+                       uint32_t x, uint32_t y) {
   uint32_t first[2] = {b->object[lane], b->instance[lane]};
   for (int k = 0; k < 2; k++) {
     if (!p->counts[k]) continue;
@@ -64,7 +64,7 @@ static void count_tile(void *user, uint32_t tile, uint32_t worker) {
   Pass *p = user;
   const vlChannelPass *c = &p->channels;
   vlChannelWorker *w = &c->workers[worker];
-  vlTruthBatch *b = w->batch;
+  vlGroundTruthBatch *b = w->batch;
   uint32_t n = 0, x, y;
   if (vl_stop_check(c->stop)) return;
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
@@ -80,11 +80,11 @@ static void count_tile(void *user, uint32_t tile, uint32_t worker) {
   unsigned state = vl_accel_enter();
   vlChannelEnds ends = {&c->compiled, w->x, w->y, w->lane_x, w->lane_y};
   vl_channel_ends(c, w, n, &ends, b->t_min, b->t_max);
-  c->truth_kernels->trace(c->world, &c->truth, w->scratch, b);
+  c->ground_truth_kernels->trace(c->world, &c->truth, w->scratch, b);
   for (uint32_t i = 0; i < n; i++) {
-    vlTruthLayers layers;
+    vlGroundTruthLayers layers;
     if (!b->object[i]) continue;
-    c->truth_kernels->layers(c->world, b, i, &layers);
+    c->ground_truth_kernels->layers(c->world, b, i, &layers);
     note_pixel(p, b, i, &layers, w->x[i], w->y[i]);
   }
   vl_accel_leave(state);
@@ -114,7 +114,7 @@ static void put_box(void *user, uint32_t index, uint32_t worker) {
     vl_box_of_object(c->world, &c->camera, p->time, id, p->grouped[id - 1], box);
 }
 
-/* Which objects are in groups; and whether the points of all instances that are in the picture are too many. */
+/* Which objects are in groups; and whether the points of all instances that are in the image are too many. */
 static void look_at_groups(Pass *p) {
   const vlWorld *world = p->channels.world;
   const uint64_t most = 1 << 26;
@@ -148,7 +148,7 @@ static vlResult make_room(Pass *p, vlError *error) {
   c->workers = vl_alloc_zero(context, threads, sizeof *c->workers);
   for (uint32_t i = 0; c->workers && i < threads; i++) {
     vlChannelWorker *w = &c->workers[i];
-    w->scratch = vl_alloc_zero(context, 1, vl_truth_scratch_size());
+    w->scratch = vl_alloc_zero(context, 1, vl_ground_truth_scratch_size());
     w->batch = vl_alloc_zero(context, 1, sizeof *w->batch);
     w->rows = vl_alloc_zero(context, (size_t)VL_CHANNEL_ROWS * VL_ROW_SIZE, sizeof(float));
     whole = whole && w->scratch && w->batch && w->rows;

@@ -46,12 +46,12 @@ typedef struct vlTally {
 } vlTally;
 
 typedef struct vlChannelWorker {
-  vlTruthScratch *scratch;
-  vlTruthBatch *batch;
-  float *rows;         /* VL_CHANNEL_ROWS arrays of VL_ROW_SIZE */
-  vlTally *tallies;    /* three of Cryptomatte or one of the choice; null where nothing is counted */
-  vlTruthBatch *other; /* what the other camera sees; null without flow */
-  uint32_t *lanes;     /* of `other`: which lane of the batch */
+  vlGroundTruthScratch *scratch;
+  vlGroundTruthBatch *batch;
+  float *rows;               /* VL_CHANNEL_ROWS arrays of VL_ROW_SIZE */
+  vlTally *tallies;          /* three of Cryptomatte or one of the choice; null where nothing is counted */
+  vlGroundTruthBatch *other; /* what the other camera sees; null without flow */
+  uint32_t *lanes;           /* of `other`: which lane of the batch */
   uint32_t x[VL_BATCH], y[VL_BATCH];
   float film_x[VL_TILE_PIXELS], film_y[VL_TILE_PIXELS]; /* the point of each pixel of the tile */
   float lane_x[VL_BATCH], lane_y[VL_BATCH];             /* and of each lane */
@@ -72,16 +72,16 @@ typedef struct vlChannelPass {
   double time, other_time[2]; /* seconds; of the pass and of the other cameras */
   vlCameraCompiled compiled;
   const vlCameraKernels *camera_kernels;
-  const vlTruthKernels *truth_kernels;
-  vlTruthDef truth;
+  const vlGroundTruthKernels *ground_truth_kernels;
+  vlGroundTruthDef truth;
   uint32_t tiles_x, tile_x0, tile_y0, tiles;
   uint32_t place[2][VL_CHANNEL_COUNT]; /* of each channel's first part among floats and ids */
   vlImage *images[2];                  /* floats, ids */
   uint32_t step[2];                    /* values of a pixel */
   vlChannelWorker *workers;
   vlStop *stop;
-  vlFilmRays choice, picture; /* rays of the picture's samples through the middle of the lens, and as they are */
-  uint32_t spp;               /* of the picture */
+  vlFilmRays choice, image; /* rays of the image's samples through the middle of the lens, and as they are */
+  uint32_t spp;             /* of the image */
   vlCryptomatte crypto[3];
   vlCamera other[2]; /* forward, backward */
   vlCameraCompiled other_compiled[2];
@@ -112,11 +112,11 @@ static inline float *vl_channel_row(vlChannelWorker *w, uint32_t row) {
 
 /* channels.c: cameras, kernels, tiles, from def and world. */
 void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera);
-/* channel_samples.c: counts the picture's samples: fills film_x and film_y of the tile, writes Cryptomatte. */
+/* channel_samples.c: counts the image's samples: fills film_x and film_y of the tile, writes Cryptomatte. */
 void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile);
 /* flow.c: where the other cameras see what the n lanes of the batch met. */
 void vl_channel_flow(const vlChannelPass *p, vlChannelWorker *w, int which);
-/* channel_tile.c: the part of the rays that near and far plane leave, from the very kernel the picture's rays come
+/* channel_tile.c: the part of the rays that near and far plane leave, from the very kernel the image's rays come
  * from. */
 void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, const vlChannelEnds *ends, float *t_min,
                      float *t_max);

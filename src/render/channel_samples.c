@@ -1,4 +1,4 @@
-/* render/channel_samples.c: ground truth of a pixel's area: the picture's own samples, sent out once more, say what
+/* render/channel_samples.c: ground truth of a pixel's area: the image's own samples, sent out once more, say what
  * they meet first. From them come Cryptomatte's coverages, and the point of the film that a pixel's numbers are of
  * where that is not its centre.
  *
@@ -137,21 +137,21 @@ static void flush(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t
     for (uint32_t i = 0; i < VL_PAD(n); i++) r.lens_u[i] = r.lens_v[i] = 0.5f;
   vl_film_rays_make(c->rays, n, &r);
   bool depths = !c->matte && p->def->mode == VL_CHANNEL_MODE_NEAREST;
-  vlTruthHits hits = {.n = n,
-                      .ox = r.rays.ox,
-                      .oy = r.rays.oy,
-                      .oz = r.rays.oz,
-                      .dx = r.rays.dx,
-                      .dy = r.rays.dy,
-                      .dz = r.rays.dz,
-                      .t_min = r.rays.t_min,
-                      .t_max = r.rays.t_max,
-                      .time = c->rays->moves ? r.rays.time : NULL,
-                      .object = (uint32_t *)(void *)vl_channel_row(w, OBJECT),
-                      .material = (uint32_t *)(void *)vl_channel_row(w, MATERIAL),
-                      .instance = (uint32_t *)(void *)vl_channel_row(w, INSTANCE),
-                      .distance = depths ? vl_channel_row(w, DISTANCE) : NULL};
-  p->truth_kernels->hits(p->world, &p->truth, w->scratch, &hits);
+  vlGroundTruthHits hits = {.n = n,
+                            .ox = r.rays.ox,
+                            .oy = r.rays.oy,
+                            .oz = r.rays.oz,
+                            .dx = r.rays.dx,
+                            .dy = r.rays.dy,
+                            .dz = r.rays.dz,
+                            .t_min = r.rays.t_min,
+                            .t_max = r.rays.t_max,
+                            .time = c->rays->moves ? r.rays.time : NULL,
+                            .object = (uint32_t *)(void *)vl_channel_row(w, OBJECT),
+                            .material = (uint32_t *)(void *)vl_channel_row(w, MATERIAL),
+                            .instance = (uint32_t *)(void *)vl_channel_row(w, INSTANCE),
+                            .distance = depths ? vl_channel_row(w, DISTANCE) : NULL};
+  p->ground_truth_kernels->hits(p->world, &p->truth, w->scratch, &hits);
   for (uint32_t i = 0; i < n; i++) {
     if (r.index[i] == 0) begin_pixel(w, c);
     /* As the film adds them; what the negative lobes of a filter take away is nobody's. */
@@ -184,5 +184,5 @@ static void count(const vlChannelPass *p, vlChannelWorker *w, const vlFilmRays *
 void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
   if (p->def->mode != VL_CHANNEL_MODE_CENTRE) count(p, w, &p->choice, false, tile);
   if (vl_channel_wanted(p, VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE))
-    count(p, w, &p->picture, true, tile);
+    count(p, w, &p->image, true, tile);
 }

@@ -1,4 +1,4 @@
-/* render/channel_tile.c: a tile of ground truth: one exact ray a pixel, what it meets, into the pictures.
+/* render/channel_tile.c: a tile of ground truth: one exact ray a pixel, what it meets, into the images.
  *
  * All numbers of a pixel come from one double-precision ray: P = o + t d, z is P's depth, and so project(P) is the
  * pixel's point of the film. They are rounded to float once, each for itself. */
@@ -45,7 +45,7 @@ void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, con
 /* Pixels of the tile inside the crop window that the camera has a ray for. */
 static uint32_t list_pixels(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
   uint32_t n = 0, x, y;
-  vlTruthBatch *b = w->batch;
+  vlGroundTruthBatch *b = w->batch;
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
     double o[3], d[3];
@@ -63,7 +63,7 @@ static void put3(float *to, const float rows[3][VL_ROW_SIZE], uint32_t i) {
   to[0] = rows[0][i], to[1] = rows[1][i], to[2] = rows[2][i];
 }
 
-static void put_floats(const vlChannelPass *p, const vlTruthBatch *b, uint32_t i, size_t at) {
+static void put_floats(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i, size_t at) {
   bool hit = b->object[i] != 0;
   double t = b->distance[i], point[3] = {0, 0, 0};
   for (int k = 0; k < 3 && hit; k++) point[k] = b->o[k][i] + t * b->d[k][i];
@@ -83,7 +83,7 @@ static void put_floats(const vlChannelPass *p, const vlTruthBatch *b, uint32_t i
   uv[0] = b->uv[0][i], uv[1] = b->uv[1][i];
 }
 
-static void put_ids(const vlChannelPass *p, const vlTruthBatch *b, uint32_t i, size_t at) {
+static void put_ids(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i, size_t at) {
   const uint32_t values[4] = {b->object[i], b->material[i], b->instance[i], b->primitive[i]};
   for (uint32_t k = 0; k < 4; k++)
     if (vl_channel_wanted(p, VL_CHANNEL_ID_OBJECT << k)) *vl_channel_ids(p, at, VL_INDEX_IDS + k) = values[k];
@@ -122,12 +122,12 @@ void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
   unsigned state = vl_accel_enter();
   if (w->tallies) vl_channel_count(p, w, tile);
   uint32_t n = list_pixels(p, w, tile);
-  vlTruthBatch *b = w->batch;
+  vlGroundTruthBatch *b = w->batch;
   if (n) {
     vlChannelEnds ends = {&p->compiled, w->x, w->y, w->lane_x, w->lane_y};
     vl_channel_ends(p, w, n, &ends, b->t_min, b->t_max);
     b->time = vl_world_time(p->world, p->time);
-    p->truth_kernels->trace(p->world, &p->truth, w->scratch, b);
+    p->ground_truth_kernels->trace(p->world, &p->truth, w->scratch, b);
   }
   for (int i = 0; i < 2 && n; i++)
     if (vl_channel_wanted(p, VL_CHANNEL_FORWARD << i)) vl_channel_flow(p, w, i);

@@ -1,5 +1,5 @@
-/* render/channels.c: ground truth: which channels there are, their pictures, and the pass over the tiles. A pass of its
- * own beside vl_render: no pixel of the picture depends on it. */
+/* render/channels.c: ground truth: which channels there are, their images, and the ignore the tiles. A pass of its
+ * own beside vl_render: no pixel of the image depends on it. */
 #include "velo/channels.h"
 
 #include <math.h>
@@ -63,7 +63,7 @@ static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlE
   if (!counts && !errors) return VL_OK;
   if (!def->film || (counts && !def->render))
     return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "ground truth: Cryptomatte, standard errors and modes other than the centre need the picture's "
+                   "ground truth: Cryptomatte, standard errors and modes other than the centre need the image's "
                    "film and how it was rendered");
   const vlFilmDef *film = vl_film_def(def->film);
   if (counts && def->render->cookie != VL_COOKIE_RENDER)
@@ -98,11 +98,11 @@ static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChan
     return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: flow needs the other camera");
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
     if ((def->channels >> i & 1) && ((channels[i].floats && !floats) || (channels[i].ids && !ids)))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: no place for the picture that is wanted");
+      return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: no place for the image that is wanted");
   return check_film(camera, def, error);
 }
 
-/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+/* ---- images ---------------------------------------------------------------------------------------------------- */
 
 /* Names of the wanted channels of one kind; Cryptomatte's are the ranks' pairs, two in a layer. */
 static uint32_t list_names(vlChannelPass *p, int id, const char *names[MAX_FLOATS], char crypto[MAX_FLOATS][24]) {
@@ -138,7 +138,7 @@ static vlResult make_images(vlChannelPass *p, vlError *error) {
     def.type = id ? VL_PIXEL_U32 : VL_PIXEL_F32;
     vlResult r = vl_image_create(p->world->context, &def, &p->images[id]);
     if (r == VL_ERROR_MEMORY) return vl_fail_memory(error);
-    if (r != VL_OK) return vl_fail(error, r, "ground truth: the picture cannot be made");
+    if (r != VL_OK) return vl_fail(error, r, "ground truth: the image cannot be made");
   }
   return VL_OK;
 }
@@ -167,7 +167,7 @@ static vlResult make_workers(vlChannelPass *p, vlError *error) {
   p->workers = vl_alloc_zero(context, threads, sizeof *p->workers);
   for (uint32_t i = 0; p->workers && i < threads; i++) {
     vlChannelWorker *w = &p->workers[i];
-    w->scratch = vl_alloc_zero(context, 1, vl_truth_scratch_size());
+    w->scratch = vl_alloc_zero(context, 1, vl_ground_truth_scratch_size());
     w->batch = vl_alloc_zero(context, 1, sizeof *w->batch);
     w->rows = vl_alloc_zero(context, (size_t)VL_CHANNEL_ROWS * VL_ROW_SIZE, sizeof(float));
     if (counts) w->tallies = vl_alloc_zero(context, 3, sizeof *w->tallies);
@@ -210,7 +210,7 @@ static void free_all(vlChannelPass *p) {
   for (int k = 0; k < 3; k++) vl_cryptomatte_close(context, &p->crypto[k]);
 }
 
-/* The picture's samples: as they are, and through the middle of the lens in the middle of the shutter's time. */
+/* The image's samples: as they are, and through the middle of the lens in the middle of the shutter's time. */
 static void prepare_counting(vlChannelPass *p, const vlCamera *camera, vlIsa isa) {
   const vlChannelsDef *def = p->def;
   if (!(def->channels & CRYPTO) && def->mode == VL_CHANNEL_MODE_CENTRE) return;
@@ -218,14 +218,14 @@ static void prepare_counting(vlChannelPass *p, const vlCamera *camera, vlIsa isa
   p->spp = vl_film_spp(def->film);
   vlSampler sampler;
   vl_sampler_init(&sampler, def->render->sampler, def->render->seed, film->width, film->height, def->render->spp);
-  vl_film_rays_init(&p->picture, camera, vl_film_filter(def->film), &sampler, isa);
+  vl_film_rays_init(&p->image, camera, vl_film_filter(def->film), &sampler, isa);
   vl_film_rays_init(&p->choice, &p->camera, vl_film_filter(def->film), &sampler, isa);
   p->choice.middle = true;
-  vl_film_rays_clock(&p->picture, p->world);
+  vl_film_rays_clock(&p->image, p->world);
   vl_film_rays_clock(&p->choice, p->world);
 }
 
-/* The middle of the light: half of it has come in the middle of the picture. */
+/* The middle of the light: half of it has come in the middle of the image. */
 static double middle_time(const vlCamera *c) {
   return vl_camera_time(c, 0.5 * c->width, 0.5 * c->height, 0.5);
 }
@@ -250,14 +250,14 @@ void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
     vl_camera_compile(&p->other[i], &p->other_compiled[i]);
   }
   p->camera_kernels = vl_camera_kernels(isa);
-  p->truth_kernels = vl_truth_kernels(isa);
-  const float footprint = 0.25f; /* as the picture's samples have */
-  p->truth = (vlTruthDef){.pixel_spread = footprint * p->compiled.pixel_spread,
-                          .pixel_width = footprint * p->compiled.pixel_width,
-                          .isa = isa,
-                          .shading = vl_channel_wanted(p, VL_CHANNEL_N),
-                          .albedo = vl_channel_wanted(p, VL_CHANNEL_ALBEDO)};
-  vl_truth_plan_albedo(p->world, p->def->space, &p->truth);
+  p->ground_truth_kernels = vl_ground_truth_kernels(isa);
+  const float footprint = 0.25f; /* as the image's samples have */
+  p->truth = (vlGroundTruthDef){.pixel_spread = footprint * p->compiled.pixel_spread,
+                                .pixel_width = footprint * p->compiled.pixel_width,
+                                .isa = isa,
+                                .shading = vl_channel_wanted(p, VL_CHANNEL_N),
+                                .albedo = vl_channel_wanted(p, VL_CHANNEL_ALBEDO)};
+  vl_ground_truth_plan_albedo(p->world, p->def->space, &p->truth);
   const uint32_t *crop = p->def->crop;
   p->tile_x0 = crop[0] / VL_CHANNEL_TILE, p->tile_y0 = crop[1] / VL_CHANNEL_TILE;
   p->tiles_x = (crop[2] + VL_CHANNEL_TILE - 1) / VL_CHANNEL_TILE - p->tile_x0;

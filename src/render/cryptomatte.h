@@ -1,5 +1,5 @@
 /* render/cryptomatte.h: names and their hashes for Cryptomatte (Psyop's specification 1.2): each object, material or
- * instance has a name of its own, and 32 bits that stand for it in the picture. */
+ * instance has a name of its own, and 32 bits that stand for it in the image. */
 #ifndef RENDER_CRYPTOMATTE_H
 #define RENDER_CRYPTOMATTE_H
 
@@ -10,7 +10,7 @@ typedef struct vlCryptomatte {
   uint32_t count;        /* of ids: 1 to count */
   uint32_t *hash;        /* of id - 1; no two are equal */
   uint8_t *tries;        /* names of id - 1 that did not do */
-  _Atomic uint8_t *seen; /* id - 1 is in the picture */
+  _Atomic uint8_t *seen; /* id - 1 is in the image */
 } vlCryptomatte;
 
 /* "CryptoObject", ...: what its channels are called. */

@@ -1,5 +1,5 @@
-/* render/film_rays.h: samples of the film to rays of the camera. The picture's rays and those of the ground truth that
- * counts the picture's own samples come from here: the same bits. */
+/* render/film_rays.h: samples of the film to rays of the camera. The image's rays and those of the ground truth that
+ * counts the image's own samples come from here: the same bits. */
 #ifndef RENDER_FILM_RAYS_H
 #define RENDER_FILM_RAYS_H
 

@@ -19,7 +19,7 @@ typedef struct Target {
   double point[3];     /* of the surface */
   double direction[3]; /* of the sky */
   double normal[3];
-  double pixel[2]; /* in the other picture */
+  double pixel[2]; /* in the other image */
 } Target;
 
 static double length3(const double v[3]) {
@@ -27,7 +27,7 @@ static double length3(const double v[3]) {
 }
 
 /* What lane i met, where it is at the other camera's time. */
-static Target target_of(const vlChannelPass *p, const vlTruthBatch *b, uint32_t i, int which) {
+static Target target_of(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i, int which) {
   Target t = {.sky = b->object[i] == 0};
   for (int k = 0; k < 3; k++) {
     t.direction[k] = b->d[k][i];
@@ -51,7 +51,7 @@ static bool find_pixel(const vlCamera *camera, Target *t) {
 }
 
 /* The ray by which the other camera would see it, and its end; false where it has none. */
-static bool aim(const vlCamera *camera, const Target *t, vlTruthBatch *to, double *end) {
+static bool aim(const vlCamera *camera, const Target *t, vlGroundTruthBatch *to, double *end) {
   double o[3], d[3];
   if (!vl_camera_unproject(camera, t->pixel[0], t->pixel[1], o, d)) return false;
   for (int k = 0; k < 3; k++) d[k] = t->sky ? t->direction[k] : t->point[k] - o[k];
@@ -63,8 +63,8 @@ static bool aim(const vlCamera *camera, const Target *t, vlTruthBatch *to, doubl
 }
 
 /* What the ray met hides the point, unless it is the point. */
-static bool hides(const vlChannelPass *p, const vlTruthBatch *b, uint32_t lane, const Target *t,
-                  const vlTruthBatch *other, uint32_t i, double end) {
+static bool hides(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t lane, const Target *t,
+                  const vlGroundTruthBatch *other, uint32_t i, double end) {
   if (other->object[i] == 0) return false;
   if (t->sky) return true;
   bool same = other->object[i] == b->object[lane] && other->instance[i] == b->instance[lane] &&
@@ -76,8 +76,8 @@ static bool hides(const vlChannelPass *p, const vlTruthBatch *b, uint32_t lane, 
   return other->distance[i] < end - TOLERANCE * size / fmax(fabs(cosine), LEAST_COSINE);
 }
 
-static vlHidden judge(const vlChannelPass *p, const vlTruthBatch *b, uint32_t lane, const Target *t,
-                      const vlTruthBatch *other, uint32_t i, double end, const vlCamera *camera) {
+static vlHidden judge(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t lane, const Target *t,
+                      const vlGroundTruthBatch *other, uint32_t i, double end, const vlCamera *camera) {
   bool inside = t->pixel[0] >= 0 && t->pixel[1] >= 0 && t->pixel[0] < camera->width && t->pixel[1] < camera->height;
   bool cut = !t->sky && !(end >= (double)other->t_min[i] && end <= (double)other->t_max[i]);
   if (!inside || cut) return VL_HIDDEN_OUTSIDE;
@@ -89,7 +89,7 @@ static vlHidden judge(const vlChannelPass *p, const vlTruthBatch *b, uint32_t la
 static void list_targets(const vlChannelPass *p, vlChannelWorker *w, int which, Target *targets, double *ends,
                          uint32_t first, uint32_t last) {
   const vlCamera *camera = &p->other[which];
-  vlTruthBatch *other = w->other;
+  vlGroundTruthBatch *other = w->other;
   other->n = 0;
   for (uint32_t i = first; i < last; i++) {
     Target t = target_of(p, w->batch, i, which);
@@ -112,7 +112,7 @@ static void flow_chunk(const vlChannelPass *p, vlChannelWorker *w, int which, ui
   double ends[CHUNK];
   uint32_t x[CHUNK], y[CHUNK];
   float film_x[CHUNK], film_y[CHUNK];
-  vlTruthBatch *other = w->other;
+  vlGroundTruthBatch *other = w->other;
   list_targets(p, w, which, targets, ends, first, last);
   if (other->n == 0) return;
   for (uint32_t i = 0; i < other->n; i++) {
@@ -123,9 +123,9 @@ static void flow_chunk(const vlChannelPass *p, vlChannelWorker *w, int which, ui
   vlChannelEnds cut = {&p->other_compiled[which], x, y, film_x, film_y};
   vl_channel_ends(p, w, other->n, &cut, other->t_min, other->t_max);
   other->time = vl_world_time(p->world, p->other_time[which]);
-  vlTruthDef def = p->truth; /* neither bumps nor colours matter */
+  vlGroundTruthDef def = p->truth; /* neither bumps nor colours matter */
   def.shading = def.albedo = false;
-  p->truth_kernels->trace(p->world, &def, w->scratch, other);
+  p->ground_truth_kernels->trace(p->world, &def, w->scratch, other);
   for (uint32_t i = 0; i < other->n; i++) {
     uint32_t lane = w->lanes[i];
     *vl_channel_ids(p, vl_channel_at(p, w->x[lane], w->y[lane]), VL_INDEX_FORWARD + (uint32_t)which) =

@@ -1,4 +1,4 @@
-/* render/render.c: where world, camera and film meet: a run of passes over the picture, what it needs before and tells
+/* render/render.c: where world, camera and film meet: a run of ignores the image, what it needs before and tells
  * meanwhile. A pass goes over blocks of tiles (block.h). */
 #include <math.h>
 #include <string.h>
@@ -80,7 +80,7 @@ uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlR
   return vl_two_way_tracer(def->tracer) ? bytes + vl_two_way_memory(world, film, def) : bytes;
 }
 
-/* In one block that stays with the film: many small pictures one after the other need no fresh memory. */
+/* In one block that stays with the film: many small images one after the other need no fresh memory. */
 static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error) {
   uint32_t threads = vl_context_threads(context);
   size_t head = round_up(threads * sizeof *r->workers), scratch = round_up(vl_trace_scratch_size());
@@ -97,7 +97,7 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
   return VL_OK;
 }
 
-/* Light is followed both ways but through bodies of subsurface materials, and where each row of the picture has a time
+/* Light is followed both ways but through bodies of subsurface materials, and where each row of the image has a time
  * of its own; there by the tracer that can do that. */
 static vlTracer tracer_of(const vlRenderRun *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
@@ -140,7 +140,7 @@ static void prepare(vlRenderRun *r, const vlCamera *camera) {
   r->trace_kernels = vl_trace_kernels(isa);
   r->rgb_mode = world->def.color == VL_COLOR_RGB;
   /* Footprints shrink with the samples of a pixel (pbrt book 10.1.3 scales by 1/sqrt(spp), at least 1/8); a fixed
-   * share, so that more samples continue the same picture. */
+   * share, so that more samples continue the same image. */
   const float footprint = r->def->sharp_textures ? 0.0f : 0.25f;
   r->trace = (vlTraceDef){.tracer = tracer_of(r, camera),
                           .sampler = &r->film_rays.sampler,
@@ -159,9 +159,9 @@ static void prepare(vlRenderRun *r, const vlCamera *camera) {
   r->tiles_y = (r->crop[3] + VL_RENDER_TILE - 1) / VL_RENDER_TILE - r->tile_y0;
 }
 
-/* Passes of 1, 1, 2, 4, ... samples: a first picture at once, then fewer interruptions; but no longer than
+/* Passes of 1, 1, 2, 4, ... samples: a first image at once, then fewer interruptions; but no longer than
  * PASS_SECONDS, for that much is lost when a pass is given up, and no longer than half of the time that is left. How
- * samples are split into passes does not show in the picture. */
+ * samples are split into passes does not show in the image. */
 static uint32_t pass_size(uint32_t done, uint32_t total, double seconds_per_sample, double left) {
   uint32_t size = done == 0 ? 1 : done < MAX_PASS ? done : MAX_PASS;
   double fit = seconds_per_sample > 0 ? fmin(PASS_SECONDS, 0.5 * left) / seconds_per_sample : MAX_PASS;

@@ -1,4 +1,4 @@
-/* render/stop.h: how a pass over many tasks is given up: the caller's callback is asked about ten times a second, on
+/* render/stop.h: how a ignore many tasks is given up: the caller's callback is asked about ten times a second, on
  * the thread that called; a deadline is seen by every worker. */
 #ifndef RENDER_STOP_H
 #define RENDER_STOP_H

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "film/expose.h"
 #include "math/hash.h"
-#include "render/eye_view.h"
+#include "render/camera_view.h"
 #include "render/splats.h"
 
 enum {
@@ -25,7 +25,7 @@ typedef struct Worker {
   int32_t px[VL_ROW_SIZE], py[VL_ROW_SIZE];
   uint32_t index[VL_ROW_SIZE];
   float u[VL_ROW_SIZE], time[VL_ROW_SIZE];
-  vlEyeView *eyes; /* VL_ROW_SIZE, of a camera that moves */
+  vlCameraView *eyes; /* VL_ROW_SIZE, of a camera that moves */
   float color[3][VL_ROW_SIZE];
   uint64_t paths, bounce_rays, shadow_rays, not_finite;
   vlTwoWayRun *run;
@@ -41,7 +41,7 @@ struct vlTwoWayRun {
   const vlTraceKernels *kernels;
   Worker *workers;
   char *memory; /* of the workers' rows */
-  vlEyeView *eyes;
+  vlCameraView *eyes;
   const vlFilmRays *rays;
   float *choice;
   uint32_t *medium; /* of lights */
@@ -128,10 +128,11 @@ float vl_two_way_time(const vlTwoWayRun *run, uint32_t index) {
   return fminf((float)(turn - floor(turn)), VL_ONE_MINUS_EPSILON);
 }
 
-const vlEyeView *vl_two_way_eyes(const vlTwoWayRun *run, uint32_t worker, uint32_t n, const float *u, float *time) {
+const vlCameraView *vl_two_way_cameras(const vlTwoWayRun *run, uint32_t worker, uint32_t n, const float *u,
+                                       float *time) {
   const vlCameraCompiled *c = &run->rays->camera;
   const vlCameraTime *t = &c->when;
-  vlEyeView *eyes = run->workers[worker].eyes;
+  vlCameraView *eyes = run->workers[worker].eyes;
   if (!eyes && !time) return NULL;
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     double when = c->shutter_open + c->shutter_time * vl_shutter_share(t, (double)u[i]);
@@ -139,7 +140,7 @@ const vlEyeView *vl_two_way_eyes(const vlTwoWayRun *run, uint32_t worker, uint32
     if (!eyes) continue;
     double f = (when - t->pose_open) * t->pose_rate;
     eyes[i] = run->way.eye;
-    vl_eye_view_move(&eyes[i], vl_motion_between(&t->motion, f > 0 ? (f < 1 ? f : 1) : 0));
+    vl_camera_view_move(&eyes[i], vl_motion_between(&t->motion, f > 0 ? (f < 1 ? f : 1) : 0));
   }
   return eyes;
 }
@@ -169,7 +170,7 @@ static void light_block(void *user, uint32_t block, uint32_t worker) {
       .n = n, .px = w->px, .py = w->py, .index = w->index, .first = first, .user = w, .splat = splat, .store = store};
   if (run->rays->moves || run->eyes) {
     draw_times(run, n, w);
-    batch.eyes = vl_two_way_eyes(run, worker, n, w->u, w->time);
+    batch.eyes = vl_two_way_cameras(run, worker, n, w->u, w->time);
     batch.time = run->rays->moves ? w->time : NULL;
   }
   unsigned state = vl_accel_enter();
@@ -309,7 +310,7 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   if (result != VL_OK) return result;
   run->starts = vl_two_way_choice(world, run->choice) && run->most_paths > 0;
   if (run->most_paths == 0) memset(run->choice, 0, (world->lights.count + 1) * sizeof *run->choice);
-  if (run->starts) vl_eye_view(camera, f, &way->eye);
+  if (run->starts) vl_camera_view(camera, f, &way->eye);
   if (result == VL_OK && way->eye.sees && rays->camera.when.moves) result = make_eyes(run, error);
   if (result == VL_OK && way->merge && def->merge_radius > 0) /* so that its cube is a number */
     run->first_radius = (float)fmin(fmax(def->merge_radius, 1e-12), 1e9);

@@ -35,7 +35,8 @@ void vl_two_way_use(vlTwoWayRun *run, uint32_t worker, vlTraceScratch *scratch);
 float vl_two_way_time(const vlTwoWayRun *run, uint32_t index);
 /* The camera at the times that the n numbers u stand for, and those times, the world's (VL_PAD(n); may be null): the
  * worker's own memory. Null where the camera does not move or light does not see it. */
-const vlEyeView *vl_two_way_eyes(const vlTwoWayRun *run, uint32_t worker, uint32_t n, const float *u, float *time);
+const vlCameraView *vl_two_way_cameras(const vlTwoWayRun *run, uint32_t worker, uint32_t n, const float *u,
+                                       float *time);
 /* The light's paths of sample `index`. MEMORY, CANCELLED. */
 vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlError *error);
 /* Moves what the pixels got to their samples (of filter weight `weight`): each pixel once a pass, any thread. */

@@ -100,7 +100,7 @@ static bool check_texture_def(vlScene *scene, const vlTextureDef *d) {
     return bad(scene, d->source, "checkerboard", "dimension must be 2 or 3");
   if (d->kind == VL_TEXTURE_IMAGE) {
     if (!!d->path + !!d->image + !!d->data != 1)
-      return bad(scene, d->source, "image texture", "needs either a file name or a picture");
+      return bad(scene, d->source, "image texture", "needs either a file name or an image");
     if (d->channel < -1 || d->channel > 3) return bad(scene, d->source, "image texture", "its channels are 0 to 3");
     if (d->uv_set > 3) return bad(scene, d->source, "image texture", "uv sets are 0 to 3");
     if (d->encoding_given && d->encoding == VL_ENCODING_GAMMA && !(d->gamma > 0.0f && isfinite(d->gamma)))
@@ -115,7 +115,7 @@ static vlTextureId add_texture(vlScene *scene, const vlTextureDef *def, bool ado
     return none;
   vlTextureDef d = *def;
   if (!vl_scene_copy_source(scene, &d.source) || !check_texture_def(scene, &d)) return none;
-  /* how many of the inputs a kind reads: constant and scale one, most two, bilerp four, a picture none */
+  /* how many of the inputs a kind reads: constant and scale one, most two, bilerp four, an image none */
   int inputs = d.kind == VL_TEXTURE_BILERP                                   ? 4
                : d.kind == VL_TEXTURE_IMAGE                                  ? 0
                : d.kind == VL_TEXTURE_VERTEX_COLOR                           ? 0
@@ -271,7 +271,7 @@ vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
     return bad(scene, d.source, "emission", "power must not be negative or infinite"), none;
   if (!check_texture(scene, d.texture, true, d.source, "emission")) return none;
   if (d.texture.index && scene->textures.items[d.texture.index - 1].kind != VL_TEXTURE_IMAGE)
-    return bad(scene, d.source, "emission", "its texture must be a picture"), none;
+    return bad(scene, d.source, "emission", "its texture must be an image"), none;
   if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_spectrum(scene, &d.radiance, d.source, "radiance") ||
       !vl_scene_copy_string(scene, &d.image))
     return none;
@@ -281,11 +281,11 @@ vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
   return (vlEmissionId){(uint32_t)scene->emissions.count};
 }
 
-/* A rectangle, and a picture to be seen through it. Tolerances as pbrt's. */
+/* A rectangle, and an image to be seen through it. Tolerances as pbrt's. */
 static bool check_portal(vlScene *scene, const vlLightDef *d) {
   double sides[4][3], lengths[4];
   if (d->kind != VL_LIGHT_INFINITE || (!d->path && !d->image))
-    return bad(scene, d->source, "light", "a portal is for an infinite light with a picture");
+    return bad(scene, d->source, "light", "a portal is for an infinite light with an image");
   for (int k = 0; k < 4; k++) {
     double sum = 0;
     for (int i = 0; i < 3; i++) {
@@ -325,8 +325,7 @@ static bool check_light(vlScene *scene, const vlLightDef *d) {
       (!(d->cone_angle > 0.0f && d->cone_angle <= 3.1415928f) || !(d->cone_delta >= 0.0f) || !isfinite(d->cone_delta)))
     return bad(scene, d->source, "spot light",
                "cone angle must be above 0 and at most 180 degrees, its delta not negative");
-  if (d->kind >= VL_LIGHT_GONIOMETRIC && !d->path && !d->image)
-    return bad(scene, d->source, "light", "needs a picture");
+  if (d->kind >= VL_LIGHT_GONIOMETRIC && !d->path && !d->image) return bad(scene, d->source, "light", "needs an image");
   if (d->kind == VL_LIGHT_PROJECTION && !(d->fov > 0.0f && d->fov < 3.1415f))
     return bad(scene, d->source, "projection light", "field of view must be above 0 and below 180 degrees");
   return !d->has_portal || check_portal(scene, d);
@@ -339,7 +338,7 @@ vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
   vlLightDef d = *def;
   if (!check_light(scene, &d)) return none;
   if (d.kind < VL_LIGHT_INFINITE) d.path = NULL, d.image = NULL;
-  if (d.path && d.image) return bad(scene, d.source, "light", "has both a file name and a picture"), none;
+  if (d.path && d.image) return bad(scene, d.source, "light", "has both a file name and an image"), none;
   if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_spectrum(scene, &d.color, d.source, "light colour") ||
       !vl_scene_copy_string(scene, &d.path) || !vl_scene_copy_image(scene, &d.image))
     return none;

@@ -7,7 +7,7 @@
 #include "base/cookie.h"
 
 vlCheckDef vl_default_check_def(void) {
-  return (vlCheckDef){.cookie = VL_COOKIE_CHECK, .pictures = true};
+  return (vlCheckDef){.cookie = VL_COOKIE_CHECK, .images = true};
 }
 
 const char *vl_finding_kind_name(vlFindingKind kind) {
@@ -79,7 +79,7 @@ vlResult vl_scene_check(const vlScene *scene, const vlCheckDef *def, vlCheck **r
   check->scene = scene;
   check->def = def ? *def : vl_default_check_def();
   check->no_memory = !make_used(check);
-  void (*const parts[])(vlCheck *) = {vl_check_names, vl_check_pictures, vl_check_meshes, vl_check_inside};
+  void (*const parts[])(vlCheck *) = {vl_check_names, vl_check_images, vl_check_meshes, vl_check_inside};
   size_t count = check->def.names_only ? 1 : sizeof parts / sizeof *parts;
   for (size_t i = 0; i < count && !check->no_memory; i++) parts[i](check);
   if (check->no_memory || !sort(check)) {

@@ -20,10 +20,10 @@ void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSou
     __attribute__((format(printf, 5, 6)));
 
 /* The parts. */
-void vl_check_names(vlCheck *check);    /* unused and replaced names; fills the used arrays */
-void vl_check_pictures(vlCheck *check); /* files, albedo, lights without power */
-void vl_check_meshes(vlCheck *check);   /* degenerate faces, uv, open and inverted bodies */
-void vl_check_inside(vlCheck *check);   /* the camera and media in bodies */
+void vl_check_names(vlCheck *check);  /* unused and replaced names; fills the used arrays */
+void vl_check_images(vlCheck *check); /* files, albedo, lights without power */
+void vl_check_meshes(vlCheck *check); /* degenerate faces, uv, open and inverted bodies */
+void vl_check_inside(vlCheck *check); /* the camera and media in bodies */
 
 /* ---- helpers ------------------------------------------------------------------------------------------------------
  */

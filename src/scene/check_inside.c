@@ -48,7 +48,7 @@ static bool holds_light(const vlCheck *c, const vlSolid *solid, const vlMat4 *gr
     const vlShapeDef *d = &s->shapes.items[i];
     if (!d->emission.index) continue;
     if (d->group.index) return true;
-    vlSolid glow = {.shape = d, .sphere = true};
+    vlSolid emission = {.shape = d, .sphere = true};
     for (uint32_t k = 0; k < 16; k++) {
       if (d->positions) {
         const float *x = d->positions + 3 * (size_t)((uint64_t)k * d->vertices / 16);
@@ -56,7 +56,7 @@ static bool holds_light(const vlCheck *c, const vlSolid *solid, const vlMat4 *gr
         for (int j = 0; j < 3; j++) q[j] = x[j];
         vl_mat4_point(&m, q, p);
       } else {
-        vl_solid_sample(&glow, k, 16, p);
+        vl_solid_sample(&emission, k, 16, p);
       }
       vl_mat4_point(group_from_world, p, q);
       if (vl_solid_holds(solid, q)) return true;
@@ -87,7 +87,7 @@ static void judge(vlCheck *c, const vlSolid *solid, const double *eye, const vlM
   else if (!lets_light_pass(c, d) && !d->emission.index && c->scene->defs.render.tracer != VL_TRACER_RAYCAST &&
            c->scene->defs.render.tracer != VL_TRACER_AMBIENT_OCCLUSION && !holds_light(c, solid, group_from_world))
     vl_check_add(c, VL_FINDING_CAMERA_INSIDE, VL_SEVERITY_WARNING, d->source,
-                 "the camera stands in this closed body of %s, and no light is in there: the picture stays black",
+                 "the camera stands in this closed body of %s, and no light is in there: the image stays black",
                  name.text);
 }
 

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "math/transform.h"
-#include "scene/body.h"
 #include "scene/check.h"
+#include "scene/mesh_solid.h"
 
 /* ---- degenerate -------------------------------------------------------------------------------------------------- */
 
@@ -130,7 +130,7 @@ static void check_uv(vlCheck *c, const vlShapeDef *d, const Needs *n) {
   const vlEmissionDef *e = &s->emissions.items[d->emission.index - 1];
   if ((e->image && (none & NEEDS_UV)) ||
       (e->texture.index && (none & n->textures[e->texture.index - 1] & ~NEEDS_COLORS)))
-    tell_lack(c, d, NEEDS_UV, "its area light", "the picture");
+    tell_lack(c, d, NEEDS_UV, "its area light", "the image");
 }
 
 /* ---- bodies ------------------------------------------------------------------------------------------------------ */
@@ -154,10 +154,10 @@ static int by_key(const void *a, const void *b) {
 }
 
 /* Does a closed part of the body hold this one? Then it may be a hollow in it. */
-static bool lies_in_another(const vlBody *b, uint32_t part) {
-  const vlBodyPart *p = &b->parts[part];
+static bool lies_in_another(const vlMeshSolid *b, uint32_t part) {
+  const vlMeshSolidPart *p = &b->parts[part];
   for (uint32_t i = 0; i < b->part_count; i++) {
-    const vlBodyPart *q = &b->parts[i];
+    const vlMeshSolidPart *q = &b->parts[i];
     bool within = i != part;
     for (int k = 0; k < 3 && within; k++) within = q->low[k] <= p->low[k] && q->high[k] >= p->high[k];
     if (within) return true;
@@ -170,12 +170,12 @@ static bool lies_in_another(const vlBody *b, uint32_t part) {
 static void check_body(vlCheck *c, const uint32_t *shapes, size_t count) {
   const vlScene *s = c->scene;
   const vlShapeDef *first = &s->shapes.items[shapes[0]];
-  vlBody body;
-  if (!vl_body_make(s, shapes, count, &body)) c->no_memory = true;
+  vlMeshSolid body;
+  if (!vl_mesh_solid_make(s, shapes, count, &body)) c->no_memory = true;
   uint32_t open = 0, inverted = 0;
   uint64_t edges = 0;
   for (uint32_t i = 0; i < body.part_count && !c->no_memory; i++) {
-    const vlBodyPart *p = &body.parts[i];
+    const vlMeshSolidPart *p = &body.parts[i];
     edges += p->open_edges;
     open += p->open_edges > 0;
     inverted += !p->open_edges && p->volume < 0 && !lies_in_another(&body, i);
@@ -189,7 +189,7 @@ static void check_body(vlCheck *c, const uint32_t *shapes, size_t count) {
     vl_check_add(c, VL_FINDING_INVERTED_DIELECTRIC, VL_SEVERITY_WARNING, first->source,
                  "normals point into the body of %s (%u of its %u parts): light is bent the wrong way", name.text,
                  inverted, body.part_count);
-  vl_body_free(s, &body);
+  vl_mesh_solid_free(s, &body);
 }
 
 static void check_sphere(vlCheck *c, const vlShapeDef *d) {

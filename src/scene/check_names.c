@@ -167,7 +167,7 @@ static void tell_unused(vlCheck *c) {
     if (named(m->name))
       vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, m->source, "material \"%.80s\" is not used", m->name);
     else if (m->source.line)
-      vl_check_add(c, VL_FINDING_UNDONE, VL_SEVERITY_NOTE, m->source, "no shape takes this material");
+      vl_check_add(c, VL_FINDING_REPLACED, VL_SEVERITY_NOTE, m->source, "no shape takes this material");
   }
   for (size_t i = 0; i < s->media.count; i++)
     if (!c->medium_used[i])
@@ -176,7 +176,7 @@ static void tell_unused(vlCheck *c) {
   for (size_t i = 0; i < s->emissions.count; i++)
     if (!c->emission_used[i])
       vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->emissions.items[i].source,
-                   "no shape glows by this area light");
+                   "no shape emits light by this area light");
   vl_free(c->context, read);
   vl_free(c->context, mixed);
 }

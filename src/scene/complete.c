@@ -81,7 +81,7 @@ static bool group_boxes(vlScene *scene, Box **boxes) {
 
 /* ---- the camera -------------------------------------------------------------------------------------------------- */
 
-/* For each side of the picture how far out its plane must lie: largest x - tan z and the like, over all points. */
+/* For each side of the image how far out its plane must lie: largest x - tan z and the like, over all points. */
 typedef struct Frame {
   double center[3], right[3], up[3], ahead[3];
   double tan_x, tan_y;

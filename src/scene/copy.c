@@ -149,6 +149,6 @@ bool vl_scene_copy_image(vlScene *scene, const vlImage **image) {
   }
   vl_free(scene->context, names);
   if (result == VL_OK) return true;
-  vl_scene_fail(scene, result, nowhere, result == VL_ERROR_MEMORY ? "out of memory" : "picture cannot be copied");
+  vl_scene_fail(scene, result, nowhere, result == VL_ERROR_MEMORY ? "out of memory" : "image cannot be copied");
   return false;
 }

@@ -1,5 +1,5 @@
 /* scene/environment.c: see environment.h. Directions here: x to the right, y ahead (away from the viewer), z up; the
- * picture is the equal-area octahedral square that infinite lights take (math/octahedral.h). */
+ * image is the equal-area octahedral square that infinite lights take (math/octahedral.h). */
 #include "scene/environment.h"
 
 #include <math.h>
@@ -141,7 +141,7 @@ static bool read_environment(vlScene *scene, const char *path, vlImage **image) 
   bool ok = from->width == 2 * from->height && channels > 0;
   if (!ok)
     vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){0},
-                  "%.300s: %u x %u: a picture of the surroundings must be twice as wide as high, or square", path,
+                  "%.300s: %u x %u: an image of the surroundings must be twice as wide as high, or square", path,
                   from->width, from->height);
   channels = channels > 2 ? 3 : 1;
   ok = ok && (vl_image_to_float(from, channel, channels, &pixels) == VL_OK || out_of_memory(scene));

@@ -1,4 +1,4 @@
-/* scene/environment.h: light from all around: built-in rooms and pictures. */
+/* scene/environment.h: light from all around: built-in rooms and images. */
 #ifndef SCENE_ENVIRONMENT_H
 #define SCENE_ENVIRONMENT_H
 

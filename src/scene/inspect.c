@@ -93,18 +93,17 @@ static vlLightInfo shape_light(const vlScene *s, const vlShapeDef *d) {
   const vlEmissionDef *e = &s->emissions.items[d->emission.index - 1];
   bool meshed = d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR;
   vlLightInfo info = {.kind = "area", .source = d->source, .faces = meshed ? d->faces : 1};
-  info.picture = e->image || e->texture.index;
+  info.image = e->image || e->texture.index;
   info.power = given(e->power) ? e->power * (double)info.faces
-               : info.picture
-                   ? NAN
-                   : pi * shape_area(d) * luminance(&e->radiance) * (double)e->scale * (e->two_sided ? 2 : 1);
+               : info.image    ? NAN
+                            : pi * shape_area(d) * luminance(&e->radiance) * (double)e->scale * (e->two_sided ? 2 : 1);
   return info;
 }
 
 static vlLightInfo light(const vlScene *s, const vlLightDef *l) {
   static const char *const kinds[] = {"point", "spot", "distant", "infinite", "goniometric", "projection"};
   vlLightInfo info = {.kind = (unsigned)l->kind < 6 ? kinds[l->kind] : "other", .source = l->source};
-  info.picture = l->path || l->image;
+  info.image = l->path || l->image;
   double low[3], high[3], radius2 = 0, y = luminance(&l->color) * (double)l->scale;
   if (l->kind == VL_LIGHT_POINT) {
     info.power = 4 * pi * y;
@@ -120,7 +119,7 @@ static vlLightInfo light(const vlScene *s, const vlLightDef *l) {
   } else {
     info.power = NAN;
   }
-  if (info.picture) info.power = NAN;
+  if (info.image) info.power = NAN;
   if (given(l->power)) info.power = l->power;
   return info;
 }

@@ -63,7 +63,7 @@ vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def);
 /* Frees what meshes point at: a world has its own. Nothing happens when memory for a list is out. */
 void vl_scene_drop_meshes(vlScene *scene);
 
-/* As vl_scene_add_texture; its picture (image, data) is the scene's already and is not copied. */
+/* As vl_scene_add_texture; its image (image, data) is the scene's already and is not copied. */
 vlTextureId vl_scene_adopt_texture(vlScene *scene, const vlTextureDef *def);
 
 /* Internal copying, in scene/copy.c. All return false after vl_scene_fail(MEMORY ...). */

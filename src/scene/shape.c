@@ -1,4 +1,4 @@
-/* scene/shape.c: shapes, groups and instances come in. Meshes may be large: one pass over positions, one over indices.
+/* scene/shape.c: shapes, groups and instances come in. Meshes may be large: one ignore positions, one over indices.
  */
 #include <math.h>
 #include <string.h>

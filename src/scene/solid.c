@@ -43,11 +43,11 @@ bool vl_solid_make(const vlScene *scene, const uint32_t *shapes, size_t count, v
     vl_mat4_inverse(vl_mat4_load(s->shape->group_from_shape), &s->shape_from_group);
     return true;
   }
-  return vl_body_make(scene, shapes, count, &s->body);
+  return vl_mesh_solid_make(scene, shapes, count, &s->body);
 }
 
 void vl_solid_free(const vlScene *scene, vlSolid *s) {
-  vl_body_free(scene, &s->body);
+  vl_mesh_solid_free(scene, &s->body);
 }
 
 bool vl_solid_holds(const vlSolid *s, const double p[3]) {
@@ -58,10 +58,10 @@ bool vl_solid_holds(const vlSolid *s, const double p[3]) {
   }
   int winding = 0;
   for (uint32_t i = 0; i < s->body.part_count; i++) {
-    const vlBodyPart *part = &s->body.parts[i];
+    const vlMeshSolidPart *part = &s->body.parts[i];
     bool near = part->open_edges == 0;
     for (int k = 0; k < 3 && near; k++) near = part->low[k] < p[k] && p[k] < part->high[k];
-    if (near) winding += vl_body_winding(&s->body, p, i);
+    if (near) winding += vl_mesh_solid_winding(&s->body, p, i);
   }
   return winding != 0;
 }
@@ -76,7 +76,7 @@ void vl_solid_sample(const vlSolid *s, uint32_t i, uint32_t n, double p[3]) {
     return;
   }
   uint32_t face = (uint32_t)((uint64_t)i * s->body.faces / n);
-  const vlBodyPart *part = &s->body.parts[s->body.part[face]];
+  const vlMeshSolidPart *part = &s->body.parts[s->body.part[face]];
   for (int k = 0; k < 3; k++) {
     double sum = 0;
     for (int j = 0; j < 3; j++)

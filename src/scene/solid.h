@@ -4,13 +4,13 @@
 #define SCENE_SOLID_H
 
 #include "math/transform.h"
-#include "scene/body.h"
+#include "scene/mesh_solid.h"
 
 typedef struct vlSolid {
   const vlShapeDef *shape; /* the (first) one */
   bool sphere;
   vlMat4 shape_from_group; /* sphere */
-  vlBody body;             /* meshes; freed by vl_solid_free */
+  vlMeshSolid body;        /* meshes; freed by vl_solid_free */
 } vlSolid;
 
 /* false: out of memory. Not closed at all: no point is inside. */

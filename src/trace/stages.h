@@ -53,11 +53,11 @@ typedef struct vlSurface {
   VL_ROW float uv_scale[VL_ROW_SIZE];                        /* uv per world length */
   VL_ROW float width[VL_ROW_SIZE];                           /* of the footprint, world units */
   VL_ROW float across_u[VL_ROW_SIZE], across_v[VL_ROW_SIZE]; /* the footprint's axes in uv; where the world has */
-  VL_ROW float along_u[VL_ROW_SIZE], along_v[VL_ROW_SIZE];   /* pictures (footprint.hot.c) */
-  VL_ROW float bend[VL_ROW_SIZE];  /* mean curvature, as the shading normal tells: above zero where it bulges */
-  VL_ROW float dn[6][VL_ROW_SIZE]; /* dndu, dndv; of triangles only where asked for (material.hot.c) */
+  VL_ROW float along_u[VL_ROW_SIZE], along_v[VL_ROW_SIZE];   /* images (footprint.hot.c) */
+  VL_ROW float curvature[VL_ROW_SIZE]; /* mean curvature, as the shading normal tells: above zero where it bulges */
+  VL_ROW float dn[6][VL_ROW_SIZE];     /* dndu, dndv; of triangles only where asked for (material.hot.c) */
   VL_ROW float
-      all_round[VL_ROW_SIZE]; /* 1: light counts alike wherever it comes from; 0: by its cosine to the normal */
+      no_cosine[VL_ROW_SIZE]; /* 1: light counts alike wherever it comes from; 0: by its cosine to the normal */
 } vlSurface;
 
 /* Corners of the triangles of a batch, gathered. */
@@ -138,7 +138,7 @@ typedef struct vlSubsurfaceScratch {
   VL_ROW uint32_t place[VL_ROW_SIZE], material[VL_ROW_SIZE], medium[VL_ROW_SIZE];
   VL_ROW float px[VL_ROW_SIZE], py[VL_ROW_SIZE], pz[VL_ROW_SIZE], nx[VL_ROW_SIZE], ny[VL_ROW_SIZE], nz[VL_ROW_SIZE];
   VL_ROW float sigma[4][VL_ROW_SIZE], albedo[4][VL_ROW_SIZE];
-  VL_ROW float squeezed[VL_ROW_SIZE];                   /* its eta_scale by going in */
+  VL_ROW float entry_eta_scale[VL_ROW_SIZE];            /* its eta_scale by going in */
   VL_ROW float length[VL_ROW_SIZE], t_min[VL_ROW_SIZE]; /* of the segment; what is left of it starts here */
   VL_ROW uint32_t found[VL_ROW_SIZE];                   /* crossings so far, */
   vlHits hits;                                          /* one of them */
@@ -186,7 +186,7 @@ void vl_closest_hits(vlTracing *t, uint32_t n, bool camera);
 void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min, const float *t_max);
 /* The material that a hit really has, where it is mixed. */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
-/* Adds the light that the rays of a run into: sky and glowing surfaces. */
+/* Adds the light that the rays of a run into: sky and emissive surfaces. */
 void vl_stage_emission(vlTracing *t, uint32_t n);
 /* The batch's alpha, from its camera rays' hits. */
 void vl_stage_alpha(vlTracing *t);
@@ -249,28 +249,28 @@ static inline vlPoint vl_point_at(const vlWorld *world, vlVec3 o, vlVec3 d, uint
   return vl_point_at_time(world, 0.0f, o, d, shape, prim, instance, t);
 }
 
-/* Emitted radiance at 4 channels: of a light's colour (image: at s, t of its picture). */
+/* Emitted radiance at 4 channels: of a light's colour (image: at s, t of its image). */
 void vl_emitted_at(const vlWorld *world, const vlEmitted *emitted, const float lambda[4], float s, float t, bool sky,
                    float out[4]);
 /* A light that a ray has run into. pdf: of light sampling, from where the ray began, for the direction of the ray; 0
  * after what is specular. */
-typedef struct vlMetLight {
+typedef struct vlHitLight {
   uint32_t light;
   float radiance[4], pdf;
   vlPoint at; /* of area lights */
-} vlMetLight;
-/* Infinite light k of the world; the surface that glows at hit i: false where it is dark on that side. */
-vlMetLight vl_meet_sky(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k);
-bool vl_meet_glow(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlMetLight *met);
-/* uv of the emission's picture at a point of an area light that a ray has met. */
-vlVec2 vl_glow_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint *at);
+} vlHitLight;
+/* Infinite light k of the world; the surface that emits light at hit i: false where it is dark on that side. */
+vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k);
+bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlHitLight *met);
+/* uv of the emission's image at a point of an area light that a ray has met. */
+vlVec2 vl_emission_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint *at);
 /* Radiance of a light that a ray from o in direction d misses everything to see; and the density of sampling it. */
 void vl_infinite_at(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d, const float lambda[4],
                     float out[4]);
 float vl_infinite_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d);
-/* How much of a goniometric or projection light's colour its picture lets out towards -w, and where on a slide it is.
+/* How much of a goniometric or projection light's colour its image lets out towards -w, and where on a slide it is.
  */
-float vl_beam(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st);
+float vl_goniometric_scale(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st);
 /* Density, per solid angle from `from`, of sampling this point of an area light (choice not included). */
 float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at);
 

@@ -12,7 +12,7 @@
 
 struct vlTwoWay; /* two_way.h */
 struct vlTwoWayRows;
-struct vlEyeView;
+struct vlCameraView;
 struct vlLightBatch;
 
 enum { VL_BATCH = 1024 };
@@ -70,7 +70,7 @@ typedef struct vlTraceBatch {
   float *alpha;                      /* out: 1 where the ray meets a surface */
   uint64_t bounce_rays, shadow_rays; /* added to */
   struct vlTwoWayRows *two_way;      /* with vlTraceDef.two_way: a worker's own memory, as vlTraceScratch is */
-  const struct vlEyeView *eyes;      /* with it, of a camera that moves: each lane's; else null */
+  const struct vlCameraView *eyes;   /* with it, of a camera that moves: each lane's; else null */
 } vlTraceBatch;
 
 typedef struct vlTraceScratch vlTraceScratch;

@@ -32,8 +32,8 @@ typedef struct vlWorldShape {
   uint32_t vertices, faces;
   float *positions, *normals, *tangents, *uvs;
   uint32_t *indices;
-  /* Triangles, may be null: bitangent = sign n x tangent; uv sets 1 to 3; 4 a vertex; uvs of the emission's picture */
-  float *tangent_signs, *more_uvs[3], *colors, *glow_uvs;
+  /* Triangles, may be null: bitangent = sign n x tangent; uv sets 1 to 3; 4 a vertex; uvs of the emission's image */
+  float *tangent_signs, *more_uvs[3], *colors, *emission_uvs;
   uint32_t *light_of; /* by prim, VL_NONE: none; null: prim i is light first_light + i */
   bool one_sided;     /* rays pass through from behind */
   uint32_t steps;     /* of positions and normals, one set after the other, evenly over the world's time; 1: at rest */
@@ -75,12 +75,12 @@ typedef struct vlWorldPrincipled {
   int32_t metallic, roughness, anisotropy, anisotropy_rotation, specular, transmission, diffuse_transmission;
   int32_t clearcoat, clearcoat_roughness, sheen_roughness, iridescence, iridescence_thickness;
   int32_t specular_color, through, sheen; /* spectra */
-  int32_t normal, coat_normal;            /* picture nodes, -1: none */
+  int32_t normal, coat_normal;            /* image nodes, -1: none */
   float normal_scale, coat_normal_scale, film_index;
   float f0;                 /* reflection at normal incidence */
   bool thin;                /* a sheet, or nothing passes */
   float cauchy_a, cauchy_b; /* index of refraction where it disperses: a + b / lambda^2 */
-  bool has_coat, has_sheen, has_film, has_anisotropy, has_through;
+  bool has_coat, has_sheen, has_film, has_anisotropy, has_transmission;
 } vlWorldPrincipled;
 
 /* A coat over metal, or one that scatters over what is diffuse: looked at by random walks. Spectrum and float nodes. */
@@ -138,7 +138,7 @@ typedef struct vlWorldCoat {
 typedef struct vlEmitted {
   vlSpectral spectrum; /* normalised and scaled */
   int32_t image; /* over uv (area) or directions (infinite), -1; then spectrum is the illuminant's normalised shape */
-  int32_t node;  /* 1 + picture node over uv, whose picture is image; 0: none */
+  int32_t node;  /* 1 + image node over uv, whose image is image; 0: none */
   float image_scale;
   vlColorSpace space;
   bool two_sided;
@@ -163,17 +163,17 @@ typedef struct vlWorldLight {
   float direction[3];       /* spot: axis away from the light; distant: towards the light */
   float cos_start, cos_end; /* spot: full inside start, nothing outside end */
   bool cone_squared;        /* between them t^2; else smooth */
-  uint32_t environment;     /* infinite with a picture: index; VL_NONE: uniform */
+  uint32_t environment;     /* infinite with an image: index; VL_NONE: uniform */
   float power;              /* for choosing: watts-like, luminance */
   bool outer_side;        /* an invisible whole sphere: light's paths set out from its outside alone, see light.hot.c */
   bool invisible;         /* area, of coverage 0 throughout: no ray meets it, it shines all the same (as pbrt's) */
-  uint32_t picture;       /* goniometric, projection: image; corners hold the map from world directions to theirs */
-  float slide[2];         /* projection: half its sides at distance 1 */
+  uint32_t image;         /* goniometric, projection: image; corners hold the map from world directions to theirs */
+  float image_extent[2];  /* projection: half its sides at distance 1 */
   float corners[9];       /* area, triangle: its corners, and */
   bool one_sided_normals; /* direction is the normal to the lit side all over it */
 } vlWorldLight;
 
-/* A picture of the sky in pbrt's equal-area octahedral square, with a distribution over its texels. */
+/* An image of the sky in pbrt's equal-area octahedral square, with a distribution over its texels. */
 typedef struct vlEnvironment {
   int32_t image;
   uint32_t size;                                  /* of the distribution: size x size cells */
@@ -233,7 +233,7 @@ vlResult vl_world_spectrum_node(vlWorld *world, const struct vlScene *scene, vlS
                                 int32_t *node, vlError *error);
 /* Of two float nodes by a third. */
 vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node, vlError *error);
-/* Reads a picture (or takes the one given); encoding null: the file's own. Index, or -1 with the error set. */
+/* Reads an image (or takes the one given); encoding null: the file's own. Index, or -1 with the error set. */
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
                            float gamma, bool pyramid, vlError *error);
 vlResult vl_world_principled(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
@@ -244,7 +244,7 @@ vlResult vl_world_subsurface(vlWorld *world, const struct vlScene *scene, const 
                              vlError *error);
 vlResult vl_world_hair(vlWorld *world, const struct vlScene *scene, const vlMaterialDef *def, vlWorldMaterial *m,
                        vlError *error);
-/* Reads the scene's pictures on all workers; errors are left to who asks for the picture. */
+/* Reads the scene's images on all workers; errors are left to who asks for the image. */
 vlResult vl_world_preload_images(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_materials(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_shapes(vlWorld *world, const struct vlScene *scene, vlError *error);

@@ -66,12 +66,12 @@ static inline void small_scene(vlScene *scene) {
     vl_scene_add_instance(scene, group, place, (vlSource){0});
   }
 
-  vlEmissionDef glow = vl_default_emission_def();
-  glow.radiance = vl_spectrum_blackbody(4500);
-  glow.scale = 8;
+  vlEmissionDef emission = vl_default_emission_def();
+  emission.radiance = vl_spectrum_blackbody(4500);
+  emission.scale = 8;
   vlShapeDef lamp = vl_default_shape_def(VL_SHAPE_DISK);
   lamp.radius = 0.8f;
-  lamp.emission = vl_scene_add_emission(scene, &glow);
+  lamp.emission = vl_scene_add_emission(scene, &emission);
   const double down[16] = {1, 0, 0, 0, 0, 0, -1, 3, 0, 1, 0, 0, 0, 0, 0, 1};
   memcpy(lamp.group_from_shape, down, sizeof down);
   vl_scene_add_shape(scene, &lamp);
@@ -98,8 +98,8 @@ static inline vlResult small_camera(vlCamera *camera) {
 }
 
 /* Scene, world, film, render, develop. What was made is always cleaned up; *image only on VL_OK. */
-static inline vlResult small_picture(vlContext *context, const vlRenderDef *render, const uint32_t crop[4],
-                                     vlColorMode color, vlImage **image) {
+static inline vlResult small_image(vlContext *context, const vlRenderDef *render, const uint32_t crop[4],
+                                   vlColorMode color, vlImage **image) {
   *image = NULL;
   vlScene *scene = NULL;
   vlWorld *world = NULL;

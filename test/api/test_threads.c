@@ -78,7 +78,7 @@ static void progress_is_told_meanwhile(void **state) {
   render.progress = watch;
   render.progress_user = &reports;
   vlImage *image = NULL;
-  assert_int_equal(small_picture(context, &render, NULL, VL_COLOR_SPECTRAL, &image), VL_CANCELLED);
+  assert_int_equal(small_image(context, &render, NULL, VL_COLOR_SPECTRAL, &image), VL_CANCELLED);
   assert_int_equal(reports, 3);
   vl_image_destroy(image);
   assert_int_equal(vl_context_memory(context, NULL), 0);

@@ -13,11 +13,11 @@
 #include "api/small_world.h"
 #include "failing_allocator.h"
 
-static vlImage *picture(vlContext *context, uint32_t spp, const uint32_t crop[4], vlColorMode color) {
+static vlImage *take_image(vlContext *context, uint32_t spp, const uint32_t crop[4], vlColorMode color) {
   vlRenderDef render = vl_default_render_def();
   render.spp = spp;
   vlImage *image = NULL;
-  assert_int_equal(small_picture(context, &render, crop, color, &image), VL_OK);
+  assert_int_equal(small_image(context, &render, crop, color, &image), VL_OK);
   return image;
 }
 
@@ -41,7 +41,7 @@ static void the_same_bits_everywhere(void **state) {
   (void)state;
   for (int color = VL_COLOR_SPECTRAL; color <= VL_COLOR_RGB; color++) {
     vlContext *first = make_context(1, VL_ISA_V2);
-    vlImage *reference = picture(first, 4, NULL, (vlColorMode)color);
+    vlImage *reference = take_image(first, 4, NULL, (vlColorMode)color);
     double sum = 0;
     for (uint32_t i = 0; i < SMALL_WIDTH * SMALL_HEIGHT; i++) {
       float value = vl_image_get(reference, i % SMALL_WIDTH, i / SMALL_WIDTH, 1);
@@ -56,7 +56,7 @@ static void the_same_bits_everywhere(void **state) {
     for (unsigned i = 0; i < sizeof runs / sizeof *runs; i++) {
       vlContext *context = make_context(runs[i].threads, runs[i].isa);
       if (!context) continue;
-      vlImage *image = picture(context, 4, NULL, (vlColorMode)color);
+      vlImage *image = take_image(context, 4, NULL, (vlColorMode)color);
       assert_memory_equal(vl_image_const_pixels(image), vl_image_const_pixels(reference), size_of(reference));
       vl_image_destroy(image);
       vl_context_destroy(context);
@@ -69,11 +69,11 @@ static void the_same_bits_everywhere(void **state) {
 static void a_crop_is_a_cut(void **state) {
   (void)state;
   vlContext *context = make_context(2, VL_ISA_AUTO);
-  vlImage *whole = picture(context, 2, NULL, VL_COLOR_SPECTRAL);
+  vlImage *whole = take_image(context, 2, NULL, VL_COLOR_SPECTRAL);
   static const uint32_t crops[][4] = {{0, 0, 1, 1}, {7, 5, 24, 29}, {39, 29, 40, 30}, {0, 13, 40, 14}};
   for (unsigned i = 0; i < 4; i++) {
     const uint32_t *c = crops[i];
-    vlImage *cut = picture(context, 2, c, VL_COLOR_SPECTRAL);
+    vlImage *cut = take_image(context, 2, c, VL_COLOR_SPECTRAL);
     assert_int_equal(vl_image_width(cut), c[2] - c[0]);
     assert_int_equal(vl_image_height(cut), c[3] - c[1]);
     for (uint32_t y = c[1]; y < c[3]; y++)
@@ -90,7 +90,7 @@ static void a_crop_is_a_cut(void **state) {
 static void passes_may_be_split(void **state) {
   (void)state;
   vlContext *context = make_context(2, VL_ISA_AUTO);
-  vlImage *at_once = picture(context, 8, NULL, VL_COLOR_SPECTRAL), *in_parts = NULL;
+  vlImage *at_once = take_image(context, 8, NULL, VL_COLOR_SPECTRAL), *in_parts = NULL;
   vlBuildDef build = vl_default_build_def();
   vlScene *scene = NULL;
   vlWorld *world = NULL;
@@ -147,7 +147,7 @@ static void a_render_can_be_stopped(void **state) {
   render.progress = stop;
   render.progress_user = &stopper;
   vlImage *image = NULL;
-  assert_int_equal(small_picture(context, &render, NULL, VL_COLOR_SPECTRAL, &image), VL_CANCELLED);
+  assert_int_equal(small_image(context, &render, NULL, VL_COLOR_SPECTRAL, &image), VL_CANCELLED);
   assert_non_null(image); /* whole passes are kept */
   assert_true(stopper.last >= 1 && stopper.last < 64);
   assert_false(stopper.went_back);
@@ -171,7 +171,7 @@ static void memory_may_run_out_anywhere(void **state) {
     vlImage *image = NULL;
     vlResult result = vl_context_create(&def, &context);
     if (result == VL_OK) {
-      result = small_picture(context, &render, NULL, VL_COLOR_RGB, &image);
+      result = small_image(context, &render, NULL, VL_COLOR_RGB, &image);
       vl_image_destroy(image);
       vl_context_destroy(context);
     }

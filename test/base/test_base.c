@@ -142,7 +142,7 @@ static void nearest_names(void **state) {
   endless[100000] = 0;
   assert_null(vl_nearest_name(endless, names, 5));
   free(endless);
-  assert_true(vl_ends_with("PICTURE.EXR", ".exr"));
+  assert_true(vl_ends_with("IMAGE.EXR", ".exr"));
   assert_false(vl_ends_with("exr", ".exr"));
 }
 

@@ -84,9 +84,9 @@ static void several_callers(void **state) {
   vl_context_destroy(context);
 }
 
-static void backwards(void *user, uint32_t count, vlParallelBody *body, void *body_user) {
+static void backwards(void *user, uint32_t count, vlParallelFn *body, void *loop_user) {
   ++*(int *)user;
-  for (uint32_t i = count; i > 0; i--) body(body_user, i - 1, 0);
+  for (uint32_t i = count; i > 0; i--) body(loop_user, i - 1, 0);
 }
 
 static void callers_own_loop(void **state) {

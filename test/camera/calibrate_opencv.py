@@ -1,7 +1,7 @@
 """calibrate_opencv.py VELO FOLDER [--seeds N] [--kinds pinhole,rational,fisheye] [--views N]: OpenCV as the judge of
-pictures. A chessboard is rendered by velo in many views through random distorted cameras: OpenCV's pinhole with 5 or 8
+images. A chessboard is rendered by velo in many views through random distorted cameras: OpenCV's pinhole with 5 or 8
 (rational) coefficients, its fisheye with 4. findChessboardCorners, cornerSubPix and calibrateCamera are given nothing but the
-pictures and must find the camera again: RMS <= 0.05 pixels, fx and fy within 0.1 %, cx and cy within 0.1 pixels. Exit 1
+images and must find the camera again: RMS <= 0.05 pixels, fx and fy within 0.1 %, cx and cy within 0.1 pixels. Exit 1
 when not. Behind +- stands what calibrateCamera itself believes that its numbers are worth: one standard deviation."""
 import argparse
 import json
@@ -58,8 +58,8 @@ class Camera:
 
 
 def random_pose(camera, random, place):
-    """The board tilted by 20 to 45 degrees, turned, its middle towards `place` in the picture, as near as its squares
-    are all in it: what a calibration lives on is boards that lean all ways and reach the picture's corners."""
+    """The board tilted by 20 to 45 degrees, turned, its middle towards `place` in the image, as near as its squares
+    are all in it: what a calibration lives on is boards that lean all ways and reach the image's corners."""
     edge = np.array([(x, y, 0) for x in np.linspace(-1.2, ACROSS + 0.2, 9) for y in np.linspace(-1.2, DOWN + 0.2, 9)])
     middle = np.array([(ACROSS - 1) / 2, (DOWN - 1) / 2, 0])
     # findChessboardCorners does not take boards that a fisheye bends much
@@ -96,29 +96,29 @@ def render(velo, folder, camera, rvec, tvec, edge):
     subprocess.run([velo, "render", os.path.join(folder, "board.pbrt"), "--camera", os.path.join(folder, "camera.json"),
                     "--spp", "16", "--sampler", "sobol", "--color", "rgb", "--quiet", "-o", out,
                     "--crop", "%d,%d,%d,%d" % crop], check=True)
-    picture = np.ones((HEIGHT, WIDTH), np.float32)
-    picture[crop[1]:crop[3], crop[0]:crop[2]] = cv2.imread(out, cv2.IMREAD_UNCHANGED)[:, :, 1]
+    image = np.ones((HEIGHT, WIDTH), np.float32)
+    image[crop[1]:crop[3], crop[0]:crop[2]] = cv2.imread(out, cv2.IMREAD_UNCHANGED)[:, :, 1]
     # as soft as a lens makes it: cornerSubPix reads between pixels by straight lines, which edges of one pixel are not
-    return np.clip(cv2.GaussianBlur(picture, (0, 0), 1.2) * 255 + 0.5, 0, 255).astype(np.uint8)
+    return np.clip(cv2.GaussianBlur(image, (0, 0), 1.2) * 255 + 0.5, 0, 255).astype(np.uint8)
 
 
 def collect(velo, folder, camera, views, random):
-    """Board and picture points of each view, and how far OpenCV's corners are from the truth (RMS)."""
+    """Board and image points of each view, and how far OpenCV's corners are from the truth (RMS)."""
     objects, images, errors, tried = [], [], [], 0
     board = np.array([(i, j, 0) for j in range(DOWN) for i in range(ACROSS)], np.float32)
     places = [np.array([x, y]) for y in (-0.18, 0.0, 0.18) for x in (-0.2, -0.1, 0.0, 0.1, 0.2)]
     while len(images) < views and tried < 2 * views:
         rvec, tvec, edge = random_pose(camera, random, places[7 * tried % len(places)])
         tried += 1
-        picture = render(velo, folder, camera, rvec, tvec, edge)
-        # not NORMALIZE_IMAGE, which makes noise of a picture that has no greys to speak of
-        found, corners = cv2.findChessboardCorners(picture, (ACROSS, DOWN), flags=cv2.CALIB_CB_ADAPTIVE_THRESH)
+        image = render(velo, folder, camera, rvec, tvec, edge)
+        # not NORMALIZE_IMAGE, which makes noise of an image that has no greys to speak of
+        found, corners = cv2.findChessboardCorners(image, (ACROSS, DOWN), flags=cv2.CALIB_CB_ADAPTIVE_THRESH)
         if not found:
             continue
         grid = corners.reshape(DOWN, ACROSS, 2)  # no window may reach a neighbour
         nearest = min(np.linalg.norm(np.diff(grid, axis=a), axis=2).min() for a in (0, 1))
         window = int(np.clip(0.45 * nearest, 3, 11))
-        corners = cv2.cornerSubPix(picture, corners, (window, window), (-1, -1), (3, 100, 1e-5)).reshape(-1, 2)
+        corners = cv2.cornerSubPix(image, corners, (window, window), (-1, -1), (3, 100, 1e-5)).reshape(-1, 2)
         truth = camera.project(board.astype(float), rvec, tvec)
         if np.abs(corners[0] - truth[0]).max() > np.abs(corners[0] - truth[-1]).max():
             corners = corners[::-1].copy()
@@ -133,7 +133,7 @@ def judge(velo, folder, kind, views, seed):
     camera = Camera(kind, random)
     objects, images, corner, tried = collect(velo, folder, camera, views, random)
     if len(images) < views:
-        print("%-9s the board was found in %d of %d pictures" % (kind, len(images), tried))
+        print("%-9s the board was found in %d of %d images" % (kind, len(images), tried))
         return False
     criteria, deviations = (3, 300, 1e-13), None
     if kind == "fisheye":

@@ -55,7 +55,7 @@ static inline vlCameraDef lecture_def(uint32_t width, uint32_t height) {
 
 enum { CAMERA_COUNT = 6 };
 /* 0 lecture; 1 rolled, off-centre, skewed, other fy; 2 a matrix that mirrors and scales; 3 orthographic; 4 orthographic
- * with a screen window; 5 pbrt's fov with a screen window, a large picture. */
+ * with a screen window; 5 pbrt's fov with a screen window, a large image. */
 static inline vlCamera camera_of(int index) {
   vlCameraDef def = lecture_def(400, 400);
   switch (index) {

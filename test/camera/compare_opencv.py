@@ -47,7 +47,7 @@ def main():
         world_from_camera = np.eye(4)
         world_from_camera[:3, :3] = rotation.T
         world_from_camera[:3, 3] = -rotation.T @ tvec
-        # points that an ideal camera would show on a picture a little larger, at 0.5 to 50 units
+        # points that an ideal camera would show on an image a little larger, at 0.5 to 50 units
         u, v = random.uniform(-0.1, 1.1, POINTS) * WIDTH, random.uniform(-0.1, 1.1, POINTS) * HEIGHT
         z = np.exp(random.uniform(np.log(0.5), np.log(50), POINTS))
         local = np.stack([(u - cx) / fx * z, (v - cy) / fy * z, z], 1)

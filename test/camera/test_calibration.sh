@@ -1,5 +1,5 @@
 #!/bin/bash
-# OpenCV as an independent judge of rendered pictures: from views of a chessboard it must find a random distorted camera
+# OpenCV as an independent judge of rendered images: from views of a chessboard it must find a random distorted camera
 # again. VELO_CALIBRATIONS=N: N random cameras of each kind (pinhole with 5 and 8 coefficients, fisheye) instead of one.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 python=/usr/bin/python3 # the one that Debian's packages belong to

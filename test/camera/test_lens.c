@@ -70,8 +70,8 @@ static void blades_are_even(void **state) {
   }
 }
 
-/* Each cell of the picture is hit as often as it is bright, and evenly inside; black ones never. */
-static void picture_is_density(void **state) {
+/* Each cell of the image is hit as often as it is bright, and evenly inside; black ones never. */
+static void image_is_density(void **state) {
   (void)state;
   enum { W = 7, H = 5, PARTS = 2 };
   float values[W * H];
@@ -104,7 +104,7 @@ static void picture_is_density(void **state) {
   vl_aperture_destroy(a);
 }
 
-static void named_pictures(void **state) {
+static void named_images(void **state) {
   (void)state;
   static const char *const names[] = {"gaussian", "square", "pentagon", "star"};
   for (int i = 0; i < 4; i++) {
@@ -184,7 +184,7 @@ static void tilted_plane_is_sharp(void **state) {
     double p[3] = {pin.ox + along * pin.dx, pin.oy + along * pin.dy, along * pin.dz};
     for (int i = 0; i < 50; i++) {
       vlLensPoint l = {(float)next_between(&seed, -1, 1), (float)next_between(&seed, -1, 1)};
-      vlCameraLocal r = vl_lens_bend(&c, pin, l);
+      vlCameraLocal r = vl_lens_refract(&c, pin, l);
       assert_true(fabs(r.ox - pin.ox - camera.lens_radius * l.x) < 1e-12);
       double t = (p[2]) / r.dz;
       double size = 1 + fabs(along);
@@ -410,8 +410,8 @@ static void no_memory(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(blades_are_even),
-      cmocka_unit_test(picture_is_density),
-      cmocka_unit_test(named_pictures),
+      cmocka_unit_test(image_is_density),
+      cmocka_unit_test(named_images),
       cmocka_unit_test(shapes_are_turned_and_squeezed),
       cmocka_unit_test(tilted_plane_is_sharp),
       cmocka_unit_test(batches_hold_the_lens),

@@ -11,9 +11,9 @@
 static const char double_gauss[] = VELO_SOURCE_DIR "/scenes/cameras/lenses/double_gauss_50mm.dat";
 static const char single[] = VELO_SOURCE_DIR "/scenes/cameras/lenses/single_50mm.dat";
 
-static vlOptics *load(const char *path, double aperture, double focus, const vlAperture *picture) {
+static vlOptics *load(const char *path, double aperture, double focus, const vlAperture *image) {
   vlOpticsDef def = vl_default_optics_def();
-  def.aperture_diameter = aperture, def.focus_distance = focus, def.aperture = picture;
+  def.aperture_diameter = aperture, def.focus_distance = focus, def.aperture = image;
   vlOptics *optics = NULL;
   vlError error = {0};
   if (vl_optics_load(context, path, &def, &optics, &error) != VL_OK) fail_msg("%s: %s", path, error.message);
@@ -273,7 +273,7 @@ static void both_ways(void **state) {
   }
 }
 
-static void picture_in_the_stop(void **state) {
+static void image_in_the_stop(void **state) {
   (void)state;
   vlAperture *square = NULL;
   assert_int_equal(vl_aperture_create_named(context, "square", &square, NULL), VL_OK);
@@ -436,7 +436,7 @@ int main(void) {
       cmocka_unit_test(focuses_where_it_says),
       cmocka_unit_test(brightness),
       cmocka_unit_test(both_ways),
-      cmocka_unit_test(picture_in_the_stop),
+      cmocka_unit_test(image_in_the_stop),
       cmocka_unit_test(corners_of_the_opening_count),
       cmocka_unit_test(irradiance_in_the_middle),
       cmocka_unit_test(refocus_and_resize),

@@ -45,7 +45,7 @@ static vlCameraDef model_def(int index) {
       d.fx = 500, d.fy = 510, d.cx = 300, d.cy = 250, d.skew = 0.7;
       d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 14, memcpy(k, opencv, sizeof opencv);
       break;
-    case 22: /* strong barrel that does not fold within the picture */
+    case 22: /* strong barrel that does not fold within the image */
       d.fx = 500, d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 5, k[0] = -0.3, k[1] = 0.1, k[4] = 0.02;
       break;
     case 23: /* pincushion */
@@ -69,7 +69,7 @@ static vlCameraDef model_def(int index) {
       d.projection = VL_PROJECTION_UNIFIED, d.shape[0] = 0.9, d.fx = 400;
       d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 4, k[0] = -0.2, k[1] = 0.04, k[2] = 1e-3;
       break;
-    case 28: /* folds inside the picture */
+    case 28: /* folds inside the image */
       d.fx = 300, d.distortion = VL_DISTORTION_RADIAL, d.distortion_count = 1, k[0] = -0.4;
       break;
     case 29: /* folds, with tangential terms */
@@ -382,7 +382,7 @@ static void folding_is_found(void **state) {
   assert_int_equal(vl_camera_make(&def, &c, &warning, NULL), VL_OK);
   assert_non_null(warning);
   assert_true(strstr(warning, "folds") && !strchr(warning, '\n') && c.outside > 0.3 && c.outside < 0.9);
-  /* beyond it, a point ahead of the camera does not land, though the polynomial gives it a place in the picture */
+  /* beyond it, a point ahead of the camera does not land, though the polynomial gives it a place in the image */
   double pixel[2], z;
   for (int i = 0; i < 2; i++) {
     double x = (i ? 0.999 : 1.001) * c.distortion.radius;
@@ -406,7 +406,7 @@ static void folding_is_found(void **state) {
   def.distortion_coefficients[2] = 1e-12, def.distortion_coefficients[3] = 0;
   assert_int_equal(vl_camera_make(&def, &c, NULL, NULL), VL_OK);
   assert_true(fabs(c.distortion.radius / sqrt(1 / 1.2) - 1) < 0.003);
-  /* zero coefficients are no distortion, and no other picture */
+  /* zero coefficients are no distortion, and no other image */
   def = vl_default_camera_def(640, 480);
   def.distortion = VL_DISTORTION_OPENCV, def.distortion_count = 5;
   c = make_or_fail(&def);

@@ -53,7 +53,7 @@ static void same_float(float a, float b) {
 
 /* d = (s(c - h_res/2 + p_x), s(r - v_res/2 + p_y), -d), normalised, o = (0, 0, e): evaluated in double as it stands on
  * the slide, rounded to float; the kernel must give these very bits, -0 apart from 0 included. Each pixel of three
- * pictures (even, odd, large), the pixel's centre and other points of it. */
+ * images (even, odd, large), the pixel's centre and other points of it. */
 static void slides_formula_to_the_last_bit(void **state) {
   (void)state;
   const struct {

@@ -1,5 +1,5 @@
 /* Stereo: where points land in both eyes, against formulas written down here; omnidirectional stereo both ways, against
- * the published formula, and in the batches that pictures are made with. */
+ * the published formula, and in the batches that images are made with. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -173,7 +173,7 @@ static void omnidirectional_goes_both_ways(void **state) {
   assert_true(vl_camera_project(&eyes[0], far, pixel, &z));
 }
 
-/* The floats that pictures are made with: those of the double functions, on every instruction set. */
+/* The floats that images are made with: those of the double functions, on every instruction set. */
 static void batches_agree(void **state) {
   (void)state;
   const vlIsa sets[] = {VL_ISA_V2, VL_ISA_V3, VL_ISA_V4};

@@ -146,7 +146,7 @@ static const char *const opencv_text =
     "   dt: d\n   data: [ 500., 0., 319.5, 0., 501., 239.5, 0., 0., 1. ]\n"
     "distortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   data: [ 0., 0., 0., 0., 0. ]\n";
 
-/* One camera whose axis goes through the picture's centre, in every dialect's own numbers. */
+/* One camera whose axis goes through the image's centre, in every dialect's own numbers. */
 static void test_half_pixel_table(void **state) {
   (void)state;
   mkdir(path_of("half"), 0700); /* no images.txt beside */
@@ -202,7 +202,7 @@ static void test_blender_shift(void **state) {
   assert_true(vl_camera_project(&c, above, q, &z) && q[1] < p[1]);
 }
 
-static void test_colmap_pictures(void **state) {
+static void test_colmap_images(void **state) {
   (void)state;
   mkdir(path_of("model"), 0700);
   put("model/cameras.txt", "1 PINHOLE 640 480 500 501 320 240\n7 SIMPLE_RADIAL 320 200 250 160 100 -0.1\n");
@@ -318,7 +318,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_round_trips),   cmocka_unit_test(test_round_trips_at_the_origin),
       cmocka_unit_test(test_velo_is_exact), cmocka_unit_test(test_half_pixel_table),
-      cmocka_unit_test(test_blender_shift), cmocka_unit_test(test_colmap_pictures),
+      cmocka_unit_test(test_blender_shift), cmocka_unit_test(test_colmap_images),
       cmocka_unit_test(test_kalibr_chain),  cmocka_unit_test(test_pbrt),
       cmocka_unit_test(test_wrong_files),   cmocka_unit_test(test_refusals),
       cmocka_unit_test(test_memory),

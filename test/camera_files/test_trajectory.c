@@ -37,7 +37,7 @@ static void same_as_single(const vlTrajectory *t, const char *path, uint32_t i) 
   assert_memory_equal(&one, &moved, sizeof one);
 }
 
-static void colmap_has_pictures_and_cameras(void **state) {
+static void colmap_has_images_and_cameras(void **state) {
   (void)state;
   mkdir(path_of("model"), 0777);
   put("model/cameras.txt", "# comment\n2 SIMPLE_RADIAL 64 48 60 32 24 0.01\n7 PINHOLE 100 80 90 91 50 40\n");
@@ -214,7 +214,7 @@ static void wrong_lines_are_told(void **state) {
   assert_int_equal(vl_trajectory_load(context, path_of("no.csv"), NULL, &t, &error), VL_ERROR_MISSING);
 }
 
-/* Hundreds of thousands of lines and pictures in no more than the time that reading takes. */
+/* Hundreds of thousands of lines and images in no more than the time that reading takes. */
 static void many_frames(void **state) {
   (void)state;
   enum { N = 50000 };
@@ -251,7 +251,7 @@ static void memory_runs_out(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(colmap_has_pictures_and_cameras),
+      cmocka_unit_test(colmap_has_images_and_cameras),
       cmocka_unit_test(nerf_has_frames),
       cmocka_unit_test(kalibr_is_a_rig),
       cmocka_unit_test(opencv_calibrations_have_views),

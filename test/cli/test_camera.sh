@@ -5,7 +5,7 @@
 . "$VELO_SOURCE_DIR/test/cli/common.sh"
 cd "$work" || exit 1
 
-# write_opencv FILE FX K1 [MORE]: 640 x 480, the axis through the picture's centre.
+# write_opencv FILE FX K1 [MORE]: 640 x 480, the axis through the image's centre.
 write_opencv() {
   cat >"$1" <<YAML
 %YAML:1.0
@@ -88,7 +88,7 @@ expect_code 3 other_tool "$VELO" camera info bad.yaml
 expect_line other_tool_words 'no camera of a known dialect'
 write_opencv folds.yaml 500. -2.
 check folds "$VELO" camera info folds.yaml
-expect_line folds_words 'of the picture'
+expect_line folds_words 'of the image'
 expect_code 4 missing_file "$VELO" camera info nothing.yaml
 printf '1,2\n' >two.csv
 expect_code 3 two_numbers "$VELO" camera project --camera cam.yaml two.csv

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# velo camera convert through every dialect, pictures and scenes as cameras, and wrong files: exit codes, one clear line.
+# velo camera convert through every dialect, images and scenes as cameras, and wrong files: exit codes, one clear line.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "$VELO_SOURCE_DIR/test/cli/common.sh"
 cd "$work" || exit 1
@@ -39,9 +39,9 @@ del g["cameras"][0]["extras"]
 json.dump(g, open("plain.gltf", "w"))
 CODE
 check gltf_size "$VELO" camera info plain.gltf
-expect_text gltf_size_words 'names no picture size; 960 x 720 is taken'
+expect_text gltf_size_words 'names no image size; 960 x 720 is taken'
 
-# A picture's header, and a scene's camera with a window of its own.
+# An image's header, and a scene's camera with a window of its own.
 write_scene scene.pbrt
 check render "$VELO" render scene.pbrt --spp 1 --quiet -o a.exr
 check exr_info "$VELO" camera info a.exr
@@ -55,7 +55,7 @@ lands exr_lands a.exr 1e-9
 check exr_render "$VELO" render scene.pbrt --camera a.exr --spp 1 --quiet -o b.exr
 check exr_render_same "$VELO" image diff a.exr b.exr --threshold mse=1e-12
 expect_code 3 exr_write "$VELO" camera convert cam.json c.exr --to exr
-expect_line exr_write_words 'written with its picture'
+expect_line exr_write_words 'written with its image'
 { echo Scale -1 1 1; sed 's/"float fov" \[40\]/"float screenwindow" [-0.5 1.1 -0.4 0.8]/' scene.pbrt; } >window.pbrt
 check window_convert "$VELO" camera convert window.pbrt window.yaml --to opencv
 "$VELO" camera project --camera window.pbrt points.csv >wanted.csv
@@ -102,9 +102,9 @@ wrong usd_huge bad.usda 'no finite number' '#usda 1.0\ndef Camera "a" {\n float 
 wrong velo_huge bad.json 'too far apart' \
   '{"velo_camera": 1, "width": 4, "height": 3, "eye": [1e308, 0, 0], "lookat": [-1e308, 0, 0]}'
 wrong velo_zero bad.json 'fx is 0' '{"velo_camera": 1, "width": 4, "height": 3, "fx": 0}'
-wrong bad_picture bad.exr 'bad.exr' 'x'
+wrong bad_image bad.exr 'bad.exr' 'x'
 expect_code 4 missing "$VELO" camera info none.usda
-expect_code 4 missing_picture "$VELO" camera info none.exr
+expect_code 4 missing_image "$VELO" camera info none.exr
 expect_code 3 wrong_dialect "$VELO" camera convert out_usd.usda x.yaml --from mitsuba
 expect_line wrong_dialect_words 'usd, not of mitsuba'
 finish

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# velo camera verify: pictures and equations agree for all kinds of cameras; cameras that differ are told apart.
+# velo camera verify: images and equations agree for all kinds of cameras; cameras that differ are told apart.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 cd "$work" || exit 1
 
@@ -56,7 +56,7 @@ verify ignore_pose cam.yaml --against unposed.yaml --ignore-pose
 check json sh -c '"$0" camera verify --camera cam.yaml --poses 2 --spp 64 --threshold 0.2 --json | python3 -m json.tool' "$VELO"
 expect_text json_passed '"passed": true'
 check keep "$VELO" camera verify --camera cam.yaml --poses 2 --spp 64 --threshold 0.2 --keep kept
-expect_code 0 kept_pictures test -s kept/pose_001.png
+expect_code 0 kept_images test -s kept/pose_001.png
 expect_code 0 kept_corners grep -q '^1,[1-9],' kept/corners.csv
 
 # A camera through which no board can be seen: a fold right at the axis.

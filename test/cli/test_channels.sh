@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Ground truth beside the picture: names, types, the file of ids, the proof that it agrees; what is refused.
+# Ground truth beside the image: names, types, the file of ids, the proof that it agrees; what is refused.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/cli/common.sh"
 cd "$work" || exit 1
 write_scene scene.pbrt
 check render "$VELO" render scene.pbrt -o all.exr --channels all --quiet
 check render_plain "$VELO" render scene.pbrt -o plain.exr --quiet
-check picture_is_untouched "$VELO" image diff plain.exr all.exr --threshold differing=0
+check image_is_untouched "$VELO" image diff plain.exr all.exr --threshold differing=0
 check agrees "$VELO" image check all.exr
 check agrees_tighter "$VELO" image check all.exr --threshold 3e-7
 expect_code 1 too_tight "$VELO" image check all.exr --threshold 1e-12
@@ -34,8 +34,8 @@ expect_code 2 unknown_name "$VELO" render scene.pbrt -o no.exr --channels Z,albd
 expect_text nearest_name 'unknown name "albdo"; did you mean "albedo"?'
 check nothing_written test ! -e no.exr
 expect_code 2 empty_name "$VELO" render scene.pbrt -o no.exr --channels ''
-check other_formats_go_on "$VELO" render scene.pbrt -o picture.png --channels Z --quiet
-expect_text other_formats_warn 'warning: --channels: picture.png cannot hold them'
+check other_formats_go_on "$VELO" render scene.pbrt -o image.png --channels Z --quiet
+expect_text other_formats_warn 'warning: --channels: image.png cannot hold them'
 
 "$VELO" image info --json all.exr >all.json
 "$VELO" image info --json crop.exr >crop.json
@@ -52,7 +52,7 @@ for name in ("all", "crop"):
         half = name == "crop" and len(channel) == 1 and channel != "Z"
         assert kind == ("16-bit float" if half else "32-bit float"), (name, channel, kind)
 ids = json.load(open("all.exr.ids.json"))
-assert ids["picture"] == "all.exr"
+assert ids["image"] == "all.exr"
 kinds = sorted(o["type"] for o in ids["objects"].values())
 assert kinds == ["bilinear", "sphere", "sphere"], kinds
 lines = open("scene.pbrt").read().splitlines()

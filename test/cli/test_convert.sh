@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# velo scene convert: glTF to glTF keeps every bit of the picture, pbrt to pbrt too, between them it stays near; what is
+# velo scene convert: glTF to glTF keeps every bit of the image, pbrt to pbrt too, between them it stays near; what is
 # not held is told; what the specification forbids is not written: by tools/check_gltf, and by Khronos' validator where it
 # is installed (npm install --prefix build gltf-validator).
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"

@@ -34,7 +34,7 @@ done
 render --color rgb -t 1 --isa v2 -o a.pfm && render --color rgb -t 3 -o b.pfm
 same color_rgb a.pfm b.pfm
 
-# Another seed is another picture: the tests above can fail.
+# Another seed is another image: the tests above can fail.
 render --seed 1 -o seed.pfm && render -o whole.pfm
 if cmp -s seed.pfm whole.pfm; then fail another_seed; else pass another_seed; fi
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Many pictures of one world: trajectories, rigs, stereo. A frame is the picture that its camera alone gives; names; two
+# Many images of one world: trajectories, rigs, stereo. A frame is the image that its camera alone gives; names; two
 # views in one OpenEXR file, read by OpenImageIO; what is refused; interruptions.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/cli/common.sh"
@@ -37,8 +37,8 @@ printf 'name,eye_x,eye_y,eye_z,lookat_x,lookat_y,lookat_z\np,0,1.2,4,0,0.6,0\nq,
 check poses "$VELO" render scene.pbrt --trajectory poses.csv -o '%n.exr' --quiet --spp 3 --crop 5,5,40,30
 run "$VELO" image info q.exr
 expect_text poses_cropped '35 x 25'
-check folders_are_made "$VELO" render scene.pbrt --trajectory poses.csv -o 'made_%n/picture.exr' --quiet
-check folder_made test -s made_q/picture.exr
+check folders_are_made "$VELO" render scene.pbrt --trajectory poses.csv -o 'made_%n/image.exr' --quiet
+check folder_made test -s made_q/image.exr
 
 # ---- a rig -----------------------------------------------------------------------------------------------------------
 cat >rig.yaml <<'END'
@@ -71,7 +71,7 @@ check one_eye "$VELO" render scene.pbrt --stereo off-axis --interocular 0.2 --co
 check one_eye_same "$VELO" image diff right.exr eye_right.exr --threshold differing=0
 expect_code 1 eyes_differ "$VELO" image diff eye_left.exr eye_right.exr --threshold differing=0
 check ground_truth "$VELO" render scene.pbrt --stereo toe-in --interocular 0.2 --convergence 4 -o 'truth_%v.exr' --channels all --quiet
-check eyes_agree "$VELO" image check truth_left.exr
+check eyes_agree "$VELO" image check ground_truth_left.exr
 sed 's/^Camera.*/Camera "equirectangular" "point3 eye" [0 1 2.5] "point3 lookat" [0 1 0]/; /^LookAt/d' scene.pbrt >round.pbrt
 check panorama "$VELO" render round.pbrt --stereo ods -o 'ods_%v.exr' --channels all --quiet
 check panorama_agrees "$VELO" image check ods_left.exr

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# glTF files through the program: a picture with no further word, own cameras, surroundings, moments, variants; every
+# glTF files through the program: an image with no further word, own cameras, surroundings, moments, variants; every
 # model of ../shared; the first pass of a large one is soon on disk.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/cli/common.sh"
@@ -67,7 +67,7 @@ inside, outside = a[h * 3 // 8:h * 5 // 8, h * 3 // 8:h * 5 // 8, :3].mean(), a[
 print(inside, outside, abs(f[:, :, :3]).max())
 sys.exit(not (abs(outside - 1) < 0.02 and 0.9 < inside < 1.02 and abs(f[:, :, :3]).max() == 0))
 END
-# Surroundings from a picture: twice as wide as high, or square; turning it by half a turn and the picture itself agree.
+# Surroundings from an image: twice as wide as high, or square; turning it by half a turn and the image itself agree.
 python3 - <<'END'
 import numpy as np
 p = np.zeros((32, 64, 3), np.float32)
@@ -83,7 +83,7 @@ check env_same "$VELO" image diff ea.exr eb.exr --threshold mse=0.001
 check env_strength "$VELO" render square.gltf --camera far --resolution 48x48 --spp 8 --environment b.pfm --environment-strength 2 -o ec.exr --quiet
 expect_code 1 env_stronger "$VELO" image diff eb.exr ec.exr --threshold mse=0.001
 expect_code 3 env_odd "$VELO" render square.gltf --environment odd.pfm
-expect_text env_odd_says '40 x 32: a picture of the surroundings must be twice as wide as high, or square'
+expect_text env_odd_says '40 x 32: an image of the surroundings must be twice as wide as high, or square'
 expect_code 4 env_missing "$VELO" render square.gltf --environment nowhere.hdr
 check ground "$VELO" render plain.gltf --resolution 16x16 --spp 1 --ground --environment sky -o ground.png --quiet
 # What velo writes as a glTF camera it takes back without loss.

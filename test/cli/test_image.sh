@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# velo image info, diff and convert, on pictures whose values are known.
+# velo image info, diff and convert, on images whose values are known.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "$VELO_SOURCE_DIR/test/cli/common.sh"
 cd "$work" || exit 1
 
-# PFM: rows from the bottom, little endian. All pixels of a picture of w x h are r g b.
+# PFM: rows from the bottom, little endian. All pixels of an image of w x h are r g b.
 flat() { python3 -c '
 import struct, sys
 name, w, h, *rgb = sys.argv[1:]
@@ -41,7 +41,7 @@ near("meanratio", 1.2)
 near("maxabs", 0.1)
 assert d["differing"] == 128 and d["notfinite"] == 0 and 0 < d["flip"] < 1, d'; then pass diff_values; else fail diff_values; show diff; fi
 [ "$code" = 0 ] && pass diff_exit_code || fail diff_exit_code
-check heat_is_a_picture "$VELO" image info heat.png
+check heat_is_a_image "$VELO" image info heat.png
 expect_text heat_size "16 x 8"
 run "$VELO" image diff a.pfm a.pfm --json
 if printf '%s' "$out" | python3 -c '

@@ -131,7 +131,7 @@ for command in 'scene check' 'scene info'; do
   [ "$code" = 5 ] && pass "sandbox_$command" || { fail "sandbox_$command"; show "$command"; }
 done
 run "$V" scene convert link.png.pbrt ../converted.gltf --sandbox .
-expect_text sandbox_convert 'pictures that cannot be read: left out (1)'
+expect_text sandbox_convert 'images that cannot be read: left out (1)'
 cd ..
 
 # ---- what messages repeat of files -----------------------------------------------------------------------------------

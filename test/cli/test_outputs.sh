@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writing pictures: several at once, names, and every way in which it can fail: never exit code 0 then.
+# Writing images: several at once, names, and every way in which it can fail: never exit code 0 then.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "$VELO_SOURCE_DIR/test/cli/common.sh"
 cd "$work" || exit 1
@@ -23,7 +23,7 @@ gzip -c plain.pbrt >packed.pbrt.gz
 rm -f ./*.exr
 check packed_scene "$VELO" render packed.pbrt.gz --quiet --spp 1
 ls ./*.exr >.list 2>/dev/null
-[ "$(wc -l <.list)" = 1 ] && pass one_default_picture || fail "one_default_picture ($(cat .list))"
+[ "$(wc -l <.list)" = 1 ] && pass one_default_image || fail "one_default_image ($(cat .list))"
 
 rm -f dry.exr
 check dry_run "$VELO" render scene.pbrt --dry-run -o dry.exr --resolution 128x96 --crop 8,8,24,16 --spp 3
@@ -75,11 +75,11 @@ run "$VELO" image convert a.png full.png
 [ "$code" = 5 ] && pass convert_to_full_disk || fail "convert_to_full_disk (exit code $code)"
 run bash -c 'exec "$0" image info a.png >/dev/full' "$VELO"
 [ "$code" = 5 ] && pass stdout_is_full || fail "stdout_is_full (exit code $code)"
-# A file may not grow past a kilobyte: like a disk that fills up while writing. The old picture must survive.
+# A file may not grow past a kilobyte: like a disk that fills up while writing. The old image must survive.
 printf old >limited.exr
 run bash -c 'ulimit -f 1; exec "$0" render scene.pbrt -o limited.exr --quiet' "$VELO"
 [ "$code" = 5 ] && pass disk_fills_up || { fail "disk_fills_up (exit code $code)"; show limited; }
-[ "$(cat limited.exr)" = old ] && pass old_picture_survives || fail old_picture_survives
+[ "$(cat limited.exr)" = old ] && pass old_image_survives || fail old_image_survives
 [ -z "$(find . -name '*.tmp')" ] && pass no_rest_of_failed_writes || fail no_rest_of_failed_writes
 if [ "$(id -u)" = 0 ] && mkdir tiny && mount -t tmpfs -o size=8k none tiny 2>/dev/null; then
   run "$VELO" render scene.pbrt -o tiny/a.exr --quiet --resolution 256x192
@@ -101,7 +101,7 @@ for space in rec2020 dci-p3 aces2065-1; do
   same "space_${space}_through_exr" space.png converted.png
 done
 
-# Closed standard streams: messages must not end up in pictures.
+# Closed standard streams: messages must not end up in images.
 bash -c '"$0" render scene.pbrt -o closed.exr <&- >&- 2>&-' "$VELO"
 check closed_streams "$VELO" image info closed.exr
 

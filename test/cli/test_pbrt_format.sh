@@ -7,14 +7,14 @@ cd "$work" || exit 1
 cp "$VELO_SOURCE_DIR"/test/cli/pbrt_format/* .
 cp "$VELO_SOURCE_DIR"/scenes/features/tetrahedron.ply .
 cp "$VELO_SOURCE_DIR"/scenes/cameras/lenses/double_gauss_50mm.dat lens.dat
-cat >picture.pbrt <<'SCENE'
+cat >image.pbrt <<'SCENE'
 Camera "perspective"
 Film "rgb" "integer xresolution" 16 "integer yresolution" 16
 Sampler "independent" "integer pixelsamples" 1
 WorldBegin
 LightSource "infinite" "rgb L" [0.5 0.6 0.7]
 SCENE
-"$VELO" render picture.pbrt -o p.png -o p.jpg -o p.exr -o p.hdr -o p.pfm -o p.tga --quiet
+"$VELO" render image.pbrt -o p.png -o p.jpg -o p.exr -o p.hdr -o p.pfm -o p.tga --quiet
 "$VELO" image convert p.exr p16.png --channel R --scale 60000
 cp p.exr square.exr
 "$VELO_BINARY_DIR/bin/helper_measured" measured.bsdf 0.4 0.4 1.2 3 0

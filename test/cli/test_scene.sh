@@ -92,7 +92,7 @@ finds 1 unused_texture 'unused\.pbrt:4:1: warning: texture "t" is not used \[unu
 finds 1 unused_material ':5:1: warning: material "m" is not used' unused.pbrt
 finds 1 unused_object ':6:[0-9]+: warning: object "o" is placed nowhere' unused.pbrt
 finds 1 unused_medium ':7:1: warning: nothing lies in medium "fog"' unused.pbrt
-finds 1 unused_area_light ':8:[0-9]+: warning: no shape glows' unused.pbrt
+finds 1 unused_area_light ':8:[0-9]+: warning: no shape emits light' unused.pbrt
 finds 1 material_of_nothing ':9:1: note: no shape takes this material \[undone\]' unused.pbrt
 printf 'Camera "perspective"\nCamera "orthographic"\nFilm "rgb"\nWorldBegin\nLightSource "infinite"\n' >twice.pbrt
 finds 1 said_twice 'twice\.pbrt:2:1: warning: Camera a second time: this one counts \[overwritten\]' twice.pbrt
@@ -145,10 +145,10 @@ scene albedo.pbrt 'Texture "t" "spectrum" "constant" "rgb value" [0.5 1.5 0]' 'M
   'Shape "sphere"'
 finds 1 albedo ':4:1: warning: texture "t" reaches 1.5 as the reflectance.*\[albedo\]' albedo.pbrt
 printf 'PF\n1 1\n-1\n\0\0\0\100\0\0\0\100\0\0\0\100' >bright.pfm
-scene picture.pbrt 'Texture "t" "spectrum" "imagemap" "string filename" "bright.pfm"' \
+scene image.pbrt 'Texture "t" "spectrum" "imagemap" "string filename" "bright.pfm"' \
   'Material "diffuse" "texture reflectance" "t"' 'Shape "sphere"'
-finds 1 albedo_of_a_picture ':4:1: warning: texture "t" reaches 2 ' picture.pbrt
-clean pictures_are_not_read --no-pictures picture.pbrt
+finds 1 albedo_of_a_image ':4:1: warning: texture "t" reaches 2 ' image.pbrt
+clean images_are_not_read --no-images image.pbrt
 scene through.pbrt 'Material "diffusetransmission" "rgb reflectance" [0.7 0.7 0.7] "rgb transmittance" [0.7 0.7 0.7]' 'Shape "sphere"'
 finds 1 albedo_of_two ':4:1: warning: .*add up to 1.4' through.pbrt
 
@@ -205,7 +205,7 @@ printf '%s' '{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh
 "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
 "bufferViews":[{"buffer":0,"byteLength":36}],
 "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}' >model.gltf
-finds 4 gltf_missing_picture 'error: .*gone\.png.*\[missing-file\]' model.gltf
+finds 4 gltf_missing_image 'error: .*gone\.png.*\[missing-file\]' model.gltf
 finds 4 gltf_no_uv '\[no-uv\]' model.gltf
 expect_code 0 gltf_info "$VELO" scene info model.gltf
 expect_text gltf_triangles 'triangles   1'

@@ -24,8 +24,8 @@ check same_pixels "$VELO" image diff asked.exr option.exr --threshold differing=
 check left_out "$VELO" render spectral.pbrt -o none.exr --spectrum 0 --quiet
 check none_info "$VELO" image info none.exr
 expect_text none_channels '4: R G B A'
-check other_format "$VELO" render spectral.pbrt -o picture.png --quiet
-expect_text other_format_warns 'warning: spectrum: picture.png cannot hold it, only .exr can'
+check other_format "$VELO" render spectral.pbrt -o image.png --quiet
+expect_text other_format_warns 'warning: spectrum: image.png cannot hold it, only .exr can'
 check with_channels "$VELO" render spectral.pbrt -o both.exr --channels Z --half --quiet
 check with_channels_info "$VELO" image info both.exr
 expect_text both '10: '

@@ -43,7 +43,7 @@ expect_line radius_no_number_says 'merge-radius'
 expect_code 2 paths_below_zero render --tracer merging --light-paths -1 -o x.exr
 expect_code 2 paths_too_many render --tracer merging --light-paths 1000000000 -o x.exr
 expect_line paths_too_many_says 'light-paths'
-if [ -e x.exr ]; then fail no_picture_of_errors; else pass no_picture_of_errors; fi
+if [ -e x.exr ]; then fail no_image_of_errors; else pass no_image_of_errors; fi
 
 # pbrt's integrators: said by whom they are rendered, radius and photons understood.
 integrator() { sed "s/^Integrator.*/Integrator $1/" scene.pbrt >asked.pbrt; }

@@ -51,7 +51,7 @@ usage tracer 'did you mean "raycast"?' render scene.pbrt --tracer raycats
 usage view 'standard, neutral, agx, raw' render scene.pbrt --view q
 usage isa 'v2, v3, v4' render scene.pbrt --isa avx
 usage suffix 'did you mean ".exr"?' render scene.pbrt -o a.exrr
-usage no_suffix '.exr, .png' render scene.pbrt -o picture
+usage no_suffix '.exr, .png' render scene.pbrt -o image
 usage same_output_twice 'given twice' render scene.pbrt -o a.exr -o a.exr
 usage quiet_and_verbose 'exclude' render scene.pbrt --quiet -v
 usage threshold 'NAME=VALUE' image diff a.exr b.exr --threshold 3

@@ -4,7 +4,7 @@
 . "$VELO_SOURCE_DIR/test/cli/common.sh"
 cd "$work" || exit 1
 
-# wrong CODE NAME PATTERN FILE: exit code, one line on stderr that matches the extended regular expression, no picture,
+# wrong CODE NAME PATTERN FILE: exit code, one line on stderr that matches the extended regular expression, no image,
 # less than a second and 300 megabytes.
 wrong() {
   local wanted=$1 name=$2 pattern=$3 file=$4 problem=
@@ -12,7 +12,7 @@ wrong() {
   [ "$code" = "$wanted" ] || problem="exit code $code, not $wanted"
   [ "$(printf '%s\n' "$err" | wc -l)" = 1 ] || problem="not one line"
   printf '%s\n' "$err" | grep -q -E "^velo: $pattern" || problem="${problem:-the line does not match $pattern}"
-  [ ! -e wrong.exr ] || problem="wrote a picture"
+  [ ! -e wrong.exr ] || problem="wrote an image"
   if is_plain_build; then
     [ "$milliseconds" -lt 1000 ] || problem="$milliseconds ms"
     [ "$kilobytes" -lt 300000 ] || problem="$kilobytes KB"
@@ -39,7 +39,7 @@ wrong 5 scene_is_a_folder_by_name '.*is a folder' folder.pbrt
 scene texture.pbrt 'Texture "t" "spectrum" "imagemap" "string filename" "none.png"' \
   'Material "diffuse" "texture reflectance" "t"' "$sphere"
 wrong 4 missing_texture 'texture\.pbrt:3:[0-9]+: .*none\.png' texture.pbrt
-printf 'not a picture' >broken.png
+printf 'not an image' >broken.png
 scene broken_texture.pbrt 'Texture "t" "spectrum" "imagemap" "string filename" "broken.png"' \
   'Material "diffuse" "texture reflectance" "t"' "$sphere"
 wrong 3 broken_texture '.*broken\.png' broken_texture.pbrt

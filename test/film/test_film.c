@@ -1,4 +1,4 @@
-/* The film: exact sums whatever the order and grouping, constant pictures, passes that leave no trace, merging, wrong
+/* The film: exact sums whatever the order and grouping, constant images, passes that leave no trace, merging, wrong
  * samples, wrong defs, no memory. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,4 @@
-/* Pictures: every codec, chosen by content. */
+/* Images: every codec, chosen by content. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

@@ -1,4 +1,4 @@
-/* What scenes name beside meshes and pictures, told by its first bytes: measured materials, NanoVDB grids; anything
+/* What scenes name beside meshes and images, told by its first bytes: measured materials, NanoVDB grids; anything
  * else is taken for a spectrum, a lens and a list of poses. */
 #include "fuzz.h"
 #include "velo/trajectory.h"

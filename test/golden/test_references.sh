@@ -1,5 +1,5 @@
-# Real scenes against converged pictures of another renderer, by the measure beside those pictures
-# (../shared/references): the mean of the whole picture and of 8 x 8 blocks at 64 samples, nothing that is not finite.
+# Real scenes against converged images of another renderer, by the measure beside those images
+# (../shared/references): the mean of the whole image and of 8 x 8 blocks at 64 samples, nothing that is not finite.
 . "$VELO_SOURCE_DIR/test/harness.sh"
 need_shared references/scenes.txt
 need_shared scenes/pbrt

@@ -1,6 +1,6 @@
-/* Files that lie: cut off at every byte, damaged, promising more than they hold. Each is a clear refusal (or a picture,
+/* Files that lie: cut off at every byte, damaged, promising more than they hold. Each is a clear refusal (or an image,
  * where the damage does not show), fast and small. */
-#include "picture.h"
+#include "sample_images.h"
 
 #include <dirent.h>
 #include <zlib.h>
@@ -190,7 +190,7 @@ static void test_ratio(void **state) {
   end_context(context);
 }
 
-static void test_not_pictures(void **state) {
+static void test_not_images(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
@@ -198,7 +198,7 @@ static void test_not_pictures(void **state) {
   vlError error;
   static const char *const TEXTS[] = {"",
                                       "x",
-                                      "hello, world, this is no picture at all",
+                                      "hello, world, this is no image at all",
                                       "<html></html>",
                                       "\x89PNG\r\n\x1a\n",
                                       "P6",
@@ -370,8 +370,8 @@ static void test_silent(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cut),      cmocka_unit_test(test_damaged),      cmocka_unit_test(test_promises),
-      cmocka_unit_test(test_ratio),    cmocka_unit_test(test_not_pictures), cmocka_unit_test(test_made_exr),
+      cmocka_unit_test(test_cut),      cmocka_unit_test(test_damaged),    cmocka_unit_test(test_promises),
+      cmocka_unit_test(test_ratio),    cmocka_unit_test(test_not_images), cmocka_unit_test(test_made_exr),
       cmocka_unit_test(test_made_hdr), cmocka_unit_test(test_silent),
   };
   return cmocka_run_group_tests(tests, NULL, remove_folder);

@@ -1,6 +1,6 @@
-/* Differences of pictures: sums against a plain computation, FLIP against a direct evaluation of the paper's formulas
+/* Differences of images: sums against a plain computation, FLIP against a direct evaluation of the paper's formulas
  * (two-dimensional kernels, doubles, libm), and what must hold of it. */
-#include "picture.h"
+#include "sample_images.h"
 
 #include "image/flip.h"
 
@@ -49,7 +49,7 @@ static void test_numbers(void **state) {
   vl_image_destroy(b);
 
   /* Grey against colour compares R = G = B; sizes and missing colours are refused. */
-  b = make_picture(context, 10, 10, 1, VL_PIXEL_U8, VL_ENCODING_SRGB);
+  b = make_image(context, 10, 10, 1, VL_PIXEL_U8, VL_ENCODING_SRGB);
   compare(a, b);
   vl_image_destroy(b);
   b = plain(context, 10, 11, 0, 0, 0);
@@ -66,7 +66,7 @@ static void test_extremes(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  vlImage *noisy = make_picture(context, 40, 30, 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
+  vlImage *noisy = make_image(context, 40, 30, 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
   vlImageDiff d = compare(noisy, noisy);
   assert_true(d.flip == 0.0 && d.mse == 0.0 && isinf(d.psnr) && d.mean_ratio == 1.0 && d.differing == 0);
   vlImage *black = plain(context, 40, 30, 0, 0, 0), *white = plain(context, 40, 30, 1, 1, 1);
@@ -272,14 +272,14 @@ static void test_small_and_memory(void **state) {
   vlContext *context = make_context(&failing);
   static const uint32_t SIZES[][2] = {{1, 1}, {1, 50}, {50, 1}, {3, 2}};
   for (int i = 0; i < 4; i++) {
-    vlImage *a = make_picture(context, SIZES[i][0], SIZES[i][1], 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
+    vlImage *a = make_image(context, SIZES[i][0], SIZES[i][1], 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
     vlImage *b = plain(context, SIZES[i][0], SIZES[i][1], 0.2f, 0.5f, 0.7f);
     vlImageDiff d = compare(a, b);
     assert_true(d.flip > 0.0 && d.flip <= 1.0);
     vl_image_destroy(a);
     vl_image_destroy(b);
   }
-  vlImage *a = make_picture(context, 9, 9, 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
+  vlImage *a = make_image(context, 9, 9, 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
   long before = failing.blocks;
   vlResult result = VL_ERROR_MEMORY;
   long n = 0;

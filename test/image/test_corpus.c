@@ -1,7 +1,7 @@
-/* The fuzz corpus as an ordinary test: every picture reads, and holds the pattern it was made with (by other programs,
+/* The fuzz corpus as an ordinary test: every image reads, and holds the pattern it was made with (by other programs,
  * or byte by byte). Patterns: eight bits are (5 x + 3 y + 40 c) mod 256 on 13x9 pixels, palettes have 16 entries of it
  * at (3 i, i) indexed by (x + 2 y) mod 16, OpenEXR files are ((x (c + 1) + 3 y) mod 64) / 32 on 37x21. */
-#include "picture.h"
+#include "sample_images.h"
 
 #include <dirent.h>
 
@@ -254,7 +254,7 @@ static void test_exr(void **state) {
   end_context(context);
 }
 
-/* Whatever lies in the corpus: a picture or a clear refusal, and nothing left behind. */
+/* Whatever lies in the corpus: an image or a clear refusal, and nothing left behind. */
 static void test_all(void **state) {
   (void)state;
   failAllocator failing;

@@ -1,6 +1,6 @@
 /* Round trips through every format that is written, attributes, determinism, suffixes, failures while writing, memory
  * running out at every step, and oiiotool as an independent reader where it is installed. */
-#include "picture.h"
+#include "sample_images.h"
 
 #include "image/pixel.h"
 
@@ -23,7 +23,7 @@ static void test_exr(void **state) {
     for (int s = 0; s < 4; s++)
       for (uint32_t channels = 1; channels <= 6; channels++)
         for (int compression = 0; compression < 2; compression++) {
-          vlImage *image = make_picture(context, SIZES[s][0], SIZES[s][1], channels, TYPES[t], VL_ENCODING_LINEAR);
+          vlImage *image = make_image(context, SIZES[s][0], SIZES[s][1], channels, TYPES[t], VL_ENCODING_LINEAR);
           vlWriteDef def = vl_default_write_def();
           def.compression = compression;
           vlImage *back = round_trip(context, image, "a.exr", &def);
@@ -68,7 +68,7 @@ static void test_exr_half(void **state) {
   vl_image_destroy(back);
   vl_image_destroy(image);
 
-  image = make_picture(context, 8, 8, 3, VL_PIXEL_U8, VL_ENCODING_SRGB); /* eight bits are written as light */
+  image = make_image(context, 8, 8, 3, VL_PIXEL_U8, VL_ENCODING_SRGB); /* eight bits are written as light */
   back = round_trip(context, image, "light.exr", NULL);
   assert_int_equal(back->type, VL_PIXEL_F32);
   for (uint32_t y = 0; y < 8; y++) assert_true(vl_image_get(image, 5, y, 1) == vl_image_get(back, 5, y, 1));
@@ -108,7 +108,7 @@ static void test_attributes(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  vlImage *image = make_picture(context, 20, 30, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR);
+  vlImage *image = make_image(context, 20, 30, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR);
   for (int i = 0; i < ATTRIBUTE_COUNT; i++) assert_int_equal(vl_image_set_attribute(image, &ATTRIBUTES[i]), VL_OK);
   vlImage *back = round_trip(context, image, "attributes.exr", NULL);
   assert_true(same_pixels(image, back));
@@ -139,7 +139,7 @@ static void test_same_bytes(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  vlImage *image = make_picture(context, 61, 47, 4, VL_PIXEL_F32, VL_ENCODING_LINEAR);
+  vlImage *image = make_image(context, 61, 47, 4, VL_PIXEL_F32, VL_ENCODING_LINEAR);
   static const char *const NAMES[] = {"same.exr", "same.png", "same.jpg", "same.hdr", "same.pfm", "same.tga"};
   for (int i = 0; i < 6; i++) {
     char path[1024];
@@ -165,7 +165,7 @@ static void test_same_bytes(void **state) {
     vlContextDef def = vl_default_context_def();
     def.threads = threads;
     assert_int_equal(vl_context_create(&def, &context), VL_OK);
-    image = make_picture(context, 61, 397, 4, VL_PIXEL_F32, VL_ENCODING_LINEAR);
+    image = make_image(context, 61, 397, 4, VL_PIXEL_F32, VL_ENCODING_LINEAR);
     char path[1024];
     size_t size;
     assert_int_equal(vl_image_write(image, in_folder("threads.exr", path), NULL, NULL), VL_OK);
@@ -196,14 +196,14 @@ static void test_integers(void **state) {
     static const vlEncoding ENCODINGS[] = {VL_ENCODING_SRGB, VL_ENCODING_LINEAR};
     for (int e = 0; e < 2; e++)
       for (int deep = 0; deep < 2; deep++) {
-        vlImage *image = make_picture(context, 33, 17, channels, deep ? VL_PIXEL_U16 : VL_PIXEL_U8, ENCODINGS[e]);
+        vlImage *image = make_image(context, 33, 17, channels, deep ? VL_PIXEL_U16 : VL_PIXEL_U8, ENCODINGS[e]);
         vlImage *back = round_trip(context, image, "a.png", NULL);
         assert_true(same_pixels(image, back));
         assert_int_equal(back->encoding, ENCODINGS[e]);
         vl_image_destroy(back);
         vl_image_destroy(image);
       }
-    vlImage *image = make_picture(context, 33, 17, channels, VL_PIXEL_U8, VL_ENCODING_SRGB);
+    vlImage *image = make_image(context, 33, 17, channels, VL_PIXEL_U8, VL_ENCODING_SRGB);
     vlImage *back = round_trip(context, image, "a.tga", NULL);
     if (channels == 2)
       assert_int_equal(back->channels, 1); /* no alpha beside grey */
@@ -213,7 +213,7 @@ static void test_integers(void **state) {
     vl_image_destroy(image);
   }
   /* JPEG: smooth content comes back nearly. */
-  vlImage *image = make_picture(context, 64, 48, 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
+  vlImage *image = make_image(context, 64, 48, 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
   uint8_t *p = vl_image_pixels(image);
   for (int i = 0; i < 64 * 48 * 3; i++) p[i] = (uint8_t)(i / 3 % 64 * 2 + i / 192 + i % 3 * 20);
   vlImage *back = round_trip(context, image, "a.jpg", NULL);
@@ -231,7 +231,7 @@ static void test_floats(void **state) {
   failAllocator failing;
   vlContext *context = make_context(&failing);
   for (uint32_t channels = 1; channels <= 3; channels += 2) {
-    vlImage *image = make_picture(context, 33, 17, channels, VL_PIXEL_F32, VL_ENCODING_LINEAR);
+    vlImage *image = make_image(context, 33, 17, channels, VL_PIXEL_F32, VL_ENCODING_LINEAR);
     float *p = vl_image_pixels(image);
     p[3] = -1e30f;
     vlImage *back = round_trip(context, image, "a.pfm", NULL);
@@ -276,7 +276,7 @@ static void test_refusals(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  vlImage *image = make_picture(context, 200, 100, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR), *back;
+  vlImage *image = make_image(context, 200, 100, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR), *back;
   char path[1024], target[1100];
   vlError error;
   assert_int_equal(vl_image_write(image, in_folder("a.xyz", path), NULL, &error), VL_ERROR_ARGUMENT);
@@ -334,7 +334,7 @@ static void test_out_of_memory(void **state) {
   vlContext *context = make_context(&failing);
   static const char *const NAMES[] = {"m.exr", "m.png", "m.jpg", "m.hdr", "m.pfm", "m.tga"};
   for (int i = 0; i < 6; i++) {
-    vlImage *image = make_picture(context, 20, 30, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR);
+    vlImage *image = make_image(context, 20, 30, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR);
     for (int k = 0; k < ATTRIBUTE_COUNT && i == 0; k++)
       assert_int_equal(vl_image_set_attribute(image, &ATTRIBUTES[k]), VL_OK);
     char path[1024];
@@ -373,7 +373,7 @@ static void test_other_reader(void **state) {
   }
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  vlImage *image = make_picture(context, 40, 30, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR);
+  vlImage *image = make_image(context, 40, 30, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR);
   float *p = vl_image_pixels(image);
   for (int i = 0; i < 40 * 30 * 3; i++) p[i] = (float)(i % 97) / 64.0f;
   vlAttribute a = {.name = "samples", .type = VL_ATTRIBUTE_INT, .numbers = {64}};

@@ -1,5 +1,5 @@
-/* Pictures in memory: creating, values as light, attributes, curves, halves. */
-#include "picture.h"
+/* Images in memory: creating, values as light, attributes, curves, halves. */
+#include "sample_images.h"
 
 #include "base/cookie.h"
 #include "image/pixel.h"
@@ -105,7 +105,7 @@ static void test_attributes(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  vlImage *image = make_picture(context, 2, 2, 1, VL_PIXEL_F32, VL_ENCODING_LINEAR);
+  vlImage *image = make_image(context, 2, 2, 1, VL_PIXEL_F32, VL_ENCODING_LINEAR);
   vlAttribute a = {.name = "one", .type = VL_ATTRIBUTE_FLOAT, .numbers = {1.5}}, b;
   assert_int_equal(vl_image_set_attribute(image, &a), VL_OK);
   a = (vlAttribute){.name = "text", .type = VL_ATTRIBUTE_STRING, .string = "hello"};

@@ -1,4 +1,4 @@
-/* Several pictures in one OpenEXR file, each in its own type, and single channels out of it. */
+/* Several images in one OpenEXR file, each in its own type, and single channels out of it. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -99,7 +99,7 @@ static void test_round_trip(void **state) {
   close_layers(&l);
 }
 
-/* Read whole it is a picture of floats that remembers the types of the file; half touches the first layer alone. */
+/* Read whole it is an image of floats that remembers the types of the file; half touches the first layer alone. */
 static void test_stored_types(void **state) {
   (void)state;
   Layers l = open_layers(NULL);

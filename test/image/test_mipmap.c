@@ -1,5 +1,5 @@
 /* Mip pyramids: sizes, means, bytes that stay bytes, encodings, memory. */
-#include "picture.h"
+#include "sample_images.h"
 
 #include "image/mipmap.h"
 
@@ -10,7 +10,7 @@ static vlMipmap *make(const vlImage *image, uint32_t count) {
   return map;
 }
 
-/* The mean of a linear picture is the same on all levels. */
+/* The mean of a linear image is the same on all levels. */
 static void test_means(void **state) {
   (void)state;
   failAllocator failing;
@@ -18,7 +18,7 @@ static void test_means(void **state) {
   static const uint32_t SIZES[][2] = {{64, 64}, {64, 16}, {37, 21}, {1, 9}, {100, 1}, {7, 300}, {1, 1}};
   for (int s = 0; s < 7; s++)
     for (uint32_t channels = 1; channels <= 4; channels++) {
-      vlImage *image = make_picture(context, SIZES[s][0], SIZES[s][1], channels, VL_PIXEL_F32, VL_ENCODING_LINEAR);
+      vlImage *image = make_image(context, SIZES[s][0], SIZES[s][1], channels, VL_PIXEL_F32, VL_ENCODING_LINEAR);
       vlMipmap *map = make(image, channels);
       assert_false(map->is_bytes);
       uint32_t w = SIZES[s][0], h = SIZES[s][1];
@@ -65,7 +65,7 @@ static void test_bytes(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  vlImage *image = make_picture(context, 32, 24, 4, VL_PIXEL_U8, VL_ENCODING_SRGB);
+  vlImage *image = make_image(context, 32, 24, 4, VL_PIXEL_U8, VL_ENCODING_SRGB);
   vlMipmap *map = make(image, 4);
   assert_true(map->is_bytes);
   assert_memory_equal(map->levels[0].bytes, image->pixels, 32 * 24 * 4);
@@ -87,7 +87,7 @@ static void test_bytes(void **state) {
         }
   vl_mipmap_destroy(map);
 
-  /* Flat pictures stay flat to the code, on every level, under every encoding. */
+  /* Flat images stay flat to the code, on every level, under every encoding. */
   static const vlEncoding ENCODINGS[] = {VL_ENCODING_LINEAR, VL_ENCODING_SRGB, VL_ENCODING_GAMMA};
   for (int e = 0; e < 3; e++)
     for (int v = 0; v < 256; v += 5) {
@@ -107,7 +107,7 @@ static void test_bytes(void **state) {
   vl_image_destroy(image);
 
   /* 16 bits under another encoding. */
-  image = make_picture(context, 8, 8, 1, VL_PIXEL_U16, VL_ENCODING_SRGB);
+  image = make_image(context, 8, 8, 1, VL_PIXEL_U16, VL_ENCODING_SRGB);
   vlMipmapDef def = {.count = 1, .own_encoding = true, .encoding = VL_ENCODING_LINEAR, .only_finest = true};
   assert_int_equal(vl_mipmap_create(image, &def, &map), VL_OK);
   assert_int_equal(map->level_count, 1);
@@ -125,7 +125,7 @@ static void test_out_of_memory(void **state) {
   failAllocator failing;
   vlContext *context = make_context(&failing);
   for (int type = 0; type < 2; type++) {
-    vlImage *image = make_picture(context, 20, 30, 3, type ? VL_PIXEL_F32 : VL_PIXEL_U8, VL_ENCODING_SRGB);
+    vlImage *image = make_image(context, 20, 30, 3, type ? VL_PIXEL_F32 : VL_PIXEL_U8, VL_ENCODING_SRGB);
     long before = failing.blocks;
     vlResult result = VL_ERROR_MEMORY;
     long n = 0;

@@ -1,5 +1,5 @@
 /* From light to display values, against the published formulas computed here with libm. */
-#include "picture.h"
+#include "sample_images.h"
 
 static double srgb(double v) {
   v = v > 0.0 ? v < 1.0 ? v : 1.0 : 0.0;
@@ -142,7 +142,7 @@ static void test_out_of_memory(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  vlImage *image = make_picture(context, 4, 4, 3, VL_PIXEL_F16, VL_ENCODING_LINEAR);
+  vlImage *image = make_image(context, 4, 4, 3, VL_PIXEL_F16, VL_ENCODING_LINEAR);
   long before = failing.blocks;
   vlResult result = VL_ERROR_MEMORY;
   long n = 0;

@@ -1,5 +1,5 @@
 /* test/import/test_builder_camera.c: what statements mean: pbrt's and the lecture's cameras, and the defs of the
- * picture. */
+ * image. */
 #include "import/load.h"
 
 #define W "WorldBegin\n"
@@ -68,7 +68,7 @@ static void pbrt_cameras(void **state) {
   assert_seen(&c, 0, 0, 1, 0, 100);
   assert_seen(&c, 1, 1, 1, 100, 0);
   end_load(&l);
-  /* a frame of another shape than the picture: pixels are not square */
+  /* a frame of another shape than the image: pixels are not square */
   c = camera_of(&l,
                 "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 100\nCamera \"perspective\" \"float "
                 "frameaspectratio\" 2\n" W);

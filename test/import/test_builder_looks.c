@@ -176,7 +176,7 @@ static void textures(void **state) {
   end_load(&l);
 }
 
-/* A sky of one colour behind a portal is a picture of one pixel, of the light that it would be without. */
+/* A sky of one colour behind a portal is an image of one pixel, of the light that it would be without. */
 static void plain_portal(void **state) {
   (void)state;
   Loaded l;

@@ -14,7 +14,7 @@ static vlCamera camera_of(Loaded *l, const char *text) {
   return camera;
 }
 
-/* Direction of the film point (x, y) in shares of the picture, in pbrt's camera space (x right, y up, z forward). The
+/* Direction of the film point (x, y) in shares of the image, in pbrt's camera space (x right, y up, z forward). The
  * camera stands at the origin, untransformed. */
 static void look(const vlCamera *c, double x, double y, double d[3]) {
   double o[3];

@@ -246,7 +246,7 @@ static const struct {
      "t.pbrt:2:24: LightSource \"infinite\": \"portal\" takes 4 points, found 3 numbers"},
     {W "LightSource \"spot\" \"float coneangle\" 200",
      "t.pbrt:2:1: spot light: cone angle must be above 0 and at most 180 degrees, its delta not negative"},
-    /* picture */
+    /* image */
     {"Film \"rgb\" \"integer xresolution\" 0\n" W,
      "t.pbrt:1:12: Film \"rgb\": parameter \"xresolution\" must be at least 1, it is 0"},
     {"Film \"rgb\" \"integer xresolution\" 2000000\n" W,

@@ -239,7 +239,7 @@ static void morph_and_skin(void **state) {
 
 /* ---- tangents ---------------------------------------------------------------------------------------------------- */
 
-/* Two squares side by side, the right one's picture mirrored; a normal map asks for tangents. The vertices between them
+/* Two squares side by side, the right one's image mirrored; a normal map asks for tangents. The vertices between them
  * are shared and must be split. */
 static void tangents(void **state) {
   (void)state;
@@ -252,7 +252,7 @@ static void tangents(void **state) {
   gltf_floats(g, normals, 6, "VEC3", 3);
   gltf_floats(g, uvs, 6, "VEC2", 2);
   gltf_shorts(g, faces, 12);
-  gltf_view(g, "not a picture", 13, 0);
+  gltf_view(g, "not an image", 13, 0);
   Loaded l;
   fine(&l, g,
        SCENE
@@ -272,11 +272,11 @@ static void tangents(void **state) {
   const vlMaterialDef *m = &l.scene->materials.items[s->material.index - 1];
   assert_near((double)m->principled.normal_scale, 0.5, 0);
   assert_true(m->principled.normal.index != 0);
-  /* the picture itself is looked at when the world is built, and its place is told */
+  /* the image itself is looked at when the world is built, and its place is told */
   vlWorld *world;
   vlError error;
   assert_int_equal(vl_world_build(l.scene, NULL, &world, &error), VL_ERROR_SCENE);
-  assert_non_null(strstr(error.message, "images[0]: not a picture"));
+  assert_non_null(strstr(error.message, "images[0]: not an image"));
   end_load(&l);
   free(g);
 }
@@ -308,7 +308,7 @@ static void cameras(void **state) {
     double pixel[2], z, point[3] = {0, 0, 0};
     if (i < 3) {
       assert_near((double)s->film.width / s->film.height, 0.5, 1e-2);
-      point[1] = 5 * tan(0.25); /* the upper edge of the picture */
+      point[1] = 5 * tan(0.25); /* the upper edge of the image */
       assert_true(vl_camera_project(&camera, point, pixel, &z));
       assert_near(pixel[1], 0, 1e-6);
       assert_near(z, 5, 1e-9);
@@ -330,7 +330,7 @@ static void cameras(void **state) {
   free(g);
 }
 
-/* Everything is inside the picture, and near its edge on some side. */
+/* Everything is inside the image, and near its edge on some side. */
 static void completion(void **state) {
   (void)state;
   Gltf *g = new_square();

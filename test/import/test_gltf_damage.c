@@ -1,4 +1,4 @@
-/* test/import/test_gltf_damage.c: damaged glTF files give a clear error or a picture: never a crash, a hang, gigabytes.
+/* test/import/test_gltf_damage.c: damaged glTF files give a clear error or an image: never a crash, a hang, gigabytes.
  * One file that uses much of the format is cut off, has bytes and numbers changed, by a fixed seed. */
 #include "import/gltf_writer.h"
 #include "import/load.h"
@@ -9,7 +9,7 @@
 
 enum { ROUNDS = 400 };
 
-/* A 2 x 2 picture, as PNG. */
+/* A 2 x 2 image, as PNG. */
 static const uint8_t png[] = {0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49,
                               0x48, 0x44, 0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x02, 0x08, 0x06,
                               0x00, 0x00, 0x00, 0x72, 0xb6, 0x0d, 0x24, 0x00, 0x00, 0x00, 0x15, 0x49, 0x44,
@@ -73,7 +73,7 @@ static uint8_t *new_file(size_t *size) {
 
 static char path[64];
 
-/* Error, or a picture whose every number is one. */
+/* Error, or an image whose every number is one. */
 static vlResult try_file(const uint8_t *data, size_t size, char message[512]) {
   gltf_file(path, data, size);
   Loaded l;
@@ -164,7 +164,7 @@ static void damage(void **state) {
     else
       refused++;
   }
-  print_message("%d pictures, %d errors\n", good, refused);
+  print_message("%d images, %d errors\n", good, refused);
   assert_true(good > ROUNDS / 10 && refused > ROUNDS / 4);
   unlink(path);
   free(copy);

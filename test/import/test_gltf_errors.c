@@ -48,7 +48,7 @@ static void errors(void **state) {
       {SCENE "\"nodes\":[{\"mesh\":0}],\"textures\":[{\"extensions\":{\"KHR_texture_basisu\":{\"source\":0}}}],"
              "\"materials\":[{\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0}}],\"meshes\":[{"
              "\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]}]",
-       "textures[0]: its picture is there by KHR_texture_basisu only, which velo does not read"},
+       "textures[0]: its image is there by KHR_texture_basisu only, which velo does not read"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     Gltf *g = new_square();
@@ -73,7 +73,7 @@ static void errors(void **state) {
   end_load(&l);
 }
 
-/* What the format does not know is passed over, with a word where it is nearly a name of the format's; factors beyond
+/* What the format does not know is ignored, with a word where it is nearly a name of the format's; factors beyond
  * their range are brought back into it. */
 static void misspelt(void **state) {
   (void)state;
@@ -86,9 +86,9 @@ static void misspelt(void **state) {
        "\"metallicFactor\":2},\"quite_another\":1}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
        "\"POSITION\":0,\"NROMAL\":0,\"TEXCOORD_9\":0,\"_MINE\":0},\"material\":0}]}]");
   assert_non_null(strstr(l.log,
-                         "materials[0].pbrMetallicRoughness: unknown name \"baseColourFactor\" is passed over "
+                         "materials[0].pbrMetallicRoughness: unknown name \"baseColourFactor\" is ignored "
                          "(did you mean \"baseColorFactor\"?)"));
-  assert_non_null(strstr(l.log, "attributes: unknown name \"NROMAL\" is passed over (did you mean \"NORMAL\"?)"));
+  assert_non_null(strstr(l.log, "attributes: unknown name \"NROMAL\" is ignored (did you mean \"NORMAL\"?)"));
   assert_non_null(strstr(l.log, "roughnessFactor: -3 does not lie between 0 and 1: 0 is taken"));
   assert_non_null(strstr(l.log, "metallicFactor: 2 does not lie between 0 and 1: 1 is taken"));
   size_t unknown = 0;

@@ -1,5 +1,5 @@
 /* test/import/test_gltf_more.c: glTF beyond the core: a shutter that is open for a while, several scenes, variants,
- * packed buffers, WebP beside other pictures, light from a cube of pictures, textures with uv sets and transforms of
+ * packed buffers, WebP beside other images, light from a cube of images, textures with uv sets and transforms of
  * their own, extensions that velo lacks. */
 #include <meshoptimizer.h>
 
@@ -167,9 +167,9 @@ static void lacking(void **state) {
   free(g);
 }
 
-/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+/* ---- images ---------------------------------------------------------------------------------------------------- */
 
-/* Each texture its own uv set and transform, and WebP before the other picture. */
+/* Each texture its own uv set and transform, and WebP before the other image. */
 static void textures(void **state) {
   (void)state;
   Gltf *g = new_square();
@@ -286,7 +286,7 @@ static void variants(void **state) {
     assert_int_equal(l.result, VL_OK);
     assert_string_equal(l.scene->materials.items[shape(&l, 0)->material.index - 1].name, expected[i]);
     assert_int_equal(shape(&l, 0)->one_sided, i < 2);
-    const char *first = strstr(l.log, "EXT_unheard_of is passed over");
+    const char *first = strstr(l.log, "EXT_unheard_of is ignored");
     assert_non_null(first);
     assert_null(strstr(first + 1, "EXT_unheard_of")); /* once */
     end_load(&l);

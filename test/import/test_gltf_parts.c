@@ -182,7 +182,7 @@ static void pointers(void **state) {
  */
 
 /* Six faces in the order +x -x +y -y +z -z, as OpenGL's cube maps have them (specification 4.6, table 8.19): each of a
- * colour, a quarter at its picture's top left in white. What is seen along each axis and towards that corner. */
+ * colour, a quarter at its image's top left in white. What is seen along each axis and towards that corner. */
 static void faces(void **state) {
   (void)state;
   static const uint8_t colors[6][3] = {{255, 0, 0},   {0, 255, 255}, {0, 255, 0},

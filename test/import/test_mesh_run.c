@@ -31,7 +31,7 @@ static char *text_of(int before) {
   return text;
 }
 
-/* What a triangle is: corners, normals, uv, side, material kind, glow, alpha. */
+/* What a triangle is: corners, normals, uv, side, material kind, emission, alpha. */
 typedef struct Face {
   float v[28];
 } Face;

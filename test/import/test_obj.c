@@ -222,7 +222,7 @@ static void missing(void **state) {
   write_text("p.mtl", "newmtl a\nmap_Kd -s 2 2 C:\\away\\a b.png\n");
   load_obj(&l, "mtllib p.mtl\n" SQUARE "usemtl a\nf 1 2 3\n");
   assert_int_equal(l.result, VL_OK);
-  assert_non_null(strstr(l.log, "there is no picture \"C:/away/a b.png\""));
+  assert_non_null(strstr(l.log, "there is no image \"C:/away/a b.png\""));
   end_load(&l);
 }
 

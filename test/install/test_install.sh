@@ -1,5 +1,5 @@
 # An installed velo serves a program from outside: examples/build_world.c is compiled against a temporary prefix by
-# pkg-config and by CMake's find_package, shared and static, and its picture is looked at. The README's lines run as
+# pkg-config and by CMake's find_package, shared and static, and its image is looked at. The README's lines run as
 # written. What was installed is removed again, and nothing else.
 . "$VELO_SOURCE_DIR/test/harness.sh"
 prefix=$work/prefix
@@ -73,19 +73,19 @@ check "runs with the static library" "$work/outside/static" "$work/b.exr"
 check "links the shared library" sh -c "ldd '$work/outside/shared' | grep -q '$prefix/lib/libvelo.so.$abi'"
 check "the same bytes from both" cmp "$work/a.exr" "$work/b.exr"
 
-# The lecture's picture, roughly: not black, nothing out of the finite, a red sphere where (0, 0, -50) is seen.
+# The lecture's image, roughly: not black, nothing out of the finite, a red sphere where (0, 0, -50) is seen.
 cat >"$work/look.py" <<'END'
 import sys
 import numpy
 import OpenImageIO
-picture = OpenImageIO.ImageBuf(sys.argv[1]).get_pixels(OpenImageIO.FLOAT)[:, :, :3]
-assert picture.shape == (300, 400, 3), picture.shape
-assert numpy.isfinite(picture).all()
-assert 0.02 < picture.mean() < 5, picture.mean()
-red, green, blue = picture[140:160, 190:210].mean(axis=(0, 1))
+image = OpenImageIO.ImageBuf(sys.argv[1]).get_pixels(OpenImageIO.FLOAT)[:, :, :3]
+assert image.shape == (300, 400, 3), image.shape
+assert numpy.isfinite(image).all()
+assert 0.02 < image.mean() < 5, image.mean()
+red, green, blue = image[140:160, 190:210].mean(axis=(0, 1))
 assert red > 2 * green and red > 2 * blue, (red, green, blue)
 END
-check "the picture shows the world" /usr/bin/python3 "$work/look.py" "$work/a.exr"
+check "the image shows the world" /usr/bin/python3 "$work/look.py" "$work/a.exr"
 check "so does the PNG" test -s "$work/a.png"
 
 # ---- a program that was compiled with the headers of another ABI version is refused ----

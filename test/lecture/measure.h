@@ -1,4 +1,4 @@
-/* test/lecture/measure.h: measuring a rendered picture to a fraction of a pixel.
+/* test/lecture/measure.h: measuring a rendered image to a fraction of a pixel.
  *
  * A property scene shows flat, evenly shining shapes on nothing, so a pixel's alpha (or colour over full colour) is the
  * share of it that a shape covers. Adding that share along a row from inside a shape to outside it gives the place of
@@ -40,7 +40,7 @@ typedef struct {
   vlImage *image;
   uint32_t width, height;
   float full[4]; /* the largest value of each channel: full coverage */
-} Picture;
+} Image;
 
 static inline void ok(vlResult result, const vlError *error) {
   if (result != VL_OK)
@@ -50,10 +50,10 @@ static inline void ok(vlResult result, const vlError *error) {
 typedef void ChangeCamera(vlCameraDef *def, const void *user);
 
 /* Renders scenes/lecture/<name>.pbrt with its own camera (changed, where change is not null), tracer and filter in a
- * small picture, RGB, 256 samples. */
-static inline Picture render_changed(const char *name, uint32_t width, uint32_t height, ChangeCamera *change,
-                                     const void *user) {
-  Picture p = {.width = width, .height = height};
+ * small image, RGB, 256 samples. */
+static inline Image render_changed(const char *name, uint32_t width, uint32_t height, ChangeCamera *change,
+                                   const void *user) {
+  Image p = {.width = width, .height = height};
   vlError error = {0};
   vlScene *scene;
   vlWorld *world;
@@ -93,25 +93,25 @@ static inline Picture render_changed(const char *name, uint32_t width, uint32_t 
   return p;
 }
 
-static inline Picture render_scene(const char *name, uint32_t width, uint32_t height) {
+static inline Image render_scene(const char *name, uint32_t width, uint32_t height) {
   return render_changed(name, width, height, NULL, NULL);
 }
 
-static inline void free_picture(Picture *p) {
+static inline void free_image(Image *p) {
   vl_image_destroy(p->image);
   vl_context_destroy(p->context);
 }
 
 enum { RED, GREEN, BLUE, ALPHA };
 
-/* Share of the pixel that is covered, as the channel tells; nothing outside the picture. */
-static inline double coverage(const Picture *p, int channel, long x, long y) {
+/* Share of the pixel that is covered, as the channel tells; nothing outside the image. */
+static inline double coverage(const Image *p, int channel, long x, long y) {
   if (x < 0 || y < 0 || x >= (long)p->width || y >= (long)p->height) return 0;
   return (double)vl_image_get(p->image, (uint32_t)x, (uint32_t)y, (uint32_t)channel) / (double)p->full[channel];
 }
 
-/* The exact place of a world point in the picture. */
-static inline P2 exact(const Picture *p, P3 point) {
+/* The exact place of a world point in the image. */
+static inline P2 exact(const Image *p, P3 point) {
   const double world[3] = {point.x, point.y, point.z};
   double pixel[2];
   if (!vl_camera_project(&p->camera, world, pixel, NULL))
@@ -132,9 +132,9 @@ typedef struct {
 } Edge;
 
 /* a, b: the exact ends, which say where to look: a band some pixels wide around the line between them. Rows where the
- * band is not wholly covered on one side and empty on the other (other shapes, the picture's border) tell nothing and
- * are left out; a caller says how many it wants at least, so a picture without the edge fails. */
-static inline Edge measure_edge(const Picture *p, int channel, P2 a, P2 b, int at_least) {
+ * band is not wholly covered on one side and empty on the other (other shapes, the image's border) tell nothing and
+ * are left out; a caller says how many it wants at least, so an image without the edge fails. */
+static inline Edge measure_edge(const Image *p, int channel, P2 a, P2 b, int at_least) {
   Edge e = {.flat = fabs(b.x - a.x) > fabs(b.y - a.y)};
   double a0 = e.flat ? a.x : a.y, a1 = e.flat ? a.y : a.x, b0 = e.flat ? b.x : b.y, b1 = e.flat ? b.y : b.x;
   double slope = (b1 - a1) / (b0 - a0);

@@ -14,7 +14,7 @@ static void near_to(const char *what, double measured, double expected, double t
 /* Property 1: the size of an object shrinks with its distance from the centre of projection: as 1 / distance. */
 static void size_goes_with_one_over_distance(void **state) {
   (void)state;
-  Picture p = render_scene("property_1", W, H);
+  Image p = render_scene("property_1", W, H);
   const double x[4] = {-70, 0, 160, 520}, z[4] = {250, 0, -500, -1500}, eye = 500, radius = 40;
   double size[4];
   for (int k = 0; k < 4; k++) {
@@ -35,13 +35,13 @@ static void size_goes_with_one_over_distance(void **state) {
   /* the law itself, from the measured sizes alone */
   for (int k = 1; k < 4; k++)
     near_to("size times distance", size[k] * (eye - z[k]) / (size[0] * (eye - z[0])), 1, 0.01 / size[k]);
-  free_picture(&p);
+  free_image(&p);
 }
 
-/* Property 2: the width of an object's picture shrinks as the object turns about the vertical. */
+/* Property 2: the width of an object's image shrinks as the object turns about the vertical. */
 static void width_shrinks_with_rotation(void **state) {
   (void)state;
-  Picture p = render_scene("property_2", W, H);
+  Image p = render_scene("property_2", W, H);
   const double x[4] = {-170, -40, 75, 160}, angle[4] = {0, 30, 60, 75};
   double before = INFINITY;
   for (int k = 0; k < 4; k++) {
@@ -66,7 +66,7 @@ static void width_shrinks_with_rotation(void **state) {
     near_to("width", width, f * (x[k] + 50 * cos(a)) / (D + 50 * sin(a)) - f * (x[k] - 50 * cos(a)) / (D - 50 * sin(a)),
             2 * FITTED);
   }
-  free_picture(&p);
+  free_image(&p);
 }
 
 /* The parallelogram p, p + d, p + d + b, p + b: corners in the order of the scene files. */
@@ -84,7 +84,7 @@ static P3 corner(Strip s, int i) {
 }
 
 /* The two long edges of a strip, measured and fitted, each checked against the exact projection. */
-static void long_edges(const Picture *p, int channel, Strip s, int at_least, Line lines[2]) {
+static void long_edges(const Image *p, int channel, Strip s, int at_least, Line lines[2]) {
   for (int k = 0; k < 2; k++) {
     P2 a = exact(p, corner(s, k ? 3 : 0)), b = exact(p, corner(s, k ? 2 : 1));
     Edge e = measure_edge(p, channel, a, b, at_least);
@@ -99,7 +99,7 @@ static void long_edges(const Picture *p, int channel, Strip s, int at_least, Lin
 /* Property 3: straight lines stay straight, however they lie in depth. */
 static void straight_lines_stay_straight(void **state) {
   (void)state;
-  Picture p = render_scene("property_3", W, H);
+  Image p = render_scene("property_3", W, H);
   const Strip strips[3] = {{{-130, -110, 100}, {60, 230, -700}, {45, -10, 50}},
                            {{-40, -130, 120}, {420, 130, -700}, {20, 50, 40}},
                            {{5, 45, 200}, {-20, 220, -500}, {90, -20, 30}}};
@@ -118,13 +118,13 @@ static void straight_lines_stay_straight(void **state) {
       edges++, rows += e.count;
     }
   assert_true(edges >= 9 && rows >= 250);
-  free_picture(&p);
+  free_image(&p);
 }
 
 /* Property 4: lines parallel to the view plane keep their direction, whatever their depth; so they stay parallel. */
 static void parallels_to_the_view_plane_stay_parallel(void **state) {
   (void)state;
-  Picture p = render_scene("property_4", W, H);
+  Image p = render_scene("property_4", W, H);
   const Strip strips[5] = {{{-130, -60, 200}, {180, 240, 0}, {40, 0, 0}},
                            {{-130, -160, 100}, {180, 240, 0}, {40, 0, 0}},
                            {{-70, -220, -100}, {180, 240, 0}, {40, 0, 0}},
@@ -138,11 +138,11 @@ static void parallels_to_the_view_plane_stay_parallel(void **state) {
     near_to("direction, at the line's ends", lines[k].slope * lines[k].length, -0.75 * lines[k].length, 2 * FITTED);
     for (int j = 0; j < k; j++) near_to("parallel", lines[k].slope * 100, lines[j].slope * 100, 0.15);
   }
-  free_picture(&p);
+  free_image(&p);
 }
 
-/* Where the lines of direction d vanish: the ray from the eye along d stays one point of the picture. */
-static P2 vanishing_point(const Picture *p, P3 d) {
+/* Where the lines of direction d vanish: the ray from the eye along d stays one point of the image. */
+static P2 vanishing_point(const Image *p, P3 d) {
   const double *m = p->camera.world_from_camera;
   return exact(p, add3((P3){m[3], m[7], m[11]}, d));
 }
@@ -150,7 +150,7 @@ static P2 vanishing_point(const Picture *p, P3 d) {
 /* Property 5: parallel lines that are not parallel to the view plane meet in a vanishing point. */
 static void other_parallels_meet(void **state) {
   (void)state;
-  Picture p = render_scene("property_5", W, H);
+  Image p = render_scene("property_5", W, H);
   const P3 d = {-600, 450, -3000};
   const Strip strips[6] = {{{-130, -60, 300}, d, {30, -25, 0}}, {{-30, -75, 300}, d, {40, 0, 0}},
                            {{60, -40, 300}, d, {18, 36, 0}},    {{70, 40, 300}, d, {0, 40, 0}},
@@ -168,14 +168,14 @@ static void other_parallels_meet(void **state) {
     near_to("line through the vanishing point", lines[k].offset + lines[k].slope * (along - lines[k].middle), across,
             0.1);
   }
-  free_picture(&p);
+  free_image(&p);
 }
 
 /* Property 6: bundles parallel to the scene's axes meet in the principal vanishing points, where rays from the eye
  * along the axes pierce the view plane. */
 static void axes_meet_in_principal_vanishing_points(void **state) {
   (void)state;
-  Picture p = render_scene("property_6", W, H);
+  Image p = render_scene("property_6", W, H);
   /* offsets from the eye in the two other axes, in the order (axis + 1, axis + 2), and the strips' breadth */
   const double offset[3][4] = {{-66, 2, 0, -20}, {-48, -44, 14, -14}, {2, -66, -20, 0}};
   P2 v[3];
@@ -209,7 +209,7 @@ static void axes_meet_in_principal_vanishing_points(void **state) {
     double f2 = -((q.x - c.x) * (r.x - c.x) + (q.y - c.y) * (r.y - c.y));
     near_to("focal length from vanishing points", sqrt(f2), p.camera.fx, 0.1);
   }
-  free_picture(&p);
+  free_image(&p);
 }
 
 int main(void) {

@@ -1,4 +1,4 @@
-/* test/lecture/test_words.c: what each word of the lecture's camera does to a rendered picture: d and zoom, roll,
+/* test/lecture/test_words.c: what each word of the lecture's camera does to a rendered image: d and zoom, roll,
  * exposure time, clipping planes; and the thin lens. The scene is that of property 1: four disks at the distances 250,
  * 500, 1000, 2000. */
 #include "lecture/measure.h"
@@ -9,15 +9,15 @@ enum { W = 160, H = 120 };
 
 static const double distance[4] = {250, 500, 1000, 2000}, centre_x[4] = {-70, 0, 160, 520};
 
-static P2 disk_centre(const Picture *p, int k) {
+static P2 disk_centre(const Image *p, int k) {
   return exact(p, (P3){centre_x[k], 0, 500 - distance[k]});
 }
 
-static double coverage_at(const Picture *p, P2 at) {
+static double coverage_at(const Image *p, P2 at) {
   return coverage(p, ALPHA, (long)at.x, (long)at.y);
 }
 
-static bool same_pixels(const Picture *a, const Picture *b) {
+static bool same_pixels(const Image *a, const Image *b) {
   return memcmp(vl_image_const_pixels(a->image), vl_image_const_pixels(b->image), sizeof(float) * 4 * W * H) == 0;
 }
 
@@ -26,26 +26,26 @@ static void change_zoom(vlCameraDef *def, const void *user) {
   def->zoom = zoom_d_s[0], def->view_distance = zoom_d_s[1], def->pixel_size = zoom_d_s[2];
 }
 
-/* f = zoom d / s: the same f is the same picture to the last bit, however it is said; and it doubles sizes. */
+/* f = zoom d / s: the same f is the same image to the last bit, however it is said; and it doubles sizes. */
 static void zoom_d_and_s_are_one_number(void **state) {
   (void)state;
   const double ways[3][3] = {{2, 500, 1}, {1, 1000, 1}, {4, 62.5, 0.25}};
-  Picture plain = render_scene("property_1", W, H), p[3];
+  Image plain = render_scene("property_1", W, H), p[3];
   for (int k = 0; k < 3; k++) p[k] = render_changed("property_1", W, H, change_zoom, ways[k]);
   assert_true(same_pixels(&p[0], &p[1]) && same_pixels(&p[0], &p[2]));
   assert_false(same_pixels(&p[0], &plain));
   /* the disk in the middle, measured along the row through its centre (row 60 begins there, so the mean of two rows) */
   double width[2];
   for (int k = 0; k < 2; k++) {
-    const Picture *q = k ? &p[0] : &plain;
+    const Image *q = k ? &p[0] : &plain;
     double f = q->camera.fx, sum = 0;
     for (long x = 80 - (long)(0.1 * f); x <= 80 + (long)(0.1 * f); x++)
       sum += 0.5 * (coverage(q, ALPHA, x, 59) + coverage(q, ALPHA, x, 60));
     width[k] = sum;
   }
   assert_true(fabs(width[0] - 2 * 40 * plain.camera.fx / 500) < 0.1 && fabs(width[1] / width[0] - 2) < 0.02);
-  for (int k = 0; k < 3; k++) free_picture(&p[k]);
-  free_picture(&plain);
+  for (int k = 0; k < 3; k++) free_image(&p[k]);
+  free_image(&plain);
 }
 
 static void change_exposure(vlCameraDef *def, const void *user) {
@@ -55,15 +55,15 @@ static void change_exposure(vlCameraDef *def, const void *user) {
 static void exposure_time_is_a_factor(void **state) {
   (void)state;
   const double four = 4;
-  Picture once = render_scene("property_1", W, H), p = render_changed("property_1", W, H, change_exposure, &four);
+  Image once = render_scene("property_1", W, H), p = render_changed("property_1", W, H, change_exposure, &four);
   const float *a = vl_image_const_pixels(once.image), *b = vl_image_const_pixels(p.image);
   for (int i = 0; i < W * H; i++) {
     for (int c = 0; c < 3; c++) assert_true(fabsf(b[4 * i + c] - 4 * a[4 * i + c]) <= 1e-5f * b[4 * i + c]);
     assert_true(a[4 * i + 3] == b[4 * i + 3]); /* coverage is no light */
   }
   assert_true(once.full[RED] > 0.5f);
-  free_picture(&once);
-  free_picture(&p);
+  free_image(&once);
+  free_image(&p);
 }
 
 static void change_planes(vlCameraDef *def, const void *user) {
@@ -75,28 +75,28 @@ static void change_planes(vlCameraDef *def, const void *user) {
 static void clipping_planes(void **state) {
   (void)state;
   const double inside[2] = {249.99, 2000.01}, cut[2] = {250.01, 1999.99};
-  Picture plain = render_scene("property_1", W, H), all = render_changed("property_1", W, H, change_planes, inside),
-          two = render_changed("property_1", W, H, change_planes, cut);
+  Image plain = render_scene("property_1", W, H), all = render_changed("property_1", W, H, change_planes, inside),
+        two = render_changed("property_1", W, H, change_planes, cut);
   assert_true(same_pixels(&plain, &all));
   for (int k = 0; k < 4; k++) {
     double seen = coverage_at(&two, disk_centre(&two, k));
     assert_true(seen == (k == 1 || k == 2 ? 1 : 0));
   }
-  free_picture(&plain);
-  free_picture(&all);
-  free_picture(&two);
+  free_image(&plain);
+  free_image(&all);
+  free_image(&two);
 }
 
 static void change_roll(vlCameraDef *def, const void *user) {
   def->roll = *(const double *)user;
 }
 
-/* The camera turned clockwise by a quarter, so the picture turned the other way: the third disk, which was at the
+/* The camera turned clockwise by a quarter, so the image turned the other way: the third disk, which was at the
  * right, is at the top. */
-static void roll_turns_the_picture(void **state) {
+static void roll_turns_the_image(void **state) {
   (void)state;
   const double quarter = 3.14159265358979323846 / 2;
-  Picture p = render_changed("property_1", W, H, change_roll, &quarter);
+  Image p = render_changed("property_1", W, H, change_roll, &quarter);
   P2 third = disk_centre(&p, 2);
   double f = p.camera.fx, area = 0, my = 0;
   assert_true(fabs(third.x - W / 2) < 1e-9 && fabs(third.y - (H / 2 - f * 160 / 1000)) < 1e-9);
@@ -106,7 +106,7 @@ static void roll_turns_the_picture(void **state) {
         area += coverage(&p, ALPHA, x, y), my += coverage(&p, ALPHA, x, y) * ((double)y + 0.5);
   assert_true(fabs(area / (3.14159265358979323846 * pow(f * 40 / 1000, 2)) - 1) < 0.005);
   assert_true(fabs(my / area - third.y) < FITTED);
-  free_picture(&p);
+  free_image(&p);
 }
 
 static void change_lens(vlCameraDef *def, const void *user) {
@@ -119,7 +119,7 @@ static void change_lens(vlCameraDef *def, const void *user) {
 static void lens_blurs_what_is_out_of_focus(void **state) {
   (void)state;
   const double radius_focus[2] = {10, 500};
-  Picture sharp = render_scene("property_1", W, H), p = render_changed("property_1", W, H, change_lens, radius_focus);
+  Image sharp = render_scene("property_1", W, H), p = render_changed("property_1", W, H, change_lens, radius_focus);
   double f = p.camera.fx, blur = 2 * 10 * f * (1 / 250.0 - 1 / 500.0);
   for (int k = 0; k < 2; k++) {
     P2 c = disk_centre(&p, k);
@@ -137,8 +137,8 @@ static void lens_blurs_what_is_out_of_focus(void **state) {
     else
       assert_true(partial >= blur - 1.5 && partial <= blur + 2);
   }
-  free_picture(&sharp);
-  free_picture(&p);
+  free_image(&sharp);
+  free_image(&p);
 }
 
 int main(void) {
@@ -146,7 +146,7 @@ int main(void) {
       cmocka_unit_test(zoom_d_and_s_are_one_number),
       cmocka_unit_test(exposure_time_is_a_factor),
       cmocka_unit_test(clipping_planes),
-      cmocka_unit_test(roll_turns_the_picture),
+      cmocka_unit_test(roll_turns_the_image),
       cmocka_unit_test(lens_blurs_what_is_out_of_focus),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

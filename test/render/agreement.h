@@ -1,5 +1,5 @@
-/* test/render/agreement.h: do two tracers have the same mean? Pictures of several seeds give means of bands of the
- * picture and their standard errors; those of two tracers must agree within both. */
+/* test/render/agreement.h: do two tracers have the same mean? Images of several seeds give means of bands of the
+ * image and their standard errors; those of two tracers must agree within both. */
 #ifndef TEST_RENDER_AGREEMENT_H
 #define TEST_RENDER_AGREEMENT_H
 
@@ -7,7 +7,7 @@
 
 enum { AGREEMENT_SEEDS = 6, AGREEMENT_BANDS = 4, AGREEMENT_CHANNELS = 3 };
 
-typedef struct Measure { /* of three bands of the picture, and the whole */
+typedef struct Measure { /* of three bands of the image, and the whole */
   double mean[AGREEMENT_BANDS][AGREEMENT_CHANNELS], error[AGREEMENT_BANDS][AGREEMENT_CHANNELS];
 } Measure;
 
@@ -20,15 +20,15 @@ static UNUSED Measure measure(MakeStage *make, const void *user, vlTracer tracer
   for (uint32_t seed = 0; seed < AGREEMENT_SEEDS; seed++) {
     Stage s = make(user, tracer);
     s.render.tracer = tracer, s.render.seed = 77 * seed + (uint32_t)tracer;
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     assert_int_equal(p.stats.not_finite, 0);
     for (uint32_t band = 0; band < AGREEMENT_BANDS; band++)
       for (int c = 0; c < AGREEMENT_CHANNELS; c++) {
-        double m = band < 3 ? picture_region(&p, 0, band * p.height / 3, p.width, (band + 1) * p.height / 3, c)
-                            : picture_mean(&p, c);
+        double m = band < 3 ? image_region(&p, 0, band * p.height / 3, p.width, (band + 1) * p.height / 3, c)
+                            : image_mean(&p, c);
         r.mean[band][c] += m, r.error[band][c] += m * m;
       }
-    picture_free(&p);
+    image_free(&p);
   }
   for (int band = 0; band < AGREEMENT_BANDS; band++)
     for (int c = 0; c < AGREEMENT_CHANNELS; c++) {

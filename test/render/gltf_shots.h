@@ -1,4 +1,4 @@
-/* test/render/gltf_shots.h: pictures of one glTF material in a white room, seen from straight ahead without
+/* test/render/gltf_shots.h: images of one glTF material in a white room, seen from straight ahead without
  * perspective: a ball (its disk, averaged, is the directional albedo averaged over the cosine-weighted hemisphere), a
  * wall, a slab. */
 #ifndef TEST_RENDER_GLTF_SHOTS_H
@@ -54,7 +54,7 @@ static UNUSED void put_box(Gltf *g, float thickness) {
 }
 
 /* A file of these arrays and members, 32 x 32 pixels by its own camera. */
-static UNUSED Picture shoot(const Gltf *g, const char *rest, const Shot *shot) {
+static UNUSED Image shoot(const Gltf *g, const char *rest, const Shot *shot) {
   char path[] = "/tmp/velo-shot-XXXXXX.gltf";
   int file = mkstemps(path, 5);
   assert_true(file >= 0);
@@ -73,7 +73,7 @@ static UNUSED Picture shoot(const Gltf *g, const char *rest, const Shot *shot) {
   s.render.tracer = vl_scene_defs(s.scene)->render.tracer;
   s.render.spp = shot->spp ? shot->spp : 64;
   s.render.max_depth = shot->depth ? shot->depth : 64;
-  Picture p = stage_finish(&s);
+  Image p = stage_finish(&s);
   unlink(path);
   assert_int_equal(p.stats.not_finite, 0);
   return p;
@@ -96,11 +96,11 @@ static UNUSED void take_shot(const Shot *shot, double rgb[3]) {
            "\"material\":0}]}]",
            shot->from_behind ? "\"translation\":[0,0,-10],\"rotation\":[0,1,0,0]" : "\"translation\":[0,0,10]",
            shot->material, shot->body == BALL ? ",\"NORMAL\":0,\"TEXCOORD_0\":1" : "", g->accessor_count - 1);
-  Picture p = shoot(g, rest, shot);
+  Image p = shoot(g, rest, shot);
   free(g);
   for (int c = 0; c < 3; c++)
-    rgb[c] = shot->body != BALL ? picture_region(&p, 8, 8, 24, 24, c) : (picture_mean(&p, c) - (1 - M_PI_4)) / M_PI_4;
-  picture_free(&p);
+    rgb[c] = shot->body != BALL ? image_region(&p, 8, 8, 24, 24, c) : (image_mean(&p, c) - (1 - M_PI_4)) / M_PI_4;
+  image_free(&p);
 }
 
 static UNUSED void expect_shot(const char *name, const Shot *shot, double r, double g, double b, double tolerance) {

@@ -1,4 +1,4 @@
-/* test/render/shots.h: small pictures through the public API alone: a stage (context, scene, defs) that a test fills,
+/* test/render/shots.h: small images through the public API alone: a stage (context, scene, defs) that a test fills,
  * one call that builds, renders, develops and takes everything down again (no byte may be left), and comparisons. */
 #ifndef TEST_RENDER_SHOTS_H
 #define TEST_RENDER_SHOTS_H
@@ -26,11 +26,11 @@ typedef struct Stage {
   vlRenderDef render;
 } Stage;
 
-typedef struct Picture {
+typedef struct Image {
   uint32_t width, height;
   float *rgba; /* 4 a pixel */
   vlRenderStats stats;
-} Picture;
+} Image;
 
 /* Box filter, camera at the origin looking along -z, 90 degrees across the smaller side, independent of any file. The
  * context becomes the stage's; none: one of two threads. */
@@ -56,7 +56,7 @@ static UNUSED Stage stage_open(uint32_t width, uint32_t height) {
 }
 
 /* Builds and renders; stops the test with the library's message when something fails. */
-static UNUSED Picture stage_take(Stage *s) {
+static UNUSED Image stage_take(Stage *s) {
   vlError error;
   memset(&error, 0, sizeof error);
   vlWorld *world = NULL;
@@ -66,7 +66,7 @@ static UNUSED Picture stage_take(Stage *s) {
   if (vl_camera_make(&s->camera, &camera, NULL, &error) != VL_OK) fail_msg("camera: %s", error.message);
   vlFilm *film = NULL;
   assert_int_equal(vl_film_create(s->context, &s->film, &film), VL_OK);
-  Picture p;
+  Image p;
   memset(&p, 0, sizeof p);
   if (vl_render(world, &camera, film, &s->render, &p.stats, &error) != VL_OK) fail_msg("render: %s", error.message);
   vlImage *image = NULL;
@@ -91,59 +91,59 @@ static UNUSED void stage_close(Stage *s) {
   memset(s, 0, sizeof *s);
 }
 
-static UNUSED Picture stage_finish(Stage *s) {
-  Picture p = stage_take(s);
+static UNUSED Image stage_finish(Stage *s) {
+  Image p = stage_take(s);
   stage_close(s);
   return p;
 }
 
-static UNUSED void picture_free(Picture *p) {
+static UNUSED void image_free(Image *p) {
   free(p->rgba);
   memset(p, 0, sizeof *p);
 }
 
 /* Renders in that context, which it takes. */
-typedef Picture Rendering(vlContext *context, const void *what);
+typedef Image Rendering(vlContext *context, const void *what);
 
-static UNUSED Picture picture_in(Rendering *render, const void *what, uint32_t threads, vlIsa isa) {
+static UNUSED Image image_in(Rendering *render, const void *what, uint32_t threads, vlIsa isa) {
   vlContextDef def = vl_default_context_def();
   def.threads = threads, def.isa = isa;
   vlContext *context;
-  if (vl_context_create(&def, &context) != VL_OK) return (Picture){0}; /* a machine without that set */
+  if (vl_context_create(&def, &context) != VL_OK) return (Image){0}; /* a machine without that set */
   return render(context, what);
 }
 
-/* The same bits on 1, 1 + step, ... up to 3 threads, by each instruction set. Returns one of the pictures. */
-static UNUSED Picture assert_same_bits(Rendering *render, const void *what, uint32_t step) {
-  Picture a = picture_in(render, what, 1, VL_ISA_V2);
+/* The same bits on 1, 1 + step, ... up to 3 threads, by each instruction set. Returns one of the images. */
+static UNUSED Image assert_same_bits(Rendering *render, const void *what, uint32_t step) {
+  Image a = image_in(render, what, 1, VL_ISA_V2);
   assert_non_null(a.rgba);
   for (uint32_t threads = 1; threads <= 3; threads += step)
     for (int isa = VL_ISA_V2; isa <= VL_ISA_V4; isa++) {
-      Picture b = picture_in(render, what, threads, (vlIsa)isa);
+      Image b = image_in(render, what, threads, (vlIsa)isa);
       if (!b.rgba) continue;
       assert_memory_equal(a.rgba, b.rgba, (size_t)a.width * a.height * 4 * sizeof(float));
-      picture_free(&b);
+      image_free(&b);
     }
   return a;
 }
 
-static UNUSED float picture_at(const Picture *p, uint32_t x, uint32_t y, int c) {
+static UNUSED float image_at(const Image *p, uint32_t x, uint32_t y, int c) {
   return p->rgba[4 * ((size_t)y * p->width + x) + (size_t)c];
 }
 
 /* Mean of one channel over the pixels [x0, x1) x [y0, y1). */
-static UNUSED double picture_region(const Picture *p, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, int c) {
+static UNUSED double image_region(const Image *p, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, int c) {
   double sum = 0;
   for (uint32_t y = y0; y < y1; y++)
-    for (uint32_t x = x0; x < x1; x++) sum += picture_at(p, x, y, c);
+    for (uint32_t x = x0; x < x1; x++) sum += image_at(p, x, y, c);
   return sum / ((double)(x1 - x0) * (y1 - y0));
 }
-static UNUSED double picture_mean(const Picture *p, int c) {
-  return picture_region(p, 0, 0, p->width, p->height, c);
+static UNUSED double image_mean(const Image *p, int c) {
+  return image_region(p, 0, 0, p->width, p->height, c);
 }
 
 /* Share of pixels whose green differs by more than `tolerance` of the larger value (and of 1e-4 absolutely). */
-static UNUSED double picture_differing(const Picture *a, const Picture *b, double tolerance) {
+static UNUSED double image_differing(const Image *a, const Image *b, double tolerance) {
   assert_int_equal(a->width, b->width);
   assert_int_equal(a->height, b->height);
   size_t n = (size_t)a->width * a->height, count = 0;
@@ -174,7 +174,7 @@ static UNUSED vlMaterialId add_textured(Stage *s, vlTextureId texture) {
   def.reflectance = (vlSpectrumInput){texture, vl_spectrum_constant(1)};
   return vl_scene_add_material(s->scene, &def);
 }
-static UNUSED vlEmissionId add_glow(Stage *s, float radiance, bool two_sided) {
+static UNUSED vlEmissionId add_emission(Stage *s, float radiance, bool two_sided) {
   vlEmissionDef def = vl_default_emission_def();
   def.radiance = vl_spectrum_rgb(radiance, radiance, radiance);
   def.two_sided = two_sided;
@@ -264,7 +264,7 @@ static UNUSED vlShapeDef mesh_sphere(int n, float radius, bool normals, float **
   return def;
 }
 
-/* A float RGB picture as a texture or sky: values row by row from the top. */
+/* A float RGB image as a texture or sky: values row by row from the top. */
 static UNUSED vlImage *make_image(Stage *s, uint32_t width, uint32_t height, const float *rgb) {
   vlImageDef def = vl_default_image_def(width, height, 3);
   def.type = VL_PIXEL_F32;

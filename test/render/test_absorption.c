@@ -25,9 +25,9 @@ static Stage open_stage(vlColorMode color, vlTracer tracer, uint32_t size, uint3
 }
 
 /* Absolute: what a few wavelengths leave of noise. */
-static void assert_law(const char *what, const Picture *p, const double expected[3]) {
+static void assert_law(const char *what, const Image *p, const double expected[3]) {
   for (int c = 0; c < 3; c++) {
-    double seen = picture_mean(p, c);
+    double seen = image_mean(p, c);
     if (fabs(seen - expected[c]) > 0.01 * expected[c] + 1e-3)
       fail_msg("%s: channel %d: %.5f, expected %.5f", what, c, seen, expected[c]);
   }
@@ -43,11 +43,11 @@ static void one_piece(void **state) {
         Stage s = open_stage((vlColorMode)mode, tracers[k], 16, 256);
         s.camera.fov = 0.02;
         add_ball(&s, -3, 1, interface(&s), glass_of(&s, depths[d], attenuation, 0), (vlMediumId){0});
-        Picture p = stage_finish(&s);
+        Image p = stage_finish(&s);
         double expected[3];
         for (int c = 0; c < 3; c++) expected[c] = pow(attenuation[c], depths[d]);
         assert_law(mode ? "a slab, RGB" : "a slab, spectral", &p, expected);
-        picture_free(&p);
+        image_free(&p);
       }
 }
 
@@ -63,9 +63,9 @@ static void several_pieces(void **state) {
     for (int k = 0; k < 3; k++)
       add_ball(&s, -3 - 3 * (float)k, 1, interface(&s), glass_of(&s, depth[k], k == 1 ? other : attenuation, 0),
                (vlMediumId){0});
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     assert_law("three in a row", &p, expected);
-    picture_free(&p);
+    image_free(&p);
   }
 }
 
@@ -85,9 +85,9 @@ static void see_wall(bool merged, bool absorbs, double mean[3]) {
   lamp.color = vl_spectrum_rgb(1, 1, 1);
   lamp.medium = medium;
   assert_int_not_equal(vl_scene_add_light(s.scene, &lamp).index, 0);
-  Picture p = stage_finish(&s);
-  for (int c = 0; c < 3; c++) mean[c] = picture_mean(&p, c);
-  picture_free(&p);
+  Image p = stage_finish(&s);
+  for (int c = 0; c < 3; c++) mean[c] = image_mean(&p, c);
+  image_free(&p);
 }
 
 /* merged: ways are a little longer where the disk is wide, so that a few percent more are lost. */
@@ -118,9 +118,9 @@ static void add_box(Stage *s, const float low[3], const float high[3], vlMateria
 }
 
 /* Compares what the two colour modes see. */
-static void assert_same_law(const char *what, const Picture pictures[2]) {
+static void assert_same_law(const char *what, const Image images[2]) {
   for (int c = 0; c < 3; c++) {
-    double spectral = picture_mean(&pictures[0], c), rgb = picture_mean(&pictures[1], c);
+    double spectral = image_mean(&images[0], c), rgb = image_mean(&images[1], c);
     if (fabs(spectral - rgb) > 0.01 * rgb + 1.5e-3)
       fail_msg("%s: channel %d: spectral %.5f, RGB %.5f", what, c, spectral, rgb);
   }
@@ -129,7 +129,7 @@ static void assert_same_law(const char *what, const Picture pictures[2]) {
 /* From inside a rod of glass light comes through its end after many total reflections. */
 static void total_reflection(void **state) {
   (void)state;
-  Picture pictures[2];
+  Image images[2];
   for (int mode = 0; mode < 2; mode++) {
     Stage s = open_stage((vlColorMode)mode, VL_TRACER_VOLPATH, 16, 256);
     s.camera.fov = 0.9;
@@ -140,11 +140,11 @@ static void total_reflection(void **state) {
     add_box(&s, (float[3]){-0.2f, -0.2f, -4}, (float[3]){0.2f, 0.2f, 1}, vl_scene_add_material(s.scene, &glass),
             inside);
     vl_scene_defs(s.scene)->camera_medium = inside;
-    pictures[mode] = stage_finish(&s);
+    images[mode] = stage_finish(&s);
   }
-  assert_true(picture_mean(&pictures[1], 0) < 0.5 * picture_mean(&pictures[1], 2)); /* it is deep */
-  assert_same_law("a rod", pictures);
-  for (int mode = 0; mode < 2; mode++) picture_free(&pictures[mode]);
+  assert_true(image_mean(&images[1], 0) < 0.5 * image_mean(&images[1], 2)); /* it is deep */
+  assert_same_law("a rod", images);
+  for (int mode = 0; mode < 2; mode++) image_free(&images[mode]);
 }
 
 /* Scattering in a coloured ball, with a grey ball inside: paths of many pieces, which tracers join in many ways. */
@@ -153,7 +153,7 @@ static void scattered(void **state) {
   const vlTracer tracers[3] = {VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL, VL_TRACER_MERGING};
   const double color[3] = {0.3, 0.8, 1.0};
   for (int k = 0; k < 3; k++) {
-    Picture pictures[2];
+    Image images[2];
     for (int mode = 0; mode < 2; mode++) {
       Stage s = open_stage((vlColorMode)mode, tracers[k], 16, 512);
       s.camera.fov = 0.6;
@@ -163,11 +163,11 @@ static void scattered(void **state) {
       grey.reflectance.value = vl_spectrum_constant(0.8f);
       add_ball(&s, -3, 1, interface(&s), inside, (vlMediumId){0});
       add_ball(&s, -3, 0.6f, vl_scene_add_material(s.scene, &grey), (vlMediumId){0}, inside);
-      pictures[mode] = stage_finish(&s);
+      images[mode] = stage_finish(&s);
     }
-    assert_true(picture_mean(&pictures[1], 0) < 0.4 * picture_mean(&pictures[1], 2));
-    assert_same_law(k == 0 ? "volpath" : k == 1 ? "bidirectional" : "merging", pictures);
-    for (int mode = 0; mode < 2; mode++) picture_free(&pictures[mode]);
+    assert_true(image_mean(&images[1], 0) < 0.4 * image_mean(&images[1], 2));
+    assert_same_law(k == 0 ? "volpath" : k == 1 ? "bidirectional" : "merging", images);
+    for (int mode = 0; mode < 2; mode++) image_free(&images[mode]);
   }
 }
 

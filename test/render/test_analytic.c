@@ -1,5 +1,5 @@
-/* Pictures whose value is known: closed spheres with light inside (pbrt's analytic integrator tests), white furnaces,
- * and solid angles. Means over the whole picture against the exact number. */
+/* Images whose value is known: closed spheres with light inside (pbrt's analytic integrator tests), white furnaces,
+ * and solid angles. Means over the whole image against the exact number. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -71,7 +71,7 @@ static vlMaterialId diffuse(Bench *b, float albedo) {
   return vl_scene_add_material(b->scene, &def);
 }
 
-static vlEmissionId glow(Bench *b, float radiance) {
+static vlEmissionId emission(Bench *b, float radiance) {
   vlEmissionDef def = vl_default_emission_def();
   def.radiance = vl_spectrum_rgb(radiance, radiance, radiance);
   return vl_scene_add_emission(b->scene, &def);
@@ -143,26 +143,26 @@ static void assert_mean(const char *what, const double mean[3], double expected,
 static const Shot inside = {{0, 0, 0}, {0.2, 0.1, -1}, 1.2, 48, 64, 200, VL_COLOR_SPECTRAL};
 
 /* Radiance in a closed diffuse sphere is everywhere the emitted one / (1 - albedo). */
-static void glowing_sphere(void **state) {
+static void emissive_sphere(void **state) {
   (void)state;
   for (int rgb = 0; rgb < 2; rgb++) {
     Bench b = begin();
-    add_sphere(&b, 1, diffuse(&b, 0.5f), glow(&b, 0.5f), true);
+    add_sphere(&b, 1, diffuse(&b, 0.5f), emission(&b, 0.5f), true);
     double mean[3], range[2];
     Shot shot = inside;
     shot.color = rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
     finish(&b, shot, mean, range);
-    assert_mean("glowing sphere", mean, 1, 1e-3);
+    assert_mean("emissive sphere", mean, 1, 1e-3);
   }
 }
 
-static void glowing_mesh_sphere(void **state) {
+static void emissive_mesh_sphere(void **state) {
   (void)state;
   Bench b = begin();
-  add_mesh_sphere(&b, 1, diffuse(&b, 0.5f), glow(&b, 0.5f), true);
+  add_mesh_sphere(&b, 1, diffuse(&b, 0.5f), emission(&b, 0.5f), true);
   double mean[3];
   finish(&b, inside, mean, NULL);
-  assert_mean("glowing sphere of triangles", mean, 1, 1e-3);
+  assert_mean("emissive sphere of triangles", mean, 1, 1e-3);
 }
 
 /* A point light of intensity I in the middle lights the wall with I; the wall sends albedo / pi of it on, and so on. */
@@ -243,7 +243,7 @@ static void disk_over_floor(void **state) {
   Bench b = begin();
   vlShapeDef lamp = vl_default_shape_def(VL_SHAPE_DISK);
   lamp.radius = 1;
-  lamp.emission = glow(&b, 1);
+  lamp.emission = emission(&b, 1);
   lamp.material = diffuse(&b, 0);
   lamp.reverse_orientation = true; /* shines down */
   lamp.height = 2;
@@ -260,7 +260,7 @@ static void disk_over_floor(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(glowing_sphere),        cmocka_unit_test(glowing_mesh_sphere),
+      cmocka_unit_test(emissive_sphere),       cmocka_unit_test(emissive_mesh_sphere),
       cmocka_unit_test(point_light_in_sphere), cmocka_unit_test(closed_mesh_is_tight),
       cmocka_unit_test(white_furnace),         cmocka_unit_test(disk_over_floor),
   };

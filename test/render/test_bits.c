@@ -48,7 +48,7 @@ static void fill(Stage *s) {
 static void same_bits(void **state) {
   (void)state;
   for (int color = 0; color < 2; color++) {
-    Picture first = {0, 0, NULL, {0}};
+    Image first = {0, 0, NULL, {0}};
     for (int k = 0; k < 6; k++) {
       vlContextDef def = vl_default_context_def();
       def.isa = (vlIsa[3]){VL_ISA_V2, VL_ISA_V3, VL_ISA_V4}[k % 3];
@@ -60,19 +60,19 @@ static void same_bits(void **state) {
       assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
       s.build.color = (vlColorMode)color;
       fill(&s);
-      Picture p = stage_finish(&s);
+      Image p = stage_finish(&s);
       if (!first.rgba) {
         first = p;
-        assert_true(picture_mean(&p, 1) > 0.05);
+        assert_true(image_mean(&p, 1) > 0.05);
         continue;
       }
       size_t n = (size_t)p.width * p.height * 4, differing = 0;
       for (size_t i = 0; i < n; i++) differing += memcmp(&p.rgba[i], &first.rgba[i], sizeof(float)) != 0;
       if (differing)
         fail_msg("isa v%d, %u threads: %zu of %zu numbers differ", (int)def.isa, def.threads, differing, n);
-      picture_free(&p);
+      image_free(&p);
     }
-    picture_free(&first);
+    image_free(&first);
   }
 }
 

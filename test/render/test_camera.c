@@ -1,4 +1,4 @@
-/* What the camera's parts do to a picture: circle of confusion, near and far plane, parallel projection, exposure time,
+/* What the camera's parts do to an image: circle of confusion, near and far plane, parallel projection, exposure time,
  * crop; and the depths and tracers of a render. */
 #include "render/shots.h"
 
@@ -18,20 +18,20 @@ static void circle_of_confusion(void **state) {
     s.camera.lens_radius = 0.4, s.camera.focus_distance = 2.5;
     double z = depths[i], side = 0.02 * z, radius = 0.4 * fabs(1 / z - 1 / 2.5) * 60;
     Quad q = quad_at((float)(0.1 * z), (float)(-0.05 * z), (float)-z, (float)side, 0, 0, 0, (float)side, 0);
-    q.emission = add_glow(&s, 100, true);
+    q.emission = add_emission(&s, 100, true);
     add_quad(&s, &q);
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     double sum = 0, mx = 0, my = 0, second = 0;
     for (uint32_t y = 0; y < 64; y++)
       for (uint32_t x = 0; x < 64; x++) {
-        double v = picture_at(&p, x, y, 1);
+        double v = image_at(&p, x, y, 1);
         sum += v, mx += v * (x + 0.5), my += v * (y + 0.5);
       }
     mx /= sum, my /= sum;
     for (uint32_t y = 0; y < 64; y++)
       for (uint32_t x = 0; x < 64; x++) {
         double dx = x + 0.5 - mx, dy = y + 0.5 - my;
-        second += picture_at(&p, x, y, 1) * (dx * dx + dy * dy);
+        second += image_at(&p, x, y, 1) * (dx * dx + dy * dy);
       }
     /* x^2 + y^2 of a disk: R^2/2; of the square: 2 a^2/3; of a pixel: 1/6 */
     double a = side / z * 60, expected = radius * radius / 2 + 2 * a * a / 3 + 1.0 / 6;
@@ -39,7 +39,7 @@ static void circle_of_confusion(void **state) {
     assert_near("centre of the blur, x", mx, 32 + 60 * 0.1, 0.05);
     assert_near("centre of the blur, y", my, 32 + 60 * 0.05, 0.05);
     assert_ratio("light in the blur", sum, 100 * 4 * a * a, 0.01);
-    picture_free(&p);
+    image_free(&p);
   }
 }
 
@@ -55,13 +55,13 @@ static void near_and_far(void **state) {
     const float z[3] = {-1.9f, -3.99f, -4.01f}, light[3] = {5, 1, 7};
     for (int k = 0; k < 3; k++) {
       Quad q = quad_at(k == 1 ? -10 : 0, 0, z[k], k == 1 ? 10 : 50, 0, 0, 0, 50, 0);
-      q.emission = add_glow(&s, light[k], true);
+      q.emission = add_emission(&s, light[k], true);
       add_quad(&s, &q);
     }
-    Picture p = stage_finish(&s);
-    assert_near("left half", picture_region(&p, 0, 0, 16, 32, 1), 1, 0.01);
-    assert_near("right half", picture_region(&p, 16, 0, 32, 32, 1), 0, 0);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    assert_near("left half", image_region(&p, 0, 0, 16, 32, 1), 1, 0.01);
+    assert_near("right half", image_region(&p, 16, 0, 32, 32, 1), 0, 0);
+    image_free(&p);
   }
 }
 
@@ -75,25 +75,25 @@ static void orthographic(void **state) {
     s.render.max_depth = 0;
     s.render.spp = 64;
     Quad q = quad_at(0.5f, 0.25f, k ? -30 : -1, 0.8f, 0, 0, 0, 0.6f, 0);
-    q.emission = add_glow(&s, 1, true);
+    q.emission = add_emission(&s, 1, true);
     add_quad(&s, &q);
-    Picture p = stage_finish(&s);
-    assert_ratio("area", picture_mean(&p, 3) * 16, 1.6 * 1.2, 5e-3);
+    Image p = stage_finish(&s);
+    assert_ratio("area", image_mean(&p, 3) * 16, 1.6 * 1.2, 5e-3);
     double mx = 0, my = 0, sum = 0;
     for (uint32_t y = 0; y < 40; y++)
       for (uint32_t x = 0; x < 40; x++) {
-        double v = picture_at(&p, x, y, 3);
+        double v = image_at(&p, x, y, 3);
         sum += v, mx += v * (x + 0.5), my += v * (y + 0.5);
       }
     assert_near("x", mx / sum, 20 + 10 * 0.5, 0.03);
     assert_near("y", my / sum, 20 - 10 * 0.25, 0.03);
-    picture_free(&p);
+    image_free(&p);
   }
 }
 
 static void exposure_and_crop(void **state) {
   (void)state;
-  Picture p[3];
+  Image p[3];
   for (int k = 0; k < 3; k++) {
     Stage s = stage_open(48, 36);
     add_sky(&s, 0.5f);
@@ -107,37 +107,38 @@ static void exposure_and_crop(void **state) {
   for (uint32_t y = 0; y < 36; y++)
     for (uint32_t x = 0; x < 48; x++)
       for (int c = 0; c < 3; c++)
-        assert_ratio("twice the exposure", picture_at(&p[1], x, y, c), 2 * picture_at(&p[0], x, y, c), 1e-5);
+        assert_ratio("twice the exposure", image_at(&p[1], x, y, c), 2 * image_at(&p[0], x, y, c), 1e-5);
   assert_int_equal(p[2].width, 23);
   assert_int_equal(p[2].height, 12);
   for (uint32_t y = 0; y < 12; y++)
     for (uint32_t x = 0; x < 23; x++)
-      for (int c = 0; c < 4; c++) assert_true(picture_at(&p[2], x, y, c) == picture_at(&p[0], x + 7, y + 5, c));
-  for (int k = 0; k < 3; k++) picture_free(&p[k]);
+      for (int c = 0; c < 4; c++) assert_true(image_at(&p[2], x, y, c) == image_at(&p[0], x + 7, y + 5, c));
+  for (int k = 0; k < 3; k++) image_free(&p[k]);
 }
 
 /* ---- depths and tracers ------------------------------------------------------------------------------------------ */
 
-/* In a closed glowing sphere depth n holds the first n + 1 terms of a geometric series. */
+/* In a closed emissive sphere depth n holds the first n + 1 terms of a geometric series. */
 static void depths(void **state) {
   (void)state;
   double expected = 0, power = 1;
   for (uint32_t depth = 0; depth < 5; depth++) {
     expected += power, power *= 0.6;
-    for (int light = 0; light < 2; light++) { /* every point glows, or a point light's wall glows: one less */
+    for (int light = 0; light < 2;
+         light++) { /* every point emits light, or a point light's wall emits light: one less */
       Stage s = stage_open(16, 16);
       s.render.max_depth = depth;
       s.render.spp = 64;
       vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
       def.reverse_orientation = true;
       def.material = add_diffuse(&s, 0.6f, 0.6f, 0.6f);
-      if (light == 0) def.emission = add_glow(&s, 1, false);
+      if (light == 0) def.emission = add_emission(&s, 1, false);
       if (light == 1) add_point(&s, 0, 0, 0, (float)M_PI);
       vl_scene_add_shape(s.scene, &def);
-      Picture p = stage_finish(&s);
-      assert_near(light ? "point light, depth" : "glow, depth", picture_mean(&p, 1), light ? expected - 1 : expected,
+      Image p = stage_finish(&s);
+      assert_near(light ? "point light, depth" : "emission, depth", image_mean(&p, 1), light ? expected - 1 : expected,
                   0.006 * expected);
-      picture_free(&p);
+      image_free(&p);
     }
   }
 }
@@ -155,16 +156,16 @@ static void raycast(void **state) {
   set_matrix(ball.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -2);
   vl_scene_add_shape(s.scene, &ball);
   add_sky(&s, 0.3f);
-  Picture p = stage_finish(&s);
+  Image p = stage_finish(&s);
   for (uint32_t y = 0; y < 32; y++)
     for (uint32_t x = 0; x < 32; x++) {
       double u = (x + 0.5) / 16 - 1, v = (y + 0.5) / 16 - 1, r2 = (u * u + v * v) / (0.75 * 0.75);
       if (fabs(r2 - 1) < 0.05) continue;
       double cosine = r2 < 1 ? sqrt(1 - r2) : 0;
-      assert_near("raycast red", picture_at(&p, x, y, 0), r2 < 1 ? 0.8 * cosine : 0.3, 2e-4);
-      assert_near("raycast blue", picture_at(&p, x, y, 2), r2 < 1 ? 0.2 * cosine : 0.3, 2e-4);
+      assert_near("raycast red", image_at(&p, x, y, 0), r2 < 1 ? 0.8 * cosine : 0.3, 2e-4);
+      assert_near("raycast blue", image_at(&p, x, y, 2), r2 < 1 ? 0.2 * cosine : 0.3, 2e-4);
     }
-  picture_free(&p);
+  image_free(&p);
 }
 
 /* A free plane is open everywhere; beside an endless wall at right angles half of the cosine-weighted sky is left, at
@@ -196,11 +197,11 @@ static void ambient_occlusion(void **state) {
         if (k == 1) add_quad(&s, &wall);
         if (k > 1) add_quad(&s, &ceiling);
         if (k == 3) s.render.ao_distance = 0.45f;
-        Picture q = stage_finish(&s);
+        Image q = stage_finish(&s);
         char what[64];
         snprintf(what, sizeof what, "openness, case %d, %s", k, cosine ? "cosine" : "uniform");
-        assert_near(what, picture_mean(&q, 1), expected[k], k == 2 ? 2e-3 : 0.01);
-        picture_free(&q);
+        assert_near(what, image_mean(&q, 1), expected[k], k == 2 ? 2e-3 : 0.01);
+        image_free(&q);
       }
 }
 
@@ -228,9 +229,9 @@ static void modes_agree_on_greys(void **state) {
       ball.material = vl_scene_add_material(s.scene, &defs[k]);
       vl_scene_add_shape(s.scene, &ball);
     }
-    Picture p = stage_finish(&s);
-    for (int c = 0; c < 3; c++) mean[mode][c] = picture_mean(&p, c);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    for (int c = 0; c < 3; c++) mean[mode][c] = image_mean(&p, c);
+    image_free(&p);
   }
   for (int c = 0; c < 3; c++) {
     assert_ratio("spectral grey", mean[0][c], mean[1][c], 3e-3);

@@ -3,17 +3,17 @@
 #include "render/truths.h"
 
 /* Builds what the stage holds and takes all channels. */
-static Truth truth_take(Stage *s, const uint32_t crop[4], uint32_t channels) {
-  Truth t = truth_begin(s);
+static GroundTruth ground_truth_take(Stage *s, const uint32_t crop[4], uint32_t channels) {
+  GroundTruth t = ground_truth_begin(s);
   vlChannelsDef def = vl_default_channels_def(s->camera.width, s->camera.height);
   if (crop) memcpy(def.crop, crop, sizeof def.crop);
   def.channels = channels;
   def.samples = 7;
-  truth_channels(&t, &def);
+  ground_truth_channels(&t, &def);
   return t;
 }
 
-static void vector(const Truth *t, uint32_t x, uint32_t y, const char *name, double v[3]) {
+static void vector(const GroundTruth *t, uint32_t x, uint32_t y, const char *name, double v[3]) {
   char part[16];
   for (int k = 0; k < 3; k++) {
     snprintf(part, sizeof part, "%s.%c", name, 'X' + k);
@@ -60,7 +60,7 @@ static double length3(const double v[3]) {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-static void consistent(Truth *t) {
+static void consistent(GroundTruth *t) {
   uint32_t hits = 0, misses = 0;
   for (uint32_t y = 0; y < vl_image_height(t->floats); y++)
     for (uint32_t x = 0; x < vl_image_width(t->floats); x++) {
@@ -102,9 +102,9 @@ static void test_consistent(void **state) {
       s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
       s.camera.fx = s.camera.fy = 14;
     }
-    Truth t = truth_take(&s, NULL, VL_CHANNEL_ALL);
+    GroundTruth t = ground_truth_take(&s, NULL, VL_CHANNEL_ALL);
     consistent(&t);
-    truth_free(&t);
+    ground_truth_free(&t);
     stage_close(&s);
   }
 }
@@ -120,7 +120,7 @@ static void test_exact_distance_and_ids(void **state) {
   sphere.radius = 1.5f, sphere.z_min = -1.5f, sphere.z_max = 1.5f;
   set_matrix(sphere.group_from_shape, 1, 0, 0, 0.25, 0, 1, 0, -0.5, 0, 0, 1, -5);
   vl_scene_add_shape(s.scene, &sphere);
-  Truth t = truth_take(&s, NULL, VL_CHANNEL_ALL);
+  GroundTruth t = ground_truth_take(&s, NULL, VL_CHANNEL_ALL);
   uint32_t on_sphere = 0;
   for (uint32_t y = 0; y < 64; y++)
     for (uint32_t x = 0; x < 64; x++) {
@@ -146,7 +146,7 @@ static void test_exact_distance_and_ids(void **state) {
   assert_int_equal(info.material, 1);
   assert_int_equal(vl_world_id_info(t.world, VL_ID_OBJECT, 3, &info), VL_ERROR_ARGUMENT);
   assert_int_equal(vl_world_id_info(t.world, VL_ID_OBJECT, 0, &info), VL_ERROR_ARGUMENT);
-  truth_free(&t);
+  ground_truth_free(&t);
   stage_close(&s);
 }
 
@@ -163,7 +163,7 @@ static void test_plane_has_one_depth(void **state) {
   set_matrix(m, 1, 0, 0, 3.7, 0, 1, 0, -2.1, 0, 0, 1, 0.6);
   vl_scene_add_instance(s.scene, group, m, (vlSource){"wall.pbrt", 12, 3});
   s.camera.eye[0] = s.camera.lookat[0] = 1.234, s.camera.eye[1] = s.camera.lookat[1] = -0.77;
-  Truth t = truth_take(&s, NULL, VL_CHANNEL_Z | VL_CHANNEL_ID_INSTANCE);
+  GroundTruth t = ground_truth_take(&s, NULL, VL_CHANNEL_Z | VL_CHANNEL_ID_INSTANCE);
   assert_int_equal(vl_image_channels(t.floats), 1);
   assert_int_equal(vl_image_channels(t.ids), 1);
   float first = number(&t, 0, 0, "Z");
@@ -177,7 +177,7 @@ static void test_plane_has_one_depth(void **state) {
   assert_int_equal(vl_world_id_info(t.world, VL_ID_INSTANCE, 1, &info), VL_OK);
   assert_string_equal(info.source.file, "wall.pbrt");
   assert_int_equal(info.source.line, 12);
-  truth_free(&t);
+  ground_truth_free(&t);
   stage_close(&s);
 }
 
@@ -188,14 +188,14 @@ static void test_planes_cut(void **state) {
   add_quad(&s, &near_wall);
   add_quad(&s, &far_wall);
   s.camera.near_plane = 3;
-  Truth t = truth_take(&s, NULL, VL_CHANNEL_ALL);
+  GroundTruth t = ground_truth_take(&s, NULL, VL_CHANNEL_ALL);
   assert_int_equal(id(&t, 3, 3, "id.object"), 2);
   assert_true(number(&t, 3, 3, "Z") == 4.0f);
-  truth_free(&t);
+  ground_truth_free(&t);
   s.camera.far_plane = 3.5;
-  t = truth_take(&s, NULL, VL_CHANNEL_ALL);
+  t = ground_truth_take(&s, NULL, VL_CHANNEL_ALL);
   assert_int_equal(id(&t, 3, 3, "id.object"), 0);
-  truth_free(&t);
+  ground_truth_free(&t);
   stage_close(&s);
 }
 
@@ -210,13 +210,13 @@ static void test_albedo(void **state) {
       q.material = add_diffuse(&s, colours[i][0], colours[i][1], colours[i][2]);
       add_quad(&s, &q);
     }
-    Truth t = truth_take(&s, NULL, VL_CHANNEL_ALL);
+    GroundTruth t = ground_truth_take(&s, NULL, VL_CHANNEL_ALL);
     for (uint32_t i = 0; i < 4; i++)
       for (int k = 0; k < 3; k++) {
         static const char *const names[3] = {"albedo.R", "albedo.G", "albedo.B"};
         assert_near(names[k], number(&t, 8 + 16 * i, 8, names[k]), colours[i][k], mode ? 1e-6 : 3e-3);
       }
-    truth_free(&t);
+    ground_truth_free(&t);
     stage_close(&s);
   }
 }
@@ -225,30 +225,30 @@ static void test_same_bits(void **state) {
   (void)state;
   Stage s = stage_open(75, 41);
   fill(&s);
-  Truth whole = truth_take(&s, NULL, VL_CHANNEL_ALL);
+  GroundTruth whole = ground_truth_take(&s, NULL, VL_CHANNEL_ALL);
   const uint32_t crop[4] = {13, 5, 66, 39};
-  Truth part = truth_take(&s, crop, VL_CHANNEL_ALL);
+  GroundTruth part = ground_truth_take(&s, crop, VL_CHANNEL_ALL);
   same_bits(whole.floats, part.floats, 13, 5);
   same_bits(whole.ids, part.ids, 13, 5);
   for (int isa = VL_ISA_V2; isa <= VL_ISA_V4; isa++) {
     Stage other;
     if (!stage_like(&s, isa, &other)) continue;
     fill(&other);
-    Truth t = truth_take(&other, NULL, VL_CHANNEL_ALL);
+    GroundTruth t = ground_truth_take(&other, NULL, VL_CHANNEL_ALL);
     same_bits(whole.floats, t.floats, 0, 0);
     same_bits(whole.ids, t.ids, 0, 0);
-    truth_free(&t);
+    ground_truth_free(&t);
     stage_close(&other);
   }
-  truth_free(&part);
-  truth_free(&whole);
+  ground_truth_free(&part);
+  ground_truth_free(&whole);
   stage_close(&s);
 }
 
 static void test_wrong_arguments(void **state) {
   (void)state;
   Stage s = stage_open(16, 8);
-  Truth t = truth_take(&s, NULL, VL_CHANNEL_RAY);
+  GroundTruth t = ground_truth_take(&s, NULL, VL_CHANNEL_RAY);
   assert_null(t.ids);
   vlImage *floats = NULL, *ids = NULL;
   vlError error;
@@ -264,7 +264,7 @@ static void test_wrong_arguments(void **state) {
   assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error), VL_ERROR_ARGUMENT);
   assert_null(vl_channel_name(VL_CHANNEL_COUNT));
   assert_string_equal(vl_channel_name(0), "Z");
-  truth_free(&t);
+  ground_truth_free(&t);
   stage_close(&s);
 }
 
@@ -273,7 +273,7 @@ static void fill_wall(Stage *s) {
   add_quad(s, &wall);
 }
 
-static vlResult take_standard(Stage *s, Truth *t) {
+static vlResult take_standard(Stage *s, GroundTruth *t) {
   (void)s;
   vlChannelsDef def = vl_default_channels_def(16, 8);
   vlResult result = vl_render_channels(t->world, &t->camera, &def, &t->floats, &t->ids, NULL);
@@ -283,7 +283,7 @@ static vlResult take_standard(Stage *s, Truth *t) {
 
 static void test_out_of_memory(void **state) {
   (void)state;
-  truth_out_of_memory(fill_wall, truth_begin, take_standard);
+  ground_truth_out_of_memory(fill_wall, ground_truth_begin, take_standard);
 }
 
 int main(void) {

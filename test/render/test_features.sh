@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every feature scene is understood without a warning and gives a picture that is lit; its textures are what its script
+# Every feature scene is understood without a warning and gives an image that is lit; its textures are what its script
 # makes.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 cd "$work" || exit 1

@@ -2,7 +2,7 @@
  * touched. */
 #include "render/shots.h"
 
-static Picture sky(float radiance, float most, vlColorMode mode) {
+static Image sky(float radiance, float most, vlColorMode mode) {
   Stage s = stage_open(8, 8);
   s.build.color = mode;
   s.render.spp = 64;
@@ -15,18 +15,18 @@ static Picture sky(float radiance, float most, vlColorMode mode) {
 
 static void limits(void **state) {
   (void)state;
-  Picture p = sky(10, 2, VL_COLOR_RGB);
+  Image p = sky(10, 2, VL_COLOR_RGB);
   /* white of D65 has Z = 1.089 Y */
-  for (int c = 0; c < 3; c++) assert_ratio("limited", picture_mean(&p, c), 2 / 1.08883, 1e-3);
-  picture_free(&p);
+  for (int c = 0; c < 3; c++) assert_ratio("limited", image_mean(&p, c), 2 / 1.08883, 1e-3);
+  image_free(&p);
   p = sky(10, 0, VL_COLOR_RGB);
-  assert_true(picture_mean(&p, 1) == 0);
-  picture_free(&p);
+  assert_true(image_mean(&p, 1) == 0);
+  image_free(&p);
   for (int mode = 0; mode < 2; mode++) {
-    Picture a = sky(1, INFINITY, (vlColorMode)mode), b = sky(1, 1e6f, (vlColorMode)mode);
+    Image a = sky(1, INFINITY, (vlColorMode)mode), b = sky(1, 1e6f, (vlColorMode)mode);
     assert_memory_equal(a.rgba, b.rgba, sizeof(float) * 4 * 64);
-    picture_free(&a);
-    picture_free(&b);
+    image_free(&a);
+    image_free(&b);
   }
 }
 

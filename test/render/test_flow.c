@@ -1,14 +1,14 @@
 /* Optical flow between two cameras against geometry that is known, and boxes against counted pixels. */
 #include "render/truths.h"
 
-static Truth truth_take(Stage *s, const vlCameraDef *other, uint32_t channels) {
-  Truth t = truth_begin(s);
+static GroundTruth ground_truth_take(Stage *s, const vlCameraDef *other, uint32_t channels) {
+  GroundTruth t = ground_truth_begin(s);
   vlError error = {0};
   assert_int_equal(vl_camera_make(other, &t.other, NULL, &error), VL_OK);
   vlChannelsDef def = vl_default_channels_def(s->camera.width, s->camera.height);
   def.channels = channels;
   def.forward = &t.other;
-  truth_channels(&t, &def);
+  ground_truth_channels(&t, &def);
   return t;
 }
 
@@ -23,7 +23,7 @@ static void test_two_walls(void **state) {
   s.camera.fx = s.camera.fy = 60;
   vlCameraDef other = s.camera;
   other.eye[0] = other.lookat[0] = 1;
-  Truth t = truth_take(&s, &other, VL_CHANNEL_ALL | VL_CHANNEL_FORWARD);
+  GroundTruth t = ground_truth_take(&s, &other, VL_CHANNEL_ALL | VL_CHANNEL_FORWARD);
   uint32_t counts[4] = {0, 0, 0, 0};
   for (uint32_t y = 0; y < 40; y++)
     for (uint32_t x = 0; x < 120; x++) {
@@ -32,14 +32,14 @@ static void test_two_walls(void **state) {
       assert_int_equal(id(&t, x, y, "id.object"), front ? 2 : 1);
       assert_near("u", number(&t, x, y, "forward.U"), u, 2e-5);
       assert_near("v", number(&t, x, y, "forward.V"), 0, 2e-5);
-      /* the narrow wall stands at 33 to 57 in the other picture */
+      /* the narrow wall stands at 33 to 57 in the other image */
       uint32_t expected = at < 0 ? VL_HIDDEN_OUTSIDE : !front && at > 33 && at < 57 ? VL_HIDDEN_BEHIND : VL_HIDDEN_NOT;
       if (at == 33 || at == 57 || at == 0) continue; /* the very edge */
       counts[expected]++;
       assert_int_equal(id(&t, x, y, "forward.hidden"), expected);
     }
   assert_true(counts[0] > 1000 && counts[1] > 200 && counts[2] > 200);
-  truth_free(&t);
+  ground_truth_free(&t);
   stage_close(&s);
 }
 
@@ -51,17 +51,17 @@ static void test_sky_and_nowhere(void **state) {
   add_quad(&s, &wall);
   vlCameraDef other = s.camera;
   other.lookat[2] = 1;
-  Truth t = truth_take(&s, &other, VL_CHANNEL_ALL | VL_CHANNEL_FORWARD);
+  GroundTruth t = ground_truth_take(&s, &other, VL_CHANNEL_ALL | VL_CHANNEL_FORWARD);
   for (uint32_t y = 0; y < 64; y++) {
     assert_int_equal(id(&t, 20, y, "forward.hidden"), VL_HIDDEN_NOWHERE);
     assert_true(number(&t, 20, y, "forward.U") == 0 && number(&t, 20, y, "forward.V") == 0);
   }
-  truth_free(&t);
+  ground_truth_free(&t);
   other = s.camera;
   other.eye[0] = 100; /* the sky does not care where the camera is, but how it is turned */
   other.lookat[0] = 100 + 0.1;
   other.lookat[2] = -1;
-  t = truth_take(&s, &other, VL_CHANNEL_ALL | VL_CHANNEL_FORWARD);
+  t = ground_truth_take(&s, &other, VL_CHANNEL_ALL | VL_CHANNEL_FORWARD);
   double o[3], d[3], pixel[2], z;
   assert_true(vl_camera_unproject(&t.camera, 30.5, 10.5, o, d));
   double far_point[3] = {100 + d[0], d[1], d[2]};
@@ -70,7 +70,7 @@ static void test_sky_and_nowhere(void **state) {
   assert_near("u", number(&t, 30, 10, "forward.U"), pixel[0] - 30.5, 1e-4);
   assert_near("v", number(&t, 30, 10, "forward.V"), pixel[1] - 10.5, 1e-4);
   assert_int_equal(id(&t, 30, 10, "forward.hidden"), VL_HIDDEN_NOT);
-  truth_free(&t);
+  ground_truth_free(&t);
   stage_close(&s);
 }
 
@@ -94,7 +94,7 @@ static void test_no_self_occlusion(void **state) {
   s.camera.eye[1] = -0.8, s.camera.lookat[1] = -0.8;
   vlCameraDef other = s.camera;
   other.eye[0] += 5, other.eye[1] = 0.5;
-  Truth t = truth_take(&s, &other, VL_CHANNEL_ALL | VL_CHANNEL_FORWARD);
+  GroundTruth t = ground_truth_take(&s, &other, VL_CHANNEL_ALL | VL_CHANNEL_FORWARD);
   uint32_t seen = 0, hidden = 0, wrong = 0;
   for (uint32_t y = 0; y < 70; y++)
     for (uint32_t x = 0; x < 90; x++) {
@@ -124,11 +124,11 @@ static void test_no_self_occlusion(void **state) {
       wrong += expected != (h == VL_HIDDEN_BEHIND);
     }
   if (seen < 1000 || hidden < 40 || wrong > 5) fail_msg("%u seen, %u hidden, %u wrong", seen, hidden, wrong);
-  truth_free(&t);
+  ground_truth_free(&t);
   stage_close(&s);
 }
 
-/* Boxes: a square half behind another, and an instance that reaches out of the picture. */
+/* Boxes: a square half behind another, and an instance that reaches out of the image. */
 static void test_boxes(void **state) {
   (void)state;
   Stage s = stage_open(100, 60);
@@ -143,7 +143,7 @@ static void test_boxes(void **state) {
   set_matrix(m, 0, -1, 0, 6.5, 1, 0, 0, 0, 0, 0, 1, -5);
   vl_scene_add_instance(s.scene, group, m, (vlSource){0});
   s.camera.fx = s.camera.fy = 40;
-  Truth t = truth_take(&s, &s.camera, VL_CHANNEL_ALL);
+  GroundTruth t = ground_truth_take(&s, &s.camera, VL_CHANNEL_ALL);
   vlIdBox objects[3], instances[1];
   vlBoxesDef def = vl_default_boxes_def(100, 60);
   vlError error;
@@ -160,7 +160,7 @@ static void test_boxes(void **state) {
   assert_true(objects[0].has_outline && objects[0].has_space && !objects[0].grouped);
   assert_near("x", objects[0].low[0], -0.5, 0);
   assert_near("x", objects[0].high[0], 1.5, 0);
-  /* tile: 5.5 to 7.5 across at depth 5, 94 to 110: 6 columns in the picture */
+  /* tile: 5.5 to 7.5 across at depth 5, 94 to 110: 6 columns in the image */
   assert_int_equal(instances[0].seen, 6 * 16);
   assert_true(instances[0].has_outline && objects[2].grouped && !objects[2].has_outline);
   const double outline[4] = {94, 22, 110, 38};
@@ -178,7 +178,7 @@ static void test_boxes(void **state) {
   assert_int_equal(objects[0].seen, 5 * 20);
   def.crop[2] = 101;
   assert_int_equal(vl_world_boxes(t.world, &t.camera, &def, objects, NULL, &error), VL_ERROR_ARGUMENT);
-  truth_free(&t);
+  ground_truth_free(&t);
   stage_close(&s);
 }
 

@@ -1,5 +1,5 @@
 /* Derivatives of surfaces, seen from outside: bump maps against normals of the surfaces displaced by formula, and
- * picture textures under grazing rays: what is finer than a pixel is grey, what is not keeps its contrast. */
+ * image textures under grazing rays: what is finer than a pixel is grey, what is not keeps its contrast. */
 #include "render/shots.h"
 
 /* ---- bump maps --------------------------------------------------------------------------------------------------- */
@@ -139,14 +139,13 @@ static void bumps_are_displacements(void **state) {
   }
 }
 
-/* ---- pictures under grazing rays --------------------------------------------------------------------------------- */
+/* ---- images under grazing rays --------------------------------------------------------------------------------- */
 
 enum { TEXELS = 256, VIEW = 32 };
 
 /* Stripes of two texels, along u or along v, on a quad that is seen at 1:12, so that a pixel is 8 texels wide and, v
  * being repeated 12 times, 96 long. */
-static Picture stripes(bool along_v, vlTextureFilter filter, vlMapping mapping, bool patch, bool tangents,
-                       uint32_t spp) {
+static Image stripes(bool along_v, vlTextureFilter filter, vlMapping mapping, bool patch, bool tangents, uint32_t spp) {
   /* For normal maps; of any length. */
   static const float along_u[12] = {1e-3f, 0, 0, 1e-3f, 0, 0, 1e-3f, 0, 0, 1e-3f, 0, 0};
   Stage s = stage_open(VIEW, VIEW);
@@ -189,12 +188,12 @@ static void fine_stripes_are_grey_and_wide_ones_sharp(void **state) {
     bool patch = i / 3 == 1, tangents = i / 3 == 2;
     char what[64];
     snprintf(what, sizeof what, "case %d", i);
-    Picture fine = stripes(true, filter, mapping, patch, tangents, 1);
-    Picture wide = stripes(false, filter, mapping, patch, tangents, 64);
+    Image fine = stripes(true, filter, mapping, patch, tangents, 1);
+    Image wide = stripes(false, filter, mapping, patch, tangents, 64);
     double sum = 0, square = 0;
     for (uint32_t y = 2; y < VIEW - 2; y++)
       for (uint32_t x = 2; x < VIEW - 2; x++) {
-        double f = picture_at(&fine, x, y, 1) / cosine, w = picture_at(&wide, x, y, 1) / cosine;
+        double f = image_at(&fine, x, y, 1) / cosine, w = image_at(&wide, x, y, 1) / cosine;
         sum += f, square += f * f;
         double expected = (x / 4) & 1 ? 0.8 : 0.2, off = fabs(w - expected);
         bool edge = x % 4 == 0 || x % 4 == 3; /* the footprint reaches over: by no more than a quarter of a pixel */
@@ -205,8 +204,8 @@ static void fine_stripes_are_grey_and_wide_ones_sharp(void **state) {
     assert_near(what, mean, 0.5, 0.02);
     if (!(deviation < 0.08))
       fail_msg("%s: fine stripes vary by %.4f at one sample; 0.3 is unfiltered", what, deviation);
-    picture_free(&fine);
-    picture_free(&wide);
+    image_free(&fine);
+    image_free(&wide);
   }
 }
 

@@ -1,4 +1,4 @@
-/* One film for many pictures: cleared and rendered again it gives what a new film gives, whatever was in it. */
+/* One film for many images: cleared and rendered again it gives what a new film gives, whatever was in it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -50,7 +50,7 @@ static vlFilm *make_film(bool errors) {
   return film;
 }
 
-static vlImage *picture(vlFilm *film, double x, uint32_t spp, bool errors) {
+static vlImage *image(vlFilm *film, double x, uint32_t spp, bool errors) {
   vlCamera camera = camera_at(x);
   vlRenderDef def = vl_default_render_def();
   vlImage *image;
@@ -71,10 +71,10 @@ static void a_cleared_film_is_new(void **state) {
     for (uint32_t first = 1; first < 5; first++)
       for (uint32_t then = 2; then < 5; then++) {
         vlFilm *old = make_film(errors), *fresh = make_film(errors);
-        vlImage *before = picture(old, -1.5, first, errors);
+        vlImage *before = image(old, -1.5, first, errors);
         vl_film_clear(old);
         assert_int_equal(vl_film_spp(old), 0);
-        vlImage *a = picture(old, 1, then, errors), *b = picture(fresh, 1, then, errors);
+        vlImage *a = image(old, 1, then, errors), *b = image(fresh, 1, then, errors);
         same(a, b);
         vl_image_destroy(before);
         vl_image_destroy(a);
@@ -84,14 +84,14 @@ static void a_cleared_film_is_new(void **state) {
       }
 }
 
-/* After the first picture no memory is taken: as much is held after the tenth as after the second. */
+/* After the first image no memory is taken: as much is held after the tenth as after the second. */
 static void frames_take_no_memory(void **state) {
   (void)state;
   vlFilm *film = make_film(false);
   size_t held = 0;
   for (int i = 0; i < 10; i++) {
     vl_film_clear(film);
-    vl_image_destroy(picture(film, 0.1 * i, 1, false));
+    vl_image_destroy(image(film, 0.1 * i, 1, false));
     if (i == 1) held = vl_context_memory(context, NULL);
     if (i > 1) assert_int_equal(vl_context_memory(context, NULL), held);
   }

@@ -1,14 +1,14 @@
-/* test_gltf_convert.c: glTF written as pbrt shows about the same: balls of dielectrics and metals, a wall that glows by
- * a picture far from the origin of uv. */
+/* test_gltf_convert.c: glTF written as pbrt shows about the same: balls of dielectrics and metals, a wall that emits
+ * light by an image far from the origin of uv. */
 #include "render/gltf_shots.h"
 
-/* Pictures of the file, and of what is written of it as pbrt. */
-static void both_ways(const Gltf *g, const char *rest, Picture *own, Picture *written) {
+/* Images of the file, and of what is written of it as pbrt. */
+static void both_ways(const Gltf *g, const char *rest, Image *own, Image *written) {
   char folder[] = "/tmp/velo-convert-XXXXXX", from[80], to[80], command[80];
   assert_non_null(mkdtemp(folder));
   snprintf(from, sizeof from, "%s/a.gltf", folder);
   snprintf(to, sizeof to, "%s/b.pbrt", folder);
-  uint8_t pixels[48]; /* red, green, blue, white: pbrt's glow goes smoothly from texel to texel */
+  uint8_t pixels[48]; /* red, green, blue, white: pbrt's emission goes smoothly from texel to texel */
   for (int i = 0; i < 48; i++) pixels[i] = i >= 36 || i / 12 == i % 3 ? 255 : 0;
   char name[80];
   snprintf(name, sizeof name, "%s/p.png", folder);
@@ -64,11 +64,11 @@ static void balls(void **state) {
              "\"roughnessFactor\":%g}}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":0,"
              "\"TEXCOORD_0\":1},\"indices\":2,\"material\":0}]}]",
              cases[i].base, cases[i].base, cases[i].base, cases[i].metal, cases[i].rough);
-    Picture own, written;
+    Image own, written;
     both_ways(g, rest, &own, &written);
-    assert_near("ball", picture_mean(&written, 1), picture_mean(&own, 1), cases[i].most);
-    picture_free(&own);
-    picture_free(&written);
+    assert_near("ball", image_mean(&written, 1), image_mean(&own, 1), cases[i].most);
+    image_free(&own);
+    image_free(&written);
   }
   free(g);
 }
@@ -95,15 +95,15 @@ static void wall(void **state) {
              "\"sampler\":0}],\"materials\":[{%s}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
              "\"TEXCOORD_0\":1},\"indices\":2,\"material\":0}]}]",
              materials[i]);
-    Picture own, written;
+    Image own, written;
     both_ways(g, rest, &own, &written);
     for (uint32_t k = 0; k < 4; k++) /* red, green, blue, white */
       for (int c = 0; c < 3; c++)
-        assert_near(i ? "painted" : "glowing", picture_region(&written, 8 * k + 2, 8, 8 * k + 6, 24, c),
-                    picture_region(&own, 8 * k + 2, 8, 8 * k + 6, 24, c), i ? 0.04 : 0.01);
-    assert_true(picture_region(&own, 2, 8, 6, 24, 0) > 0.9);
-    picture_free(&own);
-    picture_free(&written);
+        assert_near(i ? "painted" : "emissive", image_region(&written, 8 * k + 2, 8, 8 * k + 6, 24, c),
+                    image_region(&own, 8 * k + 2, 8, 8 * k + 6, 24, c), i ? 0.04 : 0.01);
+    assert_true(image_region(&own, 2, 8, 6, 24, 0) > 0.9);
+    image_free(&own);
+    image_free(&written);
   }
   free(g);
 }

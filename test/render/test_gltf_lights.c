@@ -1,5 +1,5 @@
-/* test_gltf_lights.c: glTF's lamps on a white wall by hand (candela, lux, cones), surfaces that glow by a picture
- * against the same light without one, vertex colours and coverage, uv sets of pictures. */
+/* test_gltf_lights.c: glTF's lamps on a white wall by hand (candela, lux, cones), surfaces that emit light by an image
+ * against the same light without one, vertex colours and coverage, uv sets of images. */
 #include "render/gltf_shots.h"
 
 #define PAPER                                                                                                  \
@@ -11,7 +11,7 @@ static void pixel_point(uint32_t x, uint32_t y, double p[2]) {
   p[0] = (x + 0.5) / 16 - 1, p[1] = 1 - (y + 0.5) / 16;
 }
 
-static Picture lamp_picture(const char *node, const char *light) {
+static Image lamp_image(const char *node, const char *light) {
   Gltf *g = calloc(1, sizeof *g);
   put_box(g, 0);
   char rest[2000];
@@ -24,7 +24,7 @@ static Picture lamp_picture(const char *node, const char *light) {
            "}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0}]}]",
            node, light);
   Shot shot = {.room = VL_ENVIRONMENT_NONE, .spp = 16};
-  Picture p = shoot(g, rest, &shot);
+  Image p = shoot(g, rest, &shot);
   free(g);
   return p;
 }
@@ -35,28 +35,28 @@ static Picture lamp_picture(const char *node, const char *light) {
 static void point_and_spot(void **state) {
   (void)state;
   /* the spot looks 0.3 radians from straight down towards +x: its -z turned about y */
-  Picture point = lamp_picture("\"translation\":[0.3,-0.2,2],\"scale\":[3,3,3]",
-                               "\"type\":\"point\",\"intensity\":4,\"color\":[1,0.5,0.25]");
-  Picture spot =
-      lamp_picture("\"translation\":[0,0,2],\"rotation\":[0,-0.149438,0,0.988771]",
-                   "\"type\":\"spot\",\"intensity\":4,\"spot\":{\"innerConeAngle\":0.2,\"outerConeAngle\":0.45}");
+  Image point = lamp_image("\"translation\":[0.3,-0.2,2],\"scale\":[3,3,3]",
+                           "\"type\":\"point\",\"intensity\":4,\"color\":[1,0.5,0.25]");
+  Image spot =
+      lamp_image("\"translation\":[0,0,2],\"rotation\":[0,-0.149438,0,0.988771]",
+                 "\"type\":\"spot\",\"intensity\":4,\"spot\":{\"innerConeAngle\":0.2,\"outerConeAngle\":0.45}");
   int dark = 0, full = 0;
   for (uint32_t y = 0; y < 32; y++)
     for (uint32_t x = 0; x < 32; x++) {
       double at[2], color[3] = {1, 0.5, 0.25};
       pixel_point(x, y, at);
       double dx = at[0] - 0.3, dy = at[1] + 0.2, r2 = dx * dx + dy * dy + 4, e = 4 * 2 / (r2 * sqrt(r2));
-      for (int c = 0; c < 3; c++) assert_ratio("point", picture_at(&point, x, y, c), 0.5 / M_PI * color[c] * e, 0.005);
+      for (int c = 0; c < 3; c++) assert_ratio("point", image_at(&point, x, y, c), 0.5 / M_PI * color[c] * e, 0.005);
       r2 = at[0] * at[0] + at[1] * at[1] + 4;
       double r = sqrt(r2), axis = (at[0] * sin(0.3) + 2 * cos(0.3)) / r; /* cosine to the spot's axis */
       double t = (axis - cos(0.45)) / (cos(0.2) - cos(0.45));
       t = t < 0 ? 0 : t > 1 ? 1 : t;
       dark += t == 0, full += t == 1;
-      assert_near("spot", picture_at(&spot, x, y, 1), 0.5 / M_PI * 4 * 2 / (r2 * r) * t * t, 0.004);
+      assert_near("spot", image_at(&spot, x, y, 1), 0.5 / M_PI * 4 * 2 / (r2 * r) * t * t, 0.004);
     }
   assert_true(dark > 20 && full > 20);
-  picture_free(&point);
-  picture_free(&spot);
+  image_free(&point);
+  image_free(&spot);
 }
 
 static void directional(void **state) {
@@ -65,16 +65,17 @@ static void directional(void **state) {
   static const char *const nodes[] = {"\"rotation\":[0.5,0,0,0.8660254]",
                                       "\"translation\":[7,8,9],\"rotation\":[0.5,0,0,0.8660254],\"scale\":[-2,1,0.1]"};
   for (int i = 0; i < 2; i++) {
-    Picture p = lamp_picture(nodes[i], "\"type\":\"directional\",\"intensity\":3");
-    assert_ratio("directional", picture_mean(&p, 1), 0.5 / M_PI * 3 * 0.5, 0.002);
-    picture_free(&p);
+    Image p = lamp_image(nodes[i], "\"type\":\"directional\",\"intensity\":3");
+    assert_ratio("directional", image_mean(&p, 1), 0.5 / M_PI * 3 * 0.5, 0.002);
+    image_free(&p);
   }
 }
 
-/* ---- surfaces that glow ---------------------------------------------------------------------------------------------
+/* ---- surfaces that emit light
+ * ---------------------------------------------------------------------------------------------
  */
 
-static void write_picture(vlContext *context, const char *path, uint32_t width, const uint8_t *rgb) {
+static void write_image(vlContext *context, const char *path, uint32_t width, const uint8_t *rgb) {
   vlImageDef def = vl_default_image_def(width, 1, 3);
   def.type = VL_PIXEL_U8;
   def.encoding = VL_ENCODING_SRGB;
@@ -85,26 +86,26 @@ static void write_picture(vlContext *context, const char *path, uint32_t width, 
   vl_image_destroy(image);
 }
 
-static double spread(const Picture *a, const Picture *b) {
+static double spread(const Image *a, const Image *b) {
   double sum = 0;
   for (uint32_t y = 0; y < 32; y++)
-    for (uint32_t x = 0; x < 32; x++) sum += pow(picture_at(a, x, y, 1) - picture_at(b, x, y, 1), 2);
+    for (uint32_t x = 0; x < 32; x++) sum += pow(image_at(a, x, y, 1) - image_at(b, x, y, 1), 2);
   return sqrt(sum / 1024);
 }
 
-/* A panel beside the wall, of which the picture lets a sixteenth shine, lights it as a panel of that sixteenth alone.
- * In strips, as meshes have them, light is looked for where the picture is bright, with hardly more noise; in one piece
+/* A panel beside the wall, of which the image lets a sixteenth shine, lights it as a panel of that sixteenth alone.
+ * In strips, as meshes have them, light is looked for where the image is bright, with hardly more noise; in one piece
  * every place of it is asked alike. */
-static void glowing_picture(void **state) {
+static void emissive_image(void **state) {
   (void)state;
-  char path[] = "/tmp/velo-glow-XXXXXX.png";
+  char path[] = "/tmp/velo-emission-XXXXXX.png";
   int file = mkstemps(path, 4);
   assert_true(file >= 0);
   close(file);
   uint8_t rgb[48] = {0};
   rgb[15] = rgb[16] = rgb[17] = 255; /* the sixth of sixteen columns */
   Stage s = stage_open(8, 8);
-  write_picture(s.context, path, 16, rgb);
+  write_image(s.context, path, 16, rgb);
   stage_close(&s);
   static const struct {
     float low, high;
@@ -115,7 +116,7 @@ static void glowing_picture(void **state) {
                  {0, 1, 16, true, 64},
                  {5 / 16.0f, 6 / 16.0f, 1, false, 64},
                  {5 / 16.0f, 6 / 16.0f, 1, false, 512}};
-  Picture p[4];
+  Image p[4];
   for (int i = 0; i < 4; i++) {
     Gltf *g = calloc(1, sizeof *g);
     put_box(g, 0);
@@ -155,15 +156,15 @@ static void glowing_picture(void **state) {
     free(g);
   }
   unlink(path);
-  double mean = picture_mean(&p[3], 1);
+  double mean = image_mean(&p[3], 1);
   assert_true(mean > 0.1);
-  assert_ratio("a panel in one piece", picture_mean(&p[0], 1), mean, 0.03);
-  assert_ratio("a panel in strips", picture_mean(&p[1], 1), mean, 0.01);
-  assert_ratio("a cut-out panel", picture_mean(&p[2], 1), mean, 0.01);
+  assert_ratio("a panel in one piece", image_mean(&p[0], 1), mean, 0.03);
+  assert_ratio("a panel in strips", image_mean(&p[1], 1), mean, 0.01);
+  assert_ratio("a cut-out panel", image_mean(&p[2], 1), mean, 0.01);
   double piece = spread(&p[0], &p[3]), strips = spread(&p[1], &p[3]), cut = spread(&p[2], &p[3]);
   if (!(strips < 3 * cut + 0.002)) fail_msg("noise of strips %g, of a cut-out panel %g", strips, cut);
   if (!(piece < 2 * mean * sqrt(15.0 / 64))) fail_msg("noise in one piece %g", piece);
-  for (int i = 0; i < 4; i++) picture_free(&p[i]);
+  for (int i = 0; i < 4; i++) image_free(&p[i]);
 }
 
 /* ---- colours, coverage, uv sets -------------------------------------------------------------------------------------
@@ -177,7 +178,7 @@ static void painted_walls(void **state) {
   close(file);
   static const uint8_t rgb[6] = {255, 0, 0, 0, 255, 0};
   Stage s = stage_open(8, 8);
-  write_picture(s.context, path, 2, rgb);
+  write_image(s.context, path, 2, rgb);
   stage_close(&s);
   static const float corners[12] = {-2, -2, 0, 2, -2, 0, -2, 2, 0, 2, 2, 0};
   static const float here[8] = {0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f}; /* all red */
@@ -242,19 +243,19 @@ static void painted_walls(void **state) {
              "\"POSITION\":0,\"TEXCOORD_0\":1,\"TEXCOORD_1\":2%s},\"indices\":4,\"material\":0}]}]",
              path + 5, walls[i].material, walls[i].attributes);
     Shot shot = {.spp = 64};
-    Picture p = shoot(g, rest, &shot);
+    Image p = shoot(g, rest, &shot);
     free(g);
     for (int c = 0; c < 3; c++) {
-      assert_near(walls[i].material, picture_region(&p, 2, 4, 14, 28, c), (double)walls[i].left[c], 0.01);
-      assert_near(walls[i].material, picture_region(&p, 18, 4, 30, 28, c), (double)walls[i].right[c], 0.01);
+      assert_near(walls[i].material, image_region(&p, 2, 4, 14, 28, c), (double)walls[i].left[c], 0.01);
+      assert_near(walls[i].material, image_region(&p, 18, 4, 30, 28, c), (double)walls[i].right[c], 0.01);
     }
-    picture_free(&p);
+    image_free(&p);
   }
   unlink(path);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(point_and_spot), cmocka_unit_test(directional),
-                                     cmocka_unit_test(glowing_picture), cmocka_unit_test(painted_walls)};
+                                     cmocka_unit_test(emissive_image), cmocka_unit_test(painted_walls)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

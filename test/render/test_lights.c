@@ -1,4 +1,4 @@
-/* Lights against the numbers of the book: inverse squares and cosines, cones, photometric scales, pictures on lights
+/* Lights against the numbers of the book: inverse squares and cosines, cones, photometric scales, images on lights
  * and in the sky, and the three ways of choosing among lights. */
 #include "render/shots.h"
 
@@ -46,7 +46,7 @@ static void point_and_spot(void **state) {
         intensity *= 20 / (spot ? 2 * M_PI * ((1 - start) + (start - end) / 2) : 4 * M_PI);
       }
       vl_scene_add_light(s.scene, &def);
-      Picture q = stage_finish(&s);
+      Image q = stage_finish(&s);
       double axis[3], l = 0;
       for (int i = 0; i < 3; i++) axis[i] = aim[i] - p[i], l += axis[i] * axis[i];
       for (uint32_t y = 0; y < SIZE; y++)
@@ -55,9 +55,9 @@ static void point_and_spot(void **state) {
           double d2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], cosine = p[2] / sqrt(d2);
           double along = (d[0] * axis[0] + d[1] * axis[1] + d[2] * axis[2]) / sqrt(d2 * l);
           double expected = 0.5 / M_PI * intensity * cosine / d2 * (spot ? smoothstep(along, end, start) : 1);
-          assert_near(spot ? "spot" : "point", picture_at(&q, x, y, 1), expected, 2e-4 * expected + 1e-5 * intensity);
+          assert_near(spot ? "spot" : "point", image_at(&q, x, y, 1), expected, 2e-4 * expected + 1e-5 * intensity);
         }
-      picture_free(&q);
+      image_free(&q);
     }
 }
 
@@ -74,15 +74,15 @@ static void hard_spots(void **state) {
       def.from[2] = 1, def.to[2] = 0;
       def.cone_angle = angles[k / 3], def.cone_delta = deltas[k % 3];
       vl_scene_add_light(s.scene, &def);
-      Picture q = stage_finish(&s);
+      Image q = stage_finish(&s);
       for (uint32_t y = 0; y < SIZE; y++)
         for (uint32_t x = 0; x < SIZE; x++) {
           double r = hypot(at_x(x), at_y(y)), angle = atan(r), cosine = cos(angle);
           if (fabs(angle - angles[k / 3]) < 0.012) continue;
           double expected = angle < angles[k / 3] ? 0.5 / M_PI * cosine * cosine * cosine : 0;
-          assert_near("hard spot", picture_at(&q, x, y, 1), expected, 3e-4 * expected + 1e-6);
+          assert_near("hard spot", image_at(&q, x, y, 1), expected, 3e-4 * expected + 1e-6);
         }
-      picture_free(&q);
+      image_free(&q);
     }
 }
 
@@ -94,9 +94,9 @@ static void distant(void **state) {
     def.from[0] = 3, def.from[2] = 4, def.to[2] = 0;
     if (lux) def.illuminance = 7;
     vl_scene_add_light(s.scene, &def);
-    Picture p = stage_finish(&s);
-    assert_ratio("distant", picture_mean(&p, 1), 0.5 / M_PI * 0.8 * (lux ? 7 : 1), 1e-4);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    assert_ratio("distant", image_mean(&p, 1), 0.5 / M_PI * 0.8 * (lux ? 7 : 1), 1e-4);
+    image_free(&p);
   }
 }
 
@@ -109,9 +109,9 @@ static void uniform_sky(void **state) {
     def.scale = 2;
     if (lux) def.illuminance = M_PI * 3;
     vl_scene_add_light(s.scene, &def);
-    Picture p = stage_finish(&s);
-    assert_ratio("sky on a floor", picture_mean(&p, 1), 0.5 * 2 * (lux ? 3 : 1), 2e-3);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    assert_ratio("sky on a floor", image_mean(&p, 1), 0.5 * 2 * (lux ? 3 : 1), 2e-3);
+    image_free(&p);
   }
 }
 
@@ -129,11 +129,11 @@ static void photometric_scale(void **state) {
       vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
       def.color = colors[i];
       vl_scene_add_light(s.scene, &def);
-      Picture p = stage_finish(&s);
-      for (int c = 0; c < 3; c++) mean[mode][c] = picture_mean(&p, c);
+      Image p = stage_finish(&s);
+      for (int c = 0; c < 3; c++) mean[mode][c] = image_mean(&p, c);
       double y = 0.2126 * mean[mode][0] + 0.7152 * mean[mode][1] + 0.0722 * mean[mode][2];
       assert_ratio(mode ? "luminance, rgb" : "luminance, spectral", y, 1, 2e-3);
-      picture_free(&p);
+      image_free(&p);
     }
     for (int c = 0; c < 3; c++) assert_near("colour of a light", mean[0][c], mean[1][c], 0.01);
   }
@@ -141,7 +141,7 @@ static void photometric_scale(void **state) {
 
 /* ---- area lights ------------------------------------------------------------------------------------------------- */
 
-/* The light's own picture: one side, both sides, turned over. */
+/* The light's own image: one side, both sides, turned over. */
 static void sides(void **state) {
   (void)state;
   for (int kind = 0; kind < 5; kind++) /* triangles, patch, disk, sphere (from inside), cylinder (from inside) */
@@ -157,19 +157,19 @@ static void sides(void **state) {
       if (kind < 2)
         def.vertices = 4, def.faces = kind ? 1 : 2, def.positions = p, def.indices = kind ? patch : triangles;
       if (kind > 2) def.radius = 20, def.z_min = -20, def.z_max = 20;
-      def.emission = add_glow(&s, 2, two_sided);
+      def.emission = add_emission(&s, 2, two_sided);
       def.reverse_orientation = reverse;
       /* Normals of the flat ones point to the camera, of the round ones away from it. A mirror (x to -x) turns over
        * triangles' order, and pbrt turns it back; normals of quadrics stay outside, and pbrt turns them. */
       set_matrix(def.group_from_shape, mirrored ? -1 : 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -2);
       if (kind == 4) set_matrix(def.group_from_shape, mirrored ? -1 : 1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, -2);
       vl_scene_add_shape(s.scene, &def);
-      Picture q = stage_finish(&s);
+      Image q = stage_finish(&s);
       bool lit = two_sided || (reverse != (kind < 3)) != (kind > 1 && mirrored);
       char what[64];
       snprintf(what, sizeof what, "kind %d, mode %d", kind, mode);
-      assert_near(what, picture_mean(&q, 1), lit ? 2 : 0, 2e-2);
-      picture_free(&q);
+      assert_near(what, image_mean(&q, 1), lit ? 2 : 0, 2e-2);
+      image_free(&q);
     }
 }
 
@@ -180,11 +180,11 @@ static void power_of_area_lights(void **state) {
     for (int kind = 0; kind < 2; kind++) {
       Stage s = floor_stage(false);
       s.render.spp = 16;
-      vlEmissionDef glow = vl_default_emission_def();
-      glow.power = 10;
-      glow.two_sided = two_sided;
-      glow.radiance = vl_spectrum_rgb(7, 7, 7); /* does not matter */
-      vlEmissionId emission = vl_scene_add_emission(s.scene, &glow);
+      vlEmissionDef emission = vl_default_emission_def();
+      emission.power = 10;
+      emission.two_sided = two_sided;
+      emission.radiance = vl_spectrum_rgb(7, 7, 7); /* does not matter */
+      vlEmissionId emission = vl_scene_add_emission(s.scene, &emission);
       if (kind == 0) {
         Quad q = quad_at(0, 0, 10, 0.01f, 0, 0, 0, -0.02f, 0); /* faces down */
         q.patch = true;
@@ -197,16 +197,16 @@ static void power_of_area_lights(void **state) {
         vl_scene_add_shape(s.scene, &def);
       }
       s.camera.screen_min_x = s.camera.screen_min_y = -0.1, s.camera.screen_max_x = s.camera.screen_max_y = 0.1;
-      Picture p = stage_finish(&s);
+      Image p = stage_finish(&s);
       /* rgb's factor 7 is kept (only its white is normalised), as pbrt's spectrum would be */
       double intensity = 10 / M_PI / (two_sided ? 2 : 1) * 7;
-      assert_ratio("power of an area light", picture_mean(&p, 1), 0.5 / M_PI * intensity / 100, 5e-3);
-      picture_free(&p);
+      assert_ratio("power of an area light", image_mean(&p, 1), 0.5 / M_PI * intensity / 100, 5e-3);
+      image_free(&p);
     }
 }
 
-/* A picture on a light: first row on top (v = 1), edges do not wrap; its light is that of its squares. */
-static void picture_on_a_light(void **state) {
+/* An image on a light: first row on top (v = 1), edges do not wrap; its light is that of its squares. */
+static void image_on_a_light(void **state) {
   (void)state;
   char path[600];
   snprintf(path, sizeof path, "%s/test_lights.pfm", VELO_BINARY_DIR);
@@ -219,20 +219,20 @@ static void picture_on_a_light(void **state) {
     vlImage *image = make_image(&s, 2, 2, rgb);
     assert_int_equal(vl_image_write(image, path, NULL, NULL), VL_OK);
     vl_image_destroy(image);
-    vlEmissionDef glow = vl_default_emission_def();
-    glow.image = path;
+    vlEmissionDef emission = vl_default_emission_def();
+    emission.image = path;
     Quad q = quad_at(0, 0, -1, 1, 0, 0, 0, 1, 0);
     q.patch = patch;
-    q.emission = vl_scene_add_emission(s.scene, &glow);
+    q.emission = vl_scene_add_emission(s.scene, &emission);
     add_quad(&s, &q);
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     for (int y = 0; y < 2; y++)
       for (int x = 0; x < 2; x++)
         for (int c = 0; c < 3; c++) {
           uint32_t px = x ? SIZE - 1 : 0, py = y ? SIZE - 1 : 0;
-          assert_near("corner of a light's picture", picture_at(&p, px, py, c), rgb[3 * (2 * y + x) + c], 1e-4);
+          assert_near("corner of a light's image", image_at(&p, px, py, c), rgb[3 * (2 * y + x) + c], 1e-4);
         }
-    picture_free(&p);
+    image_free(&p);
   }
   remove(path);
 }
@@ -280,10 +280,10 @@ static void sky_orientation(void **state) {
       if (turned) set_matrix(def.world_from_light, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0);
       vl_scene_add_light(s.scene, &def);
       vl_image_destroy(image);
-      Picture p = stage_finish(&s);
+      Image p = stage_finish(&s);
       for (int c = 0; c < 3; c++)
-        assert_ratio("texel of the sky", picture_mean(&p, c), 2 * sky[3 * (y * SKY + x) + c], 1e-4);
-      picture_free(&p);
+        assert_ratio("texel of the sky", image_mean(&p, c), 2 * sky[3 * (y * SKY + x) + c], 1e-4);
+      image_free(&p);
     }
 }
 
@@ -320,15 +320,15 @@ static void sky_light_against_the_integral(void **state) {
       set_matrix(def.world_from_light, m[0], m[1], m[2], 0, m[3], m[4], m[5], 0, m[6], m[7], m[8], 0);
       vl_scene_add_light(s.scene, &def);
       vl_image_destroy(image);
-      Picture p = stage_finish(&s);
-      assert_ratio("floor under a pictured sky", picture_mean(&p, 1), 0.5 / M_PI * expected, 5e-3);
-      picture_free(&p);
+      Image p = stage_finish(&s);
+      assert_ratio("floor under a imaged sky", image_mean(&p, 1), 0.5 / M_PI * expected, 5e-3);
+      image_free(&p);
     }
   }
 }
 
-/* A sky of given illuminance gives that much to a floor under it, whatever the picture. pbrt-v4 gives twice as much. */
-static void illuminance_of_a_pictured_sky(void **state) {
+/* A sky of given illuminance gives that much to a floor under it, whatever the image. pbrt-v4 gives twice as much. */
+static void illuminance_of_a_imaged_sky(void **state) {
   (void)state;
   float sky[SKY * SKY * 3];
   for (int i = 0; i < SKY * SKY * 3; i++) sky[i] = 0.3f + (float)(i / 3 * 31 % 17) / 10.0f;
@@ -342,11 +342,11 @@ static void illuminance_of_a_pictured_sky(void **state) {
     def.illuminance = 5;
     vl_scene_add_light(s.scene, &def);
     vl_image_destroy(image);
-    Picture p = stage_finish(&s);
-    assert_ratio("illuminance of a pictured sky", picture_mean(&p, 1), 0.5 / M_PI * 5 * (imitate ? 2 : 1),
+    Image p = stage_finish(&s);
+    assert_ratio("illuminance of a imaged sky", image_mean(&p, 1), 0.5 / M_PI * 5 * (imitate ? 2 : 1),
                  0.025); /* midpoints of coarse texels, as pbrt takes them */
     ;
-    picture_free(&p);
+    image_free(&p);
   }
 }
 
@@ -377,19 +377,19 @@ static void light_samplers_agree(void **state) {
       Quad q = quad_at(-2 + 0.4f * (float)k, -0.5f + 0.1f * (float)(k % 5), -1 + 0.3f * (float)(k % 4), 0.1f, 0, 0, 0,
                        0.02f * (float)(k % 3), -0.1f);
       q.patch = k % 4 == 1;
-      q.emission = add_glow(&s, 1 + (float)k, k % 3 == 0);
+      q.emission = add_emission(&s, 1 + (float)k, k % 3 == 0);
       q.reverse = k % 2;
       add_quad(&s, &q);
     }
     for (int k = 0; k < 3; k++) {
       vlShapeDef def = vl_default_shape_def((vlShapeKind[3]){VL_SHAPE_SPHERE, VL_SHAPE_CYLINDER, VL_SHAPE_DISK}[k]);
       set_matrix(def.group_from_shape, 0.1, 0.02, 0, k - 1, 0, 0.15, 0, -0.6, 0, 0, 0.1, 0.8);
-      def.emission = add_glow(&s, 3, k == 2);
+      def.emission = add_emission(&s, 3, k == 2);
       vl_scene_add_shape(s.scene, &def);
     }
-    Picture p = stage_finish(&s);
-    mean[sampler] = picture_mean(&p, 1);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    mean[sampler] = image_mean(&p, 1);
+    image_free(&p);
   }
   assert_ratio("power against bvh", mean[1], mean[0], 6e-3);
   assert_ratio("uniform against bvh", mean[2], mean[0], 6e-3);
@@ -405,17 +405,17 @@ static void sheared_sphere_light(void **state) {
     float *block = NULL;
     vlShapeDef def = mesh ? mesh_sphere(48, 1, false, &block) : vl_default_shape_def(VL_SHAPE_SPHERE);
     set_matrix(def.group_from_shape, 0.5, 0, 0.4, 0, 0, 0.5, 0, 0, 0, 0, 0.3, 0.7);
-    def.emission = add_glow(&s, 1, false);
+    def.emission = add_emission(&s, 1, false);
     vl_scene_add_shape(s.scene, &def);
     free(block);
-    Picture p = stage_finish(&s);
-    mean[mesh] = picture_mean(&p, 1);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    mean[mesh] = image_mean(&p, 1);
+    image_free(&p);
   }
   assert_ratio("sheared sphere", mean[0], mean[1], 6e-3);
 }
 
-/* pbrt: a glowing shape of coverage 0 cannot be seen and lights all the same. */
+/* pbrt: an emissive shape of coverage 0 cannot be seen and lights all the same. */
 static void invisible_light(void **state) {
   (void)state;
   double mean[2];
@@ -423,7 +423,7 @@ static void invisible_light(void **state) {
     Stage s = floor_stage(false);
     s.render.spp = 64;
     Quad q = quad_at(0.2f, 0, 0.5f, 0.3f, 0, 0, 0, -0.3f, 0);
-    q.emission = add_glow(&s, 1, false);
+    q.emission = add_emission(&s, 1, false);
     if (hidden) q.alpha = vl_float_input(0);
     add_quad(&s, &q);
     if (hidden) { /* it casts no shadow either: a sun through it leaves the floor as bright as without */
@@ -431,9 +431,9 @@ static void invisible_light(void **state) {
       sun.from[2] = 1, sun.to[2] = 0, sun.scale = 2;
       vl_scene_add_light(s.scene, &sun);
     }
-    Picture p = stage_finish(&s);
-    mean[hidden] = picture_mean(&p, 1) - (hidden ? 2 * 0.5 / M_PI : 0);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    mean[hidden] = image_mean(&p, 1) - (hidden ? 2 * 0.5 / M_PI : 0);
+    image_free(&p);
   }
   assert_ratio("invisible light", mean[1], mean[0], 5e-3);
 }
@@ -459,10 +459,10 @@ static void invisible_sphere(void **state) {
         set_matrix(def.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, around ? 0 : 1);
         def.radius = around ? 30 : 0.5f, def.z_min = -def.radius, def.z_max = def.radius;
         def.alpha = vl_float_input(0);
-        def.emission = add_glow(&s, 1, two_sided);
+        def.emission = add_emission(&s, 1, two_sided);
         def.reverse_orientation = reverse;
         vl_scene_add_shape(s.scene, &def);
-        Picture p = stage_finish(&s);
+        Image p = stage_finish(&s);
         bool lit = two_sided || reverse == (around == 1);
         double mean = 0; /* of what a sphere sends to a plane: pi r^2 h / d^3 */
         for (uint32_t i = 0; i < SIZE * SIZE; i++)
@@ -470,8 +470,8 @@ static void invisible_sphere(void **state) {
         char what[64];
         snprintf(what, sizeof what, "invisible sphere %d, kind %d, tracer %d", around, kind, (int)tracers[t]);
         double expected = lit ? 0.5 * (around ? 1 : mean) : 0;
-        assert_near(what, picture_mean(&p, 1), expected, (tracers[t] == VL_TRACER_LIGHT_PATH ? 0.1 : 0.02) * expected);
-        picture_free(&p);
+        assert_near(what, image_mean(&p, 1), expected, (tracers[t] == VL_TRACER_LIGHT_PATH ? 0.1 : 0.02) * expected);
+        image_free(&p);
       }
 }
 
@@ -498,18 +498,18 @@ static void imitation_errs_where_pbrt_does(void **state) {
       vlLightDef light = vl_default_light_def(sun ? VL_LIGHT_DISTANT : VL_LIGHT_INFINITE);
       light.from[2] = 1, light.to[2] = 0;
       vl_scene_add_light(s.scene, &light);
-      Picture p = stage_finish(&s);
-      mean[sun][imitate] = picture_mean(&p, 1);
-      picture_free(&p);
+      Image p = stage_finish(&s);
+      mean[sun][imitate] = image_mean(&p, 1);
+      image_free(&p);
     }
   assert_near("furnace", mean[0][0], 0.59, 0.03);
   assert_ratio("furnace, imitating", mean[0][1], mean[0][0], 2e-3);
   assert_true(mean[1][1] > 1.02 * mean[1][0]);
 }
 
-/* A ceiling of 8 x 8 cells of two triangles over 2 x 2 repeats of a 32 x 32 picture, black but for the texels of `lit`
+/* A ceiling of 8 x 8 cells of two triangles over 2 x 2 repeats of a 32 x 32 image, black but for the texels of `lit`
  * (x, y, width, height), which are 1; dim: of the black ones. Lights: how many faces became some. */
-static Picture shining_ceiling(const uint32_t lit[4], float dim, vlTextureFilter filter, uint64_t *lights) {
+static Image shining_ceiling(const uint32_t lit[4], float dim, vlTextureFilter filter, uint64_t *lights) {
   enum { CELLS = 8, SIDE = 32 };
   static float p[3 * (CELLS + 1) * (CELLS + 1)], uv[2 * (CELLS + 1) * (CELLS + 1)], rgb[3 * SIDE * SIDE];
   static uint32_t f[6 * CELLS * CELLS];
@@ -531,15 +531,15 @@ static Picture shining_ceiling(const uint32_t lit[4], float dim, vlTextureFilter
     bool on = x >= lit[0] && x < lit[0] + lit[2] && y >= lit[1] && y < lit[1] + lit[3];
     for (int c = 0; c < 3; c++) rgb[3 * k + (uint32_t)c] = on ? 1 : dim;
   }
-  vlTextureDef picture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+  vlTextureDef image = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
   vlImage *image = make_image(&s, SIDE, SIDE, rgb);
-  picture.image = image, picture.filter = filter;
-  vlEmissionDef glow = vl_default_emission_def();
-  glow.texture = vl_scene_add_texture(s.scene, &picture);
+  image.image = image, image.filter = filter;
+  vlEmissionDef emission = vl_default_emission_def();
+  emission.texture = vl_scene_add_texture(s.scene, &image);
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
   def.vertices = (CELLS + 1) * (CELLS + 1), def.faces = 2 * CELLS * CELLS;
   def.positions = p, def.uvs = uv, def.indices = f;
-  def.emission = vl_scene_add_emission(s.scene, &glow);
+  def.emission = vl_scene_add_emission(s.scene, &emission);
   vl_scene_add_shape(s.scene, &def);
   vl_image_destroy(image);
   vlWorld *world;
@@ -556,7 +556,7 @@ static void black_faces_are_no_lights(void **state) {
   (void)state;
   /* A cell is 8 texels wide, each texel stands in 4 cells. How many of the 128 triangles it touches, by hand: one amid
    * the lower left triangle of a cell; two on the diagonal; all; none; one at a cell's left side, to which bilinear
-   * lookups come from the next cell, too (of the next repeat, at the picture's edge). */
+   * lookups come from the next cell, too (of the next repeat, at the image's edge). */
   static const struct {
     uint32_t lit[4], faces;
   } cases[] = {{{1, 28, 1, 1}, 4}, {{3, 28, 2, 1}, 8}, {{0, 0, 32, 32}, 128}, {{0, 0, 0, 0}, 0}, {{0, 28, 1, 1}, 8}};
@@ -564,12 +564,12 @@ static void black_faces_are_no_lights(void **state) {
     for (int filter = 0; filter < 2; filter++) {
       uint64_t few, all;
       vlTextureFilter kind = filter ? VL_FILTER_BILINEAR : VL_FILTER_POINT;
-      Picture a = shining_ceiling(cases[k].lit, 0, kind, &few), b = shining_ceiling(cases[k].lit, 1e-9f, kind, &all);
+      Image a = shining_ceiling(cases[k].lit, 0, kind, &few), b = shining_ceiling(cases[k].lit, 1e-9f, kind, &all);
       assert_int_equal(all, 128);
       assert_int_equal(few, cases[k].faces);
-      assert_near("light of a few faces", picture_mean(&a, 1), picture_mean(&b, 1), 0.02 * picture_mean(&b, 1) + 1e-9);
-      assert_true(few == 0 || picture_mean(&a, 1) > 1e-5);
-      picture_free(&a), picture_free(&b);
+      assert_near("light of a few faces", image_mean(&a, 1), image_mean(&b, 1), 0.02 * image_mean(&b, 1) + 1e-9);
+      assert_true(few == 0 || image_mean(&a, 1) > 1e-5);
+      image_free(&a), image_free(&b);
     }
 }
 
@@ -582,10 +582,10 @@ int main(void) {
       cmocka_unit_test(photometric_scale),
       cmocka_unit_test(sides),
       cmocka_unit_test(power_of_area_lights),
-      cmocka_unit_test(picture_on_a_light),
+      cmocka_unit_test(image_on_a_light),
       cmocka_unit_test(sky_orientation),
       cmocka_unit_test(sky_light_against_the_integral),
-      cmocka_unit_test(illuminance_of_a_pictured_sky),
+      cmocka_unit_test(illuminance_of_a_imaged_sky),
       cmocka_unit_test(light_samplers_agree),
       cmocka_unit_test(sheared_sphere_light),
       cmocka_unit_test(invisible_light),

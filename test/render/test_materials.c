@@ -1,4 +1,4 @@
-/* Materials on pictures: mixes, bump and normal maps, interfaces, glass that splits colours. */
+/* Materials on images: mixes, bump and normal maps, interfaces, glass that splits colours. */
 #include "render/shots.h"
 
 enum { SIZE = 32 };
@@ -33,7 +33,7 @@ static vlMaterialId add_mix(Stage *s, vlMaterialId a, vlMaterialId b, float amou
 
 static void mixes(void **state) {
   (void)state;
-  Picture p[6];
+  Image p[6];
   for (int i = 0; i < 6; i++) {
     Stage s = stage();
     if (i >= 4) s.render.spp = 64;
@@ -51,20 +51,20 @@ static void mixes(void **state) {
     p[i] = stage_finish(&s);
     assert_int_equal(p[i].stats.not_finite, 0);
   }
-  assert_true(picture_differing(&p[0], &p[2], 0) == 0);
-  assert_true(picture_differing(&p[1], &p[3], 0) == 0);
+  assert_true(image_differing(&p[0], &p[2], 0) == 0);
+  assert_true(image_differing(&p[1], &p[3], 0) == 0);
   for (int c = 0; c < 3; c++) {
-    double half = 0.5 * (picture_mean(&p[0], c) + picture_mean(&p[1], c));
-    assert_ratio("half of each", picture_mean(&p[4], c), half, 0.01);
-    assert_ratio("chain of mixes", picture_mean(&p[5], c), picture_mean(&p[0], c), 0.01);
+    double half = 0.5 * (image_mean(&p[0], c) + image_mean(&p[1], c));
+    assert_ratio("half of each", image_mean(&p[4], c), half, 0.01);
+    assert_ratio("chain of mixes", image_mean(&p[5], c), image_mean(&p[0], c), 0.01);
   }
-  for (int i = 0; i < 6; i++) picture_free(&p[i]);
+  for (int i = 0; i < 6; i++) image_free(&p[i]);
 }
 
 /* A chequered amount chooses by place. */
 static void mix_by_texture(void **state) {
   (void)state;
-  Picture p[2];
+  Image p[2];
   for (int way = 0; way < 2; way++) {
     Stage s = stage();
     vlMaterialId m[2] = {add_diffuse(&s, 0.8f, 0.2f, 0.1f), add_diffuse(&s, 0.1f, 0.3f, 0.6f)};
@@ -85,10 +85,10 @@ static void mix_by_texture(void **state) {
     }
     p[way] = stage_finish(&s);
   }
-  double differing = picture_differing(&p[0], &p[1], 0.02);
+  double differing = image_differing(&p[0], &p[1], 0.02);
   if (differing > 0.03) fail_msg("mix by texture: %.1f %% of the pixels differ", 100 * differing);
-  for (int c = 0; c < 3; c++) assert_ratio("mix by texture", picture_mean(&p[0], c), picture_mean(&p[1], c), 3e-3);
-  picture_free(&p[0]), picture_free(&p[1]);
+  for (int c = 0; c < 3; c++) assert_ratio("mix by texture", image_mean(&p[0], c), image_mean(&p[1], c), 3e-3);
+  image_free(&p[0]), image_free(&p[1]);
 }
 
 /* A mix with an interface as a part has no meaning yet: an error, no silent difference. */
@@ -101,7 +101,7 @@ static void mixed_with_an_interface(void **state) {
     s.render.spp = 400;
     s.camera.fov = 0.3;
     Quad light = quad_at(0, 0, -9, 30, 0, 0, 0, 30, 0), sheet = quad_at(0, 0, -2, 30, 0, 0, 0, 30, 0);
-    light.emission = add_glow(&s, 1, true);
+    light.emission = add_emission(&s, 1, true);
     add_quad(&s, &light);
     vlMaterialDef def = vl_default_material_def(VL_MATERIAL_INTERFACE);
     vlMaterialId none = vl_scene_add_material(s.scene, &def), black = add_diffuse(&s, 0, 0, 0);
@@ -115,9 +115,9 @@ static void mixed_with_an_interface(void **state) {
     }
     sheet.material = vl_scene_add_material(s.scene, &mix);
     add_quad(&s, &sheet);
-    Picture p = stage_finish(&s);
-    assert_ratio("through the sheet", picture_mean(&p, 1), 0.7, 6e-3);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    assert_ratio("through the sheet", image_mean(&p, 1), 0.7, 6e-3);
+    image_free(&p);
   }
 }
 
@@ -149,7 +149,7 @@ static Stage wall_stage(const double from[3]) {
   return s;
 }
 
-static Picture wall(Stage *s, const vlMaterialDef *def) {
+static Image wall(Stage *s, const vlMaterialDef *def) {
   Quad q = quad_at(0, 0, -1, 1, 0, 0, 0, 1, 0);
   q.material = vl_scene_add_material(s->scene, def);
   add_quad(s, &q);
@@ -172,14 +172,14 @@ static void normal_maps(void **state) {
     vl_image_destroy(image);
     vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
     def.normal_map = path;
-    Picture p = wall(&s, &def);
+    Image p = wall(&s, &def);
     double cosine = 0;
     for (int k = 0; k < 3; k++) cosine += normals[i][k] * sun_at[k];
-    assert_ratio("normal map", picture_mean(&p, 1), 0.5 * cosine, 1e-4);
-    picture_free(&p);
+    assert_ratio("normal map", image_mean(&p, 1), 0.5 * cosine, 1e-4);
+    image_free(&p);
   }
-  /* Flat: the very picture without a map, on a curved thing too. */
-  Picture p[2];
+  /* Flat: the very image without a map, on a curved thing too. */
+  Image p[2];
   for (int mapped = 0; mapped < 2; mapped++) {
     Stage s = stage();
     const float flat[12] = {0.5f, 0.5f, 1, 0.5f, 0.5f, 1, 0.5f, 0.5f, 1, 0.5f, 0.5f, 1};
@@ -191,9 +191,9 @@ static void normal_maps(void **state) {
     add_ball(&s, vl_scene_add_material(s.scene, &def));
     p[mapped] = stage_finish(&s);
   }
-  double differing = picture_differing(&p[0], &p[1], 1e-3);
+  double differing = image_differing(&p[0], &p[1], 1e-3);
   if (differing > 0.01) fail_msg("flat normal map: %.1f %% of the pixels differ", 100 * differing);
-  picture_free(&p[0]), picture_free(&p[1]);
+  image_free(&p[0]), image_free(&p[1]);
   remove(path);
 }
 
@@ -209,12 +209,12 @@ static void displacements(void **state) {
     h.float_c = vl_float_input((float)(0.7 + 2 * a)), h.float_d = vl_float_input((float)(0.7 + 2 * a + 2 * b));
     vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
     def.displacement.texture = vl_scene_add_texture(s.scene, &h);
-    Picture p = wall(&s, &def);
+    Image p = wall(&s, &def);
     double cosine = (-a * sun_at[0] - b * sun_at[1] + sun_at[2]) / sqrt(a * a + b * b + 1);
-    assert_ratio("displaced wall", picture_mean(&p, 1), 0.5 * cosine, 2e-3);
-    picture_free(&p);
+    assert_ratio("displaced wall", image_mean(&p, 1), 0.5 * cosine, 2e-3);
+    image_free(&p);
   }
-  Picture p[2];
+  Image p[2];
   for (int mapped = 0; mapped < 2; mapped++) {
     Stage s = stage();
     vlTextureDef h = vl_default_texture_def(VL_TEXTURE_CONSTANT, false);
@@ -224,14 +224,14 @@ static void displacements(void **state) {
     add_ball(&s, vl_scene_add_material(s.scene, &def));
     p[mapped] = stage_finish(&s);
   }
-  double differing = picture_differing(&p[0], &p[1], 1e-3);
+  double differing = image_differing(&p[0], &p[1], 1e-3);
   if (differing > 0.01) fail_msg("constant displacement: %.1f %% of the pixels differ", 100 * differing);
-  picture_free(&p[0]), picture_free(&p[1]);
+  image_free(&p[0]), image_free(&p[1]);
 }
 
 /* ---- interfaces -------------------------------------------------------------------------------------------------- */
 
-/* Boxes, balls and sheets of interface between everything and a near area light: the picture must not notice. */
+/* Boxes, balls and sheets of interface between everything and a near area light: the image must not notice. */
 static void interfaces_are_nothing(void **state) {
   (void)state;
   double mean[2];
@@ -243,7 +243,7 @@ static void interfaces_are_nothing(void **state) {
     Quad floor = quad_at(0, -0.5f, 0, 1.5f, 0, 0, 0, 0, -1.5f), light = quad_at(0, 0, 0, 0.5f, 0, 0, 0, 0, 0.5f);
     floor.material = add_diffuse(&s, 0.6f, 0.6f, 0.6f);
     add_quad(&s, &floor);
-    light.emission = add_glow(&s, 2, false);
+    light.emission = add_emission(&s, 2, false);
     add_quad(&s, &light);
     if (way) {
       vlMaterialDef def = vl_default_material_def(VL_MATERIAL_INTERFACE);
@@ -259,9 +259,9 @@ static void interfaces_are_nothing(void **state) {
       ball.material = none;
       vl_scene_add_shape(s.scene, &ball);
     }
-    Picture p = stage_finish(&s);
-    mean[way] = picture_mean(&p, 1);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    mean[way] = image_mean(&p, 1);
+    image_free(&p);
   }
   assert_ratio("behind interfaces", mean[1], mean[0], 4e-3);
 }
@@ -273,13 +273,13 @@ static void far_plane_behind_an_interface(void **state) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_INTERFACE);
   Quad sheet = quad_at(0, 0, -1, 5, 0, 0, 0, 5, 0), light = quad_at(0, 0, -3, 9, 0, 0, 0, 9, 0);
   sheet.material = vl_scene_add_material(s.scene, &def);
-  light.emission = add_glow(&s, 1, true);
+  light.emission = add_emission(&s, 1, true);
   add_quad(&s, &sheet);
   add_quad(&s, &light);
-  Picture p = stage_finish(&s);
-  assert_near("light behind the far plane", picture_mean(&p, 1), 0, 0);
-  assert_near("surface behind the far plane", picture_mean(&p, 3), 0, 0);
-  picture_free(&p);
+  Image p = stage_finish(&s);
+  assert_near("light behind the far plane", image_mean(&p, 1), 0, 0);
+  assert_near("surface behind the far plane", image_mean(&p, 3), 0, 0);
+  image_free(&p);
 }
 
 /* ---- glass that splits colours ----------------------------------------------------------------------------------- */
@@ -304,19 +304,18 @@ static void prism(void **state) {
   def.vertices = 8, def.faces = 12, def.positions = p, def.indices = f, def.material = material;
   vl_scene_add_shape(s.scene, &def);
   Quad strip = quad_at(-3.2f, 0, -21, 0.15f, 0, 0, 0, 9, 0);
-  strip.emission = add_glow(&s, 1, true);
+  strip.emission = add_emission(&s, 1, true);
   add_quad(&s, &strip);
-  Picture q = stage_finish(&s);
+  Image q = stage_finish(&s);
   double at[3];
   for (int c = 0; c < 3; c++) {
     double sum = 0, moment = 0;
     for (uint32_t y = 0; y < q.height; y++)
-      for (uint32_t x = 0; x < q.width; x++)
-        sum += picture_at(&q, x, y, c), moment += (x + 0.5) * picture_at(&q, x, y, c);
+      for (uint32_t x = 0; x < q.width; x++) sum += image_at(&q, x, y, c), moment += (x + 0.5) * image_at(&q, x, y, c);
     assert_true(sum > 1);
     at[c] = moment / sum;
   }
-  picture_free(&q);
+  image_free(&q);
   /* Deviation of a thin wedge of angle w: (n - 1) w; n of SF11 is 1.776 at 611 nm, 1.808 at 490 nm or so. */
   if (!(at[2] > at[1] && at[1] > at[0] && at[2] - at[0] > 0.5 && at[2] - at[0] < 6))
     fail_msg("prism: red at %.2f, green at %.2f, blue at %.2f", at[0], at[1], at[2]);
@@ -348,9 +347,9 @@ static void dispersion_keeps_energy(void **state) {
     sheet.material = vl_scene_add_material(s.scene, &glass);
     s.camera.eye[2] = -2.5, s.camera.lookat[2] = -4;
     add_quad(&s, &sheet);
-    Picture p = stage_finish(&s);
-    mean[way] = picture_mean(&p, 1);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    mean[way] = image_mean(&p, 1);
+    image_free(&p);
   }
   assert_true(mean[0] > 0.01);
   assert_ratio("narrow band through dispersive glass", mean[1], mean[0], 0.02);
@@ -369,9 +368,9 @@ static void dispersion_in_the_white_furnace(void **state) {
     vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIELECTRIC);
     def.eta = vl_spectrum_input(vl_spectrum_named(glass[k]));
     add_ball(&s, vl_scene_add_material(s.scene, &def));
-    Picture p = stage_finish(&s);
-    for (int c = 0; c < 3; c++) assert_ratio("flint glass in the furnace", picture_mean(&p, c), 1, 3e-3);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    for (int c = 0; c < 3; c++) assert_ratio("flint glass in the furnace", image_mean(&p, c), 1, 3e-3);
+    image_free(&p);
   }
 }
 

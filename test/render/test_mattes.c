@@ -1,23 +1,23 @@
-/* Cryptomatte, the modes that choose among the picture's samples, standard errors: they agree with the picture, with
+/* Cryptomatte, the modes that choose among the image's samples, standard errors: they agree with the image, with
  * each other and with what is known of simple scenes, and their bits hang on nothing else. */
 #include "render/truths.h"
 
 static const uint32_t MATTES = VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
 
-static Truth truth_take(Stage *s, uint32_t channels, vlChannelMode mode) {
-  Truth t = truth_begin(s);
+static GroundTruth ground_truth_take(Stage *s, uint32_t channels, vlChannelMode mode) {
+  GroundTruth t = ground_truth_begin(s);
   vlError error = {0};
   s->film.errors = (channels & VL_CHANNEL_ERROR) != 0;
   assert_int_equal(vl_film_create(s->context, &s->film, &t.film), VL_OK);
   if (vl_render(t.world, &t.camera, t.film, &s->render, NULL, &error) != VL_OK) fail_msg("render: %s", error.message);
-  assert_int_equal(vl_film_develop(t.film, NULL, &t.picture), VL_OK);
+  assert_int_equal(vl_film_develop(t.film, NULL, &t.image), VL_OK);
   vlChannelsDef def = vl_default_channels_def(s->camera.width, s->camera.height);
   memcpy(def.crop, s->film.crop, sizeof def.crop);
   def.channels = channels;
   def.mode = mode;
   def.film = t.film;
   def.render = &s->render;
-  truth_channels(&t, &def);
+  ground_truth_channels(&t, &def);
   return t;
 }
 
@@ -62,16 +62,16 @@ static void test_hash(void **state) {
   }
 }
 
-/* Coverages are the picture's alpha to the last bit but rounding; ids are those of the manifest. */
-static void test_agrees_with_the_picture(void **state) {
+/* Coverages are the image's alpha to the last bit but rounding; ids are those of the manifest. */
+static void test_agrees_with_the_image(void **state) {
   (void)state;
   Stage s = stage_open(49, 37);
   fill(&s);
-  Truth t = truth_take(&s, MATTES, VL_CHANNEL_MODE_CENTRE);
+  GroundTruth t = ground_truth_take(&s, MATTES, VL_CHANNEL_MODE_CENTRE);
   uint32_t shared = 0;
   for (uint32_t y = 0; y < 37; y++)
     for (uint32_t x = 0; x < 49; x++) {
-      double object = 0, material = 0, instance = 0, alpha = vl_image_get(t.picture, x, y, 3);
+      double object = 0, material = 0, instance = 0, alpha = vl_image_get(t.image, x, y, 3);
       for (int rank = 0; rank < 6; rank++) {
         char name[32];
         const char part = rank % 2 ? 'A' : 'G';
@@ -96,7 +96,7 @@ static void test_agrees_with_the_picture(void **state) {
   snprintf(expected, sizeof expected, "{\"ball.1\":\"%08x\",\"ball.2\":\"%08x\"}", vl_cryptomatte_hash("ball.1"),
            vl_cryptomatte_hash("ball.2"));
   assert_string_equal(a.string, expected);
-  truth_free(&t);
+  ground_truth_free(&t);
   stage_close(&s);
 }
 
@@ -106,7 +106,7 @@ static void test_negative_lobes(void **state) {
   Stage s = stage_open(33, 25);
   fill(&s);
   s.film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_MITCHELL);
-  Truth t = truth_take(&s, MATTES | VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
+  GroundTruth t = ground_truth_take(&s, MATTES | VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
   for (uint32_t y = 0; y < 25; y++)
     for (uint32_t x = 0; x < 33; x++) {
       double sum = 0;
@@ -118,7 +118,7 @@ static void test_negative_lobes(void **state) {
       }
       assert_true(sum <= 1 + 1e-6);
     }
-  truth_free(&t);
+  ground_truth_free(&t);
   stage_close(&s);
 }
 
@@ -130,12 +130,12 @@ static void test_modes(void **state) {
   fill(&s);
   s.camera.lens_radius = 0;
   uint32_t channels = VL_CHANNEL_ALL | VL_CHANNEL_CRYPTO_OBJECT;
-  Truth most = truth_take(&s, channels, VL_CHANNEL_MODE_COVERAGE);
-  Truth near = truth_take(&s, channels, VL_CHANNEL_MODE_NEAREST);
+  GroundTruth most = ground_truth_take(&s, channels, VL_CHANNEL_MODE_COVERAGE);
+  GroundTruth near = ground_truth_take(&s, channels, VL_CHANNEL_MODE_NEAREST);
   uint32_t moved = 0, differ = 0;
   for (uint32_t y = 0; y < 31; y++)
     for (uint32_t x = 0; x < 41; x++) {
-      const Truth *both[2] = {&most, &near};
+      const GroundTruth *both[2] = {&most, &near};
       for (int k = 0; k < 2; k++) { /* everything is of one ray through one point */
         const float *film = place(both[k], x, y, "film.X"), *p = place(both[k], x, y, "P.X");
         double o[3], d[3], pixel[2], z, point[3] = {p[0], p[1], p[2]};
@@ -158,8 +158,8 @@ static void test_modes(void **state) {
       if (alone && object != 3) assert_int_equal(first, object ? vl_cryptomatte_hash(name) : 0);
     }
   assert_true(moved > 1000 && differ > 5);
-  truth_free(&most);
-  truth_free(&near);
+  ground_truth_free(&most);
+  ground_truth_free(&near);
   stage_close(&s);
 }
 
@@ -168,47 +168,47 @@ static void test_standard_error(void **state) {
   (void)state;
   for (int filter = 0; filter < 2; filter++) {
     Stage s = stage_open(64, 64);
-    Quad glow = quad_at(0, 0, -2, 3, 0, 0, 0, 3, 0), ceiling = quad_at(0, 2, -2, 1, 0, 0, 0, 0, 1);
-    glow.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
-    ceiling.emission = add_glow(&s, 3, true);
-    add_quad(&s, &glow);
+    Quad emission = quad_at(0, 0, -2, 3, 0, 0, 0, 3, 0), ceiling = quad_at(0, 2, -2, 1, 0, 0, 0, 0, 1);
+    emission.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
+    ceiling.emission = add_emission(&s, 3, true);
+    add_quad(&s, &emission);
     add_quad(&s, &ceiling);
     s.camera.eye[2] = 1.5, s.camera.lookat[2] = 0;
     s.render.sampler = VL_SAMPLER_INDEPENDENT;
     s.film.filter = vl_default_pixel_filter(filter ? VL_PIXEL_FILTER_MITCHELL : VL_PIXEL_FILTER_BOX);
     s.render.spp = 32;
-    Truth few = truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
+    GroundTruth few = ground_truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
     s.render.spp = 512, s.render.seed = 5;
-    Truth many = truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
+    GroundTruth many = ground_truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
     double inside = 0, count = 0;
     for (uint32_t y = 0; y < 64; y++)
       for (uint32_t x = 0; x < 64; x++) {
         double e = *place(&few, x, y, "error.G"), f = *place(&many, x, y, "error.G");
-        double off = vl_image_get(few.picture, x, y, 1) - vl_image_get(many.picture, x, y, 1);
+        double off = vl_image_get(few.image, x, y, 1) - vl_image_get(many.image, x, y, 1);
         assert_true(e >= 0 && e < 1e6);
         if (e == 0) continue;
         inside += off * off < 0.6745 * 0.6745 * (e * e + f * f), count++; /* half of a normal distribution */
       }
     assert_true(count > 3000);
     assert_near("share inside the quartiles", inside / count, 0.5, 0.05);
-    truth_free(&few);
-    truth_free(&many);
+    ground_truth_free(&few);
+    ground_truth_free(&many);
     stage_close(&s);
   }
   Stage s = stage_open(8, 8);
   Quad wall = quad_at(0, 0, -1, 9, 0, 0, 0, 9, 0);
-  wall.emission = add_glow(&s, 2, true);
+  wall.emission = add_emission(&s, 2, true);
   add_quad(&s, &wall);
   s.build.color = VL_COLOR_RGB;
   s.render.max_depth = 0;
   s.render.spp = 1;
-  Truth t = truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
+  GroundTruth t = ground_truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
   assert_true(isinf(*place(&t, 3, 3, "error.R")));
-  truth_free(&t);
+  ground_truth_free(&t);
   s.render.spp = 9;
-  t = truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
+  t = ground_truth_take(&s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
   assert_true(*place(&t, 3, 3, "error.R") == 0.0f);
-  truth_free(&t);
+  ground_truth_free(&t);
   stage_close(&s);
 }
 
@@ -218,10 +218,10 @@ static void test_same_bits(void **state) {
   for (int mode = VL_CHANNEL_MODE_NEAREST; mode <= VL_CHANNEL_MODE_COVERAGE; mode++) {
     Stage s = stage_open(45, 35);
     fill(&s);
-    Truth whole = truth_take(&s, channels, (vlChannelMode)mode);
+    GroundTruth whole = ground_truth_take(&s, channels, (vlChannelMode)mode);
     const uint32_t crop[4] = {7, 3, 41, 34}, all[4] = {0, 0, 45, 35};
     memcpy(s.film.crop, crop, sizeof crop);
-    Truth part = truth_take(&s, channels, (vlChannelMode)mode);
+    GroundTruth part = ground_truth_take(&s, channels, (vlChannelMode)mode);
     same_bits(whole.floats, part.floats, 7, 3);
     same_bits(whole.ids, part.ids, 7, 3);
     memcpy(s.film.crop, all, sizeof all);
@@ -229,14 +229,14 @@ static void test_same_bits(void **state) {
       Stage other;
       if (!stage_like(&s, isa, &other)) continue;
       fill(&other);
-      Truth t = truth_take(&other, channels, (vlChannelMode)mode);
+      GroundTruth t = ground_truth_take(&other, channels, (vlChannelMode)mode);
       same_bits(whole.floats, t.floats, 0, 0);
       same_bits(whole.ids, t.ids, 0, 0);
-      truth_free(&t);
+      ground_truth_free(&t);
       stage_close(&other);
     }
-    truth_free(&part);
-    truth_free(&whole);
+    ground_truth_free(&part);
+    ground_truth_free(&whole);
     stage_close(&s);
   }
 }
@@ -245,7 +245,7 @@ static void test_wrong_arguments(void **state) {
   (void)state;
   Stage s = stage_open(16, 8);
   fill(&s);
-  Truth t = truth_take(&s, MATTES, VL_CHANNEL_MODE_CENTRE);
+  GroundTruth t = ground_truth_take(&s, MATTES, VL_CHANNEL_MODE_CENTRE);
   vlImage *floats = NULL, *ids = NULL;
   vlError error;
   vlChannelsDef def = vl_default_channels_def(16, 8);
@@ -263,15 +263,15 @@ static void test_wrong_arguments(void **state) {
   assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error), VL_ERROR_ARGUMENT);
   def.channels = VL_CHANNEL_Z, def.mode = (vlChannelMode)3;
   assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error), VL_ERROR_ARGUMENT);
-  truth_free(&t);
+  ground_truth_free(&t);
   stage_close(&s);
 }
 
-static Truth take_errors(Stage *s) {
-  return truth_take(s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
+static GroundTruth take_errors(Stage *s) {
+  return ground_truth_take(s, VL_CHANNEL_ERROR, VL_CHANNEL_MODE_CENTRE);
 }
 
-static vlResult take_all(Stage *s, Truth *t) {
+static vlResult take_all(Stage *s, GroundTruth *t) {
   vlChannelsDef def = vl_default_channels_def(16, 8);
   def.channels = VL_CHANNEL_ALL | MATTES | VL_CHANNEL_ERROR | VL_CHANNEL_FORWARD;
   def.mode = VL_CHANNEL_MODE_COVERAGE;
@@ -288,13 +288,13 @@ static vlResult take_all(Stage *s, Truth *t) {
 
 static void test_out_of_memory(void **state) {
   (void)state;
-  truth_out_of_memory(fill, take_errors, take_all);
+  ground_truth_out_of_memory(fill, take_errors, take_all);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_hash),
-      cmocka_unit_test(test_agrees_with_the_picture),
+      cmocka_unit_test(test_agrees_with_the_image),
       cmocka_unit_test(test_negative_lobes),
       cmocka_unit_test(test_modes),
       cmocka_unit_test(test_standard_error),

@@ -1,5 +1,5 @@
 /* Participating media whose light is known: Beer's law, media that scatter all under a white sky, single scattering by
- * quadrature, glowing fog, every kind and both ways to carry colour. And what must not change the picture. */
+ * quadrature, emissive fog, every kind and both ways to carry colour. And what must not change the image. */
 #include "fog.h"
 
 static const float eights[64] = {1, 2, 0, 1, 3, 1, 0, 2, 1, 1, 1, 1, 2, 0, 2, 1, 1, 2, 0, 1, 3, 1,
@@ -40,11 +40,11 @@ static void furnace(void **state) {
         if (grey) def.sigma_s = vl_spectrum_constant(2);
         add_sky(&s, 1);
         add_ball(&s, -3, 1.0f, interface(&s), add_medium(&s, &def), (vlMediumId){0});
-        Picture p = stage_finish(&s);
+        Image p = stage_finish(&s);
         /* wavelengths are themselves chance, where they are not colours */
-        for (int c = 0; c < 3; c++) assert_near("furnace", picture_mean(&p, c), 1, grey ? (rgb ? 1.5e-3 : 3e-3) : 8e-3);
+        for (int c = 0; c < 3; c++) assert_near("furnace", image_mean(&p, c), 1, grey ? (rgb ? 1.5e-3 : 3e-3) : 8e-3);
         assert_int_equal(p.stats.not_finite, 0);
-        picture_free(&p);
+        image_free(&p);
       }
 }
 
@@ -60,9 +60,9 @@ static void furnace_in_glass(void **state) {
   vlMediumDef def = fog(0, 2, -0.3f);
   add_sky(&s, 1);
   add_ball(&s, -3, 1.0f, vl_scene_add_material(s.scene, &glass), add_medium(&s, &def), (vlMediumId){0});
-  Picture p = stage_finish(&s);
-  for (int c = 0; c < 3; c++) assert_near("fog in glass", picture_mean(&p, c), 1, 4e-3);
-  picture_free(&p);
+  Image p = stage_finish(&s);
+  for (int c = 0; c < 3; c++) assert_near("fog in glass", image_mean(&p, c), 1, 4e-3);
+  image_free(&p);
 }
 
 /* ---- absorption -------------------------------------------------------------------------------------------------- */
@@ -89,11 +89,11 @@ static void beer(void **state) {
     vlMediumId id = add_medium(&s, &def);
     add_ball(&s, -3, 1.0f, interface(&s), id, (vlMediumId){0});
     add_sky(&s, 1);
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     const double sigma[3] = {0.1, 0.5, 1.0}, more = kind == 2 ? 0.25 : 0;
     for (int c = 0; c < 3; c++)
-      assert_ratio("Beer", picture_mean(&p, c), exp(-2 * (sigma[c] + more)), kind ? 5e-3 : 1e-3);
-    picture_free(&p);
+      assert_ratio("Beer", image_mean(&p, c), exp(-2 * (sigma[c] + more)), kind ? 5e-3 : 1e-3);
+    image_free(&p);
   }
 }
 
@@ -130,15 +130,15 @@ static void single_scattering(void **state) {
     }
     add_point(&s, (float)lamp[0], (float)lamp[1], (float)lamp[2], 1);
     vl_scene_defs(s.scene)->camera_medium = add_medium(&s, &def);
-    Picture p = stage_finish(&s);
-    assert_ratio("single scattering", picture_mean(&p, 1), expected, 6e-3);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    assert_ratio("single scattering", image_mean(&p, 1), expected, 6e-3);
+    image_free(&p);
   }
 }
 
 /* ---- emission ---------------------------------------------------------------------------------------------------- */
 
-static void glowing(void **state) {
+static void emissive(void **state) {
   (void)state;
   const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
   for (int kind = 0; kind < 4; kind++) {
@@ -155,9 +155,10 @@ static void glowing(void **state) {
       for (int i = 0; i < 3; i++) def.low[i] = -20, def.high[i] = 20;
     }
     add_ball(&s, -3, 1.0f, interface(&s), add_medium(&s, &def), (vlMediumId){0});
-    Picture p = stage_finish(&s);
-    for (int c = 0; c < 3; c++) assert_ratio("glow", picture_mean(&p, c), 3 * (1 - exp(-1.4)), kind == 3 ? 8e-3 : 5e-3);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    for (int c = 0; c < 3; c++)
+      assert_ratio("emission", image_mean(&p, c), 3 * (1 - exp(-1.4)), kind == 3 ? 8e-3 : 5e-3);
+    image_free(&p);
   }
 }
 
@@ -180,9 +181,9 @@ static void hot(void **state) {
       if (way == 0) def.emission = vl_spectrum_blackbody(2500);
       if (way == 1) def.temperature = kelvin, def.temperature_offset = 5, def.temperature_scale = 100;
       add_ball(&s, -3, 1.0f, interface(&s), add_medium(&s, &def), (vlMediumId){0});
-      Picture p = stage_finish(&s);
-      for (int c = 0; c < 3; c++) mean[rgb][way][c] = picture_mean(&p, c);
-      picture_free(&p);
+      Image p = stage_finish(&s);
+      for (int c = 0; c < 3; c++) mean[rgb][way][c] = image_mean(&p, c);
+      image_free(&p);
     }
   double factor = mean[0][1][1] / mean[0][0][1]; /* the body's own luminance */
   assert_true(factor > 5 && factor < 107);
@@ -191,8 +192,8 @@ static void hot(void **state) {
       assert_near("black body", mean[rgb][1][c], factor * mean[rgb][0][c], 0.015 * factor * mean[rgb][0][0]);
 }
 
-/* A lamp with a picture on it, seen straight on, stands upright with and without fog in the world. */
-static void pictured_lamp(void **state) {
+/* A lamp with an image on it, seen straight on, stands upright with and without fog in the world. */
+static void imaged_lamp(void **state) {
   (void)state;
   const float rows[6] = {4, 4, 4, 1, 1, 1}; /* bright above */
   double half[2][2];
@@ -205,25 +206,25 @@ static void pictured_lamp(void **state) {
     vlTextureDef texture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     vlImage *image = make_image(&s, 1, 2, rows);
     texture.image = image, texture.filter = VL_FILTER_POINT;
-    vlEmissionDef glow = vl_default_emission_def();
-    glow.texture = vl_scene_add_texture(s.scene, &texture);
+    vlEmissionDef emission = vl_default_emission_def();
+    emission.texture = vl_scene_add_texture(s.scene, &texture);
     vl_image_destroy(image);
     Quad lamp = quad_at(0, 0, -3, 2, 0, 0, 0, 2, 0);
-    lamp.emission = vl_scene_add_emission(s.scene, &glow);
+    lamp.emission = vl_scene_add_emission(s.scene, &emission);
     add_quad(&s, &lamp);
     vlMediumDef def = fog(1, 0, 0);
     if (with) add_ball(&s, -3, 0.01f, interface(&s), add_medium(&s, &def), (vlMediumId){0});
-    Picture p = stage_finish(&s);
-    half[with][0] = picture_region(&p, 0, 0, 8, 3, 1), half[with][1] = picture_region(&p, 0, 5, 8, 8, 1);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    half[with][0] = image_region(&p, 0, 0, 8, 3, 1), half[with][1] = image_region(&p, 0, 5, 8, 8, 1);
+    image_free(&p);
   }
   assert_true(half[0][0] > 2 * half[0][1]);
-  for (int k = 0; k < 2; k++) assert_ratio("pictured lamp", half[1][k], half[0][k], 1e-3);
+  for (int k = 0; k < 2; k++) assert_ratio("imaged lamp", half[1][k], half[0][k], 1e-3);
 }
 
 /* ---- what must not show ------------------------------------------------------------------------------------------ */
 
-static Picture rich(vlContext *context, const void *what) {
+static Image rich(vlContext *context, const void *what) {
   (void)what;
   Stage s = stage_open_in(context, 24, 24);
   s.camera.fov = 0.9;
@@ -246,15 +247,15 @@ static Picture rich(vlContext *context, const void *what) {
 
 static void same_bits(void **state) {
   (void)state;
-  Picture a = assert_same_bits(rich, NULL, 1);
+  Image a = assert_same_bits(rich, NULL, 1);
   assert_int_equal(a.stats.not_finite, 0);
-  picture_free(&a);
+  image_free(&a);
 }
 
 /* The tracer of surfaces passes through interfaces and sees no medium; without media both tracers are one. */
 static void path_looks_past(void **state) {
   (void)state;
-  Picture past[2];
+  Image past[2];
   for (int with = 0; with < 2; with++) {
     Stage s = stage_open(16, 16);
     s.render.spp = 16;
@@ -268,14 +269,14 @@ static void path_looks_past(void **state) {
     past[with] = stage_finish(&s);
   }
   assert_memory_equal(past[0].rgba, past[1].rgba, (size_t)16 * 16 * 4 * sizeof(float));
-  picture_free(&past[0]);
-  picture_free(&past[1]);
+  image_free(&past[0]);
+  image_free(&past[1]);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(furnace),           cmocka_unit_test(furnace_in_glass), cmocka_unit_test(beer),
-      cmocka_unit_test(single_scattering), cmocka_unit_test(glowing),          cmocka_unit_test(hot),
-      cmocka_unit_test(same_bits),         cmocka_unit_test(path_looks_past),  cmocka_unit_test(pictured_lamp)};
+      cmocka_unit_test(single_scattering), cmocka_unit_test(emissive),         cmocka_unit_test(hot),
+      cmocka_unit_test(same_bits),         cmocka_unit_test(path_looks_past),  cmocka_unit_test(imaged_lamp)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
-/* More media whose light is known: equilibrium (all that glows and scatters inside of a sky of its own radiance is not
- * to be seen), media within media with the camera in the innermost, grids that are turned and stretched, colours of RGB
- * grids, what glows and scatters, NanoVDB's voxels as a body. */
+/* More media whose light is known: equilibrium (all that emits light and scatters inside of a sky of its own radiance
+ * is not to be seen), media within media with the camera in the innermost, grids that are turned and stretched, colours
+ * of RGB grids, what emits light and scatters, NanoVDB's voxels as a body. */
 #include <unistd.h>
 
 #include "fog.h"
@@ -37,10 +37,10 @@ static void equilibrium(void **state) {
                                    0, 2, 1, 1, 1, 1, 2, 0, 2, 1, 1, 2, 0, 1, 3, 1, 0, 2, 1, 1, 1, 1,
                                    2, 0, 2, 1, 1, 2, 0, 1, 3, 1, 0, 2, 1, 1, 1, 1, 2, 0, 2, 1};
   enum { CELLS = 6 * 6 * 6 };
-  static float a[3 * CELLS], b[3 * CELLS], glow[3 * CELLS];
+  static float a[3 * CELLS], b[3 * CELLS], emission[3 * CELLS];
   for (int i = 0; i < 3 * CELLS; i++) {
     a[i] = (float)(i * 7919 % 101) / 60, b[i] = (float)(i * 6101 % 89) / 50;
-    glow[i] = 2 / (float)RAW;
+    emission[i] = 2 / (float)RAW;
   }
   for (int kind = 0; kind < 3; kind++)
     for (int glass = 0; glass < 2; glass++)
@@ -55,22 +55,21 @@ static void equilibrium(void **state) {
         s.render.max_depth = 200;
         vlMediumDef def = fog(0.7f, 1.1f, 0.4f);
         def.emission = vl_spectrum_rgb(2, 2, 2);
-        def.emission_scale = glass ? 1.5f * 1.5f : 1; /* in glass all light is squeezed */
+        def.emission_scale = glass ? 1.5f * 1.5f : 1; /* in glass all light is entry_eta_scale */
         if (kind == 1) def.kind = VL_MEDIUM_GRID, def.nx = def.ny = def.nz = 4, def.density = eights;
         if (kind == 2) def.kind = VL_MEDIUM_RGB_GRID, def.nx = def.ny = def.nz = 6;
-        if (kind == 2) def.rgb_a = a, def.rgb_s = b, def.rgb_emission = glow;
+        if (kind == 2) def.rgb_a = a, def.rgb_s = b, def.rgb_emission = emission;
         for (int i = 0; i < 3; i++)
-          def.low[i] = -1.3f, def.high[i] = 1.3f; /* the glow falls off in the outer half cell */
+          def.low[i] = -1.3f, def.high[i] = 1.3f; /* the emission falls off in the outer half cell */
         set_matrix(def.world_from_medium, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, -3);
         vlMaterialDef window = vl_default_material_def(VL_MATERIAL_DIELECTRIC);
         add_sky(&s, 2);
         add_ball(&s, -3, 1, glass ? vl_scene_add_material(s.scene, &window) : interface(&s), add_medium(&s, &def),
                  (vlMediumId){0});
-        Picture p = stage_finish(&s);
-        for (int c = 0; c < 3; c++)
-          assert_ratio("equilibrium", picture_mean(&p, c), 2, kind == 2 && !rgb ? 0.02 : 0.01);
+        Image p = stage_finish(&s);
+        for (int c = 0; c < 3; c++) assert_ratio("equilibrium", image_mean(&p, c), 2, kind == 2 && !rgb ? 0.02 : 0.01);
         assert_int_equal(p.stats.not_finite, 0);
-        picture_free(&p);
+        image_free(&p);
       }
 }
 
@@ -93,9 +92,9 @@ static void nested(void **state) {
     add_ball(&s, 0, 3, interface(&s), id[1], id[2]);
     add_ball(&s, 0, 6, interface(&s), id[2], (vlMediumId){0});
     add_sky(&s, 1);
-    Picture p = stage_finish(&s);
-    assert_ratio("nested", picture_mean(&p, 1), exp(-0.4 * 1 - 0.2 * 2 - 0.1 * 3), turn ? 6e-3 : 1e-4);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    assert_ratio("nested", image_mean(&p, 1), exp(-0.4 * 1 - 0.2 * 2 - 0.1 * 3), turn ? 6e-3 : 1e-4);
+    image_free(&p);
   }
 }
 
@@ -117,9 +116,9 @@ static void lamp_in_shell(void **state) {
     point.color = vl_spectrum_rgb(9, 9, 9);
     point.from[2] = 8, point.medium = outer;
     vl_scene_add_light(s.scene, &point);
-    Picture p = stage_finish(&s);
-    mean[with] = picture_mean(&p, 1);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    mean[with] = image_mean(&p, 1);
+    image_free(&p);
   }
   assert_ratio("lamp in a shell", mean[1] / mean[0], exp(-0.5 * (2 + 6) - 0.3 * 4), 2e-3);
 }
@@ -144,29 +143,29 @@ static void stretched(void **state) {
     vlMediumId id = add_medium(&s, &def);
     add_ball(&s, -4, 3, interface(&s), id, (vlMediumId){0});
     add_sky(&s, 1);
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     /* along x: 1/2 to 1 in the first quarter, to 3 in the half between the centres, to 3/2 at the end */
     double depth = (0.75 / 4 + 2.0 / 2 + 2.25 / 4) * 2 * 0.25;
-    assert_ratio("stretched", picture_mean(&p, 1), exp(-depth), 5e-3);
-    picture_free(&p);
+    assert_ratio("stretched", image_mean(&p, 1), exp(-depth), 5e-3);
+    image_free(&p);
   }
 }
 
-/* An RGB grid of one colour, absorbing, then glowing, against what colours say. */
+/* An RGB grid of one colour, absorbing, then emissive, against what colours say. */
 static void rgb_grids(void **state) {
   (void)state;
-  static float sigma[24], glow[24], none[24];
-  for (int i = 0; i < 24; i++) sigma[i] = (float[3]){0.2f, 0.5f, 1.0f}[i % 3], glow[i] = (float[3]){3, 2, 1}[i % 3];
+  static float sigma[24], emission[24], none[24];
+  for (int i = 0; i < 24; i++) sigma[i] = (float[3]){0.2f, 0.5f, 1.0f}[i % 3], emission[i] = (float[3]){3, 2, 1}[i % 3];
   for (int rgb = 0; rgb < 2; rgb++) {
     double seen[3], known[3];
-    for (int way = 0; way < 3; way++) { /* the grid before a sky; glowing; the same colours of a homogeneous medium */
+    for (int way = 0; way < 3; way++) { /* the grid before a sky; emissive; the same colours of a homogeneous medium */
       Stage s = narrow(2048, rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL);
       vlMediumDef def = fog(0, 0, 0);
       if (way < 2) {
         def.kind = VL_MEDIUM_RGB_GRID;
         def.nx = def.ny = def.nz = 2;
         def.rgb_a = sigma, def.rgb_s = none;
-        if (way == 1) def.rgb_emission = glow;
+        if (way == 1) def.rgb_emission = emission;
         def.scale = 0.8f;
         for (int i = 0; i < 3; i++) def.low[i] = -20, def.high[i] = 20;
       } else {
@@ -175,37 +174,38 @@ static void rgb_grids(void **state) {
       }
       add_ball(&s, -3, 1, interface(&s), add_medium(&s, &def), (vlMediumId){0});
       if (way != 1) add_sky(&s, 1);
-      Picture p = stage_finish(&s);
+      Image p = stage_finish(&s);
       for (int c = 0; c < 3; c++) {
-        double mean = picture_mean(&p, c), passes = exp(-2 * 0.8 * (double)sigma[c]);
+        double mean = image_mean(&p, c), passes = exp(-2 * 0.8 * (double)sigma[c]);
         if (way == 0) seen[c] = mean;
         if (way == 2) known[c] = mean;
         if (rgb && way != 1) assert_ratio("RGB absorption", mean, passes, 8e-3);
-        if (rgb && way == 1) assert_ratio("RGB glow", mean, RAW * (double)glow[c] * (1 - passes), 0.015);
+        if (rgb && way == 1) assert_ratio("RGB emission", mean, RAW * (double)emission[c] * (1 - passes), 0.015);
       }
-      picture_free(&p);
+      image_free(&p);
     }
     for (int c = 0; c < 3; c++) assert_near("RGB grid as its colours", seen[c], known[c], 8e-3);
   }
 }
 
-/* ---- glowing and scattering -------------------------------------------------------------------------------------- */
+/* ---- emissive and scattering --------------------------------------------------------------------------------------
+ */
 
-/* A thin ball of little albedo: glow along the ray, and once scattered glow, which is small but known to order: the
- * whole lies between none scattered and all of it coming from an endless medium. */
-static void glowing_fog(void **state) {
+/* A thin ball of little albedo: emission along the ray, and once scattered emission, which is small but known to order:
+ * the whole lies between none scattered and all of it coming from an endless medium. */
+static void emissive_fog(void **state) {
   (void)state;
   for (int kind = 0; kind < 2; kind++) {
     Stage s = narrow(4096, VL_COLOR_RGB);
-    s.render.max_depth = 1; /* glow at the end of the first flight, and of the one after one scattering */
+    s.render.max_depth = 1; /* emission at the end of the first flight, and of the one after one scattering */
     vlMediumDef def = fog(0.3f, 0.2f, 0);
     def.emission = vl_spectrum_rgb(1, 1, 1);
     if (kind) uniform(&def, 20);
     add_ball(&s, -3, 1, interface(&s), add_medium(&s, &def), (vlMediumId){0});
-    Picture p = stage_finish(&s);
-    /* At the last permitted bounce a medium dims and gives no light: so what is seen is the first flight's glow. */
-    assert_ratio("first flight", picture_mean(&p, 1), 0.3 / 0.5 * (1 - exp(-0.5 * 2)), 6e-3);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    /* At the last permitted bounce a medium dims and gives no light: so what is seen is the first flight's emission. */
+    assert_ratio("first flight", image_mean(&p, 1), 0.3 / 0.5 * (1 - exp(-0.5 * 2)), 6e-3);
+    image_free(&p);
     Stage t = narrow(8192, VL_COLOR_RGB);
     t.render.max_depth = 2;
     add_ball(&t, -3, 1, interface(&t), add_medium(&t, &def), (vlMediumId){0});
@@ -221,8 +221,8 @@ static void glowing_fog(void **state) {
       }
       sum += 2.0 / n * exp(-0.5 * (1 + x)) * 0.2 * mean;
     }
-    assert_ratio("once scattered", picture_mean(&p, 1), 0.3 / 0.5 * (1 - exp(-1.0)) + sum, 8e-3);
-    picture_free(&p);
+    assert_ratio("once scattered", image_mean(&p, 1), 0.3 / 0.5 * (1 - exp(-1.0)) + sum, 8e-3);
+    image_free(&p);
   }
 }
 
@@ -255,9 +255,9 @@ static void voxels(void **state) {
     add_ball(&s, 0, 1000, interface(&s), id, (vlMediumId){0});
     vl_scene_defs(s.scene)->camera_medium = id;
     add_sky(&s, 1);
-    Picture p = stage_finish(&s);
-    assert_ratio("voxels", picture_mean(&p, 1), exp(-0.002 * 7 * 64 * (way == 2 ? 1.5 : 1)), 0.01);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    assert_ratio("voxels", image_mean(&p, 1), exp(-0.002 * 7 * 64 * (way == 2 ? 1.5 : 1)), 0.01);
+    image_free(&p);
   }
   remove(path);
 }
@@ -265,7 +265,7 @@ static void voxels(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(equilibrium),   cmocka_unit_test(nested),
                                      cmocka_unit_test(lamp_in_shell), cmocka_unit_test(stretched),
-                                     cmocka_unit_test(rgb_grids),     cmocka_unit_test(glowing_fog),
+                                     cmocka_unit_test(rgb_grids),     cmocka_unit_test(emissive_fog),
                                      cmocka_unit_test(voxels)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

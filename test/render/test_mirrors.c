@@ -170,9 +170,9 @@ static double shoot_file(const char *path, uint32_t spp, uint32_t depth) {
   stage.build.color = VL_COLOR_RGB;
   stage.render.tracer = vl_scene_defs(stage.scene)->render.tracer;
   stage.render.spp = spp, stage.render.max_depth = depth;
-  Picture q = stage_finish(&stage);
-  double mean = picture_mean(&q, 1);
-  picture_free(&q);
+  Image q = stage_finish(&stage);
+  double mean = image_mean(&q, 1);
+  image_free(&q);
   return mean;
 }
 

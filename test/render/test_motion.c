@@ -1,4 +1,4 @@
-/* Pictures of what moves: the mean of many held pictures (z-test), the same bits on every instruction set, no surface
+/* Images of what moves: the mean of many held images (z-test), the same bits on every instruction set, no surface
  * that hides itself, vertices and instances that move alike look alike, the slope of an edge behind a rolling shutter.
  */
 #include "render/shots.h"
@@ -67,9 +67,9 @@ static void fill(Stage *s, bool camera_moves, double held) {
   free(block);
 }
 
-/* Independent samples: the mean of N pictures of worlds at rest, spread over the time, and a blurred one have the same
+/* Independent samples: the mean of N images of worlds at rest, spread over the time, and a blurred one have the same
  * expectation. */
-static void blur_is_the_mean_of_held_pictures(void **state) {
+static void blur_is_the_mean_of_held_images(void **state) {
   (void)state;
   enum { HELD = 400, SPP = 4 };
   for (int moves = 0; moves < 2; moves++) {
@@ -126,7 +126,7 @@ static void blur_is_the_mean_of_held_pictures(void **state) {
 
 static void same_bits(void **state) {
   (void)state;
-  Picture first = {0, 0, NULL, {0}};
+  Image first = {0, 0, NULL, {0}};
   for (int k = 0; k < 3; k++) {
     vlContextDef def = vl_default_context_def();
     def.isa = (vlIsa[3]){VL_ISA_V2, VL_ISA_V3, VL_ISA_V4}[k];
@@ -138,17 +138,17 @@ static void same_bits(void **state) {
     assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
     fill(&s, true, -1);
     s.render.spp = 16;
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     if (first.rgba) {
       for (size_t i = 0; i < 80 * 60 * 4; i++)
         if (memcmp(&p.rgba[i], &first.rgba[i], sizeof(float)) != 0)
           fail_msg("isa v%d: number %zu differs", (int)def.isa, i);
-      picture_free(&p);
+      image_free(&p);
     } else {
       first = p;
     }
   }
-  picture_free(&first);
+  image_free(&first);
 }
 
 /* Ambient occlusion of convex bodies that are alone: every sample that meets one is white, however fast it moves,
@@ -178,7 +178,7 @@ static void nothing_hides_itself(void **state) {
     set_matrix(poses, 1, 0, 0, far, 0, 1, 0, 0, 0, 0, 1, -5);
     set_matrix(poses + 16, 0, -g, 0, far + 1, g, 0, 0, 0, 0, 0, g, -4.5);
     if (k < 3) vl_scene_add_moving_instance(s.scene, ball.group, 2, times, poses, (vlSource){0});
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     int inside = 0;
     for (uint32_t i = 0; i < p.width * p.height; i++) {
       double alpha = p.rgba[4 * i + 3];
@@ -186,7 +186,7 @@ static void nothing_hides_itself(void **state) {
       assert_near("openness", p.rgba[4 * i + 1], alpha, 1e-3);
     }
     assert_true(inside > 100);
-    picture_free(&p);
+    image_free(&p);
     free(block);
     free(close);
   }
@@ -195,7 +195,7 @@ static void nothing_hides_itself(void **state) {
 /* A translation said three ways: instance, vertices, and the camera going the other way. */
 static void ways_to_move_agree(void **state) {
   (void)state;
-  Picture p[3];
+  Image p[3];
   for (int k = 0; k < 3; k++) {
     Stage s = stage_open(32, 24);
     s.build.color = VL_COLOR_RGB;
@@ -228,8 +228,8 @@ static void ways_to_move_agree(void **state) {
     for (size_t i = 0; i < 32 * 24; i++) differing += fabs((double)p[0].rgba[4 * i + 3] - (double)p[k].rgba[4 * i + 3]);
     assert_true(differing < 0.2); /* a few samples on edges, of 24,576 */
   }
-  assert_true(picture_region(&p[0], 0, 0, 32, 24, 3) > 0.02);
-  for (int k = 0; k < 3; k++) picture_free(&p[k]);
+  assert_true(image_region(&p[0], 0, 0, 32, 24, 3) > 0.02);
+  for (int k = 0; k < 3; k++) image_free(&p[k]);
 }
 
 /* A white card's vertical edge moves to the right; rows are read one after the other: where each row sees it. */
@@ -253,11 +253,11 @@ static void rolling_shutter_slants_edges(void **state) {
     memcpy(poses + 16, poses, 16 * sizeof *poses);
     poses[19] += speed;
     vl_scene_add_moving_instance(s.scene, group, 2, times, poses, (vlSource){0});
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     double sy = 0, sx = 0, syy = 0, sxy = 0;
     for (uint32_t y = 0; y < HEIGHT; y++) {
       double x = 0; /* the edge: how many pixels the card covers */
-      for (uint32_t i = 0; i < WIDTH; i++) x += (double)picture_at(&p, i, y, 3);
+      for (uint32_t i = 0; i < WIDTH; i++) x += (double)image_at(&p, i, y, 3);
       sy += y, sx += x, syy += (double)y * y, sxy += x * y;
     }
     double slope = (HEIGHT * sxy - sx * sy) / (HEIGHT * syy - sy * sy), sign = k == 1 ? -1 : 1;
@@ -265,7 +265,7 @@ static void rolling_shutter_slants_edges(void **state) {
     assert_near("slope in pixels a row", slope, want, 1e-3);
     double first = 48 - 0.8 * 32 + speed * 32 * (k == 1 ? 0.5 * 63 / 64.0 : k == 2 ? 0.125 : 0);
     assert_near("edge in row 0", offset, first, 0.05);
-    picture_free(&p);
+    image_free(&p);
   }
 }
 
@@ -299,7 +299,7 @@ static void nonsense_is_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(blur_is_the_mean_of_held_pictures),
+      cmocka_unit_test(blur_is_the_mean_of_held_images),
       cmocka_unit_test(same_bits),
       cmocka_unit_test(nothing_hides_itself),
       cmocka_unit_test(ways_to_move_agree),

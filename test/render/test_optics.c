@@ -1,4 +1,4 @@
-/* test/render/test_optics.c: lenses in pictures: shape of the blur, autofocus, natural vignetting, and a lens of many
+/* test/render/test_optics.c: lenses in images: shape of the blur, autofocus, natural vignetting, and a lens of many
  * elements: what it sees, how bright, what the barrel hides. */
 #include "render/shots.h"
 
@@ -17,14 +17,14 @@ static void blur_has_the_openings_shape(void **state) {
     s.camera.lens_radius = 0.4, s.camera.focus_distance = k ? 9 : 2;
     s.camera.lens.blades = 3;
     Quad q = quad_at(0, 0, -4, 0.08f, 0, 0, 0, 0.08f, 0);
-    q.emission = add_glow(&s, 100, true);
+    q.emission = add_emission(&s, 100, true);
     add_quad(&s, &q);
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     double sum = 0, third = 0, second[2] = {0, 0}, mean[2] = {0, 0};
     for (int pass = 0; pass < 2; pass++)
       for (uint32_t y = 0; y < 64; y++)
         for (uint32_t x = 0; x < 64; x++) {
-          double v = picture_at(&p, x, y, 1), dx = x + 0.5 - 32, dy = y + 0.5 - 32;
+          double v = image_at(&p, x, y, 1), dx = x + 0.5 - 32, dy = y + 0.5 - 32;
           if (!pass) {
             sum += v, mean[0] += v * dx, mean[1] += v * dy;
           } else {
@@ -41,14 +41,14 @@ static void blur_has_the_openings_shape(void **state) {
     assert_ratio("y of the triangle", second[1] / sum, r * r / 8 + small, 0.02);
     /* behind the plane in focus it is upright (up is negative here), before it upside down */
     assert_ratio("third moment", third / sum, (k ? 1 : -1) * r * r * r / 40, 0.05);
-    picture_free(&p);
+    image_free(&p);
   }
 }
 
 /* A camera focused on a pixel is one focused at that depth: to the last bit. Walls at depths 3 and 8. */
 static void autofocus(void **state) {
   (void)state;
-  Picture p[2];
+  Image p[2];
   for (int k = 0; k < 2; k++) {
     Stage s = stage_open(48, 32);
     s.camera.lens_radius = 0.2;
@@ -58,7 +58,7 @@ static void autofocus(void **state) {
       s.camera.lens.focus_pixel[0] = 8.25, s.camera.lens.focus_pixel[1] = 20;
     }
     Quad a = quad_at(-5, 0, -3, 5, 0, 0, 0, 9, 0), b = quad_at(5, 0, -8, 5, 0, 0, 0, 4, 0);
-    a.emission = add_glow(&s, 2, true), b.emission = add_glow(&s, 1, true);
+    a.emission = add_emission(&s, 2, true), b.emission = add_emission(&s, 1, true);
     add_quad(&s, &a);
     add_quad(&s, &b);
     if (!k) {
@@ -80,7 +80,7 @@ static void autofocus(void **state) {
       assert_int_equal(vl_autofocus(world, &camera, 8, 16, &distance, &error), VL_ERROR_ARGUMENT);
       assert_non_null(strstr(error.message, "nothing is seen there"));
       assert_int_equal(vl_autofocus(world, &camera, 48.5, 16, &distance, &error), VL_ERROR_ARGUMENT);
-      assert_non_null(strstr(error.message, "outside the picture"));
+      assert_non_null(strstr(error.message, "outside the image"));
       camera.near_plane = 0;
       assert_int_equal(vl_camera_autofocus(world, &camera, &error), VL_OK);
       assert_near("focus", camera.focus_distance, 3, 1e-9);
@@ -93,8 +93,8 @@ static void autofocus(void **state) {
   double off = 0;
   for (uint32_t i = 0; i < 48 * 32 * 4; i++) off += fabs((double)p[0].rgba[i] - (double)p[1].rgba[i]);
   assert_true(off / (48 * 32 * 4) < 1e-3);
-  picture_free(&p[0]);
-  picture_free(&p[1]);
+  image_free(&p[0]);
+  image_free(&p[1]);
 }
 
 static void natural_vignetting(void **state) {
@@ -104,16 +104,16 @@ static void natural_vignetting(void **state) {
   s.render.spp = 64;
   s.render.max_depth = 0;
   Quad q = quad_at(0, 0, -1, 50, 0, 0, 0, 50, 0);
-  q.emission = add_glow(&s, 1, true);
+  q.emission = add_emission(&s, 1, true);
   add_quad(&s, &q);
-  Picture p = stage_finish(&s);
+  Image p = stage_finish(&s);
   for (uint32_t y = 0; y < 48; y += 5)
     for (uint32_t x = 0; x < 64; x += 7) {
       double dx = (x + 0.5 - 32) / 24, dy = (y + 0.5 - 24) / 24, c = 1 + dx * dx + dy * dy;
-      assert_ratio("cos^4", picture_at(&p, x, y, 1), 1 / (c * c), 0.02);
-      assert_near("alpha", picture_at(&p, x, y, 3), 1, 0);
+      assert_ratio("cos^4", image_at(&p, x, y, 1), 1 / (c * c), 0.02);
+      assert_near("alpha", image_at(&p, x, y, 3), 1, 0);
     }
-  picture_free(&p);
+  image_free(&p);
 }
 
 /* A double Gauss before a bright wall: pi / (4 N^2) of its light in the middle, less in the corners, alpha 1. Before
@@ -135,27 +135,27 @@ static void many_elements(void **state) {
     assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, &error), VL_OK);
     double dot[3] = {0.3, -0.2, -2}, pixel[2] = {0, 0};
     Quad q = k == 0 ? quad_at(0, 0, -2, 50, 0, 0, 0, 50, 0) : quad_at(0.3f, -0.2f, -2, 0.01f, 0, 0, 0, 0.01f, 0);
-    q.emission = add_glow(&s, 1, true);
+    q.emission = add_emission(&s, 1, true);
     if (k < 2) add_quad(&s, &q);
     if (k == 2) {
       Quad hidden = quad_at(0, 0, -0.02f, 50, 0, 0, 0, 50, 0); /* between film and lens: not seen */
-      hidden.emission = add_glow(&s, 9, true);
+      hidden.emission = add_emission(&s, 9, true);
       add_quad(&s, &hidden);
     }
     assert_true(vl_camera_project(&camera, dot, pixel, NULL));
-    Picture p = stage_take(&s);
+    Image p = stage_take(&s);
     if (k == 0) {
       vlOpticsInfo info;
       vl_optics_info(optics, &info);
       double n = info.f_number * info.rear_principal / info.focal_length; /* focused near: the working f-number */
-      assert_ratio("middle", picture_at(&p, 36, 24, 1), 3.14159265 / (4 * n * n), 0.05);
-      assert_true(picture_at(&p, 0, 0, 1) < 0.9 * picture_at(&p, 36, 24, 1));
+      assert_ratio("middle", image_at(&p, 36, 24, 1), 3.14159265 / (4 * n * n), 0.05);
+      assert_true(image_at(&p, 0, 0, 1) < 0.9 * image_at(&p, 36, 24, 1));
       for (uint32_t i = 0; i < 72 * 48; i++) assert_true(p.rgba[4 * i + 3] == 1);
     } else if (k == 1) {
       double sum = 0, mx = 0, my = 0;
       for (uint32_t y = 0; y < 48; y++)
         for (uint32_t x = 0; x < 72; x++) {
-          double v = picture_at(&p, x, y, 1);
+          double v = image_at(&p, x, y, 1);
           sum += v, mx += v * (x + 0.5), my += v * (y + 0.5);
         }
       assert_near("x of the dot", mx / sum, pixel[0], 0.1);
@@ -165,7 +165,7 @@ static void many_elements(void **state) {
     } else {
       for (uint32_t i = 0; i < 72 * 48; i++) assert_true(p.rgba[4 * i + 1] == 0);
     }
-    picture_free(&p);
+    image_free(&p);
     vl_optics_destroy(optics);
     stage_close(&s);
   }

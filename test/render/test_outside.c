@@ -1,4 +1,4 @@
-/* test/render/test_outside.c: where a camera sees nothing, the picture is black and its alpha 0, under a sky and inside
+/* test/render/test_outside.c: where a camera sees nothing, the image is black and its alpha 0, under a sky and inside
  * a closed room alike; within its image circle it sees what any camera sees. */
 #include "render/shots.h"
 
@@ -19,17 +19,17 @@ static void image_circle(void **state) {
       assert_int_not_equal(vl_scene_add_shape(s.scene, &room).index, 0);
     }
     s.render.spp = 4;
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     double radius = closed ? 30 * 0.60858 : 24;
     for (uint32_t y = 0; y < 48; y++)
       for (uint32_t x = 0; x < 48; x++) {
         double r = hypot(x + 0.5 - 24, y + 0.5 - 24);
         if (r > radius + 0.75)
-          for (int c = 0; c < 4; c++) assert_true(picture_at(&p, x, y, c) == 0);
-        if (r < radius - 0.75 && closed) assert_near("alpha", picture_at(&p, x, y, 3), 1, 1e-6);
-        if (r < radius - 0.75 && !closed) assert_true(picture_at(&p, x, y, 1) > 0);
+          for (int c = 0; c < 4; c++) assert_true(image_at(&p, x, y, c) == 0);
+        if (r < radius - 0.75 && closed) assert_near("alpha", image_at(&p, x, y, 3), 1, 1e-6);
+        if (r < radius - 0.75 && !closed) assert_true(image_at(&p, x, y, 1) > 0);
       }
-    picture_free(&p);
+    image_free(&p);
   }
 }
 

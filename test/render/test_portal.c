@@ -25,7 +25,7 @@ static void add_room(Stage *s) {
   }
 }
 
-static void add_pictured_sky(Stage *s, bool portal) {
+static void add_imaged_sky(Stage *s, bool portal) {
   float sky[SKY * SKY * 3];
   for (int i = 0; i < SKY * SKY; i++)
     for (int c = 0; c < 3; c++) sky[3 * i + c] = i % 5 == 0 ? 0.0f : 0.5f + 0.4f * (float)((i * (c + 3)) % 7);
@@ -42,7 +42,7 @@ static void add_pictured_sky(Stage *s, bool portal) {
   vl_image_destroy(image);
 }
 
-static Picture room(vlTracer tracer, bool portal, uint32_t seed, uint32_t spp) {
+static Image room(vlTracer tracer, bool portal, uint32_t seed, uint32_t spp) {
   Stage s = stage_open(SIZE, SIZE);
   s.camera.eye[2] = 0.95, s.camera.eye[1] = -0.3;
   s.camera.lookat[1] = 0.1;
@@ -53,7 +53,7 @@ static Picture room(vlTracer tracer, bool portal, uint32_t seed, uint32_t spp) {
   s.render.seed = seed;
   s.render.spp = spp;
   add_room(&s);
-  add_pictured_sky(&s, portal);
+  add_imaged_sky(&s, portal);
   return stage_finish(&s);
 }
 
@@ -66,13 +66,13 @@ static Blocks measure(vlTracer tracer, bool portal, uint32_t spp) {
   memset(&b, 0, sizeof b);
   double sum[BLOCKS * BLOCKS] = {0}, squares[BLOCKS * BLOCKS] = {0};
   for (uint32_t seed = 1; seed <= SEEDS; seed++) {
-    Picture p = room(tracer, portal, 100 * (uint32_t)tracer + seed + (portal ? 50 : 0), spp);
+    Image p = room(tracer, portal, 100 * (uint32_t)tracer + seed + (portal ? 50 : 0), spp);
     for (uint32_t k = 0; k < BLOCKS * BLOCKS; k++) {
       uint32_t x = k % BLOCKS * (SIZE / BLOCKS), y = k / BLOCKS * (SIZE / BLOCKS);
-      double v = picture_region(&p, x, y, x + SIZE / BLOCKS, y + SIZE / BLOCKS, 1);
+      double v = image_region(&p, x, y, x + SIZE / BLOCKS, y + SIZE / BLOCKS, 1);
       sum[k] += v, squares[k] += v * v;
     }
-    picture_free(&p);
+    image_free(&p);
   }
   for (int k = 0; k < BLOCKS * BLOCKS; k++) {
     b.mean[k] = sum[k] / SEEDS;
@@ -111,7 +111,7 @@ static void room_with_and_without(void **state) {
 static void seen_from_both_sides(void **state) {
   (void)state;
   for (int side = 0; side < 3; side++) {
-    Picture p[2];
+    Image p[2];
     for (int portal = 0; portal < 2; portal++) {
       Stage s = stage_open(32, 32);
       s.camera.eye[0] = 0.2, s.camera.eye[1] = side == 2 ? 1.5 : 0.5;
@@ -119,16 +119,16 @@ static void seen_from_both_sides(void **state) {
       s.camera.up[0] = s.camera.up[1] = 0, s.camera.up[2] = 1;
       s.render.sampler = VL_SAMPLER_REGULAR, s.render.spp = 1;
       s.build.color = VL_COLOR_RGB;
-      add_pictured_sky(&s, portal);
+      add_imaged_sky(&s, portal);
       p[portal] = stage_finish(&s);
     }
     for (uint32_t y = 0; y < 32; y++)
-      for (uint32_t x = 0; x < 32; x++) { /* 90 degrees: at distance 0.5 the picture is 1 wide */
+      for (uint32_t x = 0; x < 32; x++) { /* 90 degrees: at distance 0.5 the image is 1 wide */
         double px = fabs((x + 0.5) / 32 - 0.5), py = fabs((y + 0.5) / 32 - 0.5);
         bool inside = side == 0 && px < 0.4 && py < 0.3;
-        assert_near("sky in a portal", picture_at(&p[1], x, y, 1), inside ? picture_at(&p[0], x, y, 1) : 0, 1e-6);
+        assert_near("sky in a portal", image_at(&p[1], x, y, 1), inside ? image_at(&p[0], x, y, 1) : 0, 1e-6);
       }
-    picture_free(&p[0]), picture_free(&p[1]);
+    image_free(&p[0]), image_free(&p[1]);
   }
 }
 
@@ -155,15 +155,15 @@ static void floor_under_a_portal(void **state) {
   memcpy(def.portal, corners, sizeof corners);
   vl_scene_add_light(s.scene, &def);
   vl_image_destroy(image);
-  Picture p = stage_finish(&s);
+  Image p = stage_finish(&s);
   double sum = 0;
   for (int i = 0; i < 200; i++)
     for (int j = 0; j < 200; j++) {
       double x = 0.8 * ((i + 0.5) / 200 - 0.5), z = 0.6 * ((j + 0.5) / 200 - 0.5), d2 = x * x + z * z + 4;
       sum += 4 / (d2 * d2) * 0.48 / 40000; /* cos cos / d^2 dA at distance 2 */
     }
-  assert_ratio("floor under a portal", picture_mean(&p, 1), 0.5 / M_PI * 3 * sum, 2e-3);
-  picture_free(&p);
+  assert_ratio("floor under a portal", image_mean(&p, 1), 0.5 / M_PI * 3 * sum, 2e-3);
+  image_free(&p);
 }
 
 int main(void) {

@@ -58,11 +58,11 @@ static double mean_of(const Material *m, int where, vlLightSampler sampler, doub
   s.render.spp = m->shape == quad ? 256 : 2048; /* hair concentrates light */
   s.render.max_depth = m->shape == slab ? 3 : 1;
   s.render.tracer = VL_TRACER_PATH;
-  Picture p = stage_finish(&s);
-  double mean = picture_mean(&p, 1), most = 0;
+  Image p = stage_finish(&s);
+  double mean = image_mean(&p, 1), most = 0;
   for (uint32_t i = 0; i < SIZE * SIZE; i++) most = fmax(most, p.rgba[4 * i + 1]);
   *noise = mean > 0 ? most / mean : 0;
-  picture_free(&p);
+  image_free(&p);
   return mean;
 }
 

@@ -29,7 +29,7 @@ static vlMaterialId shiny(Stage *s, int kind, float u, float v) {
 }
 
 /* The eye sees a grey wall; the material is behind it. Or, first: before it. */
-static Picture room(int kind, float u, float v, bool regularize, bool first, uint32_t depth, bool medium) {
+static Image room(int kind, float u, float v, bool regularize, bool first, uint32_t depth, bool medium) {
   Stage s = stage_open(24, 24);
   s.build.regularize = regularize;
   s.render.spp = 8;
@@ -50,7 +50,7 @@ static Picture room(int kind, float u, float v, bool regularize, bool first, uin
   return stage_finish(&s);
 }
 
-static bool same(const Picture *a, const Picture *b) {
+static bool same(const Image *a, const Image *b) {
   return memcmp(a->rgba, b->rgba, (size_t)a->width * a->height * 4 * sizeof(float)) == 0;
 }
 
@@ -63,16 +63,16 @@ static void rougher(void **state) {
       for (int i = 0; i < 4; i++) {
         float u = alphas[i][0], v = alphas[i][1];
         if (kind == PRINCIPLED && i == 0) continue; /* has a least alpha of its own */
-        Picture on = room(kind, u, v, true, false, 3, medium), off = room(kind, u, v, false, false, 3, medium);
-        Picture rough = room(kind, widened(u), widened(v), false, false, 3, medium);
+        Image on = room(kind, u, v, true, false, 3, medium), off = room(kind, u, v, false, false, 3, medium);
+        Image rough = room(kind, widened(u), widened(v), false, false, 3, medium);
         if (kind == PRINCIPLED) { /* its roughness is the root: rounded */
-          double differing = picture_differing(&on, &rough, 1e-3);
+          double differing = image_differing(&on, &rough, 1e-3);
           if (differing > 0.02) fail_msg("kind %d alphas %d: %g of the pixels differ", kind, i, differing);
         } else if (!same(&on, &rough)) {
           fail_msg("kind %d alphas %d medium %d: not as the rougher one", kind, i, medium);
         }
         if (same(&on, &off)) fail_msg("kind %d alphas %d: nothing has changed", kind, i);
-        picture_free(&on), picture_free(&off), picture_free(&rough);
+        image_free(&on), image_free(&off), image_free(&rough);
       }
 }
 
@@ -80,19 +80,19 @@ static void rougher(void **state) {
 static void unchanged(void **state) {
   (void)state;
   for (int kind = 0; kind < KINDS; kind++) {
-    Picture on = room(kind, 0.05f, 0.05f, true, true, 1, false), off = room(kind, 0.05f, 0.05f, false, true, 1, false);
+    Image on = room(kind, 0.05f, 0.05f, true, true, 1, false), off = room(kind, 0.05f, 0.05f, false, true, 1, false);
     if (!same(&on, &off)) fail_msg("kind %d: the first hit has changed", kind);
-    picture_free(&on), picture_free(&off);
+    image_free(&on), image_free(&off);
     on = room(kind, 0.5f, 0.4f, true, false, 4, false), off = room(kind, 0.5f, 0.4f, false, false, 4, false);
     if (!same(&on, &off)) fail_msg("kind %d: what was rough has changed", kind);
-    picture_free(&on), picture_free(&off);
+    image_free(&on), image_free(&off);
   }
 }
 
 /* eye -> mirror -> metal: both as they are. The metal scatters: what the next ray meets is rougher. */
 static void in_a_mirror(void **state) {
   (void)state;
-  Picture p[2][2];
+  Image p[2][2];
   for (int deep = 0; deep < 2; deep++)
     for (int on = 0; on < 2; on++) {
       Stage s = stage_open(24, 24);
@@ -108,7 +108,7 @@ static void in_a_mirror(void **state) {
     }
   assert_true(same(&p[0][0], &p[0][1]));
   assert_false(same(&p[1][0], &p[1][1]));
-  for (int i = 0; i < 4; i++) picture_free(&p[i / 2][i % 2]);
+  for (int i = 0; i < 4; i++) image_free(&p[i / 2][i % 2]);
 }
 
 /* A medium scatters, too: then a mirror finds the lamp. */
@@ -131,9 +131,9 @@ static void in_a_medium(void **state) {
     lamp.from[0] = 0.4f, lamp.from[2] = -1;
     lamp.medium = vl_scene_defs(s.scene)->camera_medium;
     vl_scene_add_light(s.scene, &lamp);
-    Picture p = stage_finish(&s);
-    mean[on] = picture_mean(&p, 1);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    mean[on] = image_mean(&p, 1);
+    image_free(&p);
   }
   print_message("mean %.4f, regularised %.4f\n", mean[0], mean[1]);
   assert_true(mean[0] > 0 && mean[1] > mean[0] * 1.01);

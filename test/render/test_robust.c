@@ -10,16 +10,16 @@ static double seconds(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void assert_clean(const char *what, Picture *p) {
+static void assert_clean(const char *what, Image *p) {
   for (size_t i = 0; i < (size_t)p->width * p->height * 4; i++)
     if (!isfinite(p->rgba[i])) fail_msg("%s: a pixel is not finite", what);
 }
 
 static void done(const char *what, Stage *s, bool all_finite) {
-  Picture p = stage_finish(s);
+  Image p = stage_finish(s);
   assert_clean(what, &p);
   if (all_finite && p.stats.not_finite) fail_msg("%s: %g samples not finite", what, (double)p.stats.not_finite);
-  picture_free(&p);
+  image_free(&p);
 }
 
 static void nothing_at_all(void **state) {
@@ -29,9 +29,9 @@ static void nothing_at_all(void **state) {
       Stage s = stage_open(5, 3);
       s.render.tracer = (vlTracer)tracer;
       if (sky) add_sky(&s, 1);
-      Picture p = stage_finish(&s);
-      assert_near("empty scene", picture_mean(&p, 1), sky && tracer != VL_TRACER_AMBIENT_OCCLUSION, 0.1);
-      picture_free(&p);
+      Image p = stage_finish(&s);
+      assert_near("empty scene", image_mean(&p, 1), sky && tracer != VL_TRACER_AMBIENT_OCCLUSION, 0.1);
+      image_free(&p);
     }
   Stage s = stage_open(1, 1); /* one pixel, an empty group, a group nobody places */
   double identity[16];
@@ -59,7 +59,7 @@ static void degenerate_triangles(void **state) {
     def.vertices = 10, def.faces = 8, def.positions = p, def.indices = f;
     if (k & 1) def.normals = n, def.tangents = n;
     if (k & 2) def.uvs = uv;
-    if (k & 4) def.emission = add_glow(&s, 1, true);
+    if (k & 4) def.emission = add_emission(&s, 1, true);
     vlTextureDef h = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, false);
     vlMaterialDef m = vl_default_material_def(k & 1 ? VL_MATERIAL_CONDUCTOR : VL_MATERIAL_COATED_DIFFUSE);
     m.displacement.texture = vl_scene_add_texture(s.scene, &h);
@@ -70,7 +70,7 @@ static void degenerate_triangles(void **state) {
   vlShapeDef patch = vl_default_shape_def(VL_SHAPE_BILINEAR);
   static const uint32_t index[12] = {0, 0, 0, 0, 0, 1, 0, 1, 0, 1, 4, 4};
   patch.vertices = 10, patch.faces = 3, patch.positions = p, patch.indices = index,
-  patch.emission = add_glow(&s, 1, false);
+  patch.emission = add_emission(&s, 1, false);
   vl_scene_add_shape(s.scene, &patch);
   vlShapeDef thin = vl_default_shape_def(VL_SHAPE_CYLINDER);
   thin.z_min = 0, thin.z_max = 1e-30f, thin.emission = patch.emission;
@@ -84,7 +84,7 @@ static void degenerate_triangles(void **state) {
   done("degenerate shapes", &s, true);
 }
 
-/* The same picture at any size of the world. */
+/* The same image at any size of the world. */
 static void scales(void **state) {
   (void)state;
   double mean[5];
@@ -98,7 +98,7 @@ static void scales(void **state) {
     add_quad(&s, &floor);
     Quad light = quad_at(0, (float)scale[k], (float)(-3 * scale[k]), (float)(0.3 * scale[k]), 0, 0, 0, 0,
                          (float)(0.3 * scale[k]));
-    light.emission = add_glow(&s, 3, false);
+    light.emission = add_emission(&s, 3, false);
     add_quad(&s, &light);
     vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
     set_matrix(ball.group_from_shape, scale[k], 0, 0, -scale[k], 0, scale[k], 0, 0, 0, 0, scale[k], -4 * scale[k]);
@@ -111,11 +111,11 @@ static void scales(void **state) {
     vl_scene_add_shape(s.scene, &mesh);
     free(block);
     s.render.spp = 64;
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     assert_clean("scale", &p);
     assert_int_equal(p.stats.not_finite, 0);
-    mean[k] = picture_mean(&p, 1);
-    picture_free(&p);
+    mean[k] = image_mean(&p, 1);
+    image_free(&p);
   }
   assert_ratio("a million times larger", mean[1], mean[0], 5e-3);
   assert_ratio("a million times smaller", mean[2], mean[0], 5e-3);
@@ -151,9 +151,9 @@ static void coincident_surfaces(void **state) {
       Quad q = quad_at(0, 0, -1.2345f, 3, 0.1f, 0.2f, 0, 3, 0.3f);
       add_quad(&s, &q);
     }
-    Picture p = stage_finish(&s);
-    mean[copies - 1] = picture_mean(&p, 1);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    mean[copies - 1] = image_mean(&p, 1);
+    image_free(&p);
   }
   assert_ratio("coincident walls", mean[1], mean[0], 1e-3);
 }
@@ -171,16 +171,16 @@ static void dark_and_wild_lights(void **state) {
       light.scale = k < 4 ? 0 : k == 4 ? 1e30f : -1;
       vl_scene_add_light(s.scene, &light);
       if (k == 2) light.color = vl_spectrum_constant(0), light.scale = 1, vl_scene_add_light(s.scene, &light);
-      vlEmissionDef glow = vl_default_emission_def();
-      glow.scale = k == 5 ? 1e30f : 0;
-      glow.power = k == 1 ? 0 : VL_UNSET;
-      q.emission = vl_scene_add_emission(s.scene, &glow);
+      vlEmissionDef emission = vl_default_emission_def();
+      emission.scale = k == 5 ? 1e30f : 0;
+      emission.power = k == 1 ? 0 : VL_UNSET;
+      q.emission = vl_scene_add_emission(s.scene, &emission);
       add_quad(&s, &q);
-      Picture p = stage_finish(&s);
+      Image p = stage_finish(&s);
       assert_clean("dark and wild lights", &p);
       if (k < 4) assert_int_equal(p.stats.not_finite, 0);
       if (k == 5) assert_true(p.stats.not_finite > 0); /* brighter than a film can hold: dropped, and counted */
-      picture_free(&p);
+      image_free(&p);
     }
 }
 
@@ -215,7 +215,7 @@ static void wild_materials(void **state) {
     }
 }
 
-static void wild_pictures(void **state) {
+static void wild_images(void **state) {
   (void)state;
   const float bad[4] = {INFINITY, NAN, -1e30f, 1e38f};
   for (int k = 0; k < 4; k++)
@@ -248,7 +248,7 @@ static void wild_pictures(void **state) {
       vlResult r = vl_world_build(s.scene, &s.build, &world, &error);
       vl_world_destroy(world);
       if (r == VL_OK) {
-        done("wild picture", &s, false);
+        done("wild image", &s, false);
       } else {
         assert_int_equal(r, VL_ERROR_SCENE);
         stage_close(&s);
@@ -258,7 +258,7 @@ static void wild_pictures(void **state) {
 
 static void thousands_of_materials(void **state) {
   (void)state;
-  Picture p[2];
+  Image p[2];
   for (int many = 0; many < 2; many++) {
     Stage s = stage_open(64, 48);
     add_point(&s, 0, 0, 1, 5);
@@ -273,8 +273,8 @@ static void thousands_of_materials(void **state) {
     p[many] = stage_finish(&s);
     if (seconds() - start > 20) fail_msg("5000 materials took %.1f s", seconds() - start);
   }
-  assert_true(picture_differing(&p[0], &p[1], 1e-6) == 0);
-  picture_free(&p[0]), picture_free(&p[1]);
+  assert_true(image_differing(&p[0], &p[1], 1e-6) == 0);
+  image_free(&p[0]), image_free(&p[1]);
 }
 
 /* A cloud of 100 000 tiny lights lights a floor as one large light of the same power does from afar. */
@@ -302,25 +302,25 @@ static void a_hundred_thousand_lights(void **state) {
     if (many) {
       vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
       def.vertices = 4 * N, def.faces = 2 * N, def.positions = p, def.indices = f;
-      def.emission = add_glow(&s, 4.0f / (N * 1e-6f), false);
+      def.emission = add_emission(&s, 4.0f / (N * 1e-6f), false);
       vl_scene_add_shape(s.scene, &def);
     } else {
       Quad q = quad_at(0, 1, 0, 1, 0, 0, 0, 0, 1);
-      q.emission = add_glow(&s, 1, false);
+      q.emission = add_emission(&s, 1, false);
       add_quad(&s, &q);
     }
     vlWorld *world = NULL;
     assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_OK);
     double build = seconds() - start;
     vl_world_destroy(world);
-    Picture q = stage_finish(&s);
-    mean[many] = picture_mean(&q, 1);
+    Image q = stage_finish(&s);
+    mean[many] = image_mean(&q, 1);
     if (many)
       printf("[  INFO    ] 100000 lights: built in %.2f s, %.2f s for %g paths\n", build, q.stats.seconds,
              (double)q.stats.paths);
     if (build > 30 || q.stats.seconds > 60)
       fail_msg("100000 lights: build %.1f s, render %.1f s", build, q.stats.seconds);
-    picture_free(&q);
+    image_free(&q);
   }
   free(p);
   free(f);
@@ -336,7 +336,7 @@ int main(void) {
       cmocka_unit_test(coincident_surfaces),
       cmocka_unit_test(dark_and_wild_lights),
       cmocka_unit_test(wild_materials),
-      cmocka_unit_test(wild_pictures),
+      cmocka_unit_test(wild_images),
       cmocka_unit_test(thousands_of_materials),
       cmocka_unit_test(a_hundred_thousand_lights),
   };

@@ -1,4 +1,4 @@
-/* Pictures by a measured camera (vlFilmDef.sensor): the colour of a lit wall against sums over wavelengths; the
+/* Images by a measured camera (vlFilmDef.sensor): the colour of a lit wall against sums over wavelengths; the
  * exposure; the limit of a sample, which is of the sensor's own values; RGB worlds. */
 #include "color/sensor.h"
 #include "math/transform.h"
@@ -23,7 +23,7 @@ static void expected_of(const char *name, double kelvin, const double *spectrum,
 }
 
 /* A black body's light, of luminance 1, all over. */
-static Picture see_light(const char *sensor, double white, float kelvin, vlColorMode color, float most) {
+static Image see_light(const char *sensor, double white, float kelvin, vlColorMode color, float most) {
   Stage s = stage_open(8, 8);
   s.build.color = color;
   s.render.spp = 1024;
@@ -51,14 +51,14 @@ static void colour_of_light(void **state) {
   double spectrum[COUNT], rgb[3], values[3];
   body_of(2200, spectrum);
   for (int n = 0; n < 3; n++) {
-    Picture p = see_light(sensors[n], whites[n], 2200, VL_COLOR_SPECTRAL, INFINITY);
+    Image p = see_light(sensors[n], whites[n], 2200, VL_COLOR_SPECTRAL, INFINITY);
     expected_of(sensors[n], whites[n] > 0 ? whites[n] : 6500, spectrum, rgb, values);
-    for (int c = 0; c < 3; c++) assert_ratio(sensors[n], picture_mean(&p, c), rgb[c], 5e-3);
-    Picture eye = see_light(NULL, whites[n], 2200, VL_COLOR_SPECTRAL, INFINITY);
+    for (int c = 0; c < 3; c++) assert_ratio(sensors[n], image_mean(&p, c), rgb[c], 5e-3);
+    Image eye = see_light(NULL, whites[n], 2200, VL_COLOR_SPECTRAL, INFINITY);
     double most = 0; /* it is not the observer's colour */
-    for (int c = 0; c < 3; c++) most = fmax(most, fabs(picture_mean(&p, c) / picture_mean(&eye, c) - 1));
+    for (int c = 0; c < 3; c++) most = fmax(most, fabs(image_mean(&p, c) / image_mean(&eye, c) - 1));
     assert_true(most > 0.01);
-    picture_free(&p), picture_free(&eye);
+    image_free(&p), image_free(&eye);
   }
 }
 
@@ -74,21 +74,21 @@ static void limited(void **state) {
   for (int i = 0; i < 9; i++) to[i] = (double)rgb_from_xyz[i];
   vl_mat3_multiply(to, m, whole);
   vl_mat3_inverse(whole, back);
-  Picture p = see_light("nikon_d850", 5000, 2200, VL_COLOR_SPECTRAL, 0.125f);
+  Image p = see_light("nikon_d850", 5000, 2200, VL_COLOR_SPECTRAL, 0.125f);
   for (int k = 0; k < 3; k++)
-    most = fmax(most, back[3 * k] * picture_mean(&p, 0) + back[3 * k + 1] * picture_mean(&p, 1) +
-                          back[3 * k + 2] * picture_mean(&p, 2));
+    most = fmax(most, back[3 * k] * image_mean(&p, 0) + back[3 * k + 1] * image_mean(&p, 1) +
+                          back[3 * k + 2] * image_mean(&p, 2));
   assert_ratio("largest value", most, 0.125, 1e-4);
-  picture_free(&p);
+  image_free(&p);
 }
 
 /* Worlds without spectra: as the standard observer with the same white. */
 static void rgb_world(void **state) {
   (void)state;
-  Picture a = see_light("nikon_d850", 0, 2200, VL_COLOR_RGB, INFINITY);
-  Picture b = see_light("cie1931", 6500, 2200, VL_COLOR_RGB, INFINITY);
+  Image a = see_light("nikon_d850", 0, 2200, VL_COLOR_RGB, INFINITY);
+  Image b = see_light("cie1931", 6500, 2200, VL_COLOR_RGB, INFINITY);
   assert_memory_equal(a.rgba, b.rgba, (size_t)a.width * a.height * 4 * sizeof(float));
-  picture_free(&a), picture_free(&b);
+  image_free(&a), image_free(&b);
 }
 
 static void unknown_name(void **state) {

@@ -1,4 +1,4 @@
-/* Two ways to say one thing must give one picture: instances and baked geometry, patches and triangles, spheres and
+/* Two ways to say one thing must give one image: instances and baked geometry, patches and triangles, spheres and
  * their meshes, holes by alpha and holes by geometry. */
 #include "render/shots.h"
 
@@ -10,14 +10,14 @@ static void stage_light(Stage *s) {
   s->camera.fov = 0.8;
 }
 
-static void assert_same(const char *what, Picture *a, Picture *b, double share, double mean) {
-  double differing = picture_differing(a, b, 0.02);
+static void assert_same(const char *what, Image *a, Image *b, double share, double mean) {
+  double differing = image_differing(a, b, 0.02);
   if (differing > share) fail_msg("%s: %.1f %% of the pixels differ", what, 100 * differing);
-  for (int c = 0; c < 4; c++) assert_ratio(what, picture_mean(b, c), picture_mean(a, c), mean);
+  for (int c = 0; c < 4; c++) assert_ratio(what, image_mean(b, c), image_mean(a, c), mean);
   assert_int_equal(a->stats.not_finite, 0);
   assert_int_equal(b->stats.not_finite, 0);
-  picture_free(a);
-  picture_free(b);
+  image_free(a);
+  image_free(b);
 }
 
 /* ---- instances --------------------------------------------------------------------------------------------------- */
@@ -84,7 +84,7 @@ static void instances_are_baked_geometry(void **state) {
     for (int m = 0; m < 4; m++) {
       /* Glass shows which side is which; only closed shapes have an inside. */
       bool glass = kind <= SPHERE && m != 1, reverse = m == 3;
-      Picture p[2];
+      Image p[2];
       for (int way = 0; way < 2; way++) {
         Stage s = stage_open(48, 36);
         stage_light(&s);
@@ -111,7 +111,7 @@ static void instances_are_baked_geometry(void **state) {
 
 static void one_group_many_places(void **state) {
   (void)state;
-  Picture p[2];
+  Image p[2];
   for (int way = 0; way < 2; way++) {
     Stage s = stage_open(48, 36);
     stage_light(&s);
@@ -139,17 +139,17 @@ static void one_group_many_places(void **state) {
 
 static void fine_mesh_is_the_sphere(void **state) {
   (void)state;
-  for (int glowing = 0; glowing < 2; glowing++) {
-    Picture p[2];
+  for (int emissive = 0; emissive < 2; emissive++) {
+    Image p[2];
     for (int way = 0; way < 2; way++) {
       Stage s = stage_open(48, 36);
-      if (!glowing) stage_light(&s);
+      if (!emissive) stage_light(&s);
       s.camera.fov = 0.8;
       s.render.spp = 64;
       float *block = NULL;
       vlShapeDef def = way ? mesh_sphere(64, 1, true, &block) : vl_default_shape_def(VL_SHAPE_SPHERE);
       set_matrix(def.group_from_shape, 0.6, 0, 0, 0.3, 0, 0.6, 0, 0.3, 0, 0, 0.6, -4);
-      if (glowing) def.emission = add_glow(&s, 2, false);
+      if (emissive) def.emission = add_emission(&s, 2, false);
       vl_scene_add_shape(s.scene, &def);
       free(block);
       Quad floor = quad_at(0, -0.6f, -4, 3, 0, 0, 0, 0, -3);
@@ -157,17 +157,17 @@ static void fine_mesh_is_the_sphere(void **state) {
       add_quad(&s, &floor);
       p[way] = stage_finish(&s);
     }
-    assert_ratio("mesh of a sphere", picture_mean(&p[1], 1), picture_mean(&p[0], 1), 0.004);
-    double differing = picture_differing(&p[0], &p[1], 0.1);
+    assert_ratio("mesh of a sphere", image_mean(&p[1], 1), image_mean(&p[0], 1), 0.004);
+    double differing = image_differing(&p[0], &p[1], 0.1);
     if (differing > 0.06) fail_msg("mesh of a sphere: %.1f %% of the pixels differ", 100 * differing);
-    picture_free(&p[0]), picture_free(&p[1]);
+    image_free(&p[0]), image_free(&p[1]);
   }
 }
 
 /* The near plane cuts the front of a sphere away: one sees the inside of its back, as through a part of a sphere. */
 static void near_plane_opens_a_sphere(void **state) {
   (void)state;
-  Picture p[2];
+  Image p[2];
   for (int way = 0; way < 2; way++) {
     Stage s = stage_open(48, 36);
     add_point(&s, 0, 0, -4, 1);
@@ -180,19 +180,19 @@ static void near_plane_opens_a_sphere(void **state) {
     vl_scene_add_shape(s.scene, &def);
     p[way] = stage_finish(&s);
   }
-  assert_true(picture_mean(&p[0], 1) > 0.05);
+  assert_true(image_mean(&p[0], 1) > 0.05);
   assert_same("opened sphere", &p[0], &p[1], 0.02, 2e-3);
 }
 
 /* A flat patch and its two triangles: as a surface, with a texture, and as a light. */
 static void flat_patch_is_two_triangles(void **state) {
   (void)state;
-  for (int glowing = 0; glowing < 2; glowing++) {
-    Picture p[2];
+  for (int emissive = 0; emissive < 2; emissive++) {
+    Image p[2];
     for (int way = 0; way < 2; way++) {
       Stage s = stage_open(48, 36);
-      if (!glowing) stage_light(&s);
-      s.render.spp = glowing ? 64 : 16;
+      if (!emissive) stage_light(&s);
+      s.render.spp = emissive ? 64 : 16;
       s.camera.fov = 0.8;
       vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, true);
       checks.su = 4, checks.sv = 3;
@@ -200,23 +200,23 @@ static void flat_patch_is_two_triangles(void **state) {
       Quad q = quad_at(0.2f, 0.3f, -4, 1, 0.2f, 0.3f, -0.1f, 0.8f, 0.2f);
       q.patch = way;
       q.material = add_textured(&s, vl_scene_add_texture(s.scene, &checks));
-      if (glowing) q.emission = add_glow(&s, 1, false);
+      if (emissive) q.emission = add_emission(&s, 1, false);
       add_quad(&s, &q);
       Quad floor = quad_at(0, -1, -3.5f, 3, 0, 0, 0, 0, -3);
       floor.material = add_diffuse(&s, 0.6f, 0.6f, 0.6f);
       add_quad(&s, &floor);
       p[way] = stage_finish(&s);
     }
-    if (!glowing) {
+    if (!emissive) {
       assert_same("flat patch", &p[0], &p[1], 0.01, 2e-3);
       continue;
     }
     for (uint32_t y = 0; y < 36; y += 12) /* by blocks: the two are sampled in different ways */
       for (uint32_t x = 0; x < 48; x += 12) {
-        double a = picture_region(&p[0], x, y, x + 12, y + 12, 1), b = picture_region(&p[1], x, y, x + 12, y + 12, 1);
+        double a = image_region(&p[0], x, y, x + 12, y + 12, 1), b = image_region(&p[1], x, y, x + 12, y + 12, 1);
         assert_near("light of a flat patch", b, a, 0.01 * a + 2e-3);
       }
-    picture_free(&p[0]), picture_free(&p[1]);
+    image_free(&p[0]), image_free(&p[1]);
   }
 }
 
@@ -248,11 +248,11 @@ static void half_a_card_lets_half_through(void **state) {
       disk.material = card.material, disk.alpha = card.alpha;
       vl_scene_add_shape(s.scene, &disk);
     }
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     /* 48 * 36 * 64 coin throws: deviation 0.0014 */
-    assert_near("light through a card of coverage 0.3", picture_mean(&p, 1), 0.7, 0.006);
-    assert_near("pixels met", picture_mean(&p, 3), 0.3, 0.006);
-    picture_free(&p);
+    assert_near("light through a card of coverage 0.3", image_mean(&p, 1), 0.7, 0.006);
+    assert_near("pixels met", image_mean(&p, 3), 0.3, 0.006);
+    image_free(&p);
   }
 }
 
@@ -281,9 +281,9 @@ static void coverage_multiplies(void **state) {
       vl_scene_add_instance(s.scene, card.group, a, (vlSource){0});
       vl_scene_add_instance(s.scene, card.group, b, (vlSource){0});
     }
-    Picture p = stage_finish(&s);
-    assert_near(kind ? "two cards of coverage 1/2" : "sphere of coverage 1/2", picture_mean(&p, 1), 0.25, 0.006);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    assert_near(kind ? "two cards of coverage 1/2" : "sphere of coverage 1/2", image_mean(&p, 1), 0.25, 0.006);
+    image_free(&p);
   }
 }
 
@@ -303,9 +303,9 @@ static void half_a_card_casts_half_a_shadow(void **state) {
     add_quad(&s, &floor);
     add_quad(&s, &card);
     s.camera.lookat[1] = -2;
-    Picture p = stage_finish(&s);
-    value[coverage] = picture_mean(&p, 1);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    value[coverage] = image_mean(&p, 1);
+    image_free(&p);
   }
   assert_ratio("no card", value[0], 0.5 / M_PI, 2e-3);
   assert_ratio("half a card", value[1], 0.25 / M_PI, 0.01);
@@ -316,7 +316,7 @@ static void half_a_card_casts_half_a_shadow(void **state) {
 static void alpha_holes_are_holes(void **state) {
   (void)state;
   for (int kind = 0; kind < 3; kind++) { /* triangles, patch, instanced triangles */
-    Picture p[2];
+    Image p[2];
     for (int way = 0; way < 2; way++) {
       Stage s = stage_open(64, 48);
       stage_light(&s);
@@ -351,7 +351,7 @@ static void alpha_holes_are_holes(void **state) {
 static void half_a_sphere_by_alpha(void **state) {
   (void)state;
   for (int instanced = 0; instanced < 2; instanced++) {
-    Picture p[2];
+    Image p[2];
     for (int way = 0; way < 2; way++) {
       Stage s = stage_open(64, 48);
       stage_light(&s);

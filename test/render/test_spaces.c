@@ -1,4 +1,4 @@
-/* Colour spaces of pictures: an EXR file's chromaticities say what its numbers mean, in textures, skies, lamps and
+/* Colour spaces of images: an EXR file's chromaticities say what its numbers mean, in textures, skies, lamps and
  * slides; else the def's space counts. Looked at by a film of the same space the numbers come back. */
 #include "render/shots.h"
 
@@ -6,7 +6,7 @@ static const double rec2020[8] = {0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.31
 static const float color[3] = {0.2f, 0.5f, 0.1f};
 enum { TEXTURE, SKY, LAMP, KINDS };
 
-static vlImage *picture(Stage *s, bool tells) {
+static vlImage *image(Stage *s, bool tells) {
   float rgb[4 * 4 * 3];
   for (int i = 0; i < 48; i++) rgb[i] = color[i % 3];
   vlImage *image = make_image(s, 4, 4, rgb);
@@ -25,7 +25,7 @@ static void look(int kind, bool tells, vlColorSpace said, vlColorSpace film, dou
   s.render.spp = 1024;
   s.render.max_depth = 1;
   s.camera.fov = 0.5;
-  vlImage *image = picture(&s, tells);
+  vlImage *image = image(&s, tells);
   Quad q = quad_at(0, 0, -1, 3, 0, 0, 0, 3, 0);
   if (kind == TEXTURE) {
     vlTextureDef def = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
@@ -47,9 +47,9 @@ static void look(int kind, bool tells, vlColorSpace said, vlColorSpace film, dou
     add_quad(&s, &q);
   }
   vl_image_destroy(image);
-  Picture p = stage_finish(&s);
-  for (int c = 0; c < 3; c++) seen[c] = picture_mean(&p, c);
-  picture_free(&p);
+  Image p = stage_finish(&s);
+  for (int c = 0; c < 3; c++) seen[c] = image_mean(&p, c);
+  image_free(&p);
   remove(path);
 }
 

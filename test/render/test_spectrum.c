@@ -7,7 +7,7 @@ enum { SIZE = 8, BUCKETS = 12 };
 
 typedef struct Spectrum {
   double mean[BUCKETS], error[BUCKETS]; /* of the pixels, and of that mean */
-  Picture picture;
+  Image image;
   float *pixels;
 } Spectrum;
 
@@ -22,16 +22,16 @@ static Spectrum take(Stage *s) {
   if (vl_world_build(s->scene, &s->build, &world, &error) != VL_OK) fail_msg("build: %s", error.message);
   assert_int_equal(vl_camera_make(&s->camera, &camera, NULL, &error), VL_OK);
   assert_int_equal(vl_film_create(s->context, &s->film, &film), VL_OK);
-  if (vl_render(world, &camera, film, &s->render, &r.picture.stats, &error) != VL_OK)
+  if (vl_render(world, &camera, film, &s->render, &r.image.stats, &error) != VL_OK)
     fail_msg("render: %s", error.message);
   assert_int_equal(vl_film_spectrum(film, &image), VL_OK);
   assert_int_equal(vl_film_develop(film, NULL, &colors), VL_OK);
   uint32_t w = vl_image_width(image), h = vl_image_height(image);
-  r.picture.width = w, r.picture.height = h;
+  r.image.width = w, r.image.height = h;
   r.pixels = malloc((size_t)w * h * BUCKETS * sizeof(float));
-  r.picture.rgba = malloc((size_t)w * h * 4 * sizeof(float));
+  r.image.rgba = malloc((size_t)w * h * 4 * sizeof(float));
   memcpy(r.pixels, vl_image_const_pixels(image), (size_t)w * h * BUCKETS * sizeof(float));
-  memcpy(r.picture.rgba, vl_image_const_pixels(colors), (size_t)w * h * 4 * sizeof(float));
+  memcpy(r.image.rgba, vl_image_const_pixels(colors), (size_t)w * h * 4 * sizeof(float));
   for (int k = 0; k < BUCKETS; k++) {
     double sum = 0, squares = 0, n = (double)w * h;
     for (size_t i = 0; i < (size_t)w * h; i++) sum += r.pixels[i * BUCKETS + k];
@@ -46,7 +46,7 @@ static Spectrum take(Stage *s) {
 }
 static void release(Spectrum *s) {
   free(s->pixels);
-  picture_free(&s->picture);
+  image_free(&s->image);
 }
 
 static Stage stage(double low, double high) {
@@ -174,14 +174,14 @@ static void constant_and_colors(void **state) {
     vl_scene_add_light(s.scene, &def);
     if (!with) {
       s.film.buckets = 0;
-      Picture p = stage_finish(&s);
-      for (int c = 0; c < 3; c++) mean[0][c] = picture_mean(&p, c);
-      picture_free(&p);
+      Image p = stage_finish(&s);
+      for (int c = 0; c < 3; c++) mean[0][c] = image_mean(&p, c);
+      image_free(&p);
       continue;
     }
     Spectrum r = take(&s);
     for (int i = 0; i < SIZE * SIZE * BUCKETS; i++) assert_near("constant light", r.pixels[i], 2, 2e-5);
-    for (int c = 0; c < 3; c++) mean[1][c] = picture_mean(&r.picture, c);
+    for (int c = 0; c < 3; c++) mean[1][c] = image_mean(&r.image, c);
     release(&r);
   }
   for (int c = 0; c < 3; c++) assert_ratio("colours beside the spectrum", mean[1][c], mean[0][c], 0.01);

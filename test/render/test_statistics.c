@@ -1,5 +1,5 @@
-/* All samplers, seeds and orders of samples are estimates of one picture: z-tests at the level of pixels and of the
- * whole picture, on a scene with soft shadow, gloss, glass and depth of field. Deviations come from repeated renders
+/* All samplers, seeds and orders of samples are estimates of one image: z-tests at the level of pixels and of the
+ * whole image, on a scene with soft shadow, gloss, glass and depth of field. Deviations come from repeated renders
  * with other seeds, so that correlated samples are judged by what they do. */
 #include "render/shots.h"
 
@@ -20,7 +20,7 @@ static Stage scene(void) {
   Quad floor = quad_at(0, -0.5f, 0, 3, 0, 0, 0, 0, -3), light = quad_at(0.4f, 1.2f, 0, 0.4f, 0, 0, 0, 0, 0.4f);
   floor.material = add_diffuse(&s, 0.6f, 0.5f, 0.4f);
   add_quad(&s, &floor);
-  light.emission = add_glow(&s, 5, false);
+  light.emission = add_emission(&s, 5, false);
   add_quad(&s, &light);
   add_sky(&s, 0.2f);
   vlMaterialDef defs[2] = {vl_default_material_def(VL_MATERIAL_DIELECTRIC),
@@ -46,7 +46,7 @@ static void estimate(vlSamplerKind sampler, uint32_t spp, uint32_t first_seed, E
   double image2 = 0, block2[PIXELS / (BLOCK * BLOCK)] = {0};
   for (uint32_t k = 0; k < SEEDS; k++) {
     s.render.seed = first_seed + k;
-    Picture p = stage_take(&s);
+    Image p = stage_take(&s);
     double all = 0, block[PIXELS / (BLOCK * BLOCK)] = {0};
     for (uint32_t i = 0; i < PIXELS; i++) {
       double v = p.rgba[4 * i + 1];
@@ -57,7 +57,7 @@ static void estimate(vlSamplerKind sampler, uint32_t spp, uint32_t first_seed, E
     for (uint32_t b = 0; b < PIXELS / (BLOCK * BLOCK); b++)
       e->block[b] += block[b] / SEEDS, block2[b] += block[b] * block[b];
     assert_int_equal(p.stats.not_finite, 0);
-    picture_free(&p);
+    image_free(&p);
   }
   stage_close(&s);
   for (uint32_t i = 0; i < PIXELS; i++) {
@@ -69,12 +69,12 @@ static void estimate(vlSamplerKind sampler, uint32_t spp, uint32_t first_seed, E
   e->image_variance = fmax(0, image2 / SEEDS - e->image * e->image) / (SEEDS - 1);
 }
 
-/* Differences in units of their deviation. With few seeds t has heavy tails: 6 for a picture or block is past chance,
+/* Differences in units of their deviation. With few seeds t has heavy tails: 6 for an image or block is past chance,
  * and of pixels the mean of z^2 (2 (n-1)/(n-3)/2 = 1.22 for 12 seeds a side, about) must be near what it should be. */
 static void compare(const char *what, const Estimate *a, const Estimate *b) {
   double floor2 = 1e-12;
   double z = (a->image - b->image) / sqrt(a->image_variance + b->image_variance + floor2);
-  if (fabs(z) > 5.5) fail_msg("%s: the picture's mean is %.6f instead of %.6f: z = %.1f", what, b->image, a->image, z);
+  if (fabs(z) > 5.5) fail_msg("%s: the image's mean is %.6f instead of %.6f: z = %.1f", what, b->image, a->image, z);
   for (uint32_t i = 0; i < PIXELS / (BLOCK * BLOCK); i++) {
     z = (a->block[i] - b->block[i]) / sqrt(a->block_variance[i] + b->block_variance[i] + floor2);
     if (fabs(z) > 7) fail_msg("%s: block %u is %.6f instead of %.6f: z = %.1f", what, i, b->block[i], a->block[i], z);
@@ -105,7 +105,7 @@ static void samplers_agree(void **state) {
   }
 }
 
-/* The test itself: a scene one percent brighter must be told apart at the level of the picture. */
+/* The test itself: a scene one percent brighter must be told apart at the level of the image. */
 static void the_test_has_eyes(void **state) {
   (void)state;
   static Estimate a, b;
@@ -123,9 +123,9 @@ static void regular_is_near(void **state) {
   Stage s = scene();
   s.render.sampler = VL_SAMPLER_REGULAR;
   s.render.spp = 256;
-  Picture p = stage_finish(&s);
-  assert_ratio("regular", picture_mean(&p, 1), a.image, 0.05);
-  picture_free(&p);
+  Image p = stage_finish(&s);
+  assert_ratio("regular", image_mean(&p, 1), a.image, 0.05);
+  image_free(&p);
 }
 
 int main(void) {

@@ -1,6 +1,6 @@
 /* Bodies of the subsurface material: thick ones under a white sky give back their reflectance; light that enters round
  * the corner of a block, against an integral over the side it fell on; white bodies; and what must not change a
- * picture. */
+ * image. */
 #include "shots.h"
 #include "world/material/bssrdf.h"
 
@@ -101,13 +101,12 @@ static void walls(void **state) {
         add_sky(&s, 1);
         Quad q = wall(-3, 3000, add(&s, &def));
         add_quad(&s, &q);
-        Picture p = stage_finish(&s);
+        Image p = stage_finish(&s);
         double r0 = straight((double)etas[k]), out = let_out((double)etas[k]),
                share = way ? effective(etas[k], 0.3f, 0.85f) : 0.6;
-        for (int c = 0; c < 3; c++)
-          assert_ratio("wall", picture_mean(&p, c), r0 + (1 - r0) * 0.999 * share * out, 3e-3);
+        for (int c = 0; c < 3; c++) assert_ratio("wall", image_mean(&p, c), r0 + (1 - r0) * 0.999 * share * out, 3e-3);
         assert_int_equal(p.stats.not_finite, 0);
-        picture_free(&p);
+        image_free(&p);
       }
 }
 
@@ -122,11 +121,11 @@ static void colours(void **state) {
     add_sky(&s, 1);
     Quad q = wall(-3, 3000, add(&s, &def));
     add_quad(&s, &q);
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     const double color[3] = {0.8, 0.5, 0.3}, r0 = straight(1.33);
     for (int c = 0; c < 3; c++)
-      assert_near("coloured wall", picture_mean(&p, c), r0 + (1 - r0) * 0.999 * color[c], rgb ? 5e-3 : 1e-2);
-    picture_free(&p);
+      assert_near("coloured wall", image_mean(&p, c), r0 + (1 - r0) * 0.999 * color[c], rgb ? 5e-3 : 1e-2);
+    image_free(&p);
   }
 }
 
@@ -143,9 +142,9 @@ static void rough(void **state) {
     add_sky(&s, 1);
     Quad q = wall(-3, 3000, add(&s, &def));
     add_quad(&s, &q);
-    Picture p = stage_finish(&s);
-    mean[white] = picture_mean(&p, 1);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    mean[white] = image_mean(&p, 1);
+    image_free(&p);
   }
   assert_near("rough, black", mean[0], straight(1.33), 0.01);
   assert_near("rough, white", mean[1] - mean[0], 0.8 * 0.999 * (1 - mean[0]), 0.012); /* microfacets lose some */
@@ -168,13 +167,13 @@ static void white(void **state) {
     set_matrix(ball.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3);
     ball.material = add(&s, &def);
     vl_scene_add_shape(s.scene, &ball);
-    Picture p = stage_finish(&s);
-    double mean = picture_region(&p, 8, 8, 16, 16, 1);
+    Image p = stage_finish(&s);
+    double mean = image_region(&p, 8, 8, 16, 16, 1);
     assert_true(mean < 1.005 && mean < before + 0.005); /* the smaller, the more passes by the profile's reach */
     if (k == 0) assert_near("white ball", mean, 1, 0.01);
     before = mean;
     assert_int_equal(p.stats.not_finite, 0);
-    picture_free(&p);
+    image_free(&p);
   }
 }
 
@@ -216,9 +215,9 @@ static void corner(void **state) {
       }
     double r0 = straight(1.33), expected = (1 - r0) * sum * (1 - r0) / (M_PI * (double)table->leaves);
     free(table);
-    Picture p = stage_finish(&s);
-    assert_ratio("round a corner", picture_mean(&p, 1), expected, 0.02);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    assert_ratio("round a corner", image_mean(&p, 1), expected, 0.02);
+    image_free(&p);
   }
 }
 
@@ -240,9 +239,9 @@ static void in_fog(void **state) {
       vlMediumId id = vl_scene_add_medium(s.scene, &thin);
       vl_scene_defs(s.scene)->camera_medium = id;
     }
-    Picture p = stage_finish(&s);
-    mean[with] = picture_mean(&p, 1);
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    mean[with] = image_mean(&p, 1);
+    image_free(&p);
   }
   assert_ratio("in fog", mean[1] / mean[0], exp(-0.3 * 4), 0.01);
 }
@@ -260,9 +259,9 @@ static void mixed(void **state) {
   add_sky(&s, 1);
   Quad q = wall(-3, 3000, add(&s, &mix));
   add_quad(&s, &q);
-  Picture p = stage_finish(&s);
-  assert_near("mixed", picture_mean(&p, 1), 0.75 * (r0 + (1 - r0) * 0.999 * 0.6 * 0.75) + 0.25 * 0.2, 6e-3);
-  picture_free(&p);
+  Image p = stage_finish(&s);
+  assert_near("mixed", image_mean(&p, 1), 0.75 * (r0 + (1 - r0) * 0.999 * 0.6 * 0.75) + 0.25 * 0.2, 6e-3);
+  image_free(&p);
 }
 
 /* Absorption and scattering from textures: another body beyond u = 0.5. */
@@ -280,11 +279,11 @@ static void textured(void **state) {
   add_sky(&s, 1);
   Quad q = wall(-3, 3, add(&s, &def));
   add_quad(&s, &q);
-  Picture p = stage_finish(&s);
+  Image p = stage_finish(&s);
   double r0 = straight(1.33);
-  assert_near("left", picture_region(&p, 0, 0, 6, 16, 1), r0 + (1 - r0) * 0.999 * 0.9, 0.012);
-  assert_near("right", picture_region(&p, 10, 0, 16, 16, 1), r0 + (1 - r0) * 0.999 * 0.3, 0.012);
-  picture_free(&p);
+  assert_near("left", image_region(&p, 0, 0, 6, 16, 1), r0 + (1 - r0) * 0.999 * 0.9, 0.012);
+  assert_near("right", image_region(&p, 10, 0, 16, 16, 1), r0 + (1 - r0) * 0.999 * 0.3, 0.012);
+  image_free(&p);
 }
 
 static void note(void *user, vlLogLevel level, const vlError *where, const char *message) {
@@ -295,7 +294,7 @@ static void note(void *user, vlLogLevel level, const vlError *where, const char 
 /* The path tracer sees glass, to the bit, and says so once. */
 static void as_glass(void **state) {
   (void)state;
-  Picture p[2];
+  Image p[2];
   int told = 0;
   for (int k = 0; k < 2; k++) {
     Stage s = open_stage(16, 16, VL_COLOR_SPECTRAL);
@@ -322,11 +321,11 @@ static void as_glass(void **state) {
   }
   assert_memory_equal(p[0].rgba, p[1].rgba, (size_t)16 * 16 * 4 * sizeof(float));
   assert_int_equal(told, 1);
-  picture_free(&p[0]);
-  picture_free(&p[1]);
+  image_free(&p[0]);
+  image_free(&p[1]);
 }
 
-static Picture rich(vlContext *context, const void *color) {
+static Image rich(vlContext *context, const void *color) {
   Stage s = stage_open_in(context, 24, 24);
   s.camera.fov = 0.9;
   s.build.color = *(const vlColorMode *)color;
@@ -361,9 +360,9 @@ static void same_bits(void **state) {
   (void)state;
   for (int color = 0; color < 2; color++) {
     vlColorMode mode = color ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
-    Picture a = assert_same_bits(rich, &mode, 1);
+    Image a = assert_same_bits(rich, &mode, 1);
     assert_int_equal(a.stats.not_finite, 0);
-    picture_free(&a);
+    image_free(&a);
   }
 }
 
@@ -378,10 +377,10 @@ static void extremes(void **state) {
     add_sky(&s, 1);
     Quad q = wall(-3, 30, add(&s, &def));
     add_quad(&s, &q);
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     assert_int_equal(p.stats.not_finite, 0);
-    for (int c = 0; c < 3; c++) assert_true(picture_mean(&p, c) < 1.3);
-    picture_free(&p);
+    for (int c = 0; c < 3; c++) assert_true(image_mean(&p, c) < 1.3);
+    image_free(&p);
   }
 }
 

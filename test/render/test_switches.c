@@ -22,14 +22,14 @@ static void centred(void **state) {
     s.render.centred = on;
     s.camera.lens_radius = 0.05, s.camera.focus_distance = 1;
     Quad q = quad_at(0.3f, 0.2f, -3, 1.5f, 0.7f, 0, -0.7f, 1.5f, 0);
-    q.emission = add_glow(&s, 2, true);
+    q.emission = add_emission(&s, 2, true);
     add_quad(&s, &q);
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     for (int i = 0; i < SIZE * SIZE; i++) {
       float v = p.rgba[4 * i + 1];
       between[on] += v > 1e-4f && v < 1.999f;
     }
-    picture_free(&p);
+    image_free(&p);
   }
   assert_true(between[0] > 10);
   assert_int_equal(between[1], 0);
@@ -42,16 +42,16 @@ static void same_wavelengths(void **state) {
     Stage s = stage(false);
     s.render.same_wavelengths = on;
     add_sky(&s, 1);
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     alike[on] = true;
     for (int i = 0; i < 4 * SIZE * SIZE; i++) alike[on] = alike[on] && p.rgba[i] == p.rgba[i % 4];
-    picture_free(&p);
+    image_free(&p);
   }
   assert_false(alike[0]);
   assert_true(alike[1]);
 }
 
-/* A fine picture far away: grey when it is filtered, black and white where it is not. */
+/* A fine image far away: grey when it is filtered, black and white where it is not. */
 static void sharp_textures(void **state) {
   (void)state;
   enum { FINE = 256 };
@@ -73,13 +73,13 @@ static void sharp_textures(void **state) {
     add_quad(&s, &q);
     vl_image_destroy(image);
     free(rgb);
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     for (int y = 2; y < SIZE - 2; y++)
       for (int x = 2; x < SIZE - 2; x++) {
-        float v = picture_at(&p, (uint32_t)x, (uint32_t)y, 1);
+        float v = image_at(&p, (uint32_t)x, (uint32_t)y, 1);
         grey[on] += v > 0.2f && v < 0.6f;
       }
-    picture_free(&p);
+    image_free(&p);
   }
   assert_true(grey[0] > 100);
   assert_int_equal(grey[1], 0);

@@ -1,4 +1,4 @@
-/* Textures read off pictures: a square seen straight on by an orthographic camera and the raycast tracer shows its
+/* Textures read off images: a square seen straight on by an orthographic camera and the raycast tracer shows its
  * reflectance itself. Column x of 32 is u = (x + 1/2)/32, row y is v = 1 - (y + 1/2)/32. */
 #include "render/shots.h"
 
@@ -14,7 +14,7 @@ static Stage stage(void) {
   return s;
 }
 
-static Picture show(Stage *s, vlTextureId texture) {
+static Image show(Stage *s, vlTextureId texture) {
   Quad q = quad_at(0, 0, -1, 1, 0, 0, 0, 1, 0);
   q.material = add_textured(s, texture);
   add_quad(s, &q);
@@ -36,22 +36,22 @@ static double at_v(uint32_t y) {
 
 typedef double Expected(void *user, double u, double v, int channel);
 
-static void assert_shows(const char *what, Picture *p, Expected *f, void *user, double tolerance) {
+static void assert_shows(const char *what, Image *p, Expected *f, void *user, double tolerance) {
   for (uint32_t y = 0; y < SIZE; y++)
     for (uint32_t x = 0; x < SIZE; x++)
       for (int c = 0; c < 3; c++) {
-        double e = f(user, at_u(x), at_v(y), c), value = picture_at(p, x, y, c);
+        double e = f(user, at_u(x), at_v(y), c), value = image_at(p, x, y, c);
         if (!(fabs(value - e) <= tolerance))
           fail_msg("%s: pixel (%u, %u) channel %d is %.6f, expected %.6f", what, x, y, c, value, e);
       }
-  picture_free(p);
+  image_free(p);
 }
 
 static double constant(void *user, double u, double v, int c) {
   (void)u, (void)v, (void)c;
   return *(double *)user;
 }
-static void assert_constant(const char *what, Picture p, double value) {
+static void assert_constant(const char *what, Image p, double value) {
   assert_shows(what, &p, constant, &value, 1e-5);
 }
 
@@ -99,7 +99,7 @@ static void checkerboard(void **state) {
   Stage s = stage();
   vlTextureDef def = grey(VL_TEXTURE_CHECKERBOARD, 0.7, 0.2);
   def.su = 4, def.sv = 2, def.du = -8, def.dv = 0.5f;
-  Picture p = show(&s, add(&s, &def));
+  Image p = show(&s, add(&s, &def));
   assert_shows("checkerboard", &p, checks, &def, 1e-5);
   /* Three dimensions: cells of the world, moved by the texture's matrix; the plane z = -1 is put in cell -1. */
   s = stage();
@@ -122,7 +122,7 @@ static void bilerp_and_direction_mix(void **state) {
   vlTextureDef def = grey(VL_TEXTURE_BILERP, 0.1, 0.3); /* v00 v01 v10 v11 */
   def.spectrum_c = vl_spectrum_input(vl_spectrum_constant(0.5f));
   def.spectrum_d = vl_spectrum_input(vl_spectrum_constant(0.9f));
-  Picture p = show(&s, add(&s, &def));
+  Image p = show(&s, add(&s, &def));
   assert_shows("bilerp", &p, bilerp, NULL, 1e-5);
   const float directions[3][3] = {{0, 0, -1}, {1, 0, 0}, {0, 0.6f, 0.8f}};
   const double expected[3] = {0.9, 0.1, 0.74};
@@ -162,7 +162,7 @@ static void nesting(void **state) {
       if (r == VL_OK) {
         vl_world_destroy(world);
         assert_true(deep < 20);
-        Picture p = stage_take(&s);
+        Image p = stage_take(&s);
         double value = 0.3;
         assert_shows("nested textures", &p, constant, &value, 1e-5);
       } else {
@@ -197,7 +197,7 @@ static void doubling_is_refused(void **state) {
   stage_close(&s);
 }
 
-/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+/* ---- images ---------------------------------------------------------------------------------------------------- */
 
 /* 4 x 2 texels, told apart by their red and green; rows from the top. */
 static const float texels[24] = {0.1f, 0.1f, 0.5f, 0.3f, 0.1f, 0.5f, 0.5f, 0.1f, 0.5f, 0.7f, 0.1f, 0.5f,
@@ -216,7 +216,7 @@ static double texel(int x, int y, vlWrap wrap, int c) {
   return texels[3 * (4 * y + x) + c];
 }
 
-static double picture_texture(void *user, double u, double v, int c) {
+static double image_texture(void *user, double u, double v, int c) {
   const Lookup *l = user;
   const vlTextureDef *d = &l->def;
   double x = 4 * (d->su * u + d->du), y = 2 * (1 - (d->sv * v + d->dv)), value;
@@ -250,14 +250,14 @@ static void image_orientation_wrap_filter(void **state) {
     if (i == 7) l.def.invert = true, l.def.scale = 1.3f;
     vlTextureId id = add(&s, &l.def);
     vl_image_destroy(image);
-    Picture p = show(&s, id);
+    Image p = show(&s, id);
     char what[32];
-    snprintf(what, sizeof what, "picture, case %d", i);
-    assert_shows(what, &p, picture_texture, &l, 2e-3);
+    snprintf(what, sizeof what, "image, case %d", i);
+    assert_shows(what, &p, image_texture, &l, 2e-3);
   }
 }
 
-/* 8-bit pictures by file: sRGB unless told otherwise; floats stay linear. Grey, colour and coverage as a float. */
+/* 8-bit images by file: sRGB unless told otherwise; floats stay linear. Grey, colour and coverage as a float. */
 static void encodings_and_floats(void **state) {
   (void)state;
   char path[600];
@@ -296,7 +296,7 @@ static void encodings_and_floats(void **state) {
           id = add(&s, &scale);
           if (channels == 4) value = 0.2;
         }
-        Picture p = show(&s, id);
+        Image p = show(&s, id);
         char what[64];
         snprintf(what, sizeof what, "%d channels, encoding %d, %s", channels, e, as_float ? "float" : "colour");
         assert_shows(what, &p, constant, &value, 1e-4);
@@ -304,7 +304,7 @@ static void encodings_and_floats(void **state) {
   remove(path);
 }
 
-/* ---- mappings: a picture whose red is s and whose green is t ----------------------------------------------------- */
+/* ---- mappings: an image whose red is s and whose green is t ----------------------------------------------------- */
 
 static void mappings(void **state) {
   (void)state;
@@ -327,7 +327,7 @@ static void mappings(void **state) {
     def.du = 0.5f, def.dv = 0.45f;
     vlTextureId id = add(&s, &def);
     vl_image_destroy(image);
-    Picture p = show(&s, id);
+    Image p = show(&s, id);
     int compared = 0;
     for (uint32_t y = 0; y < SIZE; y++)
       for (uint32_t x = 0; x < SIZE; x++) {
@@ -338,11 +338,11 @@ static void mappings(void **state) {
         if (kind == 2) st[0] = 0.5 + 0.3 * q[0] + 0.1 * q[1], st[1] = 0.45 + 0.4 * q[1];
         if (st[0] < 0.02 || st[0] > 0.98 || st[1] < 0.02 || st[1] > 0.98) continue; /* the ramp's seam */
         compared++;
-        assert_near("mapping, s", picture_at(&p, x, y, 0), st[0], 5e-3);
-        assert_near("mapping, t", picture_at(&p, x, y, 1), st[1], 5e-3);
+        assert_near("mapping, s", image_at(&p, x, y, 0), st[0], 5e-3);
+        assert_near("mapping, t", image_at(&p, x, y, 1), st[1], 5e-3);
       }
     assert_true(compared > 600);
-    picture_free(&p);
+    image_free(&p);
   }
   /* One turn of the cylinder is one cell of a checkerboard, without a seam at y = 0. */
   Stage s = stage();
@@ -365,9 +365,9 @@ static void spectral_mode_shows_the_same_colours(void **state) {
     def.image = image;
     vlTextureId id = add(&s, &def);
     vl_image_destroy(image);
-    Picture p = show(&s, id);
-    for (int c = 0; c < 3; c++) mean[mode][c] = picture_mean(&p, c);
-    picture_free(&p);
+    Image p = show(&s, id);
+    for (int c = 0; c < 3; c++) mean[mode][c] = image_mean(&p, c);
+    image_free(&p);
   }
   for (int c = 0; c < 3; c++) assert_ratio("mean of a coloured texture", mean[0][c], mean[1][c], 5e-3);
 }

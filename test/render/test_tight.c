@@ -1,6 +1,6 @@
 /* Rays start clear of the surface they leave and lose nothing between faces, at any size and far from the origin, and
- * inside instances that are far away. A closed glowing room tells both: a leak darkens it (outside is black), a surface
- * that meets itself again brightens or darkens it. */
+ * inside instances that are far away. A closed emissive room tells both: a leak darkens it (outside is black), a
+ * surface that meets itself again brightens or darkens it. */
 #include "render/shots.h"
 
 typedef struct Room {
@@ -28,7 +28,7 @@ static void add_box(Stage *s, const double m[16], vlMaterialId material, vlEmiss
   assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
 }
 
-/* Mean over the picture of a closed room whose walls, of reflectance 0.9, are lit by a point light inside (no light
+/* Mean over the image of a closed room whose walls, of reflectance 0.9, are lit by a point light inside (no light
  * shines from instanced surfaces): expected value from the same room at size 1 around the origin. */
 static double room_mean(Room r, bool sky) {
   Stage s = stage_open(24, 24);
@@ -62,10 +62,10 @@ static double room_mean(Room r, bool sky) {
     add_sky(&s, 1);
   else
     add_point(&s, (float)at[0], (float)(at[1] + 0.1 * k), (float)at[2], (float)(k * k));
-  Picture p = stage_finish(&s);
-  double mean = picture_mean(&p, 1);
+  Image p = stage_finish(&s);
+  double mean = image_mean(&p, 1);
   assert_int_equal(p.stats.not_finite, 0);
-  picture_free(&p);
+  image_free(&p);
   return mean;
 }
 
@@ -132,7 +132,7 @@ static void no_acne(void **state) {
       add_point(&s, (float)(lamp[0] + off), (float)(lamp[1] + off), (float)(lamp[2] + off), 1);
       vlCamera camera;
       assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, NULL), VL_OK);
-      Picture p = stage_finish(&s);
+      Image p = stage_finish(&s);
       /* What the law says: where the ray of the pixel's centre meets the plane, 1/2 / pi cos / d^2. */
       const double u[3] = {1.2f, 0.1f, 0.3f}, v[3] = {-0.3f, 0.2f, 1.13333333f};
       double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
@@ -140,7 +140,7 @@ static void no_acne(void **state) {
       int bad = 0, lit = 0;
       for (uint32_t y = 0; y < 36; y++)
         for (uint32_t x = 0; x < 48; x++) {
-          if (!(picture_at(&p, x, y, 3) > 0)) continue;
+          if (!(image_at(&p, x, y, 3) > 0)) continue;
           double eye_at[3], d[3], on = 0, dn = 0, d2 = 0, ln = 0;
           vl_camera_unproject(&camera, x + 0.5, y + 0.5, eye_at, d);
           for (int i = 0; i < 3; i++) on += (eye_at[i] - off) * n[i], dn += d[i] * n[i];
@@ -150,9 +150,9 @@ static void no_acne(void **state) {
           }
           double expected = 0.5 / M_PI * fabs(ln) / (d2 * sqrt(d2));
           lit++;
-          bad += !(fabs(picture_at(&p, x, y, 1) - expected) <= 0.02 * expected);
+          bad += !(fabs(image_at(&p, x, y, 1) - expected) <= 0.02 * expected);
         }
-      picture_free(&p);
+      image_free(&p);
       assert_true(lit > 300);
       if (bad)
         fail_msg("floor %g away%s: %d of %d pixels are not what they should be", off, instanced ? ", instanced" : "",

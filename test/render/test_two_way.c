@@ -13,15 +13,15 @@ typedef enum Lamp {
   SPOT,
   DISTANT,
   SKY,
-  PICTURE,
+  IMAGE,
   MEASURED,
   SLIDE,
   SKEWED,
   LAMPS
 } Lamp;
 static const char *const lamp_name[LAMPS] = {
-    "panel",   "two-sided panel", "patch",       "ball",        "point",      "spot",
-    "distant", "uniform sky",     "picture sky", "goniometric", "projection", "projection, skewed"};
+    "panel",   "two-sided panel", "patch",     "ball",        "point",      "spot",
+    "distant", "uniform sky",     "image sky", "goniometric", "projection", "projection, skewed"};
 
 static void add_round(Stage *s, float x, float y, float z, float radius, vlMaterialId material, vlEmissionId emission) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
@@ -46,21 +46,21 @@ static void add_lamp(Stage *s, Lamp lamp) {
   if (lamp <= PATCH) {
     Quad q = quad_at(0.4f, 1.3f, -3, 0.3f, 0.05f, 0, 0, 0.1f, 0.3f);
     q.material = dark, q.patch = lamp == PATCH;
-    q.emission = add_glow(s, 10, lamp == PANEL_BOTH);
+    q.emission = add_emission(s, 10, lamp == PANEL_BOTH);
     add_quad(s, &q);
   } else if (lamp == BALL) {
-    add_round(s, 0.3f, 1.1f, -3, 0.2f, dark, add_glow(s, 8, false));
+    add_round(s, 0.3f, 1.1f, -3, 0.2f, dark, add_emission(s, 8, false));
   } else {
     static const vlLightKind kinds[LAMPS] = {
         [POINT] = VL_LIGHT_POINT,      [SPOT] = VL_LIGHT_SPOT,        [DISTANT] = VL_LIGHT_DISTANT,
-        [SKY] = VL_LIGHT_INFINITE,     [PICTURE] = VL_LIGHT_INFINITE, [MEASURED] = VL_LIGHT_GONIOMETRIC,
+        [SKY] = VL_LIGHT_INFINITE,     [IMAGE] = VL_LIGHT_INFINITE,   [MEASURED] = VL_LIGHT_GONIOMETRIC,
         [SLIDE] = VL_LIGHT_PROJECTION, [SKEWED] = VL_LIGHT_PROJECTION};
     vlLightDef def = lamp_def(kinds[lamp], lamp == POINT || lamp == SPOT || lamp >= MEASURED ? 5
                                            : lamp == DISTANT                                 ? 2
                                                                                              : 0.7f);
     float rgb[8 * 8 * 3];
     for (int i = 0; i < 8 * 8 * 3; i++) rgb[i] = 0.2f + (i / 3 % 8 == 3 ? 4.0f : 0.0f) * (float)(i % 3);
-    if (lamp == PICTURE || lamp >= MEASURED) def.image = make_image(s, 8, 8, rgb);
+    if (lamp == IMAGE || lamp >= MEASURED) def.image = make_image(s, 8, 8, rgb);
     if (lamp >= MEASURED) set_matrix(def.world_from_light, 1, 0, 0, 0.3, 0, 0, -1, 1.4, 0, 1, 0, -2.6); /* down */
     if (lamp == SKEWED) def.world_from_light[0] = 2;
     def.fov = 1.2f;
@@ -103,7 +103,7 @@ typedef struct Case {
   double merge;   /* radius; 0: its own */
 } Case;
 
-/* Merging blurs over two pixels: its picture is finer. */
+/* Merging blurs over two pixels: its image is finer. */
 static Stage room(const void *user, vlTracer tracer) {
   const Case *c = user;
   Stage s = room_in(NULL, c->lamp, c->rich, tracer == VL_TRACER_MERGING ? FINE : SIZE);
@@ -193,7 +193,7 @@ typedef struct Colored {
   bool crop;
 } Colored;
 
-static Picture colored(vlContext *context, const void *what) {
+static Image colored(vlContext *context, const void *what) {
   const Colored *c = what;
   Stage s = room_in(context, PANEL, true, SIZE);
   s.build.color = VL_COLOR_SPECTRAL;
@@ -210,13 +210,13 @@ static void same_bits(void **state) {
   static const vlTracer tracers[3] = {VL_TRACER_BIDIRECTIONAL, VL_TRACER_MERGING, VL_TRACER_SPPM};
   for (int k = 0; k < 3; k++) {
     Colored whole = {tracers[k], false}, some = {tracers[k], true};
-    Picture a = assert_same_bits(colored, &whole, 1), part = picture_in(colored, &some, 2, VL_ISA_V2);
+    Image a = assert_same_bits(colored, &whole, 1), part = image_in(colored, &some, 2, VL_ISA_V2);
     for (uint32_t y = 0; y < part.height; y++)
       for (uint32_t x = 0; x < part.width; x++)
         assert_memory_equal(&part.rgba[4 * (y * part.width + x)], &a.rgba[4 * ((y + 3) * SIZE + x + 5)],
                             4 * sizeof(float));
-    picture_free(&part);
-    picture_free(&a);
+    image_free(&part);
+    image_free(&a);
   }
 }
 

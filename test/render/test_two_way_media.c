@@ -16,7 +16,7 @@ typedef enum Air {
   AIRS
 } Air;
 static const char *const air_name[AIRS] = {"fog",   "walled fog",   "grid",      "rgb grid",
-                                           "cloud", "fog in glass", "dark grid", "glow"};
+                                           "cloud", "fog in glass", "dark grid", "emission"};
 typedef enum Lamp { PANEL, BALL, POINT, SPOT, DISTANT, SKY } Lamp;
 
 typedef struct Case {
@@ -66,10 +66,10 @@ static void add_lamp(Stage *s, Lamp lamp) {
   vlMaterialId dark = add_diffuse(s, 0.2f, 0.2f, 0.2f);
   if (lamp == PANEL) {
     Quad q = quad_at(0.4f, 1.3f, -3, 0.3f, 0.05f, 0, 0, 0.1f, 0.3f);
-    q.material = dark, q.emission = add_glow(s, 10, false);
+    q.material = dark, q.emission = add_emission(s, 10, false);
     add_quad(s, &q);
   } else if (lamp == BALL) {
-    add_ball(s, 0.3f, 1.1f, -3, 0.2f, dark, (vlMediumId){0}, (vlMediumId){0}, add_glow(s, 8, false));
+    add_ball(s, 0.3f, 1.1f, -3, 0.2f, dark, (vlMediumId){0}, (vlMediumId){0}, add_emission(s, 8, false));
   } else {
     vlLightDef def = vl_default_light_def(kinds[lamp]);
     float color = lamp == POINT || lamp == SPOT ? 5 : lamp == DISTANT ? 2 : 0.7f;
@@ -112,16 +112,17 @@ static Stage room(const void *user, vlTracer tracer) {
   q.material = add_diffuse(&s, 0.3f, 0.6f, 0.8f);
   add_quad(&s, &q);
   vlMediumId medium = add_medium(&s, c->air), none = {0};
-  vlEmissionId no_glow = {0};
+  vlEmissionId no_emission = {0};
   if (c->air == FOG) {
     vl_scene_defs(s.scene)->camera_medium = medium;
   } else if (c->air == WALLED) {
     add_window(&s, medium);
   } else {
     vlMaterialId skin = material_of(&s, c->air == IN_GLASS ? VL_MATERIAL_DIELECTRIC : VL_MATERIAL_INTERFACE);
-    add_ball(&s, 0, -0.2f, -3, 0.75f, skin, medium, none, no_glow);
+    add_ball(&s, 0, -0.2f, -3, 0.75f, skin, medium, none, no_emission);
   }
-  if (c->air <= WALLED) add_ball(&s, -0.7f, -0.5f, -3.4f, 0.5f, add_diffuse(&s, 0.8f, 0.8f, 0.8f), none, none, no_glow);
+  if (c->air <= WALLED)
+    add_ball(&s, -0.7f, -0.5f, -3.4f, 0.5f, add_diffuse(&s, 0.8f, 0.8f, 0.8f), none, none, no_emission);
   return s;
 }
 
@@ -174,9 +175,9 @@ static void furnace(void **state) {
       add_sky(&s, 1);
       add_ball(&s, 0, 0, -3, 1, material_of(&s, VL_MATERIAL_INTERFACE), vl_scene_add_medium(s.scene, &def),
                (vlMediumId){0}, (vlEmissionId){0});
-      Picture p = stage_finish(&s);
-      for (int c = 0; c < 3; c++) assert_near("furnace", picture_mean(&p, c), 1, 6e-3);
-      picture_free(&p);
+      Image p = stage_finish(&s);
+      for (int c = 0; c < 3; c++) assert_near("furnace", image_mean(&p, c), 1, 6e-3);
+      image_free(&p);
     }
 }
 
@@ -185,7 +186,7 @@ typedef struct Colored {
   Air air;
 } Colored;
 
-static Picture colored(vlContext *context, const void *what) {
+static Image colored(vlContext *context, const void *what) {
   const Colored *c = what;
   Case in = {c->air, PANEL, true, context, SIZE};
   Stage s = room(&in, c->tracer);
@@ -199,8 +200,8 @@ static void same_bits(void **state) {
   for (int k = 0; k < 2; k++)
     for (int merge = 0; merge < 2; merge++) {
       Colored what = {merge ? VL_TRACER_MERGING : VL_TRACER_BIDIRECTIONAL, airs[k]};
-      Picture a = assert_same_bits(colored, &what, 2);
-      picture_free(&a);
+      Image a = assert_same_bits(colored, &what, 2);
+      image_free(&a);
     }
 }
 

@@ -52,7 +52,7 @@ static Stage room(const void *user, vlTracer tracer) {
   s.build.color = VL_COLOR_RGB;
   s.render.spp = size == FINE ? 24 : 96, s.render.max_depth = 4;
   Quad q = quad_at(0.4f, 1.3f, -3, 0.3f, 0.05f, 0, 0, 0.1f, 0.3f);
-  q.material = add_diffuse(&s, 0.2f, 0.2f, 0.2f), q.emission = add_glow(&s, 10, false);
+  q.material = add_diffuse(&s, 0.2f, 0.2f, 0.2f), q.emission = add_emission(&s, 10, false);
   if (c->sky) add_sky(&s, 0.8f);
   if (!c->sky) add_quad(&s, &q);
   q = quad_at(0, -1, -3, 3, 0, 0, 0, 0, -3);
@@ -97,19 +97,19 @@ static void blurred_alike(void **state) {
   Stage s = room(&what, VL_TRACER_PATH);
   s.render.spp = 1024;
   s.build.color = VL_COLOR_SPECTRAL;
-  Picture path = stage_finish(&s);
+  Image path = stage_finish(&s);
   for (int k = 0; k < 2; k++) {
     s = room(&what, tracers[k]);
     s.render.tracer = tracers[k], s.render.spp = 512, s.render.merge_radius = 0.02;
     s.build.color = VL_COLOR_SPECTRAL; /* times and wavelengths of merging's passes are spread apart from each other */
-    Picture p = stage_finish(&s);
-    assert_true(picture_differing(&path, &p, 0.25) < 0.025); /* edges of the lamp are noisy */
-    picture_free(&p);
+    Image p = stage_finish(&s);
+    assert_true(image_differing(&path, &p, 0.25) < 0.025); /* edges of the lamp are noisy */
+    image_free(&p);
   }
-  picture_free(&path);
+  image_free(&path);
 }
 
-static Picture pixels(vlContext *context, const void *with) {
+static Image pixels(vlContext *context, const void *with) {
   vlTracer tracer = *(const vlTracer *)with;
   Case what = {"bits", true, true, true, true, true, false, SIZE, context};
   Stage s = room(&what, tracer);
@@ -121,8 +121,8 @@ static void same_bits(void **state) {
   (void)state;
   for (int merge = 0; merge < 2; merge++) {
     vlTracer tracer = merge ? VL_TRACER_MERGING : VL_TRACER_BIDIRECTIONAL;
-    Picture a = assert_same_bits(pixels, &tracer, 2);
-    picture_free(&a);
+    Image a = assert_same_bits(pixels, &tracer, 2);
+    image_free(&a);
   }
 }
 

@@ -221,7 +221,7 @@ static void bad_materials_and_lights(void **state) {
   refuses(VL_ERROR_SCENE, "reflectance: needs a spectrum texture, this is a float texture");
   t = vl_default_texture_def(VL_TEXTURE_IMAGE, false);
   vl_scene_add_texture(scene, &t);
-  refuses(VL_ERROR_SCENE, "image texture: needs either a file name or a picture");
+  refuses(VL_ERROR_SCENE, "image texture: needs either a file name or an image");
   vlLightDef l = vl_default_light_def(VL_LIGHT_DISTANT);
   l.to[2] = 0;
   vl_scene_add_light(scene, &l);

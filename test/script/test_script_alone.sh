@@ -22,7 +22,7 @@ Shape "sphere"
 END
 check "renders from any folder" "$render" small.pbrt --quiet -o here.png
 check "says nothing of its own" test -z "$out$err"
-check "the picture is where it was asked for" test -s here.png
+check "the image is where it was asked for" test -s here.png
 expect_code 4 "a missing scene is velo's 4" "$render" none.pbrt
 expect_code 2 "a wrong option is velo's 2" "$render" small.pbrt --no-such-option
 expect_code 0 "help passes" "$render" --help

@@ -186,14 +186,14 @@ static void distant(void **state) {
 static void skies(void **state) {
   (void)state;
   enum { SIDE = 16 };
-  for (int pictured = 0; pictured < 2; pictured++) {
+  for (int imaged = 0; imaged < 2; imaged++) {
     Fixture *f = begin();
     add_ball(f, 2);
     vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
     def.scale = 3;
     double mean = 1;
     vlImage *image = NULL;
-    if (pictured) {
+    if (imaged) {
       vlImageDef image_def = vl_default_image_def(SIDE, SIDE, 3);
       image_def.type = VL_PIXEL_F32;
       assert_int_equal(vl_image_create(f->context, &image_def, &image), VL_OK);
@@ -209,9 +209,9 @@ static void skies(void **state) {
     vl_scene_add_light(f->scene, &def);
     vl_image_destroy(image);
     build(f);
-    power_is(f, pictured ? "pictured sky" : "sky", 3 * mean * 4 * M_PI * world_disk(f, NULL), 0, 21);
+    power_is(f, imaged ? "imaged sky" : "sky", 3 * mean * 4 * M_PI * world_disk(f, NULL), 0, 21);
     density_is_told(f, "sky", 22);
-    directions(f, pictured ? "pictured sky" : "sky", -1, world_disk, 23);
+    directions(f, imaged ? "imaged sky" : "sky", -1, world_disk, 23);
     end(f);
   }
 }
@@ -255,7 +255,7 @@ static void portal(void **state) {
 
 /* ---- surfaces ---------------------------------------------------------------------------------------------------- */
 
-static vlEmissionId glow(Fixture *f, bool two_sided) {
+static vlEmissionId emission(Fixture *f, bool two_sided) {
   vlEmissionDef def = vl_default_emission_def();
   def.radiance = vl_spectrum_rgb(1, 1, 1);
   def.scale = 5;
@@ -303,7 +303,7 @@ static void surfaces(void **state) {
       def.radius = 1.5f, def.z_min = -1.5f, def.z_max = 1.5f;
       if (kind < 2)
         def.vertices = kind ? 4 : 3, def.faces = 1, def.positions = kind ? patch : triangle, def.indices = index;
-      def.emission = glow(f, sides == 2);
+      def.emission = emission(f, sides == 2);
       assert_int_not_equal(vl_scene_add_shape(f->scene, &def).index, 0);
       build(f);
       power_is(f, names[kind], 5 * M_PI * areas[kind] * sides, 0, 40 + (unsigned)(2 * kind + sides));
@@ -321,7 +321,7 @@ static void places(void **state) {
   Fixture *f = begin();
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
   def.vertices = 3, def.faces = 1, def.positions = p, def.indices = index;
-  def.emission = glow(f, false);
+  def.emission = emission(f, false);
   vl_scene_add_shape(f->scene, &def);
   build(f);
   uint32_t counts[16] = {0};
@@ -359,7 +359,7 @@ static void together(void **state) {
   vl_scene_add_light(f->scene, &def);
   vlShapeDef disk = vl_default_shape_def(VL_SHAPE_DISK);
   disk.radius = 0.5f, disk.height = 2;
-  disk.emission = glow(f, false);
+  disk.emission = emission(f, false);
   vl_scene_add_shape(f->scene, &disk);
   build(f);
   power_is(f, "three lights", 2 * 4 * M_PI + 7 * world_disk(f, NULL) + 5 * M_PI * M_PI * 0.25, 0, 81);

@@ -52,7 +52,7 @@ static void end(Fixture *f) {
   free(f);
 }
 
-static vlEmissionId glow(Fixture *f, bool two_sided) {
+static vlEmissionId emission(Fixture *f, bool two_sided) {
   vlEmissionDef def = vl_default_emission_def();
   def.radiance = vl_spectrum_rgb(1, 1, 1);
   def.two_sided = two_sided;
@@ -174,7 +174,7 @@ static void add_triangles(Fixture *f, const float *positions, uint32_t faces, bo
   def.faces = faces;
   def.positions = positions;
   def.indices = indices;
-  def.emission = glow(f, two_sided);
+  def.emission = emission(f, two_sided);
   assert_int_not_equal(vl_scene_add_shape(f->scene, &def).index, 0);
 }
 
@@ -214,7 +214,7 @@ static void many_triangles(void **state) {
 
 static void add_round(Fixture *f, vlShapeKind kind, const double m[16]) {
   vlShapeDef def = vl_default_shape_def(kind);
-  def.emission = glow(f, true);
+  def.emission = emission(f, true);
   if (m) memcpy(def.group_from_shape, m, sizeof def.group_from_shape);
   assert_int_not_equal(vl_scene_add_shape(f->scene, &def).index, 0);
 }
@@ -261,7 +261,7 @@ static void patch(void **state) {
   def.faces = 1;
   def.positions = p;
   def.indices = index;
-  def.emission = glow(f, true);
+  def.emission = emission(f, true);
   assert_int_not_equal(vl_scene_add_shape(f->scene, &def).index, 0);
   f->p = vl_vec3(0, 0.1f, 0);
   f->n = vl_vec3(0, 0, 1);

@@ -1,5 +1,5 @@
 /* Samplers: what they are for. The error of pixel integrals against that of independent numbers, how fast it falls, and
- * how zsobol spreads it over the picture. */
+ * how zsobol spreads it over the image. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -231,9 +231,9 @@ static void lights_with_alpha(void **state) {
   f = begin(); /* by the first uv set, where the emission is an image on the second */
   statRng rng = stat_rng(1);
   vlImage *image = image_of(&f, &rng, 1);
-  vlTextureDef picture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
-  picture.image = image, picture.uv_set = 1;
-  emission.texture = vl_scene_add_texture(f.scene, &picture);
+  vlTextureDef image = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+  image.image = image, image.uv_set = 1;
+  emission.texture = vl_scene_add_texture(f.scene, &image);
   vlTextureDef u = vl_default_texture_def(VL_TEXTURE_BILERP, false);
   u.float_a.value = u.float_b.value = 0, u.float_c.value = u.float_d.value = 1;
   def = triangle();

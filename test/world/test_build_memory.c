@@ -1,4 +1,4 @@
-/* Memory that runs out while a world is built or a picture rendered: the n-th allocation fails, for every n. Always the
+/* Memory that runs out while a world is built or an image rendered: the n-th allocation fails, for every n. Always the
  * error MEMORY, never a byte left. (Embree has its own memory.) */
 #include <stdlib.h>
 
@@ -20,13 +20,13 @@ static void purse_release(void *user, void *block) {
 }
 
 /* One of everything that a build has to allocate for. */
-static void fill(Stage *s, const char *picture) {
+static void fill(Stage *s, const char *image) {
   const float rgb[4 * 4 * 3] = {1, 0.5f, 0.2f, 3, 0, 0, 0.5f};
   vlImage *image = make_image(s, 4, 4, rgb);
-  assert_int_equal(vl_image_write(image, picture, NULL, NULL), VL_OK);
+  assert_int_equal(vl_image_write(image, image, NULL, NULL), VL_OK);
   vlTextureDef map = vl_default_texture_def(VL_TEXTURE_IMAGE, true), file = map;
   map.image = image;
-  file.path = picture;
+  file.path = image;
   vlTextureId a = vl_scene_add_texture(s->scene, &map), b = vl_scene_add_texture(s->scene, &file);
   vlTextureDef mix = vl_default_texture_def(VL_TEXTURE_MIX, true);
   mix.spectrum_a.texture = a, mix.spectrum_b.texture = b;
@@ -37,7 +37,7 @@ static void fill(Stage *s, const char *picture) {
   for (int k = 0; k < 6; k++) {
     defs[k] = vl_default_material_def((vlMaterialKind)k);
     if (k == VL_MATERIAL_DIFFUSE) defs[k].reflectance.texture = vl_scene_add_texture(s->scene, &mix);
-    if (k == VL_MATERIAL_DIFFUSE) defs[k].displacement.texture = height, defs[k].normal_map = picture;
+    if (k == VL_MATERIAL_DIFFUSE) defs[k].displacement.texture = height, defs[k].normal_map = image;
     if (k == VL_MATERIAL_DIELECTRIC) defs[k].eta = vl_spectrum_input(vl_spectrum_named("glass-BK7"));
     if (k == VL_MATERIAL_MIX) defs[k].materials[0] = ids[0], defs[k].materials[1] = ids[2];
     ids[k] = vl_scene_add_material(s->scene, &defs[k]);
@@ -45,7 +45,7 @@ static void fill(Stage *s, const char *picture) {
     q.material = ids[k];
     q.patch = k == 1;
     if (k == 2) q.alpha.texture = height;
-    if (k == 3) q.emission = add_glow(s, 1, true);
+    if (k == 3) q.emission = add_emission(s, 1, true);
     if (k == 4) q.group = vl_scene_add_group(s->scene, "group");
     add_quad(s, &q);
     double identity[16];
@@ -59,9 +59,9 @@ static void fill(Stage *s, const char *picture) {
   float *block = NULL;
   vlShapeDef mesh = mesh_sphere(3, 1, true, &block);
   set_matrix(mesh.group_from_shape, 1, 0, 0, 2, 0, 1, 0, 0, 0, 0, 1, -4);
-  vlEmissionDef glow = vl_default_emission_def();
-  glow.image = picture;
-  mesh.emission = vl_scene_add_emission(s->scene, &glow);
+  vlEmissionDef emission = vl_default_emission_def();
+  emission.image = image;
+  mesh.emission = vl_scene_add_emission(s->scene, &emission);
   vl_scene_add_shape(s->scene, &mesh);
   mesh.emission.index = 0;
   mesh.positions_close = mesh.positions, mesh.normals_close = mesh.normals; /* on its way, if only to itself */
@@ -82,7 +82,7 @@ static void fill(Stage *s, const char *picture) {
   vlLightDef sky = vl_default_light_def(VL_LIGHT_INFINITE);
   sky.image = image;
   vl_scene_add_light(s->scene, &sky);
-  sky.image = NULL, sky.path = picture;
+  sky.image = NULL, sky.path = image;
   vl_scene_add_light(s->scene, &sky);
   vl_image_destroy(image);
 }
@@ -101,11 +101,11 @@ static Stage purse_stage(Purse *purse) {
 
 static void build_without_memory(void **state) {
   (void)state;
-  char picture[600];
-  snprintf(picture, sizeof picture, "%s/test_build_memory.pfm", VELO_BINARY_DIR);
+  char image[600];
+  snprintf(image, sizeof image, "%s/test_build_memory.pfm", VELO_BINARY_DIR);
   Purse purse = {-1};
   Stage s = purse_stage(&purse);
-  fill(&s, picture);
+  fill(&s, image);
   size_t before = vl_context_memory(s.context, NULL);
   for (int color = 0; color < 2; color++)
     for (int sampler = 0; sampler < 2; sampler++) {
@@ -133,26 +133,26 @@ static void build_without_memory(void **state) {
       size_t held = vl_context_memory(s.context, NULL);
       assert_int_equal(held, before);
     }
-  remove(picture);
+  remove(image);
   stage_close(&s);
 }
 
 static void render_without_memory(void **state) {
   (void)state;
-  char picture[600];
-  snprintf(picture, sizeof picture, "%s/test_build_memory.pfm", VELO_BINARY_DIR);
+  char image[600];
+  snprintf(image, sizeof image, "%s/test_build_memory.pfm", VELO_BINARY_DIR);
   Purse purse = {-1};
   Stage s = purse_stage(&purse);
-  fill(&s, picture);
-  remove(picture);
+  fill(&s, image);
+  remove(image);
   vlWorld *world = NULL;
   assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_ERROR_MISSING); /* the file is gone */
   assert_null(world);
   stage_close(&s);
   s = purse_stage(&purse);
-  fill(&s, picture);
+  fill(&s, image);
   assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_OK);
-  remove(picture);
+  remove(image);
   vlCamera camera;
   assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, NULL), VL_OK);
   s.render.spp = 2;

@@ -1,6 +1,6 @@
 /* test_measured_files.c: files of measured materials from strangers. Each damage is one clear error that names the
  * file, in memory of the file's size; memory that runs out leaves nothing behind; a file that several materials name is
- * read once; a picture of the material is that of the metal that was measured. */
+ * read once; an image of the material is that of the metal that was measured. */
 #include <stdlib.h>
 
 #include "../trace/measured_file.h"
@@ -260,7 +260,7 @@ static void no_memory(void **state) {
 /* ---- in a scene ------------------------------------------------------------------------------------------------ */
 
 /* A ball of brushed metal under a lamp and a sky; another in the back has the same file. */
-static Picture ball(const mfSurface *metal, bool measured, bool rgb) {
+static Image ball(const mfSurface *metal, bool measured, bool rgb) {
   Stage s = stage_open(64, 64);
   s.build.color = rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
   s.render.spp = 64;
@@ -278,7 +278,7 @@ static Picture ball(const mfSurface *metal, bool measured, bool rgb) {
   }
   add_sky(&s, 0.5f);
   add_point(&s, 2, 3, 1, 40);
-  Picture p = stage_take(&s);
+  Image p = stage_take(&s);
   if (measured) {
     vlWorld *world = NULL;
     assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_OK);
@@ -290,7 +290,7 @@ static Picture ball(const mfSurface *metal, bool measured, bool rgb) {
   return p;
 }
 
-static void picture(void **state) {
+static void image(void **state) {
   (void)state;
   mfSurface metal = mf_surface(0.6, 0.25);
   metal.color = 0;
@@ -300,18 +300,18 @@ static void picture(void **state) {
   mfFile f = mf_measure(&metal);
   assert_true(mf_write(path, &f));
   for (int rgb = 0; rgb < 2; rgb++) {
-    Picture a = ball(&metal, true, rgb), b = ball(&metal, false, rgb);
+    Image a = ball(&metal, true, rgb), b = ball(&metal, false, rgb);
     double off = 0, all = 0;
     for (uint32_t y = 8; y < 56; y += 4)
       for (uint32_t x = 8; x < 56; x += 4)
         for (int c = 0; c < 3; c++) {
-          double u = picture_region(&a, x, y, x + 4, y + 4, c), v = picture_region(&b, x, y, x + 4, y + 4, c);
+          double u = image_region(&a, x, y, x + 4, y + 4, c), v = image_region(&b, x, y, x + 4, y + 4, c);
           off += fabs(u - v), all += v;
         }
-    print_message("mean %.4f, metal's %.4f; blocks off by %.4f\n", picture_mean(&a, 1), picture_mean(&b, 1), off / all);
+    print_message("mean %.4f, metal's %.4f; blocks off by %.4f\n", image_mean(&a, 1), image_mean(&b, 1), off / all);
     assert_true(off / all < 0.02 && a.stats.not_finite == 0);
-    assert_ratio("measured ball", picture_mean(&a, 1), picture_mean(&b, 1), 0.004);
-    picture_free(&a), picture_free(&b);
+    assert_ratio("measured ball", image_mean(&a, 1), image_mean(&b, 1), 0.004);
+    image_free(&a), image_free(&b);
   }
   free(f.bytes);
   remove(path);
@@ -319,6 +319,6 @@ static void picture(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(damages), cmocka_unit_test(mutations),
-                                     cmocka_unit_test(no_memory), cmocka_unit_test(picture)};
+                                     cmocka_unit_test(no_memory), cmocka_unit_test(image)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -138,7 +138,7 @@ static void refused(void **state) {
   free(grid);
 }
 
-/* Any wrong byte of what is not values: a picture's worth of memory or an error, never a crash. */
+/* Any wrong byte of what is not values: an image's worth of memory or an error, never a crash. */
 static void shaken(void **state) {
   (void)state;
   unsigned char *grid = make_grid();

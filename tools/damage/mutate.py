@@ -46,8 +46,8 @@ def some_bytes(draw, data):
     return bytes(data)
 
 
-def picture(draw, data):
-    """A picture's bytes. A PNG gets right sums over its chunks half the time: else nobody looks behind the first wrong one."""
+def image(draw, data):
+    """An image's bytes. A PNG gets right sums over its chunks half the time: else nobody looks behind the first wrong one."""
     data = bytearray(some_bytes(draw, data))
     if data[:4] == b"\x89PNG" and draw.random() < 0.5:
         at = 8

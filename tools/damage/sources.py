@@ -95,7 +95,7 @@ def meshes():
 
 
 SURFACE = 'Shape "bilinearmesh" "point3 P" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n'
-PICTURES = ['Texture "t" "spectrum" "imagemap" "string filename" "%s"\nMaterial "diffuse" "texture reflectance" "t"\n' + SURFACE,
+IMAGES = ['Texture "t" "spectrum" "imagemap" "string filename" "%s"\nMaterial "diffuse" "texture reflectance" "t"\n' + SURFACE,
             'Texture "t" "float" "imagemap" "string filename" "%s"\n' + SURFACE.strip() + ' "texture alpha" "t"\n',
             'LightSource "infinite" "string filename" "%s"\n' + SURFACE,
             'LightSource "goniometric" "string filename" "%s"\n' + SURFACE,
@@ -104,7 +104,7 @@ PICTURES = ['Texture "t" "spectrum" "imagemap" "string filename" "%s"\nMaterial 
             'AreaLightSource "diffuse" "string filename" "%s"\n' + SURFACE]
 
 
-def pictures():
+def images():
     folder = os.path.join(CORPUS, "image")
     found = [(n, os.path.join(folder, n)) for n in names(folder, ".")]
     own = os.path.join(ROOT, "scenes", "features", "textures")
@@ -113,8 +113,8 @@ def pictures():
         if os.path.isfile(os.path.join(SHARED, "pbrt", name)):
             found.append((os.path.basename(name), os.path.join(SHARED, "pbrt", name)))
     for name, path in found:
-        for i, text in enumerate(PICTURES):
-            yield "%s_%d" % (name, i), {name: path, "scene.pbrt": (HEAD + text.replace("%s", name)).encode()}, name, "picture", "scene.pbrt"
+        for i, text in enumerate(IMAGES):
+            yield "%s_%d" % (name, i), {name: path, "scene.pbrt": (HEAD + text.replace("%s", name)).encode()}, name, "image", "scene.pbrt"
 
 
 def nanovdb(codec):
@@ -201,12 +201,12 @@ def gltf():
 
 
 def gltf_parts():
-    """Buffers and pictures beside a .gltf."""
+    """Buffers and images beside a .gltf."""
     for name, folder, file in gltf_folders():
         files = {k: v for k, v in tree(folder).items() if not re.search(r"screenshot|\.md$", k)}
         for part in sorted(files):
             if not re.search(r"\.(gltf|glb)$", part) and sum(os.path.getsize(v) for v in files.values()) < 2500000:
-                yield name + "_" + part, files, part, "bytes" if part.endswith(".bin") else "picture", file
+                yield name + "_" + part, files, part, "bytes" if part.endswith(".bin") else "image", file
 
 
 OBJ = b"""mtllib m.mtl
@@ -290,7 +290,7 @@ def trajectories():
             "model/" + part, "plain", "model"
 
 
-def own_pictures(folder):
-    """Pictures that velo rendered itself (made in the folder before), with all their headers and channels."""
+def own_images(folder):
+    """Images that velo rendered itself (made in the folder before), with all their headers and channels."""
     for name in names(folder, r"\.exr$"):
         yield name, {name: os.path.join(folder, name)}, name, "bytes", name

@@ -43,15 +43,15 @@ static int load_scene_camera(vlContext *context, const char *path, vlCameraRecor
   if (status < 0 && record->camera.lens.optics)
     status = report_failure(STATUS_SCENE, "%s: a lens of many elements is a camera of its scene alone", path);
   if (status < 0 && record->camera.lens.aperture) {
-    report_note("%s: the picture of the lens's opening is left out", path);
+    report_note("%s: the image of the lens's opening is left out", path);
     record->camera.lens.aperture = NULL;
   }
   vl_scene_destroy(scene);
   return status;
 }
 
-/* The camera in the header of a picture that velo rendered. */
-static int load_picture_camera(vlContext *context, const char *path, vlCameraRecord *record) {
+/* The camera in the header of an image that velo rendered. */
+static int load_image_camera(vlContext *context, const char *path, vlCameraRecord *record) {
   vlImage *image = NULL;
   *record = (vlCameraRecord){.dialect = VL_CAMERA_DIALECT_EXR, .frames = 1};
   int status = image_load(context, path, &image);
@@ -62,7 +62,7 @@ static int load_picture_camera(vlContext *context, const char *path, vlCameraRec
 
 int camera_load(vlContext *context, const char *path, int dialect, const char *frame, vlCameraRecord *record) {
   if (dialect == VL_CAMERA_DIALECT_EXR || (!dialect && ends_with(path, ".exr")))
-    return load_picture_camera(context, path, record);
+    return load_image_camera(context, path, record);
   if (dialect == VL_CAMERA_DIALECT_PBRT || (!dialect && camera_is_scene(path)))
     return load_scene_camera(context, path, record);
   vlError error = {0};
@@ -72,7 +72,7 @@ int camera_load(vlContext *context, const char *path, int dialect, const char *f
   vlResult result = vl_camera_read(context, path, &def, record, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   if (record->size_assumed)
-    report_note("%s: names no picture size; %u x %u is taken", path, record->camera.width, record->camera.height);
+    report_note("%s: names no image size; %u x %u is taken", path, record->camera.width, record->camera.height);
   if (record->frames > 1 && !frame)
     report_note("%s: the first of %u cameras is taken (%s)", path, record->frames,
                 record->name[0] ? record->name : "no name");
@@ -89,7 +89,7 @@ int camera_load_made(vlContext *context, const char *path, const Arguments *argu
   vlResult result = vl_camera_make(&record->camera, camera, &warning, &error);
   if (result != VL_OK) return report_failure(STATUS_SCENE, "%s: %s", path, error.message);
   if (warning && camera->outside > 0.0)
-    report_warning("%s: %s (%.3g%% of the picture)", path, warning, 100.0 * camera->outside);
+    report_warning("%s: %s (%.3g%% of the image)", path, warning, 100.0 * camera->outside);
   else if (warning)
     report_warning("%s: %s", path, warning);
   return -1;

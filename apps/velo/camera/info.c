@@ -11,7 +11,7 @@ enum { INFO_JSON, INFO_FRAME };
 
 static const double degrees = 180.0 / 3.14159265358979323846;
 
-/* Angle between what two places of the picture see; NaN where one sees nothing. */
+/* Angle between what two places of the image see; NaN where one sees nothing. */
 static double angle_between(const vlCamera *c, double x0, double y0, double x1, double y1) {
   double o[3], a[3], b[3];
   if (!vl_camera_unproject(c, x0, y0, o, a) || !vl_camera_unproject(c, x1, y1, o, b)) return NAN;
@@ -96,7 +96,7 @@ static void print_text(const char *path, const vlCameraRecord *record, const vlC
   printf("file          %s (%s)\nprojection    %s\nsize          %u x %u\n", path,
          vl_camera_dialect_name(record->dialect), vl_projection_name(c->projection), c->width, c->height);
   printf("f in pixels   %.10g, %.10g; skew %.10g\n", c->fx, c->fy, c->skew);
-  printf("axis at       %.10g, %.10g from the picture's corner; %.10g, %.10g from the first pixel's centre\n", c->cx,
+  printf("axis at       %.10g, %.10g from the image's corner; %.10g, %.10g from the first pixel's centre\n", c->cx,
          c->cy, c->cx - 0.5, c->cy - 0.5);
   if (!flat) {
     printf("field of view\n");
@@ -110,7 +110,7 @@ static void print_text(const char *path, const vlCameraRecord *record, const vlC
   } else {
     printf("pixel         %.10g scene units\n", info->footprint);
   }
-  if (c->outside > 0.0) printf("outside       %.4g%% of the picture sees nothing\n", 100.0 * c->outside);
+  if (c->outside > 0.0) printf("outside       %.4g%% of the image sees nothing\n", 100.0 * c->outside);
   printf("eye           %.10g %.10g %.10g\n", m[3], m[7], m[11]);
   printf("looks along   %.10g %.10g %.10g\nup            %.10g %.10g %.10g\n", m[2], m[6], m[10], 0.0 - m[1],
          0.0 - m[5], 0.0 - m[9]);

@@ -128,7 +128,7 @@ static const Option points_options[] = {
     {POINTS_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "the camera, in any dialect of `velo camera convert`, or a scene",
      0, 0, NULL},
     {POINTS_ORIGIN, 0, "pixel-origin", OPTION_CHOICE, "WHERE",
-     "what (0, 0) is: the picture's corner (default; the first pixel's\n"
+     "what (0, 0) is: the image's corner (default; the first pixel's\n"
      "centre is (0.5, 0.5)), or the first pixel's centre, as in OpenCV:",
      0, 0, origin_choices},
     {POINTS_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
@@ -140,7 +140,7 @@ const Command camera_project_command = {
     .summary = "points of the world to pixels",
     .text =
         "POINTS.csv (- is stdin) has a line x,y,z for each point of the world. Prints u,v,z,valid: column and\n"
-        "row in the picture, depth along the view axis, and 1 where the camera can see in that direction.",
+        "row in the image, depth along the view axis, and 1 where the camera can see in that direction.",
     .examples =
         "velo camera project --camera camera.yaml points.csv\n"
         "velo camera project --camera room.pbrt points.csv",
@@ -155,7 +155,7 @@ const Command camera_unproject_command = {
     .usage = "--camera FILE PIXELS.csv [options]",
     .summary = "pixels to rays in the world",
     .text =
-        "PIXELS.csv (- is stdin) has a line u,v for each place in the picture. Prints ox,oy,oz,dx,dy,dz,valid:\n"
+        "PIXELS.csv (- is stdin) has a line u,v for each place in the image. Prints ox,oy,oz,dx,dy,dz,valid:\n"
         "where the ray starts, its direction of length 1, and 1 where the camera sees anything.",
     .examples =
         "velo camera unproject --camera camera.yaml pixels.csv\n"

@@ -1,5 +1,5 @@
 /* camera/vanishing.c: `velo camera vanishing`: the principal vanishing points and the horizon of a camera, drawn over a
- * picture where asked; and the camera back from vanishing points. */
+ * image where asked; and the camera back from vanishing points. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -81,7 +81,7 @@ static void say_text(const vlCamera *c, const vlVanishingPoints *v) {
   if (v->has_horizon)
     printf("horizon       %.17g x + %.17g y + %.17g = 0\n", v->horizon[0], v->horizon[1], v->horizon[2]);
   else
-    printf("horizon       %s\n", c->projection == VL_PROJECTION_ORTHOGRAPHIC ? "none" : "no line in the picture");
+    printf("horizon       %s\n", c->projection == VL_PROJECTION_ORTHOGRAPHIC ? "none" : "no line in the image");
 }
 
 /* ---- what is drawn ----------------------------------------------------------------------------------------------- */
@@ -176,7 +176,7 @@ static void draw(Overlay *o, const vlCamera *c, const Drawing *drawing) {
     const double d[3] = {i == 0, i == 1, i == 2};
     if (!flat && drawing->lines) draw_family(o, c, d, drawing->lines, 0.8 * width);
     overlay_paint(o, colors[i], 0.55);
-    for (int end = 0; end < 2; end++) { /* curved pictures may show both ends */
+    for (int end = 0; end < 2; end++) { /* curved images may show both ends */
       const double e[3] = {end ? -d[0] : d[0], end ? -d[1] : d[1], end ? -d[2] : d[2]};
       vlVanishingPoint p;
       if (vl_camera_vanishing_point(c, e, &p) && p.kind == VL_VANISHING_FINITE)
@@ -190,13 +190,13 @@ static void draw(Overlay *o, const vlCamera *c, const Drawing *drawing) {
   overlay_paint(o, yellow, 0.9);
 }
 
-/* Makes the camera as large as the picture, where both have the same shape. */
-static int fit_camera(const vlImage *picture, const char *path, vlCamera *camera) {
-  uint32_t w = vl_image_width(picture), h = vl_image_height(picture);
+/* Makes the camera as large as the image, where both have the same shape. */
+static int fit_camera(const vlImage *image, const char *path, vlCamera *camera) {
+  uint32_t w = vl_image_width(image), h = vl_image_height(image);
   if (w == camera->width && h == camera->height) return -1;
   if (fabs((double)w * camera->height - (double)h * camera->width) > fmax(w, h))
-    return report_failure(STATUS_SCENE, "%s: the picture has %u x %u pixels, the camera %u x %u: another shape", path,
-                          w, h, camera->width, camera->height);
+    return report_failure(STATUS_SCENE, "%s: the image has %u x %u pixels, the camera %u x %u: another shape", path, w,
+                          h, camera->width, camera->height);
   vlCamera resized;
   if (vl_camera_resize(camera, w, h, &resized) != VL_OK) return STATUS_OTHER;
   *camera = resized;
@@ -205,25 +205,25 @@ static int fit_camera(const vlImage *picture, const char *path, vlCamera *camera
 
 static int draw_overlay(vlContext *context, const Arguments *arguments, const vlCamera *of, const Drawing *drawing) {
   const OptionValue *v = arguments->values;
-  vlImage *picture = NULL;
+  vlImage *image = NULL;
   vlCamera camera = *of;
   vlError error = {0};
   bool eight_bit = false;
   if (!output_suffix(v[V_OUT].text, &eight_bit) || !eight_bit)
     return report_usage("-o \"%s\": the drawing is written as .png, .jpg or .tga", v[V_OUT].text);
-  int status = image_load(context, v[V_OVERLAY].text, &picture);
-  if (status < 0) status = fit_camera(picture, v[V_OVERLAY].text, &camera);
+  int status = image_load(context, v[V_OVERLAY].text, &image);
+  if (status < 0) status = fit_camera(image, v[V_OVERLAY].text, &camera);
   if (status < 0) {
     Overlay overlay = {0};
     vlResult result = VL_ERROR_MEMORY;
-    if (overlay_begin(&overlay, picture)) {
+    if (overlay_begin(&overlay, image)) {
       draw(&overlay, &camera, drawing);
       result = overlay_write(&overlay, context, v[V_OUT].text, &error);
     }
     overlay_end(&overlay);
     status = result == VL_OK ? -1 : report_error(&error, result, v[V_OUT].text);
   }
-  vl_image_destroy(picture);
+  vl_image_destroy(image);
   return status;
 }
 
@@ -279,7 +279,7 @@ static void say_camera(const vlCameraDef *d, bool as_json) {
 
 static int run_inverse(const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  if (!v[V_SIZE].given) return report_usage("--from needs --size WxH, the picture's");
+  if (!v[V_SIZE].given) return report_usage("--from needs --size WxH, the image's");
   vlVanishingDef def = vl_default_vanishing_def((uint32_t)v[V_SIZE].integers[0], (uint32_t)v[V_SIZE].integers[1]);
   def.count = 1 + (uint32_t)arguments->operand_count;
   if (def.count < 2 || def.count > 3) return report_usage("--from takes 2 or 3 points: --from x1,y1 x2,y2 [x3,y3]");
@@ -325,7 +325,7 @@ static int run_vanishing(const Command *command, const Arguments *arguments) {
   if (arguments->operand_count != 1) return report_usage("camera vanishing takes one FILE, or --from and points");
   if (v[V_UP].given && (!parse_numbers(v[V_UP].text, 3, up) || !(dot(up, up) > 0.0)))
     return report_usage("--up \"%s\": a direction is x,y,z", v[V_UP].text);
-  if (v[V_OVERLAY].given != v[V_OUT].given) return report_usage("--overlay PICTURE and -o RESULT go together");
+  if (v[V_OVERLAY].given != v[V_OUT].given) return report_usage("--overlay IMAGE and -o RESULT go together");
   if (v[V_GRID].given && !parse_numbers(v[V_GRID].text, 2, grid) && !parse_numbers(v[V_GRID].text, 1, grid))
     return report_usage("--grid takes SPACING or SPACING,HEIGHT");
   if (v[V_GRID].given && !(grid[0] > 0.0)) return report_usage("--grid: the spacing must be above zero");
@@ -357,7 +357,7 @@ static const Option vanishing_options[] = {
     {V_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
     {V_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
     {V_UP, 0, "up", OPTION_TEXT, "x,y,z", "what the horizon is at right angles to; default 0,1,0", 0, 0, NULL},
-    {V_OVERLAY, 0, "overlay", OPTION_TEXT, "PICTURE", "draw over this picture; needs -o", 0, 0, NULL},
+    {V_OVERLAY, 0, "overlay", OPTION_TEXT, "IMAGE", "draw over this image; needs -o", 0, 0, NULL},
     {V_OUT, 'o', "output", OPTION_TEXT, "RESULT", "the drawing (.png .jpg .tga); with --from: a camera file", 0, 0,
      NULL},
     {V_LINES, 0, "lines", OPTION_INTEGER, "N", "planes of lines to each vanishing point, 0 to 360; default 24", 0, 360,
@@ -368,7 +368,7 @@ static const Option vanishing_options[] = {
      0, 0, NULL},
     {V_PRINCIPAL, 0, "principal", OPTION_TEXT, "cx,cy", "its principal point; default with two points: the centre", 0,
      0, NULL},
-    {V_SIZE, 0, "size", OPTION_SIZE, "WxH", "its picture's size", 1, 1 << 24, NULL},
+    {V_SIZE, 0, "size", OPTION_SIZE, "WxH", "its image's size", 1, 1 << 24, NULL},
     {V_AXES, 0, "axes", OPTION_TEXT, "AXES",
      "which axes the points are of, - for a negative end: xz (default\nof two), xyz (of three), -zx, ...", 0, 0, NULL},
     {V_TO, 0, "to", OPTION_CHOICE, "DIALECT", "of that camera file; default: by its name:", 0, 0, dialect_choices},
@@ -379,8 +379,8 @@ const Command camera_vanishing_command = {
     .usage = "FILE | --from x1,y1 x2,y2 [x3,y3] --size WxH [options]",
     .summary = "vanishing points and horizon; the camera back from them",
     .text =
-        "Prints where lines along the world's axes vanish in the picture of FILE's camera (any dialect, or a\n"
-        "scene), pixels from the picture's corner, and the horizon; --overlay draws them: lines along x red,\n"
+        "Prints where lines along the world's axes vanish in the image of FILE's camera (any dialect, or a\n"
+        "scene), pixels from the image's corner, and the horizon; --overlay draws them: lines along x red,\n"
         "y green, z blue, the horizon yellow. With --from it finds focal length, principal point and rotation\n"
         "from two vanishing points and a known principal point, or from three.",
     .examples =

@@ -48,12 +48,12 @@ static const char *verdict(const Verification *v, double threshold, char *text, 
   if (v->placed == 0)
     snprintf(text, size, "the camera sees nothing, or too little for a board anywhere");
   else if (m->found < 12 || m->found < 0.9 * m->expected)
-    snprintf(text, size, "only %u of %u corners are in the pictures where the camera should show them", m->found,
+    snprintf(text, size, "only %u of %u corners are in the images where the camera should show them", m->found,
              m->expected);
   else if (m->misread)
     snprintf(text, size, "%u of %u markers are not the ones that should be there", m->misread, m->markers);
   else if (m->unseen)
-    snprintf(text, size, "%u of %u corners in the pictures cannot be seen by the other camera", m->unseen, m->found);
+    snprintf(text, size, "%u of %u corners in the images cannot be seen by the other camera", m->unseen, m->found);
   else if (!(m->most <= threshold))
     snprintf(text, size, "%.4g pixels are more than %g", m->most, threshold);
   else
@@ -61,7 +61,7 @@ static const char *verdict(const Verification *v, double threshold, char *text, 
   return text;
 }
 
-/* Parts of the picture's 8 x 8 that see anything in their middle, and how many of them held corners. */
+/* Parts of the image's 8 x 8 that see anything in their middle, and how many of them held corners. */
 static uint32_t parts(const Verification *v, uint32_t *covered) {
   uint32_t seeing = 0;
   double o[3], d[3];
@@ -104,7 +104,7 @@ static void print_text(const Verification *v, const char *path, const char *agai
     printf("shift found - projected, mean: %+.5f, %+.5f pixels%s\n", mean_of(m->sum_x, m), mean_of(m->sum_y, m),
            half_pixel(m) ? "; half a pixel: are the pixel origins confused?" : "");
     if (v->target.charuco) printf("read  %u markers, %u wrong\n", m->markers, m->misread);
-    printf("cover %u of the %u parts (of 8 x 8) of the picture that see anything\n", covered, seeing);
+    printf("cover %u of the %u parts (of 8 x 8) of the image that see anything\n", covered, seeing);
   }
   if (failure)
     printf("FAILED: %s\n", failure);
@@ -155,7 +155,7 @@ static void print_json(const Verification *v, const char *path, const char *agai
   putchar('\n');
 }
 
-/* The camera that the pictures are compared with: the same file, or another one. */
+/* The camera that the images are compared with: the same file, or another one. */
 static int load_model(vlContext *context, const Arguments *arguments, const vlCameraRecord *own, Verification *v) {
   const OptionValue *o = arguments->values;
   v->model = (VerifyModel){own->camera, v->camera};
@@ -220,19 +220,19 @@ static const Option verify_options[] = {
      0, 0, NULL},
     {VERIFY_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
     {VERIFY_AGAINST, 0, "against", OPTION_TEXT, "OTHER",
-     "compare the pictures with this camera file's equations: do both\nmean the same camera?", 0, 0, NULL},
+     "compare the images with this camera file's equations: do both\nmean the same camera?", 0, 0, NULL},
     {VERIFY_AGAINST_FRAME, 0, "against-frame", OPTION_TEXT, "NAME", "which camera of OTHER", 0, 0, NULL},
     {VERIFY_IGNORE_POSE, 0, "ignore-pose", OPTION_FLAG, NULL, "OTHER is put where FILE is (for files without a pose)",
      0, 0, NULL},
     {VERIFY_TARGET, 0, "target", OPTION_CHOICE, "KIND", "default chessboard; charuco has markers that are read:", 0, 0,
      target_choices},
-    {VERIFY_POSE_COUNT, 0, "poses", OPTION_INTEGER, "N", "places of the board, spread over the picture (default 16)", 1,
+    {VERIFY_POSE_COUNT, 0, "poses", OPTION_INTEGER, "N", "places of the board, spread over the image (default 16)", 1,
      VERIFY_POSES, NULL},
     {VERIFY_SPP, 0, "spp", OPTION_INTEGER, "N", "samples a pixel (default 144)", 1, 65536, NULL},
     {VERIFY_SEED, 0, "seed", OPTION_INTEGER, "N", "other places, other samples (default 1)", 0, 4294967295.0, NULL},
     {VERIFY_THRESHOLD, 0, "threshold", OPTION_NUMBER, "PX", "largest error that passes, in pixels (default 0.05)", 0,
      1e9, NULL},
-    {VERIFY_KEEP, 0, "keep", OPTION_TEXT, "FOLDER", "write the pictures and corners.csv there", 0, 0, NULL},
+    {VERIFY_KEEP, 0, "keep", OPTION_TEXT, "FOLDER", "write the images and corners.csv there", 0, 0, NULL},
     {VERIFY_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
@@ -241,7 +241,7 @@ const Command camera_verify_command = {
     .usage = "--camera FILE [options]",
     .summary = "render a chessboard through a camera, measure its corners",
     .text =
-        "Renders a board in many poses through the camera, finds the corners in the pictures to a hundredth of\n"
+        "Renders a board in many poses through the camera, finds the corners in the images to a hundredth of\n"
         "a pixel, and compares them with where the camera's equations, written a second time, put them. Exit\n"
         "code 1 when one is off by more than the threshold, or corners are missing.",
     .examples =

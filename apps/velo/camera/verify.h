@@ -1,4 +1,4 @@
-/* camera/verify.h: the parts of `velo camera verify`: a target, its pictures, the corners found in them, and a second
+/* camera/verify.h: the parts of `velo camera verify`: a target, its images, the corners found in them, and a second
  * projection to compare with. */
 #ifndef APP_CAMERA_VERIFY_H
 #define APP_CAMERA_VERIFY_H
@@ -14,27 +14,27 @@ typedef struct VerifyModel {
 
 /* There is a second implementation of this model. */
 bool verify_knows(const VerifyModel *model);
-/* World point to film point, the picture's corner being (0, 0). false: behind, or no number. Folds are not told. */
+/* World point to film point, the image's corner being (0, 0). false: behind, or no number. Folds are not told. */
 bool verify_project(const VerifyModel *model, const double point[3], double pixel[2]);
 
-/* ---- verify_corners.c: corners of a chessboard in a picture, without knowing where they are -----------------------
+/* ---- verify_corners.c: corners of a chessboard in an image, without knowing where they are -----------------------
  */
 
-typedef struct Picture {
+typedef struct Image {
   int width, height; /* pixels are row after row; the middle of the first is (0.5, 0.5) */
   const float *pixels;
-} Picture;
+} Image;
 
 typedef struct Corner {
   double x, y;
   double strength; /* of the saddle */
 } Corner;
 
-/* All places where the picture looks like a saddle, to a pixel, in `corners`; at most `room` of them, whole rows first.
+/* All places where the image looks like a saddle, to a pixel, in `corners`; at most `room` of them, whole rows first.
  * -1: no memory. */
-int corners_find(const Picture *picture, Corner *corners, int room);
+int corners_find(const Image *image, Corner *corners, int room);
 /* One of them to a hundredth of a pixel, by what lies within `reach` pixels. false: no corner of a chessboard. */
-bool corner_refine(const Picture *picture, double reach, Corner *corner);
+bool corner_refine(const Image *image, double reach, Corner *corner);
 
 /* ---- verify_target.c: the board and where it stands -------------------------------------------------------------- */
 
@@ -55,7 +55,7 @@ typedef struct Random {
 /* 0 to 1, the same numbers for a seed for ever. */
 double random_unit(Random *random);
 
-/* Pixels that a square should measure, and how many fit, by the size of the picture. */
+/* Pixels that a square should measure, and how many fit, by the size of the image. */
 double target_choose(Target *target, const vlCamera *camera);
 /* The board about `side` pixels a square, seen around film point (x, y), tilted and turned at random. false: the camera
  * sees nothing there, or so little that no board fits. */
@@ -65,9 +65,9 @@ bool target_place(const Target *target, const vlCamera *camera, double x, double
 void target_point(const Target *target, const Placement *placement, double i, double j, double point[3]);
 vlResult target_build(vlContext *context, const Target *target, const Placement *placement, vlWorld **world,
                       vlError *error);
-/* The marker of the white square (i, j), read between its four corners (across, then down) in the picture: 1 as drawn,
+/* The marker of the white square (i, j), read between its four corners (across, then down) in the image: 1 as drawn,
  * 0 another, -1 the square has none, or it is too small. */
-int target_read_marker(const Target *target, int i, int j, const Picture *picture, double corners[4][2]);
+int target_read_marker(const Target *target, int i, int j, const Image *image, double corners[4][2]);
 
 /* ---- verify_run.c: pose after pose ------------------------------------------------------------------------------- */
 
@@ -87,13 +87,13 @@ typedef struct Verification {
   Target target;
   uint32_t poses, spp;
   uint64_t seed;
-  const char *keep; /* folder for pictures and corners.csv; null */
-  vlCamera camera;  /* makes the pictures */
+  const char *keep; /* folder for images and corners.csv; null */
+  vlCamera camera;  /* makes the images */
   VerifyModel model;
   double side;     /* of a square, pixels */
   uint32_t placed; /* poses that found a place */
   Measure all, each[VERIFY_POSES];
-  bool covered[COVERAGE][COVERAGE]; /* parts of the picture in which corners were found */
+  bool covered[COVERAGE][COVERAGE]; /* parts of the image in which corners were found */
 } Verification;
 
 /* -1, or the exit code when all has been said. */

@@ -1,6 +1,6 @@
-/* camera/verify_corners.c: finds the corners of a chessboard in a picture, and each to a hundredth of a pixel.
+/* camera/verify_corners.c: finds the corners of a chessboard in an image, and each to a hundredth of a pixel.
  *
- * Found: where the picture, smoothed, has its strongest saddles: -det of the second derivatives.
+ * Found: where the image, smoothed, has its strongest saddles: -det of the second derivatives.
  * Refined, first: the point to which all gradients around are at right angles (Foerstner and Guelch 1987; what OpenCV
  *   calls cornerSubPix): along an edge the gradient stands across it, and both edges pass through the corner.
  * Refined, then: a distorting lens bends the edges, which moves that point by some hundredths of a pixel; so a corner
@@ -18,13 +18,13 @@ enum { BLUR = 4, REACH = 9, UNKNOWNS = 9 };
 /* ---- finding ------------------------------------------------------------------------------------------------------
  */
 
-static float at(const Picture *p, int x, int y) {
+static float at(const Image *p, int x, int y) {
   x = x < 0 ? 0 : x >= p->width ? p->width - 1 : x;
   y = y < 0 ? 0 : y >= p->height ? p->height - 1 : y;
   return p->pixels[(size_t)y * (size_t)p->width + (size_t)x];
 }
 
-static void smooth(const Picture *from, bool vertical, float *to) {
+static void smooth(const Image *from, bool vertical, float *to) {
   double kernel[2 * BLUR + 1], sum = 0.0;
   for (int i = -BLUR; i <= BLUR; i++) sum += kernel[i + BLUR] = exp(-0.5 * i * i / (1.3 * 1.3));
   for (int y = 0; y < from->height; y++)
@@ -36,7 +36,7 @@ static void smooth(const Picture *from, bool vertical, float *to) {
     }
 }
 
-static void saddles(const Picture *p, float *to) {
+static void saddles(const Image *p, float *to) {
   for (int y = 0; y < p->height; y++)
     for (int x = 0; x < p->width; x++) {
       double middle = (double)at(p, x, y);
@@ -48,7 +48,7 @@ static void saddles(const Picture *p, float *to) {
     }
 }
 
-static bool is_peak(const Picture *p, int x, int y, float least) {
+static bool is_peak(const Image *p, int x, int y, float least) {
   float here = at(p, x, y);
   if (here < least) return false;
   for (int j = -2; j <= 2; j++)
@@ -57,25 +57,25 @@ static bool is_peak(const Picture *p, int x, int y, float least) {
   return true;
 }
 
-int corners_find(const Picture *picture, Corner *corners, int room) {
-  size_t n = (size_t)picture->width * (size_t)picture->height;
+int corners_find(const Image *image, Corner *corners, int room) {
+  size_t n = (size_t)image->width * (size_t)image->height;
   float *a = malloc(n * sizeof *a), *b = malloc(n * sizeof *b);
   int count = a && b ? 0 : -1;
   if (count == 0) {
     float low = FLT_MAX, high = -FLT_MAX;
     for (size_t i = 0; i < n; i++) {
-      low = fminf(low, picture->pixels[i]);
-      high = fmaxf(high, picture->pixels[i]);
+      low = fminf(low, image->pixels[i]);
+      high = fmaxf(high, image->pixels[i]);
     }
     float contrast = high - low;
-    Picture half = {picture->width, picture->height, a}, whole = {picture->width, picture->height, b};
-    smooth(picture, false, a);
+    Image half = {image->width, image->height, a}, whole = {image->width, image->height, b};
+    smooth(image, false, a);
     smooth(&half, true, b);
     saddles(&whole, a);
     /* two edges at right angles give about 0.03 contrast^2, at 20 degrees a tenth of it */
     float least = 0.002f * contrast * contrast;
-    for (int y = 3; y < picture->height - 3 && contrast > 0.0f; y++)
-      for (int x = 3; x < picture->width - 3 && count < room; x++)
+    for (int y = 3; y < image->height - 3 && contrast > 0.0f; y++)
+      for (int x = 3; x < image->width - 3 && count < room; x++)
         if (is_peak(&half, x, y, least)) corners[count++] = (Corner){x + 0.5, y + 0.5, (double)at(&half, x, y)};
   }
   free(a);
@@ -88,7 +88,7 @@ int corners_find(const Picture *picture, Corner *corners, int room) {
 
 /* Gradients by Scharr's 3 x 3 differences at whole pixels, weighted by how near they are to where the corner is taken
  * to be: a symmetric window that follows it. */
-static bool right_angles(const Picture *p, double reach, Corner *corner) {
+static bool right_angles(const Image *p, double reach, Corner *corner) {
   for (int step = 0; step < 20; step++) {
     double a = 0.0, b = 0.0, c = 0.0, u = 0.0, v = 0.0;
     int x0 = (int)floor(corner->x - reach), y0 = (int)floor(corner->y - reach);
@@ -172,7 +172,7 @@ typedef struct Window {
       weight[4 * REACH * REACH + 16];
 } Window;
 
-static void cut_window(const Picture *p, double reach, const Corner *corner, Window *w) {
+static void cut_window(const Image *p, double reach, const Corner *corner, Window *w) {
   w->count = 0;
   int x0 = (int)floor(corner->x - reach), y0 = (int)floor(corner->y - reach);
   for (int y = y0; y <= y0 + 2 * (int)reach + 1; y++)
@@ -250,14 +250,14 @@ static double fit(const Window *w, double *q) {
   return error;
 }
 
-bool corner_refine(const Picture *picture, double reach, Corner *corner) {
+bool corner_refine(const Image *image, double reach, Corner *corner) {
   Corner found = *corner;
   Window window;
   double q[UNKNOWNS];
   reach = fmin(reach, REACH - 1.0);
-  if (!right_angles(picture, reach, &found)) return false;
+  if (!right_angles(image, reach, &found)) return false;
   if (hypot(found.x - corner->x, found.y - corner->y) > 2.5) return false;
-  cut_window(picture, reach, &found, &window);
+  cut_window(image, reach, &found, &window);
   if (!begin(&window, &found, q)) return false;
   double error = fit(&window, q), weight = 0.0;
   for (int i = 0; i < window.count; i++) weight += window.weight[i];

@@ -1,4 +1,4 @@
-/* camera/verify_run.c: poses of the board that cover the picture; each rendered, its corners found and compared. */
+/* camera/verify_run.c: poses of the board that cover the rendered; each rendered, its corners found and compared. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -26,7 +26,7 @@ typedef struct Pose {
   uint32_t crop[4];
 } Pose;
 
-/* The window round (x, y) lies in the picture, all of it sees, and straight lines of space are nearly straight in it:
+/* The window round (x, y) lies in the rendered, all of it sees, and straight lines of space are nearly straight in it:
  * not so at the creases of a map of the sphere, and at poles. */
 static bool in_one_piece(const vlCamera *c, double x, double y, double radius) {
   for (int k = 0; k < 8; k++) {
@@ -50,7 +50,7 @@ static bool place_of(const Pose *pose, double i, double j, double point[3], doub
   return vl_camera_project(&pose->v->camera, point, pixel, &z);
 }
 
-/* Which corners the pictures should show whole, and how much room each has. */
+/* Which corners the images should show whole, and how much room each has. */
 static void expect_corners(Pose *pose) {
   const Verification *v = pose->v;
   pose->count = 0;
@@ -87,7 +87,7 @@ static void expect_corners(Pose *pose) {
   }
 }
 
-/* A place for the board with something to measure; film points go through the picture evenly (the R2 sequence). */
+/* A place for the board with something to measure; film points go through the image evenly (the R2 sequence). */
 static bool choose_pose(Pose *pose, uint32_t *sequence, Random *random) {
   const Verification *v = pose->v;
   for (int attempt = 0; attempt < TRIES; attempt++) {
@@ -123,7 +123,7 @@ static vlResult render(const Pose *pose, vlContext *context, vlImage **image, vl
 }
 
 /* Names the corners: each expected one takes the strongest saddle near it, and its measured place. */
-static void match(Pose *pose, const Picture *picture, const Corner *corners, int count) {
+static void match(Pose *pose, const Image *rendered, const Corner *corners, int count) {
   for (int k = 0; k < pose->count; k++) {
     Expected *e = &pose->expected[k];
     double x = e->x - pose->crop[0], y = e->y - pose->crop[1], near = fmax(3.0, 0.4 * e->apart);
@@ -134,7 +134,7 @@ static void match(Pose *pose, const Picture *picture, const Corner *corners, int
         best = c;
     if (best < 0) continue;
     e->corner = corners[best];
-    e->found = corner_refine(picture, e->reach, &e->corner);
+    e->found = corner_refine(rendered, e->reach, &e->corner);
   }
 }
 
@@ -144,7 +144,7 @@ static const Expected *corner_at(const Pose *pose, int i, int j) {
   return NULL;
 }
 
-static void read_markers(const Pose *pose, const Picture *picture, Measure *m) {
+static void read_markers(const Pose *pose, const Image *rendered, Measure *m) {
   for (int j = 1; j < pose->v->target.corners; j++)
     for (int i = 1; i < pose->v->target.corners; i++) {
       double at[4][2];
@@ -155,7 +155,7 @@ static void read_markers(const Pose *pose, const Picture *picture, Measure *m) {
         at[k][0] = e->corner.x, at[k][1] = e->corner.y;
         there++;
       }
-      int read = there == 4 ? target_read_marker(&pose->v->target, i, j, picture, at) : -1;
+      int read = there == 4 ? target_read_marker(&pose->v->target, i, j, rendered, at) : -1;
       m->markers += read >= 0;
       m->misread += read == 0;
     }
@@ -194,17 +194,17 @@ static void add_up(Measure *all, const Measure *m) {
 }
 
 /* One channel, without alpha: for other programs' corner finders. */
-static vlResult keep_picture(vlContext *context, const char *folder, uint32_t index, const Picture *picture,
-                             vlError *error) {
+static vlResult keep_image(vlContext *context, const char *folder, uint32_t index, const Image *rendered,
+                           vlError *error) {
   char path[4096];
   vlImage *image = NULL;
-  vlImageDef def = vl_default_image_def((uint32_t)picture->width, (uint32_t)picture->height, 1);
+  vlImageDef def = vl_default_image_def((uint32_t)rendered->width, (uint32_t)rendered->height, 1);
   def.type = VL_PIXEL_F32;
   vlResult result = vl_image_create(context, &def, &image);
   snprintf(path, sizeof path, "%s/pose_%03u.png", folder, index);
   if (result == VL_OK) {
-    memcpy(vl_image_pixels(image), picture->pixels,
-           (size_t)picture->width * (size_t)picture->height * sizeof *picture->pixels);
+    memcpy(vl_image_pixels(image), rendered->pixels,
+           (size_t)rendered->width * (size_t)rendered->height * sizeof *rendered->pixels);
     result = vl_image_write(image, path, NULL, error);
   }
   vl_image_destroy(image);
@@ -223,13 +223,13 @@ static int measure_pose(Pose *pose, uint32_t index, Verification *v, vlContext *
     const float *pixels = vl_image_const_pixels(image);
     uint32_t channels = vl_image_channels(image);
     for (size_t k = 0; k < (size_t)width * (size_t)height; k++) red[k] = pixels[channels * k];
-    Picture picture = {width, height, red};
-    int count = corners_find(&picture, corners, ROOM);
+    Image rendered = {width, height, red};
+    int count = corners_find(&rendered, corners, ROOM);
     if (count < 0) result = VL_ERROR_MEMORY;
-    if (count >= 0 && v->keep) result = keep_picture(context, v->keep, index, &picture, &error);
-    match(pose, &picture, corners, count);
+    if (count >= 0 && v->keep) result = keep_image(context, v->keep, index, &rendered, &error);
+    match(pose, &rendered, corners, count);
     compare(pose, index, v, csv);
-    read_markers(pose, &picture, &v->each[index]);
+    read_markers(pose, &rendered, &v->each[index]);
     add_up(&v->all, &v->each[index]);
   }
   free(red);

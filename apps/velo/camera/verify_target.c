@@ -1,5 +1,5 @@
 /* camera/verify_target.c: a chessboard, with or without markers in its white squares, and where it stands before the
- * camera. It is made of geometry that shines, so no texture filter stands between it and the picture; black is nothing.
+ * camera. It is made of geometry that shines, so no texture filter stands between it and the image; black is nothing.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -69,7 +69,7 @@ static bool cell_is_white(unsigned code, int x, int y) {
   return x >= 0 && y >= 0 && x < BITS && y < BITS && (code >> (BITS * y + x) & 1u);
 }
 
-static double sample(const Picture *p, double x, double y) {
+static double sample(const Image *p, double x, double y) {
   double fx = fmin(fmax(x - 0.5, 0.0), p->width - 1.001), fy = fmin(fmax(y - 0.5, 0.0), p->height - 1.001);
   int i = (int)fx, j = (int)fy;
   const float *at = p->pixels + (size_t)j * (size_t)p->width + i;
@@ -78,7 +78,7 @@ static double sample(const Picture *p, double x, double y) {
          fy * ((1 - fx) * (double)at[p->width] + fx * (double)at[p->width + 1]);
 }
 
-int target_read_marker(const Target *target, int i, int j, const Picture *picture, double c[4][2]) {
+int target_read_marker(const Target *target, int i, int j, const Image *image, double c[4][2]) {
   if (!target->charuco || !is_white(i, j)) return -1;
   for (int k = 0; k < 4; k++) { /* cells of less than 2.4 pixels cannot be read */
     static const int round[5] = {0, 1, 3, 2, 0};
@@ -91,7 +91,7 @@ int target_read_marker(const Target *target, int i, int j, const Picture *pictur
     double u = (x + 0.5) / CELLS, v = (y + 0.5) / CELLS, at[2];
     for (int a = 0; a < 2; a++)
       at[a] = (1 - v) * ((1 - u) * c[0][a] + u * c[1][a]) + v * ((1 - u) * c[2][a] + u * c[3][a]);
-    double value = sample(picture, at[0], at[1]);
+    double value = sample(image, at[0], at[1]);
     int bx = x - FRAME - 1, by = y - FRAME - 1;
     bool inside = bx >= 0 && by >= 0 && bx < BITS && by < BITS;
     bool frame = !inside && bx >= -1 && by >= -1 && bx <= BITS && by <= BITS;

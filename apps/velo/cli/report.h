@@ -12,7 +12,7 @@ enum {
   STATUS_OK = 0,      /* done, every file written whole */
   STATUS_OTHER = 1,   /* image diff: over a threshold; anywhere: out of memory */
   STATUS_USAGE = 2,   /* the command line is wrong */
-  STATUS_SCENE = 3,   /* a scene or picture is wrong */
+  STATUS_SCENE = 3,   /* a scene or image is wrong */
   STATUS_MISSING = 4, /* a file does not exist: the scene, or one that it names */
   STATUS_IO = 5       /* reading or writing failed: folder, permission, disk full */
 };

@@ -97,7 +97,7 @@ static bool has_any(const Check *c) {
   return c->mattes[0].ranks || c->mattes[1].ranks || c->mattes[2].ranks;
 }
 
-/* What the header says of how the picture was taken. */
+/* What the header says of how the image was taken. */
 static void read_header(Check *c) {
   vlAttribute a;
   bool centre = vl_image_find_attribute(c->image, "velo.channels", &a) != VL_OK || strcmp(a.string, "centre") == 0;
@@ -197,7 +197,7 @@ static int judge(const Check *c, const char *path, double threshold) {
   return status;
 }
 
-/* The picture that flow leads to: its camera, and its distances if it has them. */
+/* The image that flow leads to: its camera, and its distances if it has them. */
 static int load_other(Check *c, vlContext *context, const Arguments *arguments, vlImage **image) {
   static const int options[2] = {CHECK_FLOW, CHECK_FLOW_BEFORE};
   const OptionValue *v = arguments->values;
@@ -286,9 +286,9 @@ static int run_check(const Command *command, const Arguments *arguments) {
 static const Option check_options[] = {
     {CHECK_THRESHOLD, 0, "threshold", OPTION_NUMBER, "ERROR", "largest relative error that is accepted; default 1e-6",
      0, 1, NULL},
-    {CHECK_FLOW, 0, "flow", OPTION_TEXT, "FILE", "the next picture: check that forward.U, .V lead to its pixels", 0, 0,
+    {CHECK_FLOW, 0, "flow", OPTION_TEXT, "FILE", "the next image: check that forward.U, .V lead to its pixels", 0, 0,
      NULL},
-    {CHECK_FLOW_BEFORE, 0, "flow-before", OPTION_TEXT, "FILE", "the picture before: the same of backward.U, .V", 0, 0,
+    {CHECK_FLOW_BEFORE, 0, "flow-before", OPTION_TEXT, "FILE", "the image before: the same of backward.U, .V", 0, 0,
      NULL},
     {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
@@ -301,7 +301,7 @@ const Command image_check_command = {
         "Computes depths, positions, rays and pixels of FILE's ground truth channels from each other and from\n"
         "the camera in its header, in double precision, and prints the largest relative errors. Positions and\n"
         "depths are measured against the largest of |P|, |origin| and distance, pixels against the larger side\n"
-        "of the picture. Cryptomatte's ids are looked up in its manifest, its coverages compared with alpha.\n"
+        "of the image. Cryptomatte's ids are looked up in its manifest, its coverages compared with alpha.\n"
         "Exit code 1 when an error is above the threshold.",
     .examples =
         "velo image check truth.exr\n"

@@ -46,14 +46,14 @@ typedef struct Check {
   const char *path;
   const float *pixel; /* the one that is looked at */
   vlCamera camera;
-  uint32_t x0, y0, x, y; /* corner of the data window, and place in the whole picture */
+  uint32_t x0, y0, x, y; /* corner of the data window, and place in the whole image */
   /* channels; -1: not in the file */
   int z, distance, p, n, ng, ray, object, material, primitive, instance, uv, albedo, film, samples, error, alpha;
   int flow[2], hidden[2];
   double point[2];     /* of the film: where the pixel's ray goes through */
   double reach[2];     /* how far from its centre that may be; 0: nowhere else */
   double spp;          /* of the header; 0: it does not say */
-  bool matte_is_alpha; /* coverages add up to the picture's alpha */
+  bool matte_is_alpha; /* coverages add up to the image's alpha */
   Matte mattes[3];
   uint32_t *material_of; /* by object: as met first */
   uint64_t hits, misses;

@@ -1,4 +1,4 @@
-/* image/check_flow.c: does flow lead to where the other picture has the same point? */
+/* image/check_flow.c: does flow lead to where the other image has the same point? */
 #include <math.h>
 #include <string.h>
 
@@ -22,7 +22,7 @@ static bool find_point(const Check *c, bool hit, double p[3]) {
   return true;
 }
 
-/* Distances that the other picture has around a place; false: the place is not in the file. */
+/* Distances that the other image has around a place; false: the place is not in the file. */
 static bool around(const Check *c, const double at[2], double *nearest, double *farthest) {
   uint32_t width = vl_image_width(c->other), height = vl_image_height(c->other), step = vl_image_channels(c->other);
   const float *pixels = vl_image_const_pixels(c->other);

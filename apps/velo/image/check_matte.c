@@ -126,7 +126,7 @@ static double check_matte(Check *c, const Matte *m) {
   return sum;
 }
 
-/* All that a pixel covers is covered by objects and by materials alike, and is the picture's alpha; unless the last
+/* All that a pixel covers is covered by objects and by materials alike, and is the image's alpha; unless the last
  * rank is taken: there may be more then. */
 void check_mattes(Check *c) {
   double sums[3] = {0, 0, 0};

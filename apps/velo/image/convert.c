@@ -17,7 +17,7 @@ static bool is_float(const vlImage *image) {
   return vl_image_type(image) == VL_PIXEL_F16 || vl_image_type(image) == VL_PIXEL_F32;
 }
 
-/* Attributes go along, except those that say where the pixels are in a larger picture, when that changed. */
+/* Attributes go along, except those that say where the pixels are in a larger image, when that changed. */
 static vlResult copy_attributes(const vlImage *from, vlImage *to, bool cropped) {
   vlResult result = VL_OK;
   for (uint32_t i = 0; i < vl_image_attribute_count(from) && result == VL_OK; i++) {
@@ -30,7 +30,7 @@ static vlResult copy_attributes(const vlImage *from, vlImage *to, bool cropped) 
   return result;
 }
 
-/* A window of the picture; to_float: as linear 32-bit floats, else the values as they are. */
+/* A window of the image; to_float: as linear 32-bit floats, else the values as they are. */
 static vlResult copy_window(vlContext *context, const vlImage *from, const uint32_t window[4], bool to_float,
                             vlImage **result) {
   uint32_t channels = vl_image_channels(from), width = window[2] - window[0], height = window[3] - window[1];
@@ -69,7 +69,7 @@ static int prepare_pixels(vlContext *context, const Arguments *arguments, bool w
   uint32_t window[4] = {0, 0, vl_image_width(*image), vl_image_height(*image)};
   if (crop->given) {
     if (crop->integers[2] > window[2] || crop->integers[3] > window[3])
-      return report_usage("--crop \"%s\": the picture has only %u x %u pixels", crop->text, window[2], window[3]);
+      return report_usage("--crop \"%s\": the image has only %u x %u pixels", crop->text, window[2], window[3]);
     for (int i = 0; i < 4; i++) window[i] = (uint32_t)crop->integers[i];
   }
   bool to_float = want_float && !is_float(*image);
@@ -203,7 +203,7 @@ static const Option convert_options[] = {
 const Command image_convert_command = {
     .name = "image convert",
     .usage = "FILE RESULT [options]",
-    .summary = "write a picture in another format",
+    .summary = "write an image in another format",
     .text =
         "Writes FILE as RESULT; the suffix of RESULT chooses the format: .exr .hdr .pfm (linear),\n"
         ".png .jpg .tga (display).",

@@ -1,4 +1,4 @@
-/* image/diff.c: `velo image diff`: how far a picture is from a reference. */
+/* image/diff.c: `velo image diff`: how far an image is from a reference. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -91,7 +91,7 @@ static void print_metrics(const Arguments *arguments, const Metric metrics[METRI
   Json json = {.out = stdout};
   json_begin(&json, NULL, '{');
   json_text(&json, "reference", arguments->operands[0]);
-  json_text(&json, "picture", arguments->operands[1]);
+  json_text(&json, "image", arguments->operands[1]);
   for (int i = 0; i < METRICS; i++) json_number(&json, metrics[i].name, metrics[i].value);
   json_end(&json, '}');
   putchar('\n');
@@ -152,10 +152,10 @@ static const Option diff_options[] = {
 
 const Command image_diff_command = {
     .name = "image diff",
-    .usage = "REFERENCE PICTURE [options]",
-    .summary = "how far a picture is from a reference",
+    .usage = "REFERENCE IMAGE [options]",
+    .summary = "how far an image is from a reference",
     .text =
-        "Measures of PICTURE against REFERENCE over R, G, B (or Y), linear:\n"
+        "Measures of IMAGE against REFERENCE over R, G, B (or Y), linear:\n"
         "  mse        mean squared error          relmse     the same, relative to reference^2 + 0.01\n"
         "  psnr       dB, for a peak of 1         flip       mean FLIP, 67 pixels per degree\n"
         "  meanratio  of mean luminances          maxabs     largest difference of a value\n"

@@ -50,7 +50,7 @@ static bool xyz_from_rgb(const double xy[8], double m[9]) {
 }
 
 /* The same colour (XYZ), without adaptation to another white: a scene looks the same whatever space its film has.
- * false: the picture is in Rec.709, or says nothing that makes sense. */
+ * false: the image is in Rec.709, or says nothing that makes sense. */
 static bool rec709_matrix(const vlImage *image, double m[9]) {
   vlAttribute attribute;
   if (vl_image_find_attribute(image, "chromaticities", &attribute) != VL_OK ||

@@ -53,7 +53,7 @@ static bool read_model(const vlImage *image, const char *projection, vlCameraDef
   return true;
 }
 
-/* The whole picture, and the window of it that the file holds, corner pixels inclusive. */
+/* The whole image, and the window of it that the file holds, corner pixels inclusive. */
 static int windows(const vlImage *image, const char *path, double whole[4], double data[4]) {
   const double all[4] = {0, 0, vl_image_width(image) - 1.0, vl_image_height(image) - 1.0};
   memcpy(whole, all, sizeof all);
@@ -61,7 +61,7 @@ static int windows(const vlImage *image, const char *path, double whole[4], doub
   if (!window(image, "originalDataWindow", whole)) window(image, "displayWindow", whole);
   window(image, "dataWindow", data);
   if (whole[0] != 0 || whole[1] != 0 || data[0] < 0 || data[1] < 0 || data[2] > whole[2] || data[3] > whole[3])
-    return report_failure(STATUS_SCENE, "%s: its windows are not those of a picture that velo rendered", path);
+    return report_failure(STATUS_SCENE, "%s: its windows are not those of an image that velo rendered", path);
   return -1;
 }
 
@@ -85,7 +85,7 @@ static int read_def(const vlImage *image, const char *path, const double whole[4
   return -1;
 }
 
-/* The lens of many elements, which says the focal length itself. A picture in its stop is not known; it bends no ray.
+/* The lens of many elements, which says the focal length itself. An image in its stop is not known; it bends no ray.
  */
 static int read_optics(vlContext *context, const vlImage *image, const char *path, vlCameraDef *def,
                        vlOptics **optics) {
@@ -154,10 +154,10 @@ int header_camera_def(const vlImage *image, const char *path, vlCameraDef *def) 
   if (status < 0) status = read_def(image, path, whole, def);
   if (status >= 0) return status;
   if (def->projection == VL_PROJECTION_OPTICS)
-    return report_failure(STATUS_SCENE, "%s: a lens of many elements is not taken from a picture; its scene has it",
+    return report_failure(STATUS_SCENE, "%s: a lens of many elements is not taken from an image; its scene has it",
                           path);
   if (number(image, "velo.eyeCircle", &circle) && circle != 0.0)
-    return report_failure(STATUS_SCENE, "%s: one eye of an omnidirectional picture is no camera of its own", path);
+    return report_failure(STATUS_SCENE, "%s: one eye of an omnidirectional image is no camera of its own", path);
   shutter[0] = def->shutter_open, shutter[1] = def->shutter_close;
   single(image, "velo.lensRadius", VL_ATTRIBUTE_FLOAT, &def->lens_radius, 1);
   single(image, "focus", VL_ATTRIBUTE_FLOAT, &def->focus_distance, 1);

@@ -4,7 +4,7 @@
 
 #include "velo/velo.h"
 
-/* Context and picture; -1, or the exit code when all has been said. */
+/* Context and image; -1, or the exit code when all has been said. */
 int image_context(vlContext **context);
 int image_load(vlContext *context, const char *path, vlImage **image);
 /* Checks that what went to stdout arrived. */

@@ -1,4 +1,4 @@
-/* image/info.c: `velo image info`: what a picture file holds. Also what the image commands share. */
+/* image/info.c: `velo image info`: what an image file holds. Also what the image commands share. */
 #include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
@@ -210,7 +210,7 @@ static const Option info_options[] = {
 const Command image_info_command = {
     .name = "image info",
     .usage = "FILE [options]",
-    .summary = "format, size, channels and attributes of a picture",
+    .summary = "format, size, channels and attributes of an image",
     .text = "Prints what FILE is and holds. Matrices are in OpenEXR's order (row vectors).",
     .examples =
         "velo image info room.exr\n"

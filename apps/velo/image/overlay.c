@@ -11,22 +11,21 @@ static double sample(const vlImage *image, uint32_t x, uint32_t y, int channel) 
   return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
 }
 
-bool overlay_begin(Overlay *o, const vlImage *picture) {
-  o->width = vl_image_width(picture);
-  o->height = vl_image_height(picture);
+bool overlay_begin(Overlay *o, const vlImage *image) {
+  o->width = vl_image_width(image);
+  o->height = vl_image_height(image);
   size_t pixels = (size_t)o->width * o->height;
   o->rgb = malloc(3 * pixels);
   o->coverage = calloc(pixels, sizeof *o->coverage);
   if (!o->rgb || !o->coverage) return false;
   static const char *const names[3] = {"R", "G", "B"};
   for (int k = 0; k < 3; k++) {
-    int channel = vl_image_find_channel(picture, names[k]);
-    if (channel < 0) channel = vl_image_find_channel(picture, "Y");
+    int channel = vl_image_find_channel(image, names[k]);
+    if (channel < 0) channel = vl_image_find_channel(image, "Y");
     if (channel < 0) channel = 0;
     for (uint32_t y = 0; y < o->height; y++)
       for (uint32_t x = 0; x < o->width; x++)
-        o->rgb[3 * ((size_t)y * o->width + x) + (size_t)k] =
-            (uint8_t)floor(255.0 * sample(picture, x, y, channel) + 0.5);
+        o->rgb[3 * ((size_t)y * o->width + x) + (size_t)k] = (uint8_t)floor(255.0 * sample(image, x, y, channel) + 0.5);
   }
   return true;
 }
@@ -98,7 +97,7 @@ void overlay_arc(Overlay *o, const vlCamera *camera, const double d[3], const do
     double t = from + (to - from) * i / STEPS, point[3], pixel[2];
     for (int k = 0; k < 3; k++) point[k] = m[4 * k + 3] + cos(t) * n[k] + sin(t) * d[k];
     bool seen = vl_camera_project(camera, point, pixel, NULL);
-    /* a picture that closes on itself: the curve goes on at its other side */
+    /* an image that closes on itself: the curve goes on at its other side */
     if (seen && connected && (straight || hypot(pixel[0] - last[0], pixel[1] - last[1]) < jump))
       overlay_line(o, last[0], last[1], pixel[0], pixel[1], width);
     connected = seen;

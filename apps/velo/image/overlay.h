@@ -1,4 +1,4 @@
-/* image/overlay.h: smooth lines over a picture. Curves of one colour are gathered as coverage and laid on at once, so
+/* image/overlay.h: smooth lines over an image. Curves of one colour are gathered as coverage and laid on at once, so
  * that where they cross or join nothing is painted twice. */
 #ifndef APP_IMAGE_OVERLAY_H
 #define APP_IMAGE_OVERLAY_H
@@ -11,8 +11,8 @@ typedef struct Overlay {
   float *coverage; /* of the curves since the last overlay_paint, 0 to 1 */
 } Overlay;
 
-/* Takes the picture's display values: those of an 8-bit file as they are, light by sRGB's curve. false: memory. */
-bool overlay_begin(Overlay *overlay, const vlImage *picture);
+/* Takes the image's display values: those of an 8-bit file as they are, light by sRGB's curve. false: memory. */
+bool overlay_begin(Overlay *overlay, const vlImage *image);
 void overlay_end(Overlay *overlay);
 /* A segment between two places in pixels from the corner; they may lie far outside. */
 void overlay_line(Overlay *overlay, double x0, double y0, double x1, double y1, double width);

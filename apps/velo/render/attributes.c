@@ -98,7 +98,7 @@ static void set_model(Header *header, const vlCamera *c, const vlCameraDef *def)
   set_text(header, "velo.distortionCoefficients", text);
 }
 
-/* Shape of the opening, tilt, vignetting; a lens of many elements whole, but for a picture in its stop. */
+/* Shape of the opening, tilt, vignetting; a lens of many elements whole, but for an image in its stop. */
 static void set_lens(Header *header, const vlCamera *c) {
   const vlLens *l = &c->lens;
   if (l->blades) set_int(header, "velo.blades", l->blades);

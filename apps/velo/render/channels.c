@@ -86,7 +86,7 @@ int channels_choose(Channels *c, const Arguments *arguments) {
 
 /* ---- the pass ---------------------------------------------------------------------------------------------------- */
 
-/* A camera of another picture size keeps its framing, as the picture's own does. */
+/* A camera of another image size keeps its framing, as the image's own does. */
 int channels_load(Channels *c, vlContext *context, const Job *job) {
   for (int i = 0; i < 2; i++) {
     if (!c->other_paths[i]) continue;

@@ -1,4 +1,4 @@
-/* render/channels.h: ground truth beside the picture: which channels are wanted, their pass, and the file that says
+/* render/channels.h: ground truth beside the image: which channels are wanted, their pass, and the file that says
  * what the ids stand for. */
 #ifndef APP_RENDER_CHANNELS_H
 #define APP_RENDER_CHANNELS_H
@@ -26,17 +26,17 @@ extern const Choice channel_mode_choices[];
 int channels_choose(Channels *c, const Arguments *arguments);
 /* What the film brings with it: a spectrum, a gbuffer. */
 void channels_take(Channels *c, Job *job);
-/* The other cameras of flow, once the picture's own is known. -1 or the exit code. */
+/* The other cameras of flow, once the image's own is known. -1 or the exit code. */
 int channels_load(Channels *c, vlContext *context, const Job *job);
 /* Is there anything that only .exr files hold? */
 bool channels_any(const Channels *c);
-/* The pass, after the picture. STATUS_OK or the exit code: 128 + signal when a signal that comes meanwhile ends it. */
+/* The pass, after the image. STATUS_OK or the exit code: 128 + signal when a signal that comes meanwhile ends it. */
 int channels_render(Channels *c, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film);
-/* Names and types of ids (vl_render_channels' second picture) as files have them; MEMORY. */
+/* Names and types of ids (vl_render_channels' second image) as files have them; MEMORY. */
 vlResult channels_make_visible(vlContext *context, vlImage **ids);
-/* What the layers' header says, into the picture's. */
+/* What the layers' header says, into the image's. */
 vlResult channels_describe(const Channels *c, vlImage *image);
-/* Writes PATH.ids.json: type, name, material, place in its file and, if wanted, boxes of each id in the picture.
+/* Writes PATH.ids.json: type, name, material, place in its file and, if wanted, boxes of each id in the image.
  * `right` (may be null): the other view of the same file, whose ids are listed, too. STATUS_OK or the exit code. */
 int channels_write_ids(const Channels *c, const Channels *right, const vlWorld *world, const char *path);
 void channels_free(Channels *c);

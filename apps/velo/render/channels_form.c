@@ -8,7 +8,7 @@
 
 enum { MOST_CHANNELS = 16, MOST_EXACT = 1 << 24 };
 
-/* A new picture of the same names, floats in place of integers. */
+/* A new image of the same names, floats in place of integers. */
 static vlResult as_floats(vlContext *context, const vlImage *ids, vlImage **floats) {
   const char *names[MOST_CHANNELS];
   uint32_t count = vl_image_channels(ids);

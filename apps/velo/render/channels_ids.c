@@ -1,4 +1,4 @@
-/* render/channels_ids.c: FILE.ids.json: what the ids of a picture stand for. */
+/* render/channels_ids.c: FILE.ids.json: what the ids of an image stand for. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -88,7 +88,7 @@ static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const C
   const char *slash = strrchr(path, '/');
   Json json = {.out = file};
   json_begin(&json, NULL, '{');
-  json_text(&json, "picture", slash ? slash + 1 : path);
+  json_text(&json, "image", slash ? slash + 1 : path);
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
     if (vl_image_find_channel(ids, kinds[k].channel) < 0) continue;
     uint32_t count = vl_world_id_count(world, kinds[k].kind);

@@ -108,7 +108,7 @@ void job_describe(const Job *job, vlContext *context, const vlScene *scene, cons
   if (c->projection == VL_PROJECTION_PERSPECTIVE) printf(", field of view %.4g x %.4g degrees", f.fov_x, f.fov_y);
   printf(", eye (%g, %g, %g), looking along (%.4g, %.4g, %.4g)\n", f.eye[0], f.eye[1], f.eye[2], f.forward[0],
          f.forward[1], f.forward[2]);
-  printf("picture   %u x %u pixels", c->width, c->height);
+  printf("image   %u x %u pixels", c->width, c->height);
   if (crop[0] || crop[1] || crop[2] != c->width || crop[3] != c->height)
     printf(", of these x %u to %u, y %u to %u", crop[0], crop[2], crop[1], crop[3]);
   printf(", filter %s, colour %s\n", f.filter, f.color);

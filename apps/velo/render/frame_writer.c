@@ -24,7 +24,7 @@ struct FrameWriter {
   pthread_t thread;
   pthread_mutex_t mutex;
   pthread_cond_t changed;
-  FramePicture queue[QUEUE];
+  FrameImage queue[QUEUE];
   uint32_t first, count; /* in the queue */
   bool closed;
   bool metered;
@@ -33,14 +33,14 @@ struct FrameWriter {
   uint32_t written;
 };
 
-void frame_picture_free(FramePicture *picture) {
+void frame_image_free(FrameImage *image) {
   for (int v = 0; v < 2; v++) {
-    vl_image_destroy(picture->images[v]);
-    channels_free(&picture->channels[v]);
+    vl_image_destroy(image->images[v]);
+    channels_free(&image->channels[v]);
   }
 }
 
-/* ---- one picture ------------------------------------------------------------------------------------------------- */
+/* ---- one image ------------------------------------------------------------------------------------------------- */
 
 /* "Z" to "right.Z", "N.X" to "N.right.X"; of the first view only the latter: what has no dot is the first view's. */
 static vlResult add_view(vlImage *image, const char *view, bool first) {
@@ -55,7 +55,7 @@ static vlResult add_view(vlImage *image, const char *view, bool first) {
   return VL_OK;
 }
 
-/* The colours of both eyes in one picture, so that --half treats them alike; the first has the header. */
+/* The colours of both eyes in one image, so that --half treats them alike; the first has the header. */
 static vlResult join(vlContext *context, vlImage *const images[2], const char *view, vlImage **both) {
   static const char *const plain[4] = {"R", "G", "B", "A"};
   char right[4][32];
@@ -81,7 +81,7 @@ static vlResult join(vlContext *context, vlImage *const images[2], const char *v
   return result;
 }
 
-static vlResult write_both(FrameWriter *w, FramePicture *p, const char *path, const vlWriteDef *def, vlError *error) {
+static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path, const vlWriteDef *def, vlError *error) {
   vlImage *both = NULL;
   const vlImage *layers[1 + 2 * CHANNEL_LAYERS];
   uint32_t count = 1;
@@ -106,7 +106,7 @@ static vlResult write_both(FrameWriter *w, FramePicture *p, const char *path, co
   return result;
 }
 
-/* A trajectory is metered once, by its first picture: frames must not flicker. */
+/* A trajectory is metered once, by its first image: frames must not flicker. */
 static float exposure_of(FrameWriter *w, const vlImage *image) {
   if (!w->outputs->meter) return w->outputs->exposure;
   if (!w->metered) exposure_tell(w->exposure = exposure_meter(image));
@@ -114,7 +114,7 @@ static float exposure_of(FrameWriter *w, const vlImage *image) {
   return w->exposure;
 }
 
-static vlResult write_one(FrameWriter *w, FramePicture *p, int view, const char *path, const vlWriteDef *def,
+static vlResult write_one(FrameWriter *w, FrameImage *p, int view, const char *path, const vlWriteDef *def,
                           vlError *error) {
   bool eight_bit = false;
   output_suffix(path, &eight_bit);
@@ -135,7 +135,7 @@ static vlResult write_one(FrameWriter *w, FramePicture *p, int view, const char 
 }
 
 /* Both eyes' files of one pattern, or the one file of both. Layers are renamed on the way, so those come last. */
-static int write_pattern(FrameWriter *w, FramePicture *p, const char *pattern, bool by_view) {
+static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, bool by_view) {
   vlWriteDef def = vl_default_write_def();
   def.half = w->outputs->half;
   def.alone = true;
@@ -159,7 +159,7 @@ static int write_pattern(FrameWriter *w, FramePicture *p, const char *pattern, b
   return status;
 }
 
-static int write_picture(FrameWriter *w, FramePicture *p) {
+static int write_image(FrameWriter *w, FrameImage *p) {
   int status = STATUS_OK;
   for (int v = 0; v < w->frames->views && status == STATUS_OK; v++) {
     vlResult result = attributes_set(p->images[v], &p->jobs[v], p->spp);
@@ -189,11 +189,11 @@ static void *work(void *user) {
   for (;;) {
     while (w->count == 0 && !w->closed) pthread_cond_wait(&w->changed, &w->mutex);
     if (w->count == 0) break;
-    FramePicture *picture = &w->queue[w->first]; /* stays counted, so that nobody writes over it */
+    FrameImage *image = &w->queue[w->first]; /* stays counted, so that nobody writes over it */
     pthread_mutex_unlock(&w->mutex);
-    int status = write_picture(w, picture);
-    bool stopped = picture->stopped;
-    frame_picture_free(picture);
+    int status = write_image(w, image);
+    bool stopped = image->stopped;
+    frame_image_free(image);
     pthread_mutex_lock(&w->mutex);
     if (status == STATUS_OK)
       w->written += !stopped;
@@ -224,10 +224,10 @@ FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const 
   return NULL;
 }
 
-void frame_writer_put(FrameWriter *w, const FramePicture *picture) {
+void frame_writer_put(FrameWriter *w, const FrameImage *image) {
   pthread_mutex_lock(&w->mutex);
   while (w->count == QUEUE) pthread_cond_wait(&w->changed, &w->mutex);
-  w->queue[(w->first + w->count) % QUEUE] = *picture;
+  w->queue[(w->first + w->count) % QUEUE] = *image;
   w->count++;
   pthread_cond_signal(&w->changed);
   pthread_mutex_unlock(&w->mutex);

@@ -1,11 +1,11 @@
-/* render/frame_writer.h: pictures on their way to files, in a thread of its own beside the rendering. */
+/* render/frame_writer.h: images on their way to files, in a thread of its own beside the rendering. */
 #ifndef APP_RENDER_FRAME_WRITER_H
 #define APP_RENDER_FRAME_WRITER_H
 
 #include "render/frames.h"
 
-/* One picture, whole: what the writer takes and frees. */
-typedef struct FramePicture {
+/* One image, whole: what the writer takes and frees. */
+typedef struct FrameImage {
   Frame frame;
   Job jobs[2]; /* of each view, with its camera */
   Channels channels[2];
@@ -13,17 +13,17 @@ typedef struct FramePicture {
   uint32_t spp;
   bool stopped; /* not finished: it goes to NAME.part.EXT */
   bool renamed; /* the layers have their view in their names */
-} FramePicture;
+} FrameImage;
 
 typedef struct FrameWriter FrameWriter;
 
 /* Null: out of memory or threads. */
 FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const Frames *frames, const Outputs *outputs);
-/* Waits while too many are under way. Takes what the picture holds. */
-void frame_writer_put(FrameWriter *writer, const FramePicture *picture);
+/* Waits while too many are under way. Takes what the image holds. */
+void frame_writer_put(FrameWriter *writer, const FrameImage *image);
 /* Waits for all; the exit code of the first failure, or STATUS_OK. *written: finished images whose files are all whole.
  */
 int frame_writer_finish(FrameWriter *writer, uint32_t *written);
-void frame_picture_free(FramePicture *picture);
+void frame_image_free(FrameImage *image);
 
 #endif

@@ -54,7 +54,7 @@ int frames_check(const Arguments *arguments, Outputs *outputs) {
   if (v[RENDER_FRAMES].given && !read_range(v[RENDER_FRAMES].text, &unused, &unused, &unused))
     return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0", v[RENDER_FRAMES].text);
   if (trajectory && (v[RENDER_FLOW_CAMERA].given || v[RENDER_FLOW_CAMERA_BEFORE].given))
-    return report_usage("--flow-camera is of one picture: it does not go with --trajectory");
+    return report_usage("--flow-camera is of one image: it does not go with --trajectory");
   if (!trajectory) return -1;
   if (outputs->count == 0)
     return report_usage("--trajectory: give the files' name with -o, such as -o frame_%%04d.exr");
@@ -98,7 +98,7 @@ static int add_camera(Frames *frames, vlContext *context, const Job *job, const 
     int status = job_take_camera(&camera->job, &camera->defs, &record->camera, path, arguments);
     if (status >= 0) return status;
   }
-  /* what only one picture's camera has, its place and its motion, makes room for the frames' poses */
+  /* what only one image's camera has, its place and its motion, makes room for the frames' poses */
   vlError error = {0};
   vlCamera base = camera->job.camera;
   vlResult result = VL_OK;

@@ -1,4 +1,4 @@
-/* render/frames.h: several pictures of one world: the frames of a trajectory, the cameras of a rig, two eyes. Loaded
+/* render/frames.h: several images of one world: the frames of a trajectory, the cameras of a rig, two eyes. Loaded
  * once; the films of each size and the workers' memory stay; files are written beside the next frame's rendering. */
 #ifndef APP_RENDER_FRAMES_H
 #define APP_RENDER_FRAMES_H
@@ -28,14 +28,14 @@ typedef struct Frames {
   const char *view_names[2];
 } Frames;
 
-/* One picture to come. */
+/* One image to come. */
 typedef struct Frame {
   uint32_t number;
   vlTrajectoryFrame pose; /* name, time, line */
   FrameCamera *camera;
 } Frame;
 
-/* Whether there is more than one ordinary picture to render: --trajectory, or stereo once the scene is known (null
+/* Whether there is more than one ordinary image to render: --trajectory, or stereo once the scene is known (null
  * before). */
 bool frames_wanted(const Arguments *arguments, const Job *job);
 /* Options that go together and the names' patterns. -1 or the exit code. */
@@ -44,10 +44,10 @@ int frames_check(const Arguments *arguments, Outputs *outputs);
 int frames_load(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments);
 /* Names and folders of all files, before the work begins: no two frames may have one name. -1 or the exit code. */
 int frames_check_names(const Frames *frames, const Outputs *outputs);
-/* How many pictures, and the i-th of them (both eyes are one). */
+/* How many images, and the i-th of them (both eyes are one). */
 uint32_t frames_count(const Frames *frames);
 Frame frames_at(const Frames *frames, uint32_t index);
-/* Where a picture goes; view: 0 or 1, for %v. false: too long */
+/* Where an image goes; view: 0 or 1, for %v. false: too long */
 bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, int view, char *path, size_t size);
 /* The camera of one view, placed. */
 vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera, vlError *error);

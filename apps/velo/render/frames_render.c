@@ -85,12 +85,12 @@ static int develop(const Job *job, const vlFilm *film, vlImage **image) {
 }
 
 /* One eye's image and channels. When it is interrupted: 128 + signal, and an image if there is a whole pass. */
-static int render_view(Run *run, const Frame *frame, int view, FramePicture *picture) {
+static int render_view(Run *run, const Frame *frame, int view, FrameImage *image) {
   char place[200];
   vlError error = {0};
   vlRenderStats stats = {0};
   vlFilm *film = frame->camera->film;
-  Job *job = &picture->jobs[view];
+  Job *job = &image->jobs[view];
   *job = frame->camera->job;
   frame_place(run, frame, place, sizeof place);
   vlResult result = frames_camera(run->frames, frame, view, &job->camera, &error);
@@ -103,24 +103,24 @@ static int render_view(Run *run, const Frame *frame, int view, FramePicture *pic
   result = vl_render(run->world, &job->camera, film, &job->defs->render, &stats, &error);
   add_stats(&run->total, &stats);
   if (result != VL_OK && result != VL_CANCELLED) return report_failure(STATUS_OTHER, "%s: %s", place, error.message);
-  picture->spp = vl_film_spp(film);
-  if (picture->spp && (status = develop(job, film, &picture->images[view])) != STATUS_OK && status < 128) return status;
+  image->spp = vl_film_spp(film);
+  if (image->spp && (status = develop(job, film, &image->images[view])) != STATUS_OK && status < 128) return status;
   if (result == VL_CANCELLED) return 128 + signals_pending();
-  picture->channels[view] = *run->channels;
-  return run->layers ? channels_render(&picture->channels[view], run->context, run->world, job, film) : STATUS_OK;
+  image->channels[view] = *run->channels;
+  return run->layers ? channels_render(&image->channels[view], run->context, run->world, job, film) : STATUS_OK;
 }
 
 /* What there is of a frame that was interrupted, for NAME.part.EXT: an eye that was not begun is black. */
-static bool keep_stopped(Run *run, FramePicture *picture) {
-  if (!picture->images[0]) return false;
+static bool keep_stopped(Run *run, FrameImage *image) {
+  if (!image->images[0]) return false;
   for (int v = 1; v < run->frames->views; v++) {
-    if (picture->images[v]) continue;
-    vlFilm *film = picture->frame.camera->film;
-    picture->jobs[v] = picture->jobs[0];
+    if (image->images[v]) continue;
+    vlFilm *film = image->frame.camera->film;
+    image->jobs[v] = image->jobs[0];
     vl_film_clear(film);
-    if (develop(&picture->jobs[v], film, &picture->images[v]) != STATUS_OK) return false;
+    if (develop(&image->jobs[v], film, &image->images[v]) != STATUS_OK) return false;
   }
-  return picture->stopped = true;
+  return image->stopped = true;
 }
 
 static void report_end(const Run *run, uint32_t written, int status) {
@@ -169,19 +169,19 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world, cons
   for (uint32_t i = 0; i < run.count && status < 128; i++) {
     if (signals_pending()) status = 128 + signals_pending();
     if (status >= 128) break;
-    FramePicture picture;
-    memset(&picture, 0, sizeof picture);
-    picture.frame = frames_at(frames, i);
-    show(&run, &picture.frame);
+    FrameImage image;
+    memset(&image, 0, sizeof image);
+    image.frame = frames_at(frames, i);
+    show(&run, &image.frame);
     int code = STATUS_OK;
     for (int v = 0; v < frames->views && code == STATUS_OK; v++) {
-      progress_start(&run.progress, picture.frame.camera->job.defs->render.time_limit);
-      code = render_view(&run, &picture.frame, v, &picture);
+      progress_start(&run.progress, image.frame.camera->job.defs->render.time_limit);
+      code = render_view(&run, &image.frame, v, &image);
     }
-    if (code == STATUS_OK || (code >= 128 && keep_stopped(&run, &picture)))
-      frame_writer_put(writer, &picture);
+    if (code == STATUS_OK || (code >= 128 && keep_stopped(&run, &image)))
+      frame_writer_put(writer, &image);
     else
-      frame_picture_free(&picture);
+      frame_image_free(&image);
     if (code != STATUS_OK && (status == STATUS_OK || code >= 128)) status = code;
     run.done++;
   }

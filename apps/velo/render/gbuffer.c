@@ -35,7 +35,7 @@ _Static_assert(sizeof names / sizeof *names == COUNT, "a name for each");
 
 /* Where the channels that are read stand in the ground truth. */
 typedef struct Source {
-  const vlImage *truth, *picture;
+  const vlImage *truth, *rendered;
   const float *values;
   uint32_t width, height, channels;
   int p, n, ng, uv, albedo, ray, distance, error;
@@ -85,7 +85,7 @@ static double slope(const Source *s, uint32_t x, uint32_t y, uint32_t nx, uint32
 
 static void fill(const Source *s, uint32_t x, uint32_t y, float out[COUNT]) {
   for (int c = 0; c < 3; c++) { /* of samples: the mean's error squared times their number */
-    float error = at(s, x, y, s->error)[c], mean = vl_image_get(s->picture, x, y, (uint32_t)c);
+    float error = at(s, x, y, s->error)[c], mean = vl_image_get(s->rendered, x, y, (uint32_t)c);
     out[VARIANCE + c] = error < 1e18f ? (float)((double)error * (double)error * s->samples) : 0.0f;
     out[RELATIVE + c] = mean != 0.0f ? out[VARIANCE + c] / mean : 0.0f;
   }
@@ -115,7 +115,8 @@ static bool stop_asked(void *user) {
   return signals_count() > *(const int *)user;
 }
 
-static vlResult truth_of(const vlWorld *world, const Job *job, const vlFilm *film, vlImage **truth, vlError *error) {
+static vlResult ground_truth_of(const vlWorld *world, const Job *job, const vlFilm *film, vlImage **truth,
+                                vlError *error) {
   int signals = signals_count();
   vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
   def.channels = VL_CHANNEL_P | VL_CHANNEL_N | VL_CHANNEL_NG | VL_CHANNEL_UV | VL_CHANNEL_ALBEDO | VL_CHANNEL_RAY |
@@ -131,12 +132,12 @@ static vlResult truth_of(const vlWorld *world, const Job *job, const vlFilm *fil
 }
 
 int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film, vlImage **image) {
-  vlImage *truth = NULL, *picture = NULL;
+  vlImage *truth = NULL, *rendered = NULL;
   vlError error = {0};
   vlDevelopDef develop = vl_default_develop_def();
   develop.exposure = job->defs->develop.exposure;
-  vlResult result = truth_of(world, job, film, &truth, &error);
-  if (result == VL_OK) result = vl_film_develop(film, &develop, &picture);
+  vlResult result = ground_truth_of(world, job, film, &truth, &error);
+  if (result == VL_OK) result = vl_film_develop(film, &develop, &rendered);
   if (result == VL_OK) {
     vlImageDef def = vl_default_image_def(vl_image_width(truth), vl_image_height(truth), COUNT);
     def.names = names;
@@ -149,7 +150,7 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
     vl_camera_at(&job->camera, job_channels_time(job), &held);
     double spp = vl_film_spp(film);
     Source s = {.truth = truth,
-                .picture = picture,
+                .rendered = rendered,
                 .values = vl_image_const_pixels(truth),
                 .width = vl_image_width(truth),
                 .height = vl_image_height(truth),
@@ -171,7 +172,7 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
       for (uint32_t x = 0; x < s.width; x++) fill(&s, x, y, out + ((size_t)y * s.width + x) * COUNT);
   }
   vl_image_destroy(truth);
-  vl_image_destroy(picture);
+  vl_image_destroy(rendered);
   if (result == VL_CANCELLED) return 128 + signals_pending();
   return result == VL_OK ? STATUS_OK : report_error(&error, result, job->path);
 }

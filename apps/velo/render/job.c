@@ -97,7 +97,7 @@ static vlError camera_place(const vlSceneDefs *defs, const char *path) {
   return place;
 }
 
-/* Camera and picture size of a camera file. */
+/* Camera and image size of a camera file. */
 static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, const char *path, const char *frame) {
   vlCameraRecord record;
   int status = camera_load(context, path, 0, frame, &record);
@@ -112,7 +112,7 @@ static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, con
   return -1;
 }
 
-/* Camera and picture size of another scene file. */
+/* Camera and image size of another scene file. */
 static int take_camera(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
   const OptionValue *frame = &arguments->values[RENDER_FRAME];
   if (!camera_is_scene(path))
@@ -144,7 +144,7 @@ static int override_crop(vlSceneDefs *defs, const Arguments *arguments) {
   if (crop->given && window->given) return report_usage("--crop and --cropwindow exclude each other");
   if (crop->given) {
     if (crop->integers[2] > width || crop->integers[3] > height)
-      return report_usage("--crop \"%s\": the picture has only %u x %u pixels", crop->text, width, height);
+      return report_usage("--crop \"%s\": the image has only %u x %u pixels", crop->text, width, height);
     for (int i = 0; i < 4; i++) defs->film.crop[i] = (uint32_t)crop->integers[i];
   } else if (window->given) {
     defs->film.crop[0] = crop_pixel(width, window->numbers[0]);
@@ -157,7 +157,7 @@ static int override_crop(vlSceneDefs *defs, const Arguments *arguments) {
   return -1;
 }
 
-/* Keeps the scene's own crop window at the same fractions of the picture. */
+/* Keeps the scene's own crop window at the same fractions of the image. */
 static void override_size(vlSceneDefs *defs, uint32_t width, uint32_t height) {
   double sx = (double)width / defs->film.width, sy = (double)height / defs->film.height;
   uint32_t *crop = defs->film.crop;

@@ -64,7 +64,7 @@ int lens_focus_on(vlCamera *camera, const Arguments *arguments) {
   double point[2];
   if (!v->given || !read_point(v->text, point)) return -1;
   if (!(point[0] >= 0 && point[1] >= 0 && point[0] <= camera->width && point[1] <= camera->height))
-    return report_usage("--focus-pixel \"%s\": the picture has only %u x %u pixels", v->text, camera->width,
+    return report_usage("--focus-pixel \"%s\": the image has only %u x %u pixels", v->text, camera->width,
                         camera->height);
   camera->lens.focus_pixel[0] = point[0], camera->lens.focus_pixel[1] = point[1];
   return -1;

@@ -18,7 +18,7 @@ enum {
 /* Overrides the camera of defs; a lens of many elements is focused anew and belongs to the scene. -1: go on; else the
  * exit code. */
 int lens_override(vlScene *scene, vlSceneDefs *defs, const Arguments *arguments);
-/* Pixels are those of the picture that is rendered: told to the camera when it has its size. -1: go on. */
+/* Pixels are those of the image that is rendered: told to the camera when it has its size. -1: go on. */
 int lens_focus_on(vlCamera *camera, const Arguments *arguments);
 /* Focuses a camera on its pixel, once there is a world to look at. -1: go on. */
 int lens_autofocus(Job *job, vlScene *scene, const vlWorld *world);

@@ -7,7 +7,7 @@
 
 const Option render_options[] = {
     {RENDER_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
-     "picture to write; may be given several times. The suffix chooses\n"
+     "image to write; may be given several times. The suffix chooses\n"
      "the format: .exr .hdr .pfm (linear), .png .jpg .tga (display).\n"
      "Default: the name the scene asks for, else its own with .exr,\nin the current folder",
      0, 0, NULL},
@@ -17,14 +17,13 @@ const Option render_options[] = {
      "trajectory: after it for each image): 30, 30s, 5m, 1h30m. Without\n"
      "--spp as many samples as fit into it",
      0, 0, NULL},
-    {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH", "picture size in pixels; the framing stays", 1, 65536,
-     NULL},
+    {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH", "image size in pixels; the framing stays", 1, 65536, NULL},
     {RENDER_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1", "render only these pixels, x1 and y1 exclusive", 0, 0, NULL},
     {RENDER_CROPWINDOW, 0, "cropwindow", OPTION_FRACTIONS, "x0,x1,y0,y1",
-     "the same in fractions of the picture, in pbrt's order", 0, 0, NULL},
+     "the same in fractions of the image, in pbrt's order", 0, 0, NULL},
     {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
-     "take camera and picture size from this scene or camera file;\nof a glTF file one of its own, by name or number",
-     0, 0, NULL},
+     "take camera and image size from this scene or camera file;\nof a glTF file one of its own, by name or number", 0,
+     0, NULL},
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which camera of --camera FILE, by its name or number from 0", 0, 0,
      NULL},
     {RENDER_SCENE, 0, "scene", OPTION_TEXT, "NAME", "glTF: which of its scenes, by name or number from 0", 0, 0, NULL},
@@ -36,7 +35,7 @@ const Option render_options[] = {
      0, 0, NULL},
     {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: this variant of its materials", 0, 0, NULL},
     {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "FILE",
-     "light from all around: studio, sky, white, none, or a picture\n(twice as wide as high: longitude and latitude; "
+     "light from all around: studio, sky, white, none, or an image\n(twice as wide as high: longitude and latitude; "
      "or a square:\n"
      "equal-area). Default: the studio where a file has none",
      0, 0, NULL},
@@ -63,7 +62,7 @@ const Option render_options[] = {
      1e-9, 1e9, NULL},
     {RENDER_CONVERGENCE, 0, "convergence", OPTION_NUMBER, "D",
      "depth where off-axis windows or toed-in axes meet, scene units", 1e-9, 1e12, NULL},
-    {RENDER_EYE, 0, "eye", OPTION_CHOICE, "NAME", "which eyes' pictures:", 0, 0, eye_choices},
+    {RENDER_EYE, 0, "eye", OPTION_CHOICE, "NAME", "which eyes' images:", 0, 0, eye_choices},
     {RENDER_TRACER, 0, "tracer", OPTION_CHOICE, "NAME", "how light is followed:", 0, 0, tracer_choices},
     {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "longest path, in bounces", 0, 4096, NULL},
     {RENDER_MERGE_RADIUS, 0, "merge-radius", OPTION_NUMBER, "R",
@@ -71,7 +70,7 @@ const Option render_options[] = {
      "pixels wide",
      1e-30, 1e30, NULL},
     {RENDER_LIGHT_PATHS, 0, "light-paths", OPTION_INTEGER, "N",
-     "bidirectional, merging, sppm, lightpath: paths from the lights\nfor each sample of the picture; default: as many "
+     "bidirectional, merging, sppm, lightpath: paths from the lights\nfor each sample of the image; default: as many "
      "as pixels",
      0, 1 << 24, NULL},
     {RENDER_SAMPLER, 0, "sampler", OPTION_CHOICE, "NAME", "how samples are placed:", 0, 0, sampler_choices},
@@ -89,7 +88,7 @@ const Option render_options[] = {
     {RENDER_VIEW, 0, "view", OPTION_CHOICE, "NAME", "how light becomes display values (.png .jpg .tga):", 0, 0,
      view_choices},
     {RENDER_FOCUS_PIXEL, 0, "focus-pixel", OPTION_TEXT, "X,Y",
-     "autofocus: sharp is what this point of the picture sees, in\npixels from the top left corner", 0, 0, NULL},
+     "autofocus: sharp is what this point of the image sees, in\npixels from the top left corner", 0, 0, NULL},
     {RENDER_FOCUS_DISTANCE, 0, "focus-distance", OPTION_NUMBER, "D", "sharp is the plane at this depth, in scene units",
      1e-30, 1e30, NULL},
     {RENDER_LENS_RADIUS, 0, "lens-radius", OPTION_NUMBER, "R", "of a thin lens, in scene units; 0 is a pinhole", 0,
@@ -103,7 +102,7 @@ const Option render_options[] = {
     {RENDER_SECONDS, 0, "seconds", OPTION_NUMBER, "T", "exposure time for --iso; default: the shutter's", 1e-12, 1e12,
      NULL},
     {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV",
-     "brighter by 2^EV (.png .jpg .tga), or auto: so that the middle\nof the picture's light is 18 % grey. Default: 0; "
+     "brighter by 2^EV (.png .jpg .tga), or auto: so that the middle\nof the image's light is 18 % grey. Default: 0; "
      "auto for glTF\nfiles with lamps",
      0, 0, NULL},
     {RENDER_CHANNELS, 0, "channels", OPTION_TEXT, "LIST",
@@ -117,35 +116,35 @@ const Option render_options[] = {
      0, 0, NULL},
     {RENDER_CHANNELS_MODE, 0, "channels-mode", OPTION_CHOICE, "NAME",
      "which point of a pixel they tell about: its centre, or of the\n"
-     "picture's samples the nearest, or one of the thing that covers\nmost of the pixel:",
+     "image's samples the nearest, or one of the thing that covers\nmost of the pixel:",
      0, 0, channel_mode_choices},
     {RENDER_CHANNELS_TIME, 0, "channels-time", OPTION_TEXT, "TIME",
      "when they see what moves: open, middle or close of the shutter's\ntime, or seconds; default middle", 0, 0, NULL},
     {RENDER_CRYPTO_RANKS, 0, "crypto-ranks", OPTION_INTEGER, "N", "things a pixel of a Cryptomatte can hold; default 6",
      2, 32, NULL},
     {RENDER_FLOW_CAMERA, 0, "flow-camera", OPTION_TEXT, "FILE",
-     "the camera of the next picture: the channels forward.U, .V tell\n"
+     "the camera of the next image: the channels forward.U, .V tell\n"
      "in pixels where it sees what this one sees, and forward.hidden\nwhether it does (scene or camera file). Without "
      "it: this camera at\nthe end of the shutter's time (--flow-camera-before: at its beginning)",
      0, 0, NULL},
     {RENDER_FLOW_CAMERA_BEFORE, 0, "flow-camera-before", OPTION_TEXT, "FILE",
-     "the camera of the picture before, for backward.U, .V, .hidden", 0, 0, NULL},
+     "the camera of the image before, for backward.U, .V, .hidden", 0, 0, NULL},
     {RENDER_BOXES, 0, "boxes", OPTION_FLAG, NULL,
      "FILE.ids.json also has boxes of each object and instance, in\n"
      "pixels (of what is seen, and of all of it) and in space",
      0, 0, NULL},
     {RENDER_SPECTRUM, 0, "spectrum", OPTION_TEXT, "N[:MIN:MAX]",
-     "the picture's spectrum into the .exr, too: N channels S0.<nm>nm,\n"
+     "the image's spectrum into the .exr, too: N channels S0.<nm>nm,\n"
      "from 360 (MIN) to 830 (MAX) nm; 0: none",
      0, 0, NULL},
     {RENDER_HALF, 0, "half", OPTION_FLAG, NULL, ".exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
     {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N",
-     "workers; default: one for each processor. The picture does not\n"
+     "workers; default: one for each processor. The image does not\n"
      "depend on it",
      1, 1024, NULL},
     {RENDER_ISA, 0, "isa", OPTION_CHOICE, "NAME",
      "instruction set, x86-64-...; default: the machine's best. The\n"
-     "picture does not depend on it:",
+     "image does not depend on it:",
      0, 0, isa_choices},
     {RENDER_BITS, 0, "bits", OPTION_CHOICE, "NAME",
      "portable: the same image on every machine (default); fast: a few\n"

@@ -22,15 +22,15 @@ typedef struct Outputs {
   bool patterns;            /* the names are patterns (pattern.h): folders with a % are made later */
   vlView view;              /* of 8-bit files */
   float exposure;           /* EV, of 8-bit files */
-  bool meter;               /* by the picture itself, in place of exposure */
-  const vlImage *layers[4]; /* what .exr files hold beside the picture; null: nothing */
+  bool meter;               /* by the image itself, in place of exposure */
+  const vlImage *layers[4]; /* what .exr files hold beside the image; null: nothing */
   struct {
     uint32_t part_spp; /* NAME.part.EXT was written with so many samples; 0: it was not */
     bool failing;      /* the last progress write failed, and this was reported */
   } files[MAX_OUTPUTS];
 } Outputs;
 
-/* The file can hold more than a picture's colours. */
+/* The file can hold more than an image's colours. */
 bool output_holds_layers(const char *path);
 /* The suffix is one that velo writes; *eight_bit tells whether that format holds display values. */
 bool output_suffix(const char *path, bool *eight_bit);

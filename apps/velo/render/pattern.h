@@ -1,5 +1,5 @@
 /* render/pattern.h: names of files that are written many times over: %d the frame's number (%04d: four digits at
- * least), %n the name of its picture in the trajectory (last part, without suffix), %c the camera's, %v the eye: left
+ * least), %n the name of its image in the trajectory (last part, without suffix), %c the camera's, %v the eye: left
  * or right; %% a percent sign. Names come from files of strangers: slashes and control characters do not get through.
  */
 #ifndef APP_RENDER_PATTERN_H

@@ -18,7 +18,7 @@
 #include "render/progress.h"
 #include "render/scene_options.h"
 
-/* Seconds between two progress pictures; and they may take at most a twentieth of the time. */
+/* Seconds between two progress images; and they may take at most a twentieth of the time. */
 enum { WRITE_EVERY = 10, WRITE_SHARE = 20 };
 
 typedef struct Render {

@@ -8,7 +8,7 @@
 #include "cli/report.h"
 #include "scene/scene.h"
 
-enum { CHECK_JSON, CHECK_NO_PICTURES, CHECK_ALL, CHECK_PERMISSIVE, CHECK_SANDBOX };
+enum { CHECK_JSON, CHECK_NO_IMAGES, CHECK_ALL, CHECK_PERMISSIVE, CHECK_SANDBOX };
 enum { SHOWN = 10 }; /* of one kind, without --all */
 
 /* Owned copy of a finding, so that those told while loading stand beside the others. */
@@ -71,7 +71,7 @@ static int look(vlContext *context, const Arguments *arguments, List *list) {
     add(list, VL_FINDING_REMARK, VL_SEVERITY_NOTE, VL_OK, arguments->operands[0], 0, 0,
         "nothing after this place was looked at");
   vlCheckDef def = vl_default_check_def();
-  def.pictures = !arguments->values[CHECK_NO_PICTURES].given;
+  def.images = !arguments->values[CHECK_NO_IMAGES].given;
   if (read) r = vl_scene_check(scene, &def, &check, &error);
   for (uint32_t i = 0; r == VL_OK && i < vl_check_count(check); i++) {
     const vlFinding *f = vl_check_finding(check, i);
@@ -181,8 +181,8 @@ static int run(const Command *command, const Arguments *arguments) {
 static const Option options[] = {
     {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
     {CHECK_ALL, 'a', "all", OPTION_FLAG, NULL, "every finding; without, the first 10 of each kind", 0, 0, NULL},
-    {CHECK_NO_PICTURES, 0, "no-pictures", OPTION_FLAG, NULL, "do not read textures (they are looked for all the same)",
-     0, 0, NULL},
+    {CHECK_NO_IMAGES, 0, "no-images", OPTION_FLAG, NULL, "do not read textures (they are looked for all the same)", 0,
+     0, NULL},
     {CHECK_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "what velo does not understand yet is a note, not an error",
      0, 0, NULL},
     SCENE_SANDBOX_OPTION(CHECK_SANDBOX),
@@ -201,7 +201,7 @@ const Command scene_check_command = {
         "exit codes: 0 nothing but notes; 1 warnings; 3, 4, 5 an error, with which velo render would end",
     .examples =
         "velo scene check room.pbrt\n"
-        "velo scene check --json --no-pictures model.glb",
+        "velo scene check --json --no-images model.glb",
     .options = options,
     .min_operands = 1,
     .max_operands = 1,

@@ -61,7 +61,7 @@ static void print_lights(const Facts *f) {
     if (isfinite(l.power))
       printf("power %-10.5g", l.power);
     else
-      printf("%-16s", "of a picture");
+      printf("%-16s", "of an image");
     if (l.faces > 1) printf(" %llu faces", (unsigned long long)l.faces);
     if (l.source.file) {
       printf("  ");
@@ -168,7 +168,7 @@ static void print_json(const Facts *f) {
     json_begin(&json, NULL, '{');
     json_text(&json, "kind", l.kind);
     json_number(&json, "power", l.power);
-    json_bool(&json, "picture", l.picture);
+    json_bool(&json, "image", l.image);
     if (l.faces) json_integer(&json, "faces", (int64_t)l.faces);
     json_place(&json, &l.source);
     json_end(&json, '}');

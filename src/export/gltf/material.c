@@ -23,7 +23,7 @@ static double unit(double v) {
   return v > 0 ? v < 1 ? v : 1 : 0;
 }
 
-/* Factor times a channel of a picture. */
+/* Factor times a channel of an image. */
 static void put_channel(vlExport *x, json_t *to, const char *factor_key, const char *texture_key, int channel,
                         const vlFloatInput *input) {
   const vlTextureDef *t = vl_export_texture(x, input->texture);
@@ -36,7 +36,7 @@ static void put_channel(vlExport *x, json_t *to, const char *factor_key, const c
   if (info) json_object_set_new(to, texture_key, info);
 }
 
-/* Colour factor times a picture in sRGB. *alpha (may be null): the texture, for who wants its fourth channel. */
+/* Colour factor times an image in sRGB. *alpha (may be null): the texture, for who wants its fourth channel. */
 static void put_color(vlExport *x, json_t *to, const char *factor_key, const char *texture_key, bool bounded,
                       const vlSpectrumInput *input, double coverage) {
   const vlTextureDef *t = vl_export_texture(x, input->texture);
@@ -72,7 +72,7 @@ static void put_coverage(vlExport *x, json_t *material, const vlFloatInput *alph
   json_object_set_new(material, "alphaMode", json_string(mask ? "MASK" : "BLEND"));
   if (mask) set_number(material, "alphaCutoff", t->cutoff);
   if (t && t->kind != VL_TEXTURE_VERTEX_COLOR && (t->kind != VL_TEXTURE_IMAGE || t->channel != 3))
-    vl_export_lose(x, "coverage that is not the fourth channel of the base colour's picture");
+    vl_export_lose(x, "coverage that is not the fourth channel of the base colour's image");
 }
 
 static void put_base(vlExport *x, json_t *material, const vlSpectrumInput *color, double coverage, double metallic,
@@ -84,17 +84,17 @@ static void put_base(vlExport *x, json_t *material, const vlSpectrumInput *color
   json_object_set_new(material, "pbrMetallicRoughness", base);
 }
 
-static bool same_picture(const vlTextureDef *a, const vlTextureDef *b) {
+static bool same_image(const vlTextureDef *a, const vlTextureDef *b) {
   return a->data == b->data && a->image == b->image && a->uv_set == b->uv_set &&
          (a->path == b->path || (a->path && b->path && strcmp(a->path, b->path) == 0));
 }
 
 static void put_metal(vlExport *x, json_t *base, const vlPrincipledDef *p) {
   const vlTextureDef *m = vl_export_texture(x, p->metallic.texture), *r = vl_export_texture(x, p->roughness.texture);
-  bool good = m && r && same_picture(m, r) && m->channel == 2 && r->channel == 1 && m->bias == 0 && r->bias == 0;
+  bool good = m && r && same_image(m, r) && m->channel == 2 && r->channel == 1 && m->bias == 0 && r->bias == 0;
   json_t *info = good ? vl_gltf_texture_info(x, m, true) : NULL;
   if ((p->metallic.texture.index || p->roughness.texture.index) && !info)
-    vl_export_lose(x, "textured metallic or roughness, not of one picture: numbers stand in");
+    vl_export_lose(x, "textured metallic or roughness, not of one image: numbers stand in");
   set_number(base, "metallicFactor", unit(info ? (double)m->tint[2] : (double)vl_export_number(x, &p->metallic)));
   set_number(base, "roughnessFactor", unit(info ? (double)r->tint[1] : (double)vl_export_number(x, &p->roughness)));
   if (info) json_object_set_new(base, "metallicRoughnessTexture", info);
@@ -276,15 +276,15 @@ static void put_other(vlExport *x, json_t *material, const vlMaterialDef *m, vlM
 
 static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e) {
   float rgb[3];
-  vlTextureDef picture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+  vlTextureDef image = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
   const vlTextureDef *t = vl_export_texture(x, e->texture);
   vl_export_light_rgb(&e->radiance, rgb);
   if (t)
     for (int i = 0; i < 3; i++) rgb[i] = t->tint[i] * t->scale;
   if (e->image) {
-    picture.path = e->image;
+    image.path = e->image;
     rgb[0] = rgb[1] = rgb[2] = 1;
-    t = &picture;
+    t = &image;
   }
   double most = fmax(rgb[0], fmax(rgb[1], rgb[2])), scale = e->scale;
   if (!(most > 0)) return;
@@ -348,9 +348,9 @@ json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors, 
     put_other(x, json, m, d->inside, coverage);
   if (m->displacement.texture.index) vl_export_lose(x, "bump maps: left out");
   if (m->normal_map) {
-    vlTextureDef picture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
-    picture.path = m->normal_map;
-    json_t *info = vl_gltf_texture_info(x, &picture, true);
+    vlTextureDef image = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+    image.path = m->normal_map;
+    json_t *info = vl_gltf_texture_info(x, &image, true);
     if (info) json_object_set_new(json, "normalTexture", info);
   }
   if (d->emission.index) put_emission(x, json, &x->scene->emissions.items[d->emission.index - 1]);

@@ -1,28 +1,28 @@
-/* export/gltf/texture.c: pictures, samplers and textures of a glTF file, each once. */
+/* export/gltf/texture.c: images, samplers and textures of a glTF file, each once. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "export/export.h"
 
-/* Index of the picture in "images"; -1 after an error. */
+/* Index of the image in "images"; -1 after an error. */
 static json_int_t put_image(vlExport *x, const vlTextureDef *t) {
   const void *data = t->data ? t->data : (const void *)t->image;
-  for (size_t i = 0; i < x->pictures.count; i++) {
-    const vlExportPicture *p = &x->pictures.items[i];
+  for (size_t i = 0; i < x->images.count; i++) {
+    const vlExportImage *p = &x->images.items[i];
     if (p->data == data && (data || (p->path && t->path && strcmp(p->path, t->path) == 0))) return p->index;
   }
   char *bytes, name[300];
   const char *suffix;
   size_t size;
-  if (!vl_export_picture(x, t, &bytes, &size, &suffix)) return -1;
+  if (!vl_export_image(x, t, &bytes, &size, &suffix)) return -1;
   json_t *image = json_object();
   if (x->binary) {
     json_object_set_new(image, "bufferView", json_integer(vl_gltf_put_view(x, bytes, size, 0)));
     json_object_set_new(image, "mimeType", json_string(strcmp(suffix, ".png") == 0 ? "image/png" : "image/jpeg"));
   } else {
     char uri[900], *to = uri;
-    snprintf(name, sizeof name, "%.200s-%zu%s", x->stem, x->pictures.count, suffix);
+    snprintf(name, sizeof name, "%.200s-%zu%s", x->stem, x->images.count, suffix);
     for (const char *p = name; *p; p++) { /* blanks and the like are escaped in uris */
       bool plain =
           (*p >= 'a' && *p <= 'z') || (*p >= 'A' && *p <= 'Z') || (*p >= '0' && *p <= '9') || strchr("-._~", *p);
@@ -37,9 +37,9 @@ static json_int_t put_image(vlExport *x, const vlTextureDef *t) {
     }
   }
   vl_free(x->context, bytes);
-  vlExportPicture *slot = VL_PUSH(x->context, &x->pictures);
+  vlExportImage *slot = VL_PUSH(x->context, &x->images);
   json_int_t index = vl_gltf_put(x, "images", image);
-  if (slot) *slot = (vlExportPicture){.data = data, .path = data ? NULL : t->path, .index = index};
+  if (slot) *slot = (vlExportImage){.data = data, .path = data ? NULL : t->path, .index = index};
   return index;
 }
 
@@ -54,7 +54,7 @@ static json_int_t put_once(vlExport *x, const char *key, json_t *value) {
 }
 
 static int wrap_code(vlExport *x, vlWrap wrap) {
-  if (wrap == VL_WRAP_BLACK || wrap == VL_WRAP_OCTAHEDRAL) vl_export_lose(x, "pictures that end in black: clamped");
+  if (wrap == VL_WRAP_BLACK || wrap == VL_WRAP_OCTAHEDRAL) vl_export_lose(x, "images that end in black: clamped");
   return wrap == VL_WRAP_REPEAT ? 10497 : wrap == VL_WRAP_MIRROR ? 33648 : 33071;
 }
 
@@ -79,10 +79,10 @@ json_t *vl_gltf_texture_info(vlExport *x, const vlTextureDef *t, bool linear) {
     return NULL;
   }
   bool told_linear = t->encoding_given && t->encoding == VL_ENCODING_LINEAR;
-  if (told_linear != linear && t->spectrum) vl_export_lose(x, "pictures whose curve is not the one that glTF expects");
+  if (told_linear != linear && t->spectrum) vl_export_lose(x, "images whose curve is not the one that glTF expects");
   json_int_t image = put_image(x, t);
   if (image < 0) {
-    vl_export_lose(x, "pictures that cannot be read: left out");
+    vl_export_lose(x, "images that cannot be read: left out");
     x->result = x->result == VL_ERROR_MEMORY ? x->result : VL_OK;
     return NULL;
   }

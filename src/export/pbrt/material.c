@@ -82,7 +82,7 @@ static bool put_normal(vlExport *x, const vlMaterialDef *m) {
   const vlTextureDef *t = vl_export_texture(x, m->principled.normal);
   char name[300];
   if (!t) return true;
-  if (!vl_pbrt_picture(x, t, false, name)) return false;
+  if (!vl_pbrt_image(x, t, false, name)) return false;
   PUT(" \"string normalmap\" \"%s\"", name);
   return true;
 }
@@ -188,12 +188,12 @@ static bool put_own(vlExport *x, const vlMaterialDef *m, uint32_t id) {
   if (m->normal_map) {
     vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     t.path = m->normal_map;
-    if (!vl_pbrt_picture(x, &t, false, normal)) return false;
+    if (!vl_pbrt_image(x, &t, false, normal)) return false;
   }
-  if (m->kind == VL_MATERIAL_MEASURED) { /* copied as pictures are */
+  if (m->kind == VL_MATERIAL_MEASURED) { /* copied as images are */
     vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     t.path = m->measured;
-    if (!vl_pbrt_picture(x, &t, false, measured)) return false;
+    if (!vl_pbrt_image(x, &t, false, measured)) return false;
   }
   PUT("MakeNamedMaterial \"material%u\" \"string type\" ", id);
   switch (m->kind) {

@@ -47,7 +47,7 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
 
 /* ---- before the world -------------------------------------------------------------------------------------------- */
 
-/* The film's parameters beyond its size, which the camera's file has. pbrt's picture is as bright as the shutter is
+/* The film's parameters beyond its size, which the camera's file has. pbrt's image is as bright as the shutter is
  * open long; shutter: those seconds. */
 static void put_film(vlExport *x, double shutter) {
   const vlSceneDefs *defs = &x->scene->defs;
@@ -194,7 +194,7 @@ static bool put_light(vlExport *x, const vlLightDef *d) {
   if (d->kind == VL_LIGHT_INFINITE && (d->path || d->image)) {
     vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     t.path = d->path, t.image = d->image;
-    if (!vl_pbrt_picture(x, &t, true, name)) return false;
+    if (!vl_pbrt_image(x, &t, true, name)) return false;
   }
   PUT("AttributeBegin\n");
   vl_pbrt_matrix(x, d->world_from_light);

@@ -13,8 +13,8 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s);
 /* "material<id>", and what it refers to. */
 bool vl_pbrt_material(vlExport *x, uint32_t id);
 bool vl_pbrt_shape(vlExport *x, size_t index);
-/* The name of the file beside the scene's that holds a texture's picture as it is; light: of any brightness. */
-bool vl_pbrt_picture(vlExport *x, const vlTextureDef *t, bool light, char name[300]);
+/* The name of the file beside the scene's that holds a texture's image as it is; light: of any brightness. */
+bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, bool light, char name[300]);
 /* A parameter: a number, or the texture that is written before it. To be called between directives: `prepare` writes
  * the texture and keeps its name, `put` writes the parameter. */
 typedef struct vlPbrtInput {

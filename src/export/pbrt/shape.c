@@ -81,8 +81,8 @@ static bool put_kind(vlExport *x, const vlShapeDef *d, size_t index) {
   }
 }
 
-/* pbrt's glowing pictures do not repeat: uvs that lie in another cell of the plane move to the first, where every
- * picture of the scene repeats and none is mapped otherwise. New uvs in *moved, else null. */
+/* pbrt's emissive images do not repeat: uvs that lie in another cell of the plane move to the first, where every
+ * image of the scene repeats and none is mapped otherwise. New uvs in *moved, else null. */
 static bool move_uvs(vlExport *x, const vlShapeDef *d, float **moved) {
   const vlEmissionDef *e = &x->scene->emissions.items[d->emission.index - 1];
   *moved = NULL;
@@ -102,7 +102,7 @@ static bool move_uvs(vlExport *x, const vlShapeDef *d, float **moved) {
     can = t->kind != VL_TEXTURE_IMAGE || plain;
   }
   if (!can) {
-    vl_export_lose(x, "pictures that glow again and again: at the first place only");
+    vl_export_lose(x, "images that emit light again and again: at the first place only");
     return true;
   }
   float *uvs = vl_alloc_array(x->context, d->vertices, 2 * sizeof *uvs);
@@ -114,16 +114,16 @@ static bool move_uvs(vlExport *x, const vlShapeDef *d, float **moved) {
 
 static bool put_emission(vlExport *x, const vlEmissionDef *e) {
   const vlTextureDef *t = vl_export_texture(x, e->texture);
-  vlTextureDef picture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+  vlTextureDef image = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
   char name[300] = "";
   double scale = (double)e->scale;
-  picture.path = e->image;
+  image.path = e->image;
   if (t) {
     scale *= (double)fmaxf(t->tint[0], fmaxf(t->tint[1], t->tint[2]));
     if (t->tint[0] != t->tint[1] || t->tint[1] != t->tint[2])
-      vl_export_lose(x, "tints of pictures that glow: left out");
+      vl_export_lose(x, "tints of images that emit light: left out");
   }
-  if ((t || e->image) && !vl_pbrt_picture(x, t ? t : &picture, false, name)) return false;
+  if ((t || e->image) && !vl_pbrt_image(x, t ? t : &image, false, name)) return false;
   PUT("  AreaLightSource \"diffuse\" \"float scale\" [%.9g]", scale);
   if (name[0])
     PUT(" \"string filename\" \"%s\"", name);

@@ -1,4 +1,4 @@
-/* export/pbrt/texture.c: textures as pbrt's. Pictures of which one channel counts, or that are tinted, are worked into
+/* export/pbrt/texture.c: textures as pbrt's. Images of which one channel counts, or that are tinted, are worked into
  * new ones (EXR, so that no value is rounded). */
 #include <math.h>
 #include <stdio.h>
@@ -7,29 +7,29 @@
 #include "export/pbrt/pbrt.h"
 #include "image/image.h"
 
-static vlExportPicture *find_picture(vlExport *x, const vlTextureDef *t, uint32_t variant) {
+static vlExportImage *find_image(vlExport *x, const vlTextureDef *t, uint32_t variant) {
   const void *data = t->data ? t->data : (const void *)t->image;
-  for (size_t i = 0; i < x->pictures.count; i++) {
-    vlExportPicture *p = &x->pictures.items[i];
+  for (size_t i = 0; i < x->images.count; i++) {
+    vlExportImage *p = &x->images.items[i];
     if (p->variant == variant && p->data == data && (data || (p->path && t->path && strcmp(p->path, t->path) == 0)))
       return p;
   }
   return NULL;
 }
 
-static bool write_picture(vlExport *x, const vlTextureDef *t, uint32_t variant, const char *bytes, size_t size,
-                          const char *suffix, char name[300]) {
-  snprintf(name, 300, "%.200s-%zu%s", x->stem, x->pictures.count, suffix);
-  vlExportPicture *slot = VL_PUSH(x->context, &x->pictures);
+static bool write_image(vlExport *x, const vlTextureDef *t, uint32_t variant, const char *bytes, size_t size,
+                        const char *suffix, char name[300]) {
+  snprintf(name, 300, "%.200s-%zu%s", x->stem, x->images.count, suffix);
+  vlExportImage *slot = VL_PUSH(x->context, &x->images);
   if (!slot) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
   const void *data = t->data ? t->data : (const void *)t->image;
-  *slot = (vlExportPicture){.data = data, .path = data ? NULL : t->path, .variant = variant};
+  *slot = (vlExportImage){.data = data, .path = data ? NULL : t->path, .variant = variant};
   memcpy(slot->name, name, sizeof slot->name);
   return vl_export_file(x, name, bytes, size);
 }
 
-bool vl_pbrt_picture(vlExport *x, const vlTextureDef *t, bool light, char name[300]) {
-  vlExportPicture *known = find_picture(x, t, light);
+bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, bool light, char name[300]) {
+  vlExportImage *known = find_image(x, t, light);
   if (known) return memcpy(name, known->name, sizeof known->name), true;
   char *bytes = NULL;
   size_t size;
@@ -44,16 +44,16 @@ bool vl_pbrt_picture(vlExport *x, const vlTextureDef *t, bool light, char name[3
     fine = r == VL_OK || vl_export_fail(x, r, "%s", error.message);
     suffix = dot;
   } else {
-    fine = vl_export_picture(x, t, &bytes, &size, &suffix);
+    fine = vl_export_image(x, t, &bytes, &size, &suffix);
   }
-  fine = fine && write_picture(x, t, light, bytes, size, suffix, name);
+  fine = fine && write_image(x, t, light, bytes, size, suffix, name);
   vl_free(x->context, bytes);
   return fine;
 }
 
-/* ---- worked pictures --------------------------------------------------------------------------------------------- */
+/* ---- worked images --------------------------------------------------------------------------------------------- */
 
-/* What becomes of a picture's values. */
+/* What becomes of an image's values. */
 typedef struct Change {
   bool squared;
   float turned_back; /* under a coat that sends this share of the light back in; 0: none */
@@ -70,7 +70,7 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
   const float key[9] = {t->tint[0], t->tint[1],        t->tint[2],       t->tint[3],        t->bias,
                         t->scale,   (float)t->channel, (float)t->cutoff, change.turned_back};
   for (size_t i = 0; i < sizeof key; i++) variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 2u;
-  vlExportPicture *known = find_picture(x, t, variant);
+  vlExportImage *known = find_image(x, t, variant);
   if (known) return memcpy(name, known->name, sizeof known->name), true;
   vlImage *image = t->image ? NULL : vl_export_decode(x, t), *made = NULL;
   const vlImage *from = t->image ? t->image : image;
@@ -104,7 +104,7 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
   char *bytes = NULL;
   size_t size;
   fine =
-      fine && vl_export_pack(x, made, ".exr", &bytes, &size) && write_picture(x, t, variant, bytes, size, ".exr", name);
+      fine && vl_export_pack(x, made, ".exr", &bytes, &size) && write_image(x, t, variant, bytes, size, ".exr", name);
   vl_free(x->context, bytes);
   vl_free(x->context, row);
   vl_image_destroy(made);
@@ -140,8 +140,8 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
   bool plain = t->spectrum ? even : t->channel < 0 && t->bias == 0 && isnan(t->cutoff) && !change.squared;
   plain = plain && change.turned_back == 0;
   char name[300];
-  if (!(plain ? vl_pbrt_picture(x, t, false, name) : work(x, t, change, name))) return false;
-  if (t->wrap == VL_WRAP_MIRROR) vl_export_lose(x, "pictures that repeat in a mirror: repeated plainly");
+  if (!(plain ? vl_pbrt_image(x, t, false, name) : work(x, t, change, name))) return false;
+  if (t->wrap == VL_WRAP_MIRROR) vl_export_lose(x, "images that repeat in a mirror: repeated plainly");
   if (t->wrap_t_given && t->wrap_t != t->wrap) vl_export_lose(x, "wrap modes of their own for each axis: that of s");
   if (t->colors) vl_export_lose(x, "colours of vertices: left out");
   double scale = (double)t->scale * (plain && t->spectrum ? (double)t->tint[0] : 1);

@@ -148,8 +148,8 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
   for (int k = 0; k < 4; k++)
     if (strcmp(path, paths[k]) == 0) what = k;
   if (what < 0 && *path)
-    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"), "unknown name \"%.30s\" is passed over", path);
-  if (node < 0 || what < 0) return true; /* the specification lets these be passed over */
+    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"), "unknown name \"%.30s\" is ignored", path);
+  if (node < 0 || what < 0) return true; /* the specification lets these be ignored */
   const json_t *json = json_array_get(samplers, (size_t)sampler);
   const vlGltfPlace *at_sampler = VL_GLTF_ITEM(up, "samplers", (size_t)sampler);
   if (!json_is_object(json)) return vl_gltf_fail(g, at_sampler, "must be an object");

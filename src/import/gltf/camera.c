@@ -1,4 +1,4 @@
-/* import/gltf/camera.c: which camera of the scene takes the picture, and its numbers (specification, 3.10). */
+/* import/gltf/camera.c: which camera of the scene takes the image, and its numbers (specification, 3.10). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

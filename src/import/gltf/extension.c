@@ -19,7 +19,7 @@ static const char *const known[] = {
     "EXT_lights_image_based",    "KHR_animation_pointer",
     "KHR_node_visibility",
 };
-/* Nothing of these changes the picture. */
+/* Nothing of these changes the image. */
 static const char *const silent[] = {"KHR_xmp", "KHR_xmp_json_ld", "KHR_node_hoverability", "KHR_node_selectability"};
 
 static bool is_in(const char *name, const char *const *names, size_t count) {
@@ -53,7 +53,7 @@ bool vl_gltf_check_extensions(vlGltf *g) {
     const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "extensionsUsed", i);
     if (!name) return vl_gltf_fail(g, at, "must be a string");
     if (!is_in(name, known, known_count) && !is_in(name, silent, silent_count))
-      vl_gltf_warn(g, VL_LOG_WARNING, at, "%.80s is passed over: velo does not read it", name);
+      vl_gltf_warn(g, VL_LOG_WARNING, at, "%.80s is ignored: velo does not read it", name);
   }
   return true;
 }

@@ -77,7 +77,7 @@ typedef struct vlGltfMaterial {
   uint32_t tangent_set; /* which uv set the tangents follow */
 } vlGltfMaterial;
 
-/* An encoded picture: bytes in memory (owned by the scene) or a file. */
+/* An encoded image: bytes in memory (owned by the scene) or a file. */
 typedef struct vlGltfImage {
   bool read;
   const uint8_t *data;
@@ -89,7 +89,7 @@ enum { VL_GLTF_KEYS = 9 }; /* poses between the shutter's opening and closing, e
 
 typedef struct vlGltfMesh {
   uint32_t uses; /* by nodes of the scene, without deformation; instances count each */
-  bool glows;    /* a primitive gives out light: cannot be instanced */
+  bool emissive; /* a primitive gives out light: cannot be instanced */
   bool grouped;  /* group is made */
   vlGroupId group;
 } vlGltfMesh;

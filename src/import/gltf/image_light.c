@@ -1,6 +1,6 @@
-/* import/gltf/image_light.c: EXT_lights_image_based: the largest cube of a light's specular pictures surrounds the
+/* import/gltf/image_light.c: EXT_lights_image_based: the largest cube of a light's specular images surrounds the
  * scene. Its coarser ones and the irradiance coefficients are what a rasterizer would make of it and are not read.
- * Pictures with four channels are RGBD: light is the linear colour divided by the fourth. */
+ * Images with four channels are RGBD: light is the linear colour divided by the fourth. */
 #include <math.h>
 #include <string.h>
 
@@ -20,7 +20,7 @@ static bool read_face(vlGltf *g, const vlGltfPlace *at, size_t index, Cube *cube
   vlError error;
   vl_error_clear(&error);
   vlResult r = file->path ? vl_image_read_named(g->context, file->path, &image, &error)
-                          : vl_image_read_memory(g->context, "picture", file->data, file->size, &image, &error);
+                          : vl_image_read_memory(g->context, "image", file->data, file->size, &image, &error);
   if (r != VL_OK) return vl_gltf_fail_code(g, r, at, "%s", error.message);
   uint32_t channel[4], count = vl_image_color(image, channel);
   float *pixels = NULL;

@@ -85,7 +85,7 @@ static bool read_alpha(const Reader *r, const vlGltfPlace *at, const json_t *jso
   if (mode == 0) return true;
   bool mask = mode == 1;
   vlGltfTextureUse use = vl_gltf_use_channel(3, factor);
-  use.srgb = true; /* the colours'; so that the picture is the same one. Coverage has no curve */
+  use.srgb = true; /* the colours'; so that the image is the same one. Coverage has no curve */
   use.colors = r->colors;
   if (mask) use.cutoff = cutoff;
   r->result->alpha.value = mask ? factor >= cutoff : factor > 1 ? 1 : factor;

@@ -191,7 +191,7 @@ static bool read_close(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, con
   return ok;
 }
 
-/* A mesh that deforms cannot glow: then the glow counts. */
+/* A mesh that deforms cannot emit light: then the emission counts. */
 static void still(vlGltf *g, const vlGltfPlace *at, vlGltfPrimitive *p) {
   vl_free(g->context, p->positions_close);
   vl_free(g->context, p->normals_close);

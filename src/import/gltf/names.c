@@ -187,7 +187,7 @@ static void look(vlGltf *g, const vlGltfPlace *at, const char *key, uint32_t *sa
   if (strlen(key) < 4 || is_known(key)) return;
   const char *near = vl_nearest_name(key, known, KNOWN);
   if (near && ++*said <= MOST_SAID)
-    vl_gltf_warn(g, VL_LOG_WARNING, at, "unknown name \"%.60s\" is passed over (did you mean \"%s\"?)", key, near);
+    vl_gltf_warn(g, VL_LOG_WARNING, at, "unknown name \"%.60s\" is ignored (did you mean \"%s\"?)", key, near);
 }
 
 /* Extras are anybody's, and so is what stands in extensions that velo does not read. jansson bounds the depth. */

@@ -198,7 +198,7 @@ static int place_moving(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t n
   return g->scene->error.code == VL_OK;
 }
 
-/* Meshes that stand in several places are kept once; others, and those that glow, go to the world. */
+/* Meshes that stand in several places are kept once; others, and those that emit light, go to the world. */
 static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t node_index, vlMat4 local) {
   vlMat4 pose = vl_mat4_multiply(node->world, local);
   vlGltfMesh *m = &g->meshes[mesh];
@@ -209,7 +209,7 @@ static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t no
     int done = place_moving(g, mesh, node, node_index, local, deforms);
     if (done >= 0) return done;
   }
-  if (deforms || flat || m->glows || m->uses < 2)
+  if (deforms || flat || m->emissive || m->uses < 2)
     return vl_gltf_add_mesh(g, mesh, node, node_index, (vlGroupId){0}, pose);
   if (!group_mesh(g, mesh, node_index)) return false;
   vl_scene_add_instance(g->scene, m->group, pose.m, (vlSource){g->path, 0, 0});
@@ -238,7 +238,7 @@ static bool draw_node(vlGltf *g, size_t i) {
 }
 
 /* Is the material (by the chosen variant too) one that gives out light? What does not parse is said later. */
-static bool glows(vlGltf *g, const json_t *primitive) {
+static bool emissive(vlGltf *g, const json_t *primitive) {
   double index = json_number_value(json_object_get(primitive, "material"));
   size_t i = 0;
   const json_t *mapping,
@@ -301,8 +301,8 @@ static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
   for (size_t i = 0; i < g->mesh_count; i++) {
     const json_t *primitives = json_object_get(vl_gltf_item(g, "meshes", i), "primitives");
     for (size_t k = 0; g->meshes[i].uses > 1 && k < json_array_size(primitives); k++)
-      g->meshes[i].glows = g->meshes[i].glows || glows(g, json_array_get(primitives, k));
-    if (g->meshes[i].uses > 1000) g->meshes[i].glows = false; /* then its glow is seen, but lights nothing */
+      g->meshes[i].emissive = g->meshes[i].emissive || emissive(g, json_array_get(primitives, k));
+    if (g->meshes[i].uses > 1000) g->meshes[i].emissive = false; /* then its emission is seen, but lights nothing */
   }
   return true;
 }

@@ -1,5 +1,5 @@
-/* import/gltf/texture.c: textureInfo objects to textures of the scene: picture, sampler, uv set, KHR_texture_transform.
- * Pictures are not decoded here: the scene keeps their bytes or names. */
+/* import/gltf/texture.c: textureInfo objects to textures of the scene: image, sampler, uv set, KHR_texture_transform.
+ * Images are not decoded here: the scene keeps their bytes or names. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -38,7 +38,7 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
   return true;
 }
 
-/* The picture of a texture; extensions put other formats beside it. -1 with true: none, said already. */
+/* The image of a texture; extensions put other formats beside it. -1 with true: none, said already. */
 static bool choose_image(vlGltf *g, size_t texture, int64_t *image) {
   static const char *const others[] = {"KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif"};
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "textures", texture);
@@ -51,9 +51,9 @@ static bool choose_image(vlGltf *g, size_t texture, int64_t *image) {
   if (*image >= 0) return true;
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
     if (vl_gltf_extension(json, others[i]))
-      return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "its picture is there by %s only, which velo does not read",
+      return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "its image is there by %s only, which velo does not read",
                                others[i]);
-  vl_gltf_warn(g, VL_LOG_WARNING, at, "has no picture");
+  vl_gltf_warn(g, VL_LOG_WARNING, at, "has no image");
   return true;
 }
 

@@ -1,4 +1,4 @@
-/* import/gltf/volume.c: what a material says about the space behind its surface (KHR_materials_volume), and pictures
+/* import/gltf/volume.c: what a material says about the space behind its surface (KHR_materials_volume), and images
  * that must be worked on before they are textures. */
 #include <math.h>
 #include <string.h>
@@ -57,7 +57,7 @@ bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatI
     vl_image_row_to_float(image, y, channel, 3, row);
     for (uint32_t x = 0; x < image->width; x++) {
       float a = atan2f(2 * row[3 * x + 1] - 1, 2 * row[3 * x] - 1) + rotation;
-      to[x] = a - floorf(a / 3.14159265f) * 3.14159265f; /* pictures hold no negative numbers */
+      to[x] = a - floorf(a / 3.14159265f) * 3.14159265f; /* images hold no negative numbers */
     }
   }
   if (ok) {

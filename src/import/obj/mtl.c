@@ -20,7 +20,7 @@ static bool is_word(const char *word, size_t n, const char *name) {
   return strlen(name) == n && strncasecmp(word, name, n) == 0;
 }
 
-/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+/* ---- images ---------------------------------------------------------------------------------------------------- */
 
 static bool exists(const char *path) {
   struct stat info;
@@ -28,7 +28,7 @@ static bool exists(const char *path) {
 }
 
 /* The file, or one of its name beside the library: paths are often of another machine. Null: none, said. */
-static bool find_picture(vlObj *obj, char *name, const char **path) {
+static bool find_image(vlObj *obj, char *name, const char **path) {
   static const char *const known[] = {".png", ".jpg", ".jpeg", ".tga", ".exr", ".hdr", ".pfm",
                                       ".bmp", ".gif", ".ppm",  ".pgm", ".qoi", ".pnm"};
   char whole[4096];
@@ -39,13 +39,13 @@ static bool find_picture(vlObj *obj, char *name, const char **path) {
   bool found = vl_path_join(obj->path, name, whole, sizeof whole) && exists(whole);
   if (!found && slash) found = vl_path_join(obj->path, slash + 1, whole, sizeof whole) && exists(whole);
   if (!found) {
-    vl_obj_warn(obj, VL_LOG_WARNING, "there is no picture \"%.200s\"; done without", name);
+    vl_obj_warn(obj, VL_LOG_WARNING, "there is no image \"%.200s\"; done without", name);
     return true;
   }
   bool readable = false;
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) readable |= vl_ends_with(whole, known[i]);
   if (!readable) {
-    vl_obj_warn(obj, VL_LOG_WARNING, "\"%.200s\": velo does not read pictures of this kind; done without", name);
+    vl_obj_warn(obj, VL_LOG_WARNING, "\"%.200s\": velo does not read images of this kind; done without", name);
     return true;
   }
   *path = whole;
@@ -70,7 +70,7 @@ static bool option_word(vlObj *obj, const char *name, const char **word, size_t 
   return (*n = vl_obj_word(obj, word)) || vl_obj_fail(obj, "%s: its value is missing", name);
 }
 
-/* One option before the name of a picture; false where none stands there or it is broken (*fine). */
+/* One option before the name of an image; false where none stands there or it is broken (*fine). */
 static bool read_option(vlObj *obj, vlMtlMap *map, bool *fine) {
   static const char *const words[] = {"-blendu", "-blendv", "-cc", "-type"}, *const numbers[] = {"-boost", "-texres"};
   const char *word, *value;
@@ -124,8 +124,8 @@ static bool read_map(vlObj *obj, vlMtl *m, vlMtlMapKind kind) {
     if (!fine) return false;
   if (!fine) return false;
   char *name = vl_obj_rest(obj);
-  if (!*name) return vl_obj_fail(obj, "the name of a picture is missing");
-  if (!find_picture(obj, name, &map.path)) return false;
+  if (!*name) return vl_obj_fail(obj, "the name of an image is missing");
+  if (!find_image(obj, name, &map.path)) return false;
   if (map.path) m->maps[kind] = map;
   return true;
 }

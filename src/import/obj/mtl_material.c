@@ -153,7 +153,7 @@ bool vl_obj_make_material(vlObj *obj, vlObjMaterial *material) {
   def.name = material->name[0] ? material->name : NULL;
   def.source = (vlSource){obj->path, material->line, material->line ? 1 : 0};
   float base[3] = {clamp01(m->kd[0]), clamp01(m->kd[1]), clamp01(m->kd[2])};
-  if (m->maps[VL_MTL_KD].path && brightest(base) == 0) base[0] = base[1] = base[2] = 1; /* the picture alone */
+  if (m->maps[VL_MTL_KD].path && brightest(base) == 0) base[0] = base[1] = base[2] = 1; /* the image alone */
   surface(m, &def, base);
   bool solid = m->illum == 6 || m->illum == 7;
   if (solid) glass(m, &def, base);

@@ -307,7 +307,7 @@ static bool use_smoothing(vlObj *obj) {
 
 static void once(vlObj *obj, uint32_t bit, const char *what, size_t length) {
   static const char *const texts[3] = {"points and lines are not drawn", "curves and surfaces are not drawn",
-                                       "unknown statement, passed over (as others like it)"};
+                                       "unknown statement, ignored (as others like it)"};
   if (obj->told & bit) return;
   obj->told |= bit;
   vl_obj_warn(obj, bit == TOLD_LINES ? VL_LOG_INFO : VL_LOG_WARNING, "\"%.*s\": %s", length > 12 ? 12 : (int)length,

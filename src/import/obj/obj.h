@@ -28,7 +28,7 @@ typedef enum vlMtlMapKind {
 typedef struct vlMtlMap {
   const char *path; /* null: none; owned by the scene */
   float offset[2], scale[2], base, gain, bump;
-  int channel; /* -1: by the picture */
+  int channel; /* -1: by the image */
   bool clamp;
 } vlMtlMap;
 

@@ -108,7 +108,7 @@ static bool read_pbrt(vlDict *dict, vlCameraDef *def, Kind kind) {
   return read_shutter(dict, def) && vl_dict_done(dict) && pose_from_ctm(import, def);
 }
 
-/* pbrt's spherical camera: the whole sphere, whatever the frame. Its poles are up and down; its equirectangular picture
+/* pbrt's spherical camera: the whole sphere, whatever the frame. Its poles are up and down; its equirectangular image
  * begins at the right and turns left (seen in its left-handed axes), its equal-area one has the zenith in the middle.
  * velo's own maps look ahead in the middle: the axes are exchanged. */
 static bool read_spherical(vlDict *dict, vlCameraDef *def) {
@@ -340,8 +340,8 @@ static bool check(vlImport *import, const char *what, const vlCameraDef *def) {
   }
   if (warning && camera.outside > 0.0)
     vl_import_warn(import, VL_LOG_WARNING, import->camera.place,
-                   "%s: the lens folds or its model ends inside the picture: %.2g %% of it sees nothing (alpha 0)",
-                   what, 100.0 * camera.outside);
+                   "%s: the lens folds or its model ends inside the image: %.2g %% of it sees nothing (alpha 0)", what,
+                   100.0 * camera.outside);
   else if (warning)
     vl_import_warn(import, VL_LOG_WARNING, import->camera.place, "%s", warning);
   return true;

@@ -162,7 +162,7 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
   vlSceneDefs *defs = vl_scene_defs(import->scene);
   const struct {
     const char *name;
-    bool *value; /* null: changes the picture, and velo has nothing of the kind */
+    bool *value; /* null: changes the image, and velo has nothing of the kind */
   } switches[] = {{"disablepixeljitter", &defs->render.centred},
                   {"disabletexturefiltering", &defs->render.sharp_textures},
                   {"disablewavelengthjitter", &defs->render.same_wavelengths},

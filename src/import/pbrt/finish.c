@@ -50,7 +50,7 @@ static float alpha_of(const vlMaterialDef *m, const vlFloatInput *roughness) {
   return m->remap_roughness ? sqrtf(roughness->value > 0 ? roughness->value : 0) : roughness->value;
 }
 
-/* pbrt-v4 weighs light through rough coats too high (docs/decisions/0006): who compares pictures should know. */
+/* pbrt-v4 weighs light through rough coats too high (docs/decisions/0006): who compares images should know. */
 static void note_rough_coats(vlImport *import) {
   const vlScene *scene = import->scene;
   const vlMaterialDef *first = NULL;

@@ -1,4 +1,4 @@
-/* import/pbrt/lens.c: see lens.h. Openings' pictures and lens files become objects that the scene owns. */
+/* import/pbrt/lens.c: see lens.h. Openings' images and lens files become objects that the scene owns. */
 #include "import/pbrt/lens.h"
 
 #include <string.h>

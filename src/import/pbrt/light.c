@@ -50,15 +50,15 @@ static bool read_infinite(vlDict *dict, vlLightDef *def, bool has_color) {
   return def->path != NULL;
 }
 
-/* Goniometric and projection lights stand at the origin of their space, and need a picture. */
-static bool read_beam(vlDict *dict, vlLightDef *def) {
+/* Goniometric and projection lights stand at the origin of their space, and need an image. */
+static bool read_goniometric(vlDict *dict, vlLightDef *def) {
   vlImport *import = dict->import;
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
   double fov = 90.0;
   read_target(dict, "power", &def->power);
   if (def->kind == VL_LIGHT_PROJECTION && vl_dict_find(dict, "I", VL_BITS_SPECTRUM))
     vl_import_warn(import, VL_LOG_WARNING, dict->place,
-                   "%s: \"I\" has no effect, as in pbrt: the picture is the intensity", dict->what);
+                   "%s: \"I\" has no effect, as in pbrt: the image is the intensity", dict->what);
   if (def->kind == VL_LIGHT_PROJECTION && vl_dict_double(dict, "fov", &fov)) def->fov = (float)(fov * degrees);
   if (!vl_dict_done(dict)) return false;
   if (!file)
@@ -98,12 +98,12 @@ static bool read_light(vlDict *dict, vlLightDef *def) {
       if (!read_infinite(dict, def, given)) return false;
       break;
     case VL_LIGHT_GONIOMETRIC:
-    case VL_LIGHT_PROJECTION: return read_beam(dict, def);
+    case VL_LIGHT_PROJECTION: return read_goniometric(dict, def);
   }
   return vl_dict_done(dict);
 }
 
-/* Portals are for pictures: of a sky that is one colour, one of one pixel (as pbrt does). */
+/* Portals are for images: of a sky that is one colour, one of one pixel (as pbrt does). */
 static bool plain_sky(vlImport *import, const vlLightDef *def, vlImage **sky) {
   vlImageDef image = vl_default_image_def(1, 1, 3);
   vlError error = {0};
@@ -132,7 +132,7 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
   def.space = import->state.space;
   if (!vl_import_ctm(import, s->place, &ctm) || !read_light(&dict, &def)) return false;
   memcpy(def.world_from_light, ctm.m, sizeof def.world_from_light);
-  if (def.path) def.space = VL_SPACE_SRGB; /* a picture that does not say its own: whatever ColorSpace says, as pbrt */
+  if (def.path) def.space = VL_SPACE_SRGB; /* an image that does not say its own: whatever ColorSpace says, as pbrt */
   vlImage *sky = NULL;
   if (def.has_portal && !def.path && !plain_sky(import, &def, &sky)) return false;
   def.image = sky;

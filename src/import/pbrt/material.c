@@ -147,7 +147,7 @@ static bool read_coat(vlDict *dict, vlMaterialDef *def) {
 }
 
 /* Bumps: what every surface but a mix may have. */
-static bool read_relief(vlDict *dict, vlMaterialDef *def) {
+static bool read_bump(vlDict *dict, vlMaterialDef *def) {
   vlImport *import = dict->import;
   if (!vl_import_float_input(dict, "displacement", &def->displacement, NULL)) return false;
   vlParam *p = vl_dict_find(dict, "normalmap", 1u << VL_PARAM_STRING);
@@ -211,7 +211,7 @@ static bool read_material(vlDict *dict, vlMaterialDef *def) {
       break;
     case VL_MATERIAL_INTERFACE: break;
   }
-  if (def->kind != VL_MATERIAL_MIX && def->kind != VL_MATERIAL_INTERFACE && !read_relief(dict, def)) return false;
+  if (def->kind != VL_MATERIAL_MIX && def->kind != VL_MATERIAL_INTERFACE && !read_bump(dict, def)) return false;
   return vl_dict_done(dict);
 }
 

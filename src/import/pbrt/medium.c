@@ -112,11 +112,11 @@ static bool missing(vlDict *dict, const char *what) {
 }
 
 static bool read_grid(vlDict *dict, vlMediumDef *def) {
-  bool glows;
+  bool emissive;
   if (!read_scattering(dict, def) || !read_box(dict, def) || !read_resolution(dict, def) ||
       !read_cells(dict, "density", VL_PARAM_FLOAT, def, &def->density) ||
       !read_cells(dict, "temperature", VL_PARAM_FLOAT, def, &def->temperature) ||
-      !read_spectrum(dict, "Le", &def->emission, &glows))
+      !read_spectrum(dict, "Le", &def->emission, &emissive))
     return false;
   vlParam *scale = vl_dict_find(dict, "Lescale", 1u << VL_PARAM_FLOAT);
   if (scale && scale->floats.count == 1)
@@ -124,7 +124,7 @@ static bool read_grid(vlDict *dict, vlMediumDef *def) {
   else if (!read_cells(dict, "Lescale", VL_PARAM_FLOAT, def, &def->emission_scales))
     return false;
   read_temperature(dict, def);
-  if (glows && def->temperature)
+  if (emissive && def->temperature)
     return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
                           "%s: give either \"Le\" or \"temperature\", not both", dict->what);
   return def->density || missing(dict, "\"float density\"");

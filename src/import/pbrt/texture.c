@@ -200,7 +200,7 @@ static bool finish(vlImport *import, uint32_t index) {
   vlTextureDef def = vl_default_texture_def(kind < 0 ? VL_TEXTURE_CONSTANT : kind_values[kind], pending->spectrum);
   def.name = pending->name;
   def.source = pending->place;
-  def.space = def.kind == VL_TEXTURE_IMAGE ? VL_SPACE_SRGB : pending->space; /* pictures say their own, or are sRGB */
+  def.space = def.kind == VL_TEXTURE_IMAGE ? VL_SPACE_SRGB : pending->space; /* images say their own, or are sRGB */
   if (kind < 0) { /* a constant stands in: middle grey, or one */
     if (strcmp(pending->kind, "ptex") == 0) {
       if (!vl_import_unsupported(import, pending->place, "texture \"ptex\": Ptex files are not supported"))

@@ -2,7 +2,7 @@
  * random walk, no noise of its own. Two lobes: the coat's reflection (a delta when it is smooth) and the base seen
  * through the coat.
  *
- * Work goes in chunks with a few passes over small arrays, since looking up T(w) does not vectorise (gcc makes no
+ * Work goes in chunks with a few ignores small arrays, since looking up T(w) does not vectorise (gcc makes no
  * gathers for generic x86-64, and lanes may have tables of their own): a scalar pass copies the four nodes of each lane
  * side by side, vector passes do all the rest. */
 #include <string.h>
@@ -17,7 +17,7 @@ enum { CHUNK = 64 };
 
 /* What the passes hand on, a chunk of lanes. */
 typedef struct {
-  float through_o[CHUNK], through_i[CHUNK]; /* T(wo), T(wi) */
+  float transmittance_o[CHUNK], transmittance_i[CHUNK]; /* T(wo), T(wi) */
   float back[CHUNK], escape[CHUNK];
   int32_t bounces[CHUNK];
   float coat_share[CHUNK]; /* chance of the coat's lobe */
@@ -137,7 +137,7 @@ static inline float series(float x, int32_t k, const int bits) {
 static inline __attribute__((always_inline)) void weigh_loop(const Slice *s, const float *oz, Lanes *lanes,
                                                              const int bits) {
   const float *r0 = s->r0, *r1 = s->r1, *r2 = s->r2, *r3 = s->r3, *eta = s->eta;
-  const float *through = lanes->through_o, *back = lanes->back, *escape = lanes->escape;
+  const float *through = lanes->transmittance_o, *back = lanes->back, *escape = lanes->escape;
   const int32_t *bounces = lanes->bounces;
   float *b0 = lanes->base[0], *b1 = lanes->base[1], *b2 = lanes->base[2], *b3 = lanes->base[3];
   float *share = lanes->coat_share, *fresnel = lanes->fresnel;
@@ -163,7 +163,7 @@ static inline __attribute__((always_inline)) void weigh_loop(const Slice *s, con
 }
 
 PASS weigh(const Slice *s, const float *oz, Lanes *lanes) {
-  look_up(s, oz, lanes, lanes->through_o, OF_WO);
+  look_up(s, oz, lanes, lanes->transmittance_o, OF_WO);
   int32_t all = 0;
   for (uint32_t i = 0; i < s->live; i++) all |= lanes->bounces[i];
   if (all < 8)
@@ -193,7 +193,8 @@ PASS combine(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, vlBsdfDire
              float *density, uint32_t first) {
   const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first;
   const float *ix = wi.x + first, *iy = wi.y + first, *iz = wi.z + first;
-  const float *ax = s->ax, *ay = s->ay, *eta = s->eta, *through_i = lanes->through_i, *share = lanes->coat_share;
+  const float *ax = s->ax, *ay = s->ay, *eta = s->eta, *transmittance_i = lanes->transmittance_i,
+              *share = lanes->coat_share;
   const float *b0 = lanes->base[0], *b1 = lanes->base[1], *b2 = lanes->base[2], *b3 = lanes->base[3];
   float *v0 = value[0] + first, *v1 = value[1] + first, *v2 = value[2] + first, *v3 = value[3] + first;
   float *pdf = density + first;
@@ -207,7 +208,7 @@ PASS combine(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, vlBsdfDire
     float xo = ox[i], yo = oy[i], zo = vl_abs(oz[i]), xi = ix[i], yi = iy[i], zi = vl_abs(iz[i]);
     vlVec3 o = vl_vec3(xo * on, yo * on, zo * on + off), w = vl_vec3(xi * on, yi * on, zi * on + off);
     CoatLobe c = coat_lobe(o, w, ax[i], ay[i], eta[i]);
-    float t = through_i[i] * w.z;
+    float t = transmittance_i[i] * w.z;
     float p = share[i];
     float f0 = c.coat + b0[i] * t, f1 = c.coat + b1[i] * t, f2 = c.coat + b2[i] * t, f3 = c.coat + b3[i] * t;
     float d = p * c.coat_pdf + (1.0f - p) * (w.z * VL_INV_PI);
@@ -225,7 +226,7 @@ void vl_bsdf_coat_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections 
   for (uint32_t first = 0; first < n; first += CHUNK) {
     Slice s = slice_of(params, n, first);
     weigh(&s, wo.z + first, &lanes);
-    look_up(&s, wi.z + first, &lanes, lanes.through_i, OF_LIGHT);
+    look_up(&s, wi.z + first, &lanes, lanes.transmittance_i, OF_LIGHT);
     combine(&s, &lanes, wo, wi, value, pdf, first);
   }
 }
@@ -259,7 +260,7 @@ PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
             float *const weight[4], float *density, uint32_t *flags, uint32_t first) {
   const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first, *lobe = u_lobe + first;
   float *ix = wi.x + first, *iy = wi.y + first, *iz = wi.z + first;
-  const float *ax = s->ax, *ay = s->ay, *eta = s->eta, *through_i = lanes->through_i;
+  const float *ax = s->ax, *ay = s->ay, *eta = s->eta, *transmittance_i = lanes->transmittance_i;
   const float *share = lanes->coat_share, *fresnel = lanes->fresnel;
   const float *b0 = lanes->base[0], *b1 = lanes->base[1], *b2 = lanes->base[2], *b3 = lanes->base[3];
   float *w0 = weight[0] + first, *w1 = weight[1] + first, *w2 = weight[2] + first, *w3 = weight[3] + first;
@@ -275,7 +276,7 @@ PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
     float p = share[i];
     int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (eta[i] == 1.0f), mirror = (lobe[i] < p) & smooth;
     CoatLobe c = coat_lobe(o, w, ax[i], ay[i], eta[i]);
-    float t = through_i[i] * w.z;
+    float t = transmittance_i[i] * w.z;
     float m = mirror ? 1.0f : 0.0f, k = 1.0f - m; /* c is 0 where the coat is smooth */
     float d = p * (c.coat_pdf + m) + (1.0f - p) * (w.z * VL_INV_PI) * k;
     float inverse = 1.0f / (d > 1e-30f ? d : 1e-30f);
@@ -301,7 +302,7 @@ void vl_bsdf_coat_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
     Slice s = slice_of(params, n, first);
     weigh(&s, wo.z + first, &lanes);
     choose(&s, &lanes, wo, u_lobe, u, v, wi, first);
-    look_up(&s, wi.z + first, &lanes, lanes.through_i, OF_WI);
+    look_up(&s, wi.z + first, &lanes, lanes.transmittance_i, OF_WI);
     settle(&s, &lanes, wo, u_lobe, wi, weight, pdf, flags, first);
     for (uint32_t i = 0; i < s.count; i++) eta_scale[first + i] = 1.0f;
   }

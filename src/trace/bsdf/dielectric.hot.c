@@ -1,6 +1,7 @@
 /* trace/bsdf/dielectric.hot.c: glass and water, smooth or of GGX microfacets, single scattering (pbrt book 9.5, 9.7;
  * Walter et al. 2007). Reflection or transmission is chosen by Fresnel at the microfacet that was sampled, which makes
- * the sample's weight G/G1 for both, for transmission over eta^2: radiance is squeezed into a smaller solid angle. */
+ * the sample's weight G/G1 for both, for transmission over eta^2: radiance is entry_eta_scale into a smaller solid
+ * angle. */
 #include "trace/bsdf/local.h"
 
 void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,

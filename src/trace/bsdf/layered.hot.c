@@ -57,7 +57,7 @@ static void join_medium(const Layers *l, vlVec3 w, float height, const Step *to,
 /* The other way: w was sampled (with pdf; 0: by a delta) and goes up through a rough coat to the light at wi. */
 static void join_coat(const Layers *l, vlVec3 w, float height, vlVec3 wi, const float beta[4], float pdf, float f[4]) {
   if (l->smooth || !(w.z > 0.0f)) return;
-  float other, value = coat_through(l, wi, vl_neg(w), &other);
+  float other, value = coat_transmit(l, wi, vl_neg(w), &other);
   if (!(value > 0.0f)) return;
   float weight = value * (pdf > 0.0f ? power(pdf, other) : 1.0f) * layers_pass(l->thickness - height, w);
   for (int c = 0; c < 4; c++) f[c] += beta[c] * weight;

@@ -77,7 +77,7 @@ static inline Step coat_enter(const Layers *l, vlVec3 o, float u, float v) {
 
 /* f of a rough coat between o outside and w below it, as coat_enter samples it. By reciprocity it is also f of radiance
  * that leaves from -w towards o. */
-static inline float coat_through(const Layers *l, vlVec3 o, vlVec3 w, float *pdf) {
+static inline float coat_transmit(const Layers *l, vlVec3 o, vlVec3 w, float *pdf) {
   float inverse = 1.0f / l->eta;
   vlVec3 h =
       vl_normalize(vl_vec3(o.x + l->eta * w.x, o.y + l->eta * w.y, o.z + l->eta * w.z)); /* away from the denser side */

@@ -154,7 +154,7 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
   const float *metallic = s->row[VL_P_METALLIC], *f90s = s->row[VL_P_F90], *clears = s->row[VL_P_TRANSMISSION];
   const float *thins = s->row[VL_P_THIN], *shares_row = s->row[VL_P_DIFFUSE_TRANSMISSION], *films = s->row[VL_P_FILM];
   uint32_t count = VL_WHOLE(s->count);
-  const float *bases = s->base[c], *normals = s->row[VL_P_F0 + c], *throughs = s->row[VL_P_THROUGH + c];
+  const float *bases = s->base[c], *normals = s->row[VL_P_F0 + c], *transmissions = s->row[VL_P_THROUGH + c];
   const float *sheens = s->row[VL_P_SHEEN + c];
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
@@ -181,8 +181,9 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
                   p->hide_matt[i] * (matt * (1.0f - shares) * base + metal * metal_again * again +
                                      sheet_again * sheet_mean + body_up) +
                   p->coat[i] + fuzz;
-    float lower = p->hide_through[i] * (dielectric * clear * base * (1.0f - fd) * facet + matt * shares * throughs[i] +
-                                        sheet_again * (1.0f - sheet_mean) * base + body_down);
+    float lower =
+        p->hide_through[i] * (dielectric * clear * base * (1.0f - fd) * facet + matt * shares * transmissions[i] +
+                              sheet_again * (1.0f - sheet_mean) * base + body_down);
     result[i] = upper * p->upper[i] + lower * p->lower[i];
   }
 }

@@ -6,11 +6,11 @@
 #include "color/color.h"
 #include "trace/ground_truth/scratch.h"
 
-size_t vl_truth_scratch_size(void) {
-  return sizeof(struct vlTruthScratch);
+size_t vl_ground_truth_scratch_size(void) {
+  return sizeof(struct vlGroundTruthScratch);
 }
 
-static void plan_rgb(vlColorSpace space, vlTruthDef *def) {
+static void plan_rgb(vlColorSpace space, vlGroundTruthDef *def) {
   float to[9], from[9];
   vl_rgb_from_xyz(space, to);
   vl_xyz_from_rgb(VL_SPACE_SRGB, from); /* reflectances are linear Rec.709 there */
@@ -23,7 +23,7 @@ static void plan_rgb(vlColorSpace space, vlTruthDef *def) {
 
 /* Quadrature over the visible wavelengths under the white of the colour space, so scaled that what reflects everything
  * is (1, 1, 1) (pbrt book 4.6.3: the colour of a reflectance under an illuminant). */
-static void plan_spectral(vlColorSpace space, vlTruthDef *def) {
+static void plan_spectral(vlColorSpace space, vlGroundTruthDef *def) {
   float m[9];
   vl_rgb_from_xyz(space, m);
   const float *white = vl_space_illuminant(space), *cie[3] = {vl_cie_x(), vl_cie_y(), vl_cie_z()};
@@ -45,7 +45,7 @@ static void plan_spectral(vlColorSpace space, vlTruthDef *def) {
       for (int i = 0; i < 3; i++) def->weight[k][c][i] = (float)(weight[k][c][i] / sum[i]);
 }
 
-void vl_truth_plan_albedo(const vlWorld *world, vlColorSpace space, vlTruthDef *def) {
+void vl_ground_truth_plan_albedo(const vlWorld *world, vlColorSpace space, vlGroundTruthDef *def) {
   memset(def->weight, 0, sizeof def->weight);
   bool spectral = world->def.color != VL_COLOR_RGB;
   def->sets = def->albedo && spectral ? VL_TRUTH_SETS : 1;

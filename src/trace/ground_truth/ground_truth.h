@@ -8,21 +8,21 @@
 /* Albedo: the sum over `sets` of 4 channels of reflectance times weight[set][channel][rgb]. Spectral: 64 wavelengths;
  * RGB mode: one set, the matrix of the colour space. */
 enum { VL_TRUTH_SETS = 16 };
-typedef struct vlTruthDef {
+typedef struct vlGroundTruthDef {
   float pixel_spread, pixel_width; /* as in vlTraceDef */
   vlIsa isa;
   bool shading, albedo; /* what is wanted of normals of shading (bump maps) and albedo */
   uint32_t sets;
   float lambda[VL_TRUTH_SETS][4];
   float weight[VL_TRUTH_SETS][4][3];
-} vlTruthDef;
+} vlGroundTruthDef;
 
 /* Fills sets, lambda and weight; one set of no weight where def wants no albedo. */
-void vl_truth_plan_albedo(const vlWorld *world, vlColorSpace space, vlTruthDef *def);
+void vl_ground_truth_plan_albedo(const vlWorld *world, vlColorSpace space, vlGroundTruthDef *def);
 
 /* Rays in double, d of unit length, n <= VL_BATCH; arrays of VL_ROW_SIZE. Where nothing is met: distance infinity, the
  * rest zero. Ids count from 1. */
-typedef struct vlTruthBatch {
+typedef struct vlGroundTruthBatch {
   uint32_t n;
   float time; /* the world's, of all rays (world/shape/moving.h) */
   double o[3][VL_ROW_SIZE], d[3][VL_ROW_SIZE];
@@ -30,35 +30,37 @@ typedef struct vlTruthBatch {
   double distance[VL_ROW_SIZE];
   float n_shading[3][VL_ROW_SIZE], n_geometric[3][VL_ROW_SIZE], uv[2][VL_ROW_SIZE], albedo[3][VL_ROW_SIZE];
   uint32_t object[VL_ROW_SIZE], material[VL_ROW_SIZE], instance[VL_ROW_SIZE], primitive[VL_ROW_SIZE];
-} vlTruthBatch;
+} vlGroundTruthBatch;
 
-/* Only who is met, by the very rays that the picture's paths begin with: floats, VL_PAD(n) of them. distance (may be
+/* Only who is met, by the very rays that the image's paths begin with: floats, VL_PAD(n) of them. distance (may be
  * null): in float, for choosing; infinity where nothing is met. Ids as above. */
-typedef struct vlTruthHits {
+typedef struct vlGroundTruthHits {
   uint32_t n;
   const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;
   const float *time; /* the world's; null where nothing moves */
   uint32_t *object, *material, *instance;
   float *distance;
-} vlTruthHits;
+} vlGroundTruthHits;
 
 /* Everything on the way of one ray of a batch, seen or hidden behind the rest: how many crossings at most are looked
  * at. */
 enum { VL_TRUTH_LAYERS = 256 };
-typedef struct vlTruthLayers {
+typedef struct vlGroundTruthLayers {
   uint32_t count;
   uint32_t object[VL_TRUTH_LAYERS], instance[VL_TRUTH_LAYERS];
-} vlTruthLayers;
+} vlGroundTruthLayers;
 
-typedef struct vlTruthScratch vlTruthScratch;
-size_t vl_truth_scratch_size(void); /* allocate 64-byte aligned, zeroed */
+typedef struct vlGroundTruthScratch vlGroundTruthScratch;
+size_t vl_ground_truth_scratch_size(void); /* allocate 64-byte aligned, zeroed */
 
-typedef struct vlTruthKernels {
-  void (*trace)(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *scratch, vlTruthBatch *batch);
-  void (*hits)(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *scratch, const vlTruthHits *hits);
+typedef struct vlGroundTruthKernels {
+  void (*trace)(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTruthScratch *scratch,
+                vlGroundTruthBatch *batch);
+  void (*hits)(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTruthScratch *scratch,
+               const vlGroundTruthHits *hits);
   /* Of lane `lane` of a batch that was traced: the crossings behind (and with) what it met, each surface once. */
-  void (*layers)(const vlWorld *world, const vlTruthBatch *batch, uint32_t lane, vlTruthLayers *layers);
-} vlTruthKernels;
-VL_KERNEL_TABLE(vlTruthKernels, vl_truth)
+  void (*layers)(const vlWorld *world, const vlGroundTruthBatch *batch, uint32_t lane, vlGroundTruthLayers *layers);
+} vlGroundTruthKernels;
+VL_KERNEL_TABLE(vlGroundTruthKernels, vl_ground_truth)
 
 #endif

@@ -67,7 +67,7 @@ static double curved_distance(const vlWorldShape *s, const vlWorldInstance *q, u
   return t;
 }
 
-static double exact_distance(const vlWorld *world, const vlTruthBatch *batch, uint32_t lane, const vlHits *h,
+static double exact_distance(const vlWorld *world, const vlGroundTruthBatch *batch, uint32_t lane, const vlHits *h,
                              uint32_t i, double t) {
   const vlWorldShape *s = &world->shapes.items[h->shape[i]];
   vlWorldInstance room;
@@ -81,7 +81,7 @@ static double exact_distance(const vlWorld *world, const vlTruthBatch *batch, ui
 
 /* ---- what it looks like ------------------------------------------------------------------------------------------ */
 
-static void keep_frames(vlTruthScratch *s, uint32_t n, bool back) {
+static void keep_frames(vlGroundTruthScratch *s, uint32_t n, bool back) {
   vlSurface *f = &s->trace.surface;
   float *rows[6] = {f->nx, f->ny, f->nz, f->ux, f->uy, f->uz};
   for (int k = 0; k < 6; k++)
@@ -105,8 +105,8 @@ static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, float
   return ((n - 1.0f) * (n - 1.0f) + k * k) / ((n + 1.0f) * (n + 1.0f) + k * k);
 }
 
-static void add_albedo(const vlWorld *world, const vlTruthDef *def, uint32_t set, uint32_t n, vlTraceScratch *s,
-                       vlTruthBatch *batch) {
+static void add_albedo(const vlWorld *world, const vlGroundTruthDef *def, uint32_t set, uint32_t n, vlTraceScratch *s,
+                       vlGroundTruthBatch *batch) {
   for (uint32_t i = 0; i < n; i++) {
     const vlWorldMaterial *m = &world->materials.items[s->hits_b.material[i]];
     uint32_t lane = s->b.lane[i];
@@ -117,8 +117,8 @@ static void add_albedo(const vlWorld *world, const vlTruthDef *def, uint32_t set
   }
 }
 
-static void shade(const vlWorld *world, const vlTruthDef *def, uint32_t n, vlTruthScratch *scratch,
-                  vlTruthBatch *batch) {
+static void shade(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n, vlGroundTruthScratch *scratch,
+                  vlGroundTruthBatch *batch) {
   vlTraceScratch *s = &scratch->trace;
   keep_frames(scratch, n, false);
   for (uint32_t set = 0; set < def->sets; set++) {
@@ -136,7 +136,7 @@ static void shade(const vlWorld *world, const vlTruthDef *def, uint32_t n, vlTru
 
 /* ---- the batch --------------------------------------------------------------------------------------------------- */
 
-static void start(const vlTruthDef *def, vlTruthBatch *batch, vlPaths *p) {
+static void start(const vlGroundTruthDef *def, vlGroundTruthBatch *batch, vlPaths *p) {
   for (uint32_t i = 0; i < batch->n; i++) {
     p->ox[i] = (float)batch->o[0][i], p->oy[i] = (float)batch->o[1][i], p->oz[i] = (float)batch->o[2][i];
     p->dx[i] = (float)batch->d[0][i], p->dy[i] = (float)batch->d[1][i], p->dz[i] = (float)batch->d[2][i];
@@ -152,7 +152,7 @@ static void start(const vlTruthDef *def, vlTruthBatch *batch, vlPaths *p) {
 }
 
 /* Lanes of a that met something, close together in b. */
-static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s, vlTruthBatch *batch) {
+static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s, vlGroundTruthBatch *batch) {
   const vlPaths *a = &s->a;
   vlPaths *b = &s->b;
   vlHits *h = &s->hits_a, *g = &s->hits_b;
@@ -174,7 +174,8 @@ static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s,
   return count;
 }
 
-static void trace(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *scratch, vlTruthBatch *batch) {
+static void trace(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTruthScratch *scratch,
+                  vlGroundTruthBatch *batch) {
   vlTraceScratch *s = &scratch->trace;
   start(def, batch, &s->a);
   s->a.time = s->b.time = world->moves ? scratch->time : NULL;
@@ -204,7 +205,8 @@ static void trace(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *s
 /* ---- who is met ---------------------------------------------------------------------------------------------------
  */
 
-static void hits(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *scratch, const vlTruthHits *to) {
+static void hits(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTruthScratch *scratch,
+                 const vlGroundTruthHits *to) {
   vlTraceScratch *s = &scratch->trace;
   vlPaths *p = &s->a;
   uint32_t n = to->n;
@@ -239,7 +241,7 @@ static void hits(const vlWorld *world, const vlTruthDef *def, vlTruthScratch *sc
 }
 
 /* As interfaces are passed (hits.hot.c): past each surface by what its point may be wrong. */
-static void layers(const vlWorld *world, const vlTruthBatch *batch, uint32_t lane, vlTruthLayers *to) {
+static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32_t lane, vlGroundTruthLayers *to) {
   float o[3], d[3], t_min = batch->t_min[lane];
   for (int k = 0; k < 3; k++) o[k] = (float)batch->o[k][lane], d[k] = (float)batch->d[k][lane];
   to->count = 0;
@@ -268,4 +270,4 @@ static void layers(const vlWorld *world, const vlTruthBatch *batch, uint32_t lan
   }
 }
 
-const vlTruthKernels vl_truth_kernel_table = {trace, hits, layers};
+const vlGroundTruthKernels vl_ground_truth_kernel_table = {trace, hits, layers};

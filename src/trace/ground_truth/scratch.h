@@ -5,7 +5,7 @@
 #include "trace/ground_truth/ground_truth.h"
 #include "trace/stages.h"
 
-struct vlTruthScratch {
+struct vlGroundTruthScratch {
   vlTraceScratch trace;
   VL_ROW float light[4][VL_ROW_SIZE]; /* radiance that nobody asks for */
   VL_ROW float time[VL_ROW_SIZE];

@@ -46,7 +46,7 @@ static float point_density(const vlWorld *world, const vlWorldLight *light, vlVe
   return (float)vl_shape_pdf(s, light->prim, &point);
 }
 
-/* Pictures of the sky have a density that leaves out what is dim (other ways find that better): half of the light's
+/* Images of the sky have a density that leaves out what is dim (other ways find that better): half of the light's
  * paths go by it, half from anywhere. */
 static float sky_density(const vlWorld *world, const vlWorldLight *light, vlVec3 w) {
   if (light->environment == VL_NONE) return VL_INV_4PI;
@@ -117,7 +117,7 @@ static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float 
   Spot r = {vl_vec3(0, 0, 0),  vl_vec3(light->direction[0], light->direction[1], light->direction[2]), 0, 0, 0,
             {b[0], b[1], b[2]}};
   vlVec3 ns = vl_vec3(0, 0, 0);
-  const float *uvs = s->glow_uvs ? s->glow_uvs : s->uvs;
+  const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
   for (int k = 0; k < 3; k++) {
     r.p = vl_add(r.p, vl_mul(vl_vec3(q[3 * k], q[3 * k + 1], q[3 * k + 2]), b[k]));
     const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
@@ -255,7 +255,7 @@ vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const f
     case VL_WL_SPOT:
     case VL_WL_GONIOMETRIC:
     case VL_WL_PROJECTION: {
-      bool picture = light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION;
+      bool image = light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION;
       float span = span_of(light), factor = 2.0f * VL_PI * span;
       vlVec2 st = {0, 0};
       if (span == 2.0f) {
@@ -265,9 +265,9 @@ vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const f
         r.d = vl_normalize(vl_from_local(vl_frame_from_z(direction), local));
         if (light->kind == VL_WL_SPOT) factor *= spot_factor(light, local.z);
       }
-      if (picture) factor *= vl_beam(world, light, vl_neg(r.d), &st);
+      if (image) factor *= vl_goniometric_scale(world, light, vl_neg(r.d), &st);
       r.o = r.at = position;
-      vl_emitted_at(world, e, lambda, st.x, st.y, picture, r.flux);
+      vl_emitted_at(world, e, lambda, st.x, st.y, image, r.flux);
       for (int c = 0; c < 4; c++) r.flux[c] *= factor;
       r.density = 1.0f / (2.0f * VL_PI * span);
       r.delta = r.valid = true;

@@ -2,9 +2,9 @@
  * weigh against each other, each in its own way. Scalar: each lane meets a light of its own. */
 #include "trace/stages.h"
 
-vlMetLight vl_meet_sky(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k) {
+vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k) {
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  vlMetLight met = {.light = world->infinite_lights.items[k]};
+  vlHitLight met = {.light = world->infinite_lights.items[k]};
   const vlWorldLight *light = &world->lights.items[met.light];
   float lambda[4];
   vl_path_lambda(p, i, lambda);
@@ -15,7 +15,7 @@ vlMetLight vl_meet_sky(const vlWorld *world, const vlPaths *p, uint32_t i, size_
   return met;
 }
 
-bool vl_meet_glow(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlMetLight *met) {
+bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlHitLight *met) {
   met->light = vl_shape_light(&world->shapes.items[h->shape[i]], h->prim[i]);
   if (met->light == VL_NONE) return false;
   const vlWorldLight *light = &world->lights.items[met->light];
@@ -25,7 +25,7 @@ bool vl_meet_glow(const vlWorld *world, const vlPaths *p, const vlHits *h, uint3
   if (!(vl_dot(d, met->at.g) < 0.0f) && !e->two_sided) return false;
   float lambda[4];
   vl_path_lambda(p, i, lambda);
-  vlVec2 uv = vl_glow_uv(world, light, &met->at);
+  vlVec2 uv = vl_emission_uv(world, light, &met->at);
   vl_emitted_at(world, e, lambda, uv.x, 1.0f - uv.y, false, met->radiance);
   met->pdf = 0.0f;
   if (!p->specular[i])

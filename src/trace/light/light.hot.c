@@ -178,7 +178,7 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
   }
   if (with_uv) {
     static const float unit[6] = {0, 0, 1, 0, 1, 1};
-    const float *uvs = s->glow_uvs ? s->glow_uvs : s->uvs;
+    const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
     for (int k = 0; k < 3; k++) {
       const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
       r.u += b[k] * t[0], r.v += b[k] * t[1];
@@ -187,10 +187,10 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
   return r;
 }
 
-vlVec2 vl_glow_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint *at) {
+vlVec2 vl_emission_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint *at) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   vlVec2 uv = {at->u, at->v};
-  if (!s->glow_uvs) return uv;
+  if (!s->emission_uvs) return uv;
   const float *q = light->corners;
   vlVec3 a = vl_vec3(q[0], q[1], q[2]), e1 = vl_sub(vl_vec3(q[3], q[4], q[5]), a),
          e2 = vl_sub(vl_vec3(q[6], q[7], q[8]), a);
@@ -198,8 +198,8 @@ vlVec2 vl_glow_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint
   float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
   float b1 = vl_dot(vl_cross(way, e2), g) * inv, b2 = vl_dot(vl_cross(e1, way), g) * inv;
   const uint32_t *f = s->indices + 3 * (size_t)light->prim;
-  const float *t0 = s->glow_uvs + 2 * (size_t)f[0], *t1 = s->glow_uvs + 2 * (size_t)f[1],
-              *t2 = s->glow_uvs + 2 * (size_t)f[2];
+  const float *t0 = s->emission_uvs + 2 * (size_t)f[0], *t1 = s->emission_uvs + 2 * (size_t)f[1],
+              *t2 = s->emission_uvs + 2 * (size_t)f[2];
   uv.x = (1.0f - b1 - b2) * t0[0] + b1 * t1[0] + b2 * t2[0];
   uv.y = (1.0f - b1 - b2) * t0[1] + b1 * t1[1] + b2 * t2[1];
   return uv;
@@ -266,16 +266,16 @@ static float spot_edge(const vlWorldLight *light, float x) {
   return light->cone_squared ? t * t : t * t * (3.0f - 2.0f * t);
 }
 
-float vl_beam(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st) {
+float vl_goniometric_scale(const vlWorld *world, const vlWorldLight *light, vlVec3 w, vlVec2 *st) {
   vlVec3 d = vl_normalize(turn(light->corners, vl_neg(w)));
   *st = (vlVec2){0, 0};
   if (light->kind == VL_WL_GONIOMETRIC) {
-    const vlMipmap *mip = world->images.items[light->picture].mipmap;
+    const vlMipmap *mip = world->images.items[light->image].mipmap;
     vlVec2 at = vl_octahedral_encode(d);
     vlTexel x = vl_nearest(mip, 0, at.x, at.y, VL_WRAP_OCTAHEDRAL);
     return vl_max(0.0f, mip->channels < 3 ? x.c[0] : (x.c[0] + x.c[1] + x.c[2]) / 3.0f);
   }
-  float x = d.x / d.z / light->slide[0], y = d.y / d.z / light->slide[1];
+  float x = d.x / d.z / light->image_extent[0], y = d.y / d.z / light->image_extent[1];
   if (!(d.z > 1e-3f) || !(vl_abs(x) <= 1.0f) || !(vl_abs(y) <= 1.0f)) return 0.0f;
   *st = (vlVec2){0.5f * (x + 1.0f), 0.5f * (y + 1.0f)};
   return 1.0f;
@@ -301,7 +301,8 @@ static Arrival from_position(const vlWorld *world, const vlWorldLight *light, co
     factor *= spot_edge(light, c);
   }
   vlVec2 st = {0, 0};
-  if (light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION) factor *= vl_beam(world, light, r.w, &st);
+  if (light->kind == VL_WL_GONIOMETRIC || light->kind == VL_WL_PROJECTION)
+    factor *= vl_goniometric_scale(world, light, r.w, &st);
   vl_emitted_at(world, &world->emitted.items[light->emitted], lambda, st.x, st.y, true, r.radiance);
   for (int c = 0; c < 4; c++) r.radiance[c] *= factor;
   return r;

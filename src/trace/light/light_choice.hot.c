@@ -16,7 +16,7 @@ typedef struct Walk {
 
 /* The normal that light's cosine is taken to; 0 where light from all around counts alike. */
 static inline vlVec3 facing_light(const vlSurface *f, uint32_t i) {
-  return vl_mul(vl_vec3(f->nx[i], f->ny[i], f->nz[i]), 1.0f - f->all_round[i]);
+  return vl_mul(vl_vec3(f->nx[i], f->ny[i], f->nz[i]), 1.0f - f->no_cosine[i]);
 }
 
 /* Lanes that chose a light without bounds are done (light set); the others stand at the root. */

@@ -21,7 +21,7 @@ static bool borders(const vlWorldShape *s) {
 }
 
 /* The answer most often given; far: from outside the world towards its middle. */
-static bool ask_around(const vlWorld *world, vlVec3 p, bool far, uint32_t *medium) {
+static bool surrounding_medium(const vlWorld *world, vlVec3 p, bool far, uint32_t *medium) {
   uint32_t answer[ANSWERS], votes[ANSWERS], answers = 0, best = 0;
   for (int k = 0; k < ASKED; k++) {
     vlVec3 w = vl_warp_sphere(((float)k + 0.5f) / ASKED, 0.618034f * (float)k - (float)(int)(0.618034f * (float)k));
@@ -95,6 +95,7 @@ void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium) 
       if (light->kind == VL_WL_DISTANT) w = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
       p = vl_add(vl_vec3(world->center[0], world->center[1], world->center[2]), vl_mul(w, 2.0f * world->radius));
     }
-    if (!ask_around(world, p, far, &medium[i])) medium[i] = on_the_way(world, vl_vec3(eye[0], eye[1], eye[2]), p);
+    if (!surrounding_medium(world, p, far, &medium[i]))
+      medium[i] = on_the_way(world, vl_vec3(eye[0], eye[1], eye[2]), p);
   }
 }

@@ -89,7 +89,7 @@ void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint
   const vlWorldMaterial *m = &world->materials.items[material];
   vlShade *shade = &s->shade;
   vlTextureRun r = {world, s, &s->b, &s->surface, first, last, 0, NULL, NULL, NULL, NULL, NULL};
-  for (uint32_t i = first; m->hair && i < last; i++) s->surface.all_round[i] = 1.0f;
+  for (uint32_t i = first; m->hair && i < last; i++) s->surface.no_cosine[i] = 1.0f;
   if (m->displacement >= 0) bump(&r, m->displacement);
   if (m->normal_map >= 0) normal_map(&r, m->normal_map);
   r.top = 0;
@@ -117,7 +117,7 @@ void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint
   if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) vl_stage_translucent(&r, m);
   if (m->hair) vl_stage_hair(&r, m);
   for (uint32_t i = first; i < last && m->measured; i++) shade->measured[i] = m->measured;
-  if (m->subsurface) vl_stage_bodies(&r, m);
+  if (m->subsurface) vl_stage_subsurface_inputs(&r, m);
   for (uint32_t i = first; i < last && m->kind != VL_MATERIAL_PRINCIPLED && !m->hair; i++) {
     shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
     shade->coat[i] = m->coat;

@@ -14,7 +14,7 @@ static void share(vlTextureRun *r, int32_t node, float *row) {
 
 /* ---- normals ----------------------------------------------------------------------------------------------------- */
 
-/* The mapped normal of a tangent-space picture. Its green points along dpdv as glTF has it (up in the picture). */
+/* The mapped normal of a tangent-space image. Its green points along dpdv as glTF has it (up in the image). */
 static vlVec3 mapped(const vlTextureRun *r, const vlTextureNode *node, float scale, uint32_t i) {
   const vlSurface *f = &r->s->surface;
   vlTexel t = vl_texture_image(node, r->world->images.items[node->image].mipmap, vl_texture_point_of(r, node, i));
@@ -107,7 +107,7 @@ void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m) {
   share(r, p->transmission, rows[VL_P_TRANSMISSION]);
   fill(rows[VL_P_THIN], first, last, p->thin ? 1.0f : 0.0f);
   fill(rows[VL_P_DIFFUSE_TRANSMISSION], first, last, 0.0f);
-  if (p->has_through) {
+  if (p->has_transmission) {
     share(r, p->diffuse_transmission, rows[VL_P_DIFFUSE_TRANSMISSION]);
     vl_rows_albedo(r, p->through, 1.0f, rows + VL_P_THROUGH);
   } else {

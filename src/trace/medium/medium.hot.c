@@ -142,8 +142,8 @@ static bool next_collision(const vlWorldMedium *m, vlFlight *f, Tracking *k) {
   }
 }
 
-static vlFlightEnd fly_through(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, bool emission,
-                               vlFlight *f, float radiance[4], float *t) {
+static vlFlightEnd sample_heterogeneous(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, bool emission,
+                                        vlFlight *f, float radiance[4], float *t) {
   vlMediumLight whole = vl_medium_coefficients(m, f->lambda);
   Tracking k = {0};
   int h = f->hero;
@@ -196,7 +196,7 @@ static vlFlightEnd fly_through(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float
   return VL_FLIGHT_PASSED;
 }
 
-static void attenuate_through(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, vlFlight *f) {
+static void attenuate_heterogeneous(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, vlFlight *f) {
   vlMediumLight whole = vl_medium_coefficients(m, f->lambda);
   Tracking k = {0};
   int h = f->hero;
@@ -229,7 +229,7 @@ vlFlightEnd vl_fly(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t
                    float radiance[4], float *t) {
   if (!(t1 > t0)) return VL_FLIGHT_PASSED;
   if (m->kind == VL_MEDIUM_HOMOGENEOUS) return fly_homogeneous(m, t0, t1, emission, f, radiance, t);
-  return fly_through(m, o, d, t0, t1, emission, f, radiance, t);
+  return sample_heterogeneous(m, o, d, t0, t1, emission, f, radiance, t);
 }
 
 void vl_attenuate(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, vlFlight *f) {
@@ -237,5 +237,5 @@ void vl_attenuate(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1
   if (m->kind == VL_MEDIUM_HOMOGENEOUS)
     attenuate_homogeneous(m, t0, t1, f);
   else
-    attenuate_through(m, o, d, t0, t1, f);
+    attenuate_heterogeneous(m, o, d, t0, t1, f);
 }

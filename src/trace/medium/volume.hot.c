@@ -114,14 +114,14 @@ static void add_light(vlTracing *t, uint32_t i, const float radiance[4], float l
 
 static void add_sky(vlTracing *t, uint32_t i) {
   for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
-    vlMetLight met = vl_meet_sky(t->world, &t->s->a, i, k);
+    vlHitLight met = vl_hit_infinite(t->world, &t->s->a, i, k);
     add_light(t, i, met.radiance, met.pdf);
   }
 }
 
-static void add_glow(vlTracing *t, uint32_t i) {
-  vlMetLight met;
-  if (vl_meet_glow(t->world, &t->s->a, &t->s->hits_a, i, &met)) add_light(t, i, met.radiance, met.pdf);
+static void add_emission(vlTracing *t, uint32_t i) {
+  vlHitLight met;
+  if (vl_hit_emission(t->world, &t->s->a, &t->s->hits_a, i, &met)) add_light(t, i, met.radiance, met.pdf);
 }
 
 static void emission(vlTracing *t, uint32_t n) {
@@ -129,7 +129,7 @@ static void emission(vlTracing *t, uint32_t n) {
   for (uint32_t i = 0; i < n; i++) {
     uint8_t event = t->s->volume.event[i];
     if (event == VL_IN_SKY) add_sky(t, i);
-    if (event == VL_ON_SURFACE && t->world->shapes.items[h->shape[i]].first_light != VL_NONE) add_glow(t, i);
+    if (event == VL_ON_SURFACE && t->world->shapes.items[h->shape[i]].first_light != VL_NONE) add_emission(t, i);
   }
 }
 
@@ -203,7 +203,7 @@ uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
     p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
     s->surface.px[i] = p->ox[i], s->surface.py[i] = p->oy[i], s->surface.pz[i] = p->oz[i];
     s->surface.nx[i] = s->surface.ny[i] = s->surface.nz[i] = 0.0f; /* light comes from everywhere */
-    s->surface.all_round[i] = 1.0f;
+    s->surface.no_cosine[i] = 1.0f;
   }
   return count;
 }

@@ -13,7 +13,7 @@
  *   halton           radical inverses in the primes, Owen-scrambled for each pixel
  *   sobol            Sobol' pairs, Owen-scrambled and shuffled for each pixel and pair (Burley 2020)
  *   zsobol           the same along the Morton curve of the pixels, so that the error of neighbours differs (Ahmed and
- *                    Wonka 2020): blue noise over the picture
+ *                    Wonka 2020): blue noise over the image
  *
  * Stratified kinds cut exactly spp cells, whatever spp is. An index of spp or above starts a new, independent set
  * (independent, sobol: goes on in the sequence). */
@@ -27,10 +27,10 @@ typedef struct vlSampler {
   vlSamplerKind kind;
   uint32_t seed;
   uint32_t spp;            /* samples a pixel shall get in the end */
-  uint32_t width, height;  /* whole picture */
+  uint32_t width, height;  /* whole image */
   uint32_t set;            /* samples in a set of the stratified kinds: spp, at most 2^20 */
   uint32_t log2_spp;       /* rounded up; zsobol: index bits below the Morton code */
-  uint32_t morton_bits;    /* of the picture's Morton codes */
+  uint32_t morton_bits;    /* of the image's Morton codes */
   uint32_t grid_x, grid_y; /* rows of grid_x or (the last grid_y - wide) of grid_x - 1 cells: set cells in all */
   uint32_t wide;           /* how many rows have grid_x cells */
   uint32_t jitter_bits;    /* random bits below a cell's number; cell and jitter together are exact in a float */

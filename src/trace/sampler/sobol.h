@@ -1,5 +1,5 @@
 /* trace/sampler/sobol.h: Sobol's first two dimensions for each pair ("padding"), index shuffled and both numbers
- * Owen-scrambled: for each pixel anew (sobol), or along the Morton curve of the whole picture (zsobol).
+ * Owen-scrambled: for each pixel anew (sobol), or along the Morton curve of the whole image (zsobol).
  *
  * Bit reversals are most of the cost, so they are merged: with r = reverse(index), L = the reversed scrambles,
  *   shuffled index  j = reverse(L(r)),   first number  reverse(L(j)),   second  reverse(L(pascal j)). */
@@ -35,7 +35,7 @@ VL_SAMPLER_INLINE void vl_sobol_pixel(const int pair, const vlSampler *s, uint32
   }
 }
 
-/* i = morton(pixel) 2^s + sample. Its low 32 bits go through the shuffle; what is above them (pictures and sample
+/* i = morton(pixel) 2^s + sample. Its low 32 bits go through the shuffle; what is above them (images and sample
  * counts too large), and indices past 2^s, choose other scrambles. `wide`: whether there is such a thing in the batch:
  * the hash of 0 is 0, so that both forms give the same bits. */
 VL_SAMPLER_INLINE void vl_zsobol_lanes(const int pair, const int wide, vlSobolSeeds seed, uint32_t shift, uint32_t n,

@@ -1,6 +1,6 @@
 /* trace/surface/footprint.hot.c: what a pixel's width becomes on a surface: the cone round a ray cuts it in an ellipse,
  * as wide as the cone across the ray's plane, longer along it the more it grazes. Its two axes in uv choose how
- * pictures are filtered (world/texture/texture_lookup.h). */
+ * images are filtered (world/texture/texture_lookup.h). */
 #include "trace/stages.h"
 
 void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *f) {

@@ -7,15 +7,15 @@
 /* ---- light that rays run into ------------------------------------------------------------------------------------ */
 
 /* What light sampling could have found, too, counts in part. */
-static void add_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlMetLight *met) {
+static void add_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met) {
   float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met->radiance[c] * weight;
 }
 
 static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i) {
   for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
-    vlMetLight met = vl_meet_sky(t->world, p, i, k);
-    add_met(t, p, i, &met);
+    vlHitLight met = vl_hit_infinite(t->world, p, i, k);
+    add_hit_light(t, p, i, &met);
   }
 }
 
@@ -25,19 +25,19 @@ vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, ui
   return vl_point_at_time(world, vl_path_time(p, i), o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
 }
 
-static void add_glow(vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t i) {
-  vlMetLight met;
-  if (vl_meet_glow(t->world, p, h, i, &met)) add_met(t, p, i, &met);
+static void add_emission(vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t i) {
+  vlHitLight met;
+  if (vl_hit_emission(t->world, p, h, i, &met)) add_hit_light(t, p, i, &met);
 }
 
-/* What the n rays of a run into: the sky where nothing is hit, or a surface that glows. */
+/* What the n rays of a run into: the sky where nothing is hit, or a surface that emits light. */
 void vl_stage_emission(vlTracing *t, uint32_t n) {
   const vlHits *h = &t->s->hits_a;
   for (uint32_t i = 0; i < n; i++) {
     if (h->shape[i] == VL_NONE)
       add_sky(t, &t->s->a, i);
     else if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE)
-      add_glow(t, &t->s->a, h, i);
+      add_emission(t, &t->s->a, h, i);
   }
 }
 
@@ -107,7 +107,7 @@ static void pass_interfaces(vlTracing *t, vlPaths *p, vlHits *h, uint32_t i, con
     if (world->materials.items[world->shapes.items[h->shape[i]].material].kind != VL_MATERIAL_INTERFACE) return;
     if (step == 1024) h->shape[i] = VL_NONE; /* no ray needs so many */
     if (h->shape[i] == VL_NONE) return;
-    if (world->shapes.items[h->shape[i]].first_light != VL_NONE) add_glow(t, p, h, i);
+    if (world->shapes.items[h->shape[i]].first_light != VL_NONE) add_emission(t, p, h, i);
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = vl_hit_point(world, p, h, i);
     t_min = vl_past_surface(&at, d, t_min);

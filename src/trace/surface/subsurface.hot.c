@@ -55,7 +55,7 @@ static uint32_t take_refracted(vlTracing *t, uint32_t n) {
       x->sigma[c][j] = sh->principled[VL_S_SIGMA + c][i];
       x->albedo[c][j] = sh->principled[VL_S_ALBEDO + c][i];
     }
-    x->squeezed[j] = sh->eta_scale[i];
+    x->entry_eta_scale[j] = sh->eta_scale[i];
     x->medium[j] = s->volume.b.medium[i];
   }
   if (count == 0) return 0;
@@ -65,7 +65,7 @@ static uint32_t take_refracted(vlTracing *t, uint32_t n) {
   vl_volume_permute(&x->rows, &s->volume.b, x->place, count);
   for (uint32_t j = 0; j < count; j++) {
     s->volume.b.medium[j] = x->medium[j]; /* where the path comes from, and goes back to */
-    s->b.eta_scale[j] /= x->squeezed[j];
+    s->b.eta_scale[j] /= x->entry_eta_scale[j];
   }
   return count;
 }
@@ -323,7 +323,7 @@ uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* Coefficients of a run of lanes: extinction and albedo, from absorption and scattering, or from the reflectance of a
  * thick body and the mean free path. */
-void vl_stage_bodies(vlTextureRun *r, const vlWorldMaterial *m) {
+void vl_stage_subsurface_inputs(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldSubsurface *b = m->subsurface;
   vlShade *sh = &r->s->shade;
   float(*sigma)[VL_ROW_SIZE] = sh->principled + VL_S_SIGMA, (*albedo)[VL_ROW_SIZE] = sh->principled + VL_S_ALBEDO;

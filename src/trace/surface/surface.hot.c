@@ -120,7 +120,7 @@ typedef struct TriangleUv {
 
 typedef struct Triangle {
   vlVec3 p, g, n, u, v;
-  float s, t, dist, offset, uv_scale, bend;
+  float s, t, dist, offset, uv_scale, curvature;
 } Triangle;
 
 /* By component: a choice between structs would be a jump. */
@@ -173,7 +173,7 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   float k0 = vl_dot(n02, e02) / vl_max(vl_length2(e02), 1e-37f),
         k1 = vl_dot(n12, e12) / vl_max(vl_length2(e12), 1e-37f);
   float k2 = vl_dot(n01, e01) / vl_max(vl_length2(e01), 1e-37f);
-  r.bend = has_n > 0.0f ? (k0 + k1 + k2) / (3.0f * vl_length(ns)) : 0.0f;
+  r.curvature = has_n > 0.0f ? (k0 + k1 + k2) / (3.0f * vl_length(ns)) : 0.0f;
   ns = vl_normalize(ns);
   /* With vertex normals the geometric one goes to their side; without, the face order and flip decide. */
   float towards = vl_dot(g, ns) < 0.0f ? -1.0f : 1.0f;
@@ -219,7 +219,7 @@ static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, vlV
   out->ux[i] = (float)q->dpdu[0], out->uy[i] = (float)q->dpdu[1], out->uz[i] = (float)q->dpdu[2];
   out->vx[i] = (float)q->dpdv[0], out->vy[i] = (float)q->dpdv[1], out->vz[i] = (float)q->dpdv[2];
   for (int k = 0; k < 3; k++) out->dn[k][i] = (float)q->dndu[k], out->dn[3 + k][i] = (float)q->dndv[k];
-  out->bend[i] = mean_curvature(q);
+  out->curvature[i] = mean_curvature(q);
   out->u[i] = q->uv[0], out->v[i] = q->uv[1];
   vlVec3 p = vl_vec3(out->px[i], out->py[i], out->pz[i]);
   out->t[i] = vl_dot(vl_sub(p, o), d);
@@ -337,7 +337,7 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, co
     out->t[i] = r.dist;
     out->offset[i] = r.offset;
     out->uv_scale[i] = r.uv_scale;
-    out->bend[i] = r.bend;
+    out->curvature[i] = r.curvature;
   }
   for (uint32_t i = 0; others && i < n; i++) {
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
@@ -350,7 +350,7 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, co
   }
   for (uint32_t i = 0; i < padded; i++) {
     out->width[i] = vl_abs(paths->cone[i] + paths->spread[i] * out->t[i]);
-    out->all_round[i] = 0.0f;
+    out->no_cosine[i] = 0.0f;
   }
   if (world->images.count) vl_stage_footprints(n, paths, out);
   /* After footprints, which want the derivatives of the point: tangents have another length. */

@@ -88,8 +88,8 @@ static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vl
  * diffuse light through (after their reflectance). */
 void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m);
 void vl_stage_translucent(vlTextureRun *r, const vlWorldMaterial *m);
-void vl_stage_bodies(vlTextureRun *r, const vlWorldMaterial *m); /* after their reflectance */
-void vl_stage_hair(vlTextureRun *r, const vlWorldMaterial *m);   /* as those; its index, too */
+void vl_stage_subsurface_inputs(vlTextureRun *r, const vlWorldMaterial *m); /* after their reflectance */
+void vl_stage_hair(vlTextureRun *r, const vlWorldMaterial *m);              /* as those; its index, too */
 /* The principled material's rows of a run; the coat's normal stays in the world until there are frames. */
 void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m);
 void vl_stage_coat_frames(const vlSurface *surface, vlShade *shade, uint32_t first, uint32_t last);

@@ -192,10 +192,10 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     p->pdf[i] = sh->pdf[i];
     p->specular[i] = sh->flags[i] & VL_SAMPLED_SPECULAR;
     p->eta_scale[i] = eta;
-    vlVec2 cone = cone_after(t->def->pixel_spread, p->cone[i], p->spread[i], f->t[i], f->bend[i], sh->wo[2][i], z,
+    vlVec2 cone = cone_after(t->def->pixel_spread, p->cone[i], p->spread[i], f->t[i], f->curvature[i], sh->wo[2][i], z,
                              sh->eta_scale[i], sh->flags[i] & VL_SAMPLED_SPECULAR);
     p->cone[i] = cone.x, p->spread[i] = cone.y;
-    float c = 1.0f - f->all_round[i];
+    float c = 1.0f - f->no_cosine[i];
     p->from_nx[i] = c * f->nx[i], p->from_ny[i] = c * f->ny[i], p->from_nz[i] = c * f->nz[i];
   }
   uint32_t count = 0;

@@ -39,7 +39,7 @@ static void start_paths(vlTracing *t) {
     }
 }
 
-/* What the eye's ray meets first: emission where it glows, else reflectance times the cosine. */
+/* What the eye's ray meets first: emission where it emits light, else reflectance times the cosine. */
 static void raycast_tracer(vlTracing *t) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;

@@ -91,7 +91,7 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
   return count;
 }
 
-float vl_light_asked(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w) {
+float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w) {
   const vlWorldLight *light = &world->lights.items[r->light[lane]];
   float pmf = vl_light_pmf(&world->tree, p, n, r->light[lane]);
   if (light->kind == VL_WL_INFINITE) return pmf * vl_infinite_pdf(world, light, p, w);
@@ -118,8 +118,8 @@ static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
       float density = vl_light_density(t, r, lane, f->t[i]);
       inv = density > 0.0f ? inv / density : 0.0f;
       r->b[i] = inv / vl_last_odds(t, lane) *
-                vl_light_asked(t->world, r, lane, vl_lane3(f->px, f->py, f->pz, i),
-                               vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), 1.0f - f->all_round[i]), w);
+                vl_light_sample_pdf(t->world, r, lane, vl_lane3(f->px, f->py, f->pz, i),
+                                    vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), 1.0f - f->no_cosine[i]), w);
     }
     r->a[i] = r->carry[lane] * inv;
   }
@@ -142,7 +142,7 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     x->a = r->a[i], x->b = r->b[i];
     x->bounce = depth + 1;
     x->id = b->first + lane;
-    x->alone = vl_hero_alone(p, i);
+    x->alone = vl_hero_only(p, i);
     x->passed = t->world->absorbs_by_channel ? vl_pack_passed(&t->s->volume.b, i) : 0;
     x->medium = 0;
     count += sum > 0.0f && sum < VL_INFINITY;
@@ -192,7 +192,7 @@ static uint32_t on_surfaces(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint
   for (uint32_t i = 0; vl_has_media(t) && i < n; i++) vl_volume_normalise(t, &t->s->b, &t->s->volume.b, i);
   arrive(t, r, n, depth);
   if (t->def->two_way->merge) leave_photons(t, r, b, n, depth);
-  vl_show(t, r, b, n, depth, dimension);
+  vl_connect_to_camera(t, r, b, n, depth, dimension);
   return last ? 0 : scatter(t, r, n, depth, dimension);
 }
 

@@ -55,7 +55,7 @@ static float pair_weight(const vlTracing *t, uint32_t i, const vlPhoton *x, floa
   float others = r->a[i] * back + r->b[i] + x->a * forth + x->b;
   /* of H / (H + others), over H */
   float weight = 1.0f / ((x->medium ? way->merged_volume : way->merged) + others);
-  return x->alone && vl_hero_alone(x->medium ? &t->s->volume.scattered : &t->s->b, i) ? 0.25f * weight : weight;
+  return x->alone && vl_hero_only(x->medium ? &t->s->volume.scattered : &t->s->b, i) ? 0.25f * weight : weight;
 }
 
 /* The photon's power as it joins the eye's path i: what media absorb by channel of the whole path is not the product of

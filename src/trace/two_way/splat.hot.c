@@ -3,8 +3,8 @@
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
-vlSight vl_look(const vlEyeView *eye, vlVec3 p, float u, float v) {
-  vlSight r;
+vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, float v) {
+  vlCameraSample r;
   __builtin_memset(&r, 0, sizeof r);
   r.from = eye->position;
   float lx = 0.0f, ly = 0.0f;
@@ -22,7 +22,7 @@ vlSight vl_look(const vlEyeView *eye, vlVec3 p, float u, float v) {
   r.y = eye->cy + eye->fy * (y * inv + ly * bend);
   r.seen = r.x > eye->low_x && r.x < eye->high_x && r.y > eye->low_y && r.y < eye->high_y;
   r.w = vl_mul(to, -1.0f / d);
-  r.per_square = 1.0f / (vl_eye_pixel(eye, c) * d2);
+  r.per_square = 1.0f / (vl_camera_view_pixel_area(eye, c) * d2);
   r.end = 1.0f - eye->near_plane * inv;
   return r;
 }
@@ -90,7 +90,8 @@ static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float 
   q->lane[count] = s->b.lane[i];
 }
 
-void vl_show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth, uint32_t dimension) {
+void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
+                          uint32_t dimension) {
   const vlTwoWay *way = t->def->two_way;
   if (!way->eye.sees) return;
   vlTraceScratch *s = t->s;
@@ -105,7 +106,7 @@ void vl_show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_
   float *fx = s->rows[5], *fy = s->rows[6], *fz = s->rows[7];
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     uint32_t lane = p->lane[i < n ? i : n - 1];
-    vlSight sight = vl_look(vl_eye_of(t, lane), vl_lane3(f->px, f->py, f->pz, i), sh->u1[i], sh->u2[i]);
+    vlCameraSample sight = vl_sample_camera(vl_eye_of(t, lane), vl_lane3(f->px, f->py, f->pz, i), sh->u1[i], sh->u2[i]);
     vlVec3 w = sight.w;
     wi[0][i] = w.x * sh->tx[i] + w.y * sh->ty[i] + w.z * sh->tz[i];
     wi[1][i] = w.x * sh->bx[i] + w.y * sh->by[i] + w.z * sh->bz[i];

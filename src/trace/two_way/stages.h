@@ -48,23 +48,24 @@ uint32_t vl_light_in_media(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint3
 /* Light samples as `count` shadow rays: adds what arrives, weighed: own over own + odds others. */
 void vl_two_way_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth);
 /* The n shaded lanes, as far as the eye sees them, become splats. */
-void vl_show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth, uint32_t dimension);
+void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
+                          uint32_t dimension);
 /* Shadow rays towards the eye become splats; their radiance over own + odds others. */
 void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p, const vlVolumeRows *rows,
                        uint32_t count, uint32_t depth);
 /* Density with which next event would have asked for the light that this lane's path came from. */
-float vl_light_asked(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w);
+float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w);
 
 /* Where the eye would see a point from a point on its lens. */
-typedef struct vlSight {
+typedef struct vlCameraSample {
   bool seen;
   vlVec3 w;         /* towards it */
   vlVec3 from;      /* where on the lens */
   float x, y;       /* film */
   float end;        /* share of the way up to the near plane */
   float per_square; /* 1 / (solid angle of a pixel * distance squared) */
-} vlSight;
-vlSight vl_look(const vlEyeView *eye, vlVec3 p, float u, float v);
+} vlCameraSample;
+vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, float v);
 
 /* Densities of sampling wo had the path come from the directions wi (local, rows of n), to rows->rev; and the BSDFs'
  * values f(wi, wo) |cos wo| to shade.value. shade.wo stays, shade.wi and shade.pdf and light.w do not. */
@@ -115,7 +116,7 @@ static inline bool vl_has_media(const vlTracing *t) {
 static inline float vl_last_odds(const vlTracing *t, uint32_t lane) {
   return vl_has_media(t) ? t->s->volume.odds[lane] : 1.0f;
 }
-static inline const vlEyeView *vl_eye_of(const vlTracing *t, uint32_t lane) {
+static inline const vlCameraView *vl_eye_of(const vlTracing *t, uint32_t lane) {
   return t->batch->eyes ? &t->batch->eyes[lane] : &t->def->two_way->eye;
 }
 /* Of light's first ray, at that distance. */
@@ -126,7 +127,7 @@ static inline float vl_light_density(const vlTracing *t, const vlTwoWayRows *r, 
 }
 
 /* Solid angle of a pixel round the direction whose cosine with the axis is c: its side at distance 1 is 1/f. */
-static inline float vl_eye_pixel(const vlEyeView *eye, float c) {
+static inline float vl_camera_view_pixel_area(const vlCameraView *eye, float c) {
   return c * c * c / (eye->fx * eye->fy);
 }
 
@@ -167,7 +168,7 @@ static inline void vl_unpack_passed(uint32_t packed, float p[3]) {
 }
 
 /* The hero is alone: material.hot.c tells it so. */
-static inline bool vl_hero_alone(const vlPaths *p, uint32_t i) {
+static inline bool vl_hero_only(const vlPaths *p, uint32_t i) {
   return p->lambda[0][i] == p->lambda[1][i] && p->lambda[0][i] > 0.0f;
 }
 

@@ -25,14 +25,14 @@
 #include "trace/trace.h"
 
 /* A perspective camera with a round lens or none, as light sees it. Unit axes; world units. */
-typedef struct vlEyeView {
+typedef struct vlCameraView {
   bool sees; /* false: a camera of another kind; no splats */
   vlVec3 position, right, down, ahead;
   float fx, fy, cx, cy;
   float lens_radius, focus; /* focus: depth of the plane in focus; lens_radius 0: all is */
   float near_plane, far_plane;
   float low_x, low_y, high_x, high_y; /* film points that can show */
-} vlEyeView;
+} vlCameraView;
 
 /* Light that arrived: where, from where, how much. power: flux over |w . geometric normal|, so that a BSDF's value
  * (with its cosine) times power over (pi radius^2 N) is radiance. */
@@ -61,7 +61,7 @@ void vl_photon_map_build(vlPhotonMap *map, const vlPhoton *photons, uint32_t cou
                          uint32_t *start, uint32_t buckets);
 
 typedef struct vlTwoWay {
-  vlEyeView eye;
+  vlCameraView eye;
   bool merge;          /* else the only meetings are at the eye */
   bool apart;          /* smooth vertices that the eye's path begins with are no bounces, as pbrt's sppm counts */
   bool light_only;     /* no next event, no merging: weights are 1 */
@@ -81,9 +81,9 @@ typedef struct vlLightBatch {
   uint32_t n;
   const int32_t *px, *py; /* VL_PAD(n): which path, as a pixel of the sampler's */
   const uint32_t *index;
-  uint32_t first;        /* number of the first path in the pass; the others follow */
-  const float *time;     /* the world's, by path; null where nothing moves */
-  const vlEyeView *eyes; /* by path, of a camera that moves; null: vlTwoWay.eye */
+  uint32_t first;           /* number of the first path in the pass; the others follow */
+  const float *time;        /* the world's, by path; null where nothing moves */
+  const vlCameraView *eyes; /* by path, of a camera that moves; null: vlTwoWay.eye */
   void *user;
   /* Radiance for the film at points x, y (pixels from the top left corner): value at wavelengths of density 1 / inv_pdf
    * (spectral; else those rows mean nothing). Rows of VL_ROW_SIZE; may be written to. */

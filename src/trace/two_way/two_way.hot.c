@@ -23,8 +23,8 @@ static void add_radiance(vlTracing *t, const vlPaths *p, uint32_t i, const float
 }
 
 /* distance: to the light; at: the point of an area light. */
-static void add_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlMetLight *met, float distance,
-                    const vlPoint *at, bool first) {
+static void add_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met, float distance,
+                          const vlPoint *at, bool first) {
   float weight = 1.0f;
   if (!first) {
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
@@ -35,14 +35,14 @@ static void add_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlMetLight
 
 static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
   for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
-    vlMetLight met = vl_meet_sky(t->world, p, i, k);
-    add_met(t, p, i, &met, VL_INFINITY, NULL, first);
+    vlHitLight met = vl_hit_infinite(t->world, p, i, k);
+    add_hit_light(t, p, i, &met, VL_INFINITY, NULL, first);
   }
 }
 
-static void add_glow(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
-  vlMetLight met;
-  if (vl_meet_glow(t->world, p, &t->s->hits_a, i, &met)) add_met(t, p, i, &met, met.at.t, &met.at, first);
+static void add_emission(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
+  vlHitLight met;
+  if (vl_hit_emission(t->world, p, &t->s->hits_a, i, &met)) add_hit_light(t, p, i, &met, met.at.t, &met.at, first);
 }
 
 /* first: the eye's own rays; also what weighs nothing against anything. */
@@ -54,7 +54,7 @@ static void emission(vlTracing *t, uint32_t n, bool first) {
     if (h->shape[i] == VL_NONE)
       add_sky(t, &t->s->a, i, first);
     else if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE)
-      add_glow(t, &t->s->a, i, first);
+      add_emission(t, &t->s->a, i, first);
   }
 }
 
@@ -72,9 +72,9 @@ static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
     r->cosine[i] = cosine;
     r->a[i] = depth == 0 ? 0.0f : r->carry[lane] * inv;
     r->b[i] = 0.0f;
-    const vlEyeView *eye = vl_eye_of(t, lane);
+    const vlCameraView *eye = vl_eye_of(t, lane);
     if (depth > 0 || !eye->sees) continue;
-    float pixel = vl_eye_pixel(eye, vl_dot(d, eye->ahead));
+    float pixel = vl_camera_view_pixel_area(eye, vl_dot(d, eye->ahead));
     r->b[i] = t->def->two_way->paths * pixel * f->t[i] * f->t[i] * inv / vl_last_odds(t, lane);
   }
 }

@@ -35,14 +35,15 @@ static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTwoWayRows *r = t->batch->two_way;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
-    const vlEyeView *eye = vl_eye_of(t, lane);
+    const vlCameraView *eye = vl_eye_of(t, lane);
     float dense = extinction(t, i), distance = v->t[t->s->order[i]];
     r->cosine[i] = dense;
     r->a[i] = depth == 0 ? 0.0f : r->carry[lane] / dense;
     r->b[i] = 0.0f;
     if (depth > 0 || !eye->sees) continue;
     float c = vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), eye->ahead);
-    r->b[i] = t->def->two_way->paths * vl_eye_pixel(eye, c) * distance * distance / (dense * v->odds[lane]);
+    r->b[i] =
+        t->def->two_way->paths * vl_camera_view_pixel_area(eye, c) * distance * distance / (dense * v->odds[lane]);
   }
 }
 
@@ -109,7 +110,7 @@ static void arrive_from_light(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_
       vlVec3 w = vl_neg(vl_lane3(p->dx, p->dy, p->dz, i));
       inv = density > 0.0f ? inv / density : 0.0f;
       r->b[i] = inv / v->odds[lane] *
-                vl_light_asked(t->world, r, lane, vl_lane3(p->ox, p->oy, p->oz, i), vl_vec3(0, 0, 0), w);
+                vl_light_sample_pdf(t->world, r, lane, vl_lane3(p->ox, p->oy, p->oz, i), vl_vec3(0, 0, 0), w);
     }
     r->a[i] = r->carry[lane] * inv;
   }
@@ -135,7 +136,7 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     x->a = r->a[i], x->b = r->b[i];
     x->bounce = depth + 1;
     x->id = b->first + lane;
-    x->alone = vl_hero_alone(p, i);
+    x->alone = vl_hero_only(p, i);
     x->passed = t->world->absorbs_by_channel ? vl_pack_passed(&v->c, i) : 0;
     x->medium = 1 + v->c.medium[i];
     count += sum > 0.0f && sum < VL_INFINITY;
@@ -156,7 +157,7 @@ static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uin
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
     vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i);
-    vlSight sight = vl_look(vl_eye_of(t, lane), o, sh->u1[i], sh->u2[i]);
+    vlCameraSample sight = vl_sample_camera(vl_eye_of(t, lane), o, sh->u1[i], sh->u2[i]);
     if (!sight.seen) continue;
     float phase = phase_of(t, i, sight.w);
     q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;

@@ -1,4 +1,4 @@
-/* world/light/goniometric.c: lights at a point whose intensity a picture gives: goniometric (by direction, in an
+/* world/light/goniometric.c: lights at a point whose intensity an image gives: goniometric (by direction, in an
  * equal-area octahedral square) and projection (as a slide). pbrt-v4's conventions: book 12.2; a goniometric diagram's
  * axis is the light's y, a slide is thrown along its z with y up. Power is that of all light that leaves (pbrt's, too).
  */
@@ -24,7 +24,7 @@ static float mean_of(vlTexel t, uint32_t channels) {
 
 static vlResult bad_pixel(const vlLightDef *def, uint32_t x, uint32_t y, vlError *error) {
   return vl_fail(error, VL_ERROR_SCENE, "%s: pixel (%u, %u) is not finite, it cannot shine",
-                 def->path ? def->path : "the picture", x, y);
+                 def->path ? def->path : "the image", x, y);
 }
 
 static vlResult add_goniometric(vlWorld *world, const vlLightDef *def, const vlMipmap *mip, vlWorldLight *light,
@@ -34,9 +34,9 @@ static vlResult add_goniometric(vlWorld *world, const vlLightDef *def, const vlM
   uint32_t n = mip->levels[0].width;
   if (n != mip->levels[0].height)
     return vl_fail(error, VL_ERROR_SCENE,
-                   "%s: %u x %u: a goniometric light's picture must be square (equal-area "
+                   "%s: %u x %u: a goniometric light's image must be square (equal-area "
                    "octahedral map)",
-                   def->path ? def->path : "the picture", n, mip->levels[0].height);
+                   def->path ? def->path : "the image", n, mip->levels[0].height);
   if (!set_frame(def, order, sign, light)) return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
   double sum = 0;
   for (uint32_t y = 0; y < n; y++)
@@ -59,35 +59,36 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   uint32_t w = mip->levels[0].width, h = mip->levels[0].height;
   if (!set_frame(def, order, sign, light)) return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
   double aspect = (double)w / h, tangent = tan(0.5 * def->fov);
-  light->slide[0] = (float)(tangent * (aspect > 1 ? aspect : 1));
-  light->slide[1] = (float)(tangent * (aspect > 1 ? 1 : 1 / aspect));
+  light->image_extent[0] = (float)(tangent * (aspect > 1 ? aspect : 1));
+  light->image_extent[1] = (float)(tangent * (aspect > 1 ? 1 : 1 / aspect));
   double sum = 0;
   for (uint32_t y = 0; y < h; y++)
     for (uint32_t x = 0; x < w; x++) {
-      double a = light->slide[0] * (2 * (x + 0.5) / w - 1), b = light->slide[1] * (2 * (y + 0.5) / h - 1);
+      double a = light->image_extent[0] * (2 * (x + 0.5) / w - 1), b = light->image_extent[1] * (2 * (y + 0.5) / h - 1);
       float value = vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels);
       if (!isfinite(value)) return bad_pixel(def, x, y, error);
       sum += value > 0 ? value * pow(1 + a * a + b * b, -1.5) : 0; /* solid angle of an area of the plane z = 1 */
     }
-  double flux = sum / ((double)w * h) * 4 * light->slide[0] * light->slide[1], factor = def->scale;
+  double flux = sum / ((double)w * h) * 4 * light->image_extent[0] * light->image_extent[1], factor = def->scale;
   if (def->power == def->power) factor *= flux > 0 ? def->power / flux : 0;
-  e->image = (int32_t)light->picture;
-  vl_light_picture_color(world, vl_light_picture_space(world, e->image, def->space), (float)factor, e);
+  e->image = (int32_t)light->image;
+  vl_light_image_color(world, vl_light_image_space(world, e->image, def->space), (float)factor, e);
   double forward[3] = {0, 0, 1}, axis[3];
   vlMat4 m = vl_mat4_load(def->world_from_light);
   vl_mat4_vector(&m, forward, axis);
   double l = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
   for (int i = 0; i < 3; i++) light->direction[i] = (float)(axis[i] / l);
-  light->cos_end = light->cos_start =
-      (float)(1 / sqrt(1 + light->slide[0] * light->slide[0] + light->slide[1] * light->slide[1]));
+  light->cos_end = light->cos_start = (float)(1 / sqrt(1 + light->image_extent[0] * light->image_extent[0] +
+                                                       light->image_extent[1] * light->image_extent[1]));
   light->power = (float)(flux * factor / (2 * M_PI * (1 - light->cos_end)) * 4 * M_PI); /* as a spot's */
   return VL_OK;
 }
 
-vlResult vl_world_add_beam(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e, vlError *error) {
+vlResult vl_world_add_goniometric(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,
+                                  vlError *error) {
   int32_t image = vl_world_add_image(world, def->path, def->image, NULL, 1, false, error);
   if (image < 0) return error && error->code ? error->code : VL_ERROR_SCENE;
-  light->picture = (uint32_t)image;
+  light->image = (uint32_t)image;
   const vlMipmap *mip = world->images.items[image].mipmap;
   light->kind = def->kind == VL_LIGHT_GONIOMETRIC ? VL_WL_GONIOMETRIC : VL_WL_PROJECTION;
   return light->kind == VL_WL_GONIOMETRIC ? add_goniometric(world, def, mip, light, e, error)

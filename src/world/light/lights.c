@@ -1,4 +1,4 @@
-/* world/light/lights.c: scene lights and glowing shapes -> world lights, with the distribution over pictures of the
+/* world/light/lights.c: scene lights and emissive shapes -> world lights, with the distribution over images of the
  * sky. Scales are pbrt-v4's (lights.cpp's conventions; book 12): spectra divided by their own luminance, times scale,
  * or set by power or illuminance. */
 #include <math.h>
@@ -28,7 +28,7 @@ vlResult vl_light_color(vlWorld *world, const vlSpectrum *color, float factor, v
   return VL_OK;
 }
 
-void vl_light_picture_color(vlWorld *world, vlColorSpace space, float scale, vlEmitted *e) {
+void vl_light_image_color(vlWorld *world, vlColorSpace space, float scale, vlEmitted *e) {
   memset(&e->spectrum, 0, sizeof e->spectrum);
   e->space = space;
   e->image_scale = scale;
@@ -46,7 +46,7 @@ void vl_light_picture_color(vlWorld *world, vlColorSpace space, float scale, vlE
   e->spectrum.scale = (float)(1 / sum);
 }
 
-vlColorSpace vl_light_picture_space(const vlWorld *world, int32_t image, vlColorSpace otherwise) {
+vlColorSpace vl_light_image_space(const vlWorld *world, int32_t image, vlColorSpace otherwise) {
   const vlMipmap *mip = image >= 0 ? world->images.items[image].mipmap : NULL;
   return mip && mip->space_told ? mip->space : otherwise;
 }
@@ -93,7 +93,7 @@ static vlResult build_environment(vlWorld *world, vlEnvironment *env, double *me
         for (uint32_t i = x * step; i < (x + 1) * step && i < n; i++) {
           float l = vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)i, (int32_t)j, VL_WRAP_CLAMP), channels);
           if (!isfinite(l))
-            return vl_fail(error, VL_ERROR_SCENE, "pixel (%u, %u) of the picture of the sky is not finite", i, j);
+            return vl_fail(error, VL_ERROR_SCENE, "pixel (%u, %u) of the image of the sky is not finite", i, j);
           if (l > 0) sum += l;
           count++;
         }
@@ -146,11 +146,10 @@ static vlResult add_infinite(vlWorld *world, const vlLightDef *def, vlWorldLight
   }
   e->image = vl_world_add_image(world, def->path, def->image, NULL, 1, false, error);
   if (e->image < 0) return error && error->code ? error->code : VL_ERROR_SCENE;
-  vl_light_picture_color(world, vl_light_picture_space(world, e->image, def->space), def->scale, e);
+  vl_light_image_color(world, vl_light_image_space(world, e->image, def->space), def->scale, e);
   const vlMipmap *mip = world->images.items[e->image].mipmap;
   if (mip->levels[0].width != mip->levels[0].height)
-    return vl_fail(error, VL_ERROR_SCENE,
-                   "%s: %u x %u: a picture of the sky must be square (equal-area octahedral map)",
+    return vl_fail(error, VL_ERROR_SCENE, "%s: %u x %u: an image of the sky must be square (equal-area octahedral map)",
                    def->path ? def->path : "image", mip->levels[0].width, mip->levels[0].height);
   vlEnvironment *env = VL_PUSH(world->context, &world->environments);
   if (!env) return vl_fail_memory(error);
@@ -231,7 +230,7 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
       break;
     }
     case VL_LIGHT_GONIOMETRIC:
-    case VL_LIGHT_PROJECTION: r = vl_world_add_beam(world, def, light, e, error); break;
+    case VL_LIGHT_PROJECTION: r = vl_world_add_goniometric(world, def, light, e, error); break;
   }
   return vl_world_placed(def->source, error, r);
 }
@@ -240,7 +239,7 @@ vlResult vl_world_add_lights(vlWorld *world, const vlScene *scene, vlError *erro
   vlResult r = VL_OK;
   vlEmitted white;
   memset(&white, 0, sizeof white);
-  vl_light_picture_color(world, VL_SPACE_SRGB, 1, &white);
+  vl_light_image_color(world, VL_SPACE_SRGB, 1, &white);
   world->white = white.spectrum;
   for (size_t i = 0; r == VL_OK && i < scene->lights.count; i++) r = add_light(world, &scene->lights.items[i], error);
   uint32_t *compiled = vl_alloc_array(world->context, scene->emissions.count + 1, sizeof *compiled);

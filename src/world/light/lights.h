@@ -8,10 +8,10 @@
 
 /* A colour with luminance 1 (times what rgb or scale say), times factor. */
 vlResult vl_light_color(vlWorld *world, const vlSpectrum *color, float factor, vlEmitted *e, vlError *error);
-/* For pictures: the illuminant of the space, luminance 1; texels multiply it. */
-void vl_light_picture_color(vlWorld *world, vlColorSpace space, float scale, vlEmitted *e);
-/* That of the picture, where it says so, else this one. */
-vlColorSpace vl_light_picture_space(const vlWorld *world, int32_t image, vlColorSpace otherwise);
+/* For images: the illuminant of the space, luminance 1; texels multiply it. */
+void vl_light_image_color(vlWorld *world, vlColorSpace space, float scale, vlEmitted *e);
+/* That of the image, where it says so, else this one. */
+vlColorSpace vl_light_image_space(const vlWorld *world, int32_t image, vlColorSpace otherwise);
 /* That a constant emitted spectrum shows. */
 float vl_light_luminance(const vlSpectral *spectrum);
 float vl_light_texel_luminance(vlTexel t, uint32_t channels);
@@ -20,9 +20,10 @@ float vl_light_texel_luminance(vlTexel t, uint32_t channels);
  * into world->emitted of what shapes share; VL_NONE: not yet. */
 vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t shape, uint32_t *compiled,
                                    vlError *error);
-/* Points whose light a picture shapes: goniometric and projection (beam.c). */
-vlResult vl_world_add_beam(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e, vlError *error);
-/* The portal of a pictured sky, whose directions env knows; power: of the light that passes through it (portal.c). */
+/* Points whose light an image shapes: goniometric and projection (beam.c). */
+vlResult vl_world_add_goniometric(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,
+                                  vlError *error);
+/* The portal of a imaged sky, whose directions env knows; power: of the light that passes through it (portal.c). */
 vlResult vl_world_add_portal(vlWorld *world, const vlLightDef *def, vlEnvironment *env, double *power, vlError *error);
 
 #endif

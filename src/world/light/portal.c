@@ -1,4 +1,4 @@
-/* world/light/portal.c: see portal.h. The light of a cell is that of the picture's texels in it, and a little of the
+/* world/light/portal.c: see portal.h. The light of a cell is that of the image's texels in it, and a little of the
  * mean, so that no direction of the sky is left out for falling between the points that are looked at. */
 #include "world/light/portal.h"
 

@@ -1,4 +1,4 @@
-/* world/light/portal.h: a window through which a picture of the sky is seen: its rectified picture and light sampling
+/* world/light/portal.h: a window through which an image of the sky is seen: its rectified image and light sampling
  * in the part of it that a point sees. pbrt book (4th ed.) 12.5.3; sums over windows: A.5.6. Building: portal.c;
  * asking: inline, for the hot loops.
  *

@@ -26,13 +26,13 @@ static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmiss
     if (r != VL_OK) return r;
     e->node = node + 1;
     e->image = world->nodes.items[node].image;
-    vl_light_picture_color(world, world->nodes.items[node].space, def->scale, e);
+    vl_light_image_color(world, world->nodes.items[node].space, def->scale, e);
     return VL_OK;
   }
   if (!def->image) return vl_light_color(world, &def->radiance, def->scale, e, error);
   e->image = vl_world_add_image(world, def->image, NULL, NULL, 1, true, error);
   if (e->image < 0) return error && error->code ? error->code : VL_ERROR_SCENE;
-  vl_light_picture_color(world, vl_light_picture_space(world, e->image, VL_SPACE_SRGB), def->scale, e);
+  vl_light_image_color(world, vl_light_image_space(world, e->image, VL_SPACE_SRGB), def->scale, e);
   const vlMipmap *mip = world->images.items[e->image].mipmap;
   for (uint32_t y = 0; y < mip->levels[0].height; y++)
     for (uint32_t x = 0; x < mip->levels[0].width; x++)
@@ -41,12 +41,12 @@ static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmiss
   return VL_OK;
 }
 
-/* Mean luminance of an emission's texture over a triangle, about: where a picture is dark, no light need be asked. */
+/* Mean luminance of an emission's texture over a triangle, about: where an image is dark, no light need be asked. */
 static float face_luminance(const vlWorld *world, const vlWorldShape *s, uint32_t prim, const vlEmitted *e) {
   static const float inside[4][3] = {
       {1 / 3.0f, 1 / 3.0f, 1 / 3.0f}, {0.7f, 0.15f, 0.15f}, {0.15f, 0.7f, 0.15f}, {0.15f, 0.15f, 0.7f}};
   const vlTextureNode *node = &world->nodes.items[e->node - 1];
-  const float *uvs = s->glow_uvs ? s->glow_uvs : s->uvs;
+  const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
   const uint32_t *f = s->indices + 3 * (size_t)prim;
   float unit[6] = {0, 0, 1, 0, 1, 1}, t[6];
   for (int k = 0; k < 3; k++)
@@ -126,8 +126,8 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
     vlError where;
     vl_fail_at(&where, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column, " ");
     vl_log(world->context, VL_LOG_WARNING, &where,
-           def->group.index ? "a glowing shape inside an object that is instanced or moves does not shine"
-                            : "a glowing shape that moves does not shine");
+           def->group.index ? "an emissive shape inside an object that is instanced or moves does not shine"
+                            : "an emissive shape that moves does not shine");
     return VL_OK;
   }
   bool meshed = shape->kind == VL_SHAPE_TRIANGLES || shape->kind == VL_SHAPE_BILINEAR;
@@ -138,7 +138,7 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
   if (r != VL_OK) return r;
   const vlEmitted *first = &world->emitted.items[*shared];
   uint32_t set = first->node ? world->nodes.items[first->node - 1].uv_set : 0;
-  if (set) shape->glow_uvs = shape->more_uvs[set - 1];
+  if (set) shape->emission_uvs = shape->more_uvs[set - 1];
   if (meshed && (r = choose_faces(world, shape, first, &faces, error)) != VL_OK) return r;
   if (!VL_RESERVE(world->context, &world->lights, faces)) return vl_fail_memory(error);
   shape->first_light = faces ? (uint32_t)world->lights.count : VL_NONE;

@@ -46,7 +46,7 @@ void vl_shining_free(const vlWorld *world, vlShining *s) {
   memset(s, 0, sizeof *s);
 }
 
-/* Is a bit set in columns [from, to] of a row of the picture? */
+/* Is a bit set in columns [from, to] of a row of the image? */
 static bool row_shines(const vlShining *s, int32_t row, int32_t from, int32_t to) {
   row = vl_wrap_index(row, (int32_t)s->height, s->wrap_t);
   if (row < 0) return false;
@@ -116,7 +116,7 @@ bool vl_shining_face(const vlShining *s, const vlWorldShape *shape, uint32_t pri
   static const int parts[4][3] = {{0, 1, 2}, {1, 2, 3}, {0, 1, 3}, {0, 2, 3}}; /* a patch covers no more */
   bool patch = shape->kind == VL_SHAPE_BILINEAR, shines = false;
   int corners = patch ? 4 : 3;
-  const float *uvs = shape->glow_uvs ? shape->glow_uvs : shape->uvs;
+  const float *uvs = shape->emission_uvs ? shape->emission_uvs : shape->uvs;
   const uint32_t *f = shape->indices + (size_t)corners * prim;
   float uv[4][2];
   for (int k = 0; k < corners; k++)

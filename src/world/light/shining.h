@@ -1,5 +1,5 @@
-/* world/light/shining.h: which faces of a mesh shine where a picture says how much: those over whose part of the
- * picture a texel is not black. The others are no lights. */
+/* world/light/shining.h: which faces of a mesh shine where an image says how much: those over whose part of the
+ * image a texel is not black. The others are no lights. */
 #ifndef WORLD_LIGHT_SHINING_H
 #define WORLD_LIGHT_SHINING_H
 
@@ -8,7 +8,7 @@
 typedef struct vlShining {
   uint64_t *bits; /* a bit a texel, rows of `words`; NULL: all faces shine */
   uint32_t width, height, words;
-  const vlTextureNode *node; /* of the picture; NULL: st are uv, clamped */
+  const vlTextureNode *node; /* of the image; NULL: st are uv, clamped */
   vlWrap wrap, wrap_t;
   bool any; /* a bit is set */
 } vlShining;

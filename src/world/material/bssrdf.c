@@ -1,6 +1,6 @@
 /* world/material/bssrdf.c: the tables of photon beam diffusion. Formulas: pbrt book, 3rd edition, 15.5.2 to 15.5.5; the
  * moments of Fresnel's reflectance by the polynomials of d'Eon and Irving 2011, "A Quantized-Diffusion Model for
- * Rendering Translucent Materials", which the pictures of pbrt are made with, too. */
+ * Rendering Translucent Materials", which the images of pbrt are made with, too. */
 #include "world/material/bssrdf.h"
 
 #include <math.h>
@@ -37,19 +37,19 @@ static double phase(double cosine, double g) {
 
 /* Optical depths of points along the beam, equally likely by its attenuation. */
 enum { MOST_POINTS = 1000 };
-typedef struct Beam {
+typedef struct Goniometric {
   int n;
   double depth[MOST_POINTS];
-} Beam;
+} Goniometric;
 
-static Beam make_beam(int n) {
-  Beam b = {n < MOST_POINTS ? n : MOST_POINTS, {0}};
+static Goniometric make_goniometric(int n) {
+  Goniometric b = {n < MOST_POINTS ? n : MOST_POINTS, {0}};
   for (int i = 0; i < b.n; i++) b.depth[i] = -log(1 - (i + 0.5) / b.n);
   return b;
 }
 
 /* One dipole for each point of the beam. */
-static double multiple(double albedo, double g, double eta, double r, const Beam *beam) {
+static double multiple(double albedo, double g, double eta, double r, const Goniometric *beam) {
   double sigma_a = 1 - albedo, sigma_s = albedo * (1 - g), sigma_t = sigma_a + sigma_s;
   if (!(sigma_s > 0)) return 0;
   double reduced = sigma_s / sigma_t;
@@ -70,7 +70,7 @@ static double multiple(double albedo, double g, double eta, double r, const Beam
 }
 
 /* Only points from which light can leave at this distance. */
-static double single(double albedo, double g, double eta, double r, const Beam *beam) {
+static double single(double albedo, double g, double eta, double r, const Goniometric *beam) {
   double critical = r * sqrt(eta > 1 ? eta * eta - 1 : 0), sum = 0;
   for (int i = 0; i < beam->n; i++) {
     double z = critical + beam->depth[i], d = sqrt(r * r + z * z), cosine = z / d;
@@ -80,14 +80,14 @@ static double single(double albedo, double g, double eta, double r, const Beam *
 }
 
 double vl_bssrdf_profile(double albedo, double g, double eta, double r, int samples) {
-  Beam beam = make_beam(samples);
+  Goniometric beam = make_goniometric(samples);
   return single(albedo, g, eta, r, &beam) + multiple(albedo, g, eta, r, &beam);
 }
 
 static void fill_row(void *user, uint32_t row, uint32_t worker) {
   vlBssrdfTable *t = user;
   (void)worker;
-  Beam beam = make_beam(100);
+  Goniometric beam = make_goniometric(100);
   double albedo = (double)t->albedo[row], g = (double)t->g, eta = (double)t->eta;
   for (uint32_t k = 0; k < VL_BSSRDF_RADII; k++) {
     double r = (double)t->radius[k], ring = 0;

@@ -29,7 +29,7 @@ typedef struct vlCoatTable {
    * with belongs to light going the other way, so that the weights of the two sum to more than 1 and light that was
    * sampled comes out too bright (0.3 % at alpha 0.01, 2 % at 0.1, 5 % at 0.2, 8 % at 0.4); light found by sampling the
    * BSDF does not. The error is a function of wi alone: a T for wi with those weights. Read instead of transmittance by
-   * the BSDF's evaluation where `imitate` is set, to compare pictures with pbrt-v4's; vl_coat_build leaves it unset. */
+   * the BSDF's evaluation where `imitate` is set, to compare images with pbrt-v4's; vl_coat_build leaves it unset. */
   float imitation[VL_COAT_ALPHA][VL_COAT_COS];
   bool imitate;
   float back[VL_COAT_ALPHA];   /* R */

@@ -13,7 +13,7 @@ vlResult vl_world_layers(vlWorld *world, const vlScene *scene, const vlMaterialD
   m->layers = l;
   l->metal = def->kind == VL_MATERIAL_COATED_CONDUCTOR;
   l->coat_u = l->coat_v = -1;
-  /* More steps than a walk ever takes (it ends by roulette), more walks than a picture's samples are worth. */
+  /* More steps than a walk ever takes (it ends by roulette), more walks than an image's samples are worth. */
   l->depth = def->max_depth < 1000 ? def->max_depth : 1000;
   l->walks = def->samples < 256 ? def->samples : 256;
   vlResult r = vl_world_spectrum_node(world, scene, def->albedo, VL_ROLE_ALBEDO, &l->albedo, error);

@@ -74,7 +74,7 @@ vlResult vl_world_principled(vlWorld *world, const vlScene *scene, const vlMater
   if (r == VL_OK) r = normal_node(world, scene, d->clearcoat_normal, &p->coat_normal, error);
   /* What stays off for good need not be looked up. */
   p->has_coat = !is_zero(d->clearcoat), p->has_film = !is_zero(d->iridescence);
-  p->has_anisotropy = !is_zero(d->anisotropy), p->has_through = !is_zero(d->diffuse_transmission);
+  p->has_anisotropy = !is_zero(d->anisotropy), p->has_transmission = !is_zero(d->diffuse_transmission);
   const vlSpectrum *sheen = &d->sheen_color.value;
   float grey;
   bool no_sheen = (vl_spectrum_is_constant(sheen, &grey) && !(grey > 0.0f)) ||

@@ -1,7 +1,7 @@
 /* world/shape/curve.c: curves with a width: pieces of cubic Bezier segments, met where the ray comes nearest to the
  * axis.
  *
- * As in pbrt-v4 (book 6.7), whose pictures these are: a flat curve faces every ray, a cylinder differs from it by its
+ * As in pbrt-v4 (book 6.7), whose images these are: a flat curve faces every ray, a cylinder differs from it by its
  * normal alone, a ribbon is narrower by the cosine between its normal and the ray. The point is the ray's, at the depth
  * of the axis, and wrong by the width: rays that leave start that far away. In shape space where nothing else is said.
  */

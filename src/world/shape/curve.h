@@ -11,7 +11,7 @@ void vl_curve_bounds(const vlWorldShape *s, uint32_t prim, double low[3], double
 bool vl_curve_intersect(const vlWorldShape *s, uint32_t prim, const double o[3], const double d[3], double t_min,
                         double t_max, vlShapeHit *hit);
 void vl_curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point);
-/* The middle of a piece, seen from the front; curves do not glow, so that nothing else is asked for. */
+/* The middle of a piece, seen from the front; curves do not emission, so that nothing else is asked for. */
 void vl_curve_middle(const vlWorldShape *s, uint32_t prim, vlSurfacePoint *point);
 
 #endif

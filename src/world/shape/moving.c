@@ -119,7 +119,7 @@ static uint32_t choose_steps(const Motion *motion, const float low[3], const flo
     for (int j = 0; j < 3; j++) row += fabs(start.m[3 * i + j]) * (high[j] - low[j]);
     size = fmax(size, row);
   }
-  double least = 1; /* straying falls with the square of the steps: those that surely do not do are passed over */
+  double least = 1; /* straying falls with the square of the steps: those that surely do not do are ignored */
   for (size_t i = 0; i < sizeof tries; i++) {
     if (tries[i] < least && tries[i] < MOST_STEPS) continue;
     double far = strayed(motion, tries[i], low, high);

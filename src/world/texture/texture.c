@@ -42,7 +42,7 @@ vlResult vl_spectral_compile(vlWorld *world, const vlSpectrum *spectrum, vlSpect
   return vl_spectrum_dense(spectrum, role, dense, error);
 }
 
-/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+/* ---- images ---------------------------------------------------------------------------------------------------- */
 
 static bool same_image(const vlWorldImage *a, const vlTextureDef *def) {
   bool same_file = a->path && def->path && strcmp(a->path, def->path) == 0;
@@ -86,24 +86,24 @@ static void choose_channels(const vlImage *image, bool keep_coverage, vlMipmapDe
   memcpy(mip->channel, channels, sizeof channels);
 }
 
-/* Where a picture comes from: a file, a file in memory, or given. */
-typedef struct Picture {
+/* Where an image comes from: a file, a file in memory, or given. */
+typedef struct Image {
   const char *name; /* for errors, where there is no path */
   const char *path;
   const void *data;
   size_t size;
   const vlImage *given;
-  const vlEncoding *encoding; /* null: the picture's own */
+  const vlEncoding *encoding; /* null: the image's own */
   float gamma;
   bool pyramid, keep_coverage;
-} Picture;
+} Image;
 
-static vlResult load_picture(vlContext *context, const Picture *p, vlMipmap **mipmap, vlError *error) {
+static vlResult load_image(vlContext *context, const Image *p, vlMipmap **mipmap, vlError *error) {
   const vlImage *given = p->given;
   vlImage *image = NULL;
   vlResult r = VL_OK;
   if (p->data)
-    r = vl_image_read_memory(context, p->name ? p->name : "picture", p->data, p->size, &image, error);
+    r = vl_image_read_memory(context, p->name ? p->name : "image", p->data, p->size, &image, error);
   else if (!given)
     r = vl_image_read_named(context, p->path, &image, error);
   if (r != VL_OK) return r;
@@ -123,7 +123,7 @@ static vlResult load_picture(vlContext *context, const Picture *p, vlMipmap **mi
   return r;
 }
 
-static int32_t push_picture(vlWorld *world, vlMipmap *mipmap, vlError *error) {
+static int32_t push_image(vlWorld *world, vlMipmap *mipmap, vlError *error) {
   vlWorldImage *entry = VL_PUSH(world->context, &world->images);
   if (!entry) {
     vl_mipmap_destroy(mipmap);
@@ -137,19 +137,19 @@ static int32_t push_picture(vlWorld *world, vlMipmap *mipmap, vlError *error) {
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
                            float gamma, bool pyramid, vlError *error) {
   vlMipmap *mipmap = NULL;
-  Picture p = {NULL, path, NULL, 0, given, encoding, gamma, pyramid, false};
-  if (load_picture(world->context, &p, &mipmap, error) != VL_OK) return -1;
-  return push_picture(world, mipmap, error);
+  Image p = {NULL, path, NULL, 0, given, encoding, gamma, pyramid, false};
+  if (load_image(world->context, &p, &mipmap, error) != VL_OK) return -1;
+  return push_image(world, mipmap, error);
 }
 
-static Picture picture_of(const vlTextureDef *def) {
-  return (Picture){def->name,      def->path,  def->data,
-                   def->data_size, def->image, def->encoding_given ? &def->encoding : NULL,
-                   def->gamma,     true,       def->data != NULL};
+static Image open_image(const vlTextureDef *def) {
+  return (Image){def->name,      def->path,  def->data,
+                 def->data_size, def->image, def->encoding_given ? &def->encoding : NULL,
+                 def->gamma,     true,       def->data != NULL};
 }
 
-/* The picture is known by its name (or place) and encoding from here on. */
-static bool name_picture(vlWorld *world, vlWorldImage *entry, const vlTextureDef *def) {
+/* The image is known by its name (or place) and encoding from here on. */
+static bool name_image(vlWorld *world, vlWorldImage *entry, const vlTextureDef *def) {
   entry->encoding = def->encoding;
   entry->encoding_given = def->encoding_given;
   entry->gamma = def->gamma;
@@ -171,9 +171,9 @@ typedef struct Preload {
 static void preload_one(void *user, uint32_t index, uint32_t worker) {
   (void)worker;
   const Preload *job = user;
-  Picture p = picture_of(job->defs[index]);
-  vlError unsaid; /* who asks for the picture finds the error again, and says it with the place */
-  load_picture(job->context, &p, &job->mipmaps[index], &unsaid);
+  Image p = open_image(job->defs[index]);
+  vlError unsaid; /* who asks for the image finds the error again, and says it with the place */
+  load_image(job->context, &p, &job->mipmaps[index], &unsaid);
 }
 
 static bool listed(const vlTextureDef **defs, size_t count, const vlTextureDef *def) {
@@ -199,9 +199,9 @@ vlResult vl_world_preload_images(vlWorld *world, const vlScene *scene, vlError *
   if (ok && count > 1) vl_parallel_for(world->context, (uint32_t)count, preload_one, &job);
   for (size_t i = 0; ok && i < count; i++) {
     if (!job.mipmaps[i]) continue;
-    int32_t index = push_picture(world, job.mipmaps[i], error);
+    int32_t index = push_image(world, job.mipmaps[i], error);
     job.mipmaps[i] = NULL;
-    ok = index >= 0 && name_picture(world, &world->images.items[index], job.defs[i]);
+    ok = index >= 0 && name_image(world, &world->images.items[index], job.defs[i]);
   }
   for (size_t i = 0; job.mipmaps && i < count; i++) vl_mipmap_destroy(job.mipmaps[i]);
   vl_free(world->context, job.defs);
@@ -214,16 +214,16 @@ static int32_t image_of(vlWorld *world, const vlTextureDef *def, vlError *error)
     if (same_image(&world->images.items[i], def)) return (int32_t)i;
   vlError inner;
   vl_error_clear(&inner);
-  Picture picture = picture_of(def);
+  Image image = open_image(def);
   vlMipmap *mipmap = NULL;
   int32_t index = -1;
-  if (load_picture(world->context, &picture, &mipmap, &inner) == VL_OK) index = push_picture(world, mipmap, &inner);
+  if (load_image(world->context, &image, &mipmap, &inner) == VL_OK) index = push_image(world, mipmap, &inner);
   if (index < 0) {
     vl_fail_at(error, inner.code ? inner.code : VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
                "%s", inner.message);
     return -1;
   }
-  if (!name_picture(world, &world->images.items[index], def)) {
+  if (!name_image(world, &world->images.items[index], def)) {
     vl_fail_memory(error);
     return -1;
   }
@@ -327,8 +327,8 @@ static vlResult image_spectrum(vlWorld *world, vlTextureNode *node, vlError *err
   return VL_OK;
 }
 
-/* What textures of pictures and vertex colours have beyond the picture. */
-static void fill_picture_node(const vlTextureDef *def, vlTextureNode *node) {
+/* What textures of images and vertex colours have beyond the image. */
+static void fill_image_node(const vlTextureDef *def, vlTextureNode *node) {
   node->wrap = def->wrap, node->filter = def->filter, node->scale = def->scale, node->invert = def->invert;
   node->wrap_t = def->wrap_t_given ? def->wrap_t : def->wrap;
   node->colors = def->colors || def->kind == VL_TEXTURE_VERTEX_COLOR;
@@ -366,7 +366,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   node.dimension = def->dimension;
   node.octaves = def->octaves, node.omega = def->omega, node.variation = def->variation;
   memcpy(node.direction, def->direction, sizeof node.direction);
-  fill_picture_node(def, &node);
+  fill_image_node(def, &node);
   int inputs = 0;
   bool amount = false;
   switch (def->kind) {

@@ -70,7 +70,7 @@ typedef struct vlTextureNode {
   vlTextureFilter filter;
   float scale;
   bool invert;
-  /* tint, bias, cutoff or vertex colours do something; channel of a float texture, -1: by the picture */
+  /* tint, bias, cutoff or vertex colours do something; channel of a float texture, -1: by the image */
   bool plain, colors;
   int8_t channel;
   uint8_t uv_set;

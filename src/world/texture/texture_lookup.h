@@ -6,7 +6,7 @@
 #include "world/world.h"
 
 /* Where a texture is asked for: uv, world position and normal, and the footprint: the width of a pixel in world units,
- * and for pictures the two axes of the ellipse that it is in (s, t). color: of the shape's vertices there; read only by
+ * and for images the two axes of the ellipse that it is in (s, t). color: of the shape's vertices there; read only by
  * nodes that ask for it. */
 typedef struct vlTexturePoint {
   float u, v;
@@ -76,7 +76,7 @@ static inline void vl_texture_axes_of_uv(const vlTextureNode *node, const float 
   }
 }
 
-/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+/* ---- images ---------------------------------------------------------------------------------------------------- */
 
 /* Maps an integer texel coordinate by the wrap mode; -1: outside (black). */
 static inline int32_t vl_wrap_index(int32_t i, int32_t n, vlWrap wrap) {
@@ -130,7 +130,7 @@ static inline int32_t vl_to_index(float x) { /* floor, safe for any float */
   return f == f ? (int32_t)f : 0;
 }
 
-/* s, t with (0, 0) the top left corner of the picture. */
+/* s, t with (0, 0) the top left corner of the image. */
 static inline vlTexel vl_bilinear_2(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap, vlWrap wrap_t) {
   float x = s * (float)mip->levels[level].width - 0.5f, y = t * (float)mip->levels[level].height - 0.5f;
   int32_t xi = vl_to_index(x), yi = vl_to_index(y);
@@ -160,7 +160,7 @@ static inline float vl_log2_rough(float x) {
   return vl_ln(x) * 1.44269504f;
 }
 
-/* How a picture is filtered over an ellipse: blurred to its shorter axis by the choice of a level (a mip map's are
+/* How an image is filtered over an ellipse: blurred to its shorter axis by the choice of a level (a mip map's are
  * blurred all ways alike), along the longer one by several taps. */
 enum { VL_FILTER_TAPS = 8 };
 typedef struct vlFilterPlan {
@@ -199,7 +199,7 @@ static inline vlTexel vl_filter_tap(const vlTextureNode *node, const vlMipmap *m
   return a;
 }
 
-/* A picture texture: t of the texture counts from the bottom, rows from the top. Point takes a texel of the finer
+/* An image texture: t of the texture counts from the bottom, rows from the top. Point takes a texel of the finer
  * level, bilinear is bilinear on it, trilinear (and EWA) blend two levels; these take several taps. */
 static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
   vlVec2 st = vl_texture_st(node, at);

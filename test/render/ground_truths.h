@@ -1,7 +1,7 @@
 /* test/render/truths.h: ground truth of a stage (shots.h): taken, looked at by channel and pixel, compared bit by bit.
  */
-#ifndef TEST_RENDER_TRUTHS_H
-#define TEST_RENDER_TRUTHS_H
+#ifndef TEST_RENDER_GROUND_TRUTHS_H
+#define TEST_RENDER_GROUND_TRUTHS_H
 
 #include "render/shots.h"
 
@@ -11,12 +11,12 @@ typedef struct Truth {
   vlWorld *world;
   vlCamera camera, other; /* other: of flow */
   vlFilm *film;
-  vlImage *picture, *floats, *ids;
+  vlImage *image, *floats, *ids;
 } Truth;
 
 /* World and camera of what the stage holds. */
-static UNUSED Truth truth_begin(Stage *s) {
-  Truth t;
+static UNUSED GroundTruth ground_truth_begin(Stage *s) {
+  GroundTruth t;
   memset(&t, 0, sizeof t);
   vlError error = {0};
   if (vl_world_build(s->scene, &s->build, &t.world, &error) != VL_OK) fail_msg("build: %s", error.message);
@@ -24,30 +24,30 @@ static UNUSED Truth truth_begin(Stage *s) {
   return t;
 }
 
-static UNUSED void truth_channels(Truth *t, const vlChannelsDef *def) {
+static UNUSED void ground_truth_channels(GroundTruth *t, const vlChannelsDef *def) {
   vlError error = {0};
   if (vl_render_channels(t->world, &t->camera, def, &t->floats, &t->ids, &error) != VL_OK)
     fail_msg("channels: %s", error.message);
 }
 
-static UNUSED void truth_free(Truth *t) {
-  vl_image_destroy(t->picture);
+static UNUSED void ground_truth_free(GroundTruth *t) {
+  vl_image_destroy(t->image);
   vl_image_destroy(t->floats);
   vl_image_destroy(t->ids);
   vl_film_destroy(t->film);
   vl_world_destroy(t->world);
 }
 
-static UNUSED const float *place(const Truth *t, uint32_t x, uint32_t y, const char *name) {
+static UNUSED const float *place(const GroundTruth *t, uint32_t x, uint32_t y, const char *name) {
   int channel = vl_image_find_channel(t->floats, name);
   assert_true(channel >= 0);
   return (const float *)vl_image_const_pixels(t->floats) +
          ((size_t)y * vl_image_width(t->floats) + x) * vl_image_channels(t->floats) + channel;
 }
-static UNUSED float number(const Truth *t, uint32_t x, uint32_t y, const char *name) {
+static UNUSED float number(const GroundTruth *t, uint32_t x, uint32_t y, const char *name) {
   return *place(t, x, y, name);
 }
-static UNUSED uint32_t id(const Truth *t, uint32_t x, uint32_t y, const char *name) {
+static UNUSED uint32_t id(const GroundTruth *t, uint32_t x, uint32_t y, const char *name) {
   int channel = vl_image_find_channel(t->ids, name);
   assert_true(channel >= 0);
   assert_int_equal(vl_image_type(t->ids), VL_PIXEL_U32);
@@ -82,8 +82,8 @@ static UNUSED bool stage_like(const Stage *s, int isa, Stage *other) {
 
 /* A 16 x 8 stage that fill fills and begin builds; then take, with its memory running out at every place in turn: it
  * must say so, and nothing may be left. */
-static UNUSED void truth_out_of_memory(void (*fill)(Stage *s), Truth (*begin)(Stage *s),
-                                       vlResult (*take)(Stage *s, Truth *t)) {
+static UNUSED void ground_truth_out_of_memory(void (*fill)(Stage *s), Truth (*begin)(Stage *s),
+                                              vlResult (*take)(Stage *s, GroundTruth *t)) {
   bool done = false;
   for (long n = 1; !done; n++) {
     failAllocator allocator = {.fail_at = 0};
@@ -96,12 +96,12 @@ static UNUSED void truth_out_of_memory(void (*fill)(Stage *s), Truth (*begin)(St
     assert_int_equal(vl_context_create(&def, &s.context), VL_OK);
     assert_int_equal(vl_scene_create(s.context, &s.scene), VL_OK);
     fill(&s);
-    Truth t = begin(&s);
+    GroundTruth t = begin(&s);
     allocator.fail_at = atomic_load(&allocator.calls) + n;
     vlResult result = take(&s, &t);
     done = !atomic_load(&allocator.refused);
     assert_int_equal(result, done ? VL_OK : VL_ERROR_MEMORY);
-    truth_free(&t);
+    ground_truth_free(&t);
     vl_scene_destroy(s.scene);
     vl_context_destroy(s.context);
     assert_int_equal(atomic_load(&allocator.blocks), 0);

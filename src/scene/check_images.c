@@ -1,6 +1,6 @@
-/* scene/check_pictures.c: the doctor: files that are not there, surfaces that give back more light than they get,
+/* scene/check_images.c: the doctor: files that are not there, surfaces that give back more light than they get,
  * lights that give none. The greatest value of a texture is bounded from above: of a mix the larger part, of a product
- * the product, of a picture its brightest texel. */
+ * the product, of an image its brightest texel. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -59,7 +59,7 @@ static float spectrum_max(const vlSpectrum *s) {
   return most;
 }
 
-/* Largest and smallest linear colour of a picture. */
+/* Largest and smallest linear colour of an image. */
 static bool image_range(vlCheck *c, const vlImage *image, float range[2]) {
   uint32_t channel[4], n = vl_image_color(image, channel);
   if (n == 2 || n == 4) n--; /* coverage is no colour */
@@ -77,16 +77,16 @@ static bool image_range(vlCheck *c, const vlImage *image, float range[2]) {
   return true;
 }
 
-static float picture_max(vlCheck *c, const vlTextureDef *t) {
+static float image_max(vlCheck *c, const vlTextureDef *t) {
   float tint = t->tint[0] > t->tint[1] ? t->tint[0] : t->tint[1], range[2] = {0, 1};
   tint = tint > t->tint[2] ? tint : t->tint[2];
   bool floats = t->image || t->data || !t->path || vl_ends_with(t->path, ".exr") || vl_ends_with(t->path, ".hdr") ||
                 vl_ends_with(t->path, ".pfm");
   vlImage *image = NULL;
   /* Integers reach 1 at most, and are only looked into where a factor makes more of it. */
-  if (c->def.pictures && !t->image && (floats || t->scale * tint > 1.0f || t->invert)) {
+  if (c->def.images && !t->image && (floats || t->scale * tint > 1.0f || t->invert)) {
     vlError error;
-    vlResult r = t->data   ? vl_image_read_memory(c->context, t->name ? t->name : "a picture", t->data, t->data_size,
+    vlResult r = t->data   ? vl_image_read_memory(c->context, t->name ? t->name : "an image", t->data, t->data_size,
                                                   &image, &error)
                  : t->path ? vl_image_read_named(c->context, t->path, &image, &error)
                            : VL_ERROR_MISSING;
@@ -114,7 +114,7 @@ static float texture_max(vlCheck *c, const vlTextureDef *t, const float *known) 
     in[i] = id ? known[id - 1] : t->spectrum ? spectrum_max(&spectra[i]->value) : floats[i]->value;
   }
   float amount = t->amount.texture.index ? known[t->amount.texture.index - 1] : t->amount.value;
-  if (t->kind == VL_TEXTURE_IMAGE) return picture_max(c, t);
+  if (t->kind == VL_TEXTURE_IMAGE) return image_max(c, t);
   if (t->kind == VL_TEXTURE_SCALE) return in[0] * amount;
   if (t->kind == VL_TEXTURE_CONSTANT) return in[0];
   if (t->kind == VL_TEXTURE_BILERP) return larger(larger(in[0], in[1]), larger(in[2], in[3]));
@@ -203,8 +203,8 @@ static void check_albedo(vlCheck *c) {
 
 /* ---- lights ------------------------------------------------------------------------------------------------------ */
 
-static bool is_dark(const vlSpectrum *s, float scale, bool picture) {
-  return scale == 0.0f || (!picture && !(spectrum_max(s) > 0.0f));
+static bool is_dark(const vlSpectrum *s, float scale, bool image) {
+  return scale == 0.0f || (!image && !(spectrum_max(s) > 0.0f));
 }
 
 static void check_lights(vlCheck *c) {
@@ -223,7 +223,7 @@ static void check_lights(vlCheck *c) {
   }
 }
 
-void vl_check_pictures(vlCheck *c) {
+void vl_check_images(vlCheck *c) {
   look_for_files(c);
   check_albedo(c);
   check_lights(c);

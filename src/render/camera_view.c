@@ -1,5 +1,5 @@
-/* render/eye_view.c: see eye_view.h. */
-#include "render/eye_view.h"
+/* render/camera_view.c: see eye_view.h. */
+#include "render/camera_view.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,7 +26,7 @@ static vlVec3 axis(const double m[16], int i, double length) {
   return (vlVec3){(float)(m[i] / length), (float)(m[4 + i] / length), (float)(m[8 + i] / length)};
 }
 
-void vl_eye_view(const vlCamera *camera, const vlFilmDef *film, vlEyeView *view) {
+void vl_camera_view(const vlCamera *camera, const vlFilmDef *film, vlCameraView *view) {
   memset(view, 0, sizeof *view);
   vlCameraCompiled c;
   vl_camera_compile(camera, &c);
@@ -48,7 +48,7 @@ void vl_eye_view(const vlCamera *camera, const vlFilmDef *film, vlEyeView *view)
   view->high_y = (float)film->crop[3] + film->filter.radius_y;
 }
 
-void vl_eye_view_move(vlEyeView *view, vlAffine at) {
+void vl_camera_view_move(vlCameraView *view, vlAffine at) {
   const double *m = at.m;
   double s = 1 / sqrt(m[0] * m[0] + m[3] * m[3] + m[6] * m[6]);
   view->position = (vlVec3){(float)at.p[0], (float)at.p[1], (float)at.p[2]};
@@ -68,12 +68,12 @@ vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlT
   *radius = 0;
   vlCamera pinhole = *camera;
   pinhole.lens_radius = 0;
-  vlTruthScratch *scratch = vl_alloc_zero(world->context, 1, vl_truth_scratch_size());
-  vlTruthBatch *batch = vl_alloc_zero(world->context, 1, sizeof *batch);
+  vlGroundTruthScratch *scratch = vl_alloc_zero(world->context, 1, vl_ground_truth_scratch_size());
+  vlGroundTruthBatch *batch = vl_alloc_zero(world->context, 1, sizeof *batch);
   vlResult result = scratch && batch ? VL_OK : vl_fail_memory(error);
   if (result == VL_OK) {
-    vlTruthDef def = {.isa = trace->isa};
-    vl_truth_plan_albedo(world, VL_SPACE_SRGB, &def);
+    vlGroundTruthDef def = {.isa = trace->isa};
+    vl_ground_truth_plan_albedo(world, VL_SPACE_SRGB, &def);
     for (int i = 0; i < SIDE * SIDE; i++) {
       double o[3], d[3], x = (i % SIDE + 0.5) / SIDE * camera->width, y = (i / SIDE + 0.5) / SIDE * camera->height;
       if (!vl_camera_unproject(&pinhole, x, y, o, d)) continue;
@@ -81,7 +81,7 @@ vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlT
       batch->t_max[batch->n++] = VL_INFINITY;
     }
     unsigned state = vl_accel_enter();
-    vl_truth_kernels(trace->isa)->trace(world, &def, scratch, batch);
+    vl_ground_truth_kernels(trace->isa)->trace(world, &def, scratch, batch);
     vl_accel_leave(state);
     float t[SIDE * SIDE];
     uint32_t count = 0;

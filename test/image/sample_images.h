@@ -1,7 +1,7 @@
-/* test/image/picture.h: what the tests of this room share: contexts that count, folders, patterns.
+/* test/image/sample_images.h: what the tests of this room share: contexts that count, folders, patterns.
  */
-#ifndef TEST_IMAGE_PICTURE_H
-#define TEST_IMAGE_PICTURE_H
+#ifndef TEST_IMAGE_SAMPLE_IMAGES_H
+#define TEST_IMAGE_SAMPLE_IMAGES_H
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -78,9 +78,9 @@ static inline uint32_t noise(uint32_t *state) {
   return *state >> 8;
 }
 
-/* A picture of the type with a pattern that has flat parts, slopes and noise. */
-static inline vlImage *make_picture(vlContext *context, uint32_t width, uint32_t height, uint32_t channels,
-                                    vlPixelType type, vlEncoding encoding) {
+/* An image of the type with a pattern that has flat parts, slopes and noise. */
+static inline vlImage *make_image(vlContext *context, uint32_t width, uint32_t height, uint32_t channels,
+                                  vlPixelType type, vlEncoding encoding) {
   vlImageDef def = vl_default_image_def(width, height, channels);
   static const char *const NAMES[6] = {"R", "G", "B", "A", "Z", "id"};
   if (channels > 4) def.names = NAMES;

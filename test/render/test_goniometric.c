@@ -1,10 +1,10 @@
-/* test_beams.c: goniometric and projection lights: their intensity where a formula knows it, which way their pictures
+/* test_beams.c: goniometric and projection lights: their intensity where a formula knows it, which way their images
  * lie, their power. A wall stands at z = -2, eye and light at the origin. */
 #include "render/shots.h"
 
 #define PI 3.14159265358979
 
-static vlImage *picture(Stage *s, uint32_t width, uint32_t height) {
+static vlImage *image(Stage *s, uint32_t width, uint32_t height) {
   vlImage *image = NULL;
   vlImageDef def = vl_default_image_def(width, height, 3);
   def.type = VL_PIXEL_F32;
@@ -40,7 +40,7 @@ static void goniometric(void **state) {
   (void)state;
   for (int which = 0; which < 4; which++) { /* all over, above, below, above with a power */
     Stage s = stage();
-    vlImage *image = picture(&s, 16, 16);
+    vlImage *image = image(&s, 16, 16);
     for (uint32_t y = 0; y < 16; y++)
       for (uint32_t x = 0; x < 16; x++) { /* the diamond in the middle is the half about the axis */
         bool upper = fabs(x + 0.5 - 8) + fabs(y + 0.5 - 8) < 8;
@@ -55,15 +55,15 @@ static void goniometric(void **state) {
     memcpy(def.world_from_light, turn, sizeof turn);
     assert_int_not_equal(vl_scene_add_light(s.scene, &def).index, 0);
     vl_image_destroy(image);
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     double upper_share = 0;
     for (int y = 0; y < 16; y++)
       for (int x = 0; x < 16; x++) upper_share += (fabs(x + 0.5 - 8) + fabs(y + 0.5 - 8) < 8) / 256.0;
     double intensity = which == 2 ? 0 : which == 3 ? 100 / (4 * PI * upper_share) : 1;
     for (uint32_t k = 0; k < 31; k += 5)
-      assert_near("goniometric", picture_at(&p, k, 15, 0), intensity * expected(k, 15),
+      assert_near("goniometric", image_at(&p, k, 15, 0), intensity * expected(k, 15),
                   0.02 * intensity * expected(k, 15) + 1e-7);
-    picture_free(&p);
+    image_free(&p);
   }
 }
 
@@ -72,7 +72,7 @@ static void projection(void **state) {
   for (int which = 0; which < 3; which++) {
     Stage s = stage();
     uint32_t w = which == 1 ? 40 : 20;
-    vlImage *image = picture(&s, w, 20);
+    vlImage *image = image(&s, w, 20);
     for (uint32_t y = 0; y < 20; y++)
       for (uint32_t x = 0; x < w; x++) {
         if (which == 2)
@@ -89,10 +89,10 @@ static void projection(void **state) {
     memcpy(def.world_from_light, turn, sizeof turn);
     assert_int_not_equal(vl_scene_add_light(s.scene, &def).index, 0);
     vl_image_destroy(image);
-    Picture p = stage_finish(&s);
+    Image p = stage_finish(&s);
     if (which == 2) { /* a sixth of the sphere */
       for (uint32_t k = 1; k < 30; k += 4)
-        assert_ratio("power", picture_at(&p, k, 15, 0), 10 / (4 * PI / 6) * expected(k, 15), 0.02);
+        assert_ratio("power", image_at(&p, k, 15, 0), 10 / (4 * PI / 6) * expected(k, 15), 0.02);
     } else {
       double half = which == 1 ? 0.8 : 0.4;
       for (uint32_t y = 0; y < 31; y++)
@@ -104,10 +104,10 @@ static void projection(void **state) {
           double e = expected(x, y);
           double want[3] = {in && a > 0 ? e : 0, in && b < 0 ? e : 0,
                             in ? e : 0}; /* a world that is mirrored to pbrt's */
-          for (int c = 0; c < 3; c++) assert_near("slide", picture_at(&p, x, y, c), want[c], 0.02 * e);
+          for (int c = 0; c < 3; c++) assert_near("slide", image_at(&p, x, y, c), want[c], 0.02 * e);
         }
     }
-    picture_free(&p);
+    image_free(&p);
   }
 }
 

@@ -9,7 +9,7 @@ list=all,crypto,error
 check render_a "$VELO" render a.pbrt -o a.exr --channels $list --flow-camera b.pbrt --boxes --quiet
 check render_b "$VELO" render b.pbrt -o b.exr --channels $list --flow-camera-before a.pbrt --quiet
 check plain "$VELO" render a.pbrt -o plain.exr --quiet
-check picture_is_untouched "$VELO" image diff plain.exr a.exr --threshold differing=0
+check image_is_untouched "$VELO" image diff plain.exr a.exr --threshold differing=0
 check a_agrees "$VELO" image check a.exr --flow b.exr
 check b_agrees "$VELO" image check b.exr --flow-before a.exr
 for mode in nearest coverage; do

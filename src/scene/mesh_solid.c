@@ -1,18 +1,18 @@
-/* scene/body.c: see body.h. Corners are welded where they are the same point to the last bit; those on edges that stay
- * open then, to a millionth of the body's size. */
-#include "scene/body.h"
+/* scene/mesh_solid.c: see body.h. Corners are welded where they are the same point to the last bit; those on edges that
+ * stay open then, to a millionth of the body's size. */
+#include "scene/mesh_solid.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "math/transform.h"
 
-void vl_body_free(const vlScene *scene, vlBody *b) {
+void vl_mesh_solid_free(const vlScene *scene, vlMeshSolid *b) {
   vl_free(scene->context, b->points);
   vl_free(scene->context, b->faces3);
   vl_free(scene->context, b->part);
   vl_free(scene->context, b->parts);
-  *b = (vlBody){0};
+  *b = (vlMeshSolid){0};
 }
 
 static uint32_t table_size(size_t count) {
@@ -47,7 +47,7 @@ static bool meshed(const vlShapeDef *d) {
 }
 
 /* Moves a shape's vertices to group space; welded[i]: corner of vertex i. */
-static void weld(const vlShapeDef *d, vlBody *b, uint32_t *table, uint32_t mask, uint32_t *welded) {
+static void weld(const vlShapeDef *d, vlMeshSolid *b, uint32_t *table, uint32_t mask, uint32_t *welded) {
   vlMat4 m = vl_mat4_load(d->group_from_shape);
   for (uint32_t i = 0; i < d->vertices; i++) {
     double p[3] = {d->positions[3 * (size_t)i], d->positions[3 * (size_t)i + 1], d->positions[3 * (size_t)i + 2]}, q[3];
@@ -82,7 +82,7 @@ static bool is_turned(const vlShapeDef *d, const uint32_t *f, int k1, int k2, bo
   return against != (d->reverse_orientation != mirrored);
 }
 
-static void add_face(vlBody *b, uint32_t x, uint32_t y, uint32_t z, bool turned) {
+static void add_face(vlMeshSolid *b, uint32_t x, uint32_t y, uint32_t z, bool turned) {
   if (x == y || y == z || z == x) return; /* no surface */
   uint32_t *f = b->faces3 + 3 * (size_t)b->faces++;
   f[0] = x;
@@ -90,7 +90,7 @@ static void add_face(vlBody *b, uint32_t x, uint32_t y, uint32_t z, bool turned)
   f[2] = turned ? y : z;
 }
 
-static void add_faces(const vlShapeDef *d, vlBody *b, const uint32_t *welded) {
+static void add_faces(const vlShapeDef *d, vlMeshSolid *b, const uint32_t *welded) {
   bool mirrored = vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0;
   for (uint32_t i = 0; i < d->faces; i++) {
     const uint32_t *f = d->indices + (d->kind == VL_SHAPE_TRIANGLES ? 3 : 4) * (size_t)i;
@@ -104,7 +104,7 @@ static void add_faces(const vlShapeDef *d, vlBody *b, const uint32_t *welded) {
   }
 }
 
-static bool gather(const vlScene *scene, const uint32_t *shapes, size_t count, vlBody *b) {
+static bool gather(const vlScene *scene, const uint32_t *shapes, size_t count, vlMeshSolid *b) {
   size_t vertices = 0, faces = 0, most = 0;
   for (size_t i = 0; i < count; i++) {
     const vlShapeDef *d = &scene->shapes.items[shapes[i]];
@@ -154,7 +154,7 @@ static Edge *find_edge(const Edges *e, uint32_t a, uint32_t b) {
   return &e->slots[i];
 }
 
-static bool count_edges(const vlScene *scene, const vlBody *b, Edges *e) {
+static bool count_edges(const vlScene *scene, const vlMeshSolid *b, Edges *e) {
   uint32_t size = table_size((size_t)b->faces * 3);
   e->mask = size - 1;
   e->slots = vl_alloc_zero(scene->context, size, sizeof *e->slots);
@@ -170,7 +170,7 @@ static bool count_edges(const vlScene *scene, const vlBody *b, Edges *e) {
 
 /* Corners of open edges that lie as good as together become one. Cells are as wide as two reaches; a point's
  * neighbours lie in the eight cells round the corner of cells that is nearest to it. */
-static bool weld_open(const vlScene *scene, vlBody *b, const Edges *e, bool *changed) {
+static bool weld_open(const vlScene *scene, vlMeshSolid *b, const Edges *e, bool *changed) {
   double low[3], high[3], size = 0;
   for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
   uint32_t *same = vl_alloc_array(scene->context, b->corners + 1, sizeof *same);
@@ -239,7 +239,7 @@ static uint32_t root_of(uint32_t *parent, uint32_t i) {
   return i;
 }
 
-static bool find_parts(const vlScene *scene, vlBody *b, const Edges *e) {
+static bool find_parts(const vlScene *scene, vlMeshSolid *b, const Edges *e) {
   uint32_t *parent = vl_alloc_array(scene->context, b->corners + 1, sizeof *parent);
   uint32_t *index = vl_alloc_zero(scene->context, b->corners + 1, sizeof *index);
   b->part = vl_alloc_array(scene->context, b->faces + 1, sizeof *b->part);
@@ -259,7 +259,7 @@ static bool find_parts(const vlScene *scene, vlBody *b, const Edges *e) {
   for (uint32_t i = 0; fine && i < b->part_count; i++)
     for (int k = 0; k < 3; k++) b->parts[i].low[k] = INFINITY, b->parts[i].high[k] = -INFINITY;
   for (uint32_t i = 0; fine && i < b->faces; i++) {
-    vlBodyPart *part = &b->parts[b->part[i]];
+    vlMeshSolidPart *part = &b->parts[b->part[i]];
     const uint32_t *f = b->faces3 + 3 * (size_t)i;
     const double *o = b->points, *p[3]; /* volume against a point nearby, for the digits */
     double v[3][3];
@@ -284,8 +284,8 @@ static bool find_parts(const vlScene *scene, vlBody *b, const Edges *e) {
   return fine;
 }
 
-bool vl_body_make(const vlScene *scene, const uint32_t *shapes, size_t count, vlBody *b) {
-  *b = (vlBody){0};
+bool vl_mesh_solid_make(const vlScene *scene, const uint32_t *shapes, size_t count, vlMeshSolid *b) {
+  *b = (vlMeshSolid){0};
   Edges e = {0};
   bool changed = false;
   bool fine = gather(scene, shapes, count, b) && count_edges(scene, b, &e) && weld_open(scene, b, &e, &changed);
@@ -298,7 +298,7 @@ bool vl_body_make(const vlScene *scene, const uint32_t *shapes, size_t count, vl
   return fine;
 }
 
-int vl_body_winding(const vlBody *b, const double p[3], uint32_t only) {
+int vl_mesh_solid_winding(const vlMeshSolid *b, const double p[3], uint32_t only) {
   const double d[3] = {0.5773, 0.2113, 0.7887}; /* along no axis and no diagonal */
   int winding = 0;
   for (uint32_t i = 0; i < b->faces; i++) {

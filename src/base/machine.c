@@ -4,6 +4,9 @@
 #include <stdint.h>
 #include <sys/mman.h>
 
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 #if defined(__SSE__)
 #include <xmmintrin.h>
 #endif
@@ -17,6 +20,12 @@ bool vl_machine_has_addresses(size_t bytes) {
   if (block == MAP_FAILED) return false;
   munmap(block, bytes);
   return true;
+}
+
+void vl_machine_return_memory(void) {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
 }
 
 unsigned vl_machine_flush_denormals(void) {

@@ -9,6 +9,9 @@
  * that cannot say have them. */
 bool vl_machine_has_addresses(size_t bytes);
 
+/* Gives memory that the C library holds free back to the system, where it can be asked to. */
+void vl_machine_return_memory(void);
+
 /* Makes this thread treat denormal floats as zero, as Embree wants it, where the processor can. Returns the state
  * before it, which the other function restores. */
 unsigned vl_machine_flush_denormals(void);

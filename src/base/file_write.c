@@ -47,11 +47,16 @@ static void name_temporary(vlFileWriter *writer, unsigned number) {
 
 /* A file without a name, which goes with its process however that ends. Not every file system has them. */
 static bool open_nameless(vlFileWriter *writer) {
+#if defined(O_TMPFILE) && defined(AT_SYMLINK_FOLLOW)
   char folder[4096];
   if (access("/proc/self/fd", X_OK) != 0) return false; /* by which it gets its name */
   snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(writer->target), writer->target);
   writer->descriptor = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
   return writer->descriptor >= 0;
+#else
+  (void)writer;
+  return false;
+#endif
 }
 
 /* Its name, of a temporary, for as long as it takes to rename it. false: errno. */

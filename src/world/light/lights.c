@@ -6,6 +6,7 @@
 
 #include "base/context.h"
 #include "base/error.h"
+#include "math/elementary.h"
 #include "math/octahedral.h"
 #include "math/transform.h"
 #include "scene/scene.h"
@@ -206,8 +207,8 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
       break;
     case VL_LIGHT_SPOT: {
       light->kind = VL_WL_SPOT;
-      light->cos_end = cosf(def->cone_angle);
-      light->cos_start = cosf(def->cone_angle - def->cone_delta);
+      light->cos_end = (float)vl_precise_cos(def->cone_angle);
+      light->cos_start = (float)vl_precise_cos(def->cone_angle - def->cone_delta);
       light->cone_squared = def->cone_squared;
       float solid = 2 * VL_PI * ((1 - light->cos_start) + (light->cos_start - light->cos_end) / 2);
       if (has_power) factor *= (float)(def->power / solid);

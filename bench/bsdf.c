@@ -107,9 +107,13 @@ int main(int argc, char **argv) {
               {"diffuse transmission", VL_BSDF_DIFFUSE_TRANSMISSION, coat},
               {"layered", VL_BSDF_LAYERED, coat},
               {"hair", VL_BSDF_HAIR, coat}};
-  printf("ns a lane, batches of %u; alpha 0.1; \"one\": one lane at a time, SSE4.2 without vectors\n", n);
+  static const char *const sets[] = {
+      [VL_ISA_BASE] = "base", [VL_ISA_V2] = "v2", [VL_ISA_V3] = "v3", [VL_ISA_V4] = "v4"};
+  printf("ns a lane, batches of %u; alpha 0.1; \"one\": one lane at a time, lowest set without vectors\n", n);
   printf("%-18s %-8s %8s", "", "", "one");
-  for (int isa = 2; isa <= (int)vl_isa_best(); isa++) printf("%8s%d", "v", isa);
+  vlIsa lowest = VL_ISA_AUTO, best = vl_isa_best();
+  if (vl_isa_choose(VL_ISA_BASE, &lowest) != VL_OK) return 1;
+  for (int isa = (int)lowest; isa <= (int)best; isa++) printf("%9s", sets[isa]);
   printf("%10s\n", "ratio");
   for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
     for (uint32_t i = 0; i < n; i++) a->coat[i] = rows[r].coat;
@@ -117,7 +121,7 @@ int main(int argc, char **argv) {
       const char *names[] = {"eval", "sample", "both"};
       double one = cost(&vl_bsdf_kernel_table_scalar, rows[r].kind, what, a, n, 1), last = one;
       printf("%-18s %-8s %8.1f", what == 1 ? rows[r].name : "", names[what - 1], one);
-      for (int isa = 2; isa <= (int)vl_isa_best(); isa++) {
+      for (int isa = (int)lowest; isa <= (int)best; isa++) {
         last = cost(vl_bsdf_kernels((vlIsa)isa), rows[r].kind, what, a, n, n);
         printf("%9.2f", last);
       }

@@ -122,7 +122,8 @@ static int help(int argc, char **argv) {
 
 /* One line for the version, then one for each fact about the build. */
 static int print_version(void) {
-  static const char *const sets[] = {[VL_ISA_V2] = "v2", [VL_ISA_V3] = "v3", [VL_ISA_V4] = "v4"};
+  static const char *const sets[] = {
+      [VL_ISA_BASE] = "base", [VL_ISA_V2] = "x86-64-v2", [VL_ISA_V3] = "x86-64-v3", [VL_ISA_V4] = "x86-64-v4"};
   const vlVersion *version = vl_version();
   printf("velo %s\n", version->text);
   if (velo_commit[0]) printf("commit            %s\n", velo_commit);
@@ -132,7 +133,7 @@ static int print_version(void) {
   def.threads = 1;
   vlContext *context;
   if (vl_context_create(&def, &context) == VL_OK) {
-    printf("; here x86-64-%s", sets[vl_context_isa(context)]);
+    printf("; here %s", sets[vl_context_isa(context)]);
     vl_context_destroy(context);
   }
   printf("\nlibraries         ");

@@ -44,7 +44,7 @@ typedef struct vlVersion {
   uint32_t abi;                 /* VL_ABI_VERSION; differs from the headers' if a program runs with another library */
   const char *text;             /* "0.1.0" */
   const char *compiler;         /* "gcc 12.2.0" */
-  const char *instruction_sets; /* that it has code for: "x86-64-v2, x86-64-v3, x86-64-v4" */
+  const char *instruction_sets; /* that it has code for: "x86-64-v2, x86-64-v3, x86-64-v4"; elsewhere "base" */
 } vlVersion;
 /* Never null. May be called from any thread, before there is a context. */
 VL_API const vlVersion *vl_version(void);
@@ -103,8 +103,10 @@ typedef struct vlAllocator {
 typedef void vlParallelFn(void *loop_user, uint32_t index, uint32_t worker);
 typedef void vlParallelForFn(void *user, uint32_t count, vlParallelFn *body, void *loop_user);
 
-/* Instruction sets of the hot loops. Every one gives the same bits. */
-typedef enum vlIsa { VL_ISA_AUTO = 0, VL_ISA_V2 = 2, VL_ISA_V3 = 3, VL_ISA_V4 = 4 } vlIsa;
+/* Instruction sets of the hot loops. Every one gives the same bits. AUTO: the widest that the machine has. BASE: the
+ * lowest that the library has, everywhere: V2 on x86-64, the only one on other machines. V2, V3, V4: levels of x86-64.
+ */
+typedef enum vlIsa { VL_ISA_AUTO = 0, VL_ISA_BASE = 1, VL_ISA_V2 = 2, VL_ISA_V3 = 3, VL_ISA_V4 = 4 } vlIsa;
 
 /* Asked about ten times a second by calls that take long, on the thread that called: true to give up. */
 typedef bool vlStopFn(void *user);
@@ -117,7 +119,7 @@ typedef struct vlContextDef {
   vlLogFn *log;
   void *log_user;
   uint32_t threads;              /* workers; default: the machine's */
-  vlIsa isa;                     /* default VL_ISA_AUTO; the environment variable VELO_ISA=v2|v3|v4 overrides AUTO */
+  vlIsa isa;                     /* default VL_ISA_AUTO; VELO_ISA=base|v2|v3|v4 in the environment overrides AUTO */
   vlParallelForFn *parallel_for; /* null: the built-in pool */
   void *parallel_for_user;
   size_t max_memory;           /* bytes that may be held, Embree's included; beyond it VL_ERROR_MEMORY. 0: no limit */
@@ -138,6 +140,7 @@ VL_API vlContextDef vl_default_context_def_abi(uint32_t abi);
 VL_API vlResult vl_context_create(const vlContextDef *def, vlContext **context);
 /* All objects made from the context must be gone. Null is allowed. */
 VL_API void vl_context_destroy(vlContext *context);
+/* The set in use: V2, V3 or V4 on x86-64, BASE on other machines. */
 VL_API vlIsa vl_context_isa(const vlContext *context);
 VL_API uint32_t vl_context_threads(const vlContext *context);
 /* Bytes held now and at most: what came from the allocator, and Embree's. */

@@ -17,13 +17,17 @@ static const char compiler[] =
 
 const vlVersion *vl_version(void) {
   static const vlVersion version = {
-      .major = VL_VERSION_MAJOR,
-      .minor = VL_VERSION_MINOR,
-      .patch = VL_VERSION_PATCH,
-      .abi = VL_ABI_VERSION,
-      .text = TEXT(VL_VERSION_MAJOR) "." TEXT(VL_VERSION_MINOR) "." TEXT(VL_VERSION_PATCH),
-      .compiler = compiler,
-      .instruction_sets = "x86-64-v2, x86-64-v3, x86-64-v4",
+    .major = VL_VERSION_MAJOR,
+    .minor = VL_VERSION_MINOR,
+    .patch = VL_VERSION_PATCH,
+    .abi = VL_ABI_VERSION,
+    .text = TEXT(VL_VERSION_MAJOR) "." TEXT(VL_VERSION_MINOR) "." TEXT(VL_VERSION_PATCH),
+    .compiler = compiler,
+#if defined(__x86_64__)
+    .instruction_sets = "x86-64-v2, x86-64-v3, x86-64-v4",
+#else
+    .instruction_sets = "base",
+#endif
   };
   return &version;
 }

@@ -297,7 +297,7 @@ vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
   if (d.cookie != VL_COOKIE_CONTEXT || !d.allocator.allocate || !d.allocator.release || d.threads == 0 ||
       d.threads > 4096)
     return VL_ERROR_ARGUMENT;
-  vlIsa isa = VL_ISA_V2;
+  vlIsa isa = VL_ISA_BASE;
   vlResult r = vl_isa_choose(d.isa, &isa);
   if (r != VL_OK) return r;
   vlContext *context = d.allocator.allocate(d.allocator.user, sizeof *context);

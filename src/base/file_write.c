@@ -47,11 +47,16 @@ static void name_temporary(vlFileWriter *writer, unsigned number) {
 
 /* Opens a file without a name (O_TMPFILE), which disappears with its process. Not every file system supports them. */
 static bool open_nameless(vlFileWriter *writer) {
+#if defined(O_TMPFILE) && defined(AT_SYMLINK_FOLLOW)
   char folder[4096];
   if (access("/proc/self/fd", X_OK) != 0) return false; /* needed to name the file later */
   snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(writer->target), writer->target);
   writer->descriptor = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
   return writer->descriptor >= 0;
+#else
+  (void)writer;
+  return false;
+#endif
 }
 
 /* Links it to a temporary name, just before it is renamed. False: errno is set. */

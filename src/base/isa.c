@@ -5,8 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-vlIsa vl_isa_best(void) {
 #if defined(__x86_64__)
+static const vlIsa lowest = VL_ISA_V2;
+
+vlIsa vl_isa_best(void) {
   __builtin_cpu_init();
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi2") || !__builtin_cpu_supports("fma"))
     return VL_ISA_V2;
@@ -14,29 +16,31 @@ vlIsa vl_isa_best(void) {
       !__builtin_cpu_supports("avx512cd") || !__builtin_cpu_supports("avx512dq") || !__builtin_cpu_supports("avx512vl"))
     return VL_ISA_V3;
   return VL_ISA_V4;
-#else
-  return VL_ISA_V2;
-#endif
 }
+#else
+static const vlIsa lowest = VL_ISA_BASE;
+
+vlIsa vl_isa_best(void) {
+  return VL_ISA_BASE;
+}
+#endif
 
 vlResult vl_isa_choose(vlIsa wish, vlIsa *isa) {
+  static const struct {
+    const char *name;
+    vlIsa isa;
+  } names[] = {{"base", VL_ISA_BASE}, {"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}};
   vlIsa best = vl_isa_best();
-  if (wish == VL_ISA_AUTO) {
-    const char *text = getenv("VELO_ISA");
-    if (text && *text) {
-      if (strcmp(text, "v2") == 0)
-        wish = VL_ISA_V2;
-      else if (strcmp(text, "v3") == 0)
-        wish = VL_ISA_V3;
-      else if (strcmp(text, "v4") == 0)
-        wish = VL_ISA_V4;
-      else
-        return VL_ERROR_ARGUMENT;
-    } else {
-      wish = best;
-    }
+  const char *text = wish == VL_ISA_AUTO ? getenv("VELO_ISA") : NULL;
+  if (text && *text) {
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+      if (strcmp(text, names[i].name) == 0) wish = names[i].isa;
+    if (wish == VL_ISA_AUTO) return VL_ERROR_ARGUMENT;
+  } else if (wish == VL_ISA_AUTO) {
+    wish = best;
   }
-  if (wish != VL_ISA_V2 && wish != VL_ISA_V3 && wish != VL_ISA_V4) return VL_ERROR_ARGUMENT;
+  if (wish == VL_ISA_BASE) wish = lowest;
+  if (wish != lowest && wish != VL_ISA_V2 && wish != VL_ISA_V3 && wish != VL_ISA_V4) return VL_ERROR_ARGUMENT;
   if (wish > best) return VL_ERROR_UNSUPPORTED;
   *isa = wish;
   return VL_OK;

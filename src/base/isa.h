@@ -1,13 +1,12 @@
-/* base/isa.h: instruction sets. Hot files are compiled once per set with VL_ISA_SUFFIX = v2, v3 or v4. Their
- * external functions have the set's suffix (name_v3, ...) and are collected in one constant table per folder and
- * set. */
+/* base/isa.h: instruction sets. Hot files are compiled once per set (v2, v3 and v4 on x86-64, base elsewhere); their
+ * functions are reached through one constant table per room and set. */
 #ifndef BASE_ISA_H
 #define BASE_ISA_H
 
 #include "velo/base.h"
 
-/* Chooses the widest supported set for AUTO (the environment variable VELO_ISA overrides it), else the requested
- * one. Errors: UNSUPPORTED if the processor lacks it. */
+/* The widest set this machine has, or the wish if the machine has it (else UNSUPPORTED). AUTO looks at the environment
+ * variable VELO_ISA first. BASE gives the lowest set of the library: V2 on x86-64. */
 vlResult vl_isa_choose(vlIsa wish, vlIsa *isa);
 vlIsa vl_isa_best(void);
 

@@ -7,6 +7,7 @@
 #include "base/context.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "math/elementary.h"
 #include "math/warp.h"
 
 static const double pi = 3.14159265358979323846;
@@ -19,7 +20,7 @@ void vl_blades_make(uint32_t count, double rotation, vlBlades *blades) {
   blades->count = count < VL_MOST_BLADES ? count : VL_MOST_BLADES;
   for (uint32_t i = 0; i < blades->count; i++) {
     double angle = rotation - 0.5 * pi + 2.0 * pi * i / blades->count;
-    blades->x[i] = (float)cos(angle), blades->y[i] = (float)sin(angle);
+    blades->x[i] = (float)vl_precise_cos(angle), blades->y[i] = (float)vl_precise_sin(angle);
   }
   blades->x[blades->count] = blades->x[0], blades->y[blades->count] = blades->y[0];
 }
@@ -186,13 +187,13 @@ static bool inside(const double (*corners)[2], int count, double x, double y) {
  * inner corners are the intersections of its outer pentagon's diagonals; one of them is on the right. */
 static double named_value(int name, double x, double y) {
   double corners[10][2];
-  if (name == 0) return fmax(0.0, exp(-(x * x + y * y)) - exp(-1.0));
+  if (name == 0) return fmax(0.0, vl_precise_exp(-(x * x + y * y)) - vl_precise_exp(-1.0));
   if (name == 1) return 1.0;
   int count = name == 2 ? 5 : 10;
   for (int i = 0; i < count; i++) {
     double angle = name == 2 ? 0.5 * pi + 0.4 * pi * i : 0.2 * pi * i;
-    double radius = name == 2 ? 0.8 : i & 1 ? 1.0 : cos(0.4 * pi) / cos(0.2 * pi);
-    corners[i][0] = radius * cos(angle), corners[i][1] = radius * sin(angle);
+    double radius = name == 2 ? 0.8 : i & 1 ? 1.0 : vl_precise_cos(0.4 * pi) / vl_precise_cos(0.2 * pi);
+    corners[i][0] = radius * vl_precise_cos(angle), corners[i][1] = radius * vl_precise_sin(angle);
   }
   return inside((const double(*)[2])corners, count, x, y) ? 1.0 : 0.0;
 }

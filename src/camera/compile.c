@@ -7,6 +7,7 @@
 #include "camera/parts.h"
 #include "camera/rays.h"
 #include "math/approx_double.h"
+#include "math/elementary.h"
 
 /* Pixels by which a plane that closes on itself extends beyond its edges; no filter is wider. */
 static const double overhang = 16.0;
@@ -34,7 +35,7 @@ static void compile_lens(const vlCamera *camera, vlCameraCompiled *c) {
   c->focus[2] = c->inv_focus;
   c->inv_ratio = 1.0 / l->ratio;
   c->aperture = l->aperture;
-  c->lens_turn[0] = cos(l->rotation), c->lens_turn[1] = sin(l->rotation);
+  c->lens_turn[0] = vl_precise_cos(l->rotation), c->lens_turn[1] = vl_precise_sin(l->rotation);
   if (l->blades) vl_blades_make(l->blades, l->rotation, &c->blades);
   c->shaped = l->blades || l->aperture || l->ratio != 1.0 || c->focus[0] != 0.0 || c->focus[1] != 0.0;
 }
@@ -90,6 +91,6 @@ void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
   } else {
     double det =
         m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
-    c->pixel_width = (float)(size * cbrt(fabs(det)));
+    c->pixel_width = (float)(size * vl_precise_cbrt(fabs(det)));
   }
 }

@@ -8,6 +8,7 @@
 #include "camera/optics.h"
 #include "camera/parts.h"
 #include "camera/points.h"
+#include "math/elementary.h"
 
 enum { DEGREE = 8, MAX_STEPS = 48, DIRECTIONS = 64, GRID = 48 };
 static const double pi = 3.14159265358979323846;
@@ -102,7 +103,7 @@ static double fold_radius(const vlDistortionMap *m, double most) {
   radius = most;
   for (int i = 0; i < DIRECTIONS; i++) {
     double angle = 2.0 * pi * i / DIRECTIONS;
-    radius = fmin(radius, fold_along(m, cos(angle), sin(angle), radius));
+    radius = fmin(radius, fold_along(m, vl_precise_cos(angle), vl_precise_sin(angle), radius));
   }
   return radius < most ? 0.998 * radius : radius; /* margin for folds between the directions */
 }
@@ -136,7 +137,7 @@ static double needed_radius(const vlCamera *c) {
   for (double r = 1e-3; r < m->radius && r < 1e6; r *= 1.05) {
     double least = INFINITY;
     for (int i = 0; i < 8; i++) {
-      vlDistorted d = vl_distort(m, r * cos(0.25 * pi * i), r * sin(0.25 * pi * i));
+      vlDistorted d = vl_distort(m, r * vl_precise_cos(0.25 * pi * i), r * vl_precise_sin(0.25 * pi * i));
       least = fmin(least, vl_length2(d.u, d.v));
     }
     if (least > 1.5 * corner) return r;
@@ -150,10 +151,10 @@ static uint32_t steps_everywhere(const vlCamera *c) {
   uint32_t steps = 1;
   for (int i = 0; i < 24; i++)
     for (int k = 1; k <= 40; k++) {
-      /* denser towards the edge: near a fold Newton's method is slow */
-      double share = k <= 32 ? k / 33.0 : 1.0 - pow(10.0, 30.5 - k);
+      /* towards the edge ever closer: a fold is where Newton's method is slow */
+      double share = k <= 32 ? k / 33.0 : 1.0 - vl_precise_pow(10.0, 30.5 - k);
       double r = most * share, angle = 2.0 * pi * (i + 0.3) / 24;
-      uint32_t here = steps_for(m, r * cos(angle), r * sin(angle));
+      uint32_t here = steps_for(m, r * vl_precise_cos(angle), r * vl_precise_sin(angle));
       if (here <= MAX_STEPS && here > steps) steps = here;
     }
   return steps + 1;

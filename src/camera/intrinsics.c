@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "camera/kinds.h"
 #include "camera/parts.h"
+#include "math/elementary.h"
 
 static const double pi = 3.14159265358979323846;
 static const double agreement = 1e-6; /* relative; values written with 7 digits agree */
@@ -129,7 +130,7 @@ static vlResult take_screen(const vlCameraDef *d, double tangent, const char *fr
 static vlResult plane_half(const vlCameraDef *d, const vlCamera *camera, bool vertical, double *half, vlError *error) {
   vlProjection kind = d->projection;
   if (kind == VL_PROJECTION_PERSPECTIVE) {
-    *half = tan(0.5 * d->fov);
+    *half = vl_precise_tan(0.5 * d->fov);
     return VL_OK;
   }
   const char *name = vl_projection_name(kind);
@@ -161,7 +162,7 @@ static vlResult gather_focal(const vlCameraDef *d, const vlCamera *camera, bool 
     double fov = has_fov ? d->fov : 0.5 * pi;
     snprintf(from, sizeof from, "the screen window with fov %.9g degrees%s", fov * 180.0 / pi,
              has_fov ? "" : " (the default)");
-    TRY(take_screen(d, tan(0.5 * fov), from, g, error));
+    TRY(take_screen(d, vl_precise_tan(0.5 * fov), from, g, error));
   } else if (has_fov) {
     static const char *const axes[] = {"vertical", "horizontal", "diagonal", "smaller side", "larger side"};
     bool horizontal, vertical;

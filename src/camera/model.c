@@ -7,6 +7,7 @@
 #include "camera/kinds.h"
 #include "camera/parts.h"
 #include "camera/points.h"
+#include "math/elementary.h"
 #include "math/transform.h"
 
 static vlResult shape(const vlCameraDef *def, vlCamera *camera, vlError *error) {
@@ -115,9 +116,9 @@ bool vl_camera_plane_radius(const vlCamera *camera, double angle, bool vertical,
   vlCameraCompiled c;
   memset(&c, 0, sizeof c);
   c.shape[0] = camera->shape[0], c.shape[1] = camera->shape[1];
-  if (camera->projection == VL_PROJECTION_FOV) c.shape[1] = 2.0 * tan(0.5 * camera->shape[0]);
+  if (camera->projection == VL_PROJECTION_FOV) c.shape[1] = 2.0 * vl_precise_tan(0.5 * camera->shape[0]);
   c.limit2 = INFINITY;
-  double s = sin(angle), z = cos(angle);
+  double s = vl_precise_sin(angle), z = vl_precise_cos(angle);
   vlPlanePoint p = vl_plane_project(camera->projection, &c, vertical ? 0.0 : s, vertical ? s : 0.0, z);
   *radius = vertical ? p.y : p.x;
   return p.valid > 0.0 && isfinite(*radius) && *radius > 0.0;

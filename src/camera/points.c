@@ -92,7 +92,7 @@ bool vl_camera_project(const vlCamera *camera, const double point[3], double pix
 
 static const vlCameraKernels *kernels(void) {
   vlIsa isa;
-  return vl_camera_kernels(vl_isa_choose(VL_ISA_AUTO, &isa) == VL_OK ? isa : VL_ISA_V2);
+  return vl_camera_kernels(vl_isa_choose(VL_ISA_AUTO, &isa) == VL_OK ? isa : VL_ISA_BASE);
 }
 
 void vl_camera_unproject_batch(const vlCamera *camera, size_t count, const double *pixels, double *origins,

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "camera/parts.h"
+#include "math/elementary.h"
 #include "math/transform.h"
 
 typedef struct {
@@ -125,7 +126,7 @@ vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **w
   if (def->roll != 0.0) {
     /* about z, from x (right) to y (down): clockwise as seen from behind the camera */
     vlMat4 turn = vl_mat4_identity();
-    double s = sin(def->roll), c = cos(def->roll);
+    double s = vl_precise_sin(def->roll), c = vl_precise_cos(def->roll);
     turn.m[0] = c, turn.m[1] = -s;
     turn.m[4] = s, turn.m[5] = c;
     m = vl_mat4_multiply(m, turn);

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "camera/optics.h"
 #include "camera/parts.h"
+#include "math/elementary.h"
 
 static const double agreement = 1e-6;
 
@@ -89,16 +90,16 @@ static vlResult tilt(const vlCameraDef *def, double focal_mm, vlCamera *camera, 
   if (def->projection > VL_PROJECTION_ORTHOGRAPHIC)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a tilted plane in focus has no meaning for the %s projection",
                    vl_projection_name(def->projection));
-  camera->lens.tilt[0] = tan(d->tilt_y);
-  camera->lens.tilt[1] = tan(d->tilt_x);
+  camera->lens.tilt[0] = vl_precise_tan(d->tilt_y);
+  camera->lens.tilt[1] = vl_precise_tan(d->tilt_x);
   if (!lens) return VL_OK;
   if (vl_is_unset(focal_mm))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: lens_tilt needs the focal length in millimetres (focal_mm or sensor_width_mm); or give "
                    "tilt_x and tilt_y of the plane");
-  /* Hinge rule: the plane in focus meets the lens plane (parallel to the film) at distance f / sin(tilt). */
-  camera->lens.hinge[0] = sin(d->lens_tilt_y) * d->unit_mm / focal_mm;
-  camera->lens.hinge[1] = sin(d->lens_tilt_x) * d->unit_mm / focal_mm;
+  /* the hinge rule: the plane in focus meets the plane through the lens, parallel to the film, f / sin(tilt) away */
+  camera->lens.hinge[0] = vl_precise_sin(d->lens_tilt_y) * d->unit_mm / focal_mm;
+  camera->lens.hinge[1] = vl_precise_sin(d->lens_tilt_x) * d->unit_mm / focal_mm;
   return VL_OK;
 }
 

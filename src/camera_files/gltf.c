@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "camera_files/files.h"
+#include "math/elementary.h"
 #include "math/transform.h"
 
 /* A camera in glTF's parameters. */
@@ -20,7 +21,7 @@ static Numbers numbers_of(const vlCamera *c) {
   n.xmag = 0.5 * c->width / c->fx;
   n.ymag = 0.5 * c->height / c->fy;
   n.aspect = n.xmag / n.ymag;
-  n.yfov = 2.0 * atan(n.ymag);
+  n.yfov = 2.0 * vl_precise_atan(n.ymag);
   vl_camera_flip_axes(c->world_from_camera, n.matrix);
   return n;
 }
@@ -91,7 +92,7 @@ static vlResult read_perspective(const vlCameraFile *file, const json_t *lens, v
     return vl_camera_wrong(file, "gltf: \"aspectRatio\" is %g; it must be above zero", aspect);
   if (result == VL_OK) result = vl_camera_size(file, vl_is_unset(aspect) ? 16.0 / 9.0 : aspect, record);
   if (result != VL_OK) return result;
-  double half = tan(0.5 * yfov);
+  double half = vl_precise_tan(0.5 * yfov);
   d->fy = 0.5 * d->height / half;
   d->fx = vl_is_unset(aspect) ? d->fy : 0.5 * d->width / (half * aspect);
   return VL_OK;

@@ -9,6 +9,7 @@
 
 #include "base/text.h"
 #include "camera_files/files.h"
+#include "math/elementary.h"
 #include "math/transform.h"
 
 static const double degree = 3.14159265358979323846 / 180.0;
@@ -228,7 +229,7 @@ static vlResult read_fov(const Scene *scene, const json_t *sensor, const double 
     return vl_camera_wrong_at(scene->file, line, 0, "mitsuba: fov is %g degrees; it must lie between 0 and 180", fov);
   for (int i = 0; i < 5; i++)
     if (strcmp(axis, names[i]) == 0) {
-      *f = 0.5 * sides[i] / tan(0.5 * fov * degree);
+      *f = 0.5 * sides[i] / vl_precise_tan(0.5 * fov * degree);
       return VL_OK;
     }
   return vl_camera_wrong_at(scene->file, line, 0,
@@ -363,7 +364,7 @@ vlResult vl_camera_write_mitsuba(const vlCameraFile *file, const vlCameraRecord 
   vl_camera_put(text, "\"/>\n    </transform>\n");
   if (!flat) {
     vl_camera_put(text, "    <string name=\"fov_axis\" value=\"x\"/>\n");
-    put_float(text, "fov", 2.0 * atan(0.5 * c.width / c.fx) / degree);
+    put_float(text, "fov", 2.0 * vl_precise_atan(0.5 * c.width / c.fx) / degree);
   }
   if (!centred && c.cx != 0.5 * c.width) put_float(text, "principal_point_offset_x", 0.5 - c.cx / c.width);
   if (!centred && c.cy != 0.5 * c.height) put_float(text, "principal_point_offset_y", 0.5 - c.cy / c.height);

@@ -5,12 +5,14 @@
 
 #include "camera_files/files.h"
 
+#include "math/elementary.h"
+
 void vl_rotation_from_vector(const double v[3], double r[9]) {
   double angle = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   /* sin(a)/a and (1 - cos(a))/a^2; below 1e-4 their series are exact to the last bit */
   double a2 = angle * angle;
-  double s = angle < 1e-4 ? 1.0 - a2 / 6.0 : sin(angle) / angle;
-  double half = angle < 1e-4 ? 1.0 : sin(0.5 * angle) / (0.5 * angle);
+  double s = angle < 1e-4 ? 1.0 - a2 / 6.0 : vl_precise_sin(angle) / angle;
+  double half = angle < 1e-4 ? 1.0 : vl_precise_sin(0.5 * angle) / (0.5 * angle);
   double c = angle < 1e-4 ? 0.5 - a2 / 24.0 : 0.5 * half * half;
   double x = v[0], y = v[1], z = v[2];
   r[0] = 1.0 - c * (y * y + z * z), r[1] = c * x * y - s * z, r[2] = c * x * z + s * y;
@@ -23,7 +25,7 @@ void vl_rotation_to_vector(const double r[9], double v[3]) {
   double q[4];
   vl_rotation_to_quaternion(r, q);
   double sine = sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  double scale = sine > 0.0 ? 2.0 * atan2(sine, q[0]) / sine : 2.0;
+  double scale = sine > 0.0 ? 2.0 * vl_precise_atan2(sine, q[0]) / sine : 2.0;
   for (int i = 0; i < 3; i++) v[i] = scale * q[i + 1];
 }
 

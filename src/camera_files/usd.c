@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "camera_files/files.h"
+#include "math/elementary.h"
 #include "math/transform.h"
 
 static const double degree = 3.14159265358979323846 / 180.0;
@@ -184,7 +185,7 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   d->projection = flat ? VL_PROJECTION_ORTHOGRAPHIC : VL_PROJECTION_PERSPECTIVE;
   if (stop > 0.0 && !flat) d->lens_radius = 0.1 * focal / (2.0 * stop);
   if (focus > 0.0) d->focus_distance = focus;
-  if (exposure != 0.0) d->exposure_time = exp2(exposure);
+  if (exposure != 0.0) d->exposure_time = vl_precise_exp2(exposure);
   if (json_object_get(prim, "shutter:open")) d->shutter_open /= rate;
   if (json_object_get(prim, "shutter:close")) d->shutter_close /= rate;
   d->has_matrix = true;
@@ -259,7 +260,7 @@ vlResult vl_camera_write_usd(const vlCameraFile *file, const vlCameraRecord *rec
   if (c.lens_radius > 0.0 && !flat)
     vl_camera_put(text, "    float fStop = %.17g\n", 0.1 * focal / (2.0 * c.lens_radius));
   if (!isinf(c.focus_distance)) vl_camera_put(text, "    float focusDistance = %.17g\n", c.focus_distance);
-  if (c.exposure_time != 1.0) vl_camera_put(text, "    float exposure = %.17g\n", log2(c.exposure_time));
+  if (c.exposure_time != 1.0) vl_camera_put(text, "    float exposure = %.17g\n", vl_precise_log2(c.exposure_time));
   if (timed)
     vl_camera_put(text, "    double shutter:open = %.17g\n    double shutter:close = %.17g\n", c.shutter_open,
                   c.shutter_close);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "color/tables.h"
+#include "math/elementary.h"
 #include "math/transform.h"
 #include "velo/render.h"
 
@@ -40,7 +41,7 @@ void vl_daylight(double kelvin, double light[VL_LAMBDA_COUNT]) {
   if (t < 4000.0) {
     for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
       double metres = (VL_LAMBDA_MIN + i) * 1e-9;
-      light[i] = pow(metres * 1e7, -5.0) / expm1(1.438776877e-2 / (metres * t));
+      light[i] = vl_precise_pow(metres * 1e7, -5.0) / vl_precise_expm1(1.438776877e-2 / (metres * t));
     }
     return;
   }

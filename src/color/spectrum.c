@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "color/named.h"
 #include "color/tables.h"
+#include "math/elementary.h"
 
 static vlResult unknown_name(const char *name, vlError *error) {
   const char *names[128];
@@ -53,10 +54,10 @@ static vlResult check(const vlSpectrum *s, vlError *error) {
 
 /* Planck's law divided by its maximum (at Wien's wavelength): (lm / l)^5 (e^xm - 1) / (e^x - 1), x = hc / (l k T). */
 static float blackbody(double lambda, double kelvin) {
-  const double xm = 4.965114231744276, hc_k = 1.438776877e7; /* nm K */
+  const double xm = 4.965114231744276, hc_k = 1.438776877e7 /* nm K */, peak = 142.32492159405578; /* e^xm - 1 */
   double x = hc_k / (lambda * kelvin);
-  double value = pow(x / xm, 5) * expm1(xm) / expm1(x);
-  return isfinite(value) ? (float)value : 0.0f; /* low temperatures: infinity over infinity */
+  double u = x / xm, value = u * u * (u * u) * u * peak / vl_precise_expm1(x);
+  return isfinite(value) ? (float)value : 0.0f; /* cold: infinity over infinity */
 }
 
 static void sampled(const vlSpectrum *s, float *dense) {

@@ -4,6 +4,8 @@
 
 #include "export/export.h"
 
+#include "math/elementary.h"
+
 enum { ALONG = 64, ACROSS = 32 };
 
 void vl_export_free_mesh(vlExport *x, vlExportMesh *mesh) {
@@ -28,7 +30,7 @@ static bool patches(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
 
 /* Point, normal and uv of a quadric at (a, b) of 0 to 1: around, and from z_min (or outside) on. */
 static void quadric(const vlShapeDef *d, double a, double b, float p[3], float n[3]) {
-  double phi = a * d->phi_max, c = cos(phi), s = sin(phi), r = d->radius;
+  double phi = a * d->phi_max, c = vl_precise_cos(phi), s = vl_precise_sin(phi), r = d->radius;
   if (d->kind == VL_SHAPE_DISK) {
     double at = r + b * (d->inner_radius - r);
     p[0] = (float)(at * c), p[1] = (float)(at * s), p[2] = d->height;
@@ -40,9 +42,11 @@ static void quadric(const vlShapeDef *d, double a, double b, float p[3], float n
     n[0] = (float)c, n[1] = (float)s, n[2] = 0;
     return;
   }
-  double low = acos(fmin(1, fmax(-1, d->z_min / r))), high = acos(fmin(1, fmax(-1, d->z_max / r)));
+  double low = vl_precise_acos(fmin(1, fmax(-1, d->z_min / r))),
+         high = vl_precise_acos(fmin(1, fmax(-1, d->z_max / r)));
   double theta = low + b * (high - low);
-  n[0] = (float)(sin(theta) * c), n[1] = (float)(sin(theta) * s), n[2] = (float)cos(theta);
+  n[0] = (float)(vl_precise_sin(theta) * c), n[1] = (float)(vl_precise_sin(theta) * s),
+  n[2] = (float)vl_precise_cos(theta);
   for (int i = 0; i < 3; i++) p[i] = (float)(r * (double)n[i]);
 }
 

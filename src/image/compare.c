@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "image/flip.h"
 #include "image/image.h"
+#include "math/elementary.h"
 
 /* R G B of every pixel, Y thrice where that is all; not-finite pixels are found by the caller. */
 static vlResult load(const vlImage *image, float **rgb) {
@@ -68,7 +69,7 @@ static void numbers(Pair *p, vlImageDiff *diff) {
     diff->mse = squares / (3.0 * (double)used);
     diff->rel_mse = relative / (3.0 * (double)used);
   }
-  diff->psnr = diff->mse > 0.0 ? -10.0 * log10(diff->mse) : INFINITY;
+  diff->psnr = diff->mse > 0.0 ? -10.0 * vl_precise_log10(diff->mse) : INFINITY;
   diff->mean_ratio = light_a == light_b ? 1.0 : light_b / light_a;
 }
 

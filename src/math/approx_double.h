@@ -4,6 +4,9 @@
 #ifndef MATH_APPROX_DOUBLE_H
 #define MATH_APPROX_DOUBLE_H
 
+#include <stdint.h>
+#include <string.h>
+
 typedef struct vlSinCosDouble {
   double sin, cos;
 } vlSinCosDouble;
@@ -55,6 +58,24 @@ static inline double vl_atan2_double(double y, double x) {
   t = ay > ax ? 1.57079632679489661923 - (t - 6.123233995736765886130e-17) : t;
   t = x < 0.0 ? 3.14159265358979323846 - (t - 1.2246467991473531772e-16) : t;
   return y < 0.0 ? -t : t;
+}
+
+/* |x| <= 1; relative error < 1e-15. */
+static inline double vl_acos_double(double x) {
+  return vl_atan2_double(__builtin_sqrt((1.0 - x) * (1.0 + x)), x);
+}
+
+/* Relative error < 4e-16; x below -708 as -708, above 709 as 709. */
+static inline double vl_exp_double(double x) {
+  x = x < -708.0 ? -708.0 : x > 709.0 ? 709.0 : x;
+  double n = __builtin_floor(x * 1.44269504088896340736 + 0.5);
+  double r = (x - n * 6.93145751953125e-1) - n * 1.42860682030941723212e-6, z = r * r;
+  double p = r * ((1.26177193074810590878e-4 * z + 3.02994407707441961300e-2) * z + 9.99999999999999999910e-1);
+  double q = ((3.00198505138664455042e-6 * z + 2.52448340349684104192e-3) * z + 2.27265548208155028766e-1) * z + 2.0;
+  uint64_t bits = (uint64_t)((int64_t)n + 1022) << 52; /* 2^(n - 1): 2^1024 is no double */
+  double scale;
+  memcpy(&scale, &bits, sizeof scale);
+  return (1.0 + 2.0 * (p / (q - p))) * scale * 2.0;
 }
 
 #endif

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "math/elementary.h"
 #include "render/boxes.h"
 #include "world/shape/moving.h"
 
@@ -65,7 +66,7 @@ static void add_vertices(Points *p, const vlWorldShape *s, float time) {
 static void add_ring(Points *p, const vlWorldShape *s, double r, double z) {
   const double *m = s->from_shape;
   for (int i = 0; i <= AROUND; i++) {
-    double phi = (double)s->phi_max * i / AROUND, x = r * cos(phi), y = r * sin(phi), q[3];
+    double phi = (double)s->phi_max * i / AROUND, x = r * vl_precise_cos(phi), y = r * vl_precise_sin(phi), q[3];
     for (int k = 0; k < 3; k++) q[k] = m[4 * k] * x + m[4 * k + 1] * y + m[4 * k + 2] * z + m[4 * k + 3];
     add(p, q[0], q[1], q[2]);
   }
@@ -83,10 +84,11 @@ static void add_round(Points *p, const vlWorldShape *s) {
     add_ring(p, s, r, (double)s->z_max);
     return;
   }
-  double from = acos(fmax(-1, fmin(1, (double)s->z_min / r))), to = acos(fmax(-1, fmin(1, (double)s->z_max / r)));
+  double from = vl_precise_acos(fmax(-1, fmin(1, (double)s->z_min / r))),
+         to = vl_precise_acos(fmax(-1, fmin(1, (double)s->z_max / r)));
   for (int i = 0; i <= RINGS; i++) {
     double theta = from + (to - from) * i / RINGS;
-    add_ring(p, s, r * sin(theta), r * cos(theta));
+    add_ring(p, s, r * vl_precise_sin(theta), r * vl_precise_cos(theta));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "math/elementary.h"
 #include "math/transform.h"
 #include "scene/environment.h"
 
@@ -108,13 +109,15 @@ static bool frame_camera(vlScene *scene, const vlCompleteDef *def, const Box *bo
     vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "camera: the axes up and front make no sense");
     return false;
   }
-  double half = tan(0.5 * fov), aspect = (double)s->film.width / s->film.height;
+  double half = vl_precise_tan(0.5 * fov), aspect = (double)s->film.width / s->film.height;
   Frame f = {.tan_x = margin * half * (aspect > 1 ? aspect : 1),
              .tan_y = margin * half * (aspect > 1 ? 1 : 1 / aspect)};
   for (int i = 0; i < 3; i++) {
     f.center[i] = box->low[i] <= box->high[i] ? 0.5 * (box->low[i] + box->high[i]) : 0;
-    f.ahead[i] = -(cos(elevation) * (cos(azimuth) * front[i] + sin(azimuth) * right[i]) + sin(elevation) * up[i]);
-    f.right[i] = cos(azimuth) * right[i] - sin(azimuth) * front[i];
+    f.ahead[i] =
+        -(vl_precise_cos(elevation) * (vl_precise_cos(azimuth) * front[i] + vl_precise_sin(azimuth) * right[i]) +
+          vl_precise_sin(elevation) * up[i]);
+    f.right[i] = vl_precise_cos(azimuth) * right[i] - vl_precise_sin(azimuth) * front[i];
   }
   for (int i = 0; i < 3; i++)
     f.up[i] = f.right[(i + 1) % 3] * f.ahead[(i + 2) % 3] - f.right[(i + 2) % 3] * f.ahead[(i + 1) % 3];

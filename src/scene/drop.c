@@ -1,10 +1,8 @@
 /* scene/drop.c: meshes leave the scene when a world has taken what it needs of them. */
 #include <stdlib.h>
 #include <string.h>
-#if defined(__GLIBC__)
-#include <malloc.h>
-#endif
 
+#include "base/machine.h"
 #include "scene/scene.h"
 
 enum { ARRAYS = 13 };
@@ -54,7 +52,5 @@ void vl_scene_drop_meshes(vlScene *scene) {
   scene->blocks.count = kept;
   scene->meshes_dropped = true;
   vl_free(scene->context, all);
-#if defined(__GLIBC__)
-  malloc_trim(0); /* many arrays are too small to go back to the system by themselves */
-#endif
+  vl_machine_return_memory(); /* many arrays are too small to go back to the system by themselves */
 }

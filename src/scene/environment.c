@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "image/image.h"
+#include "math/approx_double.h"
+#include "math/elementary.h"
 #include "math/octahedral.h"
 
 enum { BUILT_IN_SIDE = 512, MOST_SIDE = 2048 };
@@ -95,8 +97,8 @@ static void from_latitudes(const vlImage *from, const float *pixels, uint32_t ch
       for (int k = 0; k < 4; k++) {
         vlVec3 d = vl_octahedral_decode(((float)x + (k & 1 ? 0.75f : 0.25f)) / (float)to->width,
                                         ((float)y + (k & 2 ? 0.75f : 0.25f)) / (float)to->height);
-        double u = (atan2(d.x, d.y) / 6.283185307179586 + 0.5) * w - 0.5;
-        double v = acos(d.z > 1 ? 1 : d.z < -1 ? -1 : (double)d.z) / 3.141592653589793 * h - 0.5;
+        double u = (vl_atan2_double(d.x, d.y) / 6.283185307179586 + 0.5) * w - 0.5;
+        double v = vl_acos_double(d.z > 1 ? 1 : d.z < -1 ? -1 : (double)d.z) / 3.141592653589793 * h - 0.5;
         double fu = floor(u), fv = floor(v);
         for (int c = 0; c < 4; c++) {
           int64_t i = (int64_t)fu + (c & 1), j = (int64_t)fv + (c >> 1);
@@ -168,7 +170,7 @@ static bool add_sun(vlScene *scene, const vlCompleteDef *def, const vlLightDef *
 
 bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def, vlEnvironmentKind kind) {
   vlLightDef light = vl_default_light_def(VL_LIGHT_INFINITE);
-  double right[3], up[3], front[3], c = cos(def->rotation), s = sin(def->rotation);
+  double right[3], up[3], front[3], c = vl_precise_cos(def->rotation), s = vl_precise_sin(def->rotation);
   if (!vl_scene_axes(def, right, up, front) || !isfinite(def->strength) || !isfinite(c)) {
     vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "environment: its axes, rotation or strength make no sense");
     return false;

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "math/elementary.h"
+
 static void grow(double low[3], double high[3], const double p[3]) {
   for (int k = 0; k < 3; k++) {
     low[k] = p[k] < low[k] ? p[k] : low[k];
@@ -69,8 +71,8 @@ bool vl_solid_holds(const vlSolid *s, const double p[3]) {
 void vl_solid_sample(const vlSolid *s, uint32_t i, uint32_t n, double p[3]) {
   if (s->sphere) { /* a spiral over the sphere */
     double z = 1 - (2.0 * i + 1) / n, r = sqrt(1 - z * z), a = 2.39996322972865332 * i;
-    double q[3] = {0.999 * (double)s->shape->radius * r * cos(a), 0.999 * (double)s->shape->radius * r * sin(a),
-                   0.999 * (double)s->shape->radius * z};
+    double q[3] = {0.999 * (double)s->shape->radius * r * vl_precise_cos(a),
+                   0.999 * (double)s->shape->radius * r * vl_precise_sin(a), 0.999 * (double)s->shape->radius * z};
     vlMat4 m = vl_mat4_load(s->shape->group_from_shape);
     vl_mat4_point(&m, q, p);
     return;

@@ -21,7 +21,7 @@ static void the_version_is_the_headers(void **state) {
   assert_int_equal(version->patch, VL_VERSION_PATCH);
   assert_int_equal(version->abi, VL_ABI_VERSION);
   assert_true(strlen(version->compiler) > 4);
-  assert_non_null(strstr(version->instruction_sets, "x86-64-v3"));
+  assert_true(strstr(version->instruction_sets, "x86-64-v3") || strcmp(version->instruction_sets, "base") == 0);
 }
 
 static void libraries_have_versions(void **state) {

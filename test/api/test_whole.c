@@ -40,7 +40,7 @@ static size_t size_of(const vlImage *image) {
 static void the_same_bits_everywhere(void **state) {
   (void)state;
   for (int color = VL_COLOR_SPECTRAL; color <= VL_COLOR_RGB; color++) {
-    vlContext *first = make_context(1, VL_ISA_V2);
+    vlContext *first = make_context(1, VL_ISA_BASE);
     vlImage *reference = take_image(first, 4, NULL, (vlColorMode)color);
     double sum = 0;
     for (uint32_t i = 0; i < SMALL_WIDTH * SMALL_HEIGHT; i++) {
@@ -52,7 +52,7 @@ static void the_same_bits_everywhere(void **state) {
     static const struct {
       uint32_t threads;
       vlIsa isa;
-    } runs[] = {{2, VL_ISA_V2}, {3, VL_ISA_V3}, {8, VL_ISA_V4}, {1, VL_ISA_V4}, {1, VL_ISA_V3}};
+    } runs[] = {{2, VL_ISA_BASE}, {3, VL_ISA_V3}, {8, VL_ISA_V4}, {1, VL_ISA_V4}, {1, VL_ISA_V3}};
     for (unsigned i = 0; i < sizeof runs / sizeof *runs; i++) {
       vlContext *context = make_context(runs[i].threads, runs[i].isa);
       if (!context) continue;

@@ -299,11 +299,22 @@ static void instruction_sets(void **state) {
   unsetenv("VELO_ISA");
   assert_int_equal(vl_isa_choose(VL_ISA_AUTO, &isa), VL_OK);
   assert_int_equal(isa, vl_isa_best());
+#if defined(__x86_64__)
+  const vlIsa lowest = VL_ISA_V2;
   assert_int_equal(vl_isa_choose(VL_ISA_V2, &isa), VL_OK);
   assert_int_equal(isa, VL_ISA_V2);
   setenv("VELO_ISA", "v2", 1);
   assert_int_equal(vl_isa_choose(VL_ISA_AUTO, &isa), VL_OK);
   assert_int_equal(isa, VL_ISA_V2);
+#else
+  const vlIsa lowest = VL_ISA_BASE;
+  assert_int_equal(vl_isa_choose(VL_ISA_V2, &isa), VL_ERROR_UNSUPPORTED);
+#endif
+  assert_int_equal(vl_isa_choose(VL_ISA_BASE, &isa), VL_OK);
+  assert_int_equal(isa, lowest);
+  setenv("VELO_ISA", "base", 1);
+  assert_int_equal(vl_isa_choose(VL_ISA_AUTO, &isa), VL_OK);
+  assert_int_equal(isa, lowest);
   assert_int_equal(vl_isa_choose(vl_isa_best(), &isa), VL_OK); /* a wish is above the environment */
   assert_int_equal(isa, vl_isa_best());
   setenv("VELO_ISA", "v9", 1);

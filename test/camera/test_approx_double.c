@@ -38,10 +38,38 @@ static void atan2_is_near_the_last_bit(void **state) {
   assert_true(vl_atan2_double(0, -1) == M_PI && vl_atan2_double(1, 0) == M_PI_2 && vl_atan2_double(-1, 0) == -M_PI_2);
 }
 
+static void acos_is_near_the_last_bit(void **state) {
+  (void)state;
+  uint64_t random = 3;
+  double worst = 0;
+  for (int i = 0; i < 400000; i++) {
+    double x = i % 2 ? next_between(&random, -1, 1) : 1 - exp(next_between(&random, -30, 0));
+    worst = fmax(worst, fabs((double)(vl_acos_double(x) / acosl(x) - 1)));
+  }
+  print_message("acos: %.3g relative\n", worst);
+  assert_true(worst < 1e-15);
+  assert_true(vl_acos_double(1) == 0 && vl_acos_double(-1) == M_PI && vl_acos_double(0) == M_PI_2);
+}
+
+static void exp_is_near_the_last_bit(void **state) {
+  (void)state;
+  uint64_t random = 4;
+  double worst = 0;
+  for (int i = 0; i < 400000; i++) {
+    double x = i % 2 ? next_between(&random, -708, 709) : next_between(&random, -1, 1);
+    worst = fmax(worst, fabs((double)(vl_exp_double(x) / expl(x) - 1)));
+  }
+  print_message("exp: %.3g relative\n", worst);
+  assert_true(worst < 4e-16);
+  assert_true(vl_exp_double(0) == 1 && vl_exp_double(-1e9) < 1e-307 && isfinite(vl_exp_double(1e9)));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sincos_is_near_the_last_bit),
       cmocka_unit_test(atan2_is_near_the_last_bit),
+      cmocka_unit_test(acos_is_near_the_last_bit),
+      cmocka_unit_test(exp_is_near_the_last_bit),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -213,7 +213,7 @@ static void batches_hold_the_lens(void **state) {
     draw(9);
     for (int i = 0; i < CHUNK; i++)
       film[i] = 0.5f, px[i] = 80 + (int)(next_unit(&seed) * 160), py[i] = 60 + (int)(next_unit(&seed) * 120);
-    const vlIsa sets[] = {VL_ISA_V2, VL_ISA_V3, VL_ISA_V4};
+    const vlIsa sets[] = {VL_ISA_BASE, VL_ISA_V3, VL_ISA_V4};
     for (int set = 0; set < 3; set++) {
       vlIsa got;
       if (vl_isa_choose(sets[set], &got) != VL_OK) continue;
@@ -291,7 +291,7 @@ static void vignetting_is_cos4(void **state) {
     vlCameraSamples s = {film, film, px, py, film, film, film};
     vlCameraRays r = {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5],
                       rows[6], rows[7], rows[8], rows[9], rows[10]};
-    vl_camera_kernels(VL_ISA_V2)->rays(&c, 16, &s, &r);
+    vl_camera_kernels(VL_ISA_BASE)->rays(&c, 16, &s, &r);
     for (int i = 0; i < 16; i++) assert_true(fabs(rows[10][i] - pow(rows[5][i], 4)) < 1e-6); /* looks along -z */
   }
 }
@@ -312,7 +312,7 @@ static void planes_of_the_orthographic_fisheye(void **state) {
     for (int i = 0; i < 16; i++) film[i] = 0.25f, px[i] = 60 + 10 * i, py[i] = 80 + 9 * i;
     vlCameraSamples s = {film, film, px, py, film, film, film};
     vlCameraRays r = {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7], rows[8], rows[9], NULL};
-    vl_camera_kernels(VL_ISA_V2)->rays(&c, 16, &s, &r);
+    vl_camera_kernels(VL_ISA_BASE)->rays(&c, 16, &s, &r);
     for (int i = 0; i < 16; i++)
       assert_true(fabs(-rows[5][i] * rows[6][i] - 2) < 1e-6 && fabs(-rows[5][i] * rows[7][i] - 5) < 1e-6);
   }

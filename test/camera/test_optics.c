@@ -133,7 +133,7 @@ static void batches_obey_snell(void **state) {
   (void)state;
   vlOptics *o = load(double_gauss, VL_UNSET, 2, NULL);
   vlCamera camera = camera_with(o, 360, 240);
-  const vlIsa sets[] = {VL_ISA_V2, VL_ISA_V3, VL_ISA_V4};
+  const vlIsa sets[] = {VL_ISA_BASE, VL_ISA_V3, VL_ISA_V4};
   int blocked = 0;
   for (uint64_t seed = 1; seed < 20; seed++) {
     draw(seed, &camera);
@@ -191,7 +191,7 @@ static void focuses_where_it_says(void **state) {
     vlCamera camera = camera_with(o, 3600, 2400);
     draw(4, &camera);
     for (int i = 0; i < N; i++) s.px[i] = 1800, s.py[i] = 1200, s.film_x[i] = s.film_y[i] = 0;
-    run(VL_ISA_V2, &camera, s.out[0]);
+    run(VL_ISA_BASE, &camera, s.out[0]);
     double spread[3] = {0, 0, 0};
     for (int i = 0; i < N; i++)
       for (int m = 0; m < 3 && s.out[0][10][i] > 0; m++) {
@@ -216,7 +216,7 @@ static void brightness(void **state) {
     double mean[2] = {0, 0};
     for (int corner = 0; corner < 2; corner++) {
       for (int i = 0; i < N; i++) s.px[i] = corner ? 0 : 150, s.py[i] = corner ? 0 : 100, s.film_x[i] = s.film_y[i] = 0;
-      run(VL_ISA_V2, &camera, s.out[0]);
+      run(VL_ISA_BASE, &camera, s.out[0]);
       for (int i = 0; i < N; i++) mean[corner] += s.out[0][10][i] / N;
     }
     double number = o->info.f_number, expected = M_PI / (4 * number * number);
@@ -284,7 +284,7 @@ static void image_in_the_stop(void **state) {
     for (uint64_t seed = 1; seed < 9; seed++) {
       draw(seed, &camera);
       for (int i = 0; i < N; i++) s.px[i] = 150, s.py[i] = 100, s.film_x[i] = s.film_y[i] = 0;
-      run(VL_ISA_V2, &camera, s.out[0]);
+      run(VL_ISA_BASE, &camera, s.out[0]);
       for (int i = 0; i < N; i++) mean[k] += s.out[0][10][i] / N / 8;
     }
   }
@@ -316,7 +316,7 @@ static void corners_of_the_opening_count(void **state) {
           s.px[i] = (int32_t)x, s.py[i] = (int32_t)y;
           s.film_x[i] = (float)(x - s.px[i]), s.film_y[i] = (float)(y - s.py[i]);
         }
-        run(VL_ISA_V2, &camera, s.out[0]);
+        run(VL_ISA_BASE, &camera, s.out[0]);
         for (int i = 0; i < N; i++) mean[k] += s.out[0][10][i] / N / 64;
       }
     }
@@ -351,7 +351,7 @@ static void irradiance_in_the_middle(void **state) {
     for (uint64_t seed = 1; seed < 129; seed++) {
       draw(seed, &camera);
       for (int i = 0; i < N; i++) s.px[i] = 150, s.py[i] = 100, s.film_x[i] = s.film_y[i] = 0;
-      run(VL_ISA_V2, &camera, s.out[0]);
+      run(VL_ISA_BASE, &camera, s.out[0]);
       for (int i = 0; i < N; i++) mean += s.out[0][10][i] / N / 128;
     }
     if (fabs(mean / exact - 1) > 4e-3) fail_msg("stop %g: %g, not %g", stops[k], mean, exact);

@@ -213,7 +213,7 @@ static void rays_of_all_sets(void **state) {
     vlCameraCompiled c;
     vl_camera_compile(&camera, &c);
     vlCameraSamples s = {in[0], in[1], px[0], px[1], in[2], in[3], in[4]};
-    const vlIsa sets[] = {VL_ISA_V2, VL_ISA_V3, VL_ISA_V4};
+    const vlIsa sets[] = {VL_ISA_BASE, VL_ISA_V3, VL_ISA_V4};
     for (int set = 0; set < 3 && sets[set] <= vl_isa_best(); set++) {
       float(*r)[N] = out[set > 0];
       vlCameraRays rays = {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8], r[9], NULL};
@@ -263,7 +263,7 @@ static void lens_focuses(void **state) {
     vl_camera_compile(&camera, &c);
     vlCameraSamples s = {film, film, px, py, u, v, time};
     vlCameraRays rays = {out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9], NULL};
-    vl_camera_kernels(VL_ISA_V2)->rays(&c, N, &s, &rays);
+    vl_camera_kernels(VL_ISA_BASE)->rays(&c, N, &s, &rays);
     double o[3], d[3], p[3];
     assert_true(vl_camera_unproject(&camera, px[0] + 0.25, py[0] + 0.25, o, d));
     const double *m = camera.world_from_camera;

@@ -41,7 +41,7 @@ static void random_samples(const vlCamera *camera, uint64_t seed) {
 }
 
 static vlIsa isas(int index) {
-  const vlIsa all[] = {VL_ISA_V2, VL_ISA_V3, VL_ISA_V4};
+  const vlIsa all[] = {VL_ISA_BASE, VL_ISA_V3, VL_ISA_V4};
   return index < 3 && all[index] <= vl_isa_best() ? all[index] : VL_ISA_AUTO;
 }
 
@@ -106,7 +106,7 @@ static void kernels_are_unproject_rounded(void **state) {
   for (int k = 0; k < CAMERA_COUNT; k++) {
     vlCamera camera = camera_of(k);
     random_samples(&camera, 3 + (uint64_t)k);
-    run(VL_ISA_V2, &camera, N, &rays);
+    run(VL_ISA_BASE, &camera, N, &rays);
     for (int i = 0; i < N; i++) {
       double o[3], d[3];
       double x = samples.pixel_x[i] + (double)samples.film_x[i], y = samples.pixel_y[i] + (double)samples.film_y[i];
@@ -133,7 +133,7 @@ static void same_bits_on_all_instruction_sets(void **state) {
     if (k & 1) camera.lens_radius = 0.3, camera.focus_distance = k == 1 ? INFINITY : 7.5;
     camera.near_plane = 0.5, camera.far_plane = 100;
     random_samples(&camera, 99);
-    run(VL_ISA_V2, &camera, N, &rays);
+    run(VL_ISA_BASE, &camera, N, &rays);
     for (int set = 1; set < sets; set++) {
       run(isas(set), &camera, N, &other);
       assert_memory_equal(&rays, &other, sizeof rays);
@@ -174,7 +174,7 @@ static void thin_lens_focuses(void **state) {
       for (int i = 0; i < N; i++) {
         samples.pixel_x[i] = 310, samples.pixel_y[i] = 40, samples.film_x[i] = 0.25f, samples.film_y[i] = 0.75f;
       }
-      run(VL_ISA_V2, &camera, N, &rays);
+      run(VL_ISA_BASE, &camera, N, &rays);
       double o[3], d[3], half = 0;
       assert_true(vl_camera_unproject(&camera, 310.25, 40.75, o, d));
       const double *m = camera.world_from_camera;
@@ -221,7 +221,7 @@ static void near_and_far_planes(void **state) {
     camera.near_plane = 2, camera.far_plane = 50;
     camera.lens_radius = k & 1 ? 0.1 : 0, camera.focus_distance = 9;
     random_samples(&camera, 17);
-    run(VL_ISA_V2, &camera, N, &rays);
+    run(VL_ISA_BASE, &camera, N, &rays);
     for (int i = 0; i < N; i++) {
       double o[3] = {rays.ox[i], rays.oy[i], rays.oz[i]}, d[3] = {rays.dx[i], rays.dy[i], rays.dz[i]}, z[2];
       const double *m = camera.camera_from_world;
@@ -242,7 +242,7 @@ static void shutter_and_footprint(void **state) {
   def.shutter_open = 2, def.shutter_close = 6, def.view_distance = 200;
   vlCamera camera = make_or_fail(&def);
   random_samples(&camera, 1);
-  run(VL_ISA_V2, &camera, N, &rays);
+  run(VL_ISA_BASE, &camera, N, &rays);
   for (int i = 0; i < N; i++) assert_true(fabs(rays.time[i] - (2 + 4 * samples.time[i])) < 1e-6);
   vlCameraCompiled c;
   vl_camera_compile(&camera, &c);

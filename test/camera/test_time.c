@@ -74,7 +74,7 @@ static void curves_are_sampled_exactly(void **state) {
     int total = 0;
     for (uint64_t seed = 0; seed < 60; seed++) {
       draw(&camera, 100 * k + seed);
-      run(VL_ISA_V2, &camera);
+      run(VL_ISA_BASE, &camera);
       for (int i = 0; i < N; i++) {
         double share = ((double)out[8][i] - 3) / 2;
         assert_true(share >= 0 && share <= 1);
@@ -112,7 +112,7 @@ static void rows_are_read_in_turn(void **state) {
     def.shutter_open = 10, def.shutter_close = 10.25, def.readout = 4, def.readout_direction = (vlReadout)k;
     vlCamera camera = make_or_fail(&def);
     draw(&camera, (uint64_t)k);
-    run(VL_ISA_V3 <= vl_isa_best() ? VL_ISA_V3 : VL_ISA_V2, &camera);
+    run(VL_ISA_V3 <= vl_isa_best() ? VL_ISA_V3 : VL_ISA_BASE, &camera);
     for (int i = 0; i < N; i++) {
       int x = pixel[0][i], y = pixel[1][i];
       double late = k == 0 ? y / 48.0 : k == 1 ? (47 - y) / 48.0 : k == 2 ? x / 64.0 : (63 - x) / 64.0;
@@ -145,7 +145,7 @@ static void rays_are_those_of_held_cameras(void **state) {
     vlCamera camera = make_or_fail(&def), held;
     assert_true(camera.moves);
     draw(&camera, 77 + (uint64_t)k);
-    run(VL_ISA_V2, &camera);
+    run(VL_ISA_BASE, &camera);
     for (int i = 0; i < N; i++) {
       double o[3], d[3], t = vl_camera_time(&camera, pixel[0][i], pixel[1][i], (double)when[i]);
       assert_int_equal(vl_camera_at(&camera, t, &held), VL_OK);

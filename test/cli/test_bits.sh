@@ -65,7 +65,7 @@ for tracer in path bidirectional merging raycast; do
   check "$tracer" render --tracer $tracer -t 1 -o one.pfm
   for set in sse4.2 avx; do
     case "$sets " in *" $set "*) ;; *) skip "${tracer}_$set" "this machine does not have it" && continue ;; esac
-    VELO_EMBREE=$set check "${tracer}_${set}_renders" render --tracer $tracer -t 2 --isa v2 -o set.pfm
+    VELO_EMBREE=$set check "${tracer}_${set}_renders" render --tracer $tracer -t 2 --isa base -o set.pfm
     same "${tracer}_$set" one.pfm set.pfm
   done
 done

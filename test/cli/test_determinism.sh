@@ -24,14 +24,14 @@ done
 
 # Each sampler, tracer and colour mode: 1 and 3 threads, narrowest and widest instruction set.
 for sampler in independent regular stratified nrooks multijittered hammersley halton sobol zsobol; do
-  render --sampler $sampler -t 1 --isa v2 -o a.pfm && render --sampler $sampler -t 3 -o b.pfm
+  render --sampler $sampler -t 1 --isa base -o a.pfm && render --sampler $sampler -t 3 -o b.pfm
   same "sampler_$sampler" a.pfm b.pfm
 done
 for tracer in path raycast ambientocclusion; do
-  render --tracer $tracer -t 1 --isa v2 -o a.pfm && render --tracer $tracer -t 3 -o b.pfm
+  render --tracer $tracer -t 1 --isa base -o a.pfm && render --tracer $tracer -t 3 -o b.pfm
   same "tracer_$tracer" a.pfm b.pfm
 done
-render --color rgb -t 1 --isa v2 -o a.pfm && render --color rgb -t 3 -o b.pfm
+render --color rgb -t 1 --isa base -o a.pfm && render --color rgb -t 3 -o b.pfm
 same color_rgb a.pfm b.pfm
 
 # Another seed is another image: the tests above can fail.
@@ -71,7 +71,7 @@ for scene in cornell-box/cornell-box veach-mis/veach-mis coffee/coffee material-
     continue
   fi
   small="--resolution 64x48 --spp 2 --quiet"
-  "$VELO" render "$file" $small -t 1 --isa v2 -o a.exr && "$VELO" render "$file" $small -t 3 -o b.exr || fail "scene_$name"
+  "$VELO" render "$file" $small -t 1 --isa base -o a.exr && "$VELO" render "$file" $small -t 3 -o b.exr || fail "scene_$name"
   same "scene_$name" a.exr b.exr
   "$VELO" render "$file" $small -t 2 --crop 9,5,50,31 -o part.exr && "$VELO" image convert a.exr cut.exr --crop 9,5,50,31
   run "$VELO" image diff cut.exr part.exr --threshold differing=0

@@ -49,7 +49,7 @@ usage sampler 'did you mean "sobol"?' render scene.pbrt --sampler sobool
 usage sampler_list 'independent, regular, stratified' render scene.pbrt --sampler q
 usage tracer 'did you mean "raycast"?' render scene.pbrt --tracer raycats
 usage view 'standard, neutral, agx, raw' render scene.pbrt --view q
-usage isa 'v2, v3, v4' render scene.pbrt --isa avx
+usage isa 'base, v2, v3, v4' render scene.pbrt --isa avx
 usage suffix 'did you mean ".exr"?' render scene.pbrt -o a.exrr
 usage no_suffix '.exr, .png' render scene.pbrt -o image
 usage same_output_twice 'given twice' render scene.pbrt -o a.exr -o a.exr

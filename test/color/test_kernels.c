@@ -85,7 +85,7 @@ static void test_bits(void **state) {
   (void)state;
   fill();
   vlIsa best = vl_isa_best();
-  run(vl_color_kernels(VL_ISA_V2), all[0]);
+  run(vl_color_kernels(VL_ISA_BASE), all[0]);
   for (int isa = VL_ISA_V3; isa <= (int)best; isa++) {
     run(vl_color_kernels((vlIsa)isa), all[1]);
     for (int i = 0; i < RESULTS; i++) {

@@ -71,7 +71,7 @@ static UNUSED void same_bits(const vlImage *a, const vlImage *b, uint32_t dx, ui
 static UNUSED bool stage_like(const Stage *s, int isa, Stage *other) {
   *other = *s;
   vlContextDef def = vl_default_context_def();
-  def.threads = isa == VL_ISA_V2 ? 1 : 3;
+  def.threads = isa == VL_ISA_BASE ? 1 : 3;
   def.isa = (vlIsa)isa;
   vlResult made = vl_context_create(&def, &other->context);
   if (made == VL_ERROR_UNSUPPORTED) return false;

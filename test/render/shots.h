@@ -115,10 +115,11 @@ static UNUSED Image image_in(Rendering *render, const void *what, uint32_t threa
 
 /* The same bits on 1, 1 + step, ... up to 3 threads, by each instruction set. Returns one of the images. */
 static UNUSED Image assert_same_bits(Rendering *render, const void *what, uint32_t step) {
-  Image a = image_in(render, what, 1, VL_ISA_V2);
+  Image a = image_in(render, what, 1, VL_ISA_BASE);
   assert_non_null(a.rgba);
   for (uint32_t threads = 1; threads <= 3; threads += step)
-    for (int isa = VL_ISA_V2; isa <= VL_ISA_V4; isa++) {
+    for (int isa = VL_ISA_BASE; isa <= VL_ISA_V4; isa++) {
+      if (isa == VL_ISA_V2) continue; /* which BASE is on x86-64 */
       Image b = image_in(render, what, threads, (vlIsa)isa);
       if (!b.rgba) continue;
       assert_memory_equal(a.rgba, b.rgba, (size_t)a.width * a.height * 4 * sizeof(float));

@@ -51,7 +51,7 @@ static void same_bits(void **state) {
     Image first = {0, 0, NULL, {0}};
     for (int k = 0; k < 6; k++) {
       vlContextDef def = vl_default_context_def();
-      def.isa = (vlIsa[3]){VL_ISA_V2, VL_ISA_V3, VL_ISA_V4}[k % 3];
+      def.isa = (vlIsa[3]){VL_ISA_BASE, VL_ISA_V3, VL_ISA_V4}[k % 3];
       def.threads = k < 3 ? 1 : 3;
       Stage s = stage_open(40, 30);
       vl_scene_destroy(s.scene);

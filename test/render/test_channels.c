@@ -230,7 +230,8 @@ static void test_same_bits(void **state) {
   GroundTruth part = ground_truth_take(&s, crop, VL_CHANNEL_ALL);
   same_bits(whole.floats, part.floats, 13, 5);
   same_bits(whole.ids, part.ids, 13, 5);
-  for (int isa = VL_ISA_V2; isa <= VL_ISA_V4; isa++) {
+  for (int isa = VL_ISA_BASE; isa <= VL_ISA_V4; isa++) {
+    if (isa == VL_ISA_V2) continue; /* which BASE is on x86-64 */
     Stage other;
     if (!stage_like(&s, isa, &other)) continue;
     fill(&other);

@@ -225,7 +225,8 @@ static void test_same_bits(void **state) {
     same_bits(whole.floats, part.floats, 7, 3);
     same_bits(whole.ids, part.ids, 7, 3);
     memcpy(s.film.crop, all, sizeof all);
-    for (int isa = VL_ISA_V2; isa <= VL_ISA_V4; isa++) {
+    for (int isa = VL_ISA_BASE; isa <= VL_ISA_V4; isa++) {
+      if (isa == VL_ISA_V2) continue; /* which BASE is on x86-64 */
       Stage other;
       if (!stage_like(&s, isa, &other)) continue;
       fill(&other);

@@ -129,7 +129,7 @@ static void same_bits(void **state) {
   Image first = {0, 0, NULL, {0}};
   for (int k = 0; k < 3; k++) {
     vlContextDef def = vl_default_context_def();
-    def.isa = (vlIsa[3]){VL_ISA_V2, VL_ISA_V3, VL_ISA_V4}[k];
+    def.isa = (vlIsa[3]){VL_ISA_BASE, VL_ISA_V3, VL_ISA_V4}[k];
     def.threads = 1 + (uint32_t)k;
     Stage s = stage_open(80, 60);
     vl_scene_destroy(s.scene);

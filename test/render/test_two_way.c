@@ -210,7 +210,7 @@ static void same_bits(void **state) {
   static const vlTracer tracers[3] = {VL_TRACER_BIDIRECTIONAL, VL_TRACER_MERGING, VL_TRACER_SPPM};
   for (int k = 0; k < 3; k++) {
     Colored whole = {tracers[k], false}, some = {tracers[k], true};
-    Image a = assert_same_bits(colored, &whole, 1), part = image_in(colored, &some, 2, VL_ISA_V2);
+    Image a = assert_same_bits(colored, &whole, 1), part = image_in(colored, &some, 2, VL_ISA_BASE);
     for (uint32_t y = 0; y < part.height; y++)
       for (uint32_t x = 0; x < part.width; x++)
         assert_memory_equal(&part.rgba[4 * (y * part.width + x)], &a.rgba[4 * ((y + 3) * SIZE + x + 5)],

@@ -41,6 +41,8 @@ check "a second call starts at once ($median ms)" test "$median" -lt 300
 check "bootstrap lists packages" "$VELO_SOURCE_DIR/script/bootstrap" --list test
 expect_text "with the build's" libembree-dev
 expect_text "and the tests'" libcmocka-dev
+check "and those for building for aarch64" "$VELO_SOURCE_DIR/script/bootstrap" --list cross
+expect_text "a cross compiler" gcc-aarch64-linux-gnu
 expect_code 2 "an unknown set is refused" "$VELO_SOURCE_DIR/script/bootstrap" nonsense
 check "a second bootstrap is silent" "$VELO_SOURCE_DIR/script/bootstrap" test
 check "and has nothing to say" test -z "$out$err"

@@ -175,7 +175,7 @@ static void never_nan(void **state) {
 
 static void same_bits(void **state) {
   const State *s = *state;
-  const vlBsdfKernels *base = vl_bsdf_kernels(VL_ISA_V2);
+  const vlBsdfKernels *base = vl_bsdf_kernels(VL_ISA_BASE);
   int compared = 0;
   for (int isa = VL_ISA_V3; isa <= VL_ISA_V4; isa++) {
     if ((int)vl_isa_best() < isa) continue;

@@ -264,7 +264,7 @@ static void test_bits(void **state) {
       vl_sampler_init(&s, (vlSamplerKind)kind, 123, 65536, 65536, spp);
       vl_sampler_kernel_table.get_2d(&s, BATCH, px, py, index, 6, ru, rv);
       vl_sampler_kernel_table.get_1d(&s, BATCH, px, py, index, 8, rw);
-      for (vlIsa isa = VL_ISA_V2; isa <= vl_isa_best(); isa++) {
+      for (vlIsa isa = VL_ISA_BASE; isa <= vl_isa_best(); isa++) {
         const vlSamplerKernels *k = vl_sampler_kernels(isa);
         k->get_2d(&s, BATCH, px, py, index, 6, u_, v_);
         k->get_1d(&s, BATCH, px, py, index, 8, w_);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cie.h"
+#include "math/elementary.h"
 #include "measured.h"
 #include "tables.h"
 
@@ -137,7 +138,8 @@ static void add_all(state *s) {
   double a[LAMBDA_COUNT];
   for (int i = 0; i < LAMBDA_COUNT; i++) {
     double l = LAMBDA_MIN + i;
-    a[i] = pow(560 / l, 5) * expm1(1.435e7 / (2848.0 * 560)) / expm1(1.435e7 / (2848.0 * l));
+    a[i] = vl_precise_pow(560 / l, 5) * vl_precise_expm1(1.435e7 / (2848.0 * 560)) /
+           vl_precise_expm1(1.435e7 / (2848.0 * l));
   }
   add_illuminant(s, "stdillum-", "A", a);
   add_daylight(s, "stdillum-", "D50", daylight_D50);

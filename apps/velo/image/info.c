@@ -14,7 +14,7 @@ int image_context(vlContext **context) {
   def.threads = 1;
   vlResult result = vl_context_create(&def, context);
   if (result == VL_ERROR_UNSUPPORTED || result == VL_ERROR_ARGUMENT)
-    return report_usage("the environment variable VELO_ISA must be v2, v3 or v4, and the machine must have it");
+    return report_usage("the environment variable VELO_ISA must be base, v2, v3 or v4, and the machine must have it");
   return result == VL_OK ? -1 : report_error(NULL, result, NULL);
 }
 

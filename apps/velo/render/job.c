@@ -52,7 +52,8 @@ const Choice stereo_choices[] = {{"none", VL_STEREO_NONE},
                                  {NULL, 0}};
 const Choice eye_choices[] = {{"both", VL_EYE_BOTH}, {"left", VL_EYE_LEFT}, {"right", VL_EYE_RIGHT}, {NULL, 0}};
 const Choice bits_choices[] = {{"portable", VL_BITS_PORTABLE}, {"fast", VL_BITS_FAST}, {NULL, 0}};
-const Choice isa_choices[] = {{"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {NULL, 0}};
+const Choice isa_choices[] = {
+    {"base", VL_ISA_BASE}, {"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {NULL, 0}};
 
 /* ---- overrides --------------------------------------------------------------------------------------------------- */
 

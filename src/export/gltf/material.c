@@ -6,6 +6,8 @@
 #include "export/export.h"
 #include "scene/schema/schema.h"
 
+#include "math/elementary.h"
+
 /* ---- inputs ------------------------------------------------------------------------------------------------------ */
 
 static json_t *extension(vlExport *x, json_t *material, const char *name) {
@@ -137,7 +139,7 @@ static void put_volume(vlExport *x, json_t *material, vlMediumId inside) {
   most = fmaxf(sigma[0], fmaxf(sigma[1], sigma[2]));
   if (!(most > 0)) return;
   json_t *color = json_array();
-  for (int i = 0; i < 3; i++) json_array_append_new(color, json_real(exp(-(double)sigma[i] / (double)most)));
+  for (int i = 0; i < 3; i++) json_array_append_new(color, json_real(vl_precise_exp(-(double)sigma[i] / (double)most)));
   json_object_set_new(volume, "attenuationColor", color);
   set_number(volume, "attenuationDistance", 1.0 / (double)most);
 }

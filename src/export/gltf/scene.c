@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "export/export.h"
+#include "math/elementary.h"
 #include "velo/camera_file.h"
 
 /* Fields that glTF itself cannot say; velo's own copy of the camera in the extras keeps them. */
@@ -118,7 +119,7 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
     if (!(most > 0)) continue;
     if (!isnan(d->illuminance)) intensity = most * d->illuminance;
     if (!isnan(d->power)) {
-      double cone = 2 * 3.14159265358979 * (1 - cos(d->cone_angle - 0.5 * d->cone_delta));
+      double cone = 2 * 3.14159265358979 * (1 - vl_precise_cos(d->cone_angle - 0.5 * d->cone_delta));
       intensity = most * d->power / (d->kind == VL_LIGHT_SPOT ? cone : 4 * 3.14159265358979);
       vl_export_lose(x, "lights told by their power: intensity is computed from it, nearly");
     }

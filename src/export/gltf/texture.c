@@ -5,6 +5,8 @@
 
 #include "export/export.h"
 
+#include "math/elementary.h"
+
 /* Index of the image in "images"; -1 after an error. */
 static json_int_t put_image(vlExport *x, const vlTextureDef *t) {
   const void *data = t->data ? t->data : (const void *)t->image;
@@ -64,11 +66,12 @@ static void put_transform(vlExport *x, json_t *info, const vlTextureDef *t) {
   vl_export_st_from_uv(t, m);
   const double g[6] = {m[0], -m[1], m[1] + m[2], -m[3], m[4], 1 - m[4] - m[5]};
   if (g[0] == 1 && g[1] == 0 && g[2] == 0 && g[3] == 0 && g[4] == 1 && g[5] == 0) return;
-  double sx = hypot(g[0], g[3]), c = sx > 0 ? g[0] / sx : 1, s = sx > 0 ? -g[3] / sx : 0, sy = c * g[4] + s * g[1];
+  double sx = vl_precise_hypot(g[0], g[3]), c = sx > 0 ? g[0] / sx : 1, s = sx > 0 ? -g[3] / sx : 0,
+         sy = c * g[4] + s * g[1];
   if (fabs(g[1] - s * sy) > 1e-5 * (1 + fabs(sy)) || fabs(g[4] - c * sy) > 1e-5 * (1 + fabs(sy)))
     vl_export_lose(x, "maps of textures that shear: rotation and scale alone");
   json_t *transform = json_pack("{s:[f,f],s:[f,f]}", "offset", g[2], g[5], "scale", sx, sy);
-  if (s != 0 || c < 0) json_object_set_new(transform, "rotation", json_real(atan2(s, c)));
+  if (s != 0 || c < 0) json_object_set_new(transform, "rotation", json_real(vl_precise_atan2(s, c)));
   json_object_set_new(info, "extensions", json_pack("{s:o}", "KHR_texture_transform", transform));
   vl_gltf_use(x, "KHR_texture_transform");
 }

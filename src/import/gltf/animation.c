@@ -7,6 +7,8 @@
 
 #include "import/gltf/gltf.h"
 
+#include "math/elementary.h"
+
 typedef enum { STEP, LINEAR, CUBIC } Mode;
 
 /* A sampler's keys: count times, count * width values (three times that of CUBICSPLINE). */
@@ -51,8 +53,8 @@ static void slerp(const float *a, const float *b, double u, double out[4]) {
   for (int i = 0; i < 4; i++) dot += (double)a[i] * b[i];
   double sign = dot < 0 ? -1 : 1;
   dot = fmin(fabs(dot), 1);
-  double angle = acos(dot), s = sin(angle), wa = 1 - u, wb = u;
-  if (s > 1e-6) wa = sin((1 - u) * angle) / s, wb = sin(u * angle) / s;
+  double angle = vl_precise_acos(dot), s = vl_precise_sin(angle), wa = 1 - u, wb = u;
+  if (s > 1e-6) wa = vl_precise_sin((1 - u) * angle) / s, wb = vl_precise_sin(u * angle) / s;
   for (int i = 0; i < 4; i++) q[i] = wa * a[i] + sign * wb * b[i];
   memcpy(out, q, sizeof q);
 }

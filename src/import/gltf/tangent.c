@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "import/gltf/gltf.h"
+#include "math/approx_double.h"
 #include "math/hash.h"
 
 typedef struct Maker {
@@ -154,7 +155,7 @@ static void add_corner(const Maker *m, uint32_t c, double *sums) {
   double pa[3], pb[3], t[3];
   if (!project(to_a, n, pa) || !project(to_b, n, pb) || !project(m->direction + 3 * (size_t)f, n, t)) return;
   double dot = pa[0] * pb[0] + pa[1] * pb[1] + pa[2] * pb[2];
-  double angle = acos(dot > 1 ? 1 : dot < -1 ? -1 : dot);
+  double angle = vl_acos_double(dot > 1 ? 1 : dot < -1 ? -1 : dot);
   for (int i = 0; i < 3; i++) sums[3 * (size_t)m->group[c] + (size_t)i] += angle * t[i];
 }
 

@@ -6,6 +6,8 @@
 
 #include "import/gltf/gltf.h"
 
+#include "math/elementary.h"
+
 vlGltfTextureUse vl_gltf_use_color(void) {
   return (vlGltfTextureUse){.spectrum = true, .channel = -1, .srgb = true, .tint = {1, 1, 1, 1}, .cutoff = NAN};
 }
@@ -101,7 +103,7 @@ static bool read_transform(vlGltf *g, const vlGltfPlace *up, const json_t *info,
   if (!vl_gltf_numbers(g, at, json, "offset", 2, offset) || !vl_gltf_numbers(g, at, json, "scale", 2, scale) ||
       !vl_gltf_number(g, at, json, "rotation", &rotation))
     return false;
-  double c = cos(rotation), s = sin(rotation);
+  double c = vl_precise_cos(rotation), s = vl_precise_sin(rotation);
   double m[6] = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
   const double flipped[6] = {m[0], -m[1], m[1] + m[2], -m[3], m[4], 1 - m[4] - m[5]};
   def->st_from_uv_given = true;

@@ -6,6 +6,8 @@
 
 #include "import/gltf/gltf.h"
 
+#include "math/elementary.h"
+
 enum { POINTS, LINES, LINE_LOOP, LINE_STRIP, TRIANGLES, TRIANGLE_STRIP, TRIANGLE_FAN };
 
 void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p) {
@@ -99,7 +101,8 @@ static void put_tube(Body *b, const vlGltfPrimitive *p, uint32_t from, uint32_t 
     for (int k = 0; k < TUBE_SIDES; k++) {
       double angle = 6.283185307179586 * k / TUBE_SIDES;
       float q[3];
-      for (int i = 0; i < 3; i++) q[i] = (float)(ends[side][i] + radius * (cos(angle) * u[i] + sin(angle) * v[i]));
+      for (int i = 0; i < 3; i++)
+        q[i] = (float)(ends[side][i] + radius * (vl_precise_cos(angle) * u[i] + vl_precise_sin(angle) * v[i]));
       ring[side][k] = put_vertex(b, p, side ? to : from, q);
     }
   for (int k = 0; k < TUBE_SIDES; k++) {

@@ -5,6 +5,8 @@
 
 #include "image/image.h"
 #include "import/gltf/gltf.h"
+#include "math/approx_double.h"
+#include "math/elementary.h"
 
 /* White light through `attenuationDistance` of it takes on `attenuationColor`: sigma_a = -ln(colour) / distance, a law
  * of each channel. */
@@ -17,7 +19,7 @@ bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltf
   if (!(distance > 0)) return vl_gltf_fail(g, VL_GLTF_KEY(at, "attenuationDistance"), "must be above 0");
   for (int i = 0; i < 3; i++) {
     double c = color[i] > 1e-4 ? color[i] < 1 ? color[i] : 1 : 1e-4;
-    sigma[i] = (float)(-log(c) / distance);
+    sigma[i] = (float)(-vl_precise_log(c) / distance);
     most = sigma[i] > most ? sigma[i] : most;
   }
   if (!(most > 0)) return true;
@@ -56,7 +58,7 @@ bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatI
     float *to = vl_image_row(angles, y);
     vl_image_row_to_float(image, y, channel, 3, row);
     for (uint32_t x = 0; x < image->width; x++) {
-      float a = atan2f(2 * row[3 * x + 1] - 1, 2 * row[3 * x] - 1) + rotation;
+      float a = (float)vl_atan2_double(2 * row[3 * x + 1] - 1, 2 * row[3 * x] - 1) + rotation;
       to[x] = a - floorf(a / 3.14159265f) * 3.14159265f; /* images hold no negative numbers */
     }
   }

@@ -6,6 +6,8 @@
 
 #include "import/obj/obj.h"
 
+#include "math/elementary.h"
+
 static float given(float value, float otherwise) {
   return isnan(value) ? otherwise : value;
 }
@@ -116,7 +118,7 @@ static void surface(const vlMtl *m, vlMaterialDef *def, float base[3]) {
   p->metallic = vl_float_input(clamp01(metal));
   p->specular = vl_float_input(shines || metal > 0 ? 1.0f : 0.0f);
   /* Blinn's exponent as GGX (Walter et al. 2007): alpha^2 = 2 / (Ns + 2), alpha = roughness^2. */
-  p->roughness = vl_float_input(clamp01(given(m->pr, powf(2 / (fmaxf(ns, 0) + 2), 0.25f))));
+  p->roughness = vl_float_input(clamp01(given(m->pr, (float)vl_precise_pow(2 / (fmaxf(ns, 0) + 2), 0.25f))));
   def->eta = vl_spectrum_input(vl_spectrum_constant(ni > 1 && ni < 10 ? ni : 1.5f));
 }
 

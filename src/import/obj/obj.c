@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "image/pixel.h"
 #include "import/import.h"
 #include "import/pbrt/token.h"
 #include "import/plain.h"
@@ -130,7 +131,7 @@ static bool numbers(vlObj *obj, const char *what, uint32_t least, uint32_t most,
 
 static float linear_from_srgb(double v) {
   double x = v < 0 ? 0 : v > 1 ? 1 : v;
-  return (float)(x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4));
+  return (float)(vl_srgb_to_linear(x));
 }
 
 /* x y z, x y z w, or x y z r g b (in sRGB, as the programs that write them have it). */

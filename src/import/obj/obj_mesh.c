@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "import/obj/obj.h"
+#include "math/approx_double.h"
 #include "math/hash.h"
 
 /* ---- normals ----------------------------------------------------------------------------------------------------- */
@@ -28,7 +29,7 @@ static double angle_at(const vlObj *obj, const vlObjCorner *c, int i) {
     ee += e * e, ff += f * f, ef += e * f;
   }
   double x = ef / sqrt(ee * ff);
-  return x < 1 ? x > -1 ? acos(x) : 3.14159265358979323846 : 0;
+  return x < 1 ? x > -1 ? vl_acos_double(x) : 3.14159265358979323846 : 0;
 }
 
 static bool push_normal(vlObj *obj, const double n[3], uint32_t *number) {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "math/approx_double.h"
 
 static const uint32_t NONE = UINT32_MAX;
 /* A short file may not ask for a mesh out of all proportion: past 5 levels (a thousandfold) only small results. */
@@ -296,13 +297,21 @@ static void push_to_limit(const Level *l, float *limit) {
   }
 }
 
+static float sine(float x) {
+  return (float)vl_sincos_double((double)x).sin;
+}
+
+static float cosine(float x) {
+  return (float)vl_sincos_double((double)x).cos;
+}
+
 /* Weight of ring vertex k of n in the tangent across a border. */
 static float border_weight(uint32_t n, uint32_t k) {
   if (n == 2) return 1.0f;
   if (n == 3) return k == 1 ? 1.0f : 0.0f;
   if (n == 4) return k == 0 || k == 3 ? -1.0f : 2.0f;
   float theta = 3.14159265358979f / (float)(n - 1);
-  return k == 0 || k == n - 1 ? -sinf(theta) : -(2.0f * cosf(theta) - 2.0f) * sinf((float)k * theta);
+  return k == 0 || k == n - 1 ? -sine(theta) : -(2.0f * cosine(theta) - 2.0f) * sine((float)k * theta);
 }
 
 static void tangents(const Level *l, uint32_t vertex, float s[3], float t[3]) {
@@ -312,8 +321,8 @@ static void tangents(const Level *l, uint32_t vertex, float s[3], float t[3]) {
   for (uint32_t u; (u = ring_next(&r)) != NONE; k++) {
     const float *q = &l->p[3 * (size_t)u];
     float angle = 2.0f * 3.14159265358979f * (float)k / (float)n;
-    add(s, l->border[vertex] ? (k == n - 1 ? 1.0f : k == 0 ? -1.0f : 0.0f) : cosf(angle), q);
-    add(t, l->border[vertex] ? border_weight(n, k) : sinf(angle), q);
+    add(s, l->border[vertex] ? (k == n - 1 ? 1.0f : k == 0 ? -1.0f : 0.0f) : cosine(angle), q);
+    add(t, l->border[vertex] ? border_weight(n, k) : sine(angle), q);
   }
   if (l->border[vertex]) add(t, n == 2 || n == 4 ? -2.0f : n == 3 ? -1.0f : 0.0f, p);
 }

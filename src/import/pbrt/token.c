@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "import/pbrt/decimal.h"
+
 void vl_tokenizer_start(vlTokenizer *t, char *data, size_t size) {
   if (size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0) data += 3, size -= 3;
   *t = (vlTokenizer){.at = data, .end = data + size, .line_start = data, .line = 1};
@@ -104,20 +106,6 @@ vlToken vl_token_next(vlTokenizer *t) {
 
 /* ---- numbers ---------------------------------------------------------------------------------------------------- */
 
-static const double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                       1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-
-/* 18 digits and an exponent that the quick way cannot do exactly: in long double, a few of whose 11 spare bits are
- * lost, so the result is the nearest double but for rare ties. Independent of the locale, which strtod is not. */
-static double slow_number(uint64_t mantissa, int exponent) {
-  if (mantissa == 0 || exponent < -400) return 0.0;
-  if (exponent > 400) return HUGE_VAL;
-  long double scale = 1.0L, square = 10.0L;
-  for (int e = exponent < 0 ? -exponent : exponent; e; e >>= 1, square *= square)
-    if (e & 1) scale *= square;
-  return (double)(exponent < 0 ? (long double)mantissa / scale : (long double)mantissa * scale);
-}
-
 static bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
@@ -143,15 +131,16 @@ bool vl_number_scan(const char **text, const char *end, double *value) {
   bool negative = p < end && *p == '-';
   if (p < end && (*p == '-' || *p == '+')) p++;
   if (end - p > 2 && p[0] == '0' && (p[1] == 'x' || p[1] == 'X')) return scan_hex(text, p + 2, end, negative, value);
+  const char *digits_start = p;
   uint64_t mantissa = 0;
-  int digits = 0, exponent = 0;
+  int digits = 0, exponent = 0, written = 0; /* 10^exponent times the mantissa; the exponent that is written */
   bool exact = true, any = false;
   for (; p < end && is_digit(*p); p++) {
     any = true;
     if (digits < 18)
       mantissa = mantissa * 10 + (uint64_t)(*p - '0'), digits += mantissa != 0;
     else
-      exact = false, exponent += exponent < 100000;
+      exact = exact && *p == '0', exponent += exponent < 100000;
   }
   if (p < end && *p == '.') {
     for (p++; p < end && is_digit(*p); p++) {
@@ -163,6 +152,7 @@ bool vl_number_scan(const char **text, const char *end, double *value) {
     }
   }
   if (!any) return false;
+  const char *digits_end = p;
   if (p < end && (*p == 'e' || *p == 'E')) {
     const char *q = p + 1;
     bool minus = q < end && *q == '-';
@@ -171,19 +161,12 @@ bool vl_number_scan(const char **text, const char *end, double *value) {
       int e = 0;
       for (; q < end && is_digit(*q); q++)
         if (e < 100000) e = e * 10 + (*q - '0');
-      exponent += minus ? -e : e;
+      written = minus ? -e : e;
       p = q;
     }
   }
   *text = p;
-  /* Both factors exact in double: one rounding, so the result is the nearest double (Clinger 1990, the fast path). */
-  double v;
-  if (exact && mantissa <= (1ull << 53) && exponent >= -22 && exponent <= 22) {
-    v = (double)mantissa;
-    v = exponent < 0 ? v / powers_of_ten[-exponent] : v * powers_of_ten[exponent];
-  } else {
-    v = slow_number(mantissa, exponent);
-  }
+  double v = exact ? vl_decimal(mantissa, exponent + written) : vl_decimal_digits(digits_start, digits_end, written);
   *value = negative ? -v : v;
   return isfinite(v);
 }

@@ -5,6 +5,8 @@
 
 #include "import/ply/ply_reader.h"
 
+#include "image/pixel.h"
+
 static bool has_roles(const vlPlyElement *e, vlPlyRole first, int count) {
   for (int i = 0; i < count; i++) {
     bool found = false;
@@ -27,7 +29,7 @@ static float color_value(vlPlyType type, bool alpha, double value) {
   double x = type == VL_PLY_U8 ? value / 255 : type == VL_PLY_U16 ? value / 65535 : value;
   if (!isfinite(x)) return (float)x;
   x = x < 0 ? 0 : x > 1 ? 1 : x;
-  return (float)(alpha ? x : x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4));
+  return (float)(alpha ? x : vl_srgb_to_linear(x));
 }
 
 static bool is_little_endian(void) {

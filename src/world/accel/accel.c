@@ -12,10 +12,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 #include "base/error.h"
 #include "base/isa.h"
+#include "base/machine.h"
 #include "world/accel/bundle.h"
 #include "world/accel/local_ray.h"
 #include "world/accel/nearest.h"
@@ -27,9 +27,6 @@
 #include <embree4/rtcore.h>
 #else
 #include <embree3/rtcore.h>
-#endif
-#if defined(__SSE__)
-#include <xmmintrin.h>
 #endif
 
 /* Embree's accessors for packets of any size are C++ only. This is the layout that its manual gives: row k of N
@@ -95,21 +92,11 @@ static vlLocalRay local_ray(const vlWorld *world, const EmbreeContext *context, 
 }
 
 unsigned vl_accel_enter(void) {
-#if defined(__SSE__)
-  unsigned state = _mm_getcsr();
-  _mm_setcsr(state | 0x8040u); /* flush to zero, denormals are zero */
-  return state;
-#else
-  return 0;
-#endif
+  return vl_machine_flush_denormals();
 }
 
 void vl_accel_leave(unsigned state) {
-#if defined(__SSE__)
-  _mm_setcsr(state);
-#else
-  (void)state;
-#endif
+  vl_machine_restore_denormals(state);
 }
 
 /* ---- filters ----------------------------------------------------------------------------------------------------- */
@@ -327,10 +314,7 @@ static bool has_room(const vlWorld *world) {
   size_t primitives = 0;
   for (size_t i = 0; i < world->shapes.count; i++) primitives += (size_t)world->shapes.items[i].faces + 1;
   size_t bytes = ((size_t)64 << 20) + ((size_t)72 << 20) * vl_context_threads(world->context) + 256 * primitives;
-  void *block = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (block == MAP_FAILED) return false;
-  munmap(block, bytes);
-  return true;
+  return vl_machine_has_addresses(bytes);
 }
 
 static bool on_memory(void *context, ssize_t bytes, bool taken) {

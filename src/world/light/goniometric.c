@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/error.h"
+#include "math/elementary.h"
 #include "math/transform.h"
 #include "world/light/lights.h"
 #include "world/texture/texture_lookup.h"
@@ -58,7 +59,7 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   static const float sign[3] = {1, -1, 1};
   uint32_t w = mip->levels[0].width, h = mip->levels[0].height;
   if (!set_frame(def, order, sign, light)) return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
-  double aspect = (double)w / h, tangent = tan(0.5 * def->fov);
+  double aspect = (double)w / h, tangent = vl_precise_tan(0.5 * def->fov);
   light->image_extent[0] = (float)(tangent * (aspect > 1 ? aspect : 1));
   light->image_extent[1] = (float)(tangent * (aspect > 1 ? 1 : 1 / aspect));
   double sum = 0;
@@ -67,7 +68,8 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
       double a = light->image_extent[0] * (2 * (x + 0.5) / w - 1), b = light->image_extent[1] * (2 * (y + 0.5) / h - 1);
       float value = vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels);
       if (!isfinite(value)) return bad_pixel(def, x, y, error);
-      sum += value > 0 ? value * pow(1 + a * a + b * b, -1.5) : 0; /* solid angle per area of the plane z = 1 */
+      double q = 1 + a * a + b * b; /* q^(-3/2): solid angle of an area of the plane z = 1 */
+      sum += value > 0 ? value / (q * sqrt(q)) : 0;
     }
   double flux = sum / ((double)w * h) * 4 * light->image_extent[0] * light->image_extent[1], factor = def->scale;
   if (def->power == def->power) factor *= flux > 0 ? def->power / flux : 0;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "math/approx_double.h"
 #include "world/shape/surface_point.h"
 #include "world/world.h"
 
@@ -21,6 +22,15 @@ typedef struct Cone {
   bool empty;
 } Cone;
 
+/* The same bits everywhere, which acosf and cosf do not have. */
+static float arccos(float x) {
+  return (float)vl_acos_double((double)x);
+}
+
+static float cosine(float x) {
+  return (float)vl_sincos_double((double)x).cos;
+}
+
 static Cone cone_union(Cone a, Cone b) {
   if (a.empty) return b;
   if (b.empty) return a;
@@ -28,8 +38,8 @@ static Cone cone_union(Cone a, Cone b) {
   if (a.cos_o <= -1) return a;
   if (b.cos_o <= -1) return b;
   if (b.cos_o >= 1 && vl_dot(a.axis, b.axis) >= a.cos_o) return a;
-  float ta = acosf(vl_clamp(a.cos_o, -1, 1)), tb = acosf(vl_clamp(b.cos_o, -1, 1));
-  float td = acosf(vl_clamp(vl_dot(a.axis, b.axis), -1, 1));
+  float ta = arccos(vl_clamp(a.cos_o, -1, 1)), tb = arccos(vl_clamp(b.cos_o, -1, 1));
+  float td = arccos(vl_clamp(vl_dot(a.axis, b.axis), -1, 1));
   if (fminf(td + tb, VL_PI) <= ta) return a;
   if (fminf(td + ta, VL_PI) <= tb) return b;
   float to = (ta + td + tb) / 2;
@@ -38,10 +48,10 @@ static Cone cone_union(Cone a, Cone b) {
   vlVec3 axis = vl_cross(a.axis, b.axis);
   if (!(vl_length2(axis) > 0)) return all;
   axis = vl_normalize(axis);
-  float turn = to - ta, s = sinf(turn),
-        c = cosf(turn); /* rotate a's axis towards b's (Rodrigues; axis is normal to it) */
+  float turn = to - ta, s = (float)vl_sincos_double(turn).sin,
+        c = cosine(turn); /* rotate a's axis towards b's (Rodrigues; axis is normal to it) */
   vlVec3 w = vl_add(vl_mul(a.axis, c), vl_mul(vl_cross(axis, a.axis), s));
-  return (Cone){vl_normalize(w), cosf(to), false};
+  return (Cone){vl_normalize(w), cosine(to), false};
 }
 
 /* Extends a to bound both. In place and by comparisons, because most of the build's time is spent here. */
@@ -69,10 +79,10 @@ static void absorb(vlLightBounds *a, const vlLightBounds *b) {
 
 static float cost_of(const vlLightBounds *b, const float parent_low[3], const float parent_high[3], int dimension) {
   if (b->power == 0) return 0;
-  float to = acosf(vl_clamp(b->cos_o, -1, 1)), te = acosf(vl_clamp(b->cos_e, -1, 1));
+  float to = arccos(vl_clamp(b->cos_o, -1, 1)), te = arccos(vl_clamp(b->cos_e, -1, 1));
   float tw = fminf(to + te, VL_PI), sin_o = sqrtf(fmaxf(0, 1 - b->cos_o * b->cos_o));
   float orientation =
-      2 * VL_PI * (1 - b->cos_o) + VL_PI / 2 * (2 * tw * sin_o - cosf(to - 2 * tw) - 2 * to * sin_o + b->cos_o);
+      2 * VL_PI * (1 - b->cos_o) + VL_PI / 2 * (2 * tw * sin_o - cosine(to - 2 * tw) - 2 * to * sin_o + b->cos_o);
   float d[3], longest = 0;
   for (int i = 0; i < 3; i++) d[i] = b->high[i] - b->low[i], longest = fmaxf(longest, parent_high[i] - parent_low[i]);
   float area = 2 * (d[0] * d[1] + d[1] * d[2] + d[2] * d[0]);
@@ -184,9 +194,9 @@ static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLigh
   b->cos_e = 0;
   if (light->has_cone) {
     for (int i = 0; i < 3; i++) b->axis[i] = light->direction[i];
-    float to = acosf(light->cos_start), te = acosf(light->cos_end);
+    float to = arccos(light->cos_start), te = arccos(light->cos_end);
     b->cos_o = light->cos_start;
-    b->cos_e = fminf(cosf(te - to), 0.999f); /* 0.999: a hard edge has no width and leaves no margin for rounding */
+    b->cos_e = fminf(cosine(te - to), 0.999f); /* a hard edge has no width, and rounding none to lose */
   }
   if (light->shape != VL_NONE) {
     const vlWorldShape *shape = &world->shapes.items[light->shape];

@@ -6,6 +6,7 @@
 
 #include "base/context.h"
 #include "base/error.h"
+#include "math/elementary.h"
 #include "math/octahedral.h"
 #include "math/transform.h"
 #include "scene/scene.h"

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "math/elementary.h"
 #include "math/octahedral.h"
 #include "scene/scene.h"
 #include "world/light/lights.h"
@@ -78,7 +79,7 @@ static bool fill(vlContext *context, Filling *f, double *total, double *passes) 
   f->tangents = vl_alloc_array(context, points, sizeof *f->tangents);
   f->passes = vl_alloc_array(context, n, sizeof *f->passes);
   bool fine = f->tangents && f->passes;
-  for (uint32_t i = 0; fine && i < points; i++) f->tangents[i] = tan(M_PI * ((i + 0.5) / points - 0.5));
+  for (uint32_t i = 0; fine && i < points; i++) f->tangents[i] = vl_precise_tan(M_PI * ((i + 0.5) / points - 0.5));
   if (fine) vl_parallel_for(context, n, fill_row, f);
   *total = *passes = 0;
   for (uint32_t j = 0; fine && j < n; j++) {
@@ -108,16 +109,19 @@ vlResult vl_world_add_portal(vlWorld *world, const vlLightDef *def, vlEnvironmen
   if (!fill(world->context, &filling, &total, &passes)) return vl_fail_memory(error);
   double mean = total / (2 * M_PI);
   *power = passes * (double)portal->width * (double)portal->height;
-  if (!(mean > 0)) mean = 1; /* a black environment: any distribution will do */
+  double *tangents = vl_alloc_array(world->context, n, sizeof *tangents); /* of the middles of columns, and of rows */
+  if (!tangents) return vl_fail_memory(error);
+  for (uint32_t i = 0; i < n; i++) tangents[i] = vl_precise_tan(M_PI * ((i + 0.5) / n - 0.5));
+  if (!(mean > 0)) mean = 1; /* a black sky: any way of looking at it will do */
   for (uint32_t j = 0; j < n; j++) {
     double row = 0;
     for (uint32_t i = 0; i < n; i++) {
-      double x = tan(M_PI * ((i + 0.5) / n - 0.5)), y = tan(M_PI * ((j + 0.5) / n - 0.5));
       double *at = portal->sums + (size_t)(j + 1) * (n + 1) + i + 1;
-      row += *at + least_share * mean * vl_portal_solid_angle(x, y) / ((double)n * n);
+      row += *at + least_share * mean * vl_portal_solid_angle(tangents[i], tangents[j]) / ((double)n * n);
       *at = row + at[-(ptrdiff_t)(n + 1)];
     }
   }
+  vl_free(world->context, tangents);
   env->portal = portal;
   return VL_OK;
 }

@@ -5,6 +5,9 @@
 
 #include <math.h>
 
+#include "math/approx_double.h"
+#include "math/elementary.h"
+
 static const double pi = 3.14159265358979323846;
 
 /* int Fr(c) c dc and int Fr(c) c^2 dc over cosines 0 to 1. eta: index on the incident side over the index on the
@@ -44,7 +47,7 @@ typedef struct Goniometric {
 
 static Goniometric make_goniometric(int n) {
   Goniometric b = {n < MOST_POINTS ? n : MOST_POINTS, {0}};
-  for (int i = 0; i < b.n; i++) b.depth[i] = -log(1 - (i + 0.5) / b.n);
+  for (int i = 0; i < b.n; i++) b.depth[i] = -vl_precise_log(1 - (i + 0.5) / b.n);
   return b;
 }
 
@@ -60,10 +63,11 @@ static double multiple(double albedo, double g, double eta, double r, const Goni
   double by_fluence = 0.25 * (1 - 2 * f1), by_flux = 0.5 * (1 - 3 * f2), sum = 0;
   for (int i = 0; i < beam->n; i++) {
     double z = beam->depth[i] / sigma_t, mirrored = 2 * extrapolated - z;
-    double d = sqrt(r * r + z * z), m = sqrt(r * r + mirrored * mirrored), ed = exp(-tr * d), em = exp(-tr * m);
+    double d = sqrt(r * r + z * z), m = sqrt(r * r + mirrored * mirrored), ed = vl_exp_double(-tr * d),
+           em = vl_exp_double(-tr * m);
     double fluence = (ed / d - em / m) / (4 * pi * diffusion);
     double flux = (z * (1 + tr * d) * ed / (d * d * d) - mirrored * (1 + tr * m) * em / (m * m * m)) / (4 * pi);
-    double near = 1 - exp(-2 * sigma_t * (d + z)); /* Habel's empirical correction close to the beam */
+    double near = 1 - vl_exp_double(-2 * sigma_t * (d + z)); /* Habel's empirical correction close to the beam */
     sum += near * reduced * reduced * (fluence * by_fluence + flux * by_flux);
   }
   return sum / beam->n;
@@ -74,7 +78,8 @@ static double single(double albedo, double g, double eta, double r, const Goniom
   double critical = r * sqrt(eta > 1 ? eta * eta - 1 : 0), sum = 0;
   for (int i = 0; i < beam->n; i++) {
     double z = critical + beam->depth[i], d = sqrt(r * r + z * z), cosine = z / d;
-    sum += albedo * exp(-(d + critical)) / (d * d) * phase(cosine, g) * (1 - reflected_inside(cosine, eta)) * cosine;
+    sum += albedo * vl_exp_double(-(d + critical)) / (d * d) * phase(cosine, g) * (1 - reflected_inside(cosine, eta)) *
+           cosine;
   }
   return sum / beam->n;
 }
@@ -114,7 +119,7 @@ void vl_bssrdf_build(vlContext *context, float eta, float g, vlBssrdfTable *t) {
   t->leaves = (float)(1 - 2 * moment1(1 / (double)eta));
   t->radius[0] = 0.0f;
   for (uint32_t i = 1; i < VL_BSSRDF_RADII; i++) t->radius[i] = i > 1 ? t->radius[i - 1] * 1.2f : 2.5e-3f;
-  for (uint32_t i = 0; i < VL_BSSRDF_ALBEDOS; i++) /* denser for high albedos */
-    t->albedo[i] = (float)((1 - exp(-8.0 * i / (VL_BSSRDF_ALBEDOS - 1))) / (1 - exp(-8.0)));
+  for (uint32_t i = 0; i < VL_BSSRDF_ALBEDOS; i++) /* closer together where bodies are bright */
+    t->albedo[i] = (float)((1 - vl_precise_exp(-8.0 * i / (VL_BSSRDF_ALBEDOS - 1))) / (1 - vl_precise_exp(-8.0)));
   vl_parallel_for(context, VL_BSSRDF_ALBEDOS, fill_row, t);
 }

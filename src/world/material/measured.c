@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "color/color.h"
+#include "math/elementary.h"
 #include "world/material/measured_lookup.h"
 #include "world/material/tensor.h"
 
@@ -147,8 +148,8 @@ static void find_symmetry(vlMeasured *m) {
   long parts = lrint(2 * M_PI / (last - first));
   m->quarters = parts >= 4;
   m->halves = parts >= 2 && !m->quarters;
-  m->side_x = cos((first + last) / 2) < 0 ? -1.0f : 1.0f;
-  m->side_y = sin((first + last) / 2) < 0 ? -1.0f : 1.0f;
+  m->side_x = vl_precise_cos((first + last) / 2) < 0 ? -1.0f : 1.0f;
+  m->side_y = vl_precise_sin((first + last) / 2) < 0 ? -1.0f : 1.0f;
 }
 
 /* ---- spectra ----------------------------------------------------------------------------------------------------- */

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "color/rgb_table.h"
+#include "math/elementary.h"
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "world/medium/medium_lookup.h"
@@ -74,7 +75,7 @@ static vlResult compile_temperature(vlWorld *world, const vlMediumDef *def, vlWo
   float *table = vl_world_block(world, (size_t)VL_BLACKBODY_STEPS * 3, sizeof *table);
   if (!table) return vl_fail_memory(error);
   for (int k = 0; k < VL_BLACKBODY_STEPS; k++) {
-    vlSpectrum body = vl_spectrum_blackbody((float)(VL_BLACKBODY_LOW * exp2(k / 32.0)));
+    vlSpectrum body = vl_spectrum_blackbody((float)(VL_BLACKBODY_LOW * vl_precise_exp2(k / 32.0)));
     vlResult r = vl_spectrum_to_rgb(&body, VL_ROLE_ILLUMINANT, VL_SPACE_SRGB, table + 3 * k, error);
     if (r != VL_OK) return r;
     for (int c = 0; c < 3; c++) table[3 * k + c] *= (float)vl_spectrum_photometric(&body, error);

@@ -1,0 +1,54 @@
+/* base/machine.c: see machine.h. */
+#include "base/machine.h"
+
+#include <stdint.h>
+#include <sys/mman.h>
+
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+#ifndef MAP_NORESERVE /* Linux and the BSDs of old; elsewhere PROT_NONE reserves no memory either */
+#define MAP_NORESERVE 0
+#endif
+
+bool vl_machine_has_addresses(size_t bytes) {
+  void *block = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (block == MAP_FAILED) return false;
+  munmap(block, bytes);
+  return true;
+}
+
+void vl_machine_return_memory(void) {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
+}
+
+unsigned vl_machine_flush_denormals(void) {
+#if defined(__SSE__)
+  unsigned state = _mm_getcsr();
+  _mm_setcsr(state | 0x8040u); /* flush to zero, denormals are zero */
+  return state;
+#elif defined(__aarch64__)
+  uint64_t state;
+  __asm__ volatile("mrs %0, fpcr" : "=r"(state));
+  __asm__ volatile("msr fpcr, %0" ::"r"(state | UINT64_C(1) << 24)); /* FZ: inputs and results */
+  return (unsigned)state;                                            /* its upper half is reserved */
+#else
+  return 0;
+#endif
+}
+
+void vl_machine_restore_denormals(unsigned state) {
+#if defined(__SSE__)
+  _mm_setcsr(state);
+#elif defined(__aarch64__)
+  __asm__ volatile("msr fpcr, %0" ::"r"((uint64_t)state));
+#else
+  (void)state;
+#endif
+}

@@ -1,0 +1,171 @@
+/* import/pbrt/decimal.c: see decimal.h. Three ways, the first that is sure counts: one operation on two exact doubles
+ * (Clinger 1990), a pair of doubles whose error is too small to matter (Ziv's test), whole numbers of any size. */
+#include "import/pbrt/decimal.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+/* ---- doubles and pairs of them
+ * --------------------------------------------------------------------------------------- */
+
+static const double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                       1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+enum { EXACT_POWER = 22 };
+
+/* What rounding took from a * b (Dekker 1971). */
+static double product_error(double a, double b, double product) {
+  const double split = 134217729.0; /* 2^27 + 1 */
+  double ta = split * a, tb = split * b, ah = ta - (ta - a), al = a - ah, bh = tb - (tb - b), bl = b - bh;
+  return ((ah * bh - product) + ah * bl + al * bh) + al * bl;
+}
+
+/* false: another double may be nearer. */
+static bool by_pair(uint64_t mantissa, int exponent, double *value) {
+  int size = exponent < 0 ? -exponent : exponent;
+  if (size > 2 * EXACT_POWER || mantissa >= UINT64_C(1) << 62) return false;
+  double high = (double)mantissa, low = (double)((int64_t)mantissa - (int64_t)high);
+  double power = powers_of_ten[size > EXACT_POWER ? EXACT_POWER : size], rest = 0; /* power + rest is exact */
+  if (size > EXACT_POWER) {
+    double a = power, b = powers_of_ten[size - EXACT_POWER];
+    power = a * b;
+    rest = product_error(a, b, power);
+  }
+  double v, left; /* v + left, to about 2^-102 of it */
+  if (exponent < 0) {
+    v = high / power;
+    double back = v * power;
+    left = (((high - back) - product_error(v, power, back)) + low - v * rest) / power;
+  } else {
+    v = high * power;
+    left = product_error(high, power, v) + (high * rest + low * power);
+  }
+  double error = v * 0x1p-96;
+  *value = v + left;
+  return v + (left - error) == v + (left + error);
+}
+
+/* ---- whole numbers
+ * ---------------------------------------------------------------------------------------------------- */
+
+/* More digits than decide between two doubles and what lies between them (767): the rest counts as not being 0. */
+enum { MOST_DIGITS = 800, LIMBS = 176 };
+
+/* Limbs of 32 bits, the lowest first; the highest is not 0. 800 digits take 84, 5^1200 takes 88. */
+typedef struct Whole {
+  int count;
+  uint32_t limb[LIMBS];
+} Whole;
+
+static void multiply_add(Whole *w, uint32_t factor, uint32_t more) {
+  uint64_t carry = more;
+  for (int i = 0; i < w->count; i++) {
+    carry += (uint64_t)w->limb[i] * factor;
+    w->limb[i] = (uint32_t)carry;
+    carry >>= 32;
+  }
+  if (carry) w->limb[w->count++] = (uint32_t)carry;
+}
+
+static void multiply_power_of_five(Whole *w, int exponent) {
+  for (; exponent >= 13; exponent -= 13) multiply_add(w, 1220703125u, 0);
+  for (; exponent > 0; exponent--) multiply_add(w, 5, 0);
+}
+
+static int bit_length(const Whole *w) {
+  if (w->count == 0) return 0;
+  int bits = 32 * (w->count - 1);
+  for (uint32_t top = w->limb[w->count - 1]; top; top >>= 1) bits++;
+  return bits;
+}
+
+static void shift_left(Whole *w, int bits) {
+  int limbs = bits / 32;
+  memmove(w->limb + limbs, w->limb, (size_t)w->count * sizeof *w->limb);
+  memset(w->limb, 0, (size_t)limbs * sizeof *w->limb);
+  w->count += limbs;
+  multiply_add(w, UINT32_C(1) << bits % 32, 0);
+}
+
+/* a -= b where a >= b; whether it was so. */
+static bool subtract(Whole *a, const Whole *b) {
+  if (a->count < b->count) return false;
+  for (int i = a->count - 1; a->count == b->count && i >= 0; i--) {
+    if (a->limb[i] > b->limb[i]) break;
+    if (a->limb[i] < b->limb[i]) return false;
+  }
+  uint64_t borrow = 0;
+  for (int i = 0; i < a->count; i++) {
+    uint64_t take = (i < b->count ? b->limb[i] : 0) + borrow;
+    borrow = a->limb[i] < take;
+    a->limb[i] = (uint32_t)(a->limb[i] - take);
+  }
+  while (a->count && a->limb[a->count - 1] == 0) a->count--;
+  return true;
+}
+
+/* q * 2^exponent; the lowest bit of q stands for all that lies below it, too. q has 55 or 56 bits. */
+static double round_to_double(uint64_t q, int exponent) {
+  int bits = q >> 55 ? 56 : 55, drop = -1074 - exponent; /* doubles are multiples of 2^-1074 */
+  if (drop > bits - 53) {
+    if (drop > bits) return 0.0;
+    uint64_t kept = q >> drop, rest = q & ((UINT64_C(1) << drop) - 1), half = UINT64_C(1) << (drop - 1);
+    kept += rest > half || (rest == half && (kept & 1));
+    return ldexp((double)kept, -1074);
+  }
+  return ldexp((double)q, exponent); /* the conversion rounds to 53 bits */
+}
+
+/* digits * 10^exponent */
+static double by_whole_numbers(Whole *digits, int exponent) {
+  Whole divisor = {1, {1}};
+  multiply_power_of_five(exponent < 0 ? &divisor : digits, exponent < 0 ? -exponent : exponent);
+  int shift = bit_length(&divisor) - bit_length(digits);
+  shift_left(shift < 0 ? &divisor : digits, shift < 0 ? -shift : shift);
+  uint64_t q = 0;
+  for (int i = 0; i < 56; i++) { /* the ratio lies between 1/2 and 2 */
+    q = 2 * q + subtract(digits, &divisor);
+    shift_left(digits, 1);
+  }
+  return round_to_double(q | (digits->count > 0), exponent - shift - 55);
+}
+
+double vl_decimal(uint64_t mantissa, int exponent) {
+  double v;
+  if (mantissa == 0 || exponent < -400) return 0.0;
+  if (exponent > 400) return HUGE_VAL;
+  if (mantissa <= UINT64_C(1) << 53 && exponent >= -EXACT_POWER && exponent <= EXACT_POWER) {
+    v = (double)mantissa;
+    return exponent < 0 ? v / powers_of_ten[-exponent] : v * powers_of_ten[exponent];
+  }
+  if (by_pair(mantissa, exponent, &v)) return v;
+  Whole digits = {mantissa >> 32 ? 2 : 1, {(uint32_t)mantissa, (uint32_t)(mantissa >> 32)}};
+  return by_whole_numbers(&digits, exponent);
+}
+
+double vl_decimal_digits(const char *text, const char *end, int exponent) {
+  Whole digits = {0, {0}};
+  int count = 0;
+  bool fraction = false, more = false;
+  for (; text < end; text++) {
+    if (*text == '.') {
+      fraction = true;
+      continue;
+    }
+    if (count < MOST_DIGITS) {
+      multiply_add(&digits, 10, (uint32_t)(*text - '0'));
+      count += digits.count > 0;
+      exponent -= fraction && exponent > -1000000;
+    } else {
+      more = more || *text != '0';
+      exponent += !fraction && exponent < 1000000;
+    }
+  }
+  if (more) {
+    multiply_add(&digits, 10, 1);
+    count++, exponent--;
+  }
+  if (count == 0 || count + exponent < -400) return 0.0;
+  if (count + exponent > 400) return HUGE_VAL;
+  return by_whole_numbers(&digits, exponent);
+}

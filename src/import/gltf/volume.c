@@ -1,13 +1,12 @@
-/* import/gltf/volume.c: what a material says about the space behind its surface (KHR_materials_volume), and images
- * that must be worked on before they are textures. */
+/* import/gltf/volume.c: the medium behind a surface (KHR_materials_volume), and images that are converted before they
+ * become textures. */
 #include <math.h>
 #include <string.h>
 
 #include "image/image.h"
 #include "import/gltf/gltf.h"
 
-/* White light through `attenuationDistance` of it takes on `attenuationColor`: sigma_a = -ln(colour) / distance, a law
- * of each channel. */
+/* White light takes on `attenuationColor` after `attenuationDistance`: sigma_a = -ln(colour) / distance per channel. */
 bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfMaterial *result) {
   double distance = INFINITY, color[3] = {1, 1, 1}, most = 0;
   float sigma[3];
@@ -32,8 +31,8 @@ bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltf
 
 /* ---- anisotropy -------------------------------------------------------------------------------------------------- */
 
-/* A texture's red and green are the direction of the tangent; a new one holds its angle. Angles of opposite directions
- * mean the same, but means of them nothing: the new one is not filtered. */
+/* Converts a texture whose red and green channels are the tangent's direction to one of its angle. Angles that differ
+ * by pi are equivalent, but their mean is meaningless: the new texture is not filtered. */
 bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatInput *input) {
   vlTextureDef def = g->scene->textures.items[from.index - 1];
   vlImage *image = NULL, *angles = NULL;
@@ -57,7 +56,7 @@ bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatI
     vl_image_row_to_float(image, y, channel, 3, row);
     for (uint32_t x = 0; x < image->width; x++) {
       float a = atan2f(2 * row[3 * x + 1] - 1, 2 * row[3 * x] - 1) + rotation;
-      to[x] = a - floorf(a / 3.14159265f) * 3.14159265f; /* images hold no negative numbers */
+      to[x] = a - floorf(a / 3.14159265f) * 3.14159265f; /* stored in [0, pi): images hold no negative values */
     }
   }
   if (ok) {

@@ -1,13 +1,13 @@
-/* import/pbrt/lens.h: the lens half of the Camera directive. */
+/* import/pbrt/lens.h: lens parameters of the Camera directive. */
 #ifndef IMPORT_PBRT_LENS_H
 #define IMPORT_PBRT_LENS_H
 
 #include "import/pbrt/builder.h"
 
-/* velo's words for the lens of any of its cameras: f-number, focus on a point or pixel, shape of the opening, tilt,
- * vignetting, exposure by the camera's numbers. */
+/* velo's lens parameters for every camera: f-number, focus on a point or pixel, aperture shape, tilt, vignetting,
+ * exposure from camera settings. */
 bool vl_import_lens(vlDict *dict, vlCameraDef *def);
-/* pbrt's realistic camera: lens file, aperture, focus; film_diagonal in mm. */
+/* pbrt's realistic camera: lens file, aperture, focus. film_diagonal in mm. */
 bool vl_import_optics(vlDict *dict, vlCameraDef *def, double film_diagonal);
 
 #endif

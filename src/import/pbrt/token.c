@@ -107,8 +107,8 @@ vlToken vl_token_next(vlTokenizer *t) {
 static const double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                        1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
-/* 18 digits and an exponent that the quick way cannot do exactly: in long double, a few of whose 11 spare bits are
- * lost, so the result is the nearest double but for rare ties. Independent of the locale, which strtod is not. */
+/* Handles 18 digits and exponents beyond the exact fast path in long double. A few of its 11 spare bits are lost, so
+ * the result is the nearest double except for rare ties. Independent of the locale, unlike strtod. */
 static double slow_number(uint64_t mantissa, int exponent) {
   if (mantissa == 0 || exponent < -400) return 0.0;
   if (exponent > 400) return HUGE_VAL;
@@ -176,7 +176,8 @@ bool vl_number_scan(const char **text, const char *end, double *value) {
     }
   }
   *text = p;
-  /* Both factors exact in double: one rounding, so the result is the nearest double (Clinger 1990, the fast path). */
+  /* Both factors are exact in double, so there is one rounding and the result is the nearest double (Clinger 1990, the
+   * fast path). */
   double v;
   if (exact && mantissa <= (1ull << 53) && exponent >= -22 && exponent <= 22) {
     v = (double)mantissa;

@@ -1,4 +1,4 @@
-/* scene/drop.c: meshes leave the scene when a world has taken what it needs of them. */
+/* scene/drop.c: frees meshes once a world has taken what it needs. */
 #include <stdlib.h>
 #include <string.h>
 #if defined(__GLIBC__)
@@ -55,6 +55,6 @@ void vl_scene_drop_meshes(vlScene *scene) {
   scene->meshes_dropped = true;
   vl_free(scene->context, all);
 #if defined(__GLIBC__)
-  malloc_trim(0); /* many arrays are too small to go back to the system by themselves */
+  malloc_trim(0); /* small freed blocks stay in the allocator otherwise */
 #endif
 }

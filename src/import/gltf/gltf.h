@@ -215,7 +215,7 @@ bool vl_gltf_animate(vlGltf *g);    /* at g->time */
 bool vl_gltf_pose_nodes(vlGltf *g); /* world matrices of all nodes */
 /* Poses all nodes at def->time and, when motion is asked for, at the key times until def->time_close. */
 bool vl_gltf_pose(vlGltf *g);
-/* Whether the node's motion between shutter open and shutter close differs from that of its root. */
+/* Whether the node's world matrix changes between shutter open and shutter close. */
 bool vl_gltf_node_moves(const vlGltf *g, const vlGltfNode *node);
 /* Adds the chosen scene's meshes, lights and camera. */
 bool vl_gltf_draw(vlGltf *g);

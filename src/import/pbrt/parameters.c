@@ -83,7 +83,7 @@ static bool read_spectrum_input(vlDict *dict, const char *name, const vlParamete
   return vl_import_spectrum_input(dict, name, at, p->role == VL_PARAMETER_ALBEDO, &given) && given;
 }
 
-/* Reads the parameter of one row; false when it is not given or after an error. */
+/* Reads one parameter. False when it is not given or after an error. */
 static bool read_one(vlDict *dict, const char *name, const vlParameter *p, char *def, bool spectrum) {
   void *at = def + p->offset;
   bool given;

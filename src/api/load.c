@@ -1,4 +1,4 @@
-/* api/load.c: vl_scene_load: the kind of a scene file by its name; the camera that velo wrote into a glTF file. */
+/* api/load.c: vl_scene_load: chooses the importer by the file name; reads velo's camera description in glTF files. */
 #include <string.h>
 #include <sys/stat.h>
 
@@ -10,7 +10,7 @@
 #include "scene/scene.h"
 #include "velo/camera_file.h"
 
-/* glTF's own camera is a pinhole; velo's exporter puts what it is in truth into the extras. */
+/* A glTF camera is a pinhole camera. Velo's exporter writes the full camera into the extras. */
 static vlResult load_gltf(vlScene *scene, const char *path, const vlLoadDef *load, vlError *error) {
   vlResult result = vl_import_gltf(scene, path, load, error);
   if (result != VL_OK || !scene->camera_in_full) return result;

@@ -67,7 +67,7 @@ static void make_tables(Builder *b, const vlImage *image, const vlMipmapDef *def
     b->one_table &= memcmp(map->decode[0], map->decode[c], sizeof map->decode[0]) == 0;
 }
 
-/* Makes the decoding table of a 16-bit image with an overridden encoding. */
+/* Decodes row y of a 16-bit image by the encoding in def. */
 static void row_16bit(const vlImage *image, const vlMipmapDef *def, uint32_t y, float *out) {
   const uint16_t *row = vl_image_const_row(image, y);
   for (uint32_t c = 0; c < def->count; c++) {

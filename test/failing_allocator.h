@@ -15,7 +15,7 @@
 typedef struct failAllocator {
   long fail_at;
   atomic_long calls;
-  atomic_long blocks;  /* held now */
+  atomic_long blocks;  /* blocks currently held */
   atomic_bool refused; /* whether a call was refused */
 } failAllocator;
 
@@ -39,7 +39,7 @@ static inline void fail_release(void *user, void *block) {
   free(block);
 }
 
-/* From now on refuses the call after the next n, once; n < 0: none. */
+/* Fails one call: the one after the next n; n < 0: none. */
 static inline void fail_after(failAllocator *state, long n) {
   state->fail_at = n < 0 ? 0 : atomic_load(&state->calls) + n + 1;
 }
@@ -48,8 +48,8 @@ static inline vlAllocator fail_allocator(failAllocator *state) {
   return (vlAllocator){state, fail_allocate, fail_release};
 }
 
-/* The out-of-memory loop round body, with a context of one thread; the run without a refusal is at least the least-th.
- */
+/* Runs the body once per allocation, with a context of one thread, and makes that allocation fail. At least `least`
+ * runs are needed until one without a failure. */
 static inline void fail_everywhere(vlResult (*body)(vlContext *context, void *user), void *user, long least) {
   for (long n = 1;; n++) {
     failAllocator state = {.fail_at = n};

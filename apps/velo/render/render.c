@@ -18,7 +18,7 @@
 #include "render/progress.h"
 #include "render/scene_options.h"
 
-/* Seconds between two progress images, and their largest share of the time. */
+/* Seconds between two progress images. Writing them takes at most 1 / WRITE_SHARE of the time. */
 enum { WRITE_EVERY = 10, WRITE_SHARE = 20 };
 
 typedef struct Render {

@@ -1,9 +1,9 @@
-/* test/failing_allocator.h: an allocator that says no at its n-th call, and counts what is still held.
+/* test/failing_allocator.h: an allocator whose n-th call fails and that counts the blocks held.
  *   failAllocator state = {.fail_at = n};             n counts from 1; 0: never
  *   def.allocator = fail_allocator(&state);
- * The out-of-memory loop (fail_everywhere): for n = 1, 2, ... until a run in which nothing was refused; each must
- * return VL_ERROR_MEMORY and leave state.blocks at 0. One call alone is refused, so that what comes after it works with
- * what is half there. cmocka.h comes before this header. */
+ * The out-of-memory loop (fail_everywhere): for n = 1, 2, ... until a run without a failure. Each run with one must
+ * return VL_ERROR_MEMORY and leave state.blocks at 0. Only one call fails, so that the code after it runs with partly
+ * built data. Include cmocka.h first. */
 #ifndef TEST_FAILING_ALLOCATOR_H
 #define TEST_FAILING_ALLOCATOR_H
 

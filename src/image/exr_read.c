@@ -60,7 +60,7 @@ static uint32_t le32(const uint8_t *p) {
   return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
-/* Number of bytes past a zero-terminated text of 1 to 255 characters at `at`; 0 when there is none. */
+/* Offset of the byte after the zero-terminated text of 1 to 255 characters at `at`; 0 when there is none. */
 static size_t after_text(const vlImageFile *file, size_t at) {
   size_t end = at;
   while (end < file->size && end - at < 256 && file->data[end]) end++;

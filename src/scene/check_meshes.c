@@ -134,7 +134,7 @@ static void check_uv(vlCheck *c, const vlShapeDef *d, const Needs *n) {
     tell_lack(c, d, NEEDS_UV, "its area light", "the image");
 }
 
-/* ---- bodies ------------------------------------------------------------------------------------------------------ */
+/* ---- solids ------------------------------------------------------------------------------------------------------ */
 
 static bool is_body(const vlCheck *c, const vlShapeDef *d) {
   const vlMaterialDef *m = vl_check_material(c, d->material);

@@ -18,7 +18,7 @@ enum { V_JSON, V_FRAME, V_UP, V_OVERLAY, V_OUT, V_LINES, V_GRID, V_FROM, V_PRINC
 static const double pi = 3.14159265358979323846;
 static const char *const axis_names[3] = {"x", "y", "z"};
 
-/* ---- what is said ------------------------------------------------------------------------------------------------ */
+/* ---- output ------------------------------------------------------------------------------------------------------ */
 
 static const char *kind_of(const vlCamera *c, const vlVanishingPoints *v) {
   static const char *const kinds[] = {"parallel projection", "one-point perspective", "two-point perspective",

@@ -57,7 +57,7 @@ static bool parse(vlGltf *g, const char *text, size_t size) {
   return true;
 }
 
-/* Checks that the root's member is an array of objects. */
+/* Counts the elements of the root's array `key` and checks that they are objects. */
 static bool count_items(vlGltf *g, const char *key, size_t *count) {
   const json_t *array;
   if (!vl_gltf_array(g, NULL, g->root, key, &array, count)) return false;

@@ -28,7 +28,7 @@ static bool link_shape(vlImport *import, const vlShapeLink *link) {
   return !link->alpha || vl_import_texture_id(import, link->alpha, false, link->alpha_place, &shape->alpha.texture);
 }
 
-/* While diagnosing: unfinished textures are skipped and a default material replaces unfinished ones. */
+/* While diagnosing: unfinished textures are skipped and unfinished materials become the default one. */
 static bool give_up(vlImport *import) {
   if (!vl_import_recover(import)) return false;
   import->depth = 0;

@@ -1,5 +1,5 @@
-/* bench/bsdf.c: nanoseconds for one evaluation and one sample of each BSDF, by instruction set, in batches, against the
- * same code one lane at a time (compiled without vectors). Lines end in the ratio of the two. Usage: bench_bsdf
+/* bench/bsdf.c: nanoseconds per evaluation and per sample of each BSDF, by instruction set. Batches are compared with
+ * the same code run one lane at a time (compiled without vectors); each line ends in the ratio. Usage: bench_bsdf
  * [lanes] (default 512). Each number is the best of several rounds. */
 #include <math.h>
 #include <stdio.h>
@@ -9,13 +9,13 @@
 #include "base/context.h"
 #include "trace/bsdf/bsdf.h"
 
-/* The kernels once more, one lane at a time: no padding and no vectors (VL_SCALAR, CMakeLists.txt). */
+/* The same kernels for one lane, without padding and vectors (VL_SCALAR, CMakeLists.txt). */
 extern const vlBsdfKernels vl_bsdf_kernel_table_scalar;
 
 enum { MOST = 4096, ROUNDS = 7 };
 
 typedef struct {
-  /* rows a little longer than a power of two, or all would share the cache's same few sets */
+  /* longer than a power of two, so that rows do not share the same cache sets */
   float in[24][MOST + 80], out[14][MOST + 80], own[VL_BSDF_ROWS][MOST + 80];
   const vlCoatTable *coat[MOST];
   uint32_t flags[MOST];
@@ -56,7 +56,7 @@ static void pass(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, u
   if (what & 2) k->sample(kind, n, &p, wo, IN(21), IN(22), IN(23), out, weight, OUT(12), a->flags + first, OUT(13));
 }
 
-/* Best of several, nanoseconds a lane. */
+/* Nanoseconds per lane, best of several rounds. */
 static double cost(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, uint32_t n, uint32_t step) {
   double best = 1e30;
   for (int round = 0; round < ROUNDS; round++) {

@@ -1,7 +1,7 @@
-/* bench/limit.c: how near the renderer comes to what Embree allows. A diffuse scene of a million triangles is rendered
- * with every ray recorded; then the same rays go through bare Embree calls (packets for camera rays, single calls for
- * the others, as the renderer does); then the renderer is timed. B = traced rays a second / Embree's rays a second,
- * both on all threads, medians of several rounds taken in turn. */
+/* bench/limit.c: the renderer's ray throughput relative to Embree's. A diffuse scene of a million triangles is rendered
+ * and every ray is recorded. The same rays are traced by bare Embree calls (packets for camera rays, single calls for
+ * others, as in the renderer). Then the renderer is timed. B = traced rays per second / Embree's rays per second, both
+ * on all threads, medians of several interleaved rounds. */
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -129,7 +129,7 @@ static void record(void *user, int kind, uint32_t n, const vlRays *rays) {
 typedef struct Bare {
   const Record *record;
   RTCScene scene;
-  int only; /* kind, -1: all */
+  int only; /* kind of ray; -1: all */
   uint64_t sum[64];
 } Bare;
 

@@ -1,6 +1,6 @@
-/* bench/loading.c: how soon a large scene is ready, against what it cannot do without: reading the bytes of its files
- * and Embree's own build of the same triangles. usage: bench_loading FOLDER (made by bench/loading/make_scene.py).
- * Each of the three runs in a process of its own, so that its memory is its own. */
+/* bench/loading.c: the time until a large scene is ready, compared with its lower bounds: reading the files' bytes, and
+ * Embree's build of the same triangles. Usage: bench_loading FOLDER (made by bench/loading/make_scene.py). Each of the
+ * three runs in its own process, so that memory is measured separately. */
 #include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,7 +32,7 @@ static double peak(void) {
   return (double)u.ru_maxrss * 1024;
 }
 
-/* The bytes alone, on one thread, into one block. */
+/* Reads the bytes only, on one thread, into one block. */
 static void run_read(const char *folder, Result *r) {
   char path[4096];
   static char block[1 << 20];
@@ -82,7 +82,7 @@ static bool count_bytes(void *user, ssize_t bytes, bool post) {
   return true;
 }
 
-/* A geometry a shape, as the renderer does, on its flags. */
+/* Builds one geometry per shape with the renderer's flags. */
 static void run_embree(const char *folder, Result *r) {
   Result ignored = {0};
   vlContext *context = NULL;
@@ -139,7 +139,7 @@ int main(int argc, char **argv) {
   if (argc != 2) return fprintf(stderr, "usage: bench_loading FOLDER\n"), 2;
   double ratio[ROUNDS];
   Result velo = {0}, embree = {0}, bytes;
-  for (int i = 0; i < ROUNDS; i++) { /* in turn: the machine's mood is the same for all */
+  for (int i = 0; i < ROUNDS; i++) { /* interleaved, so that changes of the machine's speed affect all alike */
     bytes = in_child(run_read, argv[1]);
     embree = in_child(run_embree, argv[1]);
     velo = in_child(run_velo, argv[1]);

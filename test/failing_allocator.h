@@ -1,9 +1,9 @@
-/* test/failing_allocator.h: an allocator that says no at its n-th call, and counts what is still held.
+/* test/failing_allocator.h: an allocator whose n-th call fails and that counts the blocks held.
  *   failAllocator state = {.fail_at = n};             n counts from 1; 0: never
  *   def.allocator = fail_allocator(&state);
- * The out-of-memory loop (fail_everywhere): for n = 1, 2, ... until a run in which nothing was refused; each must
- * return VL_ERROR_MEMORY and leave state.blocks at 0. One call alone is refused, so that what comes after it works with
- * what is half there. cmocka.h comes before this header. */
+ * The out-of-memory loop (fail_everywhere): for n = 1, 2, ... until a run without a failure. Each run with one must
+ * return VL_ERROR_MEMORY and leave state.blocks at 0. Only one call fails, so that the code after it runs with partly
+ * built data. Include cmocka.h first. */
 #ifndef TEST_FAILING_ALLOCATOR_H
 #define TEST_FAILING_ALLOCATOR_H
 
@@ -15,7 +15,7 @@
 typedef struct failAllocator {
   long fail_at;
   atomic_long calls;
-  atomic_long blocks;  /* held now */
+  atomic_long blocks;  /* blocks currently held */
   atomic_bool refused; /* whether a call was refused */
 } failAllocator;
 
@@ -39,7 +39,7 @@ static inline void fail_release(void *user, void *block) {
   free(block);
 }
 
-/* From now on refuses the call after the next n, once; n < 0: none. */
+/* Fails one call: the one after the next n; n < 0: none. */
 static inline void fail_after(failAllocator *state, long n) {
   state->fail_at = n < 0 ? 0 : atomic_load(&state->calls) + n + 1;
 }
@@ -48,8 +48,8 @@ static inline vlAllocator fail_allocator(failAllocator *state) {
   return (vlAllocator){state, fail_allocate, fail_release};
 }
 
-/* The out-of-memory loop round body, with a context of one thread; the run without a refusal is at least the least-th.
- */
+/* Runs the body once per allocation, with a context of one thread, and makes that allocation fail. At least `least`
+ * runs are needed until one without a failure. */
 static inline void fail_everywhere(vlResult (*body)(vlContext *context, void *user), void *user, long least) {
   for (long n = 1;; n++) {
     failAllocator state = {.fail_at = n};

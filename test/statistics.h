@@ -1,13 +1,14 @@
-/* statistics.h: judges for sampling routines: random numbers with fixed seeds, chi-square tests with the regularised
- * incomplete gamma function, histograms over the unit square and over the sphere against a numerically integrated pdf.
+/* statistics.h: statistical tests of sampling routines: random numbers with fixed seeds, chi-square tests with the
+ * regularised incomplete gamma function, histograms over the unit square and over the sphere against a numerically
+ * integrated pdf.
  *
  *   statSphere hist = stat_sphere_new(32, 64);
  *   for (each try) sample(...) ? stat_sphere_add(hist, x, y, z) : stat_sphere_reject(hist);
  *   statResult r = stat_sphere_test(hist, my_pdf, &my_data, 0.0);   // also frees hist
- *   assert_true(stat_accept(r, tests));   // tests: how many such tests the program makes, so that all pass by chance
+ *   assert_true(stat_accept(r, tests));   // tests: number of such tests in the program
  *
- * The pdf is per solid angle. A sampler that rejects is fine when its pdf integrates to the accepted share: rejected
- * tries are a cell of their own. Everything is static inline; a program may include this and use what it likes. */
+ * The pdf is per solid angle. A sampler may reject when its pdf integrates to the accepted share: rejected tries are a
+ * cell of their own. Everything is static inline. */
 #ifndef TEST_STATISTICS_H
 #define TEST_STATISTICS_H
 
@@ -29,7 +30,8 @@ static inline uint64_t stat_bits(statRng *rng) {
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
   return z ^ (z >> 31);
 }
-/* The state steps by a constant: seeds are hashed, lest neighbouring ones give the same stream, one step apart. */
+/* The state advances by a constant, so seeds are hashed: otherwise adjacent seeds would give the same stream, shifted
+ * by one. */
 static inline statRng stat_rng(uint64_t seed) {
   statRng hash = {seed ^ 0x632be59bd9b4e019u};
   stat_bits(&hash);
@@ -81,13 +83,13 @@ static inline double stat_chi2_q(double statistic, double freedom) {
 }
 
 typedef struct statResult {
-  double p;         /* chance of a deviation at least as large if observed and expected agree */
+  double p;         /* probability of a deviation at least as large if observed and expected agree */
   double statistic; /* chi-square */
   double freedom;   /* degrees of freedom after pooling */
-  double integral;  /* of the pdf over the domain (histogram tests); 1 else */
+  double integral;  /* of the pdf over the domain (histogram tests); otherwise 1 */
 } statResult;
 
-/* All of `tests` independent tests together fail a right sampler with chance 1 % (Sidak). */
+/* The probability that any of `tests` independent tests rejects a correct sampler is 1 % (Sidak). */
 static inline bool stat_accept(statResult r, unsigned tests) {
   double level = 1.0 - pow(0.99, 1.0 / (tests ? tests : 1));
   bool ok = r.p > level;
@@ -104,16 +106,16 @@ static inline int stat_cell_order(const void *a, const void *b) {
   double x = ((const statCell *)a)->expected, y = ((const statCell *)b)->expected;
   return x < y ? -1 : x > y;
 }
-/* Cells are sorted (in place) and those that expect fewer than 5 pooled. What cannot be pooled to 5 is left out, unless
- * it holds far more than it may: then p = 0. `constraints` is subtracted from the number of cells: 1 when the sums of
- * both columns agree by construction. */
+/* Chi-square test. Cells are sorted (in place); those that expect fewer than 5 are pooled. A rest that expects fewer
+ * than 5 is left out, unless its count is far too large: then p = 0. `constraints` is subtracted from the number of
+ * cells: 1 when both columns have the same sum by construction. */
 static inline statResult stat_chi2(statCell *cells, size_t count, unsigned constraints) {
   statResult r = {.p = 1.0, .integral = 1.0};
   qsort(cells, count, sizeof *cells, stat_cell_order);
   statCell pool = {0, 0};
   size_t used = 0;
   bool impossible = false;
-  double mean = 0; /* of the cells that expect something */
+  double mean = 0; /* of the cells with a positive expectation */
   size_t some = 0;
   for (size_t i = 0; i < count; i++)
     if (cells[i].expected > 1e-6) mean += cells[i].expected, some++;
@@ -122,7 +124,7 @@ static inline statResult stat_chi2(statCell *cells, size_t count, unsigned const
     if (!(cells[i].expected >= 0.0) || cells[i].expected > 1e300) return (statResult){.p = 0.0, .integral = NAN};
     pool.observed += cells[i].observed;
     pool.expected += cells[i].expected;
-    /* samples where the pdf says nothing can be; a few may be in a sliver that the integration overlooked */
+    /* samples where the pdf is zero; a few are tolerated, since the integration may miss a thin region */
     bool empty = cells[i].expected <= 1e-6 && cells[i].observed > 3.0 + 0.02 * mean;
     impossible = impossible || empty;
     if (pool.expected >= 5.0) {
@@ -137,7 +139,7 @@ static inline statResult stat_chi2(statCell *cells, size_t count, unsigned const
   r.p = impossible ? 0.0 : stat_chi2_q(r.statistic, r.freedom);
   return r;
 }
-/* Counts that should be all alike. */
+/* Tests counts that should all be equal. */
 static inline statResult stat_chi2_uniform(const uint32_t *counts, size_t count) {
   double sum = 0;
   for (size_t i = 0; i < count; i++) sum += counts[i];
@@ -171,7 +173,7 @@ static inline double stat_gauss_cell(statDensity *f, void *user, double x0, doub
     for (int j = 0; j < 4; j++) sum += weight[i] * weight[j] * f(user, cx + hx * node[i], cy + hy * node[j]);
   return sum * hx * hy;
 }
-/* Integral over the rectangle; split in four while the split changes it by more than `tolerance`. */
+/* Integral over the rectangle; subdivided into four while that changes it by more than `tolerance`. */
 static inline double stat_integrate(statDensity *f, void *user, double x0, double x1, double y0, double y1,
                                     double whole, double tolerance, int depth) {
   double mx = 0.5 * (x0 + x1), my = 0.5 * (y0 + y1);
@@ -184,7 +186,7 @@ static inline double stat_integrate(statDensity *f, void *user, double x0, doubl
          stat_integrate(f, user, mx, x1, my, y1, d, 0.5 * tolerance, depth - 1);
 }
 
-/* A histogram over [x0, x1] x [y0, y1]. Adding outside counts as a rejected try. */
+/* A histogram over [x0, x1] x [y0, y1]. Points outside count as rejected tries. */
 typedef struct statGrid {
   uint32_t nx, ny;
   double x0, x1, y0, y1;
@@ -209,7 +211,8 @@ static inline void stat_grid_add(statGrid *g, double x, double y) {
   g->tries++;
   g->counts[(size_t)j * g->nx + i]++;
 }
-/* Frees the grid. tolerance: of the integral over one cell; 0: 1e-7 (deep splits for sharp densities). */
+/* Tests and frees the grid. tolerance: of the integral over one cell; 0: 1e-7 (deep subdivision for sharp densities).
+ */
 static inline statResult stat_grid_test(statGrid *g, statDensity *density, void *user, double tolerance) {
   size_t n = (size_t)g->nx * g->ny;
   statCell *cells = malloc((n + 1) * sizeof *cells);
@@ -222,7 +225,7 @@ static inline statResult stat_grid_test(statGrid *g, statDensity *density, void 
     integral += mass;
     cells[k] = (statCell){g->counts[k], mass * g->tries};
   }
-  double rest = (1.0 - integral) * g->tries; /* what is expected to be rejected; rounding aside not negative */
+  double rest = (1.0 - integral) * g->tries; /* expected number of rejected tries; not negative except for rounding */
   cells[n] = (statCell){g->rejected, rest > 0 || !(rest > -1e-3 * g->tries) ? rest : 0.0};
   statResult r = stat_chi2(cells, n + 1, 1);
   r.integral = integral;
@@ -259,7 +262,7 @@ static inline double stat_sphere_density(void *user, double phi, double theta) {
   double s = sin(theta), d[3] = {s * cos(phi), s * sin(phi), cos(theta)};
   return u->pdf(u->user, d) * s;
 }
-/* Frees the histogram. tolerance as above. result.integral is the pdf's integral over the sphere. */
+/* Tests and frees the histogram. tolerance as above. result.integral is the pdf's integral over the sphere. */
 static inline statResult stat_sphere_test(statSphere s, statSpherePdf *pdf, void *user, double tolerance) {
   statSphereUser u = {pdf, user};
   return stat_grid_test(s.grid, stat_sphere_density, &u, tolerance);

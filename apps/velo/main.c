@@ -1,4 +1,4 @@
-/* main.c: the program: finds the command, reads its options, runs it. */
+/* main.c: the program: finds the command, parses its options, runs it. */
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
@@ -10,10 +10,10 @@
 #include "cli/signals.h"
 #include "velo/velo.h"
 
-/* Of git, of the source that the program was built from; empty where there was none. Written by cmake/commit.cmake. */
+/* The git commit of the source; empty when unknown. Written by cmake/commit.cmake. */
 extern const char velo_commit[];
 
-/* Names of two words come last: "image diff" is found by its first and second word. */
+/* Commands of two words ("image diff") come last. */
 static const Command *const commands[] = {
     &render_command,         &scene_info_command,     &scene_check_command,      &scene_convert_command,
     &scene_kinds_command,    &image_info_command,     &image_diff_command,       &image_convert_command,
@@ -33,7 +33,7 @@ static void print_overview(void) {
       "128 + signal stopped by it: 129 SIGHUP, 130 Ctrl-C, 143 SIGTERM\n");
 }
 
-/* How many words of argv the command's name takes; 0: another command. */
+/* The number of words of argv that name the command; 0: another command. */
 static int name_words(const Command *command, int argc, char **argv) {
   const char *space = strchr(command->name, ' ');
   if (!space) return argc >= 1 && strcmp(argv[0], command->name) == 0 ? 1 : 0;
@@ -43,7 +43,7 @@ static int name_words(const Command *command, int argc, char **argv) {
              : 0;
 }
 
-/* Does the word begin commands of two words? Prints or lists them. */
+/* Whether the word begins commands of two words; prints or lists them. */
 static bool is_family(const char *word, const char *names[COMMANDS], int *count) {
   *count = 0;
   size_t n = strlen(word);
@@ -86,7 +86,7 @@ static int unknown_command(int argc, char **argv) {
                       *near ? near : "; \"velo help\" lists the commands");
 }
 
-/* Only for its help page. */
+/* Used by its help page only. */
 static const Option no_options[] = {{0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 static const Command help_command = {
     .name = "help",
@@ -120,7 +120,7 @@ static int help(int argc, char **argv) {
   return STATUS_OK;
 }
 
-/* One line for the version, then one for each fact about the build. */
+/* Prints one line with the version, then one line for each property of the build. */
 static int print_version(void) {
   static const char *const sets[] = {
       [VL_ISA_BASE] = "base", [VL_ISA_V2] = "x86-64-v2", [VL_ISA_V3] = "x86-64-v3", [VL_ISA_V4] = "x86-64-v4"};
@@ -165,12 +165,12 @@ static int run(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
-  /* A file must never be opened as descriptor 0, 1 or 2 and then be written into by messages. What is printed on a
-   * stdout that was closed fails: its stand-in cannot be written. */
+  /* Opens closed standard descriptors, so that no file gets descriptor 0, 1 or 2 and receives messages. Printing to a
+   * closed stdout still fails: its replacement is read-only. */
   for (int fd = 0; fd <= 2; fd++)
     if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd == 1 ? O_RDONLY : O_RDWR) < 0) return STATUS_IO;
-  signal(SIGPIPE, SIG_IGN); /* a reader that went away must not end a render, */
-  signal(SIGXFSZ, SIG_IGN); /* and a file that grows too large is an error like a full disk */
+  signal(SIGPIPE, SIG_IGN); /* a closed pipe must not end a render */
+  signal(SIGXFSZ, SIG_IGN); /* a file that exceeds its size limit is an error like a full disk */
   signals_install();
   bool json = false;
   for (int i = 1; i < argc; i++) json |= strcmp(argv[i], "--log-json") == 0;

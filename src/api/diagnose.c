@@ -1,4 +1,4 @@
-/* api/diagnose.c: loading with somebody who listens to every mistake. */
+/* api/diagnose.c: loading a scene while a callback receives every error. */
 #include "base/error.h"
 #include "scene/scene.h"
 #include "velo/check.h"

@@ -1,4 +1,4 @@
-/* api/version.c: what the library was built as and from. */
+/* api/version.c: version and build configuration of the library. */
 #include "velo/base.h"
 
 #define TEXT_OF(x) #x

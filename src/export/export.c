@@ -1,4 +1,4 @@
-/* export/export.c: the face of this room: chooses the format, keeps count of what is lost, writes files. */
+/* export/export.c: the interface of this room: chooses the format, counts losses, writes files. */
 #include "export/export.h"
 
 #include <stdarg.h>
@@ -89,7 +89,7 @@ vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t) {
   vlResult r =
       t->data ? vl_image_read_memory(x->context, t->name ? t->name : "image", t->data, t->data_size, &image, &error)
               : vl_image_read_named(x->context, t->path, &image, &error);
-  if (r != VL_OK && x->result == VL_OK) /* what is wrong is the scene's image, not the file that is written */
+  if (r != VL_OK && x->result == VL_OK) /* the scene's image is at fault, not the file being written */
     x->result = vl_fail_at(x->error, r, t->source.file, t->source.line, t->source.column, "%s", error.message);
   return image;
 }

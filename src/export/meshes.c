@@ -1,4 +1,4 @@
-/* export/meshes.c: shapes as triangles: meshes as they are, patches as two triangles, quadrics cut into facets. */
+/* export/meshes.c: shapes as triangles: meshes unchanged, patches as two triangles, quadrics tessellated. */
 #include <math.h>
 #include <string.h>
 
@@ -28,7 +28,7 @@ static bool patches(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
   return true;
 }
 
-/* Point, normal and uv of a quadric at (a, b) of 0 to 1: around, and from z_min (or outside) on. */
+/* Point, normal and uv of a quadric at (a, b) in [0, 1]^2: a around the axis, b from z_min (or the outer radius). */
 static void quadric(const vlShapeDef *d, double a, double b, float p[3], float n[3]) {
   double phi = a * d->phi_max, c = vl_precise_cos(phi), s = vl_precise_sin(phi), r = d->radius;
   if (d->kind == VL_SHAPE_DISK) {

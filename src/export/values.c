@@ -1,4 +1,4 @@
-/* export/values.c: the scene's spectra, textures and roughnesses as the plain numbers that other formats have. */
+/* export/values.c: the scene's spectra, textures and roughnesses as the plain numbers of other formats. */
 #include <math.h>
 #include <string.h>
 
@@ -28,7 +28,7 @@ const vlTextureDef *vl_export_texture(const vlExport *x, vlTextureId id) {
   return t->kind == VL_TEXTURE_IMAGE ? t : NULL;
 }
 
-/* A texture that is no image: its mean, roughly. depth: textures may stand in each other many times. */
+/* The approximate mean of a texture that is not an image. depth limits the nesting of textures. */
 static void mean_rgb(const vlExport *x, const vlSpectrumInput *input, int depth, float rgb[3]) {
   const vlTextureDef *t = input->texture.index ? &x->scene->textures.items[input->texture.index - 1] : NULL;
   float a[3], b[3];

@@ -1,5 +1,5 @@
-/* image/bmp.c: Windows bitmaps: palettes of 1, 4, 8 bits, 16, 24 and 32-bit colour, bit fields; from the bottom or the
- * top. Run-length ones are not supported. */
+/* image/bmp.c: Windows bitmaps: palettes of 1, 4 and 8 bits; 16, 24 and 32-bit colour; bit fields; rows from the bottom
+ * or the top. Run-length encoding is not supported. */
 #include <string.h>
 
 #include "image/codec.h"
@@ -58,7 +58,7 @@ static vlResult parse(const vlImageFile *file, Bmp *b) {
     return VL_OK;
   }
   if (b->depth != 16 && b->depth != 24 && b->depth != 32) return vl_codec_broken(file, "BMP", "this number of bits");
-  if (coding && b->depth != 24) { /* masks follow a header of 40 bytes, or are in a longer one at the same place */
+  if (coding && b->depth != 24) { /* masks follow a 40-byte header; longer headers contain them at the same offset */
     if (file->size < 70) return vl_codec_broken(file, "BMP", "ends in its header");
     for (int i = 0; i < 4; i++) b->mask[i] = i < 3 || head >= 56 ? le32(d + 54 + 4 * i) : 0;
   } else if (b->depth == 16) {

@@ -1,4 +1,4 @@
-/* image/codec.c: the table of formats, reading by content, writing by suffix. */
+/* image/codec.c: the table of formats; reading by content, writing by suffix. */
 #include "image/codec.h"
 
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "image/pixel.h"
 
-/* In probing order: TGA has no mark of its own and comes last. */
+/* In probing order. TGA has no signature and comes last. */
 const vlCodec vl_codecs[] = {
     {"OpenEXR", {".exr"}, vl_exr_probe, vl_exr_read, vl_exr_write},
     {"PNG", {".png"}, vl_png_probe, vl_png_read, vl_png_write},
@@ -232,7 +232,8 @@ static vlResult check_write(const vlImage *image, const char *path, const vlWrit
 }
 
 static vlResult finish_write(vlFileWriter *writer, vlResult result, vlError *error) {
-  if (result == VL_OK || writer->failed_errno) return vl_file_commit(writer, error); /* commit reports a failed write */
+  if (result == VL_OK || writer->failed_errno)
+    return vl_file_commit(writer, error); /* commit reports the failed write */
   vl_file_abandon(writer);
   return result;
 }

@@ -1,5 +1,5 @@
-/* image/codec.h: file formats behind one table. Reading goes from bytes in memory to an image, writing from an image
- * to a vlFileWriter. Messages start with the file's name. */
+/* image/codec.h: file formats behind one table. A reader turns bytes in memory into an image, a writer an image into
+ * bytes of a vlFileWriter. Messages start with the file's name. */
 #ifndef IMAGE_CODEC_H
 #define IMAGE_CODEC_H
 
@@ -7,26 +7,27 @@
 #include "base/file.h"
 #include "image/image.h"
 
-/* A file being read: all a decoder needs. */
+/* A file being read. */
 typedef struct vlImageFile {
   vlContext *context;
   const char *name;
-  const uint8_t *data; /* one zero byte follows */
+  const uint8_t *data; /* followed by a zero byte */
   size_t size;
   vlError *error;
-  const char *const *wanted; /* names of the channels to read; null: all. OpenEXR alone looks at it */
+  const char *const *wanted; /* names of the channels to read; null: all. Used by OpenEXR only */
   uint32_t wanted_count;
-  uint64_t most_pixels; /* 0: any */
-  vlImage **header;     /* where only the header is wanted: vl_codec_create puts it there and ends the reading */
+  uint64_t most_pixels; /* limit of the image's size; 0: none */
+  vlImage *
+      *header; /* not null: only the header is wanted. vl_codec_create stores an image there and stops the reading */
 } vlImageFile;
 
 typedef struct vlCodec {
-  const char *name;        /* as in messages: "PNG" */
-  const char *suffixes[4]; /* with the dot, for writing; null ends */
+  const char *name;        /* for messages: "PNG" */
+  const char *suffixes[4]; /* with the dot, for writing; ends with null */
   bool (*probe)(const uint8_t *data, size_t size);
   vlResult (*read)(const vlImageFile *file, vlImage **image);
   vlResult (*write)(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer,
-                    vlError *error); /* null: reads only */
+                    vlError *error); /* null: the format is read only */
 } vlCodec;
 
 extern const vlCodec vl_codecs[];
@@ -36,19 +37,21 @@ extern const uint32_t vl_codec_count;
 vlResult vl_codec_broken(const vlImageFile *file, const char *format, const char *what);
 /* UNSUPPORTED: "name: PNG file with <what> is not supported". */
 vlResult vl_codec_unsupported(const vlImageFile *file, const char *format, const char *what);
-/* OK when the file is large enough for `need` bytes of pixels when each byte of it can stand for at most `ratio` of
- * them; else SCENE, "promises WxH pixels, more than its N bytes can hold". Also refuses empty images. */
+/* Checks the image's size before memory is allocated. need: bytes of pixels; ratio: the most of them that one byte of
+ * the file can encode. SCENE when the file is too small ("promises WxH pixels, more than its N bytes can hold") or the
+ * image is empty. */
 vlResult vl_codec_promise(const vlImageFile *file, const char *format, uint64_t width, uint64_t height, double need,
                           double ratio);
-/* Default names; fills the error. CANCELLED when only the header was wanted: the decoder has nothing more to do. */
+/* Makes an image with default channel names; fills the error. CANCELLED when only the header is wanted: the decoder
+ * then stops. */
 vlResult vl_codec_create(const vlImageFile *file, uint32_t width, uint32_t height, uint32_t channels, vlPixelType type,
                          vlEncoding encoding, vlImage **image);
 
 /* The same for any def. */
 vlResult vl_codec_make(const vlImageFile *file, const vlImageDef *def, vlImage **image);
 
-/* Row y of the channels that are shown (vl_image_shown) as 8 bits: 8-bit images as they are, 16-bit ones rounded,
- * others through sRGB's curve (alpha without). scratch: width*count floats. */
+/* Row y of the displayed channels (vl_image_shown) as 8 bits. 8-bit images are copied, 16-bit ones rounded, others
+ * sRGB-encoded (alpha stays linear). scratch: width*count floats. */
 void vl_codec_row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count, float *scratch,
                        uint8_t *result);
 

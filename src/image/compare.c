@@ -1,4 +1,4 @@
-/* image/compare.c: numbers that say how far an image is from a reference. Sums run in a fixed order. */
+/* image/compare.c: measures of the difference between an image and a reference. Sums run in a fixed order. */
 #include <math.h>
 
 #include "base/error.h"
@@ -6,7 +6,7 @@
 #include "image/image.h"
 #include "math/elementary.h"
 
-/* R G B of every pixel, Y thrice where that is all; not-finite pixels are found by the caller. */
+/* R G B of every pixel; an image with Y only gives it three times. The caller finds non-finite pixels. */
 static vlResult load(const vlImage *image, float **rgb) {
   uint32_t channel[4], count = vl_image_color(image, channel);
   if (count < 3) channel[1] = channel[2] = channel[0];
@@ -48,7 +48,7 @@ static void numbers(Pair *p, vlImageDiff *diff) {
     if (!finite3(a) || !finite3(b)) {
       diff->not_finite++;
       p->skip[n] = 1;
-      for (int c = 0; c < 3; c++) a[c] = b[c] = 0.0f; /* FLIP looks at neighbours: nothing to see here */
+      for (int c = 0; c < 3; c++) a[c] = b[c] = 0.0f; /* FLIP filters over neighbours: no difference here */
       continue;
     }
     used++;
@@ -82,7 +82,7 @@ static vlResult false_color(const Pair *p, vlImage **heat) {
   uint8_t *out = (*heat)->pixels;
   for (size_t n = 0; n < p->count; n++, out += 3) {
     magma(p->flip[n], out);
-    if (p->skip[n]) { /* not finite: a green that magma does not have */
+    if (p->skip[n]) { /* not finite: a green that is not in magma */
       out[0] = out[2] = 0;
       out[1] = 255;
     }

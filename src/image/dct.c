@@ -8,7 +8,7 @@ static const float COSINE[8] = {0.5f,        0.49039264f, 0.46193977f, 0.4157348
 /* Entry of the orthonormal inverse transform: sample n of frequency k. */
 static float basis(int n, int k) {
   if (k == 0) return COSINE[4];
-  int angle = (2 * n + 1) * k % 32; /* of 32 sixteenths of pi */
+  int angle = (2 * n + 1) * k % 32; /* in units of pi / 16, period 32 */
   if (angle > 16) angle = 32 - angle;
   return angle <= 8 ? (angle == 8 ? 0.0f : COSINE[angle]) : -COSINE[16 - angle];
 }

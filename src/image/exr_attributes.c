@@ -1,4 +1,4 @@
-/* image/exr_attributes.c: attributes between vlImage and OpenEXR headers. */
+/* image/exr_attributes.c: conversion of attributes between vlImage and OpenEXR headers. */
 #include <stdio.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@ void vl_exr_on_error(exr_const_context_t context, exr_result_t code, const char 
   if (!atomic_flag_test_and_set(&x->told)) snprintf(x->message, sizeof x->message, "%s", message ? message : "");
 }
 
-/* What the file's layout says; made anew when writing. */
+/* Attributes of the file's layout; the writer makes them anew. */
 static const char *const LAYOUT[] = {"channels",          "compression", "lineOrder", "tiles",   "type",
                                      "version",           "chunkCount",  "name",      "preview", "dwaCompressionLevel",
                                      "maxSamplesPerPixel"};
@@ -36,7 +36,7 @@ static void copy_box(vlAttribute *to, const exr_attr_box2i_t *box) {
   to->numbers[3] = box->max.y;
 }
 
-/* Joined by line ends; a vector that does not fit is cut. */
+/* Joins strings by line ends. A vector of strings that does not fit is cut. */
 static void join_strings(const exr_attr_string_vector_t *from, char *text, size_t size) {
   size_t length = 0;
   text[0] = 0;
@@ -47,7 +47,7 @@ static void join_strings(const exr_attr_string_vector_t *from, char *text, size_
   }
 }
 
-/* false: a type that vlAttribute does not hold. `text` is for strings that must be put together. */
+/* False: a type that vlAttribute does not hold. `text` is room for joined strings. */
 static bool convert(const exr_attribute_t *from, vlAttribute *to, char *text, size_t size) {
   memset(to, 0, sizeof *to);
   to->name = from->name;
@@ -92,7 +92,7 @@ static bool convert(const exr_attribute_t *from, vlAttribute *to, char *text, si
   }
 }
 
-/* Every header carries these; they are kept only where they say more than the default. */
+/* Attributes of every header are kept only when they differ from the default. */
 static bool is_default(const vlAttribute *a, const vlImage *image) {
   if (strcmp(a->name, "pixelAspectRatio") == 0 || strcmp(a->name, "screenWindowWidth") == 0)
     return a->numbers[0] == 1.0;
@@ -123,7 +123,7 @@ vlResult vl_exr_attributes_in(exr_const_context_t exr, vlImage *image) {
     vlResult result = vl_image_set_attribute(image, &to);
     if (result == VL_ERROR_MEMORY) return result;
   }
-  if (plain == 2) return VL_OK; /* both windows are the image itself */
+  if (plain == 2) return VL_OK; /* both windows equal the image */
   for (int i = 0; i < 2; i++)
     if (vl_image_set_attribute(image, &windows[i]) == VL_ERROR_MEMORY) return VL_ERROR_MEMORY;
   return VL_OK;

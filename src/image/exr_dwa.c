@@ -1,9 +1,10 @@
-/* image/exr_dwa.c: DWA (DreamWorks' lossy coding, OpenEXR 2.2), from its description in OpenEXR's sources.
+/* image/exr_dwa.c: decoding of DWA (DreamWorks' lossy compression, OpenEXR 2.2), from its description in OpenEXR's
+ * sources.
  *
- * A chunk holds four streams: "unknown" channels under deflate; the DCT's AC coefficients, run lengths of zeros under
- * Huffman or deflate; its DC coefficients under ZIP; and channels of run lengths under deflate (alpha). Rules in the
- * chunk say by name and type which channel is in which stream, and which three are one colour (stored as Y'CbCr,
- * Rec.709). Coefficients are halves; the values behind the DCT are on a curve: power 2.2 up to 1, exponential above. */
+ * A chunk holds four streams: "unknown" channels (deflate); the DCT's AC coefficients as run lengths of zeros (Huffman
+ * or deflate); the DC coefficients (ZIP); run-length encoded channels (deflate), usually alpha. Rules in the chunk
+ * assign channels to streams by name and type, and say which three channels form one colour (stored as Y'CbCr,
+ * Rec.709). Coefficients are halves. The values behind the DCT are encoded: power 2.2 up to 1, exponential above. */
 #include "image/exr_dwa.h"
 
 #include <string.h>
@@ -18,10 +19,10 @@ enum { HEAD_WORDS = 11, UINT = 0, HALF = 1, FLOAT = 2 };
 
 typedef struct Plan {
   int scheme;
-  int place; /* 0 1 2 in a colour, -1 none */
+  int place; /* component 0, 1, 2 of a colour; -1: none */
   bool done;
-  size_t offset; /* in its stream (unknown, runs) */
-  size_t line;   /* where a line of it begins in a line of the chunk */
+  size_t offset; /* in its stream (unknown, runs), bytes */
+  size_t line;   /* offset of the channel's line in a line of the chunk, bytes */
 } Plan;
 
 typedef struct Dwa {
@@ -31,11 +32,11 @@ typedef struct Dwa {
   uint32_t count, width, height;
   const uint16_t *curve;
   uint8_t *unpacked;
-  size_t line; /* bytes of a line of the chunk */
+  size_t line; /* bytes per line of the chunk */
   uint8_t *unknown, *runs;
   uint16_t *ac, *dc;
   size_t ac_count, dc_count, ac_at, dc_at;
-  size_t unknown_size, runs_size; /* as the channels add up */
+  size_t unknown_size, runs_size; /* sums over the channels, bytes */
 } Dwa;
 
 static uint64_t le64(const uint8_t *p) {
@@ -81,7 +82,7 @@ static bool rule_matches(const Rule *rule, const vlDwaChannel *channel) {
   return !*a && !*b;
 }
 
-static void apply_rule(Dwa *d, const Rule *rule) { /* the last that fits wins */
+static void apply_rule(Dwa *d, const Rule *rule) { /* the last matching rule counts */
   for (uint32_t i = 0; i < d->count; i++) {
     if (!rule_matches(rule, &d->channels[i])) continue;
     d->plans[i].scheme = rule->scheme;
@@ -89,7 +90,7 @@ static void apply_rule(Dwa *d, const Rule *rule) { /* the last that fits wins */
   }
 }
 
-/* The rules of files before version 2 of the coding. */
+/* The built-in rules of files before version 2 of the compression. */
 static void legacy_rules(Dwa *d) {
   static const struct {
     const char *suffix;
@@ -105,7 +106,7 @@ static void legacy_rules(Dwa *d) {
     }
 }
 
-/* Rules of a chunk: each a text, a byte of place, scheme and case, a byte of type. */
+/* Rules of a chunk: each is a text, a byte (component, scheme, case) and a byte of type. */
 static bool read_rules(Dwa *d, const uint8_t *p, size_t size) {
   size_t at = 0;
   while (at < size) {
@@ -127,7 +128,7 @@ static bool read_rules(Dwa *d, const uint8_t *p, size_t size) {
   return true;
 }
 
-/* Blocks of DC values that the channels need; also fills offsets. */
+/* Number of DC values of the channels; also fills offsets. */
 static size_t lay_out(Dwa *d) {
   size_t pixels = (size_t)d->width * d->height, lossy = 0;
   for (uint32_t i = 0; i < d->count; i++) {
@@ -152,7 +153,7 @@ static bool inflate_exactly(const uint8_t *from, size_t from_size, void *to, siz
   return uncompress(to, &length, from, from_size) == Z_OK && length == size;
 }
 
-/* ZIP of OpenEXR: deflate over differences of bytes, the even bytes before the odd ones. */
+/* OpenEXR's ZIP: deflate of byte differences, with the even bytes before the odd ones. */
 static bool unzip(const uint8_t *from, size_t from_size, uint8_t *to, uint8_t *scratch, size_t size) {
   if (!inflate_exactly(from, from_size, scratch, size)) return false;
   for (size_t i = 1; i < size; i++) scratch[i] = (uint8_t)(scratch[i - 1] + scratch[i] - 128);
@@ -161,7 +162,7 @@ static bool unzip(const uint8_t *from, size_t from_size, uint8_t *to, uint8_t *s
   return true;
 }
 
-/* Negative counts copy, others repeat. */
+/* Run lengths: a negative count copies bytes, others repeat one. */
 static bool expand_runs(const uint8_t *from, size_t from_size, uint8_t *to, size_t size) {
   size_t out = 0, at = 0;
   while (at < from_size) {
@@ -185,7 +186,7 @@ static const uint8_t ZIGZAG[64] = {0,  1,  5,  6,  14, 15, 27, 28, 2,  4,  7,  1
                                    10, 19, 23, 32, 39, 45, 52, 54, 20, 22, 33, 38, 46, 51, 55, 60,
                                    21, 34, 37, 47, 50, 56, 59, 61, 35, 36, 48, 49, 57, 58, 62, 63};
 
-/* The next block's AC values: 0xff00 ends the block, 0xffnn is nn zeros. */
+/* AC values of the next block: 0xff00 ends the block, 0xffnn stands for nn zeros. */
 static bool next_block(Dwa *d, uint16_t dc, const float matrix[8][8], float block[64]) {
   uint16_t zigzag[64] = {dc};
   for (uint32_t i = 1; i < 64;) {
@@ -218,7 +219,8 @@ static void store_block(Dwa *d, uint32_t channel, uint32_t bx, uint32_t by, bool
     }
 }
 
-/* One channel, or the three of a colour: their blocks alternate in AC, their DC planes follow each other. */
+/* Decodes one channel, or the three of a colour. The three's blocks alternate in AC; their DC planes follow each other.
+ */
 static bool unpack_lossy(Dwa *d, const uint32_t *channel, uint32_t count) {
   uint32_t blocks_x = (d->width + 7) / 8, blocks_y = (d->height + 7) / 8;
   size_t plane = (size_t)blocks_x * blocks_y;
@@ -243,7 +245,7 @@ static bool unpack_lossy(Dwa *d, const uint32_t *channel, uint32_t count) {
   return true;
 }
 
-/* Order of layers, the part of the name before the last dot; none comes first. */
+/* Compares layers: the part of the name before the last dot. Channels without a layer come first. */
 static int compare_layers(const char *a, const char *b) {
   size_t n = (size_t)(suffix_of(a) - a), m = (size_t)(suffix_of(b) - b);
   n -= n > 0;
@@ -252,7 +254,7 @@ static int compare_layers(const char *a, const char *b) {
   return order ? order : n < m ? -1 : n > m;
 }
 
-/* The channels of one layer's colour; found is 7 when there are all three. */
+/* Finds the channels of one layer's colour; found is 7 when all three exist. */
 static bool unpack_color(Dwa *d, const char *layer) {
   uint32_t color[3] = {0}, found = 0;
   for (uint32_t k = 0; k < d->count; k++) {
@@ -266,7 +268,7 @@ static bool unpack_color(Dwa *d, const char *layer) {
   return unpack_lossy(d, color, 3);
 }
 
-/* Colours first, layer by layer, then the other channels in order. */
+/* Decodes the colours first, layer by layer, then the other channels in order. */
 static bool unpack_channels(Dwa *d) {
   const char *layer = NULL;
   for (;;) {
@@ -289,7 +291,7 @@ static bool unpack_channels(Dwa *d) {
       size_t at = plan->offset + (size_t)y * d->width * (plan->scheme == RUNS ? 1 : size);
       if (plan->scheme == UNKNOWN) memcpy(to, d->unknown + at, d->width * size);
       for (size_t k = 0; plan->scheme == RUNS && k < d->width * size;
-           k++) /* planes of first bytes, second bytes, ... */
+           k++) /* planes: all first bytes, all second bytes, ... */
         to[k] = d->runs[at + k / size + k % size * pixels];
     }
   }
@@ -334,7 +336,7 @@ static vlResult unpack_streams(Dwa *d, const uint64_t *head, const uint8_t *p) {
   return result;
 }
 
-/* Header and rules; every size in the header must be what the channels need, and all streams must lie in the chunk. */
+/* Reads header and rules. Every size must match the channels, and all streams must lie in the chunk. */
 static vlResult unpack(Dwa *d, const uint8_t *packed, size_t size) {
   uint64_t head[HEAD_WORDS];
   if (size < HEAD_WORDS * 8) return VL_ERROR_SCENE;
@@ -344,7 +346,7 @@ static vlResult unpack(Dwa *d, const uint8_t *packed, size_t size) {
   if (head[0] < 2) {
     legacy_rules(d);
   } else {
-    size_t rules = size - at >= 2 ? packed[at] | (size_t)packed[at + 1] << 8 : 0; /* counts its own two bytes */
+    size_t rules = size - at >= 2 ? packed[at] | (size_t)packed[at + 1] << 8 : 0; /* includes its own two bytes */
     if (rules < 2 || rules > size - at || !read_rules(d, packed + at + 2, rules - 2)) return VL_ERROR_SCENE;
     at += rules;
   }

@@ -1,5 +1,5 @@
-/* image/exr_huffman.c: canonical Huffman codes of up to 58 bits over 65536 values and one more symbol, the largest in
- * use, which says "repeat the last value n times" with n in the next eight bits. Longer codes are numerically lower. */
+/* image/exr_huffman.c: canonical Huffman codes of up to 58 bits. Symbols are 65536 values and one more, the largest in
+ * use: it repeats the last value n times, with n in the next eight bits. Longer codes are numerically lower. */
 #include "image/exr_huffman.h"
 
 #include <string.h>
@@ -11,7 +11,7 @@ typedef struct Bits {
   size_t at, end; /* in bits */
 } Bits;
 
-/* n <= 8 bits, the first the highest; past the end they are 0 and `at` exceeds `end`. */
+/* Reads n <= 8 bits, most significant first. Past the end they are 0 and `at` exceeds `end`. */
 static uint32_t take(Bits *b, uint32_t n) {
   uint32_t v = 0;
   for (; n; n--, b->at++) v = v << 1 | (b->at < b->end ? b->data[b->at >> 3] >> (7 - (b->at & 7)) & 1u : 0);
@@ -20,12 +20,13 @@ static uint32_t take(Bits *b, uint32_t n) {
 
 typedef struct Decoder {
   uint8_t length[SYMBOLS];
-  uint32_t symbols[SYMBOLS];    /* by length, then by value */
-  uint64_t lowest[LONGEST + 1]; /* code of each length */
+  uint32_t symbols[SYMBOLS];    /* sorted by length, then by value */
+  uint64_t lowest[LONGEST + 1]; /* lowest code of each length */
   uint32_t count[LONGEST + 1], first[LONGEST + 1];
 } Decoder;
 
-/* Lengths of the symbols low to high: six bits each; 59 to 62 stand for 2 to 5 zeros, 63 and a byte for 6 and more. */
+/* Reads the lengths of the symbols in ascending order, six bits each. 59 to 62 stand for 2 to 5 zeros; 63 and a byte
+ * for 6 or more. */
 static bool read_lengths(Decoder *d, Bits *b, uint32_t low, uint32_t high) {
   for (uint32_t i = low; i <= high;) {
     if (b->at >= b->end) return false;

@@ -1,8 +1,8 @@
-/* image/exr_read.c: OpenEXR through OpenEXRCore: the first part, scanlines or tiles (their finest level), all
- * compressions. The image is the data window; where it is not the display window both are kept as attributes.
+/* image/exr_read.c: reads OpenEXR through OpenEXRCore: the first part, scanlines or tiles (finest level), all
+ * compressions. The image is the data window. When the display window differs, both are kept as attributes.
  *
- * Channel order: R G B A (Y A) first, then the others as in the file (alphabetical). One type for all: halves stay
- * halves and ids stay integers when all channels are so, any mixture becomes float. */
+ * Channel order: R G B A (Y A) first, then the others in file order (alphabetical). All channels get one type: half or
+ * integer when all channels of the file have it, otherwise float. */
 #include <limits.h>
 #include <string.h>
 
@@ -17,18 +17,18 @@ typedef struct Reader {
   exr_attr_box2i_t window;
   exr_compression_t compression;
   uint32_t width, height;
-  uint32_t *place; /* channel of the image for each channel of the file; NOT_WANTED */
-  uint32_t count;  /* channels of the image */
+  uint32_t *place; /* channel of the image for each channel of the file; or NOT_WANTED */
+  uint32_t count;  /* number of the image's channels */
   int user_type, user_size;
   vlImage *image;
   exr_decode_pipeline_t pipeline;
   bool started;
-  bool dwa; /* unpacked here, not by OpenEXRCore */
+  bool dwa; /* DWA, decoded by exr_dwa.c */
   vlDwaChannel *dwa_channels;
   uint16_t *dwa_curve;
   uint8_t *packed, *unpacked;
   size_t packed_size, unpacked_size;
-  /* the grid of chunks: rows of `lines`, or tiles */
+  /* rows per chunk, or the size of a tile */
   bool tiled;
   int32_t lines, tile_width, tile_height;
 } Reader;
@@ -60,15 +60,15 @@ static uint32_t le32(const uint8_t *p) {
   return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
-/* The bytes after a zero-terminated text of 1 to 255 letters at `at`; 0 when there is none. */
+/* Offset of the byte after the zero-terminated text of 1 to 255 characters at `at`; 0 when there is none. */
 static size_t after_text(const vlImageFile *file, size_t at) {
   size_t end = at;
   while (end < file->size && end - at < 256 && file->data[end]) end++;
   return end > at && end < file->size && !file->data[end] ? end + 1 : 0;
 }
 
-/* OpenEXRCore takes memory for whatever size an attribute claims before it looks whether the file has it. So the
- * headers (several in a file of parts) are walked first: name, type, size, and that many bytes. */
+/* OpenEXRCore allocates whatever size an attribute claims before it checks the file. So this first walks the headers
+ * (several in a multi-part file): name, type, size, and that many bytes. */
 static bool headers_fit(const vlImageFile *file) {
   if (file->size < 9) return false;
   bool parts = le32(file->data + 4) & 0x1000u;
@@ -80,7 +80,7 @@ static bool headers_fit(const vlImageFile *file) {
       uint32_t size = le32(file->data + size_at);
       at = size_at + 4;
       if (size > file->size - at) return false;
-      if (strcmp((const char *)file->data + type, "preview") == 0) { /* width, height, four bytes a pixel */
+      if (strcmp((const char *)file->data + type, "preview") == 0) { /* width, height, four bytes per pixel */
         if (size < 8 || (double)le32(file->data + at) * le32(file->data + at + 4) * 4.0 > size - 8.0) return false;
       }
       at += size;
@@ -92,14 +92,14 @@ static bool headers_fit(const vlImageFile *file) {
 }
 
 static vlResult fail(Reader *r, exr_result_t code) {
-  /* PIZ's unpacking also gives "out of memory" for damaged data; the message tells the two apart. */
+  /* The PIZ decoder reports "out of memory" for damaged data, too; the message tells the two apart. */
   bool damaged = strncmp(r->base.message, "Unable to decompress", 20) == 0;
   if (code == EXR_ERR_OUT_OF_MEMORY && !damaged) return vl_fail_memory(r->base.file->error);
   return vl_codec_broken(r->base.file, "OpenEXR",
                          r->base.message[0] ? r->base.message : exr_get_default_error_message(code));
 }
 
-/* Rank of a channel in our order: the colours in front. */
+/* Sort key of a channel: colours first. */
 static uint32_t rank(const char *name) {
   static const char *const FRONT[] = {"R", "G", "B", "Y", "A"};
   for (uint32_t i = 0; i < 5; i++)
@@ -161,8 +161,8 @@ static vlResult layout(Reader *r) {
   if (width < 1 || height < 1) return vl_codec_broken(file, "OpenEXR", "its data window is empty");
   if (width > INT32_MAX / (r->user_size * (int64_t)count) || height > INT32_MAX)
     return vl_codec_unsupported(file, "OpenEXR", "rows of more than 2^31 bytes");
-  /* The tightest coding is deflate's, 1032:1; DWA has one value of 64 and run lengths under it. Chunks are judged one
-   * by one below. */
+  /* Best compression ratios: 1032:1 for deflate; for DWA one value per block of 64 and run lengths. Each chunk is
+   * checked below, too. */
   vlResult result = vl_codec_promise(file, "OpenEXR", (uint64_t)width, (uint64_t)height,
                                      (double)width * (double)height * bytes, ratio(r));
   if (result != VL_OK) return result;
@@ -183,7 +183,8 @@ static vlResult layout(Reader *r) {
   return VL_OK;
 }
 
-/* The chunk at column and row of the grid; checks that it lies in the file and is not blown up beyond its coding. */
+/* Finds the chunk at column and row of the grid. Checks that it lies in the file and that its compression ratio is
+ * possible. */
 static vlResult find_chunk(Reader *r, uint32_t column, uint32_t row, exr_chunk_info_t *chunk) {
   exr_result_t code = r->tiled ? exr_read_tile_chunk_info(r->exr, 0, (int)column, (int)row, 0, 0, chunk)
                                : exr_read_scanline_chunk_info(r->exr, 0, r->window.min.y + (int)row * r->lines, chunk);
@@ -201,7 +202,7 @@ static vlResult find_chunk(Reader *r, uint32_t column, uint32_t row, exr_chunk_i
   return VL_OK;
 }
 
-/* At least `size` bytes. */
+/* Grows a block to at least `size` bytes. */
 static bool grow(Reader *r, uint8_t **block, size_t *have, size_t size) {
   if (*have >= size) return true;
   vl_free(r->base.file->context, *block);
@@ -223,13 +224,13 @@ static vlResult start_dwa(Reader *r) {
   return VL_OK;
 }
 
-/* A value of the file into one of the image. */
+/* Converts a value of the file to one of the image. */
 static void convert_value(int from, const uint8_t *p, int to, void *result) {
   if (from == to) {
     memcpy(result, p, from == EXR_PIXEL_HALF ? 2 : 4);
     return;
   }
-  uint16_t half = 0; /* else the image is of floats */
+  uint16_t half = 0; /* otherwise the image has floats */
   uint32_t integer = 0;
   memcpy(&half, p, 2);
   if (from == EXR_PIXEL_UINT) memcpy(&integer, p, 4);
@@ -255,7 +256,7 @@ static vlResult decode_dwa_chunk(Reader *r, const exr_chunk_info_t *chunk, char 
   exr_result_t code = exr_read_chunk(r->exr, 0, chunk, r->packed);
   if (code != EXR_ERR_SUCCESS) return fail(r, code);
   vlResult result = VL_OK;
-  if (chunk->packed_size == size) /* did not shrink, and is stored as it was */
+  if (chunk->packed_size == size) /* incompressible chunks are stored uncompressed */
     memcpy(r->unpacked, r->packed, size);
   else
     result = vl_dwa_unpack(file->context, r->dwa_channels, count, (uint32_t)chunk->width, (uint32_t)chunk->height,
@@ -293,7 +294,7 @@ static vlResult decode_chunk(Reader *r, uint32_t column, uint32_t row) {
   if (code != EXR_ERR_SUCCESS) return fail(r, code);
   for (int i = 0; i < p->channel_count; i++) {
     exr_coding_channel_info_t *c = &p->channels[i];
-    c->decode_to_ptr = NULL; /* skipped */
+    c->decode_to_ptr = NULL; /* not read */
     if (r->place[i] == NOT_WANTED) continue;
     c->decode_to_ptr = (uint8_t *)origin + (size_t)r->user_size * r->place[i];
     c->user_bytes_per_element = (int16_t)r->user_size;
@@ -359,7 +360,7 @@ static vlResult read_all(Reader *r) {
   vlResult result = layout(r);
   uint32_t step_x = r->tiled ? (uint32_t)r->tile_width : r->width,
            step_y = (uint32_t)(r->tiled ? r->tile_height : r->lines);
-  /* All chunks must be there before memory is taken for the pixels. */
+  /* Checks that all chunks exist before the pixels are allocated. */
   for (uint32_t pass = r->base.file->header ? 1 : 0; pass < 2 && result == VL_OK; pass++) {
     if (pass == 1) result = create(r);
     for (uint64_t y = 0, row = 0; y < r->height && result == VL_OK; y += step_y, row++)

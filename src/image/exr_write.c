@@ -1,30 +1,30 @@
-/* image/exr_write.c: OpenEXR through OpenEXRCore: one part of scanlines, ZIP or uncompressed. One thread, fixed level
- * of compression, no time stamp: the same image gives the same bytes. Halves for images of halves, or for the
- * colours (R G B A Y, also of layers: "diffuse.R") when asked; 8 and 16-bit images are written as light. Several
- * images of one size become one file of all their channels. */
+/* image/exr_write.c: writes OpenEXR through OpenEXRCore: one part of scanlines, ZIP or uncompressed. A fixed
+ * compression level and no time stamp give the same bytes for the same image, whatever the number of threads. Halves
+ * are written for half images or, on request, for the colours (R G B A Y, also of layers: "diffuse.R"); 8 and 16-bit
+ * images are written as linear light. Several images of one size become one file with all their channels. */
 #include <limits.h>
 #include <string.h>
 
 #include "image/exr.h"
 #include "image/pixel.h"
 
-/* One chunk on its way: rows in the type of the file, then packed. */
+/* A chunk being written: its rows in the type of the file, then compressed. */
 typedef struct Slot {
   exr_encode_pipeline_t pipeline;
   bool started;
-  char *lines; /* each channel's rows on their own */
-  float *row;  /* one channel's row */
+  char *lines; /* rows of the chunk, channel by channel */
+  float *row;  /* one row of one channel, as floats */
   exr_result_t code;
 } Slot;
 
 enum { MAX_SLOTS = 64 };
-/* OpenEXRCore writes a header in some 200 pieces: what follows on what stands here goes to the file as one. */
+/* OpenEXRCore writes a header in about 200 small pieces. Consecutive ones are gathered and written at once. */
 enum { GATHERED = 1 << 16 };
-/* Images of no more bytes are not packed: deflating them takes longer than rendering does, and saves a block or two
- * of the disk. */
+/* Images up to this many bytes are not compressed: deflate would take longer than rendering them and save at most a few
+ * disk blocks. */
 enum { SMALL = 1 << 16 };
 
-/* A channel of the file: which of the images has it, and where. */
+/* A channel of the file: its image and its index in it. */
 typedef struct Channel {
   const vlImage *image;
   uint32_t index;
@@ -33,7 +33,7 @@ typedef struct Channel {
 
 typedef struct Writer {
   vlExr base;
-  const vlImage *image; /* the first: context, attributes */
+  const vlImage *image; /* the first image, which gives the context and the attributes */
   exr_context_t exr;
   Channel *channels;
   uint32_t count;
@@ -41,10 +41,10 @@ typedef struct Writer {
   uint32_t first_chunk;
   uint32_t slot_count;
   Slot *slots;
-  bool alone;     /* without the context's workers */
-  char *gathered; /* GATHERED bytes, of which are taken */
+  bool alone;     /* single-threaded */
+  char *gathered; /* GATHERED bytes, of which `taken` are used */
   size_t taken;
-  uint64_t offset; /* in the file, of the first */
+  uint64_t offset; /* position of gathered[0] in the file */
 } Writer;
 
 static void flush(Writer *w) {
@@ -54,7 +54,7 @@ static void flush(Writer *w) {
 
 static int64_t on_write(exr_const_context_t exr, void *user, const void *buffer, uint64_t size, uint64_t offset,
                         exr_stream_error_func_ptr_t fail) {
-  Writer *w = user; /* the vlExr is its first member */
+  Writer *w = user; /* the vlExr is the first member of Writer */
   (void)exr;
   (void)fail;
   if (offset != w->offset + w->taken || size > GATHERED - w->taken) flush(w);
@@ -126,7 +126,7 @@ static vlResult header(Writer *w, const vlWriteDef *def, vlError *error) {
   return code == EXR_ERR_SUCCESS ? VL_OK : fail(w, code, error);
 }
 
-/* One channel's row in the type of the file. */
+/* Converts one row of a channel to the type of the file. */
 static void fill_row(const Channel *c, Slot *slot, uint32_t y, char *to) {
   const vlImage *image = c->image;
   uint32_t n = image->width, step = image->channels, channel = c->index;
@@ -147,7 +147,7 @@ static void fill_row(const Channel *c, Slot *slot, uint32_t y, char *to) {
   }
 }
 
-/* In place of OpenEXRCore's waiting and writing: the packed bytes stay in the pipeline. */
+/* Replaces OpenEXRCore's write step: the compressed bytes stay in the pipeline. */
 static exr_result_t keep(exr_encode_pipeline_t *pipeline) {
   (void)pipeline;
   return EXR_ERR_SUCCESS;
@@ -275,10 +275,10 @@ vlResult vl_exr_write_layers(const vlImage *const *images, uint32_t count, const
   vlResult result = code == EXR_ERR_SUCCESS ? write_all(&w, def, error) : fail(&w, code, error);
   free_slots(&w);
   if (w.exr) {
-    code = exr_finish(&w.exr); /* writes the table of chunks */
+    code = exr_finish(&w.exr); /* writes the chunk table */
     if (result == VL_OK && code != EXR_ERR_SUCCESS) result = fail(&w, code, error);
   }
-  if (result == VL_OK) flush(&w); /* what fails here is told by whoever closes the file */
+  if (result == VL_OK) flush(&w); /* the writer reports a failure when it is closed */
   vl_free(image->context, w.gathered);
   vl_free(image->context, w.channels);
   return result;

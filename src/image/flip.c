@@ -1,4 +1,4 @@
-/* image/flip.c: see flip.h. Section numbers are the paper's. Two pipelines meet at the end: colour (contrast
+/* image/flip.c: see flip.h. Section numbers are the paper's. Two pipelines are combined at the end: colour (contrast
  * sensitivity filter, Hunt-adjusted L*a*b*, HyAB distance) and features (edges and points of the luminance). */
 #include "image/flip.h"
 
@@ -20,12 +20,12 @@ typedef struct Vec {
 /* Planes of width*height floats. */
 typedef struct Flip {
   uint32_t width, height;
-  float *color[2][3]; /* Y Cx Cz of both images, filtered in place */
-  float *feature[2];  /* edges of the first image, later the larger feature difference; second plane for points */
+  float *color[2][3]; /* Y Cx Cz of both images; filtered in place */
+  float *feature[2];  /* 0: edges of the first image, then the larger feature difference; 1: points */
   float *work[3];
 } Flip;
 
-static const Vec WHITE = {0.950428545f, 1.0f, 1.088900371f}; /* D65 as the paper's matrix has it */
+static const Vec WHITE = {0.950428545f, 1.0f, 1.088900371f}; /* D65, by the paper's matrix */
 
 static float clamp01(float v) {
   return v > 0.0f ? v < 1.0f ? v : 1.0f : 0.0f;
@@ -39,13 +39,13 @@ static Vec xyz_of_rgb(Vec c) {
                (float)(1425312.0 / 73733382.0) * c.x + (float)(8788810.0 / 73733382.0) * c.y +
                    (float)(70074185.0 / 73733382.0) * c.z};
 }
-static Vec rgb_of_xyz(Vec c) { /* the inverse of the above */
+static Vec rgb_of_xyz(Vec c) { /* inverse of xyz_of_rgb */
   return (Vec){3.241003275f * c.x - 1.537398934f * c.y - 0.498615861f * c.z,
                -0.969224334f * c.x + 1.875930071f * c.y + 0.041554224f * c.z,
                0.055639423f * c.x - 0.204011202f * c.y + 1.057148933f * c.z};
 }
 
-/* Section 4.1.1: a linear opponent space, luminance and two colour differences. */
+/* Section 4.1.1: a linear opponent space: luminance and two colour differences. */
 static Vec ycc_of_xyz(Vec c) {
   float x = c.x / WHITE.x, y = c.y / WHITE.y, z = c.z / WHITE.z;
   return (Vec){116.0f * y - 16.0f, 500.0f * (x - y), 200.0f * (y - z)};
@@ -58,7 +58,7 @@ static Vec xyz_of_ycc(Vec c) {
 static float lab_curve(float t) {
   return t > 0.00885645168f ? vl_pow(t, 1.0f / 3.0f) : t * 7.78703704f + 0.137931034f;
 }
-/* Section 4.1.3: L*a*b*, colour differences weaker where it is dark (Hunt). */
+/* Section 4.1.3: L*a*b* with Hunt's adjustment: colour differences are weaker at low luminance. */
 static Vec hunt_lab_of_xyz(Vec c) {
   float x = lab_curve(c.x / WHITE.x), y = lab_curve(c.y / WHITE.y), z = lab_curve(c.z / WHITE.z);
   float lightness = 116.0f * y - 16.0f;
@@ -69,7 +69,7 @@ static float hyab(Vec a, Vec b) {
   return (l < 0.0f ? -l : l) + __builtin_sqrtf(da * da + db * db);
 }
 
-/* exp in double by squaring, for the few weights of the kernels. */
+/* exp in double by squaring, for the kernels' weights. */
 static double weight_exp(double x) {
   double y = x / 1024.0, sum = 1.0;
   for (int k = 12; k >= 1; k--) sum = sum * y / k + 1.0;
@@ -77,7 +77,7 @@ static double weight_exp(double x) {
   return sum;
 }
 
-/* Gaussian exp(-pi^2 d^2 / b), d in degrees, normalised; its sum before that. */
+/* Gaussian exp(-pi^2 d^2 / b), d in degrees, normalised. Returns its sum before normalisation. */
 static double csf_kernel(Kernel *k, int radius, double b) {
   const double pi = 3.14159265358979324;
   double sum = 0.0, w[2 * MAX_RADIUS + 1];
@@ -90,8 +90,8 @@ static double csf_kernel(Kernel *k, int radius, double b) {
   return sum;
 }
 
-/* Section 4.2: Gaussian of the feature width 0.082 degrees, its first derivative (edges) and second (points), the
- * positive and the negative weights each summing to one. */
+/* Section 4.2: Gaussian of the feature width 0.082 degrees, its first derivative (edges) and second derivative
+ * (points). Positive and negative weights each sum to one. */
 static void feature_kernels(Kernel *smooth, Kernel *edge, Kernel *point) {
   double deviation = 0.5 * 0.082 * VL_FLIP_PIXELS_PER_DEGREE;
   int radius = (int)__builtin_ceil(3.0 * deviation);
@@ -113,7 +113,8 @@ static void feature_kernels(Kernel *smooth, Kernel *edge, Kernel *point) {
   }
 }
 
-/* Along rows, then along columns; the border repeats. from and to may be one plane, work is another. */
+/* Convolves along rows, then along columns; the border pixels repeat. from and to may be the same plane, work is
+ * another. */
 static void convolve(const Flip *f, const float *from, const Kernel *kx, const Kernel *ky, float *work, float *to,
                      float *padded) {
   uint32_t w = f->width, h = f->height;
@@ -142,7 +143,7 @@ static void convolve(const Flip *f, const float *from, const Kernel *kx, const K
   }
 }
 
-/* Section 4.1.2, table 1: what the eye resolves in each channel, as sums of Gaussians. */
+/* Section 4.1.2, table 1: contrast sensitivity of each channel as sums of Gaussians. */
 static void color_filter(Flip *f, float *padded) {
   const double pi = 3.14159265358979324;
   int radius = (int)__builtin_ceil(3.0 * __builtin_sqrt(0.04 / (2.0 * pi * pi)) * VL_FLIP_PIXELS_PER_DEGREE);
@@ -163,7 +164,7 @@ static void color_filter(Flip *f, float *padded) {
   }
 }
 
-/* Strength of a feature in both directions: |(along x, along y)|. */
+/* Strength of a feature: length of the vector of its responses along x and y. */
 static void feature_strength(Flip *f, const float *luminance, const Kernel *shape, const Kernel *smooth, float *out,
                              float *padded) {
   size_t count = (size_t)f->width * f->height;
@@ -172,7 +173,7 @@ static void feature_strength(Flip *f, const float *luminance, const Kernel *shap
   for (size_t k = 0; k < count; k++) out[k] = __builtin_sqrtf(f->work[1][k] * f->work[1][k] + out[k] * out[k]);
 }
 
-/* The larger of the edge and the point difference, into feature[0]. */
+/* Writes the larger of the edge and the point difference to feature[0]. */
 static void feature_difference(Flip *f, float *padded) {
   Kernel smooth, edge, point;
   feature_kernels(&smooth, &edge, &point);
@@ -181,7 +182,7 @@ static void feature_difference(Flip *f, float *padded) {
     const Kernel *k = shape ? &point : &edge;
     for (int i = 0; i < 2; i++) {
       for (size_t n = 0; n < count; n++) f->work[2][n] = (f->color[i][0][n] + 16.0f) / 116.0f;
-      /* work: 0 rows, 1 along x, 2 luminance; the second image's strength overwrites the luminance at last */
+      /* work: 0 rows, 1 along x, 2 luminance; for the second image, its strength finally overwrites the luminance */
       feature_strength(f, f->work[2], k, &smooth, i ? f->work[2] : f->feature[1], padded);
     }
     for (size_t n = 0; n < count; n++) {
@@ -197,7 +198,7 @@ static Vec filtered_lab(const Flip *f, int i, size_t n) {
   return hunt_lab_of_xyz(xyz_of_rgb((Vec){clamp01(rgb.x), clamp01(rgb.y), clamp01(rgb.z)}));
 }
 
-/* Sections 4.1.3 and 4.3. */
+/* Sections 4.1.3 and 4.3: combines both differences. */
 static void combine(const Flip *f, float *flip) {
   const float qc = 0.7f, pc = 0.4f, pt = 0.95f;
   Vec green = hunt_lab_of_xyz(xyz_of_rgb((Vec){0.0f, 1.0f, 0.0f})),
@@ -209,7 +210,7 @@ static void combine(const Flip *f, float *flip) {
     d = d < knee ? d * (pt / knee) : pt + (d - knee) / (most - knee) * (1.0f - pt);
     d = clamp01(d);
     float feature = clamp01(__builtin_sqrtf(f->feature[0][n] * 0.707106781186547524f));
-    flip[n] = vl_pow(d, 1.0f - feature); /* d = 0 stays 0, but where features differ wholly even that counts */
+    flip[n] = vl_pow(d, 1.0f - feature); /* d = 0 gives 0, except when the feature difference is 1 */
   }
 }
 
@@ -236,7 +237,7 @@ vlResult vl_flip(vlContext *context, uint32_t width, uint32_t height, const floa
       f.color[i][2][n] = c.z;
     }
   }
-  feature_difference(&f, padded); /* before the filter: features are those of the images themselves */
+  feature_difference(&f, padded); /* before the filter: features are those of the unfiltered images */
   color_filter(&f, padded);
   combine(&f, flip);
   vl_free(context, planes);

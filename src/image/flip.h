@@ -5,7 +5,7 @@
 
 #include "base/context.h"
 
-/* 0.7 m from a 0.7 m wide screen of 3840 pixels: the paper's viewing conditions, 67 pixels per degree. */
+/* Pixels per degree in the paper's viewing conditions: 0.7 m from a screen 0.7 m wide with 3840 pixels. */
 #define VL_FLIP_PIXELS_PER_DEGREE 67.0206
 
 /* a, b: width*height pixels of linear Rec.709 R G B in [0, 1], interleaved. flip: width*height values in [0, 1]. */

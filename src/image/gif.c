@@ -1,5 +1,5 @@
-/* image/gif.c: the first image of a GIF (87a, 89a), interlaced or not; a transparent colour or an uncovered screen
- * makes alpha. Unpacked by LZW: codes of 3 to 12 bits name strings made of an earlier string and one more byte. */
+/* image/gif.c: the first image of a GIF (87a, 89a), interlaced or not. A transparent colour or an uncovered part of the
+ * screen gives alpha. LZW: codes of 3 to 12 bits stand for strings, each an earlier string and one more byte. */
 #include <string.h>
 
 #include "image/codec.h"
@@ -14,7 +14,7 @@ typedef struct Gif {
   uint32_t colors;
   int transparent;
   bool interlaced;
-  /* bits out of the sub-blocks */
+  /* reads bits from the sub-blocks */
   uint32_t bits, bit_count, block_left;
 } Gif;
 
@@ -48,7 +48,7 @@ static bool next_code(Gif *g, uint32_t size, uint32_t *code) {
   return true;
 }
 
-/* Interlaced rows come as 0,8,.. 4,12,.. 2,6,.. 1,3,.. */
+/* Order of interlaced rows: 0,8,.. 4,12,.. 2,6,.. 1,3,.. */
 static uint32_t row_of(const Gif *g, uint32_t n) {
   if (!g->interlaced) return n;
   static const uint32_t START[4] = {0, 4, 2, 1}, STEP[4] = {8, 8, 4, 2};
@@ -63,7 +63,7 @@ static uint32_t row_of(const Gif *g, uint32_t n) {
 static bool put(const Gif *g, vlImage *image, size_t index, uint32_t color) {
   if (color >= g->colors) return false;
   uint32_t x = g->left + (uint32_t)(index % g->width), y = g->top + row_of(g, (uint32_t)(index / g->width));
-  if (x >= image->width || y >= image->height) return true; /* hangs over the screen's edge */
+  if (x >= image->width || y >= image->height) return true; /* outside the screen */
   uint8_t *p = (uint8_t *)vl_image_row(image, y) + (size_t)x * image->channels;
   memcpy(p, g->palette + 3 * color, 3);
   if (image->channels == 4) p[3] = (int)color == g->transparent ? 0 : 255;
@@ -85,7 +85,7 @@ static vlResult unpack(Gif *g, Lzw *z, vlImage *image) {
       continue;
     }
     if (code == end) return vl_codec_broken(g->file, "GIF", "ends too early");
-    if (code > next || (code == next && (old == CODES || next == CODES))) /* next itself: the string about to be made */
+    if (code > next || (code == next && (old == CODES || next == CODES))) /* next itself: the string being defined */
       return vl_codec_broken(g->file, "GIF", "a code that is not defined");
     if (old != CODES && next < CODES) {
       z->before[next] = (uint16_t)old;
@@ -94,7 +94,7 @@ static vlResult unpack(Gif *g, Lzw *z, vlImage *image) {
       if (++next == 1u << size && size < 12) size++;
     }
     uint32_t n = 0;
-    for (uint32_t c = code;; c = z->before[c]) { /* the string comes out backwards */
+    for (uint32_t c = code;; c = z->before[c]) { /* the string is produced in reverse */
       z->text[n++] = z->last[c];
       if (c < clear || n > CODES - 1) break;
     }
@@ -105,7 +105,7 @@ static vlResult unpack(Gif *g, Lzw *z, vlImage *image) {
   return VL_OK;
 }
 
-/* Up to the first image; false when there is none. */
+/* Skips to the first image; false when there is none. */
 static bool find_frame(Gif *g) {
   const uint8_t *d = g->file->data;
   size_t size = g->file->size;
@@ -136,7 +136,7 @@ static bool find_frame(Gif *g) {
     if (kind != '!' || g->at >= size) return false;
     uint8_t label = d[g->at++];
     if (label == 0xf9 && size - g->at >= 6 && (d[g->at + 1] & 1)) g->transparent = d[g->at + 4];
-    for (;;) { /* skip the extension's sub-blocks */
+    for (;;) { /* the extension's sub-blocks */
       if (g->at >= size) return false;
       uint8_t n = d[g->at++];
       if (n == 0) break;
@@ -150,11 +150,11 @@ vlResult vl_gif_read(const vlImageFile *file, vlImage **image) {
   Gif g = {.file = file, .transparent = -1};
   if (!find_frame(&g)) return vl_codec_broken(file, "GIF", "no image in it");
   uint32_t width = le16(file->data + 6), height = le16(file->data + 8);
-  if (width == 0 || height == 0) { /* some writers leave the screen empty */
+  if (width == 0 || height == 0) { /* some writers leave the screen's size 0 */
     width = g.left + g.width;
     height = g.top + g.height;
   }
-  /* Strings of at most 4094 bytes take 12 bits. */
+  /* A code of 12 bits stands for at most 4094 bytes. */
   vlResult result = vl_codec_promise(file, "GIF", g.width, g.height, (double)g.width * g.height, 2730.0);
   if (result == VL_OK) result = vl_codec_promise(file, "GIF", width, height, (double)width * height, 2730.0);
   if (result != VL_OK) return result;

@@ -1,6 +1,6 @@
-/* image/hdr.c: Radiance's RGBE images (Ward, "Real Pixels", Graphics Gems II): flat, old and new run lengths; written
- * with new ones. A pixel is three mantissas and one exponent: value = m 2^(e - 136). The EXPOSURE line is not applied,
- * as in the field's renderers. */
+/* image/hdr.c: Radiance's RGBE images (Ward, "Real Pixels", Graphics Gems II). Reads uncompressed rows, old and new
+ * run-length encoding; writes the new one. A pixel is three mantissas and one exponent: value = m 2^(e - 136). The
+ * EXPOSURE line is not applied, as in other renderers. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,7 +13,7 @@ bool vl_hdr_probe(const uint8_t *data, size_t size) {
 
 typedef struct Header {
   uint32_t width, height;
-  bool upward; /* rows from the bottom */
+  bool upward; /* rows start at the bottom */
   size_t pixels;
   bool xyze, other_order;
 } Header;
@@ -33,7 +33,7 @@ static bool next_line(const vlImageFile *file, size_t *at, char *line, size_t si
   return false;
 }
 
-/* " 123", at most nine digits; the place behind it, or null. */
+/* Reads " 123", at most nine digits. Returns the position after it, or null. */
 static const char *parse_number(const char *p, uint32_t *value) {
   const char *digits = p + (*p == ' ');
   *value = 0;
@@ -41,7 +41,7 @@ static const char *parse_number(const char *p, uint32_t *value) {
   return p > digits ? p : NULL;
 }
 
-/* "-Y 480 +X 640" */
+/* Reads the size, "-Y 480 +X 640". */
 static bool parse_resolution(const char *line, Header *h) {
   if ((line[0] != '-' && line[0] != '+') || (line[1] != 'Y' && line[1] != 'X')) return false;
   const char *p = parse_number(line + 2, &h->height);
@@ -67,7 +67,7 @@ static bool parse_header(const vlImageFile *file, Header *h) {
   return true;
 }
 
-/* Rows as four planes of new run lengths; bytes read, or 0 when broken. */
+/* Reads a row of the new encoding: four run-length encoded planes. Returns the bytes read, 0 when broken. */
 static size_t read_planes(const uint8_t *p, size_t size, uint32_t width, uint8_t *row) {
   size_t at = 4;
   for (uint32_t c = 0; c < 4; c++)
@@ -84,7 +84,8 @@ static size_t read_planes(const uint8_t *p, size_t size, uint32_t width, uint8_t
   return at;
 }
 
-/* Rows of flat pixels, where 1 1 1 n repeats the last one n times, and successive ones count in powers of 256. */
+/* Reads a row of pixels without planes. In the old encoding 1 1 1 n repeats the last pixel n times; consecutive repeats
+ * multiply n by 256. */
 static size_t read_pixels(const uint8_t *p, size_t size, uint32_t width, uint8_t *row) {
   size_t at = 0;
   uint32_t shift = 0;
@@ -111,7 +112,7 @@ vlResult vl_hdr_read(const vlImageFile *file, vlImage **image) {
   if (!parse_header(file, &h)) return vl_codec_broken(file, "HDR", "its header is not understood");
   if (h.xyze) return vl_codec_unsupported(file, "HDR", "XYZ colours");
   if (h.other_order) return vl_codec_unsupported(file, "HDR", "columns before rows, or rows from the right");
-  /* New run lengths: 127 pixels take 8 bytes. Old ones: 255 take 4, and more only when chained. */
+  /* The new encoding holds 127 pixels in 8 bytes, the old one 255 in 4 (more only by consecutive repeats). */
   vlResult result = vl_codec_promise(file, "HDR", h.width, h.height, (double)h.width * h.height, 512.0);
   if (result != VL_OK) return result;
   uint8_t *row = vl_alloc_array(file->context, h.width, 4);
@@ -147,19 +148,19 @@ vlResult vl_hdr_read(const vlImageFile *file, vlImage **image) {
 static void to_rgbe(const float rgb[3], uint8_t out[4]) {
   float v[3], peak = 0.0f;
   for (int c = 0; c < 3; c++) {
-    v[c] = rgb[c] > 0.0f ? rgb[c] < 1.0e38f ? rgb[c] : 1.0e38f : 0.0f; /* NaN and negative are 0 */
+    v[c] = rgb[c] > 0.0f ? rgb[c] < 1.0e38f ? rgb[c] : 1.0e38f : 0.0f; /* NaN and negative values become 0 */
     if (v[c] > peak) peak = v[c];
   }
   memset(out, 0, 4);
   if (peak < 1.0e-38f) return;
   int e;
   frexpf(peak, &e);
-  if (peak >= ldexpf(255.5f, e - 8)) e++; /* would round up to 256 */
+  if (peak >= ldexpf(255.5f, e - 8)) e++; /* it would round up to 256 */
   for (int c = 0; c < 3; c++) out[c] = (uint8_t)(ldexpf(v[c], 8 - e) + 0.5f);
   out[3] = (uint8_t)(e + 128);
 }
 
-/* One plane of a row; runs of 4 and more are worth their two bytes. */
+/* Encodes one plane of a row. Runs from 4 bytes on save space. */
 static size_t write_plane(const uint8_t *rgbe, uint32_t width, uint32_t c, uint8_t *out) {
   size_t at = 0;
   for (uint32_t x = 0; x < width;) {

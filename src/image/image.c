@@ -1,4 +1,4 @@
-/* image/image.c: making images, their attributes, and reading their values. */
+/* image/image.c: creation of images, their attributes, and access to their values. */
 #include "image/image.h"
 
 #include <stdio.h>
@@ -35,7 +35,7 @@ static int compare_names(const void *a, const void *b) {
   return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* Copies the names into one block (pointers first) and refuses doubles. */
+/* Copies the names into one block (pointers first) and rejects duplicates. */
 static vlResult copy_names(vlContext *context, const char *const *names, uint32_t count, char ***result) {
   size_t text = 0;
   for (uint32_t i = 0; i < count; i++) {
@@ -209,7 +209,7 @@ const void *vl_image_const_row(const vlImage *image, uint32_t y) {
   return (const char *)image->pixels + vl_image_row_size(image) * y;
 }
 
-/* Alpha is a share, not light: no curve. */
+/* Alpha is always linear. */
 static bool is_alpha(const char *name) {
   size_t n = strlen(name);
   return name[n - 1] == 'A' && (n == 1 || name[n - 2] == '.');
@@ -240,7 +240,7 @@ vlResult vl_image_rename_channel(vlImage *image, uint32_t channel, const char *n
   int found = vl_image_find_channel(image, name);
   if (found >= 0) return (uint32_t)found == channel ? VL_OK : VL_ERROR_ARGUMENT;
   char **names, *before = image->names[channel];
-  image->names[channel] = (char *)name; /* copied with the others */
+  image->names[channel] = (char *)name; /* the string is owned by the image like the other names */
   vlResult result = copy_names(image->context, (const char *const *)image->names, image->channels, &names);
   if (result == VL_OK) {
     vl_free(image->context, image->names);

@@ -1,5 +1,5 @@
-/* image/jpeg.c: JPEG through libjpeg-turbo: grey, colour, CMYK to RGB when reading. Errors come back by longjmp; damage
- * that libjpeg only warns of (it would paint the rest grey) is an error too. */
+/* image/jpeg.c: JPEG through libjpeg-turbo: grey and colour; CMYK is converted to RGB when read. Errors return by
+ * longjmp. Damage that libjpeg only warns of is an error, too, since the rest of the image would be grey. */
 #include <setjmp.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #include "image/codec.h"
 
 typedef struct Jpeg {
-  struct jpeg_error_mgr errors; /* first: libjpeg hands this back */
+  struct jpeg_error_mgr errors; /* first member: libjpeg passes a pointer to it */
   struct jpeg_progress_mgr progress;
   struct jpeg_source_mgr source;
   struct jpeg_destination_mgr destination;
@@ -25,7 +25,7 @@ typedef struct Jpeg {
   uint8_t buffer[16384];
 } Jpeg;
 
-enum { MAX_SCANS = 200 }; /* a progressive file can ask for any number of ignores the whole image */
+enum { MAX_SCANS = 200 }; /* limit of scans: each scan of a progressive file is a pass over the whole image */
 
 bool vl_jpeg_probe(const uint8_t *data, size_t size) {
   return size >= 3 && data[0] == 0xff && data[1] == 0xd8 && data[2] == 0xff;
@@ -38,7 +38,7 @@ static void on_exit_error(j_common_ptr info) {
   longjmp(j->jump, 1);
 }
 static void on_message(j_common_ptr info, int level) {
-  if (level >= 0) return; /* traces */
+  if (level >= 0) return; /* trace messages */
   int code = info->err->msg_code;
   if (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE || code == JWRN_BOGUS_PROGRESSION)
     on_exit_error(info);
@@ -67,7 +67,7 @@ static void source_none(j_decompress_ptr d) {
   (void)d;
 }
 static boolean source_fill(j_decompress_ptr d) {
-  ERREXIT(d, JERR_INPUT_EOF); /* everything was there from the start */
+  ERREXIT(d, JERR_INPUT_EOF); /* no more data will come: the whole file is in memory */
   return FALSE;
 }
 static void source_skip(j_decompress_ptr d, long count) {
@@ -77,7 +77,7 @@ static void source_skip(j_decompress_ptr d, long count) {
   d->src->bytes_in_buffer -= (size_t)count;
 }
 
-/* One row of inverted CMYK, as Adobe's programs write it, to RGB; others are turned first. */
+/* Converts one row of CMYK to RGB. Adobe's programs write it inverted; other rows are inverted first. */
 static void cmyk_row(const uint8_t *line, uint32_t width, bool inverted, uint8_t *out) {
   for (uint32_t x = 0; x < width; x++) {
     unsigned k = inverted ? line[4 * x + 3] : 255u - line[4 * x + 3];
@@ -113,7 +113,7 @@ static vlResult decode(Jpeg *j, struct jpeg_decompress_struct *d, const vlImageF
   double need = (double)d->image_width * d->image_height * channels;
   vlResult result = vl_codec_promise(file, "JPEG", d->image_width, d->image_height, need, 2500.0);
   if (result != VL_OK) return result;
-  if (file->header) /* starting may read all of a progressive file */
+  if (file->header) /* jpeg_start_decompress may read all of a progressive file */
     return vl_codec_create(file, d->image_width, d->image_height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB, &j->image);
   jpeg_start_decompress(d);
   result = vl_codec_create(file, d->output_width, d->output_height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB, &j->image);
@@ -125,7 +125,7 @@ static vlResult decode(Jpeg *j, struct jpeg_decompress_struct *d, const vlImageF
     jpeg_read_scanlines(d, &row, 1);
     if (cmyk) cmyk_row(j->line, d->output_width, d->saw_Adobe_marker, vl_image_row(j->image, y));
   }
-  return VL_OK; /* what follows the last row does not matter */
+  return VL_OK; /* data after the last row is ignored */
 }
 
 vlResult vl_jpeg_read(const vlImageFile *file, vlImage **image) {
@@ -167,7 +167,7 @@ static void destination_end(j_compress_ptr c) {
 static vlResult encode(Jpeg *j, struct jpeg_compress_struct *c, const vlImage *image, const vlWriteDef *def,
                        vlError *error) {
   uint32_t channel[4], count = vl_image_shown(image, channel);
-  count = count >= 3 ? 3 : 1; /* alpha has no place */
+  count = count >= 3 ? 3 : 1; /* JPEG has no alpha */
   if (image->width > JPEG_MAX_DIMENSION || image->height > JPEG_MAX_DIMENSION)
     return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write %s: JPEG holds at most %ldx%ld pixels", j->writer->path,
                    (long)JPEG_MAX_DIMENSION, (long)JPEG_MAX_DIMENSION);
@@ -190,7 +190,7 @@ static vlResult encode(Jpeg *j, struct jpeg_compress_struct *c, const vlImage *i
   jpeg_set_defaults(c);
   jpeg_set_quality(c, def->quality, TRUE);
   c->dct_method = JDCT_ISLOW;
-  if (def->quality >= 90 && count == 3) /* colour at full resolution when quality is asked for */
+  if (def->quality >= 90 && count == 3) /* no chroma subsampling at high quality */
     c->comp_info[0].h_samp_factor = c->comp_info[0].v_samp_factor = 1;
   jpeg_start_compress(c, TRUE);
   while (c->next_scanline < c->image_height) {

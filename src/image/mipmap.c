@@ -10,10 +10,10 @@ enum { STARTS = 4096 };
 
 typedef struct Builder {
   vlMipmap *map;
-  float begin[4][256];      /* linear values from which on each code is the nearest */
-  uint8_t start[4][STARTS]; /* the code at i / STARTS, to begin looking at */
-  bool one_table;           /* all channels decode alike */
-  float *column;            /* one row of sums down the source rows */
+  float begin[4][256];      /* [c][code]: the smallest linear value whose nearest code is this */
+  uint8_t start[4][STARTS]; /* [c][i]: code at i / STARTS, where the search starts */
+  bool one_table;           /* all channels have the same decoding */
+  float *column;            /* one row: weighted sum of source rows */
   float *line;              /* one decoded row */
 } Builder;
 
@@ -33,14 +33,14 @@ void vl_mipmap_destroy(vlMipmap *map) {
   vl_free(map->context, map);
 }
 
-/* v in [0, 1], as means of decoded bytes are. */
+/* The nearest code of v in [0, 1], which holds for means of decoded bytes. */
 static uint8_t nearest_code(const Builder *b, uint32_t channel, float v) {
   uint32_t i = (uint32_t)(v * STARTS), code = b->start[channel][i < STARTS ? i : STARTS - 1];
   while (code < 255 && v >= b->begin[channel][code + 1]) code++;
   return (uint8_t)code;
 }
 
-/* Is this channel light (put through a curve) or alpha? */
+/* Whether the channel is encoded light (not alpha). */
 static bool is_light(const vlImage *image, uint32_t channel) {
   const char *name = image->names[channel];
   size_t n = strlen(name);
@@ -67,7 +67,7 @@ static void make_tables(Builder *b, const vlImage *image, const vlMipmapDef *def
     b->one_table &= memcmp(map->decode[0], map->decode[c], sizeof map->decode[0]) == 0;
 }
 
-/* 16-bit images under another encoding than their own. */
+/* Decodes row y of a 16-bit image by the encoding in def. */
 static void row_16bit(const vlImage *image, const vlMipmapDef *def, uint32_t y, float *out) {
   const uint16_t *row = vl_image_const_row(image, y);
   for (uint32_t c = 0; c < def->count; c++) {
@@ -100,14 +100,15 @@ static vlResult finest_level(vlMipmap *map, const vlImage *image, const vlMipmap
   return VL_OK;
 }
 
-/* The share of source cell i in destination cell d of `to` cells over `from` source cells. */
+/* The weight of source cell i in destination cell d when `from` cells are resampled to `to`. */
 static float share(uint32_t i, uint32_t d, uint32_t from, uint32_t to) {
   double low = (double)d * from / to, high = (double)(d + 1) * from / to;
   double a = i > low ? i : low, b = i + 1.0 < high ? i + 1.0 : high;
   return b > a ? (float)((b - a) * to / from) : 0.0f;
 }
 
-/* Row y of the source as floats: from the floats of the level before where there are any, else the finest level. */
+/* Row y of the source as floats: from the floats of the level before when they exist, otherwise decoded from the finest
+ * level. */
 static const float *source_row(Builder *b, const vlMipLevel *from, const float *floats, uint32_t y) {
   uint32_t n = b->map->channels;
   size_t row = (size_t)from->width * n;
@@ -122,7 +123,7 @@ static const float *source_row(Builder *b, const vlMipLevel *from, const float *
   return b->line;
 }
 
-/* A row of sums into half the width (or a width of 1), exactly two texels each. */
+/* Halves the width of a row of sums (or keeps a width of 1): two texels each. */
 static void shrink_pairs(const float *column, uint32_t width, uint32_t n, float *out) {
   for (uint32_t x = 0; x < width; x++)
     for (uint32_t c = 0; c < n; c++)
@@ -161,7 +162,8 @@ static void shrink(Builder *b, const vlMipLevel *from, const float *floats, uint
   }
 }
 
-/* One coarser level; *kept are the floats of the level before (null for 8-bit level 0), replaced by the new level's. */
+/* Makes the next coarser level. *kept holds the floats of the level before (null for 8-bit level 0) and is replaced by
+ * the new level's. */
 static vlResult add_level(Builder *b, float **kept) {
   vlMipmap *map = b->map;
   const vlMipLevel *from = &map->levels[map->level_count - 1];
@@ -185,7 +187,7 @@ static vlResult add_level(Builder *b, float **kept) {
   return VL_OK;
 }
 
-/* By its chromaticities, to a thousandth (as pbrt). */
+/* The colour space with the image's chromaticities, to a thousandth (as pbrt). */
 static void find_space(const vlImage *image, vlMipmap *map) {
   vlAttribute a;
   if (vl_image_find_attribute(image, "chromaticities", &a) != VL_OK || a.type != VL_ATTRIBUTE_CHROMATICITIES) return;
@@ -210,7 +212,7 @@ vlResult vl_mipmap_create(const vlImage *image, const vlMipmapDef *def, vlMipmap
   vlMipmap *map = vl_alloc_zero(context, 1, sizeof *map);
   vlResult result = b && map ? VL_OK : VL_ERROR_MEMORY;
   float *kept = NULL;
-  if (map) map->context = context; /* for its destruction */
+  if (map) map->context = context; /* vl_mipmap_destroy needs the context */
   if (result == VL_OK) {
     b->map = map;
     map->channels = def->count;

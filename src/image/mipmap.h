@@ -1,7 +1,6 @@
-/* image/mipmap.h: an image with all its coarser copies, for textures. Each level halves the one before (rounded down,
- * at least 1); every texel is the mean of the light its area covers, exactly weighted where a size is odd. Images of
- * 8 bits stay so on all levels (one byte a value; the means are taken in floats and rounded once), others become
- * floats. */
+/* image/mipmap.h: mipmaps for textures. Each level has half the size of the one before (rounded down, at least 1).
+ * Every texel is the exactly weighted mean of the linear values in its area, also where a size is odd. 8-bit images
+ * keep one byte per value on all levels (means are taken in floats and rounded once); others become floats. */
 #ifndef IMAGE_MIPMAP_H
 #define IMAGE_MIPMAP_H
 
@@ -12,7 +11,7 @@ enum { VL_MIP_LEVELS = 32 };
 
 typedef struct vlMipLevel {
   uint32_t width, height;
-  const uint8_t *bytes; /* one of the two is null; width*height*channels, rows from the top */
+  const uint8_t *bytes; /* bytes or floats, the other is null; width*height*channels, rows from the top */
   const float *floats;
 } vlMipLevel;
 
@@ -21,22 +20,22 @@ typedef struct vlMipmap {
   uint32_t channels; /* 1 to 4 */
   uint32_t level_count;
   bool is_bytes;
-  bool space_told;      /* the image says what its colours are, and this is one of the known spaces: */
-  vlColorSpace space;   /* sRGB else */
+  bool space_told;      /* the image names its colour space, and it is a known one */
+  vlColorSpace space;   /* sRGB unless space_told */
   float decode[4][256]; /* per channel: byte -> linear */
   vlMipLevel levels[VL_MIP_LEVELS];
 } vlMipmap;
 
 typedef struct vlMipmapDef {
-  uint32_t channel[4]; /* which of the image's channels */
+  uint32_t channel[4]; /* indices of the image's channels */
   uint32_t count;      /* 1 to 4 */
-  bool only_finest;    /* one level */
-  bool own_encoding;   /* 8 and 16-bit images: encoding and gamma below instead of the image's */
+  bool only_finest;    /* make level 0 only */
+  bool own_encoding;   /* 8 and 16-bit images: use encoding and gamma below instead of the image's own */
   vlEncoding encoding;
   float gamma;
 } vlMipmapDef;
 
-/* The image may be destroyed afterwards. */
+/* Makes a mipmap. The image may be destroyed afterwards. */
 vlResult vl_mipmap_create(const vlImage *image, const vlMipmapDef *def, vlMipmap **mipmap);
 void vl_mipmap_destroy(vlMipmap *mipmap); /* null is allowed */
 size_t vl_mipmap_bytes(const vlMipmap *mipmap);

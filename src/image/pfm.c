@@ -1,5 +1,5 @@
-/* image/pfm.c: portable float maps ("PF" colour, "Pf" grey; Debevec): 32-bit floats, rows from the bottom; a negative
- * scale says little-endian. The scale's size is not applied, as in the field's renderers. Written little-endian. */
+/* image/pfm.c: portable float maps ("PF" colour, "Pf" grey; Debevec): 32-bit floats, rows from the bottom. A negative
+ * scale means little-endian; its magnitude is not applied, as in other renderers. Written little-endian. */
 #include <stdio.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@ bool vl_pfm_probe(const uint8_t *data, size_t size) {
   return size >= 3 && data[0] == 'P' && (data[1] == 'F' || data[1] == 'f') && (data[2] <= ' ');
 }
 
-/* The next word; exactly one white byte after it is eaten. */
+/* The next word. Exactly one white-space byte after it is consumed. */
 static bool next_word(const vlImageFile *file, size_t *at, char *word, size_t size) {
   while (*at < file->size && file->data[*at] <= ' ') ++*at;
   size_t n = 0;
@@ -32,7 +32,7 @@ static bool parse_size(const char *word, uint32_t *value) {
   return true;
 }
 
-/* Of the scale only its sign counts; any number but 0 will do (strtod would ask the locale for its point). */
+/* Only the sign of the scale counts; it must be a number other than 0. (strtod would depend on the locale.) */
 static bool parse_scale(const char *word, bool *little_endian) {
   *little_endian = word[0] == '-';
   const char *p = word + (word[0] == '-' || word[0] == '+');

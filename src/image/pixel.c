@@ -2,7 +2,7 @@
 #include "image/pixel.h"
 
 uint8_t vl_linear_to_srgb8(float linear) {
-  uint32_t low = 0; /* last code that begins at or before the value; NaN compares false and stays at 0 */
+  uint32_t low = 0; /* last code that begins at or before the value; NaN compares false and gives 0 */
   for (uint32_t step = 128; step; step >>= 1)
     if (linear >= vl_srgb8_begin[low + step]) low += step;
   return (uint8_t)low;
@@ -21,7 +21,7 @@ double vl_log2_exact(double x) {
     e++;
   }
   double s = (m - 1.0) / (m + 1.0), z = s * s, sum = 0.0;
-  for (int k = 21; k >= 1; k -= 2) sum = sum * z + 1.0 / k; /* s^21/21 is below 1e-17 of the whole */
+  for (int k = 21; k >= 1; k -= 2) sum = sum * z + 1.0 / k; /* the term s^21/21 is below 1e-17 of the result */
   return (double)e + 2.8853900817779268 * s * sum;
 }
 

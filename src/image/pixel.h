@@ -1,5 +1,5 @@
-/* image/pixel.h: single values: half floats, sRGB's curve, logarithm and power in double with the same bits on every
- * machine (only + - * / and integer operations; libm picks its code by the processor). */
+/* image/pixel.h: single values: half floats, the sRGB curve, and log and power in double. The results have the same
+ * bits on every machine: only + - * / and integer operations are used (libm selects code by processor). */
 #ifndef IMAGE_PIXEL_H
 #define IMAGE_PIXEL_H
 
@@ -34,7 +34,7 @@ static inline uint16_t vl_float_to_half(float f) {
   uint32_t magnitude = bits & 0x7fffffffu;
   if (magnitude > 0x7f800000u) return (uint16_t)(sign | 0x7e00u);
   if (magnitude >= 0x477ff000u) return (uint16_t)(sign | 0x7c00u);
-  if (magnitude < 0x38800000u) { /* below 2^-14: a multiple of 2^-24; adding 0.5 lets the adder round for us */
+  if (magnitude < 0x38800000u) { /* below 2^-14: a multiple of 2^-24; adding 0.5 makes the addition round */
     float a;
     memcpy(&a, &magnitude, 4);
     a += 0.5f;
@@ -47,31 +47,31 @@ static inline uint16_t vl_float_to_half(float f) {
 
 /* ---- curves ------------------------------------------------------------------------------------------------------ */
 
-/* sRGB's curve (IEC 61966-2-1) for the 256 codes, and where the codes begin: code c stands for linear values from
- * vl_srgb8_begin[c] on, up to vl_srgb8_begin[c + 1]. Correctly rounded floats. */
+/* The sRGB curve (IEC 61966-2-1) for the 256 codes, and the ranges that round to them: code c stands for linear values
+ * from vl_srgb8_begin[c] up to vl_srgb8_begin[c + 1]. Correctly rounded floats. */
 extern const float vl_srgb8_to_linear[256];
 extern const float vl_srgb8_begin[256];
 
-/* Nearest 8-bit sRGB code of a linear value; clamped, NaN is 0. */
+/* The nearest 8-bit sRGB code of a linear value; clamped, NaN gives 0. */
 uint8_t vl_linear_to_srgb8(float linear);
-/* Nearest of 256 even steps; clamped, NaN is 0. */
+/* The nearest of 256 even steps; clamped, NaN gives 0. */
 static inline uint8_t vl_linear_to_unorm8(float x) {
   return (uint8_t)((x > 0.0f ? x < 1.0f ? x : 1.0f : 0.0f) * 255.0f + 0.5f);
 }
 
-/* x > 0, normal; relative error below 1e-15. */
+/* log2 of x > 0, normal. Relative error below 1e-15. */
 double vl_log2_exact(double x);
-/* |x| < 1000. */
+/* 2^x for |x| < 1000. */
 double vl_exp2_exact(double x);
 /* x^y for x >= 0; 0^y = 0. */
 double vl_pow_exact(double x, double y);
 double vl_srgb_to_linear(double encoded);
 double vl_linear_to_srgb(double linear);
-/* A value in [0,1] of an image's encoding, as light. */
+/* Decodes a value in [0, 1] to linear light. */
 double vl_decode(vlEncoding encoding, float gamma, double encoded);
 double vl_encode(vlEncoding encoding, float gamma, double linear);
 
-/* The 256 values of an 8-bit encoding. */
+/* The 256 linear values of an 8-bit encoding. */
 void vl_decode_table(vlEncoding encoding, float gamma, float table[256]);
 
 #endif

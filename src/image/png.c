@@ -1,5 +1,5 @@
-/* image/png.c: PNG through libpng. 8 and 16 bits; palettes and small greys are widened, transparency becomes alpha.
- * libpng reports errors by longjmp: what must survive it lives in the Png struct, never in locals. */
+/* image/png.c: PNG through libpng: 8 and 16 bits. Palettes and grey of fewer bits are expanded; transparency becomes
+ * alpha. libpng reports errors by longjmp: whatever is used afterwards is in the Png struct, not in locals. */
 #include <png.h>
 #include <setjmp.h>
 #include <string.h>
@@ -58,7 +58,7 @@ static void on_flush(png_structp png) {
   (void)png;
 }
 
-/* Only a gamma of exactly 1 says "linear"; all else is taken as sRGB, as the field's renderers do. */
+/* A gamma of exactly 1 means linear. Anything else is taken as sRGB, as in other renderers. */
 static bool says_linear(Png *p) {
   png_fixed_point gamma;
   return !png_get_valid(p->png, p->info, PNG_INFO_sRGB) && !png_get_valid(p->png, p->info, PNG_INFO_iCCP) &&
@@ -70,13 +70,13 @@ static vlResult decode(Png *p) {
   if (setjmp(png_jmpbuf(p->png)))
     return p->memory ? vl_fail_memory(file->error) : vl_codec_broken(file, "PNG", p->message);
   png_set_read_fn(p->png, p, on_read);
-  png_set_user_limits(p->png, 0x7fffffff, 0x7fffffff); /* the size is judged below, by what the file can hold */
+  png_set_user_limits(p->png, 0x7fffffff, 0x7fffffff); /* the size is checked below against the file's size */
   png_set_chunk_malloc_max(p->png, 8u << 20);
   png_read_info(p->png, p->info);
   uint32_t width = png_get_image_width(p->png, p->info), height = png_get_image_height(p->png, p->info);
   int depth = png_get_bit_depth(p->png, p->info), kind = png_get_color_type(p->png, p->info);
   bool alpha = (kind & PNG_COLOR_MASK_ALPHA) || png_get_valid(p->png, p->info, PNG_INFO_tRNS);
-  /* Deflate makes at most 1032 bytes of one. */
+  /* Deflate expands by at most 1032:1. */
   double stored = ((double)png_get_rowbytes(p->png, p->info) + 1.0) * height;
   vlResult result = vl_codec_promise(file, "PNG", width, height, stored, 1032.0);
   if (result != VL_OK) return result;

@@ -1,4 +1,5 @@
-/* image/pnm.c: netpbm's P1 to P6: bits, greys and colours, as text and binary, up to 16 bits. Taken as sRGB. */
+/* image/pnm.c: netpbm's P1 to P6: bitmaps, grey and colour, as text and binary, up to 16 bits. Values are taken as
+ * sRGB. */
 #include <string.h>
 
 #include "image/codec.h"
@@ -12,7 +13,7 @@ bool vl_pnm_probe(const uint8_t *data, size_t size) {
   return size >= 3 && data[0] == 'P' && data[1] >= '1' && data[1] <= '6' && (data[2] <= ' ' || data[2] == '#');
 }
 
-/* Next number after white space and comments; at most `limit`. */
+/* The next number after white space and comments; at most `limit`. */
 static bool number(Pnm *p, uint32_t limit, uint32_t *value) {
   const uint8_t *d = p->file->data;
   size_t size = p->file->size;
@@ -32,7 +33,7 @@ static bool number(Pnm *p, uint32_t limit, uint32_t *value) {
   return true;
 }
 
-/* One digit 0 or 1; P1 needs no space between. */
+/* One digit 0 or 1; P1 needs no white space between digits. */
 static bool bit(Pnm *p, uint32_t *value) {
   const uint8_t *d = p->file->data;
   while (p->at < p->file->size && d[p->at] <= ' ') p->at++;
@@ -56,7 +57,7 @@ vlResult vl_pnm_read(const vlImageFile *file, vlImage **image) {
   if (!number(&p, 0x7fffffffu, &width) || !number(&p, 0x7fffffffu, &height) || (!bits && !number(&p, 65535, &limit)) ||
       limit == 0)
     return vl_codec_broken(file, "PNM", "its header is not understood");
-  if (!text) p.at++; /* the one white byte before the pixels */
+  if (!text) p.at++; /* the white-space byte before the pixels */
   double values = (double)width * height * channels;
   double need = bits && !text ? (double)((width + 7) / 8) * height : text ? values : values * (limit > 255 ? 2 : 1);
   vlResult result = vl_codec_promise(file, "PNM", width, height, need + (double)p.at, 1.0);
@@ -79,7 +80,7 @@ vlResult vl_pnm_read(const vlImageFile *file, vlImage **image) {
     else
       v = file->data[p.at + i];
     if (!ok || v > limit) return vl_codec_broken(file, "PNM", ok ? "a value above its limit" : "ends too early");
-    store(*image, i, bits ? 1 - v : v, limit); /* in bitmaps 1 is black */
+    store(*image, i, bits ? 1 - v : v, limit); /* 1 is black in bitmaps */
   }
   return VL_OK;
 }

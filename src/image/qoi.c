@@ -1,4 +1,4 @@
-/* image/qoi.c: the Quite OK Image format (Szablewski, qoiformat.org), reading. */
+/* image/qoi.c: reads the Quite OK Image format (Szablewski, qoiformat.org). */
 #include <string.h>
 
 #include "image/codec.h"
@@ -15,8 +15,8 @@ vlResult vl_qoi_read(const vlImageFile *file, vlImage **image) {
   const uint8_t *d = file->data;
   uint32_t width = be32(d + 4), height = be32(d + 8), channels = d[12];
   if (channels != 3 && channels != 4) return vl_codec_broken(file, "QOI", "neither 3 nor 4 channels");
-  vlResult result =
-      vl_codec_promise(file, "QOI", width, height, (double)width * height, 62.0); /* a run: 62 from one byte */
+  vlResult result = vl_codec_promise(file, "QOI", width, height, (double)width * height,
+                                     62.0); /* one byte encodes a run of up to 62 pixels */
   vlEncoding encoding = d[13] == 1 ? VL_ENCODING_LINEAR : VL_ENCODING_SRGB;
   if (result == VL_OK) result = vl_codec_create(file, width, height, channels, VL_PIXEL_U8, encoding, image);
   if (result != VL_OK) return result;

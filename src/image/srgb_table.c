@@ -1,4 +1,5 @@
-/* image/srgb_table.c: sRGB's curve for 8-bit codes, computed with 60 digits and rounded to float (begins: up). */
+/* image/srgb_table.c: the sRGB curve for 8-bit codes, computed with 60 digits and rounded to float (vl_srgb8_begin is
+ * rounded up). */
 #include "image/pixel.h"
 
 const float vl_srgb8_to_linear[256] = {

@@ -1,6 +1,6 @@
-/* image/tga.c: Truevision TGA: grey, palette and true colour of 8, 15, 16, 24 and 32 bits, flat and run lengths, all
- * four origins. Written flat, from the top. The format has no mark at its start: the probe checks that the header makes
- * sense. */
+/* image/tga.c: Truevision TGA: grey, palette and true colour of 8, 15, 16, 24 and 32 bits, uncompressed and run-length
+ * encoded, all four origins. Written uncompressed, from the top. The format has no signature: the probe checks the
+ * header for plausibility. */
 #include <string.h>
 
 #include "image/codec.h"
@@ -49,7 +49,8 @@ bool vl_tga_probe(const uint8_t *data, size_t size) {
   return parse(data, size, &t);
 }
 
-/* A stored colour of 2, 3 or 4 bytes (blue first) to R G B (A). The one alpha bit of 16-bit colours is not trusted. */
+/* Converts a stored colour of 2, 3 or 4 bytes (blue first) to R G B (A). The alpha bit of 16-bit colours is ignored,
+ * since it is unreliable. */
 static void color_out(const uint8_t *p, uint32_t depth, uint8_t *out) {
   if (depth <= 16) {
     uint32_t v = le16(p);
@@ -108,7 +109,7 @@ static vlResult read_pixels(const vlImageFile *file, const Tga *t, vlImage *imag
   return VL_OK;
 }
 
-/* Many writers leave the fourth byte 0 and say so in the header: those images have no alpha. */
+/* Many writers leave the fourth byte 0 and declare no alpha bits: such images have no alpha. */
 static bool alpha_is_empty(const Tga *t, const vlImage *image) {
   if (t->flags & 15) return false;
   const uint8_t *p = image->pixels;
@@ -123,7 +124,8 @@ vlResult vl_tga_read(const vlImageFile *file, vlImage **image) {
   if (t.pixels_at > file->size) return vl_codec_broken(file, "TGA", "ends in its palette");
   uint32_t depth = t.kind == PALETTE ? t.palette_depth : t.depth;
   uint32_t channels = t.kind == GREY ? depth / 8 : depth == 32 ? 4 : 3;
-  double stored = (double)t.width * t.height * ((t.depth + 7) / 8); /* a run: 128 pixels from one and a byte */
+  double stored =
+      (double)t.width * t.height * ((t.depth + 7) / 8); /* a run: 128 pixels from a count byte and one pixel */
   vlResult result = vl_codec_promise(file, "TGA", t.width, t.height, stored, t.rle ? 128.0 : 1.0);
   if (result == VL_OK)
     result = vl_codec_create(file, t.width, t.height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB, image);

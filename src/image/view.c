@@ -1,5 +1,5 @@
-/* image/view.c: from linear light to display values. Works on linear Rec.709 channels R G B, or Y; the result is 8-bit
- * sRGB. Only arithmetic with fixed bits (math/approx.h, tables), so images are the same on every machine. */
+/* image/view.c: views: from linear light to display values. Input is linear Rec.709 R G B, or Y; the result is 8-bit
+ * sRGB. Only arithmetic with fixed bits (math/approx.h, tables) is used: results are the same on every machine. */
 #include "base/error.h"
 #include "image/image.h"
 #include "image/pixel.h"
@@ -18,9 +18,9 @@ static float smallest(Color c) {
   return m < c.b ? m : c.b;
 }
 
-/* Khronos PBR Neutral tone mapper (KhronosGroup/ToneMapping, PBR_Neutral, specification of 2024): takes away the
- * Fresnel reflection's 0.04, compresses only above 0.8, and lets what is compressed fade to white. Result in [0, 1],
- * linear. */
+/* Khronos PBR Neutral tone mapper (KhronosGroup/ToneMapping, PBR_Neutral, specification of 2024). It subtracts the
+ * Fresnel reflection of 0.04, compresses only above 0.8, and desaturates compressed colours towards white. Result in
+ * [0, 1], linear. */
 static Color khronos_neutral(Color c) {
   const float f90 = 0.04f, start = 0.8f - 0.04f, desaturation = 0.15f;
   float x = smallest(c);
@@ -36,9 +36,9 @@ static Color khronos_neutral(Color c) {
   return (Color){c.r * scale * g + white, c.g * scale * g + white, c.b * scale * g + white};
 }
 
-/* AgX (Troy Sobotka, github.com/sobotka/AgX) with the polynomial for its contrast curve by Benjamin Wrensch ("Minimal
- * AgX Implementation", iolite-engine.com, 2023): inset matrix, 16.5 stops of log2 around middle grey, curve, outset
- * matrix. The result is already encoded for the display. */
+/* AgX (Troy Sobotka, github.com/sobotka/AgX) with Benjamin Wrensch's polynomial for the contrast curve ("Minimal AgX
+ * Implementation", iolite-engine.com, 2023): inset matrix, 16.5 stops of log2 around middle grey, curve, outset matrix.
+ * The result is display-encoded. */
 static float agx_curve(float v) {
   float stops = vl_ln(v > 1e-30f ? v : 1e-30f) * 1.44269504088896341f;
   float x = (stops + 12.47393f) / (4.026069f + 12.47393f);
@@ -58,7 +58,7 @@ static Color agx(Color c) {
 
 static void to_bytes(vlView view, Color c, uint8_t out[3]) {
   bool encoded = view == VL_VIEW_AGX || view == VL_VIEW_RAW;
-  if (view == VL_VIEW_KHRONOS_NEUTRAL || view == VL_VIEW_AGX) { /* both are defined for light that is not negative */
+  if (view == VL_VIEW_KHRONOS_NEUTRAL || view == VL_VIEW_AGX) { /* both are defined for non-negative light */
     c.r = c.r > 0.0f ? c.r : 0.0f;
     c.g = c.g > 0.0f ? c.g : 0.0f;
     c.b = c.b > 0.0f ? c.b : 0.0f;
@@ -69,7 +69,7 @@ static void to_bytes(vlView view, Color c, uint8_t out[3]) {
   out[2] = encoded ? vl_linear_to_unorm8(c.b) : vl_linear_to_srgb8(c.b);
 }
 
-/* Not a number and infinity become 0 and count; what the exposure makes infinite is merely very bright. */
+/* NaN and infinity become 0 and are counted. Values that only the exposure makes infinite are clamped. */
 static float finite_value(float v, float scale, uint64_t *bad) {
   if (!(v - v == 0.0f)) {
     ++*bad;

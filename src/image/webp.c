@@ -1,4 +1,4 @@
-/* image/webp.c: WebP through libwebp, reading: lossy and lossless, with and without coverage; not animations. */
+/* image/webp.c: reads WebP through libwebp: lossy and lossless, with and without alpha; no animations. */
 #include <string.h>
 
 /* after string */
@@ -6,8 +6,7 @@
 
 #include "image/codec.h"
 
-/* One colour all over takes no bits at all, so that a small file may rightly be a large image: up to this many bytes
- * it is believed. */
+/* Limit of unchecked size: an image of one colour takes almost no bytes, so a small file may be a large image. */
 enum { BELIEVED = 1 << 24 };
 
 bool vl_webp_probe(const uint8_t *data, size_t size) {

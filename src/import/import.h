@@ -1,5 +1,5 @@
-/* import/import.h: files of other people to a scene. The face of this room. Errors land in the scene (sticky) with
- * their place; warnings go to the context's log. */
+/* import/import.h: importers: files of other formats become scenes. The interface of this room. Errors are kept in the
+ * scene (sticky) with their place; warnings go to the context's log. */
 #ifndef IMPORT_IMPORT_H
 #define IMPORT_IMPORT_H
 

@@ -1,6 +1,4 @@
-/* import/plain.c: geometry without a scene around it: a PLY file as the whole scene; what is taken where the file says
- * nothing.
- */
+/* import/plain.c: plain geometry: a PLY file as a whole scene, and the defaults for what the file does not define. */
 #include "import/plain.h"
 
 #include <string.h>
@@ -12,12 +10,12 @@ void vl_import_plain_settings(vlScene *scene) {
   vlSceneDefs *s = vl_scene_defs(scene);
   s->render.spp = 64;
   s->render.tracer = VL_TRACER_VOLPATH;
-  s->render.max_depth = 12; /* light goes through glass */
+  s->render.max_depth = 12; /* paths through glass need many bounces */
   s->camera_missing = true;
   s->light_missing = true;
 }
 
-/* Patches as two triangles, after the triangles that are there. */
+/* Appends each patch as two triangles. */
 static bool split_quads(vlContext *context, vlPlyMesh *m) {
   if (!m->quads) return true;
   size_t count = (size_t)m->triangles + 2 * (size_t)m->quads;
@@ -35,7 +33,7 @@ static bool split_quads(vlContext *context, vlPlyMesh *m) {
   return true;
 }
 
-/* Grey, as rough as plaster that has been polished a little; or of the vertices' colours. */
+/* The default material: grey or the vertex colours, with the roughness of slightly polished plaster. */
 static vlMaterialId add_material(vlScene *scene, bool colors) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_PRINCIPLED);
   def.reflectance = vl_spectrum_input(vl_spectrum_rgb(0.8f, 0.8f, 0.8f));

@@ -1,10 +1,10 @@
-/* import/plain.h: what formats of plain geometry (OBJ, PLY) share. */
+/* import/plain.h: defaults shared by the formats of plain geometry (OBJ, PLY). */
 #ifndef IMPORT_PLAIN_H
 #define IMPORT_PLAIN_H
 
 #include "scene/scene.h"
 
-/* No camera and no light: the scene asks for them (vl_scene_complete). */
+/* Marks camera and lights as missing: vl_scene_complete adds them. */
 void vl_import_plain_settings(vlScene *scene);
 
 #endif

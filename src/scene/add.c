@@ -1,5 +1,5 @@
-/* scene/add.c: textures, materials, emissions and lights come in: checked, then copied. Ids may only name what was
- * added before, so neither textures nor mixed materials can form a circle. */
+/* scene/add.c: adds textures, materials, emissions and lights: they are checked, then copied. Ids refer only to objects
+ * added before, so textures and mixed materials cannot form a cycle. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,7 +16,7 @@ static bool is_finite_matrix(const double m[16]) {
   return true;
 }
 
-/* Ready for one more? Says what stands in the way otherwise. */
+/* Whether one more object can be added. Reports the reason otherwise. */
 static bool may_add(vlScene *scene, const void *def, bool cookie, size_t count, vlSource source, const char *what) {
   if (scene->error.code != VL_OK) return false;
   if (!def || !cookie) {
@@ -45,7 +45,7 @@ static bool all_finite(const float *numbers, size_t count) {
   return true;
 }
 
-/* What the rows do not say. */
+/* Rules that the rows do not express. */
 static bool check_texture_def(vlScene *scene, const vlTextureDef *d, const vlKindRow *row) {
   char what[64];
   snprintf(what, sizeof what, "%s texture", row->name ? row->name : "vertex colour");
@@ -62,7 +62,7 @@ static bool check_texture_def(vlScene *scene, const vlTextureDef *d, const vlKin
   return true;
 }
 
-/* What the kind's row does not name is left out. */
+/* Members that the kind's row does not name are dropped. */
 static vlTextureId add_texture(vlScene *scene, const vlTextureDef *def, bool adopt) {
   const vlTextureId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_TEXTURE, scene->textures.count, (vlSource){0}, "texture"))
@@ -105,7 +105,7 @@ static bool check_mix(vlScene *scene, const vlMaterialDef *d) {
   return true;
 }
 
-/* What the kind's row does not name is left out. */
+/* Members that the kind's row does not name are dropped. */
 vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   const vlMaterialId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_MATERIAL, scene->materials.count, (vlSource){0}, "material"))
@@ -145,7 +145,7 @@ vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
   return (vlEmissionId){(uint32_t)scene->emissions.count};
 }
 
-/* A rectangle, and an image to be seen through it. Tolerances as pbrt's. */
+/* A portal must be a rectangle and needs an image. Tolerances are pbrt's. */
 static bool check_portal(vlScene *scene, const vlLightDef *d) {
   double sides[4][3], lengths[4];
   if (d->kind != VL_LIGHT_INFINITE || (!d->path && !d->image))
@@ -194,7 +194,7 @@ vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
   if (!row) return bad(scene, def->source, "light", "unknown kind"), none;
   char what[80];
   snprintf(what, sizeof what, "%s light", row->name);
-  vlLightDef d = vl_default_light_def(def->kind); /* what the kind does not read stays at its default */
+  vlLightDef d = vl_default_light_def(def->kind); /* members that the kind does not use keep their defaults */
   vl_row_copy_members(row, def, &d);
   d.source = def->source;
   memcpy(d.world_from_light, def->world_from_light, sizeof d.world_from_light);

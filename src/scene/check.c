@@ -1,4 +1,4 @@
-/* scene/check.c: a check's life: running the parts, the list of findings, their order and names. */
+/* scene/check.c: the life of a check: running its parts; the list of findings, its order and the names of findings. */
 #include "scene/check.h"
 
 #include <stdio.h>
@@ -52,7 +52,7 @@ static bool make_used(vlCheck *check) {
   return true;
 }
 
-/* Errors, warnings, notes; else as they were found. */
+/* Sorts by severity (errors, warnings, notes); otherwise the order in which they were found stays. */
 static bool sort(vlCheck *check) {
   size_t n = check->findings.count, next = 0;
   vlFinding *sorted = vl_alloc_array(check->context, n ? n : 1, sizeof *sorted);
@@ -95,7 +95,7 @@ void vl_check_destroy(vlCheck *check) {
   vlContext *c = check->context;
   for (size_t i = 0; i < check->findings.count; i++) {
     void *block;
-    memcpy(&block, &check->findings.items[i].message, sizeof block); /* const for readers, ours to free */
+    memcpy(&block, &check->findings.items[i].message, sizeof block); /* const for readers; owned and freed here */
     vl_free(c, block);
   }
   VL_ARRAY_FREE(c, &check->findings);

@@ -1,5 +1,6 @@
-/* scene/check.h: what the parts of the doctor share (check*.c). Each walks the description once and adds findings;
- * nothing is changed. The order of findings is that of the scene's objects, so it does not depend on threads. */
+/* scene/check.h: declarations shared by the parts of the scene check (check*.c). Each part reads the description once
+ * and adds findings; the scene is not changed. Findings are in the order of the scene's objects, independent of
+ * threads. */
 #ifndef SCENE_CHECK_H
 #define SCENE_CHECK_H
 
@@ -10,9 +11,9 @@ struct vlCheck {
   vlContext *context;
   const vlScene *scene;
   vlCheckDef def;
-  VL_ARRAY(vlFinding) findings; /* messages are blocks of their own */
+  VL_ARRAY(vlFinding) findings; /* each message is its own block */
   bool no_memory;
-  /* What is reached from shapes, lights and instances; index id - 1. */
+  /* Whether shapes, lights and instances use the object; index id - 1. */
   uint8_t *texture_used, *material_used, *medium_used, *group_used, *emission_used;
 };
 
@@ -22,22 +23,22 @@ void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSou
 /* The parts. */
 void vl_check_names(vlCheck *check);  /* unused and replaced names; fills the used arrays */
 void vl_check_images(vlCheck *check); /* files, albedo, lights without power */
-void vl_check_meshes(vlCheck *check); /* degenerate faces, uv, open and inverted bodies */
-void vl_check_inside(vlCheck *check); /* the camera and media in bodies */
+void vl_check_meshes(vlCheck *check); /* degenerate faces, missing uvs, open and inverted solids */
+void vl_check_inside(vlCheck *check); /* the camera inside solids, nesting of media */
 
 /* ---- helpers ------------------------------------------------------------------------------------------------------
  */
 
-/* Null: the default diffuse. */
+/* The material of a shape; null: the default diffuse. */
 static inline const vlMaterialDef *vl_check_material(const vlCheck *check, vlMaterialId id) {
   return id.index ? &check->scene->materials.items[id.index - 1] : NULL;
 }
-/* The textures that a material reads itself, at most VL_CHECK_INPUTS (0: none). */
+/* The textures that a material reads directly, at most VL_CHECK_INPUTS (0: none). */
 enum { VL_CHECK_INPUTS = 48 };
 uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]);
-/* Those that a texture reads. */
+/* The textures that a texture reads directly. */
 uint32_t vl_check_texture_inputs(const vlTextureDef *t, vlTextureId inputs[VL_CHECK_INPUTS]);
-/* "material \"glass\"", "the default material", "the material of line 3" */
+/* Name for a message: "material \"glass\"", "the default material", "the material of line 3". */
 typedef struct vlCheckName {
   char text[120];
 } vlCheckName;

@@ -1,6 +1,6 @@
-/* scene/check_images.c: the doctor: files that are not there, surfaces that give back more light than they get,
- * lights that give none. The greatest value of a texture is bounded from above: of a mix the larger part, of a product
- * the product, of an image its brightest texel. */
+/* scene/check_images.c: scene check: missing files, surfaces that reflect more light than they receive, lights without
+ * power. A texture's greatest value is bounded from above: for a mix by the larger input, for a product by the product,
+ * for an image by its brightest texel. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,7 +20,7 @@ static bool file_is_there(vlCheck *c, const char *path, vlSource source) {
   char *data = NULL;
   size_t size;
   vlError error = {0};
-  vlResult r = vl_file_read(c->context, path, false, &data, &size, &error); /* for its words */
+  vlResult r = vl_file_read(c->context, path, false, &data, &size, &error); /* opened for its error message */
   vl_free(c->context, data);
   if (r != VL_OK)
     vl_check_add(c, r == VL_ERROR_MISSING ? VL_FINDING_MISSING_FILE : VL_FINDING_BROKEN_FILE, VL_SEVERITY_ERROR, source,
@@ -28,7 +28,7 @@ static bool file_is_there(vlCheck *c, const char *path, vlSource source) {
   return r == VL_OK;
 }
 
-/* All files that a row's parameters name. */
+/* Checks all files that a row's parameters name. */
 static void look_for_files_of(vlCheck *c, const vlKindFamily *family, int kind, const void *def, vlSource source) {
   const vlKindRow *row = vl_kind_row(family, kind);
   for (uint32_t i = 0; i < row->parameter_count; i++) {
@@ -57,7 +57,7 @@ static void look_for_files(vlCheck *c) {
 
 /* ---- greatest values --------------------------------------------------------------------------------------------- */
 
-/* As a reflectance: rgb by its channels, others at any wavelength. */
+/* The greatest value as a reflectance: of rgb's channels, or over all wavelengths. */
 static float spectrum_max(const vlSpectrum *s) {
   if (s->kind == VL_SPECTRUM_RGB) {
     float m = s->rgb[0] > s->rgb[1] ? s->rgb[0] : s->rgb[1];
@@ -70,10 +70,10 @@ static float spectrum_max(const vlSpectrum *s) {
   return most;
 }
 
-/* Largest and smallest linear colour of an image. */
+/* Smallest and largest linear colour value of an image. */
 static bool image_range(vlCheck *c, const vlImage *image, float range[2]) {
   uint32_t channel[4], n = vl_image_color(image, channel);
-  if (n == 2 || n == 4) n--; /* coverage is no colour */
+  if (n == 2 || n == 4) n--; /* alpha is not a colour */
   float *row = n ? vl_alloc_array(c->context, (size_t)image->width * n, sizeof *row) : NULL;
   if (!row) return false;
   range[0] = INFINITY, range[1] = -INFINITY;
@@ -94,7 +94,7 @@ static float image_max(vlCheck *c, const vlTextureDef *t) {
   bool floats = t->image || t->data || !t->path || vl_ends_with(t->path, ".exr") || vl_ends_with(t->path, ".hdr") ||
                 vl_ends_with(t->path, ".pfm");
   vlImage *image = NULL;
-  /* Integers reach 1 at most, and are only looked into where a factor makes more of it. */
+  /* Integer images reach 1 at most; they are read only when a factor enlarges their values. */
   if (c->def.images && !t->image && (floats || t->scale * tint > 1.0f || t->invert)) {
     vlError error;
     vlResult r = t->data   ? vl_image_read_memory(c->context, t->name ? t->name : "an image", t->data, t->data_size,
@@ -108,14 +108,15 @@ static float image_max(vlCheck *c, const vlTextureDef *t) {
   if (image || t->image)
     if (!image_range(c, image ? image : t->image, range)) range[0] = 0, range[1] = 1;
   vl_image_destroy(image);
-  return (t->invert ? 1.0f - t->scale * range[0] : t->scale * range[1]) * tint; /* pbrt: scaled, then inverted */
+  return (t->invert ? 1.0f - t->scale * range[0] : t->scale * range[1]) *
+         tint; /* as in pbrt, scaled first, then inverted */
 }
 
 static float larger(float a, float b) {
   return a > b ? a : b;
 }
 
-/* Bounds of all textures that a reflectance may read; others 0. The earlier ones are known. */
+/* Upper bound of a texture that a reflectance may read; otherwise 0. known: bounds of the earlier textures. */
 static float texture_max(vlCheck *c, const vlTextureDef *t, const float *known) {
   float in[4];
   const vlFloatInput *floats[4] = {&t->float_a, &t->float_b, &t->float_c, &t->float_d};
@@ -133,10 +134,10 @@ static float texture_max(vlCheck *c, const vlTextureDef *t, const float *known) 
   if (t->kind == VL_TEXTURE_MIX || t->kind == VL_TEXTURE_CHECKERBOARD || t->kind == VL_TEXTURE_DIRECTION_MIX ||
       t->kind == VL_TEXTURE_DOTS)
     return larger(in[0], in[1]);
-  return 0; /* noise: its colours are its own */
+  return 0; /* noise has fixed colours */
 }
 
-/* The inputs of a material that are shares of light. */
+/* The inputs of a material that are reflectances or transmittances. */
 enum { SHARES = 6 };
 typedef struct Share {
   const char *what;
@@ -175,7 +176,7 @@ static void mark(vlCheck *c, uint8_t *needed) {
 
 static void check_albedo(vlCheck *c) {
   const vlScene *s = c->scene;
-  const float most = 1.001f; /* what rounding of scaled colours may add */
+  const float most = 1.001f; /* tolerance for the rounding of scaled colours */
   uint8_t *needed = vl_alloc_zero(c->context, s->textures.count + 1, 1);
   float *known = vl_alloc_zero(c->context, s->textures.count + 1, sizeof *known);
   if (!needed || !known) c->no_memory = true;

@@ -1,5 +1,5 @@
-/* scene/check_inside.c: the doctor: is the camera in a body where it sees nothing or sees it wrongly; do bodies of
- * media lie in each other as they say? */
+/* scene/check_inside.c: scene check: whether the camera is inside a solid where it sees nothing or a wrong image, and
+ * whether the media of nested solids agree. */
 #include <math.h>
 #include <string.h>
 
@@ -23,7 +23,7 @@ static void eye_of(const vlCameraDef *d, double eye[3]) {
   for (int k = 0; k < 3; k++) eye[k] = d->has_matrix ? d->world_from_camera[4 * k + 3] : d->eye[k];
 }
 
-/* Light passes its surface, or it is none. */
+/* Whether the surface is transmissive or absent (interface). */
 static bool lets_light_pass(const vlCheck *c, const vlShapeDef *d) {
   const vlMaterialDef *m = vl_check_material(c, d->material);
   if (d->alpha.texture.index || d->alpha.value < 1 || d->one_sided) return true;
@@ -31,7 +31,7 @@ static bool lets_light_pass(const vlCheck *c, const vlShapeDef *d) {
   return !(vl_kind_row(&vl_material_family, (int)m->kind)->traits & VL_MATERIAL_OPAQUE);
 }
 
-/* Of the world's own lights; those in instances are not looked at: they count as being inside. */
+/* Lights of the world itself. Those of instances are not examined: they count as inside. */
 static bool holds_light(const vlCheck *c, const vlSolid *solid, const vlMat4 *group_from_world) {
   const vlScene *s = c->scene;
   double p[3], q[3];
@@ -91,7 +91,7 @@ static void judge(vlCheck *c, const vlSolid *solid, const double *eye, const vlM
                  name.text);
 }
 
-/* One placement of a group. Shapes of one material may make the body together. */
+/* Checks one placement of a group. Shapes of one material may form a solid together. */
 static void check_group(vlCheck *c, uint32_t group, const Box *boxes, const double world_eye[3], const double *pose) {
   const vlScene *s = c->scene;
   vlMat4 inverse = vl_mat4_identity();
@@ -205,7 +205,7 @@ static void check_nesting(vlCheck *c, const vlSolid *solids, const Box *boxes, c
   }
 }
 
-/* Shapes of the world itself, each on its own. */
+/* Shapes of the world itself are checked one by one. */
 static void check_media(vlCheck *c, const Box *boxes) {
   const vlScene *s = c->scene;
   vlSolid *solids = vl_alloc_zero(c->context, MAX_SOLIDS, sizeof *solids);

@@ -1,5 +1,5 @@
-/* scene/check_meshes.c: the doctor: faces without area, normals without length, textures over uv that are not there,
- * and bodies that light passes: are they closed, do their normals point outwards? */
+/* scene/check_meshes.c: scene check: faces without area, zero normals, textures that need missing uvs, and transmissive
+ * solids: are they closed, and do their normals point outwards? */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +22,7 @@ static bool has_no_area(const float *p, const uint32_t *f) {
   return g + fabs(e[0][0] * e[1][1] - e[0][1] * e[1][0]) == 0;
 }
 
-/* A share of a hundredth on is a warning: some are in nearly every mesh that comes from a program. */
+/* From one percent on it is a warning: a few degenerate faces are in nearly every exported mesh. */
 static void tell_share(vlCheck *c, const vlShapeDef *d, uint32_t wrong, uint32_t all, const char *what) {
   if (!wrong) return;
   bool much = (double)wrong >= 0.01 * all;
@@ -52,7 +52,7 @@ static void check_degenerate(vlCheck *c, const vlShapeDef *d) {
 
 /* ---- uv ---------------------------------------------------------------------------------------------------------- */
 
-/* What a texture needs of the mesh, with those that it reads. */
+/* What a texture and its inputs need of the mesh. */
 enum { NEEDS_UV = 1, NEEDS_COLORS = 16 }; /* NEEDS_UV << set */
 
 static uint8_t own_needs(const vlTextureDef *t) {
@@ -65,7 +65,7 @@ static uint8_t own_needs(const vlTextureDef *t) {
 }
 
 static uint8_t lacks(const vlShapeDef *d) {
-  if (d->kind != VL_SHAPE_TRIANGLES) return 0; /* the others have uv of their own */
+  if (d->kind != VL_SHAPE_TRIANGLES) return 0; /* other kinds have their own uvs */
   uint8_t none = d->uvs ? 0 : NEEDS_UV;
   for (int k = 0; k < 3; k++)
     if (!d->more_uvs[k]) none |= (uint8_t)(NEEDS_UV << (k + 1));
@@ -74,7 +74,7 @@ static uint8_t lacks(const vlShapeDef *d) {
 
 typedef struct Needs {
   uint8_t *textures, *materials;
-  uint32_t *culprit; /* of materials: texture id that needs it */
+  uint32_t *culprit; /* per material: id of the texture that needs it */
 } Needs;
 
 static void find_needs(vlCheck *c, Needs *n) {
@@ -134,7 +134,7 @@ static void check_uv(vlCheck *c, const vlShapeDef *d, const Needs *n) {
     tell_lack(c, d, NEEDS_UV, "its area light", "the image");
 }
 
-/* ---- bodies ------------------------------------------------------------------------------------------------------ */
+/* ---- solids ------------------------------------------------------------------------------------------------------ */
 
 static bool is_body(const vlCheck *c, const vlShapeDef *d) {
   const vlMaterialDef *m = vl_check_material(c, d->material);
@@ -154,7 +154,7 @@ static int by_key(const void *a, const void *b) {
   return x->shape < y->shape ? -1 : x->shape > y->shape;
 }
 
-/* Does a closed part of the body hold this one? Then it may be a hollow in it. */
+/* Whether another part's box contains this part, which may then be a cavity. */
 static bool lies_in_another(const vlMeshSolid *b, uint32_t part) {
   const vlMeshSolidPart *p = &b->parts[part];
   for (uint32_t i = 0; i < b->part_count; i++) {
@@ -166,8 +166,8 @@ static bool lies_in_another(const vlMeshSolid *b, uint32_t part) {
   return false;
 }
 
-/* The shape that a part's faces mostly come from cannot be told after welding: the first shape of the body stands for
- * all, which is exact where a body is one shape. */
+/* After welding, the shape of a part is unknown: the solid's first shape is reported instead. This is exact for solids
+ * of one shape. */
 static void check_body(vlCheck *c, const uint32_t *shapes, size_t count) {
   const vlScene *s = c->scene;
   const vlShapeDef *first = &s->shapes.items[shapes[0]];
@@ -221,7 +221,7 @@ static void check_bodies(vlCheck *c) {
   if (n) qsort(keys, n, sizeof *keys, by_key);
   for (size_t i = 0, j; i < n && !c->no_memory; i = j) {
     size_t count = 0;
-    bool round = false; /* disks and cylinders may close it: nobody can tell */
+    bool round = false; /* disks and cylinders may close the solid, which is not checked */
     for (j = i; j < n && keys[j].group == keys[i].group && keys[j].material == keys[i].material; j++) {
       round |= !vl_shape_is_mesh(s->shapes.items[keys[j].shape].kind);
       shapes[count++] = keys[j].shape;

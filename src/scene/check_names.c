@@ -1,6 +1,5 @@
-/* scene/check_names.c: the doctor: what is reached from shapes, lights and instances, and what bears a name or a place
- * and is not. Things that were added later refer to earlier ones only, so one walk from the last to the first
- * suffices. */
+/* scene/check_names.c: scene check: which objects shapes, lights and instances use, and which named or placed ones they
+ * do not. Objects refer only to earlier ones, so one pass from the last to the first suffices. */
 #include <stdio.h>
 #include <string.h>
 
@@ -125,7 +124,7 @@ static void find_used(vlCheck *c) {
   }
 }
 
-/* Textures that only unused materials read are told once, by their material. */
+/* A texture that only unused materials read is reported once, with its material. */
 static void mark_textures_of_unused(vlCheck *c, uint8_t *read) {
   const vlScene *s = c->scene;
   vlTextureId inputs[VL_CHECK_INPUTS];
@@ -181,7 +180,7 @@ static void tell_unused(vlCheck *c) {
   vl_free(c->context, mixed);
 }
 
-/* Groups have no place of their own: the place of their first shape stands for them. */
+/* A group is reported at the place of its first shape, since it has none of its own. */
 static void tell_groups(vlCheck *c) {
   const vlScene *s = c->scene;
   size_t next = 0;

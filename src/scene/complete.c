@@ -1,4 +1,4 @@
-/* scene/complete.c: a camera that frames everything, light, a ground: what a file of plain geometry lacks. */
+/* scene/complete.c: completes a file of plain geometry: a camera that frames everything, light, a ground plane. */
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@ vlCompleteDef vl_default_complete_def(void) {
 
 /* ---- where everything is ----------------------------------------------------------------------------------------- */
 
-/* Points are given to `visit`: of meshes some thousands of their vertices, of other things the corners of their box. */
+/* Calls `visit` with points of the scene: some thousands of vertices of each mesh, the box corners of other shapes. */
 typedef void Visit(void *user, const double p[3]);
 
 static void visit_box(const vlMat4 *m, const double low[3], const double high[3], Visit *visit, void *user) {
@@ -52,7 +52,7 @@ static void grow(void *user, const double p[3]) {
 
 static const Box nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 
-/* boxes: of groups, in their own spaces. */
+/* boxes: of the groups, in group space. */
 static void visit_scene(const vlScene *scene, const Box *boxes, Visit *visit, void *user) {
   vlMat4 identity = vl_mat4_identity();
   for (size_t i = 0; i < scene->shapes.count; i++)
@@ -82,7 +82,7 @@ static bool group_boxes(vlScene *scene, Box **boxes) {
 
 /* ---- the camera -------------------------------------------------------------------------------------------------- */
 
-/* For each side of the image how far out its plane must lie: largest x - tan z and the like, over all points. */
+/* The view frustum. sides: the offset of each side plane, the maximum of x - tan z (and so on) over all points. */
 typedef struct Frame {
   double center[3], right[3], up[3], ahead[3];
   double tan_x, tan_y;
@@ -201,7 +201,7 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
   if (ok && def.ground) ok = add_ground(scene, &def, &box);
   vl_free(scene->context, boxes);
   vlEnvironmentKind kind = def.environment;
-  /* Lamps alone leave everything else black: the room is there, too, but dim. */
+  /* Lights alone would leave unlit surfaces black: the studio is added, dimmed. */
   if (kind == VL_ENVIRONMENT_AUTO && scene->lights.count > 0) def.strength *= 0.3f;
   if (kind == VL_ENVIRONMENT_AUTO) kind = s->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
   if (ok && kind != VL_ENVIRONMENT_NONE && vl_scene_add_environment(scene, &def, kind)) s->light_missing = false;

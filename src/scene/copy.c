@@ -1,5 +1,5 @@
-/* scene/copy.c: deep copies of what a def points at. Every block is noted in scene->blocks, so that destroying the
- * scene frees it; on failure nothing is left behind that is not noted. */
+/* scene/copy.c: deep copies of what a def points at. Every block is recorded in scene->blocks and freed with the scene,
+ * also after a failure. */
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@
 
 static const vlSource nowhere = {NULL, 0, 0};
 
-/* The block belongs to the scene from here on, also when this fails (then it is freed). */
+/* Records the block. It belongs to the scene from here on; on failure it is freed. */
 bool vl_scene_own(vlScene *scene, void *block) {
   if (!block) return true;
   void **slot = VL_PUSH(scene->context, &scene->blocks);
@@ -23,7 +23,7 @@ bool vl_scene_own(vlScene *scene, void *block) {
   return true;
 }
 
-/* result_pointer is the address of the pointer that shall point at the copy; null for null or nothing. */
+/* Copies bytes. result_pointer is the address of the pointer to the copy, which becomes null for null or zero bytes. */
 bool vl_scene_copy_block(vlScene *scene, const void *data, size_t count, size_t size, void *result_pointer) {
   void *copy = NULL;
   if (data && count) {
@@ -43,7 +43,7 @@ bool vl_scene_copy_string(vlScene *scene, const char **text) {
   return !*text || vl_scene_copy_block(scene, *text, strlen(*text) + 1, 1, text);
 }
 
-/* File names come again and again: the last ones are looked at first, so a scene of many objects keeps few names. */
+/* File names repeat: the most recent ones are compared first, so that a large scene keeps few copies. */
 bool vl_scene_copy_source(vlScene *scene, vlSource *source) {
   if (!source->file) return true;
   for (size_t i = scene->files.count; i > 0 && i + 16 > scene->files.count; i--) {

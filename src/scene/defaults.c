@@ -1,5 +1,5 @@
-/* scene/defaults.c: the vl_default_*_def of the scene: pbrt-v4's defaults, since its scene files are the ones that
- * leave most unsaid. */
+/* scene/defaults.c: the vl_default_*_def functions of the scene. Defaults are pbrt-v4's, since pbrt files leave most
+ * parameters out. */
 #include <string.h>
 
 #include "base/cookie.h"

@@ -1,4 +1,4 @@
-/* scene/drop.c: meshes leave the scene when a world has taken what it needs of them. */
+/* scene/drop.c: frees meshes once a world has taken what it needs. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
-/* scene/environment.c: see environment.h. Directions here: x to the right, y ahead (away from the viewer), z up; the
- * image is the equal-area octahedral square that infinite lights take (math/octahedral.h). */
+/* scene/environment.c: see environment.h. Directions: x right, y ahead (away from the viewer), z up. The image is the
+ * equal-area octahedral square of infinite lights (math/octahedral.h). */
 #include "scene/environment.h"
 
 #include <math.h>
@@ -31,7 +31,7 @@ static float ramp(float x, float from, float to) {
   return t * t * (3 - 2 * t);
 }
 
-/* A soft light: a rectangle on the sphere, angles in degrees from straight ahead to the right, and up. */
+/* A soft box: a rectangle on the sphere; angles in degrees, azimuth from ahead to the right, and elevation. */
 static float soft_box(float azimuth, float elevation, float at, float height, float half_width, float half_height,
                       float edge) {
   float a = fabsf(azimuth - at);
@@ -41,11 +41,11 @@ static float soft_box(float azimuth, float elevation, float at, float height, fl
 
 static float studio(vlVec3 d) {
   float azimuth = vl_atan2(d.x, d.y) * 57.29578f, elevation = 90.0f - vl_acos(vl_clamp(d.z, -1, 1)) * 57.29578f;
-  /* A grey room: floor, and walls that grow brighter upwards. */
+  /* A grey room: a floor, and walls that become brighter upwards. */
   float floor = 0.14f + 0.08f * ramp(elevation, -90, 0), wall = 0.28f + 0.15f * ramp(elevation, 0, 90);
   float y = floor + (wall - floor) * ramp(elevation, -1.5f, 1.5f);
-  /* The viewer stands at 180 degrees: key light over his left shoulder, fill light on the right, two from behind, one
-   * above. White paper that faces him shows 0.7, lying 1.1. */
+  /* The viewer is at azimuth 180: key light over the left shoulder, fill light on the right, two lights behind the
+   * subject, one above. A white diffuse surface that faces the viewer has radiance 0.7, a horizontal one 1.1. */
   y += 4.2f * soft_box(azimuth, elevation, -135, 42, 32, 24, 6);
   y += 1.2f * soft_box(azimuth, elevation, 105, 22, 16, 34, 6);
   y += 2.2f * soft_box(azimuth, elevation, 38, 38, 16, 16, 5);
@@ -67,7 +67,7 @@ static void fill_studio(vlScene *scene, vlImage *image) {
   vl_parallel_for(scene->context, image->height, fill_row, image);
 }
 
-/* Scattered light alone; the sun is a light of its own. */
+/* Skylight only; the sun is a light of its own. */
 static void fill_sky(vlImage *image) {
   static const float zenith[3] = {0.16f, 0.32f, 0.75f}, horizon[3] = {0.72f, 0.85f, 1.0f},
                      ground[3] = {0.22f, 0.20f, 0.18f};
@@ -87,7 +87,7 @@ static void fill_sky(vlImage *image) {
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 
-/* Mean of 2 x 2 points of each cell, each between four pixels. */
+/* Mean of 2 x 2 points per cell, each interpolated between four pixels. */
 static void from_latitudes(const vlImage *from, const float *pixels, uint32_t channels, vlImage *to) {
   double w = from->width, h = from->height;
   for (uint32_t y = 0; y < to->height; y++) {
@@ -147,7 +147,7 @@ static bool read_environment(vlScene *scene, const char *path, vlImage **image) 
                   from->width, from->height);
   channels = channels > 2 ? 3 : 1;
   ok = ok && (vl_image_to_float(from, channel, channels, &pixels) == VL_OK || out_of_memory(scene));
-  uint32_t side = from->height + from->height / 4; /* about the same solid angle a pixel at the horizon */
+  uint32_t side = from->height + from->height / 4; /* about the same solid angle per pixel at the horizon */
   ok = ok && new_image(scene, side > MOST_SIDE ? MOST_SIDE : side < 16 ? 16 : side, 3, image);
   if (ok) from_latitudes(from, pixels, channels, *image);
   vl_free(scene->context, pixels);
@@ -175,7 +175,7 @@ bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def, vlEnviro
     vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "environment: its axes, rotation or strength make no sense");
     return false;
   }
-  for (int i = 0; i < 3; i++) { /* x to the right, y ahead, both turned about z */
+  for (int i = 0; i < 3; i++) { /* directions with x right, y ahead, rotated about z */
     light.world_from_light[4 * i] = c * right[i] - s * front[i];
     light.world_from_light[4 * i + 1] = -s * right[i] - c * front[i];
     light.world_from_light[4 * i + 2] = up[i];

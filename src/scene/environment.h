@@ -1,12 +1,12 @@
-/* scene/environment.h: light from all around: built-in rooms and images. */
+/* scene/environment.h: environment lights: built-in ones and images. */
 #ifndef SCENE_ENVIRONMENT_H
 #define SCENE_ENVIRONMENT_H
 
 #include "scene/scene.h"
 
-/* Adds the light; kind is not AUTO or NONE. False: the scene has the error. */
+/* Adds the light; kind is not AUTO or NONE. False: the scene holds the error. */
 bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def, vlEnvironmentKind kind);
-/* The world's axes: right, up, front, each of unit length. False: up and front are zero or parallel. */
+/* The world's axes, unit vectors: right, up, front. False: up or front is zero, or they are parallel. */
 bool vl_scene_axes(const vlCompleteDef *def, double right[3], double up[3], double front[3]);
 
 #endif

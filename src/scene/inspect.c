@@ -1,4 +1,4 @@
-/* scene/inspect.c: what a scene holds, for people: its box, its lights with their power. */
+/* scene/inspect.c: a summary of a scene: its bounding box, its lights and their power. */
 #include <math.h>
 #include <string.h>
 
@@ -51,7 +51,7 @@ static double triangle_area(const double p[3][3]) {
   return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
-/* Patches as two triangles; round shapes as if their transform scaled evenly. */
+/* Area of a shape. Patches count as two triangles; quadrics as if their transform scaled uniformly. */
 static double shape_area(const vlShapeDef *d) {
   vlMat4 m = vl_mat4_load(d->group_from_shape);
   double r = d->radius, turn = d->phi_max, scale = vl_precise_cbrt(fabs(vl_mat4_determinant3(m))), sum = 0;
@@ -76,8 +76,8 @@ static double shape_area(const vlShapeDef *d) {
 
 /* ---- lights ------------------------------------------------------------------------------------------------------ */
 
-/* Luminance after pbrt's normalisation: what is emitted divided by the spectrum's own luminance (for RGB: by that of
- * the colour space's white). */
+/* Luminance after pbrt's normalisation: emission divided by the spectrum's luminance (for RGB: by that of the colour
+ * space's white). */
 static double luminance(const vlSpectrum *s) {
   float dense[VL_LAMBDA_COUNT];
   const float *y = vl_cie_y();

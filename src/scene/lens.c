@@ -1,10 +1,10 @@
-/* scene/lens.c: the lens of the scene's camera: a scene owns what its camera only points at. */
+/* scene/lens.c: the lens of the scene's camera: a scene owns the objects that its camera points at. */
 #include <string.h>
 
 #include "base/error.h"
 #include "scene/scene.h"
 
-/* Room first, so that nothing has two owners when memory is out. */
+/* Memory is reserved first: objects never have two owners when an allocation fails. */
 vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
   vl_error_clear(error);
   if (!scene || !from) return vl_fail(error, VL_ERROR_ARGUMENT, "scene take camera: null argument");

@@ -1,4 +1,4 @@
-/* scene/medium.c: participating media come in: checked, then copied. */
+/* scene/medium.c: adds participating media: they are checked, then copied. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,7 +12,7 @@ static bool bad(vlScene *scene, const vlMediumDef *d, const char *why) {
   return false;
 }
 
-/* Values of a grid: finite, and none below 0 where that makes no sense. */
+/* Checks the values of a grid: finite and, for most kinds, not negative. */
 static bool check_values(vlScene *scene, const vlMediumDef *d, const float *v, size_t per, bool signs,
                          const char *what) {
   size_t count = v ? (size_t)d->nx * d->ny * d->nz * per : 0;
@@ -38,7 +38,7 @@ static bool check_grid(vlScene *scene, const vlMediumDef *d) {
          check_values(scene, d, d->rgb_emission, 3, false, "emission");
 }
 
-/* Every sample must be there: negative coefficients would make light of nothing. */
+/* Every sample is checked: negative coefficients would produce light. */
 static bool check_spectrum(vlScene *scene, const vlMediumDef *d, const vlSpectrum *s, const char *what) {
   bool negative = s->scale < 0.0f || (s->kind == VL_SPECTRUM_CONSTANT && s->value < 0.0f);
   for (uint32_t i = 0; s->kind == VL_SPECTRUM_SAMPLED && i < s->count; i++) negative = negative || s->values[i] < 0.0f;
@@ -68,7 +68,7 @@ static bool check_medium(vlScene *scene, const vlMediumDef *d, const vlKindRow *
   return !(row->traits & VL_MEDIUM_TRAIT_CELLS) || check_grid(scene, d);
 }
 
-/* Values per cell, of the kinds that have them. */
+/* Values per cell, for grid kinds. */
 static void copy_cells(const vlMediumDef *from, vlMediumDef *to) {
   bool own = to->kind == VL_MEDIUM_RGB_GRID;
   if (to->kind == VL_MEDIUM_GRID)
@@ -89,7 +89,7 @@ vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
   if (def->rgb_absorption && !check_rgb_absorption(scene, def)) return none;
   char what[120];
   snprintf(what, sizeof what, "medium \"%.80s\"", def->name ? def->name : "");
-  vlMediumDef d = vl_default_medium_def(def->kind); /* what the kind does not read stays at its default */
+  vlMediumDef d = vl_default_medium_def(def->kind); /* members that the kind does not use keep their defaults */
   vl_row_copy_members(row, def, &d);
   d.name = def->name;
   d.source = def->source;

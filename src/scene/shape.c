@@ -1,5 +1,5 @@
-/* scene/shape.c: shapes, groups and instances come in. Meshes may be large: one ignore positions, one over indices.
- */
+/* scene/shape.c: adds shapes, groups and instances. Meshes may be large: one pass checks the positions, one the
+ * indices. */
 #include <math.h>
 #include <string.h>
 
@@ -12,8 +12,8 @@ static vlResult bad(vlScene *scene, const vlShapeDef *d, const char *why) {
   return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s", why);
 }
 
-/* First element that is not finite, or count. x - x is 0 for every finite x and NaN otherwise; sums of such zeros let
- * the search go in blocks, so that a good mesh costs one vector loop. */
+/* Index of the first element that is not finite, or count. x - x is 0 for finite x and NaN otherwise. Blocks are
+ * checked by the sum of these, which vectorises. */
 static size_t first_not_finite(const float *v, size_t count) {
   enum { BLOCK = 1024 };
   for (size_t start = 0; start < count; start += BLOCK) {
@@ -96,7 +96,7 @@ static bool check_curves(vlScene *scene, const vlShapeDef *d) {
   return check_floats(scene, d, d->positions, 3, "position");
 }
 
-/* What the ranges of the row do not say. */
+/* Rules that the ranges of the row do not express. */
 static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
   if (d->kind == VL_SHAPE_DISK && d->inner_radius >= d->radius)
     return bad(scene, d, "inner radius must be less than the radius"), false;
@@ -144,7 +144,7 @@ static bool check_shape(vlScene *scene, vlShapeDef *d) {
   return false;
 }
 
-/* The def's arrays are owned by the scene or absent from here on. */
+/* The def's arrays must be owned by the scene or null. */
 static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
   vlShapeDef *slot = scene->shapes.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->shapes) : NULL;
   if (!slot) {
@@ -213,8 +213,7 @@ vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def) {
                                 d.more_uvs[1],     d.more_uvs[2],   d.widths};
   for (int i = 0; i < BLOCKS; i++) {
     void *block;
-    memcpy(&block, &blocks[i],
-           sizeof block); /* the const of a def's pointers is a promise to callers, not to the owner */
+    memcpy(&block, &blocks[i], sizeof block); /* the scene owns the array; const is for readers */
     if (fine)
       fine = vl_scene_own(scene, block);
     else
@@ -246,7 +245,7 @@ static bool check_pose(vlScene *scene, const double *m, vlSource source) {
   return true;
 }
 
-/* A new instance whose group is there; null after an error. */
+/* A new instance of an existing group; null after an error. */
 static vlSceneInstance *push_instance(vlScene *scene, vlGroupId group, const double *pose, vlSource source) {
   if (scene->error.code != VL_OK) return NULL;
   if (group.index == 0 || group.index > scene->groups.count) {

@@ -1,4 +1,4 @@
-/* scene/solid.c: see solid.h. Also the boxes of shapes. */
+/* scene/solid.c: see solid.h. Also bounding boxes of shapes. */
 #include "scene/solid.h"
 
 #include <math.h>

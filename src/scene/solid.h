@@ -1,4 +1,4 @@
-/* scene/solid.h: closed bodies of a group to ask whether a point is in them: whole spheres and the closed parts of
+/* scene/solid.h: closed solids of a group, and whether a point is inside one: whole spheres and the closed parts of
  * meshes. */
 #ifndef SCENE_SOLID_H
 #define SCENE_SOLID_H
@@ -7,20 +7,20 @@
 #include "scene/mesh_solid.h"
 
 typedef struct vlSolid {
-  const vlShapeDef *shape; /* the (first) one */
+  const vlShapeDef *shape; /* the first shape */
   bool sphere;
-  vlMat4 shape_from_group; /* sphere */
-  vlMeshSolid body;        /* meshes; freed by vl_solid_free */
+  vlMat4 shape_from_group; /* spheres only */
+  vlMeshSolid body;        /* meshes only; freed by vl_solid_free */
 } vlSolid;
 
-/* false: out of memory. Not closed at all: no point is inside. */
+/* False: out of memory. An open solid contains no point. */
 bool vl_solid_make(const vlScene *scene, const uint32_t *shapes, size_t count, vlSolid *solid);
 void vl_solid_free(const vlScene *scene, vlSolid *solid);
-/* p in group space. */
+/* Whether p (group space) is inside. */
 bool vl_solid_holds(const vlSolid *solid, const double p[3]);
-/* The box of one shape in group space. */
+/* The bounding box of one shape in group space. */
 void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]);
-/* Point i of n on the solid's surface, a thousandth nearer to its middle. */
+/* Point i of n on the solid's surface, moved towards its centre by a thousandth of the distance. */
 void vl_solid_sample(const vlSolid *solid, uint32_t i, uint32_t n, double p[3]);
 
 #endif

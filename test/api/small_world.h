@@ -1,5 +1,4 @@
-/* test/api/small_world.h: a world of a few objects that touches much of the renderer, made with the public API, for the
- * tests of the whole. */
+/* test/api/small_world.h: a world of a few objects that uses many parts of the renderer, made with the public API. */
 #ifndef TEST_API_SMALL_WORLD_H
 #define TEST_API_SMALL_WORLD_H
 
@@ -14,7 +13,7 @@ static inline void small_place(double m[16], double x, double y, double z) {
   memcpy(m, place, sizeof place);
 }
 
-/* Fills the scene; errors stay in it. */
+/* Fills the scene; errors are kept in it. */
 static inline void small_scene(vlScene *scene) {
   vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, true);
   checks.su = checks.sv = 6;
@@ -97,7 +96,7 @@ static inline vlResult small_camera(vlCamera *camera) {
   return vl_camera_make(&def, camera, NULL, NULL);
 }
 
-/* Scene, world, film, render, develop. What was made is always cleaned up; *image only on VL_OK. */
+/* Makes scene, world and film, renders and develops. Everything else is destroyed; *image is set on VL_OK only. */
 static inline vlResult small_image(vlContext *context, const vlRenderDef *render, const uint32_t crop[4],
                                    vlColorMode color, vlImage **image) {
   *image = NULL;

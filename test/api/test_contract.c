@@ -1,5 +1,5 @@
-/* test/api/test_contract.c: what every public function promises of bad arguments: a def that skipped its default
- * function is caught by its cookie, null is an answer and not a crash, destroying nothing is allowed. */
+/* test/api/test_contract.c: invalid arguments of every public function: a def without its default function is rejected
+ * by its cookie, null arguments do not crash, and destroying null is allowed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* test/api/test_threads.c: one world shared by renders on several threads of the caller, each with workers of its own:
- * for the thread sanitizer, and the bits must not care. */
+/* test/api/test_threads.c: one world shared by renders on several threads of the caller, each with its own workers.
+ * Meant for the thread sanitizer; the images must also be bit-identical. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

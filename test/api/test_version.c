@@ -1,4 +1,4 @@
-/* test/api/test_version.c: the library says which version it is; a def of another ABI version is refused. */
+/* test/api/test_version.c: the library's version; a def of another ABI version is rejected. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* test/api/test_whole.c: the way through the whole house, on the public API: the same bits for any number of threads,
- * any instruction set, any crop and any split into calls; stopping; memory that runs out at every single place. */
+/* test/api/test_whole.c: the whole pipeline through the public API: the same bits for any number of threads,
+ * instruction set, crop and split into calls; cancellation; a failure of every single allocation. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* test/base/test_base.c: the ground floor: counted memory, arrays, names, errors, files that are whole or not there,
- * instruction sets. */
+/* test/base/test_base.c: the base room: counted memory, arrays, names, errors, files that are written whole or not at
+ * all, instruction sets. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

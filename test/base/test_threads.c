@@ -1,5 +1,5 @@
-/* test/base/test_threads.c: the worker pool: each index once, worker numbers in range, loops in a row, several callers,
- * the caller's own parallel_for, a log that is never entered twice. */
+/* test/base/test_threads.c: the worker pool: each index runs once, worker numbers are in range, loops follow each
+ * other, several callers, the caller's own parallel_for, a log callback that is never entered twice at a time. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

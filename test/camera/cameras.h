@@ -1,4 +1,5 @@
-/* test/camera/cameras.h: what the camera tests share: a fixed random source, a few very different cameras. */
+/* test/camera/cameras.h: helpers of the camera tests: a random source with fixed seeds, a few very different cameras.
+ */
 #ifndef TEST_CAMERA_CAMERAS_H
 #define TEST_CAMERA_CAMERAS_H
 
@@ -16,7 +17,7 @@
 
 #define RADIANS(degrees) ((degrees) * (3.14159265358979323846 / 180.0))
 
-/* splitmix64; a seed gives the same numbers for ever. */
+/* splitmix64; the sequence depends on the seed only. */
 static inline uint64_t next_bits(uint64_t *state) {
   uint64_t z = (*state += 0x9e3779b97f4a7c15u);
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;

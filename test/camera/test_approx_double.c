@@ -1,4 +1,4 @@
-/* test/camera/test_approx_double.c: the elementary functions in double against the C library's long double. */
+/* test/camera/test_approx_double.c: the elementary functions in double, compared with the C library's long double. */
 #include "camera/cameras.h"
 
 #include "math/approx_double.h"

@@ -1,4 +1,5 @@
-/* test/camera/test_camera.c: the camera as a value: ways in, pose, resize, both directions, error messages. */
+/* test/camera/test_camera.c: the camera as a value: descriptions, pose, resizing, projection and unprojection, error
+ * messages. */
 #include "camera/cameras.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* test/camera/test_lens.c: the lens of a camera: shapes of its opening against their areas, the tilted plane in focus,
- * f-number, focus on a point, exposure, vignetting, planes, and what is refused. */
+/* test/camera/test_lens.c: the lens of a camera: areas of aperture shapes, the tilted plane of focus, f-number, focus
+ * on a point, exposure, vignetting, clipping planes, rejected values. */
 #include "camera/context.h"
 
 #include "camera/lens.h"

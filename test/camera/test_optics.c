@@ -1,5 +1,5 @@
-/* test/camera/test_optics.c: lenses of many elements: focal length and focus against the equations, rays against a
- * plain trace by Snell's law, brightness against the pupil's area, both ways, files. */
+/* test/camera/test_optics.c: lenses of many elements: focal length and focus against the equations, rays against an
+ * independent trace by Snell's law, brightness against the pupil's area, projection and unprojection, files. */
 #include "camera/context.h"
 
 #include <stdio.h>

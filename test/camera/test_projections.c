@@ -1,5 +1,5 @@
-/* test/camera/test_projections.c: every projection and calibrated model: there and back, batches and single calls, the
- * edge of what each sees, solid angles, folding, names, error messages. */
+/* test/camera/test_projections.c: every projection and calibrated model: round trips, batches against single calls, the
+ * limit of the field of view, solid angles, folds, names, error messages. */
 #include "camera/cameras.h"
 
 #include "camera/parts.h"

@@ -1,5 +1,5 @@
-/* test/camera/test_rays.c: the batch kernels: the slides' formula to the last bit, agreement with the public functions
- * in double, the same bits on every instruction set, lens, near and far planes. */
+/* test/camera/test_rays.c: the batch kernels: the lecture's formula to the last bit, agreement with the public
+ * functions in double, the same bits on every instruction set, lens, near and far planes. */
 #include "camera/cameras.h"
 
 #include "camera/lens.h"

@@ -1,5 +1,5 @@
-/* Stereo: where points land in both eyes, against formulas written down here; omnidirectional stereo both ways, against
- * the published formula, and in the batches that images are made with. */
+/* test/camera/test_stereo.c: projections of points in both eyes against formulas written here; omnidirectional stereo
+ * in both directions against the published formula, and in the renderer's batches. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

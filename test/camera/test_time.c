@@ -1,5 +1,5 @@
-/* Time in cameras: the shutter's curve is sampled exactly (chi-square), rows are read when they should be, a camera
- * that moves gives the rays of the camera held at their time, and what makes no sense is refused. */
+/* test/camera/test_time.c: time in cameras: exact sampling of the shutter curve (chi-square), read-out times of rows,
+ * rays of a moving camera against the camera held at their time, rejected values. */
 #include "camera/cameras.h"
 
 #include "camera/rays.h"

@@ -1,5 +1,5 @@
-/* Vanishing points: long parallel lines run into them; random cameras come back from their points; horizon; what no
- * camera has is refused. */
+/* test/camera/test_vanishing.c: long parallel lines converge to their vanishing points; random cameras are recovered
+ * from their vanishing points; the horizon; impossible points are rejected. */
 #include "camera/cameras.h"
 
 #include "velo/vanishing.h"

@@ -1,5 +1,5 @@
-/* test/camera_files/files.h: what the tests of camera files share: a folder of their own, texts put into it, reading
- * and writing that must succeed or must fail with certain words. */
+/* test/camera_files/files.h: helpers of the camera file tests: a directory of their own, files with given text, reading
+ * and writing that must succeed or must fail with a given message. */
 #ifndef TEST_CAMERA_FILES_FILES_H
 #define TEST_CAMERA_FILES_FILES_H
 
@@ -29,7 +29,7 @@ static inline int files_teardown(void **state) {
   return system(command);
 }
 
-/* Lives until the fourth call after this. */
+/* Valid until the fourth call after this one. */
 static inline const char *path_of(const char *name) {
   static char paths[4][512];
   static int turn;
@@ -58,7 +58,7 @@ static inline vlCameraRecord read_with(const char *path, const vlCameraFileDef *
   return record;
 }
 
-/* The error of reading a text. */
+/* The error message of reading a text. */
 static inline vlError refused(const char *name, const char *text) {
   vlCameraRecord record;
   vlError error;
@@ -74,7 +74,7 @@ static inline vlError refused(const char *name, const char *text) {
     assert_int_equal(refused_error.line, at_line);                                                             \
   } while (0)
 
-/* Writing a record and reading it again with the memory running out at every place in turn. file may be null. */
+/* Writes a record and reads it again while each allocation in turn fails. file may be null. */
 static inline void check_memory(const char *path, const vlCameraRecord *record, const vlCameraFileDef *file) {
   bool done = false;
   for (long n = 1; !done && n < 1000; n++) {

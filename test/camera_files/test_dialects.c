@@ -1,5 +1,5 @@
-/* Cameras of glTF, Mitsuba, USD, OpenGL, Vulkan, Direct3D: round trips of random cameras, published examples in hand-
- * computed numbers, the matrices as those APIs use them, refusals by name. */
+/* Cameras of glTF, Mitsuba, USD, OpenGL, Vulkan, Direct3D: round trips of random cameras, published examples with
+ * numbers computed by hand, matrices as those APIs use them, rejected content by name. */
 #include "camera_files/files.h"
 
 static void lens(vlCameraDef *d, vlDistortion kind, uint32_t count, const double *k) {

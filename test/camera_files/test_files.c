@@ -1,4 +1,5 @@
-/* Camera files: round trips through every dialect, the half-pixel table in exact numbers, refusals by name, memory. */
+/* Camera files: round trips through every dialect, the half-pixel table in exact numbers, rejected content by name,
+ * memory. */
 #include "camera_files/files.h"
 
 #include <sys/stat.h>

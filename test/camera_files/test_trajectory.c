@@ -1,5 +1,5 @@
-/* Files of many frames: what each dialect's frames are, that a frame is the camera that vl_camera_read gives for it,
- * and that bad lines are told with their place. */
+/* Files of many frames: the frames of each dialect, agreement of a frame with the camera that vl_camera_read gives for
+ * it, invalid lines reported with their place. */
 #include <sys/stat.h>
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
-/* Wrong glTF, Mitsuba, USD and matrix files: one clear line each, with the line's number where the format has lines;
- * nothing that eats memory or time. */
+/* Invalid glTF, Mitsuba, USD and matrix files: one clear line each, with the line number where the format has lines;
+ * bounded memory and time. */
 #include "camera_files/files.h"
 
 static void test_gltf(void **state) {

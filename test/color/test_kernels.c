@@ -1,5 +1,5 @@
 /* Colour kernels: the same bits on every instruction set and as the inline functions; wavelengths follow their density;
- * an image of a constant spectrum has the colour that it must have. */
+ * an image of a constant spectrum has the exact colour. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

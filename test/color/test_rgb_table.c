@@ -1,4 +1,4 @@
-/* RGB to spectrum: round trips in every space, greys and ends exact, spectra within [0,1], no jumps. */
+/* RGB to spectrum: round trips in every space, exact greys and ends, spectra within [0, 1], no discontinuities. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

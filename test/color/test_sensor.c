@@ -1,5 +1,5 @@
-/* test/color/test_sensor.c: measured cameras: every one's matrix by another way (the normal equations of each row by
- * Gauss's elimination), white that stays white, daylight that is the CIE's. */
+/* test/color/test_sensor.c: measured cameras: each matrix computed independently (normal equations of each row by
+ * Gaussian elimination), white stays white, daylight agrees with the CIE's. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-/* The film: exact sums whatever the order and grouping, constant images, passes that leave no trace, merging, wrong
- * samples, wrong defs, no memory. */
+/* The film: exact sums for any order and grouping, constant images, passes without effect on the bits, merging, invalid
+ * samples, invalid defs, failing allocations. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,4 +1,5 @@
-/* Pixel filters: sampled as their shape says, weights of mean 1, monotone, the same bits on every instruction set. */
+/* Pixel filters: samples follow the filter's shape, weights have mean 1, monotone, the same bits on every instruction
+ * set. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

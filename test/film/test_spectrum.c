@@ -1,5 +1,5 @@
-/* Spectra in the film: exact sums of each bucket whatever the order, grouping and passes; merging; names; wrong defs
- * and samples; no memory. */
+/* Spectra in the film: exact sums of each bucket for any order, grouping and passes; merging; names; invalid defs and
+ * samples; failing allocations. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* test/film/test_white.c: white balance: daylight comes out white, D65 stays what it is, the matrix of the Bradford
- * transform as it is published. */
+/* test/film/test_white.c: white balance: daylight becomes white, D65 is unchanged, the matrix of the Bradford transform
+ * as published. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,4 @@
-/* test/fuzz/fuzz.h: what the fuzz targets share: a quiet context, the input as a file, the bound on memory. */
+/* test/fuzz/fuzz.h: helpers of the fuzz targets: a context without log, the input as a file, a bound on memory. */
 #ifndef TEST_FUZZ_FUZZ_H
 #define TEST_FUZZ_FUZZ_H
 
@@ -11,8 +11,8 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* A file from a stranger may ask for memory in proportion to its size; a gzip stream unpacks to a thousand times its
- * own at most. Past this the target stops, which counts as a crash. */
+/* An untrusted file may use memory in proportion to its size; a gzip stream expands at most a thousandfold. Beyond this
+ * bound the target stops, which counts as a crash. */
 enum { FUZZ_MEMORY = 1 << 28, FUZZ_LEFT = 1 << 16 /* the context's own */ };
 
 static inline vlContext *fuzz_context(void) {
@@ -32,7 +32,7 @@ static inline void fuzz_end(vlContext *context) {
   vl_context_destroy(context);
 }
 
-/* The input as a file of that name in a folder of this process; the path lives until the next call. */
+/* Writes the input to a file of that name in a directory of this process. The path is valid until the next call. */
 static inline const char *fuzz_file(const char *name, const uint8_t *data, size_t size) {
   static char folder[64], path[128];
   if (!folder[0]) {

@@ -1,4 +1,4 @@
-/* glTF, as .gltf or .glb by its first bytes: read, at a moment of its animation, and completed by what it lacks. */
+/* glTF, as .gltf or .glb by its first bytes: read at a time of its animation, and completed. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

@@ -1,4 +1,4 @@
-/* OBJ and MTL: the input is both, so that a library's words and a file's may stand in one. */
+/* OBJ and MTL: the input is both the OBJ file and its library. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

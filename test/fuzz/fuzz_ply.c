@@ -1,4 +1,4 @@
-/* Meshes: PLY files, ASCII and binary, through the scene that names one. */
+/* PLY files, ASCII and binary, read through a scene that names one. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

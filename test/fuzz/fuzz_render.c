@@ -1,5 +1,5 @@
-/* The whole way: what a scene file says is built into a world and a few pixels of it are rendered. Nothing may crash,
- * hang or take memory out of proportion, whatever numbers stand in a file that reads well. */
+/* The whole pipeline: a scene file is built into a world and a few pixels are rendered. No valid file may cause a
+ * crash, a hang or excessive memory, whatever its numbers are. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

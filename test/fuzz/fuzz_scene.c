@@ -1,4 +1,4 @@
-/* Scene files: tokens, directives, parameters, and what the scene accepts of them. */
+/* Scene files: tokens, directives, parameters, and the scene's checks. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

@@ -1,5 +1,5 @@
-/* What scenes name beside meshes and images, told by its first bytes: measured materials, NanoVDB grids; anything
- * else is taken for a spectrum, a lens and a list of poses. */
+/* Files that scenes name besides meshes and images, chosen by their first bytes: measured materials and NanoVDB grids;
+ * any other input is read as a spectrum, a lens and a list of poses. */
 #include "fuzz.h"
 #include "velo/trajectory.h"
 

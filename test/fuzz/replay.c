@@ -1,6 +1,6 @@
-/* test/fuzz/replay.c: runs a fuzz target without libFuzzer: over files and folders, each as it is and, with
- * --mutate N, in N damaged forms (fixed seed: bytes changed, cut off, doubled, swapped for telling numbers).
- * Prints how many inputs it ran; a crash or a sanitizer's report is the failure. */
+/* test/fuzz/replay.c: runs a fuzz target without libFuzzer over files and directories: each file unchanged and, with
+ * --mutate N, in N damaged forms (fixed seed: bytes changed, cut off, duplicated, replaced by special values). Prints
+ * the number of inputs. A crash or a sanitizer's report is a failure. */
 #include <dirent.h>
 #include <stdint.h>
 #include <stdio.h>

@@ -1,5 +1,4 @@
-/* test/image/sample_images.h: what the tests of this room share: contexts that count, folders, patterns.
- */
+/* test/image/sample_images.h: helpers of the image tests: counting contexts, directories, test patterns. */
 #ifndef TEST_IMAGE_SAMPLE_IMAGES_H
 #define TEST_IMAGE_SAMPLE_IMAGES_H
 
@@ -34,7 +33,7 @@ static inline void end_context(vlContext *context) {
   vl_context_destroy(context);
 }
 
-/* A folder of this process's own. */
+/* A directory of this process. */
 static inline const char *folder(void) {
   static char path[512];
   if (!path[0]) {
@@ -78,7 +77,7 @@ static inline uint32_t noise(uint32_t *state) {
   return *state >> 8;
 }
 
-/* An image of the type with a pattern that has flat parts, slopes and noise. */
+/* An image of the type with flat parts, ramps and noise. */
 static inline vlImage *make_image(vlContext *context, uint32_t width, uint32_t height, uint32_t channels,
                                   vlPixelType type, vlEncoding encoding) {
   vlImageDef def = vl_default_image_def(width, height, channels);

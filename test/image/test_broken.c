@@ -1,5 +1,5 @@
-/* Files that lie: cut off at every byte, damaged, promising more than they hold. Each is a clear refusal (or an image,
- * where the damage does not show), fast and small. */
+/* Damaged image files: cut off at every byte, with changed bytes, with sizes larger than their data. Each is rejected
+ * clearly (or gives an image, when the damage cannot be detected), in little time and memory. */
 #include "sample_images.h"
 
 #include <dirent.h>

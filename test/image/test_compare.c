@@ -1,5 +1,5 @@
 /* Differences of images: sums against a plain computation, FLIP against a direct evaluation of the paper's formulas
- * (two-dimensional kernels, doubles, libm), and what must hold of it. */
+ * (two-dimensional kernels, double, libm), and properties of FLIP. */
 #include "sample_images.h"
 
 #include "image/flip.h"

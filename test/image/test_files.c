@@ -1,5 +1,5 @@
-/* Round trips through every format that is written, attributes, determinism, suffixes, failures while writing, memory
- * running out at every step, and oiiotool as an independent reader where it is installed. */
+/* Round trips through every written format, attributes, determinism, suffixes, write errors, a failure of every
+ * allocation, and oiiotool as an independent reader where it is installed. */
 #include "sample_images.h"
 
 #include "image/pixel.h"

@@ -1,4 +1,4 @@
-/* Images in memory: creating, values as light, attributes, curves, halves. */
+/* Images in memory: creation, values as linear light, attributes, curves, halves. */
 #include "sample_images.h"
 
 #include "base/cookie.h"

@@ -1,4 +1,4 @@
-/* Several images in one OpenEXR file, each in its own type, and single channels out of it. */
+/* Several images in one OpenEXR file, each with its own type, and single channels read from it. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

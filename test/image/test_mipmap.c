@@ -1,4 +1,4 @@
-/* Mip pyramids: sizes, means, bytes that stay bytes, encodings, memory. */
+/* Mipmaps: sizes, means, 8-bit storage, encodings, memory. */
 #include "sample_images.h"
 
 #include "image/mipmap.h"

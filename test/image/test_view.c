@@ -1,4 +1,4 @@
-/* From light to display values, against the published formulas computed here with libm. */
+/* Views: from linear light to display values, against the published formulas computed with libm. */
 #include "sample_images.h"
 
 static double srgb(double v) {

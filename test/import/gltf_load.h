@@ -1,5 +1,5 @@
-/* test/import/gltf_load.h: glTF files made by gltf_writer.h in a folder of the test's own, and loaded; a square to
- * begin with. */
+/* test/import/gltf_load.h: writes glTF files made by gltf_writer.h to a directory of the test and loads them; a square
+ * as a start. */
 #ifndef TEST_IMPORT_GLTF_LOAD_H
 #define TEST_IMPORT_GLTF_LOAD_H
 

@@ -1,4 +1,4 @@
-/* A tiny glTF 2.0 file made by a test: numbers go into one buffer as base64 or a binary chunk, JSON is written by hand.
+/* A tiny glTF 2.0 file made by a test: arrays go into one buffer as base64 or a binary chunk, JSON is written by hand.
  */
 #ifndef TEST_IMPORT_GLTF_WRITER_H
 #define TEST_IMPORT_GLTF_WRITER_H
@@ -44,7 +44,7 @@ static inline int gltf_shorts(Gltf *g, const uint16_t *data, size_t count) {
   return gltf_accessor(g, gltf_view(g, data, count * sizeof *data, 0), 5123, count, "SCALAR", NULL);
 }
 
-/* What stands after the arrays, as "\"nodes\":[...],\"meshes\":[...]". */
+/* json: the members after the arrays, such as "\"nodes\":[...],\"meshes\":[...]". */
 static inline char *gltf_json(const Gltf *g, const char *uri, const char *rest) {
   size_t room = strlen(g->views) + strlen(g->accessors) + strlen(rest) + strlen(uri) + 1000;
   char *text = malloc(room);

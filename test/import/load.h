@@ -1,4 +1,4 @@
-/* test/import/load.h: scenes from strings, and what is said about them. */
+/* test/import/load.h: loads scenes from strings and records their messages. */
 #ifndef TEST_IMPORT_LOAD_H
 #define TEST_IMPORT_LOAD_H
 
@@ -22,7 +22,8 @@ typedef struct Loaded {
   vlScene *scene;
   vlResult result;
   vlError error;
-  char log[4096]; /* "level file:line:column: text\n" each */
+  char log[4096]; /* lines "level file:line:column: text
+                   * " */
 } Loaded;
 
 static inline void note(void *user, vlLogLevel level, const vlError *where, const char *message) {
@@ -49,7 +50,7 @@ static inline void end_load(Loaded *l) {
   vl_context_destroy(l->context);
 }
 
-/* The text stands for the file "t.pbrt". */
+/* The text is loaded as the file "t.pbrt". */
 static inline void load_text(Loaded *l, const char *text, bool permissive) {
   start_load(l);
   vlLoadDef def = vl_default_load_def();
@@ -64,7 +65,7 @@ static inline void load_fine(Loaded *l, const char *text) {
   assert_int_equal(l->result, VL_OK);
 }
 
-/* The error as the program prints it: "file:line:column: message". Says what differs. */
+/* Expects the error as the program prints it: "file:line:column: message". Prints the difference. */
 static inline bool gives_error(const char *text, vlResult code, const char *expected) {
   Loaded l;
   char said[1200];

@@ -1,4 +1,4 @@
-/* test/import/test_builder.c: what statements mean: transforms, shapes, objects. */
+/* test/import/test_builder.c: statements for transforms, shapes, objects. */
 #include "import/load.h"
 
 #define W "WorldBegin\n"

@@ -1,5 +1,4 @@
-/* test/import/test_builder_camera.c: what statements mean: pbrt's and the lecture's cameras, and the defs of the
- * image. */
+/* test/import/test_builder_camera.c: statements for pbrt's and the lecture's cameras, and the defs of the image. */
 #include "import/load.h"
 
 #define W "WorldBegin\n"

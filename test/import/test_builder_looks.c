@@ -1,5 +1,5 @@
-/* test/import/test_builder_looks.c: what statements mean: materials, textures, lights, media, with their
- * defaults and attributes. */
+/* test/import/test_builder_looks.c: statements for materials, textures, lights and media, with defaults and attributes.
+ */
 #include "import/load.h"
 
 #define W "WorldBegin\n"

@@ -1,5 +1,5 @@
-/* test/import/test_cameras.c: the Camera directive's further kinds: pbrt's spherical camera by pbrt's own formulas, and
- * velo's projections and calibrated lenses in the lecture's words. */
+/* test/import/test_cameras.c: further kinds of the Camera directive: pbrt's spherical camera against pbrt's formulas,
+ * velo's projections and calibrated lenses with the lecture's parameters. */
 #include "import/load.h"
 
 #define W "WorldBegin\nShape \"sphere\"\n"

@@ -1,4 +1,4 @@
-/* test/import/test_errors.c: every kind of mistake in a scene file, its one line and its place, to the letter. */
+/* test/import/test_errors.c: every kind of error in a scene file: the exact text of its line and its place. */
 #include "import/load.h"
 
 #define W "WorldBegin\n"

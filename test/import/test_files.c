@@ -1,5 +1,4 @@
-/* test/import/test_files.c: scenes of several files: Include, Import, gzip, spectra, what names are relative to,
- * circles. */
+/* test/import/test_files.c: scenes of several files: Include, Import, gzip, spectra, relative paths, cycles. */
 #include <sys/stat.h>
 #include <zlib.h>
 

@@ -1,5 +1,5 @@
-/* test/import/test_gltf.c: glTF files made here become the scenes that the specification says: arrays, modes, trees,
- * animation, deformation, tangents, cameras. */
+/* test/import/test_gltf.c: glTF files made here become the scenes that the specification defines: arrays, modes, node
+ * trees, animation, deformation, tangents, cameras. */
 #include "import/gltf_load.h"
 #include "velo/render.h"
 

@@ -1,5 +1,6 @@
-/* test/import/test_gltf_damage.c: damaged glTF files give a clear error or an image: never a crash, a hang, gigabytes.
- * One file that uses much of the format is cut off, has bytes and numbers changed, by a fixed seed. */
+/* test/import/test_gltf_damage.c: damaged glTF files give a clear error or an image, without crashes, hangs or
+ * excessive memory. A file that uses much of the format is truncated and has bytes and numbers changed, by a fixed
+ * seed. */
 #include "import/gltf_writer.h"
 #include "import/load.h"
 

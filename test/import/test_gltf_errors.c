@@ -1,4 +1,4 @@
-/* test/import/test_gltf_errors.c: what is wrong in a glTF file is said, with its place. */
+/* test/import/test_gltf_errors.c: errors in glTF files are reported with their place. */
 #include "import/gltf_load.h"
 #include "velo/render.h"
 

@@ -1,6 +1,6 @@
-/* test/import/test_gltf_models.c: what Khronos' sample models are there to show, each as a small file made here: skins
- * that share a mesh and joints, eight influences, many morph targets, names in Unicode, long chains and wide trees of
- * nodes, hidden nodes, interleaved arrays, files with next to nothing in them. */
+/* test/import/test_gltf_models.c: the features that Khronos' sample models show, each as a small file made here: skins
+ * that share a mesh and joints, eight influences, many morph targets, Unicode names, deep and wide node trees, hidden
+ * nodes, interleaved arrays, nearly empty files. */
 #include "import/gltf_load.h"
 
 static void is_near(double a, double b, double most) {

@@ -1,6 +1,6 @@
-/* test/import/test_gltf_more.c: glTF beyond the core: a shutter that is open for a while, several scenes, variants,
- * packed buffers, WebP beside other images, light from a cube of images, textures with uv sets and transforms of
- * their own, extensions that velo lacks. */
+/* test/import/test_gltf_more.c: glTF beyond the core: a shutter interval, several scenes, variants, compressed buffers,
+ * WebP beside other images, image-based lights, textures with their own uv sets and transforms, unsupported extensions.
+ */
 #include <meshoptimizer.h>
 
 #include "image/image.h"

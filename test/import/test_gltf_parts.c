@@ -1,5 +1,5 @@
-/* test/import/test_gltf_parts.c: parts of glTF files, each against the specification's own words: vertex colours in all
- * their types, meshopt's filters, animation pointers, the six faces of surroundings, lamps, emission, variants. */
+/* test/import/test_gltf_parts.c: parts of glTF files, each against the text of the specification: vertex colours of all
+ * types, meshopt's filters, animation pointers, the six faces of cube maps, lights, emission, variants. */
 #include <meshoptimizer.h>
 
 #include "image/image.h"

@@ -1,4 +1,4 @@
-/* test/import/test_lens.c: lenses in scene files: velo's words for them, pbrt's realistic camera, what is wrong. */
+/* test/import/test_lens.c: lenses in scene files: velo's parameters, pbrt's realistic camera, errors. */
 #include "import/load.h"
 
 #define W "WorldBegin\nShape \"sphere\"\n"

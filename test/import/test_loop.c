@@ -1,4 +1,4 @@
-/* test/import/test_loop.c: Loop subdivision against what is known of its limit surface. */
+/* test/import/test_loop.c: Loop subdivision against known properties of its limit surface. */
 #include "import/load.h"
 #include "import/pbrt/loop.h"
 

@@ -1,5 +1,5 @@
-/* Small meshes put together: the world's triangles are those of the same Shapes kept apart, and memory that runs out on
- * the way leaves nothing behind. */
+/* test/import/test_mesh_run.c: merged small meshes give the same triangles in the world as separate Shapes; failing
+ * allocations leak nothing. */
 #include "import/load.h"
 
 #include "failing_allocator.h"

@@ -1,5 +1,5 @@
-/* pbrt's animated transforms: what moves becomes groups and instances with two poses, in pbrt's times; parts of objects
- * that move move with each of their instances; the camera's two poses. */
+/* test/import/test_motion.c: pbrt's animated transforms: moving shapes become groups and instances with two poses at
+ * pbrt's times; moving parts of objects move with each instance; the camera's two poses. */
 #include "import/load.h"
 
 #define W "WorldBegin\n"

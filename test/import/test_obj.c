@@ -1,4 +1,4 @@
-/* test/import/test_obj.c: OBJ with its MTL libraries, and PLY as a scene: what is read, what is refused and how. */
+/* test/import/test_obj.c: OBJ with its MTL libraries, and PLY as a scene: accepted and rejected content. */
 #include "import/load.h"
 
 #include "failing_allocator.h"

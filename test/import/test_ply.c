@@ -1,4 +1,4 @@
-/* test/import/test_ply.c: PLY files of all kinds, good and bad. */
+/* test/import/test_ply.c: PLY files of all kinds, valid and invalid. */
 #include <time.h>
 
 #include "import/load.h"

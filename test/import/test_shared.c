@@ -1,5 +1,5 @@
-/* test/import/test_shared.c: scenes that others made, from ../shared/scenes/pbrt: as they are, each loads or names what
- * is not understood; permissive, all load. Skipped where the folder is not there. */
+/* test/import/test_shared.c: published scenes from ../shared/scenes/pbrt: each loads or names what is not supported;
+ * with permissive, all load. Skipped without that folder. */
 #include <dirent.h>
 
 #include "base/text.h"

@@ -1,4 +1,4 @@
-/* test/import/test_token.c: tokens with their places, and numbers to the last bit. */
+/* test/import/test_token.c: tokens with their places; numbers correct to the last bit. */
 #include "import/load.h"
 #include "import/pbrt/token.h"
 

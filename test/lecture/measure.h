@@ -1,14 +1,14 @@
-/* test/lecture/measure.h: measuring a rendered image to a fraction of a pixel.
+/* test/lecture/measure.h: measures positions in a rendered image to a fraction of a pixel.
  *
- * A property scene shows flat, evenly shining shapes on nothing, so a pixel's alpha (or colour over full colour) is the
- * share of it that a shape covers. Adding that share along a row from inside a shape to outside it gives the place of
- * the shape's edge, averaged over the row: for a straight edge, its place at the middle of the row. No edge detector,
- * no guess: coverage is an integral and the sum undoes it exactly.
+ * A property scene contains flat shapes of uniform emission on an empty background, so a pixel's alpha (or colour
+ * divided by full colour) is the share of it that a shape covers. The sum of coverage along a row, from inside a shape
+ * to outside it, gives the position of the shape's edge averaged over the row's height: for a straight edge, its
+ * position at the middle of the row. Coverage is an integral and the sum inverts it exactly.
  *
- * How exact: with 256 low-discrepancy samples a pixel crossed by an edge knows its coverage to about 0.005 (rms; a
- * point set with n points errs like n^-3/4 on a half plane, 0.016, less where the edge is nearly parallel to an axis).
- * A row crosses one to three such pixels: about 0.01 pixel for one row, 0.05 as a safe bound for the worst of some
- * hundred rows, and 0.02 for a mean or a fitted line. */
+ * Accuracy: with 256 low-discrepancy samples a pixel on an edge has its coverage to about 0.005 (rms; n points err like
+ * n^-3/4 on a half plane, 0.016, less where the edge is nearly parallel to an axis). A row crosses one to three such
+ * pixels: about 0.01 pixel per row, 0.05 as a safe bound for the worst of some hundred rows, and 0.02 for a mean or a
+ * fitted line. */
 #ifndef TEST_LECTURE_MEASURE_H
 #define TEST_LECTURE_MEASURE_H
 
@@ -24,8 +24,8 @@
 
 #include "velo/velo.h"
 
-#define ONE_ROW 0.05 /* pixels: the worst single row */
-#define FITTED 0.02  /* pixels: a mean or a fitted line where it was measured */
+#define ONE_ROW 0.05 /* pixels: bound for the worst single row */
+#define FITTED 0.02  /* pixels: bound for a mean or a fitted line within its measured range */
 
 typedef struct {
   double x, y;
@@ -39,7 +39,7 @@ typedef struct {
   vlCamera camera;
   vlImage *image;
   uint32_t width, height;
-  float full[4]; /* the largest value of each channel: full coverage */
+  float full[4]; /* the largest value of each channel, which means full coverage */
 } Image;
 
 static inline void ok(vlResult result, const vlError *error) {
@@ -49,8 +49,8 @@ static inline void ok(vlResult result, const vlError *error) {
 
 typedef void ChangeCamera(vlCameraDef *def, const void *user);
 
-/* Renders scenes/lecture/<name>.pbrt with its own camera (changed, where change is not null), tracer and filter in a
- * small image, RGB, 256 samples. */
+/* Renders scenes/lecture/<name>.pbrt with its own camera (modified by `change` if not null), tracer and filter to a
+ * small RGB image with 256 samples per pixel. */
 static inline Image render_changed(const char *name, uint32_t width, uint32_t height, ChangeCamera *change,
                                    const void *user) {
   Image p = {.width = width, .height = height};
@@ -104,13 +104,13 @@ static inline void free_image(Image *p) {
 
 enum { RED, GREEN, BLUE, ALPHA };
 
-/* Share of the pixel that is covered, as the channel tells; nothing outside the image. */
+/* Coverage of a pixel by its channel; 0 outside the image. */
 static inline double coverage(const Image *p, int channel, long x, long y) {
   if (x < 0 || y < 0 || x >= (long)p->width || y >= (long)p->height) return 0;
   return (double)vl_image_get(p->image, (uint32_t)x, (uint32_t)y, (uint32_t)channel) / (double)p->full[channel];
 }
 
-/* The exact place of a world point in the image. */
+/* The exact projection of a world point. */
 static inline P2 exact(const Image *p, P3 point) {
   const double world[3] = {point.x, point.y, point.z};
   double pixel[2];
@@ -123,22 +123,22 @@ static inline P3 add3(P3 a, P3 b) {
   return (P3){a.x + b.x, a.y + b.y, a.z + b.z};
 }
 
-/* Measured places of one straight edge. A steep edge has one place a row: (across, along) = (x, y); a flat one has one
- * a column: (y, x). */
+/* Measured positions of one straight edge: for a steep edge one per row, (across, along) = (x, y); for a flat edge one
+ * per column, (y, x). */
 typedef struct {
   bool flat;
   int count;
   double along[1024], across[1024];
 } Edge;
 
-/* a, b: the exact ends, which say where to look: a band some pixels wide around the line between them. Rows where the
- * band is not wholly covered on one side and empty on the other (other shapes, the image's border) tell nothing and
- * are left out; a caller says how many it wants at least, so an image without the edge fails. */
+/* a, b: the exact ends of the edge, which define a band some pixels wide around it. Rows in which the band is not fully
+ * covered on one side and empty on the other (other shapes, the image's border) are left out. The caller requires a
+ * minimum number of rows, so an image without the edge fails. */
 static inline Edge measure_edge(const Image *p, int channel, P2 a, P2 b, int at_least) {
   Edge e = {.flat = fabs(b.x - a.x) > fabs(b.y - a.y)};
   double a0 = e.flat ? a.x : a.y, a1 = e.flat ? a.y : a.x, b0 = e.flat ? b.x : b.y, b1 = e.flat ? b.y : b.x;
   double slope = (b1 - a1) / (b0 - a0);
-  long first = (long)ceil(fmin(a0, b0) + 2), last = (long)floor(fmax(a0, b0) - 2); /* clear of the corners */
+  long first = (long)ceil(fmin(a0, b0) + 2), last = (long)floor(fmax(a0, b0) - 2); /* away from the corners */
   long size = e.flat ? (long)p->width : (long)p->height, breadth = e.flat ? (long)p->height : (long)p->width;
   if (first < 0) first = 0;
   if (last > size) last = size;
@@ -189,7 +189,7 @@ static inline Line fit_line(const Edge *e) {
   return l;
 }
 
-/* Largest and mean distance of the measured places from the exact line through a and b, along the row. */
+/* Largest and mean distance of the measured positions from the exact line through a and b, along the row. */
 static inline void compare_edge(const Edge *e, P2 a, P2 b, double *worst, double *mean) {
   double a0 = e->flat ? a.x : a.y, a1 = e->flat ? a.y : a.x, b0 = e->flat ? b.x : b.y, b1 = e->flat ? b.y : b.x;
   *worst = *mean = 0;
@@ -200,7 +200,7 @@ static inline void compare_edge(const Edge *e, P2 a, P2 b, double *worst, double
   }
 }
 
-/* The point nearest to all lines (least squares of the distances across them). */
+/* The point with the least sum of squared distances to all lines, measured across them. */
 static inline P2 meet(const Line *lines, int count) {
   double m[3] = {0, 0, 0}, r[2] = {0, 0};
   for (int i = 0; i < count; i++) {

@@ -1,6 +1,5 @@
-/* test/lecture/test_properties.c: the six properties of perspective that the lecture states, measured on rendered
- * pixels and compared with the exact projection. The shapes are those of scenes/lecture/property_1.pbrt to
- * property_6.pbrt. */
+/* test/lecture/test_properties.c: the lecture's six properties of perspective, measured in rendered images and compared
+ * with the exact projection. The shapes are those of scenes/lecture/property_1.pbrt to property_6.pbrt. */
 #include "lecture/measure.h"
 
 enum { W = 160, H = 120 };

@@ -1,5 +1,5 @@
-/* test/lecture/test_scenes.c: every scene of the lecture loads, and its camera is the one the slide gives: eye, lookat
- * and f = zoom d / s. */
+/* test/lecture/test_scenes.c: every scene of the lecture loads, and its camera has the slide's eye, lookat and f = zoom
+ * d / s. */
 #include <dirent.h>
 #include <math.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
-/* test/lecture/test_words.c: what each word of the lecture's camera does to a rendered image: d and zoom, roll,
- * exposure time, clipping planes; and the thin lens. The scene is that of property 1: four disks at the distances 250,
- * 500, 1000, 2000. */
+/* test/lecture/test_words.c: the effect of each of the lecture's camera parameters on a rendered image: d and zoom,
+ * roll, exposure time, clipping planes, thin lens. The scene is that of property 1: four disks at distances 250, 500,
+ * 1000, 2000. */
 #include "lecture/measure.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* The bricks of the samplers, each against its definition. */
+/* The low-discrepancy building blocks of the samplers, each against its definition. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* Poses between two matrices: the ends are met, rotations stay rotations and turn evenly, mirrors and stretches go
- * along, what cannot be turned into one another is refused. */
+/* Interpolation of two poses: the ends are exact, rotations stay rotations with constant speed, mirroring and
+ * stretching are interpolated, poses that no rotation connects are rejected. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,5 @@
-/* The judge judged: known values of the chi-square distribution; right samplers pass, slightly wrong ones do not. */
+/* The statistical tests themselves: known values of the chi-square distribution; correct samplers pass, slightly wrong
+ * ones fail. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,4 +1,4 @@
-/* Warps: densities by chi-square, integrals to 1, the way back, small cones and triangles. */
+/* Warps: densities by chi-square, integrals of 1, inverses, small cones and triangles. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

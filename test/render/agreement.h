@@ -1,5 +1,5 @@
-/* test/render/agreement.h: do two tracers have the same mean? Images of several seeds give means of bands of the
- * image and their standard errors; those of two tracers must agree within both. */
+/* test/render/agreement.h: whether two tracers have the same mean. Renders with several seeds give means of image bands
+ * and their standard errors; those of two tracers must agree within both. */
 #ifndef TEST_RENDER_AGREEMENT_H
 #define TEST_RENDER_AGREEMENT_H
 
@@ -7,11 +7,11 @@
 
 enum { AGREEMENT_SEEDS = 6, AGREEMENT_BANDS = 4, AGREEMENT_CHANNELS = 3 };
 
-typedef struct Measure { /* of three bands of the image, and the whole */
+typedef struct Measure { /* three bands of the image, and the whole image */
   double mean[AGREEMENT_BANDS][AGREEMENT_CHANNELS], error[AGREEMENT_BANDS][AGREEMENT_CHANNELS];
 } Measure;
 
-/* What to look at: the stage for a tracer; its tracer and seed are set here. */
+/* The stage to render; its tracer and seed are set here. */
 typedef Stage MakeStage(const void *user, vlTracer tracer);
 
 static UNUSED Measure measure(MakeStage *make, const void *user, vlTracer tracer) {
@@ -40,8 +40,8 @@ static UNUSED Measure measure(MakeStage *make, const void *user, vlTracer tracer
   return r;
 }
 
-/* Within five standard errors (of six values), and `bias` of the mean for what the errors' own estimates miss, or for
- * what merging blurs. */
+/* Expects agreement within five standard errors (of six values) plus `bias` times the mean, for errors of the estimated
+ * standard errors and for the blur of photon merging. */
 static UNUSED void assert_agree(const char *what, const char *how, const Measure *a, const Measure *b, double bias) {
   for (int band = 0; band < AGREEMENT_BANDS; band++)
     for (int c = 0; c < AGREEMENT_CHANNELS; c++) {

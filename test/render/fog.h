@@ -1,4 +1,4 @@
-/* test/render/fog.h: a stage's participating media: their definitions, and the balls that hold them. */
+/* test/render/fog.h: participating media for a stage: their defs, and spheres that contain them. */
 #ifndef TEST_RENDER_FOG_H
 #define TEST_RENDER_FOG_H
 

@@ -1,6 +1,5 @@
-/* test/render/gltf_shots.h: images of one glTF material in a white room, seen from straight ahead without
- * perspective: a ball (its disk, averaged, is the directional albedo averaged over the cosine-weighted hemisphere), a
- * wall, a slab. */
+/* test/render/gltf_shots.h: images of one glTF material in a white room with an orthographic camera: a sphere (the mean
+ * over its disk is the directional albedo averaged over the cosine-weighted hemisphere), a wall, a slab. */
 #ifndef TEST_RENDER_GLTF_SHOTS_H
 #define TEST_RENDER_GLTF_SHOTS_H
 
@@ -35,7 +34,7 @@ static UNUSED void put_ball(Gltf *g) {
     for (int j = 0; j < PARTS; j++) {
       uint16_t a = (uint16_t)(i * ROW + j), b = (uint16_t)(a + ROW);
       const uint16_t two[6] = {a, b, (uint16_t)(a + 1), (uint16_t)(a + 1), b, (uint16_t)(b + 1)};
-      for (int k = 0; k < 6; k++) f[n++] = two[k]; /* some at the poles have no area */
+      for (int k = 0; k < 6; k++) f[n++] = two[k]; /* some triangles at the poles have no area */
     }
   gltf_floats(g, p, CORNERS, "VEC3", 3);
   gltf_floats(g, uv, CORNERS, "VEC2", 2);
@@ -53,7 +52,7 @@ static UNUSED void put_box(Gltf *g, float thickness) {
   gltf_shorts(g, faces, thickness > 0 ? 36 : 6);
 }
 
-/* A file of these arrays and members, 32 x 32 pixels by its own camera. */
+/* Writes a file of these arrays and members; 32 x 32 pixels by its own camera. */
 static UNUSED Image shoot(const Gltf *g, const char *rest, const Shot *shot) {
   char path[] = "/tmp/velo-shot-XXXXXX.gltf";
   int file = mkstemps(path, 5);

@@ -1,5 +1,5 @@
-/* test/render/truths.h: ground truth of a stage (shots.h): taken, looked at by channel and pixel, compared bit by bit.
- */
+/* test/render/ground_truths.h: ground truth of a stage (shots.h): rendered, read by channel and pixel, compared bit by
+ * bit. */
 #ifndef TEST_RENDER_GROUND_TRUTHS_H
 #define TEST_RENDER_GROUND_TRUTHS_H
 
@@ -9,12 +9,12 @@
 
 typedef struct GroundTruth {
   vlWorld *world;
-  vlCamera camera, other; /* other: of flow */
+  vlCamera camera, other; /* other: the second camera of flow */
   vlFilm *film;
   vlImage *image, *floats, *ids;
 } GroundTruth;
 
-/* World and camera of what the stage holds. */
+/* World and camera of the stage. */
 static UNUSED GroundTruth ground_truth_begin(Stage *s) {
   GroundTruth t;
   memset(&t, 0, sizeof t);
@@ -55,7 +55,7 @@ static UNUSED uint32_t id(const GroundTruth *t, uint32_t x, uint32_t y, const ch
   return pixels[((size_t)y * vl_image_width(t->ids) + x) * vl_image_channels(t->ids) + (size_t)channel];
 }
 
-/* b is a, from (dx, dy) on. */
+/* Expects b to equal a from pixel (dx, dy) on. */
 static UNUSED void same_bits(const vlImage *a, const vlImage *b, uint32_t dx, uint32_t dy) {
   uint32_t step = vl_image_channels(a);
   assert_int_equal(step, vl_image_channels(b));
@@ -66,8 +66,8 @@ static UNUSED void same_bits(const vlImage *a, const vlImage *b, uint32_t dx, ui
                           q + ((size_t)y * vl_image_width(b) + x) * step, step * sizeof *p);
 }
 
-/* A stage of the same defs, still empty, on that instruction set with other numbers of threads. false: this machine
- * does not have it. */
+/* An empty stage with the same defs on that instruction set and with other numbers of threads. False: the machine does
+ * not have it. */
 static UNUSED bool stage_like(const Stage *s, int isa, Stage *other) {
   *other = *s;
   vlContextDef def = vl_default_context_def();
@@ -80,8 +80,8 @@ static UNUSED bool stage_like(const Stage *s, int isa, Stage *other) {
   return true;
 }
 
-/* A 16 x 8 stage that fill fills and begin builds; then take, with its memory running out at every place in turn: it
- * must say so, and nothing may be left. */
+/* Fills and builds a 16 x 8 stage by `fill` and `begin`, then calls `take` while each allocation in turn fails. It must
+ * report the failure and leak nothing. */
 static UNUSED void ground_truth_out_of_memory(void (*fill)(Stage *s), GroundTruth (*begin)(Stage *s),
                                               vlResult (*take)(Stage *s, GroundTruth *t)) {
   bool done = false;

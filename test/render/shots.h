@@ -1,5 +1,5 @@
-/* test/render/shots.h: small images through the public API alone: a stage (context, scene, defs) that a test fills,
- * one call that builds, renders, develops and takes everything down again (no byte may be left), and comparisons. */
+/* test/render/shots.h: small images through the public API: a stage (context, scene, defs) that a test fills; a call
+ * that builds, renders, develops, and destroys everything (all memory must be freed); comparisons. */
 #ifndef TEST_RENDER_SHOTS_H
 #define TEST_RENDER_SHOTS_H
 
@@ -28,12 +28,12 @@ typedef struct Stage {
 
 typedef struct Image {
   uint32_t width, height;
-  float *rgba; /* 4 a pixel */
+  float *rgba; /* 4 per pixel */
   vlRenderStats stats;
 } Image;
 
-/* Box filter, camera at the origin looking along -z, 90 degrees across the smaller side, independent of any file. The
- * context becomes the stage's; none: one of two threads. */
+/* Box filter, camera at the origin looking along -z, field of view of 90 degrees across the smaller side. The stage
+ * takes the context; null: a new one with two threads. */
 static UNUSED Stage stage_open_in(vlContext *context, uint32_t width, uint32_t height) {
   Stage s;
   memset(&s, 0, sizeof s);
@@ -55,7 +55,7 @@ static UNUSED Stage stage_open(uint32_t width, uint32_t height) {
   return stage_open_in(NULL, width, height);
 }
 
-/* Builds and renders; stops the test with the library's message when something fails. */
+/* Builds and renders. Fails the test with the library's message on errors. */
 static UNUSED Image stage_take(Stage *s) {
   vlError error;
   memset(&error, 0, sizeof error);
@@ -102,18 +102,19 @@ static UNUSED void image_free(Image *p) {
   memset(p, 0, sizeof *p);
 }
 
-/* Renders in that context, which it takes. */
+/* Renders in that context and destroys it. */
 typedef Image Rendering(vlContext *context, const void *what);
 
 static UNUSED Image image_in(Rendering *render, const void *what, uint32_t threads, vlIsa isa) {
   vlContextDef def = vl_default_context_def();
   def.threads = threads, def.isa = isa;
   vlContext *context;
-  if (vl_context_create(&def, &context) != VL_OK) return (Image){0}; /* a machine without that set */
+  if (vl_context_create(&def, &context) != VL_OK)
+    return (Image){0}; /* the machine does not have that instruction set */
   return render(context, what);
 }
 
-/* The same bits on 1, 1 + step, ... up to 3 threads, by each instruction set. Returns one of the images. */
+/* Expects the same bits for 1, 1 + step, ... up to 3 threads on each instruction set. Returns one of the images. */
 static UNUSED Image assert_same_bits(Rendering *render, const void *what, uint32_t step) {
   Image a = image_in(render, what, 1, VL_ISA_BASE);
   assert_non_null(a.rgba);
@@ -143,7 +144,7 @@ static UNUSED double image_mean(const Image *p, int c) {
   return image_region(p, 0, 0, p->width, p->height, c);
 }
 
-/* Share of pixels whose green differs by more than `tolerance` of the larger value (and of 1e-4 absolutely). */
+/* Share of pixels whose green values differ by more than `tolerance` times the larger one (and by more than 1e-4). */
 static UNUSED double image_differing(const Image *a, const Image *b, double tolerance) {
   assert_int_equal(a->width, b->width);
   assert_int_equal(a->height, b->height);
@@ -200,7 +201,7 @@ typedef struct Quad {
   vlEmissionId emission;
   vlFloatInput alpha;
   bool patch, reverse, without_uv;
-  const float *tangents; /* 12, or none */
+  const float *tangents; /* 12, or null */
   vlGroupId group;
 } Quad;
 static UNUSED Quad quad_at(float x, float y, float z, float ux, float uy, float uz, float vx, float vy, float vz) {
@@ -232,7 +233,7 @@ static UNUSED vlShapeId add_quad(Stage *s, const Quad *q) {
   return id;
 }
 
-/* A sphere of triangles: n rings, 2n segments; uv as the sphere's; vertex normals on demand. */
+/* A sphere of triangles: n rings, 2n segments; the sphere's uvs; vertex normals if wanted. */
 static UNUSED vlShapeDef mesh_sphere(int n, float radius, bool normals, float **block) {
   size_t vertices = (size_t)(n + 1) * (2 * (size_t)n + 1), faces = 4 * (size_t)n * (size_t)n;
   float *p = malloc(vertices * 8 * sizeof(float) + faces * 3 * sizeof(uint32_t));
@@ -265,7 +266,7 @@ static UNUSED vlShapeDef mesh_sphere(int n, float radius, bool normals, float **
   return def;
 }
 
-/* A float RGB image as a texture or sky: values row by row from the top. */
+/* A float RGB image as a texture or sky: values by rows from the top. */
 static UNUSED vlImage *make_image(Stage *s, uint32_t width, uint32_t height, const float *rgb) {
   vlImageDef def = vl_default_image_def(width, height, 3);
   def.type = VL_PIXEL_F32;

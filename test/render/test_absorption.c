@@ -1,5 +1,5 @@
-/* Absorption by RGB channel (vlMediumDef.rgb_absorption): of each channel of white light exp(-sigma_a x) is left, in
- * both colour modes, for every tracer, however deep it is and however many pieces the way has. */
+/* Absorption by RGB channel (vlMediumDef.rgb_absorption): each channel of white light is multiplied by exp(-sigma_a x),
+ * in both colour modes, for every tracer, for any depth and any number of segments. */
 #include "fog.h"
 
 static const double attenuation[3] = {0.8, 0.95, 1.0}; /* over a unit of depth */

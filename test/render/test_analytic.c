@@ -1,5 +1,5 @@
-/* Images whose value is known: closed spheres with light inside (pbrt's analytic integrator tests), white furnaces,
- * and solid angles. Means over the whole image against the exact number. */
+/* Images of known value: closed spheres with light inside (pbrt's analytic integrator tests), white furnaces, solid
+ * angles. Means over the whole image are compared with the exact number. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,6 @@
-/* The same bits on every instruction set and for any number of threads, where it is hard: coverage and round shapes
- * inside turned instances (Embree's own arithmetic differs there), mixes, interfaces, dispersion, bump maps, a lens. */
+/* The same bits on every instruction set and for any number of threads, in difficult cases: coverage and quadrics
+ * inside rotated instances (Embree's own arithmetic differs there), mixes, interfaces, dispersion, bump maps, a lens.
+ */
 #include "render/shots.h"
 
 static void fill(Stage *s) {

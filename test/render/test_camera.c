@@ -1,5 +1,5 @@
-/* What the camera's parts do to an image: circle of confusion, near and far plane, parallel projection, exposure time,
- * crop; and the depths and tracers of a render. */
+/* Effects of the camera on the image: circle of confusion, near and far plane, orthographic projection, exposure time,
+ * crop; also depths and tracers of a render. */
 #include "render/shots.h"
 
 /* ---- lens -------------------------------------------------------------------------------------------------------- */

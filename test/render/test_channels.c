@@ -1,5 +1,5 @@
-/* Ground truth: the channels agree with each other and with the camera, ids are those of a ray cast by hand, planes
- * have one depth, and the bits do not depend on threads, instruction set or crop. */
+/* Ground truth: the channels agree with each other and with the camera, ids are those of a ray cast by the test, planes
+ * have the exact depth, and the bits do not depend on threads, instruction set or crop. */
 #include "render/ground_truths.h"
 
 /* Builds what the stage holds and takes all channels. */

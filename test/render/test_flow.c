@@ -1,4 +1,4 @@
-/* Optical flow between two cameras against geometry that is known, and boxes against counted pixels. */
+/* Optical flow between two cameras against known geometry; boxes against counted pixels. */
 #include "render/ground_truths.h"
 
 static GroundTruth ground_truth_take(Stage *s, const vlCameraDef *other, uint32_t channels) {

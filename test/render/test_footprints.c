@@ -1,5 +1,5 @@
-/* Derivatives of surfaces, seen from outside: bump maps against normals of the surfaces displaced by formula, and
- * image textures under grazing rays: what is finer than a pixel is grey, what is not keeps its contrast. */
+/* Surface derivatives, seen in images: bump maps against normals of surfaces displaced by a formula; image textures at
+ * grazing angles: detail finer than a pixel becomes grey, coarser detail keeps its contrast. */
 #include "render/shots.h"
 
 /* ---- bump maps --------------------------------------------------------------------------------------------------- */

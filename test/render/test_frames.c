@@ -1,4 +1,4 @@
-/* One film for many images: cleared and rendered again it gives what a new film gives, whatever was in it. */
+/* One film for many images: after clearing, it gives the same image as a new film. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

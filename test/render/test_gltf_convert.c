@@ -1,5 +1,5 @@
-/* test_gltf_convert.c: glTF written as pbrt shows about the same: balls of dielectrics and metals, a wall that emits
- * light by an image far from the origin of uv. */
+/* test_gltf_convert.c: glTF converted to pbrt gives nearly the same image: spheres of dielectrics and metals, a wall
+ * with an emissive image whose uvs are far from the origin. */
 #include "render/gltf_shots.h"
 
 /* Images of the file, and of what is written of it as pbrt. */

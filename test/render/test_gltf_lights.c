@@ -1,5 +1,5 @@
-/* test_gltf_lights.c: glTF's lamps on a white wall by hand (candela, lux, cones), surfaces that emit light by an image
- * against the same light without one, vertex colours and coverage, uv sets of images. */
+/* test_gltf_lights.c: glTF's lights on a white wall against values computed by hand (candela, lux, cones), surfaces
+ * with an emissive image against the same emission without one, vertex colours and coverage, uv sets of images. */
 #include "render/gltf_shots.h"
 
 #define PAPER                                                                                                  \

@@ -1,6 +1,6 @@
-/* test_gltf_lobes.c: each lobe of glTF's materials through a file and the whole renderer: balls in a white room against
- * albedos integrated here, walls against reflectances at normal incidence, slabs against what glass of known thickness
- * lets through. */
+/* test_gltf_lobes.c: each lobe of glTF's materials, read from a file and rendered: spheres in a white room against
+ * albedos integrated here, walls against reflectances at normal incidence, slabs against the transmittance of glass of
+ * known thickness. */
 #include "render/gltf_shots.h"
 
 #include "world/material/principled.h"

@@ -1,5 +1,5 @@
-/* test_beams.c: goniometric and projection lights: their intensity where a formula knows it, which way their images
- * lie, their power. A wall stands at z = -2, eye and light at the origin. */
+/* test_goniometric.c: goniometric and projection lights: their intensity where a formula gives it, the orientation of
+ * their images, their power. A wall is at z = -2, camera and light at the origin. */
 #include "render/shots.h"
 
 #define PI 3.14159265358979

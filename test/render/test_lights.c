@@ -1,5 +1,5 @@
-/* Lights against the numbers of the book: inverse squares and cosines, cones, photometric scales, images on lights
- * and in the sky, and the three ways of choosing among lights. */
+/* Lights against formulas of the book: inverse square and cosine laws, cones, photometric scales, images on lights and
+ * in the sky, and the three light samplers. */
 #include "render/shots.h"
 
 enum { SIZE = 32 };

@@ -1,4 +1,4 @@
-/* Materials on images: mixes, bump and normal maps, interfaces, glass that splits colours. */
+/* Materials in images: mixes, bump and normal maps, interfaces, dispersive glass. */
 #include "render/shots.h"
 
 enum { SIZE = 32 };

@@ -1,5 +1,5 @@
-/* Participating media whose light is known: Beer's law, media that scatter all under a white sky, single scattering by
- * quadrature, emissive fog, every kind and both ways to carry colour. And what must not change the image. */
+/* Participating media of known radiance: Beer's law, fully scattering media under a white sky, single scattering by
+ * quadrature, emissive fog, every kind and both colour modes. Also changes that must not affect the image. */
 #include "fog.h"
 
 static const float eights[64] = {1, 2, 0, 1, 3, 1, 0, 2, 1, 1, 1, 1, 2, 0, 2, 1, 1, 2, 0, 1, 3, 1,

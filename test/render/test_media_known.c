@@ -1,6 +1,6 @@
-/* More media whose light is known: equilibrium (all that emits light and scatters inside of a sky of its own radiance
- * is not to be seen), media within media with the camera in the innermost, grids that are turned and stretched, colours
- * of RGB grids, what emits light and scatters, NanoVDB's voxels as a body. */
+/* More media of known radiance: equilibrium (an emissive, scattering medium under a sky of its own radiance is
+ * invisible), nested media with the camera in the innermost, rotated and stretched grids, colours of RGB grids,
+ * emission with scattering, NanoVDB voxels as solid cubes. */
 #include <unistd.h>
 
 #include "fog.h"

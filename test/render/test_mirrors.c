@@ -1,9 +1,11 @@
-/* test_mirrors.c: which side a shape's normal points to under mirroring transforms, by pbrt-v4's rule: the normal of
- * dpdu x dpdv in shape space (meshes: of the moved corners), flipped if ReverseOrientation differs from "the shape's
- * own transform swaps handedness", then by the inverse transpose through what instances or motion add. Vertex normals
- * decide where there are some; ReverseOrientation alone turns them. The rule is worked out here once more, from the
- * file's numbers; the renderer shows it by one-sided area lights (run into, and found by sampling) and by media
- * interfaces. All shapes x transforms x ReverseOrientation x placements, from both sides. */
+/* test_mirrors.c: the side of a shape's normal under mirroring transforms, by pbrt-v4's rule: the normal of dpdu x dpdv
+ * in shape space (meshes: of the transformed vertices), flipped if ReverseOrientation differs from "the shape's own
+ * transform swaps handedness", then transformed by the inverse transpose of instance and motion transforms. Vertex
+ * normals take precedence; only ReverseOrientation flips them.
+ *
+ * The rule is computed here independently from the file's numbers. The renderer shows it by one-sided area lights (hit
+ * by rays, and sampled) and by media interfaces. All shapes x transforms x ReverseOrientation x placements, from both
+ * sides. */
 #include <unistd.h>
 
 #include "render/shots.h"

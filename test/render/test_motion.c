@@ -1,6 +1,5 @@
-/* Images of what moves: the mean of many held images (z-test), the same bits on every instruction set, no surface
- * that hides itself, vertices and instances that move alike look alike, the slope of an edge behind a rolling shutter.
- */
+/* Images of moving objects: the mean of many images at fixed times (z-test), the same bits on every instruction set, no
+ * self-intersection, moving vertices against equally moving instances, the slope of an edge with a rolling shutter. */
 #include "render/shots.h"
 
 enum { W = 24, H = 18 };

@@ -1,5 +1,5 @@
-/* test/render/test_optics.c: lenses in images: shape of the blur, autofocus, natural vignetting, and a lens of many
- * elements: what it sees, how bright, what the barrel hides. */
+/* test/render/test_optics.c: lenses in images: blur shape, autofocus, natural vignetting; a lens of many elements:
+ * field of view, brightness, mechanical vignetting. */
 #include "render/shots.h"
 
 #include "velo/focus.h"

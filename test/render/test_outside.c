@@ -1,5 +1,5 @@
-/* test/render/test_outside.c: where a camera sees nothing, the image is black and its alpha 0, under a sky and inside
- * a closed room alike; within its image circle it sees what any camera sees. */
+/* test/render/test_outside.c: pixels without a camera ray are black with alpha 0, under a sky and inside a closed room.
+ * Within the image circle the image is as without the limit. */
 #include "render/shots.h"
 
 static void image_circle(void **state) {

@@ -1,5 +1,5 @@
-/* Portals: a room whose one window a portal covers is lit as without it, by every tracer, only with less noise; behind
- * a portal and beside it there is no light. */
+/* Portals: a portal over a room's only window gives the same image as without it, with every tracer, with less noise.
+ * Behind a portal and beside it there is no light. */
 #include "render/shots.h"
 
 enum { SIZE = 16, SEEDS = 10, BLOCKS = 4, SKY = 32 };

@@ -1,6 +1,6 @@
-/* Lights that only next event finds: for each material that lets light through, point lights behind, before and beside
- * it bring as much when the light tree chooses among them as when power does. A bound that is zero where light arrives
- * would be seen as darkness, one that is far too small as noise. */
+/* Lights that only next-event estimation finds: for each transmissive material, point lights behind, in front and
+ * beside it give the same mean with the light tree as with sampling by power. A bound of zero where light arrives would
+ * appear as darkness, a bound far too small as noise. */
 #include "render/shots.h"
 
 #include "import/import.h"

@@ -1,6 +1,5 @@
-/* test_regularize.c: surfaces made rougher for scattered paths (vlBuildDef.regularize). What the eye sees first, and
- * what it sees in mirrors, stays the same to the bit; what paths meet after they were scattered is, to the bit, the
- * surface of the greater alpha. */
+/* test_regularize.c: regularisation of scattered paths (vlBuildDef.regularize). Surfaces seen directly and in mirrors
+ * are bit-identical; surfaces met after scattering are, to the bit, those of the larger alpha. */
 #include "render/shots.h"
 
 enum { DIELECTRIC, CONDUCTOR, COAT, COATED_METAL, WALKED_COAT, PRINCIPLED, KINDS };

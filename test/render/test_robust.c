@@ -1,5 +1,4 @@
-/* What should not be in a scene, and is: nothing crashes, nothing hangs, no pixel is a NaN. Best run under the
- * sanitizers. */
+/* Degenerate scenes: no crash, no hang, no NaN pixel. Best run under the sanitizers. */
 #include <time.h>
 
 #include "render/shots.h"

@@ -1,5 +1,5 @@
-/* Images by a measured camera (vlFilmDef.sensor): the colour of a lit wall against sums over wavelengths; the
- * exposure; the limit of a sample, which is of the sensor's own values; RGB worlds. */
+/* Images by a measured camera (vlFilmDef.sensor): the colour of a lit wall against sums over wavelengths; the exposure;
+ * the limit of a sample, which applies to the sensor's values; RGB worlds. */
 #include "color/sensor.h"
 #include "math/transform.h"
 #include "shots.h"

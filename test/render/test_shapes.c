@@ -1,4 +1,4 @@
-/* Two ways to say one thing must give one image: instances and baked geometry, patches and triangles, spheres and
+/* Equivalent descriptions give the same image: instances and transformed geometry, patches and triangles, spheres and
  * their meshes, holes by alpha and holes by geometry. */
 #include "render/shots.h"
 

@@ -1,5 +1,5 @@
-/* Colour spaces of images: an EXR file's chromaticities say what its numbers mean, in textures, skies, lamps and
- * slides; else the def's space counts. Looked at by a film of the same space the numbers come back. */
+/* Colour spaces of images: an EXR file's chromaticities define its values in textures, skies, area lights and
+ * projection lights; without them the def's space counts. A film of the same space gives back the values. */
 #include "render/shots.h"
 
 static const double rec2020[8] = {0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290};

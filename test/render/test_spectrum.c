@@ -1,6 +1,6 @@
-/* Spectra of known light: a bucket's mean is that of the spectrum over its wavelengths, after reflection, too; through
- * glass that disperses nothing is lost; the colours beside the buckets are those of the same light; any number of
- * threads and any crop give the same bytes. */
+/* Spectra of known light: a bucket's mean is that of the spectrum over its wavelengths, also after reflection; glass
+ * without dispersion loses nothing; the colours beside the buckets are those of the same light; any number of threads
+ * and any crop give the same bytes. */
 #include "render/shots.h"
 
 enum { SIZE = 8, BUCKETS = 12 };

@@ -1,6 +1,6 @@
-/* All samplers, seeds and orders of samples are estimates of one image: z-tests at the level of pixels and of the
- * whole image, on a scene with soft shadow, gloss, glass and depth of field. Deviations come from repeated renders
- * with other seeds, so that correlated samples are judged by what they do. */
+/* All samplers, seeds and sample orders estimate the same image: z-tests per pixel and over the whole image, on a scene
+ * with soft shadow, gloss, glass and depth of field. Standard deviations come from repeated renders with other seeds,
+ * which is valid for correlated samples, too. */
 #include "render/shots.h"
 
 enum { WIDTH = 32, HEIGHT = 24, PIXELS = WIDTH * HEIGHT, SEEDS = 12, BLOCK = 8 };

@@ -1,6 +1,5 @@
-/* Bodies of the subsurface material: thick ones under a white sky give back their reflectance; light that enters round
- * the corner of a block, against an integral over the side it fell on; white bodies; and what must not change a
- * image. */
+/* The subsurface material: thick solids under a white sky have the given reflectance; light that enters around a
+ * block's edge, against an integral over the lit side; white solids; and changes that must not affect the image. */
 #include "shots.h"
 #include "world/material/bssrdf.h"
 

@@ -1,6 +1,5 @@
-/* What can be switched off for comparisons (pbrt's disablepixeljitter, disablewavelengthjitter,
- * disabletexturefiltering): samples through the middle of all, the same wavelengths for all, textures without a
- * footprint. */
+/* Switches for comparisons (pbrt's disablepixeljitter, disablewavelengthjitter, disabletexturefiltering): samples at
+ * the pixel's centre, the same wavelengths for all samples, textures without a footprint. */
 #include "render/shots.h"
 
 enum { SIZE = 16 };

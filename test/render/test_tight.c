@@ -1,6 +1,5 @@
-/* Rays start clear of the surface they leave and lose nothing between faces, at any size and far from the origin, and
- * inside instances that are far away. A closed emissive room tells both: a leak darkens it (outside is black), a
- * surface that meets itself again brightens or darkens it. */
+/* No self-intersection and no leaks between faces, at any size, far from the origin and inside distant instances. A
+ * closed emissive room shows both: a leak darkens it (outside is black), self-intersection brightens or darkens it. */
 #include "render/shots.h"
 
 typedef struct Room {

@@ -1,5 +1,5 @@
-/* The tracers that follow light both ways against the path tracer: the same mean within the errors of both, for every
- * kind of light and of surface; the same bits whoever works; memory that runs out. */
+/* The tracers with light paths against the path tracer: the same mean within both standard errors, for every kind of
+ * light and surface; the same bits for any threads; failing allocations. */
 #include "render/agreement.h"
 
 enum { SIZE = 24, FINE = 96 };

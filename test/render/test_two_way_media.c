@@ -1,5 +1,5 @@
-/* Light followed both ways through media against paths from the eye alone: the same mean within the errors of both, for
- * every kind of medium, for lights in them and beside them; a white furnace; the same bits whoever works. */
+/* The tracers with light paths against the path tracer, in media: the same mean within both standard errors, for every
+ * kind of medium, for lights inside and outside; a white furnace; the same bits for any threads. */
 #include "render/agreement.h"
 
 enum { SIZE = 18, FINE = 72 }; /* of three bands each */

@@ -1,4 +1,4 @@
-/* Light followed both ways where memory runs out: at each allocation, an error and nothing left behind. */
+/* The tracers with light paths when memory runs out: each failing allocation gives an error and leaks nothing. */
 #include "render/shots.h"
 
 #include "failing_allocator.h"

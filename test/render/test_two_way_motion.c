@@ -1,5 +1,5 @@
-/* Light followed both ways while things and the camera move: the same mean as of paths from the eye alone, within the
- * errors of both; the same bits whoever works. */
+/* The tracers with light paths against the path tracer, with moving objects and cameras: the same mean within both
+ * standard errors; the same bits for any threads. */
 #include "render/agreement.h"
 
 enum { SIZE = 18, FINE = 54 };

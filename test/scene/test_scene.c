@@ -1,4 +1,4 @@
-/* test/scene/test_scene.c: the scene as a program fills it: copies, ids, defaults, what is refused, counts, memory. */
+/* test/scene/test_scene.c: the scene as filled by a program: copies, ids, defaults, rejected values, counts, memory. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,5 @@
-/* test/scene/test_schema.c: the rows of all families: well formed, defaults in range, and what reads them. */
+/* test/scene/test_schema.c: the rows of all families: well formed, with defaults in range; the functions that read
+ * them. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-/* Rows of lights, shapes and media: the default of each parameter lies in its range and is what vl_parameter_is_default
- * says; a number beyond the range is refused with a message that names it; what a kind does not read is not kept. */
+/* Rows of lights, shapes and media: each parameter's default is in its range and agrees with vl_parameter_is_default; a
+ * number out of range is rejected with a message that names it; members that a kind does not use are not kept. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

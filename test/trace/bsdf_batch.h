@@ -50,7 +50,7 @@ static inline void batch_surface(Batch *b, uint32_t i, const Surface *s) {
   for (int k = 0; s->own && k < VL_BSDF_ROWS; k++) b->own[k][i] = s->own[k];
   for (int c = 0; c < 4; c++) b->lambda[c][i] = 420.0f + 80.0f * (float)c;
 }
-/* theta from +z; past pi/2 from below */
+/* theta from +z; above pi/2 from below */
 static inline void batch_wo(Batch *b, uint32_t i, double theta, double phi) {
   b->ox[i] = (float)(sin(theta) * cos(phi)), b->oy[i] = (float)(sin(theta) * sin(phi)), b->oz[i] = (float)cos(theta);
 }
@@ -63,7 +63,7 @@ static inline void batch_eval(const vlBsdfKernels *k, vlBsdfKind kind, uint32_t 
   float *value[4] = {b->value[0], b->value[1], b->value[2], b->value[3]};
   k->eval(kind, n, &p, wo, wi, value, b->pdf);
 }
-/* pdf goes to b->pdf too */
+/* the pdf is also written to b->pdf */
 static inline void batch_sample(const vlBsdfKernels *k, vlBsdfKind kind, uint32_t n, Batch *b) {
   vlBsdfParams p = batch_params(b);
   vlBsdfDirections wo = {b->ox, b->oy, b->oz}, wi = {b->ix, b->iy, b->iz};

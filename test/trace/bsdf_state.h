@@ -1,4 +1,4 @@
-/* bsdf_state.h: what tests of one BSDF start from: a context, its kernels, room for three batches. */
+/* bsdf_state.h: the setup of tests of one BSDF: a context, its kernels, room for three batches. */
 #ifndef TEST_TRACE_BSDF_STATE_H
 #define TEST_TRACE_BSDF_STATE_H
 
@@ -10,7 +10,7 @@ typedef struct State {
   vlContext *context;
   const vlBsdfKernels *kernels;
   Batch *batch, *other, *interface;
-  vlCoatTable *coats[4]; /* those that a test builds */
+  vlCoatTable *coats[4]; /* tables that a test builds */
 } State;
 
 static int setup(void **state) {

@@ -1,6 +1,6 @@
-/* measured_file.h: files as the RGL material database has them, of a surface whose reflection is known: metal of GGX
- * microfacets, measured as Dupuy and Jakob (2018) describe it. Everything in double precision, and the warp written
- * anew, so that a wrong convention in the library does not cancel out. */
+/* measured_file.h: files in the format of the RGL material database for a surface of known reflection: metal with GGX
+ * microfacets, measured as Dupuy and Jakob (2018) describe it. Everything is in double precision and the warp is
+ * implemented independently, so that a wrong convention in the library does not cancel out. */
 #ifndef TEST_TRACE_MEASURED_FILE_H
 #define TEST_TRACE_MEASURED_FILE_H
 
@@ -14,13 +14,13 @@
 #define MF_PI 3.14159265358979323846
 
 typedef struct mfSurface {
-  double alpha_x, alpha_y, eta, k; /* k < 0: reflects all */
-  double color;                    /* eta and k grow with wavelength by this share from 400 to 700 nm */
-  uint32_t phis;  /* azimuths of the whole circle, without the last, which is the first; 1: isotropic */
-  uint32_t parts; /* 2, 4: only a half or a quarter of the circle is kept */
+  double alpha_x, alpha_y, eta, k; /* k < 0: reflects everything */
+  double color;                    /* relative growth of eta and k from 400 to 700 nm */
+  uint32_t phis;                   /* azimuths of the full circle without the repeated last one; 1: isotropic */
+  uint32_t parts;                  /* 2, 4: only a half or a quarter of the circle is stored */
   uint32_t thetas, nodes, samples, lambdas;
   double theta_max;
-  bool plain; /* spectra hold f cos itself */
+  bool plain; /* spectra hold f cos directly */
 } mfSurface;
 
 static inline mfSurface mf_surface(double alpha_x, double alpha_y) {
@@ -81,14 +81,14 @@ static inline double mf_value(const mfSurface *s, const double o[3], const doubl
 static inline void mf_direction(double theta, double phi, double w[3]) {
   w[0] = sin(theta) * cos(phi), w[1] = sin(theta) * sin(phi), w[2] = cos(theta);
 }
-/* The point (x, y) of the square as a direction. */
+/* The direction of point (x, y) of the square. */
 static inline void mf_unwarp(double x, double y, double w[3]) {
   mf_direction(x * x * MF_PI / 2, (2 * y - 1) * MF_PI, w);
 }
 static inline double mf_between(double a, double b, double t) {
   return a + (b - a) * t;
 }
-/* Where in [0, 1] the integral of a + (b - a) t is `part` of the whole, by halving. */
+/* The point in [0, 1] up to which the integral of a + (b - a) t is `part` of the whole, by bisection. */
 static inline double mf_solve(double a, double b, double part) {
   double low = 0, high = 1, whole = 0.5 * (a + b);
   for (int i = 0; i < 40; i++) {
@@ -100,14 +100,14 @@ static inline double mf_solve(double a, double b, double part) {
   }
   return 0.5 * (low + high);
 }
-/* Integrals of the rows of a bilinear function over n x n nodes. */
+/* Integrals of the rows of a bilinear function on n x n nodes. */
 static inline void mf_rows(const double *f, uint32_t n, double *rows) {
   for (uint32_t j = 0; j < n; j++) {
     rows[j] = 0;
     for (uint32_t i = 0; i + 1 < n; i++) rows[j] += 0.5 * (f[j * n + i] + f[j * n + i + 1]);
   }
 }
-/* That function as a density: (u, v) to (x, y), first the row by v, then the place in it by u. */
+/* Samples that function as a density: (u, v) to (x, y); v selects the row, u the position in it. */
 static inline void mf_sample(const double *f, const double *rows, uint32_t n, double u, double v, double *x,
                              double *y) {
   double all = 0, sum = 0;
@@ -139,7 +139,7 @@ static inline void mf_put(mfFile *f, const void *data, size_t size) {
   memcpy(f->bytes + f->size, data, size);
   f->size += size;
 }
-static inline void mf_put_number(mfFile *f, uint64_t value, size_t bytes) { /* little-endian, as the machine */
+static inline void mf_put_number(mfFile *f, uint64_t value, size_t bytes) { /* little-endian, like the machine */
   mf_put(f, &value, bytes);
 }
 
@@ -159,7 +159,7 @@ static inline mfField mf_floats(const char *name, uint32_t rank, uint64_t a, uin
   return f;
 }
 
-/* The whole file; free its bytes. */
+/* The whole file; the caller frees its bytes. */
 static inline mfFile mf_measure(const mfSurface *s) {
   uint32_t n = s->nodes, q = s->samples, phis = s->phis == 1 ? 1 : s->phis / s->parts + 1;
   mfField phi = mf_floats("phi_i", 1, phis, 0, 0, 0, 0), theta = mf_floats("theta_i", 1, s->thetas, 0, 0, 0, 0);
@@ -189,7 +189,7 @@ static inline mfFile mf_measure(const mfSurface *s) {
       ((float *)theta.values)[b] = (float)up;
       mf_direction(up, around, o);
       size_t slice = (size_t)a * s->thetas + b;
-      /* azimuths of an isotropic surface's normals are counted from that of o */
+      /* azimuths of an isotropic surface's normals are relative to that of o */
       for (uint32_t j = 0; j < n; j++)
         for (uint32_t i = 0; i < n; i++) {
           double x = (double)i / (n - 1), m[3];

@@ -1,5 +1,5 @@
 /* test_bsdf.c: sampling and evaluation of every BSDF agree: chi-square of directions against the density, the sampled
- * weight is value over density, the sampled albedo is the integral of the value. */
+ * weight is value / density, the sampled albedo is the integral of the value. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-/* test_bsdf_furnace.c: what a BSDF sends back of a white furnace: all of it where nothing is lost, never more, whatever
- * its roughness, its coat and the angle. */
+/* test_bsdf_furnace.c: BSDFs in a white furnace: lossless ones return everything, none returns more, for any roughness,
+ * coat and angle. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

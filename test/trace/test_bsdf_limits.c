@@ -1,5 +1,5 @@
-/* test_bsdf_limits.c: what a BSDF may never do: differ between instruction sets, answer NaN, prefer a direction of
- * travel. Reciprocity, equal bits, degenerate input, pbrt's special cases. */
+/* test_bsdf_limits.c: invariants of BSDFs: equal bits on all instruction sets, no NaN for degenerate input,
+ * reciprocity, pbrt's special cases. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

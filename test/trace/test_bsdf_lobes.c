@@ -1,7 +1,7 @@
-/* test_bsdf_lobes.c: microfacet lobes of any sharpness, at grazing light too: chi-square and integrals not over the
- * sphere, where a lobe of alpha 0.001 is a point, but over the microfacets' slopes divided by the alphas, where all
- * lobes are of one size. A slope (x, y) of radius r is the point (r^2 / (1 + r^2), azimuth): all of the plane is a
- * rectangle, in which the distribution of normals itself is constant. */
+/* test_bsdf_lobes.c: microfacet lobes of any sharpness, also at grazing angles. Chi-square tests and integrals are not
+ * over the sphere, where a lobe of alpha 0.001 is nearly a point, but over the microfacets' slopes divided by the
+ * alphas, where all lobes have the same size. A slope (x, y) of radius r maps to the point (r^2 / (1 + r^2), azimuth):
+ * the plane becomes a rectangle on which the distribution of normals is constant. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

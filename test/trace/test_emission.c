@@ -1,6 +1,6 @@
-/* Where light sets out: the mean of what paths carry is the light's whole power (formulas of the book, 12), their
- * directions and places are spread as they should be (chi-square against exact solid angles and areas), and the density
- * that comes with a path is the one that others are told. */
+/* Emission of light paths: the mean weight is the light's power (formulas of the book, 12), directions and positions
+ * have the right distribution (chi-square against exact solid angles and areas), and the density of a sampled path
+ * equals the one used by multiple importance sampling. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

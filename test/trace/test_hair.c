@@ -1,5 +1,5 @@
-/* test_hair.c: a white hair in a white furnace is not seen, sampled light is worth what it should be, samples follow
- * their density, which integrates to 1. */
+/* test_hair.c: a white hair in a white furnace is invisible, sampled weights are correct, samples follow their density,
+ * which integrates to 1. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

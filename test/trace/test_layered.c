@@ -1,5 +1,5 @@
-/* test_layered.c: the random walks between layers, against walks that imitate nature step by step through the kernels
- * of the interfaces, against the closed form of what is diffuse, in white furnaces, from both ends. */
+/* test_layered.c: the random walks between layers: against an independent analogue walk through the kernels of the
+ * interfaces, against the closed form for diffuse light, in white furnaces, in both directions. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
-/* Light sampling against its own densities: directions of vl_stage_lights, counted over the sphere, against the density
- * that multiple importance sampling is told for the light that a ray in that direction meets (chi-square); the light
- * tree's choice against its probabilities; Monte Carlo of the radiance against the same integral by BSDF-free
+/* Light sampling against its densities: directions of vl_stage_lights, counted over the sphere, against the density for
+ * multiple importance sampling of the light that a ray in that direction hits (chi-square); the light tree's choice
+ * against its probabilities; the Monte Carlo estimate of incident radiance against the same integral with uniform
  * directions. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,5 +1,5 @@
-/* test_measured.c: measured reflection against the surface that was "measured": metal of GGX microfacets, whose files
- * are made by measured_file.h. Values, densities, sampling, albedo, furnace, reciprocity, symmetries, wavelengths. */
+/* test_measured.c: measured reflection against the surface that was measured: metal with GGX microfacets, in files made
+ * by measured_file.h. Values, densities, sampling, albedo, furnace, reciprocity, symmetries, wavelengths. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-/* test_phase.c: the phase function: 1 over the sphere, sampled as it says, the same both ways; flights and
- * transmittances through a grid do not depend on its majorants. */
+/* test_phase.c: the phase function integrates to 1 over the sphere, is sampled by its density and is reciprocal; free
+ * flights and transmittances through a grid do not depend on its majorants. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
-/* test_principled.c: the principled BSDF: white surfaces in a white furnace, reciprocity, densities by chi-square, the
- * value that sampling and evaluation agree on, the thin film against Fresnel and against interference by hand, layers
- * that are off change nothing. */
+/* test_principled.c: the principled BSDF: white surfaces in a white furnace, reciprocity, densities by chi-square,
+ * agreement of sampling and evaluation, the thin film against Fresnel and against interference computed here; disabled
+ * layers change nothing. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-/* Samplers: exact stratification, uniform projections, dimensions that do not know each other, the same bits on every
- * instruction set and in every grouping, any spp. */
+/* Samplers: exact stratification, uniform projections, independent dimensions, the same bits on every instruction set
+ * and in every grouping, any spp. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* Samplers: what they are for. The error of pixel integrals against that of independent numbers, how fast it falls, and
- * how zsobol spreads it over the image. */
+/* The benefit of samplers: the error of pixel integrals relative to independent random numbers, its rate of
+ * convergence, and its distribution over the image with zsobol. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

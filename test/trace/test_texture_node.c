@@ -1,6 +1,6 @@
 /* test/trace/test_texture_node.c: textures at one point: the single query gives the batch evaluator's bits for every
- * kind of float texture (the batch of the lowest instruction set; test_bits.c compares the sets); alpha, lights and
- * mixed materials read the normal, the uv set and the vertex colours of the place. */
+ * kind of float texture (on the lowest instruction set; test_bits.c compares the sets); alpha, lights and mixed
+ * materials use the point's normal, uv set and vertex colours. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,6 @@
-/* Writes a file as the RGL material database has them, of metal of GGX microfacets (test/trace/measured_file.h):
- * helper_measured OUT ALPHA_X ALPHA_Y ETA K COLOR, eta and k at 400 nm, growing by the share COLOR to 700 nm. */
+/* Writes a file in the format of the RGL material database for metal with GGX microfacets (test/trace/measured_file.h).
+ * Usage: helper_measured OUT ALPHA_X ALPHA_Y ETA K COLOR. eta and k are given at 400 nm and grow by the factor 1 +
+ * COLOR to 700 nm. */
 #include "../trace/measured_file.h"
 
 int main(int count, char **words) {

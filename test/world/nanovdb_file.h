@@ -1,4 +1,4 @@
-/* nanovdb_file.h: a small NanoVDB file, byte by byte after the format, for tests. */
+/* nanovdb_file.h: writes a small NanoVDB file, byte by byte from the format's description. */
 #ifndef TEST_WORLD_NANOVDB_FILE_H
 #define TEST_WORLD_NANOVDB_FILE_H
 

@@ -1,6 +1,6 @@
-/* test_bssrdf.c: the profiles of light in bodies against integrals of their own: dipoles and single scattering along
- * the beam by quadrature, with moments of Fresnel's reflectance that are integrals, too (the library has polynomials
- * for them and a hundred points). And what is read from the tables: sums, samples, the way back from a reflectance. */
+/* test_bssrdf.c: subsurface profiles against independent integrals: dipoles and single scattering along the refracted
+ * ray by quadrature, with moments of the Fresnel reflectance that are integrals, too (the library uses polynomials and
+ * a hundred points). Also reads from the tables: sums, samples, the inversion of a reflectance. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

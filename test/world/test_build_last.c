@@ -1,4 +1,4 @@
-/* test/world/test_build_last.c: a scene that gives its meshes to its last world: the same world, less memory. */
+/* test/world/test_build_last.c: a scene that passes its meshes to its last world: the same world with less memory. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* Memory that runs out while a world is built or an image rendered: the n-th allocation fails, for every n. Always the
- * error MEMORY, never a byte left. (Embree has its own memory.) */
+/* The n-th allocation fails while a world is built or an image rendered, for every n: the error is always
+ * VL_ERROR_MEMORY and nothing leaks. (Embree has its own memory.) */
 #include <stdlib.h>
 
 #include "render/shots.h"

@@ -1,6 +1,6 @@
-/* test_coat.c: the coat's tables against a random walk of its own: light is followed through interface, layer and base
- * with microfacets drawn by D(h) cos h (the library draws visible ones), in double. And the plain promises of
- * vl_coat_build. */
+/* test_coat.c: the coat's tables against an independent random walk in double through interface, layer and base, with
+ * microfacets drawn from D(h) cos h (the library draws visible ones). Also the properties that vl_coat_build
+ * guarantees. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

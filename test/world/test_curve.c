@@ -1,5 +1,5 @@
-/* test_curve.c: curves through Embree and curve.c against a search by brute force: thousands of points along each
- * segment, the ray's nearest ones refined by halving. Pieces, transforms and instances must not matter. */
+/* test_curve.c: curves through Embree and curve.c against a brute-force search: thousands of points along each segment,
+ * with those nearest to the ray refined by bisection. Splitting, transforms and instances must not matter. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

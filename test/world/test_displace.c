@@ -1,4 +1,4 @@
-/* test_displace.c: displaced meshes: how fine, how far, without holes; too fine is an error. */
+/* test_displace.c: displaced meshes: subdivision, displacement, no cracks; too fine a subdivision is an error. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
-/* test_measured_files.c: files of measured materials from strangers. Each damage is one clear error that names the
- * file, in memory of the file's size; memory that runs out leaves nothing behind; a file that several materials name is
- * read once; an image of the material is that of the metal that was measured. */
+/* test_measured_files.c: damaged files of measured materials. Each damage gives one clear error that names the file,
+ * with memory bounded by the file's size; failing allocations leak nothing; a file that several materials name is read
+ * once; a rendered measured material looks like the metal that was measured. */
 #include <stdlib.h>
 
 #include "../trace/measured_file.h"

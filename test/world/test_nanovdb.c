@@ -1,5 +1,5 @@
-/* test_nanovdb.c: NanoVDB files made here, byte by byte after the format, are read back voxel by voxel; wrong ones are
- * refused with a word about why, whatever byte is wrong. */
+/* test_nanovdb.c: NanoVDB files made here, byte by byte, are read back voxel by voxel; invalid ones are rejected with a
+ * reason, whichever byte is wrong. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

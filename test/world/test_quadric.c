@@ -1,6 +1,5 @@
-/* Parts of spheres, disks and cylinders under transforms that are no similarity: sampled points lie on the part, rays
- * meet them there with the same uv and normal, densities are those of the area, which a grid of the parameters gives.
- */
+/* Partial spheres, disks and cylinders under transforms that are not similarities: sampled points lie on the part, rays
+ * hit them there with the same uv and normal, densities are per area, which a grid over the parameters gives. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-/* test_texture_noise.c: noise against a plain implementation in double, and what must hold of it; dots by their
- * geometry, marble by its colours, sums by their octaves. */
+/* test_texture_noise.c: noise against a plain implementation in double, and its properties; dots by their geometry,
+ * marble by its colours, sums by their octaves. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

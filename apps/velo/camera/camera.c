@@ -1,4 +1,4 @@
-/* camera/camera.c: see camera.h; and `velo camera convert`. */
+/* camera/camera.c: see camera.h. Also `velo camera convert`. */
 #include "camera/camera.h"
 
 #include <stdio.h>
@@ -39,7 +39,7 @@ static int load_scene_camera(vlContext *context, const char *path, vlCameraRecor
     *record = (vlCameraRecord){.camera = from->camera, .dialect = VL_CAMERA_DIALECT_PBRT, .frames = 1};
   }
   int status = result == VL_OK ? -1 : report_error(&error, result, path);
-  /* what a camera only points at goes with its scene */
+  /* objects that a camera points at are freed with its scene */
   if (status < 0 && record->camera.lens.optics)
     status = report_failure(STATUS_SCENE, "%s: a lens of many elements is a camera of its scene alone", path);
   if (status < 0 && record->camera.lens.aperture) {
@@ -50,7 +50,7 @@ static int load_scene_camera(vlContext *context, const char *path, vlCameraRecor
   return status;
 }
 
-/* The camera in the header of an image that velo rendered. */
+/* Reads the camera from the header of an image that velo rendered. */
 static int load_image_camera(vlContext *context, const char *path, vlCameraRecord *record) {
   vlImage *image = NULL;
   *record = (vlCameraRecord){.dialect = VL_CAMERA_DIALECT_EXR, .frames = 1};

@@ -1,4 +1,4 @@
-/* camera/camera.h: what the camera commands share. */
+/* camera/camera.h: declarations shared by the camera commands. */
 #ifndef APP_CAMERA_CAMERA_H
 #define APP_CAMERA_CAMERA_H
 
@@ -7,12 +7,12 @@
 
 extern const Choice dialect_choices[];
 
-/* Whether a name is a scene's (or its camera would be read as one). */
+/* Whether the file is a scene by its name (or would be read as one for its camera). */
 bool camera_is_scene(const char *path);
-/* A camera file of any dialect, or a pbrt scene's camera. Says which frame is taken where there are several and none
- * was asked for. -1, or the exit code when all has been said. */
+/* Reads a camera file of any dialect, or the camera of a pbrt scene. When a file has several frames and none was
+ * chosen, a note names the one taken. Returns -1, or the exit code after reporting the error. */
 int camera_load(vlContext *context, const char *path, int dialect, const char *frame, vlCameraRecord *record);
-/* The same, made; warnings are said. */
+/* The same, and makes the camera; warnings are reported. */
 int camera_load_made(vlContext *context, const char *path, const Arguments *arguments, int frame_option,
                      vlCameraRecord *record, vlCamera *camera);
 

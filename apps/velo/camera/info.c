@@ -1,4 +1,4 @@
-/* camera/info.c: `velo camera info`: one camera in all the ways that say the same. */
+/* camera/info.c: `velo camera info`: the equivalent descriptions of one camera. */
 #include <math.h>
 #include <stdio.h>
 
@@ -11,7 +11,7 @@ enum { INFO_JSON, INFO_FRAME };
 
 static const double degrees = 180.0 / 3.14159265358979323846;
 
-/* Angle between what two places of the image see; NaN where one sees nothing. */
+/* Angle between the rays of two film points, radians; NaN when one has no ray. */
 static double angle_between(const vlCamera *c, double x0, double y0, double x1, double y1) {
   double o[3], a[3], b[3];
   if (!vl_camera_unproject(c, x0, y0, o, a) || !vl_camera_unproject(c, x1, y1, o, b)) return NAN;
@@ -19,7 +19,8 @@ static double angle_between(const vlCamera *c, double x0, double y0, double x1, 
   return atan2(sqrt(x * x + y * y + z * z), a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
 }
 
-/* Past the principal point, in two parts, so that more than 180 degrees are told; NaN: an edge sees nothing. */
+/* Angle between two opposite edges as the sum of the angles to the principal point, which can exceed 180 degrees. NaN:
+ * an edge has no ray. */
 static double field(const vlCamera *c, double x0, double y0, double x1, double y1) {
   return angle_between(c, x0, y0, c->cx, c->cy) + angle_between(c, c->cx, c->cy, x1, y1);
 }

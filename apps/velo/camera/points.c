@@ -1,5 +1,5 @@
-/* camera/points.c: `velo camera project` and `velo camera unproject`: lines of points to pixels, pixels to rays,
- * through the library's batches. */
+/* camera/points.c: `velo camera project` and `velo camera unproject`: lines of points become pixels, or pixels become
+ * rays, in batches. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -25,7 +25,7 @@ typedef struct Lines {
   unsigned long number;
 } Lines;
 
-/* count numbers, separated by commas, blanks or both, and nothing else. */
+/* Reads exactly count numbers separated by commas or blanks. */
 static bool read_numbers(const char *text, double *values, int count) {
   for (int i = 0; i < count; i++) {
     char *end;
@@ -37,7 +37,7 @@ static bool read_numbers(const char *text, double *values, int count) {
   return text[strspn(text, " \t\r\n")] == 0;
 }
 
-/* Up to BATCH rows; a first line of words is a heading. -1, or the exit code. */
+/* Reads up to BATCH rows. A first line of words is a header and is skipped. Returns -1 or the exit code. */
 static int read_batch(Lines *lines, int columns, double *values, size_t *count) {
   *count = 0;
   while (*count < BATCH && getline(&lines->line, &lines->room, lines->file) >= 0) {

@@ -1,5 +1,5 @@
-/* camera/vanishing.c: `velo camera vanishing`: the principal vanishing points and the horizon of a camera, drawn over a
- * image where asked; and the camera back from vanishing points. */
+/* camera/vanishing.c: `velo camera vanishing`: the principal vanishing points and the horizon of a camera, optionally
+ * drawn over an image; and the inverse: a camera from vanishing points. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@ enum { V_JSON, V_FRAME, V_UP, V_OVERLAY, V_OUT, V_LINES, V_GRID, V_FROM, V_PRINC
 static const double pi = 3.14159265358979323846;
 static const char *const axis_names[3] = {"x", "y", "z"};
 
-/* ---- what is said ------------------------------------------------------------------------------------------------ */
+/* ---- output ------------------------------------------------------------------------------------------------------ */
 
 static const char *kind_of(const vlCamera *c, const vlVanishingPoints *v) {
   static const char *const kinds[] = {"parallel projection", "one-point perspective", "two-point perspective",
@@ -99,7 +99,7 @@ static void normalize(double v[3]) {
   for (int i = 0; i < 3; i++) v[i] /= length;
 }
 
-/* Two unit vectors at right angles to d and each other. */
+/* Two unit vectors orthogonal to d and to each other. */
 static void basis_of(const double d[3], double a[3], double b[3]) {
   const double other[3] = {fabs(d[0]) < 0.7, fabs(d[0]) >= 0.7, 0.0};
   cross(d, other, a);
@@ -108,7 +108,8 @@ static void basis_of(const double d[3], double a[3], double b[3]) {
   normalize(b);
 }
 
-/* Every line of the world that is parallel to d lies with the eye in one of the planes through d: some of these. */
+/* Draws lines parallel to d. Each lies in a plane through the camera centre that contains d; `count` such planes are
+ * evenly spaced. */
 static void draw_family(Overlay *o, const vlCamera *c, const double d[3], int count, double width) {
   double a[3], b[3], n[3];
   basis_of(d, a, b);
@@ -119,12 +120,12 @@ static void draw_family(Overlay *o, const vlCamera *c, const double d[3], int co
   }
 }
 
-/* A line of the world, point + s d, from s0 to s1, as the arc that it is to the eye. */
+/* Draws the line point + s d of the world, s from s0 to s1, as an arc of directions from the camera centre. */
 static void draw_world_line(Overlay *o, const vlCamera *c, const double point[3], const double d[3], double s0,
                             double s1, double width) {
   double n[3], p[2], q[2], ends[2][3];
   const double eye[3] = {c->world_from_camera[3], c->world_from_camera[7], c->world_from_camera[11]};
-  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) { /* straight, and depth is no matter */
+  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) { /* projects to a straight line, whatever its depth */
     for (int i = 0; i < 3; i++) ends[0][i] = point[i] + s0 * d[i], ends[1][i] = point[i] + s1 * d[i];
     if (vl_camera_project(c, ends[0], p, NULL) && vl_camera_project(c, ends[1], q, NULL))
       overlay_line(o, p[0], p[1], q[0], q[1], width);
@@ -134,12 +135,12 @@ static void draw_world_line(Overlay *o, const vlCamera *c, const double point[3]
   double along = dot(n, d);
   for (int i = 0; i < 3; i++) n[i] -= along * d[i];
   double height = sqrt(dot(n, n));
-  if (!(height > 0.0)) return; /* through the eye: a point */
+  if (!(height > 0.0)) return; /* the line passes through the camera centre and projects to a point */
   for (int i = 0; i < 3; i++) n[i] /= height;
   overlay_arc(o, c, d, n, atan2(s0 + along, height), atan2(s1 + along, height), width);
 }
 
-/* Lines of the ground, spacing apart, as far as 40 of them around the eye. */
+/* Draws a ground grid around the camera: 41 lines each way, `spacing` apart. */
 static void draw_grid(Overlay *o, const vlCamera *c, const double up[3], double spacing, double level, double width) {
   enum { REACH = 20 };
   double a[3], b[3], p[3];
@@ -160,7 +161,7 @@ static void draw_grid(Overlay *o, const vlCamera *c, const double up[3], double 
 typedef struct Drawing {
   const double *up;
   int lines;
-  double spacing, level; /* of the ground's grid; 0: none */
+  double spacing, level; /* ground grid; spacing 0: none */
 } Drawing;
 
 static void draw(Overlay *o, const vlCamera *c, const Drawing *drawing) {
@@ -176,7 +177,7 @@ static void draw(Overlay *o, const vlCamera *c, const Drawing *drawing) {
     const double d[3] = {i == 0, i == 1, i == 2};
     if (!flat && drawing->lines) draw_family(o, c, d, drawing->lines, 0.8 * width);
     overlay_paint(o, colors[i], 0.55);
-    for (int end = 0; end < 2; end++) { /* curved images may show both ends */
+    for (int end = 0; end < 2; end++) { /* curved projections may show both ends */
       const double e[3] = {end ? -d[0] : d[0], end ? -d[1] : d[1], end ? -d[2] : d[2]};
       vlVanishingPoint p;
       if (vl_camera_vanishing_point(c, e, &p) && p.kind == VL_VANISHING_FINITE)
@@ -190,7 +191,7 @@ static void draw(Overlay *o, const vlCamera *c, const Drawing *drawing) {
   overlay_paint(o, yellow, 0.9);
 }
 
-/* Makes the camera as large as the image, where both have the same shape. */
+/* Resizes the camera to the image's size when both have the same aspect ratio. */
 static int fit_camera(const vlImage *image, const char *path, vlCamera *camera) {
   uint32_t w = vl_image_width(image), h = vl_image_height(image);
   if (w == camera->width && h == camera->height) return -1;
@@ -229,7 +230,7 @@ static int draw_overlay(vlContext *context, const Arguments *arguments, const vl
 
 /* ---- the inverse ------------------------------------------------------------------------------------------------- */
 
-/* count numbers, separated by commas. */
+/* Reads count numbers separated by commas. */
 static bool parse_numbers(const char *text, int count, double *values) {
   for (int i = 0; i < count; i++) {
     char *end;
@@ -241,7 +242,7 @@ static bool parse_numbers(const char *text, int count, double *values) {
   return *text == 0;
 }
 
-/* "xz", "-xyz": which axis each point is of, a minus before those whose negative end is meant. */
+/* Parses "xz" or "-xyz": the axis of each point; a minus means the negative direction. */
 static bool parse_axes(const char *text, vlVanishingDef *def) {
   for (uint32_t i = 0; i < def->count; i++) {
     def->away[i] = *text != '-';

@@ -1,5 +1,5 @@
-/* camera/verify.c: `velo camera verify`: does what is rendered through a camera lie where the camera's equations say?
- * And: do two camera files mean the same camera? */
+/* camera/verify.c: `velo camera verify`: whether rendered images agree with the camera's equations, and whether two
+ * camera files describe the same camera. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>
@@ -28,7 +28,7 @@ enum {
 
 static const Choice target_choices[] = {{"chessboard", 0}, {"charuco", 1}, {NULL, 0}};
 
-/* What is asked is where things lie: lens, focus, motion, clipping planes take no part. */
+/* Only projection is verified: lens, focus, motion and clipping planes are removed. */
 static void make_pinhole(vlCamera *c) {
   vlCamera moving = *c;
   vl_camera_at(&moving, moving.shutter_open, c);
@@ -42,7 +42,7 @@ static double mean_of(double sum, const Measure *m) {
   return n ? sum / n : NAN;
 }
 
-/* Why the camera fails; null when all is well. */
+/* The reason why verification fails; null when it succeeds. */
 static const char *verdict(const Verification *v, double threshold, char *text, size_t size) {
   const Measure *m = &v->all;
   if (v->placed == 0)
@@ -61,7 +61,7 @@ static const char *verdict(const Verification *v, double threshold, char *text, 
   return text;
 }
 
-/* Parts of the image's 8 x 8 that see anything in their middle, and how many of them held corners. */
+/* Counts the cells of the image's 8 x 8 grid with a ray at their centre, and those in which corners were found. */
 static uint32_t parts(const Verification *v, uint32_t *covered) {
   uint32_t seeing = 0;
   double o[3], d[3];
@@ -75,7 +75,7 @@ static uint32_t parts(const Verification *v, uint32_t *covered) {
   return seeing;
 }
 
-/* Off by about half a pixel both ways, or one way: the commonest mistake deserves its name. */
+/* Recognises an offset of half a pixel in x, y or both, the most common mistake. */
 static bool half_pixel(const Measure *m) {
   double x = fabs(mean_of(m->sum_x, m)), y = fabs(mean_of(m->sum_y, m));
   bool half_x = fabs(x - 0.5) < 0.05, half_y = fabs(y - 0.5) < 0.05;
@@ -155,7 +155,7 @@ static void print_json(const Verification *v, const char *path, const char *agai
   putchar('\n');
 }
 
-/* The camera that the images are compared with: the same file, or another one. */
+/* The camera that the images are compared with: the same one, or another file's. */
 static int load_model(vlContext *context, const Arguments *arguments, const vlCameraRecord *own, Verification *v) {
   const OptionValue *o = arguments->values;
   v->model = (VerifyModel){own->camera, v->camera};

@@ -1,11 +1,10 @@
-/* camera/verify_corners.c: finds the corners of a chessboard in an image, and each to a hundredth of a pixel.
- *
- * Found: where the image, smoothed, has its strongest saddles: -det of the second derivatives.
- * Refined, first: the point to which all gradients around are at right angles (Foerstner and Guelch 1987; what OpenCV
- *   calls cornerSubPix): along an edge the gradient stands across it, and both edges pass through the corner.
- * Refined, then: a distorting lens bends the edges, which moves that point by some hundredths of a pixel; so a corner
- * of two bent and blurred edges, m + a erf(f1/s) erf(f2/s), is fitted to the pixels by least squares. What does not
- * look like that is no corner. */
+/* camera/verify_corners.c: finds chessboard corners in an image and refines each to a hundredth of a pixel.
+ *   1. Detection: maxima of -det of the Hessian of the smoothed image (saddle points).
+ *   2. First refinement: the point orthogonal to all gradients around it (Foerstner and Guelch 1987; OpenCV's
+ * cornerSubPix). The gradient is orthogonal to an edge, and both edges pass through the corner.
+ *   3. Second refinement: lens distortion curves the edges, which biases step 2 by some hundredths of a pixel. The
+ * model m + a erf(f1/s) erf(f2/s) of two curved, blurred edges is fitted to the pixels by least squares. A window that
+ * the model does not fit is rejected. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -72,7 +71,7 @@ int corners_find(const Image *image, Corner *corners, int room) {
     smooth(image, false, a);
     smooth(&half, true, b);
     saddles(&whole, a);
-    /* two edges at right angles give about 0.03 contrast^2, at 20 degrees a tenth of it */
+    /* two orthogonal edges give about 0.03 contrast^2, edges at 20 degrees a tenth of that */
     float least = 0.002f * contrast * contrast;
     for (int y = 3; y < image->height - 3 && contrast > 0.0f; y++)
       for (int x = 3; x < image->width - 3 && count < room; x++)
@@ -86,8 +85,8 @@ int corners_find(const Image *image, Corner *corners, int room) {
 /* ---- refining, first ----------------------------------------------------------------------------------------------
  */
 
-/* Gradients by Scharr's 3 x 3 differences at whole pixels, weighted by how near they are to where the corner is taken
- * to be: a symmetric window that follows it. */
+/* Gradients by Scharr's 3 x 3 differences at whole pixels. The weights are symmetric about the current estimate of the
+ * corner. */
 static bool right_angles(const Image *p, double reach, Corner *corner) {
   for (int step = 0; step < 20; step++) {
     double a = 0.0, b = 0.0, c = 0.0, u = 0.0, v = 0.0;
@@ -122,7 +121,7 @@ static bool right_angles(const Image *p, double reach, Corner *corner) {
 
 enum { MEAN, CONTRAST, SHARPNESS, X, Y, TURN1, TURN2, BEND1, BEND2 };
 
-/* The model at (px, py) and its derivative by each unknown. Edge i is where f = n.d + bend/2 (t.d)^2 = 0. */
+/* The model at (px, py) and its derivatives by the unknowns. Edge i is where f = n.d + curvature/2 (t.d)^2 = 0. */
 static double model(const double *q, double px, double py, double *by) {
   double dx = px - q[X], dy = py - q[Y], k = 1.0 / q[SHARPNESS], g[2], slope[2], f[2], nx[2], ny[2], n[2], t[2];
   for (int i = 0; i < 2; i++) {
@@ -146,7 +145,7 @@ static double model(const double *q, double px, double py, double *by) {
   return q[MEAN] + q[CONTRAST] * g[0] * g[1];
 }
 
-/* m x = r for a positive definite m, in place, by Cholesky's factors. */
+/* Solves m x = r for a positive definite m, in place, by Cholesky decomposition. */
 static bool solve(double m[UNKNOWNS][UNKNOWNS], double r[UNKNOWNS]) {
   for (int i = 0; i < UNKNOWNS; i++)
     for (int j = 0; j <= i; j++) {
@@ -191,7 +190,8 @@ static double misfit(const Window *w, const double *q) {
   return sum;
 }
 
-/* The saddle's two directions of no curvature, from a parabola through the pixels around: across them go the edges. */
+/* Initial values: the edges lie along the saddle's two directions of zero curvature, found by a quadratic fit to the
+ * pixels. */
 static bool begin(const Window *w, const Corner *corner, double *q) {
   double xx = 0.0, xy = 0.0, yy = 0.0, sxx = 0.0, sxy = 0.0, mean = 0.0, mean2 = 0.0, total = 0.0;
   for (int i = 0; i < w->count; i++) {
@@ -204,20 +204,20 @@ static bool begin(const Window *w, const Corner *corner, double *q) {
     double dx = w->x[i] - corner->x, dy = w->y[i] - corner->y, v = w->weight[i] * (w->value[i] - mean);
     xx += v * (dx * dx - dy * dy), xy += v * dx * dy, yy += v * (dx * dx + dy * dy);
   }
-  /* value - mean = A (x^2 - y^2) + B x y: what is odd about an even corner */
+  /* value - mean = A (x^2 - y^2) + B x y */
   double a = xx / sxx, b = xy / sxy, turn = 0.5 * atan2(b, 2.0 * a);
   if (!(a * a + b * b > 0.0)) return false;
   q[MEAN] = mean;
   q[CONTRAST] = sqrt(fmax(mean2 / total - mean * mean, 0.0));
   q[SHARPNESS] = 1.2;
   q[X] = corner->x, q[Y] = corner->y;
-  /* along `turn` it grows: there both edges' f have one sign */
+  /* `turn` is the direction of largest increase; both edge functions have the same sign there */
   q[TURN1] = turn - 0.25 * M_PI, q[TURN2] = turn + 0.25 * M_PI;
   q[BEND1] = q[BEND2] = 0.0;
   return true;
 }
 
-/* Levenberg and Marquardt. */
+/* Levenberg-Marquardt iterations. */
 static double fit(const Window *w, double *q) {
   double lambda = 1e-3, error = misfit(w, q);
   for (int step = 0; step < 40; step++) {
@@ -230,7 +230,7 @@ static double fit(const Window *w, double *q) {
       }
     }
     for (int j = 0; j < UNKNOWNS; j++) m[j][j] = m[j][j] * (1.0 + lambda) + 1e-12;
-    m[BEND1][BEND1] += 1e-2, m[BEND2][BEND2] += 1e-2; /* edges are nearly straight */
+    m[BEND1][BEND1] += 1e-2, m[BEND2][BEND2] += 1e-2; /* prior: edges are nearly straight */
     r[BEND1] -= 1e-2 * q[BEND1], r[BEND2] -= 1e-2 * q[BEND2];
     if (!solve(m, r)) return INFINITY;
     for (int j = 0; j < UNKNOWNS; j++) trial[j] = q[j] + r[j];

@@ -1,12 +1,12 @@
-/* camera/verify_model.c: where a point of the world lands, written a second time, straight from the equations of the
- * sources that docs/cameras.md names, with the C library's functions and one point at a time. Nothing here calls the
- * library's projections: it is what `velo camera verify` measures them against. */
+/* camera/verify_model.c: an independent projection of world points, written directly from the equations of the sources
+ * named in docs/cameras.md, with the C library's functions, one point at a time. It does not call the library's
+ * projections: `velo camera verify` checks them against it. */
 #include <math.h>
 #include <string.h>
 
 #include "camera/verify.h"
 
-/* Angle from the axis to radius on the plane. */
+/* Image radius of an angle from the axis. */
 static bool fisheye(vlProjection projection, double angle, double *r) {
   switch (projection) {
     case VL_PROJECTION_EQUIDISTANT: *r = angle; return true;
@@ -17,7 +17,7 @@ static bool fisheye(vlProjection projection, double angle, double *r) {
   }
 }
 
-/* pbrt book 3.8.3, EqualAreaSphereToSquare; the square is -1 to 1. */
+/* pbrt book 3.8.3, EqualAreaSphereToSquare; here the square is [-1, 1]^2. */
 static void equal_area(const double p[3], double plane[2]) {
   double length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
   double x = fabs(p[0]) / length, y = fabs(p[1]) / length, z = fabs(p[2]) / length;
@@ -30,7 +30,7 @@ static void equal_area(const double p[3], double plane[2]) {
   plane[0] = copysign(u, p[0]), plane[1] = copysign(v, p[1]);
 }
 
-/* Right, left, up, down, front, back: in a row, or as a cross four wide and three high. */
+/* Cube faces: right, left, up, down, front, back, in a row or as a cross, four wide and three high. */
 static void cube(bool as_cross, const double p[3], double plane[2]) {
   static const double at[6][2] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
   static const double ahead[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -48,7 +48,7 @@ static void cube(bool as_cross, const double p[3], double plane[2]) {
   }
 }
 
-/* A point in camera space to the ideal plane. */
+/* Projects a point in camera space to the undistorted image plane. */
 static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
   double x = p[0], y = p[1], z = p[2], across = sqrt(x * x + y * y), length = sqrt(across * across + z * z);
   double a = c->shape[0], b = c->shape[1], k, r;
@@ -79,7 +79,7 @@ static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
       k = across > 0.0 ? r / across : 0.0;
       plane[0] = k * x, plane[1] = k * y;
       return z > 0.0;
-    case VL_PROJECTION_DIVISION: { /* r of r Z = R (1 + lambda r^2) that begins at 0 */
+    case VL_PROJECTION_DIVISION: { /* the solution r of r Z = R (1 + lambda r^2) that is 0 at R = 0 */
       double root = z * z - 4.0 * a * across * across;
       if (root < 0.0) return false;
       k = 2.0 / (z + sqrt(root));
@@ -99,7 +99,8 @@ static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
   return k > 0.0 && isfinite(k);
 }
 
-/* OpenCV, "Camera Calibration and 3D Reconstruction": with 14 numbers k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tx ty. */
+/* OpenCV, "Camera Calibration and 3D Reconstruction"; the 14 coefficients are k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tx
+ * ty. */
 static void opencv(const double *k, double plane[2]) {
   double x = plane[0], y = plane[1], r2 = x * x + y * y, r4 = r2 * r2, r6 = r4 * r2;
   double q = (1.0 + k[0] * r2 + k[1] * r4 + k[4] * r6) / (1.0 + k[5] * r2 + k[6] * r4 + k[7] * r6);

@@ -1,4 +1,5 @@
-/* camera/verify_run.c: poses of the board that cover the rendered; each rendered, its corners found and compared. */
+/* camera/verify_run.c: poses of the board that cover the image. Each is rendered; its corners are found and compared.
+ */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -11,9 +12,9 @@ enum { TRIES = 400, ROOM = 4096, MARGIN = 3 };
 
 typedef struct Expected {
   int i, j;
-  double point[3], x, y; /* world; film, by the camera that renders */
-  double apart;          /* pixels to the next line of corners */
-  double reach;          /* of the window */
+  double point[3], x, y; /* world space; film point by the rendering camera */
+  double apart;          /* distance to the next line of corners, pixels */
+  double reach;          /* radius of the window, pixels */
   bool found;
   Corner corner;
 } Expected;
@@ -26,8 +27,8 @@ typedef struct Pose {
   uint32_t crop[4];
 } Pose;
 
-/* The window round (x, y) lies in the rendered, all of it sees, and straight lines of space are nearly straight in it:
- * not so at the creases of a map of the sphere, and at poles. */
+/* Whether the window around (x, y) lies in the image, has rays everywhere and shows straight lines as nearly straight.
+ * It does not at seams of maps of the sphere and at poles. */
 static bool in_one_piece(const vlCamera *c, double x, double y, double radius) {
   for (int k = 0; k < 8; k++) {
     double middle[3] = {0, 0, 0}, o[3], d[3], pixel[2], z;
@@ -50,7 +51,7 @@ static bool place_of(const Pose *pose, double i, double j, double point[3], doub
   return vl_camera_project(&pose->v->camera, point, pixel, &z);
 }
 
-/* Which corners the images should show whole, and how much room each has. */
+/* Lists the corners that the image should show completely, with the radius of their windows. */
 static void expect_corners(Pose *pose) {
   const Verification *v = pose->v;
   pose->count = 0;
@@ -87,7 +88,7 @@ static void expect_corners(Pose *pose) {
   }
 }
 
-/* A place for the board with something to measure; film points go through the image evenly (the R2 sequence). */
+/* Chooses a pose that shows at least four corners. The film points cover the image evenly (the R2 sequence). */
 static bool choose_pose(Pose *pose, uint32_t *sequence, Random *random) {
   const Verification *v = pose->v;
   for (int attempt = 0; attempt < TRIES; attempt++) {
@@ -111,7 +112,7 @@ static vlResult render(const Pose *pose, vlContext *context, vlImage **image, vl
   vlRenderDef def = vl_default_render_def();
   def.spp = v->spp;
   def.seed = (uint32_t)v->seed;
-  def.max_depth = 0; /* only what shines is seen */
+  def.max_depth = 0; /* only emission is visible */
   def.sampler = VL_SAMPLER_MULTI_JITTERED;
   vlResult result = target_build(context, &v->target, &pose->placement, &world, error);
   if (result == VL_OK) result = vl_film_create(context, &film_def, &film);
@@ -122,7 +123,7 @@ static vlResult render(const Pose *pose, vlContext *context, vlImage **image, vl
   return result;
 }
 
-/* Names the corners: each expected one takes the strongest saddle near it, and its measured place. */
+/* Assigns detections to expected corners: each takes the strongest saddle point near it, then its refined position. */
 static void match(Pose *pose, const Image *rendered, const Corner *corners, int count) {
   for (int k = 0; k < pose->count; k++) {
     Expected *e = &pose->expected[k];
@@ -193,7 +194,7 @@ static void add_up(Measure *all, const Measure *m) {
     all->most = m->most, all->at_x = m->at_x, all->at_y = m->at_y, all->pose = m->pose;
 }
 
-/* One channel, without alpha: for other programs' corner finders. */
+/* Writes one channel without alpha, for corner finders of other programs. */
 static vlResult keep_image(vlContext *context, const char *folder, uint32_t index, const Image *rendered,
                            vlError *error) {
   char path[4096];

@@ -1,13 +1,12 @@
-/* camera/verify_target.c: a chessboard, with or without markers in its white squares, and where it stands before the
- * camera. It is made of geometry that shines, so no texture filter stands between it and the image; black is nothing.
- */
+/* camera/verify_target.c: a chessboard, with or without markers in its white squares, and its placement before the
+ * camera. White squares are emissive geometry, so no texture filter affects the image; black squares are empty. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "camera/verify.h"
 
-/* A marker fills the middle 6 x 6 of a white square's 10 x 10 cells: a black frame, 4 x 4 bits inside. */
+/* A marker fills the middle 6 x 6 of a white square's 10 x 10 cells: a black frame around 4 x 4 bits. */
 enum { CELLS = 10, FRAME = 2, BITS = 4, MAX_QUADS = 8192 };
 
 double random_unit(Random *random) { /* splitmix64 */
@@ -34,8 +33,8 @@ static int differing_bits(unsigned a, unsigned b) {
   return count;
 }
 
-/* Marker k: the k-th number of a fixed sequence that differs by four bits or more from all before it and from itself,
- * in every turn. */
+/* Marker k: the k-th of a fixed sequence of codes. Each differs in at least four bits from all earlier ones and from
+ * itself, in every rotation. */
 static unsigned marker_code(int index) {
   unsigned codes[TARGET_MAX * TARGET_MAX], candidate = 0;
   Random random = {2026};
@@ -58,7 +57,7 @@ static bool is_white(int i, int j) {
   return (i + j) % 2 == 1;
 }
 
-/* The number of the white square (i, j) among all, row by row. */
+/* Number of the white square (i, j), counted by rows. */
 static int marker_of(const Target *target, int i, int j) {
   return (j * (target->corners + 1) + i) / 2;
 }
@@ -80,7 +79,7 @@ static double sample(const Image *p, double x, double y) {
 
 int target_read_marker(const Target *target, int i, int j, const Image *image, double c[4][2]) {
   if (!target->charuco || !is_white(i, j)) return -1;
-  for (int k = 0; k < 4; k++) { /* cells of less than 2.4 pixels cannot be read */
+  for (int k = 0; k < 4; k++) { /* cells smaller than 2.4 pixels cannot be read */
     static const int round[5] = {0, 1, 3, 2, 0};
     const double *a = c[round[k]], *b = c[round[k + 1]];
     if (hypot(a[0] - b[0], a[1] - b[1]) < 2.4 * CELLS) return -1;
@@ -123,7 +122,7 @@ static double length3(const double v[3]) {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* What film point (x, y) sees at a distance. */
+/* The world point at a distance along the ray of film point (x, y). */
 static bool point_at(const vlCamera *c, double x, double y, double distance, double p[3], double direction[3]) {
   double origin[3];
   if (!vl_camera_unproject(c, x, y, origin, direction)) return false;
@@ -135,7 +134,7 @@ bool target_place(const Target *target, const vlCamera *camera, double x, double
                   Placement *placement) {
   const double *m = camera->world_from_camera;
   const double eye[3] = {m[3], m[7], m[11]};
-  /* as far as the world's origin, so that coordinates keep their digits */
+  /* comparable to the distance of the world's origin, to preserve precision */
   double distance = fmax(1.0, length3(eye)) * (1.0 + random_unit(random)), direction[3], other[3], left[3], right[3],
          above[3], below[3], u[3], v[3], n[3];
   double turn = 2.0 * M_PI * random_unit(random), tilt = 0.6 * random_unit(random);
@@ -147,11 +146,11 @@ bool target_place(const Target *target, const vlCamera *camera, double x, double
   for (int a = 0; a < 3; a++) u[a] = right[a] - left[a], v[a] = below[a] - above[a];
   cross(u, v, n);
   double area = length3(n), size = side * sqrt(area);
-  /* a flat board cannot fill half a sphere */
+  /* a flat board cannot fill a hemisphere */
   double widest = 1.1 * distance / (target->corners + 1);
   if (camera->projection != VL_PROJECTION_ORTHOGRAPHIC && size > widest) size = widest;
   if (!(area > 0.0) || !isfinite(size)) return false;
-  /* u, v at right angles to the direction, turned about it; then the board leans back */
+  /* u, v: orthogonal to the direction and rotated about it; then the board is tilted */
   double along = 0.0;
   for (int a = 0; a < 3; a++) along += u[a] * direction[a];
   for (int a = 0; a < 3; a++) u[a] -= along * direction[a];
@@ -161,7 +160,7 @@ bool target_place(const Target *target, const vlCamera *camera, double x, double
   cross(direction, u, v);
   double c = cos(turn), s = sin(turn);
   for (int a = 0; a < 3; a++) {
-    /* axes of the lean: e stays, f is foreshortened and goes away along the view direction */
+    /* axes of the tilt: e stays; f is foreshortened and tilts away from the camera */
     double e = cos(lean) * u[a] + sin(lean) * v[a], f = -sin(lean) * u[a] + cos(lean) * v[a];
     double g = cos(tilt) * f + sin(tilt) * direction[a];
     placement->x[a] = size * (c * e + s * g), placement->y[a] = size * (-s * e + c * g);

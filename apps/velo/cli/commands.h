@@ -1,4 +1,4 @@
-/* cli/commands.h: the commands of the program, one table entry each; main.c lists them. */
+/* cli/commands.h: the commands of the program, one table each; main.c lists them. */
 #ifndef APP_CLI_COMMANDS_H
 #define APP_CLI_COMMANDS_H
 

@@ -1,4 +1,4 @@
-/* cli/help.c: the help page of a command, from its table: usage, what it does, options in sections, examples. See
+/* cli/help.c: the help page of a command, made from its table: usage, description, options in sections, examples. See
  * options.h. */
 #include <stdio.h>
 #include <string.h>
@@ -7,8 +7,8 @@
 
 enum { HELP_COLUMN = 30, HELP_WIDTH = 80 };
 
-/* Words of the text, wrapped; lines begin at `indent`, the first one where *column says. A line break of the text is a
- * blank, two are the end of a paragraph; a line that begins with a blank stays as it is. */
+/* Prints a text, wrapped. Lines are indented by `indent`; the first starts at *column. One line break in the text
+ * counts as a blank, two end a paragraph. A line that begins with a blank is printed unchanged. */
 static void print_wrapped(const char *text, int indent, int column) {
   while (*text) {
     size_t blanks = strspn(text, " "), n = strcspn(text, " \n");
@@ -38,7 +38,7 @@ static void print_wrapped(const char *text, int indent, int column) {
   printf("\n");
 }
 
-/* "a, b (or c), d": accepted names, aliases in parentheses. */
+/* Prints "a, b (or c), d": the accepted names with aliases in parentheses. */
 static void print_choices(const Choice *choices) {
   char list[1200] = "";
   for (const Choice *c = choices; c->name;) {

@@ -1,5 +1,5 @@
-/* cli/json.h: writing JSON, one value after the other, to a stream. Strings that are not UTF-8 get replacement
- * characters, numbers that are not finite become null; commas are kept by the writer. */
+/* cli/json.h: writes JSON to a stream, one value after the other; the writer inserts commas. Invalid UTF-8 is replaced
+ * by replacement characters, numbers that are not finite by null. */
 #ifndef APP_CLI_JSON_H
 #define APP_CLI_JSON_H
 
@@ -9,15 +9,15 @@
 
 typedef struct Json {
   FILE *out;
-  bool comma; /* a value stands before the next one */
+  bool comma; /* a value precedes the next one */
 } Json;
 
-/* key is null inside arrays and for the outermost value. bracket is '{' or '['; the end takes '}' or ']'. */
+/* key is null inside arrays and for the outermost value. bracket: '{' or '[' to begin, '}' or ']' to end. */
 void json_begin(Json *json, const char *key, char bracket);
 void json_end(Json *json, char bracket);
 void json_text(Json *json, const char *key, const char *text);
 void json_number(Json *json, const char *key, double number);
-/* jansson, which the library is made of, has a json_integer too: linked together they must not be the same. */
+/* avoids a clash with jansson's json_integer, which the library links */
 #define json_integer json_put_integer
 void json_integer(Json *json, const char *key, int64_t number);
 void json_bool(Json *json, const char *key, bool truth);

@@ -1,4 +1,4 @@
-/* cli/options.c: reading the command line by the command's table. See options.h; the help page is in help.c. */
+/* cli/options.c: parses the command line by the command's table. See options.h; the help page is in help.c. */
 #include "cli/options.h"
 
 #include <ctype.h>
@@ -15,7 +15,7 @@
 
 enum { LONGEST_NAME = 40 };
 
-/* Letters to insert, delete, change or swap to get from a to b; case ignored. */
+/* Edit distance between a and b: insertions, deletions, changes and swaps of letters; case ignored. */
 static int edit_distance(const char *a, const char *b) {
   int n = (int)strlen(a), m = (int)strlen(b);
   if (n > LONGEST_NAME || m > LONGEST_NAME) return LONGEST_NAME;
@@ -44,7 +44,7 @@ const char *did_you_mean(const char *prefix, const char *wrong, const char *cons
   int best_distance = LONGEST_NAME, length = (int)strlen(wrong);
   for (int i = 0; i < count; i++) {
     int distance = edit_distance(wrong, names[i]);
-    /* An abbreviation is as near as one wrong letter. */
+    /* An abbreviation counts as one wrong letter. */
     if (length >= 2 && strncmp(names[i], wrong, (size_t)length) == 0) distance = distance < 1 ? distance : 1;
     if (distance < best_distance) best_distance = distance, best = names[i];
   }
@@ -74,7 +74,7 @@ const char *choice_name(const Choice *choices, int value) {
 
 /* ---- values ------------------------------------------------------------------------------------------------------ */
 
-/* A plain decimal number and nothing after it up to `end` (null: the end of the text). No hexadecimals, inf or nan. */
+/* Reads a decimal number that extends to `end` (null: the end of the text). Hexadecimal, inf and nan are rejected. */
 static bool read_number(const char *text, const char *end, double *number) {
   if (!end) end = text + strlen(text);
   if (text == end || !(isdigit((unsigned char)*text) || strchr("+-.", *text))) return false;
@@ -96,7 +96,7 @@ static bool read_integer(const char *text, const char *end, int64_t *number) {
   return errno == 0;
 }
 
-/* 90, 1.5m, 1h30m, 20s: the sum of the parts. */
+/* Reads a time: 90, 1.5m, 1h30m, 20s; the parts are added. */
 static bool read_time(const char *text, double *seconds) {
   *seconds = 0;
   if (read_number(text, NULL, seconds)) return *seconds > 0;
@@ -111,7 +111,7 @@ static bool read_time(const char *text, double *seconds) {
   return *seconds > 0 && isfinite(*seconds);
 }
 
-/* 500M, 2G, 1.5GB: thousands; KiB, MiB, GiB: 1024. */
+/* Reads a number of bytes. 500M, 2G, 1.5GB: powers of 1000; KiB, MiB, GiB: powers of 1024. */
 static bool read_bytes(const char *text, int64_t *bytes) {
   static const char units[] = "kMGT";
   const char *unit = text + strspn(text, "0123456789.");
@@ -136,7 +136,7 @@ static bool read_size(const Option *option, const char *text, int64_t size[2]) {
   return true;
 }
 
-/* Four values separated by commas; either pointer may be null. */
+/* Reads four values separated by commas; either pointer may be null. */
 static bool read_four(const char *text, int64_t *integers, double *numbers) {
   for (int i = 0; i < 4; i++) {
     const char *end = i < 3 ? strchr(text, ',') : text + strlen(text);
@@ -242,7 +242,7 @@ static const Option *find_option(const Command *command, const char *name, size_
   return NULL;
 }
 
-/* One argument that begins with a dash; takes the next one as its value where it needs one. */
+/* Parses one argument that begins with a dash, and the next one as its value when it needs one. */
 static int parse_option(const Command *command, char ***rest, char **end, Arguments *arguments) {
   const char *word = **rest;
   bool is_long = word[1] == '-';
@@ -279,7 +279,7 @@ int options_parse(const Command *command, int argc, char **argv, Arguments *argu
     if (!only_operands && strcmp(*rest, "--") == 0) {
       only_operands = true;
     } else if (!only_operands && (*rest)[0] == '-' && (*rest)[1] &&
-               !strchr(".0123456789", (*rest)[1])) { /* -1: a number */
+               !strchr(".0123456789", (*rest)[1])) { /* a negative number is not an option */
       int status = parse_option(command, &rest, end, arguments);
       if (status >= 0) return status;
     } else if (arguments->operand_count == command->max_operands) {

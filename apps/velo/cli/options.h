@@ -1,5 +1,5 @@
-/* cli/options.h: the command line by table: each command lists its options, and parsing, checking, "did you mean" and
- * the help page come from that one list. */
+/* cli/options.h: the command line by table. Each command lists its options; parsing, checks, suggestions ("did you
+ * mean") and the help page use that list. */
 #ifndef APP_CLI_OPTIONS_H
 #define APP_CLI_OPTIONS_H
 
@@ -8,18 +8,18 @@
 
 typedef enum OptionKind {
   OPTION_FLAG,
-  OPTION_INTEGER,   /* min..max */
-  OPTION_NUMBER,    /* min..max */
-  OPTION_TIME,      /* seconds: 30, 30s, 5m, 1h30m */
-  OPTION_BYTES,     /* 500M, 2G, 1.5GiB; integer */
-  OPTION_SIZE,      /* WxH, each min..max */
-  OPTION_CROP,      /* x0,y0,x1,y1, whole numbers */
-  OPTION_FRACTIONS, /* x0,x1,y0,y1 in 0..1 */
+  OPTION_INTEGER,   /* in [min, max] */
+  OPTION_NUMBER,    /* in [min, max] */
+  OPTION_TIME,      /* in seconds: 30, 30s, 5m, 1h30m */
+  OPTION_BYTES,     /* 500M, 2G, 1.5GiB; sets integer */
+  OPTION_SIZE,      /* WxH, each in [min, max] */
+  OPTION_CROP,      /* x0,y0,x1,y1, integers */
+  OPTION_FRACTIONS, /* x0,x1,y0,y1 in [0, 1] */
   OPTION_CHOICE,    /* one of choices */
   OPTION_KIND,      /* one of the kinds of the family that choices names */
   OPTION_TEXT,
-  OPTION_TEXTS,  /* may be given several times; at most one such option a command */
-  OPTION_FOLDERS /* likewise, another one */
+  OPTION_TEXTS,  /* may be repeated; at most one such option per command */
+  OPTION_FOLDERS /* likewise, a separate list */
 } OptionKind;
 
 typedef struct Choice {
@@ -32,7 +32,7 @@ typedef struct Option {
   char letter;
   const char *name; /* without dashes; null ends the list */
   OptionKind kind;
-  const char *value; /* its name in the help page; null for flags */
+  const char *value; /* placeholder in the help page; null for flags */
   const char *help;  /* lines separated by \n */
   double min, max;
   const Choice *choices;
@@ -42,11 +42,11 @@ enum { MAX_OPTIONS = 64, MAX_TEXTS = 32, MAX_OPERANDS = 4 };
 
 typedef struct OptionValue {
   bool given;
-  int64_t integer; /* integer; choice's value */
-  double number;   /* number, time in seconds */
+  int64_t integer; /* integer; value of the choice */
+  double number;   /* number; time in seconds */
   int64_t integers[4];
   double numbers[4];
-  const char *text; /* as written */
+  const char *text; /* the text as given */
 } OptionValue;
 
 typedef struct Arguments {
@@ -59,28 +59,29 @@ typedef struct Arguments {
   int operand_count;
 } Arguments;
 
-/* A heading of the help page, before the option of that id. */
+/* A heading in the help page, before the option of that id. */
 typedef struct Section {
-  int first;         /* id */
+  int first;         /* id of the option */
   const char *title; /* null ends the list */
 } Section;
 
 typedef struct Command {
   const char *name;     /* "image diff"; null ends a list */
-  const char *usage;    /* what follows the name: "FILE [options]" */
+  const char *usage;    /* text after the name: "FILE [options]" */
   const char *summary;  /* one line */
-  const char *text;     /* the help page between usage and options */
-  const char *examples; /* lines of the help page, after the options */
+  const char *text;     /* paragraphs between usage and options */
+  const char *examples; /* lines after the options */
   const Option *options;
   const Section *sections; /* null: the options are one section */
   int min_operands, max_operands;
   int (*run)(const struct Command *command, const Arguments *arguments);
 } Command;
 
-/* argv without program and command names. -1: go on; else the exit code (0 after --help), all has been said. */
+/* Parses argv without the names of program and command. Returns -1 to continue, otherwise the exit code after reporting
+ * (0 after --help). */
 int options_parse(const Command *command, int argc, char **argv, Arguments *arguments);
 void options_print_help(const Command *command);
-/* "render" → "; did you mean \"render\"?", or nothing. The result lives until the next call. */
+/* For "render": "; did you mean \"render\"?". Empty when no name is near. Valid until the next call. */
 const char *did_you_mean(const char *prefix, const char *wrong, const char *const *names, int count);
 /* The names that an option takes; null: any text. */
 const Choice *option_choices(const Option *option);

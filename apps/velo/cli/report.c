@@ -7,13 +7,13 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-enum { MOST_LOGGED = 100 }; /* a stranger's file may earn a warning a line */
+enum { MOST_LOGGED = 100 }; /* limit of warnings: an untrusted file may cause one per line */
 
 static struct {
   bool json, terminal, line_shown;
-  unsigned logged; /* warnings and notes of the library */
+  unsigned logged; /* number of the library's warnings and notes */
   Verbosity verbosity;
-  const vlContext *context; /* whose memory is reported; may be null */
+  const vlContext *context; /* whose memory use is reported; may be null */
   size_t memory_limit;
   char *json_text;
   size_t json_size;
@@ -52,7 +52,7 @@ int report_terminal_columns(void) {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-/* One line in one write, so that lines of several programs do not mix. */
+/* Writes one line by one call, so that lines of several programs do not mix. */
 static void put_line(const char *text) {
   char line[4200];
   size_t n = 0;
@@ -91,7 +91,7 @@ void report_json_end(Json *json) {
   fflush(stderr);
 }
 
-/* kind: null for errors (whose lines carry no word, since they are the last thing said), else "warning", ... */
+/* kind: "warning", ...; null for errors, whose lines have no prefix word. */
 static void say(const char *kind, int status, const vlError *where, const char *fallback_file, const char *message) {
   const char *file = where && where->file[0] ? where->file : fallback_file;
   uint32_t line = where && where->file[0] ? where->line : 0, column = line ? where->column : 0;
@@ -141,7 +141,7 @@ static int status_of(vlResult result) {
   switch (result) {
     case VL_OK:
     case VL_CANCELLED: return STATUS_OK;
-    case VL_ERROR_ARGUMENT: /* what the library refuses came out of a file: the command line was checked before */
+    case VL_ERROR_ARGUMENT: /* a value of a file that the library rejects; the command line was checked before */
     case VL_ERROR_SCENE:
     case VL_ERROR_UNSUPPORTED: return STATUS_SCENE;
     case VL_ERROR_MISSING: return STATUS_MISSING;
@@ -164,7 +164,7 @@ int report_error(const vlError *error, vlResult result, const char *file) {
                (double)state.memory_limit * 1e-6);
     message = longer;
   }
-  /* Messages about files that cannot be opened name them already. */
+  /* Messages about files that cannot be opened already name them. */
   if (file && strstr(message, file)) file = NULL;
   say(NULL, status, error, file, message);
   return status;

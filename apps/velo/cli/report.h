@@ -1,45 +1,45 @@
-/* cli/report.h: everything that velo says on stderr: errors, warnings, notes, the status line of a terminal, and the
- * same as JSON, one object a line. Each message is one line; control characters of strangers' files do not get through.
- * The one place of the program with state of its own. Also: the exit codes. */
+/* cli/report.h: all output of velo on stderr: errors, warnings, notes, the status line of a terminal, and the same as
+ * JSON, one object per line. Each message is one line; control characters from files are removed. This is the only part
+ * of the program with global state. Also defines the exit codes. */
 #ifndef APP_CLI_REPORT_H
 #define APP_CLI_REPORT_H
 
 #include "cli/json.h"
 #include "velo/velo.h"
 
-/* What velo returns to the shell; 128 + signal after SIGHUP (129), SIGINT (130), SIGXCPU (152) and SIGTERM (143). */
+/* Exit codes of velo. After SIGHUP, SIGINT, SIGXCPU or SIGTERM: 128 + signal (129, 130, 152, 143). */
 enum {
-  STATUS_OK = 0,      /* done, every file written whole */
-  STATUS_OTHER = 1,   /* image diff: over a threshold; anywhere: out of memory */
-  STATUS_USAGE = 2,   /* the command line is wrong */
-  STATUS_SCENE = 3,   /* a scene or image is wrong */
-  STATUS_MISSING = 4, /* a file does not exist: the scene, or one that it names */
-  STATUS_IO = 5       /* reading or writing failed: folder, permission, disk full */
+  STATUS_OK = 0,      /* success: every file was written completely */
+  STATUS_OTHER = 1,   /* image diff: a threshold was exceeded; any command: out of memory */
+  STATUS_USAGE = 2,   /* wrong command line */
+  STATUS_SCENE = 3,   /* wrong scene or image */
+  STATUS_MISSING = 4, /* a missing file: the scene, or one that it names */
+  STATUS_IO = 5       /* reading or writing failed: directory, permission, disk full */
 };
 
 typedef enum Verbosity { REPORT_QUIET = -1, REPORT_NORMAL = 0, REPORT_VERBOSE = 1 } Verbosity;
 
 void report_setup(bool json, Verbosity verbosity);
-/* Out of memory is reported with what the context holds, and with the limit (0: none). Null: no longer. */
+/* Sets the context whose memory use, and its limit (0: none), an out-of-memory error reports. Null: none. */
 void report_memory_of(const vlContext *context, size_t limit);
 bool report_is_json(void);
 bool report_is_quiet(void);
 bool report_is_verbose(void);
-/* stderr is a terminal that can redraw a line, and people read it. */
+/* Whether stderr is a terminal that can redraw a line and the output is text. */
 bool report_is_terminal(void);
 int report_terminal_columns(void);
 
-/* "velo: message"; all return the exit code, so that `return report_usage(...)` reads well. */
+/* Reports "velo: message". All return the exit code, for `return report_usage(...)`. */
 int report_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
 int report_failure(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* "velo: file:line:column: message". `file` stands where the library knows no place; may be null. */
+/* Reports "velo: file:line:column: message". `file` is used when the library's error has no place; may be null. */
 int report_error(const vlError *error, vlResult result, const char *file);
 void report_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* Shown unless --quiet; not shown as JSON. */
+/* Not reported with --quiet or as JSON. */
 void report_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* The context's log callback. */
 void report_log(void *user, vlLogLevel level, const vlError *where, const char *message);
-/* The line that is redrawn at the bottom of a terminal; null removes it. */
+/* Sets the status line that is redrawn at the bottom of a terminal; null removes it. */
 void report_status_line(const char *text);
 
 /* A JSON line on stderr: begin, json_*(...) calls, end. Only when report_is_json(). */

@@ -7,13 +7,13 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MOST_SIGNALS = 2 }; /* one more ends the program */
+enum { MOST_SIGNALS = 2 }; /* the next signal ends the program */
 
 static atomic_int pending, count;
 static atomic_bool remember;
-static _Atomic time_t last; /* seconds of the last one that counted */
+static _Atomic time_t last; /* time of the last signal that counted, seconds */
 
-/* Only calls that are safe in a handler. */
+/* Calls only async-signal-safe functions. */
 static void say(const char *text) {
   ssize_t n = write(STDERR_FILENO, text, strlen(text));
   (void)n;

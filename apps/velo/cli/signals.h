@@ -1,19 +1,18 @@
-/* cli/signals.h: SIGINT, SIGTERM, SIGHUP (a connection that drops) and SIGXCPU (a limit of CPU time). The first one
- * asks the render to stop and to write what is there; a second one gives up what still takes time after that; a third
- * one ends the program at once. Signals within two seconds count as one: a dropped connection sends several. Before the
- * render begins there is nothing to save: then the first one already ends it. A signal that was ignored when the
- * program started (nohup) stays ignored. */
+/* cli/signals.h: handles SIGINT, SIGTERM, SIGHUP (closed connection) and SIGXCPU (CPU time limit). The first signal
+ * asks the render to stop and write its image, the second one aborts the work after that, the third one ends the
+ * program. Signals within two seconds count as one, since a closed connection sends several. Before the render begins,
+ * the first signal ends the program. A signal that was ignored when the program started (nohup) stays ignored. */
 #ifndef APP_CLI_SIGNALS_H
 #define APP_CLI_SIGNALS_H
 
 #include <stdbool.h>
 
 void signals_install(void);
-/* From now on a signal is remembered instead of ending the program. */
+/* From now on signals are recorded instead of ending the program. */
 void signals_remember(void);
-/* The first remembered signal, 0 if none. */
+/* The first recorded signal; 0: none. */
 int signals_pending(void);
-/* How many were remembered. */
+/* The number of recorded signals. */
 int signals_count(void);
 
 #endif

@@ -1,5 +1,5 @@
-/* image/check.c: `velo image check`: do the ground truth channels of a file agree with each other and with the camera
- * in its header? Everything is computed again in double from what the file holds. */
+/* image/check.c: `velo image check`: whether the ground truth channels of a file agree with each other and with the
+ * camera in its header. Everything is recomputed in double from the file. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ void check_note(Check *c, int rule, double error) {
   Rule *r = &c->rules[rule];
   if (r->checked && error <= r->worst) return;
   r->checked = true;
-  r->worst = error == error ? error : (double)INFINITY; /* NaN never agrees */
+  r->worst = error == error ? error : (double)INFINITY; /* NaN always fails */
   r->x = c->x, r->y = c->y;
 }
 
@@ -44,7 +44,7 @@ bool check_is_hit(const Check *c) {
 /* ---- what there is ------------------------------------------------------------------------------------------------
  */
 
-/* Parts of a channel, "N." and "XYZ", that stand together in the file's order; -1 unless all are there. */
+/* Index of the first of the channels "N." + "XYZ" when all exist in consecutive order; otherwise -1. */
 static int find_parts(const vlImage *image, const char *name, const char *parts) {
   char part[40];
   int first = -1;
@@ -57,7 +57,7 @@ static int find_parts(const vlImage *image, const char *name, const char *parts)
   return first;
 }
 
-/* Ids and counts: NAME.Y, in older files NAME. */
+/* Index of the channel for ids and counts: NAME.Y, or NAME in older files. */
 static int find_whole(const vlImage *image, const char *name) {
   char visible[64];
   snprintf(visible, sizeof visible, "%s.Y", name);
@@ -85,7 +85,7 @@ static void find_channels(Check *c) {
   c->flow[1] = find_parts(image, "backward.", "UV");
   c->hidden[0] = find_whole(image, "forward.hidden");
   c->hidden[1] = find_whole(image, "backward.hidden");
-  c->albedo = find_parts(image, "albedo.", "RGB"); /* as the reader sorts colours */
+  c->albedo = find_parts(image, "albedo.", "RGB"); /* in the order in which the reader sorts colours */
   c->error = find_parts(image, "error.", "RGB");
 }
 
@@ -97,7 +97,7 @@ static bool has_any(const Check *c) {
   return c->mattes[0].ranks || c->mattes[1].ranks || c->mattes[2].ranks;
 }
 
-/* What the header says of how the image was taken. */
+/* Reads the camera and the settings from the header. */
 static void read_header(Check *c) {
   vlAttribute a;
   bool centre = vl_image_find_attribute(c->image, "velo.channels", &a) != VL_OK || strcmp(a.string, "centre") == 0;
@@ -113,7 +113,7 @@ static void read_header(Check *c) {
     c->matte_is_alpha = c->matte_is_alpha || strcmp(a.string, positive[i]) == 0;
 }
 
-/* Whole numbers: 32-bit floats below 2^24, else integers. */
+/* Integers are stored as 32-bit floats below 2^24, otherwise as integers. */
 static void check_whole_type(Check *c, int channel) {
   if (channel < 0) return;
   vlPixelType type = vl_image_stored_type(c->image, (uint32_t)channel);
@@ -125,7 +125,7 @@ static void check_type(Check *c, int channel, int parts, vlPixelType type) {
     check_note(c, RULE_TYPES, vl_image_stored_type(c->image, (uint32_t)(channel + k)) == type ? 0 : (double)INFINITY);
 }
 
-/* Depths and positions as 32-bit floats, ids as these or as integers. */
+/* Depths and positions must be 32-bit floats; ids may be floats or integers. */
 static void check_types(Check *c) {
   const int ones[] = {c->z, c->distance}, twos[] = {c->uv, c->film, c->flow[0], c->flow[1]},
             threes[] = {c->p, c->n, c->ng, c->ray, c->albedo, c->error},
@@ -197,7 +197,7 @@ static int judge(const Check *c, const char *path, double threshold) {
   return status;
 }
 
-/* The image that flow leads to: its camera, and its distances if it has them. */
+/* Reads the image that flow refers to: its camera, and its distances when present. */
 static int load_other(Check *c, vlContext *context, const Arguments *arguments, vlImage **image) {
   static const int options[2] = {CHECK_FLOW, CHECK_FLOW_BEFORE};
   const OptionValue *v = arguments->values;
@@ -221,7 +221,7 @@ static int load_other(Check *c, vlContext *context, const Arguments *arguments, 
   return -1;
 }
 
-/* Everything that is needed before pixels are looked at. */
+/* Checks everything that the pixel tests need. */
 static int prepare(Check *c, vlContext *context, const Arguments *arguments, vlImage **image, vlImage **other) {
   int status = image_load(context, c->path, image);
   if (status >= 0) return status;

@@ -1,10 +1,11 @@
-/* image/check.h: `velo image check` in parts: what is known of the file, and the rules with their worst errors. */
+/* image/check.h: the parts of `velo image check`: the state of the file being checked, and the rules with their worst
+ * errors. */
 #ifndef APP_IMAGE_CHECK_H
 #define APP_IMAGE_CHECK_H
 
 #include "velo/velo.h"
 
-/* What is checked; errors are relative. */
+/* The rules; errors are relative. */
 enum {
   RULE_POINT,
   RULE_DEPTH,
@@ -27,62 +28,62 @@ enum {
 };
 typedef struct Rule {
   const char *name, *text;
-  double limit; /* accepted whatever the threshold */
+  double limit; /* errors up to this are accepted whatever the threshold is */
   bool checked;
   double worst;
-  uint32_t x, y; /* of the worst */
+  uint32_t x, y; /* pixel of the worst error */
 } Rule;
 
 /* One Cryptomatte of the file. */
 typedef struct Matte {
   uint32_t ranks;
-  int id[32], coverage[32]; /* channels of each rank */
-  uint32_t *known;          /* bits that the manifest lists, sorted */
+  int id[32], coverage[32]; /* channel indices of each rank */
+  uint32_t *known;          /* bits of the manifest's hashes, sorted */
   size_t known_count;
 } Matte;
 
 typedef struct Check {
   const vlImage *image;
   const char *path;
-  const float *pixel; /* the one that is looked at */
+  const float *pixel; /* the current pixel */
   vlCamera camera;
-  uint32_t x0, y0, x, y; /* corner of the data window, and place in the whole image */
-  /* channels; -1: not in the file */
+  uint32_t x0, y0, x, y; /* corner of the data window; position of the pixel in the whole image */
+  /* channel indices; -1: not in the file */
   int z, distance, p, n, ng, ray, object, material, primitive, instance, uv, albedo, film, samples, error, alpha;
   int flow[2], hidden[2];
-  double point[2];     /* of the film: where the pixel's ray goes through */
-  double reach[2];     /* how far from its centre that may be; 0: nowhere else */
-  double spp;          /* of the header; 0: it does not say */
-  bool matte_is_alpha; /* coverages add up to the image's alpha */
+  double point[2];     /* film point of the pixel's ray */
+  double reach[2];     /* largest offset of the film point from the pixel's centre; 0: none */
+  double spp;          /* from the header; 0: not given */
+  bool matte_is_alpha; /* the sum of coverages equals the image's alpha */
   Matte mattes[3];
-  uint32_t *material_of; /* by object: as met first */
+  uint32_t *material_of; /* material id by object id, as first met */
   uint64_t hits, misses;
-  double pixel_error; /* largest, in pixels */
+  double pixel_error; /* largest error in pixels */
 
-  const vlImage *other; /* what flow leads to; null: not given */
+  const vlImage *other; /* the image that flow refers to; null: not given */
   vlCamera other_camera;
-  vlOptics *optics, *other_optics; /* that the cameras have; null: none */
+  vlOptics *optics, *other_optics; /* lenses of the cameras; null: none */
   uint32_t other_x0, other_y0;
-  int other_distance, which; /* channel; 0 forward, 1 backward */
+  int other_distance, which; /* channel index; 0: forward, 1: backward */
   uint64_t flow_seen, flow_wrong;
 
   Rule rules[RULES];
 } Check;
 
-enum { CHECK_OBJECTS = 1 << 20 }; /* those above are not remembered */
+enum { CHECK_OBJECTS = 1 << 20 }; /* larger object ids are not recorded */
 
 void check_note(Check *c, int rule, double error);
 void check_load3(const Check *c, int channel, double v[3]);
 double check_length3(const double v[3]);
-/* Anything that tells whether the pixel met a surface; without such a channel it is taken to. */
+/* Whether the pixel met a surface, by any channel that shows it; true without such a channel. */
 bool check_is_hit(const Check *c);
-/* image_check_pixel.c */
+/* check_pixel.c */
 void check_pixel(Check *c);
-/* image_check_matte.c: -1 or the exit code. */
+/* check_matte.c; returns -1 or the exit code. */
 int check_find_mattes(Check *c);
 void check_free_mattes(Check *c);
 void check_mattes(Check *c);
-/* image_check_flow.c */
+/* check_flow.c */
 void check_flow(Check *c);
 void check_finish_flow(Check *c);
 

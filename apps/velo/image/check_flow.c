@@ -1,10 +1,10 @@
-/* image/check_flow.c: does flow lead to where the other image has the same point? */
+/* image/check_flow.c: whether flow leads to the same point in the other image. */
 #include <math.h>
 #include <string.h>
 
 #include "image/check.h"
 
-/* The world's point at the end of the pixel's ray, or for the sky a point of it that is far away. */
+/* The world point of the pixel's ray. For a pixel without a hit, a distant point on the ray. */
 static bool find_point(const Check *c, bool hit, double p[3]) {
   double origin[3], direction[3];
   if (!vl_camera_unproject(&c->camera, c->point[0], c->point[1], origin, direction)) return false;
@@ -22,7 +22,7 @@ static bool find_point(const Check *c, bool hit, double p[3]) {
   return true;
 }
 
-/* Distances that the other image has around a place; false: the place is not in the file. */
+/* Nearest and farthest distance in the other image around a position; false: outside the file's window. */
 static bool around(const Check *c, const double at[2], double *nearest, double *farthest) {
   uint32_t width = vl_image_width(c->other), height = vl_image_height(c->other), step = vl_image_channels(c->other);
   const float *pixels = vl_image_const_pixels(c->other);
@@ -39,8 +39,8 @@ static bool around(const Check *c, const double at[2], double *nearest, double *
   return true;
 }
 
-/* What is seen there has nothing before it; what is hidden has. At edges the eight neighbours of the pixel decide too,
- * and grazing surfaces leave some doubt: so a share of the pixels may disagree. */
+/* A visible point has nothing in front of it in the other image; a hidden one has. The pixel's eight neighbours count,
+ * too, because of edges. Grazing surfaces remain uncertain: a share of the pixels may disagree. */
 static void compare_distances(Check *c, int hidden, const double at[2], bool hit, const double p[3]) {
   double nearest, farthest, origin[3], direction[3], away[3];
   if (c->other_distance < 0 || hidden > VL_HIDDEN_BEHIND || !around(c, at, &nearest, &farthest)) return;
@@ -65,7 +65,7 @@ void check_flow(Check *c) {
     check_note(c, RULE_HIDDEN, hidden == VL_HIDDEN_NOWHERE && flow[0] == 0 && flow[1] == 0 ? 0 : (double)INFINITY);
     return;
   }
-  /* What a float of P may be wrong, seen from the other camera: the nearer, the more. */
+  /* The effect of P's float rounding grows as the point comes closer to the other camera. */
   const double *m = c->other_camera.world_from_camera, eye[3] = {m[3], m[7], m[11]};
   double away[3] = {p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]};
   double size = fmax(fmax(check_length3(p), check_length3(eye)), check_length3(away)), near = check_length3(away);

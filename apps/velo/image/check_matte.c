@@ -1,4 +1,4 @@
-/* image/check_matte.c: are a file's Cryptomattes what their header says? */
+/* image/check_matte.c: whether a file's Cryptomattes agree with their header. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@ static const char *const types[3] = {"CryptoObject", "CryptoMaterial", "CryptoIn
 /* ---- the manifest -------------------------------------------------------------------------------------------------
  */
 
-/* A JSON string into `to` (of `size`); null when it is none. \u is not needed: manifests are UTF-8. */
+/* Reads a JSON string into `to` (of `size`); null when invalid. \u is not needed: manifests are UTF-8. */
 static const char *read_string(const char *at, char *to, size_t size) {
   size_t n = 0;
   at += strspn(at, " \t\r\n");
@@ -35,7 +35,7 @@ static bool is_known(const Matte *m, uint32_t bits) {
   return bsearch(&bits, m->known, m->known_count, sizeof bits, compare) != NULL;
 }
 
-/* {"name":"hash",...}: each hash must be its name's. */
+/* Reads {"name":"hash",...} and checks that each hash is its name's. */
 static bool read_manifest(Matte *m, const char *text) {
   char name[1200], hash[16];
   size_t room = strlen(text) / 13 + 1; /* "":"12345678", and the comma */
@@ -106,7 +106,8 @@ void check_free_mattes(Check *c) {
 /* ---- a pixel ------------------------------------------------------------------------------------------------------
  */
 
-/* Sum of the coverages. Ids are those of the manifest, each once; no id without coverage, none before a larger one. */
+/* Sums the coverages and checks the ids: known to the manifest, each once, with coverage, in descending order of
+ * coverage. */
 static double check_matte(Check *c, const Matte *m) {
   double sum = 0;
   float last = 1;
@@ -126,8 +127,8 @@ static double check_matte(Check *c, const Matte *m) {
   return sum;
 }
 
-/* All that a pixel covers is covered by objects and by materials alike, and is the image's alpha; unless the last
- * rank is taken: there may be more then. */
+/* Objects and materials must have the same total coverage, the image's alpha. When the last rank is used, coverage may
+ * be missing. */
 void check_mattes(Check *c) {
   double sums[3] = {0, 0, 0};
   bool whole[3] = {false, false, false};

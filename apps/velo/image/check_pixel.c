@@ -1,4 +1,4 @@
-/* image/check_pixel.c: what one pixel's ground truth says about itself and about the camera. */
+/* image/check_pixel.c: checks of one pixel's ground truth with itself and with the camera. */
 #include <math.h>
 #include <string.h>
 
@@ -23,7 +23,7 @@ static void check_miss(Check *c, bool in_domain, const double direction[3]) {
   check_note(c, RULE_RAY, check_length3(v));
 }
 
-/* Errors are measured against the largest number that takes part: that is what floats can promise. */
+/* Errors are relative to the largest number involved, which bounds the rounding of floats. */
 static void check_point(Check *c, const double origin[3], const double direction[3]) {
   double p[3], ray[3], t = c->distance >= 0 ? c->pixel[c->distance] : 0;
   if (c->ray >= 0)
@@ -56,7 +56,7 @@ static void check_point(Check *c, const double origin[3], const double direction
   check_note(c, RULE_PIXEL, error / larger * fmin(1, check_length3(away) / size));
 }
 
-/* Numbers that can be checked for no more than being numbers; and the point of the film. */
+/* Checks channels that only have to be finite, and reads the film point. */
 static void check_plain(Check *c) {
   const int places[] = {c->uv, c->albedo}, counts[] = {2, 3};
   for (int i = 0; i < 2; i++)
@@ -72,7 +72,7 @@ static void check_plain(Check *c) {
   }
 }
 
-/* A shape has one material. */
+/* All pixels of a shape must have the same material. */
 static void check_material_of(Check *c) {
   if (c->object < 0 || c->material < 0 || !c->material_of) return;
   float object = c->pixel[c->object], material = c->pixel[c->material];

@@ -1,5 +1,4 @@
-/* image/convert.c: `velo image convert`: from one format to another, through a view where light becomes display values,
- * and cut to a window. */
+/* image/convert.c: `velo image convert`: conversion between formats, with a view for display values, and cropping. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,7 +16,7 @@ static bool is_float(const vlImage *image) {
   return vl_image_type(image) == VL_PIXEL_F16 || vl_image_type(image) == VL_PIXEL_F32;
 }
 
-/* Attributes go along, except those that say where the pixels are in a larger image, when that changed. */
+/* Copies the attributes. After a crop, those that place the pixels in a larger image are left out. */
 static vlResult copy_attributes(const vlImage *from, vlImage *to, bool cropped) {
   vlResult result = VL_OK;
   for (uint32_t i = 0; i < vl_image_attribute_count(from) && result == VL_OK; i++) {
@@ -30,7 +29,7 @@ static vlResult copy_attributes(const vlImage *from, vlImage *to, bool cropped) 
   return result;
 }
 
-/* A window of the image; to_float: as linear 32-bit floats, else the values as they are. */
+/* A window of the image. to_float: converted to linear 32-bit floats; otherwise values are unchanged. */
 static vlResult copy_window(vlContext *context, const vlImage *from, const uint32_t window[4], bool to_float,
                             vlImage **result) {
   uint32_t channels = vl_image_channels(from), width = window[2] - window[0], height = window[3] - window[1];
@@ -63,7 +62,7 @@ static vlResult copy_window(vlContext *context, const vlImage *from, const uint3
   return copy_attributes(from, *result, cropped);
 }
 
-/* Replaces *image by its window, as floats where the target or the view wants light. */
+/* Replaces *image by its window, as floats when the target or the view needs linear light. */
 static int prepare_pixels(vlContext *context, const Arguments *arguments, bool want_float, vlImage **image) {
   const OptionValue *crop = &arguments->values[CONVERT_CROP];
   uint32_t window[4] = {0, 0, vl_image_width(*image), vl_image_height(*image)};
@@ -85,8 +84,8 @@ static int prepare_pixels(vlContext *context, const Arguments *arguments, bool w
   return -1;
 }
 
-/* One channel times a factor, to whole numbers of 16 bits: depth as RGB-D sequences keep it. What is not finite or
- * below zero is 0, their "nothing known"; what is above 65535 too, for a cut-off depth would be a wrong one. */
+/* One channel times a factor as 16-bit integers: the depth format of RGB-D data sets. Values that are not finite,
+ * negative or above 65535 become 0 ("unknown"), since clamped depths would be wrong. */
 static vlResult whole_numbers(vlContext *context, const vlImage *from, uint32_t channel, double scale, vlImage **result,
                               uint64_t *too_large) {
   vlImageDef def = vl_default_image_def(vl_image_width(from), vl_image_height(from), 1);
@@ -105,7 +104,7 @@ static vlResult whole_numbers(vlContext *context, const vlImage *from, uint32_t 
   return status;
 }
 
-/* Replaces *image by one of its channels: its numbers alone, or with a scale 16-bit whole numbers. */
+/* Replaces *image by one of its channels: unchanged, or as 16-bit integers when a scale is given. */
 static int take_channel(vlContext *context, const Arguments *arguments, vlImage **image) {
   const OptionValue *name = &arguments->values[CONVERT_CHANNEL], *scale = &arguments->values[CONVERT_SCALE];
   const char *path = arguments->operands[0];
@@ -176,7 +175,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   if (status < 0) status = image_load(context, arguments->operands[0], &image);
   if (status < 0) status = prepare_pixels(context, arguments, !eight_bit || viewed, &image);
   if (status < 0 && v[CONVERT_CHANNEL].given) status = take_channel(context, arguments, &image);
-  if (status < 0 && eight_bit && !viewed && !is_float(image)) { /* display values stay what they are */
+  if (status < 0 && eight_bit && !viewed && !is_float(image)) { /* display values stay unchanged */
     vlError error = {0};
     vlResult result = vl_image_write(image, outputs.paths[0], NULL, &error);
     status = result == VL_OK ? STATUS_OK : report_error(&error, result, outputs.paths[0]);

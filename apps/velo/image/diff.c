@@ -1,4 +1,4 @@
-/* image/diff.c: `velo image diff`: how far an image is from a reference. */
+/* image/diff.c: `velo image diff`: differences between an image and a reference. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,11 +11,11 @@
 
 enum { DIFF_OUTPUT, DIFF_THRESHOLD, DIFF_JSON };
 
-/* What is measured; the name is also that of its threshold. */
+/* The metrics; each name is also that of its threshold. */
 typedef enum MetricKind { METRIC_MOST, METRIC_LEAST, METRIC_FROM_ONE } MetricKind;
 typedef struct Metric {
   const char *name;
-  MetricKind kind; /* a threshold is the most, the least, or the most away from 1 that is accepted */
+  MetricKind kind; /* whether the threshold is an upper bound, a lower bound, or a largest distance from 1 */
   double value;
 } Metric;
 
@@ -35,7 +35,7 @@ static void list_metrics(const vlImageDiff *d, Metric metrics[METRICS]) {
   memcpy(metrics, list, sizeof list);
 }
 
-/* "flip=0.05" → index and limit. -1 or the exit code. */
+/* Parses "flip=0.05" into index and limit. Returns -1 or the exit code. */
 static int read_threshold(const char *text, const Metric metrics[METRICS], int *index, double *limit) {
   const char *equals = strchr(text, '=');
   char name[40], *end = NULL;
@@ -59,7 +59,7 @@ static int read_threshold(const char *text, const Metric metrics[METRICS], int *
   return -1;
 }
 
-/* A measure that is not a number is never good enough. */
+/* A metric that is NaN always fails. */
 static bool accepted(const Metric *metric, double limit) {
   switch (metric->kind) {
     case METRIC_MOST: return metric->value <= limit;
@@ -109,7 +109,7 @@ static int run_diff(const Command *command, const Arguments *arguments) {
   vlImageDiff diff = {0};
   Metric metrics[METRICS];
   list_metrics(&diff, metrics);
-  /* Wrong thresholds and outputs are found before the work. */
+  /* Checks thresholds and outputs before any work. */
   int status = outputs_check_names(&heat_file);
   for (int i = 0, index; i < arguments->text_count && status < 0; i++) {
     double limit;

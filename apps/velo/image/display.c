@@ -1,5 +1,5 @@
-/* image/display.c: see display.h. Primaries and white (the chromaticities attribute) → matrix to linear Rec.709 → view.
- */
+/* image/display.c: see display.h. The chromaticities attribute (primaries and white) gives the matrix to linear
+ * Rec.709; then the view is applied. */
 #include "image/display.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 #include "cli/report.h"
 
-/* CIE xy of red, green, blue and white; ITU-R BT.709. */
+/* CIE xy of red, green, blue and white of ITU-R BT.709. */
 static const double rec709[8] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
 
 static void multiply(const double a[9], const double b[9], double result[9]) {
@@ -32,7 +32,7 @@ static void white_xyz(const double xy[8], double xyz[3]) {
   xyz[2] = (1 - xy[6] - xy[7]) / xy[7];
 }
 
-/* Columns are the primaries, scaled so that (1, 1, 1) is the white (SMPTE RP 177). */
+/* rgb to XYZ: the columns are the primaries, scaled so that (1, 1, 1) is the white (SMPTE RP 177). */
 static bool xyz_from_rgb(const double xy[8], double m[9]) {
   double inverse[9], white[3];
   for (int i = 0; i < 3; i++) {
@@ -49,8 +49,8 @@ static bool xyz_from_rgb(const double xy[8], double m[9]) {
   return true;
 }
 
-/* The same colour (XYZ), without adaptation to another white: a scene looks the same whatever space its film has.
- * false: the image is in Rec.709, or says nothing that makes sense. */
+/* The matrix to Rec.709 for the same XYZ, without chromatic adaptation: the displayed colours do not depend on the
+ * film's colour space. False: the image is in Rec.709, or its chromaticities are invalid. */
 static bool rec709_matrix(const vlImage *image, double m[9]) {
   vlAttribute attribute;
   if (vl_image_find_attribute(image, "chromaticities", &attribute) != VL_OK ||
@@ -83,7 +83,7 @@ static vlResult to_rec709(vlContext *context, const vlImage *image, const int rg
   return VL_OK;
 }
 
-/* Of an image without R, G, B or Y something else is shown: say what. */
+/* Reports which channel is displayed when the image has neither R, G, B nor Y. */
 static void tell_shown(const vlImage *image) {
   uint32_t channel[4], count = vl_image_shown(image, channel);
   const char *first = vl_image_channel_name(image, channel[0]), *dot = strrchr(first, '.');

@@ -1,10 +1,10 @@
-/* image/display.h: light of any colour space to the 8-bit sRGB image that people look at. */
+/* image/display.h: converts linear light of any colour space to an 8-bit sRGB image. */
 #ifndef APP_IMAGE_DISPLAY_H
 #define APP_IMAGE_DISPLAY_H
 
 #include "velo/velo.h"
 
-/* As vl_image_view, for images whose chromaticities attribute names another space than Rec.709 too. */
+/* As vl_image_view, but also for images whose chromaticities attribute names another colour space than Rec.709. */
 vlResult display_image(vlContext *context, const vlImage *image, vlView view, float exposure, vlImage **result);
 
 #endif

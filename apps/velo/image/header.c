@@ -14,7 +14,7 @@ static bool number(const vlImage *image, const char *name, double *value) {
   return true;
 }
 
-/* Corner pixels, inclusive; false when the file has no such window or an impossible one. */
+/* Reads corner pixels, inclusive. False when the attribute is missing or impossible. */
 static bool window(const vlImage *image, const char *name, double box[4]) {
   vlAttribute a;
   if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_BOX2I) return false;
@@ -56,7 +56,7 @@ static bool read_model(const vlImage *image, const char *projection, vlCameraDef
   return true;
 }
 
-/* The whole image, and the window of it that the file holds, corner pixels inclusive. */
+/* Reads the size of the whole image and the file's window in it. */
 static int windows(const vlImage *image, const char *path, double whole[4], double data[4]) {
   const double all[4] = {0, 0, vl_image_width(image) - 1.0, vl_image_height(image) - 1.0};
   memcpy(whole, all, sizeof all);
@@ -68,7 +68,7 @@ static int windows(const vlImage *image, const char *path, double whole[4], doub
   return -1;
 }
 
-/* Projection and pose. */
+/* Reads projection and pose. */
 static int read_def(const vlImage *image, const char *path, const double whole[4], vlCameraDef *def) {
   *def = vl_default_camera_def((uint32_t)whole[2] + 1, (uint32_t)whole[3] + 1);
   vlAttribute matrix, projection;
@@ -81,15 +81,15 @@ static int read_def(const vlImage *image, const char *path, const double whole[4
   if (!found) return report_failure(STATUS_SCENE, "%s: has no camera in its header", path);
   if (!read_model(image, projection.string, def))
     return report_failure(STATUS_SCENE, "%s: the camera in its header is of a kind that is not known", path);
-  def->has_matrix = true; /* OpenEXR's matrices act on rows */
+  def->has_matrix = true; /* OpenEXR's matrices act on row vectors */
   for (int row = 0; row < 4; row++)
     for (int column = 0; column < 4; column++)
       def->world_from_camera[4 * row + column] = matrix.numbers[4 * column + row];
   return -1;
 }
 
-/* The lens of many elements, which says the focal length itself. An image in its stop is not known; it bends no ray.
- */
+/* Reads a lens of many elements, which determines the focal length. An image as aperture stop is not in headers; it
+ * does not change ray directions. */
 static int read_optics(vlContext *context, const vlImage *image, const char *path, vlCameraDef *def,
                        vlOptics **optics) {
   vlOpticsDef lens = vl_default_optics_def();

@@ -1,13 +1,13 @@
-/* image/image.h: what the image commands share. */
+/* image/image.h: declarations shared by the image commands. */
 #ifndef APP_IMAGE_IMAGE_H
 #define APP_IMAGE_IMAGE_H
 
 #include "velo/velo.h"
 
-/* Context and image; -1, or the exit code when all has been said. */
+/* Makes a context and reads an image. Returns -1, or the exit code after reporting the error. */
 int image_context(vlContext **context);
 int image_load(vlContext *context, const char *path, vlImage **image);
-/* Checks that what went to stdout arrived. */
+/* Checks that stdout was written completely. */
 int image_finish_output(int status);
 
 #endif

@@ -1,4 +1,4 @@
-/* image/info.c: `velo image info`: what an image file holds. Also what the image commands share. */
+/* image/info.c: `velo image info`: the content of an image file. Also functions shared by the image commands. */
 #include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
@@ -30,7 +30,7 @@ int image_finish_output(int status) {
   return status;
 }
 
-/* By the first bytes, as the library chooses its reader. */
+/* The format by the first bytes, as the library chooses its reader. */
 static const char *format_of(const char *path) {
   unsigned char b[12] = {0};
   FILE *file = fopen(path, "rb");
@@ -60,7 +60,7 @@ static const char *type_name(vlPixelType type) {
   return "?";
 }
 
-/* Do its channels have different types in the file? */
+/* Whether the file's channels have different types. */
 static bool is_mixed(const vlImage *image) {
   for (uint32_t i = 1; i < vl_image_channels(image); i++)
     if (vl_image_stored_type(image, i) != vl_image_stored_type(image, 0)) return true;
@@ -89,7 +89,7 @@ static int number_count(vlAttributeType type) {
   return 0;
 }
 
-/* Numbers that the file holds in single precision are shown as short as they read back in it. */
+/* Prints numbers that the file holds in single precision with as few digits as read back to the same float. */
 static double shown(const vlAttribute *a, int i) {
   if (a->type == VL_ATTRIBUTE_DOUBLE || a->type == VL_ATTRIBUTE_M44D || a->type == VL_ATTRIBUTE_INT)
     return a->numbers[i];
@@ -102,7 +102,7 @@ static double shown(const vlAttribute *a, int i) {
   return a->numbers[i];
 }
 
-/* A string of a stranger's file: one line, nothing that moves the cursor. */
+/* Prints a string of the file on one line, without control characters. */
 static void print_plain(const char *text) {
   for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
 }

@@ -7,7 +7,7 @@
 
 static double sample(const vlImage *image, uint32_t x, uint32_t y, int channel) {
   double v = vl_image_get(image, x, y, (uint32_t)channel);
-  v = v > 0.0 ? v < 1.0 ? v : 1.0 : 0.0; /* NaN is black */
+  v = v > 0.0 ? v < 1.0 ? v : 1.0 : 0.0; /* NaN becomes black */
   return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
 }
 
@@ -36,7 +36,7 @@ void overlay_end(Overlay *o) {
   *o = (Overlay){0};
 }
 
-/* How far a pixel's centre is from a segment, as coverage of a pen with a soft edge one pixel wide. */
+/* Coverage of a pixel by a pen with a soft edge of one pixel, from the distance between its centre and the segment. */
 static void touch(Overlay *o, long x, long y, const double a[2], const double d[2], double length2, double width) {
   if (x < 0 || y < 0 || x >= (long)o->width || y >= (long)o->height) return;
   double px = (double)x + 0.5 - a[0], py = (double)y + 0.5 - a[1];
@@ -47,7 +47,7 @@ static void touch(Overlay *o, long x, long y, const double a[2], const double d[
   if (c > *cover) *cover = (float)(c < 1.0 ? c : 1.0);
 }
 
-/* Keeps the part of a segment inside a box (Liang and Barsky); false: nothing. */
+/* Clips a segment to a box (Liang and Barsky); false: nothing remains. */
 static bool clip(double p[4], double x0, double y0, double x1, double y1) {
   double t0 = 0.0, t1 = 1.0, dx = p[2] - p[0], dy = p[3] - p[1];
   const double run[4] = {-dx, dx, -dy, dy}, room[4] = {p[0] - x0, x1 - p[0], p[1] - y0, y1 - p[1]};
@@ -67,7 +67,7 @@ void overlay_line(Overlay *o, double x0, double y0, double x1, double y1, double
   if (!isfinite(x0 + y0 + x1 + y1) || !clip(p, -reach, -reach, o->width + reach, o->height + reach)) return;
   const double a[2] = {p[0], p[1]}, d[2] = {p[2] - p[0], p[3] - p[1]};
   double length2 = d[0] * d[0] + d[1] * d[1];
-  /* along the longer side, and across as far as the pen reaches */
+  /* steps along the longer axis; covers the pen's width across */
   bool flat = fabs(d[0]) >= fabs(d[1]);
   double slope = flat ? (d[0] != 0.0 ? d[1] / d[0] : 0.0) : d[0] / d[1];
   double low = fmin(flat ? p[0] : p[1], flat ? p[2] : p[3]), high = fmax(flat ? p[0] : p[1], flat ? p[2] : p[3]);
@@ -97,7 +97,7 @@ void overlay_arc(Overlay *o, const vlCamera *camera, const double d[3], const do
     double t = from + (to - from) * i / STEPS, point[3], pixel[2];
     for (int k = 0; k < 3; k++) point[k] = m[4 * k + 3] + cos(t) * n[k] + sin(t) * d[k];
     bool seen = vl_camera_project(camera, point, pixel, NULL);
-    /* an image that closes on itself: the curve goes on at its other side */
+    /* panoramas that wrap around: the curve continues at the opposite edge */
     if (seen && connected && (straight || hypot(pixel[0] - last[0], pixel[1] - last[1]) < jump))
       overlay_line(o, last[0], last[1], pixel[0], pixel[1], width);
     connected = seen;

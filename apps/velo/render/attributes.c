@@ -1,5 +1,5 @@
-/* render/attributes.c: see attributes.h. Names and meanings are OpenEXR's standard attributes (openexr.com, "Standard
- * Attributes") where it has one, else begin with "velo.". */
+/* render/attributes.c: see attributes.h. Names and meanings are those of OpenEXR's standard attributes (openexr.com,
+ * "Standard Attributes") where one exists; other names begin with "velo.". */
 #include "render/attributes.h"
 
 #include <math.h>
@@ -10,8 +10,8 @@
 
 typedef struct Header {
   vlImage *image;
-  vlResult result;  /* of the first that failed */
-  const char *view; /* before each name; null: nothing */
+  vlResult result;  /* of the first failure */
+  const char *view; /* prefix of each name; null: none */
 } Header;
 
 static void set(Header *header, const char *name, vlAttributeType type, const double *numbers, int count,
@@ -19,7 +19,7 @@ static void set(Header *header, const char *name, vlAttributeType type, const do
   char full[100];
   snprintf(full, sizeof full, "%s%s%s", header->view ? header->view : "", header->view ? "." : "", name);
   vlAttribute attribute = {.name = full, .type = type, .string = text};
-  for (int i = 0; i < count; i++) attribute.numbers[i] = numbers[i] + 0.0; /* no negative zeros */
+  for (int i = 0; i < count; i++) attribute.numbers[i] = numbers[i] + 0.0; /* turns -0 into 0 */
   if (header->result == VL_OK) header->result = vl_image_set_attribute(header->image, &attribute);
 }
 
@@ -44,7 +44,7 @@ static void set_window(Header *header, const char *name, uint32_t x0, uint32_t y
   set(header, name, VL_ATTRIBUTE_BOX2I, (double[]){x0, y0, x1 - 1.0, y1 - 1.0}, 4, NULL);
 }
 
-/* OpenEXR multiplies row vectors from the left, p' = p M: the transpose of a matrix for columns. */
+/* OpenEXR multiplies row vectors from the left, p' = p M, so matrices are transposed. */
 static void set_matrix(Header *header, const char *name, vlAttributeType type, const double m[16]) {
   double transposed[16];
   for (int row = 0; row < 4; row++)
@@ -61,15 +61,16 @@ static void multiply(const double a[16], const double b[16], double result[16]) 
     }
 }
 
-/* Whether straight lines stay straight: then matrices and a focal length say all of it. */
+/* Whether straight lines project to straight lines, so that matrices and a focal length describe the camera completely.
+ */
 static bool is_linear(const vlCamera *c) {
   return c->projection == VL_PROJECTION_ORTHOGRAPHIC ||
          (c->projection == VL_PROJECTION_PERSPECTIVE && c->distortion.steps == 0);
 }
 
-/* worldToCamera: to x right, y up, z forward. worldToNDC: to the display window's upper left (0, 0) and lower right
- * (1, 1) corner after division by w; its third row is 1/z (perspective) or z, so that the matrix can be inverted. Other
- * projections have no such matrix. */
+/* worldToCamera: camera space with x right, y up, z forward. worldToNDC: after division by w, (0, 0) is the display
+ * window's upper left corner and (1, 1) its lower right one. Its third row is 1/z (perspective) or z, so that the
+ * matrix is invertible. Other projections have no such matrix. */
 static void set_camera_matrices(Header *header, const vlCamera *c) {
   static const double up_from_down[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   double m[16], w = c->width, h = c->height;
@@ -84,10 +85,10 @@ static void set_camera_matrices(Header *header, const vlCamera *c) {
   set_matrix(header, "worldToNDC", VL_ATTRIBUTE_M44F, m);
 }
 
-/* The projection's own numbers, and the lens's coefficients as its calibration writes them. */
+/* The projection's own parameters, and the lens distortion's coefficients in the order of its calibration files. */
 static void set_model(Header *header, const vlCamera *c, const vlCameraDef *def) {
   static const char *const names[] = {"none", "opencv", "radial", "thinprism"};
-  /* not those that the projection does not take; Panini's has a default */
+  /* omits parameters that the projection does not have; Panini's has a default */
   if (!isnan(def->shape[0]) || c->shape[0] != 0) set_double(header, "velo.shape0", c->shape[0]);
   if (!isnan(def->shape[1])) set_double(header, "velo.shape1", c->shape[1]);
   if (def->distortion == VL_DISTORTION_NONE) return;
@@ -100,7 +101,7 @@ static void set_model(Header *header, const vlCamera *c, const vlCameraDef *def)
   set_text(header, "velo.distortionCoefficients", text);
 }
 
-/* Shape of the opening, tilt, vignetting; a lens of many elements whole, but for an image in its stop. */
+/* Aperture shape, tilt, vignetting; a lens of many elements completely, except an image as aperture stop. */
 static void set_lens(Header *header, const vlCamera *c) {
   const vlLens *l = &c->lens;
   if (l->blades) set_int(header, "velo.blades", l->blades);
@@ -127,7 +128,8 @@ static void set_lens(Header *header, const vlCamera *c) {
   set_double(header, "velo.opticsUnit", def.unit_mm);
 }
 
-/* What made two eyes of one camera. The eye's own pose and principal point stand with the rest; but for the circle. */
+/* The stereo parameters. The eye's own pose and principal point are in the other attributes, except for omnidirectional
+ * stereo's eye circle. */
 static void set_stereo(Header *header, const vlCamera *c, const vlStereo *stereo) {
   if (stereo->mode == VL_STEREO_NONE) return;
   set_text(header, "velo.stereo", choice_name(stereo_choices, (int)stereo->mode));
@@ -136,8 +138,8 @@ static void set_stereo(Header *header, const vlCamera *c, const vlStereo *stereo
   if (c->eye_circle != 0) set_double(header, "velo.eyeCircle", c->eye_circle);
 }
 
-/* The motion, where there is one: the matrices above hold the camera in the middle of the shutter's time, as the ground
- * truth sees it. */
+/* The motion, if any. The matrices above hold the camera in the middle of the shutter interval, as the ground truth
+ * does. */
 static void set_motion(Header *header, const vlCamera *c) {
   static const char *const directions[] = {"down", "up", "right", "left"};
   if (c->moves) {
@@ -158,9 +160,9 @@ static void set_motion(Header *header, const vlCamera *c) {
   set_text(header, "velo.shutterCurve", text);
 }
 
-/* The camera in full: OpenEXR's words in single precision, velo's own in double (camera x right, y down, z forward).
- * Lens and sensor are in millimetres. A virtual camera has no sensor: where the scene names no width it is
- * given full frame's 36 mm, which fixes the scale and nothing else. */
+/* The complete camera: OpenEXR's attributes in single precision, velo's own in double (camera x right, y down, z
+ * forward). Lens and sensor are in millimetres. When the scene gives no sensor width, full frame's 36 mm is written,
+ * which fixes the scale and nothing else. */
 static void set_camera(Header *header, const Job *job) {
   vlCamera held = job->camera, *c = &held;
   vl_camera_at(&job->camera, job_channels_time(job), &held);

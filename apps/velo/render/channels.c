@@ -73,7 +73,8 @@ int channels_choose(Channels *c, const Arguments *arguments) {
   if (c->boxes) c->bits |= VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE;
   int status = v[RENDER_CHANNELS].given ? read_list(v[RENDER_CHANNELS].text, &c->bits) : -1;
   if (status >= 0) return status;
-  if (c->bits && c->mode != VL_CHANNEL_MODE_CENTRE) c->bits |= VL_CHANNEL_FILM; /* else nobody knows the point */
+  if (c->bits && c->mode != VL_CHANNEL_MODE_CENTRE)
+    c->bits |= VL_CHANNEL_FILM; /* adds the film position, without which the point's sample is unknown */
   static const int options[2] = {RENDER_FLOW_CAMERA, RENDER_FLOW_CAMERA_BEFORE};
   for (int i = 0; i < 2; i++) {
     if (v[options[i]].given) {
@@ -86,7 +87,7 @@ int channels_choose(Channels *c, const Arguments *arguments) {
 
 /* ---- the pass ---------------------------------------------------------------------------------------------------- */
 
-/* A camera of another image size keeps its framing, as the image's own does. */
+/* A camera of another image size is resized with the same framing, as the image's own camera is. */
 int channels_load(Channels *c, vlContext *context, const Job *job) {
   for (int i = 0; i < 2; i++) {
     if (!c->other_paths[i]) continue;
@@ -102,7 +103,7 @@ int channels_load(Channels *c, vlContext *context, const Job *job) {
   return -1;
 }
 
-/* Another signal than those that came before the pass. */
+/* Whether a signal came after the pass began. */
 static bool stop_asked(void *user) {
   return signals_count() > *(const int *)user;
 }
@@ -127,8 +128,8 @@ static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
   return fail_pass(&error, result, job);
 }
 
-/* Where no other camera is named, flow is that of the shutter's time: from the moment of the channels to its end, and
- * to its beginning. */
+/* Without another camera, flow is within the shutter interval: from the channels' time to its end, and to its
+ * beginning. */
 static void shutter_ends(Channels *c, const Job *job) {
   const vlCamera *camera = &job->camera;
   for (int i = 0; i < 2; i++)

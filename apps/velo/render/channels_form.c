@@ -1,5 +1,5 @@
-/* render/channels_form.c: ids and counts in the form that other programs show (docs/ground-truth.md, "In other
- * programs"): one letter at the end of the channel's name, and 32-bit floats, which are exact below 2^24. */
+/* render/channels_form.c: ids and counts in a form that other programs display (docs/ground-truth.md, "In other
+ * programs"): the channel's name ends in one letter, and values are 32-bit floats, which are exact below 2^24. */
 #include <stdio.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 
 enum { MOST_CHANNELS = 16, MOST_EXACT = 1 << 24 };
 
-/* A new image of the same names, floats in place of integers. */
+/* A new image with the same channel names and floats instead of integers. */
 static vlResult as_floats(vlContext *context, const vlImage *ids, vlImage **floats) {
   const char *names[MOST_CHANNELS];
   uint32_t count = vl_image_channels(ids);

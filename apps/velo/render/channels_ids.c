@@ -1,4 +1,4 @@
-/* render/channels_ids.c: FILE.ids.json: what the ids of an image stand for. */
+/* render/channels_ids.c: writes FILE.ids.json, which describes the ids of an image. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@ static void mark_ids(const vlImage *ids, const char *name, bool *seen, uint32_t 
   if (channel < 0) return;
   size_t pixels = (size_t)vl_image_width(ids) * vl_image_height(ids), step = vl_image_channels(ids);
   const uint32_t *whole = vl_image_const_pixels(ids);
-  const float *floats = vl_image_const_pixels(ids); /* channels_make_visible */
+  const float *floats = vl_image_const_pixels(ids); /* floats since channels_make_visible */
   for (size_t i = 0, at = (size_t)channel; i < pixels; i++, at += step) {
     uint32_t value = vl_image_type(ids) == VL_PIXEL_U32 ? whole[at] : (uint32_t)floats[at];
     if (value <= count) seen[value] = true;
@@ -26,7 +26,7 @@ static void put_numbers(Json *json, const char *key, const double *numbers, int 
   json_end(json, ']');
 }
 
-/* x, y, width, height, as COCO has them. */
+/* x, y, width, height, as in COCO. */
 static void put_corners(Json *json, const char *key, const double c[4]) {
   put_numbers(json, key, (const double[4]){c[0], c[1], c[2] - c[0], c[3] - c[1]}, 4);
 }
@@ -71,7 +71,7 @@ static void put_id(Json *json, const vlWorld *world, const Channels *c, vlIdKind
   json_end(json, '}');
 }
 
-/* Those that only boxes know of: they are hidden. */
+/* Ids that only have a box: completely hidden objects. */
 static void mark_boxes(const Channels *c, vlIdKind kind, bool *seen, uint32_t count) {
   if (!c->box_list[0] || kind == VL_ID_MATERIAL) return;
   for (uint32_t id = 1; id <= count; id++) seen[id] = seen[id] || c->box_list[kind == VL_ID_INSTANCE][id - 1].all > 0;
@@ -111,7 +111,7 @@ static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const C
   return fflush(file) == 0 && !ferror(file);
 }
 
-/* In memory first, then as a whole. */
+/* Composes the file in memory, then writes it as a whole. */
 int channels_write_ids(const Channels *c, const Channels *right, const vlWorld *world, const char *path) {
   char target[4200];
   const vlImage *ids = c->layers[1];

@@ -1,4 +1,4 @@
-/* render/describe.c: what a job would render, for people and for machines (--dry-run). See job.h. */
+/* render/describe.c: describes what a job would render, as text or JSON (--dry-run). See job.h. */
 #include <math.h>
 #include <string.h>
 

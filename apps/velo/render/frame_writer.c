@@ -1,5 +1,5 @@
-/* render/frame_writer.c: see frame_writer.h. Two views become one OpenEXR file as its "Multi-View" page has it: the
- * attribute multiView lists the views; channels without a dot are the first one's ("R", "Z"), others have their view
+/* render/frame_writer.c: see frame_writer.h. Two views become one OpenEXR file by its "Multi-View" specification. The
+ * attribute multiView lists the views. Channels without a dot belong to the first view ("R", "Z"); others have the view
  * before the last part of their name ("right.R", "N.left.X", "N.right.X"). */
 #include "render/frame_writer.h"
 
@@ -25,7 +25,7 @@ struct FrameWriter {
   pthread_mutex_t mutex;
   pthread_cond_t changed;
   FrameImage queue[QUEUE];
-  uint32_t first, count; /* in the queue */
+  uint32_t first, count; /* ring buffer: first entry and number of entries */
   bool closed;
   bool metered;
   float exposure;
@@ -42,7 +42,7 @@ void frame_image_free(FrameImage *image) {
 
 /* ---- one image ------------------------------------------------------------------------------------------------- */
 
-/* "Z" to "right.Z", "N.X" to "N.right.X"; of the first view only the latter: what has no dot is the first view's. */
+/* Renames "Z" to "right.Z" and "N.X" to "N.right.X". In the first view, names without a dot stay. */
 static vlResult add_view(vlImage *image, const char *view, bool first) {
   for (uint32_t i = 0; i < vl_image_channels(image); i++) {
     const char *name = vl_image_channel_name(image, i), *dot = strrchr(name, '.');
@@ -55,7 +55,7 @@ static vlResult add_view(vlImage *image, const char *view, bool first) {
   return VL_OK;
 }
 
-/* The colours of both eyes in one image, so that --half treats them alike; the first has the header. */
+/* Joins the colours of both eyes in one image, so that --half applies to both. The header is the first eye's. */
 static vlResult join(vlContext *context, vlImage *const images[2], const char *view, vlImage **both) {
   static const char *const plain[4] = {"R", "G", "B", "A"};
   char right[4][32];
@@ -106,7 +106,7 @@ static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path, cons
   return result;
 }
 
-/* A trajectory is metered once, by its first image: frames must not flicker. */
+/* A trajectory is metered once, by its first image, so that frames do not flicker. */
 static float exposure_of(FrameWriter *w, const vlImage *image) {
   if (!w->outputs->meter) return w->outputs->exposure;
   if (!w->metered) exposure_tell(w->exposure = exposure_meter(image));
@@ -134,7 +134,8 @@ static vlResult write_one(FrameWriter *w, FrameImage *p, int view, const char *p
                    : vl_image_write(layers[0], path, def, error);
 }
 
-/* Both eyes' files of one pattern, or the one file of both. Layers are renamed on the way, so those come last. */
+/* Writes both eyes' files of one pattern, or one file with both. Joined files come last, since layers are renamed for
+ * them. */
 static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, bool by_view) {
   vlWriteDef def = vl_default_write_def();
   def.half = w->outputs->half;
@@ -189,7 +190,7 @@ static void *work(void *user) {
   for (;;) {
     while (w->count == 0 && !w->closed) pthread_cond_wait(&w->changed, &w->mutex);
     if (w->count == 0) break;
-    FrameImage *image = &w->queue[w->first]; /* stays counted, so that nobody writes over it */
+    FrameImage *image = &w->queue[w->first]; /* still counted as queued, so that its slot is not reused */
     pthread_mutex_unlock(&w->mutex);
     int status = write_image(w, image);
     bool stopped = image->stopped;

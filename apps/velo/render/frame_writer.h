@@ -1,28 +1,28 @@
-/* render/frame_writer.h: images on their way to files, in a thread of its own beside the rendering. */
+/* render/frame_writer.h: writes images to files in a thread beside the rendering. */
 #ifndef APP_RENDER_FRAME_WRITER_H
 #define APP_RENDER_FRAME_WRITER_H
 
 #include "render/frames.h"
 
-/* One image, whole: what the writer takes and frees. */
+/* A complete image, passed to the writer, which frees it. */
 typedef struct FrameImage {
   Frame frame;
-  Job jobs[2]; /* of each view, with its camera */
+  Job jobs[2]; /* per view, with its camera */
   Channels channels[2];
   vlImage *images[2];
   uint32_t spp;
-  bool stopped; /* not finished: it goes to NAME.part.EXT */
-  bool renamed; /* the layers have their view in their names */
+  bool stopped; /* interrupted: written to NAME.part.EXT */
+  bool renamed; /* the layers' names contain their view */
 } FrameImage;
 
 typedef struct FrameWriter FrameWriter;
 
-/* Null: out of memory or threads. */
+/* Null: out of memory or of threads. */
 FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const Frames *frames, const Outputs *outputs);
-/* Waits while too many are under way. Takes what the image holds. */
+/* Queues an image and takes ownership of its data. Waits while the queue is full. */
 void frame_writer_put(FrameWriter *writer, const FrameImage *image);
-/* Waits for all; the exit code of the first failure, or STATUS_OK. *written: finished images whose files are all whole.
- */
+/* Waits until all images are written. Returns the exit code of the first failure, or STATUS_OK. *written: number of
+ * finished images whose files are all complete. */
 int frame_writer_finish(FrameWriter *writer, uint32_t *written);
 void frame_image_free(FrameImage *image);
 

@@ -1,4 +1,4 @@
-/* render/frames.c: see frames.h. Which frames there are, their cameras and the names of their files. */
+/* render/frames.c: see frames.h. The list of frames, their cameras and their file names. */
 #include "render/frames.h"
 
 #include <errno.h>
@@ -22,7 +22,7 @@ bool frames_wanted(const Arguments *arguments, const Job *job) {
 
 /* ---- the command line -------------------------------------------------------------------------------------------- */
 
-/* "3", "0-99", "10-", "0-100:10" */
+/* Parses "3", "0-99", "10-" or "0-100:10". */
 static bool read_range(const char *text, uint32_t *first, uint32_t *last, uint32_t *step) {
   char *end;
   const char *at = text;
@@ -76,7 +76,7 @@ static void multiply(const double a[16], const double b[16], double result[16]) 
   memcpy(result, m, sizeof m);
 }
 
-/* The film of an earlier camera of the same size, else one of its own. */
+/* Shares the film of an earlier camera with the same film def, or makes one. */
 static int make_film(Frames *frames, vlContext *context, FrameCamera *camera) {
   for (FrameCamera *other = frames->cameras; other < camera; other++)
     if (memcmp(&other->job.defs->film, &camera->job.defs->film, sizeof camera->job.defs->film) == 0) {
@@ -88,7 +88,7 @@ static int make_film(Frames *frames, vlContext *context, FrameCamera *camera) {
   return result == VL_OK ? -1 : report_error(NULL, result, camera->job.path);
 }
 
-/* From a camera as made; def is null for the scene's own. */
+/* Adds a camera; record null: the job's own camera. */
 static int add_camera(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments,
                       const vlCameraRecord *record, const char *path) {
   FrameCamera *camera = &frames->cameras[frames->camera_count++];
@@ -98,13 +98,13 @@ static int add_camera(Frames *frames, vlContext *context, const Job *job, const 
     int status = job_take_camera(&camera->job, &camera->defs, &record->camera, path, arguments);
     if (status >= 0) return status;
   }
-  /* what only one image's camera has, its place and its motion, makes room for the frames' poses */
+  /* the frames' poses replace the camera's pose and motion */
   vlError error = {0};
   vlCamera base = camera->job.camera;
   vlResult result = VL_OK;
   memcpy(camera->mount, base.world_from_camera, sizeof camera->mount);
   if (frames->trajectory) {
-    /* but a calibration file's negative fy says which way y goes in all of them (a scene's camera is in a place) */
+    /* but a negative fy of a calibration file gives the y direction of all frames (a scene's camera has a pose) */
     const OptionValue *file = &arguments->values[RENDER_CAMERA];
     bool turned = !record && file->given && !camera_is_scene(file->text) &&
                   memcmp(base.world_from_camera, y_up, sizeof y_up) == 0;
@@ -124,7 +124,7 @@ static int load_file(vlContext *context, const char *path, vlTrajectory **trajec
   return result == VL_OK ? -1 : report_error(&error, result, path);
 }
 
-/* The rig's cameras where they stand in it. */
+/* Adds the rig's cameras with their poses in the rig. */
 static int add_rig(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments, const char *path) {
   for (uint32_t i = 0; i < vl_trajectory_frames(frames->rig); i++) {
     vlTrajectoryFrame frame;
@@ -232,7 +232,7 @@ static int compare_paths(const void *a, const void *b) {
   return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* All paths of one pattern; names that the trajectory says may be the same twice. */
+/* All paths of one pattern. Names that the trajectory repeats may be equal. */
 static int check_twice(const Frames *frames, const char *pattern) {
   uint32_t count = frames_count(frames);
   char **paths = calloc(count, sizeof *paths), path[4096];
@@ -254,7 +254,7 @@ static int check_twice(const Frames *frames, const char *pattern) {
   return status;
 }
 
-/* Folders that the pattern makes are made here; others must be there. */
+/* Makes directories that contain pattern fields; other directories must exist. */
 static int make_folder(char *path) {
   char *slash = strrchr(path, '/');
   if (!slash || slash == path) return -1;

@@ -1,5 +1,5 @@
-/* render/frames_render.c: the frames one after the other. A frame that fails stops nothing: what is written stays, the
- * others are rendered, and the exit code tells. */
+/* render/frames_render.c: renders the frames one after the other. A failed frame does not stop the rest; the exit code
+ * reports it. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -15,8 +15,8 @@ typedef struct Run {
   vlContext *context;
   const vlWorld *world;
   const Outputs *outputs;
-  const Channels *channels; /* what is wanted; no layers */
-  bool layers;              /* some file holds them */
+  const Channels *channels; /* what is wanted; layers are empty */
+  bool layers;              /* whether some file holds layers */
   uint32_t count, done;
   Progress progress;
   double start, last_shown;
@@ -29,13 +29,13 @@ static bool on_progress(void *user, const vlProgress *now) {
   return !signals_pending();
 }
 
-/* Now and then how many frames there are. */
+/* Shows now and then how many frames are done. */
 static void show(Run *run, const Frame *frame) {
   double now = monotonic_seconds();
   if (run->count == 1 || report_is_quiet() || now - run->last_shown < (report_is_terminal() ? 0.1 : 5.0)) return;
   run->last_shown = now;
   char text[200], elapsed[32], left[32];
-  double each = run->done ? (now - run->start) / run->done : INFINITY; /* not known yet */
+  double each = run->done ? (now - run->start) / run->done : INFINITY; /* infinite until the first frame is done */
   if (report_is_json()) {
     Json json = report_json_begin("progress");
     json_integer(&json, "frame", frame->number);
@@ -58,7 +58,7 @@ static void show(Run *run, const Frame *frame) {
     report_note("%3.0f %%  %s", 100.0 * run->done / run->count, text);
 }
 
-/* In words, for messages. */
+/* Text that names the frame in messages. */
 static void frame_place(const Run *run, const Frame *frame, char *text, size_t size) {
   if (!run->frames->trajectory)
     snprintf(text, size, "%s", frame->camera->job.path);
@@ -84,7 +84,7 @@ static int develop(const Job *job, const vlFilm *film, vlImage **image) {
   return result == VL_OK ? STATUS_OK : report_error(NULL, result, NULL);
 }
 
-/* One eye's image and channels. When it is interrupted: 128 + signal, and an image if there is a whole pass. */
+/* Renders one eye's image and channels. When interrupted: 128 + signal, with an image if a whole pass is done. */
 static int render_view(Run *run, const Frame *frame, int view, FrameImage *image) {
   char place[200];
   vlError error = {0};
@@ -110,7 +110,7 @@ static int render_view(Run *run, const Frame *frame, int view, FrameImage *image
   return run->layers ? channels_render(&image->channels[view], run->context, run->world, job, film) : STATUS_OK;
 }
 
-/* What there is of a frame that was interrupted, for NAME.part.EXT: an eye that was not begun is black. */
+/* Keeps an interrupted frame for NAME.part.EXT. An eye that was not begun is black. */
 static bool keep_stopped(Run *run, FrameImage *image) {
   if (!image->images[0]) return false;
   for (int v = 1; v < run->frames->views; v++) {

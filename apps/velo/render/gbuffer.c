@@ -1,5 +1,5 @@
-/* render/gbuffer.c: see gbuffer.h. From the ground truth of the pixels' centres; pbrt averages over a pixel's samples.
- */
+/* render/gbuffer.c: see gbuffer.h. Values come from the ground truth at pixel centres; pbrt averages over a pixel's
+ * samples. */
 #include "render/gbuffer.h"
 
 #include <math.h>
@@ -33,14 +33,14 @@ static const char *const names[] = {"Albedo.R",
 enum { ALBEDO = 0, P = 3, DZ = 6, N = 8, NS = 11, UV = 14, VARIANCE = 16, RELATIVE = 19, COUNT = 22 };
 _Static_assert(sizeof names / sizeof *names == COUNT, "a name for each");
 
-/* Where the channels that are read stand in the ground truth. */
+/* Indices of the ground truth channels that are read. */
 typedef struct Source {
   const vlImage *truth, *rendered;
   const float *values;
   uint32_t width, height, channels;
   int p, n, ng, uv, albedo, ray, distance, error;
   bool world;
-  double m[16]; /* camera from world */
+  double m[16]; /* camera_from_world */
   double shrink, samples;
 } Source;
 
@@ -48,7 +48,7 @@ static const float *at(const Source *s, uint32_t x, uint32_t y, int channel) {
   return s->values + ((size_t)y * s->width + x) * s->channels + channel;
 }
 
-/* A point (w 1) or vector (w 0) of the world; pbrt's camera has x right, y up, z forward. */
+/* Transforms a point (w 1) or vector (w 0) to pbrt's camera space: x right, y up, z forward. */
 static void turn(const Source *s, const double v[3], double w, double out[3]) {
   for (int i = 0; i < 3; i++) {
     double sum = s->m[4 * i] * v[0] + s->m[4 * i + 1] * v[1] + s->m[4 * i + 2] * v[2] + s->m[4 * i + 3] * w;
@@ -66,7 +66,7 @@ static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* How far the point's z moves from one pixel to the next on the surface's plane. */
+/* The change of z between adjacent pixels on the surface's tangent plane. */
 static double slope(const Source *s, uint32_t x, uint32_t y, uint32_t nx, uint32_t ny, const double p[3],
                     const double n[3]) {
   const float *ray = at(s, nx, ny, s->ray), *met = at(s, nx, ny, s->p), *own = at(s, x, y, s->ray);
@@ -84,7 +84,8 @@ static double slope(const Source *s, uint32_t x, uint32_t y, uint32_t nx, uint32
 }
 
 static void fill(const Source *s, uint32_t x, uint32_t y, float out[COUNT]) {
-  for (int c = 0; c < 3; c++) { /* of samples: the mean's error squared times their number */
+  for (int c = 0; c < 3;
+       c++) { /* variance of samples: squared standard error of the mean times the number of samples */
     float error = at(s, x, y, s->error)[c], mean = vl_image_get(s->rendered, x, y, (uint32_t)c);
     out[VARIANCE + c] = error < 1e18f ? (float)((double)error * (double)error * s->samples) : 0.0f;
     out[RELATIVE + c] = mean != 0.0f ? out[VARIANCE + c] / mean : 0.0f;
@@ -98,7 +99,7 @@ static void fill(const Source *s, uint32_t x, uint32_t y, float out[COUNT]) {
     ray[i] = (double)at(s, x, y, s->ray)[i];
     out[ALBEDO + i] = at(s, x, y, s->albedo)[i];
   }
-  bool away[2] = {dot(n, ray) > 0, dot(ns, ray) > 0}; /* both shall face the camera */
+  bool away[2] = {dot(n, ray) > 0, dot(ns, ray) > 0}; /* normals are flipped to face the camera */
   for (int i = 0; i < 3; i++) {
     n[i] = away[0] ? -n[i] : n[i];
     ns[i] = away[1] ? -ns[i] : ns[i];
@@ -164,7 +165,7 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
                 .distance = vl_image_find_channel(truth, "distance.Y"),
                 .error = vl_image_find_channel(truth, "error.R"),
                 .world = job->defs->gbuffer == VL_GBUFFER_WORLD,
-                .shrink = fmax(0.125, 1 / sqrt(spp)), /* pbrt's differentials shrink with the samples */
+                .shrink = fmax(0.125, 1 / sqrt(spp)), /* pbrt's ray differentials shrink with the number of samples */
                 .samples = spp};
     memcpy(s.m, held.camera_from_world, sizeof s.m);
     float *out = vl_image_pixels(*image);

@@ -1,4 +1,4 @@
-/* render/job.c: see job.h. The scene's defs + command line → the defs and the camera of the render. */
+/* render/job.c: see job.h. The scene's defs and the command line give the defs and the camera of the render. */
 #include "render/job.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@
 #include "render/scene_options.h"
 
 const Choice sensor_choices[] = {
-    /* vl_sensor_name of each number */
+    /* vl_sensor_name of each index */
     {"cie1931", 0},
     {"canon_eos_100d", 1},
     {"canon_eos_1dx_mkii", 2},
@@ -57,7 +57,7 @@ const Choice isa_choices[] = {
 
 /* ---- overrides --------------------------------------------------------------------------------------------------- */
 
-/* Where the scene's camera is described, copied: the source's string dies with its scene. */
+/* Copies the place of the camera in the scene file: the source string dies with its scene. */
 static vlError camera_place(const vlSceneDefs *defs, const char *path) {
   vlSource source = defs->camera_source;
   vlError place = {.line = source.file ? source.line : 0, .column = source.file ? source.column : 0};
@@ -65,7 +65,7 @@ static vlError camera_place(const vlSceneDefs *defs, const char *path) {
   return place;
 }
 
-/* Camera and image size of a camera file. */
+/* Takes camera and image size from a camera file. */
 static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, const char *path, const char *frame) {
   vlCameraRecord record;
   int status = camera_load(context, path, 0, frame, &record);
@@ -80,7 +80,7 @@ static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, con
   return -1;
 }
 
-/* Camera and image size of another scene file. */
+/* Takes camera and image size from another scene file. */
 static int take_camera(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
   const OptionValue *frame = &arguments->values[RENDER_FRAME];
   if (!camera_is_scene(path))
@@ -125,7 +125,7 @@ static int override_crop(vlSceneDefs *defs, const Arguments *arguments) {
   return -1;
 }
 
-/* Keeps the scene's own crop window at the same fractions of the image. */
+/* Keeps the scene's crop window at the same fractions of the image. */
 static void override_size(vlSceneDefs *defs, uint32_t width, uint32_t height) {
   double sx = (double)width / defs->film.width, sy = (double)height / defs->film.height;
   uint32_t *crop = defs->film.crop;
@@ -140,7 +140,7 @@ static void override_size(vlSceneDefs *defs, uint32_t width, uint32_t height) {
   defs->film.height = height;
 }
 
-/* Samplers that lay out a fixed number of samples over the pixel cannot go on without end. */
+/* Samplers with a fixed number of samples per pixel cannot render without an end. */
 static bool sampler_is_open(vlSamplerKind kind) {
   const vlKindFamily *samplers = kind_family("samplers");
   return (uint32_t)kind < samplers->kind_count && samplers->rows[kind]->traits & VL_SAMPLER_TRAIT_OPEN;
@@ -171,7 +171,7 @@ static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
   }
 }
 
-/* N[:MIN:MAX] */
+/* Parses N[:MIN:MAX]. */
 static int override_spectrum(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = &arguments->values[RENDER_SPECTRUM];
   if (v->given) {
@@ -199,7 +199,8 @@ static int override_spectrum(vlSceneDefs *defs, const Arguments *arguments) {
 static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t height) {
   vlError error = {0};
   vlCamera camera;
-  vlResult result = vl_camera_make(&def, &camera, NULL, &error); /* what it warns of was said when it was read */
+  vlResult result =
+      vl_camera_make(&def, &camera, NULL, &error); /* its warnings were reported when the camera was read */
   if (result != VL_OK) {
     snprintf(job->camera_place.message, sizeof job->camera_place.message, "%s",
              error.message[0] ? error.message : vl_result_name(result));
@@ -213,7 +214,7 @@ static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t heigh
   return result == VL_OK ? -1 : report_error(NULL, result, job->path);
 }
 
-/* The eyes are made last of all, in frames.c: the camera is the one between them. */
+/* The camera here is the one between the eyes; frames.c makes the eyes' cameras. */
 static int override_stereo(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   vlStereo *stereo = &defs->camera.stereo;
@@ -227,7 +228,7 @@ static int override_stereo(vlSceneDefs *defs, const Arguments *arguments) {
   return -1;
 }
 
-/* Size, crop and camera as the command line has them. The camera is made at the size it was described for and then
+/* Applies size, crop and camera of the command line. The camera is made at the size of its description and then
  * resized, which keeps the framing. */
 static int fit_camera(Job *job, vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *size = &arguments->values[RENDER_RESOLUTION];
@@ -255,7 +256,7 @@ int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const c
   return status < 0 ? fit_camera(job, defs, arguments) : status;
 }
 
-/* "open", "middle", "close" or seconds. */
+/* Parses "open", "middle", "close" or seconds. */
 static int read_channels_time(Job *job, const Arguments *arguments) {
   static const char *const words[] = {"open", "middle", "close"};
   const OptionValue *v = &arguments->values[RENDER_CHANNELS_TIME];

@@ -1,4 +1,4 @@
-/* render/job.h: one render as it will be done: what the scene file says, overridden by the command line. */
+/* render/job.h: one render: the scene file's settings, overridden by the command line. */
 #ifndef APP_RENDER_JOB_H
 #define APP_RENDER_JOB_H
 
@@ -76,24 +76,24 @@ extern const Section render_sections[];
 
 typedef struct Job {
   const char *path; /* of the scene file */
-  /* The scene's own, overridden; of a rig's camera a copy. defs->camera keeps the size that it was described for. */
+  /* the scene's defs with overrides; a copy for each camera of a rig. defs->camera keeps the size of its description */
   vlSceneDefs *defs;
-  vlError camera_place; /* where the camera stands in its file; only file, line and column are used */
-  vlCamera camera;      /* of the film's size */
+  vlError camera_place; /* place of the camera in its file; only file, line and column are used */
+  vlCamera camera;      /* at the film's size */
   double channels_share,
-      channels_seconds; /* when ground truth is seen: share of the shutter's time, unless seconds are set */
+      channels_seconds; /* time of the ground truth: share of the shutter interval, unless seconds are set */
 } Job;
 
-/* Overrides the scene's defs and makes the camera. -1: go on; else the exit code, the error has been reported. */
+/* Overrides the scene's defs and makes the camera. Returns -1, or the exit code after reporting the error. */
 int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments);
 
-/* The time of the ground truth, and of the camera in the header, in seconds. */
+/* The time of the ground truth and of the camera in the header, in seconds. */
 double job_channels_time(const Job *job);
 
-/* The job with another camera, of a file: *defs, which must outlive it, become the job's with this camera. */
+/* Replaces the job's camera by one of a file. *defs becomes the job's defs and must outlive it. */
 int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const char *path, const Arguments *arguments);
 
-/* What would be rendered, on stdout (or as a JSON line). */
+/* Prints what would be rendered to stdout (or as a JSON line). */
 void job_describe(const Job *job, vlContext *context, const vlScene *scene, const vlWorld *world,
                   const char *const *outputs, int output_count);
 

@@ -8,7 +8,7 @@
 
 #include "cli/report.h"
 
-/* "X,Y", plain decimals. */
+/* Parses "X,Y", decimal numbers. */
 static bool read_point(const char *text, double point[2]) {
   char *end;
   if (strspn(text, "0123456789+-.eE,") != strlen(text)) return false;

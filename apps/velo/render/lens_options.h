@@ -1,5 +1,4 @@
-/* render/lens_options.h: the lens on the command line of `velo render`: focus, opening, exposure by the camera's
- * numbers. */
+/* render/lens_options.h: lens options of `velo render`: focus, aperture, exposure from camera settings. */
 #ifndef APP_RENDER_LENS_OPTIONS_H
 #define APP_RENDER_LENS_OPTIONS_H
 
@@ -17,12 +16,12 @@ enum {
 };
 _Static_assert((int)RENDER_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
 
-/* Overrides the camera of defs; a lens of many elements is focused anew and belongs to the scene. -1: go on; else the
- * exit code. */
+/* Overrides the camera of defs. A lens of many elements is made anew with the new focus and belongs to the scene.
+ * Returns -1 or the exit code. */
 int lens_override(vlScene *scene, vlSceneDefs *defs, const Arguments *arguments);
-/* Pixels are those of the image that is rendered: told to the camera when it has its size. -1: go on. */
+/* Sets the pixel to focus on, once the camera has the size of the rendered image. Returns -1 or the exit code. */
 int lens_focus_on(vlCamera *camera, const Arguments *arguments);
-/* Focuses a camera on its pixel, once there is a world to look at. -1: go on. */
+/* Focuses a camera on its pixel, once the world exists. Returns -1 or the exit code. */
 int lens_autofocus(Job *job, vlScene *scene, const vlWorld *world);
 
 #endif

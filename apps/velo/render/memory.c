@@ -13,7 +13,7 @@
 /* ---- the process --------------------------------------------------------------------------------------------------
  */
 
-/* Bytes of the process now: of addresses, and of memory in use. */
+/* Bytes of address space and of resident memory of the process. */
 static void process_size(uint64_t *addresses, uint64_t *resident) {
   unsigned long long pages[2] = {0, 0};
   FILE *file = fopen("/proc/self/statm", "r");
@@ -32,17 +32,17 @@ static void add(MemoryPlan *plan, const char *what, uint64_t bytes) {
   plan->total += bytes;
 }
 
-/* Values of 4 bytes that the ground truth of a pixel has. */
+/* Number of 4-byte values per pixel of the ground truth. */
 static uint64_t truth_values(const Channels *c, uint32_t buckets) {
   static const uint8_t values[VL_CHANNEL_COUNT] = {1, 1, 3, 3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 2, 3, 3, 3};
-  enum { GBUFFER = 48 }; /* its channels, and those that they are made of */
+  enum { GBUFFER = 48 }; /* the gbuffer's channels and the ground truth that they are computed from */
   uint64_t sum = c->gbuffer ? GBUFFER : 0;
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
     if (c->bits & 1u << i) sum += i >= 17 ? 2 * c->ranks : values[i];
   return sum + (c->spectrum ? buckets : 0);
 }
 
-/* OpenEXR files are packed in pieces of 16 rows, two for each worker, three copies of each. */
+/* OpenEXR files are compressed in chunks of 16 rows, two per worker, with three copies of each. */
 static uint64_t writing(vlContext *context, const Outputs *outputs, uint64_t width, uint64_t height, uint64_t values) {
   uint64_t most = 0, rows = 32 * (uint64_t)vl_context_threads(context);
   if (rows > height) rows = height;
@@ -63,7 +63,7 @@ static uint64_t film_bytes(const Job *job, const Frames *frames) {
 
 void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, const Job *job, const Outputs *outputs,
                  const Channels *channels, const Frames *frames) {
-  enum { WAITING = 6 }; /* images of a trajectory that are rendered, wait or are written at once */
+  enum { WAITING = 6 }; /* images of a trajectory that are rendered, queued or written at the same time */
   memset(plan, 0, sizeof *plan);
   const uint32_t *crop = job->defs->film.crop;
   uint64_t width = crop[2] - crop[0], height = crop[3] - crop[1], pixels = width * height, copies = 1;
@@ -94,7 +94,7 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
 
 /* ---- does it fit ------------------------------------------------------------------------------------------------- */
 
-/* What the process may have in all, by the machine and by its control group (version 2). */
+/* The memory available to the process, by the machine and its control group (version 2). */
 static uint64_t machine_bytes(void) {
   struct sysinfo info;
   uint64_t most = UINT64_MAX;
@@ -131,7 +131,7 @@ int memory_check(const MemoryPlan *plan, uint64_t limit) {
   struct rlimit most;
   if (getrlimit(RLIMIT_DATA, &most) == 0 && most.rlim_cur != RLIM_INFINITY && plan->total > most.rlim_cur)
     return too_much(plan, most.rlim_cur, "the process may have");
-  uint64_t reserved = addresses > resident ? addresses - resident : 0; /* addresses without memory: stacks, code */
+  uint64_t reserved = addresses > resident ? addresses - resident : 0; /* address space without memory: stacks, code */
   if (getrlimit(RLIMIT_AS, &most) == 0 && most.rlim_cur != RLIM_INFINITY && plan->total + reserved > most.rlim_cur)
     return too_much(plan, most.rlim_cur > reserved ? most.rlim_cur - reserved : 0, "the process may have");
   if (plan->total > machine_bytes()) return too_much(plan, machine_bytes(), "the machine has");

@@ -1,4 +1,4 @@
-/* render/memory.h: memory is reckoned before the render begins: who needs how much, and whether it fits. */
+/* render/memory.h: an estimate of memory before the render begins, and whether it is available. */
 #ifndef APP_RENDER_MEMORY_H
 #define APP_RENDER_MEMORY_H
 
@@ -15,21 +15,21 @@ typedef struct MemoryPlan {
     uint64_t bytes;
   } needs[MEMORY_NEEDS];
   int count;
-  uint64_t total; /* estimate of the most that is held at once, the scene's included */
+  uint64_t total; /* estimated peak, including the scene */
 } MemoryPlan;
 
-/* What the scene holds already and what the render, its ground truth and the writing of its files will take. `frames`:
- * null, or the images of a trajectory. */
+/* Estimates the memory held by the scene and needed by the render, its ground truth and the writing of its files.
+ * `frames`: null, or the images of a trajectory. */
 void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, const Job *job, const Outputs *outputs,
                  const Channels *channels, const Frames *frames);
-/* -1 when it fits into --max-memory (`limit`; 0: none), the process' limits and the machine, or else the exit code:
- * one line was reported, with what needs how much. */
+/* Returns -1 when the plan fits --max-memory (`limit`; 0: none), the process' limits and the machine. Otherwise the
+ * exit code, after one line that lists the needs. */
 int memory_check(const MemoryPlan *plan, uint64_t limit);
-/* "scene 12.0 MB, film 132 MB" */
+/* Text such as "scene 12.0 MB, film 132 MB". */
 void memory_list(const MemoryPlan *plan, char *text, size_t size);
-/* As a JSON line. */
+/* Reports the plan as a JSON line. */
 void memory_report_json(const MemoryPlan *plan, uint64_t limit);
-/* The most bytes of memory that the process has had. */
+/* Peak memory of the process in bytes. */
 uint64_t memory_peak(void);
 
 #endif

@@ -15,12 +15,12 @@
 #include "image/display.h"
 #include "render/exposure.h"
 
-enum { LONGEST_NAME = 255 }; /* bytes, of a file in its folder */
+enum { LONGEST_NAME = 255 }; /* bytes; of a file name without its directory */
 
 static const struct Suffix {
   const char *name;
   bool eight_bit;
-  uint32_t largest; /* pixels each way */
+  uint32_t largest; /* largest width and height in pixels */
 } suffixes[] = {{"exr", false, 1 << 26}, {"png", true, 1 << 30},  {"jpg", true, 65500}, {"jpeg", true, 65500},
                 {"hdr", false, 1 << 30}, {"pfm", false, 1 << 30}, {"tga", true, 65535}};
 
@@ -80,13 +80,13 @@ int outputs_check_folders(const Outputs *outputs) {
     if (outputs->patterns && strchr(folder, '%')) continue;
     struct stat info;
     if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) return fail_write(path, EISDIR);
-    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) { /* devices and pipes are written in place */
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) { /* devices and pipes are written directly */
       if (access(path, W_OK) != 0) return fail_write(path, errno);
       continue;
     }
     if (stat(path, &info) == 0 && access(path, W_OK) != 0) return fail_write(path, errno);
     if (strlen(slash ? slash + 1 : path) > LONGEST_NAME) return fail_write(path, ENAMETOOLONG);
-    char target[PATH_MAX]; /* a link is followed: the folder of its file counts */
+    char target[PATH_MAX]; /* for a link, the directory of its target counts */
     if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode) && realpath(path, target)) {
       slash = strrchr(target, '/');
       snprintf(folder, sizeof folder, "%.*s", slash > target ? (int)(slash - target) : 1, target);
@@ -103,18 +103,18 @@ int outputs_check_folders(const Outputs *outputs) {
 
 /* ---- names ------------------------------------------------------------------------------------------------------- */
 
-/* The first `keep` bytes of the path and `tail`; fewer of them where the name would be too long. */
+/* Joins the first `keep` bytes of the path and `tail`. Fewer bytes are kept where the name would be too long. */
 static bool name_beside(const char *path, size_t keep, const char *tail, char *result, size_t size) {
   const char *slash = strrchr(path, '/');
   size_t folder = slash ? (size_t)(slash + 1 - path) : 0;
   if (keep > folder + LONGEST_NAME - strlen(tail)) {
     keep = folder + LONGEST_NAME - strlen(tail);
-    while (keep > folder && ((unsigned char)path[keep] & 0xc0) == 0x80) keep--; /* not inside a letter of UTF-8 */
+    while (keep > folder && ((unsigned char)path[keep] & 0xc0) == 0x80) keep--; /* does not split a UTF-8 sequence */
   }
   return snprintf(result, size, "%.*s%s", (int)keep, path, tail) < (int)size;
 }
 
-/* Only a file that can be renamed over has something else in its place for a while. */
+/* Only regular files are replaced by renaming another file. */
 static bool is_plain_file(const char *path) {
   struct stat info;
   return stat(path, &info) != 0 || S_ISREG(info.st_mode);
@@ -137,7 +137,7 @@ void output_remove_part(const char *path) {
   unlink(part);
   if (!output_holds_layers(path) || !output_ids_path(part, ids, sizeof ids) || !output_ids_path(path, own, sizeof own))
     return;
-  if (strcmp(ids, own) != 0) unlink(ids); /* the same where both names were cut */
+  if (strcmp(ids, own) != 0) unlink(ids); /* both may be cut to the same name */
 }
 
 bool output_ids_path(const char *path, char *ids, size_t size) {
@@ -151,7 +151,7 @@ const char *output_written(const Outputs *outputs, int i, OutputStage stage, cha
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
-/* One output that failed once is reported once, and again when it is written again. */
+/* Reports the first failure of an output, and its recovery. */
 static void report_progress_failure(Outputs *outputs, int i, vlResult result, const vlError *error) {
   bool failing = result != VL_OK;
   if (failing && !outputs->files[i].failing)
@@ -162,7 +162,8 @@ static void report_progress_failure(Outputs *outputs, int i, vlResult result, co
   outputs->files[i].failing = failing;
 }
 
-/* What is on disk after a write: NAME.part.EXT goes only when NAME.EXT is there, and says of what it is worth. */
+/* After a write: NAME.part.EXT is removed once NAME.EXT is complete. Otherwise a note says how many samples it holds.
+ */
 static void keep_part(Outputs *outputs, int i, const char *part, OutputStage stage, bool written, uint32_t spp) {
   if (stage != OUTPUT_FINISHED && written)
     outputs->files[i].part_spp = spp;
@@ -185,7 +186,7 @@ static vlResult write_one(const Outputs *outputs, const vlImage *image, bool lay
 
 int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, uint32_t spp, OutputStage stage) {
   float exposure = outputs->meter ? exposure_meter(image) : outputs->exposure;
-  vlImage *display = NULL; /* made once, when the first file wants it */
+  vlImage *display = NULL; /* made when the first file needs it */
   int status = STATUS_OK;
   for (int i = 0; i < outputs->count; i++) {
     const char *path = outputs->paths[i];

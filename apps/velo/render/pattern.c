@@ -7,7 +7,7 @@
 
 #include "cli/report.h"
 
-/* After a percent sign: digits of the width, then the kind. 0: not known. */
+/* Parses the text after a percent sign: digits of the width, then the kind. 0: unknown. */
 static char sign_at(const char *at, size_t *length, int *width) {
   size_t digits = strspn(at, "0123456789");
   *width = 0;
@@ -42,7 +42,7 @@ bool pattern_has(const char *pattern, char kind) {
   return false;
 }
 
-/* The last part of a path, without a suffix; what no file name should have becomes "_". */
+/* The last component of a path without suffix. Characters not allowed in file names become "_". */
 static void clean(const char *name, char *result, size_t size) {
   const char *slash = strrchr(name, '/'), *back = strrchr(slash ? slash : name, '\\');
   const char *start = back ? back + 1 : slash ? slash + 1 : name, *dot = strrchr(start, '.');

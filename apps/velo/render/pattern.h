@@ -1,7 +1,10 @@
-/* render/pattern.h: names of files that are written many times over: %d the frame's number (%04d: four digits at
- * least), %n the name of its image in the trajectory (last part, without suffix), %c the camera's, %v the eye: left
- * or right; %% a percent sign. Names come from files of strangers: slashes and control characters do not get through.
- */
+/* render/pattern.h: patterns of file names:
+ *   %d  the frame's number (%04d: at least four digits)
+ *   %n  the image's name in the trajectory (last component, without suffix)
+ *   %c  the camera's name
+ *   %v  the eye: left or right
+ *   %%  a percent sign
+ * Names may come from untrusted files: slashes and control characters are replaced. */
 #ifndef APP_RENDER_PATTERN_H
 #define APP_RENDER_PATTERN_H
 
@@ -11,14 +14,14 @@
 
 typedef struct PatternValues {
   uint32_t number;
-  const char *name, *camera, *view; /* null or empty: the number; camera: "0"; view: nothing */
+  const char *name, *camera, *view; /* null or empty: %n gives the number, %c "0", %v nothing */
 } PatternValues;
 
-/* -1, or the exit code after a sign that is not known. */
+/* Returns -1, or the exit code after an unknown field. */
 int pattern_check(const char *pattern);
-/* kind: 'd', 'n', 'c', 'v' */
+/* Whether the pattern has a field of that kind: 'd', 'n', 'c', 'v'. */
 bool pattern_has(const char *pattern, char kind);
-/* false: too long */
+/* False: too long. */
 bool pattern_expand(const char *pattern, const PatternValues *values, char *path, size_t size);
 
 #endif

@@ -44,7 +44,7 @@ void progress_start(Progress *progress, double time_limit) {
   *progress = (Progress){.time_limit = time_limit, .last_shown = -1};
 }
 
-/* The share of the work that is done and what is left, whichever of samples and time ends first. */
+/* The finished share of the work and the remaining seconds, by samples or by the time limit, whichever ends first. */
 static void estimate(const Progress *progress, const vlProgress *now, double *fraction, double *remaining) {
   *fraction = now->fraction > 0 ? now->fraction < 1 ? now->fraction : 1 : 0;
   *remaining = now->remaining;
@@ -55,7 +55,7 @@ static void estimate(const Progress *progress, const vlProgress *now, double *fr
   }
 }
 
-/* The longest of the texts for which there is room: what is left is the last to go. */
+/* The longest text that fits the line. The remaining time is dropped last. */
 static void describe(const vlProgress *now, double remaining, double rate, int room, char *text, size_t size) {
   char elapsed[32], left[40] = "", speed[32], number[32];
   format_seconds(elapsed, sizeof elapsed, now->elapsed);

@@ -1,4 +1,4 @@
-/* render/progress.h: how far the render is: a bar on a terminal, plain lines elsewhere, JSON lines for machines. */
+/* render/progress.h: progress of the render: a bar on a terminal, plain lines elsewhere, or JSON lines. */
 #ifndef APP_RENDER_PROGRESS_H
 #define APP_RENDER_PROGRESS_H
 
@@ -6,16 +6,16 @@
 
 typedef struct Progress {
   double time_limit; /* seconds; 0: none */
-  double last_shown; /* elapsed seconds of the last line or redraw; -1: none yet */
+  double last_shown; /* elapsed seconds at the last line or redraw; -1: none yet */
   uint32_t last_spp;
 } Progress;
 
 void progress_start(Progress *progress, double time_limit);
 void progress_show(Progress *progress, const vlProgress *now);
 
-/* "1.27 M", "950", "3.4 G" */
+/* Formats a count: "1.27 M", "950", "3.4 G". */
 void format_count(char *text, size_t size, double count);
-/* "4.2 s", "1:05", "2:03:20" */
+/* Formats seconds: "4.2 s", "1:05", "2:03:20". */
 void format_seconds(char *text, size_t size, double seconds);
 double monotonic_seconds(void);
 

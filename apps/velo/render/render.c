@@ -1,5 +1,5 @@
-/* render/render.c: `velo render`: load → build → make → render → develop → write. The first pass is written at once,
- * later ones now and then, so that there is an image to look at; a signal stops the render and keeps its whole passes.
+/* render/render.c: `velo render`: load, build, make, render, develop, write. The first pass is written at once and
+ * later ones at intervals, so that there is a progress image. A signal stops the render and keeps its whole passes.
  * Only a render that reached its samples or its time replaces an earlier image (outputs.h). */
 #include <stdio.h>
 #include <string.h>
@@ -18,7 +18,7 @@
 #include "render/progress.h"
 #include "render/scene_options.h"
 
-/* Seconds between two progress images; and they may take at most a twentieth of the time. */
+/* Seconds between two progress images. Writing them takes at most 1 / WRITE_SHARE of the time. */
 enum { WRITE_EVERY = 10, WRITE_SHARE = 20 };
 
 typedef struct Render {
@@ -30,15 +30,15 @@ typedef struct Render {
   Outputs outputs;
   char default_output[600];
   Progress progress;
-  uint32_t written_spp; /* of the progress images */
-  bool part_named;      /* where they are was reported */
+  uint32_t written_spp; /* samples per pixel of the last progress image */
+  bool part_named;      /* their paths were reported */
   double last_write, write_cost;
-  double start, render_start; /* of the command, of the first pass */
-  double time_limit;          /* --time; 0: none */
-  Channels channels;          /* of ground truth */
-  Frames frames;              /* of a trajectory, a rig, two eyes */
+  double start, render_start; /* start of the command, start of the first pass; seconds */
+  double time_limit;          /* --time, seconds; 0: none */
+  Channels channels;          /* of the ground truth */
+  Frames frames;              /* of a trajectory, a rig or two eyes */
   MemoryPlan memory;
-  bool many; /* there are such */
+  bool many; /* whether `frames` is used */
 } Render;
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
@@ -62,7 +62,7 @@ static int write_image(Render *render, OutputStage stage) {
   return status;
 }
 
-/* "a.exr, b.png" */
+/* Lists the files: "a.exr, b.png". */
 static void list_files(const Render *render, OutputStage stage, char *text, size_t size) {
   char part[5000];
   text[0] = 0;
@@ -72,7 +72,7 @@ static void list_files(const Render *render, OutputStage stage, char *text, size
   }
 }
 
-/* Said once, of renders that take longer than their first images. */
+/* Reported once, when the render outlasts its first progress images. */
 static void name_parts(Render *render, const vlProgress *now) {
   char files[1200];
   if (render->part_named || now->remaining < WRITE_EVERY) return;
@@ -81,7 +81,8 @@ static void name_parts(Render *render, const vlProgress *now) {
   report_note("the image so far is in %s", files);
 }
 
-/* The command shall end after its --time: what is left once the image will be written, as the last one was. */
+/* Sets the render's time limit so that the whole command ends after --time. The cost of the final write is estimated by
+ * the last one. */
 static void limit_time(Render *render) {
   if (!(render->time_limit > 0)) return;
   double left = render->time_limit - (render->render_start - render->start) - render->write_cost;
@@ -91,7 +92,7 @@ static void limit_time(Render *render) {
 static void write_progress_image(Render *render, const vlProgress *now) {
   double start = monotonic_seconds(), wait = WRITE_SHARE * render->write_cost;
   bool ends = now->spp_done >= now->spp_total || now->remaining <= 2 * render->write_cost;
-  if (ends && render->time_limit > 0) return; /* the last image comes at once */
+  if (ends && render->time_limit > 0) return; /* the final image follows soon */
   if (now->spp_done >= now->spp_total) return;
   if (render->written_spp && start - render->last_write < (wait > WRITE_EVERY ? wait : WRITE_EVERY)) return;
   write_image(render, OUTPUT_PROGRESS);
@@ -109,8 +110,8 @@ static bool on_progress(void *user, const vlProgress *now) {
   return !signals_pending();
 }
 
-/* Without -o: the last part of the name that the scene asks for, else the scene's own name with .exr; in the current
- * folder either way, since a scene may come from anywhere. */
+/* The default output name: the last component of the name that the scene gives, otherwise the scene's name with .exr.
+ * It is in the current directory, since scenes may be untrusted. */
 static void choose_output(Render *render, const char *scene_path, const char *asked) {
   bool eight_bit;
   const char *slash = strrchr(asked, '/');
@@ -192,7 +193,7 @@ static int prepare(Render *render, const Arguments *arguments) {
   return result == VL_OK ? -1 : report_error(NULL, result, NULL);
 }
 
-/* Found before the render: what could not be written after it. */
+/* Checks before the render what could not be written after it. */
 static int check_sizes(const Render *render) {
   const vlFilmDef *film = &render->job.defs->film;
   uint32_t width = film->crop[2] - film->crop[0], height = film->crop[3] - film->crop[1];
@@ -202,7 +203,7 @@ static int check_sizes(const Render *render) {
       return report_usage("output \"%s\": %u x %u pixels, this format holds at most %u each way",
                           render->outputs.paths[i], width, height, most);
   }
-  vlFilm *film_made = NULL; /* no memory is taken before the first pass */
+  vlFilm *film_made = NULL; /* memory is allocated by the first pass */
   vlResult result = vl_film_create(render->context, film, &film_made);
   vl_film_destroy(film_made);
   if (result == VL_OK) return -1;
@@ -253,7 +254,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   return -1;
 }
 
-/* Before anything is rendered, so that nothing fails for want of memory after hours. */
+/* Checked before the render, so that it does not run out of memory after hours. */
 static int reckon_memory(Render *render, const Arguments *arguments) {
   const OptionValue *limit = &arguments->values[RENDER_MAX_MEMORY];
   uint64_t most = limit->given ? (uint64_t)limit->integer : 0;
@@ -316,7 +317,7 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
   report_memory(render);
 }
 
-/* A first pass is finished whatever it takes. */
+/* The first pass is always completed. */
 static void report_late(const Render *render, uint32_t spp) {
   double elapsed = monotonic_seconds() - render->start;
   char wanted[32], taken[32];
@@ -326,8 +327,8 @@ static void report_late(const Render *render, uint32_t spp) {
   report_note("the first sample of each pixel was done after %s, --time was %s", taken, wanted);
 }
 
-/* The last image, with what belongs to it. A stopped render is on disk before its ground truth is begun, which another
- * signal ends. *stage: what was written in the end. */
+/* Writes the final image with its ground truth. A stopped render is written before its ground truth is rendered, which
+ * another signal may interrupt. *stage: the stage of the last write. */
 static int write_last(Render *render, OutputStage *stage) {
   int written = STATUS_OK;
   if (*stage == OUTPUT_STOPPED && has_layers(render)) written = write_image(render, *stage);

@@ -22,7 +22,7 @@ bool scene_camera_is_own(const char *path, const Arguments *arguments) {
   return camera->given && (ends_with(path, ".gltf") || ends_with(path, ".glb")) && stat(camera->text, &info) != 0;
 }
 
-/* studio, sky, white, none, or a file. */
+/* Parses studio, sky, white, none, or a file name. */
 static void choose_environment(const char *text, vlCompleteDef *def) {
   static const struct {
     const char *name;
@@ -41,7 +41,7 @@ static void choose_environment(const char *text, vlCompleteDef *def) {
   def->path = text;
 }
 
-/* The lecture's parameters of the camera that was made. d: the view plane's distance at which a pixel is 1 wide. */
+/* Reports the lecture's parameters of the added camera. d: distance of the view plane in pixels. */
 static void tell_camera(const vlSceneDefs *s) {
   const vlCameraDef *c = &s->camera;
   double d = 0.5 * (s->film.width < s->film.height ? s->film.width : s->film.height) / tan(0.5 * c->fov);
@@ -51,7 +51,7 @@ static void tell_camera(const vlSceneDefs *s) {
       c->eye[0], c->eye[1], c->eye[2], c->lookat[0], c->lookat[1], c->lookat[2], c->up[0], c->up[1], c->up[2], d);
 }
 
-/* --at T, --at T0:T1, --shutter S. */
+/* Reads --at T, --at T0:T1 and --shutter S. */
 static int choose_times(const OptionValue *v, vlLoadDef *load) {
   const OptionValue *at = &v[RENDER_AT], *shutter = &v[RENDER_SHUTTER];
   if (shutter->given && !at->given) return report_usage("--shutter goes with --at SECONDS");
@@ -90,7 +90,7 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   vlCompleteDef complete = vl_default_complete_def();
   vlSceneDefs *defs = vl_scene_defs(*scene);
   bool camera = defs->camera_missing && (!v[RENDER_CAMERA].given || load.camera);
-  defs->camera_missing = camera; /* another file has it */
+  defs->camera_missing = camera; /* another file gives the camera */
   vlSceneInfo info;
   vl_scene_info(*scene, &info);
   *lamps = info.lights > 0 && (ends_with(path, ".gltf") || ends_with(path, ".glb"));

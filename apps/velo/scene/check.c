@@ -1,5 +1,5 @@
-/* scene/check.c: `velo scene check`: the scene doctor. Reads a scene past its mistakes, looks at what it describes, and
- * says everything that it finds with its place, on stdout. */
+/* scene/check.c: `velo scene check`: reads a scene past its errors, checks the description and prints all findings with
+ * their places to stdout. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,9 +9,9 @@
 #include "scene/scene.h"
 
 enum { CHECK_JSON, CHECK_NO_IMAGES, CHECK_ALL, CHECK_PERMISSIVE, CHECK_SANDBOX };
-enum { SHOWN = 10 }; /* of one kind, without --all */
+enum { SHOWN = 10 }; /* findings printed per kind without --all */
 
-/* Owned copy of a finding, so that those told while loading stand beside the others. */
+/* A copy of a finding, so that those reported while loading are listed with the others. */
 typedef struct Entry {
   vlFindingKind kind;
   vlSeverity severity;
@@ -31,7 +31,7 @@ static void add(List *list, vlFindingKind kind, vlSeverity severity, vlResult co
   if (list->count == list->capacity) {
     size_t wanted = list->capacity ? 2 * list->capacity : 64;
     Entry *grown = realloc(list->items, wanted * sizeof *grown);
-    if (!grown) return; /* what cannot be kept cannot be shown */
+    if (!grown) return; /* out of memory: the finding is lost */
     list->items = grown;
     list->capacity = wanted;
   }
@@ -49,14 +49,14 @@ static void told(void *user, const vlError *e) {
       e->message);
 }
 
-/* The importer's warnings are findings; its notes are none. */
+/* The importer's warnings become findings; its notes do not. */
 static void logged(void *user, vlLogLevel level, const vlError *where, const char *message) {
   if (level <= VL_LOG_WARNING)
     add(user, VL_FINDING_REMARK, VL_SEVERITY_NOTE, VL_OK, where ? where->file : "", where ? where->line : 0,
         where ? where->column : 0, message);
 }
 
-/* -1: looked at whole. */
+/* Returns -1 when the whole scene was checked. */
 static int look(vlContext *context, const Arguments *arguments, List *list) {
   vlScene *scene = NULL;
   vlCheck *check = NULL;
@@ -144,7 +144,7 @@ static void print_json(const List *list, const char *path, int status) {
   putchar('\n');
 }
 
-/* What `velo render` would return; 1 where it would render what was probably not meant. */
+/* The exit code of `velo render` for this scene; 1 when it would render, but probably not as intended. */
 static int status_of(const List *list) {
   int status = STATUS_OK;
   for (size_t i = 0; i < list->count; i++) {

@@ -1,4 +1,4 @@
-/* scene/convert.c: `velo scene convert`: a scene from one format to another, and what is lost on the way. */
+/* scene/convert.c: `velo scene convert`: converts a scene to another format and reports losses. */
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>

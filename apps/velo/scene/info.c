@@ -1,5 +1,5 @@
-/* scene/info.c: `velo scene info`: what a scene holds: counts, size in space and memory, camera, film, lights, unused
- * definitions. Also what the scene commands share. */
+/* scene/info.c: `velo scene info`: the content of a scene: counts, extent, memory, camera, film, lights, unused
+ * definitions. Also functions shared by the scene commands. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,7 +23,7 @@ int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log,
 }
 
 enum { INFO_JSON, INFO_PERMISSIVE, INFO_SANDBOX };
-enum { LIGHTS = 20, LIGHTS_JSON = 1000 }; /* listed */
+enum { LIGHTS = 20, LIGHTS_JSON = 1000 }; /* most lights listed */
 
 typedef struct Facts {
   const char *path;
@@ -31,7 +31,7 @@ typedef struct Facts {
   vlSceneInfo info;
   size_t bytes;
   double low[3], high[3], seconds;
-  vlCheck *check; /* for the unused */
+  vlCheck *check; /* for the unused definitions */
 } Facts;
 
 static void print_plain(const char *text) {

@@ -1,6 +1,5 @@
-/* scene/kinds.c: `velo scene kinds`: what scene files may say, from the rows of velo/schema.h: kinds of materials,
- * textures and so on with their parameters, as the Markdown tables of the documentation, or as a dictionary for a
- * fuzzer. */
+/* scene/kinds.c: `velo scene kinds`: the kinds of materials, textures and so on with their parameters, from the rows of
+ * velo/schema.h: as Markdown tables for the documentation, or as a dictionary for a fuzzer. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -98,7 +97,7 @@ static void print_tables(const vlKindFamily *family) {
     if (family->rows[i]->name) print_row(family->rows[i]);
 }
 
-/* One word per line, each quoted, with the quotes that files put around it. */
+/* One token per line, quoted, including the quotes that scene files put around it. */
 static void print_word(const char *type, const char *name) {
   if (name) printf("\"\\\"%s%s%s\\\"\"\n", type, type[0] ? " " : "", name);
 }

@@ -1,11 +1,11 @@
-/* scene/scene.h: what the scene commands share. */
+/* scene/scene.h: declarations shared by the scene commands. */
 #ifndef APP_SCENE_SCENE_H
 #define APP_SCENE_SCENE_H
 
 #include "cli/options.h"
 #include "velo/velo.h"
 
-/* The option of all scene commands that says where a scene's files may lie. */
+/* The option of all scene commands that restricts the location of a scene's files. */
 #define SCENE_SANDBOX_OPTION(id)                                                                                      \
   {                                                                                                                   \
     (id), 0, "sandbox", OPTION_FOLDERS, "DIR",                                                                        \
@@ -13,7 +13,8 @@
         0, NULL                                                                                                       \
   }
 
-/* A context with its --sandbox, whose log goes there. -1: made; else the exit code, and it has been said. */
+/* Makes a context with the --sandbox and the log callback of the options. Returns -1, or the exit code after reporting
+ * the error. */
 int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log, void *log_user);
 
 #endif

@@ -1,5 +1,5 @@
-/* export/gltf/gltf.c: a scene as glTF 2.0: JSON and buffer, meshes and the tree of nodes. Where the scene's camera
- * mirrors (as pbrt's do), everything stands under a node that mirrors the world, so that the camera need not. */
+/* export/gltf/gltf.c: a scene as glTF 2.0: JSON, buffer, meshes and the node tree. When the scene's camera mirrors (as
+ * pbrt's do), all nodes have a parent that mirrors the world, so that the camera need not. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -71,7 +71,7 @@ static json_int_t put_indices(vlExport *x, const vlExportMesh *m, bool turned) {
   for (size_t i = 0; i < count; i++) {
     size_t from = turned && i % 3 ? i + (i % 3 == 1 ? 1 : (size_t)-1) : i;
     if (small)
-      narrow[i] = (uint16_t)m->indices[from]; /* never ahead of what is written */
+      narrow[i] = (uint16_t)m->indices[from]; /* in place: writing never overtakes reading */
     else
       wide[i] = m->indices[from];
   }
@@ -82,7 +82,8 @@ static json_int_t put_indices(vlExport *x, const vlExportMesh *m, bool turned) {
                                small ? TYPE_USHORT : TYPE_UINT, "count", (json_int_t)count, "type", "SCALAR"));
 }
 
-/* Of unit length, as glTF demands; those that are so nearly stay as they are. Any direction for none. */
+/* Normalises directions, as glTF demands. Nearly unit ones stay unchanged; zero ones become an arbitrary unit vector.
+ */
 static void make_unit(const float *v, float sign, float *to) {
   float l = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), k = fabsf(l - 1) < 1e-4f ? sign : sign / l;
   for (int i = 0; i < 3; i++) to[i] = l > 1e-20f ? v[i] * k : (i == 2 ? 1.0f : 0.0f);
@@ -134,14 +135,14 @@ static bool put_attributes(vlExport *x, const vlExportMesh *m, json_t *attribute
   return true;
 }
 
-/* Do the normals that vl_export_mesh makes turn over? A mirroring transform turns those of spheres, disks and
- * cylinders, too (velo/scene.h); glTF's nodes never do. */
+/* Whether the normals of vl_export_mesh must be reversed. A mirroring transform also reverses those of spheres, disks
+ * and cylinders (velo/scene.h); glTF's nodes never do. */
 static bool is_turned(const vlShapeDef *d) {
   bool quadric = d->kind == VL_SHAPE_SPHERE || d->kind == VL_SHAPE_DISK || d->kind == VL_SHAPE_CYLINDER;
   return d->reverse_orientation != (quadric && vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0);
 }
 
-/* *index -1: nothing to draw. */
+/* Adds the shape's mesh. *index -1: the shape is invisible. */
 static bool put_mesh(vlExport *x, const vlShapeDef *d, json_int_t *index) {
   vlExportMesh mesh;
   bool colors, tangents, turned = is_turned(d);
@@ -206,7 +207,8 @@ static bool put_shapes(vlExport *x, json_t *roots, json_int_t *mesh_of) {
   return true;
 }
 
-/* An instance is a node whose children are its group's shapes; of one shape in the group's own space, that shape's. */
+/* An instance becomes a node whose children are the shapes of its group. A group of one shape without a transform of
+ * its own becomes a single node. */
 static bool put_instances(vlExport *x, json_t *roots, const json_int_t *mesh_of) {
   const vlScene *s = x->scene;
   for (size_t i = 0; i < s->instances.count; i++) {

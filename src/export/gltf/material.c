@@ -1,5 +1,5 @@
-/* export/gltf/material.c: materials as metallic-roughness with the KHR extensions. The principled material goes out as
- * it came in; others as their nearest. */
+/* export/gltf/material.c: materials as metallic-roughness with the KHR extensions. The principled material is exported
+ * losslessly where possible; other materials are approximated. */
 #include <math.h>
 #include <string.h>
 
@@ -26,7 +26,7 @@ static double unit(double v) {
   return v > 0 ? v < 1 ? v : 1 : 0;
 }
 
-/* Factor times a channel of an image. */
+/* A factor times a channel of an image. */
 static void put_channel(vlExport *x, json_t *to, const char *factor_key, const char *texture_key, int channel,
                         const vlFloatInput *input) {
   const vlTextureDef *t = vl_export_texture(x, input->texture);
@@ -39,7 +39,7 @@ static void put_channel(vlExport *x, json_t *to, const char *factor_key, const c
   if (info) json_object_set_new(to, texture_key, info);
 }
 
-/* Colour factor times an image in sRGB. *alpha (may be null): the texture, for who wants its fourth channel. */
+/* A colour factor times an sRGB image. *alpha (may be null) receives the texture, for its fourth channel. */
 static void put_color(vlExport *x, json_t *to, const char *factor_key, const char *texture_key, bool bounded,
                       const vlSpectrumInput *input, double coverage) {
   const vlTextureDef *t = vl_export_texture(x, input->texture);
@@ -286,7 +286,7 @@ static void put_grey(vlExport *x, json_t *material, const vlMaterialDef *m, vlMe
   put_base(x, material, &grey, coverage, 0, 1);
 }
 
-/* inside: the medium there. Kinds that are not named: put_grey. */
+/* Writes one kind of material. inside: the medium behind the surface. Kinds without an entry: put_grey. */
 typedef void Put(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage);
 static Put *const puts_of_kind[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {
     [VL_MATERIAL_DIFFUSE] = put_diffuse,       [VL_MATERIAL_COATED_DIFFUSE] = put_coated,
@@ -375,7 +375,7 @@ json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors, 
     if (info) json_object_set_new(json, "normalTexture", info);
   }
   if (d->emission.index) put_emission(x, json, &x->scene->emissions.items[d->emission.index - 1]);
-  /* what light passes through is met from behind in any case */
+  /* transmissive surfaces are always met from both sides */
   bool body = json_object_get(json_object_get(json, "extensions"), "KHR_materials_volume") != NULL;
   if (!d->one_sided && !body) json_object_set_new(json, "doubleSided", json_true());
   if (!json_object_size(json_object_get(json, "extensions"))) json_object_del(json, "extensions");

@@ -1,4 +1,4 @@
-/* export/gltf/scene.c: camera and lights of a scene as glTF's. */
+/* export/gltf/scene.c: camera and lights of a scene as glTF. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "math/elementary.h"
 #include "velo/camera_file.h"
 
-/* Fields that glTF itself cannot say; velo's own copy of the camera in the extras keeps them. */
+/* Camera fields that glTF cannot represent. Velo's own description in the extras keeps them. */
 static const char *const beyond[] = {
     "projection",   "distortion",    "cx",           "cy", "skew", "lens_radius", "focus_distance",
     "shutter_open", "shutter_close", "exposure_time"};
@@ -22,7 +22,7 @@ static vlResult write_camera(vlExport *x, const vlCameraRecord *record, const ch
   return vl_camera_write(x->context, path, &def, record, &error);
 }
 
-/* Axes that stand square but for rounding are made so: glTF's readers take transforms apart. */
+/* Orthogonalises axes that differ from orthogonal ones by rounding only: glTF's readers decompose transforms. */
 static void square_up(double m[16]) {
   double a[3][3], dot, l;
   for (int c = 0; c < 3; c++)
@@ -81,7 +81,7 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
   return true;
 }
 
-/* The node's -z points along the light. */
+/* Orients the node so that its -z is the light's direction. */
 static json_t *light_node(const vlLightDef *d, json_int_t index) {
   vlMat4 m = vl_mat4_load(d->world_from_light);
   double from[3], to[3], a[3] = {d->from[0], d->from[1], d->from[2]}, b[3] = {d->to[0], d->to[1], d->to[2]}, z[3],
@@ -94,7 +94,7 @@ static json_t *light_node(const vlLightDef *d, json_int_t index) {
   if (d->kind != VL_LIGHT_DISTANT)
     json_object_set_new(node, "translation", json_pack("[f,f,f]", from[0], from[1], from[2]));
   if (d->kind == VL_LIGHT_POINT) return node;
-  /* the shortest turn from +z to z: (x y z w) = (-z1, z0, 0, 1 + z2), of unit length */
+  /* the shortest rotation from +z to z: quaternion (-z1, z0, 0, 1 + z2), normalised */
   double q[4] = {-z[1], z[0], 0, 1 + z[2]}, n = sqrt(q[0] * q[0] + q[1] * q[1] + q[3] * q[3]);
   if (n < 1e-6) q[0] = n = 1, q[1] = q[3] = 0;
   json_object_set_new(node, "rotation", json_pack("[f,f,f,f]", q[0] / n, q[1] / n, 0.0, q[3] / n));
@@ -102,7 +102,7 @@ static json_t *light_node(const vlLightDef *d, json_int_t index) {
 }
 
 bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
-  /* KHR_lights_punctual's; null: it has none */
+  /* The KHR_lights_punctual object; null when the extension has no such light. */
   static const char *const types[] = {
       [VL_LIGHT_POINT] = "point", [VL_LIGHT_SPOT] = "spot", [VL_LIGHT_DISTANT] = "directional"};
   json_t *lights = json_array();

@@ -1,4 +1,4 @@
-/* export/gltf/texture.c: images, samplers and textures of a glTF file, each once. */
+/* export/gltf/texture.c: images, samplers and textures of a glTF file, each written once. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -25,7 +25,7 @@ static json_int_t put_image(vlExport *x, const vlTextureDef *t) {
   } else {
     char uri[900], *to = uri;
     snprintf(name, sizeof name, "%.200s-%zu%s", x->stem, x->images.count, suffix);
-    for (const char *p = name; *p; p++) { /* blanks and the like are escaped in uris */
+    for (const char *p = name; *p; p++) { /* escapes blanks and other characters not allowed in uris */
       bool plain =
           (*p >= 'a' && *p <= 'z') || (*p >= 'A' && *p <= 'Z') || (*p >= '0' && *p <= '9') || strchr("-._~", *p);
       to += plain ? (*to = *p, 1) : snprintf(to, 4, "%%%02X", (unsigned char)*p);
@@ -60,7 +60,7 @@ static int wrap_code(vlExport *x, vlWrap wrap) {
   return wrap == VL_WRAP_REPEAT ? 10497 : wrap == VL_WRAP_MIRROR ? 33648 : 33071;
 }
 
-/* KHR_texture_transform, where there is something to say. Ours maps v upwards, glTF's downwards. */
+/* KHR_texture_transform, unless it is the identity. Velo's v points upwards, glTF's downwards. */
 static void put_transform(vlExport *x, json_t *info, const vlTextureDef *t) {
   double m[6];
   vl_export_st_from_uv(t, m);

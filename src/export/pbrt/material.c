@@ -1,4 +1,5 @@
-/* export/pbrt/material.c: materials as pbrt-v4's: its own as they are, the principled one as the nearest. */
+/* export/pbrt/material.c: materials of pbrt-v4. pbrt's own kinds are written unchanged; the principled material is
+ * approximated. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -37,7 +38,7 @@ static bool put_normal(vlExport *x, const vlMaterialDef *m) {
   return true;
 }
 
-/* The part that is no metal. name: of the material. */
+/* The non-metallic part of the principled material. name: the material's. */
 static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name) {
   const vlPrincipledDef *p = &m->principled;
   vlPbrtInput color, passed, alpha;
@@ -74,7 +75,7 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
     vl_pbrt_put_color(x, "transmittance", &passed);
     PUT(" \"float scale\" [0.5]");
   } else if (bare) {
-    /* pbrt's coats lose light when they are rough; plain diffuse is nearer */
+    /* pbrt's rough coats lose energy; diffuse is the closer approximation */
     if (p->specular.texture.index || p->specular.value != 0)
       vl_export_lose(x, "rough principled dielectrics: as diffuse");
     PUT("\"diffuse\"");
@@ -130,7 +131,7 @@ static bool put_principled(vlExport *x, const vlMaterialDef *m, uint32_t id) {
 
 /* ---- pbrt's own -------------------------------------------------------------------------------------------------- */
 
-/* Of what may be said in several ways, the one that counts is written, always. */
+/* Of alternative parameters, the one in effect is always written and the others never. */
 static vlPbrtWished one_of(bool counts) {
   return counts ? VL_PBRT_ALWAYS : VL_PBRT_NEVER;
 }

@@ -13,7 +13,7 @@ static void put_cells(vlExport *x, const char *parameter, const vlMediumDef *m, 
   PUT("]");
 }
 
-/* What the rows do not say, a function per kind. */
+/* Rules that the rows do not express, one function per kind. */
 typedef bool PutMedium(vlExport *x, const vlMediumDef *m);
 
 static bool put_homogeneous(vlExport *x, const vlMediumDef *m) {
@@ -41,7 +41,7 @@ static bool put_cloud(vlExport *x, const vlMediumDef *m) {
   return true;
 }
 
-/* The file goes along. */
+/* Copies the NanoVDB file beside the scene. */
 static bool put_nanovdb(vlExport *x, const vlMediumDef *m) {
   char name[300], *data = NULL;
   size_t size = 0, index = (size_t)(m - x->scene->media.items) + 1;

@@ -1,5 +1,5 @@
-/* export/pbrt/parameters.c: the members of a def as parameters, as the row of its kind says: those that differ from
- * their defaults. */
+/* export/pbrt/parameters.c: writes the members of a def that differ from their defaults as parameters, by the row of
+ * its kind. */
 #include <string.h>
 
 #include "export/pbrt/pbrt.h"
@@ -11,7 +11,7 @@ static bool is_file_parameter(const vlParameter *p) {
 static bool prepare_file(vlExport *x, const char *path, char name[300]) {
   vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
   t.path = path;
-  return vl_pbrt_image(x, &t, false, name); /* copied as images are */
+  return vl_pbrt_image(x, &t, false, name); /* copied like an image */
 }
 
 static bool prepare(vlExport *x, const vlParameter *p, const void *def, bool spectrum, int depth,

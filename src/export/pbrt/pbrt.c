@@ -1,5 +1,4 @@
-/* export/pbrt/pbrt.c: a scene as pbrt-v4's language: what stands before WorldBegin, the order of the rest,
- * lights. */
+/* export/pbrt/pbrt.c: a scene in pbrt-v4's language: the part before WorldBegin, the order of the rest, lights. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -47,13 +46,13 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
 
 /* ---- before the world -------------------------------------------------------------------------------------------- */
 
-/* The film's parameters beyond its size, which the camera's file has. pbrt's image is as bright as the shutter is
- * open long; shutter: those seconds. */
+/* The film's parameters except its size, which the camera's text holds. shutter: seconds that the shutter is open.
+ * pbrt's exposure is proportional to it. */
 static void put_film(vlExport *x, double shutter) {
   const vlSceneDefs *defs = &x->scene->defs;
   const vlFilmDef *film = &defs->film;
   double exposure = (double)defs->develop.exposure * defs->camera.exposure_time / shutter;
-  /* pbrt limits what its sensor measures, the film what falls on it. */
+  /* pbrt clamps the sensor's output, velo's film its input. */
   double most = (double)film->max_component * (defs->develop.exposure > 0 ? (double)defs->develop.exposure : 1);
   if (defs->gbuffer == VL_GBUFFER_WORLD) PUT("  \"string coordinatesystem\" \"world\"\n");
   if (film->buckets && !defs->gbuffer)
@@ -72,7 +71,7 @@ static void put_film(vlExport *x, double shutter) {
   if (defs->render.sharp_textures) PUT("Option \"disabletexturefiltering\" true\n");
 }
 
-/* The camera's file is a whole scene: what stands before its world. */
+/* The camera's text is a whole scene: copies its part before WorldBegin. */
 static const char *film_kind(const vlSceneDefs *defs) {
   vlFilmKind kind = defs->gbuffer ? VL_FILM_GBUFFER : defs->film.buckets ? VL_FILM_SPECTRAL : VL_FILM_RGB;
   return vl_kind_row(&vl_film_family, (int)kind)->name;
@@ -96,7 +95,7 @@ static bool put_camera(vlExport *x) {
                                        "shutter_open", "shutter_close", "exposure_time"};
   const vlSceneDefs *defs = &x->scene->defs;
   vlCameraRecord record = {.camera = defs->camera};
-  record.camera.exposure_time = 1; /* the film says it */
+  record.camera.exposure_time = 1; /* the film's iso holds it */
   vlCameraFileDef def = vl_default_camera_file_def();
   def.dialect = VL_CAMERA_DIALECT_PBRT;
   char name[64], path[4096], *text = NULL;
@@ -173,7 +172,7 @@ static void put_tracer(vlExport *x) {
 
 /* ---- lights ------------------------------------------------------------------------------------------------------ */
 
-/* The transform; the position goes into it where pbrt's kind has no "from". */
+/* Writes the light's transform. It includes the position when pbrt's kind has no "from". */
 static void put_place(vlExport *x, const vlKindRow *row, const vlLightDef *d) {
   double m[16];
   memcpy(m, d->world_from_light, sizeof m);

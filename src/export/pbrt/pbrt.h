@@ -1,4 +1,4 @@
-/* export/pbrt/pbrt.h: what the writers of pbrt's language share. */
+/* export/pbrt/pbrt.h: declarations shared by the files that write pbrt's language. */
 #ifndef EXPORT_PBRT_PBRT_H
 #define EXPORT_PBRT_PBRT_H
 
@@ -9,38 +9,39 @@
 
 /* Writes ConcatTransform unless it is the identity. */
 void vl_pbrt_matrix(vlExport *x, const double m[16]);
-/* A parameter of that name. */
+/* Starts a parameter of that name. */
 void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s);
-/* The members of a def that differ from the row's defaults (all: every one that is set); not arrays, files and inputs,
- * and not the one named skip (may be null). */
+/* Writes the members of a def that differ from the row's defaults (all: every one that is set), except arrays, files,
+ * inputs and the member `skip` (may be null). */
 void vl_pbrt_row(vlExport *x, const vlKindRow *row, const void *def, bool all, const char *skip);
-/* "medium<index + 1>", before WorldBegin. */
+/* Writes "medium<index + 1>", before WorldBegin. */
 bool vl_pbrt_medium(vlExport *x, size_t index);
-/* "material<id>", and what it refers to. */
+/* Writes "material<id>" and everything it refers to. */
 bool vl_pbrt_material(vlExport *x, uint32_t id);
 bool vl_pbrt_shape(vlExport *x, size_t index);
-/* The name of the file beside the scene's that holds a texture's image as it is; light: of any brightness. */
+/* Copies a texture's image beside the scene unchanged; name receives the file name. light: the values may exceed 1. */
 bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, bool light, char name[300]);
-/* A parameter: a number, or the texture that is written before it. To be called between directives: `prepare` writes
- * the texture and keeps its name, `put` writes the parameter. */
+/* An input as a parameter: a number or a texture. `prepare`, called between directives, writes the texture and keeps
+ * its name. `put` writes the parameter. */
 typedef struct vlPbrtInput {
-  char texture[64]; /* empty: the value */
+  char texture[64]; /* empty: a value */
   float number;
   vlSpectrum spectrum;
 } vlPbrtInput;
 bool vl_pbrt_prepare_number(vlExport *x, const vlFloatInput *input, bool squared, vlPbrtInput *result);
 bool vl_pbrt_prepare_color(vlExport *x, const vlSpectrumInput *input, vlPbrtInput *result);
-/* The colour to put under a smooth coat of that index, so that with it as much light comes back as from the bare one.
- */
+/* The colour for a base under a smooth coat of index eta, chosen so that the coated surface reflects as much light as
+ * the uncoated one. */
 bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, double eta, vlPbrtInput *result);
 void vl_pbrt_put_number(vlExport *x, const char *name, const vlPbrtInput *input);
 void vl_pbrt_put_color(vlExport *x, const char *name, const vlPbrtInput *input);
-/* The same for inputs as they are; depth: of textures in textures. */
+/* The same without changes to the values. depth: nesting of textures. */
 bool vl_pbrt_inner_number(vlExport *x, const vlFloatInput *input, int depth, vlPbrtInput *result);
 bool vl_pbrt_inner_color(vlExport *x, const vlSpectrumInput *input, int depth, vlPbrtInput *result);
 
-/* All parameters that a row names, in two steps as above (parameters.c): those that differ from their defaults, unless
- * `wish` (may be null) says otherwise. list: an entry per parameter of the row. spectrum: of EITHER_INPUT, the half. */
+/* Writes all parameters of a row in the same two steps (parameters.c). Only those that differ from their defaults are
+ * written, unless `wish` (may be null) decides otherwise. list: one entry per parameter of the row. spectrum: which
+ * half of EITHER_INPUT is written. */
 enum { VL_PBRT_PARAMETERS = 64 };
 typedef struct vlPbrtParameter {
   bool wanted;

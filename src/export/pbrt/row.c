@@ -1,4 +1,4 @@
-/* export/pbrt/row.c: the members of a def as parameters of pbrt's language, as the row of its kind says. */
+/* export/pbrt/row.c: writes the members of a def as parameters of pbrt's language, by the row of its kind. */
 #include <string.h>
 
 #include "export/pbrt/pbrt.h"
@@ -7,7 +7,7 @@ static double in_files(const vlParameter *p, double value) {
   return p->factor != 0 ? value / p->factor : value;
 }
 
-/* Arrays, files and textures are the caller's. */
+/* Arrays, files and textures are left to the caller. */
 static void put_parameter(vlExport *x, const vlParameter *p, const void *def) {
   const void *at = (const char *)def + p->offset;
   const float *v = at;

@@ -1,4 +1,4 @@
-/* export/pbrt/shape.c: shapes as pbrt's; large meshes go to PLY files of their own. */
+/* export/pbrt/shape.c: shapes as pbrt's. Large meshes are written to PLY files. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -26,7 +26,8 @@ static void put_inline(vlExport *x, const vlShapeDef *d) {
   PUT("]");
 }
 
-/* Binary, little-endian. pbrt makes patches of faces of four corners, which go round. */
+/* Writes binary little-endian PLY. Patches become faces of four corners in cyclic order, which pbrt reads as patches.
+ */
 static bool put_ply(vlExport *x, const vlShapeDef *d, size_t index) {
   vlBytes b = {0};
   size_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
@@ -72,13 +73,13 @@ static bool put_kind(vlExport *x, const vlShapeDef *d, size_t index) {
       vl_pbrt_row(x, row, d, true, NULL);
       return true;
     }
-    case VL_SHAPE_CURVES: return true; /* left out before */
+    case VL_SHAPE_CURVES: return true; /* left out with a loss counted earlier */
   }
   return true;
 }
 
-/* pbrt's emissive images do not repeat: uvs that lie in another cell of the plane move to the first, where every
- * image of the scene repeats and none is mapped otherwise. New uvs in *moved, else null. */
+/* pbrt's emissive images do not repeat. When all uvs lie in one other cell, they are shifted to the unit square,
+ * provided that the scene's image repeats and has the uv mapping. *moved receives the new uvs, otherwise null. */
 static bool move_uvs(vlExport *x, const vlShapeDef *d, float **moved) {
   const vlEmissionDef *e = &x->scene->emissions.items[d->emission.index - 1];
   *moved = NULL;

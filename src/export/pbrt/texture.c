@@ -1,5 +1,5 @@
-/* export/pbrt/texture.c: textures as pbrt's. Images of which one channel counts, or that are tinted, are worked into
- * new ones (EXR, so that no value is rounded). */
+/* export/pbrt/texture.c: textures as pbrt's. An image of which one channel is used, or that is tinted, is written as a
+ * new image (EXR, which does not round the values). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -37,7 +37,7 @@ bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, bool light, char name[300
   bool fine;
   if (t->image) {
     fine = vl_export_pack(x, t->image, ".exr", &bytes, &size);
-  } else if (t->path && dot && strlen(dot) < 8) { /* as it is, whatever it is */
+  } else if (t->path && dot && strlen(dot) < 8) { /* copied unchanged, whatever its format */
     vlError error;
     vl_error_clear(&error);
     vlResult r = vl_file_read(x->context, t->path, false, &bytes, &size, &error);
@@ -53,10 +53,10 @@ bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, bool light, char name[300
 
 /* ---- worked images --------------------------------------------------------------------------------------------- */
 
-/* What becomes of an image's values. */
+/* How the values of an image are changed. */
 typedef struct Change {
   bool squared;
-  float turned_back; /* under a coat that sends this share of the light back in; 0: none */
+  float turned_back; /* internal reflection of a coat that is compensated (share of the light); 0: none */
 } Change;
 static const Change as_is = {false, 0};
 
@@ -64,7 +64,7 @@ static float under_coat(float value, float turned_back) {
   return value / (1 - turned_back + value * turned_back);
 }
 
-/* One channel as the tracer reads it, or three tinted ones. */
+/* One channel as the tracer reads it, or three tinted channels. */
 static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[300]) {
   uint32_t variant = 2 + (change.squared ? 1u : 0u);
   const float key[9] = {t->tint[0], t->tint[1],        t->tint[2],       t->tint[3],        t->bias,
@@ -163,7 +163,7 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
 static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char name[64]);
 static bool prepare_color(vlExport *x, const vlSpectrumInput *input, Change change, vlPbrtInput *result);
 
-/* Where the kind or the mapping asks for it, the texture's space. */
+/* Whether the kind or the mapping needs a transform; world_from_texture receives it. */
 static bool is_placed(const vlTextureDef *t, const vlKindRow *row, vlMat4 *world_from_texture) {
   bool mapped = vl_row_find(row, "mapping") != NULL, placed = !mapped;
   for (uint32_t i = 0; i < row->parameter_count && !mapped; i++)
@@ -173,7 +173,7 @@ static bool is_placed(const vlTextureDef *t, const vlKindRow *row, vlMat4 *world
   return placed && vl_mat4_inverse(vl_mat4_load(t->texture_from_world), world_from_texture);
 }
 
-/* The mapping's parameters are written by put_mapping. */
+/* The parameters of the mapping are left to put_mapping. */
 static vlPbrtWished wish(const void *def, const vlParameter *p) {
   static const char *const of_mapping[] = {"mapping", "uscale", "vscale", "udelta", "vdelta", "v1", "v2"};
   (void)def;
@@ -182,7 +182,7 @@ static vlPbrtWished wish(const void *def, const vlParameter *p) {
   return VL_PBRT_UNLESS_DEFAULT;
 }
 
-/* Written anew for each use: names are counted by their place in the file. name is empty where there is none. */
+/* Writes the texture anew for each use; names are numbered in file order. name is empty when there is none. */
 static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char name[64]) {
   const vlTextureDef *t = &x->scene->textures.items[id - 1];
   const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)t->kind);
@@ -248,8 +248,8 @@ bool vl_pbrt_prepare_color(vlExport *x, const vlSpectrumInput *input, vlPbrtInpu
   return prepare_color(x, input, as_is, result);
 }
 
-/* A coat sends a share G of what comes from a diffuse base back to it: colour c (1 - G) / (1 - c G) is seen. From
- * outside the mean of Fresnel's reflection is F, and 1 - G = (1 - F) / eta^2. */
+/* A coat reflects a share G of the light from a diffuse base back to it. A base of colour c then appears as c (1 - G) /
+ * (1 - c G). With F the mean Fresnel reflectance from outside, 1 - G = (1 - F) / eta^2. */
 bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, double eta, vlPbrtInput *result) {
   enum { STEPS = 64 };
   double f = 0;

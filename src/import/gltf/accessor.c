@@ -1,4 +1,5 @@
-/* import/gltf/accessor.c: typed arrays over buffer views: checked once, then read as floats or whole numbers. */
+/* import/gltf/accessor.c: typed arrays over buffer views. An accessor is checked once; its elements are then read as
+ * floats or unsigned integers. */
 #include <string.h>
 
 #include "import/gltf/gltf.h"
@@ -28,13 +29,13 @@ static uint32_t component_count(const char *type, bool *matrix) {
   return 0;
 }
 
-/* `count` elements of `size` bytes from `offset` on, `stride` apart, inside the view. */
+/* Checks that `count` elements of `size` bytes, `stride` bytes apart from `offset` on, lie inside the view. */
 static bool fits(vlGltf *g, const vlGltfPlace *at, int64_t view, size_t offset, size_t count, size_t size,
                  size_t stride) {
   const vlGltfView *v = &g->views[view];
   if (!v->data) return vl_gltf_fail(g, at, "bufferViews[%d] holds nothing that velo can read", (int)view);
   if (count == 0) return true;
-  /* count and offset are below 2^53, stride at most 252, so that the sum stays below 2^64 only if count is small: */
+  /* count and offset are below 2^53 and stride is at most 252. The division avoids an overflow of the sum. */
   if (count > v->size || offset > v->size || size > v->size - offset ||
       (count - 1) > (v->size - offset - size) / stride)
     return vl_gltf_fail(g, at, "%zu elements of %zu bytes do not fit into bufferViews[%d], which has %zu bytes", count,
@@ -116,7 +117,8 @@ const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *from, size_
   if (view >= 0) {
     if (!fits(g, at, view, offset, a->count, size, a->stride)) return NULL;
     a->data = g->views[view].data + offset;
-  } else if (a->count > g->total + 65536) { /* zeros: nothing in the file bounds them */
+  } else if (a->count >
+             g->total + 65536) { /* without a view the elements are zeros, which no bytes of the file bound */
     return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu zeros are out of proportion to the file", a->count), NULL;
   }
   if (!read_sparse(g, at, json, a, size)) return NULL;
@@ -195,7 +197,8 @@ void vl_gltf_read_uints(const vlGltfAccessor *a, uint32_t wanted, uint32_t *out)
 }
 
 bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes) {
-  /* Triangles may share their data many times over, and points become small bodies; a thousandfold is no model. */
+  /* Triangles may share their data and points become small solids, so the geometry may be larger than the file. More
+   * than a thousandfold is refused. */
   uint64_t limit = (256u << 20) + 1000 * (g->total + g->file_size);
   g->spent += bytes;
   return g->spent <= limit ||

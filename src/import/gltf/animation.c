@@ -1,6 +1,6 @@
-/* import/gltf/animation.c: nodes and morph weights at one moment: STEP, LINEAR (rotations along the great circle) and
- * CUBICSPLINE (specification, appendix C). Before its first key a channel holds the first value, after the last the
- * last. */
+/* import/gltf/animation.c: node transforms and morph weights at one moment. Interpolations: STEP, LINEAR (rotations by
+ * slerp) and CUBICSPLINE (specification, appendix C). A channel holds its first value before the first key and its last
+ * value after the last key. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 
 typedef enum { STEP, LINEAR, CUBIC } Mode;
 
-/* A sampler's keys: count times, count * width values (three times that of CUBICSPLINE). */
+/* A sampler's keys: count times and count * width values (CUBICSPLINE: three times as many values). */
 typedef struct {
   size_t count, width;
   float *times, *values;
@@ -59,7 +59,7 @@ static void slerp(const float *a, const float *b, double u, double out[4]) {
   memcpy(out, q, sizeof q);
 }
 
-/* The value of component c. */
+/* The interpolated value of component c. */
 static double at_key(const Track *t, size_t key, size_t part, size_t c) {
   size_t step = t->mode == CUBIC ? 3 : 1;
   return t->values[(key * step + part) * t->width + c];
@@ -112,7 +112,7 @@ static bool apply_weights(vlGltf *g, vlGltfNode *node, const Track *t) {
   return ok || vl_gltf_fail_memory(g);
 }
 
-/* KHR_animation_pointer: what nodes have may be named as "/nodes/3/translation"; the rest stays as it is. */
+/* KHR_animation_pointer: pointers to node properties ("/nodes/3/translation") are read. Other pointers are ignored. */
 static bool read_pointer(vlGltf *g, const vlGltfPlace *up, const json_t *target, int64_t *node, const char **path) {
   const json_t *json = vl_gltf_extension(target, "KHR_animation_pointer");
   const vlGltfPlace *at = VL_GLTF_KEY(up, "extensions.KHR_animation_pointer");
@@ -151,7 +151,7 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
     if (strcmp(path, paths[k]) == 0) what = k;
   if (what < 0 && *path)
     vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"), "unknown name \"%.30s\" is ignored", path);
-  if (node < 0 || what < 0) return true; /* the specification lets these be ignored */
+  if (node < 0 || what < 0) return true; /* the specification lets these channels be ignored */
   const json_t *json = json_array_get(samplers, (size_t)sampler);
   const vlGltfPlace *at_sampler = VL_GLTF_ITEM(up, "samplers", (size_t)sampler);
   if (!json_is_object(json)) return vl_gltf_fail(g, at_sampler, "must be an object");

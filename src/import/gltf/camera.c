@@ -1,4 +1,4 @@
-/* import/gltf/camera.c: which camera of the scene takes the image, and its numbers (specification, 3.10). */
+/* import/gltf/camera.c: the choice of the scene's camera, and its parameters (specification, 3.10). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 
-enum { HEIGHT = 720, SIDE = 1280 }; /* glTF knows no pixels */
+enum { HEIGHT = 720, SIDE = 1280 }; /* default image size: glTF has no resolution */
 
 static void set_size(vlGltf *g, double aspect) {
   vlSceneDefs *s = vl_scene_defs(g->scene);
@@ -39,7 +39,7 @@ static bool take_orthographic(vlGltf *g, const vlGltfPlace *at, const json_t *js
   if (!vl_gltf_number(g, at, json, "xmag", &x) || !vl_gltf_number(g, at, json, "ymag", &y) ||
       !vl_gltf_number(g, at, json, "znear", &near_plane) || !vl_gltf_number(g, at, json, "zfar", &far_plane))
     return false;
-  x = fabs(x), y = fabs(y); /* some exporters write negative ones */
+  x = fabs(x), y = fabs(y); /* some exporters write negative values */
   if (!(x > 0 && y > 0 && x / y > 1e-3 && x / y < 1e3)) return vl_gltf_fail(g, at, "needs xmag and ymag above 0");
   set_size(g, x / y);
   def->projection = VL_PROJECTION_ORTHOGRAPHIC;
@@ -49,7 +49,7 @@ static bool take_orthographic(vlGltf *g, const vlGltfPlace *at, const json_t *js
   return true;
 }
 
-/* glTF's cameras: y up, looking along -z; only where one stands and looks counts, not scale. */
+/* A glTF camera has y up and looks along -z. Only position and orientation of the node count, not its scale. */
 static void set_pose(const vlMat4 *world, double m[16]) {
   memcpy(m, world->m, 16 * sizeof *m);
   for (int column = 0; column < 3; column++) {

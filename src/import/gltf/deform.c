@@ -1,4 +1,4 @@
-/* import/gltf/deform.c: vertices that move before they are drawn: morph targets, then skins. */
+/* import/gltf/deform.c: deformation of vertices by morph targets, then by skins. */
 #include <math.h>
 #include <string.h>
 
@@ -6,7 +6,8 @@
 
 /* ---- morph targets ----------------------------------------------------------------------------------------------- */
 
-/* out += weight * delta, `components` of each vertex of `stride` floats. */
+/* out += weight * delta, for the first `components` floats of each vertex. Vertices of out are `stride` floats apart.
+ */
 static bool add_target(vlGltf *g, const vlGltfPlace *at, const json_t *target, const char *name, uint32_t components,
                        uint32_t stride, float weight, size_t vertices, float sign_y, float *out) {
   int64_t index;
@@ -57,7 +58,7 @@ static const vlMat4 *world_of(const vlGltf *g, const vlGltfNode *node) {
   return g->closing ? &node->keys[VL_GLTF_KEYS - 1] : &node->world;
 }
 
-/* World from mesh for each joint. */
+/* world_from_mesh of each joint. */
 static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *count) {
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "skins", skin);
   const json_t *json = vl_gltf_item(g, "skins", skin), *joints;
@@ -102,7 +103,8 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
   return ok;
 }
 
-/* sums (12 numbers a vertex, rows) += weight * matrix, of JOINTS_set and WEIGHTS_set. *found: they are there. */
+/* sums (12 numbers per vertex, row-major) += weight * matrix, by the attributes JOINTS_set and WEIGHTS_set. *found: the
+ * mesh has these attributes. */
 static bool add_influences(vlGltf *g, const vlGltfPlace *up, const json_t *attributes, const char *joints_name,
                            const char *weights_name, const vlMat4 *matrices, size_t count, size_t vertices,
                            double *sums, bool *found) {
@@ -138,8 +140,7 @@ static bool add_influences(vlGltf *g, const vlGltfPlace *up, const json_t *attri
   return ok;
 }
 
-/* Directions by a matrix: tangents by its columns, normals by its cofactors (the inverse transpose, but for a factor).
- */
+/* Transforms directions: tangents by the matrix, normals by its cofactors (the inverse transpose up to a factor). */
 static void turn(const double *m, bool normal, float *v) {
   double x = v[0], y = v[1], z = v[2], r[3];
   double c[9] = {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
@@ -176,7 +177,7 @@ bool vl_gltf_skin(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, con
     float *v = p->positions + 3 * i, q[3];
     double total = 0;
     for (int k = 0; k < 12; k++) total += fabs(m[k]);
-    if (!any || total == 0) memcpy(m, world_of(g, node)->m, 12 * sizeof *m); /* no joint holds it */
+    if (!any || total == 0) memcpy(m, world_of(g, node)->m, 12 * sizeof *m); /* no joint influences the vertex */
     for (int k = 0; k < 3; k++)
       q[k] = (float)(m[4 * k] * v[0] + m[4 * k + 1] * v[1] + m[4 * k + 2] * v[2] + m[4 * k + 3]);
     memcpy(v, q, sizeof q);

@@ -1,5 +1,5 @@
-/* import/gltf/extension.c: which extensions are read. One that a file requires and velo lacks is an error; one that it
- * only uses, a warning. */
+/* import/gltf/extension.c: the extensions that are read. An unknown extension is an error when the file requires it and
+ * a warning when the file only uses it. */
 #include <string.h>
 
 #include "base/text.h"
@@ -19,7 +19,7 @@ static const char *const known[] = {
     "EXT_lights_image_based",    "KHR_animation_pointer",
     "KHR_node_visibility",
 };
-/* Nothing of these changes the image. */
+/* These extensions do not change the image. */
 static const char *const silent[] = {"KHR_xmp", "KHR_xmp_json_ld", "KHR_node_hoverability", "KHR_node_selectability"};
 
 static bool is_in(const char *name, const char *const *names, size_t count) {

@@ -1,5 +1,5 @@
-/* import/gltf/file.c: the file itself: .gltf or .glb by its first bytes, its JSON, what uris name, buffers and views.
- */
+/* import/gltf/file.c: reads the file: .gltf or .glb (told apart by the first bytes), its JSON, uris, buffers and buffer
+ * views. */
 #include <stdio.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@ static uint32_t little(const uint8_t *p) {
   return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
-/* The container: a header of 12 bytes, then chunks, each a length, a kind and so many bytes. */
+/* The .glb container: a header of 12 bytes, then chunks. A chunk is its length, its type and its data. */
 static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
   if (g->file_size < 20) return vl_gltf_fail(g, NULL, "broken .glb: only %zu bytes", g->file_size);
   uint32_t version = little(g->file + 4), length = little(g->file + 8);
@@ -57,7 +57,7 @@ static bool parse(vlGltf *g, const char *text, size_t size) {
   return true;
 }
 
-/* An array of objects at the root. */
+/* Counts the elements of the root's array `key` and checks that they are objects. */
 static bool count_items(vlGltf *g, const char *key, size_t *count) {
   const json_t *array;
   if (!vl_gltf_array(g, NULL, g->root, key, &array, count)) return false;
@@ -144,7 +144,7 @@ static int hex_digit(char c) {
                                 : -1;
 }
 
-/* %20 and the like; a % that begins none stays. result has room for the whole of text. */
+/* Decodes percent escapes such as %20. A % that starts no escape stays. result has room for all of text. */
 static size_t unescape(const char *text, char *result) {
   size_t n = 0;
   for (; *text; text++) {
@@ -213,7 +213,7 @@ static bool read_buffer(vlGltf *g, size_t i) {
       b->data = g->chunk;
       size = g->chunk_size;
     } else if (vl_gltf_extension(json, "EXT_meshopt_compression")) {
-      return true; /* a fallback that nothing reads */
+      return true; /* a fallback buffer that no view reads */
     } else {
       return vl_gltf_fail(g, at,
                           g->chunk ? "has no uri, and the file has no binary chunk for it"
@@ -251,7 +251,7 @@ static bool read_view(vlGltf *g, size_t i) {
     return false;
   if (buffer < 0) return vl_gltf_fail(g, at, "\"buffer\" is missing");
   const vlGltfBuffer *b = &g->buffers[buffer];
-  if (!b->data) return true; /* compressed */
+  if (!b->data) return true; /* the view is compressed */
   if (offset > b->size || length > b->size - offset)
     return vl_gltf_fail(g, at, "bytes %zu to %zu, but buffers[%d] has only %zu", offset, offset + length, (int)buffer,
                         b->size);

@@ -1,4 +1,4 @@
-/* import/gltf/gltf.c: a glTF 2.0 file to a scene: the order of the steps. */
+/* import/gltf/gltf.c: imports a glTF 2.0 file: the order of the steps. */
 #include "import/gltf/gltf.h"
 #include "base/text.h"
 
@@ -30,7 +30,7 @@ static void set_defaults(vlScene *scene) {
   vlSceneDefs *s = vl_scene_defs(scene);
   s->render.spp = 64;
   s->render.tracer = VL_TRACER_VOLPATH;
-  s->render.max_depth = 12; /* light goes through glass */
+  s->render.max_depth = 12; /* paths through glass need many bounces */
   s->camera_missing = true;
   s->light_missing = true;
 }

@@ -1,9 +1,8 @@
-/* import/gltf/gltf.h: what the files of this folder that turn glTF 2.0 into a scene share. The way of the data:
- * file.c (JSON, chunks, buffers) -> accessor.c (arrays) -> node.c (poses, animation.c) -> mesh.c (deform.c, topology.c,
- * tangent.c) with material.c, texture.c -> scene. Every index, offset and size of the file is checked before it is
- * used; an error names the place in the JSON, as in meshes[3].primitives[0].attributes.POSITION.
- *
- * Source of everything here: the glTF 2.0 specification (Khronos) and the texts of its extensions. */
+/* import/gltf/gltf.h: types and functions shared by the files of the glTF 2.0 importer.
+ * Data flow: file.c (JSON, chunks, buffers) -> accessor.c (arrays) -> node.c (poses, animation.c) -> mesh.c (deform.c,
+ * topology.c, tangent.c) with material.c, texture.c -> scene. Every index, offset and size of the file is checked
+ * before it is used. An error names its place in the JSON, for example meshes[3].primitives[0].attributes.POSITION.
+ * Source: the glTF 2.0 specification (Khronos) and the specifications of its extensions. */
 #ifndef IMPORT_GLTF_GLTF_H
 #define IMPORT_GLTF_GLTF_H
 
@@ -12,7 +11,7 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 
-/* A place in the JSON: key, with an index where it is an element of an array. Lives on the stack of who looks there. */
+/* A place in the JSON: a key, and an index for an element of an array. Places are linked on the caller's stack. */
 typedef struct vlGltfPlace {
   const struct vlGltfPlace *up;
   const char *key;
@@ -28,7 +27,7 @@ typedef struct vlGltfBuffer {
 
 typedef struct vlGltfView {
   const uint8_t *data;
-  size_t size, stride; /* stride 0: packed */
+  size_t size, stride; /* bytes; stride 0: packed */
 } vlGltfView;
 
 enum {
@@ -40,7 +39,7 @@ enum {
   VL_GLTF_FLOAT = 5126
 };
 
-/* Elements lie at data + i * stride; data null: zeros. Sparse ones replace elements by index. */
+/* Element i lies at data + i * stride. data null: all elements are zero. Sparse elements replace others by index. */
 typedef struct vlGltfAccessor {
   enum { VL_GLTF_UNREAD, VL_GLTF_GOOD } state;
   const uint8_t *data;
@@ -59,14 +58,14 @@ typedef struct vlGltfNode {
   double matrix[16]; /* row-major */
   double translation[3], rotation[4], scale[3];
   vlMat4 world;   /* world_from_node, when has_pose */
-  vlMat4 *keys;   /* world at each of the key times; null: no time passes */
-  float *weights; /* of morph targets, animated; null: the mesh's or the node's own */
+  vlMat4 *keys;   /* world_from_node at each of the VL_GLTF_KEYS key times; null: no motion */
+  float *weights; /* animated weights of the morph targets; null: those of the node or the mesh */
   uint32_t weight_count;
-  float *weights_close; /* when the shutter closes */
+  float *weights_close; /* the same when the shutter closes */
   uint32_t weight_close_count;
 } vlGltfNode;
 
-/* What meshes must know of a material, and the scene's objects made from it. */
+/* The scene's objects made from a material, and what meshes need to know of it. */
 typedef struct vlGltfMaterial {
   bool made;
   vlMaterialId material;
@@ -74,10 +73,10 @@ typedef struct vlGltfMaterial {
   vlEmissionId emission;
   bool double_sided, needs_tangents, needs_uvs;
   vlMediumId inside;
-  uint32_t tangent_set; /* which uv set the tangents follow */
+  uint32_t tangent_set; /* uv set that the tangents follow */
 } vlGltfMaterial;
 
-/* An encoded image: bytes in memory (owned by the scene) or a file. */
+/* An encoded image: bytes in memory (owned by the scene) or the path of a file. */
 typedef struct vlGltfImage {
   bool read;
   const uint8_t *data;
@@ -85,12 +84,12 @@ typedef struct vlGltfImage {
   const char *path;
 } vlGltfImage;
 
-enum { VL_GLTF_KEYS = 9 }; /* poses between the shutter's opening and closing, even */
+enum { VL_GLTF_KEYS = 9 }; /* number of poses from shutter open to shutter close, evenly spaced */
 
 typedef struct vlGltfMesh {
-  uint32_t uses; /* by nodes of the scene, without deformation; instances count each */
-  bool emissive; /* a primitive gives out light: cannot be instanced */
-  bool grouped;  /* group is made */
+  uint32_t uses; /* number of nodes that place the mesh undeformed; each instance counts */
+  bool emissive; /* a primitive emits light: the mesh cannot be instanced */
+  bool grouped;  /* the mesh's group has been made */
   vlGroupId group;
 } vlGltfMesh;
 
@@ -102,27 +101,28 @@ typedef struct vlGltf {
   json_t *root;
   uint8_t *file;
   size_t file_size;
-  const uint8_t *chunk; /* binary chunk of a .glb */
+  const uint8_t *chunk; /* the binary chunk of a .glb */
   size_t chunk_size;
   vlGltfBuffer *buffers;
   vlGltfView *views;
   vlGltfAccessor *accessors;
   vlGltfNode *nodes;
-  vlGltfMaterial *materials; /* one more than the file has, with and without vertex colours: 2 * (count + 1) */
+  vlGltfMaterial *materials; /* two (without and with vertex colours) per material of the file and for the default one:
+                                2 * (count + 1) */
   vlGltfImage *images;
   vlGltfMesh *meshes;
   size_t buffer_count, view_count, accessor_count, node_count, material_count, image_count, texture_count, mesh_count,
       skin_count, camera_count, light_count, sampler_count, animation_count, scene_count;
-  const json_t *lights; /* of KHR_lights_punctual */
-  uint64_t total;       /* bytes of all buffers */
-  uint64_t spent;       /* bytes of geometry made, against total */
-  int64_t variant;      /* index, -1: none */
-  double time;          /* that nodes are posed at */
-  double open, close;   /* the shutter's times */
+  const json_t *lights; /* array of KHR_lights_punctual */
+  uint64_t total;       /* size of all buffers in bytes */
+  uint64_t spent;       /* bytes of geometry made so far; see vl_gltf_spend */
+  int64_t variant;      /* index of the material variant; -1: none */
+  double time;          /* at which nodes are posed, seconds */
+  double open, close;   /* shutter times, seconds */
   bool moves;           /* close is later than open, and there are animations */
-  bool closing;         /* deformation is that of the closing shutter */
-  vlMat4 *keys;         /* of all nodes */
-  uint32_t told;        /* bits of things warned of once */
+  bool closing;         /* meshes are deformed as at shutter close */
+  vlMat4 *keys;         /* world matrices of all nodes at the key times */
+  uint32_t told;        /* bit mask of warnings that were given once */
   size_t shapes_made, lights_made, cameras_seen;
   double bounds_min[3], bounds_max[3];
 } vlGltf;
@@ -137,32 +137,33 @@ enum {
   VL_GLTF_TOLD_MOTION = 64
 };
 
-/* ---- errors and JSON (json.c): functions that return bool have said what is wrong when they return false ----------
+/* ---- errors and JSON (json.c): a function that returns bool has reported the error when it returns false ----------
  */
 
-/* "path: place: message"; always false. */
+/* Reports "path: place: message". Always false. */
 bool vl_gltf_fail(vlGltf *g, const vlGltfPlace *place, const char *format, ...) __attribute__((format(printf, 3, 4)));
 bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 bool vl_gltf_fail_memory(vlGltf *g);
 void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfPlace *place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* True the first time. */
+/* True on the first call for this bit. */
 bool vl_gltf_once(vlGltf *g, uint32_t bit);
 
-/* Members. Absent: the value stays and true; of the wrong kind: an error. object may be null (nothing is there). */
+/* Typed members of a JSON object. An absent member leaves the value as it is and returns true. A member of the wrong
+ * type is an error. object may be null: every member is absent. */
 bool vl_gltf_number(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, double *value);
 bool vl_gltf_float(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, float *value);
 bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t count,
                      double *values);
 bool vl_gltf_bool(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, bool *value);
 bool vl_gltf_text(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char **value);
-/* One of these names: its number. */
+/* The index of the member's string among the names. */
 bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char *const *names,
                     int count, int *value);
-/* A whole number from 0. */
+/* A non-negative integer. */
 bool vl_gltf_size(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t *value);
-/* An index below limit; -1 where absent. */
+/* An index below limit; -1 when absent. */
 bool vl_gltf_index(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t limit,
                    int64_t *index);
 bool vl_gltf_object(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const json_t **value);
@@ -170,18 +171,18 @@ bool vl_gltf_array(vlGltf *g, const vlGltfPlace *at, const json_t *object, const
                    size_t *count);
 /* object.extensions.name, or null. */
 const json_t *vl_gltf_extension(const json_t *object, const char *name);
-/* Element i of an array of objects at the root, as in nodes[3]; its count was checked. */
+/* Element i of an array at the root, for example nodes[3]. The caller has checked i. */
 const json_t *vl_gltf_item(const vlGltf *g, const char *array, size_t index);
 
 /* ---- files (file.c) ---------------------------------------------------------------------------------------------- */
 
 bool vl_gltf_open(vlGltf *g);
-bool vl_gltf_read_buffers(vlGltf *g); /* buffers and views */
+bool vl_gltf_read_buffers(vlGltf *g); /* buffers and buffer views */
 void vl_gltf_close(vlGltf *g);
-/* meshopt.c: a view by its EXT_meshopt_compression object. */
+/* meshopt.c: decodes a buffer view by its EXT_meshopt_compression object. */
 bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfView *view);
-/* What a uri holds: a data: uri is unpacked into a block of the scene; else *path is the file's, with the folder of
- * the glTF file before it. */
+/* Resolves a uri. A data: uri is decoded into a block owned by the scene. Otherwise *path is the file's path, relative
+ * to the folder of the glTF file. */
 bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data, size_t *size,
                  const char **path);
 
@@ -189,95 +190,98 @@ bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_
 
 bool vl_gltf_check_extensions(vlGltf *g);
 bool vl_gltf_reads_extension(const char *name);
-/* names.c: warns of members whose name is nearly one that the format has. */
+/* names.c: warns of members whose name is nearly a name of the format. */
 void vl_gltf_check_names(vlGltf *g);
 
 /* ---- arrays (accessor.c) ----------------------------------------------------------------------------------------- */
 
-/* Checked; null after an error. */
+/* The accessor, checked; null after an error. */
 const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *at, size_t index);
-/* All elements as floats, `components` each: missing ones are left as they are in out; normalised integers become -1 to
- * 1 or 0 to 1, others their value. */
+/* Reads all elements as floats, `components` per element. Components that the accessor lacks are left unchanged in out.
+ * Normalised integers map to [-1, 1] or [0, 1]; other integers keep their value. */
 void vl_gltf_read_floats(const vlGltfAccessor *accessor, uint32_t components, float *out);
 void vl_gltf_read_uints(const vlGltfAccessor *accessor, uint32_t components, uint32_t *out);
-/* New block of count * components floats by an accessor that must have one of the given numbers of components and count
- * elements (0: any; *read is told). Null after an error. */
+/* A new block of count * components floats from an accessor. The accessor must have one of the given numbers of
+ * components and count elements (0: any; *read receives the count). Null after an error. */
 float *vl_gltf_load_floats(vlGltf *g, const vlGltfPlace *at, size_t index, uint32_t components, size_t count,
                            size_t *read);
-/* Says that so many bytes of geometry are about to be made; an error when that is out of proportion to the file. */
+/* Accounts for bytes of geometry about to be made. An error when the sum is out of proportion to the file's size. */
 bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes);
 
 /* ---- the tree (node.c, animation.c) ------------------------------------------------------------------------------ */
 
 bool vl_gltf_read_nodes(vlGltf *g);
 bool vl_gltf_animate(vlGltf *g);    /* at g->time */
-bool vl_gltf_pose_nodes(vlGltf *g); /* world matrices of all */
-/* Poses at def->time; and, where that is asked for, on the way to def->time_close. */
+bool vl_gltf_pose_nodes(vlGltf *g); /* world matrices of all nodes */
+/* Poses all nodes at def->time and, when motion is asked for, at the key times until def->time_close. */
 bool vl_gltf_pose(vlGltf *g);
-/* Does the node go another way than the world between the shutter's opening and closing? */
+/* Whether the node's world matrix changes between shutter open and shutter close. */
 bool vl_gltf_node_moves(const vlGltf *g, const vlGltfNode *node);
-/* Draws the chosen scene. */
+/* Adds the chosen scene's meshes, lights and camera. */
 bool vl_gltf_draw(vlGltf *g);
 vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const double s[3]);
 
 /* ---- meshes ------------------------------------------------------------------------------------------------------ */
 
-/* A primitive as plain arrays (blocks of the context); triangles only. */
+/* A primitive as triangles in plain arrays (blocks of the context). */
 typedef struct vlGltfPrimitive {
   size_t vertices, faces;
-  float *positions, *normals, *tangents;  /* 3, 3, 4 a vertex; all but the first may be null */
-  float *colors;                          /* 4 a vertex, linear */
-  float *uvs[4];                          /* 2 a vertex, v upwards */
-  float *positions_close, *normals_close; /* when the shutter closes; null: at rest */
+  float *positions, *normals, *tangents;  /* 3, 3, 4 per vertex; all but the positions may be null */
+  float *colors;                          /* 4 per vertex, linear */
+  float *uvs[4];                          /* 2 per vertex, v upwards */
+  float *positions_close, *normals_close; /* when the shutter closes; null: no deformation */
   uint32_t *indices;
 } vlGltfPrimitive;
 void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p);
 
-/* Adds mesh `index` as node's (null: as a group's, in its own space). */
+/* Adds mesh `index` for a node. node null: to a group, in the mesh's own space. */
 bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index, vlGroupId group, vlMat4 pose);
-/* Whether the node moves vertices: skin or morph targets. */
+/* Whether the node deforms its mesh by a skin or morph targets. */
 bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node);
-/* topology.c: the primitive's indices (or 0, 1, 2, ...) by its mode as triangles; points and lines become small bodies,
- * which makes new vertices. */
+/* topology.c: turns the primitive's indices (without indices: 0, 1, 2, ...) into triangles by its mode. Points and
+ * lines become small solids with new vertices. */
 bool vl_gltf_triangles(vlGltf *g, const vlGltfPlace *at, uint32_t mode, uint32_t *indices, size_t count,
                        vlGltfPrimitive *p);
-/* Only vertices that faces use remain. */
+/* Removes the vertices that no face uses. */
 bool vl_gltf_compact(vlGltf *g, vlGltfPrimitive *p);
-/* deform.c */
+/* deform.c: applies morph targets and skins. */
 bool vl_gltf_morph(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const json_t *primitive,
                    const vlGltfNode *node, vlGltfPrimitive *p);
-/* Positions go to the world. */
+/* Transforms the positions to world space. */
 bool vl_gltf_skin(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, const vlGltfNode *node,
                   vlGltfPrimitive *p);
-/* tangent.c: tangents as MikkTSpace makes them, from uv set `set`; flat normals where there are none. Vertices are
- * split where tangents differ. */
+/* tangent.c: MikkTSpace tangents for uv set `set`, and flat normals where the primitive has none. Vertices are split
+ * where tangents differ. */
 bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p);
 
 /* ---- materials --------------------------------------------------------------------------------------------------- */
 
-/* Material index (-1: the default one) for a primitive with or without vertex colours; null after an error. */
+/* The material `index` (-1: the default material) for a primitive with or without vertex colours. Null after an error.
+ */
 const vlGltfMaterial *vl_gltf_material(vlGltf *g, int64_t index, bool colors);
-/* A textureInfo as texture of the scene; tint: factors on its channels. channel -1: colour. Absent textures: *id 0. */
+/* Adds the texture of a textureInfo object. tint: factors of its channels. channel -1: a colour texture. An absent
+ * textureInfo gives *id 0. */
 typedef struct vlGltfTextureUse {
   bool spectrum;
-  int channel; /* float textures: 0 to 3 */
-  bool srgb;   /* colour channels are in sRGB */
+  int channel; /* 0 to 3 for a float texture; -1: a colour */
+  bool srgb;   /* the image's colour channels are sRGB */
   float tint[4];
-  bool colors; /* also times the vertex colour */
-  float scale; /* float textures: value = bias + scale * channel */
+  bool colors; /* multiplied by the vertex colour */
+  float scale; /* float textures only: value = bias + scale * channel */
   float bias;
-  float cutoff; /* not NaN: 1 from here on, 0 below */
+  float cutoff; /* not NaN: the value is 1 from the cutoff on and 0 below it */
 } vlGltfTextureUse;
 vlGltfTextureUse vl_gltf_use_color(void);
 vlGltfTextureUse vl_gltf_use_channel(int channel, float factor);
 bool vl_gltf_texture(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key,
                      const vlGltfTextureUse *use, vlTextureId *id);
-/* The bytes or the file of images[index]. */
+/* The bytes or the path of images[index]. */
 bool vl_gltf_read_image(vlGltf *g, size_t index);
-/* The uv set that a textureInfo names (KHR_texture_transform's wins). */
+/* The uv set of a textureInfo; the one of KHR_texture_transform takes precedence. */
 bool vl_gltf_texture_set(vlGltf *g, const vlGltfPlace *at, const json_t *info, uint32_t *set);
 
-/* volume.c: KHR_materials_volume of a body; a texture of directions into one of angles, plus rotation. */
+/* volume.c: KHR_materials_volume of a solid, and the conversion of a texture of directions to one of angles (radians,
+ * plus rotation). */
 bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfMaterial *result);
 bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatInput *input);
 

@@ -1,6 +1,6 @@
-/* import/gltf/image_light.c: EXT_lights_image_based: the largest cube of a light's specular images surrounds the
- * scene. Its coarser ones and the irradiance coefficients are what a rasterizer would make of it and are not read.
- * Images with four channels are RGBD: light is the linear colour divided by the fourth. */
+/* import/gltf/image_light.c: EXT_lights_image_based. The largest cube map of the light's specular images becomes the
+ * environment. The prefiltered smaller ones and the irradiance coefficients are not read. Images with four channels are
+ * RGBD: radiance = linear colour / fourth channel. */
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@
 
 typedef struct Cube {
   uint32_t side[6];
-  float *faces[6]; /* 3 a texel, rows from the top */
+  float *faces[6]; /* 3 per texel, rows from the top */
 } Cube;
 
 static bool read_face(vlGltf *g, const vlGltfPlace *at, size_t index, Cube *cube, int face) {
@@ -38,7 +38,7 @@ static bool read_face(vlGltf *g, const vlGltfPlace *at, size_t index, Cube *cube
   return ok;
 }
 
-/* Light from direction d, between four texels of its face. Faces and their axes: OpenGL's cube maps. */
+/* Radiance from direction d, bilinear within one face. Order and axes of the faces: OpenGL's cube maps. */
 static void look(const Cube *cube, vlVec3 d, float out[3]) {
   float x = vl_abs(d.x), y = vl_abs(d.y), z = vl_abs(d.z), s, t, m;
   int face;
@@ -63,7 +63,7 @@ static void look(const Cube *cube, vlVec3 d, float out[3]) {
 }
 
 static bool add_cube(vlGltf *g, const Cube *cube, const double rotation[4], double intensity) {
-  uint32_t side = (uint32_t)(2.45 * cube->side[0]); /* as many texels as the cube has */
+  uint32_t side = (uint32_t)(2.45 * cube->side[0]); /* about as many texels as the cube map */
   vlImageDef def = vl_default_image_def(side < 16 ? 16 : side > 2048 ? 2048 : side, 0, 3);
   def.height = def.width;
   def.type = VL_PIXEL_F32;

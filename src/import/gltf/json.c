@@ -1,4 +1,4 @@
-/* import/gltf/json.c: errors that name a place in the JSON, and typed members. */
+/* import/gltf/json.c: errors that name a place in the JSON; typed members. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 
-/* The outermost part of the place is written first. */
+/* Writes the place from its outermost part inwards. */
 static size_t write_place(const vlGltfPlace *place, char *text, size_t size) {
   size_t n = place->up ? write_place(place->up, text, size) : 0;
   if (n + 1 >= size) return n;
@@ -150,7 +150,7 @@ bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, cons
 
 static bool whole(vlGltf *g, const vlGltfPlace *at, const char *key, const json_t *v, size_t *value) {
   if (!json_is_number(v)) return wrong_kind(g, at, key, "a whole number", v);
-  double x = json_number_value(v); /* writers of other languages may say 3.0 */
+  double x = json_number_value(v); /* some exporters write integers as 3.0 */
   if (!(x >= 0 && x <= 9007199254740992.0) || x != floor(x))
     return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must be a whole number from 0 on, found %.17g", x);
   *value = (size_t)x;

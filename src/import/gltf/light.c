@@ -1,5 +1,5 @@
-/* import/gltf/light.c: KHR_lights_punctual: candela and lux are velo's own units of luminous intensity and illuminance
- * when radiance is told in nits. */
+/* import/gltf/light.c: KHR_lights_punctual. Its candela and lux are velo's units of luminous intensity and illuminance
+ * when radiance is in nits. */
 #include <math.h>
 #include <string.h>
 
@@ -34,7 +34,7 @@ bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t index) {
   def.scale = (float)intensity;
   const double *m = g->nodes[node].world.m;
   double l = sqrt(m[2] * m[2] + m[6] * m[6] + m[10] * m[10]);
-  for (int i = 0; i < 3; i++) { /* it shines along its node's -z; the node's scale does not matter */
+  for (int i = 0; i < 3; i++) { /* the light points along its node's -z; the node's scale has no effect */
     def.from[i] = is_distant ? 0.0f : (float)m[4 * i + 3];
     def.to[i] = def.from[i] - (l > 0 ? (float)(m[4 * i + 2] / l) : (i == 2));
   }

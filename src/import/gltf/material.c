@@ -1,5 +1,5 @@
-/* import/gltf/material.c: materials: the core's metallic-roughness and the KHR_materials extensions to the principled
- * material, its emission and its coverage. */
+/* import/gltf/material.c: metallic-roughness materials and the KHR_materials extensions become the principled material,
+ * its emission and its coverage. */
 #include <math.h>
 #include <string.h>
 
@@ -16,7 +16,7 @@ typedef struct Reader {
 
 /* ---- parameters -------------------------------------------------------------------------------------------------- */
 
-/* factor, from 0 to 1, times a channel of a texture. */
+/* A factor in [0, 1] times a channel of a texture. */
 static bool channel(const Reader *r, const vlGltfPlace *at, const json_t *json, const char *factor_key,
                     const char *texture_key, int which, float default_factor, vlFloatInput *input) {
   float factor = default_factor;
@@ -39,7 +39,7 @@ static bool read_color(const Reader *r, const vlGltfPlace *at, const json_t *jso
   return true;
 }
 
-/* A colour times a texture in sRGB (times the vertices' colours). */
+/* A colour times an sRGB texture (times the vertex colours). */
 static bool color_input(const Reader *r, const vlGltfPlace *at, const json_t *json, const char *texture_key,
                         const float color[4], bool vertex_colors, vlSpectrumInput *input) {
   vlGltfTextureUse use = vl_gltf_use_color();
@@ -72,7 +72,7 @@ static bool normal_input(const Reader *r, const vlGltfPlace *at, const json_t *j
 
 /* ---- coverage ---------------------------------------------------------------------------------------------------- */
 
-/* The base colour's fourth channel, by alphaMode. */
+/* Coverage: the base colour's fourth channel, by alphaMode. */
 static bool read_alpha(const Reader *r, const vlGltfPlace *at, const json_t *json, const char *texture_key,
                        float factor) {
   static const char *const modes[] = {"OPAQUE", "MASK", "BLEND"};
@@ -85,7 +85,7 @@ static bool read_alpha(const Reader *r, const vlGltfPlace *at, const json_t *jso
   if (mode == 0) return true;
   bool mask = mode == 1;
   vlGltfTextureUse use = vl_gltf_use_channel(3, factor);
-  use.srgb = true; /* the colours'; so that the image is the same one. Coverage has no curve */
+  use.srgb = true; /* as for the base colour, so that both share the decoded image; alpha itself is linear */
   use.colors = r->colors;
   if (mask) use.cutoff = cutoff;
   r->result->alpha.value = mask ? factor >= cutoff : factor > 1 ? 1 : factor;
@@ -114,7 +114,7 @@ static bool read_metallic_roughness(const Reader *r, float base[4]) {
          read_alpha(r, at, json, "baseColorTexture", base[3]);
 }
 
-/* KHR_materials_pbrSpecularGlossiness: no metal; reflection at normal incidence is the specular colour itself. */
+/* KHR_materials_pbrSpecularGlossiness: not metallic. The reflectance at normal incidence is the specular colour. */
 static bool read_specular_glossiness(const Reader *r, const json_t *json, float base[4]) {
   const vlGltfPlace *at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_pbrSpecularGlossiness");
   vlPrincipledDef *p = &r->def->principled;
@@ -206,7 +206,7 @@ static bool read_anisotropy(const Reader *r) {
          vl_gltf_angle_texture(r->g, p->anisotropy.texture, rotation, &p->anisotropy_rotation);
 }
 
-/* Light that passes: sheets and bodies. */
+/* Transmission: thin surfaces and solids. */
 static bool read_transmission(const Reader *r) {
   const json_t *glass = extension(r, "KHR_materials_transmission"), *volume = extension(r, "KHR_materials_volume"),
                *diffuse = extension(r, "KHR_materials_diffuse_transmission"),
@@ -263,7 +263,7 @@ static bool read_emission(const Reader *r) {
          add_emission(r, r->at, r->json, "emissiveTexture", color, strength);
 }
 
-/* KHR_materials_unlit: the base colour is what is seen, whatever the light: a black body that shines it. */
+/* KHR_materials_unlit: the image shows the base colour whatever the lighting. A black diffuse surface emits it. */
 static bool read_unlit(const Reader *r) {
   float base[4] = {1, 1, 1, 1};
   const json_t *json;
@@ -292,7 +292,7 @@ static bool read_material(const Reader *r) {
     return false;
   bool passes = p->transmission.texture.index || p->transmission.value > 0.0f ||
                 p->diffuse_transmission.texture.index || p->diffuse_transmission.value > 0.0f;
-  if (passes) r->result->double_sided = true; /* light inside must meet the other side from behind */
+  if (passes) r->result->double_sided = true; /* light inside must meet the back side of the surface */
   return true;
 }
 

@@ -1,11 +1,12 @@
-/* import/gltf/mesh.c: a mesh's primitives to shapes: attributes gathered, deformed, made triangles, given tangents. */
+/* import/gltf/mesh.c: a mesh's primitives become shapes: attributes are read, deformed, triangulated and given
+ * tangents. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "import/gltf/gltf.h"
 
-/* Attribute `name` as floats, `components` each (a VEC3 colour is opaque); null where there is none. */
+/* Attribute `name` as floats, `components` per vertex (VEC3 colours get alpha 1). Null when the primitive lacks it. */
 static bool attribute(vlGltf *g, const vlGltfPlace *up, const json_t *attributes, const char *name, uint32_t least,
                       uint32_t components, size_t vertices, float **out) {
   int64_t index;
@@ -49,7 +50,7 @@ static bool read_attributes(vlGltf *g, const vlGltfPlace *up, const json_t *prim
   return true;
 }
 
-/* The indices, or 0, 1, 2, ... without; a new block. */
+/* The indices in a new block; 0, 1, 2, ... when the primitive has none. */
 static bool read_indices(vlGltf *g, const vlGltfPlace *up, const json_t *primitive, size_t vertices, uint32_t **indices,
                          size_t *count) {
   int64_t index;
@@ -76,7 +77,7 @@ static bool read_indices(vlGltf *g, const vlGltfPlace *up, const json_t *primiti
   return true;
 }
 
-/* The variant's material, else the primitive's own. */
+/* The material of the chosen variant, or the primitive's own. */
 static bool choose_material(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, int64_t *material) {
   if (!vl_gltf_index(g, at, primitive, "material", g->material_count, material)) return false;
   const json_t *mappings = json_object_get(vl_gltf_extension(primitive, "KHR_materials_variants"), "mappings");
@@ -92,7 +93,7 @@ static bool choose_material(vlGltf *g, const vlGltfPlace *at, const json_t *prim
 
 /* ---- the shape --------------------------------------------------------------------------------------------------- */
 
-/* A pose that no transform of the scene may have: the vertices go there themselves. */
+/* A singular pose cannot be a transform of the scene: it is applied to the vertices. */
 static void bake(vlGltfPrimitive *p, vlMat4 pose, vlContext *context) {
   for (size_t i = 0; i < p->vertices; i++) {
     double q[3] = {p->positions[3 * i], p->positions[3 * i + 1], p->positions[3 * i + 2]}, w[3];
@@ -126,7 +127,7 @@ static bool split_tangents(vlGltf *g, vlGltfPrimitive *p, float **signs) {
   return true;
 }
 
-/* The arrays go to the scene. */
+/* Adds the shape; the arrays move to the scene. */
 static bool add_shape(vlGltf *g, const vlGltfMaterial *m, vlGltfPrimitive *p, vlGroupId group, vlMat4 pose) {
   float *signs;
   if (!split_tangents(g, p, &signs)) return false;
@@ -175,7 +176,7 @@ static bool finish_primitive(vlGltf *g, const vlGltfPlace *at, const vlGltfMater
   return add_shape(g, m, p, group, pose);
 }
 
-/* The same vertices when the shutter closes. */
+/* The vertices as deformed at shutter close. */
 static bool read_close(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const json_t *primitive,
                        const vlGltfNode *node, int64_t position, bool skinned, vlGltfPrimitive *p) {
   vlGltfPrimitive q = {0};
@@ -191,7 +192,7 @@ static bool read_close(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, con
   return ok;
 }
 
-/* A mesh that deforms cannot emit light: then the emission counts. */
+/* A deforming mesh cannot emit light. An emissive mesh keeps its emission and loses its deformation. */
 static void still(vlGltf *g, const vlGltfPlace *at, vlGltfPrimitive *p) {
   vl_free(g->context, p->positions_close);
   vl_free(g->context, p->normals_close);

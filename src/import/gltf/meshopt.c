@@ -1,11 +1,11 @@
-/* import/gltf/meshopt.c: EXT_meshopt_compression: buffer views that are kept packed, unpacked by meshoptimizer. Its
- * decoders never leave the bytes they are given, but assert what they are told of sizes: that is checked here. */
+/* import/gltf/meshopt.c: EXT_meshopt_compression: compressed buffer views, decoded by meshoptimizer. The decoders never
+ * read outside their input but assert that sizes are valid: sizes are checked here. */
 #include <meshoptimizer.h>
 #include <string.h>
 
 #include "import/gltf/gltf.h"
 
-enum { MOST_TIMES = 256 }; /* what a byte may unpack to; the formats themselves reach some 64 */
+enum { MOST_TIMES = 256 }; /* largest ratio of decoded to encoded bytes; the formats reach about 64 */
 
 typedef enum { ATTRIBUTES, TRIANGLES, INDICES } Mode;
 typedef enum { NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL } Filter;

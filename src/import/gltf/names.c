@@ -1,12 +1,12 @@
-/* import/gltf/names.c: members whose name the format does not have but that look like one that it has: they are passed
- * over, as the specification wants it, with a word about it. */
+/* import/gltf/names.c: warns of members whose name is unknown but similar to a known one. Such members are ignored, as
+ * the specification demands. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 
-/* All members of glTF 2.0 and of the extensions that velo reads; in strcmp's order. */
+/* All members of glTF 2.0 and of the extensions that velo reads, sorted by strcmp. */
 static const char *const known[] = {"COLOR_0",
                                     "JOINTS_0",
                                     "NORMAL",
@@ -175,7 +175,7 @@ static int compare(const void *a, const void *b) {
   return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* Attributes go on counting: TEXCOORD_7. What begins with _ is an application's own. */
+/* Numbered attributes (TEXCOORD_7) and application-specific ones (names that start with _) are known. */
 static bool is_known(const char *key) {
   if (key[0] == '_' || bsearch(&key, known, KNOWN, sizeof *known, compare)) return true;
   size_t length = strlen(key);
@@ -190,7 +190,7 @@ static void look(vlGltf *g, const vlGltfPlace *at, const char *key, uint32_t *sa
     vl_gltf_warn(g, VL_LOG_WARNING, at, "unknown name \"%.60s\" is ignored (did you mean \"%s\"?)", key, near);
 }
 
-/* Extras are anybody's, and so is what stands in extensions that velo does not read. jansson bounds the depth. */
+/* Extras and extensions that velo does not read are not checked. jansson bounds the depth. */
 static void walk(vlGltf *g, const vlGltfPlace *at, json_t *value, uint32_t *said) {
   const char *key;
   json_t *part;

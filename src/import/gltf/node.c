@@ -1,4 +1,4 @@
-/* import/gltf/node.c: the tree of nodes: poses, which scene is drawn, meshes and lights put in their places. */
+/* import/gltf/node.c: the node tree: poses, the choice of the scene, and the placement of meshes and lights. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,7 +59,8 @@ bool vl_gltf_read_nodes(vlGltf *g) {
   }
   for (size_t i = 0; i < g->node_count; i++)
     if (!read_node(g, i)) return false;
-  for (size_t i = 0; i < g->node_count; i++) { /* each has one parent at most: a circle never ends upwards */
+  for (size_t i = 0; i < g->node_count;
+       i++) { /* a node has at most one parent: following a cycle upwards never reaches a root */
     size_t steps = 0;
     for (uint32_t k = g->nodes[i].parent; k != UINT32_MAX && !g->nodes[k].reached; k = g->nodes[k].parent)
       if (++steps > g->node_count) return vl_gltf_fail(g, VL_GLTF_ITEM(NULL, "nodes", i), "is among its own children");
@@ -104,7 +105,7 @@ bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node) {
 
 /* ---- drawing ----------------------------------------------------------------------------------------------------- */
 
-/* Poses of EXT_mesh_gpu_instancing relative to the node; null and count 0 where there is none. */
+/* Poses of EXT_mesh_gpu_instancing relative to the node; null and count 0 when absent. */
 static bool read_instances(vlGltf *g, const vlGltfPlace *node_at, const json_t *node, vlMat4 **poses, size_t *count) {
   static const char *const names[3] = {"TRANSLATION", "ROTATION", "SCALE"};
   static const uint32_t sizes[3] = {3, 4, 3};
@@ -171,8 +172,8 @@ static bool group_mesh(vlGltf *g, size_t mesh, size_t node_index) {
   return vl_gltf_add_mesh(g, mesh, NULL, node_index, m->group, vl_mat4_identity());
 }
 
-/* On its way while the shutter is open; what deforms, too, has a group of its own. -1: no motion leads from pose to
- * pose. */
+/* Adds a moving instance. A deforming mesh gets a group of its own. Returns -1 when two successive poses cannot be
+ * interpolated; otherwise whether it succeeded. */
 static int place_moving(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t node_index, vlMat4 local, bool deforms) {
   double times[VL_GLTF_KEYS], poses[16 * VL_GLTF_KEYS];
   for (int k = 0; k < VL_GLTF_KEYS; k++) {
@@ -198,7 +199,8 @@ static int place_moving(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t n
   return g->scene->error.code == VL_OK;
 }
 
-/* Meshes that stand in several places are kept once; others, and those that emit light, go to the world. */
+/* A mesh that several nodes place becomes a group with instances. Other meshes, and those that emit light, are added to
+ * the world. */
 static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t node_index, vlMat4 local) {
   vlMat4 pose = vl_mat4_multiply(node->world, local);
   vlGltfMesh *m = &g->meshes[mesh];
@@ -237,7 +239,7 @@ static bool draw_node(vlGltf *g, size_t i) {
   return ok;
 }
 
-/* Is the material (by the chosen variant too) one that gives out light? What does not parse is said later. */
+/* Whether the primitive's material (the chosen variant's, too) emits light. Parse errors are reported later. */
 static bool emissive(vlGltf *g, const json_t *primitive) {
   double index = json_number_value(json_object_get(primitive, "material"));
   size_t i = 0;
@@ -256,7 +258,7 @@ static bool emissive(vlGltf *g, const json_t *primitive) {
   return any;
 }
 
-/* Marks what the scene reaches, in order; an explicit stack, since trees may be deep. */
+/* Marks the nodes that the scene reaches, in order. The stack is explicit because trees may be deep. */
 static bool collect(vlGltf *g, const json_t *roots, const vlGltfPlace *at, uint32_t *order, size_t *count) {
   uint32_t *stack = vl_alloc_array(g->context, g->node_count + 1, sizeof *stack);
   if (!stack) return vl_gltf_fail_memory(g);
@@ -273,10 +275,10 @@ static bool collect(vlGltf *g, const json_t *roots, const vlGltfPlace *at, uint3
     stack[top++] = (uint32_t)index;
     while (top > 0) {
       uint32_t i = stack[--top];
-      if (g->nodes[i].reached) continue; /* named twice: drawn once */
+      if (g->nodes[i].reached) continue; /* a node listed twice is added once */
       g->nodes[i].reached = true;
       const json_t *visibility = vl_gltf_extension(g->nodes[i].json, "KHR_node_visibility");
-      if (json_is_false(json_object_get(visibility, "visible"))) continue; /* and all below it */
+      if (json_is_false(json_object_get(visibility, "visible"))) continue; /* the node and its children are hidden */
       order[(*count)++] = i;
       const json_t *children = json_object_get(g->nodes[i].json, "children");
       for (size_t c = json_array_size(children); c-- > 0;)
@@ -302,12 +304,13 @@ static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
     const json_t *primitives = json_object_get(vl_gltf_item(g, "meshes", i), "primitives");
     for (size_t k = 0; g->meshes[i].uses > 1 && k < json_array_size(primitives); k++)
       g->meshes[i].emissive = g->meshes[i].emissive || emissive(g, json_array_get(primitives, k));
-    if (g->meshes[i].uses > 1000) g->meshes[i].emissive = false; /* then its emission is seen, but lights nothing */
+    if (g->meshes[i].uses > 1000)
+      g->meshes[i].emissive = false; /* its emission is visible but the mesh is not a light */
   }
   return true;
 }
 
-/* By name or number; the file's own choice stays where none is wanted. */
+/* Finds the wanted scene by name or number. Without a wish the file's default scene stays. */
 static bool choose_scene(vlGltf *g, size_t *chosen) {
   const char *wanted = g->def->scene;
   char names[200] = "", *end;
@@ -331,7 +334,7 @@ bool vl_gltf_draw(vlGltf *g) {
   size_t root_count = 0, count = 0;
   if (!vl_gltf_array(g, at, scene, "nodes", &roots, &root_count)) return false;
   json_t *all = NULL;
-  if (!scene) { /* a file without scenes: all roots */
+  if (!scene) { /* a file without scenes: all root nodes */
     all = json_array();
     for (size_t i = 0; i < g->node_count; i++)
       if (g->nodes[i].parent == UINT32_MAX) json_array_append_new(all, json_integer((json_int_t)i));

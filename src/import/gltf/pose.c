@@ -1,5 +1,5 @@
-/* import/gltf/pose.c: where nodes are: at one moment, or at several while the shutter is open. The scene's time 0 is
- * the shutter's opening, in seconds. */
+/* import/gltf/pose.c: node poses at one moment, or at several while the shutter is open. The scene's time 0 is shutter
+ * open; times are in seconds. */
 #include <string.h>
 
 #include "import/gltf/gltf.h"
@@ -20,7 +20,8 @@ bool vl_gltf_pose(vlGltf *g) {
   if (!vl_gltf_spend(g, NULL, (uint64_t)g->node_count * VL_GLTF_KEYS * sizeof *g->keys)) return false;
   g->keys = vl_alloc_array(g->context, g->node_count + 1, VL_GLTF_KEYS * sizeof *g->keys);
   if (!g->keys) return vl_gltf_fail_memory(g);
-  for (int k = VL_GLTF_KEYS - 1; k >= 0; k--) { /* an animation sets the same parts of the nodes each time */
+  for (int k = VL_GLTF_KEYS - 1; k >= 0;
+       k--) { /* the order is free: an animation sets the same properties at any time */
     double f = (double)k / (VL_GLTF_KEYS - 1);
     if (!pose_at(g, k ? g->open + f * (g->close - g->open) : g->open)) return false;
     for (size_t i = 0; i < g->node_count; i++) {

@@ -1,9 +1,11 @@
-/* import/gltf/tangent.c: tangents as MikkTSpace makes them (Mikkelsen 2008, "Simulation of Wrinkled Surfaces
- * Revisited", and its published rules): vertices of the same position, normal and uv are one; faces that share an edge
- * and whose uvs run the same way round form a group at each vertex; a group's tangent is the sum of its faces'
- * directions of u, projected on the plane of the normal, weighted by the faces' angles there. Own implementation.
+/* import/gltf/tangent.c: tangents by the rules of MikkTSpace (Mikkelsen 2008, "Simulation of Wrinkled Surfaces
+ * Revisited", and its published reference). Own implementation.
+ *   - Vertices with the same position, normal and uv are one vertex.
+ *   - Faces that share an edge and have the same uv orientation form a group at each vertex.
+ *   - A group's tangent is the sum of its faces' directions of u, projected onto the plane of the normal and weighted
+ * by the faces' angles at the vertex.
  *
- * v points upwards here, so that n x t * sign is the direction in which v grows: glTF's rule for tangent.w. */
+ * v points upwards, so that sign * (n x t) is the direction in which v grows: glTF's rule for tangent.w. */
 #include <math.h>
 #include <string.h>
 
@@ -14,15 +16,15 @@
 typedef struct Maker {
   const vlGltfPrimitive *p;
   const float *uvs;
-  uint32_t *welded; /* vertex -> the first one like it */
-  uint32_t *group;  /* corner -> corner that stands for its group (a forest) */
-  float *direction; /* face -> unit direction of u (3), 0 where there is none */
-  int8_t *sign;     /* face -> 1, -1; 0 degenerate */
+  uint32_t *welded; /* vertex -> the first vertex equal to it */
+  uint32_t *group;  /* corner -> a corner of its group (a union-find forest) */
+  float *direction; /* face -> unit direction of u (3); 0 when undefined */
+  int8_t *sign;     /* face -> uv orientation 1 or -1; 0: degenerate */
 } Maker;
 
 static uint32_t hash_floats(uint32_t h, const float *v, int n) {
   for (int i = 0; i < n; i++) {
-    float x = v[i] + 0.0f; /* -0 is 0 */
+    float x = v[i] + 0.0f; /* turns -0 into 0 */
     uint32_t bits;
     memcpy(&bits, &x, sizeof bits);
     h = vl_hash2(h, bits);
@@ -93,11 +95,11 @@ static void join(uint32_t *group, uint32_t a, uint32_t b) {
     group[a] = b;
 }
 
-/* Steps that an edge is looked for: damaged files name one edge a million times. */
+/* Largest number of probes for one edge: a damaged file may use one edge a million times. */
 enum { MAX_PROBES = 200 };
 
-/* Faces on both sides of an edge, each going along it the other way; of more than two the first pairs. A face without
- * a direction of its own goes with either. */
+/* Joins the groups of the two faces at an edge. The faces must run along the edge in opposite directions. Of more than
+ * two faces the first matching pairs are joined. A degenerate face joins either orientation. */
 static bool join_edges(vlContext *context, Maker *m) {
   size_t corners = 3 * m->p->faces, size = table_size(corners);
   uint32_t *table = vl_alloc_zero(context, size, sizeof *table);
@@ -109,7 +111,8 @@ static bool join_edges(vlContext *context, Maker *m) {
     size_t slot = vl_hash2(to, from) & (size - 1);
     bool partner = false;
     int probes = MAX_PROBES;
-    for (; from != to && table[slot] && probes-- > 0; slot = (slot + 1) & (size - 1)) { /* backwards, still alone */
+    for (; from != to && table[slot] && probes-- > 0;
+         slot = (slot + 1) & (size - 1)) { /* looks for the reversed edge that has no partner yet */
       uint32_t d = table[slot] - 1;
       if (d == UINT32_MAX - 1) continue;
       uint32_t g = d / 3, d_next = 3 * g + (d + 1) % 3;
@@ -130,7 +133,7 @@ static bool join_edges(vlContext *context, Maker *m) {
   return true;
 }
 
-/* v without its part along the unit vector n, made unit; false when nothing is left. */
+/* The part of v orthogonal to the unit vector n, normalised. False when it vanishes. */
 static bool project(const float *v, const float *n, double out[3]) {
   double d = 0, l = 0;
   for (int i = 0; i < 3; i++) d += (double)v[i] * n[i];
@@ -140,7 +143,7 @@ static bool project(const float *v, const float *n, double out[3]) {
   return l > 1e-12;
 }
 
-/* sums: 3 a corner, at the corner that stands for the group. */
+/* sums: 3 per corner, kept at the corner that represents the group. */
 static void add_corner(const Maker *m, uint32_t c, double *sums) {
   const vlGltfPrimitive *p = m->p;
   uint32_t f = c / 3;
@@ -171,7 +174,7 @@ static float *gather(vlContext *context, const float *rows, size_t width, const 
   return out;
 }
 
-/* Vertices named by corners: vertex i looks like vertex from[i] of p. */
+/* Makes the vertices anew: vertex i is a copy of vertex from[i] of p. */
 static bool rebuild(vlGltf *g, vlGltfPrimitive *p, const uint32_t *from, size_t count, const uint32_t *indices) {
   vlGltfPrimitive q = {.vertices = count, .faces = p->faces};
   bool ok = true;
@@ -192,7 +195,7 @@ static bool rebuild(vlGltf *g, vlGltfPrimitive *p, const uint32_t *from, size_t 
   return true;
 }
 
-/* Of faces that share no vertices. */
+/* Flat normals of faces that share no vertices. */
 static float *flat_normals(vlGltf *g, const float *positions, size_t faces) {
   float *normals = vl_alloc_zero(g->context, 3 * faces, 3 * sizeof *normals);
   for (size_t f = 0; normals && f < faces; f++) {
@@ -209,7 +212,7 @@ static float *flat_normals(vlGltf *g, const float *positions, size_t faces) {
   return normals;
 }
 
-/* Each face gets vertices of its own, with its normal (specification: flat normals where none are given). */
+/* Gives each face its own vertices and its flat normal (specification: flat normals when none are given). */
 static bool make_flat(vlGltf *g, vlGltfPrimitive *p) {
   size_t corners = 3 * p->faces;
   uint32_t *order = vl_alloc_array(g->context, corners, sizeof *order);

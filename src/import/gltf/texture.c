@@ -1,5 +1,5 @@
-/* import/gltf/texture.c: textureInfo objects to textures of the scene: image, sampler, uv set, KHR_texture_transform.
- * Images are not decoded here: the scene keeps their bytes or names. */
+/* import/gltf/texture.c: textureInfo objects become textures of the scene: image, sampler, uv set,
+ * KHR_texture_transform. Images are not decoded here; the scene keeps their bytes or paths. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -40,7 +40,8 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
   return true;
 }
 
-/* The image of a texture; extensions put other formats beside it. -1 with true: none, said already. */
+/* The image of a texture; extensions may replace it by another format. *image -1 with true: the texture has no image,
+ * which was reported as a warning. */
 static bool choose_image(vlGltf *g, size_t texture, int64_t *image) {
   static const char *const others[] = {"KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif"};
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "textures", texture);
@@ -94,7 +95,7 @@ bool vl_gltf_texture_set(vlGltf *g, const vlGltfPlace *at, const json_t *info, u
   return true;
 }
 
-/* The extension maps glTF's uv, v downwards; ours has v upwards before and after. */
+/* KHR_texture_transform maps uvs with v downwards; here v points upwards before and after. */
 static bool read_transform(vlGltf *g, const vlGltfPlace *up, const json_t *info, vlTextureDef *def) {
   const json_t *json = vl_gltf_extension(info, "KHR_texture_transform");
   if (!json) return true;

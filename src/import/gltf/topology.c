@@ -1,5 +1,5 @@
-/* import/gltf/topology.c: every primitive mode as triangles (specification, 3.7.2.1); points and lines as small bodies;
- * vertices that no face uses are dropped. */
+/* import/gltf/topology.c: every primitive mode becomes triangles (specification, 3.7.2.1). Points and lines become
+ * small solids. Unused vertices are dropped. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +24,7 @@ void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p) {
 
 /* ---- points and lines -------------------------------------------------------------------------------------------- */
 
-typedef struct Body { /* room for what is made */
+typedef struct Body { /* room for the vertices and faces to be made */
   vlGltfPrimitive made;
   size_t vertices, faces;
 } Body;
@@ -44,7 +44,7 @@ static bool make_room(vlGltf *g, const vlGltfPlace *at, const vlGltfPrimitive *p
   return ok || vl_gltf_fail_memory(g);
 }
 
-/* A vertex that looks like vertex `from`. */
+/* Appends a copy of vertex `from`. */
 static uint32_t put_vertex(Body *b, const vlGltfPrimitive *p, uint32_t from, const float position[3]) {
   size_t i = b->vertices++;
   memcpy(b->made.positions + 3 * i, position, 3 * sizeof(float));
@@ -59,7 +59,7 @@ static void put_face(Body *b, uint32_t i, uint32_t j, uint32_t k) {
   f[0] = i, f[1] = j, f[2] = k;
 }
 
-/* An octahedron whose sides are split once and pushed out: 18 corners, 32 faces. */
+/* An octahedron subdivided once and projected to the sphere: 18 vertices, 32 faces. */
 enum { BALL_VERTICES = 18, BALL_FACES = 32, TUBE_SIDES = 6, TUBE_VERTICES = 12, TUBE_FACES = 20 };
 
 static void put_ball(Body *b, const vlGltfPrimitive *p, uint32_t at, float radius) {
@@ -188,7 +188,7 @@ bool vl_gltf_triangles(vlGltf *g, const vlGltfPlace *at, uint32_t mode, uint32_t
 }
 
 static void move_rows(float *rows, size_t width, const uint32_t *from, size_t count) {
-  for (size_t i = 0; rows && i < count; i++) /* from ascends: nothing is overwritten before it is read */
+  for (size_t i = 0; rows && i < count; i++) /* `from` ascends: rows are not overwritten before they are read */
     for (size_t c = 0; c < width; c++) rows[i * width + c] = rows[(size_t)from[i] * width + c];
 }
 

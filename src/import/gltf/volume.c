@@ -1,5 +1,5 @@
-/* import/gltf/volume.c: what a material says about the space behind its surface (KHR_materials_volume), and images
- * that must be worked on before they are textures. */
+/* import/gltf/volume.c: the medium behind a surface (KHR_materials_volume), and images that are converted before they
+ * become textures. */
 #include <math.h>
 #include <string.h>
 
@@ -8,8 +8,7 @@
 #include "math/approx_double.h"
 #include "math/elementary.h"
 
-/* White light through `attenuationDistance` of it takes on `attenuationColor`: sigma_a = -ln(colour) / distance, a law
- * of each channel. */
+/* White light takes on `attenuationColor` after `attenuationDistance`: sigma_a = -ln(colour) / distance per channel. */
 bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfMaterial *result) {
   double distance = INFINITY, color[3] = {1, 1, 1}, most = 0;
   float sigma[3];
@@ -34,8 +33,8 @@ bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltf
 
 /* ---- anisotropy -------------------------------------------------------------------------------------------------- */
 
-/* A texture's red and green are the direction of the tangent; a new one holds its angle. Angles of opposite directions
- * mean the same, but means of them nothing: the new one is not filtered. */
+/* Converts a texture whose red and green channels are the tangent's direction to one of its angle. Angles that differ
+ * by pi are equivalent, but their mean is meaningless: the new texture is not filtered. */
 bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatInput *input) {
   vlTextureDef def = g->scene->textures.items[from.index - 1];
   vlImage *image = NULL, *angles = NULL;

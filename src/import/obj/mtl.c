@@ -1,5 +1,5 @@
-/* import/obj/mtl.c: material libraries of OBJ files to numbers (vlMtl). Statements that velo has no use for are passed
- * over; what is broken is an error with its line. */
+/* import/obj/mtl.c: reads the material libraries of OBJ files into vlMtl. Statements that velo does not use are
+ * ignored; broken ones are errors with their line. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -27,7 +27,8 @@ static bool exists(const char *path) {
   return stat(path, &info) == 0 && S_ISREG(info.st_mode);
 }
 
-/* The file, or one of its name beside the library: paths are often of another machine. Null: none, said. */
+/* The image's path, or a file of the same name beside the library, since paths are often of another machine. Null with
+ * a warning: not found. */
 static bool find_image(vlObj *obj, char *name, const char **path) {
   static const char *const known[] = {".png", ".jpg", ".jpeg", ".tga", ".exr", ".hdr", ".pfm",
                                       ".bmp", ".gif", ".ppm",  ".pgm", ".qoi", ".pnm"};
@@ -55,7 +56,7 @@ static bool find_image(vlObj *obj, char *name, const char **path) {
 static bool option_numbers(vlObj *obj, const char *name, uint32_t least, uint32_t most, double *values) {
   char *at = obj->at;
   uint32_t count = 0;
-  for (; count < most; count++) { /* as many as there are: what follows is a name or an option */
+  for (; count < most; count++) { /* reads as many numbers as there are; a name or an option follows */
     uint32_t one;
     at = obj->at;
     if (!vl_obj_numbers(obj, 1, &values[count], &one) || !one) {
@@ -70,7 +71,7 @@ static bool option_word(vlObj *obj, const char *name, const char **word, size_t 
   return (*n = vl_obj_word(obj, word)) || vl_obj_fail(obj, "%s: its value is missing", name);
 }
 
-/* One option before the name of an image; false where none stands there or it is broken (*fine). */
+/* Reads one option before an image's name. False when there is none or when it is broken (*fine is then false). */
 static bool read_option(vlObj *obj, vlMtlMap *map, bool *fine) {
   static const char *const words[] = {"-blendu", "-blendv", "-cc", "-type"}, *const numbers[] = {"-boost", "-texres"};
   const char *word, *value;
@@ -185,7 +186,7 @@ static bool read_statement(vlObj *obj, uint32_t *current) {
     return true;
   }
   vlMtl *m = &obj->materials.items[*current].mtl, unused = vl_mtl_default();
-  if (*current == 0) m = &unused; /* before the first newmtl */
+  if (*current == 0) m = &unused; /* statements before the first newmtl have no effect */
   const struct {
     const char *name;
     float *to;
@@ -194,7 +195,7 @@ static bool read_statement(vlObj *obj, uint32_t *current) {
                  {"Pc", &m->pc}, {"Ps", &m->ps}, {"Pcr", &m->pcr}, {"aniso", &m->aniso}, {"anisor", &m->anisor}};
   for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
     if (is_word(word, n, colors[i].name)) return read_color(obj, colors[i].name, colors[i].to);
-  if (is_word(word, n, "d")) { /* d -halo 0.5 */
+  if (is_word(word, n, "d")) { /* also "d -halo 0.5" */
     char *at = obj->at;
     const char *halo;
     size_t k = vl_obj_word(obj, &halo);
@@ -215,7 +216,7 @@ static bool read_statement(vlObj *obj, uint32_t *current) {
     m->illum = value >= 0 && value <= 10 ? (int)value : 2;
     return true;
   }
-  return true; /* Ka, map_Ka, decal, disp, refl, ...: of other ways to render */
+  return true; /* Ka, map_Ka, decal, disp, refl, ...: not used */
 }
 
 /* ---- the file ---------------------------------------------------------------------------------------------------- */
@@ -248,7 +249,7 @@ static bool read_library(vlObj *obj, char *name) {
     vl_scene_fail(obj->scene, r, (vlSource){obj->path, obj->line, 1}, "%s", error.message);
     return false;
   }
-  /* The library's statements take the place of the file's own. */
+  /* Errors name the library's line; the OBJ file's own place is restored afterwards. */
   const char *own_path = obj->path;
   uint32_t own_line = obj->line, own_more = obj->more_lines, current = 0;
   obj->path = path, obj->line = obj->more_lines = 0;
@@ -265,7 +266,8 @@ bool vl_obj_read_libraries(vlObj *obj) {
   char *rest = vl_obj_rest(obj);
   bool fine = true;
   if (!*rest) return vl_obj_fail(obj, "mtllib: the name of a file is missing");
-  if (vl_path_join(obj->path, rest, whole, sizeof whole) && exists(whole)) { /* a name with blanks */
+  if (vl_path_join(obj->path, rest, whole, sizeof whole) &&
+      exists(whole)) { /* the whole rest as one name with blanks */
     fine = read_library(obj, rest);
   } else {
     char *next = rest;

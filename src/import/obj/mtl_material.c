@@ -1,5 +1,5 @@
-/* import/obj/mtl_material.c: MTL's numbers to the principled material. What MTL leaves open is decided here and told in
- * docs/importers.md. */
+/* import/obj/mtl_material.c: converts vlMtl to the principled material. docs/importers.md lists the rules where MTL is
+ * ambiguous. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -54,7 +54,7 @@ static bool number(vlObj *obj, const vlMtlMap *map, float factor, vlFloatInput *
   return input->texture.index != 0;
 }
 
-/* Many files put a normal map where a bump map belongs: told by its name. */
+/* Whether a bump map is really a normal map, which many files have. Decided by its name. */
 static bool is_normal_map(const char *path) {
   static const char *const signs[] = {"normal", "_nrm", "_nor.", "_n.", "_ddn", "-n.", "_norm"};
   const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
@@ -92,8 +92,8 @@ static float brightest(const float c[3]) {
   return fmaxf(c[0], fmaxf(c[1], c[2]));
 }
 
-/* Solids that bend light: illum 6 and 7. What passes is 1 - d where d is below 1, else all of it where the filter Tf
- * lets light through. */
+/* Refractive solids: illum 6 and 7. Transmission is 1 - d where d is below 1, otherwise 1 when the filter Tf is not
+ * black. */
 static void glass(const vlMtl *m, vlMaterialDef *def, float base[3]) {
   float passes = m->d < 1 ? 1 - clamp01(m->d) : 1;
   def->principled.transmission = vl_float_input(passes);
@@ -109,10 +109,11 @@ static void surface(const vlMtl *m, vlMaterialDef *def, float base[3]) {
   bool mirrors = m->illum == 3 || m->illum == 5 || isnan(m->pm);
   if (isnan(m->pm) && mirrors && spoken && shines && !m->maps[VL_MTL_KD].path && brightest(base) == 0 &&
       brightest(m->ks) > 0 && m->illum != 6 && m->illum != 7) {
-    metal = 1; /* nothing but reflection: of a metal of that colour */
+    metal = 1; /* specular reflection only: a metal of that colour */
     for (int i = 0; i < 3; i++) base[i] = clamp01(m->ks[i]);
   } else if (spoken && isnan(m->pr) && isnan(m->pm)) {
-    p->specular_color.value = /* Ks 0.5: as Ni says */ vl_spectrum_rgb(2 * m->ks[0], 2 * m->ks[1], 2 * m->ks[2]);
+    p->specular_color.value =
+        /* Ks 0.5 is the reflectance given by Ni */ vl_spectrum_rgb(2 * m->ks[0], 2 * m->ks[1], 2 * m->ks[2]);
     shines = shines && brightest(m->ks) > 0;
   }
   p->metallic = vl_float_input(clamp01(metal));
@@ -155,7 +156,8 @@ bool vl_obj_make_material(vlObj *obj, vlObjMaterial *material) {
   def.name = material->name[0] ? material->name : NULL;
   def.source = (vlSource){obj->path, material->line, material->line ? 1 : 0};
   float base[3] = {clamp01(m->kd[0]), clamp01(m->kd[1]), clamp01(m->kd[2])};
-  if (m->maps[VL_MTL_KD].path && brightest(base) == 0) base[0] = base[1] = base[2] = 1; /* the image alone */
+  if (m->maps[VL_MTL_KD].path && brightest(base) == 0)
+    base[0] = base[1] = base[2] = 1; /* the image alone gives the colour */
   surface(m, &def, base);
   bool solid = m->illum == 6 || m->illum == 7;
   if (solid) glass(m, &def, base);

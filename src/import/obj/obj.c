@@ -1,4 +1,4 @@
-/* import/obj/obj.c: Wavefront OBJ: its statements to arrays of corners. See obj.h. */
+/* import/obj/obj.c: Wavefront OBJ: statements become arrays of corners. See obj.h. */
 #include "import/obj/obj.h"
 
 #include <math.h>
@@ -63,7 +63,7 @@ bool vl_obj_statement(vlObj *obj, char **from, char *end) {
     char *before = stop - 1;
     if (before >= p && *before == '\r') before--;
     if (before < p || *before != '\\') break;
-    memset(before, ' ', (size_t)(stop + 1 - before)); /* a line that goes on */
+    memset(before, ' ', (size_t)(stop + 1 - before)); /* a backslash continues the line */
     stop++;
     if (stop >= end) {
       stop = NULL;
@@ -75,7 +75,7 @@ bool vl_obj_statement(vlObj *obj, char **from, char *end) {
   obj->line += 1 + obj->more_lines;
   obj->more_lines = lines - 1;
   *from = stop ? stop + 1 : end;
-  /* A comment goes to the end of the line. Names may hold a #, so only one after a blank counts. */
+  /* A comment extends to the end of the line. Names may contain #, so a # counts only at the start or after a blank. */
   for (char *hash = p; (hash = memchr(hash, '#', (size_t)(obj->end - hash))); hash++)
     if (hash == p || is_blank(hash[-1])) {
       obj->end = hash;
@@ -99,7 +99,7 @@ char *vl_obj_rest(vlObj *obj) {
   skip_blanks(obj);
   char *end = obj->end;
   while (end > obj->at && is_blank(end[-1])) end--;
-  *end = 0; /* the newline, the comment's sign, a blank or the file's own zero */
+  *end = 0; /* replaces the newline, the # of a comment, a blank or the terminating zero */
   return obj->at;
 }
 
@@ -134,7 +134,7 @@ static float linear_from_srgb(double v) {
   return (float)(vl_srgb_to_linear(x));
 }
 
-/* x y z, x y z w, or x y z r g b (in sRGB, as the programs that write them have it). */
+/* x y z, x y z w, or x y z r g b (sRGB, as programs write it). */
 static bool read_vertex(vlObj *obj) {
   double v[7];
   uint32_t count;
@@ -176,7 +176,7 @@ static bool read_normal(vlObj *obj) {
 
 /* ---- faces ------------------------------------------------------------------------------------------------------- */
 
-/* A whole number from 1, or from -1 backwards. 0 in *index: none stands there. */
+/* An integer from 1, or from -1 backwards. *index 0: the field is empty. */
 static bool read_index(vlObj *obj, const char *what, size_t count, uint32_t *index) {
   char *p = obj->at;
   bool negative = p < obj->end && *p == '-';
@@ -216,7 +216,7 @@ static bool read_corner(vlObj *obj, vlObjCorner *c) {
   return vl_obj_fail(obj, "f: \"%.*s\" is no corner (v, v/vt, v//vn or v/vt/vn)", n > 12 ? 12 : (int)n, word);
 }
 
-/* Faces that follow each other with one material in one object; past MAX_PARTS, all of a material. */
+/* Successive faces with one material and object. From MAX_PARTS on, all faces of a material. */
 static bool open_part(vlObj *obj) {
   if (obj->part_open) return true;
   vlObjMaterial *m = &obj->materials.items[obj->material];
@@ -335,7 +335,7 @@ static bool read_statement(vlObj *obj) {
     }
   if (n == 2 && word[0] == 'v' && word[1] == 't') return read_uv(obj);
   if (n == 2 && word[0] == 'v' && word[1] == 'n') return read_normal(obj);
-  if (n == 2 && word[0] == 'f' && word[1] == 'o') return read_face(obj); /* an old word for f */
+  if (n == 2 && word[0] == 'f' && word[1] == 'o') return read_face(obj); /* "fo": the obsolete form of "f" */
   if (n == 6 && memcmp(word, "usemtl", 6) == 0) return use_material(obj);
   if (n == 6 && memcmp(word, "mtllib", 6) == 0) return vl_obj_read_libraries(obj);
   for (size_t i = 0; i < sizeof silent / sizeof *silent; i++)

@@ -1,13 +1,13 @@
-/* import/obj/obj.h: what the files that read Wavefront OBJ share. The way of the data: obj.c (statements to plain
- * arrays of corners, polygons cut by obj_polygon.c) with mtl.c (material libraries) -> obj_mesh.c (one shape for each
- * part) with mtl_material.c. Sources: "Object Files (.obj)" and "Material Library File (.mtl)", Alias/Wavefront; the
- * PBR words of MTL as Clara.io published them. */
+/* import/obj/obj.h: types and functions shared by the files of the OBJ importer.
+ * Data flow: obj.c (statements to arrays of corners, polygons cut by obj_polygon.c) with mtl.c (material libraries) ->
+ * obj_mesh.c (one shape per part) with mtl_material.c. Sources: "Object Files (.obj)" and "Material Library File
+ * (.mtl)", Alias/Wavefront; the PBR statements of MTL as published by Clara.io. */
 #ifndef IMPORT_OBJ_OBJ_H
 #define IMPORT_OBJ_OBJ_H
 
 #include "scene/scene.h"
 
-/* Numbers of a corner's position, uv and normal, from 1; 0: none. */
+/* 1-based indices of a corner's position, uv and normal; 0: none. */
 typedef struct vlObjCorner {
   uint32_t v, vt, vn;
 } vlObjCorner;
@@ -28,35 +28,35 @@ typedef enum vlMtlMapKind {
 typedef struct vlMtlMap {
   const char *path; /* null: none; owned by the scene */
   float offset[2], scale[2], base, gain, bump;
-  int channel; /* -1: by the image */
+  int channel; /* -1: decided by the image */
   bool clamp;
 } vlMtlMap;
 
-/* Numbers of a material; NAN: not said. */
+/* A material's parameters. NaN: not given. */
 typedef struct vlMtl {
   float kd[3], ks[3], ke[3], tf[3];
   float ns, ni, d, pr, pm, ps, pc, pcr, aniso, anisor;
-  int illum; /* -1: not said */
+  int illum; /* -1: not given */
   vlMtlMap maps[VL_MTL_MAPS];
 } vlMtl;
 
 typedef struct vlObjMaterial {
   const char *name; /* owned by the scene */
-  uint32_t next;    /* of the same hash, from 1 */
-  uint32_t line;    /* that uses it first */
+  uint32_t next;    /* next material of the same hash, 1-based; 0: none */
+  uint32_t line;    /* line that uses it first */
   bool defined, made;
-  uint32_t part; /* where its faces go when there are too many parts, from 1 */
+  uint32_t part; /* part of its faces when there are too many parts, 1-based */
   vlMtl mtl;
   vlMaterialId material;
   vlEmissionId emission;
   vlFloatInput alpha;
 } vlObjMaterial;
 
-/* Faces that become one shape. */
+/* A run of faces that becomes one shape. */
 typedef struct vlObjPart {
   uint32_t material; /* index */
   uint32_t triangles, first;
-  bool normals, uvs; /* some corner has them */
+  bool normals, uvs; /* whether some corner has them */
 } vlObjPart;
 
 enum { VL_OBJ_HEADS = 4096, VL_OBJ_LIBRARIES = 64 };
@@ -65,49 +65,49 @@ typedef struct vlObj {
   vlContext *context;
   vlScene *scene;
   const char *path;
-  uint32_t line, more_lines;     /* the statement begins on; lines it goes on for */
-  char nothing[1];               /* what an empty statement points at */
-  char *line_start, *at, *end;   /* of the statement */
-  VL_ARRAY(float) positions;     /* 3 a vertex */
-  VL_ARRAY(float) colors;        /* 3 a vertex, linear; empty where no vertex has one */
-  VL_ARRAY(float) uvs;           /* 2 */
-  VL_ARRAY(float) normals;       /* 3 */
-  VL_ARRAY(vlObjCorner) corners; /* 3 a triangle */
+  uint32_t line, more_lines;     /* first line of the statement, and number of continued lines */
+  char nothing[1];               /* target of the pointers of an empty statement */
+  char *line_start, *at, *end;   /* of the current statement */
+  VL_ARRAY(float) positions;     /* 3 per vertex */
+  VL_ARRAY(float) colors;        /* 3 per vertex, linear; empty when no vertex has a colour */
+  VL_ARRAY(float) uvs;           /* 2 each */
+  VL_ARRAY(float) normals;       /* 3 each */
+  VL_ARRAY(vlObjCorner) corners; /* 3 per triangle */
   VL_ARRAY(uint32_t) triangle_part;
-  VL_ARRAY(uint32_t) triangle_smooth; /* smoothing group, 0: none */
+  VL_ARRAY(uint32_t) triangle_smooth; /* smoothing group; 0: none */
   VL_ARRAY(vlObjPart) parts;
   VL_ARRAY(vlObjMaterial) materials; /* the first is the default one */
   VL_ARRAY(vlObjCorner) polygon;
-  VL_ARRAY(uint32_t) ears; /* scratch of the polygon */
+  VL_ARRAY(uint32_t) ears; /* scratch of vl_obj_triangulate */
   VL_ARRAY(const char *) libraries;
-  uint32_t heads[VL_OBJ_HEADS]; /* of materials by hash, from 1 */
+  uint32_t heads[VL_OBJ_HEADS]; /* first material of each hash, 1-based */
   uint32_t material, smooth, part;
   bool part_open;
-  uint32_t told; /* bits of things warned of once */
+  uint32_t told; /* bit mask of warnings that were given once */
   double low[3], high[3];
 } vlObj;
 
-/* Errors and warnings at the statement's place; false. */
+/* Errors and warnings at the statement's place. Always false. */
 bool vl_obj_fail(vlObj *obj, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void vl_obj_warn(vlObj *obj, vlLogLevel level, const char *format, ...) __attribute__((format(printf, 3, 4)));
 bool vl_obj_fail_memory(vlObj *obj);
-/* The next statement of [*from, end) with its continued lines; false at the end. Sets line, at, end. */
+/* Reads the next statement of [*from, end) with its continued lines and sets line, at and end. False at the end. */
 bool vl_obj_statement(vlObj *obj, char **from, char *end);
-/* Its next word; length 0 at its end. Not terminated. */
+/* The statement's next word, not terminated; length 0 at its end. */
 size_t vl_obj_word(vlObj *obj, const char **word);
-/* Up to `most` numbers; *count of them. False: something else stands there. */
+/* Reads up to `most` numbers; *count receives how many. False when a word is not a number. */
 bool vl_obj_numbers(vlObj *obj, uint32_t most, double *values, uint32_t *count);
-/* The rest of the statement without blanks around it, terminated. */
+/* The rest of the statement, without surrounding blanks, terminated. */
 char *vl_obj_rest(vlObj *obj);
-/* Index of a material by name, made where there is none; UINT32_MAX after an error. */
+/* Index of a material by name; it is added when it is new. UINT32_MAX after an error. */
 uint32_t vl_obj_material(vlObj *obj, const char *name);
 
-/* Cuts obj->polygon into triangles: indices into it, 3 each, in obj->ears. */
+/* Triangulates obj->polygon. obj->ears receives indices into it, 3 per triangle. */
 bool vl_obj_triangulate(vlObj *obj, uint32_t *triangles);
-/* The libraries that a statement names. */
+/* Reads the material libraries that a statement names. */
 bool vl_obj_read_libraries(vlObj *obj);
 vlMtl vl_mtl_default(void);
-/* Objects of the scene for the material; false after an error. */
+/* Adds the material to the scene. False after an error. */
 bool vl_obj_make_material(vlObj *obj, vlObjMaterial *material);
 bool vl_obj_add_shapes(vlObj *obj);
 

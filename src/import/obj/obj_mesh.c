@@ -1,5 +1,5 @@
-/* import/obj/obj_mesh.c: corners to meshes: normals where smoothing groups ask for them, corners that are alike become
- * one vertex, each part one shape. */
+/* import/obj/obj_mesh.c: corners become meshes: smoothing groups get normals, equal corners become one vertex, and each
+ * part becomes one shape. */
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@ static const float *position(const vlObj *obj, uint32_t v) {
   return obj->positions.items + 3 * (size_t)(v - 1);
 }
 
-/* Not normalised; its length is twice the area. */
+/* Normal of a face, not normalised: its length is twice the area. */
 static void face_normal(const vlObj *obj, const vlObjCorner *c, double n[3]) {
   const float *a = position(obj, c[0].v), *b = position(obj, c[1].v), *d = position(obj, c[2].v);
   double e[3], f[3];
@@ -58,8 +58,8 @@ typedef struct Smooth {
   uint32_t v, group, normal;
 } Smooth;
 
-/* Corners without a normal get one: in a smoothing group that of all its faces at the vertex, weighted by their angles;
- * else, where other faces of the part have normals, the face's own. */
+/* Gives normals to corners without one. In a smoothing group it is the sum of the normals of the group's faces at the
+ * vertex, weighted by their angles. Otherwise, where other faces of the part have normals, it is the face normal. */
 static bool make_normals(vlObj *obj) {
   size_t triangles = obj->triangle_part.count, wanted = 0;
   for (size_t t = 0; t < triangles; t++)
@@ -109,7 +109,7 @@ static bool make_normals(vlObj *obj) {
 
 /* ---- parts ------------------------------------------------------------------------------------------------------- */
 
-/* Triangle numbers, those of a part together. */
+/* Triangle numbers sorted by part. */
 static bool sort_by_part(vlObj *obj, uint32_t **order) {
   size_t triangles = obj->triangle_part.count;
   *order = vl_alloc_array(obj->context, triangles + 1, sizeof **order);
@@ -127,7 +127,7 @@ static bool sort_by_part(vlObj *obj, uint32_t **order) {
   return true;
 }
 
-/* indices: 3 a triangle; kept: the corners that stay. Blocks. */
+/* indices: 3 per triangle. kept: the corners that remain as vertices. Both are new blocks. */
 static bool weld(vlObj *obj, const vlObjPart *part, const uint32_t *order, uint32_t **indices, vlObjCorner **kept,
                  uint32_t *vertices) {
   size_t count = 3 * (size_t)part->triangles, size = table_size(count), n = 0;

@@ -1,5 +1,6 @@
-/* import/obj/obj_polygon.c: polygons to triangles: of four corners by the diagonal that lies inside, of more by cutting
- * off ears (Meisters 1975) in the plane that the polygon leans against most; very large ones become fans. */
+/* import/obj/obj_polygon.c: triangulation of polygons. Four corners are split along the diagonal that lies inside.
+ * Larger polygons are cut by ear clipping (Meisters 1975) in the coordinate plane nearest to the polygon's. Very large
+ * ones become fans. */
 #include <math.h>
 
 #include "import/obj/obj.h"
@@ -8,7 +9,7 @@ enum { MOST_EARS = 512 };
 
 typedef struct Plane {
   const vlObj *obj;
-  int x, y; /* axes to look along the third */
+  int x, y; /* the axes of the projection plane */
   double sign;
 } Plane;
 
@@ -16,7 +17,7 @@ static const float *corner(const Plane *p, uint32_t i) {
   return p->obj->positions.items + 3 * (size_t)(p->obj->polygon.items[i].v - 1);
 }
 
-/* Twice the area, above 0 when a, b, c go round as the polygon does. */
+/* Twice the signed area; positive when a, b, c have the orientation of the polygon. */
 static double turn(const Plane *p, uint32_t a, uint32_t b, uint32_t c) {
   const float *u = corner(p, a), *v = corner(p, b), *w = corner(p, c);
   return p->sign * (((double)v[p->x] - u[p->x]) * ((double)w[p->y] - u[p->y]) -
@@ -84,7 +85,7 @@ bool vl_obj_triangulate(vlObj *obj, uint32_t *triangles) {
   }
   for (uint32_t k = 0; k < count; k++) left[k] = k;
   while (count > 3) {
-    if (is_ear(&p, left, count, i) || stuck >= count) { /* stuck: it crosses itself or has no area */
+    if (is_ear(&p, left, count, i) || stuck >= count) { /* stuck: the polygon crosses itself or has no area */
       put(obj, left[(i + count - 1) % count], left[i], left[(i + 1) % count]);
       for (size_t k = i; k + 1 < count; k++) left[k] = left[k + 1];
       count--, stuck = 0;

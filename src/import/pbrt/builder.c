@@ -1,5 +1,5 @@
-/* import/pbrt/builder.c: the statements of a pbrt file to a scene: what may stand where, who obeys, and the run through
- * a whole file. */
+/* import/pbrt/builder.c: executes the statements of a pbrt file: where each may stand, which function handles it, and
+ * the import of a whole file. */
 #include "import/pbrt/builder.h"
 
 #include <string.h>
@@ -54,7 +54,7 @@ static const char *directive_name(vlDirective d) {
   return "this directive";
 }
 
-/* A choice before WorldBegin; the last one given counts. */
+/* Records a directive that precedes WorldBegin. The last one given counts. */
 static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
   if (choice->given)
     vl_import_remark(import, s->place, "%s a second time: this one counts", directive_name(s->directive));
@@ -74,7 +74,7 @@ static bool camera(vlImport *import, const vlStatement *s) {
   if (!vl_mat4_inverse(import->state.ctm[0], &world_from_camera[0]) ||
       !vl_mat4_inverse(import->state.ctm[1], &world_from_camera[1]))
     return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Camera: the current transform is singular");
-  for (size_t i = 0; i < import->medium_links.count;) /* the last camera counts */
+  for (size_t i = 0; i < import->medium_links.count;) /* a later camera replaces the media of the earlier one */
     if (import->medium_links.items[i].target == 'c')
       import->medium_links.items[i] = import->medium_links.items[--import->medium_links.count];
     else
@@ -169,7 +169,8 @@ static bool obey(vlImport *import, const vlStatement *s) {
   note_space(import, s);
   switch (s->directive) {
     case VL_DIR_ATTRIBUTE_BEGIN:
-    case VL_DIR_TRANSFORM_BEGIN: return vl_import_push(import, 'a', s->place); /* pbrt-v4: both keep the whole state */
+    case VL_DIR_TRANSFORM_BEGIN:
+      return vl_import_push(import, 'a', s->place); /* pbrt-v4: both save the whole graphics state */
     case VL_DIR_ATTRIBUTE_END:
     case VL_DIR_TRANSFORM_END: return vl_import_pop(import, 'a', directive_name(s->directive), s->place);
     case VL_DIR_IMPORT_BEGIN: return vl_import_push(import, 'i', s->place);
@@ -220,12 +221,14 @@ static bool obey(vlImport *import, const vlStatement *s) {
   return true;
 }
 
-/* For a doctor a wrong statement is left out. The name of a medium stays known, so that it is told once. */
+/* While diagnosing, an invalid statement is skipped. The name of its medium stays known, so that it is reported once.
+ */
 static bool statement(void *user, const vlStatement *s) {
   vlImport *import = user;
   bool misplaced = !in_right_part(import, s);
   if (!misplaced && obey(import, s)) return true;
-  if (misplaced && !import->in_world) { /* a fragment: all that follows would be as wrong */
+  if (misplaced &&
+      !import->in_world) { /* a fragment without WorldBegin: every later statement would be misplaced, too */
     import->problems = VL_IMPORT_PROBLEMS;
     return false;
   }

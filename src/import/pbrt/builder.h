@@ -1,6 +1,6 @@
-/* import/pbrt/builder.h: what the files of this room that turn pbrt statements into a scene share. Statements come in
- * file order; camera, film and the like are settled at WorldBegin; textures and materials wait until everything is
- * read, since pbrt allows to name a material before it is made, and shapes are told their materials then. */
+/* import/pbrt/builder.h: types and functions shared by the files that turn pbrt statements into a scene. Statements are
+ * executed in file order. Camera, film and similar directives take effect at WorldBegin. Textures, materials and the
+ * materials of shapes are resolved at the end, since pbrt allows a material to be named before it is defined. */
 #ifndef IMPORT_PBRT_BUILDER_H
 #define IMPORT_PBRT_BUILDER_H
 
@@ -19,17 +19,17 @@ typedef enum vlAttributeTarget {
 } vlAttributeTarget;
 
 typedef struct vlGraphicsState {
-  vlMat4 ctm[2];   /* at the start and the end of the shutter */
-  uint32_t active; /* bit 0 start, bit 1 end */
+  vlMat4 ctm[2];   /* at the start and the end of the transform times */
+  uint32_t active; /* transforms that directives change: bit 0 start, bit 1 end */
   bool reverse_orientation;
   vlColorSpace space;
-  uint32_t material;         /* 1 + index in import->materials, 0: default; or */
-  const char *material_name; /* a named material, resolved at the end */
+  uint32_t material;         /* 1 + index in import->materials; 0: material_name, or the default */
+  const char *material_name; /* named material, resolved at the end; may be null */
   vlSource material_place;
   vlEmissionId emission;
   bool emission_given;
-  const char *inside, *outside;       /* media */
-  size_t attributes[VL_ATTR_TARGETS]; /* how many of import->attributes[target] apply */
+  const char *inside, *outside;       /* names of media */
+  size_t attributes[VL_ATTR_TARGETS]; /* number of import->attributes[target] that apply */
 } vlGraphicsState;
 
 typedef struct vlStackEntry {
@@ -47,7 +47,7 @@ typedef struct vlTransforms {
   vlMat4 at[2];
 } vlTransforms;
 
-/* Small open hash of strings to indices; strings belong to someone else. */
+/* Small open-addressing hash table from strings to indices. The strings are not owned. */
 typedef struct vlNameTable {
   vlNamed *slots;
   uint32_t capacity, count;
@@ -56,34 +56,34 @@ bool vl_names_add(vlContext *context, vlNameTable *table, const char *name, uint
 bool vl_names_find(const vlNameTable *table, const char *name, uint32_t *index);
 const char *vl_names_nearest(const vlNameTable *table, const char *name);
 
-/* A texture or material that waits. */
+/* A texture or material that is resolved at the end. */
 typedef enum vlPendingState { VL_PENDING, VL_IN_PROGRESS, VL_DONE } vlPendingState;
 typedef struct vlPending {
-  const char *name; /* may be null (plain materials) */
-  const char *kind; /* null: parameter "type" says it (MakeNamedMaterial) */
-  bool spectrum;    /* textures */
+  const char *name; /* null for unnamed materials */
+  const char *kind; /* null: given by the parameter "type" (MakeNamedMaterial) */
+  bool spectrum;    /* textures only */
   vlSource place;
   vlColorSpace space;
-  vlMat4 ctm; /* textures */
+  vlMat4 ctm; /* textures only */
   vlParamList params;
   vlPendingState state;
-  uint32_t id; /* in the scene, when done; 0: skipped */
+  uint32_t id; /* id in the scene when done; 0: skipped */
   bool is_interface;
 } vlPending;
 
-/* What a shape will be told at the end. */
+/* Links of a shape that are resolved at the end. */
 typedef struct vlShapeLink {
   uint32_t shape; /* index in scene->shapes */
   uint32_t material;
   const char *material_name;
   vlSource material_place;
-  const char *alpha; /* float texture */
+  const char *alpha; /* name of a float texture */
   vlSource alpha_place;
-  const char *displacement; /* float texture */
+  const char *displacement; /* name of a float texture */
   vlSource displacement_place;
 } vlShapeLink;
 
-/* A mesh file that is read at the end (meshes.c); `shape` is the place kept for it. */
+/* A mesh file that is read at the end (meshes.c). `shape` is the placeholder for its shape. */
 typedef struct vlMeshFile {
   const char *path;
   vlSource place;
@@ -96,10 +96,10 @@ typedef struct vlObject {
   const char *name;
   vlGroupId group;
   bool defined;
-  vlSource place; /* where it was first named */
+  vlSource place; /* of the first use */
 } vlObject;
 
-/* Media that are looked up at the end: target 's' shape (index in scene->shapes), 'l' light, 'c' camera. */
+/* Media that are looked up at the end. target: 's' shape (index in scene->shapes), 'l' light, 'c' camera. */
 typedef struct vlMediumLink {
   char target;
   uint32_t index;
@@ -107,7 +107,7 @@ typedef struct vlMediumLink {
   vlSource place;
 } vlMediumLink;
 
-/* Curves that become one shape, while they are gathered. */
+/* Successive curves that become one shape. */
 typedef struct vlCurveRun {
   bool open;
   vlShapeDef def;
@@ -118,11 +118,11 @@ typedef struct vlCurveRun {
   VL_ARRAY(float) normals;
 } vlCurveRun;
 
-/* Small meshes that become one, while they are gathered (mesh_run.c). */
+/* Small meshes that become one shape (mesh_run.c). */
 enum { VL_MESH_RUNS = 16, VL_MESH_RUN_FROM = 4096 };
 typedef struct vlMeshRun {
   bool open;
-  vlShapeDef def; /* normals, uvs: not null where there are any */
+  vlShapeDef def; /* normals, uvs: not null when the run has them */
   vlShapeLink link;
   const char *inside, *outside; /* media */
   VL_ARRAY(float) positions;
@@ -133,12 +133,12 @@ typedef struct vlMeshRun {
 
 /* Shapes under an animated transform. */
 typedef struct vlMovingGroup {
-  vlGroupId group, object; /* object: the one they are part of, 0: none */
+  vlGroupId group, object; /* object: the object that contains the group; 0: none */
   vlMat4 ctm[2];
   vlSource place;
 } vlMovingGroup;
 
-/* A directive before WorldBegin, kept until then. */
+/* A directive before WorldBegin, kept until WorldBegin. */
 typedef struct vlChoice {
   bool given;
   const char *kind;
@@ -155,8 +155,8 @@ struct vlImport {
   bool in_world;
   vlGraphicsState state;
   VL_ARRAY(vlStackEntry) stack;
-  vlParamList attributes[VL_ATTR_TARGETS]; /* a stack, cut when the state that added to it ends */
-  vlNameTable coordinate_systems;          /* to index in matrices */
+  vlParamList attributes[VL_ATTR_TARGETS]; /* a stack per target, cut when the graphics state is restored */
+  vlNameTable coordinate_systems;          /* to indices in matrices */
   VL_ARRAY(vlTransforms) matrices;
   VL_ARRAY(vlPending) textures;
   VL_ARRAY(vlPending) materials;
@@ -169,17 +169,17 @@ struct vlImport {
   vlGroupId object;
   double film_diagonal; /* mm */
   vlChoice camera, film, sampler, integrator, filter, accelerator;
-  vlMat4 camera_from_world[2]; /* at the start and the end */
+  vlMat4 camera_from_world[2]; /* at the start and the end of the transform times */
   vlNameTable media;           /* to ids in the scene */
   VL_ARRAY(vlMediumLink) medium_links;
-  double times[2]; /* of the two current transforms, seconds */
+  double times[2]; /* TransformTimes: of the two current transforms, seconds */
   VL_ARRAY(vlMovingGroup) moving;
   vlCurveRun curves;
   vlMeshRun mesh_runs[VL_MESH_RUNS];
   uint32_t next_run;
   double edge_scale; /* Option "displacementedgescale" */
-  uint32_t depth;    /* of textures or materials that resolve each other */
-  uint32_t problems; /* told so far */
+  uint32_t depth;    /* nesting of textures or materials that refer to each other */
+  uint32_t problems; /* number of errors reported so far */
 };
 enum { VL_IMPORT_DEPTH = 200, VL_IMPORT_PROBLEMS = 1000 };
 
@@ -189,30 +189,30 @@ bool vl_import_fail(vlImport *import, vlResult code, vlSource place, const char 
 bool vl_import_fail_memory(vlImport *import);
 void vl_import_warn(vlImport *import, vlLogLevel level, vlSource place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* For a doctor (vl_scene_diagnose): tells the scene's error, which is none from here on. false: none listens, or the
- * error ends everything. */
+/* While diagnosing (vl_scene_diagnose): reports the scene's error and clears it. False when not diagnosing or when the
+ * error is fatal. */
 bool vl_import_recover(vlImport *import);
-/* For a doctor only: what is right, and yet perhaps not meant. */
+/* While diagnosing: reports a note on valid input that is probably unintended. */
 void vl_import_remark(vlImport *import, vlSource place, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/* Valid pbrt that velo does not understand: an error, or a warning and true when permissive. */
+/* Valid pbrt that velo does not support: an error, or a warning and true when permissive. */
 bool vl_import_unsupported(vlImport *import, vlSource place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Name of a kind of thing that is not among `known`: `later` holds pbrt's names that are not understood yet. */
+/* Reports a kind that is not among `known`. `later` holds kinds of pbrt that velo does not support. */
 bool vl_import_unknown(vlImport *import, vlSource place, const char *thing, const char *name, const char *const *known,
                        size_t known_count, const char *const *later, size_t later_count);
-/* The same, the names being those of the family's kinds. */
+/* The same; the known names are the kinds of the family. */
 bool vl_import_unknown_kind(vlImport *import, vlSource place, const vlKindFamily *family, const char *name);
 const char *vl_import_keep(vlImport *import,
-                           const char *text); /* copy that lives until the end; null when out of memory */
+                           const char *text); /* copy that lives until the end of the import; null when out of memory */
 vlDict vl_import_dict(vlImport *import, const char *what, vlSource place, vlColorSpace space, const vlParamList *own,
                       const vlParamList *attributes);
-/* Path of the file that a string parameter names; false and an error when it cannot be read or is too long. */
+/* Path of the file that a string parameter names. False after an error: not readable, or too long. */
 bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t size);
 bool vl_import_color_space(const char *name, vlColorSpace *space);
 
-/* Copies of the parameters, marked optional, at the end of `to`. */
+/* Appends copies of the parameters, marked optional, to `to`. */
 bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamList *to);
-/* What applies to this kind of directive now. */
+/* The attributes that apply to this kind of directive now. */
 const vlParamList *vl_import_attributes(vlImport *import, vlAttributeTarget target);
 /* State (state.c). */
 bool vl_import_transform(vlImport *import, const vlStatement *s); /* Translate, LookAt, Transform, ... */
@@ -221,44 +221,44 @@ bool vl_import_use_system(vlImport *import, const vlStatement *s);
 bool vl_import_push(vlImport *import, char kind, vlSource place);
 bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource place);
 void vl_import_restore(vlImport *import);
-/* Motion (motion.c). The current transform of what cannot move; a warning where start and end differ. */
+/* Motion (motion.c). The current transform for something that cannot move; a warning when start and end differ. */
 bool vl_import_ctm(vlImport *import, vlSource place, vlMat4 *ctm);
 bool vl_import_times(vlImport *import, const vlStatement *s); /* TransformTimes */
-bool vl_import_moves(const vlImport *import);                 /* do the current transforms differ? */
-/* The group for a shape under the current, animated transform; the shape's own transform is the identity then. */
+bool vl_import_moves(const vlImport *import);                 /* whether the two current transforms differ */
+/* The group for a shape under the current, animated transform. The shape's own transform becomes the identity. */
 bool vl_import_moving_group(vlImport *import, vlSource place, vlGroupId *group);
 bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2], vlSource place);
-bool vl_import_finish_motion(vlImport *import); /* moving parts of objects, when all instances are known */
+bool vl_import_finish_motion(vlImport *import); /* places moving groups inside objects, once all instances are known */
 
 /* ---- parts ------------------------------------------------------------------------------------------------------ */
 bool vl_import_camera(
-    vlImport *import); /* the choices made before WorldBegin, to the scene's defs; camera after film */
+    vlImport *import); /* applies the directives before WorldBegin to the scene's defs; camera after film */
 bool vl_import_film(vlImport *import);
 bool vl_import_sampling(vlImport *import); /* sampler, filter, integrator */
 bool vl_import_option(vlImport *import, const vlStatement *s);
 
-/* The spectrum of a parameter (rgb, spectrum, blackbody); sampled values belong to the import's strings. */
+/* The spectrum of a parameter (rgb, spectrum, blackbody). Sampled values are kept with the import's strings. */
 bool vl_import_spectrum(vlImport *import, vlParam *param, vlSpectrum *spectrum);
-/* A number or a float texture; a spectrum or a spectrum texture. given may be null. false after an error. */
+/* Reads a number or a float texture; a spectrum or a spectrum texture. given may be null. False after an error. */
 bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, bool *given);
 bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input, bool albedo, bool *given);
 
-/* Reads what the row names into the members of def (parameters.c); a parameter that is not given leaves its member
- * alone. spectrum: of EITHER_INPUT, the half that is read. given: one per parameter of the row, whether the file gives
- * it; may be null. Parameters with VL_PARAMETER_RULE, and BLOCKs, are left to the caller. false after an error. */
+/* Reads the parameters of the row into the members of def (parameters.c). A member whose parameter is not given is
+ * unchanged. spectrum: which half of EITHER_INPUT is read. given: one entry per parameter of the row, whether the file
+ * gives it; may be null. Parameters with VL_PARAMETER_RULE and BLOCKs are left to the caller. False after an error. */
 bool vl_import_parameters(vlDict *dict, const vlKindRow *row, void *def, bool spectrum, bool *given);
-/* Was the parameter of that name given? The name must be one of the row's. */
+/* Whether the parameter was given. The name must be one of the row's. */
 bool vl_import_given(const vlKindRow *row, const bool *given, const char *name);
 
 bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource place, vlTextureId *id);
-bool vl_import_finish_texture(vlImport *import, uint32_t index); /* resolves what it refers to first */
+bool vl_import_finish_texture(vlImport *import, uint32_t index); /* resolves the textures that it refers to first */
 bool vl_import_finish_material(vlImport *import, uint32_t index);
-/* Absorption and scattering per millimetre of the substance that parameter `name` names (scattering.h). */
+/* Absorption and scattering per millimetre of the substance named by parameter `name` (scattering.h). */
 bool vl_import_scattering_preset(vlDict *dict, const char *name, vlSpectrum *absorption, vlSpectrum *scattering,
                                  bool *given);
 bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface);
 
-/* Parameters live on after their statement: file names are kept by the scene. */
+/* Takes the parameters of a statement beyond its end; the scene keeps their file names. */
 bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to);
 bool vl_import_attribute(vlImport *import, const vlStatement *s);
 bool vl_import_object_begin(vlImport *import, const vlStatement *s);
@@ -268,25 +268,25 @@ bool vl_import_material(vlImport *import, const vlStatement *s);
 bool vl_import_make_named_material(vlImport *import, const vlStatement *s);
 bool vl_import_named_material(vlImport *import, const vlStatement *s);
 bool vl_import_texture(vlImport *import, const vlStatement *s);
-bool vl_import_finish(vlImport *import); /* when all statements are read */
+bool vl_import_finish(vlImport *import); /* resolves everything after the last statement */
 
 bool vl_import_light(vlImport *import, const vlStatement *s);
 bool vl_import_area_light(vlImport *import, const vlStatement *s);
 bool vl_import_shape(vlImport *import, const vlStatement *s);
 bool vl_import_note_mesh(vlImport *import, const char *path, vlSource place, const vlShapeDef *def,
                          const vlShapeLink *link);
-bool vl_import_read_meshes(vlImport *import); /* all that were noted */
-/* The def's arrays are given away. */
+bool vl_import_read_meshes(vlImport *import); /* reads all noted mesh files */
+/* Adds a shape; the def's arrays move to the scene. */
 bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link);
 bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link);
-bool vl_import_flush_curves(vlImport *import); /* before any other shape, and at the end */
+bool vl_import_flush_curves(vlImport *import); /* called before any other shape, and at the end */
 void vl_import_free_curves(vlImport *import);
-/* taken: a copy of the mesh is part of a run. */
+/* taken: the mesh was copied into a run. */
 bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *def, const vlShapeLink *link, bool *taken);
-bool vl_import_flush_meshes(vlImport *import); /* at the end */
+bool vl_import_flush_meshes(vlImport *import); /* called at the end */
 void vl_import_free_meshes(vlImport *import);
 bool vl_import_medium(vlImport *import, const vlStatement *s);
-/* The media of the current state are those of a shape ('s'), a light ('l'), the camera ('c'). */
+/* Records the media of the current state for a shape ('s'), a light ('l') or the camera ('c'). */
 bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource place);
 bool vl_import_finish_media(vlImport *import);
 

@@ -1,6 +1,5 @@
-/* import/pbrt/curve.c: Shape "curve" to the scene: bases and degrees become cubic Bezier segments, and curves that
- * follow each other and differ in nothing but their points become one shape: heads of hair are millions of directives.
- */
+/* import/pbrt/curve.c: Shape "curve". Every basis and degree becomes cubic Bezier segments. Successive curves that
+ * differ only in their points become one shape, since hair is described by millions of directives. */
 #include <stdio.h>
 #include <string.h>
 
@@ -10,7 +9,7 @@ static bool same_text(const char *a, const char *b) {
   return a == b || strcmp(a ? a : "", b ? b : "") == 0;
 }
 
-/* Can it go into the shape that is being gathered? */
+/* Whether the curve can join the shape being gathered. */
 static bool continues(const vlCurveRun *run, const vlShapeDef *def, const vlShapeLink *link,
                       const vlGraphicsState *state) {
   const vlShapeDef *d = &run->def;
@@ -50,8 +49,8 @@ void vl_import_free_curves(vlImport *import) {
   VL_ARRAY_FREE(import->context, &import->curves.normals);
 }
 
-/* Segment k of control points p, as Bezier points; B-splines by the averages of knot insertion, degree 2 raised to 3.
- */
+/* The Bezier control points of segment k of control points p. B-splines are converted by knot insertion; degree 2 is
+ * raised to 3. */
 static void bezier_points(const float *p, size_t k, bool spline, uint32_t degree, float out[12]) {
   for (int i = 0; i < 3; i++) {
     const float *a = p + 3 * (spline ? k : k * degree) + i;

@@ -1,12 +1,12 @@
 /* import/pbrt/entity.c: statements whose parameters outlive them: attributes, objects, and the textures and materials
- * that wait until everything is read. */
+ * that are resolved at the end. */
 #include <string.h>
 
 #include "import/pbrt/builder.h"
 
 /* ---- parameters that outlive their directive -------------------------------------------------------------------- */
 
-/* The statement's parameters go on living: their file names are kept by the scene, their colour space is known. */
+/* Moves the statement's parameters to `to`. The scene keeps the file names of their places. */
 bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to) {
   for (size_t i = 0; i < s->params->list.count; i++)
     if (!vl_scene_copy_source(import->scene, &s->params->list.items[i]->place)) return false;
@@ -48,7 +48,7 @@ bool vl_import_attribute(vlImport *import, const vlStatement *s) {
 
 /* ---- objects ---------------------------------------------------------------------------------------------------- */
 
-/* An object may be placed before it is made: its group is there from its first mention. */
+/* An object may be instanced before it is defined: its group is made at the first use. */
 static vlObject *find_object(vlImport *import, const char *name, vlSource place) {
   uint32_t index;
   if (vl_names_find(&import->objects, name, &index)) return &import->object_list.items[index];
@@ -109,7 +109,7 @@ static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttribut
       !vl_import_keep_params(import, s, &own))
     return NULL;
   bool fine = true;
-  for (size_t i = 0; i < own.list.count; i++) { /* after the attributes: the last one given wins */
+  for (size_t i = 0; i < own.list.count; i++) { /* after the attributes: the last one given counts */
     vlParam **slot = fine ? VL_PUSH(import->context, &p->params.list) : NULL;
     if (slot)
       *slot = own.list.items[i];

@@ -1,4 +1,5 @@
-/* import/pbrt/finish.c: when everything is read: mesh files, what waits, and what shapes are told of it. */
+/* import/pbrt/finish.c: the end of the import: mesh files are read, textures, materials and media are resolved and
+ * linked to shapes. */
 #include <math.h>
 
 #include "import/pbrt/builder.h"
@@ -27,7 +28,7 @@ static bool link_shape(vlImport *import, const vlShapeLink *link) {
   return !link->alpha || vl_import_texture_id(import, link->alpha, false, link->alpha_place, &shape->alpha.texture);
 }
 
-/* What could not be made is done with: textures are left out, a plain material stands in. */
+/* While diagnosing: unfinished textures are skipped and unfinished materials become the default one. */
 static bool give_up(vlImport *import) {
   if (!vl_import_recover(import)) return false;
   import->depth = 0;
@@ -50,7 +51,7 @@ static float alpha_of(const vlMaterialDef *m, const vlFloatInput *roughness) {
   return m->remap_roughness ? sqrtf(roughness->value > 0 ? roughness->value : 0) : roughness->value;
 }
 
-/* pbrt-v4 weighs light through rough coats too high (docs/decisions/0006): who compares images should know. */
+/* pbrt-v4 overestimates the light through rough coats (docs/decisions/0006), which matters when images are compared. */
 static void note_rough_coats(vlImport *import) {
   const vlScene *scene = import->scene;
   const vlMaterialDef *first = NULL;

@@ -1,4 +1,4 @@
-/* import/pbrt/lens.c: see lens.h. Openings' images and lens files become objects that the scene owns. */
+/* import/pbrt/lens.c: see lens.h. Aperture images and lens files become objects owned by the scene. */
 #include "import/pbrt/lens.h"
 
 #include <string.h>
@@ -19,7 +19,7 @@ static bool fail_with(vlDict *dict, vlSource place, vlResult code, const vlError
                         dict->what, error->file[0] ? error->file : "", error->file[0] ? ": " : "", error->message);
 }
 
-/* The mean of red, green and blue, as pbrt takes it; or the only channel. */
+/* The mean of red, green and blue, as in pbrt, or the only channel. */
 static vlResult aperture_from_image(vlImport *import, const vlImage *image, vlAperture **aperture, vlError *error) {
   uint32_t w = vl_image_width(image), h = vl_image_height(image);
   int c[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"), vl_image_find_channel(image, "B")};
@@ -37,7 +37,7 @@ static vlResult aperture_from_image(vlImport *import, const vlImage *image, vlAp
   return result;
 }
 
-/* A name or a file; "circle" or "circular": none. */
+/* The aperture: a built-in name or an image file. "circle" and "circular" mean none. */
 static bool read_aperture(vlDict *dict, const vlAperture **aperture) {
   static const char *const names[] = {"gaussian", "square", "pentagon", "star"};
   vlImport *import = dict->import;

@@ -1,17 +1,17 @@
-/* import/pbrt/light.c: LightSource and AreaLightSource, as pbrt-v4 means them; what scale, power and illuminance do to
- * the light itself is the world's business. */
+/* import/pbrt/light.c: LightSource and AreaLightSource of pbrt-v4. Scale, power and illuminance are stored here; the
+ * world applies them. */
 #include <stdio.h>
 #include <string.h>
 
 #include "color/color.h"
 #include "import/pbrt/builder.h"
 
-/* pbrt: a value that is not above zero counts as not given. */
+/* As in pbrt, a value that is not positive counts as not given. */
 static void drop_target(double *value) {
   if (!(*value > 0.0)) *value = VL_UNSET;
 }
 
-/* In the world's space, whatever the current transform: as pbrt. */
+/* The portal is in world space whatever the current transform is, as in pbrt. */
 static bool read_portal(vlDict *dict, vlLightDef *def, const vlParam *portal) {
   vlImport *import = dict->import;
   size_t count = portal->floats.count;
@@ -23,7 +23,7 @@ static bool read_portal(vlDict *dict, vlLightDef *def, const vlParam *portal) {
   return true;
 }
 
-/* The radiance has one source. */
+/* Checks that the radiance has one source. */
 static bool check_source(vlDict *dict, const vlKindRow *row) {
   if (!vl_row_find(row, "L") || !vl_row_find(row, "filename")) return true;
   vlParam *color = vl_dict_find(dict, "L", VL_BITS_SPECTRUM);
@@ -34,13 +34,13 @@ static bool check_source(vlDict *dict, const vlKindRow *row) {
   return dict->import->scene->error.code == VL_OK;
 }
 
-/* What the row does not say. given: per parameter of the row. */
+/* Rules that the row does not express. given: one entry per parameter of the row. */
 static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given, vlLightDef *def) {
   vlImport *import = dict->import;
   vlParam *portal = vl_row_find(row, "portal") ? vl_dict_find(dict, "portal", 1u << VL_PARAM_POINT3) : NULL;
   bool far = row->traits & VL_LIGHT_TRAIT_FAR, has_color = vl_row_find(row, far ? "L" : "I") != NULL;
   bool color_given = has_color && vl_import_given(row, given, far ? "L" : "I");
-  if (has_color && !color_given) def->color.space = dict->space; /* the colour space's white */
+  if (has_color && !color_given) def->color.space = dict->space; /* default: the colour space's white */
   drop_target(&def->power);
   drop_target(&def->illuminance);
   if (portal && !read_portal(dict, def, portal)) return false;
@@ -53,7 +53,7 @@ static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given, 
   return true;
 }
 
-/* Portals are for images: of a sky that is one colour, one of one pixel (as pbrt does). */
+/* A portal needs an image: a constant environment becomes an image of one pixel, as in pbrt. */
 static bool plain_sky(vlImport *import, const vlLightDef *def, vlImage **sky) {
   vlImageDef image = vl_default_image_def(1, 1, 3);
   vlError error = {0};
@@ -74,7 +74,7 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
   vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_LIGHT));
   int kind = vl_kind_find(&vl_light_family, s->names[0]);
-  if (kind < 0) /* permissive: left out */
+  if (kind < 0) /* permissive: skipped */
     return vl_import_unknown_kind(import, s->place, &vl_light_family, s->names[0]);
   const vlKindRow *row = vl_kind_row(&vl_light_family, kind);
   vlLightDef def = vl_default_light_def((vlLightKind)kind);
@@ -85,7 +85,8 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
       !vl_import_parameters(&dict, row, &def, true, given) || !finish_light(&dict, row, given, &def))
     return false;
   memcpy(def.world_from_light, ctm.m, sizeof def.world_from_light);
-  if (def.path) def.space = VL_SPACE_SRGB; /* an image that does not say its own: whatever ColorSpace says, as pbrt */
+  if (def.path)
+    def.space = VL_SPACE_SRGB; /* for an image without its own colour space, whatever ColorSpace says, as in pbrt */
   vlImage *sky = NULL;
   if (def.has_portal && !def.path && !plain_sky(import, &def, &sky)) return false;
   def.image = sky;
@@ -102,7 +103,7 @@ bool vl_import_area_light(vlImport *import, const vlStatement *s) {
   vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_LIGHT));
   import->state.emission = (vlEmissionId){0};
-  if (s->names[0][0] == 0) return true; /* pbrt: no area light from here on */
+  if (s->names[0][0] == 0) return true; /* as in pbrt: ends the current area light */
   int kind = vl_kind_find(&vl_emission_family, s->names[0]);
   if (kind < 0) return vl_import_unknown_kind(import, s->place, &vl_emission_family, s->names[0]);
   const vlKindRow *row = vl_kind_row(&vl_emission_family, kind);
@@ -110,7 +111,7 @@ bool vl_import_area_light(vlImport *import, const vlStatement *s) {
   def.source = s->place;
   if (!check_source(&dict, row) || !vl_import_parameters(&dict, row, &def, true, given) || !vl_dict_done(&dict))
     return false;
-  if (!vl_import_given(row, given, "L")) def.radiance.space = dict.space; /* the colour space's white */
+  if (!vl_import_given(row, given, "L")) def.radiance.space = dict.space; /* default: the colour space's white */
   drop_target(&def.power);
   import->state.emission = vl_scene_add_emission(import->scene, &def);
   return import->state.emission.index != 0;

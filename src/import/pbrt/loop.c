@@ -1,5 +1,5 @@
-/* import/pbrt/loop.c: see loop.h. A level is plain arrays. Around a vertex one walks from face to face over shared
- * edges; faces that share an edge must run along it in opposite directions, so that each walk ends at a border or where
+/* import/pbrt/loop.c: see loop.h. A level consists of plain arrays. Walks around a vertex go from face to face over
+ * shared edges. Faces must run along a shared edge in opposite directions, so that each walk ends at a border or where
  * it began. */
 #include "import/pbrt/loop.h"
 
@@ -10,15 +10,15 @@
 #include "math/approx_double.h"
 
 static const uint32_t NONE = UINT32_MAX;
-/* A short file may not ask for a mesh out of all proportion: past 5 levels (a thousandfold) only small results. */
+/* Limits the output of a short file. Beyond 5 levels (a thousandfold) the smaller limit applies. */
 enum { MAX_FACES = 1 << 24, MAX_DEEP_FACES = 1 << 20, DEEP = 5 };
 
 typedef struct Level {
   uint32_t vertices, faces;
-  float *p;           /* 3 a vertex */
-  uint32_t *start;    /* a face of the vertex, or NONE */
-  uint8_t *border;    /* of a vertex */
-  uint32_t *v, *next; /* 3 a face: corners; the face across edge k (corner k to k + 1), or NONE */
+  float *p;           /* 3 per vertex */
+  uint32_t *start;    /* per vertex: one of its faces, or NONE */
+  uint8_t *border;    /* per vertex: whether it lies on a border */
+  uint32_t *v, *next; /* 3 per face: the vertices; the face across edge k (from vertex k to k + 1), or NONE */
 } Level;
 
 static uint32_t after(uint32_t k) {
@@ -57,7 +57,7 @@ static uint32_t corner(const Level *l, uint32_t face, uint32_t vertex) {
   return v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2;
 }
 
-/* A walk over the ring of neighbours of a vertex, in the order of turning from the first (at a border: one end). */
+/* A walk over the neighbours of a vertex in cyclic order. At a border it starts at one end. */
 typedef struct Ring {
   const Level *l;
   uint32_t vertex, first, face;
@@ -72,7 +72,7 @@ static Ring ring_start(const Level *l, uint32_t vertex) {
   return r;
 }
 
-/* The next neighbour, NONE after the last. */
+/* The next neighbour; NONE after the last. */
 static uint32_t ring_next(Ring *r) {
   const Level *l = r->l;
   if (r->face == NONE) return NONE;
@@ -130,7 +130,7 @@ static void weight_border(const Level *l, uint32_t vertex, float weight, float r
 /* ---- the mesh as given ------------------------------------------------------------------------------------------ */
 
 typedef struct Edge {
-  uint32_t a, b, at; /* a < b; at: 3 face + k, NONE when both sides are known */
+  uint32_t a, b, at; /* a < b; at: 3 face + k, or NONE when both faces are known */
 } Edge;
 
 static uint32_t edge_hash(uint32_t a, uint32_t b) {
@@ -138,7 +138,7 @@ static uint32_t edge_hash(uint32_t a, uint32_t b) {
   return (uint32_t)(h >> 32);
 }
 
-/* Finds the neighbours; slots is a table of capacity entries (a power of two), all a = b = 0. */
+/* Finds the neighbours. slots: a zeroed hash table; capacity is a power of two. */
 static vlResult connect_faces(Level *l, Edge *slots, uint32_t capacity, vlError *error) {
   for (size_t at = 0; at < 3 * (size_t)l->faces; at++) {
     uint32_t k = (uint32_t)(at % 3), u = l->v[at], w = l->v[at - k + after(k)];
@@ -191,14 +191,14 @@ static vlResult first_level(vlContext *context, uint32_t vertices, const float *
 
 /* ---- one step --------------------------------------------------------------------------------------------------- */
 
-/* Number of the new vertex on each edge of each face. */
+/* Numbers the new vertex on each edge of each face. */
 static uint32_t number_edges(const Level *l, uint32_t *odd) {
   uint32_t count = l->vertices;
   for (uint32_t f = 0; f < l->faces; f++)
     for (uint32_t k = 0; k < 3; k++) {
       uint32_t g = l->next[3 * (size_t)f + k];
       bool seen = g != NONE && g < f;
-      /* across the edge it runs the other way: it begins there at our corner k + 1 */
+      /* the neighbour's edge is reversed: it starts at this face's vertex k + 1 */
       odd[3 * (size_t)f + k] = seen ? odd[3 * (size_t)g + corner(l, g, l->v[3 * (size_t)f + after(k)])] : count++;
     }
   return count;
@@ -244,7 +244,7 @@ static void place_odd(const Level *l, Level *c, const uint32_t *odd) {
     }
 }
 
-/* Children 0, 1, 2 of a face sit at its corners, 3 in its middle. */
+/* Children 0, 1, 2 of a face lie at its vertices, child 3 in the middle. */
 static void split_faces(const Level *l, Level *c, const uint32_t *odd) {
   for (uint32_t f = 0; f < l->faces; f++) {
     const uint32_t *v = &l->v[3 * (size_t)f], *next = &l->next[3 * (size_t)f], *o = &odd[3 * (size_t)f];

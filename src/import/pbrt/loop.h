@@ -1,5 +1,5 @@
-/* import/pbrt/loop.h: Loop subdivision of a triangle mesh to its limit surface (Loop 1987; rules for borders and limit
- * masks as in "Physically Based Rendering", 3rd edition, 3.8): what pbrt's shape "loopsubdiv" is. */
+/* import/pbrt/loop.h: Loop subdivision of a triangle mesh to its limit surface (Loop 1987; border rules and limit masks
+ * as in "Physically Based Rendering", 3rd edition, 3.8): pbrt's shape "loopsubdiv". */
 #ifndef IMPORT_PBRT_LOOP_H
 #define IMPORT_PBRT_LOOP_H
 
@@ -7,13 +7,13 @@
 
 typedef struct vlLoopMesh {
   uint32_t vertices, faces;
-  float *positions, *normals; /* 3 a vertex, on the limit surface; normals as pbrt has them: against the winding, and
-                                 not normalised */
-  uint32_t *indices;          /* 3 a face */
+  float *positions,
+      *normals; /* 3 per vertex, on the limit surface. Normals as in pbrt: against the winding and not normalised */
+  uint32_t *indices; /* 3 per face */
 } vlLoopMesh;
 
-/* Indices must be in range. Arrays are blocks of the context. Errors: MEMORY; SCENE (faces that cannot be part of a
- * surface, too many faces) with a message in error. */
+/* Subdivides `levels` times. Indices must be in range. The arrays are blocks of the context. Errors: MEMORY; SCENE with
+ * a message in error (not a surface, too many faces). */
 vlResult vl_loop_subdivide(vlContext *context, uint32_t vertices, const float *positions, uint32_t faces,
                            const uint32_t *indices, uint32_t levels, vlLoopMesh *mesh, vlError *error);
 

@@ -1,5 +1,5 @@
-/* import/pbrt/material.c: Material and MakeNamedMaterial entities to the scene, a mix after its parts. The parameters
- * are those of the rows (scene/schema/materials.c). */
+/* import/pbrt/material.c: Material and MakeNamedMaterial become materials of the scene; a mix after its parts. The
+ * parameters are those of the rows (scene/schema/materials.c). */
 #include <assert.h>
 #include <stdio.h>
 
@@ -24,7 +24,7 @@ bool vl_import_material_id(vlImport *import, const char *name, vlSource place, v
 
 /* ---- what a table cannot say ------------------------------------------------------------------------------------- */
 
-/* The parameters of one material: row and which of them the file gives. */
+/* The parameters of one material: its row, and which of them the file gives. */
 typedef struct Reading {
   vlDict *dict;
   const vlKindRow *row;
@@ -68,7 +68,7 @@ static bool finish_mix(const Reading *r, vlMaterialDef *def) {
   return true;
 }
 
-/* As in pbrt, the first of sigma_a, reflectance and the melanins counts. */
+/* As in pbrt, the first of sigma_a, reflectance and the melanins that is given counts. */
 static bool finish_hair(const Reading *r, vlMaterialDef *def) {
   bool sigma = given(r, "sigma_a"), reflectance = given(r, "reflectance"), pheomelanin = given(r, "pheomelanin");
   bool melanin = given(r, "eumelanin") || pheomelanin;
@@ -81,7 +81,7 @@ static bool finish_hair(const Reading *r, vlMaterialDef *def) {
   return true;
 }
 
-/* What the solid is made of is said in one of four ways, as in pbrt. */
+/* The interior of the solid is given in one of four ways, as in pbrt. */
 static bool finish_subsurface(const Reading *r, vlMaterialDef *def) {
   vlSubsurfaceDef *d = &def->subsurface;
   bool a = given(r, "sigma_a"), s = given(r, "sigma_s"), mfp = given(r, "mfp"), named;
@@ -103,7 +103,7 @@ static bool finish_subsurface(const Reading *r, vlMaterialDef *def) {
   return true;
 }
 
-/* Run after the row's parameters are read; null: none is needed. */
+/* Rules that run after the row's parameters are read; null: none. */
 typedef bool Rule(const Reading *r, vlMaterialDef *def);
 static Rule *const rules[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {
     [VL_MATERIAL_CONDUCTOR] = finish_conductor,
@@ -124,7 +124,7 @@ static bool read_material(vlDict *dict, vlMaterialDef *def) {
          vl_dict_done(dict);
 }
 
-/* -1 where the name is none that velo knows. false after an error. */
+/* Finds the kind; *kind is -1 for an unknown name. False after an error. */
 static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict, int *kind) {
   const char *type = pending->kind;
   vlSource place = pending->place;
@@ -141,7 +141,7 @@ static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict, int *k
 }
 
 static bool finish(vlImport *import, uint32_t index) {
-  vlPending *pending = &import->materials.items[index]; /* the array does not grow any more */
+  vlPending *pending = &import->materials.items[index]; /* the array no longer grows */
   char what[128];
   if (pending->kind)
     snprintf(what, sizeof what, "Material \"%.60s\"", pending->kind);

@@ -1,5 +1,5 @@
-/* import/pbrt/medium.c: MakeNamedMedium to the scene, and which media shapes, lights and the camera lie in. Names are
- * looked up at the end, since pbrt allows to name a medium before it is made. Parameters and defaults are pbrt-v4's. */
+/* import/pbrt/medium.c: MakeNamedMedium, and the media of shapes, lights and the camera. Names are resolved at the end,
+ * since pbrt allows a medium to be named before it is defined. Parameters and defaults are pbrt-v4's. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -33,7 +33,7 @@ bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum
   return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%.80s\"", dict->what, name);
 }
 
-/* A preset wins over sigma_a and sigma_s, as in pbrt. */
+/* A preset takes precedence over sigma_a and sigma_s, as in pbrt. */
 static bool read_preset(vlDict *dict, vlMediumDef *def) {
   vlSpectrum absorption, scattering;
   bool given;
@@ -42,7 +42,7 @@ static bool read_preset(vlDict *dict, vlMediumDef *def) {
   return true;
 }
 
-/* pbrt's boxes sort their corners. */
+/* As in pbrt, the corners of the box are sorted. */
 static void sort_box(vlMediumDef *def) {
   for (int i = 0; i < 3; i++) {
     if (!(def->low[i] > def->high[i])) continue;
@@ -52,7 +52,7 @@ static void sort_box(vlMediumDef *def) {
   }
 }
 
-/* `per` numbers for each cell; null when not given. */
+/* `per` numbers per cell; null when not given. */
 static bool read_cells(vlDict *dict, const char *name, vlParamType type, const vlMediumDef *def, const float **values) {
   vlParam *p = vl_dict_find(dict, name, 1u << type);
   if (!p) return dict->import->scene->error.code == VL_OK;
@@ -67,11 +67,11 @@ static bool read_cells(vlDict *dict, const char *name, vlParamType type, const v
 }
 
 static bool missing(vlDict *dict, const char *what) {
-  if (!vl_dict_done(dict)) return false; /* a misspelt one */
+  if (!vl_dict_done(dict)) return false; /* a misspelt parameter is reported first */
   return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %s is missing", dict->what, what);
 }
 
-/* What the rows do not say, a function per kind. given: per parameter of the row. */
+/* Rules that the rows do not express, one function per kind. given: one entry per parameter of the row. */
 typedef bool ReadMedium(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def);
 
 static bool read_homogeneous(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
@@ -180,8 +180,8 @@ static bool find(vlImport *import, const char *name, vlSource place, vlMediumId 
   return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no medium \"%.80s\"", name);
 }
 
-/* pbrt's surface integrators do as if there were no media, and warn; of these velo's tracers that follow light both
- * ways do not. */
+/* pbrt's surface integrators ignore media. Velo's light-tracing and photon-mapping tracers do not: a warning says so.
+ */
 static void warn_surface_integrator(vlImport *import, const vlMediumLink *link) {
   const vlChoice *integrator = &import->integrator;
   vlTracer tracer = vl_scene_defs(import->scene)->render.tracer;

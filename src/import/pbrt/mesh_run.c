@@ -1,7 +1,7 @@
-/* import/pbrt/mesh_run.c: small meshes gathered into large ones. Some exporters write every quad as a Shape of its own:
- * each would cost two kilobytes in scene, world and accelerator. From the VL_MESH_RUN_FROM-th shape of a file on,
- * meshes of few triangles whose state is the same are put together; before that, and in what a doctor reads, every
- * Shape stays one. A few runs are open at a time, since materials take turns. */
+/* import/pbrt/mesh_run.c: merges small meshes. Some exporters write every quad as its own Shape, which would cost two
+ * kilobytes each in scene, world and accelerator. From the VL_MESH_RUN_FROM-th shape of a file on, meshes of few
+ * triangles with equal graphics state are merged. Nothing is merged before that, or while diagnosing. Several runs are
+ * open at a time, since exporters alternate between materials. */
 #include <math.h>
 #include <string.h>
 
@@ -62,7 +62,8 @@ void vl_import_free_meshes(vlImport *import) {
   for (int i = 0; i < VL_MESH_RUNS; i++) free_rows(import, &import->mesh_runs[i]);
 }
 
-/* Points as the scene's builder moves them (world/shape/shapes.c). false: one leaves the range of floats. */
+/* Transforms points as the world's builder does (world/shape/shapes.c). False when a result exceeds the range of
+ * floats. */
 static bool move_points(const vlMat4 *m, const float *from, size_t count, float *to) {
   for (size_t i = 0; i < count; i++) {
     double p[3] = {from[3 * i], from[3 * i + 1], from[3 * i + 2]}, q[3];
@@ -72,7 +73,7 @@ static bool move_points(const vlMat4 *m, const float *from, size_t count, float 
   return all_finite(to, 3 * count);
 }
 
-/* side: -1 where a mirror is taken into reverse_orientation, which turns normals, too. */
+/* side: -1 when the transform mirrors and the mirroring is moved into reverse_orientation, which also flips normals. */
 static void move_normals(const vlMat4 *inverse, double side, const float *from, size_t count, float *to) {
   for (size_t i = 0; i < count; i++) {
     double n[3] = {from[3 * i], from[3 * i + 1], from[3 * i + 2]}, q[3];
@@ -118,7 +119,7 @@ bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *given, const vlSh
     return vl_import_fail_memory(import);
   if (!move_points(&m, def.positions, n, run->positions.items + run->positions.count)) {
     run->open = run->indices.count > 0;
-    return true; /* the world says it */
+    return true; /* kept as its own shape; the world reports the error */
   }
   run->positions.count += 3 * n;
   if (def.normals) {

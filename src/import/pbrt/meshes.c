@@ -1,6 +1,6 @@
-/* import/pbrt/meshes.c: mesh files. While statements are read only their names are noted and places for their shapes
- * kept; at the end all files are read on all workers, and their shapes take those places in the order of the
- * statements: ids, and which error is told, do not depend on the workers. */
+/* import/pbrt/meshes.c: mesh files. While statements are executed, only file names and placeholders for the shapes are
+ * recorded. At the end all workers read the files, and the shapes replace their placeholders in the order of the
+ * statements. Ids and the reported error do not depend on the number of workers. */
 #include <string.h>
 
 #include "base/error.h"
@@ -30,7 +30,7 @@ bool vl_import_note_mesh(vlImport *import, const char *path, vlSource place, con
     return false;
   vlShapeDef *slot = scene->shapes.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->shapes) : NULL;
   if (!slot) return vl_import_fail_memory(import);
-  *slot = file->def; /* without faces until then */
+  *slot = file->def; /* a placeholder without faces */
   return true;
 }
 
@@ -42,7 +42,7 @@ static void read_one(void *user, uint32_t index, uint32_t worker) {
                             &job->error);
 }
 
-/* Patches become triangles: only those can be displaced. */
+/* Splits patches into triangles, since only triangles can be displaced. */
 static bool only_triangles(vlImport *import, vlPlyMesh *mesh) {
   if (!mesh->quads) return true;
   size_t old = 3 * (size_t)mesh->triangles, quads = mesh->quads;
@@ -61,7 +61,7 @@ static bool only_triangles(vlImport *import, vlPlyMesh *mesh) {
   return true;
 }
 
-/* A mesh of both kinds becomes two shapes that share nothing: the patches come first and are copied. */
+/* A file with triangles and patches becomes two shapes without shared arrays: the patches come first and are copied. */
 static bool add_mesh(vlImport *import, const vlMeshFile *file, Job *job) {
   vlPlyMesh *mesh = &job->mesh;
   if (job->result != VL_OK) {
@@ -86,12 +86,12 @@ static bool add_mesh(vlImport *import, const vlMeshFile *file, Job *job) {
   def.kind = mesh->triangles ? VL_SHAPE_TRIANGLES : VL_SHAPE_BILINEAR;
   def.faces = mesh->triangles ? mesh->triangles : mesh->quads;
   def.indices = mesh->triangles ? mesh->triangle_indices : mesh->quad_indices;
-  *mesh = (vlPlyMesh){0}; /* the arrays change hands, also on failure */
+  *mesh = (vlPlyMesh){0}; /* the arrays have moved, also on failure */
   return vl_scene_adopt_shape(import->scene, &def).index != 0;
 }
 
-/* What was noted for the shape at an old place is said of all that came there. first[old], first[old + 1]: new places.
- */
+/* Moves the links of placeholder shapes to the shapes that replaced them: placeholder i became shapes first[i] to
+ * first[i + 1] - 1. */
 static bool move_links(vlImport *import, const uint32_t *first) {
   size_t n = import->medium_links.count;
   for (size_t i = 0; i < n; i++) {
@@ -99,7 +99,7 @@ static bool move_links(vlImport *import, const uint32_t *first) {
     if (link.target != 's') continue;
     uint32_t old = link.index, count = first[old + 1] - first[old];
     import->medium_links.items[i].index = first[old];
-    if (!count) import->medium_links.items[i].target = 0; /* left out */
+    if (!count) import->medium_links.items[i].target = 0; /* the shape was skipped */
     for (uint32_t k = 1; k < count; k++) {
       vlMediumLink *more = VL_PUSH(import->context, &import->medium_links);
       if (!more) return vl_import_fail_memory(import);
@@ -123,7 +123,7 @@ static bool move_links(vlImport *import, const uint32_t *first) {
   return true;
 }
 
-/* Files are read in runs, so that what waits to change hands stays small beside what the scene holds. */
+/* Files are read in batches, so that the arrays not yet moved stay small compared with the scene. */
 enum { RUN = 256 };
 
 static bool place_shapes(vlImport *import, const vlShapeDef *old, size_t count, uint32_t *first) {

@@ -1,6 +1,6 @@
-/* import/pbrt/motion.c: animated transforms of pbrt (ActiveTransform, TransformTimes) -> moving instances. A shape
- * under one becomes part of a group that moves; shapes that follow each other under the same one share it. Inside an
- * object such a group is placed wherever the object is. */
+/* import/pbrt/motion.c: animated transforms (ActiveTransform, TransformTimes) become moving instances. A shape under an
+ * animated transform is part of a moving group; successive shapes with the same transforms share one. A group inside an
+ * object is placed wherever the object is. */
 #include <math.h>
 #include <string.h>
 
@@ -32,7 +32,7 @@ bool vl_import_moves(const vlImport *import) {
   return differ(import->state.ctm);
 }
 
-/* Says why a motion is none, at its place. */
+/* Reports transforms between which no motion exists. */
 static bool check_motion(vlImport *import, vlSource place, const vlMat4 ctm[2]) {
   vlMotion motion;
   if (vl_motion_make(ctm[0].m, ctm[1].m, &motion)) return true;
@@ -70,8 +70,8 @@ bool vl_import_moving_group(vlImport *import, vlSource place, vlGroupId *group) 
   return true;
 }
 
-/* A motion inside a placed (and perhaps moving) object: the product of the two, at so many times that straight turns
- * between them serve. */
+/* Key times of the product of two motions (a moving group in a moving object). Interpolation between this many keys is
+ * accurate enough. */
 enum { PRODUCT_KEYS = 33 };
 
 static bool place_part(vlImport *import, const vlMovingGroup *part, const vlSceneInstance *object) {
@@ -94,7 +94,7 @@ bool vl_import_finish_motion(vlImport *import) {
   for (size_t i = 0; i < import->moving.count; i++) {
     const vlMovingGroup *part = &import->moving.items[i];
     if (!part->object.index) continue;
-    size_t count = import->scene->instances.count; /* what is added here is no instance of an object */
+    size_t count = import->scene->instances.count; /* instances added below are not instances of an object */
     for (size_t k = 0; k < count; k++) {
       vlSceneInstance object = import->scene->instances.items[k];
       if (object.group.index == part->object.index && !place_part(import, part, &object)) return false;

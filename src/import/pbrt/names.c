@@ -17,7 +17,7 @@ static vlNamed *slot_of(const vlNameTable *t, const char *name) {
   return &t->slots[i];
 }
 
-/* A name that is there already gets the new index. */
+/* An existing name gets the new index. */
 bool vl_names_add(vlContext *context, vlNameTable *t, const char *name, uint32_t index) {
   if (2 * (t->count + 1) > t->capacity) {
     vlNameTable grown = {.capacity = t->capacity ? 2 * t->capacity : 16, .count = t->count};
@@ -42,7 +42,7 @@ bool vl_names_find(const vlNameTable *t, const char *name, uint32_t *index) {
   return true;
 }
 
-/* Of a large table only some are looked at: this is for an error message. */
+/* Considers at most 1024 names: the result is only a hint in an error message. */
 const char *vl_names_nearest(const vlNameTable *t, const char *name) {
   const char *names[1024];
   size_t count = 0;

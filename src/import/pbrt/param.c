@@ -62,7 +62,7 @@ size_t vl_param_count(const vlParam *param) {
 
 /* ---- questions -------------------------------------------------------------------------------------------------- */
 
-/* "float" or "float, texture" ... */
+/* Accepted types as text: "float" or "float, texture". */
 static const char *wanted_types(uint32_t bits, char *text, size_t size) {
   size_t n = 0;
   text[0] = 0;
@@ -75,11 +75,11 @@ static const char *wanted_types(uint32_t bits, char *text, size_t size) {
 }
 
 static vlParam *find_in(vlDict *dict, const vlParamList *params, const char *name, uint32_t bits, vlParam *found) {
-  for (size_t i = params->list.count; i > 0; i--) { /* the last one given wins */
+  for (size_t i = params->list.count; i > 0; i--) { /* the last one given counts */
     vlParam *p = params->list.items[i - 1];
     if (strcmp(p->name, name) != 0) continue;
     if (bits & 1u << p->type) {
-      p->used = true; /* also the ones that a later one hides */
+      p->used = true; /* earlier duplicates count as used, too */
       if (!found) found = p;
     } else if (!p->optional && !found) {
       char types[160];

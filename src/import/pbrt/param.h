@@ -1,6 +1,5 @@
-/* import/pbrt/param.h: parameters of a directive as parsed, and the typed questions that the builder asks of them. A
- * parameter that nobody asked for, or of the wrong type or count, is an error at its place that names the nearest
- * accepted one. */
+/* import/pbrt/param.h: the parsed parameters of a directive and typed access to them. A parameter that nothing reads,
+ * or that has the wrong type or count, is an error at its place; the message names the nearest accepted parameter. */
 #ifndef IMPORT_PBRT_PARAM_H
 #define IMPORT_PBRT_PARAM_H
 
@@ -24,25 +23,25 @@ typedef enum vlParamType {
   VL_PARAM_TYPES
 } vlParamType;
 
-/* "point3", ... The old spellings point, vector, color are read as point3, vector3, rgb. */
+/* Type by its name ("point3"). The old spellings point, vector and color mean point3, vector3 and rgb. */
 const char *vl_param_type_name(vlParamType type);
 bool vl_param_type_find(const char *text, size_t length, vlParamType *type);
-/* Nearest type name for an error, or null. */
+/* The nearest type name for an error message, or null. */
 const char *vl_param_type_nearest(const char *text);
 
 typedef struct vlParam {
   vlParamType type;
   char *name;
   vlSource place; /* of the declaration; file is not owned */
-  /* One of these is filled: integers for type integer, floats for the other numbers. */
+  /* One of these is filled: integers for type integer, floats for other numbers. */
   VL_ARRAY(float) floats;
   VL_ARRAY(int32_t) integers;
   VL_ARRAY(char *) strings;
   VL_ARRAY(uint8_t) bools;
-  double exact[16]; /* the first numbers again, unrounded */
+  double exact[16]; /* the first numbers unrounded */
   vlColorSpace space;
   bool used;
-  bool optional; /* from Attribute: may go unused or have another type */
+  bool optional; /* from Attribute: may stay unused or have another type */
 } vlParam;
 
 typedef struct vlParamList {
@@ -51,14 +50,14 @@ typedef struct vlParamList {
 
 void vl_param_free(vlContext *context, vlParam *param);
 void vl_param_list_free(vlContext *context, vlParamList *params);
-size_t vl_param_count(const vlParam *param); /* values of any kind */
+size_t vl_param_count(const vlParam *param); /* number of values of any type */
 
 /* ---- questions -------------------------------------------------------------------------------------------------- */
 
 typedef struct vlImport vlImport;
 
-/* One directive's parameters with the attributes that apply, the later given first. Lives on the stack; asked names are
- * string literals. */
+/* The parameters of one directive and the attributes that apply; the last one given counts. Lives on the stack. Names
+ * passed to the functions are string literals. */
 typedef struct vlDict {
   vlImport *import;
   const char *what; /* 'Shape "sphere"', for errors */
@@ -72,10 +71,10 @@ typedef struct vlDict {
 enum { VL_BIT_FLOAT = 1 << VL_PARAM_FLOAT, VL_BIT_TEXTURE = 1 << VL_PARAM_TEXTURE };
 enum { VL_BITS_SPECTRUM = 1 << VL_PARAM_RGB | 1 << VL_PARAM_SPECTRUM | 1 << VL_PARAM_BLACKBODY };
 
-/* The parameter `name` whose type is among the bits; null when it is not given. A given one of another type is an
- * error. */
+/* The parameter `name` with one of the types of the bit mask. Null when it is not given. A parameter of another type is
+ * an error. */
 vlParam *vl_dict_find(vlDict *dict, const char *name, uint32_t type_bits);
-/* These leave *value alone when the parameter is not given; return whether it was. */
+/* These read a value. They return whether the parameter was given; otherwise *value is unchanged. */
 bool vl_dict_float(vlDict *dict, const char *name, float *value);
 bool vl_dict_double(vlDict *dict, const char *name, double *value);
 bool vl_dict_integer(vlDict *dict, const char *name, int32_t *value);
@@ -83,15 +82,16 @@ bool vl_dict_count(vlDict *dict, const char *name, int32_t least, uint32_t *valu
 bool vl_dict_bool(vlDict *dict, const char *name, bool *value);
 bool vl_dict_string(vlDict *dict, const char *name, const char **value);
 bool vl_dict_vector(vlDict *dict, const char *name, vlParamType type, double value[3]);
-bool vl_dict_floats(vlDict *dict, const char *name, size_t count, double *value); /* exactly count, at most 16 */
-/* One of the names; index of it in *value. */
+bool vl_dict_floats(vlDict *dict, const char *name, size_t count,
+                    double *value); /* exactly count numbers, at most 16 */
+/* *value becomes the index of the string among the names. */
 bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, size_t count, int *value);
-/* Texture name given for `name`, null if it is not a texture. */
+/* The texture's name; null when the parameter is not a texture. */
 vlParam *vl_dict_texture(vlDict *dict, const char *name);
 
-/* Error for every parameter that was not asked for. false after an error. */
+/* Reports every parameter that was not read. False after an error. */
 bool vl_dict_done(vlDict *dict);
-/* All parameters count as asked for: of things that are skipped. */
+/* Marks all parameters as read: for skipped directives. */
 void vl_dict_skip(vlDict *dict);
 
 #endif

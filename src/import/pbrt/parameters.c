@@ -1,11 +1,11 @@
-/* import/pbrt/parameters.c: the parameters of a directive to the members of a def, as the row of its kind says. */
+/* import/pbrt/parameters.c: reads the parameters of a directive into the members of a def, by the row of its kind. */
 #include <assert.h>
 #include <string.h>
 #include <strings.h>
 
 #include "import/pbrt/builder.h"
 
-/* As pbrt, without regard to upper and lower case. */
+/* Ignores upper and lower case, as pbrt. */
 static bool read_choice(vlDict *dict, const char *name, const vlParameter *p, int *at) {
   const char *text;
   int count = 0;
@@ -15,7 +15,7 @@ static bool read_choice(vlDict *dict, const char *name, const vlParameter *p, in
     *at = count;
     return true;
   }
-  return vl_dict_choice(dict, name, p->choices, (size_t)count, at); /* for its words */
+  return vl_dict_choice(dict, name, p->choices, (size_t)count, at); /* reports the accepted values */
 }
 
 static bool read_string(vlDict *dict, const char *name, const vlParameter *p, const char **at) {
@@ -23,13 +23,13 @@ static bool read_string(vlDict *dict, const char *name, const vlParameter *p, co
   vlParam *param = vl_dict_find(dict, name, 1u << VL_PARAM_STRING);
   if (!param) return false;
   if (p->type == VL_PARAMETER_STRING) return vl_dict_string(dict, name, at);
-  if (param->strings.items[0][0] == 0 && !(p->flags & VL_PARAMETER_REQUIRED)) return false; /* as if not given */
+  if (param->strings.items[0][0] == 0 && !(p->flags & VL_PARAMETER_REQUIRED)) return false; /* counts as not given */
   if (!vl_import_path(dict->import, param, path, sizeof path)) return false;
   *at = vl_import_keep(dict->import, path);
   return *at != NULL;
 }
 
-/* In the def's unit; rounded once. */
+/* Converts to the def's unit; rounded once. */
 static bool read_float(vlDict *dict, const char *name, const vlParameter *p, float *at) {
   double number;
   if (p->factor == 0) return vl_dict_float(dict, name, at);
@@ -38,7 +38,7 @@ static bool read_float(vlDict *dict, const char *name, const vlParameter *p, flo
   return true;
 }
 
-/* A point, a vector or a normal. */
+/* Reads a point, a vector or a normal. */
 static bool read_float3(vlDict *dict, const char *name, float at[3]) {
   double v[3];
   vlParam *p = vl_dict_find(dict, name, 1u << VL_PARAM_POINT3 | 1u << VL_PARAM_VECTOR3 | 1u << VL_PARAM_NORMAL);
@@ -52,7 +52,7 @@ static bool read_spectrum(vlDict *dict, const char *name, vlSpectrum *at) {
   return p && vl_import_spectrum(dict->import, p, at);
 }
 
-/* A number without texture. */
+/* Reads a number that cannot be a texture. */
 static bool read_number_input(vlDict *dict, const char *name, vlFloatInput *at) {
   float number;
   if (!vl_dict_float(dict, name, &number)) return false;
@@ -60,7 +60,7 @@ static bool read_number_input(vlDict *dict, const char *name, vlFloatInput *at) 
   return true;
 }
 
-/* A spectrum without texture; or a number, where the row allows one. */
+/* Reads a spectrum that cannot be a texture, or a number where the row allows one. */
 static bool read_plain_spectrum(vlDict *dict, const char *name, const vlParameter *p, vlSpectrumInput *at) {
   uint32_t bits = p->flags & VL_PARAMETER_ONE_NUMBER ? VL_BIT_FLOAT
                   : p->flags & VL_PARAMETER_NUMBER   ? VL_BIT_FLOAT | VL_BITS_SPECTRUM
@@ -83,7 +83,7 @@ static bool read_spectrum_input(vlDict *dict, const char *name, const vlParamete
   return vl_import_spectrum_input(dict, name, at, p->role == VL_PARAMETER_ALBEDO, &given) && given;
 }
 
-/* Was it given (and read well)? */
+/* Reads one parameter. False when it is not given or after an error. */
 static bool read_one(vlDict *dict, const char *name, const vlParameter *p, char *def, bool spectrum) {
   void *at = def + p->offset;
   bool given;
@@ -106,13 +106,13 @@ static bool read_one(vlDict *dict, const char *name, const vlParameter *p, char 
     case VL_PARAMETER_EITHER_INPUT:
       if (spectrum) return read_spectrum_input(dict, name, p, (vlSpectrumInput *)(void *)(def + p->second));
       return vl_import_float_input(dict, name, at, &given) && given;
-    case VL_PARAMETER_TEXTURE: /* files name a texture only in place of a value */
+    case VL_PARAMETER_TEXTURE: /* files name textures only in place of a value */
     case VL_PARAMETER_BLOCK: return false;
   }
   return false;
 }
 
-/* From the unit of files to the def's. */
+/* Factor from the file's unit to the def's. */
 static void convert(const vlParameter *p, char *def) {
   if (p->factor == 0) return;
   void *at = def + p->offset;
@@ -125,7 +125,7 @@ static void copy_to_second(const vlParameter *p, char *def) {
   if (p->type == VL_PARAMETER_FLOAT) memcpy(def + p->second, def + p->offset, sizeof(float));
 }
 
-/* An error at the place of the parameter. */
+/* Reports an error at the parameter's place. */
 static bool check(vlDict *dict, const vlParameter *p, const void *def) {
   char message[200];
   if (vl_parameter_check(p, def, dict->what, message)) return true;
@@ -153,7 +153,7 @@ bool vl_import_parameters(vlDict *dict, const vlKindRow *row, void *def, bool sp
     const vlParameter *p = &row->parameters[i];
     if (!p->name || !(p->flags & VL_PARAMETER_REQUIRED) || (p->flags & VL_PARAMETER_RULE)) continue;
     if (vl_dict_find(dict, p->name, ~0u)) continue;
-    if (!vl_dict_done(dict)) return false; /* a misspelt name is reported as such */
+    if (!vl_dict_done(dict)) return false; /* a misspelt parameter is reported first */
     return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: \"%s %s\" is missing", dict->what,
                           p->type == VL_PARAMETER_STRING || p->type == VL_PARAMETER_FILE ? "string" : "float", p->name);
   }

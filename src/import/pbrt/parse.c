@@ -145,10 +145,10 @@ static bool read_active(vlParserFile *file, vlStatement *s) {
   return true;
 }
 
-/* The value may be a word or a string; a word is not terminated in the file, so it is copied. */
+/* The value may be a word or a string. A word is not terminated, so it is copied. */
 static bool read_option(vlParserFile *file, vlStatement *s) {
   if (!take_string(file, "Option", "a name", &s->names[0])) return false;
-  const char *space = strrchr(s->names[0], ' '); /* "bool name": the type is optional */
+  const char *space = strrchr(s->names[0], ' '); /* the type is optional: "bool name" or "name" */
   if (space) s->names[0] = space + 1;
   vlToken token = vl_parse_take(file);
   bool bracket = token.kind == VL_TOKEN_OPEN;
@@ -227,7 +227,7 @@ static bool read_directive(vlParserFile *file, const vlToken *token) {
 
 /* ---- files ------------------------------------------------------------------------------------------------------ */
 
-/* After a mistake, where the target goes on: past its directive to the next one. Not past what is no token. */
+/* After an error: skips to the next directive when the target wants to continue. Invalid tokens are not skipped. */
 static bool go_on(vlParserFile *file) {
   const vlParseTarget *target = file->parser->target;
   if (!target->recover) return false;
@@ -276,7 +276,7 @@ bool vl_parse_find_file(const char *including, const char *first, const char *na
   return true;
 }
 
-/* Reads and parses one file; `at` is the token that names it, in `parent`, or null for the first. */
+/* Parses one file. `at`: the token in `parent` that names it; null for the first file. */
 static bool parse_path(vlParser *parser, vlParserFile *parent, vlSource at, const char *path, bool included) {
   struct stat info;
   vlParserFile file = {.parser = parser, .parent = parent, .included = included, .path = path};

@@ -1,12 +1,13 @@
-/* import/pbrt/parse.h: the grammar of the pbrt language. Tokens in, directives out through a target of callbacks; knows
- * nothing of scenes. Include is followed here (with its limits); Import too, framed by begin and end. */
+/* import/pbrt/parse.h: the grammar of the pbrt language. It turns tokens into directives and passes them to a target of
+ * callbacks; it knows nothing of scenes. Include is followed here, up to a depth limit. Import is followed, too,
+ * between IMPORT_BEGIN and IMPORT_END. */
 #ifndef IMPORT_PBRT_PARSE_H
 #define IMPORT_PBRT_PARSE_H
 
 #include "import/pbrt/param.h"
 
 typedef enum vlDirective {
-  /* alone */
+  /* without arguments */
   VL_DIR_ATTRIBUTE_BEGIN,
   VL_DIR_ATTRIBUTE_END,
   VL_DIR_TRANSFORM_BEGIN,
@@ -20,7 +21,7 @@ typedef enum vlDirective {
   VL_DIR_ACTIVE_END,
   VL_DIR_IMPORT_BEGIN, /* Import "file": its directives follow, then IMPORT_END */
   VL_DIR_IMPORT_END,
-  /* numbers */
+  /* followed by numbers */
   VL_DIR_TRANSLATE,
   VL_DIR_SCALE,
   VL_DIR_ROTATE,
@@ -28,7 +29,7 @@ typedef enum vlDirective {
   VL_DIR_TRANSFORM,
   VL_DIR_CONCAT_TRANSFORM,
   VL_DIR_TRANSFORM_TIMES,
-  /* one name, or two */
+  /* followed by one or two names */
   VL_DIR_COORDINATE_SYSTEM,
   VL_DIR_COORD_SYS_TRANSFORM,
   VL_DIR_COLOR_SPACE,
@@ -37,7 +38,7 @@ typedef enum vlDirective {
   VL_DIR_OBJECT_INSTANCE,
   VL_DIR_MEDIUM_INTERFACE, /* inside, outside */
   VL_DIR_OPTION,           /* name, value as written */
-  /* a name and parameters */
+  /* followed by a name and parameters */
   VL_DIR_ATTRIBUTE,
   VL_DIR_FILM,
   VL_DIR_SAMPLER,
@@ -51,7 +52,7 @@ typedef enum vlDirective {
   VL_DIR_AREA_LIGHT_SOURCE,
   VL_DIR_LIGHT_SOURCE,
   VL_DIR_SHAPE,
-  VL_DIR_TEXTURE /* names[0] name, names[1] type, names[2] kind */
+  VL_DIR_TEXTURE /* names[0]: name, names[1]: type, names[2]: kind */
 } vlDirective;
 
 typedef struct vlStatement {
@@ -59,22 +60,23 @@ typedef struct vlStatement {
   vlSource place;
   double numbers[16];
   const char *names[3]; /* valid during the call */
-  vlParamList *params;  /* of the last group; the callee may take the contents (and zero the list), the rest is freed */
+  vlParamList
+      *params; /* of the last group; the callee may take the contents (and zero the list), otherwise they are freed */
 } vlStatement;
 
 typedef struct vlParseTarget {
   void *user;
-  /* Returns false to stop: then it has set *error itself or not at all (its own sticky error). */
+  /* Returns false to stop, after setting *error or an error of its own. */
   bool (*statement)(void *user, const vlStatement *statement);
   void (*error)(void *user, vlResult code, vlSource place, const char *message);
-  /* After an error: true to go on without the directive or the file that it is in. May be null. */
+  /* Called after an error. Returns true to continue behind the directive or file. May be null. */
   bool (*recover)(void *user);
 } vlParseTarget;
 
-/* Paths that includes are looked for: beside the including file, then beside the first file. */
+/* Path of an included file: beside the including file, otherwise beside the first file. */
 bool vl_parse_find_file(const char *including, const char *first, const char *name, char *path, size_t size);
 
-/* false after an error. `path` null: parse data (copied), name then stands for the file. */
+/* False after an error. _memory parses a copy of data; name stands for the file. */
 bool vl_parse_file(vlContext *context, const char *path, const vlParseTarget *target);
 bool vl_parse_memory(vlContext *context, const char *data, size_t size, const char *name, const vlParseTarget *target);
 

@@ -1,4 +1,4 @@
-/* import/pbrt/parse_params.c: tokens, errors, and the parameters of a directive. */
+/* import/pbrt/parse_params.c: tokens, errors and the parameters of a directive. */
 #include <stdio.h>
 #include <string.h>
 
@@ -28,7 +28,7 @@ bool vl_parse_fail_memory(const vlParserFile *file) {
   return false;
 }
 
-/* What stands there, printable; no more than tells the author where to look, since a scene may include any file. */
+/* The token as printable text for a message. It is cut short, since a scene may include any file. */
 vlShown vl_parse_show(const vlToken *token) {
   vlShown s;
   size_t n = 0;
@@ -73,7 +73,7 @@ static bool is_blank(char c) {
   return c == ' ' || c == '\t';
 }
 
-/* "type name": both parts of the declaration. */
+/* Splits "type name". */
 static bool declare(vlParserFile *file, const vlToken *token, vlParam *param) {
   const char *p = token->text, *end = p + token->length;
   while (p < end && is_blank(*p)) p++;
@@ -134,7 +134,7 @@ static bool add_value(vlParserFile *file, const vlToken *token, vlParam *param) 
   vlContext *context = file->parser->context;
   const char *type = vl_param_type_name(param->type);
   bool truth = vl_parse_is_word(token, "true"), falsehood = vl_parse_is_word(token, "false");
-  /* Files written for older versions put the truth values in quotes. */
+  /* Files written for older versions put booleans in quotes. */
   if (param->type == VL_PARAM_BOOL && token->kind == VL_TOKEN_STRING) {
     truth = strcmp(token->text, "true") == 0;
     falsehood = strcmp(token->text, "false") == 0;
@@ -168,12 +168,11 @@ static bool add_value(vlParserFile *file, const vlToken *token, vlParam *param) 
   return add_number(file, token, param);
 }
 
-/* Numbers one after the other as far as they go, without a token for each; what is not a number, or not fitting, is
- * left to the careful way. */
+/* Fast path: reads successive numbers without a token for each. Anything else is left to the general path. */
 static bool read_run(vlParserFile *file, vlParam *param) {
   vlContext *context = file->parser->context;
   bool integers = param->type == VL_PARAM_INTEGER;
-  for (size_t chunk = 4;; chunk = 1024) { /* most lists are short, and there may be many */
+  for (size_t chunk = 4;; chunk = 1024) { /* most lists are short and there may be many */
     if (integers ? !VL_RESERVE(context, &param->integers, chunk) : !VL_RESERVE(context, &param->floats, chunk))
       return vl_parse_fail_memory(file);
     for (size_t i = 0; i < chunk; i++) {

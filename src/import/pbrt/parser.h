@@ -1,5 +1,5 @@
-/* import/pbrt/parser.h: what the two halves of the parser share: a file being read, its next token, errors at a place.
- * parse_params.c reads parameters, parse.c directives and files. */
+/* import/pbrt/parser.h: declarations shared by the two halves of the parser: a file being read, its next token, errors
+ * at a place. parse_params.c reads parameters, parse.c directives and files. */
 #ifndef IMPORT_PBRT_PARSER_H
 #define IMPORT_PBRT_PARSER_H
 
@@ -18,7 +18,7 @@ typedef struct vlParser {
 typedef struct vlParserFile {
   vlParser *parser;
   struct vlParserFile *parent;
-  bool included; /* by Include: a list of parameters may go on in the parent */
+  bool included; /* by Include: a parameter list may continue in the parent file */
   const char *path;
   dev_t device;
   ino_t inode;
@@ -28,8 +28,8 @@ typedef struct vlParserFile {
   vlToken token;
 } vlParserFile;
 
-enum { VL_MOST_SHOWN = 12 }; /* characters of a file in a message */
-/* What stands there, short and printable. */
+enum { VL_MOST_SHOWN = 12 }; /* characters of a token in a message */
+/* The token as short, printable text. */
 typedef struct vlShown {
   char text[48];
 } vlShown;
@@ -40,9 +40,9 @@ bool vl_parse_fail(const vlParserFile *file, vlSource place, const char *format,
     __attribute__((format(printf, 3, 4)));
 bool vl_parse_fail_memory(const vlParserFile *file);
 vlToken vl_parse_peek(vlParserFile *file);
-vlToken vl_parse_take(vlParserFile *file); /* the end stays */
+vlToken vl_parse_take(vlParserFile *file); /* does not move past the end of the file */
 bool vl_parse_is_word(const vlToken *token, const char *word);
-/* All that follow a directive; past the end of an included file also those that stand after its Include. */
+/* Reads all parameters that follow a directive. At the end of an included file the list continues after its Include. */
 bool vl_parse_params(vlParserFile *file, vlParamList *params);
 
 #endif

@@ -1,5 +1,4 @@
-/* import/pbrt/report.c: what the parts of the builder share: errors and warnings with their places, kept strings,
- * paths, copies of parameters. */
+/* import/pbrt/report.c: errors and warnings with their places, kept strings, paths, copies of parameters. */
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -115,7 +114,8 @@ bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t s
   char *data;
   size_t count;
   vlError error = {0};
-  vlResult result = vl_file_read(import->context, path, false, &data, &count, &error); /* for its words */
+  vlResult result =
+      vl_file_read(import->context, path, false, &data, &count, &error); /* opened for its error message */
   vl_free(import->context, data);
   if (result != VL_OK) return vl_import_fail(import, result, param->place, "%s", error.message);
   return vl_import_fail(import, VL_ERROR_IO, param->place, "cannot read %s", path);
@@ -130,7 +130,8 @@ bool vl_import_color_space(const char *name, vlColorSpace *space) {
                 {"rec2020", VL_SPACE_REC2020},
                 {"aces2065-1", VL_SPACE_ACES2065_1}};
   for (size_t i = 0; i < sizeof spaces / sizeof *spaces; i++) {
-    if (strlen(name) == strlen(spaces[i].name) && vl_ends_with(name, spaces[i].name)) { /* case ignored, as in pbrt */
+    if (strlen(name) == strlen(spaces[i].name) &&
+        vl_ends_with(name, spaces[i].name)) { /* case is ignored, as in pbrt */
       *space = spaces[i].space;
       return true;
     }

@@ -1,10 +1,10 @@
-/* import/pbrt/scattering.h: measured scattering of real liquids and solids, by the names that pbrt gives them. */
+/* import/pbrt/scattering.h: measured scattering of liquids and solids, under pbrt's names. */
 #ifndef IMPORT_PBRT_SCATTERING_H
 #define IMPORT_PBRT_SCATTERING_H
 
 #include <stddef.h>
 
-/* Per millimetre, linear sRGB; scattering is the reduced coefficient (to be used with g = 0). */
+/* Per millimetre, linear sRGB. Scattering is the reduced coefficient (used with g = 0). */
 typedef struct vlScattering {
   const char *name;
   float scattering[3], absorption[3];

@@ -1,14 +1,14 @@
-/* import/pbrt/shape.c: Shape directives to the scene. The arrays of a mesh change hands, they are not copied. */
+/* import/pbrt/shape.c: Shape directives. The arrays of a mesh move to the scene without a copy. */
 #include <stdio.h>
 #include <string.h>
 
 #include "import/pbrt/builder.h"
 #include "import/pbrt/loop.h"
 
-/* Takes the array out of the parameter: a block of the context without slack. */
+/* Takes the array from the parameter, shrunk to its size. */
 static bool take_floats(vlImport *import, vlParam *p, const float **result) {
   float *items = p->floats.items;
-  if (p->optional) { /* an attribute's: others will ask for it */
+  if (p->optional) { /* an attribute's array is copied: other shapes read it, too */
     float *copy = vl_alloc_array(import->context, p->floats.count, sizeof *copy);
     if (!copy) return vl_import_fail_memory(import);
     memcpy(copy, items, p->floats.count * sizeof *copy);
@@ -25,7 +25,7 @@ static bool take_floats(vlImport *import, vlParam *p, const float **result) {
   return true;
 }
 
-/* Per-vertex values: a whole number for each of the mesh's vertices. */
+/* Per-vertex values: an integer number of them per vertex. */
 static bool take_vertex_floats(vlDict *dict, const char *name, vlParamType type, size_t per, uint32_t vertices,
                                const float **result) {
   vlParam *p = vl_dict_find(dict, name, 1u << type);
@@ -72,7 +72,7 @@ static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
     vl_dict_find(dict, "indices", 1u << VL_PARAM_INTEGER), vl_dict_find(dict, "uv", 1u << VL_PARAM_POINT2);
     vl_dict_find(dict, "N", 1u << VL_PARAM_NORMAL), vl_dict_find(dict, "faceIndices", 1u << VL_PARAM_INTEGER);
     if (per == 3) vl_dict_find(dict, "S", 1u << VL_PARAM_VECTOR3);
-    if (!vl_dict_done(dict)) return false; /* a misspelt one */
+    if (!vl_dict_done(dict)) return false; /* a misspelt parameter is reported first */
     return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"point3 P\" is missing", dict->what);
   }
   size_t count = p->floats.count;
@@ -82,13 +82,16 @@ static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
   if (count / 3 > 0x7fffffffu)
     return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: too many vertices", dict->what);
   def->vertices = (uint32_t)(count / 3);
-  vl_dict_find(dict, "faceIndices", 1u << VL_PARAM_INTEGER); /* only pbrt's ptex textures look at them */
+  vl_dict_find(dict, "faceIndices",
+               1u << VL_PARAM_INTEGER); /* accepted and ignored: only pbrt's ptex textures use it */
   if (!take_floats(import, p, &def->positions) || !take_indices(dict, def, per) ||
       !take_vertex_floats(dict, "uv", VL_PARAM_POINT2, 2, def->vertices, &def->uvs) ||
       !take_vertex_floats(dict, "N", VL_PARAM_NORMAL, 3, def->vertices, &def->normals) ||
       (per == 3 && !take_vertex_floats(dict, "S", VL_PARAM_VECTOR3, 3, def->vertices, &def->tangents)))
     return false;
-  if (per == 4) vl_dict_find(dict, "emissionfilename", 1u << VL_PARAM_STRING); /* where pbrt looks for light: a hint */
+  if (per == 4)
+    vl_dict_find(dict, "emissionfilename",
+                 1u << VL_PARAM_STRING); /* accepted and ignored: a hint for pbrt's light sampling */
   return import->scene->error.code == VL_OK;
 }
 
@@ -101,13 +104,13 @@ static void free_arrays(vlImport *import, const vlShapeDef *def) {
   }
 }
 
-/* A control mesh, subdivided to its limit. */
+/* Loop subdivision of a control mesh to its limit surface. */
 static bool read_loop(vlDict *dict, vlShapeDef *def) {
   vlImport *import = dict->import;
   uint32_t levels = 3;
   const char *scheme = "loop";
   vl_dict_count(dict, "levels", 0, &levels);
-  vl_dict_string(dict, "scheme", &scheme); /* pbrt reads it, too, and knows one only */
+  vl_dict_string(dict, "scheme", &scheme); /* accepted: pbrt knows one scheme only */
   if (!read_mesh(dict, def, 3)) return false;
   vlLoopMesh mesh;
   vlError error = {0};
@@ -134,12 +137,12 @@ static bool read_quadric(vlDict *dict, vlShapeDef *def) {
     if (!vl_import_given(row, given, "zmin")) def->z_min = -def->radius;
     if (!vl_import_given(row, given, "zmax")) def->z_max = def->radius;
   }
-  if (def->z_min > def->z_max) { /* pbrt sorts them */
+  if (def->z_min > def->z_max) { /* as in pbrt, sorted */
     float t = def->z_min;
     def->z_min = def->z_max;
     def->z_max = t;
   }
-  if (def->kind == VL_SHAPE_SPHERE) { /* and clamps them */
+  if (def->kind == VL_SHAPE_SPHERE) { /* as in pbrt, clamped */
     if (def->z_min < -def->radius) def->z_min = -def->radius;
     if (def->z_max > def->radius) def->z_max = def->radius;
   }
@@ -175,7 +178,7 @@ static bool read_displacement(vlDict *dict, vlShapeDef *def, vlShapeLink *link) 
   return link->displacement && vl_scene_copy_source(import->scene, &link->displacement_place);
 }
 
-/* The file itself is read later, beside others (meshes.c). */
+/* Records the mesh file; it is read later, together with others (meshes.c). */
 static bool note_ply(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
@@ -187,7 +190,7 @@ static bool note_ply(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   return vl_import_note_mesh(import, path, file->place, def, link);
 }
 
-/* Alpha: a number, or a float texture that is looked up at the end. */
+/* Alpha: a number, or a float texture that is resolved at the end. */
 static bool read_alpha(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find(dict, "alpha", VL_BIT_FLOAT | VL_BIT_TEXTURE);
@@ -204,14 +207,14 @@ static bool read_alpha(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   return link->alpha && vl_scene_copy_source(import->scene, &link->alpha_place);
 }
 
-/* Of the shapes from this one on. */
+/* Records the media of the shapes from index first on. */
 static bool note_media(vlImport *import, size_t first, vlSource place) {
   for (size_t i = first; i < import->scene->shapes.count; i++)
     if (!vl_import_note_media(import, 's', (uint32_t)i, place)) return false;
   return true;
 }
 
-/* Reads the parameters that are not alpha and gives the shape to the scene. taken: the def's arrays are given away. */
+/* Reads the parameters except alpha and adds the shape. taken: the def's arrays have moved. */
 typedef bool EnterShape(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken);
 
 static bool enter(vlDict *dict, const vlShapeDef *def, const vlShapeLink *link, bool *taken) {
@@ -262,7 +265,7 @@ static bool enter_ply(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bo
 static EnterShape *const enter_kind[] = {VL_SHAPE_KINDS(ENTER)};
 #undef ENTER
 
-/* pbrt's shapes that are other ways to say triangles. */
+/* pbrt's shapes that are converted to triangles. */
 static const struct {
   const char *name;
   EnterShape *enter;
@@ -282,10 +285,10 @@ static bool unknown_shape(vlImport *import, const vlStatement *s) {
   const char *names[64];
   size_t count = vl_kind_names(&vl_shape_family, names, 64 - MESHES);
   for (size_t i = 0; i < MESHES; i++) names[count++] = meshes[i].name;
-  return vl_import_unknown(import, s->place, "shape", s->names[0], names, count, NULL, 0); /* permissive: left out */
+  return vl_import_unknown(import, s->place, "shape", s->names[0], names, count, NULL, 0); /* permissive: skipped */
 }
 
-/* Who cannot emit gives no light. */
+/* Removes the emission of shapes that cannot emit light, with a warning. */
 static void drop_emission(vlImport *import, vlSource place, bool moves, vlShapeDef *def) {
   if (!def->emission.index) return;
   if (import->in_object)
@@ -323,6 +326,6 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
   size_t before = import->scene->shapes.count;
   bool fine = function(&dict, &def, &link, &taken);
   if (!taken) free_arrays(import, &def);
-  /* curves enter later, with their media */
+  /* curves and their media are added later */
   return fine && (kind == VL_SHAPE_CURVES || note_media(import, before, s->place));
 }

@@ -1,5 +1,5 @@
-/* import/pbrt/spectrum.c: colours and numbers of parameters to the scene's inputs: rgb, named spectra, spectrum files
- * (two columns, wavelength in nm and value), sampled spectra, blackbodies; textures by name. */
+/* import/pbrt/spectrum.c: colours and numbers of parameters become inputs of the scene: rgb, named spectra, spectrum
+ * files (two columns: wavelength in nm, value), sampled spectra, blackbodies, textures by name. */
 #include <string.h>
 
 #include "base/file.h"
@@ -8,7 +8,7 @@
 #include "import/pbrt/builder.h"
 #include "import/pbrt/token.h"
 
-/* The block lives until the end of the import (among the strings). */
+/* The block lives until the end of the import, like the strings. */
 static float *keep_floats(vlImport *import, size_t count) {
   char **slot = VL_PUSH(import->context, &import->strings);
   float *block = slot ? vl_alloc_array(import->context, count ? count : 1, sizeof *block) : NULL;

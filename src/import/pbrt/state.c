@@ -1,4 +1,4 @@
-/* import/pbrt/state.c: the graphics state of pbrt: current transforms, named coordinate systems, the stack. */
+/* import/pbrt/state.c: pbrt's graphics state: current transforms, named coordinate systems, the stack. */
 #include <math.h>
 #include <string.h>
 
@@ -16,7 +16,7 @@ static void apply(vlImport *import, vlMat4 m) {
     if (import->state.active & 1u << i) import->state.ctm[i] = vl_mat4_multiply(import->state.ctm[i], m);
 }
 
-/* pbrt's LookAt (book 3.9.2): camera from world, x right, y up, z forward. */
+/* pbrt's LookAt (book, 3.9.2): camera_from_world with x right, y up, z forward. */
 static bool look_at(vlImport *import, const vlStatement *s) {
   const double *e = s->numbers, *l = s->numbers + 3, *u = s->numbers + 6;
   double d[3] = {l[0] - e[0], l[1] - e[1], l[2] - e[2]};

@@ -1,4 +1,4 @@
-/* import/pbrt/texture.c: Texture entities to the scene, in the order in which they refer to each other. */
+/* import/pbrt/texture.c: Texture directives become textures of the scene, each after the textures that it refers to. */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -39,11 +39,11 @@ typedef struct Reading {
   const vlMat4 *world_from_texture;
 } Reading;
 
-/* A parameter that does not belong to the mapping is an error, as any unknown one. */
+/* A parameter that does not belong to the mapping is an error, like any unknown one. */
 static bool check_mapping(const Reading *r, const vlTextureDef *def) {
   static const struct {
     const char *name;
-    bool in[4]; /* by mapping */
+    bool in[4]; /* per mapping: whether it has the parameter */
   } parameters[] = {{"uscale", {true, false, false, false}}, {"vscale", {true, false, false, false}},
                     {"udelta", {true, false, false, true}},  {"vdelta", {true, false, false, true}},
                     {"v1", {false, false, false, true}},     {"v2", {false, false, false, true}}};
@@ -56,14 +56,14 @@ static bool check_mapping(const Reading *r, const vlTextureDef *def) {
     const char *name = parameters[i].name;
     if (parameters[i].in[def->mapping] && !solid) continue;
     const vlParam *p = vl_import_given(r->row, r->given, name) ? vl_dict_find(r->dict, name, ~0u) : NULL;
-    if (p && !p->optional) /* from Attribute it may go unused */
+    if (p && !p->optional) /* attributes may stay unused */
       return vl_import_fail(r->dict->import, VL_ERROR_SCENE, p->place, "%s: \"%s\" has no effect with this mapping",
                             r->dict->what, name);
   }
   return true;
 }
 
-/* "sRGB", "linear", "gamma 2.2" */
+/* Encodings: "sRGB", "linear", "gamma 2.2". */
 static bool read_encoding(vlDict *dict, vlTextureDef *def) {
   vlParam *p = vl_dict_find(dict, "encoding", 1u << VL_PARAM_STRING);
   if (!p) return true;
@@ -85,8 +85,9 @@ static bool read_encoding(vlDict *dict, vlTextureDef *def) {
 
 static bool finish_image(const Reading *r, vlTextureDef *def) {
   float anisotropy = 8.0f;
-  vl_dict_float(r->dict, "maxanisotropy", &anisotropy); /* how far the ewa filter goes: velo chooses itself */
-  if (!read_encoding(r->dict, def) || !vl_dict_done(r->dict)) return false; /* a misspelt "filename" is told as such */
+  vl_dict_float(r->dict, "maxanisotropy", &anisotropy); /* accepted and ignored: limit of pbrt's EWA filter */
+  if (!read_encoding(r->dict, def) || !vl_dict_done(r->dict))
+    return false; /* a misspelt "filename" is reported first */
   return def->path || vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->place,
                                      "%s: \"string filename\" is missing", r->dict->what);
 }
@@ -104,7 +105,7 @@ static bool finish_direction_mix(const Reading *r, vlTextureDef *def) {
   return true;
 }
 
-/* Run after the row's parameters are read; null: none is needed. */
+/* Rules that run after the row's parameters are read; null: none. */
 typedef bool Rule(const Reading *r, vlTextureDef *def);
 static Rule *const rules[0 VL_TEXTURE_KINDS(VL_COUNT_KIND)] = {
     [VL_TEXTURE_IMAGE] = finish_image, [VL_TEXTURE_DIRECTION_MIX] = finish_direction_mix};
@@ -131,7 +132,7 @@ static bool read_texture(vlDict *dict, vlTextureDef *def, const vlPending *pendi
 }
 
 static bool finish(vlImport *import, uint32_t index) {
-  vlPending *pending = &import->textures.items[index]; /* the array does not grow any more */
+  vlPending *pending = &import->textures.items[index]; /* the array no longer grows */
   char what[128];
   snprintf(what, sizeof what, "Texture \"%.60s\" (%.40s)", pending->name, pending->kind);
   vlDict dict = vl_import_dict(import, what, pending->place, pending->space, &pending->params, NULL);
@@ -139,8 +140,9 @@ static bool finish(vlImport *import, uint32_t index) {
   vlTextureDef def = vl_default_texture_def(kind < 0 ? VL_TEXTURE_CONSTANT : (vlTextureKind)kind, pending->spectrum);
   def.name = pending->name;
   def.source = pending->place;
-  def.space = def.kind == VL_TEXTURE_IMAGE ? VL_SPACE_SRGB : pending->space; /* images say their own, or are sRGB */
-  if (kind < 0) { /* a constant stands in: middle grey, or one */
+  def.space = def.kind == VL_TEXTURE_IMAGE ? VL_SPACE_SRGB
+                                           : pending->space; /* images have their own colour space or are sRGB */
+  if (kind < 0) {                                            /* permissive: a constant replaces it: middle grey, or 1 */
     if (strcmp(pending->kind, "ptex") == 0) {
       if (!vl_import_unsupported(import, pending->place, "texture \"ptex\": Ptex files are not supported"))
         return false;

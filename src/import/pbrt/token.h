@@ -1,6 +1,5 @@
-/* import/pbrt/token.h: text of the pbrt language to tokens, on a block of memory that it may write to (strings are
- * unescaped and terminated in place). Also numbers from text, independent of the locale; the PLY reader uses them too.
- */
+/* import/pbrt/token.h: splits text of the pbrt language into tokens. The text is modified: strings are unescaped and
+ * terminated in place. Also converts text to numbers independently of the locale, for the PLY reader, too. */
 #ifndef IMPORT_PBRT_TOKEN_H
 #define IMPORT_PBRT_TOKEN_H
 
@@ -12,12 +11,12 @@ typedef enum vlTokenKind {
   VL_TOKEN_STRING,
   VL_TOKEN_OPEN, /* [ */
   VL_TOKEN_CLOSE,
-  VL_TOKEN_BAD /* message says why */
+  VL_TOKEN_BAD /* invalid; message gives the reason */
 } vlTokenKind;
 
 typedef struct vlToken {
   vlTokenKind kind;
-  uint32_t line, column; /* from 1; columns are bytes */
+  uint32_t line, column; /* 1-based; columns are bytes */
   const char *text;      /* word: not terminated; string: without quotes, terminated */
   size_t length;
   const char *message;
@@ -32,13 +31,13 @@ typedef struct vlTokenizer {
 /* data[size] must be a zero byte. */
 void vl_tokenizer_start(vlTokenizer *tokenizer, char *data, size_t size);
 vlToken vl_token_next(vlTokenizer *tokenizer);
-/* Takes the next token if it is a number; else leaves all as it is. The quick way through long lists. */
+/* Takes the next token when it is a number; otherwise nothing changes. Fast path for long lists. */
 bool vl_token_number(vlTokenizer *tokenizer, double *value);
 
-/* One number that fills [text, text + length): integers, decimals, exponents, hexadecimal. false otherwise, also for
- * infinities and what is too large for a double. */
+/* Converts text[0, length) to a number: integers, decimals, exponents, hexadecimal. False for other text, infinities
+ * and values too large for a double. */
 bool vl_number_parse(const char *text, size_t length, double *value);
-/* The leading number of [*text, end), moves *text past it. */
+/* Reads the number at the start of [*text, end) and moves *text past it. */
 bool vl_number_scan(const char **text, const char *end, double *value);
 
 #endif

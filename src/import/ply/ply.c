@@ -1,4 +1,4 @@
-/* import/ply/ply.c: see ply.h. The body is walked once, by the table that the header became. */
+/* import/ply/ply.c: see ply.h. The data is read once, by the table made from the header. */
 #include "import/ply/ply.h"
 
 #include <math.h>
@@ -8,13 +8,13 @@
 #include "import/pbrt/token.h"
 #include "import/ply/ply_reader.h"
 
-/* ---- body ------------------------------------------------------------------------------------------------------- */
+/* ---- data ------------------------------------------------------------------------------------------------------- */
 
 static bool is_space(char c) {
   return c == ' ' || c == '\n' || c == '\r' || c == '\t';
 }
 
-/* The next number of text. "nan" and "inf" are read too: what becomes of them is the caller's business. */
+/* The next number of a text file. "nan" and "inf" are read; the caller checks them. */
 static bool read_text(vlPlyReader *r, double *value) {
   while (r->at < r->end && is_space(*r->at)) r->line += *r->at++ == '\n';
   const char *start = r->at, *p = start;
@@ -37,7 +37,7 @@ static bool read_text(vlPlyReader *r, double *value) {
   return vl_ply_fail(r, "expected a number, found \"%.*s\"", (int)(stop - start < 12 ? stop - start : 12), start);
 }
 
-/* A binary value whose bytes are there. */
+/* A binary value; the caller has checked that its bytes exist. */
 static double load(const char *at, vlPlyType type, vlPlyFormat format) {
   unsigned char b[8];
   uint32_t n = vl_ply_type_size(type);
@@ -89,7 +89,7 @@ bool vl_ply_read_value(vlPlyReader *r, vlPlyType type, double *value) {
   return true;
 }
 
-/* Length of a list, with the bytes of its items known to be there. */
+/* Length of a list. The bytes of its items are checked. */
 bool vl_ply_read_length(vlPlyReader *r, const vlPlyProperty *p, uint64_t *length) {
   double value;
   if (!vl_ply_read_value(r, p->count_type, &value)) return false;
@@ -124,7 +124,7 @@ static bool read_body(vlPlyReader *r) {
   for (uint32_t i = 0; i < r->element_count; i++) {
     const vlPlyElement *e = &r->elements[i];
     uint64_t left = (uint64_t)(r->end - r->at);
-    /* The last value of a text needs no blank after it. */
+    /* The last value of a text file needs no blank after it. */
     if (e->row_size && e->count > (left + 1) / e->row_size)
       return vl_ply_fail(r, "the header promises %llu of element %s, but only %llu bytes follow",
                          (unsigned long long)e->count, e->name, (unsigned long long)left);
@@ -136,7 +136,7 @@ static bool read_body(vlPlyReader *r) {
   return true;
 }
 
-/* Faces that came before their vertices could not be checked on the way. */
+/* Checks the faces that were read before the vertices. */
 static bool check(vlPlyReader *r) {
   const vlPlyMesh *m = r->mesh;
   r->line = 0;
@@ -151,7 +151,7 @@ static bool check(vlPlyReader *r) {
   return true;
 }
 
-/* Arrays without slack, or null when empty. */
+/* Shrinks arrays to their size; empty ones become null. */
 static bool fit(vlPlyReader *r, uint32_t **items, size_t capacity, size_t count) {
   if (count == 0) {
     vl_free(r->context, *items);

@@ -1,4 +1,4 @@
-/* import/ply/ply_header.c: the header of a PLY file to a table of elements and properties; errors. */
+/* import/ply/ply_header.c: the header of a PLY file becomes a table of elements and properties; errors. */
 #include <stdio.h>
 #include <string.h>
 
@@ -27,7 +27,7 @@ typedef struct Words {
   uint32_t count;
 } Words;
 
-/* The next line, cut into words. */
+/* The next line, split into words. */
 static bool next_line(vlPlyReader *r, Words *w) {
   const char *start = r->at;
   while (r->at < r->end && *r->at != '\n' && *r->at != '\r') r->at++;
@@ -146,7 +146,7 @@ static bool read_format(vlPlyReader *r, const Words *w) {
   return true;
 }
 
-/* A row's bytes; in text each value takes a digit and a blank at least. */
+/* Bytes of a row; in a text file at least a digit and a blank per value. */
 static void measure(const vlPlyReader *r, vlPlyElement *e) {
   e->row_size = 0;
   for (uint32_t i = 0; i < e->property_count; i++) {

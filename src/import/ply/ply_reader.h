@@ -1,5 +1,6 @@
-/* import/ply/ply_reader.h: what the files that read PLY share: the header as a small table of elements and properties,
- * and the place in the file. ply_header.c fills the table, ply_rows.c walks vertices and faces, ply.c the whole. */
+/* import/ply/ply_reader.h: types and functions shared by the files that read PLY: the header as a table of elements and
+ * properties, and the position in the file. ply_header.c fills the table, ply_rows.c reads vertices and faces, ply.c
+ * the whole file. */
 #ifndef IMPORT_PLY_PLY_READER_H
 #define IMPORT_PLY_PLY_READER_H
 
@@ -23,7 +24,7 @@ typedef enum vlPlyType {
 
 typedef enum vlPlyFormat { VL_PLY_ASCII, VL_PLY_LITTLE, VL_PLY_BIG } vlPlyFormat;
 
-/* What a property is to us. */
+/* The meaning of a property. */
 typedef enum vlPlyRole {
   VL_PLY_NOTHING,
   VL_PLY_X,
@@ -57,20 +58,20 @@ typedef struct vlPlyElement {
   vlPlyProperty properties[VL_PLY_MAX_PROPERTIES];
   uint32_t property_count;
   bool has_list;
-  uint64_t row_size; /* bytes of a row: exact when there is no list in a binary file, else at least so many */
+  uint64_t row_size; /* bytes of a row: exact for a binary file without lists, otherwise a lower bound */
 } vlPlyElement;
 
 typedef struct vlPlyReader {
   vlContext *context;
   const char *name;
   const char *at, *end;
-  uint32_t line; /* of text; 0 in a binary body */
+  uint32_t line; /* of a text file or header; 0 in binary data */
   vlPlyFormat format;
   vlPlyElement *elements;
   uint32_t element_count;
   vlPlyMesh *mesh;
   bool has_vertices;
-  size_t triangle_capacity, quad_capacity; /* numbers */
+  size_t triangle_capacity, quad_capacity; /* in triangles, in patches */
   VL_ARRAY(uint32_t) face;
   vlError *error;
 } vlPlyReader;
@@ -82,10 +83,10 @@ static inline uint32_t vl_ply_type_size(vlPlyType type) {
 
 bool vl_ply_fail(vlPlyReader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 bool vl_ply_fail_memory(vlPlyReader *r);
-bool vl_ply_read_header(vlPlyReader *r); /* up to the body */
+bool vl_ply_read_header(vlPlyReader *r); /* up to the data */
 /* The next value of that type, text or binary. */
 bool vl_ply_read_value(vlPlyReader *r, vlPlyType type, double *value);
-/* Length of a list, with the bytes of its items known to be there. */
+/* Length of a list. The bytes of its items are checked. */
 bool vl_ply_read_length(vlPlyReader *r, const vlPlyProperty *p, uint64_t *length);
 bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e);
 bool vl_ply_read_faces(vlPlyReader *r, const vlPlyElement *e);

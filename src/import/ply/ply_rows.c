@@ -1,5 +1,6 @@
-/* import/ply/ply_rows.c: vertices and faces of a PLY file. Any layout is read value by value; what nearly all binary
- * files have (floats in rows, triangles of 32-bit indices) goes a fast way, and falls back where something is odd. */
+/* import/ply/ply_rows.c: vertices and faces of a PLY file. Any layout is read value by value. The layout of nearly all
+ * binary files (rows of floats, triangles of 32-bit indices) has a fast path; it falls back to the general path on
+ * anything else. */
 #include <math.h>
 #include <string.h>
 
@@ -22,9 +23,7 @@ static bool not_finite(vlPlyReader *r, uint64_t vertex, vlPlyRole role, double v
   return vl_ply_fail(r, "vertex %llu: %s is not finite (%g)", (unsigned long long)vertex, names[role], value);
 }
 
-/* Whole numbers reach from 0 to the largest of their type; colours are in sRGB, as the programs that write them have
- * it.
- */
+/* Unsigned integers map from [0, largest value]; colours are sRGB, as programs write them. */
 static float color_value(vlPlyType type, bool alpha, double value) {
   double x = type == VL_PLY_U8 ? value / 255 : type == VL_PLY_U16 ? value / 65535 : value;
   if (!isfinite(x)) return (float)x;
@@ -49,8 +48,8 @@ static bool all_finite(const float *v, size_t count) {
   return !wrong;
 }
 
-/* Rows without lists whose coordinates are floats of the machine's own order. false: not such, or a value is not
- * finite: the careful way is to say which. */
+/* Fast path: rows without lists whose coordinates are floats in native byte order. False when the layout is another or
+ * a value is not finite: the general path then reports it. */
 static bool copy_float_rows(vlPlyReader *r, const vlPlyElement *e) {
   vlPlyMesh *m = r->mesh;
   size_t offsets[8] = {0}, at = 0, row = (size_t)e->row_size;
@@ -123,12 +122,12 @@ static bool grow(vlPlyReader *r, uint32_t **items, size_t *capacity, size_t coun
 
 static bool add_face(vlPlyReader *r, const uint32_t *v, uint64_t n) {
   vlPlyMesh *m = r->mesh;
-  if (n < 3) return true; /* points and lines have no surface */
+  if (n < 3) return true; /* points and lines have no area */
   if (n == 4) {
     if (m->quads == 0x3fffffff) return vl_ply_fail(r, "too many faces");
     if (!grow(r, &m->quad_indices, &r->quad_capacity, 4 * ((size_t)m->quads + 1))) return false;
     uint32_t *q = m->quad_indices + 4 * (size_t)m->quads++;
-    q[0] = v[0], q[1] = v[1], q[2] = v[3], q[3] = v[2]; /* around the face to p00 p10 p01 p11 */
+    q[0] = v[0], q[1] = v[1], q[2] = v[3], q[3] = v[2]; /* order around the face to p00 p10 p01 p11 */
     return true;
   }
   for (uint64_t i = 2; i < n; i++) {
@@ -156,8 +155,8 @@ static bool read_corners(vlPlyReader *r, const vlPlyProperty *p, uint64_t face) 
   return add_face(r, r->face.items, n);
 }
 
-/* Triangles of a byte 3 and three 32-bit indices each, nothing else in the rows: as many as come one after the other.
- * Returns the first face that is something else. */
+/* Fast path: rows that hold only a triangle: a byte 3 and three 32-bit indices. Reads as many as follow each other and
+ * returns the first face of another form. */
 static uint64_t copy_triangles(vlPlyReader *r, const vlPlyElement *e) {
   vlPlyMesh *m = r->mesh;
   const vlPlyProperty *p = &e->properties[0];
@@ -183,7 +182,7 @@ bool vl_ply_read_faces(vlPlyReader *r, const vlPlyElement *e) {
   for (uint32_t j = 0; j < e->property_count; j++)
     if (e->properties[j].role == VL_PLY_INDICES) indices = &e->properties[j];
   if (!indices) return vl_ply_fail(r, "faces have no vertex_indices");
-  /* Room for all faces as triangles, if the bytes could be that many. */
+  /* Reserves room for all faces as triangles when the file's bytes could hold that many. */
   uint64_t row = r->format == VL_PLY_ASCII ? e->row_size + 6 : e->row_size + 3 * vl_ply_type_size(indices->type);
   uint64_t likely = (uint64_t)(r->end - r->at) / row;
   if (likely > e->count) likely = e->count;

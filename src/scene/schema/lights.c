@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "base/cookie.h"
+#include "math/elementary.h"
 #include "scene/schema/schema.h"
 
 #define PI 3.14159265358979323846
@@ -102,7 +103,8 @@ static double point_power(const vlLightDef *def, double luminance, double radius
 }
 
 static double spot_power(const vlLightDef *def, double luminance, double radius) {
-  double inner = cos((double)def->cone_angle - (double)def->cone_delta), outer = cos((double)def->cone_angle);
+  double inner = vl_precise_cos((double)def->cone_angle - (double)def->cone_delta),
+         outer = vl_precise_cos((double)def->cone_angle);
   (void)radius;
   return 2 * PI * luminance * ((1 - inner) + 0.5 * (inner - outer));
 }

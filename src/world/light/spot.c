@@ -1,12 +1,11 @@
 /* world/light/spot.c: spot lights (pbrt book 12.2.1), set by scale or by power over the cone. */
-#include <math.h>
-
+#include "math/elementary.h"
 #include "world/light/lights.h"
 
 vlResult vl_compile_light_spot(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,
                                vlError *error) {
-  light->cos_end = cosf(def->cone_angle);
-  light->cos_start = cosf(def->cone_angle - def->cone_delta);
+  light->cos_end = (float)vl_precise_cos(def->cone_angle);
+  light->cos_start = (float)vl_precise_cos(def->cone_angle - def->cone_delta);
   light->cone_squared = def->cone_squared;
   light->has_cone = true;
   float factor = def->scale;

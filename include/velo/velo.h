@@ -1,4 +1,5 @@
-/* velo/velo.h: everything. A program reads: load, build, make, render, develop, write. */
+/** @file
+ * velo/velo.h: everything. A program reads: load, build, make, render, develop, write. */
 #ifndef VELO_VELO_H
 #define VELO_VELO_H
 

@@ -36,8 +36,10 @@ extern "C" {
 
 /** Version of these headers (semantic versioning): the major number. CMakeLists.txt reads the three numbers here. */
 #define VL_VERSION_MAJOR 0
-#define VL_VERSION_MINOR 1 /**< Version of these headers: the minor number. */
-#define VL_VERSION_PATCH 0 /**< Version of these headers: the patch number. */
+/** The minor number. */
+#define VL_VERSION_MINOR 1
+/** The patch number. */
+#define VL_VERSION_PATCH 0
 /** Version of the binary interface: sizes and fields of structs, numbers of enumerators, signatures. It changes with
  * the minor version before 1.0, with the major version from then on; the shared library's SONAME changes with it
  * (libvelo.so.0.1). Each def's cookie carries it: a def of another ABI version is VL_ERROR_ARGUMENT. */

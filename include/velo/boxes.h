@@ -14,20 +14,18 @@ extern "C" {
  * pixels of the crop window count. Boxes of pixels are x0, y0, x1, y1 in the whole image, exclusive, as pixel edges;
  * all 0 when there are no pixels. */
 typedef struct vlIdBox {
-  uint64_t seen, all;   /**< number of pixels that show it; number that would show it if nothing else were there */
-  uint32_t seen_box[4]; /**< around the `seen` pixels */
-  uint32_t all_box[4];  /**< around the `all` pixels */
+  uint64_t seen, all; /**< number of pixels that show it; number that would show it if nothing else were there */
+  uint32_t seen_box[4], all_box[4]; /**< around the `seen` pixels; around the `all` pixels */
   /** Whether `outline` is given. Not when part of the box has no projection (behind the camera), nor for objects that
    * are parts of instances. */
   bool has_outline;
   /** Box around the projections of the eight corners of the box in space: x0, y0, x1, y1 in pixels, may reach beyond
    * the image. */
   double outline[4];
-  bool has_space;            /**< whether the box in space is given */
-  bool grouped;              /**< an object that is part of instances */
-  double low[3], high[3];    /**< corners of the box in space, in its own space */
-  double world_from_box[16]; /**< from that space to the world. Objects: world space, or that of their group, with the
-                              * identity here; instances: the space of their group */
+  bool has_space, grouped; /**< the box in space is given; an object that is part of instances */
+  /** Corners of the box in space, in its own space, and the matrix from that space to the world. Objects: world space,
+   * or that of their group, with the identity here; instances: the space of their group. */
+  double low[3], high[3], world_from_box[16];
 } vlIdBox;
 
 /** What vl_world_boxes computes. */

@@ -186,7 +186,7 @@ VL_API vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *
  * their number is known after the first pass. */
 VL_API uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def);
 
-/* ---- how the image of a scene is taken -- ------------------------------------------------------------------- */
+/* ---- how the image of a scene is taken -------------------------------------------------------------------------- */
 
 /** How the image of a scene is taken: the defs of the calls that take it, each complete and ready to be passed on. A
  * new scene has the defaults of an empty pbrt-v4 file (1280 x 720 pixels); an importer sets what its file gives.

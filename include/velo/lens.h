@@ -30,7 +30,7 @@ VL_API void vl_aperture_destroy(vlAperture *aperture);
  * aperture stop. thickness: along the axis to the next surface. ior: of the material behind the surface, on the film's
  * side; 0 or 1: air. aperture: diameter of the opening. */
 typedef struct vlLensSurface {
-  double radius, thickness, ior, aperture;
+  double radius, thickness, ior, aperture; /**< mm; ior has no unit */
 } vlLensSurface;
 
 /** How to make a lens of many elements. */

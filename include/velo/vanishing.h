@@ -18,7 +18,7 @@ typedef enum vlVanishing {
 
 /** The point where the images of all lines of one direction meet. */
 typedef struct vlVanishingPoint {
-  vlVanishing kind;
+  vlVanishing kind;    /**< which fields below are set */
   bool behind;         /**< the point belongs to -d, the end of the lines in front of the camera */
   double pixel[2];     /**< FINITE; may lie outside the image */
   double direction[2]; /**< INFINITE: unit vector along the lines, x right, y down */

@@ -221,8 +221,9 @@ VL_API vlResult vl_camera_at(const vlCamera *camera, double time, vlCamera *resu
  * pixel's row; 0.5: the middle of its exposure. */
 VL_API double vl_camera_time(const vlCamera *camera, double x, double y, double u);
 
-/** The same camera for another image size, in pixels: focal length and principal point scale with the smaller side, as
- * pbrt frames cameras given by fov. ARGUMENT: a size of 0. */
+/** The same camera for another image size, in pixels, 1 to 2^24: focal length and principal point scale with the
+ * smaller side, as pbrt frames cameras given by fov. Planes of the whole sphere or a cube are stretched to the new
+ * size; OPTICS keeps the film's diagonal. ARGUMENT: another size. */
 VL_API vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t height, vlCamera *result);
 
 /** The pinhole ray through film point (x, y), in pixels: origin and normalised direction in world space, in double

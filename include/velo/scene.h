@@ -80,7 +80,7 @@ VL_API vlSpectrum vl_spectrum_constant(float value);
 VL_API vlSpectrum vl_spectrum_rgb(float r, float g, float b);
 /** A black body at this temperature, in kelvin, normalised to maximum 1. */
 VL_API vlSpectrum vl_spectrum_blackbody(float kelvin);
-/** A spectrum of the library by its name; the string is not copied before the spectrum is used. */
+/** A spectrum of the library by its name; the string must live until a def with it is added. */
 VL_API vlSpectrum vl_spectrum_named(const char *name);
 /** The names of the library's spectra, index from 0; null past the end. Constant. */
 VL_API const char *vl_spectrum_name(uint32_t index);
@@ -540,7 +540,8 @@ typedef enum vlTracer {
   VL_TRACER_LIGHT_PATH, /**< light paths only; finds no light seen through or in smooth surfaces */
   VL_TRACER_RANDOM_WALK /**< samples no lights, scatters uniformly over the sphere; for comparison */
 } vlTracer;
-/** Sample generators. */
+/** Sample generators (src/trace/sampler/sampler.h): the lecture's, and the low-discrepancy ones of pbrt book 8.6-8.7.
+ */
 typedef enum vlSamplerKind {
   VL_SAMPLER_INDEPENDENT,
   VL_SAMPLER_REGULAR,

@@ -118,8 +118,8 @@ typedef struct vlCameraDef {
   /** The shutter curve: how far open the shutter is, linear between its points, closed before the first and after the
    * last. 0 points: open throughout. It distributes the samples over time and does not change the exposure. */
   uint32_t shutter_points;
-  double shutter_at[VL_SHUTTER_POINTS], shutter_value[VL_SHUTTER_POINTS]; /**< points: share of the time from
- open to close, ascending; opening, any unit */
+  /** The points: shares of the time from open to close, ascending; the opening there, in any unit. */
+  double shutter_at[VL_SHUTTER_POINTS], shutter_value[VL_SHUTTER_POINTS];
   double readout; /**< seconds from the first row's exposure to that of a row `height`; 0: all rows at once */
   vlReadout readout_direction; /**< default VL_READOUT_DOWN */
   /** Camera motion: the pose at pose_times[1]; the pose above is that at pose_times[0]. Between them translation,
@@ -146,7 +146,7 @@ typedef struct vlCameraDef {
   vlEye stereo_eye; /**< the eye that vl_camera_make makes; default BOTH */
 } vlCameraDef;
 
-/** The default def for an image of this size, in pixels: a pinhole camera at the origin. */
+/** The default def for an image of this size, in pixels: a pinhole camera at the origin that looks along -z. */
 VL_API vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height);
 
 /** Sets projection, distortion, fx, fy, cx, cy from one of COLMAP's camera models by its name (SIMPLE_PINHOLE, PINHOLE,
@@ -167,8 +167,8 @@ typedef struct vlDistortionMap {
 
 /** A compiled camera (vl_camera_make). Plain data: copy freely; the aperture and optics it points at must outlive it.
  * Fields are as in vlCameraDef, all set. Film point (x, y), pixels from the top left corner:
- *   x_cam = (x - cx - skew (y - cy)/fy)/fx, y_cam = (y - cy)/fy: the point of the projection plane; perspective: z_cam
- * = 1. */
+ *   x_cam = (x - cx - skew (y - cy)/fy)/fx, y_cam = (y - cy)/fy on the projection plane; perspective:
+ *   z_cam = 1. */
 typedef struct vlCamera {
   vlProjection projection;                             /**< the map from directions to the plane */
   uint32_t width, height;                              /**< pixels */
@@ -189,7 +189,7 @@ typedef struct vlCamera {
   vlDistortionMap distortion; /**< compiled distortion */
   double outside;             /**< share of the image, 0 to 1, that is outside the camera's domain */
   double eye_circle; /**< omnidirectional stereo: radius of the eyes' circle, scene units, above 0 for the right eye; 0:
-                        one eye point */
+                      * one eye point */
 } vlCamera;
 
 /** Compiles a def. Errors: ARGUMENT with a message (fov out of range, eye = lookat, parameters that disagree, NaN,

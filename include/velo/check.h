@@ -59,7 +59,7 @@ typedef struct vlCheckDef {
   uint32_t cookie;
   bool names_only; /**< find unused names only; default false */
   bool images;     /**< read the scene's images for their greatest values; default true. Their existence is always
- checked */
+                    * checked */
 } vlCheckDef;
 /** The default def. */
 VL_API vlCheckDef vl_default_check_def(void);

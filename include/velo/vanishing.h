@@ -58,7 +58,7 @@ typedef struct vlVanishingDef {
   uint32_t axes[3];
   bool away[3];  /**< see axes */
   double cx, cy; /**< principal point, pixels; unset: the image's centre (2 points), found (3 points); if given with
- 3 points they must agree */
+                  * 3 points they must agree */
 } vlVanishingDef;
 
 /** The default def for an image of this size, in pixels. */

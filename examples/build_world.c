@@ -1,9 +1,9 @@
-/* build_world: a world made by hand with velo's public API, as the lecture's World::build makes one: a pinhole camera
- * with eye (300, 400, 500), lookat (0, 0, -50) and view-plane distance 400, some spheres on a plane, one lamp.
+/* build_world: builds a world with velo's public API, as the lecture's World::build does, and renders it: a pinhole
+ * camera with eye (300, 400, 500), lookat (0, 0, -50) and view-plane distance 400, three spheres on a plane, one lamp.
  *
- *   build_world IMAGE [IMAGE...]     the suffix chooses the format: .exr is linear light, .png is for the eye
+ *   build_world IMAGE [IMAGE...]     the suffix selects the format: .exr is linear, .png is for displays
  *
- * It is compiled against an installed velo by:
+ * To compile it against an installed velo:
  *   cc -std=c17 build_world.c $(pkg-config --cflags --libs velo) -o build_world
  */
 #include <stdio.h>
@@ -11,7 +11,7 @@
 #include <string.h>
 #include <velo/velo.h>
 
-/* Every fallible call goes through this: one line that says what went wrong, and out. */
+/* Checks the result of a call: on an error, prints one line and exits. */
 static void must(vlResult result, const char *what, const vlError *error) {
   if (result == VL_OK) return;
   fprintf(stderr, "build_world: %s: %s%s%s\n", what, vl_result_name(result), error ? ": " : "",
@@ -39,13 +39,13 @@ static void add_sphere(vlScene *scene, float x, float y, float z, float radius, 
   def.z_min = -radius;
   def.z_max = radius;
   def.material = material;
-  /* Row-major; the last column moves the sphere's centre. */
+  /* Row-major; the last column is the sphere's centre. */
   const double place[16] = {1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1};
   memcpy(def.group_from_shape, place, sizeof place);
   vl_scene_add_shape(scene, &def);
 }
 
-/* The plane y = height, as far as anybody can see: two triangles. */
+/* The plane y = height: a square of side 2 size, as two triangles. */
 static void add_plane(vlScene *scene, float height, float size, vlMaterialId material) {
   const float positions[] = {-size, height, -size, -size, height, size, size, height, size, size, height, -size};
   const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
@@ -58,7 +58,7 @@ static void add_plane(vlScene *scene, float height, float size, vlMaterialId mat
   vl_scene_add_shape(scene, &def);
 }
 
-/* A disk that shines downwards, and a faint sky. */
+/* A disk that emits light downwards, and a faint sky. */
 static void add_light(vlScene *scene, vlMaterialId black) {
   vlEmissionDef emission = vl_default_emission_def();
   emission.radiance = vl_spectrum_blackbody(5000);
@@ -68,7 +68,7 @@ static void add_light(vlScene *scene, vlMaterialId black) {
   lamp.radius = 180;
   lamp.material = black;
   lamp.emission = vl_scene_add_emission(scene, &emission);
-  /* The disk's z, its normal, becomes -y; it hangs at (150, 600, 150). */
+  /* The disk's normal, z, becomes -y; its centre is at (150, 600, 150). */
   const double place[16] = {1, 0, 0, 150, 0, 0, -1, 600, 0, 1, 0, 150, 0, 0, 0, 1};
   memcpy(lamp.group_from_shape, place, sizeof place);
   vl_scene_add_shape(scene, &lamp);
@@ -79,7 +79,7 @@ static void add_light(vlScene *scene, vlMaterialId black) {
   vl_scene_add_light(scene, &sky);
 }
 
-/* World::build. */
+/* The lecture's World::build. */
 static void build(vlScene *scene) {
   vlMaterialId ground = add_matte(scene, 0.45f, 0.45f, 0.42f);
   vlMaterialId red = add_matte(scene, 0.75f, 0.12f, 0.08f);
@@ -92,7 +92,7 @@ static void build(vlScene *scene) {
   add_light(scene, ground);
 }
 
-/* set_eye, set_lookat, set_viewdistance, compute_uvw: one description, compiled once. */
+/* The lecture's set_eye, set_lookat, set_viewdistance and compute_uvw: one description, compiled once. */
 static vlCamera pinhole(uint32_t width, uint32_t height, double zoom) {
   vlCameraDef def = vl_default_camera_def(width, height);
   const double eye[3] = {300, 400, 500}, lookat[3] = {0, 0, -50};
@@ -129,7 +129,7 @@ int main(int count, char **arguments) {
   vlWorld *world = NULL;
   vlBuildDef build_def = vl_default_build_def();
   must(vl_world_build(scene, &build_def, &world, &error), "world", &error);
-  vl_scene_destroy(scene); /* the world needs it no more */
+  vl_scene_destroy(scene); /* the world does not need it */
 
   vlCamera camera = pinhole(WIDTH, HEIGHT, 1.5);
 

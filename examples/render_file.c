@@ -1,9 +1,9 @@
-/* render_file: the shortest way from a scene's file to an image, by velo's public API: everything is taken as the file
- * says, so that the image has the bytes that `velo render SCENE -o IMAGE` gives.
+/* render_file: the shortest program that renders a scene file with velo's public API. It uses the settings in the file,
+ * so the image has the same bytes as that of `velo render SCENE -o IMAGE`.
  *
- *   render_file SCENE IMAGE     the suffix of IMAGE chooses the format: .exr, .pfm: linear light
+ *   render_file SCENE IMAGE     the suffix of IMAGE selects the format; .exr and .pfm are linear
  *
- * It is compiled against an installed velo by:
+ * To compile it against an installed velo:
  *   cc -std=c17 render_file.c $(pkg-config --cflags --libs velo) -o render_file
  */
 #include <stdio.h>
@@ -18,9 +18,10 @@ static vlResult render_file(vlContext *context, const char *path, const char *re
 
   vlResult result = vl_scene_create(context, &scene);
   if (result == VL_OK) result = vl_scene_load(scene, path, NULL, error);
-  if (result == VL_OK) result = vl_scene_complete(scene, NULL, error); /* a camera and light, where the file has none */
+  if (result == VL_OK)
+    result = vl_scene_complete(scene, NULL, error); /* adds a camera and light if the file has none */
   if (result == VL_OK) {
-    vlSceneDefs *defs = vl_scene_defs(scene); /* what the file says; may be changed here */
+    vlSceneDefs *defs = vl_scene_defs(scene); /* the file's settings; may be changed here */
     result = vl_world_build(scene, &defs->build, &world, error);
     if (result == VL_OK) result = vl_camera_make(&defs->camera, &camera, NULL, error);
     if (result == VL_OK) result = vl_film_create(context, &defs->film, &film);

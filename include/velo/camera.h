@@ -1,5 +1,6 @@
-/* velo/camera.h: the camera, a value. Four independent factors: time, projection (intrinsics), lens, pose. Both ways:
- * pixels to rays and points to pixels. It knows neither world nor film. */
+/** @file
+ * velo/camera.h: the camera, a value. Four independent factors: time, projection (intrinsics), lens, pose. It maps
+ * pixels to rays and points to pixels, and knows neither world nor film. */
 #ifndef VELO_CAMERA_H
 #define VELO_CAMERA_H
 
@@ -10,9 +11,9 @@
 extern "C" {
 #endif
 
-/* Which point of the plane a direction lands on: docs/cameras.md has the equations. The plane's unit is the focal
+/** Which point of the plane a direction lands on: docs/cameras.md has the equations. The plane's unit is the focal
  * length (fx, fy pixels); for angles it is a radian. */
-/* X(NAME, name) for each projection; what pbrt files call it: velo/schema.h. */
+/** X(NAME, name) for each projection; what pbrt files call it: velo/schema.h. */
 #define VL_PROJECTION_KINDS(X)                                                                                    \
   X(PERSPECTIVE, perspective)                                                                                     \
   X(ORTHOGRAPHIC, orthographic)                                                                                   \
@@ -37,24 +38,25 @@ typedef enum vlProjection {
 #undef VL_KIND
 } vlProjection;
 
-/* "perspective", "equidistant fisheye", ...; "unknown" for another number. */
+/** "perspective", "equidistant fisheye", ...; a constant string; "unknown" for another number. */
 VL_API const char *vl_projection_name(vlProjection projection);
 
-/* How a calibrated lens's coefficients are written. They act on the plane of the projection. */
+/** The distortion model of a calibrated lens and the order of its coefficients. It acts on the projection plane. */
 typedef enum vlDistortion {
-  VL_DISTORTION_NONE,
-  VL_DISTORTION_OPENCV,    /* k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]]: 4, 5, 8, 12 or 14 numbers */
-  VL_DISTORTION_RADIAL,    /* k1 [k2 [k3 [k4]]]: with EQUIDISTANT it is OpenCV's and COLMAP's fisheye */
-  VL_DISTORTION_THIN_PRISM /* COLMAP's k1 k2 p1 p2 k3 k4 sx1 sy1 */
+  VL_DISTORTION_NONE,      /**< ideal */
+  VL_DISTORTION_OPENCV,    /**< k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]]: 4, 5, 8, 12 or 14 numbers */
+  VL_DISTORTION_RADIAL,    /**< k1 [k2 [k3 [k4]]]; with EQUIDISTANT: OpenCV's and COLMAP's fisheye */
+  VL_DISTORTION_THIN_PRISM /**< COLMAP's k1 k2 p1 p2 k3 k4 sx1 sy1 */
 } vlDistortion;
 
+/** The extent of the image that vlCameraDef.fov spans. SMALLER and LARGER: of width and height. */
 typedef enum vlFovAxis { VL_FOV_VERTICAL, VL_FOV_HORIZONTAL, VL_FOV_DIAGONAL, VL_FOV_SMALLER, VL_FOV_LARGER } vlFovAxis;
 
-/* Two eyes from one camera: it stands between them, the eyes half of `interocular` to its left and right.
- * PARALLEL: the axes are parallel. OFF_AXIS: they too, and both windows are shifted so that they meet at the distance
- * `convergence`: a rectangle that both see whole, without keystone (perspective without distortion only). TOE_IN: the
- * eyes are turned until their axes cross there. OMNIDIRECTIONAL: each direction has its own eye on a circle about the
- * camera's vertical axis, so that all of a panorama has depth (equirectangular, cylindrical, equal-area, cube); its
+/** The arrangement of two cameras (eyes), `interocular` apart, half of it to the left and right of the described
+ * camera. PARALLEL: parallel axes. OFF_AXIS: parallel axes, and windows shifted so that both images have the same
+ * rectangle at the distance `convergence`, without keystone (perspective without distortion only). TOE_IN: the eyes are
+ * turned until their axes cross at that distance. OMNIDIRECTIONAL: each direction has its own eye on a circle around
+ * the camera's vertical axis, so that a whole panorama has depth (equirectangular, cylindrical, equal-area, cube); the
  * eyes converge at infinity. */
 typedef enum vlStereoMode {
   VL_STEREO_NONE,
@@ -63,174 +65,191 @@ typedef enum vlStereoMode {
   VL_STEREO_TOE_IN,
   VL_STEREO_OMNIDIRECTIONAL
 } vlStereoMode;
-/* Which image a camera takes; BOTH: from between them, until vl_camera_stereo or vl_camera_eye makes two. */
+/** The eye of a camera. BOTH: the described camera between them, from which vl_camera_stereo and vl_camera_eye make the
+ * two. */
 typedef enum vlEye { VL_EYE_BOTH, VL_EYE_LEFT, VL_EYE_RIGHT } vlEye;
+/** A stereo pair. */
 typedef struct vlStereo {
-  vlStereoMode mode;
-  double interocular; /* between the eyes, scene units; default 0.065 (metres, a grown person's) */
-  double convergence; /* z where the axes or windows meet, scene units; unset: infinity. OFF_AXIS and TOE_IN need it */
+  vlStereoMode mode;  /**< default VL_STEREO_NONE */
+  double interocular; /**< distance between the eyes, scene units; default 0.065 (an adult's, in metres) */
+  double convergence; /**< z where the axes or windows meet, scene units; unset: infinity. OFF_AXIS and TOE_IN
+                       * require it */
 } vlStereo;
 
-/* A rolling shutter: which way the rows (or columns) of the sensor are read, one after the other. */
+/** The direction in which a rolling shutter reads the rows (DOWN, UP) or columns (RIGHT, LEFT) of the sensor. */
 typedef enum vlReadout { VL_READOUT_DOWN, VL_READOUT_UP, VL_READOUT_RIGHT, VL_READOUT_LEFT } vlReadout;
+/** The most points of a shutter curve. */
 enum { VL_SHUTTER_POINTS = 16 };
 
-/* Several equivalent ways in, one compiled form out. Everything optional is VL_UNSET. Ways that are given together must
- * agree (1e-6 relative), else ARGUMENT with both values named in the error.
+/** The description of a camera: several equivalent parameterisations, one compiled form (vlCamera). Everything optional
+ * is VL_UNSET. Parameters that determine the same quantity must agree (1e-6 relative); otherwise ARGUMENT, and the
+ * error names both values.
  *
  * Focal length, any of: fov + fov_axis; view_distance d, zoom, pixel_size s (f_px = zoom d / s, the lecture);
  * focal_mm + sensor_width_mm; fx, fy in pixels. Principal point cx, cy in pixels from the window's top left corner;
- * default the centre. fov is that of a centred window. With no way given: fov 90 degrees across the smaller side. zoom
- * and pixel_size act on d only: given without it they are an error. fx alone or fy alone, focal_mm: square pixels.
- * Orthographic: fx, fy (pixels per scene unit); pixel_size (scene units per pixel) with zoom; or screen_* in scene
- * units; default -1 to 1 across the smaller side.
+ * default the centre. fov is that of a centred window. With nothing given: fov 90 degrees across the smaller side. zoom
+ * and pixel_size are errors without view_distance. fx alone, fy alone and focal_mm imply square pixels. Orthographic:
+ * fx, fy (pixels per scene unit); pixel_size (scene units per pixel) with zoom; or screen_* in scene units; default -1
+ * to 1 across the smaller side.
  *
  * Pose: eye, lookat, up, roll (the lecture); or world_from_camera (then eye, lookat, up are ignored).
  *
- * Time: a sample of pixel row r of `height`, counted in the direction of readout, falls at
- *   shutter_open + r/height readout + s (shutter_close - shutter_open), s in [0, 1) spread as the shutter's curve says.
+ * Time: a sample of pixel row r of `height`, counted in the direction of readout, is taken at
+ *   shutter_open + r/height readout + s (shutter_close - shutter_open), s in [0, 1) distributed by the shutter curve.
  */
 typedef struct vlCameraDef {
   uint32_t cookie;
-  vlProjection projection;
-  uint32_t width, height; /* pixels: h_res, v_res */
+  vlProjection projection; /**< default VL_PROJECTION_PERSPECTIVE */
+  uint32_t width, height;  /**< pixels: h_res, v_res */
 
-  double fov; /* radians */
-  vlFovAxis fov_axis;
-  double view_distance, zoom, pixel_size; /* d, zoom (unset: 1), s (unset: 1) of the lecture */
-  double focal_mm, sensor_width_mm;
-  double fx, fy, skew, cx, cy;
+  double fov;                             /**< field of view, radians */
+  vlFovAxis fov_axis;                     /**< what fov spans */
+  double view_distance, zoom, pixel_size; /**< d, zoom (unset: 1), s (unset: 1) of the lecture */
+  double focal_mm, sensor_width_mm;       /**< focal length and sensor width, millimetres */
+  double fx, fy, skew, cx, cy;            /**< calibration matrix, pixels: K = [fx skew cx; 0 fy cy; 0 0 1] */
   double screen_min_x, screen_max_x, screen_min_y,
-      screen_max_y; /* pbrt's screenwindow (y up, at distance 1, before fov) */
+      screen_max_y; /**< pbrt's screenwindow: y up, at distance 1, before fov */
 
-  double eye[3], lookat[3], up[3];
-  double roll; /* radians about the view direction; positive turns the camera clockwise as seen from behind it */
-  bool has_matrix;
-  double world_from_camera[16]; /* camera x right, y down, z forward; may mirror or scale */
+  double eye[3], lookat[3], up[3]; /**< world space: position, a point on the view axis, the direction of image up */
+  double roll;     /**< radians about the view direction; positive turns the camera clockwise as seen from behind it */
+  bool has_matrix; /**< world_from_camera is given, in place of eye, lookat, up */
+  double world_from_camera[16]; /**< camera x right, y down, z forward; may mirror or scale */
 
-  double lens_radius;    /* scene units; 0 pinhole */
-  double focus_distance; /* z of the plane in focus (distance from the eye, as the planes below), scene units; unset:
-                          * infinity, or what `lens` says */
-  vlLensDef lens;
-  double shutter_open, shutter_close; /* seconds; default 0, 1 */
-  /* How far open the shutter is: straight between points (share of the time from open to close, ascending; any unit),
-   * shut before the first and after the last. 0 points: open throughout. Says when light comes, not how much. */
+  double lens_radius;    /**< radius of the aperture, scene units; 0: pinhole */
+  double focus_distance; /**< z of the plane in focus (or distance from the eye, as near_plane), scene units; unset:
+                          * infinity, or by `lens` */
+  vlLensDef lens;        /**< aperture shape, tilt, f-number, lenses of many elements */
+  double shutter_open, shutter_close; /**< seconds; default 0, 1 */
+  /** The shutter curve: how far open the shutter is, linear between its points, closed before the first and after the
+   * last. 0 points: open throughout. It distributes the samples over time and does not change the exposure. */
   uint32_t shutter_points;
+  /** The points: shares of the time from open to close, ascending; the opening there, in any unit. */
   double shutter_at[VL_SHUTTER_POINTS], shutter_value[VL_SHUTTER_POINTS];
-  double readout; /* seconds from the first row's exposure to the (not existing) one after the last; 0: all at once */
-  vlReadout readout_direction;
-  /* A camera that moves: its pose at pose_times[1]; all above is that at pose_times[0]. Between them position, rotation
-   * and stretch each go their own way (rotation by the shortest arc, evenly), before and after it rests. What is unset
-   * is as above; with a matrix only has_matrix_close, world_from_camera_close and roll_close count. pose_times in
-   * seconds; unset: shutter_open and shutter_close + readout. */
+  double readout; /**< seconds from the first row's exposure to that of a row `height`; 0: all rows at once */
+  vlReadout readout_direction; /**< default VL_READOUT_DOWN */
+  /** Camera motion: the pose at pose_times[1]; the pose above is that at pose_times[0]. Between them translation,
+   * rotation (the shortest arc, at constant speed) and scale are interpolated separately; outside them the camera is at
+   * rest. Unset vectors are as above; with has_matrix_close only world_from_camera_close and roll_close are used. */
   double eye_close[3], lookat_close[3], up_close[3], roll_close;
-  bool has_matrix_close;
+  bool has_matrix_close; /**< world_from_camera_close is given */
+  /** The pose at pose_times[1]; the times, seconds; unset: shutter_open and shutter_close + readout. */
   double world_from_camera_close[16], pose_times[2];
-  double exposure_time; /* a factor on radiance, as in the lecture; default 1 */
-  /* z in camera space; distance from the eye for projections that can look back (all but perspective, orthographic,
-   * the orthographic fisheye, FOV and OPTICS). Default 0, infinity. Cut what the camera sees, nothing else */
+  double exposure_time; /**< factor on radiance, as in the lecture; default 1 */
+  /** Clipping of what the camera sees, scene units: z in camera space; distance from the eye for projections that can
+   * see backwards (all but perspective, orthographic, the orthographic fisheye, FOV and OPTICS). Default 0, infinity.
+   * Other rays are not clipped. */
   double near_plane, far_plane;
 
-  double shape[2];  /* the projection's own numbers; unset: Panini 1, cube 0, the others must be given */
-  double max_angle; /* fisheyes and calibrated models: the image circle, radians from the axis; unset: as far as the
-                     * projection goes, or half of fov where a fisheye's fov is given or its default (180 degrees) */
-  vlDistortion distortion;
-  uint32_t distortion_count;
-  double distortion_coefficients[14];
+  double shape[2];  /**< parameters of the projection (vlProjection); unset: Panini 1, cube 0, others are required */
+  double max_angle; /**< fisheyes and calibrated models: radius of the image circle, radians from the axis; unset: the
+                     * projection's limit, or half of a fisheye's fov (given, or its default of 180 degrees) */
+  vlDistortion distortion;            /**< default none */
+  uint32_t distortion_count;          /**< number of coefficients */
+  double distortion_coefficients[14]; /**< in the order of vlDistortion */
 
-  vlStereo stereo;
-  vlEye stereo_eye;
+  vlStereo stereo;  /**< default none */
+  vlEye stereo_eye; /**< the eye that vl_camera_make makes; default BOTH */
 } vlCameraDef;
 
+/** The default def for an image of this size, in pixels: a pinhole camera at the origin that looks along -z. */
 VL_API vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height);
 
-/* Sets projection, distortion, fx, fy, cx, cy from one of COLMAP's camera models by its name (SIMPLE_PINHOLE, PINHOLE,
+/** Sets projection, distortion, fx, fy, cx, cy from one of COLMAP's camera models by its name (SIMPLE_PINHOLE, PINHOLE,
  * SIMPLE_RADIAL, RADIAL, OPENCV, OPENCV_FISHEYE, FULL_OPENCV, FOV, SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE,
  * THIN_PRISM_FISHEYE) with its parameters in COLMAP's order. COLMAP's first pixel is centred at (0.5, 0.5), as here.
- * ARGUMENT: an unknown name (the nearest is told), a wrong count. */
+ * ARGUMENT: an unknown name (the message has the nearest), a wrong count. */
 VL_API vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double *parameters, uint32_t count,
                                      vlError *error);
 
-/* The distortion in one form (equations in docs/cameras.md), made by vl_camera_make. */
+/** The distortion in one form (equations in docs/cameras.md), made by vl_camera_make. */
 typedef struct vlDistortionMap {
+  /** Rational radial (k1 k2 k3 .. over k4 k5 k6), tangential and thin prism coefficients. */
   double numerator[4], denominator[3], tangential[2], prism[4];
-  double tilt[9], untilt[9]; /* row-major homographies */
-  double radius;             /* of the disc of the plane around its centre inside which nothing folds */
-  uint32_t steps;            /* of Newton's method that the inverse takes everywhere in it; 0: no distortion */
+  double tilt[9], untilt[9]; /**< row-major homographies of a tilted sensor and their inverse */
+  double radius;             /**< of the disc of the plane, around its centre, where the map is one-to-one */
+  uint32_t steps;            /**< Newton iterations of the inverse that suffice in that disc; 0: no distortion */
 } vlDistortionMap;
 
-/* Compiled. Plain data: copy freely. Pixel (x, y), column and row from the top left corner:
- *   x_cam = (x - cx - skew (y - cy)/fy)/fx, y_cam = (y - cy)/fy: the point of the plane; perspective: z_cam = 1. */
+/** A compiled camera (vl_camera_make). Plain data: copy freely; the aperture and optics it points at must outlive it.
+ * Fields are as in vlCameraDef, all set. Film point (x, y), pixels from the top left corner:
+ *   x_cam = (x - cx - skew (y - cy)/fy)/fx, y_cam = (y - cy)/fy on the projection plane; perspective:
+ *   z_cam = 1. */
 typedef struct vlCamera {
-  vlProjection projection;
-  uint32_t width, height;
-  double fx, fy, skew, cx, cy;
-  double world_from_camera[16], camera_from_world[16];
-  double lens_radius, focus_distance;
-  vlLens lens;
-  double shutter_open, shutter_close, exposure_time, near_plane, far_plane;
-  uint32_t shutter_points;
-  double shutter_at[VL_SHUTTER_POINTS], shutter_value[VL_SHUTTER_POINTS];
-  double readout;
-  vlReadout readout_direction;
-  bool moves;                         /* from world_from_camera at pose_times[0] to */
-  double world_from_camera_close[16]; /* at pose_times[1] */
-  double pose_times[2];
-  double shape[2];
-  double limit; /* radius of the plane's valid disc: image circle, the model's own end; infinity */
-  vlDistortionMap distortion;
-  double outside;    /* share of the image that sees nothing */
-  double eye_circle; /* omnidirectional stereo: the circle's radius, above 0 for the right eye; 0: one eye point */
+  vlProjection projection;                             /**< the map from directions to the plane */
+  uint32_t width, height;                              /**< pixels */
+  double fx, fy, skew, cx, cy;                         /**< pixels */
+  double world_from_camera[16], camera_from_world[16]; /**< the pose (at pose_times[0]) and its inverse */
+  double lens_radius, focus_distance;                  /**< scene units */
+  vlLens lens;                                         /**< compiled lens */
+  double shutter_open, shutter_close, exposure_time, near_plane, far_plane; /**< seconds; factor; scene units */
+  uint32_t shutter_points;                                                  /**< of the shutter curve */
+  double shutter_at[VL_SHUTTER_POINTS], shutter_value[VL_SHUTTER_POINTS];   /**< the shutter curve */
+  double readout;                                                           /**< seconds */
+  vlReadout readout_direction;                                              /**< of the rolling shutter */
+  bool moves;                                                               /**< whether the camera has a second pose */
+  double world_from_camera_close[16];                                       /**< the pose at pose_times[1] */
+  double pose_times[2];                                                     /**< seconds */
+  double shape[2];                                                          /**< parameters of the projection */
+  double limit; /**< radius of the plane's valid disc (image circle, limit of the model); may be infinity */
+  vlDistortionMap distortion; /**< compiled distortion */
+  double outside;             /**< share of the image, 0 to 1, that is outside the camera's domain */
+  double eye_circle; /**< omnidirectional stereo: radius of the eyes' circle, scene units, above 0 for the right eye; 0:
+                      * one eye point */
 } vlCamera;
 
-/* Errors: ARGUMENT with a message (fov out of range, eye = lookat, disagreeing ways, NaN, singular matrix).
- * up parallel to the view direction: a defined fallback basis, and *warning set to a static text (may be null).
- * So too when a lens's distortion folds inside the image, or its model ends there: `outside` then tells the share of
- * the image that sees nothing. */
+/** Compiles a def. Errors: ARGUMENT with a message (fov out of range, eye = lookat, parameters that disagree, NaN,
+ * singular matrix). *warning (may be null) is set to a constant string or null: when up is parallel to the view
+ * direction (a defined fallback is used); when the distortion is not one-to-one inside the image, or the model ends
+ * there: `outside` is then the share of the image without rays. */
 VL_API vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error);
 
-/* One eye of a camera that stands between them; BOTH: the camera itself. Any number of cameras from one. ARGUMENT: a
- * mode that the projection cannot have, a number out of range. */
+/** One eye of a stereo pair, from the camera between them; BOTH: the camera itself. ARGUMENT: a mode that the
+ * projection cannot have, a number out of range. */
 VL_API vlResult vl_camera_eye(const vlCamera *camera, const vlStereo *stereo, vlEye eye, vlCamera *result,
                               vlError *error);
-/* Both eyes of a def, whatever its `stereo_eye`; warning as in vl_camera_make. ARGUMENT: a def without stereo, too. */
+/** Both eyes of a def, whatever its `stereo_eye`; warning as in vl_camera_make. ARGUMENT also for a def without stereo.
+ */
 VL_API vlResult vl_camera_stereo(const vlCameraDef *def, vlCamera *left, vlCamera *right, const char **warning,
                                  vlError *error);
-/* The same camera elsewhere: only its pose changes, and nothing is measured anew; cheap enough for each frame of a
- * trajectory. ARGUMENT: not finite, singular. */
+/** The same camera with another pose, at rest. Nothing else is computed again, so it is cheap enough for each frame of
+ * a trajectory. ARGUMENT: a matrix that is not finite or singular. */
 VL_API vlResult vl_camera_move(const vlCamera *camera, const double world_from_camera[16], vlCamera *result,
                                vlError *error);
-/* The same on the way from one pose at times[0] to another at times[1], seconds: blurred by its motion. ARGUMENT: as
- * above; one pose mirrors and the other does not; times that do not ascend. */
+/** The same camera moving from the pose `open` at times[0] to the pose `close` at times[1], in seconds: for motion
+ * blur. ARGUMENT: a matrix that is not finite or singular; only one pose mirrors; times that do not ascend. */
 VL_API vlResult vl_camera_travel(const vlCamera *camera, const double open[16], const double close[16],
                                  const double times[2], vlCamera *result, vlError *error);
-/* The camera held at one time, in seconds: at rest where it is then, its shutter open for that instant, all rows at
- * once. What moves in the world is seen as it is then. ARGUMENT: null, time not finite. */
+/** The camera frozen at one time, in seconds: at rest with its pose at that time, its shutter open for that instant,
+ * all rows at once. Moving objects are seen at that time, too. ARGUMENT: null, time not finite. */
 VL_API vlResult vl_camera_at(const vlCamera *camera, double time, vlCamera *result);
-/* When light falls on the pixel around film point (x, y): u in [0, 1] is the share of it that came before; 0.5: the
- * middle of that pixel's exposure. */
+/** The time, in seconds, of a sample at film point (x, y), in pixels: the quantile u in [0, 1] of the exposure of that
+ * pixel's row; 0.5: the middle of its exposure. */
 VL_API double vl_camera_time(const vlCamera *camera, double x, double y, double u);
 
-/* The same camera for another resolution: the framing of the smaller field of view is kept as pbrt keeps it for fov
- * cameras: focal length and principal point scale with the smaller image side. */
+/** The same camera for another image size, in pixels, 1 to 2^24: focal length and principal point scale with the
+ * smaller side, as pbrt frames cameras given by fov. Planes of the whole sphere or a cube are stretched to the new
+ * size; OPTICS keeps the film's diagonal. ARGUMENT: another size. */
 VL_API vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t height, vlCamera *result);
 
-/* One ray, in double: pinhole direction through film point (x, y) in pixels; direction normalised, world space.
- * false outside the domain. All that follow see a camera that moves where it is at pose_times[0]; ask vl_camera_at for
- * another time. */
+/** The pinhole ray through film point (x, y), in pixels: origin and normalised direction in world space, in double
+ * precision. Returns false outside the domain. This function and the following use the pose at pose_times[0]; use
+ * vl_camera_at for another time. */
 VL_API bool vl_camera_unproject(const vlCamera *camera, double x, double y, double origin[3], double direction[3]);
-/* World point to film point; z is the depth along the view axis. false behind the camera or outside the domain. */
+/** The film point, in pixels, of a world point; *z: its depth along the view axis, scene units (may be null). Returns
+ * false behind the camera or outside the domain. */
 VL_API bool vl_camera_project(const vlCamera *camera, const double point[3], double pixel[2], double *z);
 
-/* The same for arrays of triples and pairs, the same bits as one by one. valid[i] is 1 or 0; where it is 0 the other
- * outputs are 0. z, origins and valid may be null. */
+/** vl_camera_unproject for `count` pairs of `pixels`, with the same bits: triples of origins (may be null) and
+ * directions. valid[i] (may be null) is 1, or 0 where the other outputs are 0. */
 VL_API void vl_camera_unproject_batch(const vlCamera *camera, size_t count, const double *pixels, double *origins,
                                       double *directions, uint8_t *valid);
+/** vl_camera_project for `count` triples of `points`, with the same bits: pairs of pixels, and z (may be null).
+ * valid[i] (may be null) is 1, or 0 where the other outputs are 0. */
 VL_API void vl_camera_project_batch(const vlCamera *camera, size_t count, const double *points, double *pixels,
                                     double *z, uint8_t *valid);
 
-/* Solid angle (steradians) that a pixel-sized square of the film around (x, y) sees, by the derivative there; 0 outside
- * the domain and for orthographic cameras. A matrix that mirrors or scales does not enter. */
+/** Solid angle, in steradians, of the pixel-sized square of the film around (x, y), by the derivative there; 0 outside
+ * the domain and for orthographic cameras. Mirroring and scaling of the pose are ignored. */
 VL_API double vl_camera_solid_angle(const vlCamera *camera, double x, double y);
 
 #ifdef __cplusplus

@@ -1,6 +1,7 @@
-/* velo/camera_file.h: cameras in the files of other tools, read and written. docs/camera-files.md says for every
- * dialect what it holds, its axes and its pixel origin; everything is brought to velo's: x right, y down, z forward,
- * the first pixel's centre at (0.5, 0.5). What a dialect cannot hold is refused by name, never dropped silently. */
+/** @file
+ * velo/camera_file.h: reads and writes the camera files of other tools. docs/camera-files.md gives each dialect's
+ * contents, axes and pixel origin; everything is converted to velo's: x right, y down, z forward, the first pixel's
+ * centre at (0.5, 0.5). A field that a dialect cannot hold is an error that names it, never dropped silently. */
 #ifndef VELO_CAMERA_FILE_H
 #define VELO_CAMERA_FILE_H
 
@@ -10,54 +11,61 @@
 extern "C" {
 #endif
 
+/** File formats for cameras. */
 typedef enum vlCameraDialect {
-  VL_CAMERA_DIALECT_AUTO,    /* reading: by content and name; writing: by the file's suffix where that is clear */
-  VL_CAMERA_DIALECT_VELO,    /* JSON; holds everything, exactly */
-  VL_CAMERA_DIALECT_OPENCV,  /* YAML or JSON, also FileStorage's */
-  VL_CAMERA_DIALECT_ROS,     /* camera_info YAML */
-  VL_CAMERA_DIALECT_COLMAP,  /* folder with cameras.txt and images.txt, or one of them */
-  VL_CAMERA_DIALECT_NERF,    /* transforms.json */
-  VL_CAMERA_DIALECT_KALIBR,  /* camchain YAML */
-  VL_CAMERA_DIALECT_BLENDER, /* JSON of Blender's own property names */
-  VL_CAMERA_DIALECT_PBRT,    /* written only: Transform and Camera statements; scenes are read by vl_scene_load */
-  VL_CAMERA_DIALECT_GLTF,    /* a node with a camera; .glb is read too */
-  VL_CAMERA_DIALECT_OPENGL,  /* projection and view matrix, as JSON or YAML; conventions stated */
-  VL_CAMERA_DIALECT_VULKAN,
-  VL_CAMERA_DIALECT_D3D,
-  VL_CAMERA_DIALECT_MITSUBA, /* a sensor in Mitsuba 3's XML */
-  VL_CAMERA_DIALECT_USD,     /* a Camera in USD's text form, .usda */
-  VL_CAMERA_DIALECT_EXR,     /* the header of an image that the program velo rendered; read by that program alone */
-  VL_CAMERA_DIALECT_COUNT
+  VL_CAMERA_DIALECT_AUTO,    /**< reading: by content and name; writing: by the suffix, where that is unambiguous */
+  VL_CAMERA_DIALECT_VELO,    /**< JSON; holds everything, exactly */
+  VL_CAMERA_DIALECT_OPENCV,  /**< YAML or JSON, also FileStorage's */
+  VL_CAMERA_DIALECT_ROS,     /**< camera_info YAML */
+  VL_CAMERA_DIALECT_COLMAP,  /**< folder with cameras.txt and images.txt, or one of them */
+  VL_CAMERA_DIALECT_NERF,    /**< transforms.json */
+  VL_CAMERA_DIALECT_KALIBR,  /**< camchain YAML */
+  VL_CAMERA_DIALECT_BLENDER, /**< JSON of Blender's own property names */
+  VL_CAMERA_DIALECT_PBRT,    /**< write only: Transform and Camera statements; scenes are read by vl_scene_load */
+  VL_CAMERA_DIALECT_GLTF,    /**< a node with a camera; .glb is read too */
+  VL_CAMERA_DIALECT_OPENGL,  /**< projection and view matrix, as JSON or YAML; conventions stated */
+  VL_CAMERA_DIALECT_VULKAN,  /**< as OPENGL, with Vulkan's conventions */
+  VL_CAMERA_DIALECT_D3D,     /**< as OPENGL, with Direct3D's conventions */
+  VL_CAMERA_DIALECT_MITSUBA, /**< a sensor in Mitsuba 3's XML */
+  VL_CAMERA_DIALECT_USD,     /**< a Camera in USD's text form, .usda */
+  VL_CAMERA_DIALECT_EXR,     /**< the header of an image rendered by the program velo; only that program reads it */
+  VL_CAMERA_DIALECT_COUNT    /**< number of dialects */
 } vlCameraDialect;
 
-/* "velo", "opencv", ...; null outside the range. */
+/** "velo", "opencv", ...; a constant string; null outside the range. */
 VL_API const char *vl_camera_dialect_name(vlCameraDialect dialect);
 
+/** How to read or write a camera file. */
 typedef struct vlCameraFileDef {
   uint32_t cookie;
-  vlCameraDialect dialect;
-  const char *frame;       /* of files with several cameras or poses: its name or its number from 0; null: the first */
-  const char *const *drop; /* fields that writing may leave out */
-  uint32_t drop_count;
-  uint32_t width, height; /* the image's, for dialects that hold none (glTF); 0: 720 rows of the file's aspect ratio */
+  vlCameraDialect dialect; /**< default VL_CAMERA_DIALECT_AUTO */
+  const char
+      *frame; /**< which camera or pose of a file with several: its name, or its number from 0; null: the first */
+  const char *const *drop; /**< names of fields that writing may drop */
+  uint32_t drop_count;     /**< length of drop */
+  uint32_t width,
+      height; /**< pixels, for dialects without an image size (glTF); 0: 720 rows of the file's aspect ratio */
 } vlCameraFileDef;
 
+/** The default def. */
 VL_API vlCameraFileDef vl_default_camera_file_def(void);
 
+/** A camera as read from a file, or to be written to one. */
 typedef struct vlCameraRecord {
-  vlCameraDef camera;
-  vlCameraDialect dialect; /* that it was read as */
-  uint32_t frames;         /* that the file holds */
-  bool size_assumed;       /* the file holds no image size, and the def gave none */
-  char name[256];          /* of the camera or its image; may be empty */
+  vlCameraDef camera;      /**< the camera, in velo's conventions */
+  vlCameraDialect dialect; /**< the dialect of the file read */
+  uint32_t frames;         /**< number of cameras or poses in the file */
+  bool size_assumed;       /**< the file holds no image size, and the def gave none */
+  char name[256];          /**< name of the camera or its image; may be empty */
 } vlCameraRecord;
 
-/* Null def: the default. Errors: MISSING, IO, MEMORY; SCENE: what the file says is wrong, with the field's name;
- * UNSUPPORTED: understood, but no camera of velo's. The camera is not made yet: vl_camera_make judges its numbers. */
+/** Reads one camera. def may be null: the default. The result is a description; vl_camera_make checks its numbers.
+ * Errors: MISSING, IO, MEMORY; SCENE: the contents are wrong, the message names the field; UNSUPPORTED: valid, but not
+ * a camera that velo has. */
 VL_API vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFileDef *def, vlCameraRecord *record,
                                vlError *error);
-/* The file is written whole or not at all. UNSUPPORTED: the dialect cannot hold a field that the camera has; the
- * message names it. */
+/** Writes one camera; the file is written whole or not at all. def may be null: the default. Errors: ARGUMENT, IO,
+ * MEMORY; UNSUPPORTED: the dialect cannot hold a field that the camera has; the message names it. */
 VL_API vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFileDef *def,
                                 const vlCameraRecord *record, vlError *error);
 

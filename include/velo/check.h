@@ -1,5 +1,7 @@
-/* velo/check.h: the scene doctor: what in a description is likely to be a mistake although it can be rendered, and what
- * a scene holds, for people. Reads the description (velo/scene.h) alone, whatever file it came from; builds nothing. */
+/** @file
+ * velo/check.h: the scene doctor: finds what is likely to be a mistake in a scene although it can be rendered, and
+ * summarises what a scene holds. It reads the description (velo/scene.h) only, from any file format, and builds
+ * nothing. */
 #ifndef VELO_CHECK_H
 #define VELO_CHECK_H
 
@@ -11,84 +13,93 @@ extern "C" {
 
 /* ---- findings ---------------------------------------------------------------------------------------------------- */
 
+/** Kinds of findings. */
 typedef enum vlFindingKind {
-  VL_FINDING_MISSING_FILE,        /* a file that the scene names is not there: the message names the nearest */
-  VL_FINDING_BROKEN_FILE,         /* an image that cannot be read */
-  VL_FINDING_UNUSED,              /* a named texture, material, medium or object that nothing uses; an area light */
-  VL_FINDING_REPLACED,            /* a material that another one replaces before any shape takes it */
-  VL_FINDING_OPEN_DIELECTRIC,     /* a body that light passes, whose surface has edges of one face only */
-  VL_FINDING_INVERTED_DIELECTRIC, /* one whose normals point inwards */
-  VL_FINDING_MEDIA,               /* bodies of media that overlap, or lie in each other and say something else */
-  VL_FINDING_DEGENERATE,          /* faces without area, normals without length */
-  VL_FINDING_NO_UV,               /* a texture over uv on a mesh that has none, or vertex colours that are not there */
-  VL_FINDING_ALBEDO,              /* gives back more light than it gets */
-  VL_FINDING_CAMERA_INSIDE,       /* the camera stands in a closed body */
-  VL_FINDING_DARK_LIGHT,          /* a light of power 0 */
-  VL_FINDING_WRONG,               /* told while loading (vlLoadDef's problem): what else is wrong in the file */
-  VL_FINDING_OVERWRITTEN,         /* likewise: said twice, the second counts */
-  VL_FINDING_REMARK,              /* likewise: the importer's own warnings */
-  VL_FINDING_KINDS
+  VL_FINDING_MISSING_FILE,    /**< a file that the scene names does not exist; the message has the nearest name */
+  VL_FINDING_BROKEN_FILE,     /**< an image that cannot be read */
+  VL_FINDING_UNUSED,          /**< a named texture, material, medium or object, or an area light, that nothing uses */
+  VL_FINDING_REPLACED,        /**< a material that is replaced by another before any shape uses it */
+  VL_FINDING_OPEN_DIELECTRIC, /**< a refracting solid whose surface is not closed: it has edges with one face only */
+  VL_FINDING_INVERTED_DIELECTRIC, /**< a refracting solid whose normals point inwards */
+  VL_FINDING_MEDIA,      /**< solids of media that overlap, or are nested and disagree about the medium between them */
+  VL_FINDING_DEGENERATE, /**< faces without area, normals without length */
+  VL_FINDING_NO_UV,      /**< a texture over uv on a mesh without uv, or vertex colours on a mesh without them */
+  VL_FINDING_ALBEDO,     /**< a surface that reflects more light than it receives */
+  VL_FINDING_CAMERA_INSIDE, /**< the camera is inside a closed solid */
+  VL_FINDING_DARK_LIGHT,    /**< a light of power 0 */
+  VL_FINDING_WRONG,         /**< reported while loading (vl_scene_diagnose): another error in the file */
+  VL_FINDING_OVERWRITTEN,   /**< reported while loading: given twice; the second counts */
+  VL_FINDING_REMARK,        /**< reported while loading: a warning of the importer */
+  VL_FINDING_KINDS          /**< number of kinds */
 } vlFindingKind;
-/* "missing-file", "unused", ...: stable, for programs. */
+/** "missing-file", "unused", ...: a stable, constant string for programs. */
 VL_API const char *vl_finding_kind_name(vlFindingKind kind);
 
+/** Severity of a finding. */
 typedef enum vlSeverity {
-  VL_SEVERITY_ERROR,   /* the scene cannot be rendered so */
-  VL_SEVERITY_WARNING, /* the image is probably not what was meant */
-  VL_SEVERITY_NOTE     /* harmless, and good to know */
+  VL_SEVERITY_ERROR,   /**< the scene cannot be rendered */
+  VL_SEVERITY_WARNING, /**< the image is probably not what was intended */
+  VL_SEVERITY_NOTE     /**< harmless */
 } vlSeverity;
 
+/** A finding. Its strings live as long as the check and the scene. */
 typedef struct vlFinding {
-  vlFindingKind kind;
-  vlSeverity severity;
-  vlResult code;   /* errors: what rendering would return */
-  vlSource source; /* file null, line 0 where not known */
-  const char *message;
+  vlFindingKind kind;  /**< what was found */
+  vlSeverity severity; /**< how bad it is */
+  vlResult code;       /**< errors: what rendering would return */
+  vlSource source;     /**< where; file null, line 0 where not known */
+  const char *message; /**< one line */
 } vlFinding;
 
-typedef struct vlCheck vlCheck; /* a list of findings: errors first, then warnings, then notes */
+/** A list of findings: errors first, then warnings, then notes. Constant once made. */
+typedef struct vlCheck vlCheck;
 
+/** What to check. */
 typedef struct vlCheckDef {
   uint32_t cookie;
-  bool names_only; /* unused names alone; default false */
-  bool images;     /* read the scene's images for their greatest values; default true. They are looked for anyway */
+  bool names_only; /**< find unused names only; default false */
+  bool images;     /**< read the scene's images for their greatest values; default true. Their existence is always
+                    * checked */
 } vlCheckDef;
+/** The default def. */
 VL_API vlCheckDef vl_default_check_def(void);
-/* def may be null. The scene must outlive the check. MEMORY; ARGUMENT; the scene's own error. */
+/** Checks a scene, which must outlive the check. def may be null. Errors: MEMORY, ARGUMENT, that of vl_scene_result. */
 VL_API vlResult vl_scene_check(const vlScene *scene, const vlCheckDef *def, vlCheck **check, vlError *error);
+/** Null is allowed. */
 VL_API void vl_check_destroy(vlCheck *check);
+/** Number of findings. */
 VL_API uint32_t vl_check_count(const vlCheck *check);
-/* Lives as long as the check and the scene; null past the end. */
+/** Finding `index`, from 0; lives as long as the check and the scene; null past the end. */
 VL_API const vlFinding *vl_check_finding(const vlCheck *check, uint32_t index);
 
-/* ---- loading for a doctor ------------------------------------------------------------------------------------------
- */
+/* ---- loading with diagnosis ------------------------------------------------------------------------------------- */
 
-/* code: what loading would have returned, and where; VL_OK: a remark on what is right and perhaps not meant. */
+/** Receives a problem of a file, on the calling thread. Its code is what loading would have returned; VL_OK: a remark
+ * on something valid that may be unintended. `problem` lives until the callback returns. */
 typedef void vlProblemFn(void *user, const vlError *problem);
-/* As vl_scene_load, but where the file can be read on after a mistake (pbrt: after each wrong statement that is whole),
- * the mistake is told, what it says is left out, and the scene gets the rest. Such a scene is to be looked at, not to
- * be rendered. What ends the reading is returned, and not told. */
+/** As vl_scene_load, but continues after an error where the format permits it (pbrt: after each complete statement):
+ * the error is passed to `tell`, and its statement is left out of the scene. Such a scene is for inspection, not for
+ * rendering. An error that ends the reading is returned and not passed to `tell`. */
 VL_API vlResult vl_scene_diagnose(vlScene *scene, const char *path, const vlLoadDef *def, vlProblemFn *tell, void *user,
                                   vlError *error);
 
-/* ---- what a scene holds --------------------------------------------------------------------------------------------
- */
+/* ---- contents of a scene ---------------------------------------------------------------------------------------- */
 
-/* A light, or all faces of a shape that emits light. */
+/** A light: a vlLightDef, or a shape that emits light, with all its faces. */
 typedef struct vlLightInfo {
-  const char *kind; /* point, spot, distant, infinite, area */
-  vlSource source;
-  uint64_t faces; /* area lights: how many emission */
-  bool image;     /* its radiance comes from one */
-  /* Luminance times area times solid angle, over all it sends out (of distant and infinite lights: into a sphere round
-   * the scene). NaN where an image decides. */
+  const char *kind; /**< point, spot, distant, infinite, area, ... */
+  vlSource source;  /**< where the file describes it */
+  uint64_t faces;   /**< area lights: number of emissive faces */
+  bool image;       /**< its radiance comes from an image */
+  /** Luminance times area times solid angle, integrated over all emitted light (of distant and infinite lights: into a
+   * sphere around the scene). NaN with an image. */
   double power;
 } vlLightInfo;
+/** Number of lights. */
 VL_API uint32_t vl_scene_light_count(const vlScene *scene);
-/* ARGUMENT: no such light. */
+/** Light `index`, from 0. ARGUMENT: no such light. */
 VL_API vlResult vl_scene_light_info(const vlScene *scene, uint32_t index, vlLightInfo *info);
-/* Box round all shapes, with instances where they stand (of those that move: at rest). Without any: low > high. */
+/** Bounding box of all shapes in world space, instances included (moving ones at rest). Without shapes: low > high. */
 VL_API void vl_scene_bounds(const vlScene *scene, double low[3], double high[3]);
 
 #ifdef __cplusplus

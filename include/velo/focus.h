@@ -1,4 +1,5 @@
-/* velo/focus.h: autofocus. A camera does not know the world, so the world is asked here. */
+/** @file
+ * velo/focus.h: autofocus: the focus distance for what a camera sees in a world. */
 #ifndef VELO_FOCUS_H
 #define VELO_FOCUS_H
 
@@ -9,14 +10,15 @@
 extern "C" {
 #endif
 
-/* The focus distance that brings what the middle of the image's point (x, y) sees into focus: as vlCameraDef's
- * focus_distance takes it, for the camera's own tilt. Between near and far plane. A lens of many elements: the distance
- * from the film, as vl_optics_refocus takes it. ARGUMENT: a point outside the image, one that sees nothing; MEMORY.
- * Not from inside a parallel body. */
+/** The focus distance for the surface at image point (x, y), in pixels, at the middle of the exposure: *distance in
+ * scene units, as vlCameraDef.focus_distance, for the camera's own tilt. Only surfaces between the near and far planes
+ * count. For a lens of many elements: the distance from the film, as vl_optics_refocus takes it. Errors: ARGUMENT (a
+ * point outside the image, or where no surface is seen), MEMORY. Not from inside a parallel body. */
 VL_API vlResult vl_autofocus(const vlWorld *world, const vlCamera *camera, double x, double y, double *distance,
                              vlError *error);
 
-/* Focuses a camera that was made with focus_pixel on what that pixel sees; others stay as they are. */
+/** Focuses a camera made with focus_pixel on what that pixel sees; other cameras stay unchanged. Errors as
+ * vl_autofocus. */
 VL_API vlResult vl_camera_autofocus(const vlWorld *world, vlCamera *camera, vlError *error);
 
 #ifdef __cplusplus

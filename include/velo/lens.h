@@ -1,5 +1,6 @@
-/* velo/lens.h: what stands between the projection and the world: the shape of a lens's opening, the plane in focus, and
- * lenses of many elements. Part of velo/camera.h. */
+/** @file
+ * velo/lens.h: the lens of a camera: the shape of its aperture, the plane in focus, lenses of many elements. Part of
+ * velo/camera.h. */
 #ifndef VELO_LENS_H
 #define VELO_LENS_H
 
@@ -9,104 +10,113 @@
 extern "C" {
 #endif
 
-/* ---- the opening as an image ----------------------------------------------------------------------------------- */
+/* ---- aperture images -------------------------------------------------------------------------------------------- */
 
-/* Constant once made; any number of cameras may share it. It must outlive them. */
+/** An image of the aperture. Constant; shared by any number of cameras; it must outlive them. */
 typedef struct vlAperture vlAperture;
-/* width x height values, rows from the top, 0 closed; copied. The image lies over the square -1 to 1 around the
- * opening's unit circle, upright: what is blurred behind the plane in focus shows it as it is. ARGUMENT: a side above
- * 4096, values that are negative or not finite, all of them zero. */
+/** Makes an aperture from width x height values, rows from the top, 0 closed; copied. The image covers the square from
+ * -1 to 1 around the aperture's unit circle, upright: blur behind the plane in focus has its shape. ARGUMENT: a side
+ * above 4096, values that are negative or not finite, all of them zero. */
 VL_API vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height, const float *values,
                                    vlAperture **aperture, vlError *error);
-/* pbrt's: "gaussian", "square", "pentagon", "star". ARGUMENT: another name. */
+/** Makes one of pbrt's apertures: "gaussian", "square", "pentagon", "star". ARGUMENT: another name. */
 VL_API vlResult vl_aperture_create_named(vlContext *context, const char *name, vlAperture **aperture, vlError *error);
+/** Null is allowed. */
 VL_API void vl_aperture_destroy(vlAperture *aperture);
 
 /* ---- lenses of many elements ------------------------------------------------------------------------------------ */
 
-/* A surface; mm. radius: of curvature, positive where the centre lies on the film's side; 0: the aperture stop.
- * thickness: along the axis to the next surface. ior: of what follows the surface on the film's side; 0 or 1: air.
- * aperture: diameter of the opening. */
+/** A surface of a lens. Lengths in mm. radius: of curvature, positive where the centre is on the film's side; 0: the
+ * aperture stop. thickness: along the axis to the next surface. ior: of the material behind the surface, on the film's
+ * side; 0 or 1: air. aperture: diameter of the opening. */
 typedef struct vlLensSurface {
-  double radius, thickness, ior, aperture;
+  double radius, thickness, ior, aperture; /**< mm; ior has no unit */
 } vlLensSurface;
 
+/** How to make a lens of many elements. */
 typedef struct vlOpticsDef {
   uint32_t cookie;
   const vlLensSurface
-      *surfaces; /* from the scene's side to the film's, at most 64; the last thickness does not count */
-  uint32_t count;
-  double aperture_diameter;   /* mm, of the stop; unset, or more than the stop's own: the stop's own */
-  double focus_distance;      /* from the film, scene units; default 10 */
-  double film_diagonal;       /* mm; default 35 */
-  double unit_mm;             /* millimetres in a scene unit; default 1000 */
-  const vlAperture *aperture; /* in the stop, over its square; null: round */
+      *surfaces;  /**< from the scene's side to the film's, at most 64; the last thickness is ignored; copied */
+  uint32_t count; /**< number of surfaces */
+  double aperture_diameter;   /**< mm, of the stop; unset, or above the stop's own: the stop's own */
+  double focus_distance;      /**< from the film, scene units; default 10 */
+  double film_diagonal;       /**< mm; default 35 */
+  double unit_mm;             /**< millimetres per scene unit; default 1000 */
+  const vlAperture *aperture; /**< image of the stop's opening; null: round */
 } vlOpticsDef;
+/** The default def, without surfaces. */
 VL_API vlOpticsDef vl_default_optics_def(void);
 
-/* A lens, focused; constant once made; it must outlive the cameras that have it. */
+/** A focused lens of many elements. Constant; it must outlive the cameras that use it. */
 typedef struct vlOptics vlOptics;
-/* Focuses by moving the film, as pbrt does (thick lens approximation, book 5.4.3); finds the exit pupil. ARGUMENT: too
- * many or no surfaces, a number out of range, a lens that cannot focus so near or passes no light; MEMORY. */
+/** Makes a lens: focuses it by moving the film, as pbrt does (thick lens approximation, book 5.4.3), and finds its exit
+ * pupil. Errors: ARGUMENT (too many or no surfaces, a number out of range, a lens that cannot focus at this distance or
+ * transmits no light), MEMORY. */
 VL_API vlResult vl_optics_create(vlContext *context, const vlOpticsDef *def, vlOptics **optics, vlError *error);
-/* The same; surfaces from a text file, four numbers a line (radius, thickness, ior, aperture), # comments. def's
- * surfaces are not read. SCENE: what is no such file, with its place; MISSING, IO too. */
+/** The same with surfaces from a text file: four numbers a line (radius, thickness, ior, aperture), # comments. def's
+ * surfaces are ignored. Errors also: SCENE (wrong contents, with the place), MISSING, IO. */
 VL_API vlResult vl_optics_load(vlContext *context, const char *path, const vlOpticsDef *def, vlOptics **optics,
                                vlError *error);
-/* The same lens focused elsewhere. */
+/** A copy of a lens focused at another distance from the film, scene units. Errors as vl_optics_create. */
 VL_API vlResult vl_optics_refocus(vlContext *context, const vlOptics *optics, double focus_distance, vlOptics **result,
                                   vlError *error);
+/** Null is allowed. */
 VL_API void vl_optics_destroy(vlOptics *optics);
 
+/** The properties of a lens; lengths in scene units. */
 typedef struct vlOpticsInfo {
-  double focal_length;   /* scene units, as all that follow */
-  double film_distance;  /* from the film to the last surface */
-  double length;         /* from the film to the first surface */
-  double rear_principal; /* from the film to the principal plane that angles are seen from */
-  double focus_distance; /* from the film */
-  double film_diagonal;
-  double f_number; /* focal length over the diameter of the entrance pupil; 0 with an aperture image */
+  double focal_length;   /**< of the whole lens */
+  double film_distance;  /**< from the film to the last surface */
+  double length;         /**< from the film to the first surface */
+  double rear_principal; /**< from the film to the rear principal plane, from which angles are measured */
+  double focus_distance; /**< from the film */
+  double film_diagonal;  /**< of the film */
+  double f_number;       /**< focal length / diameter of the entrance pupil; 0 with an aperture image */
 } vlOpticsInfo;
-/* What it was made of: def and its surfaces (room for 64). */
+/** The def that a lens was made of, and its surfaces (room for 64). */
 VL_API void vl_optics_def(const vlOptics *optics, vlOpticsDef *def, vlLensSurface *surfaces);
+/** Fills *info. */
 VL_API void vl_optics_info(const vlOptics *optics, vlOpticsInfo *info);
 
 /* ---- the lens of a camera --------------------------------------------------------------------------------------- */
 
-/* Beside lens_radius and focus_distance of vlCameraDef. */
+/** The description of a lens (vlCameraDef.lens), with lens_radius and focus_distance of vlCameraDef. */
 typedef struct vlLensDef {
-  /* The lens's radius by its f-number: focal length / (2 f_number). The focal length in mm is focal_mm, or follows
-   * from sensor_width_mm; unit_mm millimetres are a scene unit (default 1000). Unset: lens_radius says it. */
+  /** The lens radius by its f-number: focal length / (2 f_number); unset: lens_radius is used. The focal length in mm
+   * is focal_mm, or follows from sensor_width_mm; unit_mm is the number of millimetres per scene unit (default 1000).
+   */
   double f_number, unit_mm;
-  /* The plane in focus goes through this point of the world, or through what this pixel sees (vl_autofocus finds it;
-   * vl_render does so where it was not done). Unset: focus_distance says it. */
+  /** The plane in focus contains this point of the world, or what this pixel sees (found by vl_autofocus, which
+   * vl_render calls where needed). Unset: focus_distance is used. */
   double focus_point[3], focus_pixel[2];
-  uint32_t blades; /* of a polygon inscribed in the opening's circle: 3 to 32; 0: round */
-  double rotation; /* radians, of blades or image, clockwise as seen from behind the camera; 0: a corner is up */
-  double ratio;    /* the opening's width is its height divided by this; anamorphic lenses 2; default 1 */
-  const vlAperture *aperture; /* image of the opening, null: none */
-  /* The plane in focus turned out of the parallel, about its point on the axis: x > 0 leans its top away, y > 0 its
-   * left side; radians. Or the lens turned (Scheimpflug): x > 0 down, y > 0 to the right; the plane in focus then goes
-   * through the line f / sin(lens_tilt) below (right of) the lens; needs the focal length in mm. Perspective and
-   * orthographic cameras only. */
+  uint32_t blades; /**< corners of the aperture, a polygon inscribed in its circle: 3 to 32; 0: round */
+  double rotation; /**< of blades or image, radians, clockwise as seen from behind the camera; 0: a corner is up */
+  double ratio;    /**< the aperture's height / width; anamorphic lenses 2; default 1 */
+  const vlAperture *aperture; /**< image of the aperture; null: none */
+  /** tilt_x, tilt_y: rotation of the plane in focus, radians, about its point on the axis: x > 0 moves its top away, y
+   * > 0 its left side. lens_tilt_x, lens_tilt_y: rotation of the lens (Scheimpflug), radians: x > 0 down, y > 0 to the
+   * right; the plane in focus then contains the line f / sin(lens_tilt) below (right of) the lens; requires the focal
+   * length in mm. Perspective and orthographic cameras only. */
   double tilt_x, tilt_y, lens_tilt_x, lens_tilt_y;
-  bool vignetting; /* natural: cos^4 of the angle from the axis, 1 on it; perspective only */
-  /* Exposure by the camera's numbers instead of exposure_time: seconds ISO / (120 f_number^2), the reciprocal of the
+  bool vignetting; /**< natural vignetting: cos^4 of the angle from the axis; perspective only */
+  /** Exposure by the camera's settings instead of exposure_time: seconds ISO / (120 f_number^2), the reciprocal of the
    * luminance that just saturates a sensor (ISO 12232; Lagarde and de Rousiers 2014). seconds unset: the shutter's. */
   double iso, seconds;
-  const vlOptics *optics; /* VL_PROJECTION_OPTICS: the lens; else null */
+  const vlOptics *optics; /**< VL_PROJECTION_OPTICS: the lens; else null */
 } vlLensDef;
 
-/* The same, made. */
+/** A compiled lens, part of vlCamera. */
 typedef struct vlLens {
-  uint32_t blades;
-  double rotation, ratio;
-  double tilt[2];        /* tangents of the plane's slant */
-  double hinge[2];       /* 1 / where the plane in focus meets the lens's plane, by lens_tilt */
-  double focus_pixel[2]; /* unset: the focus distance is known */
-  bool vignetting;
-  const vlAperture *aperture;
-  const vlOptics *optics;
+  uint32_t blades;        /**< as in vlLensDef */
+  double rotation, ratio; /**< as in vlLensDef */
+  double tilt[2];         /**< slopes of the plane in focus along x and y */
+  double
+      hinge[2]; /**< 1 / distance from the axis of the line where the plane in focus meets the lens plane (lens_tilt) */
+  double focus_pixel[2];      /**< unset: the focus distance is known */
+  bool vignetting;            /**< as in vlLensDef */
+  const vlAperture *aperture; /**< not owned; may be null */
+  const vlOptics *optics;     /**< not owned; may be null */
 } vlLens;
 
 #ifdef __cplusplus

@@ -1,4 +1,6 @@
-/* velo/velo.h: everything. A program reads: load, build, make, render, develop, write. */
+/** @file
+ * velo/velo.h: includes every public header. A program loads a scene, builds the world, makes the camera, renders,
+ * develops the film and writes the image. */
 #ifndef VELO_VELO_H
 #define VELO_VELO_H
 

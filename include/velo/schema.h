@@ -100,6 +100,24 @@ typedef struct vlKindFamily {
   const vlKindRow *const *rows; /**< one per kind, never null */
 } vlKindFamily;
 
+/** Traits of samplers, filters, tracers: the name, or the alias, is one of pbrt's; the others are velo's own. */
+enum { VL_TRAIT_PBRT_NAME = 1, VL_TRAIT_PBRT_ALIAS = 2 };
+
+/** Traits of samplers. */
+enum { VL_SAMPLER_TRAIT_OPEN = 4 /**< can go on without end; the others lay out a fixed number of samples */ };
+
+/** X(NAME, name) for each film of pbrt files. */
+#define VL_FILM_KINDS(X) \
+  X(RGB, rgb)            \
+  X(GBUFFER, gbuffer)    \
+  X(SPECTRAL, spectral)
+/** The films of pbrt files. */
+typedef enum vlFilmKind {
+#define VL_KIND(NAME, name) VL_FILM_##NAME,
+  VL_FILM_KINDS(VL_KIND)
+#undef VL_KIND
+} vlFilmKind;
+
 /** Traits of lights. */
 enum {
   VL_LIGHT_TRAIT_AT_POINT = 1, /**< it emits from one point */

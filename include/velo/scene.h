@@ -413,6 +413,10 @@ typedef struct vlShapeDef {
   float edge_length; /* default 1 */
   /* sphere, disk, cylinder: pbrt's, z axis, book 6.2-6.4; angles in radians */
   float radius, inner_radius, z_min, z_max, height, phi_max;
+  /* Many whole spheres as one shape, 28 bytes each (a sphere of its own takes some 750): `faces` of them, with centres
+   * in shape space; the numbers above are not read. Both null: one sphere at the origin. They cannot glow. */
+  const double *centers; /* 3 a sphere */
+  const float *radii;    /* 1 a sphere, > 0 */
   /* curves: `faces` segments, the 4 Bezier points of each in positions (vertices = 4 faces). They cannot glow. Of a
    * picture's coordinates u goes along a segment, v from one side to the other. Ribbons: normals at both ends of each
    * segment (6 numbers a face). Segments are cut into 2^split_depth pieces for speed, fewer where there are millions;

@@ -242,7 +242,10 @@ typedef struct vlMaterialDef {
   vlFloatInput thickness, g;   /* coat; thickness not textured over what is diffuse. g: subsurface, too, untextured */
   vlSpectrumInput albedo;      /* of the coat's medium; 0: it absorbs only */
   uint32_t max_depth, samples; /* coat: bounces inside; random walks for each look at it, where it takes walks */
-  vlFloatInput amount;         /* mix: share of the second */
+  /* Coated diffuse, of a medium that only absorbs and is not textured: a rough coat loses no light (pbrt's loses what
+   * scatters between its microfacets more than once, 40 % at alpha 0.4 over white), and max_depth is not read. */
+  bool conserve_energy;
+  vlFloatInput amount; /* mix: share of the second */
   vlMaterialId materials[2];
   vlFloatInput displacement; /* bump map; texture index 0: none */
   const char *normal_map;    /* path, null: none; linear, tangent space */

@@ -49,6 +49,11 @@ check body_pbrt "$VELO" scene convert body.pbrt body2.pbrt --strict
 check body_a "$VELO" render body.pbrt -o body_a.exr --quiet
 check body_b "$VELO" render body2.pbrt -o body_b.exr --quiet
 check body_same "$VELO" image diff body_a.exr body_b.exr --threshold differing=0
+sed 's/^Material "subsurface" "string.*/Material "coateddiffuse" "float roughness" .5 "float thickness" .02 "bool conserveenergy" true/' body.pbrt >coat.pbrt
+check coat_pbrt "$VELO" scene convert coat.pbrt coat2.pbrt --strict
+check coat_a "$VELO" render coat.pbrt -o a.exr --quiet
+check coat_b "$VELO" render coat2.pbrt -o b.exr --quiet
+check coat_same "$VELO" image diff a.exr b.exr --threshold differing=0
 check body_gltf "$VELO" scene convert body.pbrt body.gltf
 expect_text body_gltf_tells 'subsurface: as a rough dielectric'
 check pbrt_gltf "$VELO" scene convert scene.pbrt scene.gltf

@@ -90,7 +90,8 @@ bool vl_export_mesh(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
   if (d->kind == VL_SHAPE_BILINEAR) return patches(x, d, mesh);
   if (d->kind == VL_SHAPE_SPHERE || d->kind == VL_SHAPE_DISK || d->kind == VL_SHAPE_CYLINDER) {
     vl_export_lose(x, "spheres, disks, cylinders: as triangles");
-    return facets(x, d, mesh);
+    vlShapeDef unit = vl_default_shape_def(VL_SHAPE_SPHERE);
+    return facets(x, d->centers ? &unit : d, mesh);
   }
   vl_export_lose(x, "curves: left out");
   return false;

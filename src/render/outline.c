@@ -90,8 +90,8 @@ static void add_round(Points *p, const vlWorldShape *s) {
   }
 }
 
-/* The corners of the boxes of its pieces. */
-static void add_curves(Points *p, const vlWorldShape *s) {
+/* Curves, many spheres: the corners of the boxes of the pieces. */
+static void add_pieces(Points *p, const vlWorldShape *s) {
   for (uint32_t i = 0; i < s->faces; i++) {
     float low[3], high[3];
     vl_world_prim_bounds(s, i, low, high);
@@ -101,8 +101,8 @@ static void add_curves(Points *p, const vlWorldShape *s) {
 }
 
 static void add_shape(Points *p, const vlWorldShape *s, float time) {
-  if (s->kind == VL_SHAPE_CURVES)
-    add_curves(p, s);
+  if (s->kind == VL_SHAPE_CURVES || s->centers)
+    add_pieces(p, s);
   else if (s->kind == VL_SHAPE_TRIANGLES || s->kind == VL_SHAPE_BILINEAR)
     add_vertices(p, s, time);
   else
@@ -110,7 +110,7 @@ static void add_shape(Points *p, const vlWorldShape *s, float time) {
 }
 
 uint64_t vl_box_points(const vlWorldShape *s) {
-  if (s->kind == VL_SHAPE_CURVES) return 8 * (uint64_t)s->faces;
+  if (s->kind == VL_SHAPE_CURVES || s->centers) return 8 * (uint64_t)s->faces;
   return s->kind == VL_SHAPE_TRIANGLES || s->kind == VL_SHAPE_BILINEAR ? s->vertices : (uint64_t)RINGS * AROUND;
 }
 

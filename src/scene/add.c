@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/cookie.h"
+#include "color/color.h"
 #include "scene/scene.h"
 
 enum { MAX_OBJECTS = 0x7fffffff };
@@ -215,6 +216,15 @@ static bool take_subsurface(vlScene *scene, vlMaterialDef *d, vlSource at) {
          take_spectrum(scene, &d->subsurface.mfp, at, "mfp");
 }
 
+bool vl_coat_in_closed_form(const vlMaterialDef *def) {
+  const vlSpectrum *a = &def->albedo.value;
+  float grey = 0;
+  bool black = (vl_spectrum_is_constant(a, &grey) && grey == 0) ||
+               (a->kind == VL_SPECTRUM_RGB && a->rgb[0] == 0 && a->rgb[1] == 0 && a->rgb[2] == 0);
+  return def->kind == VL_MATERIAL_COATED_DIFFUSE && !def->albedo.texture.index && black &&
+         !def->thickness.texture.index;
+}
+
 vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   const vlMaterialId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_MATERIAL, scene->materials.count, (vlSource){0}, "material"))
@@ -231,6 +241,10 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   bool coated = d.kind == VL_MATERIAL_COATED_DIFFUSE || d.kind == VL_MATERIAL_COATED_CONDUCTOR;
   if (coated && (d.max_depth == 0 || d.samples == 0))
     return bad(scene, at, "coated material", "max depth and samples must be at least 1"), none;
+  if (coated && d.conserve_energy && !vl_coat_in_closed_form(&d))
+    return bad(scene, at, "coated material",
+               "energy is conserved over a diffuse base only, under a medium of albedo 0 and untextured thickness"),
+           none;
   if (!isfinite(d.scale) || d.scale < 0.0f) return bad(scene, at, "material", "its scale makes no sense"), none;
   if (d.kind == VL_MATERIAL_MEASURED && !d.measured)
     return bad(scene, at, "measured material", "its file is not named"), none;

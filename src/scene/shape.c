@@ -97,7 +97,24 @@ static bool check_curves(vlScene *scene, const vlShapeDef *d) {
   return check_floats(scene, d, d->positions, 3, "position");
 }
 
+static bool check_spheres(vlScene *scene, const vlShapeDef *d) {
+  if (!d->centers || !d->radii || d->faces == 0 || d->faces > 0x7fffffff)
+    return bad(scene, d, "many spheres: they need centers, radii and a number of faces from 1 to 2^31 - 1"), false;
+  if (d->emission.index) return bad(scene, d, "many spheres as one shape cannot be area lights"), false;
+  for (size_t i = 0; i < d->faces; i++) {
+    const double *c = d->centers + 3 * i;
+    if (!isfinite(c[0] + c[1] + c[2]))
+      return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "the center of sphere %zu is not finite", i), false;
+    if (!(d->radii[i] > 0.0f) || !isfinite(d->radii[i]))
+      return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "the radius of sphere %zu must be above 0, it is %g", i,
+                           (double)d->radii[i]),
+             false;
+  }
+  return true;
+}
+
 static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
+  if (d->centers || d->radii) return check_spheres(scene, d);
   const float numbers[] = {d->radius, d->inner_radius, d->z_min, d->z_max, d->height, d->phi_max};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
     if (!isfinite(numbers[i])) return bad(scene, d, "a number of the shape is not finite"), false;
@@ -167,6 +184,7 @@ static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
 }
 
 static void drop_unused(vlShapeDef *d) {
+  if (d->kind != VL_SHAPE_SPHERE) d->centers = NULL, d->radii = NULL;
   if (d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR) d->widths = NULL;
   if (d->kind == VL_SHAPE_TRIANGLES || d->kind == VL_SHAPE_BILINEAR) return;
   if (d->kind == VL_SHAPE_CURVES) {
@@ -177,7 +195,8 @@ static void drop_unused(vlShapeDef *d) {
     return;
   }
   d->widths = NULL;
-  d->vertices = d->faces = 0;
+  d->vertices = 0;
+  if (!d->centers && !d->radii) d->faces = 0;
   d->positions = d->normals = d->tangents = d->uvs = d->positions_close = d->normals_close = NULL;
   d->tangent_signs = d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = NULL;
   d->indices = NULL;
@@ -204,6 +223,8 @@ vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
       !vl_scene_copy_block(scene, d.tangent_signs, v, sizeof(float), &d.tangent_signs) ||
       !vl_scene_copy_block(scene, d.colors, v, 4 * sizeof(float), &d.colors) ||
       !vl_scene_copy_block(scene, d.widths, 2 * (size_t)d.faces, sizeof(float), &d.widths) ||
+      !vl_scene_copy_block(scene, d.centers, d.faces, 3 * sizeof(double), &d.centers) ||
+      !vl_scene_copy_block(scene, d.radii, d.faces, sizeof(float), &d.radii) ||
       !vl_scene_copy_block(scene, d.indices, d.faces, per * sizeof(uint32_t), &d.indices))
     return none;
   for (int k = 0; k < 3; k++)
@@ -215,10 +236,10 @@ vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def) {
   vlShapeDef d = *def;
   bool fine = scene->error.code == VL_OK && d.cookie == VL_COOKIE_SHAPE && vl_scene_copy_source(scene, &d.source) &&
               check_shape(scene, &d);
-  enum { BLOCKS = 13 };
-  const void *blocks[BLOCKS] = {d.positions,       d.normals,       d.tangents,      d.uvs,    d.indices,
-                                d.positions_close, d.normals_close, d.tangent_signs, d.colors, d.more_uvs[0],
-                                d.more_uvs[1],     d.more_uvs[2],   d.widths};
+  enum { BLOCKS = 15 };
+  const void *blocks[BLOCKS] = {d.positions,       d.normals,       d.tangents,      d.uvs,     d.indices,
+                                d.positions_close, d.normals_close, d.tangent_signs, d.colors,  d.more_uvs[0],
+                                d.more_uvs[1],     d.more_uvs[2],   d.widths,        d.centers, d.radii};
   for (int i = 0; i < BLOCKS; i++) {
     void *block;
     memcpy(&block, &blocks[i],

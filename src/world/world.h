@@ -39,6 +39,8 @@ typedef struct vlWorldShape {
   uint32_t steps;     /* of positions and normals, one set after the other, evenly over the world's time; 1: at rest */
   /* sphere, disk, cylinder: parameters as in vlShapeDef, and the affine maps, row-major 3x4 */
   float radius, inner_radius, z_min, z_max, phi_max, height;
+  double *centers; /* many spheres: 3 a prim, shape space, and */
+  float *radii;    /* 1 a prim; else null */
   /* curves: 4 points and 2 widths a segment, ribbons 2 normals, all in shape space; a prim is a piece of a segment */
   vlCurveKind curve;
   uint32_t split; /* faces = segments << split */

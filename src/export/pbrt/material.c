@@ -43,6 +43,7 @@ static void put_coat(vlExport *x, const vlMaterialDef *m, const Inputs *in) {
   vl_pbrt_put_number(x, "g", &in->g);
   vl_pbrt_put_color(x, "albedo", &in->albedo);
   PUT(" \"integer maxdepth\" [%u] \"integer nsamples\" [%u]", m->max_depth, m->samples);
+  if (m->conserve_energy) PUT(" \"bool conserveenergy\" true");
 }
 
 static void put_metal(vlExport *x, const vlMaterialDef *m, const Inputs *in, const char *eta, const char *k) {

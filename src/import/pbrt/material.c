@@ -105,7 +105,7 @@ static bool read_medium(vlDict *dict, vlMaterialDef *def) {
          vl_import_float_input(dict, "g", &def->g, NULL) &&
          vl_import_spectrum_input(dict, "albedo", &def->albedo, true, NULL) &&
          (vl_dict_count(dict, "maxdepth", 1, &def->max_depth), vl_dict_count(dict, "nsamples", 1, &def->samples),
-          dict->import->scene->error.code == VL_OK);
+          vl_dict_bool(dict, "conserveenergy", &def->conserve_energy), dict->import->scene->error.code == VL_OK);
 }
 
 static bool read_coated_conductor(vlDict *dict, vlMaterialDef *def) {

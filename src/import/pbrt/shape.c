@@ -264,6 +264,7 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
   fine = fine && vl_dict_done(&dict);
   bool gathered = false;
   if (fine && kind == TRIANGLES && !vl_import_gather_mesh(import, &def, &link, &gathered)) fine = false;
+  if (fine && kind == SPHERE && !vl_import_gather_sphere(import, &def, &link, &gathered)) fine = false;
   if (fine && !gathered) return vl_import_add_shape(import, &def, &link) && note_media(import, before, s->place);
   free_arrays(import, &def);
   return fine;

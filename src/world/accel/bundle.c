@@ -3,7 +3,7 @@
 #include "world/accel/bundle.h"
 
 bool vl_accel_bundled(const vlWorldShape *s) {
-  return s->kind == VL_SHAPE_SPHERE || s->kind == VL_SHAPE_DISK || s->kind == VL_SHAPE_CYLINDER;
+  return !s->centers && (s->kind == VL_SHAPE_SPHERE || s->kind == VL_SHAPE_DISK || s->kind == VL_SHAPE_CYLINDER);
 }
 
 uint32_t vl_accel_find_bundle(const vlWorld *world, const vlWorldGroup *group, vlAccelBundle *bundle,

@@ -4,7 +4,7 @@
 
 #include "world/world.h"
 
-/* Can this shape be part of a bundle? */
+/* Can this shape (many spheres are a geometry already) be part of a bundle? */
 bool vl_accel_bundled(const vlWorldShape *shape);
 /* The bundle of a group; it stands at its first shape's id. members: room for the group's shapes; how many of them are
  * taken is returned. */

@@ -23,7 +23,7 @@ static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWor
   for (size_t i = 0; i < world->coats.count; i++) {
     vlCoatTable *t = world->coats.items[i].table;
     if (t->eta == m->eta_s && t->tau == thickness && world->coats.items[i].depth == def->max_depth &&
-        t->alpha_min == low && t->alpha_max == high) {
+        t->alpha_min == low && t->alpha_max == high && t->conserves == def->conserve_energy) {
       *table = t;
       return VL_OK;
     }
@@ -31,7 +31,8 @@ static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWor
   vlCoatTable *built = NULL;
   if (vl_coat_build(world->context, m->eta_s, thickness, def->max_depth, low, high, &built) != VL_OK)
     return vl_fail_memory(error);
-  vlWorldCoat *slot = VL_PUSH(world->context, &world->coats);
+  vlResult r = def->conserve_energy ? vl_coat_conserve(world->context, built) : VL_OK;
+  vlWorldCoat *slot = r != VL_OK ? NULL : VL_PUSH(world->context, &world->coats);
   if (!slot) {
     vl_coat_free(world->context, built);
     return vl_fail_memory(error);
@@ -62,15 +63,6 @@ static vlResult measured_of(vlWorld *world, const vlMaterialDef *def, vlWorldMat
   vlResult r = vl_measured_read(world->context, def->measured, world->def.color == VL_COLOR_RGB, slot, error);
   m->measured = *slot;
   return r;
-}
-
-/* A coat whose medium does not scatter, of one thickness. */
-static bool in_closed_form(const vlMaterialDef *def) {
-  const vlSpectrum *a = &def->albedo.value;
-  float grey = 0;
-  bool black = (vl_spectrum_is_constant(a, &grey) && grey == 0) ||
-               (a->kind == VL_SPECTRUM_RGB && a->rgb[0] == 0 && a->rgb[1] == 0 && a->rgb[2] == 0);
-  return !def->albedo.texture.index && black && !def->thickness.texture.index;
 }
 
 static vlResult dielectric_eta(vlWorld *world, const vlScene *scene, const vlMaterialDef *def,
@@ -132,8 +124,8 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
     m->scale = def->scale;
     r = vl_world_spectrum_node(world, scene, def->transmittance, VL_ROLE_ALBEDO, &m->transmittance, error);
   }
-  if (r == VL_OK &&
-      (def->kind == VL_MATERIAL_COATED_CONDUCTOR || (def->kind == VL_MATERIAL_COATED_DIFFUSE && !in_closed_form(def))))
+  if (r == VL_OK && (def->kind == VL_MATERIAL_COATED_CONDUCTOR ||
+                     (def->kind == VL_MATERIAL_COATED_DIFFUSE && !vl_coat_in_closed_form(def))))
     r = vl_world_layers(world, scene, def, m, error);
   else if (r == VL_OK && def->kind == VL_MATERIAL_COATED_DIFFUSE)
     r = coat_of(world, def, m, error);

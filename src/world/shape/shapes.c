@@ -207,6 +207,13 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef
   }
   if (def->kind == VL_SHAPE_TRIANGLES || def->kind == VL_SHAPE_BILINEAR)
     return move_mesh(world, def, &m, &inverse, s, error);
+  if (def->centers) {
+    s->faces = def->faces;
+    s->phi_max = 2.0f * 3.14159265358979f;
+    s->centers = vl_world_block(world, def->faces, 3 * sizeof *s->centers);
+    if (!s->centers || !copy_rows(world, def->radii, def->faces, 1, &s->radii)) return vl_fail_memory(error);
+    memcpy(s->centers, def->centers, 3 * (size_t)def->faces * sizeof *s->centers);
+  }
   if (def->kind == VL_SHAPE_CURVES && !vl_curve_copy(world, def, s)) return vl_fail_memory(error);
   return VL_OK;
 }
@@ -219,7 +226,7 @@ static void grow_bounds(float low[3], float high[3], const float p[3]) {
 }
 
 static void shape_bounds(const vlWorldShape *s, float low[3], float high[3]) {
-  if (s->kind == VL_SHAPE_CURVES) {
+  if (s->kind == VL_SHAPE_CURVES || s->centers) {
     for (uint32_t i = 0; i < s->faces; i++) {
       float a[3], b[3];
       vl_world_prim_bounds(s, i, a, b);

@@ -23,7 +23,7 @@ bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o
   hit->a = hit->b = 0;
   if (shape->kind == VL_SHAPE_CURVES) return vl_curve_intersect(shape, prim, o, d, t_min, t_max, hit);
   return shape->kind == VL_SHAPE_BILINEAR ? vl_patch_intersect(shape, prim, o, d, t_min, t_max, hit)
-                                          : vl_quadric_intersect(shape, o, d, t_min, t_max, hit);
+                                          : vl_quadric_intersect(shape, prim, o, d, t_min, t_max, hit);
 }
 
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
@@ -33,7 +33,7 @@ void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *
   else if (shape->kind == VL_SHAPE_BILINEAR)
     vl_patch_point(shape, prim, hit->a, hit->b, point);
   else
-    vl_quadric_point(shape, hit->p, point);
+    vl_quadric_point(shape, prim, hit->p, point);
 }
 
 void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
@@ -44,11 +44,11 @@ void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v,
   else if (shape->kind == VL_SHAPE_BILINEAR)
     vl_patch_sample(shape, prim, u, v, point, pdf);
   else
-    vl_quadric_sample(shape, u, v, point, pdf);
+    vl_quadric_sample(shape, prim, u, v, point, pdf);
 }
 
 double vl_shape_pdf(const vlWorldShape *shape, uint32_t prim, const vlSurfacePoint *point) {
-  return shape->kind == VL_SHAPE_BILINEAR ? vl_patch_pdf(shape, prim, point->p) : vl_quadric_pdf(shape, point->p);
+  return shape->kind == VL_SHAPE_BILINEAR ? vl_patch_pdf(shape, prim, point->p) : vl_quadric_pdf(shape, prim, point->p);
 }
 
 /* ---- bounds and area, also of triangles -------------------------------------------------------------------------- */
@@ -92,17 +92,7 @@ void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3]
   if (shape->kind == VL_SHAPE_CURVES) {
     vl_curve_bounds(shape, prim, lo, hi);
   } else if (!corners) {
-    double r = shape->radius;
-    double z0 = shape->kind == VL_SHAPE_DISK ? shape->height : shape->z_min;
-    double z1 = shape->kind == VL_SHAPE_DISK ? shape->height : shape->z_max;
-    for (int k = 0; k < 8; k++) {
-      double p[3] = {k & 1 ? r : -r, k & 2 ? r : -r, k & 4 ? z1 : z0}, g[3];
-      vl_map_point(shape->from_shape, p, g);
-      for (int i = 0; i < 3; i++) {
-        lo[i] = g[i] < lo[i] ? g[i] : lo[i];
-        hi[i] = g[i] > hi[i] ? g[i] : hi[i];
-      }
-    }
+    vl_quadric_bounds(shape, prim, lo, hi);
   }
   for (int i = 0; i < 3; i++) { /* outwards by a float step, for the rounding */
     low[i] = nextafterf((float)lo[i], -INFINITY);

@@ -24,6 +24,7 @@ typedef enum vlFindingKind {
   VL_FINDING_ALBEDO,              /* gives back more light than it gets */
   VL_FINDING_CAMERA_INSIDE,       /* the camera stands in a closed body */
   VL_FINDING_DARK_LIGHT,          /* a light of power 0 */
+  VL_FINDING_ROUGH_COAT,          /* a rough coat that loses light between its microfacets: how much */
   VL_FINDING_WRONG,               /* told while loading (vlLoadDef's problem): what else is wrong in the file */
   VL_FINDING_OVERWRITTEN,         /* likewise: said twice, the second counts */
   VL_FINDING_REMARK,              /* likewise: the importer's own warnings */

@@ -268,7 +268,10 @@ typedef struct vlMaterialDef {
   vlFloatInput thickness, g;   /* coat; thickness not textured over what is diffuse. g: subsurface, too, untextured */
   vlSpectrumInput albedo;      /* of the coat's medium; 0: it absorbs only */
   uint32_t max_depth, samples; /* coat: bounces inside; random walks for each look at it, where it takes walks */
-  vlFloatInput amount;         /* mix: share of the second */
+  /* Coated diffuse, of a medium that only absorbs and is not textured: a rough coat loses no light (pbrt's loses what
+   * scatters between its microfacets more than once, 40 % at alpha 0.4 over white), and max_depth is not read. */
+  bool conserve_energy;
+  vlFloatInput amount; /* mix: share of the second */
   vlMaterialId materials[2];
   vlFloatInput displacement; /* bump map; texture index 0: none */
   const char *normal_map;    /* path, null: none; linear, tangent space */
@@ -458,6 +461,10 @@ typedef struct vlShapeDef {
   float edge_length; /* default 1 */
   /* sphere, disk, cylinder: pbrt's, z axis, book 6.2-6.4; angles in radians */
   float radius, inner_radius, z_min, z_max, height, phi_max;
+  /* Many whole spheres as one shape, 28 bytes each (a sphere of its own takes some 750): `faces` of them, with centres
+   * in shape space; the numbers above are not read. Both null: one sphere at the origin. They cannot emit light. */
+  const double *centers; /* 3 a sphere */
+  const float *radii;    /* 1 a sphere, > 0 */
   /* curves: `faces` segments, the 4 Bezier points of each in positions (vertices = 4 faces). They cannot emit light. Of
    * a image's coordinates u goes along a segment, v from one side to the other. Ribbons: normals at both ends of each
    * segment (6 numbers a face). Segments are cut into 2^split_depth pieces for speed, fewer where there are millions;

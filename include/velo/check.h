@@ -27,6 +27,7 @@ typedef enum vlFindingKind {
   VL_FINDING_ALBEDO,     /**< a surface that reflects more light than it receives */
   VL_FINDING_CAMERA_INSIDE, /**< the camera is inside a closed solid */
   VL_FINDING_DARK_LIGHT,    /**< a light of power 0 */
+  VL_FINDING_ROUGH_COAT,    /**< a rough coat that loses light between its microfacets: how much */
   VL_FINDING_WRONG,         /**< reported while loading (vl_scene_diagnose): another error in the file */
   VL_FINDING_OVERWRITTEN,   /**< reported while loading: given twice; the second counts */
   VL_FINDING_REMARK,        /**< reported while loading: a warning of the importer */

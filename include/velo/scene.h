@@ -309,6 +309,9 @@ typedef struct vlMaterialDef {
   vlHairDef hair;                                  /**< hair */
   const char *measured; /**< measured: path of a spectral file of the RGL material database (Dupuy and Jakob 2018) */
   vlSubsurfaceDef subsurface; /**< subsurface */
+  /** Coated diffuse with a medium that only absorbs and is not textured: a rough coat loses no light (pbrt's loses what
+   * scatters between its microfacets more than once, 40 % at alpha 0.4 over white), and max_depth is not read. */
+  bool conserve_energy;
 } vlMaterialDef;
 /** The default def of a kind. */
 VL_API vlMaterialDef vl_default_material_def(vlMaterialKind kind);
@@ -499,6 +502,10 @@ typedef struct vlShapeDef {
   float edge_length; /**< group space; default 1 */
   /** Sphere, disk, cylinder: pbrt's parameters, around the z axis, shape space (book 6.2-6.4); phi_max in radians. */
   float radius, inner_radius, z_min, z_max, height, phi_max;
+  /** Many whole spheres as one shape, 28 bytes each (a sphere of its own takes some 750): `faces` of them; the numbers
+   * above are not read. Both null: one sphere at the origin. They cannot emit light. */
+  const double *centers; /**< 3 a sphere, shape space */
+  const float *radii;    /**< 1 a sphere, above 0 */
   /** Curves: positions has the 4 Bezier points of each segment. They cannot emit light. u runs along a segment, v from
    * one side to the other. Ribbons: normals has those at both ends of each segment (6 numbers a face). */
   vlCurveKind curve;

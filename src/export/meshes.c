@@ -95,7 +95,11 @@ bool vl_export_mesh(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
     case VL_SHAPE_BILINEAR: return patches(x, d, mesh);
     case VL_SHAPE_SPHERE:
     case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: vl_export_lose(x, "spheres, disks, cylinders: as triangles"); return facets(x, d, mesh);
+    case VL_SHAPE_CYLINDER: {
+      vl_export_lose(x, "spheres, disks, cylinders: as triangles");
+      vlShapeDef unit = vl_default_shape_def(VL_SHAPE_SPHERE);
+      return facets(x, d->centers ? &unit : d, mesh);
+    }
     case VL_SHAPE_CURVES: vl_export_lose(x, "curves: left out"); break;
   }
   return false;

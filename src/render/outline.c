@@ -92,8 +92,8 @@ static void add_round(Points *p, const vlWorldShape *s) {
   }
 }
 
-/* Adds the corners of the curve segments' boxes. */
-static void add_curves(Points *p, const vlWorldShape *s) {
+/* Adds the corners of the boxes of curve segments or of many spheres. */
+static void add_pieces(Points *p, const vlWorldShape *s) {
   for (uint32_t i = 0; i < s->faces; i++) {
     float low[3], high[3];
     vl_world_prim_bounds(s, i, low, high);
@@ -103,13 +103,17 @@ static void add_curves(Points *p, const vlWorldShape *s) {
 }
 
 static void add_shape(Points *p, const vlWorldShape *s, float time) {
+  if (s->centers) {
+    add_pieces(p, s);
+    return;
+  }
   switch (s->kind) {
     case VL_SHAPE_TRIANGLES:
     case VL_SHAPE_BILINEAR: add_vertices(p, s, time); break;
     case VL_SHAPE_SPHERE:
     case VL_SHAPE_DISK:
     case VL_SHAPE_CYLINDER: add_round(p, s); break;
-    case VL_SHAPE_CURVES: add_curves(p, s); break;
+    case VL_SHAPE_CURVES: add_pieces(p, s); break;
   }
 }
 
@@ -119,7 +123,7 @@ uint64_t vl_box_points(const vlWorldShape *s) {
     case VL_SHAPE_BILINEAR: return s->vertices;
     case VL_SHAPE_SPHERE:
     case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: return (uint64_t)RINGS * AROUND;
+    case VL_SHAPE_CYLINDER: return s->centers ? 8 * (uint64_t)s->faces : (uint64_t)RINGS * AROUND;
     case VL_SHAPE_CURVES: return 8 * (uint64_t)s->faces;
   }
   return 0;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "color/color.h"
 #include "scene/scene.h"
 #include "scene/schema/schema.h"
 
@@ -105,7 +106,16 @@ static bool check_mix(vlScene *scene, const vlMaterialDef *d) {
   return true;
 }
 
-/* Members that the kind's row does not name are dropped. */
+bool vl_coat_in_closed_form(const vlMaterialDef *def) {
+  const vlSpectrum *a = &def->albedo.value;
+  float grey = 0;
+  bool black = (vl_spectrum_is_constant(a, &grey) && grey == 0) ||
+               (a->kind == VL_SPECTRUM_RGB && a->rgb[0] == 0 && a->rgb[1] == 0 && a->rgb[2] == 0);
+  return def->kind == VL_MATERIAL_COATED_DIFFUSE && !def->albedo.texture.index && black &&
+         !def->thickness.texture.index;
+}
+
+/* What the kind's row does not name is left out. */
 vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   const vlMaterialId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_MATERIAL, scene->materials.count, (vlSource){0}, "material"))
@@ -120,6 +130,10 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   if (!vl_scene_copy_source(scene, &d.source) || !vl_row_take(scene, row, &d, true, def->source, what) ||
       !vl_scene_copy_string(scene, &d.name))
     return none;
+  if (d.conserve_energy && !vl_coat_in_closed_form(&d))
+    return bad(scene, def->source, what,
+               "energy is conserved over a diffuse base only, under a medium of albedo 0 and untextured thickness"),
+           none;
   if (d.kind == VL_MATERIAL_MIX) d.materials[0] = def->materials[0], d.materials[1] = def->materials[1];
   vlMaterialDef *slot = VL_PUSH(scene->context, &scene->materials);
   if (!slot) return out_of_memory(scene), none;

@@ -12,9 +12,9 @@ vlCheckDef vl_default_check_def(void) {
 
 const char *vl_finding_kind_name(vlFindingKind kind) {
   static const char *const names[VL_FINDING_KINDS] = {
-      "missing-file",        "broken-file", "unused",     "undone",      "open-dielectric",
-      "inverted-dielectric", "media",       "degenerate", "no-uv",       "albedo",
-      "camera-inside",       "dark-light",  "wrong",      "overwritten", "remark"};
+      "missing-file", "broken-file", "unused",      "undone", "open-dielectric", "inverted-dielectric",
+      "media",        "degenerate",  "no-uv",       "albedo", "camera-inside",   "dark-light",
+      "rough-coat",   "wrong",       "overwritten", "remark"};
   return (unsigned)kind < VL_FINDING_KINDS ? names[kind] : "";
 }
 
@@ -65,7 +65,8 @@ static bool sort(vlCheck *check) {
   return true;
 }
 
-vlResult vl_scene_check(const vlScene *scene, const vlCheckDef *def, vlCheck **result, vlError *error) {
+vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart *more, vlCheck **result,
+                       vlError *error) {
   vl_error_clear(error);
   if (result) *result = NULL;
   if (!scene || !result) return vl_fail(error, VL_ERROR_ARGUMENT, "scene check: null argument");
@@ -79,7 +80,7 @@ vlResult vl_scene_check(const vlScene *scene, const vlCheckDef *def, vlCheck **r
   check->scene = scene;
   check->def = def ? *def : vl_default_check_def();
   check->no_memory = !make_used(check);
-  void (*const parts[])(vlCheck *) = {vl_check_names, vl_check_images, vl_check_meshes, vl_check_inside};
+  vlCheckPart *const parts[] = {vl_check_names, vl_check_images, vl_check_meshes, vl_check_inside, more};
   size_t count = check->def.names_only ? 1 : sizeof parts / sizeof *parts;
   for (size_t i = 0; i < count && !check->no_memory; i++) parts[i](check);
   if (check->no_memory || !sort(check)) {

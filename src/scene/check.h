@@ -21,6 +21,9 @@ void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSou
     __attribute__((format(printf, 5, 6)));
 
 /* The parts. */
+typedef void vlCheckPart(vlCheck *check);
+/* vl_scene_check, with one part more that looks at what the scene will become (api/check_coats.c). */
+vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart *more, vlCheck **check, vlError *error);
 void vl_check_names(vlCheck *check);  /* unused and replaced names; fills the used arrays */
 void vl_check_images(vlCheck *check); /* files, albedo, lights without power */
 void vl_check_meshes(vlCheck *check); /* degenerate faces, missing uvs, open and inverted solids */

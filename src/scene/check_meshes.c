@@ -196,7 +196,7 @@ static void check_body(vlCheck *c, const uint32_t *shapes, size_t count) {
 static void check_sphere(vlCheck *c, const vlShapeDef *d) {
   const double whole = 2 * 3.14159265358979 - 1e-5;
   vlCheckName name = vl_check_material_name(vl_check_material(c, d->material));
-  if ((double)d->phi_max < whole || d->z_min > -d->radius || d->z_max < d->radius)
+  if (!d->centers && ((double)d->phi_max < whole || d->z_min > -d->radius || d->z_max < d->radius))
     vl_check_add(c, VL_FINDING_OPEN_DIELECTRIC, VL_SEVERITY_WARNING, d->source,
                  "the body of %s is not closed: the sphere is a part of one", name.text);
   else if (d->reverse_orientation != (vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0))

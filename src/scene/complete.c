@@ -26,6 +26,12 @@ static void visit_box(const vlMat4 *m, const double low[3], const double high[3]
 
 static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, size_t most, Visit *visit, void *user) {
   vlMat4 m = vl_mat4_multiply(*world_from_group, vl_mat4_load(d->group_from_shape));
+  for (size_t i = 0; d->centers && i < d->faces; i += d->faces / most + 1) {
+    const double *c = d->centers + 3 * i;
+    double r = d->radii[i], low[3] = {c[0] - r, c[1] - r, c[2] - r}, high[3] = {c[0] + r, c[1] + r, c[2] + r};
+    visit_box(&m, low, high, visit, user);
+  }
+  if (d->centers) return;
   if (!d->positions) {
     double r = d->radius, low[3] = {-r, -r, d->z_min}, high[3] = {r, r, d->z_max};
     if (d->kind == VL_SHAPE_DISK) low[2] = high[2] = d->height;

@@ -5,7 +5,7 @@
 #include "base/machine.h"
 #include "scene/scene.h"
 
-enum { ARRAYS = 13 };
+enum { ARRAYS = 15 };
 
 static int by_address(const void *a, const void *b) {
   uintptr_t x = (uintptr_t) * (void *const *)a, y = (uintptr_t) * (void *const *)b;
@@ -13,9 +13,9 @@ static int by_address(const void *a, const void *b) {
 }
 
 static void arrays_of(const vlShapeDef *d, const void *arrays[ARRAYS]) {
-  const void *all[ARRAYS] = {d->positions,       d->normals,       d->tangents,      d->uvs,    d->indices,
-                             d->positions_close, d->normals_close, d->tangent_signs, d->colors, d->more_uvs[0],
-                             d->more_uvs[1],     d->more_uvs[2],   d->widths};
+  const void *all[ARRAYS] = {d->positions,       d->normals,       d->tangents,      d->uvs,     d->indices,
+                             d->positions_close, d->normals_close, d->tangent_signs, d->colors,  d->more_uvs[0],
+                             d->more_uvs[1],     d->more_uvs[2],   d->widths,        d->centers, d->radii};
   memcpy(arrays, all, sizeof all);
 }
 
@@ -23,6 +23,8 @@ static void forget(vlShapeDef *d) {
   d->positions = d->normals = d->tangents = d->uvs = d->positions_close = d->normals_close = d->tangent_signs = NULL;
   d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = d->widths = NULL;
   d->indices = NULL;
+  d->centers = NULL;
+  d->radii = NULL;
 }
 
 void vl_scene_drop_meshes(vlScene *scene) {

@@ -50,7 +50,10 @@ struct vlScene {
   bool meshes_dropped; /* by vl_scene_drop_meshes: shapes no longer have arrays */
 };
 
-/* Remembers the first error. Returns the code. */
+/* Has the coat of this material a closed form: over what is diffuse, a medium that does not scatter, one thickness? */
+bool vl_coat_in_closed_form(const vlMaterialDef *def);
+
+/* Remembers the error if it is the first; returns the code. */
 vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 

@@ -96,8 +96,25 @@ static bool check_curves(vlScene *scene, const vlShapeDef *d) {
   return check_floats(scene, d, d->positions, 3, "position");
 }
 
-/* Rules that the ranges of the row do not express. */
+static bool check_spheres(vlScene *scene, const vlShapeDef *d) {
+  if (!d->centers || !d->radii || d->faces == 0 || d->faces > 0x7fffffff)
+    return bad(scene, d, "many spheres: they need centers, radii and a number of faces from 1 to 2^31 - 1"), false;
+  if (d->emission.index) return bad(scene, d, "many spheres as one shape cannot be area lights"), false;
+  for (size_t i = 0; i < d->faces; i++) {
+    const double *c = d->centers + 3 * i;
+    if (!isfinite(c[0] + c[1] + c[2]))
+      return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "the center of sphere %zu is not finite", i), false;
+    if (!(d->radii[i] > 0.0f) || !isfinite(d->radii[i]))
+      return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "the radius of sphere %zu must be above 0, it is %g", i,
+                           (double)d->radii[i]),
+             false;
+  }
+  return true;
+}
+
+/* What the ranges of the row do not say. */
 static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
+  if (d->centers || d->radii) return check_spheres(scene, d);
   if (d->kind == VL_SHAPE_DISK && d->inner_radius >= d->radius)
     return bad(scene, d, "inner radius must be less than the radius"), false;
   if (d->kind != VL_SHAPE_DISK && !(d->z_min < d->z_max)) return bad(scene, d, "zmin must be below zmax"), false;
@@ -157,6 +174,7 @@ static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
 }
 
 static void drop_unused(vlShapeDef *d) {
+  if (d->kind != VL_SHAPE_SPHERE) d->centers = NULL, d->radii = NULL;
   if (vl_shape_is_mesh(d->kind)) {
     d->widths = NULL;
     return;
@@ -169,7 +187,8 @@ static void drop_unused(vlShapeDef *d) {
     return;
   }
   d->widths = NULL;
-  d->vertices = d->faces = 0;
+  d->vertices = 0;
+  if (!d->centers && !d->radii) d->faces = 0;
   d->positions = d->normals = d->tangents = d->uvs = d->positions_close = d->normals_close = NULL;
   d->tangent_signs = d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = NULL;
   d->indices = NULL;
@@ -196,6 +215,8 @@ vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
       !vl_scene_copy_block(scene, d.tangent_signs, v, sizeof(float), &d.tangent_signs) ||
       !vl_scene_copy_block(scene, d.colors, v, 4 * sizeof(float), &d.colors) ||
       !vl_scene_copy_block(scene, d.widths, 2 * (size_t)d.faces, sizeof(float), &d.widths) ||
+      !vl_scene_copy_block(scene, d.centers, d.faces, 3 * sizeof(double), &d.centers) ||
+      !vl_scene_copy_block(scene, d.radii, d.faces, sizeof(float), &d.radii) ||
       !vl_scene_copy_block(scene, d.indices, d.faces, per * sizeof(uint32_t), &d.indices))
     return none;
   for (int k = 0; k < 3; k++)
@@ -207,10 +228,10 @@ vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def) {
   vlShapeDef d = *def;
   bool fine = scene->error.code == VL_OK && d.cookie == VL_COOKIE_SHAPE && vl_scene_copy_source(scene, &d.source) &&
               check_shape(scene, &d);
-  enum { BLOCKS = 13 };
-  const void *blocks[BLOCKS] = {d.positions,       d.normals,       d.tangents,      d.uvs,    d.indices,
-                                d.positions_close, d.normals_close, d.tangent_signs, d.colors, d.more_uvs[0],
-                                d.more_uvs[1],     d.more_uvs[2],   d.widths};
+  enum { BLOCKS = 15 };
+  const void *blocks[BLOCKS] = {d.positions,       d.normals,       d.tangents,      d.uvs,     d.indices,
+                                d.positions_close, d.normals_close, d.tangent_signs, d.colors,  d.more_uvs[0],
+                                d.more_uvs[1],     d.more_uvs[2],   d.widths,        d.centers, d.radii};
   for (int i = 0; i < BLOCKS; i++) {
     void *block;
     memcpy(&block, &blocks[i], sizeof block); /* the scene owns the array; const is for readers */

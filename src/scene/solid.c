@@ -13,6 +13,17 @@ static void grow(double low[3], double high[3], const double p[3]) {
   }
 }
 
+vlShapeDef vl_shape_one_sphere(const vlShapeDef *d, uint32_t k) {
+  const double *c = d->centers + 3 * (size_t)k;
+  vlShapeDef one = *d;
+  vlMat4 m = vl_mat4_multiply(vl_mat4_load(d->group_from_shape), vl_mat4_translate(c[0], c[1], c[2]));
+  memcpy(one.group_from_shape, m.m, sizeof one.group_from_shape);
+  one.radius = one.z_max = d->radii[k], one.z_min = -one.radius;
+  one.phi_max = 2.0f * 3.14159265358979f;
+  one.centers = NULL, one.radii = NULL, one.faces = 0;
+  return one;
+}
+
 void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]) {
   vlMat4 m = vl_mat4_load(d->group_from_shape);
   double p[3], q[3];
@@ -25,6 +36,13 @@ void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]) {
     }
     return;
   }
+  for (uint32_t i = 0; d->centers && i < d->faces; i++) {
+    double a[3], b[3];
+    vlShapeDef one = vl_shape_one_sphere(d, i);
+    vl_shape_box(&one, a, b);
+    grow(low, high, a), grow(low, high, b);
+  }
+  if (d->centers) return;
   double r = d->radius, z0 = d->kind == VL_SHAPE_DISK ? d->height : d->z_min,
          z1 = d->kind == VL_SHAPE_DISK ? d->height : d->z_max;
   for (int c = 0; c < 8; c++) {
@@ -35,7 +53,8 @@ void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]) {
 }
 
 static bool is_whole_sphere(const vlShapeDef *d) {
-  return d->kind == VL_SHAPE_SPHERE && d->phi_max > 6.28318f && d->z_min <= -d->radius && d->z_max >= d->radius;
+  return d->kind == VL_SHAPE_SPHERE && !d->centers && d->phi_max > 6.28318f && d->z_min <= -d->radius &&
+         d->z_max >= d->radius;
 }
 
 bool vl_solid_make(const vlScene *scene, const uint32_t *shapes, size_t count, vlSolid *s) {

@@ -41,6 +41,8 @@ typedef struct vlWorldShape {
   uint32_t steps;     /* sets of positions and normals, one after the other, at equal time steps; 1: at rest */
   /* Sphere, disk, cylinder: parameters as in vlShapeDef, and the affine maps, row-major 3x4. */
   float radius, inner_radius, z_min, z_max, phi_max, height;
+  double *centers; /* many spheres: 3 per prim, in shape space; else null */
+  float *radii;    /* many spheres: 1 per prim; else null */
   /* Curves: per segment 4 points and 2 widths, for ribbons 2 normals, all in shape space. A prim is a piece of a
    * segment. */
   vlCurveKind curve;

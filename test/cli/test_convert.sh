@@ -10,6 +10,13 @@ check pbrt_pbrt "$VELO" scene convert scene.pbrt again.pbrt
 check pbrt_a "$VELO" render scene.pbrt -o a.exr --quiet
 check pbrt_b "$VELO" render again.pbrt -o b.exr --quiet
 check pbrt_same "$VELO" image diff a.exr b.exr --threshold differing=0
+# Many spheres of one state are one shape within, and spheres again in files.
+{ echo 'LookAt 0 0 -25  0 0 0  0 1 0 Film "rgb" "integer xresolution" 32 "integer yresolution" 24 Sampler "zsobol" "integer pixelsamples" 4 WorldBegin LightSource "infinite"'; for i in $(seq 4300); do echo "AttributeBegin Translate $((i % 20 - 10)) $((i / 20 % 20 - 10)) $((i / 400)) Shape \"sphere\" \"float radius\" 0.$((i % 4 + 1)) AttributeEnd"; done; } >many.pbrt
+check many_pbrt "$VELO" scene convert many.pbrt many2.pbrt
+check many_count test "$(grep -c 'Shape "sphere"' many2.pbrt)" = 4300
+check many_a "$VELO" render many.pbrt -o a.exr --quiet
+check many_b "$VELO" render many2.pbrt -o b.exr --quiet
+check many_same "$VELO" image diff a.exr b.exr --threshold differing=0
 # The film in full, and how long the shutter is open; a lecture's camera with its exposure; a portal.
 sed 's/"float fov" \[40\]/& "float shutteropen" 0.25 "float shutterclose" 0.75/; s/Film "rgb"/Film "spectral" "integer nbuckets" 4 "float iso" 300 "float maxcomponentvalue" 2/' scene.pbrt >film.pbrt
 sed 's/^LookAt.*//; s/^Camera.*/Camera "pinhole" "point3 eye" [0 1.2 4] "point3 lookat" [0 0.6 0] "float fov" 40 "float exposuretime" 0.3/' scene.pbrt >lecture.pbrt
@@ -69,6 +76,11 @@ check body_pbrt "$VELO" scene convert body.pbrt body2.pbrt --strict
 check body_a "$VELO" render body.pbrt -o body_a.exr --quiet
 check body_b "$VELO" render body2.pbrt -o body_b.exr --quiet
 check body_same "$VELO" image diff body_a.exr body_b.exr --threshold differing=0
+sed 's/^Material "subsurface" "string.*/Material "coateddiffuse" "float roughness" .5 "float thickness" .02 "bool conserveenergy" true/' body.pbrt >coat.pbrt
+check coat_pbrt "$VELO" scene convert coat.pbrt coat2.pbrt --strict
+check coat_a "$VELO" render coat.pbrt -o a.exr --quiet
+check coat_b "$VELO" render coat2.pbrt -o b.exr --quiet
+check coat_same "$VELO" image diff a.exr b.exr --threshold differing=0
 check body_gltf "$VELO" scene convert body.pbrt body.gltf
 expect_text body_gltf_tells 'subsurface: as a rough dielectric'
 # Computed textures, and hair by each of its colours.

@@ -79,16 +79,44 @@ static void white_furnace(void **state) {
   vl_coat_free(s->context, frosted);
 }
 
+/* Rough coats that conserve energy over white, of one roughness and of a textured one. */
+static void conserving_coats_lose_nothing(void **state) {
+  const State *s = *state;
+  const float alphas[] = {0.001f, 0.1f, 0.2f, 0.4f, 0.8f, 1.0f}, etas[] = {1.2f, 1.5f, 2.4f};
+  const double thetas[] = {0.0, 0.8, 1.4, 1.55};
+  vlCoatTable *tables[3][7];
+  for (int e = 0; e < 3; e++)
+    for (int a = 0; a < 7; a++) {
+      float low = a < 6 ? alphas[a] : 0, high = a < 6 ? alphas[a] : 1;
+      assert_int_equal(vl_coat_build(s->context, etas[e], 0.0f, 10, low, high, &tables[e][a]), VL_OK);
+      assert_int_equal(vl_coat_conserve(s->context, tables[e][a]), VL_OK);
+    }
+  for (int e = 0; e < 3; e++)
+    for (int a = 0; a < 6; a++)
+      for (int t = 0; t < 8; t++) {
+        Surface white = {.kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 1, .eta_s = etas[e]};
+        white.alpha_x = white.alpha_y = alphas[a];
+        white.coat = tables[e][t < 4 ? a : 6];
+        double kept = furnace(s, &white, thetas[t % 4]);
+        if (!(kept > 0.995 && kept < 1.005))
+          fail_msg("eta %g alpha %g theta %g%s: %g", (double)etas[e], (double)alphas[a], thetas[t % 4],
+                   t < 4 ? "" : ", textured", kept);
+      }
+  for (int e = 0; e < 3; e++)
+    for (int a = 0; a < 7; a++) vl_coat_free(s->context, tables[e][a]);
+}
+
 /* Coats over white, of any index, thickness and roughness: never more than came; through a thick black medium nothing
  * but what the coat itself sends back. */
 static void coats_never_gain(void **state) {
   const State *s = *state;
   const float etas[] = {0.7f, 1.01f, 1.5f, 3}, taus[] = {0, 0.1f, 20}, alphas[] = {0, 0.01f, 0.3f, 1};
   const double thetas[] = {0.1, 1.5};
-  for (int i = 0; i < 4 * 3 * 4; i++) {
-    float eta = etas[i % 4], tau = taus[i / 4 % 3], alpha = alphas[i / 12];
+  for (int i = 0; i < 2 * 4 * 3 * 4; i++) {
+    float eta = etas[i % 4], tau = taus[i / 4 % 3], alpha = alphas[i / 12 % 4];
     vlCoatTable *table;
     assert_int_equal(vl_coat_build(s->context, eta, tau, 1000, alpha, alpha, &table), VL_OK);
+    if (i >= 4 * 3 * 4) assert_int_equal(vl_coat_conserve(s->context, table), VL_OK);
     Surface white = {
         .kind = VL_BSDF_COATED_DIFFUSE, .reflectance = 1, .eta_s = eta, .alpha_x = alpha, .alpha_y = alpha};
     white.coat = table;
@@ -105,6 +133,7 @@ static void coats_never_gain(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(white_furnace), cmocka_unit_test(coats_never_gain)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(white_furnace), cmocka_unit_test(conserving_coats_lose_nothing),
+                                     cmocka_unit_test(coats_never_gain)};
   return cmocka_run_group_tests(tests, setup, teardown);
 }

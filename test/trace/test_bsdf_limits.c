@@ -19,6 +19,7 @@ static int build_all(void **state) {
   const float alphas[4][2] = {{0, 0}, {0.1f, 0.1f}, {0.0f, 0.6f}, {0.4f, 0.4f}};
   for (int i = 0; i < 4; i++)
     if (vl_coat_build(s->context, 1.5f, 0.01f, i == 3 ? 1000 : 10, alphas[i][0], alphas[i][1], &s->coats[i])) return 1;
+  if (vl_coat_conserve(s->context, s->coats[3])) return 1;
   const char *path = VELO_BINARY_DIR "/limits.bsdf";
   for (int i = 0; i < 2; i++) {
     mfSurface metal = mf_surface(0.3, i ? 0.1 : 0.3);

@@ -209,6 +209,39 @@ static void energy(void **state) {
   vl_coat_free(*state, t);
 }
 
+/* The albedo over white: of a rough coat pbrt's loss, of one that conserves energy none, or what the layer absorbs,
+ * which a smooth coat loses, too. */
+static void conserving(void **state) {
+  vlCoatTable *t, *smooth;
+  double albedo, other;
+  assert_int_equal(vl_coat_build(*state, 1.5f, 0.01f, 10, 0.4f, 0.4f, &t), VL_OK);
+  assert_int_equal(vl_coat_white_albedo(*state, t, &albedo), VL_OK);
+  if (!(fabs(albedo - 0.572) < 0.002)) fail_msg("a rough coat keeps %g", albedo);
+  assert_int_equal(vl_coat_conserve(*state, t), VL_OK);
+  float once = t->back[0];
+  assert_int_equal(vl_coat_conserve(*state, t), VL_OK); /* once is enough */
+  assert_true(t->back[0] == once && t->conserves);
+  assert_int_equal(vl_coat_white_albedo(*state, t, &albedo), VL_OK);
+  assert_int_equal(vl_coat_build(*state, 1.5f, 0.01f, 1000, 0, 0, &smooth), VL_OK);
+  assert_int_equal(vl_coat_white_albedo(*state, smooth, &other), VL_OK);
+  if (!(fabs(albedo - other) < 0.02 && albedo < 1)) fail_msg("conserving %g, smooth %g", albedo, other);
+  vl_coat_free(*state, t), vl_coat_free(*state, smooth);
+  for (int i = 0; i < 16; i++) {
+    float eta = (float[]){0.7f, 1.2f, 1.5f, 2.4f}[i % 4], alpha = (float[]){0.01f, 0.1f, 0.4f, 1.0f}[i / 4];
+    assert_int_equal(vl_coat_build(*state, eta, 0.0f, 10, alpha, alpha, &t), VL_OK);
+    assert_int_equal(vl_coat_conserve(*state, t), VL_OK);
+    float sum = t->back[0] + t->escape[0];
+    assert_true(fabsf(sum - 1) < 1e-4f && t->back[0] >= 0 && t->escape[0] > 0);
+    for (int k = 0; k < VL_COAT_COS; k++) {
+      assert_true(t->transmittance[0][k] >= 0 && t->transmittance[0][k] <= 1);
+      assert_true(t->imitation[0][k] == t->transmittance[0][k]);
+    }
+    assert_int_equal(vl_coat_white_albedo(*state, t, &albedo), VL_OK);
+    if (!(eta < 1 || (albedo > 0.999 && albedo < 1.001))) fail_msg("eta %g alpha %g: %g", eta, alpha, albedo);
+    vl_coat_free(*state, t);
+  }
+}
+
 /* Rows of a textured roughness against tables of one alpha. */
 static void textured(void **state) {
   vlCoatTable *t, *one;
@@ -275,16 +308,18 @@ static void out_of_memory(void **state) {
     calls_left = limit;
     vlCoatTable *t;
     vlResult result = vl_coat_build(context, 1.5f, 0.01f, 10, 0, 0, &t);
-    if (result == VL_OK)
+    if (result == VL_OK) {
+      result = vl_coat_conserve(context, t);
+      assert_true(t->conserves == (result == VL_OK));
       vl_coat_free(context, t);
-    else
-      assert_int_equal(result, VL_ERROR_MEMORY), failed++;
+    }
+    if (result != VL_OK) assert_int_equal(result, VL_ERROR_MEMORY), failed++;
     assert_int_equal(blocks, before);
     vl_context_destroy(context);
     assert_int_equal(blocks, 0);
     if (result == VL_OK) break;
   }
-  assert_true(failed >= 2);
+  assert_true(failed >= 3);
 }
 
 static int setup(void **state) {
@@ -298,7 +333,8 @@ static int teardown(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(against_walk), cmocka_unit_test(imitation),
-                                     cmocka_unit_test(energy),       cmocka_unit_test(textured),
-                                     cmocka_unit_test(arguments),    cmocka_unit_test(out_of_memory)};
+                                     cmocka_unit_test(energy),       cmocka_unit_test(conserving),
+                                     cmocka_unit_test(textured),     cmocka_unit_test(arguments),
+                                     cmocka_unit_test(out_of_memory)};
   return cmocka_run_group_tests(tests, setup, teardown);
 }

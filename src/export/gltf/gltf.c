@@ -192,17 +192,29 @@ static bool is_sheared(const double m[16]) {
   return false;
 }
 
+/* Nodes of a shape's mesh, appended to `list`: one, or one for each of many spheres, whose mesh is the unit sphere. */
+static void put_nodes(vlExport *x, const vlShapeDef *d, json_int_t mesh, json_t *list) {
+  for (uint32_t i = 0; i < (d->centers ? d->faces : 1); i++) {
+    vlMat4 m = vl_mat4_load(d->group_from_shape);
+    if (d->centers) {
+      const double *c = d->centers + 3 * (size_t)i, r = d->radii[i];
+      m = vl_mat4_multiply(m, vl_mat4_multiply(vl_mat4_translate(c[0], c[1], c[2]), vl_mat4_scale(r, r, r)));
+    }
+    json_t *node = node_of(m.m);
+    json_object_set_new(node, "mesh", json_integer(mesh));
+    json_array_append_new(list, json_integer(vl_gltf_put(x, "nodes", node)));
+  }
+}
+
 static bool put_shapes(vlExport *x, json_t *roots, json_int_t *mesh_of) {
   const vlScene *s = x->scene;
   for (size_t i = 0; i < s->shapes.count; i++) {
     const vlShapeDef *d = &s->shapes.items[i];
     if (!put_mesh(x, d, &mesh_of[i])) return false;
     if (mesh_of[i] < 0 || d->group.index) continue;
-    json_t *node = node_of(d->group_from_shape);
     if (is_sheared(d->group_from_shape))
       vl_export_lose(x, "transforms that shear: in the file, but not as glTF wants it");
-    json_object_set_new(node, "mesh", json_integer(mesh_of[i]));
-    json_array_append_new(roots, json_integer(vl_gltf_put(x, "nodes", node)));
+    put_nodes(x, d, mesh_of[i], roots);
   }
   return true;
 }
@@ -220,14 +232,12 @@ static bool put_instances(vlExport *x, json_t *roots, const json_int_t *mesh_of)
     for (size_t k = 0; k < s->shapes.count; k++) {
       const vlShapeDef *d = &s->shapes.items[k];
       if (d->group.index != instance->group.index || mesh_of[k] < 0) continue;
-      json_t *child = node_of(d->group_from_shape);
-      json_object_set_new(child, "mesh", json_integer(mesh_of[k]));
-      if (s->groups.items[d->group.index - 1].shape_count == 1 && !json_object_get(child, "matrix")) {
+      json_t *place = node_of(d->group_from_shape);
+      if (s->groups.items[d->group.index - 1].shape_count == 1 && !json_object_get(place, "matrix") && !d->centers)
         json_object_set_new(node, "mesh", json_integer(mesh_of[k]));
-        json_decref(child);
-      } else {
-        json_array_append_new(children, json_integer(vl_gltf_put(x, "nodes", child)));
-      }
+      else
+        put_nodes(x, d, mesh_of[k], children);
+      json_decref(place);
     }
     if (json_array_size(children)) json_object_set(node, "children", children);
     json_decref(children);

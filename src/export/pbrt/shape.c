@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "export/pbrt/pbrt.h"
+#include "scene/solid.h"
 
 enum { INLINE_FACES = 64 };
 
@@ -131,8 +132,7 @@ static bool put_emission(vlExport *x, const vlEmissionDef *e) {
   return true;
 }
 
-bool vl_pbrt_shape(vlExport *x, size_t index) {
-  const vlShapeDef *d = &x->scene->shapes.items[index];
+static bool put_shape(vlExport *x, const vlShapeDef *d, size_t index) {
   if (d->kind == VL_SHAPE_CURVES) {
     vl_export_lose(x, "curves: left out");
     return true;
@@ -163,5 +163,15 @@ bool vl_pbrt_shape(vlExport *x, size_t index) {
   if (!put) return false;
   if (alpha.texture[0] || alpha.number != 1) vl_pbrt_put_number(x, "alpha", &alpha);
   PUT("\nAttributeEnd\n");
+  return true;
+}
+
+bool vl_pbrt_shape(vlExport *x, size_t index) {
+  const vlShapeDef *d = &x->scene->shapes.items[index];
+  if (!d->centers) return put_shape(x, d, index);
+  for (uint32_t i = 0; i < d->faces; i++) {
+    vlShapeDef one = vl_shape_one_sphere(d, i);
+    if (!put_shape(x, &one, index)) return false;
+  }
   return true;
 }

@@ -274,6 +274,7 @@ static void release(vlImport *import) {
   VL_ARRAY_FREE(context, &import->moving);
   vl_import_free_curves(import);
   vl_import_free_meshes(import);
+  vl_import_free_spheres(import);
   VL_ARRAY_FREE(context, &import->object_list);
   VL_ARRAY_FREE(context, &import->links);
   VL_ARRAY_FREE(context, &import->mesh_files);

@@ -131,6 +131,17 @@ typedef struct vlMeshRun {
   VL_ARRAY(uint32_t) indices;
 } vlMeshRun;
 
+/* Whole spheres that become one shape, while they are gathered (sphere_run.c): from the VL_MESH_RUN_FROM-th shape on.
+ */
+typedef struct vlSphereRun {
+  bool open;
+  vlShapeDef def;
+  vlShapeLink link;
+  const char *inside, *outside; /* media */
+  VL_ARRAY(double) centers;     /* 3 a sphere */
+  VL_ARRAY(float) radii;
+} vlSphereRun;
+
 /* Shapes under an animated transform. */
 typedef struct vlMovingGroup {
   vlGroupId group, object; /* object: the object that contains the group; 0: none */
@@ -176,6 +187,8 @@ struct vlImport {
   VL_ARRAY(vlMovingGroup) moving;
   vlCurveRun curves;
   vlMeshRun mesh_runs[VL_MESH_RUNS];
+  vlSphereRun sphere_runs[VL_MESH_RUNS];
+  uint32_t next_sphere_run; /* that gives way to a new one */
   uint32_t next_run;
   double edge_scale; /* Option "displacementedgescale" */
   uint32_t depth;    /* nesting of textures or materials that refer to each other */
@@ -285,6 +298,13 @@ void vl_import_free_curves(vlImport *import);
 bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *def, const vlShapeLink *link, bool *taken);
 bool vl_import_flush_meshes(vlImport *import); /* called at the end */
 void vl_import_free_meshes(vlImport *import);
+/* A sphere goes into a run (*taken), or is a shape of its own. */
+bool vl_import_gather_sphere(vlImport *import, const vlShapeDef *def, const vlShapeLink *link, bool *taken);
+bool vl_import_flush_spheres(vlImport *import); /* at the end */
+void vl_import_free_spheres(vlImport *import);
+/* May shapes of these two links be one? */
+bool vl_import_same_link(const vlShapeLink *a, const vlShapeLink *b);
+bool vl_import_same_text(const char *a, const char *b); /* null is the empty one */
 bool vl_import_medium(vlImport *import, const vlStatement *s);
 /* Records the media of the current state for a shape ('s'), a light ('l') or the camera ('c'). */
 bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource place);

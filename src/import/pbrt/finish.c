@@ -79,7 +79,8 @@ bool vl_import_finish(vlImport *import) {
     return vl_import_fail(import, VL_ERROR_SCENE, top->place, "%s is never closed",
                           top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
   }
-  if (!vl_import_flush_curves(import) || !vl_import_flush_meshes(import)) return false;
+  if (!vl_import_flush_curves(import) || !vl_import_flush_meshes(import) || !vl_import_flush_spheres(import))
+    return false;
   if (!vl_import_read_meshes(import)) return false;
   for (uint32_t i = 0; i < import->textures.count; i++)
     if (!vl_import_finish_texture(import, i) && !give_up(import)) return false;

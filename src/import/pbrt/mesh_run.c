@@ -9,17 +9,21 @@
 
 enum { MOST_FACES = 256, MOST_OF_A_RUN = 1 << 20 };
 
-static bool same_text(const char *a, const char *b) {
+bool vl_import_same_text(const char *a, const char *b) {
   return a == b || strcmp(a ? a : "", b ? b : "") == 0;
+}
+
+bool vl_import_same_link(const vlShapeLink *a, const vlShapeLink *b) {
+  return a->material == b->material && vl_import_same_text(a->material_name, b->material_name) &&
+         vl_import_same_text(a->alpha, b->alpha);
 }
 
 static bool fits(const vlMeshRun *run, const vlShapeDef *def, const vlShapeLink *link, const vlGraphicsState *state) {
   const vlShapeDef *d = &run->def;
   return run->open && d->group.index == def->group.index && d->reverse_orientation == def->reverse_orientation &&
          d->alpha.value == def->alpha.value && !d->normals == !def->normals && !d->uvs == !def->uvs &&
-         run->link.material == link->material && same_text(run->link.material_name, link->material_name) &&
-         same_text(run->link.alpha, link->alpha) && same_text(run->inside, state->inside) &&
-         same_text(run->outside, state->outside) && run->indices.count / 3 + def->faces < MOST_OF_A_RUN;
+         vl_import_same_link(&run->link, link) && vl_import_same_text(run->inside, state->inside) &&
+         vl_import_same_text(run->outside, state->outside) && run->indices.count / 3 + def->faces < MOST_OF_A_RUN;
 }
 
 static bool all_finite(const float *v, size_t count) {

@@ -220,7 +220,8 @@ typedef bool EnterShape(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, 
 static bool enter(vlDict *dict, const vlShapeDef *def, const vlShapeLink *link, bool *taken) {
   if (!vl_dict_done(dict)) return false;
   *taken = true;
-  return vl_import_add_shape(dict->import, def, link);
+  size_t before = dict->import->scene->shapes.count;
+  return vl_import_add_shape(dict->import, def, link) && note_media(dict->import, before, dict->place);
 }
 
 static bool enter_triangles(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
@@ -235,7 +236,10 @@ static bool enter_bilinear(vlDict *dict, vlShapeDef *def, const vlShapeLink *lin
 }
 
 static bool enter_sphere(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
-  return read_quadric(dict, def) && enter(dict, def, link, taken);
+  bool gathered = false;
+  if (!read_quadric(dict, def) || !vl_dict_done(dict)) return false;
+  if (!vl_import_gather_sphere(dict->import, def, link, &gathered)) return false;
+  return gathered || enter(dict, def, link, taken);
 }
 
 static bool enter_disk(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
@@ -246,6 +250,7 @@ static bool enter_cylinder(vlDict *dict, vlShapeDef *def, const vlShapeLink *lin
   return read_quadric(dict, def) && enter(dict, def, link, taken);
 }
 
+/* Curves enter later, with their media. */
 static bool enter_curves(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
   *taken = true;
   return vl_import_curve(dict, def, link);
@@ -257,8 +262,9 @@ static bool enter_loop(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, b
 
 static bool enter_ply(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
   vlShapeLink own = *link;
+  size_t before = dict->import->scene->shapes.count;
   *taken = true;
-  return note_ply(dict, def, &own);
+  return note_ply(dict, def, &own) && note_media(dict->import, before, dict->place);
 }
 
 #define ENTER(NAME, name) [VL_SHAPE_##NAME] = enter_##name,
@@ -323,9 +329,7 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
   def.emission = import->state.emission;
   drop_emission(import, s->place, moves, &def);
   if (kind != VL_SHAPE_CURVES && !vl_import_flush_curves(import)) return false;
-  size_t before = import->scene->shapes.count;
   bool fine = function(&dict, &def, &link, &taken);
   if (!taken) free_arrays(import, &def);
-  /* curves and their media are added later */
-  return fine && (kind == VL_SHAPE_CURVES || note_media(import, before, s->place));
+  return fine;
 }

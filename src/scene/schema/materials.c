@@ -37,7 +37,8 @@
       SPECTRUM("albedo", albedo, "of that medium; 0: it absorbs only", VL_DEFAULT(0), ALBEDO),               \
       COUNT("maxdepth", max_depth, "bounces between the layers", VL_DEFAULT(10), VL_RANGE(1, 4294967295.0)), \
       COUNT("nsamples", samples, "random walks each time, where there are any", VL_DEFAULT(1),               \
-            VL_RANGE(1, 4294967295.0))
+            VL_RANGE(1, 4294967295.0)),                                                                      \
+      BOOL("conserveenergy", conserve_energy, "a rough coat over a diffuse base loses no light")
 #define METAL(eta_name, k_name)                                                                                  \
   SPECTRUM(eta_name, eta, "index of refraction", .text = "metal-Cu-eta", UNBOUNDED),                             \
       SPECTRUM(k_name, k, "extinction coefficient", .text = "metal-Cu-k", UNBOUNDED),                            \

@@ -63,6 +63,8 @@ static const vlParameter sphere_parameters[] = {
     LENGTH("zmin", z_min, "where it starts along z; unset in a file: -radius", -1),
     LENGTH("zmax", z_max, "where it ends along z; unset in a file: radius", 1),
     PHI_MAX,
+    ARRAY(NULL, centers, NULL, "of many whole spheres as one shape"),
+    ARRAY(NULL, radii, NULL, "of those spheres"),
 };
 VL_KIND_ROW(sphere, .name = "sphere", .description = "a sphere or a part of one",
             .traits = VL_SHAPE_TRAIT_QUADRIC | VL_SHAPE_TRAIT_EMITS)

@@ -5,7 +5,7 @@
 #include "scene/schema/schema.h"
 
 bool vl_accel_bundled(const vlWorldShape *s) {
-  return (vl_kind_row(&vl_shape_family, (int)s->kind)->traits & VL_SHAPE_TRAIT_QUADRIC) != 0;
+  return !s->centers && (vl_kind_row(&vl_shape_family, (int)s->kind)->traits & VL_SHAPE_TRAIT_QUADRIC) != 0;
 }
 
 uint32_t vl_accel_find_bundle(const vlWorld *world, const vlWorldGroup *group, vlAccelBundle *bundle,

@@ -4,7 +4,7 @@
 
 #include "world/world.h"
 
-/* Whether this shape can be part of a bundle. */
+/* Whether this shape can be part of a bundle. Many spheres cannot: they are one geometry already. */
 bool vl_accel_bundled(const vlWorldShape *shape);
 /* Finds the bundle of a group; its geometry id is that of its first shape. members: room for all shapes of the
  * group. Returns how many members were written. */

@@ -3,6 +3,8 @@
  * any roughness. */
 #include "world/material/coat.h"
 
+#include <string.h>
+
 #include "base/isa.h"
 #include "math/fresnel.h"
 #include "math/ggx.h"
@@ -110,6 +112,13 @@ static double transmittance(const Rules *rules, float c, float eta, float alpha,
   return *imitation = t;
 }
 
+/* Reflectance of the interface from outside at cosine c, without the base. */
+static double reflectance_outside(const Rules *rules, float c, float eta, float alpha) {
+  if (eta == 1.0f) return 0.0;
+  if (alpha >= VL_GGX_SMOOTH) return interface_mean(&rules->back, 0, c, eta, alpha, 0.0f, NULL);
+  return (double)vl_fresnel_dielectric(c, eta).reflected;
+}
+
 /* Reflectance of the interface from inside at cosine c; the layer is traversed up and down. */
 static double reflectance_inside(const Rules *rules, float c, float eta, float alpha, float tau) {
   if (eta == 1.0f) return 0.0;
@@ -132,6 +141,18 @@ static double back_share(const Rules *rules, float eta, float alpha, float tau) 
   return sum;
 }
 
+static double at_cosine(const float *t, double c) {
+  vlCoatPlace p = vl_coat_place((float)c);
+  const float *q = t + p.first;
+  return (double)vl_coat_cubic(q[0], q[1], q[2], q[3], p.t);
+}
+
+static double escape_share(const Rules *rules, const float *t, float eta) {
+  double sum = 0.0;
+  for (int i = 0; i < OUTER; i++) sum += rules->w[i] * 2.0 * rules->x[i] * at_cosine(t, rules->x[i]);
+  return sum / ((double)eta * (double)eta);
+}
+
 static void build_row(const Rules *rules, vlCoatTable *table, uint32_t row, float alpha) {
   float *t = table->transmittance[row];
   for (int i = 0; i < VL_COAT_COS; i++) {
@@ -141,13 +162,7 @@ static void build_row(const Rules *rules, vlCoatTable *table, uint32_t row, floa
     table->imitation[row][i] = (float)imitation;
   }
   table->back[row] = (float)back_share(rules, table->eta, alpha, table->tau);
-  double sum = 0.0;
-  for (int i = 0; i < OUTER; i++) {
-    vlCoatPlace p = vl_coat_place((float)rules->x[i]);
-    const float *q = t + p.first;
-    sum += rules->w[i] * 2.0 * rules->x[i] * (double)vl_coat_cubic(q[0], q[1], q[2], q[3], p.t);
-  }
-  table->escape[row] = (float)(sum / ((double)table->eta * (double)table->eta));
+  table->escape[row] = (float)escape_share(rules, t, table->eta);
 }
 
 static float root(float x) {
@@ -185,6 +200,70 @@ vlResult vl_coat_build(vlContext *context, float eta, float tau, uint32_t max_de
   }
   vl_free(context, rules);
   *result = table;
+  return VL_OK;
+}
+
+/* As escape_share, exact for what the cubics give between the nodes, kinks or not: midpoints of x = c^(1/4). */
+static double escape_exactly(const float *t, float eta) {
+  enum { CELLS = 16 * (VL_COAT_COS - 1) };
+  double sum = 0.0;
+  for (int i = 0; i < CELLS; i++) {
+    double x = (i + 0.5) / CELLS, cube = x * x * x;
+    sum += 8.0 * cube * cube * x * at_cosine(t, cube * x) / CELLS;
+  }
+  return sum / ((double)eta * (double)eta);
+}
+
+static float row_alpha(const vlCoatTable *table, uint32_t row) {
+  float a = table->alphas > 1 ? table->row_start + (float)row / table->row_scale : 0.0f;
+  return table->alphas > 1 ? a * a : table->alpha_min;
+}
+
+static void conserve_row(const Rules *rules, vlCoatTable *table, uint32_t row) {
+  float eta = table->eta, alpha = row_alpha(table, row), *t = table->transmittance[row], through[VL_COAT_COS];
+  double layers = 1.0, unused;
+  memcpy(table->imitation[row], t, sizeof table->imitation[row]);
+  if (alpha < VL_GGX_SMOOTH || eta == 1.0f) return; /* nothing is lost */
+  for (int i = VL_COAT_COS; i-- > 0;) {
+    float x = (float)i / (float)(VL_COAT_COS - 1), c = x * x * x * x > 1e-6f ? x * x * x * x : 1e-6f;
+    through[i] = (float)(1.0 - reflectance_outside(rules, c, eta, alpha));
+    double clear = table->tau > 0.0f ? transmittance(rules, c, eta, alpha, 0.0f, &unused) : 0.0;
+    if (clear > 0.0) layers = (double)t[i] / clear; /* else as at the cosine above */
+    t[i] = (float)layers;                           /* what the layer leaves */
+  }
+  double escape = escape_exactly(through, eta), limit = escape > 1.0 ? 1.0 / escape : 1.0;
+  for (int i = 0; i < VL_COAT_COS; i++) table->imitation[row][i] = t[i] = (float)(limit * (double)(t[i] * through[i]));
+  double back = 1.0 - limit * escape, clear = table->tau > 0.0f ? back_share(rules, eta, alpha, 0.0f) : 0.0;
+  table->back[row] = (float)(clear > 0.0 ? back * (double)table->back[row] / clear : back);
+  table->escape[row] = (float)escape_exactly(t, eta);
+}
+
+vlResult vl_coat_conserve(vlContext *context, vlCoatTable *table) {
+  if (!context || !table) return VL_ERROR_ARGUMENT;
+  if (table->conserves) return VL_OK;
+  Rules *rules = vl_alloc(context, sizeof *rules);
+  if (!rules) return VL_ERROR_MEMORY;
+  make_rules(rules);
+  for (uint32_t row = 0; row < table->alphas; row++) conserve_row(rules, table, row);
+  table->bounces = 255;
+  table->conserves = true;
+  vl_free(context, rules);
+  return VL_OK;
+}
+
+vlResult vl_coat_white_albedo(vlContext *context, const vlCoatTable *table, double *albedo) {
+  if (!context || !table || !albedo) return VL_ERROR_ARGUMENT;
+  Rules *rules = vl_alloc(context, sizeof *rules);
+  if (!rules) return VL_ERROR_MEMORY;
+  make_rules(rules);
+  double power = 1.0, series = 0.0, back = (double)table->back[0], sum = 0.0;
+  for (uint32_t k = 0; k < table->bounces; k++) series += power, power *= back;
+  for (int i = 0; i < OUTER; i++) {
+    double c = rules->x[i], own = reflectance_outside(rules, (float)c, table->eta, row_alpha(table, 0));
+    sum += rules->w[i] * 2.0 * c * (own + at_cosine(table->transmittance[0], c) * (double)table->escape[0] * series);
+  }
+  vl_free(context, rules);
+  *albedo = sum;
   return VL_OK;
 }
 

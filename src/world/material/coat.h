@@ -34,6 +34,7 @@ typedef struct vlCoatTable {
    * images; vl_coat_build leaves `imitate` unset. */
   float imitation[VL_COAT_ALPHA][VL_COAT_COS];
   bool imitate;
+  bool conserves;              /* see vl_coat_conserve */
   float back[VL_COAT_ALPHA];   /* R */
   float escape[VL_COAT_ALPHA]; /* share of the base's light that leaves directly: int T 2cos dcos / eta^2 */
 } vlCoatTable;
@@ -45,6 +46,15 @@ typedef struct vlCoatTable {
  * alpha_min > alpha_max, ...), MEMORY. */
 vlResult vl_coat_build(vlContext *context, float eta, float tau, uint32_t max_depth, float alpha_min, float alpha_max,
                        vlCoatTable **table);
+/* Makes the coat of a built table keep all light: over a white base and without absorption nothing is lost, at any
+ * roughness. What single scattering between microfacets loses goes to the base: T(w) becomes (1 - E(w)) T(w) / T0(w)
+ * and R becomes R (1 - mean(1 - E) / eta^2) / R0, with E the coat's own reflectance from outside and T0, R0 those of
+ * tau 0; the bounces have no bound but the series' own (255). As T stays a factor for each direction, the BSDF stays
+ * reciprocal. Of a coat with eta < 1 the base gets no more than it can give back: a little is lost still. The error of
+ * pbrt-v4 is not imitated then. Costs as much as two to three builds. MEMORY: the table is as it was. */
+vlResult vl_coat_conserve(vlContext *context, vlCoatTable *table);
+/* What the coat of the table's first row gives back of uniform light over a white base, 0 to 1. MEMORY. */
+vlResult vl_coat_white_albedo(vlContext *context, const vlCoatTable *table, double *albedo);
 void vl_coat_free(vlContext *context, vlCoatTable *table);
 
 /* Position of T(cos) in the table: four nodes from `first` on, at t in [0, 3] among them. */

@@ -31,7 +31,7 @@ static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWor
   for (size_t i = 0; i < world->coats.count; i++) {
     vlCoatTable *t = world->coats.items[i].table;
     if (t->eta == m->eta_s && t->tau == thickness && world->coats.items[i].depth == def->max_depth &&
-        t->alpha_min == low && t->alpha_max == high) {
+        t->alpha_min == low && t->alpha_max == high && t->conserves == def->conserve_energy) {
       *table = t;
       return VL_OK;
     }
@@ -39,7 +39,8 @@ static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWor
   vlCoatTable *built = NULL;
   if (vl_coat_build(world->context, m->eta_s, thickness, def->max_depth, low, high, &built) != VL_OK)
     return vl_fail_memory(error);
-  vlWorldCoat *slot = VL_PUSH(world->context, &world->coats);
+  vlResult r = def->conserve_energy ? vl_coat_conserve(world->context, built) : VL_OK;
+  vlWorldCoat *slot = r != VL_OK ? NULL : VL_PUSH(world->context, &world->coats);
   if (!slot) {
     vl_coat_free(world->context, built);
     return vl_fail_memory(error);
@@ -70,15 +71,6 @@ static vlResult measured_of(vlWorld *world, const vlMaterialDef *def, vlWorldMat
   vlResult r = vl_measured_read(world->context, def->measured, world->def.color == VL_COLOR_RGB, slot, error);
   m->measured = *slot;
   return r;
-}
-
-/* Whether the coat has a closed form: its medium does not scatter, and its thickness is constant. */
-static bool in_closed_form(const vlMaterialDef *def) {
-  const vlSpectrum *a = &def->albedo.value;
-  float grey = 0;
-  bool black = (vl_spectrum_is_constant(a, &grey) && grey == 0) ||
-               (a->kind == VL_SPECTRUM_RGB && a->rgb[0] == 0 && a->rgb[1] == 0 && a->rgb[2] == 0);
-  return !def->albedo.texture.index && black && !def->thickness.texture.index;
 }
 
 /* ---- what several kinds have ------------------------------------------------------------------------------------- */
@@ -136,7 +128,7 @@ vlResult vl_compile_coated_diffuse_material(const vlMaterialBuild *b) {
   if (r == VL_OK) r = vl_material_roughness(b);
   if (r == VL_OK) r = vl_material_index(b, &b->def->eta, false);
   if (r != VL_OK) return r;
-  return in_closed_form(b->def) ? coat_of(b->world, b->def, b->m, b->error) : vl_material_layers(b, false);
+  return vl_coat_in_closed_form(b->def) ? coat_of(b->world, b->def, b->m, b->error) : vl_material_layers(b, false);
 }
 
 vlResult vl_compile_conductor_material(const vlMaterialBuild *b) {

@@ -6,13 +6,43 @@
 
 #include "math/approx.h"
 
+/* One prim of a shape, in a space of its own: that of the shape, with the sphere of many at the origin. */
+typedef struct Quadric {
+  vlShapeKind kind;
+  bool flip;
+  float radius, inner_radius, z_min, z_max, phi_max, height;
+  const double *center; /* in shape space; null: the origin */
+  const double *from_shape, *to_shape;
+} Quadric;
+
+static Quadric load(const vlWorldShape *s, uint32_t prim) {
+  Quadric q = {s->kind,    s->flip,   s->radius, s->inner_radius, s->z_min,   s->z_max,
+               s->phi_max, s->height, NULL,      s->from_shape,   s->to_shape};
+  if (s->centers) {
+    q.center = s->centers + 3 * (size_t)prim;
+    q.radius = q.z_max = s->radii[prim], q.z_min = -q.radius;
+  }
+  return q;
+}
+
+static void to_own(const Quadric *q, const double p[3], double r[3]) {
+  vl_map_point(q->to_shape, p, r);
+  for (int i = 0; q->center && i < 3; i++) r[i] -= q->center[i];
+}
+
+static void from_own(const Quadric *q, const double p[3], double r[3]) {
+  double at[3] = {p[0], p[1], p[2]};
+  for (int i = 0; q->center && i < 3; i++) at[i] += q->center[i];
+  vl_map_point(q->from_shape, at, r);
+}
+
 static double angle_of(const double p[3]) {
   double phi = vl_atan2((float)p[1], (float)p[0]);
   return phi < 0 ? phi + 2 * M_PI : phi;
 }
 
 /* Whether a point of the full quadric is part of the shape. */
-static bool inside_limits(const vlWorldShape *s, const double p[3]) {
+static bool inside_limits(const Quadric *s, const double p[3]) {
   if (s->kind == VL_SHAPE_SPHERE &&
       ((s->z_min > -s->radius && p[2] < s->z_min) || (s->z_max < s->radius && p[2] > s->z_max)))
     return false;
@@ -24,7 +54,7 @@ static bool inside_limits(const vlWorldShape *s, const double p[3]) {
   return s->phi_max >= 6.2831f || angle_of(p) <= s->phi_max;
 }
 
-static bool try_root(const vlWorldShape *s, const double o[3], const double d[3], double t, double t_min, double t_max,
+static bool try_root(const Quadric *s, const double o[3], const double d[3], double t, double t_min, double t_max,
                      vlShapeHit *hit) {
   if (!(t > t_min && t < t_max)) return false;
   double p[3] = {o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
@@ -43,10 +73,11 @@ static bool try_root(const vlWorldShape *s, const double o[3], const double d[3]
   return true;
 }
 
-bool vl_quadric_intersect(const vlWorldShape *s, const double go[3], const double gd[3], double t_min, double t_max,
-                          vlShapeHit *hit) {
+bool vl_quadric_intersect(const vlWorldShape *shape, uint32_t prim, const double go[3], const double gd[3],
+                          double t_min, double t_max, vlShapeHit *hit) {
+  Quadric quadric = load(shape, prim), *s = &quadric;
   double o[3], d[3];
-  vl_map_point(s->to_shape, go, o);
+  to_own(s, go, o);
   vl_map_vector(s->to_shape, gd, d);
   if (s->kind == VL_SHAPE_DISK) return d[2] != 0 && try_root(s, o, d, (s->height - o[2]) / d[2], t_min, t_max, hit);
   bool sphere = s->kind == VL_SHAPE_SPHERE;
@@ -75,7 +106,7 @@ bool vl_quadric_intersect(const vlWorldShape *s, const double go[3], const doubl
 }
 
 /* Partial derivatives over (u, v) in shape space, and uv. */
-static void quadric_derivatives(const vlWorldShape *s, const double p[3], double dpdu[3], double dpdv[3], float uv[2]) {
+static void quadric_derivatives(const Quadric *s, const double p[3], double dpdu[3], double dpdv[3], float uv[2]) {
   double phi = angle_of(p);
   uv[0] = (float)(phi / s->phi_max);
   dpdu[0] = -s->phi_max * p[1], dpdu[1] = s->phi_max * p[0], dpdu[2] = 0;
@@ -104,17 +135,17 @@ static void quadric_derivatives(const vlWorldShape *s, const double p[3], double
 /* dpdu x dpdv in shape space. Mapped to group space (inverse transpose) it stays outside whatever the handedness.
  * flip (reverse orientation xor mirrored) reverses it afterwards, as in pbrt: a mirrored sphere without reverse
  * orientation has inward normals. */
-static void quadric_normal(const vlWorldShape *s, const double p[3], double n[3]) {
+static void quadric_normal(const Quadric *s, const double p[3], double n[3]) {
   n[0] = s->kind == VL_SHAPE_DISK ? 0 : p[0] / s->radius;
   n[1] = s->kind == VL_SHAPE_DISK ? 0 : p[1] / s->radius;
   n[2] = s->kind == VL_SHAPE_DISK ? 1 : s->kind == VL_SHAPE_SPHERE ? p[2] / s->radius : 0;
 }
 
-void vl_quadric_point(const vlWorldShape *s, const double p[3], vlSurfacePoint *point) {
+static void describe(const Quadric *s, const double p[3], vlSurfacePoint *point) {
   double dpdu[3], dpdv[3], n[3];
   quadric_derivatives(s, p, dpdu, dpdv, point->uv);
   quadric_normal(s, p, n);
-  vl_map_point(s->from_shape, p, point->p);
+  from_own(s, p, point->p);
   vl_map_vector(s->from_shape, dpdu, point->dpdu);
   vl_map_vector(s->from_shape, dpdv, point->dpdv);
   vl_map_normal(s->to_shape, n, point->n);
@@ -132,42 +163,62 @@ void vl_quadric_point(const vlWorldShape *s, const double p[3], vlSurfacePoint *
   }
 }
 
+void vl_quadric_point(const vlWorldShape *shape, uint32_t prim, const double p[3], vlSurfacePoint *point) {
+  Quadric quadric = load(shape, prim);
+  describe(&quadric, p, point);
+}
+
+void vl_quadric_bounds(const vlWorldShape *shape, uint32_t prim, double low[3], double high[3]) {
+  Quadric q = load(shape, prim);
+  double r = q.radius, z0 = q.z_min, z1 = q.z_max;
+  if (q.kind == VL_SHAPE_DISK) z0 = z1 = q.height;
+  for (int k = 0; k < 8; k++) {
+    double p[3] = {k & 1 ? r : -r, k & 2 ? r : -r, k & 4 ? z1 : z0}, g[3];
+    from_own(&q, p, g);
+    for (int i = 0; i < 3; i++) {
+      low[i] = g[i] < low[i] ? g[i] : low[i];
+      high[i] = g[i] > high[i] ? g[i] : high[i];
+    }
+  }
+}
+
 /* Factor by which the map from shape to group space stretches area: |det M| |M^-T n|. */
-static double area_stretch(const vlWorldShape *s, const double n_shape[3]) {
+static double area_stretch(const Quadric *s, const double n_shape[3]) {
   double n[3];
   vl_map_normal(s->to_shape, n_shape, n);
   return fabs(vl_determinant3(s->from_shape)) * sqrt(vl_dot3(n, n));
 }
 
-static double shape_area(const vlWorldShape *s) {
+static double shape_area(const Quadric *s) {
   if (s->kind == VL_SHAPE_DISK)
     return 0.5 * s->phi_max * ((double)s->radius * s->radius - (double)s->inner_radius * s->inner_radius);
   return (double)s->phi_max * s->radius * (s->z_max - s->z_min);
 }
 
-void vl_quadric_sample(const vlWorldShape *shape, float u, float v, vlSurfacePoint *point, double *pdf) {
+void vl_quadric_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
+  Quadric quadric = load(shape, prim), *s = &quadric;
   double p[3];
-  vlSinCos a = vl_sincos((float)(u * shape->phi_max));
-  if (shape->kind == VL_SHAPE_DISK) {
-    double inner2 = (double)shape->inner_radius * shape->inner_radius, outer2 = (double)shape->radius * shape->radius;
+  vlSinCos a = vl_sincos((float)(u * s->phi_max));
+  if (s->kind == VL_SHAPE_DISK) {
+    double inner2 = (double)s->inner_radius * s->inner_radius, outer2 = (double)s->radius * s->radius;
     double r = sqrt(inner2 + v * (outer2 - inner2));
-    p[0] = r * a.cos, p[1] = r * a.sin, p[2] = shape->height;
+    p[0] = r * a.cos, p[1] = r * a.sin, p[2] = s->height;
   } else {
-    double z = shape->z_min + v * ((double)shape->z_max - shape->z_min);
-    double r =
-        shape->kind == VL_SHAPE_SPHERE ? sqrt(fmax(0, (double)shape->radius * shape->radius - z * z)) : shape->radius;
+    double z = s->z_min + v * ((double)s->z_max - s->z_min);
+    double r = s->kind == VL_SHAPE_SPHERE ? sqrt(fmax(0, (double)s->radius * s->radius - z * z)) : s->radius;
     p[0] = r * a.cos, p[1] = r * a.sin, p[2] = z;
   }
-  vl_quadric_point(shape, p, point);
+  describe(s, p, point);
   double n[3];
-  quadric_normal(shape, p, n);
-  *pdf = 1 / (shape_area(shape) * area_stretch(shape, n));
+  quadric_normal(s, p, n);
+  *pdf = 1 / (shape_area(s) * area_stretch(s, n));
 }
 
-double vl_quadric_pdf(const vlWorldShape *shape, const double at[3]) {
+double vl_quadric_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]) {
+  Quadric quadric = load(shape, prim), *s = &quadric;
   double p[3], n[3];
-  vl_map_point(shape->to_shape, at, p);
-  quadric_normal(shape, p, n);
-  if (shape->kind != VL_SHAPE_DISK) vl_normalize3(n);
-  return 1 / (shape_area(shape) * area_stretch(shape, n));
+  to_own(s, at, p);
+  quadric_normal(s, p, n);
+  if (s->kind != VL_SHAPE_DISK) vl_normalize3(n);
+  return 1 / (shape_area(s) * area_stretch(s, n));
 }

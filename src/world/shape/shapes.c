@@ -170,6 +170,15 @@ static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShap
   return r == VL_OK ? vl_world_mix_node(world, first ? none : whole, first ? whole : none, share, &s->alpha, error) : r;
 }
 
+static vlResult copy_spheres(vlWorld *world, const vlShapeDef *def, vlWorldShape *s, vlError *error) {
+  s->faces = def->faces;
+  s->phi_max = 2.0f * 3.14159265358979f;
+  s->centers = vl_world_block(world, def->faces, 3 * sizeof *s->centers);
+  if (!s->centers || !copy_rows(world, def->radii, def->faces, 1, &s->radii)) return vl_fail_memory(error);
+  memcpy(s->centers, def->centers, 3 * (size_t)def->faces * sizeof *s->centers);
+  return VL_OK;
+}
+
 static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef *def, vlWorldShape *s,
                           vlError *error) {
   vlMat4 m = vl_mat4_load(def->group_from_shape), inverse;
@@ -211,7 +220,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef
     case VL_SHAPE_TRIANGLES:
     case VL_SHAPE_BILINEAR: return move_mesh(world, def, &m, &inverse, s, error);
     case VL_SHAPE_CURVES: return vl_curve_copy(world, def, s) ? VL_OK : vl_fail_memory(error);
-    case VL_SHAPE_SPHERE:
+    case VL_SHAPE_SPHERE: return def->centers ? copy_spheres(world, def, s, error) : VL_OK;
     case VL_SHAPE_DISK:
     case VL_SHAPE_CYLINDER: break; /* no arrays to copy */
   }
@@ -226,7 +235,7 @@ static void grow_bounds(float low[3], float high[3], const float p[3]) {
 }
 
 static void shape_bounds(const vlWorldShape *s, float low[3], float high[3]) {
-  if (s->kind == VL_SHAPE_CURVES) {
+  if (s->kind == VL_SHAPE_CURVES || s->centers) {
     for (uint32_t i = 0; i < s->faces; i++) {
       float a[3], b[3];
       vl_world_prim_bounds(s, i, a, b);

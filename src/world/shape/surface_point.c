@@ -25,7 +25,7 @@ bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o
     case VL_SHAPE_BILINEAR: return vl_patch_intersect(shape, prim, o, d, t_min, t_max, hit);
     case VL_SHAPE_SPHERE:
     case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: return vl_quadric_intersect(shape, o, d, t_min, t_max, hit);
+    case VL_SHAPE_CYLINDER: return vl_quadric_intersect(shape, prim, o, d, t_min, t_max, hit);
     case VL_SHAPE_CURVES: return vl_curve_intersect(shape, prim, o, d, t_min, t_max, hit);
     case VL_SHAPE_TRIANGLES: break; /* trace/surface intersects triangles in batches */
   }
@@ -38,7 +38,7 @@ void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *
     case VL_SHAPE_BILINEAR: vl_patch_point(shape, prim, hit->a, hit->b, point); break;
     case VL_SHAPE_SPHERE:
     case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: vl_quadric_point(shape, hit->p, point); break;
+    case VL_SHAPE_CYLINDER: vl_quadric_point(shape, prim, hit->p, point); break;
     case VL_SHAPE_CURVES: vl_curve_point(shape, prim, hit, point); break;
     case VL_SHAPE_TRIANGLES: break;
   }
@@ -51,7 +51,7 @@ void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v,
     case VL_SHAPE_BILINEAR: vl_patch_sample(shape, prim, u, v, point, pdf); break;
     case VL_SHAPE_SPHERE:
     case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: vl_quadric_sample(shape, u, v, point, pdf); break;
+    case VL_SHAPE_CYLINDER: vl_quadric_sample(shape, prim, u, v, point, pdf); break;
     case VL_SHAPE_CURVES: vl_curve_middle(shape, prim, point); break; /* they do not emit: only a point is needed */
     case VL_SHAPE_TRIANGLES: break;
   }
@@ -62,7 +62,7 @@ double vl_shape_pdf(const vlWorldShape *shape, uint32_t prim, const vlSurfacePoi
     case VL_SHAPE_BILINEAR: return vl_patch_pdf(shape, prim, point->p);
     case VL_SHAPE_SPHERE:
     case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: return vl_quadric_pdf(shape, point->p);
+    case VL_SHAPE_CYLINDER: return vl_quadric_pdf(shape, prim, point->p);
     case VL_SHAPE_CURVES:
     case VL_SHAPE_TRIANGLES: break;
   }
@@ -110,17 +110,7 @@ void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3]
   if (shape->kind == VL_SHAPE_CURVES) {
     vl_curve_bounds(shape, prim, lo, hi);
   } else if (!corners) {
-    double r = shape->radius;
-    double z0 = shape->kind == VL_SHAPE_DISK ? shape->height : shape->z_min;
-    double z1 = shape->kind == VL_SHAPE_DISK ? shape->height : shape->z_max;
-    for (int k = 0; k < 8; k++) {
-      double p[3] = {k & 1 ? r : -r, k & 2 ? r : -r, k & 4 ? z1 : z0}, g[3];
-      vl_map_point(shape->from_shape, p, g);
-      for (int i = 0; i < 3; i++) {
-        lo[i] = g[i] < lo[i] ? g[i] : lo[i];
-        hi[i] = g[i] > hi[i] ? g[i] : hi[i];
-      }
-    }
+    vl_quadric_bounds(shape, prim, lo, hi);
   }
   for (int i = 0; i < 3; i++) { /* widened by one float step for rounding */
     low[i] = nextafterf((float)lo[i], -INFINITY);

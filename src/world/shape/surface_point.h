@@ -55,8 +55,8 @@ static inline bool vl_is_similarity(const double m[12], double *scale) {
 static inline bool vl_whole_sphere(const vlWorldShape *s, vlVec3 *center, float *radius) {
   const double *m = s->from_shape;
   double scale;
-  if (s->kind != VL_SHAPE_SPHERE || s->z_min > -s->radius || s->z_max < s->radius || s->phi_max < 6.2831f ||
-      !vl_is_similarity(m, &scale))
+  if (s->kind != VL_SHAPE_SPHERE || s->centers || s->z_min > -s->radius || s->z_max < s->radius ||
+      s->phi_max < 6.2831f || !vl_is_similarity(m, &scale))
     return false;
   *center = vl_vec3((float)m[3], (float)m[7], (float)m[11]);
   *radius = s->radius * (float)scale;

@@ -1,0 +1,99 @@
+/* api/check_coats.c: the doctor's last part: what rough coats lose, from the tables that a world would have. */
+#include <math.h>
+
+#include "color/color.h"
+#include "math/ggx.h"
+#include "scene/check.h"
+#include "world/material/coat.h"
+
+/* Coats of the same numbers lose the same. */
+typedef struct Coat {
+  float eta, tau, alpha;
+  double lost;
+} Coat;
+typedef VL_ARRAY(Coat) Coats;
+
+/* Light that maxdepth leaves out is not the roughness's loss. */
+enum { ALL_BOUNCES = 1000 };
+
+/* Least share of the light that is worth a note. */
+static const double least = 0.01;
+
+static float alpha_of(const vlMaterialDef *m, float roughness) {
+  return m->remap_roughness ? sqrtf(roughness > 0 ? roughness : 0) : roughness;
+}
+
+static bool index_of(const vlMaterialDef *m, float *eta) {
+  float dense[VL_LAMBDA_COUNT];
+  if (vl_spectrum_is_constant(&m->eta.value, eta)) return true;
+  if (vl_spectrum_dense(&m->eta.value, VL_ROLE_UNBOUNDED, dense, NULL) != VL_OK) return false;
+  *eta = vl_dense_at(dense, 589.3f); /* as materials.c */
+  return true;
+}
+
+/* Sets coat->lost: the share that the coat loses over a white base and one that conserves energy does not. */
+static vlResult measure(vlContext *context, Coat *coat) {
+  vlCoatTable *table;
+  double kept = 0, whole = 0;
+  vlResult r = vl_coat_build(context, coat->eta, coat->tau, ALL_BOUNCES, coat->alpha, coat->alpha, &table);
+  if (r != VL_OK) return r;
+  r = vl_coat_white_albedo(context, table, &kept);
+  if (r == VL_OK) r = vl_coat_conserve(context, table);
+  if (r == VL_OK) r = vl_coat_white_albedo(context, table, &whole);
+  vl_coat_free(context, table);
+  coat->lost = whole > 0 ? 1 - kept / whole : 0;
+  return r;
+}
+
+/* Share that this material's coat loses, 0 where it has none that is rough or nobody can tell. */
+static double loss_of(vlCheck *check, const vlMaterialDef *m, Coats *coats) {
+  float u = alpha_of(m, m->u_roughness.value), v = alpha_of(m, m->v_roughness.value);
+  Coat coat = {.tau = m->thickness.value, .alpha = sqrtf(u * v)};
+  if (m->kind != VL_MATERIAL_COATED_DIFFUSE || m->conserve_energy || !vl_coat_in_closed_form(m) ||
+      m->u_roughness.texture.index || m->v_roughness.texture.index || !(coat.alpha >= VL_GGX_SMOOTH) ||
+      !index_of(m, &coat.eta) || coat.eta == 1.0f)
+    return 0;
+  for (size_t i = 0; i < coats->count; i++) {
+    const Coat *c = &coats->items[i];
+    if (c->eta == coat.eta && c->tau == coat.tau && c->alpha == coat.alpha) return c->lost;
+  }
+  vlResult r = measure(check->context, &coat);
+  Coat *slot = r == VL_OK ? VL_PUSH(check->context, coats) : NULL;
+  if (r == VL_ERROR_MEMORY || (r == VL_OK && !slot)) check->no_memory = true;
+  if (!slot) return 0; /* numbers that no coat has: vl_world_build refuses them */
+  *slot = coat;
+  return coat.lost;
+}
+
+/* One note for the scene, at the coat that loses most. */
+static void check_coats(vlCheck *check) {
+  Coats coats = {0};
+  const vlMaterialDef *worst = NULL;
+  double most = 0, fewest = 1;
+  uint32_t count = 0;
+  for (size_t i = 0; i < check->scene->materials.count && !check->no_memory; i++) {
+    const vlMaterialDef *m = &check->scene->materials.items[i];
+    double lost = check->material_used[i] ? loss_of(check, m, &coats) : 0;
+    if (lost < least) continue;
+    count++;
+    if (lost > most) worst = m, most = lost;
+    if (lost < fewest) fewest = lost;
+  }
+  VL_ARRAY_FREE(check->context, &coats);
+  if (!worst) return;
+  vlCheckName name = vl_check_material_name(worst);
+  if (count == 1)
+    vl_check_add(check, VL_FINDING_ROUGH_COAT, VL_SEVERITY_NOTE, worst->source,
+                 "the rough coat of %s loses %.0f %% of the light over a white base, as pbrt's does: \"bool "
+                 "conserveenergy\" true keeps it",
+                 name.text, 100 * most);
+  else
+    vl_check_add(check, VL_FINDING_ROUGH_COAT, VL_SEVERITY_NOTE, worst->source,
+                 "%u rough coats lose %.0f to %.0f %% of the light over a white base, as pbrt's do, that of %s most: "
+                 "\"bool conserveenergy\" true keeps it",
+                 count, 100 * fewest, 100 * most, name.text);
+}
+
+vlResult vl_scene_check(const vlScene *scene, const vlCheckDef *def, vlCheck **check, vlError *error) {
+  return vl_check_make(scene, def, check_coats, check, error);
+}

@@ -32,6 +32,7 @@ extern "C" {
   X(EUCM, eucm)                       /* shape: alpha in [0, 1], beta > 0 */                                      \
   X(DOUBLE_SPHERE, double_sphere)     /* shape: xi in (-1, 1), alpha in [0, 1] */                                 \
   X(OPTICS, optics)                   /* a lens of many elements: lens.optics */
+/** The map from directions to points of the projection plane; docs/cameras.md has the equations. */
 typedef enum vlProjection {
 #define VL_KIND(NAME, name) VL_PROJECTION_##NAME,
   VL_PROJECTION_KINDS(VL_KIND)

@@ -546,6 +546,7 @@ VL_API void vl_scene_add_moving_instance(vlScene *scene, vlGroupId group, uint32
   X(SPPM, sppm)                   /* the same; smooth surfaces on the camera's path are no bounces, as pbrt counts */ \
   X(LIGHT_PATH, light_path)       /* from the lights alone: no light through or in what is smooth */                  \
   X(RANDOM_WALK, random_walk)     /* samples no light and scatters all over the sphere: for comparison */
+/** Light transport algorithms (docs/tracers.md). */
 typedef enum vlTracer {
 #define VL_KIND(NAME, name) VL_TRACER_##NAME,
   VL_TRACER_KINDS(VL_KIND)
@@ -562,6 +563,8 @@ typedef enum vlTracer {
   X(HALTON, halton)                 \
   X(SOBOL, sobol)                   \
   X(ZSOBOL, zsobol)
+/** Sample generators (src/trace/sampler/sampler.h): the lecture's, and the low-discrepancy ones of pbrt book 8.6-8.7.
+ */
 typedef enum vlSamplerKind {
 #define VL_KIND(NAME, name) VL_SAMPLER_##NAME,
   VL_SAMPLER_KINDS(VL_KIND)

@@ -70,7 +70,7 @@ check stereo_trajectory "$VELO" render scene.pbrt --trajectory poses.csv --stere
 check one_eye "$VELO" render scene.pbrt --stereo off-axis --interocular 0.2 --convergence 4 --eye right -o right.exr --channels Z,N --quiet
 check one_eye_same "$VELO" image diff right.exr eye_right.exr --threshold differing=0
 expect_code 1 eyes_differ "$VELO" image diff eye_left.exr eye_right.exr --threshold differing=0
-check ground_truth "$VELO" render scene.pbrt --stereo toe-in --interocular 0.2 --convergence 4 -o 'truth_%v.exr' --channels all --quiet
+check ground_truth "$VELO" render scene.pbrt --stereo toe-in --interocular 0.2 --convergence 4 -o 'ground_truth_%v.exr' --channels all --quiet
 check eyes_agree "$VELO" image check ground_truth_left.exr
 sed 's/^Camera.*/Camera "equirectangular" "point3 eye" [0 1 2.5] "point3 lookat" [0 1 0]/; /^LookAt/d' scene.pbrt >round.pbrt
 check panorama "$VELO" render round.pbrt --stereo ods -o 'ods_%v.exr' --channels all --quiet

@@ -97,7 +97,7 @@ def main():
     if not os.path.exists(os.path.join(ROOT, ".git")):
         print("skip light: needs the tree's list of files (git)")
         sys.exit(0)
-    parts = list(worked_example.parts(os.path.join(ROOT, "docs/extending.md"), "## A light", "## A shape")))
+    parts = list(worked_example.parts(os.path.join(ROOT, "docs/extending.md"), "## A light", "## A shape"))
     edited = [p.path for p in parts if p.text is None]
     say("three files are edited", len(edited) == 3, "\n".join(edited))
     with tempfile.TemporaryDirectory(dir=os.environ.get("TMPDIR")) as scratch:

@@ -40,19 +40,19 @@ static double phase(double cosine, double g) {
 
 /* Optical depths of sample points along the beam, distributed by its attenuation. */
 enum { MOST_POINTS = 1000 };
-typedef struct Goniometric {
+typedef struct Beam {
   int n;
   double depth[MOST_POINTS];
-} Goniometric;
+} Beam;
 
-static Goniometric make_goniometric(int n) {
-  Goniometric b = {n < MOST_POINTS ? n : MOST_POINTS, {0}};
+static Beam make_beam(int n) {
+  Beam b = {n < MOST_POINTS ? n : MOST_POINTS, {0}};
   for (int i = 0; i < b.n; i++) b.depth[i] = -vl_precise_log(1 - (i + 0.5) / b.n);
   return b;
 }
 
 /* Multiple scattering: one dipole per point of the beam. */
-static double multiple(double albedo, double g, double eta, double r, const Goniometric *beam) {
+static double multiple(double albedo, double g, double eta, double r, const Beam *beam) {
   double sigma_a = 1 - albedo, sigma_s = albedo * (1 - g), sigma_t = sigma_a + sigma_s;
   if (!(sigma_s > 0)) return 0;
   double reduced = sigma_s / sigma_t;
@@ -74,7 +74,7 @@ static double multiple(double albedo, double g, double eta, double r, const Goni
 }
 
 /* Single scattering. Only points from which light can leave at distance r contribute. */
-static double single(double albedo, double g, double eta, double r, const Goniometric *beam) {
+static double single(double albedo, double g, double eta, double r, const Beam *beam) {
   double critical = r * sqrt(eta > 1 ? eta * eta - 1 : 0), sum = 0;
   for (int i = 0; i < beam->n; i++) {
     double z = critical + beam->depth[i], d = sqrt(r * r + z * z), cosine = z / d;
@@ -85,14 +85,14 @@ static double single(double albedo, double g, double eta, double r, const Goniom
 }
 
 double vl_bssrdf_profile(double albedo, double g, double eta, double r, int samples) {
-  Goniometric beam = make_goniometric(samples);
+  Beam beam = make_beam(samples);
   return single(albedo, g, eta, r, &beam) + multiple(albedo, g, eta, r, &beam);
 }
 
 static void fill_row(void *user, uint32_t row, uint32_t worker) {
   vlBssrdfTable *t = user;
   (void)worker;
-  Goniometric beam = make_goniometric(100);
+  Beam beam = make_beam(100);
   double albedo = (double)t->albedo[row], g = (double)t->g, eta = (double)t->eta;
   for (uint32_t k = 0; k < VL_BSSRDF_RADII; k++) {
     double r = (double)t->radius[k], ring = 0;

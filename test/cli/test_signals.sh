@@ -28,7 +28,7 @@ stopped() {
   fi
   sleep 0.3
   kill -"$name" $process
-  wait $process
+  wait $process 2>/dev/null
   code=$?
   out=
   err=$(cat stop.txt)
@@ -77,8 +77,8 @@ for name in HUP INT TERM; do
   kill -$name $process
   sleep 0.5
   kill -0 $process 2>/dev/null && pass "ignored_${name}_stays_ignored" || fail "ignored_${name}_stays_ignored"
-  [ $name = TERM ] && kill -HUP $process || kill -TERM $process
-  wait $process
+  kill -KILL $process
+  wait $process 2>/dev/null
 done
 
 # Ground truth that is not done is given up by a signal; the image is kept without it.

@@ -211,10 +211,10 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: max_angle is %g radians; it must be above 0 and at most pi",
                      angle);
   }
-  bool said = !vl_is_unset(def->fx) || !vl_is_unset(def->fy) || !vl_is_unset(def->view_distance) ||
-              !vl_is_unset(def->focal_mm) || !vl_is_unset(def->screen_min_x);
+  bool given = !vl_is_unset(def->fx) || !vl_is_unset(def->fy) || !vl_is_unset(def->view_distance) ||
+               !vl_is_unset(def->focal_mm) || !vl_is_unset(def->screen_min_x);
   if (vl_is_unset(angle) && fisheye && !vl_is_unset(def->fov)) angle = 0.5 * def->fov;
-  if (vl_is_unset(angle) && fisheye && !said) angle = 0.5 * pi;
+  if (vl_is_unset(angle) && fisheye && !given) angle = 0.5 * pi;
   double radius;
   if (!vl_is_unset(angle)) {
     /* the direction straight back is singular; a nearby one replaces it */

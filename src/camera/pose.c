@@ -53,7 +53,7 @@ static vlResult basis_from_lookat(const vlCameraDef *def, Basis *basis, const ch
                    "camera: eye and lookat are the same point (%g %g %g); there is no direction to look in", e.x, e.y,
                    e.z);
   if (!isfinite(largest(back)))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: eye and lookat are too far apart to be told as numbers");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: eye and lookat are too far apart for double precision");
   if (largest(up) == 0.0) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: up is the zero vector");
 
   Vec w = normalized(back);

@@ -242,7 +242,7 @@ static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32
   float o[3], d[3], t_min = batch->t_min[lane];
   for (int k = 0; k < 3; k++) o[k] = (float)batch->o[k][lane], d[k] = (float)batch->d[k][lane];
   to->count = 0;
-  for (int step = 0; step < VL_TRUTH_LAYERS; step++) {
+  for (int step = 0; step < VL_GROUND_TRUTH_LAYERS; step++) {
     uint32_t shape, prim, instance;
     float t;
     vlRays ray = {.ox = o,

@@ -48,7 +48,7 @@ static inline vlDirection vl_unified_unproject(double xi, double x, double y) {
 static inline vlPlanePoint vl_unified_project(double xi, double x, double y, double z) {
   double length = vl_length3(x, y, z), under = z + xi * length, k = 1.0 / vl_not_tiny(under);
   double edge = xi > 1.0 ? 1.0 / xi : xi;
-  return (vlPlanePoint){x * k, y * k, z >= -edge * length && under > 1e-12 * length ? 1.0 : 0.0};
+  return (vlPlanePoint){x * k, y * k, z >= -edge * length && under > VL_HORIZON * length ? 1.0 : 0.0};
 }
 
 /* m = X / (a d + (1 - a) Z), d = sqrt(b R^2 + Z^2). */
@@ -60,7 +60,7 @@ static inline vlDirection vl_eucm_unproject(double a, double b, double x, double
 static inline vlPlanePoint vl_eucm_project(double a, double b, double x, double y, double z) {
   double d = __builtin_sqrt(b * (x * x + y * y) + z * z), under = a * d + (1.0 - a) * z, k = 1.0 / vl_not_tiny(under);
   double edge = a > 0.5 ? (1.0 - a) / a : a / (1.0 - a);
-  return (vlPlanePoint){x * k, y * k, z >= -edge * d && under > 1e-12 * d ? 1.0 : 0.0};
+  return (vlPlanePoint){x * k, y * k, z >= -edge * d && under > VL_HORIZON * d ? 1.0 : 0.0};
 }
 
 /* m = X / (a d2 + (1 - a)(xi d1 + Z)), d1 = |P|, d2 = sqrt(R^2 + (xi d1 + Z)^2). */
@@ -75,7 +75,7 @@ static inline vlPlanePoint vl_double_sphere_project(double xi, double a, double 
   double d2 = __builtin_sqrt(across2 + shifted * shifted), under = a * d2 + (1.0 - a) * shifted;
   double k = 1.0 / vl_not_tiny(under), w1 = a > 0.5 ? (1.0 - a) / a : a / (1.0 - a);
   double w2 = (w1 + xi) / __builtin_sqrt(2.0 * w1 * xi + xi * xi + 1.0);
-  return (vlPlanePoint){x * k, y * k, z > -w2 * d1 && under > 1e-12 * d1 ? 1.0 : 0.0};
+  return (vlPlanePoint){x * k, y * k, z > -w2 * d1 && under > VL_HORIZON * d1 ? 1.0 : 0.0};
 }
 
 #endif

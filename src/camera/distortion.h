@@ -38,10 +38,12 @@ static inline vlDistorted vl_distort(const vlDistortionMap *m, double x, double 
   return r;
 }
 
-/* Applies the homography h; w > 0 inside its domain. */
+/* Applies the homography h; w > 0 inside its domain. At w = 1e-9 the point lies 1e9 focal lengths away. */
+#define VL_TILT_HORIZON 1e-9
 static inline vlPlanePoint vl_tilt(const double h[9], double x, double y) {
   double w = h[6] * x + h[7] * y + h[8], k = 1.0 / vl_not_tiny(w);
-  return (vlPlanePoint){(h[0] * x + h[1] * y + h[2]) * k, (h[3] * x + h[4] * y + h[5]) * k, w > 1e-9 ? 1.0 : 0.0};
+  return (vlPlanePoint){(h[0] * x + h[1] * y + h[2]) * k, (h[3] * x + h[4] * y + h[5]) * k,
+                        w > VL_TILT_HORIZON ? 1.0 : 0.0};
 }
 
 /* Maps an ideal point to the real one. */
@@ -58,7 +60,7 @@ static inline vlPlanePoint vl_distortion_apply(const vlDistortionMap *m, double 
 static inline vlPlanePoint vl_distortion_step(const vlDistortionMap *m, double x, double y, double u, double v) {
   vlDistorted d = vl_distort(m, x, y);
   double det = d.ux * d.vy - d.uy * d.vx, eu = u - d.u, ev = v - d.v;
-  double k = 1.0 / (det > 1e-12 ? det : 1e-12);
+  double k = 1.0 / (det > 1e-12 ? det : 1e-12); /* near a fold: a bounded step, which vl_distortion_check judges */
   double nx = x + (d.vy * eu - d.uy * ev) * k, ny = y + (d.ux * ev - d.vx * eu) * k;
   double r = vl_length2(nx, ny), shrink = r > m->radius ? m->radius / r : 1.0;
   return (vlPlanePoint){nx * shrink, ny * shrink, 1.0};

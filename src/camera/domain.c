@@ -67,11 +67,14 @@ static double radial_fold(const vlDistortionMap *m) {
 /* ---- the general case: along 64 directions, the first point with a determinant <= 0
  * --------------------------------- */
 
+/* Least w of the tilt: the sensor is seen edge-on, and a point lies 1e6 focal lengths away. */
+static const double edge_on = 1e-6;
+
 static bool unfolded(const vlDistortionMap *m, double x, double y) {
   vlDistorted d = vl_distort(m, x, y);
   double s = x * x + y * y, below = 1.0 + s * (m->denominator[0] + s * (m->denominator[1] + s * m->denominator[2]));
   double w = m->tilt[6] * d.u + m->tilt[7] * d.v + m->tilt[8];
-  return below > 0.0 && w > 1e-6 && d.ux * d.vy - d.uy * d.vx > 0.0;
+  return below > 0.0 && w > edge_on && d.ux * d.vy - d.uy * d.vx > 0.0;
 }
 
 static double fold_along(const vlDistortionMap *m, double cosine, double sine, double most) {
@@ -211,16 +214,16 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: max_angle is %g radians; it must be above 0 and at most pi",
                      angle);
   }
-  bool said = !vl_is_unset(def->fx) || !vl_is_unset(def->fy) || !vl_is_unset(def->view_distance) ||
-              !vl_is_unset(def->focal_mm) || !vl_is_unset(def->screen_min_x);
+  bool given = !vl_is_unset(def->fx) || !vl_is_unset(def->fy) || !vl_is_unset(def->view_distance) ||
+               !vl_is_unset(def->focal_mm) || !vl_is_unset(def->screen_min_x);
   if (vl_is_unset(angle) && fisheye && !vl_is_unset(def->fov)) angle = 0.5 * def->fov;
-  if (vl_is_unset(angle) && fisheye && !said) angle = 0.5 * pi;
+  if (vl_is_unset(angle) && fisheye && !given) angle = 0.5 * pi;
   double radius;
   if (!vl_is_unset(angle)) {
     /* the direction straight back is singular; a nearby one replaces it */
     bool seen = vl_camera_plane_radius(camera, angle < pi ? angle : pi * (1.0 - 1e-9), false, &radius);
     if (seen)
-      limit = fmin(limit, radius * (1.0 + 1e-12));
+      limit = fmin(limit, radius * (1.0 + 1e-12)); /* the angle itself is inside, whatever rounding does */
     else if (!vl_is_unset(def->max_angle) && kind != VL_PROJECTION_PERSPECTIVE)
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the %s projection does not see as far as max_angle, %g degrees",
                      vl_projection_name(kind), angle * 180.0 / pi);

@@ -47,6 +47,7 @@ static inline vlPlanePoint vl_stereographic_project(double x, double y, double z
   double scale = 1.0 / vl_not_tiny(vl_length3(x, y, z));
   double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
   double k = 2.0 * scale / vl_not_tiny(q);
+  /* q = 1 + cosine is angle^2 / 2: 1e-14 radians from straight back; vl_stereographic_unproject ends there too */
   return (vlPlanePoint){x * k, y * k, q > 1e-29 ? 1.0 : 0.0};
 }
 

@@ -9,7 +9,8 @@
 #include "math/elementary.h"
 
 static const double pi = 3.14159265358979323846;
-static const double agreement = 1e-6; /* relative; values written with 7 digits agree */
+static const double agreement = 1e-6;          /* relative; values written with 7 digits agree */
+static const double just_inside = 1.0 - 1e-15; /* factor on an angle that is itself singular: 9 roundings less */
 
 /* A quantity that several parameters may give: its first value, and the parameter that gave it (for messages). */
 typedef struct {
@@ -140,7 +141,7 @@ static vlResult plane_half(const vlCameraDef *d, const vlCamera *camera, bool ve
   if (d->fov_axis == VL_FOV_DIAGONAL && !(traits & VL_PROJECTION_RADIAL))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a diagonal fov has no meaning for the %s projection", name);
   /* 360 degrees: the direction straight back is singular; approach it from the image's side */
-  double angle = 0.5 * d->fov < pi ? 0.5 * d->fov : pi * (1.0 - 1e-15);
+  double angle = 0.5 * d->fov < pi ? 0.5 * d->fov : pi * just_inside;
   if (!vl_camera_plane_radius(camera, angle, vertical, half))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the %s projection cannot show a fov of %g degrees", name,
                    d->fov * 180.0 / pi);
@@ -236,7 +237,7 @@ static void standard_focal(const vlCameraDef *d, const vlCamera *camera, Gathere
   }
   /* across the smaller side 180 degrees of fisheyes, 90 of others where the model sees that */
   bool fisheye = row->traits & VL_PROJECTION_FISHEYE;
-  if (!vl_camera_plane_radius(camera, fisheye ? 0.5 * pi * (1.0 - 1e-15) : 0.25 * pi, d->width >= d->height, &radius))
+  if (!vl_camera_plane_radius(camera, fisheye ? 0.5 * pi * just_inside : 0.25 * pi, d->width >= d->height, &radius))
     radius = 1.0;
   g->fx.value = g->fy.value = half / radius;
 }

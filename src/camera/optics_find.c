@@ -117,7 +117,8 @@ static bool at_stop(const vlOptics *o, double radius, double p, double *x) {
 }
 
 bool vl_optics_chief(const vlOptics *o, double radius, double guess, vlChief *chief) {
-  double size = sqrt(o->surfaces[o->stop].aperture2), step = 1e-4 * size;
+  double size = sqrt(o->surfaces[o->stop].aperture2),
+         step = 1e-4 * size; /* long against rounding, short against the lens */
   double a = guess, b = guess + step, fa, fb;
   *chief = (vlChief){.pupil = guess};
   if (!at_stop(o, radius, a, &fa) || !at_stop(o, radius, b, &fb)) return false;
@@ -127,7 +128,7 @@ bool vl_optics_chief(const vlOptics *o, double radius, double guess, vlChief *ch
     a = b, fa = fb, b = next;
     if (!at_stop(o, radius, b, &fb)) return false;
   }
-  if (!(fabs(fb) < 1e-9 * size)) return false;
+  if (!(fabs(fb) < 1e-9 * size)) return false; /* no root: the secants stopped elsewhere */
   chief->pupil = b;
   vlOpticsRay r = vl_optics_start(radius, 0.0, b, 0.0, o->rear);
   for (uint32_t k = 0; k < o->count; k++) {

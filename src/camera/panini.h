@@ -17,12 +17,12 @@ static inline vlDirection vl_panini_unproject(double d, double x, double y) {
   double k = x * x / ((d + 1.0) * (d + 1.0)), root = 1.0 + k * (1.0 - d * d);
   double cosine = (vl_root(root) - k * d) / (k + 1.0);
   double over = d + cosine, s = (d + 1.0) / vl_not_tiny(over);
-  return (vlDirection){x / s, y / s, cosine, root >= 0.0 && over > 1e-12 && k < 1e24 ? 1.0 : 0.0};
+  return (vlDirection){x / s, y / s, cosine, root >= 0.0 && over > VL_HORIZON && k < 1e24 ? 1.0 : 0.0};
 }
 static inline vlPlanePoint vl_panini_project(double d, double x, double y, double z) {
   double across = vl_length2(x, z), scale = 1.0 / vl_not_tiny(across), cosine = z * scale;
   double over = d + cosine, s = (d + 1.0) / vl_not_tiny(over) * scale;
-  return (vlPlanePoint){x * s, y * s, across > 0.0 && over > 1e-12 && cosine >= vl_panini_edge(d) ? 1.0 : 0.0};
+  return (vlPlanePoint){x * s, y * s, across > 0.0 && over > VL_HORIZON && cosine >= vl_panini_edge(d) ? 1.0 : 0.0};
 }
 
 #endif

@@ -15,6 +15,9 @@ typedef struct vlDirection {
 
 /* Lower bound of lengths used as divisors: avoids 0/0, and leaves x/length exact for all larger lengths. */
 #define VL_TINY 1e-150
+/* A projection's divisor, relative to its length, below which a direction is outside the domain: the point would be
+ * 1e12 focal lengths away, and the divisor has 4 correct digits. */
+#define VL_HORIZON 1e-12
 
 static inline double vl_length2(double x, double y) {
   return __builtin_sqrt(x * x + y * y);

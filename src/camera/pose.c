@@ -53,7 +53,7 @@ static vlResult basis_from_lookat(const vlCameraDef *def, Basis *basis, const ch
                    "camera: eye and lookat are the same point (%g %g %g); there is no direction to look in", e.x, e.y,
                    e.z);
   if (!isfinite(largest(back)))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: eye and lookat are too far apart to be told as numbers");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: eye and lookat are too far apart for double precision");
   if (largest(up) == 0.0) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: up is the zero vector");
 
   Vec w = normalized(back);
@@ -90,7 +90,7 @@ static vlResult check_matrix(const vlMat4 *m, vlError *error) {
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: world_from_camera stretches by %g; 1e30 is the most", most);
   if (largest(x) > 0.0 && largest(y) > 0.0 && largest(z) > 0.0)
     volume = fabs(dot(normalized(x), cross(normalized(y), normalized(z))));
-  if (!(volume > 1e-9))
+  if (!(volume > parallel_sine))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: world_from_camera is singular; its three axes lie in a plane or one is zero");
   return VL_OK;

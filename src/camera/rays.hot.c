@@ -60,7 +60,7 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlCameraLocal local = {0.0, 0.0, d->dx[i], d->dy[i], d->dz[i]};
     /* Depth: dz for cameras with `ahead`, else 1 (perspective directions have z = 1, others unit length). */
-    double ahead = local.dz > 1e-300 ? local.dz : 1e-300;
+    double ahead = local.dz > VL_TINY ? local.dz : VL_TINY;
     double depth = flat * ahead + (1.0 - flat);
     if (lens == DISC) local = vl_lens_apply_at(c, local, vl_lens_disk(lens_u[i], lens_v[i]), depth);
     if (lens == POINTS) local = vl_lens_refract(c, local, (vlLensPoint){lens_u[i], lens_v[i]});

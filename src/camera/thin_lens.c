@@ -7,7 +7,7 @@
 #include "camera/parts.h"
 #include "math/elementary.h"
 
-static const double agreement = 1e-6;
+static const double agreement = 1e-6; /* relative; values written with 7 digits agree */
 
 /* Projections that see only what lies ahead: planes of constant z stand where others have spheres around the eye. */
 static bool given(double value) {

@@ -12,6 +12,7 @@
 /* Vanishing points beyond this many focal lengths are at infinity: within 1e-9 radians of parallel to the view
  * plane. */
 static const double infinitely_far = 1e9;
+static const double agreement = 1e-6; /* in focal lengths; values written with 7 digits agree */
 
 static bool direction_of(const vlCamera *c, const double d[3], double v[3]) {
   double length = 0.0;
@@ -123,7 +124,7 @@ static vlResult orthocentre(const vlVanishingDef *d, double p[2], vlError *error
          c[2] = {d->points[2][0] - a[0], d->points[2][1] - a[1]};
   double cross = b[0] * c[1] - b[1] * c[0], dot = b[0] * c[0] + b[1] * c[1];
   double size = fmax(fmax(fabs(b[0]), fabs(b[1])), fmax(fabs(c[0]), fabs(c[1])));
-  if (!(fabs(cross) > 1e-12 * size * size))
+  if (!(fabs(cross) > 1e-12 * size * size)) /* sine of the angle between two sides, nearly */
     return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: the three lie on one line; no camera has such");
   /* h . (c - b) = 0 and h . b = b . c: h is parallel to the normal of c - b */
   p[0] = a[0] + dot * (c[1] - b[1]) / cross;
@@ -165,7 +166,7 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
   double f = sqrt(f2);
   if (!(f > 1e-30 && f < 1e30))
     return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: a focal length of %g pixels is out of range", f);
-  if (def->count == 3 && !vl_is_unset(def->cx) && vl_length2(def->cx - p[0], def->cy - p[1]) > 1e-6 * f)
+  if (def->count == 3 && !vl_is_unset(def->cx) && vl_length2(def->cx - p[0], def->cy - p[1]) > agreement * f)
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "vanishing points: the three have their principal point at (%.9g, %.9g), but (%.9g, %.9g) is given",
                    p[0], p[1], def->cx, def->cy);

@@ -101,17 +101,17 @@ static bool take_comment(Csv *csv, const char *comment) {
   const struct {
     const char *key, *words[2];
     bool *flag;
-  } said[] = {{"axes:", {"opencv", "opengl"}, &csv->opengl},
-              {"pose:", {"world_from_camera", "camera_from_world"}, &csv->from_world}};
+  } settings[] = {{"axes:", {"opencv", "opengl"}, &csv->opengl},
+                  {"pose:", {"world_from_camera", "camera_from_world"}, &csv->from_world}};
   comment += strspn(comment, "# \t");
   for (int i = 0; i < 2; i++) {
-    size_t n = strlen(said[i].key);
-    if (strncmp(comment, said[i].key, n) != 0) continue;
+    size_t n = strlen(settings[i].key);
+    if (strncmp(comment, settings[i].key, n) != 0) continue;
     const char *word = comment + n + strspn(comment + n, " \t");
     size_t length = strcspn(word, " \t\r");
     for (int k = 0; k < 2; k++)
-      if (strlen(said[i].words[k]) == length && strncmp(word, said[i].words[k], length) == 0) {
-        *said[i].flag = k == 1;
+      if (strlen(settings[i].words[k]) == length && strncmp(word, settings[i].words[k], length) == 0) {
+        *settings[i].flag = k == 1;
         return true;
       }
     return false;

@@ -12,7 +12,7 @@
 typedef struct vlExr {
   const vlImageFile *file; /* when reading */
   vlFileWriter *writer;    /* when writing */
-  atomic_flag told;        /* an error was stored; chunks are packed by several threads */
+  atomic_flag failed;      /* an error was stored; chunks are packed by several threads */
   char message[256];
 } vlExr;
 

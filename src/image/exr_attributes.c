@@ -9,7 +9,7 @@ void vl_exr_on_error(exr_const_context_t context, exr_result_t code, const char 
   (void)code;
   if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user) return;
   vlExr *x = user;
-  if (!atomic_flag_test_and_set(&x->told)) snprintf(x->message, sizeof x->message, "%s", message ? message : "");
+  if (!atomic_flag_test_and_set(&x->failed)) snprintf(x->message, sizeof x->message, "%s", message ? message : "");
 }
 
 /* Attributes of the file's layout; the writer makes them anew. */

@@ -378,7 +378,7 @@ vlResult vl_exr_read(const vlImageFile *file, vlImage **image) {
   Reader r;
   memset(&r, 0, sizeof r);
   r.base.file = file;
-  atomic_flag_clear(&r.base.told);
+  atomic_flag_clear(&r.base.failed);
   exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
   start.error_handler_fn = vl_exr_on_error;
   start.user_data = &r.base;

@@ -253,7 +253,7 @@ vlResult vl_exr_write_layers(const vlImage *const *images, uint32_t count, const
   Writer w;
   memset(&w, 0, sizeof w);
   w.base.writer = writer;
-  atomic_flag_clear(&w.base.told);
+  atomic_flag_clear(&w.base.failed);
   w.image = image;
   w.alone = def->alone;
   for (uint32_t k = 0; k < count; k++) w.count += images[k]->channels;

@@ -20,8 +20,8 @@ typedef struct vlMipmap {
   uint32_t channels; /* 1 to 4 */
   uint32_t level_count;
   bool is_bytes;
-  bool space_told;      /* the image names its colour space, and it is a known one */
-  vlColorSpace space;   /* sRGB unless space_told */
+  bool space_given;     /* the image names its colour space, and it is a known one */
+  vlColorSpace space;   /* sRGB unless space_given */
   float decode[4][256]; /* per channel: byte -> linear */
   vlMipLevel levels[VL_MIP_LEVELS];
 } vlMipmap;

@@ -5,6 +5,8 @@
 #ifndef MATH_FRESNEL_H
 #define MATH_FRESNEL_H
 
+#include "math/vec.h"
+
 typedef struct vlFresnel {
   float reflected; /* reflectance in [0, 1]; 1 in total internal reflection */
   float root;      /* eta times the cosine of the refracted direction; 0 in total internal reflection */
@@ -21,7 +23,7 @@ static inline vlFresnel vl_fresnel_dielectric(float cos_i, float eta) {
   float dense = eta2 * c;
   float s = c + root, p = dense + root;
   float down = s * p;
-  down = 1.0f / (down > 1e-30f ? down : 1e-30f);
+  down = 1.0f / (down > VL_MIN_POSITIVE ? down : VL_MIN_POSITIVE);
   float rs = (c - root) * p * down, rp = (dense - root) * s * down;
   float r = 0.5f * (rs * rs + rp * rp);
   /* where root = 0 both are already 1; the select is for cos_i = 0 */
@@ -30,8 +32,10 @@ static inline vlFresnel vl_fresnel_dielectric(float cos_i, float eta) {
 
 /* Complex index eta + i k relative to vacuum, for one channel. Values are clamped to 1e6 (their powers would
  * overflow). With the usual t1 ... t4: Rs = (t1 - t2)/(t1 + t2), Rp = Rs (t3 - t4)/(t3 + t4), so that their mean is
- * Rs t3/(t3 + t4). */
+ * Rs t3/(t3 + t4). t1 is 0 for an index of 1 at grazing, t3 for an index of 0 at normal incidence: `nonzero` makes both
+ * 0/0 a reflectance of 1, and is lost in rounding elsewhere. */
 static inline float vl_fresnel_conductor(float cos_i, float eta, float k) {
+  const float nonzero = 1e-20f;
   float c = cos_i > 1.0f ? 1.0f : cos_i;
   float n = 1e6f < eta ? 1e6f : eta, m = 1e6f < k ? 1e6f : k;
   float c2 = c * c, s2 = 1.0f - c2;
@@ -40,8 +44,8 @@ static inline float vl_fresnel_conductor(float cos_i, float eta, float k) {
   float ab = __builtin_sqrtf(t0 * t0 + 4.0f * n2 * m2); /* a^2 + b^2 */
   float a2 = 0.5f * (ab + t0);
   float t2 = 2.0f * c * __builtin_sqrtf(a2 > 0.0f ? a2 : 0.0f);
-  float t1 = ab + c2 + 1e-20f; /* avoids 0/0: an index of 0 reflects all */
-  float t3 = c2 * ab + s2 * s2 + 1e-20f, t4 = t2 * s2;
+  float t1 = ab + c2 + nonzero;
+  float t3 = c2 * ab + s2 * s2 + nonzero, t4 = t2 * s2;
   return (t1 - t2) * t3 / ((t1 + t2) * (t3 + t4));
 }
 

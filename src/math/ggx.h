@@ -18,9 +18,11 @@
 static inline int vl_ggx_is_smooth(float alpha_x, float alpha_y) {
   return (alpha_x < VL_GGX_SMOOTH) & (alpha_y < VL_GGX_SMOOTH);
 }
-/* Lower bound of a rough surface's smaller alpha. */
+/* Lower bound of a rough surface's smaller alpha. With the other at VL_GGX_SMOOTH the density's maximum, 1 / (pi
+ * alpha_x alpha_y), is 3e6: finite, also squared. */
+#define VL_GGX_MIN_ALPHA 1e-4f
 static inline float vl_ggx_alpha(float alpha) {
-  return alpha > 1e-4f ? alpha : 1e-4f;
+  return alpha > VL_GGX_MIN_ALPHA ? alpha : VL_GGX_MIN_ALPHA;
 }
 
 /* Alpha after optional regularisation (pbrt-v4's). */
@@ -37,15 +39,15 @@ static inline float vl_ggx_length(vlVec3 w, float alpha_x, float alpha_y) {
 }
 
 /* D(h) G1(w) / w.z = 2 D / (L + z), D the density of microfacet normals per solid angle and per area of the surface.
- * Times w.h it is the density of the normals visible from w. Finite for h = 0 too (unit vectors are far from the
- * bounds). */
+ * Times w.h it is the density of the normals visible from w. Finite for h = 0 too: unit vectors have e >= 1 and
+ * length >= VL_GGX_MIN_ALPHA, far above the bounds. */
 static inline float vl_ggx_visible(vlVec3 h, float alpha_x, float alpha_y, float z, float length) {
   float area = alpha_x * alpha_y, inverse = 1.0f / area;
   float x = h.x * (inverse * alpha_y), y = h.y * (inverse * alpha_x);
   float e = x * x + y * y + h.z * h.z;
-  e = e > 1e-6f ? e : 1e-6f;
+  e = e > VL_MIN_FRACTION ? e : VL_MIN_FRACTION;
   float down = length + z;
-  return 2.0f * VL_INV_PI / (area * (e * e) * (down > 1e-9f ? down : 1e-9f));
+  return 2.0f * VL_INV_PI / (area * (e * e) * (down > VL_MIN_FRACTION ? down : VL_MIN_FRACTION));
 }
 
 /* G(wo, wi) / G1(wo): weight of a sample drawn by visible normals, without the Fresnel term. zo, zi > 0. */
@@ -66,7 +68,7 @@ static inline vlVec3 vl_ggx_sample(vlVec3 w, float alpha_x, float alpha_y, float
   wz = wz * s;
   vlSinCos phi = vl_sincos_turn(u);
   float hz = (1.0f - v) * (1.0f + wz);
-  hz = hz > 1e-7f ? hz : 1e-7f;
+  hz = hz > 1e-7f ? hz : 1e-7f; /* h is above the surface also for the largest v: 1 - v = 6e-8 */
   float cz = hz - wz;
   float r2 = 1.0f - cz * cz;
   float r = __builtin_sqrtf(r2 > 0.0f ? r2 : 0.0f);

@@ -35,7 +35,7 @@ static bool nearest_rotation(const Mat3 *a, Mat3 *r) {
   if (!(size > 0) || !isfinite(size)) return false;
   for (int i = 0; i < 9; i++) r->m[i] = a->m[i] / size;
   for (int step = 0; step < 100; step++) {
-    if (!(fabs(determinant(r)) > 1e-30)) return false;
+    if (!(fabs(determinant(r)) > 1e-30)) return false; /* singular: entries are 1 at most */
     Mat3 b = inverse_transpose(r);
     double scale = sqrt(largest(&b) / largest(r)), change = 0;
     scale = step < 8 ? scale : 1;
@@ -44,9 +44,9 @@ static bool nearest_rotation(const Mat3 *a, Mat3 *r) {
       change = fmax(change, fabs(next - r->m[i]));
       r->m[i] = next;
     }
-    if (change < 1e-15) return true;
+    if (change < 1e-15) return true; /* a few roundings of 1.1e-16 */
   }
-  return fabs(fabs(determinant(r)) - 1) < 1e-9;
+  return fabs(fabs(determinant(r)) - 1) < 1e-9; /* a rotation, though the last digits do not settle */
 }
 
 /* Unit quaternion of a rotation; starts from its largest component (Shepperd 1978). */
@@ -101,7 +101,7 @@ bool vl_motion_make(const double open[16], const double close[16], vlMotion *mot
     apart += (b - a) * (b - a), together += (b + a) * (b + a);
   }
   double angle = 2 * vl_atan2_double(sqrt(apart), sqrt(together));
-  bool turns = angle > 1e-9;
+  bool turns = angle > 1e-9; /* below, linear interpolation errs by angle^2 = 1e-18, less than a rounding */
   motion->angle = turns ? angle : 0;
   motion->inv_sine = turns ? 1 / vl_sincos_double(angle).sin : 0;
   return true;

@@ -80,7 +80,7 @@ static void count_tile(void *user, uint32_t tile, uint32_t worker) {
   unsigned state = vl_accel_enter();
   vlChannelEnds ends = {&c->compiled, w->x, w->y, w->lane_x, w->lane_y};
   vl_channel_ends(c, w, n, &ends, b->t_min, b->t_max);
-  c->ground_truth_kernels->trace(c->world, &c->truth, w->scratch, b);
+  c->ground_truth_kernels->trace(c->world, &c->ground_truth, w->scratch, b);
   for (uint32_t i = 0; i < n; i++) {
     vlGroundTruthLayers layers;
     if (!b->object[i]) continue;

@@ -73,7 +73,7 @@ typedef struct vlChannelPass {
   vlCameraCompiled compiled;
   const vlCameraKernels *camera_kernels;
   const vlGroundTruthKernels *ground_truth_kernels;
-  vlGroundTruthDef truth;
+  vlGroundTruthDef ground_truth;
   uint32_t tiles_x, tile_x0, tile_y0, tiles;
   uint32_t place[2][VL_CHANNEL_COUNT]; /* index of each channel's first component among the floats and among the ids */
   vlImage *images[2];                  /* floats, ids */

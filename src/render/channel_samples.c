@@ -152,7 +152,7 @@ static void flush(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t
                             .material = (uint32_t *)(void *)vl_channel_row(w, MATERIAL),
                             .instance = (uint32_t *)(void *)vl_channel_row(w, INSTANCE),
                             .distance = depths ? vl_channel_row(w, DISTANCE) : NULL};
-  p->ground_truth_kernels->hits(p->world, &p->truth, w->scratch, &hits);
+  p->ground_truth_kernels->hits(p->world, &p->ground_truth, w->scratch, &hits);
   for (uint32_t i = 0; i < n; i++) {
     if (r.index[i] == 0) begin_pixel(w, c);
     /* Weights are rounded as the film rounds them. Negative weights of a filter's lobes count for no id. */

@@ -127,7 +127,7 @@ void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
     vlChannelEnds ends = {&p->compiled, w->x, w->y, w->lane_x, w->lane_y};
     vl_channel_ends(p, w, n, &ends, b->t_min, b->t_max);
     b->time = vl_world_time(p->world, p->time);
-    p->ground_truth_kernels->trace(p->world, &p->truth, w->scratch, b);
+    p->ground_truth_kernels->trace(p->world, &p->ground_truth, w->scratch, b);
   }
   for (int i = 0; i < 2 && n; i++)
     if (vl_channel_wanted(p, VL_CHANNEL_FORWARD << i)) vl_channel_flow(p, w, i);

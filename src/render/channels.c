@@ -253,12 +253,12 @@ void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
   p->camera_kernels = vl_camera_kernels(isa);
   p->ground_truth_kernels = vl_ground_truth_kernels(isa);
   const float footprint = 0.25f; /* the same as for the image's samples */
-  p->truth = (vlGroundTruthDef){.pixel_spread = footprint * p->compiled.pixel_spread,
-                                .pixel_width = footprint * p->compiled.pixel_width,
-                                .isa = isa,
-                                .shading = vl_channel_wanted(p, VL_CHANNEL_N),
-                                .albedo = vl_channel_wanted(p, VL_CHANNEL_ALBEDO)};
-  vl_ground_truth_plan_albedo(p->world, p->def->space, &p->truth);
+  p->ground_truth = (vlGroundTruthDef){.pixel_spread = footprint * p->compiled.pixel_spread,
+                                       .pixel_width = footprint * p->compiled.pixel_width,
+                                       .isa = isa,
+                                       .shading = vl_channel_wanted(p, VL_CHANNEL_N),
+                                       .albedo = vl_channel_wanted(p, VL_CHANNEL_ALBEDO)};
+  vl_ground_truth_plan_albedo(p->world, p->def->space, &p->ground_truth);
   const uint32_t *crop = p->def->crop;
   p->tile_x0 = crop[0] / VL_CHANNEL_TILE, p->tile_y0 = crop[1] / VL_CHANNEL_TILE;
   p->tiles_x = (crop[2] + VL_CHANNEL_TILE - 1) / VL_CHANNEL_TILE - p->tile_x0;

@@ -123,7 +123,7 @@ static void flow_chunk(const vlChannelPass *p, vlChannelWorker *w, int which, ui
   vlChannelEnds cut = {&p->other_compiled[which], x, y, film_x, film_y};
   vl_channel_ends(p, w, other->n, &cut, other->t_min, other->t_max);
   other->time = vl_world_time(p->world, p->other_time[which]);
-  vlGroundTruthDef def = p->truth; /* bump maps and albedo are not needed */
+  vlGroundTruthDef def = p->ground_truth; /* bump maps and albedo are not needed */
   def.shading = def.albedo = false;
   p->ground_truth_kernels->trace(p->world, &def, w->scratch, other);
   for (uint32_t i = 0; i < other->n; i++) {

@@ -106,14 +106,14 @@ static vlTracer tracer_of(const vlRenderRun *r, const vlCamera *camera) {
   bool rolls = (world->moves || camera->moves) && camera->readout > 0;
   if (world->has_subsurface && (tracer == VL_TRACER_PATH || tracer == VL_TRACER_RANDOM_WALK))
     vl_log(world->context, VL_LOG_WARNING, NULL,
-           "this tracer shows bodies of material \"subsurface\" as clear glass; volpath shows the light in them");
+           "this tracer renders material \"subsurface\" as clear glass; volpath renders its scattering");
   if (vl_two_way_tracer(tracer) && vl_film_def(r->film)->buckets) {
-    vl_log(world->context, VL_LOG_INFO, NULL, "spectra are filled from the eye alone: light is not followed both ways");
+    vl_log(world->context, VL_LOG_INFO, NULL, "this tracer has no spectral film: volpath is used");
     return VL_TRACER_VOLPATH;
   }
   if (!vl_two_way_tracer(tracer) || (!rolls && !world->has_subsurface)) return tracer;
-  vl_log(world->context, VL_LOG_INFO, NULL, "light is not followed both ways %s: paths from the eye alone are traced",
-         rolls ? "where something moves while rows are read out" : "through bodies of material \"subsurface\"");
+  vl_log(world->context, VL_LOG_INFO, NULL, "this tracer does not support %s: volpath is used",
+         rolls ? "motion with a rolling shutter" : "material \"subsurface\"");
   return VL_TRACER_VOLPATH;
 }
 

@@ -12,8 +12,8 @@ vlCheckDef vl_default_check_def(void) {
 
 const char *vl_finding_kind_name(vlFindingKind kind) {
   static const char *const names[VL_FINDING_KINDS] = {
-      "missing-file", "broken-file", "unused",      "undone", "open-dielectric", "inverted-dielectric",
-      "media",        "degenerate",  "no-uv",       "albedo", "camera-inside",   "dark-light",
+      "missing-file", "broken-file", "unused",      "replaced", "open-dielectric", "inverted-dielectric",
+      "media",        "degenerate",  "no-uv",       "albedo",   "camera-inside",   "dark-light",
       "rough-coat",   "wrong",       "overwritten", "remark"};
   return (unsigned)kind < VL_FINDING_KINDS ? names[kind] : "";
 }

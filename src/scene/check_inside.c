@@ -79,15 +79,15 @@ static void judge(vlCheck *c, const vlSolid *solid, const double *eye, const vlM
   if (!vl_solid_holds(solid, eye)) return;
   if (media && d->inside.index != medium.index)
     vl_check_add(c, VL_FINDING_CAMERA_INSIDE, VL_SEVERITY_WARNING, d->source,
-                 "the camera stands in this body, whose medium is \"%.60s\", but its own medium is \"%.60s\"",
+                 "the camera stands in this solid, whose medium is \"%.60s\", but its own medium is \"%.60s\"",
                  medium_name(c, d->inside), medium_name(c, medium));
   else if (!media && m && m->kind == VL_MATERIAL_DIELECTRIC)
     vl_check_add(c, VL_FINDING_CAMERA_INSIDE, VL_SEVERITY_WARNING, d->source,
-                 "the camera stands in the body of %s and looks out through its surface", name.text);
+                 "the camera stands in the solid of %s and looks out through its surface", name.text);
   else if (!lets_light_pass(c, d) && !d->emission.index && c->scene->defs.render.tracer != VL_TRACER_RAYCAST &&
            c->scene->defs.render.tracer != VL_TRACER_AMBIENT_OCCLUSION && !holds_light(c, solid, group_from_world))
     vl_check_add(c, VL_FINDING_CAMERA_INSIDE, VL_SEVERITY_WARNING, d->source,
-                 "the camera stands in this closed body of %s, and no light is in there: the image stays black",
+                 "the camera stands in this closed solid of %s, and no light is in there: the image stays black",
                  name.text);
 }
 
@@ -191,7 +191,7 @@ static void check_nesting(vlCheck *c, const vlSolid *solids, const Box *boxes, c
       bool cut = (in > 1 && in < SAMPLES - 1) || (in == SAMPLES && back == SAMPLES);
       if (cut && j > i)
         vl_check_add(c, VL_FINDING_MEDIA, VL_SEVERITY_WARNING, solids[j].shape->source,
-                     "this body of medium \"%.60s\" overlaps the body of medium \"%.60s\" of line %u",
+                     "this solid of medium \"%.60s\" overlaps the solid of medium \"%.60s\" of line %u",
                      medium_name(c, solids[j].shape->inside), medium_name(c, d->inside), d->source.line);
       if (in == SAMPLES && back == 0 &&
           (around == UINT32_MAX || box_volume(&boxes[shape[j]]) < box_volume(&boxes[shape[around]])))
@@ -199,7 +199,7 @@ static void check_nesting(vlCheck *c, const vlSolid *solids, const Box *boxes, c
     }
     if (around != UINT32_MAX && d->outside.index != solids[around].shape->inside.index)
       vl_check_add(c, VL_FINDING_MEDIA, VL_SEVERITY_WARNING, d->source,
-                   "this body lies in medium \"%.60s\" (line %u), but says that \"%.60s\" is outside of it",
+                   "this solid lies in medium \"%.60s\" (line %u), but says that \"%.60s\" is outside of it",
                    medium_name(c, solids[around].shape->inside), solids[around].shape->source.line,
                    medium_name(c, d->outside));
   }
@@ -215,8 +215,8 @@ static void check_media(vlCheck *c, const Box *boxes) {
     const vlShapeDef *d = &s->shapes.items[i];
     if (d->group.index || d->inside.index == d->outside.index) continue;
     if (!vl_solid_make(s, &i, 1, &solids[n])) c->no_memory = true;
-    bool closed = solids[n].sphere || solids[n].body.part_count;
-    for (uint32_t k = 0; k < solids[n].body.part_count; k++) closed = closed && !solids[n].body.parts[k].open_edges;
+    bool closed = solids[n].sphere || solids[n].meshes.part_count;
+    for (uint32_t k = 0; k < solids[n].meshes.part_count; k++) closed = closed && !solids[n].meshes.parts[k].open_edges;
     shape[n] = i;
     if (closed && !c->no_memory)
       n++;

@@ -136,7 +136,7 @@ static void check_uv(vlCheck *c, const vlShapeDef *d, const Needs *n) {
 
 /* ---- solids ------------------------------------------------------------------------------------------------------ */
 
-static bool is_body(const vlCheck *c, const vlShapeDef *d) {
+static bool is_solid(const vlCheck *c, const vlShapeDef *d) {
   const vlMaterialDef *m = vl_check_material(c, d->material);
   return m && ((vl_kind_row(&vl_material_family, (int)m->kind)->traits & VL_MATERIAL_REFRACTS) ||
                (m->kind == VL_MATERIAL_PRINCIPLED && !m->principled.thin_walled &&
@@ -168,29 +168,29 @@ static bool lies_in_another(const vlMeshSolid *b, uint32_t part) {
 
 /* After welding, the shape of a part is unknown: the solid's first shape is reported instead. This is exact for solids
  * of one shape. */
-static void check_body(vlCheck *c, const uint32_t *shapes, size_t count) {
+static void check_solid(vlCheck *c, const uint32_t *shapes, size_t count) {
   const vlScene *s = c->scene;
   const vlShapeDef *first = &s->shapes.items[shapes[0]];
-  vlMeshSolid body;
-  if (!vl_mesh_solid_make(s, shapes, count, &body)) c->no_memory = true;
+  vlMeshSolid solid;
+  if (!vl_mesh_solid_make(s, shapes, count, &solid)) c->no_memory = true;
   uint32_t open = 0, inverted = 0;
   uint64_t edges = 0;
-  for (uint32_t i = 0; i < body.part_count && !c->no_memory; i++) {
-    const vlMeshSolidPart *p = &body.parts[i];
+  for (uint32_t i = 0; i < solid.part_count && !c->no_memory; i++) {
+    const vlMeshSolidPart *p = &solid.parts[i];
     edges += p->open_edges;
     open += p->open_edges > 0;
-    inverted += !p->open_edges && p->volume < 0 && !lies_in_another(&body, i);
+    inverted += !p->open_edges && p->volume < 0 && !lies_in_another(&solid, i);
   }
   vlCheckName name = vl_check_material_name(vl_check_material(c, first->material));
   if (open)
     vl_check_add(c, VL_FINDING_OPEN_DIELECTRIC, VL_SEVERITY_WARNING, first->source,
-                 "the body of %s is not closed: %llu edges have one face only, in %u of its %u parts", name.text,
-                 (unsigned long long)edges, open, body.part_count);
+                 "the solid of %s is not closed: %llu edges have one face only, in %u of its %u parts", name.text,
+                 (unsigned long long)edges, open, solid.part_count);
   if (inverted)
     vl_check_add(c, VL_FINDING_INVERTED_DIELECTRIC, VL_SEVERITY_WARNING, first->source,
-                 "normals point into the body of %s (%u of its %u parts): light is bent the wrong way", name.text,
-                 inverted, body.part_count);
-  vl_mesh_solid_free(s, &body);
+                 "normals point into the solid of %s (%u of its %u parts): light is bent the wrong way", name.text,
+                 inverted, solid.part_count);
+  vl_mesh_solid_free(s, &solid);
 }
 
 static void check_sphere(vlCheck *c, const vlShapeDef *d) {
@@ -198,13 +198,13 @@ static void check_sphere(vlCheck *c, const vlShapeDef *d) {
   vlCheckName name = vl_check_material_name(vl_check_material(c, d->material));
   if (!d->centers && ((double)d->phi_max < whole || d->z_min > -d->radius || d->z_max < d->radius))
     vl_check_add(c, VL_FINDING_OPEN_DIELECTRIC, VL_SEVERITY_WARNING, d->source,
-                 "the body of %s is not closed: the sphere is a part of one", name.text);
+                 "the solid of %s is not closed: the sphere is a part of one", name.text);
   else if (d->reverse_orientation != (vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0))
     vl_check_add(c, VL_FINDING_INVERTED_DIELECTRIC, VL_SEVERITY_WARNING, d->source,
                  "normals point into the sphere of %s: light is bent the wrong way", name.text);
 }
 
-static void check_bodies(vlCheck *c) {
+static void check_solids(vlCheck *c) {
   const vlScene *s = c->scene;
   Key *keys = vl_alloc_array(c->context, s->shapes.count + 1, sizeof *keys);
   uint32_t *shapes = vl_alloc_array(c->context, s->shapes.count + 1, sizeof *shapes);
@@ -212,7 +212,7 @@ static void check_bodies(vlCheck *c) {
   if (!keys || !shapes) c->no_memory = true;
   for (uint32_t i = 0; i < s->shapes.count && !c->no_memory; i++) {
     const vlShapeDef *d = &s->shapes.items[i];
-    if (!is_body(c, d)) continue;
+    if (!is_solid(c, d)) continue;
     if (d->kind == VL_SHAPE_SPHERE)
       check_sphere(c, d);
     else
@@ -226,7 +226,7 @@ static void check_bodies(vlCheck *c) {
       round |= !vl_shape_is_mesh(s->shapes.items[keys[j].shape].kind);
       shapes[count++] = keys[j].shape;
     }
-    if (!round) check_body(c, shapes, count);
+    if (!round) check_solid(c, shapes, count);
   }
   vl_free(c->context, keys);
   vl_free(c->context, shapes);
@@ -245,5 +245,5 @@ void vl_check_meshes(vlCheck *c) {
   vl_free(c->context, n.textures);
   vl_free(c->context, n.materials);
   vl_free(c->context, n.culprit);
-  if (!c->no_memory) check_bodies(c);
+  if (!c->no_memory) check_solids(c);
 }

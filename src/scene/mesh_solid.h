@@ -24,10 +24,10 @@ typedef struct vlMeshSolid {
 
 /* Makes a solid of triangles and bilinear patches (two triangles each); other shapes are ignored. shapes: indices in
  * scene->shapes. False: out of memory. The solid must be freed in any case. */
-bool vl_mesh_solid_make(const vlScene *scene, const uint32_t *shapes, size_t count, vlMeshSolid *body);
-void vl_mesh_solid_free(const vlScene *scene, vlMeshSolid *body);
+bool vl_mesh_solid_make(const vlScene *scene, const uint32_t *shapes, size_t count, vlMeshSolid *solid);
+void vl_mesh_solid_free(const vlScene *scene, vlMeshSolid *solid);
 /* Winding number of the closed surface around p (group space): 0 outside, 1 inside, -1 inside an inverted surface.
  * Counts the signed crossings of one ray. only: the part that counts, or UINT32_MAX for all. */
-int vl_mesh_solid_winding(const vlMeshSolid *body, const double p[3], uint32_t part);
+int vl_mesh_solid_winding(const vlMeshSolid *solid, const double p[3], uint32_t part);
 
 #endif

@@ -64,11 +64,11 @@ bool vl_solid_make(const vlScene *scene, const uint32_t *shapes, size_t count, v
     vl_mat4_inverse(vl_mat4_load(s->shape->group_from_shape), &s->shape_from_group);
     return true;
   }
-  return vl_mesh_solid_make(scene, shapes, count, &s->body);
+  return vl_mesh_solid_make(scene, shapes, count, &s->meshes);
 }
 
 void vl_solid_free(const vlScene *scene, vlSolid *s) {
-  vl_mesh_solid_free(scene, &s->body);
+  vl_mesh_solid_free(scene, &s->meshes);
 }
 
 bool vl_solid_holds(const vlSolid *s, const double p[3]) {
@@ -78,11 +78,11 @@ bool vl_solid_holds(const vlSolid *s, const double p[3]) {
     return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] < r * r;
   }
   int winding = 0;
-  for (uint32_t i = 0; i < s->body.part_count; i++) {
-    const vlMeshSolidPart *part = &s->body.parts[i];
+  for (uint32_t i = 0; i < s->meshes.part_count; i++) {
+    const vlMeshSolidPart *part = &s->meshes.parts[i];
     bool near = part->open_edges == 0;
     for (int k = 0; k < 3 && near; k++) near = part->low[k] < p[k] && p[k] < part->high[k];
-    if (near) winding += vl_mesh_solid_winding(&s->body, p, i);
+    if (near) winding += vl_mesh_solid_winding(&s->meshes, p, i);
   }
   return winding != 0;
 }
@@ -96,12 +96,12 @@ void vl_solid_sample(const vlSolid *s, uint32_t i, uint32_t n, double p[3]) {
     vl_mat4_point(&m, q, p);
     return;
   }
-  uint32_t face = (uint32_t)((uint64_t)i * s->body.faces / n);
-  const vlMeshSolidPart *part = &s->body.parts[s->body.part[face]];
+  uint32_t face = (uint32_t)((uint64_t)i * s->meshes.faces / n);
+  const vlMeshSolidPart *part = &s->meshes.parts[s->meshes.part[face]];
   for (int k = 0; k < 3; k++) {
     double sum = 0;
     for (int j = 0; j < 3; j++)
-      sum += s->body.points[3 * (size_t)s->body.faces3[3 * (size_t)face + (size_t)j] + (size_t)k];
+      sum += s->meshes.points[3 * (size_t)s->meshes.faces3[3 * (size_t)face + (size_t)j] + (size_t)k];
     p[k] = 0.999 * sum / 3 + 0.0005 * (part->low[k] + part->high[k]);
   }
 }

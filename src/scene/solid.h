@@ -10,7 +10,7 @@ typedef struct vlSolid {
   const vlShapeDef *shape; /* the first shape */
   bool sphere;
   vlMat4 shape_from_group; /* spheres only */
-  vlMeshSolid body;        /* meshes only; freed by vl_solid_free */
+  vlMeshSolid meshes;      /* meshes only; freed by vl_solid_free */
 } vlSolid;
 
 /* False: out of memory. An open solid contains no point. */

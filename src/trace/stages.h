@@ -241,10 +241,15 @@ typedef struct vlPoint {
   vlVec3 p, g, n; /* geometric, shading normal */
   float u, v, t, offset;
 } vlPoint;
+/* A hit's distance t is a float; computed again in double it lies within t (1 -+ VL_REFIND): 8 roundings of a float.
+ * VL_REFIND_LEAST keeps that interval from being empty at t = 0. */
+#define VL_REFIND 0x1p-21
+#define VL_REFIND_LEAST 1e-37
+
 /* The smallest t_min past a surface point along the ray, by the bound of the point's error; larger than t_min. */
 static inline float vl_past_surface(const vlPoint *at, vlVec3 d, float t_min) {
   float margin = 2.0f * at->offset / vl_max(vl_abs(vl_dot(at->g, d)), 0.01f) + 0x1p-22f * vl_abs(at->t);
-  return vl_max(at->t, t_min) + vl_max(margin, 1e-30f);
+  return vl_max(at->t, t_min) + vl_max(margin, VL_MIN_POSITIVE); /* larger than t_min also where both are 0 */
 }
 /* The surface point that lane i's ray meets. */
 vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
@@ -307,7 +312,9 @@ typedef struct vlFootprint {
 static inline vlFootprint vl_footprint_of(vlVec3 d, vlVec3 g, float width) {
   float cosine = vl_abs(vl_dot(d, g));
   vlVec3 a = vl_cross(g, d);
-  float l2 = vl_length2(a), inv = l2 > 1e-12f ? 1.0f / __builtin_sqrtf(l2) : 0.0f;
+  float l2 = vl_length2(a),
+        inv = l2 > 1e-12f ? /* sine above 1e-6: the cross product is not just rounding */ 1.0f / __builtin_sqrtf(l2)
+                          : 0.0f;
   vlFrame any = vl_frame_from_z(g);
   a.x = inv > 0.0f ? a.x * inv : any.x.x, a.y = inv > 0.0f ? a.y * inv : any.x.y,
   a.z = inv > 0.0f ? a.z * inv : any.x.z;

@@ -101,18 +101,18 @@ finds 1 unused_material ':5:1: warning: material "m" is not used' unused.pbrt
 finds 1 unused_object ':6:[0-9]+: warning: object "o" is placed nowhere' unused.pbrt
 finds 1 unused_medium ':7:1: warning: nothing lies in medium "fog"' unused.pbrt
 finds 1 unused_area_light ':8:[0-9]+: warning: no shape emits light' unused.pbrt
-finds 1 material_of_nothing ':9:1: note: no shape takes this material \[undone\]' unused.pbrt
+finds 1 material_of_nothing ':9:1: note: no shape takes this material \[replaced\]' unused.pbrt
 printf 'Camera "perspective"\nCamera "orthographic"\nFilm "rgb"\nWorldBegin\nLightSource "infinite"\n' >twice.pbrt
 finds 1 said_twice 'twice\.pbrt:2:1: warning: Camera a second time: this one counts \[overwritten\]' twice.pbrt
 scene again.pbrt 'Texture "t" "float" "constant"' 'Texture "t" "float" "constant"'
 finds 3 named_twice ':5:1: error: float texture "t" is made a second time' again.pbrt
 
 scene open.pbrt "$glass" "Shape \"trianglemesh\" $cube \"integer indices\" $lid"
-finds 1 open_body 'open\.pbrt:5:1: warning: the body of the material of line 4 is not closed: 4 edges.*\[open-dielectric\]' open.pbrt
+finds 1 open_solid 'open\.pbrt:5:1: warning: the solid of the material of line 4 is not closed: 4 edges.*\[open-dielectric\]' open.pbrt
 scene bowl.pbrt "$glass" 'Shape "sphere" "float zmax" 0.5'
 finds 1 open_sphere ':5:1: warning: .*not closed.*\[open-dielectric\]' bowl.pbrt
 scene inverted.pbrt "$glass" 'ReverseOrientation' "Shape \"trianglemesh\" $cube \"integer indices\" $outward"
-finds 1 inverted_body ':6:1: warning: normals point into the body.*\[inverted-dielectric\]' inverted.pbrt
+finds 1 inverted_solid ':6:1: warning: normals point into the solid.*\[inverted-dielectric\]' inverted.pbrt
 scene inner.pbrt "$glass" 'ReverseOrientation' 'Shape "sphere"'
 finds 1 inverted_sphere ':6:1: warning: normals point into.*\[inverted-dielectric\]' inner.pbrt
 scene mirror_sphere.pbrt "$glass" 'Scale 1 1 -1' 'Shape "sphere"'
@@ -120,15 +120,15 @@ finds 1 mirrored_sphere ':6:1: warning: normals point into.*\[inverted-dielectri
 scene mirror_reversed.pbrt "$glass" 'Scale 1 1 -1' 'ReverseOrientation' 'Shape "sphere"'
 clean mirrored_reversed_sphere mirror_reversed.pbrt
 "$VELO" scene convert mirror_sphere.pbrt mirror_sphere.gltf >/dev/null 2>&1
-finds 1 mirrored_sphere_as_a_mesh 'normals point into the body.*\[inverted-dielectric\]' mirror_sphere.gltf
+finds 1 mirrored_sphere_as_a_mesh 'normals point into the solid.*\[inverted-dielectric\]' mirror_sphere.gltf
 "$VELO" scene convert mirror_reversed.pbrt mirror_reversed.gltf >/dev/null 2>&1
 finds 0 mirrored_reversed_sphere_as_a_mesh '^nothing found' mirror_reversed.gltf
 
 fog='MakeNamedMedium "a" "string type" "homogeneous" MakeNamedMedium "b" "string type" "homogeneous" Material "interface"'
 scene overlap.pbrt "$fog" 'MediumInterface "a" ""' 'Shape "sphere"' 'Translate 1 0 0 MediumInterface "b" ""' 'Shape "sphere"'
-finds 1 media_overlap ':8:1: warning: this body of medium "b" overlaps.*"a" of line 6.*\[media\]' overlap.pbrt
+finds 1 media_overlap ':8:1: warning: this solid of medium "b" overlaps.*"a" of line 6.*\[media\]' overlap.pbrt
 scene nested.pbrt "$fog" 'MediumInterface "a" ""' 'Shape "sphere" "float radius" 2' 'MediumInterface "b" ""' 'Shape "sphere"'
-finds 1 media_nested_wrongly ':8:1: warning: this body lies in medium "a" \(line 6\), but says that "" is' nested.pbrt
+finds 1 media_nested_wrongly ':8:1: warning: this solid lies in medium "a" \(line 6\), but says that "" is' nested.pbrt
 scene nested_right.pbrt "$fog" 'MediumInterface "a" ""' 'Shape "sphere" "float radius" 2' 'MediumInterface "b" "a"' \
   'Shape "sphere"'
 clean media_nested_rightly nested_right.pbrt

@@ -509,7 +509,7 @@ static void imitation_errs_where_pbrt_does(void **state) {
 
 /* A ceiling of 8 x 8 cells of two triangles over 2 x 2 repeats of a 32 x 32 image, black but for the texels of `lit`
  * (x, y, width, height), which are 1; dim: of the black ones. Lights: how many faces became some. */
-static Image shining_ceiling(const uint32_t lit[4], float dim, vlTextureFilter filter, uint64_t *lights) {
+static Image emissive_ceiling(const uint32_t lit[4], float dim, vlTextureFilter filter, uint64_t *lights) {
   enum { CELLS = 8, SIDE = 32 };
   static float p[3 * (CELLS + 1) * (CELLS + 1)], uv[2 * (CELLS + 1) * (CELLS + 1)], rgb[3 * SIDE * SIDE];
   static uint32_t f[6 * CELLS * CELLS];
@@ -564,7 +564,7 @@ static void black_faces_are_no_lights(void **state) {
     for (int filter = 0; filter < 2; filter++) {
       uint64_t few, all;
       vlTextureFilter kind = filter ? VL_FILTER_BILINEAR : VL_FILTER_POINT;
-      Image a = shining_ceiling(cases[k].lit, 0, kind, &few), b = shining_ceiling(cases[k].lit, 1e-9f, kind, &all);
+      Image a = emissive_ceiling(cases[k].lit, 0, kind, &few), b = emissive_ceiling(cases[k].lit, 1e-9f, kind, &all);
       assert_int_equal(all, 128);
       assert_int_equal(few, cases[k].faces);
       assert_near("light of a few faces", image_mean(&a, 1), image_mean(&b, 1), 0.02 * image_mean(&b, 1) + 1e-9);

@@ -84,7 +84,7 @@ void json_integer(Json *json, const char *key, int64_t number) {
   fprintf(json->out, "%lld", (long long)number);
 }
 
-void json_bool(Json *json, const char *key, bool truth) {
+void json_bool(Json *json, const char *key, bool value) {
   put_key(json, key);
-  fputs(truth ? "true" : "false", json->out);
+  fputs(value ? "true" : "false", json->out);
 }

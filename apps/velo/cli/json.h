@@ -20,7 +20,7 @@ void json_number(Json *json, const char *key, double number);
 /* avoids a clash with jansson's json_integer, which the library links */
 #define json_integer json_put_integer
 void json_integer(Json *json, const char *key, int64_t number);
-void json_bool(Json *json, const char *key, bool truth);
+void json_bool(Json *json, const char *key, bool value);
 
 /* The shortest decimal that reads back as the same number. */
 void format_number(char *text, size_t size, double number);

@@ -304,8 +304,8 @@ const Command image_check_command = {
         "of the image. Cryptomatte's ids are looked up in its manifest, its coverages compared with alpha.\n"
         "Exit code 1 when an error is above the threshold.",
     .examples =
-        "velo image check truth.exr\n"
-        "velo image check --json truth.exr",
+        "velo image check channels.exr\n"
+        "velo image check --json channels.exr",
     .options = check_options,
     .min_operands = 1,
     .max_operands = 1,

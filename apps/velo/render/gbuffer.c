@@ -35,7 +35,7 @@ _Static_assert(sizeof names / sizeof *names == COUNT, "a name for each");
 
 /* Indices of the ground truth channels that are read. */
 typedef struct Source {
-  const vlImage *truth, *rendered;
+  const vlImage *geometry, *rendered;
   const float *values;
   uint32_t width, height, channels;
   int p, n, ng, uv, albedo, ray, distance, error;
@@ -116,7 +116,7 @@ static bool stop_asked(void *user) {
   return signals_count() > *(const int *)user;
 }
 
-static vlResult ground_truth_of(const vlWorld *world, const Job *job, const vlFilm *film, vlImage **truth,
+static vlResult ground_truth_of(const vlWorld *world, const Job *job, const vlFilm *film, vlImage **geometry,
                                 vlError *error) {
   int signals = signals_count();
   vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
@@ -129,18 +129,18 @@ static vlResult ground_truth_of(const vlWorld *world, const Job *job, const vlFi
   def.exposure = job->defs->develop.exposure;
   def.time = job_channels_time(job);
   def.stop = stop_asked, def.stop_user = &signals;
-  return vl_render_channels(world, &job->camera, &def, truth, NULL, error);
+  return vl_render_channels(world, &job->camera, &def, geometry, NULL, error);
 }
 
 int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film, vlImage **image) {
-  vlImage *truth = NULL, *rendered = NULL;
+  vlImage *geometry = NULL, *rendered = NULL;
   vlError error = {0};
   vlDevelopDef develop = vl_default_develop_def();
   develop.exposure = job->defs->develop.exposure;
-  vlResult result = ground_truth_of(world, job, film, &truth, &error);
+  vlResult result = ground_truth_of(world, job, film, &geometry, &error);
   if (result == VL_OK) result = vl_film_develop(film, &develop, &rendered);
   if (result == VL_OK) {
-    vlImageDef def = vl_default_image_def(vl_image_width(truth), vl_image_height(truth), COUNT);
+    vlImageDef def = vl_default_image_def(vl_image_width(geometry), vl_image_height(geometry), COUNT);
     def.names = names;
     def.type = VL_PIXEL_F32;
     def.encoding = VL_ENCODING_LINEAR;
@@ -150,20 +150,20 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
     vlCamera held;
     vl_camera_at(&job->camera, job_channels_time(job), &held);
     double spp = vl_film_spp(film);
-    Source s = {.truth = truth,
+    Source s = {.geometry = geometry,
                 .rendered = rendered,
-                .values = vl_image_const_pixels(truth),
-                .width = vl_image_width(truth),
-                .height = vl_image_height(truth),
-                .channels = vl_image_channels(truth),
-                .p = vl_image_find_channel(truth, "P.X"),
-                .n = vl_image_find_channel(truth, "N.X"),
-                .ng = vl_image_find_channel(truth, "Ng.X"),
-                .uv = vl_image_find_channel(truth, "uv.U"),
-                .albedo = vl_image_find_channel(truth, "albedo.R"),
-                .ray = vl_image_find_channel(truth, "ray.X"),
-                .distance = vl_image_find_channel(truth, "distance.Y"),
-                .error = vl_image_find_channel(truth, "error.R"),
+                .values = vl_image_const_pixels(geometry),
+                .width = vl_image_width(geometry),
+                .height = vl_image_height(geometry),
+                .channels = vl_image_channels(geometry),
+                .p = vl_image_find_channel(geometry, "P.X"),
+                .n = vl_image_find_channel(geometry, "N.X"),
+                .ng = vl_image_find_channel(geometry, "Ng.X"),
+                .uv = vl_image_find_channel(geometry, "uv.U"),
+                .albedo = vl_image_find_channel(geometry, "albedo.R"),
+                .ray = vl_image_find_channel(geometry, "ray.X"),
+                .distance = vl_image_find_channel(geometry, "distance.Y"),
+                .error = vl_image_find_channel(geometry, "error.R"),
                 .world = job->defs->gbuffer == VL_GBUFFER_WORLD,
                 .shrink = fmax(0.125, 1 / sqrt(spp)), /* pbrt's ray differentials shrink with the number of samples */
                 .samples = spp};
@@ -172,7 +172,7 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
     for (uint32_t y = 0; y < s.height; y++)
       for (uint32_t x = 0; x < s.width; x++) fill(&s, x, y, out + ((size_t)y * s.width + x) * COUNT);
   }
-  vl_image_destroy(truth);
+  vl_image_destroy(geometry);
   vl_image_destroy(rendered);
   if (result == VL_CANCELLED) return 128 + signals_pending();
   return result == VL_OK ? STATUS_OK : report_error(&error, result, job->path);

@@ -33,7 +33,7 @@ static void add(MemoryPlan *plan, const char *what, uint64_t bytes) {
 }
 
 /* Number of 4-byte values per pixel of the ground truth. */
-static uint64_t truth_values(const Channels *c, uint32_t buckets) {
+static uint64_t channel_values(const Channels *c, uint32_t buckets) {
   static const uint8_t values[VL_CHANNEL_COUNT] = {1, 1, 3, 3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 2, 3, 3, 3};
   enum { GBUFFER = 48 }; /* the gbuffer's channels and the ground truth that they are computed from */
   uint64_t sum = c->gbuffer ? GBUFFER : 0;
@@ -80,7 +80,7 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
     eight_bit |= display;
     layers |= output_holds_layers(outputs->paths[i]);
   }
-  uint64_t values = layers ? truth_values(channels, job->defs->film.buckets) : 0;
+  uint64_t values = layers ? channel_values(channels, job->defs->film.buckets) : 0;
   uint64_t held = vl_context_memory(context, NULL), addresses, resident;
   process_size(&addresses, &resident);
   add(plan, "program", resident > held ? resident - held : 0);

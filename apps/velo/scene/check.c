@@ -41,7 +41,7 @@ static void add(List *list, vlFindingKind kind, vlSeverity severity, vlResult co
   snprintf(e->message, sizeof e->message, "%s", message);
 }
 
-static void told(void *user, const vlError *e) {
+static void report_message(void *user, const vlError *e) {
   vlFindingKind kind = e->code == VL_OK              ? VL_FINDING_OVERWRITTEN
                        : e->code == VL_ERROR_MISSING ? VL_FINDING_MISSING_FILE
                                                      : VL_FINDING_WRONG;
@@ -64,9 +64,9 @@ static int look(vlContext *context, const Arguments *arguments, List *list) {
   vlLoadDef load = vl_default_load_def();
   load.permissive = arguments->values[CHECK_PERMISSIVE].given;
   vlResult r = vl_scene_create(context, &scene);
-  if (r == VL_OK) r = vl_scene_diagnose(scene, arguments->operands[0], &load, told, list, &error);
+  if (r == VL_OK) r = vl_scene_diagnose(scene, arguments->operands[0], &load, report_message, list, &error);
   bool read = r == VL_OK;
-  if (!read && r != VL_ERROR_MEMORY) told(list, &error);
+  if (!read && r != VL_ERROR_MEMORY) report_message(list, &error);
   if (!read && r == VL_ERROR_SCENE)
     add(list, VL_FINDING_REMARK, VL_SEVERITY_NOTE, VL_OK, arguments->operands[0], 0, 0,
         "nothing after this place was looked at");
@@ -194,10 +194,10 @@ const Command scene_check_command = {
     .summary = "the scene doctor: what is wrong or probably not meant",
     .text =
         "Reads a scene past its mistakes and says all that it finds, each with its place and kind:\n"
-        "missing and broken files, whatever else is wrong; unused and overwritten names; bodies of\n"
+        "missing and broken files, whatever else is wrong; unused and overwritten names; solids of\n"
         "glass that are open or inside out; media that overlap; faces without area; textures over uv\n"
         "that a mesh does not have; surfaces that give back more light than they get; a camera inside\n"
-        "of a body; lights of power 0. Renders nothing.\n\n"
+        "of a solid; lights of power 0. Renders nothing.\n\n"
         "exit codes: 0 nothing but notes; 1 warnings; 3, 4, 5 an error, with which velo render would end",
     .examples =
         "velo scene check room.pbrt\n"

@@ -86,7 +86,7 @@ const Command scene_convert_command = {
     .summary = "write a scene as another format: .gltf, .glb, .pbrt",
     .text =
         "Reads A (.pbrt, .gltf, .glb, .obj, .ply) and writes it as B, in the format of its suffix. What B's format\n"
-        "cannot hold, or only nearly, is told: one line for each kind, with how often it was met.",
+        "cannot hold exactly is reported: one line per kind, with the number of times.",
     .examples =
         "velo scene convert room.pbrt room.glb\n"
         "velo scene convert model.gltf model.pbrt",

@@ -311,7 +311,7 @@ static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e) 
   }
   double most = fmax(rgb[0], fmax(rgb[1], rgb[2])), scale = e->scale;
   if (!(most > 0)) return;
-  if (!isnan(e->power)) vl_export_lose(x, "area lights told by their power: radiance 1 stands in");
+  if (!isnan(e->power)) vl_export_lose(x, "area lights given by their power: radiance 1 is written");
   json_t *factor = json_array(), *info = t ? vl_gltf_texture_info(x, t, false) : NULL;
   double over = most * scale > 1 ? most * scale : 1;
   for (int i = 0; i < 3; i++) json_array_append_new(factor, json_real(unit((double)rgb[i] * scale / over)));

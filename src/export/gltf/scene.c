@@ -121,7 +121,7 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
     if (!isnan(d->power)) {
       double cone = 2 * 3.14159265358979 * (1 - vl_precise_cos(d->cone_angle - 0.5 * d->cone_delta));
       intensity = most * d->power / (d->kind == VL_LIGHT_SPOT ? cone : 4 * 3.14159265358979);
-      vl_export_lose(x, "lights told by their power: intensity is computed from it, nearly");
+      vl_export_lose(x, "lights given by their power: an approximate intensity is written");
     }
     json_t *light = json_pack("{s:s,s:[f,f,f],s:f}", "type", types[d->kind], "color", rgb[0] / most, rgb[1] / most,
                               rgb[2] / most, "intensity", intensity);

@@ -81,8 +81,8 @@ json_t *vl_gltf_texture_info(vlExport *x, const vlTextureDef *t, bool linear) {
     vl_export_lose(x, "textures mapped other than by uv: left out");
     return NULL;
   }
-  bool told_linear = t->encoding_given && t->encoding == VL_ENCODING_LINEAR;
-  if (told_linear != linear && t->spectrum) vl_export_lose(x, "images whose curve is not the one that glTF expects");
+  bool is_linear = t->encoding_given && t->encoding == VL_ENCODING_LINEAR;
+  if (is_linear != linear && t->spectrum) vl_export_lose(x, "images whose curve is not the one that glTF expects");
   json_int_t image = put_image(x, t);
   if (image < 0) {
     vl_export_lose(x, "images that cannot be read: left out");

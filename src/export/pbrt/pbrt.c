@@ -121,9 +121,9 @@ static bool put_camera(vlExport *x) {
         defs->film.height);
   }
   double shutter = defs->camera.shutter_close - defs->camera.shutter_open;
-  bool told = r == VL_OK && shutter > 0 && strstr(text, "shutterclose");
+  bool has_shutter = r == VL_OK && shutter > 0 && strstr(text, "shutterclose");
   vl_free(x->context, text);
-  put_film(x, told ? shutter : 1);
+  put_film(x, has_shutter ? shutter : 1);
   return true;
 }
 

@@ -184,7 +184,7 @@ bool vl_gltf_skin(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, con
     if (p->normals) turn(m, true, p->normals + 3 * i);
     if (p->tangents) turn(m, false, p->tangents + 4 * i);
   }
-  if (ok && !any && vl_gltf_once(g, VL_GLTF_TOLD_SKIN))
+  if (ok && !any && vl_gltf_once(g, VL_GLTF_REPORTED_SKIN))
     vl_gltf_warn(g, VL_LOG_WARNING, here, "has a skin, but neither joints nor weights");
   vl_free(g->context, sums);
   vl_free(g->context, matrices);

@@ -1,5 +1,5 @@
-/* import/gltf/file.c: reads the file: .gltf or .glb (told apart by the first bytes), its JSON, uris, buffers and buffer
- * views. */
+/* import/gltf/file.c: reads the file: .gltf or .glb (distinguished by the first bytes), its JSON, uris, buffers and
+ * buffer views. */
 #include <stdio.h>
 #include <string.h>
 

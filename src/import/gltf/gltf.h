@@ -122,19 +122,19 @@ typedef struct vlGltf {
   bool moves;           /* close is later than open, and there are animations */
   bool closing;         /* meshes are deformed as at shutter close */
   vlMat4 *keys;         /* world matrices of all nodes at the key times */
-  uint32_t told;        /* bit mask of warnings that were given once */
+  uint32_t reported;    /* bit mask of warnings that were given once */
   size_t shapes_made, lights_made, cameras_seen;
   double bounds_min[3], bounds_max[3];
 } vlGltf;
 
 enum {
-  VL_GLTF_TOLD_RANGE = 1,
-  VL_GLTF_TOLD_POINTS = 2,
-  VL_GLTF_TOLD_MODE = 4,
-  VL_GLTF_TOLD_SETS = 8,
-  VL_GLTF_TOLD_FLAT = 16,
-  VL_GLTF_TOLD_SKIN = 32,
-  VL_GLTF_TOLD_MOTION = 64
+  VL_GLTF_REPORTED_RANGE = 1,
+  VL_GLTF_REPORTED_POINTS = 2,
+  VL_GLTF_REPORTED_MODE = 4,
+  VL_GLTF_REPORTED_SETS = 8,
+  VL_GLTF_REPORTED_FLAT = 16,
+  VL_GLTF_REPORTED_SKIN = 32,
+  VL_GLTF_REPORTED_MOTION = 64
 };
 
 /* ---- errors and JSON (json.c): a function that returns bool has reported the error when it returns false ----------

@@ -59,8 +59,8 @@ void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfPlace *place, const c
 }
 
 bool vl_gltf_once(vlGltf *g, uint32_t bit) {
-  bool first = !(g->told & bit);
-  g->told |= bit;
+  bool first = !(g->reported & bit);
+  g->reported |= bit;
   return first;
 }
 

@@ -26,7 +26,7 @@ bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t index) {
     if (!(color[i] >= 0)) return vl_gltf_fail(g, VL_GLTF_KEY(at, "color"), "must not be negative");
   if (is_spot && !(inner >= 0 && inner <= outer && outer > 0 && outer <= 1.5707964))
     return vl_gltf_fail(g, VL_GLTF_KEY(at, "spot"), "its angles must be 0 <= inner <= outer <= pi/2");
-  if (isfinite(range) && vl_gltf_once(g, VL_GLTF_TOLD_RANGE))
+  if (isfinite(range) && vl_gltf_once(g, VL_GLTF_REPORTED_RANGE))
     vl_gltf_warn(g, VL_LOG_INFO, at, "its range is ignored: light goes on as far as it may");
   vlLightDef def = vl_default_light_def(is_spot ? VL_LIGHT_SPOT : is_distant ? VL_LIGHT_DISTANT : VL_LIGHT_POINT);
   def.source.file = g->path;

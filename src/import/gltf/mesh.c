@@ -197,7 +197,7 @@ static void still(vlGltf *g, const vlGltfPlace *at, vlGltfPrimitive *p) {
   vl_free(g->context, p->positions_close);
   vl_free(g->context, p->normals_close);
   p->positions_close = p->normals_close = NULL;
-  if (vl_gltf_once(g, VL_GLTF_TOLD_MOTION))
+  if (vl_gltf_once(g, VL_GLTF_REPORTED_MOTION))
     vl_gltf_warn(g, VL_LOG_INFO, at, "gives out light, and stays as it is when the shutter opens");
 }
 

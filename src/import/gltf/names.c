@@ -169,7 +169,7 @@ static const char *const known[] = {"COLOR_0",
                                     "ymag",
                                     "zfar",
                                     "znear"};
-enum { KNOWN = sizeof known / sizeof *known, MOST_SAID = 4 };
+enum { KNOWN = sizeof known / sizeof *known, MOST_REPORTED = 4 };
 
 static int compare(const void *a, const void *b) {
   return strcmp(*(const char *const *)a, *(const char *const *)b);
@@ -183,33 +183,34 @@ static bool is_known(const char *key) {
   return length > 0 && key[length] && key[length - 1] == '_';
 }
 
-static void look(vlGltf *g, const vlGltfPlace *at, const char *key, uint32_t *said) {
+static void look(vlGltf *g, const vlGltfPlace *at, const char *key, uint32_t *reported) {
   if (strlen(key) < 4 || is_known(key)) return;
   const char *near = vl_nearest_name(key, known, KNOWN);
-  if (near && ++*said <= MOST_SAID)
+  if (near && ++*reported <= MOST_REPORTED)
     vl_gltf_warn(g, VL_LOG_WARNING, at, "unknown name \"%.60s\" is ignored (did you mean \"%s\"?)", key, near);
 }
 
 /* Extras and extensions that velo does not read are not checked. jansson bounds the depth. */
-static void walk(vlGltf *g, const vlGltfPlace *at, json_t *value, uint32_t *said) {
+static void walk(vlGltf *g, const vlGltfPlace *at, json_t *value, uint32_t *reported) {
   const char *key;
   json_t *part;
   size_t i;
-  if (*said >= MOST_SAID) return;
+  if (*reported >= MOST_REPORTED) return;
   if (json_is_object(value)) {
     bool extensions = at && strcmp(at->key, "extensions") == 0;
     json_object_foreach(value, key, part) {
       if (extensions ? !vl_gltf_reads_extension(key) : strcmp(key, "extras") == 0) continue;
-      if (!extensions) look(g, at, key, said);
-      if (json_is_object(part)) walk(g, VL_GLTF_KEY(at, key), part, said);
+      if (!extensions) look(g, at, key, reported);
+      if (json_is_object(part)) walk(g, VL_GLTF_KEY(at, key), part, reported);
       if (!json_is_array(part)) continue;
-      for (i = 0; i < json_array_size(part) && *said < MOST_SAID; i++)
-        if (json_is_object(json_array_get(part, i))) walk(g, VL_GLTF_ITEM(at, key, i), json_array_get(part, i), said);
+      for (i = 0; i < json_array_size(part) && *reported < MOST_REPORTED; i++)
+        if (json_is_object(json_array_get(part, i)))
+          walk(g, VL_GLTF_ITEM(at, key, i), json_array_get(part, i), reported);
     }
   }
 }
 
 void vl_gltf_check_names(vlGltf *g) {
-  uint32_t said = 0;
-  walk(g, NULL, g->root, &said);
+  uint32_t reported = 0;
+  walk(g, NULL, g->root, &reported);
 }

@@ -182,7 +182,7 @@ static int place_moving(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t n
     times[k] = (g->close - g->open) * k / (VL_GLTF_KEYS - 1);
     memcpy(poses + 16 * k, m.m, sizeof m.m);
     if (k == 0 || vl_motion_make(poses + 16 * (k - 1), poses + 16 * k, &motion)) continue;
-    if (vl_gltf_once(g, VL_GLTF_TOLD_MOTION))
+    if (vl_gltf_once(g, VL_GLTF_REPORTED_MOTION))
       vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_ITEM(NULL, "nodes", node_index),
                    "no motion leads from pose to pose: it stays as it is when the shutter opens");
     return -1;
@@ -205,7 +205,7 @@ static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t no
   vlMat4 pose = vl_mat4_multiply(node->world, local);
   vlGltfMesh *m = &g->meshes[mesh];
   bool deforms = vl_gltf_deforms(g, node), flat = is_flat(pose);
-  if (flat && vl_gltf_once(g, VL_GLTF_TOLD_FLAT))
+  if (flat && vl_gltf_once(g, VL_GLTF_REPORTED_FLAT))
     vl_gltf_warn(g, VL_LOG_INFO, VL_GLTF_ITEM(NULL, "nodes", node_index), "its scale makes it flat");
   if (vl_gltf_node_moves(g, node) && !flat && !json_object_get(node->json, "skin")) {
     int done = place_moving(g, mesh, node, node_index, local, deforms);

@@ -87,7 +87,7 @@ bool vl_gltf_texture_set(vlGltf *g, const vlGltfPlace *at, const json_t *info, u
   if (!vl_gltf_size(g, at, info, "texCoord", &value) || !vl_gltf_size(g, at, transform, "texCoord", &value))
     return false;
   if (value > 3) {
-    if (vl_gltf_once(g, VL_GLTF_TOLD_SETS))
+    if (vl_gltf_once(g, VL_GLTF_REPORTED_SETS))
       vl_gltf_warn(g, VL_LOG_WARNING, at, "uv set %zu: velo keeps sets 0 to 3; set 0 is taken", value);
     value = 0;
   }

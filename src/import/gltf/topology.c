@@ -24,13 +24,13 @@ void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p) {
 
 /* ---- points and lines -------------------------------------------------------------------------------------------- */
 
-typedef struct Body { /* room for the vertices and faces to be made */
+typedef struct NewMesh { /* room for the vertices and faces to be made */
   vlGltfPrimitive made;
   size_t vertices, faces;
-} Body;
+} NewMesh;
 
 static bool make_room(vlGltf *g, const vlGltfPlace *at, const vlGltfPrimitive *p, size_t vertices, size_t faces,
-                      Body *b) {
+                      NewMesh *b) {
   memset(b, 0, sizeof *b);
   if (vertices > UINT32_MAX) return vl_gltf_fail(g, at, "too many points");
   if (!vl_gltf_spend(g, at, 36 * (uint64_t)vertices + 12 * (uint64_t)faces)) return false;
@@ -45,7 +45,7 @@ static bool make_room(vlGltf *g, const vlGltfPlace *at, const vlGltfPrimitive *p
 }
 
 /* Appends a copy of vertex `from`. */
-static uint32_t put_vertex(Body *b, const vlGltfPrimitive *p, uint32_t from, const float position[3]) {
+static uint32_t put_vertex(NewMesh *b, const vlGltfPrimitive *p, uint32_t from, const float position[3]) {
   size_t i = b->vertices++;
   memcpy(b->made.positions + 3 * i, position, 3 * sizeof(float));
   if (p->colors) memcpy(b->made.colors + 4 * i, p->colors + 4 * (size_t)from, 4 * sizeof(float));
@@ -54,7 +54,7 @@ static uint32_t put_vertex(Body *b, const vlGltfPrimitive *p, uint32_t from, con
   return (uint32_t)i;
 }
 
-static void put_face(Body *b, uint32_t i, uint32_t j, uint32_t k) {
+static void put_face(NewMesh *b, uint32_t i, uint32_t j, uint32_t k) {
   uint32_t *f = b->made.indices + 3 * b->faces++;
   f[0] = i, f[1] = j, f[2] = k;
 }
@@ -62,7 +62,7 @@ static void put_face(Body *b, uint32_t i, uint32_t j, uint32_t k) {
 /* An octahedron subdivided once and projected to the sphere: 18 vertices, 32 faces. */
 enum { BALL_VERTICES = 18, BALL_FACES = 32, TUBE_SIDES = 6, TUBE_VERTICES = 12, TUBE_FACES = 20 };
 
-static void put_ball(Body *b, const vlGltfPrimitive *p, uint32_t at, float radius) {
+static void put_ball(NewMesh *b, const vlGltfPrimitive *p, uint32_t at, float radius) {
   uint32_t grid[3][3][3];
   const float *c = p->positions + 3 * (size_t)at;
   for (int x = -1; x <= 1; x++)
@@ -83,7 +83,7 @@ static void put_ball(Body *b, const vlGltfPrimitive *p, uint32_t at, float radiu
   }
 }
 
-static void put_tube(Body *b, const vlGltfPrimitive *p, uint32_t from, uint32_t to, float radius) {
+static void put_tube(NewMesh *b, const vlGltfPrimitive *p, uint32_t from, uint32_t to, float radius) {
   const float *ends[2] = {p->positions + 3 * (size_t)from, p->positions + 3 * (size_t)to};
   double d[3], u[3], v[3], l = 0;
   for (int i = 0; i < 3; i++) d[i] = (double)ends[1][i] - ends[0][i], l += d[i] * d[i];
@@ -116,7 +116,7 @@ static void put_tube(Body *b, const vlGltfPrimitive *p, uint32_t from, uint32_t 
   }
 }
 
-static float body_radius(const vlGltfPrimitive *p) {
+static float point_radius(const vlGltfPrimitive *p) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, d = 0;
   for (size_t i = 0; i < 3 * p->vertices; i++) {
     double x = p->positions[i];
@@ -127,22 +127,22 @@ static float body_radius(const vlGltfPrimitive *p) {
   return d > 0 && isfinite(d) ? (float)(0.003 * sqrt(d)) : 0.003f;
 }
 
-static bool make_bodies(vlGltf *g, const vlGltfPlace *at, uint32_t mode, const uint32_t *indices, size_t count,
+static bool make_solids(vlGltf *g, const vlGltfPlace *at, uint32_t mode, const uint32_t *indices, size_t count,
                         vlGltfPrimitive *p) {
-  size_t bodies = mode == POINTS ? count : mode == LINES ? count / 2 : mode == LINE_LOOP ? count : count - 1;
-  if (mode != POINTS && count < 2) bodies = 0;
-  Body b;
-  if (bodies == 0) {
+  size_t solids = mode == POINTS ? count : mode == LINES ? count / 2 : mode == LINE_LOOP ? count : count - 1;
+  if (mode != POINTS && count < 2) solids = 0;
+  NewMesh b;
+  if (solids == 0) {
     p->faces = 0;
     return true;
   }
-  if (vl_gltf_once(g, VL_GLTF_TOLD_POINTS))
+  if (vl_gltf_once(g, VL_GLTF_REPORTED_POINTS))
     vl_gltf_warn(g, VL_LOG_INFO, at, "points and lines are drawn as small balls and tubes");
-  if (!make_room(g, at, p, bodies * (mode == POINTS ? BALL_VERTICES : TUBE_VERTICES),
-                 bodies * (mode == POINTS ? BALL_FACES : TUBE_FACES), &b))
+  if (!make_room(g, at, p, solids * (mode == POINTS ? BALL_VERTICES : TUBE_VERTICES),
+                 solids * (mode == POINTS ? BALL_FACES : TUBE_FACES), &b))
     return false;
-  float radius = body_radius(p);
-  for (size_t i = 0; i < bodies; i++) {
+  float radius = point_radius(p);
+  for (size_t i = 0; i < solids; i++) {
     size_t first = mode == LINES ? 2 * i : i;
     if (mode == POINTS)
       put_ball(&b, p, indices[i], radius);
@@ -161,7 +161,7 @@ static bool make_bodies(vlGltf *g, const vlGltfPlace *at, uint32_t mode, const u
 bool vl_gltf_triangles(vlGltf *g, const vlGltfPlace *at, uint32_t mode, uint32_t *indices, size_t count,
                        vlGltfPrimitive *p) {
   if (mode <= LINE_STRIP) {
-    bool ok = make_bodies(g, at, mode, indices, count, p);
+    bool ok = make_solids(g, at, mode, indices, count, p);
     vl_free(g->context, indices);
     return ok;
   }

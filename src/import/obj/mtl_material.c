@@ -63,7 +63,7 @@ static bool is_normal_map(const char *path) {
   return false;
 }
 
-static bool relief(vlObj *obj, const vlMtl *m, vlMaterialDef *def) {
+static bool normal_or_bump_map(vlObj *obj, const vlMtl *m, vlMaterialDef *def) {
   const vlMtlMap *normal = &m->maps[VL_MTL_NORMAL], *bump = &m->maps[VL_MTL_BUMP];
   if (!normal->path && bump->path && is_normal_map(bump->path)) normal = bump;
   if (normal->path) {
@@ -104,20 +104,20 @@ static void glass(const vlMtl *m, vlMaterialDef *def, float base[3]) {
 
 static void surface(const vlMtl *m, vlMaterialDef *def, float base[3]) {
   vlPrincipledDef *p = &def->principled;
-  bool shines = !(m->illum == 0 || m->illum == 1), spoken = !isnan(m->ks[0]);
+  bool has_specular = !(m->illum == 0 || m->illum == 1), spoken = !isnan(m->ks[0]);
   float ns = given(m->ns, spoken ? 10.0f : 30.0f), ni = given(m->ni, 1.5f), metal = given(m->pm, 0.0f);
   bool mirrors = m->illum == 3 || m->illum == 5 || isnan(m->pm);
-  if (isnan(m->pm) && mirrors && spoken && shines && !m->maps[VL_MTL_KD].path && brightest(base) == 0 &&
+  if (isnan(m->pm) && mirrors && spoken && has_specular && !m->maps[VL_MTL_KD].path && brightest(base) == 0 &&
       brightest(m->ks) > 0 && m->illum != 6 && m->illum != 7) {
     metal = 1; /* specular reflection only: a metal of that colour */
     for (int i = 0; i < 3; i++) base[i] = clamp01(m->ks[i]);
   } else if (spoken && isnan(m->pr) && isnan(m->pm)) {
     p->specular_color.value =
         /* Ks 0.5 is the reflectance given by Ni */ vl_spectrum_rgb(2 * m->ks[0], 2 * m->ks[1], 2 * m->ks[2]);
-    shines = shines && brightest(m->ks) > 0;
+    has_specular = has_specular && brightest(m->ks) > 0;
   }
   p->metallic = vl_float_input(clamp01(metal));
-  p->specular = vl_float_input(shines || metal > 0 ? 1.0f : 0.0f);
+  p->specular = vl_float_input(has_specular || metal > 0 ? 1.0f : 0.0f);
   /* Blinn's exponent as GGX (Walter et al. 2007): alpha^2 = 2 / (Ns + 2), alpha = roughness^2. */
   p->roughness = vl_float_input(clamp01(given(m->pr, (float)vl_precise_pow(2 / (fmaxf(ns, 0) + 2), 0.25f))));
   def->eta = vl_spectrum_input(vl_spectrum_constant(ni > 1 && ni < 10 ? ni : 1.5f));
@@ -174,7 +174,7 @@ bool vl_obj_make_material(vlObj *obj, vlObjMaterial *material) {
   material->alpha = vl_float_input(solid ? 1.0f : clamp01(given(m->d, 1)));
   if (m->maps[VL_MTL_D].path && !solid && !number(obj, &m->maps[VL_MTL_D], material->alpha.value, &material->alpha))
     return false;
-  if (!relief(obj, m, &def) || !emission(obj, m, material)) return false;
+  if (!normal_or_bump_map(obj, m, &def) || !emission(obj, m, material)) return false;
   material->material = vl_scene_add_material(obj->scene, &def);
   material->made = material->material.index != 0;
   return material->made;

@@ -13,7 +13,7 @@
 #include "import/plain.h"
 
 enum { MAX_PARTS = 4096, MAX_MATERIALS = 1 << 20 };
-enum { TOLD_LINES = 1, TOLD_CURVES = 2, TOLD_UNKNOWN = 4 };
+enum { REPORTED_LINES = 1, REPORTED_CURVES = 2, REPORTED_UNKNOWN = 4 };
 
 /* ---- errors ------------------------------------------------------------------------------------------------------ */
 
@@ -309,9 +309,9 @@ static bool use_smoothing(vlObj *obj) {
 static void once(vlObj *obj, uint32_t bit, const char *what, size_t length) {
   static const char *const texts[3] = {"points and lines are not drawn", "curves and surfaces are not drawn",
                                        "unknown statement, ignored (as others like it)"};
-  if (obj->told & bit) return;
-  obj->told |= bit;
-  vl_obj_warn(obj, bit == TOLD_LINES ? VL_LOG_INFO : VL_LOG_WARNING, "\"%.*s\": %s", length > 12 ? 12 : (int)length,
+  if (obj->reported & bit) return;
+  obj->reported |= bit;
+  vl_obj_warn(obj, bit == REPORTED_LINES ? VL_LOG_INFO : VL_LOG_WARNING, "\"%.*s\": %s", length > 12 ? 12 : (int)length,
               what, texts[bit >> 1]);
 }
 
@@ -330,7 +330,7 @@ static bool read_statement(vlObj *obj) {
       case 'g':
       case 'o': obj->part_open = false; return true;
       case 'l':
-      case 'p': once(obj, TOLD_LINES, word, n); return true;
+      case 'p': once(obj, REPORTED_LINES, word, n); return true;
       default: break;
     }
   if (n == 2 && word[0] == 'v' && word[1] == 't') return read_uv(obj);
@@ -341,10 +341,10 @@ static bool read_statement(vlObj *obj) {
   for (size_t i = 0; i < sizeof silent / sizeof *silent; i++)
     if (strlen(silent[i]) == n && memcmp(word, silent[i], n) == 0) return true;
   for (size_t i = 0; i < sizeof curves / sizeof *curves; i++)
-    if (strlen(curves[i]) == n && memcmp(word, curves[i], n) == 0) return once(obj, TOLD_CURVES, word, n), true;
+    if (strlen(curves[i]) == n && memcmp(word, curves[i], n) == 0) return once(obj, REPORTED_CURVES, word, n), true;
   for (size_t i = 0; i < n; i++)
     if ((unsigned char)word[i] < 32) return vl_obj_fail(obj, "not an OBJ file: byte %d here", (unsigned char)word[i]);
-  once(obj, TOLD_UNKNOWN, word, n);
+  once(obj, REPORTED_UNKNOWN, word, n);
   return true;
 }
 

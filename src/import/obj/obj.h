@@ -83,7 +83,7 @@ typedef struct vlObj {
   uint32_t heads[VL_OBJ_HEADS]; /* first material of each hash, 1-based */
   uint32_t material, smooth, part;
   bool part_open;
-  uint32_t told; /* bit mask of warnings that were given once */
+  uint32_t reported; /* bit mask of warnings that were given once */
   double low[3], high[3];
 } vlObj;
 

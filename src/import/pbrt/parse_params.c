@@ -133,19 +133,19 @@ static bool add_number(vlParserFile *file, const vlToken *token, vlParam *param)
 static bool add_value(vlParserFile *file, const vlToken *token, vlParam *param) {
   vlContext *context = file->parser->context;
   const char *type = vl_param_type_name(param->type);
-  bool truth = vl_parse_is_word(token, "true"), falsehood = vl_parse_is_word(token, "false");
+  bool is_true = vl_parse_is_word(token, "true"), is_false = vl_parse_is_word(token, "false");
   /* Files written for older versions put booleans in quotes. */
   if (param->type == VL_PARAM_BOOL && token->kind == VL_TOKEN_STRING) {
-    truth = strcmp(token->text, "true") == 0;
-    falsehood = strcmp(token->text, "false") == 0;
+    is_true = strcmp(token->text, "true") == 0;
+    is_false = strcmp(token->text, "false") == 0;
   }
   if (param->type == VL_PARAM_BOOL) {
-    if (!truth && !falsehood)
+    if (!is_true && !is_false)
       return vl_parse_fail(file, vl_parse_place(file, token), "\"%s %s\": expected true or false, found %s", type,
                            param->name, vl_parse_show(token).text);
     uint8_t *slot = VL_PUSH(context, &param->bools);
     if (!slot) return vl_parse_fail_memory(file);
-    *slot = truth;
+    *slot = is_true;
     return true;
   }
   if (token->kind == VL_TOKEN_STRING) {

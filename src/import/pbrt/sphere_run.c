@@ -54,7 +54,7 @@ void vl_import_free_spheres(vlImport *import) {
 }
 
 /* The place of the sphere goes from the matrix to `center`, its scale, where that is the same along all axes and does
- * not mirror, to the radius. false: the sphere cannot be told so. */
+ * not mirror, to the radius. false: the transform is of another kind. */
 static bool take_place(vlShapeDef *def, double center[3], float *radius) {
   double *m = def->group_from_shape, at[3] = {m[3], m[7], m[11]}, s = m[0];
   if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) return false;

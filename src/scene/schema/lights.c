@@ -32,7 +32,7 @@
       PARAMETER(BLOCK, NULL, space, "colour space of an image that names none itself", .unit = NULL)
 
 static const vlParameter point_parameters[] = {INTENSITY, SCALE, POWER, FROM("position")};
-VL_KIND_ROW(point, .name = "point", .description = "a point that shines in all directions",
+VL_KIND_ROW(point, .name = "point", .description = "a point that emits in all directions",
             .traits = VL_LIGHT_TRAIT_AT_POINT | VL_LIGHT_TRAIT_DELTA)
 
 static const vlParameter spot_parameters[] = {
@@ -47,7 +47,7 @@ static const vlParameter spot_parameters[] = {
               VL_FROM(0)),
     PARAMETER(BOOL, NULL, cone_squared, "the edge is t^2 in the cosine, as glTF's; else 3t^2 - 2t^3", VL_DEFAULT(0)),
 };
-VL_KIND_ROW(spot, .name = "spot", .description = "a point that shines into a cone",
+VL_KIND_ROW(spot, .name = "spot", .description = "a point that emits into a cone",
             .traits = VL_LIGHT_TRAIT_AT_POINT | VL_LIGHT_TRAIT_DELTA | VL_LIGHT_TRAIT_AIMS)
 
 static const vlParameter distant_parameters[] = {RADIANCE, SCALE, ILLUMINANCE, FROM("start of the light's direction"),

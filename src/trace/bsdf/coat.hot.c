@@ -129,7 +129,7 @@ static inline float series(float x, int32_t k, const int bits) {
     square = square * square;
   }
   float down = 1.0f - x;
-  return (1.0f - power) / (down > 1e-6f ? down : 1e-6f);
+  return (1.0f - power) / (down > VL_MIN_FRACTION ? down : VL_MIN_FRACTION);
 }
 
 /* From T(wo): the base's f by channel, and the probabilities of the lobes in proportion to the energy that each
@@ -279,7 +279,7 @@ PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
     float t = transmittance_i[i] * w.z;
     float m = mirror ? 1.0f : 0.0f, k = 1.0f - m; /* c is 0 for a smooth coat */
     float d = p * (c.coat_pdf + m) + (1.0f - p) * (w.z * VL_INV_PI) * k;
-    float inverse = 1.0f / (d > 1e-30f ? d : 1e-30f);
+    float inverse = 1.0f / (d > VL_MIN_POSITIVE ? d : VL_MIN_POSITIVE);
     float top = c.coat + fresnel[i] * m, through = t * k;
     float f0 = (top + b0[i] * through) * inverse, f1 = (top + b1[i] * through) * inverse;
     float f2 = (top + b2[i] * through) * inverse, f3 = (top + b3[i] * through) * inverse;

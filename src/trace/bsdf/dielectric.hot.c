@@ -34,7 +34,7 @@ void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
     float visible = vl_ggx_visible(h, rx, ry, o.z, lo);
     float t = ih + oh * inverse;
     float t2 = t * t;
-    float jacobian = oh * vl_abs(ih) / (t2 > 1e-30f ? t2 : 1e-30f);
+    float jacobian = oh * vl_abs(ih) / (t2 > VL_MIN_POSITIVE ? t2 : VL_MIN_POSITIVE);
     float p = visible * (reflect ? 0.25f * fr : (1.0f - fr) * jacobian);
     float g = vl_ggx_shadowing(o.z, lo, vl_abs(w.z), li);
     g = p * g * (reflect ? 1.0f : inverse * inverse);
@@ -81,7 +81,7 @@ void vl_bsdf_dielectric_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDir
     float visible = vl_ggx_visible(h, rx, ry, o.z, lo);
     /* wi.h = -cos_t after transmission */
     float t2 = t * t;
-    float jacobian = oh * cos_t / (t2 > 1e-30f ? t2 : 1e-30f);
+    float jacobian = oh * cos_t / (t2 > VL_MIN_POSITIVE ? t2 : VL_MIN_POSITIVE);
     float chosen = reflect ? fr : 1.0f - fr;
     float p = chosen * (smooth ? 1.0f : visible * (reflect ? 0.25f : jacobian));
     float g = smooth ? 1.0f : vl_ggx_shadowing(o.z, lo, vl_abs(w.z), li);

@@ -61,11 +61,17 @@ static inline float logistic(const Hair *h, float x) {
   return e * h->norm / (h->s * (1.0f + e) * (1.0f + e));
 }
 
+/* Lower bound of both roughnesses. At 0.01 the variance v is 5e-5: exponents of size 1/v have a rounding error of 1e-3.
+ */
+#define MIN_BETA 1e-2f
+/* Lower bound of the cosine between a direction and the fibre's cross-section, 0.006 degrees from the fibre itself. */
+#define ALONG 1e-4f
+
 static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
   Hair r;
   float h = vl_clamp(q->own[VL_H_ACROSS][i], -1.0f, 1.0f), eta = q->eta_s[i];
-  float bm = vl_clamp(q->own[VL_H_BETA_M][i], 1e-2f, 1.0f);
-  float bn = vl_clamp(q->own[VL_H_BETA_N][i], 1e-2f, 1.0f);
+  float bm = vl_clamp(q->own[VL_H_BETA_M][i], MIN_BETA, 1.0f);
+  float bn = vl_clamp(q->own[VL_H_BETA_N][i], MIN_BETA, 1.0f);
   r.sin_o = vl_clamp(wo.x, -1.0f, 1.0f);
   r.cos_o = __builtin_sqrtf((1.0f - r.sin_o) * (1.0f + r.sin_o));
   r.phi_o = vl_atan2(wo.z, wo.y);
@@ -80,9 +86,9 @@ static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
   r.low = 1.0f / (1.0f + vl_exp(edge < 80.0f ? edge : 80.0f));
   r.norm = 1.0f / (1.0f - 2.0f * r.low);
   /* the refracted direction */
-  float sin_t = r.sin_o / eta, cos_t = __builtin_sqrtf(vl_max(1.0f - sin_t * sin_t, 1e-6f));
-  float etap = __builtin_sqrtf(vl_max(eta * eta - r.sin_o * r.sin_o, 0.0f)) / vl_max(r.cos_o, 1e-4f);
-  float sin_gt = vl_clamp(h / vl_max(etap, 1e-4f), -1.0f, 1.0f);
+  float sin_t = r.sin_o / eta, cos_t = __builtin_sqrtf(vl_max(1.0f - sin_t * sin_t, VL_MIN_FRACTION));
+  float etap = __builtin_sqrtf(vl_max(eta * eta - r.sin_o * r.sin_o, 0.0f)) / vl_max(r.cos_o, ALONG);
+  float sin_gt = vl_clamp(h / vl_max(etap, ALONG), -1.0f, 1.0f);
   float cos_gt = __builtin_sqrtf((1.0f - sin_gt) * (1.0f + sin_gt));
   r.gamma_o = vl_asin(h);
   r.gamma_t = vl_asin(sin_gt);
@@ -94,7 +100,7 @@ static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
     r.a[0][c] = f;
     r.a[1][c] = square(1.0f - f) * t;
     r.a[2][c] = r.a[1][c] * t * f;
-    r.a[3][c] = r.a[2][c] * t * f / vl_max(1.0f - t * f, 1e-6f);
+    r.a[3][c] = r.a[2][c] * t * f / vl_max(1.0f - t * f, VL_MIN_FRACTION);
     for (int p = 0; p < LOBES; p++) r.share[p] += r.a[p][c], total += r.a[p][c];
   }
   total = total > 0.0f ? 1.0f / total : 0.0f;
@@ -143,19 +149,20 @@ void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
     int p = 0;
     float lobe = u_lobe[i];
     for (; p < LOBES - 1 && !(lobe < h.share[p]); p++) lobe -= h.share[p];
-    lobe = vl_clamp(lobe / vl_max(h.share[p], 1e-12f), 0.0f, VL_ONE_MINUS_EPSILON); /* uniform in [0, 1) again */
+    lobe =
+        vl_clamp(lobe / vl_max(h.share[p], VL_MIN_POSITIVE), 0.0f, VL_ONE_MINUS_EPSILON); /* uniform in [0, 1) again */
     float e = vl_exp(-2.0f / h.v[p]);
-    float cosine = vl_clamp(1.0f + h.v[p] * vl_ln(vl_max(u[i] + (1.0f - u[i]) * e, 1e-30f)), -1.0f, 1.0f);
+    float cosine = vl_clamp(1.0f + h.v[p] * vl_ln(vl_max(u[i] + (1.0f - u[i]) * e, VL_MIN_POSITIVE)), -1.0f, 1.0f);
     float sine = __builtin_sqrtf((1.0f - cosine) * (1.0f + cosine));
     float sin_i = -cosine * h.sin_p[p] + sine * vl_sincos_turn(v[i]).cos * h.cos_p[p];
     sin_i = vl_clamp(sin_i, -1.0f, 1.0f);
     float cos_i = __builtin_sqrtf((1.0f - sin_i) * (1.0f + sin_i));
-    float x = vl_clamp(lobe * (1.0f - 2.0f * h.low) + h.low, 1e-30f, VL_ONE_MINUS_EPSILON);
+    float x = vl_clamp(lobe * (1.0f - 2.0f * h.low) + h.low, VL_MIN_POSITIVE, VL_ONE_MINUS_EPSILON);
     float phi = p < 3 ? azimuth(p, &h) + vl_clamp(-h.s * vl_ln(1.0f / x - 1.0f), -VL_PI, VL_PI) : 2.0f * VL_PI * lobe;
     vlSinCos at = vl_sincos(turned(h.phi_o + phi));
     vlVec3 w = vl_normalize(vl_vec3(sin_i, cos_i * at.cos, cos_i * at.sin));
     float f[4], d = hair_value(&h, w, f);
-    bool valid = wo.z[i] != 0.0f && w.z != 0.0f && d > 1e-30f;
+    bool valid = wo.z[i] != 0.0f && w.z != 0.0f && d > VL_MIN_POSITIVE;
     wi.x[i] = w.x, wi.y[i] = w.y, wi.z[i] = w.z;
     for (int c = 0; c < 4; c++) weight[c][i] = valid ? f[c] / d : 0.0f;
     pdf[i] = valid ? d : 0.0f;

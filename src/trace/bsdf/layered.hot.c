@@ -35,14 +35,14 @@ static void join_base(const Layers *l, vlVec3 w, const Step *to, const float bet
 static void join_between_mirrors(const Layers *l, vlVec3 w, float height, const Step *to, const float beta[4],
                                  float f[4]) {
   if (!to->valid) return;
-  float c = vl_max(-to->w.z, 1e-6f), back = vl_fresnel_dielectric(c, 1.0f / l->eta).reflected;
+  float c = vl_max(-to->w.z, VL_MIN_FRACTION), back = vl_fresnel_dielectric(c, 1.0f / l->eta).reflected;
   back = l->eta == 1.0f ? 0.0f : back;
   float p = vl_phase(l->g, -vl_dot(w, to->w)), q = vl_phase(l->g, vl_dot(w, vl_vec3(-to->w.x, -to->w.y, to->w.z)));
   float pass = layers_pass(l->thickness, to->w), above = p * layers_pass(l->thickness - height, to->w);
   float below = q * layers_pass(l->thickness + height, to->w);
   for (int k = 0; k < 4; k++) {
     float r = vl_fresnel_conductor(c, l->e[k], l->k[k]);
-    float turns = 1.0f / vl_max(1.0f - r * back * pass * pass, 1e-6f);
+    float turns = 1.0f / vl_max(1.0f - r * back * pass * pass, VL_MIN_FRACTION);
     f[k] += beta[k] * l->albedo[k] * to->weight[k] * (above + r * below) * turns / c;
   }
 }
@@ -51,7 +51,7 @@ static void join_medium(const Layers *l, vlVec3 w, float height, const Step *to,
   if (!to->valid || (l->smooth && l->mirror)) return;
   float p = vl_phase(l->g, -vl_dot(w, to->w));
   float weight = p * (l->smooth ? 1.0f : power(to->pdf, p)) * layers_pass(l->thickness - height, to->w) /
-                 vl_max(-to->w.z, 1e-6f); /* a vertex in the medium has no cosine */
+                 vl_max(-to->w.z, VL_MIN_FRACTION); /* a vertex in the medium has no cosine */
   for (int c = 0; c < 4; c++) f[c] += beta[c] * l->albedo[c] * to->weight[c] * weight;
 }
 /* The other strategy: w was sampled (with pdf; 0: by a delta) and leaves upwards through a rough coat to wi. */
@@ -66,7 +66,7 @@ static void join_coat(const Layers *l, vlVec3 w, float height, vlVec3 wi, const 
 /* A flight through a medium that may scatter; true: it scattered inside. */
 static bool fly(const Layers *l, vlVec3 *w, float *height, const Step *to, vlVec3 wi, float beta[4], uint32_t *state,
                 float f[4]) {
-  float distance = -vl_ln(vl_max(1.0f - next(state), 1e-20f)) * vl_abs(w->z), z = *height;
+  float distance = -vl_ln(1.0f - next(state)) * vl_abs(w->z), z = *height;
   z = w->z > 0.0f ? z + distance : z - distance;
   if (!(z > 0.0f) || !(z < l->thickness)) {
     *height = w->z > 0.0f ? l->thickness : 0.0f;
@@ -154,7 +154,7 @@ static Lobes lobes_of(const Layers *l, vlVec3 o) {
   if (all_mirror) lobes.coat = 0.25f * (lobes.mirror[0] + lobes.mirror[1] + lobes.mirror[2] + lobes.mirror[3]);
   /* If f is not 0, each lobe gets some samples. */
   float sum = lobes.coat + lobes.base + lobes.wide;
-  if (!(sum > 1e-6f)) lobes.coat = sum = 1.0f;
+  if (!(sum > VL_MIN_FRACTION)) lobes.coat = sum = 1.0f;
   bool matt = !all_mirror || l->scatters;
   lobes.coat /= sum, lobes.base /= sum, lobes.wide /= sum;
   if (matt) lobes.wide = 0.95f * lobes.wide + 0.05f, lobes.base *= 0.95f, lobes.coat *= 0.95f;
@@ -162,8 +162,8 @@ static Lobes lobes_of(const Layers *l, vlVec3 o) {
    * the metal deflects it by twice its slope. */
   float bend = l->smooth ? 0.0f : 0.5f * (1.0f - 1.0f / l->eta) * (1.0f - 1.0f / l->eta);
   float bx = l->mirror ? 0.0f : l->bx, by = l->mirror ? 0.0f : l->by;
-  lobes.bx = vl_clamp(__builtin_sqrtf(bx * bx + bend * l->ax * l->ax), 1e-3f, 1.0f);
-  lobes.by = vl_clamp(__builtin_sqrtf(by * by + bend * l->ay * l->ay), 1e-3f, 1.0f);
+  lobes.bx = vl_clamp(__builtin_sqrtf(bx * bx + bend * l->ax * l->ax), VL_GGX_SMOOTH, 1.0f);
+  lobes.by = vl_clamp(__builtin_sqrtf(by * by + bend * l->ay * l->ay), VL_GGX_SMOOTH, 1.0f);
   return lobes;
 }
 

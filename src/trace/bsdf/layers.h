@@ -47,7 +47,7 @@ static inline Layers layers_of(const vlBsdfParams *p, uint32_t i) {
 /* Transmittance over a distance (optical thickness) along w. */
 static inline float layers_pass(float distance, vlVec3 w) {
   float z = vl_abs(w.z);
-  return distance > 0.0f ? vl_exp(-distance / vl_max(z, 1e-6f)) : 1.0f;
+  return distance > 0.0f ? vl_exp(-distance / vl_max(z, VL_MIN_FRACTION)) : 1.0f;
 }
 
 /* ---- the coat ---------------------------------------------------------------------------------------------------- */
@@ -64,7 +64,7 @@ static inline Step coat_enter(const Layers *l, vlVec3 o, float u, float v) {
   vlVec3 h = l->smooth ? vl_vec3(0, 0, 1) : vl_ggx_sample(o, l->ax, l->ay, u, v);
   float oh = vl_dot(o, h), inverse = 1.0f / l->eta;
   vlFresnel f = vl_fresnel_dielectric(oh, l->eta);
-  float cos_t = f.root * inverse, t = oh * inverse - cos_t, t2 = vl_max(t * t, 1e-30f);
+  float cos_t = f.root * inverse, t = oh * inverse - cos_t, t2 = vl_max(t * t, VL_MIN_POSITIVE);
   Step s;
   s.w = vl_vec3(t * h.x - inverse * o.x, t * h.y - inverse * o.y, t * h.z - inverse * o.z);
   float lo = vl_ggx_length(o, l->ax, l->ay), li = vl_ggx_length(s.w, l->ax, l->ay);
@@ -87,7 +87,7 @@ static inline float coat_transmit(const Layers *l, vlVec3 o, vlVec3 w, float *pd
   *pdf = 0.0f;
   if (!(oh > 0.0f) || !(ih < 0.0f) || !(w.z < 0.0f)) return 0.0f;
   float lo = vl_ggx_length(o, l->ax, l->ay), li = vl_ggx_length(w, l->ax, l->ay);
-  float t = ih + oh * inverse, jacobian = oh * -ih / vl_max(t * t, 1e-30f);
+  float t = ih + oh * inverse, jacobian = oh * -ih / vl_max(t * t, VL_MIN_POSITIVE);
   *pdf = vl_ggx_visible(h, l->ax, l->ay, o.z, lo) * jacobian;
   float g = vl_ggx_shadowing(o.z, lo, -w.z, li);
   return (1.0f - vl_fresnel_dielectric(oh, l->eta).reflected) * g * *pdf / -w.z;
@@ -128,7 +128,7 @@ static inline void base_eval(const Layers *l, vlVec3 o, vlVec3 i, float f[4], fl
   vlVec3 h = vl_normalize(vl_add(o, i));
   float oh = vl_dot(o, h), lo = vl_ggx_length(o, l->bx, l->by), li = vl_ggx_length(i, l->bx, l->by);
   *pdf = 0.25f * vl_ggx_visible(h, l->bx, l->by, o.z, lo);
-  float g = *pdf * vl_ggx_shadowing(o.z, lo, i.z, li) / vl_max(i.z, 1e-9f);
+  float g = *pdf * vl_ggx_shadowing(o.z, lo, i.z, li) / vl_max(i.z, VL_MIN_POSITIVE);
   for (int c = 0; c < 4; c++) f[c] = g * vl_fresnel_conductor(oh, l->e[c], l->k[c]);
 }
 

@@ -34,7 +34,7 @@ VL_BSDF_KINDS(VL_BSDF_DECLARE)
 static inline vlVec3 vl_cosine_direction(float u, float v) {
   vlDiskPoint d = vl_warp_disk(u, v);
   float z2 = (1.0f - d.r) * (1.0f + d.r);
-  return vl_vec3(d.x, d.y, __builtin_sqrtf(z2 > 1e-12f ? z2 : 1e-12f));
+  return vl_vec3(d.x, d.y, __builtin_sqrtf(z2 > 1e-12f ? z2 : 1e-12f)); /* z is at least VL_MIN_FRACTION */
 }
 
 /* wo reflected about the normal h; oh = wo.h */

@@ -45,7 +45,7 @@ static inline Seen seen_from(const vlMeasured *m, vlVec3 o) {
   s.slices = vl_measured_slices(m, phi, theta);
   s.phi = m->isotropic ? phi : 0.0f;
   vlMeasuredCell c = vl_measured_cell(&m->sigma, theta_to_u(theta), phi * (0.5f * VL_INV_PI) + 0.5f);
-  s.area = 4.0f * vl_max(vl_measured_in(&m->sigma, m->sigma.values, c), 1e-6f);
+  s.area = 4.0f * vl_max(vl_measured_in(&m->sigma, m->sigma.values, c), VL_MIN_FRACTION);
   return s;
 }
 
@@ -75,7 +75,7 @@ static inline void value_at(const vlMeasured *m, const Seen *s, vlMeasuredPoint 
 }
 
 /* Converts a density over the square of normals to one over directions wi: d(x) d(y) = dm / (2 pi^2 x sin), dm = dw /
- * (4 o.m). */
+ * (4 o.m). Bounds of both factors: pbrt's; the quotient is clamped as well. */
 static inline float over_directions(float density, float x, float sine, float oh) {
   float area = vl_max(2.0f * VL_PI * VL_PI * x * sine, 1e-6f) * 4.0f * vl_max(oh, 1e-9f);
   return vl_clamp(density / area, 0.0f, 1e30f);

@@ -59,13 +59,19 @@ static inline vlOuterCosine vl_outer_cosine(float inner, float eta) {
   return (vlOuterCosine){__builtin_sqrtf(c2 > 0.0f ? c2 : 0.0f), c2 <= 0.0f};
 }
 
+/* Added to the mirror's share of samples: it is sampled also where its estimate is 0 but its value is not. */
+#define VL_P_MIN_MIRROR 1e-3f
+/* The coat's normal may differ from the surface's. Directions within this sine (0.06 degrees) of the coat's horizon, or
+ * below it, do not meet the coat. */
+#define VL_P_COAT_HORIZON 1e-3f
+
 /* Probability of reflection inside a solid, after a microfacet is sampled: what the microfacet reflects. c: cosine
  * outside; base: the mean of the base colour. */
 static inline float vl_principled_mirrors(float c, int total, float f0, float f90, float metal, float clear,
                                           float base) {
   float f = f0 + (f90 - f0) * vl_schlick_weight(c), dielectric = 1.0f - metal;
   f = total ? 1.0f : f;
-  float forth = metal * base + dielectric * f + 1e-3f, through = dielectric * clear * base * (1.0f - f);
+  float forth = metal * base + dielectric * f + VL_P_MIN_MIRROR, through = dielectric * clear * base * (1.0f - f);
   return forth / (forth + through);
 }
 

@@ -3,8 +3,8 @@
  * One lobe is sampled, and the sample is weighted by the density of all. The layers' energies come from
  * principled_energy.hot.c.
  *
- * There are no deltas: a mirror has microfacets of alpha 1e-3. f is symmetric in wo and wi (refraction up to the square
- * of the index). */
+ * There are no deltas: a mirror has microfacets of alpha VL_GGX_SMOOTH. f is symmetric in wo and wi (refraction up to
+ * the square of the index). */
 #include "trace/bsdf/principled.h"
 
 static vlPrincipledSlice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t first) {
@@ -59,7 +59,7 @@ static inline Facet base_facet(vlVec3 o, vlVec3 w, float ax, float ay, float for
   float lo = vl_ggx_length(o, ax, ay), li = vl_ggx_length(w, ax, ay);
   float visible = vl_ggx_visible(h, ax, ay, o.z, lo);
   float t = ih + oh * inverse, t2 = t * t;
-  float jacobian = oh * vl_abs(ih) / (t2 > 1e-30f ? t2 : 1e-30f);
+  float jacobian = oh * vl_abs(ih) / (t2 > VL_MIN_POSITIVE ? t2 : VL_MIN_POSITIVE);
   float p = visible * (straight ? 0.25f : jacobian);
   float g = p * vl_ggx_shadowing(o.z, lo, down, li) * (straight ? 1.0f : inverse * inverse);
   int valid = (o.z > 0.0f) & (down > 0.0f) & (oh > 0.0f) & (straight | (ih < 0.0f));
@@ -76,10 +76,10 @@ static inline Facet coat_facet(vlVec3 o, vlVec3 w, vlVec3 n, float alpha) {
   float oc = vl_dot(o, n), ic = vl_dot(w, n), hc = vl_dot(h, n), oh = vl_dot(o, h);
   float a2 = alpha * alpha, e = vl_dot(across, across) / a2 + hc * hc;
   float lo = __builtin_sqrtf(a2 * (1.0f - oc * oc) + oc * oc), li = __builtin_sqrtf(a2 * (1.0f - ic * ic) + ic * ic);
-  float visible = 2.0f * VL_INV_PI / (a2 * (e * e) * (lo + oc > 1e-9f ? lo + oc : 1e-9f));
-  int valid = (oc > 1e-3f) & (ic > 1e-3f) & (hc > 0.0f) & (w.z > 0.0f);
+  float visible = 2.0f * VL_INV_PI / (a2 * (e * e) * (lo + oc > VL_MIN_FRACTION ? lo + oc : VL_MIN_FRACTION));
+  int valid = (oc > VL_P_COAT_HORIZON) & (ic > VL_P_COAT_HORIZON) & (hc > 0.0f) & (w.z > 0.0f);
   float p = 0.25f * visible, f = 0.04f + 0.96f * vl_schlick_weight(oh);
-  float g = p * f * vl_ggx_shadowing(oc, lo, ic, li) * w.z / (ic > 1e-3f ? ic : 1e-3f);
+  float g = p * f * vl_ggx_shadowing(oc, lo, ic, li) * w.z / (ic > VL_P_COAT_HORIZON ? ic : VL_P_COAT_HORIZON);
   return (Facet){valid ? g : 0.0f, valid ? p : 0.0f, f, oh, f, 0.0f};
 }
 
@@ -281,7 +281,7 @@ void vl_bsdf_principled_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDir
     combine(&s, &lanes, wo, wi, weight, pdf, first);
     for (uint32_t i = 0; i < s.count; i++) {
       uint32_t k = first + i;
-      pdf[k] = pdf[k] > 1e-30f ? pdf[k] : 0.0f;
+      pdf[k] = pdf[k] > VL_MIN_POSITIVE ? pdf[k] : 0.0f;
       float inverse = pdf[k] > 0.0f ? 1.0f / pdf[k] : 0.0f;
       for (int c = 0; c < 4; c++) weight[c][k] *= inverse;
       int below = (wi.z[k] > 0.0f) != (wo.z[k] > 0.0f);

@@ -9,7 +9,8 @@
 static float interfere(float first, float second, float phase) {
   float product = first * second, sum = first * first + second * second + 2.0f * product * phase;
   float down = 1.0f + product * product + 2.0f * product * phase;
-  float r = sum / vl_max(down, 1e-9f); /* both are 0 where two opposite total reflections meet at grazing angles */
+  float r =
+      sum / vl_max(down, VL_MIN_POSITIVE); /* both are 0 where two opposite total reflections meet at grazing angles */
   return vl_clamp(r, 0.0f, 1.0f);
 }
 
@@ -32,7 +33,8 @@ static const float rgb_lambda[3][3] = {{595, 615, 635}, {525, 545, 565}, {435, 4
 static float film_reflection(const vlPrincipledSlice *s, uint32_t i, int channel, float cosine, float f0) {
   float root = __builtin_sqrtf(vl_clamp(f0, 0.0f, 0.9999f));
   float n3 = (1.0f + root) / (1.0f - root), n2 = s->row[VL_P_FILM_INDEX][i], d = s->row[VL_P_FILM_NM][i];
-  float c = cosine > 1e-4f ? vl_min(cosine, 1.0f) : 1e-4f; /* padding may hold NaN */
+  const float grazing = 1e-4f; /* 0.006 degrees: the reflectance is 1 to three digits; a NaN of padding becomes this */
+  float c = cosine > grazing ? vl_min(cosine, 1.0f) : grazing;
   if (s->lambda[channel]) return airy(c, n2, n3, d, s->lambda[channel][i]);
   if (channel == 3) return 0.0f;
   float sum = 0.0f;
@@ -193,7 +195,7 @@ static void losses_at_view(const vlPrincipledSlice *s, vlPrincipledLanes *l) {
                   alpha = vl_albedo_place(base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
     uint32_t side = l->inside[i] > 0.0f;
     l->loss_o[i] = vl_loss_at(side, index, alpha, vl_albedo_place(l->z[i], VL_LOSS_COS));
-    for (uint32_t k = 0; k < 2; k++) l->loss_mean[k][i] = vl_max(vl_loss_mean(side ^ k, index, alpha), 1e-6f);
+    for (uint32_t k = 0; k < 2; k++) l->loss_mean[k][i] = vl_max(vl_loss_mean(side ^ k, index, alpha), VL_MIN_FRACTION);
     float here = l->loss_mean[0][i], there = l->loss_mean[1][i], n2 = side ? 1.0f / (eta * eta) : eta * eta;
     l->again_pass[i] = n2 * there / vl_max(here, n2 * there);
     float f0 = s->row[VL_P_F0][i], mean = f0 + (s->row[VL_P_F90][i] - f0) * (1.0f / 21.0f);
@@ -239,12 +241,12 @@ static __attribute__((noinline)) void weigh(const vlPrincipledSlice *s, const fl
     float inner = f0 + (f90s[i] - f0) * vl_schlick_weight(outer.cosine);
     inner = outer.total ? 1.0f : inner;
     float reflected = inside > 0.0f ? inner : energy;
-    float mirror = cover * (metal * (base > 0.02f ? base : 0.02f) + dielectric * reflected) + 1e-3f;
+    float mirror = cover * (metal * (base > 0.02f ? base : 0.02f) + dielectric * reflected) + VL_P_MIN_MIRROR;
     float lost = 1.0f - l->one_o[i];
     float matt = cover * (dielectric * (1.0f - clear) * (1.0f - shares) * seen +
                           (metal * base + dielectric * clear * l->lost_up[i]) * lost) +
                  l->sheen_o[i];
-    float coat = ((coat_cos[i] > 1e-3f) & (inside == 0.0f)) ? 1.0f : 0.0f;
+    float coat = ((coat_cos[i] > VL_P_COAT_HORIZON) & (inside == 0.0f)) ? 1.0f : 0.0f;
     coat = coat * l->coat_o[i];
     float refract = cover * dielectric * clear * base * (1.0f - reflected);
     float beyond = cover * dielectric *

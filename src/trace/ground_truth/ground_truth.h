@@ -8,14 +8,14 @@
 
 /* Albedo: the sum over `sets` of 4 channels of reflectance times weight[set][channel][rgb]. Spectral: 64 wavelengths;
  * RGB mode: one set, the matrix of the colour space. */
-enum { VL_TRUTH_SETS = 16 };
+enum { VL_GROUND_TRUTH_SETS = 16 };
 typedef struct vlGroundTruthDef {
   float pixel_spread, pixel_width; /* as in vlTraceDef */
   vlIsa isa;
   bool shading, albedo; /* what to compute: normals of shading (with bump maps), albedo */
   uint32_t sets;
-  float lambda[VL_TRUTH_SETS][4];
-  float weight[VL_TRUTH_SETS][4][3];
+  float lambda[VL_GROUND_TRUTH_SETS][4];
+  float weight[VL_GROUND_TRUTH_SETS][4][3];
 } vlGroundTruthDef;
 
 /* Fills sets, lambda and weight; one set of weight 0 where def has no albedo. */
@@ -44,10 +44,10 @@ typedef struct vlGroundTruthHits {
 } vlGroundTruthHits;
 
 /* All crossings of one ray of a batch, visible or hidden; at most this many. */
-enum { VL_TRUTH_LAYERS = 256 };
+enum { VL_GROUND_TRUTH_LAYERS = 256 };
 typedef struct vlGroundTruthLayers {
   uint32_t count;
-  uint32_t object[VL_TRUTH_LAYERS], instance[VL_TRUTH_LAYERS];
+  uint32_t object[VL_GROUND_TRUTH_LAYERS], instance[VL_GROUND_TRUTH_LAYERS];
 } vlGroundTruthLayers;
 
 typedef struct vlGroundTruthScratch vlGroundTruthScratch;

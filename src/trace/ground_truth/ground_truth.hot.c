@@ -60,8 +60,9 @@ static double curved_distance(const vlWorldShape *s, const vlWorldInstance *q, u
   double go[3] = {o.x, o.y, o.z}, gd[3] = {d.x, d.y, d.z};
   if (q) vl_ray_to_group(q, go, gd);
   vlShapeHit hit;
-  for (double reach = 0x1p-21; reach < 1e-2; reach *= 32.0) /* at grazing angles rounding moves the crossing further */
-    if (vl_shape_intersect(s, prim, go, gd, t * (1.0 - reach), t * (1.0 + reach) + 1e-37, &hit)) return hit.t;
+  /* At grazing angles rounding moves the crossing further: the interval grows in four steps, to 1 / 64 at most. */
+  for (double reach = VL_REFIND; reach < 0.01; reach *= 32.0)
+    if (vl_shape_intersect(s, prim, go, gd, t * (1.0 - reach), t * (1.0 + reach) + VL_REFIND_LEAST, &hit)) return hit.t;
   return t;
 }
 
@@ -242,7 +243,7 @@ static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32
   float o[3], d[3], t_min = batch->t_min[lane];
   for (int k = 0; k < 3; k++) o[k] = (float)batch->o[k][lane], d[k] = (float)batch->d[k][lane];
   to->count = 0;
-  for (int step = 0; step < VL_TRUTH_LAYERS; step++) {
+  for (int step = 0; step < VL_GROUND_TRUTH_LAYERS; step++) {
     uint32_t shape, prim, instance;
     float t;
     vlRays ray = {.ox = o,
@@ -263,7 +264,7 @@ static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32
     bool seen = world->materials.items[world->shapes.items[shape].material].kind != VL_MATERIAL_INTERFACE;
     if (k == to->count && seen) to->object[k] = object, to->instance[k] = placed, to->count++;
     float margin = 2.0f * at.offset / vl_max(vl_abs(vl_dot(at.g, along)), 0.01f) + 0x1p-22f * vl_abs(at.t);
-    t_min = vl_max(at.t, t_min) + vl_max(margin, 1e-30f);
+    t_min = vl_max(at.t, t_min) + vl_max(margin, VL_MIN_POSITIVE);
   }
 }
 

@@ -41,7 +41,7 @@ static float portal_density(const vlPortal *portal, vlVec3 w) {
 }
 
 /* Whether the outside of a whole sphere emits. */
-static bool shines_outwards(const vlWorld *world, const vlWorldLight *light) {
+static bool emits_outwards(const vlWorld *world, const vlWorldLight *light) {
   return world->emitted.items[light->emitted].two_sided || !world->shapes.items[light->shape].flip;
 }
 
@@ -50,7 +50,7 @@ static float side_share(const vlWorld *world, const vlWorldLight *light, vlVec3 
   const vlWorldShape *s = &world->shapes.items[light->shape];
   if (!light->outer_side) return world->emitted.items[light->emitted].two_sided ? 0.5f : 1.0f;
   vlVec3 center = vl_vec3((float)s->from_shape[3], (float)s->from_shape[7], (float)s->from_shape[11]);
-  return shines_outwards(world, light) && vl_dot(vl_sub(p, center), w) < 0.0f ? 1.0f : 0.0f;
+  return emits_outwards(world, light) && vl_dot(vl_sub(p, center), w) < 0.0f ? 1.0f : 0.0f;
 }
 
 float vl_light_emit_pdf_infinite(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance,
@@ -129,7 +129,7 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   const vlWorldShape *shape = &world->shapes.items[light->shape];
   Spot at =
       shape->kind == VL_SHAPE_TRIANGLES ? on_triangle(light, shape, q->u, q->v) : on_shape(light, shape, q->u, q->v);
-  if (!(at.pdf > 0.0f) || (light->outer_side && !shines_outwards(world, light))) return;
+  if (!(at.pdf > 0.0f) || (light->outer_side && !emits_outwards(world, light))) return;
   float sides = 1.0f;
   vlVec3 side = light->outer_side && shape->flip ? vl_neg(at.n) : at.n;
   if (e->two_sided && !light->outer_side) {

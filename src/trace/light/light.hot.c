@@ -117,6 +117,10 @@ static float solid_pdf(float pdf_area, vlVec3 from, vlVec3 p, vlVec3 n) {
   return cosine > 0.0f ? pdf_area * d2 * __builtin_sqrtf(d2) / cosine : 0.0f;
 }
 
+/* Solid angles outside these limits are sampled by area: below, both densities are nearly the same; above, the triangle
+ * is nearly a hemisphere (2 pi = 6.283) and its cap degenerates (6.22 as in pbrt). */
+static const float smallest_cap = 1e-3f, largest_cap = 6.22f;
+
 /* Near triangles are sampled by solid angle, since the density of area sampling is unbounded over them; far ones by
  * area, which is cheaper. Sampling and density both use this decision. */
 typedef struct Near {
@@ -134,7 +138,7 @@ static Near near_triangle(const vlWorldLight *light, vlVec3 from) {
   float d2 = vl_length2(vl_add(vl_add(a, b), c)) * (1.0f / 9.0f);
   if (!(light->area > 0.05f * d2)) return r;
   r.cap = vl_spherical_triangle(vl_normalize(a), vl_normalize(b), vl_normalize(c));
-  r.near = r.cap.solid_angle > 1e-3f && r.cap.solid_angle < 6.22f;
+  r.near = r.cap.solid_angle > smallest_cap && r.cap.solid_angle < largest_cap;
   return r;
 }
 

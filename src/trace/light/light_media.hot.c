@@ -62,7 +62,7 @@ static uint32_t on_the_way(const vlWorld *world, vlVec3 eye, vlVec3 p) {
   return medium;
 }
 
-/* A point next to an area light. */
+/* A point next to an area light: off the surface by 1000 times the rounding of its coordinates or more. */
 static vlVec3 beside(const vlWorld *world, const vlWorldLight *light) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   vlSurfacePoint point;

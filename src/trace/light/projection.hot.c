@@ -1,12 +1,15 @@
 /* trace/light/projection.hot.c: projection lights: a point that projects an image along its axis (pbrt book 12.2.2). */
 #include "trace/light/kinds.h"
 
+/* Least cosine to the axis of a projected direction: pbrt's near plane. */
+#define PROJECTION_NEAR 1e-3f
+
 /* 1 where the image covers the direction d, at st of its unit square; else 0. */
 static float image_point(const vlWorldLight *light, vlVec3 d, vlVec2 *st) {
   vlVec3 local = vl_normalize(vl_light_local(light, d));
   *st = (vlVec2){0, 0};
   float x = local.x / local.z / light->image_extent[0], y = local.y / local.z / light->image_extent[1];
-  if (!(local.z > 1e-3f) || !(vl_abs(x) <= 1.0f) || !(vl_abs(y) <= 1.0f)) return 0.0f;
+  if (!(local.z > PROJECTION_NEAR) || !(vl_abs(x) <= 1.0f) || !(vl_abs(y) <= 1.0f)) return 0.0f;
   *st = (vlVec2){0.5f * (x + 1.0f), 0.5f * (y + 1.0f)};
   return 1.0f;
 }
@@ -18,7 +21,7 @@ static float image_span(const vlWorldLight *light) {
   for (int i = 0; i < 3; i++) {
     const float *a = m + 3 * i, *b = m + 3 * ((i + 1) % 3);
     float own = a[0] * a[0] + a[1] * a[1] + a[2] * a[2], skew = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    if (vl_abs(own - length2) > 1e-4f * length2 || vl_abs(skew) > 1e-4f * length2) return 2.0f;
+    if (vl_abs(own - length2) > 1e-4f * length2 || vl_abs(skew) > 1e-4f * length2) return 2.0f; /* more than rounding */
   }
   return vl_min(1.001f * (1.0f - light->cos_end), 2.0f);
 }

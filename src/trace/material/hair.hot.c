@@ -1,6 +1,9 @@
 /* trace/material/hair.hot.c: the hair material's parameters over a run of lanes. */
 #include "trace/material/rows.h"
 
+/* Lower bound of the reflectance: black would need infinite absorption. No display shows the difference. */
+#define DARKEST 1e-5f
+
 /* sigma_a that gives a volume of hair the reflectance (Chiang et al. 2016, equation 9). */
 static void from_reflectance(vlTextureRun *r, float (*rows)[VL_ROW_SIZE]) {
   vlShade *shade = &r->s->shade;
@@ -8,7 +11,7 @@ static void from_reflectance(vlTextureRun *r, float (*rows)[VL_ROW_SIZE]) {
     float b = vl_clamp(rows[VL_H_BETA_N][i], 0.0f, 1.0f), b2 = b * b;
     float d = 5.969f - 0.215f * b + 2.532f * b2 - 10.73f * b2 * b + 5.574f * b2 * b2 + 0.245f * b2 * b2 * b;
     for (int c = 0; c < 4; c++) {
-      float x = vl_ln(vl_max(shade->reflectance[c][i], 1e-5f)) / d;
+      float x = vl_ln(vl_max(shade->reflectance[c][i], DARKEST)) / d;
       rows[VL_H_SIGMA_A + c][i] = x * x;
     }
   }

@@ -2,6 +2,13 @@
  * from textures; then shading frames for all lanes. */
 #include "trace/material/rows.h"
 
+/* Shifts of uv for bump maps. Those below MIN_STEP are a few roundings of a uv near 1 (6e-8): the difference of heights
+ * would be noise. DEFAULT_STEP is pbrt's for surfaces without a footprint. */
+#define MIN_STEP 1e-6f
+#define DEFAULT_STEP 0.0005f
+/* Squared sine, 1e-6 squared, between a tangent and the normal below which the tangent is mostly rounding. */
+#define PARALLEL 1e-12f
+
 /* ---- bump and normal maps: both change the shading normal and dpdu ----------------------------------------------- */
 
 static vlVec3 facing(vlVec3 n, vlVec3 side) {
@@ -43,7 +50,7 @@ static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
   vl_texture_float(r, node, h);
   for (uint32_t i = r->first; i < r->last; i++) {
     float w = 0.5f * f->width[i] * f->uv_scale[i];
-    step[i] = w > 1e-6f ? w : 0.0005f;
+    step[i] = w > MIN_STEP ? w : DEFAULT_STEP;
   }
   r->shift_u = su, r->shift_v = sv, r->shift_x = x, r->shift_y = y, r->shift_z = z;
   for (uint32_t i = r->first; i < r->last; i++)
@@ -207,7 +214,7 @@ void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *f, vlSha
   for (uint32_t i = 0; i < padded; i++) {
     vlVec3 nn = vl_vec3(f->nx[i], f->ny[i], f->nz[i]), u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]);
     vlVec3 t = vl_sub(u, vl_mul(nn, vl_dot(u, nn)));
-    float ok = vl_length2(t) > 1e-12f * vl_length2(u) ? 1.0f : 0.0f;
+    float ok = vl_length2(t) > PARALLEL * vl_length2(u) ? 1.0f : 0.0f;
     vlFrame any = vl_frame_from_z(nn);
     t = vl_normalize(t);
     t.x = ok > 0.0f ? t.x : any.x.x, t.y = ok > 0.0f ? t.y : any.x.y, t.z = ok > 0.0f ? t.z : any.x.z;

@@ -8,7 +8,7 @@
 enum { VL_KEY_FLIGHT = 0, VL_KEY_SHADOW = 1, VL_KEY_HERO = 2, VL_KEY_PROBE = 3 };
 /* The end of a ray: vlVolumeScratch.event. */
 enum { VL_ON_SURFACE, VL_IN_SKY, VL_IN_MEDIUM, VL_AT_END };
-/* Odds bounded above 0, so that weights are finite. */
+/* Odds bounded above 0: a weight of 1e20 times radiance up to 1e18 is finite. */
 static inline float vl_some_odds(float odds) {
   return vl_max(odds, 1e-20f);
 }

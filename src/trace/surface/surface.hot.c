@@ -170,9 +170,9 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   float has_n = vl_length2(ns) > 0.0f ? 1.0f : 0.0f;
   /* Mean curvature, from the change of the normals along the three edges. */
   vlVec3 e01 = vl_sub(p0, p1), n02 = vl_sub(n0, n2), n12 = vl_sub(n1, n2), n01 = vl_sub(n0, n1);
-  float k0 = vl_dot(n02, e02) / vl_max(vl_length2(e02), 1e-37f),
-        k1 = vl_dot(n12, e12) / vl_max(vl_length2(e12), 1e-37f);
-  float k2 = vl_dot(n01, e01) / vl_max(vl_length2(e01), 1e-37f);
+  float k0 = vl_dot(n02, e02) / vl_max(vl_length2(e02), VL_MIN_NORMAL),
+        k1 = vl_dot(n12, e12) / vl_max(vl_length2(e12), VL_MIN_NORMAL);
+  float k2 = vl_dot(n01, e01) / vl_max(vl_length2(e01), VL_MIN_NORMAL);
   r.curvature = has_n > 0.0f ? (k0 + k1 + k2) / (3.0f * vl_length(ns)) : 0.0f;
   ns = vl_normalize(ns);
   /* With vertex normals the geometric normal is on their side; without, vertex order and flip decide. */
@@ -185,7 +185,7 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   float u02 = uv.u0 - uv.u2, v02 = uv.v0 - uv.v2, u12 = uv.u1 - uv.u2, v12 = uv.v1 - uv.v2;
   float det = u02 * v12 - v02 * u12;
   float area2 = vl_length(cross);
-  float inv_det = vl_abs(det) > 1e-30f ? 1.0f / det : 0.0f;
+  float inv_det = vl_abs(det) > VL_MIN_POSITIVE ? 1.0f / det : 0.0f;
   vlVec3 du = vl_mul(vl_sub(vl_mul(e02, v12), vl_mul(e12, v02)), inv_det);
   vlVec3 dv = vl_mul(vl_sub(vl_mul(e12, u02), vl_mul(e02, u12)), inv_det);
   vlFrame frame = vl_frame_from_z(r.n);
@@ -241,7 +241,7 @@ static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vl
   if (q) vl_ray_to_group(q, go, gd);
   vlShapeHit hit;
   vlSurfacePoint point;
-  if (vl_shape_intersect(s, prim, go, gd, t * (1 - 0x1p-21), t * (1 + 0x1p-21) + 1e-37, &hit)) {
+  if (vl_shape_intersect(s, prim, go, gd, t * (1 - VL_REFIND), t * (1 + VL_REFIND) + VL_REFIND_LEAST, &hit)) {
     vl_shape_point(s, prim, &hit, &point);
   } else { /* cannot happen: the same ray hit it with the same arithmetic */
     double pdf;

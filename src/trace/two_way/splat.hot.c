@@ -106,16 +106,16 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
   float *fx = s->rows[5], *fy = s->rows[6], *fz = s->rows[7];
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     uint32_t lane = p->lane[i < n ? i : n - 1];
-    vlCameraSample sight = vl_sample_camera(vl_eye_of(t, lane), vl_lane3(f->px, f->py, f->pz, i), sh->u1[i], sh->u2[i]);
-    vlVec3 w = sight.w;
+    vlCameraSample view = vl_sample_camera(vl_eye_of(t, lane), vl_lane3(f->px, f->py, f->pz, i), sh->u1[i], sh->u2[i]);
+    vlVec3 w = view.w;
     wi[0][i] = w.x * sh->tx[i] + w.y * sh->ty[i] + w.z * sh->tz[i];
     wi[1][i] = w.x * sh->bx[i] + w.y * sh->by[i] + w.z * sh->bz[i];
     wi[2][i] = vl_dot(w, vl_lane3(f->nx, f->ny, f->nz, i));
     float cosine = vl_abs(vl_dot(w, vl_lane3(f->gx, f->gy, f->gz, i)));
-    per_square[i] = sight.seen ? cosine * sight.per_square : 0.0f; /* density of the camera path's first vertex here */
-    end[i] = sight.end;
-    r->x[i] = sight.x, r->y[i] = sight.y;
-    fx[i] = sight.from.x, fy[i] = sight.from.y, fz[i] = sight.from.z;
+    per_square[i] = view.seen ? cosine * view.per_square : 0.0f; /* density of the camera path's first vertex here */
+    end[i] = view.end;
+    r->x[i] = view.x, r->y[i] = view.y;
+    fx[i] = view.from.x, fy[i] = view.from.y, fz[i] = view.from.z;
   }
   vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
   uint32_t count = 0;

@@ -146,7 +146,7 @@ static inline uint32_t vl_pack_passed(const vlVolumeRows *v, uint32_t i) {
   const float p[3] = {v->passed[0][i], v->passed[1][i], v->passed[2][i]};
   uint32_t largest = p[0] >= p[1] ? (p[0] >= p[2] ? 0 : 2) : p[1] >= p[2] ? 1 : 2, packed = largest;
   for (uint32_t k = 1; k < 3; k++) {
-    float ratio = p[(largest + k) % 3] / vl_max(p[largest], 1e-37f);
+    float ratio = p[(largest + k) % 3] / vl_max(p[largest], VL_MIN_NORMAL);
     float steps = ratio > 1e-27f ? -512.0f * vl_ln(ratio) + 0.5f : 32767.0f;
     packed |= (uint32_t)vl_clamp(steps, 0.0f, 32767.0f) << (2 + 15 * (k - 1));
   }

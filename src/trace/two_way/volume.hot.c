@@ -157,15 +157,15 @@ static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uin
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
     vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i);
-    vlCameraSample sight = vl_sample_camera(vl_eye_of(t, lane), o, sh->u1[i], sh->u2[i]);
-    if (!sight.seen) continue;
-    float phase = phase_of(t, i, sight.w);
+    vlCameraSample view = vl_sample_camera(vl_eye_of(t, lane), o, sh->u1[i], sh->u2[i]);
+    if (!view.seen) continue;
+    float phase = phase_of(t, i, view.w);
     q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
-    q->dx[count] = sight.w.x, q->dy[count] = sight.w.y, q->dz[count] = sight.w.z;
-    q->t_max[count] = vl_min(sight.end, 1.0f - 0x1p-21f) * vl_length(vl_sub(sight.from, o));
+    q->dx[count] = view.w.x, q->dy[count] = view.w.y, q->dz[count] = view.w.z;
+    q->t_max[count] = vl_min(view.end, 1.0f - 0x1p-21f) * vl_length(vl_sub(view.from, o));
     q->time[count] = vl_path_time(p, i);
     q->lane[count] = lane;
-    r->own[count] = way->paths / sight.per_square;
+    r->own[count] = way->paths / view.per_square;
     r->others[count] = way->light_only ? 0.0f : r->cosine[i] * (way->merged_volume + r->a[i] * phase + r->b[i]);
     for (int c = 0; c < 4; c++) {
       q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * phase;
@@ -173,7 +173,7 @@ static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uin
     }
     v->shadow_medium[count] = v->c.medium[i];
     v->from[count] = i;
-    r->x[count] = sight.x, r->y[count] = sight.y;
+    r->x[count] = view.x, r->y[count] = view.y;
     count++;
   }
   vl_two_way_splats(t, r, b, p, &v->c, count, depth);

@@ -172,7 +172,7 @@ static bool user_hit(const AccelGeometry *g, const EmbreeContext *context, void 
       vlTextureQuery at = {point.uv[0], point.uv[1], vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
                            vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
       if (vl_alpha_passes(g->world, shape, &r, prim, (float)hit.t, &at)) {
-        t_min = hit.t * (1 + 1e-12);
+        t_min = hit.t * (1 + 1e-12); /* some thousand roundings of a double */
         continue;
       }
     }

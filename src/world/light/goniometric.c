@@ -24,7 +24,7 @@ static float mean_of(vlTexel t, uint32_t channels) {
 }
 
 static vlResult bad_pixel(const vlLightDef *def, uint32_t x, uint32_t y, vlError *error) {
-  return vl_fail(error, VL_ERROR_SCENE, "%s: pixel (%u, %u) is not finite, it cannot shine",
+  return vl_fail(error, VL_ERROR_SCENE, "%s: pixel (%u, %u) is not finite, it cannot be emitted",
                  def->path ? def->path : "the image", x, y);
 }
 

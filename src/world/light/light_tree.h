@@ -69,7 +69,7 @@ static inline __attribute__((always_inline)) float vl_light_importance(vlLightCl
   float sin_w = __builtin_sqrtf(vl_max(0.0f, 1.0f - cos_w * cos_w));
   /* Angle that the bounds subtend at p: the full sphere if p is inside their bounding sphere. */
   float inside = d2 > r * r ? 0.0f : 1.0f;
-  float sin2_b = r * r / vl_max(d2, 1e-37f);
+  float sin2_b = r * r / vl_max(d2, VL_MIN_NORMAL);
   float cos_b = __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2_b)), sin_b = __builtin_sqrtf(sin2_b);
   cos_b = inside > 0.0f ? -1.0f : cos_b;
   sin_b = inside > 0.0f ? 0.0f : sin_b;

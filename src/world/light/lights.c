@@ -50,7 +50,7 @@ void vl_light_image_color(vlWorld *world, vlColorSpace space, float scale, vlEmi
 
 vlColorSpace vl_light_image_space(const vlWorld *world, int32_t image, vlColorSpace otherwise) {
   const vlMipmap *mip = image >= 0 ? world->images.items[image].mipmap : NULL;
-  return mip && mip->space_told ? mip->space : otherwise;
+  return mip && mip->space_given ? mip->space : otherwise;
 }
 
 float vl_light_luminance(const vlSpectral *s) {

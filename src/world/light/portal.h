@@ -99,7 +99,7 @@ static inline double vl_portal_solid_angle(double x, double y) {
 /* Density per solid angle with which direction d (unit, in the portal's inner half space) is sampled from a window. */
 static inline float vl_portal_pdf(const vlPortal *portal, const vlPortalWindow *window, vlVec3 d) {
   vlVec3 w = vl_portal_local(portal, d);
-  if (!(w.z > 1e-6f)) return 0.0f;
+  if (!(w.z > VL_MIN_FRACTION)) return 0.0f;
   float tx = w.x / w.z, ty = w.y / w.z;
   double x = vl_portal_cell(portal, tx), y = vl_portal_cell(portal, ty);
   double light = vl_portal_light(portal, vl_portal_index(portal, x), vl_portal_index(portal, y));
@@ -143,7 +143,7 @@ static inline vlVec3 vl_portal_sample(const vlPortal *portal, const vlPortalWind
   y = y < w->y0 ? w->y0 : y > w->y1 ? w->y1 : y;
   vlSinCos p = vl_sincos((float)((x / portal->size - 0.5) * 3.141592653589793));
   vlSinCos q = vl_sincos((float)((y / portal->size - 0.5) * 3.141592653589793));
-  if (!(p.cos > 1e-6f && q.cos > 1e-6f)) return vl_vec3(0, 0, 0);
+  if (!(p.cos > VL_MIN_FRACTION && q.cos > VL_MIN_FRACTION)) return vl_vec3(0, 0, 0);
   return vl_normalize(vl_portal_world(portal, vl_normalize(vl_vec3(p.sin / p.cos, q.sin / q.cos, 1.0f))));
 }
 

@@ -5,8 +5,8 @@
 #include "base/error.h"
 #include "math/transform.h"
 #include "scene/scene.h"
+#include "world/light/emissive_faces.h"
 #include "world/light/lights.h"
-#include "world/light/shining.h"
 #include "world/shape/surface_point.h"
 #include "world/texture/texture_lookup.h"
 
@@ -37,7 +37,8 @@ static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmiss
   for (uint32_t y = 0; y < mip->levels[0].height; y++)
     for (uint32_t x = 0; x < mip->levels[0].width; x++)
       if (!isfinite(vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels)))
-        return vl_fail(error, VL_ERROR_SCENE, "%s: pixel (%u, %u) is not finite, it cannot shine", def->image, x, y);
+        return vl_fail(error, VL_ERROR_SCENE, "%s: pixel (%u, %u) is not finite, it cannot be emitted", def->image, x,
+                       y);
   return VL_OK;
 }
 
@@ -102,18 +103,18 @@ static vlResult add_shape_emission(vlWorld *world, const vlScene *scene, const v
 
 /* Counts the emitting faces. Sets light_of if some faces are black: only the others are numbered as lights. */
 static vlResult choose_faces(vlWorld *world, vlWorldShape *shape, const vlEmitted *e, uint32_t *faces, vlError *error) {
-  vlShining shining;
-  if (!vl_shining_make(world, e, &shining)) return vl_fail_memory(error);
+  vlEmissiveFaces emissive;
+  if (!vl_emissive_faces_make(world, e, &emissive)) return vl_fail_memory(error);
   uint32_t count = 0, first = (uint32_t)world->lights.count;
-  for (uint32_t i = 0; i < shape->faces; i++) count += vl_shining_face(&shining, shape, i);
+  for (uint32_t i = 0; i < shape->faces; i++) count += vl_face_emits(&emissive, shape, i);
   vlResult r = VL_OK;
   if (count > 0 && count < shape->faces) {
     shape->light_of = vl_world_block(world, shape->faces, sizeof *shape->light_of);
     if (!shape->light_of) r = vl_fail_memory(error);
     for (uint32_t i = 0, k = first; r == VL_OK && i < shape->faces; i++)
-      shape->light_of[i] = vl_shining_face(&shining, shape, i) ? k++ : VL_NONE;
+      shape->light_of[i] = vl_face_emits(&emissive, shape, i) ? k++ : VL_NONE;
   }
-  vl_shining_free(world, &shining);
+  vl_emissive_faces_free(world, &emissive);
   *faces = count;
   return r;
 }
@@ -127,8 +128,8 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
     vlError where;
     vl_fail_at(&where, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column, " ");
     vl_log(world->context, VL_LOG_WARNING, &where,
-           def->group.index ? "an emissive shape inside an object that is instanced or moves does not shine"
-                            : "an emissive shape that moves does not shine");
+           def->group.index ? "an emissive shape inside an object that is instanced or moves does not emit"
+                            : "an emissive shape that moves does not emit");
     return VL_OK;
   }
   bool meshed = shape->kind == VL_SHAPE_TRIANGLES || shape->kind == VL_SHAPE_BILINEAR;

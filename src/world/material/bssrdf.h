@@ -93,7 +93,7 @@ static inline float vl_spline_solve(vlSplinePiece p, float u, int integral, floa
   float low = 0, high = 1, t = 0.5f;
   for (int k = 0; k < 40; k++) {
     float f = (integral ? vl_spline_integral(p, t) : vl_spline_value(p, t)) - u;
-    if ((f < 0 ? -f : f) <= tolerance || high - low < 1e-6f) break;
+    if ((f < 0 ? -f : f) <= tolerance || high - low < 1e-6f) break; /* some roundings of t */
     if (f < 0)
       low = t;
     else
@@ -118,7 +118,7 @@ static inline float vl_bssrdf_effective(const vlBssrdfTable *table, const vlSpli
 }
 /* Radii grow by a factor of 1.2 per node: a logarithm estimates the cell, comparison with the nodes corrects it. */
 static inline uint32_t vl_bssrdf_cell(const vlBssrdfTable *table, float r) {
-  float guess = 1.0f + vl_ln(r * 400.0f + 1e-9f) * 5.48481494f;
+  float guess = 1.0f + vl_ln(r * 400.0f + VL_MIN_POSITIVE) * 5.48481494f;
   uint32_t i = guess > 1.0f ? (uint32_t)guess : 0;
   i = i < VL_BSSRDF_RADII - 2 ? i : VL_BSSRDF_RADII - 2;
   i -= i > 0 && r < table->radius[i];

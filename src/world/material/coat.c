@@ -63,7 +63,7 @@ static void make_rules(Rules *rules) {
 }
 
 static inline float layer(float tau, float c) {
-  float down = c > 1e-6f ? c : 1e-6f;
+  float down = c > VL_MIN_FRACTION ? c : VL_MIN_FRACTION;
   return vl_exp(-tau / down);
 }
 
@@ -91,10 +91,11 @@ static double interface_mean(const Grid *grid, int transmit, float c, float eta,
     part[i] = ((oh > 0.0f) & (w.z > 0.0f)) ? share * g : 0.0f;
     /* Densities of w: transmission through the interface from outside (p), the base's cosine (d), transmission from
      * inside (q). */
-    float p = vl_ggx_visible(h, alpha, alpha, o.z, lo) * oh * cos_t / (t * t > 1e-30f ? t * t : 1e-30f);
+    float p =
+        vl_ggx_visible(h, alpha, alpha, o.z, lo) * oh * cos_t / (t * t > VL_MIN_POSITIVE ? t * t : VL_MIN_POSITIVE);
     float q = p * (lo + o.z) / ((li + w.z) * eta * eta), d = w.z * VL_INV_PI;
     float base2 = d * d;
-    excess[i] = part[i] * (base2 / (base2 + q * q + 1e-30f) - base2 / (base2 + p * p + 1e-30f));
+    excess[i] = part[i] * (base2 / (base2 + q * q + VL_MIN_POSITIVE) - base2 / (base2 + p * p + VL_MIN_POSITIVE));
   }
   double sum = 0.0, more = 0.0;
   for (int i = 0; i < count; i++) {
@@ -225,7 +226,8 @@ static void conserve_row(const Rules *rules, vlCoatTable *table, uint32_t row) {
   memcpy(table->imitation[row], t, sizeof table->imitation[row]);
   if (alpha < VL_GGX_SMOOTH || eta == 1.0f) return; /* nothing is lost */
   for (int i = VL_COAT_COS; i-- > 0;) {
-    float x = (float)i / (float)(VL_COAT_COS - 1), c = x * x * x * x > 1e-6f ? x * x * x * x : 1e-6f;
+    float x = (float)i / (float)(VL_COAT_COS - 1),
+          c = x * x * x * x > VL_MIN_FRACTION ? x * x * x * x : VL_MIN_FRACTION;
     through[i] = (float)(1.0 - reflectance_outside(rules, c, eta, alpha));
     double clear = table->tau > 0.0f ? transmittance(rules, c, eta, alpha, 0.0f, &unused) : 0.0;
     if (clear > 0.0) layers = (double)t[i] / clear; /* else as at the cosine above */

@@ -27,6 +27,9 @@ static bool is_zero(vlFloatInput input) {
   return !input.texture.index && !(input.value > 0.0f);
 }
 
+/* An index this near to 1 reflects less than 3e-7 and bends nothing visibly: the surface is a sheet. */
+#define NO_REFRACTION 1e-3f
+
 vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   vlWorld *world = b->world;
   const vlScene *scene = b->scene;
@@ -46,7 +49,7 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   float root = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
   p->f0 = root * root;
   m->eta_s = ior > 0.0f ? ior : 1.5f;
-  p->thin = d->thin_walled || fabsf(m->eta_s - 1.0f) < 1e-3f || is_zero(d->transmission);
+  p->thin = d->thin_walled || fabsf(m->eta_s - 1.0f) < NO_REFRACTION || is_zero(d->transmission);
   m->dispersive = !p->thin && d->dispersion > 0.0f && world->def.color == VL_COLOR_SPECTRAL;
   if (m->dispersive) cauchy(m->eta_s, d->dispersion, p);
   p->film_index = d->iridescence_ior;

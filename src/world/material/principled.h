@@ -95,7 +95,7 @@ static inline float vl_sheen_curve(float x, float alpha) {
 }
 static inline float vl_sheen_lambda(float cosine, float alpha) {
   float half = vl_sheen_curve(0.5f, alpha), c = cosine < 0.5f ? cosine : 1.0f - cosine;
-  float curve = vl_sheen_curve(c > 1e-6f ? c : 1e-6f, alpha);
+  float curve = vl_sheen_curve(c > VL_MIN_FRACTION ? c : VL_MIN_FRACTION, alpha);
   return vl_exp(cosine < 0.5f ? curve : 2.0f * half - curve);
 }
 /* f cos_i. o, i: cosines of both directions, > 0; h: cosine of the half vector. */
@@ -104,7 +104,7 @@ static inline float vl_sheen(float o, float i, float h, float alpha) {
   float inverse = 1.0f / alpha, sin2 = 1.0f - h * h;
   float d = (2.0f + inverse) * vl_pow(sin2 > 1e-12f ? sin2 : 1e-12f, 0.5f * inverse) * (0.5f * VL_INV_PI);
   float g = 1.0f / (1.0f + vl_sheen_lambda(o, alpha) + vl_sheen_lambda(i, alpha));
-  return d * g / (4.0f * (o > 1e-6f ? o : 1e-6f));
+  return d * g / (4.0f * (o > VL_MIN_FRACTION ? o : VL_MIN_FRACTION));
 }
 
 #endif

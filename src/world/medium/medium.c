@@ -118,7 +118,8 @@ static bool copy_rgb_grid(vlWorld *world, const vlMediumDef *def, const float *f
   return true;
 }
 
-/* First and last cell of a grid that a lookup in [low, high] of the unit interval may read. */
+/* First and last cell of a grid that a lookup in [low, high] of the unit interval may read. Lookups compute in float:
+ * their rounding, 6e-8 of up to 1000 cells, is within 1e-4 of a cell. */
 static void reach(double low, double high, uint32_t n, uint32_t *first, uint32_t *last) {
   double a = floor(low * n - 0.5 - 1e-4), b = floor(high * n - 0.5 + 1e-4) + 1;
   *first = a > 0 ? (uint32_t)a : 0;
@@ -235,7 +236,7 @@ static vlResult compile_cloud(vlWorld *world, const vlMediumDef *def, vlWorldMed
   float *majorants = new_majorants(world, m, 1, SLABS, 1);
   if (!majorants) return vl_fail_memory(error);
   for (int i = 0; i < SLABS; i++) {
-    float y = m->low[1] + (m->high[1] - m->low[1]) * (float)i / SLABS - 1e-5f;
+    float y = m->low[1] + (m->high[1] - m->low[1]) * (float)i / SLABS - 1e-5f; /* lookups round y */
     float d = vl_clamp((1 - y) * 4.5f * m->cloud_density * 1.01f, 0, 1) + 2 * vl_max(0, 0.5f - y);
     majorants[i] = vl_clamp(d, 0, 1);
   }
@@ -262,6 +263,7 @@ static void raise(const vlWorldMedium *m, float *majorants, const double medium_
       low += p < q ? p : q;
       high += p < q ? q : p;
     }
+    /* 1.001 voxels and 1e-3 of a cell: more than the rounding of lookups in float */
     double scale = m->cells[i] / ((double)m->high[i] - (double)m->low[i]);
     low = floor((low - (double)m->low[i]) * scale - 1e-3), high = floor((high - (double)m->low[i]) * scale + 1e-3);
     if (high < 0 || low > m->cells[i] - 1) return;

@@ -206,7 +206,8 @@ static inline vlMediumLight vl_medium_at(const vlWorldMedium *m, const vlMediumL
 }
 
 /* Scalar extinction of a medium at a point (world space), > 0: the mean of sigma_t at three fixed wavelengths, or of
- * R, G, B. For weights that must not depend on a path's wavelengths. */
+ * R, G, B. For weights that must not depend on a path's wavelengths. At least 1e-20: its reciprocal, a mean free path,
+ * times 1e18 is finite. */
 static inline float vl_extinction_of(const vlMediumLight *x) {
   return vl_max((x->a[0] + x->s[0] + x->a[1] + x->s[1] + x->a[2] + x->s[2]) * (1.0f / 3.0f), 1e-20f);
 }

@@ -104,6 +104,7 @@ static void ribbon_normal(const vlWorldShape *s, uint32_t segment, double u, dou
   vl_normalize3(from), vl_normalize3(to);
   float angle = vl_acos(vl_clamp((float)vl_dot3(from, to), -1, 1));
   double f = 1 - u, t = u;
+  /* Below 1e-3 linear interpolation is right to angle^2 / 8 = 1e-7, a float's rounding. */
   if (angle > 1e-3f) f = vl_sincos((float)(1 - u) * angle).sin, t = vl_sincos((float)u * angle).sin;
   for (int i = 0; i < 3; i++) n[i] = f * from[i] + t * to[i];
   vl_normalize3(n);
@@ -149,7 +150,7 @@ static double find_foot(const Cubic *c, double w) {
       low = w;
     double next = slope > 0 ? w - f / slope : -1;
     if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-    if (fabs(next - w) < 1e-10) return next;
+    if (fabs(next - w) < 1e-10) return next; /* well below a float's rounding of w */
     w = next;
   }
   return w;
@@ -264,7 +265,8 @@ void vl_curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *hit,
   for (int i = 0; i < 3; i++) {
     double c[4] = {p[i], p[3 + i], p[6 + i], p[9 + i]};
     along[i] = bezier_slope(c, u);
-    if (!(fabs(along[i]) > 0)) along[i] = (c[3] - c[0]) * 1e-6; /* if two control points coincide */
+    if (!(fabs(along[i]) > 0))
+      along[i] = (c[3] - c[0]) * 1e-6; /* if two control points coincide; only the direction counts */
   }
   if (!(vl_dot3(along, along) > 0)) { /* a curve without length: any direction across the ray */
     double axis[3] = {fabs(hit->d[0]) < 0.6, fabs(hit->d[0]) >= 0.6, 0};

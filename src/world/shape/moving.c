@@ -47,7 +47,8 @@ uint32_t vl_world_time_steps(const vlWorld *world, double from, double to) {
   double span = world->time_close - world->time_open;
   for (uint32_t steps = 1; steps <= MOST_STEPS; steps++) {
     double a = (from - world->time_open) / span * steps, b = (to - world->time_open) / span * steps;
-    if (fabs(a - round(a)) < 1e-6 && fabs(b - round(b)) < 1e-6) return steps;
+    const double same = 1e-6; /* of a step; times are given with a few decimals */
+    if (fabs(a - round(a)) < same && fabs(b - round(b)) < same) return steps;
   }
   return 0;
 }

@@ -33,6 +33,11 @@ static void patch_derivatives(const Patch *q, double u, double v, double dpdu[3]
   }
 }
 
+/* Patches reach beyond their edges by this part of u and v, so that no ray passes between two: 10^4 roundings. */
+static const double overlap = 1e-12;
+/* Relative size of a determinant below which the directions of u and v on the texture are taken as parallel. */
+static const double parallel = 1e-12;
+
 /* For a fixed u the patch is the line a(u) + v e(u); the ray meets it where the scalar triple product
  * (a(u) - o) . (d x e(u)) vanishes: a quadratic in u (Reshetov 2019, "Cool Patches"). */
 bool vl_patch_intersect(const vlWorldShape *s, uint32_t prim, const double o[3], const double d[3], double t_min,
@@ -51,7 +56,7 @@ bool vl_patch_intersect(const vlWorldShape *s, uint32_t prim, const double o[3],
   double roots[2];
   int count = 0;
   double scale = fabs(b) + fabs(c);
-  if (fabs(a) <= 1e-14 * scale) {
+  if (fabs(a) <= 1e-14 * scale) { /* linear: a is rounding of b and c, some 100 errors of 1e-16 */
     if (b != 0) roots[count++] = -c / b;
   } else {
     double disc = b * b - 4 * a * c;
@@ -63,7 +68,7 @@ bool vl_patch_intersect(const vlWorldShape *s, uint32_t prim, const double o[3],
   bool found = false;
   for (int k = 0; k < count; k++) {
     double u = roots[k];
-    if (!(u >= -1e-12 && u <= 1 + 1e-12)) continue;
+    if (!(u >= -overlap && u <= 1 + overlap)) continue;
     u = u < 0 ? 0 : u > 1 ? 1 : u;
     double base[3], e[3], x[3];
     for (int i = 0; i < 3; i++) base[i] = a0[i] + u * a1[i], e[i] = e0[i] + u * e1[i];
@@ -76,7 +81,7 @@ bool vl_patch_intersect(const vlWorldShape *s, uint32_t prim, const double o[3],
     double v = vl_dot3(y, x) / den;
     vl_cross3(base, e, y);
     double t = vl_dot3(y, x) / den;
-    if (!(v >= -1e-12 && v <= 1 + 1e-12) || !(t > t_min && t < t_max)) continue;
+    if (!(v >= -overlap && v <= 1 + overlap) || !(t > t_min && t < t_max)) continue;
     v = v < 0 ? 0 : v > 1 ? 1 : v;
     t_max = t;
     hit->t = t;
@@ -108,7 +113,7 @@ static void over_texture(const vlWorldShape *s, const Patch *q, double u, double
     dv[i] = (1 - u) * (t[2] - t[0]) + u * (t[3] - t[1]);
   }
   double det = du[0] * dv[1] - du[1] * dv[0];
-  if (!(fabs(det) > 1e-12 * (fabs(du[0] * dv[1]) + fabs(du[1] * dv[0])))) return;
+  if (!(fabs(det) > parallel * (fabs(du[0] * dv[1]) + fabs(du[1] * dv[0])))) return;
   double *pairs[2][2] = {{point->dpdu, point->dpdv}, {point->dndu, point->dndv}};
   for (int k = 0; k < 2; k++)
     for (int i = 0; i < 3; i++) {
@@ -191,7 +196,7 @@ double vl_patch_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]
     u += su, v += sv;
     u = u < 0 ? 0 : u > 1 ? 1 : u;
     v = v < 0 ? 0 : v > 1 ? 1 : v;
-    if (fabs(su) + fabs(sv) < 1e-9) break;
+    if (fabs(su) + fabs(sv) < 1e-9) break; /* Newton's next step would be about 1e-18 */
   }
   return density(&q, u, v);
 }

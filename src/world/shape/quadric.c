@@ -118,7 +118,8 @@ static void quadric_derivatives(const Quadric *s, const double p[3], double dpdu
     uv[1] = (float)((theta - low) / (high - low));
     double radial = sqrt(p[0] * p[0] + p[1] * p[1]);
     double cos_phi = radial > 0 ? p[0] / radial : 1, sin_phi = radial > 0 ? p[1] / radial : 0;
-    if (!(radial > 0)) dpdu[0] = 0, dpdu[1] = s->phi_max * 1e-12; /* at the poles any direction is valid */
+    if (!(radial > 0))
+      dpdu[0] = 0, dpdu[1] = s->phi_max * 1e-12; /* at the poles any direction is valid; its length is near 0 */
     dpdv[0] = (high - low) * p[2] * cos_phi, dpdv[1] = (high - low) * p[2] * sin_phi, dpdv[2] = -(high - low) * radial;
   } else if (s->kind == VL_SHAPE_CYLINDER) {
     uv[1] = (float)((p[2] - s->z_min) / (s->z_max - s->z_min));

@@ -68,9 +68,10 @@ static void spread(const vlWorld *world, const vlShapeDef *def, float *rows, uin
   size_t n = 3 * (size_t)def->vertices;
   double span = world->time_close - world->time_open, first = (def->times[0] - world->time_open) / span,
          last = (def->times[1] - world->time_open) / span;
+  const double same = 1e-6; /* of the motion: as in vl_world_time_steps */
   for (uint32_t k = 1; k + 1 < steps; k++) {
     double f = ((double)k / (steps - 1) - first) / (last - first);
-    f = f > 1e-6 ? (f < 1 - 1e-6 ? f : 1) : 0;
+    f = f > same ? (f < 1 - same ? f : 1) : 0;
     for (size_t i = 0; i < n; i++) rows[k * n + i] = (float)(rows[i] * (1 - f) + rows[(steps - 1) * n + i] * f);
   }
 }

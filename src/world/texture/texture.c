@@ -175,8 +175,8 @@ static void preload_one(void *user, uint32_t index, uint32_t worker) {
   (void)worker;
   const Preload *job = user;
   Image p = open_image(job->defs[index]);
-  vlError unsaid; /* ignored: whoever uses the image meets the same error and reports it with its source location */
-  load_image(job->context, &p, &job->mipmaps[index], &unsaid);
+  vlError ignored; /* ignored: whoever uses the image meets the same error and reports it with its source location */
+  load_image(job->context, &p, &job->mipmaps[index], &ignored);
 }
 
 static bool listed(const vlTextureDef **defs, size_t count, const vlTextureDef *def) {
@@ -402,7 +402,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   if (node.kind == VL_NODE_IMAGE) {
     if ((node.image = image_of(c->world, def, c->error)) < 0) return -1;
     const vlMipmap *mip = c->world->images.items[node.image].mipmap;
-    if (mip->space_told) node.space = mip->space;
+    if (mip->space_given) node.space = mip->space;
   }
   if (def->spectrum && gives_rgb[node.kind] && image_spectrum(c->world, &node, c->error) != VL_OK) return -1;
   if (!weigh(c->world, &node)) {

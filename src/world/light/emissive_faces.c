@@ -1,8 +1,8 @@
-/* world/light/shining.c: see shining.h. Emission images are looked up at the finest level, bilinearly or at the
- * nearest texel (trace/light/light.hot.c). A triangle can read the texels whose centre is less than a texel away
+/* world/light/emissive_faces.c: see emissive_faces.h. Emission images are looked up at the finest level, bilinearly or
+ * at the nearest texel (trace/light/light.hot.c). A triangle can read the texels whose centre is less than a texel away
  * from it in both directions. Per row of texels, the part of the triangle in the band that reaches the row gives a
  * range of columns. */
-#include "world/light/shining.h"
+#include "world/light/emissive_faces.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,17 +10,17 @@
 #include "base/context.h"
 #include "world/texture/texture_lookup.h"
 
-static bool texel_shines(const vlMipmap *mip, const vlTextureNode *node, uint32_t x, uint32_t y) {
+static bool texel_emits(const vlMipmap *mip, const vlTextureNode *node, uint32_t x, uint32_t y) {
   uint32_t n = mip->channels < 3 ? 1 : 3;
-  bool shines = false;
+  bool emits = false;
   for (uint32_t c = 0; c < 3; c++) {
     float tint = node ? node->scale * node->tint[c] : 1.0f;
-    shines |= vl_mip_texel(mip, 0, x, y, c < n ? c : 0) * tint > 0.0f;
+    emits |= vl_mip_texel(mip, 0, x, y, c < n ? c : 0) * tint > 0.0f;
   }
-  return shines;
+  return emits;
 }
 
-bool vl_shining_make(const vlWorld *world, const vlEmitted *e, vlShining *s) {
+bool vl_emissive_faces_make(const vlWorld *world, const vlEmitted *e, vlEmissiveFaces *s) {
   memset(s, 0, sizeof *s);
   if (e->image < 0 || !world->images.items[e->image].mipmap) return true;
   const vlMipmap *mip = world->images.items[e->image].mipmap;
@@ -35,32 +35,32 @@ bool vl_shining_make(const vlWorld *world, const vlEmitted *e, vlShining *s) {
   if (!s->bits) return false;
   for (uint32_t y = 0; y < s->height; y++)
     for (uint32_t x = 0; x < s->width; x++) {
-      if (!texel_shines(mip, s->node, x, y)) continue;
+      if (!texel_emits(mip, s->node, x, y)) continue;
       s->bits[(size_t)y * s->words + x / 64] |= 1ull << x % 64;
       s->any = true;
     }
   return true;
 }
 
-void vl_shining_free(const vlWorld *world, vlShining *s) {
+void vl_emissive_faces_free(const vlWorld *world, vlEmissiveFaces *s) {
   vl_free(world->context, s->bits);
   memset(s, 0, sizeof *s);
 }
 
 /* Whether a bit is set in columns [from, to] of a row of the image. */
-static bool row_shines(const vlShining *s, int32_t row, int32_t from, int32_t to) {
+static bool row_emits(const vlEmissiveFaces *s, int32_t row, int32_t from, int32_t to) {
   row = vl_wrap_index(row, (int32_t)s->height, s->wrap_t);
   if (row < 0) return false;
   const uint64_t *bits = s->bits + (size_t)row * s->words;
   int32_t n = (int32_t)s->width;
   if (to - from >= 2 * n) from = 0, to = n - 1; /* all columns, whatever the wrap mode */
   if (from < 0 || to >= n) {
-    bool shines = false;
-    for (int32_t x = from; x <= to && !shines; x++) {
+    bool emits = false;
+    for (int32_t x = from; x <= to && !emits; x++) {
       int32_t k = vl_wrap_index(x, n, s->wrap);
-      shines = k >= 0 && (bits[k / 64] >> k % 64 & 1);
+      emits = k >= 0 && (bits[k / 64] >> k % 64 & 1);
     }
-    return shines;
+    return emits;
   }
   uint64_t sum = 0;
   for (int32_t w = from / 64; w <= to / 64; w++) {
@@ -87,7 +87,7 @@ static void band(const double x[3], const double y[3], double low, double high, 
   }
 }
 
-static bool triangle_shines(const vlShining *s, const float uv[3][2]) {
+static bool triangle_emits(const vlEmissiveFaces *s, const float uv[3][2]) {
   double x[3], y[3], size = 0, x_low = INFINITY, x_high = -INFINITY, y_low = INFINITY, y_high = -INFINITY;
   for (int k = 0; k < 3; k++) {
     vlVec2 st = {uv[k][0], uv[k][1]};
@@ -101,33 +101,32 @@ static bool triangle_shines(const vlShining *s, const float uv[3][2]) {
   double hair = 0.01 + 1e-5 * size; /* margin, in texels: lookups interpolate uv in float */
   if (y_high - y_low > 2.0 * s->height || x_high - x_low > 2.0 * s->width) return s->any;
   int32_t from = (int32_t)floor(y_low - 0.5 - hair), to = (int32_t)floor(y_high + 0.5 + hair);
-  bool shines = false;
-  for (int32_t row = from; row <= to && !shines; row++) {
+  bool emits = false;
+  for (int32_t row = from; row <= to && !emits; row++) {
     double first, last;
     band(x, y, row - 0.5 - hair, row + 1.5 + hair, &first, &last);
-    if (first <= last)
-      shines = row_shines(s, row, (int32_t)floor(first - 0.5 - hair), (int32_t)floor(last + 0.5 + hair));
+    if (first <= last) emits = row_emits(s, row, (int32_t)floor(first - 0.5 - hair), (int32_t)floor(last + 0.5 + hair));
   }
-  return shines;
+  return emits;
 }
 
-bool vl_shining_face(const vlShining *s, const vlWorldShape *shape, uint32_t prim) {
+bool vl_face_emits(const vlEmissiveFaces *s, const vlWorldShape *shape, uint32_t prim) {
   if (!s->bits) return true;
   static const float unit[2][4][2] = {{{0, 0}, {1, 0}, {1, 1}, {0, 0}}, {{0, 0}, {1, 0}, {0, 1}, {1, 1}}};
   static const int parts[4][3] = {{0, 1, 2}, {1, 2, 3}, {0, 1, 3}, {0, 2, 3}}; /* their union contains the patch */
-  bool patch = shape->kind == VL_SHAPE_BILINEAR, shines = false;
+  bool patch = shape->kind == VL_SHAPE_BILINEAR, emits = false;
   int corners = patch ? 4 : 3;
   const float *uvs = shape->emission_uvs ? shape->emission_uvs : shape->uvs;
   const uint32_t *f = shape->indices + (size_t)corners * prim;
   float uv[4][2];
   for (int k = 0; k < corners; k++)
     for (int i = 0; i < 2; i++) uv[k][i] = uvs ? uvs[2 * (size_t)f[k] + (size_t)i] : unit[patch][k][i];
-  for (int i = 0; i < (patch ? 4 : 1) && !shines; i++) {
+  for (int i = 0; i < (patch ? 4 : 1) && !emits; i++) {
     const float(*c)[2] = (const float(*)[2])uv;
     const float corner[3][2] = {{c[parts[i][0]][0], c[parts[i][0]][1]},
                                 {c[parts[i][1]][0], c[parts[i][1]][1]},
                                 {c[parts[i][2]][0], c[parts[i][2]][1]}};
-    shines = triangle_shines(s, corner);
+    emits = triangle_emits(s, corner);
   }
-  return shines;
+  return emits;
 }

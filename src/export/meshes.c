@@ -5,6 +5,7 @@
 #include "export/export.h"
 
 #include "math/elementary.h"
+#include "scene/schema/schema.h"
 
 enum { ALONG = 64, ACROSS = 32 };
 
@@ -90,17 +91,13 @@ bool vl_export_mesh(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
                          .indices = d->indices};
   mesh->uvs[0] = d->uvs;
   for (int k = 0; k < 3; k++) mesh->uvs[k + 1] = d->more_uvs[k];
-  switch (d->kind) {
-    case VL_SHAPE_TRIANGLES: return true;
-    case VL_SHAPE_BILINEAR: return patches(x, d, mesh);
-    case VL_SHAPE_SPHERE:
-    case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: {
-      vl_export_lose(x, "spheres, disks, cylinders: as triangles");
-      vlShapeDef unit = vl_default_shape_def(VL_SHAPE_SPHERE);
-      return facets(x, d->centers ? &unit : d, mesh);
-    }
-    case VL_SHAPE_CURVES: vl_export_lose(x, "curves: left out"); break;
+  const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)d->kind);
+  if (row->traits & VL_SHAPE_TRAIT_MESH) return d->kind != VL_SHAPE_BILINEAR || patches(x, d, mesh);
+  if (!(row->traits & VL_SHAPE_TRAIT_QUADRIC)) {
+    vl_export_lose(x, "shapes of the kind %s: left out", row->name);
+    return false;
   }
-  return false;
+  vl_export_lose(x, "spheres, disks, cylinders: as triangles");
+  vlShapeDef unit = vl_default_shape_def(VL_SHAPE_SPHERE);
+  return facets(x, d->centers ? &unit : d, mesh);
 }

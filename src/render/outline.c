@@ -8,6 +8,7 @@
 
 #include "math/elementary.h"
 #include "render/boxes.h"
+#include "velo/schema.h"
 #include "world/shape/moving.h"
 
 enum { CHUNK = 256, AROUND = 256, RINGS = 64 };
@@ -92,7 +93,7 @@ static void add_round(Points *p, const vlWorldShape *s) {
   }
 }
 
-/* Adds the corners of the boxes of curve segments or of many spheres. */
+/* Adds the corners of the boxes of faces: curve segments, many spheres. */
 static void add_pieces(Points *p, const vlWorldShape *s) {
   for (uint32_t i = 0; i < s->faces; i++) {
     float low[3], high[3];
@@ -107,26 +108,18 @@ static void add_shape(Points *p, const vlWorldShape *s, float time) {
     add_pieces(p, s);
     return;
   }
-  switch (s->kind) {
-    case VL_SHAPE_TRIANGLES:
-    case VL_SHAPE_BILINEAR: add_vertices(p, s, time); break;
-    case VL_SHAPE_SPHERE:
-    case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: add_round(p, s); break;
-    case VL_SHAPE_CURVES: add_pieces(p, s); break;
-  }
+  if (s->traits & VL_SHAPE_TRAIT_MESH)
+    add_vertices(p, s, time);
+  else if (s->traits & VL_SHAPE_TRAIT_QUADRIC)
+    add_round(p, s);
+  else
+    add_pieces(p, s);
 }
 
 uint64_t vl_box_points(const vlWorldShape *s) {
-  switch (s->kind) {
-    case VL_SHAPE_TRIANGLES:
-    case VL_SHAPE_BILINEAR: return s->vertices;
-    case VL_SHAPE_SPHERE:
-    case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: return s->centers ? 8 * (uint64_t)s->faces : (uint64_t)RINGS * AROUND;
-    case VL_SHAPE_CURVES: return 8 * (uint64_t)s->faces;
-  }
-  return 0;
+  if (s->traits & VL_SHAPE_TRAIT_MESH) return s->vertices;
+  bool rings = (s->traits & VL_SHAPE_TRAIT_QUADRIC) && !s->centers;
+  return rings ? (uint64_t)RINGS * AROUND : 8 * (uint64_t)s->faces;
 }
 
 static Points begin(const vlCamera *camera, vlIdBox *box, const float *place) {

@@ -6,6 +6,7 @@
 #include "math/elementary.h"
 #include "math/transform.h"
 #include "scene/environment.h"
+#include "scene/schema/schema.h"
 
 vlCompleteDef vl_default_complete_def(void) {
   return (vlCompleteDef){.cookie = VL_COOKIE_COMPLETE, .strength = 1.0f, .up = {0, 1, 0}, .front = {0, 0, 1}};
@@ -33,9 +34,9 @@ static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, siz
   }
   if (d->centers) return;
   if (!d->positions) {
-    double r = d->radius, low[3] = {-r, -r, d->z_min}, high[3] = {r, r, d->z_max};
-    if (d->kind == VL_SHAPE_DISK) low[2] = high[2] = d->height;
-    if (d->kind == VL_SHAPE_SPHERE) low[2] = fmax(-r, d->z_min), high[2] = fmin(r, d->z_max);
+    double low[3], high[3];
+    vl_shape_own_box(d, low, high);
+    if (low[0] > high[0]) return;
     visit_box(&m, low, high, visit, user);
     return;
   }

@@ -150,15 +150,9 @@ static bool check_shape(vlScene *scene, vlShapeDef *d) {
       m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
   if (det == 0.0 || !isfinite(det))
     return bad(scene, d, "transform of the shape is singular: it flattens the shape"), false;
-  switch (d->kind) {
-    case VL_SHAPE_TRIANGLES:
-    case VL_SHAPE_BILINEAR: return check_mesh(scene, d);
-    case VL_SHAPE_SPHERE:
-    case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: return check_quadric(scene, d);
-    case VL_SHAPE_CURVES: return check_curves(scene, d);
-  }
-  return false;
+  if (row->traits & VL_SHAPE_TRAIT_MESH) return check_mesh(scene, d);
+  if (row->traits & VL_SHAPE_TRAIT_QUADRIC) return check_quadric(scene, d);
+  return d->kind != VL_SHAPE_CURVES || check_curves(scene, d); /* of others the row says all */
 }
 
 /* The def's arrays must be owned by the scene or null. */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "math/elementary.h"
+#include "scene/schema/schema.h"
 
 static void grow(double low[3], double high[3], const double p[3]) {
   for (int k = 0; k < 3; k++) {
@@ -43,10 +44,10 @@ void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]) {
     grow(low, high, a), grow(low, high, b);
   }
   if (d->centers) return;
-  double r = d->radius, z0 = d->kind == VL_SHAPE_DISK ? d->height : d->z_min,
-         z1 = d->kind == VL_SHAPE_DISK ? d->height : d->z_max;
+  double a[3], b[3];
+  vl_shape_own_box(d, a, b);
   for (int c = 0; c < 8; c++) {
-    const double corner[3] = {c & 1 ? r : -r, c & 2 ? r : -r, c & 4 ? z1 : z0};
+    const double corner[3] = {c & 1 ? b[0] : a[0], c & 2 ? b[1] : a[1], c & 4 ? b[2] : a[2]};
     vl_mat4_point(&m, corner, q);
     grow(low, high, q);
   }

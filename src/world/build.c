@@ -12,6 +12,20 @@ vlBuildDef vl_default_build_def(void) {
   return (vlBuildDef){.cookie = VL_COOKIE_BUILD, .color = VL_COLOR_SPECTRAL, .light_sampler = VL_LIGHT_SAMPLER_BVH};
 }
 
+void *vl_world_block(vlWorld *world, size_t count, size_t size) {
+  void **slot = VL_PUSH(world->context, &world->blocks);
+  if (!slot) return NULL;
+  *slot = vl_alloc_array(world->context, count ? count : 1, size);
+  return *slot;
+}
+
+bool vl_world_copy_floats(vlWorld *world, const float *from, size_t count, float **to) {
+  if (!from) return true;
+  if (!(*to = vl_world_block(world, count, sizeof **to))) return false;
+  memcpy(*to, from, count * sizeof **to);
+  return true;
+}
+
 /* giving: the same scene if its meshes may be freed during the build, else null. */
 static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *def, vlWorld **result, vlError *error) {
   vl_error_clear(error);

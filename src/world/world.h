@@ -21,6 +21,7 @@
 
 typedef struct vlWorldShape {
   vlShapeKind kind;
+  uint32_t traits;      /* VL_SHAPE_TRAIT_MESH and so on */
   uint32_t material;    /* index into materials */
   uint32_t first_light; /* VL_NONE: no light; else see vl_shape_light */
   int32_t alpha;        /* texture node, -1: opaque */
@@ -271,5 +272,7 @@ void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3]
 vlResult vl_world_placed(vlSource source, vlError *error, vlResult r);
 /* A new block owned by the world, or null. */
 void *vl_world_block(vlWorld *world, size_t count, size_t size);
+/* *to: such a block with a copy of the numbers; unchanged where from is null. False: out of memory. */
+bool vl_world_copy_floats(vlWorld *world, const float *from, size_t count, float **to);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "export/export.h"
+#include "scene/schema/schema.h"
 
 enum { ARRAY = 34962, ELEMENTS = 34963, TYPE_UINT = 5125, TYPE_USHORT = 5123, TYPE_FLOAT = 5126 };
 
@@ -138,7 +139,7 @@ static bool put_attributes(vlExport *x, const vlExportMesh *m, json_t *attribute
 /* Whether the normals of vl_export_mesh must be reversed. A mirroring transform also reverses those of spheres, disks
  * and cylinders (velo/scene.h); glTF's nodes never do. */
 static bool is_turned(const vlShapeDef *d) {
-  bool quadric = d->kind == VL_SHAPE_SPHERE || d->kind == VL_SHAPE_DISK || d->kind == VL_SHAPE_CYLINDER;
+  bool quadric = vl_kind_row(&vl_shape_family, (int)d->kind)->traits & VL_SHAPE_TRAIT_QUADRIC;
   return d->reverse_orientation != (quadric && vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0);
 }
 

@@ -13,31 +13,28 @@ static void put_cells(vlExport *x, const char *parameter, const vlMediumDef *m, 
   PUT("]");
 }
 
-/* Rules that the rows do not express, one function per kind. */
-typedef bool PutMedium(vlExport *x, const vlMediumDef *m);
-
-static bool put_homogeneous(vlExport *x, const vlMediumDef *m) {
-  (void)x, (void)m;
-  return true;
+/* The arrays of the row: numbers or colours per cell. */
+static void put_arrays(vlExport *x, const vlKindRow *row, const vlMediumDef *m) {
+  for (uint32_t i = 0; i < row->parameter_count; i++) {
+    const vlParameter *p = &row->parameters[i];
+    if (p->type != VL_PARAMETER_BLOCK || !p->name) continue;
+    bool rgb = strcmp(p->text, "rgb array") == 0;
+    char name[64];
+    snprintf(name, sizeof name, "%s %s", rgb ? "rgb" : "float", p->name);
+    put_cells(x, name, m, *(const float *const *)(const void *)((const char *)m + p->offset), rgb ? 3 : 1);
+  }
 }
 
+/* Rules that the rows do not express, by kind; null: none. */
+typedef bool PutMedium(vlExport *x, const vlMediumDef *m);
+
 static bool put_grid(vlExport *x, const vlMediumDef *m) {
-  put_cells(x, "float density", m, m->density, 1);
-  put_cells(x, "float temperature", m, m->temperature, 1);
   put_cells(x, "float Lescale", m, m->emission_scales, 1);
   return true;
 }
 
 static bool put_rgb_grid(vlExport *x, const vlMediumDef *m) {
   if (m->space != x->scene->defs.film.space) vl_export_lose(x, "colour spaces of RGB grids: the scene's");
-  put_cells(x, "rgb sigma_a", m, m->rgb_a, 3);
-  put_cells(x, "rgb sigma_s", m, m->rgb_s, 3);
-  put_cells(x, "rgb Le", m, m->rgb_emission, 3);
-  return true;
-}
-
-static bool put_cloud(vlExport *x, const vlMediumDef *m) {
-  (void)x, (void)m;
   return true;
 }
 
@@ -55,9 +52,11 @@ static bool put_nanovdb(vlExport *x, const vlMediumDef *m) {
   return fine;
 }
 
-#define PUT_KIND(NAME, name) [VL_MEDIUM_##NAME] = put_##name,
-static PutMedium *const put_kind[] = {VL_MEDIUM_KINDS(PUT_KIND)};
-#undef PUT_KIND
+static PutMedium *const rules[0 VL_MEDIUM_KINDS(VL_COUNT_KIND)] = {
+    [VL_MEDIUM_GRID] = put_grid,
+    [VL_MEDIUM_RGB_GRID] = put_rgb_grid,
+    [VL_MEDIUM_NANOVDB] = put_nanovdb,
+};
 
 bool vl_pbrt_medium(vlExport *x, size_t i) {
   const vlMediumDef *m = &x->scene->media.items[i];
@@ -67,7 +66,8 @@ bool vl_pbrt_medium(vlExport *x, size_t i) {
   bool placed = x->text.data.count > before;
   PUT("MakeNamedMedium \"medium%zu\" \"string type\" \"%s\"", i + 1, row->name);
   vl_pbrt_row(x, row, m, false, m->emission_scales ? "Lescale" : NULL);
-  if (!put_kind[m->kind](x, m)) return false;
+  put_arrays(x, row, m);
+  if (rules[m->kind] && !rules[m->kind](x, m)) return false;
   PUT(placed ? "\nIdentity\n" : "\n");
   return true;
 }

@@ -58,24 +58,14 @@ static bool put_ply(vlExport *x, const vlShapeDef *d, size_t index) {
 }
 
 static bool put_kind(vlExport *x, const vlShapeDef *d, size_t index) {
-  switch (d->kind) {
-    case VL_SHAPE_TRIANGLES:
-    case VL_SHAPE_BILINEAR:
-      if (d->faces <= INLINE_FACES || (d->tangents && !d->tangent_signs))
-        put_inline(x, d);
-      else if (!put_ply(x, d, index))
-        return false;
-      return true;
-    case VL_SHAPE_SPHERE:
-    case VL_SHAPE_CYLINDER:
-    case VL_SHAPE_DISK: {
-      const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)d->kind);
-      PUT("  Shape \"%s\"", row->name);
-      vl_pbrt_row(x, row, d, true, NULL);
-      return true;
-    }
-    case VL_SHAPE_CURVES: return true; /* left out with a loss counted earlier */
+  const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)d->kind);
+  if (row->traits & VL_SHAPE_TRAIT_MESH) {
+    if (d->faces > INLINE_FACES && (!d->tangents || d->tangent_signs)) return put_ply(x, d, index);
+    put_inline(x, d);
+    return true;
   }
+  PUT("  Shape \"%s\"", row->name);
+  vl_pbrt_row(x, row, d, true, NULL);
   return true;
 }
 
@@ -134,7 +124,7 @@ static bool put_emission(vlExport *x, const vlEmissionDef *e) {
 
 static bool put_shape(vlExport *x, const vlShapeDef *d, size_t index) {
   if (d->kind == VL_SHAPE_CURVES) {
-    vl_export_lose(x, "curves: left out");
+    vl_export_lose(x, "shapes of the kind curve: left out");
     return true;
   }
   if (d->positions && (!d->faces || !d->vertices)) return true;

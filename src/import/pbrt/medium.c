@@ -71,18 +71,10 @@ static bool missing(vlDict *dict, const char *what) {
   return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %s is missing", dict->what, what);
 }
 
-/* Rules that the rows do not express, one function per kind. given: one entry per parameter of the row. */
+/* Rules that the rows do not express, by kind; null: none. given: one entry per parameter of the row. */
 typedef bool ReadMedium(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def);
 
-static bool read_homogeneous(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
-  (void)row, (void)given;
-  return read_preset(dict, def);
-}
-
 static bool read_grid(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
-  if (!read_preset(dict, def) || !read_cells(dict, "density", VL_PARAM_FLOAT, def, &def->density) ||
-      !read_cells(dict, "temperature", VL_PARAM_FLOAT, def, &def->temperature))
-    return false;
   vlParam *scale = vl_dict_find(dict, "Lescale", 1u << VL_PARAM_FLOAT);
   if (scale && scale->floats.count == 1)
     def->emission_scale = scale->floats.items[0];
@@ -96,33 +88,33 @@ static bool read_grid(vlDict *dict, const vlKindRow *row, const bool *given, vlM
 
 static bool read_rgb_grid(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
   (void)row, (void)given;
-  if (!read_cells(dict, "sigma_a", VL_PARAM_RGB, def, &def->rgb_a) ||
-      !read_cells(dict, "sigma_s", VL_PARAM_RGB, def, &def->rgb_s) ||
-      !read_cells(dict, "Le", VL_PARAM_RGB, def, &def->rgb_emission))
-    return false;
   return def->rgb_a || def->rgb_s || missing(dict, "\"rgb sigma_a\" or \"rgb sigma_s\" (a colour for each cell)");
 }
 
-static bool read_cloud(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
-  (void)dict, (void)row, (void)given, (void)def;
+static ReadMedium *const rules[0 VL_MEDIUM_KINDS(VL_COUNT_KIND)] = {
+    [VL_MEDIUM_GRID] = read_grid,
+    [VL_MEDIUM_RGB_GRID] = read_rgb_grid,
+};
+
+/* The arrays of the row: numbers or colours per cell. */
+static bool read_arrays(vlDict *dict, const vlKindRow *row, vlMediumDef *def) {
+  for (uint32_t i = 0; i < row->parameter_count; i++) {
+    const vlParameter *p = &row->parameters[i];
+    if (p->type != VL_PARAMETER_BLOCK || !p->name) continue;
+    vlParamType type = strcmp(p->text, "rgb array") == 0 ? VL_PARAM_RGB : VL_PARAM_FLOAT;
+    if (!read_cells(dict, p->name, type, def, (const float **)(void *)((char *)def + p->offset))) return false;
+  }
   return true;
 }
-
-static bool read_nanovdb(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
-  (void)dict, (void)row, (void)given, (void)def;
-  return true;
-}
-
-#define READ(NAME, name) [VL_MEDIUM_##NAME] = read_##name,
-static ReadMedium *const read_kind[] = {VL_MEDIUM_KINDS(READ)};
-#undef READ
 
 static bool read_medium(vlDict *dict, int kind, vlMediumDef *def) {
   const vlKindRow *row = vl_kind_row(&vl_medium_family, kind);
   bool given[32];
   if (!vl_import_parameters(dict, row, def, true, given)) return false;
   if (row->traits & VL_MEDIUM_TRAIT_BOX) sort_box(def);
-  return read_kind[kind](dict, row, given, def) && vl_dict_done(dict);
+  if (vl_row_find(row, "preset") && !read_preset(dict, def)) return false;
+  if (!read_arrays(dict, row, def)) return false;
+  return (!rules[kind] || rules[kind](dict, row, given, def)) && vl_dict_done(dict);
 }
 
 bool vl_import_medium(vlImport *import, const vlStatement *s) {

@@ -242,12 +242,12 @@ static bool enter_sphere(vlDict *dict, vlShapeDef *def, const vlShapeLink *link,
   return gathered || enter(dict, def, link, taken);
 }
 
-static bool enter_disk(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
-  return read_quadric(dict, def) && enter(dict, def, link, taken);
-}
-
-static bool enter_cylinder(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
-  return read_quadric(dict, def) && enter(dict, def, link, taken);
+/* Any kind whose row says all. */
+static bool enter_row(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
+  const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)def->kind);
+  bool quadric = row->traits & VL_SHAPE_TRAIT_QUADRIC;
+  if (!(quadric ? read_quadric(dict, def) : vl_import_parameters(dict, row, def, false, NULL))) return false;
+  return enter(dict, def, link, taken);
 }
 
 /* Curves enter later, with their media. */
@@ -267,9 +267,13 @@ static bool enter_ply(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bo
   return note_ply(dict, def, &own) && note_media(dict->import, before, dict->place);
 }
 
-#define ENTER(NAME, name) [VL_SHAPE_##NAME] = enter_##name,
-static EnterShape *const enter_kind[] = {VL_SHAPE_KINDS(ENTER)};
-#undef ENTER
+/* Rules that the rows do not express; null: enter_row. */
+static EnterShape *const rules[0 VL_SHAPE_KINDS(VL_COUNT_KIND)] = {
+    [VL_SHAPE_TRIANGLES] = enter_triangles,
+    [VL_SHAPE_BILINEAR] = enter_bilinear,
+    [VL_SHAPE_SPHERE] = enter_sphere,
+    [VL_SHAPE_CURVES] = enter_curves,
+};
 
 /* pbrt's shapes that are converted to triangles. */
 static const struct {
@@ -281,7 +285,7 @@ enum { MESHES = sizeof meshes / sizeof *meshes };
 static EnterShape *find_shape(const char *name, vlShapeKind *kind) {
   int own = vl_kind_find(&vl_shape_family, name);
   *kind = own < 0 ? VL_SHAPE_TRIANGLES : (vlShapeKind)own;
-  if (own >= 0) return enter_kind[own];
+  if (own >= 0) return rules[own] ? rules[own] : enter_row;
   for (size_t i = 0; i < MESHES; i++)
     if (strcmp(meshes[i].name, name) == 0) return meshes[i].enter;
   return NULL;

@@ -99,6 +99,9 @@ extern const vlKindFamily vl_camera_family;
  * included; radius: of a sphere round the scene. NaN: an image decides. */
 double vl_light_power(const vlLightDef *def, double luminance, double radius);
 
+/* The box of a shape in its own space, without regard to `centers`; of curves, that of their control points. Empty
+ * (low > high): it has no vertices. */
+void vl_shape_own_box(const vlShapeDef *def, double low[3], double high[3]);
 /* Has the kind vertices and faces (VL_SHAPE_TRAIT_MESH)? */
 bool vl_shape_is_mesh(vlShapeKind kind);
 

@@ -1,5 +1,7 @@
 /* scene/schema/shapes.c: the shapes. Names and defaults are pbrt-v4's; its shapes "plymesh" and "loopsubdiv" are other
  * ways to say triangles. */
+#include <math.h>
+
 #include "base/cookie.h"
 #include "scene/schema/schema.h"
 
@@ -112,6 +114,47 @@ VL_KIND_ROW(curves, .name = "curve", .description = "cubic curves with a width, 
 
 #define ROW(NAME, name) [VL_SHAPE_##NAME] = &name##_row,
 VL_KIND_FAMILY(vl_shape_family, VL_SHAPE_KINDS, ROW, "shapes", "shape", "Shape")
+
+/* ---- boxes ------------------------------------------------------------------------------------------------------- */
+
+static void round_box(const vlShapeDef *d, double z0, double z1, double low[3], double high[3]) {
+  double r = d->radius;
+  low[0] = low[1] = -r, low[2] = z0;
+  high[0] = high[1] = r, high[2] = z1;
+}
+
+static void sphere_box(const vlShapeDef *d, double low[3], double high[3]) {
+  double r = d->radius, z0 = d->z_min, z1 = d->z_max;
+  round_box(d, z0 > -r ? z0 : -r, z1 < r ? z1 : r, low, high);
+}
+
+static void disk_box(const vlShapeDef *d, double low[3], double high[3]) {
+  round_box(d, d->height, d->height, low, high);
+}
+
+static void cylinder_box(const vlShapeDef *d, double low[3], double high[3]) {
+  round_box(d, d->z_min, d->z_max, low, high);
+}
+
+static void points_box(const vlShapeDef *d, double low[3], double high[3]) {
+  for (int k = 0; k < 3; k++) low[k] = (double)INFINITY, high[k] = -(double)INFINITY;
+  for (size_t i = 0; i < d->vertices; i++)
+    for (int k = 0; k < 3; k++) {
+      double x = d->positions[3 * i + (size_t)k];
+      low[k] = x < low[k] ? x : low[k];
+      high[k] = x > high[k] ? x : high[k];
+    }
+}
+
+#define triangles_box points_box
+#define bilinear_box points_box
+#define curves_box points_box
+#define BOX_OF(NAME, name) [VL_SHAPE_##NAME] = name##_box,
+static void (*const box_of[])(const vlShapeDef *, double low[3], double high[3]) = {VL_SHAPE_KINDS(BOX_OF)};
+
+void vl_shape_own_box(const vlShapeDef *def, double low[3], double high[3]) {
+  box_of[def->kind](def, low, high);
+}
 
 bool vl_shape_is_mesh(vlShapeKind kind) {
   return (vl_kind_row(&vl_shape_family, (int)kind)->traits & VL_SHAPE_TRAIT_MESH) != 0;

@@ -1,15 +1,12 @@
-/* world/medium/medium.c: scene media -> world media: spectra, grids in the layout for lookups, majorants (pbrt book
- * 11.4). Only media that are in use are compiled. */
-#include "world/medium/medium.h"
-
-#include <math.h>
+/* world/medium/medium.c: scene media -> world media: spectra, and what each kind compiles (kinds.h). Only
+ * media that are in use are compiled. */
 #include <string.h>
 
 #include "base/error.h"
-#include "color/rgb_table.h"
 #include "math/elementary.h"
 #include "math/transform.h"
 #include "scene/scene.h"
+#include "world/medium/kinds.h"
 #include "world/medium/medium_lookup.h"
 #include "world/world.h"
 
@@ -65,8 +62,7 @@ static vlResult compile_emission(vlWorld *world, const vlMediumDef *def, vlWorld
   return VL_OK;
 }
 
-/* Temperature: black bodies as in pbrt-v4, normalised to a maximum of 1, not to a luminance. */
-static vlResult compile_temperature(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
+vlResult vl_medium_temperature(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
   m->emits = def->emission_scale > 0;
   m->temperature_offset = def->temperature_offset;
   m->temperature_scale = def->temperature_scale;
@@ -84,269 +80,16 @@ static vlResult compile_temperature(vlWorld *world, const vlMediumDef *def, vlWo
   return VL_OK;
 }
 
-/* ---- grids ------------------------------------------------------------------------------------------------------- */
-
-static bool copy_grid(vlWorld *world, const vlMediumDef *def, const float *from, vlDenseGrid *to) {
-  if (!from) return true;
-  size_t cells = (size_t)def->nx * def->ny * def->nz;
-  float *values = vl_world_block(world, cells, sizeof *values);
-  if (!values) return false;
-  memcpy(values, from, cells * sizeof *values);
-  *to = (vlDenseGrid){def->nx, def->ny, def->nz, values};
-  return true;
-}
-
-static bool copy_rgb_grid(vlWorld *world, const vlMediumDef *def, const float *from, vlDenseGrid *to) {
-  if (!from) return true;
-  size_t cells = (size_t)def->nx * def->ny * def->nz;
-  float *values = vl_world_block(world, cells, 4 * sizeof *values);
-  if (!values) return false;
-  const vlRgbTable *table = vl_rgb_table(def->space);
-  for (size_t i = 0; i < cells; i++) {
-    const float *rgb = from + 3 * i;
-    float *v = values + 4 * i, high = vl_max(rgb[0], vl_max(rgb[1], rgb[2]));
-    if (world->def.color == VL_COLOR_RGB) {
-      for (int c = 0; c < 3; c++) v[c] = rgb[c];
-      v[3] = 0;
-      continue;
-    }
-    float inv = high > 0 ? 0.5f / high : 0;
-    vlSigmoid s = vl_rgb_table_lookup(table, rgb[0] * inv, rgb[1] * inv, rgb[2] * inv);
-    v[0] = s.c0, v[1] = s.c1, v[2] = s.c2, v[3] = 2 * high;
-  }
-  *to = (vlDenseGrid){def->nx, def->ny, def->nz, values};
-  return true;
-}
-
-/* First and last cell of a grid that a lookup in [low, high] of the unit interval may read. Lookups compute in float:
- * their rounding, 6e-8 of up to 1000 cells, is within 1e-4 of a cell. */
-static void reach(double low, double high, uint32_t n, uint32_t *first, uint32_t *last) {
-  double a = floor(low * n - 0.5 - 1e-4), b = floor(high * n - 0.5 + 1e-4) + 1;
-  *first = a > 0 ? (uint32_t)a : 0;
-  *last = b < n - 1 ? (uint32_t)b : n - 1;
-}
-
-/* Upper bound of all lookups within a cell of the majorant grid. */
-static float dense_bound(const vlDenseGrid *g, const uint32_t cells[3], const uint32_t at[3], bool rgb) {
-  const uint32_t n[3] = {g->nx, g->ny, g->nz};
-  uint32_t a[3], b[3];
-  float most = 0;
-  for (int i = 0; i < 3; i++) reach((double)at[i] / cells[i], (double)(at[i] + 1) / cells[i], n[i], &a[i], &b[i]);
-  for (uint32_t z = a[2]; z <= b[2]; z++)
-    for (uint32_t y = a[1]; y <= b[1]; y++)
-      for (uint32_t x = a[0]; x <= b[0]; x++) {
-        size_t k = ((size_t)z * n[1] + y) * n[0] + x;
-        const float *v = g->values + 4 * k;
-        /* The scale of a sigmoid is twice the colour's maximum, so the scale alone would be a bound up to twice too
-         * large. The spectrum is sampled instead. */
-        float bound = rgb ? 0 : g->values[k];
-        if (rgb && v[3] > 0)
-          for (int l = VL_LAMBDA_MIN; l <= VL_LAMBDA_MAX; l += 5)
-            bound = vl_max(bound, v[3] * vl_sigmoid((vlSigmoid){v[0], v[1], v[2]}, (float)l) * 1.001f);
-        else if (rgb)
-          bound = vl_max(v[0], vl_max(v[1], v[2]));
-        most = vl_max(most, bound);
-      }
-  return most;
-}
-
-typedef struct Bounding {
-  const vlWorldMedium *m;
-  float *majorants;
-  bool rgb;
-} Bounding;
-
-static void bound_slice(void *user, uint32_t z, uint32_t worker) {
-  const Bounding *b = user;
-  const vlWorldMedium *m = b->m;
-  (void)worker;
-  for (uint32_t y = 0; y < m->cells[1]; y++)
-    for (uint32_t x = 0; x < m->cells[0]; x++) {
-      const uint32_t at[3] = {x, y, z};
-      float *to = b->majorants + ((size_t)z * m->cells[1] + y) * m->cells[0] + x;
-      if (!b->rgb) {
-        *to = dense_bound(&m->density, m->cells, at, false);
-        continue;
-      }
-      float absorbed = m->rgb_a.values ? dense_bound(&m->rgb_a, m->cells, at, true) : 1;
-      float scattered = m->rgb_s.values ? dense_bound(&m->rgb_s, m->cells, at, true) : 1;
-      *to = m->rgb_scale * (absorbed + scattered);
-    }
-}
-
-static float *new_majorants(vlWorld *world, vlWorldMedium *m, uint32_t x, uint32_t y, uint32_t z) {
+float *vl_medium_majorants(vlWorld *world, vlWorldMedium *m, uint32_t x, uint32_t y, uint32_t z) {
   m->cells[0] = x, m->cells[1] = y, m->cells[2] = z;
   float *majorants = vl_world_block(world, (size_t)x * y * z, sizeof *majorants);
   m->majorants = majorants;
   return majorants;
 }
 
-static vlResult compile_cells(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
-  bool rgb = m->own_sigma;
-  memcpy(m->low, def->low, sizeof m->low);
-  memcpy(m->high, def->high, sizeof m->high);
-  if (!copy_grid(world, def, def->density, &m->density) ||
-      !copy_grid(world, def, def->emission_scales, &m->emission_scales) ||
-      !copy_grid(world, def, def->temperature, &m->temperature) || !copy_rgb_grid(world, def, def->rgb_a, &m->rgb_a) ||
-      !copy_rgb_grid(world, def, def->rgb_s, &m->rgb_s) ||
-      !copy_rgb_grid(world, def, def->rgb_emission, &m->rgb_emission))
-    return vl_fail_memory(error);
-  if (rgb) {
-    /* pbrt-v4 multiplies by the illuminant of the colour space, scaled to the luminance of a constant spectrum of 1. */
-    double sum = 0, whole = 0;
-    const float *y = vl_cie_y(), *illuminant = vl_space_illuminant(def->space);
-    for (int i = 0; i < VL_LAMBDA_COUNT; i++) sum += (double)y[i] * (double)illuminant[i], whole += (double)y[i];
-    m->grey = m->scatters = true;
-    m->emits = def->rgb_emission && def->emission_scale > 0;
-    m->rgb_scale = def->scale;
-    m->rgb_emission_scale = def->emission_scale;
-    if (world->def.color == VL_COLOR_RGB)
-      m->illuminant = (vlSpectral){.kind = VL_SPECTRAL_RGB, .scale = (float)whole, .rgb = {1, 1, 1}};
-    else
-      m->illuminant = (vlSpectral){.kind = VL_SPECTRAL_DENSE, .scale = (float)(whole / sum), .dense = illuminant};
-  }
-  uint32_t cells[3] = {def->nx, def->ny, def->nz};
-  for (int i = 0; i < 3; i++) cells[i] = cells[i] > 8 ? 16 : 2 * cells[i];
-  Bounding bounding = {m, new_majorants(world, m, cells[0], cells[1], cells[2]), rgb};
-  if (!bounding.majorants) return vl_fail_memory(error);
-  vl_parallel_for(world->context, m->cells[2], bound_slice, &bounding);
-  return VL_OK;
-}
-
-static vlResult compile_grid(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
-  vlResult r = compile_cells(world, def, m, error);
-  return r == VL_OK && def->temperature ? compile_temperature(world, def, m, error) : r;
-}
-
-static vlResult compile_rgb_grid(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
-  m->own_sigma = true;
-  return compile_cells(world, def, m, error);
-}
-
-/* Cloud density decreases with height: one majorant per slab. Noise is at most 1.04, the sum of its five octaves at
- * most 1.01. */
-static vlResult compile_cloud(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
-  enum { SLABS = 16 };
-  memcpy(m->low, def->low, sizeof m->low);
-  memcpy(m->high, def->high, sizeof m->high);
-  m->emits = false;
-  m->cloud_density = def->cloud_density;
-  m->wispiness = def->wispiness;
-  m->frequency = def->frequency;
-  float *majorants = new_majorants(world, m, 1, SLABS, 1);
-  if (!majorants) return vl_fail_memory(error);
-  for (int i = 0; i < SLABS; i++) {
-    float y = m->low[1] + (m->high[1] - m->low[1]) * (float)i / SLABS - 1e-5f; /* lookups round y */
-    float d = vl_clamp((1 - y) * 4.5f * m->cloud_density * 1.01f, 0, 1) + 2 * vl_max(0, 0.5f - y);
-    majorants[i] = vl_clamp(d, 0, 1);
-  }
-  return VL_OK;
-}
-
-/* ---- NanoVDB ----------------------------------------------------------------------------------------------------- */
-
-static void grow_box(const vlSparseGrid *g, vlWorldMedium *m) {
-  for (int i = 0; i < 3; i++) {
-    m->low[i] = vl_min(m->low[i], (float)g->box_low[i]);
-    m->high[i] = vl_max(m->high[i], (float)g->box_high[i]);
-  }
-}
-
-/* Raises the majorants of all cells that a lookup near voxels [a, b] can fall into. */
-static void raise(const vlWorldMedium *m, float *majorants, const double medium_from_index[12], const int32_t a[3],
-                  const int32_t b[3], float value) {
-  int32_t first[3], last[3];
-  for (int i = 0; i < 3; i++) {
-    double low = medium_from_index[4 * i + 3], high = low;
-    for (int k = 0; k < 3; k++) {
-      double s = medium_from_index[4 * i + k], p = s * (a[k] - 1.001), q = s * (b[k] + 1.001);
-      low += p < q ? p : q;
-      high += p < q ? q : p;
-    }
-    /* 1.001 voxels and 1e-3 of a cell: more than the rounding of lookups in float */
-    double scale = m->cells[i] / ((double)m->high[i] - (double)m->low[i]);
-    low = floor((low - (double)m->low[i]) * scale - 1e-3), high = floor((high - (double)m->low[i]) * scale + 1e-3);
-    if (high < 0 || low > m->cells[i] - 1) return;
-    first[i] = low > 0 ? (int32_t)low : 0;
-    last[i] = high < m->cells[i] - 1 ? (int32_t)high : (int32_t)m->cells[i] - 1;
-  }
-  for (int32_t z = first[2]; z <= last[2]; z++)
-    for (int32_t y = first[1]; y <= last[1]; y++)
-      for (int32_t x = first[0]; x <= last[0]; x++) {
-        float *to = majorants + ((size_t)z * m->cells[1] + (size_t)y) * m->cells[0] + (size_t)x;
-        *to = vl_max(*to, value);
-      }
-}
-
-/* Bounds a brick in octants, for tighter majorants. */
-static void raise_brick(const vlWorldMedium *m, float *majorants, const double medium_from_index[12],
-                        const float *values, const int32_t corner[3]) {
-  for (int part = 0; part < 8; part++) {
-    int x0 = part & 1 ? 4 : 0, y0 = part & 2 ? 4 : 0, z0 = part & 4 ? 4 : 0;
-    float most = 0;
-    for (int z = z0; z < z0 + 4; z++)
-      for (int y = y0; y < y0 + 4; y++)
-        for (int x = x0; x < x0 + 4; x++) most = vl_max(most, values[(z * 8 + y) * 8 + x]);
-    int32_t a[3] = {corner[0] + x0, corner[1] + y0, corner[2] + z0}, b[3] = {a[0] + 3, a[1] + 3, a[2] + 3};
-    if (most > 0) raise(m, majorants, medium_from_index, a, b, most);
-  }
-}
-
-static void bound_sparse(const vlWorldMedium *m, float *majorants, const double medium_from_index[12]) {
-  const vlSparseGrid *g = m->sparse;
-  size_t cells = (size_t)m->cells[0] * m->cells[1] * m->cells[2];
-  for (size_t i = 0; i < cells; i++) majorants[i] = vl_max(0, g->tiles[0]);
-  for (uint32_t i = 0; i < g->size[0] * g->size[1] * g->size[2]; i++) {
-    uint32_t at[3] = {i % g->size[0], i / g->size[0] % g->size[1], i / g->size[0] / g->size[1]}, block = g->blocks[i];
-    int32_t corner[3], end[3];
-    for (int k = 0; k < 3; k++) corner[k] = g->low[k] + (int32_t)at[k] * VL_BLOCK, end[k] = corner[k] + VL_BLOCK - 1;
-    if (block & VL_SPARSE_TILE) {
-      float value = g->tiles[block & ~VL_SPARSE_TILE];
-      if (value > 0) raise(m, majorants, medium_from_index, corner, end, value);
-      continue;
-    }
-    for (uint32_t j = 0; j < VL_BLOCK_BRICKS; j++) {
-      uint32_t brick = g->bricks[(size_t)block * VL_BLOCK_BRICKS + j];
-      const uint32_t step[3] = {j & 15, j >> 4 & 15, j >> 8};
-      int32_t c[3], e[3];
-      for (int k = 0; k < 3; k++) c[k] = corner[k] + (int32_t)step[k] * VL_BRICK, e[k] = c[k] + VL_BRICK - 1;
-      if (!(brick & VL_SPARSE_TILE)) {
-        raise_brick(m, majorants, medium_from_index, g->values + (size_t)brick * VL_BRICK_VALUES, c);
-      } else if (g->tiles[brick & ~VL_SPARSE_TILE] > 0) {
-        raise(m, majorants, medium_from_index, c, e, g->tiles[brick & ~VL_SPARSE_TILE]);
-      }
-    }
-  }
-}
-
-static vlResult compile_nanovdb(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
-  const char *name = def->grid ? def->grid : "density", *heat = def->temperature_grid;
-  m->emits = false;
-  vlResult r = vl_nanovdb_read(world, def->path, name, &m->sparse, error);
-  if (r == VL_OK && !m->sparse) return vl_fail(error, VL_ERROR_SCENE, "%s: it has no grid \"%.80s\"", def->path, name);
-  if (r == VL_OK) r = vl_nanovdb_read(world, def->path, heat ? heat : "temperature", &m->sparse_temperature, error);
-  if (r != VL_OK) return r;
-  if (heat && !m->sparse_temperature)
-    return vl_fail(error, VL_ERROR_SCENE, "%s: it has no grid \"%.80s\"", def->path, heat);
-  for (int i = 0; i < 3; i++) m->low[i] = INFINITY, m->high[i] = -INFINITY;
-  grow_box(m->sparse, m);
-  if (m->sparse_temperature) grow_box(m->sparse_temperature, m);
-  for (int i = 0; i < 3; i++)
-    if (!(m->low[i] < m->high[i]) || !isfinite(m->high[i] - m->low[i]))
-      return vl_fail(error, VL_ERROR_SCENE, "%s: grid \"%.80s\" is empty", def->path, name);
-  vlMat4 index_from_medium = vl_mat4_identity(), inverse;
-  for (int i = 0; i < 12; i++) index_from_medium.m[i] = (double)m->sparse->index_from_medium[i];
-  if (!vl_mat4_inverse(index_from_medium, &inverse))
-    return vl_fail(error, VL_ERROR_SCENE, "%s: the map of grid \"%.80s\" is singular", def->path, name);
-  float *majorants = new_majorants(world, m, 64, 64, 64);
-  if (!majorants) return vl_fail_memory(error);
-  bound_sparse(m, majorants, inverse.m);
-  return m->sparse_temperature ? compile_temperature(world, def, m, error) : VL_OK;
-}
-
 /* ---- all --------------------------------------------------------------------------------------------------------- */
 
-static vlResult compile_homogeneous(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
+vlResult vl_compile_medium_homogeneous(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
   (void)world, (void)def, (void)error;
   m->uniform = true;
   m->extinction = vl_medium_mean_extinction(m);
@@ -354,7 +97,7 @@ static vlResult compile_homogeneous(vlWorld *world, const vlMediumDef *def, vlWo
 }
 
 typedef vlResult CompileMedium(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error);
-#define COMPILE(K, k) [VL_MEDIUM_##K] = compile_##k,
+#define COMPILE(K, k) [VL_MEDIUM_##K] = vl_compile_medium_##k,
 static CompileMedium *const compile_kind[] = {VL_MEDIUM_KINDS(COMPILE)};
 #undef COMPILE
 

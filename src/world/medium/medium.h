@@ -1,6 +1,6 @@
 /* world/medium/medium.h: compiled participating media (pbrt book 11): coefficients as spectra, densities on grids,
  * and a coarse grid of majorants over each, by which free flights are sampled (trace/medium/medium.hot.c). medium.c
- * compiles them, nanovdb.c reads NanoVDB grids, medium_lookup.h evaluates them. */
+ * and a file per kind (kinds.h) compile them, nanovdb.c reads NanoVDB grids, medium_lookup.h evaluates them. */
 #ifndef WORLD_MEDIUM_MEDIUM_H
 #define WORLD_MEDIUM_MEDIUM_H
 
@@ -51,7 +51,7 @@ typedef struct vlWorldMedium {
   const vlSparseGrid *sparse, *sparse_temperature;
   float temperature_offset, temperature_scale, temperature_emission;
   const float *blackbody_rgb; /* RGB mode: VL_BLACKBODY_STEPS rows of 3 */
-  float cloud_density, wispiness, frequency;
+  float own[4];               /* numbers of a kind that has no members above */
 } vlWorldMedium;
 
 /* Colours of black bodies in RGB mode: step k is at VL_BLACKBODY_LOW * 2^(k / 32) kelvin. */

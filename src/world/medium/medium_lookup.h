@@ -3,101 +3,9 @@
 #ifndef WORLD_MEDIUM_MEDIUM_LOOKUP_H
 #define WORLD_MEDIUM_MEDIUM_LOOKUP_H
 
-#include "math/noise.h"
+#include "world/medium/cloud.h"
+#include "world/medium/grid_lookup.h"
 #include "world/world.h"
-
-static inline vlVec3 vl_medium_point(const float m[12], vlVec3 p) {
-  return vl_vec3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
-                 m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]);
-}
-static inline vlVec3 vl_medium_vector(const float m[12], vlVec3 d) {
-  return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[4] * d.x + m[5] * d.y + m[6] * d.z,
-                 m[8] * d.x + m[9] * d.y + m[10] * d.z);
-}
-
-/* ---- grids ------------------------------------------------------------------------------------------------------- */
-
-/* The eight neighbours of a point and their weights. */
-typedef struct vlTrilinear {
-  int32_t x, y, z;
-  float fx, fy, fz;
-} vlTrilinear;
-static inline vlTrilinear vl_trilinear(float x, float y, float z) {
-  float ix = __builtin_floorf(x), iy = __builtin_floorf(y), iz = __builtin_floorf(z);
-  return (vlTrilinear){(int32_t)ix, (int32_t)iy, (int32_t)iz, x - ix, y - iy, z - iz};
-}
-static inline float vl_trilinear_weight(vlTrilinear at, int k) {
-  return (k & 1 ? at.fx : 1.0f - at.fx) * (k & 2 ? at.fy : 1.0f - at.fy) * (k & 4 ? at.fz : 1.0f - at.fz);
-}
-/* Index of the cell of neighbour k; (size_t)-1 outside of the grid. */
-static inline size_t vl_dense_cell(const vlDenseGrid *g, vlTrilinear at, int k) {
-  int32_t x = at.x + (k & 1), y = at.y + (k >> 1 & 1), z = at.z + (k >> 2);
-  bool inside = x >= 0 && y >= 0 && z >= 0 && x < (int32_t)g->nx && y < (int32_t)g->ny && z < (int32_t)g->nz;
-  return inside ? ((size_t)z * g->ny + (size_t)y) * g->nx + (size_t)x : (size_t)-1;
-}
-/* q: position in the unit cube. */
-static inline vlTrilinear vl_dense_at_point(const vlDenseGrid *g, vlVec3 q) {
-  return vl_trilinear(q.x * (float)g->nx - 0.5f, q.y * (float)g->ny - 0.5f, q.z * (float)g->nz - 0.5f);
-}
-static inline float vl_dense_lookup(const vlDenseGrid *g, vlVec3 q) {
-  vlTrilinear at = vl_dense_at_point(g, q);
-  float sum = 0;
-  for (int k = 0; k < 8; k++) {
-    size_t cell = vl_dense_cell(g, at, k);
-    if (cell != (size_t)-1) sum += vl_trilinear_weight(at, k) * g->values[cell];
-  }
-  return sum;
-}
-
-static inline float vl_sparse_value(const vlSparseGrid *g, int32_t x, int32_t y, int32_t z) {
-  int64_t bx = (int64_t)x - g->low[0], by = (int64_t)y - g->low[1], bz = (int64_t)z - g->low[2];
-  bx >>= 7, by >>= 7, bz >>= 7;
-  if (bx < 0 || by < 0 || bz < 0 || bx >= g->size[0] || by >= g->size[1] || bz >= g->size[2]) return g->tiles[0];
-  uint32_t block = g->blocks[((size_t)bz * g->size[1] + (size_t)by) * g->size[0] + (size_t)bx];
-  if (block & VL_SPARSE_TILE) return g->tiles[block & ~VL_SPARSE_TILE];
-  uint32_t ux = (uint32_t)x & 127u, uy = (uint32_t)y & 127u, uz = (uint32_t)z & 127u;
-  uint32_t brick = g->bricks[(size_t)block * VL_BLOCK_BRICKS + ((size_t)(uz >> 3) * 16 + (uy >> 3)) * 16 + (ux >> 3)];
-  if (brick & VL_SPARSE_TILE) return g->tiles[brick & ~VL_SPARSE_TILE];
-  return g->values[(size_t)brick * VL_BRICK_VALUES + ((uz & 7) * 8 + (uy & 7)) * 8 + (ux & 7)];
-}
-/* p: medium space. */
-static inline float vl_sparse_lookup(const vlSparseGrid *g, vlVec3 p) {
-  vlVec3 q = vl_medium_point(g->index_from_medium, p);
-  float limit = 1e9f;
-  if (!(vl_abs(q.x) < limit && vl_abs(q.y) < limit && vl_abs(q.z) < limit)) return g->tiles[0];
-  vlTrilinear at = vl_trilinear(q.x, q.y, q.z);
-  float sum = 0;
-  for (int k = 0; k < 8; k++)
-    sum += vl_trilinear_weight(at, k) * vl_sparse_value(g, at.x + (k & 1), at.y + (k >> 1 & 1), at.z + (k >> 2));
-  return sum;
-}
-
-/* pbrt-v4's procedural cloud (the last medium of book 11.4.2): fractal noise, distorted by wisps, thinner with
- * height. */
-static inline float vl_cloud_density(const vlWorldMedium *m, vlVec3 p) {
-  vlVec3 q = vl_mul(p, m->frequency);
-  float omega = 0.05f * m->wispiness, frequency = 10.0f;
-  for (int i = 0; m->wispiness > 0.0f && i < 2; i++) {
-    vlVec3 at = vl_mul(q, frequency);
-    const float delta = 0.01f;
-    float n = vl_noise(at.x, at.y, at.z);
-    vlVec3 slope =
-        vl_vec3((vl_noise(at.x + delta, at.y, at.z) - n) / delta, (vl_noise(at.x, at.y + delta, at.z) - n) / delta,
-                (vl_noise(at.x, at.y, at.z + delta) - n) / delta);
-    q = vl_add(q, vl_mul(slope, omega));
-    omega *= 0.5f;
-    frequency *= 1.99f;
-  }
-  float sum = 0;
-  omega = 0.5f, frequency = 1.0f;
-  for (int i = 0; i < 5; i++) {
-    sum += omega * vl_noise(frequency * q.x, frequency * q.y, frequency * q.z);
-    omega *= 0.5f;
-    frequency *= 1.99f;
-  }
-  float d = vl_clamp((1.0f - p.y) * 4.5f * m->cloud_density * sum, 0.0f, 1.0f);
-  return vl_clamp(d + 2.0f * vl_max(0.0f, 0.5f - p.y), 0.0f, 1.0f);
-}
 
 /* ---- emission ---------------------------------------------------------------------------------------------------- */
 
@@ -171,15 +79,22 @@ static inline vlMediumLight vl_rgb_medium_at(const vlWorldMedium *m, const float
   return r;
 }
 
-/* Density factor on the coefficients at a point; 1 for kinds without one. p: medium space; q: 0 to 1 over the box. */
+static inline float vl_medium_density_homogeneous(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
+  (void)m, (void)p, (void)q;
+  return 1.0f;
+}
+static inline float vl_medium_density_rgb_grid(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
+  (void)m, (void)p, (void)q;
+  return 1.0f;
+}
+
+/* Density factor on the coefficients at a point; 1 for kinds without one. p: medium space; q: 0 to 1 over the box. Each
+ * kind has a function. */
 static inline float vl_medium_density(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
-  switch (m->kind) {
-    case VL_MEDIUM_GRID: return vl_dense_lookup(&m->density, q);
-    case VL_MEDIUM_CLOUD: return vl_cloud_density(m, p);
-    case VL_MEDIUM_NANOVDB: return vl_sparse_lookup(m->sparse, p);
-    case VL_MEDIUM_HOMOGENEOUS:
-    case VL_MEDIUM_RGB_GRID: break;
-  }
+#define VL_DENSITY(K, k) \
+  case VL_MEDIUM_##K: return vl_medium_density_##k(m, p, q);
+  switch (m->kind) { VL_MEDIUM_KINDS(VL_DENSITY) }
+#undef VL_DENSITY
   return 1.0f;
 }
 

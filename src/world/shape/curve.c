@@ -5,20 +5,19 @@
  * alone; a ribbon is narrower by the cosine between its normal and the ray. The hit point lies on the ray, at the
  * depth of the axis, so its error is up to the width: rays that leave start that far away. All in shape space unless
  * stated otherwise. */
-#include "world/shape/curve.h"
-
 #include <math.h>
 #include <string.h>
 
+#include "base/error.h"
 #include "math/approx.h"
-#include "world/shape/double3.h"
+#include "world/shape/kinds.h"
 
 /* Bezier control points in ray coordinates: x and y across, z along the ray. */
 typedef struct Cubic {
   double x[4], y[4], z[4];
 } Cubic;
 
-bool vl_curve_copy(vlWorld *world, const vlShapeDef *def, vlWorldShape *s) {
+static bool copy_curves(vlWorld *world, const vlShapeDef *def, vlWorldShape *s) {
   size_t n = def->faces;
   enum { MOST_PIECES = 1 << 23 }; /* a box takes more memory in Embree than the curve itself */
   s->curve = def->curve;
@@ -65,7 +64,7 @@ static inline void cut(const double c[4], double u0, double u1, double r[4]) {
   r[3] = blossom(c, u1, u1, u1);
 }
 
-void vl_curve_bounds(const vlWorldShape *s, uint32_t prim, double low[3], double high[3]) {
+static void curve_bounds(const vlWorldShape *s, uint32_t prim, double low[3], double high[3]) {
   uint32_t segment = prim >> s->split;
   const float *p = s->positions + 12 * (size_t)segment;
   double u0, u1, c[3][4], q[3][4];
@@ -219,8 +218,8 @@ static int depth_for(const Cubic *c, double width, double *flat) {
   return depth;
 }
 
-bool vl_curve_intersect(const vlWorldShape *s, uint32_t prim, const double go[3], const double gd[3], double t_min,
-                        double t_max, vlShapeHit *hit) {
+static bool curve_intersect(const vlWorldShape *s, uint32_t prim, const double go[3], const double gd[3], double t_min,
+                            double t_max, vlShapeHit *hit) {
   double o[3], x[3], y[3], u0, u1;
   Search q = {.shape = s, .segment = prim >> s->split};
   vl_map_point(s->to_shape, go, o);
@@ -258,7 +257,7 @@ static void scale_to(double v[3], double length) {
   for (int i = 0; i < 3; i++) v[i] = l > 0 ? v[i] * length : 0;
 }
 
-void vl_curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
+static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
   uint32_t segment = prim >> s->split;
   const float *p = s->positions + 12 * (size_t)segment;
   double u = hit->a, v = hit->b, along[3], across[3], n[3], width = width_at(s, segment, u);
@@ -308,7 +307,9 @@ void vl_curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *hit,
   point->uv[0] = (float)u, point->uv[1] = (float)v;
 }
 
-void vl_curve_middle(const vlWorldShape *s, uint32_t prim, vlSurfacePoint *point) {
+/* The middle of a piece, facing forward. Curves do not emit light, so no other samples are needed. */
+static void curve_sample(const vlWorldShape *s, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
+  (void)u, (void)v, (void)pdf;
   const float *p = s->positions + 12 * (size_t)(prim >> s->split);
   double u0, u1;
   piece_range(s, prim, &u0, &u1);
@@ -317,5 +318,18 @@ void vl_curve_middle(const vlWorldShape *s, uint32_t prim, vlSurfacePoint *point
     double c[4] = {p[i], p[3 + i], p[6 + i], p[9 + i]};
     hit.p[i] = bezier(c, hit.a);
   }
-  vl_curve_point(s, prim, &hit, point);
+  curve_point(s, prim, &hit, point);
 }
+
+static double curve_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]) {
+  (void)shape, (void)prim, (void)at;
+  return 0;
+}
+
+static vlResult curve_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group, const vlMat4 *from_group,
+                              vlWorldShape *shape, vlError *error) {
+  (void)to_group, (void)from_group;
+  return copy_curves(world, def, shape) ? VL_OK : vl_fail_memory(error);
+}
+
+VL_SHAPE_FUNCTIONS(curves, curve)

@@ -1,8 +1,8 @@
 /* world/shape/patch.c: the bilinear patch: intersection, surface at given parameters, uniform sampling of the
  * parameters. */
-#include "world/shape/patch.h"
-
 #include <math.h>
+
+#include "world/shape/mesh.h"
 
 typedef struct Patch {
   double p00[3], p10[3], p01[3], p11[3];
@@ -40,8 +40,8 @@ static const double parallel = 1e-12;
 
 /* For a fixed u the patch is the line a(u) + v e(u); the ray meets it where the scalar triple product
  * (a(u) - o) . (d x e(u)) vanishes: a quadratic in u (Reshetov 2019, "Cool Patches"). */
-bool vl_patch_intersect(const vlWorldShape *s, uint32_t prim, const double o[3], const double d[3], double t_min,
-                        double t_max, vlShapeHit *hit) {
+static bool patch_intersect(const vlWorldShape *s, uint32_t prim, const double o[3], const double d[3], double t_min,
+                            double t_max, vlShapeHit *hit) {
   Patch q = load_patch(s, prim);
   double a0[3], a1[3], e0[3], e1[3], x0[3], x1[3];
   for (int i = 0; i < 3; i++) {
@@ -123,7 +123,7 @@ static void over_texture(const vlWorldShape *s, const Patch *q, double u, double
     }
 }
 
-void vl_patch_point(const vlWorldShape *s, uint32_t prim, double u, double v, vlSurfacePoint *point) {
+static void surface_at(const vlWorldShape *s, uint32_t prim, double u, double v, vlSurfacePoint *point) {
   Patch q = load_patch(s, prim);
   double mixed[3], length;
   patch_position(&q, u, v, point->p);
@@ -174,13 +174,14 @@ static double density(const Patch *q, double u, double v) {
   return l > 0 ? 1 / l : 0;
 }
 
-void vl_patch_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
-  vl_patch_point(shape, prim, u, v, point);
+static void patch_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point,
+                         double *pdf) {
+  surface_at(shape, prim, u, v, point);
   Patch q = load_patch(shape, prim);
   *pdf = density(&q, u, v);
 }
 
-double vl_patch_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]) {
+static double patch_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]) {
   /* Recovers the parameters by Gauss-Newton steps from the centre; the density varies slowly. */
   Patch q = load_patch(shape, prim);
   double u = 0.5, v = 0.5;
@@ -200,3 +201,18 @@ double vl_patch_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]
   }
   return density(&q, u, v);
 }
+
+static vlResult patch_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group, const vlMat4 *from_group,
+                              vlWorldShape *shape, vlError *error) {
+  return vl_mesh_compile(world, def, to_group, from_group, shape, error);
+}
+
+static void patch_bounds(const vlWorldShape *shape, uint32_t prim, double low[3], double high[3]) {
+  vl_mesh_bounds(shape, 4, prim, low, high);
+}
+
+static void patch_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
+  surface_at(shape, prim, hit->a, hit->b, point);
+}
+
+VL_SHAPE_FUNCTIONS(bilinear, patch)

@@ -1,10 +1,11 @@
 /* world/shape/quadric.c: sphere, disk and cylinder: intersection, surface at a point, sampling by area. In shape
  * space unless stated otherwise. */
-#include "world/shape/quadric.h"
-
 #include <math.h>
+#include <string.h>
 
+#include "base/error.h"
 #include "math/approx.h"
+#include "world/shape/kinds.h"
 
 /* One prim of a shape, in a space of its own: that of the shape, with the sphere of many at the origin. */
 typedef struct Quadric {
@@ -73,8 +74,8 @@ static bool try_root(const Quadric *s, const double o[3], const double d[3], dou
   return true;
 }
 
-bool vl_quadric_intersect(const vlWorldShape *shape, uint32_t prim, const double go[3], const double gd[3],
-                          double t_min, double t_max, vlShapeHit *hit) {
+static bool quadric_intersect(const vlWorldShape *shape, uint32_t prim, const double go[3], const double gd[3],
+                              double t_min, double t_max, vlShapeHit *hit) {
   Quadric quadric = load(shape, prim), *s = &quadric;
   double o[3], d[3];
   to_own(s, go, o);
@@ -164,12 +165,12 @@ static void describe(const Quadric *s, const double p[3], vlSurfacePoint *point)
   }
 }
 
-void vl_quadric_point(const vlWorldShape *shape, uint32_t prim, const double p[3], vlSurfacePoint *point) {
+static void quadric_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
   Quadric quadric = load(shape, prim);
-  describe(&quadric, p, point);
+  describe(&quadric, hit->p, point);
 }
 
-void vl_quadric_bounds(const vlWorldShape *shape, uint32_t prim, double low[3], double high[3]) {
+static void quadric_bounds(const vlWorldShape *shape, uint32_t prim, double low[3], double high[3]) {
   Quadric q = load(shape, prim);
   double r = q.radius, z0 = q.z_min, z1 = q.z_max;
   if (q.kind == VL_SHAPE_DISK) z0 = z1 = q.height;
@@ -196,7 +197,8 @@ static double shape_area(const Quadric *s) {
   return (double)s->phi_max * s->radius * (s->z_max - s->z_min);
 }
 
-void vl_quadric_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
+static void quadric_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point,
+                           double *pdf) {
   Quadric quadric = load(shape, prim), *s = &quadric;
   double p[3];
   vlSinCos a = vl_sincos((float)(u * s->phi_max));
@@ -215,7 +217,7 @@ void vl_quadric_sample(const vlWorldShape *shape, uint32_t prim, float u, float 
   *pdf = 1 / (shape_area(s) * area_stretch(s, n));
 }
 
-double vl_quadric_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]) {
+static double quadric_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]) {
   Quadric quadric = load(shape, prim), *s = &quadric;
   double p[3], n[3];
   to_own(s, at, p);
@@ -223,3 +225,23 @@ double vl_quadric_pdf(const vlWorldShape *shape, uint32_t prim, const double at[
   if (s->kind != VL_SHAPE_DISK) vl_normalize3(n);
   return 1 / (shape_area(s) * area_stretch(s, n));
 }
+
+/* Many spheres: their centers and radii. */
+static vlResult copy_spheres(vlWorld *world, const vlShapeDef *def, vlWorldShape *s, vlError *error) {
+  s->faces = def->faces;
+  s->phi_max = 2.0f * 3.14159265358979f;
+  s->centers = vl_world_block(world, def->faces, 3 * sizeof *s->centers);
+  if (!s->centers || !vl_world_copy_floats(world, def->radii, def->faces, &s->radii)) return vl_fail_memory(error);
+  memcpy(s->centers, def->centers, 3 * (size_t)def->faces * sizeof *s->centers);
+  return VL_OK;
+}
+
+static vlResult quadric_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group, const vlMat4 *from_group,
+                                vlWorldShape *shape, vlError *error) {
+  (void)to_group, (void)from_group;
+  return def->centers ? copy_spheres(world, def, shape, error) : VL_OK;
+}
+
+VL_SHAPE_FUNCTIONS(sphere, quadric)
+VL_SHAPE_FUNCTIONS(disk, quadric)
+VL_SHAPE_FUNCTIONS(cylinder, quadric)

@@ -1,5 +1,4 @@
-/* world/shape/shapes.c: scene shapes -> world shapes: transforms vertices to group space, lays out groups and
- * instances, computes bounds. */
+/* world/shape/shapes.c: scene shapes -> world shapes: what all kinds have, groups and instances, bounds. */
 #include <math.h>
 #include <string.h>
 
@@ -7,18 +6,10 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "scene/schema/schema.h"
-#include "world/shape/curve.h"
 #include "world/shape/displace.h"
 #include "world/shape/moving.h"
 #include "world/shape/surface_point.h"
 #include "world/world.h"
-
-void *vl_world_block(vlWorld *world, size_t count, size_t size) {
-  void **slot = VL_PUSH(world->context, &world->blocks);
-  if (!slot) return NULL;
-  *slot = vl_alloc_array(world->context, count ? count : 1, size);
-  return *slot;
-}
 
 static void store_affine_f(const vlMat4 *m, float r[12]) {
   for (int i = 0; i < 12; i++) r[i] = (float)m->m[i];
@@ -29,124 +20,6 @@ static void store_affine_d(const vlMat4 *m, double r[12]) {
 
 static vlResult fail_shape(const vlShapeDef *def, vlError *error, const char *what) {
   return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column, "%s", what);
-}
-
-static bool is_identity(const vlMat4 *m) {
-  vlMat4 e = vl_mat4_identity();
-  return memcmp(e.m, m->m, sizeof e.m) == 0;
-}
-
-/* Positions or normals at one end of a motion, transformed to group space. */
-typedef struct Rows {
-  const float *from;
-  bool normals;
-} Rows;
-
-static bool move_rows(const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse, Rows rows, float *to) {
-  bool fine = true;
-  for (size_t i = 0; i < def->vertices; i++) {
-    double p[3] = {rows.from[3 * i], rows.from[3 * i + 1], rows.from[3 * i + 2]}, q[3], f = 1;
-    if (rows.normals) {
-      vl_mat4_normal(inverse, p, q);
-      double l = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
-      f = l > 0 ? 1 / l : 0;
-      if (def->reverse_orientation) f = -f;
-    } else {
-      vl_mat4_point(m, p, q);
-    }
-    for (int k = 0; k < 3; k++) {
-      to[3 * i + k] = (float)(rows.normals ? q[k] * f : q[k]);
-      fine = fine && (rows.normals || isfinite(to[3 * i + k]));
-    }
-  }
-  return fine;
-}
-
-/* Interpolates the rows of a motion's two ends, stored in the first and the last of `steps` sets, into the sets
- * between. */
-static void spread(const vlWorld *world, const vlShapeDef *def, float *rows, uint32_t steps) {
-  size_t n = 3 * (size_t)def->vertices;
-  double span = world->time_close - world->time_open, first = (def->times[0] - world->time_open) / span,
-         last = (def->times[1] - world->time_open) / span;
-  const double same = 1e-6; /* of the motion: as in vl_world_time_steps */
-  for (uint32_t k = 1; k + 1 < steps; k++) {
-    double f = ((double)k / (steps - 1) - first) / (last - first);
-    f = f > same ? (f < 1 - same ? f : 1) : 0;
-    for (size_t i = 0; i < n; i++) rows[k * n + i] = (float)(rows[i] * (1 - f) + rows[(steps - 1) * n + i] * f);
-  }
-}
-
-static vlResult add_vertex_motion(vlWorld *world, const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse,
-                                  vlWorldShape *s, vlError *error) {
-  size_t n = 3 * (size_t)def->vertices;
-  uint32_t steps = vl_world_time_steps(world, def->times[0], def->times[1]);
-  if (steps == 0)
-    return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
-                      "vertices move from %g to %g seconds, other things from %g to %g: no even steps lead through all",
-                      def->times[0], def->times[1], world->time_open, world->time_close);
-  s->steps = steps + 1;
-  float *positions = vl_world_block(world, s->steps * n + 4, sizeof(float)), *normals = NULL;
-  if (!positions) return vl_fail_memory(error);
-  if (s->normals && !(normals = vl_world_block(world, s->steps * n, sizeof(float)))) return vl_fail_memory(error);
-  memset(positions + s->steps * n, 0, 4 * sizeof(float));
-  memcpy(positions, s->positions, n * sizeof(float));
-  if (!move_rows(def, m, inverse, (Rows){def->positions_close, false}, positions + steps * n))
-    return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");
-  spread(world, def, positions, s->steps);
-  s->positions = positions;
-  if (!normals) return VL_OK;
-  memcpy(normals, s->normals, n * sizeof(float));
-  move_rows(def, m, inverse, (Rows){def->normals_close, true}, normals + steps * n);
-  spread(world, def, normals, s->steps);
-  s->normals = normals;
-  return VL_OK;
-}
-
-/* false: out of memory. */
-static bool copy_rows(vlWorld *world, const float *from, size_t count, size_t width, float **to) {
-  if (!from) return true;
-  if (!(*to = vl_world_block(world, count * width, sizeof(float)))) return false;
-  memcpy(*to, from, count * width * sizeof(float));
-  return true;
-}
-
-static vlResult move_mesh(vlWorld *world, const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse,
-                          vlWorldShape *s, vlError *error) {
-  size_t n = def->vertices, corners = def->kind == VL_SHAPE_BILINEAR ? 4 : 3;
-  bool same = is_identity(m);
-  s->vertices = def->vertices;
-  s->faces = def->faces;
-  s->positions = vl_world_block(world, 3 * n + 4, sizeof(float));
-  s->indices = vl_world_block(world, corners * def->faces + 4, sizeof(uint32_t));
-  if (!s->positions || !s->indices) return vl_fail_memory(error);
-  memset(s->positions + 3 * n, 0, 4 * sizeof(float));
-  memcpy(s->indices, def->indices, corners * def->faces * sizeof(uint32_t));
-  if (def->normals && !(s->normals = vl_world_block(world, 3 * n, sizeof(float)))) return vl_fail_memory(error);
-  if (def->tangents && !(s->tangents = vl_world_block(world, 3 * n, sizeof(float)))) return vl_fail_memory(error);
-  if (def->uvs) {
-    if (!(s->uvs = vl_world_block(world, 2 * n, sizeof(float)))) return vl_fail_memory(error);
-    memcpy(s->uvs, def->uvs, 2 * n * sizeof(float));
-  }
-  s->one_sided = def->one_sided && def->kind == VL_SHAPE_TRIANGLES;
-  if (def->kind == VL_SHAPE_TRIANGLES &&
-      (!copy_rows(world, def->tangent_signs, n, 1, &s->tangent_signs) ||
-       !copy_rows(world, def->colors, n, 4, &s->colors) || !copy_rows(world, def->more_uvs[0], n, 2, &s->more_uvs[0]) ||
-       !copy_rows(world, def->more_uvs[1], n, 2, &s->more_uvs[1]) ||
-       !copy_rows(world, def->more_uvs[2], n, 2, &s->more_uvs[2])))
-    return vl_fail_memory(error);
-  bool mirrored = vl_mat4_determinant3(*m) < 0; /* a mirroring map flips n x t relative to the mapped n and t */
-  for (size_t i = 0; mirrored && s->tangent_signs && i < n; i++) s->tangent_signs[i] = -s->tangent_signs[i];
-  if (same) memcpy(s->positions, def->positions, 3 * n * sizeof(float));
-  if (!same && !move_rows(def, m, inverse, (Rows){def->positions, false}, s->positions))
-    return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");
-  if (def->normals) move_rows(def, m, inverse, (Rows){def->normals, true}, s->normals);
-  for (size_t i = 0; def->tangents && i < n; i++) {
-    double p[3] = {def->tangents[3 * i], def->tangents[3 * i + 1], def->tangents[3 * i + 2]}, q[3];
-    vl_mat4_vector(m, p, q);
-    for (int k = 0; k < 3; k++) s->tangents[3 * i + k] = (float)q[k];
-  }
-  return def->positions_close && def->kind == VL_SHAPE_TRIANGLES ? add_vertex_motion(world, def, m, inverse, s, error)
-                                                                 : VL_OK;
 }
 
 static vlResult constant_node(vlWorld *world, const vlScene *scene, float value, int32_t *node, vlError *error) {
@@ -171,15 +44,6 @@ static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShap
   return r == VL_OK ? vl_world_mix_node(world, first ? none : whole, first ? whole : none, share, &s->alpha, error) : r;
 }
 
-static vlResult copy_spheres(vlWorld *world, const vlShapeDef *def, vlWorldShape *s, vlError *error) {
-  s->faces = def->faces;
-  s->phi_max = 2.0f * 3.14159265358979f;
-  s->centers = vl_world_block(world, def->faces, 3 * sizeof *s->centers);
-  if (!s->centers || !copy_rows(world, def->radii, def->faces, 1, &s->radii)) return vl_fail_memory(error);
-  memcpy(s->centers, def->centers, 3 * (size_t)def->faces * sizeof *s->centers);
-  return VL_OK;
-}
-
 static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef *def, vlWorldShape *s,
                           vlError *error) {
   vlMat4 m = vl_mat4_load(def->group_from_shape), inverse;
@@ -187,6 +51,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef
   bool mirrored = vl_mat4_determinant3(m) < 0;
   memset(s, 0, sizeof *s);
   s->kind = def->kind;
+  s->traits = vl_kind_row(&vl_shape_family, (int)def->kind)->traits;
   s->material = def->material.index; /* 0 is the default material */
   s->first_light = VL_NONE;
   s->flip = def->reverse_orientation != mirrored;
@@ -209,23 +74,13 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef
   s->faces = s->steps = 1;
   store_affine_d(&m, s->from_shape);
   store_affine_d(&inverse, s->to_shape);
-  if (def->kind == VL_SHAPE_TRIANGLES && def->displacement.texture.index) {
-    vlShapeDef fine;
-    vlResult r = vl_world_displace(world, scene, def, &m, &fine, error);
-    if (r != VL_OK) return r;
-    r = move_mesh(world, &fine, &m, &inverse, s, error);
-    vl_world_displace_free(world, &fine);
-    return r;
-  }
-  switch (def->kind) {
-    case VL_SHAPE_TRIANGLES:
-    case VL_SHAPE_BILINEAR: return move_mesh(world, def, &m, &inverse, s, error);
-    case VL_SHAPE_CURVES: return vl_curve_copy(world, def, s) ? VL_OK : vl_fail_memory(error);
-    case VL_SHAPE_SPHERE: return def->centers ? copy_spheres(world, def, s, error) : VL_OK;
-    case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: break; /* no arrays to copy */
-  }
-  return VL_OK;
+  if (!def->displacement.texture.index) return vl_shape_compile(world, def, &m, &inverse, s, error);
+  vlShapeDef fine;
+  vlResult r = vl_world_displace(world, scene, def, &m, &fine, error);
+  if (r != VL_OK) return r;
+  r = vl_shape_compile(world, &fine, &m, &inverse, s, error);
+  vl_world_displace_free(world, &fine);
+  return r;
 }
 
 static void grow_bounds(float low[3], float high[3], const float p[3]) {
@@ -236,18 +91,13 @@ static void grow_bounds(float low[3], float high[3], const float p[3]) {
 }
 
 static void shape_bounds(const vlWorldShape *s, float low[3], float high[3]) {
-  if (s->kind == VL_SHAPE_CURVES || s->centers) {
-    for (uint32_t i = 0; i < s->faces; i++) {
-      float a[3], b[3];
-      vl_world_prim_bounds(s, i, a, b);
-      grow_bounds(low, high, a);
-      grow_bounds(low, high, b);
-    }
-  } else if (s->positions) {
+  if (vl_shape_is_mesh(s->kind)) { /* at all times */
     for (size_t i = 0; i < (size_t)s->steps * s->vertices; i++) grow_bounds(low, high, s->positions + 3 * i);
-  } else {
+    return;
+  }
+  for (uint32_t i = 0; i < s->faces; i++) {
     float a[3], b[3];
-    vl_world_prim_bounds(s, 0, a, b);
+    vl_world_prim_bounds(s, i, a, b);
     grow_bounds(low, high, a);
     grow_bounds(low, high, b);
   }

@@ -1,13 +1,9 @@
-/* world/shape/surface_point.c: dispatches over the shapes that are not triangle meshes (quadric.c, patch.c,
- * curve.c); bounds and area of all shapes. */
+/* world/shape/surface_point.c: dispatches over the kinds of shapes (kinds.h); bounds and area. */
 #include "world/shape/surface_point.h"
 
 #include <string.h>
 
-#include "world/shape/curve.h"
-#include "world/shape/double3.h"
-#include "world/shape/patch.h"
-#include "world/shape/quadric.h"
+#include "velo/schema.h"
 
 void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]) {
   const float *m = instance->to_group;
@@ -18,55 +14,34 @@ void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]) 
   }
 }
 
+#define FUNCTIONS(K, k) [VL_SHAPE_##K] = &vl_shape_functions_##k,
+static const vlShapeFunctions *const functions[] = {VL_SHAPE_KINDS(FUNCTIONS)};
+#undef FUNCTIONS
+
+vlResult vl_shape_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group, const vlMat4 *from_group,
+                          vlWorldShape *shape, vlError *error) {
+  return functions[def->kind]->compile(world, def, to_group, from_group, shape, error);
+}
+
 bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3], const double d[3], double t_min,
                         double t_max, vlShapeHit *hit) {
   hit->a = hit->b = 0;
-  switch (shape->kind) {
-    case VL_SHAPE_BILINEAR: return vl_patch_intersect(shape, prim, o, d, t_min, t_max, hit);
-    case VL_SHAPE_SPHERE:
-    case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: return vl_quadric_intersect(shape, prim, o, d, t_min, t_max, hit);
-    case VL_SHAPE_CURVES: return vl_curve_intersect(shape, prim, o, d, t_min, t_max, hit);
-    case VL_SHAPE_TRIANGLES: break; /* trace/surface intersects triangles in batches */
-  }
-  return false;
+  return functions[shape->kind]->intersect(shape, prim, o, d, t_min, t_max, hit);
 }
 
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
   memset(point->error, 0, sizeof point->error);
-  switch (shape->kind) {
-    case VL_SHAPE_BILINEAR: vl_patch_point(shape, prim, hit->a, hit->b, point); break;
-    case VL_SHAPE_SPHERE:
-    case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: vl_quadric_point(shape, prim, hit->p, point); break;
-    case VL_SHAPE_CURVES: vl_curve_point(shape, prim, hit, point); break;
-    case VL_SHAPE_TRIANGLES: break;
-  }
+  functions[shape->kind]->point(shape, prim, hit, point);
 }
 
 void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
   memset(point->error, 0, sizeof point->error);
   *pdf = 0;
-  switch (shape->kind) {
-    case VL_SHAPE_BILINEAR: vl_patch_sample(shape, prim, u, v, point, pdf); break;
-    case VL_SHAPE_SPHERE:
-    case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: vl_quadric_sample(shape, prim, u, v, point, pdf); break;
-    case VL_SHAPE_CURVES: vl_curve_middle(shape, prim, point); break; /* they do not emit: only a point is needed */
-    case VL_SHAPE_TRIANGLES: break;
-  }
+  functions[shape->kind]->sample(shape, prim, u, v, point, pdf);
 }
 
 double vl_shape_pdf(const vlWorldShape *shape, uint32_t prim, const vlSurfacePoint *point) {
-  switch (shape->kind) {
-    case VL_SHAPE_BILINEAR: return vl_patch_pdf(shape, prim, point->p);
-    case VL_SHAPE_SPHERE:
-    case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: return vl_quadric_pdf(shape, prim, point->p);
-    case VL_SHAPE_CURVES:
-    case VL_SHAPE_TRIANGLES: break;
-  }
-  return 0;
+  return functions[shape->kind]->pdf(shape, prim, point->p);
 }
 
 /* ---- bounds and area, also of triangles -------------------------------------------------------------------------- */
@@ -85,8 +60,8 @@ float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim) {
   }
   /* Mean of 1/pdf over a grid of parameters, exact for parallelograms; a single point if the density is constant. */
   double sum = 0, scale;
-  bool even = shape->kind == VL_SHAPE_DISK || (shape->kind != VL_SHAPE_BILINEAR && shape->kind != VL_SHAPE_CURVES &&
-                                               vl_is_similarity(shape->from_shape, &scale));
+  bool even = shape->kind == VL_SHAPE_DISK ||
+              ((shape->traits & VL_SHAPE_TRAIT_QUADRIC) && vl_is_similarity(shape->from_shape, &scale));
   const int steps = even ? 1 : 16;
   for (int i = 0; i < steps; i++)
     for (int j = 0; j < steps; j++) {
@@ -100,18 +75,7 @@ float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim) {
 
 void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3], float high[3]) {
   double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
-  int corners = shape->kind == VL_SHAPE_TRIANGLES ? 3 : shape->kind == VL_SHAPE_BILINEAR ? 4 : 0;
-  for (int k = 0; k < corners; k++)
-    for (int i = 0; i < 3; i++) {
-      double x = shape->positions[3 * (size_t)shape->indices[(size_t)corners * prim + k] + i];
-      lo[i] = x < lo[i] ? x : lo[i];
-      hi[i] = x > hi[i] ? x : hi[i];
-    }
-  if (shape->kind == VL_SHAPE_CURVES) {
-    vl_curve_bounds(shape, prim, lo, hi);
-  } else if (!corners) {
-    vl_quadric_bounds(shape, prim, lo, hi);
-  }
+  functions[shape->kind]->bounds(shape, prim, lo, hi);
   for (int i = 0; i < 3; i++) { /* widened by one float step for rounding */
     low[i] = nextafterf((float)lo[i], -INFINITY);
     high[i] = nextafterf((float)hi[i], INFINITY);

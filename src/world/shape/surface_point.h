@@ -1,40 +1,21 @@
-/* world/shape/surface_point.h: sphere, disk, cylinder, bilinear patch and curve: ray intersection, surface
- * properties at a hit, sampling by area. Computed in double, one point at a time: such shapes are few. Triangles are
- * handled in trace, in batches. Conventions (parametrisation, normals): pbrt book 6.2-6.4 and 6.6. */
+/* world/shape/surface_point.h: the surface of a shape of any kind (kinds.h). */
 #ifndef WORLD_SHAPE_SURFACE_POINT_H
 #define WORLD_SHAPE_SURFACE_POINT_H
 
-#include "world/world.h"
-
-typedef struct vlShapeHit {
-  double t;    /* along the (not normalised) ray */
-  double a, b; /* bilinear patches, curves: parameters; else unused */
-  double p[3]; /* shape space */
-  double d[3]; /* curves: the ray's direction in shape space, unit */
-} vlShapeHit;
+#include "world/shape/kinds.h"
 
 /* Transforms a world-space ray to the space of an instance's group; t is unchanged. */
 void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]);
+
+/* Fills what the kind alone has: to_group, from_group: the map of the def and its inverse. */
+vlResult vl_shape_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group, const vlMat4 *from_group,
+                          vlWorldShape *shape, vlError *error);
 
 /* Nearest hit in (t_min, t_max) of a ray in group space. */
 bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3], const double d[3], double t_min,
                         double t_max, vlShapeHit *hit);
 
-/* A point of a surface, in group space. n is unit, oriented as in pbrt (flip applied); uv are texture coordinates. */
-typedef struct vlSurfacePoint {
-  double p[3];
-  double n[3];  /* geometric normal */
-  double ns[3]; /* shading normal: vertex normals interpolated, else n */
-  double dpdu[3], dpdv[3];
-  double dndu[3], dndv[3]; /* derivatives of ns; 0 for curves, which are thin */
-  double error[3];         /* for curves, the error bound of p along each axis; else 0: rounding alone */
-  float uv[2];
-} vlSurfacePoint;
-/* The derivative of a unit normal n = m / |m|, |m| = length, from that of m: removes the component along n. */
-static inline void vl_normal_derivative(const double n[3], double length, double d[3]) {
-  double along = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
-  for (int i = 0; i < 3; i++) d[i] = length > 0 ? (d[i] - along * n[i]) / length : 0;
-}
+/* The surface at a hit. */
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point);
 
 /* Whether the map preserves angles. *scale: factor on lengths. */

@@ -98,6 +98,15 @@ typedef struct vlVec3 {
 /** Importance of a log message, most important first. */
 typedef enum vlLogLevel { VL_LOG_ERROR = 0, VL_LOG_WARNING = 1, VL_LOG_INFO = 2, VL_LOG_DEBUG = 3 } vlLogLevel;
 
+/** A name or value out of a file, as messages show it. */
+typedef struct vlShortText {
+  char text[64]; /**< UTF-8, zero-terminated */
+} vlShortText;
+/** The first 12 characters of `text`; "…" follows if there are more. Control characters, invisible characters and bytes
+ * that are not UTF-8 become "?". A message must show no more of a file that may be a stranger's. Null is "". Any
+ * thread. */
+VL_API vlShortText vl_short_text(const char *text);
+
 /** Receives a log message. `where` is null or carries file, line and column (its message is not used). Called from any
  * thread, never from two at once. The strings live until the callback returns. */
 typedef void vlLogFn(void *user, vlLogLevel level, const vlError *where, const char *message);

@@ -5,7 +5,7 @@
 
 vlResult vl_scene_diagnose(vlScene *scene, const char *path, const vlLoadDef *def, vlProblemFn *tell, void *user,
                            vlError *error) {
-  if (!scene || !tell) return vl_fail(error, VL_ERROR_ARGUMENT, "scene diagnose: null argument");
+  if (!scene || !tell) return vl_fail(error, VL_ERROR_ARGUMENT, "scene diagnose: scene or tell is null");
   scene->problem = tell;
   scene->problem_user = user;
   vlResult result = vl_scene_load(scene, path, def, error);

@@ -44,9 +44,8 @@ static vlResult load_whole_camera(vlScene *scene, const char *path, const vlLoad
 
 vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
   vl_error_clear(error);
-  if (!scene || !path) return vl_fail(error, VL_ERROR_ARGUMENT, "vl_scene_load needs a scene and a path");
-  if (def && def->cookie != VL_COOKIE_LOAD)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "the def does not come from vl_default_load_def()");
+  if (!scene || !path) return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: scene or path is null");
+  if (def && def->cookie != VL_COOKIE_LOAD) return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: " VL_BAD_COOKIE);
   if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
   struct stat info;
   bool readable = stat(path, &info) == 0 && !S_ISDIR(info.st_mode);

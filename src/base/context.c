@@ -11,6 +11,7 @@
 
 #include "base/cookie.h"
 #include "base/isa.h"
+#include "base/text.h"
 
 typedef struct Pool {
   pthread_mutex_t mutex;
@@ -145,6 +146,7 @@ void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const ch
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
+  vl_make_printable(text);
   pthread_mutex_lock(&context->log_mutex);
   context->def.log(context->def.log_user, level, where, text);
   pthread_mutex_unlock(&context->log_mutex);

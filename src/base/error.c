@@ -1,6 +1,8 @@
 /* base/error.c: see error.h. */
 #include "base/error.h"
 
+#include "base/text.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,6 +12,7 @@ static void set_place(vlError *error, vlResult code, const char *file, uint32_t 
   error->line = line;
   error->column = column;
   snprintf(error->file, sizeof error->file, "%s", file ? file : "");
+  vl_make_printable(error->file);
 }
 
 vlResult vl_fail(vlError *error, vlResult code, const char *format, ...) {
@@ -19,6 +22,7 @@ vlResult vl_fail(vlError *error, vlResult code, const char *format, ...) {
     va_start(args, format);
     vsnprintf(error->message, sizeof error->message, format, args);
     va_end(args);
+    vl_make_printable(error->message);
   }
   return code;
 }
@@ -31,6 +35,7 @@ vlResult vl_fail_at(vlError *error, vlResult code, const char *file, uint32_t li
     va_start(args, format);
     vsnprintf(error->message, sizeof error->message, format, args);
     va_end(args);
+    vl_make_printable(error->message);
   }
   return code;
 }

@@ -200,7 +200,7 @@ void vl_file_abandon(vlFileWriter *writer) {
 
 vlResult vl_write_file(const char *path, const void *data, size_t size, vlError *error) {
   vlFileWriter writer;
-  if (!path || (!data && size)) return vl_fail(error, VL_ERROR_ARGUMENT, "file: null argument");
+  if (!path || (!data && size)) return vl_fail(error, VL_ERROR_ARGUMENT, "file: path or data is null");
   vlResult result = vl_file_open_write(&writer, path, error);
   if (result != VL_OK) return result;
   vl_file_write(&writer, data, size);

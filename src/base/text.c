@@ -61,6 +61,74 @@ void vl_list_name(char *list, size_t size, const char *name) {
   memcpy(list + used + 2, name, length + 1);
 }
 
+/* Bytes of the UTF-8 character at text, 0 if there is none or it is cut; *code: its code point. */
+static size_t utf8_length(const unsigned char *text, size_t length, uint32_t *code) {
+  static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
+  unsigned char c = text[0];
+  size_t n = c < 0x80 ? 1 : c >> 5 == 6 ? 2 : c >> 4 == 14 ? 3 : c >> 3 == 30 ? 4 : 0;
+  if (n == 0 || n > length) return 0;
+  *code = n == 1 ? c : c & (0x7fu >> n);
+  for (size_t i = 1; i < n; i++) {
+    if (text[i] >> 6 != 2) return 0;
+    *code = *code << 6 | (text[i] & 0x3fu);
+  }
+  return *code >= least[n] && *code <= 0x10ffff && *code >> 11 != 0x1b ? n : 0;
+}
+
+/* Control characters, and those that have no width or turn the direction of writing. */
+static bool is_hidden(uint32_t c) {
+  return c < 0x20 || (c >= 0x7f && c < 0xa0) || c == 0xad || (c >= 0x200b && c <= 0x200f) ||
+         (c >= 0x2028 && c <= 0x202e) || (c >= 0x2060 && c <= 0x206f) || c == 0xfeff || c >= 0xe0000;
+}
+
+vlShortText vl_short_text_of(const char *text, size_t length) {
+  enum { MOST_SHOWN = 12 };
+  const unsigned char *bytes = (const unsigned char *)text;
+  vlShortText result;
+  size_t used = 0, at = 0;
+  for (uint32_t shown = 0; at < length && shown < MOST_SHOWN; shown++) {
+    uint32_t code = 0;
+    size_t n = utf8_length(bytes + at, length - at, &code);
+    if (n == 0 || is_hidden(code)) {
+      result.text[used++] = '?';
+    } else {
+      memcpy(result.text + used, text + at, n);
+      used += n;
+    }
+    at += n ? n : 1;
+  }
+  snprintf(result.text + used, sizeof result.text - used, "%s", at < length ? "\u2026" : "");
+  return result;
+}
+
+vlShortText vl_short_text(const char *text) {
+  return vl_short_text_of(text ? text : "", text ? strlen(text) : 0);
+}
+
+void vl_make_printable(char *message) {
+  size_t length = strlen(message), used = 0;
+  for (size_t at = 0; at < length;) {
+    uint32_t code = 0;
+    size_t n = utf8_length((const unsigned char *)message + at, length - at, &code);
+    bool cut = n == 0 && length - at < 4 && (unsigned char)message[at] >= 0xc0;
+    for (size_t i = at + 1; i < length && cut; i++) cut = (unsigned char)message[i] >> 6 == 2;
+    if (cut) break;
+    if (n == 0 || is_hidden(code)) {
+      message[used++] = n == 1 && (code == '\n' || code == '\t') ? ' ' : '?';
+    } else {
+      memmove(message + used, message + at, n);
+      used += n;
+    }
+    at += n ? n : 1;
+  }
+  message[used] = 0;
+}
+
+size_t vl_json_problem_length(const char *message) {
+  const char *quote = strstr(message, " near '");
+  return quote ? (size_t)(quote - message) : strlen(message);
+}
+
 bool vl_ends_with(const char *text, const char *suffix) {
   size_t n = strlen(text), m = strlen(suffix);
   return n >= m && strcasecmp(text + n - m, suffix) == 0;

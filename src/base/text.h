@@ -13,6 +13,13 @@ uint32_t vl_edit_distance(const char *a, const char *b);
 void vl_tell_names(char *text, size_t size, const char *name, const char *const *names, size_t count);
 /* Appends a name to a list in an error message: ": first, second, third". A name that does not fit is omitted. */
 void vl_list_name(char *list, size_t size, const char *name);
+/* vl_short_text of `length` bytes, which may hold zeros. */
+vlShortText vl_short_text_of(const char *text, size_t length);
+/* Replaces what vl_short_text replaces, in a whole message, by "?". Nothing is cut: names of files stay whole. A UTF-8
+ * sequence that the end of a buffer has cut is removed. */
+void vl_make_printable(char *message);
+/* Length of a message of jansson's without its end, which quotes the file: " near '...'". */
+size_t vl_json_problem_length(const char *message);
 bool vl_ends_with(const char *text, const char *suffix); /* case ignored */
 /* result = folder of the file base_file + name; name alone if it is absolute. False: it does not fit. */
 bool vl_path_join(const char *base_file, const char *name, char *result, size_t size);

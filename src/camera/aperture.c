@@ -92,7 +92,7 @@ static double find_reach2(const vlAperture *a) {
 }
 
 static vlResult check(uint32_t width, uint32_t height, const float *values, double *sum, vlError *error) {
-  if (!values) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: null argument");
+  if (!values) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: values is null");
   if (width == 0 || height == 0 || width > LARGEST || height > LARGEST)
     return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: an image of %u x %u; each side must be 1 to %d", width, height,
                    LARGEST);
@@ -127,7 +127,7 @@ vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height,
                             vlAperture **aperture, vlError *error) {
   double sum = 0.0;
   vl_error_clear(error);
-  if (!context || !aperture) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: null argument");
+  if (!context || !aperture) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: context or aperture is null");
   *aperture = NULL;
   vlResult result = check(width, height, values, &sum, error);
   if (result != VL_OK) return result;
@@ -201,13 +201,14 @@ static double named_value(int name, double x, double y) {
 vlResult vl_aperture_create_named(vlContext *context, const char *name, vlAperture **aperture, vlError *error) {
   static const char *const names[] = {"gaussian", "square", "pentagon", "star"};
   vl_error_clear(error);
-  if (!context || !name || !aperture) return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: null argument");
+  if (!context || !name || !aperture)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: context, name or aperture is null");
   *aperture = NULL;
   int kind = 0;
   while (kind < 4 && strcmp(name, names[kind]) != 0) kind++;
   if (kind == 4) {
     const char *near = vl_nearest_name(name, names, 4);
-    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: unknown shape \"%.40s\"%s%s%s", name,
+    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: unknown shape \"%s\"%s%s%s", vl_short_text(name).text,
                    near ? "; did you mean \"" : " (known: gaussian, square, pentagon, star)", near ? near : "",
                    near ? "\"?" : "");
   }

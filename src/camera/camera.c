@@ -97,9 +97,8 @@ static vlResult check_rest(const vlCameraDef *d, vlError *error) {
 vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error) {
   vl_error_clear(error);
   if (warning) *warning = NULL;
-  if (!def || !camera) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: null argument");
-  if (def->cookie != VL_COOKIE_CAMERA)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the def was not made by vl_default_camera_def");
+  if (!def || !camera) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: def or camera is null");
+  if (def->cookie != VL_COOKIE_CAMERA) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: " VL_BAD_COOKIE);
   vlCamera made = {
       .projection = def->projection,
       .width = def->width,

@@ -153,7 +153,8 @@ enum { COLMAP_MODELS = sizeof colmap / sizeof colmap[0] };
 vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double *parameters, uint32_t count,
                               vlError *error) {
   vl_error_clear(error);
-  if (!def || !model || (!parameters && count > 0)) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: null argument");
+  if (!def || !model || (!parameters && count > 0))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: def, model or parameters is null");
   const Colmap *found = NULL;
   const char *names[COLMAP_MODELS];
   for (int i = 0; i < COLMAP_MODELS; i++) {
@@ -163,7 +164,8 @@ vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double 
   if (!found) {
     char known[300];
     vl_tell_names(known, sizeof known, model, names, COLMAP_MODELS);
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown COLMAP camera model \"%.40s\"%s", model, known);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown COLMAP camera model \"%s\"%s", vl_short_text(model).text,
+                   known);
   }
   if (count != found->count)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the COLMAP camera model %s has %u parameters, not %u",

@@ -143,9 +143,9 @@ static vlResult focus(vlOptics *o, vlError *error) {
 vlResult vl_optics_create(vlContext *context, const vlOpticsDef *def, vlOptics **optics, vlError *error) {
   vl_error_clear(error);
   if (optics) *optics = NULL;
-  if (!context || !def || !optics || !def->surfaces) return vl_fail(error, VL_ERROR_ARGUMENT, "lens: null argument");
-  if (def->cookie != VL_COOKIE_OPTICS)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "lens: the def was not made by vl_default_optics_def");
+  if (!context || !def || !optics || !def->surfaces)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "lens: context, def, optics or def.surfaces is null");
+  if (def->cookie != VL_COOKIE_OPTICS) return vl_fail(error, VL_ERROR_ARGUMENT, "lens: " VL_BAD_COOKIE);
   vlResult result = check(def, def->surfaces, error);
   if (result != VL_OK) return result;
   vlOptics *o = vl_alloc_zero(context, 1, sizeof *o);
@@ -174,7 +174,7 @@ vlResult vl_optics_create(vlContext *context, const vlOpticsDef *def, vlOptics *
 vlResult vl_optics_refocus(vlContext *context, const vlOptics *optics, double focus_distance, vlOptics **result,
                            vlError *error) {
   vl_error_clear(error);
-  if (!optics) return vl_fail(error, VL_ERROR_ARGUMENT, "lens: null argument");
+  if (!optics) return vl_fail(error, VL_ERROR_ARGUMENT, "lens: optics is null");
   vlOpticsDef def = optics->def;
   def.surfaces = optics->given;
   def.focus_distance = focus_distance;

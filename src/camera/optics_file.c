@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "camera/optics.h"
 
 typedef struct {
@@ -41,8 +42,8 @@ static vlResult read(Reader *r, vlLensSurface *surfaces, uint32_t *count, vlErro
     uint32_t column = (uint32_t)(r->at - r->line_start) + 1;
     double value;
     if (!number(r->at, length, &value))
-      return vl_fail_at(error, VL_ERROR_SCENE, r->path, r->line, column, "lens file: \"%.*s\" is not a number",
-                        length < 12 ? (int)length : 12, r->at);
+      return vl_fail_at(error, VL_ERROR_SCENE, r->path, r->line, column, "lens file: \"%s\" is not a number",
+                        vl_short_text_of(r->at, length).text);
     if (n == 4 * VL_MOST_SURFACES)
       return vl_fail_at(error, VL_ERROR_SCENE, r->path, r->line, column, "lens file: more than %d surfaces",
                         VL_MOST_SURFACES);
@@ -61,7 +62,8 @@ vlResult vl_optics_load(vlContext *context, const char *path, const vlOpticsDef 
                         vlError *error) {
   vl_error_clear(error);
   if (optics) *optics = NULL;
-  if (!context || !path || !def || !optics) return vl_fail(error, VL_ERROR_ARGUMENT, "lens: null argument");
+  if (!context || !path || !def || !optics)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "lens: context, path, def or optics is null");
   char *data = NULL;
   size_t size;
   vlResult result = vl_file_read(context, path, false, &data, &size, error);

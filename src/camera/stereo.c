@@ -50,7 +50,8 @@ static vlMat4 eye_pose(double x, double turn) {
 
 vlResult vl_camera_eye(const vlCamera *camera, const vlStereo *stereo, vlEye eye, vlCamera *result, vlError *error) {
   vl_error_clear(error);
-  if (!camera || !stereo || !result) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: null argument");
+  if (!camera || !stereo || !result)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: camera, stereo or result is null");
   vlResult status = check_stereo(camera, stereo, error);
   if (status != VL_OK) return status;
   if ((uint32_t)eye > VL_EYE_RIGHT) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown eye %d", (int)eye);
@@ -78,7 +79,7 @@ vlResult vl_camera_eye(const vlCamera *camera, const vlStereo *stereo, vlEye eye
 vlResult vl_camera_stereo(const vlCameraDef *def, vlCamera *left, vlCamera *right, const char **warning,
                           vlError *error) {
   vl_error_clear(error);
-  if (!def || !left || !right) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: null argument");
+  if (!def || !left || !right) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: def, left or right is null");
   if (def->stereo.mode == VL_STEREO_NONE)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the def has no stereo mode");
   vlCameraDef between = *def;
@@ -93,7 +94,8 @@ vlResult vl_camera_stereo(const vlCameraDef *def, vlCamera *left, vlCamera *righ
 
 vlResult vl_camera_move(const vlCamera *camera, const double world_from_camera[16], vlCamera *result, vlError *error) {
   vl_error_clear(error);
-  if (!camera || !world_from_camera || !result) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: null argument");
+  if (!camera || !world_from_camera || !result)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: camera, world_from_camera or result is null");
   vlCamera moved = *camera;
   vlResult status = vl_camera_pose_matrix(world_from_camera, &moved, error);
   memcpy(moved.world_from_camera_close, moved.world_from_camera, sizeof moved.world_from_camera);

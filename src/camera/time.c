@@ -65,7 +65,7 @@ vlResult vl_camera_travel(const vlCamera *camera, const double open[16], const d
                           vlCamera *result, vlError *error) {
   vl_error_clear(error);
   if (!camera || !open || !close || !times || !result)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: null argument");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: camera, open, close, times or result is null");
   vlCamera there = *camera, made = *camera;
   vlResult status = vl_camera_pose_matrix(open, &made, error);
   if (status == VL_OK) status = vl_camera_pose_matrix(close, &there, error);

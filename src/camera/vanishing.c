@@ -97,8 +97,7 @@ vlVanishingDef vl_default_vanishing_def(uint32_t width, uint32_t height) {
 }
 
 static vlResult check(const vlVanishingDef *d, vlError *error) {
-  if (d->cookie != VL_COOKIE_VANISHING)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: the def was not made by vl_default_vanishing_def");
+  if (d->cookie != VL_COOKIE_VANISHING) return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: " VL_BAD_COOKIE);
   if (d->count != 2 && d->count != 3)
     return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: %u are given; a camera needs 2 or 3", d->count);
   for (uint32_t i = 0; i < d->count; i++) {
@@ -143,7 +142,7 @@ static void normalize3(double v[3]) {
 
 vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef *camera, vlError *error) {
   vl_error_clear(error);
-  if (!def || !camera) return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: null argument");
+  if (!def || !camera) return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: def or camera is null");
   double p[2] = {0.5 * def->width, 0.5 * def->height}, f2 = 0.0;
   vlResult result = check(def, error);
   if (result == VL_OK && def->count == 3) result = orthocentre(def, p, error);

@@ -14,9 +14,10 @@ vlResult vl_camera_read_blender(const vlCameraFile *file, const json_t *tree, vl
   const char *type = vl_camera_text(tree, "type"), *fit = vl_camera_text(tree, "sensor_fit");
   bool flat = type && strcmp(type, "ORTHO") == 0;
   if (type && !flat && strcmp(type, "PERSP") != 0)
-    return vl_camera_wrong(file, "blender: unknown type \"%.40s\"; there are PERSP, ORTHO", type);
+    return vl_camera_wrong(file, "blender: unknown type \"%s\"; there are PERSP, ORTHO", vl_short_text(type).text);
   if (fit && strcmp(fit, "AUTO") != 0 && strcmp(fit, "HORIZONTAL") != 0 && strcmp(fit, "VERTICAL") != 0)
-    return vl_camera_wrong(file, "blender: unknown sensor_fit \"%.40s\"; there are AUTO, HORIZONTAL, VERTICAL", fit);
+    return vl_camera_wrong(file, "blender: unknown sensor_fit \"%s\"; there are AUTO, HORIZONTAL, VERTICAL",
+                           vl_short_text(fit).text);
   vlResult result = vl_camera_side(file, tree, "resolution_x", &d->width);
   if (result == VL_OK) result = vl_camera_side(file, tree, "resolution_y", &d->height);
   if (result == VL_OK)

@@ -79,7 +79,7 @@ static vlResult unknown(const vlCameraFile *file, const json_t *tree) {
   json_t *unused;
   json_object_foreach((json_t *)tree, key, unused) {
     size_t n = strlen(names);
-    if (n < 100) snprintf(names + n, sizeof names - n, "%s%.40s", n ? ", " : "", key);
+    if (n < 100) snprintf(names + n, sizeof names - n, "%s%s", n ? ", " : "", vl_short_text(key).text);
   }
   return vl_camera_wrong(
       file,
@@ -157,10 +157,9 @@ static vlResult begin(vlContext *context, const char *path, const vlCameraFileDe
                       vlError *error) {
   vl_error_clear(error);
   *standard = vl_default_camera_file_def();
-  if (!context || !path) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: null argument");
+  if (!context || !path) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: context or path is null");
   if (!*def) *def = standard;
-  if ((*def)->cookie != VL_COOKIE_CAMERA_FILE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: the def was not made by vl_default_camera_file_def");
+  if ((*def)->cookie != VL_COOKIE_CAMERA_FILE) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: " VL_BAD_COOKIE);
   if ((uint32_t)(*def)->dialect >= VL_CAMERA_DIALECT_COUNT)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: unknown dialect %d", (int)(*def)->dialect);
   return VL_OK;
@@ -171,9 +170,9 @@ vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFile
   vlCameraFileDef standard;
   vlResult result = begin(context, path, &def, &standard, error);
   if (result != VL_OK) return result;
-  if (!record) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: null argument");
+  if (!record) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: record is null");
   if (def->dialect == VL_CAMERA_DIALECT_EXR)
-    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: images are read by vl_image_read");
+    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: this is an image; it is read as one");
   if (def->dialect == VL_CAMERA_DIALECT_PBRT)
     return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: pbrt scenes are read as scenes");
   vlCameraFile file = {context, path, dialects[def->dialect].name, def, error};
@@ -206,7 +205,7 @@ vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFil
   vlCameraFileDef standard;
   vlResult result = begin(context, path, &def, &standard, error);
   if (result != VL_OK) return result;
-  if (!record) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: null argument");
+  if (!record) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: record is null");
   vlCameraDialect dialect = def->dialect ? def->dialect : dialect_of_name(path);
   if (!dialect)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: the name \"%.200s\" does not say which dialect to write",

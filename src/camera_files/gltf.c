@@ -153,8 +153,8 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, cons
   const char *type = vl_camera_text(camera, "type");
   bool flat = type && strcmp(type, "orthographic") == 0;
   if (!type || (!flat && strcmp(type, "perspective") != 0))
-    return vl_camera_wrong(file, "gltf: unknown camera type \"%.40s\"; there are perspective, orthographic",
-                           type ? type : "");
+    return vl_camera_wrong(file, "gltf: unknown camera type \"%s\"; there are perspective, orthographic",
+                           vl_short_text(type).text);
   const json_t *lens, *extras = json_object_get(json_object_get(camera, "extras"), "velo");
   vlResult result = vl_camera_field(file, camera, type, &lens);
   if (result == VL_OK && extras) return read_extras(file, extras, pose, lens, record);

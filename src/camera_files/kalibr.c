@@ -19,7 +19,7 @@ static const Model models[] = {{"pinhole", VL_PROJECTION_PERSPECTIVE, 0},
 enum { MODELS = sizeof models / sizeof *models };
 
 static vlResult unknown_word(const vlCameraFile *file, const char *key, const char *text, const char *known) {
-  return vl_camera_wrong(file, "kalibr: unknown %s \"%.40s\"; there are %s", key, text ? text : "", known);
+  return vl_camera_wrong(file, "kalibr: unknown %s \"%s\"; there are %s", key, vl_short_text(text).text, known);
 }
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *cam, vlCameraDef *d) {

@@ -139,7 +139,7 @@ vlResult vl_camera_read_matrices(const vlCameraFile *file, const json_t *tree, v
   if (!api) {
     char known[300];
     vl_tell_names(known, sizeof known, word ? word : "", names, API_COUNT);
-    return vl_camera_wrong(file, "unknown graphics_api \"%.40s\"%s", word ? word : "", known);
+    return vl_camera_wrong(file, "unknown graphics_api \"%s\"%s", vl_short_text(word).text, known);
   }
   vlCameraFile own = *file;
   own.dialect = api->name;

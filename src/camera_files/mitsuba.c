@@ -52,8 +52,8 @@ static vlResult attribute(const Scene *scene, const json_t *element, const char 
     if (*text) return VL_OK;
     break;
   }
-  return vl_camera_wrong_at(scene->file, line_of(element), 0, "mitsuba: \"%.40s\" has no <default>",
-                            vl_camera_text(element, key));
+  return vl_camera_wrong_at(scene->file, line_of(element), 0, "mitsuba: \"%s\" has no <default>",
+                            vl_short_text(vl_camera_text(element, key)).text);
 }
 
 /* `count` numbers, or one that is used for all. *found: whether the attribute exists (null: it is required). */
@@ -74,8 +74,8 @@ static vlResult numbers(const Scene *scene, const json_t *element, const char *k
   if (whole && n == 1)
     for (; n < count; n++) values[n] = values[0];
   if (whole && n == count) return VL_OK;
-  return vl_camera_wrong_at(scene->file, line_of(element), 0, "mitsuba: \"%s\" of <%.30s> must hold %u finite number%s",
-                            key, tag_of(element), count, count > 1 ? "s" : "");
+  return vl_camera_wrong_at(scene->file, line_of(element), 0, "mitsuba: \"%s\" of <%s> must hold %u finite number%s",
+                            key, vl_short_text(tag_of(element)).text, count, count > 1 ? "s" : "");
 }
 
 /* The element with this name among the parameters of a sensor or film; null: none. */
@@ -128,8 +128,8 @@ static vlResult look_at(const Scene *scene, const json_t *op, vlMat4 *m) {
   for (int i = 0; i < 3; i++) x[i] = up[(i + 1) % 3] * z[(i + 2) % 3] - up[(i + 2) % 3] * z[(i + 1) % 3]; /* left */
   across = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
   if (!(length > 0.0 && across > 1e-9 * sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2])))
-    return vl_camera_wrong_at(scene->file, line_of(op), 0,
-                              "mitsuba: origin, target and up of <%.10s> give no direction", tag_of(op));
+    return vl_camera_wrong_at(scene->file, line_of(op), 0, "mitsuba: origin, target and up of <%s> give no direction",
+                              vl_short_text(tag_of(op)).text);
   *m = vl_mat4_identity();
   for (int i = 0; i < 3; i++) x[i] /= across;
   for (int i = 0; i < 3; i++) {
@@ -164,8 +164,8 @@ static vlResult operation(const Scene *scene, const json_t *op, vlMat4 *m) {
     if (result == VL_OK) *m = vl_mat4_load(v);
   } else {
     return vl_camera_wrong_at(scene->file, line_of(op), 0,
-                              "mitsuba: unknown transform <%.30s>; there are translate, rotate, scale, lookat, matrix",
-                              tag);
+                              "mitsuba: unknown transform <%s>; there are translate, rotate, scale, lookat, matrix",
+                              vl_short_text(tag).text);
   }
   return result;
 }
@@ -221,7 +221,8 @@ static vlResult read_fov(const Scene *scene, const json_t *sensor, const double 
     char *end = NULL;
     double mm = focal ? vl_camera_parse(focal, &end) : 50.0;
     if (!(mm > 0.0) || isinf(mm) || (focal && (end == focal || (*end && strcmp(end, "mm") != 0))))
-      return vl_camera_wrong_at(scene->file, line, 0, "mitsuba: focal_length \"%.30s\" must be like \"50mm\"", focal);
+      return vl_camera_wrong_at(scene->file, line, 0, "mitsuba: focal_length \"%s\" must be like \"50mm\"",
+                                vl_short_text(focal).text);
     *f = mm * diagonal / sqrt(36.0 * 36.0 + 24.0 * 24.0);
     return VL_OK;
   }
@@ -233,7 +234,8 @@ static vlResult read_fov(const Scene *scene, const json_t *sensor, const double 
       return VL_OK;
     }
   return vl_camera_wrong_at(scene->file, line, 0,
-                            "mitsuba: unknown fov_axis \"%.30s\"; there are x, y, diagonal, smaller, larger", axis);
+                            "mitsuba: unknown fov_axis \"%s\"; there are x, y, diagonal, smaller, larger",
+                            vl_short_text(axis).text);
 }
 
 static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDef *d) {
@@ -247,7 +249,8 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDe
   if (kind == 3) {
     char known[300];
     vl_tell_names(known, sizeof known, type ? type : "", types, 3);
-    return vl_camera_wrong_at(file, line_of(sensor), 0, "mitsuba: unknown sensor \"%.40s\"%s", type ? type : "", known);
+    return vl_camera_wrong_at(file, line_of(sensor), 0, "mitsuba: unknown sensor \"%s\"%s", vl_short_text(type).text,
+                              known);
   }
   double size[2], crop[4], offset[2] = {0, 0}, f = 1.0;
   vlMat4 m;
@@ -308,7 +311,7 @@ vlResult vl_camera_read_mitsuba(const vlCameraFile *file, const char *text, size
     result = vl_camera_wrong(file, "mitsuba: there is no sensor \"%.60s\" among the %u",
                              file->def->frame ? file->def->frame : "0", record->frames);
   } else {
-    result = vl_camera_wrong(file, "mitsuba: <%.30s> holds no <sensor>%s", tag_of(tree),
+    result = vl_camera_wrong(file, "mitsuba: <%s> holds no <sensor>%s", vl_short_text(tag_of(tree)).text,
                              includes ? "; included files are not followed" : "");
   }
   json_decref(tree);

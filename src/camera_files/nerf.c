@@ -25,9 +25,9 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const j
   if (model && !fisheye && strcmp(model, "OPENCV") != 0 && strcmp(model, "PINHOLE") != 0 &&
       strcmp(model, "SIMPLE_PINHOLE") != 0 && strcmp(model, "RADIAL") != 0 && strcmp(model, "SIMPLE_RADIAL") != 0)
     return vl_camera_wrong(file,
-                           "nerf: unknown camera_model \"%.40s\"; there are PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, "
+                           "nerf: unknown camera_model \"%s\"; there are PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, "
                            "RADIAL, OPENCV, OPENCV_FISHEYE",
-                           model);
+                           vl_short_text(model).text);
   bool tangential = k[2] != 0.0 || k[3] != 0.0;
   if (fisheye && tangential) return vl_camera_wrong(file, "nerf: a fisheye has no \"p1\" and \"p2\"");
   if (!fisheye && k[5] != 0.0) return vl_camera_wrong(file, "nerf: \"k4\" is taken for fisheyes only");

@@ -20,7 +20,8 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const ch
   if (found == count) {
     char known[300];
     vl_tell_names(known, sizeof known, model, names, count);
-    return vl_camera_wrong(file, "%s: unknown distortion_model \"%.40s\"%s", file->dialect, model, known);
+    return vl_camera_wrong(file, "%s: unknown distortion_model \"%s\"%s", file->dialect, vl_short_text(model).text,
+                           known);
   }
   fisheye = fisheye || (model && (strcmp(model, "fisheye") == 0 || strcmp(model, "equidistant") == 0));
   double *k = d->distortion_coefficients;

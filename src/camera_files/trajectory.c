@@ -22,8 +22,8 @@ vlResult vl_frame_wrong(const vlCameraFile *file, const vlFramePlace *place, con
   vsnprintf(message, sizeof message, format, list);
   va_end(list);
   const char *path = place->path ? place->path : file->path, *name = place->name ? place->name : "";
-  return vl_fail_at(file->error, VL_ERROR_SCENE, path, place->line, place->line ? 1 : 0, "frame %u%s%.60s%s: %s",
-                    place->frame, *name ? " (" : "", name, *name ? ")" : "", message);
+  return vl_fail_at(file->error, VL_ERROR_SCENE, path, place->line, place->line ? 1 : 0, "frame %u%s%s%s: %s",
+                    place->frame, *name ? " (" : "", vl_short_text(name).text, *name ? ")" : "", message);
 }
 
 /* What is wrong with a pose; null for a rotation and a translation. */
@@ -158,11 +158,11 @@ static vlResult read_any(vlTrajectory *t, const vlCameraFile *file) {
 vlResult vl_trajectory_load(vlContext *context, const char *path, const vlCameraFileDef *def, vlTrajectory **trajectory,
                             vlError *error) {
   vl_error_clear(error);
-  if (!context || !path || !trajectory) return vl_fail(error, VL_ERROR_ARGUMENT, "trajectory: null argument");
+  if (!context || !path || !trajectory)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "trajectory: context, path or trajectory is null");
   *trajectory = NULL;
   vlCameraFileDef plain = def ? *def : vl_default_camera_file_def();
-  if (plain.cookie != VL_COOKIE_CAMERA_FILE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "trajectory: the def was not made by vl_default_camera_file_def");
+  if (plain.cookie != VL_COOKIE_CAMERA_FILE) return vl_fail(error, VL_ERROR_ARGUMENT, "trajectory: " VL_BAD_COOKIE);
   plain.frame = NULL;
   vlTrajectory *t = vl_alloc_zero(context, 1, sizeof *t);
   if (!t) return vl_fail_memory(error);

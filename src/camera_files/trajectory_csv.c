@@ -164,8 +164,8 @@ static vlResult read_header(Csv *csv, char *fields[], int count) {
       if (strcmp(aliases[k].alias, fields[i]) == 0) column = aliases[k].column;
     if (column == COLUMNS) {
       const char *near = vl_nearest_name(fields[i], names, COLUMNS);
-      return vl_fail_at(csv->file->error, VL_ERROR_SCENE, csv->file->path, csv->line, 1,
-                        "unknown column \"%.40s\"%s%s%s", fields[i], near ? "; did you mean \"" : "", near ? near : "",
+      return vl_fail_at(csv->file->error, VL_ERROR_SCENE, csv->file->path, csv->line, 1, "unknown column \"%s\"%s%s%s",
+                        vl_short_text(fields[i]).text, near ? "; did you mean \"" : "", near ? near : "",
                         near ? "\"?" : "");
     }
     if (csv->has[column]) return wrong(csv, 0, "the column \"%s\" stands twice", names[column]);
@@ -261,8 +261,8 @@ static vlResult read_line(Csv *csv, char *line) {
     if (column == NAME)
       place.name = fields[i];
     else if (column != NUMBER && (!to_number(fields[i], &v[column]) || !isfinite(v[column])))
-      return vl_frame_wrong(csv->file, &place, "\"%s\" is \"%.40s\"; it must be a finite number", names[column],
-                            fields[i]);
+      return vl_frame_wrong(csv->file, &place, "\"%s\" is \"%s\"; it must be a finite number", names[column],
+                            vl_short_text(fields[i]).text);
   }
   vlResult result = pose_of(csv, &place, v, m);
   if (result != VL_OK) return result;
@@ -283,8 +283,8 @@ vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char 
     vlResult result = VL_OK;
     if (*first == '#') {
       if (!take_comment(&csv, first))
-        result =
-            wrong(&csv, 0, "\"%.60s\": axes are opencv or opengl, poses world_from_camera or camera_from_world", first);
+        result = wrong(&csv, 0, "\"%s\": axes are opencv or opengl, poses world_from_camera or camera_from_world",
+                       vl_short_text(first).text);
     } else if (*first) {
       result = read_line(&csv, line);
     }

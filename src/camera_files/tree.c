@@ -46,7 +46,8 @@ vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size,
     if (!*tree && json_error_code(&place) == json_error_out_of_memory) return vl_fail_memory(file->error);
     if (!*tree)
       return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, place.line > 0 ? (uint32_t)place.line : 0,
-                        place.column > 0 ? (uint32_t)place.column : 0, "not JSON: %s", place.text);
+                        place.column > 0 ? (uint32_t)place.column : 0, "not JSON: %.*s",
+                        (int)vl_json_problem_length(place.text), place.text);
   } else {
     result = vl_camera_yaml(file, text, size, tree);
   }
@@ -66,8 +67,8 @@ vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const c
   json_t *unused;
   json_object_foreach((json_t *)object, other, unused) if (count < 64) names[count++] = other;
   const char *near = vl_nearest_name(key, names, count);
-  return vl_camera_wrong(file, "%s: the field \"%s\" is missing%s%.60s%s", file->dialect, key,
-                         near ? "; did you mean it by \"" : "", near ? near : "", near ? "\"?" : "");
+  return vl_camera_wrong(file, "%s: the field \"%s\" is missing%s%s%s", file->dialect, key,
+                         near ? "; did you mean it by \"" : "", vl_short_text(near).text, near ? "\"?" : "");
 }
 
 double vl_camera_parse(const char *text, char **end) {
@@ -83,8 +84,8 @@ static vlResult number_of(const vlCameraFile *file, const json_t *value, const c
     return VL_OK;
   }
   if (json_is_string(value))
-    return vl_camera_wrong(file, "%s: \"%s\" holds \"%.40s\", which is no finite number", file->dialect, key,
-                           json_string_value(value));
+    return vl_camera_wrong(file, "%s: \"%s\" holds \"%s\", which is no finite number", file->dialect, key,
+                           vl_short_text(json_string_value(value)).text);
   return vl_camera_wrong(file, "%s: \"%s\" must be a number", file->dialect, key);
 }
 

@@ -37,7 +37,7 @@ static vlResult operation(const Operation *op, vlMat4 *m) {
   vlResult result = VL_OK;
   *m = vl_mat4_identity();
   if (strncmp(key, "xformOp:", 8) != 0)
-    return vl_camera_wrong(op->file, "usd: \"%.60s\" in xformOpOrder is no xformOp", op->name);
+    return vl_camera_wrong(op->file, "usd: \"%s\" in xformOpOrder is no xformOp", vl_short_text(op->name).text);
   size_t n = strcspn(kind, ":");
   if (n == 9 && strncmp(kind, "transform", n) == 0) {
     result = op_numbers(op, key, v, 16);
@@ -51,7 +51,7 @@ static vlResult operation(const Operation *op, vlMat4 *m) {
   } else if (n == 6 && strncmp(kind, "orient", n) == 0) {
     result = op_numbers(op, key, v, 4); /* w x y z */
     if (result == VL_OK && !vl_rotation_from_quaternion(v, r))
-      result = vl_camera_wrong(op->file, "usd: \"%.60s\" is no rotation", key);
+      result = vl_camera_wrong(op->file, "usd: \"%s\" is no rotation", vl_short_text(key).text);
     for (int i = 0; i < 9 && result == VL_OK; i++) m->m[4 * (i / 3) + i % 3] = r[i];
   } else if (n == 7 && strncmp(kind, "rotate", 6) == 0 && kind[6] >= 'X' && kind[6] <= 'Z') {
     result = vl_camera_number(op->file, op->prim, key, v);
@@ -61,10 +61,10 @@ static vlResult operation(const Operation *op, vlMat4 *m) {
     for (int i = 0; i < 3 && result == VL_OK; i++)
       *m = vl_mat4_multiply(turn(kind[6 + i] - 'X', v[kind[6 + i] - 'X']), *m);
   } else {
-    return vl_camera_wrong(op->file, "usd: unknown xformOp \"%.60s\"", key);
+    return vl_camera_wrong(op->file, "usd: unknown xformOp \"%s\"", vl_short_text(key).text);
   }
   if (result == VL_OK && inverted && !vl_mat4_inverse(*m, m))
-    result = vl_camera_wrong(op->file, "usd: \"%.60s\" cannot be inverted", key);
+    result = vl_camera_wrong(op->file, "usd: \"%s\" cannot be inverted", vl_short_text(key).text);
   return result;
 }
 
@@ -99,7 +99,8 @@ static vlResult check_still(const vlCameraFile *file, const json_t *prim) {
   json_t *unused;
   json_object_foreach((json_t *)prim, key, unused) {
     if (vl_ends_with(key, ".timeSamples"))
-      return vl_camera_wrong_at(file, line, 0, "usd: \"%.60s\": values that change with time are not taken", key);
+      return vl_camera_wrong_at(file, line, 0, "usd: \"%s\": values that change with time are not taken",
+                                vl_short_text(key).text);
   }
   return VL_OK;
 }
@@ -163,7 +164,8 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   const char *projection = vl_camera_text(prim, "projection");
   bool flat = projection && strcmp(projection, "orthographic") == 0;
   if (projection && !flat && strcmp(projection, "perspective") != 0)
-    return vl_camera_wrong(file, "usd: unknown projection \"%.40s\"; there are perspective, orthographic", projection);
+    return vl_camera_wrong(file, "usd: unknown projection \"%s\"; there are perspective, orthographic",
+                           vl_short_text(projection).text);
   if (!(focal > 0.0 && across > 0.0 && down > 0.0 && rate > 0.0))
     return vl_camera_wrong(file, "usd: focalLength, horizontalAperture and verticalAperture must be above zero");
   if (s->resolution) {

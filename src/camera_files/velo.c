@@ -86,8 +86,8 @@ static vlResult check_names(const vlCameraFile *file, const json_t *tree) {
     for (size_t i = 0; i < count; i++) found |= strcmp(key, known[i]) == 0;
     if (found) continue;
     const char *near = vl_nearest_name(key, known, count);
-    return vl_camera_wrong(file, "velo: unknown field \"%.60s\"%s%s%s", key, near ? "; did you mean \"" : "",
-                           near ? near : "", near ? "\"?" : "");
+    return vl_camera_wrong(file, "velo: unknown field \"%s\"%s%s%s", vl_short_text(key).text,
+                           near ? "; did you mean \"" : "", near ? near : "", near ? "\"?" : "");
   }
   return VL_OK;
 }
@@ -105,7 +105,7 @@ static vlResult word(const vlCameraFile *file, const json_t *object, const char 
     }
   char known[300];
   vl_tell_names(known, sizeof known, text, names, count);
-  return vl_camera_wrong(file, "velo: unknown %s \"%.60s\"%s", key, text, known);
+  return vl_camera_wrong(file, "velo: unknown %s \"%s\"%s", key, vl_short_text(text).text, known);
 }
 
 static vlResult read_distortion(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {

@@ -13,8 +13,10 @@ static vlResult unknown_name(const char *name, vlError *error) {
   uint32_t count = vl_table_named_count < 128 ? vl_table_named_count : 128;
   for (uint32_t i = 0; i < count; i++) names[i] = vl_table_named[i].name;
   const char *nearest = name ? vl_nearest_name(name, names, count) : NULL;
-  if (nearest) return vl_fail(error, VL_ERROR_SCENE, "unknown spectrum \"%s\"; did you mean \"%s\"?", name, nearest);
-  return vl_fail(error, VL_ERROR_SCENE, "unknown spectrum \"%s\"", name ? name : "");
+  if (nearest)
+    return vl_fail(error, VL_ERROR_SCENE, "unknown spectrum \"%s\"; did you mean \"%s\"?", vl_short_text(name).text,
+                   nearest);
+  return vl_fail(error, VL_ERROR_SCENE, "unknown spectrum \"%s\"", vl_short_text(name).text);
 }
 
 /* Validates a spectrum. */

@@ -161,8 +161,8 @@ static void finish(vlExport *x) {
 vlResult vl_scene_save(const vlScene *scene, const char *path, const vlSaveDef *def, vlError *error) {
   vl_error_clear(error);
   vlSaveDef plain = vl_default_save_def();
-  if (!scene || !path || (def && def->cookie != VL_COOKIE_SAVE))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene save: no scene or path, or a def not from vl_default_save_def");
+  if (!scene || !path) return vl_fail(error, VL_ERROR_ARGUMENT, "scene save: scene or path is null");
+  if (def && def->cookie != VL_COOKIE_SAVE) return vl_fail(error, VL_ERROR_ARGUMENT, "scene save: " VL_BAD_COOKIE);
   if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
   bool pbrt = vl_ends_with(path, ".pbrt"), binary = vl_ends_with(path, ".glb");
   if (!pbrt && !binary && !vl_ends_with(path, ".gltf"))

@@ -148,7 +148,7 @@ vlResult vl_image_read_named(vlContext *context, const char *path, vlImage **ima
 
 vlResult vl_image_read_header(vlContext *context, const char *path, vlImage **image, vlError *error) {
   if (image) *image = NULL;
-  if (!context || !path || !image) return vl_fail(error, VL_ERROR_ARGUMENT, "image: null argument");
+  if (!context || !path || !image) return vl_fail(error, VL_ERROR_ARGUMENT, "image: context, path or image is null");
   vl_error_clear(error);
   const char *mapped;
   char *data = NULL;
@@ -190,7 +190,7 @@ static vlResult read_file(vlContext *context, const char *path, const char *cons
 
 vlResult vl_image_read(vlContext *context, const char *path, vlImage **image, vlError *error) {
   if (image) *image = NULL;
-  if (!context || !path || !image) return vl_fail(error, VL_ERROR_ARGUMENT, "image: null argument");
+  if (!context || !path || !image) return vl_fail(error, VL_ERROR_ARGUMENT, "image: context, path or image is null");
   return read_file(context, path, NULL, 0, image, error);
 }
 
@@ -198,7 +198,7 @@ vlResult vl_image_read_channels(vlContext *context, const char *path, const char
                                 vlImage **image, vlError *error) {
   if (image) *image = NULL;
   if (!context || !path || !image || !names || !count)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "image: null argument, or no names");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "image: context, path, image or names is null, or count is 0");
   vlResult result = read_file(context, path, names, count, image, error);
   for (uint32_t i = 0; result == VL_OK && i < count; i++) {
     if (names[i] && vl_image_find_channel(*image, names[i]) >= 0) continue;
@@ -223,8 +223,8 @@ static const vlCodec *codec_of_suffix(const char *path) {
 }
 
 static vlResult check_write(const vlImage *image, const char *path, const vlWriteDef *def, vlError *error) {
-  if (!image || !path || def->cookie != VL_COOKIE_WRITE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "image: null argument, or a def not from vl_default_write_def");
+  if (!image || !path) return vl_fail(error, VL_ERROR_ARGUMENT, "image: image or path is null");
+  if (def->cookie != VL_COOKIE_WRITE) return vl_fail(error, VL_ERROR_ARGUMENT, "image: " VL_BAD_COOKIE);
   if (def->compression < 0 || def->compression > 1 || def->quality < 1 || def->quality > 100)
     return vl_fail(error, VL_ERROR_ARGUMENT, "image: compression is 0 or 1, quality 1 to 100");
   vl_error_clear(error);
@@ -260,7 +260,7 @@ vlResult vl_image_write(const vlImage *image, const char *path, const vlWriteDef
 
 static vlResult check_layers(const vlImage *const *images, uint32_t count, vlError *error) {
   for (uint32_t k = 0; k < count; k++) {
-    if (!images[k]) return vl_fail(error, VL_ERROR_ARGUMENT, "image: null argument");
+    if (!images[k]) return vl_fail(error, VL_ERROR_ARGUMENT, "image: one of images is null");
     if (images[k]->width != images[0]->width || images[k]->height != images[0]->height)
       return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write layers of %ux%u and %ux%u pixels into one file",
                      images[0]->width, images[0]->height, images[k]->width, images[k]->height);

@@ -109,7 +109,7 @@ static vlResult compare(Pair *p, const vlImage *a, const vlImage *b, vlImageDiff
 
 vlResult vl_image_compare(const vlImage *a, const vlImage *b, vlImageDiff *diff, vlImage **heat, vlError *error) {
   if (heat) *heat = NULL;
-  if (!a || !b || !diff) return vl_fail(error, VL_ERROR_ARGUMENT, "image compare: null argument");
+  if (!a || !b || !diff) return vl_fail(error, VL_ERROR_ARGUMENT, "image compare: a, b or diff is null");
   vl_error_clear(error);
   *diff = (vlImageDiff){0};
   if (a->width != b->width || a->height != b->height)

@@ -236,7 +236,7 @@ vlResult vl_exr_attributes_out(exr_context_t exr, const vlImage *image, vlError 
     exr_result_t code = ok ? set_attribute(exr, a) : EXR_ERR_INVALID_ATTR;
     if (code == EXR_ERR_OUT_OF_MEMORY) return vl_fail_memory(error);
     if (code != EXR_ERR_SUCCESS)
-      return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write the attribute \"%s\": %s", a->name,
+      return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write the attribute \"%s\": %s", vl_short_text(a->name).text,
                      ok ? exr_get_default_error_message(code) : "its type or values do not suit its name");
   }
   return VL_OK;

@@ -69,7 +69,8 @@ static vlResult look(const vlWorld *world, const vlCamera *camera, double x, dou
 vlResult vl_autofocus(const vlWorld *world, const vlCamera *camera, double x, double y, double *distance,
                       vlError *error) {
   vl_error_clear(error);
-  if (!world || !camera || !distance) return vl_fail(error, VL_ERROR_ARGUMENT, "autofocus: null argument");
+  if (!world || !camera || !distance)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "autofocus: world, camera or distance is null");
   if (!(x >= 0 && y >= 0 && x <= camera->width && y <= camera->height))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focus on pixel %g, %g: outside the image of %u x %u", x, y,
                    camera->width, camera->height);
@@ -86,7 +87,7 @@ vlResult vl_autofocus(const vlWorld *world, const vlCamera *camera, double x, do
 
 vlResult vl_camera_autofocus(const vlWorld *world, vlCamera *camera, vlError *error) {
   vl_error_clear(error);
-  if (!world || !camera) return vl_fail(error, VL_ERROR_ARGUMENT, "camera autofocus: null argument");
+  if (!world || !camera) return vl_fail(error, VL_ERROR_ARGUMENT, "camera autofocus: world or camera is null");
   double *pixel = camera->lens.focus_pixel, distance;
   if (vl_is_unset(pixel[0]) || vl_is_unset(pixel[1])) return VL_OK;
   vlResult result = vl_autofocus(world, camera, pixel[0], pixel[1], &distance, error);

@@ -172,8 +172,8 @@ static void free_room(Pass *p) {
 vlResult vl_world_boxes(const vlWorld *world, const vlCamera *camera, const vlBoxesDef *def, vlIdBox *objects,
                         vlIdBox *instances, vlError *error) {
   vl_error_clear(error);
-  if (!world || !camera || !def || def->cookie != VL_COOKIE_BOXES)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: null argument, or a def not made by vl_default_boxes_def");
+  if (!world || !camera || !def) return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: world, camera or def is null");
+  if (def->cookie != VL_COOKIE_BOXES) return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: " VL_BAD_COOKIE);
   const uint32_t *crop = def->crop;
   if (crop[0] >= crop[2] || crop[1] >= crop[3] || crop[2] > camera->width || crop[3] > camera->height)
     return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels",

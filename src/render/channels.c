@@ -67,7 +67,8 @@ static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlE
                    "film and how it was rendered");
   const vlFilmDef *film = vl_film_def(def->film);
   if (counts && def->render->cookie != VL_COOKIE_RENDER)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: the render def was not made by vl_default_render_def");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "ground truth: def.render.cookie is not that of a default def of this version");
   if (film->width != camera->width || film->height != camera->height)
     return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: camera (%u x %u) and film (%u x %u) differ", camera->width,
                    camera->height, film->width, film->height);
@@ -81,9 +82,8 @@ static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlE
 
 static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChannelsDef *def, vlImage **floats,
                       vlImage **ids, vlError *error) {
-  if (!world || !camera || !def) return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: null argument");
-  if (def->cookie != VL_COOKIE_CHANNELS)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: the def was not made by vl_default_channels_def");
+  if (!world || !camera || !def) return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: world, camera or def is null");
+  if (def->cookie != VL_COOKIE_CHANNELS) return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: " VL_BAD_COOKIE);
   if (def->channels == 0 || def->channels >> VL_CHANNEL_COUNT)
     return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: no such channels: %#x", def->channels);
   const uint32_t *c = def->crop;

@@ -50,9 +50,8 @@ static bool ask_to_stop(void *user) {
 
 static vlResult check_arguments(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                                 vlError *error) {
-  if (!world || !camera || !film) return vl_fail(error, VL_ERROR_ARGUMENT, "render: null argument");
-  if (def->cookie != VL_COOKIE_RENDER)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: the def was not made by vl_default_render_def");
+  if (!world || !camera || !film) return vl_fail(error, VL_ERROR_ARGUMENT, "render: world, camera or film is null");
+  if (def->cookie != VL_COOKIE_RENDER) return vl_fail(error, VL_ERROR_ARGUMENT, "render: " VL_BAD_COOKIE);
   const vlFilmDef *f = vl_film_def(film);
   if (camera->width != f->width || camera->height != f->height)
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: camera (%u x %u) and film (%u x %u) differ", camera->width,

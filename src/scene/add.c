@@ -21,7 +21,7 @@ static bool is_finite_matrix(const double m[16]) {
 static bool may_add(vlScene *scene, const void *def, bool cookie, size_t count, vlSource source, const char *what) {
   if (scene->error.code != VL_OK) return false;
   if (!def || !cookie) {
-    vl_scene_fail(scene, VL_ERROR_ARGUMENT, source, "%s: the def does not come from vl_default_%s_def()", what, what);
+    vl_scene_fail(scene, VL_ERROR_ARGUMENT, source, "%s: " VL_BAD_COOKIE, what);
     return false;
   }
   if (count >= MAX_OBJECTS) vl_scene_fail(scene, VL_ERROR_SCENE, source, "too many objects");

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "base/text.h"
 
 vlCheckDef vl_default_check_def(void) {
   return (vlCheckDef){.cookie = VL_COOKIE_CHECK, .images = true};
@@ -24,6 +25,7 @@ void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSou
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
+  vl_make_printable(text);
   char *message = vl_strdup(check->context, text);
   vlFinding *slot = message ? VL_PUSH(check->context, &check->findings) : NULL;
   if (!slot) {
@@ -69,9 +71,8 @@ vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart 
                        vlError *error) {
   vl_error_clear(error);
   if (result) *result = NULL;
-  if (!scene || !result) return vl_fail(error, VL_ERROR_ARGUMENT, "scene check: null argument");
-  if (def && def->cookie != VL_COOKIE_CHECK)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "the def does not come from vl_default_check_def()");
+  if (!scene || !result) return vl_fail(error, VL_ERROR_ARGUMENT, "scene check: scene or result is null");
+  if (def && def->cookie != VL_COOKIE_CHECK) return vl_fail(error, VL_ERROR_ARGUMENT, "scene check: " VL_BAD_COOKIE);
   if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
   if (scene->meshes_dropped) return vl_fail(error, VL_ERROR_ARGUMENT, "the scene gave its meshes to a world");
   vlCheck *check = vl_alloc_zero(scene->context, 1, sizeof *check);

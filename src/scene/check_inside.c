@@ -79,8 +79,8 @@ static void judge(vlCheck *c, const vlSolid *solid, const double *eye, const vlM
   if (!vl_solid_holds(solid, eye)) return;
   if (media && d->inside.index != medium.index)
     vl_check_add(c, VL_FINDING_CAMERA_INSIDE, VL_SEVERITY_WARNING, d->source,
-                 "the camera stands in this solid, whose medium is \"%.60s\", but its own medium is \"%.60s\"",
-                 medium_name(c, d->inside), medium_name(c, medium));
+                 "the camera stands in this solid, whose medium is \"%s\", but its own medium is \"%s\"",
+                 vl_short_text(medium_name(c, d->inside)).text, vl_short_text(medium_name(c, medium)).text);
   else if (!media && m && m->kind == VL_MATERIAL_DIELECTRIC)
     vl_check_add(c, VL_FINDING_CAMERA_INSIDE, VL_SEVERITY_WARNING, d->source,
                  "the camera stands in the solid of %s and looks out through its surface", name.text);
@@ -191,17 +191,18 @@ static void check_nesting(vlCheck *c, const vlSolid *solids, const Box *boxes, c
       bool cut = (in > 1 && in < SAMPLES - 1) || (in == SAMPLES && back == SAMPLES);
       if (cut && j > i)
         vl_check_add(c, VL_FINDING_MEDIA, VL_SEVERITY_WARNING, solids[j].shape->source,
-                     "this solid of medium \"%.60s\" overlaps the solid of medium \"%.60s\" of line %u",
-                     medium_name(c, solids[j].shape->inside), medium_name(c, d->inside), d->source.line);
+                     "this solid of medium \"%s\" overlaps the solid of medium \"%s\" of line %u",
+                     vl_short_text(medium_name(c, solids[j].shape->inside)).text,
+                     vl_short_text(medium_name(c, d->inside)).text, d->source.line);
       if (in == SAMPLES && back == 0 &&
           (around == UINT32_MAX || box_volume(&boxes[shape[j]]) < box_volume(&boxes[shape[around]])))
         around = j;
     }
     if (around != UINT32_MAX && d->outside.index != solids[around].shape->inside.index)
       vl_check_add(c, VL_FINDING_MEDIA, VL_SEVERITY_WARNING, d->source,
-                   "this solid lies in medium \"%.60s\" (line %u), but says that \"%.60s\" is outside of it",
-                   medium_name(c, solids[around].shape->inside), solids[around].shape->source.line,
-                   medium_name(c, d->outside));
+                   "this solid lies in medium \"%s\" (line %u), but says that \"%s\" is outside of it",
+                   vl_short_text(medium_name(c, solids[around].shape->inside)).text, solids[around].shape->source.line,
+                   vl_short_text(medium_name(c, d->outside)).text);
   }
 }
 

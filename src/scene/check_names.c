@@ -71,7 +71,7 @@ vlCheckName vl_check_material_name(const vlMaterialDef *m) {
   if (!m)
     snprintf(r.text, sizeof r.text, "the default material");
   else if (m->name && m->name[0])
-    snprintf(r.text, sizeof r.text, "material \"%.80s\"", m->name);
+    snprintf(r.text, sizeof r.text, "material \"%s\"", vl_short_text(m->name).text);
   else if (m->source.line)
     snprintf(r.text, sizeof r.text, "the material of line %u", m->source.line);
   else
@@ -82,7 +82,7 @@ vlCheckName vl_check_material_name(const vlMaterialDef *m) {
 vlCheckName vl_check_texture_name(const vlTextureDef *t) {
   vlCheckName r;
   if (t->name && t->name[0])
-    snprintf(r.text, sizeof r.text, "texture \"%.80s\"", t->name);
+    snprintf(r.text, sizeof r.text, "texture \"%s\"", vl_short_text(t->name).text);
   else if (t->source.line)
     snprintf(r.text, sizeof r.text, "the texture of line %u", t->source.line);
   else
@@ -158,20 +158,22 @@ static void tell_unused(vlCheck *c) {
   for (size_t i = 0; i < s->textures.count; i++) {
     const vlTextureDef *t = &s->textures.items[i];
     if (!c->texture_used[i] && !read[i] && named(t->name))
-      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, t->source, "texture \"%.80s\" is not used", t->name);
+      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, t->source, "texture \"%s\" is not used",
+                   vl_short_text(t->name).text);
   }
   for (size_t i = 0; i < s->materials.count; i++) {
     const vlMaterialDef *m = &s->materials.items[i];
     if (c->material_used[i] || mixed[i]) continue;
     if (named(m->name))
-      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, m->source, "material \"%.80s\" is not used", m->name);
+      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, m->source, "material \"%s\" is not used",
+                   vl_short_text(m->name).text);
     else if (m->source.line)
       vl_check_add(c, VL_FINDING_REPLACED, VL_SEVERITY_NOTE, m->source, "no shape takes this material");
   }
   for (size_t i = 0; i < s->media.count; i++)
     if (!c->medium_used[i])
-      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->media.items[i].source,
-                   "nothing lies in medium \"%.80s\"", s->media.items[i].name ? s->media.items[i].name : "");
+      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->media.items[i].source, "nothing lies in medium \"%s\"",
+                   vl_short_text(s->media.items[i].name).text);
   for (size_t i = 0; i < s->emissions.count; i++)
     if (!c->emission_used[i])
       vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->emissions.items[i].source,
@@ -190,13 +192,14 @@ static void tell_groups(vlCheck *c) {
       while (next < s->shapes.count && s->shapes.items[next].group.index != g + 1) next++;
       vlSource at = next < s->shapes.count ? s->shapes.items[next].source : (vlSource){0};
       next = 0;
-      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, at, "object \"%.80s\" is placed nowhere", group->name);
+      vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, at, "object \"%s\" is placed nowhere",
+                   vl_short_text(group->name).text);
     }
     if (!c->group_used[g] || group->shape_count) continue;
     size_t i = 0;
     while (s->instances.items[i].group.index != g + 1) i++;
     vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_NOTE, s->instances.items[i].source,
-                 "object \"%.80s\" is placed, but holds no shapes", group->name);
+                 "object \"%s\" is placed, but holds no shapes", vl_short_text(group->name).text);
   }
 }
 

@@ -188,8 +188,8 @@ static bool add_ground(vlScene *scene, const vlCompleteDef *def, const Box *box)
 vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *error) {
   vl_error_clear(error);
   vlCompleteDef def = given ? *given : vl_default_complete_def();
-  if (!scene || def.cookie != VL_COOKIE_COMPLETE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: no scene, or a def not from vl_default_complete_def");
+  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: scene is null");
+  if (def.cookie != VL_COOKIE_COMPLETE) return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: " VL_BAD_COOKIE);
   if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
   vlSceneDefs *s = &scene->defs;
   bool camera = s->camera_missing || def.reframe;

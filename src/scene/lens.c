@@ -7,7 +7,7 @@
 /* Memory is reserved first: objects never have two owners when an allocation fails. */
 vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
   vl_error_clear(error);
-  if (!scene || !from) return vl_fail(error, VL_ERROR_ARGUMENT, "scene take camera: null argument");
+  if (!scene || !from) return vl_fail(error, VL_ERROR_ARGUMENT, "scene take camera: scene or from is null");
   vlContext *context = scene->context;
   if (from->context != context)
     return vl_fail(error, VL_ERROR_ARGUMENT, "scene take camera: the scenes are of different contexts");
@@ -29,7 +29,7 @@ vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
 
 vlResult vl_scene_refocus(vlScene *scene, double distance, vlError *error) {
   vl_error_clear(error);
-  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "scene refocus: null argument");
+  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "scene refocus: scene is null");
   vlCameraDef *camera = &scene->defs.camera;
   if (!camera->lens.optics) return vl_fail(error, VL_ERROR_ARGUMENT, "scene refocus: the camera's lens is thin");
   if (!VL_RESERVE(scene->context, &scene->optics, 1)) return vl_fail_memory(error);

@@ -8,7 +8,7 @@
 #include "scene/schema/schema.h"
 
 static bool bad(vlScene *scene, const vlMediumDef *d, const char *why) {
-  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%.80s\": %s", d->name ? d->name : "", why);
+  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s", vl_short_text(d->name).text, why);
   return false;
 }
 
@@ -18,8 +18,8 @@ static bool check_values(vlScene *scene, const vlMediumDef *d, const float *v, s
   size_t count = v ? (size_t)d->nx * d->ny * d->nz * per : 0;
   for (size_t i = 0; i < count; i++) {
     if (isfinite(v[i]) && (signs || v[i] >= 0.0f)) continue;
-    vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%.80s\": %s: value %zu is %s (%g)",
-                  d->name ? d->name : "", what, i / per, isfinite(v[i]) ? "negative" : "not finite", (double)v[i]);
+    vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s: value %zu is %s (%g)",
+                  vl_short_text(d->name).text, what, i / per, isfinite(v[i]) ? "negative" : "not finite", (double)v[i]);
     return false;
   }
   return true;
@@ -43,7 +43,7 @@ static bool check_spectrum(vlScene *scene, const vlMediumDef *d, const vlSpectru
   bool negative = s->scale < 0.0f || (s->kind == VL_SPECTRUM_CONSTANT && s->value < 0.0f);
   for (uint32_t i = 0; s->kind == VL_SPECTRUM_SAMPLED && i < s->count; i++) negative = negative || s->values[i] < 0.0f;
   if (!negative) return true;
-  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%.80s\": %s is negative", d->name ? d->name : "", what);
+  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s is negative", vl_short_text(d->name).text, what);
   return false;
 }
 
@@ -80,15 +80,14 @@ vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
   const vlMediumId none = {0};
   if (scene->error.code != VL_OK) return none;
   if (!def || def->cookie != VL_COOKIE_MEDIUM) {
-    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0},
-                  "medium: the def does not come from vl_default_medium_def()");
+    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "medium: " VL_BAD_COOKIE);
     return none;
   }
   const vlKindRow *row = vl_kind_row(&vl_medium_family, (int)def->kind);
   if (!row) return bad(scene, def, "unknown kind"), none;
   if (def->rgb_absorption && !check_rgb_absorption(scene, def)) return none;
   char what[120];
-  snprintf(what, sizeof what, "medium \"%.80s\"", def->name ? def->name : "");
+  snprintf(what, sizeof what, "medium \"%s\"", vl_short_text(def->name).text);
   vlMediumDef d = vl_default_medium_def(def->kind); /* members that the kind does not use keep their defaults */
   vl_row_copy_members(row, def, &d);
   d.name = def->name;

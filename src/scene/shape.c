@@ -192,7 +192,7 @@ vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
   const vlShapeId none = {0};
   if (scene->error.code != VL_OK) return none;
   if (!def || def->cookie != VL_COOKIE_SHAPE) {
-    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "shape: the def does not come from vl_default_shape_def()");
+    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "shape: " VL_BAD_COOKIE);
     return none;
   }
   vlShapeDef d = *def;

@@ -29,18 +29,17 @@ bool vl_world_copy_floats(vlWorld *world, const float *from, size_t count, float
 /* giving: the same scene if its meshes may be freed during the build, else null. */
 static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *def, vlWorld **result, vlError *error) {
   vl_error_clear(error);
-  if (!result) return vl_fail(error, VL_ERROR_ARGUMENT, "world build: null argument");
+  if (!result) return vl_fail(error, VL_ERROR_ARGUMENT, "world build: result is null");
   *result = NULL;
-  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "world build: null argument");
+  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "world build: scene is null");
   vlBuildDef d = def ? *def : vl_default_build_def();
-  if (d.cookie != VL_COOKIE_BUILD)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: the def was not made by vl_default_build_def");
+  if (d.cookie != VL_COOKIE_BUILD) return vl_fail(error, VL_ERROR_ARGUMENT, "world build: " VL_BAD_COOKIE);
   if (d.bits != VL_BITS_PORTABLE && d.bits != VL_BITS_FAST)
     return vl_fail(error, VL_ERROR_ARGUMENT, "world build: no such kind of bits");
   vlResult r = vl_scene_result(scene, error);
   if (r != VL_OK) return r;
   if (scene->meshes_dropped)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "the scene gave its meshes to an earlier world (vl_world_build_last)");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: the scene gave its meshes to an earlier world");
   double start = vl_seconds();
   vlWorld *world = vl_alloc_zero(scene->context, 1, sizeof *world);
   if (!world) return vl_fail_memory(error);

@@ -323,6 +323,39 @@ static void instruction_sets(void **state) {
   assert_int_equal(vl_isa_choose((vlIsa)77, &isa), VL_ERROR_ARGUMENT);
 }
 
+/* Names from files are short and printable, whatever stands in the file. */
+static void names_of_files_are_short(void **state) {
+  (void)state;
+  const struct {
+    const char *name, *shown;
+  } cases[] = {
+      {"", ""},
+      {"twelve_chars", "twelve_chars"},
+      {"thirteen_char", "thirteen_cha\u2026"},
+      {"a\x1b[31mb\nc\x7f", "a?[31mb?c?"},
+      {"b\u00e4ckerstra\u00dfe", "b\u00e4ckerstra\u00dfe"},
+      {"\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600"
+       "\U0001f600\U0001f600\U0001f600",
+       "\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600\U0001f600"
+       "\U0001f600\U0001f600\u2026"},
+      {"\xff\xc3.\xed\xa0\x80\xc0\xaf", "??.?????"}, /* no UTF-8: half a sequence, a surrogate, an overlong slash */
+      {"a\u202eb\u200bc\xc2\x85", "a?b?c?"},         /* from right to left, no width, control */
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    assert_string_equal(vl_short_text(cases[i].name).text, cases[i].shown);
+  assert_string_equal(vl_short_text(NULL).text, "");
+  assert_string_equal(vl_short_text_of("a\0b", 3).text, "a?b");
+
+  vlError error; /* whole messages and names of files, too; a character that the buffer's end has cut is removed */
+  vl_fail_at(&error, VL_ERROR_SCENE, "a\x1b]0;title\x07.pbrt", 1, 1, "%s", "some\nfile\x1b[2J\u00e4.png");
+  assert_string_equal(error.file, "a?]0;title?.pbrt");
+  assert_string_equal(error.message, "some file?[2J\u00e4.png");
+  char longer[600];
+  for (size_t i = 0; i < 598; i += 2) memcpy(longer + i, "\u00e4", 3);
+  vl_fail(&error, VL_ERROR_SCENE, "%s", longer);
+  assert_int_equal(strlen(error.message), 510);
+}
+
 int main(void) {
   const char *temporary = getenv("TMPDIR");
   snprintf(folder, sizeof folder, "%s/velo-base-XXXXXX", temporary ? temporary : "/tmp");
@@ -333,6 +366,7 @@ int main(void) {
       cmocka_unit_test(contexts_check_their_def),
       cmocka_unit_test(nearest_names),
       cmocka_unit_test(paths_join),
+      cmocka_unit_test(names_of_files_are_short),
       cmocka_unit_test(errors_are_cut_not_overrun),
       cmocka_unit_test(files_are_read_whole),
       cmocka_unit_test(gzip_is_unpacked),

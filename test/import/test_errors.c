@@ -35,7 +35,7 @@ static const struct {
     /* parameters */
     {W "Shape \"sphere\" \"radius\" 1", "t.pbrt:2:16: parameter \"radius\" is not of the form \"type name\""},
     {W "Shape \"sphere\" \"float radius big\" 1",
-     "t.pbrt:2:16: parameter \"float radius...\" is not of the form \"type name\""},
+     "t.pbrt:2:16: parameter \"float radius…\" is not of the form \"type name\""},
     {W "Shape \"sphere\" \"flaot radius\" 1",
      "t.pbrt:2:16: unknown parameter type \"flaot\" (did you mean \"float\"?)"},
     {W "Shape \"sphere\" \"float radius\"",

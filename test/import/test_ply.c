@@ -215,7 +215,7 @@ static const struct {
      "p.ply:0:0: PLY: the header promises 2147483648 of element vertex, but only 0 bytes follow"},
     {"ply\nformat binary_little_endian 1.0\nelement face 999999999999999999999\nproperty list uchar int "
      "vertex_indices\nend_header\nabc",
-     "p.ply:3:1: PLY: element face: \"999999999999\" is not a count"},
+     "p.ply:3:1: PLY: element face: \"999999999999…\" is not a count"},
 };
 
 static void bad_files(void **state) {

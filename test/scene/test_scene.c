@@ -140,7 +140,7 @@ static void bad_shapes(void **state) {
   uint32_t v[3];
   vlShapeDef d = {0};
   assert_int_equal(vl_scene_add_shape(scene, &d).index, 0);
-  refuses(VL_ERROR_ARGUMENT, "shape: the def does not come from vl_default_shape_def()");
+  refuses(VL_ERROR_ARGUMENT, "shape: def.cookie is not that of a default def of this version");
 #define BAD(change, message)          \
   do {                                \
     memcpy(p, corners, sizeof p);     \
@@ -236,7 +236,7 @@ static void bad_materials_and_lights(void **state) {
   refuses(VL_ERROR_SCENE, "point light: parameter \"power\" is not finite");
   l.cookie = 0;
   vl_scene_add_light(scene, &l);
-  refuses(VL_ERROR_ARGUMENT, "light: the def does not come from vl_default_light_def()");
+  refuses(VL_ERROR_ARGUMENT, "light: def.cookie is not that of a default def of this version");
   float down[] = {500, 400};
   vlEmissionDef e = vl_default_emission_def();
   e.radiance = (vlSpectrum){.kind = VL_SPECTRUM_SAMPLED, .scale = 1, .count = 2, .wavelengths = down, .values = down};

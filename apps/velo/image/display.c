@@ -83,15 +83,22 @@ static vlResult to_rec709(vlContext *context, const vlImage *image, const int rg
   return VL_OK;
 }
 
+static vlShortText layer_name(const char *channel, const char *dot) {
+  char layer[256];
+  snprintf(layer, sizeof layer, "%.*s", (int)(dot - channel), channel);
+  return vl_short_text(layer);
+}
+
 /* Reports which channel is displayed when the image has neither R, G, B nor Y. */
 static void tell_shown(const vlImage *image) {
   uint32_t channel[4], count = vl_image_shown(image, channel);
   const char *first = vl_image_channel_name(image, channel[0]), *dot = strrchr(first, '.');
   if (vl_image_channels(image) == 1 || strcmp(first, "Y") == 0 || strcmp(first, "R") == 0) return;
   if (count >= 3)
-    report_note("the image has no channels R, G, B or Y: the layer \"%.*s\" is shown", (int)(dot - first), first);
+    report_note("the image has no channels R, G, B or Y: the layer \"%s\" is shown", layer_name(first, dot).text);
   else
-    report_note("the image has no channels R, G, B or Y: the channel \"%s\" is shown as grey", first);
+    report_note("the image has no channels R, G, B or Y: the channel \"%s\" is shown as grey",
+                vl_short_text(first).text);
 }
 
 vlResult display_image(vlContext *context, const vlImage *image, vlView view, float exposure, vlImage **result) {

@@ -63,8 +63,8 @@ static void frame_place(const Run *run, const Frame *frame, char *text, size_t s
   if (!run->frames->trajectory)
     snprintf(text, size, "%s", frame->camera->job.path);
   else
-    snprintf(text, size, "frame %u%s%.100s%s", frame->number, *frame->pose.name ? " (" : "", frame->pose.name,
-             *frame->pose.name ? ")" : "");
+    snprintf(text, size, "frame %u%s%s%s", frame->number, *frame->pose.name ? " (" : "",
+             vl_short_text(frame->pose.name).text, *frame->pose.name ? ")" : "");
 }
 
 static void add_stats(vlRenderStats *total, const vlRenderStats *more) {

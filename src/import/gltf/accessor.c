@@ -101,7 +101,8 @@ const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *from, size_
   size_t one = component_size(a->type);
   if (!a->components)
     return vl_gltf_fail(g, VL_GLTF_KEY(at, "type"),
-                        "unknown type \"%.20s\" (known: SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4)", type),
+                        "unknown type \"%s\" (known: SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4)",
+                        vl_short_text(type).text),
            NULL;
   if (!one)
     return vl_gltf_fail(g, VL_GLTF_KEY(at, "componentType"), "%zu is not 5120, 5121, 5122, 5123, 5125 or 5126",

@@ -126,8 +126,8 @@ static bool read_pointer(vlGltf *g, const vlGltfPlace *up, const json_t *target,
   *node = is_node ? (int64_t)index : -1;
   *path = is_node ? end + 1 : "";
   if (!is_node)
-    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at, "pointer"), "%.80s is not animated: velo moves nodes only",
-                 pointer);
+    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at, "pointer"), "%s is not animated: velo moves nodes only",
+                 vl_short_text(pointer).text);
   return true;
 }
 
@@ -150,7 +150,8 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
   for (int k = 0; k < 4; k++)
     if (strcmp(path, paths[k]) == 0) what = k;
   if (what < 0 && *path)
-    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"), "unknown name \"%.30s\" is ignored", path);
+    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"), "unknown name \"%s\" is ignored",
+                 vl_short_text(path).text);
   if (node < 0 || what < 0) return true; /* the specification lets these channels be ignored */
   const json_t *json = json_array_get(samplers, (size_t)sampler);
   const vlGltfPlace *at_sampler = VL_GLTF_ITEM(up, "samplers", (size_t)sampler);

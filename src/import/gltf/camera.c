@@ -119,7 +119,7 @@ bool vl_gltf_choose_camera(vlGltf *g) {
     for (size_t i = 0; i < g->node_count; i++) {
       const char *own = json_string_value(json_object_get(g->nodes[i].json, "name"));
       if (!g->nodes[i].reached || !json_object_get(g->nodes[i].json, "camera") || !own) continue;
-      vl_list_name(names, sizeof names, own);
+      vl_list_name(names, sizeof names, vl_short_text(own).text);
     }
     return vl_gltf_fail(g, NULL, "the scene has no camera \"%.60s\" (%zu are there%s)", wanted, g->cameras_seen, names);
   }

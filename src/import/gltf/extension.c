@@ -1,5 +1,6 @@
 /* import/gltf/extension.c: the extensions that are read. An unknown extension is an error when the file requires it and
  * a warning when the file only uses it. */
+#include <stdio.h>
 #include <string.h>
 
 #include "base/text.h"
@@ -19,6 +20,40 @@ static const char *const known[] = {
     "EXT_lights_image_based",    "KHR_animation_pointer",
     "KHR_node_visibility",
 };
+/* Of the registry of Khronos, not read. A message shows them whole, others short. */
+static const char *const registered[] = {
+    "ADOBE_materials_clearcoat_specular",
+    "AGI_articulations",
+    "AGI_stk_metadata",
+    "CESIUM_primitive_outline",
+    "CESIUM_RTC",
+    "EXT_lights_ies",
+    "EXT_mesh_features",
+    "EXT_mesh_manifold",
+    "EXT_structural_metadata",
+    "EXT_texture_avif",
+    "FB_geometry_metadata",
+    "KHR_audio_emitter",
+    "KHR_draco_mesh_compression",
+    "KHR_gaussian_splatting",
+    "KHR_interactivity",
+    "KHR_materials_diffuse_roughness",
+    "KHR_materials_subsurface",
+    "KHR_materials_volume_scatter",
+    "KHR_physics_rigid_bodies",
+    "KHR_techniques_webgl",
+    "KHR_texture_basisu",
+    "KHR_xmp_json_ld",
+    "MPEG_media",
+    "MSFT_lod",
+    "MSFT_packing_normalRoughnessMetallic",
+    "MSFT_packing_occlusionRoughnessMetallic",
+    "MSFT_texture_dds",
+    "NV_materials_mdl",
+    "VRM",
+    "VRMC_materials_mtoon",
+    "VRMC_vrm",
+};
 /* These extensions do not change the image. */
 static const char *const silent[] = {"KHR_xmp", "KHR_xmp_json_ld", "KHR_node_hoverability", "KHR_node_selectability"};
 
@@ -30,6 +65,13 @@ static bool is_in(const char *name, const char *const *names, size_t count) {
 
 bool vl_gltf_reads_extension(const char *name) {
   return is_in(name, known, sizeof known / sizeof *known);
+}
+
+static vlShortText shown(const char *name) {
+  vlShortText text = vl_short_text(name);
+  if (is_in(name, registered, sizeof registered / sizeof *registered))
+    snprintf(text.text, sizeof text.text, "%s", name);
+  return text;
 }
 
 bool vl_gltf_check_extensions(vlGltf *g) {
@@ -45,15 +87,16 @@ bool vl_gltf_check_extensions(vlGltf *g) {
     if (!name) return vl_gltf_fail(g, at, "must be a string");
     if (is_in(name, known, known_count)) continue;
     const char *near = vl_nearest_name(name, known, known_count);
-    return near ? vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "velo does not read %.80s (it reads %s)", name, near)
-                : vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "velo does not read %.80s", name);
+    return near ? vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "velo does not read %s (it reads %s)",
+                                    shown(name).text, near)
+                : vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "velo does not read %s", shown(name).text);
   }
   for (size_t i = 0; i < used_count; i++) {
     const char *name = json_string_value(json_array_get(used, i));
     const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "extensionsUsed", i);
     if (!name) return vl_gltf_fail(g, at, "must be a string");
     if (!is_in(name, known, known_count) && !is_in(name, silent, silent_count))
-      vl_gltf_warn(g, VL_LOG_WARNING, at, "%.80s is ignored: velo does not read it", name);
+      vl_gltf_warn(g, VL_LOG_WARNING, at, "%s is ignored: velo does not read it", shown(name).text);
   }
   return true;
 }

@@ -44,7 +44,8 @@ static bool parse(vlGltf *g, const char *text, size_t size) {
   if (!g->root) {
     if (json_error_code(&error) == json_error_out_of_memory) return vl_gltf_fail_memory(g);
     uint32_t line = error.line > 0 ? (uint32_t)error.line : 0, column = error.column > 0 ? (uint32_t)error.column : 1;
-    vl_scene_fail(g->scene, VL_ERROR_SCENE, (vlSource){g->path, line, column}, "broken JSON: %.300s", error.text);
+    vl_scene_fail(g->scene, VL_ERROR_SCENE, (vlSource){g->path, line, column}, "broken JSON: %.*s",
+                  (int)vl_json_problem_length(error.text), error.text);
     return false;
   }
   if (!json_is_object(g->root)) return vl_gltf_fail(g, NULL, "not glTF: the JSON is not an object");
@@ -53,7 +54,7 @@ static bool parse(vlGltf *g, const char *text, size_t size) {
   const char *least = json_string_value(json_object_get(asset, "minVersion"));
   if (!version) return vl_gltf_fail(g, NULL, "asset.version: is missing: not glTF 2.0");
   if (strncmp(least ? least : version, "2.", 2) != 0 || (least && strcmp(least, "2.0") != 0))
-    return vl_gltf_fail(g, NULL, "asset: glTF %.20s; velo reads 2.0", least ? least : version);
+    return vl_gltf_fail(g, NULL, "asset: glTF %s; velo reads 2.0", vl_short_text(least ? least : version).text);
   return true;
 }
 
@@ -189,7 +190,7 @@ bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_
   *path = NULL;
   if (strncmp(uri, "data:", 5) == 0) return unpack(g, at, uri, data, size);
   if (strstr(uri, "://") && strncmp(uri, "file://", 7) != 0)
-    return vl_gltf_fail(g, at, "\"%.100s\": velo fetches nothing from the net", uri);
+    return vl_gltf_fail(g, at, "\"%s\": velo fetches nothing from the net", vl_short_text(uri).text);
   if (strncmp(uri, "file://", 7) == 0) uri += 7;
   char name[4096], whole[4096];
   if (strlen(uri) >= sizeof name) return vl_gltf_fail(g, at, "the file name is too long");

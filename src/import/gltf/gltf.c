@@ -21,7 +21,7 @@ bool vl_gltf_choose_variant(vlGltf *g) {
       g->variant = (int64_t)i;
       return true;
     }
-    vl_list_name(names, sizeof names, name);
+    vl_list_name(names, sizeof names, vl_short_text(name).text);
   }
   return vl_gltf_fail(g, NULL, "there is no variant \"%.60s\" (%zu are there%s)", g->def->variant, count, names);
 }

@@ -145,7 +145,7 @@ bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, cons
     }
     vl_list_name(list, sizeof list, names[i]);
   }
-  return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "unknown name \"%.12s\" (known%s)", text, list);
+  return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "unknown name \"%s\" (known%s)", vl_short_text(text).text, list);
 }
 
 static bool whole(vlGltf *g, const vlGltfPlace *at, const char *key, const json_t *v, size_t *value) {

@@ -187,20 +187,25 @@ static void look(vlGltf *g, const vlGltfPlace *at, const char *key, uint32_t *re
   if (strlen(key) < 4 || is_known(key)) return;
   const char *near = vl_nearest_name(key, known, KNOWN);
   if (near && ++*reported <= MOST_REPORTED)
-    vl_gltf_warn(g, VL_LOG_WARNING, at, "unknown name \"%.60s\" is ignored (did you mean \"%s\"?)", key, near);
+    vl_gltf_warn(g, VL_LOG_WARNING, at, "unknown name \"%s\" is ignored (did you mean \"%s\"?)",
+                 vl_short_text(key).text, near);
 }
 
-/* Extras and extensions that velo does not read are not checked. jansson bounds the depth. */
+/* Names that the format does not have are short in places, too. Extras and extensions that velo does not read are not
+ * checked. jansson bounds the depth. */
 static void walk(vlGltf *g, const vlGltfPlace *at, json_t *value, uint32_t *reported) {
-  const char *key;
+  const char *name;
   json_t *part;
   size_t i;
   if (*reported >= MOST_REPORTED) return;
   if (json_is_object(value)) {
     bool extensions = at && strcmp(at->key, "extensions") == 0;
-    json_object_foreach(value, key, part) {
-      if (extensions ? !vl_gltf_reads_extension(key) : strcmp(key, "extras") == 0) continue;
-      if (!extensions) look(g, at, key, reported);
+    json_object_foreach(value, name, part) {
+      const vlShortText shown = vl_short_text(name);
+      const char *key =
+          bsearch(&name, known, KNOWN, sizeof *known, compare) || vl_gltf_reads_extension(name) ? name : shown.text;
+      if (extensions ? !vl_gltf_reads_extension(name) : strcmp(name, "extras") == 0) continue;
+      if (!extensions) look(g, at, name, reported);
       if (json_is_object(part)) walk(g, VL_GLTF_KEY(at, key), part, reported);
       if (!json_is_array(part)) continue;
       for (i = 0; i < json_array_size(part) && *reported < MOST_REPORTED; i++)

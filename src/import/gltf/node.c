@@ -317,7 +317,7 @@ static bool choose_scene(vlGltf *g, size_t *chosen) {
   for (size_t i = 0; i < g->scene_count; i++) {
     const char *own = json_string_value(json_object_get(vl_gltf_item(g, "scenes", i), "name"));
     if (own && strcmp(own, wanted) == 0) return *chosen = i, true;
-    if (own) vl_list_name(names, sizeof names, own);
+    if (own) vl_list_name(names, sizeof names, vl_short_text(own).text);
   }
   unsigned long number = strtoul(wanted, &end, 10);
   if (end != wanted && !*end && number < g->scene_count) return *chosen = number, true;

@@ -150,7 +150,8 @@ bool vl_obj_make_material(vlObj *obj, vlObjMaterial *material) {
   bool vertices = obj->colors.count > 0;
   if (!material->defined) {
     obj->line = material->line;
-    vl_obj_warn(obj, VL_LOG_WARNING, "usemtl: no library has a material \"%.100s\"; it is grey", material->name);
+    vl_obj_warn(obj, VL_LOG_WARNING, "usemtl: no library has a material \"%s\"; it is grey",
+                vl_short_text(material->name).text);
     obj->line = 0;
   }
   def.name = material->name[0] ? material->name : NULL;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/text.h"
 #include "image/pixel.h"
 #include "import/import.h"
 #include "import/pbrt/token.h"
@@ -122,7 +123,7 @@ static bool numbers(vlObj *obj, const char *what, uint32_t least, uint32_t most,
     char *at = obj->at;
     size_t n = vl_obj_word(obj, &word);
     obj->at = at;
-    return vl_obj_fail(obj, "%s: \"%.*s\" is not a finite number", what, n > 12 ? 12 : (int)n, word);
+    return vl_obj_fail(obj, "%s: \"%s\" is not a finite number", what, vl_short_text_of(word, n).text);
   }
   return *count >= least || vl_obj_fail(obj, "%s: %u numbers, %u are needed", what, *count, least);
 }
@@ -213,7 +214,7 @@ static bool read_corner(vlObj *obj, vlObjCorner *c) {
   obj->at = start;
   size_t n = vl_obj_word(obj, &word);
   obj->at = start;
-  return vl_obj_fail(obj, "f: \"%.*s\" is no corner (v, v/vt, v//vn or v/vt/vn)", n > 12 ? 12 : (int)n, word);
+  return vl_obj_fail(obj, "f: \"%s\" is no corner (v, v/vt, v//vn or v/vt/vn)", vl_short_text_of(word, n).text);
 }
 
 /* Successive faces with one material and object. From MAX_PARTS on, all faces of a material. */
@@ -311,8 +312,8 @@ static void once(vlObj *obj, uint32_t bit, const char *what, size_t length) {
                                        "unknown statement, ignored (as others like it)"};
   if (obj->reported & bit) return;
   obj->reported |= bit;
-  vl_obj_warn(obj, bit == REPORTED_LINES ? VL_LOG_INFO : VL_LOG_WARNING, "\"%.*s\": %s", length > 12 ? 12 : (int)length,
-              what, texts[bit >> 1]);
+  vl_obj_warn(obj, bit == REPORTED_LINES ? VL_LOG_INFO : VL_LOG_WARNING, "\"%s\": %s",
+              vl_short_text_of(what, length).text, texts[bit >> 1]);
 }
 
 static bool read_statement(vlObj *obj) {

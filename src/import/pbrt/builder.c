@@ -92,7 +92,8 @@ static bool medium_interface(vlImport *import, const vlStatement *s) {
 static bool color_space(vlImport *import, const vlStatement *s) {
   if (vl_import_color_space(s->names[0], &import->state.space)) return true;
   return vl_import_fail(import, VL_ERROR_SCENE, s->place,
-                        "unknown colour space \"%.12s\" (known: srgb, dci-p3, rec2020, aces2065-1)", s->names[0]);
+                        "unknown colour space \"%s\" (known: srgb, dci-p3, rec2020, aces2065-1)",
+                        vl_short_text(s->names[0]).text);
 }
 
 static bool world_begin(vlImport *import) {

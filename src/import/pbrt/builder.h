@@ -214,6 +214,8 @@ bool vl_import_unsupported(vlImport *import, vlSource place, const char *format,
 bool vl_import_unknown(vlImport *import, vlSource place, const char *thing, const char *name, const char *const *known,
                        size_t known_count, const char *const *later, size_t later_count);
 /* The same; the known names are the kinds of the family. */
+/* The name of a kind for messages: whole if velo knows it, else short. */
+vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name);
 bool vl_import_unknown_kind(vlImport *import, vlSource place, const vlKindFamily *family, const char *name);
 const char *vl_import_keep(vlImport *import,
                            const char *text); /* copy that lives until the end of the import; null when out of memory */

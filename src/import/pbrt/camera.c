@@ -264,7 +264,8 @@ bool vl_import_camera(vlImport *import) {
   vlSceneDefs *defs = vl_scene_defs(import->scene);
   const vlChoice *choice = &import->camera;
   char what[96];
-  snprintf(what, sizeof what, "Camera \"%.60s\"", choice->given ? choice->kind : "perspective");
+  snprintf(what, sizeof what, "Camera \"%s\"",
+           vl_import_kind_text(&vl_camera_family, choice->given ? choice->kind : "perspective").text);
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
   vlCameraDef def = vl_default_camera_def(defs->film.width, defs->film.height);
   int kind = choice->given ? vl_kind_find(&vl_camera_family, choice->kind) : (int)VL_CAMERA_PBRT_PERSPECTIVE;

@@ -28,8 +28,8 @@ bool vl_import_attribute(vlImport *import, const vlStatement *s) {
     if (strcmp(s->names[0], targets[i]) == 0) target = i;
   if (target < 0)
     return vl_import_fail(import, VL_ERROR_SCENE, s->place,
-                          "Attribute: unknown target \"%.12s\" (known: shape, light, material, medium, texture)",
-                          s->names[0]);
+                          "Attribute: unknown target \"%s\" (known: shape, light, material, medium, texture)",
+                          vl_short_text(s->names[0]).text);
   vlParamList params = {0};
   if (!vl_import_keep_params(import, s, &params)) return false;
   bool fine = true;
@@ -71,7 +71,8 @@ bool vl_import_object_begin(vlImport *import, const vlStatement *s) {
   vlObject *object = find_object(import, s->names[0], s->place);
   if (!object) return false;
   if (object->defined)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "object \"%.80s\" is defined a second time", s->names[0]);
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "object \"%s\" is defined a second time",
+                          vl_short_text(s->names[0]).text);
   object->defined = true;
   import->in_object = true;
   import->object = object->group;
@@ -132,9 +133,8 @@ bool vl_import_material(vlImport *import, const vlStatement *s) {
 bool vl_import_make_named_material(vlImport *import, const vlStatement *s) {
   uint32_t index;
   if (vl_names_find(&import->named_materials, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
-                          "material \"%.80s\" is made a second time (first in line %u)", s->names[0],
-                          import->materials.items[index].place.line);
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "material \"%s\" is made a second time (first in line %u)",
+                          vl_short_text(s->names[0]).text, import->materials.items[index].place.line);
   vlPending *p = add_pending(import, s, VL_ATTR_MATERIAL, false);
   if (!p || !(p->name = vl_import_keep(import, s->names[0]))) return false;
   if (vl_names_add(import->context, &import->named_materials, p->name, (uint32_t)import->materials.count - 1))
@@ -158,14 +158,14 @@ bool vl_import_texture(vlImport *import, const vlStatement *s) {
   bool spectrum = strcmp(s->names[1], "spectrum") == 0 || strcmp(s->names[1], "color") == 0;
   if (!spectrum && strcmp(s->names[1], "float") != 0)
     return vl_import_fail(import, VL_ERROR_SCENE, s->place,
-                          "Texture \"%.60s\": the type must be \"float\" or \"spectrum\", not \"%.12s\"", s->names[0],
-                          s->names[1]);
+                          "Texture \"%s\": the type must be \"float\" or \"spectrum\", not \"%s\"",
+                          vl_short_text(s->names[0]).text, vl_short_text(s->names[1]).text);
   vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;
   uint32_t index;
   if (vl_names_find(table, s->names[0], &index))
     return vl_import_fail(import, VL_ERROR_SCENE, s->place,
-                          "%s texture \"%.80s\" is made a second time (first in line %u)",
-                          spectrum ? "spectrum" : "float", s->names[0], import->textures.items[index].place.line);
+                          "%s texture \"%s\" is made a second time (first in line %u)", spectrum ? "spectrum" : "float",
+                          vl_short_text(s->names[0]).text, import->textures.items[index].place.line);
   vlPending *p = add_pending(import, s, VL_ATTR_TEXTURE, true);
   if (!p) return false;
   p->spectrum = spectrum;

@@ -127,7 +127,8 @@ bool vl_import_film(vlImport *import) {
   vlSceneDefs *s = vl_scene_defs(import->scene);
   const vlChoice *choice = &import->film;
   char what[96];
-  snprintf(what, sizeof what, "Film \"%.60s\"", choice->given ? choice->kind : "rgb");
+  snprintf(what, sizeof what, "Film \"%s\"",
+           vl_import_kind_text(&vl_film_family, choice->given ? choice->kind : "rgb").text);
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
   int kind = choice->given ? vl_kind_find(&vl_film_family, choice->kind) : VL_FILM_RGB;
   bool known = kind >= 0;
@@ -169,21 +170,22 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
   if (strcmp(name, "seed") == 0) {
     double seed;
     if (!vl_number_parse(value, strlen(value), &seed) || seed != floor(seed) || fabs(seed) > 4294967295.0)
-      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"seed\": \"%.12s\" is not an integer", value);
+      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"seed\": \"%s\" is not an integer",
+                            vl_short_text(value).text);
     defs->render.seed = (uint32_t)(int64_t)seed;
     return true;
   }
   if (strcmp(name, "displacementedgescale") == 0) {
     if (vl_number_parse(value, strlen(value), &import->edge_scale) && import->edge_scale > 0.0) return true;
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": \"%.12s\" is not a number above 0", name,
-                          value);
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": \"%s\" is not a number above 0", name,
+                          vl_short_text(value).text);
   }
   for (size_t i = 0; i < sizeof switches / sizeof *switches; i++) {
     if (strcmp(name, switches[i].name) != 0) continue;
     bool on = strcmp(value, "true") == 0;
     if (!on && strcmp(value, "false") != 0)
-      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": expected true or false, found \"%.12s\"",
-                            switches[i].name, value);
+      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": expected true or false, found \"%s\"",
+                            switches[i].name, vl_short_text(value).text);
     if (switches[i].value) *switches[i].value = on;
     return switches[i].value || !on ||
            vl_import_unsupported(import, s->place, "Option \"%s\": velo cannot; its materials stay what they are",

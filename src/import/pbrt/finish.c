@@ -92,7 +92,8 @@ bool vl_import_finish(vlImport *import) {
   for (size_t i = 0; i < import->object_list.count; i++) {
     const vlObject *object = &import->object_list.items[i];
     if (object->defined) continue;
-    vl_import_fail(import, VL_ERROR_SCENE, object->place, "there is no object \"%.80s\"", object->name);
+    vl_import_fail(import, VL_ERROR_SCENE, object->place, "there is no object \"%s\"",
+                   vl_short_text(object->name).text);
     if (!vl_import_recover(import)) return false;
   }
   note_rough_coats(import);

@@ -70,7 +70,7 @@ enum { MOST_PARAMETERS = 32 };
 bool vl_import_light(vlImport *import, const vlStatement *s) {
   char what[96];
   bool given[MOST_PARAMETERS];
-  snprintf(what, sizeof what, "LightSource \"%.60s\"", s->names[0]);
+  snprintf(what, sizeof what, "LightSource \"%s\"", vl_import_kind_text(&vl_light_family, s->names[0]).text);
   vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_LIGHT));
   int kind = vl_kind_find(&vl_light_family, s->names[0]);
@@ -99,7 +99,7 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
 bool vl_import_area_light(vlImport *import, const vlStatement *s) {
   char what[96];
   bool given[MOST_PARAMETERS];
-  snprintf(what, sizeof what, "AreaLightSource \"%.60s\"", s->names[0]);
+  snprintf(what, sizeof what, "AreaLightSource \"%s\"", vl_import_kind_text(&vl_emission_family, s->names[0]).text);
   vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_LIGHT));
   import->state.emission = (vlEmissionId){0};

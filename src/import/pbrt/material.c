@@ -10,12 +10,13 @@ bool vl_import_material_id(vlImport *import, const char *name, vlSource place, v
   if (!vl_names_find(&import->named_materials, name, &index)) {
     const char *near = vl_names_nearest(&import->named_materials, name);
     if (near)
-      return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no material \"%.80s\" (did you mean \"%s\"?)",
-                            name, near);
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no material \"%.80s\"", name);
+      return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no material \"%s\" (did you mean \"%s\"?)",
+                            vl_short_text(name).text, vl_short_text(near).text);
+    return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no material \"%s\"", vl_short_text(name).text);
   }
   if (import->materials.items[index].state == VL_IN_PROGRESS)
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "material \"%.80s\" is mixed of itself", name);
+    return vl_import_fail(import, VL_ERROR_SCENE, place, "material \"%s\" is mixed of itself",
+                          vl_short_text(name).text);
   if (!vl_import_finish_material(import, index)) return false;
   id->index = import->materials.items[index].id;
   *is_interface = import->materials.items[index].is_interface;
@@ -131,8 +132,8 @@ static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict, int *k
   if (!type) { /* MakeNamedMaterial */
     if (!vl_dict_string(dict, "type", &type)) {
       if (import->scene->error.code != VL_OK) return false;
-      return vl_import_fail(import, VL_ERROR_SCENE, place, "MakeNamedMaterial \"%.60s\": \"string type\" is missing",
-                            pending->name);
+      return vl_import_fail(import, VL_ERROR_SCENE, place, "MakeNamedMaterial \"%s\": \"string type\" is missing",
+                            vl_short_text(pending->name).text);
     }
     place = vl_dict_find(dict, "type", 1u << VL_PARAM_STRING)->place;
   }
@@ -144,9 +145,9 @@ static bool finish(vlImport *import, uint32_t index) {
   vlPending *pending = &import->materials.items[index]; /* the array no longer grows */
   char what[128];
   if (pending->kind)
-    snprintf(what, sizeof what, "Material \"%.60s\"", pending->kind);
+    snprintf(what, sizeof what, "Material \"%s\"", vl_import_kind_text(&vl_material_family, pending->kind).text);
   else
-    snprintf(what, sizeof what, "MakeNamedMaterial \"%.60s\"", pending->name);
+    snprintf(what, sizeof what, "MakeNamedMaterial \"%s\"", vl_short_text(pending->name).text);
   vlDict dict = vl_import_dict(import, what, pending->place, pending->space, &pending->params, NULL);
   int kind = -1;
   if (!find_kind(import, pending, &dict, &kind)) return false;

@@ -28,9 +28,10 @@ bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum
   vlSource at = vl_dict_find(dict, parameter, 1u << VL_PARAM_STRING)->place;
   const char *near = vl_nearest_name(name, names, count);
   if (near)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%.80s\" (did you mean \"%s\"?)",
-                          dict->what, name, near);
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%.80s\"", dict->what, name);
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%s\" (did you mean \"%s\"?)",
+                          dict->what, vl_short_text(name).text, near);
+  return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%s\"", dict->what,
+                        vl_short_text(name).text);
 }
 
 /* A preset takes precedence over sigma_a and sigma_s, as in pbrt. */
@@ -121,9 +122,10 @@ bool vl_import_medium(vlImport *import, const vlStatement *s) {
   uint32_t index;
   char what[96];
   const char *type = NULL;
-  snprintf(what, sizeof what, "MakeNamedMedium \"%.60s\"", s->names[0]);
+  snprintf(what, sizeof what, "MakeNamedMedium \"%s\"", vl_short_text(s->names[0]).text);
   if (vl_names_find(&import->media, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "medium \"%.80s\" is made a second time", s->names[0]);
+    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "medium \"%s\" is made a second time",
+                          vl_short_text(s->names[0]).text);
   vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_MEDIUM));
   if (!vl_dict_string(&dict, "type", &type)) {
@@ -167,9 +169,9 @@ static bool find(vlImport *import, const char *name, vlSource place, vlMediumId 
   if (!name[0] || vl_names_find(&import->media, name, &id->index)) return true;
   const char *near = vl_names_nearest(&import->media, name);
   if (near)
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no medium \"%.80s\" (did you mean \"%s\"?)", name,
-                          near);
-  return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no medium \"%.80s\"", name);
+    return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no medium \"%s\" (did you mean \"%s\"?)",
+                          vl_short_text(name).text, vl_short_text(near).text);
+  return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no medium \"%s\"", vl_short_text(name).text);
 }
 
 /* pbrt's surface integrators ignore media. Velo's light-tracing and photon-mapping tracers do not: a warning says so.

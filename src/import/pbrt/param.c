@@ -186,11 +186,11 @@ bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, si
     n += (size_t)snprintf(all + n, sizeof all - n, "%s%s", i ? ", " : "", names[i]);
   const char *near = vl_nearest_name(text, names, count);
   if (near)
-    vl_import_fail(dict->import, VL_ERROR_SCENE, p->place, "%s: \"%s\" cannot be \"%.60s\" (did you mean \"%s\"?)",
-                   dict->what, name, text, near);
+    vl_import_fail(dict->import, VL_ERROR_SCENE, p->place, "%s: \"%s\" cannot be \"%s\" (did you mean \"%s\"?)",
+                   dict->what, name, vl_short_text(text).text, near);
   else
-    vl_import_fail(dict->import, VL_ERROR_SCENE, p->place, "%s: \"%s\" cannot be \"%.60s\" (known: %s)", dict->what,
-                   name, text, all);
+    vl_import_fail(dict->import, VL_ERROR_SCENE, p->place, "%s: \"%s\" cannot be \"%s\" (known: %s)", dict->what, name,
+                   vl_short_text(text).text, all);
   return false;
 }
 
@@ -206,9 +206,10 @@ bool vl_dict_done(vlDict *dict) {
     if (p->used || p->optional) continue;
     const char *near = vl_nearest_name(p->name, dict->asked, dict->asked_count);
     if (near)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: unknown parameter \"%.80s\" (did you mean \"%s\"?)",
-                            dict->what, p->name, near);
-    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: unknown parameter \"%.80s\"", dict->what, p->name);
+      return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: unknown parameter \"%s\" (did you mean \"%s\"?)",
+                            dict->what, vl_short_text(p->name).text, near);
+    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: unknown parameter \"%s\"", dict->what,
+                          vl_short_text(p->name).text);
   }
   return true;
 }

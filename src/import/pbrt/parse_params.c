@@ -28,22 +28,12 @@ bool vl_parse_fail_memory(const vlParserFile *file) {
   return false;
 }
 
-/* The token as printable text for a message. It is cut short, since a scene may include any file. */
-vlShown vl_parse_show(const vlToken *token) {
-  vlShown s;
-  size_t n = 0;
-  if (token->kind == VL_TOKEN_END) {
+vlShownToken vl_parse_show(const vlToken *token) {
+  vlShownToken s;
+  if (token->kind == VL_TOKEN_END)
     snprintf(s.text, sizeof s.text, "the end of the file");
-    return s;
-  }
-  s.text[n++] = '"';
-  for (size_t i = 0; i < token->length && i < VL_MOST_SHOWN; i++) {
-    unsigned char c = (unsigned char)token->text[i];
-    s.text[n++] = c < 32 || c == 127 ? '?' : (char)c;
-  }
-  if (token->length > VL_MOST_SHOWN) s.text[n++] = '.', s.text[n++] = '.', s.text[n++] = '.';
-  s.text[n++] = '"';
-  s.text[n] = 0;
+  else
+    snprintf(s.text, sizeof s.text, "\"%s\"", vl_short_text_of(token->text, token->length).text);
   return s;
 }
 
@@ -89,12 +79,11 @@ static bool declare(vlParserFile *file, const vlToken *token, vlParam *param) {
     return vl_parse_fail(file, param->place, "parameter %s is not of the form \"type name\"",
                          vl_parse_show(token).text);
   if (!vl_param_type_find(type, type_length, &param->type)) {
-    char text[64];
-    snprintf(text, sizeof text, "%.*s", (int)(type_length < VL_MOST_SHOWN ? type_length : VL_MOST_SHOWN), type);
-    const char *near = vl_param_type_nearest(text);
+    const vlShortText text = vl_short_text_of(type, type_length);
+    const char *near = vl_param_type_nearest(text.text);
     if (near)
-      return vl_parse_fail(file, param->place, "unknown parameter type \"%s\" (did you mean \"%s\"?)", text, near);
-    return vl_parse_fail(file, param->place, "unknown parameter type \"%s\"", text);
+      return vl_parse_fail(file, param->place, "unknown parameter type \"%s\" (did you mean \"%s\"?)", text.text, near);
+    return vl_parse_fail(file, param->place, "unknown parameter type \"%s\"", text.text);
   }
   param->name = vl_alloc(file->parser->context, name_length + 1);
   if (!param->name) return vl_parse_fail_memory(file);
@@ -112,7 +101,7 @@ static bool add_number(vlParserFile *file, const vlToken *token, vlParam *param)
   double value;
   if (!vl_number_parse(token->text, token->length, &value))
     return vl_parse_fail(file, vl_parse_place(file, token), "\"%s %s\": expected a number, found %s",
-                         vl_param_type_name(param->type), param->name, vl_parse_show(token).text);
+                         vl_param_type_name(param->type), vl_short_text(param->name).text, vl_parse_show(token).text);
   if (param->type == VL_PARAM_INTEGER) {
     if (value < -2147483648.0 || value > 2147483647.0 || value != (double)(int64_t)value)
       return vl_parse_fail(file, vl_parse_place(file, token), "\"integer %s\": %s is not a 32-bit integer", param->name,
@@ -142,7 +131,7 @@ static bool add_value(vlParserFile *file, const vlToken *token, vlParam *param) 
   if (param->type == VL_PARAM_BOOL) {
     if (!is_true && !is_false)
       return vl_parse_fail(file, vl_parse_place(file, token), "\"%s %s\": expected true or false, found %s", type,
-                           param->name, vl_parse_show(token).text);
+                           vl_short_text(param->name).text, vl_parse_show(token).text);
     uint8_t *slot = VL_PUSH(context, &param->bools);
     if (!slot) return vl_parse_fail_memory(file);
     *slot = is_true;
@@ -151,7 +140,7 @@ static bool add_value(vlParserFile *file, const vlToken *token, vlParam *param) 
   if (token->kind == VL_TOKEN_STRING) {
     if (takes_numbers(param->type) && param->type != VL_PARAM_SPECTRUM)
       return vl_parse_fail(file, vl_parse_place(file, token), "\"%s %s\": expected a number, found the string %s", type,
-                           param->name, vl_parse_show(token).text);
+                           vl_short_text(param->name).text, vl_parse_show(token).text);
     if (param->floats.count)
       return vl_parse_fail(file, vl_parse_place(file, token), "\"%s %s\": numbers and strings do not mix", type,
                            param->name);
@@ -161,10 +150,10 @@ static bool add_value(vlParserFile *file, const vlToken *token, vlParam *param) 
   }
   if (!takes_numbers(param->type))
     return vl_parse_fail(file, vl_parse_place(file, token), "\"%s %s\": expected a string in quotes, found %s", type,
-                         param->name, vl_parse_show(token).text);
+                         vl_short_text(param->name).text, vl_parse_show(token).text);
   if (param->strings.count)
     return vl_parse_fail(file, vl_parse_place(file, token), "\"%s %s\": numbers and strings do not mix", type,
-                         param->name);
+                         vl_short_text(param->name).text);
   return add_number(file, token, param);
 }
 
@@ -199,7 +188,8 @@ static bool read_values(vlParserFile *file, vlParam *param) {
   if (token.kind != VL_TOKEN_OPEN) {
     if (token.kind == VL_TOKEN_END || token.kind == VL_TOKEN_CLOSE)
       return vl_parse_fail(file, vl_parse_place(file, &token), "\"%s %s\": expected a value, found %s",
-                           vl_param_type_name(param->type), param->name, vl_parse_show(&token).text);
+                           vl_param_type_name(param->type), vl_short_text(param->name).text,
+                           vl_parse_show(&token).text);
     return add_value(file, &token, param);
   }
   vlToken open = token;

@@ -5,6 +5,7 @@
 
 #include <sys/stat.h>
 
+#include "base/text.h"
 #include "import/pbrt/parse.h"
 #include "import/pbrt/token.h"
 
@@ -28,13 +29,12 @@ typedef struct vlParserFile {
   vlToken token;
 } vlParserFile;
 
-enum { VL_MOST_SHOWN = 12 }; /* characters of a token in a message */
-/* The token as short, printable text. */
-typedef struct vlShown {
-  char text[48];
-} vlShown;
+/* The token for a message: short, printable, in quotes. */
+typedef struct vlShownToken {
+  char text[sizeof(vlShortText) + 2];
+} vlShownToken;
 
-vlShown vl_parse_show(const vlToken *token);
+vlShownToken vl_parse_show(const vlToken *token);
 vlSource vl_parse_place(const vlParserFile *file, const vlToken *token);
 bool vl_parse_fail(const vlParserFile *file, vlSource place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -75,12 +75,19 @@ bool vl_import_unknown(vlImport *import, vlSource place, const char *thing, cons
                        size_t known_count, const char *const *later, size_t later_count) {
   for (size_t i = 0; i < later_count; i++)
     if (strcmp(name, later[i]) == 0)
-      return vl_import_unsupported(import, place, "%s \"%s\" is not understood yet", thing, name);
+      return vl_import_unsupported(import, place, "%s \"%s\" is not understood yet", thing, vl_short_text(name).text);
   const char *near = vl_nearest_name(name, known, known_count);
   if (!near) near = vl_nearest_name(name, later, later_count);
   if (near)
-    return vl_import_unsupported(import, place, "unknown %s \"%.80s\" (did you mean \"%s\"?)", thing, name, near);
-  return vl_import_unsupported(import, place, "unknown %s \"%.80s\"", thing, name);
+    return vl_import_unsupported(import, place, "unknown %s \"%s\" (did you mean \"%s\"?)", thing,
+                                 vl_short_text(name).text, near);
+  return vl_import_unsupported(import, place, "unknown %s \"%s\"", thing, vl_short_text(name).text);
+}
+
+vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name) {
+  vlShortText text = vl_short_text(name);
+  if (vl_kind_find(family, name) >= 0) snprintf(text.text, sizeof text.text, "%s", name);
+  return text;
 }
 
 bool vl_import_unknown_kind(vlImport *import, vlSource place, const vlKindFamily *family, const char *name) {

@@ -61,7 +61,7 @@ static bool read_sampler(vlImport *import, vlSceneDefs *s) {
   s->render.spp = 16;
   if (!choice->given) return true;
   char what[96];
-  snprintf(what, sizeof what, "Sampler \"%.60s\"", choice->kind);
+  snprintf(what, sizeof what, "Sampler \"%s\"", vl_import_kind_text(&vl_sampler_family, choice->kind).text);
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
   int kind;
   bool good, given[16];
@@ -87,7 +87,7 @@ static bool read_filter(vlImport *import, vlSceneDefs *s) {
   s->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
   if (!choice->given) return true;
   char what[96];
-  snprintf(what, sizeof what, "PixelFilter \"%.60s\"", choice->kind);
+  snprintf(what, sizeof what, "PixelFilter \"%s\"", vl_import_kind_text(&vl_pixel_filter_family, choice->kind).text);
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
   int kind = vl_kind_find(&vl_pixel_filter_family, choice->kind);
   if (kind < 0) return vl_import_unknown_kind(import, choice->place, &vl_pixel_filter_family, choice->kind);
@@ -133,8 +133,8 @@ static const char *stand_in(const char *name) {
 static void remark_two_way(vlImport *import, const char *kind, vlTracer tracer) {
   bool pbrts = strcmp(kind, "bdpt") == 0 || strcmp(kind, "mlt") == 0 || strcmp(kind, "sppm") == 0;
   if (pbrts)
-    vl_import_warn(import, VL_LOG_INFO, import->integrator.place, "integrator \"%s\": rendered by velo's %s", kind,
-                   tracer == VL_TRACER_SPPM ? "merging tracer" : "bidirectional tracer");
+    vl_import_warn(import, VL_LOG_INFO, import->integrator.place, "integrator \"%s\": rendered by velo's %s",
+                   vl_short_text(kind).text, tracer == VL_TRACER_SPPM ? "merging tracer" : "bidirectional tracer");
 }
 
 static bool read_integrator(vlImport *import, vlSceneDefs *s) {
@@ -143,7 +143,7 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   s->render.max_depth = 5;
   if (!choice->given) return true;
   char what[96];
-  snprintf(what, sizeof what, "Integrator \"%.60s\"", choice->kind);
+  snprintf(what, sizeof what, "Integrator \"%s\"", vl_import_kind_text(&vl_tracer_family, choice->kind).text);
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
   int kind = vl_kind_find(&vl_tracer_family, stand_in(choice->kind));
   const vlKindRow *row = vl_kind_row(&vl_tracer_family, kind);

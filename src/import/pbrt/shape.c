@@ -312,7 +312,7 @@ static void drop_emission(vlImport *import, vlSource place, bool moves, vlShapeD
 
 bool vl_import_shape(vlImport *import, const vlStatement *s) {
   char what[96];
-  snprintf(what, sizeof what, "Shape \"%.60s\"", s->names[0]);
+  snprintf(what, sizeof what, "Shape \"%s\"", vl_short_text(s->names[0]).text);
   vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_SHAPE));
   vlShapeKind kind;

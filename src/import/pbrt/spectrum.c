@@ -91,8 +91,8 @@ static bool read_named(vlImport *import, const vlParam *param, vlSpectrum *spect
   char path[4096];
   if (!near && vl_parse_find_file(param->place.file, import->first, text, path, sizeof path))
     return read_file(import, param, spectrum);
-  return vl_import_fail(import, VL_ERROR_SCENE, param->place, "no spectrum is named \"%.80s\" (did you mean \"%s\"?)",
-                        text, near ? near : "");
+  return vl_import_fail(import, VL_ERROR_SCENE, param->place, "no spectrum is named \"%s\" (did you mean \"%s\"?)",
+                        vl_short_text(text).text, near ? near : "");
 }
 
 bool vl_import_spectrum(vlImport *import, vlParam *p, vlSpectrum *spectrum) {

@@ -81,8 +81,10 @@ bool vl_import_use_system(vlImport *import, const vlStatement *s) {
   const char *near = vl_names_nearest(&import->coordinate_systems, s->names[0]);
   if (near)
     return vl_import_fail(import, VL_ERROR_SCENE, s->place,
-                          "there is no coordinate system \"%.80s\" (did you mean \"%s\"?)", s->names[0], near);
-  return vl_import_fail(import, VL_ERROR_SCENE, s->place, "there is no coordinate system \"%.80s\"", s->names[0]);
+                          "there is no coordinate system \"%s\" (did you mean \"%s\"?)",
+                          vl_short_text(s->names[0]).text, vl_short_text(near).text);
+  return vl_import_fail(import, VL_ERROR_SCENE, s->place, "there is no coordinate system \"%s\"",
+                        vl_short_text(s->names[0]).text);
 }
 
 /* ---- the stack -------------------------------------------------------------------------------------------------- */

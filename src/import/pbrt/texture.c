@@ -14,16 +14,17 @@ bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlS
   if (!vl_names_find(table, name, &index)) {
     if (vl_names_find(other, name, &index))
       return vl_import_fail(import, VL_ERROR_SCENE, place,
-                            "texture \"%.80s\" is a %s texture; a %s texture is needed here", name,
+                            "texture \"%s\" is a %s texture; a %s texture is needed here", vl_short_text(name).text,
                             spectrum ? "float" : "spectrum", type);
     const char *near = vl_names_nearest(table, name);
     if (near)
-      return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no %s texture \"%.80s\" (did you mean \"%s\"?)",
-                            type, name, near);
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no %s texture \"%.80s\"", type, name);
+      return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no %s texture \"%s\" (did you mean \"%s\"?)", type,
+                            vl_short_text(name).text, vl_short_text(near).text);
+    return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no %s texture \"%s\"", type,
+                          vl_short_text(name).text);
   }
   if (import->textures.items[index].state == VL_IN_PROGRESS)
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "texture \"%.80s\" refers to itself", name);
+    return vl_import_fail(import, VL_ERROR_SCENE, place, "texture \"%s\" refers to itself", vl_short_text(name).text);
   if (!vl_import_finish_texture(import, index)) return false;
   id->index = import->textures.items[index].id;
   return true;
@@ -77,8 +78,8 @@ static bool read_encoding(vlDict *dict, vlTextureDef *def) {
     def->encoding = VL_ENCODING_GAMMA;
   } else {
     return vl_import_fail(dict->import, VL_ERROR_SCENE, p->place,
-                          "%s: unknown encoding \"%.12s\" (known: sRGB, linear, gamma followed by a number)",
-                          dict->what, text);
+                          "%s: unknown encoding \"%s\" (known: sRGB, linear, gamma followed by a number)", dict->what,
+                          vl_short_text(text).text);
   }
   return true;
 }
@@ -133,8 +134,9 @@ static bool read_texture(vlDict *dict, vlTextureDef *def, const vlPending *pendi
 
 static bool finish(vlImport *import, uint32_t index) {
   vlPending *pending = &import->textures.items[index]; /* the array no longer grows */
-  char what[128];
-  snprintf(what, sizeof what, "Texture \"%.60s\" (%.40s)", pending->name, pending->kind);
+  char what[160];
+  snprintf(what, sizeof what, "Texture \"%s\" (%s)", vl_short_text(pending->name).text,
+           vl_import_kind_text(&vl_texture_family, pending->kind).text);
   vlDict dict = vl_import_dict(import, what, pending->place, pending->space, &pending->params, NULL);
   int kind = vl_kind_find(&vl_texture_family, pending->kind);
   vlTextureDef def = vl_default_texture_def(kind < 0 ? VL_TEXTURE_CONSTANT : (vlTextureKind)kind, pending->spectrum);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/text.h"
 #include "import/pbrt/token.h"
 #include "import/ply/ply_reader.h"
 
@@ -34,7 +35,7 @@ static bool read_text(vlPlyReader *r, double *value) {
     r->at = stop;
     return true;
   }
-  return vl_ply_fail(r, "expected a number, found \"%.*s\"", (int)(stop - start < 12 ? stop - start : 12), start);
+  return vl_ply_fail(r, "expected a number, found \"%s\"", vl_short_text_of(start, (size_t)(stop - start)).text);
 }
 
 /* A binary value; the caller has checked that its bytes exist. */

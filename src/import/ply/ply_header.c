@@ -102,7 +102,9 @@ static bool read_element(vlPlyReader *r, const Words *w) {
                                               : VL_PLY_OTHER;
   const char *p = w->word[2];
   for (; *p >= '0' && *p <= '9' && e->count < 1000000000000000ull; p++) e->count = e->count * 10 + (uint64_t)(*p - '0');
-  if (*p || p == w->word[2]) return vl_ply_fail(r, "element %.12s: \"%.12s\" is not a count", e->name, w->word[2]);
+  if (*p || p == w->word[2])
+    return vl_ply_fail(r, "element %s: \"%s\" is not a count", vl_short_text(e->name).text,
+                       vl_short_text(w->word[2]).text);
   for (uint32_t i = 0; i + 1 < r->element_count; i++)
     if (e->kind != VL_PLY_OTHER && r->elements[i].kind == e->kind)
       return vl_ply_fail(r, "element %s appears twice", e->name);
@@ -120,8 +122,9 @@ static bool read_property(vlPlyReader *r, const Words *w) {
   if (!list && w->count != 3)
     return vl_ply_fail(r, "a property line has the form \"property type name\" or \"property list type type name\"");
   if (!find_type(w->word[list ? 3 : 1], &p->type))
-    return vl_ply_fail(r, "unknown type \"%.12s\"", w->word[list ? 3 : 1]);
-  if (list && !find_type(w->word[2], &p->count_type)) return vl_ply_fail(r, "unknown type \"%.12s\"", w->word[2]);
+    return vl_ply_fail(r, "unknown type \"%s\"", vl_short_text(w->word[list ? 3 : 1]).text);
+  if (list && !find_type(w->word[2], &p->count_type))
+    return vl_ply_fail(r, "unknown type \"%s\"", vl_short_text(w->word[2]).text);
   if (list && p->count_type >= VL_PLY_F32) return vl_ply_fail(r, "the length of a list must be of an integer type");
   const char *name = w->word[list ? 4 : 2];
   if (e->kind == VL_PLY_VERTEX && !list) p->role = vertex_role(name);
@@ -141,8 +144,8 @@ static bool read_format(vlPlyReader *r, const Words *w) {
   else if (w->count == 3 && strcmp(w->word[1], "binary_big_endian") == 0)
     r->format = VL_PLY_BIG;
   else
-    return vl_ply_fail(r, "unknown format \"%.12s\" (known: ascii, binary_little_endian, binary_big_endian)",
-                       w->count > 1 ? w->word[1] : "");
+    return vl_ply_fail(r, "unknown format \"%s\" (known: ascii, binary_little_endian, binary_big_endian)",
+                       vl_short_text(w->count > 1 ? w->word[1] : "").text);
   return true;
 }
 
@@ -174,7 +177,7 @@ bool vl_ply_read_header(vlPlyReader *r) {
     else if (strcmp(w.word[0], "property") == 0)
       fine = read_property(r, &w);
     else
-      fine = vl_ply_fail(r, "unknown word \"%.12s\" in the header", w.word[0]);
+      fine = vl_ply_fail(r, "unknown word \"%s\" in the header", vl_short_text(w.word[0]).text);
     if (!fine) return false;
   }
   if (!has_format) return vl_ply_fail(r, "the header has no format line");

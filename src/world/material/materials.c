@@ -9,7 +9,7 @@
 vlResult vl_material_fail(const vlMaterialBuild *b, const char *what) {
   const vlMaterialDef *def = b->def;
   return vl_fail_at(b->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
-                    "material \"%s\": %s", def->name ? def->name : "", what);
+                    "material \"%s\": %s", vl_short_text(def->name).text, what);
 }
 
 vlResult vl_material_floats(const vlMaterialBuild *b, const vlMaterialFloat *floats, size_t count) {
@@ -111,7 +111,7 @@ vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta,
   if (spectral)
     vl_log(b->world->context, VL_LOG_WARNING, NULL,
            "material \"%s\": dispersion of this kind is not supported, the index at 589.3 nm is used",
-           b->def->name ? b->def->name : "");
+           vl_short_text(b->def->name).text);
   return VL_OK;
 }
 

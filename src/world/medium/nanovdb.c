@@ -42,7 +42,7 @@ typedef struct Tree {
 static const pnanovdb_grid_type_t type = PNANOVDB_GRID_TYPE_FLOAT;
 
 static vlResult fail(const Tree *t, const char *why) {
-  return vl_fail(t->error, VL_ERROR_SCENE, "%s: grid \"%.80s\": %s", t->path, t->name, why);
+  return vl_fail(t->error, VL_ERROR_SCENE, "%s: grid \"%s\": %s", t->path, vl_short_text(t->name).text, why);
 }
 
 static bool fits(const Tree *t, uint64_t address, uint64_t size) {

@@ -84,21 +84,23 @@ vlResult vl_compile_medium_nanovdb(vlWorld *world, const vlMediumDef *def, vlWor
   const char *name = def->grid ? def->grid : "density", *heat = def->temperature_grid;
   m->emits = false;
   vlResult r = vl_nanovdb_read(world, def->path, name, &m->sparse, error);
-  if (r == VL_OK && !m->sparse) return vl_fail(error, VL_ERROR_SCENE, "%s: it has no grid \"%.80s\"", def->path, name);
+  if (r == VL_OK && !m->sparse)
+    return vl_fail(error, VL_ERROR_SCENE, "%s: it has no grid \"%s\"", def->path, vl_short_text(name).text);
   if (r == VL_OK) r = vl_nanovdb_read(world, def->path, heat ? heat : "temperature", &m->sparse_temperature, error);
   if (r != VL_OK) return r;
   if (heat && !m->sparse_temperature)
-    return vl_fail(error, VL_ERROR_SCENE, "%s: it has no grid \"%.80s\"", def->path, heat);
+    return vl_fail(error, VL_ERROR_SCENE, "%s: it has no grid \"%s\"", def->path, vl_short_text(heat).text);
   for (int i = 0; i < 3; i++) m->low[i] = INFINITY, m->high[i] = -INFINITY;
   grow_box(m->sparse, m);
   if (m->sparse_temperature) grow_box(m->sparse_temperature, m);
   for (int i = 0; i < 3; i++)
     if (!(m->low[i] < m->high[i]) || !isfinite(m->high[i] - m->low[i]))
-      return vl_fail(error, VL_ERROR_SCENE, "%s: grid \"%.80s\" is empty", def->path, name);
+      return vl_fail(error, VL_ERROR_SCENE, "%s: grid \"%s\" is empty", def->path, vl_short_text(name).text);
   vlMat4 index_from_medium = vl_mat4_identity(), inverse;
   for (int i = 0; i < 12; i++) index_from_medium.m[i] = (double)m->sparse->index_from_medium[i];
   if (!vl_mat4_inverse(index_from_medium, &inverse))
-    return vl_fail(error, VL_ERROR_SCENE, "%s: the map of grid \"%.80s\" is singular", def->path, name);
+    return vl_fail(error, VL_ERROR_SCENE, "%s: the map of grid \"%s\" is singular", def->path,
+                   vl_short_text(name).text);
   float *majorants = vl_medium_majorants(world, m, 64, 64, 64);
   if (!majorants) return vl_fail_memory(error);
   bound_sparse(m, majorants, inverse.m);

@@ -7,7 +7,7 @@
 
 #include "camera_files/files.h"
 
-vlResult vl_camera_read_blender(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_blender(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double lens = 50.0, sensor_width = 36.0, sensor_height = 24.0, shift_x = 0.0, shift_y = 0.0, ortho = 6.0;
   double aspect_x = 1.0, aspect_y = 1.0, m[16];
@@ -49,7 +49,7 @@ vlResult vl_camera_read_blender(const vlCameraFile *file, const json_t *tree, vl
   return VL_OK;
 }
 
-vlResult vl_camera_write_blender(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_blender(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   vlCamera c;
   double m[16];
@@ -84,3 +84,10 @@ vlResult vl_camera_write_blender(const vlCameraFile *file, const vlCameraRecord 
   vl_camera_put(text, "]\n}\n");
   return VL_OK;
 }
+
+static bool is_blender(const json_t *tree) {
+  return vl_camera_has(tree, "matrix_world") || vl_camera_has(tree, "sensor_fit") || vl_camera_has(tree, "lens");
+}
+
+const vlCameraFormat vl_format_blender = {
+    .name = "blender", .is_tree = is_blender, .read = read_blender, .write = write_blender};

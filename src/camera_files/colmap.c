@@ -1,6 +1,6 @@
-/* camera_files/colmap.c: COLMAP's text model: cameras.txt (id, model, width, height, parameters) and images.txt (id,
- * quaternion w x y z, translation, camera id, name; a line of points follows each). OpenCV's axes, camera from world,
- * but the first pixel's centre is (0.5, 0.5), as in velo. */
+/* camera_files/colmap.c: COLMAP's model, in its text form: cameras.txt (id, model, width, height, parameters) and
+ * images.txt (id, quaternion w x y z, translation, camera id, name; a line of points follows each). OpenCV's axes,
+ * camera from world, but the first pixel's centre is (0.5, 0.5), as in velo. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -10,6 +10,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "camera_files/colmap.h"
 #include "camera_files/trajectory.h"
 
 typedef struct {
@@ -75,7 +76,7 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
 static vlResult read_cameras(const vlCameraFile *file, const char *path, const double *id, vlCameraRecord *record) {
   char *text;
   size_t size;
-  vlResult result = vl_file_read_given(file->context, path, false, &text, &size, file->error);
+  vlResult result = vl_colmap_load(file, path, &text, &size);
   if (result != VL_OK) return result;
   Lines lines = {text, text + size, 0};
   bool found = false;
@@ -111,7 +112,7 @@ static vlResult read_image_line(const vlCameraFile *file, const char *path, uint
 static vlResult read_images(const vlCameraFile *file, const char *path, double *id, vlCameraRecord *record) {
   char *text;
   size_t size;
-  vlResult result = vl_file_read_given(file->context, path, false, &text, &size, file->error);
+  vlResult result = vl_colmap_load(file, path, &text, &size);
   if (result != VL_OK) return result;
   Lines lines = {text, text + size, 0};
   bool taken = false;
@@ -192,16 +193,15 @@ static vlResult read_all_images(vlTrajectory *t, const vlCameraFile *file, const
   return VL_OK;
 }
 
-static bool find_files(const char *path, char cameras[4096], char images[4096]);
+static bool find_files(const char *path, bool to_read, char cameras[4096], char images[4096]);
 
 vlResult vl_trajectory_read_colmap(vlTrajectory *t, const vlCameraFile *file) {
   char paths[2][4096], *texts[2] = {NULL, NULL};
   size_t sizes[2] = {0, 0};
   CameraIds ids = {NULL, 0, 0};
-  if (!find_files(file->path, paths[0], paths[1])) return vl_camera_wrong(file, "colmap: the name is too long");
+  if (!find_files(file->path, true, paths[0], paths[1])) return vl_camera_wrong(file, "colmap: the name is too long");
   vlResult result = VL_OK;
-  for (int i = 0; i < 2 && result == VL_OK; i++)
-    result = vl_file_read_given(file->context, paths[i], false, &texts[i], &sizes[i], file->error);
+  for (int i = 0; i < 2 && result == VL_OK; i++) result = vl_colmap_load(file, paths[i], &texts[i], &sizes[i]);
   if (result == VL_OK) result = read_all_cameras(t, file, paths[0], texts[0], sizes[0], &ids);
   if (result == VL_OK) result = read_all_images(t, file, paths[1], texts[1], sizes[1], &ids);
   for (int i = 0; i < 2; i++) vl_free(file->context, texts[i]);
@@ -209,26 +209,48 @@ vlResult vl_trajectory_read_colmap(vlTrajectory *t, const vlCameraFile *file) {
   return result;
 }
 
-/* Whether the path is a folder; a missing path counts as one unless its name ends in .txt. */
+bool vl_colmap_is_name(const char *path) {
+  static const char *const names[] = {"cameras.txt", "images.txt", "cameras.bin", "images.bin"};
+  for (int i = 0; i < 4; i++)
+    if (vl_ends_with(path, names[i])) return true;
+  return false;
+}
+
+/* Whether the path is a folder; a missing path counts as one unless its name is that of a model's file. */
 static bool is_folder(const char *path) {
   struct stat status;
   if (stat(path, &status) == 0) return S_ISDIR(status.st_mode);
-  return !vl_ends_with(path, ".txt");
+  return !vl_ends_with(path, ".txt") && !vl_ends_with(path, ".bin");
 }
 
-/* Finds the paths of both files from the path of either, or of their folder. */
-static bool find_files(const char *path, char cameras[4096], char images[4096]) {
+static bool exists(const char *folder, const char *inner, const char *name) {
+  struct stat status;
+  char path[4096];
+  int length = snprintf(path, sizeof path, "%s/%s%s", folder, inner, name);
+  return length > 0 && length < (int)sizeof path && stat(path, &status) == 0;
+}
+
+/* Finds the paths of both files from the path of either, or of their folder, or of a project with its models in
+ * sparse. A folder with both forms is read in its binary one, as COLMAP does. */
+static bool find_files(const char *path, bool to_read, char cameras[4096], char images[4096]) {
+  static const char *const inner[] = {"", "sparse/0/", "sparse/", "0/"};
   int a, b;
   if (is_folder(path)) {
-    a = snprintf(cameras, 4096, "%s/cameras.txt", path);
-    b = snprintf(images, 4096, "%s/images.txt", path);
+    int found = 0, places = to_read ? 4 : 1;
+    while (found < places && !exists(path, inner[found], "cameras.bin") && !exists(path, inner[found], "cameras.txt"))
+      found++;
+    const char *below = inner[found % places], *suffix = exists(path, below, "cameras.bin") ? "bin" : "txt";
+    a = snprintf(cameras, 4096, "%s/%scameras.%s", path, below, suffix);
+    b = snprintf(images, 4096, "%s/%simages.%s", path, below, suffix);
   } else {
-    bool is_images = vl_ends_with(path, "images.txt");
+    const char *suffix = vl_ends_with(path, ".bin") ? "bin" : "txt";
+    bool is_images = vl_ends_with(path, "images.txt") || vl_ends_with(path, "images.bin");
     const char *slash = strrchr(path, '/');
     int folder_length = slash ? (int)(slash - path) + 1 : 0;
-    a = is_images ? snprintf(cameras, 4096, "%.*scameras.txt", folder_length, path)
+    a = is_images ? snprintf(cameras, 4096, "%.*scameras.%s", folder_length, path, suffix)
                   : snprintf(cameras, 4096, "%s", path);
-    b = is_images ? snprintf(images, 4096, "%s", path) : snprintf(images, 4096, "%.*simages.txt", folder_length, path);
+    b = is_images ? snprintf(images, 4096, "%s", path)
+                  : snprintf(images, 4096, "%.*simages.%s", folder_length, path, suffix);
   }
   return a > 0 && a < 4096 && b > 0 && b < 4096;
 }
@@ -237,9 +259,10 @@ vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record)
   char cameras[4096], images[4096];
   struct stat status;
   double id = 0.0;
-  if (!find_files(file->path, cameras, images)) return vl_camera_wrong(file, "colmap: the name is too long");
+  if (!find_files(file->path, true, cameras, images)) return vl_camera_wrong(file, "colmap: the name is too long");
   /* cameras.txt alone: the camera is at the origin, unless an image's pose was requested */
-  if (stat(images, &status) == 0 || file->def->frame || vl_ends_with(file->path, "images.txt")) {
+  if (stat(images, &status) == 0 || file->def->frame || vl_ends_with(file->path, "images.txt") ||
+      vl_ends_with(file->path, "images.bin")) {
     vlResult result = read_images(file, images, &id, record);
     return result == VL_OK ? read_cameras(file, cameras, &id, record) : result;
   }
@@ -286,32 +309,47 @@ static vlResult write_text(const vlCameraFile *file, const char *path, const vlC
   return vl_file_commit(&writer, file->error);
 }
 
+static void put_lines(vlCameraText *cameras, vlCameraText *images, const vlColmapRecord *r) {
+  vl_camera_put(cameras, "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]; the first pixel's centre is (0.5, 0.5)\n");
+  vl_camera_put(cameras, "1 %s %u %u", r->model, r->width, r->height);
+  for (uint32_t i = 0; i < r->count; i++) vl_camera_put(cameras, " %.17g", r->parameters[i] + 0.0);
+  vl_camera_put(cameras, "\n");
+  vl_camera_put(images, "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME; camera from world\n1");
+  for (int i = 0; i < 4; i++) vl_camera_put(images, " %.17g", r->quaternion[i] + 0.0);
+  for (int i = 0; i < 3; i++) vl_camera_put(images, " %.17g", r->translation[i] + 0.0);
+  vl_camera_put(images, " 1 %s\n\n", r->name);
+}
+
 vlResult vl_camera_write_colmap(const vlCameraFile *file, const vlCameraRecord *record) {
   char cameras[4096], images[4096];
   vlCamera c;
-  const char *model = NULL;
-  double p[12], r[9], t[3], q[4];
+  double p[12], r[9];
   uint32_t count = 0;
+  vlColmapRecord out = {.name = record->name[0] ? record->name : "camera"};
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
-  if (result == VL_OK) result = choose_model(file, &record->camera, &model, p, &count);
+  if (result == VL_OK) result = choose_model(file, &record->camera, &out.model, p, &count);
   if (result != VL_OK) return result;
-  if (!find_files(file->path, cameras, images)) return vl_camera_wrong(file, "colmap: the name is too long");
+  if (!find_files(file->path, false, cameras, images)) return vl_camera_wrong(file, "colmap: the name is too long");
   if (is_folder(file->path) && mkdir(file->path, 0777) != 0 && errno != EEXIST)
     return vl_fail(file->error, VL_ERROR_IO, "cannot make the folder %s: %s", file->path, strerror(errno));
+  out.width = c.width, out.height = c.height;
+  const double intrinsics[4] = {c.fx, c.fy, c.cx, c.cy};
+  memcpy(out.parameters, intrinsics, sizeof intrinsics);
+  memcpy(out.parameters + 4, p, count * sizeof *p);
+  out.count = 4 + count;
+  vl_camera_get_pose(&c, r, out.translation);
+  vl_rotation_to_quaternion(r, out.quaternion);
   vlCameraText text = {.context = file->context}, poses = {.context = file->context};
-  vl_camera_put(&text, "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]; the first pixel's centre is (0.5, 0.5)\n");
-  vl_camera_put(&text, "1 %s %u %u %.17g %.17g %.17g %.17g", model, c.width, c.height, c.fx, c.fy, c.cx, c.cy);
-  for (uint32_t i = 0; i < count; i++) vl_camera_put(&text, " %.17g", p[i] + 0.0);
-  vl_camera_put(&text, "\n");
-  vl_camera_get_pose(&c, r, t);
-  vl_rotation_to_quaternion(r, q);
-  vl_camera_put(&poses, "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME; camera from world\n1");
-  for (int i = 0; i < 4; i++) vl_camera_put(&poses, " %.17g", q[i] + 0.0);
-  for (int i = 0; i < 3; i++) vl_camera_put(&poses, " %.17g", t[i] + 0.0);
-  vl_camera_put(&poses, " 1 %s\n\n", record->name[0] ? record->name : "camera");
+  if (vl_ends_with(cameras, ".bin"))
+    vl_colmap_put_bin(&text, &poses, &out);
+  else
+    put_lines(&text, &poses, &out);
   result = write_text(file, cameras, &text);
   if (result == VL_OK) result = write_text(file, images, &poses);
   VL_ARRAY_FREE(file->context, &text.text);
   VL_ARRAY_FREE(file->context, &poses.text);
   return result;
 }
+
+/* A model is two files: vl_camera_read and vl_camera_write call its functions by themselves. */
+const vlCameraFormat vl_format_colmap = {.name = "colmap"};

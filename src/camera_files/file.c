@@ -6,71 +6,17 @@
 #include "base/cookie.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "camera_files/files.h"
-
-typedef struct {
-  const char *name;
-  vlCameraReadTree *read;
-  vlCameraWriteText *write;
-  vlCameraReadText *read_text; /* for dialects that are neither JSON nor YAML */
-} Dialect;
-
-static const Dialect dialects[VL_CAMERA_DIALECT_COUNT] = {
-    [VL_CAMERA_DIALECT_AUTO] = {"auto", NULL, NULL, NULL},
-    [VL_CAMERA_DIALECT_VELO] = {"velo", vl_camera_read_velo, vl_camera_write_velo, NULL},
-    [VL_CAMERA_DIALECT_OPENCV] = {"opencv", vl_camera_read_opencv, vl_camera_write_opencv, NULL},
-    [VL_CAMERA_DIALECT_ROS] = {"ros", vl_camera_read_ros, vl_camera_write_ros, NULL},
-    [VL_CAMERA_DIALECT_COLMAP] = {"colmap", NULL, NULL, NULL},
-    [VL_CAMERA_DIALECT_NERF] = {"nerf", vl_camera_read_nerf, vl_camera_write_nerf, NULL},
-    [VL_CAMERA_DIALECT_KALIBR] = {"kalibr", vl_camera_read_kalibr, vl_camera_write_kalibr, NULL},
-    [VL_CAMERA_DIALECT_BLENDER] = {"blender", vl_camera_read_blender, vl_camera_write_blender, NULL},
-    [VL_CAMERA_DIALECT_PBRT] = {"pbrt", NULL, vl_camera_write_pbrt, NULL},
-    [VL_CAMERA_DIALECT_GLTF] = {"gltf", vl_camera_read_gltf, vl_camera_write_gltf, NULL},
-    [VL_CAMERA_DIALECT_OPENGL] = {"opengl", vl_camera_read_matrices, vl_camera_write_matrices, NULL},
-    [VL_CAMERA_DIALECT_VULKAN] = {"vulkan", vl_camera_read_matrices, vl_camera_write_matrices, NULL},
-    [VL_CAMERA_DIALECT_D3D] = {"d3d", vl_camera_read_matrices, vl_camera_write_matrices, NULL},
-    [VL_CAMERA_DIALECT_MITSUBA] = {"mitsuba", NULL, vl_camera_write_mitsuba, vl_camera_read_mitsuba},
-    [VL_CAMERA_DIALECT_EXR] = {"exr", NULL, NULL, NULL},
-    [VL_CAMERA_DIALECT_USD] = {"usd", NULL, vl_camera_write_usd, vl_camera_read_usd},
-};
+#include "camera_files/colmap.h"
+#include "camera_files/formats.h"
+#include "camera_files/trajectory.h"
 
 const char *vl_camera_dialect_name(vlCameraDialect dialect) {
-  return (uint32_t)dialect < VL_CAMERA_DIALECT_COUNT ? dialects[dialect].name : NULL;
+  if ((uint32_t)dialect >= VL_CAMERA_DIALECT_COUNT) return NULL;
+  return dialect ? vl_camera_formats[dialect]->name : "auto";
 }
 
 vlCameraFileDef vl_default_camera_file_def(void) {
   return (vlCameraFileDef){.cookie = VL_COOKIE_CAMERA_FILE};
-}
-
-/* Detects the dialect of a tree by a field that only this dialect has. */
-static vlCameraDialect dialect_of(const json_t *tree) {
-  static const struct {
-    const char *key;
-    vlCameraDialect dialect;
-  } marks[] = {{"velo_camera", VL_CAMERA_DIALECT_VELO},
-               {"asset", VL_CAMERA_DIALECT_GLTF},
-               {"frames", VL_CAMERA_DIALECT_NERF},
-               {"fl_x", VL_CAMERA_DIALECT_NERF},
-               {"camera_angle_x", VL_CAMERA_DIALECT_NERF},
-               {"cam0", VL_CAMERA_DIALECT_KALIBR},
-               {"projection_matrix", VL_CAMERA_DIALECT_ROS},
-               {"rectification_matrix", VL_CAMERA_DIALECT_ROS},
-               {"K", VL_CAMERA_DIALECT_ROS},
-               {"k", VL_CAMERA_DIALECT_ROS},
-               {"camera_matrix", VL_CAMERA_DIALECT_OPENCV},
-               {"matrix_world", VL_CAMERA_DIALECT_BLENDER},
-               {"sensor_fit", VL_CAMERA_DIALECT_BLENDER},
-               {"lens", VL_CAMERA_DIALECT_BLENDER},
-               {"image_width", VL_CAMERA_DIALECT_OPENCV}};
-  const char *api = vl_camera_text(tree, "graphics_api");
-  if (api) {
-    for (int i = VL_CAMERA_DIALECT_OPENGL; i <= VL_CAMERA_DIALECT_D3D; i++)
-      if (strcmp(api, dialects[i].name) == 0) return (vlCameraDialect)i;
-    return VL_CAMERA_DIALECT_OPENGL; /* its reader names the three APIs */
-  }
-  for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
-    if (json_object_get(tree, marks[i].key)) return marks[i].dialect;
-  return VL_CAMERA_DIALECT_AUTO;
 }
 
 static vlResult unknown(const vlCameraFile *file, const json_t *tree) {
@@ -81,11 +27,11 @@ static vlResult unknown(const vlCameraFile *file, const json_t *tree) {
     size_t n = strlen(names);
     if (n < 100) snprintf(names + n, sizeof names - n, "%s%s", n ? ", " : "", vl_short_text(key).text);
   }
-  return vl_camera_wrong(
-      file,
-      "no camera of a known dialect (velo, opencv, ros, colmap, nerf, kalibr, blender, gltf, opengl, "
-      "vulkan, d3d, mitsuba, usd); its fields are: %s",
-      names);
+  if (vl_camera_has(tree, "<"))
+    return vl_camera_wrong(file, "no camera of a known dialect: XML with the root <%.60s>", vl_camera_text(tree, "<"));
+  if (json_array_size(json_object_get(tree, "[]")) > 0) snprintf(names, sizeof names, "those of a list");
+  return vl_camera_wrong(file, "no camera of a known dialect (docs/camera-files.md has the table); its fields are: %s",
+                         names);
 }
 
 static bool is_folder(const char *path) {
@@ -93,64 +39,108 @@ static bool is_folder(const char *path) {
   return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
-static bool is_colmap_name(const char *path) {
-  return vl_ends_with(path, "cameras.txt") || vl_ends_with(path, "images.txt");
-}
-
-/* Detects the dialect by the first characters; AUTO: JSON or YAML. */
-static vlCameraDialect dialect_of_text(const char *text, size_t size) {
-  size_t first = size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* skips a UTF-8 byte order mark */
-  if (size >= first + 5 && memcmp(text + first, "#usda", 5) == 0) return VL_CAMERA_DIALECT_USD;
-  first += strspn(text + first, " \t\r\n");
-  if (first < size && text[first] == '<') return VL_CAMERA_DIALECT_MITSUBA;
-  return VL_CAMERA_DIALECT_AUTO;
-}
-
 static vlResult other_dialect(const vlCameraFile *file, vlCameraDialect found, vlCameraDialect wish) {
-  return vl_camera_wrong(file, "this is a camera in the dialect of %s, not of %s", dialects[found].name,
-                         dialects[wish].name);
+  return vl_camera_wrong(file, "this is a camera in the dialect of %s, not of %s", vl_camera_formats[found]->name,
+                         vl_camera_formats[wish]->name);
 }
 
-static vlResult read_tree(vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+/* Whether the text is meant as a tree: an error of its parser is then the file's. */
+static bool is_meant_as_tree(const char *path, const char *text) {
+  const char *first = text + strspn(text, " \t\r\n");
+  return strchr("{[<", *first) || strncmp(first, "%YAML", 5) == 0 || strncmp(first, "---", 3) == 0 ||
+         strncmp(first, "glTF", 4) == 0 || vl_ends_with(path, ".yaml") || vl_ends_with(path, ".yml") ||
+         vl_ends_with(path, ".json");
+}
+
+/* The error for a file of no known kind: it blames no format. */
+static vlResult no_kind(const vlCameraFile *file, const char *text, size_t size) {
+  if (size >= 8 && memcmp(text, "PXR-USDC", 8) == 0)
+    return vl_camera_wrong(file, "USD's binary form; velo reads its text form: usdcat in.usd -o out.usda");
+  if (size >= 6 && memcmp(text, "\x93NUMPY", 6) == 0)
+    return vl_camera_wrong(file, "a NumPy array, which does not say what its numbers mean");
+  if (memchr(text, 0, size)) return vl_camera_wrong(file, "no camera: a binary file of no known kind");
+  return vl_camera_wrong(file, "no camera of a known dialect (docs/camera-files.md has the table)");
+}
+
+/* The text or the tree of a file that is being read: the other is null. */
+typedef struct {
+  const json_t *tree;
+  const char *text;
+  size_t size;
+} Source;
+
+/* Reads one camera, or each if there is a sink. */
+static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const Source *source, const vlCameraSink *sink,
+                            vlCameraRecord *record) {
+  const vlCameraFormat *format = vl_camera_formats[dialect];
+  vlResult result = VL_OK;
+  uint32_t frames = 1, i = 0;
+  file->dialect = format->name;
+  if (sink) file->ordinal = &i;
+  for (; i < frames && result == VL_OK; i++) {
+    if (sink) memset(record, 0, sizeof *record);
+    if (sink) record->camera = vl_default_camera_def(1, 1), record->frames = 1;
+    record->dialect = dialect;
+    result = source->tree ? format->read(file, source->tree, record)
+                          : format->read_text(file, source->text, source->size, record);
+    if (sink) frames = record->frames;
+    if (sink && result == VL_OK) result = sink->add(sink->data, file, record, i);
+  }
+  file->ordinal = NULL;
+  return result;
+}
+
+static vlResult read_tree(vlCameraFile *file, const char *text, size_t size, const vlCameraSink *sink,
+                          vlCameraRecord *record) {
   json_t *tree = NULL;
+  vlCameraPlaces places = {.root = NULL};
+  file->places = &places;
   vlResult result = vl_camera_tree(file, text, size, &tree);
-  if (result != VL_OK) return result;
-  vlCameraDialect found = dialect_of(tree), wish = file->def->dialect;
+  if (result != VL_OK) {
+    vl_camera_places_free(file);
+    if (result == VL_ERROR_SCENE && size > 0 && !is_meant_as_tree(file->path, text)) return no_kind(file, text, size);
+    return result;
+  }
+  vlCameraDialect found = vl_camera_dialect_of_tree(tree), wish = file->def->dialect;
   /* ROS files also have OpenCV's fields */
   bool related = wish == VL_CAMERA_DIALECT_OPENCV && found == VL_CAMERA_DIALECT_ROS;
   related = related || (wish == VL_CAMERA_DIALECT_ROS && found == VL_CAMERA_DIALECT_OPENCV);
   if (wish && found && wish != found && !related) {
     result = other_dialect(file, found, wish);
-  } else if (wish && !dialects[wish].read) {
-    result = vl_camera_wrong(file, "this is no camera in the dialect of %s", dialects[wish].name);
+  } else if (wish && wish != found && (!vl_camera_formats[wish]->read || vl_camera_has(tree, "<"))) {
+    result = vl_camera_wrong(file, "this is no camera in the dialect of %s", vl_camera_formats[wish]->name);
   } else if (!wish && !found) {
     result = unknown(file, tree);
   } else {
-    record->dialect = wish ? wish : found;
-    file->dialect = dialects[record->dialect].name;
-    result = dialects[record->dialect].read(file, tree, record);
+    result = read_source(file, wish ? wish : found, &(Source){.tree = tree}, sink, record);
   }
+  if (result == VL_ERROR_SCENE) vl_camera_place_error(file);
   json_decref(tree);
+  vl_camera_places_free(file);
   return result;
 }
 
-static vlResult read_file(vlCameraFile *file, vlCameraRecord *record) {
+static vlResult read_file(vlCameraFile *file, const vlCameraSink *sink, vlCameraRecord *record) {
   char *text;
   size_t size;
   vlResult result = vl_file_read_given(file->context, file->path, false, &text, &size, file->error);
   if (result != VL_OK) return result;
-  vlCameraDialect found = dialect_of_text(text, size), wish = file->def->dialect;
-  if (found && wish && found != wish) {
+  size_t skip = size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* byte order mark */
+  vlCameraDialect found = vl_camera_dialect_of_text(text + skip, size - skip), wish = file->def->dialect;
+  if (found && wish && found != wish)
     result = other_dialect(file, found, wish);
-  } else if (found) {
-    record->dialect = found;
-    file->dialect = dialects[found].name;
-    result = dialects[found].read_text(file, text, size, record);
-  } else {
-    result = read_tree(file, text, size, record);
-  }
+  else if (found)
+    result = read_source(file, found, &(Source){.text = text + skip, .size = size - skip}, sink, record);
+  else
+    result = read_tree(file, text, size, sink, record);
   vl_free(file->context, text);
   return result;
+}
+
+vlResult vl_camera_read_each(const vlCameraFile *file, const vlCameraSink *sink) {
+  vlCameraFile own = *file;
+  vlCameraRecord record;
+  return read_file(&own, sink, &record);
 }
 
 static vlResult begin(vlContext *context, const char *path, const vlCameraFileDef **def, vlCameraFileDef *standard,
@@ -175,21 +165,22 @@ vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFile
     return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: this is an image; it is read as one");
   if (def->dialect == VL_CAMERA_DIALECT_PBRT)
     return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: pbrt scenes are read as scenes");
-  vlCameraFile file = {context, path, dialects[def->dialect].name, def, error};
+  vlCameraFile file = {
+      .context = context, .path = path, .dialect = vl_camera_dialect_name(def->dialect), .def = def, .error = error};
   vlCameraRecord read = {.camera = vl_default_camera_def(1, 1), .frames = 1};
-  if (def->dialect == VL_CAMERA_DIALECT_COLMAP || (!def->dialect && (is_folder(path) || is_colmap_name(path)))) {
+  if (def->dialect == VL_CAMERA_DIALECT_COLMAP || (!def->dialect && (is_folder(path) || vl_colmap_is_name(path)))) {
     file.dialect = "colmap";
     read.dialect = VL_CAMERA_DIALECT_COLMAP;
     result = vl_camera_read_colmap(&file, &read);
   } else {
-    result = read_file(&file, &read);
+    result = read_file(&file, NULL, &read);
   }
   if (result == VL_OK) *record = read;
   return result;
 }
 
 static vlCameraDialect dialect_of_name(const char *path) {
-  if (is_colmap_name(path) || is_folder(path)) return VL_CAMERA_DIALECT_COLMAP;
+  if (vl_colmap_is_name(path) || is_folder(path)) return VL_CAMERA_DIALECT_COLMAP;
   if (vl_ends_with(path, "transforms.json")) return VL_CAMERA_DIALECT_NERF;
   if (vl_ends_with(path, ".json")) return VL_CAMERA_DIALECT_VELO;
   if (vl_ends_with(path, ".yaml") || vl_ends_with(path, ".yml")) return VL_CAMERA_DIALECT_OPENCV;
@@ -210,12 +201,14 @@ vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFil
   if (!dialect)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: the name \"%.200s\" does not say which dialect to write",
                    path);
-  if (dialect == VL_CAMERA_DIALECT_EXR)
-    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: an image's header is written with its image");
-  vlCameraFile file = {context, path, dialects[dialect].name, def, error};
+  const vlCameraFormat *format = vl_camera_formats[dialect];
+  vlCameraFile file = {.context = context, .path = path, .dialect = format->name, .def = def, .error = error};
+  if (!format->write && dialect != VL_CAMERA_DIALECT_COLMAP)
+    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: %s is not written: %s", format->name,
+                   format->not_written);
   if (dialect == VL_CAMERA_DIALECT_COLMAP) return vl_camera_write_colmap(&file, record);
   vlCameraText text = {.context = context};
-  result = dialects[dialect].write(&file, record, &text);
+  result = format->write(&file, record, &text);
   if (result == VL_OK && text.failed) result = vl_fail_memory(error);
   vlFileWriter writer;
   if (result == VL_OK) result = vl_file_open_write(&writer, path, error);

@@ -10,12 +10,20 @@
 #include "camera/parts.h"
 #include "velo/camera_file.h"
 
+/* Where the values of a tree are in the file: line << 32 | column of each, a value before those in it. */
+typedef struct vlCameraPlaces {
+  const json_t *root;
+  VL_ARRAY(uint64_t) at;
+} vlCameraPlaces;
+
 /* The state of one read or write. */
 typedef struct vlCameraFile {
   vlContext *context;
   const char *path, *dialect; /* name of the dialect, for messages */
   const vlCameraFileDef *def;
   vlError *error;
+  vlCameraPlaces *places;  /* may be null: errors have no line */
+  const uint32_t *ordinal; /* the camera to read by its number, whatever the def says; may be null */
 } vlCameraFile;
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
@@ -24,14 +32,38 @@ vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...) __at
 /* Like vl_camera_wrong, with a location. line 0: not known. */
 vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t column, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* Parses JSON or YAML, distinguished by the first character. */
+/* The error is at object[key], or at the object itself if key is null or not there. */
+vlResult vl_camera_wrong_in(const vlCameraFile *file, const json_t *object, const char *key, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/* Parses JSON, YAML or XML (FileStorage's becomes a tree of the same form; vl_camera_xml's elements for others),
+ * distinguished by the first character. A list is wrapped: {"[]": list}.
+ * Records the places of the values where the file wants them. */
 vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
 vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
+vlResult vl_camera_storage(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
+/* Records the next value's place; false: no memory. */
+bool vl_camera_place(const vlCameraFile *file, uint32_t line, uint32_t column);
+/* Gives an error without a place that of the first field that its message names in quotes, or of the whole. */
+void vl_camera_place_error(const vlCameraFile *file);
+void vl_camera_places_free(const vlCameraFile *file);
 
 /* Parses XML. Below the root (unless the root is wanted itself), only elements with the wanted tags are kept; null
- * ends the list. */
+ * ends the list; a null list: all are kept, and their text ("$"). */
 vlResult vl_camera_xml(const vlCameraFile *file, const char *text, size_t size, const char *const *wanted,
                        json_t **tree);
+/* The tag of the root element, after declaration and comments; false: not XML. */
+bool vl_camera_xml_root(const char *text, char tag[64]);
+/* The first child element with this tag; null: there is none. */
+const json_t *vl_camera_child(const json_t *element, const char *tag);
+/* An error at an element. */
+vlResult vl_camera_wrong_element(const vlCameraFile *file, const json_t *element, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Reads exactly count finite numbers from an element's text. */
+vlResult vl_camera_element_numbers(const vlCameraFile *file, const json_t *element, double *values, uint32_t count);
+/* Reads one number from the child with this tag; *value is unchanged if it is not there, and an error if it is needed.
+ */
+vlResult vl_camera_child_number(const vlCameraFile *file, const json_t *element, const char *tag, bool needed,
+                                double *value);
 
 /* Parses USD's text form. */
 vlResult vl_camera_usda(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
@@ -45,6 +77,14 @@ vlResult vl_camera_optional(const vlCameraFile *file, const json_t *object, cons
 vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const char *key, uint32_t *value);
 /* Sets the image's size if the file has none: the def's, or 720 rows with this aspect ratio (width / height). */
 vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord *record);
+/* Sets the image's size for a file that has none: the def's, or that of the first image that is there. The names
+ * (null ends them) are relative to the file's folder. An error if there is neither. */
+vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *images, vlCameraRecord *record);
+/* Reads the size at two keys if both are there, else as vl_camera_size_beside without images. */
+vlResult vl_camera_sides(const vlCameraFile *file, const json_t *object, const char *width, const char *height,
+                         vlCameraRecord *record);
+/* Reads a list of two numbers, width and height. */
+vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, const char *key, vlCameraRecord *record);
 /* Reads least to most numbers from a list, a list of lists, or FileStorage's {rows, cols, data}. */
 vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key, double *values,
                            uint32_t least, uint32_t most, uint32_t *count);
@@ -76,6 +116,7 @@ enum {
 };
 
 void vl_camera_put(vlCameraText *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void vl_camera_put_bytes(vlCameraText *text, const char *bytes, size_t count);
 /* Appends all of another text. */
 void vl_camera_put_text(vlCameraText *text, const vlCameraText *other);
 /* Appends numbers as "1, 2, 3". */
@@ -94,6 +135,28 @@ vlResult vl_camera_no_model(const vlCameraFile *file, const vlCameraDef *def);
  * of OpenCV's. */
 bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count);
 
+/* ---- lenses --------------------------------------------------------------------------------------------------------
+ */
+
+/* Sets fx, fy, cx, cy of a convention whose first pixel has its centre at (0, 0). */
+void vl_camera_set_centred(vlCameraDef *def, double fx, double fy, double cx, double cy);
+/* Sets OpenCV's distortion; count is rounded up to one that OpenCV has, with zeros. */
+void vl_camera_set_opencv(vlCameraDef *def, const double *k, uint32_t count);
+/* Sets OpenCV's fisheye: k1 to k4. */
+void vl_camera_set_fisheye(vlCameraDef *def, const double k[4]);
+/* The families of lenses that calibration tools have names for. */
+typedef enum vlLensFamily {
+  VL_LENS_PINHOLE,
+  VL_LENS_OPENCV,  /* k has count coefficients */
+  VL_LENS_FISHEYE, /* k1 to k4 */
+  VL_LENS_FOV,     /* shape[0] */
+  VL_LENS_UNIFIED, /* shape[0]; OpenCV's distortion: count may be 0 */
+  VL_LENS_EUCM,
+  VL_LENS_DOUBLE_SPHERE,
+  VL_LENS_OTHER
+} vlLensFamily;
+vlLensFamily vl_camera_lens_family(const vlCameraDef *def, double k[14], uint32_t *count);
+
 /* ---- rotations: row-major 3 x 3 -------------------------------------------------------------------------------------
  */
 
@@ -105,6 +168,9 @@ void vl_rotation_to_quaternion(const double r[9], double q[4]);
 /* Camera-from-world rotation and translation: stored in the def's pose, and read from a camera. */
 void vl_camera_set_pose(vlCameraDef *def, const double r[9], const double t[3]);
 void vl_camera_get_pose(const vlCamera *camera, double r[9], double t[3]);
+/* Sets the pose from a row-major 4 x 4 matrix: world from camera, or camera from world. false: singular. */
+bool vl_camera_set_matrix(vlCameraDef *def, const double m[16], bool from_world);
+void vl_camera_set_origin(vlCameraDef *def);
 /* Converts a world-from-camera matrix between axes x right, y up, z back and velo's: negates columns y and z. Its
  * own inverse. */
 void vl_camera_flip_axes(const double m[16], double result[16]);
@@ -114,18 +180,46 @@ void vl_camera_flip_columns(const double m[16], double x, double y, double z, do
 /* ---- dialects ---------------------------------------------------------------------------------------------------- */
 
 typedef vlResult vlCameraReadTree(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record);
-typedef vlResult vlCameraWriteText(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text);
-vlCameraReadTree vl_camera_read_velo, vl_camera_read_opencv, vl_camera_read_ros, vl_camera_read_nerf,
-    vl_camera_read_kalibr, vl_camera_read_blender, vl_camera_read_gltf, vl_camera_read_matrices;
 /* Reads from the file's text. */
 typedef vlResult vlCameraReadText(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record);
-vlCameraReadText vl_camera_read_mitsuba, vl_camera_read_usd;
-vlCameraWriteText vl_camera_write_velo, vl_camera_write_opencv, vl_camera_write_ros, vl_camera_write_nerf,
-    vl_camera_write_kalibr, vl_camera_write_blender, vl_camera_write_pbrt, vl_camera_write_gltf,
-    vl_camera_write_matrices, vl_camera_write_mitsuba, vl_camera_write_usd;
+typedef vlResult vlCameraWriteText(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text);
+
+/* A dialect: one row, defined at the end of its own file. */
+typedef struct vlCameraFormat {
+  const char *name;
+  /* Whether a tree (JSON, YAML, FileStorage's XML) or a text is in this dialect, by what no other dialect has. */
+  bool (*is_tree)(const json_t *tree);
+  bool (*is_text)(const char *text, size_t size);
+  vlCameraReadTree *read;
+  vlCameraReadText *read_text;
+  vlCameraWriteText *write;
+  const char *not_written; /* why there is no writer */
+} vlCameraFormat;
+
+extern const vlCameraFormat vl_format_velo, vl_format_opencv, vl_format_ros, vl_format_colmap, vl_format_nerf,
+    vl_format_kalibr, vl_format_blender, vl_format_pbrt, vl_format_gltf, vl_format_opengl, vl_format_vulkan,
+    vl_format_d3d, vl_format_mitsuba, vl_format_exr, vl_format_usd, vl_format_euroc, vl_format_camodocal,
+    vl_format_basalt, vl_format_orbslam, vl_format_okvis, vl_format_svo, vl_format_kitti, vl_format_bop,
+    vl_format_gaussians, vl_format_metashape, vl_format_meshroom, vl_format_opensfm, vl_format_open3d, vl_format_visp;
+
+/* Whether an object has the key; whether its value at the key is an object (or list) that has the second key, for a
+ * list in its first item. */
+bool vl_camera_has(const json_t *object, const char *key);
+bool vl_camera_has_in(const json_t *object, const char *key, const char *inner);
+
+vlCameraReadTree vl_camera_read_velo, vl_camera_read_opencv, vl_camera_read_kalibr;
+vlCameraWriteText vl_camera_write_velo;
 /* The camera as vl_camera_write_velo writes it, without the image of its aperture and the surfaces of its lens. */
 void vl_camera_put_velo(const vlCameraRecord *record, vlCameraText *text);
 vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record);
+
+/* Receives each camera of a file. */
+typedef struct vlCameraSink {
+  vlResult (*add)(void *data, const vlCameraFile *file, const vlCameraRecord *record, uint32_t index);
+  void *data;
+} vlCameraSink;
+/* Reads all cameras of a file that is not COLMAP's. */
+vlResult vl_camera_read_each(const vlCameraFile *file, const vlCameraSink *sink);
 vlResult vl_camera_write_colmap(const vlCameraFile *file, const vlCameraRecord *record);
 
 #endif

@@ -171,7 +171,7 @@ static vlResult camera_of(const vlCameraFile *file, const json_t *cameras, const
   return json_is_object(*camera) ? VL_OK : vl_camera_wrong(file, "gltf: a node names a camera that does not exist");
 }
 
-vlResult vl_camera_read_gltf(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_gltf(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   const json_t *cameras, *nodes = json_object_get(tree, "nodes"), *camera = NULL, *chosen = NULL;
   vlResult result = vl_camera_field(file, tree, "cameras", &cameras);
   if (result != VL_OK) return result;
@@ -208,7 +208,7 @@ vlResult vl_camera_read_gltf(const vlCameraFile *file, const json_t *tree, vlCam
   return result;
 }
 
-vlResult vl_camera_write_gltf(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_gltf(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   vlCamera c;
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
@@ -252,3 +252,9 @@ vlResult vl_camera_write_gltf(const vlCameraFile *file, const vlCameraRecord *re
   vl_camera_put(text, "}\n  }]\n}\n");
   return result;
 }
+
+static bool is_gltf(const json_t *tree) {
+  return vl_camera_has(tree, "asset");
+}
+
+const vlCameraFormat vl_format_gltf = {.name = "gltf", .is_tree = is_gltf, .read = read_gltf, .write = write_gltf};

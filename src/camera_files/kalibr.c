@@ -1,5 +1,7 @@
-/* camera_files/kalibr.c: Kalibr's camchain: cam0, cam1, ...; world space is cam0's space. OpenCV's axes; the first
+/* camera_files/kalibr.c: Kalibr's camchain: cam0, cam1, ...; world space is cam0's space, or the IMU's where the
+ * cameras have T_cam_imu (camera from IMU) and no chain. OpenCV's axes; the first
  * pixel's centre is (0, 0). */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -18,8 +20,10 @@ static const Model models[] = {{"pinhole", VL_PROJECTION_PERSPECTIVE, 0},
                                {"ds", VL_PROJECTION_DOUBLE_SPHERE, 2}};
 enum { MODELS = sizeof models / sizeof *models };
 
-static vlResult unknown_word(const vlCameraFile *file, const char *key, const char *text, const char *known) {
-  return vl_camera_wrong(file, "kalibr: unknown %s \"%s\"; there are %s", key, vl_short_text(text).text, known);
+static vlResult unknown_word(const vlCameraFile *file, const json_t *cam, const char *key, const char *text,
+                             const char *known) {
+  return vl_camera_wrong_in(file, cam, key, "kalibr: unknown %s \"%s\"; there are %s", key, vl_short_text(text).text,
+                            known);
 }
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *cam, vlCameraDef *d) {
@@ -35,11 +39,14 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *cam, vlCameraD
   if (result != VL_OK) return result;
   bool radtan = lens && strcmp(lens, "radtan") == 0, equi = lens && strcmp(lens, "equidistant") == 0;
   bool fov = lens && strcmp(lens, "fov") == 0;
-  if (!radtan && !equi && !fov) return unknown_word(file, "distortion_model", lens, "radtan, equidistant, fov, none");
+  if (!radtan && !equi && !fov)
+    return unknown_word(file, cam, "distortion_model", lens, "radtan, equidistant, fov, none");
   if (!plain && !radtan)
-    return vl_camera_wrong(file, "kalibr: distortion_model \"%s\" goes with the pinhole only", lens);
+    return vl_camera_wrong_in(file, cam, "distortion_model",
+                              "kalibr: distortion_model \"%s\" goes with the pinhole only", lens);
   if (n != (fov ? 1u : 4u))
-    return vl_camera_wrong(file, "kalibr: \"distortion_coeffs\" holds %u numbers; %s has %d", n, lens, fov ? 1 : 4);
+    return vl_camera_wrong_in(file, cam, "distortion_coeffs",
+                              "kalibr: \"distortion_coeffs\" holds %u numbers; %s has %d", n, lens, fov ? 1 : 4);
   if (fov) {
     d->projection = VL_PROJECTION_FOV;
     d->shape[0] = k[0];
@@ -52,64 +59,82 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *cam, vlCameraD
   return VL_OK;
 }
 
-static vlResult read_cam(const vlCameraFile *file, const json_t *cam, vlCameraDef *d) {
+static vlResult read_cam(const vlCameraFile *file, const json_t *cam, vlCameraRecord *record) {
+  vlCameraDef *d = &record->camera;
   const json_t *field;
-  double size[2] = {0}, k[6] = {0};
+  double k[6] = {0};
   vlResult result = vl_camera_field(file, cam, "camera_model", &field);
   if (result != VL_OK) return result;
   const char *name = json_string_value(field);
   const Model *model = NULL;
   for (int i = 0; i < MODELS; i++)
     if (name && strcmp(name, models[i].name) == 0) model = &models[i];
-  if (!model) return unknown_word(file, "camera_model", name, "pinhole, omni, eucm, ds");
+  if (!model) return unknown_word(file, cam, "camera_model", name, "pinhole, omni, eucm, ds");
   d->projection = model->projection;
   result = vl_camera_numbers(file, cam, "intrinsics", k, model->shapes + 4, model->shapes + 4, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, cam, "resolution", size, 2, 2, NULL);
+  bool sized = vl_camera_has(cam, "resolution");
+  if (result == VL_OK)
+    result = sized ? vl_camera_side_pair(file, cam, "resolution", record) : vl_camera_size_beside(file, NULL, record);
   if (result != VL_OK) return result;
-  for (int i = 0; i < 2; i++)
-    if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != (double)(uint32_t)size[i])
-      return vl_camera_wrong(file, "kalibr: \"resolution\" is %g x %g; it must be whole pixels", size[0], size[1]);
-  d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
   for (uint32_t i = 0; i < model->shapes; i++) d->shape[i] = k[i];
   const double *f = k + model->shapes;
-  d->fx = f[0], d->fy = f[1];
-  d->cx = f[2] + 0.5, d->cy = f[3] + 0.5;
+  vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
   return read_lens(file, cam, d);
+}
+
+static uint32_t cameras_of(const json_t *tree) {
+  char key[16];
+  uint32_t count = 0;
+  do snprintf(key, sizeof key, "cam%u", count);
+  while (json_object_get(tree, key) && ++count);
+  return count;
+}
+
+/* Whether the poses are those against the IMU: the chain from camera to camera is not there. */
+static bool is_by_imu(const json_t *tree, uint32_t cameras) {
+  bool chain = cameras > 1, imu = true;
+  for (uint32_t i = 0; i < cameras; i++) {
+    char key[16];
+    snprintf(key, sizeof key, "cam%u", i);
+    imu = imu && vl_camera_has_in(tree, key, "T_cam_imu");
+    chain = chain && (i == 0 || vl_camera_has_in(tree, key, "T_cn_cnm1"));
+  }
+  return imu && !chain;
 }
 
 vlResult vl_camera_read_kalibr(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   vlMat4 from_world = vl_mat4_identity();
-  record->frames = (uint32_t)json_object_size(tree);
+  record->frames = cameras_of(tree);
+  bool by_imu = is_by_imu(tree, record->frames);
   for (uint32_t i = 0; i < record->frames; i++) {
     char key[16];
     snprintf(key, sizeof key, "cam%u", i);
     const json_t *cam = json_object_get(tree, key);
-    if (!cam) break;
-    if (!json_is_object(cam)) return vl_camera_wrong(file, "kalibr: \"%s\" holds no fields", key);
-    if (i > 0) {
+    if (!json_is_object(cam)) return vl_camera_wrong_in(file, tree, key, "kalibr: \"%s\" holds no fields", key);
+    if (i > 0 || by_imu) {
       vlMat4 step;
-      vlResult result = vl_camera_numbers(file, cam, "T_cn_cnm1", step.m, 16, 16, NULL);
+      vlResult result = vl_camera_numbers(file, cam, by_imu ? "T_cam_imu" : "T_cn_cnm1", step.m, 16, 16, NULL);
       if (result != VL_OK) return result;
-      from_world = vl_mat4_multiply(step, from_world);
+      from_world = by_imu ? step : vl_mat4_multiply(step, from_world);
     }
     if (!vl_camera_is_frame(file, i, key)) continue;
     vlMat4 pose;
-    if (!vl_mat4_inverse(from_world, &pose))
-      return vl_camera_wrong(file, "kalibr: the pose of \"%s\" is singular", key);
+    if (!vl_mat4_inverse(from_world, &pose) || !isfinite(pose.m[0]))
+      return vl_camera_wrong_in(file, tree, key, "kalibr: the pose of \"%s\" is singular", key);
     record->camera.has_matrix = true;
     for (int e = 0; e < 16; e++) record->camera.world_from_camera[e] = e < 12 ? pose.m[e] + 0.0 : e == 15;
     vl_camera_name(record, key);
-    return read_cam(file, cam, &record->camera);
+    return read_cam(file, cam, record);
   }
   return vl_camera_wrong(file, "kalibr: there is no camera \"%.60s\"", file->def->frame ? file->def->frame : "cam0");
 }
 
-vlResult vl_camera_write_kalibr(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_kalibr(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   vlCamera c;
   double k[14] = {0};
   uint32_t n = 0;
-  vlResult result = vl_camera_fit(file, record, 0, &c);
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
   if (result != VL_OK) return result;
   bool fov = d->projection == VL_PROJECTION_FOV, equi = d->projection == VL_PROJECTION_EQUIDISTANT;
   const char *lens = "none";
@@ -137,5 +162,20 @@ vlResult vl_camera_write_kalibr(const vlCameraFile *file, const vlCameraRecord *
                 c.cx - 0.5, c.cy - 0.5, lens);
   vl_camera_put_numbers(text, k, n);
   vl_camera_put(text, "]\n  resolution: [%u, %u]\n", c.width, c.height);
+  bool posed = false;
+  for (int i = 0; i < 16; i++) posed = posed || c.camera_from_world[i] != (i % 5 == 0 ? 1.0 : 0.0);
+  if (posed) vl_camera_put(text, "  T_cam_imu:\n"); /* the world's space is the IMU's */
+  for (int i = 0; i < 16 && posed; i += 4) {
+    vl_camera_put(text, "  - [");
+    vl_camera_put_numbers(text, c.camera_from_world + i, 4);
+    vl_camera_put(text, "]\n");
+  }
   return VL_OK;
 }
+
+static bool is_kalibr(const json_t *tree) {
+  return vl_camera_has(tree, "cam0");
+}
+
+const vlCameraFormat vl_format_kalibr = {
+    .name = "kalibr", .is_tree = is_kalibr, .read = vl_camera_read_kalibr, .write = write_kalibr};

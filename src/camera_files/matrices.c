@@ -126,7 +126,7 @@ static vlResult decompose(const vlCameraFile *file, const vlMat4 *projection, vl
   return VL_OK;
 }
 
-vlResult vl_camera_read_matrices(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_matrices(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   static const char *const names[] = {"opengl", "vulkan", "d3d"};
   vlCameraDef *d = &record->camera;
   const json_t *field;
@@ -207,7 +207,7 @@ static void put_matrix(vlCameraText *text, const char *name, const vlMat4 *m, bo
   vl_camera_put(text, "\n  ]");
 }
 
-vlResult vl_camera_write_matrices(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_matrices(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   const Api *api = &apis[0];
   vlCamera c;
@@ -240,3 +240,23 @@ vlResult vl_camera_write_matrices(const vlCameraFile *file, const vlCameraRecord
   vl_camera_put(text, "\n}\n");
   return VL_OK;
 }
+
+/* An API that is not known is OpenGL's: the reader names those that are. */
+static bool is_opengl(const json_t *tree) {
+  const char *api = vl_camera_text(tree, "graphics_api");
+  return api && strcmp(api, "vulkan") != 0 && strcmp(api, "d3d") != 0;
+}
+static bool is_vulkan(const json_t *tree) {
+  const char *api = vl_camera_text(tree, "graphics_api");
+  return api && strcmp(api, "vulkan") == 0;
+}
+static bool is_d3d(const json_t *tree) {
+  const char *api = vl_camera_text(tree, "graphics_api");
+  return api && strcmp(api, "d3d") == 0;
+}
+
+const vlCameraFormat vl_format_opengl = {
+    .name = "opengl", .is_tree = is_opengl, .read = read_matrices, .write = write_matrices};
+const vlCameraFormat vl_format_vulkan = {
+    .name = "vulkan", .is_tree = is_vulkan, .read = read_matrices, .write = write_matrices};
+const vlCameraFormat vl_format_d3d = {.name = "d3d", .is_tree = is_d3d, .read = read_matrices, .write = write_matrices};

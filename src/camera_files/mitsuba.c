@@ -287,7 +287,7 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDe
   return VL_OK;
 }
 
-vlResult vl_camera_read_mitsuba(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
   static const char *const wanted[] = {"sensor", "default", "include", NULL};
   json_t *tree;
   vlResult result = vl_camera_xml(file, text, size, wanted, &tree);
@@ -333,7 +333,7 @@ static void put_name(vlCameraText *text, const char *name) {
   }
 }
 
-vlResult vl_camera_write_mitsuba(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_mitsuba(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   vlCamera c;
   uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_LENS | VL_HOLDS_PLANES | VL_HOLDS_TIME;
@@ -384,3 +384,12 @@ vlResult vl_camera_write_mitsuba(const vlCameraFile *file, const vlCameraRecord 
   vl_camera_put(text, "      <integer name=\"height\" value=\"%u\"/>\n    </film>\n  </sensor>\n</scene>\n", c.height);
   return VL_OK;
 }
+
+static bool is_mitsuba(const char *text, size_t size) {
+  char tag[64];
+  (void)size;
+  return vl_camera_xml_root(text, tag) && (strcmp(tag, "scene") == 0 || strcmp(tag, "sensor") == 0);
+}
+
+const vlCameraFormat vl_format_mitsuba = {
+    .name = "mitsuba", .is_text = is_mitsuba, .read_text = read_mitsuba, .write = write_mitsuba};

@@ -24,10 +24,10 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const j
   fisheye = fisheye || json_is_true(json_object_get(tree, "is_fisheye"));
   if (model && !fisheye && strcmp(model, "OPENCV") != 0 && strcmp(model, "PINHOLE") != 0 &&
       strcmp(model, "SIMPLE_PINHOLE") != 0 && strcmp(model, "RADIAL") != 0 && strcmp(model, "SIMPLE_RADIAL") != 0)
-    return vl_camera_wrong(file,
-                           "nerf: unknown camera_model \"%s\"; there are PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, "
-                           "RADIAL, OPENCV, OPENCV_FISHEYE",
-                           vl_short_text(model).text);
+    return vl_camera_wrong_in(file, holder(frame, tree, "camera_model"), "camera_model",
+                              "nerf: unknown camera_model \"%s\"; there are PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, "
+                              "RADIAL, OPENCV, OPENCV_FISHEYE",
+                              vl_short_text(model).text);
   bool tangential = k[2] != 0.0 || k[3] != 0.0;
   if (fisheye && tangential) return vl_camera_wrong(file, "nerf: a fisheye has no \"p1\" and \"p2\"");
   if (!fisheye && k[5] != 0.0) return vl_camera_wrong(file, "nerf: \"k4\" is taken for fisheyes only");
@@ -45,13 +45,23 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const j
   return VL_OK;
 }
 
+/* w and h; the synthetic scenes have none: the size is that of the frame's image. */
+static vlResult read_size(const vlCameraFile *file, const json_t *frame, const json_t *tree, vlCameraRecord *record) {
+  const json_t *w = holder(frame, tree, "w"), *h = holder(frame, tree, "h");
+  if (!vl_camera_has(w, "w") && !vl_camera_has(h, "h")) {
+    const char *image = vl_camera_text(frame, "file_path");
+    return vl_camera_size_beside(file, (const char *const[]){image ? image : "", NULL}, record);
+  }
+  vlResult result = vl_camera_side(file, w, "w", &record->camera.width);
+  return result == VL_OK ? vl_camera_side(file, h, "h", &record->camera.height) : result;
+}
+
 vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame, const json_t *tree,
                                    vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double m[16] = {0}, angle_x = VL_UNSET, angle_y = VL_UNSET;
   uint32_t count;
-  vlResult result = vl_camera_side(file, holder(frame, tree, "w"), "w", &d->width);
-  if (result == VL_OK) result = vl_camera_side(file, holder(frame, tree, "h"), "h", &d->height);
+  vlResult result = read_size(file, frame, tree, record);
   const struct {
     const char *key;
     double *value;
@@ -78,15 +88,15 @@ vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame
   return VL_OK;
 }
 
-vlResult vl_camera_read_nerf(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+static vlResult read_nerf(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   const json_t *frames;
   vlResult result = vl_camera_field(file, tree, "frames", &frames);
   if (result != VL_OK) return result;
-  if (!json_is_array(frames)) return vl_camera_wrong(file, "nerf: \"frames\" must be a list");
+  if (!json_is_array(frames)) return vl_camera_wrong_in(file, tree, "frames", "nerf: \"frames\" must be a list");
   record->frames = (uint32_t)json_array_size(frames);
   for (uint32_t i = 0; i < record->frames; i++) {
     const json_t *frame = json_array_get(frames, i);
-    if (!json_is_object(frame)) return vl_camera_wrong(file, "nerf: frame %u is no object", i);
+    if (!json_is_object(frame)) return vl_camera_wrong_in(file, frames, NULL, "nerf: frame %u is no object", i);
     if (vl_camera_is_frame(file, i, vl_camera_text(frame, "file_path")))
       return vl_camera_read_nerf_frame(file, frame, tree, record);
   }
@@ -94,7 +104,7 @@ vlResult vl_camera_read_nerf(const vlCameraFile *file, const json_t *tree, vlCam
                          file->def->frame ? file->def->frame : "0", record->frames);
 }
 
-vlResult vl_camera_write_nerf(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   static const char *const radial_names[] = {"k1", "k2", "k3", "k4"}, *const names[] = {"k1", "k2", "p1", "p2", "k3"};
   const vlCameraDef *d = &record->camera;
   vlCamera c;
@@ -130,3 +140,9 @@ vlResult vl_camera_write_nerf(const vlCameraFile *file, const vlCameraRecord *re
   vl_camera_put(text, "]}\n  ]\n}\n");
   return VL_OK;
 }
+
+static bool is_nerf(const json_t *tree) {
+  return vl_camera_has(tree, "frames") || vl_camera_has(tree, "fl_x") || vl_camera_has(tree, "camera_angle_x");
+}
+
+const vlCameraFormat vl_format_nerf = {.name = "nerf", .is_tree = is_nerf, .read = read_nerf, .write = write_nerf};

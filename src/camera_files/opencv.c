@@ -1,27 +1,27 @@
-/* camera_files/opencv.c: OpenCV's camera files, and ROS's camera_info, which derives from them. x right, y down, z
+/* camera_files/opencv.c: OpenCV's camera files, of one camera or of a stereo pair. x right, y down, z
  * forward; camera from world; the first pixel's centre is (0, 0): velo's cx and cy are larger by 0.5. */
 #include <math.h>
 #include <string.h>
 
 #include "base/text.h"
-#include "camera_files/files.h"
+#include "camera_files/opencv.h"
 
 /* The names of lens models in both dialects; without a name the number of coefficients decides. */
-static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const char *coefficients, vlCameraDef *d) {
+vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree, const char *coefficients, vlCameraDef *d) {
   static const char *const names[] = {"opencv",     "pinhole", "plumb_bob", "rational_polynomial",
                                       "thin_prism", "tilted",  "fisheye",   "equidistant",
                                       "none"};
   const char *model = vl_camera_text(tree, "distortion_model");
   if (json_object_get(tree, "distortion_model") && !model)
-    return vl_camera_wrong(file, "%s: \"distortion_model\" must be a word", file->dialect);
+    return vl_camera_wrong_in(file, tree, "distortion_model", "%s: \"distortion_model\" must be a word", file->dialect);
   bool fisheye = json_number_value(json_object_get(tree, "fisheye_model")) != 0.0;
   size_t found = 0, count = sizeof names / sizeof *names;
   while (model && model[0] && found < count && strcmp(model, names[found]) != 0) found++;
   if (found == count) {
     char known[300];
     vl_tell_names(known, sizeof known, model, names, count);
-    return vl_camera_wrong(file, "%s: unknown distortion_model \"%s\"%s", file->dialect, vl_short_text(model).text,
-                           known);
+    return vl_camera_wrong_in(file, tree, "distortion_model", "%s: unknown distortion_model \"%s\"%s", file->dialect,
+                              vl_short_text(model).text, known);
   }
   fisheye = fisheye || (model && (strcmp(model, "fisheye") == 0 || strcmp(model, "equidistant") == 0));
   double *k = d->distortion_coefficients;
@@ -32,34 +32,34 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const ch
   for (uint32_t i = 0; i < n; i++) zero = zero && k[i] == 0.0;
   if (fisheye) {
     if (n != 4 && n != 0)
-      return vl_camera_wrong(file, "%s: \"%s\" holds %u numbers; a fisheye has 4", file->dialect, coefficients, n);
+      return vl_camera_wrong_in(file, tree, coefficients, "%s: \"%s\" holds %u numbers; a fisheye has 4", file->dialect,
+                                coefficients, n);
     d->projection = VL_PROJECTION_EQUIDISTANT;
     d->distortion = n ? VL_DISTORTION_RADIAL : VL_DISTORTION_NONE;
   } else {
     if (n != 0 && n != 4 && n != 5 && n != 8 && n != 12 && n != 14)
-      return vl_camera_wrong(file, "%s: \"%s\" holds %u numbers; there are 0, 4, 5, 8, 12 or 14", file->dialect,
-                             coefficients, n);
+      return vl_camera_wrong_in(file, tree, coefficients, "%s: \"%s\" holds %u numbers; there are 0, 4, 5, 8, 12 or 14",
+                                file->dialect, coefficients, n);
     if (model && strcmp(model, "none") == 0 && !zero)
-      return vl_camera_wrong(file, "%s: distortion_model is \"none\", but \"%s\" is not zero", file->dialect,
-                             coefficients);
+      return vl_camera_wrong_in(file, tree, coefficients, "%s: distortion_model is \"none\", but \"%s\" is not zero",
+                                file->dialect, coefficients);
     d->distortion = n ? VL_DISTORTION_OPENCV : VL_DISTORTION_NONE;
   }
   d->distortion_count = n;
   return VL_OK;
 }
 
-static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const char *key, vlCameraDef *d) {
+vlResult vl_opencv_read_matrix(const vlCameraFile *file, const json_t *tree, const char *key, vlCameraDef *d) {
   double k[9];
   vlResult result = vl_camera_numbers(file, tree, key, k, 9, 9, NULL);
   if (result != VL_OK) return result;
   if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
-    return vl_camera_wrong(file, "%s: \"%s\" must be [fx 0 cx; 0 fy cy; 0 0 1]", file->dialect, key);
+    return vl_camera_wrong_in(file, tree, key, "%s: \"%s\" must be [fx 0 cx; 0 fy cy; 0 0 1]", file->dialect, key);
   if (k[1] != 0.0)
-    return vl_camera_wrong(file,
-                           "%s: \"%s\" has a skew of %g, which OpenCV's projection takes no notice of; set it to 0",
-                           file->dialect, key, k[1]);
-  d->fx = k[0], d->fy = k[4];
-  d->cx = k[2] + 0.5, d->cy = k[5] + 0.5;
+    return vl_camera_wrong_in(file, tree, key,
+                              "%s: \"%s\" has a skew of %g, which OpenCV's projection takes no notice of; set it to 0",
+                              file->dialect, key, k[1]);
+  vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   return VL_OK;
 }
 
@@ -87,43 +87,111 @@ static vlResult read_pose(const vlCameraFile *file, const json_t *tree, vlCamera
   return result;
 }
 
+/* ---- names: of the calibration program (today and in version 2), and those that scripts use ------------------------
+ */
+
+static const char *const matrix_names[] = {"camera_matrix", "cameraMatrix",     "Camera_Matrix",
+                                           "CameraMatrix",  "intrinsic_matrix", "K",
+                                           "mtx",           "intrinsics_matrix"};
+static const char *const lens_names[] = {"distortion_coefficients",
+                                         "Distortion_Coefficients",
+                                         "distortionCoefficients",
+                                         "distCoeffs",
+                                         "dist_coeffs",
+                                         "dist_coeff",
+                                         "dist_coefs",
+                                         "distortion",
+                                         "dist",
+                                         "D"};
+static const char *const width_names[] = {"image_width", "image_Width", "Image_Width", "imageWidth", "width"};
+static const char *const height_names[] = {"image_height", "image_Height", "Image_Height", "imageHeight", "height"};
+static const char *const size_names[] = {"image_size", "imageSize", "img_size", "resolution", "size"};
+/* Matrix and distortion of the first and the second camera of a pair. */
+static const char *const stereo_names[][4] = {
+    {"M1", "D1", "M2", "D2"},
+    {"K1", "D1", "K2", "D2"},
+    {"cameraMatrix1", "distCoeffs1", "cameraMatrix2", "distCoeffs2"},
+    {"camera_matrix_1", "dist_coeffs_1", "camera_matrix_2", "dist_coeffs_2"},
+    {"mtx1", "dist1", "mtx2", "dist2"},
+    {"mtxL", "distL", "mtxR", "distR"},
+    {"K_left", "D_left", "K_right", "D_right"},
+    {"left_camera_matrix", "left_distortion_coefficients", "right_camera_matrix", "right_distortion_coefficients"},
+    {"camera_matrix_left", "distortion_coefficients_left", "camera_matrix_right", "distortion_coefficients_right"}};
+enum { STEREO_NAMES = sizeof stereo_names / sizeof *stereo_names };
+#define NAME_IN(tree, names) name_in(tree, names, sizeof(names) / sizeof *(names))
+
+/* The first of the names that the tree has; the first of all if it has none. */
+static const char *name_in(const json_t *tree, const char *const *names, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (vl_camera_has(tree, names[i])) return names[i];
+  return names[0];
+}
+
+static const char *const *stereo_of(const json_t *tree) {
+  for (int i = 0; i < STEREO_NAMES; i++)
+    if (vl_camera_has(tree, stereo_names[i][0]) && vl_camera_has(tree, stereo_names[i][2])) return stereo_names[i];
+  return NULL;
+}
+
+static vlResult read_size(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const char *pair = NAME_IN(tree, size_names);
+  const char *width = NAME_IN(tree, width_names), *height = NAME_IN(tree, height_names);
+  bool paired = !vl_camera_has(tree, width) && vl_camera_has(tree, pair);
+  return paired ? vl_camera_side_pair(file, tree, pair, record) : vl_camera_sides(file, tree, width, height, record);
+}
+
+/* Two cameras, and x2 = R x1 + T. The world's space is the first camera's. Without R and T, which the calibration
+ * program writes into a file of their own, the second has no pose here. */
+static vlResult read_stereo(const vlCameraFile *file, const json_t *tree, const char *const *names,
+                            vlCameraRecord *record) {
+  vlCameraDef *d = &record->camera;
+  double r[9], t[3];
+  bool second = vl_camera_is_frame(file, 1, "right"), first = vl_camera_is_frame(file, 0, "left");
+  record->frames = 2;
+  if (!first && !second)
+    return vl_camera_wrong(file, "opencv: there is no camera \"%.60s\": there are left (0) and right (1)",
+                           file->def->frame ? file->def->frame : "");
+  second = second && !first;
+  const char *matrix = names[second ? 2 : 0], *lens = names[second ? 3 : 1];
+  vlResult result = vl_opencv_read_matrix(file, tree, matrix, d);
+  if (result == VL_OK && vl_camera_has(tree, lens)) result = vl_opencv_read_lens(file, tree, lens, d);
+  vl_camera_set_origin(d);
+  if (result == VL_OK && second) {
+    result = vl_camera_numbers(file, tree, "R", r, 9, 9, NULL);
+    if (result == VL_OK) result = vl_camera_numbers(file, tree, "T", t, 3, 3, NULL);
+    if (result == VL_OK) vl_camera_set_pose(d, r, t);
+  }
+  vl_camera_name(record, second ? "right" : "left");
+  return result == VL_OK ? read_size(file, tree, record) : result;
+}
+
 vlResult vl_camera_read_opencv(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
-  vlResult result = vl_camera_side(file, tree, "image_width", &d->width);
-  if (result == VL_OK) result = vl_camera_side(file, tree, "image_height", &d->height);
-  if (result == VL_OK) result = read_matrix(file, tree, "camera_matrix", d);
-  if (result == VL_OK) result = read_lens(file, tree, "distortion_coefficients", d);
+  const char *const *stereo = stereo_of(tree);
+  if (stereo) return read_stereo(file, tree, stereo, record);
+  vlResult result = read_size(file, tree, record);
+  if (result == VL_OK) result = vl_opencv_read_matrix(file, tree, NAME_IN(tree, matrix_names), d);
+  if (result == VL_OK) result = vl_opencv_read_lens(file, tree, NAME_IN(tree, lens_names), d);
+  if (result == VL_OK && vl_camera_has(tree, "xi")) { /* the omnidirectional model */
+    double xi = 0.0;
+    result = vl_camera_numbers(file, tree, "xi", &xi, 1, 1, NULL);
+    d->projection = VL_PROJECTION_UNIFIED;
+    d->shape[0] = xi;
+  }
   if (result == VL_OK) result = read_pose(file, tree, d);
   if (result == VL_OK) result = turn_y(file, d);
   vl_camera_name(record, vl_camera_text(tree, "camera_name"));
   return result;
 }
 
-vlResult vl_camera_read_ros(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
-  vlCameraDef *d = &record->camera;
-  /* field names of the ROS message (either version), or of the file */
-  const char *k = json_object_get(tree, "K") ? "K" : json_object_get(tree, "k") ? "k" : "camera_matrix";
-  const char *c = json_object_get(tree, "D") ? "D" : json_object_get(tree, "d") ? "d" : "distortion_coefficients";
-  bool message = k[0] != 'c';
-  double binning[2] = {0, 0};
-  vlResult result = vl_camera_side(file, tree, message ? "width" : "image_width", &d->width);
-  if (result == VL_OK) result = vl_camera_side(file, tree, message ? "height" : "image_height", &d->height);
-  if (result == VL_OK) result = read_matrix(file, tree, k, d);
-  if (result == VL_OK) result = read_lens(file, tree, c, d);
-  if (result == VL_OK) result = vl_camera_optional(file, tree, "binning_x", &binning[0]);
-  if (result == VL_OK) result = vl_camera_optional(file, tree, "binning_y", &binning[1]);
-  if (result == VL_OK && (binning[0] > 1.0 || binning[1] > 1.0))
-    return vl_camera_wrong(file, "ros: binning of %g x %g pixels is not taken; give the full image's camera",
-                           binning[0], binning[1]);
-  double identity[9], none[3] = {0, 0, 0};
-  vl_rotation_from_vector(none, identity);
-  vl_camera_set_pose(d, identity, none);
-  vl_camera_name(record, vl_camera_text(tree, "camera_name"));
-  return result;
+static bool is_opencv(const json_t *tree) {
+  return vl_camera_has(tree, NAME_IN(tree, matrix_names)) || stereo_of(tree) || vl_camera_has(tree, "image_width");
 }
 
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
+
 /* The lens as both dialects write it: coefficients, and whether it is a fisheye. */
-static vlResult lens_of(const vlCameraFile *file, const vlCameraDef *d, double k[14], uint32_t *n, bool *fisheye) {
+vlResult vl_opencv_lens_of(const vlCameraFile *file, const vlCameraDef *d, double k[14], uint32_t *n, bool *fisheye) {
   *fisheye = d->projection == VL_PROJECTION_EQUIDISTANT;
   *n = 0;
   if (*fisheye && d->distortion <= VL_DISTORTION_RADIAL && d->distortion != VL_DISTORTION_OPENCV) {
@@ -136,7 +204,8 @@ static vlResult lens_of(const vlCameraFile *file, const vlCameraDef *d, double k
   return VL_OK;
 }
 
-static void put_matrix(vlCameraText *text, const char *name, int rows, int columns, const double *data, bool tagged) {
+void vl_opencv_put_matrix(vlCameraText *text, const char *name, int rows, int columns, const double *data,
+                          bool tagged) {
   vl_camera_put(text, "%s: %s\n  rows: %d\n  cols: %d\n", name, tagged ? "!!opencv-matrix" : "", rows, columns);
   if (tagged) vl_camera_put(text, "  dt: d\n");
   vl_camera_put(text, "  data: [");
@@ -150,13 +219,32 @@ static void put_list(vlCameraText *text, const char *name, const double *data, u
   vl_camera_put(text, "]");
 }
 
-vlResult vl_camera_write_opencv(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static void put_xml_matrix(vlCameraText *text, const char *name, int rows, int columns, const double *data) {
+  vl_camera_put(text, "<%s type_id=\"opencv-matrix\">\n  <rows>%d</rows>\n  <cols>%d</cols>\n  <dt>d</dt>\n  <data>",
+                name, rows, columns);
+  for (int i = 0; i < rows * columns; i++) vl_camera_put(text, "%s%.17g", i ? " " : "", data[i] + 0.0);
+  vl_camera_put(text, "</data></%s>\n", name);
+}
+
+static void put_xml(vlCameraText *text, const vlCamera *c, bool fisheye, const double m[9], const double *k, uint32_t n,
+                    const double v[3], const double t[3]) {
+  vl_camera_put(text, "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>%u</image_width>\n", c->width);
+  vl_camera_put(text, "<image_height>%u</image_height>\n", c->height);
+  put_xml_matrix(text, "camera_matrix", 3, 3, m);
+  if (fisheye) vl_camera_put(text, "<fisheye_model>1</fisheye_model>\n");
+  put_xml_matrix(text, "distortion_coefficients", (int)n, 1, k);
+  put_xml_matrix(text, "rvec", 3, 1, v);
+  put_xml_matrix(text, "tvec", 3, 1, t);
+  vl_camera_put(text, "</opencv_storage>\n");
+}
+
+static vlResult write_opencv(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
   double k[14], r[9], v[3], t[3];
   uint32_t n = 0;
   bool fisheye = false;
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
-  if (result == VL_OK) result = lens_of(file, &record->camera, k, &n, &fisheye);
+  if (result == VL_OK) result = vl_opencv_lens_of(file, &record->camera, k, &n, &fisheye);
   if (result != VL_OK) return result;
   vl_camera_get_pose(&c, r, t);
   vl_rotation_to_vector(r, v);
@@ -177,42 +265,19 @@ vlResult vl_camera_write_opencv(const vlCameraFile *file, const vlCameraRecord *
     vl_camera_put(text, "\n}\n");
     return VL_OK;
   }
-  vl_camera_put(text, "%%YAML:1.0\n---\nimage_width: %u\nimage_height: %u\n", c.width, c.height);
-  put_matrix(text, "camera_matrix", 3, 3, m, true);
-  if (fisheye) vl_camera_put(text, "distortion_model: fisheye\n");
   if (n == 0) n = 4; /* FileStorage has no empty matrix; four zeros are equivalent */
-  put_matrix(text, "distortion_coefficients", (int)n, 1, k, true);
-  put_matrix(text, "rvec", 3, 1, v, true);
-  put_matrix(text, "tvec", 3, 1, t, true);
+  if (vl_ends_with(file->path, ".xml")) {
+    put_xml(text, &c, fisheye, m, k, n, v, t);
+    return VL_OK;
+  }
+  vl_camera_put(text, "%%YAML:1.0\n---\nimage_width: %u\nimage_height: %u\n", c.width, c.height);
+  vl_opencv_put_matrix(text, "camera_matrix", 3, 3, m, true);
+  if (fisheye) vl_camera_put(text, "distortion_model: fisheye\n");
+  vl_opencv_put_matrix(text, "distortion_coefficients", (int)n, 1, k, true);
+  vl_opencv_put_matrix(text, "rvec", 3, 1, v, true);
+  vl_opencv_put_matrix(text, "tvec", 3, 1, t, true);
   return VL_OK;
 }
 
-vlResult vl_camera_write_ros(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  double k[14];
-  uint32_t n = 0;
-  bool fisheye = false;
-  vlResult result = vl_camera_fit(file, record, 0, &c);
-  if (result == VL_OK) result = lens_of(file, &record->camera, k, &n, &fisheye);
-  if (result != VL_OK) return result;
-  if (n > 8) {
-    bool present = false;
-    for (int i = 8; i < 14; i++) present = present || k[i] != 0.0;
-    result = vl_camera_refuse(file, "distortion", present); /* s1 to s4, tilt: ROS has no such coefficients */
-    if (result != VL_OK) return result;
-    n = 8;
-  }
-  if (!fisheye && n < 5) n = 5;
-  const double m[9] = {c.fx, 0, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1};
-  const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  const double p[12] = {m[0], m[1], m[2], 0, m[3], m[4], m[5], 0, 0, 0, 1, 0};
-  vl_camera_put(text, "image_width: %u\nimage_height: %u\ncamera_name: ", c.width, c.height);
-  vl_camera_put_string(text, record->name[0] ? record->name : "camera");
-  vl_camera_put(text, "\n");
-  put_matrix(text, "camera_matrix", 3, 3, m, false);
-  vl_camera_put(text, "distortion_model: %s\n", fisheye ? "equidistant" : n == 8 ? "rational_polynomial" : "plumb_bob");
-  put_matrix(text, "distortion_coefficients", 1, (int)n, k, false);
-  put_matrix(text, "rectification_matrix", 3, 3, identity, false);
-  put_matrix(text, "projection_matrix", 3, 4, p, false);
-  return VL_OK;
-}
+const vlCameraFormat vl_format_opencv = {
+    .name = "opencv", .is_tree = is_opencv, .read = vl_camera_read_opencv, .write = write_opencv};

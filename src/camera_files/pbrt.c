@@ -4,7 +4,7 @@
 
 #include "camera_files/files.h"
 
-vlResult vl_camera_write_pbrt(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_pbrt(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   vlCamera c;
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS | VL_HOLDS_TIME, &c);
@@ -34,3 +34,6 @@ vlResult vl_camera_write_pbrt(const vlCameraFile *file, const vlCameraRecord *re
   vl_camera_put(text, "WorldBegin # an empty world makes this a whole scene; leave the line out of what you include\n");
   return VL_OK;
 }
+
+const vlCameraFormat vl_format_pbrt = {.name = "pbrt", .write = write_pbrt};
+const vlCameraFormat vl_format_exr = {.name = "exr", .not_written = "an image's header is written with its image"};

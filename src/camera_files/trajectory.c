@@ -11,6 +11,8 @@
 #include "base/cookie.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "camera_files/colmap.h"
+#include "camera_files/formats.h"
 
 /* Allowed deviation of a pose's matrix from a rotation: files have 4 digits or more. */
 static const double rotation_tolerance = 1e-3;
@@ -81,17 +83,16 @@ vlResult vl_trajectory_add_camera(vlTrajectory *t, const vlCameraFile *file, con
 /* ---- which file ----------------------------------------------------------------------------------------------------
  */
 
-/* Reads a file with one camera as one frame. */
-static vlResult read_single(vlTrajectory *t, const vlCameraFile *file) {
-  vlCameraRecord record;
+/* Adds a camera with its pose as a frame. */
+static vlResult add_record(void *data, const vlCameraFile *file, const vlCameraRecord *record, uint32_t frame) {
+  vlTrajectory *t = data;
   vlCamera camera;
   int32_t index;
-  vlResult result = vl_camera_read(file->context, file->path, file->def, &record, file->error);
-  if (result == VL_OK) result = vl_camera_make(&record.camera, &camera, NULL, file->error);
+  vlResult result = vl_camera_make(&record->camera, &camera, NULL, file->error);
   if (result == VL_ERROR_ARGUMENT)
     result = vl_camera_wrong(file, "%s", file->error && file->error->message[0] ? file->error->message : "camera");
-  if (result == VL_OK) result = vl_trajectory_add_camera(t, file, &record, &index);
-  vlFramePlace place = {.name = record.name};
+  if (result == VL_OK) result = vl_trajectory_add_camera(t, file, record, &index);
+  vlFramePlace place = {.name = record->name, .frame = frame};
   if (result == VL_OK) result = vl_trajectory_add(t, file, &place, index, camera.world_from_camera, VL_UNSET);
   return result;
 }
@@ -131,8 +132,7 @@ static vlResult read_any(vlTrajectory *t, const vlCameraFile *file) {
   struct stat status;
   bool folder = stat(file->path, &status) == 0 && S_ISDIR(status.st_mode);
   vlCameraDialect wish = file->def->dialect;
-  if (folder || wish == VL_CAMERA_DIALECT_COLMAP ||
-      (!wish && (vl_ends_with(file->path, "cameras.txt") || vl_ends_with(file->path, "images.txt")))) {
+  if (folder || wish == VL_CAMERA_DIALECT_COLMAP || (!wish && vl_colmap_is_name(file->path))) {
     vlCameraFile colmap = *file;
     colmap.dialect = "colmap";
     return vl_trajectory_read_colmap(t, &colmap);
@@ -142,14 +142,16 @@ static vlResult read_any(vlTrajectory *t, const vlCameraFile *file) {
   bool single = true;
   vlResult result = vl_file_read_given(file->context, file->path, false, &text, &size, file->error);
   if (result != VL_OK) return result;
-  if (is_tree(file->path, text)) {
+  if (vl_camera_dialect_of_text(text, size)) {
+    single = true; /* KITTI's calib.txt is no list of poses */
+  } else if (is_tree(file->path, text)) {
     result = read_tree(t, file, text, size, &single);
   } else if (is_list(file->path, text)) {
     result = vl_trajectory_read_csv(t, file, text, size);
     single = false;
   }
   vl_free(file->context, text);
-  return result == VL_OK && single ? read_single(t, file) : result;
+  return result == VL_OK && single ? vl_camera_read_each(file, &(vlCameraSink){add_record, t}) : result;
 }
 
 /* ---- the public face -----------------------------------------------------------------------------------------------

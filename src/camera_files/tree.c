@@ -26,9 +26,46 @@ vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t co
   return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, line, column, "%s", message);
 }
 
+/* Records the places of the values of a valid JSON text: whatever is no key, from its first character. */
+static bool place_json(const vlCameraFile *file, const char *text, size_t size) {
+  const char *end = text + size, *line_start = text;
+  uint32_t line = 1;
+  for (const char *at = text; at < end && *at;) {
+    const char *first = at;
+    if (*at == '\n') line++, line_start = at + 1;
+    if (strchr(" \t\r\n,:]}", *at)) {
+      at++;
+      continue;
+    }
+    if (*at == '"') {
+      for (at++; at < end && *at != '"'; at++) at += *at == '\\';
+      at++;
+      const char *next = at < end ? at + strspn(at, " \t\r\n") : at;
+      if (next < end && *next == ':') continue; /* a key */
+    } else if (*at == '[' || *at == '{') {
+      at++;
+    } else {
+      at += strcspn(at, " \t\r\n,:]}");
+    }
+    if (!vl_camera_place(file, line, (uint32_t)(first - line_start) + 1)) return false;
+  }
+  return true;
+}
+
+static vlResult parse_json(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {
+  json_error_t place;
+  *tree = json_loadb(text, size, JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, &place);
+  if (!*tree && json_error_code(&place) == json_error_out_of_memory) return vl_fail_memory(file->error);
+  if (!*tree)
+    return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, place.line > 0 ? (uint32_t)place.line : 0,
+                      place.column > 0 ? (uint32_t)place.column : 0, "not JSON: %.*s",
+                      (int)vl_json_problem_length(place.text), place.text);
+  return place_json(file, text, size) ? VL_OK : vl_fail_memory(file->error);
+}
+
 vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {
   size_t first = strspn(text, " \t\r\n");
-  vlResult result = VL_OK;
+  vlResult result;
   *tree = NULL;
   /* .glb: a header of 12 bytes, then a JSON chunk: its length, "JSON", the text */
   if (size >= 20 && memcmp(text, "glTF", 4) == 0 && memcmp(text + 16, "JSON", 4) == 0) {
@@ -39,24 +76,43 @@ vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size,
     size = length;
     first = 0;
   }
-  if (first >= size) return vl_camera_wrong(file, "the file is empty");
-  if (text[first] == '{') {
-    json_error_t place;
-    *tree = json_loadb(text, size, JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, &place);
-    if (!*tree && json_error_code(&place) == json_error_out_of_memory) return vl_fail_memory(file->error);
-    if (!*tree)
-      return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, place.line > 0 ? (uint32_t)place.line : 0,
-                        place.column > 0 ? (uint32_t)place.column : 0, "not JSON: %.*s",
-                        (int)vl_json_problem_length(place.text), place.text);
-  } else {
-    result = vl_camera_yaml(file, text, size, tree);
+  if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) { /* byte order mark */
+    text += 3, size -= 3;
+    first = strspn(text, " \t\r\n");
   }
-  if (result == VL_OK && !json_is_object(*tree)) {
+  if (first >= size) return vl_camera_wrong(file, "the file is empty");
+  bool list = text[first] == '[';
+  if (list && !vl_camera_place(file, 1, 1)) return vl_fail_memory(file->error);
+  if (text[first] == '{' || list)
+    result = parse_json(file, text, size, tree);
+  else if (text[first] == '<')
+    result = vl_camera_storage(file, text, size, tree);
+  else
+    result = vl_camera_yaml(file, text, size, tree);
+  if (result == VL_OK && list) {
+    json_t *wrapped = json_object();
+    if (json_object_set_new(wrapped, "[]", *tree) != 0) result = vl_fail_memory(file->error);
+    *tree = wrapped;
+  } else if (result == VL_OK && !json_is_object(*tree)) {
+    result = vl_camera_wrong(file, "no camera file: it holds no named fields");
+  }
+  if (result != VL_OK) {
     json_decref(*tree);
     *tree = NULL;
-    return vl_camera_wrong(file, "no camera file: it holds no named fields");
+  } else if (file->places) {
+    file->places->root = *tree;
   }
   return result;
+}
+
+bool vl_camera_has(const json_t *object, const char *key) {
+  return json_object_get(object, key) != NULL;
+}
+
+bool vl_camera_has_in(const json_t *object, const char *key, const char *inner) {
+  const json_t *value = json_object_get(object, key);
+  if (json_is_array(value)) value = json_array_get(value, 0);
+  return json_object_get(value, inner) != NULL;
 }
 
 vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const char *key, const json_t **value) {
@@ -67,8 +123,8 @@ vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const c
   json_t *unused;
   json_object_foreach((json_t *)object, other, unused) if (count < 64) names[count++] = other;
   const char *near = vl_nearest_name(key, names, count);
-  return vl_camera_wrong(file, "%s: the field \"%s\" is missing%s%s%s", file->dialect, key,
-                         near ? "; did you mean it by \"" : "", vl_short_text(near).text, near ? "\"?" : "");
+  return vl_camera_wrong_in(file, object, NULL, "%s: the field \"%s\" is missing%s%.60s%s", file->dialect, key,
+                            near ? "; did you mean it by \"" : "", near ? near : "", near ? "\"?" : "");
 }
 
 double vl_camera_parse(const char *text, char **end) {
@@ -78,26 +134,30 @@ double vl_camera_parse(const char *text, char **end) {
   return value;
 }
 
-static vlResult number_of(const vlCameraFile *file, const json_t *value, const char *key, double *number) {
+/* Reads a number at object[key], or in a list of lists there. */
+static vlResult number_of(const vlCameraFile *file, const json_t *object, const json_t *value, const char *key,
+                          double *number) {
+  bool own = json_is_string(value) || json_is_array(value) || json_is_object(value);
   if (json_is_number(value)) {
     *number = json_number_value(value);
     return VL_OK;
   }
   if (json_is_string(value))
-    return vl_camera_wrong(file, "%s: \"%s\" holds \"%s\", which is no finite number", file->dialect, key,
-                           vl_short_text(json_string_value(value)).text);
-  return vl_camera_wrong(file, "%s: \"%s\" must be a number", file->dialect, key);
+    return vl_camera_wrong_in(file, value, NULL, "%s: \"%s\" holds \"%.40s\", which is no finite number", file->dialect,
+                              key, json_string_value(value));
+  return vl_camera_wrong_in(file, own ? value : object, own ? NULL : key, "%s: \"%s\" must be a number", file->dialect,
+                            key);
 }
 
 vlResult vl_camera_number(const vlCameraFile *file, const json_t *object, const char *key, double *value) {
   const json_t *field;
   vlResult result = vl_camera_field(file, object, key, &field);
-  return result == VL_OK ? number_of(file, field, key, value) : result;
+  return result == VL_OK ? number_of(file, object, field, key, value) : result;
 }
 
 vlResult vl_camera_optional(const vlCameraFile *file, const json_t *object, const char *key, double *value) {
   const json_t *field = json_object_get(object, key);
-  return field ? number_of(file, field, key, value) : VL_OK;
+  return field ? number_of(file, object, field, key, value) : VL_OK;
 }
 
 vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const char *key, uint32_t *value) {
@@ -105,8 +165,8 @@ vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const ch
   vlResult result = vl_camera_number(file, object, key, &number);
   if (result != VL_OK) return result;
   if (!(number >= 1.0 && number <= 1 << 24) || number != floor(number))
-    return vl_camera_wrong(file, "%s: \"%s\" is %g; an image's side is 1 to 16777216 whole pixels", file->dialect, key,
-                           number);
+    return vl_camera_wrong_in(file, object, key, "%s: \"%s\" is %g; an image's side is 1 to 16777216 whole pixels",
+                              file->dialect, key, number);
   *value = (uint32_t)number;
   return VL_OK;
 }
@@ -134,8 +194,8 @@ static vlResult collect(const vlCameraFile *file, const json_t *list, const char
       result = collect(file, item, key, depth - 1, values, most, count);
     } else {
       if (*count == most)
-        return vl_camera_wrong(file, "%s: \"%s\" holds more than %u numbers", file->dialect, key, most);
-      result = number_of(file, item, key, &values[*count]);
+        return vl_camera_wrong_in(file, list, NULL, "%s: \"%s\" holds more than %u numbers", file->dialect, key, most);
+      result = number_of(file, list, item, key, &values[*count]);
       ++*count;
     }
     if (result != VL_OK) return result;
@@ -156,14 +216,16 @@ vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const
     if (result != VL_OK) return result;
     field = json_object_get(field, "data");
   }
-  if (!json_is_array(field)) return vl_camera_wrong(file, "%s: \"%s\" must be a list of numbers", file->dialect, key);
+  if (!json_is_array(field))
+    return vl_camera_wrong_in(file, object, key, "%s: \"%s\" must be a list of numbers", file->dialect, key);
   result = collect(file, field, key, 1, values, most, &found);
   if (result != VL_OK) return result;
   if (found < least)
-    return vl_camera_wrong(file, "%s: \"%s\" holds %u numbers; it must hold %u", file->dialect, key, found, least);
+    return vl_camera_wrong_in(file, object, key, "%s: \"%s\" holds %u numbers; it must hold %u", file->dialect, key,
+                              found, least);
   if (!vl_is_unset(rows) && rows * columns != found)
-    return vl_camera_wrong(file, "%s: \"%s\" says %g x %g and holds %u numbers", file->dialect, key, rows, columns,
-                           found);
+    return vl_camera_wrong_in(file, object, key, "%s: \"%s\" says %g x %g and holds %u numbers", file->dialect, key,
+                              rows, columns, found);
   if (count) *count = found;
   return VL_OK;
 }
@@ -175,6 +237,7 @@ const char *vl_camera_text(const json_t *object, const char *key) {
 bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *name) {
   const char *wish = file->def->frame;
   char number[16];
+  if (file->ordinal) return index == *file->ordinal;
   if (!wish) return index == 0;
   if (name && strcmp(wish, name) == 0) return true;
   snprintf(number, sizeof number, "%u", index);
@@ -198,6 +261,14 @@ void vl_camera_put(vlCameraText *text, const char *format, ...) {
   vsnprintf(text->text.items + text->text.count, (size_t)n + 1, format, list);
   va_end(list);
   text->text.count += (size_t)n;
+}
+
+void vl_camera_put_bytes(vlCameraText *text, const char *bytes, size_t count) {
+  text->failed = text->failed || !VL_RESERVE(text->context, &text->text, count + 1);
+  if (text->failed) return;
+  memcpy(text->text.items + text->text.count, bytes, count);
+  text->text.count += count;
+  text->text.items[text->text.count] = 0;
 }
 
 void vl_camera_put_text(vlCameraText *text, const vlCameraText *other) {

@@ -110,27 +110,45 @@ typedef struct {
   const json_t *camera, *resolution; /* the chosen prim, and the first resolution of the file */
   vlMat4 pose;
   uint32_t frames;
+  const json_t *path[64]; /* the prims from the root to the one that is looked at */
+  int depth;
 } Search;
 
-static vlResult walk(Search *s, const json_t *prim, vlMat4 above) {
+/* The pose of the innermost prim of the path. Only what is above the chosen camera has to be understood and still. */
+static vlResult pose_of(Search *s) {
+  s->pose = vl_mat4_identity();
+  for (int i = 0; i < s->depth; i++) {
+    vlMat4 own;
+    bool reset;
+    vlResult result = check_still(s->file, s->path[i]);
+    if (result == VL_OK) result = local_matrix(s->file, s->path[i], &own, &reset);
+    if (result != VL_OK) return result;
+    s->pose = reset ? own : vl_mat4_multiply(s->pose, own);
+  }
+  return VL_OK;
+}
+
+static vlResult walk(Search *s, const json_t *prim) {
   const char *type = vl_camera_text(prim, "<");
   const json_t *child;
+  vlResult result = VL_OK;
   size_t i;
   if (type && strcmp(type, "Camera") == 0) {
     bool wanted = !s->camera && vl_camera_is_frame(s->file, s->frames++, vl_camera_text(prim, "@"));
-    if (wanted) s->camera = prim, s->pose = above;
+    if (wanted) {
+      s->camera = prim;
+      result = pose_of(s);
+    }
   } else if (type && strncmp(type, "Render", 6) == 0 && !s->resolution) {
     s->resolution = json_object_get(prim, "resolution") ? prim : NULL;
   }
   json_array_foreach(json_object_get(prim, "/"), i, child) {
-    vlMat4 own;
-    bool reset;
-    vlResult result = check_still(s->file, child);
-    if (result == VL_OK) result = local_matrix(s->file, child, &own, &reset);
-    if (result == VL_OK) result = walk(s, child, reset ? own : vl_mat4_multiply(above, own));
-    if (result != VL_OK) return result;
+    if (result != VL_OK || s->depth == 64) break; /* the parser's depth is smaller */
+    s->path[s->depth++] = child;
+    result = walk(s, child);
+    s->depth--;
   }
-  return VL_OK;
+  return result;
 }
 
 static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord *record) {
@@ -196,12 +214,12 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   return VL_OK;
 }
 
-vlResult vl_camera_read_usd(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
   json_t *tree;
   vlResult result = vl_camera_usda(file, text, size, &tree);
   if (result != VL_OK) return result;
   Search search = {.file = file, .pose = vl_mat4_identity()};
-  result = walk(&search, tree, vl_mat4_identity());
+  result = walk(&search, tree);
   record->frames = search.frames;
   if (result == VL_OK && !search.frames)
     result = vl_camera_wrong(file, "usd: the file holds no Camera (references and payloads are not followed)");
@@ -225,7 +243,7 @@ static void put_name(vlCameraText *text, const char *name) {
   }
 }
 
-vlResult vl_camera_write_usd(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+static vlResult write_usd(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   const vlCameraDef *d = &record->camera;
   vlCamera c;
   uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS | VL_HOLDS_PLANES | VL_HOLDS_TIME | VL_HOLDS_EXPOSURE;
@@ -280,3 +298,9 @@ vlResult vl_camera_write_usd(const vlCameraFile *file, const vlCameraRecord *rec
   vl_camera_put(text, "    }\n}\n");
   return VL_OK;
 }
+
+static bool is_usd(const char *text, size_t size) {
+  return size >= 5 && memcmp(text, "#usda", 5) == 0;
+}
+
+const vlCameraFormat vl_format_usd = {.name = "usd", .is_text = is_usd, .read_text = read_usd, .write = write_usd};

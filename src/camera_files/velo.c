@@ -282,3 +282,10 @@ vlResult vl_camera_write_velo(const vlCameraFile *file, const vlCameraRecord *re
   if (result == VL_OK) vl_camera_put_velo(record, text);
   return result;
 }
+
+static bool is_velo(const json_t *tree) {
+  return vl_camera_has(tree, "velo_camera");
+}
+
+const vlCameraFormat vl_format_velo = {
+    .name = "velo", .is_tree = is_velo, .read = vl_camera_read_velo, .write = vl_camera_write_velo};

@@ -1,17 +1,21 @@
 /* camera_files/xml.c: parses XML by expat into a tree: an element is an object with its attributes by name, "<": its
- * tag, "#": its line, "/": its child elements. Text is ignored. A document type is refused, and with it every entity
- * that a file could define; depth and number of elements are bounded. */
+ * tag, "#": its line, "|": its column, "/": its child elements; "$": its text, where that is wanted. A document type is
+ * refused, and with it every entity that a file could define; depth and number of elements are bounded. */
 #include <expat.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "camera_files/files.h"
 
-enum { MAX_DEPTH = 32, MAX_ELEMENTS = 20000 };
+enum { MAX_DEPTH = 32, MAX_ELEMENTS = 2000000, MAX_WANTED = 20000 };
 
 typedef struct {
   const vlCameraFile *file;
   XML_Parser parser;
   const char *const *wanted; /* tags of the root, or below it; other elements there are ignored with their contents */
+  VL_ARRAY(char) text;       /* of the innermost element so far */
   json_t *open[MAX_DEPTH];   /* each is owned by the one before it */
   int depth, skipped;        /* skipped: open elements that are ignored */
   uint32_t elements;
@@ -33,7 +37,7 @@ static bool is_among(const char *const *tags, const char *tag) {
 }
 
 static bool is_wanted(const Builder *b, const char *tag) {
-  if (b->depth != 1 || is_among(b->wanted, tag)) return true;
+  if (!b->wanted || b->depth != 1 || is_among(b->wanted, tag)) return true;
   return is_among(b->wanted, json_string_value(json_object_get(b->open[0], "<")));
 }
 
@@ -45,7 +49,7 @@ static void on_start(void *data, const char *tag, const char **attributes) {
     return;
   }
   uint32_t line = line_of(b), column = (uint32_t)XML_GetCurrentColumnNumber(b->parser) + 1;
-  if (b->depth == MAX_DEPTH || ++b->elements > MAX_ELEMENTS) {
+  if (b->depth == MAX_DEPTH || ++b->elements > (b->wanted ? MAX_WANTED : MAX_ELEMENTS)) {
     stop(b, vl_camera_wrong_at(b->file, line, column, "%s for a camera",
                                b->depth == MAX_DEPTH ? "nested too deeply" : "too many elements"));
     return;
@@ -53,7 +57,9 @@ static void on_start(void *data, const char *tag, const char **attributes) {
   json_t *element = json_object();
   int failed = json_object_set_new(element, "<", json_string(tag));
   failed |= json_object_set_new(element, "#", json_real(line));
+  failed |= json_object_set_new(element, "|", json_real(column));
   failed |= json_object_set_new(element, "/", json_array());
+  b->text.count = 0;
   for (; *attributes && !failed; attributes += 2)
     failed |= json_object_set_new(element, attributes[0], json_string(attributes[1]));
   if (!failed && b->depth > 0) failed = json_array_append(json_object_get(b->open[b->depth - 1], "/"), element);
@@ -66,10 +72,28 @@ static void on_end(void *data, const char *tag) {
   Builder *b = data;
   (void)tag;
   if (b->result != VL_OK) return;
-  if (b->skipped)
+  if (b->skipped) {
     b->skipped--;
-  else if (b->depth > 1)
-    b->depth--;
+    return;
+  }
+  if (!b->wanted && b->text.count) { /* the text of an element without children */
+    json_t *text = json_stringn(b->text.items, b->text.count);
+    if (json_object_set_new(b->open[b->depth - 1], "$", text ? text : json_string("")) != 0)
+      stop(b, vl_fail_memory(b->file->error));
+  }
+  b->text.count = 0;
+  if (b->depth > 1) b->depth--;
+}
+
+static void on_text(void *data, const char *text, int length) {
+  Builder *b = data;
+  if (b->result != VL_OK || b->wanted || b->skipped || length <= 0) return;
+  if (!VL_RESERVE(b->file->context, &b->text, (size_t)length)) {
+    stop(b, vl_fail_memory(b->file->error));
+    return;
+  }
+  memcpy(b->text.items + b->text.count, text, (size_t)length);
+  b->text.count += (size_t)length;
 }
 
 static void on_document_type(void *data, const char *name, const char *system, const char *public_id, int internal) {
@@ -87,6 +111,7 @@ vlResult vl_camera_xml(const vlCameraFile *file, const char *text, size_t size, 
   if (!b.parser) return vl_fail_memory(file->error);
   XML_SetUserData(b.parser, &b);
   XML_SetElementHandler(b.parser, on_start, on_end);
+  XML_SetCharacterDataHandler(b.parser, on_text);
   XML_SetStartDoctypeDeclHandler(b.parser, on_document_type);
   XML_SetParamEntityParsing(b.parser, XML_PARAM_ENTITY_PARSING_NEVER);
   enum { STEP = 1 << 24 }; /* expat's sizes are int */
@@ -103,9 +128,74 @@ vlResult vl_camera_xml(const vlCameraFile *file, const char *text, size_t size, 
                                         "not XML: %s", XML_ErrorString(code));
   }
   XML_ParserFree(b.parser);
+  VL_ARRAY_FREE(file->context, &b.text);
   if (b.result == VL_OK)
     *tree = b.open[0];
   else
     json_decref(b.open[0]);
   return b.result;
+}
+
+bool vl_camera_xml_root(const char *text, char tag[64]) {
+  for (;;) {
+    const char *end = NULL;
+    text += strspn(text, " \t\r\n");
+    if (strncmp(text, "<?", 2) == 0)
+      end = strstr(text, "?>");
+    else if (strncmp(text, "<!--", 4) == 0)
+      end = strstr(text, "-->");
+    else
+      break;
+    if (!end) return false;
+    text = end + (*end == '?' ? 2 : 3);
+  }
+  if (*text++ != '<') return false;
+  size_t length = strcspn(text, " \t\r\n/>");
+  if (length == 0 || length > 63) return false;
+  memcpy(tag, text, length);
+  tag[length] = 0;
+  return true;
+}
+
+const json_t *vl_camera_child(const json_t *element, const char *tag) {
+  size_t i;
+  const json_t *child;
+  json_array_foreach(json_object_get(element, "/"), i, child) {
+    if (strcmp(json_string_value(json_object_get(child, "<")), tag) == 0) return child;
+  }
+  return NULL;
+}
+
+vlResult vl_camera_wrong_element(const vlCameraFile *file, const json_t *element, const char *format, ...) {
+  char message[300];
+  va_list list;
+  va_start(list, format);
+  vsnprintf(message, sizeof message, format, list);
+  va_end(list);
+  return vl_camera_wrong_at(file, (uint32_t)json_number_value(json_object_get(element, "#")),
+                            (uint32_t)json_number_value(json_object_get(element, "|")), "%s: %s", file->dialect,
+                            message);
+}
+
+vlResult vl_camera_element_numbers(const vlCameraFile *file, const json_t *element, double *values, uint32_t count) {
+  const char *text = vl_camera_text(element, "$"), *tag = vl_camera_text(element, "<");
+  uint32_t found = 0;
+  for (char *end; text && found <= count; text = end) {
+    double value = vl_camera_parse(text, &end);
+    if (end == text) break;
+    if (!isfinite(value)) found = count;
+    if (found < count) values[found] = value;
+    found++;
+  }
+  if (found == count && text && text[strspn(text, " \t\r\n,;")] == 0) return VL_OK;
+  return vl_camera_wrong_element(file, element, "<%.40s> must hold %u finite number%s", tag, count,
+                                 count == 1 ? "" : "s");
+}
+
+vlResult vl_camera_child_number(const vlCameraFile *file, const json_t *element, const char *tag, bool needed,
+                                double *value) {
+  const json_t *child = vl_camera_child(element, tag);
+  if (child) return vl_camera_element_numbers(file, child, value, 1);
+  return needed ? vl_camera_wrong_element(file, element, "<%.40s> has no <%s>", vl_camera_text(element, "<"), tag)
+                : VL_OK;
 }

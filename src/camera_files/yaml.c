@@ -1,5 +1,6 @@
-/* camera_files/yaml.c: parses YAML by libyaml into the same tree as JSON. Anchors are refused: with them a small
- * file could expand without bound. OpenCV's first line "%YAML:1.0" is not a valid YAML directive and is ignored. */
+/* camera_files/yaml.c: parses YAML by libyaml into the same tree as JSON. An alias is a copy of what its anchor names;
+ * the number of values of a file with aliases is bounded, for a small file could grow without bound. "<<" merges maps.
+ * OpenCV's first line "%YAML:1.0" is not a valid YAML directive and is ignored, and its tabs are blanks. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,13 +8,16 @@
 
 #include "camera_files/files.h"
 
-enum { MAX_DEPTH = 32 };
+enum { MAX_DEPTH = 32, MAX_ANCHORS = 256, MAX_COPIES = 100000 };
 
 typedef struct {
   json_t *tree[MAX_DEPTH]; /* open lists and maps; each is owned by the one before it */
   char *key[MAX_DEPTH];    /* key of the next value, in maps */
   int depth;
   json_t *root;
+  char *anchor[MAX_ANCHORS]; /* names, and the values, each owned by the tree */
+  json_t *anchored[MAX_ANCHORS];
+  uint32_t anchors, copies; /* copies: values made by aliases */
 } Builder;
 
 static vlResult wrong_at(const vlCameraFile *file, yaml_mark_t mark, const char *what) {
@@ -56,26 +60,106 @@ static vlResult add(const vlCameraFile *file, Builder *b, json_t *value, yaml_ma
   return failed ? vl_fail_memory(file->error) : VL_OK;
 }
 
+static vlResult place(const vlCameraFile *file, yaml_mark_t mark) {
+  bool placed = vl_camera_place(file, (uint32_t)mark.line + 1, (uint32_t)mark.column + 1);
+  return placed ? VL_OK : vl_fail_memory(file->error);
+}
+
+/* Counts the values of a copy, which are all at the place of the alias. */
+static vlResult place_copy(const vlCameraFile *file, Builder *b, const json_t *value, yaml_mark_t mark) {
+  const char *key;
+  json_t *child;
+  size_t i;
+  if (++b->copies > MAX_COPIES) return wrong_at(file, mark, "the aliases make more than 100,000 values");
+  vlResult result = place(file, mark);
+  if (json_is_object(value)) {
+    json_object_foreach((json_t *)value, key, child) if (result == VL_OK) result = place_copy(file, b, child, mark);
+  } else {
+    json_array_foreach((json_t *)value, i, child) if (result == VL_OK) result = place_copy(file, b, child, mark);
+  }
+  return result;
+}
+
+static vlResult remember(const vlCameraFile *file, Builder *b, const yaml_char_t *name, json_t *value,
+                         yaml_mark_t mark) {
+  if (!name) return VL_OK;
+  uint32_t i = 0;
+  while (i < b->anchors && strcmp(b->anchor[i], (const char *)name) != 0) i++; /* an anchor may be used again */
+  if (i == MAX_ANCHORS) return wrong_at(file, mark, "more than 256 anchors");
+  if (i == b->anchors) {
+    b->anchor[i] = vl_strdup(file->context, (const char *)name);
+    if (!b->anchor[i]) return vl_fail_memory(file->error);
+    b->anchors++;
+  }
+  b->anchored[i] = value;
+  return VL_OK;
+}
+
+/* Adds the fields of a map that the open one does not have: "<<: *name". */
+static vlResult merge(const vlCameraFile *file, Builder *b, const json_t *from, yaml_mark_t mark) {
+  json_t *into = b->tree[b->depth - 1], *child;
+  const char *key;
+  if (!json_is_object(from)) return wrong_at(file, mark, "\"<<\" needs an alias of a map");
+  json_object_foreach((json_t *)from, key, child) {
+    if (json_object_get(into, key)) continue;
+    vlResult result = place_copy(file, b, child, mark);
+    if (result == VL_OK && json_object_set_new(into, key, json_deep_copy(child)) != 0)
+      result = vl_fail_memory(file->error);
+    if (result != VL_OK) return result;
+  }
+  vl_free(file->context, b->key[b->depth - 1]);
+  b->key[b->depth - 1] = NULL;
+  return VL_OK;
+}
+
+static vlResult alias(const vlCameraFile *file, Builder *b, const yaml_event_t *event) {
+  const char *name = (const char *)event->data.alias.anchor;
+  json_t *value = NULL;
+  for (uint32_t i = 0; i < b->anchors; i++)
+    if (strcmp(b->anchor[i], name) == 0) value = b->anchored[i];
+  if (!value) return wrong_at(file, event->start_mark, "an alias whose anchor is not there");
+  for (int i = 0; i < b->depth; i++)
+    if (b->tree[i] == value) return wrong_at(file, event->start_mark, "an alias inside of its own anchor");
+  const char *key = b->depth ? b->key[b->depth - 1] : NULL;
+  if (key && strcmp(key, "<<") == 0) return merge(file, b, value, event->start_mark);
+  vlResult result = place_copy(file, b, value, event->start_mark);
+  return result == VL_OK ? add(file, b, json_deep_copy(value), event->start_mark) : result;
+}
+
+static vlResult take_value(const vlCameraFile *file, Builder *b, json_t *value, const yaml_char_t *anchor,
+                           yaml_mark_t mark) {
+  vlResult result = place(file, mark);
+  if (result != VL_OK)
+    json_decref(value);
+  else
+    result = add(file, b, value, mark);
+  return result == VL_OK ? remember(file, b, anchor, value, mark) : result;
+}
+
 static vlResult take(const vlCameraFile *file, Builder *b, const yaml_event_t *event) {
   bool key_next = b->depth > 0 && json_is_object(b->tree[b->depth - 1]) && !b->key[b->depth - 1];
   switch (event->type) {
     case YAML_SCALAR_EVENT:
-      if (!key_next) return add(file, b, scalar(event), event->start_mark);
+      if (!key_next) return take_value(file, b, scalar(event), event->data.scalar.anchor, event->start_mark);
       b->key[b->depth - 1] = vl_strdup(file->context, (const char *)event->data.scalar.value);
       return b->key[b->depth - 1] ? VL_OK : vl_fail_memory(file->error);
     case YAML_SEQUENCE_START_EVENT:
     case YAML_MAPPING_START_EVENT: {
       if (key_next) return wrong_at(file, event->start_mark, "a key must be a word");
       if (b->depth == MAX_DEPTH) return wrong_at(file, event->start_mark, "nested too deeply for a camera");
-      json_t *value = event->type == YAML_SEQUENCE_START_EVENT ? json_array() : json_object();
-      vlResult result = add(file, b, value, event->start_mark);
+      bool list = event->type == YAML_SEQUENCE_START_EVENT;
+      json_t *value = list ? json_array() : json_object();
+      vlResult result =
+          take_value(file, b, value, list ? event->data.sequence_start.anchor : event->data.mapping_start.anchor,
+                     event->start_mark);
       if (result == VL_OK) b->tree[b->depth++] = value;
       return result;
     }
     case YAML_SEQUENCE_END_EVENT:
     case YAML_MAPPING_END_EVENT: b->depth--; return VL_OK;
     case YAML_ALIAS_EVENT:
-      return wrong_at(file, event->start_mark, "anchors of YAML are not taken; write the value out");
+      if (key_next) return wrong_at(file, event->start_mark, "a key must be a word");
+      return alias(file, b, event);
     case YAML_NO_EVENT:
     case YAML_STREAM_START_EVENT:
     case YAML_STREAM_END_EVENT:
@@ -85,14 +169,27 @@ static vlResult take(const vlCameraFile *file, Builder *b, const yaml_event_t *e
   return VL_OK;
 }
 
+/* OpenCV's own parser takes tabs for blanks. */
+static char *without_tabs(const vlCameraFile *file, const char *text, size_t size) {
+  char *copy = vl_alloc(file->context, size + 1);
+  for (size_t i = 0; copy && i < size; i++) copy[i] = text[i] == '\t' ? ' ' : text[i];
+  if (copy) copy[size] = 0;
+  return copy;
+}
+
 vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {
   Builder b = {.depth = 0};
   yaml_parser_t parser;
   *tree = NULL;
-  if (!yaml_parser_initialize(&parser)) return vl_fail_memory(file->error);
   /* the line end is kept, for line numbers */
   size_t skip = size >= 6 && memcmp(text, "%YAML:", 6) == 0 ? strcspn(text, "\n") : 0;
-  yaml_parser_set_input_string(&parser, (const unsigned char *)text + skip, size - skip);
+  char *copy = skip ? without_tabs(file, text, size) : NULL;
+  if (skip && !copy) return vl_fail_memory(file->error);
+  if (!yaml_parser_initialize(&parser)) {
+    vl_free(file->context, copy);
+    return vl_fail_memory(file->error);
+  }
+  yaml_parser_set_input_string(&parser, (const unsigned char *)(copy ? copy : text) + skip, size - skip);
   vlResult result = VL_OK;
   int documents = 0;
   for (bool done = false; result == VL_OK && !done;) {
@@ -114,7 +211,9 @@ vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size,
     yaml_event_delete(&event);
   }
   yaml_parser_delete(&parser);
+  vl_free(file->context, copy);
   for (int i = 0; i < MAX_DEPTH; i++) vl_free(file->context, b.key[i]);
+  for (uint32_t i = 0; i < b.anchors; i++) vl_free(file->context, b.anchor[i]);
   if (result != VL_OK)
     json_decref(b.root);
   else

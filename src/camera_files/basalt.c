@@ -1,0 +1,133 @@
+/* camera_files/basalt.c: Basalt's calibration JSON: value0 with T_imu_cam (IMU from camera: px py pz, qx qy qz qw),
+ * intrinsics, resolution. x right, y down, z forward; the IMU's space is the world's; the first pixel's centre is
+ * (0, 0). */
+#include <string.h>
+
+#include "camera_files/files.h"
+
+typedef struct {
+  const char *name;
+  vlLensFamily family;
+  const char *shapes[2], *lens[8]; /* in OpenCV's order */
+} Model;
+
+static const Model models[] = {
+    {"pinhole", VL_LENS_PINHOLE, {NULL}, {NULL}},
+    {"kb4", VL_LENS_FISHEYE, {NULL}, {"k1", "k2", "k3", "k4"}},
+    {"ds", VL_LENS_DOUBLE_SPHERE, {"xi", "alpha"}, {NULL}},
+    {"eucm", VL_LENS_EUCM, {"alpha", "beta"}, {NULL}},
+    {"ucm", VL_LENS_EUCM, {"alpha", NULL}, {NULL}}, /* beta is 1 */
+    {"fov", VL_LENS_FOV, {"w", NULL}, {NULL}},
+    {"pinhole-radtan8", VL_LENS_OPENCV, {NULL}, {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}}};
+enum { MODELS = sizeof models / sizeof *models };
+
+static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCameraDef *d) {
+  static const char *const names[] = {"fx", "fy", "cx", "cy"};
+  const json_t *type, *values;
+  double f[4], k[8];
+  vlResult result = vl_camera_field(file, camera, "camera_type", &type);
+  if (result == VL_OK) result = vl_camera_field(file, camera, "intrinsics", &values);
+  if (result != VL_OK) return result;
+  const char *name = json_string_value(type);
+  const Model *model = NULL;
+  for (int i = 0; i < MODELS; i++)
+    if (name && strcmp(name, models[i].name) == 0) model = &models[i];
+  if (!model)
+    return vl_camera_wrong_in(file, camera, "camera_type",
+                              "basalt: unknown camera_type \"%.40s\"; there are pinhole, pinhole-radtan8, kb4, ds, "
+                              "eucm, ucm, fov",
+                              name ? name : "");
+  for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_number(file, values, names[i], &f[i]);
+  for (int i = 0; i < 2 && model->shapes[i] && result == VL_OK; i++)
+    result = vl_camera_number(file, values, model->shapes[i], &d->shape[i]);
+  uint32_t count = 0;
+  while (count < 8 && model->lens[count] && result == VL_OK) {
+    result = vl_camera_number(file, values, model->lens[count], &k[count]);
+    count++;
+  }
+  if (result != VL_OK) return result;
+  vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
+  if (model->family == VL_LENS_OPENCV) vl_camera_set_opencv(d, k, count);
+  if (model->family == VL_LENS_FISHEYE) vl_camera_set_fisheye(d, k);
+  if (model->family == VL_LENS_DOUBLE_SPHERE) d->projection = VL_PROJECTION_DOUBLE_SPHERE;
+  if (model->family == VL_LENS_FOV) d->projection = VL_PROJECTION_FOV;
+  if (model->family == VL_LENS_EUCM) d->projection = VL_PROJECTION_EUCM;
+  if (model->family == VL_LENS_EUCM && !model->shapes[1]) d->shape[1] = 1.0;
+  return VL_OK;
+}
+
+static vlResult read_pose(const vlCameraFile *file, const json_t *pose, vlCameraDef *d) {
+  static const char *const names[] = {"px", "py", "pz", "qw", "qx", "qy", "qz"};
+  double v[7], r[9], m[16] = {[15] = 1.0};
+  vlResult result = VL_OK;
+  for (int i = 0; i < 7 && result == VL_OK; i++) result = vl_camera_number(file, pose, names[i], &v[i]);
+  if (result != VL_OK) return result;
+  if (!vl_rotation_from_quaternion(v + 3, r))
+    return vl_camera_wrong_in(file, pose, "qw", "basalt: the quaternion of T_imu_cam is zero");
+  for (int i = 0; i < 12; i++) m[i] = i % 4 < 3 ? r[3 * (i / 4) + i % 4] : v[i / 4];
+  vl_camera_set_matrix(d, m, false);
+  return VL_OK;
+}
+
+static vlResult read_basalt(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *root, *cameras, *poses = NULL, *sizes = NULL;
+  vlCameraDef *d = &record->camera;
+  double size[2];
+  vlResult result = vl_camera_field(file, tree, "value0", &root);
+  if (result == VL_OK) result = vl_camera_field(file, root, "intrinsics", &cameras);
+  if (result != VL_OK) return result;
+  poses = json_object_get(root, "T_imu_cam"), sizes = json_object_get(root, "resolution");
+  record->frames = (uint32_t)json_array_size(cameras);
+  for (uint32_t i = 0; i < record->frames; i++) {
+    if (!vl_camera_is_frame(file, i, NULL)) continue;
+    const json_t *pose = json_array_get(poses, i), *pair = json_array_get(sizes, i);
+    result = read_model(file, json_array_get(cameras, i), d);
+    vl_camera_set_origin(d);
+    if (result == VL_OK && pose) result = read_pose(file, pose, d);
+    if (result != VL_OK || !pair) return result == VL_OK ? vl_camera_size_beside(file, NULL, record) : result;
+    for (int k = 0; k < 2; k++) {
+      size[k] = json_number_value(json_array_get(pair, (size_t)k));
+      if (!(size[k] >= 1.0 && size[k] <= 1 << 24) || size[k] != (double)(uint32_t)size[k])
+        return vl_camera_wrong_in(file, pair, NULL, "basalt: \"resolution\" must be two whole numbers of pixels");
+    }
+    d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
+    return VL_OK;
+  }
+  return vl_camera_wrong_in(file, root, "intrinsics", "basalt: there is no camera \"%.60s\" among the %u",
+                            file->def->frame ? file->def->frame : "0", record->frames);
+}
+
+static bool is_basalt(const json_t *tree) {
+  return vl_camera_has_in(tree, "value0", "intrinsics");
+}
+
+static vlResult write_basalt(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14], r[9], t[3], q[4];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  const Model *model = NULL;
+  if (family == VL_LENS_UNIFIED) return vl_camera_no_model(file, &record->camera);
+  for (int i = 0; i < MODELS; i++)
+    if (models[i].family == family && !model) model = &models[i];
+  if (!model || (family == VL_LENS_OPENCV && n > 8)) return vl_camera_no_model(file, &record->camera);
+  for (int i = 0; i < 9; i++) r[i] = c.world_from_camera[4 * (i / 3) + i % 3];
+  for (int i = 0; i < 3; i++) t[i] = c.world_from_camera[4 * i + 3];
+  vl_rotation_to_quaternion(r, q);
+  vl_camera_put(text, "{\n  \"value0\": {\n    \"T_imu_cam\": [\n      {\"px\": %.17g, \"py\": %.17g, \"pz\": %.17g, ",
+                t[0] + 0.0, t[1] + 0.0, t[2] + 0.0);
+  vl_camera_put(text, "\"qx\": %.17g, \"qy\": %.17g, \"qz\": %.17g, \"qw\": %.17g}\n    ],\n", q[1] + 0.0, q[2] + 0.0,
+                q[3] + 0.0, q[0] + 0.0);
+  vl_camera_put(text, "    \"intrinsics\": [\n      {\"camera_type\": \"%s\", \"intrinsics\": {", model->name);
+  vl_camera_put(text, "\"fx\": %.17g, \"fy\": %.17g, \"cx\": %.17g, \"cy\": %.17g", c.fx, c.fy, c.cx - 0.5, c.cy - 0.5);
+  for (int i = 0; i < 2 && model->shapes[i]; i++) vl_camera_put(text, ", \"%s\": %.17g", model->shapes[i], c.shape[i]);
+  for (int i = 0; i < 8 && model->lens[i]; i++) vl_camera_put(text, ", \"%s\": %.17g", model->lens[i], k[i] + 0.0);
+  if (family == VL_LENS_OPENCV) vl_camera_put(text, ", \"rpmax\": 0");
+  vl_camera_put(text, "}}\n    ],\n    \"resolution\": [[%u, %u]]\n  }\n}\n", c.width, c.height);
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_basalt = {
+    .name = "basalt", .is_tree = is_basalt, .read = read_basalt, .write = write_basalt};

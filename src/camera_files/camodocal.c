@@ -1,0 +1,172 @@
+/* camera_files/camodocal.c: camodocal's camera files, which VINS-Mono and VINS-Fusion read too, alone or named by their
+ * configuration. x right, y down, z forward; the first pixel's centre is (0, 0). A configuration's body_T_cam0 (or
+ * extrinsicRotation, extrinsicTranslation) is body (IMU) from camera, and the body's space is the world's. */
+#include <stdio.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "camera_files/files.h"
+
+typedef struct {
+  const char *name;
+  vlLensFamily family;
+  const char *intrinsics[4]; /* in projection_parameters */
+  const char *lens[8];       /* in OpenCV's order, in distortion_parameters; of a fisheye in projection_parameters */
+} Model;
+
+static const Model models[] = {
+    {"PINHOLE", VL_LENS_OPENCV, {"fx", "fy", "cx", "cy"}, {"k1", "k2", "p1", "p2"}},
+    {"MEI", VL_LENS_UNIFIED, {"gamma1", "gamma2", "u0", "v0"}, {"k1", "k2", "p1", "p2"}},
+    {"KANNALA_BRANDT", VL_LENS_FISHEYE, {"mu", "mv", "u0", "v0"}, {"k2", "k3", "k4", "k5"}},
+    {"PINHOLE_FULL", VL_LENS_OPENCV, {"fx", "fy", "cx", "cy"}, {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}}};
+enum { MODELS = sizeof models / sizeof *models };
+
+static vlResult read_model(const vlCameraFile *file, const json_t *tree, const Model *model, vlCameraDef *d) {
+  const json_t *plane, *lens = NULL, *mirror = NULL;
+  double f[4], k[8];
+  bool fisheye = model->family == VL_LENS_FISHEYE;
+  uint32_t count = 0;
+  vlResult result = vl_camera_field(file, tree, "projection_parameters", &plane);
+  for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_number(file, plane, model->intrinsics[i], &f[i]);
+  if (result == VL_OK && !fisheye) result = vl_camera_field(file, tree, "distortion_parameters", &lens);
+  while (count < 8 && model->lens[count] && result == VL_OK) {
+    result = vl_camera_number(file, fisheye ? plane : lens, model->lens[count], &k[count]);
+    count++;
+  }
+  if (result == VL_OK && model->family == VL_LENS_UNIFIED) {
+    result = vl_camera_field(file, tree, "mirror_parameters", &mirror);
+    if (result == VL_OK) result = vl_camera_number(file, mirror, "xi", &d->shape[0]);
+    d->projection = VL_PROJECTION_UNIFIED;
+  }
+  if (result != VL_OK) return result;
+  vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
+  if (fisheye)
+    vl_camera_set_fisheye(d, k);
+  else
+    vl_camera_set_opencv(d, k, count);
+  return VL_OK;
+}
+
+static vlResult read_camera(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *field;
+  vlResult result = vl_camera_field(file, tree, "model_type", &field);
+  if (result != VL_OK) return result;
+  const char *name = json_string_value(field);
+  if (name && (strcmp(name, "SCARAMUZZA") == 0 || strcmp(name, "scaramuzza") == 0))
+    return vl_camera_wrong_in(file, tree, "model_type",
+                              "camodocal: SCARAMUZZA's polynomial is no projection of velo; calibrate as MEI or "
+                              "KANNALA_BRANDT");
+  for (int i = 0; i < MODELS; i++) {
+    if (!name || strcmp(name, models[i].name) != 0) continue;
+    result = vl_camera_sides(file, tree, "image_width", "image_height", record);
+    if (result == VL_OK) result = read_model(file, tree, &models[i], &record->camera);
+    vl_camera_set_origin(&record->camera);
+    vl_camera_name(record, vl_camera_text(tree, "camera_name"));
+    return result;
+  }
+  return vl_camera_wrong_in(file, tree, "model_type",
+                            "camodocal: unknown model_type \"%.40s\"; there are PINHOLE, PINHOLE_FULL, MEI, "
+                            "KANNALA_BRANDT",
+                            name ? name : "");
+}
+
+/* Reads the camera file that a configuration names. */
+static vlResult read_named(const vlCameraFile *file, const json_t *tree, const char *key, vlCameraRecord *record) {
+  char path[4096], *text;
+  size_t size;
+  json_t *inner = NULL;
+  const char *name = vl_camera_text(tree, key);
+  if (!name || !vl_path_join(file->path, name, path, sizeof path))
+    return vl_camera_wrong_in(file, tree, key, "camodocal: \"%s\" must be a file's name", key);
+  vlResult result = vl_file_read_given(file->context, path, false, &text, &size, file->error);
+  if (result != VL_OK) return result;
+  vlCameraPlaces places = {.root = NULL};
+  vlCameraFile other = *file;
+  other.path = path, other.places = &places;
+  result = vl_camera_tree(&other, text, size, &inner);
+  if (result == VL_OK) result = read_camera(&other, inner, record);
+  json_decref(inner);
+  vl_camera_places_free(&other);
+  vl_free(file->context, text);
+  return result;
+}
+
+static vlResult read_pose(const vlCameraFile *file, const json_t *tree, uint32_t index, vlCameraDef *d) {
+  char key[32];
+  double m[16] = {[15] = 1.0}, r[9], t[3];
+  snprintf(key, sizeof key, "body_T_cam%u", index);
+  vlResult result = VL_OK;
+  if (vl_camera_has(tree, key)) {
+    result = vl_camera_numbers(file, tree, key, m, 16, 16, NULL);
+  } else if (index == 0 && vl_camera_has(tree, "extrinsicRotation")) {
+    result = vl_camera_numbers(file, tree, "extrinsicRotation", r, 9, 9, NULL);
+    if (result == VL_OK) result = vl_camera_numbers(file, tree, "extrinsicTranslation", t, 3, 3, NULL);
+    for (int i = 0; i < 12 && result == VL_OK; i++) m[i] = i % 4 < 3 ? r[3 * (i / 4) + i % 4] : t[i / 4];
+  } else {
+    return VL_OK;
+  }
+  if (result == VL_OK) vl_camera_set_matrix(d, m, false);
+  return result;
+}
+
+static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  char key[32];
+  if (vl_camera_has(tree, "model_type")) {
+    vlResult result = read_camera(file, tree, record);
+    return result == VL_OK ? read_pose(file, tree, 0, &record->camera) : result;
+  }
+  record->frames = 0;
+  uint32_t found = UINT32_MAX;
+  for (uint32_t i = 0; i < 64; i++) {
+    char name[16];
+    snprintf(key, sizeof key, "cam%u_calib", i);
+    snprintf(name, sizeof name, "cam%u", i);
+    if (!vl_camera_has(tree, key)) break;
+    if (found == UINT32_MAX && vl_camera_is_frame(file, i, name)) found = i;
+    record->frames++;
+  }
+  if (found == UINT32_MAX)
+    return vl_camera_wrong(file, "camodocal: there is no camera \"%.60s\" among the %u",
+                           file->def->frame ? file->def->frame : "0", record->frames);
+  snprintf(key, sizeof key, "cam%u_calib", found);
+  uint32_t frames = record->frames;
+  vlResult result = read_named(file, tree, key, record);
+  if (result == VL_OK) result = read_pose(file, tree, found, &record->camera);
+  record->frames = frames;
+  return result;
+}
+
+static bool is_camodocal(const json_t *tree) {
+  return vl_camera_has(tree, "model_type") || vl_camera_has(tree, "cam0_calib") ||
+         vl_camera_has(tree, "projection_parameters");
+}
+
+static vlResult write_camodocal(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, 0, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  if (family == VL_LENS_PINHOLE) family = VL_LENS_OPENCV;
+  bool full = family == VL_LENS_OPENCV && n > 4, fits = !full || n <= 8;
+  const Model *model = NULL;
+  for (int i = 0; i < MODELS && fits; i++)
+    if (models[i].family == family && (!full || models[i].lens[4]) && !model) model = &models[i];
+  if (!model || (family == VL_LENS_UNIFIED && n > 4)) return vl_camera_no_model(file, &record->camera);
+  const double f[4] = {c.fx, c.fy, c.cx - 0.5, c.cy - 0.5};
+  vl_camera_put(text, "%%YAML:1.0\n---\nmodel_type: %s\ncamera_name: ", model->name);
+  vl_camera_put_string(text, record->name[0] ? record->name : "camera");
+  vl_camera_put(text, "\nimage_width: %u\nimage_height: %u\n", c.width, c.height);
+  if (family == VL_LENS_UNIFIED) vl_camera_put(text, "mirror_parameters:\n  xi: %.17g\n", c.shape[0]);
+  bool fisheye = family == VL_LENS_FISHEYE;
+  vl_camera_put(text, fisheye ? "projection_parameters:\n" : "distortion_parameters:\n");
+  for (int i = 0; i < 8 && model->lens[i]; i++) vl_camera_put(text, "  %s: %.17g\n", model->lens[i], k[i] + 0.0);
+  if (!fisheye) vl_camera_put(text, "projection_parameters:\n");
+  for (int i = 0; i < 4; i++) vl_camera_put(text, "  %s: %.17g\n", model->intrinsics[i], f[i]);
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_camodocal = {
+    .name = "camodocal", .is_tree = is_camodocal, .read = read_camodocal, .write = write_camodocal};

@@ -1,0 +1,57 @@
+/* camera_files/formats.c: the table of dialects. Each row is defined in its dialect's own file. */
+#include "camera_files/formats.h"
+
+const vlCameraFormat *const vl_camera_formats[VL_CAMERA_DIALECT_COUNT] = {
+    [VL_CAMERA_DIALECT_VELO] = &vl_format_velo,
+    [VL_CAMERA_DIALECT_OPENCV] = &vl_format_opencv,
+    [VL_CAMERA_DIALECT_ROS] = &vl_format_ros,
+    [VL_CAMERA_DIALECT_COLMAP] = &vl_format_colmap,
+    [VL_CAMERA_DIALECT_NERF] = &vl_format_nerf,
+    [VL_CAMERA_DIALECT_KALIBR] = &vl_format_kalibr,
+    [VL_CAMERA_DIALECT_BLENDER] = &vl_format_blender,
+    [VL_CAMERA_DIALECT_PBRT] = &vl_format_pbrt,
+    [VL_CAMERA_DIALECT_GLTF] = &vl_format_gltf,
+    [VL_CAMERA_DIALECT_OPENGL] = &vl_format_opengl,
+    [VL_CAMERA_DIALECT_VULKAN] = &vl_format_vulkan,
+    [VL_CAMERA_DIALECT_D3D] = &vl_format_d3d,
+    [VL_CAMERA_DIALECT_MITSUBA] = &vl_format_mitsuba,
+    [VL_CAMERA_DIALECT_EXR] = &vl_format_exr,
+    [VL_CAMERA_DIALECT_USD] = &vl_format_usd,
+    [VL_CAMERA_DIALECT_EUROC] = &vl_format_euroc,
+    [VL_CAMERA_DIALECT_CAMODOCAL] = &vl_format_camodocal,
+    [VL_CAMERA_DIALECT_BASALT] = &vl_format_basalt,
+    [VL_CAMERA_DIALECT_ORBSLAM] = &vl_format_orbslam,
+    [VL_CAMERA_DIALECT_OKVIS] = &vl_format_okvis,
+    [VL_CAMERA_DIALECT_SVO] = &vl_format_svo,
+    [VL_CAMERA_DIALECT_KITTI] = &vl_format_kitti,
+    [VL_CAMERA_DIALECT_BOP] = &vl_format_bop,
+    [VL_CAMERA_DIALECT_GAUSSIANS] = &vl_format_gaussians,
+    [VL_CAMERA_DIALECT_METASHAPE] = &vl_format_metashape,
+    [VL_CAMERA_DIALECT_MESHROOM] = &vl_format_meshroom,
+    [VL_CAMERA_DIALECT_OPENSFM] = &vl_format_opensfm,
+    [VL_CAMERA_DIALECT_OPEN3D] = &vl_format_open3d,
+    [VL_CAMERA_DIALECT_VISP] = &vl_format_visp,
+};
+
+/* The order in which a tree is asked: fields that one tool alone has before those that many have. */
+static const vlCameraDialect order[] = {
+    VL_CAMERA_DIALECT_METASHAPE, VL_CAMERA_DIALECT_VISP,      VL_CAMERA_DIALECT_VELO,      VL_CAMERA_DIALECT_GLTF,
+    VL_CAMERA_DIALECT_OPENGL,    VL_CAMERA_DIALECT_VULKAN,    VL_CAMERA_DIALECT_D3D,       VL_CAMERA_DIALECT_BASALT,
+    VL_CAMERA_DIALECT_MESHROOM,  VL_CAMERA_DIALECT_GAUSSIANS, VL_CAMERA_DIALECT_OPENSFM,   VL_CAMERA_DIALECT_OPEN3D,
+    VL_CAMERA_DIALECT_BOP,       VL_CAMERA_DIALECT_NERF,      VL_CAMERA_DIALECT_CAMODOCAL, VL_CAMERA_DIALECT_ORBSLAM,
+    VL_CAMERA_DIALECT_OKVIS,     VL_CAMERA_DIALECT_SVO,       VL_CAMERA_DIALECT_EUROC,     VL_CAMERA_DIALECT_KALIBR,
+    VL_CAMERA_DIALECT_ROS,       VL_CAMERA_DIALECT_BLENDER,   VL_CAMERA_DIALECT_OPENCV};
+
+vlCameraDialect vl_camera_dialect_of_tree(const json_t *tree) {
+  for (size_t i = 0; i < sizeof order / sizeof *order; i++) {
+    const vlCameraFormat *format = vl_camera_formats[order[i]];
+    if (format->is_tree && format->is_tree(tree)) return order[i];
+  }
+  return VL_CAMERA_DIALECT_AUTO;
+}
+
+vlCameraDialect vl_camera_dialect_of_text(const char *text, size_t size) {
+  for (int i = 1; i < VL_CAMERA_DIALECT_COUNT; i++)
+    if (vl_camera_formats[i]->is_text && vl_camera_formats[i]->is_text(text, size)) return (vlCameraDialect)i;
+  return VL_CAMERA_DIALECT_AUTO;
+}

@@ -1,0 +1,146 @@
+/* camera_files/kitti.c: KITTI's calibrations: calib.txt with P0 to P3 (odometry, object detection) and
+ * calib_cam_to_cam.txt (raw data: S_00, K_00, D_00, R_00, T_00). x right, y down, z forward; camera from world; the
+ * first pixel's centre is (0, 0). P = K [I | t]: the world's space is the rectified camera 0's; R and T: camera 0's. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "camera_files/lines.h"
+
+/* The numbers after a key, "P2:"; null ends them in `found`. */
+typedef struct {
+  char key[16];
+  double values[12];
+  uint32_t count;
+  vlCameraLines line;
+} Row;
+
+static vlResult find_row(const vlCameraFile *file, const char *text, size_t size, Row *row, uint32_t least,
+                         bool *found) {
+  row->line = (vlCameraLines){.at = text, .end = text + size};
+  *found = false;
+  size_t length = strlen(row->key);
+  while (vl_camera_next_line(&row->line)) {
+    const char *line = row->line.text;
+    if (strncmp(line, row->key, length) != 0 || (line[length] != ':' && line[length] != ' ')) continue;
+    *found = true;
+    return vl_camera_line_numbers(file, &row->line, line + length + 1, row->values, least, least, &row->count);
+  }
+  return VL_OK;
+}
+
+static vlResult missing(const vlCameraFile *file, const char *key) {
+  return vl_camera_wrong(file, "kitti: the line \"%s:\" is missing", key);
+}
+
+/* P: the projection of a rectified camera. */
+static vlResult read_projection(const vlCameraFile *file, const Row *row, uint32_t camera, vlCameraRecord *record) {
+  const double *p = row->values;
+  vlCameraDef *d = &record->camera;
+  char odometry[32], object[32];
+  if (p[1] != 0.0 || p[4] != 0.0 || p[8] != 0.0 || p[9] != 0.0 || p[10] != 1.0 || !(p[0] > 0.0 && p[5] > 0.0))
+    return vl_camera_wrong_line(file, &row->line, row->line.text, "%s must be fx 0 cx tx, 0 fy cy ty, 0 0 1 tz",
+                                row->key);
+  /* the images beside the two kinds of file */
+  snprintf(odometry, sizeof odometry, "image_%u/000000.png", camera);
+  snprintf(object, sizeof object, "../image_%u/000000.png", camera);
+  vl_camera_set_centred(d, p[0], p[5], p[2], p[6]);
+  const double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const double t[3] = {(p[3] - p[2] * p[11]) / p[0], (p[7] - p[6] * p[11]) / p[5], p[11]};
+  vl_camera_set_pose(d, r, t);
+  return vl_camera_size_beside(file, (const char *const[]){odometry, object, NULL}, record);
+}
+
+static vlResult read_raw(const vlCameraFile *file, const char *text, size_t size, uint32_t camera,
+                         vlCameraRecord *record) {
+  static const struct {
+    char letter;
+    uint32_t count;
+  } wanted[] = {{'S', 2}, {'K', 9}, {'D', 5}, {'R', 9}, {'T', 3}};
+  Row rows[5];
+  vlCameraDef *d = &record->camera;
+  for (int i = 0; i < 5; i++) {
+    bool found;
+    snprintf(rows[i].key, sizeof rows[i].key, "%c_%02u", wanted[i].letter, camera);
+    vlResult result = find_row(file, text, size, &rows[i], wanted[i].count, &found);
+    if (result != VL_OK) return result;
+    if (!found) return missing(file, rows[i].key);
+  }
+  const double *s = rows[0].values, *k = rows[1].values;
+  for (int i = 0; i < 2; i++)
+    if (!(s[i] >= 1.0 && s[i] <= 1 << 24) || s[i] != floor(s[i]))
+      return vl_camera_wrong_line(file, &rows[0].line, rows[0].line.text, "%s must be two whole numbers of pixels",
+                                  rows[0].key);
+  if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
+    return vl_camera_wrong_line(file, &rows[1].line, rows[1].line.text, "%s must be fx 0 cx, 0 fy cy, 0 0 1",
+                                rows[1].key);
+  d->width = (uint32_t)s[0], d->height = (uint32_t)s[1];
+  vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
+  vl_camera_set_opencv(d, rows[2].values, 5);
+  vl_camera_set_pose(d, rows[3].values, rows[4].values);
+  return VL_OK;
+}
+
+static vlResult read_kitti(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+  Row chosen = {.count = 0};
+  uint32_t taken = UINT32_MAX;
+  bool raw = false;
+  record->frames = 0;
+  for (uint32_t i = 0; i < 100; i++) {
+    Row row = {.count = 0};
+    bool found = false, unrectified = false;
+    snprintf(row.key, sizeof row.key, "K_%02u", i);
+    vlResult result = find_row(file, text, size, &row, 9, &unrectified);
+    snprintf(row.key, sizeof row.key, "P%u", i);
+    if (result == VL_OK && !unrectified) result = find_row(file, text, size, &row, 12, &found);
+    if (result != VL_OK) return result;
+    if (!found && !unrectified) continue;
+    char name[16];
+    snprintf(name, sizeof name, unrectified ? "%02u" : "P%u", i);
+    if (taken == UINT32_MAX && vl_camera_is_frame(file, record->frames, name)) {
+      taken = i, raw = unrectified, chosen = row;
+      vl_camera_name(record, name);
+    }
+    record->frames++;
+  }
+  if (!record->frames) return missing(file, "P0");
+  if (taken == UINT32_MAX)
+    return vl_camera_wrong(file, "kitti: there is no camera \"%.60s\" among the %u",
+                           file->def->frame ? file->def->frame : "0", record->frames);
+  return raw ? read_raw(file, text, size, taken, record) : read_projection(file, &chosen, taken, record);
+}
+
+static bool is_kitti(const char *text, size_t size) {
+  vlCameraLines lines = {.at = text, .end = text + size};
+  if (!vl_camera_next_line(&lines)) return false;
+  if (strncmp(lines.text, "calib_time:", 11) == 0 || strncmp(lines.text, "corner_dist:", 12) == 0) return true;
+  bool p = lines.text[0] == 'P' && strspn(lines.text + 1, "0123456789") == 1 && strchr(": ", lines.text[2]);
+  return p || strncmp(lines.text, "S_0", 3) == 0 || strncmp(lines.text, "K_0", 3) == 0;
+}
+
+static void put_row(vlCameraText *text, const char *key, const double *values, uint32_t count) {
+  vl_camera_put(text, "%s:", key);
+  for (uint32_t i = 0; i < count; i++) vl_camera_put(text, " %.17g", values[i] + 0.0);
+  vl_camera_put(text, "\n");
+}
+
+static vlResult write_kitti(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14], r[9], t[3];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV) || n > 5)
+    return vl_camera_no_model(file, &record->camera);
+  vl_camera_get_pose(&c, r, t);
+  put_row(text, "S_00", (double[]){c.width, c.height}, 2);
+  put_row(text, "K_00", (double[]){c.fx, 0, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1}, 9);
+  put_row(text, "D_00", k, 5);
+  put_row(text, "R_00", r, 9);
+  put_row(text, "T_00", t, 3);
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_kitti = {
+    .name = "kitti", .is_text = is_kitti, .read_text = read_kitti, .write = write_kitti};

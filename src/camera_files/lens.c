@@ -1,0 +1,61 @@
+/* camera_files/lens.c: the lens models that calibration tools share, and poses given as matrices. */
+#include <string.h>
+
+#include "camera_files/files.h"
+#include "math/transform.h"
+
+void vl_camera_set_centred(vlCameraDef *def, double fx, double fy, double cx, double cy) {
+  def->fx = fx, def->fy = fy;
+  def->cx = cx + 0.5, def->cy = cy + 0.5;
+}
+
+void vl_camera_set_opencv(vlCameraDef *def, const double *k, uint32_t count) {
+  static const uint32_t counts[] = {4, 5, 8, 12, 14};
+  def->distortion = count ? VL_DISTORTION_OPENCV : VL_DISTORTION_NONE;
+  memset(def->distortion_coefficients, 0, sizeof def->distortion_coefficients);
+  memcpy(def->distortion_coefficients, k, count * sizeof *k);
+  def->distortion_count = 0;
+  for (int i = 4; i >= 0 && count; i--)
+    if (counts[i] >= count) def->distortion_count = counts[i];
+}
+
+void vl_camera_set_fisheye(vlCameraDef *def, const double k[4]) {
+  def->projection = VL_PROJECTION_EQUIDISTANT;
+  def->distortion = VL_DISTORTION_RADIAL;
+  def->distortion_count = 4;
+  memcpy(def->distortion_coefficients, k, 4 * sizeof *k);
+}
+
+vlLensFamily vl_camera_lens_family(const vlCameraDef *d, double k[14], uint32_t *count) {
+  *count = 0;
+  memset(k, 0, 14 * sizeof *k);
+  bool plain = d->distortion == VL_DISTORTION_NONE;
+  if (d->projection == VL_PROJECTION_PERSPECTIVE || d->projection == VL_PROJECTION_UNIFIED) {
+    bool unified = d->projection == VL_PROJECTION_UNIFIED;
+    if (!vl_camera_as_opencv(d, k, count)) return VL_LENS_OTHER;
+    return unified ? VL_LENS_UNIFIED : *count ? VL_LENS_OPENCV : VL_LENS_PINHOLE;
+  }
+  if (d->projection == VL_PROJECTION_EQUIDISTANT && (plain || d->distortion == VL_DISTORTION_RADIAL)) {
+    memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k);
+    *count = 4;
+    return VL_LENS_FISHEYE;
+  }
+  if (!plain) return VL_LENS_OTHER;
+  if (d->projection == VL_PROJECTION_FOV) return VL_LENS_FOV;
+  if (d->projection == VL_PROJECTION_EUCM) return VL_LENS_EUCM;
+  return d->projection == VL_PROJECTION_DOUBLE_SPHERE ? VL_LENS_DOUBLE_SPHERE : VL_LENS_OTHER;
+}
+
+bool vl_camera_set_matrix(vlCameraDef *def, const double m[16], bool from_world) {
+  vlMat4 pose = vl_mat4_load(m);
+  pose.m[12] = pose.m[13] = pose.m[14] = 0.0, pose.m[15] = 1.0;
+  if (from_world && !vl_mat4_inverse(pose, &pose)) return false;
+  def->has_matrix = true;
+  for (int i = 0; i < 16; i++) def->world_from_camera[i] = pose.m[i] + 0.0;
+  return true;
+}
+
+void vl_camera_set_origin(vlCameraDef *def) {
+  const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, none[3] = {0, 0, 0};
+  vl_camera_set_pose(def, identity, none);
+}

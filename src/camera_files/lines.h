@@ -1,0 +1,22 @@
+/* camera_files/lines.h: files of plain lines. */
+#ifndef CAMERA_FILES_LINES_H
+#define CAMERA_FILES_LINES_H
+
+#include "camera_files/files.h"
+
+typedef struct vlCameraLines {
+  const char *at, *end; /* the unread text */
+  char text[4096];      /* the line, without blanks at its ends; a longer one is cut */
+  uint32_t number, indent;
+} vlCameraLines;
+
+/* The next line that is neither empty nor a comment (#); false at the end. */
+bool vl_camera_next_line(vlCameraLines *lines);
+/* An error at a character of the line. */
+vlResult vl_camera_wrong_line(const vlCameraFile *file, const vlCameraLines *lines, const char *at, const char *format,
+                              ...) __attribute__((format(printf, 4, 5)));
+/* Parses finite numbers up to the end of the line; anything else there is an error at its column. */
+vlResult vl_camera_line_numbers(const vlCameraFile *file, const vlCameraLines *lines, const char *from, double *values,
+                                uint32_t least, uint32_t most, uint32_t *count);
+
+#endif

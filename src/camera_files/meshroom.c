@@ -1,0 +1,226 @@
+/* camera_files/meshroom.c: AliceVision's .sfm (Meshroom), JSON: views, intrinsics, poses; numbers are written as text.
+ * x right, y down, z forward; a pose is center and rotation, camera from world, written column by column. The principal
+ * point counts from the image's middle (before version 1.2.1: from its corner); the focal length is in millimetres of a
+ * sensor (before 1.2.2: in pixels). */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "camera_files/files.h"
+
+/* A number, or the text of one. */
+static bool number_of(const json_t *value, double *number) {
+  const char *text = json_string_value(value);
+  char *end;
+  *number = text ? strtod(text, &end) : json_number_value(value);
+  return (text ? end != text && *end == 0 : json_is_number(value)) && isfinite(*number);
+}
+
+static vlResult numbers(const vlCameraFile *file, const json_t *object, const char *key, double *values,
+                        uint32_t count) {
+  const json_t *field;
+  vlResult result = vl_camera_field(file, object, key, &field);
+  if (result != VL_OK) return result;
+  bool one = count == 1 && !json_is_array(field), good = one || json_array_size(field) == count;
+  for (uint32_t i = 0; i < count && good; i++) good = number_of(one ? field : json_array_get(field, i), &values[i]);
+  if (good) return VL_OK;
+  return vl_camera_wrong_in(file, object, key, "meshroom: \"%s\" must hold %u finite number%s", key, count,
+                            count == 1 ? "" : "s");
+}
+
+static bool is_before(const double version[3], double minor, double revision) {
+  return version[0] < 1.0 ||
+         (version[0] == 1.0 && (version[1] < minor || (version[1] == minor && version[2] < revision)));
+}
+
+static vlResult read_focal(const vlCameraFile *file, const json_t *intrinsic, const double version[3], vlCameraDef *d) {
+  double f[2], mm, sensor, ratio = 1.0;
+  vlResult result;
+  if (vl_camera_has(intrinsic, "pxFocalLength")) {
+    bool pair = json_is_array(json_object_get(intrinsic, "pxFocalLength"));
+    result = numbers(file, intrinsic, "pxFocalLength", f, pair ? 2 : 1);
+    d->fx = f[0], d->fy = pair ? f[1] : f[0];
+    return result;
+  }
+  result = numbers(file, intrinsic, "focalLength", &mm, 1);
+  if (result == VL_OK) result = numbers(file, intrinsic, "sensorWidth", &sensor, 1);
+  if (result == VL_OK && vl_camera_has(intrinsic, "pixelRatio"))
+    result = numbers(file, intrinsic, "pixelRatio", &ratio, 1);
+  if (result != VL_OK) return result;
+  if (!(sensor > 0.0 && ratio > 0.0))
+    return vl_camera_wrong_in(file, intrinsic, "sensorWidth", "meshroom: the sensor's sides must be above zero");
+  /* before 1.2.5 pixelRatio is fx / fy, then the pixel's width / height */
+  d->fx = mm / sensor * d->width;
+  d->fy = is_before(version, 2, 5) ? d->fx / ratio : d->fx * ratio;
+  return VL_OK;
+}
+
+/* The distortion, by its name: of version 1.2.8 and later in distortionType, before as the camera's type. */
+static vlResult read_lens(const vlCameraFile *file, const json_t *intrinsic, vlCameraDef *d) {
+  static const struct {
+    const char *names[3];
+    uint32_t count;
+  } models[] = {{{"none", "pinhole"}, 0},        {{"radialk1", "radial1"}, 1}, {{"radialk3", "radial3"}, 3},
+                {{"brown", "brownt2"}, 5},       {{"fisheye4", "fisheye"}, 4}, {{"fisheye1"}, 1},
+                {{"radialk3pt", "radial3pt"}, 3}};
+  const char *key = vl_camera_text(intrinsic, "distortionType") ? "distortionType" : "type";
+  const char *base = vl_camera_text(intrinsic, "type"), *name = vl_camera_text(intrinsic, key);
+  const json_t *list = json_object_get(intrinsic, "distortionParams");
+  double k[5] = {0.0};
+  int model = -1;
+  if (base && (strstr(base, "equidistant") || strstr(base, "equirectangular")))
+    return vl_camera_wrong_in(file, intrinsic, "type", "meshroom: type \"%.40s\" is no model of velo", base);
+  for (int i = 0; i < 7; i++)
+    for (int j = 0; j < 3 && models[i].names[j]; j++)
+      if (name && strcmp(name, models[i].names[j]) == 0) model = i;
+  if (model < 0)
+    return vl_camera_wrong_in(file, intrinsic, key,
+                              "meshroom: unknown %s \"%.40s\"; there are none, radialk1, radialk3, radialk3pt, brown, "
+                              "fisheye1, fisheye4",
+                              key, name ? name : "");
+  uint32_t count = json_array_size(list) ? models[model].count : 0;
+  if (count) {
+    vlResult result = numbers(file, intrinsic, "distortionParams", k, count);
+    if (result != VL_OK) return result;
+  }
+  const double radial[5] = {k[0], k[1], 0.0, 0.0, k[2]}, brown[5] = {k[0], k[1], k[3], k[4], k[2]};
+  if (model == 4) {
+    vl_camera_set_fisheye(d, k);
+  } else if (model == 5) {
+    if (k[0] != 0.0) d->projection = VL_PROJECTION_FOV, d->shape[0] = k[0];
+  } else if (count) {
+    vl_camera_set_opencv(d, model == 3 ? brown : radial, 5);
+    if (model == 6) d->fx /= 1.0 + k[0] + k[1] + k[2], d->fy /= 1.0 + k[0] + k[1] + k[2];
+  }
+  return VL_OK;
+}
+
+static vlResult read_intrinsic(const vlCameraFile *file, const json_t *tree, const json_t *intrinsic,
+                               vlCameraRecord *record) {
+  vlCameraDef *d = &record->camera;
+  double version[3] = {1.0, 0.0, 0.0}, size[2], c[2] = {0.0, 0.0};
+  vlResult result = VL_OK;
+  if (vl_camera_has(tree, "version")) result = numbers(file, tree, "version", version, 3);
+  if (result == VL_OK) result = numbers(file, intrinsic, "width", &size[0], 1);
+  if (result == VL_OK) result = numbers(file, intrinsic, "height", &size[1], 1);
+  if (result == VL_OK) result = numbers(file, intrinsic, "principalPoint", c, 2);
+  if (result != VL_OK) return result;
+  for (int i = 0; i < 2; i++)
+    if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
+      return vl_camera_wrong_in(file, intrinsic, i ? "height" : "width",
+                                "meshroom: the image is %g x %g; it must be "
+                                "whole pixels",
+                                size[0], size[1]);
+  d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
+  double middle = is_before(version, 2, 1) ? 0.0 : 0.5;
+  d->cx = c[0] + middle * d->width, d->cy = c[1] + middle * d->height;
+  result = read_focal(file, intrinsic, version, d);
+  return result == VL_OK ? read_lens(file, intrinsic, d) : result;
+}
+
+/* The item of a list with this id; ids are text or numbers. */
+static const json_t *with_id(const json_t *list, const char *key, const json_t *id) {
+  const json_t *item;
+  size_t i;
+  json_array_foreach(list, i, item) {
+    if (id && json_equal(json_object_get(item, key), id)) return item;
+  }
+  return NULL;
+}
+
+static vlResult read_view(const vlCameraFile *file, const json_t *tree, const json_t *view, vlCameraRecord *record) {
+  const json_t *intrinsic =
+      with_id(json_object_get(tree, "intrinsics"), "intrinsicId", json_object_get(view, "intrinsicId"));
+  const json_t *pose = with_id(json_object_get(tree, "poses"), "poseId", json_object_get(view, "poseId")), *transform;
+  double r[9], center[3], m[16] = {[15] = 1.0};
+  if (!intrinsic)
+    return vl_camera_wrong_in(file, view, "intrinsicId",
+                              "meshroom: the view's \"intrinsicId\" is not among the intrinsics");
+  vlResult result = read_intrinsic(file, tree, intrinsic, record);
+  vl_camera_set_origin(&record->camera);
+  vl_camera_name(record, vl_camera_text(view, "path"));
+  if (result != VL_OK || !pose) return result;
+  result = vl_camera_field(file, json_object_get(pose, "pose"), "transform", &transform);
+  if (result == VL_OK) result = numbers(file, transform, "rotation", r, 9);
+  if (result == VL_OK) result = numbers(file, transform, "center", center, 3);
+  if (result != VL_OK) return result;
+  /* by columns camera from world is by rows world from camera */
+  for (int i = 0; i < 12; i++) m[i] = i % 4 < 3 ? r[3 * (i / 4) + i % 4] : center[i / 4];
+  vl_camera_set_matrix(&record->camera, m, false);
+  return VL_OK;
+}
+
+/* The views that have a pose; without any, all of them. */
+static vlResult read_meshroom(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *poses = json_object_get(tree, "poses"), *view, *chosen = NULL;
+  size_t i;
+  bool posed = json_array_size(poses) > 0;
+  record->frames = 0;
+  json_array_foreach(json_object_get(tree, "views"), i, view) {
+    const char *path = vl_camera_text(view, "path"), *slash = path ? strrchr(path, '/') : NULL;
+    if (posed && !with_id(poses, "poseId", json_object_get(view, "poseId"))) continue;
+    bool wanted = vl_camera_is_frame(file, record->frames, path) ||
+                  (slash && !file->ordinal && file->def->frame && strcmp(slash + 1, file->def->frame) == 0);
+    if (!chosen && wanted) chosen = view;
+    record->frames++;
+  }
+  if (chosen) return read_view(file, tree, chosen, record);
+  return vl_camera_wrong_in(file, tree, "views", "meshroom: there is no view \"%.60s\" among the %u",
+                            file->def->frame ? file->def->frame : "0", record->frames);
+}
+
+static bool is_meshroom(const json_t *tree) {
+  return vl_camera_has(tree, "views") && vl_camera_has(tree, "intrinsics") && !vl_camera_has(tree, "sfm_data_version");
+}
+
+static void put_texts(vlCameraText *text, const double *values, uint32_t count) {
+  for (uint32_t i = 0; i < count; i++) vl_camera_put(text, "%s\"%.17g\"", i ? ", " : "", values[i] + 0.0);
+}
+
+static vlResult write_meshroom(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  const char *lens = family == VL_LENS_PINHOLE   ? "none"
+                     : family == VL_LENS_OPENCV  ? "brown"
+                     : family == VL_LENS_FISHEYE ? "fisheye4"
+                     : family == VL_LENS_FOV     ? "fisheye1"
+                                                 : NULL;
+  if (!lens || n > 5) return vl_camera_no_model(file, &record->camera);
+  const double brown[5] = {k[0], k[1], k[4], k[2], k[3]};
+  const double sensor = record->camera.sensor_width_mm > 0.0 ? record->camera.sensor_width_mm : 36.0,
+               *m = c.world_from_camera;
+  vl_camera_put(text,
+                "{\n  \"version\": [\"1\", \"2\", \"8\"],\n  \"views\": [\n    {\"viewId\": \"1\", \"poseId\": \"1\", "
+                "\"frameId\": \"0\", \"intrinsicId\": \"1\",\n     \"path\": ");
+  vl_camera_put_string(text, record->name[0] ? record->name : "camera");
+  vl_camera_put(text, ", \"width\": \"%u\", \"height\": \"%u\"}\n  ],\n", c.width, c.height);
+  vl_camera_put(text, "  \"intrinsics\": [\n    {\"intrinsicId\": \"1\", \"width\": \"%u\", \"height\": \"%u\",\n",
+                c.width, c.height);
+  vl_camera_put(text, "     \"sensorWidth\": \"%.17g\", \"sensorHeight\": \"%.17g\", \"serialNumber\": \"\",\n", sensor,
+                sensor * (c.fx / c.fy) * c.height / c.width);
+  vl_camera_put(text,
+                "     \"type\": \"pinhole\", \"initializationMode\": \"calibrated\", \"focalLength\": \"%.17g\",\n",
+                c.fx * sensor / c.width);
+  vl_camera_put(text, "     \"pixelRatio\": \"%.17g\", \"principalPoint\": [", c.fy / c.fx);
+  put_texts(text, (double[]){c.cx - 0.5 * c.width, c.cy - 0.5 * c.height}, 2);
+  vl_camera_put(text, "],\n     \"distortionType\": \"%s\", \"distortionParams\": [", lens);
+  if (family == VL_LENS_FOV)
+    put_texts(text, c.shape, 1);
+  else
+    put_texts(text, family == VL_LENS_OPENCV ? brown : k, family == VL_LENS_OPENCV ? 5 : n);
+  vl_camera_put(text,
+                "], \"locked\": \"false\"}\n  ],\n  \"poses\": [\n    {\"poseId\": \"1\", \"pose\": {\"transform\": {\n"
+                "      \"rotation\": [");
+  put_texts(text, (double[]){m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}, 9);
+  vl_camera_put(text, "],\n      \"center\": [");
+  put_texts(text, (double[]){m[3], m[7], m[11]}, 3);
+  vl_camera_put(text, "]}, \"locked\": \"0\"}}\n  ]\n}\n");
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_meshroom = {
+    .name = "meshroom", .is_tree = is_meshroom, .read = read_meshroom, .write = write_meshroom};

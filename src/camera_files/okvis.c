@@ -1,0 +1,82 @@
+/* camera_files/okvis.c: the cameras of OKVIS's configuration. x right, y down, z forward; T_SC is sensor (IMU) from
+ * camera, and the sensor's space is the world's; the first pixel's centre is (0, 0). */
+#include <string.h>
+
+#include "camera_files/files.h"
+
+static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCameraDef *d) {
+  const json_t *type;
+  double k[8] = {0};
+  uint32_t n = 0;
+  vlResult result = vl_camera_field(file, camera, "distortion_type", &type);
+  if (result != VL_OK) return result;
+  const char *name = json_string_value(type);
+  if (name && strcmp(name, "none") == 0) return VL_OK;
+  result = vl_camera_numbers(file, camera, "distortion_coefficients", k, 4, 8, &n);
+  if (result != VL_OK) return result;
+  bool plain = name && strcmp(name, "radialtangential") == 0, full = name && strcmp(name, "radialtangential8") == 0;
+  bool fisheye = name && strcmp(name, "equidistant") == 0;
+  if ((plain || fisheye) && n == 4) {
+    fisheye ? vl_camera_set_fisheye(d, k) : vl_camera_set_opencv(d, k, n);
+  } else if (full && n == 8) {
+    vl_camera_set_opencv(d, k, n);
+  } else {
+    return vl_camera_wrong_in(file, camera, "distortion_type",
+                              "okvis: unknown distortion_type \"%.40s\" of %u coefficients; there are radialtangential "
+                              "and equidistant of 4, radialtangential8 of 8, none",
+                              name ? name : "", n);
+  }
+  return VL_OK;
+}
+
+static vlResult read_okvis(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *cameras = json_object_get(tree, "cameras"), *camera = NULL;
+  vlCameraDef *d = &record->camera;
+  double m[16], f[2], c[2];
+  record->frames = (uint32_t)json_array_size(cameras);
+  for (uint32_t i = 0; i < record->frames && !camera; i++)
+    if (vl_camera_is_frame(file, i, NULL)) camera = json_array_get(cameras, i);
+  if (!camera)
+    return vl_camera_wrong_in(file, tree, "cameras", "okvis: there is no camera \"%.60s\" among the %u",
+                              file->def->frame ? file->def->frame : "0", record->frames);
+  vlResult result = vl_camera_numbers(file, camera, "T_SC", m, 16, 16, NULL);
+  if (result == VL_OK) result = vl_camera_numbers(file, camera, "focal_length", f, 2, 2, NULL);
+  if (result == VL_OK) result = vl_camera_numbers(file, camera, "principal_point", c, 2, 2, NULL);
+  if (result == VL_OK)
+    result = vl_camera_has(camera, "image_dimension") ? vl_camera_side_pair(file, camera, "image_dimension", record)
+                                                      : vl_camera_size_beside(file, NULL, record);
+  if (result == VL_OK) result = read_lens(file, camera, d);
+  if (result != VL_OK) return result;
+  vl_camera_set_centred(d, f[0], f[1], c[0], c[1]);
+  vl_camera_set_matrix(d, m, false);
+  return VL_OK;
+}
+
+static bool is_okvis(const json_t *tree) {
+  return vl_camera_has_in(tree, "cameras", "T_SC");
+}
+
+static vlResult write_okvis(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV && family != VL_LENS_FISHEYE) || n > 8)
+    return vl_camera_no_model(file, &record->camera);
+  n = n > 4 ? 8 : 4;
+  vl_camera_put(text, "%%YAML:1.0\ncameras:\n  - {T_SC: [");
+  vl_camera_put_numbers(text, c.world_from_camera, 16);
+  vl_camera_put(text, "],\n     image_dimension: [%u, %u],\n     distortion_coefficients: [", c.width, c.height);
+  vl_camera_put_numbers(text, k, n);
+  vl_camera_put(text, "],\n     distortion_type: %s,\n     focal_length: [%.17g, %.17g],\n",
+                family == VL_LENS_FISHEYE ? "equidistant"
+                : n == 8                  ? "radialtangential8"
+                                          : "radialtangential",
+                c.fx, c.fy);
+  vl_camera_put(text, "     principal_point: [%.17g, %.17g]}\n", c.cx - 0.5, c.cy - 0.5);
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_okvis = {.name = "okvis", .is_tree = is_okvis, .read = read_okvis, .write = write_okvis};

@@ -1,0 +1,83 @@
+/* camera_files/open3d.c: Open3D's JSON: PinholeCameraIntrinsic, PinholeCameraParameters, PinholeCameraTrajectory. x
+ * right, y down, z forward; extrinsic is camera from world; matrices are written column by column; the first pixel's
+ * centre is (0, 0). */
+#include <math.h>
+#include <string.h>
+
+#include "camera_files/files.h"
+
+static vlResult read_intrinsic(const vlCameraFile *file, const json_t *intrinsic, vlCameraRecord *record) {
+  double k[9];
+  vlResult result = vl_camera_sides(file, intrinsic, "width", "height", record);
+  if (result == VL_OK) result = vl_camera_numbers(file, intrinsic, "intrinsic_matrix", k, 9, 9, NULL);
+  if (result != VL_OK) return result;
+  if (k[1] != 0.0 || k[2] != 0.0 || k[5] != 0.0 || k[8] != 1.0)
+    return vl_camera_wrong_in(file, intrinsic, "intrinsic_matrix",
+                              "open3d: \"intrinsic_matrix\" must be fx 0 0, skew fy 0, cx cy 1: it is written by "
+                              "columns");
+  vl_camera_set_centred(&record->camera, k[0], k[4], k[6], k[7]);
+  record->camera.skew = k[3];
+  return VL_OK;
+}
+
+static vlResult read_parameters(const vlCameraFile *file, const json_t *parameters, vlCameraRecord *record) {
+  const json_t *intrinsic;
+  double by_columns[16], m[16];
+  vlResult result = vl_camera_field(file, parameters, "intrinsic", &intrinsic);
+  if (result == VL_OK) result = read_intrinsic(file, intrinsic, record);
+  if (result == VL_OK) result = vl_camera_numbers(file, parameters, "extrinsic", by_columns, 16, 16, NULL);
+  if (result != VL_OK) return result;
+  for (int i = 0; i < 16; i++) m[i] = by_columns[4 * (i % 4) + i / 4];
+  if (!vl_camera_set_matrix(&record->camera, m, true))
+    return vl_camera_wrong_in(file, parameters, "extrinsic", "open3d: \"extrinsic\" is singular");
+  return VL_OK;
+}
+
+static vlResult read_open3d(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const char *name = vl_camera_text(tree, "class_name");
+  const json_t *list = json_object_get(tree, "parameters");
+  if (name && strcmp(name, "ViewTrajectory") == 0)
+    return vl_camera_wrong_in(file, tree, "class_name",
+                              "open3d: a ViewTrajectory depends on the viewer's window and model; save the camera with "
+                              "P (PinholeCameraParameters)");
+  if (!list && vl_camera_has(tree, "intrinsic_matrix")) {
+    vl_camera_set_origin(&record->camera);
+    return read_intrinsic(file, tree, record);
+  }
+  if (!list) return read_parameters(file, tree, record);
+  record->frames = (uint32_t)json_array_size(list);
+  for (uint32_t i = 0; i < record->frames; i++)
+    if (vl_camera_is_frame(file, i, NULL)) return read_parameters(file, json_array_get(list, i), record);
+  return vl_camera_wrong_in(file, tree, "parameters", "open3d: there is no camera \"%.60s\" among the %u",
+                            file->def->frame ? file->def->frame : "0", record->frames);
+}
+
+/* intrinsic_matrix alone: by columns, the principal point is at its end. OpenCV's has it in the third number. */
+static bool is_open3d(const json_t *tree) {
+  const char *name = vl_camera_text(tree, "class_name");
+  const json_t *k = json_object_get(tree, "intrinsic_matrix");
+  if (name) return strncmp(name, "PinholeCamera", 13) == 0 || strcmp(name, "ViewTrajectory") == 0;
+  bool flat = json_array_size(k) == 9 && json_number_value(json_array_get(k, 2)) == 0.0;
+  return flat || (vl_camera_has(tree, "extrinsic") && vl_camera_has_in(tree, "intrinsic", "intrinsic_matrix"));
+}
+
+static vlResult write_open3d(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
+  if (result != VL_OK) return result;
+  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
+    return vl_camera_no_model(file, &record->camera);
+  double m[16];
+  for (int i = 0; i < 16; i++) m[i] = c.camera_from_world[4 * (i % 4) + i / 4];
+  vl_camera_put(text, "{\n  \"class_name\": \"PinholeCameraParameters\",\n  \"extrinsic\": [");
+  vl_camera_put_numbers(text, m, 16);
+  vl_camera_put(text, "],\n  \"intrinsic\": {\n    \"height\": %u,\n    \"intrinsic_matrix\": [", c.height);
+  vl_camera_put_numbers(text, (double[]){c.fx, 0, 0, c.skew, c.fy, 0, c.cx - 0.5, c.cy - 0.5, 1}, 9);
+  vl_camera_put(text, "],\n    \"width\": %u\n  },\n  \"version_major\": 1,\n  \"version_minor\": 0\n}\n", c.width);
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_open3d = {
+    .name = "open3d", .is_tree = is_open3d, .read = read_open3d, .write = write_open3d};

@@ -1,0 +1,165 @@
+/* camera_files/opensfm.c: OpenSfM's reconstruction.json (a list of reconstructions: cameras, shots) and
+ * camera_models.json (cameras by name), which OpenDroneMap writes too. x right, y down, z forward; a shot's rotation
+ * (axis and angle) and translation are camera from world. Lengths in the image are shares of its larger side, from its
+ * middle: velo's cx is width / 2 + c_x max(width, height). */
+#include <string.h>
+
+#include "camera_files/files.h"
+
+static vlResult coefficients(const vlCameraFile *file, const json_t *camera, const char *const *names, double *k,
+                             uint32_t count) {
+  vlResult result = VL_OK;
+  for (uint32_t i = 0; i < count && result == VL_OK; i++) {
+    k[i] = 0.0;
+    result = vl_camera_optional(file, camera, names[i], &k[i]);
+  }
+  return result;
+}
+
+static vlResult read_lens(const vlCameraFile *file, const json_t *camera, const char *type, vlCameraDef *d) {
+  static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"}, *const fisheye[] = {"k1", "k2", "k3", "k4"};
+  double k[5];
+  vlResult result = VL_OK;
+  if (strcmp(type, "brown") == 0) {
+    result = coefficients(file, camera, brown, k, 5);
+    vl_camera_set_opencv(d, k, 5);
+  } else if (strcmp(type, "perspective") == 0 || strcmp(type, "radial") == 0 || strcmp(type, "simple_radial") == 0) {
+    result = coefficients(file, camera, brown, k, 2);
+    k[2] = k[3] = 0.0;
+    vl_camera_set_opencv(d, k, 4);
+  } else if (strcmp(type, "fisheye") == 0 || strcmp(type, "fisheye_opencv") == 0) {
+    result = coefficients(file, camera, fisheye, k, 4);
+    if (type[7] == 0) k[2] = k[3] = 0.0;
+    vl_camera_set_fisheye(d, k);
+  } else if (strcmp(type, "spherical") == 0 || strcmp(type, "equirectangular") == 0) {
+    d->projection = VL_PROJECTION_EQUIRECTANGULAR;
+  } else {
+    return vl_camera_wrong_in(file, camera, "projection_type",
+                              "opensfm: projection_type \"%.40s\" is no model of velo; there are perspective, brown, "
+                              "radial, simple_radial, fisheye, fisheye_opencv, spherical",
+                              type);
+  }
+  return result;
+}
+
+static vlResult read_camera(const vlCameraFile *file, const json_t *camera, vlCameraRecord *record) {
+  vlCameraDef *d = &record->camera;
+  const char *type = vl_camera_text(camera, "projection_type");
+  double f[2], c[2] = {0.0, 0.0};
+  if (!type) type = "perspective";
+  vlResult result = vl_camera_side(file, camera, "width", &d->width);
+  if (result == VL_OK) result = vl_camera_side(file, camera, "height", &d->height);
+  if (result == VL_OK) result = read_lens(file, camera, type, d);
+  if (result != VL_OK || d->projection == VL_PROJECTION_EQUIRECTANGULAR) return result;
+  bool one = vl_camera_has(camera, "focal");
+  result = vl_camera_number(file, camera, one ? "focal" : "focal_x", &f[0]);
+  if (result == VL_OK) result = vl_camera_number(file, camera, one ? "focal" : "focal_y", &f[1]);
+  if (result == VL_OK) result = vl_camera_optional(file, camera, "c_x", &c[0]);
+  if (result == VL_OK) result = vl_camera_optional(file, camera, "c_y", &c[1]);
+  double side = d->width > d->height ? d->width : d->height;
+  d->fx = f[0] * side, d->fy = f[1] * side;
+  d->cx = 0.5 * d->width + c[0] * side, d->cy = 0.5 * d->height + c[1] * side;
+  return result;
+}
+
+static vlResult read_shot(const vlCameraFile *file, const json_t *shot, const json_t *cameras, const char *name,
+                          vlCameraRecord *record) {
+  double v[3], t[3], r[9];
+  const char *camera = vl_camera_text(shot, "camera");
+  vlResult result = vl_camera_numbers(file, shot, "rotation", v, 3, 3, NULL);
+  if (result == VL_OK) result = vl_camera_numbers(file, shot, "translation", t, 3, 3, NULL);
+  if (result != VL_OK) return result;
+  if (!camera || !vl_camera_has(cameras, camera))
+    return vl_camera_wrong_in(file, shot, "camera", "opensfm: the shot's camera \"%.60s\" is not there",
+                              camera ? camera : "");
+  result = read_camera(file, json_object_get(cameras, camera), record);
+  vl_rotation_from_vector(v, r);
+  vl_camera_set_pose(&record->camera, r, t);
+  vl_camera_name(record, name);
+  return result;
+}
+
+/* Cameras without shots: camera_models.json. */
+static vlResult read_models(const vlCameraFile *file, const json_t *cameras, vlCameraRecord *record) {
+  const char *name, *chosen = NULL;
+  json_t *camera;
+  record->frames = 0;
+  json_object_foreach((json_t *)cameras, name, camera) {
+    if (!chosen && vl_camera_is_frame(file, record->frames, name)) chosen = name;
+    record->frames++;
+  }
+  if (!chosen)
+    return vl_camera_wrong_in(file, cameras, NULL, "opensfm: there is no camera \"%.60s\" among the %u",
+                              file->def->frame ? file->def->frame : "0", record->frames);
+  vl_camera_set_origin(&record->camera);
+  vl_camera_name(record, chosen);
+  return read_camera(file, json_object_get(cameras, chosen), record);
+}
+
+/* The shots of all reconstructions of the file, one after another. */
+static vlResult read_opensfm(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *list = json_object_get(tree, "[]"), *chosen = NULL, *of = NULL;
+  const char *name, *chosen_name = NULL;
+  json_t *shot;
+  size_t count = list ? json_array_size(list) : 1;
+  if (!list && !vl_camera_has(tree, "shots"))
+    return read_models(file, vl_camera_has(tree, "cameras") ? json_object_get(tree, "cameras") : tree, record);
+  record->frames = 0;
+  for (size_t i = 0; i < count; i++) {
+    const json_t *one = list ? json_array_get(list, i) : tree;
+    json_object_foreach(json_object_get(one, "shots"), name, shot) {
+      bool wanted = !chosen && vl_camera_is_frame(file, record->frames, name);
+      if (wanted) chosen = shot, chosen_name = name, of = json_object_get(one, "cameras");
+      record->frames++;
+    }
+  }
+  if (!chosen)
+    return vl_camera_wrong(file, "opensfm: there is no shot \"%.60s\" among the %u",
+                           file->def->frame ? file->def->frame : "0", record->frames);
+  return read_shot(file, chosen, of, chosen_name, record);
+}
+
+static bool is_opensfm(const json_t *tree) {
+  void *first = json_object_iter((json_t *)tree);
+  bool shots =
+      vl_camera_has_in(tree, "[]", "shots") || (vl_camera_has(tree, "shots") && vl_camera_has(tree, "cameras"));
+  return shots || (first && vl_camera_has(json_object_iter_value(first), "projection_type"));
+}
+
+static vlResult write_opensfm(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"}, *const fisheye[] = {"k1", "k2", "k3", "k4"};
+  vlCamera c;
+  double k[14], r[9], v[3], t[3];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  bool bent = family == VL_LENS_FISHEYE, whole = record->camera.projection == VL_PROJECTION_EQUIRECTANGULAR;
+  if (whole) family = VL_LENS_PINHOLE, n = 0;
+  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV && !bent) || n > 5)
+    return vl_camera_no_model(file, &record->camera);
+  double side = c.width > c.height ? c.width : c.height;
+  vl_camera_get_pose(&c, r, t);
+  vl_rotation_to_vector(r, v);
+  vl_camera_put(text, "[\n  {\n    \"cameras\": {\n      \"camera\": {\"projection_type\": \"%s\", ",
+                whole  ? "spherical"
+                : bent ? "fisheye_opencv"
+                       : "brown");
+  vl_camera_put(text, "\"width\": %u, \"height\": %u", c.width, c.height);
+  if (!whole)
+    vl_camera_put(text, ",\n        \"focal_x\": %.17g, \"focal_y\": %.17g, \"c_x\": %.17g, \"c_y\": %.17g",
+                  c.fx / side, c.fy / side, (c.cx - 0.5 * c.width) / side + 0.0, (c.cy - 0.5 * c.height) / side + 0.0);
+  for (int i = 0; i < (bent ? 4 : 5) && !whole; i++)
+    vl_camera_put(text, ", \"%s\": %.17g", bent ? fisheye[i] : brown[i], k[i] + 0.0);
+  vl_camera_put(text, "}\n    },\n    \"shots\": {\n      ");
+  vl_camera_put_string(text, record->name[0] ? record->name : "camera");
+  vl_camera_put(text, ": {\"camera\": \"camera\",\n        \"rotation\": [");
+  vl_camera_put_numbers(text, v, 3);
+  vl_camera_put(text, "],\n        \"translation\": [");
+  vl_camera_put_numbers(text, t, 3);
+  vl_camera_put(text, "]}\n    },\n    \"points\": {}\n  }\n]\n");
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_opensfm = {
+    .name = "opensfm", .is_tree = is_opensfm, .read = read_opensfm, .write = write_opensfm};

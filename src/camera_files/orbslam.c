@@ -1,0 +1,103 @@
+/* camera_files/orbslam.c: settings of ORB-SLAM 2 and 3: keys like Camera.fx, or Camera1.fx and Camera2.fx. x right, y
+ * down, z forward; the first pixel's centre is (0, 0). The world's space is the first camera's; the second one's pose
+ * in it is Stereo.T_c1_c2 (older: Tlr). */
+#include <stdio.h>
+#include <string.h>
+
+#include "camera_files/files.h"
+
+static const char *key_of(char key[64], const char *prefix, const char *name) {
+  snprintf(key, 64, "%s.%s", prefix, name);
+  return key;
+}
+
+/* k1 k2 p1 p2 k3 ... by their names; *count: up to the last that is there. */
+static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const char *prefix, bool fisheye,
+                          vlCameraDef *d) {
+  static const char *const pinhole[] = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+  static const char *const radial[] = {"k1", "k2", "k3", "k4"};
+  double k[8] = {0};
+  char key[64];
+  uint32_t count = 0;
+  vlResult result = VL_OK;
+  for (uint32_t i = 0; i < (fisheye ? 4u : 8u) && result == VL_OK; i++) {
+    key_of(key, prefix, fisheye ? radial[i] : pinhole[i]);
+    if (!vl_camera_has(tree, key) && !fisheye) continue;
+    result = vl_camera_number(file, tree, key, &k[i]);
+    count = i + 1;
+  }
+  if (result != VL_OK) return result;
+  if (fisheye)
+    vl_camera_set_fisheye(d, k);
+  else
+    vl_camera_set_opencv(d, k, count);
+  return VL_OK;
+}
+
+static vlResult read_one(const vlCameraFile *file, const json_t *tree, const char *prefix, vlCameraRecord *record) {
+  static const char *const names[] = {"fx", "fy", "cx", "cy"};
+  const char *type = vl_camera_text(tree, "Camera.type");
+  char key[64];
+  double f[4];
+  vlResult result = VL_OK;
+  bool fisheye = type && strcmp(type, "KannalaBrandt8") == 0;
+  if (type && !fisheye && strcmp(type, "PinHole") != 0 && strcmp(type, "Rectified") != 0)
+    return vl_camera_wrong_in(file, tree, "Camera.type",
+                              "orbslam: unknown Camera.type \"%.40s\"; there are PinHole, Rectified, KannalaBrandt8",
+                              type);
+  for (int i = 0; i < 4 && result == VL_OK; i++)
+    result = vl_camera_number(file, tree, key_of(key, prefix, names[i]), &f[i]);
+  if (result == VL_OK) result = read_lens(file, tree, prefix, fisheye, &record->camera);
+  if (result == VL_OK) result = vl_camera_sides(file, tree, "Camera.width", "Camera.height", record);
+  if (result == VL_OK) vl_camera_set_centred(&record->camera, f[0], f[1], f[2], f[3]);
+  return result;
+}
+
+static vlResult read_orbslam(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  char prefix[16] = "Camera", key[64];
+  bool numbered = vl_camera_has(tree, "Camera1.fx"), pair = vl_camera_has(tree, "Camera2.fx");
+  record->frames = pair ? 2 : 1;
+  uint32_t index = vl_camera_is_frame(file, 0, "Camera1") ? 0 : 1;
+  if (index == 1 && !(pair && vl_camera_is_frame(file, 1, "Camera2")))
+    return vl_camera_wrong(file, "orbslam: there is no camera \"%.60s\" among the %u",
+                           file->def->frame ? file->def->frame : "0", record->frames);
+  if (numbered || index == 1) snprintf(prefix, sizeof prefix, "Camera%u", index + 1);
+  vlResult result = read_one(file, tree, prefix, record);
+  vl_camera_set_origin(&record->camera);
+  if (result == VL_OK && index == 1) {
+    double m[16] = {[15] = 1.0};
+    const char *pose = vl_camera_has(tree, "Tlr") ? "Tlr" : "Stereo.T_c1_c2";
+    result = vl_camera_numbers(file, tree, pose, m, 12, 16, NULL);
+    if (result == VL_OK) vl_camera_set_matrix(&record->camera, m, false);
+  }
+  vl_camera_name(record, vl_camera_text(tree, key_of(key, "Camera", "name")));
+  return result;
+}
+
+static bool is_orbslam(const json_t *tree) {
+  return vl_camera_has(tree, "Camera.fx") || vl_camera_has(tree, "Camera1.fx") || vl_camera_has(tree, "Camera.type");
+}
+
+static vlResult write_orbslam(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  static const char *const pinhole[] = {"k1", "k2", "p1", "p2", "k3"}, *const radial[] = {"k1", "k2", "k3", "k4"};
+  vlCamera c;
+  double k[14];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, 0, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV && family != VL_LENS_FISHEYE) || n > 5)
+    return vl_camera_no_model(file, &record->camera);
+  bool fisheye = family == VL_LENS_FISHEYE;
+  vl_camera_put(text, "%%YAML:1.0\n\nFile.version: \"1.0\"\n\nCamera.type: \"%s\"\n\n",
+                fisheye ? "KannalaBrandt8" : "PinHole");
+  vl_camera_put(text, "Camera1.fx: %.17g\nCamera1.fy: %.17g\nCamera1.cx: %.17g\nCamera1.cy: %.17g\n\n", c.fx, c.fy,
+                c.cx - 0.5, c.cy - 0.5);
+  for (uint32_t i = 0; i < n; i++)
+    vl_camera_put(text, "Camera1.%s: %.17g\n", fisheye ? radial[i] : pinhole[i], k[i] + 0.0);
+  vl_camera_put(text, "\nCamera.width: %u\nCamera.height: %u\n", c.width, c.height);
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_orbslam = {
+    .name = "orbslam", .is_tree = is_orbslam, .read = read_orbslam, .write = write_orbslam};

@@ -1,0 +1,167 @@
+/* camera_files/ros.c: ROS's camera_info: YAML as the calibrator writes it, the message's fields, and the older .ini. As
+ * OpenCV: x right, y down, z forward; the first pixel's centre is (0, 0). No pose. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "camera_files/lines.h"
+#include "camera_files/opencv.h"
+
+static vlResult read_ros(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  vlCameraDef *d = &record->camera;
+  /* field names of the ROS message (either version), or of the file */
+  const char *k = json_object_get(tree, "K") ? "K" : json_object_get(tree, "k") ? "k" : "camera_matrix";
+  const char *c = json_object_get(tree, "D") ? "D" : json_object_get(tree, "d") ? "d" : "distortion_coefficients";
+  bool message = k[0] != 'c';
+  double binning[2] = {0, 0};
+  vlResult result = vl_camera_side(file, tree, message ? "width" : "image_width", &d->width);
+  if (result == VL_OK) result = vl_camera_side(file, tree, message ? "height" : "image_height", &d->height);
+  if (result == VL_OK) result = vl_opencv_read_matrix(file, tree, k, d);
+  if (result == VL_OK) result = vl_opencv_read_lens(file, tree, c, d);
+  if (result == VL_OK) result = vl_camera_optional(file, tree, "binning_x", &binning[0]);
+  if (result == VL_OK) result = vl_camera_optional(file, tree, "binning_y", &binning[1]);
+  if (result == VL_OK && (binning[0] > 1.0 || binning[1] > 1.0))
+    return vl_camera_wrong_in(file, tree, "binning_x",
+                              "ros: binning of %g x %g pixels is not taken; give the full image's camera", binning[0],
+                              binning[1]);
+  vl_camera_set_origin(d);
+  vl_camera_name(record, vl_camera_text(tree, "camera_name"));
+  return result;
+}
+
+/* ---- .ini -------------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+  const vlCameraFile *file;
+  vlCameraLines lines;
+} Ini;
+
+/* Reads numbers from the next lines, least to most of them; the line after the last is not taken. */
+static vlResult ini_numbers(Ini *ini, const char *key, double *values, uint32_t least, uint32_t most, uint32_t *count) {
+  uint32_t line = ini->lines.number;
+  *count = 0;
+  while (*count < most) {
+    vlCameraLines ahead = ini->lines;
+    if (!vl_camera_next_line(&ahead)) break;
+    const char *at = ahead.text;
+    if (*at == '[' || (*count > 0 && !*at)) break;
+    for (char *end; *at; at = end) {
+      double value = vl_camera_parse(at, &end);
+      if (end == at && *count == 0) return vl_camera_wrong_line(ini->file, &ahead, at, "\"%s\" needs numbers", key);
+      if (end == at) return VL_OK; /* the next key */
+      if (*count == most) return vl_camera_wrong_line(ini->file, &ahead, at, "more than %u numbers", most);
+      if (!isfinite(value)) return vl_camera_wrong_line(ini->file, &ahead, at, "a number is not finite");
+      values[(*count)++] = value;
+      end += strspn(end, " \t");
+    }
+    ini->lines = ahead;
+  }
+  if (*count >= least) return VL_OK;
+  return vl_camera_wrong_at(ini->file, line, 1, "ros: \"%s\" holds %u numbers; it must hold %u", key, *count, least);
+}
+
+/* The sections but [image] and [externals] are cameras. */
+static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+  Ini ini = {.file = file, .lines = {.at = text, .end = text + size}};
+  vlCameraDef *d = &record->camera;
+  double side[2] = {0, 0}, k[9], lens[8];
+  uint32_t count, lenses = 0;
+  bool wanted = false, found = false, matrix = false;
+  vlResult result = VL_OK;
+  record->frames = 0;
+  while (result == VL_OK && vl_camera_next_line(&ini.lines)) {
+    const char *line = ini.lines.text;
+    if (*line == '[') {
+      char name[64];
+      snprintf(name, sizeof name, "%.*s", (int)strcspn(line + 1, "]"), line + 1);
+      if (strcmp(name, "image") == 0 || strcmp(name, "externals") == 0) continue;
+      wanted = !found && vl_camera_is_frame(file, record->frames, name);
+      if (wanted) vl_camera_name(record, name);
+      found = found || wanted;
+      record->frames++;
+    } else if (strcmp(line, "width") == 0 || strcmp(line, "height") == 0) {
+      result = ini_numbers(&ini, line[0] == 'w' ? "width" : "height", &side[line[0] == 'h'], 1, 1, &count);
+    } else if (wanted && strcmp(line, "camera matrix") == 0) {
+      result = ini_numbers(&ini, "camera matrix", k, 9, 9, &count);
+      matrix = result == VL_OK;
+    } else if (wanted && strcmp(line, "distortion") == 0) {
+      result = ini_numbers(&ini, "distortion", lens, 4, 8, &lenses);
+    }
+  }
+  if (result != VL_OK) return result;
+  if (!found)
+    return vl_camera_wrong(file, "ros: there is no camera \"%.60s\"", file->def->frame ? file->def->frame : "0");
+  for (int i = 0; i < 2; i++)
+    if (!(side[i] >= 1.0 && side[i] <= 1 << 24) || side[i] != floor(side[i]))
+      return vl_camera_wrong(file, "ros: [image] needs width and height in whole pixels");
+  if (!matrix || k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
+    return vl_camera_wrong(file, "ros: \"camera matrix\" must be there and be fx 0 cx, 0 fy cy, 0 0 1");
+  d->width = (uint32_t)side[0], d->height = (uint32_t)side[1];
+  vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
+  vl_camera_set_opencv(d, lens, lenses);
+  vl_camera_set_origin(d);
+  return VL_OK;
+}
+
+static bool is_ini(const char *text, size_t size) {
+  vlCameraLines lines = {.at = text, .end = text + size};
+  return vl_camera_next_line(&lines) && lines.text[0] == '[' && strstr(text, "camera matrix");
+}
+
+static bool is_ros(const json_t *tree) {
+  bool k = vl_camera_has(tree, "K") || vl_camera_has(tree, "k"),
+       d = vl_camera_has(tree, "D") || vl_camera_has(tree, "d");
+  return vl_camera_has(tree, "projection_matrix") || vl_camera_has(tree, "rectification_matrix") ||
+         (k && (vl_camera_has(tree, "distortion_model") || (d && vl_camera_has(tree, "width"))));
+}
+
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
+
+static void put_rows(vlCameraText *text, const char *name, const double *m, int rows, int columns) {
+  vl_camera_put(text, "\n%s\n", name);
+  for (int i = 0; i < rows * columns; i++) vl_camera_put(text, "%.17g%s", m[i] + 0.0, (i + 1) % columns ? " " : "\n");
+}
+
+static vlResult write_ros(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14];
+  uint32_t n = 0;
+  bool fisheye = false;
+  vlResult result = vl_camera_fit(file, record, 0, &c);
+  if (result == VL_OK) result = vl_opencv_lens_of(file, &record->camera, k, &n, &fisheye);
+  if (result != VL_OK) return result;
+  if (n > 8) {
+    bool present = false;
+    for (int i = 8; i < 14; i++) present = present || k[i] != 0.0;
+    result = vl_camera_refuse(file, "distortion", present); /* s1 to s4, tilt: ROS has no such coefficients */
+    if (result != VL_OK) return result;
+    n = 8;
+  }
+  if (!fisheye && n < 5) n = 5;
+  const double m[9] = {c.fx, 0, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1};
+  const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const double p[12] = {m[0], m[1], m[2], 0, m[3], m[4], m[5], 0, 0, 0, 1, 0};
+  if (vl_ends_with(file->path, ".ini")) {
+    if (fisheye) return vl_camera_no_model(file, &record->camera);
+    vl_camera_put(text, "[image]\n\nwidth\n%u\n\nheight\n%u\n\n[%s]\n", c.width, c.height,
+                  record->name[0] ? record->name : "camera");
+    put_rows(text, "camera matrix", m, 3, 3);
+    put_rows(text, "distortion", k, 1, (int)n);
+    put_rows(text, "rectification", identity, 3, 3);
+    put_rows(text, "projection", p, 3, 4);
+    return VL_OK;
+  }
+  vl_camera_put(text, "image_width: %u\nimage_height: %u\ncamera_name: ", c.width, c.height);
+  vl_camera_put_string(text, record->name[0] ? record->name : "camera");
+  vl_camera_put(text, "\n");
+  vl_opencv_put_matrix(text, "camera_matrix", 3, 3, m, false);
+  vl_camera_put(text, "distortion_model: %s\n", fisheye ? "equidistant" : n == 8 ? "rational_polynomial" : "plumb_bob");
+  vl_opencv_put_matrix(text, "distortion_coefficients", 1, (int)n, k, false);
+  vl_opencv_put_matrix(text, "rectification_matrix", 3, 3, identity, false);
+  vl_opencv_put_matrix(text, "projection_matrix", 3, 4, p, false);
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_ros = {
+    .name = "ros", .is_tree = is_ros, .is_text = is_ini, .read = read_ros, .read_text = read_ini, .write = write_ros};

@@ -1,0 +1,92 @@
+/* camera_files/storage.c: OpenCV's FileStorage in XML, <opencv_storage>, as the tree that its YAML form gives: an
+ * element with children is an object, or a list if they are all <_>; text is a number, a list of numbers separated by
+ * blanks, or a word; type_id="opencv-matrix" is an object of rows, cols and data. XML of another root is returned as it
+ * is parsed. */
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "camera_files/files.h"
+
+static bool place_of(const vlCameraFile *file, const json_t *element) {
+  return vl_camera_place(file, (uint32_t)json_number_value(json_object_get(element, "#")),
+                         (uint32_t)json_number_value(json_object_get(element, "|")));
+}
+
+static json_t *token(const char *text, size_t length) {
+  char copy[64], *end;
+  if (length >= 2 && text[0] == '"' && text[length - 1] == '"') return json_stringn(text + 1, length - 2);
+  if (length < sizeof copy) {
+    memcpy(copy, text, length);
+    copy[length] = 0;
+    double value = strtod(copy, &end);
+    if (*end == 0 && end != copy && isfinite(value)) return json_real(value);
+  }
+  return json_stringn(text, length);
+}
+
+/* The next word or quoted string; null at the end. */
+static const char *next_token(const char **at, size_t *length) {
+  while (isspace((unsigned char)**at)) ++*at;
+  const char *first = *at;
+  if (!*first) return NULL;
+  const char *quote = *first == '"' ? strchr(first + 1, '"') : NULL;
+  if (quote)
+    *at = quote + 1;
+  else
+    while (**at && !isspace((unsigned char)**at)) ++*at;
+  *length = (size_t)(*at - first);
+  return first;
+}
+
+static json_t *value_of(const vlCameraFile *file, const json_t *element, const char *text) {
+  size_t length = 0, first_length = 0;
+  const char *first = next_token(&text, &first_length), *next = first ? next_token(&text, &length) : NULL;
+  if (!first) return json_string("");
+  json_t *value = token(first, first_length);
+  if (!next) return value;
+  json_t *list = json_array();
+  bool failed = json_array_append_new(list, value) != 0 || !place_of(file, element);
+  for (; next && !failed; next = next_token(&text, &length))
+    failed = json_array_append_new(list, token(next, length)) != 0 || !place_of(file, element);
+  if (!failed) return list;
+  json_decref(list);
+  return NULL;
+}
+
+static json_t *convert(const vlCameraFile *file, const json_t *element, int depth) {
+  const json_t *children = json_object_get(element, "/"), *child;
+  const char *text = vl_camera_text(element, "$");
+  size_t i;
+  if (!place_of(file, element) || depth == 0) return NULL;
+  if (json_array_size(children) == 0) return value_of(file, element, text ? text : "");
+  bool list = true, failed = false;
+  json_array_foreach(children, i, child) list = list && strcmp(vl_camera_text(child, "<"), "_") == 0;
+  json_t *value = list ? json_array() : json_object();
+  json_array_foreach(children, i, child) {
+    if (failed) break;
+    json_t *item = convert(file, child, depth - 1);
+    if (list)
+      failed = !item || json_array_append_new(value, item) != 0;
+    else
+      failed = !item || json_object_set_new(value, vl_camera_text(child, "<"), item) != 0;
+  }
+  if (!failed) return value;
+  json_decref(value);
+  return NULL;
+}
+
+vlResult vl_camera_storage(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {
+  json_t *root;
+  *tree = NULL;
+  vlResult result = vl_camera_xml(file, text, size, NULL, &root);
+  if (result != VL_OK) return result;
+  if (strcmp(vl_camera_text(root, "<"), "opencv_storage") != 0) {
+    *tree = root; /* another tool's: its elements hold their own places */
+    return VL_OK;
+  }
+  if (!(*tree = convert(file, root, 32))) result = vl_fail_memory(file->error);
+  json_decref(root);
+  return result;
+}

@@ -1,0 +1,134 @@
+/* camera_files/svo.c: SVO's camera files: of version 1 (cam_model: Pinhole or ATAN) and of version 2 (a rig: cameras,
+ * each with camera and T_B_C). x right, y down, z forward; T_B_C is body from camera, and the body's space is the
+ * world's; the first pixel's centre is (0, 0). ATAN's numbers are shares of the image's sides, and its image begins at
+ * (-0.5, -0.5): in velo's pixels cx is cam_cx times the width. */
+#include <string.h>
+
+#include "camera_files/files.h"
+
+static vlResult read_first(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  static const char *const names[] = {"cam_fx", "cam_fy", "cam_cx", "cam_cy"};
+  static const char *const lens[] = {"cam_d0", "cam_d1", "cam_d2", "cam_d3"};
+  const char *model = vl_camera_text(tree, "cam_model");
+  vlCameraDef *d = &record->camera;
+  double f[4], k[4] = {0};
+  bool atan = model && strcmp(model, "ATAN") == 0;
+  if (!atan && !(model && strcmp(model, "Pinhole") == 0))
+    return vl_camera_wrong_in(file, tree, "cam_model", "svo: unknown cam_model \"%.40s\"; there are Pinhole, ATAN",
+                              model ? model : "");
+  vlResult result = vl_camera_sides(file, tree, "cam_width", "cam_height", record);
+  for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_number(file, tree, names[i], &f[i]);
+  for (int i = 0; i < (atan ? 1 : 4) && result == VL_OK; i++) result = vl_camera_optional(file, tree, lens[i], &k[i]);
+  if (result != VL_OK) return result;
+  vl_camera_set_origin(d);
+  if (atan) {
+    d->fx = f[0] * d->width, d->fy = f[1] * d->height, d->cx = f[2] * d->width, d->cy = f[3] * d->height;
+    if (k[0] != 0.0) d->projection = VL_PROJECTION_FOV, d->shape[0] = k[0];
+  } else {
+    vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
+    vl_camera_set_opencv(d, k, k[0] != 0.0 || k[1] != 0.0 || k[2] != 0.0 || k[3] != 0.0 ? 4 : 0);
+  }
+  return VL_OK;
+}
+
+static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCameraDef *d) {
+  const json_t *lens = json_object_get(camera, "distortion");
+  const char *type = vl_camera_text(lens, "type");
+  double k[4] = {0};
+  uint32_t n = 0;
+  if (!lens || (type && strcmp(type, "none") == 0)) return VL_OK;
+  vlResult result = vl_camera_numbers(file, lens, "parameters", k, 1, 4, &n);
+  if (result != VL_OK) return result;
+  if (type && strcmp(type, "radial-tangential") == 0 && n == 4) {
+    vl_camera_set_opencv(d, k, n);
+  } else if (type && strcmp(type, "equidistant") == 0 && n == 4 && d->projection == VL_PROJECTION_PERSPECTIVE) {
+    vl_camera_set_fisheye(d, k);
+  } else if (type && strcmp(type, "fisheye") == 0 && n == 1 && d->projection == VL_PROJECTION_PERSPECTIVE) {
+    d->projection = VL_PROJECTION_FOV;
+    d->shape[0] = k[0];
+  } else {
+    return vl_camera_wrong_in(file, lens, "type",
+                              "svo: unknown distortion \"%.40s\" of %u coefficients; there are radial-tangential and "
+                              "equidistant of 4, fisheye of 1, none",
+                              type ? type : "", n);
+  }
+  return VL_OK;
+}
+
+static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item, vlCameraRecord *record) {
+  const json_t *camera;
+  vlCameraDef *d = &record->camera;
+  double k[5], m[16];
+  uint32_t n = 0;
+  vlResult result = vl_camera_field(file, item, "camera", &camera);
+  if (result != VL_OK) return result;
+  const char *type = vl_camera_text(camera, "type");
+  bool unified = type && strcmp(type, "omni") == 0;
+  if (!unified && type && strcmp(type, "pinhole") != 0)
+    return vl_camera_wrong_in(file, camera, "type", "svo: unknown type \"%.40s\"; there are pinhole, omni", type);
+  result = vl_camera_numbers(file, camera, "intrinsics", k, unified ? 5 : 4, unified ? 5 : 4, &n);
+  if (result == VL_OK) result = vl_camera_sides(file, camera, "image_width", "image_height", record);
+  if (result != VL_OK) return result;
+  if (unified) d->projection = VL_PROJECTION_UNIFIED, d->shape[0] = k[0];
+  const double *f = k + unified;
+  vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
+  result = read_lens(file, camera, d);
+  vl_camera_set_origin(d);
+  if (result == VL_OK && vl_camera_has(item, "T_B_C")) {
+    result = vl_camera_numbers(file, item, "T_B_C", m, 16, 16, NULL);
+    if (result == VL_OK) vl_camera_set_matrix(d, m, false);
+  }
+  vl_camera_name(record, vl_camera_text(camera, "label"));
+  return result;
+}
+
+static vlResult read_svo(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *cameras = json_object_get(tree, "cameras");
+  if (vl_camera_has(tree, "cam_model")) return read_first(file, tree, record);
+  record->frames = (uint32_t)json_array_size(cameras);
+  for (uint32_t i = 0; i < record->frames; i++) {
+    const json_t *item = json_array_get(cameras, i);
+    if (vl_camera_is_frame(file, i, vl_camera_text(json_object_get(item, "camera"), "label")))
+      return read_rig_camera(file, item, record);
+  }
+  return vl_camera_wrong_in(file, tree, "cameras", "svo: there is no camera \"%.60s\" among the %u",
+                            file->def->frame ? file->def->frame : "0", record->frames);
+}
+
+static bool is_svo(const json_t *tree) {
+  return vl_camera_has(tree, "cam_model") || vl_camera_has_in(tree, "cameras", "camera");
+}
+
+static void put_matrix(vlCameraText *text, const char *indent, const char *name, int rows, int columns,
+                       const double *values) {
+  vl_camera_put(text, "%s%s:\n%s  cols: %d\n%s  rows: %d\n%s  data: [", indent, name, indent, columns, indent, rows,
+                indent);
+  vl_camera_put_numbers(text, values, (uint32_t)(rows * columns));
+  vl_camera_put(text, "]\n");
+}
+
+static vlResult write_svo(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  bool unified = family == VL_LENS_UNIFIED, fov = family == VL_LENS_FOV;
+  if (n > 4 || family == VL_LENS_EUCM || family == VL_LENS_DOUBLE_SPHERE || family == VL_LENS_OTHER)
+    return vl_camera_no_model(file, &record->camera);
+  const char *lens = fov ? "fisheye" : family == VL_LENS_FISHEYE ? "equidistant" : n ? "radial-tangential" : "none";
+  const double f[5] = {c.shape[0], c.fx, c.fy, c.cx - 0.5, c.cy - 0.5};
+  if (fov) k[0] = c.shape[0];
+  vl_camera_put(text, "label: rig\ncameras:\n- camera:\n    label: ");
+  vl_camera_put_string(text, record->name[0] ? record->name : "cam0");
+  vl_camera_put(text, "\n    type: %s\n    image_width: %u\n    image_height: %u\n", unified ? "omni" : "pinhole",
+                c.width, c.height);
+  put_matrix(text, "    ", "intrinsics", unified ? 5 : 4, 1, unified ? f : f + 1);
+  vl_camera_put(text, "    distortion:\n      type: %s\n", lens);
+  if (n || fov) put_matrix(text, "      ", "parameters", fov ? 1 : (int)n, 1, k);
+  put_matrix(text, "  ", "T_B_C", 4, 4, c.world_from_camera);
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_svo = {.name = "svo", .is_tree = is_svo, .read = read_svo, .write = write_svo};

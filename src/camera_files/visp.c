@@ -1,0 +1,125 @@
+/* camera_files/visp.c: ViSP's camera XML: <root> with cameras, each with an image size and models. x right, y down, z
+ * forward; no pose; the first pixel's centre is (0, 0). Distortion kud: from the ideal to the distorted point, which is
+ * OpenCV's k1; kdu, the way back, is not used. Kannala-Brandt: k1 to k4 are those of OpenCV's fisheye; ViSP writes a k5
+ * and does not use it. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "camera_files/files.h"
+
+static const char with_distortion[] = "perspectiveProjWithDistortion";
+static const char without_distortion[] = "perspectiveProjWithoutDistortion";
+static const char kannala_brandt[] = "ProjWithKannalaBrandtDistortion";
+
+/* The text of a child without blanks around it; "" if there is none. */
+static void child_text(const json_t *element, const char *tag, char text[64]) {
+  const char *from = vl_camera_text(vl_camera_child(element, tag), "$");
+  text[0] = 0;
+  if (!from) return;
+  from += strspn(from, " \t\r\n\"");
+  size_t length = strcspn(from, " \t\r\n\"");
+  if (length > 63) length = 63;
+  memcpy(text, from, length);
+  text[length] = 0;
+}
+
+static vlResult read_model(const vlCameraFile *file, const json_t *model, vlCameraDef *d) {
+  static const char *const names[] = {"px", "py", "u0", "v0"}, *const radial[] = {"k1", "k2", "k3", "k4"};
+  double f[4], k[4];
+  char type[64];
+  vlResult result = VL_OK;
+  child_text(model, "type", type);
+  for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_child_number(file, model, names[i], true, &f[i]);
+  if (result != VL_OK) return result;
+  if (strcmp(type, with_distortion) == 0) {
+    result = vl_camera_child_number(file, model, "kud", true, &k[0]);
+    if (result == VL_OK && k[0] != 0.0)
+      d->distortion = VL_DISTORTION_RADIAL, d->distortion_count = 1, d->distortion_coefficients[0] = k[0];
+  } else if (strcmp(type, kannala_brandt) == 0) {
+    for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_child_number(file, model, radial[i], true, &k[i]);
+    if (result != VL_OK) return result;
+    vl_camera_set_fisheye(d, k);
+  } else if (strcmp(type, without_distortion) != 0) {
+    return vl_camera_wrong_element(file, model, "unknown model \"%.40s\"; there are %s, %s, %s", type,
+                                   without_distortion, with_distortion, kannala_brandt);
+  }
+  vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
+  return result;
+}
+
+static vlResult read_camera(const vlCameraFile *file, const json_t *camera, const json_t *model,
+                            vlCameraRecord *record) {
+  vlCameraDef *d = &record->camera;
+  double size[2] = {0.0, 0.0};
+  char name[64];
+  vlResult result = vl_camera_child_number(file, camera, "image_width", false, &size[0]);
+  if (result == VL_OK) result = vl_camera_child_number(file, camera, "image_height", false, &size[1]);
+  if (result == VL_OK) result = read_model(file, model, d);
+  if (result != VL_OK) return result;
+  vl_camera_set_origin(d);
+  child_text(camera, "name", name);
+  vl_camera_name(record, name);
+  if (size[0] == 0.0 && size[1] == 0.0) return vl_camera_size_beside(file, NULL, record);
+  for (int i = 0; i < 2; i++)
+    if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
+      return vl_camera_wrong_element(file, camera, "the image is %g x %g; it must be whole pixels", size[0], size[1]);
+  d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
+  return VL_OK;
+}
+
+/* Each model of each camera is one to choose from, by the camera's name or its number. */
+static vlResult read_visp(const vlCameraFile *file, const json_t *root, vlCameraRecord *record) {
+  const json_t *camera, *model, *chosen = NULL, *of = NULL;
+  size_t i, k;
+  record->frames = 0;
+  json_array_foreach(json_object_get(root, "/"), i, camera) {
+    char name[64];
+    if (strcmp(vl_camera_text(camera, "<"), "camera") != 0) continue;
+    child_text(camera, "name", name);
+    json_array_foreach(json_object_get(camera, "/"), k, model) {
+      if (strcmp(vl_camera_text(model, "<"), "model") != 0) continue;
+      if (!chosen && vl_camera_is_frame(file, record->frames, name)) chosen = model, of = camera;
+      record->frames++;
+    }
+  }
+  if (chosen) return read_camera(file, of, chosen, record);
+  return vl_camera_wrong_element(file, root, "there is no camera \"%.60s\" among the %u",
+                                 file->def->frame ? file->def->frame : "0", record->frames);
+}
+
+static bool is_visp(const json_t *tree) {
+  const char *tag = vl_camera_text(tree, "<");
+  const json_t *model = vl_camera_child(vl_camera_child(tree, "camera"), "model");
+  return tag && strcmp(tag, "root") == 0 && vl_camera_child(model, "px");
+}
+
+static vlResult write_visp(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, 0, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  bool fits = family == VL_LENS_PINHOLE || family == VL_LENS_OPENCV || family == VL_LENS_FISHEYE;
+  bool fisheye = family == VL_LENS_FISHEYE;
+  for (int i = 1; i < 14 && !fisheye; i++) fits = fits && k[i] == 0.0; /* k1 alone */
+  if (!fits) return vl_camera_no_model(file, &record->camera);
+  bool bent = !fisheye && k[0] != 0.0;
+  const char *name = record->name[0] && !strpbrk(record->name, "<>&") ? record->name : "Camera";
+  vl_camera_put(text, "<?xml version=\"1.0\"?>\n<root>\n  <camera>\n    <name>%s</name>\n", name);
+  vl_camera_put(text, "    <image_width>%u</image_width>\n    <image_height>%u</image_height>\n", c.width, c.height);
+  vl_camera_put(text, "    <model>\n      <type>%s</type>\n",
+                fisheye ? kannala_brandt
+                : bent  ? with_distortion
+                        : without_distortion);
+  vl_camera_put(text, "      <px>%.17g</px>\n      <py>%.17g</py>\n      <u0>%.17g</u0>\n      <v0>%.17g</v0>\n", c.fx,
+                c.fy, c.cx - 0.5, c.cy - 0.5);
+  if (bent) vl_camera_put(text, "      <kud>%.17g</kud>\n      <kdu>%.17g</kdu>\n", k[0], -k[0]);
+  for (int i = 0; i < 5 && fisheye; i++)
+    vl_camera_put(text, "      <k%d>%.17g</k%d>\n", i + 1, i < 4 ? k[i] + 0.0 : 0.0, i + 1);
+  vl_camera_put(text, "    </model>\n  </camera>\n</root>\n");
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_visp = {.name = "visp", .is_tree = is_visp, .read = read_visp, .write = write_visp};

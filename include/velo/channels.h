@@ -40,10 +40,15 @@ typedef enum vlChannel {
   VL_CHANNEL_BACKWARD = 1 << 16,        /**< backward.U backward.V backward.hidden: the same with `backward` */
   VL_CHANNEL_CRYPTO_OBJECT = 1 << 17,   /**< CryptoObject00.R ...: Cryptomatte, `ranks` pairs of id and coverage */
   VL_CHANNEL_CRYPTO_MATERIAL = 1 << 18, /**< CryptoMaterial00.R ... */
-  VL_CHANNEL_CRYPTO_INSTANCE = 1 << 19  /**< CryptoInstance00.R ... */
+  VL_CHANNEL_CRYPTO_INSTANCE = 1 << 19, /**< CryptoInstance00.R ... */
+  /** feature.albedo.R .G .B, feature.N.X .Y .Z, feature.disparity.Y: for denoisers (vl_denoise). Means over the image's
+   * own samples, the first VL_FEATURE_SAMPLES of each pixel, through the lens: smooth where edges, the lens and motion
+   * make the image smooth. Albedo from fewer wavelengths than `albedo`; disparity: 1 / distance, 0 for nothing. Needs
+   * film and render, as Cryptomatte does. */
+  VL_CHANNEL_FEATURES = 1 << 20
 } vlChannel;
-/** The number of channels; the set of all cheap ones, the default. */
-enum { VL_CHANNEL_COUNT = 20, VL_CHANNEL_ALL = (1 << 14) - 1 };
+/** The number of channels; the set of all cheap ones, the default; the most samples that features are means of. */
+enum { VL_CHANNEL_COUNT = 21, VL_CHANNEL_ALL = (1 << 14) - 1, VL_FEATURE_SAMPLES = 16 };
 
 /** The film point at which a pixel's channels are computed. CENTRE: the pixel's exact centre. The others choose among
  * the points of the image's samples (through the centre of the lens, at the middle of the exposure). NEAREST: the point
@@ -68,8 +73,8 @@ typedef struct vlChannelsDef {
   uint32_t samples;   /**< value of the channel `samples` */
   vlChannelMode mode; /**< film point; default CENTRE */
   uint32_t ranks;     /**< of Cryptomatte: an even number, 2 to 32; default 6 */
-  /** The image's film and how it was rendered. Required for ERROR, Cryptomatte and the modes that choose among the
-   * image's samples; otherwise they may be null. */
+  /** The image's film and how it was rendered. Required for ERROR, FEATURES, Cryptomatte and the modes that choose
+   * among the image's samples; otherwise they may be null. */
   const vlFilm *film;
   const vlRenderDef *render;          /**< as film */
   float exposure;                     /**< for ERROR: exposure of the developed image; default 1 */

@@ -27,7 +27,8 @@ enum {
   VL_INDEX_ERROR,
   VL_INDEX_FORWARD,
   VL_INDEX_BACKWARD,
-  VL_INDEX_CRYPTO
+  VL_INDEX_CRYPTO,
+  VL_INDEX_FEATURES = VL_INDEX_CRYPTO + 3
 };
 
 /* A small hash table: the weight of each id (object, material, instance) in one pixel. A pixel with more than
@@ -70,10 +71,11 @@ typedef struct vlChannelPass {
   const vlChannelsDef *def;
   vlCamera camera;            /* a pinhole, held at the time of the pass */
   double time, other_time[2]; /* seconds: of this pass, and of the other two cameras */
+  double open, close;         /* seconds: the exposure, at the middle of the image */
   vlCameraCompiled compiled;
   const vlCameraKernels *camera_kernels;
   const vlGroundTruthKernels *ground_truth_kernels;
-  vlGroundTruthDef ground_truth;
+  vlGroundTruthDef ground_truth, features;
   uint32_t tiles_x, tile_x0, tile_y0, tiles;
   uint32_t place[2][VL_CHANNEL_COUNT]; /* index of each channel's first component among the floats and among the ids */
   vlImage *images[2];                  /* floats, ids */
@@ -115,6 +117,8 @@ void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera);
 /* In channel_samples.c: traces the image's samples of one tile; fills film_x and film_y of the tile and writes
  * Cryptomatte. */
 void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile);
+/* In channel_features.c: means over the image's samples of one tile. */
+void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile);
 /* In flow.c: optical flow of the n lanes of the batch towards camera `which`. */
 void vl_channel_flow(const vlChannelPass *p, vlChannelWorker *w, int which);
 /* In channel_tile.c: t_min and t_max of rays, from the kernel that makes the image's camera rays. */

@@ -121,6 +121,7 @@ void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
   clear_tile(p, w, tile);
   unsigned state = vl_accel_enter();
   if (w->tallies) vl_channel_count(p, w, tile);
+  if (vl_channel_wanted(p, VL_CHANNEL_FEATURES)) vl_channel_features(p, w, tile);
   uint32_t n = list_pixels(p, w, tile);
   vlGroundTruthBatch *b = w->batch;
   if (n) {

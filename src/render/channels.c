@@ -15,7 +15,7 @@
 static const struct Channel {
   const char *name;
   uint32_t floats, ids; /* number of components; Cryptomatte's floats depend on the ranks */
-  const char *names[4]; /* of the floats, then of the ids */
+  const char *names[7]; /* of the floats, then of the ids */
 } channels[VL_CHANNEL_COUNT] = {
     {"Z", 1, 0, {"Z"}},
     {"distance", 1, 0, {"distance.Y"}},
@@ -37,6 +37,11 @@ static const struct Channel {
     {"crypto.object", 2, 0, {NULL}},
     {"crypto.material", 2, 0, {NULL}},
     {"crypto.instance", 2, 0, {NULL}},
+    {"features",
+     7,
+     0,
+     {"feature.albedo.R", "feature.albedo.G", "feature.albedo.B", "feature.N.X", "feature.N.Y", "feature.N.Z",
+      "feature.disparity.Y"}},
 };
 static const uint32_t CRYPTO = VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
 enum { MAX_RANKS = 32, MAX_FLOATS = 32 + 3 * 2 * MAX_RANKS };
@@ -58,13 +63,13 @@ vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height) {
 /* ---- validation -------------------------------------------------------------------------------------------------- */
 
 static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlError *error) {
-  bool counts = (def->channels & CRYPTO) || def->mode != VL_CHANNEL_MODE_CENTRE;
+  bool counts = (def->channels & (CRYPTO | VL_CHANNEL_FEATURES)) || def->mode != VL_CHANNEL_MODE_CENTRE;
   bool errors = (def->channels & VL_CHANNEL_ERROR) != 0;
   if (!counts && !errors) return VL_OK;
   if (!def->film || (counts && !def->render))
     return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "ground truth: Cryptomatte, standard errors and modes other than the centre need the image's "
-                   "film and how it was rendered");
+                   "ground truth: Cryptomatte, features, standard errors and modes other than the centre need the "
+                   "image's film and how it was rendered");
   const vlFilmDef *film = vl_film_def(def->film);
   if (counts && def->render->cookie != VL_COOKIE_RENDER)
     return vl_fail(error, VL_ERROR_ARGUMENT,
@@ -111,7 +116,7 @@ static uint32_t list_names(vlChannelPass *p, int id, const char *names[MAX_FLOAT
     const struct Channel *c = &channels[i];
     if (!vl_channel_wanted(p, 1u << i)) continue;
     p->place[id][i] = count;
-    if (i < VL_INDEX_CRYPTO) {
+    if (i < VL_INDEX_CRYPTO || i == VL_INDEX_FEATURES) {
       uint32_t first = id ? c->floats : 0, parts = id ? c->ids : c->floats;
       for (uint32_t k = 0; k < parts; k++) names[count++] = c->names[first + k];
       continue;
@@ -214,7 +219,7 @@ static void free_all(vlChannelPass *p) {
  * shutter's time. */
 static void prepare_counting(vlChannelPass *p, const vlCamera *camera, vlIsa isa) {
   const vlChannelsDef *def = p->def;
-  if (!(def->channels & CRYPTO) && def->mode == VL_CHANNEL_MODE_CENTRE) return;
+  if (!(def->channels & (CRYPTO | VL_CHANNEL_FEATURES)) && def->mode == VL_CHANNEL_MODE_CENTRE) return;
   const vlFilmDef *film = vl_film_def(def->film);
   p->spp = vl_film_spp(def->film);
   vlSampler sampler;
@@ -242,6 +247,8 @@ void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
   vlIsa isa = vl_context_isa(p->world->context);
   p->time = p->def->time == p->def->time ? p->def->time : middle_time(camera);
   p->camera = pinhole(camera, p->time);
+  p->open = vl_camera_time(camera, 0.5 * camera->width, 0.5 * camera->height, 0.0);
+  p->close = vl_camera_time(camera, 0.5 * camera->width, 0.5 * camera->height, 1.0);
   vl_camera_compile(&p->camera, &p->compiled);
   const vlCamera *others[2] = {p->def->forward, p->def->backward};
   for (int i = 0; i < 2; i++) {
@@ -259,6 +266,9 @@ void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
                                        .shading = vl_channel_wanted(p, VL_CHANNEL_N),
                                        .albedo = vl_channel_wanted(p, VL_CHANNEL_ALBEDO)};
   vl_ground_truth_plan_albedo(p->world, p->def->space, &p->ground_truth);
+  p->features = p->ground_truth;
+  p->features.shading = p->features.albedo = p->features.coarse = true;
+  vl_ground_truth_plan_albedo(p->world, p->def->space, &p->features);
   const uint32_t *crop = p->def->crop;
   p->tile_x0 = crop[0] / VL_CHANNEL_TILE, p->tile_y0 = crop[1] / VL_CHANNEL_TILE;
   p->tiles_x = (crop[2] + VL_CHANNEL_TILE - 1) / VL_CHANNEL_TILE - p->tile_x0;

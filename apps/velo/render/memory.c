@@ -34,11 +34,11 @@ static void add(MemoryPlan *plan, const char *what, uint64_t bytes) {
 
 /* Number of 4-byte values per pixel of the ground truth. */
 static uint64_t channel_values(const Channels *c, uint32_t buckets) {
-  static const uint8_t values[VL_CHANNEL_COUNT] = {1, 1, 3, 3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 2, 3, 3, 3};
+  static const uint8_t values[VL_CHANNEL_COUNT] = {1, 1, 3, 3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 2, 3, 3, 3, [20] = 7};
   enum { GBUFFER = 48 }; /* the gbuffer's channels and the ground truth that they are computed from */
   uint64_t sum = c->gbuffer ? GBUFFER : 0;
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
-    if (c->bits & 1u << i) sum += i >= 17 ? 2 * c->ranks : values[i];
+    if (c->bits & 1u << i) sum += i >= 17 && i < 20 ? 2 * c->ranks : values[i];
   return sum + (c->spectrum ? buckets : 0);
 }
 

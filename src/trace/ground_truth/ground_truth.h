@@ -6,13 +6,14 @@
 
 #include "trace/trace.h"
 
-/* Albedo: the sum over `sets` of 4 channels of reflectance times weight[set][channel][rgb]. Spectral: 64 wavelengths;
- * RGB mode: one set, the matrix of the colour space. */
-enum { VL_GROUND_TRUTH_SETS = 16 };
+/* Albedo: the sum over `sets` of 4 channels of reflectance times weight[set][channel][rgb]. Spectral: 64 wavelengths,
+ * coarse 12; RGB mode: one set, the matrix of the colour space. */
+enum { VL_GROUND_TRUTH_SETS = 16, VL_GROUND_TRUTH_COARSE_SETS = 3 };
 typedef struct vlGroundTruthDef {
   float pixel_spread, pixel_width; /* as in vlTraceDef */
   vlIsa isa;
   bool shading, albedo; /* what to compute: normals of shading (with bump maps), albedo */
+  bool coarse;          /* albedo from fewer wavelengths */
   uint32_t sets;
   float lambda[VL_GROUND_TRUTH_SETS][4];
   float weight[VL_GROUND_TRUTH_SETS][4][3];

@@ -270,6 +270,14 @@ typedef struct vlHitLight {
   float radiance[4], pdf;
   vlPoint at; /* the point, for area lights */
 } vlHitLight;
+/* Infinite light k of the world for up to VL_SKY_BLOCK rays that hit nothing: radiance and density as in vlHitLight,
+ * in the order of lanes. */
+enum { VL_SKY_BLOCK = 64 };
+typedef struct vlSkyHits {
+  float radiance[4][VL_SKY_BLOCK], pdf[VL_SKY_BLOCK];
+} vlSkyHits;
+void vl_hit_sky(const vlWorld *world, const vlPaths *p, const uint32_t *lanes, uint32_t count, size_t k,
+                vlSkyHits *out);
 /* Infinite light k of the world; the emissive surface at hit i: false where this side does not emit. */
 vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k);
 bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlHitLight *met);

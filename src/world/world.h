@@ -11,6 +11,7 @@
 #include "color/color.h"
 #include "velo/render.h"
 #include "world/accel/accel.h"
+#include "world/light/environment.h"
 #include "world/material/bsdf_kind.h"
 #include "world/material/coat.h"
 #include "world/material/measured.h"
@@ -192,18 +193,8 @@ typedef struct vlWorldLight {
   float image_extent[2];  /* projection: half the image's sides at distance 1 */
   float corners[9];       /* area, triangle: its corners */
   bool one_sided_normals; /* direction is the normal of the emitting side at every point */
+  bool plain_triangle;    /* and so is its emission: a triangle without image, alpha texture and such */
 } vlWorldLight;
-
-/* An environment image in pbrt's equal-area octahedral square, with a distribution over its texels. */
-typedef struct vlEnvironment {
-  int32_t image;
-  uint32_t size;                                  /* of the distribution: size x size cells */
-  float *conditional_cdf;                         /* size rows of size + 1 */
-  float *marginal_cdf;                            /* size + 1 */
-  float *pdf;                                     /* size * size: density over the unit square */
-  float light_from_world[9], world_from_light[9]; /* rotations, row-major */
-  const struct vlPortal *portal;                  /* the only opening to it (world/light/portal.h); null: none */
-} vlEnvironment;
 
 #include "world/light/light_tree.h"
 

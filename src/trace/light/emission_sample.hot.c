@@ -156,11 +156,6 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
 
 /* ---- infinite lights --------------------------------------------------------------------------------------------- */
 
-static vlVec3 turn(const float m[9], vlVec3 d) {
-  return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
-                 m[6] * d.x + m[7] * d.y + m[8] * d.z);
-}
-
 /* Samples a direction of an infinite light with the density vl_infinite_pdf. */
 static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light, const float lambda[4], float u, float v,
                             float *pdf, float radiance[4]) {
@@ -179,12 +174,11 @@ static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light, con
   u = vl_min(2.0f * u - 1.0f, VL_ONE_MINUS_EPSILON);
   const vlEnvironment *env = &world->environments.items[light->environment];
   float dx, dy;
-  uint32_t y = vl_find_cell(env->marginal_cdf, env->size, v, &dy);
-  uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, u, &dx);
+  uint32_t y = vl_environment_row(env, v, &dy), x = vl_environment_cell(env, y, u, &dx);
   float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
-  *pdf = 0.5f * (env->pdf[(size_t)y * env->size + x] + 1.0f) * VL_INV_4PI;
+  *pdf = 0.5f * (env->cells[(size_t)y * (env->size + 1) + x].pdf + 1.0f) * VL_INV_4PI;
   vl_emitted_at(world, e, lambda, s, t, true, radiance);
-  return vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
+  return vl_environment_direction(env, s, t);
 }
 
 void vl_light_emit_from_afar(const vlWorld *world, vlVec3 w, float u, float v, vlEmission *out) {

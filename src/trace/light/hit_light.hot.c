@@ -1,6 +1,7 @@
 /* trace/light/hit_light.hot.c: radiance of lights that rays hit, and the density with which light sampling would have
- * sampled them, for the weights of all tracers. Scalar: each lane hits its own light. */
-#include "trace/stages.h"
+ * sampled them, for the weights of all tracers. Scalar, save for environment images: each lane hits
+ * its own light. */
+#include "trace/light/kinds.h"
 
 vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k) {
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
@@ -13,6 +14,27 @@ vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, s
     met.pdf = vl_infinite_pdf(world, light, o, d) *
               vl_light_pmf(&world->tree, o, vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), met.light);
   return met;
+}
+
+void vl_hit_sky(const vlWorld *world, const vlPaths *p, const uint32_t *lanes, uint32_t count, size_t k,
+                vlSkyHits *out) {
+  uint32_t index = world->infinite_lights.items[k];
+  const vlWorldLight *light = &world->lights.items[index];
+  if (vl_light_is_environment(world, light)) {
+    vl_hit_environment(world, light, p, lanes, count, out);
+    for (uint32_t j = 0; j < count; j++) {
+      uint32_t i = lanes[j];
+      if (p->specular[i]) continue;
+      out->pdf[j] *= vl_light_pmf(&world->tree, vl_lane3(p->ox, p->oy, p->oz, i),
+                                  vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), index);
+    }
+    return;
+  }
+  for (uint32_t j = 0; j < count; j++) {
+    vlHitLight met = vl_hit_infinite(world, p, lanes[j], k);
+    for (int c = 0; c < 4; c++) out->radiance[c][j] = met.radiance[c];
+    out->pdf[j] = met.pdf;
+  }
 }
 
 bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlHitLight *met) {

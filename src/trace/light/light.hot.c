@@ -4,6 +4,7 @@
 #include "math/warp.h"
 #include "trace/light/coverage.h"
 #include "trace/light/kinds.h"
+#include "trace/light/triangle.h"
 #include "world/light/portal.h"
 #include "world/shape/surface_point.h"
 #include "world/texture/texture_lookup.h"
@@ -39,17 +40,12 @@ void vl_emitted_at(const vlWorld *world, const vlEmitted *e, const float lambda[
 
 /* ---- the sky ----------------------------------------------------------------------------------------------------- */
 
-static vlVec3 turn(const float m[9], vlVec3 d) {
-  return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
-                 m[6] * d.x + m[7] * d.y + m[8] * d.z);
-}
-
 void vl_infinite_at(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d, const float lambda[4],
                     float out[4]) {
   vlVec2 st = {0, 0};
   if (light->environment != VL_NONE) {
     const vlEnvironment *env = &world->environments.items[light->environment];
-    st = vl_octahedral_encode(vl_normalize(turn(env->light_from_world, d)));
+    st = vl_environment_square(env, d);
     if (env->portal && !vl_portal_shows(env->portal, o, d)) {
       for (int c = 0; c < 4; c++) out[c] = 0.0f;
       return;
@@ -66,10 +62,8 @@ float vl_infinite_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 o,
     return vl_portal_shows(env->portal, o, d) && vl_portal_window(env->portal, o, &window)
                ? vl_portal_pdf(env->portal, &window, d)
                : 0.0f;
-  vlVec2 st = vl_octahedral_encode(vl_normalize(turn(env->light_from_world, d)));
-  uint32_t x = (uint32_t)(st.x * (float)env->size), y = (uint32_t)(st.y * (float)env->size);
-  x = x < env->size ? x : env->size - 1, y = y < env->size ? y : env->size - 1;
-  return env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
+  vlVec2 st = vl_environment_square(env, d);
+  return env->cells[vl_environment_at(env, st.x, st.y)].pdf * (0.25f * VL_INV_PI);
 }
 
 /* ---- area lights ------------------------------------------------------------------------------------------------- */
@@ -111,46 +105,19 @@ static Sample sample_cone(vlVec3 center, float radius, bool inside_out, vlVec3 f
   return s;
 }
 
-static float solid_pdf(float pdf_area, vlVec3 from, vlVec3 p, vlVec3 n) {
-  vlVec3 to = vl_sub(p, from);
-  float d2 = vl_length2(to), cosine = vl_abs(vl_dot(n, to));
-  return cosine > 0.0f ? pdf_area * d2 * __builtin_sqrtf(d2) / cosine : 0.0f;
-}
-
-/* Solid angles outside these limits are sampled by area: below, both densities are nearly the same; above, the triangle
- * is nearly a hemisphere (2 pi = 6.283) and its cap degenerates (6.22 as in pbrt). */
-static const float smallest_cap = 1e-3f, largest_cap = 6.22f;
-
-/* Near triangles are sampled by solid angle, since the density of area sampling is unbounded over them; far ones by
- * area, which is cheaper. Sampling and density both use this decision. */
 typedef struct Near {
   vlSphericalTriangle cap;
   bool near;
 } Near;
 
 static Near near_triangle(const vlWorldLight *light, vlVec3 from) {
-  const float *q = light->corners;
   Near r;
   r.near = false;
-  vlVec3 a = vl_vec3(q[0] - from.x, q[1] - from.y, q[2] - from.z),
-         b = vl_vec3(q[3] - from.x, q[4] - from.y, q[5] - from.z);
-  vlVec3 c = vl_vec3(q[6] - from.x, q[7] - from.y, q[8] - from.z);
-  float d2 = vl_length2(vl_add(vl_add(a, b), c)) * (1.0f / 9.0f);
-  if (!(light->area > 0.05f * d2)) return r;
-  r.cap = vl_spherical_triangle(vl_normalize(a), vl_normalize(b), vl_normalize(c));
-  r.near = r.cap.solid_angle > smallest_cap && r.cap.solid_angle < largest_cap;
+  vlTriangleSeen seen = vl_triangle_from(light->corners, from);
+  if (!vl_triangle_maybe_near(seen, light->area)) return r;
+  r.cap = vl_triangle_cap(seen);
+  r.near = vl_triangle_cap_near(r.cap.solid_angle);
   return r;
-}
-
-/* Intersection of the direction w from `from` with the triangle's plane, in barycentric coordinates. */
-static vlVec3 plane_weights(const float *q, vlVec3 from, vlVec3 w) {
-  vlVec3 a = vl_vec3(q[0] - from.x, q[1] - from.y, q[2] - from.z),
-         b = vl_vec3(q[3] - from.x, q[4] - from.y, q[5] - from.z);
-  vlVec3 c = vl_vec3(q[6] - from.x, q[7] - from.y, q[8] - from.z);
-  float b0 = vl_abs(vl_dot(w, vl_cross(b, c))), b1 = vl_abs(vl_dot(w, vl_cross(c, a))),
-        b2 = vl_abs(vl_dot(w, vl_cross(a, b)));
-  float sum = b0 + b1 + b2, inv = sum > 0.0f ? 1.0f / sum : 0.0f;
-  return vl_vec3(b0 * inv, b1 * inv, 1.0f - (b0 + b1) * inv);
 }
 
 static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, bool with_uv, vlVec3 from, float u,
@@ -161,7 +128,7 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
   float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
   Near near = near_triangle(light, from);
   if (near.near) {
-    vlVec3 w = plane_weights(q, from, vl_warp_spherical_triangle(near.cap, u, v));
+    vlVec3 w = vl_triangle_weights(vl_triangle_from(q, from), vl_warp_spherical_triangle(near.cap, u, v));
     b[0] = w.x, b[1] = w.y, b[2] = w.z;
   }
   Sample r;
@@ -170,7 +137,7 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
   r.u = r.v = 0;
   for (int k = 0; k < 3; k++) r.weights[k] = b[k];
   r.pdf = near.near            ? 1.0f / near.cap.solid_angle
-          : light->area > 0.0f ? solid_pdf(1.0f / light->area, from, r.p, r.n)
+          : light->area > 0.0f ? vl_solid_pdf(1.0f / light->area, from, r.p, r.n)
                                : 0.0f;
   const uint32_t *f = s->indices + 3 * (size_t)light->prim;
   if (!light->one_sided_normals) {
@@ -240,7 +207,7 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
   r.n = vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]);
   r.u = point.uv[0], r.v = point.uv[1];
   r.weights[0] = r.weights[1] = r.weights[2] = 0;
-  r.pdf = solid_pdf((float)pdf, from, r.p, r.n);
+  r.pdf = vl_solid_pdf((float)pdf, from, r.p, r.n);
   return r;
 }
 
@@ -249,7 +216,7 @@ float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, 
   if (s->kind == VL_SHAPE_TRIANGLES) {
     Near near = near_triangle(light, from);
     if (near.near) return 1.0f / near.cap.solid_angle;
-    return light->area > 0.0f ? solid_pdf(1.0f / light->area, from, at->p, at->g) : 0.0f;
+    return light->area > 0.0f ? vl_solid_pdf(1.0f / light->area, from, at->p, at->g) : 0.0f;
   }
   vlVec3 center;
   float radius;
@@ -259,7 +226,7 @@ float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, 
   }
   vlSurfacePoint point;
   point.p[0] = at->p.x, point.p[1] = at->p.y, point.p[2] = at->p.z;
-  return solid_pdf((float)vl_shape_pdf(s, light->prim, &point), from, at->p, at->g);
+  return vl_solid_pdf((float)vl_shape_pdf(s, light->prim, &point), from, at->p, at->g);
 }
 
 /* ---- one sample per lane ----------------------------------------------------------------------------------------- */
@@ -280,16 +247,7 @@ void vl_light_sample_infinite(const vlLightQuery *q, vlLightSample *out) {
     out->w = vl_portal_sample(portal, &window, q->u, q->v);
     out->pdf = vl_infinite_pdf(world, light, q->p, out->w);
     vl_infinite_at(world, light, q->p, out->w, q->lambda, out->radiance);
-  } else {
-    const vlEnvironment *env = &world->environments.items[light->environment];
-    float dx, dy;
-    uint32_t y = vl_find_cell(env->marginal_cdf, env->size, q->v, &dy);
-    uint32_t x = vl_find_cell(env->conditional_cdf + (size_t)y * (env->size + 1), env->size, q->u, &dx);
-    float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
-    out->w = vl_normalize(turn(env->world_from_light, vl_octahedral_decode(s, t)));
-    out->pdf = env->pdf[(size_t)y * env->size + x] * (0.25f * VL_INV_PI);
-    vl_emitted_at(world, q->emitted, q->lambda, s, t, true, out->radiance);
-  }
+  } /* an environment without portal: environment.hot.c */
   out->target = out->w;
 }
 
@@ -308,9 +266,7 @@ void vl_light_sample_area(const vlLightQuery *q, vlLightSample *out) {
     float cover = vl_light_coverage(q->world, light, at.p, at.n, at.u, at.v, at.weights);
     for (int c = 0; c < 4; c++) out->radiance[c] *= cover;
   }
-  /* Moves the end of the shadow ray off the light by the bound of its points' rounding error. */
-  float size = vl_abs(at.p.x) + vl_abs(at.p.y) + vl_abs(at.p.z);
-  out->target = vl_offset_origin(at.p, facing < 0.0f ? vl_neg(at.n) : at.n, 16.0f * 0x1p-24f * size, vl_neg(w));
+  out->target = vl_light_target(at.p, facing < 0.0f ? vl_neg(at.n) : at.n, w);
   out->w = w;
   out->pdf = at.pdf;
 }
@@ -322,13 +278,10 @@ static inline void sample_kind(const vlLightQuery *q, vlLightSample *out) {
 #undef SAMPLE
 }
 
+/* The light of this index. */
 static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, vlVec3 p, float u, float v,
                        vlLightSamples *out) {
-  out->pdf[i] = 0.0f;
-  out->wx[i] = out->wy[i] = out->wz[i] = 0.0f;
-  vlLightChoice chosen = {out->light[i], out->pmf[i]};
-  if (chosen.light == VL_INNER || !(chosen.pmf > 0.0f)) return;
-  const vlWorldLight *light = &world->lights.items[chosen.light];
+  const vlWorldLight *light = &world->lights.items[out->light[i]];
   float lambda[4];
   vl_path_lambda(paths, i, lambda);
   vlLightQuery q = {world, light, &world->emitted.items[light->emitted], lambda, p, u, v};
@@ -339,15 +292,50 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
   out->delta[i] = sample.delta;
   out->distant[i] = sample.distant;
   if (!(sample.pdf > 0.0f) || !(sample.pdf < VL_INFINITY)) return;
-  float total = sample.pdf * chosen.pmf, inv = 1.0f / total;
+  float total = sample.pdf * out->pmf[i], inv = 1.0f / total;
   out->pdf[i] = total;
   out->wx[i] = sample.w.x, out->wy[i] = sample.w.y, out->wz[i] = sample.w.z;
   out->tx[i] = sample.target.x, out->ty[i] = sample.target.y, out->tz[i] = sample.target.z;
   for (int c = 0; c < 4; c++) out->radiance[c][i] = sample.radiance[c] * inv;
 }
 
+/* Samples environments for the lanes of a list, which chose such lights: the lanes of one light together. */
+static void sample_environments(const vlWorld *world, const vlPaths *paths, uint32_t *lanes, uint32_t count,
+                                const float *u, const float *v, vlLightSamples *out) {
+  while (count > 0) {
+    uint32_t same[VL_SKY_BLOCK], light = out->light[lanes[0]], taken = 0, rest = 0;
+    for (uint32_t k = 0; k < count; k++) {
+      if (taken < VL_SKY_BLOCK && out->light[lanes[k]] == light)
+        same[taken++] = lanes[k];
+      else
+        lanes[rest++] = lanes[k];
+    }
+    vl_sample_environment(world, &world->lights.items[light], paths, same, taken, u, v, out);
+    count = rest;
+  }
+}
+
 void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *f, const float *u_choice,
                      const float *u, const float *v, vlLightSamples *out) {
   vl_stage_light_choice(&world->tree, n, f, u_choice, out);
-  for (uint32_t i = 0; i < n; i++) sample_one(world, i, paths, vl_vec3(f->px[i], f->py[i], f->pz[i]), u[i], v[i], out);
+  uint32_t skies[VL_ROW_SIZE], triangles[VL_TRIANGLE_BLOCK], sky_count = 0, triangle_count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    out->pdf[i] = 0.0f;
+    out->wx[i] = out->wy[i] = out->wz[i] = 0.0f;
+    if (out->light[i] == VL_INNER || !(out->pmf[i] > 0.0f)) continue;
+    const vlWorldLight *light = &world->lights.items[out->light[i]];
+    if (light->plain_triangle) {
+      triangles[triangle_count++] = i;
+      if (triangle_count == VL_TRIANGLE_BLOCK) {
+        vl_sample_triangles(world, paths, f, triangles, triangle_count, u, v, out);
+        triangle_count = 0;
+      }
+    } else if (vl_light_is_environment(world, light)) {
+      skies[sky_count++] = i;
+    } else {
+      sample_one(world, i, paths, vl_vec3(f->px[i], f->py[i], f->pz[i]), u[i], v[i], out);
+    }
+  }
+  if (triangle_count) vl_sample_triangles(world, paths, f, triangles, triangle_count, u, v, out);
+  sample_environments(world, paths, skies, sky_count, u, v, out);
 }

@@ -112,10 +112,15 @@ static void add_light(vlTracing *t, uint32_t i, const float radiance[4], float l
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * radiance[c] * inv;
 }
 
-static void add_sky(vlTracing *t, uint32_t i) {
-  for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
-    vlHitLight met = vl_hit_infinite(t->world, &t->s->a, i, k);
-    add_light(t, i, met.radiance, met.pdf);
+/* Adds the infinite lights for rays that hit nothing, at most VL_SKY_BLOCK. */
+static void add_sky(vlTracing *t, const uint32_t *lanes, uint32_t count) {
+  for (size_t k = 0; count > 0 && k < t->world->infinite_lights.count; k++) {
+    vlSkyHits met;
+    vl_hit_sky(t->world, &t->s->a, lanes, count, k, &met);
+    for (uint32_t j = 0; j < count; j++) {
+      const float radiance[4] = {met.radiance[0][j], met.radiance[1][j], met.radiance[2][j], met.radiance[3][j]};
+      add_light(t, lanes[j], radiance, met.pdf[j]);
+    }
   }
 }
 
@@ -126,11 +131,17 @@ static void add_emission(vlTracing *t, uint32_t i) {
 
 static void emission(vlTracing *t, uint32_t n) {
   const vlHits *h = &t->s->hits_a;
+  uint32_t missed[VL_SKY_BLOCK], count = 0;
   for (uint32_t i = 0; i < n; i++) {
     uint8_t event = t->s->volume.event[i];
-    if (event == VL_IN_SKY) add_sky(t, i);
+    if (event == VL_IN_SKY) missed[count++] = i;
     if (event == VL_ON_SURFACE && t->world->shapes.items[h->shape[i]].first_light != VL_NONE) add_emission(t, i);
+    if (count == VL_SKY_BLOCK) {
+      add_sky(t, missed, count);
+      count = 0;
+    }
   }
+  add_sky(t, missed, count);
 }
 
 /* ---- scattering in media ----------------------------------------------------------------------------------------- */

@@ -12,10 +12,16 @@ static void add_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHi
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met->radiance[c] * weight;
 }
 
-static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i) {
-  for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
-    vlHitLight met = vl_hit_infinite(t->world, p, i, k);
-    add_hit_light(t, p, i, &met);
+/* Adds the infinite lights for rays that hit nothing, at most VL_SKY_BLOCK. */
+static void add_sky(vlTracing *t, const vlPaths *p, const uint32_t *lanes, uint32_t count) {
+  for (size_t k = 0; count > 0 && k < t->world->infinite_lights.count; k++) {
+    vlSkyHits met;
+    vl_hit_sky(t->world, p, lanes, count, k, &met);
+    for (uint32_t j = 0; j < count; j++) {
+      uint32_t i = lanes[j];
+      float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met.pdf[j]);
+      for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met.radiance[c][j] * weight;
+    }
   }
 }
 
@@ -31,12 +37,18 @@ static void add_emission(vlTracing *t, const vlPaths *p, const vlHits *h, uint32
 
 void vl_stage_emission(vlTracing *t, uint32_t n) {
   const vlHits *h = &t->s->hits_a;
+  uint32_t missed[VL_SKY_BLOCK], count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (h->shape[i] == VL_NONE)
-      add_sky(t, &t->s->a, i);
+      missed[count++] = i;
     else if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE)
       add_emission(t, &t->s->a, h, i);
+    if (count == VL_SKY_BLOCK) {
+      add_sky(t, &t->s->a, missed, count);
+      count = 0;
+    }
   }
+  add_sky(t, &t->s->a, missed, count);
 }
 
 /* ---- hits -------------------------------------------------------------------------------------------------------- */

@@ -78,14 +78,6 @@ typedef struct Query {
   uint32_t first;
 } Query;
 
-/* Considers a hit of the ray with this id. Returns the largest t at which further hits matter, or a negative number
- * if the hit is rejected. */
-static float offer(const EmbreeContext *context, unsigned id, float t, unsigned inst, unsigned geom, unsigned prim) {
-  const Query *q = (const Query *)(const void *)context;
-  if (!q->nearest) return t;
-  return vl_nearest_offer(q->nearest + (id - q->first), t, inst, geom, prim) ? t * VL_NEAREST_WINDOW : -1.0f;
-}
-
 static vlLocalRay local_ray(const vlWorld *world, const EmbreeContext *context, unsigned id, unsigned inst) {
   uint32_t instance = inst == RTC_INVALID_GEOMETRY_ID ? VL_NONE : inst - world->groups.items[0].count;
   return vl_local_ray(world, ((const Query *)(const void *)context)->rays, id, instance);
@@ -116,28 +108,58 @@ static bool filter_rejects(const AccelGeometry *g, const struct RTCFilterFunctio
   return g->shape->alpha >= 0 && vl_alpha_passes(g->world, g->shape, &r, prim, 0, &at);
 }
 
-/* Whether a hit is the nearest so far. */
-static bool is_nearest(const struct RTCFilterFunctionNArguments *args, unsigned i) {
-  if (!((const Query *)(const void *)args->context)->nearest) return true;
-  const vlWorldShape *s = ((const AccelGeometry *)args->geometryUserPtr)->shape;
-  unsigned n = args->N, prim = *hit_row(args->hit, n, PRIM, i);
-  float normal[3], o[3], d[3], room[3];
+/* The hit of ray i of n, as a filter gets it: the ray's t is that of the hit. */
+static inline __attribute__((always_inline)) void read_hit(const struct RTCFilterFunctionNArguments *args, unsigned n,
+                                                           unsigned i, vlNearest *hit) {
+  hit->t = *ray_row(args->ray, n, TFAR, i);
+  hit->instance = *hit_row(args->hit, n, INST, i);
+  hit->geometry = *hit_row(args->hit, n, GEOM, i);
+  hit->primitive = *hit_row(args->hit, n, PRIM, i);
+  hit->shape = ((const AccelGeometry *)args->geometryUserPtr)->shape;
   for (int k = 0; k < 3; k++) {
-    normal[k] = *ray_row(args->hit, n, NORMAL + k, i);
-    o[k] = *ray_row(args->ray, n, ORIGIN + k, i);
-    d[k] = *ray_row(args->ray, n, DIRECTION + k, i);
+    hit->normal[k] = *ray_row(args->hit, n, NORMAL + k, i);
+    hit->o[k] = *ray_row(args->ray, n, ORIGIN + k, i);
+    hit->d[k] = *ray_row(args->ray, n, DIRECTION + k, i);
   }
-  const float *corner = vl_vertex_at(s, s->indices[3 * (size_t)prim], *ray_row(args->ray, n, TIME, i), room);
-  float limit = offer(args->context, *hit_row(args->ray, n, ID, i), vl_plane_distance(corner, normal, o, d),
-                      *hit_row(args->hit, n, INST, i), *hit_row(args->hit, n, GEOM, i), prim);
-  if (limit < 0) return false;
-  *ray_row(args->ray, n, TFAR, i) = limit;
+  hit->time = *ray_row(args->ray, n, TIME, i);
+}
+
+static __attribute__((noinline)) bool compare_hits(const struct RTCFilterFunctionNArguments *args, unsigned n,
+                                                   unsigned i, vlNearest *known) {
+  vlNearest hit;
+  read_hit(args, n, i, &hit);
+  return vl_nearest_offer(known, &hit);
+}
+
+/* Whether the hit of ray i of n is the nearest so far. Sets the largest t at which further hits matter. */
+static inline __attribute__((always_inline)) bool is_nearest(const struct RTCFilterFunctionNArguments *args, unsigned n,
+                                                             unsigned i) {
+  const Query *q = (const Query *)(const void *)args->context;
+  vlNearest *known = q->nearest + (*hit_row(args->ray, n, ID, i) - q->first);
+  float t = *ray_row(args->ray, n, TFAR, i);
+  if (vl_nearest_clearly(known, t))
+    read_hit(args, n, i, known);
+  else if (!compare_hits(args, n, i, known))
+    return false;
+  *ray_row(args->ray, n, TFAR, i) = t * VL_NEAREST_WINDOW;
   return true;
 }
 
-static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
+/* Portable bits: of triangles that need no other filter. */
+static void filter_nearest(const struct RTCFilterFunctionNArguments *args) {
+  if (args->N == 1) { /* single rays: the compiler knows all places */
+    if (args->valid[0] == -1 && !is_nearest(args, 1, 0)) args->valid[0] = 0;
+    return;
+  }
   for (unsigned i = 0; i < args->N; i++)
-    if (args->valid[i] == -1 && (filter_rejects(args->geometryUserPtr, args, i, false) || !is_nearest(args, i)))
+    if (args->valid[i] == -1 && !is_nearest(args, args->N, i)) args->valid[i] = 0;
+}
+
+static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
+  bool any = !((const Query *)(const void *)args->context)->nearest;
+  for (unsigned i = 0; i < args->N; i++)
+    if (args->valid[i] == -1 &&
+        (filter_rejects(args->geometryUserPtr, args, i, false) || !(any || is_nearest(args, args->N, i))))
       args->valid[i] = 0;
 }
 
@@ -188,9 +210,14 @@ static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
   for (unsigned i = 0; i < args->N; i++) {
     double t;
     if (args->valid[i] != -1 || !user_hit(g, args->context, ray, args->N, i, args->primID, false, &t)) continue;
-    float limit = offer(args->context, *hit_row(ray, args->N, ID, i), (float)t, args->context->instID[0], args->geomID,
-                        args->primID);
-    if (limit < 0) continue;
+    const Query *q = (const Query *)(const void *)args->context;
+    float limit = (float)t;
+    if (q->nearest) {
+      vlNearest met = {
+          .t = (float)t, .instance = args->context->instID[0], .geometry = args->geomID, .primitive = args->primID};
+      if (!vl_nearest_offer(q->nearest + (*hit_row(ray, args->N, ID, i) - q->first), &met)) continue;
+      limit = met.t * VL_NEAREST_WINDOW;
+    }
     *ray_row(ray, args->N, TFAR, i) = limit;
     *hit_row(hit, args->N, GEOM, i) = args->geomID;
     *hit_row(hit, args->N, PRIM, i) = args->primID;
@@ -230,8 +257,10 @@ static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, Acce
       rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3, s->positions,
                                  12 * (size_t)k * s->vertices, 12, s->vertices);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s->indices, 0, 12, s->faces);
-    if (s->alpha >= 0 || s->one_sided || g->world->def.bits == VL_BITS_PORTABLE)
+    if (s->alpha >= 0 || s->one_sided)
       rtcSetGeometryIntersectFilterFunction(geometry, filter_closest);
+    else if (g->world->def.bits == VL_BITS_PORTABLE)
+      rtcSetGeometryIntersectFilterFunction(geometry, filter_nearest);
     if (s->alpha >= 0 || s->one_sided || s->pass_shadow)
       rtcSetGeometryOccludedFilterFunction(geometry, filter_occluded);
   } else {

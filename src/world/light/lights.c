@@ -70,71 +70,8 @@ float vl_light_texel_luminance(vlTexel t, uint32_t channels) {
   return channels < 3 ? t.c[0] : 0.2126f * t.c[0] + 0.7152f * t.c[1] + 0.0722f * t.c[2];
 }
 
-/* ---- environment images ------------------------------------------------------------------------------------------ */
-
-enum { MAX_CELLS = 1024 };
-
-/* A distribution over cells: the mean luminance of each cell's texels minus the mean of all (MIS compensation,
- * Karlik et al. 2019), so that the uniform part is left to BSDF sampling. */
-static vlResult build_environment(vlWorld *world, vlEnvironment *env, double *mean_luminance, double *illuminance,
-                                  vlError *error) {
-  const vlMipmap *mip = world->images.items[env->image].mipmap;
-  uint32_t n = mip->levels[0].width, channels = mip->channels;
-  uint32_t step = (n + MAX_CELLS - 1) / MAX_CELLS, size = (n + step - 1) / step;
-  env->size = size;
-  env->conditional_cdf = vl_world_block(world, (size_t)size * (size + 1), sizeof(float));
-  env->marginal_cdf = vl_world_block(world, size + 1, sizeof(float));
-  env->pdf = vl_world_block(world, (size_t)size * size, sizeof(float));
-  if (!env->conditional_cdf || !env->marginal_cdf || !env->pdf) return vl_fail_memory(error);
-  double total = 0, upper = 0;
-  for (uint32_t y = 0; y < size; y++)
-    for (uint32_t x = 0; x < size; x++) {
-      double sum = 0;
-      uint32_t count = 0;
-      for (uint32_t j = y * step; j < (y + 1) * step && j < n; j++)
-        for (uint32_t i = x * step; i < (x + 1) * step && i < n; i++) {
-          float l = vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)i, (int32_t)j, VL_WRAP_CLAMP), channels);
-          if (!isfinite(l))
-            return vl_fail(error, VL_ERROR_SCENE, "pixel (%u, %u) of the image of the sky is not finite", i, j);
-          if (l > 0) sum += l;
-          count++;
-        }
-      env->pdf[(size_t)y * size + x] = (float)(sum / count);
-      total += sum / count;
-      vlVec3 d = vl_octahedral_decode(((float)x + 0.5f) / (float)size, ((float)y + 0.5f) / (float)size);
-      upper += d.z > 0 ? sum / count * d.z : 0;
-    }
-  double mean = total / ((double)size * size);
-  *mean_luminance = mean;
-  /* pbrt-v4 takes the upper half for a hemisphere that fills the square: half of the true illuminance. */
-  *illuminance = upper * (world->def.imitate_pbrt ? 2 : 4) * M_PI / ((double)size * size);
-  bool flat = true;
-  for (size_t i = 0; i < (size_t)size * size; i++) flat = flat && env->pdf[i] <= mean * 1.0001;
-  double sum_all = 0;
-  for (size_t i = 0; i < (size_t)size * size; i++) {
-    double w = flat ? 1 : env->pdf[i] > mean ? env->pdf[i] - mean : 0;
-    env->pdf[i] = (float)w;
-    sum_all += w;
-  }
-  double marginal = 0;
-  env->marginal_cdf[0] = 0;
-  for (uint32_t y = 0; y < size; y++) {
-    float *row = env->pdf + (size_t)y * size, *cdf = env->conditional_cdf + (size_t)y * (size + 1);
-    double row_sum = 0, run = 0;
-    for (uint32_t x = 0; x < size; x++) row_sum += row[x];
-    cdf[0] = 0;
-    for (uint32_t x = 0; x < size; x++) {
-      run += row[x];
-      cdf[x + 1] = row_sum > 0 ? (float)(run / row_sum) : (float)(x + 1) / (float)size;
-    }
-    cdf[size] = 1;
-    marginal += row_sum;
-    env->marginal_cdf[y + 1] = (float)(marginal / sum_all);
-    for (uint32_t x = 0; x < size; x++) row[x] = (float)(row[x] / sum_all * size * size);
-  }
-  env->marginal_cdf[size] = 1;
-  return VL_OK;
-}
+/* ---- infinite lights ----------------------------------------------------------------------------------------------
+ */
 
 vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,
                                    vlError *error) {
@@ -165,7 +102,7 @@ vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorl
       env->light_from_world[3 * i + j] = (float)inverse.m[4 * i + j];
     }
   double mean = 0, illuminance = 0;
-  vlResult r = build_environment(world, env, &mean, &illuminance, error);
+  vlResult r = vl_world_build_environment(world, env, &mean, &illuminance, error);
   if (def->illuminance == def->illuminance && illuminance > 0)
     e->image_scale *= (float)(def->illuminance / illuminance);
   light->environment = (uint32_t)world->environments.count - 1;

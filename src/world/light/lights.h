@@ -27,6 +27,10 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
                                 vlError *error);
 VL_LIGHT_KINDS(VL_LIGHT_KIND_COMPILES)
 #undef VL_LIGHT_KIND_COMPILES
+/* Makes the distribution of an environment whose image is set. mean_luminance: of the image; illuminance: of a
+ * horizontal surface under it (environment.c). */
+vlResult vl_world_build_environment(vlWorld *world, vlEnvironment *env, double *mean_luminance, double *illuminance,
+                                    vlError *error);
 /* Adds the portal of an environment image whose directions env gives. power: of the light that passes through it
  * (portal.c). */
 vlResult vl_world_add_portal(vlWorld *world, const vlLightDef *def, vlEnvironment *env, double *power, vlError *error);

@@ -174,7 +174,10 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
     float l = e->image >= 0 ? e->image_scale * mean_image_luminance(world->images.items[e->image].mipmap) * own : own;
     if (e->node && shape->kind == VL_SHAPE_TRIANGLES) l = face_luminance(world, shape, i, e) * own;
     light->power = VL_PI * area * l * (e->two_sided ? 2 : 1);
-    if (shape->kind == VL_SHAPE_TRIANGLES) triangle_light(shape, i, light);
+    if (shape->kind == VL_SHAPE_TRIANGLES) {
+      triangle_light(shape, i, light);
+      light->plain_triangle = light->one_sided_normals && shape->alpha < 0 && e->image < 0;
+    }
     if (shape->kind == VL_SHAPE_DISK) {
       vlSurfacePoint point;
       double pdf;

@@ -1,0 +1,57 @@
+/* trace/light/triangle.h: sampling of a triangle that emits light; private to the hot files of trace/light. */
+#ifndef TRACE_LIGHT_TRIANGLE_H
+#define TRACE_LIGHT_TRIANGLE_H
+
+#include "math/warp.h"
+#include "trace/stages.h"
+
+/* The corners as seen from a point. */
+typedef struct vlTriangleSeen {
+  vlVec3 a, b, c;
+} vlTriangleSeen;
+static inline vlTriangleSeen vl_triangle_from(const float q[9], vlVec3 from) {
+  return (vlTriangleSeen){vl_vec3(q[0] - from.x, q[1] - from.y, q[2] - from.z),
+                          vl_vec3(q[3] - from.x, q[4] - from.y, q[5] - from.z),
+                          vl_vec3(q[6] - from.x, q[7] - from.y, q[8] - from.z)};
+}
+
+/* Near triangles are sampled by solid angle, since the density of area sampling is unbounded over them; far ones by
+ * area, which is cheaper. Sampling and density both use this decision: maybe near by the area and the distance of the
+ * centre, and near by the solid angle. */
+static inline int vl_triangle_maybe_near(vlTriangleSeen q, float area) {
+  float d2 = vl_length2(vl_add(vl_add(q.a, q.b), q.c)) * (1.0f / 9.0f);
+  return area > 0.05f * d2;
+}
+static inline vlSphericalTriangle vl_triangle_cap(vlTriangleSeen q) {
+  return vl_spherical_triangle(vl_normalize(q.a), vl_normalize(q.b), vl_normalize(q.c));
+}
+static inline int vl_triangle_cap_near(float solid_angle) {
+  /* Outside these limits sampling is by area: below, both densities are nearly the same; above, the triangle is nearly
+   * a hemisphere (2 pi = 6.283) and its cap degenerates (6.22 as in pbrt). */
+  const float smallest_cap = 1e-3f, largest_cap = 6.22f;
+  return (solid_angle > smallest_cap) & (solid_angle < largest_cap);
+}
+
+/* Intersection of the direction w with the triangle's plane, in barycentric coordinates. */
+static inline vlVec3 vl_triangle_weights(vlTriangleSeen q, vlVec3 w) {
+  float b0 = vl_abs(vl_dot(w, vl_cross(q.b, q.c))), b1 = vl_abs(vl_dot(w, vl_cross(q.c, q.a))),
+        b2 = vl_abs(vl_dot(w, vl_cross(q.a, q.b)));
+  float sum = b0 + b1 + b2, inv = sum > 0.0f ? 1.0f / sum : 0.0f;
+  return vl_vec3(b0 * inv, b1 * inv, 1.0f - (b0 + b1) * inv);
+}
+
+/* Density per solid angle of a density per area, for a point with normal n. */
+static inline float vl_solid_pdf(float pdf_area, vlVec3 from, vlVec3 p, vlVec3 n) {
+  vlVec3 to = vl_sub(p, from);
+  float d2 = vl_length2(to), cosine = vl_abs(vl_dot(n, to));
+  return cosine > 0.0f ? pdf_area * d2 * __builtin_sqrtf(d2) / cosine : 0.0f;
+}
+
+/* The end of a shadow ray that arrives at p along -w, on the side of n: moved off the light by the bound of its points'
+ * rounding error. */
+static inline vlVec3 vl_light_target(vlVec3 p, vlVec3 n, vlVec3 w) {
+  float size = vl_abs(p.x) + vl_abs(p.y) + vl_abs(p.z);
+  return vl_offset_origin(p, n, 16.0f * 0x1p-24f * size, vl_neg(w));
+}
+
+#endif

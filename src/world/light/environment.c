@@ -1,0 +1,107 @@
+/* world/light/environment.c: the distribution over the cells of an environment image. */
+#include "world/light/environment.h"
+
+#include <math.h>
+
+#include "base/error.h"
+#include "world/light/lights.h"
+
+_Static_assert(VL_ENVIRONMENT_CELLS <= VL_GUIDES && VL_GUIDES <= 65536, "cells are found from a guide of 16 bits");
+
+/* The weights of the cells, to their pdf: mean luminances. sum: of all; upper: of the upper half, times the cosine. */
+static vlResult cell_luminances(const vlMipmap *mip, vlEnvironment *env, uint32_t step, double *sum_all, double *upper,
+                                vlError *error) {
+  uint32_t n = mip->levels[0].width, channels = mip->channels, size = env->size;
+  for (uint32_t y = 0; y < size; y++)
+    for (uint32_t x = 0; x < size; x++) {
+      double sum = 0;
+      uint32_t count = 0;
+      for (uint32_t j = y * step; j < (y + 1) * step && j < n; j++)
+        for (uint32_t i = x * step; i < (x + 1) * step && i < n; i++) {
+          float l = vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)i, (int32_t)j, VL_WRAP_CLAMP), channels);
+          if (!isfinite(l))
+            return vl_fail(error, VL_ERROR_SCENE, "pixel (%u, %u) of the image of the sky is not finite", i, j);
+          if (l > 0) sum += l;
+          count++;
+        }
+      env->cells[(size_t)y * (size + 1) + x].pdf = (float)(sum / count);
+      *sum_all += sum / count;
+      vlVec3 d = vl_octahedral_decode(((float)x + 0.5f) / (float)size, ((float)y + 0.5f) / (float)size);
+      *upper += d.z > 0 ? sum / count * d.z : 0;
+    }
+  return VL_OK;
+}
+
+/* Weights minus the mean of all, at least 0; 1 where all are equal. Returns their sum. */
+static double compensate(vlEnvironment *env, double mean) {
+  uint32_t size = env->size;
+  bool flat = true;
+  for (uint32_t y = 0; y < size; y++)
+    for (uint32_t x = 0; x < size; x++) flat = flat && env->cells[(size_t)y * (size + 1) + x].pdf <= mean * 1.0001;
+  double sum = 0;
+  for (uint32_t y = 0; y < size; y++)
+    for (uint32_t x = 0; x < size; x++) {
+      float *pdf = &env->cells[(size_t)y * (size + 1) + x].pdf;
+      double w = flat ? 1 : *pdf > mean ? *pdf - mean : 0;
+      *pdf = (float)w;
+      sum += w;
+    }
+  return sum;
+}
+
+/* For each interval of u the last of n intervals that starts at or before it. from[i * stride]: start of interval i. */
+static void make_guide(const float *from, size_t stride, uint32_t n, uint16_t *guide) {
+  uint32_t i = 0;
+  for (uint32_t k = 0; k < VL_GUIDES; k++) {
+    float u = (float)k * (1.0f / VL_GUIDES);
+    while (i + 1 < n && from[(i + 1) * stride] <= u) i++;
+    guide[k] = (uint16_t)i;
+  }
+}
+
+static void make_distribution(vlEnvironment *env, double sum_all) {
+  uint32_t size = env->size;
+  double marginal = 0;
+  env->rows[0] = 0;
+  for (uint32_t y = 0; y < size; y++) {
+    vlEnvironmentCell *row = env->cells + (size_t)y * (size + 1);
+    double row_sum = 0, run = 0;
+    for (uint32_t x = 0; x < size; x++) row_sum += row[x].pdf;
+    row[0].below = 0;
+    for (uint32_t x = 0; x < size; x++) {
+      run += row[x].pdf;
+      row[x + 1].below = row_sum > 0 ? (float)(run / row_sum) : (float)(x + 1) / (float)size;
+    }
+    row[size].below = 1;
+    marginal += row_sum;
+    env->rows[y + 1] = (float)(marginal / sum_all);
+    for (uint32_t x = 0; x < size; x++) row[x].pdf = (float)(row[x].pdf / sum_all * size * size);
+    make_guide(&row[0].below, sizeof *row / sizeof(float), size, env->cell_guide + (size_t)y * VL_GUIDES);
+  }
+  env->rows[size] = 1;
+  make_guide(env->rows, 1, size, env->row_guide);
+}
+
+/* A distribution over cells: the mean luminance of each cell's texels minus the mean of all (MIS compensation,
+ * Karlik et al. 2019), so that the uniform part is left to BSDF sampling. */
+vlResult vl_world_build_environment(vlWorld *world, vlEnvironment *env, double *mean_luminance, double *illuminance,
+                                    vlError *error) {
+  const vlMipmap *mip = world->images.items[env->image].mipmap;
+  uint32_t n = mip->levels[0].width, step = (n + VL_ENVIRONMENT_CELLS - 1) / VL_ENVIRONMENT_CELLS;
+  uint32_t size = (n + step - 1) / step;
+  env->size = size;
+  env->cells = vl_world_block(world, (size_t)size * (size + 1), sizeof *env->cells);
+  env->rows = vl_world_block(world, size + 1, sizeof *env->rows);
+  env->row_guide = vl_world_block(world, VL_GUIDES, sizeof *env->row_guide);
+  env->cell_guide = vl_world_block(world, (size_t)size * VL_GUIDES, sizeof *env->cell_guide);
+  if (!env->cells || !env->rows || !env->row_guide || !env->cell_guide) return vl_fail_memory(error);
+  double total = 0, upper = 0;
+  vlResult r = cell_luminances(mip, env, step, &total, &upper, error);
+  if (r != VL_OK) return r;
+  double mean = total / ((double)size * size);
+  *mean_luminance = mean;
+  /* pbrt-v4 takes the upper half for a hemisphere that fills the square: half of the true illuminance. */
+  *illuminance = upper * (world->def.imitate_pbrt ? 2 : 4) * M_PI / ((double)size * size);
+  make_distribution(env, compensate(env, mean));
+  return VL_OK;
+}

@@ -1,0 +1,75 @@
+/* world/light/environment.h: an environment image in pbrt's equal-area octahedral square, with a distribution over its
+ * cells (pbrt book 12.5.2). environment.c builds it; the lookups are inline, for the hot loops.
+ *
+ * A cell is sampled by inverting the cumulative distribution, not by an alias table: well-distributed random numbers
+ * stay well distributed. A table of first candidates (Chen and Asau 1974) replaces the binary search: it holds, for
+ * each of VL_GUIDES equal intervals of the random number, the cell of the interval's start. From there 1 cell is passed
+ * on average. */
+#ifndef WORLD_LIGHT_ENVIRONMENT_H
+#define WORLD_LIGHT_ENVIRONMENT_H
+
+#include "math/octahedral.h"
+#include "math/warp.h"
+
+/* A power of two, so that u * VL_GUIDES is exact; at least VL_ENVIRONMENT_CELLS. */
+enum { VL_ENVIRONMENT_CELLS = 1024, VL_GUIDES = 1024 };
+
+typedef struct vlEnvironmentCell {
+  float below; /* cumulative distribution: of the row's cells before this one, from 0 to 1 */
+  float pdf;   /* density over the unit square */
+} vlEnvironmentCell;
+
+typedef struct vlEnvironment {
+  int32_t image;
+  uint32_t size;                                  /* of the distribution: size x size cells */
+  vlEnvironmentCell *cells;                       /* size rows of size + 1; the last of a row has below 1 */
+  float *rows;                                    /* size + 1: cumulative distribution of the rows */
+  uint16_t *row_guide;                            /* VL_GUIDES: first candidates among the rows, */
+  uint16_t *cell_guide;                           /* size rows of VL_GUIDES: among the cells of a row */
+  float light_from_world[9], world_from_light[9]; /* rotations, row-major */
+  const struct vlPortal *portal;                  /* the only opening to it (world/light/portal.h); null: none */
+} vlEnvironment;
+
+static inline uint32_t vl_guide_index(float u) {
+  uint32_t i = (uint32_t)(int32_t)(u * VL_GUIDES);
+  return i < VL_GUIDES ? i : VL_GUIDES - 1;
+}
+
+/* As vl_find_cell: the row, or the cell of row y, that contains u in [0, 1); *within: position in it, below 1. */
+static inline float vl_within_cell(float low, float high, float u) {
+  float width = high - low;
+  return width > 0.0f ? vl_clamp((u - low) / width, 0.0f, VL_ONE_MINUS_EPSILON) : 0.5f;
+}
+static inline uint32_t vl_environment_row(const vlEnvironment *env, float u, float *within) {
+  uint32_t i = env->row_guide[vl_guide_index(u)];
+  while (i + 1 < env->size && env->rows[i + 1] <= u) i++;
+  *within = vl_within_cell(env->rows[i], env->rows[i + 1], u);
+  return i;
+}
+static inline uint32_t vl_environment_cell(const vlEnvironment *env, uint32_t y, float u, float *within) {
+  const vlEnvironmentCell *row = env->cells + (size_t)y * (env->size + 1);
+  uint32_t i = env->cell_guide[(size_t)y * VL_GUIDES + vl_guide_index(u)];
+  while (i + 1 < env->size && row[i + 1].below <= u) i++;
+  *within = vl_within_cell(row[i].below, row[i + 1].below, u);
+  return i;
+}
+
+/* The cell that contains a point of the unit square, as an index into cells. */
+static inline size_t vl_environment_at(const vlEnvironment *env, float s, float t) {
+  uint32_t x = (uint32_t)(int32_t)(s * (float)env->size), y = (uint32_t)(int32_t)(t * (float)env->size);
+  x = x < env->size ? x : env->size - 1, y = y < env->size ? y : env->size - 1;
+  return (size_t)y * (env->size + 1) + x;
+}
+
+static inline vlVec3 vl_environment_turn(const float m[9], vlVec3 d) {
+  return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
+                 m[6] * d.x + m[7] * d.y + m[8] * d.z);
+}
+static inline vlVec3 vl_environment_direction(const vlEnvironment *env, float s, float t) {
+  return vl_normalize(vl_environment_turn(env->world_from_light, vl_octahedral_decode(s, t)));
+}
+static inline vlVec2 vl_environment_square(const vlEnvironment *env, vlVec3 d) {
+  return vl_octahedral_encode(vl_normalize(vl_environment_turn(env->light_from_world, d)));
+}
+
+#endif

@@ -103,6 +103,12 @@ uint32_t vl_film_spp(const vlFilm *film) {
 void vl_film_set_spp(vlFilm *film, uint32_t spp) {
   film->spp = spp;
 }
+vlFilmSequence vl_film_sequence(const vlFilm *film) {
+  return film->spp ? film->sequence : (vlFilmSequence){0, 0};
+}
+void vl_film_set_sequence(vlFilm *film, vlFilmSequence sequence) {
+  film->sequence = sequence;
+}
 const vlFilmDef *vl_film_def(const vlFilm *film) {
   return &film->def;
 }

@@ -47,6 +47,14 @@ typedef struct vlFilmSensor {
 const vlFilmSensor *vl_film_sensor(const vlFilm *film);
 void vl_film_set_spp(vlFilm *film, uint32_t spp); /* render calls it after each whole pass */
 
+/* The sequence that a film's samples are from: its length, and the index of the film's first sample. Set before the
+ * first sample; a film without samples has length 0. */
+typedef struct vlFilmSequence {
+  uint32_t length, first;
+} vlFilmSequence;
+vlFilmSequence vl_film_sequence(const vlFilm *film);
+void vl_film_set_sequence(vlFilm *film, vlFilmSequence sequence);
+
 /* An abandoned pass leaves no trace. There are two sets of sums: a pixel's first sample in a pass copies its sums from
  * the front set to the back set, and the pass adds there; commit swaps the sets, abandon drops the back set. The only
  * cost is one test of the pixel's stamp. Error of begin_pass: MEMORY (the sets are allocated at first need). */

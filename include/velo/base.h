@@ -162,6 +162,20 @@ VL_API uint32_t vl_context_threads(const vlContext *context);
 /** Bytes held now, from the allocator and by Embree; *peak: the most so far (may be null). */
 VL_API size_t vl_context_memory(const vlContext *context, size_t *peak);
 
+/** A file that a context read. */
+typedef struct vlFileRecord {
+  const char *path; /**< as it was opened */
+  uint64_t size;    /**< bytes of the file */
+  /** MurmurHash3_x64_128 of these bytes, of a compressed file before it is unpacked: tells whether a file changed, and
+   * is no protection against forgery. */
+  uint8_t digest[16];
+} vlFileRecord;
+/** From now on records the files that are read (on), or does not (off, the default): scenes with all that they name,
+ * camera files, images. A path that is read again replaces its record. Any thread. */
+VL_API void vl_context_record_files(vlContext *context, bool on);
+/** The recorded files, by path, index from 0; null past the end. Lives until the next file is read. */
+VL_API const vlFileRecord *vl_context_file(vlContext *context, uint32_t index);
+
 /** Writes a file whole or not at all, as every writer of the library does: to a temporary file in the same folder,
  * synced, renamed. A symbolic link is followed; a replaced file keeps its permissions. Errors: IO. */
 VL_API vlResult vl_write_file(const char *path, const void *data, size_t size, vlError *error);

@@ -13,6 +13,7 @@
 #include "velo/export.h"
 #include "velo/focus.h"
 #include "velo/image.h"
+#include "velo/receipt.h"
 #include "velo/render.h"
 #include "velo/scene.h"
 #include "velo/trajectory.h"

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/cookie.h"
+#include "base/file_record.h"
 #include "base/isa.h"
 
 typedef struct Pool {
@@ -31,6 +32,7 @@ struct vlContext {
   vlIsa isa;
   atomic_size_t held, peak;
   pthread_mutex_t log_mutex, run_mutex;
+  vlFileRecords files;
   char **sandbox; /* def.sandbox_count folders, with symbolic links resolved */
   Pool pool;
 };
@@ -307,6 +309,7 @@ vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
   context->isa = isa;
   pthread_mutex_init(&context->log_mutex, NULL);
   pthread_mutex_init(&context->run_mutex, NULL);
+  pthread_mutex_init(&context->files.mutex, NULL);
   r = copy_sandbox(context);
   if (r == VL_OK && !d.parallel_for) r = pool_start(&context->pool, d.threads);
   if (r != VL_OK) {
@@ -323,6 +326,8 @@ void vl_context_destroy(vlContext *context) {
   if (!context->def.parallel_for) pool_stop(&context->pool);
   pthread_mutex_destroy(&context->log_mutex);
   pthread_mutex_destroy(&context->run_mutex);
+  pthread_mutex_destroy(&context->files.mutex);
+  vl_file_records_free(context);
   free_sandbox(context);
   context->def.allocator.release(context->def.allocator.user, context);
 }
@@ -333,4 +338,8 @@ vlIsa vl_context_isa(const vlContext *context) {
 
 uint32_t vl_context_threads(const vlContext *context) {
   return context->def.threads;
+}
+
+vlFileRecords *vl_context_file_records(vlContext *context) {
+  return &context->files;
 }

@@ -13,6 +13,7 @@
 #include <zlib.h>
 
 #include "base/error.h"
+#include "base/file_record.h"
 #include "base/text.h"
 
 double vl_seconds(void) {
@@ -181,7 +182,8 @@ static vlResult read_file(vlContext *context, const char *path, bool given, bool
   close(fd);
   if (result == VL_OK) {
     block[used] = 0;
-    if (gunzip && used >= 2 && (unsigned char)block[0] == 0x1f && (unsigned char)block[1] == 0x8b)
+    if (!vl_file_record(context, path, block, used)) result = vl_fail_memory(error);
+    if (result == VL_OK && gunzip && used >= 2 && (unsigned char)block[0] == 0x1f && (unsigned char)block[1] == 0x8b)
       result = gunzip_all(context, path, &block, &used, error);
   }
   if (result != VL_OK) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/context.h"
+#include "base/digest.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "math/elementary.h"
@@ -219,4 +220,9 @@ vlResult vl_aperture_create_named(vlContext *context, const char *name, vlApertu
   vlResult result = vl_aperture_create(context, NAMED, NAMED, values, aperture, error);
   vl_free(context, values);
   return result;
+}
+
+void vl_aperture_digest(const vlAperture *a, uint8_t digest[16]) {
+  vl_digest(a->values, (size_t)a->width * a->height * sizeof *a->values, digest);
+  for (int i = 0; i < 4; i++) digest[i] ^= (uint8_t)(a->width >> 8 * i);
 }

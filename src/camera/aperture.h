@@ -25,4 +25,7 @@ double vl_aperture_value(const vlAperture *aperture, double x, double y);
 /* The square of the largest distance from the centre at which the aperture's value is above 0; at most 2. */
 double vl_aperture_reach2(const vlAperture *aperture);
 
+/* A digest of its size and values, to tell whether it changed. */
+void vl_aperture_digest(const vlAperture *aperture, uint8_t digest[16]);
+
 #endif

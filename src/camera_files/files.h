@@ -123,6 +123,8 @@ vlCameraReadText vl_camera_read_mitsuba, vl_camera_read_usd;
 vlCameraWriteText vl_camera_write_velo, vl_camera_write_opencv, vl_camera_write_ros, vl_camera_write_nerf,
     vl_camera_write_kalibr, vl_camera_write_blender, vl_camera_write_pbrt, vl_camera_write_gltf,
     vl_camera_write_matrices, vl_camera_write_mitsuba, vl_camera_write_usd;
+/* The camera as vl_camera_write_velo writes it, without the image of its aperture and the surfaces of its lens. */
+void vl_camera_put_velo(const vlCameraRecord *record, vlCameraText *text);
 vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record);
 vlResult vl_camera_write_colmap(const vlCameraFile *file, const vlCameraRecord *record);
 

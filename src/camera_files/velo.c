@@ -238,14 +238,8 @@ static void put_lens_and_time(vlCameraText *text, const vlCameraDef *d) {
   if (d->stereo_eye) vl_camera_put(text, ",\n  \"stereo_eye\": \"%s\"", eyes[d->stereo_eye]);
 }
 
-vlResult vl_camera_write_velo(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+void vl_camera_put_velo(const vlCameraRecord *record, vlCameraText *text) {
   vlCameraDef d = record->camera, standard = vl_default_camera_def(1, 1);
-  vlCamera camera;
-  vlResult result = vl_camera_make(&d, &camera, NULL, file->error);
-  if (result == VL_OK) result = vl_camera_refuse(file, "aperture", d.lens.aperture != NULL);
-  if (result == VL_OK && d.projection == VL_PROJECTION_OPTICS)
-    return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0, "velo cannot hold a lens of many elements");
-  if (result != VL_OK) return result;
   vl_camera_put(text, "{\n  \"velo_camera\": 1,\n");
   if (record->name[0]) {
     vl_camera_put(text, "  \"name\": ");
@@ -277,5 +271,14 @@ vlResult vl_camera_write_velo(const vlCameraFile *file, const vlCameraRecord *re
   if (d.has_matrix) put_matrix(text, "world_from_camera", d.world_from_camera);
   if (d.has_matrix_close) put_matrix(text, "world_from_camera_close", d.world_from_camera_close);
   vl_camera_put(text, "\n}\n");
-  return VL_OK;
+}
+
+vlResult vl_camera_write_velo(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera camera;
+  vlResult result = vl_camera_make(&record->camera, &camera, NULL, file->error);
+  if (result == VL_OK) result = vl_camera_refuse(file, "aperture", record->camera.lens.aperture != NULL);
+  if (result == VL_OK && record->camera.projection == VL_PROJECTION_OPTICS)
+    return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0, "velo cannot hold a lens of many elements");
+  if (result == VL_OK) vl_camera_put_velo(record, text);
+  return result;
 }

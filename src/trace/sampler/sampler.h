@@ -23,6 +23,9 @@
 #include "base/isa.h"
 #include "velo/scene.h"
 
+/* vl_sample_sequence: counted up whenever a change makes other samples of the same scene and settings. */
+enum { VL_SAMPLE_SEQUENCE = 1 };
+
 typedef struct vlSampler {
   vlSamplerKind kind;
   uint32_t seed;

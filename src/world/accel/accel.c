@@ -272,23 +272,27 @@ typedef struct EmbreeSet {
   bool there, fused;
 } EmbreeSet;
 
+enum { SETS = 4 };
+static void list_sets(EmbreeSet sets[SETS]) {
+  __builtin_cpu_init();
+  sets[0] = (EmbreeSet){"sse4.2", true, false};
+  sets[1] = (EmbreeSet){"avx", __builtin_cpu_supports("avx"), false};
+  sets[2] = (EmbreeSet){"avx2", vl_isa_best() >= VL_ISA_V3, true};
+  sets[3] = (EmbreeSet){"avx512", vl_isa_best() >= VL_ISA_V4, true};
+}
+
 /* The instruction set to force; null: Embree's own choice. Portable: the widest set without fused
  * multiply-add. The environment variable VELO_EMBREE overrides both. */
 static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
-  __builtin_cpu_init();
-  const EmbreeSet sets[] = {
-      {"sse4.2", true, false},
-      {"avx", __builtin_cpu_supports("avx"), false},
-      {"avx2", vl_isa_best() >= VL_ISA_V3, true},
-      {"avx512", vl_isa_best() >= VL_ISA_V4, true},
-  };
+  EmbreeSet sets[SETS];
+  list_sets(sets);
   const char *wish = getenv("VELO_EMBREE");
   *name = NULL;
   if (!wish || !*wish) {
     if (bits == VL_BITS_PORTABLE) *name = sets[sets[1].there ? 1 : 0].name;
     return VL_OK;
   }
-  for (size_t k = 0; k < sizeof sets / sizeof *sets; k++) {
+  for (size_t k = 0; k < SETS; k++) {
     if (strcmp(wish, sets[k].name) != 0) continue;
     if (!sets[k].there)
       return vl_fail(error, VL_ERROR_UNSUPPORTED, "VELO_EMBREE=%s: this machine does not have it", wish);
@@ -299,11 +303,26 @@ static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
   }
   return vl_fail(error, VL_ERROR_ARGUMENT, "VELO_EMBREE=%s: not one of sse4.2, avx, avx2, avx512", wish);
 }
+
+const char *vl_accel_fast_set(void) {
+  const char *wish = getenv("VELO_EMBREE"), *widest = NULL;
+  EmbreeSet sets[SETS];
+  list_sets(sets);
+  for (size_t k = 0; k < SETS; k++) {
+    if (wish && strcmp(wish, sets[k].name) == 0) return sets[k].name;
+    if (sets[k].there) widest = sets[k].name;
+  }
+  return widest;
+}
 #else
 static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
   (void)bits, (void)error;
   *name = NULL;
   return VL_OK;
+}
+
+const char *vl_accel_fast_set(void) {
+  return "neon";
 }
 #endif
 

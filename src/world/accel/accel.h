@@ -38,6 +38,9 @@ typedef struct vlAccel {
 } vlAccel;
 
 vlResult vl_accel_build(struct vlWorld *world, vlError *error);
+/* The name of the instruction set that Embree uses for VL_BITS_FAST: the one that VELO_EMBREE names, else the widest.
+ */
+const char *vl_accel_fast_set(void);
 void vl_accel_destroy(vlContext *context, vlAccel *accel);
 
 /* Ids of the nearest hit of rays [0, n); shape is VL_NONE for a miss. t: distance along the ray in units of its

@@ -1,0 +1,276 @@
+/* api/receipt.c: see velo/receipt.h. docs/receipts.md describes the text. */
+#include "velo/receipt.h"
+
+#include <string.h>
+
+#include "api/receipt.h"
+#include "base/cookie.h"
+#include "base/digest.h"
+#include "base/error.h"
+#include "camera/aperture.h"
+#include "camera/parts.h"
+#include "camera_files/files.h"
+#include "trace/sampler/sampler.h"
+
+uint32_t vl_sample_sequence(void) {
+  return VL_SAMPLE_SEQUENCE;
+}
+
+vlReceiptDef vl_default_receipt_def(void) {
+  return (vlReceiptDef){.cookie = VL_COOKIE_RECEIPT, .focus_distance = VL_UNSET};
+}
+
+/* ---- making ------------------------------------------------------------------------------------------------------ */
+
+static bool put_velo(json_t *tree, const char *commit) {
+  json_t *velo = json_object();
+  bool good = vl_receipt_put(velo, "version", json_string(vl_version()->text)) &&
+              (!commit || vl_receipt_put(velo, "commit", json_string(commit))) &&
+              vl_receipt_put(velo, "sequence", json_integer(VL_SAMPLE_SEQUENCE));
+  if (!good) return json_decref(velo), false;
+  return vl_receipt_put(tree, "velo", velo);
+}
+
+/* A string of any bytes: what is not UTF-8 (paths may be so) becomes "?". */
+static json_t *string_of(vlContext *context, const char *text) {
+  json_t *value = json_string(text);
+  if (value) return value;
+  char *copy = vl_strdup(context, text);
+  for (char *c = copy; copy && *c; c++)
+    if ((unsigned char)*c >= 0x80) *c = '?';
+  value = copy ? json_string(copy) : NULL;
+  vl_free(context, copy);
+  return value;
+}
+
+static bool put_strings(vlContext *context, json_t *tree, const char *key, const char *const *strings, uint32_t count) {
+  if (!strings) return true;
+  json_t *list = json_array();
+  for (uint32_t i = 0; i < count; i++)
+    if (!vl_receipt_put(list, NULL, string_of(context, strings[i]))) return json_decref(list), false;
+  return vl_receipt_put(tree, key, list);
+}
+
+/* The path, relative to the scene's folder where it begins with it. */
+static const char *relative(const char *path, const char *scene) {
+  const char *slash = scene ? strrchr(scene, '/') : NULL;
+  size_t folder = slash ? (size_t)(slash + 1 - scene) : 0;
+  return folder && strncmp(path, scene, folder) == 0 ? path + folder : path;
+}
+
+static bool put_files(vlContext *context, json_t *tree, const char *scene) {
+  json_t *list = json_array();
+  const vlFileRecord *record;
+  for (uint32_t i = 0; (record = vl_context_file(context, i)); i++) {
+    char digest[33];
+    vl_digest_text(record->digest, digest);
+    json_t *file = json_object();
+    bool good = vl_receipt_put(file, "path", string_of(context, relative(record->path, scene))) &&
+                vl_receipt_put(file, "size", json_integer((json_int_t)record->size)) &&
+                vl_receipt_put(file, "murmur3", json_string(digest));
+    if (!good) json_decref(file), file = NULL;
+    if (!vl_receipt_put(list, NULL, file)) return json_decref(list), false;
+  }
+  return vl_receipt_put(tree, "files", list);
+}
+
+/* The camera as velo's camera file has it, at the size of its description. The size is that of the film. */
+static json_t *camera_tree(vlContext *context, const vlCameraDef *camera) {
+  vlCameraRecord record = {.camera = *camera};
+  vlCameraText text = {.context = context};
+  vl_camera_put_velo(&record, &text);
+  /* all numbers real, so that -0 stays what it is; then those that are counts */
+  json_t *tree = text.failed ? NULL
+                             : json_loadb(text.text.items, text.text.count,
+                                          JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, NULL);
+  VL_ARRAY_FREE(context, &text.text);
+  static const char *const counts[] = {"velo_camera", "width", "height", "blades"};
+  bool good = tree != NULL;
+  for (size_t i = 0; i < sizeof counts / sizeof *counts && good; i++) {
+    const json_t *value = json_object_get(tree, counts[i]);
+    if (value) good = vl_receipt_put(tree, counts[i], json_integer((json_int_t)json_real_value(value)));
+  }
+  if (!good) json_decref(tree), tree = NULL;
+  return tree;
+}
+
+static bool put_digest(json_t *object, const char *key, const uint8_t digest[16]) {
+  char text[33];
+  vl_digest_text(digest, text);
+  return vl_receipt_put(object, key, json_string(text));
+}
+
+/* What the camera file cannot hold: the aperture's image, a lens of many elements. */
+static bool put_optics(json_t *camera, const vlCameraDef *def) {
+  uint8_t digest[16];
+  if (def->lens.aperture) {
+    vl_aperture_digest(def->lens.aperture, digest);
+    if (!put_digest(camera, "aperture_digest", digest)) return false;
+  }
+  if (def->projection != VL_PROJECTION_OPTICS || !def->lens.optics) return true;
+  vlOpticsDef optics;
+  vlLensSurface surfaces[64];
+  vl_optics_def(def->lens.optics, &optics, surfaces);
+  double numbers[64 * 4 + 4];
+  size_t count = 0;
+  for (uint32_t i = 0; i < optics.count; i++) {
+    numbers[count++] = surfaces[i].radius, numbers[count++] = surfaces[i].thickness;
+    numbers[count++] = surfaces[i].ior, numbers[count++] = surfaces[i].aperture;
+  }
+  numbers[count++] = vl_is_unset(optics.aperture_diameter) ? -1.0 : optics.aperture_diameter;
+  numbers[count++] = optics.film_diagonal, numbers[count++] = optics.unit_mm;
+  vl_digest(numbers, count * sizeof *numbers, digest);
+  if (!put_digest(camera, "optics_digest", digest)) return false;
+  if (optics.aperture) {
+    vl_aperture_digest(optics.aperture, digest);
+    if (!put_digest(camera, "aperture_digest", digest)) return false;
+  }
+  return vl_receipt_put(camera, "optics_focus", json_real(optics.focus_distance));
+}
+
+static bool put_camera(vlContext *context, json_t *tree, const vlReceiptDef *def) {
+  vlCameraDef camera = def->defs->camera;
+  if (!vl_is_unset(def->focus_distance)) {
+    camera.focus_distance = def->focus_distance;
+    for (int i = 0; i < 2; i++) camera.lens.focus_pixel[i] = VL_UNSET;
+    for (int i = 0; i < 3; i++) camera.lens.focus_point[i] = VL_UNSET;
+  }
+  json_t *object = camera_tree(context, &camera);
+  if (!object || !put_optics(object, &camera)) return json_decref(object), false;
+  return vl_receipt_put(tree, "camera", object);
+}
+
+/* The text of a tree. */
+static char *text_of(vlContext *context, const json_t *tree) {
+  const size_t flags = JSON_INDENT(1) | JSON_PRESERVE_ORDER;
+  size_t length = json_dumpb(tree, NULL, 0, flags);
+  char *text = length ? vl_alloc(context, length + 1) : NULL;
+  if (!text || json_dumpb(tree, text, length, flags) != length) return vl_free(context, text), NULL;
+  text[length] = 0;
+  return text;
+}
+
+static vlResult receipt_of(vlContext *context, json_t *tree, char *text, vlReceipt **receipt, vlError *error) {
+  vlReceipt *made = tree && text ? vl_alloc_zero(context, 1, sizeof *made) : NULL;
+  if (!made) {
+    json_decref(tree);
+    vl_free(context, text);
+    return vl_fail_memory(error);
+  }
+  *made = (vlReceipt){context, tree, text};
+  *receipt = made;
+  return VL_OK;
+}
+
+vlResult vl_receipt_make(vlContext *context, const vlReceiptDef *def, vlReceipt **receipt, vlError *error) {
+  if (receipt) *receipt = NULL;
+  if (!context || !def || !receipt || def->cookie != VL_COOKIE_RECEIPT || !def->defs)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: null argument, or a def without cookie");
+  json_t *tree = json_object();
+  bool good = vl_receipt_put(tree, "velo_receipt", json_integer(VL_RECEIPT_FORMAT)) && put_velo(tree, def->commit) &&
+              put_strings(context, tree, "command", def->command, def->command_count) &&
+              (!def->scene || vl_receipt_put(tree, "scene", string_of(context, def->scene))) &&
+              put_files(context, tree, def->scene) && put_camera(context, tree, def) &&
+              vl_receipt_put_settings(tree, def) &&
+              put_strings(context, tree, "outputs", def->outputs, def->output_count);
+  return receipt_of(context, tree, good ? text_of(context, tree) : NULL, receipt, error);
+}
+
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
+
+vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size, vlReceipt **receipt, vlError *error) {
+  if (receipt) *receipt = NULL;
+  if (!context || !text || !receipt) return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: null argument");
+  json_error_t wrong;
+  json_t *tree = json_loadb(text, size, JSON_REJECT_DUPLICATES, &wrong);
+  if (!tree) return vl_fail(error, VL_ERROR_SCENE, "receipt: line %d: %s", wrong.line, wrong.text);
+  const json_t *format = json_object_get(tree, "velo_receipt");
+  bool later = json_is_integer(format) && json_integer_value(format) > VL_RECEIPT_FORMAT;
+  if (!json_is_integer(format) || later || json_integer_value(format) < 1) {
+    json_decref(tree);
+    return later ? vl_fail(error, VL_ERROR_UNSUPPORTED, "receipt: its format is of a later version of velo")
+                 : vl_fail(error, VL_ERROR_SCENE, "receipt: this is not a receipt: there is no \"velo_receipt\"");
+  }
+  char *copy = vl_alloc(context, size + 1);
+  if (copy) memcpy(copy, text, size), copy[size] = 0;
+  return receipt_of(context, tree, copy, receipt, error);
+}
+
+void vl_receipt_destroy(vlReceipt *receipt) {
+  if (!receipt) return;
+  json_decref(receipt->tree);
+  vl_free(receipt->context, receipt->text);
+  vl_free(receipt->context, receipt);
+}
+
+const char *vl_receipt_text(const vlReceipt *receipt) {
+  return receipt->text;
+}
+
+const char *vl_receipt_scene(const vlReceipt *receipt) {
+  return json_string_value(json_object_get(receipt->tree, "scene"));
+}
+
+const char *vl_receipt_command(const vlReceipt *receipt, uint32_t index) {
+  return json_string_value(json_array_get(json_object_get(receipt->tree, "command"), index));
+}
+
+const char *vl_receipt_output(const vlReceipt *receipt, uint32_t index) {
+  return json_string_value(json_array_get(json_object_get(receipt->tree, "outputs"), index));
+}
+
+/* A whole number from 0 to 2^32 - 1; 0 for anything else. */
+static uint32_t count_of(const json_t *value) {
+  json_int_t number = json_integer_value(value);
+  return number >= 0 && number <= UINT32_MAX ? (uint32_t)number : 0;
+}
+
+uint32_t vl_receipt_samples(const vlReceipt *receipt, uint32_t *planned) {
+  if (planned) *planned = count_of(json_object_get(json_object_get(receipt->tree, "render"), "spp"));
+  return count_of(json_object_get(receipt->tree, "samples"));
+}
+
+static int digit(char c) {
+  return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : 0;
+}
+
+const vlFileRecord *vl_receipt_file(const vlReceipt *receipt, uint32_t index, vlFileRecord *record) {
+  const json_t *file = json_array_get(json_object_get(receipt->tree, "files"), index);
+  const char *path = json_string_value(json_object_get(file, "path"));
+  const char *digest = json_string_value(json_object_get(file, "murmur3"));
+  if (!path || !digest || strlen(digest) != 32) return NULL;
+  json_int_t size = json_integer_value(json_object_get(file, "size"));
+  *record = (vlFileRecord){.path = path, .size = size > 0 ? (uint64_t)size : 0};
+  for (int i = 0; i < 16; i++) record->digest[i] = (uint8_t)(16 * digit(digest[2 * i]) + digit(digest[2 * i + 1]));
+  return record;
+}
+
+const char *vl_receipt_version(const vlReceipt *receipt, const char **commit) {
+  const json_t *velo = json_object_get(receipt->tree, "velo");
+  const char *version = json_string_value(json_object_get(velo, "version"));
+  const char *from = json_string_value(json_object_get(velo, "commit"));
+  if (commit) *commit = from ? from : "";
+  return version ? version : "";
+}
+
+vlResult vl_receipt_camera(const vlReceipt *receipt, vlCameraDef *camera, uint32_t size[2], uint32_t crop[4],
+                           vlError *error) {
+  const json_t *film = json_object_get(receipt->tree, "film"), *tree = json_object_get(receipt->tree, "camera");
+  if (!json_is_object(tree) || !json_is_object(film))
+    return vl_fail(error, VL_ERROR_SCENE, "receipt: there is no camera");
+  if (json_object_get(tree, "optics_digest") || json_object_get(tree, "aperture_digest"))
+    return vl_fail(error, VL_ERROR_UNSUPPORTED, "receipt: it does not hold the camera's lens, the scene does");
+  uint32_t window[4], whole[2] = {count_of(json_object_get(film, "width")), count_of(json_object_get(film, "height"))};
+  for (size_t i = 0; i < 4; i++) window[i] = count_of(json_array_get(json_object_get(film, "crop"), i));
+  if (!(window[0] < window[2] && window[1] < window[3] && window[2] <= whole[0] && window[3] <= whole[1]))
+    return vl_fail(error, VL_ERROR_SCENE, "receipt: the size of its image is wrong");
+  vlCameraFileDef def = vl_default_camera_file_def();
+  vlCameraFile file = {receipt->context, "receipt", "velo", &def, error};
+  vlCameraRecord record = {.camera = vl_default_camera_def(1, 1), .frames = 1};
+  vlResult result = vl_camera_read_velo(&file, tree, &record);
+  if (result != VL_OK) return result;
+  *camera = record.camera;
+  if (size) memcpy(size, whole, sizeof whole);
+  if (crop) memcpy(crop, window, sizeof window);
+  return VL_OK;
+}

@@ -1,0 +1,23 @@
+/* api/receipt.h: the parts of receipts (velo/receipt.h): a tree of JSON. */
+#ifndef API_RECEIPT_H
+#define API_RECEIPT_H
+
+#include <jansson.h>
+
+#include "base/context.h"
+#include "velo/receipt.h"
+
+enum { VL_RECEIPT_FORMAT = 1 };
+
+struct vlReceipt {
+  vlContext *context;
+  json_t *tree;
+  char *text;
+};
+
+/* Adds a value to an object, or an element to an array (key null). Takes the reference. False: out of memory. */
+bool vl_receipt_put(json_t *parent, const char *key, json_t *value);
+/* Settings as members of the tree. False: out of memory. */
+bool vl_receipt_put_settings(json_t *tree, const vlReceiptDef *def);
+
+#endif

@@ -1,0 +1,140 @@
+/* api/receipt_compare.c: the differences of two receipts in words. */
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "api/receipt.h"
+
+typedef struct Comparison {
+  vlReceiptFn *fn;
+  void *user;
+  uint32_t count;
+  bool ended;
+} Comparison;
+
+static void differ(Comparison *c, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void differ(Comparison *c, const char *format, ...) {
+  char text[700];
+  va_list list;
+  if (c->ended) return;
+  va_start(list, format);
+  vsnprintf(text, sizeof text, format, list);
+  va_end(list);
+  for (char *at = text; *at; at++)
+    if ((unsigned char)*at < 0x20 || *at == 0x7f) *at = ' '; /* one line, whatever the receipt holds */
+  c->count++;
+  if (c->fn && !c->fn(c->user, text)) c->ended = true;
+}
+
+/* A value in words: as JSON, cut off where it is long; strings without quotes. */
+static const char *words_of(const json_t *value, char *text, size_t size) {
+  if (!value || json_is_null(value)) return "not given";
+  if (json_is_string(value)) {
+    snprintf(text, size, "%.*s", (int)size - 1, json_string_value(value));
+    return text;
+  }
+  size_t flags = JSON_ENCODE_ANY | JSON_COMPACT | JSON_REAL_PRECISION(10);
+  size_t length = json_dumpb(value, text, size - 1, flags);
+  if (length == 0) return "unreadable";
+  if (length < size) {
+    text[length] = 0;
+  } else {
+    snprintf(text + size - 4, 4, "...");
+  }
+  return text;
+}
+
+/* Ten digits tell most numbers apart; where they do not, the words would be the same. */
+static void differ_value(Comparison *c, const char *thing, const char *name, const json_t *then, const json_t *now) {
+  char before[120], after[120];
+  const char *was = words_of(then, before, sizeof before), *is = words_of(now, after, sizeof after);
+  const char *start = thing ? thing : "", *between = thing ? " differs: " : "";
+  if (strcmp(was, is) == 0)
+    differ(c, "%s%s%.60s is another", start, between, name);
+  else
+    differ(c, "%s%s%.60s is %s, was %s", start, between, name, is, was);
+}
+
+/* Compares the members of two objects but for one (null: none). thing: null for "NAME is A, was B". */
+static void compare_objects(Comparison *c, const char *thing, const json_t *then, const json_t *now, const char *but) {
+  const char *key;
+  json_t *value;
+  json_object_foreach((json_t *)(uintptr_t)now, key, value) {
+    const json_t *old = json_object_get(then, key);
+    if (!(but && strcmp(key, but) == 0) && (!old || !json_equal(old, value))) differ_value(c, thing, key, old, value);
+  }
+  json_object_foreach((json_t *)(uintptr_t)then, key, value) {
+    if (!(but && strcmp(key, but) == 0) && !json_object_get(now, key)) differ_value(c, thing, key, value, NULL);
+  }
+}
+
+static void compare_member(Comparison *c, const char *thing, const vlReceipt *then, const vlReceipt *now,
+                           const char *name, const char *but) {
+  const json_t *old = json_object_get(then->tree, name), *new = json_object_get(now->tree, name);
+  if (old && new &&json_is_object(old) && json_is_object(new))
+    compare_objects(c, thing, old, new, but);
+  else if (!old != !new || (old && !json_equal(old, new)))
+    differ_value(c, NULL, name, old, new);
+}
+
+/* ---- files ------------------------------------------------------------------------------------------------------- */
+
+/* Files are by path, so that one walk along both lists finds all differences. */
+static void compare_files(Comparison *c, const vlReceipt *then, const vlReceipt *now) {
+  vlFileRecord old = {0}, new = {0};
+  uint32_t i = 0, j = 0;
+  while (!c->ended) {
+    bool any_old = vl_receipt_file(then, i, &old) != NULL, any_new = vl_receipt_file(now, j, &new) != NULL;
+    if (!any_old && !any_new) return;
+    int order = !any_old ? 1 : !any_new ? -1 : strcmp(old.path, new.path);
+    if (order == 0 && (old.size != new.size || memcmp(old.digest, new.digest, sizeof old.digest) != 0))
+      differ(c, "the file %.400s changed", new.path);
+    if (order < 0) differ(c, "the file %.400s is no longer read", old.path);
+    if (order > 0) differ(c, "the file %.400s is read in addition", new.path);
+    i += order <= 0, j += order >= 0;
+  }
+}
+
+/* ---- all --------------------------------------------------------------------------------------------------------- */
+
+static void compare_velo(Comparison *c, const vlReceipt *then, const vlReceipt *now, uint32_t parts) {
+  const json_t *old = json_object_get(then->tree, "velo"), *new = json_object_get(now->tree, "velo");
+  static const struct {
+    uint32_t part;
+    const char *key, *name;
+  } members[] = {{VL_RECEIPT_SEQUENCE, "sequence", "velo's sample sequence"},
+                 {VL_RECEIPT_VERSION, "version", "velo's version"},
+                 {VL_RECEIPT_VERSION, "commit", "velo's commit"}};
+  for (size_t i = 0; i < sizeof members / sizeof *members; i++) {
+    const json_t *before = json_object_get(old, members[i].key), *after = json_object_get(new, members[i].key);
+    if (parts & members[i].part && (before || after) && !json_equal(before, after))
+      differ_value(c, NULL, members[i].name, before, after);
+  }
+}
+
+uint32_t vl_receipt_compare(const vlReceipt *then, const vlReceipt *now, uint32_t parts, vlReceiptFn *fn, void *user) {
+  Comparison c = {.fn = fn, .user = user};
+  compare_velo(&c, then, now, parts);
+  if (parts & VL_RECEIPT_FILES) compare_files(&c, then, now);
+  if (parts & VL_RECEIPT_CAMERA) compare_member(&c, "camera", then, now, "camera", NULL);
+  if (parts & VL_RECEIPT_SETTINGS) {
+    compare_member(&c, "load", then, now, "load", NULL);
+    compare_member(&c, "complete", then, now, "complete", NULL);
+    compare_member(&c, "film", then, now, "film", NULL);
+    compare_member(&c, "build", then, now, "build", NULL);
+    compare_member(&c, "render", then, now, "render", "spp");
+  }
+  if (parts & VL_RECEIPT_SAMPLES) {
+    const json_t *old = json_object_get(json_object_get(then->tree, "render"), "spp");
+    const json_t *new = json_object_get(json_object_get(now->tree, "render"), "spp");
+    if ((old || new) && !json_equal(old, new)) differ_value(&c, NULL, "spp", old, new);
+    compare_member(&c, NULL, then, now, "samples", NULL);
+  }
+  if (parts & VL_RECEIPT_DEVELOP) compare_member(&c, "develop", then, now, "develop", NULL);
+  if (parts & VL_RECEIPT_COMMAND) {
+    compare_member(&c, NULL, then, now, "scene", NULL);
+    compare_member(&c, NULL, then, now, "command", NULL);
+  }
+  if (parts & VL_RECEIPT_OUTPUTS) compare_member(&c, NULL, then, now, "outputs", NULL);
+  return c.count;
+}

@@ -63,6 +63,8 @@ static vlResult check_arguments(const vlWorld *world, const vlCamera *camera, vl
   if (def->sequence && length && def->sequence != length)
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: the film's samples are of a sequence of %u, not of %u", length,
                    def->sequence);
+  if (vl_film_sequence(film).uneven)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: the film's pixels do not all have the same samples");
   if (def->max_depth > 4096)
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: max_depth %u is above 4096", def->max_depth);
   if (def->merge_radius <= 0 || def->merge_radius > 3e38)

@@ -142,7 +142,7 @@ static bool put_camera(vlContext *context, json_t *tree, const vlReceiptDef *def
 
 /* The text of a tree. */
 static char *text_of(vlContext *context, const json_t *tree) {
-  const size_t flags = JSON_INDENT(1) | JSON_PRESERVE_ORDER;
+  const size_t flags = JSON_COMPACT | JSON_PRESERVE_ORDER;
   size_t length = json_dumpb(tree, NULL, 0, flags);
   char *text = length ? vl_alloc(context, length + 1) : NULL;
   if (!text || json_dumpb(tree, text, length, flags) != length) return vl_free(context, text), NULL;

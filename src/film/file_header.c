@@ -169,7 +169,7 @@ vlResult vl_film_header_read(vlContext *context, const char *path, const char *t
   vlResult result = take_film(path, json_object_get(tree, "film"), shape, error);
   const json_t *held = json_object_get(tree, "receipt");
   if (result == VL_OK && held) {
-    const size_t flags = JSON_INDENT(1) | JSON_PRESERVE_ORDER;
+    const size_t flags = JSON_COMPACT | JSON_PRESERVE_ORDER;
     size_t length = json_dumpb(held, NULL, 0, flags);
     *receipt = vl_alloc(context, length + 1);
     if (*receipt)

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "image/image.h"
+#include "render/receipt.h"
 
 int image_context(vlContext **context) {
   vlContextDef def = vl_default_context_def();
@@ -107,7 +108,45 @@ static void print_plain(const char *text) {
   for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
 }
 
-static void print_text(const char *path, const vlImage *image) {
+/* A word of a command, in quotes where a shell would split it. */
+static void print_word(const char *word) {
+  bool plain = *word && !word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+,-./:=@_%")];
+  putchar(' ');
+  if (!plain) putchar('\'');
+  for (const char *s = word; *s; s++)
+    if (*s == '\'')
+      printf("'\\''");
+    else
+      putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
+  if (!plain) putchar('\'');
+}
+
+/* What made the image. receipt: may be null. */
+static void print_receipt(const vlReceipt *receipt) {
+  if (!receipt) return;
+  const char *commit, *version = vl_receipt_version(receipt, &commit), *word;
+  uint32_t planned, samples = vl_receipt_samples(receipt, &planned), files = 0;
+  vlFileRecord record;
+  printf("receipt\n  velo        ");
+  print_plain(version);
+  if (*commit) printf(", commit ");
+  print_plain(commit);
+  printf("\n  command    ");
+  for (uint32_t i = 0; (word = vl_receipt_command(receipt, i)); i++) print_word(word);
+  printf("\n  samples     %u per pixel", samples);
+  if (samples != planned) printf(", of %u planned", planned);
+  while (vl_receipt_file(receipt, files, &record)) files++;
+  printf("\n  files       %u\n", files);
+  for (uint32_t i = 0; vl_receipt_file(receipt, i, &record); i++) {
+    printf("    ");
+    for (int k = 0; k < 16; k++) printf("%02x", record.digest[k]);
+    printf(" %12llu  ", (unsigned long long)record.size);
+    print_plain(record.path);
+    putchar('\n');
+  }
+}
+
+static void print_text(const char *path, const vlImage *image, const vlReceipt *receipt) {
   printf("file        %s\nformat      %s\n", path, format_of(path));
   printf("size        %u x %u\n", vl_image_width(image), vl_image_height(image));
   printf("channels    %u:", vl_image_channels(image));
@@ -136,6 +175,10 @@ static void print_text(const char *path, const vlImage *image) {
     printf("  ");
     print_plain(a.name);
     printf("%*s", (int)(strlen(a.name) < 26 ? 26 - strlen(a.name) : 1), "");
+    if (strcmp(a.name, RECEIPT_ATTRIBUTE) == 0 && receipt) {
+      puts("(below)");
+      continue;
+    }
     if (a.type == VL_ATTRIBUTE_STRING || a.type == VL_ATTRIBUTE_STRINGS) print_plain(a.string ? a.string : "");
     for (int k = 0; k < number_count(a.type); k++) {
       char text[40];
@@ -144,6 +187,7 @@ static void print_text(const char *path, const vlImage *image) {
     }
     putchar('\n');
   }
+  print_receipt(receipt);
 }
 
 static void print_json(const char *path, const vlImage *image) {
@@ -191,13 +235,18 @@ static int run_info(const Command *command, const Arguments *arguments) {
   vlError error = {0};
   vlResult result = status < 0 ? vl_image_read_header(context, arguments->operands[0], &image, &error) : VL_OK;
   if (result != VL_OK) status = report_error(&error, result, arguments->operands[0]);
+  vlReceipt *receipt = NULL;
+  vlAttribute attribute;
+  if (status < 0 && vl_image_find_attribute(image, RECEIPT_ATTRIBUTE, &attribute) == VL_OK && attribute.string)
+    vl_receipt_parse(context, attribute.string, strlen(attribute.string), &receipt, NULL); /* else printed as it is */
   if (status < 0) {
     if (arguments->values[INFO_JSON].given)
       print_json(arguments->operands[0], image);
     else
-      print_text(arguments->operands[0], image);
+      print_text(arguments->operands[0], image, receipt);
     status = image_finish_output(STATUS_OK);
   }
+  vl_receipt_destroy(receipt);
   vl_image_destroy(image);
   vl_context_destroy(context);
   return status;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/kinds.h"
+#include "render/receipt.h"
 
 typedef struct Header {
   vlImage *image;
@@ -207,8 +208,10 @@ vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
   set_window(&header, "originalDataWindow", 0, 0, c->width, c->height);
   set_camera(&header, job);
 
-  const char *slash = strrchr(job->path, '/');
-  set_text(&header, "velo.scene", slash ? slash + 1 : job->path);
+  const char *scene = job->receipt && job->receipt->again ? vl_receipt_scene(job->receipt->again) : NULL;
+  if (!scene) scene = job->path;
+  const char *slash = strrchr(scene, '/');
+  set_text(&header, "velo.scene", slash ? slash + 1 : scene);
   set_int(&header, "samplesPerPixel", spp);
   set_text(&header, "velo.sampler", kind_name("samplers", (int)render->sampler));
   set_double(&header, "velo.seed", render->seed); /* unsigned: does not fit EXR's int */

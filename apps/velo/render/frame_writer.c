@@ -13,6 +13,7 @@
 #include "render/attributes.h"
 #include "render/exposure.h"
 #include "render/pattern.h"
+#include "render/receipt.h"
 
 enum { QUEUE = 4 };
 
@@ -81,6 +82,12 @@ static vlResult join(vlContext *context, vlImage *const images[2], const char *v
   return result;
 }
 
+/* eye: the file holds this eye alone; null: both. */
+static ReceiptImage receipt_image(const FrameWriter *w, const FrameImage *p, const char *eye) {
+  return (ReceiptImage){
+      .eye = eye, .is_frame = w->frames->trajectory != NULL, .frame = p->frame.number, .samples = p->spp};
+}
+
 static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path, const vlWriteDef *def, vlError *error) {
   vlImage *both = NULL;
   const vlImage *layers[1 + 2 * CHANNEL_LAYERS];
@@ -92,6 +99,8 @@ static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path, cons
   const vlAttribute multi = {.name = "multiView", .type = VL_ATTRIBUTE_STRINGS, .string = views};
   if (result == VL_OK) result = vl_image_set_attribute(both, &multi);
   if (result == VL_OK) result = attributes_set_view(both, &p->jobs[1], names[1]);
+  const ReceiptImage which = receipt_image(w, p, NULL);
+  if (result == VL_OK) result = receipt_set(w->context, &p->jobs[0], &which, both);
   for (int v = 0; v < 2; v++)
     for (int k = 0; k < CHANNEL_LAYERS && result == VL_OK; k++) {
       vlImage *layer = p->channels[v].layers[k];
@@ -170,6 +179,8 @@ static int write_image(FrameWriter *w, FrameImage *p) {
       result = attributes_set_frame(p->images[v], p->frame.number, pose->name, pose->time);
     if (result == VL_OK && *w->frames->view_names[v])
       result = attributes_set_eye(p->images[v], w->frames->view_names[v]);
+    const ReceiptImage which = receipt_image(w, p, *w->frames->view_names[v] ? w->frames->view_names[v] : NULL);
+    if (result == VL_OK) result = receipt_set(w->context, &p->jobs[v], &which, p->images[v]);
     if (result != VL_OK) status = report_error(NULL, result, NULL);
   }
   for (int last = 0; last < 2; last++)

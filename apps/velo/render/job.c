@@ -80,6 +80,13 @@ static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, con
   return -1;
 }
 
+static void take_receipt_camera(Job *job, vlSceneDefs *defs) {
+  const ReceiptCamera *camera = job->receipt_camera;
+  defs->camera = camera->def;
+  defs->film.width = camera->size[0], defs->film.height = camera->size[1];
+  memcpy(defs->film.crop, camera->crop, sizeof camera->crop);
+}
+
 /* Takes camera and image size from another scene file. */
 static int take_camera(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
   const OptionValue *frame = &arguments->values[RENDER_FRAME];
@@ -288,7 +295,13 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   job->defs = defs;
   job->camera_place = camera_place(defs, path);
   if (v[RENDER_CAMERA].given && !scene_camera_is_own(path, arguments)) {
-    int status = take_camera(job, context, scene, v[RENDER_CAMERA].text, arguments);
+    int status = -1;
+    vl_context_record_files(context, false); /* the receipt holds the camera itself */
+    if (job->receipt_camera)
+      take_receipt_camera(job, defs);
+    else
+      status = take_camera(job, context, scene, v[RENDER_CAMERA].text, arguments);
+    vl_context_record_files(context, job->records_files);
     if (status >= 0) return status;
   }
   int status = read_channels_time(job, arguments);

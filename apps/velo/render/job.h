@@ -66,6 +66,8 @@ enum {
   RENDER_MAX_MEMORY,
   RENDER_MAX_TEXTURE,
   RENDER_SANDBOX,
+  RENDER_AGAIN,
+  RENDER_NO_RECEIPT,
   RENDER_LENS /* the first of lens_options.h */
 };
 
@@ -75,12 +77,22 @@ extern const Choice light_sampler_choices[], sensor_choices[], regularize_choice
 extern const Option render_options[];
 extern const Section render_sections[];
 
+/* The camera, image size and crop of a receipt. */
+typedef struct ReceiptCamera {
+  bool given;
+  vlCameraDef def;
+  uint32_t size[2], crop[4];
+} ReceiptCamera;
+
 typedef struct Job {
   const char *path; /* of the scene file */
   /* the scene's defs with overrides; a copy for each camera of a rig. defs->camera keeps the size of its description */
   vlSceneDefs *defs;
-  vlError camera_place; /* place of the camera in its file; only file, line and column are used */
-  vlCamera camera;      /* at the film's size */
+  vlError camera_place;                /* place of the camera in its file; only file, line and column are used */
+  vlCamera camera;                     /* at the film's size */
+  const ReceiptCamera *receipt_camera; /* in place of --camera FILE; null: none */
+  const struct ReceiptPlan *receipt;   /* of the images; null: they have none */
+  bool records_files;                  /* for receipts */
   double channels_share,
       channels_seconds; /* time of the ground truth: share of the shutter interval, unless seconds are set */
 } Job;

@@ -144,6 +144,13 @@ const Option render_options[] = {
      "from 360 (MIN) to 830 (MAX) nm; 0: none",
      0, 0, NULL},
     {RENDER_HALF, 0, "half", OPTION_FLAG, NULL, ".exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
+    {RENDER_AGAIN, 0, "again", OPTION_TEXT, "IMAGE.exr",
+     "render what the receipt in IMAGE's header describes: the same bytes,\nor a message that names what has changed. "
+     "FILE is the scene where it\nis not where the receipt says",
+     0, 0, NULL},
+    {RENDER_NO_RECEIPT, 0, "no-receipt", OPTION_FLAG, NULL,
+     "leave out of the .exr what made it: command, paths and digests\nof files, camera, settings (docs/receipts.md)", 0,
+     0, NULL},
     {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N",
      "workers; default: one for each processor. The image does not\n"
      "depend on it",

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "render/again.h"
 #include "render/attributes.h"
 #include "render/channels.h"
 #include "render/exposure.h"
@@ -39,6 +40,9 @@ typedef struct Render {
   Frames frames;              /* of a trajectory, a rig or two eyes */
   MemoryPlan memory;
   bool many; /* whether `frames` is used */
+  SceneOpening opening;
+  Again again;
+  ReceiptPlan receipt;
 } Render;
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
@@ -50,6 +54,8 @@ static int write_image(Render *render, OutputStage stage) {
   uint32_t spp = vl_film_spp(render->film);
   vlResult result = vl_film_develop(render->film, &develop, &image);
   if (result == VL_OK) result = attributes_set(image, &render->job, spp);
+  const ReceiptImage which = {.samples = spp};
+  if (result == VL_OK) result = receipt_set(render->context, &render->job, &which, image);
   if (result == VL_OK) result = channels_describe(&render->channels, image);
   int status = STATUS_OK;
   if (result == VL_OK)
@@ -158,11 +164,26 @@ static int render_channels(Render *render) {
 
 /* ---- steps: each returns -1 to go on, else the exit code --------------------------------------------------------- */
 
-static int prepare(Render *render, const Arguments *arguments) {
+static void set_up_reports(const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   report_setup(v[RENDER_LOG_JSON].given, v[RENDER_QUIET].given     ? REPORT_QUIET
                                          : v[RENDER_VERBOSE].given ? REPORT_VERBOSE
                                                                    : REPORT_NORMAL);
+}
+
+/* What the images' receipts have in common. Files are recorded from here on. */
+static void start_receipt(Render *render, const Arguments *arguments) {
+  const Again *again = &render->again;
+  render->receipt = (ReceiptPlan){
+      .arguments = arguments, .opening = &render->opening, .again = again->receipt, .again_is_ours = again->is_ours};
+  if (again->camera.given) render->job.receipt_camera = &again->camera;
+  if (!arguments->values[RENDER_NO_RECEIPT].given) render->job.receipt = &render->receipt;
+  render->job.records_files = render->job.receipt || again->receipt;
+  vl_context_record_files(render->context, render->job.records_files);
+}
+
+static int prepare(Render *render, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
   if (v[RENDER_QUIET].given && v[RENDER_VERBOSE].given) return report_usage("--quiet and --verbose exclude each other");
   Outputs *outputs = &render->outputs;
   for (int i = 0; i < arguments->text_count; i++) outputs->paths[i] = arguments->texts[i];
@@ -215,10 +236,10 @@ static int check_sizes(const Render *render) {
 static int load_and_build(Render *render, const char *path, const Arguments *arguments) {
   double start = monotonic_seconds();
   vlError error = {0};
-  bool lamps = false;
-  int status = scene_open(render->context, path, arguments, &render->scene, &lamps);
+  start_receipt(render, arguments);
+  int status = scene_open(render->context, path, arguments, &render->scene, &render->opening);
   if (status >= 0) return status;
-  if (lamps && !arguments->values[RENDER_EXPOSURE].given) render->outputs.meter = true;
+  if (render->opening.lamps && !arguments->values[RENDER_EXPOSURE].given) render->outputs.meter = true;
   double loaded = monotonic_seconds();
 
   status = job_make(&render->job, render->context, render->scene, path, arguments);
@@ -244,6 +265,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   }
   vlResult result = vl_world_build_last(render->scene, &render->job.defs->build, &render->world, &error);
   if (result != VL_OK) return report_error(&error, result, path);
+  vl_context_record_files(render->context, false);
   if (arguments->values[RENDER_VERBOSE].given) {
     char bytes[32];
     format_count(bytes, sizeof bytes, (double)vl_context_memory(render->context, NULL));
@@ -382,15 +404,34 @@ static int render_and_write(Render *render) {
   return status;
 }
 
+/* With --again: whether the image will be the same. */
+static int check_again(const Render *render) {
+  const Job *job = &render->job;
+  const Frames *frames = &render->frames;
+  ReceiptImage which = {.samples = job->defs->render.spp};
+  if (render->many) {
+    which.is_frame = frames->trajectory != NULL;
+    which.frame = frames->first;
+    if (frames_count(frames) > 1)
+      return report_usage("--again: the images of a rig are made again by the command in the receipt");
+  }
+  /* of several images each has a camera of its own, which follows from files and command */
+  return again_check(&render->again, &render->receipt, render->context, job, &which, !render->many);
+}
+
 static int run_render(const Command *command, const Arguments *arguments) {
-  (void)command;
   Render render;
   memset(&render, 0, sizeof render);
   render.start = monotonic_seconds();
-  int status = prepare(&render, arguments);
+  set_up_reports(arguments);
+  int status = again_open(&render.again, &arguments);
+  if (status < 0 && arguments->operand_count == 0)
+    status = report_usage("%s: too few arguments; usage: velo %s %s", command->name, command->name, command->usage);
+  if (status < 0) status = prepare(&render, arguments);
   if (status < 0) status = load_and_build(&render, arguments->operands[0], arguments);
   if (status < 0) status = reckon_memory(&render, arguments);
   if (status < 0 && !render.many) status = lens_autofocus(&render.job, render.scene, render.world);
+  if (status < 0 && render.again.receipt) status = check_again(&render);
   if (status < 0 && arguments->values[RENDER_DRY_RUN].given) {
     job_describe(&render.job, render.context, render.scene, render.world, render.outputs.paths, render.outputs.count);
     if (render.many && frames_count(&render.frames) > 1)
@@ -407,6 +448,7 @@ static int run_render(const Command *command, const Arguments *arguments) {
   vl_scene_destroy(render.scene);
   report_memory_of(NULL, 0);
   vl_context_destroy(render.context);
+  again_close(&render.again);
   return status;
 }
 
@@ -423,7 +465,7 @@ const Command render_command = {
         "velo render model.glb --resolution 1280x720 --time 5m -o model.png",
     .options = render_options,
     .sections = render_sections,
-    .min_operands = 1,
+    .min_operands = 0, /* --again needs none */
     .max_operands = 1,
     .run = run_render,
 };

@@ -72,7 +72,8 @@ static int choose_times(const OptionValue *v, vlLoadDef *load) {
   return -1;
 }
 
-int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene, bool *lamps) {
+int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene,
+               SceneOpening *opening) {
   const OptionValue *v = arguments->values;
   vlError error = {0};
   vlLoadDef load = vl_default_load_def();
@@ -93,7 +94,7 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   defs->camera_missing = camera; /* another file gives the camera */
   vlSceneInfo info;
   vl_scene_info(*scene, &info);
-  *lamps = info.lights > 0 && (ends_with(path, ".gltf") || ends_with(path, ".glb"));
+  opening->lamps = info.lights > 0 && (ends_with(path, ".gltf") || ends_with(path, ".glb"));
   if (v[RENDER_RESOLUTION].given) {
     complete.width = (uint32_t)v[RENDER_RESOLUTION].integers[0];
     complete.height = (uint32_t)v[RENDER_RESOLUTION].integers[1];
@@ -105,6 +106,8 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   complete.ground = v[RENDER_GROUND].given;
   result = vl_scene_complete(*scene, &complete, &error);
   if (result != VL_OK) return report_error(&error, result, path);
+  opening->load = load;
+  opening->complete = complete;
   if (camera) tell_camera(defs);
   return -1;
 }

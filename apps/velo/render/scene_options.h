@@ -6,9 +6,16 @@
 #include "cli/options.h"
 #include "velo/velo.h"
 
-/* Loads the scene and completes it. *lamps: a glTF file with lights of its own. Returns -1, or the exit code after
- * reporting the error. */
-int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene, bool *lamps);
+/* How a scene was loaded and completed. */
+typedef struct SceneOpening {
+  vlLoadDef load;
+  vlCompleteDef complete;
+  bool lamps; /* a glTF file with lights of its own */
+} SceneOpening;
+
+/* Loads the scene and completes it. Returns -1, or the exit code after reporting the error. */
+int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene,
+               SceneOpening *opening);
 /* Whether --camera names one of the scene's own cameras: the scene is glTF, and no file has that name. */
 bool scene_camera_is_own(const char *path, const Arguments *arguments);
 

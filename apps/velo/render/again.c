@@ -1,0 +1,159 @@
+/* render/again.c: see again.h. */
+#include "render/again.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+
+extern const char velo_commit[];
+
+static int fail_command(const Again *again, const char *why) {
+  return report_failure(STATUS_SCENE, "%s: the command in its receipt cannot be followed: %s", again->path, why);
+}
+
+/* Parses the words after "velo render". Options that do not make the image are not obeyed: where files
+ * are written is not for the image to say. */
+static int parse_command(Again *again) {
+  char *words[2 * MAX_OPTIONS + 4];
+  const char *word;
+  int count = 0, most = (int)(sizeof words / sizeof *words);
+  for (uint32_t i = 0; (word = vl_receipt_command(again->receipt, i)); i++) {
+    if (i < 2 && strcmp(word, i ? "render" : "velo") != 0) return fail_command(again, "it is not velo render");
+    if (i < 2) continue;
+    if (count == most) return fail_command(again, "it is too long");
+    if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return fail_command(again, "it asks for help");
+    words[count++] = (char *)(uintptr_t)word; /* is not changed */
+  }
+  if (count == 0) return fail_command(again, "there is none");
+  int status = options_parse(&render_command, count, words, &again->arguments);
+  if (status >= 0) return fail_command(again, "see above");
+  for (const Option *option = render_options; option->name; option++)
+    if (again->arguments.values[option->id].given && !receipt_option_counts(option->id))
+      return report_failure(STATUS_SCENE, "%s: the command in its receipt has --%s, which does not make an image",
+                            again->path, option->name);
+  return again->arguments.operand_count == 1 ? -1 : fail_command(again, "it names no scene");
+}
+
+/* Beside --again only options that do not change the image may be given. */
+static int take_options(Again *again, const Arguments *given) {
+  for (const Option *option = render_options; option->name; option++) {
+    if (!given->values[option->id].given) continue;
+    if (receipt_option_counts(option->id) || option->id == RENDER_TIME)
+      return report_usage("--again %s makes the same image: --%s would make another", again->path, option->name);
+    again->arguments.values[option->id] = given->values[option->id];
+  }
+  memcpy(again->arguments.texts, given->texts, sizeof given->texts);
+  again->arguments.text_count = given->text_count;
+  memcpy(again->arguments.folders, given->folders, sizeof given->folders);
+  again->arguments.folder_count = given->folder_count;
+  return -1;
+}
+
+/* The scene that is given, or the one that the receipt names. */
+static int take_scene(Again *again, const Arguments *given) {
+  const char *path = given->operand_count ? given->operands[0] : vl_receipt_scene(again->receipt);
+  if (!path) return report_failure(STATUS_SCENE, "%s: its receipt names no scene; give the scene's file", again->path);
+  again->arguments.operands[0] = path;
+  if (given->operand_count || access(path, F_OK) == 0) return -1;
+  return report_failure(STATUS_MISSING, "no such file: %s (of the receipt of %s); give the scene's file before --again",
+                        path, again->path);
+}
+
+/* The camera of another file is taken from the receipt, so that the file is not needed; its lens, where the receipt
+ * does not hold it, from the file. */
+static int take_camera(Again *again) {
+  OptionValue *v = again->arguments.values;
+  if (!v[RENDER_CAMERA].given || v[RENDER_TRAJECTORY].given) return -1;
+  if (scene_camera_is_own(again->arguments.operands[0], &again->arguments)) return -1;
+  vlError error = {0};
+  ReceiptCamera *camera = &again->camera;
+  vlResult result = vl_receipt_camera(again->receipt, &camera->def, camera->size, camera->crop, &error);
+  if (result == VL_ERROR_UNSUPPORTED) return -1;
+  if (result != VL_OK) return report_error(&error, result, again->path);
+  camera->given = true;
+  v[RENDER_RESOLUTION].given = v[RENDER_CROP].given = v[RENDER_CROPWINDOW].given = false; /* they are in the receipt */
+  return -1;
+}
+
+static int check_samples(const Again *again) {
+  uint32_t planned, samples = vl_receipt_samples(again->receipt, &planned);
+  if (samples == planned && samples > 0) return -1;
+  return report_failure(STATUS_SCENE,
+                        "%s holds %u of %u samples per pixel: an image that ended early cannot be made again",
+                        again->path, samples, planned);
+}
+
+static void tell_version(Again *again) {
+  const char *commit, *version = vl_receipt_version(again->receipt, &commit);
+  again->is_ours = strcmp(version, vl_version()->text) == 0 && strcmp(commit, velo_commit) == 0;
+  if (!again->is_ours)
+    report_warning(
+        "%s was made by velo %s%s%s, this is %s%s%s: the header of the new image says so, its pixels may differ",
+        again->path, version, *commit ? ", commit " : "", commit, vl_version()->text, *velo_commit ? ", commit " : "",
+        velo_commit);
+}
+
+int again_open(Again *again, const Arguments **arguments) {
+  const Arguments *given = *arguments;
+  if (!given->values[RENDER_AGAIN].given) return -1;
+  if (!given->text_count && !given->values[RENDER_DRY_RUN].given)
+    return report_usage("--again: give the name of the new image with -o");
+  vlContextDef def = vl_default_context_def();
+  vlImage *image = NULL;
+  vlError error = {0};
+  def.threads = 1;
+  def.log = report_log;
+  again->path = given->values[RENDER_AGAIN].text;
+  vlResult result = vl_context_create(&def, &again->context);
+  if (result == VL_OK) result = vl_image_read_header(again->context, again->path, &image, &error);
+  int status = result == VL_OK ? receipt_of_image(again->context, image, again->path, &again->receipt)
+                               : report_error(&error, result, again->path);
+  vl_image_destroy(image);
+  if (status < 0) status = parse_command(again);
+  if (status < 0) status = check_samples(again);
+  if (status < 0) status = take_options(again, given);
+  if (status < 0) status = take_scene(again, given);
+  if (status < 0) status = take_camera(again);
+  if (status < 0) tell_version(again);
+  *arguments = &again->arguments;
+  return status;
+}
+
+/* The first differences are named; the rest are counted. */
+enum { NAMED = 8 };
+typedef struct Difference {
+  const char *path;
+  uint32_t count;
+} Difference;
+
+static bool name_difference(void *user, const char *text) {
+  Difference *d = user;
+  if (d->count++ < NAMED) report_failure(STATUS_SCENE, "%s: %s", d->path, text);
+  return true;
+}
+
+int again_check(const Again *again, const ReceiptPlan *plan, vlContext *context, const Job *job,
+                const ReceiptImage *which, bool with_camera) {
+  if (!again->path) return -1;
+  vlReceipt *now = NULL;
+  vlResult result = receipt_make(plan, context, job, which, &now);
+  if (result != VL_OK) return report_error(NULL, result, NULL);
+  uint32_t parts =
+      VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_SETTINGS | VL_RECEIPT_SAMPLES | VL_RECEIPT_DEVELOP;
+  if (with_camera) parts |= VL_RECEIPT_CAMERA;
+  Difference difference = {again->path, 0};
+  vl_receipt_compare(again->receipt, now, parts, name_difference, &difference);
+  if (difference.count > NAMED)
+    report_failure(STATUS_SCENE, "%s: and %u differences more", again->path, difference.count - NAMED);
+  vl_receipt_destroy(now);
+  return difference.count ? STATUS_SCENE : -1;
+}
+
+void again_close(Again *again) {
+  vl_receipt_destroy(again->receipt);
+  vl_context_destroy(again->context);
+}

@@ -1,0 +1,129 @@
+/* render/receipt.c: see receipt.h. */
+#include "render/receipt.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/report.h"
+#include "render/lens_options.h"
+
+extern const char velo_commit[]; /* written by cmake/commit.cmake */
+
+bool receipt_option_counts(int option) {
+  static const int others[] = {RENDER_OUTPUT,      RENDER_THREADS, RENDER_TIME,       RENDER_VIEW,
+                               RENDER_EXPOSURE,    RENDER_DRY_RUN, RENDER_QUIET,      RENDER_LOG_JSON,
+                               RENDER_VERBOSE,     RENDER_ISA,     RENDER_MAX_MEMORY, RENDER_SANDBOX,
+                               RENDER_MAX_TEXTURE, RENDER_AGAIN,   RENDER_NO_RECEIPT};
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    if (option == others[i]) return false;
+  return true;
+}
+
+/* ---- the command ------------------------------------------------------------------------------------------------- */
+
+/* Words of the command that makes an image: in one order whatever the order of the command line, and always with the
+ * number of samples, so that the same image has the same command. */
+typedef struct Words {
+  const char *words[2 * MAX_OPTIONS + 4];
+  uint32_t count;
+  char names[MAX_OPTIONS][32], path[4100], spp[16], frame[16];
+} Words;
+
+static void add_option(Words *w, const Option *option, const char *value) {
+  snprintf(w->names[option->id], sizeof w->names[0], "--%s", option->name);
+  w->words[w->count++] = w->names[option->id];
+  if (option->kind != OPTION_FLAG) w->words[w->count++] = value;
+}
+
+static void find_words(Words *w, const Arguments *arguments, const Job *job, const ReceiptImage *which) {
+  snprintf(w->path, sizeof w->path, "%s%s", job->path[0] == '-' ? "./" : "", job->path);
+  snprintf(w->spp, sizeof w->spp, "%u", job->defs->render.spp);
+  snprintf(w->frame, sizeof w->frame, "%u", which->frame);
+  w->count = 0;
+  w->words[w->count++] = "velo";
+  w->words[w->count++] = "render";
+  w->words[w->count++] = w->path;
+  for (const Option *option = render_options; option->name; option++) {
+    const OptionValue *value = &arguments->values[option->id];
+    if (option->id == RENDER_SPP)
+      add_option(w, option, w->spp);
+    else if (option->id == RENDER_EYE && which->eye)
+      add_option(w, option, which->eye);
+    else if (option->id == RENDER_FRAMES && which->is_frame)
+      add_option(w, option, w->frame);
+    else if (value->given && receipt_option_counts(option->id))
+      add_option(w, option, value->text);
+  }
+}
+
+/* ---- the receipt ------------------------------------------------------------------------------------------------- */
+
+/* The settings with the camera of this image: the pose of its frame, its eye. */
+static vlSceneDefs defs_of(const Job *job, const ReceiptImage *which) {
+  vlSceneDefs defs = *job->defs;
+  vlCameraDef *camera = &defs.camera;
+  if (which->eye) camera->stereo_eye = strcmp(which->eye, "right") == 0 ? VL_EYE_RIGHT : VL_EYE_LEFT;
+  if (!which->is_frame || (camera->stereo.mode != VL_STEREO_NONE && !which->eye)) return defs;
+  camera->stereo.mode = VL_STEREO_NONE; /* the pose is the eye's own */
+  camera->has_matrix = true;
+  memcpy(camera->world_from_camera, job->camera.world_from_camera, sizeof camera->world_from_camera);
+  camera->has_matrix_close = false;
+  for (int i = 0; i < 3; i++) camera->eye_close[i] = camera->lookat_close[i] = camera->up_close[i] = VL_UNSET;
+  camera->shutter_open = job->camera.shutter_open;
+  camera->shutter_close = job->camera.shutter_close;
+  return defs;
+}
+
+/* Whether autofocus found the distance. Lenses of many elements hold their own. */
+static bool is_autofocused(const Job *job, const Arguments *arguments) {
+  const double *pixel = job->defs->camera.lens.focus_pixel;
+  bool wanted = arguments->values[RENDER_FOCUS_PIXEL].given || !isnan(pixel[0]);
+  return wanted && !job->camera.lens.optics && isnan(job->camera.lens.focus_pixel[0]);
+}
+
+vlResult receipt_make(const ReceiptPlan *plan, vlContext *context, const Job *job, const ReceiptImage *which,
+                      vlReceipt **receipt) {
+  Words words;
+  find_words(&words, plan->arguments, job, which);
+  vlSceneDefs defs = defs_of(job, which);
+  vlReceiptDef def = vl_default_receipt_def();
+  def.commit = velo_commit;
+  def.scene = job->path;
+  def.command = words.words, def.command_count = words.count;
+  def.defs = &defs;
+  def.load = &plan->opening->load, def.complete = &plan->opening->complete;
+  def.samples = which->samples;
+  if (is_autofocused(job, plan->arguments)) def.focus_distance = job->camera.focus_distance;
+  return vl_receipt_make(context, &def, receipt, NULL);
+}
+
+vlResult receipt_set(vlContext *context, const Job *job, const ReceiptImage *which, vlImage *image) {
+  const ReceiptPlan *plan = job->receipt;
+  if (!plan) return VL_OK;
+  vlReceipt *made = NULL;
+  uint32_t planned = 0;
+  const vlReceipt *receipt = plan->again;
+  /* a part of the image, or one by another version, is not what the receipt describes */
+  bool same = receipt && plan->again_is_ours && vl_receipt_samples(receipt, &planned) == which->samples;
+  vlResult result = same ? VL_OK : receipt_make(plan, context, job, which, &made);
+  if (result == VL_OK) {
+    const vlAttribute attribute = {
+        .name = RECEIPT_ATTRIBUTE, .type = VL_ATTRIBUTE_STRING, .string = vl_receipt_text(same ? receipt : made)};
+    result = vl_image_set_attribute(image, &attribute);
+  }
+  vl_receipt_destroy(made);
+  return result;
+}
+
+int receipt_of_image(vlContext *context, const vlImage *image, const char *path, vlReceipt **receipt) {
+  vlAttribute attribute;
+  vlError error = {0};
+  if (vl_image_find_attribute(image, RECEIPT_ATTRIBUTE, &attribute) != VL_OK || attribute.type != VL_ATTRIBUTE_STRING ||
+      !attribute.string)
+    return report_failure(STATUS_SCENE, "%s: there is no receipt in its header (docs/receipts.md)", path);
+  vlResult result = vl_receipt_parse(context, attribute.string, strlen(attribute.string), receipt, &error);
+  if (result == VL_OK) return -1;
+  snprintf(error.file, sizeof error.file, "%s", path);
+  return report_error(&error, result, path);
+}

@@ -127,7 +127,7 @@ VL_API vlResult vl_film_spectrum(const vlFilm *film, vlImage **image);
 
 /** The state of a render. */
 typedef struct vlProgress {
-  uint32_t spp_done, spp_total; /**< samples per pixel: done in whole passes, and requested */
+  uint32_t spp_done, spp_total; /**< samples per pixel of the film: done in whole passes, and requested */
   double elapsed, remaining;    /**< seconds; remaining is an estimate, infinity before there is one */
   double fraction;              /**< of the work, 0 to 1; also inside a pass */
   uint64_t paths, rays;         /**< traced so far */
@@ -145,11 +145,20 @@ typedef struct vlRenderDef {
   uint32_t cookie;
   vlTracer tracer;       /**< light transport algorithm */
   vlSamplerKind sampler; /**< sample generator */
-  uint32_t spp;          /**< samples per pixel that the film shall have in the end, those it has already included */
+  uint32_t spp;          /**< samples per pixel that the film shall have in the end, those it has already included
+                          * and those before its first_sample */
   uint32_t seed;         /**< of the random numbers */
-  uint32_t max_depth;    /**< the most bounces of a path */
-  float ao_distance;     /**< ambient occlusion: length of its rays, scene units */
-  bool ao_cosine;        /**< ambient occlusion: directions weighted by the cosine; else uniform */
+  /** The length of the sample sequence: for how many samples per pixel the sampler lays out its points; sample i of a
+   * pixel is the same in all renders of one length, whatever their spp. Samples past it begin another, independent
+   * sequence. 0 (default): that of the samples which the film has; for its first ones 65536, or spp for the samplers
+   * that divide it into cells (without VL_SAMPLER_TRAIT_OPEN). */
+  uint32_t sequence;
+  /** The index of the first sample of a film without samples, which then gets those from first_sample to spp - 1: a
+   * part of an image that is rendered on several machines. Default 0. A film with samples continues where it ends. */
+  uint32_t first_sample;
+  uint32_t max_depth; /**< the most bounces of a path */
+  float ao_distance;  /**< ambient occlusion: length of its rays, scene units */
+  bool ao_cosine;     /**< ambient occlusion: directions weighted by the cosine; else uniform */
   /** For comparisons (pbrt's disablepixeljitter and the like). centred: all samples at the centre of the pixel, the
    * lens and the exposure; same_wavelengths: the same for all paths; sharp_textures: no filtering by footprint. */
   bool centred, same_wavelengths, sharp_textures;
@@ -175,10 +184,11 @@ typedef struct vlRenderStats {
   uint32_t worst_x, worst_y; /**< a pixel where such a sample was found */
 } vlRenderStats;
 /** Adds samples until each pixel has def->spp. The bits do not depend on the number of threads, the crop and the
- * division into passes. VL_CANCELLED when the callback stopped it: the film holds whole passes. One render at a time
- * adds to a film; it runs on the workers of the world's context. def and stats may be null. Errors: ARGUMENT (also
- * camera and film of different sizes, a film with buckets and a world in RGB), MEMORY. For films with buckets the
- * tracers that follow light both ways use camera paths only. */
+ * division into passes and calls. VL_CANCELLED when the callback stopped it: the film holds whole passes. One render at
+ * a time adds to a film; it runs on the workers of the world's context. def and stats may be null. Errors: ARGUMENT
+ * (also camera and film of different sizes, a film with buckets and a world in RGB, a film whose samples are of a
+ * sequence of another length), MEMORY. For films with buckets the tracers that follow light both ways use camera paths
+ * only. */
 VL_API vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                           vlRenderStats *stats, vlError *error);
 

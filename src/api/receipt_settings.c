@@ -6,6 +6,7 @@
 
 #include "api/receipt.h"
 #include "camera/parts.h"
+#include "trace/sampler/sampler.h"
 #include "velo/schema.h"
 #include "world/accel/accel.h"
 
@@ -84,6 +85,7 @@ static const Field render_fields[] = {FIELD_FAMILY(vlRenderDef, tracer, "tracers
                                       FIELD_FAMILY(vlRenderDef, sampler, "samplers"),
                                       FIELD_COUNT(vlRenderDef, spp),
                                       FIELD_COUNT(vlRenderDef, seed),
+                                      FIELD_COUNT(vlRenderDef, sequence),
                                       FIELD_COUNT(vlRenderDef, max_depth),
                                       FIELD_FLOAT(vlRenderDef, ao_distance),
                                       FIELD_BOOL(vlRenderDef, ao_cosine),
@@ -171,11 +173,16 @@ static bool put_build(json_t *tree, const vlBuildDef *build) {
          vl_receipt_put(json_object_get(tree, "build"), "embree", json_string(vl_accel_fast_set()));
 }
 
+/* The length of the sequence in figures, also where it is the default. */
+static bool put_render(json_t *tree, vlRenderDef render) {
+  if (!render.sequence) render.sequence = vl_sampler_sequence(render.sampler, render.spp);
+  return put_def(tree, "render", render_fields, &render);
+}
+
 bool vl_receipt_put_settings(json_t *tree, const vlReceiptDef *def) {
   const vlSceneDefs *defs = def->defs;
   return put_def(tree, "load", load_fields, def->load) && put_def(tree, "complete", complete_fields, def->complete) &&
          put_def(tree, "film", film_fields, &defs->film) && put_build(tree, &defs->build) &&
-         put_def(tree, "render", render_fields, &defs->render) &&
-         put_def(tree, "develop", develop_fields, &defs->develop) &&
+         put_render(tree, defs->render) && put_def(tree, "develop", develop_fields, &defs->develop) &&
          vl_receipt_put(tree, "samples", json_integer(def->samples));
 }

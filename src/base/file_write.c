@@ -177,6 +177,16 @@ static void keep_permissions(const vlFileWriter *writer) {
   if (fchmod(writer->descriptor, writer->mode) != 0) errno = 0;
 }
 
+/* Makes the new name last, where the file system can sync a folder. */
+static void sync_folder(const vlFileWriter *writer) {
+  char folder[4096];
+  snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(writer->target), writer->target);
+  int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  close(descriptor);
+}
+
 vlResult vl_file_commit(vlFileWriter *writer, vlError *error) {
   bool renames = writer->target[0];
   if (renames && writer->replaces) keep_permissions(writer);
@@ -185,6 +195,7 @@ vlResult vl_file_commit(vlFileWriter *writer, vlError *error) {
   if (!writer->failed_errno && renames && !writer->temporary[0] && !give_name(writer)) writer->failed_errno = errno;
   if (!writer->failed_errno && renames && rename(writer->temporary, writer->target) != 0) writer->failed_errno = errno;
   if (writer->failed_errno && writer->temporary[0]) unlink(writer->temporary);
+  if (!writer->failed_errno && renames) sync_folder(writer);
   if (close(writer->descriptor) != 0 && !writer->failed_errno) writer->failed_errno = errno;
   writer->descriptor = -1; /* closed last, because closing releases the lock */
   if (!writer->failed_errno) return VL_OK;

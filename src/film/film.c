@@ -103,6 +103,12 @@ uint32_t vl_film_spp(const vlFilm *film) {
 void vl_film_set_spp(vlFilm *film, uint32_t spp) {
   film->spp = spp;
 }
+vlFilmSequence vl_film_sequence(const vlFilm *film) {
+  return film->spp || film->sequence.uneven ? film->sequence : (vlFilmSequence){0, 0, false};
+}
+void vl_film_set_sequence(vlFilm *film, vlFilmSequence sequence) {
+  film->sequence = sequence;
+}
 const vlFilmDef *vl_film_def(const vlFilm *film) {
   return &film->def;
 }
@@ -167,6 +173,7 @@ void vl_film_abandon_pass(vlFilm *film) {
 void vl_film_clear(vlFilm *film) {
   if (!film || film->in_pass) return;
   film->spp = 0;
+  film->sequence = (vlFilmSequence){0, 0, false};
   if (film->front && film->back) {
     vl_free(film->context, film->front);
   } else if (film->front) {
@@ -186,7 +193,7 @@ void *vl_film_scratch(vlFilm *film, size_t size) {
   return film->scratch;
 }
 
-vlResult vl_film_merge(vlFilm *film, const vlFilm *other) {
+vlResult vl_film_add_film(vlFilm *film, const vlFilm *other) {
   if (!film || !other || film == other || film->in_pass || other->in_pass) return VL_ERROR_ARGUMENT;
   if (film->def.width != other->def.width || film->def.height != other->def.height ||
       memcmp(film->def.crop, other->def.crop, sizeof film->def.crop) != 0 || film->def.space != other->def.space ||

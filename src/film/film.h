@@ -47,6 +47,15 @@ typedef struct vlFilmSensor {
 const vlFilmSensor *vl_film_sensor(const vlFilm *film);
 void vl_film_set_spp(vlFilm *film, uint32_t spp); /* render calls it after each whole pass */
 
+/* The sequence that a film's samples are from: its length, and the index of the film's first sample. Set before the
+ * first sample; a film without samples has length 0. */
+typedef struct vlFilmSequence {
+  uint32_t length, first;
+  bool uneven; /* pixels have different samples (of a file): the film can only be developed */
+} vlFilmSequence;
+vlFilmSequence vl_film_sequence(const vlFilm *film);
+void vl_film_set_sequence(vlFilm *film, vlFilmSequence sequence);
+
 /* An abandoned pass leaves no trace. There are two sets of sums: a pixel's first sample in a pass copies its sums from
  * the front set to the back set, and the pass adds there; commit swaps the sets, abandon drops the back set. The only
  * cost is one test of the pixel's stamp. Error of begin_pass: MEMORY (the sets are allocated at first need). */
@@ -60,7 +69,7 @@ void *vl_film_scratch(vlFilm *film, size_t size);
 
 /* Adds the sums and the sample count of another film of the same size and crop. The sums are the same bits as if all
  * samples had been added to one film. Not during a pass. Errors: ARGUMENT if the films differ in shape, MEMORY. */
-vlResult vl_film_merge(vlFilm *film, const vlFilm *other);
+vlResult vl_film_add_film(vlFilm *film, const vlFilm *other);
 
 /* Pixel filter sampling: u, v in [0,1)^2 to an offset (dx, dy) from the pixel centre, monotone in u and v, and the
  * weight f/pdf: 1 for filters without negative lobes, else plus or minus a constant; its mean is 1. Batch, hot. */

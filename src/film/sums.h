@@ -43,6 +43,7 @@ struct vlFilm {
   vlFilmDef def;
   uint32_t width, height; /* of the crop window */
   uint32_t spp;
+  vlFilmSequence sequence;
   vlFilmPixel *front; /* committed sums; null: all zero */
   vlFilmPixel *back;  /* sums of the running pass, valid where stamp == pass; null until the first pass */
   uint32_t *stamp;    /* the pass in which the pixel's back was last written */

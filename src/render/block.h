@@ -45,7 +45,8 @@ typedef struct vlRenderRun {
   atomic_uint blocks_done;
   vlStop stop;
   double start;
-  uint32_t spp_before;
+  vlFilmSequence sequence;
+  uint32_t sample_before; /* the first sample of this call */
 } vlRenderRun;
 
 /* Chooses the size of a block: several tiles where a pass has few samples, so that batches are full; not so many that a

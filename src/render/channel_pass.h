@@ -84,6 +84,7 @@ typedef struct vlChannelPass {
   vlStop *stop;
   vlFilmRays choice, image; /* rays of the image's samples: through the middle of the lens, and unchanged */
   uint32_t spp;             /* samples per pixel of the image */
+  uint32_t first_sample;    /* index of the first */
   vlCryptomatte crypto[3];
   vlCamera other[2]; /* forward, backward */
   vlCameraCompiled other_compiled[2];

@@ -154,7 +154,7 @@ static void flush(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t
                             .distance = depths ? vl_channel_row(w, DISTANCE) : NULL};
   p->ground_truth_kernels->hits(p->world, &p->ground_truth, w->scratch, &hits);
   for (uint32_t i = 0; i < n; i++) {
-    if (r.index[i] == 0) begin_pixel(w, c);
+    if (r.index[i] == p->first_sample) begin_pixel(w, c);
     /* Weights are rounded as the film rounds them. Negative weights of a filter's lobes count for no id. */
     int64_t weight = r.weight[i] > 0.0f ? (int64_t)((double)r.weight[i] * 0x1p24 + 0.5) : 0;
     c->total += weight;
@@ -162,7 +162,7 @@ static void flush(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t
       add_matte(p, w, i, weight);
     else
       add_choice(p, w, c, i, weight);
-    if (r.index[i] == p->spp - 1) end_pixel(p, w, c, (uint32_t)r.px[i], (uint32_t)r.py[i]);
+    if (r.index[i] == p->first_sample + p->spp - 1) end_pixel(p, w, c, (uint32_t)r.px[i], (uint32_t)r.py[i]);
   }
 }
 
@@ -173,7 +173,7 @@ static void count(const vlChannelPass *p, vlChannelWorker *w, const vlFilmRays *
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
     for (uint32_t s = 0; s < p->spp; s++) {
-      rows.px[n] = (int32_t)x, rows.py[n] = (int32_t)y, rows.index[n] = s;
+      rows.px[n] = (int32_t)x, rows.py[n] = (int32_t)y, rows.index[n] = p->first_sample + s;
       if (++n < VL_BATCH) continue;
       flush(p, w, &c, n);
       n = 0;

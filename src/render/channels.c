@@ -221,9 +221,11 @@ static void prepare_counting(vlChannelPass *p, const vlCamera *camera, vlIsa isa
   const vlChannelsDef *def = p->def;
   if (!(def->channels & (CRYPTO | VL_CHANNEL_FEATURES)) && def->mode == VL_CHANNEL_MODE_CENTRE) return;
   const vlFilmDef *film = vl_film_def(def->film);
+  p->first_sample = vl_film_sequence(def->film).first;
   p->spp = vl_film_spp(def->film);
   vlSampler sampler;
-  vl_sampler_init(&sampler, def->render->sampler, def->render->seed, film->width, film->height, def->render->spp);
+  vl_sampler_init(&sampler, def->render->sampler, def->render->seed, film->width, film->height,
+                  vl_film_sequence(def->film).length);
   vl_film_rays_init(&p->image, camera, vl_film_filter(def->film), &sampler, isa);
   vl_film_rays_init(&p->choice, &p->camera, vl_film_filter(def->film), &sampler, isa);
   p->choice.middle = true;

@@ -26,11 +26,11 @@ bool vl_render_report(vlRenderRun *r, bool pass_done, double done_samples) {
   if (!r->def->progress) return true;
   vlProgress p;
   memset(&p, 0, sizeof p);
-  double total = r->def->spp - r->spp_before;
+  double total = (double)r->def->spp - r->sample_before;
   p.spp_done = vl_film_spp(r->film);
-  p.spp_total = r->def->spp;
+  p.spp_total = r->def->spp > r->sequence.first ? r->def->spp - r->sequence.first : 0;
   p.elapsed = vl_seconds() - r->start;
-  p.fraction = total > 0 ? (done_samples - r->spp_before) / total : 1;
+  p.fraction = total > 0 ? (done_samples - r->sample_before) / total : 1;
   p.remaining = p.fraction > 0 ? p.elapsed * (1 - p.fraction) / p.fraction : INFINITY;
   if (r->def->time_limit > 0 && p.elapsed + p.remaining > r->def->time_limit) {
     p.remaining = fmax(0, r->def->time_limit - p.elapsed);
@@ -58,6 +58,12 @@ static vlResult check_arguments(const vlWorld *world, const vlCamera *camera, vl
                    camera->height, f->width, f->height);
   if (f->buckets && world->def.color == VL_COLOR_RGB)
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: a world in RGB has no spectra for the film");
+  uint32_t length = vl_film_sequence(film).length;
+  if (def->sequence && length && def->sequence != length)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: the film's samples are of a sequence of %u, not of %u", length,
+                   def->sequence);
+  if (vl_film_sequence(film).uneven)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: the film's pixels do not all have the same samples");
   if (def->max_depth > 4096)
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: max_depth %u is above 4096", def->max_depth);
   if (def->merge_radius <= 0 || def->merge_radius > 3e38)
@@ -132,7 +138,7 @@ static void prepare(vlRenderRun *r, const vlCamera *camera) {
   const vlFilmDef *f = vl_film_def(r->film);
   vlIsa isa = vl_context_isa(world->context);
   vlSampler sampler;
-  vl_sampler_init(&sampler, r->def->sampler, r->def->seed, f->width, f->height, r->def->spp);
+  vl_sampler_init(&sampler, r->def->sampler, r->def->seed, f->width, f->height, r->sequence.length);
   vl_film_rays_init(&r->film_rays, camera, vl_film_filter(r->film), &sampler, isa);
   vl_film_rays_clock(&r->film_rays, world);
   r->film_rays.centred = r->def->centred;
@@ -202,6 +208,11 @@ vlRenderDef vl_default_render_def(void) {
                        .ao_cosine = true};
 }
 
+/* The index of the sample that the film gets next. */
+static uint32_t next_sample(const vlRenderRun *r) {
+  return r->sequence.first + vl_film_spp(r->film);
+}
+
 vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                    vlRenderStats *stats, vlError *error) {
   vl_error_clear(error);
@@ -216,23 +227,30 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
   r->def = def;
   r->start = vl_seconds();
   vl_stop_init(&r->stop, ask_to_stop, r);
-  r->spp_before = vl_film_spp(film);
+  r->sequence = vl_film_sequence(film);
+  if (!r->sequence.length) {
+    r->sequence.length = def->sequence ? def->sequence : vl_sampler_sequence(def->sampler, def->spp);
+    r->sequence.first = def->first_sample;
+  }
+  vl_film_set_sequence(film, r->sequence);
+  r->sample_before = next_sample(r);
   vlCamera focused = *camera;
   if ((result = vl_camera_autofocus(world, &focused, error)) != VL_OK) return result;
   prepare(r, &focused);
   result = make_workers(r, world->context, error);
   if (result == VL_OK) result = prepare_two_way(r, &focused, error);
   double seconds_per_sample = 0;
-  while (result == VL_OK && vl_film_spp(film) < def->spp) {
+  while (result == VL_OK && next_sample(r) < def->spp) {
     if ((result = vl_film_begin_pass(film)) != VL_OK) {
       vl_fail_memory(error);
       break;
     }
-    r->first_sample = vl_film_spp(film);
+    r->first_sample = next_sample(r);
     double end = def->time_limit > 0 ? r->start + def->time_limit : 0;
     double left = end > 0 ? end - vl_seconds() : INFINITY;
-    r->stop.deadline = r->first_sample > r->spp_before ? end : 0;
-    r->pass_samples = r->two_way ? 1 : pass_size(r->first_sample, def->spp, seconds_per_sample, left);
+    r->stop.deadline = r->first_sample > r->sample_before ? end : 0;
+    r->pass_samples =
+        r->two_way ? 1 : pass_size(vl_film_spp(film), def->spp - r->sequence.first, seconds_per_sample, left);
     vl_render_choose_blocks(r);
     if (r->two_way) r->film_rays.shared = vl_two_way_time(r->two_way, r->first_sample);
     atomic_store(&r->blocks_done, 0);
@@ -249,8 +267,8 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
     }
     vl_film_commit_pass(film);
     seconds_per_sample = (vl_seconds() - pass_start) / r->pass_samples;
-    vl_film_set_spp(film, r->first_sample + r->pass_samples);
-    if (!vl_render_report(r, true, vl_film_spp(film)) && vl_film_spp(film) < def->spp)
+    vl_film_set_spp(film, vl_film_spp(film) + r->pass_samples);
+    if (!vl_render_report(r, true, next_sample(r)) && next_sample(r) < def->spp)
       result = vl_fail(error, VL_CANCELLED, "stopped");
     if (def->time_limit > 0 && vl_seconds() - r->start >= NEARLY * def->time_limit) break;
   }

@@ -294,7 +294,7 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   if (def->light_paths == VL_AS_MANY_AS_PIXELS) run->most_paths = pixels < MOST_PATHS ? (uint32_t)pixels : MOST_PATHS;
   run->paths = run->most_paths;
   run->rounds = run->most_paths > run->pixels ? (run->most_paths + run->pixels - 1) / run->pixels : 1;
-  uint64_t samples = (uint64_t)def->spp * run->rounds;
+  uint64_t samples = (uint64_t)rays->sampler.spp * run->rounds;
   vlTwoWay *way = &run->way;
   vl_sampler_init(&way->sampler, def->sampler, vl_hash2(def->seed, light_seed), f->width, f->height,
                   samples < UINT32_MAX ? (uint32_t)samples : UINT32_MAX);

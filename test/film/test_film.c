@@ -179,7 +179,7 @@ static void test_merge(void **state) {
     vl_film_set_spp(parts[k], 2);
   }
   static const int ORDER[4] = {2, 0, 3, 1};
-  for (int k = 0; k < 4; k++) assert_int_equal(vl_film_merge(empty, parts[ORDER[k]]), VL_OK);
+  for (int k = 0; k < 4; k++) assert_int_equal(vl_film_add_film(empty, parts[ORDER[k]]), VL_OK);
   assert_int_equal(vl_film_spp(empty), 8);
   develop(whole, one_);
   develop(empty, two_);
@@ -188,8 +188,8 @@ static void test_merge(void **state) {
   def.crop[0] = 1;
   vlFilm *other;
   assert_int_equal(vl_film_create(context_, &def, &other), VL_OK);
-  assert_int_equal(vl_film_merge(empty, other), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_film_merge(empty, empty), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_film_add_film(empty, other), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_film_add_film(empty, empty), VL_ERROR_ARGUMENT);
   vl_film_destroy(other);
   vl_film_destroy(whole);
   vl_film_destroy(empty);
@@ -335,7 +335,7 @@ static void test_memory(void **state) {
       result = vl_film_begin_pass(film);
       if (result == VL_OK) vl_film_commit_pass(film);
     }
-    if (result == VL_OK) result = vl_film_merge(other, film);
+    if (result == VL_OK) result = vl_film_add_film(other, film);
     vlDevelopDef develop_def = vl_default_develop_def();
     if (result == VL_OK) result = vl_film_develop(film, &develop_def, &image);
     assert_true(result == VL_OK || result == VL_ERROR_MEMORY);

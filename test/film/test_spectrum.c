@@ -114,7 +114,7 @@ static void exact(void **state) {
       pass(way == 3 && k % 2 ? other : film, way == 1 ? COUNT - from - count : from, count);
       from += count;
     }
-    if (way == 3) assert_int_equal(vl_film_merge(film, other), VL_OK);
+    if (way == 3) assert_int_equal(vl_film_add_film(film, other), VL_OK);
     spectrum(film, two_);
     assert_memory_equal(one_, two_, sizeof one_);
     vl_film_clear(film);
@@ -156,7 +156,7 @@ static void wrong(void **state) {
   vlImage *image;
   assert_int_equal(vl_film_create(context_, &plain, &without), VL_OK);
   assert_int_equal(vl_film_spectrum(without, &image), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_film_merge(film, without), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_film_add_film(film, without), VL_ERROR_ARGUMENT);
   vl_film_destroy(without);
   /* not finite, too large, outside: the sample adds nothing */
   const float bad[3] = {NAN, INFINITY, 0x1p41f};
@@ -183,7 +183,7 @@ static vlResult whole_film(vlContext *context, void *user) {
     if (r == VL_OK && i) add(film[i], 0, 100), vl_film_commit_pass(film[i]);
     if (r == VL_OK && !i) vl_film_abandon_pass(film[i]);
   }
-  if (r == VL_OK) r = vl_film_merge(film[0], film[1]);
+  if (r == VL_OK) r = vl_film_add_film(film[0], film[1]);
   if (r == VL_OK) r = vl_film_spectrum(film[0], &image);
   vl_image_destroy(image);
   for (int i = 0; i < 2; i++) vl_film_destroy(film[i]);

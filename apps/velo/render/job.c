@@ -166,6 +166,7 @@ static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
   if (v[RENDER_COLOR].given) defs->build.color = (vlColorMode)v[RENDER_COLOR].integer;
   if (v[RENDER_MAX_DEPTH].given) defs->render.max_depth = (uint32_t)v[RENDER_MAX_DEPTH].integer;
   if (v[RENDER_SEED].given) defs->render.seed = (uint32_t)v[RENDER_SEED].integer;
+  if (v[RENDER_SEQUENCE].given) defs->render.sequence = (uint32_t)v[RENDER_SEQUENCE].integer;
   if (v[RENDER_SPP].given) {
     defs->render.spp = (uint32_t)v[RENDER_SPP].integer;
   } else if (v[RENDER_TIME].given) {

@@ -39,3 +39,18 @@ void vl_sampler_init(vlSampler *sampler, vlSamplerKind kind, uint32_t seed, uint
       .jitter_bits = bits < 14 ? 22 - bits : 8,
   };
 }
+
+uint32_t vl_sampler_sequence(vlSamplerKind kind, uint32_t spp) {
+  switch (kind) {
+    case VL_SAMPLER_INDEPENDENT:
+    case VL_SAMPLER_HALTON:
+    case VL_SAMPLER_SOBOL:
+    case VL_SAMPLER_ZSOBOL: return VL_SEQUENCE_LENGTH;
+    case VL_SAMPLER_REGULAR:
+    case VL_SAMPLER_STRATIFIED:
+    case VL_SAMPLER_NROOKS:
+    case VL_SAMPLER_MULTI_JITTERED:
+    case VL_SAMPLER_HAMMERSLEY: break;
+  }
+  return spp ? spp : 1;
+}

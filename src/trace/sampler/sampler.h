@@ -15,8 +15,8 @@
  *   zsobol           the same along the Morton curve of the pixels, so that the errors of neighbours differ (Ahmed and
  *                    Wonka 2020): blue noise over the image
  *
- * Stratified kinds make exactly spp cells, for any spp. An index of spp or above starts a new, independent set
- * (independent, sobol: continues the sequence). */
+ * Stratified kinds make exactly spp cells, for any spp, the length of the sequence. An index of spp or above starts a
+ * new, independent set (independent, sobol: continues the sequence). */
 #ifndef TRACE_SAMPLER_SAMPLER_H
 #define TRACE_SAMPLER_SAMPLER_H
 
@@ -29,7 +29,7 @@ enum { VL_SAMPLE_SEQUENCE = 1 };
 typedef struct vlSampler {
   vlSamplerKind kind;
   uint32_t seed;
-  uint32_t spp;            /* total samples per pixel */
+  uint32_t spp;            /* length of the sequence, samples per pixel */
   uint32_t width, height;  /* whole image */
   uint32_t set;            /* samples in a set of the stratified kinds: spp, at most 2^20 */
   uint32_t log2_spp;       /* rounded up; zsobol: index bits below the Morton code */
@@ -39,9 +39,16 @@ typedef struct vlSampler {
   uint32_t jitter_bits;    /* random bits below a cell's number; cell and jitter together are exact in a float */
 } vlSampler;
 
-/* Any spp >= 1 is valid for every kind (0 counts as 1). Images up to 65536 x 65536 pixels. */
+/* spp: the length of the sequence. Any spp >= 1 is valid for every kind (0 counts as 1). Images up to 65536 x 65536
+ * pixels. */
 void vl_sampler_init(vlSampler *sampler, vlSamplerKind kind, uint32_t seed, uint32_t width, uint32_t height,
                      uint32_t spp);
+
+/* The length of a sequence where none is given, for a render of spp samples per pixel: constant for the kinds that can
+ * go on without end, so that a sample is the same for any spp; spp for those that divide it into cells
+ * (docs/decisions/0014-one-sequence.md). */
+enum { VL_SEQUENCE_LENGTH = 1 << 16 };
+uint32_t vl_sampler_sequence(vlSamplerKind kind, uint32_t spp);
 
 /* px, py: pixel; index: sample index in [0, spp). Arrays hold VL_PAD(n) elements; padding lanes are computed too. */
 typedef struct vlSamplerKernels {

@@ -1,0 +1,83 @@
+/* api/film_file.c: film files as a program sees them: header, receipt, blocks. */
+#include <string.h>
+
+#include "base/error.h"
+#include "film/file.h"
+#include "velo/film.h"
+
+struct vlFilmFile {
+  vlFilmReader reader;
+  vlReceipt *receipt;
+  char *data; /* of a block, when it was first checked */
+  vlSampleRange *ranges;
+  uint32_t capacity;
+};
+
+vlResult vl_film_file_open(vlContext *context, const char *path, vlFilmFile **file, vlError *error) {
+  vl_error_clear(error);
+  if (file) *file = NULL;
+  if (!context || !path || !file) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: null argument");
+  vlFilmFile *made = vl_alloc_zero(context, 1, sizeof *made);
+  if (!made) return vl_fail_memory(error);
+  vlResult result = vl_film_reader_open(&made->reader, context, path, error);
+  if (result != VL_OK) {
+    vl_free(context, made);
+    return result;
+  }
+  const char *text = made->reader.receipt;
+  if (text) result = vl_receipt_parse(context, text, strlen(text), &made->receipt, error);
+  if (result != VL_OK) {
+    vl_film_file_close(made);
+    return result;
+  }
+  *file = made;
+  return VL_OK;
+}
+
+void vl_film_file_close(vlFilmFile *file) {
+  if (!file) return;
+  vlContext *context = file->reader.context;
+  vl_receipt_destroy(file->receipt);
+  vl_free(context, file->data);
+  vl_free(context, file->ranges);
+  vl_film_reader_close(&file->reader);
+  vl_free(context, file);
+}
+
+const vlFilmDef *vl_film_file_def(const vlFilmFile *file) {
+  return &file->reader.shape.def;
+}
+uint32_t vl_film_file_sequence(const vlFilmFile *file) {
+  return file->reader.shape.sequence;
+}
+const vlReceipt *vl_film_file_receipt(const vlFilmFile *file) {
+  return file->receipt;
+}
+
+static vlResult check_data(vlFilmFile *file, vlError *error) {
+  vlFilmReader *r = &file->reader;
+  size_t most = (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK * vl_film_pixel_size(&r->shape.def);
+  if (!file->data && !(file->data = vl_alloc(r->context, most))) return vl_fail_memory(error);
+  return vl_film_reader_data(r, file->data, error);
+}
+
+vlResult vl_film_file_next(vlFilmFile *file, bool check, vlFilmBlock *block, vlError *error) {
+  vl_error_clear(error);
+  if (block) *block = (vlFilmBlock){.range_count = 0};
+  if (!file || !block) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: null argument");
+  vlFilmReader *r = &file->reader;
+  if (r->next > r->blocks) return VL_OK;
+  bool last = r->next == r->blocks;
+  vlResult result = vl_film_reader_next(r, error);
+  if (result != VL_OK || last) return result;
+  if (check && (result = check_data(file, error)) != VL_OK) return result;
+  const vlFilmBlockHead *h = &r->head;
+  if (h->range_count > file->capacity) {
+    vlSampleRange *more = vl_realloc_array(r->context, file->ranges, h->range_count, sizeof *more);
+    if (!more) return vl_fail_memory(error);
+    file->ranges = more, file->capacity = h->range_count;
+  }
+  for (uint32_t i = 0; i < h->range_count; i++) file->ranges[i] = (vlSampleRange){r->ranges[i].first, r->ranges[i].end};
+  *block = (vlFilmBlock){h->x0, h->y0, h->x1, h->y1, h->range_count, file->ranges};
+  return VL_OK;
+}

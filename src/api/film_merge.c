@@ -1,0 +1,287 @@
+/* api/film_merge.c: vl_film_merge: films of one render, streamed block by block. In each block the files with most
+ * samples come first; one whose samples another file has is left out; the others must be apart. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "film/file.h"
+#include "velo/film.h"
+
+enum { MOST_FILES = 200 }; /* open at the same time; more are merged in rounds */
+
+typedef struct Part {
+  vlFilmReader reader;
+  uint64_t samples; /* of the current block */
+  bool added;       /* its sums are a part of the result's */
+} Part;
+
+typedef struct Merge {
+  vlContext *context;
+  Part *parts;
+  uint32_t count;
+  uint32_t *order; /* of the parts, by samples */
+  vlSampleSpan *ranges, *joined;
+  uint32_t range_count;
+  char *sum, *data;
+  vlFileWriter file;
+  vlError *error;
+} Merge;
+
+/* ---- which films belong together --------------------------------------------------------------------------------- */
+
+typedef struct Difference {
+  vlError *error;
+  const char *path, *first;
+} Difference;
+
+static bool name_difference(void *user, const char *text) {
+  Difference *d = user;
+  vl_fail(d->error, VL_ERROR_SCENE, "%s and %s are of different renders: %s", d->path, d->first, text);
+  return false;
+}
+
+static bool same_film(const vlFilmShape *a, const vlFilmShape *b) {
+  const vlFilmDef *p = &a->def, *q = &b->def;
+  const vlPixelFilter *f = &p->filter, *g = &q->filter;
+  return a->sequence == b->sequence && p->width == q->width && p->height == q->height &&
+         memcmp(p->crop, q->crop, sizeof p->crop) == 0 && f->kind == g->kind && f->radius_x == g->radius_x &&
+         f->radius_y == g->radius_y && f->sigma == g->sigma && f->b == g->b && f->c == g->c && f->tau == g->tau &&
+         p->space == q->space && p->white_balance == q->white_balance && p->sensor == q->sensor &&
+         p->max_component == q->max_component && p->errors == q->errors && p->buckets == q->buckets &&
+         p->lambda_min == q->lambda_min && p->lambda_max == q->lambda_max;
+}
+
+static vlResult check_pair(const Merge *m, const vlFilmReader *r) {
+  const vlFilmReader *first = &m->parts[0].reader;
+  vlReceipt *then = NULL, *now = NULL;
+  vlResult result = VL_OK;
+  if (!first->receipt != !r->receipt)
+    return vl_fail(m->error, VL_ERROR_SCENE, "%s and %s are of different renders: one has no receipt", r->path,
+                   first->path);
+  if (r->receipt) {
+    result = vl_receipt_parse(m->context, first->receipt, strlen(first->receipt), &then, m->error);
+    if (result == VL_OK) result = vl_receipt_parse(m->context, r->receipt, strlen(r->receipt), &now, m->error);
+    Difference d = {m->error, r->path, first->path};
+    uint32_t parts = VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_CAMERA | VL_RECEIPT_SETTINGS;
+    if (result == VL_OK && vl_receipt_compare(then, now, parts, name_difference, &d)) result = VL_ERROR_SCENE;
+    vl_receipt_destroy(then);
+    vl_receipt_destroy(now);
+  }
+  if (result == VL_OK && !same_film(&r->shape, &first->shape))
+    result = vl_fail(m->error, VL_ERROR_SCENE,
+                     "%s and %s are of different renders: their films differ (size, crop, "
+                     "sequence or filter)",
+                     r->path, first->path);
+  return result;
+}
+
+static vlResult open_parts(Merge *m, const char *const *paths) {
+  for (uint32_t i = 0; i < m->count; i++) m->parts[i].reader.descriptor = -1, m->order[i] = i;
+  for (uint32_t i = 0; i < m->count; i++) {
+    vlFilmReader *r = &m->parts[i].reader;
+    vlResult result = vl_film_reader_open(r, m->context, paths[i], m->error);
+    if (result == VL_OK && i) result = check_pair(m, r);
+    if (result != VL_OK) return result;
+  }
+  return VL_OK;
+}
+
+/* The header of the result does not depend on the order of the files: it has the receipt that comes first as text. */
+static const char *choose_receipt(const Merge *m) {
+  const char *least = m->parts[0].reader.receipt;
+  for (uint32_t i = 1; i < m->count && least; i++)
+    if (strcmp(m->parts[i].reader.receipt, least) < 0) least = m->parts[i].reader.receipt;
+  return least;
+}
+
+/* ---- samples of a block ------------------------------------------------------------------------------------------ */
+
+static bool contains(const vlSampleSpan *a, uint32_t n, const vlSampleSpan *b, uint32_t m) {
+  uint32_t i = 0;
+  for (uint32_t k = 0; k < m; k++) {
+    while (i < n && a[i].end < b[k].end) i++;
+    if (i == n || a[i].first > b[k].first) return false;
+  }
+  return true;
+}
+
+static bool overlap(const vlSampleSpan *a, uint32_t n, const vlSampleSpan *b, uint32_t m, vlSampleSpan *common) {
+  for (uint32_t i = 0, k = 0; i < n && k < m;) {
+    uint32_t first = a[i].first > b[k].first ? a[i].first : b[k].first, end = a[i].end < b[k].end ? a[i].end : b[k].end;
+    if (first < end) return *common = (vlSampleSpan){first, end}, true;
+    if (a[i].end < b[k].end)
+      i++;
+    else
+      k++;
+  }
+  return false;
+}
+
+/* Adds ranges that are apart from those of the result. */
+static vlResult join(Merge *m, const vlSampleSpan *b, uint32_t count) {
+  uint32_t n = 0;
+  for (uint32_t i = 0, k = 0; i < m->range_count || k < count;) {
+    bool first = k == count || (i < m->range_count && m->ranges[i].first < b[k].first);
+    vlSampleSpan next = first ? m->ranges[i++] : b[k++];
+    if (n && m->joined[n - 1].end == next.first)
+      m->joined[n - 1].end = next.end;
+    else if (n < VL_FILM_MOST_RANGES)
+      m->joined[n++] = next;
+    else
+      return vl_fail(m->error, VL_ERROR_SCENE, "the films' samples have more than %d gaps", VL_FILM_MOST_RANGES);
+  }
+  vlSampleSpan *swap = m->ranges;
+  m->ranges = m->joined, m->joined = swap, m->range_count = n;
+  return VL_OK;
+}
+
+/* Whether part i counts: not when an added part has all its samples. */
+static vlResult choose(Merge *m, uint32_t i, bool *counts) {
+  Part *p = &m->parts[i];
+  vlFilmReader *r = &p->reader;
+  vlSampleSpan common;
+  *counts = true;
+  for (uint32_t k = 0; k < m->count; k++) {
+    Part *q = &m->parts[k];
+    vlFilmReader *other = &q->reader;
+    if (!q->added || !overlap(other->ranges, other->head.range_count, r->ranges, r->head.range_count, &common))
+      continue;
+    if (!contains(other->ranges, other->head.range_count, r->ranges, r->head.range_count))
+      return vl_fail(m->error, VL_ERROR_SCENE, "%s and %s overlap: both have samples %u:%u of pixels %u,%u to %u,%u",
+                     r->path, other->path, common.first, common.end, r->head.x0, r->head.y0, r->head.x1, r->head.y1);
+    *counts = false;
+    if (p->samples != q->samples) continue;
+    uint32_t mine, its;
+    vlResult result = vl_film_reader_crc(r, &mine, m->error);
+    if (result == VL_OK) result = vl_film_reader_crc(other, &its, m->error);
+    if (result != VL_OK) return result;
+    if (mine != its)
+      return vl_fail(m->error, VL_ERROR_SCENE, "%s and %s have the same samples of pixels %u,%u with different sums",
+                     r->path, other->path, r->head.x0, r->head.y0);
+  }
+  return VL_OK;
+}
+
+static int more_samples(const Merge *m, uint32_t a, uint32_t b) {
+  uint64_t x = m->parts[a].samples, y = m->parts[b].samples;
+  return x > y || (x == y && a < b);
+}
+
+/* Insertion: the order is almost the same in each block. */
+static void sort_parts(Merge *m) {
+  for (uint32_t i = 1; i < m->count; i++)
+    for (uint32_t k = i; k > 0 && more_samples(m, m->order[k], m->order[k - 1]); k--) {
+      uint32_t swap = m->order[k];
+      m->order[k] = m->order[k - 1], m->order[k - 1] = swap;
+    }
+}
+
+static vlResult merge_block(Merge *m) {
+  vlResult result = VL_OK;
+  for (uint32_t i = 0; i < m->count && result == VL_OK; i++) {
+    Part *p = &m->parts[i];
+    result = vl_film_reader_next(&p->reader, m->error);
+    p->samples = result == VL_OK ? vl_film_samples(p->reader.ranges, p->reader.head.range_count) : 0;
+    p->added = false;
+  }
+  if (result != VL_OK) return result;
+  sort_parts(m);
+  m->range_count = 0;
+  const vlFilmBlockHead *h = &m->parts[0].reader.head;
+  const vlFilmDef *def = &m->parts[0].reader.shape.def;
+  size_t pixels = (size_t)(h->x1 - h->x0) * (h->y1 - h->y0);
+  uint64_t samples = 0;
+  for (uint32_t i = 0; i < m->count; i++) {
+    Part *p = &m->parts[m->order[i]];
+    bool counts, first = !m->range_count;
+    if (!p->samples) break;
+    if ((result = choose(m, m->order[i], &counts)) != VL_OK) return result;
+    if (!counts) continue;
+    samples += p->samples;
+    if (samples > UINT64_C(1) << 31)
+      return vl_fail(m->error, VL_ERROR_SCENE, "%s: a film holds at most 2^31 samples per pixel", p->reader.path);
+    result = vl_film_reader_data(&p->reader, first ? m->sum : m->data, m->error);
+    if (result == VL_OK && !first) vl_film_add_block(def, pixels, m->sum, m->data);
+    if (result == VL_OK) result = join(m, p->reader.ranges, p->reader.head.range_count);
+    if (result != VL_OK) return result;
+    p->added = true;
+  }
+  const uint32_t place[4] = {h->x0, h->y0, h->x1, h->y1};
+  vlFilmBlockHead head;
+  vl_film_block_head(def, place, m->range_count, &head);
+  uint32_t crc = vl_film_crc(0, &head, sizeof head);
+  crc = vl_film_crc(crc, m->ranges, m->range_count * sizeof *m->ranges);
+  crc = vl_film_crc(crc, m->sum, head.data_size);
+  vl_file_write(&m->file, &head, sizeof head);
+  vl_file_write(&m->file, m->ranges, m->range_count * sizeof *m->ranges);
+  vl_file_write(&m->file, m->sum, head.data_size);
+  vl_file_write(&m->file, &crc, sizeof crc);
+  return VL_OK;
+}
+
+/* ---- all --------------------------------------------------------------------------------------------------------- */
+
+static vlResult merge_opened(Merge *m, const char *output) {
+  const vlFilmShape *shape = &m->parts[0].reader.shape;
+  size_t size = (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK * vl_film_pixel_size(&shape->def);
+  m->sum = vl_alloc(m->context, size);
+  m->data = vl_alloc(m->context, size);
+  m->ranges = vl_alloc_array(m->context, VL_FILM_MOST_RANGES, sizeof *m->ranges);
+  m->joined = vl_alloc_array(m->context, VL_FILM_MOST_RANGES, sizeof *m->joined);
+  char *header = vl_film_header_make(m->context, shape, choose_receipt(m));
+  vlResult result = m->sum && m->data && m->ranges && m->joined && header ? VL_OK : vl_fail_memory(m->error);
+  if (result == VL_OK) result = vl_file_open_write(&m->file, output, m->error);
+  if (result == VL_OK) {
+    result = vl_film_put_header(&m->file, header);
+    for (uint32_t b = 0; b < m->parts[0].reader.blocks && result == VL_OK && !m->file.failed_errno; b++)
+      result = merge_block(m);
+    for (uint32_t i = 0; i < m->count && result == VL_OK && !m->file.failed_errno; i++)
+      result = vl_film_reader_next(&m->parts[i].reader, m->error); /* the file ends here */
+    if (result == VL_OK)
+      result = vl_file_commit(&m->file, m->error);
+    else
+      vl_file_abandon(&m->file);
+  }
+  vl_free(m->context, header);
+  return result;
+}
+
+static vlResult merge_some(vlContext *context, const char *const *paths, uint32_t count, const char *output,
+                           vlError *error) {
+  Merge m = {.context = context, .count = count, .error = error};
+  m.parts = vl_alloc_zero(context, count, sizeof *m.parts);
+  m.order = vl_alloc_array(context, count, sizeof *m.order);
+  vlResult result = m.parts && m.order ? open_parts(&m, paths) : vl_fail_memory(error);
+  if (result == VL_OK) result = merge_opened(&m, output);
+  for (uint32_t i = 0; i < count && m.parts && m.order; i++)
+    if (m.parts[i].reader.path) vl_film_reader_close(&m.parts[i].reader);
+  vl_free(context, m.parts);
+  vl_free(context, m.order);
+  vl_free(context, m.ranges);
+  vl_free(context, m.joined);
+  vl_free(context, m.sum);
+  vl_free(context, m.data);
+  return result;
+}
+
+vlResult vl_film_merge(vlContext *context, const char *const *paths, uint32_t count, const char *output,
+                       vlError *error) {
+  vl_error_clear(error);
+  if (!context || !paths || !count || !output) return vl_fail(error, VL_ERROR_ARGUMENT, "film merge: null argument");
+  if (count <= MOST_FILES) return merge_some(context, paths, count, output, error);
+  char between[4096];
+  const char *some[MOST_FILES];
+  if (snprintf(between, sizeof between, "%s.merge", output) >= (int)sizeof between)
+    return vl_fail(error, VL_ERROR_IO, "cannot write %s: the path is too long", output);
+  vlResult result = VL_OK;
+  for (uint32_t done = 0; done < count && result == VL_OK;) {
+    uint32_t n = 0;
+    if (done) some[n++] = between;
+    while (n < MOST_FILES && done < count) some[n++] = paths[done++];
+    result = merge_some(context, some, n, done < count ? between : output, error);
+  }
+  unlink(between);
+  return result;
+}

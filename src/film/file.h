@@ -1,0 +1,103 @@
+/* film/file.h: film files (docs/film-files.md): a preamble, a header of JSON, then blocks of pixels with their sums.
+ * Numbers are little-endian; sums are stored as they are in memory. */
+#ifndef FILM_FILE_H
+#define FILM_FILE_H
+
+#include "base/file.h"
+#include "film/sums.h"
+
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
+               "film files are little-endian, and sums are stored as they are");
+
+enum {
+  VL_FILM_FORMAT = 1,
+  VL_FILM_BLOCK = 32, /* blocks are at multiples of so many pixels */
+  VL_FILM_MOST_RANGES = 1 << 16,
+  VL_FILM_MOST_HEADER = 1 << 26 /* bytes */
+};
+
+typedef struct vlSampleSpan {
+  uint32_t first, end;
+} vlSampleSpan;
+
+typedef struct vlFilmPreamble {
+  char magic[8];
+  uint32_t format, header_size, header_crc, crc; /* crc: of what is before it */
+} vlFilmPreamble;
+_Static_assert(sizeof(vlFilmPreamble) == 24, "no padding");
+extern const char vl_film_magic[8];
+
+typedef struct vlFilmBlockHead {
+  uint32_t magic, range_count, x0, y0, x1, y1;
+  uint64_t data_size;  /* bytes: range_count ? pixels * vl_film_pixel_size : 0 */
+  uint8_t learned[16]; /* digest of learned state that the samples depend on; 0: none */
+} vlFilmBlockHead;
+_Static_assert(sizeof(vlFilmBlockHead) == 48, "no padding");
+enum { VL_FILM_BLOCK_MAGIC = 0x4b4c4256 }; /* "VBLK" */
+
+/* What films of one render share. */
+typedef struct vlFilmShape {
+  vlFilmDef def; /* crop: of the whole render */
+  uint32_t sequence;
+} vlFilmShape;
+
+static inline size_t vl_film_pixel_size(const vlFilmDef *def) {
+  return sizeof(vlFilmPixel) + (def->errors ? sizeof(vlFilmMoments) : 0) +
+         def->buckets * (sizeof(vlInt128) + sizeof(int64_t));
+}
+uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size);
+
+/* The blocks of a window: cells of the image's grid, clipped. */
+uint32_t vl_film_block_count(const uint32_t window[4]);
+void vl_film_block_place(const uint32_t window[4], uint32_t index, uint32_t place[4]);
+
+/* ---- header ------------------------------------------------------------------------------------------------------ */
+
+/* The text of a header; receipt: JSON, may be null. Null: out of memory. */
+char *vl_film_header_make(vlContext *context, const vlFilmShape *shape, const char *receipt);
+/* Reads it. *receipt: its text, null where there is none; the caller frees it. Errors: SCENE, MEMORY. */
+vlResult vl_film_header_read(vlContext *context, const char *path, const char *text, size_t size, vlFilmShape *shape,
+                             char **receipt, vlError *error);
+
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
+
+typedef struct vlFilmReader {
+  vlContext *context;
+  int descriptor; /* -1: closed */
+  uint64_t size, at;
+  char *path;
+  vlFilmShape shape;
+  char *receipt; /* text; null: none */
+  uint32_t blocks, next;
+  /* of the block that was read last */
+  vlFilmBlockHead head;
+  vlSampleSpan *ranges;
+  uint32_t range_capacity;
+  uint64_t data_at;
+  uint32_t crc; /* of head and ranges */
+} vlFilmReader;
+
+vlResult vl_film_reader_open(vlFilmReader *reader, vlContext *context, const char *path, vlError *error);
+void vl_film_reader_close(vlFilmReader *reader);
+/* Reads the head and the ranges of the next block; reader->next <= reader->blocks. */
+vlResult vl_film_reader_next(vlFilmReader *reader, vlError *error);
+/* Reads and checks the data of that block: pixels (row by row), then moments, then spectra. */
+vlResult vl_film_reader_data(vlFilmReader *reader, void *data, vlError *error);
+/* The CRC that the block has, unchecked. */
+vlResult vl_film_reader_crc(vlFilmReader *reader, uint32_t *crc, vlError *error);
+
+/* ---- merging ----------------------------------------------------------------------------------------------------- */
+
+/* Adds the sums of a block to those of another one, both as in the file. */
+void vl_film_add_block(const vlFilmDef *def, size_t pixels, void *to, const void *from);
+
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
+
+/* The number of samples of a block. */
+uint64_t vl_film_samples(const vlSampleSpan *ranges, uint32_t count);
+/* Preamble and header. */
+vlResult vl_film_put_header(vlFileWriter *writer, const char *header);
+/* Fills a head; size of the block in the file. */
+size_t vl_film_block_head(const vlFilmDef *def, const uint32_t place[4], uint32_t range_count, vlFilmBlockHead *head);
+
+#endif

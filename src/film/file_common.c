@@ -1,0 +1,58 @@
+/* film/file_common.c: what readers and writers of film files share. */
+#include <string.h>
+#include <zlib.h>
+
+#include "film/file.h"
+
+const char vl_film_magic[8] = {'V', 'E', 'L', 'O', 'F', 'I', 'L', 'M'};
+
+uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size) {
+  return (uint32_t)crc32_z(crc, data, size);
+}
+
+static uint32_t cells(uint32_t low, uint32_t high) {
+  return (high + VL_FILM_BLOCK - 1) / VL_FILM_BLOCK - low / VL_FILM_BLOCK;
+}
+
+uint32_t vl_film_block_count(const uint32_t w[4]) {
+  return cells(w[0], w[2]) * cells(w[1], w[3]);
+}
+
+void vl_film_block_place(const uint32_t w[4], uint32_t index, uint32_t place[4]) {
+  uint32_t across = cells(w[0], w[2]), x = w[0] / VL_FILM_BLOCK + index % across;
+  uint32_t y = w[1] / VL_FILM_BLOCK + index / across;
+  place[0] = x * VL_FILM_BLOCK > w[0] ? x * VL_FILM_BLOCK : w[0];
+  place[1] = y * VL_FILM_BLOCK > w[1] ? y * VL_FILM_BLOCK : w[1];
+  place[2] = (x + 1) * VL_FILM_BLOCK < w[2] ? (x + 1) * VL_FILM_BLOCK : w[2];
+  place[3] = (y + 1) * VL_FILM_BLOCK < w[3] ? (y + 1) * VL_FILM_BLOCK : w[3];
+}
+
+uint64_t vl_film_samples(const vlSampleSpan *ranges, uint32_t count) {
+  uint64_t sum = 0;
+  for (uint32_t i = 0; i < count; i++) sum += ranges[i].end - ranges[i].first;
+  return sum;
+}
+
+vlResult vl_film_put_header(vlFileWriter *writer, const char *header) {
+  size_t size = strlen(header);
+  if (size > VL_FILM_MOST_HEADER) return VL_ERROR_ARGUMENT;
+  vlFilmPreamble p = {.format = VL_FILM_FORMAT, .header_size = (uint32_t)size};
+  memcpy(p.magic, vl_film_magic, sizeof p.magic);
+  p.header_crc = vl_film_crc(0, header, size);
+  p.crc = vl_film_crc(0, &p, offsetof(vlFilmPreamble, crc));
+  vl_file_write(writer, &p, sizeof p);
+  vl_file_write(writer, header, size);
+  return VL_OK;
+}
+
+size_t vl_film_block_head(const vlFilmDef *def, const uint32_t place[4], uint32_t range_count, vlFilmBlockHead *head) {
+  size_t pixels = (size_t)(place[2] - place[0]) * (place[3] - place[1]);
+  *head = (vlFilmBlockHead){.magic = VL_FILM_BLOCK_MAGIC,
+                            .range_count = range_count,
+                            .x0 = place[0],
+                            .y0 = place[1],
+                            .x1 = place[2],
+                            .y1 = place[3],
+                            .data_size = range_count ? pixels * vl_film_pixel_size(def) : 0};
+  return sizeof *head + range_count * sizeof(vlSampleSpan) + head->data_size + sizeof(uint32_t);
+}

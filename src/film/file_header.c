@@ -1,0 +1,189 @@
+/* film/file_header.c: the header of a film file: what its film is, as JSON, and the receipt of its render. */
+#include <jansson.h>
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "film/file.h"
+#include "velo/schema.h"
+
+typedef enum Type { COUNT, FLOAT, DOUBLE, BOOL } Type;
+typedef struct Field {
+  const char *name;
+  Type type;
+  size_t offset;
+} Field;
+#define FIELD(name, type, member) \
+  { name, type, offsetof(vlFilmDef, member) }
+static const Field fields[] = {FIELD("width", COUNT, width),
+                               FIELD("height", COUNT, height),
+                               FIELD("filter_radius_x", FLOAT, filter.radius_x),
+                               FIELD("filter_radius_y", FLOAT, filter.radius_y),
+                               FIELD("filter_sigma", FLOAT, filter.sigma),
+                               FIELD("filter_b", FLOAT, filter.b),
+                               FIELD("filter_c", FLOAT, filter.c),
+                               FIELD("filter_tau", FLOAT, filter.tau),
+                               FIELD("white_balance", DOUBLE, white_balance),
+                               FIELD("max_component", FLOAT, max_component),
+                               FIELD("errors", BOOL, errors),
+                               FIELD("buckets", COUNT, buckets),
+                               FIELD("lambda_min", DOUBLE, lambda_min),
+                               FIELD("lambda_max", DOUBLE, lambda_max)};
+enum { FIELDS = sizeof fields / sizeof *fields };
+static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
+enum { SPACES = sizeof spaces / sizeof *spaces };
+
+static const vlKindFamily *filters(void) {
+  const vlKindFamily *family;
+  for (uint32_t i = 0; (family = vl_kind_family(i)); i++)
+    if (strcmp(family->name, "filters") == 0) break;
+  return family;
+}
+
+static bool put(json_t *object, const char *key, json_t *value) {
+  return value && json_object_set_new(object, key, value) == 0;
+}
+
+/* ---- making ------------------------------------------------------------------------------------------------------ */
+
+static json_t *number(double value) {
+  return isinf(value) ? json_string("infinity") : json_real(value);
+}
+
+static json_t *field_value(const vlFilmDef *def, const Field *field) {
+  const char *at = (const char *)def + field->offset;
+  switch (field->type) {
+    case COUNT: return json_integer(*(const uint32_t *)(const void *)at);
+    case FLOAT: return number((double)*(const float *)(const void *)at);
+    case DOUBLE: return number(*(const double *)(const void *)at);
+    case BOOL: return json_boolean(*(const bool *)(const void *)at);
+  }
+  return NULL;
+}
+
+static json_t *film_tree(const vlFilmShape *shape) {
+  const vlFilmDef *def = &shape->def;
+  json_t *film = json_object();
+  bool good = film != NULL;
+  for (size_t i = 0; i < FIELDS && good; i++) good = put(film, fields[i].name, field_value(def, &fields[i]));
+  const uint32_t *c = def->crop;
+  good = good &&
+         put(film, "crop",
+             json_pack("[I,I,I,I]", (json_int_t)c[0], (json_int_t)c[1], (json_int_t)c[2], (json_int_t)c[3])) &&
+         put(film, "filter", json_string(filters()->rows[def->filter.kind]->name)) &&
+         put(film, "space", json_string(spaces[def->space])) &&
+         put(film, "sensor", json_string(def->sensor ? def->sensor : vl_sensor_name(0))) &&
+         put(film, "sequence", json_integer(shape->sequence));
+  if (!good) json_decref(film), film = NULL;
+  return film;
+}
+
+char *vl_film_header_make(vlContext *context, const vlFilmShape *shape, const char *receipt) {
+  json_t *tree = json_object(), *film = film_tree(shape);
+  bool good = tree && put(tree, "film", film);
+  if (good && receipt) good = put(tree, "receipt", json_loads(receipt, JSON_REJECT_DUPLICATES, NULL));
+  const size_t flags = JSON_INDENT(1) | JSON_PRESERVE_ORDER;
+  size_t size = good ? json_dumpb(tree, NULL, 0, flags) : 0;
+  char *text = size ? vl_alloc(context, size + 2) : NULL;
+  if (text) {
+    json_dumpb(tree, text, size, flags);
+    text[size] = '\n', text[size + 1] = 0;
+  }
+  json_decref(tree);
+  return text;
+}
+
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
+
+static vlResult wrong(const char *path, const char *what, vlError *error) {
+  return vl_fail(error, VL_ERROR_SCENE, "%s: film file: \"%s\" of the header is missing or wrong", path, what);
+}
+
+static bool count_of(const json_t *value, uint32_t *count) {
+  if (!json_is_integer(value) || json_integer_value(value) < 0 || json_integer_value(value) > UINT32_MAX) return false;
+  *count = (uint32_t)json_integer_value(value);
+  return true;
+}
+
+static bool number_of(const json_t *value, double *result) {
+  const char *text = json_string_value(value);
+  if (text && strcmp(text, "infinity") == 0) return *result = INFINITY, true;
+  *result = json_number_value(value);
+  return json_is_number(value);
+}
+
+static bool take_field(const json_t *film, const Field *field, vlFilmDef *def) {
+  char *at = (char *)def + field->offset;
+  const json_t *value = json_object_get(film, field->name);
+  double number = 0;
+  switch (field->type) {
+    case COUNT: return count_of(value, (uint32_t *)(void *)at);
+    case BOOL: *(bool *)(void *)at = json_is_true(value); return json_is_boolean(value);
+    case FLOAT:
+    case DOUBLE: break;
+  }
+  if (!number_of(value, &number)) return false;
+  if (field->type == DOUBLE)
+    *(double *)(void *)at = number;
+  else
+    *(float *)(void *)at = (float)number;
+  return true;
+}
+
+static bool take_names(const json_t *film, vlFilmDef *def) {
+  const char *filter = json_string_value(json_object_get(film, "filter"));
+  const char *space = json_string_value(json_object_get(film, "space"));
+  const char *sensor = json_string_value(json_object_get(film, "sensor")), *name;
+  const vlKindFamily *family = filters();
+  bool found[3] = {false, false, false};
+  for (uint32_t i = 0; filter && i < family->kind_count; i++)
+    if (strcmp(family->rows[i]->name, filter) == 0) def->filter.kind = (vlPixelFilterKind)i, found[0] = true;
+  for (int i = 0; space && i < SPACES; i++)
+    if (strcmp(spaces[i], space) == 0) def->space = (vlColorSpace)i, found[1] = true;
+  for (uint32_t i = 0; sensor && (name = vl_sensor_name(i)); i++)
+    if (strcmp(name, sensor) == 0) def->sensor = i ? name : NULL, found[2] = true;
+  return found[0] && found[1] && found[2];
+}
+
+static vlResult take_film(const char *path, const json_t *film, vlFilmShape *shape, vlError *error) {
+  vlFilmDef *def = &shape->def;
+  *def = vl_default_film_def(1, 1);
+  for (size_t i = 0; i < FIELDS; i++)
+    if (!take_field(film, &fields[i], def)) return wrong(path, fields[i].name, error);
+  const json_t *crop = json_object_get(film, "crop");
+  for (size_t i = 0; i < 4; i++)
+    if (!count_of(json_array_get(crop, i), &def->crop[i])) return wrong(path, "crop", error);
+  if (!take_names(film, def)) return wrong(path, "filter, space or sensor", error);
+  if (!count_of(json_object_get(film, "sequence"), &shape->sequence) || !shape->sequence)
+    return wrong(path, "sequence", error);
+  return VL_OK;
+}
+
+vlResult vl_film_header_read(vlContext *context, const char *path, const char *text, size_t size, vlFilmShape *shape,
+                             char **receipt, vlError *error) {
+  *receipt = NULL;
+  json_error_t place;
+  json_t *tree = json_loadb(text, size, JSON_REJECT_DUPLICATES, &place);
+  if (!tree) return vl_fail(error, VL_ERROR_SCENE, "%s: film file: header, line %d: %s", path, place.line, place.text);
+  vlResult result = take_film(path, json_object_get(tree, "film"), shape, error);
+  const json_t *held = json_object_get(tree, "receipt");
+  if (result == VL_OK && held) {
+    const size_t flags = JSON_COMPACT | JSON_PRESERVE_ORDER;
+    size_t length = json_dumpb(held, NULL, 0, flags);
+    *receipt = vl_alloc(context, length + 1);
+    if (*receipt)
+      json_dumpb(held, *receipt, length, flags), (*receipt)[length] = 0;
+    else
+      result = vl_fail_memory(error);
+  }
+  json_decref(tree);
+  if (result != VL_OK) return result;
+  vlFilm *film = NULL; /* checks the def, takes no memory for pixels */
+  result = vl_film_create(context, &shape->def, &film);
+  vl_film_destroy(film);
+  if (result == VL_OK) return VL_OK;
+  vl_free(context, *receipt);
+  *receipt = NULL;
+  return result == VL_ERROR_MEMORY ? vl_fail_memory(error) : wrong(path, "film", error);
+}

@@ -1,0 +1,121 @@
+/* film/file_read.c: vl_film_read: the blocks of a file become a film in memory. */
+#include <string.h>
+
+#include "base/error.h"
+#include "film/file.h"
+#include "velo/film.h"
+
+/* What the blocks with samples have in common. */
+typedef struct Extent {
+  uint32_t crop[4];
+  vlSampleSpan range;
+  bool any, even; /* even: all pixels of the crop have the samples of `range` */
+  uint64_t pixels, least;
+} Extent;
+
+static void add_block(Extent *e, const vlFilmReader *r) {
+  const vlFilmBlockHead *h = &r->head;
+  if (!h->range_count) return;
+  uint64_t samples = vl_film_samples(r->ranges, h->range_count);
+  if (!e->any)
+    *e = (Extent){{h->x0, h->y0, h->x1, h->y1}, r->ranges[0], true, h->range_count == 1, 0, samples};
+  else
+    e->even =
+        e->even && h->range_count == 1 && r->ranges[0].first == e->range.first && r->ranges[0].end == e->range.end;
+  e->crop[0] = h->x0 < e->crop[0] ? h->x0 : e->crop[0], e->crop[1] = h->y0 < e->crop[1] ? h->y0 : e->crop[1];
+  e->crop[2] = h->x1 > e->crop[2] ? h->x1 : e->crop[2], e->crop[3] = h->y1 > e->crop[3] ? h->y1 : e->crop[3];
+  e->least = samples < e->least ? samples : e->least;
+  e->pixels += (uint64_t)(h->x1 - h->x0) * (h->y1 - h->y0);
+}
+
+static vlResult find_extent(vlFilmReader *r, bool partial, Extent *e, vlError *error) {
+  uint64_t at = r->at;
+  *e = (Extent){.any = false};
+  while (r->next <= r->blocks) {
+    bool last = r->next == r->blocks;
+    vlResult result = vl_film_reader_next(r, error);
+    if (result != VL_OK) return result;
+    if (!last) add_block(e, r);
+  }
+  r->next = 0, r->at = at;
+  if (!e->any) return vl_fail(error, VL_ERROR_SCENE, "%s: the film has no samples", r->path);
+  uint64_t area = (uint64_t)(e->crop[2] - e->crop[0]) * (e->crop[3] - e->crop[1]);
+  if (e->pixels != area) e->even = false, e->least = 0;
+  if (partial || e->even) return VL_OK;
+  return vl_fail(error, VL_ERROR_SCENE,
+                 "%s: its pixels do not all have the same samples; \"velo film info --missing\" lists what is missing",
+                 r->path);
+}
+
+/* Copies a block's sums to their places. data: as in the file. */
+static void place_block(vlFilm *film, const vlFilmBlockHead *h, const char *data) {
+  uint32_t width = h->x1 - h->x0, height = h->y1 - h->y0, n = film->def.buckets;
+  size_t pixels = (size_t)width * height;
+  const char *moments = data + pixels * sizeof(vlFilmPixel);
+  const char *sums = moments + (film->def.errors ? pixels * sizeof(vlFilmMoments) : 0);
+  const char *weights = sums + pixels * n * sizeof(vlInt128);
+  for (uint32_t y = 0; y < height; y++) {
+    size_t from = (size_t)y * width;
+    size_t to = (size_t)(h->y0 + y - film->def.crop[1]) * film->width + (h->x0 - film->def.crop[0]);
+    memcpy(film->front + to, data + from * sizeof(vlFilmPixel), width * sizeof(vlFilmPixel));
+    if (film->def.errors)
+      memcpy(film->moments[0] + to, moments + from * sizeof(vlFilmMoments), width * sizeof(vlFilmMoments));
+    if (!n) continue;
+    memcpy(film->spectrum.sums[0] + to * n, sums + from * n * sizeof(vlInt128), width * n * sizeof(vlInt128));
+    memcpy(film->spectrum.weights[0] + to * n, weights + from * n * sizeof(int64_t), width * n * sizeof(int64_t));
+  }
+}
+
+static vlResult fill(vlFilmReader *r, vlFilm *film, vlError *error) {
+  size_t count = vl_film_pixels(film), n = film->def.buckets;
+  size_t most = (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK * vl_film_pixel_size(&film->def);
+  film->front = vl_alloc_zero(film->context, count, sizeof *film->front);
+  bool good = film->front != NULL;
+  if (good && film->def.errors) {
+    film->moments[0] = vl_alloc_zero(film->context, count, sizeof *film->moments[0]);
+    good = film->moments[0] != NULL;
+  }
+  if (good && n) {
+    film->spectrum.sums[0] = vl_alloc_zero(film->context, count * n, sizeof *film->spectrum.sums[0]);
+    film->spectrum.weights[0] = vl_alloc_zero(film->context, count * n, sizeof *film->spectrum.weights[0]);
+    good = film->spectrum.sums[0] && film->spectrum.weights[0];
+  }
+  char *data = good ? vl_alloc(film->context, most) : NULL;
+  vlResult result = data ? VL_OK : vl_fail_memory(error);
+  while (result == VL_OK && r->next < r->blocks) {
+    result = vl_film_reader_next(r, error);
+    if (result == VL_OK) result = vl_film_reader_data(r, data, error);
+    if (result == VL_OK && r->head.range_count) place_block(film, &r->head, data);
+  }
+  vl_free(film->context, data);
+  return result;
+}
+
+vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm **film, vlError *error) {
+  vl_error_clear(error);
+  if (film) *film = NULL;
+  if (!context || !path || !film) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: null argument");
+  vlFilmReader reader;
+  Extent extent;
+  vlResult result = vl_film_reader_open(&reader, context, path, error);
+  if (result != VL_OK) return result;
+  result = find_extent(&reader, partial, &extent, error);
+  vlFilm *made = NULL;
+  if (result == VL_OK) {
+    vlFilmDef def = reader.shape.def;
+    memcpy(def.crop, extent.crop, sizeof def.crop);
+    result = vl_film_create(context, &def, &made);
+    if (result != VL_OK) result = vl_fail_memory(error); /* the header's film was checked */
+  }
+  if (result == VL_OK) result = fill(&reader, made, error);
+  if (result == VL_OK) {
+    vl_film_set_spp(made, (uint32_t)extent.least);
+    vl_film_set_sequence(made, (vlFilmSequence){reader.shape.sequence, extent.range.first, !extent.even});
+  } else {
+    vl_film_destroy(made);
+    made = NULL;
+  }
+  vl_film_reader_close(&reader);
+  *film = made;
+  return result;
+}

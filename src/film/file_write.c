@@ -1,0 +1,177 @@
+/* film/file_write.c: vl_film_write: a film becomes a file. Blocks are written by all workers, each at its place. */
+#include <errno.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/cookie.h"
+#include "base/error.h"
+#include "film/file.h"
+#include "velo/film.h"
+
+struct vlFilmWriter {
+  vlContext *context;
+  vlFileWriter file;
+};
+
+typedef struct Run {
+  const vlFilm *film;
+  const uint32_t *window;
+  vlSampleSpan range;
+  uint64_t *offsets; /* of the blocks */
+  char *buffers;     /* one for each worker */
+  size_t buffer_size;
+  int descriptor;
+  atomic_int failed_errno;
+} Run;
+
+vlFilmWriteDef vl_default_film_write_def(void) {
+  return (vlFilmWriteDef){.cookie = VL_COOKIE_FILM_WRITE};
+}
+
+static bool has_samples(const vlFilm *film, const uint32_t place[4]) {
+  const uint32_t *c = film->def.crop;
+  return place[0] >= c[0] && place[1] >= c[1] && place[2] <= c[2] && place[3] <= c[3];
+}
+
+/* Whether each block of the window is inside the film's crop or outside of it. */
+static bool fits_grid(const uint32_t window[4], const uint32_t crop[4]) {
+  for (int i = 0; i < 4; i++)
+    if (crop[i] != window[i] && crop[i] % VL_FILM_BLOCK != 0) return false;
+  return crop[0] >= window[0] && crop[1] >= window[1] && crop[2] <= window[2] && crop[3] <= window[3];
+}
+
+/* Collects a block's sums; returns the end of the data. */
+static char *gather(const vlFilm *film, const uint32_t place[4], char *to) {
+  uint32_t width = place[2] - place[0], n = film->def.buckets;
+  size_t first = (size_t)(place[1] - film->def.crop[1]) * film->width + (place[0] - film->def.crop[0]);
+  size_t rows = place[3] - place[1], line = film->width;
+  for (size_t y = 0; y < rows; y++, to += width * sizeof(vlFilmPixel))
+    memcpy(to, film->front + first + y * line, width * sizeof(vlFilmPixel));
+  for (size_t y = 0; y < rows && film->def.errors; y++, to += width * sizeof(vlFilmMoments))
+    memcpy(to, film->moments[0] + first + y * line, width * sizeof(vlFilmMoments));
+  for (size_t y = 0; y < rows && n; y++, to += width * n * sizeof(vlInt128))
+    memcpy(to, film->spectrum.sums[0] + (first + y * line) * n, width * n * sizeof(vlInt128));
+  for (size_t y = 0; y < rows && n; y++, to += width * n * sizeof(int64_t))
+    memcpy(to, film->spectrum.weights[0] + (first + y * line) * n, width * n * sizeof(int64_t));
+  return to;
+}
+
+static void write_block(void *user, uint32_t block, uint32_t worker) {
+  Run *run = user;
+  if (atomic_load(&run->failed_errno)) return;
+  char *buffer = run->buffers + worker * run->buffer_size, *to = buffer;
+  uint32_t place[4];
+  vl_film_block_place(run->window, block, place);
+  bool filled = has_samples(run->film, place);
+  vlFilmBlockHead head;
+  vl_film_block_head(&run->film->def, place, filled, &head);
+  memcpy(to, &head, sizeof head);
+  to += sizeof head;
+  if (filled) {
+    memcpy(to, &run->range, sizeof run->range);
+    to = gather(run->film, place, to + sizeof run->range);
+  }
+  uint32_t crc = vl_film_crc(0, buffer, (size_t)(to - buffer));
+  memcpy(to, &crc, sizeof crc);
+  to += sizeof crc;
+  uint64_t at = run->offsets[block];
+  for (const char *from = buffer; from < to;) {
+    ssize_t n = pwrite(run->descriptor, from, (size_t)(to - from), (off_t)at);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      atomic_store(&run->failed_errno, errno);
+      return;
+    }
+    from += n, at += (uint64_t)n;
+  }
+}
+
+static vlResult write_blocks(vlFilmWriter *writer, Run *run, uint64_t at, vlError *error) {
+  uint32_t count = vl_film_block_count(run->window), threads = vl_context_threads(writer->context);
+  run->buffer_size = sizeof(vlFilmBlockHead) + sizeof(vlSampleSpan) + sizeof(uint32_t) +
+                     (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK * vl_film_pixel_size(&run->film->def);
+  run->buffer_size = (run->buffer_size + 63) & ~(size_t)63;
+  run->offsets = vl_alloc_array(writer->context, count, sizeof *run->offsets);
+  run->buffers = vl_alloc_array(writer->context, threads, run->buffer_size);
+  vlResult result = run->offsets && run->buffers ? VL_OK : vl_fail_memory(error);
+  for (uint32_t i = 0; i < count && result == VL_OK; i++) {
+    uint32_t place[4];
+    vlFilmBlockHead head;
+    vl_film_block_place(run->window, i, place);
+    run->offsets[i] = at;
+    at += vl_film_block_head(&run->film->def, place, has_samples(run->film, place), &head);
+  }
+  if (result == VL_OK) vl_parallel_for(writer->context, count, write_block, run);
+  vl_free(writer->context, run->offsets);
+  vl_free(writer->context, run->buffers);
+  if (!writer->file.failed_errno) writer->file.failed_errno = atomic_load(&run->failed_errno);
+  return result;
+}
+
+static vlResult check(const vlFilm *film, const vlFilmWriteDef *def, const char *path, const uint32_t window[4],
+                      vlError *error) {
+  if (def->cookie != VL_COOKIE_FILM_WRITE)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: the def was not made by vl_default_film_write_def");
+  if (film->in_pass || film->sequence.uneven || !film->spp || !film->front)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: a film without samples, or with only a part of them", path);
+  if (window[2] > film->def.width || window[3] > film->def.height || !fits_grid(window, film->def.crop))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: the film's crop is not a part of the window that blocks of %d make",
+                   path, VL_FILM_BLOCK);
+  return VL_OK;
+}
+
+vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, const char *path, vlFilmWriter **writer,
+                             vlError *error) {
+  vl_error_clear(error);
+  vlFilmWriteDef standard = vl_default_film_write_def();
+  if (!def) def = &standard;
+  if (writer) *writer = NULL;
+  if (!film || !path || !writer) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: null argument");
+  bool whole = !def->window[2] && !def->window[3];
+  const uint32_t *window = whole ? film->def.crop : def->window;
+  vlResult result = check(film, def, path, window, error);
+  if (result != VL_OK) return result;
+  vlFilmShape shape = {film->def, film->sequence.length};
+  memcpy(shape.def.crop, window, sizeof shape.def.crop);
+  vlFilmWriter *made = vl_alloc_zero(film->context, 1, sizeof *made);
+  char *header = vl_film_header_make(film->context, &shape, def->receipt ? vl_receipt_text(def->receipt) : NULL);
+  if (!made || !header) {
+    vl_free(film->context, made);
+    vl_free(film->context, header);
+    return vl_fail_memory(error);
+  }
+  made->context = film->context;
+  result = vl_file_open_write(&made->file, path, error);
+  if (result == VL_OK) {
+    Run run = {.film = film,
+               .window = window,
+               .range = {film->sequence.first, film->sequence.first + film->spp},
+               .descriptor = made->file.descriptor};
+    result = vl_film_put_header(&made->file, header);
+    if (result == VL_OK) result = write_blocks(made, &run, sizeof(vlFilmPreamble) + strlen(header), error);
+    if (result == VL_OK && made->file.failed_errno)
+      result = vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(made->file.failed_errno));
+    if (result != VL_OK) vl_file_abandon(&made->file);
+  }
+  vl_free(film->context, header);
+  if (result == VL_OK)
+    *writer = made;
+  else
+    vl_free(film->context, made);
+  return result;
+}
+
+vlResult vl_film_write_end(vlFilmWriter *writer, vlError *error) {
+  vl_error_clear(error);
+  if (!writer) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: null argument");
+  vlResult result = vl_file_commit(&writer->file, error);
+  vl_free(writer->context, writer);
+  return result;
+}
+
+vlResult vl_film_write(const vlFilm *film, const vlFilmWriteDef *def, const char *path, vlError *error) {
+  vlFilmWriter *writer;
+  vlResult result = vl_film_write_begin(film, def, path, &writer, error);
+  return result == VL_OK ? vl_film_write_end(writer, error) : result;
+}

@@ -44,7 +44,7 @@ void vl_blades_points(const vlBlades *blades, uint32_t n, const float *u, const 
 struct vlAperture {
   vlContext *context;
   uint32_t width, height;
-  double reach2;  /* square of vl_aperture_reach */
+  double reach2;  /* vl_aperture_reach2 of the shape */
   float *values;  /* scaled so that their mean is pi / 4 */
   float *rows;    /* height + 1: share of the total light above each row's upper edge */
   float *columns; /* height x (width + 1): share of the row's light to the left of each column */

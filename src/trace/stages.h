@@ -140,7 +140,7 @@ typedef struct vlSubsurfaceScratch {
   VL_ROW uint32_t place[VL_ROW_SIZE], material[VL_ROW_SIZE], medium[VL_ROW_SIZE];
   VL_ROW float px[VL_ROW_SIZE], py[VL_ROW_SIZE], pz[VL_ROW_SIZE], nx[VL_ROW_SIZE], ny[VL_ROW_SIZE], nz[VL_ROW_SIZE];
   VL_ROW float sigma[4][VL_ROW_SIZE], albedo[4][VL_ROW_SIZE];
-  VL_ROW float entry_eta_scale[VL_ROW_SIZE];            /* factor of eta_scale from entering */
+  VL_ROW float entry_eta_scale[VL_ROW_SIZE];            /* by path: eta_scale of the refraction into the solid */
   VL_ROW float length[VL_ROW_SIZE], t_min[VL_ROW_SIZE]; /* length of the segment; start of the part not yet searched */
   VL_ROW uint32_t found[VL_ROW_SIZE];                   /* number of crossings so far, */
   vlHits hits;                                          /* and one chosen crossing */

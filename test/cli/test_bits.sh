@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Portable bits: each of Embree's sets that they allow gives the same image, where it is hard: surfaces in one plane,
-# edges, instances, motion, curves, quadrics, shadows. And what is very small or large is seen as its likeness of size 1.
+# Portable bits: each instruction set of Embree that `portable` allows gives the same image in difficult cases: coplanar
+# surfaces, edges, instances, motion, curves, quadrics, shadows. A very small or large scene gives the image of size 1.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "$VELO_SOURCE_DIR/test/cli/common.sh"
 cd "$work" || exit 1
@@ -86,7 +86,7 @@ case "$sets " in
 esac
 for set in $sets; do VELO_EMBREE=$set check "fast_$set" render --bits fast -o fast.pfm; done
 
-# The header says which; what does not fit is refused.
+# The header names the choice. Sets that do not fit it are errors.
 check header render -o whole.exr
 run "$VELO" image info whole.exr
 expect_text header_portable 'portable'
@@ -134,7 +134,7 @@ for kind in mesh instance; do
     same "ball_${kind}_${scale}_same" ball.pfm scaled.pfm
   done
 done
-# Beyond what docs/conventions.md promises there is a warning.
+# Outside the range of docs/conventions.md there is a warning.
 for kind in mesh instance; do
   ball tiny.pbrt 9.094947017729282e-13 $kind # 2^-40
   check "tiny_$kind" "$VELO" render tiny.pbrt --quiet -o tiny.pfm

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Many images of one world: trajectories, rigs, stereo. A frame is the image that its camera alone gives; names; two
-# views in one OpenEXR file, read by OpenImageIO; what is refused; interruptions.
+# Many images of one world: trajectories, rigs, stereo. Each frame equals the image of its camera rendered alone. File
+# names; two views in one OpenEXR file, read by OpenImageIO; errors; interruptions.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/cli/common.sh"
 cd "$work" || exit 1
@@ -32,7 +32,7 @@ check threads_do_not_matter "$VELO" render scene.pbrt --trajectory transforms.js
 same threads_same_bytes again_0001.exr frame_0001.exr
 check no_left_overs test -z "$(ls | grep tmp)"
 
-# Poses without cameras take the scene's; crop and samples as ever.
+# Poses without a camera use the scene's camera, with its crop and samples.
 printf 'name,eye_x,eye_y,eye_z,lookat_x,lookat_y,lookat_z\np,0,1.2,4,0,0.6,0\nq,1,1,4,0,0.6,0\n' >poses.csv
 check poses "$VELO" render scene.pbrt --trajectory poses.csv -o '%n.exr' --quiet --spp 3 --crop 5,5,40,30
 run "$VELO" image info q.exr
@@ -111,7 +111,7 @@ else
   skip openimageio "OpenImageIO's Python module is not installed"
 fi
 
-# ---- what is refused -------------------------------------------------------------------------------------------------
+# ---- errors --------- -------------------------------------------------------------------------------------------------
 expect_code 2 no_output "$VELO" render scene.pbrt --trajectory poses.csv
 expect_text no_output_told "give the files' name with -o"
 expect_code 2 twice "$VELO" render scene.pbrt --trajectory poses.csv -o same.exr
@@ -138,12 +138,12 @@ expect_text bad_pose_told 'bad.csv:3:1: frame 1: "ty" is "nan"'
 expect_code 4 no_trajectory "$VELO" render scene.pbrt --trajectory no.csv -o 'x_%d.exr'
 check nothing_written test -z "$(ls x* 2>/dev/null)"
 
-# A frame that cannot be written costs only itself: its target is a folder.
+# A frame that cannot be written (its target is a folder) does not stop the others.
 mkdir hole_0.exr
 expect_code 5 hole "$VELO" render scene.pbrt --trajectory poses.csv -o 'hole_%d.exr'
 check others_written test -s hole_1.exr
 
-# Interrupted: what is written stays whole, the rest is missing, the code tells.
+# Interrupted: files that were written stay whole, the others are missing, the exit code is not 0.
 python3 -c '
 print("eye_x,eye_y,eye_z,lookat_x,lookat_y,lookat_z")
 for i in range(5000): print(f"{i / 5000},1,4,0,0.6,0")' >long.csv

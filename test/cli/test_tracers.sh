@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The tracers by their names, what steers those that follow light both ways, and what is said about them.
+# The tracers by their names; the options of the two-way tracers; messages.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "$VELO_SOURCE_DIR/test/cli/common.sh"
 cd "$work" || exit 1
@@ -15,14 +15,14 @@ done
 run cmp -s path.exr bidirectional.exr
 if [ "$code" = 1 ]; then pass bidirectional_is_another; else fail bidirectional_is_another; fi
 
-# A crop is a cut, of what light's paths leave, too.
+# A rendered crop has the pixels of the whole image, also those that light paths contribute to.
 for tracer in bidirectional merging; do
   check "${tracer}_crop" render --tracer $tracer --crop 5,4,20,17 -o crop.pfm
   check "${tracer}_cut" "$VELO" image convert $tracer.exr cut.pfm --crop 5,4,20,17
   same "${tracer}_crop_is_a_cut" crop.pfm cut.pfm
 done
 
-# What steers them.
+# The options of the two-way tracers.
 check light_paths render --tracer bidirectional --light-paths 3000 -o many.exr
 run cmp -s many.exr bidirectional.exr
 if [ "$code" = 1 ]; then pass light_paths_count; else fail light_paths_count; fi
@@ -45,7 +45,7 @@ expect_code 2 paths_too_many render --tracer merging --light-paths 1000000000 -o
 expect_line paths_too_many_says 'light-paths'
 if [ -e x.exr ]; then fail no_image_of_errors; else pass no_image_of_errors; fi
 
-# pbrt's integrators: said by whom they are rendered, radius and photons understood.
+# pbrt's integrators: a note names the tracer that renders them; radius and number of photons are read.
 integrator() { sed "s/^Integrator.*/Integrator $1/" scene.pbrt >asked.pbrt; }
 asked() { "$VELO" render asked.pbrt --resolution 32x24 --spp 3 "$@"; }
 for pair in bdpt:bidirectional mlt:bidirectional sppm:merging; do

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The command line: what is refused, with which words and exit code 2; help and version.
+# The command line: errors (exit code 2) and their messages; help and version.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "$VELO_SOURCE_DIR/test/cli/common.sh"
 cd "$work" || exit 1
@@ -72,14 +72,13 @@ done
 [ -z "$wide" ] && pass help_in_80_columns || fail "help_in_80_columns ($wide)"
 expect_code 0 help_render_sections "$VELO" help render
 expect_text help_render_has_sections 'ground truth beside the image (.exr):'
-# A first image of a trajectory knows no time that is left, nor does the first line of the scene of script/render speak
-# of pbrt.
+# At the start of a trajectory no remaining time is printed. The first line about script/render's scene does not name pbrt.
 printf 'eye_x,eye_y,eye_z,lookat_x,lookat_y,lookat_z\n0,1.2,4,0,0.6,0\n1,1,4,0,0.6,0\n' >poses.csv
 run "$VELO" render scene.pbrt --trajectory poses.csv -o 'pose_%d.exr'
 case "$err" in *"0.00 s left"*) fail trajectory_begins ;; *) pass trajectory_begins ;; esac
 run "$VELO" render "$VELO_SOURCE_DIR/scenes/lecture/pinhole.pbrt" --spp 1 -o first.png
 case "$err" in *pbrt-v4*) fail first_line ;; *) pass first_line ;; esac
-# On a narrow terminal the time that is left stays.
+# On a narrow terminal the progress line is shortened but keeps the remaining time.
 cat >narrow.py <<'PY'
 import fcntl, os, pty, struct, sys, termios
 pid, fd = pty.fork()
@@ -126,10 +125,10 @@ done
 for name in on off; do
   check "regularize_$name" "$VELO" render scene.pbrt --regularize "$name" --spp 1 --quiet -o "regularize_$name.pfm"
 done
-# The scene's own wish counts where the command line has none.
+# Without the option, the scene's own parameter counts.
 sed 's/^Integrator.*//; 1s/^/Integrator "path" "bool regularize" true\n/' scene.pbrt >asked.pbrt
 check regularize_asked "$VELO" render asked.pbrt --dry-run
-expect_text regularize_asked_is_told "regularised"
+expect_text regularize_asked_is_reported "regularised"
 check regularize_declined sh -c '! "$0" render asked.pbrt --dry-run --regularize off | grep regularised' "$VELO"
 for name in standard neutral agx raw; do
   check "view_$name" "$VELO" render scene.pbrt --view "$name" --exposure -0.5 --spp 1 --quiet -o view.png

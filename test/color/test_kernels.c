@@ -94,7 +94,7 @@ static void test_bits(void **state) {
   }
 }
 
-/* Result by result against the inline functions of the headers, which other code uses. */
+/* Each result is compared with that of the inline functions in the headers, which other code uses. */
 static void test_inline(void **state) {
   (void)state;
   fill();

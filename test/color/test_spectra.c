@@ -86,7 +86,7 @@ static void test_spaces(void **state) {
       double white = 0;
       for (int k = 0; k < 3; k++) white += (double)to[3 * i + k] * xyz[k] / unit;
       assert_float_equal(white, 1.0, 1e-6);
-      /* there and back */
+      /* forwards and backwards */
       for (int j = 0; j < 3; j++) {
         double product = 0;
         for (int k = 0; k < 3; k++) product += (double)to[3 * i + k] * (double)from[3 * k + j];
@@ -130,8 +130,8 @@ static void test_metals(void **state) {
   assert_in_range((int)(1000 * reflectance("CuZn", 650)), 850, 950);
   assert_in_range((int)(1000 * reflectance("MgO", 550)), 70, 75);
   assert_in_range((int)(1000 * reflectance("TiO2", 550)), 220, 260);
-  /* linear sRGB as the field's tables of metals have it (Hoffman, Physics and math of shading, SIGGRAPH course 2015):
-   * gold is yellow, copper reddish */
+  /* linear sRGB of metals as published (Hoffman, Physics and math of shading, SIGGRAPH course 2015): gold is yellow,
+   * copper reddish */
   static const struct {
     const char *name;
     double rgb[3];
@@ -172,7 +172,7 @@ static void test_glasses(void **state) {
   }
 }
 
-/* The gold of a scene that others made, as a file of pairs. */
+/* Gold from a file of pairs (wavelength, value), as scenes of others have it. */
 static void test_gold_file(void **state) {
   (void)state;
   static const char *const names[2] = {"eta", "k"};
@@ -227,8 +227,8 @@ static void test_meaning(void **state) {
   s = (vlSpectrum){.kind = VL_SPECTRUM_SAMPLED, .scale = 1, .count = 2, .wavelengths = wide, .values = same};
   assert_true(vl_spectrum_is_constant(&s, &value) && value == 1.5f);
 
-  /* black body: greatest 1 at Wien's wavelength; its colour at 6504 K lies near daylight; cold and hot ones are finite
-   */
+  /* black body: maximum 1 at Wien's wavelength; its colour at 6504 K is near daylight; very low and very high
+   * temperatures give finite values /
   s = vl_spectrum_blackbody(5000);
   assert_int_equal(vl_spectrum_dense(&s, VL_ROLE_ILLUMINANT, dense, NULL), VL_OK);
   for (int i = 0; i < VL_LAMBDA_COUNT; i++) assert_true(dense[i] > 0.4f && dense[i] <= 1.0f);
@@ -247,7 +247,8 @@ static void test_meaning(void **state) {
 
 static void test_lights(void **state) {
   (void)state;
-  /* An RGB light over its photometric value shows its RGB, whatever the space; named and black ones luminance 1. */
+  /* An RGB light divided by its photometric value gives its RGB in every colour space; named spectra and black bodies
+   * give luminance 1. */
   for (int space = VL_SPACE_SRGB; space <= VL_SPACE_ACES2065_1; space++) {
     vlSpectrum s = vl_spectrum_rgb(17, 12, 4);
     s.space = (vlColorSpace)space;
@@ -320,8 +321,8 @@ static void test_errors(void **state) {
   expect(NULL, VL_ERROR_ARGUMENT, "null");
 }
 
-/* Each channel's share within [0, 1], all together 1, their colours the primaries; so any transmittances by channel are
- * a spectrum of exactly that colour. */
+/* The shares of the three channels lie in [0, 1] and add up to 1, and their colours are the primaries. So any
+ * transmittance by channel is a spectrum of exactly that colour. */
 static void test_channels(void **state) {
   (void)state;
   const float *light = vl_space_illuminant(VL_SPACE_SRGB);

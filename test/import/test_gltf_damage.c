@@ -74,7 +74,7 @@ static uint8_t *new_file(size_t *size) {
 
 static char path[64];
 
-/* Error, or an image whose every number is one. */
+/* An error, or an image of finite numbers. */
 static vlResult try_file(const uint8_t *data, size_t size, char message[512]) {
   gltf_file(path, data, size);
   Loaded l;
@@ -131,7 +131,7 @@ static void replace_number(uint8_t *data, size_t size, uint32_t pick) {
   const char *text = odd[vl_hash(pick) % (sizeof odd / sizeof *odd)];
   size_t length = strlen(text);
   if (end >= size || end - at < 1) return;
-  /* keeps the length of the chunk: blanks fill up, longer words are cut */
+  /* keeps the length of the chunk: shorter words are padded with blanks, longer words are cut */
   for (size_t i = at; i < end; i++) data[i] = i - at < length ? (uint8_t)text[i - at] : ' ';
 }
 
@@ -159,7 +159,8 @@ static void damage(void **state) {
         for (uint32_t i = 0; i < 4; i++) copy[size - 1 - vl_hash2(h, i) % 700] = (uint8_t)vl_hash2(i, h);
         break;
     }
-    if (k % 4 == 0 && length >= 12) memcpy(copy + 8, &(uint32_t){(uint32_t)length}, 4); /* a cut that admits it */
+    if (k % 4 == 0 && length >= 12)
+      memcpy(copy + 8, &(uint32_t){(uint32_t)length}, 4); /* the header states the new length */
     if (try_file(copy, length, message) == VL_OK)
       good++;
     else

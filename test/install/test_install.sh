@@ -1,5 +1,5 @@
 # An installed velo serves a program from outside: examples/build_world.c is compiled against a temporary prefix by
-# pkg-config and by CMake's find_package, shared and static, and its image is looked at. The README's lines run as
+# pkg-config and by CMake's find_package, shared and static, and its image is checked. The README's lines run as
 # written. What was installed is removed again, and nothing else.
 . "$VELO_SOURCE_DIR/test/harness.sh"
 prefix=$work/prefix

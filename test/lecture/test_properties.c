@@ -106,7 +106,7 @@ static void straight_lines_stay_straight(void **state) {
   for (int k = 0; k < 3; k++)
     for (int i = 0; i < 4; i++) {
       P2 a = exact(&p, corner(strips[k], i)), b = exact(&p, corner(strips[k], i + 1));
-      if (hypot(b.x - a.x, b.y - a.y) < 14) continue; /* too short to say anything of straightness */
+      if (hypot(b.x - a.x, b.y - a.y) < 14) continue; /* too short to measure straightness */
       Edge e = measure_edge(&p, ALPHA, a, b, 8);
       Line l = fit_line(&e);
       double worst, mean;
@@ -161,7 +161,7 @@ static void other_parallels_meet(void **state) {
   /* Twelve lines from all sides, each known to FITTED where it was measured and twice that at the point beyond. */
   near_to("vanishing point x", point.x, expected.x, 2 * FITTED);
   near_to("vanishing point y", point.y, expected.y, 2 * FITTED);
-  /* and not only on the average: each line alone goes through it */
+  /* not only on average: each line passes through it */
   for (int k = 0; k < 12; k++) {
     double along = lines[k].flat ? point.x : point.y, across = lines[k].flat ? point.y : point.x;
     near_to("line through the vanishing point", lines[k].offset + lines[k].slope * (along - lines[k].middle), across,

@@ -93,9 +93,9 @@ static double spread(const Image *a, const Image *b) {
   return sqrt(sum / 1024);
 }
 
-/* A panel beside the wall, of which the image lets a sixteenth shine, lights it as a panel of that sixteenth alone.
- * In strips, as meshes have them, light is looked for where the image is bright, with hardly more noise; in one piece
- * every place of it is asked alike. */
+/* A panel beside the wall emits in one sixteenth of its emission image. It lights the wall as a panel of that sixteenth
+ * alone. As a mesh of strips only the emissive strips are sampled, so the noise is hardly larger; a single
+ * quadrilateral is sampled uniformly. */
 static void emissive_image(void **state) {
   (void)state;
   char path[] = "/tmp/velo-emission-XXXXXX.png";
@@ -188,7 +188,7 @@ static void painted_walls(void **state) {
   static const uint16_t faces[6] = {0, 1, 2, 2, 1, 3};
   static const struct {
     const char *material, *attributes;
-    float left[3], right[3]; /* what a white room shows */
+    float left[3], right[3]; /* the image of a white room */
   } walls[] = {
       {"\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"baseColorFactor\":[0.8,0.8,0.8,1]},\"extensions\":{"
        "\"KHR_materials_specular\":{\"specularFactor\":0}}",

@@ -51,7 +51,7 @@ static void test_hash(void **state) {
   assert_int_equal(vl_cryptomatte_hash("hello"), 0x248bfa47);
   assert_int_equal(vl_cryptomatte_hash("hello, world"), 0x149bbb7f);
   assert_int_equal(vl_cryptomatte_hash("The quick brown fox jumps over the lazy dog"), 0x2e4ff723);
-  assert_int_equal(vl_cryptomatte_hash(""), 0x00800000); /* 0 would be a float that means nobody */
+  assert_int_equal(vl_cryptomatte_hash(""), 0x00800000); /* hash 0 is reserved for no object */
   for (int i = 0; i < 5000; i++) {
     char name[16];
     snprintf(name, sizeof name, "name %d", i);
@@ -62,7 +62,7 @@ static void test_hash(void **state) {
   }
 }
 
-/* Coverages are the image's alpha to the last bit but rounding; ids are those of the manifest. */
+/* Coverages add up to the image's alpha within rounding; ids are those of the manifest. */
 static void test_agrees_with_the_image(void **state) {
   (void)state;
   Stage s = stage_open(49, 37);
@@ -100,7 +100,7 @@ static void test_agrees_with_the_image(void **state) {
   stage_close(&s);
 }
 
-/* A filter with negative lobes: shares of a whole all the same. */
+/* A filter with negative lobes: coverages still add up to 1. */
 static void test_negative_lobes(void **state) {
   (void)state;
   Stage s = stage_open(33, 25);
@@ -122,8 +122,8 @@ static void test_negative_lobes(void **state) {
   stage_close(&s);
 }
 
-/* The chosen samples: nearest is never farther than the centre's neighbours say; the covering one is Cryptomatte's
- * first rank where no lens and no instance is in play. */
+/* The chosen samples: mode nearest is never farther than the neighbours of the centre; the covering one is
+ * Cryptomatte's first rank where no lens and no instance is in play. */
 static void test_modes(void **state) {
   (void)state;
   Stage s = stage_open(41, 31);
@@ -136,7 +136,7 @@ static void test_modes(void **state) {
   for (uint32_t y = 0; y < 31; y++)
     for (uint32_t x = 0; x < 41; x++) {
       const GroundTruth *both[2] = {&most, &near};
-      for (int k = 0; k < 2; k++) { /* everything is of one ray through one point */
+      for (int k = 0; k < 2; k++) { /* all channels are of one ray through one film point */
         const float *film = place(both[k], x, y, "film.X"), *p = place(both[k], x, y, "P.X");
         double o[3], d[3], pixel[2], z, point[3] = {p[0], p[1], p[2]};
         assert_true(fabsf(film[0] - 0.5f) <= 1.5f && fabsf(film[1] - 0.5f) <= 1.5f);
@@ -163,7 +163,8 @@ static void test_modes(void **state) {
   stage_close(&s);
 }
 
-/* Of independent samples: the errors that are predicted are those that happen. A surface of one light has none. */
+/* Predicted standard errors match the measured ones for independent samples. A surface of constant radiance has none.
+ * */
 static void test_standard_error(void **state) {
   (void)state;
   for (int filter = 0; filter < 2; filter++) {

@@ -55,7 +55,7 @@ static void equilibrium(void **state) {
         s.render.max_depth = 200;
         vlMediumDef def = fog(0.7f, 1.1f, 0.4f);
         def.emission = vl_spectrum_rgb(2, 2, 2);
-        def.emission_scale = glass ? 1.5f * 1.5f : 1; /* in glass all light is entry_eta_scale */
+        def.emission_scale = glass ? 1.5f * 1.5f : 1; /* radiance in glass is eta^2 times as high */
         if (kind == 1) def.kind = VL_MEDIUM_GRID, def.nx = def.ny = def.nz = 4, def.density = eights;
         if (kind == 2) def.kind = VL_MEDIUM_RGB_GRID, def.nx = def.ny = def.nz = 6;
         if (kind == 2) def.rgb_a = a, def.rgb_s = b, def.rgb_emission = emission;

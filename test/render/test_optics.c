@@ -45,7 +45,7 @@ static void blur_has_the_openings_shape(void **state) {
   }
 }
 
-/* A camera focused on a pixel is one focused at that depth: to the last bit. Walls at depths 3 and 8. */
+/* A camera focused on a pixel equals one focused at that pixel's depth, to the last bit. Walls at depths 3 and 8. */
 static void autofocus(void **state) {
   (void)state;
   Image p[2];
@@ -89,7 +89,7 @@ static void autofocus(void **state) {
     }
     p[k] = stage_finish(&s);
   }
-  /* the distance is 3 to rounding, so the rays are the same floats but for a last bit here and there */
+  /* the distance is 3 up to rounding, so some rays differ in their last bit */
   double off = 0;
   for (uint32_t i = 0; i < 48 * 32 * 4; i++) off += fabs((double)p[0].rgba[i] - (double)p[1].rgba[i]);
   assert_true(off / (48 * 32 * 4) < 1e-3);
@@ -116,8 +116,8 @@ static void natural_vignetting(void **state) {
   image_free(&p);
 }
 
-/* A double Gauss before a bright wall: pi / (4 N^2) of its light in the middle, less in the corners, alpha 1. Before
- * nothing the barrel's share is black and opaque. A dot is found where the chief ray says. */
+/* A double Gauss before a bright wall: pi / (4 N^2) of its light in the middle, less in the corners, alpha 1. In front
+ * of an empty background the barrel is black and opaque. A dot is found where the chief ray says. */
 static void many_elements(void **state) {
   (void)state;
   vlOpticsDef def = vl_default_optics_def();

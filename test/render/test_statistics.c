@@ -69,8 +69,9 @@ static void estimate(vlSamplerKind sampler, uint32_t spp, uint32_t first_seed, E
   e->image_variance = fmax(0, image2 / SEEDS - e->image * e->image) / (SEEDS - 1);
 }
 
-/* Differences in units of their deviation. With few seeds t has heavy tails: 6 for an image or block is past chance,
- * and of pixels the mean of z^2 (2 (n-1)/(n-3)/2 = 1.22 for 12 seeds a side, about) must be near what it should be. */
+/* Differences in units of their standard deviation. With few seeds t has heavy tails: for an image or a block 6 is
+ * beyond chance. Over pixels the mean of z^2 must be near its expectation, (n-1)/(n-3) = 1.22 for n = 12 seeds a side.
+ * */
 static void compare(const char *what, const Estimate *a, const Estimate *b) {
   double floor2 = 1e-12;
   double z = (a->image - b->image) / sqrt(a->image_variance + b->image_variance + floor2);
@@ -105,7 +106,7 @@ static void samplers_agree(void **state) {
   }
 }
 
-/* The test itself: a scene one percent brighter must be told apart at the level of the image. */
+/* The test itself: a scene one percent brighter must be detected at the level of the image. */
 static void the_test_has_eyes(void **state) {
   (void)state;
   static Estimate a, b;
@@ -115,7 +116,7 @@ static void the_test_has_eyes(void **state) {
   if (fabs(z) < 5.5) fail_msg("one percent makes z = %.1f only", z);
 }
 
-/* The regular sampler errs by its grid alone: near the mean all the same. */
+/* The regular sampler has the error of its fixed grid only: it must be near the mean of the others. */
 static void regular_is_near(void **state) {
   (void)state;
   static Estimate a;

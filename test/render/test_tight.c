@@ -27,8 +27,8 @@ static void add_box(Stage *s, const double m[16], vlMaterialId material, vlEmiss
   assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
 }
 
-/* Mean over the image of a closed room whose walls, of reflectance 0.9, are lit by a point light inside (no light
- * shines from instanced surfaces): expected value from the same room at size 1 around the origin. */
+/* Mean over the image of a closed room whose walls, of reflectance 0.9, are lit by a point light inside (instanced
+ * surfaces emit no light): expected value from the same room at size 1 around the origin. */
 static double room_mean(Room r, bool sky) {
   Stage s = stage_open(24, 24);
   const double way[3] = {1, 0.7, -0.4};
@@ -72,15 +72,15 @@ static void rooms_are_tight(void **state) {
   (void)state;
   const double sizes[3] = {1e-3, 1, 1e4}, offsets[4] = {0, 1, 30, 1000};
   for (int kind = 0; kind < 5;
-       kind += kind ? 1 : 2) /* not the smooth one: shading normals lead light through, as in pbrt */
+       kind += kind ? 1 : 2) /* not the smooth one: with shading normals light leaks, as in pbrt */
     for (int instanced = 0; instanced < 2; instanced++)
       for (int o = 0; o < 4; o++)
         for (int k = 0; k < 3; k++) {
-          if (o > 1 && k != 1 && kind != 0) continue; /* sizes are told apart by meshes enough */
+          if (o > 1 && k != 1 && kind != 0) continue; /* meshes alone cover the sizes */
           Room r = {sizes[k], offsets[o], instanced, kind};
           double mean = room_mean(r, true);
-          /* A box's edges far away: points are wrong by more than their way to the other wall (measured: 1e-5 at 100
-           * sizes, 2e-4 at 1000, 2e-3 at 10000). */
+          /* Near a box's edges, far from the origin, the error of a point exceeds its distance to the other wall
+           * (measured share of light: 1e-5 at 100 sizes, 2e-4 at 1000, 2e-3 at 10000). */
           if (!(mean <= (o == 3 && kind > 2 ? 2e-3 : 0)))
             fail_msg("%s of size %g, %g sizes away%s: the sky leaks in (%.3g)", room_name[kind], r.size, r.offset,
                      instanced ? ", instanced" : "", mean);
@@ -106,8 +106,8 @@ static void rooms_keep_their_light(void **state) {
   }
 }
 
-/* No speckles: a flat floor under a point light alone is as smooth as the law says, near the origin and far away, seen
- * and lit at grazing angles. */
+/* No speckles: a flat floor under a single point light is as smooth as the inverse-square law predicts, near the origin
+ * and far away, seen and lit at grazing angles. */
 static void no_acne(void **state) {
   (void)state;
   for (int instanced = 0; instanced < 2; instanced++)
@@ -132,7 +132,7 @@ static void no_acne(void **state) {
       vlCamera camera;
       assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, NULL), VL_OK);
       Image p = stage_finish(&s);
-      /* What the law says: where the ray of the pixel's centre meets the plane, 1/2 / pi cos / d^2. */
+      /* The law: where the ray of the pixel's centre meets the plane, 1/2 / pi cos / d^2. */
       const double u[3] = {1.2f, 0.1f, 0.3f}, v[3] = {-0.3f, 0.2f, 1.13333333f};
       double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
       double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);

@@ -10,7 +10,7 @@
 #include "bsdf_state.h"
 #include "measured_file.h"
 
-/* What a test needs beside the state's coats. */
+/* What a test needs besides the coats of its state. */
 static vlMeasured *measured[2];
 
 static int build_all(void **state) {
@@ -76,10 +76,10 @@ static void reciprocity(void **state) {
     for (uint32_t j = 0; j < BATCH; j++) {
       if (fabsf(b->oz[j]) < 0.02f || fabsf(b->iz[j]) < 0.02f) continue;
       double f = (double)(b->value[2][j] / fabsf(b->iz[j])), g = (double)(c->value[2][j] / fabsf(b->oz[j]));
-      /* radiance over the square of its medium's index is what stays: f(wo, wi) n_i^2 = f(wi, wo) n_o^2 */
+      /* radiance divided by the squared index of its medium is conserved: f(wo, wi) n_i^2 = f(wi, wo) n_o^2 */
       double n = all[i].kind == VL_BSDF_DIELECTRIC ? (double)all[i].eta_s : 1;
       f *= b->iz[j] < 0 ? n * n : 1, g *= b->oz[j] < 0 ? n * n : 1;
-      double off = fabs(f - g) / (fabs(f) + 1e-2); /* near the critical angle 1 - F is all rounding */
+      double off = fabs(f - g) / (fabs(f) + 1e-2); /* near the critical angle 1 - F is mostly rounding error */
       if (!(off < worst)) worst = off;
       seen += f > 0;
     }
@@ -208,7 +208,7 @@ static void same_bits(void **state) {
   if (!compared) print_message("only one instruction set here: nothing to compare\n");
 }
 
-/* A lane's bits depend on that lane alone: neither on its place nor on its neighbours nor on the batch's length. */
+/* The bits of a lane depend on that lane alone, not on its position, its neighbours or the length of the batch. */
 static void lanes_alone(void **state) {
   const State *s = *state;
   Batch *b = s->batch, *c = s->other;
@@ -262,7 +262,7 @@ static void special(void **state) {
   for (uint32_t j = 0; j < 16; j++) batch_surface(b, j, &pane);
   batch_sample(s->kernels, VL_BSDF_THIN_DIELECTRIC, 16, b);
   assert_true(fabsf(b->pdf[2] - 0.08f / 1.04f) < 1e-6f && b->weight[0][2] == 1 && b->scale[0] == 1);
-  /* total inner reflection: never through */
+  /* total internal reflection: nothing is transmitted */
   for (uint32_t j = 0; j < 16; j++) {
     batch_surface(b, j, &glass);
     batch_wo(b, j, 3.14159265358979 - 0.75, 0);
@@ -311,7 +311,7 @@ static void special(void **state) {
          series = 1 + x + x * x + x * x * x + x * x * x * x;
   const Surface black = {.kind = VL_BSDF_COATED_DIFFUSE, .eta_s = 1.5f, .alpha_x = 0.1f, .alpha_y = 0.1f, .coat = t};
   double with = (double)b->value[0][0];
-  vlCoatTable as_pbrt = *t; /* imitating: brighter to the light, and samples as before */
+  vlCoatTable as_pbrt = *t; /* imitate_pbrt: values are larger, samples are unchanged */
   as_pbrt.imitate = true;
   Surface imitator = coat;
   imitator.coat = &as_pbrt;

@@ -14,8 +14,8 @@
 typedef struct Lobe {
   const State *s;
   Surface surface;
-  double alpha_x, alpha_y; /* of the lobe that is looked at */
-  double eta;              /* through: index beyond over index on the side of o; 0: reflection */
+  double alpha_x, alpha_y; /* of the lobe under test */
+  double eta;              /* refraction: index beyond over index on the side of o; 0: reflection */
   double o[3];             /* on the upper side */
   double side;             /* -1: what the kernel is asked lies below */
 } Lobe;
@@ -98,7 +98,7 @@ static double sample(const Lobe *l, statGrid *grid, double edge, uint64_t seed, 
   return in / count;
 }
 
-enum { TESTS = 400 }; /* more than are made, all in all */
+enum { TESTS = 400 }; /* more than the number of tests made */
 
 static void look_at(Lobe *l, const char *name, double edge, uint64_t seed) {
   for (uint32_t j = 0; j < VL_LANES; j++) {
@@ -152,7 +152,7 @@ static void dielectric(void **state) {
       }
 }
 
-/* Coats: their own lobe; what comes from below them is thought of as lost. */
+/* Coats: only the lobe of the coat itself; light from below it is ignored. */
 static void coats(void **state) {
   const State *s = *state;
   for (int a = 0; a < ALPHAS; a++) {
@@ -176,7 +176,7 @@ static void coats(void **state) {
   }
 }
 
-/* The principled material's metal, with a bit of everything else. */
+/* The principled material's metal lobe, with a little of each other lobe. */
 static void principled(void **state) {
   for (int a = 0; a < ALPHAS; a++)
     for (int c = 0; c < COSINES; c++) {
@@ -191,7 +191,7 @@ static void principled(void **state) {
     }
 }
 
-/* Both ways the same, as far as floats can tell a half vector of a sharp lobe: to 1e-4. */
+/* f is symmetric to 1e-4: the precision of a sharp lobe's half vector in floats. */
 static void reciprocity(void **state) {
   const State *s = *state;
   Batch *b = s->batch, *c = s->other;
@@ -208,7 +208,7 @@ static void reciprocity(void **state) {
       Surface surface = {.kind = kinds[k], .eta = 0.2f, .k = 3, .reflectance = 0.6f, .eta_s = 1.5f, .coat = table};
       if (kinds[k] == VL_BSDF_PRINCIPLED) surface.own = rows;
       surface.alpha_x = (float)alphas[a][0], surface.alpha_y = (float)alphas[a][1];
-      /* pairs that the lobe joins: sampled ones */
+      /* pairs of directions where the lobe is not 0: sampled ones */
       for (uint32_t j = 0; j < BATCH; j++) {
         double o[3];
         stat_direction(&rng, o);

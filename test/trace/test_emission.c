@@ -47,7 +47,7 @@ static void end(Fixture *f) {
   vl_context_destroy(f->context);
   free(f);
 }
-/* Something for the world to have a size. */
+/* A sphere, so that the world has a size. */
 static void add_ball(Fixture *f, float radius) {
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
   def.radius = radius;
@@ -62,7 +62,7 @@ static vlEmission one(const Fixture *f, statRng *rng) {
   return vl_emission_sample(f->world, &f->way, lambda, u[0], u[1], u[2], u[3], u[4]);
 }
 
-/* Mean of the flux, in standard errors from what it shall be. `slack`: share by which the expectation may be off. */
+/* Mean of the flux, in standard errors from its expectation. `slack`: share by which the expectation may be off. */
 static void power_is(Fixture *f, const char *what, double expected, double slack, unsigned seed) {
   statRng rng = stat_rng(seed);
   double sum = 0, squares = 0;
@@ -76,7 +76,7 @@ static void power_is(Fixture *f, const char *what, double expected, double slack
     fail_msg("%s: power %g, expected %g, standard error %g", what, mean, expected, error);
 }
 
-/* What a path tells of itself is what vl_emission_density says. */
+/* The density stored with a path equals vl_emission_density. */
 static void density_is_told(Fixture *f, const char *what, unsigned seed) {
   statRng rng = stat_rng(seed);
   for (int i = 0; i < 2000; i++) {
@@ -104,7 +104,7 @@ static void directions(Fixture *f, const char *what, double low, double (*area)(
     vlEmission e = one(f, &rng);
     if (!e.valid) continue;
     double z = (double)e.d.z;
-    if (area) z = -z; /* light from afar: cells of where it comes from */
+    if (area) z = -z; /* infinite lights: cells of the direction towards the light */
     assert_true(z >= low - 1e-4);
     double phi = atan2((double)e.d.y, (double)e.d.x);
     int row = (int)((z - low) / (1 - low) * ROWS), column = (int)((phi + M_PI) / (2 * M_PI) * COLUMNS);
@@ -147,8 +147,8 @@ static void points(void **state) {
   }
 }
 
-/* Through a disk that hides the world: nothing of it is missed, and each part has as much. */
-/* A cone of 180 degrees has an edge, too: behind the light. */
+/* Rays pass a disk that covers the world, with uniform density over it. */
+/* A cone with a half angle of 180 degrees has its edge behind the light. */
 static void whole_cone(void **state) {
   (void)state;
   Fixture *f = begin();
@@ -259,7 +259,7 @@ static void portal(void **state) {
   density_is_told(f, "portal", 32);
   directions(f, "portal", 0, window_across, 33);
   statRng rng = stat_rng(34);
-  for (int i = 0; i < 5000; i++) { /* each passes through it, and starts beyond the world */
+  for (int i = 0; i < 5000; i++) { /* each ray passes through the portal and starts outside the world */
     vlEmission e = one(f, &rng);
     if (!e.valid) continue;
     float t = (2 - e.o.z) / e.d.z, x = e.o.x + t * e.d.x, y = e.o.y + t * e.d.y;
@@ -279,7 +279,8 @@ static vlEmissionId emission(Fixture *f, bool two_sided) {
   return vl_scene_add_emission(f->scene, &def);
 }
 
-/* Cosine about the normal: its square and the angle are uniform; on which side, too. */
+/* Cosine-weighted about the normal: the squared cosine and the azimuth are uniform, and so is the choice of the side.
+ * */
 static void leave_by_cosine(Fixture *f, const char *what, bool two_sided, unsigned seed) {
   enum { CELLS = 2 * ROWS * COLUMNS };
   uint32_t counts[CELLS] = {0}, n = 0;
@@ -329,7 +330,7 @@ static void surfaces(void **state) {
     }
 }
 
-/* Places on a triangle: each of sixteen parts of equal area has as many. */
+/* Points on a triangle: sixteen parts of equal area have equal counts. */
 static void places(void **state) {
   (void)state;
   static const float p[9] = {0, 0, 0, 3, 0, 0, 1, 2, 0};
@@ -346,7 +347,7 @@ static void places(void **state) {
     vlEmission e = one(f, &rng);
     double b2 = (double)e.at.y / 2, b1 = ((double)e.at.x - b2) / 3, b0 = 1 - b1 - b2;
     int part = 0;
-    for (int level = 0; level < 2; level++) { /* halves of the sides make four triangles */
+    for (int level = 0; level < 2; level++) { /* the midpoints of the sides make four triangles */
       int corner = b0 > 0.5 ? 0 : b1 > 0.5 ? 1 : b2 > 0.5 ? 2 : 3;
       part = 4 * part + corner;
       b0 = corner == 3 ? 1 - 2 * b0 : 2 * b0 - (corner == 0);

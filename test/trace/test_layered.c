@@ -66,8 +66,8 @@ static void tally(Tally *t, float x, float y, float z, float weight) {
   for (int k = 0; k < 2; k++) t->sum[cells[k]] += (double)weight, t->square[cells[k]] += (double)(weight * weight);
 }
 
-/* A batch of paths through the layers as light takes them (channel 0): each surface by its own kernel, which chooses
- * reflection or transmission. They leave at the coat after any of the steps. */
+/* Traces a batch of light paths through the layers (channel 0). Each surface is sampled by its own kernel, which
+ * chooses reflection or transmission. A path may leave through the coat at any step. */
 static void nature(const State *s, const Stack *t, double theta, statRng *rng, Tally *result) {
   Batch *b = s->interface;
   static float x[BATCH], y[BATCH], z[BATCH], weight[BATCH], height[BATCH];
@@ -223,8 +223,8 @@ static void white_furnace(void **state) {
     }
 }
 
-/* Never more than came, whatever the roughness, the medium and the angle; nothing passes a thick black medium but what
- * the coat itself sends back. */
+/* The reflectance is at most 1 for every roughness, medium and angle. Over a thick black medium only the coat itself
+ * reflects. */
 static void never_gains(void **state) {
   const State *s = *state;
   const float alphas[3] = {0, 0.05f, 1}, thicknesses[3] = {0, 0.3f, 20}, gs[3] = {-0.95f, 0, 0.95f};
@@ -282,7 +282,7 @@ static void reciprocity(void **state) {
   }
 }
 
-/* Sampling draws from the density that evaluation tells, and both see the same walk; from below as from above. */
+/* Samples follow the density that evaluation returns, and both use the same walk; from below and from above. */
 static double density(void *user, const double w[3]) {
   const State *s = user;
   Batch *b = s->other;

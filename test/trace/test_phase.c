@@ -60,7 +60,7 @@ static void sampled(void **state) {
   }
 }
 
-/* Corners of u and v, the steepest lobes: directions stay finite and of unit length. */
+/* At the limits of u, v and g directions are finite and of unit length. */
 static void ends(void **state) {
   (void)state;
   const float u[] = {0.0f, 0x1p-24f, 0.5f, VL_ONE_MINUS_EPSILON};

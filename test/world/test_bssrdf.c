@@ -58,7 +58,7 @@ static double moment(double n, int power) {
   return sum;
 }
 
-/* R(r) of a body of extinction 1: photon beam diffusion as it is written down. */
+/* R(r) for extinction 1, by the formulas of photon beam diffusion as published. */
 static double profile(double albedo, double g, double eta, double r) {
   double a = 1 - albedo, s = albedo * (1 - g), t = a + s, rho = s / t;
   double m1 = moment(eta, 1), m2 = moment(eta, 2);
@@ -113,7 +113,7 @@ static void sums(void **state) {
         sum += width / 16 * (double)vl_bssrdf_ring(s.table, &a, (float)(x0 + width * (k + 0.5) / 16));
     }
     assert_within("sum", (double)vl_bssrdf_effective(s.table, &a), sum, 2e-3 * sum + 1e-6);
-    /* R itself, also where r is nothing */
+    /* R itself, also at r = 0 */
     float r = s.table->radius[1];
     assert_within("ring", (double)(vl_bssrdf_at(s.table, &a, r) * 2 * (float)PI * r),
                   (double)vl_bssrdf_ring(s.table, &a, r), 1e-5);
@@ -157,7 +157,7 @@ static void samples(void **state) {
   teardown(&s);
 }
 
-/* The cell of a radius, found by its logarithm, is the one that a search finds, next to nodes too. */
+/* The cell that the logarithm of a radius gives is the cell that a search finds, also next to nodes. */
 static void cells(void **state) {
   (void)state;
   Setup s = setup(1.33f, 0);
@@ -173,7 +173,7 @@ static void cells(void **state) {
   teardown(&s);
 }
 
-/* Larger u, larger radius: stratified numbers stay so. */
+/* The sampled radius grows with u, so stratified numbers give stratified radii. */
 static void ordered(void **state) {
   (void)state;
   Setup s = setup(1.5f, 0);
@@ -205,7 +205,8 @@ static void there_and_back(void **state) {
   }
 }
 
-/* Threads do not change a table; what it takes in comes out, but for what diffusion makes of it: a few per cent. */
+/* A table does not depend on the number of threads. At albedo 1 all light comes out, within the error of diffusion,
+ * some percent. */
 static void plain(void **state) {
   (void)state;
   Setup a = setup(1.33f, 0.3f), b = setup(1.33f, 0.3f);

@@ -11,7 +11,7 @@
 
 static const char path[] = VELO_BINARY_DIR "/damaged.bsdf";
 
-/* Largest block asked for, and blocks that are alive. */
+/* The largest block requested, and the number of live blocks. */
 typedef struct Purse {
   long left; /* allocations that still succeed; negative: all */
   long alive;
@@ -49,7 +49,7 @@ static mfFile small_file(void) {
   metal.phis = 4;
   return mf_measure(&metal);
 }
-/* Where a field's head stands: its rank; type 2, offset 3, shape 11 bytes on. */
+/* Offset of a field's rank; its type, offset and shape follow after 2, 3 and 11 bytes. */
 static size_t head_of(const mfFile *file, const char *name) {
   size_t length = strlen(name);
   for (size_t i = 18; i + length < 600; i++)
@@ -164,8 +164,8 @@ static void damages(void **state) {
 
 /* ---- damages without ------------------------------------------------------------------------------------------- */
 
-/* Bits, lost and doubled pieces, wild numbers, a few hundred: an error with the file's name, or a material whose every
- * answer is a number. */
+/* A few hundred files with flipped bits, lost and repeated pieces, extreme numbers: each gives an error with the file's
+ * name, or a material with finite values. */
 static void mutations(void **state) {
   (void)state;
   Purse purse = {.left = -1};

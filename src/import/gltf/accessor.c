@@ -203,7 +203,7 @@ bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes) {
   uint64_t limit = (256u << 20) + 1000 * (g->total + g->file_size);
   g->spent += bytes;
   return g->spent <= limit ||
-         vl_gltf_fail(g, at, "the file uses its data again and again: more than %llu MB of geometry",
+         vl_gltf_fail(g, at, "the file repeats its data too often: more than %llu MB of geometry",
                       (unsigned long long)(limit >> 20));
 }
 

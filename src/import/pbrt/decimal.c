@@ -1,5 +1,5 @@
-/* import/pbrt/decimal.c: see decimal.h. Three ways, the first that is sure counts: one operation on two exact doubles
- * (Clinger 1990), a pair of doubles whose error is too small to matter (Ziv's test), whole numbers of any size. */
+/* import/pbrt/decimal.c: see decimal.h. Three methods are tried in turn, until the result is certain: one operation on
+ * two exact doubles (Clinger 1990); a pair of doubles with a bound of its error (Ziv's test); integers of any size. */
 #include "import/pbrt/decimal.h"
 
 #include <math.h>
@@ -13,14 +13,14 @@ static const double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6, 
                                        1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 enum { EXACT_POWER = 22 };
 
-/* What rounding took from a * b (Dekker 1971). */
+/* The rounding error of a * b (Dekker 1971). */
 static double product_error(double a, double b, double product) {
   const double split = 134217729.0; /* 2^27 + 1 */
   double ta = split * a, tb = split * b, ah = ta - (ta - a), al = a - ah, bh = tb - (tb - b), bl = b - bh;
   return ((ah * bh - product) + ah * bl + al * bh) + al * bl;
 }
 
-/* false: another double may be nearer. */
+/* digits * 10^exponent by a pair of doubles. False: not certain, another double may be nearer. */
 static bool by_pair(uint64_t mantissa, int exponent, double *value) {
   int size = exponent < 0 ? -exponent : exponent;
   if (size > 2 * EXACT_POWER || mantissa >= UINT64_C(1) << 62) return false;
@@ -48,7 +48,8 @@ static bool by_pair(uint64_t mantissa, int exponent, double *value) {
 /* ---- whole numbers
  * ---------------------------------------------------------------------------------------------------- */
 
-/* More digits than decide between two doubles and what lies between them (767): the rest counts as not being 0. */
+/* 767 digits decide on which side of the middle between two doubles a number lies. Of digits beyond MOST_DIGITS only
+ * whether one is not 0 counts. */
 enum { MOST_DIGITS = 800, LIMBS = 176 };
 
 /* Limbs of 32 bits, the lowest first; the highest is not 0. 800 digits take 84, 5^1200 takes 88. */
@@ -87,7 +88,7 @@ static void shift_left(Whole *w, int bits) {
   multiply_add(w, UINT32_C(1) << bits % 32, 0);
 }
 
-/* a -= b where a >= b; whether it was so. */
+/* Subtracts b from a if a >= b. False: a < b, and a is unchanged. */
 static bool subtract(Whole *a, const Whole *b) {
   if (a->count < b->count) return false;
   for (int i = a->count - 1; a->count == b->count && i >= 0; i--) {
@@ -104,7 +105,8 @@ static bool subtract(Whole *a, const Whole *b) {
   return true;
 }
 
-/* q * 2^exponent; the lowest bit of q stands for all that lies below it, too. q has 55 or 56 bits. */
+/* q * 2^exponent, rounded. q has 55 or 56 bits; its lowest bit is also set if any bit below it would be (sticky bit).
+ * */
 static double round_to_double(uint64_t q, int exponent) {
   int bits = q >> 55 ? 56 : 55, drop = -1074 - exponent; /* doubles are multiples of 2^-1074 */
   if (drop > bits - 53) {

@@ -137,7 +137,7 @@ static bool take_member(const Take *t, const vlParameter *p, void *at) {
 }
 
 static bool take_parameter(const Take *t, const vlParameter *p, char *def, bool spectrum) {
-  if (p->type == VL_PARAMETER_EITHER_INPUT) { /* the half that is not read is emptied */
+  if (p->type == VL_PARAMETER_EITHER_INPUT) { /* of number and spectrum only one is read; the other is set to 0 */
     if (!spectrum) {
       *(vlSpectrumInput *)(void *)(def + p->second) = (vlSpectrumInput){0};
     } else {

@@ -89,8 +89,8 @@ static void walk(const Layers *l, vlVec3 o, vlVec3 wi, uint32_t *state, float f[
   u = next(state), v = next(state);
   Step to = coat_enter(l, wi, u, v);
   if (!from.valid) return;
-  float beta[4], height = l->thickness, squeeze = 1.0f / (l->eta * l->eta);
-  for (int c = 0; c < 4; c++) beta[c] = from.weight[c] * squeeze;
+  float beta[4], height = l->thickness, radiance_scale = 1.0f / (l->eta * l->eta);
+  for (int c = 0; c < 4; c++) beta[c] = from.weight[c] * radiance_scale;
   vlVec3 w = from.w;
   for (uint32_t depth = 0; depth < l->depth; depth++) {
     float most = largest(beta);

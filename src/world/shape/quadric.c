@@ -7,7 +7,8 @@
 #include "math/approx.h"
 #include "world/shape/kinds.h"
 
-/* One prim of a shape, in a space of its own: that of the shape, with the sphere of many at the origin. */
+/* One primitive of a shape in its own space: shape space; of many spheres, shape space moved so that this sphere is at
+ * the origin. */
 typedef struct Quadric {
   vlShapeKind kind;
   bool flip;

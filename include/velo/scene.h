@@ -674,6 +674,9 @@ typedef struct vlSceneInfo {
 } vlSceneInfo;
 /** Counts the contents of a scene. */
 VL_API void vl_scene_info(const vlScene *scene, vlSceneInfo *info);
+/** How many things of that kind the scene holds. family: the name of a family of velo/schema.h: "materials",
+ * "textures", "media", "lights", "shapes"; 0 for other names. */
+VL_API uint64_t vl_scene_kind_count(const vlScene *scene, const char *family, uint32_t kind);
 
 #ifdef __cplusplus
 }

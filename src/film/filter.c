@@ -39,24 +39,49 @@ static double mitchell(double b, double c, double x) { /* on [0, 2] */
   return ((((-b - 6 * c) * x + (6 * b + 30 * c)) * x + (-12 * b - 48 * c)) * x + (8 * b + 24 * c)) / 6.0;
 }
 
+/* A function per kind, at x in [0, radius]. */
+typedef struct At {
+  double x, radius, t; /* t: x / radius */
+} At;
+
+static double box_value(const vlPixelFilter *filter, At at) {
+  (void)filter, (void)at;
+  return 1.0;
+}
+
+static double triangle_value(const vlPixelFilter *filter, At at) {
+  (void)filter;
+  return 1.0 - at.t;
+}
+
+static double gaussian_value(const vlPixelFilter *filter, At at) { /* minus its value at the radius */
+  double s = 0.5 / ((double)filter->sigma * filter->sigma);
+  return series_exp(-s * at.x * at.x) - series_exp(-s * at.radius * at.radius);
+}
+
+static double mitchell_value(const vlPixelFilter *filter, At at) {
+  return mitchell(filter->b, filter->c, 2.0 * at.t);
+}
+
+static double lanczos_value(const vlPixelFilter *filter, At at) {
+  return sinc(at.x) * sinc(at.x / filter->tau);
+}
+
+static double blackman_harris_value(const vlPixelFilter *filter, At at) {
+  (void)filter;
+  return 0.35875 + 0.48829 * series_sin_pi(at.t + 0.5) + 0.14128 * series_sin_pi(2 * at.t + 0.5) +
+         0.01168 * series_sin_pi(3 * at.t + 0.5);
+}
+
 double vl_filter_value(const vlPixelFilter *filter, int axis, double x) {
   double radius = axis ? filter->radius_y : filter->radius_x;
   x = fabs(x);
   if (x > radius) return 0.0;
-  double t = x / radius;
-  switch (filter->kind) {
-    case VL_PIXEL_FILTER_BOX: return 1.0;
-    case VL_PIXEL_FILTER_TRIANGLE: return 1.0 - t;
-    case VL_PIXEL_FILTER_GAUSSIAN: { /* minus its value at the radius */
-      double s = 0.5 / ((double)filter->sigma * filter->sigma);
-      return series_exp(-s * x * x) - series_exp(-s * radius * radius);
-    }
-    case VL_PIXEL_FILTER_MITCHELL: return mitchell(filter->b, filter->c, 2.0 * t);
-    case VL_PIXEL_FILTER_LANCZOS: return sinc(x) * sinc(x / filter->tau);
-    case VL_PIXEL_FILTER_BLACKMAN_HARRIS:
-      return 0.35875 + 0.48829 * series_sin_pi(t + 0.5) + 0.14128 * series_sin_pi(2 * t + 0.5) +
-             0.01168 * series_sin_pi(3 * t + 0.5);
-  }
+  const At at = {x, radius, x / radius};
+#define CASE(K, k) \
+  case VL_PIXEL_FILTER_##K: return k##_value(filter, at);
+  switch (filter->kind) { VL_PIXEL_FILTER_KINDS(CASE) }
+#undef CASE
   return 0.0;
 }
 
@@ -237,7 +262,9 @@ static bool in_range(float x, float low, float high) {
 }
 
 bool vl_filter_compile(const vlPixelFilter *filter, vlFilterTable *table) {
-  if ((unsigned)filter->kind > VL_PIXEL_FILTER_BLACKMAN_HARRIS) return false;
+#define COUNT(K, k) +1
+  if ((unsigned)filter->kind >= 0 VL_PIXEL_FILTER_KINDS(COUNT)) return false;
+#undef COUNT
   if (!in_range(filter->radius_x, 0, VL_FILTER_RADIUS_MAX) || !in_range(filter->radius_y, 0, VL_FILTER_RADIUS_MAX))
     return false;
   if (filter->kind == VL_PIXEL_FILTER_GAUSSIAN && !in_range(filter->sigma, 0, 1e6f)) return false;

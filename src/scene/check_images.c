@@ -137,7 +137,8 @@ static float texture_max(vlCheck *c, const vlTextureDef *t, const float *known) 
   return 0; /* noise has fixed colours */
 }
 
-/* The inputs of a material that are reflectances or transmittances. */
+/* The inputs of a material that are reflectances or transmittances: those of its row with the role of an albedo, if the
+ * def reads them. */
 enum { SHARES = 6 };
 typedef struct Share {
   const char *what;
@@ -145,17 +146,24 @@ typedef struct Share {
   float factor;
 } Share;
 
+/* Some kinds read their reflectance only where the def says so. */
+static bool is_read(const vlMaterialDef *m, uint32_t traits, const vlSpectrumInput *input) {
+  if (input != &m->reflectance) return true;
+  if (m->kind == VL_MATERIAL_SUBSURFACE) return m->subsurface.from_reflectance;
+  if (m->kind == VL_MATERIAL_HAIR) return m->hair.color == VL_HAIR_REFLECTANCE;
+  return !(traits & VL_MATERIAL_METAL) || m->use_reflectance;
+}
+
 static uint32_t shares(const vlMaterialDef *m, Share list[SHARES]) {
+  const vlKindRow *row = vl_kind_row(&vl_material_family, (int)m->kind);
+  float factor = vl_row_find(row, "scale") ? m->scale : 1;
   uint32_t n = 0;
-  if (m->kind == VL_MATERIAL_DIFFUSE || m->kind == VL_MATERIAL_COATED_DIFFUSE || m->kind == VL_MATERIAL_PRINCIPLED ||
-      m->use_reflectance || (m->kind == VL_MATERIAL_SUBSURFACE && m->subsurface.from_reflectance))
-    list[n++] = (Share){"reflectance", &m->reflectance, 1};
-  if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION) {
-    list[n++] = (Share){"reflectance", &m->reflectance, m->scale};
-    list[n++] = (Share){"transmittance", &m->transmittance, m->scale};
+  for (uint32_t i = 0; i < row->parameter_count && n < SHARES; i++) {
+    const vlParameter *p = &row->parameters[i];
+    if (p->type != VL_PARAMETER_SPECTRUM_INPUT || p->role != VL_PARAMETER_ALBEDO) continue;
+    const vlSpectrumInput *input = (const void *)((const char *)m + p->offset);
+    if (is_read(m, row->traits, input)) list[n++] = (Share){p->name, input, factor};
   }
-  if (m->kind == VL_MATERIAL_COATED_DIFFUSE || m->kind == VL_MATERIAL_COATED_CONDUCTOR)
-    list[n++] = (Share){"albedo of the coat", &m->albedo, 1};
   return n;
 }
 

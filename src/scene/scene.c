@@ -67,6 +67,22 @@ vlSceneDefs *vl_scene_defs(vlScene *scene) {
   return &scene->defs;
 }
 
+#define COUNT_KINDS(name, array)                                                                           \
+  if (strcmp(family, name) == 0) {                                                                         \
+    for (size_t i = 0; i < scene->array.count; i++) count += (uint32_t)scene->array.items[i].kind == kind; \
+    return count;                                                                                          \
+  }
+
+uint64_t vl_scene_kind_count(const vlScene *scene, const char *family, uint32_t kind) {
+  uint64_t count = 0;
+  COUNT_KINDS("materials", materials)
+  COUNT_KINDS("textures", textures)
+  COUNT_KINDS("media", media)
+  COUNT_KINDS("lights", lights)
+  COUNT_KINDS("shapes", shapes)
+  return 0;
+}
+
 void vl_scene_info(const vlScene *scene, vlSceneInfo *info) {
   *info = (vlSceneInfo){
       .shapes = scene->shapes.count,

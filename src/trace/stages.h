@@ -213,6 +213,10 @@ void vl_stage_light_samples(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t
 /* Samples the BSDFs of the n lanes of b and writes the continuing paths into a: path k was lane s->order[k]. Returns
  * their number. depth: the number of this bounce, from 1. */
 uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
+/* A function per kind of tracer; one without it does not link. */
+#define VL_TRACER_FUNCTION(K, k) void vl_trace_##k(vlTracing *t);
+VL_TRACER_KINDS(VL_TRACER_FUNCTION)
+#undef VL_TRACER_FUNCTION
 void vl_path_tracer(vlTracing *t);
 void vl_volume_tracer(vlTracing *t); /* in volume.hot.c: participating media and subsurface materials */
 /* Subsurface scattering. Of the n paths of a (path k just sampled at lane s->order[k] of the surfaces) those that

@@ -2,6 +2,7 @@
  * definitions. Also functions shared by the scene commands. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -68,18 +69,96 @@ static void print_lights(const Facts *f) {
   if (n > LIGHTS) printf("  and %u more\n", n - LIGHTS);
 }
 
+/* "12: 5 diffuse, 7 conductor", by the family's rows. */
+static void count_kinds(const Facts *f, const char *name, uint64_t all) {
+  const vlKindFamily *family = kind_family(name);
+  const char *before = ": ";
+  printf("%-12s%llu", name, (unsigned long long)all);
+  for (uint32_t i = 0; all && i < family->kind_count; i++) {
+    uint64_t n = vl_scene_kind_count(f->scene, name, i);
+    if (!n) continue;
+    printf("%s%llu %s", before, (unsigned long long)n, family->rows[i]->name);
+    before = ", ";
+  }
+  putchar('\n');
+}
+
+/* A parameter's value as files write it; false: it is not a number, a bool or a name. */
+static bool value_of(const vlParameter *p, const void *def, char text[32]) {
+  const void *at = (const char *)def + p->offset;
+  const double scale = p->factor != 0 ? 1 / p->factor : 1;
+  if (!p->name || !p->size) return false;
+  switch (p->type) {
+    case VL_PARAMETER_BOOL: snprintf(text, 32, "%s", *(const bool *)at ? "true" : "false"); return true;
+    case VL_PARAMETER_COUNT: snprintf(text, 32, "%u", *(const uint32_t *)at); return true;
+    case VL_PARAMETER_FLOAT: snprintf(text, 32, "%.6g", scale * (double)*(const float *)at); return true;
+    case VL_PARAMETER_DOUBLE:
+      snprintf(text, 32, "%.6g", scale * *(const double *)at);
+      return *(const double *)at == *(const double *)at;
+    case VL_PARAMETER_CHOICE: snprintf(text, 32, "%s", p->choices[*(const int *)at]); return true;
+    case VL_PARAMETER_FLOAT3:
+    case VL_PARAMETER_DOUBLE3:
+    case VL_PARAMETER_STRING:
+    case VL_PARAMETER_FILE:
+    case VL_PARAMETER_SPECTRUM:
+    case VL_PARAMETER_FLOAT_INPUT:
+    case VL_PARAMETER_SPECTRUM_INPUT:
+    case VL_PARAMETER_EITHER_INPUT:
+    case VL_PARAMETER_TEXTURE:
+    case VL_PARAMETER_BLOCK: return false;
+  }
+  return false;
+}
+
+/* What the scene's file chose: a kind of each of these families, with the parameters of its row. */
+typedef struct Chosen {
+  const char *key, *family;
+  int kind;
+  const void *def;
+} Chosen;
+enum { CHOSEN = 3 };
+
+static void chosen(const vlSceneDefs *defs, Chosen list[CHOSEN]) {
+  list[0] = (Chosen){"sampler", "samplers", (int)defs->render.sampler, defs};
+  list[1] = (Chosen){"filter", "filters", (int)defs->film.filter.kind, &defs->film.filter};
+  list[2] = (Chosen){"tracer", "tracers", (int)defs->render.tracer, defs};
+}
+
+static bool is_repeated(const vlKindRow *row, uint32_t i) {
+  for (uint32_t k = 0; k < i; k++)
+    if (row->parameters[k].name && row->parameters[k].offset == row->parameters[i].offset) return true;
+  return false;
+}
+
+static void print_chosen(const vlSceneDefs *defs) {
+  Chosen list[CHOSEN];
+  chosen(defs, list);
+  for (int k = 0; k < CHOSEN; k++) {
+    const vlKindRow *row = kind_family(list[k].family)->rows[list[k].kind];
+    const char *before = ": ";
+    printf("%-12s%s", list[k].key, row->name);
+    for (uint32_t i = 0; i < row->parameter_count; i++) {
+      char text[32];
+      if (is_repeated(row, i) || !value_of(&row->parameters[i], list[k].def, text)) continue;
+      printf("%s%s %s", before, row->parameters[i].name, text);
+      before = ", ";
+    }
+    putchar('\n');
+  }
+}
+
 static void print_text(const Facts *f) {
   const vlSceneDefs *defs = vl_scene_defs(f->scene);
   double eye[3];
   printf("file        %s\n", f->path);
-  count("shapes", f->info.shapes);
+  count_kinds(f, "shapes", f->info.shapes);
   count("triangles", f->info.triangles);
   count("vertices", f->info.vertices);
   count("objects", f->info.groups);
   count("instances", f->info.instances);
-  count("textures", f->info.textures);
-  count("materials", f->info.materials);
-  count("media", f->info.media);
+  count_kinds(f, "textures", f->info.textures);
+  count_kinds(f, "materials", f->info.materials);
+  count_kinds(f, "media", f->info.media);
   printf("memory      %.1f MB for the description, read in %.2f s\n", (double)f->bytes / 1e6, f->seconds);
   if (f->low[0] <= f->high[0])
     printf("bounds      (%.5g, %.5g, %.5g) to (%.5g, %.5g, %.5g)\n", f->low[0], f->low[1], f->low[2], f->high[0],
@@ -94,8 +173,8 @@ static void print_text(const Facts *f) {
   if (defs->film.crop[0] || defs->film.crop[1] || defs->film.crop[2] != defs->film.width ||
       defs->film.crop[3] != defs->film.height)
     printf(", of it %u,%u to %u,%u", defs->film.crop[0], defs->film.crop[1], defs->film.crop[2], defs->film.crop[3]);
-  printf(", %u samples a pixel, %s, at most %u bounces\n", defs->render.spp,
-         kind_name("tracers", (int)defs->render.tracer), defs->render.max_depth);
+  putchar('\n');
+  print_chosen(defs);
   print_lights(f);
   uint32_t unused = 0;
   for (uint32_t i = 0; i < vl_check_count(f->check); i++) {
@@ -119,6 +198,44 @@ static void json_place(Json *json, const vlSource *source) {
   if (source->file) json_text(json, "file", source->file);
   if (source->line) json_integer(json, "line", source->line);
   if (source->line && source->column) json_integer(json, "column", source->column);
+}
+
+/* Things of each kind: {"materials": {"diffuse": 5}, ...}. */
+static void json_kinds(Json *json, const Facts *f) {
+  static const char *const families[] = {"shapes", "textures", "materials", "media"};
+  json_begin(json, "kinds", '{');
+  for (size_t k = 0; k < sizeof families / sizeof *families; k++) {
+    const vlKindFamily *family = kind_family(families[k]);
+    json_begin(json, families[k], '{');
+    for (uint32_t i = 0; i < family->kind_count; i++) {
+      uint64_t n = vl_scene_kind_count(f->scene, families[k], i);
+      if (n) json_integer(json, family->rows[i]->name, (int64_t)n);
+    }
+    json_end(json, '}');
+  }
+  json_end(json, '}');
+}
+
+static void json_chosen(Json *json, const vlSceneDefs *defs) {
+  Chosen list[CHOSEN];
+  chosen(defs, list);
+  for (int k = 0; k < CHOSEN; k++) {
+    const vlKindRow *row = kind_family(list[k].family)->rows[list[k].kind];
+    json_begin(json, list[k].key, '{');
+    json_text(json, "kind", row->name);
+    for (uint32_t i = 0; i < row->parameter_count; i++) {
+      const vlParameter *p = &row->parameters[i];
+      char text[32];
+      if (is_repeated(row, i) || !value_of(p, list[k].def, text)) continue;
+      if (p->type == VL_PARAMETER_CHOICE)
+        json_text(json, p->name, text);
+      else if (p->type == VL_PARAMETER_BOOL)
+        json_bool(json, p->name, text[0] == 't');
+      else
+        json_number(json, p->name, strtod(text, NULL));
+    }
+    json_end(json, '}');
+  }
 }
 
 static void print_json(const Facts *f) {
@@ -154,6 +271,8 @@ static void print_json(const Facts *f) {
   json_text(&json, "tracer", kind_name("tracers", (int)defs->render.tracer));
   json_integer(&json, "max_depth", defs->render.max_depth);
   json_end(&json, '}');
+  json_chosen(&json, defs);
+  json_kinds(&json, f);
   uint32_t n = vl_scene_light_count(f->scene);
   json_integer(&json, "light_count", n);
   json_begin(&json, "lights", '[');

@@ -104,24 +104,25 @@ static bool read_rest(vlDict *dict, vlSceneDefs *s) {
   return read_crop(dict, s) && read_sensor(dict);
 }
 
-/* What one film has and the others have not. */
-static bool read_kind(vlDict *dict, vlSceneDefs *s, vlFilmKind kind) {
-  const vlParameter *system = vl_row_find(vl_kind_row(&vl_film_family, (int)kind), "coordinatesystem");
+static bool read_gbuffer(vlDict *dict, vlSceneDefs *s) {
+  const vlParameter *system = vl_row_find(vl_kind_row(&vl_film_family, VL_FILM_GBUFFER), "coordinatesystem");
   int number = 0;
-  switch (kind) {
-    case VL_FILM_RGB: return true;
-    case VL_FILM_GBUFFER:
-      vl_dict_choice(dict, system->name, system->choices, 2, &number);
-      s->gbuffer = number ? VL_GBUFFER_WORLD : VL_GBUFFER_CAMERA;
-      return true;
-    case VL_FILM_SPECTRAL:
-      if (s->film.lambda_min < s->film.lambda_max) return true;
-      return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
-                            "%s: \"lambdamin\" is %g, it must be below \"lambdamax\", %g", dict->what,
-                            s->film.lambda_min, s->film.lambda_max);
-  }
+  vl_dict_choice(dict, system->name, system->choices, 2, &number);
+  s->gbuffer = number ? VL_GBUFFER_WORLD : VL_GBUFFER_CAMERA;
   return true;
 }
+
+static bool check_wavelengths(vlDict *dict, vlSceneDefs *s) {
+  if (!s->film.buckets || s->film.lambda_min < s->film.lambda_max) return true;
+  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
+                        "%s: \"lambdamin\" is %g, it must be below \"lambdamax\", %g", dict->what, s->film.lambda_min,
+                        s->film.lambda_max);
+}
+
+/* Rules that the rows do not express, by kind; null: none. */
+static bool (*const rules[0 VL_FILM_KINDS(VL_COUNT_KIND)])(vlDict *dict, vlSceneDefs *s) = {
+    [VL_FILM_GBUFFER] = read_gbuffer,
+};
 
 bool vl_import_film(vlImport *import) {
   vlSceneDefs *s = vl_scene_defs(import->scene);
@@ -138,7 +139,7 @@ bool vl_import_film(vlImport *import) {
   vl_row_set_defaults(row, s);
   s->film.space = choice->given ? choice->space : VL_SPACE_SRGB;
   if (!vl_import_parameters(&dict, row, s, false, NULL) || !read_rest(&dict, s)) return false;
-  if (!read_kind(&dict, s, (vlFilmKind)kind)) return false;
+  if ((rules[kind] && !rules[kind](&dict, s)) || !check_wavelengths(&dict, s)) return false;
   if (!known) vl_dict_skip(&dict);
   return vl_dict_done(&dict);
 }

@@ -1,5 +1,5 @@
 /* trace/sampler/sampler.hot.c: all kinds of samplers in batches. Compiled once per instruction set. The kind is
- * selected once per batch; kinds with several loops work in chunks. */
+ * selected once per batch; kinds with several loops work in chunks. n is a multiple of VL_LANES. */
 #include "trace/sampler/cells.h"
 #include "trace/sampler/halton.h"
 #include "trace/sampler/sobol.h"
@@ -24,73 +24,72 @@ static void independent_2d(const vlSampler *s, uint32_t n, const int32_t *px, co
   }
 }
 
-static void get_1d(const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index,
-                   uint32_t dimension, float *u) {
-  uint32_t count = VL_PAD(n);
-  switch (s->kind) {
-    case VL_SAMPLER_INDEPENDENT: independent_1d(s, count, px, py, index, dimension, u); return;
-    case VL_SAMPLER_SOBOL: vl_sobol_pixel(0, s, count, px, py, index, dimension, u, u); return;
-    case VL_SAMPLER_ZSOBOL: vl_zsobol(0, s, count, px, py, index, dimension, u, u); return;
-    case VL_SAMPLER_REGULAR:
-    case VL_SAMPLER_STRATIFIED:
-    case VL_SAMPLER_NROOKS:
-    case VL_SAMPLER_MULTI_JITTERED:
-    case VL_SAMPLER_HAMMERSLEY:
-    case VL_SAMPLER_HALTON: break; /* in chunks, below */
-  }
-  uint32_t seed = vl_dimension_seed(s, dimension, 0);
-  vlSamplerChunk chunk;
-  for (uint32_t k = 0; k < count; k += VL_SAMPLER_CHUNK) {
-    uint32_t m = count - k < VL_SAMPLER_CHUNK ? count - k : VL_SAMPLER_CHUNK;
-    vl_sampler_chunk(s, m, px + k, py + k, index + k, seed, &chunk);
-    switch (s->kind) {
-      case VL_SAMPLER_REGULAR: vl_cells_1d(0, s, &chunk, u + k); break;
-      case VL_SAMPLER_HALTON: vl_halton_1d(s, &chunk, dimension, u + k); break;
-      case VL_SAMPLER_STRATIFIED:
-      case VL_SAMPLER_NROOKS:
-      case VL_SAMPLER_MULTI_JITTERED:
-      case VL_SAMPLER_HAMMERSLEY: vl_cells_1d(1, s, &chunk, u + k); break;
-      case VL_SAMPLER_INDEPENDENT:
-      case VL_SAMPLER_SOBOL:
-      case VL_SAMPLER_ZSOBOL: break; /* above */
-    }
-  }
+/* ---- the kinds: functions of one and of two dimensions ----------------------------------------------------------- */
+
+#define INPUT \
+  const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index, uint32_t dimension
+
+static void sobol_1d(INPUT, float *u) {
+  vl_sobol_pixel(0, s, n, px, py, index, dimension, u, u);
+}
+static void sobol_2d(INPUT, float *u, float *v) {
+  vl_sobol_pixel(1, s, n, px, py, index, dimension, u, v);
+}
+static void zsobol_1d(INPUT, float *u) {
+  vl_zsobol(0, s, n, px, py, index, dimension, u, u);
+}
+static void zsobol_2d(INPUT, float *u, float *v) {
+  vl_zsobol(1, s, n, px, py, index, dimension, u, v);
 }
 
-static void get_2d(const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index,
-                   uint32_t dimension, float *u, float *v) {
+/* In chunks; `call` has the chunk c, whose first lane is k. */
+#define IN_CHUNKS(call)                                               \
+  uint32_t seed = vl_dimension_seed(s, dimension, 0);                 \
+  vlSamplerChunk chunk, *c = &chunk;                                  \
+  for (uint32_t k = 0; k < n; k += VL_SAMPLER_CHUNK) {                \
+    uint32_t m = n - k < VL_SAMPLER_CHUNK ? n - k : VL_SAMPLER_CHUNK; \
+    vl_sampler_chunk(s, m, px + k, py + k, index + k, seed, c);       \
+    call;                                                             \
+  }
+#define CHUNKS_1D(name, call)              \
+  static void name##_1d(INPUT, float *u) { \
+    IN_CHUNKS(call)                        \
+  }
+#define CHUNKS_2D(name, call)                        \
+  static void name##_2d(INPUT, float *u, float *v) { \
+    IN_CHUNKS(call)                                  \
+  }
+
+CHUNKS_1D(regular, vl_cells_1d(0, s, c, u + k))
+CHUNKS_2D(regular, vl_grid_2d(0, s, c, u + k, v + k))
+CHUNKS_1D(stratified, vl_cells_1d(1, s, c, u + k))
+CHUNKS_2D(stratified, vl_grid_2d(1, s, c, u + k, v + k))
+CHUNKS_1D(nrooks, vl_cells_1d(1, s, c, u + k))
+CHUNKS_2D(nrooks, vl_nrooks_2d(s, c, u + k, v + k))
+CHUNKS_1D(multi_jittered, vl_cells_1d(1, s, c, u + k))
+CHUNKS_2D(multi_jittered, vl_multi_jittered_2d(s, c, u + k, v + k))
+CHUNKS_1D(hammersley, vl_cells_1d(1, s, c, u + k))
+CHUNKS_2D(hammersley, vl_hammersley_2d(s, c, u + k, v + k))
+CHUNKS_1D(halton, vl_halton_1d(s, c, dimension, u + k))
+static void halton_2d(INPUT, float *u, float *v) {
+  halton_1d(s, n, px, py, index, dimension, u);
+  halton_1d(s, n, px, py, index, dimension + 1, v);
+}
+
+static void get_1d(INPUT, float *u) {
   uint32_t count = VL_PAD(n);
-  switch (s->kind) {
-    case VL_SAMPLER_INDEPENDENT: independent_2d(s, count, px, py, index, dimension, u, v); return;
-    case VL_SAMPLER_SOBOL: vl_sobol_pixel(1, s, count, px, py, index, dimension, u, v); return;
-    case VL_SAMPLER_ZSOBOL: vl_zsobol(1, s, count, px, py, index, dimension, u, v); return;
-    case VL_SAMPLER_HALTON:
-      get_1d(s, n, px, py, index, dimension, u);
-      get_1d(s, n, px, py, index, dimension + 1, v);
-      return;
-    case VL_SAMPLER_REGULAR:
-    case VL_SAMPLER_STRATIFIED:
-    case VL_SAMPLER_NROOKS:
-    case VL_SAMPLER_MULTI_JITTERED:
-    case VL_SAMPLER_HAMMERSLEY: break; /* in chunks, below */
-  }
-  uint32_t seed = vl_dimension_seed(s, dimension, 0);
-  vlSamplerChunk chunk;
-  for (uint32_t k = 0; k < count; k += VL_SAMPLER_CHUNK) {
-    uint32_t m = count - k < VL_SAMPLER_CHUNK ? count - k : VL_SAMPLER_CHUNK;
-    vl_sampler_chunk(s, m, px + k, py + k, index + k, seed, &chunk);
-    switch (s->kind) {
-      case VL_SAMPLER_REGULAR: vl_grid_2d(0, s, &chunk, u + k, v + k); break;
-      case VL_SAMPLER_NROOKS: vl_nrooks_2d(s, &chunk, u + k, v + k); break;
-      case VL_SAMPLER_MULTI_JITTERED: vl_multi_jittered_2d(s, &chunk, u + k, v + k); break;
-      case VL_SAMPLER_HAMMERSLEY: vl_hammersley_2d(s, &chunk, u + k, v + k); break;
-      case VL_SAMPLER_STRATIFIED: vl_grid_2d(1, s, &chunk, u + k, v + k); break;
-      case VL_SAMPLER_INDEPENDENT:
-      case VL_SAMPLER_SOBOL:
-      case VL_SAMPLER_ZSOBOL:
-      case VL_SAMPLER_HALTON: break; /* above */
-    }
-  }
+#define CASE(K, k) \
+  case VL_SAMPLER_##K: k##_1d(s, count, px, py, index, dimension, u); return;
+  switch (s->kind) { VL_SAMPLER_KINDS(CASE) }
+#undef CASE
+}
+
+static void get_2d(INPUT, float *u, float *v) {
+  uint32_t count = VL_PAD(n);
+#define CASE(K, k) \
+  case VL_SAMPLER_##K: k##_2d(s, count, px, py, index, dimension, u, v); return;
+  switch (s->kind) { VL_SAMPLER_KINDS(CASE) }
+#undef CASE
 }
 
 const vlSamplerKernels vl_sampler_kernel_table = {get_1d, get_2d};

@@ -4,7 +4,7 @@
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
-void vl_random_walk_tracer(vlTracing *t) {
+void vl_trace_random_walk(vlTracing *t) {
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;
   vlPaths *p = &s->b;

@@ -40,7 +40,7 @@ static void start_paths(vlTracing *t) {
 }
 
 /* Raycast: the emission at the camera ray's first hit, else reflectance times the cosine to the ray. */
-static void raycast_tracer(vlTracing *t) {
+void vl_trace_raycast(vlTracing *t) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
   uint32_t n = t->batch->n;
@@ -64,7 +64,7 @@ static void raycast_tracer(vlTracing *t) {
 }
 
 /* Ambient occlusion (pbrt's): one ray per sample from the first hit; white where it is not occluded. */
-static void ambient_occlusion_tracer(vlTracing *t) {
+void vl_trace_ambient_occlusion(vlTracing *t) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;
@@ -101,31 +101,45 @@ static void ambient_occlusion_tracer(vlTracing *t) {
       for (int c = 0; c < 4; c++) t->batch->radiance[c][s->b.lane[i]] += q->radiance[c][i];
 }
 
+/* ---- the others -------------------------------------------------------------------------------------------------- */
+
+void vl_trace_volpath(vlTracing *t) {
+  if (t->world->media.count > 0 || t->world->has_subsurface)
+    vl_volume_tracer(t);
+  else
+    vl_path_tracer(t);
+}
+
+void vl_trace_path(vlTracing *t) {
+  if (t->def->two_way)
+    vl_bidirectional_tracer(t);
+  else
+    vl_path_tracer(t);
+}
+
+void vl_trace_bidirectional(vlTracing *t) {
+  vl_trace_path(t);
+}
+
+void vl_trace_merging(vlTracing *t) {
+  vl_trace_path(t);
+}
+
+void vl_trace_sppm(vlTracing *t) {
+  vl_trace_path(t);
+}
+
+void vl_trace_light_path(vlTracing *t) {
+  vl_trace_path(t);
+}
+
 static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTraceBatch *batch) {
   vlTracing t = {world, def, scratch, batch, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa), false};
   start_paths(&t);
-  switch (def->tracer) {
-    case VL_TRACER_RAYCAST: raycast_tracer(&t); break;
-    case VL_TRACER_AMBIENT_OCCLUSION: ambient_occlusion_tracer(&t); break;
-    case VL_TRACER_VOLPATH:
-      if (world->media.count > 0 || world->has_subsurface) {
-        vl_volume_tracer(&t);
-        break;
-      }
-      vl_path_tracer(&t);
-      break;
-    case VL_TRACER_RANDOM_WALK: vl_random_walk_tracer(&t); break;
-    case VL_TRACER_PATH:
-    case VL_TRACER_BIDIRECTIONAL:
-    case VL_TRACER_MERGING:
-    case VL_TRACER_SPPM:
-    case VL_TRACER_LIGHT_PATH:
-      if (def->two_way)
-        vl_bidirectional_tracer(&t);
-      else
-        vl_path_tracer(&t);
-      break;
-  }
+#define CASE(K, k) \
+  case VL_TRACER_##K: vl_trace_##k(&t); break;
+  switch (def->tracer) { VL_TRACER_KINDS(CASE) }
+#undef CASE
 }
 
 const vlTraceKernels vl_trace_kernel_table = {trace, vl_light_tracer, vl_light_media};

@@ -32,7 +32,6 @@ typedef struct vlTwoWayRows {
 } vlTwoWayRows;
 
 void vl_bidirectional_tracer(vlTracing *t);
-void vl_random_walk_tracer(vlTracing *t);
 void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTwoWayRows *rows,
                      vlLightBatch *batch);
 /* Adds the radiance of the photons near the n shaded lanes. depth: bounces of the camera path so far. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "world/shape/moving.h"
 
 static vlResult fail_shape(const vlShapeDef *def, vlError *error, const char *what) {
   return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column, "%s", what);

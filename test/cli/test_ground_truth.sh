@@ -87,4 +87,15 @@ expect_code 2 unknown_mode "$VELO" render a.pbrt -o no.exr --channels all --chan
 expect_text near_mode 'nearest'
 expect_code 3 no_flow_in_file "$VELO" image check plain.exr --flow b.exr
 check nothing_written test ! -e no.exr
+# Points that are far aside of the other camera but hardly before it: a rounding of P moves their pixel far. With P alone,
+# pixels without a surface are those whose P is zero.
+lecture=$VELO_SOURCE_DIR/scenes/lecture
+for pair in 150_100 200_150; do
+  "$VELO" render "$lecture/eye_${pair#*_}.pbrt" --channels distance,P --spp 1 --quiet -o to.exr
+  for channels in forward,P,Z,distance forward,P; do
+    "$VELO" render "$lecture/eye_${pair%_*}.pbrt" --channels $channels --spp 1 --quiet -o from.exr \
+      --flow-camera "$lecture/eye_${pair#*_}.pbrt"
+    check "flow_near_the_other_eye_${pair}_$channels" "$VELO" image check from.exr --flow to.exr
+  done
+done
 finish

@@ -172,6 +172,39 @@ static void scattered(void **state) {
 }
 
 /* Where the law makes no sense a scene says so. */
+/* The tint of a principled solid (MTL's Tf, glTF's base colour) counts at both crossings, whatever lies between; that
+ * of a sheet at its one. */
+static void tints(void **state) {
+  (void)state;
+  static const float colors[3][3] = {{0.8f, 0.95f, 1.0f}, {0.9f, 0.5f, 0.1f}, {0.2f, 0.6f, 0.3f}};
+  static const float depths[3] = {0.01f, 1.0f, 100.0f};
+  for (int k = 0; k < 3; k++)
+    for (int d = 0; d < 4; d++) /* the last: a sheet */
+      for (int mode = 0; mode < 2; mode++) {
+        Stage s = open_stage((vlColorMode)mode, VL_TRACER_VOLPATH, 16, 256);
+        s.camera.fov = 0.02;
+        vlMaterialDef def = vl_default_material_def(VL_MATERIAL_PRINCIPLED);
+        def.reflectance = vl_spectrum_input(vl_spectrum_rgb(colors[k][0], colors[k][1], colors[k][2]));
+        def.eta = vl_spectrum_input(vl_spectrum_constant(d == 0 ? 1.0f : 1.01f));
+        def.principled.metallic = vl_float_input(0);
+        def.principled.transmission = vl_float_input(1);
+        def.principled.roughness = vl_float_input(0);
+        def.principled.thin_walled = d == 3;
+        vlMaterialId glass = vl_scene_add_material(s.scene, &def);
+        Quad sheet = quad_at(0, 0, -2, 9, 0, 0, 0, 9, 0);
+        sheet.material = glass;
+        if (d == 3)
+          add_quad(&s, &sheet);
+        else
+          add_box(&s, (float[3]){-900, -900, -2 - depths[d]}, (float[3]){900, 900, -2}, glass, (vlMediumId){0});
+        Image p = stage_finish(&s);
+        double expected[3];
+        for (int c = 0; c < 3; c++) expected[c] = pow((double)colors[k][c], d == 3 ? 1 : 2);
+        assert_law(mode ? "a tint, RGB" : "a tint, spectral", &p, expected);
+        image_free(&p);
+      }
+}
+
 static void refused(void **state) {
   (void)state;
   for (int what = 0; what < 3; what++) {
@@ -188,8 +221,10 @@ static void refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(one_piece),        cmocka_unit_test(several_pieces), cmocka_unit_test(there_and_back),
-      cmocka_unit_test(total_reflection), cmocka_unit_test(scattered),      cmocka_unit_test(refused),
+      cmocka_unit_test(one_piece),      cmocka_unit_test(several_pieces),
+      cmocka_unit_test(there_and_back), cmocka_unit_test(total_reflection),
+      cmocka_unit_test(scattered),      cmocka_unit_test(refused),
+      cmocka_unit_test(tints),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

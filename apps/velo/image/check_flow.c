@@ -51,6 +51,22 @@ static void compare_distances(Check *c, int hidden, const double at[2], bool hit
   c->flow_wrong += hidden == VL_HIDDEN_BEHIND ? nearest >= distance : farthest < distance * 0.99;
 }
 
+/* P and the distance are 32-bit floats: p is known up to a share of the largest length that it was computed from. How
+ * far the pixel moves when p moves by all of that length, by the derivative of the projection: near the other camera's
+ * plane of depth 0 it grows as size / depth^2. An error divided by it is the relative error of p that explains it. */
+static double pixels_of_rounding(const Check *c, const double p[3], const double at[2]) {
+  const double *m = c->other_camera.world_from_camera, eye[3] = {m[3], m[7], m[11]};
+  double away[3] = {p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]}, near = check_length3(away), largest = 0;
+  double size = fmax(fmax(check_length3(p), check_length3(eye)), near), step = 1e-7 * near;
+  for (int k = 0; k < 3 && step > 0; k++) {
+    double moved[3] = {p[0], p[1], p[2]}, there[2], z;
+    moved[k] += step;
+    if (vl_camera_project(&c->other_camera, moved, there, &z))
+      largest = fmax(largest, hypot(there[0] - at[0], there[1] - at[1]));
+  }
+  return step > 0 ? largest * size / step : 0;
+}
+
 void check_flow(Check *c) {
   int hidden = (int)c->pixel[c->hidden[c->which]];
   const float *flow = c->pixel + c->flow[c->which];
@@ -65,13 +81,9 @@ void check_flow(Check *c) {
     check_note(c, RULE_HIDDEN, hidden == VL_HIDDEN_NOWHERE && flow[0] == 0 && flow[1] == 0 ? 0 : (double)INFINITY);
     return;
   }
-  /* The effect of P's float rounding grows as the point comes closer to the other camera. */
-  const double *m = c->other_camera.world_from_camera, eye[3] = {m[3], m[7], m[11]};
-  double away[3] = {p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]};
-  double size = fmax(fmax(check_length3(p), check_length3(eye)), check_length3(away)), near = check_length3(away);
   double larger = fmax(fmax(c->other_camera.width, c->other_camera.height), fmax(fabs(at[0]), fabs(at[1])));
   double error = hypot(at[0] - c->point[0] - (double)flow[0], at[1] - c->point[1] - (double)flow[1]);
-  if (hidden != VL_HIDDEN_NOWHERE) check_note(c, RULE_FLOW, error / larger * fmin(1, near / size));
+  if (hidden != VL_HIDDEN_NOWHERE) check_note(c, RULE_FLOW, error / fmax(larger, pixels_of_rounding(c, p, at)));
   const double margin = 1e-3;
   bool inside = at[0] > margin && at[1] > margin && at[0] < c->other_camera.width - margin &&
                 at[1] < c->other_camera.height - margin;

@@ -182,10 +182,10 @@ static void warn_surface_integrator(vlImport *import, const vlMediumLink *link) 
   if (tracer == VL_TRACER_VOLPATH || tracer == VL_TRACER_BIDIRECTIONAL || !integrator->given) return;
   bool through = tracer == VL_TRACER_SPPM || tracer == VL_TRACER_LIGHT_PATH;
   vl_import_warn(import, VL_LOG_WARNING, link->place,
-                 through
-                     ? "integrator \"%s\" of pbrt looks past participating media (here \"%.60s\"), velo's goes through"
-                     : "integrator \"%s\" looks past participating media (here \"%.60s\"), as in pbrt",
-                 integrator->kind, link->inside[0] ? link->inside : link->outside);
+                 through ? "integrator \"%s\" of pbrt looks past participating media (here \"%s\"), velo's goes through"
+                         : "integrator \"%s\" looks past participating media (here \"%s\"), as in pbrt",
+                 vl_import_kind_text(&vl_tracer_family, integrator->kind).text,
+                 vl_short_text(link->inside[0] ? link->inside : link->outside).text);
 }
 
 bool vl_import_finish_media(vlImport *import) {

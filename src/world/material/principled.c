@@ -23,12 +23,38 @@ static vlResult normal_node(vlWorld *world, const vlScene *scene, vlTextureId id
   return vl_world_spectrum_node(world, scene, input, VL_ROLE_UNBOUNDED, node, error);
 }
 
+static bool is_one(vlFloatInput input) {
+  return !input.texture.index && input.value == 1.0f;
+}
+
 static bool is_zero(vlFloatInput input) {
   return !input.texture.index && !(input.value > 0.0f);
 }
 
 /* An index this near to 1 reflects less than 3e-7 and bends nothing visibly: the surface is a sheet. */
 #define NO_REFRACTION 1e-3f
+/* The base colour c of a solid that only transmits. Light crosses its boundary twice, so that white light leaves it as
+ * c * c by the RGB law of importers (MTL's Tf, glTF's base colour). The product of two spectra of colour c has another
+ * colour; so the spectrum is the root of that of c * c. */
+static vlResult glass_color(const vlMaterialBuild *b, vlError *error) {
+  const vlSpectrum *color = &b->def->reflectance.value;
+  float dense[VL_LAMBDA_COUNT], wavelengths[VL_LAMBDA_COUNT];
+  vlSpectrum twice = *color;
+  for (int c = 0; c < 3; c++) twice.rgb[c] = color->rgb[c] * color->scale * color->rgb[c] * color->scale;
+  twice.scale = 1.0f;
+  vlResult r = vl_spectrum_dense(&twice, VL_ROLE_ALBEDO, dense, error);
+  if (r != VL_OK) return r;
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
+    wavelengths[i] = (float)(VL_LAMBDA_MIN + i);
+    dense[i] = sqrtf(fmaxf(dense[i], 0.0f));
+  }
+  vlSpectrumInput once = vl_spectrum_input((vlSpectrum){.kind = VL_SPECTRUM_SAMPLED,
+                                                        .scale = 1.0f,
+                                                        .count = VL_LAMBDA_COUNT,
+                                                        .wavelengths = wavelengths,
+                                                        .values = dense});
+  return vl_world_spectrum_node(b->world, b->scene, once, VL_ROLE_ALBEDO, &b->m->reflectance, error);
+}
 
 vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   vlWorld *world = b->world;
@@ -66,7 +92,10 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
                                     {d->sheen_roughness, &p->sheen_roughness},
                                     {d->iridescence, &p->iridescence},
                                     {d->iridescence_thickness, &p->iridescence_thickness}};
-  vlResult r = vl_world_spectrum_node(world, scene, def->reflectance, VL_ROLE_ALBEDO, &m->reflectance, error);
+  bool glass = !d->thin_walled && is_one(d->transmission) && is_zero(d->metallic) && !def->reflectance.texture.index &&
+               def->reflectance.value.kind == VL_SPECTRUM_RGB && world->def.color == VL_COLOR_SPECTRAL;
+  vlResult r = glass ? glass_color(b, error)
+                     : vl_world_spectrum_node(world, scene, def->reflectance, VL_ROLE_ALBEDO, &m->reflectance, error);
   if (r == VL_OK) r = vl_material_floats(b, floats, sizeof floats / sizeof *floats);
   if (r == VL_OK)
     r = vl_world_spectrum_node(world, scene, d->specular_color, VL_ROLE_UNBOUNDED, &p->specular_color, error);

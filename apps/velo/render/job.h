@@ -65,6 +65,7 @@ enum {
   RENDER_MAX_MEMORY,
   RENDER_MAX_TEXTURE,
   RENDER_SANDBOX,
+  RENDER_SIZE,
   RENDER_LENS /* the first of lens_options.h */
 };
 

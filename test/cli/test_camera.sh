@@ -35,10 +35,10 @@ expect_line() {
 write_opencv cam.yaml 500. 0.
 printf 'x,y,z\n0,0,2\n0.4,-0.2,2\n\n# behind\n0,0,-1\n' >points.csv
 check project "$VELO" camera project --camera cam.yaml points.csv
-if [ "$out" = "u,v,z,valid
-320,240,2,1
-420,190,2,1
-0,0,0,0" ]; then pass project_numbers; else fail project_numbers; show "the last one"; fi
+if [ "$out" = "u,v,z,valid,inside
+320,240,2,1,1
+420,190,2,1,1
+0,0,0,0,0" ]; then pass project_numbers; else fail project_numbers; show "the last one"; fi
 check project_center "$VELO" camera project --camera cam.yaml --pixel-origin center points.csv
 expect_text project_center_numbers "419.5,189.5,2,1"
 check project_stdin sh -c 'echo 0.4,-0.2,2 | "$0" camera project --camera cam.yaml -' "$VELO"
@@ -93,6 +93,18 @@ expect_code 4 missing_file "$VELO" camera info nothing.yaml
 printf '1,2\n' >two.csv
 expect_code 3 two_numbers "$VELO" camera project --camera cam.yaml two.csv
 expect_line two_numbers_words 'two.csv:1'
+printf '0,0,2\n1,2\n0.4,-0.2,2\n0,0,x\n9,0,1\n' >mixed.csv
+expect_code 3 bad_lines "$VELO" camera project --camera cam.yaml mixed.csv
+expect_text bad_lines_place 'mixed.csv:2:4: a line must hold 3 finite numbers'
+expect_text bad_lines_column 'mixed.csv:4:5:'
+if [ "$("$VELO" camera project --camera cam.yaml mixed.csv 2>/dev/null)" = "u,v,z,valid,inside
+320,240,2,1,1
+0,0,0,0,0
+420,190,2,1,1
+0,0,0,0,0
+4820,240,1,1,0" ]; then pass bad_lines_rest; else fail bad_lines_rest; show "the last one"; fi
+expect_code 3 strict_line "$VELO" camera project --strict --camera cam.yaml mixed.csv
+expect_line strict_line_words 'mixed.csv:2:4'
 expect_code 2 no_camera "$VELO" camera project points.csv
 expect_line no_camera_words '--camera'
 

@@ -10,14 +10,36 @@
 #include "image/header.h"
 #include "image/image.h"
 
-const Choice dialect_choices[] = {{"velo", VL_CAMERA_DIALECT_VELO},       {"opencv", VL_CAMERA_DIALECT_OPENCV},
-                                  {"ros", VL_CAMERA_DIALECT_ROS},         {"colmap", VL_CAMERA_DIALECT_COLMAP},
-                                  {"nerf", VL_CAMERA_DIALECT_NERF},       {"kalibr", VL_CAMERA_DIALECT_KALIBR},
-                                  {"blender", VL_CAMERA_DIALECT_BLENDER}, {"gltf", VL_CAMERA_DIALECT_GLTF},
-                                  {"mitsuba", VL_CAMERA_DIALECT_MITSUBA}, {"opengl", VL_CAMERA_DIALECT_OPENGL},
-                                  {"vulkan", VL_CAMERA_DIALECT_VULKAN},   {"d3d", VL_CAMERA_DIALECT_D3D},
-                                  {"usd", VL_CAMERA_DIALECT_USD},         {"pbrt", VL_CAMERA_DIALECT_PBRT},
-                                  {"exr", VL_CAMERA_DIALECT_EXR},         {NULL, 0}};
+const Choice dialect_choices[] = {{"velo", VL_CAMERA_DIALECT_VELO},
+                                  {"opencv", VL_CAMERA_DIALECT_OPENCV},
+                                  {"ros", VL_CAMERA_DIALECT_ROS},
+                                  {"colmap", VL_CAMERA_DIALECT_COLMAP},
+                                  {"nerf", VL_CAMERA_DIALECT_NERF},
+                                  {"kalibr", VL_CAMERA_DIALECT_KALIBR},
+                                  {"blender", VL_CAMERA_DIALECT_BLENDER},
+                                  {"gltf", VL_CAMERA_DIALECT_GLTF},
+                                  {"mitsuba", VL_CAMERA_DIALECT_MITSUBA},
+                                  {"opengl", VL_CAMERA_DIALECT_OPENGL},
+                                  {"vulkan", VL_CAMERA_DIALECT_VULKAN},
+                                  {"d3d", VL_CAMERA_DIALECT_D3D},
+                                  {"usd", VL_CAMERA_DIALECT_USD},
+                                  {"pbrt", VL_CAMERA_DIALECT_PBRT},
+                                  {"exr", VL_CAMERA_DIALECT_EXR},
+                                  {"euroc", VL_CAMERA_DIALECT_EUROC},
+                                  {"camodocal", VL_CAMERA_DIALECT_CAMODOCAL},
+                                  {"basalt", VL_CAMERA_DIALECT_BASALT},
+                                  {"orbslam", VL_CAMERA_DIALECT_ORBSLAM},
+                                  {"okvis", VL_CAMERA_DIALECT_OKVIS},
+                                  {"svo", VL_CAMERA_DIALECT_SVO},
+                                  {"kitti", VL_CAMERA_DIALECT_KITTI},
+                                  {"bop", VL_CAMERA_DIALECT_BOP},
+                                  {"gaussians", VL_CAMERA_DIALECT_GAUSSIANS},
+                                  {"metashape", VL_CAMERA_DIALECT_METASHAPE},
+                                  {"meshroom", VL_CAMERA_DIALECT_MESHROOM},
+                                  {"opensfm", VL_CAMERA_DIALECT_OPENSFM},
+                                  {"open3d", VL_CAMERA_DIALECT_OPEN3D},
+                                  {"visp", VL_CAMERA_DIALECT_VISP},
+                                  {NULL, 0}};
 
 static bool ends_with(const char *text, const char *suffix) {
   size_t n = strlen(text), m = strlen(suffix);
@@ -60,17 +82,28 @@ static int load_image_camera(vlContext *context, const char *path, vlCameraRecor
   return status;
 }
 
-int camera_load(vlContext *context, const char *path, int dialect, const char *frame, vlCameraRecord *record) {
+static int has_size(const char *path) {
+  return report_usage("%s has an image size of its own; --size is for files that have none", path);
+}
+
+int camera_load(vlContext *context, const char *path, int dialect, const char *frame, const OptionValue *size,
+                const OptionValue *fallback, vlCameraRecord *record) {
+  bool sized = size && size->given;
+  const OptionValue *taken = sized ? size : fallback && fallback->given ? fallback : NULL;
   if (dialect == VL_CAMERA_DIALECT_EXR || (!dialect && ends_with(path, ".exr")))
-    return load_image_camera(context, path, record);
+    return sized ? has_size(path) : load_image_camera(context, path, record);
   if (dialect == VL_CAMERA_DIALECT_PBRT || (!dialect && camera_is_scene(path)))
-    return load_scene_camera(context, path, record);
+    return sized ? has_size(path) : load_scene_camera(context, path, record);
   vlError error = {0};
   vlCameraFileDef def = vl_default_camera_file_def();
   def.dialect = (vlCameraDialect)dialect;
   def.frame = frame;
+  if (taken) def.width = (uint32_t)taken->integers[0], def.height = (uint32_t)taken->integers[1];
   vlResult result = vl_camera_read(context, path, &def, record, &error);
   if (result != VL_OK) return report_error(&error, result, path);
+  if (sized && (record->camera.width != def.width || record->camera.height != def.height))
+    return report_usage("%s says %u x %u pixels, --size %u x %u; --size is for files that have none", path,
+                        record->camera.width, record->camera.height, def.width, def.height);
   if (record->size_assumed)
     report_note("%s: names no image size; %u x %u is taken", path, record->camera.width, record->camera.height);
   if (record->frames > 1 && !frame)
@@ -80,9 +113,10 @@ int camera_load(vlContext *context, const char *path, int dialect, const char *f
 }
 
 int camera_load_made(vlContext *context, const char *path, const Arguments *arguments, int frame_option,
-                     vlCameraRecord *record, vlCamera *camera) {
+                     int size_option, vlCameraRecord *record, vlCamera *camera) {
   const OptionValue *frame = &arguments->values[frame_option];
-  int status = camera_load(context, path, 0, frame->given ? frame->text : NULL, record);
+  int status =
+      camera_load(context, path, 0, frame->given ? frame->text : NULL, &arguments->values[size_option], NULL, record);
   if (status >= 0) return status;
   const char *warning = NULL;
   vlError error = {0};
@@ -95,7 +129,7 @@ int camera_load_made(vlContext *context, const char *path, const Arguments *argu
   return -1;
 }
 
-enum { CONVERT_FROM, CONVERT_TO, CONVERT_FRAME, CONVERT_DROP };
+enum { CONVERT_FROM, CONVERT_TO, CONVERT_FRAME, CONVERT_DROP, CONVERT_SIZE };
 
 static int run_convert(const Command *command, const Arguments *arguments) {
   (void)command;
@@ -106,7 +140,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   int status = image_context(&context);
   if (status < 0)
     status = camera_load(context, in, v[CONVERT_FROM].given ? (int)v[CONVERT_FROM].integer : 0,
-                         v[CONVERT_FRAME].given ? v[CONVERT_FRAME].text : NULL, &record);
+                         v[CONVERT_FRAME].given ? v[CONVERT_FRAME].text : NULL, &v[CONVERT_SIZE], NULL, &record);
   if (status < 0) {
     vlCameraFileDef def = vl_default_camera_file_def();
     def.dialect = v[CONVERT_TO].given ? (vlCameraDialect)v[CONVERT_TO].integer : VL_CAMERA_DIALECT_AUTO;
@@ -134,6 +168,7 @@ static const Option convert_options[] = {
      "transforms.json nerf,\ncameras.txt colmap:",
      0, 0, dialect_choices},
     {CONVERT_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
+    {CONVERT_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {CONVERT_DROP, 0, "drop", OPTION_TEXTS, "FIELD",
      "leave out a field that OUT cannot hold; may be given several\ntimes", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};

@@ -7,7 +7,7 @@
 #include "cli/report.h"
 #include "image/image.h"
 
-enum { INFO_JSON, INFO_FRAME };
+enum { INFO_JSON, INFO_FRAME, INFO_SIZE };
 
 static const double degrees = 180.0 / 3.14159265358979323846;
 
@@ -124,7 +124,7 @@ static int run_info(const Command *command, const Arguments *arguments) {
   vlCamera camera;
   const char *path = arguments->operands[0];
   int status = image_context(&context);
-  if (status < 0) status = camera_load_made(context, path, arguments, INFO_FRAME, &record, &camera);
+  if (status < 0) status = camera_load_made(context, path, arguments, INFO_FRAME, INFO_SIZE, &record, &camera);
   if (status < 0) {
     Info info = measure(&camera);
     if (arguments->values[INFO_JSON].given)
@@ -140,6 +140,7 @@ static int run_info(const Command *command, const Arguments *arguments) {
 static const Option info_options[] = {
     {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
     {INFO_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
+    {INFO_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command camera_info_command = {

@@ -12,7 +12,7 @@
 #include "cli/report.h"
 #include "image/image.h"
 
-enum { POINTS_CAMERA, POINTS_ORIGIN, POINTS_FRAME };
+enum { POINTS_CAMERA, POINTS_ORIGIN, POINTS_FRAME, POINTS_SIZE, POINTS_STRICT };
 enum { BATCH = 4096 };
 
 static const Choice origin_choices[] = {{"corner", 0}, {"center", 1}, {NULL, 0}};
@@ -23,69 +23,96 @@ typedef struct Lines {
   char *line;
   size_t room;
   unsigned long number;
+  bool strict;
+  unsigned long bad; /* lines that were reported */
 } Lines;
 
-/* Reads exactly count numbers separated by commas or blanks. */
-static bool read_numbers(const char *text, double *values, int count) {
+/* Reads exactly count numbers separated by commas or blanks. *at: where the first that is none begins. */
+static bool read_numbers(const char *text, double *values, int count, const char **at) {
   for (int i = 0; i < count; i++) {
     char *end;
+    *at = text + strspn(text, " \t");
     values[i] = strtod(text, &end);
     if (end == text || !isfinite(values[i])) return false;
     text = end + strspn(end, " \t");
     if (i + 1 < count && *text == ',') text++;
   }
-  return text[strspn(text, " \t\r\n")] == 0;
+  *at = text + strspn(text, " \t\r\n");
+  return **at == 0;
 }
 
-/* Reads up to BATCH rows. A first line of words is a header and is skipped. Returns -1 or the exit code. */
-static int read_batch(Lines *lines, int columns, double *values, size_t *count) {
+/* Reports a bad line: the first ten each by itself. Returns -1, or the exit code if it ends the command. */
+static int bad_line(Lines *lines, const char *at, int columns) {
+  enum { REPORTED = 10 };
+  long column = at - lines->line + 1;
+  if (lines->strict)
+    return report_failure(STATUS_SCENE, "%s:%lu:%ld: a line must hold %d finite numbers", lines->path, lines->number,
+                          column, columns);
+  if (lines->bad++ < REPORTED)
+    report_warning("%s:%lu:%ld: a line must hold %d finite numbers; its result is not valid", lines->path,
+                   lines->number, column, columns);
+  return -1;
+}
+
+/* Reads up to BATCH rows; good[i] is 0 for a bad line. A first line of words is a header and is skipped. Returns -1 or
+ * the exit code. */
+static int read_batch(Lines *lines, int columns, double *values, uint8_t *good, size_t *count) {
   *count = 0;
   while (*count < BATCH && getline(&lines->line, &lines->room, lines->file) >= 0) {
-    const char *text = lines->line + strspn(lines->line, " \t\r\n");
+    const char *text = lines->line + strspn(lines->line, " \t\r\n"), *at = text;
+    double *row = values + (size_t)columns * *count;
     lines->number++;
     if (*text == 0 || *text == '#') continue;
-    if (read_numbers(text, values + (size_t)columns * *count, columns)) {
-      ++*count;
-      continue;
+    good[*count] = read_numbers(text, row, columns, &at);
+    if (!good[*count]) {
+      if (lines->number == 1 && ((*text >= 'a' && *text <= 'z') || *text == '"' || (*text >= 'A' && *text <= 'Z')) &&
+          strncasecmp(text, "nan", 3) != 0 && strncasecmp(text, "inf", 3) != 0)
+        continue;
+      int status = bad_line(lines, at, columns);
+      if (status >= 0) return status;
+      memset(row, 0, (size_t)columns * sizeof *row);
     }
-    if (lines->number == 1 && ((*text >= 'a' && *text <= 'z') || *text == '"' || (*text >= 'A' && *text <= 'Z')) &&
-        strncasecmp(text, "nan", 3) != 0 && strncasecmp(text, "inf", 3) != 0)
-      continue;
-    return report_failure(STATUS_SCENE, "%s:%lu: a line must hold %d finite numbers", lines->path, lines->number,
-                          columns);
+    ++*count;
   }
   return ferror(lines->file) ? report_failure(STATUS_IO, "%s: %s", lines->path, strerror(errno)) : -1;
 }
 
 static int project_all(const vlCamera *camera, double shift, Lines *lines) {
   static double points[3 * BATCH], pixels[2 * BATCH], z[BATCH];
-  static uint8_t valid[BATCH];
+  static uint8_t valid[BATCH], good[BATCH];
   size_t count;
-  printf("u,v,z,valid\n");
+  printf("u,v,z,valid,inside\n");
   do {
-    int status = read_batch(lines, 3, points, &count);
+    int status = read_batch(lines, 3, points, good, &count);
     if (status >= 0) return status;
     vl_camera_project_batch(camera, count, points, pixels, z, valid);
-    for (size_t i = 0; i < count; i++)
-      printf("%.17g,%.17g,%.17g,%d\n", valid[i] ? pixels[2 * i] - shift : 0.0,
-             valid[i] ? pixels[2 * i + 1] - shift : 0.0, z[i], valid[i]);
+    for (size_t i = 0; i < count; i++) {
+      double u = pixels[2 * i], v = pixels[2 * i + 1];
+      bool seen = valid[i] && good[i];
+      bool inside = seen && u >= 0.0 && u < camera->width && v >= 0.0 && v < camera->height;
+      printf("%.17g,%.17g,%.17g,%d,%d\n", seen ? u - shift : 0.0, seen ? v - shift : 0.0, seen ? z[i] : 0.0, seen,
+             inside);
+    }
   } while (count == BATCH && !ferror(stdout));
   return STATUS_OK;
 }
 
 static int unproject_all(const vlCamera *camera, double shift, Lines *lines) {
   static double pixels[2 * BATCH], origins[3 * BATCH], directions[3 * BATCH];
-  static uint8_t valid[BATCH];
+  static uint8_t valid[BATCH], good[BATCH];
   size_t count;
   printf("ox,oy,oz,dx,dy,dz,valid\n");
   do {
-    int status = read_batch(lines, 2, pixels, &count);
+    int status = read_batch(lines, 2, pixels, good, &count);
     if (status >= 0) return status;
     for (size_t i = 0; i < 2 * count; i++) pixels[i] += shift;
     vl_camera_unproject_batch(camera, count, pixels, origins, directions, valid);
     for (size_t i = 0; i < count; i++)
-      printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%d\n", origins[3 * i], origins[3 * i + 1], origins[3 * i + 2],
-             directions[3 * i], directions[3 * i + 1], directions[3 * i + 2], valid[i]);
+      if (valid[i] && good[i])
+        printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,1\n", origins[3 * i], origins[3 * i + 1], origins[3 * i + 2],
+               directions[3 * i], directions[3 * i + 1], directions[3 * i + 2]);
+      else
+        printf("0,0,0,0,0,0,0\n");
   } while (count == BATCH && !ferror(stdout));
   return STATUS_OK;
 }
@@ -98,8 +125,9 @@ static int run_points(const Arguments *arguments, int (*all)(const vlCamera *, d
   vlCameraRecord record;
   vlCamera camera;
   int status = image_context(&context);
-  if (status < 0) status = camera_load_made(context, v[POINTS_CAMERA].text, arguments, POINTS_FRAME, &record, &camera);
-  Lines lines = {.path = arguments->operands[0]};
+  if (status < 0)
+    status = camera_load_made(context, v[POINTS_CAMERA].text, arguments, POINTS_FRAME, POINTS_SIZE, &record, &camera);
+  Lines lines = {.path = arguments->operands[0], .strict = v[POINTS_STRICT].given};
   bool from_stdin = strcmp(lines.path, "-") == 0;
   if (status < 0) {
     lines.file = from_stdin ? stdin : fopen(lines.path, "r");
@@ -108,6 +136,8 @@ static int run_points(const Arguments *arguments, int (*all)(const vlCamera *, d
       status = report_failure(errno == ENOENT ? STATUS_MISSING : STATUS_IO, "%s: %s", lines.path, strerror(errno));
   }
   if (status < 0) status = image_finish_output(all(&camera, shift, &lines));
+  if (lines.bad > 1) report_warning("%s: %lu lines are not numbers", lines.path, lines.bad);
+  if (lines.bad && status == STATUS_OK) status = STATUS_SCENE;
   if (lines.file && !from_stdin) fclose(lines.file);
   free(lines.line);
   vl_context_destroy(context);
@@ -132,6 +162,10 @@ static const Option points_options[] = {
      "centre is (0.5, 0.5)), or the first pixel's centre, as in OpenCV:",
      0, 0, origin_choices},
     {POINTS_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
+    {POINTS_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
+    {POINTS_STRICT, 0, "strict", OPTION_FLAG, NULL,
+     "end at a line that is not numbers; default: it is reported, its\nresult is not valid, the rest goes on, and the exit code is 3", 0, 0,
+     NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command camera_project_command = {
@@ -139,8 +173,9 @@ const Command camera_project_command = {
     .usage = "--camera FILE POINTS.csv [options]",
     .summary = "points of the world to pixels",
     .text =
-        "POINTS.csv (- is stdin) has a line x,y,z for each point of the world. Prints u,v,z,valid: column and\n"
-        "row in the image, depth along the view axis, and 1 where the camera can see in that direction.",
+        "POINTS.csv (- is stdin) has a line x,y,z for each point of the world. Prints u,v,z,valid,inside:\n"
+        "column and row in the image's plane, depth along the view axis, 1 where the camera's equations map the\n"
+        "point (there unproject gives its ray back), and 1 where that place is in the image.",
     .examples =
         "velo camera project --camera camera.yaml points.csv\n"
         "velo camera project --camera room.pbrt points.csv",

@@ -336,7 +336,7 @@ static int run_vanishing(const Command *command, const Arguments *arguments) {
   vlCamera camera;
   const char *path = arguments->operands[0];
   int status = image_context(&context);
-  if (status < 0) status = camera_load_made(context, path, arguments, V_FRAME, &record, &camera);
+  if (status < 0) status = camera_load_made(context, path, arguments, V_FRAME, V_SIZE, &record, &camera);
   if (status < 0 && v[V_OVERLAY].given) {
     Drawing drawing = {up, v[V_LINES].given ? (int)v[V_LINES].integer : 24, grid[0], grid[1]};
     status = draw_overlay(context, arguments, &camera, &drawing);
@@ -369,7 +369,7 @@ static const Option vanishing_options[] = {
      0, 0, NULL},
     {V_PRINCIPAL, 0, "principal", OPTION_TEXT, "cx,cy", "its principal point; default with two points: the centre", 0,
      0, NULL},
-    {V_SIZE, 0, "size", OPTION_SIZE, "WxH", "its image's size", 1, 1 << 24, NULL},
+    {V_SIZE, 0, "size", OPTION_SIZE, "WxH", "its image's size, or of a FILE that has none", 1, 1 << 24, NULL},
     {V_AXES, 0, "axes", OPTION_TEXT, "AXES",
      "which axes the points are of, - for a negative end: xz (default\nof two), xyz (of three), -zx, ...", 0, 0, NULL},
     {V_TO, 0, "to", OPTION_CHOICE, "DIALECT", "of that camera file; default: by its name:", 0, 0, dialect_choices},

@@ -13,6 +13,7 @@
 
 enum {
   VERIFY_CAMERA,
+  VERIFY_SIZE,
   VERIFY_FRAME,
   VERIFY_AGAINST,
   VERIFY_AGAINST_FRAME,
@@ -163,7 +164,8 @@ static int load_model(vlContext *context, const Arguments *arguments, const vlCa
   if (o[VERIFY_AGAINST].given) {
     vlCameraRecord record;
     path = o[VERIFY_AGAINST].text;
-    int status = camera_load_made(context, path, arguments, VERIFY_AGAINST_FRAME, &record, &v->model.camera);
+    int status =
+        camera_load_made(context, path, arguments, VERIFY_AGAINST_FRAME, VERIFY_SIZE, &record, &v->model.camera);
     if (status >= 0) return status;
     v->model.def = record.camera;
     make_pinhole(&v->model.camera);
@@ -199,7 +201,7 @@ static int run_verify(const Command *command, const Arguments *arguments) {
   v.spp = o[VERIFY_SPP].given ? (uint32_t)o[VERIFY_SPP].integer : 144;
   v.seed = o[VERIFY_SEED].given ? (uint64_t)o[VERIFY_SEED].integer : 1;
   v.keep = o[VERIFY_KEEP].given ? o[VERIFY_KEEP].text : NULL;
-  int status = camera_load_made(context, path, arguments, VERIFY_FRAME, &record, &v.camera);
+  int status = camera_load_made(context, path, arguments, VERIFY_FRAME, VERIFY_SIZE, &record, &v.camera);
   if (status < 0) make_pinhole(&v.camera);
   if (status < 0) status = load_model(context, arguments, &record, &v);
   if (status < 0 && v.keep && mkdir(v.keep, 0777) != 0 && errno != EEXIST)
@@ -219,6 +221,7 @@ static const Option verify_options[] = {
     {VERIFY_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "the camera, in any dialect of `velo camera convert`, or a scene",
      0, 0, NULL},
     {VERIFY_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
+    {VERIFY_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {VERIFY_AGAINST, 0, "against", OPTION_TEXT, "OTHER",
      "compare the images with this camera file's equations: do both\nmean the same camera?", 0, 0, NULL},
     {VERIFY_AGAINST_FRAME, 0, "against-frame", OPTION_TEXT, "NAME", "which camera of OTHER", 0, 0, NULL},

@@ -92,7 +92,7 @@ int channels_load(Channels *c, vlContext *context, const Job *job) {
   for (int i = 0; i < 2; i++) {
     if (!c->other_paths[i]) continue;
     vlCameraRecord record;
-    int status = camera_load(context, c->other_paths[i], 0, NULL, &record);
+    int status = camera_load(context, c->other_paths[i], 0, NULL, NULL, NULL, &record);
     if (status >= 0) return status;
     vlError error = {0};
     vlCamera camera;

@@ -118,9 +118,12 @@ static int add_camera(Frames *frames, vlContext *context, const Job *job, const 
   return report_error(&place, result, path);
 }
 
-static int load_file(vlContext *context, const char *path, vlTrajectory **trajectory) {
+static int load_file(vlContext *context, const char *path, const Arguments *arguments, vlTrajectory **trajectory) {
   vlError error = {0};
-  vlResult result = vl_trajectory_load(context, path, NULL, trajectory, &error);
+  vlCameraFileDef def = vl_default_camera_file_def();
+  const OptionValue *size = &arguments->values[arguments->values[RENDER_SIZE].given ? RENDER_SIZE : RENDER_RESOLUTION];
+  if (size->given) def.width = (uint32_t)size->integers[0], def.height = (uint32_t)size->integers[1];
+  vlResult result = vl_trajectory_load(context, path, &def, trajectory, &error);
   return result == VL_OK ? -1 : report_error(&error, result, path);
 }
 
@@ -165,8 +168,8 @@ int frames_load(Frames *frames, vlContext *context, const Job *job, const Argume
   for (int i = 0; i < 2; i++) frames->view_names[i] = stereo ? names[frames->eyes[i] == VL_EYE_RIGHT] : "";
   int status = -1;
   const char *path = v[RENDER_TRAJECTORY].text, *rig = v[RENDER_RIG].text;
-  if (v[RENDER_TRAJECTORY].given) status = load_file(context, path, &frames->trajectory);
-  if (status < 0 && v[RENDER_RIG].given) status = load_file(context, rig, &frames->rig);
+  if (v[RENDER_TRAJECTORY].given) status = load_file(context, path, arguments, &frames->trajectory);
+  if (status < 0 && v[RENDER_RIG].given) status = load_file(context, rig, arguments, &frames->rig);
   if (status < 0 && frames->trajectory) status = choose_frames(frames, arguments);
   if (status >= 0) return status;
   uint32_t count = frames->rig ? vl_trajectory_frames(frames->rig) : vl_trajectory_cameras(frames->trajectory);

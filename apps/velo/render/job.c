@@ -66,9 +66,12 @@ static vlError camera_place(const vlSceneDefs *defs, const char *path) {
 }
 
 /* Takes camera and image size from a camera file. */
-static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, const char *path, const char *frame) {
+static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, const char *path,
+                            const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
   vlCameraRecord record;
-  int status = camera_load(context, path, 0, frame, &record);
+  const char *frame = v[RENDER_FRAME].given ? v[RENDER_FRAME].text : NULL;
+  int status = camera_load(context, path, 0, frame, &v[RENDER_SIZE], &v[RENDER_RESOLUTION], &record);
   if (status >= 0) return status;
   defs->camera = record.camera;
   defs->film.width = record.camera.width;
@@ -89,9 +92,7 @@ static void take_receipt_camera(Job *job, vlSceneDefs *defs) {
 
 /* Takes camera and image size from another scene file. */
 static int take_camera(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments) {
-  const OptionValue *frame = &arguments->values[RENDER_FRAME];
-  if (!camera_is_scene(path))
-    return take_camera_file(job, context, vl_scene_defs(scene), path, frame->given ? frame->text : NULL);
+  if (!camera_is_scene(path)) return take_camera_file(job, context, vl_scene_defs(scene), path, arguments);
   vlScene *other = NULL;
   vlError error = {0};
   vlResult result = vl_scene_create(context, &other);

@@ -68,6 +68,7 @@ enum {
   RENDER_SANDBOX,
   RENDER_AGAIN,
   RENDER_NO_RECEIPT,
+  RENDER_SIZE,
   RENDER_LENS /* the first of lens_options.h */
 };
 

@@ -29,6 +29,8 @@ const Option render_options[] = {
      0, NULL},
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which camera of --camera FILE, by its name or number from 0", 0, 0,
      NULL},
+    {RENDER_SIZE, 0, "size", OPTION_SIZE, "WxH",
+     "the image's size that a file of --camera or --trajectory does not\nhave; default: --resolution", 1, 65536, NULL},
     {RENDER_SCENE, 0, "scene", OPTION_TEXT, "NAME", "glTF: which of its scenes, by name or number from 0", 0, 0, NULL},
     {RENDER_AT, 0, "at", OPTION_TEXT, "T[:T1]",
      "glTF: the moment of its animation, in seconds, or two: what moves\nbetween them is blurred; default: as modelled",

@@ -40,8 +40,10 @@ static bool pose_from_ctm(vlImport *import, vlCameraDef *def) {
   return pose_from(import, &ctm[1], def->world_from_camera_close);
 }
 
+/* A rolling shutter may expose each row for an instant. */
 static bool check_shutter(vlDict *dict, vlCameraDef *def) {
-  if (def->shutter_close > def->shutter_open || dict->import->scene->error.code != VL_OK)
+  bool instant = def->shutter_close == def->shutter_open && def->readout > 0.0;
+  if (instant || def->shutter_close > def->shutter_open || dict->import->scene->error.code != VL_OK)
     return dict->import->scene->error.code == VL_OK;
   return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
                         "%s: the shutter does not open: it closes at %g, opens at %g", dict->what, def->shutter_close,

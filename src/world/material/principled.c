@@ -33,6 +33,7 @@ static bool is_zero(vlFloatInput input) {
 
 /* An index this near to 1 reflects less than 3e-7 and bends nothing visibly: the surface is a sheet. */
 #define NO_REFRACTION 1e-3f
+
 /* The base colour c of a solid that only transmits. Light crosses its boundary twice, so that white light leaves it as
  * c * c by the RGB law of importers (MTL's Tf, glTF's base colour). The product of two spectra of colour c has another
  * colour; so the spectrum is the root of that of c * c. */

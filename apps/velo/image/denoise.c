@@ -27,6 +27,7 @@ static int run_denoise(const Command *command, const Arguments *arguments) {
   (void)command;
   const OptionValue *v = arguments->values;
   const char *path = arguments->operands[0];
+  report_setup(false, v[DENOISE_VERBOSE].given ? REPORT_VERBOSE : REPORT_NORMAL);
   if (!arguments->text_count) return report_usage("where to? -o FILE");
   Outputs outputs = {.count = arguments->text_count,
                      .half = v[DENOISE_HALF].given,
@@ -51,6 +52,7 @@ static int run_denoise(const Command *command, const Arguments *arguments) {
   how.library = v[DENOISE_LIBRARY].text;
   if (status < 0) {
     result = vl_denoise(image, &how, &clean, &stats, &error);
+    if (result == VL_OK) result = denoise_name(clean, how.denoiser);
     if (result != VL_OK) status = report_error(&error, result, path);
   }
   if (status < 0) denoise_report(&stats);
@@ -71,12 +73,18 @@ void denoise_report(const vlDenoiseStats *stats) {
   if (report_is_verbose()) report_note("denoised in %s", time);
 }
 
+vlResult denoise_name(vlImage *clean, vlDenoiser denoiser) {
+  const vlAttribute name = {
+      .name = "velo.denoiser", .type = VL_ATTRIBUTE_STRING, .string = choice_name(denoiser_choices, (int)denoiser)};
+  return vl_image_set_attribute(clean, &name);
+}
+
 static const Option denoise_options[] = {
     {DENOISE_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
      "the denoised image; .exr .hdr .pfm (linear), .png .jpg .tga (display)", 0, 0, NULL},
     {DENOISE_DENOISER, 0, "denoiser", OPTION_CHOICE, "NAME",
      "velo: its own; oidn: Intel Open Image Denoise, where it is installed:", 0, 0, denoiser_choices},
-    {DENOISE_LIBRARY, 0, "oidn-library", OPTION_TEXT, "FILE",
+    {DENOISE_LIBRARY, 0, "denoiser-library", OPTION_TEXT, "FILE",
      "the library of Open Image Denoise; default: the system's", 0, 0, NULL},
     {DENOISE_VIEW, 0, "view", OPTION_CHOICE, "NAME", "how light becomes display values (.png .jpg .tga):", 0, 0,
      view_choices},

@@ -8,5 +8,7 @@
 extern const Choice denoiser_choices[];
 /* Reports what denoising met. */
 void denoise_report(const vlDenoiseStats *stats);
+/* Names the denoiser in the image's header: velo.denoiser. */
+vlResult denoise_name(vlImage *clean, vlDenoiser denoiser);
 
 #endif

@@ -10,6 +10,7 @@
 #include "velo/camera_file.h"
 #include "velo/channels.h"
 #include "velo/check.h"
+#include "velo/denoise.h"
 #include "velo/export.h"
 #include "velo/film.h"
 #include "velo/focus.h"

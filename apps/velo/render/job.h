@@ -69,6 +69,9 @@ enum {
   RENDER_AGAIN,
   RENDER_NO_RECEIPT,
   RENDER_SIZE,
+  RENDER_DENOISE,
+  RENDER_DENOISER,
+  RENDER_DENOISER_LIBRARY,
   RENDER_LENS /* the first of lens_options.h */
 };
 

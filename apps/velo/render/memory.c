@@ -25,7 +25,7 @@ static void process_size(uint64_t *addresses, uint64_t *resident) {
 
 /* ---- who needs how much ------------------------------------------------------------------------------------------ */
 
-static void add(MemoryPlan *plan, const char *what, uint64_t bytes) {
+void memory_add(MemoryPlan *plan, const char *what, uint64_t bytes) {
   if (!bytes) return;
   plan->needs[plan->count].what = what;
   plan->needs[plan->count++].bytes = bytes;
@@ -83,13 +83,13 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
   uint64_t values = layers ? channel_values(channels, job->defs->film.buckets) : 0;
   uint64_t held = vl_context_memory(context, NULL), addresses, resident;
   process_size(&addresses, &resident);
-  add(plan, "program", resident > held ? resident - held : 0);
-  add(plan, "scene", held);
-  add(plan, "film", film_bytes(job, frames));
-  add(plan, "rendering", vl_render_memory(world, &job->defs->film, &job->defs->render));
-  add(plan, "image", copies * pixels * (eight_bit ? 20 : 16));
-  add(plan, "ground truth", copies * pixels * values * 4);
-  add(plan, "writing", writing(context, outputs, width, height, values));
+  memory_add(plan, "program", resident > held ? resident - held : 0);
+  memory_add(plan, "scene", held);
+  memory_add(plan, "film", film_bytes(job, frames));
+  memory_add(plan, "rendering", vl_render_memory(world, &job->defs->film, &job->defs->render));
+  memory_add(plan, "image", copies * pixels * (eight_bit ? 20 : 16));
+  memory_add(plan, "ground truth", copies * pixels * values * 4);
+  memory_add(plan, "writing", writing(context, outputs, width, height, values));
 }
 
 /* ---- does it fit ------------------------------------------------------------------------------------------------- */

@@ -7,7 +7,7 @@
 #include "render/job.h"
 #include "render/outputs.h"
 
-enum { MEMORY_NEEDS = 9 };
+enum { MEMORY_NEEDS = 10 };
 
 typedef struct MemoryPlan {
   struct {
@@ -22,6 +22,8 @@ typedef struct MemoryPlan {
  * `frames`: null, or the images of a trajectory. */
 void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, const Job *job, const Outputs *outputs,
                  const Channels *channels, const Frames *frames);
+/* Adds a need that not every render has; 0 bytes: none. */
+void memory_add(MemoryPlan *plan, const char *what, uint64_t bytes);
 /* Returns -1 when the plan fits --max-memory (`limit`; 0: none), the process' limits and the machine. Otherwise the
  * exit code, after one line that lists the needs. */
 int memory_check(const MemoryPlan *plan, uint64_t limit);

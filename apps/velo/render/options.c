@@ -1,6 +1,7 @@
 /* render/options.c: the options of `velo render`, in the order of its help page. */
 #include <stddef.h>
 
+#include "image/denoise.h"
 #include "render/channels.h"
 #include "render/job.h"
 #include "render/lens_options.h"
@@ -15,6 +16,12 @@ const Option render_options[] = {
      "Default: the name the scene asks for, else its own with .exr,\nin the current folder",
      0, 0, NULL},
     {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel", 1, 1 << 24, NULL},
+    {RENDER_DENOISE, 0, "denoise", OPTION_TEXT, "FILE", "a denoised copy of the image, beside it (docs/denoising.md)",
+     0, 0, NULL},
+    {RENDER_DENOISER, 0, "denoiser", OPTION_CHOICE, "NAME",
+     "velo: its own; oidn: Intel Open Image Denoise, where it is\ninstalled:", 0, 0, denoiser_choices},
+    {RENDER_DENOISER_LIBRARY, 0, "denoiser-library", OPTION_TEXT, "FILE",
+     "the library of Open Image Denoise; default: the system's", 0, 0, NULL},
     {RENDER_TIME, 0, "time", OPTION_TIME, "TIME",
      "end after this time, loading and writing included (of a\n"
      "trajectory: after it for each image): 30, 30s, 5m, 1h30m. Without\n"

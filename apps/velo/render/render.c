@@ -10,6 +10,7 @@
 #include "render/again.h"
 #include "render/attributes.h"
 #include "render/channels.h"
+#include "render/denoised.h"
 #include "render/exposure.h"
 #include "render/frames.h"
 #include "render/job.h"
@@ -39,6 +40,7 @@ typedef struct Render {
   Channels channels;          /* of the ground truth */
   Frames frames;              /* of a trajectory, a rig or two eyes */
   MemoryPlan memory;
+  Denoised denoised;
   bool many; /* whether `frames` is used */
   SceneOpening opening;
   Again again;
@@ -75,6 +77,10 @@ static void list_files(const Render *render, OutputStage stage, char *text, size
   for (int i = 0; i < render->outputs.count; i++) {
     size_t n = strlen(text);
     snprintf(text + n, size - n, "%s%s", i ? ", " : "", output_written(&render->outputs, i, stage, part, sizeof part));
+  }
+  if (render->denoised.outputs.count && stage != OUTPUT_PROGRESS) {
+    size_t n = strlen(text);
+    snprintf(text + n, size - n, ", %s", output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
   }
 }
 
@@ -194,6 +200,7 @@ static int prepare(Render *render, const Arguments *arguments) {
   if (status < 0) status = channels_choose(&render->channels, arguments);
   if (status < 0) status = outputs_check_names(outputs);
   if (status < 0) status = frames_check(arguments, outputs);
+  if (status < 0) status = denoised_choose(&render->denoised, arguments, outputs);
   if (status < 0) status = outputs_check_folders(outputs);
   if (status >= 0) return status;
 
@@ -249,6 +256,8 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     status = outputs_check_folders(&render->outputs);
     if (status >= 0) return status;
   }
+  status = denoised_check(&render->denoised, render->context);
+  if (status >= 0) return status;
   status = check_sizes(render);
   if (status >= 0) return status;
   channels_take(&render->channels, &render->job);
@@ -256,8 +265,10 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   status = channels_load(&render->channels, render->context, &render->job);
   if (status >= 0) return status;
   render->job.defs->film.errors =
-      (render->channels.bits & VL_CHANNEL_ERROR || render->channels.gbuffer) && has_layers(render);
+      ((render->channels.bits & VL_CHANNEL_ERROR || render->channels.gbuffer) && has_layers(render)) ||
+      render->denoised.outputs.count;
   render->many = frames_wanted(arguments, &render->job);
+  if (render->many && render->denoised.outputs.count) return report_usage("--denoise goes with one image");
   if (render->many) {
     status = frames_load(&render->frames, render->context, &render->job, arguments);
     if (status < 0) status = frames_check_names(&render->frames, &render->outputs);
@@ -282,6 +293,9 @@ static int reckon_memory(Render *render, const Arguments *arguments) {
   uint64_t most = limit->given ? (uint64_t)limit->integer : 0;
   memory_plan(&render->memory, render->context, render->world, &render->job, &render->outputs, &render->channels,
               render->many ? &render->frames : NULL);
+  const uint32_t *crop = render->job.defs->film.crop;
+  uint64_t pixels = (uint64_t)(crop[2] - crop[0]) * (crop[3] - crop[1]);
+  if (render->denoised.outputs.count) memory_add(&render->memory, "denoising", denoised_memory(pixels));
   if (report_is_json()) memory_report_json(&render->memory, most);
   if (arguments->values[RENDER_VERBOSE].given) {
     char list[400], total[32];
@@ -326,6 +340,8 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
     json_begin(&json, "files", '[');
     for (int i = 0; i < outputs->count && spp; i++)
       json_text(&json, NULL, output_written(outputs, i, stage, part, sizeof part));
+    if (render->denoised.outputs.count && spp)
+      json_text(&json, NULL, output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
     json_end(&json, ']');
     report_json_end(&json);
     return;
@@ -369,6 +385,9 @@ static int write_last(Render *render, OutputStage *stage) {
                                    output_written(&render->outputs, i, *stage, part, sizeof part));
   }
   int code = write_image(render, *stage);
+  render->denoised.outputs.meter = render->outputs.meter;
+  if (code == STATUS_OK && status == STATUS_OK)
+    code = denoised_write(&render->denoised, render->context, render->world, &render->job, render->film, *stage);
   return code != STATUS_OK ? code : written != STATUS_OK ? written : status;
 }
 

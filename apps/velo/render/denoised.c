@@ -1,0 +1,127 @@
+/* render/denoised.c: see denoised.h. */
+#include "render/denoised.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/report.h"
+#include "cli/signals.h"
+#include "image/denoise.h"
+#include "render/attributes.h"
+#include "render/frames.h"
+
+enum { MAX_CHANNELS = 16 };
+
+int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *image) {
+  const OptionValue *v = arguments->values;
+  const char *path = v[RENDER_DENOISE].text;
+  memset(d, 0, sizeof *d);
+  d->def = vl_default_denoise_def();
+  if (v[RENDER_DENOISER].given) d->def.denoiser = (vlDenoiser)v[RENDER_DENOISER].integer;
+  d->def.library = v[RENDER_DENOISER_LIBRARY].text;
+  if (!v[RENDER_DENOISE].given) {
+    if (v[RENDER_DENOISER].given || v[RENDER_DENOISER_LIBRARY].given)
+      return report_usage("--denoiser goes with --denoise FILE");
+    return -1;
+  }
+  if (v[RENDER_SPP].given && v[RENDER_SPP].integer < 2)
+    return report_usage("--denoise needs at least 2 samples per pixel (--spp)");
+  if (frames_wanted(arguments, NULL))
+    return report_usage("--denoise goes with one image; velo image denoise does more");
+  for (int i = 0; i < image->count; i++)
+    if (strcmp(path, image->paths[i]) == 0)
+      return report_usage("--denoise \"%s\": the image itself is never replaced by its denoised copy", path);
+  d->outputs = *image;
+  d->outputs.paths[0] = path;
+  d->outputs.count = 1;
+  int status = outputs_check_names(&d->outputs);
+  return status < 0 ? outputs_check_folders(&d->outputs) : status;
+}
+
+int denoised_check(const Denoised *d, vlContext *context) {
+  if (!d->outputs.count || d->def.denoiser == VL_DENOISER_VELO) return -1;
+  vlImageDef def = vl_default_image_def(1, 1, 3);
+  vlImage *pixel = NULL, *clean = NULL;
+  vlError error = {0};
+  vlResult result = vl_image_create(context, &def, &pixel);
+  if (result == VL_OK) result = vl_denoise(pixel, &d->def, &clean, NULL, &error);
+  vl_image_destroy(pixel);
+  vl_image_destroy(clean);
+  return result == VL_OK ? -1 : report_error(&error, result, NULL);
+}
+
+uint64_t denoised_memory(uint64_t pixels) {
+  enum { INPUT = 14, PLANES = 17, RESULT = 4, CHANNELS = 10 };
+  return pixels * sizeof(float) * (INPUT + PLANES + RESULT + CHANNELS);
+}
+
+/* One image with the channels of both. */
+static vlResult join(vlContext *context, const vlImage *color, const vlImage *floats, vlImage **joined) {
+  const vlImage *parts[2] = {color, floats};
+  const char *names[MAX_CHANNELS];
+  uint32_t count = 0;
+  for (int k = 0; k < 2; k++)
+    for (uint32_t c = 0; c < vl_image_channels(parts[k]) && count < MAX_CHANNELS; c++)
+      names[count++] = vl_image_channel_name(parts[k], c);
+  vlImageDef def = vl_default_image_def(vl_image_width(color), vl_image_height(color), count);
+  def.names = names;
+  vlResult result = vl_image_create(context, &def, joined);
+  if (result != VL_OK) return result;
+  float *to = vl_image_pixels(*joined);
+  for (size_t i = 0; i < (size_t)def.width * def.height; i++)
+    for (int k = 0; k < 2; k++) {
+      uint32_t channels = vl_image_channels(parts[k]);
+      memcpy(to, (const float *)vl_image_const_pixels(parts[k]) + i * channels, channels * sizeof *to);
+      to += channels;
+    }
+  return VL_OK;
+}
+
+static bool stop_asked(void *user) {
+  return signals_count() > *(const int *)user;
+}
+
+/* The image with its standard errors and features. */
+static vlResult gather(vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film, vlImage **joined,
+                       vlError *error) {
+  vlDevelopDef develop = vl_default_develop_def();
+  develop.exposure = job->defs->develop.exposure;
+  vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
+  def.channels = VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES;
+  def.space = job->defs->film.space;
+  def.film = film;
+  def.render = &job->defs->render;
+  def.exposure = develop.exposure;
+  memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
+  int signals = signals_count();
+  def.stop = stop_asked, def.stop_user = &signals;
+  vlImage *color = NULL, *floats = NULL;
+  vlResult result = vl_film_develop(film, &develop, &color);
+  if (result == VL_OK) result = vl_render_channels(world, &job->camera, &def, &floats, NULL, error);
+  if (result == VL_OK) result = join(context, color, floats, joined);
+  if (result == VL_OK) result = attributes_set(*joined, job, vl_film_spp(film));
+  vl_image_destroy(color);
+  vl_image_destroy(floats);
+  return result;
+}
+
+int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film,
+                   OutputStage stage) {
+  if (!d->outputs.count) return STATUS_OK;
+  vlImage *image = NULL, *clean = NULL;
+  vlError error = {0};
+  vlDenoiseStats stats;
+  vlResult result = gather(context, world, job, film, &image, &error);
+  if (result == VL_OK) result = vl_denoise(image, &d->def, &clean, &stats, &error);
+  if (result == VL_OK) result = denoise_name(clean, d->def.denoiser);
+  int status = STATUS_OK;
+  if (result == VL_CANCELLED) status = 128 + signals_pending();
+  if (result != VL_OK && result != VL_CANCELLED) status = report_error(&error, result, d->outputs.paths[0]);
+  if (result == VL_OK) {
+    denoise_report(&stats);
+    status = outputs_write(context, &d->outputs, clean, vl_film_spp(film), stage);
+  }
+  vl_image_destroy(image);
+  vl_image_destroy(clean);
+  return status;
+}

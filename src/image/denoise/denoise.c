@@ -1,0 +1,295 @@
+/* image/denoise/denoise.c: from an image's channels to planes, the fit of all tiles, and back. docs/denoising.md. */
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "base/cookie.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "image/denoise/denoise.h"
+#include "math/approx.h"
+
+enum { COLOR = 3, PLANES = 3 * COLOR + VL_DENOISE_FEATURES + 1 };
+
+typedef struct Denoise {
+  const vlImage *image;
+  vlContext *context;
+  vlDenoiseChannels channels;
+  vlDenoisePlanes planes;
+  float *memory; /* of all planes */
+  float nearest; /* largest disparity */
+  vlDenoiseScratch *scratch;
+  const vlDenoiseKernels *kernels;
+  atomic_uint_fast64_t not_finite;
+} Denoise;
+
+vlDenoiseDef vl_default_denoise_def(void) {
+  return (vlDenoiseDef){.cookie = VL_COOKIE_DENOISE};
+}
+
+/* ---- channels ---------------------------------------------------------------------------------------------------- */
+
+static vlResult find_channels(const vlImage *image, bool errors, vlDenoiseChannels *to, vlError *error) {
+  static const char *const colors[COLOR] = {"R", "G", "B"}, *const sigmas[COLOR] = {"error.R", "error.G", "error.B"};
+  static const char *const features[VL_DENOISE_FEATURES] = {
+      "feature.albedo.R", "feature.albedo.G", "feature.albedo.B",   "feature.N.X",
+      "feature.N.Y",      "feature.N.Z",      "feature.disparity.Y"};
+  for (int c = 0; c < COLOR; c++) {
+    to->color[c] = vl_image_find_channel(image, colors[c]);
+    to->error[c] = vl_image_find_channel(image, sigmas[c]);
+    if (to->color[c] < 0) return vl_fail(error, VL_ERROR_SCENE, "denoise: the image has no channel %s", colors[c]);
+    if (to->error[c] < 0 && errors)
+      return vl_fail(error, VL_ERROR_SCENE,
+                     "denoise: the image has no channel %s, its standard error (velo render --channels error)",
+                     sigmas[c]);
+  }
+  to->alpha = vl_image_find_channel(image, "A");
+  to->features = true;
+  for (int k = 0; k < VL_DENOISE_FEATURES; k++) {
+    to->feature[k] = vl_image_find_channel(image, features[k]);
+    to->features = to->features && to->feature[k] >= 0;
+  }
+  return VL_OK;
+}
+
+/* ---- planes ------------------------------------------------------------------------------------------------------ */
+
+static uint32_t tiles_across(const vlDenoisePlanes *p) {
+  return (p->width + VL_DENOISE_TILE_X - 1) / VL_DENOISE_TILE_X;
+}
+static uint32_t tiles_down(const vlDenoisePlanes *p) {
+  return (p->height + VL_DENOISE_TILE_Y - 1) / VL_DENOISE_TILE_Y;
+}
+
+static vlResult make_planes(Denoise *d) {
+  vlDenoisePlanes *p = &d->planes;
+  p->width = d->image->width, p->height = d->image->height;
+  size_t stride = (size_t)tiles_across(p) * VL_DENOISE_TILE_X + 2 * VL_DENOISE_BORDER;
+  size_t size = stride * ((size_t)tiles_down(p) * VL_DENOISE_TILE_Y + 2 * VL_DENOISE_BORDER);
+  p->stride = (ptrdiff_t)stride;
+  d->memory = vl_alloc_zero(d->context, size, PLANES * sizeof(float));
+  d->scratch = vl_alloc_array(d->context, vl_context_threads(d->context), sizeof *d->scratch);
+  if (!d->memory || !d->scratch) return VL_ERROR_MEMORY;
+  float *at = d->memory + VL_DENOISE_BORDER * stride + VL_DENOISE_BORDER;
+  for (int c = 0; c < COLOR; c++) {
+    p->color[c] = at, at += size;
+    p->variance[c] = at, at += size;
+    p->result[c] = at, at += size;
+  }
+  for (int k = 0; k < VL_DENOISE_FEATURES; k++) p->feature[k] = at, at += size;
+  p->valid = at;
+  return VL_OK;
+}
+
+static float get(const Denoise *d, uint32_t x, uint32_t y, int channel) {
+  return vl_image_get(d->image, x, y, (uint32_t)channel);
+}
+
+static ptrdiff_t place(const vlDenoisePlanes *p, uint32_t x, uint32_t y) {
+  return (ptrdiff_t)y * p->stride + (ptrdiff_t)x;
+}
+
+/* The largest disparity: its 1000th part is the least that differs from nothing. */
+static float find_nearest(const Denoise *d) {
+  float most = 0.0f;
+  for (uint32_t y = 0; y < d->planes.height && d->channels.features; y++)
+    for (uint32_t x = 0; x < d->planes.width; x++) {
+      float v = get(d, x, y, d->channels.feature[VL_DENOISE_FEATURES - 1]);
+      if (isfinite(v) && v > most) most = v;
+    }
+  return most > 0.0f ? most : 1.0f;
+}
+
+static void read_row(void *user, uint32_t y, uint32_t worker) {
+  (void)worker;
+  Denoise *d = user;
+  const vlDenoisePlanes *p = &d->planes;
+  const vlDenoiseChannels *from = &d->channels;
+  float farthest = 1e-3f * d->nearest;
+  for (uint32_t x = 0; x < p->width; x++) {
+    ptrdiff_t at = place(p, x, y);
+    for (int k = 0; k < VL_DENOISE_FEATURES && from->features; k++) {
+      float v = get(d, x, y, from->feature[k]);
+      if (!isfinite(v)) v = 0.0f;
+      p->feature[k][at] = k < VL_DENOISE_FEATURES - 1 ? v : vl_ln(v > farthest ? v : farthest);
+    }
+    bool valid = true;
+    for (int c = 0; c < COLOR; c++) {
+      float v = get(d, x, y, from->color[c]), e = get(d, x, y, from->error[c]);
+      valid = valid && isfinite(v) && isfinite(e * e);
+      p->color[c][at] = v;
+      p->variance[c][at] = e * e;
+    }
+    p->valid[at] = valid ? 1.0f : 0.0f;
+    if (!valid) atomic_fetch_add_explicit(&d->not_finite, 1, memory_order_relaxed);
+  }
+}
+
+/* A pixel that is not finite gets the mean of the nearest square ring of valid pixels within the window. */
+static void fill(const vlDenoisePlanes *p, ptrdiff_t at) {
+  float sums[2 * COLOR] = {0}, count = 0.0f;
+  for (int reach = 1; reach <= VL_DENOISE_RADIUS && count == 0.0f; reach++)
+    for (int dy = -reach; dy <= reach; dy++)
+      for (int dx = -reach; dx <= reach; dx++) {
+        ptrdiff_t q = at + dy * p->stride + dx;
+        if (p->valid[q] == 0.0f) continue;
+        count += 1.0f;
+        for (int c = 0; c < COLOR; c++) sums[c] += p->color[c][q], sums[COLOR + c] += p->variance[c][q];
+      }
+  for (int c = 0; c < COLOR; c++) {
+    p->color[c][at] = count > 0.0f ? sums[c] / count : 0.0f;
+    p->variance[c][at] = count > 0.0f ? sums[COLOR + c] / count : 0.0f;
+  }
+}
+
+static void fill_row(void *user, uint32_t y, uint32_t worker) {
+  (void)worker;
+  const Denoise *d = user;
+  for (uint32_t x = 0; x < d->planes.width; x++)
+    if (d->planes.valid[place(&d->planes, x, y)] == 0.0f) fill(&d->planes, place(&d->planes, x, y));
+}
+
+/* ---- outliers ---------------------------------------------------------------------------------------------------- */
+
+static float mean3(float *const plane[COLOR], ptrdiff_t at) {
+  return (plane[0][at] + plane[1][at] + plane[2][at]) * (1.0f / 3.0f);
+}
+
+/* The third largest of the 24 neighbours of a pixel. */
+static float third_neighbour(const vlDenoisePlanes *p, ptrdiff_t at) {
+  enum { REACH = 2, RANK = 3 };
+  float top[RANK] = {0};
+  for (int dy = -REACH; dy <= REACH; dy++)
+    for (int dx = -REACH; dx <= REACH; dx++) {
+      ptrdiff_t q = at + dy * p->stride + dx;
+      if (q == at || p->valid[q] == 0.0f) continue;
+      float v = mean3(p->color, q);
+      for (int k = 0; k < RANK; k++)
+        if (v > top[k]) {
+          float less = top[k];
+          top[k] = v, v = less;
+        }
+    }
+  return top[RANK - 1];
+}
+
+/* A pixel that owes its value to few samples (its standard error is more than half of it) is scaled down to 4 times the
+ * third largest of its neighbours: its light would be spread over the whole window. Factors go to the first result. */
+static void cap_row(void *user, uint32_t y, uint32_t worker) {
+  (void)worker;
+  const vlDenoisePlanes *p = &((const Denoise *)user)->planes;
+  for (uint32_t x = 0; x < p->width; x++) {
+    ptrdiff_t at = place(p, x, y);
+    float v = mean3(p->color, at), factor = 1.0f;
+    if (v > 0.0f && mean3(p->variance, at) > 0.25f * v * v) {
+      float most = 4.0f * third_neighbour(p, at);
+      if (most < v) factor = most / v;
+    }
+    p->result[0][at] = factor;
+  }
+}
+
+static void scale_row(void *user, uint32_t y, uint32_t worker) {
+  (void)worker;
+  const vlDenoisePlanes *p = &((const Denoise *)user)->planes;
+  for (uint32_t x = 0; x < p->width; x++) {
+    ptrdiff_t at = place(p, x, y);
+    float factor = p->result[0][at];
+    for (int c = 0; c < COLOR; c++) {
+      p->color[c][at] *= factor;
+      p->variance[c][at] *= factor * factor;
+    }
+  }
+}
+
+/* ---- the fit ----------------------------------------------------------------------------------------------------- */
+
+static void fit_tile(void *user, uint32_t index, uint32_t worker) {
+  const Denoise *d = user;
+  uint32_t across = tiles_across(&d->planes);
+  d->kernels->tile(&d->planes, &d->scratch[worker], index % across * VL_DENOISE_TILE_X,
+                   index / across * VL_DENOISE_TILE_Y);
+}
+
+/* Light is not negative, except where the pixel's own is. */
+static void write_row(const Denoise *d, uint32_t y, vlImage *clean) {
+  float *to = vl_image_row(clean, y);
+  for (uint32_t x = 0; x < d->planes.width; x++, to += clean->channels) {
+    ptrdiff_t at = place(&d->planes, x, y);
+    for (int c = 0; c < COLOR; c++) {
+      float own = d->planes.color[c][at], least = own < 0.0f ? own : 0.0f, v = d->planes.result[c][at];
+      to[c] = v > least ? v : least;
+    }
+  }
+}
+
+static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
+  vlDenoisePlanes *p = &d->planes;
+  vlContext *context = d->context;
+  vlResult result = make_planes(d);
+  if (result == VL_OK) {
+    d->kernels = vl_denoise_kernels(vl_context_isa(context));
+    d->nearest = find_nearest(d);
+    vl_parallel_for(context, p->height, read_row, d);
+    if (d->not_finite == (uint64_t)p->width * p->height)
+      result = vl_fail(error, VL_ERROR_SCENE,
+                       "denoise: no pixel has a finite value and standard error; at least 2 samples per pixel are "
+                       "needed");
+  } else {
+    vl_fail_memory(error);
+  }
+  if (result == VL_OK) {
+    vl_parallel_for(context, p->height, fill_row, d);
+    vl_parallel_for(context, p->height, cap_row, d);
+    vl_parallel_for(context, p->height, scale_row, d);
+    vl_parallel_for(context, tiles_across(p) * tiles_down(p), fit_tile, d);
+    for (uint32_t y = 0; y < p->height; y++) write_row(d, y, clean);
+  }
+  vl_free(context, d->memory);
+  vl_free(context, d->scratch);
+  return result;
+}
+
+/* ---- the call ---------------------------------------------------------------------------------------------------- */
+
+/* The image for the result: alpha and attributes are the input's. */
+static vlResult make_clean(const vlImage *image, int alpha, vlImage **clean) {
+  vlImageDef def = vl_default_image_def(image->width, image->height, alpha >= 0 ? 4 : 3);
+  vlResult result = vl_image_create(image->context, &def, clean);
+  float *to = result == VL_OK ? vl_image_pixels(*clean) : NULL;
+  for (uint32_t y = 0; y < def.height && to && alpha >= 0; y++)
+    for (uint32_t x = 0; x < def.width; x++, to += 4) to[3] = vl_image_get(image, x, y, (uint32_t)alpha);
+  for (uint32_t i = 0; i < vl_image_attribute_count(image) && result == VL_OK; i++) {
+    vlAttribute a;
+    result = vl_image_attribute(image, i, &a);
+    if (result == VL_OK) result = vl_image_set_attribute(*clean, &a);
+  }
+  return result;
+}
+
+vlResult vl_denoise(const vlImage *image, const vlDenoiseDef *def, vlImage **clean, vlDenoiseStats *stats,
+                    vlError *error) {
+  double start = vl_seconds();
+  vl_error_clear(error);
+  if (clean) *clean = NULL;
+  vlDenoiseDef standard = vl_default_denoise_def();
+  if (!def) def = &standard;
+  if (!image || !clean || !image->pixels) return vl_fail(error, VL_ERROR_ARGUMENT, "denoise: null argument");
+  if (def->cookie != VL_COOKIE_DENOISE || (unsigned)def->denoiser > VL_DENOISER_OIDN)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "denoise: the def was not made by vl_default_denoise_def");
+  Denoise work = {.image = image, .context = image->context};
+  vlResult result = find_channels(image, def->denoiser == VL_DENOISER_VELO, &work.channels, error);
+  if (result != VL_OK) return result;
+  result = make_clean(image, work.channels.alpha, clean);
+  if (result != VL_OK)
+    vl_fail_memory(error);
+  else if (def->denoiser == VL_DENOISER_OIDN)
+    result = vl_denoise_oidn(image, &work.channels, def->library, *clean, error);
+  else
+    result = denoise(&work, *clean, error);
+  if (stats) *stats = (vlDenoiseStats){work.not_finite, work.channels.features, vl_seconds() - start};
+  if (result == VL_OK) return VL_OK;
+  vl_image_destroy(*clean);
+  *clean = NULL;
+  return result;
+}

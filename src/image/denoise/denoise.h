@@ -1,0 +1,59 @@
+/* image/denoise/denoise.h: the denoiser's planes and kernels; private to the denoiser. docs/denoising.md describes the
+ * method. */
+#ifndef IMAGE_DENOISE_DENOISE_H
+#define IMAGE_DENOISE_DENOISE_H
+
+#include "base/isa.h"
+#include "image/image.h"
+#include "velo/denoise.h"
+
+/* A tile of pixels is the unit of work. The neighbours of a pixel lie in a window of (2 VL_DENOISE_RADIUS + 1)^2
+ * pixels; they are compared by patches of (2 VL_DENOISE_PATCH + 1)^2. */
+enum {
+  VL_DENOISE_TILE_X = 64,
+  VL_DENOISE_TILE_Y = 16,
+  VL_DENOISE_TILE = VL_DENOISE_TILE_X * VL_DENOISE_TILE_Y,
+  VL_DENOISE_RADIUS = 7,
+  VL_DENOISE_PATCH = 2,
+  VL_DENOISE_BORDER = 16, /* of the planes; at least radius + patch */
+  VL_DENOISE_WINDOW = 2 * VL_DENOISE_RADIUS + 1,
+  VL_DENOISE_FEATURES = 7,                          /* albedo, normal, logarithm of the disparity */
+  VL_DENOISE_UNKNOWNS = VL_DENOISE_FEATURES + 2 + 1 /* slopes of the features, of x and y; the constant */
+};
+_Static_assert((int)VL_DENOISE_BORDER >= (int)VL_DENOISE_RADIUS + (int)VL_DENOISE_PATCH, "windows end in the border");
+
+/* Planes with a border all around: pointers are to pixel (0, 0), rows are `stride` floats apart. */
+typedef struct vlDenoisePlanes {
+  uint32_t width, height;
+  ptrdiff_t stride;
+  float *color[3], *variance[3]; /* and the variance of its noise */
+  float *feature[VL_DENOISE_FEATURES];
+  float *valid; /* 1; 0 outside of the image and where a value is not finite */
+  float *result[3];
+} vlDenoisePlanes;
+
+/* Working memory of one worker. */
+typedef struct vlDenoiseScratch {
+  float weight[VL_DENOISE_WINDOW * VL_DENOISE_WINDOW][VL_DENOISE_TILE];
+  float distance[VL_DENOISE_TILE_Y + 2 * VL_DENOISE_PATCH][VL_DENOISE_TILE_X + 16];
+  float sums[VL_DENOISE_TILE_Y + 2 * VL_DENOISE_PATCH][VL_DENOISE_TILE_X];
+} vlDenoiseScratch;
+
+typedef struct vlDenoiseKernels {
+  /* Fits the pixels of the tile whose first pixel is (x, y). */
+  void (*tile)(const vlDenoisePlanes *planes, vlDenoiseScratch *scratch, uint32_t x, uint32_t y);
+} vlDenoiseKernels;
+VL_KERNEL_TABLE(vlDenoiseKernels, vl_denoise)
+
+/* The image's channels that the denoisers read; -1: there is none. */
+typedef struct vlDenoiseChannels {
+  int color[3], error[3], alpha, feature[VL_DENOISE_FEATURES];
+  bool features; /* all of them are there */
+} vlDenoiseChannels;
+
+/* In oidn.c: colours of the image by Intel Open Image Denoise to `clean`, a float image of `channels` channels.
+ * Errors: MISSING, UNSUPPORTED, MEMORY. */
+vlResult vl_denoise_oidn(const vlImage *image, const vlDenoiseChannels *channels, const char *library, vlImage *clean,
+                         vlError *error);
+
+#endif

@@ -1,0 +1,151 @@
+/* image/denoise/fit.hot.c: each pixel as the constant of a weighted linear fit of its window to features (Bitterli et
+ * al. 2016, "Nonlinearly weighted first-order regression"); weights by the distance of patches relative to their
+ * variance (Rousselle et al. 2012, "Adaptive rendering with non-local means filtering", equations 1 to 4). */
+#include "image/denoise/denoise.h"
+#include "math/approx.h"
+
+enum {
+  X = VL_DENOISE_TILE_X,
+  Y = VL_DENOISE_TILE_Y,
+  R = VL_DENOISE_RADIUS,
+  P = VL_DENOISE_PATCH,
+  SIDE = 2 * P + 1,
+  U = VL_DENOISE_UNKNOWNS,
+  F = VL_DENOISE_FEATURES,
+  TERMS = U * (U + 1) / 2
+};
+
+static const float BANDWIDTH2 = 0.25f;                         /* square of k */
+static const float PIXEL_SHARE = 0.06f;                        /* of the pixel's own distance */
+static const float RIDGE_FEATURE = 1e-3f, RIDGE_PLACE = 3e-2f; /* per unit of weight */
+
+/* ---- weights ----------------------------------------------------------------------------------------------------- */
+
+/* For each pixel of the tile and its patches' margin: the squared difference from the pixel at (dx, dy), less what
+ * noise explains of it, in units of that. */
+static void pixel_distances(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint32_t y, int dx, int dy) {
+  for (int j = 0; j < Y + 2 * P; j++) {
+    ptrdiff_t at = ((ptrdiff_t)y + j - P) * p->stride + (ptrdiff_t)x - P, to = at + dy * p->stride + dx;
+    float *row = s->distance[j];
+    for (int i = 0; i < X + 2 * P; i++) row[i] = 0.0f;
+    for (int c = 0; c < 3; c++) {
+      const float *a = p->color[c] + at, *b = p->color[c] + to, *va = p->variance[c] + at, *vb = p->variance[c] + to;
+      /* must vectorise */
+      VL_SIMD for (int i = 0; i < X + 2 * P; i++) {
+        float d = a[i] - b[i], sum = a[i] + b[i], v = va[i] + vb[i];
+        row[i] += (d * d - v) / (1e-10f + 1e-6f * sum * sum + BANDWIDTH2 * v);
+      }
+    }
+  }
+}
+
+/* Weights of the tile's pixels for the neighbour at (dx, dy): exp(-distance), the larger of the patches' mean distance
+ * and a share of the pixels' own. The latter excludes a neighbour that surely differs (as the test of Sakai et al. 2024
+ * does), such as a pixel of a lamp's edge, whose large variance would hide it among its patch. */
+static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint32_t y, int dx, int dy, float *to) {
+  pixel_distances(p, s, x, y, dx, dy);
+  for (int j = 0; j < Y + 2 * P; j++) {
+    const float *row = s->distance[j];
+    float *sum = s->sums[j];
+    /* must vectorise */
+    VL_SIMD for (int i = 0; i < X; i++) {
+      float t = row[i];
+      for (int k = 1; k < SIDE; k++) t += row[i + k];
+      sum[i] = t;
+    }
+  }
+  for (int j = 0; j < Y; j++) {
+    const float *a = s->sums[j], *far = s->distance[j + P] + P;
+    const float *valid = p->valid + ((ptrdiff_t)y + j + dy) * p->stride + (ptrdiff_t)x + dx;
+    float *row = to + j * X;
+    /* must vectorise */
+    VL_SIMD for (int i = 0; i < X; i++) {
+      float own = far[i] * PIXEL_SHARE, d = a[i];
+      for (int k = 1; k < SIDE; k++) d += a[i + k * X];
+      d *= 1.0f / (3 * SIDE * SIDE);
+      d = d > own ? d : own;
+      row[i] = valid[i] * vl_exp(d > 0.0f ? -d : 0.0f);
+    }
+  }
+}
+
+/* ---- the fit ----------------------------------------------------------------------------------------------------- */
+
+/* Normal equations of a row of pixels: the lower triangle by rows, features first, then x, y, the constant last; and
+ * the three right sides. */
+typedef struct Equations {
+  float a[TERMS][X], b[3][U][X];
+} Equations;
+
+/* Adds one neighbour of each pixel of the row. */
+static void add(const vlDenoisePlanes *p, Equations *e, const float *w, ptrdiff_t at, int dx, int dy) {
+  float diff[U][X], weighted[U][X];
+  ptrdiff_t to = at + dy * p->stride + dx;
+  for (int k = 0; k < F; k++) {
+    const float *f = p->feature[k] + at, *g = p->feature[k] + to;
+    VL_SIMD for (int i = 0; i < X; i++) {
+      diff[k][i] = g[i] - f[i];
+      weighted[k][i] = w[i] * diff[k][i];
+    }
+  }
+  float ox = (float)dx * (1.0f / R), oy = (float)dy * (1.0f / R);
+  VL_SIMD for (int i = 0; i < X; i++) {
+    diff[F][i] = ox, diff[F + 1][i] = oy, diff[F + 2][i] = 1.0f;
+    weighted[F][i] = w[i] * ox, weighted[F + 1][i] = w[i] * oy, weighted[F + 2][i] = w[i];
+  }
+  int term = 0;
+  for (int k = 0; k < U; k++)
+    for (int l = 0; l <= k; l++, term++) {
+      /* must vectorise */
+      VL_SIMD for (int i = 0; i < X; i++) e->a[term][i] += weighted[k][i] * diff[l][i];
+    }
+  for (int c = 0; c < 3; c++) {
+    const float *color = p->color[c] + to;
+    for (int k = 0; k < U; k++) {
+      /* must vectorise */
+      VL_SIMD for (int i = 0; i < X; i++) e->b[c][k][i] += weighted[k][i] * color[i];
+    }
+  }
+}
+
+/* Gaussian elimination of the slopes; what is left of the last row is the constant. Ridges keep the pivots above 0. */
+static void solve(const vlDenoisePlanes *p, Equations *e, ptrdiff_t at) {
+  const float *total = e->a[TERMS - 1];
+  float sum[X];
+  for (int i = 0; i < X; i++) sum[i] = total[i];
+  for (int k = 0; k < U - 1; k++) {
+    float *pivot = e->a[k * (k + 1) / 2 + k], ridge = k < F ? RIDGE_FEATURE : RIDGE_PLACE;
+    VL_SIMD for (int i = 0; i < X; i++) pivot[i] = 1.0f / (pivot[i] + ridge * sum[i] + 1e-20f);
+    for (int m = k + 1; m < U; m++) {
+      const float *lead = e->a[m * (m + 1) / 2 + k];
+      float factor[X];
+      VL_SIMD for (int i = 0; i < X; i++) factor[i] = lead[i] * pivot[i];
+      for (int l = k + 1; l <= m; l++) {
+        float *a = e->a[m * (m + 1) / 2 + l];
+        const float *b = e->a[l * (l + 1) / 2 + k];
+        VL_SIMD for (int i = 0; i < X; i++) a[i] -= factor[i] * b[i];
+      }
+      for (int c = 0; c < 3; c++) {
+        float *a = e->b[c][m];
+        const float *b = e->b[c][k];
+        VL_SIMD for (int i = 0; i < X; i++) a[i] -= factor[i] * b[i];
+      }
+    }
+  }
+  for (int c = 0; c < 3; c++)
+    for (int i = 0; i < X; i++) p->result[c][at + i] = e->b[c][U - 1][i] / (total[i] + 1e-20f);
+}
+
+static void tile(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint32_t y) {
+  for (int dy = -R, k = 0; dy <= R; dy++)
+    for (int dx = -R; dx <= R; dx++, k++) weights(p, s, x, y, dx, dy, s->weight[k]);
+  for (int j = 0; j < Y && y + (uint32_t)j < p->height; j++) {
+    Equations e = {0};
+    ptrdiff_t at = ((ptrdiff_t)y + j) * p->stride + (ptrdiff_t)x;
+    for (int dy = -R, k = 0; dy <= R; dy++)
+      for (int dx = -R; dx <= R; dx++, k++) add(p, &e, s->weight[k] + j * X, at, dx, dy);
+    solve(p, &e, at);
+  }
+}
+
+const vlDenoiseKernels vl_denoise_kernel_table = {tile};

@@ -190,10 +190,12 @@ typedef struct vlWorldLight {
   bool invisible;
   bool delta;     /* no ray can hit it */
   uint32_t image; /* goniometric, projection: image index; corners hold the rotation from world to light directions */
-  float image_extent[2];  /* projection: half the image's sides at distance 1 */
-  float corners[9];       /* area, triangle: its corners */
+  float image_extent[2]; /* projection: half the image's sides at distance 1 */
+  /* Area: corners of a triangle; of a plain sphere the centre, the radius, and 1, or -1 if it emits inwards. */
+  float corners[9];
   bool one_sided_normals; /* direction is the normal of the emitting side at every point */
-  bool plain_triangle;    /* and so is its emission: a triangle without image, alpha texture and such */
+  bool plain_triangle;    /* a triangle with such a normal, */
+  bool plain_sphere;      /* or a whole sphere: opaque, with the same emission everywhere */
 } vlWorldLight;
 
 #include "world/light/light_tree.h"

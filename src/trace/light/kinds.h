@@ -53,7 +53,7 @@ VL_WORLD_LIGHT_KINDS(VL_LIGHT_KIND_FUNCTIONS)
 /* ---- many lanes at once ------------------------------------------------------------------------------------------ */
 
 /* The largest numbers of lanes of the functions below: what they touch stays in the first-level cache. */
-enum { VL_TRIANGLE_BLOCK = 64 };
+enum { VL_AREA_BLOCK = 64 };
 
 /* Whether a light is an environment image without portal, which vl_sample_environment samples. */
 static inline bool vl_light_is_environment(const vlWorld *world, const vlWorldLight *light) {
@@ -62,9 +62,11 @@ static inline bool vl_light_is_environment(const vlWorld *world, const vlWorldLi
 /* Samples this environment for the given lanes, which chose it. u, v: by lane. */
 void vl_sample_environment(const vlWorld *world, const vlWorldLight *light, const vlPaths *paths, const uint32_t *lanes,
                            uint32_t count, const float *u, const float *v, vlLightSamples *out);
-/* Samples the triangles that the given lanes chose. */
+/* Samples the plain triangles, or the plain spheres seen from outside, that the given lanes chose. */
 void vl_sample_triangles(const vlWorld *world, const vlPaths *paths, const vlSurface *f, const uint32_t *lanes,
                          uint32_t count, const float *u, const float *v, vlLightSamples *out);
+void vl_sample_spheres(const vlWorld *world, const vlPaths *paths, const vlSurface *f, const uint32_t *lanes,
+                       uint32_t count, const float *u, const float *v, vlLightSamples *out);
 /* Radiance and density of an environment for the given rays, as vl_hit_sky, but without the probability of the
  * light. */
 void vl_hit_environment(const vlWorld *world, const vlWorldLight *light, const vlPaths *paths, const uint32_t *lanes,

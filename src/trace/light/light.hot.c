@@ -2,9 +2,9 @@
  * importance sampling (pbrt book 12). Scalar: the kinds of light diverge. */
 #include "math/octahedral.h"
 #include "math/warp.h"
+#include "trace/light/area.h"
 #include "trace/light/coverage.h"
 #include "trace/light/kinds.h"
-#include "trace/light/triangle.h"
 #include "world/light/portal.h"
 #include "world/shape/surface_point.h"
 #include "world/texture/texture_lookup.h"
@@ -80,29 +80,6 @@ typedef struct Sample {
  * excluded, since its far side is visible through them. */
 static bool round_light(const vlWorldShape *s, const vlWorldLight *light, vlVec3 *center, float *radius) {
   return (s->alpha < 0 || light->invisible) && vl_whole_sphere(s, center, radius);
-}
-
-/* 1 - cos of the half angle of the cone of a sphere seen from outside, without cancellation. */
-static inline float one_minus_cos_cone(float sin2) {
-  return sin2 / (1.0f + __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2)));
-}
-
-static Sample sample_cone(vlVec3 center, float radius, bool inside_out, vlVec3 from, float u, float v) {
-  vlVec3 to = vl_sub(center, from);
-  float d2 = vl_length2(to), d = __builtin_sqrtf(d2);
-  float sin2_max = radius * radius / d2, span = one_minus_cos_cone(sin2_max);
-  float one_minus_cos = span * u, cos_t = 1.0f - one_minus_cos;
-  float sin2_t = vl_max(0.0f, one_minus_cos * (2.0f - one_minus_cos));
-  /* Angle at the centre between the axis and the point (pbrt book 6.2.4). */
-  float sin_max = __builtin_sqrtf(sin2_max);
-  float cos_a = sin2_t / sin_max + cos_t * __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2_t / sin2_max));
-  float sin_a = __builtin_sqrtf(vl_max(0.0f, 1.0f - cos_a * cos_a));
-  vlSinCos phi = vl_sincos_turn(v);
-  vlFrame frame = vl_frame_from_z(vl_mul(to, -1.0f / d));
-  vlVec3 n = vl_from_local(frame, vl_vec3(sin_a * phi.cos, sin_a * phi.sin, cos_a));
-  Sample s = {
-      vl_add(center, vl_mul(n, radius)), inside_out ? vl_neg(n) : n, 1.0f / (2.0f * VL_PI * span), 0, 0, {0, 0, 0}};
-  return s;
 }
 
 typedef struct Near {
@@ -185,8 +162,9 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
   float radius;
   if (round_light(s, light, &center, &radius)) {
     vlVec3 to = vl_sub(center, from);
-    if (vl_length2(to) > radius * radius * 1.0001f) {
-      Sample r = sample_cone(center, radius, s->flip, from, u, v);
+    if (vl_outside_sphere(to, radius)) {
+      vlSphereSample at = vl_sample_sphere(center, radius, s->flip ? -1.0f : 1.0f, from, u, v);
+      Sample r = {at.p, at.n, at.pdf, 0, 0, {0, 0, 0}};
       if (with_uv) { /* the shape computes uv */
         vlShapeHit hit = {.t = 0};
         vlSurfacePoint point;
@@ -221,8 +199,9 @@ float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, 
   vlVec3 center;
   float radius;
   if (round_light(s, light, &center, &radius)) {
-    float d2 = vl_length2(vl_sub(center, from));
-    if (d2 > radius * radius * 1.0001f) return 1.0f / (2.0f * VL_PI * one_minus_cos_cone(radius * radius / d2));
+    vlVec3 to = vl_sub(center, from);
+    float d2 = vl_length2(to);
+    if (vl_outside_sphere(to, radius)) return 1.0f / (2.0f * VL_PI * vl_sphere_cone(radius * radius / d2));
   }
   vlSurfacePoint point;
   point.p[0] = at->p.x, point.p[1] = at->p.y, point.p[2] = at->p.z;
@@ -299,6 +278,15 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
   for (int c = 0; c < 4; c++) out->radiance[c][i] = sample.radiance[c] * inv;
 }
 
+/* ---- many lanes -------------------------------------------------------------------------------------------------- */
+
+/* Lanes that wait until there are enough of them to be sampled together. */
+typedef struct Group {
+  uint32_t count, lanes[VL_AREA_BLOCK];
+} Group;
+typedef void SampleGroup(const vlWorld *world, const vlPaths *paths, const vlSurface *f, const uint32_t *lanes,
+                         uint32_t count, const float *u, const float *v, vlLightSamples *out);
+
 /* Samples environments for the lanes of a list, which chose such lights: the lanes of one light together. */
 static void sample_environments(const vlWorld *world, const vlPaths *paths, uint32_t *lanes, uint32_t count,
                                 const float *u, const float *v, vlLightSamples *out) {
@@ -317,25 +305,29 @@ static void sample_environments(const vlWorld *world, const vlPaths *paths, uint
 
 void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *f, const float *u_choice,
                      const float *u, const float *v, vlLightSamples *out) {
+  static SampleGroup *const sample_group[] = {vl_sample_triangles, vl_sample_spheres};
   vl_stage_light_choice(&world->tree, n, f, u_choice, out);
-  uint32_t skies[VL_ROW_SIZE], triangles[VL_TRIANGLE_BLOCK], sky_count = 0, triangle_count = 0;
+  uint32_t skies[VL_ROW_SIZE], sky_count = 0;
+  Group groups[2] = {{.count = 0}, {.count = 0}}; /* triangles, spheres */
   for (uint32_t i = 0; i < n; i++) {
     out->pdf[i] = 0.0f;
     out->wx[i] = out->wy[i] = out->wz[i] = 0.0f;
     if (out->light[i] == VL_INNER || !(out->pmf[i] > 0.0f)) continue;
     const vlWorldLight *light = &world->lights.items[out->light[i]];
-    if (light->plain_triangle) {
-      triangles[triangle_count++] = i;
-      if (triangle_count == VL_TRIANGLE_BLOCK) {
-        vl_sample_triangles(world, paths, f, triangles, triangle_count, u, v, out);
-        triangle_count = 0;
-      }
-    } else if (vl_light_is_environment(world, light)) {
+    vlVec3 p = vl_vec3(f->px[i], f->py[i], f->pz[i]);
+    if (vl_light_is_environment(world, light)) {
       skies[sky_count++] = i;
+    } else if (light->plain_triangle || (light->plain_sphere && vl_outside_plain_sphere(light, p))) {
+      Group *g = &groups[light->plain_sphere];
+      g->lanes[g->count++] = i;
+      if (g->count < VL_AREA_BLOCK) continue;
+      sample_group[light->plain_sphere](world, paths, f, g->lanes, g->count, u, v, out);
+      g->count = 0;
     } else {
-      sample_one(world, i, paths, vl_vec3(f->px[i], f->py[i], f->pz[i]), u[i], v[i], out);
+      sample_one(world, i, paths, p, u[i], v[i], out);
     }
   }
-  if (triangle_count) vl_sample_triangles(world, paths, f, triangles, triangle_count, u, v, out);
+  for (int k = 0; k < 2; k++)
+    if (groups[k].count) sample_group[k](world, paths, f, groups[k].lanes, groups[k].count, u, v, out);
   sample_environments(world, paths, skies, sky_count, u, v, out);
 }

@@ -35,33 +35,88 @@ static void start(const vlLightTree *tree, uint32_t padded, const float *u, Walk
   }
 }
 
-/* Descends one level for the lanes without a light. A lane at a leaf has its light; where neither child has importance,
- * pmf becomes 0. */
+/* One level of the descent of one lane from the node whose children are a and b; left: index of the first. *second: 1
+ * if it goes to the second. Where neither child has importance, pmf becomes 0. */
+typedef struct Step {
+  uint32_t node;
+  float u, pmf;
+} Step;
+static inline __attribute__((always_inline)) Step step_down(vlLightCluster a, vlLightCluster b, uint32_t left, vlVec3 p,
+                                                            vlVec3 n, float u0, float pmf0, uint32_t *second) {
+  float ia = vl_light_importance(a, p, n), ib = vl_light_importance(b, p, n);
+  float sum = ia + ib, some = sum > 0.0f ? sum : 1.0f;
+  float pa = ia / some, pb = 1.0f - pa;
+  *second = u0 < pa ? 0u : 1u;
+  float part = *second ? pb : pa, used = *second ? u0 - pa : u0;
+  float chance = sum > 0.0f ? part : 0.0f, divisor = part > 0.0f ? part : 1.0f;
+  return (Step){left + *second, vl_min(used / divisor, VL_ONE_MINUS_EPSILON), pmf0 * chance};
+}
+
+/* Descends one level from this inner node, for the lanes that are there. */
+static void descend_from(const float *nodes, uint32_t from, uint32_t padded, const vlSurface *restrict f,
+                         Walk *restrict w, vlLightSamples *restrict out) {
+  uint32_t left = vl_float_bits(nodes[from * VL_LIGHT_NODE_FLOATS + LEFT_FIELD]), at = left * VL_LIGHT_NODE_FLOATS;
+  vlLightCluster a = vl_light_cluster(nodes, at), b = vl_light_cluster(nodes, at + VL_LIGHT_NODE_FLOATS);
+  uint32_t light_a = vl_float_bits(nodes[at + LIGHT_FIELD]);
+  uint32_t light_b = vl_float_bits(nodes[at + VL_LIGHT_NODE_FLOATS + LIGHT_FIELD]);
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    vlVec3 p = vl_vec3(f->px[i], f->py[i], f->pz[i]), n = facing_light(f, i);
+    uint32_t node0 = w->node[i], light0 = out->light[i], second;
+    float u0 = w->u[i], pmf0 = out->pmf[i];
+    Step s = step_down(a, b, left, p, n, u0, pmf0, &second);
+    uint32_t light = second ? light_b : light_a, next = light == VL_INNER ? s.node : 0;
+    int here = (light0 == VL_INNER) & (node0 == from);
+    out->pmf[i] = here ? s.pmf : pmf0;
+    out->light[i] = here ? light : light0;
+    w->u[i] = here ? s.u : u0;
+    w->node[i] = here ? next : node0;
+  }
+}
+
+/* Descends from the tree's first nodes, breadth first: there many lanes are at one node, whose numbers then need not be
+ * gathered. */
+static void descend_top(const vlLightTree *tree, uint32_t padded, const vlSurface *f, Walk *w, vlLightSamples *out) {
+  enum { TOP = 7 }; /* three levels of a balanced tree */
+  uint32_t queue[2 * TOP + 1] = {0}, count = 1;
+  for (uint32_t k = 0; k < count && k < TOP; k++) {
+    descend_from((const float *)tree->nodes, queue[k], padded, f, w, out);
+    uint32_t left = tree->nodes[queue[k]].left;
+    for (uint32_t child = left; child < left + 2; child++)
+      if (tree->nodes[child].light == VL_INNER) queue[count++] = child;
+  }
+}
+
+/* Descends one level for the lanes without a light. */
 static void descend(const float *restrict nodes, uint32_t padded, const vlSurface *restrict f, Walk *restrict w,
                     vlLightSamples *restrict out) {
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
     vlVec3 p = vl_vec3(f->px[i], f->py[i], f->pz[i]), n = facing_light(f, i);
-    uint32_t node0 = w->node[i], light0 = out->light[i];
+    uint32_t node0 = w->node[i], light0 = out->light[i], second;
     float u0 = w->u[i], pmf0 = out->pmf[i];
     uint32_t left = vl_float_bits(nodes[node0 * VL_LIGHT_NODE_FLOATS + LEFT_FIELD]), at = left * VL_LIGHT_NODE_FLOATS;
-    float ia = vl_light_importance(vl_light_cluster(nodes, at), p, n);
-    float ib = vl_light_importance(vl_light_cluster(nodes, at + VL_LIGHT_NODE_FLOATS), p, n);
-    float sum = ia + ib, some = sum > 0.0f ? sum : 1.0f;
-    float pa = ia / some, pb = 1.0f - pa;
-    uint32_t second = u0 < pa ? 0u : 1u;
-    float part = second ? pb : pa, used = second ? u0 - pa : u0;
-    float chance = sum > 0.0f ? part : 0.0f, divisor = part > 0.0f ? part : 1.0f;
-    float u = vl_min(used / divisor, VL_ONE_MINUS_EPSILON), pmf = pmf0 * chance;
-    uint32_t node = left + second;
-    uint32_t light = vl_float_bits(nodes[node * VL_LIGHT_NODE_FLOATS + LIGHT_FIELD]);
-    uint32_t next = light == VL_INNER ? node : 0;
-    out->pmf[i] = light0 == VL_INNER ? pmf : pmf0;
+    Step s = step_down(vl_light_cluster(nodes, at), vl_light_cluster(nodes, at + VL_LIGHT_NODE_FLOATS), left, p, n, u0,
+                       pmf0, &second);
+    uint32_t light = vl_float_bits(nodes[s.node * VL_LIGHT_NODE_FLOATS + LIGHT_FIELD]);
+    uint32_t next = light == VL_INNER ? s.node : 0;
+    out->pmf[i] = light0 == VL_INNER ? s.pmf : pmf0;
     out->light[i] = light0 == VL_INNER ? light : light0;
-    w->u[i] = light0 == VL_INNER ? u : u0;
+    w->u[i] = light0 == VL_INNER ? s.u : u0;
     w->node[i] = light0 == VL_INNER ? next : 0;
   }
+}
+
+/* Ends the lanes that no light reaches. Returns the number of lanes that have not arrived. */
+static uint32_t count_waiting(uint32_t n, vlLightSamples *out) {
+  uint32_t waiting = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    out->light[i] = out->pmf[i] > 0.0f ? out->light[i] : 0;
+    waiting += out->light[i] == VL_INNER;
+  }
+  return waiting;
 }
 
 void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *f, const float *u,
@@ -77,21 +132,14 @@ void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface 
   Walk w;
   uint32_t padded = VL_PAD(n);
   start(tree, padded, u, &w, out);
-  for (uint32_t waiting = n; waiting > 0;) {
-    descend((const float *)tree->nodes, padded, f, &w, out);
-    waiting = 0;
-    for (uint32_t i = 0; i < n; i++) {
-      if (!(out->pmf[i] > 0.0f)) out->light[i] = 0; /* no light reaches this lane: done */
-      waiting += out->light[i] == VL_INNER;
-    }
-    if (waiting > n / 4) continue;
-    for (uint32_t i = 0; waiting > 0 && i < n; i++) { /* the last few lanes one by one */
-      if (out->light[i] != VL_INNER) continue;
-      vlLightChoice c = vl_light_walk(tree, tree->nodes + w.node[i], vl_vec3(f->px[i], f->py[i], f->pz[i]),
-                                      facing_light(f, i), w.u[i], out->pmf[i]);
-      out->light[i] = c.light;
-      out->pmf[i] = c.pmf;
-    }
-    return;
+  descend_top(tree, padded, f, &w, out);
+  uint32_t waiting = count_waiting(n, out);
+  for (; waiting > n / 4; waiting = count_waiting(n, out)) descend((const float *)tree->nodes, padded, f, &w, out);
+  for (uint32_t i = 0; waiting > 0 && i < n; i++) { /* the last few lanes one by one */
+    if (out->light[i] != VL_INNER) continue;
+    vlLightChoice c = vl_light_walk(tree, tree->nodes + w.node[i], vl_vec3(f->px[i], f->py[i], f->pz[i]),
+                                    facing_light(f, i), w.u[i], out->pmf[i]);
+    out->light[i] = c.light;
+    out->pmf[i] = c.pmf;
   }
 }

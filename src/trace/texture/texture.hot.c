@@ -26,6 +26,20 @@ static void bilerp_weights(const vlTextureRun *r, const vlTextureNode *node, flo
   }
 }
 
+/* Some lanes' lookups of a plain image. All are computed, and their texels requested, before the first is read. */
+typedef struct Lookups {
+  uint32_t count;
+  vlImageLookup at[VL_LANES];
+} Lookups;
+
+static void look_up(const vlTextureRun *r, const vlTextureNode *node, const vlMipmap *mip, uint32_t first, Lookups *l) {
+  l->count = r->last - first < VL_LANES ? r->last - first : VL_LANES;
+  for (uint32_t k = 0; k < l->count; k++) {
+    l->at[k] = vl_image_lookup(node, mip, vl_texture_point_of(r, node, first + k));
+    vl_image_request(mip, &l->at[k]);
+  }
+}
+
 /* The shares of the second input, as a row of the stack. */
 static const float *amount_share(vlTextureRun *r, const vlTextureNode *node) {
   float *share = vl_texture_row(r);
@@ -84,17 +98,26 @@ static void bilerp_floats(vlTextureRun *r, const vlTextureNode *node, float *out
   }
 }
 
+static void image_floats(const vlTextureRun *r, const vlTextureNode *node, float *out) {
+  const vlMipmap *mip = r->world->images.items[node->image].mipmap;
+  if (!node->plain) {
+    for (uint32_t i = r->first; i < r->last; i++)
+      out[i] = vl_node_image_float(node, mip, vl_texture_point_of(r, node, i));
+    return;
+  }
+  Lookups l;
+  for (uint32_t first = r->first; first < r->last; first += l.count) {
+    look_up(r, node, mip, first, &l);
+    for (uint32_t k = 0; k < l.count; k++) out[first + k] = vl_plain_float(mip, vl_image_value(node, mip, &l.at[k]));
+  }
+}
+
 void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
   switch (node->kind) {
     case VL_NODE_FLOAT: fill(r, node->value, out); break;
-    case VL_NODE_IMAGE: {
-      const vlMipmap *mip = r->world->images.items[node->image].mipmap;
-      for (uint32_t i = r->first; i < r->last; i++)
-        out[i] = vl_node_image_float(node, mip, vl_texture_point_of(r, node, i));
-      break;
-    }
+    case VL_NODE_IMAGE: image_floats(r, node, out); break;
     case VL_NODE_VERTEX_COLOR:
       each_lane(r, node, vl_node_vertex_color_float, out);
       break;
@@ -166,8 +189,17 @@ static void upsample(const vlTextureRun *r, const Upsampling *up, vlVec3 rgb, ui
 static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {
   const vlMipmap *mip = r->world->images.items[node->image].mipmap;
   Upsampling up = upsampling_of(r, node);
-  for (uint32_t i = r->first; i < r->last; i++)
-    upsample(r, &up, vl_node_image_rgb(node, mip, vl_texture_point_of(r, node, i)), i, out);
+  if (!node->plain) {
+    for (uint32_t i = r->first; i < r->last; i++)
+      upsample(r, &up, vl_node_image_rgb(node, mip, vl_texture_point_of(r, node, i)), i, out);
+    return;
+  }
+  Lookups l;
+  for (uint32_t first = r->first; first < r->last; first += l.count) {
+    look_up(r, node, mip, first, &l);
+    for (uint32_t k = 0; k < l.count; k++)
+      upsample(r, &up, vl_plain_rgb(mip, vl_image_value(node, mip, &l.at[k])), first + k, out);
+  }
 }
 
 static void vertex_color_spectrum(const vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {

@@ -3,40 +3,16 @@
 
 /* ---- sorting ----------------------------------------------------------------------------------------------------- */
 
+/* Path by path: a gather instruction per row takes longer than the single moves. */
 void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n) {
-#define MOVE(field) \
-  VL_SIMD           \
-  for (uint32_t k = 0; k < n; k++) b->field[k] = a->field[order[k]]
-  MOVE(ox);
-  MOVE(oy);
-  MOVE(oz);
-  MOVE(dx);
-  MOVE(dy);
-  MOVE(dz);
-  for (int c = 0; c < 4; c++) {
-    MOVE(beta[c]);
-    MOVE(lambda[c]);
-  }
-  MOVE(pdf);
-  MOVE(from_nx);
-  MOVE(from_ny);
-  MOVE(from_nz);
-  MOVE(eta_scale);
-  MOVE(cone);
-  MOVE(spread);
-  MOVE(specular);
-  MOVE(px);
-  MOVE(py);
-  MOVE(index);
-  MOVE(lane);
+  for (uint32_t k = 0; k < n; k++) vl_path_copy(a, order[k], b, k);
 }
 static void permute_hits(const vlHits *a, vlHits *b, const uint32_t *order, uint32_t n) {
-  MOVE(shape);
-  MOVE(prim);
-  MOVE(instance);
-  MOVE(material);
-  MOVE(t);
-#undef MOVE
+  for (uint32_t k = 0; k < n; k++) {
+    uint32_t i = order[k];
+    b->shape[k] = a->shape[i], b->prim[k] = a->prim[i], b->instance[k] = a->instance[i];
+    b->material[k] = a->material[i], b->t[k] = a->t[i];
+  }
 }
 
 /* A counting sort by the material's rank (materials of one kind are adjacent) that keeps the order of the tile. */

@@ -169,14 +169,20 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
                        world->nodes.items[shape->alpha].value == 0;
     vlVec3 center;
     float radius;
-    light->outer_side = light->invisible && vl_whole_sphere(shape, &center, &radius);
+    bool sphere = vl_whole_sphere(shape, &center, &radius), plain = shape->alpha < 0 && e->image < 0;
+    light->outer_side = light->invisible && sphere;
     light->environment = VL_NONE;
     float l = e->image >= 0 ? e->image_scale * mean_image_luminance(world->images.items[e->image].mipmap) * own : own;
     if (e->node && shape->kind == VL_SHAPE_TRIANGLES) l = face_luminance(world, shape, i, e) * own;
     light->power = VL_PI * area * l * (e->two_sided ? 2 : 1);
     if (shape->kind == VL_SHAPE_TRIANGLES) {
       triangle_light(shape, i, light);
-      light->plain_triangle = light->one_sided_normals && shape->alpha < 0 && e->image < 0;
+      light->plain_triangle = plain && light->one_sided_normals;
+    }
+    light->plain_sphere = plain && sphere;
+    if (light->plain_sphere) {
+      const float q[5] = {center.x, center.y, center.z, radius, shape->flip ? -1.0f : 1.0f};
+      memcpy(light->corners, q, sizeof q);
     }
     if (shape->kind == VL_SHAPE_DISK) {
       vlSurfacePoint point;

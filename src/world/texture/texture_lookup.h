@@ -199,12 +199,35 @@ static inline vlTexel vl_filter_tap(const vlTextureNode *node, const vlMipmap *m
   return a;
 }
 
-/* An image texture: t counts from the bottom, rows from the top. Point reads a texel of the finer level, bilinear
- * interpolates on it, trilinear (and EWA) blends two levels. The last two take several taps. */
-static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
-  vlVec2 st = vl_texture_st(node, at);
-  float s = st.x, t = 1.0f - st.y;
-  vlFilterPlan plan = vl_filter_plan(mip, at.axes);
+/* An image texture at a point: where it is read (t counts from the top) and how it is filtered. */
+typedef struct vlImageLookup {
+  float s, t;
+  vlFilterPlan plan;
+} vlImageLookup;
+static inline vlImageLookup vl_image_lookup(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  vlVec2 st = vl_texture_st(node, at); /* t from the bottom */
+  return (vlImageLookup){st.x, 1.0f - st.y, vl_filter_plan(mip, at.axes)};
+}
+
+/* Requests the memory of the middle tap, as far as it lies within the image. */
+static inline void vl_image_request(const vlMipmap *mip, const vlImageLookup *at) {
+  for (uint32_t level = (uint32_t)at->plan.level, k = 0; k < 2 && level < mip->level_count; k++, level++) {
+    const vlMipLevel *l = &mip->levels[level];
+    float fs = at->s - __builtin_floorf(at->s), ft = at->t - __builtin_floorf(at->t); /* as if it repeats */
+    float x = fs * (float)l->width - 0.5f, y = ft * (float)l->height - 0.5f;
+    uint32_t i = x > 0.0f ? (uint32_t)(int32_t)x : 0, j = y > 0.0f ? (uint32_t)(int32_t)y : 0;
+    for (uint32_t row = j; row < j + 2 && row < l->height && i < l->width; row++) {
+      size_t index = ((size_t)row * l->width + i) * mip->channels;
+      __builtin_prefetch(mip->is_bytes ? (const void *)(l->bytes + index) : (const void *)(l->floats + index), 0, 3);
+    }
+  }
+}
+
+/* Point reads a texel of the finer level, bilinear interpolates on it, trilinear (and EWA) blends two levels. The last
+ * two take several taps. */
+static inline vlTexel vl_image_value(const vlTextureNode *node, const vlMipmap *mip, const vlImageLookup *at) {
+  float s = at->s, t = at->t;
+  vlFilterPlan plan = at->plan;
   vlTexel r;
   if (node->filter == VL_FILTER_POINT) {
     r = vl_nearest_2(mip, (uint32_t)plan.level, s, t, node->wrap, node->wrap_t);
@@ -225,6 +248,11 @@ static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap
     r.c[i] = x < 0.0f ? 0.0f : x;
   }
   return r;
+}
+
+static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
+  vlImageLookup lookup = vl_image_lookup(node, mip, at);
+  return vl_image_value(node, mip, &lookup);
 }
 
 /* All four channels, tinted: grey is copied to red, green and blue; coverage is 1 if the image has none. mip null:

@@ -78,12 +78,16 @@ static inline float vl_texture_channel(const vlTextureNode *node, const vlMipmap
   return node->cutoff == node->cutoff ? (x >= node->cutoff ? 1.0f : 0.0f) : x;
 }
 
+/* The value of a plain image node (vlTextureNode.plain) whose texel is t. */
+static inline float vl_plain_float(const vlMipmap *mip, vlTexel t) {
+  uint32_t channels = mip->channels;
+  return channels == 1 ? t.c[0] : channels == 4 ? t.c[3] : (t.c[0] + t.c[1] + t.c[2]) * (1.0f / 3.0f);
+}
+
 /* VL_NODE_IMAGE: grey as it is, colour by its mean, four channels by their alpha (pbrt's rule). */
 static inline float vl_node_image_float(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
   if (!node->plain) return vl_texture_channel(node, mip, at);
-  vlTexel t = vl_texture_image(node, mip, at);
-  uint32_t channels = mip->channels;
-  return channels == 1 ? t.c[0] : channels == 4 ? t.c[3] : (t.c[0] + t.c[1] + t.c[2]) * (1.0f / 3.0f);
+  return vl_plain_float(mip, vl_texture_image(node, mip, at));
 }
 
 /* VL_NODE_VERTEX_COLOR */
@@ -93,11 +97,17 @@ static inline float vl_node_vertex_color_float(const vlTextureNode *node, vlText
 
 /* ---- colours, linear RGB ----------------------------------------------------------------------------------------- */
 
+/* The colour of a plain image node whose texel is t. */
+static inline vlVec3 vl_plain_rgb(const vlMipmap *mip, vlTexel t) {
+  bool grey = mip->channels < 3;
+  return vl_vec3(t.c[0], grey ? t.c[0] : t.c[1], grey ? t.c[0] : t.c[2]);
+}
+
 /* VL_NODE_IMAGE */
 static inline vlVec3 vl_node_image_rgb(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
-  vlTexel t = node->plain ? vl_texture_image(node, mip, at) : vl_texture_rgba(node, mip, at);
-  bool grey = node->plain && mip->channels < 3;
-  return vl_vec3(t.c[0], grey ? t.c[0] : t.c[1], grey ? t.c[0] : t.c[2]);
+  if (node->plain) return vl_plain_rgb(mip, vl_texture_image(node, mip, at));
+  vlTexel t = vl_texture_rgba(node, mip, at);
+  return vl_vec3(t.c[0], t.c[1], t.c[2]);
 }
 
 /* VL_NODE_VERTEX_COLOR */

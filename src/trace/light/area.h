@@ -1,9 +1,11 @@
-/* trace/light/triangle.h: sampling of a triangle that emits light; private to the hot files of trace/light. */
-#ifndef TRACE_LIGHT_TRIANGLE_H
-#define TRACE_LIGHT_TRIANGLE_H
+/* trace/light/area.h: sampling of triangles and spheres that emit light; private to the hot files of trace/light. */
+#ifndef TRACE_LIGHT_AREA_H
+#define TRACE_LIGHT_AREA_H
 
 #include "math/warp.h"
 #include "trace/stages.h"
+
+/* ---- triangles --------------------------------------------------------------------------------------------------- */
 
 /* The corners as seen from a point. */
 typedef struct vlTriangleSeen {
@@ -46,6 +48,44 @@ static inline float vl_solid_pdf(float pdf_area, vlVec3 from, vlVec3 p, vlVec3 n
   float d2 = vl_length2(to), cosine = vl_abs(vl_dot(n, to));
   return cosine > 0.0f ? pdf_area * d2 * __builtin_sqrtf(d2) / cosine : 0.0f;
 }
+
+/* ---- spheres seen from outside ----------------------------------------------------------------------------------- */
+
+static inline int vl_outside_sphere(vlVec3 to_center, float radius) {
+  return vl_length2(to_center) > radius * radius * 1.0001f;
+}
+static inline bool vl_outside_plain_sphere(const vlWorldLight *light, vlVec3 from) {
+  const float *q = light->corners;
+  return vl_outside_sphere(vl_sub(vl_vec3(q[0], q[1], q[2]), from), q[3]);
+}
+
+/* 1 - cos of the half angle of the cone of a sphere seen from outside, without cancellation. */
+static inline float vl_sphere_cone(float sin2) {
+  return sin2 / (1.0f + __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2)));
+}
+
+typedef struct vlSphereSample {
+  vlVec3 p, n; /* point and normal on the sphere */
+  float pdf;   /* per solid angle */
+} vlSphereSample;
+/* side: 1, or -1 for normals that point inwards. */
+static inline vlSphereSample vl_sample_sphere(vlVec3 center, float radius, float side, vlVec3 from, float u, float v) {
+  vlVec3 to = vl_sub(center, from);
+  float d2 = vl_length2(to), d = __builtin_sqrtf(d2);
+  float sin2_max = radius * radius / d2, span = vl_sphere_cone(sin2_max);
+  float one_minus_cos = span * u, cos_t = 1.0f - one_minus_cos;
+  float sin2_t = vl_max(0.0f, one_minus_cos * (2.0f - one_minus_cos));
+  /* Angle at the centre between the axis and the point (pbrt book 6.2.4). */
+  float sin_max = __builtin_sqrtf(sin2_max);
+  float cos_a = sin2_t / sin_max + cos_t * __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2_t / sin2_max));
+  float sin_a = __builtin_sqrtf(vl_max(0.0f, 1.0f - cos_a * cos_a));
+  vlSinCos phi = vl_sincos_turn(v);
+  vlFrame frame = vl_frame_from_z(vl_mul(to, -1.0f / d));
+  vlVec3 n = vl_from_local(frame, vl_vec3(sin_a * phi.cos, sin_a * phi.sin, cos_a));
+  return (vlSphereSample){vl_add(center, vl_mul(n, radius)), vl_mul(n, side), 1.0f / (2.0f * VL_PI * span)};
+}
+
+/* ---- both -------------------------------------------------------------------------------------------------------- */
 
 /* The end of a shadow ray that arrives at p along -w, on the side of n: moved off the light by the bound of its points'
  * rounding error. */

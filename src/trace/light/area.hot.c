@@ -1,16 +1,17 @@
-/* trace/light/triangle.hot.c: samples of plain triangles (vlWorldLight.plain_triangle), the most frequent light, for
- * many lanes at once. The operations are those of vl_light_sample_area for such a light. */
-#include "trace/light/triangle.h"
+/* trace/light/area.hot.c: samples of plain triangles and spheres (vlWorldLight.plain_triangle and plain_sphere), the
+ * most frequent lights, for many lanes at once. The operations are those of vl_light_sample_area for such lights. */
+#include "trace/light/area.h"
 
 #include "trace/light/kinds.h"
 
-enum { BLOCK = VL_TRIANGLE_BLOCK };
+enum { BLOCK = VL_AREA_BLOCK };
 
 /* A block of lanes. The arrays are filled to a multiple of VL_LANES with copies of the last lane. */
 typedef struct Block {
   VL_ROW uint32_t lane[BLOCK];
   VL_ROW float px[BLOCK], py[BLOCK], pz[BLOCK], u[BLOCK], v[BLOCK]; /* the point that receives light */
-  VL_ROW float corner[9][BLOCK], n[3][BLOCK], area[BLOCK], two_sided[BLOCK];
+  VL_ROW float corner[9][BLOCK], n[3][BLOCK], area[BLOCK]; /* of spheres: centre and radius; 1 or -1, see area.h */
+  VL_ROW float two_sided[BLOCK];
   VL_ROW float wx[BLOCK], wy[BLOCK], wz[BLOCK], tx[BLOCK], ty[BLOCK], tz[BLOCK];
   VL_ROW float pdf[BLOCK]; /* 0: no sample */
   VL_ROW float lambda[4][BLOCK], radiance[4][BLOCK];
@@ -34,7 +35,19 @@ static uint32_t gather(const vlWorld *world, const vlPaths *paths, const vlSurfa
   return padded;
 }
 
-static void sample(uint32_t padded, Block *restrict b) {
+/* Sets lane k's sample: a point p of the light, its normal, and its density per solid angle. */
+static inline __attribute__((always_inline)) void arrive(Block *restrict b, uint32_t k, vlVec3 from, vlVec3 p, vlVec3 n,
+                                                         float pdf) {
+  vlVec3 w = vl_normalize(vl_sub(p, from));
+  float facing = -vl_dot(w, n), side = facing < 0.0f ? -1.0f : 1.0f;
+  int shines = (facing > 0.0f) | ((b->two_sided[k] > 0.0f) & (facing < 0.0f));
+  vlVec3 target = vl_light_target(p, vl_vec3(side * n.x, side * n.y, side * n.z), w);
+  b->pdf[k] = shines & (pdf > 0.0f) & (pdf < VL_INFINITY) ? pdf : 0.0f;
+  b->wx[k] = w.x, b->wy[k] = w.y, b->wz[k] = w.z;
+  b->tx[k] = target.x, b->ty[k] = target.y, b->tz[k] = target.z;
+}
+
+static void triangles(uint32_t padded, Block *restrict b) {
   /* must vectorise */
   VL_SIMD
   for (uint32_t k = 0; k < padded; k++) {
@@ -51,14 +64,18 @@ static void sample(uint32_t padded, Block *restrict b) {
     float b0 = near ? round.x : flat.x, b1 = near ? round.y : flat.y, b2 = near ? round.z : 1.0f - flat.x - flat.y;
     vlVec3 p = vl_add(vl_add(vl_mul(p0, b0), vl_mul(p1, b1)), vl_mul(p2, b2));
     float by_area = area > 0.0f ? vl_solid_pdf(1.0f / area, from, p, n) : 0.0f;
-    float pdf = near ? 1.0f / cap.solid_angle : by_area;
-    vlVec3 w = vl_normalize(vl_sub(p, from));
-    float facing = -vl_dot(w, n), side = facing < 0.0f ? -1.0f : 1.0f;
-    int shines = (facing > 0.0f) | ((b->two_sided[k] > 0.0f) & (facing < 0.0f));
-    vlVec3 target = vl_light_target(p, vl_vec3(side * n.x, side * n.y, side * n.z), w);
-    b->pdf[k] = shines & (pdf > 0.0f) & (pdf < VL_INFINITY) ? pdf : 0.0f;
-    b->wx[k] = w.x, b->wy[k] = w.y, b->wz[k] = w.z;
-    b->tx[k] = target.x, b->ty[k] = target.y, b->tz[k] = target.z;
+    arrive(b, k, from, p, n, near ? 1.0f / cap.solid_angle : by_area);
+  }
+}
+
+static void spheres(uint32_t padded, Block *restrict b) {
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t k = 0; k < padded; k++) {
+    vlVec3 from = vl_vec3(b->px[k], b->py[k], b->pz[k]);
+    vlVec3 center = vl_vec3(b->corner[0][k], b->corner[1][k], b->corner[2][k]);
+    vlSphereSample s = vl_sample_sphere(center, b->corner[3][k], b->corner[4][k], from, b->u[k], b->v[k]);
+    arrive(b, k, from, s.p, s.n, s.pdf);
   }
 }
 
@@ -97,20 +114,33 @@ static void radiance(const vlWorld *world, const vlLightSamples *samples, uint32
   }
 }
 
+static void store(const Block *b, uint32_t count, vlLightSamples *out) {
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = b->lane[k];
+    out->delta[i] = out->distant[i] = false;
+    if (!(b->pdf[k] > 0.0f)) continue;
+    float total = b->pdf[k] * out->pmf[i], inv = 1.0f / total;
+    out->pdf[i] = total;
+    out->wx[i] = b->wx[k], out->wy[i] = b->wy[k], out->wz[i] = b->wz[k];
+    out->tx[i] = b->tx[k], out->ty[i] = b->ty[k], out->tz[i] = b->tz[k];
+    for (int c = 0; c < 4; c++) out->radiance[c][i] = b->radiance[c][k] * inv;
+  }
+}
+
 void vl_sample_triangles(const vlWorld *world, const vlPaths *paths, const vlSurface *f, const uint32_t *lanes,
                          uint32_t count, const float *u, const float *v, vlLightSamples *out) {
   Block b;
   uint32_t padded = gather(world, paths, f, lanes, count, u, v, out, &b);
-  sample(padded, &b);
+  triangles(padded, &b);
   radiance(world, out, padded, &b);
-  for (uint32_t k = 0; k < count; k++) {
-    uint32_t i = b.lane[k];
-    out->delta[i] = out->distant[i] = false;
-    if (!(b.pdf[k] > 0.0f)) continue;
-    float total = b.pdf[k] * out->pmf[i], inv = 1.0f / total;
-    out->pdf[i] = total;
-    out->wx[i] = b.wx[k], out->wy[i] = b.wy[k], out->wz[i] = b.wz[k];
-    out->tx[i] = b.tx[k], out->ty[i] = b.ty[k], out->tz[i] = b.tz[k];
-    for (int c = 0; c < 4; c++) out->radiance[c][i] = b.radiance[c][k] * inv;
-  }
+  store(&b, count, out);
+}
+
+void vl_sample_spheres(const vlWorld *world, const vlPaths *paths, const vlSurface *f, const uint32_t *lanes,
+                       uint32_t count, const float *u, const float *v, vlLightSamples *out) {
+  Block b;
+  uint32_t padded = gather(world, paths, f, lanes, count, u, v, out, &b);
+  spheres(padded, &b);
+  radiance(world, out, padded, &b);
+  store(&b, count, out);
 }

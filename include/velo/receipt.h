@@ -55,6 +55,8 @@ VL_API const char *vl_receipt_command(const vlReceipt *receipt, uint32_t index);
 VL_API const char *vl_receipt_output(const vlReceipt *receipt, uint32_t index);
 /** Samples per pixel that the image has; *planned (may be null): of the render. */
 VL_API uint32_t vl_receipt_samples(const vlReceipt *receipt, uint32_t *planned);
+/** The exposure of its development, vlDevelopDef.exposure; 1: it is not in the receipt. */
+VL_API float vl_receipt_exposure(const vlReceipt *receipt);
 /** Recorded file `index`, from 0; null past the end. *record is filled and returned. */
 VL_API const vlFileRecord *vl_receipt_file(const vlReceipt *receipt, uint32_t index, vlFileRecord *record);
 /** The version of velo and the commit that the program was built from, both "" where they are not in the receipt. */

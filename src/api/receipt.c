@@ -230,6 +230,11 @@ uint32_t vl_receipt_samples(const vlReceipt *receipt, uint32_t *planned) {
   return count_of(json_object_get(receipt->tree, "samples"));
 }
 
+float vl_receipt_exposure(const vlReceipt *receipt) {
+  const json_t *value = json_object_get(json_object_get(receipt->tree, "develop"), "exposure");
+  return json_is_number(value) ? (float)json_number_value(value) : 1.0f;
+}
+
 static int digit(char c) {
   return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : 0;
 }

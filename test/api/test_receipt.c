@@ -226,6 +226,33 @@ static void differences_are_named(void **state) {
   vl_receipt_destroy(now);
 }
 
+static void a_film_has_the_receipt_of_its_image(void **state) {
+  Fixture *f = *state;
+  static const char *const words[2][5] = {{"velo", "render", "a.pbrt", "--spp", "16"},
+                                          {"velo", "render", "a.pbrt", "--spp", "64"}};
+  static const char *const outputs[] = {"a.exr"};
+  vlSceneDefs *defs = vl_scene_defs(f->scene);
+  vlReceiptDef def = vl_default_receipt_def();
+  def.defs = defs, def.scene = "a.pbrt", def.command_count = 5;
+  def.command = words[0], def.samples = defs->render.spp = 16;
+  def.outputs = outputs, def.output_count = 1;
+  vlReceipt *film = make(f, &def), *image = NULL;
+  assert_string_equal(vl_receipt_output(film, 0), "a.exr");
+  def.command = words[1], def.samples = defs->render.spp = 64;
+  def.outputs = NULL;
+  vlReceipt *straight = make(f, &def);
+  assert_int_equal(vl_receipt_of_image(film, 64, &image, NULL), VL_OK);
+  assert_string_equal(vl_receipt_text(image), vl_receipt_text(straight));
+  vl_receipt_destroy(image);
+  vl_receipt_destroy(film);
+  film = parse(f, vl_receipt_text(straight)); /* as it is read from a file */
+  assert_int_equal(vl_receipt_of_image(film, 64, &image, NULL), VL_OK);
+  assert_string_equal(vl_receipt_text(image), vl_receipt_text(straight));
+  vl_receipt_destroy(image);
+  vl_receipt_destroy(film);
+  vl_receipt_destroy(straight);
+}
+
 static void autofocus_is_in_the_camera(void **state) {
   Fixture *f = *state;
   vlSceneDefs *defs = vl_scene_defs(f->scene);
@@ -296,6 +323,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(files_are_recorded, set_up, tear_down),
       cmocka_unit_test_setup_teardown(numbers_are_exact, set_up, tear_down),
       cmocka_unit_test_setup_teardown(differences_are_named, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(a_film_has_the_receipt_of_its_image, set_up, tear_down),
       cmocka_unit_test_setup_teardown(autofocus_is_in_the_camera, set_up, tear_down),
       cmocka_unit_test_setup_teardown(wrong_receipts_are_refused, set_up, tear_down),
       cmocka_unit_test_setup_teardown(wrong_members_are_missing, set_up, tear_down),

@@ -18,6 +18,9 @@ static void ask(const vlReceipt *receipt) {
   for (i = 0; vl_receipt_output(receipt, i); i++) continue;
   for (i = 0; vl_receipt_file(receipt, i, &record); i++) continue;
   vl_receipt_scene(receipt);
+  vlReceipt *image = NULL;
+  if (vl_receipt_of_image(receipt, 7, &image, &error) == VL_OK && vl_receipt_samples(image, &planned) != 7) abort();
+  vl_receipt_destroy(image);
   vl_receipt_samples(receipt, &planned);
   vl_receipt_version(receipt, &commit);
   if (vl_receipt_camera(receipt, &def, size, crop, &error) == VL_OK &&

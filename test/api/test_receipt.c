@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/digest.h"
+#include "failing_allocator.h"
 #include "velo/velo.h"
 
 typedef struct Fixture {
@@ -317,6 +318,42 @@ static void wrong_members_are_missing(void **state) {
   vl_receipt_destroy(empty);
 }
 
+/* Reads a scene with recording, makes its receipt, reads it, derives an image's. user: path of the scene. */
+static vlResult all_of_it(vlContext *context, void *user) {
+  vlScene *scene = NULL;
+  vlReceipt *receipt = NULL, *read = NULL, *image = NULL;
+  vlError error = {0};
+  vlReceiptDef def = vl_default_receipt_def();
+  def.scene = user;
+  vl_context_record_files(context, true);
+  vlResult result = vl_scene_create(context, &scene);
+  if (result == VL_OK) result = vl_scene_load(scene, user, NULL, &error);
+  if (result == VL_OK) {
+    def.defs = vl_scene_defs(scene);
+    result = vl_receipt_make(context, &def, &receipt, &error);
+  }
+  if (result == VL_OK)
+    result = vl_receipt_parse(context, vl_receipt_text(receipt), strlen(vl_receipt_text(receipt)), &read, &error);
+  if (result == VL_OK) result = vl_receipt_of_image(read, 3, &image, &error);
+  if (result == VL_OK) assert_non_null(strstr(vl_receipt_text(image), "\"files\":[{\"path\":\"one.pbrt\""));
+  vl_receipt_destroy(receipt);
+  vl_receipt_destroy(read);
+  vl_receipt_destroy(image);
+  vl_scene_destroy(scene);
+  return result;
+}
+
+static void memory_may_run_out(void **state) {
+  (void)state;
+  char folder[] = "/tmp/velo-receipt-XXXXXX", scene[100];
+  assert_non_null(mkdtemp(folder));
+  snprintf(scene, sizeof scene, "%s/one.pbrt", folder);
+  write_file(scene, "Camera \"perspective\"\nWorldBegin\nShape \"sphere\"\n");
+  fail_everywhere(all_of_it, scene, 10);
+  unlink(scene);
+  rmdir(folder);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(digests_are_murmur3),
@@ -327,6 +364,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(autofocus_is_in_the_camera, set_up, tear_down),
       cmocka_unit_test_setup_teardown(wrong_receipts_are_refused, set_up, tear_down),
       cmocka_unit_test_setup_teardown(wrong_members_are_missing, set_up, tear_down),
+      cmocka_unit_test(memory_may_run_out),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -227,6 +227,20 @@ static void differences_are_named(void **state) {
   vl_receipt_destroy(now);
 }
 
+static void long_values_are_cut(void **state) {
+  Fixture *f = *state;
+  char long_text[900] = "{\"velo_receipt\": 1, \"scene\": [\"";
+  memset(long_text + strlen(long_text), 'x', 600);
+  strcat(long_text, "\"]}");
+  vlReceipt *then = parse(f, "{\"velo_receipt\": 1, \"scene\": \"a\"}"), *now = parse(f, long_text);
+  const char *text = differences(then, now, VL_RECEIPT_ALL), *end = strstr(text, "xxx..., was a\n");
+  assert_non_null(end);
+  assert_int_equal(strlen(text), strlen("scene is ") + 119 + strlen(", was a\n"));
+  assert_int_equal(strncmp(text, "scene is [\"xxx", 14), 0);
+  vl_receipt_destroy(then);
+  vl_receipt_destroy(now);
+}
+
 static void a_film_has_the_receipt_of_its_image(void **state) {
   Fixture *f = *state;
   static const char *const words[2][5] = {{"velo", "render", "a.pbrt", "--spp", "16"},
@@ -360,6 +374,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(files_are_recorded, set_up, tear_down),
       cmocka_unit_test_setup_teardown(numbers_are_exact, set_up, tear_down),
       cmocka_unit_test_setup_teardown(differences_are_named, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(long_values_are_cut, set_up, tear_down),
       cmocka_unit_test_setup_teardown(a_film_has_the_receipt_of_its_image, set_up, tear_down),
       cmocka_unit_test_setup_teardown(autofocus_is_in_the_camera, set_up, tear_down),
       cmocka_unit_test_setup_teardown(wrong_receipts_are_refused, set_up, tear_down),

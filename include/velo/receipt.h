@@ -42,6 +42,10 @@ VL_API vlResult vl_receipt_make(vlContext *context, const vlReceiptDef *def, vlR
  * later format version. */
 VL_API vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size, vlReceipt **receipt,
                                  vlError *error);
+/** The receipt of the image that a film with this receipt has at `samples` per pixel: with these samples in place of
+ * its own, also as render.spp and after --spp in the command, and without outputs. The image of a continued or merged
+ * film so has the receipt of a render without pause. Errors: ARGUMENT, MEMORY. */
+VL_API vlResult vl_receipt_of_image(const vlReceipt *film, uint32_t samples, vlReceipt **receipt, vlError *error);
 /** Null is allowed. */
 VL_API void vl_receipt_destroy(vlReceipt *receipt);
 

@@ -1,6 +1,7 @@
 /* api/receipt.c: see velo/receipt.h. docs/receipts.md describes the text. */
 #include "velo/receipt.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "api/receipt.h"
@@ -194,6 +195,31 @@ vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size, vlR
   char *copy = vl_alloc(context, size + 1);
   if (copy) memcpy(copy, text, size), copy[size] = 0;
   return receipt_of(context, tree, copy, receipt, error);
+}
+
+/* The word after --spp. */
+static bool put_command_samples(json_t *command, uint32_t samples) {
+  char text[16];
+  size_t index;
+  json_t *word;
+  snprintf(text, sizeof text, "%u", samples);
+  json_array_foreach(command, index, word) {
+    const char *string = json_string_value(word);
+    if (string && strcmp(string, "--spp") == 0 && index + 1 < json_array_size(command))
+      return json_array_set_new(command, index + 1, json_string(text)) == 0;
+  }
+  return true;
+}
+
+vlResult vl_receipt_of_image(const vlReceipt *film, uint32_t samples, vlReceipt **receipt, vlError *error) {
+  if (receipt) *receipt = NULL;
+  if (!film || !receipt) return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: null argument");
+  json_t *tree = json_deep_copy(film->tree), *render = json_object_get(tree, "render");
+  bool good = tree && json_object_set_new(tree, "samples", json_integer(samples)) == 0 &&
+              (!json_is_object(render) || json_object_set_new(render, "spp", json_integer(samples)) == 0) &&
+              put_command_samples(json_object_get(tree, "command"), samples);
+  if (good) json_object_del(tree, "outputs");
+  return receipt_of(film->context, tree, good ? text_of(film->context, tree) : NULL, receipt, error);
 }
 
 void vl_receipt_destroy(vlReceipt *receipt) {

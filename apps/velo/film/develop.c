@@ -21,8 +21,7 @@ typedef struct Develop {
 } Develop;
 
 static vlResult set_header(Develop *d, const vlReceipt *receipt) {
-  uint32_t planned = 0, spp = vl_film_spp(d->film);
-  if (receipt) vl_receipt_samples(receipt, &planned);
+  uint32_t spp = vl_film_spp(d->film);
   const vlAttribute samples = {.name = "samplesPerPixel", .type = VL_ATTRIBUTE_INT, .numbers = {spp}};
   vlResult result = vl_image_set_attribute(d->image, &samples);
   if (!receipt || spp != planned) return result; /* the receipt is that of the whole image */

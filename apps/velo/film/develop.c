@@ -24,9 +24,15 @@ static vlResult set_header(Develop *d, const vlReceipt *receipt) {
   uint32_t spp = vl_film_spp(d->film);
   const vlAttribute samples = {.name = "samplesPerPixel", .type = VL_ATTRIBUTE_INT, .numbers = {spp}};
   vlResult result = vl_image_set_attribute(d->image, &samples);
-  if (!receipt || spp != planned) return result; /* the receipt is that of the whole image */
-  const vlAttribute made = {.name = RECEIPT_ATTRIBUTE, .type = VL_ATTRIBUTE_STRING, .string = vl_receipt_text(receipt)};
-  return result == VL_OK ? vl_image_set_attribute(d->image, &made) : result;
+  if (!receipt || !spp || result != VL_OK) return result;
+  vlReceipt *own = NULL;
+  result = vl_receipt_of_image(receipt, spp, &own, NULL);
+  if (result == VL_OK) {
+    const vlAttribute made = {.name = RECEIPT_ATTRIBUTE, .type = VL_ATTRIBUTE_STRING, .string = vl_receipt_text(own)};
+    result = vl_image_set_attribute(d->image, &made);
+  }
+  vl_receipt_destroy(own);
+  return result;
 }
 
 static int develop(Develop *d, const char *path) {

@@ -26,8 +26,10 @@ static int parse_command(Continue *c, const vlReceipt *receipt) {
     words[count++] = (char *)(uintptr_t)word; /* is not changed */
   }
   if (count == 0) return fail_command(c, "there is none");
+  report_usage_of(c->path);
   int status = options_parse(&render_command, count, words, &c->arguments);
-  if (status >= 0) return fail_command(c, "see above");
+  report_usage_of(NULL);
+  if (status >= 0) return status;
   for (const Option *option = render_options; option->name; option++)
     if (c->arguments.values[option->id].given && !receipt_option_counts(option->id))
       return report_failure(STATUS_SCENE, "%s: the command in its receipt has --%s, which does not make an image",
@@ -81,26 +83,31 @@ int continue_open(Continue *c, const Arguments **arguments) {
   return status;
 }
 
-/* The first differences are named; the rest are counted. */
-enum { NAMED = 8 };
+/* The first differences are named in one line; the rest are counted. */
 typedef struct Difference {
-  const char *path;
-  uint32_t count;
+  char text[500];
+  uint32_t count, more;
 } Difference;
 
 static bool name_difference(void *user, const char *text) {
   Difference *d = user;
-  if (d->count++ < NAMED) report_failure(STATUS_SCENE, "%s cannot be continued: %s", d->path, text);
+  size_t used = strlen(d->text), room = sizeof d->text - used;
+  if (d->count++ == 0 || strlen(text) + 3 < room)
+    snprintf(d->text + used, room, "%s%s", used ? "; " : "", text);
+  else
+    d->more++;
   return true;
 }
 
 int continue_check(const Continue *c, const vlReceipt *now) {
-  Difference d = {c->path, 0};
+  Difference d = {.count = 0};
   vl_receipt_compare(vl_film_file_receipt(c->file), now,
                      VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_CAMERA | VL_RECEIPT_SETTINGS, name_difference,
                      &d);
-  if (d.count > NAMED) report_failure(STATUS_SCENE, "%s: and %u differences more", c->path, d.count - NAMED);
-  return d.count ? STATUS_SCENE : -1;
+  if (!d.count) return -1;
+  char more[40] = "";
+  if (d.more) snprintf(more, sizeof more, "; and %u more", d.more);
+  return report_failure(STATUS_SCENE, "%s cannot be continued: %s%s", c->path, d.text, more);
 }
 
 /* The pixels that have samples, and the first block's samples. */

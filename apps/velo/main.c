@@ -18,7 +18,8 @@ static const Command *const commands[] = {
     &render_command,      &scene_info_command,     &scene_check_command,    &scene_convert_command,
     &scene_kinds_command, &image_info_command,     &image_diff_command,     &image_convert_command,
     &image_check_command, &image_denoise_command,  &camera_project_command, &camera_unproject_command,
-    &camera_info_command, &camera_convert_command, &camera_verify_command,  &camera_vanishing_command};
+    &camera_info_command, &camera_convert_command, &camera_verify_command,  &camera_vanishing_command,
+    &film_info_command,   &film_merge_command,     &film_develop_command};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_overview(void) {
@@ -94,7 +95,7 @@ static const Command help_command = {
     .summary = "the options of a command",
     .text =
         "Prints the commands, or what COMMAND does: its options in sections, and examples. The first word of "
-        "commands of two words (image, scene, camera) prints all of them.",
+        "commands of two words (image, scene, camera, film) prints all of them.",
     .examples = "velo help render\nvelo help image diff",
     .options = no_options,
 };

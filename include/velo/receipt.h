@@ -42,6 +42,10 @@ VL_API vlResult vl_receipt_make(vlContext *context, const vlReceiptDef *def, vlR
  * later format version. */
 VL_API vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size, vlReceipt **receipt,
                                  vlError *error);
+/** The receipt of the image that a film with this receipt has at `samples` per pixel: with these samples in place of
+ * its own, also as render.spp and after --spp in the command, and without outputs. The image of a continued or merged
+ * film so has the receipt of a render without pause. Errors: ARGUMENT, MEMORY. */
+VL_API vlResult vl_receipt_of_image(const vlReceipt *film, uint32_t samples, vlReceipt **receipt, vlError *error);
 /** Null is allowed. */
 VL_API void vl_receipt_destroy(vlReceipt *receipt);
 
@@ -55,6 +59,8 @@ VL_API const char *vl_receipt_command(const vlReceipt *receipt, uint32_t index);
 VL_API const char *vl_receipt_output(const vlReceipt *receipt, uint32_t index);
 /** Samples per pixel that the image has; *planned (may be null): of the render. */
 VL_API uint32_t vl_receipt_samples(const vlReceipt *receipt, uint32_t *planned);
+/** The exposure of its development, vlDevelopDef.exposure; 1: it is not in the receipt. */
+VL_API float vl_receipt_exposure(const vlReceipt *receipt);
 /** Recorded file `index`, from 0; null past the end. *record is filled and returned. */
 VL_API const vlFileRecord *vl_receipt_file(const vlReceipt *receipt, uint32_t index, vlFileRecord *record);
 /** The version of velo and the commit that the program was built from, both "" where they are not in the receipt. */

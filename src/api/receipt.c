@@ -1,6 +1,7 @@
 /* api/receipt.c: see velo/receipt.h. docs/receipts.md describes the text. */
 #include "velo/receipt.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "api/receipt.h"
@@ -196,6 +197,31 @@ vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size, vlR
   return receipt_of(context, tree, copy, receipt, error);
 }
 
+/* The word after --spp. */
+static bool put_command_samples(json_t *command, uint32_t samples) {
+  char text[16];
+  size_t index;
+  json_t *word;
+  snprintf(text, sizeof text, "%u", samples);
+  json_array_foreach(command, index, word) {
+    const char *string = json_string_value(word);
+    if (string && strcmp(string, "--spp") == 0 && index + 1 < json_array_size(command))
+      return json_array_set_new(command, index + 1, json_string(text)) == 0;
+  }
+  return true;
+}
+
+vlResult vl_receipt_of_image(const vlReceipt *film, uint32_t samples, vlReceipt **receipt, vlError *error) {
+  if (receipt) *receipt = NULL;
+  if (!film || !receipt) return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: null argument");
+  json_t *tree = json_deep_copy(film->tree), *render = json_object_get(tree, "render");
+  bool good = tree && json_object_set_new(tree, "samples", json_integer(samples)) == 0 &&
+              (!json_is_object(render) || json_object_set_new(render, "spp", json_integer(samples)) == 0) &&
+              put_command_samples(json_object_get(tree, "command"), samples);
+  if (good) json_object_del(tree, "outputs");
+  return receipt_of(film->context, tree, good ? text_of(film->context, tree) : NULL, receipt, error);
+}
+
 void vl_receipt_destroy(vlReceipt *receipt) {
   if (!receipt) return;
   json_decref(receipt->tree);
@@ -228,6 +254,11 @@ static uint32_t count_of(const json_t *value) {
 uint32_t vl_receipt_samples(const vlReceipt *receipt, uint32_t *planned) {
   if (planned) *planned = count_of(json_object_get(json_object_get(receipt->tree, "render"), "spp"));
   return count_of(json_object_get(receipt->tree, "samples"));
+}
+
+float vl_receipt_exposure(const vlReceipt *receipt) {
+  const json_t *value = json_object_get(json_object_get(receipt->tree, "develop"), "exposure");
+  return json_is_number(value) ? (float)json_number_value(value) : 1.0f;
 }
 
 static int digit(char c) {
@@ -265,7 +296,7 @@ vlResult vl_receipt_camera(const vlReceipt *receipt, vlCameraDef *camera, uint32
   if (!(window[0] < window[2] && window[1] < window[3] && window[2] <= whole[0] && window[3] <= whole[1]))
     return vl_fail(error, VL_ERROR_SCENE, "receipt: the size of its image is wrong");
   vlCameraFileDef def = vl_default_camera_file_def();
-  vlCameraFile file = {receipt->context, "receipt", "velo", &def, error};
+  vlCameraFile file = {.context = receipt->context, .path = "receipt", .dialect = "velo", .def = &def, .error = error};
   vlCameraRecord record = {.camera = vl_default_camera_def(1, 1), .frames = 1};
   vlResult result = vl_camera_read_velo(&file, tree, &record);
   if (result != VL_OK) return result;

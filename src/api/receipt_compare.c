@@ -26,6 +26,20 @@ static void differ(Comparison *c, const char *format, ...) {
   if (c->fn && !c->fn(c->user, text)) c->ended = true;
 }
 
+/* Takes text as far as there is room. used: the length of all of it. */
+typedef struct Sink {
+  char *text;
+  size_t size, used;
+} Sink;
+
+static int fill(const char *part, size_t length, void *user) {
+  Sink *sink = user;
+  size_t room = sink->used < sink->size ? sink->size - sink->used : 0;
+  memcpy(sink->text + sink->size - room, part, length < room ? length : room);
+  sink->used += length;
+  return 0;
+}
+
 /* A value in words: as JSON, cut off where it is long; strings without quotes. */
 static const char *words_of(const json_t *value, char *text, size_t size) {
   if (!value || json_is_null(value)) return "not given";
@@ -33,14 +47,10 @@ static const char *words_of(const json_t *value, char *text, size_t size) {
     snprintf(text, size, "%.*s", (int)size - 1, json_string_value(value));
     return text;
   }
-  size_t flags = JSON_ENCODE_ANY | JSON_COMPACT | JSON_REAL_PRECISION(10);
-  size_t length = json_dumpb(value, text, size - 1, flags);
-  if (length == 0) return "unreadable";
-  if (length < size) {
-    text[length] = 0;
-  } else {
-    snprintf(text + size - 4, 4, "...");
-  }
+  Sink sink = {text, size, 0};
+  json_dump_callback(value, fill, &sink, JSON_ENCODE_ANY | JSON_COMPACT | JSON_REAL_PRECISION(10));
+  text[sink.used < size ? sink.used : size - 1] = 0;
+  if (sink.used >= size) snprintf(text + size - 4, 4, "...");
   return text;
 }
 

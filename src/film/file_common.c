@@ -7,7 +7,7 @@
 const char vl_film_magic[8] = {'V', 'E', 'L', 'O', 'F', 'I', 'L', 'M'};
 
 uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size) {
-  return (uint32_t)crc32_z(crc, data, size);
+  return size ? (uint32_t)crc32_z(crc, data, size) : crc; /* zlib begins anew where data is null */
 }
 
 static uint32_t cells(uint32_t low, uint32_t high) {

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/digest.h"
+#include "failing_allocator.h"
 #include "velo/velo.h"
 
 typedef struct Fixture {
@@ -226,6 +227,47 @@ static void differences_are_named(void **state) {
   vl_receipt_destroy(now);
 }
 
+static void long_values_are_cut(void **state) {
+  Fixture *f = *state;
+  char long_text[900] = "{\"velo_receipt\": 1, \"scene\": [\"";
+  memset(long_text + strlen(long_text), 'x', 600);
+  strcat(long_text, "\"]}");
+  vlReceipt *then = parse(f, "{\"velo_receipt\": 1, \"scene\": \"a\"}"), *now = parse(f, long_text);
+  const char *text = differences(then, now, VL_RECEIPT_ALL), *end = strstr(text, "xxx..., was a\n");
+  assert_non_null(end);
+  assert_int_equal(strlen(text), strlen("scene is ") + 119 + strlen(", was a\n"));
+  assert_int_equal(strncmp(text, "scene is [\"xxx", 14), 0);
+  vl_receipt_destroy(then);
+  vl_receipt_destroy(now);
+}
+
+static void a_film_has_the_receipt_of_its_image(void **state) {
+  Fixture *f = *state;
+  static const char *const words[2][5] = {{"velo", "render", "a.pbrt", "--spp", "16"},
+                                          {"velo", "render", "a.pbrt", "--spp", "64"}};
+  static const char *const outputs[] = {"a.exr"};
+  vlSceneDefs *defs = vl_scene_defs(f->scene);
+  vlReceiptDef def = vl_default_receipt_def();
+  def.defs = defs, def.scene = "a.pbrt", def.command_count = 5;
+  def.command = words[0], def.samples = defs->render.spp = 16;
+  def.outputs = outputs, def.output_count = 1;
+  vlReceipt *film = make(f, &def), *image = NULL;
+  assert_string_equal(vl_receipt_output(film, 0), "a.exr");
+  def.command = words[1], def.samples = defs->render.spp = 64;
+  def.outputs = NULL;
+  vlReceipt *straight = make(f, &def);
+  assert_int_equal(vl_receipt_of_image(film, 64, &image, NULL), VL_OK);
+  assert_string_equal(vl_receipt_text(image), vl_receipt_text(straight));
+  vl_receipt_destroy(image);
+  vl_receipt_destroy(film);
+  film = parse(f, vl_receipt_text(straight)); /* as it is read from a file */
+  assert_int_equal(vl_receipt_of_image(film, 64, &image, NULL), VL_OK);
+  assert_string_equal(vl_receipt_text(image), vl_receipt_text(straight));
+  vl_receipt_destroy(image);
+  vl_receipt_destroy(film);
+  vl_receipt_destroy(straight);
+}
+
 static void autofocus_is_in_the_camera(void **state) {
   Fixture *f = *state;
   vlSceneDefs *defs = vl_scene_defs(f->scene);
@@ -290,15 +332,54 @@ static void wrong_members_are_missing(void **state) {
   vl_receipt_destroy(empty);
 }
 
+/* Reads a scene with recording, makes its receipt, reads it, derives an image's. user: path of the scene. */
+static vlResult all_of_it(vlContext *context, void *user) {
+  vlScene *scene = NULL;
+  vlReceipt *receipt = NULL, *read = NULL, *image = NULL;
+  vlError error = {0};
+  vlReceiptDef def = vl_default_receipt_def();
+  def.scene = user;
+  vl_context_record_files(context, true);
+  vlResult result = vl_scene_create(context, &scene);
+  if (result == VL_OK) result = vl_scene_load(scene, user, NULL, &error);
+  if (result == VL_OK) {
+    def.defs = vl_scene_defs(scene);
+    result = vl_receipt_make(context, &def, &receipt, &error);
+  }
+  if (result == VL_OK)
+    result = vl_receipt_parse(context, vl_receipt_text(receipt), strlen(vl_receipt_text(receipt)), &read, &error);
+  if (result == VL_OK) result = vl_receipt_of_image(read, 3, &image, &error);
+  if (result == VL_OK) assert_non_null(strstr(vl_receipt_text(image), "\"files\":[{\"path\":\"one.pbrt\""));
+  vl_receipt_destroy(receipt);
+  vl_receipt_destroy(read);
+  vl_receipt_destroy(image);
+  vl_scene_destroy(scene);
+  return result;
+}
+
+static void memory_may_run_out(void **state) {
+  (void)state;
+  char folder[] = "/tmp/velo-receipt-XXXXXX", scene[100];
+  assert_non_null(mkdtemp(folder));
+  snprintf(scene, sizeof scene, "%s/one.pbrt", folder);
+  write_file(scene, "Camera \"perspective\"\nWorldBegin\nShape \"sphere\"\n");
+  fail_everywhere(all_of_it, scene, 10);
+  unlink(scene);
+  rmdir(folder);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(digests_are_murmur3),
       cmocka_unit_test_setup_teardown(files_are_recorded, set_up, tear_down),
       cmocka_unit_test_setup_teardown(numbers_are_exact, set_up, tear_down),
       cmocka_unit_test_setup_teardown(differences_are_named, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(long_values_are_cut, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(a_film_has_the_receipt_of_its_image, set_up, tear_down),
       cmocka_unit_test_setup_teardown(autofocus_is_in_the_camera, set_up, tear_down),
       cmocka_unit_test_setup_teardown(wrong_receipts_are_refused, set_up, tear_down),
       cmocka_unit_test_setup_teardown(wrong_members_are_missing, set_up, tear_down),
+      cmocka_unit_test(memory_may_run_out),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -118,9 +118,10 @@ cp leaf.png room/parts/leaf.png
 echo '# a comment' >>room/room.pbrt
 expect_line_of scene_changed "velo: plain.exr: the file room.pbrt changed"
 sed 's/fov" \[40\]/fov" [50]/' room.pbrt >room/room.pbrt
-expect_line_of camera_changed "velo: plain.exr: camera differs: fov is 0.872"
+expect_line_of camera_changed "camera differs: fov is 0.872"
 sed 's/maxdepth" \[4\]/maxdepth" [5]/' room.pbrt >room/room.pbrt
-expect_line_of settings_changed "velo: plain.exr: render differs: max_depth is 5, was 4"
+expect_line_of settings_changed "render differs: max_depth is 5, was 4"
+expect_text settings_changed_in_one_line "the file room.pbrt changed; render differs: max_depth"
 cp room.pbrt room/room.pbrt
 mv room/parts/leaf.png gone.png
 refuse file_missing 4 "leaf.png" "$VELO" render --again plain.exr -o new.exr
@@ -162,7 +163,7 @@ change_and_refuse later_format "later version of velo" 'receipt["velo_receipt"] 
 change_and_refuse not_json "receipt: line 1" 'receipt = b"{"'
 change_and_refuse writes_a_file "has --output, which does not make an image" 'receipt["command"] = ["velo", "render", "-o", "x.exr", "room/room.pbrt"]'
 change_and_refuse asks_for_help "cannot be followed: it asks for help" 'receipt["command"] = ["velo", "render", "-h"]'
-change_and_refuse unknown_option "cannot be followed" 'receipt["command"] = ["velo", "render", "--sppp", "3", "a"]'
+change_and_refuse unknown_option "changed.exr: unknown option" 'receipt["command"] = ["velo", "render", "--sppp", "3", "a"]'
 change_and_refuse no_command "cannot be followed: there is none" 'receipt["command"] = []'
 change_and_refuse odd_members "cannot be followed" 'receipt["command"] = 3; receipt["files"] = {}'
 change plain.exr 'receipt["velo"]["commit"] = "0"'

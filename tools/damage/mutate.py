@@ -264,6 +264,24 @@ def json_text(draw, text):
     return some_bytes(draw, text)
 
 
+def receipt(draw, data):
+    """An image with another receipt in its header: damaged JSON, and now and then damaged bytes of the whole."""
+    name = b"velo.receipt\0string\0"
+    at = data.index(name) + len(name)
+    size = struct.unpack_from("<I", data, at)[0]
+    text = json_text(draw, data[at + 4:at + 4 + size])
+    end = at + 4 + size  # the other attributes follow, then a zero, then the table of offsets
+    while data[end]:
+        kind = data.index(b"\0", end) + 1
+        value = data.index(b"\0", kind) + 1
+        end = value + 4 + struct.unpack_from("<I", data, value)[0]
+    first = struct.unpack_from("<Q", data, end + 1)[0]
+    count = (first - end - 1) // 8
+    table = [o + len(text) - size for o in struct.unpack_from("<%dQ" % count, data, end + 1)]
+    whole = data[:at] + struct.pack("<I", len(text)) + text + data[at + 4 + size:end + 1] + struct.pack("<%dQ" % count, *table) + data[first:]
+    return some_bytes(draw, whole) if draw.random() < 0.1 else whole
+
+
 def glb(draw, data):
     """A GLB: its JSON with the right lengths around it, its binary part, or its headers."""
     length = struct.unpack_from("<I", data, 12)[0]

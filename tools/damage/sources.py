@@ -290,6 +290,13 @@ def trajectories():
             "model/" + part, "plain", "model"
 
 
+def receipts(folder):
+    """The same, of which the receipt is damaged, with their scene."""
+    scene = tree(os.path.join(ROOT, "scenes", "features"))
+    for name in names(folder, r"\.exr$"):
+        yield name, {**scene, name: os.path.join(folder, name)}, name, "receipt", name
+
+
 def own_images(folder):
     """Images that velo rendered itself (made in the folder before), with all their headers and channels."""
     for name in names(folder, r"\.exr$"):

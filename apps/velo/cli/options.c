@@ -285,9 +285,11 @@ int options_parse(const Command *command, int argc, char **argv, Arguments *argu
     } else if (arguments->operand_count == command->max_operands) {
       return report_usage("%s: one argument too many: \"%s\"", command->name, *rest);
     } else {
-      arguments->operands[arguments->operand_count++] = *rest;
+      if (arguments->operand_count < MAX_OPERANDS) arguments->operands[arguments->operand_count] = *rest;
+      argv[arguments->operand_count++] = *rest; /* earlier words are read already */
     }
   }
+  arguments->all_operands = (const char *const *)argv;
   if (arguments->operand_count < command->min_operands)
     return report_usage("%s: too few arguments; usage: velo %s %s", command->name, command->name, command->usage);
   return -1;

@@ -55,7 +55,8 @@ typedef struct Arguments {
   int text_count;
   const char *folders[MAX_TEXTS];
   int folder_count;
-  const char *operands[MAX_OPERANDS];
+  const char *operands[MAX_OPERANDS]; /* the first ones */
+  const char *const *all_operands;    /* all, in the words that were parsed */
   int operand_count;
 } Arguments;
 

@@ -15,6 +15,7 @@ static struct {
   Verbosity verbosity;
   const vlContext *context; /* whose memory use is reported; may be null */
   size_t memory_limit;
+  const char *usage_file; /* that holds the command line; null: it is the user's */
   char *json_text;
   size_t json_size;
 } state;
@@ -125,10 +126,15 @@ static void say(const char *kind, int status, const vlError *where, const char *
     va_end(args);                               \
   } while (0)
 
+void report_usage_of(const char *file) {
+  state.usage_file = file;
+}
+
 int report_usage(const char *format, ...) {
   FORMATTED(text, format);
-  say(NULL, STATUS_USAGE, NULL, NULL, text);
-  return STATUS_USAGE;
+  int status = state.usage_file ? STATUS_SCENE : STATUS_USAGE;
+  say(NULL, status, NULL, state.usage_file, text);
+  return status;
 }
 
 int report_failure(int status, const char *format, ...) {

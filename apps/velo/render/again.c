@@ -29,8 +29,10 @@ static int parse_command(Again *again) {
     words[count++] = (char *)(uintptr_t)word; /* is not changed */
   }
   if (count == 0) return fail_command(again, "there is none");
+  report_usage_of(again->path);
   int status = options_parse(&render_command, count, words, &again->arguments);
-  if (status >= 0) return fail_command(again, "see above");
+  report_usage_of(NULL);
+  if (status >= 0) return status;
   for (const Option *option = render_options; option->name; option++)
     if (again->arguments.values[option->id].given && !receipt_option_counts(option->id))
       return report_failure(STATUS_SCENE, "%s: the command in its receipt has --%s, which does not make an image",
@@ -123,16 +125,19 @@ int again_open(Again *again, const Arguments **arguments) {
   return status;
 }
 
-/* The first differences are named; the rest are counted. */
-enum { NAMED = 8 };
+/* The first differences are named in one line; the rest are counted. */
 typedef struct Difference {
-  const char *path;
-  uint32_t count;
+  char text[500];
+  uint32_t count, more;
 } Difference;
 
 static bool name_difference(void *user, const char *text) {
   Difference *d = user;
-  if (d->count++ < NAMED) report_failure(STATUS_SCENE, "%s: %s", d->path, text);
+  size_t used = strlen(d->text), room = sizeof d->text - used;
+  if (d->count++ == 0 || strlen(text) + 3 < room)
+    snprintf(d->text + used, room, "%s%s", used ? "; " : "", text);
+  else
+    d->more++;
   return true;
 }
 
@@ -145,12 +150,13 @@ int again_check(const Again *again, const ReceiptPlan *plan, vlContext *context,
   uint32_t parts =
       VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_SETTINGS | VL_RECEIPT_SAMPLES | VL_RECEIPT_DEVELOP;
   if (with_camera) parts |= VL_RECEIPT_CAMERA;
-  Difference difference = {again->path, 0};
+  Difference difference = {.count = 0};
   vl_receipt_compare(again->receipt, now, parts, name_difference, &difference);
-  if (difference.count > NAMED)
-    report_failure(STATUS_SCENE, "%s: and %u differences more", again->path, difference.count - NAMED);
   vl_receipt_destroy(now);
-  return difference.count ? STATUS_SCENE : -1;
+  if (!difference.count) return -1;
+  char more[40] = "";
+  if (difference.more) snprintf(more, sizeof more, "; and %u more", difference.more);
+  return report_failure(STATUS_SCENE, "%s: %s%s", again->path, difference.text, more);
 }
 
 void again_close(Again *again) {

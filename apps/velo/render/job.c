@@ -52,6 +52,7 @@ const Choice stereo_choices[] = {{"none", VL_STEREO_NONE},
                                  {NULL, 0}};
 const Choice eye_choices[] = {{"both", VL_EYE_BOTH}, {"left", VL_EYE_LEFT}, {"right", VL_EYE_RIGHT}, {NULL, 0}};
 const Choice bits_choices[] = {{"portable", VL_BITS_PORTABLE}, {"fast", VL_BITS_FAST}, {NULL, 0}};
+const Choice shard_choices[] = {{"samples", 0}, {"tiles", 1}, {NULL, 0}};
 const Choice isa_choices[] = {
     {"base", VL_ISA_BASE}, {"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {NULL, 0}};
 
@@ -180,6 +181,11 @@ static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
   }
 }
 
+/* The sequence of a sampler with a fixed number of samples is that of the whole image, also for a part of it. */
+static void fix_sequence(vlRenderDef *render) {
+  if (!render->sequence && !sampler_is_open(render->sampler)) render->sequence = render->spp;
+}
+
 /* Parses N[:MIN:MAX]. */
 static int override_spectrum(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = &arguments->values[RENDER_SPECTRUM];
@@ -203,6 +209,10 @@ static int override_spectrum(vlSceneDefs *defs, const Arguments *arguments) {
     return report_usage("--color rgb: there is no spectrum then%s",
                         v->given ? "" : " (--spectrum 0 leaves the scene's out)");
   return -1;
+}
+
+bool job_sequence_is_planned(const Job *job, const Arguments *arguments) {
+  return !arguments->values[RENDER_SEQUENCE].given && !sampler_is_open(job->defs->render.sampler);
 }
 
 static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t height) {
@@ -311,6 +321,7 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   if (status < 0) status = fit_camera(job, defs, arguments);
   if (status >= 0) return status;
   override_sampling(defs, arguments);
+  fix_sequence(&defs->render);
   if (v[RENDER_TIME].given) defs->render.time_limit = v[RENDER_TIME].number;
   if (v[RENDER_BITS].given) defs->build.bits = (vlBits)v[RENDER_BITS].integer;
   if (v[RENDER_IMITATE_PBRT].given) defs->build.imitate_pbrt = true;

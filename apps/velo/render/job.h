@@ -72,11 +72,18 @@ enum {
   RENDER_DENOISE,
   RENDER_DENOISER,
   RENDER_DENOISER_LIBRARY,
+  RENDER_FILM,
+  RENDER_CHECKPOINT,
+  RENDER_CONTINUE,
+  RENDER_SAMPLES,
+  RENDER_SHARD,
+  RENDER_SHARD_BY,
+  RENDER_TILES,
   RENDER_LENS /* the first of lens_options.h */
 };
 
 extern const Choice light_sampler_choices[], sensor_choices[], regularize_choices[], color_choices[], view_choices[],
-    isa_choices[], bits_choices[], stereo_choices[], eye_choices[];
+    isa_choices[], bits_choices[], shard_choices[], stereo_choices[], eye_choices[];
 
 extern const Option render_options[];
 extern const Section render_sections[];
@@ -103,6 +110,9 @@ typedef struct Job {
 
 /* Overrides the scene's defs and makes the camera. Returns -1, or the exit code after reporting the error. */
 int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments);
+
+/* Whether the length of the sequence follows from the planned number of samples. */
+bool job_sequence_is_planned(const Job *job, const Arguments *arguments);
 
 /* The time of the ground truth and of the camera in the header, in seconds. */
 double job_channels_time(const Job *job);

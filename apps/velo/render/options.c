@@ -31,6 +31,26 @@ const Option render_options[] = {
     {RENDER_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1", "render only these pixels, x1 and y1 exclusive", 0, 0, NULL},
     {RENDER_CROPWINDOW, 0, "cropwindow", OPTION_FRACTIONS, "x0,x1,y0,y1",
      "the same in fractions of the image, in pbrt's order", 0, 0, NULL},
+    {RENDER_FILM, 0, "film", OPTION_TEXT, "FILE",
+     "keep the film in FILE, while rendering and at the end; a render\nthat ends early is continued from it. Without "
+     "-o "
+     "no image is\nwritten",
+     0, 0, NULL},
+    {RENDER_CHECKPOINT, 0, "checkpoint", OPTION_TIME, "TIME",
+     "how often the film is written while rendering; default 30s, and\nless often where it would cost more than 0.5 %",
+     0, 0, NULL},
+    {RENDER_CONTINUE, 0, "continue", OPTION_TEXT, "FILM",
+     "go on with this film, with its settings and outputs, to its --spp\nor the one given, or for --time. FILE is the "
+     "scene where it is\nnot where the film says. The film is kept in the same file unless\n--film names another",
+     0, 0, NULL},
+    {RENDER_SHARD, 0, "shard", OPTION_TEXT, "I/N",
+     "render the I-th of N parts of the image into --film, I from 1;\nof a trajectory: every N-th frame", 0, 0, NULL},
+    {RENDER_SHARD_BY, 0, "shard-by", OPTION_CHOICE, "WHAT", "what the parts are: some samples of all pixels, or:", 0, 0,
+     shard_choices},
+    {RENDER_SAMPLES, 0, "samples", OPTION_TEXT, "A:B", "only the samples A to B - 1 of each pixel, into --film", 0, 0,
+     NULL},
+    {RENDER_TILES, 0, "tiles", OPTION_CROP, "x0,y0,x1,y1", "only these pixels of the film, cut at multiples of 32", 0,
+     0, NULL},
     {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
      "take camera and image size from this scene or camera file;\nof a glTF file one of its own, by name or number", 0,
      0, NULL},
@@ -195,6 +215,7 @@ const Option render_options[] = {
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Section render_sections[] = {{RENDER_OUTPUT, "the image and when it is done"},
+                                   {RENDER_FILM, "the film: stop and go on, many machines"},
                                    {RENDER_CAMERA, "camera and scene"},
                                    {RENDER_TRAJECTORY, "many images: trajectories, rigs, two eyes"},
                                    {RENDER_TRACER, "light and samples"},

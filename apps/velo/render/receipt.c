@@ -11,10 +11,11 @@
 extern const char velo_commit[]; /* written by cmake/commit.cmake */
 
 bool receipt_option_counts(int option) {
-  static const int others[] = {RENDER_OUTPUT,      RENDER_THREADS, RENDER_TIME,       RENDER_VIEW,
-                               RENDER_EXPOSURE,    RENDER_DRY_RUN, RENDER_QUIET,      RENDER_LOG_JSON,
-                               RENDER_VERBOSE,     RENDER_ISA,     RENDER_MAX_MEMORY, RENDER_SANDBOX,
-                               RENDER_MAX_TEXTURE, RENDER_AGAIN,   RENDER_NO_RECEIPT};
+  static const int others[] = {
+      RENDER_OUTPUT,      RENDER_THREADS,  RENDER_TIME,       RENDER_VIEW, RENDER_EXPOSURE,   RENDER_DRY_RUN,
+      RENDER_QUIET,       RENDER_LOG_JSON, RENDER_VERBOSE,    RENDER_ISA,  RENDER_MAX_MEMORY, RENDER_SANDBOX,
+      RENDER_MAX_TEXTURE, RENDER_AGAIN,    RENDER_NO_RECEIPT, RENDER_FILM, RENDER_CHECKPOINT, RENDER_CONTINUE,
+      RENDER_SAMPLES,     RENDER_SHARD,    RENDER_SHARD_BY,   RENDER_TILES};
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
     if (option == others[i]) return false;
   return true;
@@ -94,6 +95,7 @@ vlResult receipt_make(const ReceiptPlan *plan, vlContext *context, const Job *jo
   def.defs = &defs;
   def.load = &plan->opening->load, def.complete = &plan->opening->complete;
   def.samples = which->samples;
+  def.outputs = which->outputs, def.output_count = which->output_count;
   if (is_autofocused(job, plan->arguments)) def.focus_distance = job->camera.focus_distance;
   return vl_receipt_make(context, &def, receipt, NULL);
 }

@@ -18,10 +18,12 @@ typedef struct ReceiptPlan {
 
 /* The image of which a receipt is made, besides its job. */
 typedef struct ReceiptImage {
-  const char *eye;  /* "left", "right": the file holds this eye alone; null: what --eye says */
-  bool is_frame;    /* of a trajectory */
-  uint32_t frame;   /* its number */
-  uint32_t samples; /* per pixel */
+  const char *eye;            /* "left", "right": the file holds this eye alone; null: what --eye says */
+  bool is_frame;              /* of a trajectory */
+  uint32_t frame;             /* its number */
+  uint32_t samples;           /* per pixel */
+  const char *const *outputs; /* of a film: the images of its render; null: none */
+  uint32_t output_count;
 } ReceiptImage;
 
 /* Whether the option changes what an image holds. Others say where it goes, how fast it is made or what is printed. */

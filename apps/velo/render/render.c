@@ -10,8 +10,10 @@
 #include "render/again.h"
 #include "render/attributes.h"
 #include "render/channels.h"
+#include "render/continue.h"
 #include "render/denoised.h"
 #include "render/exposure.h"
+#include "render/film_keeper.h"
 #include "render/frames.h"
 #include "render/job.h"
 #include "render/lens_options.h"
@@ -19,6 +21,7 @@
 #include "render/outputs.h"
 #include "render/progress.h"
 #include "render/scene_options.h"
+#include "render/shard.h"
 
 /* Seconds between two progress images. Writing them takes at most 1 / WRITE_SHARE of the time. */
 enum { WRITE_EVERY = 10, WRITE_SHARE = 20 };
@@ -44,6 +47,10 @@ typedef struct Render {
   bool many; /* whether `frames` is used */
   SceneOpening opening;
   Again again;
+  Continue resumed;
+  FilmKeeper keeper;
+  const char *film_path; /* null: the film is not kept */
+  vlSceneDefs whole;     /* of the whole render, where this command renders a part of it */
   ReceiptPlan receipt;
 } Render;
 
@@ -102,6 +109,7 @@ static void limit_time(Render *render) {
 }
 
 static void write_progress_image(Render *render, const vlProgress *now) {
+  if (render->outputs.count == 0) return;
   double start = monotonic_seconds(), wait = WRITE_SHARE * render->write_cost;
   bool ends = now->spp_done >= now->spp_total || now->remaining <= 2 * render->write_cost;
   if (ends && render->time_limit > 0) return; /* the final image follows soon */
@@ -115,10 +123,17 @@ static void write_progress_image(Render *render, const vlProgress *now) {
   limit_time(render);
 }
 
+static void write_checkpoint(Render *render, const vlProgress *now) {
+  if (now->spp_done < now->spp_total) film_keeper_checkpoint(&render->keeper, render->film);
+}
+
 static bool on_progress(void *user, const vlProgress *now) {
   Render *render = user;
   progress_show(&render->progress, now);
-  if (now->pass_done && !signals_pending()) write_progress_image(render, now);
+  if (now->pass_done && !signals_pending()) {
+    write_checkpoint(render, now);
+    write_progress_image(render, now);
+  }
   return !signals_pending();
 }
 
@@ -184,7 +199,7 @@ static void start_receipt(Render *render, const Arguments *arguments) {
       .arguments = arguments, .opening = &render->opening, .again = again->receipt, .again_is_ours = again->is_ours};
   if (again->camera.given) render->job.receipt_camera = &again->camera;
   if (!arguments->values[RENDER_NO_RECEIPT].given) render->job.receipt = &render->receipt;
-  render->job.records_files = render->job.receipt || again->receipt;
+  render->job.records_files = render->job.receipt || again->receipt || render->film_path;
   vl_context_record_files(render->context, render->job.records_files);
 }
 
@@ -194,14 +209,21 @@ static int prepare(Render *render, const Arguments *arguments) {
   Outputs *outputs = &render->outputs;
   for (int i = 0; i < arguments->text_count; i++) outputs->paths[i] = arguments->texts[i];
   outputs->count = arguments->text_count;
+  render->film_path = v[RENDER_FILM].given       ? v[RENDER_FILM].text
+                      : v[RENDER_CONTINUE].given ? v[RENDER_CONTINUE].text
+                                                 : NULL;
   outputs->half = v[RENDER_HALF].given;
   outputs->view = v[RENDER_VIEW].given ? (vlView)v[RENDER_VIEW].integer : VL_VIEW_STANDARD;
   int status = exposure_parse(&v[RENDER_EXPOSURE], &outputs->exposure, &outputs->meter);
   if (status < 0) status = channels_choose(&render->channels, arguments);
   if (status < 0) status = outputs_check_names(outputs);
+  if (status < 0) status = shard_check(arguments);
   if (status < 0) status = frames_check(arguments, outputs);
   if (status < 0) status = denoised_choose(&render->denoised, arguments, outputs);
   if (status < 0) status = outputs_check_folders(outputs);
+  const Outputs film = {
+      .paths = {render->film_path}, .count = render->film_path ? 1 : 0, .patterns = outputs->patterns};
+  if (status < 0) status = outputs_check_folders(&film);
   if (status >= 0) return status;
 
   vlContextDef def = vl_default_context_def();
@@ -251,7 +273,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
 
   status = job_make(&render->job, render->context, render->scene, path, arguments);
   if (status >= 0) return status;
-  if (render->outputs.count == 0) {
+  if (render->outputs.count == 0 && !render->film_path) {
     choose_output(render, path, render->job.defs->output);
     status = outputs_check_folders(&render->outputs);
     if (status >= 0) return status;
@@ -264,9 +286,14 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   warn_of_channels(render);
   status = channels_load(&render->channels, render->context, &render->job);
   if (status >= 0) return status;
-  render->job.defs->film.errors =
-      ((render->channels.bits & VL_CHANNEL_ERROR || render->channels.gbuffer) && has_layers(render)) ||
-      render->denoised.outputs.count;
+  render->job.defs->film.errors = ((render->channels.bits & VL_CHANNEL_ERROR || render->channels.gbuffer) &&
+                                   (has_layers(render) || render->film_path)) ||
+                                  render->denoised.outputs.count;
+  if (render->resumed.file && job_sequence_is_planned(&render->job, arguments))
+    render->job.defs->render.sequence = vl_film_file_sequence(render->resumed.file);
+  render->whole = *render->job.defs;
+  status = shard_apply(arguments, &render->job.defs->film, &render->job.defs->render);
+  if (status >= 0) return status;
   render->many = frames_wanted(arguments, &render->job);
   if (render->many && render->denoised.outputs.count) return report_usage("--denoise goes with one image");
   if (render->many) {
@@ -342,6 +369,7 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
       json_text(&json, NULL, output_written(outputs, i, stage, part, sizeof part));
     if (render->denoised.outputs.count && spp)
       json_text(&json, NULL, output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
+    if (render->film_path && spp) json_text(&json, NULL, render->film_path);
     json_end(&json, ']');
     report_json_end(&json);
     return;
@@ -351,7 +379,8 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
   format_count(speed, sizeof speed, stats->seconds > 0 ? (double)stats->paths / stats->seconds : 0);
   format_count(ray_count, sizeof ray_count, (double)rays);
   list_files(render, stage, files, sizeof files);
-  report_note("%u spp in %s, %s paths/s, %s rays; wrote %s", spp, time, speed, ray_count, files);
+  report_note("%u spp in %s, %s paths/s, %s rays; wrote %s%s%s", spp, time, speed, ray_count, files,
+              *files && render->film_path ? ", " : "", render->film_path ? render->film_path : "");
   report_memory(render);
 }
 
@@ -391,12 +420,56 @@ static int write_last(Render *render, OutputStage *stage) {
   return code != STATUS_OK ? code : written != STATUS_OK ? written : status;
 }
 
+/* The receipt of the whole render, for the film. */
+static int film_receipt(const Render *render, vlReceipt **receipt) {
+  Job job = render->job;
+  vlSceneDefs whole = render->whole;
+  job.defs = &whole;
+  const ReceiptImage which = {
+      .samples = whole.render.spp, .outputs = render->outputs.paths, .output_count = (uint32_t)render->outputs.count};
+  vlResult result = receipt_make(&render->receipt, render->context, &job, &which, receipt);
+  return result == VL_OK ? -1 : report_error(NULL, result, NULL);
+}
+
+/* Makes the film, or reads the one that is continued. */
+static int open_film(Render *render) {
+  vlSceneDefs *defs = render->job.defs;
+  vlError error = {0};
+  vlReceipt *receipt = NULL;
+  if (render->film_path) {
+    int status = film_receipt(render, &receipt);
+    if (status >= 0) return status;
+    if (render->resumed.file) {
+      status = continue_check(&render->resumed, receipt);
+      if (status < 0) status = continue_read(&render->resumed, render->context, defs, &render->film);
+    }
+    if (status >= 0) {
+      vl_receipt_destroy(receipt);
+      return status;
+    }
+  }
+  film_keeper_start(&render->keeper, render->film_path, render->receipt.arguments, &render->whole.film, receipt);
+  if (render->film) return -1;
+  vlResult result = vl_film_create(render->context, &defs->film, &render->film);
+  return result == VL_OK ? -1 : report_error(&error, result, render->job.path);
+}
+
+/* A render that ended after its time is one of the samples that it reached. */
+static int plan_reached(Render *render, uint32_t end) {
+  if (!(render->time_limit > 0) || end >= render->job.defs->render.spp) return -1;
+  render->job.defs->render.spp = render->whole.render.spp = end;
+  if (!render->film_path) return -1;
+  vl_receipt_destroy(render->keeper.receipt);
+  render->keeper.receipt = NULL;
+  return film_receipt(render, &render->keeper.receipt);
+}
+
 static int render_and_write(Render *render) {
   Job *job = &render->job;
   vlError error = {0};
   vlRenderStats stats = {0};
-  vlResult result = vl_film_create(render->context, &job->defs->film, &render->film);
-  if (result != VL_OK) return report_error(NULL, result, job->path);
+  int opened = open_film(render);
+  if (opened >= 0) return opened;
   render->time_limit = job->defs->render.time_limit;
   render->render_start = monotonic_seconds();
   progress_start(&render->progress, render->time_limit);
@@ -404,7 +477,7 @@ static int render_and_write(Render *render) {
   job->defs->render.progress = on_progress;
   job->defs->render.progress_user = render;
   signals_remember();
-  result = vl_render(render->world, &job->camera, render->film, &job->defs->render, &stats, &error);
+  vlResult result = vl_render(render->world, &job->camera, render->film, &job->defs->render, &stats, &error);
   report_status_line(NULL);
   report_not_finite(&stats);
   if (result != VL_OK && result != VL_CANCELLED) return report_error(&error, result, job->path);
@@ -416,7 +489,11 @@ static int render_and_write(Render *render) {
     return 128 + signals_pending();
   }
   if (stage == OUTPUT_STOPPED) report_note("interrupted after %u of %u spp", spp, job->defs->render.spp);
-  int status = write_last(render, &stage);
+  if (stage == OUTPUT_FINISHED && (opened = plan_reached(render, job->defs->render.first_sample + spp)) >= 0)
+    return opened;
+  int kept = film_keeper_finish(&render->keeper, render->film);
+  int status = render->outputs.count ? write_last(render, &stage) : STATUS_OK;
+  if (kept != STATUS_OK && (status == STATUS_OK || status > 128)) status = kept;
   if (status == STATUS_OK) report_late(render, spp);
   if (signals_pending() && status == STATUS_OK) status = 128 + signals_pending();
   if (status == STATUS_OK || status > 128) report_result(render, &stats, stage, status);
@@ -444,6 +521,7 @@ static int run_render(const Command *command, const Arguments *arguments) {
   render.start = monotonic_seconds();
   set_up_reports(arguments);
   int status = again_open(&render.again, &arguments);
+  if (status < 0) status = continue_open(&render.resumed, &arguments);
   if (status < 0 && arguments->operand_count == 0)
     status = report_usage("%s: too few arguments; usage: velo %s %s", command->name, command->name, command->usage);
   if (status < 0) status = prepare(&render, arguments);
@@ -462,12 +540,14 @@ static int run_render(const Command *command, const Arguments *arguments) {
   if (status < 0) status = render_and_write(&render);
   frames_free(&render.frames);
   channels_free(&render.channels);
+  film_keeper_free(&render.keeper);
   vl_film_destroy(render.film);
   vl_world_destroy(render.world);
   vl_scene_destroy(render.scene);
   report_memory_of(NULL, 0);
   vl_context_destroy(render.context);
   again_close(&render.again);
+  continue_close(&render.resumed);
   return status;
 }
 
@@ -478,13 +558,16 @@ const Command render_command = {
     .text =
         "Renders FILE. Options override what the file says. After the first pass, and then every ten\n"
         "seconds or so, the image is written as it is to NAME.part.EXT; when the render is done it\n"
-        "replaces NAME.EXT. Ctrl-C ends the render and leaves what is done in NAME.part.EXT.",
+        "replaces NAME.EXT. Ctrl-C ends the render and leaves what is done in NAME.part.EXT, and in\n"
+        "--film FILE, from which --continue goes on.",
     .examples =
         "velo render room.pbrt -o room.exr -o room.png --spp 256\n"
-        "velo render model.glb --resolution 1280x720 --time 5m -o model.png",
+        "velo render model.glb --resolution 1280x720 --time 5m -o model.png\n"
+        "velo render room.pbrt --spp 256 --film room.film -o room.exr\n"
+        "velo render --continue room.film --spp 1024",
     .options = render_options,
     .sections = render_sections,
-    .min_operands = 0, /* --again needs none */
+    .min_operands = 0, /* --again and --continue need none */
     .max_operands = 1,
     .run = run_render,
 };

@@ -1,0 +1,31 @@
+/* film/blocks.h: the blocks of a film file, grouped into rectangles of pixels with the same samples. */
+#ifndef APP_FILM_BLOCKS_H
+#define APP_FILM_BLOCKS_H
+
+#include "velo/velo.h"
+
+/* Ranges of samples, without order among lists. */
+typedef struct RangeList {
+  vlSampleRange *ranges;
+  uint32_t count;
+} RangeList;
+
+/* A rectangle of pixels and its samples. */
+typedef struct FilmPart {
+  uint32_t place[4];
+  RangeList samples;
+} FilmPart;
+
+typedef struct FilmParts {
+  FilmPart *parts;
+  uint32_t count;
+  RangeList *lists; /* owned; the parts point into them */
+  uint32_t list_count;
+} FilmParts;
+
+/* Reads all blocks (check: with their sums) and groups them. planned: 0: the samples that are there; else those of
+ * [0, planned) that are not. Parts without any are left out. Returns -1, or the exit code after reporting the error. */
+int film_parts_read(vlFilmFile *file, bool check, uint32_t planned, FilmParts *parts);
+void film_parts_free(FilmParts *parts);
+
+#endif

@@ -1,0 +1,103 @@
+/* film/develop.c: `velo film develop`: images of a film file, without its scene. */
+#include <math.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "image/image.h"
+#include "render/exposure.h"
+#include "render/job.h"
+#include "render/outputs.h"
+#include "render/receipt.h"
+
+enum { DEVELOP_OUTPUT, DEVELOP_VIEW, DEVELOP_EXPOSURE, DEVELOP_HALF };
+
+typedef struct Develop {
+  vlContext *context;
+  vlFilmFile *file;
+  vlFilm *film;
+  vlImage *image, *errors, *spectrum;
+  Outputs outputs;
+} Develop;
+
+static vlResult set_header(Develop *d, const vlReceipt *receipt) {
+  uint32_t spp = vl_film_spp(d->film);
+  const vlAttribute samples = {.name = "samplesPerPixel", .type = VL_ATTRIBUTE_INT, .numbers = {spp}};
+  vlResult result = vl_image_set_attribute(d->image, &samples);
+  if (!receipt || !spp || result != VL_OK) return result;
+  vlReceipt *own = NULL;
+  result = vl_receipt_of_image(receipt, spp, &own, NULL);
+  if (result == VL_OK) {
+    const vlAttribute made = {.name = RECEIPT_ATTRIBUTE, .type = VL_ATTRIBUTE_STRING, .string = vl_receipt_text(own)};
+    result = vl_image_set_attribute(d->image, &made);
+  }
+  vl_receipt_destroy(own);
+  return result;
+}
+
+static int develop(Develop *d, const char *path) {
+  vlError error = {0};
+  vlDevelopDef def = vl_default_develop_def();
+  vlResult result = vl_film_file_open(d->context, path, &d->file, &error);
+  if (result == VL_OK) result = vl_film_read(d->context, path, true, &d->film, &error);
+  if (result != VL_OK) return report_error(&error, result, NULL);
+  const vlReceipt *receipt = vl_film_file_receipt(d->file);
+  const vlFilmDef *film = vl_film_file_def(d->file);
+  if (receipt) def.exposure = vl_receipt_exposure(receipt);
+  result = vl_film_develop(d->film, &def, &d->image);
+  if (result == VL_OK) result = set_header(d, receipt);
+  if (result == VL_OK && film->errors) result = vl_film_errors(d->film, &def, &d->errors);
+  if (result == VL_OK && film->buckets) result = vl_film_spectrum(d->film, &d->spectrum);
+  d->outputs.layers[0] = d->errors, d->outputs.layers[1] = d->spectrum;
+  return result == VL_OK ? -1 : report_error(NULL, result, path);
+}
+
+static int run_develop(const Command *command, const Arguments *arguments) {
+  (void)command;
+  const OptionValue *v = arguments->values;
+  Develop d;
+  memset(&d, 0, sizeof d);
+  Outputs *outputs = &d.outputs;
+  for (int i = 0; i < arguments->text_count; i++) outputs->paths[i] = arguments->texts[i];
+  outputs->count = arguments->text_count;
+  outputs->half = v[DEVELOP_HALF].given;
+  outputs->view = v[DEVELOP_VIEW].given ? (vlView)v[DEVELOP_VIEW].integer : VL_VIEW_STANDARD;
+  if (!outputs->count) return report_usage("film develop: give the name of the image with -o");
+  int status = exposure_parse(&v[DEVELOP_EXPOSURE], &outputs->exposure, &outputs->meter);
+  if (status < 0) status = outputs_check_names(outputs);
+  if (status < 0) status = outputs_check_folders(outputs);
+  if (status < 0) status = image_context(&d.context);
+  if (status < 0) status = develop(&d, arguments->operands[0]);
+  if (status < 0) status = outputs_write(d.context, outputs, d.image, vl_film_spp(d.film), OUTPUT_FINISHED);
+  vl_image_destroy(d.image);
+  vl_image_destroy(d.errors);
+  vl_image_destroy(d.spectrum);
+  vl_film_destroy(d.film);
+  vl_film_file_close(d.file);
+  vl_context_destroy(d.context);
+  return status;
+}
+
+static const Option develop_options[] = {
+    {DEVELOP_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
+     "image to write; may be given several times. The suffix chooses\nthe format, as for velo render", 0, 0, NULL},
+    {DEVELOP_VIEW, 0, "view", OPTION_CHOICE, "NAME", "how light becomes display values (.png .jpg .tga):", 0, 0,
+     view_choices},
+    {DEVELOP_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV", "brighter by 2^EV (.png .jpg .tga), or auto", 0, 0, NULL},
+    {DEVELOP_HALF, 0, "half", OPTION_FLAG, NULL, ".exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command film_develop_command = {
+    .name = "film develop",
+    .usage = "FILE -o IMAGE [options]",
+    .summary = "make images of a film file",
+    .text =
+        "Writes the image of a film, also of one that is not complete; an .exr also has its standard\n"
+        "errors and its spectrum, where the film has their sums. Ground truth needs the scene:\n"
+        "velo render --continue FILE -o IMAGE.exr --channels LIST.",
+    .examples = "velo film develop room.film -o room.exr -o room.png --view agx",
+    .options = develop_options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run_develop,
+};

@@ -1,0 +1,155 @@
+/* film/info.c: `velo film info`: what a film file holds, and the commands that render what it does not. */
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "film/blocks.h"
+#include "image/image.h"
+
+enum { INFO_MISSING, INFO_CHECK };
+
+static bool is_whole(const uint32_t place[4], const uint32_t crop[4]) {
+  return memcmp(place, crop, 4 * sizeof *place) == 0;
+}
+
+static void print_ranges(const RangeList *list) {
+  for (uint32_t i = 0; i < list->count; i++)
+    printf("%s%u:%u", i ? " " : "", list->ranges[i].first, list->ranges[i].end);
+}
+
+static uint32_t planned_of(const vlFilmFile *file) {
+  uint32_t planned = 0;
+  const vlReceipt *receipt = vl_film_file_receipt(file);
+  if (receipt) vl_receipt_samples(receipt, &planned);
+  return planned;
+}
+
+/* A word as a POSIX shell reads it. */
+static void print_word(const char *word) {
+  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+%@";
+  if (*word && strspn(word, plain) == strlen(word)) {
+    printf(" %s", word);
+    return;
+  }
+  printf(" '");
+  for (; *word; word++) {
+    if (*word == '\'')
+      printf("'\\''");
+    else
+      putchar(*word);
+  }
+  putchar('\'');
+}
+
+static void print_command(const vlReceipt *receipt) {
+  const char *word;
+  printf("velo");
+  for (uint32_t i = 1; (word = vl_receipt_command(receipt, i)); i++) print_word(word);
+}
+
+static void print_contents(const char *path, const vlFilmFile *file, const FilmParts *parts) {
+  const vlFilmDef *def = vl_film_file_def(file);
+  const vlReceipt *receipt = vl_film_file_receipt(file);
+  const uint32_t *c = def->crop, whole[4] = {0, 0, def->width, def->height};
+  uint32_t planned = planned_of(file);
+  printf("%s\n  size      %u x %u pixels", path, def->width, def->height);
+  if (!is_whole(c, whole)) printf(", crop %u,%u,%u,%u", c[0], c[1], c[2], c[3]);
+  printf("\n  sums      colour%s", def->errors ? ", errors" : "");
+  if (def->buckets) printf(", spectrum of %u buckets, %g to %g nm", def->buckets, def->lambda_min, def->lambda_max);
+  printf("\n  sequence  %u\n", vl_film_file_sequence(file));
+  for (uint32_t i = 0; i < parts->count; i++) {
+    const FilmPart *p = &parts->parts[i];
+    printf("  samples   ");
+    print_ranges(&p->samples);
+    if (planned) printf(" of %u", planned);
+    if (!is_whole(p->place, c)) printf(", pixels %u,%u,%u,%u", p->place[0], p->place[1], p->place[2], p->place[3]);
+    putchar('\n');
+  }
+  if (!parts->count) printf("  samples   none\n");
+  if (!receipt) return;
+  const char *commit, *version = vl_receipt_version(receipt, &commit), *output;
+  printf("  velo      %s%s%s\n  command   ", version, *commit ? ", commit " : "", commit);
+  print_command(receipt);
+  putchar('\n');
+  for (uint32_t i = 0; (output = vl_receipt_output(receipt, i)); i++) printf("  output    %s\n", output);
+}
+
+/* One command for each rectangle and range; then the one that merges them. */
+static int print_missing(const char *path, const vlFilmFile *file, const FilmParts *parts) {
+  const vlReceipt *receipt = vl_film_file_receipt(file);
+  const uint32_t *crop = vl_film_file_def(file)->crop;
+  uint32_t count = 0, planned = planned_of(file);
+  size_t length = strlen(path);
+  char stem[4096], name[4200];
+  if (!receipt || !planned)
+    return report_failure(STATUS_SCENE, "%s: the film has no receipt: what made it is not known", path);
+  if (length > 5 && strcmp(path + length - 5, ".film") == 0) length -= 5;
+  snprintf(stem, sizeof stem, "%.*s", (int)length, path);
+  for (uint32_t i = 0; i < parts->count; i++)
+    for (uint32_t k = 0; k < parts->parts[i].samples.count; k++) {
+      const FilmPart *p = &parts->parts[i];
+      const vlSampleRange *r = &p->samples.ranges[k];
+      print_command(receipt);
+      if (r->first || r->end != planned) printf(" --samples %u:%u", r->first, r->end);
+      if (!is_whole(p->place, crop)) printf(" --tiles %u,%u,%u,%u", p->place[0], p->place[1], p->place[2], p->place[3]);
+      printf(" --film");
+      snprintf(name, sizeof name, "%s-missing-%u.film", stem, ++count);
+      print_word(name);
+      putchar('\n');
+    }
+  if (!count) return STATUS_OK;
+  printf("velo film merge");
+  print_word(path);
+  for (uint32_t i = 1; i <= count; i++) {
+    snprintf(name, sizeof name, "%s-missing-%u.film", stem, i);
+    print_word(name);
+  }
+  printf(" -o");
+  print_word(path);
+  putchar('\n');
+  return STATUS_OK;
+}
+
+static int run_info(const Command *command, const Arguments *arguments) {
+  (void)command;
+  const char *path = arguments->operands[0];
+  bool missing = arguments->values[INFO_MISSING].given;
+  vlContext *context = NULL;
+  vlFilmFile *file = NULL;
+  vlError error = {0};
+  FilmParts parts = {.count = 0};
+  int status = image_context(&context);
+  if (status < 0) {
+    vlResult result = vl_film_file_open(context, path, &file, &error);
+    if (result != VL_OK) status = report_error(&error, result, NULL);
+  }
+  if (status < 0)
+    status = film_parts_read(file, arguments->values[INFO_CHECK].given, missing ? planned_of(file) : 0, &parts);
+  if (status < 0 && missing)
+    status = print_missing(path, file, &parts);
+  else if (status < 0)
+    print_contents(path, file, &parts), status = STATUS_OK;
+  film_parts_free(&parts);
+  vl_film_file_close(file);
+  vl_context_destroy(context);
+  return image_finish_output(status);
+}
+
+static const Option info_options[] = {
+    {INFO_MISSING, 0, "missing", OPTION_FLAG, NULL,
+     "print the commands that render what is not there, and the one that\nmerges it, for a shell", 0, 0, NULL},
+    {INFO_CHECK, 0, "check", OPTION_FLAG, NULL, "read all sums, too: finds every damage of the file", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command film_info_command = {
+    .name = "film info",
+    .usage = "FILE [options]",
+    .summary = "what a film file holds, and what is missing",
+    .text = "Prints the size of a film, its samples and what made it.",
+    .examples = "velo film info room.film\nvelo film info --missing room.film | sh",
+    .options = info_options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run_info,
+};

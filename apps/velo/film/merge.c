@@ -1,0 +1,45 @@
+/* film/merge.c: `velo film merge`: the parts of a render become one film. */
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "image/image.h"
+#include "render/outputs.h"
+
+enum { MERGE_OUTPUT };
+
+static int run_merge(const Command *command, const Arguments *arguments) {
+  (void)command;
+  const OptionValue *output = &arguments->values[MERGE_OUTPUT];
+  if (!output->given) return report_usage("film merge: give the name of the result with -o");
+  const Outputs outputs = {.paths = {output->text}, .count = 1};
+  vlContext *context = NULL;
+  vlError error = {0};
+  int status = outputs_check_folders(&outputs);
+  if (status < 0) status = image_context(&context);
+  if (status >= 0) return status;
+  vlResult result =
+      vl_film_merge(context, arguments->all_operands, (uint32_t)arguments->operand_count, output->text, &error);
+  vl_context_destroy(context);
+  return result == VL_OK ? STATUS_OK : report_error(&error, result, NULL);
+}
+
+static const Option merge_options[] = {
+    {MERGE_OUTPUT, 'o', "output", OPTION_TEXT, "FILE", "the film to write; may be one of the parts", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command film_merge_command = {
+    .name = "film merge",
+    .usage = "FILE... -o FILE",
+    .summary = "make one film of the parts of a render",
+    .text =
+        "Merges films of one render that have different samples or pixels. Order and grouping do not\n"
+        "matter, and a part that is given twice counts once: the result has the bytes of a single render.",
+    .examples = "velo film merge part-*.film -o room.film",
+    .options = merge_options,
+    .min_operands = 1,
+    .max_operands = INT_MAX,
+    .run = run_merge,
+};

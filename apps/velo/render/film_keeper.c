@@ -1,0 +1,87 @@
+/* render/film_keeper.c: see film_keeper.h. A checkpoint is written between two passes, on all workers; a thread then
+ * waits for the disk and renames the file, while the render goes on. */
+#include "render/film_keeper.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/report.h"
+#include "render/progress.h"
+
+enum { EVERY = 30 };
+static const double SHARE = 0.005, SHARE_WITH_ERRORS = 0.015;
+
+void film_keeper_start(FilmKeeper *k, const char *path, const Arguments *arguments, const vlFilmDef *whole,
+                       vlReceipt *receipt) {
+  const OptionValue *every = &arguments->values[RENDER_CHECKPOINT];
+  memset(k, 0, sizeof *k);
+  k->receipt = receipt;
+  if (!path) return;
+  snprintf(k->path, sizeof k->path, "%s", path);
+  k->every = every->given ? every->number : EVERY;
+  k->share = every->given ? 0 : whole->errors || whole->buckets ? SHARE_WITH_ERRORS : SHARE;
+  memcpy(k->window, whole->crop, sizeof k->window);
+  k->last = monotonic_seconds();
+}
+
+static void *end_write(void *user) {
+  FilmKeeper *k = user;
+  k->result = vl_film_write_end(k->writer, &k->error);
+  return NULL;
+}
+
+/* Waits for the last checkpoint. */
+static vlResult join(FilmKeeper *k) {
+  if (!k->running) return VL_OK;
+  pthread_join(k->thread, NULL);
+  k->running = false;
+  return k->result;
+}
+
+static vlResult begin_write(FilmKeeper *k, const vlFilm *film) {
+  vlFilmWriteDef def = vl_default_film_write_def();
+  def.receipt = k->receipt;
+  memcpy(def.window, k->window, sizeof def.window);
+  k->written = vl_film_spp(film);
+  return vl_film_write_begin(film, &def, k->path, &k->writer, &k->error);
+}
+
+static void report_checkpoint(FilmKeeper *k, vlResult result) {
+  bool failing = result != VL_OK;
+  if (failing && !k->failing)
+    report_warning("checkpoint: %s; tried again later",
+                   k->error.message[0] ? k->error.message : vl_result_name(result));
+  if (!failing && k->failing) report_note("the film %s is written again", k->path);
+  k->failing = failing;
+}
+
+void film_keeper_checkpoint(FilmKeeper *k, const vlFilm *film) {
+  double now = monotonic_seconds(), least = k->share > 0 ? k->cost / k->share : 0;
+  if (!k->path[0] || vl_film_spp(film) == k->written) return;
+  if (now - k->last < (least > k->every ? least : k->every)) return;
+  bool waited = k->running;
+  vlResult result = join(k);
+  if (waited) report_checkpoint(k, result);
+  result = begin_write(k, film);
+  if (result == VL_OK) {
+    k->running = pthread_create(&k->thread, NULL, end_write, k) == 0;
+    if (!k->running) end_write(k), result = k->result;
+  }
+  if (result != VL_OK) report_checkpoint(k, result);
+  k->last = monotonic_seconds();
+  k->cost = k->last - now;
+}
+
+int film_keeper_finish(FilmKeeper *k, const vlFilm *film) {
+  join(k);
+  if (!k->path[0]) return STATUS_OK;
+  vlResult result = begin_write(k, film);
+  if (result == VL_OK) result = vl_film_write_end(k->writer, &k->error);
+  return result == VL_OK ? STATUS_OK : report_error(&k->error, result, k->path);
+}
+
+void film_keeper_free(FilmKeeper *k) {
+  join(k);
+  vl_receipt_destroy(k->receipt);
+  k->receipt = NULL;
+}

@@ -1,0 +1,16 @@
+/* render/shard.h: which part of a film a command renders: samples A to B - 1, or a rectangle of its blocks. */
+#ifndef APP_RENDER_SHARD_H
+#define APP_RENDER_SHARD_H
+
+#include "render/job.h"
+
+enum { FILM_BLOCK = 32 }; /* pixels: films are cut at multiples of it (docs/film-files.md) */
+
+/* Checks --samples, --tiles, --shard, --shard-by. Returns -1 or the exit code. */
+int shard_check(const Arguments *arguments);
+/* Reads I/N, I from 1. False: it is not that. */
+bool shard_read(const Arguments *arguments, uint32_t *index, uint32_t *count);
+/* Reduces film and render to the part. Returns -1 or the exit code. */
+int shard_apply(const Arguments *arguments, vlFilmDef *film, vlRenderDef *render);
+
+#endif

@@ -2,7 +2,7 @@
 #ifndef APP_CLI_KINDS_H
 #define APP_CLI_KINDS_H
 
-#include "cli/options.h"
+#include "cli/choice.h"
 #include "velo/schema.h"
 
 /* The family of that name; null: none. */

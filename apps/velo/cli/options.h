@@ -6,6 +6,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "cli/choice.h"
+
 typedef enum OptionKind {
   OPTION_FLAG,
   OPTION_INTEGER,   /* in [min, max] */
@@ -21,11 +23,6 @@ typedef enum OptionKind {
   OPTION_TEXTS,  /* may be repeated; at most one such option per command */
   OPTION_FOLDERS /* likewise, a separate list */
 } OptionKind;
-
-typedef struct Choice {
-  const char *name; /* null ends the list */
-  int value;        /* names with the same value are aliases of the first */
-} Choice;
 
 typedef struct Option {
   int id; /* index into Arguments.values */

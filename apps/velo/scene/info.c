@@ -69,6 +69,11 @@ static void print_lights(const Facts *f) {
   if (n > LIGHTS) printf("  and %u more\n", n - LIGHTS);
 }
 
+/* The name in files, or the constant's where files have none. */
+static const char *name_of(const vlKindFamily *family, uint32_t kind) {
+  return family->rows[kind]->name ? family->rows[kind]->name : family->constants[kind];
+}
+
 /* "12: 5 diffuse, 7 conductor", by the family's rows. */
 static void count_kinds(const Facts *f, const char *name, uint64_t all) {
   const vlKindFamily *family = kind_family(name);
@@ -77,7 +82,7 @@ static void count_kinds(const Facts *f, const char *name, uint64_t all) {
   for (uint32_t i = 0; all && i < family->kind_count; i++) {
     uint64_t n = vl_scene_kind_count(f->scene, name, i);
     if (!n) continue;
-    printf("%s%llu %s", before, (unsigned long long)n, family->rows[i]->name);
+    printf("%s%llu %s", before, (unsigned long long)n, name_of(family, i));
     before = ", ";
   }
   putchar('\n');
@@ -209,7 +214,7 @@ static void json_kinds(Json *json, const Facts *f) {
     json_begin(json, families[k], '{');
     for (uint32_t i = 0; i < family->kind_count; i++) {
       uint64_t n = vl_scene_kind_count(f->scene, families[k], i);
-      if (n) json_integer(json, family->rows[i]->name, (int64_t)n);
+      if (n) json_integer(json, name_of(family, i), (int64_t)n);
     }
     json_end(json, '}');
   }

@@ -72,11 +72,39 @@ static void print_range(const vlParameter *p) {
   }
 }
 
-static void print_row(const vlKindRow *row) {
-  printf("**`%s`**%s%s%s: %s.\n\n", row->name, row->alias ? " (also `" : "", row->alias ? row->alias : "",
+static bool same_text(const char *a, const char *b) {
+  return a && b ? strcmp(a, b) == 0 : a == b;
+}
+
+static bool same_parameter(const vlParameter *a, const vlParameter *b) {
+  return same_text(a->name, b->name) && same_text(a->alias, b->alias) && same_text(a->description, b->description) &&
+         same_text(a->unit, b->unit) && same_text(a->text, b->text) && a->type == b->type && a->flags == b->flags &&
+         memcmp(a->value, b->value, sizeof a->value) == 0 && a->low == b->low && a->high == b->high;
+}
+
+enum { SHARED = 6 }; /* fewer parameters are repeated */
+
+/* The earlier kind with the most parameters with all of which this one begins; null: none. */
+static const vlKindRow *base_of(const vlKindFamily *family, uint32_t kind) {
+  const vlKindRow *row = family->rows[kind], *base = NULL;
+  for (uint32_t i = 0; i < kind; i++) {
+    const vlKindRow *other = family->rows[i];
+    uint32_t n = other->parameter_count, k = 0;
+    if (!other->name || n < SHARED || n > row->parameter_count || (base && n <= base->parameter_count)) continue;
+    while (k < n && same_parameter(&other->parameters[k], &row->parameters[k])) k++;
+    if (k == n) base = other;
+  }
+  return base;
+}
+
+static void print_row(const vlKindRow *row, const vlKindRow *base) {
+  uint32_t first = base ? base->parameter_count : 0;
+  printf("**`%s`**%s%s%s: %s.", row->name, row->alias ? " (also `" : "", row->alias ? row->alias : "",
          row->alias ? "`)" : "", row->description);
+  if (base) printf(" The parameters of `%s`%s", base->name, first < row->parameter_count ? " and these:" : ".");
+  printf("\n\n");
   bool any = false;
-  for (uint32_t i = 0; i < row->parameter_count; i++) {
+  for (uint32_t i = first; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
     if (!p->name) continue;
     if (!any) printf("| parameter | type | default | range | |\n| --- | --- | --- | --- | --- |\n");
@@ -94,7 +122,7 @@ static void print_row(const vlKindRow *row) {
 
 static void print_tables(const vlKindFamily *family) {
   for (uint32_t i = 0; i < family->kind_count; i++)
-    if (family->rows[i]->name) print_row(family->rows[i]);
+    if (family->rows[i]->name) print_row(family->rows[i], base_of(family, i));
 }
 
 /* One token per line, quoted, including the quotes that scene files put around it. */

@@ -1,5 +1,5 @@
 /* import/pbrt/parser.h: declarations shared by the two halves of the parser: a file being read, its next token, errors
- * at a place. parse_params.c reads parameters, parse.c directives and files. */
+ * at a place. parse_params.c reads parameters, directives.c directives and files. */
 #ifndef IMPORT_PBRT_PARSER_H
 #define IMPORT_PBRT_PARSER_H
 

@@ -1,6 +1,6 @@
 /* import/ply/ply_reader.h: types and functions shared by the files that read PLY: the header as a table of elements and
- * properties, and the position in the file. ply_header.c fills the table, ply_rows.c reads vertices and faces, ply.c
- * the whole file. */
+ * properties, and the position in the file. ply_header.c fills the table, ply_rows.c reads vertices and faces,
+ * ply_file.c the whole file. */
 #ifndef IMPORT_PLY_PLY_READER_H
 #define IMPORT_PLY_PLY_READER_H
 

@@ -1,4 +1,4 @@
-/* trace/ground_truth/scratch.h: working memory of ground_truth.hot.c; private to trace. */
+/* trace/ground_truth/scratch.h: working memory of channels.hot.c; private to trace. */
 #ifndef TRACE_GROUND_TRUTH_SCRATCH_H
 #define TRACE_GROUND_TRUTH_SCRATCH_H
 

@@ -22,8 +22,8 @@ void vl_texture_float(vlTextureRun *r, int32_t node, float *out);
 void vl_texture_spectrum(vlTextureRun *r, int32_t node, float *const out[4]);
 /* Takes a scratch row; the caller frees it by restoring r->top. */
 static inline float *vl_texture_row(vlTextureRun *r) {
-  return r->s->rows[r->top < VL_TEXTURE_ROWS - 1 ? r->top++
-                                                 : r->top]; /* never exceeded: world/texture/texture.c limits nesting */
+  return r->s->rows[r->top < VL_TEXTURE_ROWS - 1 ? r->top++ : r->top]; /* never exceeded: world/texture/textures.c
+                                                                          limits nesting */
 }
 
 /* Vertex attributes of lane i's triangle: uv sets, colours. */

@@ -1,4 +1,4 @@
-/* world/accel/accel.h: nearest-hit and occlusion queries. Only accel.c calls Embree. The results are ids alone: t,
+/* world/accel/accel.h: nearest-hit and occlusion queries. Only embree.c calls Embree. The results are ids alone: t,
  * u, v are recomputed in velo's own arithmetic, since Embree's differ between its instruction sets. */
 #ifndef WORLD_ACCEL_ACCEL_H
 #define WORLD_ACCEL_ACCEL_H

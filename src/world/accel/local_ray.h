@@ -1,5 +1,5 @@
 /* world/accel/local_ray.h: rays transformed to the space of the group that they intersect, and the decisions made
- * there in velo's own arithmetic, for accel.c. Embree's own numbers differ between instruction sets. */
+ * there in velo's own arithmetic, for embree.c. Embree's own numbers differ between instruction sets. */
 #ifndef WORLD_ACCEL_LOCAL_RAY_H
 #define WORLD_ACCEL_LOCAL_RAY_H
 

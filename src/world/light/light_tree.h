@@ -1,7 +1,7 @@
 /* world/light/light_tree.h: chooses a light by a binary tree over all bounded lights. At each node a branch is
  * chosen by its importance for the point to be lit (Conty Estevez and Kulla 2018; pbrt book 12.6.3). Lights without
- * bounds (distant, infinite) have one slot each beside the tree. light_tree.c builds the tree; traversal is inline,
- * for the hot loops. */
+ * bounds (distant, infinite) have one slot each beside the tree. light_tree_build.c builds the tree; traversal is
+ * inline, for the hot loops. */
 #ifndef WORLD_LIGHT_LIGHT_TREE_H
 #define WORLD_LIGHT_LIGHT_TREE_H
 

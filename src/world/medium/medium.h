@@ -1,5 +1,5 @@
 /* world/medium/medium.h: compiled participating media (pbrt book 11): coefficients as spectra, densities on grids,
- * and a coarse grid of majorants over each, by which free flights are sampled (trace/medium/medium.hot.c). medium.c
+ * and a coarse grid of majorants over each, by which free flights are sampled (trace/medium/medium.hot.c). media.c
  * and a file per kind (kinds.h) compile them, nanovdb.c reads NanoVDB grids, medium_lookup.h evaluates them. */
 #ifndef WORLD_MEDIUM_MEDIUM_H
 #define WORLD_MEDIUM_MEDIUM_H

@@ -1,5 +1,5 @@
 /* world/texture/texture_node.h: the value of each kind of texture node at one point. Inline and by value. Two
- * evaluators share these functions and thus agree to the bit: trace/texture/texture.hot.c over a batch, texture.c at
+ * evaluators share these functions and thus agree to the bit: trace/texture/texture.hot.c over a batch, textures.c at
  * a single point. Both switch over vlNodeKind without a default: a missing kind does not compile. */
 #ifndef WORLD_TEXTURE_TEXTURE_NODE_H
 #define WORLD_TEXTURE_TEXTURE_NODE_H

@@ -1,4 +1,4 @@
-/* trace/sampler/sampler.hot.c: all kinds of samplers in batches. Compiled once per instruction set. The kind is
+/* trace/sampler/batch.hot.c: all kinds of samplers in batches. Compiled once per instruction set. The kind is
  * selected once per batch; kinds with several loops work in chunks. n is a multiple of VL_LANES. */
 #include "trace/sampler/cells.h"
 #include "trace/sampler/halton.h"

@@ -1,4 +1,4 @@
-/* world/medium/medium.c: scene media -> world media: spectra, and what each kind compiles (kinds.h). Only
+/* world/medium/media.c: scene media -> world media: spectra, and what each kind compiles (kinds.h). Only
  * media that are in use are compiled. */
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* trace/ground_truth/ground_truth.hot.c: ground truth of a batch of rays: ids, distance in double, normals, albedo.
+/* trace/ground_truth/channels.hot.c: ground truth of a batch of rays: ids, distance in double, normals, albedo.
  *
  *   exact rays -> rounded to float -> ids (Embree) -> distance in double, from the exact ray and the surface itself
  *                                                  -> the tracers' stages: normals, uv, textures (64 wavelengths)

@@ -1,4 +1,4 @@
-/* import/pbrt/parse.c: see parse.h. */
+/* import/pbrt/directives.c: reads directives and files (parse.h). */
 #include "import/pbrt/parse.h"
 
 #include <stdio.h>

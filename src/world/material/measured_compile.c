@@ -1,4 +1,4 @@
-/* world/material/measured.c: reads a file of the RGL material database into tables for lookup and sampling. */
+/* world/material/measured_compile.c: reads a file of the RGL material database into tables for lookup and sampling. */
 #include "world/material/measured.h"
 
 #include <math.h>

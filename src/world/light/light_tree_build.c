@@ -1,4 +1,5 @@
-/* world/light/light_tree.c: builds the light tree top down by the surface-area-orientation cost (pbrt book 12.6.3). */
+/* world/light/light_tree_build.c: builds the light tree top down by the surface-area-orientation cost (pbrt
+ * book 12.6.3). */
 #include "world/light/light_tree.h"
 
 #include <math.h>

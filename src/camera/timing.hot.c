@@ -1,4 +1,4 @@
-/* camera/time.hot.c: times of rays for shutter curves, rolling shutters and moving cameras. Runs after the rays are
+/* camera/timing.hot.c: times of rays for shutter curves, rolling shutters and moving cameras. Runs after the rays are
  * made in camera space. Compiled once per instruction set. */
 #include "camera/rays.h"
 #include "camera/stages.h"

@@ -1,4 +1,4 @@
-/* import/ply/ply.c: see ply.h. The data is read once, by the table made from the header. */
+/* import/ply/ply_file.c: see ply.h. The data is read once, by the table made from the header. */
 #include "import/ply/ply.h"
 
 #include <math.h>

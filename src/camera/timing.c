@@ -1,4 +1,4 @@
-/* camera/time.c: the time part of vl_camera_make: shutter, curve, readout, the second pose; and a moving camera
+/* camera/timing.c: the time part of vl_camera_make: shutter, curve, readout, the second pose; and a moving camera
  * frozen at one time. */
 #include "camera/time.h"
 

@@ -1,4 +1,4 @@
-/* world/texture/texture.c: scene textures -> nodes; reads each image file once; evaluates a float texture at one
+/* world/texture/textures.c: scene textures -> nodes; reads each image file once; evaluates a float texture at one
  * point (alpha, mix amounts, displacement). */
 #include "world/texture/texture.h"
 

@@ -1,5 +1,5 @@
-/* trace/two_way/two_way.hot.c: the camera side of the two-way tracers: path tracing in which light samples and hit
- * lights are weighted against splats and merging (two_way.h). */
+/* trace/two_way/bidirectional.hot.c: the camera side of the two-way tracers: path tracing in which light samples and
+ * hit lights are weighted against splats and merging (two_way.h). */
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 

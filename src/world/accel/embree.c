@@ -1,4 +1,4 @@
-/* world/accel/accel.c: the one file that calls Embree (3.13 or 4). Triangles are Embree's own geometry; other shapes
+/* world/accel/embree.c: the one file that calls Embree (3.13 or 4). Triangles are Embree's own geometry; other shapes
  * are user geometry, intersected by surface_point.c. Filters decide alpha and interface surfaces by a hash of ray and
  * primitive, so that the result does not depend on the order of traversal. Inside instances Embree passes the ray in
  * the group's space, transformed by its own arithmetic, which differs between instruction sets. The callbacks therefore

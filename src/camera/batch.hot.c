@@ -1,11 +1,11 @@
-/* camera/rays.hot.c: film samples to rays, in batches. Compiled once per instruction set. */
-#include "camera/rays.h"
+/* camera/batch.hot.c: film samples to rays, in batches. Compiled once per instruction set. */
 #include "camera/cube.h"
 #include "camera/eyes.h"
 #include "camera/lens.h"
 #include "camera/orthographic.h"
 #include "camera/perspective.h"
 #include "camera/place.h"
+#include "camera/rays.h"
 #include "camera/stages.h"
 
 /* Meaning of the samples' lens_u and lens_v: random numbers (DISC) or points of the aperture (POINTS). OPTICS: rays

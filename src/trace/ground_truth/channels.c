@@ -1,4 +1,4 @@
-/* trace/ground_truth/ground_truth.c: the tables of the instruction sets, and the conversion of reflectances to albedo.
+/* trace/ground_truth/channels.c: the tables of the instruction sets, and the conversion of reflectances to albedo.
  */
 #include "trace/ground_truth/ground_truth.h"
 

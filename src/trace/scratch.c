@@ -1,4 +1,4 @@
-/* trace/trace.c: the tables of the instruction sets. */
+/* trace/scratch.c: the size of the working memory of a worker. */
 #include "trace/trace.h"
 
 #include "trace/stages.h"

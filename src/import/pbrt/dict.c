@@ -1,4 +1,4 @@
-/* import/pbrt/param.c: see param.h. */
+/* import/pbrt/dict.c: typed access to the parameters of a directive (param.h). */
 #include "import/pbrt/param.h"
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* film/film.c: creation of films, passes, merging. */
+/* film/passes.c: creation of films, passes, merging. */
 #include "base/cookie.h"
 #include "color/sensor.h"
 #include "film/sums.h"

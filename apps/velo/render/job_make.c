@@ -1,4 +1,4 @@
-/* render/job.c: see job.h. The scene's defs and the command line give the defs and the camera of the render. */
+/* render/job_make.c: see job.h. The scene's defs and the command line give the defs and the camera of the render. */
 #include "render/job.h"
 
 #include <math.h>

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/cookie.h"
+#include "base/error.h"
 #include "base/file_record.h"
 #include "base/isa.h"
 #include "base/text.h"
@@ -215,6 +216,27 @@ static vlResult pool_start(Pool *pool, uint32_t threads) {
     return VL_ERROR_MEMORY;
   }
   return VL_OK;
+}
+
+static void *wait_turn(void *mutex) {
+  pthread_mutex_lock(mutex);
+  pthread_mutex_unlock(mutex);
+  return NULL;
+}
+
+vlResult vl_try_threads(vlContext *context, vlError *error) {
+  uint32_t wanted = vl_context_threads(context) - 1, started = 0;
+  pthread_t *threads = vl_alloc_array(context, wanted + 1, sizeof *threads);
+  if (!threads) return vl_fail_memory(error);
+  pthread_mutex_t all = PTHREAD_MUTEX_INITIALIZER;
+  pthread_mutex_lock(&all); /* until the last has started, since a limit is one of threads at once */
+  while (started < wanted && pthread_create(&threads[started], NULL, wait_turn, &all) == 0) started++;
+  pthread_mutex_unlock(&all);
+  for (uint32_t i = 0; i < started; i++) pthread_join(threads[i], NULL);
+  pthread_mutex_destroy(&all);
+  vl_free(context, threads);
+  if (started == wanted) return VL_OK;
+  return vl_fail(error, VL_ERROR_MEMORY, "the system refuses to start %u threads", wanted);
 }
 
 void vl_parallel_for(vlContext *context, uint32_t count, vlParallelFn *body, void *loop_user) {

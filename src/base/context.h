@@ -22,6 +22,9 @@ bool vl_count_foreign(vlContext *context, int64_t bytes, bool taken);
 /* Whether a scene may name this file. Symbolic links are resolved. True if there is no sandbox. */
 bool vl_context_allows(const vlContext *context, const char *path);
 bool vl_context_has_sandbox(const vlContext *context);
+/* Tries whether as many threads as the context has workers can be started beside them: libraries that start threads of
+ * their own end the process where one is refused. Errors: MEMORY. */
+vlResult vl_try_threads(vlContext *context, vlError *error);
 uint64_t vl_context_max_texture_pixels(const vlContext *context);
 
 /* Logs a message; where may be null. printf-like. */

@@ -7,7 +7,8 @@
 
 #include "image/codec.h"
 
-/* The user data of an OpenEXR context. OpenEXR prints errors unless it has a handler; this one keeps the first message.
+/* The user data of an OpenEXR context. OpenEXR prints errors unless it has a handler; this one keeps the first message
+ * of a reader.
  */
 typedef struct vlExr {
   const vlImageFile *file; /* when reading */

@@ -40,9 +40,9 @@ static inline __attribute__((always_inline)) void arrive(Block *restrict b, uint
                                                          float pdf) {
   vlVec3 w = vl_normalize(vl_sub(p, from));
   float facing = -vl_dot(w, n), side = facing < 0.0f ? -1.0f : 1.0f;
-  int shines = (facing > 0.0f) | ((b->two_sided[k] > 0.0f) & (facing < 0.0f));
+  int emits = (facing > 0.0f) | ((b->two_sided[k] > 0.0f) & (facing < 0.0f));
   vlVec3 target = vl_light_target(p, vl_vec3(side * n.x, side * n.y, side * n.z), w);
-  b->pdf[k] = shines & (pdf > 0.0f) & (pdf < VL_INFINITY) ? pdf : 0.0f;
+  b->pdf[k] = emits & (pdf > 0.0f) & (pdf < VL_INFINITY) ? pdf : 0.0f;
   b->wx[k] = w.x, b->wy[k] = w.y, b->wz[k] = w.z;
   b->tx[k] = target.x, b->ty[k] = target.y, b->tz[k] = target.z;
 }

@@ -373,6 +373,8 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
   vlAccel *a = &world->accel;
   char config[64];
   if (!has_room(world)) return vl_fail_memory(error);
+  vlResult startable = vl_try_threads(world->context, error);
+  if (startable != VL_OK) return startable;
   const char *set;
   vlResult chosen = choose_set(world->def.bits, &set, error);
   if (chosen != VL_OK) return chosen;
@@ -417,6 +419,8 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
   a->scene = a->groups[0];
   enum RTCError code = rtcGetDeviceError(device);
   if (code == RTC_ERROR_OUT_OF_MEMORY) return vl_fail_memory(error);
+  if (code == RTC_ERROR_UNKNOWN) /* what Embree's scheduler throws when memory is short */
+    return vl_fail(error, VL_ERROR_MEMORY, "Embree cannot build the scene (error %d)", (int)code);
   if (code != RTC_ERROR_NONE) return vl_fail(error, VL_ERROR_SCENE, "Embree refuses the scene (error %d)", (int)code);
   return VL_OK;
 }

@@ -50,7 +50,7 @@ static void plan_spectral(vlColorSpace space, vlGroundTruthDef *def) {
 void vl_ground_truth_plan_albedo(const vlWorld *world, vlColorSpace space, vlGroundTruthDef *def) {
   memset(def->weight, 0, sizeof def->weight);
   bool spectral = world->def.color != VL_COLOR_RGB;
-  def->sets = !def->albedo || !spectral ? 1 : def->coarse ? VL_TRUTH_COARSE_SETS : VL_TRUTH_SETS;
+  def->sets = !def->albedo || !spectral ? 1 : def->coarse ? VL_ALBEDO_COARSE_SETS : VL_TRUTH_SETS;
   for (int c = 0; c < 4; c++) def->lambda[0][c] = spectral ? 550.0f : 0.0f;
   if (!def->albedo) return;
   if (spectral)

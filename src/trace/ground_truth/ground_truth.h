@@ -8,7 +8,7 @@
 
 /* Albedo: the sum over `sets` of 4 channels of reflectance times weight[set][channel][rgb]. Spectral: 64 wavelengths,
  * coarse 12; RGB mode: one set, the matrix of the colour space. */
-enum { VL_TRUTH_SETS = 16, VL_TRUTH_COARSE_SETS = 3 };
+enum { VL_TRUTH_SETS = 16, VL_ALBEDO_COARSE_SETS = 3 };
 typedef struct vlGroundTruthDef {
   float pixel_spread, pixel_width; /* as in vlTraceDef */
   vlIsa isa;

@@ -213,9 +213,40 @@ static void test_standard_error(void **state) {
   stage_close(&s);
 }
 
+/* Features are means over the samples that the mattes count: of a flat surface alone in its pixel they are its values
+ * times its coverage. */
+static void test_features(void **state) {
+  (void)state;
+  Stage s = stage_open(49, 37);
+  fill(&s);
+  GroundTruth t = ground_truth_take(&s, VL_CHANNEL_ALL | MATTES | VL_CHANNEL_FEATURES, VL_CHANNEL_MODE_CENTRE);
+  uint32_t whole = 0, parts = 0, nothing = 0;
+  for (uint32_t y = 0; y < 37; y++)
+    for (uint32_t x = 0; x < 49; x++) {
+      const float *albedo = place(&t, x, y, "feature.albedo.R"), *n = place(&t, x, y, "feature.N.X");
+      double coverage = *place(&t, x, y, "CryptoObject00.G"), disparity = *place(&t, x, y, "feature.disparity.Y");
+      uint32_t object = id(&t, x, y, "id.object");
+      if (coverage == 0) {
+        nothing++;
+        assert_true(albedo[0] == 0 && n[2] == 0 && disparity == 0);
+      }
+      if (object < 1 || object > 2 || *place(&t, x, y, "CryptoObject00.A") > 0) continue;
+      whole += coverage > 0.9999, parts += coverage < 0.9;
+      const float *own = place(&t, x, y, "N.X");
+      for (int k = 0; k < 3; k++) {
+        assert_near("N", n[k], coverage * (double)own[k], 1e-5);
+        assert_near("albedo", albedo[k], coverage * (double)place(&t, x, y, "albedo.R")[k], 0.02);
+      }
+      if (coverage > 0.9999) assert_near("disparity", disparity * (double)number(&t, x, y, "distance.Y"), 1, 0.03);
+    }
+  if (whole < 300 || parts < 3 || nothing < 100) fail_msg("%u whole, %u in part, %u nothing", whole, parts, nothing);
+  ground_truth_free(&t);
+  stage_close(&s);
+}
+
 static void test_same_bits(void **state) {
   (void)state;
-  uint32_t channels = VL_CHANNEL_ALL | MATTES | VL_CHANNEL_ERROR;
+  uint32_t channels = VL_CHANNEL_ALL | MATTES | VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES;
   for (int mode = VL_CHANNEL_MODE_NEAREST; mode <= VL_CHANNEL_MODE_COVERAGE; mode++) {
     Stage s = stage_open(45, 35);
     fill(&s);
@@ -295,13 +326,10 @@ static void test_out_of_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_hash),
-      cmocka_unit_test(test_agrees_with_the_image),
-      cmocka_unit_test(test_negative_lobes),
-      cmocka_unit_test(test_modes),
-      cmocka_unit_test(test_standard_error),
-      cmocka_unit_test(test_same_bits),
-      cmocka_unit_test(test_wrong_arguments),
+      cmocka_unit_test(test_hash),           cmocka_unit_test(test_agrees_with_the_image),
+      cmocka_unit_test(test_negative_lobes), cmocka_unit_test(test_modes),
+      cmocka_unit_test(test_standard_error), cmocka_unit_test(test_features),
+      cmocka_unit_test(test_same_bits),      cmocka_unit_test(test_wrong_arguments),
       cmocka_unit_test(test_out_of_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

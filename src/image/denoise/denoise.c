@@ -121,25 +121,35 @@ static void read_row(void *user, uint32_t y, uint32_t worker) {
       p->variance[c][at] = e * e;
     }
     p->valid[at] = valid ? 1.0f : 0.0f;
+    for (int c = 0; c < COLOR && !valid; c++) p->color[c][at] = p->variance[c][at] = 0.0f;
     if (!valid) atomic_fetch_add_explicit(&d->not_finite, 1, memory_order_relaxed);
   }
 }
 
-/* A pixel that is not finite gets the mean of the nearest square ring of valid pixels within the window. */
-static void fill(const vlDenoisePlanes *p, ptrdiff_t at) {
-  float sums[2 * COLOR] = {0}, count = 0.0f;
+/* The mean of the nearest valid pixels within the window, and the variance of their values. */
+static void nearest_valid(const vlDenoisePlanes *p, float *const plane[COLOR], ptrdiff_t at, float mean[COLOR],
+                          float variance[COLOR]) {
+  float sums[COLOR] = {0}, squares[COLOR] = {0}, count = 0.0f;
   for (int reach = 1; reach <= VL_DENOISE_RADIUS && count == 0.0f; reach++)
     for (int dy = -reach; dy <= reach; dy++)
       for (int dx = -reach; dx <= reach; dx++) {
         ptrdiff_t q = at + dy * p->stride + dx;
-        if (p->valid[q] == 0.0f) continue;
-        count += 1.0f;
-        for (int c = 0; c < COLOR; c++) sums[c] += p->color[c][q], sums[COLOR + c] += p->variance[c][q];
+        count += p->valid[q];
+        for (int c = 0; c < COLOR && p->valid[q] != 0.0f; c++)
+          sums[c] += plane[c][q], squares[c] += plane[c][q] * plane[c][q];
       }
   for (int c = 0; c < COLOR; c++) {
-    p->color[c][at] = count > 0.0f ? sums[c] / count : 0.0f;
-    p->variance[c][at] = count > 0.0f ? sums[COLOR + c] / count : 0.0f;
+    mean[c] = count > 0.0f ? sums[c] / count : 0.0f;
+    float spread = count > 0.0f ? squares[c] / count - mean[c] * mean[c] : 0.0f;
+    variance[c] = spread > 0.0f ? spread : 0.0f;
   }
+}
+
+/* Pixels that are not finite get values by which patches that contain them are compared. */
+static void fill(const vlDenoisePlanes *p, ptrdiff_t at) {
+  float mean[COLOR], variance[COLOR];
+  nearest_valid(p, p->color, at, mean, variance);
+  for (int c = 0; c < COLOR; c++) p->color[c][at] = mean[c], p->variance[c][at] = variance[c];
 }
 
 static void fill_row(void *user, uint32_t y, uint32_t worker) {
@@ -202,6 +212,32 @@ static void scale_row(void *user, uint32_t y, uint32_t worker) {
   }
 }
 
+/* ---- the border -------------------------------------------------------------------------------------------------- */
+
+static ptrdiff_t mirror(ptrdiff_t i, uint32_t size) {
+  ptrdiff_t last = (ptrdiff_t)size - 1;
+  i = i < 0 ? -1 - i : i > last ? 2 * last + 1 - i : i;
+  return i < 0 ? 0 : i > last ? last : i;
+}
+
+/* Mirrors the image into the border, as far as patches of windows reach. These pixels are compared, but not valid. */
+static void mirror_plane(const vlDenoisePlanes *p, float *plane) {
+  const ptrdiff_t reach = VL_DENOISE_RADIUS + VL_DENOISE_PATCH, width = p->width, height = p->height;
+  for (ptrdiff_t y = 0; y < height; y++) {
+    float *row = plane + y * p->stride;
+    for (ptrdiff_t k = 1; k <= reach; k++) {
+      row[-k] = row[mirror(-k, p->width)];
+      row[width - 1 + k] = row[mirror(width - 1 + k, p->width)];
+    }
+  }
+  size_t bytes = (size_t)(width + 2 * reach) * sizeof(float);
+  for (ptrdiff_t k = 1; k <= reach; k++) {
+    memcpy(plane - k * p->stride - reach, plane + mirror(-k, p->height) * p->stride - reach, bytes);
+    ptrdiff_t below = height - 1 + k;
+    memcpy(plane + below * p->stride - reach, plane + mirror(below, p->height) * p->stride - reach, bytes);
+  }
+}
+
 /* ---- the fit ----------------------------------------------------------------------------------------------------- */
 
 static void fit_tile(void *user, uint32_t index, uint32_t worker) {
@@ -211,13 +247,16 @@ static void fit_tile(void *user, uint32_t index, uint32_t worker) {
                    index / across * VL_DENOISE_TILE_Y);
 }
 
-/* Light is not negative, except where the pixel's own is. */
+/* Light is not negative, except where the pixel's own is. A pixel that is not finite is the mean of denoised ones. */
 static void write_row(const Denoise *d, uint32_t y, vlImage *clean) {
-  float *to = vl_image_row(clean, y);
-  for (uint32_t x = 0; x < d->planes.width; x++, to += clean->channels) {
-    ptrdiff_t at = place(&d->planes, x, y);
+  const vlDenoisePlanes *p = &d->planes;
+  float *to = vl_image_row(clean, y), filled[COLOR], variance[COLOR];
+  for (uint32_t x = 0; x < p->width; x++, to += clean->channels) {
+    ptrdiff_t at = place(p, x, y);
+    bool valid = p->valid[at] != 0.0f;
+    if (!valid) nearest_valid(p, p->result, at, filled, variance);
     for (int c = 0; c < COLOR; c++) {
-      float own = d->planes.color[c][at], least = own < 0.0f ? own : 0.0f, v = d->planes.result[c][at];
+      float own = p->color[c][at], least = own < 0.0f ? own : 0.0f, v = valid ? p->result[c][at] : filled[c];
       to[c] = v > least ? v : least;
     }
   }
@@ -242,6 +281,7 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
     vl_parallel_for(context, p->height, fill_row, d);
     vl_parallel_for(context, p->height, cap_row, d);
     vl_parallel_for(context, p->height, scale_row, d);
+    for (int c = 0; c < COLOR; c++) mirror_plane(p, p->color[c]), mirror_plane(p, p->variance[c]);
     vl_parallel_for(context, tiles_across(p) * tiles_down(p), fit_tile, d);
     for (uint32_t y = 0; y < p->height; y++) write_row(d, y, clean);
   }

@@ -666,10 +666,10 @@ def check_damage(case, folder, work):
         return None
     lines = text.split("\n")
     numbers = [m.span() for m in re.finditer(r"(?<![\w.])-?\d+\.?\d*(?![\w.])", text)]
-    variants = ["\n".join(lines[:i] + lines[i + 1:]) for i in generator.sample(range(len(lines)), min(8, len(lines)))]
-    variants += [text[:a] + word + text[b:] for a, b in generator.sample(numbers, min(10, len(numbers)))
+    variants = ["\n".join(lines[:i] + lines[i + 1:]) for i in generator.sample(range(len(lines)), min(5, len(lines)))]
+    variants += [text[:a] + word + text[b:] for a, b in generator.sample(numbers, min(4, len(numbers)))
                  for word in ("nan", "\"x\"", "-1e999")]
-    variants += [text[:generator.randrange(len(text))] for _ in range(8)]
+    variants += [text[:generator.randrange(len(text))] for _ in range(5)]
     placed = total = 0
     for variant in variants:
         with open(path, "w", encoding="utf-8") as file:
@@ -698,7 +698,7 @@ SUFFIXES = {"velo": ".json", "opencv": ".yaml", "ros": ".yaml", "nerf": ".json",
 def check_written(case, folder, work, written):
     """To every dialect that takes it, and back: the same pixels."""
     path = os.path.join(folder, case.path)
-    points = points_of(case.pose, 20)
+    points = points_of(case.pose, 12)
     want, _ = projected(path, points, work, options_of(case))
     extra = [("opencv", "copy.xml"), ("ros", "copy.ini"), ("colmap", "bin/cameras.bin")]
     for dialect, name in [(d, "copy_%s%s" % (d, s)) for d, s in SUFFIXES.items()] + extra:

@@ -1,5 +1,5 @@
-/* Camera files of every dialect, chosen by content, and COLMAP's lists and binary cameras. A camera that is read is made, written in some
- * dialect and read again. */
+/* Camera files of every dialect, chosen by content, and COLMAP's lists and binary cameras. A camera that is read is
+ * made, written in some dialect and read again. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

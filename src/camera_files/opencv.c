@@ -174,7 +174,8 @@ vlResult vl_camera_read_opencv(const vlCameraFile *file, const json_t *tree, vlC
   if (result == VL_OK) result = vl_opencv_read_lens(file, tree, NAME_IN(tree, lens_names), d);
   if (result == VL_OK && vl_camera_has(tree, "xi")) { /* the omnidirectional model */
     double xi = 0.0;
-    result = vl_camera_numbers(file, tree, "xi", &xi, 1, 1, NULL);
+    bool list = !json_is_number(json_object_get(tree, "xi"));
+    result = list ? vl_camera_numbers(file, tree, "xi", &xi, 1, 1, NULL) : vl_camera_number(file, tree, "xi", &xi);
     d->projection = VL_PROJECTION_UNIFIED;
     d->shape[0] = xi;
   }

@@ -1,7 +1,8 @@
 /* camera_files/trajectory_csv.c: poses in lines of text. With a header that names the columns: CSV (separated by
  * comma, semicolon, tab or blanks). Without one: TUM's lists (8 numbers: seconds, position, quaternion x y z w) and
- * KITTI's (12 numbers: three rows of a matrix). All are world from camera, x right, y down, z forward, unless a
- * comment before the header says "axes: opengl" or "pose: camera_from_world". */
+ * KITTI's (12 numbers: three rows of a matrix). EuRoC's ground truth has its header in a comment, with units:
+ * "#timestamp [ns], p_RS_R_x [m], ...". All are world from camera, x right, y down, z forward, unless a comment before
+ * the header says "axes: opengl" or "pose: camera_from_world". */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,7 +35,8 @@ enum Column {
   ROLL,
   M00,
   M23 = M00 + 11,
-  COLUMNS
+  COLUMNS,
+  IGNORED /* velocities and biases of EuRoC's ground truth */
 };
 
 static const char *const names[COLUMNS] = {
@@ -46,7 +48,8 @@ static const struct {
   int column;
 } aliases[] = {{"image", NAME}, {"file", NAME},      {"filename", NAME}, {"frame", NUMBER}, {"index", NUMBER},
                {"id", NUMBER},  {"timestamp", TIME}, {"t", TIME},        {"x", TX},         {"y", TY},
-               {"z", TZ}};
+               {"z", TZ},       {"p_rs_r_x", TX},    {"p_rs_r_y", TY},   {"p_rs_r_z", TZ},  {"q_rs_w", QW},
+               {"q_rs_x", QX},  {"q_rs_y", QY},      {"q_rs_z", QZ}};
 
 typedef struct Csv {
   vlTrajectory *trajectory;
@@ -56,6 +59,8 @@ typedef struct Csv {
   int columns, of[MOST_COLUMNS]; /* the Column of each field */
   bool has[COLUMNS], header;
   bool opengl, from_world;
+  bool euroc;       /* the header is EuRoC's: columns that it has besides are ignored */
+  double time_unit; /* seconds */
 } Csv;
 
 static vlResult wrong(const Csv *csv, uint32_t column, const char *format, const char *word) {
@@ -162,6 +167,10 @@ static vlResult read_header(Csv *csv, char *fields[], int count) {
     while (column < COLUMNS && strcmp(names[column], fields[i]) != 0) column++;
     for (size_t k = 0; k < sizeof aliases / sizeof *aliases; k++)
       if (strcmp(aliases[k].alias, fields[i]) == 0) column = aliases[k].column;
+    if (column == COLUMNS && csv->euroc) {
+      csv->of[i] = IGNORED;
+      continue;
+    }
     if (column == COLUMNS) {
       const char *near = vl_nearest_name(fields[i], names, COLUMNS);
       return vl_fail_at(csv->file->error, VL_ERROR_SCENE, csv->file->path, csv->line, 1, "unknown column \"%s\"%s%s%s",
@@ -173,6 +182,19 @@ static vlResult read_header(Csv *csv, char *fields[], int count) {
     csv->of[i] = column;
   }
   return check_columns(csv);
+}
+
+/* EuRoC's header: "timestamp [ns], p_RS_R_x [m], ..., q_RS_w [], ...": the body's (IMU's) pose in the reference frame,
+ * times in nanoseconds. */
+static vlResult read_euroc_header(Csv *csv, char *line) {
+  char *fields[MOST_COLUMNS];
+  csv->euroc = true;
+  csv->separator = ',';
+  csv->time_unit = 1e-9;
+  int count = split(line, csv->separator, fields);
+  if (count > MOST_COLUMNS) return wrong(csv, 0, "more than 64 columns%s", "");
+  for (int i = 0; i < count; i++) fields[i][strcspn(fields[i], " [")] = 0; /* the unit */
+  return read_header(csv, fields, count);
 }
 
 /* Sets the columns of a file without header from the count of numbers per line. */
@@ -260,17 +282,18 @@ static vlResult read_line(Csv *csv, char *line) {
     int column = csv->of[i];
     if (column == NAME)
       place.name = fields[i];
-    else if (column != NUMBER && (!to_number(fields[i], &v[column]) || !isfinite(v[column])))
+    else if (column != NUMBER && column != IGNORED && (!to_number(fields[i], &v[column]) || !isfinite(v[column])))
       return vl_frame_wrong(csv->file, &place, "\"%s\" is \"%s\"; it must be a finite number", names[column],
                             vl_short_text(fields[i]).text);
   }
   vlResult result = pose_of(csv, &place, v, m);
   if (result != VL_OK) return result;
-  return vl_trajectory_add(csv->trajectory, csv->file, &place, VL_NO_CAMERA, m, csv->has[TIME] ? v[TIME] : VL_UNSET);
+  return vl_trajectory_add(csv->trajectory, csv->file, &place, VL_NO_CAMERA, m,
+                           csv->has[TIME] ? v[TIME] * csv->time_unit : VL_UNSET);
 }
 
 vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char *text, size_t size) {
-  Csv csv = {.trajectory = t, .file = file};
+  Csv csv = {.trajectory = t, .file = file, .time_unit = 1.0};
   char *end = text + size;
   if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) text += 3; /* byte order mark */
   for (char *line = text; line < end;) {
@@ -281,7 +304,9 @@ vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char 
     if (n && line[n - 1] == '\r') line[n - 1] = 0;
     const char *first = line + strspn(line, " \t");
     vlResult result = VL_OK;
-    if (*first == '#') {
+    if (*first == '#' && strstr(first, "p_RS_R_x")) {
+      result = read_euroc_header(&csv, line + (first - line) + 1);
+    } else if (*first == '#') {
       if (!take_comment(&csv, first))
         result = wrong(&csv, 0, "\"%s\": axes are opencv or opengl, poses world_from_camera or camera_from_world",
                        vl_short_text(first).text);

@@ -13,14 +13,17 @@ enum { MAX_DEPTH = 64, MAX_PRIMS = 20000, MAX_NUMBERS = 64 };
 
 typedef struct {
   const vlCameraFile *file;
-  const char *at, *end;
+  const char *start, *at, *end;
   uint32_t line;
   uint32_t prims;
   vlResult result;
 } Parser;
 
 static bool fail(Parser *p, const char *what) {
-  if (p->result == VL_OK) p->result = vl_camera_wrong_at(p->file, p->line, 0, "not USD: %s", what);
+  const char *first = p->at;
+  while (first > p->start && first[-1] != '\n') first--;
+  if (p->result == VL_OK)
+    p->result = vl_camera_wrong_at(p->file, p->line, (uint32_t)(p->at - first) + 1, "not USD: %s", what);
   return false;
 }
 
@@ -272,7 +275,7 @@ static bool prim(Parser *p, json_t *parent, int depth) {
 }
 
 vlResult vl_camera_usda(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {
-  Parser p = {.file = file, .at = text, .end = text + size, .line = 1, .result = VL_OK};
+  Parser p = {.file = file, .start = text, .at = text, .end = text + size, .line = 1, .result = VL_OK};
   json_t *root = json_object();
   *tree = NULL;
   if (!root || json_object_set_new(root, "/", json_array()) != 0) memory(&p);

@@ -264,7 +264,7 @@ def obj():
 def cameras():
     for name in names(os.path.join(CORPUS, "camera_file"), "."):
         form = "json" if re.search(r"\.(json|gltf)$", name) else "plain"
-        name_here = "cameras.txt" if name == "colmap.txt" else name
+        name_here = {"colmap.txt": "cameras.txt", "colmap.bin": "cameras.bin"}.get(name, name)
         yield name, {name_here: os.path.join(CORPUS, "camera_file", name)}, name_here, form, name_here
 
 

@@ -12,11 +12,12 @@ extern const Choice dialect_choices[];
 bool camera_is_scene(const char *path);
 /* Reads a camera file of any dialect, or the camera of a pbrt scene. When a file has several frames and none was
  * chosen, a note names the one taken. size: of --size, for files that have none; a file with another is an error.
- * fallback: a size that may be another (--resolution). Null or not given: none. Returns -1, or the exit code after reporting the error. */
+ * fallback: a size that may be another (--resolution). Null or not given: none. Returns -1, or the exit code after
+ * reporting the error. */
 int camera_load(vlContext *context, const char *path, int dialect, const char *frame, const OptionValue *size,
                 const OptionValue *fallback, vlCameraRecord *record);
 /* The same, and makes the camera; warnings are reported. */
-int camera_load_made(vlContext *context, const char *path, const Arguments *arguments, int frame_option, int size_option,
-                     vlCameraRecord *record, vlCamera *camera);
+int camera_load_made(vlContext *context, const char *path, const Arguments *arguments, int frame_option,
+                     int size_option, vlCameraRecord *record, vlCamera *camera);
 
 #endif

@@ -164,8 +164,9 @@ static const Option points_options[] = {
     {POINTS_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
     {POINTS_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {POINTS_STRICT, 0, "strict", OPTION_FLAG, NULL,
-     "end at a line that is not numbers; default: it is reported, its\nresult is not valid, the rest goes on, and the exit code is 3", 0, 0,
-     NULL},
+     "end at a line that is not numbers; default: it is reported, its\nresult is not valid, the rest goes on, and the "
+     "exit code is 3",
+     0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command camera_project_command = {

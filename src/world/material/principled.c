@@ -63,13 +63,11 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
                                     {d->sheen_roughness, &p->sheen_roughness},
                                     {d->iridescence, &p->iridescence},
                                     {d->iridescence_thickness, &p->iridescence_thickness}};
-  vlResult r = vl_world_spectrum_node(world, scene, def->reflectance, VL_ROLE_ALBEDO, &m->reflectance, error);
+  vlResult r = vl_material_spectrum(b, &def->reflectance, &m->reflectance);
   if (r == VL_OK) r = vl_material_floats(b, floats, sizeof floats / sizeof *floats);
-  if (r == VL_OK)
-    r = vl_world_spectrum_node(world, scene, d->specular_color, VL_ROLE_UNBOUNDED, &p->specular_color, error);
-  if (r == VL_OK)
-    r = vl_world_spectrum_node(world, scene, d->diffuse_transmission_color, VL_ROLE_ALBEDO, &p->through, error);
-  if (r == VL_OK) r = vl_world_spectrum_node(world, scene, d->sheen_color, VL_ROLE_ALBEDO, &p->sheen, error);
+  if (r == VL_OK) r = vl_material_spectrum(b, &d->specular_color, &p->specular_color);
+  if (r == VL_OK) r = vl_material_spectrum(b, &d->diffuse_transmission_color, &p->through);
+  if (r == VL_OK) r = vl_material_spectrum(b, &d->sheen_color, &p->sheen);
   if (r == VL_OK) r = normal_node(world, scene, d->normal, &p->normal, error);
   if (r == VL_OK) r = normal_node(world, scene, d->clearcoat_normal, &p->coat_normal, error);
   /* Lobes whose weight is always 0 need no lookups. */

@@ -23,10 +23,8 @@ VL_MATERIAL_KINDS(VL_DECLARE_COMPILE)
 static inline vlResult vl_material_float(const vlMaterialBuild *b, vlFloatInput input, int32_t *node) {
   return vl_world_float_node(b->world, b->scene, input, node, b->error);
 }
-static inline vlResult vl_material_spectrum(const vlMaterialBuild *b, vlSpectrumInput input, vlSpectrumRole role,
-                                            int32_t *node) {
-  return vl_world_spectrum_node(b->world, b->scene, input, role, node, b->error);
-}
+/* The same for a member of the def; its row says which role the spectrum has. */
+vlResult vl_material_spectrum(const vlMaterialBuild *b, const vlSpectrumInput *input, int32_t *node);
 typedef struct vlMaterialFloat {
   vlFloatInput input;
   int32_t *node;

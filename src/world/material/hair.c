@@ -7,11 +7,12 @@ static vlResult compile_color(const vlMaterialBuild *b, vlWorldHair *h) {
   const vlSpectrumInput eu = vl_spectrum_input(vl_spectrum_rgb(0.419f, 0.697f, 1.37f));
   const vlSpectrumInput pheo = vl_spectrum_input(vl_spectrum_rgb(0.187f, 0.4f, 1.05f));
   switch (d->color) {
-    case VL_HAIR_SIGMA_A: return vl_material_spectrum(b, d->sigma_a, VL_ROLE_UNBOUNDED, &h->sigma_a);
-    case VL_HAIR_REFLECTANCE: return vl_material_spectrum(b, b->def->reflectance, VL_ROLE_ALBEDO, &b->m->reflectance);
+    case VL_HAIR_SIGMA_A: return vl_material_spectrum(b, &d->sigma_a, &h->sigma_a);
+    case VL_HAIR_REFLECTANCE: return vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
     case VL_HAIR_MELANIN: {
-      vlResult r = vl_material_spectrum(b, eu, VL_ROLE_UNBOUNDED, &h->eumelanin);
-      return r == VL_OK ? vl_material_spectrum(b, pheo, VL_ROLE_UNBOUNDED, &h->pheomelanin) : r;
+      vlResult r = vl_world_spectrum_node(b->world, b->scene, eu, VL_ROLE_UNBOUNDED, &h->eumelanin, b->error);
+      return r == VL_OK ? vl_world_spectrum_node(b->world, b->scene, pheo, VL_ROLE_UNBOUNDED, &h->pheomelanin, b->error)
+                        : r;
     }
   }
   return VL_ERROR_ARGUMENT;

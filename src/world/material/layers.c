@@ -18,7 +18,7 @@ vlResult vl_material_layers(const vlMaterialBuild *b, bool metal) {
                                     {def->g, &l->g},
                                     {def->coat_u_roughness, &l->coat_u},
                                     {def->coat_v_roughness, &l->coat_v}};
-  vlResult r = vl_material_spectrum(b, def->albedo, VL_ROLE_ALBEDO, &l->albedo);
+  vlResult r = vl_material_spectrum(b, &def->albedo, &l->albedo);
   return r == VL_OK ? vl_material_floats(b, floats, metal ? 4 : 2) : r;
 }
 

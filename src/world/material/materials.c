@@ -1,4 +1,5 @@
 /* world/material/materials.c: scene materials -> world materials. Index 0 is the default, a diffuse grey. */
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -81,11 +82,29 @@ vlResult vl_material_roughness(const vlMaterialBuild *b) {
   return vl_material_floats(b, floats, 2);
 }
 
+static vlSpectrumRole role_of(const vlMaterialDef *def, const vlSpectrumInput *input) {
+  static const vlSpectrumRole roles[] = {[VL_PARAMETER_NO_ROLE] = VL_ROLE_UNBOUNDED,
+                                         [VL_PARAMETER_ALBEDO] = VL_ROLE_ALBEDO,
+                                         [VL_PARAMETER_UNBOUNDED] = VL_ROLE_UNBOUNDED,
+                                         [VL_PARAMETER_ILLUMINANT] = VL_ROLE_ILLUMINANT};
+  const vlKindRow *row = vl_kind_row(&vl_material_family, (int)def->kind);
+  const size_t offset = (size_t)((const char *)input - (const char *)def);
+  for (uint32_t i = 0; i < row->parameter_count; i++)
+    if (row->parameters[i].type == VL_PARAMETER_SPECTRUM_INPUT && row->parameters[i].offset == offset)
+      return roles[row->parameters[i].role];
+  assert(!"a spectrum of the material's row");
+  return VL_ROLE_UNBOUNDED;
+}
+
+vlResult vl_material_spectrum(const vlMaterialBuild *b, const vlSpectrumInput *input, int32_t *node) {
+  return vl_world_spectrum_node(b->world, b->scene, *input, role_of(b->def, input), node, b->error);
+}
+
 vlResult vl_material_metal(const vlMaterialBuild *b) {
   b->m->use_reflectance = b->def->use_reflectance;
-  if (b->def->use_reflectance) return vl_material_spectrum(b, b->def->reflectance, VL_ROLE_ALBEDO, &b->m->reflectance);
-  vlResult r = vl_material_spectrum(b, b->def->eta, VL_ROLE_UNBOUNDED, &b->m->eta);
-  return r == VL_OK ? vl_material_spectrum(b, b->def->k, VL_ROLE_UNBOUNDED, &b->m->k) : r;
+  if (b->def->use_reflectance) return vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
+  vlResult r = vl_material_spectrum(b, &b->def->eta, &b->m->eta);
+  return r == VL_OK ? vl_material_spectrum(b, &b->def->k, &b->m->k) : r;
 }
 
 vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta, bool disperses) {
@@ -100,7 +119,7 @@ vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta,
   bool spectral = b->world->def.color != VL_COLOR_RGB;
   if (spectral && disperses) {
     m->dispersive = true;
-    return vl_material_spectrum(b, *eta, VL_ROLE_UNBOUNDED, &m->eta);
+    return vl_material_spectrum(b, eta, &m->eta);
   }
   /* A single number stands for a glass: its index at the sodium line, as catalogues give it. */
   float dense[VL_LAMBDA_COUNT];
@@ -119,12 +138,12 @@ vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta,
 
 vlResult vl_compile_diffuse_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_DIFFUSE;
-  return vl_material_spectrum(b, b->def->reflectance, VL_ROLE_ALBEDO, &b->m->reflectance);
+  return vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
 }
 
 vlResult vl_compile_coated_diffuse_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_COATED_DIFFUSE;
-  vlResult r = vl_material_spectrum(b, b->def->reflectance, VL_ROLE_ALBEDO, &b->m->reflectance);
+  vlResult r = vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
   if (r == VL_OK) r = vl_material_roughness(b);
   if (r == VL_OK) r = vl_material_index(b, &b->def->eta, false);
   if (r != VL_OK) return r;
@@ -154,8 +173,8 @@ vlResult vl_compile_thin_dielectric_material(const vlMaterialBuild *b) {
 vlResult vl_compile_diffuse_transmission_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_DIFFUSE_TRANSMISSION;
   b->m->scale = b->def->scale;
-  vlResult r = vl_material_spectrum(b, b->def->reflectance, VL_ROLE_ALBEDO, &b->m->reflectance);
-  return r == VL_OK ? vl_material_spectrum(b, b->def->transmittance, VL_ROLE_ALBEDO, &b->m->transmittance) : r;
+  vlResult r = vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
+  return r == VL_OK ? vl_material_spectrum(b, &b->def->transmittance, &b->m->transmittance) : r;
 }
 
 vlResult vl_compile_measured_material(const vlMaterialBuild *b) {

@@ -95,14 +95,11 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
                                     {d->iridescence_thickness, &p->iridescence_thickness}};
   bool glass = !d->thin_walled && is_one(d->transmission) && is_zero(d->metallic) && !def->reflectance.texture.index &&
                def->reflectance.value.kind == VL_SPECTRUM_RGB && world->def.color == VL_COLOR_SPECTRAL;
-  vlResult r = glass ? glass_color(b, error)
-                     : vl_world_spectrum_node(world, scene, def->reflectance, VL_ROLE_ALBEDO, &m->reflectance, error);
+  vlResult r = glass ? glass_color(b, error) : vl_material_spectrum(b, &def->reflectance, &m->reflectance);
   if (r == VL_OK) r = vl_material_floats(b, floats, sizeof floats / sizeof *floats);
-  if (r == VL_OK)
-    r = vl_world_spectrum_node(world, scene, d->specular_color, VL_ROLE_UNBOUNDED, &p->specular_color, error);
-  if (r == VL_OK)
-    r = vl_world_spectrum_node(world, scene, d->diffuse_transmission_color, VL_ROLE_ALBEDO, &p->through, error);
-  if (r == VL_OK) r = vl_world_spectrum_node(world, scene, d->sheen_color, VL_ROLE_ALBEDO, &p->sheen, error);
+  if (r == VL_OK) r = vl_material_spectrum(b, &d->specular_color, &p->specular_color);
+  if (r == VL_OK) r = vl_material_spectrum(b, &d->diffuse_transmission_color, &p->through);
+  if (r == VL_OK) r = vl_material_spectrum(b, &d->sheen_color, &p->sheen);
   if (r == VL_OK) r = normal_node(world, scene, d->normal, &p->normal, error);
   if (r == VL_OK) r = normal_node(world, scene, d->clearcoat_normal, &p->coat_normal, error);
   /* Lobes whose weight is always 0 need no lookups. */

@@ -27,11 +27,11 @@ vlResult vl_compile_subsurface_material(const vlMaterialBuild *b) {
   if (r != VL_OK) return r;
   if (!(s->table = table_of(b->world, m->eta_s, b->def->g.value))) return vl_fail_memory(b->error);
   if (d->from_reflectance) {
-    r = vl_material_spectrum(b, b->def->reflectance, VL_ROLE_ALBEDO, &m->reflectance);
-    if (r == VL_OK) r = vl_material_spectrum(b, d->mfp, VL_ROLE_UNBOUNDED, &s->mfp);
+    r = vl_material_spectrum(b, &b->def->reflectance, &m->reflectance);
+    if (r == VL_OK) r = vl_material_spectrum(b, &d->mfp, &s->mfp);
   } else {
-    r = vl_material_spectrum(b, d->sigma_a, VL_ROLE_UNBOUNDED, &s->sigma_a);
-    if (r == VL_OK) r = vl_material_spectrum(b, d->sigma_s, VL_ROLE_UNBOUNDED, &s->sigma_s);
+    r = vl_material_spectrum(b, &d->sigma_a, &s->sigma_a);
+    if (r == VL_OK) r = vl_material_spectrum(b, &d->sigma_s, &s->sigma_s);
   }
   m->subsurface = s;
   m->has_subsurface = true;

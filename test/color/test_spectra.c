@@ -228,7 +228,7 @@ static void test_meaning(void **state) {
   assert_true(vl_spectrum_is_constant(&s, &value) && value == 1.5f);
 
   /* black body: maximum 1 at Wien's wavelength; its colour at 6504 K is near daylight; very low and very high
-   * temperatures give finite values /
+   * temperatures give finite values */
   s = vl_spectrum_blackbody(5000);
   assert_int_equal(vl_spectrum_dense(&s, VL_ROLE_ILLUMINANT, dense, NULL), VL_OK);
   for (int i = 0; i < VL_LAMBDA_COUNT; i++) assert_true(dense[i] > 0.4f && dense[i] <= 1.0f);

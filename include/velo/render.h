@@ -198,12 +198,18 @@ VL_API uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, co
 
 /* ---- how the image of a scene is taken -------------------------------------------------------------------------- */
 
-/** The defs of the calls that make a scene's image, each complete and ready to be passed on. A new scene has the
- * defaults of an empty pbrt-v4 file (1280 x 720 pixels); an importer sets what its file gives.    vlSceneDefs *defs =
- * vl_scene_defs(scene);   vl_world_build(scene, &defs->build, &world, &error);   vl_camera_make(&defs->camera, &camera,
- * NULL, &error);   vl_film_create(context, &defs->film, &film);   vl_render(world, &camera, film, &defs->render, NULL,
- * &error);   vl_film_develop(film, &defs->develop, &image);  A copy stays valid after the scene, except for what the
- * scene owns: camera.lens.aperture, camera.lens.optics, camera_source.file. Not thread-safe. */
+/** The defs of the calls that make the image of a scene, each complete and ready to be passed on. A
+ * new scene has the defaults of an empty pbrt-v4 file (1280 x 720 pixels); an importer sets what its file gives.
+ *
+ *   vlSceneDefs *defs = vl_scene_defs(scene);
+ *   vl_world_build(scene, &defs->build, &world, &error);
+ *   vl_camera_make(&defs->camera, &camera, NULL, &error);
+ *   vl_film_create(context, &defs->film, &film);
+ *   vl_render(world, &camera, film, &defs->render, NULL, &error);
+ *   vl_film_develop(film, &defs->develop, &image);
+ *
+ * A copy stays valid after the scene, except for what the scene owns: camera.lens.aperture, camera.lens.optics,
+ * camera_source.file. Not thread-safe. */
 struct vlSceneDefs {
   vlCameraDef camera; /**< for vl_camera_make; width and height are the film's */
   vlFilmDef film;     /**< for vl_film_create */

@@ -34,7 +34,7 @@ static vlShapeId add_sphere(Bench *b, double radius, vlMaterialId material, vlEm
   return vl_scene_add_shape(b->scene, &def);
 }
 
-/* A sphere of triangles: an octahedron divided and put on the sphere. */
+/* A sphere of triangles: a subdivided octahedron, its vertices on the sphere. */
 static void add_mesh_sphere(Bench *b, float radius, vlMaterialId material, vlEmissionId emission, bool inside_out) {
   enum { N = 24 };
   static float p[(N + 1) * (2 * N + 1) * 3];
@@ -142,7 +142,7 @@ static void assert_mean(const char *what, const double mean[3], double expected,
 
 static const Shot inside = {{0, 0, 0}, {0.2, 0.1, -1}, 1.2, 48, 64, 200, VL_COLOR_SPECTRAL};
 
-/* Radiance in a closed diffuse sphere is everywhere the emitted one / (1 - albedo). */
+/* In a closed diffuse sphere the radiance is the emitted one / (1 - albedo). */
 static void emissive_sphere(void **state) {
   (void)state;
   for (int rgb = 0; rgb < 2; rgb++) {
@@ -165,7 +165,7 @@ static void emissive_mesh_sphere(void **state) {
   assert_mean("emissive sphere of triangles", mean, 1, 1e-3);
 }
 
-/* A point light of intensity I in the middle lights the wall with I; the wall sends albedo / pi of it on, and so on. */
+/* A point light of intensity I in the middle lights the wall with I; the wall reflects albedo / pi of it, and so on. */
 static void point_light_in_sphere(void **state) {
   (void)state;
   Bench b = begin();
@@ -245,7 +245,7 @@ static void disk_over_floor(void **state) {
   lamp.radius = 1;
   lamp.emission = emission(&b, 1);
   lamp.material = diffuse(&b, 0);
-  lamp.reverse_orientation = true; /* shines down */
+  lamp.reverse_orientation = true; /* emits downwards */
   lamp.height = 2;
   vl_scene_add_shape(b.scene, &lamp);
   vlShapeDef floor = vl_default_shape_def(VL_SHAPE_DISK);

@@ -163,8 +163,7 @@ static void test_modes(void **state) {
   stage_close(&s);
 }
 
-/* Predicted standard errors match the measured ones for independent samples. A surface of constant radiance has none.
- * */
+/* Predicted standard errors match the measured ones for independent samples. Constant radiance has none. */
 static void test_standard_error(void **state) {
   (void)state;
   for (int filter = 0; filter < 2; filter++) {

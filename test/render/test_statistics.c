@@ -70,8 +70,7 @@ static void estimate(vlSamplerKind sampler, uint32_t spp, uint32_t first_seed, E
 }
 
 /* Differences in units of their standard deviation. With few seeds t has heavy tails: for an image or a block 6 is
- * beyond chance. Over pixels the mean of z^2 must be near its expectation, (n-1)/(n-3) = 1.22 for n = 12 seeds a side.
- * */
+ * beyond chance. Over pixels the mean of z^2 must be near its expectation, (n-1)/(n-3) = 1.22 for n = 12 seeds. */
 static void compare(const char *what, const Estimate *a, const Estimate *b) {
   double floor2 = 1e-12;
   double z = (a->image - b->image) / sqrt(a->image_variance + b->image_variance + floor2);

@@ -4,12 +4,12 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
-/* after those */
+/* cmocka.h needs the headers above */
 #include <cmocka.h>
 
 #include "bsdf_state.h"
 
-/* The coats' tables of the state: smooth, fine, rough, varied. */
+/* Tables of the state's coats: smooth, fine, rough, textured. */
 static int build_coats(void **state) {
   if (setup(state)) return 1;
   State *s = *state;
@@ -17,7 +17,7 @@ static int build_coats(void **state) {
   vl_coat_build(s->context, 1.5f, 0.01f, 10, 0.1f, 0.1f, &s->coats[1]);
   vl_coat_build(s->context, 1.8f, 0.2f, 100, 0.4f, 0.4f, &s->coats[2]);
   vl_coat_build(s->context, 1.5f, 0.01f, 10, 0.0f, 0.5f, &s->coats[3]);
-  if (s->coats[2] && vl_coat_conserve(s->context, s->coats[2])) return 1; /* the third keeps its light */
+  if (s->coats[2] && vl_coat_conserve(s->context, s->coats[2])) return 1; /* the third conserves energy */
   return !s->coats[0] || !s->coats[1] || !s->coats[2] || !s->coats[3];
 }
 
@@ -109,7 +109,7 @@ static double direction_value(void *user, double phi, double theta) {
 
 /* ---- tests ---- */
 
-/* NaN wins, so that it is seen. */
+/* The larger one; NaN if one is, so that it is found. */
 static double larger(double a, double b) {
   return a > b || a != a ? a : b;
 }
@@ -144,7 +144,7 @@ static void chi_square(void **state) {
     }
 }
 
-/* Wherever a sample lands, eval says the same: pdf, and value = weight pdf. Transmission is flagged. */
+/* For each sample eval returns the same: pdf, and value = weight pdf. Transmission is flagged. */
 static void consistent(void **state) {
   State *s = *state;
   Batch *b = s->batch, *c = calloc(1, sizeof *c);
@@ -177,7 +177,7 @@ static void consistent(void **state) {
         continue;
       }
       landed++;
-      /* microfacets that wi shows grazingly are ill-conditioned: the half vector's rounding over alpha */
+      /* microfacets that wi meets at grazing angles are ill-conditioned: the half vector's rounding over alpha */
       if (fabsf(b->iz[j]) < 0.01f || fabsf(b->oz[j]) < 0.01f) continue;
       for (int k = 0; k < 4; k++) {
         double v = (double)c->value[k][j], w = (double)b->weight[k][j] * (double)b->pdf[j];

@@ -279,8 +279,7 @@ static vlEmissionId emission(Fixture *f, bool two_sided) {
   return vl_scene_add_emission(f->scene, &def);
 }
 
-/* Cosine-weighted about the normal: the squared cosine and the azimuth are uniform, and so is the choice of the side.
- * */
+/* Cosine-weighted about the normal: the squared cosine and the azimuth are uniform; so is the choice of side. */
 static void leave_by_cosine(Fixture *f, const char *what, bool two_sided, unsigned seed) {
   enum { CELLS = 2 * ROWS * COLUMNS };
   uint32_t counts[CELLS] = {0}, n = 0;

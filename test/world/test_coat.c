@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-/* after those */
+/* cmocka.h needs the headers above */
 #include <cmocka.h>
 
 #include "statistics.h"

@@ -202,9 +202,8 @@ bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes) {
    * than a thousandfold is refused. */
   uint64_t limit = (256u << 20) + 1000 * (g->total + g->file_size);
   g->spent += bytes;
-  return g->spent <= limit ||
-         vl_gltf_fail(g, at, "the file repeats its data too often: more than %llu MB of geometry",
-                      (unsigned long long)(limit >> 20));
+  return g->spent <= limit || vl_gltf_fail(g, at, "the file repeats its data too often: more than %llu MB of geometry",
+                                           (unsigned long long)(limit >> 20));
 }
 
 float *vl_gltf_load_floats(vlGltf *g, const vlGltfPlace *at, size_t index, uint32_t components, size_t count,

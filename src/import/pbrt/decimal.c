@@ -105,8 +105,7 @@ static bool subtract(Whole *a, const Whole *b) {
   return true;
 }
 
-/* q * 2^exponent, rounded. q has 55 or 56 bits; its lowest bit is also set if any bit below it would be (sticky bit).
- * */
+/* q * 2^exponent, rounded. q has 55 or 56 bits; its lowest bit is also set if a lower bit would be (sticky bit). */
 static double round_to_double(uint64_t q, int exponent) {
   int bits = q >> 55 ? 56 : 55, drop = -1074 - exponent; /* doubles are multiples of 2^-1074 */
   if (drop > bits - 53) {

@@ -165,6 +165,16 @@ static int run(int argc, char **argv) {
   return status >= 0 ? status : command->run(command, &arguments);
 }
 
+/* std::set_terminate of the C++ library that Embree brings, if it brings one: a C++ exception that nobody catches ends
+ * the process. Embree's scheduler throws such where an allocation is refused. */
+extern void *set_terminate(void (*handler)(void)) __asm__("_ZSt13set_terminatePFvvE") __attribute__((weak));
+
+static void on_terminate(void) {
+  static const char text[] = "velo: out of memory in a library (Embree)\n";
+  ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
+  _exit(written < 0 ? STATUS_IO : STATUS_OTHER);
+}
+
 int main(int argc, char **argv) {
   /* Opens closed standard descriptors, so that no file gets descriptor 0, 1 or 2 and receives messages. Printing to a
    * closed stdout still fails: its replacement is read-only. */
@@ -173,6 +183,7 @@ int main(int argc, char **argv) {
   signal(SIGPIPE, SIG_IGN); /* a closed pipe must not end a render */
   signal(SIGXFSZ, SIG_IGN); /* a file that exceeds its size limit is an error like a full disk */
   signals_install();
+  if (set_terminate) set_terminate(on_terminate);
   bool json = false;
   for (int i = 1; i < argc; i++) json |= strcmp(argv[i], "--log-json") == 0;
   report_setup(json, REPORT_NORMAL);

@@ -94,7 +94,9 @@ static bool headers_fit(const vlImageFile *file) {
 static vlResult fail(Reader *r, exr_result_t code) {
   /* The PIZ decoder reports "out of memory" for damaged data, too; the message tells the two apart. */
   bool damaged = strncmp(r->base.message, "Unable to decompress", 20) == 0;
-  if (code == EXR_ERR_OUT_OF_MEMORY && !damaged) return vl_fail_memory(r->base.file->error);
+  bool refused =
+      strcmp(r->base.message, exr_get_default_error_message(EXR_ERR_OUT_OF_MEMORY)) == 0; /* hidden by `code` */
+  if ((code == EXR_ERR_OUT_OF_MEMORY && !damaged) || refused) return vl_fail_memory(r->base.file->error);
   return vl_codec_broken(r->base.file, "OpenEXR",
                          r->base.message[0] ? r->base.message : exr_get_default_error_message(code));
 }

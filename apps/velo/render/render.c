@@ -240,7 +240,8 @@ static int prepare(Render *render, const Arguments *arguments) {
   if (result == VL_ERROR_UNSUPPORTED || result == VL_ERROR_ARGUMENT)
     return report_usage("the environment variable VELO_ISA must be base, v2, v3 or v4, and the machine must have it");
   if (result == VL_ERROR_MEMORY)
-    return report_failure(STATUS_OTHER, "no memory, or the system refuses to start %u threads: --threads N", def.threads);
+    return report_failure(STATUS_OTHER, "no memory, or the system refuses to start %u threads: --threads N",
+                          def.threads);
   if (result == VL_OK) report_memory_of(render->context, def.max_memory);
   return result == VL_OK ? -1 : report_error(NULL, result, NULL);
 }

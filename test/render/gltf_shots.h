@@ -71,6 +71,7 @@ static UNUSED Image shoot(const Gltf *g, const char *rest, const Shot *shot) {
   s.build.color = shot->spectral ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
   s.render.tracer = vl_scene_defs(s.scene)->render.tracer;
   s.render.spp = shot->spp ? shot->spp : 64;
+  s.render.sequence = s.render.spp; /* the least noise for this number */
   s.render.max_depth = shot->depth ? shot->depth : 64;
   Image p = stage_finish(&s);
   unlink(path);

@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "render/pattern.h"
 
 static int fail_command(const Continue *c, const char *why) {
   return report_failure(STATUS_SCENE, "%s: the command in its receipt cannot be followed: %s", c->path, why);
@@ -72,12 +73,18 @@ int continue_open(Continue *c, const Arguments **arguments) {
   def.log = report_log;
   c->path = given->values[RENDER_CONTINUE].text;
   vlResult result = vl_context_create(&def, &c->context);
-  if (result == VL_OK) result = vl_film_file_open(c->context, c->path, &c->file, &error);
+  char first[4096];
+  const PatternValues left = {0, "", "", "left"};
+  bool eyes = pattern_has(c->path, 'v');
+  if (eyes && !pattern_expand(c->path, &left, first, sizeof first))
+    return report_usage("--continue: the name is too long");
+  if (result == VL_OK) result = vl_film_file_open(c->context, eyes ? first : c->path, &c->file, &error);
   if (result != VL_OK) return report_error(&error, result, NULL);
   const vlReceipt *receipt = vl_film_file_receipt(c->file);
   if (!receipt) return report_failure(STATUS_SCENE, "%s: the film has no receipt: what made it is not known", c->path);
   int status = parse_command(c, receipt);
   if (status < 0) take_options(c, given, receipt);
+  if (eyes && !given->values[RENDER_EYE].given) c->arguments.values[RENDER_EYE].given = false;
   if (status < 0) status = take_scene(c, given);
   *arguments = &c->arguments;
   return status;
@@ -99,26 +106,26 @@ static bool name_difference(void *user, const char *text) {
   return true;
 }
 
-int continue_check(const Continue *c, const vlReceipt *now) {
+static int compare(const char *path, const vlReceipt *then, const vlReceipt *now) {
   Difference d = {.count = 0};
-  vl_receipt_compare(vl_film_file_receipt(c->file), now,
-                     VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_CAMERA | VL_RECEIPT_SETTINGS, name_difference,
-                     &d);
+  if (!then) return report_failure(STATUS_SCENE, "%s: the film has no receipt: what made it is not known", path);
+  vl_receipt_compare(then, now, VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_CAMERA | VL_RECEIPT_SETTINGS,
+                     name_difference, &d);
   if (!d.count) return -1;
   char more[40] = "";
   if (d.more) snprintf(more, sizeof more, "; and %u more", d.more);
-  return report_failure(STATUS_SCENE, "%s cannot be continued: %s%s", c->path, d.text, more);
+  return report_failure(STATUS_SCENE, "%s cannot be continued: %s%s", path, d.text, more);
 }
 
 /* The pixels that have samples, and the first block's samples. */
-static int find_extent(const Continue *c, uint32_t crop[4], vlSampleRange *range) {
+static int find_extent(const char *path, vlFilmFile *file, uint32_t crop[4], vlSampleRange *range) {
   vlFilmBlock block;
   vlError error = {0};
   bool any = false;
   for (;;) {
-    vlResult result = vl_film_file_next(c->file, false, &block, &error);
+    vlResult result = vl_film_file_next(file, false, &block, &error);
     if (result != VL_OK) return report_error(&error, result, NULL);
-    if (block.x1 == 0) return any ? -1 : report_failure(STATUS_SCENE, "%s: the film has no samples", c->path);
+    if (block.x1 == 0) return any ? -1 : report_failure(STATUS_SCENE, "%s: the film has no samples", path);
     if (!block.range_count) continue;
     const uint32_t place[4] = {block.x0, block.y0, block.x1, block.y1};
     for (int i = 0; i < 4; i++)
@@ -128,26 +135,39 @@ static int find_extent(const Continue *c, uint32_t crop[4], vlSampleRange *range
   }
 }
 
-int continue_read(const Continue *c, vlContext *context, vlSceneDefs *defs, vlFilm **film) {
-  const OptionValue *v = c->arguments.values;
+/* Whether the film goes on with the part that is wanted. */
+static int take_extent(const char *path, vlFilmFile *file, const Arguments *arguments, vlSceneDefs *defs) {
+  const OptionValue *v = arguments->values;
   uint32_t crop[4] = {0, 0, 0, 0};
   vlSampleRange range = {0, 0};
-  vlError error = {0};
-  int status = find_extent(c, crop, &range);
+  int status = find_extent(path, file, crop, &range);
   if (status >= 0) return status;
   bool tiles = v[RENDER_TILES].given || v[RENDER_SHARD_BY].given;
   if (tiles && memcmp(crop, defs->film.crop, sizeof crop) != 0)
-    return report_usage("%s holds the pixels %u,%u,%u,%u, not those of this part", c->path, crop[0], crop[1], crop[2],
+    return report_usage("%s holds the pixels %u,%u,%u,%u, not those of this part", path, crop[0], crop[1], crop[2],
                         crop[3]);
   memcpy(defs->film.crop, crop, sizeof crop);
   bool part = v[RENDER_SAMPLES].given || (v[RENDER_SHARD].given && !tiles);
   if (part && range.first != defs->render.first_sample)
-    return report_usage("%s holds the samples %u:%u, not those of this part", c->path, range.first, range.end);
+    return report_usage("%s holds the samples %u:%u, not those of this part", path, range.first, range.end);
   defs->render.first_sample = range.first;
   if (range.end > defs->render.spp)
-    return report_usage("%s holds the samples %u:%u already; --spp is %u", c->path, range.first, range.end,
+    return report_usage("%s holds the samples %u:%u already; --spp is %u", path, range.first, range.end,
                         defs->render.spp);
-  vlResult result = vl_film_read(context, c->path, false, film, &error);
+  return -1;
+}
+
+int continue_film(const char *path, const Arguments *arguments, const vlReceipt *now, vlContext *context,
+                  vlSceneDefs *defs, vlFilm **film) {
+  vlFilmFile *file;
+  vlError error = {0};
+  vlResult result = vl_film_file_open(context, path, &file, &error);
+  if (result != VL_OK) return report_error(&error, result, NULL);
+  int status = compare(path, vl_film_file_receipt(file), now);
+  if (status < 0) status = take_extent(path, file, arguments, defs);
+  vl_film_file_close(file);
+  if (status >= 0) return status;
+  result = vl_film_read(context, path, false, film, &error);
   return result == VL_OK ? -1 : report_error(&error, result, NULL);
 }
 

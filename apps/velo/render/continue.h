@@ -12,14 +12,13 @@ typedef struct Continue {
   Arguments arguments; /* of the command, with what is given beside it; texts live in the receipt */
 } Continue;
 
-/* Reads the film's receipt and replaces *arguments by those of its command. Returns -1 or the exit code. */
+/* Reads the film's receipt and replaces *arguments by those of its command. Of a film for each eye (%v in the name) it
+ * reads the left one's. Returns -1 or the exit code. */
 int continue_open(Continue *c, const Arguments **arguments);
-/* Compares the receipt of the render that is about to begin. Returns -1, or the exit code after naming the differences.
- */
-int continue_check(const Continue *c, const vlReceipt *now);
-/* Reads the film. Its pixels, where it has not all, become the crop of defs. Returns -1, or the exit code where it has
- * not the samples before those that are to be rendered. */
-int continue_read(const Continue *c, vlContext *context, vlSceneDefs *defs, vlFilm **film);
+/* Reads the film in `path`, if its receipt is `now` and it has the samples before those that are to be rendered; its
+ * pixels, where it has not all, become the crop of defs. Returns -1, or the exit code after naming the differences. */
+int continue_film(const char *path, const Arguments *arguments, const vlReceipt *now, vlContext *context,
+                  vlSceneDefs *defs, vlFilm **film);
 void continue_close(Continue *c);
 
 #endif

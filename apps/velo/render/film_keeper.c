@@ -11,17 +11,33 @@
 enum { EVERY = 30 };
 static const double SHARE = 0.005, SHARE_WITH_ERRORS = 0.015;
 
-void film_keeper_start(FilmKeeper *k, const char *path, const Arguments *arguments, const vlFilmDef *whole,
-                       vlReceipt *receipt) {
-  const OptionValue *every = &arguments->values[RENDER_CHECKPOINT];
+int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, vlContext *context, const Job *job, const char *eye) {
+  if (!k->path[0]) return -1;
+  Job whole = *job;
+  vlSceneDefs defs = plan->whole;
+  whole.defs = &defs;
+  const ReceiptImage which = {.eye = eye,
+                              .samples = defs.render.spp,
+                              .outputs = plan->outputs->paths,
+                              .output_count = (uint32_t)plan->outputs->count};
+  vl_receipt_destroy(k->receipt);
+  k->receipt = NULL;
+  vlResult result = receipt_make(plan->receipt, context, &whole, &which, &k->receipt);
+  return result == VL_OK ? -1 : report_error(NULL, result, NULL);
+}
+
+int film_keeper_start(FilmKeeper *k, const FilmPlan *plan, const char *path, vlContext *context, const Job *job,
+                      const char *eye) {
   memset(k, 0, sizeof *k);
-  k->receipt = receipt;
-  if (!path) return;
+  if (!path) return -1;
+  const OptionValue *every = &plan->receipt->arguments->values[RENDER_CHECKPOINT];
+  const vlFilmDef *film = &plan->whole.film;
   snprintf(k->path, sizeof k->path, "%s", path);
   k->every = every->given ? every->number : EVERY;
-  k->share = every->given ? 0 : whole->errors || whole->buckets ? SHARE_WITH_ERRORS : SHARE;
-  memcpy(k->window, whole->crop, sizeof k->window);
+  k->share = every->given ? 0 : film->errors || film->buckets ? SHARE_WITH_ERRORS : SHARE;
+  memcpy(k->window, film->crop, sizeof k->window);
   k->last = monotonic_seconds();
+  return film_keeper_describe(k, plan, context, job, eye);
 }
 
 static void *end_write(void *user) {

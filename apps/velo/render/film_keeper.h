@@ -5,7 +5,17 @@
 
 #include <pthread.h>
 
+#include "render/outputs.h"
 #include "render/receipt.h"
+
+/* What the films of a command have in common. */
+typedef struct FilmPlan {
+  const char *path;  /* of the file, a pattern (pattern.h) for two eyes; null: films are not kept */
+  const char *from;  /* of the film that is continued; null: none */
+  vlSceneDefs whole; /* of the whole render, where the command renders a part of it */
+  const ReceiptPlan *receipt;
+  const Outputs *outputs;
+} FilmPlan;
 
 typedef struct FilmKeeper {
   char path[4096];    /* of the file; empty: the film is not kept */
@@ -22,12 +32,15 @@ typedef struct FilmKeeper {
   vlError error;
 } FilmKeeper;
 
-/* path: null: the film is not kept. Takes the receipt. */
-void film_keeper_start(FilmKeeper *keeper, const char *path, const Arguments *arguments, const vlFilmDef *whole,
-                       vlReceipt *receipt);
+/* path: of this film; null: it is not kept. eye: whose film it is; null: that of the camera. Returns -1 or the exit
+ * code. */
+int film_keeper_start(FilmKeeper *keeper, const FilmPlan *plan, const char *path, vlContext *context, const Job *job,
+                      const char *eye);
+/* Makes the receipt again, for other samples. Returns -1 or the exit code. */
+int film_keeper_describe(FilmKeeper *keeper, const FilmPlan *plan, vlContext *context, const Job *job, const char *eye);
 /* After a pass: writes a checkpoint when it is due. A failure is a warning. */
 void film_keeper_checkpoint(FilmKeeper *keeper, const vlFilm *film);
-/* Writes the film at the end. receipt: replaces that of the start; null: none. Returns the exit code. */
+/* Writes the film at the end. Returns the exit code. */
 int film_keeper_finish(FilmKeeper *keeper, const vlFilm *film);
 void film_keeper_free(FilmKeeper *keeper);
 

@@ -11,6 +11,7 @@
 #include "camera/camera.h"
 #include "cli/report.h"
 #include "render/pattern.h"
+#include "render/shard.h"
 
 static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 static const double y_up[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -55,6 +56,8 @@ int frames_check(const Arguments *arguments, Outputs *outputs) {
     return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0", v[RENDER_FRAMES].text);
   if (trajectory && (v[RENDER_FLOW_CAMERA].given || v[RENDER_FLOW_CAMERA_BEFORE].given))
     return report_usage("--flow-camera is of one image: it does not go with --trajectory");
+  if (trajectory && (v[RENDER_FILM].given || v[RENDER_CONTINUE].given))
+    return report_usage("--film is of one image; a trajectory is split and continued by its frames: --shard, --frames");
   if (!trajectory) return -1;
   if (outputs->count == 0)
     return report_usage("--trajectory: give the files' name with -o, such as -o frame_%%04d.exr");
@@ -144,24 +147,36 @@ static int add_rig(Frames *frames, vlContext *context, const Job *job, const Arg
   return -1;
 }
 
+/* --shard I/N: every N-th of these frames. */
+static int choose_shard(Frames *frames, const Arguments *arguments) {
+  uint32_t index, count, all = (frames->last - frames->first) / frames->step + 1;
+  if (!arguments->values[RENDER_SHARD].given) return -1;
+  shard_read(arguments, &index, &count);
+  if (count > all) return report_usage("--shard %u/%u: there are %u frames", index, count, all);
+  frames->first += (index - 1) * frames->step;
+  frames->step *= count; /* at most last + step, no overflow since count <= all */
+  return -1;
+}
+
 static int choose_frames(Frames *frames, const Arguments *arguments) {
   const OptionValue *range = &arguments->values[RENDER_FRAMES];
   uint32_t count = vl_trajectory_frames(frames->trajectory);
   frames->first = 0, frames->last = count - 1, frames->step = 1;
-  if (!range->given) return -1;
-  read_range(range->text, &frames->first, &frames->last, &frames->step);
+  if (range->given) read_range(range->text, &frames->first, &frames->last, &frames->step);
   if (frames->first >= count || (frames->last != UINT32_MAX && frames->last >= count))
     return report_usage("--frames \"%s\": the trajectory has %u frames, numbered from 0", range->text, count);
   if (frames->last >= count) frames->last = count - 1;
-  return -1;
+  return choose_shard(frames, arguments);
 }
 
 int frames_load(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments) {
   static const char *const names[2] = {"left", "right"};
   const OptionValue *v = arguments->values;
   const vlCameraDef *def = &job->defs->camera;
+  const FilmPlan *films = frames->films;
   bool stereo = def->stereo.mode != VL_STEREO_NONE, both = stereo && def->stereo_eye == VL_EYE_BOTH;
   memset(frames, 0, sizeof *frames);
+  frames->films = films;
   frames->step = 1;
   frames->views = both ? 2 : 1;
   for (int i = 0; i < 2; i++) frames->eyes[i] = both ? (i ? VL_EYE_RIGHT : VL_EYE_LEFT) : def->stereo_eye;
@@ -270,6 +285,9 @@ static int make_folder(char *path) {
 
 int frames_check_names(const Frames *frames, const Outputs *outputs) {
   char path[4096];
+  if (frames->films && frames->views == 2 &&
+      (pattern_check(frames->films->path) >= 0 || !pattern_has(frames->films->path, 'v')))
+    return report_usage("--film \"%s\": each eye has a film; put %%v (left, right) into the name", frames->films->path);
   for (int i = 0; i < outputs->count; i++) {
     const char *pattern = outputs->paths[i], *slash = strrchr(pattern, '/');
     bool by_view = pattern_has(pattern, 'v');

@@ -4,6 +4,7 @@
 #define APP_RENDER_FRAMES_H
 
 #include "render/channels.h"
+#include "render/film_keeper.h"
 #include "render/job.h"
 #include "render/outputs.h"
 
@@ -26,6 +27,7 @@ typedef struct Frames {
   int views;                  /* 1 or 2 */
   vlEye eyes[2];
   const char *view_names[2];
+  const FilmPlan *films; /* of two eyes; null: films are not kept */
 } Frames;
 
 /* One image to be rendered. */

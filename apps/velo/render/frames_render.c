@@ -3,9 +3,11 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "render/continue.h"
 #include "render/frame_writer.h"
 #include "render/lens_options.h"
 #include "render/progress.h"
@@ -20,12 +22,16 @@ typedef struct Run {
   uint32_t count, done;
   Progress progress;
   double start, last_shown;
+  vlFilm *film; /* of the view that is rendered */
+  FilmKeeper keeper;
   vlRenderStats total;
 } Run;
 
 static bool on_progress(void *user, const vlProgress *now) {
   Run *run = user;
   if (run->count == 1) progress_show(&run->progress, now);
+  if (now->pass_done && now->spp_done < now->spp_total && !signals_pending())
+    film_keeper_checkpoint(&run->keeper, run->film);
   return !signals_pending();
 }
 
@@ -84,12 +90,45 @@ static int develop(const Job *job, const vlFilm *film, vlImage **image) {
   return result == VL_OK ? STATUS_OK : report_error(NULL, result, NULL);
 }
 
+/* The film of a view: that of the camera, cleared, or the one that is continued, which is then freed by the caller. */
+static int open_film(Run *run, const Frame *frame, int view, Job *job, vlFilm **own) {
+  const FilmPlan *plan = run->frames->films;
+  const char *name = run->frames->view_names[view];
+  char path[4096] = "", from[4096] = "";
+  vl_film_clear(frame->camera->film);
+  run->film = frame->camera->film;
+  if (!plan) return -1;
+  bool good = frames_path(run->frames, frame, plan->path, view, path, sizeof path) &&
+              (!plan->from || frames_path(run->frames, frame, plan->from, view, from, sizeof from));
+  if (!good) return report_failure(STATUS_IO, "%s: the file's name is too long", plan->path);
+  int status = film_keeper_start(&run->keeper, plan, path, run->context, job, *name ? name : NULL);
+  if (status >= 0 || !plan->from || access(from, F_OK) != 0) return status; /* an eye that was not begun */
+  status = continue_film(from, plan->receipt->arguments, run->keeper.receipt, run->context, job->defs, own);
+  if (*own) run->film = *own;
+  return status;
+}
+
+/* Renders the film of a view and develops it. */
+static int render_film(Run *run, const char *place, int view, Job *job, FrameImage *image) {
+  vlError error = {0};
+  vlRenderStats stats = {0};
+  vlResult result = vl_render(run->world, &job->camera, run->film, &job->defs->render, &stats, &error);
+  add_stats(&run->total, &stats);
+  if (result != VL_OK && result != VL_CANCELLED) return report_failure(STATUS_OTHER, "%s: %s", place, error.message);
+  image->spp = vl_film_spp(run->film);
+  int status = image->spp ? film_keeper_finish(&run->keeper, run->film) : STATUS_OK;
+  if (status == STATUS_OK && image->spp) status = develop(job, run->film, &image->images[view]);
+  if (status != STATUS_OK) return status;
+  if (result == VL_CANCELLED) return 128 + signals_pending();
+  image->channels[view] = *run->channels;
+  return run->layers ? channels_render(&image->channels[view], run->context, run->world, job, run->film) : STATUS_OK;
+}
+
 /* Renders one eye's image and channels. When interrupted: 128 + signal, with an image if a whole pass is done. */
 static int render_view(Run *run, const Frame *frame, int view, FrameImage *image) {
   char place[200];
   vlError error = {0};
-  vlRenderStats stats = {0};
-  vlFilm *film = frame->camera->film;
+  vlFilm *own = NULL;
   Job *job = &image->jobs[view];
   *job = frame->camera->job;
   frame_place(run, frame, place, sizeof place);
@@ -99,15 +138,11 @@ static int render_view(Run *run, const Frame *frame, int view, FrameImage *image
   if (status >= 0) return status;
   job->defs->render.progress = on_progress;
   job->defs->render.progress_user = run;
-  vl_film_clear(film);
-  result = vl_render(run->world, &job->camera, film, &job->defs->render, &stats, &error);
-  add_stats(&run->total, &stats);
-  if (result != VL_OK && result != VL_CANCELLED) return report_failure(STATUS_OTHER, "%s: %s", place, error.message);
-  image->spp = vl_film_spp(film);
-  if (image->spp && (status = develop(job, film, &image->images[view])) != STATUS_OK && status < 128) return status;
-  if (result == VL_CANCELLED) return 128 + signals_pending();
-  image->channels[view] = *run->channels;
-  return run->layers ? channels_render(&image->channels[view], run->context, run->world, job, film) : STATUS_OK;
+  status = open_film(run, frame, view, job, &own);
+  if (status < 0) status = render_film(run, place, view, job, image);
+  film_keeper_free(&run->keeper);
+  vl_film_destroy(own);
+  return status;
 }
 
 /* Keeps an interrupted frame for NAME.part.EXT. An eye that was not begun is black. */
@@ -147,8 +182,9 @@ static void report_end(const Run *run, uint32_t written, int status) {
   char time[32], speed[32];
   format_seconds(time, sizeof time, seconds);
   format_count(speed, sizeof speed, seconds > 0 ? (double)t->paths / seconds : 0);
-  report_note("%u of %u frames%s in %s, %u spp, %s paths/s; wrote %s%s", written, run->count,
-              run->frames->views == 2 ? " (two eyes)" : "", time, t->spp, speed, run->outputs->paths[0],
+  report_note("%u of %u frames%s in %s, %u spp, %s paths/s; %s%s%s", written, run->count,
+              run->frames->views == 2 ? " (two eyes)" : "", time, t->spp, speed,
+              run->outputs->count ? "wrote " : "kept in films", run->outputs->count ? run->outputs->paths[0] : "",
               run->outputs->count > 1 ? ", ..." : "");
 }
 

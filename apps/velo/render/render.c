@@ -49,8 +49,7 @@ typedef struct Render {
   Again again;
   Continue resumed;
   FilmKeeper keeper;
-  const char *film_path; /* null: the film is not kept */
-  vlSceneDefs whole;     /* of the whole render, where this command renders a part of it */
+  FilmPlan film_plan;
   ReceiptPlan receipt;
 } Render;
 
@@ -199,7 +198,7 @@ static void start_receipt(Render *render, const Arguments *arguments) {
       .arguments = arguments, .opening = &render->opening, .again = again->receipt, .again_is_ours = again->is_ours};
   if (again->camera.given) render->job.receipt_camera = &again->camera;
   if (!arguments->values[RENDER_NO_RECEIPT].given) render->job.receipt = &render->receipt;
-  render->job.records_files = render->job.receipt || again->receipt || render->film_path;
+  render->job.records_files = render->job.receipt || again->receipt || render->film_plan.path;
   vl_context_record_files(render->context, render->job.records_files);
 }
 
@@ -209,9 +208,12 @@ static int prepare(Render *render, const Arguments *arguments) {
   Outputs *outputs = &render->outputs;
   for (int i = 0; i < arguments->text_count; i++) outputs->paths[i] = arguments->texts[i];
   outputs->count = arguments->text_count;
-  render->film_path = v[RENDER_FILM].given       ? v[RENDER_FILM].text
-                      : v[RENDER_CONTINUE].given ? v[RENDER_CONTINUE].text
-                                                 : NULL;
+  render->film_plan = (FilmPlan){.path = v[RENDER_FILM].given       ? v[RENDER_FILM].text
+                                         : v[RENDER_CONTINUE].given ? v[RENDER_CONTINUE].text
+                                                                    : NULL,
+                                 .from = render->resumed.path,
+                                 .receipt = &render->receipt,
+                                 .outputs = &render->outputs};
   outputs->half = v[RENDER_HALF].given;
   outputs->view = v[RENDER_VIEW].given ? (vlView)v[RENDER_VIEW].integer : VL_VIEW_STANDARD;
   int status = exposure_parse(&v[RENDER_EXPOSURE], &outputs->exposure, &outputs->meter);
@@ -222,7 +224,7 @@ static int prepare(Render *render, const Arguments *arguments) {
   if (status < 0) status = denoised_choose(&render->denoised, arguments, outputs);
   if (status < 0) status = outputs_check_folders(outputs);
   const Outputs film = {
-      .paths = {render->film_path}, .count = render->film_path ? 1 : 0, .patterns = outputs->patterns};
+      .paths = {render->film_plan.path}, .count = render->film_plan.path ? 1 : 0, .patterns = outputs->patterns};
   if (status < 0) status = outputs_check_folders(&film);
   if (status >= 0) return status;
 
@@ -276,7 +278,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
 
   status = job_make(&render->job, render->context, render->scene, path, arguments);
   if (status >= 0) return status;
-  if (render->outputs.count == 0 && !render->film_path) {
+  if (render->outputs.count == 0 && !render->film_plan.path) {
     choose_output(render, path, render->job.defs->output);
     status = outputs_check_folders(&render->outputs);
     if (status >= 0) return status;
@@ -290,16 +292,17 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   status = channels_load(&render->channels, render->context, &render->job);
   if (status >= 0) return status;
   render->job.defs->film.errors = ((render->channels.bits & VL_CHANNEL_ERROR || render->channels.gbuffer) &&
-                                   (has_layers(render) || render->film_path)) ||
+                                   (has_layers(render) || render->film_plan.path)) ||
                                   render->denoised.outputs.count;
   if (render->resumed.file && job_sequence_is_planned(&render->job, arguments))
     render->job.defs->render.sequence = vl_film_file_sequence(render->resumed.file);
-  render->whole = *render->job.defs;
+  render->film_plan.whole = *render->job.defs;
   status = shard_apply(arguments, &render->job.defs->film, &render->job.defs->render);
   if (status >= 0) return status;
   render->many = frames_wanted(arguments, &render->job);
   if (render->many && render->denoised.outputs.count) return report_usage("--denoise goes with one image");
   if (render->many) {
+    render->frames.films = render->film_plan.path ? &render->film_plan : NULL;
     status = frames_load(&render->frames, render->context, &render->job, arguments);
     if (status < 0) status = frames_check_names(&render->frames, &render->outputs);
     if (status >= 0) return status;
@@ -372,7 +375,7 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
       json_text(&json, NULL, output_written(outputs, i, stage, part, sizeof part));
     if (render->denoised.outputs.count && spp)
       json_text(&json, NULL, output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
-    if (render->film_path && spp) json_text(&json, NULL, render->film_path);
+    if (render->film_plan.path && spp) json_text(&json, NULL, render->film_plan.path);
     json_end(&json, ']');
     report_json_end(&json);
     return;
@@ -383,7 +386,7 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
   format_count(ray_count, sizeof ray_count, (double)rays);
   list_files(render, stage, files, sizeof files);
   report_note("%u spp in %s, %s paths/s, %s rays; wrote %s%s%s", spp, time, speed, ray_count, files,
-              *files && render->film_path ? ", " : "", render->film_path ? render->film_path : "");
+              *files && render->film_plan.path ? ", " : "", render->film_plan.path ? render->film_plan.path : "");
   report_memory(render);
 }
 
@@ -423,48 +426,25 @@ static int write_last(Render *render, OutputStage *stage) {
   return code != STATUS_OK ? code : written != STATUS_OK ? written : status;
 }
 
-/* The receipt of the whole render, for the film. */
-static int film_receipt(const Render *render, vlReceipt **receipt) {
-  Job job = render->job;
-  vlSceneDefs whole = render->whole;
-  job.defs = &whole;
-  const ReceiptImage which = {
-      .samples = whole.render.spp, .outputs = render->outputs.paths, .output_count = (uint32_t)render->outputs.count};
-  vlResult result = receipt_make(&render->receipt, render->context, &job, &which, receipt);
-  return result == VL_OK ? -1 : report_error(NULL, result, NULL);
-}
-
 /* Makes the film, or reads the one that is continued. */
 static int open_film(Render *render) {
-  vlSceneDefs *defs = render->job.defs;
   vlError error = {0};
-  vlReceipt *receipt = NULL;
-  if (render->film_path) {
-    int status = film_receipt(render, &receipt);
-    if (status >= 0) return status;
-    if (render->resumed.file) {
-      status = continue_check(&render->resumed, receipt);
-      if (status < 0) status = continue_read(&render->resumed, render->context, defs, &render->film);
-    }
-    if (status >= 0) {
-      vl_receipt_destroy(receipt);
-      return status;
-    }
-  }
-  film_keeper_start(&render->keeper, render->film_path, render->receipt.arguments, &render->whole.film, receipt);
-  if (render->film) return -1;
-  vlResult result = vl_film_create(render->context, &defs->film, &render->film);
+  const char *from = render->resumed.path;
+  int status = film_keeper_start(&render->keeper, &render->film_plan, render->film_plan.path, render->context,
+                                 &render->job, NULL);
+  if (status < 0 && from)
+    status = continue_film(from, render->receipt.arguments, render->keeper.receipt, render->context, render->job.defs,
+                           &render->film);
+  if (status >= 0 || render->film) return status;
+  vlResult result = vl_film_create(render->context, &render->job.defs->film, &render->film);
   return result == VL_OK ? -1 : report_error(&error, result, render->job.path);
 }
 
 /* A render that ended after its time is one of the samples that it reached. */
 static int plan_reached(Render *render, uint32_t end) {
   if (!(render->time_limit > 0) || end >= render->job.defs->render.spp) return -1;
-  render->job.defs->render.spp = render->whole.render.spp = end;
-  if (!render->film_path) return -1;
-  vl_receipt_destroy(render->keeper.receipt);
-  render->keeper.receipt = NULL;
-  return film_receipt(render, &render->keeper.receipt);
+  render->job.defs->render.spp = render->film_plan.whole.render.spp = end;
+  return film_keeper_describe(&render->keeper, &render->film_plan, render->context, &render->job, NULL);
 }
 
 static int render_and_write(Render *render) {

@@ -1,0 +1,348 @@
+/* Film files: what is written is read, parts become the whole in any order, and no damage goes unseen. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "failing_allocator.h"
+#include "film/file.h"
+#include "math/hash.h"
+#include "velo/film.h"
+
+enum { WIDTH = 83, HEIGHT = 70, SPP = 24 };
+static char folder[64];
+static vlContext *context;
+
+static int begin(void **state) {
+  (void)state;
+  snprintf(folder, sizeof folder, "/tmp/velo-film-XXXXXX");
+  if (!mkdtemp(folder)) return 1;
+  vlContextDef def = vl_default_context_def();
+  def.threads = 2;
+  return vl_context_create(&def, &context) != VL_OK;
+}
+
+static int end(void **state) {
+  (void)state;
+  char command[128];
+  vl_context_destroy(context);
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  return system(command);
+}
+
+static const char *path_of(const char *name) {
+  static char paths[32][128];
+  static unsigned next;
+  char *path = paths[next++ % 32];
+  snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+  return path;
+}
+
+static char *bytes_of(const char *path, size_t *size) {
+  FILE *file = fopen(path, "rb");
+  assert_non_null(file);
+  fseek(file, 0, SEEK_END);
+  *size = (size_t)ftell(file);
+  rewind(file);
+  char *bytes = malloc(*size + 1);
+  assert_int_equal(fread(bytes, 1, *size, file), *size);
+  fclose(file);
+  return bytes;
+}
+
+static void put_bytes(const char *path, const char *bytes, size_t size) {
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  assert_int_equal(fwrite(bytes, 1, size, file), size);
+  fclose(file);
+}
+
+static bool same_bytes(const char *a, const char *b) {
+  size_t n, m;
+  char *x = bytes_of(a, &n), *y = bytes_of(b, &m);
+  bool same = n == m && memcmp(x, y, n) == 0;
+  free(x);
+  free(y);
+  return same;
+}
+
+/* ---- films ------------------------------------------------------------------------------------------------------- */
+
+enum { PLAIN, ERRORS, SPECTRUM, KINDS };
+
+static vlFilmDef film_def(int kind) {
+  vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
+  def.crop[0] = 5, def.crop[3] = HEIGHT - 2;
+  def.errors = kind == ERRORS;
+  def.buckets = kind == SPECTRUM ? 3 : 0;
+  return def;
+}
+
+static float value(uint32_t x, uint32_t y, uint32_t sample, uint32_t salt) {
+  return vl_unit_float(vl_hash3(x | y << 16, sample, salt)) * 3.0f - 0.5f;
+}
+
+/* A film with the samples first to end - 1 of the pixels of the tiles. */
+static vlFilm *make_film(vlContext *own, int kind, const uint32_t tiles[4], uint32_t first, uint32_t last) {
+  vlFilmDef def = film_def(kind);
+  if (tiles) memcpy(def.crop, tiles, sizeof def.crop);
+  vlFilm *film;
+  if (vl_film_create(own, &def, &film) != VL_OK) return NULL;
+  if (vl_film_begin_pass(film) != VL_OK) {
+    vl_film_destroy(film);
+    return NULL;
+  }
+  for (uint32_t s = first; s < last; s++)
+    for (uint32_t y = def.crop[1]; y < def.crop[3]; y++)
+      for (uint32_t x = def.crop[0]; x < def.crop[2]; x++) {
+        int32_t px = (int32_t)x, py = (int32_t)y;
+        float r = value(x, y, s, 1), g = value(x, y, s, 2), b = value(x, y, s, 3) * 1e5f, a = 1, w = value(x, y, s, 4);
+        float lambda[4] = {400, 500, 600, 700};
+        vlFilmSpectra spectra = {1, &px, &py, {&r, &g, &b, &w}, {lambda, lambda + 1, lambda + 2, lambda + 3}, &w};
+        vlFilmSamples samples = {1, &px, &py, &r, &g, &b, &a, &w};
+        if (def.buckets) vl_film_add_spectra(film, &spectra);
+        vl_film_add(film, &samples, NULL, NULL);
+      }
+  vl_film_commit_pass(film);
+  vl_film_set_spp(film, last - first);
+  vl_film_set_sequence(film, (vlFilmSequence){256, first, false});
+  return film;
+}
+
+static void write_film(const char *path, int kind, const uint32_t tiles[4], uint32_t first, uint32_t last) {
+  vlFilm *film = make_film(context, kind, tiles, first, last);
+  vlFilmWriteDef def = vl_default_film_write_def();
+  vlFilmDef whole = film_def(kind);
+  memcpy(def.window, whole.crop, sizeof def.window);
+  vlError error;
+  if (vl_film_write(film, &def, path, &error) != VL_OK) fail_msg("%s", error.message);
+  vl_film_destroy(film);
+}
+
+static void same_images(vlImage *a, vlImage *b) {
+  size_t size = (size_t)vl_image_width(a) * vl_image_height(a) * vl_image_channels(a) * sizeof(float);
+  assert_int_equal(vl_image_width(a), vl_image_width(b));
+  assert_memory_equal(vl_image_const_pixels(a), vl_image_const_pixels(b), size);
+  vl_image_destroy(a);
+  vl_image_destroy(b);
+}
+
+/* ---- tests ------------------------------------------------------------------------------------------------------- */
+
+static void what_is_written_is_read(void **state) {
+  (void)state;
+  for (int kind = 0; kind < KINDS; kind++) {
+    vlFilm *film = make_film(context, kind, NULL, 7, 7 + SPP), *read;
+    vlImage *a, *b;
+    vlError error;
+    assert_int_equal(vl_film_write(film, NULL, path_of("a.film"), &error), VL_OK);
+    assert_int_equal(vl_film_read(context, path_of("a.film"), false, &read, &error), VL_OK);
+    assert_int_equal(vl_film_spp(read), SPP);
+    assert_int_equal(vl_film_sequence(read).length, 256);
+    assert_int_equal(vl_film_sequence(read).first, 7);
+    assert_int_equal(vl_film_develop(film, NULL, &a), VL_OK);
+    assert_int_equal(vl_film_develop(read, NULL, &b), VL_OK);
+    same_images(a, b);
+    if (kind == ERRORS) {
+      assert_int_equal(vl_film_errors(film, NULL, &a), VL_OK);
+      assert_int_equal(vl_film_errors(read, NULL, &b), VL_OK);
+      same_images(a, b);
+    }
+    if (kind == SPECTRUM) {
+      assert_int_equal(vl_film_spectrum(film, &a), VL_OK);
+      assert_int_equal(vl_film_spectrum(read, &b), VL_OK);
+      same_images(a, b);
+    }
+    assert_int_equal(vl_film_write(read, NULL, path_of("b.film"), &error), VL_OK);
+    assert_true(same_bytes(path_of("a.film"), path_of("b.film")));
+    vl_film_destroy(film);
+    vl_film_destroy(read);
+  }
+}
+
+static vlResult merge(const char *const *paths, uint32_t count, const char *output, vlError *error) {
+  return vl_film_merge(context, paths, count, output, error);
+}
+
+static void shuffle(const char **paths, uint32_t count, uint32_t seed) {
+  for (uint32_t i = count; i > 1; i--) {
+    uint32_t k = vl_hash2(seed, i) % i;
+    const char *swap = paths[i - 1];
+    paths[i - 1] = paths[k], paths[k] = swap;
+  }
+}
+
+/* Six parts by samples and tiles, one of them twice, in any order and grouping. */
+static void parts_become_the_whole(void **state) {
+  (void)state;
+  static const uint32_t left[4] = {5, 0, 32, HEIGHT - 2}, right[4] = {32, 0, WIDTH, HEIGHT - 2};
+  static const struct {
+    const uint32_t *tiles;
+    uint32_t first, end;
+  } parts[6] = {{NULL, 0, 5}, {NULL, 5, 6}, {left, 6, 20}, {right, 6, 9}, {right, 9, 20}, {NULL, 20, SPP}};
+  for (int kind = 0; kind < KINDS; kind++) {
+    const char *paths[7];
+    char names[6][128];
+    write_film(path_of("whole.film"), kind, NULL, 0, SPP);
+    for (uint32_t i = 0; i < 6; i++) {
+      snprintf(names[i], sizeof names[i], "%s/part%u.film", folder, i);
+      write_film(names[i], kind, parts[i].tiles, parts[i].first, parts[i].end);
+    }
+    for (uint32_t round = 0; round < 8; round++) {
+      vlError error;
+      for (int i = 0; i < 7; i++) paths[i] = names[i % 6];
+      shuffle(paths, 7, round + 100 * (uint32_t)kind);
+      uint32_t some = 1 + round % 5;
+      const char *second[7] = {path_of("some.film")};
+      if (merge(paths, some, second[0], &error) != VL_OK) fail_msg("%s", error.message);
+      for (uint32_t i = some; i < 7; i++) second[1 + i - some] = paths[i];
+      if (merge(second, 8 - some, path_of("all.film"), &error) != VL_OK) fail_msg("%s", error.message);
+      assert_true(same_bytes(path_of("all.film"), path_of("whole.film")));
+    }
+  }
+}
+
+static void what_does_not_belong_together_is_refused(void **state) {
+  (void)state;
+  const char *a = path_of("one.film"), *b = path_of("two.film"), *output = path_of("none.film");
+  const char *paths[2] = {a, b};
+  vlError error;
+  write_film(a, PLAIN, NULL, 0, 8);
+  write_film(b, PLAIN, NULL, 4, 12);
+  assert_int_equal(merge(paths, 2, output, &error), VL_ERROR_SCENE);
+  assert_non_null(strstr(error.message, "one.film"));
+  assert_non_null(strstr(error.message, "two.film"));
+  assert_non_null(strstr(error.message, "4:8"));
+  write_film(b, ERRORS, NULL, 8, 12);
+  assert_int_equal(merge(paths, 2, output, &error), VL_ERROR_SCENE);
+  assert_int_not_equal(access(output, F_OK), 0);
+}
+
+/* The merged film of two parts with a gap can be developed and not continued; an even one both. */
+static void a_film_with_gaps_is_only_developed(void **state) {
+  (void)state;
+  const char *paths[2] = {path_of("one.film"), path_of("two.film")};
+  vlFilm *film;
+  vlImage *image;
+  vlError error;
+  write_film(paths[0], PLAIN, NULL, 0, 8);
+  write_film(paths[1], PLAIN, NULL, 10, 12);
+  assert_int_equal(merge(paths, 2, path_of("gap.film"), &error), VL_OK);
+  assert_int_equal(vl_film_read(context, path_of("gap.film"), false, &film, &error), VL_ERROR_SCENE);
+  assert_null(film);
+  assert_int_equal(vl_film_read(context, path_of("gap.film"), true, &film, &error), VL_OK);
+  assert_int_equal(vl_film_spp(film), 10);
+  assert_int_equal(vl_film_develop(film, NULL, &image), VL_OK);
+  assert_int_equal(vl_film_write(film, NULL, path_of("x.film"), &error), VL_ERROR_ARGUMENT);
+  vl_image_destroy(image);
+  vl_film_destroy(film);
+}
+
+static vlResult read_bytes(const char *bytes, size_t size, vlError *error) {
+  vlFilm *film;
+  put_bytes(path_of("damaged.film"), bytes, size);
+  vlResult result = vl_film_read(context, path_of("damaged.film"), true, &film, error);
+  vl_film_destroy(film);
+  return result;
+}
+
+/* Each byte of the header and of the first block's head, each hundredth of the rest; each cut. */
+static void no_damage_goes_unseen(void **state) {
+  (void)state;
+  size_t size, held = vl_context_memory(context, NULL);
+  vlError error;
+  write_film(path_of("good.film"), ERRORS, NULL, 0, 2);
+  char *bytes = bytes_of(path_of("good.film"), &size);
+  vlFilmPreamble preamble;
+  memcpy(&preamble, bytes, sizeof preamble);
+  size_t head = sizeof preamble + preamble.header_size + sizeof(vlFilmBlockHead) + sizeof(vlSampleSpan);
+  for (size_t at = 0; at < size; at += at < head ? 1 : 997) {
+    for (int bit = 0; bit < 8; bit += at < 32 ? 1 : 5) {
+      bytes[at] = (char)(bytes[at] ^ 1 << bit);
+      vlResult result = read_bytes(bytes, size, &error);
+      if (result != VL_ERROR_SCENE) fail_msg("byte %zu, bit %d: %s", at, bit, vl_result_name(result));
+      assert_non_null(strstr(error.message, "damaged.film"));
+      bytes[at] = (char)(bytes[at] ^ 1 << bit);
+    }
+  }
+  for (size_t cut = 0; cut < size; cut += cut < head ? 7 : 9973)
+    assert_int_equal(read_bytes(bytes, cut, &error), VL_ERROR_SCENE);
+  bytes[size] = 0;
+  assert_int_equal(read_bytes(bytes, size + 1, &error), VL_ERROR_SCENE);
+  assert_int_equal(read_bytes(bytes, size, &error), VL_OK);
+  free(bytes);
+  assert_int_equal(vl_context_memory(context, NULL), held);
+}
+
+/* Sums that no samples can have would overflow later, whatever their CRC. */
+static void impossible_sums_are_refused(void **state) {
+  (void)state;
+  size_t size;
+  vlError error;
+  write_film(path_of("good.film"), PLAIN, NULL, 0, 2);
+  char *bytes = bytes_of(path_of("good.film"), &size);
+  vlFilmPreamble preamble;
+  memcpy(&preamble, bytes, sizeof preamble);
+  char *block = bytes + sizeof preamble + preamble.header_size;
+  vlFilmBlockHead head;
+  memcpy(&head, block, sizeof head);
+  size_t length = sizeof head + sizeof(vlSampleSpan) + head.data_size;
+  block[sizeof head + sizeof(vlSampleSpan) + 15] = 0x7f; /* the highest byte of a sum */
+  uint32_t crc = vl_film_crc(0, block, length);
+  memcpy(block + length, &crc, sizeof crc);
+  assert_int_equal(read_bytes(bytes, size, &error), VL_ERROR_SCENE);
+  assert_non_null(strstr(error.message, "sums"));
+  free(bytes);
+}
+
+static void files_that_cannot_be_written(void **state) {
+  (void)state;
+  vlFilm *film = make_film(context, PLAIN, NULL, 0, 1), *none;
+  vlFilmDef def = film_def(PLAIN);
+  vlError error;
+  vlFilmFile *file;
+  assert_int_equal(vl_film_write(film, NULL, path_of("no/such/folder.film"), &error), VL_ERROR_IO);
+  assert_int_equal(vl_film_read(context, path_of("absent.film"), false, &none, &error), VL_ERROR_MISSING);
+  assert_int_equal(vl_film_read(context, folder, false, &none, &error), VL_ERROR_IO);
+  put_bytes(path_of("text.film"), "not a film", 10);
+  assert_int_equal(vl_film_file_open(context, path_of("text.film"), &file, &error), VL_ERROR_SCENE);
+  vl_film_destroy(film);
+  assert_int_equal(vl_film_create(context, &def, &film), VL_OK);
+  assert_int_equal(vl_film_write(film, NULL, path_of("empty.film"), &error), VL_ERROR_ARGUMENT);
+  vl_film_destroy(film);
+}
+
+static vlResult whole_life(vlContext *own, void *user) {
+  (void)user;
+  const char *paths[2] = {path_of("life.film"), path_of("life.film")};
+  vlFilm *film = make_film(own, ERRORS, NULL, 0, 1), *read = NULL;
+  vlError error;
+  vlResult result = film ? vl_film_write(film, NULL, paths[0], &error) : VL_ERROR_MEMORY;
+  if (result == VL_OK) result = vl_film_merge(own, paths, 2, path_of("life2.film"), &error);
+  if (result == VL_OK) result = vl_film_read(own, path_of("life2.film"), false, &read, &error);
+  vl_film_destroy(film);
+  vl_film_destroy(read);
+  return result;
+}
+
+static void memory_runs_out(void **state) {
+  (void)state;
+  fail_everywhere(whole_life, NULL, 20);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_written_is_read),
+                                     cmocka_unit_test(parts_become_the_whole),
+                                     cmocka_unit_test(what_does_not_belong_together_is_refused),
+                                     cmocka_unit_test(a_film_with_gaps_is_only_developed),
+                                     cmocka_unit_test(no_damage_goes_unseen),
+                                     cmocka_unit_test(impossible_sums_are_refused),
+                                     cmocka_unit_test(files_that_cannot_be_written),
+                                     cmocka_unit_test(memory_runs_out)};
+  return cmocka_run_group_tests(tests, begin, end);
+}

@@ -144,9 +144,10 @@ const Option render_options[] = {
      "ground truth into the .exr, 32-bit: any of Z, distance, P, N, Ng,\n"
      "uv, albedo, ray, id.object, id.material, id.instance,\n"
      "id.primitive, samples, film, separated by commas; or all of\n"
-     "these. More, that cost more: error (standard error), forward,\n"
-     "backward (flow), crypto.object, crypto.material, crypto.instance\n"
-     "(Cryptomatte; crypto: all three).\n"
+     "these. More, that cost more: error (standard error), features\n"
+     "(for denoisers), forward, backward (flow), crypto.object,\n"
+     "crypto.material, crypto.instance (Cryptomatte; crypto: all\n"
+     "three).\n"
      "FILE.ids.json says what the ids stand for",
      0, 0, NULL},
     {RENDER_CHANNELS_MODE, 0, "channels-mode", OPTION_CHOICE, "NAME",

@@ -11,6 +11,7 @@
 
 #include "base/cookie.h"
 #include "base/isa.h"
+#include "base/machine.h"
 
 typedef struct Pool {
   pthread_mutex_t mutex;
@@ -49,8 +50,11 @@ typedef struct BlockHeader {
 } BlockHeader;
 
 static void *default_allocate(void *user, size_t size) {
+  enum { LARGE = 4 << 20 };
   (void)user;
-  return malloc(size);
+  void *block = malloc(size);
+  if (block && size >= LARGE) vl_machine_large_pages(block, size);
+  return block;
 }
 static void default_release(void *user, void *block) {
   (void)user;

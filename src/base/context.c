@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/file_record.h"
 #include "base/isa.h"
+#include "base/machine.h"
 #include "base/text.h"
 
 typedef struct Pool {
@@ -53,8 +54,11 @@ typedef struct BlockHeader {
 } BlockHeader;
 
 static void *default_allocate(void *user, size_t size) {
+  enum { LARGE = 4 << 20 };
   (void)user;
-  return malloc(size);
+  void *block = malloc(size);
+  if (block && size >= LARGE) vl_machine_large_pages(block, size);
+  return block;
 }
 static void default_release(void *user, void *block) {
   (void)user;

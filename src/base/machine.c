@@ -28,6 +28,16 @@ void vl_machine_return_memory(void) {
 #endif
 }
 
+void vl_machine_large_pages(void *block, size_t size) {
+#if defined(MADV_HUGEPAGE)
+  const uintptr_t page = (uintptr_t)2 << 20;
+  uintptr_t from = ((uintptr_t)block + page - 1) & ~(page - 1), to = ((uintptr_t)block + size) & ~(page - 1);
+  if (to > from) madvise((void *)from, to - from, MADV_HUGEPAGE); /* advice: a failure changes no result */
+#else
+  (void)block, (void)size;
+#endif
+}
+
 unsigned vl_machine_flush_denormals(void) {
 #if defined(__SSE__)
   unsigned state = _mm_getcsr();

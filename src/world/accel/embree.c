@@ -378,7 +378,7 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
   const char *set;
   vlResult chosen = choose_set(world->def.bits, &set, error);
   if (chosen != VL_OK) return chosen;
-  snprintf(config, sizeof config, "threads=%u%s%s", vl_context_threads(world->context), set ? ",isa=" : "",
+  snprintf(config, sizeof config, "threads=%u,hugepages=1%s%s", vl_context_threads(world->context), set ? ",isa=" : "",
            set ? set : "");
   RTCDevice device = rtcNewDevice(config);
   if (!device)

@@ -161,7 +161,7 @@ scene through.pbrt 'Material "diffusetransmission" "rgb reflectance" [0.7 0.7 0.
 finds 1 albedo_of_two ':4:1: warning: .*add up to 1.4' through.pbrt
 
 scene diver.pbrt "$glass" 'Shape "sphere" "float radius" 20'
-finds 1 camera_in_glass ':5:1: warning: the camera stands in the body.*\[camera-inside\]' diver.pbrt
+finds 1 camera_in_glass ':5:1: warning: the camera stands in the solid.*\[camera-inside\]' diver.pbrt
 scene tomb.pbrt 'Scale 20 20 20' "Shape \"trianglemesh\" $cube \"integer indices\" $outward"
 finds 1 camera_in_the_dark ':5:1: warning: .*no light is in there' tomb.pbrt
 scene room.pbrt 'LightSource "point"' 'Scale 20 20 20' "Shape \"trianglemesh\" $cube \"integer indices\" $outward"

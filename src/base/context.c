@@ -11,7 +11,6 @@
 
 #include "base/cookie.h"
 #include "base/error.h"
-#include "base/file_record.h"
 #include "base/isa.h"
 #include "base/machine.h"
 #include "base/text.h"
@@ -355,7 +354,9 @@ void vl_context_destroy(vlContext *context) {
   pthread_mutex_destroy(&context->log_mutex);
   pthread_mutex_destroy(&context->run_mutex);
   pthread_mutex_destroy(&context->files.mutex);
-  vl_file_records_free(context);
+  for (size_t i = 0; i < context->files.files.count; i++)
+    vl_free(context, (void *)(uintptr_t)context->files.files.items[i].path);
+  vl_free(context, context->files.files.items);
   free_sandbox(context);
   context->def.allocator.release(context->def.allocator.user, context);
 }

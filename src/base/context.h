@@ -3,6 +3,7 @@
 #ifndef BASE_CONTEXT_H
 #define BASE_CONTEXT_H
 
+#include <pthread.h>
 #include <stdarg.h>
 
 #include "velo/base.h"
@@ -26,6 +27,18 @@ bool vl_context_has_sandbox(const vlContext *context);
  * their own end the process where one is refused. Errors: MEMORY. */
 vlResult vl_try_threads(vlContext *context, vlError *error);
 uint64_t vl_context_max_texture_pixels(const vlContext *context);
+
+/* The files that were read, with digests of their contents (file_record.h). Laid out as VL_ARRAY (array.h), whose growth
+ * needs this header. */
+typedef struct vlFileRecords {
+  pthread_mutex_t mutex;
+  bool on;
+  struct {
+    vlFileRecord *items; /* by path, each once */
+    size_t count, capacity;
+  } files;
+} vlFileRecords;
+vlFileRecords *vl_context_file_records(vlContext *context);
 
 /* Logs a message; where may be null. printf-like. */
 void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const char *format, ...)

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/digest.h"
 
 /* The index of the path, or of the place where it belongs. */
@@ -61,10 +62,4 @@ void vl_context_record_files(vlContext *context, bool on) {
 const vlFileRecord *vl_context_file(vlContext *context, uint32_t index) {
   vlFileRecords *records = vl_context_file_records(context);
   return index < records->files.count ? &records->files.items[index] : NULL;
-}
-
-void vl_file_records_free(vlContext *context) {
-  vlFileRecords *records = vl_context_file_records(context);
-  for (size_t i = 0; i < records->files.count; i++) vl_free(context, (void *)(uintptr_t)records->files.items[i].path);
-  VL_ARRAY_FREE(context, &records->files);
 }

@@ -4,8 +4,6 @@
 
 #include "camera_files/files.h"
 
-/* Whether a path ends in the name of one of a model's files. */
-bool vl_colmap_is_name(const char *path);
 /* Reads a file of a model as text; a .bin is turned into it. A zero byte follows; released with vl_free. */
 vlResult vl_colmap_load(const vlCameraFile *file, const char *path, char **text, size_t *size);
 

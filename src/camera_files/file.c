@@ -6,7 +6,6 @@
 #include "base/cookie.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "camera_files/colmap.h"
 #include "camera_files/formats.h"
 #include "camera_files/trajectory.h"
 

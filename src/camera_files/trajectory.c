@@ -11,7 +11,6 @@
 #include "base/cookie.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "camera_files/colmap.h"
 #include "camera_files/formats.h"
 
 /* Allowed deviation of a pose's matrix from a rotation: files have 4 digits or more. */

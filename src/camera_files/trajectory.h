@@ -42,6 +42,8 @@ vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame
 
 vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char *text, size_t size);
 vlResult vl_trajectory_read_colmap(vlTrajectory *t, const vlCameraFile *file);
+/* Whether a path ends in the name of one of the files of a COLMAP model (colmap.c). */
+bool vl_colmap_is_name(const char *path);
 vlResult vl_trajectory_read_nerf(vlTrajectory *t, const vlCameraFile *file, const json_t *tree, const char *text);
 vlResult vl_trajectory_read_kalibr(vlTrajectory *t, const vlCameraFile *file, const json_t *tree);
 vlResult vl_trajectory_read_opencv(vlTrajectory *t, const vlCameraFile *file, const json_t *tree, const char *text);

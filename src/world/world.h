@@ -11,7 +11,7 @@
 #include "color/color.h"
 #include "velo/render.h"
 #include "world/accel/accel.h"
-#include "world/light/environment.h"
+#include "world/light/environment_lookup.h"
 #include "world/material/bsdf_kind.h"
 #include "world/material/coat.h"
 #include "world/material/measured.h"

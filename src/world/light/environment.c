@@ -1,5 +1,5 @@
 /* world/light/environment.c: the distribution over the cells of an environment image. */
-#include "world/light/environment.h"
+#include "world/light/environment_lookup.h"
 
 #include <math.h>
 

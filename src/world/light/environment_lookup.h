@@ -1,12 +1,12 @@
-/* world/light/environment.h: an environment image in pbrt's equal-area octahedral square, with a distribution over its
- * cells (pbrt book 12.5.2). environment.c builds it; the lookups are inline, for the hot loops.
+/* world/light/environment_lookup.h: an environment image in pbrt's equal-area octahedral square, with a distribution
+ * over its cells (pbrt book 12.5.2). environment.c builds it; the lookups are inline, for the hot loops.
  *
  * A cell is sampled by inverting the cumulative distribution, not by an alias table: well-distributed random numbers
  * stay well distributed. A table of first candidates (Chen and Asau 1974) replaces the binary search: it holds, for
  * each of VL_GUIDES equal intervals of the random number, the cell of the interval's start. From there 1 cell is passed
  * on average. */
-#ifndef WORLD_LIGHT_ENVIRONMENT_H
-#define WORLD_LIGHT_ENVIRONMENT_H
+#ifndef WORLD_LIGHT_ENVIRONMENT_LOOKUP_H
+#define WORLD_LIGHT_ENVIRONMENT_LOOKUP_H
 
 #include "math/octahedral.h"
 #include "math/warp.h"

@@ -28,8 +28,8 @@ bool vl_context_has_sandbox(const vlContext *context);
 vlResult vl_try_threads(vlContext *context, vlError *error);
 uint64_t vl_context_max_texture_pixels(const vlContext *context);
 
-/* The files that were read, with digests of their contents (file_record.h). Laid out as VL_ARRAY (array.h), whose growth
- * needs this header. */
+/* The files that were read, with digests of their contents (file_record.h). Laid out as VL_ARRAY (array.h), whose
+ * growth needs this header. */
 typedef struct vlFileRecords {
   pthread_mutex_t mutex;
   bool on;

@@ -348,17 +348,19 @@ int main(int argc, char **argv) {
   printf("%-26s %15s  %19s  %19s  %13s  %s\n%-26s %7s %7s  %9s %9s  %9s %9s  %6s %6s  %s\n", "", "user seconds",
          "trimmed relMSE", "relMSE", "FLIP", "efficiency of B over A, trimmed", "", "A", "B", "A", "B", "A", "B", "A",
          "B", "(95 % confidence)");
-  for (int i = 0; i < b->count; i++) {
+  int scenes = b->count;
+  for (int i = 0; i < scenes; i++) {
     render_pairs(b, &b->scenes[i]);
     judge(b, &b->scenes[i]);
     print_scene(&b->scenes[i]);
+    b->count = i + 1; /* written now, should the rest be stopped */
+    write_json(b);
   }
   for (int m = 0; m < MEASURES; m++) {
     double worst, mean = summary(b, m, &worst);
     printf("efficiency by %-15s geometric mean %.3f, worst %.3f\n", measure_names[m], mean, worst);
   }
   rmdir(b->folder);
-  write_json(b);
   vl_context_destroy(b->context);
   return 0;
 }

@@ -1,7 +1,7 @@
-/* bench/limit.c: the renderer's ray throughput relative to Embree's. A diffuse scene of a million triangles is rendered
- * and every ray is recorded. The same rays are traced by bare Embree calls (packets for camera rays, single calls for
- * others, as in the renderer). Then the renderer is timed. B = traced rays per second / Embree's rays per second, both
- * on all threads, medians of several interleaved rounds. */
+/* bench/limit.c: the renderer's ray throughput relative to Embree's. A diffuse scene of a million triangles, or that of
+ * a file, is rendered and every ray is recorded. The same rays are traced by bare Embree calls (packets for camera
+ * rays, single calls for others, as in the renderer). Then the renderer is timed. B = traced rays per second / Embree's
+ * rays per second, both on all threads, medians of several interleaved rounds. */
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -133,20 +133,55 @@ typedef struct Bare {
   uint64_t sum[64];
 } Bare;
 
+/* What velo's callbacks (alpha, curved shapes, portable bits) expect behind Embree's context, as in src/world/accel:
+ * without a record of the nearest hits, Embree's own counts. */
+typedef struct Query {
 #if VELO_EMBREE_MAJOR >= 4
-#define CONTEXT
-#define ARGUMENT(ray) , (ray), NULL
+  struct RTCRayQueryContext context;
 #else
-#define CONTEXT                       \
-  struct RTCIntersectContext context; \
-  rtcInitIntersectContext(&context);
-#define ARGUMENT(ray) , &context, (ray)
+  struct RTCIntersectContext context;
+#endif
+  const vlRays *rays;
+  void *nearest;
+  uint32_t first;
+} Query;
+
+#if VELO_EMBREE_MAJOR >= 4
+#define CONTEXT(c)                        \
+  vlRays rays = rays_of(c);               \
+  Query query = {.rays = &rays};          \
+  struct RTCIntersectArguments closest;   \
+  struct RTCOccludedArguments any;        \
+  rtcInitRayQueryContext(&query.context); \
+  rtcInitIntersectArguments(&closest);    \
+  rtcInitOccludedArguments(&any);         \
+  closest.context = any.context = &query.context;
+#define CLOSEST(ray) , (ray), &closest
+#define ANY(ray) , (ray), &any
+#else
+#define CONTEXT(c)               \
+  vlRays rays = rays_of(c);      \
+  Query query = {.rays = &rays}; \
+  rtcInitIntersectContext(&query.context);
+#define CLOSEST(ray) , &query.context, (ray)
+#define ANY(ray) , &query.context, (ray)
 #endif
 
+static vlRays rays_of(const Chunk *c) {
+  return (vlRays){.ox = c->ray[0],
+                  .oy = c->ray[1],
+                  .oz = c->ray[2],
+                  .dx = c->ray[3],
+                  .dy = c->ray[4],
+                  .dz = c->ray[5],
+                  .t_min = c->ray[6],
+                  .t_max = c->ray[7]};
+}
+
 static uint64_t bare_packets(RTCScene scene, const Chunk *c) {
-  CONTEXT
+  CONTEXT(c)
 #if VELO_EMBREE_MAJOR < 4
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
 #endif
   uint64_t sum = 0;
   for (uint32_t first = 0; first < c->n; first += 16) {
@@ -158,30 +193,30 @@ static uint64_t bare_packets(RTCScene scene, const Chunk *c) {
       q.ray.org_x[k] = c->ray[0][i], q.ray.org_y[k] = c->ray[1][i], q.ray.org_z[k] = c->ray[2][i];
       q.ray.dir_x[k] = c->ray[3][i], q.ray.dir_y[k] = c->ray[4][i], q.ray.dir_z[k] = c->ray[5][i];
       q.ray.tnear[k] = c->ray[6][i], q.ray.tfar[k] = c->ray[7][i];
-      q.ray.time[k] = 0, q.ray.mask[k] = (unsigned)-1, q.ray.flags[k] = 0;
+      q.ray.time[k] = 0, q.ray.mask[k] = (unsigned)-1, q.ray.flags[k] = 0, q.ray.id[k] = i;
       q.hit.geomID[k] = q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
-    rtcIntersect16(valid, scene ARGUMENT(&q));
+    rtcIntersect16(valid, scene CLOSEST(&q));
     for (uint32_t k = 0; k < 16; k++) sum += q.hit.primID[k];
   }
   return sum;
 }
 
 static uint64_t bare_single(RTCScene scene, const Chunk *c) {
-  CONTEXT
+  CONTEXT(c)
   uint64_t sum = 0;
   for (uint32_t i = 0; i < c->n; i++) {
     struct RTCRayHit q;
     q.ray.org_x = c->ray[0][i], q.ray.org_y = c->ray[1][i], q.ray.org_z = c->ray[2][i];
     q.ray.dir_x = c->ray[3][i], q.ray.dir_y = c->ray[4][i], q.ray.dir_z = c->ray[5][i];
     q.ray.tnear = c->ray[6][i], q.ray.tfar = c->ray[7][i];
-    q.ray.time = 0, q.ray.mask = (unsigned)-1, q.ray.id = 0, q.ray.flags = 0;
+    q.ray.time = 0, q.ray.mask = (unsigned)-1, q.ray.id = i, q.ray.flags = 0;
     q.hit.geomID = q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     if (c->kind == 2) {
-      rtcOccluded1(scene ARGUMENT(&q.ray));
+      rtcOccluded1(scene ANY(&q.ray));
       sum += q.ray.tfar < 0;
     } else {
-      rtcIntersect1(scene ARGUMENT(&q));
+      rtcIntersect1(scene CLOSEST(&q));
       sum += q.hit.primID;
     }
   }
@@ -206,16 +241,14 @@ static double time_bare(vlContext *context, const Record *r, RTCScene scene, int
 
 /* ---- the renderer ------------------------------------------------------------------------------------------------ */
 
-static vlRenderStats render_once(vlContext *context, const vlWorld *world, const vlCamera *camera, uint32_t spp) {
-  vlFilmDef film_def = vl_default_film_def(camera->width, camera->height);
+static vlRenderStats render_once(vlContext *context, const vlWorld *world, const vlSceneDefs *defs) {
+  vlCamera camera;
   vlFilm *film = NULL;
   vlRenderStats stats;
   memset(&stats, 0, sizeof stats);
-  if (vl_film_create(context, &film_def, &film) != VL_OK) exit(1);
-  vlRenderDef def = vl_default_render_def();
-  def.spp = spp;
-  def.max_depth = 8;
-  if (vl_render(world, camera, film, &def, &stats, NULL) != VL_OK) exit(1);
+  if (vl_camera_make(&defs->camera, &camera, NULL, NULL) != VL_OK) exit(1);
+  if (vl_film_create(context, &defs->film, &film) != VL_OK) exit(1);
+  if (vl_render(world, &camera, film, &defs->render, &stats, NULL) != VL_OK) exit(1);
   vl_film_destroy(film);
   return stats;
 }
@@ -235,8 +268,24 @@ static double median(double *x, int n) {
   return x[n / 2];
 }
 
+/* The scene of a file, or the one above where file is null; and how its image is taken. */
+static bool make_scene(vlScene *scene, const char *file, vlError *error) {
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  if (file) return vl_scene_load(scene, file, NULL, error) == VL_OK;
+  build_scene(scene);
+  defs->camera = vl_default_camera_def(SIZE, SIZE);
+  defs->camera.eye[0] = 0, defs->camera.eye[1] = 0.5, defs->camera.eye[2] = 16;
+  memset(defs->camera.lookat, 0, sizeof defs->camera.lookat);
+  defs->camera.fov = 0.7;
+  defs->film = vl_default_film_def(SIZE, SIZE);
+  defs->render.max_depth = 8;
+  return true;
+}
+
+/* limit [SCENE] [SPP] */
 int main(int argc, char **argv) {
-  uint32_t spp = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 4;
+  const char *file = argc > 1 && strtoul(argv[1], NULL, 10) == 0 ? argv[1] : NULL;
+  const char *samples = argc > 1 + (file != NULL) ? argv[1 + (file != NULL)] : "4";
   vlContext *context = NULL;
   vlScene *scene = NULL;
   vlWorld *world = NULL;
@@ -244,40 +293,32 @@ int main(int argc, char **argv) {
   vlContextDef context_def = vl_default_context_def();
   if (getenv("THREADS")) context_def.threads = (uint32_t)strtoul(getenv("THREADS"), NULL, 10);
   if (vl_context_create(&context_def, &context) != VL_OK || vl_scene_create(context, &scene) != VL_OK) return 1;
-  build_scene(scene);
-  if (vl_world_build(scene, NULL, &world, &error) != VL_OK) {
+  if (!make_scene(scene, file, &error) ||
+      vl_world_build(scene, &vl_scene_defs(scene)->build, &world, &error) != VL_OK) {
     fprintf(stderr, "limit: %s\n", error.message);
     return 1;
   }
-  vlCameraDef camera_def = vl_default_camera_def(SIZE, SIZE);
-  double eye[3] = {0, 0.5, 16}, lookat[3] = {0, 0, 0};
-  memcpy(camera_def.eye, eye, sizeof eye);
-  memcpy(camera_def.lookat, lookat, sizeof lookat);
-  camera_def.fov = 0.7;
-  vlCamera camera;
-  if (vl_camera_make(&camera_def, &camera, NULL, &error) != VL_OK) {
-    fprintf(stderr, "limit: %s\n", error.message);
-    return 1;
-  }
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  defs->render.spp = (uint32_t)strtoul(samples, NULL, 10);
   vlWorldInfo info;
   vl_world_info(world, &info);
   static const char *const names[3] = {"camera, in sixteens", "bounce", "shadow"};
   Record log = {.mutex = PTHREAD_MUTEX_INITIALIZER};
   world->accel.log = record;
   world->accel.log_user = &log;
-  vlRenderStats first = render_once(context, world, &camera, spp);
+  vlRenderStats first = render_once(context, world, defs);
   world->accel.log = NULL;
   uint64_t rays = log.rays[0] + log.rays[1] + log.rays[2];
   printf("%llu triangles, %u x %u pixels, %u spp, %u threads: %.2f M paths, %.2f rays a path\n",
-         (unsigned long long)info.triangles, SIZE, SIZE, spp, vl_context_threads(context), 1e-6 * (double)first.paths,
-         (double)rays / (double)first.paths);
+         (unsigned long long)info.triangles, defs->film.width, defs->film.height, defs->render.spp,
+         vl_context_threads(context), 1e-6 * (double)first.paths, (double)rays / (double)first.paths);
   double bare[ROUNDS], ours[ROUNDS], bare_work[ROUNDS], our_work[ROUNDS];
   for (int i = 0; i < ROUNDS; i++) {
     double begin = processor_seconds();
     bare[i] = time_bare(context, &log, world->accel.scene, -1);
     bare_work[i] = processor_seconds() - begin;
     begin = processor_seconds();
-    ours[i] = render_once(context, world, &camera, spp).seconds;
+    ours[i] = render_once(context, world, defs).seconds;
     our_work[i] = processor_seconds() - begin;
   }
   double b = median(bare, ROUNDS), o = median(ours, ROUNDS);

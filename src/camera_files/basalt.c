@@ -34,7 +34,7 @@ static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCam
     if (name && strcmp(name, models[i].name) == 0) model = &models[i];
   if (!model)
     return vl_camera_wrong_in(file, camera, "camera_type",
-                              "basalt: unknown camera_type \"%.40s\"; there are pinhole, pinhole-radtan8, kb4, ds, "
+                              "basalt: unknown camera_type \"%.12s\"; there are pinhole, pinhole-radtan8, kb4, ds, "
                               "eucm, ucm, fov",
                               name ? name : "");
   for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_number(file, values, names[i], &f[i]);

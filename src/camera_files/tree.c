@@ -143,7 +143,7 @@ static vlResult number_of(const vlCameraFile *file, const json_t *object, const 
     return VL_OK;
   }
   if (json_is_string(value))
-    return vl_camera_wrong_in(file, value, NULL, "%s: \"%s\" holds \"%.40s\", which is no finite number", file->dialect,
+    return vl_camera_wrong_in(file, value, NULL, "%s: \"%s\" holds \"%.12s\", which is no finite number", file->dialect,
                               key, json_string_value(value));
   return vl_camera_wrong_in(file, own ? value : object, own ? NULL : key, "%s: \"%s\" must be a number", file->dialect,
                             key);

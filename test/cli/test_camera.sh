@@ -105,6 +105,16 @@ if [ "$("$VELO" camera project --camera cam.yaml mixed.csv 2>/dev/null)" = "u,v,
 4820,240,1,1,0" ]; then pass bad_lines_rest; else fail bad_lines_rest; show "the last one"; fi
 expect_code 3 strict_line "$VELO" camera project --strict --camera cam.yaml mixed.csv
 expect_line strict_line_words 'mixed.csv:2:4'
+printf 'Camera "pinhole" "float shutteropen" 0 "float shutterclose" 0 "float readout" 0.02\nWorldBegin\n' >instant.pbrt
+check instant_rows "$VELO" camera info instant.pbrt
+printf 'camera_matrix: [500, 0, 319.5, 0, 500, 239.5, 0, 0, 1]\ndistortion_coefficients: [0, 0, 0, 0]\n' >sizeless.yaml
+expect_code 3 sizeless "$VELO" camera info sizeless.yaml
+expect_line sizeless_words 'has no image size'
+check sized "$VELO" camera info --size 640x480 sizeless.yaml
+expect_code 2 sized_twice "$VELO" camera info --size 64x48 cam.yaml
+printf 'just a text\nof some kind\n' >text.dat
+expect_code 3 no_yaml "$VELO" camera info text.dat
+expect_line no_yaml_words 'no camera'
 expect_code 2 no_camera "$VELO" camera project points.csv
 expect_line no_camera_words '--camera'
 

@@ -100,6 +100,24 @@ else
   fail frames
 fi
 
+cp "$VELO_SOURCE_DIR/test/fuzz/corpus/camera_file/kalibr.yaml" chain.yaml
+cp "$VELO_SOURCE_DIR/test/fuzz/corpus/camera_file/nerf.json" transforms.json
+render scene.pbrt --spp 1 --trajectory transforms.json --frames 0-0 -o 'own_%d.exr' 2>/dev/null
+again own_0.exr -o own.exr
+same frame_with_its_own_camera own_0.exr own.exr
+render scene.pbrt --spp 1 --trajectory poses.txt --rig chain.yaml -o 'rig_%d_%c.exr' 2>/dev/null
+again rig_1_cam0.exr -o rig.exr
+same rig_of_one_camera rig_1_cam0.exr rig.exr
+python3 - <<'PYTHON'
+text = open("chain.yaml").read()
+at = text.index("cam0:")
+open("chain.yaml", "w").write(text + ("" if text.endswith("\n") else "\n") + text[at:].replace("cam0:", "cam1:") +
+                             "  T_cn_cnm1: [[1, 0, 0, -0.1], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n")
+PYTHON
+render scene.pbrt --spp 1 --trajectory poses.txt --rig chain.yaml -o 'rig_%d_%c.exr' 2>/dev/null
+expect_code 2 rig_of_two "$VELO" render --again rig_1_cam1.exr -o rig2.exr
+expect_text rig_of_two_says "two of the 2 frames would be"
+
 # What has changed is named; nothing is written. Exit code 3, and 4 where the scene is missing.
 refuse() { # NAME CODE TEXT COMMAND...
   local name=$1 code=$2 text=$3

@@ -468,7 +468,9 @@ static int check_again(const Render *render) {
   ReceiptImage which = {.samples = job->defs->render.spp};
   if (render->many) {
     which.is_frame = frames->trajectory != NULL;
-    which.frame = frames->first;
+    const Frame first = frames_at(frames, 0);
+    which.frame = first.number;
+    job = &first.camera->job; /* a file of poses may have cameras of its own */
     if (frames_count(frames) > 1)
       return report_usage("--again: the images of a rig are made again by the command in the receipt");
   }

@@ -24,6 +24,7 @@ typedef struct Merge {
   uint32_t *order; /* of the parts, by samples */
   vlSampleSpan *ranges, *joined;
   uint32_t range_count;
+  uint8_t learned[16]; /* of the block's parts, which must be the same */
   char *sum, *data;
   vlFileWriter file;
   vlError *error;
@@ -199,6 +200,11 @@ static vlResult merge_block(Merge *m) {
     if (!p->samples) break;
     if ((result = choose(m, m->order[i], &counts)) != VL_OK) return result;
     if (!counts) continue;
+    if (first)
+      memcpy(m->learned, p->reader.head.learned, sizeof m->learned);
+    else if (memcmp(m->learned, p->reader.head.learned, sizeof m->learned) != 0)
+      return vl_fail(m->error, VL_ERROR_SCENE, "%s: its samples depend on another learned state than those before it",
+                     p->reader.path);
     samples += p->samples;
     if (samples > UINT64_C(1) << 31)
       return vl_fail(m->error, VL_ERROR_SCENE, "%s: a film holds at most 2^31 samples per pixel", p->reader.path);
@@ -211,6 +217,7 @@ static vlResult merge_block(Merge *m) {
   const uint32_t place[4] = {h->x0, h->y0, h->x1, h->y1};
   vlFilmBlockHead head;
   vl_film_block_head(def, place, m->range_count, &head);
+  if (m->range_count) memcpy(head.learned, m->learned, sizeof head.learned);
   uint32_t crc = vl_film_crc(0, &head, sizeof head);
   crc = vl_film_crc(crc, m->ranges, m->range_count * sizeof *m->ranges);
   crc = vl_film_crc(crc, m->sum, head.data_size);

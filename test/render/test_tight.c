@@ -34,7 +34,7 @@ static double room_mean(Room r, bool sky) {
   const double way[3] = {1, 0.7, -0.4};
   double place[16], at[3];
   for (int i = 0; i < 3; i++) at[i] = r.offset * r.size * way[i];
-  s.render.spp = 8, s.render.max_depth = 20;
+  s.render.spp = s.render.sequence = 8, s.render.max_depth = 20;
   for (int i = 0; i < 3; i++)
     s.camera.eye[i] = at[i] + 0.2 * r.size * (i == 0), s.camera.lookat[i] = at[i] + r.size * (0.3 * i - 0.5);
   vlMaterialId wall = add_diffuse(&s, 0.9f, 0.9f, 0.9f);

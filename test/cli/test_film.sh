@@ -1,0 +1,130 @@
+#!/usr/bin/env bash
+# The film as a file: a render is stopped, killed, continued, split and merged, and gives the very bytes of the straight
+# one. Files that do not belong together, and damaged ones, are refused in one line.
+. "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
+. "$VELO_SOURCE_DIR/test/cli/common.sh"
+cd "$work" || exit 1
+write_scene scene.pbrt
+render="$VELO render --quiet"
+small="--resolution 70x40"
+
+# identical NAME COMMAND...: the command succeeds and a.exr and b.exr are the same.
+identical() {
+  local name=$1
+  shift
+  if "$@" >identical.txt 2>&1 && cmp -s a.exr b.exr; then pass "$name"; else fail "$name"; sed 's/^/  | /' identical.txt; fi
+}
+
+# Continued: every tracer, with error sums, with spectra, a sampler with cells; another number of threads.
+for tracer in path volpath bidirectional merging sppm lightpath randomwalk raycast ambientocclusion; do
+  for more in "" "--channels error,Z" "--spectrum 4" "--sampler stratified --sequence 8"; do
+    rm -f a.exr b.exr
+    $render scene.pbrt $small --tracer $tracer $more --spp 12 -o a.exr
+    $render scene.pbrt $small --tracer $tracer $more --spp 5 --film f.film -t 1
+    identical "continued: $tracer $more" $render --continue f.film --spp 12 -o b.exr -t 3
+  done
+done
+$render scene.pbrt $small --stereo parallel --spp 6 -o a.exr
+$render scene.pbrt $small --stereo parallel --spp 2 --film eye_%v.film
+identical "continued: two eyes" $render --continue eye_%v.film --spp 6 -o b.exr
+$render scene.pbrt $small --spp 5 -o a.exr --channels Z,N,id.object
+$render scene.pbrt $small --spp 5 --film f.film
+identical "channels of a complete film" $render --continue f.film -o b.exr --channels Z,N,id.object
+$render scene.pbrt $small --spp 4 --film f.film -o own.exr
+rm own.exr
+$render --continue f.film --spp 6
+$render scene.pbrt $small --spp 6 -o whole.exr
+same "outputs are those of the film" own.exr whole.exr
+rm -f asked.exr
+$render scene.pbrt $small --film f.film
+[ ! -e asked.exr ] && pass "a film without -o writes no image" || fail "a film without -o writes no image"
+$render scene.pbrt $small --time 0.3 --film f.film -o a.exr
+spp=$("$VELO" film info f.film | sed -n 's/^ *samples *0:\([0-9]*\) .*/\1/p')
+identical "--time is the --spp that it reached" $render scene.pbrt $small --spp "$spp" -o b.exr
+
+# Shards by samples and by tiles, in any order and grouping, one of them twice: the film of the single run.
+$render scene.pbrt $small --spp 11 --film whole.film
+for i in 1 2 3; do $render scene.pbrt $small --spp 11 --shard $i/3 --film s$i.film; done
+for i in 1 2 3 4; do $render scene.pbrt $small --spp 11 --shard $i/4 --shard-by tiles --film t$i.film -t 1; done
+"$VELO" film merge s3.film s1.film s2.film s1.film -o m.film
+same "shards by samples" m.film whole.film
+"$VELO" film merge t2.film t4.film -o m.film && "$VELO" film merge t1.film m.film t3.film -o m.film
+same "shards by tiles" m.film whole.film
+"$VELO" film merge whole.film m.film s1.film t2.film -o m2.film
+same "merged again" m2.film whole.film
+for i in $(seq 201); do ln -s s$((i % 3 + 1)).film many$i.film; done
+"$VELO" film merge many*.film -o m.film
+same "more files than are open at once" m.film whole.film
+[ ! -e m.film.merge ] && pass "no file is left over" || fail "no file is left over"
+"$VELO" film develop m.film -o d.pfm
+$render scene.pbrt $small --spp 11 -o e.pfm
+same "developed" d.pfm e.pfm
+mkdir bin
+ln -s "$VELO" bin/velo
+"$VELO" film merge s3.film t1.film -o gap.film
+"$VELO" film info --missing gap.film >missing.sh
+PATH=$PWD/bin:$PATH sh missing.sh 2>missing.txt
+same "what is missing is rendered by the commands that info prints" gap.film whole.film
+check "a complete film misses nothing" test -z "$("$VELO" film info --missing whole.film)"
+
+# Killed at any moment: the last checkpoint is there, whole, and the continued image is the straight one's.
+$render scene.pbrt $small --spp 150 -o a.exr
+for round in 1 2 3 4 5 6; do
+  rm -f k.film b.exr
+  "$VELO" render scene.pbrt $small --spp 150 --film k.film --checkpoint 0.01 --quiet 2>/dev/null &
+  process=$!
+  wait_for k.film
+  sleep "0.0$((RANDOM % 9))$((RANDOM % 10))"
+  kill -KILL $process 2>/dev/null
+  wait $process 2>/dev/null
+  if "$VELO" film info --check k.film >info.txt 2>&1; then pass "killed $round: the film is whole"; else fail "killed $round: the film is whole"; fi
+  identical "killed $round: continued" $render --continue k.film -o b.exr -t $((round % 3 + 1))
+done
+for signal in INT TERM HUP; do
+  rm -f k.film
+  env --default-signal=INT,HUP,TERM "$VELO" render scene.pbrt $small --spp 100000 --film k.film --quiet 2>/dev/null &
+  process=$!
+  sleep 1
+  kill -$signal $process
+  wait $process
+  code=$?
+  [ $code = $((128 + $(kill -l $signal))) ] && pass "$signal: exit code" || fail "$signal: exit code ($code)"
+  check "$signal: the film is written" "$VELO" film info --check k.film
+done
+
+# refused NAME CODE TEXT COMMAND...: that exit code, one line that has TEXT.
+refused() {
+  local name=$1 code=$2 text=$3 got
+  shift 3
+  "$@" >refused.txt 2>&1
+  got=$?
+  if [ $got = "$code" ] && [ "$(wc -l <refused.txt)" = 1 ] && grep -qF -- "$text" refused.txt; then
+    pass "$name"
+  else
+    fail "$name (exit code $got)"
+    sed 's/^/  | /' refused.txt
+  fi
+}
+$render scene.pbrt $small --spp 6 --film f.film
+refused "other settings" 3 "tracer is volpath, was path" $render --continue f.film --tracer volpath
+refused "another seed" 3 "seed" $render --continue f.film --seed 7
+refused "another size" 3 "width" $render --continue f.film --resolution 60x40
+refused "fewer samples" 2 "0:6" $render --continue f.film --spp 3
+cp scene.pbrt changed.pbrt
+echo "# changed" >>changed.pbrt
+refused "another scene" 3 "changed" $render changed.pbrt --continue f.film
+mv scene.pbrt away.pbrt
+refused "no scene" 4 "scene.pbrt" $render --continue f.film
+mv away.pbrt scene.pbrt
+$render scene.pbrt $small --spp 9 --samples 4:9 --film late.film
+refused "overlap" 3 "4:6" "$VELO" film merge f.film late.film -o none.film
+refused "a part with -o" 2 "-o" $render scene.pbrt --samples 0:1 --film p.film -o p.exr
+refused "a part without film" 2 "--film" $render scene.pbrt --shard 1/2
+refused "no such shard" 2 "3/2" $render scene.pbrt --film p.film --shard 3/2
+refused "no film" 4 "absent.film" $render --continue absent.film
+refused "not a film" 3 "not a film file" "$VELO" film info scene.pbrt
+refused "no folder" 5 "absent" $render scene.pbrt --film absent/p.film
+head -c 3000 f.film >cut.film
+refused "cut" 3 "damaged" "$VELO" film merge cut.film -o none.film
+[ ! -e none.film ] && pass "no result of a failed merge" || fail "no result of a failed merge"
+finish

@@ -32,6 +32,7 @@ static void every_default_has_a_cookie(void **state) {
   assert_int_not_equal(vl_default_context_def().cookie, 0);
   assert_int_not_equal(vl_default_image_def(1, 1, 1).cookie, 0);
   assert_int_not_equal(vl_default_write_def().cookie, 0);
+  assert_int_not_equal(vl_default_denoise_def().cookie, 0);
   assert_int_not_equal(vl_default_camera_def(1, 1).cookie, 0);
   assert_int_not_equal(vl_default_texture_def(VL_TEXTURE_CONSTANT, true).cookie, 0);
   assert_int_not_equal(vl_default_material_def(VL_MATERIAL_DIFFUSE).cookie, 0);

@@ -63,7 +63,7 @@ check help "$VELO" help
 # Every page fits 80 columns and has two examples.
 "$VELO" help >pages.txt
 wide=$(awk 'length($0) > 80' pages.txt)
-for command in render 'scene info' 'scene check' 'scene convert' 'image info' 'image diff' 'image convert' 'image check' 'camera project' \
+for command in render 'scene info' 'scene check' 'scene convert' 'image info' 'image diff' 'image convert' 'image check' 'image denoise' 'camera project' \
   'camera unproject' 'camera info' 'camera convert' 'camera verify' 'camera vanishing' help; do
   run "$VELO" help $command
   wide="$wide$(printf '%s\n' "$out" | awk 'length($0) > 80')"

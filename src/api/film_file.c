@@ -16,7 +16,7 @@ struct vlFilmFile {
 vlResult vl_film_file_open(vlContext *context, const char *path, vlFilmFile **file, vlError *error) {
   vl_error_clear(error);
   if (file) *file = NULL;
-  if (!context || !path || !file) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: null argument");
+  if (!context || !path || !file) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: context, path or file is null");
   vlFilmFile *made = vl_alloc_zero(context, 1, sizeof *made);
   if (!made) return vl_fail_memory(error);
   vlResult result = vl_film_reader_open(&made->reader, context, path, error);
@@ -64,7 +64,7 @@ static vlResult check_data(vlFilmFile *file, vlError *error) {
 vlResult vl_film_file_next(vlFilmFile *file, bool check, vlFilmBlock *block, vlError *error) {
   vl_error_clear(error);
   if (block) *block = (vlFilmBlock){.range_count = 0};
-  if (!file || !block) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: null argument");
+  if (!file || !block) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: file or block is null");
   vlFilmReader *r = &file->reader;
   if (r->next > r->blocks) return VL_OK;
   bool last = r->next == r->blocks;

@@ -276,7 +276,8 @@ static vlResult merge_some(vlContext *context, const char *const *paths, uint32_
 vlResult vl_film_merge(vlContext *context, const char *const *paths, uint32_t count, const char *output,
                        vlError *error) {
   vl_error_clear(error);
-  if (!context || !paths || !count || !output) return vl_fail(error, VL_ERROR_ARGUMENT, "film merge: null argument");
+  if (!context || !paths || !count || !output)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "film merge: context, paths, count or output is null");
   if (count <= MOST_FILES) return merge_some(context, paths, count, output, error);
   char between[4096];
   const char *some[MOST_FILES];

@@ -166,7 +166,9 @@ static vlResult receipt_of(vlContext *context, json_t *tree, char *text, vlRecei
 vlResult vl_receipt_make(vlContext *context, const vlReceiptDef *def, vlReceipt **receipt, vlError *error) {
   if (receipt) *receipt = NULL;
   if (!context || !def || !receipt || def->cookie != VL_COOKIE_RECEIPT || !def->defs)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: null argument, or a def without cookie");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "receipt: context, def, def.defs or receipt is null, or def.cookie is not that of a default def of "
+                   "this version");
   json_t *tree = json_object();
   bool good = vl_receipt_put(tree, "velo_receipt", json_integer(VL_RECEIPT_FORMAT)) && put_velo(tree, def->commit) &&
               put_strings(context, tree, "command", def->command, def->command_count) &&
@@ -181,7 +183,8 @@ vlResult vl_receipt_make(vlContext *context, const vlReceiptDef *def, vlReceipt 
 
 vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size, vlReceipt **receipt, vlError *error) {
   if (receipt) *receipt = NULL;
-  if (!context || !text || !receipt) return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: null argument");
+  if (!context || !text || !receipt)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: context, text or receipt is null");
   json_error_t wrong;
   json_t *tree = json_loadb(text, size, JSON_REJECT_DUPLICATES, &wrong);
   if (!tree) return vl_fail(error, VL_ERROR_SCENE, "receipt: line %d: %s", wrong.line, wrong.text);
@@ -213,7 +216,7 @@ static bool put_command_samples(json_t *command, uint32_t samples) {
 
 vlResult vl_receipt_of_image(const vlReceipt *film, uint32_t samples, vlReceipt **receipt, vlError *error) {
   if (receipt) *receipt = NULL;
-  if (!film || !receipt) return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: null argument");
+  if (!film || !receipt) return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: film or receipt is null");
   json_t *tree = json_deep_copy(film->tree), *render = json_object_get(tree, "render");
   bool good = tree && json_object_set_new(tree, "samples", json_integer(samples)) == 0 &&
               (!json_is_object(render) || json_object_set_new(render, "spp", json_integer(samples)) == 0) &&

@@ -94,7 +94,7 @@ static vlResult fill(vlFilmReader *r, vlFilm *film, vlError *error) {
 vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm **film, vlError *error) {
   vl_error_clear(error);
   if (film) *film = NULL;
-  if (!context || !path || !film) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: null argument");
+  if (!context || !path || !film) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: context, path or film is null");
   vlFilmReader reader;
   Extent extent;
   vlResult result = vl_film_reader_open(&reader, context, path, error);

@@ -112,7 +112,7 @@ static vlResult write_blocks(vlFilmWriter *writer, Run *run, uint64_t at, vlErro
 static vlResult check(const vlFilm *film, const vlFilmWriteDef *def, const char *path, const uint32_t window[4],
                       vlError *error) {
   if (def->cookie != VL_COOKIE_FILM_WRITE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: the def was not made by vl_default_film_write_def");
+    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: def.cookie is not that of a default def of this version");
   if (film->in_pass || film->sequence.uneven || !film->spp || !film->front)
     return vl_fail(error, VL_ERROR_ARGUMENT, "%s: a film without samples, or with only a part of them", path);
   if (window[2] > film->def.width || window[3] > film->def.height || !fits_grid(window, film->def.crop))
@@ -127,7 +127,7 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
   vlFilmWriteDef standard = vl_default_film_write_def();
   if (!def) def = &standard;
   if (writer) *writer = NULL;
-  if (!film || !path || !writer) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: null argument");
+  if (!film || !path || !writer) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: film, path or writer is null");
   bool whole = !def->window[2] && !def->window[3];
   const uint32_t *window = whole ? film->def.crop : def->window;
   vlResult result = check(film, def, path, window, error);
@@ -164,7 +164,7 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
 
 vlResult vl_film_write_end(vlFilmWriter *writer, vlError *error) {
   vl_error_clear(error);
-  if (!writer) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: null argument");
+  if (!writer) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: writer is null");
   vlResult result = vl_file_commit(&writer->file, error);
   vl_free(writer->context, writer);
   return result;

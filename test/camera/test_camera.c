@@ -248,7 +248,7 @@ static void expect_error(vlCameraDef def, const char *first, const char *second)
 
 static void error_messages(void **state) {
   (void)state;
-  EXPECT_ERROR(d.cookie = 0, "vl_default_camera_def", NULL);
+  EXPECT_ERROR(d.cookie = 0, "def.cookie", NULL);
   EXPECT_ERROR(d.width = 0, "0 x 480", NULL);
   EXPECT_ERROR(d.height = 1u << 25, "33554432", NULL);
   EXPECT_ERROR(d.projection = (vlProjection)99, "projection 99", NULL);

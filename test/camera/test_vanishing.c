@@ -202,7 +202,7 @@ static void test_wrong(void **state) {
   def.count = 1;
   wrong(&def, "needs 2 or 3");
   def.cookie = 0;
-  wrong(&def, "vl_default_vanishing_def");
+  wrong(&def, "def.cookie");
 }
 
 int main(void) {

@@ -61,7 +61,7 @@ expect_code 2 sensor_unknown_option "$VELO" render format.pbrt --sensor canon_eo
 expect_text sensor_option_nearest 'did you mean "canon_eos_100d"?'
 sed 's/"string sensor" "cie1931"/"string sensor" "canon_eos_100e"/' format.pbrt >sensor.pbrt
 expect_code 3 sensor "$VELO" render sensor.pbrt -o no.exr --quiet
-expect_text sensor_says 'unknown sensor "canon_eos_100e" (did you mean "canon_eos_100d"?)'
+expect_text sensor_says 'unknown sensor "canon_eos_10…" (did you mean "canon_eos_100d"?)'
 check sensor_permissive "$VELO" render sensor.pbrt -o sensor.exr --permissive --quiet
 expect_code 1 measured_differs "$VELO" image diff measured.exr sensor.exr --threshold differing=0
 # What velo has not is told by its name.

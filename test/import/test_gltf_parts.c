@@ -173,7 +173,7 @@ static void pointers(void **state) {
       "\"KHR_animation_pointer\":{\"pointer\":\"/materials/0/emissiveFactor\"}}}}]}]," SQUARE_MESH,
       &def);
   is_near(shape(&l, 0)->group_from_shape[3], 3, 1e-6);
-  assert_non_null(strstr(l.log, "/materials/0/emissiveFactor is not animated"));
+  assert_non_null(strstr(l.log, "/materials/0… is not animated"));
   end_load(&l);
   free(g);
 }

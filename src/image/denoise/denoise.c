@@ -314,9 +314,11 @@ vlResult vl_denoise(const vlImage *image, const vlDenoiseDef *def, vlImage **cle
   if (clean) *clean = NULL;
   vlDenoiseDef standard = vl_default_denoise_def();
   if (!def) def = &standard;
-  if (!image || !clean || !image->pixels) return vl_fail(error, VL_ERROR_ARGUMENT, "denoise: null argument");
+  if (!image || !clean || !image->pixels)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "denoise: image, its pixels or clean is null");
   if (def->cookie != VL_COOKIE_DENOISE || (unsigned)def->denoiser > VL_DENOISER_OIDN)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "denoise: the def was not made by vl_default_denoise_def");
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "denoise: def.cookie or def.denoiser is not that of a default def of this version");
   Denoise work = {.image = image, .context = image->context};
   vlResult result = find_channels(image, def->denoiser == VL_DENOISER_VELO, &work.channels, error);
   if (result != VL_OK) return result;

@@ -124,6 +124,15 @@ refused "no such shard" 2 "3/2" $render scene.pbrt --film p.film --shard 3/2
 refused "no film" 4 "absent.film" $render --continue absent.film
 refused "not a film" 3 "not a film file" "$VELO" film info scene.pbrt
 refused "no folder" 5 "absent" $render scene.pbrt --film absent/p.film
+# A full disk: the earlier film stays.
+cp f.film full.film
+refused "a full disk" 5 "full.film" bash -c "ulimit -f 40; exec $render scene.pbrt $small --spp 7 --film full.film"
+same "a full disk: the earlier film is as it was" full.film f.film
+refused "a full disk, merging" 5 "full.film" bash -c "ulimit -f 40; exec '$VELO' film merge whole.film s1.film -o full.film"
+same "a full disk, merging: the earlier film is as it was" full.film f.film
+chmod 444 full.film
+[ -w full.film ] || refused "a film that may not be written" 5 "full.film" $render scene.pbrt $small --spp 7 --film full.film
+ls -A | grep -q '^[.]velo-' && fail "no temporary files are left" || pass "no temporary files are left"
 head -c 3000 f.film >cut.film
 refused "cut" 3 "damaged" "$VELO" film merge cut.film -o none.film
 [ ! -e none.film ] && pass "no result of a failed merge" || fail "no result of a failed merge"

@@ -95,7 +95,7 @@ const Command film_develop_command = {
         "Writes the image of a film, also of one that is not complete; an .exr also has its standard\n"
         "errors and its spectrum, where the film has their sums. Ground truth needs the scene:\n"
         "velo render --continue FILE -o IMAGE.exr --channels LIST.",
-    .examples = "velo film develop room.film -o room.exr -o room.png --view agx",
+    .examples = "velo film develop room.film -o room.exr\nvelo film develop room.film -o room.png --view agx",
     .options = develop_options,
     .min_operands = 1,
     .max_operands = 1,

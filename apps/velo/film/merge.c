@@ -37,7 +37,7 @@ const Command film_merge_command = {
     .text =
         "Merges films of one render that have different samples or pixels. Order and grouping do not\n"
         "matter, and a part that is given twice counts once: the result has the bytes of a single render.",
-    .examples = "velo film merge part-*.film -o room.film",
+    .examples = "velo film merge part-*.film -o room.film\nvelo film merge room.film late.film -o room.film",
     .options = merge_options,
     .min_operands = 1,
     .max_operands = INT_MAX,

@@ -547,9 +547,7 @@ const Command render_command = {
         "--film FILE, from which --continue goes on.",
     .examples =
         "velo render room.pbrt -o room.exr -o room.png --spp 256\n"
-        "velo render model.glb --resolution 1280x720 --time 5m -o model.png\n"
-        "velo render room.pbrt --spp 256 --film room.film -o room.exr\n"
-        "velo render --continue room.film --spp 1024",
+        "velo render model.glb --resolution 1280x720 --time 5m -o model.png",
     .options = render_options,
     .sections = render_sections,
     .min_operands = 0, /* --again and --continue need none */

@@ -66,7 +66,7 @@ static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size
   Ini ini = {.file = file, .lines = {.at = text, .end = text + size}};
   vlCameraDef *d = &record->camera;
   double side[2] = {0, 0}, k[9], lens[8];
-  uint32_t count, lenses = 0;
+  uint32_t count, lenses = 0, side_line = 1, matrix_line = 1; /* where a missing value should be */
   bool wanted = false, found = false, matrix = false;
   vlResult result = VL_OK;
   record->frames = 0;
@@ -75,14 +75,18 @@ static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size
     if (*line == '[') {
       char name[64];
       snprintf(name, sizeof name, "%.*s", (int)strcspn(line + 1, "]"), line + 1);
+      if (strcmp(name, "image") == 0) side_line = ini.lines.number;
       if (strcmp(name, "image") == 0 || strcmp(name, "externals") == 0) continue;
       wanted = !found && vl_camera_is_frame(file, record->frames, name);
       if (wanted) vl_camera_name(record, name);
+      if (wanted) matrix_line = ini.lines.number;
       found = found || wanted;
       record->frames++;
     } else if (strcmp(line, "width") == 0 || strcmp(line, "height") == 0) {
+      side_line = ini.lines.number;
       result = ini_numbers(&ini, line[0] == 'w' ? "width" : "height", &side[line[0] == 'h'], 1, 1, &count);
     } else if (wanted && strcmp(line, "camera matrix") == 0) {
+      matrix_line = ini.lines.number;
       result = ini_numbers(&ini, "camera matrix", k, 9, 9, &count);
       matrix = result == VL_OK;
     } else if (wanted && strcmp(line, "distortion") == 0) {
@@ -94,9 +98,10 @@ static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size
     return vl_camera_wrong(file, "ros: there is no camera \"%.60s\"", file->def->frame ? file->def->frame : "0");
   for (int i = 0; i < 2; i++)
     if (!(side[i] >= 1.0 && side[i] <= 1 << 24) || side[i] != floor(side[i]))
-      return vl_camera_wrong(file, "ros: [image] needs width and height in whole pixels");
+      return vl_camera_wrong_at(file, side_line, 1, "ros: [image] needs width and height in whole pixels");
   if (!matrix || k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
-    return vl_camera_wrong(file, "ros: \"camera matrix\" must be there and be fx 0 cx, 0 fy cy, 0 0 1");
+    return vl_camera_wrong_at(file, matrix_line, 1,
+                              "ros: \"camera matrix\" must be there and be fx 0 cx, 0 fy cy, 0 0 1");
   d->width = (uint32_t)side[0], d->height = (uint32_t)side[1];
   vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   vl_camera_set_opencv(d, lens, lenses);

@@ -94,6 +94,23 @@ same parallel_tiles_same_bytes tiled.exr one.exr
 check parallel_film_same "$VELO" render "${words[@]}" --film straight.film -o tiled.exr
 same parallel_film_same_bytes kept.film straight.film
 check parallel_frames "$parallel" --parts 2 scene.pbrt --trajectory poses.csv --spp 2 --quiet -o many/%04d.exr
+# Hosts: an ssh that runs its command here; one host is dead, its parts are tried on the other.
+mkdir bin
+cat >bin/ssh <<'END'
+#!/bin/sh
+while case $1 in -o) shift ;; -*) ;; *) false ;; esac; do shift; done
+host=$1
+shift
+echo "$host" >>"$HOSTS"
+[ "$host" != dead ] || exit 255
+[ "$1" != -- ] || shift
+exec sh -c "$*"
+END
+chmod +x bin/ssh
+export HOSTS=$work/hosts
+check parallel_hosts env "PATH=$work/bin:$PATH" "$parallel" --parts 3 --hosts 1/dead,1/other "${words[@]}" -o remote.exr
+same parallel_hosts_same_bytes remote.exr one.exr
+check parallel_hosts_both test "$(sort -u hosts | tr '\n' ' ')" = 'dead other '
 expect_code 1 parallel_fails "$parallel" --parts 2 nowhere.pbrt -o no.exr
 expect_text parallel_says 'no such file: nowhere.pbrt'
 expect_code 2 parallel_usage "$parallel" --parts none scene.pbrt -o no.exr

@@ -12,13 +12,16 @@ write_scene scene.pbrt
 size=(--resolution 80x70)
 check straight "$VELO" render scene.pbrt "${size[@]}" --spp 7 --quiet -o one.exr --channels error
 
+# attempts FOLDER [PATTERN]: the films there.
+attempts() { find "$1" -name "${2:-*.try-*.film}"; }
+
 # ---- parts and merge -------------------------------------------------------------------------------------------------
 for by in samples tiles; do
   mkdir "$by"
   for i in 3 1 2; do check "${by}_$i" "$shard" "$by" $i 3 --by $by -- scene.pbrt "${size[@]}" --spp 7 --quiet --channels error; done
   check "${by}_merge" "$merge" "$by" 3 -o $by.exr -- scene.pbrt "${size[@]}" --spp 7 --quiet --channels error
   same "${by}_same_bytes" $by.exr one.exr
-  check "${by}_parts_removed" test -z "$(ls $by | grep film)"
+  check "${by}_parts_removed" test -z "$(attempts "$by" '*.film')"
 done
 mkdir gap
 check gap_part "$shard" gap 2 2 -- scene.pbrt --spp 2 --quiet
@@ -38,11 +41,11 @@ again=("$shard" stopped) rest=(-- scene.pbrt --resolution 320x240 --spp 64 -t 1 
 # stop SIGNAL: begins part 1, sends the signal to all its processes' group after a new film is there; sets code.
 stop() {
   local before i
-  before=$(ls stopped | grep -c try)
+  before=$(attempts stopped | wc -l)
   setsid "${again[@]}" 1 2 "${rest[@]}" >log 2>&1 &
   local pid=$!
   for i in $(seq 600); do
-    [ "$(ls stopped | grep -c '\.try-.*film$')" -gt "$before" ] && break
+    [ "$(attempts stopped | wc -l)" -gt "$before" ] && break
     sleep 0.05
   done
   kill "-$1" "$2$pid"
@@ -51,14 +54,14 @@ stop() {
 }
 stop TERM ''
 check stopped_143 test "$code" = 143
-check stopped_film test "$(ls stopped | grep -c '\.try-.*film$')" = 1
+check stopped_film test "$(attempts stopped | wc -l)" = 1
 stop KILL - 2>/dev/null
 check killed_137 test "$code" = 137
-first=$(ls stopped/*.try-*.film | head -n 1)
+first=$(attempts stopped | head -n 1)
 printf x | dd of="$first" bs=1 seek=40 conv=notrunc status=none
 check goes_on "${again[@]}" 1 2 "${rest[@]}"
 expect_text goes_on_says 'goes on with'
-check attempts_removed test -z "$(ls stopped | grep try)"
+check attempts_removed test -z "$(attempts stopped)"
 check second_part "${again[@]}" 2 2 "${rest[@]}"
 check stopped_merge "$merge" stopped 2 -o stopped.exr -- scene.pbrt --resolution 320x240 --spp 64 --quiet
 check stopped_straight "$VELO" render scene.pbrt --resolution 320x240 --spp 64 --quiet -o stopped_one.exr

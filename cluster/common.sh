@@ -89,8 +89,8 @@ open_folder() {
   done
 }
 
-# The last line of a part's log that says something.
-last_words() { grep -v '^ *$' "$folder/log/part-$1.log" 2>/dev/null | tail -n 1; }
+# The last thing that velo or the part's script said.
+last_words() { grep -E '^(velo|shard): ' "$folder/log/part-$1.log" 2>/dev/null | tail -n 1; }
 
 # What cluster/merge is told of the outputs (images), and where the parts of a trajectory put theirs (added to shard):
 # output number I below FOLDER/frames/I, with what its name has from the first field's folder on.

@@ -28,6 +28,20 @@ check frame_by_name_same "$VELO" image diff named.exr one_1.exr --threshold diff
 mkdir part
 check some_frames "$VELO" render scene.pbrt --trajectory transforms.json --frames 0-2:2 -o 'part/%d.exr' --quiet
 check some_frames_are test "$(ls part | tr '\n' ' ')" = '0.exr 2.exr '
+mkdir kept
+check shard_of_frames "$VELO" render scene.pbrt --trajectory transforms.json --shard 1/2 -o 'kept/%d.exr' --quiet
+check shard_of_frames_are test "$(ls kept | tr '\n' ' ')" = '0.exr 2.exr '
+printf kept >kept/0.exr
+check skip_existing "$VELO" render scene.pbrt --trajectory transforms.json --skip-existing -o 'kept/%d.exr'
+expect_text skip_existing_says '2 frames exist and were left out'
+check skip_existing_are test "$(cat kept/0.exr)" = kept -a "$(ls kept | tr '\n' ' ')" = '0.exr 1.exr 2.exr '
+check skip_existing_none "$VELO" render scene.pbrt --trajectory transforms.json --skip-existing -o 'kept/%d.exr' --quiet
+check skip_existing_each "$VELO" render scene.pbrt --trajectory transforms.json --skip-existing -o 'kept/%d.exr' -o 'kept/%d.png' --quiet
+check skip_existing_needs_all test "$(head -c 4 kept/0.exr | tr -d '\0')" != kept -a -s kept/0.png
+expect_code 2 skip_existing_alone "$VELO" render scene.pbrt --skip-existing -o a.exr
+expect_code 2 shard_metered "$VELO" render scene.pbrt --trajectory transforms.json --shard 1/2 -o 'm_%d.png' --exposure auto
+expect_text shard_metered_says 'the first frame would set the exposure: with --shard give --exposure EV'
+check shard_metered_exr "$VELO" render scene.pbrt --trajectory transforms.json --shard 1/2 -o 'm_%d.exr' --exposure auto --quiet
 check threads_do_not_matter "$VELO" render scene.pbrt --trajectory transforms.json -o 'again_%04d.exr' --channels Z,id.object --quiet -t 1
 same threads_same_bytes again_0001.exr frame_0001.exr
 check no_left_overs test -z "$(ls | grep tmp)"

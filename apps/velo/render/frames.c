@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "camera/camera.h"
 #include "cli/report.h"
@@ -49,6 +50,7 @@ int frames_check(const Arguments *arguments, Outputs *outputs) {
   outputs->patterns = trajectory || v[RENDER_STEREO].given;
   if (v[RENDER_RIG].given && !trajectory) return report_usage("--rig FILE: the poses are missing; give --trajectory");
   if (v[RENDER_FRAMES].given && !trajectory) return report_usage("--frames goes with --trajectory");
+  if (v[RENDER_SKIP_EXISTING].given && !trajectory) return report_usage("--skip-existing goes with --trajectory");
   if (v[RENDER_FRAME].given && (trajectory || !v[RENDER_CAMERA].given))
     return report_usage(trajectory ? "--frame goes with --camera; a trajectory's are chosen by --frames"
                                    : "--frame NAME says which camera of --camera FILE");
@@ -178,6 +180,7 @@ int frames_load(Frames *frames, vlContext *context, const Job *job, const Argume
   memset(frames, 0, sizeof *frames);
   frames->films = films;
   frames->step = 1;
+  frames->skip_existing = v[RENDER_SKIP_EXISTING].given;
   frames->views = both ? 2 : 1;
   for (int i = 0; i < 2; i++) frames->eyes[i] = both ? (i ? VL_EYE_RIGHT : VL_EYE_LEFT) : def->stereo_eye;
   for (int i = 0; i < 2; i++) frames->view_names[i] = stereo ? names[frames->eyes[i] == VL_EYE_RIGHT] : "";
@@ -226,6 +229,17 @@ bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, 
   if (!frames->trajectory && frames->views == 1) return snprintf(path, size, "%s", pattern) < (int)size;
   const PatternValues values = {frame->number, frame->pose.name, frame->camera->name, frames->view_names[view]};
   return pattern_expand(pattern, &values, path, size);
+}
+
+bool frames_exist(const Frames *frames, const Frame *frame, const Outputs *outputs) {
+  char path[4096];
+  for (int i = 0; i < outputs->count; i++) {
+    int views = pattern_has(outputs->paths[i], 'v') ? frames->views : 1;
+    for (int view = 0; view < views; view++)
+      if (!frames_path(frames, frame, outputs->paths[i], view, path, sizeof path) || access(path, F_OK) != 0)
+        return false;
+  }
+  return true;
 }
 
 vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera, vlError *error) {

@@ -24,6 +24,7 @@ typedef struct Frames {
   FrameCamera *cameras;
   uint32_t camera_count;
   uint32_t first, last, step; /* range of pose numbers */
+  bool skip_existing;         /* leave out frames whose files are all there */
   int views;                  /* 1 or 2 */
   vlEye eyes[2];
   const char *view_names[2];
@@ -51,6 +52,8 @@ uint32_t frames_count(const Frames *frames);
 Frame frames_at(const Frames *frames, uint32_t index);
 /* The path of an image. view: 0 or 1, for %v. False: too long. */
 bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, int view, char *path, size_t size);
+/* Whether all image files of the frame exist. Files are written whole, so they need no look inside. */
+bool frames_exist(const Frames *frames, const Frame *frame, const Outputs *outputs);
 /* The camera of one view in the frame's pose. */
 vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera, vlError *error);
 void frames_free(Frames *frames);

@@ -202,12 +202,17 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world, cons
   if (!writer) return report_error(NULL, VL_ERROR_MEMORY, NULL);
   signals_remember();
   int status = STATUS_OK;
-  for (uint32_t i = 0; i < run.count && status < 128; i++) {
+  const uint32_t all = run.count;
+  for (uint32_t i = 0; i < all && status < 128; i++) {
     if (signals_pending()) status = 128 + signals_pending();
     if (status >= 128) break;
     FrameImage image;
     memset(&image, 0, sizeof image);
     image.frame = frames_at(frames, i);
+    if (frames->skip_existing && frames_exist(frames, &image.frame, outputs)) {
+      run.count--;
+      continue;
+    }
     show(&run, &image.frame);
     int code = STATUS_OK;
     for (int v = 0; v < frames->views && code == STATUS_OK; v++) {
@@ -225,6 +230,7 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world, cons
   int code = frame_writer_finish(writer, &written);
   report_status_line(NULL);
   if (status < 128 && code != STATUS_OK) status = code;
+  if (run.count < all) report_note("%u frames exist and were left out", all - run.count);
   if (status >= 128) report_note("interrupted; %u of %u frames are written", written, run.count);
   report_end(&run, written, status);
   return status;

@@ -79,6 +79,7 @@ enum {
   RENDER_SHARD,
   RENDER_SHARD_BY,
   RENDER_TILES,
+  RENDER_SKIP_EXISTING,
   RENDER_LENS /* the first of lens_options.h */
 };
 

@@ -83,6 +83,8 @@ const Option render_options[] = {
      0, 0, NULL},
     {RENDER_FRAMES, 0, "frames", OPTION_TEXT, "A-B[:STEP]", "only these frames of the trajectory; numbers from 0", 0, 0,
      NULL},
+    {RENDER_SKIP_EXISTING, 0, "skip-existing", OPTION_FLAG, NULL,
+     "leave out the frames of the trajectory whose files are all there", 0, 0, NULL},
     {RENDER_RIG, 0, "rig", OPTION_TEXT, "FILE",
      "every camera of FILE at each pose of the trajectory: a pose is\nthe place of the rig, as a camchain's is cam0's",
      0, 0, NULL},

@@ -267,6 +267,18 @@ static int check_sizes(const Render *render) {
                         render->job.path, film->width, film->height, vl_result_name(result));
 }
 
+/* A trajectory is metered by its first frame, which a part of it does not have. */
+static int check_metering(const Outputs *outputs, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  bool shard = v[RENDER_SHARD].given, eight_bit;
+  if (!outputs->meter || !v[RENDER_TRAJECTORY].given || !(shard || v[RENDER_SKIP_EXISTING].given)) return -1;
+  for (int i = 0; i < outputs->count; i++)
+    if (output_suffix(outputs->paths[i], &eight_bit) && eight_bit)
+      return report_usage("output \"%s\": the first frame would set the exposure: with %s give --exposure EV",
+                          outputs->paths[i], shard ? "--shard" : "--skip-existing");
+  return -1;
+}
+
 static int load_and_build(Render *render, const char *path, const Arguments *arguments) {
   double start = monotonic_seconds();
   vlError error = {0};
@@ -305,6 +317,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     render->frames.films = render->film_plan.path ? &render->film_plan : NULL;
     status = frames_load(&render->frames, render->context, &render->job, arguments);
     if (status < 0) status = frames_check_names(&render->frames, &render->outputs);
+    if (status < 0) status = check_metering(&render->outputs, arguments);
     if (status >= 0) return status;
   }
   vlResult result = vl_world_build_last(render->scene, &render->job.defs->build, &render->world, &error);

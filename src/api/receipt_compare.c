@@ -81,7 +81,7 @@ static void compare_objects(Comparison *c, const char *thing, const json_t *then
 static void compare_member(Comparison *c, const char *thing, const vlReceipt *then, const vlReceipt *now,
                            const char *name, const char *but) {
   const json_t *old = json_object_get(then->tree, name), *new = json_object_get(now->tree, name);
-  if (old && new &&json_is_object(old) && json_is_object(new))
+  if (json_is_object(old) && json_is_object(new))
     compare_objects(c, thing, old, new, but);
   else if (!old != !new || (old && !json_equal(old, new)))
     differ_value(c, NULL, name, old, new);

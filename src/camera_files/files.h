@@ -45,7 +45,7 @@ vlResult vl_camera_storage(const vlCameraFile *file, const char *text, size_t si
 bool vl_camera_place(const vlCameraFile *file, uint32_t line, uint32_t column);
 /* Gives an error without a place that of the first field that its message names in quotes, or of the whole. */
 void vl_camera_place_error(const vlCameraFile *file);
-void vl_camera_places_free(const vlCameraFile *file);
+void vl_camera_places_free(vlCameraFile *file);
 
 /* Parses XML. Below the root (unless the root is wanted itself), only elements with the wanted tags are kept; null
  * ends the list; a null list: all are kept, and their text ("$"). */

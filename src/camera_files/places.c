@@ -13,10 +13,10 @@ bool vl_camera_place(const vlCameraFile *file, uint32_t line, uint32_t column) {
   return place != NULL;
 }
 
-void vl_camera_places_free(const vlCameraFile *file) {
+void vl_camera_places_free(vlCameraFile *file) {
   if (!file->places) return;
   VL_ARRAY_FREE(file->context, &file->places->at);
-  file->places->root = NULL;
+  file->places = NULL;
 }
 
 /* Counts the values before the wanted one; true: found. */

@@ -171,7 +171,6 @@ static void scattered(void **state) {
   }
 }
 
-/* Where the law makes no sense a scene says so. */
 /* The tint of a principled solid (MTL's Tf, glTF's base colour) counts at both crossings, whatever lies between; that
  * of a sheet at its one. */
 static void tints(void **state) {
@@ -205,6 +204,7 @@ static void tints(void **state) {
       }
 }
 
+/* Where the law makes no sense a scene says so. */
 static void refused(void **state) {
   (void)state;
   for (int what = 0; what < 3; what++) {

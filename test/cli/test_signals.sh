@@ -114,6 +114,7 @@ sleep 0.5
 kill -INT $process
 wait $process
 [ $? = 130 ] && pass nothing_rendered_exit_code || fail nothing_rendered_exit_code
+[ "$(grep -c '' pipe.txt)" = 1 ] && pass nothing_rendered_is_one_line || fail nothing_rendered_is_one_line
 grep -q 'nothing is written' pipe.txt && pass nothing_rendered_is_said || fail nothing_rendered_is_said
 [ -z "$(ls none* 2>/dev/null)" ] && pass nothing_rendered_nothing_written || fail nothing_rendered_nothing_written
 

@@ -1,5 +1,9 @@
 /* Absorption by RGB channel (vlMediumDef.rgb_absorption): each channel of white light is multiplied by exp(-sigma_a x),
  * in both colour modes, for every tracer, for any depth and any number of segments. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
 #include "fog.h"
 
 static const double attenuation[3] = {0.8, 0.95, 1.0}; /* over a unit of depth */
@@ -171,7 +175,6 @@ static void scattered(void **state) {
   }
 }
 
-/* Where the law makes no sense a scene says so. */
 /* The tint of a principled solid (MTL's Tf, glTF's base colour) counts at both crossings, whatever lies between; that
  * of a sheet at its one. */
 static void tints(void **state) {
@@ -205,6 +208,38 @@ static void tints(void **state) {
       }
 }
 
+/* The same through an OBJ file: MTL's Tf of a solid of glass. */
+static void tint_of_mtl(void **state) {
+  (void)state;
+  static const double color[3] = {0.9, 0.5, 0.1};
+  char folder[] = "/tmp/velo-absorption-XXXXXX", obj[64], mtl[64];
+  assert_non_null(mkdtemp(folder));
+  snprintf(obj, sizeof obj, "%s/slab.obj", folder);
+  snprintf(mtl, sizeof mtl, "%s/slab.mtl", folder);
+  FILE *file = fopen(mtl, "w");
+  assert_non_null(file);
+  fputs("newmtl glass\nKd 0 0 0\nKs 0 0 0\nNs 100000000\nNi 1.01\nillum 7\nTf 0.9 0.5 0.1\n", file);
+  fclose(file);
+  assert_non_null(file = fopen(obj, "w"));
+  fputs("mtllib slab.mtl\nusemtl glass\n", file);
+  for (int i = 0; i < 8; i++) fprintf(file, "v %d %d %d\n", i & 1 ? 9 : -9, i & 2 ? 9 : -9, i & 4 ? -2 : -5);
+  fputs("f 5 6 8 7\nf 2 1 3 4\nf 6 2 4 8\nf 1 5 7 3\nf 7 8 4 3\nf 1 2 6 5\n", file);
+  fclose(file);
+  for (int mode = 0; mode < 2; mode++) {
+    Stage s = open_stage((vlColorMode)mode, VL_TRACER_VOLPATH, 16, 256);
+    vlError error = {0};
+    s.camera.fov = 0.02;
+    if (vl_scene_load(s.scene, obj, NULL, &error) != VL_OK) fail_msg("%s", error.message);
+    Image p = stage_finish(&s);
+    double expected[3];
+    for (int c = 0; c < 3; c++) expected[c] = color[c] * color[c];
+    assert_law(mode ? "Tf, RGB" : "Tf, spectral", &p, expected);
+    image_free(&p);
+  }
+  assert_int_equal(unlink(obj) | unlink(mtl) | rmdir(folder), 0);
+}
+
+/* Where the law makes no sense a scene says so. */
 static void refused(void **state) {
   (void)state;
   for (int what = 0; what < 3; what++) {
@@ -224,7 +259,7 @@ int main(void) {
       cmocka_unit_test(one_piece),      cmocka_unit_test(several_pieces),
       cmocka_unit_test(there_and_back), cmocka_unit_test(total_reflection),
       cmocka_unit_test(scattered),      cmocka_unit_test(refused),
-      cmocka_unit_test(tints),
+      cmocka_unit_test(tints),          cmocka_unit_test(tint_of_mtl),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

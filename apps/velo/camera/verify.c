@@ -8,6 +8,7 @@
 #include "camera/camera.h"
 #include "camera/verify.h"
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "image/image.h"
 
@@ -192,8 +193,8 @@ static int run_verify(const Command *command, const Arguments *arguments) {
   vlContext *context = NULL;
   vlContextDef context_def = vl_default_context_def();
   context_def.log = report_log;
-  vlResult result = vl_context_create(&context_def, &context);
-  if (result != VL_OK) return report_error(NULL, result, NULL);
+  int opened = context_open(&context_def, &context);
+  if (opened >= 0) return opened;
   vlCameraRecord record;
   double threshold = o[VERIFY_THRESHOLD].given ? o[VERIFY_THRESHOLD].number : 0.05;
   v.target.charuco = o[VERIFY_TARGET].given && o[VERIFY_TARGET].integer == 1;

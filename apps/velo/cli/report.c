@@ -176,6 +176,15 @@ int report_error(const vlError *error, vlResult result, const char *file) {
   return status;
 }
 
+int report_reason(vlResult result, const char *file, const char *what) {
+  vlError error = {0};
+  if (result == VL_ERROR_ARGUMENT)
+    snprintf(error.message, sizeof error.message, "%s", what);
+  else
+    snprintf(error.message, sizeof error.message, "%s: %s", what, vl_result_name(result));
+  return report_error(&error, result, file);
+}
+
 void report_warning(const char *format, ...) {
   FORMATTED(text, format);
   say("warning", 0, NULL, NULL, text);

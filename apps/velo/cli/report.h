@@ -38,6 +38,8 @@ int report_failure(int status, const char *format, ...) __attribute__((format(pr
 /* Reports "velo: file:line:column: message". `file` is used when the library's error has no place; may be null. */
 int report_error(const vlError *error, vlResult result, const char *file);
 void report_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* Reports a result that has no vlError: "FILE: WHAT: out of memory". Returns the exit code. */
+int report_reason(vlResult result, const char *file, const char *what);
 /* Not reported with --quiet or as JSON. */
 void report_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* The context's log callback. */

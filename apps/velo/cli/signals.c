@@ -10,7 +10,7 @@
 enum { MOST_SIGNALS = 2 }; /* the next signal ends the program */
 
 static atomic_int pending, count;
-static atomic_bool remember;
+static atomic_bool remember, on_terminal;
 static _Atomic time_t last; /* time of the last signal that counted, seconds */
 
 /* Calls only async-signal-safe functions. */
@@ -21,7 +21,8 @@ static void say(const char *text) {
 
 static void handle(int number) {
   if (!remember) {
-    say("\nvelo: interrupted; nothing was rendered yet, nothing is written\n");
+    if (on_terminal) say("\n"); /* after the ^C that it shows */
+    say("velo: interrupted; nothing was rendered yet, nothing is written\n");
     _exit(128 + number);
   }
   struct timespec now;
@@ -37,6 +38,7 @@ static void handle(int number) {
 }
 
 void signals_install(void) {
+  on_terminal = isatty(STDERR_FILENO) != 0;
   static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
     struct sigaction action, before;

@@ -49,7 +49,7 @@ static int develop(Develop *d, const char *path) {
   if (result == VL_OK && film->errors) result = vl_film_errors(d->film, &def, &d->errors);
   if (result == VL_OK && film->buckets) result = vl_film_spectrum(d->film, &d->spectrum);
   d->outputs.layers[0] = d->errors, d->outputs.layers[1] = d->spectrum;
-  return result == VL_OK ? -1 : report_error(NULL, result, path);
+  return result == VL_OK ? -1 : report_reason(result, path, "the film cannot be developed");
 }
 
 static int run_develop(const Command *command, const Arguments *arguments) {

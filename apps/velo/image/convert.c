@@ -77,7 +77,7 @@ static int prepare_pixels(vlContext *context, const Arguments *arguments, bool w
   vlResult result = copy_window(context, *image, window, to_float, &copy);
   if (result != VL_OK) {
     vl_image_destroy(copy);
-    return report_error(NULL, result, arguments->operands[0]);
+    return report_reason(result, arguments->operands[0], "this part of the image cannot be copied");
   }
   vl_image_destroy(*image);
   *image = copy;
@@ -132,7 +132,7 @@ static int take_channel(vlContext *context, const Arguments *arguments, vlImage 
   }
   if (result != VL_OK) {
     vl_image_destroy(one);
-    return report_error(NULL, result, path);
+    return report_reason(result, path, "the channel cannot be copied");
   }
   if (too_large)
     report_warning("%llu pixels are above 65535 when multiplied by %g; they are written as 0",

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "image/denoise.h"
 #include "image/image.h"
@@ -43,15 +44,14 @@ static int run_denoise(const Command *command, const Arguments *arguments) {
   vlContext *context = NULL;
   vlImage *image = NULL, *clean = NULL;
   vlError error = {0};
-  vlResult result = vl_context_create(&def, &context);
-  if (result != VL_OK) return report_error(NULL, result, NULL);
+  if ((status = context_open(&def, &context)) >= 0) return status;
   status = image_load(context, path, &image);
   vlDenoiseDef how = vl_default_denoise_def();
   vlDenoiseStats stats;
   if (v[DENOISE_DENOISER].given) how.denoiser = (vlDenoiser)v[DENOISE_DENOISER].integer;
   how.library = v[DENOISE_LIBRARY].text;
   if (status < 0) {
-    result = vl_denoise(image, &how, &clean, &stats, &error);
+    vlResult result = vl_denoise(image, &how, &clean, &stats, &error);
     if (result == VL_OK) result = denoise_name(clean, how.denoiser);
     if (result != VL_OK) status = report_error(&error, result, path);
   }

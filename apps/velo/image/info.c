@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/receipt.h"
@@ -13,10 +14,7 @@ int image_context(vlContext **context) {
   vlContextDef def = vl_default_context_def();
   def.log = report_log;
   def.threads = 1;
-  vlResult result = vl_context_create(&def, context);
-  if (result == VL_ERROR_UNSUPPORTED || result == VL_ERROR_ARGUMENT)
-    return report_usage("the environment variable VELO_ISA must be base, v2, v3 or v4, and the machine must have it");
-  return result == VL_OK ? -1 : report_error(NULL, result, NULL);
+  return context_open(&def, context);
 }
 
 int image_load(vlContext *context, const char *path, vlImage **image) {

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 
 extern const char velo_commit[];
@@ -110,10 +111,11 @@ int again_open(Again *again, const Arguments **arguments) {
   def.threads = 1;
   def.log = report_log;
   again->path = given->values[RENDER_AGAIN].text;
-  vlResult result = vl_context_create(&def, &again->context);
-  if (result == VL_OK) result = vl_image_read_header(again->context, again->path, &image, &error);
-  int status = result == VL_OK ? receipt_of_image(again->context, image, again->path, &again->receipt)
-                               : report_error(&error, result, again->path);
+  int status = context_open(&def, &again->context);
+  if (status >= 0) return status;
+  vlResult result = vl_image_read_header(again->context, again->path, &image, &error);
+  status = result == VL_OK ? receipt_of_image(again->context, image, again->path, &again->receipt)
+                           : report_error(&error, result, again->path);
   vl_image_destroy(image);
   if (status < 0) status = parse_command(again);
   if (status < 0) status = check_samples(again);
@@ -146,7 +148,7 @@ int again_check(const Again *again, const ReceiptPlan *plan, vlContext *context,
   if (!again->path) return -1;
   vlReceipt *now = NULL;
   vlResult result = receipt_make(plan, context, job, which, &now);
-  if (result != VL_OK) return report_error(NULL, result, NULL);
+  if (result != VL_OK) return report_reason(result, again->path, "its receipt cannot be compared");
   uint32_t parts =
       VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_SETTINGS | VL_RECEIPT_SAMPLES | VL_RECEIPT_DEVELOP;
   if (with_camera) parts |= VL_RECEIPT_CAMERA;

@@ -149,9 +149,27 @@ void channels_take(Channels *c, Job *job) {
   if (wanted && c->bits) report_note("--channels are written in place of the film's gbuffer");
 }
 
+uint64_t channels_values(const Channels *c, uint32_t buckets) {
+  static const uint8_t values[VL_CHANNEL_COUNT] = {1, 1, 3, 3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 2, 3, 3, 3, [20] = 7};
+  enum { GBUFFER = 48 }; /* the gbuffer's channels and the ground truth that they are computed from */
+  uint64_t sum = c->gbuffer ? GBUFFER : 0;
+  for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
+    if (c->bits & 1u << i) sum += i >= 17 && i < 20 ? 2 * c->ranks : values[i];
+  return sum + (c->spectrum ? buckets : 0);
+}
+
+double channels_seconds(const Channels *c, uint32_t buckets, uint32_t spp, double sample, double writing) {
+  const double ray = 0.3, compressed = 0.5; /* a camera ray's share of a sample; of a channel's writing: measured */
+  const uint32_t mattes = VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
+  uint32_t rays = c->bits || c->gbuffer ? 1 : 0;
+  if (c->bits & mattes || c->mode != VL_CHANNEL_MODE_CENTRE) rays += spp;
+  if (c->bits & VL_CHANNEL_FEATURES) rays += spp < VL_FEATURE_SAMPLES ? spp : VL_FEATURE_SAMPLES;
+  return ray * sample * rays + compressed * writing * (double)channels_values(c, buckets) / 3;
+}
+
 int channels_render(Channels *c, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film) {
   vlResult spectrum = c->spectrum ? vl_film_spectrum(film, &c->layers[2]) : VL_OK;
-  if (spectrum != VL_OK) return report_error(NULL, spectrum, NULL);
+  if (spectrum != VL_OK) return report_reason(spectrum, job->path, "the image's spectrum cannot be made");
   if (c->gbuffer) return gbuffer_render(context, world, job, film, &c->layers[3]);
   if (!c->bits) return STATUS_OK;
   shutter_ends(c, job);

@@ -30,6 +30,11 @@ void channels_take(Channels *c, Job *job);
 int channels_load(Channels *c, vlContext *context, const Job *job);
 /* Whether there is content that only .exr files hold. */
 bool channels_any(const Channels *c);
+/* The number of 4-byte values per pixel. buckets: of the film's spectrum. */
+uint64_t channels_values(const Channels *c, uint32_t buckets);
+/* Estimated seconds of rendering and writing the channels of an image with `spp` samples per pixel, from those that one
+ * sample per pixel and the writing of the image alone took. */
+double channels_seconds(const Channels *c, uint32_t buckets, uint32_t spp, double sample, double writing);
 /* Renders the channels, after the image. Returns STATUS_OK or the exit code; 128 + signal when another signal
  * interrupts it. */
 int channels_render(Channels *c, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film);

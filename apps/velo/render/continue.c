@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "render/pattern.h"
 
@@ -72,17 +73,18 @@ int continue_open(Continue *c, const Arguments **arguments) {
   def.threads = 1;
   def.log = report_log;
   c->path = given->values[RENDER_CONTINUE].text;
-  vlResult result = vl_context_create(&def, &c->context);
   char first[4096];
   const PatternValues left = {0, "", "", "left"};
   bool eyes = pattern_has(c->path, 'v');
   if (eyes && !pattern_expand(c->path, &left, first, sizeof first))
     return report_usage("--continue: the name is too long");
-  if (result == VL_OK) result = vl_film_file_open(c->context, eyes ? first : c->path, &c->file, &error);
+  int status = context_open(&def, &c->context);
+  if (status >= 0) return status;
+  vlResult result = vl_film_file_open(c->context, eyes ? first : c->path, &c->file, &error);
   if (result != VL_OK) return report_error(&error, result, NULL);
   const vlReceipt *receipt = vl_film_file_receipt(c->file);
   if (!receipt) return report_failure(STATUS_SCENE, "%s: the film has no receipt: what made it is not known", c->path);
-  int status = parse_command(c, receipt);
+  status = parse_command(c, receipt);
   if (status < 0) take_options(c, given, receipt);
   if (eyes && !given->values[RENDER_EYE].given) c->arguments.values[RENDER_EYE].given = false;
   if (status < 0) status = take_scene(c, given);

@@ -55,6 +55,12 @@ uint64_t denoised_memory(uint64_t pixels) {
   return pixels * sizeof(float) * (INPUT + PLANES + RESULT + CHANNELS);
 }
 
+double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double writing, uint32_t threads) {
+  const double per_pixel = 2.5e-6, ray = 0.3; /* seconds of one thread; a camera ray's share of a sample, measured */
+  uint32_t features = spp < VL_FEATURE_SAMPLES ? spp : VL_FEATURE_SAMPLES;
+  return per_pixel * (double)pixels / threads + ray * sample * features + writing;
+}
+
 /* One image with the channels of both. */
 static vlResult join(vlContext *context, const vlImage *color, const vlImage *floats, vlImage **joined) {
   const vlImage *parts[2] = {color, floats};

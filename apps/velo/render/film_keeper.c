@@ -23,7 +23,7 @@ int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, vlContext *context
   vl_receipt_destroy(k->receipt);
   k->receipt = NULL;
   vlResult result = receipt_make(plan->receipt, context, &whole, &which, &k->receipt);
-  return result == VL_OK ? -1 : report_error(NULL, result, NULL);
+  return result == VL_OK ? -1 : report_reason(result, k->path, "the film's receipt cannot be made");
 }
 
 int film_keeper_start(FilmKeeper *k, const FilmPlan *plan, const char *path, vlContext *context, const Job *job,
@@ -86,6 +86,12 @@ void film_keeper_checkpoint(FilmKeeper *k, const vlFilm *film) {
   if (result != VL_OK) report_checkpoint(k, result);
   k->last = monotonic_seconds();
   k->cost = k->last - now;
+}
+
+double film_keeper_seconds(const FilmKeeper *k, uint64_t bytes) {
+  const double bytes_per_second = 3e8; /* before there is a checkpoint */
+  if (!k->path[0]) return 0;
+  return k->cost > 0 ? k->cost : (double)bytes / bytes_per_second;
 }
 
 int film_keeper_finish(FilmKeeper *k, const vlFilm *film) {

@@ -40,6 +40,8 @@ int film_keeper_start(FilmKeeper *keeper, const FilmPlan *plan, const char *path
 int film_keeper_describe(FilmKeeper *keeper, const FilmPlan *plan, vlContext *context, const Job *job, const char *eye);
 /* After a pass: writes a checkpoint when it is due. A failure is a warning. */
 void film_keeper_checkpoint(FilmKeeper *keeper, const vlFilm *film);
+/* Estimated seconds of writing a film of so many bytes at the end: those of the last checkpoint. */
+double film_keeper_seconds(const FilmKeeper *keeper, uint64_t bytes);
 /* Writes the film at the end. Returns the exit code. */
 int film_keeper_finish(FilmKeeper *keeper, const vlFilm *film);
 void film_keeper_free(FilmKeeper *keeper);

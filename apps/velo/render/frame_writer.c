@@ -181,7 +181,7 @@ static int write_image(FrameWriter *w, FrameImage *p) {
       result = attributes_set_eye(p->images[v], w->frames->view_names[v]);
     const ReceiptImage which = receipt_image(w, p, *w->frames->view_names[v] ? w->frames->view_names[v] : NULL);
     if (result == VL_OK) result = receipt_set(w->context, &p->jobs[v], &which, p->images[v]);
-    if (result != VL_OK) status = report_error(NULL, result, NULL);
+    if (result != VL_OK) status = report_reason(result, w->outputs->paths[0], "the image's header cannot be made");
   }
   for (int last = 0; last < 2; last++)
     for (int i = 0; i < w->outputs->count && status != STATUS_OTHER; i++) {

@@ -90,7 +90,7 @@ static int make_film(Frames *frames, vlContext *context, FrameCamera *camera) {
     }
   vlResult result = vl_film_create(context, &camera->job.defs->film, &camera->film);
   camera->owns_film = result == VL_OK;
-  return result == VL_OK ? -1 : report_error(NULL, result, camera->job.path);
+  return result == VL_OK ? -1 : job_no_film(&camera->job, result);
 }
 
 /* Adds a camera; record null: the job's own camera. */

@@ -87,7 +87,7 @@ static int develop(const Job *job, const vlFilm *film, vlImage **image) {
   vlDevelopDef def = vl_default_develop_def();
   def.exposure = job->defs->develop.exposure;
   vlResult result = vl_film_develop(film, &def, image);
-  return result == VL_OK ? STATUS_OK : report_error(NULL, result, NULL);
+  return result == VL_OK ? STATUS_OK : report_reason(result, job->path, "the image cannot be made of the film");
 }
 
 /* The film of a view: that of the camera, cleared, or the one that is continued, which is then freed by the caller. */

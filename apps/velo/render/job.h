@@ -121,6 +121,9 @@ double job_channels_time(const Job *job);
 /* Replaces the job's camera by one of a file. *defs becomes the job's defs and must outlive it. */
 int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const char *path, const Arguments *arguments);
 
+/* Reports why vl_film_create failed. Returns the exit code. */
+int job_no_film(const Job *job, vlResult result);
+
 /* Prints what would be rendered to stdout (or as a JSON line). */
 void job_describe(const Job *job, vlContext *context, const vlScene *scene, const vlWorld *world,
                   const char *const *outputs, int output_count);

@@ -230,7 +230,16 @@ static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t heigh
     return -1;
   }
   result = vl_camera_resize(&camera, width, height, &job->camera);
-  return result == VL_OK ? -1 : report_error(NULL, result, job->path);
+  if (result == VL_OK) return -1;
+  return report_failure(STATUS_SCENE, "%s: the camera of %u x %u pixels cannot have %u x %u", job->path, camera.width,
+                        camera.height, width, height);
+}
+
+int job_no_film(const Job *job, vlResult result) {
+  const vlFilmDef *film = &job->defs->film;
+  char what[200];
+  snprintf(what, sizeof what, "no film of %u x %u pixels with these settings is possible", film->width, film->height);
+  return report_reason(result, job->path, what);
 }
 
 /* The camera here is the one between the eyes; frames.c makes the eyes' cameras. */

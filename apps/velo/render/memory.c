@@ -32,16 +32,6 @@ void memory_add(MemoryPlan *plan, const char *what, uint64_t bytes) {
   plan->total += bytes;
 }
 
-/* Number of 4-byte values per pixel of the ground truth. */
-static uint64_t channel_values(const Channels *c, uint32_t buckets) {
-  static const uint8_t values[VL_CHANNEL_COUNT] = {1, 1, 3, 3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 2, 3, 3, 3, [20] = 7};
-  enum { GBUFFER = 48 }; /* the gbuffer's channels and the ground truth that they are computed from */
-  uint64_t sum = c->gbuffer ? GBUFFER : 0;
-  for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
-    if (c->bits & 1u << i) sum += i >= 17 && i < 20 ? 2 * c->ranks : values[i];
-  return sum + (c->spectrum ? buckets : 0);
-}
-
 /* OpenEXR files are compressed in chunks of 16 rows, two per worker, with three copies of each. */
 static uint64_t writing(vlContext *context, const Outputs *outputs, uint64_t width, uint64_t height, uint64_t values) {
   uint64_t most = 0, rows = 32 * (uint64_t)vl_context_threads(context);
@@ -80,7 +70,7 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
     eight_bit |= display;
     layers |= output_holds_layers(outputs->paths[i]);
   }
-  uint64_t values = layers ? channel_values(channels, job->defs->film.buckets) : 0;
+  uint64_t values = layers ? channels_values(channels, job->defs->film.buckets) : 0;
   uint64_t held = vl_context_memory(context, NULL), addresses, resident;
   process_size(&addresses, &resident);
   memory_add(plan, "program", resident > held ? resident - held : 0);

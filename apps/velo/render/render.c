@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/again.h"
@@ -35,13 +36,15 @@ typedef struct Render {
   Outputs outputs;
   char default_output[600];
   Progress progress;
-  uint32_t written_spp; /* samples per pixel of the last progress image */
-  bool part_named;      /* their paths were reported */
-  double last_write, write_cost;
-  double start, render_start; /* start of the command, start of the first pass; seconds */
-  double time_limit;          /* --time, seconds; 0: none */
-  Channels channels;          /* of the ground truth */
-  Frames frames;              /* of a trajectory, a rig or two eyes */
+  uint32_t begun_spp;            /* samples per pixel of a film that is continued */
+  uint32_t written_spp;          /* samples per pixel of the last progress image */
+  bool part_named;               /* their paths were reported */
+  double last_write, write_cost; /* seconds: when, and for how long, a progress image was written */
+  double first_pass;             /* seconds of the first pass, one sample; 0: not done */
+  double start, render_start;    /* start of the command, start of the first pass; seconds */
+  double time_limit;             /* --time, seconds; 0: none */
+  Channels channels;             /* of the ground truth */
+  Frames frames;                 /* of a trajectory, a rig or two eyes */
   MemoryPlan memory;
   Denoised denoised;
   bool many; /* whether `frames` is used */
@@ -71,9 +74,15 @@ static int write_image(Render *render, OutputStage stage) {
   else if (stage == OUTPUT_PROGRESS)
     report_warning("progress image: %s", vl_result_name(result));
   else
-    status = report_error(NULL, result, NULL);
+    status = report_reason(result, render->outputs.paths[0], "the image and its header cannot be made");
   vl_image_destroy(image);
   return status;
+}
+
+static bool has_layers(const Render *render) {
+  for (int i = 0; i < render->outputs.count && channels_any(&render->channels); i++)
+    if (output_holds_layers(render->outputs.paths[i])) return true;
+  return false;
 }
 
 /* Lists the files: "a.exr, b.png". */
@@ -99,12 +108,35 @@ static void name_parts(Render *render, const vlProgress *now) {
   report_note("the image so far is in %s", files);
 }
 
-/* Sets the render's time limit so that the whole command ends after --time. The cost of the final write is estimated by
- * the last one. */
+static uint64_t image_pixels(const Render *render) {
+  const uint32_t *crop = render->job.defs->film.crop;
+  return (uint64_t)(crop[2] - crop[0]) * (crop[3] - crop[1]);
+}
+
+/* The least samples per pixel that every output needs: a denoiser needs standard errors. */
+static uint32_t least_samples(const Render *render) {
+  return render->denoised.outputs.count ? 2 : 1;
+}
+
+/* Estimated seconds between the last pass and the end of the command. */
+static double finish_seconds(const Render *render) {
+  const vlFilmDef *film = &render->job.defs->film;
+  uint32_t spp = vl_film_spp(render->film);
+  double seconds = render->write_cost + film_keeper_seconds(&render->keeper, vl_film_memory(film));
+  if (has_layers(render))
+    seconds += channels_seconds(&render->channels, film->buckets, spp, render->first_pass, render->write_cost);
+  if (render->denoised.outputs.count)
+    seconds += denoised_seconds(image_pixels(render), spp, render->first_pass, render->write_cost,
+                                vl_context_threads(render->context));
+  return seconds;
+}
+
+/* Sets the render's time limit so that the whole command ends after --time. */
 static void limit_time(Render *render) {
   if (!(render->time_limit > 0)) return;
-  double left = render->time_limit - (render->render_start - render->start) - render->write_cost;
+  double left = render->time_limit - (render->render_start - render->start) - finish_seconds(render);
   render->job.defs->render.time_limit = left > 1e-3 ? left : 1e-3;
+  if (vl_film_spp(render->film) < least_samples(render)) render->job.defs->render.time_limit = 0;
 }
 
 static void write_progress_image(Render *render, const vlProgress *now) {
@@ -119,7 +151,6 @@ static void write_progress_image(Render *render, const vlProgress *now) {
   render->written_spp = vl_film_spp(render->film);
   render->last_write = monotonic_seconds();
   render->write_cost = render->last_write - start;
-  limit_time(render);
 }
 
 static void write_checkpoint(Render *render, const vlProgress *now) {
@@ -130,8 +161,10 @@ static bool on_progress(void *user, const vlProgress *now) {
   Render *render = user;
   progress_show(&render->progress, now);
   if (now->pass_done && !signals_pending()) {
+    if (!(render->first_pass > 0)) render->first_pass = now->elapsed;
     write_checkpoint(render, now);
     write_progress_image(render, now);
+    limit_time(render);
   }
   return !signals_pending();
 }
@@ -166,12 +199,6 @@ static void warn_of_channels(const Render *render) {
                      : c->gbuffer ? "gbuffer"
                                   : "spectrum",
                      render->outputs.paths[i], c->bits ? "them" : "it");
-}
-
-static bool has_layers(const Render *render) {
-  for (int i = 0; i < render->outputs.count && channels_any(&render->channels); i++)
-    if (output_holds_layers(render->outputs.paths[i])) return true;
-  return false;
 }
 
 static int render_channels(Render *render) {
@@ -235,17 +262,9 @@ static int prepare(Render *render, const Arguments *arguments) {
   if (v[RENDER_MAX_MEMORY].given) def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
   if (v[RENDER_MAX_TEXTURE].given) def.max_texture_pixels = (uint64_t)v[RENDER_MAX_TEXTURE].integer;
   def.sandbox = arguments->folders, def.sandbox_count = (uint32_t)arguments->folder_count;
-  vlResult result = vl_context_create(&def, &render->context);
-  if (result == VL_ERROR_MISSING) return report_failure(STATUS_MISSING, "--sandbox: there is no such folder");
-  if (result == VL_ERROR_UNSUPPORTED && v[RENDER_ISA].given)
-    return report_usage("--isa %s: this machine does not have it", v[RENDER_ISA].text);
-  if (result == VL_ERROR_UNSUPPORTED || result == VL_ERROR_ARGUMENT)
-    return report_usage("the environment variable VELO_ISA must be base, v2, v3 or v4, and the machine must have it");
-  if (result == VL_ERROR_MEMORY)
-    return report_failure(STATUS_OTHER, "no memory, or the system refuses to start %u threads: --threads N",
-                          def.threads);
-  if (result == VL_OK) report_memory_of(render->context, def.max_memory);
-  return result == VL_OK ? -1 : report_error(NULL, result, NULL);
+  status = context_open(&def, &render->context);
+  if (status < 0) report_memory_of(render->context, def.max_memory);
+  return status;
 }
 
 /* Checks before the render what could not be written after it. */
@@ -262,9 +281,7 @@ static int check_sizes(const Render *render) {
   vlResult result = vl_film_create(render->context, film, &film_made);
   vl_film_destroy(film_made);
   if (result == VL_OK) return -1;
-  if (result == VL_ERROR_MEMORY) return report_error(NULL, result, render->job.path);
-  return report_failure(STATUS_SCENE, "%s: no film of %u x %u pixels with these settings is possible: %s",
-                        render->job.path, film->width, film->height, vl_result_name(result));
+  return job_no_film(&render->job, result);
 }
 
 /* A trajectory is metered by its first frame, which a part of it does not have. */
@@ -339,9 +356,7 @@ static int reckon_memory(Render *render, const Arguments *arguments) {
   uint64_t most = limit->given ? (uint64_t)limit->integer : 0;
   memory_plan(&render->memory, render->context, render->world, &render->job, &render->outputs, &render->channels,
               render->many ? &render->frames : NULL);
-  const uint32_t *crop = render->job.defs->film.crop;
-  uint64_t pixels = (uint64_t)(crop[2] - crop[0]) * (crop[3] - crop[1]);
-  if (render->denoised.outputs.count) memory_add(&render->memory, "denoising", denoised_memory(pixels));
+  if (render->denoised.outputs.count) memory_add(&render->memory, "denoising", denoised_memory(image_pixels(render)));
   if (report_is_json()) memory_report_json(&render->memory, most);
   if (arguments->values[RENDER_VERBOSE].given) {
     char list[400], total[32];
@@ -403,14 +418,16 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
   report_memory(render);
 }
 
-/* The first pass is always completed. */
+/* The first pass, with --denoise the second one too, is always completed. */
 static void report_late(const Render *render, uint32_t spp) {
   double elapsed = monotonic_seconds() - render->start;
   char wanted[32], taken[32];
-  if (!(render->time_limit > 0) || spp != 1 || elapsed < 1.05 * render->time_limit || signals_pending()) return;
+  if (!(render->time_limit > 0) || spp > render->begun_spp + least_samples(render) ||
+      elapsed < 1.05 * render->time_limit || signals_pending())
+    return;
   format_seconds(wanted, sizeof wanted, render->time_limit);
   format_seconds(taken, sizeof taken, elapsed);
-  report_note("the first sample of each pixel was done after %s, --time was %s", taken, wanted);
+  report_warning("%u spp and writing it took %s, --time was %s", spp - render->begun_spp, taken, wanted);
 }
 
 /* Writes the final image with its ground truth. A stopped render is written before its ground truth is rendered, which
@@ -441,7 +458,6 @@ static int write_last(Render *render, OutputStage *stage) {
 
 /* Makes the film, or reads the one that is continued. */
 static int open_film(Render *render) {
-  vlError error = {0};
   const char *from = render->resumed.path;
   int status = film_keeper_start(&render->keeper, &render->film_plan, render->film_plan.path, render->context,
                                  &render->job, NULL);
@@ -450,7 +466,7 @@ static int open_film(Render *render) {
                            &render->film);
   if (status >= 0 || render->film) return status;
   vlResult result = vl_film_create(render->context, &render->job.defs->film, &render->film);
-  return result == VL_OK ? -1 : report_error(&error, result, render->job.path);
+  return result == VL_OK ? -1 : job_no_film(&render->job, result);
 }
 
 /* A render that ended after its time is one of the samples that it reached. */
@@ -467,6 +483,7 @@ static int render_and_write(Render *render) {
   int opened = open_film(render);
   if (opened >= 0) return opened;
   render->time_limit = job->defs->render.time_limit;
+  render->begun_spp = vl_film_spp(render->film);
   render->render_start = monotonic_seconds();
   progress_start(&render->progress, render->time_limit);
   limit_time(render);

@@ -7,6 +7,7 @@
 #include <time.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/kinds.h"
 #include "cli/report.h"
 #include "scene/scene.h"
@@ -16,11 +17,7 @@ int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log,
   def.log = log;
   def.log_user = log_user;
   def.sandbox = arguments->folders, def.sandbox_count = (uint32_t)arguments->folder_count;
-  vlResult result = vl_context_create(&def, context);
-  if (result == VL_ERROR_MISSING) return report_failure(STATUS_MISSING, "--sandbox: there is no such folder");
-  if (result == VL_ERROR_UNSUPPORTED || result == VL_ERROR_ARGUMENT)
-    return report_usage("the environment variable VELO_ISA must be base, v2, v3 or v4, and the machine must have it");
-  return result == VL_OK ? -1 : report_error(NULL, result, NULL);
+  return context_open(&def, context);
 }
 
 enum { INFO_JSON, INFO_PERMISSIVE, INFO_SANDBOX };

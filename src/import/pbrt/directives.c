@@ -285,7 +285,6 @@ static bool parse_path(vlParser *parser, vlParserFile *parent, vlSource at, cons
   if (stat(path, &info) == 0) {
     file.device = info.st_dev;
     file.inode = info.st_ino;
-    if (parent && !S_ISREG(info.st_mode)) return vl_parse_fail(parent, at, "%s is not a regular file", path);
     for (const vlParserFile *f = parent; f; f = f->parent) {
       if (f->inode != file.inode || f->device != file.device || !f->inode) continue;
       if (f == parent) return vl_parse_fail(parent, at, "the file includes itself: %s", path);

@@ -1,0 +1,19 @@
+/* cli/context.c: see context.h. */
+#include "cli/context.h"
+
+int context_open(const vlContextDef *def, vlContext **context) {
+  switch (vl_context_create(def, context)) {
+    case VL_OK:
+    case VL_CANCELLED: return -1;
+    case VL_ERROR_MISSING: return report_failure(STATUS_MISSING, "--sandbox: there is no such folder");
+    case VL_ERROR_ARGUMENT:
+    case VL_ERROR_UNSUPPORTED:
+      if (def->isa != vl_default_context_def().isa) return report_usage("--isa: this machine does not have it");
+      return report_usage("the environment variable VELO_ISA must be base, v2, v3 or v4, and the machine must have it");
+    case VL_ERROR_SCENE:
+    case VL_ERROR_IO:
+    case VL_ERROR_MEMORY: break;
+  }
+  return report_failure(STATUS_OTHER, "no memory, or the system refuses to start %u threads: --threads N",
+                        def->threads);
+}

@@ -159,7 +159,7 @@ refused 3 wide_film_dry 'wide_film.pbrt:3:' "$V" render wide_film.pbrt --dry-run
 run "$V" scene check wide_film.pbrt
 [ "$code" = 3 ] && pass wide_film_checked || fail wide_film_checked
 for what in "render scene.pbrt -o a.exr" "render --again a.exr -o b.exr" "render --continue a.film" "image info a.exr" "image denoise a.exr -o b.exr" "camera verify --camera a.json" "scene info scene.pbrt" "film info a.film"; do
-  refused 2 "unknown_isa_of_${what%% -*}" 'VELO_ISA must be' env VELO_ISA=foo "$V" $what
+  refused 2 "unknown_isa_of_${what//[!a-z]/_}" 'VELO_ISA must be' env VELO_ISA=foo "$V" $what
 done
 refused 2 too_wide_for_jpeg '65500' "$V" render scene.pbrt --resolution 65536x1 --dry-run -o a.jpg
 "$V" render scene.pbrt --spp 1 --quiet --channels Z -o depth.exr

@@ -44,7 +44,7 @@ static int name_words(const Command *command, int argc, char **argv) {
              : 0;
 }
 
-/* Whether the word begins commands of two words; prints or lists them. */
+/* Whether the word is the first of commands of two words. names: their second words. */
 static bool is_family(const char *word, const char *names[COMMANDS], int *count) {
   *count = 0;
   size_t n = strlen(word);
@@ -94,8 +94,8 @@ static const Command help_command = {
     .usage = "[COMMAND]",
     .summary = "the options of a command",
     .text =
-        "Prints the commands, or what COMMAND does: its options in sections, and examples. The first word of "
-        "commands of two words (image, scene, camera, film) prints all of them.",
+        "Without COMMAND, lists all commands. With COMMAND, prints what it does, its options in sections,\n"
+        "and examples. For image, scene, camera or film, prints this for each command of that group.",
     .examples = "velo help render\nvelo help image diff",
     .options = no_options,
 };
@@ -165,8 +165,8 @@ static int run(int argc, char **argv) {
   return status >= 0 ? status : command->run(command, &arguments);
 }
 
-/* std::set_terminate of the C++ library that Embree brings, if it brings one: a C++ exception that nobody catches ends
- * the process. Embree's scheduler throws such where an allocation is refused. */
+/* std::set_terminate of the C++ library that Embree loads; null without one. Embree's scheduler throws an exception
+ * that it does not catch when an allocation fails; that would end the process without a message of velo. */
 extern void *set_terminate(void (*handler)(void)) __asm__("_ZSt13set_terminatePFvvE") __attribute__((weak));
 
 static void on_terminate(void) {
@@ -176,8 +176,8 @@ static void on_terminate(void) {
 }
 
 int main(int argc, char **argv) {
-  /* Opens closed standard descriptors, so that no file gets descriptor 0, 1 or 2 and receives messages. Printing to a
-   * closed stdout still fails: its replacement is read-only. */
+  /* Opens /dev/null for each standard descriptor that is closed, so that no output file gets descriptor 0, 1 or 2 and
+   * receives messages. Printing to a closed stdout still fails, since its replacement is read-only. */
   for (int fd = 0; fd <= 2; fd++)
     if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd == 1 ? O_RDONLY : O_RDWR) < 0) return STATUS_IO;
   signal(SIGPIPE, SIG_IGN); /* a closed pipe must not end a render */

@@ -1,5 +1,6 @@
-/* api/film_merge.c: vl_film_merge: films of one render, streamed block by block. In each block the files with most
- * samples come first; one whose samples another file has is left out; the others must be apart. */
+/* api/film_merge.c: vl_film_merge: merges films of one render, block by block. In each block, files are added in the
+ * order of their number of samples, the largest first. A file is skipped if an added file has all its samples. It is an
+ * error if it shares only some of its samples with an added file. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +10,7 @@
 #include "film/file.h"
 #include "velo/film.h"
 
-enum { MOST_FILES = 200 }; /* open at the same time; more are merged in rounds */
+enum { MOST_FILES = 200 }; /* files that are open at the same time; more files are merged in several rounds */
 
 typedef struct Part {
   vlFilmReader reader;
@@ -21,11 +22,11 @@ typedef struct Merge {
   vlContext *context;
   Part *parts;
   uint32_t count;
-  uint32_t *order; /* of the parts, by samples */
-  vlSampleSpan *ranges, *joined;
+  uint32_t *order;               /* indices of parts, sorted by samples, most first */
+  vlSampleSpan *ranges, *joined; /* samples of the result's block; working memory of join */
   uint32_t range_count;
-  uint8_t learned[16]; /* of the block's parts, which must be the same */
-  char *sum, *data;
+  uint8_t learned[16]; /* digest of the learned state; the same in all parts of a block */
+  char *sum, *data;    /* sums of the result's block; of one part's block */
   vlFileWriter file;
   vlError *error;
 } Merge;
@@ -89,7 +90,8 @@ static vlResult open_parts(Merge *m, const char *const *paths) {
   return VL_OK;
 }
 
-/* The header of the result does not depend on the order of the files: it has the receipt that comes first as text. */
+/* The first of the parts' receipts in the order of strcmp, so that the header of the result does not depend on the
+ * order of the files. */
 static const char *choose_receipt(const Merge *m) {
   const char *least = m->parts[0].reader.receipt;
   for (uint32_t i = 1; i < m->count && least; i++)
@@ -120,7 +122,7 @@ static bool overlap(const vlSampleSpan *a, uint32_t n, const vlSampleSpan *b, ui
   return false;
 }
 
-/* Adds ranges that are apart from those of the result. */
+/* Adds ranges to those of the result; they do not overlap. */
 static vlResult join(Merge *m, const vlSampleSpan *b, uint32_t count) {
   uint32_t n = 0;
   for (uint32_t i = 0, k = 0; i < m->range_count || k < count;) {
@@ -138,7 +140,8 @@ static vlResult join(Merge *m, const vlSampleSpan *b, uint32_t count) {
   return VL_OK;
 }
 
-/* Whether part i counts: not when an added part has all its samples. */
+/* Sets *counts to whether part i is to be added: false if an added part has all its samples. An error if an added part
+ * has some of its samples, or the same samples with other sums. */
 static vlResult choose(Merge *m, uint32_t i, bool *counts) {
   Part *p = &m->parts[i];
   vlFilmReader *r = &p->reader;
@@ -170,7 +173,7 @@ static int more_samples(const Merge *m, uint32_t a, uint32_t b) {
   return x > y || (x == y && a < b);
 }
 
-/* Insertion: the order is almost the same in each block. */
+/* Insertion sort, since the order changes little from block to block. */
 static void sort_parts(Merge *m) {
   for (uint32_t i = 1; i < m->count; i++)
     for (uint32_t k = i; k > 0 && more_samples(m, m->order[k], m->order[k - 1]); k--) {
@@ -228,7 +231,7 @@ static vlResult merge_block(Merge *m) {
   return VL_OK;
 }
 
-/* ---- all --------------------------------------------------------------------------------------------------------- */
+/* ---- the call ---------------------------------------------------------------------------------------------------- */
 
 static vlResult merge_opened(Merge *m, const char *output) {
   const vlFilmShape *shape = &m->parts[0].reader.shape;
@@ -245,7 +248,7 @@ static vlResult merge_opened(Merge *m, const char *output) {
     for (uint32_t b = 0; b < m->parts[0].reader.blocks && result == VL_OK && !m->file.failed_errno; b++)
       result = merge_block(m);
     for (uint32_t i = 0; i < m->count && result == VL_OK && !m->file.failed_errno; i++)
-      result = vl_film_reader_next(&m->parts[i].reader, m->error); /* the file ends here */
+      result = vl_film_reader_next(&m->parts[i].reader, m->error); /* checks that the file ends after the last block */
     if (result == VL_OK)
       result = vl_file_commit(&m->file, m->error);
     else

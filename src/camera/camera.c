@@ -128,11 +128,11 @@ vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t heigh
     return VL_ERROR_ARGUMENT;
   double before = camera->width < camera->height ? camera->width : camera->height;
   double scale = (width < height ? width : height) / before;
-  /* planes that contain the whole sphere, or a cube, are stretched: each side keeps its angular range */
   if (camera->projection == VL_PROJECTION_OPTICS) { /* the film's diagonal is kept */
     double w = width, h = height, w0 = camera->width, h0 = camera->height;
     scale = sqrt((w * w + h * h) / (w0 * w0 + h0 * h0));
   }
+  /* projections of the whole sphere, or to a cube, are stretched: width and height keep their angular ranges */
   bool stretched = vl_projection_row(camera->projection)->traits & VL_PROJECTION_STRETCHED;
   double scale_x = stretched ? (double)width / camera->width : scale;
   double scale_y = stretched ? (double)height / camera->height : scale;

@@ -1,7 +1,7 @@
-/* camera/cube.h: the six faces of a cube in one image, both directions: right, left, up, down, front, back (the order
- * +x -x +y -y +z -z of cube maps with y up). Each face is a perspective view of 90 degrees, one unit of the plane wide.
- * Right, left, front and back are upright; up's lower edge and down's upper edge adjoin front. The plane's origin is
- * its top left corner. Two layouts:
+/* camera/cube.h: the six faces of a cube in one image, projection and inverse: right, left, up, down, front, back (the
+ * order +x -x +y -y +z -z of cube maps with y up). Each face is a perspective view of 90 degrees, one unit of the plane
+ * wide. Right, left, front and back are upright; up's lower edge and down's upper edge adjoin front. The plane's origin
+ * is its top left corner. Two layouts:
  *
  *     0: a row, 6 x 1                        1: a cross, 4 x 3
  *        right left up down front back               up

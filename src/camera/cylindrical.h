@@ -1,5 +1,5 @@
-/* camera/cylindrical.h: a cylinder about the camera's vertical axis, both directions. x: longitude (radians, -pi to
- * pi); y: tangent of the latitude, down. Vertical lines and the horizon stay straight. The plane continues around by
+/* camera/cylindrical.h: a cylinder about the camera's vertical axis, projection and inverse. x: longitude (radians, -pi
+ * to pi); y: tangent of the latitude, down. Vertical lines and the horizon stay straight. The plane continues around by
  * `over` beyond -pi and pi, so that filters see no edge. */
 #ifndef CAMERA_CYLINDRICAL_H
 #define CAMERA_CYLINDRICAL_H

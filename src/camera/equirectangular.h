@@ -1,4 +1,4 @@
-/* camera/equirectangular.h: longitude (x) and latitude (y) in radians, both directions. The plane's centre is
+/* camera/equirectangular.h: longitude (x) and latitude (y) in radians, projection and inverse. The plane's centre is
  * straight ahead. Longitude is in [-pi, pi], latitude in [-pi/2 (up), pi/2]. Slightly beyond (`over_x`, `over_y`,
  * radians) the plane continues as the sphere does (around it, and over the poles), so that filters see no edge. The
  * projection returns the point within these ranges. */

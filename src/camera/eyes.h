@@ -1,7 +1,7 @@
-/* camera/eyes.h: omnidirectional stereo, both directions. Each direction has its own eye position on a circle about the
- * camera's vertical axis (y): that of a head that turns to look in that direction (Peleg, Ben-Ezra and Pritch,
- * "Omnistereo: panoramic stereo imaging", 2001; Google, "Rendering Omni-directional Stereo Content", 2015). With the
- * longitude a from z (ahead) to x (right), the eye is at r (cos a, 0, -sin a); r < 0 is the left one.
+/* camera/eyes.h: omnidirectional stereo, projection and inverse. Each direction has its own eye position on a circle
+ * about the camera's vertical axis (y): that of a head that turns to look in that direction (Peleg, Ben-Ezra and
+ * Pritch, "Omnistereo: panoramic stereo imaging", 2001; Google, "Rendering Omni-directional Stereo Content", 2015).
+ * With the longitude a from z (ahead) to x (right), the eye is at r (cos a, 0, -sin a); r < 0 is the left one.
  *
  * The inverse has a closed form: seen from above the ray is tangent to the circle, so that its length to a point at
  * distance p from the axis is t = sqrt(p^2 - r^2), and the ray's longitude is the point's minus atan(r / t). */

@@ -1,4 +1,4 @@
-/* camera/fisheye.h: the four classical fisheye projections, both directions. They differ in the radius r of a
+/* camera/fisheye.h: the four classical fisheye projections, projection and inverse. They differ in the radius r of a
  * direction at angle theta from the view axis: equidistant theta, equisolid 2 sin(theta/2), stereographic 2
  * tan(theta/2), orthographic sin(theta). Each has scale 1 at the centre (Ray, Applied Photographic Optics, 3rd ed.,
  * ch. 28; Miyamoto, "Fish eye lens", 1964). Circular, cropped and diagonal framing follow from focal length and

@@ -1,4 +1,4 @@
-/* camera/kinds.h: what is known about each projection beside its functions (projection.h): a row per kind. */
+/* camera/kinds.h: properties of each projection, one row per kind. Its functions are in projection.h. */
 #ifndef CAMERA_KINDS_H
 #define CAMERA_KINDS_H
 

@@ -1,4 +1,4 @@
-/* camera/panini.h: the general Panini projection, both directions: the scene projected onto a cylinder about the
+/* camera/panini.h: the general Panini projection, projection and inverse: the scene projected onto a cylinder about the
  * vertical axis, viewed from a distance d behind its axis. d = 0 is the perspective projection, d = 1 the
  * cylindrical stereographic; large d approaches the cylindrical orthographic. Verticals and all lines through the
  * centre stay straight (Sharpless, Postle, German, "Pannini: A New Projection for Rendering Wide Angle Perspective

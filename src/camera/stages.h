@@ -1,4 +1,4 @@
-/* camera/stages.h: stages of the batches that one hot file provides to another. */
+/* camera/stages.h: parts of the batch loops that one hot file defines and another calls. */
 #ifndef CAMERA_STAGES_H
 #define CAMERA_STAGES_H
 

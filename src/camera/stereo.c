@@ -1,5 +1,5 @@
-/* camera/stereo.c: two cameras from one, and one camera at several positions. An eye is an ordinary camera with
- * another pose and principal point, except for omnidirectional stereo (eyes.h). */
+/* camera/stereo.c: makes the cameras of both eyes from one camera, and copies of a camera at several positions. An eye
+ * is an ordinary camera with another pose and principal point, except for omnidirectional stereo (eyes.h). */
 #include <math.h>
 #include <string.h>
 

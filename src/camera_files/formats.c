@@ -1,4 +1,4 @@
-/* camera_files/formats.c: the table of dialects. Each row is defined in its dialect's own file. */
+/* camera_files/formats.c: the table of camera file formats (dialects). Each dialect's own file defines its row. */
 #include "camera_files/formats.h"
 
 const vlCameraFormat *const vl_camera_formats[VL_CAMERA_DIALECT_COUNT] = {
@@ -33,7 +33,8 @@ const vlCameraFormat *const vl_camera_formats[VL_CAMERA_DIALECT_COUNT] = {
     [VL_CAMERA_DIALECT_VISP] = &vl_format_visp,
 };
 
-/* The order in which a tree is asked: fields that one tool alone has before those that many have. */
+/* The order in which dialects are tried on a parsed file (JSON, YAML or XML): a dialect that is recognised by
+ * fields of its own comes before one that is recognised by fields that several tools use. */
 static const vlCameraDialect order[] = {
     VL_CAMERA_DIALECT_METASHAPE, VL_CAMERA_DIALECT_VISP,      VL_CAMERA_DIALECT_VELO,      VL_CAMERA_DIALECT_GLTF,
     VL_CAMERA_DIALECT_OPENGL,    VL_CAMERA_DIALECT_VULKAN,    VL_CAMERA_DIALECT_D3D,       VL_CAMERA_DIALECT_BASALT,

@@ -1,4 +1,5 @@
-/* film/file_write.c: vl_film_write: a film becomes a file. Blocks are written by all workers, each at its place. */
+/* film/file_write.c: vl_film_write: writes a film to a file. All workers write blocks, each block at its own
+ * offset. */
 #include <errno.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -18,8 +19,8 @@ typedef struct Run {
   const vlFilm *film;
   const uint32_t *window;
   vlSampleSpan range;
-  uint64_t *offsets; /* of the blocks */
-  char *buffers;     /* one for each worker */
+  uint64_t *offsets; /* of the blocks in the file, bytes */
+  char *buffers;     /* of buffer_size bytes, one for each worker */
   size_t buffer_size;
   int descriptor;
   atomic_int failed_errno;
@@ -34,14 +35,14 @@ static bool has_samples(const vlFilm *film, const uint32_t place[4]) {
   return place[0] >= c[0] && place[1] >= c[1] && place[2] <= c[2] && place[3] <= c[3];
 }
 
-/* Whether each block of the window is inside the film's crop or outside of it. */
+/* Whether the crop lies in the window and no block of the window is partly inside the crop. */
 static bool fits_grid(const uint32_t window[4], const uint32_t crop[4]) {
   for (int i = 0; i < 4; i++)
     if (crop[i] != window[i] && crop[i] % VL_FILM_BLOCK != 0) return false;
   return crop[0] >= window[0] && crop[1] >= window[1] && crop[2] <= window[2] && crop[3] <= window[3];
 }
 
-/* Collects a block's sums; returns the end of the data. */
+/* Copies a block's sums to `to`, in the order of the file. Returns the end of the copied data. */
 static char *gather(const vlFilm *film, const uint32_t place[4], char *to) {
   uint32_t width = place[2] - place[0], n = film->def.buckets;
   size_t first = (size_t)(place[1] - film->def.crop[1]) * film->width + (place[0] - film->def.crop[0]);
@@ -114,10 +115,11 @@ static vlResult check(const vlFilm *film, const vlFilmWriteDef *def, const char 
   if (def->cookie != VL_COOKIE_FILM_WRITE)
     return vl_fail(error, VL_ERROR_ARGUMENT, "film file: def.cookie is not that of a default def of this version");
   if (film->in_pass || film->sequence.uneven || !film->spp || !film->front)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: a film without samples, or with only a part of them", path);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: the film has no samples, or pixels with different samples", path);
   if (window[2] > film->def.width || window[3] > film->def.height || !fits_grid(window, film->def.crop))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: the film's crop is not a part of the window that blocks of %d make",
-                   path, VL_FILM_BLOCK);
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "%s: the film's crop must lie in the window and end at its sides or at multiples of %d pixels", path,
+                   VL_FILM_BLOCK);
   return VL_OK;
 }
 

@@ -1,4 +1,4 @@
-/* import/plain.c: plain geometry: a PLY file as a whole scene, and the defaults for what the file does not define. */
+/* import/plain.c: plain geometry: loads a PLY file as a scene, with default settings and material. */
 #include "import/plain.h"
 
 #include <string.h>
@@ -15,7 +15,7 @@ void vl_import_plain_settings(vlScene *scene) {
   s->light_missing = true;
 }
 
-/* Appends each patch as two triangles. */
+/* Appends each quad to the triangles, as two triangles. */
 static bool split_quads(vlContext *context, vlPlyMesh *m) {
   if (!m->quads) return true;
   size_t count = (size_t)m->triangles + 2 * (size_t)m->quads;

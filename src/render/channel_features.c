@@ -1,5 +1,6 @@
-/* render/channel_features.c: features for denoisers: albedo, normal and disparity, each the mean over the image's own
- * samples, so that they are smooth where the image is: at edges, out of focus, in motion. */
+/* render/channel_features.c: features for denoisers: albedo, normal and disparity (1 / distance). Each is the mean over
+ * camera samples of the image, so that features are antialiased and blurred as the image is: at edges, out of focus, in
+ * motion. */
 #include <string.h>
 
 #include "render/channel_pass.h"
@@ -7,14 +8,14 @@
 
 enum { ALBEDO = 0, NORMAL = 3, DISPARITY = 6, COUNT = 7 };
 
-/* The instant of sample s in the exposure, of all rays of a pass over the tile: 1/2, 1/4, 3/4, 1/8, ... */
+/* The time of sample s as a fraction of the exposure: 1/2, 1/4, 3/4, 1/8, ... All pixels of the tile share it. */
 static float instant(uint32_t s) {
   float u = 0.0f, digit = 0.5f;
   for (uint32_t k = s + 1; k; k >>= 1, digit *= 0.5f) u += (float)(k & 1) * digit;
   return u;
 }
 
-/* Lists the rays of sample s of the tile's pixels; rows of the camera's rays. */
+/* Makes the camera rays of sample s of the tile's pixels, in w->rows and in the batch. Returns their number. */
 static uint32_t make_rays(const vlChannelPass *p, vlChannelWorker *w, const vlFilmRays *rays, uint32_t tile,
                           uint32_t s) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
@@ -39,7 +40,8 @@ static uint32_t make_rays(const vlChannelPass *p, vlChannelWorker *w, const vlFi
   return b->n = n;
 }
 
-/* Adds the hits of one sample of each pixel. The pixel filter's negative lobes count as 0. */
+/* Adds the hits of one sample of each pixel, weighted by the pixel filter; negative weights count as 0. total: sum of
+ * the weights of each pixel. */
 static void add(const vlChannelPass *p, vlChannelWorker *w, float *total) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
   const vlGroundTruthBatch *b = w->batch;

@@ -1,4 +1,4 @@
-/* scene/scene.c: the life of a scene: creation, destruction, its sticky error, its defs and counts. */
+/* scene/scene.c: creates and destroys scenes; a scene's first error, its defs and the counts of its parts. */
 #include "scene/scene.h"
 
 #include <stdio.h>
@@ -15,7 +15,7 @@ vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const cha
 }
 
 static vlSceneDefs default_defs(void) {
-  const uint32_t width = 1280, height = 720; /* size of pbrt's film */
+  const uint32_t width = 1280, height = 720; /* pbrt's default size, pixels */
   return (vlSceneDefs){.camera = vl_default_camera_def(width, height),
                        .film = vl_default_film_def(width, height),
                        .build = vl_default_build_def(),

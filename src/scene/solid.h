@@ -1,5 +1,5 @@
-/* scene/solid.h: closed solids of a group, and whether a point is inside one: whole spheres and the closed parts of
- * meshes. */
+/* scene/solid.h: closed solids in a group of shapes: whole spheres and closed parts of meshes. Tells whether a point is
+ * inside a solid. */
 #ifndef SCENE_SOLID_H
 #define SCENE_SOLID_H
 
@@ -13,16 +13,18 @@ typedef struct vlSolid {
   vlMeshSolid meshes;      /* meshes only; freed by vl_solid_free */
 } vlSolid;
 
-/* False: out of memory. An open solid contains no point. */
+/* Makes a solid of `count` shapes of the scene, by their indices. An open solid contains no point. False: out of
+ * memory. */
 bool vl_solid_make(const vlScene *scene, const uint32_t *shapes, size_t count, vlSolid *solid);
 void vl_solid_free(const vlScene *scene, vlSolid *solid);
 /* Whether p (group space) is inside. */
 bool vl_solid_holds(const vlSolid *solid, const double p[3]);
-/* The sphere k of many (vlShapeDef.centers) as a shape of its own. */
+/* Sphere k of a shape of many spheres (vlShapeDef.centers), as a separate shape. */
 vlShapeDef vl_shape_one_sphere(const vlShapeDef *d, uint32_t k);
-/* The box of one shape in group space. */
+/* The bounding box of a shape, in group space. */
 void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]);
-/* Point i of n on the solid's surface, moved towards its centre by a thousandth of the distance. */
+/* Point i of n on the solid's surface, in group space, moved towards the solid's centre by a thousandth of the
+ * distance. */
 void vl_solid_sample(const vlSolid *solid, uint32_t i, uint32_t n, double p[3]);
 
 #endif

@@ -1,5 +1,5 @@
-/* Differences of images: sums against a plain computation, FLIP against a direct evaluation of the paper's formulas
- * (two-dimensional kernels, double, libm), and properties of FLIP. */
+/* Comparison of images: checks the sums against a plain computation, and FLIP against a direct evaluation of its
+ * paper's formulas (two-dimensional kernels, double precision, libm). Also checks properties of FLIP. */
 #include "sample_images.h"
 
 #include "image/flip.h"
@@ -71,11 +71,11 @@ static void test_extremes(void **state) {
   assert_true(d.flip == 0.0 && d.mse == 0.0 && isinf(d.psnr) && d.mean_ratio == 1.0 && d.differing == 0);
   vlImage *black = plain(context, 40, 30, 0, 0, 0), *white = plain(context, 40, 30, 1, 1, 1);
   d = compare(black, white);
-  assert_true(d.flip > 0.96 && d.flip < 0.98); /* HyAB 100 of lightness alone; only hues go beyond */
+  assert_true(d.flip > 0.96 && d.flip < 0.98); /* HyAB distance 100; only differences of hue are larger */
   assert_true(isinf(d.mean_ratio) || d.mean_ratio > 1e30);
   vlImage *green = plain(context, 40, 30, 0, 1, 0), *blue = plain(context, 40, 30, 0, 0, 1);
   d = compare(green, blue);
-  assert_true(fabs(d.flip - 1.0) < 1e-5); /* the largest difference there is, by definition */
+  assert_true(fabs(d.flip - 1.0) < 1e-5); /* FLIP's definition scales this difference to 1 */
   assert_true(compare(blue, green).flip == d.flip);
   vlImageDiff one = compare(noisy, black), other = compare(black, noisy);
   assert_true(fabs(one.flip - other.flip) < 1e-7);
@@ -87,7 +87,7 @@ static void test_extremes(void **state) {
   end_context(context);
 }
 
-/* ---- the paper, directly ----------------------------------------------------------------------------------------- */
+/* ---- the paper's formulas ---------------------------------------------------------------------------------------- */
 
 enum { W = 24, H = 18 };
 typedef double Plane[H][W];
@@ -105,7 +105,7 @@ static void xyz(const double c[3], double o[3]) {
   o[2] = 0.01933062 * c[0] + 0.11919716 * c[1] + 0.95037259 * c[2];
 }
 static void rgb(const double c[3], double o[3]) {
-  double m[3][3], inv[3][3]; /* by inverting the above */
+  double m[3][3], inv[3][3]; /* inverts the matrix of xyz() */
   for (int k = 0; k < 3; k++) {
     double unit[3] = {k == 0, k == 1, k == 2}, column[3];
     xyz(unit, column);
@@ -229,9 +229,9 @@ static void test_direct(void **state) {
     for (int n = 0; n < W * H; n++)
       for (int c = 0; c < 3; c++) {
         float v = (float)noise(&seed) / 16777216.0f;
-        a[3 * n + c] = kind == 0 ? v : (float)(n % W) / W; /* noise; a slope */
+        a[3 * n + c] = kind == 0 ? v : (float)(n % W) / W; /* noise; a gradient */
         b[3 * n + c] = kind == 0   ? 1.0f - v * v
-                       : kind == 1 ? a[3 * n + c] * 0.8f + (n == 200 ? 0.2f : 0.0f) /* dimmer, one point */
+                       : kind == 1 ? a[3 * n + c] * 0.8f + (n == 200 ? 0.2f : 0.0f) /* darker, with one bright pixel */
                                    : (n % W > W / 2 ? (c == 0 ? 1.0f : 0.1f) : a[3 * n + c]);
       }
     assert_int_equal(vl_flip(context, W, H, a, b, got), VL_OK);

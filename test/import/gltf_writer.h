@@ -1,5 +1,5 @@
-/* A tiny glTF 2.0 file made by a test: arrays go into one buffer as base64 or a binary chunk, JSON is written by hand.
- */
+/* Writes small glTF 2.0 files for tests. Arrays go into one buffer, as base64 or as a binary chunk. The test gives the
+ * rest of the JSON as text. */
 #ifndef TEST_IMPORT_GLTF_WRITER_H
 #define TEST_IMPORT_GLTF_WRITER_H
 
@@ -27,7 +27,8 @@ static inline int gltf_view(Gltf *g, const void *data, size_t size, int stride) 
   return g->view_count++;
 }
 
-/* more: further members, as ",\"normalized\":true"; view < 0: none. */
+/* Adds an accessor and returns its index. view < 0: no buffer view. more: further members, such as
+ * ",\"normalized\":true"; may be null. */
 static inline int gltf_accessor(Gltf *g, int view, int type, size_t count, const char *shape, const char *more) {
   char view_text[40] = "";
   if (view >= 0) snprintf(view_text, sizeof view_text, "\"bufferView\":%d,", view);
@@ -44,7 +45,7 @@ static inline int gltf_shorts(Gltf *g, const uint16_t *data, size_t count) {
   return gltf_accessor(g, gltf_view(g, data, count * sizeof *data, 0), 5123, count, "SCALAR", NULL);
 }
 
-/* json: the members after the arrays, such as "\"nodes\":[...],\"meshes\":[...]". */
+/* The text of the .gltf file. rest: the members after the arrays, such as "\"nodes\":[...],\"meshes\":[...]". */
 static inline char *gltf_json(const Gltf *g, const char *uri, const char *rest) {
   size_t room = strlen(g->views) + strlen(g->accessors) + strlen(rest) + strlen(uri) + 1000;
   char *text = malloc(room);

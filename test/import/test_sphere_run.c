@@ -1,5 +1,5 @@
-/* Spheres put together: the world's spheres are those of the same Shapes kept apart, many spheres of the API are met as
- * each alone would be, and memory that runs out on the way leaves nothing behind. */
+/* The importer joins consecutive spheres into one shape of many spheres (a run). A world with runs has the same spheres
+ * as one without, rays hit a sphere of many where they hit it alone, and a failed allocation leaks no memory. */
 #include "import/load.h"
 
 #include "failing_allocator.h"
@@ -8,7 +8,7 @@
 
 enum { BEFORE = 4096, SPHERES = 60 };
 
-/* `before` disks, then spheres under changing states. */
+/* A scene of `before` disks, then of spheres with different transforms, materials, media, emission and alpha. */
 static char *text_of(int before) {
   char *text = malloc(100 * (size_t)BEFORE + 600 * (size_t)SPHERES + 1000), *at = text;
   at += sprintf(at,
@@ -34,9 +34,8 @@ static char *text_of(int before) {
   return text;
 }
 
-/* What a sphere is: where it is (the first number sorts), box, points and normals, material kind, emission, alpha,
- * media.
- */
+/* What is compared of a sphere: its place (the first number, by which spheres are sorted), bounding box, points and
+ * normals, material kind, emission, alpha, media. */
 typedef struct Sphere {
   float v[25];
 } Sphere;
@@ -101,8 +100,8 @@ static void put_together_they_are_the_same(void **state) {
   free(a), free(b), free(apart), free(together);
 }
 
-/* Under no similarity: the ray that meets one of many meets the same sphere alone at the same place, and so does a ray
- * through the whole world. */
+/* The spheres are transformed by a matrix that is not a similarity. A ray hits a sphere of many at the same point as
+ * the same sphere alone; this also holds for rays through the whole world. */
 static void many_are_each_alone(void **state) {
   (void)state;
   enum { N = 50 };
@@ -172,7 +171,7 @@ static void wrong_ones_are_refused(void **state) {
   }
 }
 
-/* The last calls of the allocator, where the runs are. */
+/* Lets each of the last 199 allocations fail; runs are made there. */
 static void memory_runs_out(void **state) {
   (void)state;
   char *text = text_of(BEFORE);

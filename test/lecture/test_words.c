@@ -26,7 +26,7 @@ static void change_zoom(vlCameraDef *def, const void *user) {
   def->zoom = zoom_d_s[0], def->view_distance = zoom_d_s[1], def->pixel_size = zoom_d_s[2];
 }
 
-/* f = zoom d / s: the same f is the same image to the last bit, however it is said; and it doubles sizes. */
+/* f = zoom d / s: parameters with the same f give the same bits, and twice the f gives twice the size. */
 static void zoom_d_and_s_are_one_number(void **state) {
   (void)state;
   const double ways[3][3] = {{2, 500, 1}, {1, 1000, 1}, {4, 62.5, 0.25}};
@@ -59,7 +59,7 @@ static void exposure_time_is_a_factor(void **state) {
   const float *a = vl_image_const_pixels(once.image), *b = vl_image_const_pixels(p.image);
   for (int i = 0; i < W * H; i++) {
     for (int c = 0; c < 3; c++) assert_true(fabsf(b[4 * i + c] - 4 * a[4 * i + c]) <= 1e-5f * b[4 * i + c]);
-    assert_true(a[4 * i + 3] == b[4 * i + 3]); /* coverage is no light */
+    assert_true(a[4 * i + 3] == b[4 * i + 3]); /* alpha does not depend on the exposure */
   }
   assert_true(once.full[RED] > 0.5f);
   free_image(&once);
@@ -71,7 +71,7 @@ static void change_planes(vlCameraDef *def, const void *user) {
   def->near_plane = planes[0], def->far_plane = planes[1];
 }
 
-/* The planes cut what the camera sees, at their z and not at that distance along the ray. */
+/* The clipping planes cut at their z in camera space, not at that distance along the ray. */
 static void clipping_planes(void **state) {
   (void)state;
   const double inside[2] = {249.99, 2000.01}, cut[2] = {250.01, 1999.99};
@@ -91,8 +91,8 @@ static void change_roll(vlCameraDef *def, const void *user) {
   def->roll = *(const double *)user;
 }
 
-/* The camera turned clockwise by a quarter, so the image turned the other way: the third disk, which was at the
- * right, is at the top. */
+/* The camera is rolled clockwise by a quarter turn, so the image turns counterclockwise: the third disk moves from the
+ * right to the top. */
 static void roll_turns_the_image(void **state) {
   (void)state;
   const double quarter = 3.14159265358979323846 / 2;
@@ -115,7 +115,7 @@ static void change_lens(vlCameraDef *def, const void *user) {
 }
 
 /* With the focus on the disk at 500, its edge is as sharp as the pinhole's; the disk at 250 has a penumbra as wide as
- * the blur disk of that distance: diameter 2 R f |1/z - 1/focus|. */
+ * the circle of confusion at that distance, of diameter 2 R f |1/z - 1/focus|. */
 static void lens_blurs_what_is_out_of_focus(void **state) {
   (void)state;
   const double radius_focus[2] = {10, 500};
@@ -123,9 +123,9 @@ static void lens_blurs_what_is_out_of_focus(void **state) {
   double f = p.camera.fx, blur = 2 * 10 * f * (1 / 250.0 - 1 / 500.0);
   for (int k = 0; k < 2; k++) {
     P2 c = disk_centre(&p, k);
-    double edge = c.x + f * 40 / distance[k] * (k == 0 ? -1 : 1); /* its end that is far from the other disks */
+    double edge = c.x + f * 40 / distance[k] * (k == 0 ? -1 : 1); /* the edge that faces away from the other disks */
     long around = k == 0 ? 7 : 4;
-    /* along the row beside the centre: pixels that are neither covered nor empty */
+    /* the width of the penumbra: partly covered pixels in the row beside the centre */
     double partial = 0, partial_sharp = 0;
     for (long x = (long)edge - around; x <= (long)edge + around; x++) {
       double a = coverage(&p, ALPHA, x, 60), b = coverage(&sharp, ALPHA, x, 60);

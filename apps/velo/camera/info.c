@@ -146,7 +146,7 @@ static const Option info_options[] = {
 const Command camera_info_command = {
     .name = "camera info",
     .usage = "FILE [options]",
-    .summary = "one camera in all the ways that say the same",
+    .summary = "all equivalent parameters of a camera",
     .text =
         "FILE is a camera in any dialect of `velo camera convert`, or a scene. Without a sensor of its own the\n"
         "camera is given one 36 mm wide.",

@@ -1,12 +1,13 @@
-/* camera/verify_model.c: an independent projection of world points, written directly from the equations of the sources
- * named in docs/cameras.md, with the C library's functions, one point at a time. It does not call the library's
- * projections: `velo camera verify` checks them against it. */
+/* camera/verify_model.c: projects world points, independently of the library. It follows the equations of the sources
+ * named in docs/cameras.md, with functions of the C library, one point at a time. `velo camera verify` checks the
+ * library's projections against it, so it calls none of them. */
 #include <math.h>
 #include <string.h>
 
 #include "camera/verify.h"
 
-/* Image radius of an angle from the axis. */
+/* *r: distance from the principal point, in focal lengths, of a direction at `angle` radians from the axis. False:
+ * outside of the projection's domain. */
 static bool fisheye(vlProjection projection, double angle, double *r) {
   switch (projection) {
     case VL_PROJECTION_EQUIDISTANT: *r = angle; return true;
@@ -30,7 +31,7 @@ static void equal_area(const double p[3], double plane[2]) {
   plane[0] = copysign(u, p[0]), plane[1] = copysign(v, p[1]);
 }
 
-/* Cube faces: right, left, up, down, front, back, in a row or as a cross, four wide and three high. */
+/* Cube faces: right, left, up, down, front, back, either in a row, or as a cross four faces wide and three high. */
 static void cube(bool as_cross, const double p[3], double plane[2]) {
   static const double at[6][2] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
   static const double ahead[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -48,7 +49,8 @@ static void cube(bool as_cross, const double p[3], double plane[2]) {
   }
 }
 
-/* Projects a point in camera space to the undistorted image plane. */
+/* Projects a point in camera space to the image plane before distortion, in focal lengths from the principal point.
+ * False: outside of the projection's domain. */
 static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
   double x = p[0], y = p[1], z = p[2], across = sqrt(x * x + y * y), length = sqrt(across * across + z * z);
   double a = c->shape[0], b = c->shape[1], k, r;
@@ -116,6 +118,7 @@ static void opencv(const double *k, double plane[2]) {
   plane[0] = u, plane[1] = v;
 }
 
+/* Applies the lens distortion to a point of the image plane. False: unknown distortion. */
 static bool bend(const vlCameraDef *def, double plane[2]) {
   double k[14] = {0}, x = plane[0], y = plane[1], r2 = x * x + y * y;
   if (def->distortion_count > 14) return false;

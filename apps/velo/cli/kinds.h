@@ -1,4 +1,4 @@
-/* cli/kinds.h: the kinds of velo/schema.h as choices of options. */
+/* cli/kinds.h: the kinds of velo/schema.h (materials, samplers, ...) as choices of options. */
 #ifndef APP_CLI_KINDS_H
 #define APP_CLI_KINDS_H
 
@@ -7,9 +7,9 @@
 
 /* The family of that name; null: none. */
 const vlKindFamily *kind_family(const char *name);
-/* Names and aliases of the family's kinds, each kind's together; constant, never freed. */
+/* The names of the family's kinds, each followed by its aliases. Constant, never freed. */
 const Choice *kind_choices(const char *family);
-/* A kind's name in files. */
+/* The name of a kind in scene files. */
 const char *kind_name(const char *family, int kind);
 
 #endif

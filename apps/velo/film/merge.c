@@ -1,4 +1,4 @@
-/* film/merge.c: `velo film merge`: the parts of a render become one film. */
+/* film/merge.c: `velo film merge`: merges the films of a render's parts into one film. */
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,7 +33,7 @@ static const Option merge_options[] = {
 const Command film_merge_command = {
     .name = "film merge",
     .usage = "FILE... -o FILE",
-    .summary = "make one film of the parts of a render",
+    .summary = "merge the parts of a render into one film",
     .text =
         "Merges films of one render that have different samples or pixels. Order and grouping do not\n"
         "matter, and a part that is given twice counts once: the result has the bytes of a single render.",

@@ -1,4 +1,4 @@
-/* render/denoised.h: --denoise: a denoised copy of the image, beside it. */
+/* render/denoised.h: --denoise: writes a denoised copy of the image to a file of its own. */
 #ifndef APP_RENDER_DENOISED_H
 #define APP_RENDER_DENOISED_H
 
@@ -6,22 +6,27 @@
 #include "render/outputs.h"
 
 typedef struct Denoised {
-  Outputs outputs; /* count 0: not wanted */
+  Outputs outputs; /* count 0: --denoise is not given */
   vlDenoiseDef def;
 } Denoised;
 
 /* Reads the options. `image`: the outputs of the image itself, whose view and exposure are used. Returns -1, or the
  * exit code after reporting the error. */
 int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *image);
-/* Whether the denoiser is there, found out before the render: denoises one pixel by Open Image Denoise. Returns -1, or
- * the exit code after reporting the error. */
+/* Checks before the render that the denoiser works: if it is Open Image Denoise, denoises an image of one pixel.
+ * Returns -1, or the exit code after reporting the error. */
 int denoised_check(const Denoised *d, vlContext *context);
-/* Bytes that are needed for an image of so many pixels. */
+/* Memory in bytes for an image of so many pixels. */
 uint64_t denoised_memory(uint64_t pixels);
+<<<<<<< HEAD
 /* Estimated seconds of denoised_write for an image of so many pixels with `spp` samples, from those that one sample per
  * pixel and the writing of an image took, on so many threads. */
 double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double writing, uint32_t threads);
 /* Renders the features, denoises and writes. Returns STATUS_OK or the exit code. */
+=======
+/* Renders the features, denoises the film's image and writes the result. Returns STATUS_OK, or the exit code after
+ * reporting the error. */
+>>>>>>> stranger
 int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film,
                    OutputStage stage);
 

@@ -5,11 +5,13 @@
 #include "cli/options.h"
 #include "velo/velo.h"
 
-/* Reads --exposure EV or auto. Returns -1 or the exit code. */
+/* Reads --exposure: a number of stops to *ev, or "auto", which sets *meter. Returns -1, or the exit code after
+ * reporting the error. */
 int exposure_parse(const OptionValue *value, float *ev, bool *meter);
-/* The EV, in tenths, that maps the geometric mean of a linear image's luminances to 0.18. Pixels below a thousandth of
- * the mean and pixels with alpha 0 are excluded. */
+/* The exposure in stops, rounded to a tenth, that maps the geometric mean of a linear image's luminances to 0.18.
+ * Pixels below a thousandth of the mean and pixels with alpha 0 are excluded. */
 float exposure_meter(const vlImage *image);
+/* Prints the metered exposure. */
 void exposure_tell(float ev);
 
 #endif

@@ -1,5 +1,5 @@
-/* render/gbuffer.c: see gbuffer.h. Values come from the ground truth at pixel centres; pbrt averages over a pixel's
- * samples. */
+/* render/gbuffer.c: see gbuffer.h. Its values are ground truth at pixel centres, whereas pbrt averages over the samples
+ * of a pixel. */
 #include "render/gbuffer.h"
 
 #include <math.h>
@@ -33,7 +33,7 @@ static const char *const names[] = {"Albedo.R",
 enum { ALBEDO = 0, P = 3, DZ = 6, N = 8, NS = 11, UV = 14, VARIANCE = 16, RELATIVE = 19, COUNT = 22 };
 _Static_assert(sizeof names / sizeof *names == COUNT, "a name for each");
 
-/* Indices of the ground truth channels that are read. */
+/* The images that the values come from, and the indices of their channels. */
 typedef struct Source {
   const vlImage *geometry, *rendered;
   const float *values;
@@ -48,13 +48,15 @@ static const float *at(const Source *s, uint32_t x, uint32_t y, int channel) {
   return s->values + ((size_t)y * s->width + x) * s->channels + channel;
 }
 
-/* Transforms a point (w 1) or vector (w 0) to pbrt's camera space: x right, y up, z forward. */
+/* Transforms a point (w 1) or vector (w 0) from world space to the output's space: pbrt's camera space (x right, y up,
+ * z forward), or world space if s->world. */
 static void turn(const Source *s, const double v[3], double w, double out[3]) {
   for (int i = 0; i < 3; i++) {
     double sum = s->m[4 * i] * v[0] + s->m[4 * i + 1] * v[1] + s->m[4 * i + 2] * v[2] + s->m[4 * i + 3] * w;
     out[i] = s->world ? v[i] : i == 1 ? -sum : sum;
   }
 }
+/* Writes a transformed point (w 1) or unit vector (w 0). */
 static void put(const Source *s, const double v[3], double w, float *out) {
   double turned[3], l = 1;
   turn(s, v, w, turned);
@@ -66,7 +68,8 @@ static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* The change of z between adjacent pixels on the surface's tangent plane. */
+/* The absolute change of z from pixel (x, y) to its neighbour (nx, ny) on the tangent plane of the surface at p with
+ * normal n, times s->shrink. 0 if it is not finite. */
 static double slope(const Source *s, uint32_t x, uint32_t y, uint32_t nx, uint32_t ny, const double p[3],
                     const double n[3]) {
   const float *ray = at(s, nx, ny, s->ray), *met = at(s, nx, ny, s->p), *own = at(s, x, y, s->ray);
@@ -85,7 +88,7 @@ static double slope(const Source *s, uint32_t x, uint32_t y, uint32_t nx, uint32
 
 static void fill(const Source *s, uint32_t x, uint32_t y, float out[COUNT]) {
   for (int c = 0; c < 3;
-       c++) { /* variance of samples: squared standard error of the mean times the number of samples */
+       c++) { /* the variance of samples is the squared standard error of the mean times their number */
     float error = at(s, x, y, s->error)[c], mean = vl_image_get(s->rendered, x, y, (uint32_t)c);
     out[VARIANCE + c] = error < 1e18f ? (float)((double)error * (double)error * s->samples) : 0.0f;
     out[RELATIVE + c] = mean != 0.0f ? out[VARIANCE + c] / mean : 0.0f;

@@ -1,4 +1,5 @@
-/* render/job_make.c: see job.h. The scene's defs and the command line give the defs and the camera of the render. */
+/* render/job_make.c: see job.h. Makes the defs and the camera of a render from the scene's defs and the command line.
+ */
 #include "render/job.h"
 
 #include <math.h>
@@ -13,7 +14,7 @@
 #include "render/scene_options.h"
 
 const Choice sensor_choices[] = {
-    /* vl_sensor_name of each index */
+    /* the names of vl_sensor_name, with their indices */
     {"cie1931", 0},
     {"canon_eos_100d", 1},
     {"canon_eos_1dx_mkii", 2},
@@ -58,7 +59,7 @@ const Choice isa_choices[] = {
 
 /* ---- overrides --------------------------------------------------------------------------------------------------- */
 
-/* Copies the place of the camera in the scene file: the source string dies with its scene. */
+/* File, line and column of the camera. The name is copied, since the scene's string ends with the scene. */
 static vlError camera_place(const vlSceneDefs *defs, const char *path) {
   vlSource source = defs->camera_source;
   vlError place = {.line = source.file ? source.line : 0, .column = source.file ? source.column : 0};
@@ -66,7 +67,7 @@ static vlError camera_place(const vlSceneDefs *defs, const char *path) {
   return place;
 }
 
-/* Takes camera and image size from a camera file. */
+/* Takes camera and image size from a camera file. Returns -1, or the exit code after reporting the error. */
 static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, const char *path,
                             const Arguments *arguments) {
   const OptionValue *v = arguments->values;
@@ -149,7 +150,7 @@ static void override_size(vlSceneDefs *defs, uint32_t width, uint32_t height) {
   defs->film.height = height;
 }
 
-/* Samplers with a fixed number of samples per pixel cannot render without an end. */
+/* Whether the sampler can continue beyond its planned number of samples per pixel. */
 static bool sampler_is_open(vlSamplerKind kind) {
   const vlKindFamily *samplers = kind_family("samplers");
   return (uint32_t)kind < samplers->kind_count && samplers->rows[kind]->traits & VL_SAMPLER_TRAIT_OPEN;
@@ -176,12 +177,14 @@ static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
       defs->render.spp = 65536;
     else
       report_warning(
-          "the sampler %s lays out a fixed number of samples: ends at %u spp even if --time is not over; give --spp",
+          "the sampler %s has a fixed number of samples: the render ends at %u spp even if --time is not over; give "
+          "--spp",
           kind_name("samplers", (int)defs->render.sampler), defs->render.spp);
   }
 }
 
-/* The sequence of a sampler with a fixed number of samples is that of the whole image, also for a part of it. */
+/* Samplers with a fixed number of samples get the sequence of the whole render, also if only some of its samples are
+ * rendered (--shard, --samples). */
 static void fix_sequence(vlRenderDef *render) {
   if (!render->sequence && !sampler_is_open(render->sampler)) render->sequence = render->spp;
 }
@@ -242,7 +245,8 @@ int job_no_film(const Job *job, vlResult result) {
   return report_reason(result, job->path, what);
 }
 
-/* The camera here is the one between the eyes; frames.c makes the eyes' cameras. */
+/* Applies the options of stereo. The def describes the camera midway between the eyes; frames.c makes the cameras of
+ * the eyes. */
 static int override_stereo(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   vlStereo *stereo = &defs->camera.stereo;
@@ -256,8 +260,8 @@ static int override_stereo(vlSceneDefs *defs, const Arguments *arguments) {
   return -1;
 }
 
-/* Applies size, crop and camera of the command line. The camera is made at the size of its description and then
- * resized, which keeps the framing. */
+/* Applies image size and crop of the command line and makes the camera. The camera is made for the image size of its
+ * description and then resized, which keeps the framing. */
 static int fit_camera(Job *job, vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *size = &arguments->values[RENDER_RESOLUTION];
   vlCameraDef camera = defs->camera;

@@ -7,7 +7,8 @@
 
 #include "cli/report.h"
 
-/* Parses the text after a percent sign: digits of the width, then the kind. 0: unknown. */
+/* Parses the text after a percent sign: digits of the width, then a letter, which is returned. 0: unknown. *length:
+ * number of characters after the sign. */
 static char sign_at(const char *at, size_t *length, int *width) {
   size_t digits = strspn(at, "0123456789");
   *width = 0;
@@ -42,7 +43,8 @@ bool pattern_has(const char *pattern, char kind) {
   return false;
 }
 
-/* The last component of a path without suffix. Characters not allowed in file names become "_". */
+/* The last component of a path, without its suffix. Characters that some systems do not allow in file names become
+ * "_". */
 static void clean(const char *name, char *result, size_t size) {
   const char *slash = strrchr(name, '/'), *back = strrchr(slash ? slash : name, '\\');
   const char *start = back ? back + 1 : slash ? slash + 1 : name, *dot = strrchr(start, '.');

@@ -1,4 +1,5 @@
-/* render/progress.h: progress of the render: a bar on a terminal, plain lines elsewhere, or JSON lines. */
+/* render/progress.h: shows the progress of a render: as a bar on a terminal, else as lines of text; as JSON with
+ * --log-json. */
 #ifndef APP_RENDER_PROGRESS_H
 #define APP_RENDER_PROGRESS_H
 
@@ -17,6 +18,7 @@ void progress_show(Progress *progress, const vlProgress *now);
 void format_count(char *text, size_t size, double count);
 /* Formats seconds: "4.2 s", "1:05", "2:03:20". */
 void format_seconds(char *text, size_t size, double seconds);
+/* Seconds of a clock that is never set back; its zero is arbitrary. */
 double monotonic_seconds(void);
 
 #endif

@@ -1,4 +1,5 @@
-/* image/denoise/denoise.c: from an image's channels to planes, the fit of all tiles, and back. docs/denoising.md. */
+/* image/denoise/denoise.c: vl_denoise: copies an image's channels to planes, fits all tiles, and makes the result
+ * an image. docs/denoising.md describes the method. */
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -16,8 +17,8 @@ typedef struct Denoise {
   vlContext *context;
   vlDenoiseChannels channels;
   vlDenoisePlanes planes;
-  float *memory; /* of all planes */
-  float nearest; /* largest disparity */
+  float *memory; /* holds all planes */
+  float nearest; /* largest disparity in the image */
   vlDenoiseScratch *scratch;
   const vlDenoiseKernels *kernels;
   atomic_uint_fast64_t not_finite;
@@ -89,7 +90,8 @@ static ptrdiff_t place(const vlDenoisePlanes *p, uint32_t x, uint32_t y) {
   return (ptrdiff_t)y * p->stride + (ptrdiff_t)x;
 }
 
-/* The largest disparity: its 1000th part is the least that differs from nothing. */
+/* The largest disparity. read_row raises smaller disparities, and the 0 of pixels that hit nothing, to a thousandth
+ * of it. 1 without features. */
 static float find_nearest(const Denoise *d) {
   float most = 0.0f;
   for (uint32_t y = 0; y < d->planes.height && d->channels.features; y++)
@@ -126,7 +128,7 @@ static void read_row(void *user, uint32_t y, uint32_t worker) {
   }
 }
 
-/* The mean of the nearest valid pixels within the window, and the variance of their values. */
+/* Mean and variance of the valid pixels in the smallest square around `at` that has any; 0 if the window has none. */
 static void nearest_valid(const vlDenoisePlanes *p, float *const plane[COLOR], ptrdiff_t at, float mean[COLOR],
                           float variance[COLOR]) {
   float sums[COLOR] = {0}, squares[COLOR] = {0}, count = 0.0f;
@@ -145,7 +147,7 @@ static void nearest_valid(const vlDenoisePlanes *p, float *const plane[COLOR], p
   }
 }
 
-/* Pixels that are not finite get values by which patches that contain them are compared. */
+/* Replaces the values of a pixel that is not finite, so that patches that contain it can be compared. */
 static void fill(const vlDenoisePlanes *p, ptrdiff_t at) {
   float mean[COLOR], variance[COLOR];
   nearest_valid(p, p->color, at, mean, variance);
@@ -165,7 +167,7 @@ static float mean3(float *const plane[COLOR], ptrdiff_t at) {
   return (plane[0][at] + plane[1][at] + plane[2][at]) * (1.0f / 3.0f);
 }
 
-/* The third largest of the 24 neighbours of a pixel. */
+/* The third largest mean of R, G and B among the 24 neighbours (5 x 5) of a pixel. */
 static float third_neighbour(const vlDenoisePlanes *p, ptrdiff_t at) {
   enum { REACH = 2, RANK = 3 };
   float top[RANK] = {0};
@@ -183,8 +185,9 @@ static float third_neighbour(const vlDenoisePlanes *p, ptrdiff_t at) {
   return top[RANK - 1];
 }
 
-/* A pixel that owes its value to few samples (its standard error is more than half of it) is scaled down to 4 times the
- * third largest of its neighbours: its light would be spread over the whole window. Factors go to the first result. */
+/* Finds outliers: pixels whose value comes from few samples (the standard error is above half of the value), and whose
+ * light the fit would spread over the whole window. Their factor scales them to at most 4 times the third largest
+ * neighbour. Factors are stored in the plane result[0], since neighbours still need the original values. */
 static void cap_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
   const vlDenoisePlanes *p = &((const Denoise *)user)->planes;
@@ -220,7 +223,8 @@ static ptrdiff_t mirror(ptrdiff_t i, uint32_t size) {
   return i < 0 ? 0 : i > last ? last : i;
 }
 
-/* Mirrors the image into the border, as far as patches of windows reach. These pixels are compared, but not valid. */
+/* Mirrors the image into the border, as far as patches in windows reach. Mirrored pixels are used to compare patches;
+ * since they are not valid, they have no weight in the fit. */
 static void mirror_plane(const vlDenoisePlanes *p, float *plane) {
   const ptrdiff_t reach = VL_DENOISE_RADIUS + VL_DENOISE_PATCH, width = p->width, height = p->height;
   for (ptrdiff_t y = 0; y < height; y++) {
@@ -247,7 +251,8 @@ static void fit_tile(void *user, uint32_t index, uint32_t worker) {
                    index / across * VL_DENOISE_TILE_Y);
 }
 
-/* Light is not negative, except where the pixel's own is. A pixel that is not finite is the mean of denoised ones. */
+/* Writes a row of the result. A value is at least 0, or at least the input's value if that is negative. A pixel that is
+ * not finite becomes the mean of the nearest denoised pixels. */
 static void write_row(const Denoise *d, uint32_t y, vlImage *clean) {
   const vlDenoisePlanes *p = &d->planes;
   float *to = vl_image_row(clean, y), filled[COLOR], variance[COLOR];
@@ -292,7 +297,7 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
 
 /* ---- the call ---------------------------------------------------------------------------------------------------- */
 
-/* The image for the result: alpha and attributes are the input's. */
+/* Makes the image for the result, with the alpha and the attributes of the input. */
 static vlResult make_clean(const vlImage *image, int alpha, vlImage **clean) {
   vlImageDef def = vl_default_image_def(image->width, image->height, alpha >= 0 ? 4 : 3);
   vlResult result = vl_image_create(image->context, &def, clean);

@@ -1,6 +1,7 @@
-/* image/denoise/fit.hot.c: each pixel as the constant of a weighted linear fit of its window to features (Bitterli et
- * al. 2016, "Nonlinearly weighted first-order regression"); weights by the distance of patches relative to their
- * variance (Rousselle et al. 2012, "Adaptive rendering with non-local means filtering", equations 1 to 4). */
+/* image/denoise/fit.hot.c: fits the window around each pixel by a weighted linear function of the features and the
+ * position; its value at the pixel is the result (Bitterli et al. 2016, "Nonlinearly weighted first-order regression").
+ * The weights depend on the distance of patches relative to their variance (Rousselle et al. 2012, "Adaptive rendering
+ * with non-local means filtering", equations 1 to 4). */
 #include "image/denoise/denoise.h"
 #include "math/approx.h"
 
@@ -15,14 +16,14 @@ enum {
   TERMS = U * (U + 1) / 2
 };
 
-static const float BANDWIDTH2 = 0.25f;                         /* square of k */
-static const float PIXEL_SHARE = 0.06f;                        /* of the pixel's own distance */
-static const float RIDGE_FEATURE = 1e-3f, RIDGE_PLACE = 3e-2f; /* per unit of weight */
+static const float BANDWIDTH2 = 0.25f;                         /* square of k in docs/denoising.md */
+static const float PIXEL_SHARE = 0.06f;                        /* factor on the distance of the two pixels alone */
+static const float RIDGE_FEATURE = 1e-3f, RIDGE_PLACE = 3e-2f; /* lambda, per unit of weight */
 
 /* ---- weights ----------------------------------------------------------------------------------------------------- */
 
-/* For each pixel of the tile and its patches' margin: the squared difference from the pixel at (dx, dy), less what
- * noise explains of it, in units of that. */
+/* For each pixel of the tile and of a margin of P pixels: the squared difference from the pixel at the offset (dx, dy),
+ * less the variance of that difference, divided by a multiple of this variance; summed over the channels. */
 static void pixel_distances(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint32_t y, int dx, int dy) {
   for (int j = 0; j < Y + 2 * P; j++) {
     ptrdiff_t at = ((ptrdiff_t)y + j - P) * p->stride + (ptrdiff_t)x - P, to = at + dy * p->stride + dx;
@@ -39,9 +40,10 @@ static void pixel_distances(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint3
   }
 }
 
-/* Weights of the tile's pixels for the neighbour at (dx, dy): exp(-distance), the larger of the patches' mean distance
- * and a share of the pixels' own. The latter excludes a neighbour that surely differs (as the test of Sakai et al. 2024
- * does), such as a pixel of a lamp's edge, whose large variance would hide it among its patch. */
+/* For each pixel of the tile, the weight of its neighbour at the offset (dx, dy): exp(-distance). The distance is the
+ * larger of the mean over the patches and PIXEL_SHARE times the distance of the two pixels alone. The latter excludes a
+ * neighbour that clearly differs, as the test of Sakai et al. 2024 does, although the patches are similar: a pixel at
+ * the edge of a lamp has so large a variance that the patches hardly differ. */
 static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint32_t y, int dx, int dy, float *to) {
   pixel_distances(p, s, x, y, dx, dy);
   for (int j = 0; j < Y + 2 * P; j++) {
@@ -71,13 +73,13 @@ static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, u
 
 /* ---- the fit ----------------------------------------------------------------------------------------------------- */
 
-/* Normal equations of a row of pixels: the lower triangle by rows, features first, then x, y, the constant last; and
- * the three right sides. */
+/* Normal equations of a row of pixels. a: the lower triangle of the symmetric matrix, row by row; the unknowns are the
+ * slopes of the features, of x and of y, then the constant. b: the right-hand sides for R, G and B. */
 typedef struct Equations {
   float a[TERMS][X], b[3][U][X];
 } Equations;
 
-/* Adds one neighbour of each pixel of the row. */
+/* Adds the neighbour at the offset (dx, dy) of each pixel of the row. `at`: index of the row's first pixel. */
 static void add(const vlDenoisePlanes *p, Equations *e, const float *w, ptrdiff_t at, int dx, int dy) {
   float diff[U][X], weighted[U][X];
   ptrdiff_t to = at + dy * p->stride + dx;
@@ -108,7 +110,8 @@ static void add(const vlDenoisePlanes *p, Equations *e, const float *w, ptrdiff_
   }
 }
 
-/* Gaussian elimination of the slopes; what is left of the last row is the constant. Ridges keep the pivots above 0. */
+/* Eliminates the slopes by Gaussian elimination; the last equation then gives the constant. The ridge terms keep the
+ * pivots above 0. */
 static void solve(const vlDenoisePlanes *p, Equations *e, ptrdiff_t at) {
   const float *total = e->a[TERMS - 1];
   float sum[X];

@@ -1,5 +1,5 @@
-/* image/denoise/oidn.c: Intel Open Image Denoise, where the user has it. The library is loaded at run time; what is
- * called is the part of its C interface that versions 1 and 2 share. */
+/* image/denoise/oidn.c: denoises by Intel Open Image Denoise, if it is installed. The library is loaded at run time.
+ * Only functions of its C interface that versions 1 and 2 have in common are called, some of them under two names. */
 #include <dlfcn.h>
 #include <math.h>
 #include <string.h>
@@ -34,7 +34,7 @@ static vlResult load(Oidn *o, const char *library, vlError *error) {
   if (!o->library)
     return vl_fail(error, VL_ERROR_MISSING, "Open Image Denoise: %s cannot be loaded", library ? library : usual[0]);
   const struct {
-    const char *name, *other; /* of version 2; of version 1 where it differs */
+    const char *name, *other; /* in version 2; in version 1 if it differs */
     void *to;
   } symbols[] = {{"oidnNewDevice", NULL, &o->new_device},
                  {"oidnCommitDevice", NULL, &o->commit_device},
@@ -58,7 +58,8 @@ static vlResult load(Oidn *o, const char *library, vlError *error) {
   return VL_OK;
 }
 
-/* Three channels of the image; values that are not finite become 0. Null: out of memory. */
+/* Copies three channels of the image, interleaved, to new memory. Values that are not finite become 0. Null: out of
+ * memory. */
 static float *copy3(const vlImage *image, const int channel[3]) {
   size_t pixels = (size_t)image->width * image->height;
   float *to = vl_alloc_array(image->context, pixels, 3 * sizeof *to);
@@ -70,7 +71,7 @@ static float *copy3(const vlImage *image, const int channel[3]) {
   return to;
 }
 
-/* planes: colour, result, albedo, normal; the last two may be null. */
+/* Denoises. planes: colour, result, albedo, normal, 3 floats per pixel; the last two may be null. */
 static vlResult run(const Oidn *o, const vlImage *image, float *const planes[4], vlError *error) {
   static const char *const names[4] = {"color", "output", "albedo", "normal"};
   void *device = o->new_device(DEFAULT_DEVICE);

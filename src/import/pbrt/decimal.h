@@ -1,14 +1,15 @@
-/* import/pbrt/decimal.h: decimal numbers to doubles, the nearest one, ties to even: what strtod gives, but independent
- * of the locale, and the same on every machine. */
+/* import/pbrt/decimal.h: converts decimal numbers to the nearest double, ties to even. The result is strtod's, but it
+ * does not depend on the locale or on the machine. */
 #ifndef IMPORT_PBRT_DECIMAL_H
 #define IMPORT_PBRT_DECIMAL_H
 
 #include <stdint.h>
 
-/* mantissa * 10^exponent; HUGE_VAL where that is beyond doubles. */
+/* mantissa * 10^exponent; HUGE_VAL if that is too large for a double. */
 double vl_decimal(uint64_t mantissa, int exponent);
 
-/* The same for any number of digits: text holds decimal digits, at most one point among them, up to end. */
+/* The same for any number of digits: the mantissa is the text from `text` to `end`, which holds decimal digits and at
+ * most one decimal point. */
 double vl_decimal_digits(const char *text, const char *end, int exponent);
 
 #endif

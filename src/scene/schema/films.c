@@ -6,7 +6,7 @@
 
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlSceneDefs, __VA_ARGS__)
 #define RULE VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND
-/* Factors of one member, develop.exposure. */
+/* Parameters whose product is develop.exposure. */
 #define EXPOSURE(file_name, usual, text)                                                                     \
   {                                                                                                          \
     .name = file_name, .member = "develop.exposure", .type = VL_PARAMETER_DOUBLE, .flags = RULE,             \
@@ -21,7 +21,8 @@
       PARAMETER(BLOCK, "filename", output, "the image file", .text = "string", .flags = VL_PARAMETER_RULE),          \
       PARAMETER(BLOCK, "pixelbounds", film.crop, "x0, x1, y0, y1 of the pixels that are rendered; x1, y1 exclusive", \
                 .text = "integer", .flags = VL_PARAMETER_RULE),                                                      \
-      PARAMETER(BLOCK, "cropwindow", film.crop, "the same in fractions of the size; counts where both are given",    \
+      PARAMETER(BLOCK, "cropwindow", film.crop,                                                                      \
+                "the crop window in fractions of the size; used instead of pixelbounds if both are given",           \
                 .text = "float", .flags = VL_PARAMETER_RULE),                                                        \
       {.name = "diagonal",                                                                                           \
        .member = "camera.lens",                                                                                      \
@@ -29,16 +30,17 @@
        .flags = RULE,                                                                                                \
        .value = {35},                                                                                                \
        .unit = "mm",                                                                                                 \
-       .description = "of the sensor behind realistic cameras"},                                                     \
+       .description = "diagonal of the sensor of realistic cameras"},                                                \
       EXPOSURE("iso", 100, "sensitivity: the image is multiplied by iso / 100"),                                     \
       EXPOSURE("exposuretime", 1, "factor on the image"), EXPOSURE("imagingratio", 1, "factor on the image"),        \
-      PARAMETER(STRING, "sensor", film.sensor, "whose colours: cie1931, or a measured camera (vl_sensor_name)",      \
+      PARAMETER(STRING, "sensor", film.sensor, "spectral response: cie1931, or a measured camera (vl_sensor_name)",  \
                 .text = NULL, .flags = VL_PARAMETER_RULE),                                                           \
       PARAMETER(DOUBLE, "whitebalance", film.white_balance,                                                          \
-                "daylight of this temperature, 1000 to 100000, comes out white; 0: as it is",                        \
+                "daylight of this temperature, 1000 to 100000, becomes white; 0: no white balance",                  \
                 .flags = VL_PARAMETER_RULE, .unit = "K"),                                                            \
-      PARAMETER(FLOAT, "maxcomponentvalue", film.max_component, "samples with a larger component are made darker",   \
-                VL_DEFAULT(INFINITY), VL_FROM(0), .flags = VL_PARAMETER_RULE | VL_PARAMETER_INFINITE),               \
+      PARAMETER(FLOAT, "maxcomponentvalue", film.max_component,                                                      \
+                "samples with a larger component are scaled down to it", VL_DEFAULT(INFINITY), VL_FROM(0),           \
+                .flags = VL_PARAMETER_RULE | VL_PARAMETER_INFINITE),                                                 \
   {                                                                                                                  \
     .name = "savefp16", .member = "", .type = VL_PARAMETER_BOOL, .flags = RULE, .description = "ignored"             \
   }
@@ -49,20 +51,20 @@ VL_KIND_ROW(rgb, .name = "rgb", .description = "an image of red, green and blue"
 static const char *const systems[] = {"camera", "world", NULL};
 static const vlParameter gbuffer_parameters[] = {
     COMMON,
-    PARAMETER(CHOICE, "coordinatesystem", gbuffer, "of the channels", .choices = systems,
+    PARAMETER(CHOICE, "coordinatesystem", gbuffer, "space of the channels", .choices = systems,
               .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND),
 };
-VL_KIND_ROW(gbuffer, .name = "gbuffer", .description = "the same and channels of ground truth")
+VL_KIND_ROW(gbuffer, .name = "gbuffer", .description = "an rgb image with channels of ground truth")
 
 #define WAVELENGTH(name, member, usual, text) \
   PARAMETER(DOUBLE, name, member, text, VL_DEFAULT(usual), VL_RANGE(360, 830), .unit = "nm")
 static const vlParameter spectral_parameters[] = {
     COMMON,
-    PARAMETER(COUNT, "nbuckets", film.buckets, "buckets of wavelengths", VL_DEFAULT(16), VL_RANGE(1, 1000)),
-    WAVELENGTH("lambdamin", film.lambda_min, 360, "where the first begins"),
-    WAVELENGTH("lambdamax", film.lambda_max, 830, "where the last ends"),
+    PARAMETER(COUNT, "nbuckets", film.buckets, "number of buckets of wavelengths", VL_DEFAULT(16), VL_RANGE(1, 1000)),
+    WAVELENGTH("lambdamin", film.lambda_min, 360, "start of the first bucket"),
+    WAVELENGTH("lambdamax", film.lambda_max, 830, "end of the last bucket"),
 };
-VL_KIND_ROW(spectral, .name = "spectral", .description = "the same as rgb and buckets of wavelengths")
+VL_KIND_ROW(spectral, .name = "spectral", .description = "an rgb image with a spectrum in buckets")
 
 #define ROW(NAME, name) [VL_FILM_##NAME] = &name##_row,
 VL_KIND_FAMILY(vl_film_family, VL_FILM_KINDS, ROW, "films", "film", "Film")

@@ -1,5 +1,5 @@
-/* scene/schema/materials.c: the materials. Names in files and defaults are pbrt-v4's, the principled material's glTF's.
- */
+/* scene/schema/materials.c: the materials. Names in files and defaults are those of pbrt-v4; the principled
+ * material's are those of glTF. */
 #include "scene/schema/schema.h"
 
 #define BOOL(...) VL_PARAMETER(BOOL, vlMaterialDef, __VA_ARGS__)
@@ -17,38 +17,40 @@
 #define UNBOUNDED VL_FROM(0), .role = VL_PARAMETER_UNBOUNDED
 #define SHARE CLAMPED(0, 1)
 
-/* What several kinds have. */
+/* Parameters of several kinds. */
 #define BUMPS                                                                                 \
   INPUT("displacement", displacement, "height of a bump map, in the scene's unit of length"), \
       FILE_NAME("normalmap", normal_map, "an image of normals, in tangent space and linear")
 #define REFLECTANCE(value, text) SPECTRUM("reflectance", reflectance, text, VL_DEFAULT(value), ALBEDO)
 #define REMAP BOOL("remaproughness", remap_roughness, "alpha is the square root of roughness", VL_DEFAULT(1))
-#define ROUGHNESS                                                                                             \
-  INPUT("roughness", u_roughness, "uroughness and vroughness at once", VL_SECOND(vlMaterialDef, v_roughness), \
-        VL_FROM(0), .flags = VL_PARAMETER_SHORTHAND | VL_PARAMETER_CLAMPED),                                  \
-      INPUT("uroughness", u_roughness, "along the tangent", ROUGH_RANGE),                                     \
-      INPUT("vroughness", v_roughness, "across it", ROUGH_RANGE), REMAP
+#define ROUGHNESS                                                                                                      \
+  INPUT("roughness", u_roughness, "sets uroughness and vroughness", VL_SECOND(vlMaterialDef, v_roughness), VL_FROM(0), \
+        .flags = VL_PARAMETER_SHORTHAND | VL_PARAMETER_CLAMPED),                                                       \
+      INPUT("uroughness", u_roughness, "roughness along the tangent", ROUGH_RANGE),                                    \
+      INPUT("vroughness", v_roughness, "roughness across the tangent", ROUGH_RANGE), REMAP
 #define ROUGH_RANGE VL_FROM(0), .flags = VL_PARAMETER_CLAMPED
 #define ETA_DIELECTRIC \
   VL_DEFAULT(1.5), UNBOUNDED, .flags = VL_PARAMETER_NUMBER | VL_PARAMETER_NO_TEXTURE | VL_PARAMETER_ABOVE_LOW
-#define LAYERS                                                                                               \
-  INPUT("thickness", thickness, "of the medium under the coat, in mean free paths", VL_DEFAULT(0.01)),       \
-      INPUT("g", g, "mean cosine of that medium's scattering", CLAMPED(-0.999, 0.999)),                      \
-      SPECTRUM("albedo", albedo, "of that medium; 0: it absorbs only", VL_DEFAULT(0), ALBEDO),               \
-      COUNT("maxdepth", max_depth, "bounces between the layers", VL_DEFAULT(10), VL_RANGE(1, 4294967295.0)), \
-      COUNT("nsamples", samples, "random walks each time, where there are any", VL_DEFAULT(1),               \
-            VL_RANGE(1, 4294967295.0)),                                                                      \
-      BOOL("conserveenergy", conserve_energy, "a rough coat over a diffuse base loses no light")
+#define LAYERS                                                                                                       \
+  INPUT("thickness", thickness, "thickness of the medium under the coat, in mean free paths", VL_DEFAULT(0.01)),     \
+      INPUT("g", g, "mean cosine of scattering in that medium", CLAMPED(-0.999, 0.999)),                             \
+      SPECTRUM("albedo", albedo, "albedo of that medium; 0: it only absorbs", VL_DEFAULT(0), ALBEDO),                \
+      COUNT("maxdepth", max_depth, "bounces between the layers", VL_DEFAULT(10), VL_RANGE(1, 4294967295.0)),         \
+      COUNT("nsamples", samples, "random walks per evaluation, where the material uses random walks", VL_DEFAULT(1), \
+            VL_RANGE(1, 4294967295.0)),                                                                              \
+      BOOL("conserveenergy", conserve_energy, "compensates the energy that a rough coat over a diffuse base loses")
 #define METAL(eta_name, k_name)                                                                                  \
   SPECTRUM(eta_name, eta, "index of refraction", .text = "metal-Cu-eta", UNBOUNDED),                             \
       SPECTRUM(k_name, k, "extinction coefficient", .text = "metal-Cu-k", UNBOUNDED),                            \
-      SPECTRUM("reflectance", reflectance, "at normal incidence, in place of the two", VL_DEFAULT(0.5), ALBEDO), \
-      BOOL(NULL, use_reflectance, "reflectance counts")
+      SPECTRUM("reflectance", reflectance,                                                                       \
+               "reflectance at normal incidence, in place of index and extinction coefficient", VL_DEFAULT(0.5), \
+               ALBEDO),                                                                                          \
+      BOOL(NULL, use_reflectance, "use reflectance instead of eta and k")
 
 /* ---- one layer --------------------------------------------------------------------------------------------------- */
 
 static const vlParameter diffuse_parameters[] = {REFLECTANCE(0.5, "share of the light that is scattered"), BUMPS};
-VL_KIND_ROW(diffuse, .name = "diffuse", .description = "Lambert's", .traits = VL_MATERIAL_OPAQUE)
+VL_KIND_ROW(diffuse, .name = "diffuse", .description = "Lambertian reflection", .traits = VL_MATERIAL_OPAQUE)
 
 static const vlParameter conductor_parameters[] = {METAL("eta", "k"), ROUGHNESS, BUMPS};
 VL_KIND_ROW(conductor, .name = "conductor", .description = "a metal, smooth or rough",
@@ -61,17 +63,18 @@ VL_KIND_ROW(dielectric, .name = "dielectric", .description = "glass, water, smoo
 
 static const vlParameter thin_dielectric_parameters[] = {SPECTRUM("eta", eta, "index of refraction", ETA_DIELECTRIC),
                                                          BUMPS};
-VL_KIND_ROW(thin_dielectric, .name = "thindielectric", .description = "a sheet of glass that bends no light")
+VL_KIND_ROW(thin_dielectric, .name = "thindielectric", .description = "a thin sheet of glass, without refraction")
 
 static const vlParameter diffuse_transmission_parameters[] = {
-    REFLECTANCE(0.25, "share that is scattered back"),
-    SPECTRUM("transmittance", transmittance, "share that is scattered to the other side", VL_DEFAULT(0.25), ALBEDO),
+    REFLECTANCE(0.25, "share of the light that is reflected"),
+    SPECTRUM("transmittance", transmittance, "share of the light that is transmitted", VL_DEFAULT(0.25), ALBEDO),
     FLOAT("scale", scale, "factor on both", VL_DEFAULT(1), VL_FROM(0)), BUMPS};
-VL_KIND_ROW(diffuse_transmission, .name = "diffusetransmission", .description = "a leaf, paper: Lambert's, both ways")
+VL_KIND_ROW(diffuse_transmission, .name = "diffusetransmission",
+            .description = "Lambertian reflection and transmission, as of leaves and paper")
 
 static const char *const hair_colors[] = {"sigma_a", "reflectance", "melanin", NULL};
 static const vlParameter hair_parameters[] = {
-    CHOICE(NULL, hair.color, "which of the three says what the hair absorbs", VL_DEFAULT(VL_HAIR_MELANIN),
+    CHOICE(NULL, hair.color, "which of the three gives the absorption", VL_DEFAULT(VL_HAIR_MELANIN),
            .choices = hair_colors),
     SPECTRUM("sigma_a", hair.sigma_a, "absorption per radius of the hair", VL_DEFAULT(0), UNBOUNDED),
     SPECTRUM("reflectance", reflectance, "colour of many hairs together", VL_DEFAULT(0.5), ALBEDO, .alias = "color"),
@@ -79,7 +82,7 @@ static const vlParameter hair_parameters[] = {
     INPUT("pheomelanin", hair.pheomelanin, "concentration of the red pigment", ROUGH_RANGE),
     INPUT("eta", hair.eta, "index of refraction", VL_DEFAULT(1.55), CLAMPED(1.0001, 10)),
     INPUT("beta_m", hair.beta_m, "roughness along the hair", VL_DEFAULT(0.3), SHARE),
-    INPUT("beta_n", hair.beta_n, "roughness around it", VL_DEFAULT(0.3), SHARE),
+    INPUT("beta_n", hair.beta_n, "roughness around the hair", VL_DEFAULT(0.3), SHARE),
     INPUT("alpha", hair.alpha, "tilt of the scales", VL_DEFAULT(2), .unit = "degrees"),
     BUMPS,
 };
@@ -88,27 +91,27 @@ VL_KIND_ROW(hair, .name = "hair", .description = "hair and fur (pbrt book 9.9); 
 static const vlParameter measured_parameters[] = {
     FILE_NAME("filename", measured, "a file with spectra of the RGL material database", .flags = VL_PARAMETER_REQUIRED),
     BUMPS};
-VL_KIND_ROW(measured, .name = "measured", .description = "reflection as it was measured (Dupuy and Jakob 2018)")
+VL_KIND_ROW(measured, .name = "measured", .description = "a measured BRDF (Dupuy and Jakob 2018)")
 
 /* ---- several layers ---------------------------------------------------------------------------------------------- */
 
 static const vlParameter coated_diffuse_parameters[] = {
-    REFLECTANCE(0.5, "of the base"), ROUGHNESS, SPECTRUM("eta", eta, "index of refraction of the coat", ETA_DIELECTRIC),
-    LAYERS, BUMPS};
+    REFLECTANCE(0.5, "reflectance of the base"), ROUGHNESS,
+    SPECTRUM("eta", eta, "index of refraction of the coat", ETA_DIELECTRIC), LAYERS, BUMPS};
 VL_KIND_ROW(coated_diffuse, .name = "coateddiffuse", .description = "a dielectric coat over a diffuse base",
             .traits = VL_MATERIAL_OPAQUE | VL_MATERIAL_ROUGH)
 
 static const vlParameter coated_conductor_parameters[] = {
     METAL("conductor.eta", "conductor.k"),
-    INPUT("conductor.roughness", u_roughness, "conductor.uroughness and conductor.vroughness at once",
+    INPUT("conductor.roughness", u_roughness, "sets conductor.uroughness and conductor.vroughness",
           VL_SECOND(vlMaterialDef, v_roughness), VL_FROM(0), .flags = VL_PARAMETER_SHORTHAND | VL_PARAMETER_CLAMPED),
-    INPUT("conductor.uroughness", u_roughness, "of the metal, along the tangent", ROUGH_RANGE),
-    INPUT("conductor.vroughness", v_roughness, "of the metal, across it", ROUGH_RANGE),
-    INPUT("interface.roughness", coat_u_roughness, "interface.uroughness and interface.vroughness at once",
+    INPUT("conductor.uroughness", u_roughness, "roughness of the metal, along the tangent", ROUGH_RANGE),
+    INPUT("conductor.vroughness", v_roughness, "roughness of the metal, across the tangent", ROUGH_RANGE),
+    INPUT("interface.roughness", coat_u_roughness, "sets interface.uroughness and interface.vroughness",
           VL_SECOND(vlMaterialDef, coat_v_roughness), VL_FROM(0),
           .flags = VL_PARAMETER_SHORTHAND | VL_PARAMETER_CLAMPED),
-    INPUT("interface.uroughness", coat_u_roughness, "of the coat, along the tangent", ROUGH_RANGE),
-    INPUT("interface.vroughness", coat_v_roughness, "of the coat, across it", ROUGH_RANGE),
+    INPUT("interface.uroughness", coat_u_roughness, "roughness of the coat, along the tangent", ROUGH_RANGE),
+    INPUT("interface.vroughness", coat_v_roughness, "roughness of the coat, across the tangent", ROUGH_RANGE),
     REMAP,
     SPECTRUM("interface.eta", coat_eta, "index of refraction of the coat", ETA_DIELECTRIC),
     LAYERS,
@@ -118,32 +121,33 @@ VL_KIND_ROW(coated_conductor, .name = "coatedconductor", .description = "a diele
             .traits = VL_MATERIAL_OPAQUE | VL_MATERIAL_METAL | VL_MATERIAL_ROUGH)
 
 static const vlParameter principled_parameters[] = {
-    SPECTRUM("basecolor", reflectance, "of the diffuse base, or of the metal", VL_DEFAULT(1), ALBEDO),
+    SPECTRUM("basecolor", reflectance, "colour of the diffuse base, or of the metal", VL_DEFAULT(1), ALBEDO),
     INPUT("metallic", principled.metallic, "share of metal", VL_DEFAULT(1), SHARE),
     INPUT("roughness", principled.roughness, "alpha is its square", VL_DEFAULT(1), SHARE),
-    INPUT("anisotropy", principled.anisotropy, "alpha along the tangent grows towards 1 by its square", SHARE),
+    INPUT("anisotropy", principled.anisotropy, "alpha along the tangent is interpolated to 1 by its square", SHARE),
     INPUT("anisotropyrotation", principled.anisotropy_rotation, "from the tangent towards the bitangent",
           .unit = "degrees", .factor = 0.017453292519943295, .flags = VL_PARAMETER_FILE_NUMBER),
     SPECTRUM("eta", eta, "index of refraction; 0: all light is reflected at grazing angles and none is lost",
              VL_DEFAULT(1.5), VL_FROM(0), .role = VL_PARAMETER_UNBOUNDED,
              .flags = VL_PARAMETER_ONE_NUMBER | VL_PARAMETER_NO_TEXTURE),
     INPUT("specular", principled.specular, "factor on the dielectric's reflection", VL_DEFAULT(1), SHARE),
-    SPECTRUM("specularcolor", principled.specular_color, "factor on its reflection at normal incidence", VL_DEFAULT(1),
-             UNBOUNDED),
-    INPUT("transmission", principled.transmission, "share of the base that passes light", SHARE),
-    BOOL("thinwalled", principled.thin_walled, "a sheet that bends no light", VL_DEFAULT(1)),
-    FLOAT("dispersion", principled.dispersion, "20 / Abbe number; not of sheets", VL_FROM(0)),
-    INPUT("diffusetransmission", principled.diffuse_transmission, "share of the diffuse light that leaves behind",
+    SPECTRUM("specularcolor", principled.specular_color, "factor on the dielectric's reflection at normal incidence",
+             VL_DEFAULT(1), UNBOUNDED),
+    INPUT("transmission", principled.transmission, "share of the base that transmits light", SHARE),
+    BOOL("thinwalled", principled.thin_walled, "a thin sheet, without refraction", VL_DEFAULT(1)),
+    FLOAT("dispersion", principled.dispersion, "20 / Abbe number; no effect with thinwalled", VL_FROM(0)),
+    INPUT("diffusetransmission", principled.diffuse_transmission, "share of the diffuse light that is transmitted",
           SHARE),
-    SPECTRUM("diffusetransmissioncolor", principled.diffuse_transmission_color, "its colour", VL_DEFAULT(1), ALBEDO),
-    INPUT("clearcoat", principled.clearcoat, "share that a clear coat covers", SHARE),
-    INPUT("clearcoatroughness", principled.clearcoat_roughness, "of the clear coat", SHARE),
-    SPECTRUM("sheencolor", principled.sheen_color, "of fuzz on the surface; black: none", VL_DEFAULT(0), ALBEDO),
-    INPUT("sheenroughness", principled.sheen_roughness, "of that fuzz", SHARE),
-    INPUT("iridescence", principled.iridescence, "share that a thin film covers", SHARE),
+    SPECTRUM("diffusetransmissioncolor", principled.diffuse_transmission_color, "colour of that light", VL_DEFAULT(1),
+             ALBEDO),
+    INPUT("clearcoat", principled.clearcoat, "share of the surface that a clear coat covers", SHARE),
+    INPUT("clearcoatroughness", principled.clearcoat_roughness, "roughness of the clear coat", SHARE),
+    SPECTRUM("sheencolor", principled.sheen_color, "colour of the sheen; black: none", VL_DEFAULT(0), ALBEDO),
+    INPUT("sheenroughness", principled.sheen_roughness, "roughness of the sheen", SHARE),
+    INPUT("iridescence", principled.iridescence, "share of the surface that a thin film covers", SHARE),
     FLOAT("iridescenceeta", principled.iridescence_ior, "index of refraction of the film", VL_DEFAULT(1.3), VL_FROM(1)),
-    INPUT("iridescencethickness", principled.iridescence_thickness, "of the film", VL_DEFAULT(400), .unit = "nm",
-          VL_FROM(0), .flags = VL_PARAMETER_CLAMPED),
+    INPUT("iridescencethickness", principled.iridescence_thickness, "thickness of the film", VL_DEFAULT(400),
+          .unit = "nm", VL_FROM(0), .flags = VL_PARAMETER_CLAMPED),
     TEXTURE(NULL, principled.normal, "a tangent-space normal map"),
     FLOAT(NULL, principled.normal_scale, "factor on its x and y", VL_DEFAULT(1)),
     TEXTURE(NULL, principled.clearcoat_normal, "a normal map of the clear coat"),
@@ -159,14 +163,15 @@ static const vlParameter subsurface_parameters[] = {
      .type = VL_PARAMETER_STRING,
      .offset = offsetof(vlMaterialDef, subsurface),
      .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND,
-     .description = "a measured substance (media.md) in place of the four below"},
+     .description = "a measured substance (media.md), in place of the four parameters below"},
     SPECTRUM("sigma_a", subsurface.sigma_a, "absorption per unit of length", VL_DEFAULT(0.0011, 0.0024, 0.014),
              VL_FROM(0), .role = VL_PARAMETER_UNBOUNDED, .flags = VL_PARAMETER_RGB),
     SPECTRUM("sigma_s", subsurface.sigma_s, "scattering per unit of length", VL_DEFAULT(2.55, 3.21, 3.77), VL_FROM(0),
              .role = VL_PARAMETER_UNBOUNDED, .flags = VL_PARAMETER_RGB),
-    SPECTRUM("reflectance", reflectance, "of a thick piece, in place of the two", VL_DEFAULT(0.5), ALBEDO),
-    SPECTRUM("mfp", subsurface.mfp, "mean free path, beside reflectance", VL_DEFAULT(1), UNBOUNDED),
-    BOOL(NULL, subsurface.from_reflectance, "reflectance and mfp count"),
+    SPECTRUM("reflectance", reflectance, "reflectance of a thick slab, in place of sigma_a and sigma_s",
+             VL_DEFAULT(0.5), ALBEDO),
+    SPECTRUM("mfp", subsurface.mfp, "mean free path, used with reflectance", VL_DEFAULT(1), UNBOUNDED),
+    BOOL(NULL, subsurface.from_reflectance, "use reflectance and mfp instead of sigma_a and sigma_s"),
     FLOAT("scale", scale, "factor on sigma_a and sigma_s, or on mfp", VL_DEFAULT(1), VL_FROM(0)),
     SPECTRUM("eta", eta, "index of refraction", VL_DEFAULT(1.33), VL_RANGE(0.5, 2.5), .role = VL_PARAMETER_UNBOUNDED,
              .flags = VL_PARAMETER_ONE_NUMBER | VL_PARAMETER_NO_TEXTURE),
@@ -175,19 +180,19 @@ static const vlParameter subsurface_parameters[] = {
     ROUGHNESS,
     BUMPS,
 };
-VL_KIND_ROW(subsurface, .name = "subsurface", .description = "a solid that light enters and leaves elsewhere",
+VL_KIND_ROW(subsurface, .name = "subsurface", .description = "a solid in which light scatters below the surface",
             .traits = VL_MATERIAL_OPAQUE | VL_MATERIAL_ROUGH | VL_MATERIAL_REFRACTS)
 
 /* ---- no surface of their own ------------------------------------------------------------------------------------- */
 
 static const vlParameter mix_parameters[] = {
     BLOCK("materials", materials, "names of the two materials", .flags = VL_PARAMETER_RULE | VL_PARAMETER_REQUIRED),
-    INPUT("amount", amount, "share of the second", VL_DEFAULT(0.5), SHARE),
+    INPUT("amount", amount, "share of the second material", VL_DEFAULT(0.5), SHARE),
 };
-VL_KIND_ROW(mix, .name = "mix", .description = "of two materials, one of which counts at each hit")
+VL_KIND_ROW(mix, .name = "mix", .description = "two materials, one of which is chosen at each hit")
 
 VL_KIND_ROW_EMPTY(interface, .name = "interface", .alias = "none", .traits = VL_MATERIAL_ABSENT,
-                  .description = "no surface: a border between media")
+                  .description = "no surface, only a boundary between media")
 
 #define ROW(NAME, name) [VL_MATERIAL_##NAME] = &name##_row,
 VL_KIND_FAMILY(vl_material_family, VL_MATERIAL_KINDS, ROW, "materials", "material", "Material")

@@ -1,5 +1,5 @@
-/* scene/schema/shapes.c: the shapes. Names and defaults are pbrt-v4's; its shapes "plymesh" and "loopsubdiv" are other
- * ways to say triangles. */
+/* scene/schema/shapes.c: the shapes. Names and defaults are those of pbrt-v4. Its shapes "plymesh" and "loopsubdiv"
+ * become triangles. */
 #include <math.h>
 
 #include "base/cookie.h"
@@ -10,7 +10,7 @@
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlShapeDef, __VA_ARGS__)
 #define ARRAY(name, member, type_in_files, line) PARAMETER(BLOCK, name, member, line, .text = type_in_files)
 #define LENGTH(name, member, text, ...) PARAMETER(FLOAT, name, member, text, .unit = "length", VL_DEFAULT(__VA_ARGS__))
-/* Names in files that stand for arrays of the def. */
+/* Parameters in files from which arrays of the def are computed. */
 #define IN_FILES(TYPE, file_name, place, text, ...)                                                          \
   {                                                                                                          \
     .type = VL_PARAMETER_##TYPE, .name = file_name, .member = #place, .offset = offsetof(vlShapeDef, place), \
@@ -20,9 +20,9 @@
 #define RADIUS                                                                              \
   PARAMETER(FLOAT, "radius", radius, "radius", .unit = "length", VL_DEFAULT(1), VL_FROM(0), \
             .flags = VL_PARAMETER_ABOVE_LOW)
-#define PHI_MAX                                                                                        \
-  PARAMETER(FLOAT, "phimax", phi_max, "the part of the turn about z that is there", .unit = "degrees", \
-            .factor = DEGREES, VL_DEFAULT(360 * DEGREES), VL_FROM(0), .flags = VL_PARAMETER_ABOVE_LOW)
+#define PHI_MAX                                                                                                    \
+  PARAMETER(FLOAT, "phimax", phi_max, "angle about z that the shape covers", .unit = "degrees", .factor = DEGREES, \
+            VL_DEFAULT(360 * DEGREES), VL_FROM(0), .flags = VL_PARAMETER_ABOVE_LOW)
 
 static const vlParameter triangles_parameters[] = {
     ALPHA,
@@ -36,8 +36,8 @@ static const vlParameter triangles_parameters[] = {
     ARRAY(NULL, colors, NULL, "linear RGB and coverage per vertex"),
     ARRAY(NULL, positions_close, NULL, "vertices at times[1]"),
     ARRAY(NULL, normals_close, NULL, "normals at times[1]"),
-    ARRAY(NULL, times, NULL, "of the two sets of vertices, seconds"),
-    PARAMETER(BOOL, NULL, one_sided, "rays pass through the backs", VL_DEFAULT(0)),
+    ARRAY(NULL, times, NULL, "times of the two sets of vertices, seconds"),
+    PARAMETER(BOOL, NULL, one_sided, "rays pass through back faces", VL_DEFAULT(0)),
     PARAMETER(FLOAT_INPUT, "displacement", displacement,
               "in files of plymesh: a float texture that moves the surface along its normals", .unit = "length",
               .flags = VL_PARAMETER_RULE),
@@ -62,11 +62,11 @@ VL_KIND_ROW(bilinear, .name = "bilinearmesh", .description = "a mesh of bilinear
 static const vlParameter sphere_parameters[] = {
     ALPHA,
     RADIUS,
-    LENGTH("zmin", z_min, "where it starts along z; unset in a file: -radius", -1),
-    LENGTH("zmax", z_max, "where it ends along z; unset in a file: radius", 1),
+    LENGTH("zmin", z_min, "lower end along z; unset in a file: -radius", -1),
+    LENGTH("zmax", z_max, "upper end along z; unset in a file: radius", 1),
     PHI_MAX,
-    ARRAY(NULL, centers, NULL, "of many whole spheres as one shape"),
-    ARRAY(NULL, radii, NULL, "of those spheres"),
+    ARRAY(NULL, centers, NULL, "centres of many whole spheres in one shape"),
+    ARRAY(NULL, radii, NULL, "radii of those spheres"),
 };
 VL_KIND_ROW(sphere, .name = "sphere", .description = "a sphere or a part of one",
             .traits = VL_SHAPE_TRAIT_QUADRIC | VL_SHAPE_TRAIT_EMITS)
@@ -74,18 +74,15 @@ VL_KIND_ROW(sphere, .name = "sphere", .description = "a sphere or a part of one"
 static const vlParameter disk_parameters[] = {
     ALPHA,
     RADIUS,
-    PARAMETER(FLOAT, "innerradius", inner_radius, "of a hole; less than the radius", .unit = "length", VL_FROM(0)),
-    LENGTH("height", height, "where it is along z", 0),
+    PARAMETER(FLOAT, "innerradius", inner_radius, "radius of the hole; less than radius", .unit = "length", VL_FROM(0)),
+    LENGTH("height", height, "position along z", 0),
     PHI_MAX,
 };
-VL_KIND_ROW(disk, .name = "disk", .description = "a disk across z or a part of one",
+VL_KIND_ROW(disk, .name = "disk", .description = "a disk perpendicular to z, or a part of one",
             .traits = VL_SHAPE_TRAIT_QUADRIC | VL_SHAPE_TRAIT_EMITS)
 
 static const vlParameter cylinder_parameters[] = {
-    ALPHA,
-    RADIUS,
-    LENGTH("zmin", z_min, "where it starts along z", -1),
-    LENGTH("zmax", z_max, "where it ends along z", 1),
+    ALPHA,   RADIUS, LENGTH("zmin", z_min, "lower end along z", -1), LENGTH("zmax", z_max, "upper end along z", 1),
     PHI_MAX,
 };
 VL_KIND_ROW(cylinder, .name = "cylinder", .description = "a cylinder about z, open, or a part of one",
@@ -96,21 +93,22 @@ static const char *const curve_bases[] = {"bezier", "bspline", NULL};
 
 static const vlParameter curves_parameters[] = {
     ALPHA,
-    PARAMETER(CHOICE, "type", curve, "facing each ray; so, too, with a tube's normal; or lying across N",
+    PARAMETER(CHOICE, "type", curve,
+              "flat: faces each ray; cylinder: the same with a tube's normals; ribbon: perpendicular to N",
               .choices = curve_kinds),
     ARRAY("P", positions, "point3 array", "control points; in the def 4 Bezier points per segment"),
-    IN_FILES(CHOICE, "basis", positions, "of the control points", .choices = curve_bases),
-    IN_FILES(COUNT, "degree", positions, "of the control points", VL_DEFAULT(3), VL_RANGE(2, 3)),
-    ARRAY(NULL, widths, NULL, "at both ends of each segment"),
-    IN_FILES(FLOAT, "width", widths, "of the whole curve", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
-    IN_FILES(FLOAT, "width0", widths, "at its start; unset: width", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
-    IN_FILES(FLOAT, "width1", widths, "at its end; unset: width", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
-    ARRAY("N", normals, "normal array", "of ribbons, at both ends of each segment"),
+    IN_FILES(CHOICE, "basis", positions, "of the curve", .choices = curve_bases),
+    IN_FILES(COUNT, "degree", positions, "of the curve", VL_DEFAULT(3), VL_RANGE(2, 3)),
+    ARRAY(NULL, widths, NULL, "widths at both ends of each segment"),
+    IN_FILES(FLOAT, "width", widths, "width of the whole curve", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
+    IN_FILES(FLOAT, "width0", widths, "width at the start; unset: width", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
+    IN_FILES(FLOAT, "width1", widths, "width at the end; unset: width", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
+    ARRAY("N", normals, "normal array", "normals of ribbons, at both ends of each segment"),
     PARAMETER(COUNT, "splitdepth", split_depth,
-              "segments are cut into 2^splitdepth pieces, at most 10: for speed alone", VL_DEFAULT(3),
+              "segments are split into 2^splitdepth pieces, splitdepth at most 10; affects speed only", VL_DEFAULT(3),
               .flags = VL_PARAMETER_RULE),
 };
-VL_KIND_ROW(curves, .name = "curve", .description = "cubic curves with a width, as hairs are", .traits = 0)
+VL_KIND_ROW(curves, .name = "curve", .description = "cubic curves with a width, such as hairs", .traits = 0)
 
 #define ROW(NAME, name) [VL_SHAPE_##NAME] = &name##_row,
 VL_KIND_FAMILY(vl_shape_family, VL_SHAPE_KINDS, ROW, "shapes", "shape", "Shape")

@@ -5,37 +5,34 @@
 #include "velo/render.h"
 
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlSceneDefs, __VA_ARGS__)
-#define DEPTH                                                                                            \
-  PARAMETER(COUNT, "maxdepth", render.max_depth, "bounces of the longest path; 4096 are taken for more", \
+#define DEPTH                                                                                                 \
+  PARAMETER(COUNT, "maxdepth", render.max_depth, "bounces of the longest path; more than 4096 count as 4096", \
             VL_DEFAULT(5), VL_FROM(0), .flags = VL_PARAMETER_RULE)
 #define REGULARIZE                                                                                               \
-  PARAMETER(BOOL, "regularize", build.regularize, "what a path meets after it has been scattered is made rough", \
+  PARAMETER(BOOL, "regularize", build.regularize, "surfaces that a path hits after scattering are made rougher", \
             VL_DEFAULT(0))
 static const char *const light_samplers[] = {"bvh", "power", "uniform", "exhaustive", NULL};
-#define LIGHT_SAMPLER                                                                                          \
-  PARAMETER(CHOICE, "lightsampler", build.light_sampler, "how a light is chosen; bvh is taken for exhaustive", \
+#define LIGHT_SAMPLER                                                                                        \
+  PARAMETER(CHOICE, "lightsampler", build.light_sampler, "how a light is chosen; exhaustive is read as bvh", \
             .choices = light_samplers, .flags = VL_PARAMETER_RULE)
-/* pbrt's parameters without a meaning here. */
+/* Parameters of pbrt that velo ignores. */
 #define IGNORED(TYPE, file_name)                                                                                       \
   {                                                                                                                    \
     .name = file_name, .member = "", .type = VL_PARAMETER_##TYPE, .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND, \
     .description = "ignored"                                                                                           \
   }
-#define PATHS                                                     \
-  PARAMETER(COUNT, "photonsperiteration", render.light_paths,     \
-            "paths from the lights in a pass; unset: as many as " \
-            "pixels",                                             \
+#define PATHS                                                                                               \
+  PARAMETER(COUNT, "photonsperiteration", render.light_paths, "light paths per pass; unset: one per pixel", \
             .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND)
 #define TWO_WAY                                                                                                       \
   DEPTH, PATHS, IGNORED(BOOL, "regularize"), IGNORED(BOOL, "visualizestrategies"), IGNORED(BOOL, "visualizeweights"), \
       IGNORED(FLOAT, "sigma"), IGNORED(FLOAT, "largestepprobability"), IGNORED(COUNT, "bootstrapsamples"),            \
       IGNORED(COUNT, "chains"), IGNORED(COUNT, "mutationsperpixel"), IGNORED(COUNT, "seed"),                          \
       IGNORED(COUNT, "iterations")
-#define RADIUS                                                                \
-  PARAMETER(DOUBLE, "radius", render.merge_radius,                            \
-            "within which paths meet in the first pass, scene units; unset: " \
-            "two pixels wide",                                                \
-            VL_FROM(0), .flags = VL_PARAMETER_UNSET | VL_PARAMETER_ABOVE_LOW)
+#define RADIUS                                                                                   \
+  PARAMETER(DOUBLE, "radius", render.merge_radius,                                               \
+            "merging radius of the first pass, scene units; unset: two pixels wide", VL_FROM(0), \
+            .flags = VL_PARAMETER_UNSET | VL_PARAMETER_ABOVE_LOW)
 
 static const vlParameter path_parameters[] = {DEPTH, LIGHT_SAMPLER, REGULARIZE, IGNORED(BOOL, "samplelights"),
                                               IGNORED(BOOL, "samplebsdf")};
@@ -47,25 +44,25 @@ static const vlParameter volpath_parameters[] = {DEPTH, LIGHT_SAMPLER, REGULARIZ
 VL_KIND_ROW(volpath, .name = "volpath", .alias = "simplevolpath",
             .description = "paths from the camera, through media and solids", .traits = VL_TRAIT_PBRT_NAME)
 
-VL_KIND_ROW_EMPTY(raycast, .name = "raycast", .description = "the surfaces' colours as the camera's rays meet them")
+VL_KIND_ROW_EMPTY(raycast, .name = "raycast", .description = "colour of the surface that each camera ray hits first")
 
 static const vlParameter ambient_occlusion_parameters[] = {
-    PARAMETER(BOOL, "cossample", render.ao_cosine, "directions spread by the cosine", VL_DEFAULT(1)),
-    PARAMETER(FLOAT, "maxdistance", render.ao_distance, "beyond which nothing occludes, scene units",
+    PARAMETER(BOOL, "cossample", render.ao_cosine, "cosine-weighted directions", VL_DEFAULT(1)),
+    PARAMETER(FLOAT, "maxdistance", render.ao_distance, "distance beyond which nothing occludes, scene units",
               VL_DEFAULT(INFINITY), VL_FROM(0), .flags = VL_PARAMETER_ABOVE_LOW | VL_PARAMETER_INFINITE),
 };
 VL_KIND_ROW(ambient_occlusion, .name = "ambientocclusion", .alias = "ao",
-            .description = "the share of directions in which nothing is near", .traits = VL_TRAIT_PBRT_NAME)
+            .description = "the share of directions that are not occluded", .traits = VL_TRAIT_PBRT_NAME)
 
 static const vlParameter bidirectional_parameters[] = {TWO_WAY, IGNORED(FLOAT, "radius")};
 VL_KIND_ROW(bidirectional, .name = "bidirectional", .alias = "bdpt",
             .description = "paths from the camera and from the lights, connected", .traits = VL_TRAIT_PBRT_ALIAS)
 
 static const vlParameter merging_parameters[] = {TWO_WAY, RADIUS};
-VL_KIND_ROW(merging, .name = "merging", .description = "the same, which also meet at surfaces within a radius")
+VL_KIND_ROW(merging, .name = "merging", .description = "bidirectional, with merging of path vertices within a radius")
 
 static const vlParameter sppm_parameters[] = {TWO_WAY, RADIUS};
-VL_KIND_ROW(sppm, .name = "sppm", .description = "merging that counts bounces as pbrt's sppm does",
+VL_KIND_ROW(sppm, .name = "sppm", .description = "merging, with bounces counted as in pbrt's sppm",
             .traits = VL_TRAIT_PBRT_NAME)
 
 static const vlParameter light_path_parameters[] = {DEPTH};
@@ -73,7 +70,7 @@ VL_KIND_ROW(light_path, .name = "lightpath", .description = "paths from the ligh
 
 static const vlParameter random_walk_parameters[] = {DEPTH};
 VL_KIND_ROW(random_walk, .name = "randomwalk",
-            .description = "paths that sample no light and scatter all over the sphere: for comparison",
+            .description = "paths without light sampling, scattered uniformly over the sphere; for comparison",
             .traits = VL_TRAIT_PBRT_NAME)
 
 #define ROW(NAME, name) [VL_TRACER_##NAME] = &name##_row,

@@ -1,7 +1,7 @@
-/* trace/bsdf/dielectric.hot.c: glass and water, smooth or of GGX microfacets, single scattering (pbrt book 9.5, 9.7;
- * Walter et al. 2007). Reflection or transmission is chosen by Fresnel's term at the sampled microfacet, so that the
- * sample's weight is G/G1 for both, and for transmission divided by eta^2, since refraction compresses the solid angle.
- */
+/* trace/bsdf/dielectric.hot.c: the BSDF of glass and water, smooth or with GGX microfacets, single scattering (pbrt
+ * book 9.5, 9.7; Walter et al. 2007). A sample chooses reflection or transmission in proportion to the Fresnel terms at
+ * the sampled microfacet. Its weight is therefore G/G1 for both. For transmission it is also divided by eta^2, since
+ * refraction compresses the solid angle. */
 #include "trace/bsdf/local.h"
 
 void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
@@ -20,17 +20,17 @@ void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
     int reflect = w.z > 0.0f;
     int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (index[i] == 1.0f);
     int valid = (o.z > 0.0f) & (vl_abs(w.z) > 0.0f) & (smooth == 0);
-    /* The microfacet between wo and wi: half vector, generalised for transmission, on the upper side. */
+    /* h: the half vector of wo and wi, generalised for transmission, on the upper side. */
     float s = reflect ? 1.0f : eta;
     vlVec3 h = vl_normalize(vl_vec3(o.x + s * w.x, o.y + s * w.y, o.z + s * w.z));
     float up = h.z < 0.0f ? -1.0f : 1.0f;
     h = vl_mul(h, up);
     float oh = vl_dot(o, h), ih = vl_dot(w, h);
-    /* Valid if its front faces wo, and for transmission its back faces wi. */
+    /* The microfacet's front must face wo; for transmission its back must face wi. */
     valid = valid & (oh > 0.0f) & (reflect | (ih < 0.0f));
     float fr = vl_fresnel_dielectric(oh, eta).reflected;
     float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
-    /* D_wo(h) / wo.h = 2 D / (Lo + zo); Jacobian of h by wi */
+    /* D_wo(h) / wo.h = 2 D / (Lo + zo). jacobian: of h with respect to wi, times wo.h */
     float visible = vl_ggx_visible(h, rx, ry, o.z, lo);
     float t = ih + oh * inverse;
     float t2 = t * t;

@@ -1,10 +1,10 @@
-/* trace/bsdf/local.h: declarations shared by the BSDF files: their entry points, one pair per kind and instruction set,
- * collected in table.hot.c, and small inline functions.
+/* trace/bsdf/local.h: declarations shared by the BSDF files: small inline functions, and the entry points, one pair per
+ * kind and instruction set, which table.hot.c collects.
  *
- * Every kernel is one loop over the padded batch that computes both outcomes of each choice and selects one, so that it
- * vectorises; array pointers are copied to locals, so that the compiler need not reload them. Padding lanes may hold
- * any values. A lane whose wo lies in the surface (z = 0) has value 0 and no sample. Directions from below are mirrored
- * at the surface, z -> -z, on the way in and out: every kind here is even in z, dielectrics with eta -> 1/eta. */
+ * Every kernel is one loop over the padded batch. To vectorise, it computes both outcomes of each choice and selects
+ * one. Array pointers are copied to local variables, so that the compiler need not reload them. Padding lanes may hold
+ * any values. If wo lies in the surface (z = 0), the value is 0 and there is no sample. For a wo from below, wo and wi
+ * are mirrored at the surface, z -> -z: each BSDF here is symmetric in z, dielectrics with eta -> 1/eta. */
 #ifndef TRACE_BSDF_LOCAL_H
 #define TRACE_BSDF_LOCAL_H
 
@@ -13,7 +13,8 @@
 #include "math/warp.h"
 #include "trace/bsdf/bsdf.h"
 
-/* The count as a multiple of the vector width, visible to the compiler, so that it makes no remainder loop. */
+/* The count of a padded batch, in a form that shows the compiler that it is a multiple of the vector width; it then
+ * makes no remainder loop. */
 #ifndef VL_SCALAR
 #define VL_WHOLE(count) ((count) & ~15u)
 #else
@@ -30,14 +31,15 @@ typedef void vlBsdfSample(uint32_t n, const vlBsdfParams *params, vlBsdfDirectio
   vlBsdfSample vl_bsdf_##name##_sample;
 VL_BSDF_KINDS(VL_BSDF_DECLARE)
 
-/* Cosine-weighted direction around +z. u, v in [0, 1). z > 0 always, so that no sample is lost. */
+/* Samples a cosine-weighted direction around +z. u, v: uniform in [0, 1). z is always above 0, so that no sample is
+ * lost. */
 static inline vlVec3 vl_cosine_direction(float u, float v) {
   vlDiskPoint d = vl_warp_disk(u, v);
   float z2 = (1.0f - d.r) * (1.0f + d.r);
   return vl_vec3(d.x, d.y, __builtin_sqrtf(z2 > 1e-12f ? z2 : 1e-12f)); /* z is at least VL_MIN_FRACTION */
 }
 
-/* wo reflected about the normal h; oh = wo.h */
+/* Reflects wo about the normal h; oh: the dot product of wo and h. */
 static inline vlVec3 vl_reflect(vlVec3 wo, vlVec3 h, float oh) {
   float s = 2.0f * oh;
   return vl_vec3(s * h.x - wo.x, s * h.y - wo.y, s * h.z - wo.z);

@@ -18,15 +18,11 @@ int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *imag
 int denoised_check(const Denoised *d, vlContext *context);
 /* Memory in bytes for an image of so many pixels. */
 uint64_t denoised_memory(uint64_t pixels);
-<<<<<<< HEAD
 /* Estimated seconds of denoised_write for an image of so many pixels with `spp` samples, from those that one sample per
  * pixel and the writing of an image took, on so many threads. */
 double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double writing, uint32_t threads);
-/* Renders the features, denoises and writes. Returns STATUS_OK or the exit code. */
-=======
 /* Renders the features, denoises the film's image and writes the result. Returns STATUS_OK, or the exit code after
  * reporting the error. */
->>>>>>> stranger
 int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film,
                    OutputStage stage);
 

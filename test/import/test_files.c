@@ -177,7 +177,7 @@ static void missing(void **state) {
   write_file("m.pbrt", "WorldBegin\nInclude \"parts/cc.pbrt\"");
   file_error("m.pbrt", VL_ERROR_MISSING, "%/m.pbrt:2:9: no such file: %/parts/cc.pbrt (did you mean \"c.pbrt\"?)");
   write_file("m.pbrt", "WorldBegin\nInclude \"parts\"");
-  file_error("m.pbrt", VL_ERROR_SCENE, "%/m.pbrt:2:9: %/parts is not a regular file");
+  file_error("m.pbrt", VL_ERROR_IO, "%/m.pbrt:2:9: cannot read %/parts: is a folder");
   write_file("m.pbrt", "WorldBegin\nShape \"plymesh\" \"string filename\" \"parts\"");
   file_error("m.pbrt", VL_ERROR_IO, "%/m.pbrt:2:17: cannot read %/parts: is a folder");
   file_error("parts", VL_ERROR_IO, ":0:0: cannot read %/parts: is a folder");

@@ -70,7 +70,7 @@ typedef struct vlCorners {
   VL_ROW float n[9][VL_ROW_SIZE]; /* vertex normals; zero if the mesh has none */
   VL_ROW float uv[6][VL_ROW_SIZE];
   VL_ROW float error[VL_ROW_SIZE]; /* bound of the rounding error of the instance's transform */
-  VL_ROW float flip[VL_ROW_SIZE];  /* sign of the geometric normal: 1 or -1 */
+  VL_ROW float flip[VL_ROW_SIZE];  /* -1: the shape's normals are reversed; else 1 */
 } vlCorners;
 
 typedef struct vlShade {
@@ -185,8 +185,8 @@ typedef struct vlTracing {
 /* ---- stages ------------------------------------------------------------------------------------------------------ */
 
 /* Finds the closest hits of the n rays of a, and writes ids and materials to hits_a. Rays pass through interfaces; for
- * a mixed material, one of its two materials is chosen. camera: the rays are camera rays and have the batch's t_min
- * and t_max. */
+ * a mixed material, one of its materials is chosen. camera: the rays are camera rays and have the batch's t_min and
+ * t_max. */
 void vl_stage_hits(vlTracing *t, uint32_t n, bool camera);
 /* Finds the closest hits of the n rays of a, and writes only ids to hits_a. camera: the rays have the batch's t_min
  * and t_max. */

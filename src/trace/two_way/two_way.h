@@ -40,7 +40,7 @@ typedef struct vlCameraView {
 typedef struct vlPhoton {
   float p[3], w[3]; /* w: unit, towards the previous vertex */
   float power[4];
-  float a, b;           /* the strategies nearer to the light sum to a * rev + b, relative to merging here without H */
+  float a, b;           /* the strategies on the light's side sum to a * rev + b, divided by P L at this vertex */
   uint32_t bounce : 31; /* number of vertices of the light path so far, without the one on the light; from 1 */
   uint32_t alone : 1;   /* only the hero wavelength is left, and carries the weight of all four */
   uint32_t id;          /* unique in a pass, and independent of the order of work */

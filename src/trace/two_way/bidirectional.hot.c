@@ -44,7 +44,7 @@ static void add_emission(vlTracing *t, const vlPaths *p, uint32_t i, bool first)
   if (vl_hit_emission(t->world, p, &t->s->hits_a, i, &met)) add_hit_light(t, p, i, &met, met.at.t, &met.at, first);
 }
 
-/* first: the rays are camera rays, and no other strategy competes. */
+/* first: no other strategy competes, as for camera rays. */
 static void emission(vlTracing *t, uint32_t n, bool first) {
   const vlHits *h = &t->s->hits_a;
   for (uint32_t i = 0; i < n; i++) {

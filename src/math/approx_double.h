@@ -1,6 +1,7 @@
-/* math/approx_double.h: elementary functions in double, in plain C that compilers vectorise: only + - * / sqrt and
- * selections, so the same bits on every machine and in every batch. Polynomials after Moshier's Cephes (double
- * precision). Errors below are measured against the C library's long double (test/camera/test_approx_double.c). */
+/* math/approx_double.h: elementary functions in double, in plain C that compilers vectorise. They use only + - * / sqrt
+ * and selections, so they give the same bits on every machine and in every batch. Polynomials after Moshier's Cephes
+ * (double precision). Errors below are measured against the C library's long double
+ * (test/camera/test_approx_double.c). */
 #ifndef MATH_APPROX_DOUBLE_H
 #define MATH_APPROX_DOUBLE_H
 
@@ -65,7 +66,7 @@ static inline double vl_acos_double(double x) {
   return vl_atan2_double(__builtin_sqrt((1.0 - x) * (1.0 + x)), x);
 }
 
-/* Relative error < 4e-16; x below -708 as -708, above 709 as 709. */
+/* Relative error < 4e-16. x is clamped to [-708, 709]. */
 static inline double vl_exp_double(double x) {
   x = x < -708.0 ? -708.0 : x > 709.0 ? 709.0 : x;
   double n = __builtin_floor(x * 1.44269504088896340736 + 0.5);

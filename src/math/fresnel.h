@@ -1,7 +1,8 @@
-/* math/fresnel.h: reflectance of a smooth interface for unpolarised light. By value, no branches: the hot loops
- * inline these. Cosines are with respect to the (micro)normal on the incident side, hence >= 0. Source: pbrt book
- * 9.3.6 (dielectric: Fresnel's equations with Snell's law) and 9.3.7 (conductor: complex index; the form without
- * complex numbers is Born and Wolf, Principles of Optics, 14.2, as in Lagarde's memo on Fresnel equations). */
+/* math/fresnel.h: reflectance of a smooth interface for unpolarised light. The functions work by value and have no
+ * branches, because the hot loops inline them. Cosines refer to the (micro)normal on the incident side, so they are >=
+ * 0. Source: pbrt book 9.3.6 (dielectric: Fresnel's equations with Snell's law) and 9.3.7 (conductor: complex index;
+ * the form without complex numbers is Born and Wolf, Principles of Optics, 14.2, as in Lagarde's memo on Fresnel
+ * equations). */
 #ifndef MATH_FRESNEL_H
 #define MATH_FRESNEL_H
 
@@ -26,7 +27,7 @@ static inline vlFresnel vl_fresnel_dielectric(float cos_i, float eta) {
   down = 1.0f / (down > VL_MIN_POSITIVE ? down : VL_MIN_POSITIVE);
   float rs = (c - root) * p * down, rp = (dense - root) * s * down;
   float r = 0.5f * (rs * rs + rp * rp);
-  /* where root = 0 both are already 1; the select is for cos_i = 0 */
+  /* if root = 0, both are already 1; the select is for cos_i = 0 */
   return (vlFresnel){inside > 0.0f ? r : 1.0f, root};
 }
 

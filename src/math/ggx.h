@@ -1,5 +1,6 @@
-/* math/ggx.h: Trowbridge-Reitz (GGX) microfacets, anisotropic, sampled by visible normals. By value, no branches. All
- * directions have z >= 0 (mirror the others first: the distribution is even in z) and unit length.
+/* math/ggx.h: anisotropic Trowbridge-Reitz (GGX) microfacets, sampled by visible normals. The functions work by value
+ * and have no branches. All directions have unit length and z >= 0; callers mirror other directions first, because the
+ * distribution is even in z.
  *
  * With L(w) = |(alpha_x w.x, alpha_y w.y, w.z)| Smith's functions are short, and finite at grazing angles:
  *     1 + Lambda(w) = (L + z) / 2z,  G1 = 2z / (L + z),
@@ -18,14 +19,14 @@
 static inline int vl_ggx_is_smooth(float alpha_x, float alpha_y) {
   return (alpha_x < VL_GGX_SMOOTH) & (alpha_y < VL_GGX_SMOOTH);
 }
-/* Lower bound of a rough surface's smaller alpha. With the other at VL_GGX_SMOOTH the density's maximum, 1 / (pi
- * alpha_x alpha_y), is 3e6: finite, also squared. */
+/* Lower bound of a rough surface's smaller alpha. If the other alpha is VL_GGX_SMOOTH, the density's maximum, 1 / (pi
+ * alpha_x alpha_y), is 3e6, whose square is finite too. */
 #define VL_GGX_MIN_ALPHA 1e-4f
 static inline float vl_ggx_alpha(float alpha) {
   return alpha > VL_GGX_MIN_ALPHA ? alpha : VL_GGX_MIN_ALPHA;
 }
 
-/* Alpha after optional regularisation (pbrt-v4's). */
+/* Alpha after optional regularisation, as in pbrt-v4. */
 static inline float vl_ggx_widened(float alpha) {
   float twice = 2.0f * alpha;
   twice = twice < 0.1f ? 0.1f : twice > 0.3f ? 0.3f : twice;

@@ -1,5 +1,5 @@
-/* math/hash.h: integer hashing, for random numbers that depend on (seed, pixel, sample, dimension) alone. All
- * 32-bit, so that the loops vectorise on every instruction set. */
+/* math/hash.h: integer hashing, for random numbers that depend only on (seed, pixel, sample, dimension). All integers
+ * have 32 bits, so that loops vectorise on every instruction set. */
 #ifndef MATH_HASH_H
 #define MATH_HASH_H
 
@@ -20,7 +20,7 @@ static inline uint32_t vl_hash2(uint32_t a, uint32_t b) {
 static inline uint32_t vl_hash3(uint32_t a, uint32_t b, uint32_t c) {
   return vl_hash2(vl_hash2(a, b), c);
 }
-/* 24 random bits to [0, 1). */
+/* Converts the top 24 random bits to a float in [0, 1). */
 static inline float vl_unit_float(uint32_t bits) {
   return (float)(int32_t)(bits >> 8) * 0x1p-24f; /* signed: a single instruction on every set */
 }

@@ -1,6 +1,6 @@
 /* math/lowdiscrepancy.h: building blocks of the samplers: digit reversal, Sobol's first two dimensions, nested uniform
- * (Owen) scrambling, Morton order, random permutations of any length, primes. 32-bit integers only, no tables in the
- * loops: everything vectorises on every instruction set.
+ * (Owen) scrambling, Morton order, random permutations of any length, primes. All functions use 32-bit integers and no
+ * tables in loops, so they vectorise on every instruction set.
  *
  * A number u in [0,1) is stored as the 32-bit integer u 2^32 ("fraction"); an "index" counts samples. Bit reversal
  * converts one to the other: the radical inverse in base 2 of index i is the fraction reverse(i). */
@@ -32,8 +32,8 @@ static inline uint32_t vl_owen_reversed(uint32_t x, uint32_t seed) {
   x ^= x * 0x53a22864u;
   return x;
 }
-/* The same for a fraction (most significant bit first), or for an index: it then shuffles indices so that each
- * aligned block of 2^k indices remains an aligned block. */
+/* Nested uniform scrambling of a fraction (most significant bit first). Applied to an index, it shuffles indices so
+ * that each aligned block of 2^k indices remains an aligned block. */
 static inline uint32_t vl_owen(uint32_t x, uint32_t seed) {
   return vl_reverse_bits(vl_owen_reversed(vl_reverse_bits(x), seed));
 }
@@ -73,8 +73,8 @@ static inline vlPermuteState vl_permute_round(vlPermuteState s, uint32_t mask, u
   uint32_t k = s.key, i = ((s.i ^ (k >> 4)) * ((k >> 15) | 1u) + (k >> 9)) & mask;
   return (vlPermuteState){i ^ (i >> shift), (k ^ (k >> 15)) * 0x2c9277b5u + 0xac564b05u};
 }
-/* Eight rounds: fewer are visibly uneven for 4 and 5 elements. Unrolled by hand, because clang does not vectorise
- * nested loops. */
+/* Eight rounds, because fewer are visibly uneven for 4 and 5 elements. Unrolled by hand, because clang does not
+ * vectorise nested loops. */
 static inline __attribute__((always_inline)) uint32_t vl_permute_step(uint32_t i, uint32_t mask, uint32_t shift,
                                                                       uint32_t key) {
   vlPermuteState s = {i, vl_hash(key)};
@@ -98,8 +98,8 @@ static inline uint32_t vl_permute(vlPermutation p, uint32_t i, uint32_t key) {
   return i;
 }
 
-/* a / b and a % b for the same b in a whole batch, a < 2^31 and a / b < 2^22: multiplies by the float reciprocal,
- * then corrects the result. */
+/* Computes a / b and a % b where a whole batch has the same b, for a < 2^31 and a / b < 2^22. It multiplies by the
+ * float reciprocal, then corrects the result. */
 typedef struct vlDivision {
   uint32_t quotient, remainder;
 } vlDivision;

@@ -1,8 +1,8 @@
-/* math/motion.h: interpolation between two matrices: M = T R S, with translation, rotation and stretch interpolated
- * separately: translation and stretch linearly, rotation by the shortest arc at constant angular speed (pbrt's
- * AnimatedTransform: book 3rd ed. 2.9.3; polar decomposition: Shoemake and Duff, "Matrix animation and polar
- * decomposition", 1992). Double throughout. vl_motion_between is written for batch loops, and all other code calls
- * it, so that the bits agree. */
+/* math/motion.h: interpolation between two matrices. Each matrix is decomposed to M = T R S. Translation and stretch
+ * are interpolated linearly, rotation along the shortest arc at constant angular speed (pbrt's AnimatedTransform: book
+ * 3rd ed. 2.9.3; polar decomposition: Shoemake and Duff, "Matrix animation and polar decomposition", 1992). All
+ * computations are in double. vl_motion_between is written for batch loops; all other code calls it too, so that the
+ * bits agree. */
 #ifndef MATH_MOTION_H
 #define MATH_MOTION_H
 

@@ -63,13 +63,13 @@ static inline float vl_smooth_step(float x, float low, float high) {
   return t * t * (3.0f - 2.0f * t);
 }
 
-/* Number of octaves that are resolved by a footprint of this width; finer ones would alias. */
+/* Number of octaves that a footprint of this width resolves. Finer octaves would alias. */
 static inline float vl_noise_octaves(float width, uint32_t octaves) {
   float n = -1.0f - 1.44269504f * vl_ln(vl_max(width, VL_MIN_POSITIVE)); /* -1 - log2(width^2) / 2 */
   return vl_clamp(n, 0.0f, (float)octaves);
 }
 
-/* Fractal sum: each octave has omega times the amplitude of the one before. width: of the footprint. */
+/* Fractal sum. Each octave has omega times the amplitude of the octave before. width: width of the footprint. */
 static inline float vl_fractal_noise(vlVec3 p, float width, float omega, uint32_t octaves) {
   float n = vl_noise_octaves(width, octaves), sum = 0.0f, size = 1.0f, strength = 1.0f;
   uint32_t whole = (uint32_t)n;
@@ -81,7 +81,7 @@ static inline float vl_fractal_noise(vlVec3 p, float width, float omega, uint32_
   return sum + strength * vl_smooth_step(n - (float)whole, 0.3f, 0.7f) * vl_noise(size * p.x, size * p.y, size * p.z);
 }
 
-/* The same with absolute values; octaves that are too fine contribute their mean, 0.2. */
+/* Turbulence: the fractal sum of absolute values. Octaves that are too fine contribute their mean, 0.2. */
 static inline float vl_turbulence(vlVec3 p, float width, float omega, uint32_t octaves) {
   float n = vl_noise_octaves(width, octaves), sum = 0.0f, size = 1.0f, strength = 1.0f;
   uint32_t whole = (uint32_t)n;

@@ -1,5 +1,5 @@
-/* math/vec.h: vec3 by value, inline, for the hot loops. No FMA, no reassociation: operations are evaluated in the
- * order in which they are written. */
+/* math/vec.h: 3-D vectors, by value and inline, for the hot loops. Operations are evaluated in the order in which they
+ * are written, without FMA and reassociation. */
 #ifndef MATH_VEC_H
 #define MATH_VEC_H
 
@@ -52,14 +52,14 @@ static inline float vl_abs(float x) {
 }
 /* Largest float below 1. */
 #define VL_ONE_MINUS_EPSILON 0x1.fffffep-1f
-/* Lower bounds of what is divided by or enters a logarithm. A value below its bound is 0 or has no correct digit left.
+/* Lower bounds for divisors and for arguments of logarithms. A value below its bound is 0 or has no correct digit left.
  * All are normal floats: values below 2^-126 (1.2e-38) are flushed to 0. */
-/* Of products and squares of cosines, and of densities: a quotient of values up to 1e8 is finite. */
+/* For products and squares of cosines, and for densities. Values up to 1e8 have a finite quotient. */
 #define VL_MIN_POSITIVE 1e-30f
-/* Of squared lengths in scene units, which may be small: the smallest power of ten that is a normal float. */
+/* For squared lengths in scene units, which may be small. It is the smallest power of ten that is a normal float. */
 #define VL_MIN_NORMAL 1e-37f
-/* Of cosines, and of differences of numbers near 1: they have an absolute error of about 2^-24 (6e-8), so that below
- * 16 errors little is significant. A quotient of values up to 1 is at most 1e6. */
+/* For cosines and differences of numbers near 1. They have an absolute error of about 2^-24 (6e-8), so values below 16
+ * errors have few significant digits. A quotient of values up to 1 is at most 1e6. */
 #define VL_MIN_FRACTION 1e-6f
 #define VL_PI 3.14159265358979323846f
 #define VL_INV_PI 0.31830988618379067154f

@@ -1,7 +1,7 @@
 /* math/warp.h: maps from the unit square to disks, hemispheres, cones, triangles and spherical triangles, and inverses.
  * Uniform (u, v) in [0,1)^2 give the stated density. All maps have low distortion, so that well-distributed points stay
- * well distributed. No branches, no libm: for hot loops. The map of the whole sphere for environment images is
- * math/octahedral.h.
+ * well distributed. The functions have no branches and do not call libm, so hot loops can use them. The map of the
+ * whole sphere for environment images is math/octahedral.h.
  *
  * Directions are local, z up. Sources: pbrt book appendix A.5; others are given at the function. */
 #ifndef MATH_WARP_H

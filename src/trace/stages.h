@@ -3,7 +3,8 @@
  *   vlPaths (rays) -> ids -> sorted by material -> vlSurface -> vlShade (frame, wo, BSDF parameters)
  *          -> light samples -> shadow rays -> radiance;  BSDF samples -> vlPaths of the next bounce
  *
- * Every array has VL_ROW_SIZE elements. Elements from n on are stale but harmless (finite, indices valid). */
+ * Every array has VL_ROW_SIZE elements. Elements from n on hold old data, which is safe to read: numbers are finite,
+ * and indices are valid. */
 #ifndef TRACE_STAGES_H
 #define TRACE_STAGES_H
 
@@ -19,18 +20,19 @@ typedef struct vlPaths {
   VL_ROW float dx[VL_ROW_SIZE], dy[VL_ROW_SIZE], dz[VL_ROW_SIZE];
   VL_ROW float beta[4][VL_ROW_SIZE];
   VL_ROW float lambda[4][VL_ROW_SIZE];
-  VL_ROW float pdf[VL_ROW_SIZE]; /* of the direction, by BSDF sampling, per solid angle */
+  VL_ROW float pdf[VL_ROW_SIZE]; /* density per solid angle with which BSDF sampling drew the direction */
   VL_ROW float from_nx[VL_ROW_SIZE], from_ny[VL_ROW_SIZE],
-      from_nz[VL_ROW_SIZE]; /* normal at the ray's origin, for the light tree */
+      from_nz[VL_ROW_SIZE]; /* surface normal at the ray's origin; the light tree uses it */
   VL_ROW float eta_scale[VL_ROW_SIZE];
-  VL_ROW float cone[VL_ROW_SIZE];   /* width of the footprint at the ray's origin, */
-  VL_ROW float spread[VL_ROW_SIZE]; /* and its growth per unit length: negative towards a focus */
-  VL_ROW uint32_t
-      specular[VL_ROW_SIZE]; /* the ray comes from the camera or a specular lobe: no light sample competes */
+  VL_ROW float cone[VL_ROW_SIZE]; /* width of the footprint at the ray's origin */
+  VL_ROW float
+      spread[VL_ROW_SIZE]; /* growth of the footprint's width per unit length; negative where the cone converges */
+  VL_ROW uint32_t specular[VL_ROW_SIZE]; /* 1: the ray comes from the camera or a specular lobe, so MIS has no light
+                                            sample to weigh it against */
   VL_ROW int32_t px[VL_ROW_SIZE], py[VL_ROW_SIZE];
   VL_ROW uint32_t index[VL_ROW_SIZE];
-  VL_ROW uint32_t lane[VL_ROW_SIZE]; /* element of the batch */
-  const float *time;                 /* by lane: the world's time, 0 to 1; null where nothing moves */
+  VL_ROW uint32_t lane[VL_ROW_SIZE]; /* the path's element of the batch */
+  const float *time;                 /* by lane: the world's time, 0 to 1; null if nothing moves */
 } vlPaths;
 static inline float vl_path_time(const vlPaths *p, uint32_t i) {
   return p->time ? p->time[p->lane[i]] : 0.0f;
@@ -38,8 +40,8 @@ static inline float vl_path_time(const vlPaths *p, uint32_t i) {
 
 typedef struct vlHits {
   VL_ROW uint32_t shape[VL_ROW_SIZE], prim[VL_ROW_SIZE], instance[VL_ROW_SIZE], material[VL_ROW_SIZE];
-  VL_ROW float
-      t[VL_ROW_SIZE]; /* for shapes other than triangles: distance, to identify the crossing (world/accel/accel.h) */
+  VL_ROW float t[VL_ROW_SIZE]; /* distance along the ray, set for shapes other than triangles; it identifies the
+                                  crossing (world/accel/accel.h) */
 } vlHits;
 
 typedef struct vlSurface {
@@ -54,32 +56,32 @@ typedef struct vlSurface {
                                        surface */
   VL_ROW float uv_scale[VL_ROW_SIZE];                        /* uv per world length */
   VL_ROW float width[VL_ROW_SIZE];                           /* width of the footprint, world units */
-  VL_ROW float across_u[VL_ROW_SIZE], across_v[VL_ROW_SIZE]; /* the footprint's axes in uv, only where the world has */
-  VL_ROW float along_u[VL_ROW_SIZE], along_v[VL_ROW_SIZE];   /* image textures (footprint.hot.c) */
+  VL_ROW float across_u[VL_ROW_SIZE], across_v[VL_ROW_SIZE]; /* the footprint's axes in uv; only set if the world */
+  VL_ROW float along_u[VL_ROW_SIZE], along_v[VL_ROW_SIZE];   /* has image textures (footprint.hot.c) */
   VL_ROW float curvature[VL_ROW_SIZE]; /* mean curvature of the shading normals: positive where convex */
-  VL_ROW float dn[6][VL_ROW_SIZE];     /* dndu, dndv; of triangles only with bump maps (material.hot.c) */
-  VL_ROW float
-      no_cosine[VL_ROW_SIZE]; /* 1: all directions of light count equally (media); 0: by the cosine to the normal */
+  VL_ROW float dn[6][VL_ROW_SIZE]; /* dndu, dndv; for triangles only if the material has a bump map (material.hot.c) */
+  VL_ROW float no_cosine[VL_ROW_SIZE]; /* 1: light from all directions counts equally (in media); 0: light is weighted
+                                          by the cosine to the normal */
 } vlSurface;
 
-/* Corners of the triangles of a batch, gathered. */
+/* Corners of the triangles that a batch hits, one triangle per lane. */
 typedef struct vlCorners {
   VL_ROW float p[9][VL_ROW_SIZE]; /* x y z of corners 0, 1, 2; world space */
-  VL_ROW float n[9][VL_ROW_SIZE]; /* vertex normals, zero without */
+  VL_ROW float n[9][VL_ROW_SIZE]; /* vertex normals; zero if the mesh has none */
   VL_ROW float uv[6][VL_ROW_SIZE];
   VL_ROW float error[VL_ROW_SIZE]; /* bound of the rounding error of the instance's transform */
-  VL_ROW float flip[VL_ROW_SIZE];  /* 1 or -1 */
+  VL_ROW float flip[VL_ROW_SIZE];  /* -1: the shape's normals are reversed; else 1 */
 } vlCorners;
 
 typedef struct vlShade {
   VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE], tz[VL_ROW_SIZE]; /* frame: tangent; bitangent = n x t */
   VL_ROW float bx[VL_ROW_SIZE], by[VL_ROW_SIZE], bz[VL_ROW_SIZE];
   VL_ROW float wo[3][VL_ROW_SIZE]; /* local */
-  VL_ROW float wi[3][VL_ROW_SIZE]; /* local: of the light sample, then of the BSDF sample */
+  VL_ROW float wi[3][VL_ROW_SIZE]; /* local; first the light sample's direction, later the BSDF sample's */
   VL_ROW float reflectance[4][VL_ROW_SIZE], eta[4][VL_ROW_SIZE], k[4][VL_ROW_SIZE];
   VL_ROW float alpha_x[VL_ROW_SIZE], alpha_y[VL_ROW_SIZE], eta_s[VL_ROW_SIZE];
   const vlCoatTable *coat[VL_ROW_SIZE];
-  VL_ROW float own[VL_BSDF_ROWS][VL_ROW_SIZE]; /* named in trace/bsdf/bsdf.h */
+  VL_ROW float own[VL_BSDF_ROWS][VL_ROW_SIZE]; /* rows that depend on the kind; trace/bsdf/bsdf.h names them */
   VL_ROW uint32_t seed[VL_ROW_SIZE];
   const vlMeasured *measured[VL_ROW_SIZE];
   VL_ROW float value[4][VL_ROW_SIZE], pdf[VL_ROW_SIZE], eta_scale[VL_ROW_SIZE];
@@ -93,9 +95,9 @@ typedef struct vlLightSamples {
   VL_ROW float wx[VL_ROW_SIZE], wy[VL_ROW_SIZE], wz[VL_ROW_SIZE]; /* towards the light, unit */
   VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE], tz[VL_ROW_SIZE]; /* point that must be visible */
   VL_ROW float radiance[4][VL_ROW_SIZE];                          /* already divided by the pdf */
-  VL_ROW float pdf[VL_ROW_SIZE];                                  /* solid angle, choice included; 0: no sample */
-  VL_ROW uint32_t delta[VL_ROW_SIZE];                             /* a delta light: a BSDF sample cannot hit it */
-  VL_ROW uint32_t distant[VL_ROW_SIZE]; /* the target is infinitely far: t holds the direction */
+  VL_ROW float pdf[VL_ROW_SIZE];        /* per solid angle, times the probability of choosing the light; 0: no sample */
+  VL_ROW uint32_t delta[VL_ROW_SIZE];   /* a delta light: a BSDF sample cannot hit it */
+  VL_ROW uint32_t distant[VL_ROW_SIZE]; /* 1: the target is infinitely far, and tx, ty, tz hold the direction */
 } vlLightSamples;
 
 typedef struct vlShadowRays {
@@ -103,48 +105,50 @@ typedef struct vlShadowRays {
       t_max[VL_ROW_SIZE];
   VL_ROW float radiance[4][VL_ROW_SIZE];
   VL_ROW uint32_t lane[VL_ROW_SIZE];
-  VL_ROW float time[VL_ROW_SIZE]; /* the world's time, where something moves */
+  VL_ROW float time[VL_ROW_SIZE]; /* the world's time; only set if something moves */
   uint8_t occluded[VL_ROW_SIZE];
 } vlShadowRays;
 
 enum { VL_BUMP_ROWS = 9, VL_TEXTURE_ROWS = VL_NODE_ROWS + VL_BUMP_ROWS };
 
-/* Additional data of paths through media (volume.hot.c): the rescaled densities of the path (pbrt book 14.2.2) as its
- * direction was sampled (u) and as light sampling would have sampled it (l), and the medium at the ray's origin. */
+/* Additional data of paths through media (volume.hot.c). u and l are the path's rescaled densities (pbrt book 14.2.2):
+ * u for the directions as they were sampled, l as if light sampling had drawn the last direction. */
 typedef struct vlVolumeRows {
   VL_ROW float u[4][VL_ROW_SIZE], l[4][VL_ROW_SIZE];
-  /* Transmittance since the path began, for each channel of linear sRGB, of the media that absorb by channel; for a
-   * wavelength vl_channels_at of these, which is included in beta. */
+  /* Transmittance since the path began through the media that absorb by channel, for each channel of linear sRGB.
+   * vl_channels_at gives the transmittance at a wavelength from these three; beta includes it. */
   VL_ROW float passed[3][VL_ROW_SIZE];
-  VL_ROW uint32_t medium[VL_ROW_SIZE]; /* VL_NONE: vacuum */
+  VL_ROW uint32_t medium[VL_ROW_SIZE]; /* medium at the ray's origin; VL_NONE: vacuum */
 } vlVolumeRows;
 
 typedef struct vlVolumeScratch {
   vlPaths scattered;    /* paths that scatter in media */
-  vlVolumeRows a, b, c; /* of the paths a, b and scattered */
+  vlVolumeRows a, b, c; /* data of the paths vlTraceScratch.a, vlTraceScratch.b and `scattered` */
   VL_ROW uint8_t event[VL_ROW_SIZE];
   VL_ROW float t[VL_ROW_SIZE];    /* distance along the ray at which a medium scatters */
-  VL_ROW float odds[VL_ROW_SIZE]; /* by lane: vlFlight.odds of the last flight */
-  /* by shadow ray: densities of the light sample and of the scattering */
+  VL_ROW float odds[VL_ROW_SIZE]; /* by lane: vlFlight.odds of the path's last flight */
+  /* by shadow ray: densities of the light sample and of the BSDF or phase function */
   VL_ROW float light_pdf[VL_ROW_SIZE], pdf[VL_ROW_SIZE], density[4][VL_ROW_SIZE];
   VL_ROW uint32_t shadow_medium[VL_ROW_SIZE], from[VL_ROW_SIZE];
   VL_ROW uint32_t kept[VL_ROW_SIZE]; /* indices of the scattered paths that go on */
 } vlVolumeScratch;
 
-/* Scratch for paths through subsurface materials (subsurface.hot.c). Touched only where there are some. */
+/* Working memory for paths through subsurface materials (subsurface.hot.c). It is used only if the world has such
+ * materials. */
 typedef struct vlSubsurfaceScratch {
-  vlPaths paths; /* copy of all paths of the bounce, */
+  vlPaths paths; /* copy of all paths of the bounce */
   vlVolumeRows rows;
-  VL_ROW uint8_t alive[VL_ROW_SIZE]; /* by path: it goes on */
-  /* by probe: index of its path, material, the medium of the path before it entered */
+  VL_ROW uint8_t alive[VL_ROW_SIZE]; /* by path: 1 if the path goes on */
+  /* by probe: index of its path, material, and medium of the path before it entered the solid */
   VL_ROW uint32_t place[VL_ROW_SIZE], material[VL_ROW_SIZE], medium[VL_ROW_SIZE];
   VL_ROW float px[VL_ROW_SIZE], py[VL_ROW_SIZE], pz[VL_ROW_SIZE], nx[VL_ROW_SIZE], ny[VL_ROW_SIZE], nz[VL_ROW_SIZE];
   VL_ROW float sigma[4][VL_ROW_SIZE], albedo[4][VL_ROW_SIZE];
-  VL_ROW float entry_eta_scale[VL_ROW_SIZE];            /* by path: eta_scale of the refraction into the solid */
-  VL_ROW float length[VL_ROW_SIZE], t_min[VL_ROW_SIZE]; /* length of the segment; start of the part not yet searched */
-  VL_ROW uint32_t found[VL_ROW_SIZE];                   /* number of crossings so far, */
-  vlHits hits;                                          /* and one chosen crossing */
-  VL_ROW uint32_t entry[VL_ROW_SIZE];                   /* by exit: index of its probe */
+  VL_ROW float entry_eta_scale[VL_ROW_SIZE]; /* by path: eta_scale of the refraction into the solid */
+  VL_ROW float length[VL_ROW_SIZE],
+      t_min[VL_ROW_SIZE];             /* length of the probe's segment; start of the part not yet searched */
+  VL_ROW uint32_t found[VL_ROW_SIZE]; /* number of crossings found so far */
+  vlHits hits;                        /* one of these crossings, chosen at random */
+  VL_ROW uint32_t entry[VL_ROW_SIZE]; /* by exit: index of its probe */
   VL_ROW float from[VL_ROW_SIZE];
 } vlSubsurfaceScratch;
 
@@ -156,18 +160,18 @@ struct vlTraceScratch {
   vlShade shade;
   vlLightSamples light;
   vlShadowRays shadow;
-  VL_ROW float rows[VL_TEXTURE_ROWS][VL_ROW_SIZE]; /* a stack for nested textures */
-  VL_ROW float time[VL_ROW_SIZE];                  /* the world's time of the rays of a, where something moves */
+  VL_ROW float rows[VL_TEXTURE_ROWS][VL_ROW_SIZE]; /* stack of rows for nested textures */
+  VL_ROW float time[VL_ROW_SIZE]; /* the world's time of the rays of `a`; only set if something moves */
   VL_ROW uint32_t order[VL_ROW_SIZE];
-  VL_ROW uint8_t scattered[VL_ROW_SIZE]; /* by lane of the batch, with regularisation: a non-specular lobe has scattered
-                                            the path */
-  VL_ROW uint32_t
-      slot[VL_ROW_SIZE]; /* first, the place where each material's lanes start; later, the lanes that go on */
+  VL_ROW uint8_t scattered[VL_ROW_SIZE]; /* by lane of the batch, only with regularisation: 1 if a non-specular lobe has
+                                            scattered the path */
+  VL_ROW uint32_t slot[VL_ROW_SIZE]; /* while sorting: where each material's lanes start; later: the lanes that go on */
   vlVolumeScratch volume;
   vlSubsurfaceScratch subsurface;
 };
 
-/* A batch in progress. Paths and hits of a bounce arrive in a, are sorted into b, and continue in a. */
+/* A batch in progress. The paths and hits of a bounce arrive in s->a and s->hits_a, are sorted into s->b and
+ * s->hits_b, and continue in s->a. */
 typedef struct vlTracing {
   const vlWorld *world;
   const vlTraceDef *def;
@@ -180,14 +184,17 @@ typedef struct vlTracing {
 
 /* ---- stages ------------------------------------------------------------------------------------------------------ */
 
-/* Finds the closest hits of the n rays of a: ids and materials, to hits_a. Interfaces are passed, mixed materials
- * decided. camera: camera rays, with the batch's t_min and t_max. */
+/* Finds the closest hits of the n rays of a, and writes ids and materials to hits_a. Rays pass through interfaces; for
+ * a mixed material, one of its materials is chosen. camera: the rays are camera rays and have the batch's t_min and
+ * t_max. */
 void vl_stage_hits(vlTracing *t, uint32_t n, bool camera);
-/* Finds the closest hits of the n rays of a: ids only, to hits_a. camera: with the batch's t_min and t_max. */
+/* Finds the closest hits of the n rays of a, and writes only ids to hits_a. camera: the rays have the batch's t_min
+ * and t_max. */
 void vl_closest_hits(vlTracing *t, uint32_t n, bool camera);
-/* Traces lane i's ray again, from t_min on (t_max: the batch's row, or null), into h; the ray is counted. */
+/* Traces lane i's ray again from t_min on, and writes the hit to h. t_max: the batch's row, or null for no limit. The
+ * ray is counted. */
 void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min, const float *t_max);
-/* The material of a hit; resolves mixed materials. */
+/* Returns the material of a hit. For a mixed material, chooses one of its materials. */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
 /* Adds the radiance of the lights that the rays of a hit: infinite lights and emissive surfaces. */
 void vl_stage_emission(vlTracing *t, uint32_t n);
@@ -213,47 +220,50 @@ void vl_stage_light_samples(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t
 /* Samples the BSDFs of the n lanes of b and writes the continuing paths into a: path k was lane s->order[k]. Returns
  * their number. depth: the number of this bounce, from 1. */
 uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
-/* A function per kind of tracer; one without it does not link. */
+/* Each kind of tracer has one function. A kind without it is a link error. */
 #define VL_TRACER_FUNCTION(K, k) void vl_trace_##k(vlTracing *t);
 VL_TRACER_KINDS(VL_TRACER_FUNCTION)
 #undef VL_TRACER_FUNCTION
 void vl_path_tracer(vlTracing *t);
-void vl_volume_tracer(vlTracing *t); /* in volume.hot.c: participating media and subsurface materials */
-/* Subsurface scattering. Of the n paths of a (path k just sampled at lane s->order[k] of the surfaces) those that
- * entered a subsurface material are moved to an exit point, with its light samples, or end. Returns the number of all
- * paths that go on. */
+void vl_volume_tracer(
+    vlTracing *t); /* in volume.hot.c: path tracer with participating media and subsurface materials */
+/* Subsurface scattering for the n paths of a; path k was just sampled at lane s->order[k] of the surfaces. A path that
+ * entered a subsurface material is moved to an exit point, where lights are sampled, or ends. Returns the number of
+ * all paths that go on. */
 uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth);
 
-/* Computes the surface points that the rays meet, from ids alone. */
+/* Computes the surface points that the rays hit. Of the hits, it reads only the ids. */
 void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits, vlCorners *corners,
                       vlSurface *surface);
-/* Computes the footprints' axes in uv for surfaces already computed. */
+/* Computes the footprints' axes in uv. The surfaces must be computed already. */
 void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *surface);
-/* Evaluates textures, bump and normal maps, frames, wo and parameters; runs: lanes [first, last) of one material. */
+/* Evaluates textures, bump maps, normal maps, shading frames, wo and BSDF parameters for lanes [first, last), which
+ * have the same material. */
 void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s);
 void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *surface, vlShade *shade);
-/* Chooses a light for each lane: light->light and light->pmf. */
+/* Chooses a light for each lane. Writes light->light and light->pmf. */
 void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *surface, const float *u,
                            vlLightSamples *light);
 /* Takes one light sample for each lane. */
 void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *surface,
                      const float *u_choice, const float *u, const float *v, vlLightSamples *light);
 
-/* One surface point, scalar, for the few lanes that are computed one by one (hit lights, mixed materials). t: as in
- * vlHits. */
+/* One surface point, for lanes that are computed one by one (hit lights, mixed materials). t: as in vlHits. */
 typedef struct vlPoint {
   vlVec3 p, g, n; /* geometric, shading normal */
   float u, v, t, offset;
 } vlPoint;
-/* A hit's distance t is a float; computed again in double it lies within t (1 -+ VL_REFIND): 8 roundings of a float.
- * VL_REFIND_LEAST keeps that interval from being empty at t = 0. */
+/* A hit's distance t is a float. When the distance is computed again in double, it lies within t (1 -+ VL_REFIND),
+ * which allows 8 float roundings. VL_REFIND_LEAST keeps that interval from being empty at t = 0. */
 #define VL_REFIND 0x1p-21
 #define VL_REFIND_LEAST 1e-37
 
-/* The smallest t_min past a surface point along the ray, by the bound of the point's error; larger than t_min. */
+/* Returns the start of a ray segment just past a surface point. The margin comes from the bound of the point's error.
+ * The result is larger than t_min. */
 static inline float vl_past_surface(const vlPoint *at, vlVec3 d, float t_min) {
   float margin = 2.0f * at->offset / vl_max(vl_abs(vl_dot(at->g, d)), 0.01f) + 0x1p-22f * vl_abs(at->t);
-  return vl_max(at->t, t_min) + vl_max(margin, VL_MIN_POSITIVE); /* larger than t_min also where both are 0 */
+  return vl_max(at->t, t_min) +
+         vl_max(margin, VL_MIN_POSITIVE); /* the result is larger than t_min even if t_min and margin are 0 */
 }
 /* The surface point that lane i's ray meets. */
 vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
@@ -264,7 +274,7 @@ static inline vlPoint vl_point_at(const vlWorld *world, vlVec3 o, vlVec3 d, uint
   return vl_point_at_time(world, 0.0f, o, d, shape, prim, instance, t);
 }
 
-/* Emitted radiance at 4 channels: of a light's colour, times its image at s, t where it has one. */
+/* Emitted radiance in 4 channels: the light's colour times, if the light has an image, its value at (s, t). */
 void vl_emitted_at(const vlWorld *world, const vlEmitted *emitted, const float lambda[4], float s, float t, bool sky,
                    float out[4]);
 /* A light that a ray has hit. pdf: density of sampling it, per solid angle, from the ray's origin in the ray's
@@ -274,15 +284,16 @@ typedef struct vlHitLight {
   float radiance[4], pdf;
   vlPoint at; /* the point, for area lights */
 } vlHitLight;
-/* Infinite light k of the world for up to VL_SKY_BLOCK rays that hit nothing: radiance and density as in vlHitLight,
- * in the order of lanes. */
+/* Evaluates infinite light k of the world for up to VL_SKY_BLOCK rays that hit nothing. out: radiance and density as
+ * in vlHitLight, in the order of lanes. */
 enum { VL_SKY_BLOCK = 64 };
 typedef struct vlSkyHits {
   float radiance[4][VL_SKY_BLOCK], pdf[VL_SKY_BLOCK];
 } vlSkyHits;
 void vl_hit_sky(const vlWorld *world, const vlPaths *p, const uint32_t *lanes, uint32_t count, size_t k,
                 vlSkyHits *out);
-/* Infinite light k of the world; the emissive surface at hit i: false where this side does not emit. */
+/* vl_hit_infinite: infinite light k of the world as seen by ray i. vl_hit_emission: the emissive surface at hit i;
+ * returns false if the surface does not emit on this side. */
 vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k);
 bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlHitLight *met);
 /* uv of the emission's image at a point of an area light that a ray has hit. */
@@ -291,7 +302,8 @@ vlVec2 vl_emission_uv(const vlWorld *world, const vlWorldLight *light, const vlP
 void vl_infinite_at(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d, const float lambda[4],
                     float out[4]);
 float vl_infinite_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d);
-/* Density, per solid angle from `from`, of sampling this point of an area light (choice not included). */
+/* Density per solid angle, seen from `from`, of sampling this point of an area light. It excludes the probability of
+ * choosing the light. */
 float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, const vlPoint *at);
 
 /* Copies element i of a to element k of b. */
@@ -316,8 +328,8 @@ static inline float vl_power_heuristic(float a, float b) {
 static inline vlVec3 vl_lane3(const float *x, const float *y, const float *z, uint32_t i) {
   return vl_vec3(x[i], y[i], z[i]);
 }
-/* The ellipse in which a cone of some width around a ray along d intersects a surface of normal g: its axes (full
- * widths). The axis along the ray is at most 64 times that across it. */
+/* Axes (full widths) of the ellipse in which a cone around a ray of direction d meets a surface with normal g. width:
+ * the cone's width there. The axis along the ray is at most 64 times as long as the axis across the ray. */
 typedef struct vlFootprint {
   vlVec3 across, along;
 } vlFootprint;
@@ -325,7 +337,8 @@ static inline vlFootprint vl_footprint_of(vlVec3 d, vlVec3 g, float width) {
   float cosine = vl_abs(vl_dot(d, g));
   vlVec3 a = vl_cross(g, d);
   float l2 = vl_length2(a),
-        inv = l2 > 1e-12f ? /* sine above 1e-6: the cross product is not just rounding */ 1.0f / __builtin_sqrtf(l2)
+        inv = l2 > 1e-12f ? /* the sine is above 1e-6, so the cross product is more than rounding error */ 1.0f /
+                                __builtin_sqrtf(l2)
                           : 0.0f;
   vlFrame any = vl_frame_from_z(g);
   a.x = inv > 0.0f ? a.x * inv : any.x.x, a.y = inv > 0.0f ? a.y * inv : any.x.y,
@@ -344,7 +357,8 @@ static inline float vl_nudge(float x, float d) {
   int32_t j = x == 0.0f ? (int32_t)(d > 0.0f ? 1u : 0x80000001u) : i + step;
   return d != 0.0f ? vl_bits_float((uint32_t)j) : x;
 }
-/* Origin of a ray from p that leaves to the side of w (pbrt book 6.8.6). */
+/* Origin of a ray that leaves the surface point p on the side to which w points (pbrt book 6.8.6). g: geometric
+ * normal. */
 static inline vlVec3 vl_offset_origin(vlVec3 p, vlVec3 g, float offset, vlVec3 w) {
   float side = vl_dot(w, g) < 0.0f ? -offset : offset;
   vlVec3 d = vl_mul(g, side);

@@ -1,8 +1,8 @@
-/* trace/trace.h: camera rays in, radiance out, a batch at a time. Independent of camera and film.
+/* trace/trace.h: computes the radiance of batches of camera rays. It does not depend on cameras or films.
  *
- * A batch is at most VL_BATCH paths. All working memory is one vlTraceScratch per worker (about 800 KB, inside L2), so
- * that rendering allocates nothing. Paths are independent of each other: the same path gives the same bits in any
- * batch. */
+ * A batch is at most VL_BATCH paths. Each worker has one vlTraceScratch (about 800 KB, which fits the L2 cache) as its
+ * whole working memory, so rendering allocates nothing. A path's result does not depend on the other paths of its
+ * batch, bit for bit. */
 #ifndef TRACE_TRACE_H
 #define TRACE_TRACE_H
 
@@ -17,27 +17,28 @@ struct vlLightBatch;
 
 enum { VL_BATCH = 1024 };
 
-/* Elements of a batch's array: one cache line more than the batch, so that element i of different arrays maps to
- * different sets of the L1 cache (rows of 4096 bytes would share one set). */
+/* Number of elements of a batch's array. The array is one cache line longer than the batch, so that element i of
+ * different arrays maps to different sets of the L1 cache. (With arrays of 4096 bytes, all would map to one set.) */
 enum { VL_ROW_SIZE = VL_BATCH + 16 };
 
-/* Dimensions of the sampler: the render loop uses those before VL_DIM_BOUNCE, bounce b starts at
- * VL_DIM_BOUNCE + b * VL_DIM_STRIDE. */
+/* Dimensions of the sampler. The camera sample uses the dimensions below VL_DIM_BOUNCE. Bounce b starts at
+ * VL_DIM_BOUNCE + b * VL_DIM_STRIDE; VL_DIM_LIGHT to VL_DIM_FLIGHT count from there. Each comment gives the number of
+ * dimensions used. */
 enum {
   VL_DIM_FILM = 0,       /* 2 */
   VL_DIM_WAVELENGTH = 2, /* 1 */
   VL_DIM_TIME = 3,       /* 1 */
   VL_DIM_LENS = 4,       /* 2 */
   VL_DIM_BOUNCE = 6,
-  VL_DIM_LIGHT = 0,    /* 1: choice of the light */
-  VL_DIM_LIGHT_UV = 1, /* 2: point on the light */
+  VL_DIM_LIGHT = 0,    /* 1: chooses the light */
+  VL_DIM_LIGHT_UV = 1, /* 2: choose the point on the light */
   VL_DIM_LOBE = 3,     /* 1 */
   VL_DIM_BSDF_UV = 4,  /* 2 */
   VL_DIM_ROULETTE = 6, /* 1 */
-  VL_DIM_FLIGHT = 7,   /* 1: distance of flight in a medium */
+  VL_DIM_FLIGHT = 7,   /* 1: samples the distance to the next event in a medium */
   VL_DIM_STRIDE = 8,
-  /* A bounce through a subsurface material (subsurface.hot.c) uses a second range of numbers that starts here: the
-     light sample at its exit as above, and */
+  /* A bounce through a subsurface material (subsurface.hot.c) uses a second range of dimensions that starts here. In
+   * it, the light sample at the exit point uses the offsets above; the offsets below are used too. */
   VL_DIM_SUBSURFACE = 1 << 20,
   VL_DIM_PROBE_AXIS = 3, /* 1 */
   VL_DIM_PROBE = 4,      /* 2 */
@@ -51,27 +52,29 @@ typedef struct vlTraceDef {
   uint32_t max_depth;
   float ao_distance;
   bool ao_cosine;
-  bool same_wavelengths;         /* all paths have the same wavelengths */
-  float lambda_low, lambda_span; /* nm; span above 0: wavelengths are uniform in this range; else sampled by the visible
-                                    response (pbrt book 4.5.4) */
-  float pixel_spread, pixel_width; /* footprint of a camera ray: width + spread * t */
-  const struct vlTwoWay *two_way;  /* for the two-way tracers (two_way.h), else null */
+  bool same_wavelengths;         /* all paths share the same four wavelengths */
+  float lambda_low, lambda_span; /* nm; if the span is above 0, wavelengths are uniform in [low, low + span]; else they
+                                    are drawn from the visible response (pbrt book 4.5.4) */
+  float pixel_spread, pixel_width; /* width of a camera ray's footprint at distance t: pixel_width + pixel_spread * t */
+  const struct vlTwoWay *two_way;  /* only for the two-way tracers (two_way.h); else null */
 } vlTraceDef;
 
-/* Camera rays (world space, d of unit length) and their results. Arrays of VL_PAD(n), n <= VL_BATCH. */
+/* Camera rays and their results. Rays are in world space, and d has unit length. Each array has VL_PAD(n) elements, n
+ * <= VL_BATCH. */
 typedef struct vlTraceBatch {
   uint32_t n;
   const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;
   const int32_t *px, *py;
   const uint32_t *index;
-  const float *time;                 /* the world's, 0 to 1 (world/shape/moving.h); null where nothing moves */
-  float *radiance[4];                /* out; spectral: per wavelength; RGB mode: r, g, b, 0 */
-  float *lambda[4];                  /* out, spectral: wavelengths, nm; RGB mode: null */
-  float *inv_pdf[4];                 /* out, spectral: 1 / their density */
-  float *alpha;                      /* out: 1 where the ray meets a surface */
-  uint64_t bounce_rays, shadow_rays; /* the batch's counts are added */
-  struct vlTwoWayRows *two_way;      /* with vlTraceDef.two_way: memory of one worker, like vlTraceScratch */
-  const struct vlCameraView *eyes;   /* with two_way and a camera that moves: the view of each lane; else null */
+  const float *time;  /* the world's time, 0 to 1 (world/shape/moving.h); null if nothing in the world moves */
+  float *radiance[4]; /* output; spectral mode: one value per wavelength; RGB mode: r, g, b, 0 */
+  float *lambda[4];   /* output in spectral mode: wavelengths, nm; null in RGB mode */
+  float *inv_pdf[4];  /* output in spectral mode: 1 / PDF of each wavelength, nm */
+  float *alpha;       /* output: 1 where the ray hits a surface, else 0 */
+  uint64_t bounce_rays, shadow_rays; /* the kernel adds its numbers of rays */
+  struct vlTwoWayRows *two_way; /* if vlTraceDef.two_way is set: working memory of one worker, like vlTraceScratch */
+  const struct vlCameraView
+      *eyes; /* if two_way is set and the camera moves: the camera's view for each lane; else null */
 } vlTraceBatch;
 
 typedef struct vlTraceScratch vlTraceScratch;
@@ -83,7 +86,8 @@ typedef struct vlTraceKernels {
   /* Traces light paths (two_way.h). Their sampler is def->two_way->sampler; def->sampler is not used. */
   void (*light)(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, struct vlTwoWayRows *rows,
                 struct vlLightBatch *batch);
-  /* Finds the medium in which each light's paths start, unless its shape defines it; eye: the camera's position. */
+  /* Finds the medium in which each light's paths start, for lights whose shape does not define it. eye: the camera's
+   * position in world space. */
   void (*light_media)(const vlWorld *world, const float eye[3], uint32_t *medium);
 } vlTraceKernels;
 VL_KERNEL_TABLE(vlTraceKernels, vl_trace)

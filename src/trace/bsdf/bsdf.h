@@ -1,10 +1,10 @@
-/* trace/bsdf/bsdf.h: BSDFs over batches of one kind. All directions are in the local shading frame, z the shading
- * normal; wo and wi point away from the surface. There are 4 channels: 4 wavelengths, or R, G, B and an unused one; the
- * code is the same for both.
+/* trace/bsdf/bsdf.h: evaluates and samples BSDFs over batches of one kind. All directions are in the local shading
+ * frame, whose z axis is the shading normal; wo and wi point away from the surface. There are 4 channels: 4
+ * wavelengths, or R, G, B and an unused channel. The code is the same for both.
  *
  *   eval:   value[c] = f(wo, wi) |cos wi|, pdf = density of sampling wi (solid angle); specular (delta) parts are 0
  *   sample: wi; weight[c] = f |cos| / pdf; pdf (for delta parts: the discrete probability, flag set); flags
- * Radiance is transported (camera paths): transmission into a denser medium has the factor 1/eta^2 (pbrt book 9.5.2).
+ * The BSDFs transport radiance, as on camera paths, so transmission has the factor 1/eta^2 (pbrt book 9.5.2).
  * References: pbrt-v4 book chapter 9; Walter et al. 2007; Heitz 2018 / Dupuy and Benyoub 2023 (visible normals). */
 #ifndef TRACE_BSDF_BSDF_H
 #define TRACE_BSDF_BSDF_H
@@ -15,20 +15,21 @@
 #include "world/material/coat.h"
 #include "world/material/measured.h"
 
-/* Parameter rows whose meaning depends on the kind: VL_P_ of the principled kind, and so on below. A kind of a single
- * file may number them there. */
+/* Number of parameter rows whose meaning depends on the kind. The enums below name the rows of each kind, such as
+ * VL_P_* for the principled kind. A kind that only one file uses may number its rows in that file. */
 enum { VL_BSDF_ROWS = 26 };
 
-/* Rows of the principled material. Its base colour is reflectance, its roughness alpha_x and alpha_y (at least 1e-3).
- * F0 is that of the dielectric. COAT_X, Y, Z: the coat's normal, unit, z > 0. */
+/* Rows of the principled material. The base colour is in `reflectance`, the roughness in alpha_x and alpha_y (at least
+ * 1e-3). F0 is the reflectance of the dielectric at normal incidence. COAT_X, COAT_Y and COAT_Z are the coat's unit
+ * normal, with z > 0. */
 enum {
   VL_P_METALLIC,
   VL_P_F0,
   VL_P_F90 = VL_P_F0 + 4,
   VL_P_TRANSMISSION,
-  VL_P_THIN, /* 1: a thin sheet, or opaque; 0: a solid of index eta_s */
+  VL_P_THIN, /* 1: a thin sheet, or opaque; 0: a transmissive solid with index of refraction eta_s */
   VL_P_DIFFUSE_TRANSMISSION,
-  VL_P_THROUGH, /* colour of the diffuse transmission */
+  VL_P_THROUGH, /* 4 rows: colour of the diffuse transmission */
   VL_P_COAT = VL_P_THROUGH + 4,
   VL_P_COAT_ALPHA,
   VL_P_COAT_X,
@@ -42,12 +43,13 @@ enum {
 };
 _Static_assert((int)VL_P_FILM_NM < (int)VL_BSDF_ROWS, "enough rows");
 
-/* Diffuse transmission, layers, hair, subsurface. */
+/* Rows of the other kinds: VL_T_ diffuse transmission, VL_L_ layered, VL_H_ hair, VL_S_ subsurface. */
 enum { VL_T_TRANSMITTANCE /* 4 */ };
 enum {
-  VL_L_METAL, /* 1: the base is metal of eta, k (over the coat's index); 0: diffuse, of reflectance */
+  VL_L_METAL, /* 1: the base is a metal with eta and k, relative to the coat's index; 0: the base is diffuse with
+                 `reflectance` */
   VL_L_BASE_X,
-  VL_L_BASE_Y, /* alpha of the metal; that of the coat is alpha_x, alpha_y */
+  VL_L_BASE_Y, /* BASE_X, BASE_Y: alpha of the metal; the coat has alpha_x, alpha_y */
   VL_L_THICKNESS,
   VL_L_G,
   VL_L_ALBEDO,
@@ -56,7 +58,7 @@ enum {
 };
 enum {
   VL_H_SIGMA_A,
-  VL_H_ACROSS = VL_H_SIGMA_A + 4, /* offset of the hit across the hair, -1 to 1 */
+  VL_H_ACROSS = VL_H_SIGMA_A + 4, /* offset of the hit from the hair's axis, -1 to 1 */
   VL_H_BETA_M,
   VL_H_BETA_N,
   VL_H_ALPHA, /* radians */
@@ -65,14 +67,14 @@ enum {
 enum { VL_S_SIGMA /* extinction, 4 */, VL_S_ALBEDO = VL_S_SIGMA + 4 /* 4 */ }; /* subsurface */
 
 enum {
-  VL_SAMPLED_SPECULAR = 1,     /* a delta: not part of eval */
-  VL_SAMPLED_TRANSMISSION = 2, /* wi on the other side of the surface */
+  VL_SAMPLED_SPECULAR = 1,     /* a delta lobe, which eval does not include */
+  VL_SAMPLED_TRANSMISSION = 2, /* wi is on the other side of the surface */
   VL_SAMPLED_NONE = 4          /* no direction: the path ends; weight is 0 */
 };
 
-/* One array per parameter, VL_PAD(n) lanes; a kind reads only those that name it. */
+/* Parameters of a batch, one array of VL_PAD(n) lanes each. A kind reads only the arrays whose comment names it. */
 typedef struct vlBsdfParams {
-  float *reflectance[4];    /* diffuse, coated diffuse: albedo of the base in [0,1] */
+  float *reflectance[4];    /* diffuse, coated diffuse: albedo of the base, in [0, 1] */
   float *eta[4], *k[4];     /* conductor */
   float *alpha_x, *alpha_y; /* conductor, dielectric, coat */
   float *eta_s;             /* dielectric, thin, coat */
@@ -88,12 +90,13 @@ typedef struct vlBsdfDirections {
 } vlBsdfDirections;
 
 typedef struct vlBsdfKernels {
-  /* by kind: eval and sample */
+  /* Each function calls the implementation for `kind`. */
   void (*eval)(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
                float *const value[4], float *pdf);
   void (*sample)(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
                  const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
-                 uint32_t *flags, float *eta_scale /* relative eta of a transmission squared, else 1: for roulette */);
+                 uint32_t *flags,
+                 float *eta_scale /* for Russian roulette: the squared relative eta of a transmission, else 1 */);
 } vlBsdfKernels;
 VL_KERNEL_TABLE(vlBsdfKernels, vl_bsdf)
 

@@ -1,6 +1,6 @@
-/* trace/bsdf/coat.hot.c: a Lambertian base under a dielectric coat, in the closed form of world/material/coat.h: no
- * random walk, no additional noise. Two lobes: the coat's reflection (a delta when it is smooth) and the base under the
- * coat.
+/* trace/bsdf/coat.hot.c: the BSDF of a Lambertian base under a dielectric coat. It has the closed form of
+ * world/material/coat.h, without random walks and their noise, and two lobes: the coat's reflection (a delta if the
+ * coat is smooth) and the base under the coat.
  *
  * Lanes are processed in chunks, in a few passes over small arrays, because the lookup of T(w) does not vectorise (gcc
  * makes no gathers for generic x86-64, and lanes may have different tables): a scalar pass copies the four nodes of
@@ -11,8 +11,8 @@
 
 enum { CHUNK = 64 };
 
-/* The passes must not be inlined: where gcc sees the local arrays it moves their loads into the selects, and the loops
- * get branches. */
+/* The passes must not be inlined. Where gcc sees the local arrays, it moves their loads into the selects, which become
+ * branches. */
 #define PASS static __attribute__((noinline)) void
 
 /* Data between the passes, for a chunk of lanes. */
@@ -21,7 +21,7 @@ typedef struct {
   float back[CHUNK], escape[CHUNK];
   int32_t bounces[CHUNK];
   float coat_share[CHUNK]; /* probability of the coat's lobe */
-  float fresnel[CHUNK];    /* at wo */
+  float fresnel[CHUNK];    /* Fresnel reflectance at wo */
   float base[4][CHUNK];    /* the base's f without T(wi) */
 } Lanes;
 
@@ -46,7 +46,7 @@ static Slice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t first) {
                  n - first < count ? n - first : count};
 }
 
-enum { OF_WO, OF_WI, OF_LIGHT }; /* light: a wi that was not sampled by this BSDF */
+enum { OF_WO, OF_WI, OF_LIGHT }; /* OF_LIGHT: a wi from a light sample */
 
 /* The table rows of T. */
 static const float (*rows_of(const vlCoatTable *table, int of))[VL_COAT_COS] {
@@ -70,7 +70,8 @@ static void fetch_row(const vlCoatTable *table, uint32_t count, Lanes *lanes, No
   for (uint32_t i = 0; i < count; i++) lanes->back[i] = back, lanes->escape[i] = escape, lanes->bounces[i] = bounces;
 }
 
-/* A table for each lane, or interpolation between rows. The same bits as fetch_row where nothing is interpolated. */
+/* Each lane has its own table, or interpolates between two rows. Without interpolation, results are the same as
+ * fetch_row's, bit for bit. */
 static void fetch_each(const Slice *s, Lanes *lanes, Nodes *nodes, int of) {
   for (uint32_t i = 0; i < s->count; i++) {
     const vlCoatTable *table = s->coat[i < s->live ? i : 0];
@@ -96,7 +97,7 @@ static void fetch_each(const Slice *s, Lanes *lanes, Nodes *nodes, int of) {
   }
 }
 
-/* T at the cosines z; for wo also the tables' constants. */
+/* Looks up T at the cosines z, and for wo also the constants of the tables. */
 PASS look_up(const Slice *s, const float *z, Lanes *lanes, float *through, int of) {
   Nodes nodes;
   uint32_t count = VL_WHOLE(s->count);
@@ -121,7 +122,8 @@ PASS look_up(const Slice *s, const float *z, Lanes *lanes, float *through, int o
   }
 }
 
-/* 1 + x + ... + x^(K-1), x in [0, 1), K < 2^bits: (1 - x^K)/(1 - x), the power by K's bits. */
+/* The sum 1 + x + ... + x^(k-1) = (1 - x^k) / (1 - x), for x in [0, 1) and k < 2^bits. The power is computed from the
+ * bits of k. */
 static inline float series(float x, int32_t k, const int bits) {
   float power = 1.0f, square = x;
   for (int b = 0; b < bits; b++) {
@@ -132,8 +134,8 @@ static inline float series(float x, int32_t k, const int bits) {
   return (1.0f - power) / (down > VL_MIN_FRACTION ? down : VL_MIN_FRACTION);
 }
 
-/* From T(wo): the base's f by channel, and the probabilities of the lobes in proportion to the energy that each
- * reflects; the coat's is computed as if it were smooth. */
+/* Computes from T(wo) the base's f in each channel and the probabilities of the lobes, which are proportional to the
+ * energy that each lobe reflects. The energy of a rough coat is approximated by that of a smooth coat. */
 static inline __attribute__((always_inline)) void weigh_loop(const Slice *s, const float *oz, Lanes *lanes,
                                                              const int bits) {
   const float *r0 = s->r0, *r1 = s->r1, *r2 = s->r2, *r3 = s->r3, *eta = s->eta;
@@ -231,7 +233,7 @@ void vl_bsdf_coat_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections 
   }
 }
 
-/* First half of sampling: the lobe and the direction. wi.z is relative to wo's side. */
+/* First half of sampling: chooses the lobe and samples the direction. wi.z is positive on the side of wo. */
 PASS choose(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float *u_lobe, const float *u,
             const float *v, vlBsdfDirections wi, uint32_t first) {
   const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first;
@@ -255,7 +257,7 @@ PASS choose(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
   }
 }
 
-/* Second half: the weight of the direction, over the density of both lobes. */
+/* Second half of sampling: computes the weight of the direction, with the density of both lobes. */
 PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float *u_lobe, vlBsdfDirections wi,
             float *const weight[4], float *density, uint32_t *flags, uint32_t first) {
   const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first, *lobe = u_lobe + first;
@@ -271,7 +273,7 @@ PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     float xo = ox[i], yo = oy[i], zo = vl_abs(oz[i]), xi = ix[i], yi = iy[i], zi = iz[i];
     int valid = (zo > 0.0f) & (zi > 0.0f);
-    float on = valid ? 1.0f : 0.0f, off = 1.0f - on; /* as above */
+    float on = valid ? 1.0f : 0.0f, off = 1.0f - on; /* products instead of selects, as above */
     vlVec3 o = vl_vec3(xo * on, yo * on, zo * on + off), w = vl_vec3(xi * on, yi * on, zi * on + off);
     float p = share[i];
     int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (eta[i] == 1.0f), mirror = (lobe[i] < p) & smooth;

@@ -1,4 +1,5 @@
-/* trace/bsdf/conductor.hot.c: metal, smooth or of GGX microfacets, single scattering (pbrt book 9.3.6, 9.6.5). */
+/* trace/bsdf/conductor.hot.c: the BSDF of metals, smooth or with GGX microfacets, with single scattering (pbrt book
+ * 9.3.6, 9.6.5). */
 #include "trace/bsdf/local.h"
 
 void vl_bsdf_conductor_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,

@@ -1,7 +1,7 @@
-/* trace/bsdf/dielectric.hot.c: the BSDF of glass and water, smooth or with GGX microfacets, single scattering (pbrt
- * book 9.5, 9.7; Walter et al. 2007). A sample chooses reflection or transmission in proportion to the Fresnel terms at
- * the sampled microfacet. Its weight is therefore G/G1 for both. For transmission it is also divided by eta^2, since
- * refraction compresses the solid angle. */
+/* trace/bsdf/dielectric.hot.c: the BSDF of glass and water, smooth or with GGX microfacets, with single scattering
+ * (pbrt book 9.5, 9.7; Walter et al. 2007). A sample chooses reflection or transmission in proportion to the Fresnel
+ * terms at the sampled microfacet. The sample's weight is therefore G/G1 in both cases. For transmission it is also
+ * divided by eta^2, because refraction compresses the solid angle. */
 #include "trace/bsdf/local.h"
 
 void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
@@ -30,7 +30,7 @@ void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
     valid = valid & (oh > 0.0f) & (reflect | (ih < 0.0f));
     float fr = vl_fresnel_dielectric(oh, eta).reflected;
     float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
-    /* D_wo(h) / wo.h = 2 D / (Lo + zo). jacobian: of h with respect to wi, times wo.h */
+    /* D_wo(h) / wo.h = 2 D / (Lo + zo). jacobian: the Jacobian of h with respect to wi, times wo.h */
     float visible = vl_ggx_visible(h, rx, ry, o.z, lo);
     float t = ih + oh * inverse;
     float t2 = t * t;

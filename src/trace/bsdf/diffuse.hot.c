@@ -1,5 +1,5 @@
-/* trace/bsdf/diffuse.hot.c: the kinds without roughness or coat: Lambertian reflection, and the thin dielectric, a pane
- * with the sum of all internal reflections (pbrt book 9.2, 9.5.1). */
+/* trace/bsdf/diffuse.hot.c: Lambertian reflection (pbrt book 9.2), and the thin dielectric, a pane that includes all
+ * internal reflections (9.5.1). */
 #include "trace/bsdf/local.h"
 
 void vl_bsdf_diffuse_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
@@ -40,7 +40,7 @@ void vl_bsdf_diffuse_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirect
     ix[i] = d.x;
     iy[i] = d.y;
     iz[i] = zo < 0.0f ? -d.z : d.z;
-    float on = valid ? 1.0f : 0.0f; /* a product, since gcc makes a branch of selects between loads */
+    float on = valid ? 1.0f : 0.0f; /* a product, because gcc turns a select between loads into a branch */
     w0[i] = r0[i] * on;
     w1[i] = r1[i] * on;
     w2[i] = r2[i] * on;

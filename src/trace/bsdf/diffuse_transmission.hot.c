@@ -1,5 +1,6 @@
-/* trace/bsdf/diffuse_transmission.hot.c: Lambertian reflection and transmission (pbrt's diffusetransmission). The side
- * is chosen in proportion to the largest channel of each. Both faces have the same values. */
+/* trace/bsdf/diffuse_transmission.hot.c: Lambertian reflection and transmission (pbrt's diffusetransmission). Samples
+ * choose reflection or transmission in proportion to the largest channel of each. Both sides of the surface have the
+ * same values. */
 #include "trace/bsdf/local.h"
 
 /* Probability of reflection; any value if both are 0. */

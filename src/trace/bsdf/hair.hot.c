@@ -1,20 +1,20 @@
-/* trace/bsdf/hair.hot.c: scattering by a hair, a rough tilted dielectric cylinder that absorbs (Chiang, Bitterli,
- * Tappan, Burley 2016; pbrt book 9.9): reflection, transmission, one internal reflection, and the sum of all further
- * ones. Each is a product of a longitudinal part M (von Mises-Fisher), an attenuation A and an azimuthal part N
- * (trimmed logistic).
+/* trace/bsdf/hair.hot.c: the BSDF of a hair, an absorbing dielectric cylinder with a rough surface of tilted scales
+ * (Chiang, Bitterli, Tappan, Burley 2016; pbrt book 9.9). Its four lobes are reflection, transmission, one internal
+ * reflection, and all paths with more. Each lobe is a product of a longitudinal part M (von Mises-Fisher), an
+ * attenuation A and an azimuthal part N (trimmed logistic).
  *
- * x runs along the hair, h in [-1, 1] across it. In this far-field model of curves f is not symmetric in the two
- * directions, and transmission does not depend on the side of the surface. */
+ * The x axis runs along the hair; h in [-1, 1] is the offset from the hair's axis. In this far-field model of curves, f
+ * is not symmetric in the two directions, and transmission does not depend on the side of the surface. */
 #include "trace/bsdf/local.h"
 
-enum { LOBES = 4 }; /* p = 0, 1, 2, and the rest */
+enum { LOBES = 4 }; /* p = 0, 1, 2 internal segments, and all larger p */
 
 /* The parameters of a lane's hair for wo. */
 typedef struct Hair {
   float sin_o, cos_o, phi_o;
   float gamma_o, gamma_t;
-  float s, norm, low;               /* of the logistic: scale, 1 / its mass in one turn, its value at -pi */
-  float v[LOBES];                   /* variances */
+  float s, norm, low; /* of the logistic distribution: scale, 1 / (its mass in one turn), cumulative value at -pi */
+  float v[LOBES];     /* variances */
   float sin_p[LOBES], cos_p[LOBES]; /* wo tilted by the cuticle scales */
   float a[LOBES][4];                /* attenuations */
   float share[LOBES];               /* probabilities of the lobes */
@@ -49,7 +49,7 @@ static inline float longitudinal(float cos_i, float cos_o, float sin_i, float si
   return vl_exp(e > -80.0f ? e : -80.0f) * inverse / (1.0f - vl_exp(-2.0f * inverse));
 }
 
-static inline float turned(float x) { /* wraps to [-pi, pi] */
+static inline float turned(float x) { /* wraps an angle to [-pi, pi] */
   return x - 2.0f * VL_PI * __builtin_floorf(x * (0.5f * VL_INV_PI) + 0.5f);
 }
 /* Azimuth of lobe p of a smooth hair. */
@@ -61,10 +61,11 @@ static inline float logistic(const Hair *h, float x) {
   return e * h->norm / (h->s * (1.0f + e) * (1.0f + e));
 }
 
-/* Lower bound of both roughnesses. At 0.01 the variance v is 5e-5: exponents of size 1/v have a rounding error of 1e-3.
- */
+/* Lower bound of both roughnesses. At 0.01 the variance v is 5e-5, and exponents of size 1 / v have a rounding error of
+ * 1e-3. */
 #define MIN_BETA 1e-2f
-/* Lower bound of the cosine between a direction and the fibre's cross-section, 0.006 degrees from the fibre itself. */
+/* Lower bound of the cosine between a direction and the fibre's cross-section. It is reached 0.006 degrees from the
+ * fibre's direction. */
 #define ALONG 1e-4f
 
 static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
@@ -149,8 +150,8 @@ void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
     int p = 0;
     float lobe = u_lobe[i];
     for (; p < LOBES - 1 && !(lobe < h.share[p]); p++) lobe -= h.share[p];
-    lobe =
-        vl_clamp(lobe / vl_max(h.share[p], VL_MIN_POSITIVE), 0.0f, VL_ONE_MINUS_EPSILON); /* uniform in [0, 1) again */
+    lobe = vl_clamp(lobe / vl_max(h.share[p], VL_MIN_POSITIVE), 0.0f,
+                    VL_ONE_MINUS_EPSILON); /* the rest of the random number, uniform in [0, 1) again */
     float e = vl_exp(-2.0f / h.v[p]);
     float cosine = vl_clamp(1.0f + h.v[p] * vl_ln(vl_max(u[i] + (1.0f - u[i]) * e, VL_MIN_POSITIVE)), -1.0f, 1.0f);
     float sine = __builtin_sqrtf((1.0f - cosine) * (1.0f + cosine));

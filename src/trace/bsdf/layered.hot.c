@@ -1,12 +1,12 @@
-/* trace/bsdf/layered.hot.c: a dielectric coat over a metal or diffuse base, with a medium between them that may
- * scatter. f is estimated by position-free random walks (Guo, Hasan, Zhao 2018; pbrt book 14.3). Walks begin at wo and
- * are connected with wi at every vertex; both strategies that sample the direction between the layers are combined by
- * multiple importance sampling. Terms that need no walk are exact: the coat's own reflection, and a mirror under a
+/* trace/bsdf/layered.hot.c: the BSDF of a dielectric coat over a metal or diffuse base, with a medium between them that
+ * may scatter. f is estimated by position-free random walks (Guo, Hasan, Zhao 2018; pbrt book 14.3). A walk begins at
+ * wo and is connected with wi at every vertex. Two strategies sample the direction between the layers; multiple
+ * importance sampling combines them. Terms that need no walk are exact: the coat's own reflection, and a mirror under a
  * smooth coat.
  *
- * Directions are not sampled by walks but by a density in closed form (the coat's microfacets, the base's lobe through
- * a smooth coat, a cosine lobe), so that sampling and evaluation agree to the bit: the walks' random numbers depend on
- * the lane's seed and both directions. Scalar: walks diverge. */
+ * Directions are sampled with a density in closed form (the coat's microfacets, the base's lobe through a smooth coat,
+ * a cosine lobe), not by walks. The walks' random numbers depend only on the lane's seed and both directions, so
+ * sampling and evaluation give the same bits. The code is scalar because walks diverge. */
 #include "trace/bsdf/layers.h"
 
 static inline float next(uint32_t *state) {
@@ -21,8 +21,8 @@ static inline float power(float a, float b) {
   return a2 < VL_INFINITY ? a2 / (a2 + b2) : 1.0f;
 }
 
-/* Connects the walk's vertex at the base, reached along w, with the direction `to` under the coat that leads to wi.
- * height: over the base. */
+/* Connects the walk's vertex, reached in direction w, with the direction `to` under the coat that leads to wi. height:
+ * optical depth above the base. */
 static void join_base(const Layers *l, vlVec3 w, const Step *to, const float beta[4], float f[4]) {
   if (l->mirror || !to->valid) return;
   float value[4], pdf;
@@ -30,8 +30,8 @@ static void join_base(const Layers *l, vlVec3 w, const Step *to, const float bet
   float weight = (l->smooth ? 1.0f : power(to->pdf, pdf)) * layers_pass(l->thickness, to->w);
   for (int c = 0; c < 4; c++) f[c] += beta[c] * value[c] * to->weight[c] * weight;
 }
-/* A vertex in the medium between a smooth coat and a mirror base: the sum over all numbers of reflections, from above
- * and from below, which no walk can connect. */
+/* Connects a vertex in the medium between a smooth coat and a mirror base. Walks cannot make these connections, so
+ * they are summed over all numbers of reflections at coat and base. */
 static void join_between_mirrors(const Layers *l, vlVec3 w, float height, const Step *to, const float beta[4],
                                  float f[4]) {
   if (!to->valid) return;
@@ -54,7 +54,8 @@ static void join_medium(const Layers *l, vlVec3 w, float height, const Step *to,
                  vl_max(-to->w.z, VL_MIN_FRACTION); /* a vertex in the medium has no cosine */
   for (int c = 0; c < 4; c++) f[c] += beta[c] * l->albedo[c] * to->weight[c] * weight;
 }
-/* The other strategy: w was sampled (with pdf; 0: by a delta) and leaves upwards through a rough coat to wi. */
+/* The other strategy: direction w was sampled with density pdf (0: by a delta) and goes up through a rough coat to
+ * wi. */
 static void join_coat(const Layers *l, vlVec3 w, float height, vlVec3 wi, const float beta[4], float pdf, float f[4]) {
   if (l->smooth || !(w.z > 0.0f)) return;
   float other, value = coat_transmit(l, wi, vl_neg(w), &other);
@@ -63,7 +64,7 @@ static void join_coat(const Layers *l, vlVec3 w, float height, vlVec3 wi, const 
   for (int c = 0; c < 4; c++) f[c] += beta[c] * weight;
 }
 
-/* A flight through a medium that may scatter; true: it scattered inside. */
+/* Samples a flight through the medium. Returns true if it scattered between the layers. */
 static bool fly(const Layers *l, vlVec3 *w, float *height, const Step *to, vlVec3 wi, float beta[4], uint32_t *state,
                 float f[4]) {
   float distance = -vl_ln(1.0f - next(state)) * vl_abs(w->z), z = *height;
@@ -82,7 +83,7 @@ static bool fly(const Layers *l, vlVec3 *w, float *height, const Step *to, vlVec
   return true;
 }
 
-/* Adds one walk's estimate to f. o, wi: both above. */
+/* Adds the estimate of one walk to f. o and wi both point up. */
 static void walk(const Layers *l, vlVec3 o, vlVec3 wi, uint32_t *state, float f[4]) {
   float u = next(state), v = next(state);
   Step from = coat_enter(l, o, u, v);
@@ -117,7 +118,8 @@ static void walk(const Layers *l, vlVec3 o, vlVec3 wi, uint32_t *state, float f[
 
 /* ---- lobes ------------------------------------------------------------------------------------------------------- */
 
-/* The lobes of sampling: probabilities of the coat's reflection, of the base under the coat, of a cosine lobe. */
+/* The lobes from which directions are sampled, with the probabilities of the coat's reflection, the base under the
+ * coat, and a cosine lobe. */
 typedef struct Lobes {
   float coat, base, wide;
   float mirror[4]; /* reflectance of a smooth coat with smooth metal under it */
@@ -152,14 +154,14 @@ static Lobes lobes_of(const Layers *l, vlVec3 o) {
   lobes.base = l->metal && !all_mirror && inside > 0.0f ? 0.8f * below : 0.0f;
   lobes.wide = all_mirror ? haze : haze + below - lobes.base;
   if (all_mirror) lobes.coat = 0.25f * (lobes.mirror[0] + lobes.mirror[1] + lobes.mirror[2] + lobes.mirror[3]);
-  /* If f is not 0, each lobe gets some samples. */
+  /* Unless f is 0, each lobe gets some samples. */
   float sum = lobes.coat + lobes.base + lobes.wide;
   if (!(sum > VL_MIN_FRACTION)) lobes.coat = sum = 1.0f;
   bool matt = !all_mirror || l->scatters;
   lobes.coat /= sum, lobes.base /= sum, lobes.wide /= sum;
   if (matt) lobes.wide = 0.95f * lobes.wide + 0.05f, lobes.base *= 0.95f, lobes.coat *= 0.95f;
-  /* Light crosses the coat twice; each time a microfacet's slope deflects it by 1 - 1/eta of the slope. Reflection by
-   * the metal deflects it by twice its slope. */
+  /* Light crosses the coat twice, and each time a microfacet deflects it by (1 - 1/eta) times the microfacet's slope.
+   * Reflection by the metal deflects it by twice the slope. */
   float bend = l->smooth ? 0.0f : 0.5f * (1.0f - 1.0f / l->eta) * (1.0f - 1.0f / l->eta);
   float bx = l->mirror ? 0.0f : l->bx, by = l->mirror ? 0.0f : l->by;
   lobes.bx = vl_clamp(__builtin_sqrtf(bx * bx + bend * l->ax * l->ax), VL_GGX_SMOOTH, 1.0f);
@@ -167,7 +169,7 @@ static Lobes lobes_of(const Layers *l, vlVec3 o) {
   return lobes;
 }
 
-/* A direction refracted by a smooth coat, with z > 0; z 0: total reflection. */
+/* Refracts a direction at a smooth coat; the result has z > 0. z = 0: total internal reflection. */
 static vlVec3 bent(vlVec3 w, float eta) {
   return vl_vec3(w.x / eta, w.y / eta, refracted(w.z, eta));
 }
@@ -183,7 +185,7 @@ static float density(const Layers *l, const Lobes *lobes, vlVec3 o, vlVec3 w) {
   return lobes->coat * coat + lobes->base * base + lobes->wide * w.z * VL_INV_PI;
 }
 
-/* Samples a direction above; z <= 0: none. mirror: it is the delta. */
+/* Samples a direction with z > 0; a result with z <= 0 is no sample. mirror: the sample is the delta. */
 static vlVec3 draw(const Layers *l, const Lobes *lobes, vlVec3 o, float lobe, float u, float v, bool *mirror) {
   *mirror = false;
   if (lobe < lobes->coat) {
@@ -202,7 +204,7 @@ static vlVec3 draw(const Layers *l, const Lobes *lobes, vlVec3 o, float lobe, fl
 
 /* ---- kernels ----------------------------------------------------------------------------------------------------- */
 
-/* f cos between o and w, both above, without the delta. */
+/* f cos between o and w, which both point up, without the delta. */
 static void scattered(const Layers *l, vlVec3 o, vlVec3 w, uint32_t seed, float value[4]) {
   float f[4] = {0, 0, 0, 0}, pdf, coat = coat_reflection(l, o, w, &pdf);
   if (!(l->smooth && l->mirror) || l->scatters) {

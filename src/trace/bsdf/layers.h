@@ -1,8 +1,8 @@
-/* trace/bsdf/layers.h: the coat, the base and the medium between them of one lane, for the random walks of
- * layered.hot.c. Scalar.
+/* trace/bsdf/layers.h: the coat, base and medium of one lane of a layered material, for the random walks of
+ * layered.hot.c. Scalar code.
  *
- * The coat's outside is z > 0. Between the layers directions have either sign of z; the base reflects upwards. "f":
- * without the cosine. */
+ * The outside of the coat is z > 0. Between coat and base, directions may point up or down; the base reflects upwards.
+ * "f" is the BSDF's value without the cosine. */
 #ifndef TRACE_BSDF_LAYERS_H
 #define TRACE_BSDF_LAYERS_H
 
@@ -14,9 +14,9 @@
 typedef struct Layers {
   float ax, ay, eta; /* coat */
   int smooth;
-  int metal, mirror; /* base: mirror is smooth metal */
+  int metal, mirror; /* kind of the base; a mirror is a smooth metal */
   float bx, by, e[4], k[4], rho[4];
-  float thickness, g, albedo[4]; /* of the medium: optical thickness, asymmetry, single-scattering albedo */
+  float thickness, g, albedo[4]; /* the medium's optical thickness, asymmetry g and single-scattering albedo */
   int scatters;
   uint32_t depth, walks;
 } Layers;
@@ -44,7 +44,7 @@ static inline Layers layers_of(const vlBsdfParams *p, uint32_t i) {
   return l;
 }
 
-/* Transmittance over a distance (optical thickness) along w. */
+/* Transmittance of a slab in direction w. distance: the slab's optical thickness. */
 static inline float layers_pass(float distance, vlVec3 w) {
   float z = vl_abs(w.z);
   return distance > 0.0f ? vl_exp(-distance / vl_max(z, VL_MIN_FRACTION)) : 1.0f;
@@ -55,11 +55,12 @@ static inline float layers_pass(float distance, vlVec3 w) {
 typedef struct Step {
   vlVec3 w;
   float weight[4]; /* f cos / pdf */
-  float pdf;       /* solid angle; 1 of a delta */
+  float pdf;       /* per solid angle; 1 for a delta */
   int valid;
 } Step;
 
-/* Transmission from outside through the coat, without radiance's factor 1/eta^2; reflection is not a choice. */
+/* Samples transmission from outside through the coat, without the factor 1/eta^2 of radiance. Reflection is never
+ * sampled. */
 static inline Step coat_enter(const Layers *l, vlVec3 o, float u, float v) {
   vlVec3 h = l->smooth ? vl_vec3(0, 0, 1) : vl_ggx_sample(o, l->ax, l->ay, u, v);
   float oh = vl_dot(o, h), inverse = 1.0f / l->eta;
@@ -76,8 +77,8 @@ static inline Step coat_enter(const Layers *l, vlVec3 o, float u, float v) {
   return s;
 }
 
-/* f of transmission through a rough coat, between o outside and w below it, as coat_enter samples it. By reciprocity it
- * is also f of radiance that travels from -w to o. */
+/* f of transmission through a rough coat, from o outside to w below the coat, and the density with which coat_enter
+ * samples w. By reciprocity it is also f of radiance that travels from -w to o. */
 static inline float coat_transmit(const Layers *l, vlVec3 o, vlVec3 w, float *pdf) {
   float inverse = 1.0f / l->eta;
   vlVec3 h =
@@ -93,9 +94,9 @@ static inline float coat_transmit(const Layers *l, vlVec3 o, vlVec3 w, float *pd
   return (1.0f - vl_fresnel_dielectric(oh, l->eta).reflected) * g * *pdf / -w.z;
 }
 
-/* Reflection of light from below (w.z > 0) back down; transmission is not a choice. */
+/* Samples reflection at the coat of a direction from below (w.z > 0) back down. Transmission is never sampled. */
 static inline Step coat_back(const Layers *l, vlVec3 w, float u, float v) {
-  vlVec3 o = vl_vec3(-w.x, -w.y, w.z); /* reflected at the surface, as if from above */
+  vlVec3 o = vl_vec3(-w.x, -w.y, w.z); /* mirrored at the surface, as if it came from above */
   vlVec3 h = l->smooth ? vl_vec3(0, 0, 1) : vl_ggx_sample(o, l->ax, l->ay, u, v);
   float oh = vl_dot(o, h);
   vlVec3 r = vl_reflect(o, h, oh);
@@ -106,7 +107,7 @@ static inline Step coat_back(const Layers *l, vlVec3 w, float u, float v) {
   return s;
 }
 
-/* The rough coat's own reflection: f cos, and its density. */
+/* Reflection at the outside of a rough coat. Returns f cos and sets *pdf to its density. */
 static inline float coat_reflection(const Layers *l, vlVec3 o, vlVec3 w, float *pdf) {
   *pdf = 0.0f;
   if (l->smooth) return 0.0f;
@@ -118,7 +119,7 @@ static inline float coat_reflection(const Layers *l, vlVec3 o, vlVec3 w, float *
 
 /* ---- the base ---------------------------------------------------------------------------------------------------- */
 
-/* f between o and i, both above; not of a mirror. */
+/* f of the base between o and i, which both point up. The base must not be a mirror. */
 static inline void base_eval(const Layers *l, vlVec3 o, vlVec3 i, float f[4], float *pdf) {
   if (!l->metal) {
     *pdf = i.z * VL_INV_PI;

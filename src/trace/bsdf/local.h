@@ -1,8 +1,8 @@
-/* trace/bsdf/local.h: declarations shared by the BSDF files: small inline functions, and the entry points, one pair per
- * kind and instruction set, which table.hot.c collects.
+/* trace/bsdf/local.h: small inline functions and the entry points that the BSDF files share. Each kind has one pair of
+ * entry points per instruction set; table.hot.c collects them.
  *
  * Every kernel is one loop over the padded batch. To vectorise, it computes both outcomes of each choice and selects
- * one. Array pointers are copied to local variables, so that the compiler need not reload them. Padding lanes may hold
+ * one. Array pointers are copied to local variables, so that the compiler does not reload them. Padding lanes may hold
  * any values. If wo lies in the surface (z = 0), the value is 0 and there is no sample. For a wo from below, wo and wi
  * are mirrored at the surface, z -> -z: each BSDF here is symmetric in z, dielectrics with eta -> 1/eta. */
 #ifndef TRACE_BSDF_LOCAL_H
@@ -13,8 +13,8 @@
 #include "math/warp.h"
 #include "trace/bsdf/bsdf.h"
 
-/* The count of a padded batch, in a form that shows the compiler that it is a multiple of the vector width; it then
- * makes no remainder loop. */
+/* The count of a padded batch, written so that the compiler sees a multiple of the vector width and makes no remainder
+ * loop. */
 #ifndef VL_SCALAR
 #define VL_WHOLE(count) ((count) & ~15u)
 #else

@@ -1,5 +1,6 @@
-/* trace/bsdf/measured.hot.c: measured reflection (world/material/measured.h), sampled with its own tables: random
- * numbers are warped by the luminance, then by the visible normals. Scalar: nearly all of it is table lookups.
+/* trace/bsdf/measured.hot.c: the BSDF of measured materials (world/material/measured.h). The file's tables sample
+ * directions: they warp random numbers by the luminance, then by the visible normals. The code is scalar because nearly
+ * all of it is table lookups.
  *
  * For wo below the surface both directions are negated (as in pbrt). */
 #include "trace/bsdf/local.h"
@@ -19,7 +20,7 @@ static inline float elevation(vlVec3 w) {
 static inline float theta_to_u(float theta) {
   return __builtin_sqrtf(theta * (2.0f * VL_INV_PI));
 }
-static inline float phi_to_u(float phi) { /* of any number of turns */
+static inline float phi_to_u(float phi) { /* phi may exceed one turn */
   float u = phi * (0.5f * VL_INV_PI) + 0.5f;
   return u - __builtin_floorf(u);
 }

@@ -1,10 +1,10 @@
-/* trace/bsdf/principled.hot.c: the principled material. It has five lobes: the base's microfacets, the diffuse lobe
- * (with the sheen and the multiple scattering between microfacets), the clear coat, refraction, diffuse transmission.
- * One lobe is sampled, and the sample is weighted by the density of all. The layers' energies come from
- * principled_energy.hot.c.
+/* trace/bsdf/principled.hot.c: the BSDF of the principled material. It has five lobes: the base's microfacets, the
+ * diffuse lobe (with the sheen and the multiple scattering between microfacets), the clear coat, refraction, diffuse
+ * transmission. Sampling chooses one lobe; the sample's density is the sum over all lobes. principled_energy.hot.c
+ * computes the energies of the layers.
  *
- * There are no deltas: a mirror has microfacets of alpha VL_GGX_SMOOTH. f is symmetric in wo and wi (refraction up to
- * the square of the index). */
+ * There are no deltas: a mirror has microfacets with alpha VL_GGX_SMOOTH. f is symmetric in wo and wi; for refraction,
+ * up to the squared index of refraction. */
 #include "trace/bsdf/principled.h"
 
 static vlPrincipledSlice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t first) {
@@ -28,9 +28,9 @@ static vlPrincipledSlice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t fi
   return s;
 }
 
-/* Factor for light that crosses a layer to the base and back, with all reflections between the two; o, i: the layer's
- * albedos at the two angles. For a diffuse base the mean albedo enters. For a specular base both angles are the same;
- * for a rough one the larger albedo is used, so that no energy is gained. */
+/* Factor for light that crosses a layer to the base and back, with all reflections between layer and base. o, i: the
+ * layer's albedos at the two angles. A diffuse base also needs the mean albedo. For a specular base both angles are
+ * the same; for a rough base the larger albedo is used, so that no energy is gained. */
 static inline float over_matt(float o, float i, float mean) {
   return (1.0f - o) * (1.0f - i) / (1.0f - mean);
 }
@@ -70,7 +70,7 @@ static inline Facet base_facet(vlVec3 o, vlVec3 w, float ax, float ay, float for
                  vl_schlick_weight(oh), total ? 1.0f : 0.0f};
 }
 
-/* The coat's microfacets, around its own normal n, with F. */
+/* The coat's microfacets, around the coat's own normal n, with the Fresnel term. */
 static inline Facet coat_facet(vlVec3 o, vlVec3 w, vlVec3 n, float alpha) {
   vlVec3 h = vl_normalize(vl_add(o, w)), across = vl_cross(h, n);
   float oc = vl_dot(o, n), ic = vl_dot(w, n), hc = vl_dot(h, n), oh = vl_dot(o, h);
@@ -89,16 +89,16 @@ typedef struct Pair {
   float weight[VL_PRINCIPLED_CHUNK]; /* Schlick's weight */
   float opaque[VL_PRINCIPLED_CHUNK]; /* Schlick's weight for light from outside */
   float total[VL_PRINCIPLED_CHUNK];  /* 1: total reflection */
-  float hide_mirror[VL_PRINCIPLED_CHUNK], hide_matt[VL_PRINCIPLED_CHUNK]; /* factors of the layers above, */
+  float hide_mirror[VL_PRINCIPLED_CHUNK], hide_matt[VL_PRINCIPLED_CHUNK]; /* factors of the layers above the base, */
   float hide_through[VL_PRINCIPLED_CHUNK];                                /* for each lobe */
   float coat[VL_PRINCIPLED_CHUNK];                                        /* value of the clear coat */
   float cosine[VL_PRINCIPLED_CHUNK];                                      /* |wi.z| / pi */
   float again[VL_PRINCIPLED_CHUNK];                             /* multiple scattering between microfacets, f cos_i */
-  float upper[VL_PRINCIPLED_CHUNK], lower[VL_PRINCIPLED_CHUNK]; /* 1: wi lies on wo's side; on the other side */
+  float upper[VL_PRINCIPLED_CHUNK], lower[VL_PRINCIPLED_CHUNK]; /* 1: wi is on the side of wo; 1: on the other side */
 } Pair;
 
-/* The pair's values, and the density of sampling wi. has_coat is a constant, so that there are two loops without
- * branches. */
+/* Computes the values of the pair and the density of sampling wi. has_coat is a compile-time constant, so that each of
+ * its two values gets a loop without branches. */
 static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSlice *s, const vlPrincipledLanes *l,
                                                             vlBsdfDirections wo, vlBsdfDirections wi, Pair *out,
                                                             float *pdf, uint32_t first, bool has_coat) {
@@ -116,7 +116,8 @@ static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSl
     vlVec3 o = vl_vec3(ox[i], oy[i], l->z[i]), w = vl_vec3(ix[i], iy[i], iz[i] * side);
     int reflect = w.z > 0.0f, valid = (o.z > 0.0f) & (vl_abs(w.z) > 0.0f);
     Facet facet = base_facet(o, w, vl_ggx_alpha(ax[i]), vl_ggx_alpha(ay[i]), index[i], inside, thin);
-    float bare = 1.0f - inside, coat_value = 0.0f, coat_pdf = 0.0f; /* the layers are on the outside */
+    float bare = 1.0f - inside, coat_value = 0.0f,
+          coat_pdf = 0.0f; /* coat and sheen are only on the outside of a solid */
     if (has_coat) {
       float on = coats[i] * bare;
       Facet coat = coat_facet(o, w, vl_vec3(cx[i] * side, cy[i] * side, cz[i]), vl_ggx_alpha(coat_alpha[i]));
@@ -144,7 +145,8 @@ static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSl
     float through = inside > 0.0f ? both * (1.0f - mirrors) : l->refract[i];
     float above = forth * facet.pdf + l->diffuse[i] * cosine + l->coat[i] * coat_pdf;
     float below = through * facet.pdf + l->through[i] * cosine;
-    float on = valid ? 1.0f : 0.0f, up = reflect ? on : 0.0f; /* products: gcc would make branches of selects */
+    float on = valid ? 1.0f : 0.0f,
+          up = reflect ? on : 0.0f; /* products, because gcc would turn selects into branches */
     out->upper[i] = up;
     out->lower[i] = on - up;
     density[i] = above * up + below * (on - up);
@@ -166,7 +168,8 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
     float m0 = f0 + metal * (base - f0), m90 = f90 + metal * (1.0f - f90);
     float f = m0 + (m90 - m0) * p->opaque[i];
     f = f + film * (l->film[c][i] - f);
-    float fd = f0 + (f90 - f0) * p->weight[i], fo = f0 + (f90 - f0) * p->opaque[i]; /* of the dielectric only */
+    float fd = f0 + (f90 - f0) * p->weight[i],
+          fo = f0 + (f90 - f0) * p->opaque[i]; /* reflectances of the dielectric only */
     fd = fd + film * (l->film[c][i] - fd), fo = fo + film * (l->film[c][i] - fo);
     float within = p->total[i] > 0.0f ? 1.0f : fd; /* inside, only the transmissive part is the denser medium */
     f = f + l->inside[i] * dielectric * clear * (within - fo);
@@ -175,7 +178,8 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
     float metal_mean = base + (1.0f - base) * (1.0f / 21.0f), sheet_mean = f0 + (f90 - f0) * (1.0f / 21.0f);
     float metal_again = metal_mean * metal_mean * l->one_mean[i] / (1.0f - metal_mean * (1.0f - l->one_mean[i]));
     float sheet_again = dielectric * clear * thins[i] * again;
-    float body = dielectric * clear, body_pass = 1.0f - sheet_mean; /* between microfacets, on both sides */
+    float body = dielectric * clear,
+          body_pass = 1.0f - sheet_mean; /* multiple scattering between microfacets, to both sides */
     float body_up = body * l->again_up[i] * (1.0f - l->again_pass[i] * body_pass);
     float body_down = body * l->again_down[i] * body_pass * base;
     float bare = 1.0f - l->inside[i];
@@ -214,7 +218,8 @@ void vl_bsdf_principled_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
   }
 }
 
-/* Chooses the lobe and samples its direction. For the last two lobes wi lies on the other side of wo. */
+/* Chooses the lobe and samples its direction. For the last two lobes, wi is on the other side of the surface than
+ * wo. */
 static __attribute__((noinline)) void choose(const vlPrincipledSlice *s, const vlPrincipledLanes *l,
                                              vlBsdfDirections wo, const float *u_lobe, const float *u, const float *v,
                                              vlBsdfDirections wi, float *eta_scale, uint32_t first) {

@@ -1,22 +1,23 @@
-/* trace/bsdf/principled_energy.hot.c: the energies of the principled material's layers: their directional albedos
- * (tables), the thin film, the sheen; and from these the probabilities of the lobes. Table lookups are scalar, since
- * they do not vectorise. */
+/* trace/bsdf/principled_energy.hot.c: computes the energies of the principled material's layers (directional albedos
+ * from tables, thin film, sheen) and from these the probabilities of the lobes. Table lookups are scalar because they
+ * do not vectorise. */
 #include "trace/bsdf/principled.h"
 
 /* ---- thin film --------------------------------------------------------------------------------------------------- */
 
-/* Reflectance of two interfaces, for one polarisation, with all reflections between them. */
+/* Reflectance of two parallel interfaces for one polarisation, with all reflections between them. */
 static float interfere(float first, float second, float phase) {
   float product = first * second, sum = first * first + second * second + 2.0f * product * phase;
   float down = 1.0f + product * product + 2.0f * product * phase;
-  float r =
-      sum / vl_max(down, VL_MIN_POSITIVE); /* both are 0 where two opposite total reflections meet at grazing angles */
+  float r = sum / vl_max(down, VL_MIN_POSITIVE); /* numerator and denominator are 0 if two opposite total reflections
+                                                    meet at grazing angles */
   return vl_clamp(r, 0.0f, 1.0f);
 }
 
 /* Reflectance of a film of index n2 and thickness d (nm) over a base with reflectance f0 at normal incidence (as a
  * dielectric of index n3), in air: Airy's sum, both polarisations. Belcour and Barla 2017, "A Practical Extension to
- * Microfacet Theory for the Modeling of Varying Iridescence", for single wavelengths, so that no integral is needed. */
+ * Microfacet Theory for the Modeling of Varying Iridescence", evaluated at single wavelengths, so that no integral is
+ * needed. */
 static float airy(float cosine, float n2, float n3, float d, float lambda) {
   float sin2 = 1.0f - cosine * cosine;
   float c2 = __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2 / (n2 * n2)));
@@ -27,13 +28,14 @@ static float airy(float cosine, float n2, float n3, float d, float lambda) {
   return 0.5f * (interfere(s12, s23, phase) + interfere(p12, p23, phase));
 }
 
-/* Wavelengths (nm) for R, G, B in RGB mode: three per channel, across its sensitivity. */
+/* Wavelengths (nm) for R, G and B in RGB mode: three per channel, spread over the channel's sensitivity. */
 static const float rgb_lambda[3][3] = {{595, 615, 635}, {525, 545, 565}, {435, 452, 470}};
 
 static float film_reflection(const vlPrincipledSlice *s, uint32_t i, int channel, float cosine, float f0) {
   float root = __builtin_sqrtf(vl_clamp(f0, 0.0f, 0.9999f));
   float n3 = (1.0f + root) / (1.0f - root), n2 = s->row[VL_P_FILM_INDEX][i], d = s->row[VL_P_FILM_NM][i];
-  const float grazing = 1e-4f; /* 0.006 degrees: the reflectance is 1 to three digits; a NaN of padding becomes this */
+  const float grazing = 1e-4f; /* 0.006 degrees from the horizon, where the reflectance is 1 to three digits; it also
+                                  replaces NaNs in padding lanes */
   float c = cosine > grazing ? vl_min(cosine, 1.0f) : grazing;
   if (s->lambda[channel]) return airy(c, n2, n3, d, s->lambda[channel][i]);
   if (channel == 3) return 0.0f;
@@ -49,7 +51,7 @@ static inline float base_alpha(float x, float y) {
   return 0.6f * vl_max(x, y) + 0.4f * vl_min(x, y);
 }
 
-/* Table positions of a chunk. */
+/* Positions in the albedo tables, for a chunk. */
 typedef struct Places {
   int32_t alpha[VL_PRINCIPLED_CHUNK], cosine[VL_PRINCIPLED_CHUNK];
   float alpha_t[VL_PRINCIPLED_CHUNK], cosine_t[VL_PRINCIPLED_CHUNK];
@@ -90,7 +92,7 @@ static __attribute__((noinline)) void look_up_means(const Places *p, uint32_t co
   }
 }
 
-/* The dielectric's specular albedo F0 a + F90 b. */
+/* Computes the dielectric's specular albedo F0 a + F90 b. */
 static __attribute__((noinline)) void energies(const vlPrincipledSlice *s, const float *a, const float *b,
                                                float energy[4][VL_PRINCIPLED_CHUNK], float *one) {
   const float *f90 = s->row[VL_P_F90];
@@ -111,8 +113,8 @@ static __attribute__((noinline)) void energies(const vlPrincipledSlice *s, const
   }
 }
 
-/* Base energies with a thin film: the film's reflectance at that cosine; z null: the mean over cosines, Gauss-Legendre
- * in cos^2. */
+/* Computes the base's energies with a thin film from the film's reflectance at the cosines z. If z is null, computes
+ * the mean over cosines, by Gauss-Legendre quadrature in cos^2. */
 static void film_energies(const vlPrincipledSlice *s, const float *z, const float *one,
                           float energy[4][VL_PRINCIPLED_CHUNK]) {
   for (uint32_t i = 0; i < s->count; i++) {
@@ -134,7 +136,8 @@ static float brightest(const vlPrincipledSlice *s, uint32_t row, uint32_t i) {
   return vl_max(vl_max(s->row[row][i], s->row[row + 1][i]), vl_max(s->row[row + 2][i], s->row[row + 3][i]));
 }
 
-/* The coat's albedo at cosine z (null: the mean) to its normal. directions: up is wo's side. */
+/* Computes the coat's albedo for directions with cosine z to the coat's normal; z null: the mean albedo. In
+ * `directions`, up is the side of wo. */
 static void coat_energies(const vlPrincipledSlice *s, const vlPrincipledLanes *l, const float *x, const float *y,
                           const float *z, float *energy) {
   const vlPrincipledTables *t = &vl_principled_tables;
@@ -219,7 +222,8 @@ static void losses_at_light(const vlPrincipledSlice *s, const float *z, vlPrinci
   }
 }
 
-/* Probabilities of the lobes: in proportion to about the energy of each; above 0 for each lobe that can reflect. */
+/* Computes the probabilities of the lobes, roughly in proportion to their energies. Each lobe whose value can be above
+ * 0 has a probability above 0. */
 static __attribute__((noinline)) void weigh(const vlPrincipledSlice *s, const float *coat_cos, vlPrincipledLanes *l) {
   const float *b0 = s->base[0], *b1 = s->base[1], *b2 = s->base[2], *b3 = s->base[3];
   const float *t0 = s->row[VL_P_THROUGH], *t1 = s->row[VL_P_THROUGH + 1], *t2 = s->row[VL_P_THROUGH + 2],

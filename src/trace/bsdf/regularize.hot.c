@@ -1,6 +1,6 @@
-/* trace/bsdf/regularize.hot.c: regularisation (pbrt-v4's; vlBuildDef enables it): rougher lobes for paths that have
- * already been scattered, so that light samples can find light that only a nearly specular lobe could reach. Kinds
- * without alpha are unchanged. */
+/* trace/bsdf/regularize.hot.c: regularisation as in pbrt-v4, which vlBuildDef enables. It makes lobes rougher for
+ * paths that have already been scattered, so that light samples can find light that otherwise only a nearly specular
+ * lobe would reach. Kinds without alpha do not change. */
 #include "math/ggx.h"
 #include "trace/stages.h"
 

@@ -1,4 +1,4 @@
-/* trace/bsdf/table.hot.c: the kernels by BSDF kind, one table per instruction set. */
+/* trace/bsdf/table.hot.c: the tables of the BSDF kernels by kind, one table per instruction set. */
 #include "trace/bsdf/local.h"
 
 #define EVAL(NAME, name) [VL_BSDF_##NAME] = vl_bsdf_##name##_eval,

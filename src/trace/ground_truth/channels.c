@@ -1,5 +1,5 @@
-/* trace/ground_truth/channels.c: the tables of the instruction sets, and the conversion of reflectances to albedo.
- */
+/* trace/ground_truth/channels.c: the kernel tables of ground truth by instruction set, and the weights that convert
+ * reflectance to albedo. */
 #include "trace/ground_truth/ground_truth.h"
 
 #include <string.h>

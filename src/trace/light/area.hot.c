@@ -1,5 +1,5 @@
-/* trace/light/area.hot.c: samples of plain triangles and spheres (vlWorldLight.plain_triangle and plain_sphere), the
- * most frequent lights, for many lanes at once. The operations are those of vl_light_sample_area for such lights. */
+/* trace/light/area.hot.c: samples plain triangles and spheres (vlWorldLight.plain_triangle and plain_sphere), the most
+ * frequent lights, for many lanes at once. It does the same operations as vl_light_sample_area. */
 #include "trace/light/area.h"
 
 #include "trace/light/kinds.h"
@@ -10,7 +10,7 @@ enum { BLOCK = VL_AREA_BLOCK };
 typedef struct Block {
   VL_ROW uint32_t lane[BLOCK];
   VL_ROW float px[BLOCK], py[BLOCK], pz[BLOCK], u[BLOCK], v[BLOCK]; /* the point that receives light */
-  VL_ROW float corner[9][BLOCK], n[3][BLOCK], area[BLOCK]; /* of spheres: centre and radius; 1 or -1, see area.h */
+  VL_ROW float corner[9][BLOCK], n[3][BLOCK], area[BLOCK]; /* for spheres: centre and radius; side, 1 or -1 (area.h) */
   VL_ROW float two_sided[BLOCK];
   VL_ROW float wx[BLOCK], wy[BLOCK], wz[BLOCK], tx[BLOCK], ty[BLOCK], tz[BLOCK];
   VL_ROW float pdf[BLOCK]; /* 0: no sample */
@@ -81,7 +81,7 @@ static void spheres(uint32_t padded, Block *restrict b) {
 
 /* ---- radiance ---------------------------------------------------------------------------------------------------- */
 
-/* Of one spectrum for all lanes. */
+/* Computes the radiance of all lanes from the same spectrum. */
 static void radiance_of(const vlSpectral *s, uint32_t padded, Block *restrict b) {
   for (int c = 0; c < 4; c++) {
     const float *lambda = b->lambda[c];

@@ -5,15 +5,15 @@
 #include "math/vec.h"
 #include "world/texture/texture_lookup.h"
 
-/* The light's alpha at p, in [0, 1]: the share of its radiance that leaves the shape there, and the probability that a
- * ray hits the shape there. n: geometric normal; u, v: for shapes without triangles; weights: barycentric coordinates
- * in the triangle. */
+/* The light's alpha at p, in [0, 1]. It is the share of the radiance that leaves the shape at p, and the probability
+ * that a ray hits the shape at p. n: geometric normal; u, v: surface parameters, not used for triangles; weights:
+ * barycentric coordinates, used for triangles only. */
 static inline float vl_light_coverage(const vlWorld *world, const vlWorldLight *light, vlVec3 p, vlVec3 n, float u,
                                       float v, const float weights[3]) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   vlTextureCorner corner = {s, light->prim, {weights[0], weights[1], weights[2]}};
   vlTextureQuery at = {u, v, p, n, &corner};
-  if (s->kind == VL_SHAPE_TRIANGLES) { /* for triangles, u and v are those of the emission */
+  if (s->kind == VL_SHAPE_TRIANGLES) { /* for triangles, the arguments u and v belong to the emission's image */
     static const float unit[6] = {0, 0, 1, 0, 1, 1};
     const uint32_t *f = s->indices + 3 * (size_t)light->prim;
     at.u = at.v = 0;

@@ -1,5 +1,5 @@
-/* trace/light/emission_sample.hot.c: sampling of rays that leave infinite and area lights, and their densities (pbrt
- * book 12, 3rd edition 16.1.2). Scalar: each lane has its own light. */
+/* trace/light/emission_sample.hot.c: samples rays that leave infinite lights and area lights, and computes their
+ * densities (pbrt book 12; 3rd edition 16.1.2). The code is scalar because each lane has its own light. */
 #include "math/octahedral.h"
 #include "math/warp.h"
 #include "trace/light/coverage.h"
@@ -21,8 +21,9 @@ static float point_density(const vlWorld *world, const vlWorldLight *light, vlVe
   return (float)vl_shape_pdf(s, light->prim, &point);
 }
 
-/* The density of an environment image (per solid angle) excludes dim directions, which other strategies sample better.
- * Half of the light paths use this density, the other half are uniform over the sphere. */
+/* Density per solid angle of the directions of light paths from an infinite light. The environment map's own density
+ * excludes dim directions, so half of the light paths use that density, and the other half are uniform over the
+ * sphere. */
 static float sky_density(const vlWorld *world, const vlWorldLight *light, vlVec3 w) {
   if (light->environment == VL_NONE) return VL_INV_4PI;
   return 0.5f * (vl_infinite_pdf(world, light, vl_vec3(0, 0, 0), w) + VL_INV_4PI);
@@ -32,8 +33,8 @@ static const vlPortal *portal_of(const vlWorld *world, const vlWorldLight *light
   return light->environment == VL_NONE ? NULL : world->environments.items[light->environment].portal;
 }
 
-/* Density of light paths through a portal, with directions in proportion to their radiance: per area perpendicular to w
- * and solid angle. */
+/* Density of light paths through a portal, whose directions are sampled in proportion to radiance. The density is per
+ * area perpendicular to w and per solid angle. */
 static float portal_density(const vlPortal *portal, vlVec3 w) {
   vlPortalWindow whole = vl_portal_whole(portal);
   float across = portal->width * portal->height * vl_portal_local(portal, w).z;

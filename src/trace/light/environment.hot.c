@@ -1,6 +1,6 @@
-/* trace/light/environment.hot.c: environment images, for many lanes at once: light samples, and the radiance and
- * density of rays that hit nothing. Each lane reads a few cache lines of large tables, so the work is divided into
- * loops: each loop requests the memory that the next one reads. */
+/* trace/light/environment.hot.c: environment maps, for many lanes at once: light samples, and radiance and density for
+ * rays that hit nothing. Each lane reads a few cache lines of large tables, so the work is divided into loops, and
+ * each loop prefetches the memory that the next loop reads. */
 #include "math/octahedral.h"
 #include "trace/light/kinds.h"
 #include "world/texture/texture_lookup.h"
@@ -11,7 +11,7 @@ enum { BLOCK = VL_SKY_BLOCK };
 typedef struct Block {
   VL_ROW uint32_t lane[BLOCK], x[BLOCK], y[BLOCK];
   VL_ROW float u[BLOCK], dx[BLOCK], dy[BLOCK];
-  VL_ROW float s[BLOCK], t[BLOCK]; /* place in the image's square */
+  VL_ROW float s[BLOCK], t[BLOCK]; /* position in the image, in [0, 1]^2 */
   VL_ROW float wx[BLOCK], wy[BLOCK], wz[BLOCK], pdf[BLOCK];
   VL_ROW float rgb[3][BLOCK], lambda[4][BLOCK], radiance[4][BLOCK];
 } Block;
@@ -36,7 +36,7 @@ static uint32_t fill_lanes(Block *b, const uint32_t *lanes, uint32_t count) {
 
 /* ---- radiance ---------------------------------------------------------------------------------------------------- */
 
-/* The image's colours at s, t. */
+/* Looks up the image's colours at s, t. */
 static void read_texels(const vlMipmap *mip, float scale, uint32_t padded, Block *b) {
   for (uint32_t k = 0; k < padded; k++) {
     vlTexel x = vl_nearest(mip, 0, b->s[k], b->t[k], VL_WRAP_OCTAHEDRAL);
@@ -47,7 +47,7 @@ static void read_texels(const vlMipmap *mip, float scale, uint32_t padded, Block
   }
 }
 
-/* Colours of light to radiance at the lanes' wavelengths: the operations of vl_emitted_at. */
+/* Converts colours to radiance at the lanes' wavelengths, with the same operations as vl_emitted_at. */
 static void upsample(const vlRgbTable *table, const vlSpectral *illuminant, uint32_t padded, Block *restrict b) {
   const float *p = table->coefficients, *dense = illuminant->dense;
   float factor = illuminant->scale;
@@ -80,7 +80,7 @@ static void radiance(const vlWorld *world, const vlEmitted *e, const vlPaths *pa
 
 /* ---- light samples ----------------------------------------------------------------------------------------------- */
 
-/* Directions of s, t. */
+/* Converts positions s, t to directions. */
 static void directions(const vlEnvironment *env, uint32_t padded, Block *restrict b) {
   const float *m = env->world_from_light;
   const float turn[9] = {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8]};
@@ -134,7 +134,7 @@ void vl_sample_environment(const vlWorld *world, const vlWorldLight *light, cons
 
 /* ---- rays that hit nothing --------------------------------------------------------------------------------------- */
 
-/* s, t of the rays' directions. */
+/* Converts the rays' directions to positions s, t. */
 static void squares(const vlEnvironment *env, const vlPaths *paths, uint32_t padded, Block *restrict b) {
   const float *m = env->light_from_world;
   const float turn[9] = {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8]};

@@ -1,5 +1,5 @@
-/* trace/light/goniometric.hot.c: goniometric lights: a point whose intensity is multiplied by an image over the
- * direction (pbrt book 12.2.3), an equal-area octahedral square (book 3.8.3). */
+/* trace/light/goniometric.hot.c: goniometric lights: point lights whose intensity is multiplied by an image over
+ * directions (pbrt book 12.2.3), in the equal-area octahedral map (3.8.3). */
 #include "math/octahedral.h"
 #include "trace/light/kinds.h"
 #include "world/texture/texture_lookup.h"

@@ -1,6 +1,6 @@
-/* trace/light/hit_light.hot.c: radiance of lights that rays hit, and the density with which light sampling would have
- * sampled them, for the weights of all tracers. Scalar, save for environment images: each lane hits
- * its own light. */
+/* trace/light/hit_light.hot.c: the radiance of lights that rays hit, and the density with which light sampling would
+ * have sampled them, for the MIS weights of all tracers. Except for environment maps, the code is scalar, because each
+ * lane hits its own light. */
 #include "trace/light/kinds.h"
 
 vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k) {

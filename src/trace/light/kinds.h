@@ -1,4 +1,4 @@
-/* trace/light/kinds.h: the functions of each kind of light. A kind of world/world.h's list has three functions:
+/* trace/light/kinds.h: the functions of each kind of light. Each kind in the list of world/world.h has three functions:
  *
  *   vl_light_sample_KIND     a direction from a point towards the light, and the radiance that arrives (pbrt book 12)
  *   vl_light_emit_KIND       a ray that leaves the light, for the two-way tracers
@@ -23,11 +23,11 @@ typedef struct vlLightQuery {
 
 typedef struct vlLightSample {
   vlVec3 w;          /* unit, towards the light */
-  vlVec3 target;     /* the point that must be visible; for a distant light w again */
-  float pdf;         /* per solid angle; 1 for a delta; 0 at the start: no sample */
-  float radiance[4]; /* arriving from w */
-  bool delta;        /* no ray can hit the light; false at the start */
-  bool distant;      /* the light is infinitely far; false at the start */
+  vlVec3 target;     /* the point that must be visible from p; for a distant light, the same as w */
+  float pdf;         /* per solid angle; 1 for a delta light; 0: no sample (the initial value) */
+  float radiance[4]; /* radiance that arrives from direction w */
+  bool delta;        /* no ray can hit the light; initially false */
+  bool distant;      /* the light is infinitely far; initially false */
 } vlLightSample;
 
 /* The input of a ray that leaves a light. */
@@ -39,9 +39,9 @@ typedef struct vlEmissionQuery {
   float u, v, s, t; /* random numbers in [0, 1): u, v for the position, s, t for the direction */
 } vlEmissionQuery;
 
-/* emit: fills an emission that is all zero; it stays invalid where the light emits nothing. Its flux is divided by the
- * density of its own random numbers, but not by the probability of the light. emit_pdf: as vl_emission_density; p:
- * probability of the light, a factor of the result. */
+/* emit fills *out, which is all zero on entry. *out stays invalid if the light emits nothing. Its flux is divided by
+ * the density of the sampled position and direction, but not by the probability of choosing the light. emit_pdf: as
+ * vl_emission_density; p: probability of choosing the light, a factor of the result. */
 #define VL_LIGHT_KIND_FUNCTIONS(K, k)                                                                             \
   void vl_light_sample_##k(const vlLightQuery *q, vlLightSample *out);                                            \
   void vl_light_emit_##k(const vlEmissionQuery *q, vlEmission *out);                                              \
@@ -52,23 +52,23 @@ VL_WORLD_LIGHT_KINDS(VL_LIGHT_KIND_FUNCTIONS)
 
 /* ---- many lanes at once ------------------------------------------------------------------------------------------ */
 
-/* The largest numbers of lanes of the functions below: what they touch stays in the first-level cache. */
+/* Largest number of lanes for the functions below. With it, their data stays in the L1 cache. */
 enum { VL_AREA_BLOCK = 64 };
 
-/* Whether a light is an environment image without portal, which vl_sample_environment samples. */
+/* Whether a light is an environment map without portal. vl_sample_environment samples such lights. */
 static inline bool vl_light_is_environment(const vlWorld *world, const vlWorldLight *light) {
   return light->environment != VL_NONE && !world->environments.items[light->environment].portal;
 }
-/* Samples this environment for the given lanes, which chose it. u, v: by lane. */
+/* Samples an environment map for the given lanes, which have chosen this light. u, v: by lane. */
 void vl_sample_environment(const vlWorld *world, const vlWorldLight *light, const vlPaths *paths, const uint32_t *lanes,
                            uint32_t count, const float *u, const float *v, vlLightSamples *out);
-/* Samples the plain triangles, or the plain spheres seen from outside, that the given lanes chose. */
+/* Sample the lights that the given lanes have chosen: plain triangles, or plain spheres seen from outside. */
 void vl_sample_triangles(const vlWorld *world, const vlPaths *paths, const vlSurface *f, const uint32_t *lanes,
                          uint32_t count, const float *u, const float *v, vlLightSamples *out);
 void vl_sample_spheres(const vlWorld *world, const vlPaths *paths, const vlSurface *f, const uint32_t *lanes,
                        uint32_t count, const float *u, const float *v, vlLightSamples *out);
-/* Radiance and density of an environment for the given rays, as vl_hit_sky, but without the probability of the
- * light. */
+/* Radiance and density of an environment map for the given rays, as in vl_hit_sky, but without the probability of
+ * choosing the light. */
 void vl_hit_environment(const vlWorld *world, const vlWorldLight *light, const vlPaths *paths, const uint32_t *lanes,
                         uint32_t count, vlSkyHits *out);
 
@@ -78,14 +78,14 @@ static inline vlVec3 vl_light_axis(const vlWorldLight *light) {
   return vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
 }
 
-/* A world direction in the light's frame, for lights with an image. */
+/* Transforms a world direction to the light's frame, for lights with an image. */
 static inline vlVec3 vl_light_local(const vlWorldLight *light, vlVec3 d) {
   const float *m = light->corners;
   return vl_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
                  m[6] * d.x + m[7] * d.y + m[8] * d.z);
 }
 
-/* Sets target, direction and density of a sample; returns the inverse square of the distance. */
+/* Sets target, direction and density of a sample of a point light. Returns 1 / distance^2. */
 static inline float vl_light_towards_point(const vlLightQuery *q, vlLightSample *out) {
   out->target = vl_vec3(q->light->position[0], q->light->position[1], q->light->position[2]);
   vlVec3 to = vl_sub(out->target, q->p);
@@ -96,8 +96,9 @@ static inline float vl_light_towards_point(const vlLightQuery *q, vlLightSample 
   return d2 > 0.0f ? 1.0f / d2 : 0.0f;
 }
 
-/* Samples a ray from a point uniformly in a cone around the axis; span: 1 - cosine of the cone, 2 for the whole sphere.
- * Returns the cosine with the axis (for a cone). Its flux is factor = 2 pi span times the intensity. */
+/* Samples a ray from a point light, uniformly in a cone around the light's axis. span: 1 - cosine of the cone's half
+ * angle; 2 for the whole sphere. For a cone, returns the cosine between ray and axis. The ray's flux is the intensity
+ * times 2 pi span. */
 static inline float vl_light_emit_from_point(const vlEmissionQuery *q, float span, vlEmission *out) {
   float c = 1.0f;
   if (span == 2.0f) {
@@ -113,7 +114,7 @@ static inline float vl_light_emit_from_point(const vlEmissionQuery *q, float spa
   return c;
 }
 
-/* Density of those rays for one that arrives from w, over that distance. */
+/* Density of the rays of vl_light_emit_from_point, for a ray that arrives from direction w after `distance`. */
 static inline float vl_light_emit_pdf_from_point(const vlWorldLight *light, float span, float p, vlVec3 w,
                                                  float distance) {
   float c = -vl_dot(w, vl_light_axis(light));
@@ -126,8 +127,8 @@ static inline float vl_light_emit_pdf_from_point(const vlWorldLight *light, floa
 static inline float vl_light_disk(const vlWorld *world) {
   return VL_PI * world->radius * world->radius;
 }
-/* Samples a ray that arrives from w (unit, towards the light) through that disk, perpendicular to w: its origin and
- * direction, and the emission's `at`. */
+/* Samples a ray that arrives from direction w (unit, towards the light) through a disk of this area, which is
+ * perpendicular to w. Sets origin, direction and `at` of the emission. */
 void vl_light_emit_from_afar(const vlWorld *world, vlVec3 w, float u, float v, vlEmission *out);
 
 #endif

@@ -1,5 +1,6 @@
-/* trace/light/light.hot.c: one light sample for each lane; infinite and area lights, and their densities for multiple
- * importance sampling (pbrt book 12). Scalar: the kinds of light diverge. */
+/* trace/light/light.hot.c: takes one light sample for each lane; samples infinite lights and area lights, and computes
+ * their densities for multiple importance sampling (pbrt book 12). The code is scalar because the kinds of light
+ * diverge. */
 #include "math/octahedral.h"
 #include "math/warp.h"
 #include "trace/light/area.h"
@@ -75,9 +76,9 @@ typedef struct Sample {
   float weights[3]; /* barycentric coordinates in a triangle */
 } Sample;
 
-/* Whether a light is a whole sphere that is opaque, or invisible but for its light (as in pbrt-v4: from outside its
- * near side emits, from inside all of it; the far side is not visible through it). A sphere with alpha holes is
- * excluded, since its far side is visible through them. */
+/* Whether a light is a whole sphere through which its far side is not visible: it is opaque, or only its light is
+ * visible. As in pbrt-v4, the near side of such a sphere emits towards points outside, and all of it towards points
+ * inside. A sphere with alpha holes does not count, because its far side is visible through them. */
 static bool round_light(const vlWorldShape *s, const vlWorldLight *light, vlVec3 *center, float *radius) {
   return (s->alpha < 0 || light->invisible) && vl_whole_sphere(s, center, radius);
 }
@@ -226,7 +227,7 @@ void vl_light_sample_infinite(const vlLightQuery *q, vlLightSample *out) {
     out->w = vl_portal_sample(portal, &window, q->u, q->v);
     out->pdf = vl_infinite_pdf(world, light, q->p, out->w);
     vl_infinite_at(world, light, q->p, out->w, q->lambda, out->radiance);
-  } /* an environment without portal: environment.hot.c */
+  } /* environment.hot.c samples an environment map without portal */
   out->target = out->w;
 }
 
@@ -257,7 +258,7 @@ static inline void sample_kind(const vlLightQuery *q, vlLightSample *out) {
 #undef SAMPLE
 }
 
-/* The light of this index. */
+/* Samples the light that lane i has chosen. */
 static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, vlVec3 p, float u, float v,
                        vlLightSamples *out) {
   const vlWorldLight *light = &world->lights.items[out->light[i]];
@@ -287,7 +288,8 @@ typedef struct Group {
 typedef void SampleGroup(const vlWorld *world, const vlPaths *paths, const vlSurface *f, const uint32_t *lanes,
                          uint32_t count, const float *u, const float *v, vlLightSamples *out);
 
-/* Samples environments for the lanes of a list, which chose such lights: the lanes of one light together. */
+/* Samples environment maps for the lanes of a list, which have chosen such lights. Lanes with the same light are
+ * sampled together. */
 static void sample_environments(const vlWorld *world, const vlPaths *paths, uint32_t *lanes, uint32_t count,
                                 const float *u, const float *v, vlLightSamples *out) {
   while (count > 0) {

@@ -1,5 +1,5 @@
-/* trace/light/light_choice.hot.c: the choice of a light for each lane of a batch. All lanes descend the light tree
- * together, a level at a time. The decisions are those of vl_light_choose (world/light/light_tree.h), which explains
+/* trace/light/light_choice.hot.c: chooses a light for each lane of a batch. All lanes descend the light tree together,
+ * one level at a time. They make the same decisions as vl_light_choose (world/light/light_tree.h), which explains
  * them. */
 #include <stddef.h>
 
@@ -15,12 +15,13 @@ typedef struct Walk {
   VL_ROW float u[VL_ROW_SIZE];
 } Walk;
 
-/* The normal for the light's cosine; 0 where all directions count equally (media). */
+/* The surface normal for the cosine of arriving light; 0 in media, where all directions count equally. */
 static inline vlVec3 facing_light(const vlSurface *f, uint32_t i) {
   return vl_mul(vl_vec3(f->nx[i], f->ny[i], f->nz[i]), 1.0f - f->no_cosine[i]);
 }
 
-/* Lanes that chose a light without bounds are done (light set); the others start at the root. */
+/* Starts the descent. Lanes that choose a light without bounds are done, and their light is set; the others start at
+ * the root. */
 static void start(const vlLightTree *tree, uint32_t padded, const float *u, Walk *w, vlLightSamples *out) {
   float slots = (float)(tree->unbounded_count + 1), p_unbounded = (float)tree->unbounded_count / slots;
   uint32_t last = tree->unbounded_count ? tree->unbounded_count - 1 : 0;
@@ -35,8 +36,8 @@ static void start(const vlLightTree *tree, uint32_t padded, const float *u, Walk
   }
 }
 
-/* One level of the descent of one lane from the node whose children are a and b; left: index of the first. *second: 1
- * if it goes to the second. Where neither child has importance, pmf becomes 0. */
+/* One level of one lane's descent, from the node whose children are a and b. left: index of the first child. *second:
+ * 1 if the lane goes to the second child. If neither child has importance, pmf becomes 0. */
 typedef struct Step {
   uint32_t node;
   float u, pmf;
@@ -52,7 +53,7 @@ static inline __attribute__((always_inline)) Step step_down(vlLightCluster a, vl
   return (Step){left + *second, vl_min(used / divisor, VL_ONE_MINUS_EPSILON), pmf0 * chance};
 }
 
-/* Descends one level from this inner node, for the lanes that are there. */
+/* Descends one level from inner node `from`, for the lanes at this node. */
 static void descend_from(const float *nodes, uint32_t from, uint32_t padded, const vlSurface *restrict f,
                          Walk *restrict w, vlLightSamples *restrict out) {
   uint32_t left = vl_float_bits(nodes[from * VL_LIGHT_NODE_FLOATS + LEFT_FIELD]), at = left * VL_LIGHT_NODE_FLOATS;
@@ -75,8 +76,8 @@ static void descend_from(const float *nodes, uint32_t from, uint32_t padded, con
   }
 }
 
-/* Descends from the tree's first nodes, breadth first: there many lanes are at one node, whose numbers then need not be
- * gathered. */
+/* Descends through the top of the tree, breadth first. Many lanes share a node there, so its numbers need not be
+ * gathered by lane. */
 static void descend_top(const vlLightTree *tree, uint32_t padded, const vlSurface *f, Walk *w, vlLightSamples *out) {
   enum { TOP = 7 }; /* three levels of a balanced tree */
   uint32_t queue[2 * TOP + 1] = {0}, count = 1;
@@ -109,7 +110,7 @@ static void descend(const float *restrict nodes, uint32_t padded, const vlSurfac
   }
 }
 
-/* Ends the lanes that no light reaches. Returns the number of lanes that have not arrived. */
+/* Ends the lanes that no light reaches. Returns the number of lanes that are still without a light. */
 static uint32_t count_waiting(uint32_t n, vlLightSamples *out) {
   uint32_t waiting = 0;
   for (uint32_t i = 0; i < n; i++) {

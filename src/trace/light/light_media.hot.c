@@ -1,7 +1,7 @@
 /* trace/light/light_media.hot.c: the medium around each light. Surfaces between two media define the medium on each
- * side. Rays in many directions from the light find such surfaces, and the most frequent medium is taken; if none is
- * found, the straight line from the camera decides. Camera paths find media by the surfaces that they cross, so both
- * sides must agree. */
+ * side. Rays in many directions from the light find such surfaces, and the most frequent medium is used. If no ray
+ * finds one, the straight line from the camera to the light decides. Camera paths find media by the surfaces that they
+ * cross, so both sides must agree. */
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 #include "world/shape/surface_point.h"
@@ -21,7 +21,8 @@ static bool borders(const vlWorldShape *s) {
   return s->inside != s->outside;
 }
 
-/* The medium found most often; false: none. far: p is outside the world, rays go towards its middle. */
+/* Finds the most frequent medium around p. Returns false if no ray finds one. far: p is outside the world, and rays go
+ * towards its centre. */
 static bool surrounding_medium(const vlWorld *world, vlVec3 p, bool far, uint32_t *medium) {
   uint32_t answer[ANSWERS], votes[ANSWERS], answers = 0, best = 0;
   for (int k = 0; k < ASKED; k++) {
@@ -62,7 +63,8 @@ static uint32_t on_the_way(const vlWorld *world, vlVec3 eye, vlVec3 p) {
   return medium;
 }
 
-/* A point next to an area light: off the surface by 1000 times the rounding of its coordinates or more. */
+/* A point next to an area light. Its distance from the surface is at least 1000 times the rounding error of its
+ * coordinates. */
 static vlVec3 beside(const vlWorld *world, const vlWorldLight *light) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   vlSurfacePoint point;

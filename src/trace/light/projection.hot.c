@@ -4,7 +4,8 @@
 /* Least cosine to the axis of a projected direction: pbrt's near plane. */
 #define PROJECTION_NEAR 1e-3f
 
-/* 1 where the image covers the direction d, at st of its unit square; else 0. */
+/* Returns 1 if the image covers direction d, and sets *st to the position in the image's unit square; else returns
+ * 0. */
 static float image_point(const vlWorldLight *light, vlVec3 d, vlVec2 *st) {
   vlVec3 local = vl_normalize(vl_light_local(light, d));
   *st = (vlVec2){0, 0};
@@ -14,7 +15,8 @@ static float image_point(const vlWorldLight *light, vlVec3 d, vlVec2 *st) {
   return 1.0f;
 }
 
-/* 1 - cosine of a cone around the image; 2, the whole sphere, where the light's frame is skewed. */
+/* Returns 1 - cosine of the half angle of a cone around the image, or 2 (the whole sphere) if the light's frame is
+ * skewed. */
 static float image_span(const vlWorldLight *light) {
   const float *m = light->corners;
   float length2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];

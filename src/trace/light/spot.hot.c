@@ -1,7 +1,8 @@
 /* trace/light/spot.hot.c: spot lights: a point that emits into a cone with a smooth edge (pbrt book 12.2.1). */
 #include "trace/light/kinds.h"
 
-/* Falloff; c: cosine with the axis. 1 inside the inner cone, 0 outside the outer one, smooth between them. */
+/* The spot's falloff: 1 inside the inner cone, 0 outside the outer cone, smooth between them. c: cosine with the
+ * axis. */
 static float edge(const vlWorldLight *light, float c) {
   float a = light->cos_end, b = light->cos_start;
   if (a == b) return c < a ? 0.0f : 1.0f;

@@ -4,7 +4,7 @@
 /* Lower bound of the reflectance: black would need infinite absorption. No display shows the difference. */
 #define DARKEST 1e-5f
 
-/* sigma_a that gives a volume of hair the reflectance (Chiang et al. 2016, equation 9). */
+/* Computes the sigma_a with which a volume of hair has the given reflectance (Chiang et al. 2016, equation 9). */
 static void from_reflectance(vlTextureRun *r, float (*rows)[VL_ROW_SIZE]) {
   vlShade *shade = &r->s->shade;
   for (uint32_t i = r->first; i < r->last; i++) {

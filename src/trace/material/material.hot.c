@@ -6,7 +6,8 @@
  * would be noise. DEFAULT_STEP is pbrt's for surfaces without a footprint. */
 #define MIN_STEP 1e-6f
 #define DEFAULT_STEP 0.0005f
-/* Squared sine, 1e-6 squared, between a tangent and the normal below which the tangent is mostly rounding. */
+/* Squared sine (1e-6 squared) of the angle between a tangent and the normal. Below it, the tangent is mostly rounding
+ * error. */
 #define PARALLEL 1e-12f
 
 /* ---- bump and normal maps: both change the shading normal and dpdu ----------------------------------------------- */
@@ -184,7 +185,7 @@ void vl_parameters_principled(vlTextureRun *r, const vlWorldMaterial *m) {
 #define PARAMETERS(NAME, name) [VL_BSDF_##NAME] = vl_parameters_##name,
 static vlParametersFn *const parameters[] = {VL_BSDF_KINDS(PARAMETERS)};
 
-/* Dispersion: the directions depend on the wavelength. Only the hero wavelength is followed, with the weight of all
+/* Dispersion: directions depend on the wavelength, so the path keeps only the hero wavelength, with the weight of all
  * four. */
 static void follow_hero(vlPaths *p, uint32_t first, uint32_t last) {
   for (uint32_t i = first; i < last; i++) {

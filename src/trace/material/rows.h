@@ -11,14 +11,15 @@ static inline void vl_rows_spectrum(vlTextureRun *r, int32_t node, float rows[][
   vl_texture_spectrum(r, node, out);
 }
 
-/* The same, times scale, clamped to [0, 1]. */
+/* Evaluates a spectrum texture times scale, clamped to [0, 1]. */
 static inline void vl_rows_albedo(vlTextureRun *r, int32_t node, float scale, float rows[][VL_ROW_SIZE]) {
   vl_rows_spectrum(r, node, rows);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++) rows[c][i] = vl_clamp(scale * rows[c][i], 0.0f, 1.0f);
 }
 
-/* The microfacets' alpha from a roughness texture; its square root where the material has remaproughness (pbrt's). */
+/* Evaluates a roughness texture to the microfacets' alpha. If the material has pbrt's remaproughness, alpha is the
+ * square root of the roughness. */
 static inline void vl_row_alpha(vlTextureRun *r, const vlWorldMaterial *m, int32_t node, float *alpha) {
   vl_texture_float(r, node, alpha);
   for (uint32_t i = r->first; i < r->last; i++) {

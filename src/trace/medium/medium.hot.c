@@ -1,7 +1,7 @@
-/* trace/medium/medium.hot.c: free flights and transmittance (trace/medium/medium.h). Homogeneous media in closed form;
- * others by delta tracking (flights) and ratio tracking (transmittance) with their majorants: pbrt
- * book 11.2, 11.4, 14.2; null collisions as in Miller, Georgiev and Jarosz 2019. Absorption without scattering is
- * deterministic in homogeneous media, and ends no path in others. Scalar: flights diverge. */
+/* trace/medium/medium.hot.c: free flights and transmittance (trace/medium/medium.h). Homogeneous media have closed
+ * forms. Other media use delta tracking for flights and ratio tracking for transmittance, with majorants (pbrt book
+ * 11.2, 11.4, 14.2) and null scattering (Miller, Georgiev and Jarosz 2019). Absorption without scattering is
+ * deterministic in homogeneous media and ends no path in other media. The code is scalar because flights diverge. */
 #include "trace/medium/medium.h"
 
 /* The largest number of collisions of a flight; a bound for media whose majorants are far too large. */
@@ -20,8 +20,9 @@ static inline float largest(const float v[4]) {
   return vl_max(vl_max(v[0], v[1]), vl_max(v[2], v[3]));
 }
 
-/* Absorption by channel of linear sRGB over a length. The transmittance of a wavelength is T = sum_i share_i(lambda)
- * passed_i over the whole path so far, so that the product over parts of a path is that of the whole. */
+/* Applies absorption by channel of linear sRGB over a length. The transmittance of a wavelength over the whole path so
+ * far is T = sum_i share_i(lambda) passed_i. Each call multiplies by the ratio of the new T to the old T, so the
+ * product over parts of a path is the T of the whole. */
 static void absorb_by_channel(const vlWorldMedium *m, float length, vlFlight *f) {
   float left[3];
   if (!m->by_channel) return;
@@ -93,8 +94,8 @@ static void attenuate_homogeneous(const vlWorldMedium *m, float t0, float t1, vl
 typedef struct Tracking {
   vlMajorantWalk walk;
   float unit[4];       /* majorant coefficients for a majorant of 1 */
-  float t, end, depth; /* position, end of this cell, optical depth (of the hero) to the next collision */
-  float majorant[4];   /* in this cell */
+  float t, end, depth; /* position, end of this cell, optical depth of the hero channel to the next collision */
+  float majorant[4];   /* majorants in this cell */
   uint32_t collisions;
 } Tracking;
 
@@ -121,7 +122,7 @@ static bool start_tracking(const vlWorldMedium *m, const vlMediumLight *whole, v
   return true;
 }
 
-/* Moves to the next collision; false: the end of the segment is reached. */
+/* Moves to the next collision. Returns false at the end of the segment. */
 static bool next_collision(const vlWorldMedium *m, vlFlight *f, Tracking *k) {
   for (;;) {
     float most = k->majorant[f->hero], length = k->end - k->t;
@@ -185,7 +186,7 @@ static vlFlightEnd sample_heterogeneous(const vlWorldMedium *m, vlVec3 o, vlVec3
       *t = k.t;
       return largest(f->beta) > 0.0f ? VL_FLIGHT_SCATTERED : VL_FLIGHT_ENDED;
     }
-    if (!(none[h] > 0.0f)) return VL_FLIGHT_ENDED; /* only by rounding */
+    if (!(none[h] > 0.0f)) return VL_FLIGHT_ENDED; /* happens only by rounding */
     f->odds *= null_odds(m, none[h], k.majorant[h]);
     for (int c = 0; c < 4; c++) {
       f->beta[c] *= none[c] / none[h];

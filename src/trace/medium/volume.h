@@ -6,9 +6,9 @@
 #include "trace/stages.h"
 
 enum { VL_KEY_FLIGHT = 0, VL_KEY_SHADOW = 1, VL_KEY_HERO = 2, VL_KEY_PROBE = 3 };
-/* The end of a ray: vlVolumeScratch.event. */
+/* How a ray ends: values of vlVolumeScratch.event. */
 enum { VL_ON_SURFACE, VL_IN_SKY, VL_IN_MEDIUM, VL_AT_END };
-/* Odds bounded above 0: a weight of 1e20 times radiance up to 1e18 is finite. */
+/* Keeps odds above 0, so that a weight of at most 1e20 times a radiance of up to 1e18 is finite. */
 static inline float vl_some_odds(float odds) {
   return vl_max(odds, 1e-20f);
 }
@@ -17,15 +17,16 @@ static inline bool vl_volume_rgb(const vlTracing *t) {
   return t->world->def.color == VL_COLOR_RGB;
 }
 
-/* The key of random numbers that do not come from the sampler. */
+/* Key of the random numbers that do not come from the sampler. */
 static inline uint32_t vl_volume_key(const vlTracing *t, const vlPaths *p, uint32_t i, uint32_t depth,
                                      uint32_t purpose) {
   uint32_t pixel = vl_hash3((uint32_t)p->px[i], (uint32_t)p->py[i], p->index[i]);
   return vl_hash3(pixel, t->def->sampler->seed, 4 * depth + purpose);
 }
 
-/* The channel that samples flights: for camera paths the hero wavelength, which is random already; in RGB mode, and for
- * light paths, one chosen at random per path. Where light paths meet camera paths, the choices must be independent. */
+/* The channel that samples flights. For camera paths it is the hero wavelength, which is random already. In RGB mode
+ * and for light paths, a channel is chosen at random per path, because a light path and the camera path that it meets
+ * must choose independently. */
 static inline int vl_volume_hero(const vlTracing *t, const vlPaths *p, uint32_t i) {
   if (!vl_volume_rgb(t)) return t->from_light ? (int)(vl_volume_key(t, p, i, 0, VL_KEY_HERO) % 4) : 0;
   return (int)(vl_volume_key(t, p, i, 0, VL_KEY_HERO) % 3);
@@ -64,32 +65,35 @@ static inline bool vl_is_interface(const vlWorld *world, uint32_t shape) {
   return world->materials.items[world->shapes.items[shape].material].kind == VL_MATERIAL_INTERFACE;
 }
 
-/* Traces the n rays of a through media and interfaces to their events. depth: of the bounce; emission: adds the
- * emission of the media crossed. Densities go to volume.a; origins remain those of the last scattering. */
+/* Traces the n rays of a through media and interfaces to their events. depth: number of the bounce; emission: add the
+ * emission of the media that the rays cross. Densities go to volume.a. Ray origins stay at the last scattering. */
 void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission);
 void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n);
-/* Normalises: the mean of the densities becomes 1, and beta the path's weight. */
+/* Normalises path i: the mean of its densities becomes 1, and beta becomes its weight. */
 void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i);
-/* Copies the lanes of a that scatter in media, normalised, at their points, to volume.scattered and .c; s->surface gets
- * these points for light sampling. s->order: the lanes of a. Returns their number. */
+/* Copies the lanes of a that scatter in media to volume.scattered and volume.c. The copies are normalised and start at
+ * the scattering points, which are also written to s->surface for light sampling. s->order gets the lanes of a.
+ * Returns the number of copies. */
 uint32_t vl_volume_gather(vlTracing *t, uint32_t n);
-/* Samples new directions by the phase function; Russian roulette as on surfaces. Returns the number of paths that go
- * on; s->order names them. */
+/* Samples new directions by the phase function, with Russian roulette as on surfaces. Returns the number of paths that
+ * go on; s->order lists them. */
 uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
-/* Initialises the media of the n paths of a: `medium` by lane, or null: the camera's. */
+/* Sets the initial media of the n paths of a. medium: by lane; null: all paths start in the camera's medium. */
 void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium);
-/* Copies volume.a to volume.b for the n sorted lanes; and, after scattering on surfaces, back to volume.a for the
- * `count` lanes s->order. Does nothing where the world has neither media nor subsurface materials. */
+/* vl_volume_sorted copies volume.a to volume.b for the n sorted lanes. After scattering on surfaces, vl_volume_go_on
+ * copies the `count` lanes in s->order back to volume.a. Both do nothing if the world has neither media nor subsurface
+ * materials. */
 void vl_volume_sorted(vlTracing *t, uint32_t n);
 void vl_volume_go_on(vlTracing *t, uint32_t count);
 /* Appends the paths order[k] of volume.scattered to the n paths of a. Returns their new number. */
 uint32_t vl_volume_append(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n);
-/* The flight of shadow ray k: beta has the transmittance; densities are over that of light sampling. */
+/* The flight of shadow ray k. beta includes the transmittance; densities are relative to that of light sampling. */
 vlFlight vl_volume_shadow_flight(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t k, uint32_t depth);
-/* Adds lane i's light sample as shadow ray `count`, from o; value, pdf: of the scattering. Returns the next count. */
+/* Adds the light sample of lane i as shadow ray number `count`, which starts at o. value, pdf: of the BSDF or phase
+ * function. Returns the new count. */
 uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,
                                const float value[4], float pdf, uint32_t medium, uint32_t count);
-/* Traces these shadow rays and adds the radiance that arrives. */
+/* Traces the shadow rays added by vl_volume_push_shadow and adds the radiance that arrives. */
 void vl_volume_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth);
 
 #endif

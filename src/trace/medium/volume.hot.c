@@ -6,8 +6,8 @@
  *                                 -> those on surfaces: as in path.hot.c, b -> a
  *   a <- both
  *
- * The weight is beta over the mean of the rescaled densities u (of the path as sampled) and l (as light sampling would
- * have sampled its last segment). */
+ * The weight is beta over the mean of the rescaled densities: u, of the path as it was sampled, and l, of the path if
+ * light sampling had sampled its last segment. */
 #include "trace/medium/volume.h"
 #include "trace/medium/phase.h"
 
@@ -102,7 +102,7 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
 
 /* ---- lights that rays hit ---------------------------------------------------------------------------------------- */
 
-/* light_pdf: of light sampling; 0 where it does not compete. */
+/* light_pdf: density of light sampling; 0 if light sampling could not make this path. */
 static void add_light(vlTracing *t, uint32_t i, const float radiance[4], float light_pdf) {
   const vlPaths *p = &t->s->a;
   const vlVolumeRows *v = &t->s->volume.a;
@@ -219,8 +219,8 @@ uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
   return count;
 }
 
-/* Scatters the lanes of a in media; the new rays go to volume.scattered. Returns the number that go on; s->order names
- * them. */
+/* Scatters the lanes of a in media and writes the new rays to volume.scattered. Returns the number of paths that go
+ * on; s->order lists them. */
 static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
   uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, count = vl_volume_gather(t, n);
   if (count == 0) return 0;

@@ -1,5 +1,5 @@
 /* trace/medium/volume_shadow.hot.c: shadow rays through participating media and interfaces: the radiance of light
- * samples, weighted against that found by scattering (pbrt book 14.2.3). */
+ * samples, with MIS weights against BSDF and phase-function sampling (pbrt book 14.2.3). */
 #include "trace/medium/volume.h"
 
 uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,

@@ -1,5 +1,5 @@
-/* trace/sampler/batch.hot.c: all kinds of samplers in batches. Compiled once per instruction set. The kind is
- * selected once per batch; kinds with several loops work in chunks. n is a multiple of VL_LANES. */
+/* trace/sampler/batch.hot.c: fills batches of random numbers for all kinds of samplers. The kind is selected once per
+ * batch; kinds with several loops work in chunks. n is a multiple of VL_LANES. */
 #include "trace/sampler/cells.h"
 #include "trace/sampler/halton.h"
 #include "trace/sampler/sobol.h"

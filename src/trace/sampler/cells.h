@@ -1,12 +1,12 @@
-/* trace/sampler/cells.h: the kinds that divide the square into cells: regular, stratified, n-rooks, multi-jittered,
- * Hammersley. In all of them a random permutation for each pixel and dimension assigns the cells to the samples, so
- * that dimensions are independent. Suffern, "Ray Tracing from the Ground Up", chapter 5. */
+/* trace/sampler/cells.h: the samplers that divide the unit square into cells: regular, stratified, n-rooks,
+ * multi-jittered, Hammersley. Each assigns cells to samples by a random permutation per pixel and dimension, so that
+ * dimensions are independent. Source: Suffern, "Ray Tracing from the Ground Up", chapter 5. */
 #ifndef TRACE_SAMPLER_CELLS_H
 #define TRACE_SAMPLER_CELLS_H
 
 #include "trace/sampler/chunk.h"
 
-/* 1-D: cell permute(index) of `set`, jittered or at its centre. */
+/* 1-D points: sample `index` is in cell permute(index) of s->set cells, jittered or at the cell's centre. */
 VL_SAMPLER_INLINE void vl_cells_1d(const int jittered, const vlSampler *s, const vlSamplerChunk *c, float *u) {
   _Alignas(64) uint32_t cell[VL_SAMPLER_CHUNK];
   vl_permute_lanes(c->n, vl_permutation(s->set), c->index, c->key, 0, cell);
@@ -19,8 +19,8 @@ VL_SAMPLER_INLINE void vl_cells_1d(const int jittered, const vlSampler *s, const
   }
 }
 
-/* Regular and stratified: rows of grid_x or grid_x - 1 cells, heights in proportion, so that all cells have the same
- * area for any spp. */
+/* Regular and stratified points. A row has grid_x or grid_x - 1 cells, and its height is proportional to their number,
+ * so that all cells have the same area for any spp. */
 VL_SAMPLER_INLINE void vl_grid_2d(const int jittered, const vlSampler *s, const vlSamplerChunk *c, float *u, float *v) {
   _Alignas(64) uint32_t cell[VL_SAMPLER_CHUNK];
   vl_permute_lanes(c->n, vl_permutation(s->set), c->index, c->key, 0, cell);
@@ -57,8 +57,9 @@ VL_SAMPLER_INLINE void vl_nrooks_2d(const vlSampler *s, const vlSamplerChunk *c,
   }
 }
 
-/* Correlated multi-jittered (Kensler 2013, "Correlated Multi-Jittered Sampling", the form for any number of samples):
- * sample k = row m + column has y = (k + jitter) / set, x = (px(column) + (py(row) + jitter) / n) / m. */
+/* Correlated multi-jittered points (Kensler 2013, "Correlated Multi-Jittered Sampling", the form for any number of
+ * samples). m and n are the numbers of columns and rows. Sample k = row m + column has y = (k + jitter) / set, x =
+ * (px(column) + (py(row) + jitter) / n) / m. */
 VL_SAMPLER_INLINE void vl_multi_jittered_2d(const vlSampler *s, const vlSamplerChunk *c, float *u, float *v) {
   _Alignas(64) uint32_t k[VL_SAMPLER_CHUNK], row[VL_SAMPLER_CHUNK], column[VL_SAMPLER_CHUNK];
   uint32_t m = s->grid_x, n = (s->set + m - 1) / m;
@@ -82,7 +83,8 @@ VL_SAMPLER_INLINE void vl_multi_jittered_2d(const vlSampler *s, const vlSamplerC
   }
 }
 
-/* The i-th of n points (i / n, radical inverse of i), jittered in its column, its digits randomly flipped. */
+/* Hammersley points: point i of n is (i / n, radical inverse of i). Its x is jittered within the column, and the
+ * binary digits of its y are flipped at random. */
 VL_SAMPLER_INLINE void vl_hammersley_2d(const vlSampler *s, const vlSamplerChunk *c, float *u, float *v) {
   _Alignas(64) uint32_t k[VL_SAMPLER_CHUNK];
   vl_permute_lanes(c->n, vl_permutation(s->set), c->index, c->key, 0, k);

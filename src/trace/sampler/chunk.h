@@ -1,5 +1,5 @@
-/* trace/sampler/chunk.h: functions shared by the kinds of samplers. Batches are processed in chunks that fit the L1
- * cache; each lane has a key (hash of seed, dimension and pixel) and an index within its set. */
+/* trace/sampler/chunk.h: functions that all kinds of samplers share. Batches are processed in chunks that fit the L1
+ * cache. Each lane has a key (a hash of seed, dimension and pixel) and an index within its set of samples. */
 #ifndef TRACE_SAMPLER_CHUNK_H
 #define TRACE_SAMPLER_CHUNK_H
 
@@ -14,10 +14,10 @@ enum { VL_SAMPLER_CHUNK = 128 };
 typedef struct vlSamplerChunk {
   uint32_t n; /* a multiple of VL_LANES */
   _Alignas(64) uint32_t key[VL_SAMPLER_CHUNK];
-  _Alignas(64) uint32_t index[VL_SAMPLER_CHUNK]; /* below the sampler's set */
+  _Alignas(64) uint32_t index[VL_SAMPLER_CHUNK]; /* index in the set, less than vlSampler.set */
 } vlSamplerChunk;
 
-/* Seed of a dimension; salt distinguishes several seeds of one dimension. */
+/* Seed of a dimension. salt: distinguishes several seeds of one dimension. */
 static inline uint32_t vl_dimension_seed(const vlSampler *s, uint32_t dimension, uint32_t salt) {
   return vl_hash3(s->seed, dimension, salt);
 }
@@ -39,7 +39,8 @@ static inline uint32_t vl_largest(uint32_t n, const uint32_t *a) {
   return largest;
 }
 
-/* Sets keys and indices. An index past the set's end belongs to another set, with another key. */
+/* Sets keys and indices of a chunk. An index past the end of the first set belongs to a later set, which has another
+ * key. */
 static inline void vl_sampler_chunk(const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py,
                                     const uint32_t *index, uint32_t seed, vlSamplerChunk *chunk) {
   chunk->n = n;
@@ -54,7 +55,7 @@ static inline void vl_sampler_chunk(const vlSampler *s, uint32_t n, const int32_
   }
 }
 
-/* result[i] = permutation of from[i] in [0, p.count), each lane by its key. */
+/* Sets result[i] to the permutation of from[i] in [0, p.count). The lane's key selects the permutation. */
 static inline void vl_permute_lanes(uint32_t n, vlPermutation p, const uint32_t *from, const uint32_t *key,
                                     uint32_t salt, uint32_t *result) {
   uint32_t outside = 0;
@@ -74,8 +75,8 @@ static inline void vl_permute_lanes(uint32_t n, vlPermutation p, const uint32_t 
   }
 }
 
-/* Converts t, a cell's number followed by jitter bits, to a float in [0, 1); scale: 2^-(jitter bits) over the number of
- * cells. */
+/* Converts t, a cell's number followed by jitter bits, to a float in [0, 1). scale: 2^-(jitter bits) / (number of
+ * cells). */
 static inline float vl_cell_float(uint32_t t, float scale) {
   float u = (float)(int32_t)t * scale;
   return u < VL_ONE_MINUS_EPSILON ? u : VL_ONE_MINUS_EPSILON;

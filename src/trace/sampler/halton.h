@@ -1,6 +1,6 @@
-/* trace/sampler/halton.h: Halton points, dimension d in the d-th prime, Owen-scrambled for each pixel and dimension:
- * each digit is permuted by a random permutation that depends on the digits before it. Without scrambling, pairs of
- * large bases (17, 19) are strongly correlated. pbrt book 8.6 has the background. */
+/* trace/sampler/halton.h: Halton points with Owen scrambling for each pixel and dimension. The base of dimension d is
+ * the d-th prime. Each digit is permuted at random, depending on the digits before it. Without scrambling, pairs of
+ * large bases (17, 19) are strongly correlated (pbrt book 8.6). */
 #ifndef TRACE_SAMPLER_HALTON_H
 #define TRACE_SAMPLER_HALTON_H
 
@@ -11,13 +11,14 @@ static inline uint32_t vl_scale16(uint32_t bits16, uint32_t range) {
   return bits16 * range >> 16;
 }
 
-/* Random bijection of [0, b), b prime, from hash h: affine, then swap-or-not (Hoang, Morris and Rogaway 2012), affine.
- * Affine maps alone have the pairwise statistics for a small variance, but would leave lattices. */
+/* Random bijection of [0, b) for a prime b, selected by the hash h. It is an affine map, a swap-or-not step (Hoang,
+ * Morris and Rogaway 2012) and another affine map. Affine maps alone would give a small variance too, but leave
+ * lattices. */
 static inline uint32_t vl_scramble_digit(uint32_t digit, uint32_t b, float inverse, uint32_t h) {
   uint32_t g = vl_hash(h + 0x632be5abu);
   uint32_t a = 1 + vl_scale16(h >> 16, b - 1), c = vl_scale16(h & 0xffffu, b), k = vl_scale16(g >> 16, b);
   uint32_t e = vl_divide(a * digit + c, b, inverse).remainder;
-  uint32_t f = k >= e ? k - e : k + b - e; /* e and f are partners: the same swap for both */
+  uint32_t f = k >= e ? k - e : k + b - e; /* e and f are partners: both make the same decision to swap */
   uint32_t high = e > f ? e : f;
   e = vl_hash((g ^ h) + high) >> 31 ? f : e;
   return vl_divide(e * (1 + vl_scale16(g & 0xffffu, b - 1)) + k, b, inverse).remainder;
@@ -38,7 +39,7 @@ VL_SAMPLER_INLINE void vl_halton_1d(const vlSampler *s, const vlSamplerChunk *c,
   for (uint32_t i = 0; i < c->n; i++) rest[i] = c->index[i];
   for (uint32_t i = 0; i < c->n; i++) hash[i] = c->key[i];
   for (uint32_t i = 0; i < c->n; i++) sum[i] = 0.0f;
-  /* As many digits as the largest index has; all further digits are one random number. */
+  /* Scrambles as many digits as the largest index has. One random number replaces all further digits. */
   for (uint32_t left = s->set - 1; left > 0; left /= b) {
     scale *= inverse;
     /* must vectorise */

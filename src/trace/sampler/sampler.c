@@ -1,5 +1,5 @@
-/* trace/sampler/sampler.c: the constants of a sampler: the layout of spp samples in cells, and the number of bits of an
- * index. */
+/* trace/sampler/sampler.c: computes the constants of a sampler: how spp samples are laid out in cells, and numbers of
+ * bits. */
 #include "trace/sampler/sampler.h"
 
 static uint32_t bits_for(uint32_t count) { /* smallest b with 2^b >= count */

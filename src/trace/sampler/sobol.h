@@ -1,7 +1,8 @@
-/* trace/sampler/sobol.h: the first two Sobol' dimensions for each pair ("padding"), with the index shuffled and both
- * numbers Owen-scrambled: independently for each pixel (sobol), or along the Morton curve of the whole image (zsobol).
+/* trace/sampler/sobol.h: Sobol' points. Each pair of dimensions uses the first two Sobol' dimensions ("padding"), with
+ * the index shuffled and both numbers Owen-scrambled. Shuffles are independent for each pixel (sobol), or run along the
+ * Morton curve of the whole image (zsobol).
  *
- * Bit reversals are most of the cost, so they are merged: with r = reverse(index), L = the reversed scrambles,
+ * Bit reversals are most of the cost, so they are merged. With r = reverse(index), and L a scramble of reversed bits:
  *   shuffled index  j = reverse(L(r)),   first number  reverse(L(j)),   second  reverse(L(pascal j)). */
 #ifndef TRACE_SAMPLER_SOBOL_H
 #define TRACE_SAMPLER_SOBOL_H
@@ -35,9 +36,9 @@ VL_SAMPLER_INLINE void vl_sobol_pixel(const int pair, const vlSampler *s, uint32
   }
 }
 
-/* i = morton(pixel) 2^s + sample. Its low 32 bits are shuffled; the bits above them (very large images and sample
- * counts), and indices past 2^s, select other scrambles. `wide`: whether the batch has such an index. The hash of 0 is
- * 0, so that both forms give the same bits. */
+/* The global index is i = morton(pixel) 2^shift + sample. Its low 32 bits are shuffled. Higher bits, which occur for
+ * very large images and sample counts, and sample indices from 2^shift on select other scrambles. wide: the batch may
+ * have such an index. The hash of 0 is 0, so both values of `wide` give the same bits for other indices. */
 VL_SAMPLER_INLINE void vl_zsobol_lanes(const int pair, const int wide, vlSobolSeeds seed, uint32_t shift, uint32_t n,
                                        const int32_t *px, const int32_t *py, const uint32_t *index, float *u,
                                        float *v) {

@@ -1,5 +1,6 @@
-/* trace/surface/hits.hot.c: closest hits of rays: ids, passage through interfaces, mixed materials; and the radiance of
- * lights that rays hit, weighted against light sampling (pbrt book 13.4). */
+/* trace/surface/hits.hot.c: finds closest hits of rays, with passage through interfaces and the choice of mixed
+ * materials; and adds the radiance of lights that rays hit, with MIS weights against light sampling (pbrt book
+ * 13.4). */
 #include "math/hash.h"
 #include "trace/stages.h"
 #include "world/accel/local_ray.h"
@@ -65,11 +66,11 @@ static vlTextureCorner hit_corner(const vlWorld *world, const vlPaths *p, const 
   return corner;
 }
 
-/* Mixed materials are decided by a hash of the ray, so that the choice needs no sampler dimension. */
+/* A hash of the ray chooses one of a mixed material's materials, so that the choice needs no sampler dimension. */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   uint32_t material = world->shapes.items[h->shape[i]].material;
   while (world->materials.items[material].kind ==
-         VL_MATERIAL_MIX) { /* parts have smaller indices, so that the loop ends */
+         VL_MATERIAL_MIX) { /* the materials of a mix have smaller indices than the mix, so the loop ends */
     const vlWorldMaterial *m = &world->materials.items[material];
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = vl_hit_point(world, p, h, i);

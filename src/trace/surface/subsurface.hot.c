@@ -1,20 +1,20 @@
 /* trace/surface/subsurface.hot.c: subsurface scattering: light that enters a surface and leaves it elsewhere, with the
- * profiles of world/material/bssrdf.h and pbrt's estimator (pbrt book, 3rd edition, 15.4). It processes the paths that
- * have entered a subsurface material, before volume.hot.c traces them further:
+ * profiles of world/material/bssrdf.h and pbrt's estimator (pbrt book, 3rd edition, 15.4). This stage processes the
+ * paths that have entered a subsurface material, before volume.hot.c traces them further:
  *
  *   a, those refracted -> probes: segments through the solid near the entry -> all surfaces of the material on them,
  * one of each chosen -> exits in a: vlSurface, light samples, new directions -> a, with the other paths
  *
- * A probe is parallel to the normal (half of them) or to one of two tangents, at a distance sampled by the hero
- * wavelength's profile. The density of the point found is the sum over all three directions, and is computed for each
- * wavelength. */
+ * Half of the probes are parallel to the normal; the others are parallel to one of two tangents. The hero wavelength's
+ * profile samples a probe's distance from the entry point. The density of an exit point is the sum over all three
+ * directions, and is computed for each wavelength. */
 #include "math/fresnel.h"
 #include "math/warp.h"
 #include "trace/material/rows.h"
 #include "trace/medium/volume.h"
 #include "world/material/bssrdf.h"
 
-/* A bound on the surfaces on a probe. */
+/* Largest number of crossings of one probe. */
 enum { MOST_CROSSINGS = 1024 };
 
 /* The entry point. */
@@ -35,8 +35,8 @@ static Entry entry_of(const vlTracing *t, uint32_t j) {
   return e;
 }
 
-/* Copies those of the n paths of a (lanes s->order of the surfaces behind them) that entered the material to b, as
- * probes. Returns their number; a is kept in the scratch. */
+/* Copies the paths of a that entered a subsurface material to b, as probes. Path k of a comes from lane s->order[k] of
+ * the surfaces. Keeps a copy of a in the scratch memory. Returns the number of probes. */
 static uint32_t take_refracted(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = &s->subsurface;
@@ -71,8 +71,8 @@ static uint32_t take_refracted(vlTracing *t, uint32_t n) {
   return count;
 }
 
-/* A segment of half a length to either side of o, clipped to the sphere around the world, so that ray origins are not
- * needlessly far away. */
+/* Sets probe j to a segment that extends `half` to either side of o. It is clipped to the sphere around the world, so
+ * that ray origins are not needlessly far away. */
 static void cut_probe(const vlTracing *t, uint32_t j, vlVec3 o, vlVec3 along, float half) {
   vlSubsurfaceScratch *x = &t->s->subsurface;
   vlPaths *p = &t->s->b;
@@ -115,7 +115,7 @@ static void aim_probes(vlTracing *t, uint32_t n, uint32_t dimension) {
   }
 }
 
-/* Records one crossing of probe j, whose ids are in hits_b. False: it was the last. */
+/* Records one crossing of probe j, whose ids are in hits_b. Returns false if it was the last crossing. */
 static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = &s->subsurface;
@@ -134,7 +134,8 @@ static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
   return x->t_min[j] < x->length[j];
 }
 
-/* Finds all crossings of the probes, one of each probe per batch: x->found counts them, x->hits keeps one each. */
+/* Finds all crossings of the probes. Each batch of rays finds one crossing per probe. x->found counts a probe's
+ * crossings; x->hits keeps one of them. */
 static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = &s->subsurface;
@@ -188,8 +189,9 @@ static uint32_t gather_exits(vlTracing *t, uint32_t n) {
   return count;
 }
 
-/* The weight of exit i: the profile over the density of sampling the point; the hero's goes to beta, those of the other
- * wavelengths to u. A path with density 0 carries nothing any more. Lengths are in the hero's mean free path. */
+/* Computes the weight of exit i: the profile over the density of sampling the point. The hero's weight goes to beta,
+ * the weights of the other wavelengths to u. A path with density 0 carries no radiance. Lengths are in mean free paths
+ * of the hero wavelength. */
 static void weigh_exit(vlTracing *t, uint32_t i) {
   vlTraceScratch *s = t->s;
   vlPaths *p = &s->a;
@@ -322,8 +324,8 @@ uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* ---- the material ------------------------------------------------------------------------------------------------ */
 
-/* Coefficients of a run of lanes: extinction and albedo, from absorption and scattering, or from the reflectance of a
- * thick solid and the mean free path. */
+/* Computes extinction and albedo for a run of lanes, either from absorption and scattering, or from the reflectance of
+ * a thick solid and the mean free path. */
 void vl_stage_subsurface_inputs(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldSubsurface *b = m->subsurface;
   vlShade *sh = &r->s->shade;

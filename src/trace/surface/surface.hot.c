@@ -1,6 +1,6 @@
-/* trace/surface/surface.hot.c: surface points from ids, in our own arithmetic (Embree's t, u, v differ between its
- * instruction sets). Triangles: gather the corners, then one vector loop. Other shapes: world/shape/surface_point.c,
- * one by one. */
+/* trace/surface/surface.hot.c: computes surface points from ids. It does not use Embree's t, u, v, which differ
+ * between instruction sets. For triangles, it gathers the corners and then runs one vector loop. Other shapes are
+ * computed one by one by world/shape/surface_point.c. */
 #include "math/transform.h"
 #include "trace/stages.h"
 #include "world/shape/moving.h"
@@ -25,7 +25,7 @@ static inline Corner move_corner(const float m[12], const float *x) {
   }
   return (Corner){p, e * GAMMA(4)};
 }
-/* Normals by the inverse transpose: rows of to_group are columns here. */
+/* Transforms a normal by the inverse transpose: the rows of the inverse matrix are used as columns. */
 static inline vlVec3 move_normal(const float inverse[12], const float *n) {
   return vl_vec3(inverse[0] * n[0] + inverse[4] * n[1] + inverse[8] * n[2],
                  inverse[1] * n[0] + inverse[5] * n[1] + inverse[9] * n[2],
@@ -123,13 +123,13 @@ typedef struct Triangle {
   float s, t, dist, offset, uv_scale, curvature;
 } Triangle;
 
-/* By component: a selection of structs would be a branch. */
+/* Selects each component, because a selection of structs would be compiled to a branch. */
 static inline vlVec3 select3(bool which, vlVec3 a, vlVec3 b) {
   return vl_vec3(which ? a.x : b.x, which ? a.y : b.y, which ? a.z : b.z);
 }
 
-/* v times the power of two that brings the largest component into [1, 2): the squares of cross products of tiny or huge
- * triangles would leave float's range. Exact, so that values in range keep their bits. */
+/* Scales v by the power of two that brings its largest component into [1, 2). Without this, squares of cross products
+ * of tiny or huge triangles would leave the range of float. The scaling is exact. */
 static inline vlVec3 near_one(vlVec3 v) {
   float largest = vl_max(vl_max(vl_abs(v.x), vl_abs(v.y)), vl_abs(v.z));
   uint32_t exponent = vl_float_bits(largest) & 0x7f800000u;
@@ -158,9 +158,9 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   vlVec3 e02 = vl_sub(p0, p2), e12 = vl_sub(p1, p2);
   vlVec3 cross = vl_cross(e02, e12);
   vlVec3 g = vl_normalize(near_one(cross));
-  /* pbrt's bound of the point's error (book 6.8.3), projected on the normal; plus the error of Embree's distance when a
-   * ray from here hits this triangle again: its plane goes through corner 0 and its normal is rounded, so that the
-   * error grows with the distance from that corner. Both are doubled. */
+  /* The offset is pbrt's bound of the point's error (book 6.8.3), projected on the normal, plus the error of Embree's
+   * distance if a ray from here hits this triangle again. Embree's plane goes through corner 0 and has a rounded
+   * normal, so that error grows with the distance from corner 0. Both are doubled. */
   vlVec3 way = vl_sub(r.p, p0);
   float reach = vl_abs(way.x) + vl_abs(way.y) + vl_abs(way.z);
   r.offset = 2.0f * (GAMMA(7) * (vl_abs(g.x) * ex + vl_abs(g.y) * ey + vl_abs(g.z) * ez) + GAMMA(5) * reach +
@@ -175,7 +175,7 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   float k2 = vl_dot(n01, e01) / vl_max(vl_length2(e01), VL_MIN_NORMAL);
   r.curvature = has_n > 0.0f ? (k0 + k1 + k2) / (3.0f * vl_length(ns)) : 0.0f;
   ns = vl_normalize(ns);
-  /* With vertex normals the geometric normal is on their side; without, vertex order and flip decide. */
+  /* The geometric normal is on the side of the vertex normals. Without vertex normals, vertex order and flip decide. */
   float towards = vl_dot(g, ns) < 0.0f ? -1.0f : 1.0f;
   float side = has_n > 0.0f ? towards : flip;
   r.g = vl_mul(g, side);
@@ -196,7 +196,7 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   return r;
 }
 
-/* Bound of the distance from the surface of a ray's origin at the point. */
+/* Bound of the distance between the surface and the computed point. */
 static float point_error(const vlSurfacePoint *q) {
   return (float)(__builtin_fabs(q->n[0]) * q->error[0] + __builtin_fabs(q->n[1]) * q->error[1] +
                  __builtin_fabs(q->n[2]) * q->error[2]);
@@ -229,8 +229,8 @@ static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, vlV
   out->uv_scale[i] = area > 0.0f ? 1.0f / __builtin_sqrtf(area) : 0.0f;
 }
 
-/* The surface point of a sphere, disk, cylinder or patch: intersects it again in group space and transforms the point
- * to world space. t, computed by the same arithmetic, identifies the crossing. */
+/* Computes the surface point of a sphere, disk, cylinder or patch: intersects the shape again in group space and
+ * transforms the point to world space. The same arithmetic computed t, which identifies the crossing. */
 static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
                                   uint32_t instance, float t) {
   const vlWorldShape *s = &world->shapes.items[shape];
@@ -353,7 +353,7 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, co
     out->no_cosine[i] = 0.0f;
   }
   if (world->images.count) vl_stage_footprints(n, paths, out);
-  /* After the footprints, which need the derivatives of the point: tangents have another length. */
+  /* This runs after the footprints, which need the point's derivatives; tangents have another length. */
   for (uint32_t i = 0; others && i < n; i++) {
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
     if (s->kind == VL_SHAPE_TRIANGLES && s->tangents) apply_tangents(world, hits, vl_path_time(paths, i), i, c, out);

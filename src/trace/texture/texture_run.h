@@ -13,20 +13,21 @@ typedef struct vlTextureRun {
   const vlPaths *paths;
   const vlSurface *surface;
   uint32_t first, last;
-  uint32_t top;                                                 /* first free row */
-  const float *shift_u, *shift_v, *shift_x, *shift_y, *shift_z; /* added to uv and position (bump), or null */
+  uint32_t top; /* first free row */
+  const float *shift_u, *shift_v, *shift_x, *shift_y,
+      *shift_z; /* offsets added to uv and position, for bump maps; or null */
 } vlTextureRun;
 
-/* Evaluates a texture; results go to lanes [first, last) of out (rows of the whole batch). */
+/* Evaluates a texture. Results go to lanes [first, last) of out, whose rows have the size of the whole batch. */
 void vl_texture_float(vlTextureRun *r, int32_t node, float *out);
 void vl_texture_spectrum(vlTextureRun *r, int32_t node, float *const out[4]);
 /* Takes a scratch row; the caller frees it by restoring r->top. */
 static inline float *vl_texture_row(vlTextureRun *r) {
-  return r->s->rows[r->top < VL_TEXTURE_ROWS - 1 ? r->top++ : r->top]; /* never exceeded: world/texture/textures.c
-                                                                          limits nesting */
+  return r->s->rows[r->top < VL_TEXTURE_ROWS - 1 ? r->top++ : r->top]; /* the stack cannot overflow:
+                                                                          world/texture/textures.c limits nesting */
 }
 
-/* Vertex attributes of lane i's triangle: uv sets, colours. */
+/* Interpolates the vertex attributes (uv sets, colours) of lane i's triangle at the point. */
 static inline void vl_texture_lane_corner(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
                                           vlTexturePoint *at) {
   const vlCorners *c = &r->s->corners;
@@ -42,8 +43,8 @@ static inline void vl_texture_lane_corner(const vlTextureRun *r, const vlTexture
   vl_texture_at_corner(node, &where, at);
 }
 
-/* The footprint's axes in (s, t): for the first uv set those of the surface; for other mappings by a finite difference
- * along each axis. */
+/* Computes the footprint's axes in texture coordinates (s, t). For the first uv set they are the surface's axes; for
+ * other mappings they are finite differences along each axis. */
 static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
                                         vlTexturePoint *at) {
   const vlSurface *f = r->surface;
@@ -61,7 +62,8 @@ static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNo
     if (vl_texture_needs_corner(node)) vl_texture_lane_corner(r, node, i, &step);
     vlVec2 there = vl_texture_st(node, step);
     float s = there.x - here.x, t = there.y - here.y;
-    if (node->mapping == VL_MAPPING_SPHERICAL || node->mapping == VL_MAPPING_CYLINDRICAL) /* across the seam */
+    if (node->mapping == VL_MAPPING_SPHERICAL ||
+        node->mapping == VL_MAPPING_CYLINDRICAL) /* the shorter way across the mapping's seam */
       s -= __builtin_rintf(s), t -= node->mapping == VL_MAPPING_SPHERICAL ? __builtin_rintf(t) : 0.0f;
     at->axes[2 * k] = s, at->axes[2 * k + 1] = t;
   }
@@ -83,14 +85,15 @@ static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vl
   return at;
 }
 
-/* Evaluates the BSDF parameters over a run of lanes of material m, from its textures: one function per kind of the
- * list. */
+/* Evaluates the BSDF parameters of material m from its textures, over a run of lanes. Each BSDF kind has one
+ * function. */
 typedef void vlParametersFn(vlTextureRun *r, const vlWorldMaterial *m);
 #define VL_DECLARE_PARAMETERS(NAME, name) vlParametersFn vl_parameters_##name;
 VL_BSDF_KINDS(VL_DECLARE_PARAMETERS)
 
-/* Parts of these functions. Layers: after the textured eta, k and roughness; translucent, subsurface, hair: after the
- * reflectance. The coat's normal of the principled material stays in world space until the frames are computed. */
+/* Parts of the functions above. vl_stage_layers runs after eta, k and roughness are evaluated; the parts for
+ * translucent, subsurface and hair run after the reflectance. The coat's normal of the principled material stays in
+ * world space until vl_stage_coat_frames. */
 vlParametersFn vl_stage_layers, vl_stage_translucent, vl_stage_subsurface_inputs, vl_stage_hair, vl_stage_principled;
 void vl_stage_coat_frames(const vlSurface *surface, vlShade *shade, uint32_t first, uint32_t last);
 

@@ -4,8 +4,8 @@
 
 /* ---- runs of one BSDF -------------------------------------------------------------------------------------------- */
 
-/* Calls for each run of lanes that share a BSDF kind, with parameter rows shifted to the run. Runs need not start at a
- * multiple of the vector width: elements are computed one by one, whatever the loop's shape. */
+/* A run of lanes that share a BSDF kind, with parameter rows shifted to the run's start. A run may start at any lane,
+ * because a lane's result does not depend on its place in the vector loop. */
 typedef struct Run {
   vlBsdfKind kind;
   uint32_t first, last;
@@ -69,7 +69,7 @@ void vl_stage_light_samples(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t
   vl_stage_lights(t->world, n, p, &t->s->surface, sh->u0, sh->u1, sh->u2, &t->s->light);
 }
 
-/* Makes shadow rays of the light samples, weighted by the BSDF and multiple importance sampling; unoccluded ones add
+/* Makes shadow rays for the light samples, weighted by BSDF and multiple importance sampling. Unoccluded rays add
  * their radiance. */
 static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
   const vlWorld *world = t->world;
@@ -109,8 +109,9 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
 /* ---- the next direction ------------------------------------------------------------------------------------------ */
 
 /* Width and spread of the cone that leaves a surface. Specular reflection and transmission change the spread by the
- * curvature across the plane of incidence (Coddington's sagittal equations), the lesser change of the two planes, so
- * that nothing is blurred. All other lobes restart with the camera's spread at the present width. */
+ * curvature perpendicular to the plane of incidence (Coddington's sagittal equations). This is the smaller of the
+ * changes in the two planes, so textures are not blurred. All other lobes restart with the camera's spread and the
+ * present width. */
 static inline vlVec2 cone_after(float pixel_spread, float cone, float spread, float distance, float bend, float wo_z,
                                 float wi_z, float eta_scale, uint32_t specular) {
   float width = cone + spread * distance;
@@ -159,8 +160,8 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     float b2 = p->beta[2][i] * sh->value[2][i], b3 = p->beta[3][i] * sh->value[3][i];
     float eta = p->eta_scale[i] * sh->eta_scale[i];
     float most = vl_max(vl_max(b0, b1), vl_max(b2, b3));
-    /* Russian roulette from the second bounce on, by the path's throughput times eta^2 of its refractions (pbrt
-     * book 14.2.3). */
+    /* Russian roulette starts at the second bounce. It uses the path's throughput times its eta scale (pbrt book
+     * 14.2.3). */
     float carried = most * eta;
     float survive = depth > 1 && carried < 1.0f ? carried : 1.0f;
     uint32_t lives = most > 0.0f && !(sh->flags[i] & VL_SAMPLED_NONE) && sh->u0[i] < survive ? 1 : 0;

@@ -1,9 +1,9 @@
-/* trace/tracer/shade.hot.c: hits sorted by material, so that each run of lanes is shaded by one. */
+/* trace/tracer/shade.hot.c: sorts hits by material and shades each run of lanes that have the same material. */
 #include "trace/texture/texture_run.h"
 
 /* ---- sorting ----------------------------------------------------------------------------------------------------- */
 
-/* Path by path: a gather instruction per row takes longer than the single moves. */
+/* Copies path by path, because a gather instruction per row takes longer than single moves. */
 void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n) {
   for (uint32_t k = 0; k < n; k++) vl_path_copy(a, order[k], b, k);
 }

@@ -1,4 +1,4 @@
-/* trace/tracer/tracers.hot.c: the choice of the tracer, and the tracers that end at the first hit: raycast and ambient
+/* trace/tracer/tracers.hot.c: calls the tracer, and defines the tracers that end at the first hit: raycast and ambient
  * occlusion. The path tracer is in path.hot.c. */
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
@@ -63,7 +63,8 @@ void vl_trace_raycast(vlTracing *t) {
   }
 }
 
-/* Ambient occlusion (pbrt's): one ray per sample from the first hit; white where it is not occluded. */
+/* Ambient occlusion as in pbrt: one ray per sample from the first hit. The sample is white if the ray is not
+ * occluded. */
 void vl_trace_ambient_occlusion(vlTracing *t) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;

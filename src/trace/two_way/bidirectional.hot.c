@@ -5,7 +5,7 @@
 
 /* ---- lights that paths hit --------------------------------------------------------------------------------------- */
 
-/* density: of the light paths that arrive here. */
+/* density: density of the light paths that arrive at this point. */
 static float hit_weight(const vlTracing *t, const vlPaths *p, uint32_t i, float asked, float density) {
   uint32_t lane = p->lane[i];
   asked = p->specular[i] || !(asked > 0.0f) ? 0.0f : asked / (p->pdf[i] * vl_last_odds(t, lane));
@@ -44,7 +44,7 @@ static void add_emission(vlTracing *t, const vlPaths *p, uint32_t i, bool first)
   if (vl_hit_emission(t->world, p, &t->s->hits_a, i, &met)) add_hit_light(t, p, i, &met, met.at.t, &met.at, first);
 }
 
-/* first: camera rays, and rays without a competing strategy. */
+/* first: no other strategy competes, as for camera rays. */
 static void emission(vlTracing *t, uint32_t n, bool first) {
   const vlHits *h = &t->s->hits_a;
   for (uint32_t i = 0; i < n; i++) {
@@ -171,7 +171,7 @@ static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   return count;
 }
 
-/* With vlTwoWay.apart each path has its own last bounce: ends those that reached it. */
+/* With vlTwoWay.apart, each path has its own last bounce. Ends the paths that have reached it. */
 static void end_long(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
   uint32_t *smooth = t->batch->two_way->smooth;

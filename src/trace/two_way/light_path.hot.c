@@ -1,6 +1,6 @@
-/* trace/two_way/light_path.hot.c: paths from the lights. At every vertex that scatters, a light path stores a photon
- * and connects to the camera; two_way.h has the weights. BSDFs carry radiance towards the camera, so light paths use
- * their adjoint (Veach 1997, 5.3): no factor 1/eta^2 at refraction, and a correction for shading normals. */
+/* trace/two_way/light_path.hot.c: traces light paths. At every vertex that scatters, a light path stores a photon and
+ * connects to the camera; two_way.h has the weights. BSDFs carry radiance towards the camera, so light paths use their
+ * adjoint (Veach 1997, 5.3): no factor 1/eta^2 at refraction, and a correction for shading normals. */
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
@@ -40,7 +40,8 @@ static void wavelengths(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
   vl_color_kernels(t->def->isa)->visible_wavelengths(b->n, u, lambda, inv_pdf);
 }
 
-/* The medium that the path starts in. False: no light arrives from infinitely far through a medium. */
+/* Sets the medium in which the path starts. Returns false for an infinite light in a medium, through which no light
+ * arrives. */
 static bool start_medium(const vlTracing *t, const vlEmission *e, uint32_t *medium) {
   const vlWorldLight *light = &t->world->lights.items[e->light];
   *medium = t->def->two_way->medium[e->light];
@@ -160,7 +161,7 @@ static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t dept
   uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension);
   vl_volume_go_on(t, count);
   float(*wi)[VL_ROW_SIZE] = s->rows + 1;
-  float *ns = s->rows[4]; /* |wo . shading normal| over |wi . it| */
+  float *ns = s->rows[4]; /* |wo . shading normal| / |wi . shading normal| */
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
     r->pdf[i] = sh->pdf[i];
@@ -201,7 +202,7 @@ void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch
   vlTraceDef own = *def;
   own.sampler = &def->two_way->sampler;
   own.pixel_spread = own.pixel_width = 0.0f; /* textures at full resolution */
-  vlTraceBatch rest;                         /* for the stages only: receives counts and light that is not used */
+  vlTraceBatch rest; /* only for the stages: receives their counts, and radiance that is not used */
   __builtin_memset(&rest, 0, sizeof rest);
   rest.n = batch->n;
   rest.eyes = batch->eyes;

@@ -1,14 +1,15 @@
-/* trace/two_way/merge.hot.c: merging: photons near the vertices of camera paths. The flux of N light paths through a
- * disk of radius r around the vertex estimates the flux at the vertex (two_way.h). The estimate is biased by what
- * changes over the disk; the bias vanishes as r shrinks from pass to pass.
+/* trace/two_way/merge.hot.c: merging: adds the radiance of photons near the vertices of camera paths. The flux of N
+ * light paths through a disk of radius r around the vertex estimates the flux at the vertex (two_way.h). The estimate
+ * is biased if flux or surface change over the disk. The bias vanishes as r shrinks from pass to pass.
  *
- * Photons on diffuse surfaces are the most frequent and are summed at once. For the other kinds photons are listed, and
- * the next photon of each lane goes through the BSDFs in one batch. In media a ball of radius r replaces the disk. */
+ * Photons on diffuse surfaces are the most frequent and are summed directly. For other BSDF kinds, each lane lists its
+ * photons, and a batch evaluates the BSDFs for the next photon of every lane. In media a ball of radius r replaces the
+ * disk. */
 #include "trace/medium/phase.h"
 #include "trace/two_way/stages.h"
 
-/* An iterator over the photons within the radius of p, of one medium (vlPhoton.medium), cell by cell: cells are as wide
- * as the ball. */
+/* An iterator over the photons of one medium (vlPhoton.medium) within the radius around p. It visits cell by cell; a
+ * cell is as wide as the ball. */
 typedef struct Near {
   vlVec3 p;
   uint32_t medium, most; /* most: largest number of bounces of a photon */
@@ -30,7 +31,8 @@ static bool near_fits(const vlPhotonMap *map, const Near *near, const vlPhoton *
   vlVec3 to = vl_vec3(x->p[0] - near->p.x, x->p[1] - near->p.y, x->p[2] - near->p.z);
   if (!(vl_length2(to) < map->radius2) || x->bounce > near->most || x->medium != near->medium) return false;
   for (int k = 0; k < 3; k++)
-    if (vl_photon_cell(x->p[k], map->inv_cell) != near->cell[k]) return false; /* another cell of the bucket */
+    if (vl_photon_cell(x->p[k], map->inv_cell) != near->cell[k])
+      return false; /* a photon of another cell in the same bucket */
   return true;
 }
 
@@ -49,8 +51,8 @@ static uint32_t near_next(const vlPhotonMap *map, Near *near) {
   }
 }
 
-/* The weight of this lane's photon, times 1/4 where both paths have only the hero wavelength left: each carries the
- * weight of all four. */
+/* The weight of lane i's photon. If both paths have only the hero wavelength left, it includes a factor 1/4, because
+ * each path carries the weight of all four wavelengths. */
 static float pair_weight(const vlTracing *t, uint32_t i, const vlPhoton *x, float forth, float back) {
   const vlTwoWay *way = t->def->two_way;
   const vlTwoWayRows *r = t->batch->two_way;
@@ -60,8 +62,8 @@ static float pair_weight(const vlTracing *t, uint32_t i, const vlPhoton *x, floa
   return x->alone && vl_hero_only(x->medium ? &t->s->volume.scattered : &t->s->b, i) ? 0.25f * weight : weight;
 }
 
-/* The photon's power for camera path i. Absorption by RGB channel over the whole path is not the product of the
- * absorptions of its two parts. */
+/* The photon's power for camera path i. With absorption by RGB channel, the transmittance of the whole path is not the
+ * product of those of its two parts, so it is computed again. */
 static void joined_power(const vlTracing *t, uint32_t i, const vlPhoton *x, float power[4]) {
   for (int c = 0; c < 4; c++) power[c] = x->power[c];
   if (!t->world->absorbs_by_channel) return;
@@ -88,7 +90,7 @@ static void add_diffuse(vlTracing *t, uint32_t i, const vlPhoton *x, float sum[4
   for (int c = 0; c < 4; c++) sum[c] += sh->reflectance[c][i] * power[c] * weight;
 }
 
-/* Adds the listed photons, one of each lane at a time. */
+/* Adds the listed photons, one photon of every lane at a time. */
 static void add_listed(vlTracing *t, uint32_t n) {
   vlTwoWayRows *r = t->batch->two_way;
   vlTraceScratch *s = t->s;

@@ -1,5 +1,5 @@
-/* trace/two_way/photons.c: the photon map's grid, cells by hash, filled by counting; and which lights paths start from.
- */
+/* trace/two_way/photons.c: builds the photon map (a hashed grid) by a counting sort, and computes the probabilities of
+ * the lights from which light paths start. */
 #include <string.h>
 
 #include "trace/two_way/stages.h"

@@ -124,7 +124,7 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     if (!(per_square[i] > 0.0f) || !(sum > 0.0f) || !(r->cosine[i] > 0.0f)) continue;
     push(t, i, count, vl_vec3(fx[i], fy[i], fz[i]), end[i]);
     r->others[count] = way->light_only ? 0.0f : way->merged + r->a[i] * r->rev[i] + r->b[i];
-    r->own[count] = way->paths / per_square[i]; /* S_1: this strategy, over P_1 L_1 as the others */
+    r->own[count] = way->paths / per_square[i]; /* S_1: density of this strategy, divided by P_1 L_1 like the others */
     uint32_t lane = p->lane[i];
     float inv = 1.0f / r->cosine[i];
     for (int c = 0; c < 4; c++) q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * sh->value[c][i] * inv;

@@ -1,4 +1,4 @@
-/* trace/two_way/stages.h: what the hot files of the two-way tracers share; private to them. */
+/* trace/two_way/stages.h: declarations that the hot files of the two-way tracers share; private to them. */
 #ifndef TRACE_TWO_WAY_STAGES_H
 #define TRACE_TWO_WAY_STAGES_H
 
@@ -9,25 +9,28 @@
 
 enum { VL_MERGE_PAIRS = 4 * VL_BATCH };
 
-/* Rows by lane (the path's element of the batch, wherever sorting puts it): */
+/* Working memory of the two-way tracers. The first rows are indexed by lane, the path's element of the batch, which
+ * sorting does not change. */
 typedef struct vlTwoWayRows {
   VL_ROW float carry[VL_ROW_SIZE];     /* (S + H) cos / fwd of the previous vertex; two_way.h */
   VL_ROW float flux[4][VL_ROW_SIZE];   /* initial flux of a light path; its beta starts from 1 */
   VL_ROW uint32_t smooth[VL_ROW_SIZE]; /* vertices not counted as bounces: vlTwoWay.apart */
-  VL_ROW float density[VL_ROW_SIZE];   /* vl_emission_density of a light path's first ray, and its light */
+  VL_ROW float density[VL_ROW_SIZE];   /* vl_emission_density of a light path's first ray; its light is in `light` */
   VL_ROW uint32_t light[VL_ROW_SIZE];
-  VL_ROW float lx[VL_ROW_SIZE], ly[VL_ROW_SIZE], lz[VL_ROW_SIZE];    /* point on the light, or its direction */
-  VL_ROW float lnx[VL_ROW_SIZE], lny[VL_ROW_SIZE], lnz[VL_ROW_SIZE]; /* the light's normal there */
-  /* rows by element of the sorted batch */
+  VL_ROW float lx[VL_ROW_SIZE], ly[VL_ROW_SIZE],
+      lz[VL_ROW_SIZE]; /* point on the light, or direction of an infinite light */
+  VL_ROW float lnx[VL_ROW_SIZE], lny[VL_ROW_SIZE], lnz[VL_ROW_SIZE]; /* the light's normal at this point */
+  /* The following rows are indexed by element of the sorted batch. */
   VL_ROW float a[VL_ROW_SIZE], b[VL_ROW_SIZE]; /* S = a rev + b */
   VL_ROW float rev[VL_ROW_SIZE];               /* vl_stage_reverse */
-  VL_ROW float cosine[VL_ROW_SIZE];            /* of the incoming ray with the geometric normal; in media: extinction */
+  VL_ROW float cosine[VL_ROW_SIZE]; /* cosine between incoming ray and geometric normal; in media: the extinction */
   VL_ROW float wo[3][VL_ROW_SIZE], pdf[VL_ROW_SIZE];
-  VL_ROW float x[VL_ROW_SIZE], y[VL_ROW_SIZE];        /* film points of lanes, then of splats */
-  VL_ROW float own[VL_ROW_SIZE], others[VL_ROW_SIZE]; /* of shadow rays: density of this strategy and of the others */
-  VL_ROW float rows[12][VL_ROW_SIZE]; /* value, wavelength, 1 / density of splats; wavelengths of the batch */
+  VL_ROW float x[VL_ROW_SIZE], y[VL_ROW_SIZE];        /* film points: first of lanes, later of splats */
+  VL_ROW float own[VL_ROW_SIZE], others[VL_ROW_SIZE]; /* by shadow ray: density of this strategy and of the others */
+  VL_ROW float
+      rows[12][VL_ROW_SIZE]; /* value, wavelength and 1 / PDF of splats, 4 rows each; also wavelengths of the batch */
   VL_ROW uint32_t first[VL_ROW_SIZE + 1], count[VL_ROW_SIZE];
-  uint32_t pair[VL_MERGE_PAIRS]; /* photon indices, those of a lane together */
+  uint32_t pair[VL_MERGE_PAIRS]; /* photon indices, grouped by lane */
   vlPhoton photons[VL_BATCH];
 } vlTwoWayRows;
 
@@ -39,57 +42,59 @@ void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth);
 void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth);
 void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium);
 
-/* The lanes of a that scatter in media (volume.scattered): light samples, merging, new directions. Returns the number
- * of paths that go on; s->order names them. One function for camera paths, and one for light paths, which store photons
- * and connect to the camera; last: no path goes on. */
+/* Process the paths that scatter in media (volume.scattered) and sample their new directions. vl_eye_in_media is for
+ * camera paths, which sample lights and merge. vl_light_in_media is for light paths, which store photons and connect
+ * to the camera. Both return the number of paths that go on, and s->order lists them. last: no path goes on. */
 uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
 uint32_t vl_light_in_media(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
                            uint32_t dimension, bool last);
-/* Traces the light samples' `count` shadow rays and adds the radiance that arrives, weighted by own / (own + odds
+/* Traces the `count` shadow rays of light samples and adds the radiance that arrives, with weight own / (own + odds *
  * others). */
 void vl_two_way_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth);
-/* Connects the n shaded lanes to the camera; visible ones become splats. */
+/* Connects the n shaded lanes to the camera. Visible vertices become splats. */
 void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
                           uint32_t dimension);
-/* Traces the shadow rays towards the camera; visible ones become splats of weight own / (own + odds others). */
+/* Traces the shadow rays towards the camera. Those that arrive become splats with weight own / (own + odds *
+ * others). */
 void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p, const vlVolumeRows *rows,
                        uint32_t count, uint32_t depth);
 /* Density with which next-event estimation would have sampled the light that this lane's path came from. */
 float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w);
 
-/* A camera sample: the connection of a point with a point on the lens. */
+/* A connection of a scene point to a point on the lens. */
 typedef struct vlCameraSample {
   bool seen;
   vlVec3 w;         /* unit, towards the lens */
   vlVec3 from;      /* point on the lens */
   float x, y;       /* film point, pixels */
-  float end;        /* fraction of the way at which the near plane lies */
+  float end;        /* fraction of the segment at which it crosses the near plane */
   float per_square; /* 1 / (solid angle of a pixel * distance squared) */
 } vlCameraSample;
 vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, float v);
 
-/* Computes the densities of sampling wo had the path come from the directions wi (local, rows of n), to rows->rev; and
- * the BSDFs' values f(wi, wo) |cos wo| to shade.value. Keeps shade.wo; overwrites shade.wi, shade.pdf and light.w. */
+/* Writes to rows->rev the density of sampling wo if the path had come from wi (local), and to shade.value the BSDF's
+ * value f(wi, wo) |cos wo|. Keeps shade.wo; overwrites shade.wi, shade.pdf and the light samples' wx, wy, wz. */
 void vl_stage_reverse(vlTracing *t, vlTwoWayRows *rows, uint32_t n, const float wi[3][VL_ROW_SIZE]);
 
 /* A ray that leaves a light. */
 typedef struct vlEmission {
   bool valid;
   vlVec3 o, d;
-  vlVec3 at, n; /* point and normal on an area light; for other lights at is the point that vl_emission_density takes */
+  vlVec3 at, n; /* point and normal on an area light; for other lights, `at` is the argument of vl_emission_density */
   float flux[4];
-  float density; /* as vl_emission_density, without the distance of point lights */
+  float density; /* as vl_emission_density, but for point lights without 1 / distance^2 */
   bool delta;    /* no ray can hit the light */
   uint32_t light;
 } vlEmission;
 vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const float lambda[4], float u_choice, float u,
                               float v, float s, float t);
-/* Density of the light paths that arrive at p from w (unit, towards the light; distance d): per area perpendicular to w
- * and solid angle of w; for delta lights per area only. To be multiplied by p's cosine. */
+/* Density of the light paths that arrive at a point from direction w (unit, towards the light) after `distance`: per
+ * area perpendicular to w and solid angle of w; for delta lights, per area only. The caller multiplies it by the
+ * cosine at the point. */
 float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t light, vlVec3 w, float distance,
                           const vlPoint *at);
 
-/* All BSDFs of the lanes are specular: nothing can be connected. */
+/* Whether the BSDF of lane i is all specular, so that the vertex cannot be connected. */
 static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s, uint32_t i) {
   const float *x = s->shade.alpha_x, *y = s->shade.alpha_y;
   switch (world->materials.items[s->hits_b.material[i]].smooth) {
@@ -111,13 +116,13 @@ static inline float vl_last_odds(const vlTracing *t, uint32_t lane) {
 static inline const vlCameraView *vl_eye_of(const vlTracing *t, uint32_t lane) {
   return t->batch->eyes ? &t->batch->eyes[lane] : &t->def->two_way->eye;
 }
-/* vl_emission_density of a light path's first ray, at that distance. */
+/* vl_emission_density of a light path's first ray, after `distance`. */
 static inline float vl_light_density(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane, float distance) {
   return t->world->lights.items[r->light[lane]].at_point ? r->density[lane] / (distance * distance) : r->density[lane];
 }
 
-/* Solid angle of a pixel around the direction whose cosine with the axis is c. The pixel's side at distance 1 is 1 / f.
- */
+/* Solid angle of a pixel in a direction whose cosine with the camera's axis is c. At depth 1 the pixel's sides are 1 /
+ * fx and 1 / fy. */
 static inline float vl_camera_view_pixel_area(const vlCameraView *eye, float c) {
   return c * c * c / (eye->fx * eye->fy);
 }
@@ -134,13 +139,14 @@ static inline uint32_t vl_photon_bucket(int32_t x, int32_t y, int32_t z, uint32_
   return h & (buckets - 1);
 }
 
-/* The transmittance along shadow ray k, which hits no opaque surface: `passes` for each wavelength, `scale` for all,
- * with the weight against the other strategies. False: nothing arrives. */
+/* Computes the transmittance along shadow ray k, which hits no opaque surface. passes: one factor per wavelength;
+ * scale: a common factor, which includes the MIS weight. Returns false if nothing arrives. */
 bool vl_two_way_arrives(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlTwoWayRows *r, uint32_t k,
                         uint32_t depth, float passes[4], float *scale);
 
-/* vlVolumeRows.passed of a light path, packed into 32 bits for a photon. Only ratios matter: the largest is 1 (2 bits
- * say which), the other two are -512 ln in 15 bits each: exact to 0.1 %, down to e^-64. */
+/* Packs vlVolumeRows.passed of a light path into 32 bits, for a photon. Only ratios matter, so the largest value
+ * counts as 1, and 2 bits give its index. The other two are stored as -512 ln(ratio) in 15 bits each, which is exact
+ * to 0.1 % down to e^-64. */
 static inline uint32_t vl_pack_passed(const vlVolumeRows *v, uint32_t i) {
   const float p[3] = {v->passed[0][i], v->passed[1][i], v->passed[2][i]};
   uint32_t largest = p[0] >= p[1] ? (p[0] >= p[2] ? 0 : 2) : p[1] >= p[2] ? 1 : 2, packed = largest;
@@ -158,7 +164,7 @@ static inline void vl_unpack_passed(uint32_t packed, float p[3]) {
     p[(largest + k) % 3] = vl_exp((float)(packed >> (2 + 15 * (k - 1)) & 32767u) * (-1.0f / 512.0f));
 }
 
-/* Only the hero wavelength is left: material.hot.c marks this by equal wavelengths. */
+/* Whether path i has only its hero wavelength left. material.hot.c marks such paths by equal wavelengths. */
 static inline bool vl_hero_only(const vlPaths *p, uint32_t i) {
   return p->lambda[0][i] == p->lambda[1][i] && p->lambda[0][i] > 0.0f;
 }

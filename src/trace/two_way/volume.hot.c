@@ -1,5 +1,5 @@
-/* trace/two_way/volume.hot.c: vertices in media, of camera and light paths (two_way.h). The phase function is its own
- * density, both ways. */
+/* trace/two_way/volume.hot.c: vertices in media, of camera and light paths (two_way.h). The phase function's value is
+ * its density, in both directions. */
 #include "trace/medium/phase.h"
 #include "trace/two_way/stages.h"
 

@@ -36,8 +36,7 @@ static inline void vl_medium_blackbody(const vlWorldMedium *m, const float lambd
 
 /* ---- the medium at a point --------------------------------------------------------------------------------------- */
 
-/* Adds a trilinear lookup in a grid of colours to a result. Each colour is converted to a spectrum before
- * interpolation. */
+/* Trilinear lookup in a grid of colours, times scale. Each colour is converted to a spectrum before interpolation. */
 static inline void vl_rgb_lookup(const vlWorldMedium *m, const vlDenseGrid *g, const float lambda[4], vlVec3 q,
                                  float scale, float out[4]) {
   vlTrilinear at = vl_dense_at_point(g, q);

@@ -48,8 +48,7 @@ typedef struct vlWorldMedium {
   uint32_t cells[3];
   const float *majorants;
   vlDenseGrid density, emission_scales, temperature;
-  vlDenseGrid rgb_a, rgb_s,
-      rgb_emission; /* 4 floats per cell: coefficients of a sigmoid spectrum and its scale; in RGB mode r, g, b, 0 */
+  vlDenseGrid rgb_a, rgb_s, rgb_emission; /* 4 floats per cell: sigmoid and scale of a spectrum, or r, g, b, 0 */
   float rgb_scale, rgb_emission_scale;
   vlSpectral illuminant; /* of RGB grids: the illuminant of the colour space */
   const vlSparseGrid *sparse, *sparse_temperature;

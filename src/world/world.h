@@ -74,11 +74,10 @@ typedef struct vlWorldGroup {
 typedef struct vlWorldInstance {
   uint32_t group;
   bool mirrored;
-  float from_group[12],
-      to_group[12];  /* world from group, and its inverse; for a moving instance at the world's time 0 */
-  uint32_t keys;     /* number of poses in path, at equal steps of the world's time; 0: at rest */
-  const float *path; /* pose (world from group) of each key, 12 floats */
-  float doubt[4];    /* bound of the rounding error of an interpolated matrix, by column; 0 at rest */
+  float from_group[12], to_group[12]; /* world from group, and its inverse; if moving, at the world's time 0 */
+  uint32_t keys;                      /* number of poses in path, at equal steps of the world's time; 0: at rest */
+  const float *path;                  /* pose (world from group) of each key, 12 floats */
+  float doubt[4];                     /* bound of the rounding error of an interpolated matrix, by column; 0 at rest */
 } vlWorldInstance;
 
 /* ---- materials --------------------------------------------------------------------------------------------------- */
@@ -143,13 +142,12 @@ typedef struct vlWorldMaterial {
   bool absent[2]; /* true for a part of a mix that is an interface: shapes use the other part, with an alpha (shapes.c)
                    */
   bool remap, use_reflectance;
-  bool dispersive;         /* for dielectrics: eta depends on the wavelength */
-  float eta_s;             /* for dielectrics whose eta does not depend on the wavelength */
-  int32_t displacement;    /* float node, -1: none */
-  int32_t normal_map;      /* image index, -1: none */
-  const vlCoatTable *coat; /* may be shared with other materials; the world frees it */
-  const vlCoatTable
-      *widened; /* table of the coat with the roughness enlarged by vlBuildDef.regularize; otherwise null */
+  bool dispersive;                     /* for dielectrics: eta depends on the wavelength */
+  float eta_s;                         /* for dielectrics whose eta does not depend on the wavelength */
+  int32_t displacement;                /* float node, -1: none */
+  int32_t normal_map;                  /* image index, -1: none */
+  const vlCoatTable *coat;             /* may be shared with other materials; the world frees it */
+  const vlCoatTable *widened;          /* the same for the roughness that vlBuildDef.regularize gives; else null */
   const vlWorldPrincipled *principled; /* null for other kinds */
   int32_t transmittance; /* for diffuse transmission: spectrum node; scale multiplies reflectance and transmittance */
   float scale;

@@ -20,9 +20,8 @@
 typedef struct vlNearest {
   float t; /* for triangles Embree's distance, for other shapes velo's; infinity: no hit yet */
   uint32_t instance, geometry, primitive;
-  const vlWorldShape *shape; /* null: t is velo's own, and the following members are not set */
-  float normal[3], o[3],
-      d[3]; /* geometric normal (not normalised), ray origin and direction, in the shape's group space */
+  const vlWorldShape *shape;   /* null: t is velo's own, and the following members are not set */
+  float normal[3], o[3], d[3]; /* normal (not normalised) and ray, in the space of the shape's group */
   float time;
 } vlNearest;
 

@@ -39,7 +39,7 @@ static void raise(const vlWorldMedium *m, float *majorants, const double medium_
       }
 }
 
-/* Bounds a brick in octants, for tighter majorants. */
+/* Raises the majorants by a brick, octant by octant, which gives tighter bounds. */
 static void raise_brick(const vlWorldMedium *m, float *majorants, const double medium_from_index[12],
                         const float *values, const int32_t corner[3]) {
   for (int part = 0; part < 8; part++) {

@@ -1,4 +1,4 @@
-/* world/medium/sparse.c: media from NanoVDB files: box and majorants of their grids. */
+/* world/medium/sparse.c: media from NanoVDB files: computes the box and the majorants of their grids. */
 #include <math.h>
 
 #include "base/error.h"
@@ -13,7 +13,7 @@ static void grow_box(const vlSparseGrid *g, vlWorldMedium *m) {
   }
 }
 
-/* Raises the majorants of all cells that a lookup near voxels [a, b] can fall into. */
+/* Raises the majorants of all cells in which a lookup can read one of the voxels [a, b]. */
 static void raise(const vlWorldMedium *m, float *majorants, const double medium_from_index[12], const int32_t a[3],
                   const int32_t b[3], float value) {
   int32_t first[3], last[3];

@@ -1,5 +1,5 @@
-/* scene/add.c: adds textures, materials, emissions and lights: they are checked, then copied. Ids refer only to objects
- * added before, so textures and mixed materials cannot form a cycle. */
+/* scene/add.c: adds textures, materials, emissions and lights: each def is checked, then copied. Ids refer only to
+ * objects added before, so textures and mixed materials cannot form a cycle. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -46,7 +46,7 @@ static bool all_finite(const float *numbers, size_t count) {
   return true;
 }
 
-/* Rules that the rows do not express. */
+/* Checks rules that the rows do not express. */
 static bool check_texture_def(vlScene *scene, const vlTextureDef *d, const vlKindRow *row) {
   char what[64];
   snprintf(what, sizeof what, "%s texture", row->name ? row->name : "vertex colour");
@@ -63,7 +63,7 @@ static bool check_texture_def(vlScene *scene, const vlTextureDef *d, const vlKin
   return true;
 }
 
-/* Members that the kind's row does not name are dropped. */
+/* Members that the kind's row does not describe are not stored. */
 static vlTextureId add_texture(vlScene *scene, const vlTextureDef *def, bool adopt) {
   const vlTextureId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_TEXTURE, scene->textures.count, (vlSource){0}, "texture"))
@@ -115,7 +115,7 @@ bool vl_coat_in_closed_form(const vlMaterialDef *def) {
          !def->thickness.texture.index;
 }
 
-/* What the kind's row does not name is left out. */
+/* Members that the kind's row does not describe are not stored. */
 vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   const vlMaterialId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_MATERIAL, scene->materials.count, (vlSource){0}, "material"))

@@ -1,4 +1,4 @@
-/* scene/check.c: the life of a check: running its parts; the list of findings, its order and the names of findings. */
+/* scene/check.c: runs the parts of the scene check; stores, sorts and names the findings. */
 #include "scene/check.h"
 
 #include <stdio.h>
@@ -54,7 +54,8 @@ static bool make_used(vlCheck *check) {
   return true;
 }
 
-/* Sorts by severity (errors, warnings, notes); otherwise the order in which they were found stays. */
+/* Sorts by severity (errors, warnings, notes); findings of equal severity stay in the order in which they were
+ * found. */
 static bool sort(vlCheck *check) {
   size_t n = check->findings.count, next = 0;
   vlFinding *sorted = vl_alloc_array(check->context, n ? n : 1, sizeof *sorted);
@@ -97,7 +98,7 @@ void vl_check_destroy(vlCheck *check) {
   vlContext *c = check->context;
   for (size_t i = 0; i < check->findings.count; i++) {
     void *block;
-    memcpy(&block, &check->findings.items[i].message, sizeof block); /* const for readers; owned and freed here */
+    memcpy(&block, &check->findings.items[i].message, sizeof block); /* const for readers; the check owns it */
     vl_free(c, block);
   }
   VL_ARRAY_FREE(c, &check->findings);

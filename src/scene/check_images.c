@@ -1,6 +1,6 @@
 /* scene/check_images.c: scene check: missing files, surfaces that reflect more light than they receive, lights without
- * power. A texture's greatest value is bounded from above: for a mix by the larger input, for a product by the product,
- * for an image by its brightest texel. */
+ * power. It computes an upper bound of each texture's values: for a mix the larger bound of its inputs, for a product
+ * the product of the bounds, for an image its brightest texel. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,7 +20,7 @@ static bool file_is_there(vlCheck *c, const char *path, vlSource source) {
   char *data = NULL;
   size_t size;
   vlError error = {0};
-  vlResult r = vl_file_read(c->context, path, false, &data, &size, &error); /* opened for its error message */
+  vlResult r = vl_file_read(c->context, path, false, &data, &size, &error); /* called for its error message */
   vl_free(c->context, data);
   if (r != VL_OK)
     vl_check_add(c, r == VL_ERROR_MISSING ? VL_FINDING_MISSING_FILE : VL_FINDING_BROKEN_FILE, VL_SEVERITY_ERROR, source,
@@ -28,7 +28,7 @@ static bool file_is_there(vlCheck *c, const char *path, vlSource source) {
   return r == VL_OK;
 }
 
-/* Checks all files that a row's parameters name. */
+/* Checks that the files exist which the parameters of a family's defs name. */
 static void look_for_files_of(vlCheck *c, const vlKindFamily *family, int kind, const void *def, vlSource source) {
   const vlKindRow *row = vl_kind_row(family, kind);
   for (uint32_t i = 0; i < row->parameter_count; i++) {
@@ -57,7 +57,7 @@ static void look_for_files(vlCheck *c) {
 
 /* ---- greatest values --------------------------------------------------------------------------------------------- */
 
-/* The greatest value as a reflectance: of rgb's channels, or over all wavelengths. */
+/* The largest value of a spectrum as a reflectance: over the RGB channels, or over all wavelengths. */
 static float spectrum_max(const vlSpectrum *s) {
   if (s->kind == VL_SPECTRUM_RGB) {
     float m = s->rgb[0] > s->rgb[1] ? s->rgb[0] : s->rgb[1];
@@ -94,7 +94,7 @@ static float image_max(vlCheck *c, const vlTextureDef *t) {
   bool floats = t->image || t->data || !t->path || vl_ends_with(t->path, ".exr") || vl_ends_with(t->path, ".hdr") ||
                 vl_ends_with(t->path, ".pfm");
   vlImage *image = NULL;
-  /* Integer images reach 1 at most; they are read only when a factor enlarges their values. */
+  /* Values of integer images are at most 1, so these are read only if a factor enlarges the values. */
   if (c->def.images && !t->image && (floats || t->scale * tint > 1.0f || t->invert)) {
     vlError error;
     vlResult r = t->data   ? vl_image_read_memory(c->context, t->name ? t->name : "an image", t->data, t->data_size,
@@ -109,14 +109,15 @@ static float image_max(vlCheck *c, const vlTextureDef *t) {
     if (!image_range(c, image ? image : t->image, range)) range[0] = 0, range[1] = 1;
   vl_image_destroy(image);
   return (t->invert ? 1.0f - t->scale * range[0] : t->scale * range[1]) *
-         tint; /* as in pbrt, scaled first, then inverted */
+         tint; /* as in pbrt, values are first scaled, then inverted */
 }
 
 static float larger(float a, float b) {
   return a > b ? a : b;
 }
 
-/* Upper bound of a texture that a reflectance may read; otherwise 0. known: bounds of the earlier textures. */
+/* Upper bound of the values of a texture that a reflectance may read; 0 for other textures. known: bounds of the
+ * textures added before. */
 static float texture_max(vlCheck *c, const vlTextureDef *t, const float *known) {
   float in[4];
   const vlFloatInput *floats[4] = {&t->float_a, &t->float_b, &t->float_c, &t->float_d};
@@ -134,11 +135,11 @@ static float texture_max(vlCheck *c, const vlTextureDef *t, const float *known) 
   if (t->kind == VL_TEXTURE_MIX || t->kind == VL_TEXTURE_CHECKERBOARD || t->kind == VL_TEXTURE_DIRECTION_MIX ||
       t->kind == VL_TEXTURE_DOTS)
     return larger(in[0], in[1]);
-  return 0; /* noise has fixed colours */
+  return 0; /* the colours of noise textures are fixed */
 }
 
-/* The inputs of a material that are reflectances or transmittances: those of its row with the role of an albedo, if the
- * def reads them. */
+/* Gives the inputs of a material that are reflectances or transmittances: the parameters of its row with the role of an
+ * albedo, if the def makes use of them. */
 enum { SHARES = 6 };
 typedef struct Share {
   const char *what;
@@ -146,7 +147,7 @@ typedef struct Share {
   float factor;
 } Share;
 
-/* Some kinds read their reflectance only where the def says so. */
+/* Whether the material reads this input. Some kinds read their reflectance only if the def says so. */
 static bool is_read(const vlMaterialDef *m, uint32_t traits, const vlSpectrumInput *input) {
   if (input != &m->reflectance) return true;
   if (m->kind == VL_MATERIAL_SUBSURFACE) return m->subsurface.from_reflectance;
@@ -184,7 +185,7 @@ static void mark(vlCheck *c, uint8_t *needed) {
 
 static void check_albedo(vlCheck *c) {
   const vlScene *s = c->scene;
-  const float most = 1.001f; /* tolerance for the rounding of scaled colours */
+  const float most = 1.001f; /* largest value accepted; above 1 because scaled colours are rounded */
   uint8_t *needed = vl_alloc_zero(c->context, s->textures.count + 1, 1);
   float *known = vl_alloc_zero(c->context, s->textures.count + 1, sizeof *known);
   if (!needed || !known) c->no_memory = true;

@@ -31,7 +31,8 @@ static bool lets_light_pass(const vlCheck *c, const vlShapeDef *d) {
   return !(vl_kind_row(&vl_material_family, (int)m->kind)->traits & VL_MATERIAL_OPAQUE);
 }
 
-/* Lights of the world itself. Those of instances are not examined: they count as inside. */
+/* Whether a light is inside the solid. Only lights outside of groups are examined; lights of instances count as
+ * inside. */
 static bool holds_light(const vlCheck *c, const vlSolid *solid, const vlMat4 *group_from_world) {
   const vlScene *s = c->scene;
   double p[3], q[3];
@@ -91,7 +92,7 @@ static void judge(vlCheck *c, const vlSolid *solid, const double *eye, const vlM
                  name.text);
 }
 
-/* Checks one placement of a group. Shapes of one material may form a solid together. */
+/* Checks one instance of a group. Shapes of one material may together form a solid. */
 static void check_group(vlCheck *c, uint32_t group, const Box *boxes, const double world_eye[3], const double *pose) {
   const vlScene *s = c->scene;
   vlMat4 inverse = vl_mat4_identity();
@@ -206,7 +207,7 @@ static void check_nesting(vlCheck *c, const vlSolid *solids, const Box *boxes, c
   }
 }
 
-/* Shapes of the world itself are checked one by one. */
+/* Checks the media of shapes outside of groups, one by one. */
 static void check_media(vlCheck *c, const Box *boxes) {
   const vlScene *s = c->scene;
   vlSolid *solids = vl_alloc_zero(c->context, MAX_SOLIDS, sizeof *solids);

@@ -1,5 +1,5 @@
 /* scene/check_meshes.c: scene check: faces without area, zero normals, textures that need missing uvs, and transmissive
- * solids: are they closed, and do their normals point outwards? */
+ * solids that are open or whose normals point inwards. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +22,8 @@ static bool has_no_area(const float *p, const uint32_t *f) {
   return g + fabs(e[0][0] * e[1][1] - e[0][1] * e[1][0]) == 0;
 }
 
-/* From one percent on it is a warning: a few degenerate faces are in nearly every exported mesh. */
+/* Reports the number of wrong faces. Below one percent it is a note, otherwise a warning, because nearly every exported
+ * mesh has a few degenerate faces. */
 static void tell_share(vlCheck *c, const vlShapeDef *d, uint32_t wrong, uint32_t all, const char *what) {
   if (!wrong) return;
   bool much = (double)wrong >= 0.01 * all;
@@ -52,8 +53,8 @@ static void check_degenerate(vlCheck *c, const vlShapeDef *d) {
 
 /* ---- uv ---------------------------------------------------------------------------------------------------------- */
 
-/* What a texture and its inputs need of the mesh. */
-enum { NEEDS_UV = 1, NEEDS_COLORS = 16 }; /* NEEDS_UV << set */
+/* Flags: what a texture and its inputs read from a mesh. */
+enum { NEEDS_UV = 1, NEEDS_COLORS = 16 }; /* the flag of uv set k is NEEDS_UV << k */
 
 static uint8_t own_needs(const vlTextureDef *t) {
   bool over_uv = t->mapping == VL_MAPPING_UV &&
@@ -65,7 +66,7 @@ static uint8_t own_needs(const vlTextureDef *t) {
 }
 
 static uint8_t lacks(const vlShapeDef *d) {
-  if (d->kind != VL_SHAPE_TRIANGLES) return 0; /* other kinds have their own uvs */
+  if (d->kind != VL_SHAPE_TRIANGLES) return 0; /* shapes of other kinds always have uvs */
   uint8_t none = d->uvs ? 0 : NEEDS_UV;
   for (int k = 0; k < 3; k++)
     if (!d->more_uvs[k]) none |= (uint8_t)(NEEDS_UV << (k + 1));
@@ -74,7 +75,7 @@ static uint8_t lacks(const vlShapeDef *d) {
 
 typedef struct Needs {
   uint8_t *textures, *materials;
-  uint32_t *culprit; /* per material: id of the texture that needs it */
+  uint32_t *culprit; /* per material: id of the texture that needs uvs or colours */
 } Needs;
 
 static void find_needs(vlCheck *c, Needs *n) {
@@ -154,7 +155,7 @@ static int by_key(const void *a, const void *b) {
   return x->shape < y->shape ? -1 : x->shape > y->shape;
 }
 
-/* Whether another part's box contains this part, which may then be a cavity. */
+/* Whether the box of another part contains this part. Then this part may be a cavity. */
 static bool lies_in_another(const vlMeshSolid *b, uint32_t part) {
   const vlMeshSolidPart *p = &b->parts[part];
   for (uint32_t i = 0; i < b->part_count; i++) {
@@ -166,8 +167,8 @@ static bool lies_in_another(const vlMeshSolid *b, uint32_t part) {
   return false;
 }
 
-/* After welding, the shape of a part is unknown: the solid's first shape is reported instead. This is exact for solids
- * of one shape. */
+/* Checks one solid. After welding it is unknown from which shape a part comes, so findings name the solid's first
+ * shape. This is exact for solids of one shape. */
 static void check_solid(vlCheck *c, const uint32_t *shapes, size_t count) {
   const vlScene *s = c->scene;
   const vlShapeDef *first = &s->shapes.items[shapes[0]];
@@ -221,7 +222,7 @@ static void check_solids(vlCheck *c) {
   if (n) qsort(keys, n, sizeof *keys, by_key);
   for (size_t i = 0, j; i < n && !c->no_memory; i = j) {
     size_t count = 0;
-    bool round = false; /* disks and cylinders may close the solid, which is not checked */
+    bool round = false; /* the solid has disks or cylinders, which may close it; this is not checked */
     for (j = i; j < n && keys[j].group == keys[i].group && keys[j].material == keys[i].material; j++) {
       round |= !vl_shape_is_mesh(s->shapes.items[keys[j].shape].kind);
       shapes[count++] = keys[j].shape;

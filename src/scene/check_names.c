@@ -1,5 +1,6 @@
-/* scene/check_names.c: scene check: which objects shapes, lights and instances use, and which named or placed ones they
- * do not. Objects refer only to earlier ones, so one pass from the last to the first suffices. */
+/* scene/check_names.c: scene check: finds which objects are used by shapes, lights and instances, and reports unused
+ * ones that have a name or a source location. Objects refer only to earlier ones, so one pass from the last to the
+ * first suffices. */
 #include <stdio.h>
 #include <string.h>
 
@@ -124,7 +125,8 @@ static void find_used(vlCheck *c) {
   }
 }
 
-/* A texture that only unused materials read is reported once, with its material. */
+/* Marks textures that a material or another texture reads, used or not. They are not reported: their unused reader
+ * is. */
 static void mark_textures_of_unused(vlCheck *c, uint8_t *read) {
   const vlScene *s = c->scene;
   vlTextureId inputs[VL_CHECK_INPUTS];
@@ -182,7 +184,7 @@ static void tell_unused(vlCheck *c) {
   vl_free(c->context, mixed);
 }
 
-/* A group is reported at the place of its first shape, since it has none of its own. */
+/* Reports unused groups. A group has no source location, so that of its first shape is given. */
 static void tell_groups(vlCheck *c) {
   const vlScene *s = c->scene;
   size_t next = 0;

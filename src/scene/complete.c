@@ -14,7 +14,8 @@ vlCompleteDef vl_default_complete_def(void) {
 
 /* ---- where everything is ----------------------------------------------------------------------------------------- */
 
-/* Calls `visit` with points of the scene: some thousands of vertices of each mesh, the box corners of other shapes. */
+/* Calls `visit` with points of the scene: several thousand vertices of each mesh, and the corners of the boxes of other
+ * shapes. */
 typedef void Visit(void *user, const double p[3]);
 
 static void visit_box(const vlMat4 *m, const double low[3], const double high[3], Visit *visit, void *user) {
@@ -59,7 +60,7 @@ static void grow(void *user, const double p[3]) {
 
 static const Box nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 
-/* boxes: of the groups, in group space. */
+/* boxes: bounding boxes of the groups, in group space. */
 static void visit_scene(const vlScene *scene, const Box *boxes, Visit *visit, void *user) {
   vlMat4 identity = vl_mat4_identity();
   for (size_t i = 0; i < scene->shapes.count; i++)
@@ -89,7 +90,8 @@ static bool group_boxes(vlScene *scene, Box **boxes) {
 
 /* ---- the camera -------------------------------------------------------------------------------------------------- */
 
-/* The view frustum. sides: the offset of each side plane, the maximum of x - tan z (and so on) over all points. */
+/* The view frustum. sides: offset of each side plane, which is the maximum over all points of x - z tan(half angle) for
+ * the right side, and likewise for the others. */
 typedef struct Frame {
   double center[3], right[3], up[3], ahead[3];
   double tan_x, tan_y;
@@ -208,7 +210,8 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
   if (ok && def.ground) ok = add_ground(scene, &def, &box);
   vl_free(scene->context, boxes);
   vlEnvironmentKind kind = def.environment;
-  /* Lights alone would leave unlit surfaces black: the studio is added, dimmed. */
+  /* The studio is dimmed in a scene that has lights. It is added because surfaces without direct light would be
+   * black. */
   if (kind == VL_ENVIRONMENT_AUTO && scene->lights.count > 0) def.strength *= 0.3f;
   if (kind == VL_ENVIRONMENT_AUTO) kind = s->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
   if (ok && kind != VL_ENVIRONMENT_NONE && vl_scene_add_environment(scene, &def, kind)) s->light_missing = false;

@@ -10,7 +10,7 @@
 
 static const vlSource nowhere = {NULL, 0, 0};
 
-/* Records the block. It belongs to the scene from here on; on failure it is freed. */
+/* Makes the scene the owner of a block. On failure the block is freed. */
 bool vl_scene_own(vlScene *scene, void *block) {
   if (!block) return true;
   void **slot = VL_PUSH(scene->context, &scene->blocks);
@@ -23,7 +23,8 @@ bool vl_scene_own(vlScene *scene, void *block) {
   return true;
 }
 
-/* Copies bytes. result_pointer is the address of the pointer to the copy, which becomes null for null or zero bytes. */
+/* Copies bytes. result_pointer: address of the pointer that receives the copy. It receives null if data is null or has
+ * zero bytes. */
 bool vl_scene_copy_block(vlScene *scene, const void *data, size_t count, size_t size, void *result_pointer) {
   void *copy = NULL;
   if (data && count) {
@@ -43,7 +44,7 @@ bool vl_scene_copy_string(vlScene *scene, const char **text) {
   return !*text || vl_scene_copy_block(scene, *text, strlen(*text) + 1, 1, text);
 }
 
-/* File names repeat: the most recent ones are compared first, so that a large scene keeps few copies. */
+/* File names repeat, so each is stored once. The search for a stored name starts with the most recent ones. */
 bool vl_scene_copy_source(vlScene *scene, vlSource *source) {
   if (!source->file) return true;
   for (size_t i = scene->files.count; i > 0 && i + 16 > scene->files.count; i--) {

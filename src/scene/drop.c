@@ -1,4 +1,4 @@
-/* scene/drop.c: frees meshes once a world has taken what it needs. */
+/* scene/drop.c: frees the mesh arrays of a scene after a world has copied what it needs. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -54,5 +54,5 @@ void vl_scene_drop_meshes(vlScene *scene) {
   scene->blocks.count = kept;
   scene->meshes_dropped = true;
   vl_free(scene->context, all);
-  vl_machine_return_memory(); /* many arrays are too small to go back to the system by themselves */
+  vl_machine_return_memory(); /* free() alone does not return small arrays to the system */
 }

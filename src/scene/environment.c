@@ -31,7 +31,8 @@ static float ramp(float x, float from, float to) {
   return t * t * (3 - 2 * t);
 }
 
-/* A soft box: a rectangle on the sphere; angles in degrees, azimuth from ahead to the right, and elevation. */
+/* A soft box: a rectangle on the sphere; angles in degrees: azimuth from straight ahead to the right, elevation above
+ * the horizon. */
 static float soft_box(float azimuth, float elevation, float at, float height, float half_width, float half_height,
                       float edge) {
   float a = fabsf(azimuth - at);
@@ -67,7 +68,7 @@ static void fill_studio(vlScene *scene, vlImage *image) {
   vl_parallel_for(scene->context, image->height, fill_row, image);
 }
 
-/* Skylight only; the sun is a light of its own. */
+/* Fills the image with skylight. The sun is a separate light. */
 static void fill_sky(vlImage *image) {
   static const float zenith[3] = {0.16f, 0.32f, 0.75f}, horizon[3] = {0.72f, 0.85f, 1.0f},
                      ground[3] = {0.22f, 0.20f, 0.18f};
@@ -87,7 +88,8 @@ static void fill_sky(vlImage *image) {
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 
-/* Mean of 2 x 2 points per cell, each interpolated between four pixels. */
+/* Converts an image over longitude and latitude. A pixel of the result is the mean of 2 x 2 lookups, each interpolated
+ * between four pixels. */
 static void from_latitudes(const vlImage *from, const float *pixels, uint32_t channels, vlImage *to) {
   double w = from->width, h = from->height;
   for (uint32_t y = 0; y < to->height; y++) {
@@ -147,7 +149,7 @@ static bool read_environment(vlScene *scene, const char *path, vlImage **image) 
                   from->width, from->height);
   channels = channels > 2 ? 3 : 1;
   ok = ok && (vl_image_to_float(from, channel, channels, &pixels) == VL_OK || out_of_memory(scene));
-  uint32_t side = from->height + from->height / 4; /* about the same solid angle per pixel at the horizon */
+  uint32_t side = from->height + from->height / 4; /* pixels at the horizon keep about their solid angle */
   ok = ok && new_image(scene, side > MOST_SIDE ? MOST_SIDE : side < 16 ? 16 : side, 3, image);
   if (ok) from_latitudes(from, pixels, channels, *image);
   vl_free(scene->context, pixels);
@@ -175,7 +177,7 @@ bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def, vlEnviro
     vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "environment: its axes, rotation or strength make no sense");
     return false;
   }
-  for (int i = 0; i < 3; i++) { /* directions with x right, y ahead, rotated about z */
+  for (int i = 0; i < 3; i++) { /* axes: x right, y ahead, rotated about z */
     light.world_from_light[4 * i] = c * right[i] - s * front[i];
     light.world_from_light[4 * i + 1] = -s * right[i] - c * front[i];
     light.world_from_light[4 * i + 2] = up[i];

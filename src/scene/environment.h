@@ -4,9 +4,10 @@
 
 #include "scene/scene.h"
 
-/* Adds the light; kind is not AUTO or NONE. False: the scene holds the error. */
+/* Adds an environment light; its kind is neither AUTO nor NONE. False: the scene holds the error. */
 bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def, vlEnvironmentKind kind);
-/* The world's axes, unit vectors: right, up, front. False: up or front is zero, or they are parallel. */
+/* Gives the directions right, up and front of the scene as unit vectors. False: up or front is zero, or they are
+ * parallel. */
 bool vl_scene_axes(const vlCompleteDef *def, double right[3], double up[3], double front[3]);
 
 #endif

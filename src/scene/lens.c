@@ -1,10 +1,10 @@
-/* scene/lens.c: the lens of the scene's camera: a scene owns the objects that its camera points at. */
+/* scene/lens.c: ownership of the lens and other objects that the scene's camera points at. */
 #include <string.h>
 
 #include "base/error.h"
 #include "scene/scene.h"
 
-/* Memory is reserved first: objects never have two owners when an allocation fails. */
+/* Memory is reserved first, so that a failed allocation never leaves an object with two owners. */
 vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
   vl_error_clear(error);
   if (!scene || !from) return vl_fail(error, VL_ERROR_ARGUMENT, "scene take camera: scene or from is null");

@@ -1,4 +1,4 @@
-/* scene/medium.c: adds participating media: they are checked, then copied. */
+/* scene/medium.c: adds participating media: each def is checked, then copied. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -68,7 +68,7 @@ static bool check_medium(vlScene *scene, const vlMediumDef *d, const vlKindRow *
   return !(row->traits & VL_MEDIUM_TRAIT_CELLS) || check_grid(scene, d);
 }
 
-/* Values per cell, for grid kinds. */
+/* Copies the members that give values per cell, for kinds with grids. */
 static void copy_cells(const vlMediumDef *from, vlMediumDef *to) {
   bool own = to->kind == VL_MEDIUM_RGB_GRID;
   if (to->kind == VL_MEDIUM_GRID)

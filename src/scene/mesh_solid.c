@@ -1,5 +1,5 @@
-/* scene/mesh_solid.c: see mesh_solid.h. Vertices at exactly the same position are welded. Those on edges that are then
- * still open are welded within a millionth of the solid's size. */
+/* scene/mesh_solid.c: see mesh_solid.h. Vertices at exactly the same position are welded. Vertices on edges that are
+ * still open after that are welded within a tolerance of a millionth of the solid's size. */
 #include "scene/mesh_solid.h"
 
 #include <math.h>
@@ -33,7 +33,7 @@ static uint64_t mix(uint64_t h) {
 static uint64_t hash_point(const double p[3]) {
   uint64_t h = 0;
   for (int i = 0; i < 3; i++) {
-    double x = p[i] + 0.0; /* turns -0 into 0 */
+    double x = p[i] + 0.0; /* adding 0 turns -0 into 0 */
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
     h = mix(h ^ bits);
@@ -43,13 +43,13 @@ static uint64_t hash_point(const double p[3]) {
 
 /* ---- gathering --------------------------------------------------------------------------------------------------- */
 
-/* Transforms a shape's vertices to group space and welds them. welded[i]: corner of vertex i. */
+/* Transforms a shape's vertices to group space and welds them. welded[i]: the corner that vertex i becomes. */
 static void weld(const vlShapeDef *d, vlMeshSolid *b, uint32_t *table, uint32_t mask, uint32_t *welded) {
   vlMat4 m = vl_mat4_load(d->group_from_shape);
   for (uint32_t i = 0; i < d->vertices; i++) {
     double p[3] = {d->positions[3 * (size_t)i], d->positions[3 * (size_t)i + 1], d->positions[3 * (size_t)i + 2]}, q[3];
     vl_mat4_point(&m, p, q);
-    for (int k = 0; k < 3; k++) q[k] = (double)(float)q[k] + 0.0; /* rounded as in the renderer */
+    for (int k = 0; k < 3; k++) q[k] = (double)(float)q[k] + 0.0; /* rounded to float as in the renderer */
     uint32_t slot = (uint32_t)hash_point(q) & mask;
     while (table[slot] && memcmp(b->points + 3 * (size_t)(table[slot] - 1), q, sizeof q) != 0) slot = (slot + 1) & mask;
     if (!table[slot]) {
@@ -60,7 +60,8 @@ static void weld(const vlShapeDef *d, vlMeshSolid *b, uint32_t *table, uint32_t 
   }
 }
 
-/* Whether the face's outside is opposite to its winding. Vertex normals decide when given, as in rendering. */
+/* Whether the outside of a face is opposite to the side that its winding gives. Vertex normals, if present, decide, as
+ * in rendering. */
 static bool is_turned(const vlShapeDef *d, const uint32_t *f, int k1, int k2, bool mirrored) {
   if (!d->normals) return d->reverse_orientation != mirrored;
   double e[2][3], n[3] = {0, 0, 0}, g[3];
@@ -74,13 +75,13 @@ static bool is_turned(const vlShapeDef *d, const uint32_t *f, int k1, int k2, bo
   g[1] = e[0][2] * e[1][0] - e[0][0] * e[1][2];
   g[2] = e[0][0] * e[1][1] - e[0][1] * e[1][0];
   bool against = g[0] * n[0] + g[1] * n[1] + g[2] * n[2] < 0;
-  /* The faces in shape space. A mirroring transform to group space reverses the winding; normals only reverse by
-   * reverse_orientation. */
+  /* The test above is in shape space. A mirroring transform to group space reverses the winding. The normals are
+   * reversed only by reverse_orientation. */
   return against != (d->reverse_orientation != mirrored);
 }
 
 static void add_face(vlMeshSolid *b, uint32_t x, uint32_t y, uint32_t z, bool turned) {
-  if (x == y || y == z || z == x) return; /* degenerate */
+  if (x == y || y == z || z == x) return; /* the face is degenerate */
   uint32_t *f = b->faces3 + 3 * (size_t)b->faces++;
   f[0] = x;
   f[1] = turned ? z : y;
@@ -93,7 +94,7 @@ static void add_faces(const vlShapeDef *d, vlMeshSolid *b, const uint32_t *welde
     const uint32_t *f = d->indices + (d->kind == VL_SHAPE_TRIANGLES ? 3 : 4) * (size_t)i;
     if (d->kind == VL_SHAPE_TRIANGLES) {
       add_face(b, welded[f[0]], welded[f[1]], welded[f[2]], is_turned(d, f, 1, 2, mirrored));
-    } else { /* p00 p10 p01 p11: cyclic order is 0 1 3 2 */
+    } else { /* the corners are p00 p10 p01 p11, whose cyclic order is 0 1 3 2 */
       bool turned = is_turned(d, f, 1, 2, mirrored);
       add_face(b, welded[f[0]], welded[f[1]], welded[f[3]], turned);
       add_face(b, welded[f[0]], welded[f[3]], welded[f[2]], turned);
@@ -132,7 +133,7 @@ static bool gather(const vlScene *scene, const uint32_t *shapes, size_t count, v
 
 typedef struct Edge {
   uint32_t a, b, face; /* a < b; face: one of its faces */
-  int32_t count;       /* number of faces */
+  int32_t count;       /* number of faces at the edge */
 } Edge;
 
 typedef struct Edges {
@@ -165,8 +166,8 @@ static bool count_edges(const vlScene *scene, const vlMeshSolid *b, Edges *e) {
   return true;
 }
 
-/* Welds corners of open edges that nearly coincide. Grid cells are two tolerances wide, so that a point's neighbours
- * lie in the eight cells around the nearest cell corner. */
+/* Welds corners of open edges that lie within the tolerance of each other. Grid cells are two tolerances wide, so that
+ * a point's neighbours lie in the eight cells around the nearest cell corner. */
 static bool weld_open(const vlScene *scene, vlMeshSolid *b, const Edges *e, bool *changed) {
   double low[3], high[3], size = 0;
   for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
@@ -296,7 +297,7 @@ bool vl_mesh_solid_make(const vlScene *scene, const uint32_t *shapes, size_t cou
 }
 
 int vl_mesh_solid_winding(const vlMeshSolid *b, const double p[3], uint32_t only) {
-  const double d[3] = {0.5773, 0.2113, 0.7887}; /* not along an axis or a diagonal */
+  const double d[3] = {0.5773, 0.2113, 0.7887}; /* direction of the ray, not along an axis or a diagonal */
   int winding = 0;
   for (uint32_t i = 0; i < b->faces; i++) {
     if (only != UINT32_MAX && b->part[i] != only) continue;
@@ -304,7 +305,7 @@ int vl_mesh_solid_winding(const vlMeshSolid *b, const double p[3], uint32_t only
     double v[3][3], s[3];
     for (int j = 0; j < 3; j++)
       for (int k = 0; k < 3; k++) v[j][k] = b->points[3 * (size_t)f[j] + (size_t)k] - p[k];
-    for (int j = 0; j < 3; j++) { /* the side of each edge on which the ray passes */
+    for (int j = 0; j < 3; j++) { /* finds on which side of each edge the ray passes */
       const double *x = v[j], *y = v[(j + 1) % 3];
       s[j] =
           d[0] * (x[1] * y[2] - x[2] * y[1]) + d[1] * (x[2] * y[0] - x[0] * y[2]) + d[2] * (x[0] * y[1] - x[1] * y[0]);
@@ -314,7 +315,7 @@ int vl_mesh_solid_winding(const vlMeshSolid *b, const double p[3], uint32_t only
     double volume = v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) +
                     v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2]) +
                     v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
-    if (out && volume > 0) winding++; /* exits through the front side, ahead of p */
+    if (out && volume > 0) winding++; /* the ray leaves through the front side, ahead of p */
     if (in && volume < 0) winding--;
   }
   return winding;

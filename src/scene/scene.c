@@ -1,4 +1,5 @@
-/* scene/scene.c: creates and destroys scenes; a scene's first error, its defs and the counts of its parts. */
+/* scene/scene.c: creates and destroys scenes; functions for a scene's first error, its defs and the numbers of its
+ * objects. */
 #include "scene/scene.h"
 
 #include <stdio.h>

@@ -1,6 +1,7 @@
-/* scene/scene.h: the scene description as stored: plain arrays of the public defs. Each is a deep copy whose pointers
- * belong to the scene. The object with id index i is items[i - 1] of its array. `import` fills the arrays through the
- * vl_scene_add_* functions; `world` reads them. Nothing is compiled or read from files here. */
+/* scene/scene.h: the scene description as stored: plain arrays of the public defs. Each def is a deep copy, and the
+ * scene owns what its pointers point at. The object with id i is items[i - 1] of its array. The room `import` fills the
+ * arrays through the vl_scene_add_* functions, and the room `world` reads them. This room compiles nothing and reads no
+ * files. */
 #ifndef SCENE_SCENE_H
 #define SCENE_SCENE_H
 
@@ -19,9 +20,9 @@ typedef struct vlSceneGroup {
 
 typedef struct vlSceneInstance {
   vlGroupId group;
-  double world_from_group[16]; /* at the first key */
+  double world_from_group[16]; /* pose at the first key */
   vlSource source;
-  uint32_t keys; /* 0: no motion */
+  uint32_t keys; /* number of keys of the motion; 0: no motion */
   const double *times, *poses;
 } vlSceneInstance;
 
@@ -39,36 +40,36 @@ struct vlScene {
   VL_ARRAY(vlSceneGroup) groups;
   VL_ARRAY(vlSceneInstance) instances;
   vlSceneDefs defs;
-  bool camera_in_full; /* a glTF file has velo's camera description in its extras, which vl_scene_load reads */
-  VL_ARRAY(vlAperture *) apertures; /* apertures that defs.camera may use */
+  bool camera_in_full; /* vl_scene_load has read a complete camera description from the extras of a glTF file */
+  VL_ARRAY(vlAperture *) apertures; /* aperture objects to which defs.camera may point */
   VL_ARRAY(vlOptics *) optics;
-  /* Everything that the stored defs point at (strings, spectra, meshes); freed with the scene. */
+  /* Memory of everything that the stored defs point at (strings, spectra, meshes). It is freed with the scene. */
   VL_ARRAY(void *) blocks;
   VL_ARRAY(vlImage *) images;
-  /* File names of vlSource, each stored once; a subset of blocks. */
+  /* File names of all vlSource, each stored once. The strings are among the blocks. */
   VL_ARRAY(const char *) files;
-  bool meshes_dropped; /* by vl_scene_drop_meshes: shapes no longer have arrays */
+  bool meshes_dropped; /* vl_scene_drop_meshes has freed the arrays of the shapes */
 };
 
-/* Has the coat of this material a closed form: over what is diffuse, a medium that does not scatter, one thickness? */
+/* Whether the coat of this material has a closed form. It has one if the base is diffuse, the layer does not scatter,
+ * and its thickness is constant. */
 bool vl_coat_in_closed_form(const vlMaterialDef *def);
 
-/* Remembers the error if it is the first; returns the code. */
+/* Stores the error in the scene if it is the first one. Returns the code. */
 vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* The mesh arrays that move to the scene instead of being copied: blocks of the scene's context (vl_alloc*), or null.
- * The scene owns them on success; on failure they are freed. The pointers of def that equal them are the ones that
- * move. */
+/* Adds a shape without copying its mesh arrays. The arrays are memory blocks of the scene's context (vl_alloc*), or
+ * null. On success the scene owns them; on failure they are freed. */
 vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def);
 
-/* Frees the arrays of meshes once a world has its own. Does nothing when a list cannot be allocated. */
+/* Frees the arrays of meshes after a world has copied them. Does nothing if memory for its list is exhausted. */
 void vl_scene_drop_meshes(vlScene *scene);
 
-/* As vl_scene_add_texture, but its image (image, data) is already owned by the scene and is not copied. */
+/* Like vl_scene_add_texture, but the scene already owns the image (def->image, def->data), so it is not copied. */
 vlTextureId vl_scene_adopt_texture(vlScene *scene, const vlTextureDef *def);
 
-/* Deep copies (scene/copy.c). All return false after vl_scene_fail(MEMORY ...). */
+/* Deep copies (scene/copy.c). If memory is exhausted, they report VL_ERROR_MEMORY by vl_scene_fail and return false. */
 bool vl_scene_own(vlScene *scene, void *block);
 bool vl_scene_copy_block(vlScene *scene, const void *data, size_t count, size_t size, void *result_pointer);
 bool vl_scene_copy_string(vlScene *scene, const char **text);

@@ -12,8 +12,8 @@ static vlResult bad(vlScene *scene, const vlShapeDef *d, const char *why) {
   return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s", why);
 }
 
-/* Index of the first element that is not finite, or count. x - x is 0 for finite x and NaN otherwise. Blocks are
- * checked by the sum of these, which vectorises. */
+/* Index of the first element that is not finite, or count. x - x is 0 for finite x and NaN otherwise. A block of
+ * elements is checked by the sum of x - x, a loop that vectorises. */
 static size_t first_not_finite(const float *v, size_t count) {
   enum { BLOCK = 1024 };
   for (size_t start = 0; start < count; start += BLOCK) {
@@ -112,7 +112,7 @@ static bool check_spheres(vlScene *scene, const vlShapeDef *d) {
   return true;
 }
 
-/* What the ranges of the row do not say. */
+/* Checks rules that the ranges of the row do not express. */
 static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
   if (d->centers || d->radii) return check_spheres(scene, d);
   if (d->kind == VL_SHAPE_DISK && d->inner_radius >= d->radius)
@@ -152,10 +152,10 @@ static bool check_shape(vlScene *scene, vlShapeDef *d) {
     return bad(scene, d, "transform of the shape is singular: it flattens the shape"), false;
   if (row->traits & VL_SHAPE_TRAIT_MESH) return check_mesh(scene, d);
   if (row->traits & VL_SHAPE_TRAIT_QUADRIC) return check_quadric(scene, d);
-  return d->kind != VL_SHAPE_CURVES || check_curves(scene, d); /* of others the row says all */
+  return d->kind != VL_SHAPE_CURVES || check_curves(scene, d); /* for other kinds the row is enough */
 }
 
-/* The def's arrays must be owned by the scene or null. */
+/* Stores a def. The scene must own the def's arrays, or they are null. */
 static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
   vlShapeDef *slot = scene->shapes.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->shapes) : NULL;
   if (!slot) {

@@ -1,9 +1,9 @@
-/* world/world.h: the compiled world: flat arrays addressed by index. build.c makes it from a scene, trace reads it.
- * Constant while rendering.
+/* world/world.h: the compiled world: flat arrays addressed by index. build.c makes the world from a scene; the room
+ * trace reads it. The world does not change during rendering.
  *
- * A surface point is identified by (shape, prim, instance): shape indexes world->shapes, prim is the face in it,
- * instance indexes world->instances or is VL_NONE. Vertices of shapes outside of groups are in world space; those of
- * groups are in group space. */
+ * A surface point is identified by (shape, prim, instance): shape indexes world->shapes, prim is a face of that shape,
+ * and instance indexes world->instances or is VL_NONE. Vertices of shapes in group 0 are in world space; vertices of
+ * shapes in other groups are in the space of their group. */
 #ifndef WORLD_WORLD_H
 #define WORLD_WORLD_H
 
@@ -22,35 +22,39 @@
 
 typedef struct vlWorldShape {
   vlShapeKind kind;
-  uint32_t traits;      /* VL_SHAPE_TRAIT_MESH and so on */
+  uint32_t traits;      /* bits VL_SHAPE_TRAIT_*, such as VL_SHAPE_TRAIT_MESH */
   uint32_t material;    /* index into materials */
-  uint32_t first_light; /* VL_NONE: no light; else see vl_shape_light */
-  int32_t alpha;        /* texture node, -1: opaque */
-  /* Reverse orientation xor a mirroring shape transform: flips a triangle's or patch's face-order normal in group
-   * space, and a quadric's or curve's dpdu x dpdv in shape space. */
+  uint32_t first_light; /* VL_NONE: the shape emits no light; otherwise see vl_shape_light */
+  int32_t alpha;        /* texture node of the opacity; -1: opaque */
+  /* True if exactly one holds: the shape has reverse orientation; its transform mirrors. It reverses the normal: for
+   * triangles and patches the one given by the order of the vertices, in group space; for quadrics and curves dpdu x
+   * dpdv, in shape space. */
   bool flip;
-  bool pass_shadow;         /* interface material: shadow rays pass */
-  uint32_t inside, outside; /* media; the geometric normal points outside; VL_NONE: vacuum; equal: no change */
-  /* Triangles (3 indices per face) and bilinear patches (4). positions end in 16 padding bytes for Embree. */
+  bool pass_shadow;         /* the material is an interface: shadow rays pass */
+  uint32_t inside, outside; /* media; the geometric normal points to `outside`; VL_NONE: vacuum; equal: the surface
+                               separates no media */
+  /* For triangles (3 indices per face) and bilinear patches (4 indices per face). 16 padding bytes follow the
+   * positions, because Embree reads past the last one. */
   uint32_t vertices, faces;
   float *positions, *normals, *tangents, *uvs;
   uint32_t *indices;
-  /* Triangles; each may be null. Bitangent = sign n x tangent; uv sets 1 to 3; colours, 4 per vertex; uvs of the
-   * emission's image. */
+  /* For triangles; each pointer may be null. tangent_signs: bitangent = sign * (n x tangent). more_uvs: the uv sets 1
+   * to 3. colors: 4 floats per vertex. emission_uvs: uvs at which the image of the emission is read. */
   float *tangent_signs, *more_uvs[3], *colors, *emission_uvs;
-  uint32_t *light_of; /* per prim, VL_NONE: none; null: prim i is light first_light + i */
-  bool one_sided;     /* rays pass through from behind */
-  uint32_t steps;     /* sets of positions and normals, one after the other, at equal time steps; 1: at rest */
-  /* Sphere, disk, cylinder: parameters as in vlShapeDef, and the affine maps, row-major 3x4. */
+  uint32_t *light_of; /* light index per prim, VL_NONE: no light; null: prim i is light first_light + i */
+  bool one_sided;     /* rays that come from behind pass through */
+  uint32_t steps;     /* number of sets of positions and normals, at equal time steps; 1: at rest */
+  /* For spheres, disks and cylinders: the parameters of vlShapeDef. All shapes but meshes have the two affine maps
+   * below. */
   float radius, inner_radius, z_min, z_max, phi_max, height;
   double *centers; /* many spheres: 3 per prim, in shape space; else null */
   float *radii;    /* many spheres: 1 per prim; else null */
-  /* Curves: per segment 4 points and 2 widths, for ribbons 2 normals, all in shape space. A prim is a piece of a
-   * segment. */
+  /* For curves. A segment has 4 control points, 2 widths and, if it is a ribbon, 2 normals, all in shape space. Each
+   * segment is split into pieces; a prim is one piece. */
   vlCurveKind curve;
   uint32_t split; /* faces = segments << split */
   float *widths;
-  double from_shape[12], to_shape[12]; /* group space <-> shape space */
+  double from_shape[12], to_shape[12]; /* from_shape: group from shape; to_shape: its inverse; row-major 3x4 */
 } vlWorldShape;
 
 /* The light of a prim, or VL_NONE. */
@@ -62,24 +66,24 @@ static inline uint32_t vl_shape_light(const vlWorldShape *s, uint32_t prim) {
 typedef struct vlWorldGroup {
   uint32_t *shapes; /* world shape index of each Embree geometry id */
   uint32_t count;
-  float low[3], high[3]; /* box at all times, group space; empty: low > high */
+  float low[3], high[3]; /* bounding box over all times, in group space; an empty box has low > high */
 } vlWorldGroup;
 
-/* An instance. A moving instance is interpolated linearly between its keys: Embree and velo (moving.h) interpolate
- * the same numbers in the same way. */
+/* An instance of a group. The pose of a moving instance is interpolated linearly between its keys. Embree and velo
+ * (moving.h) interpolate the same matrices. */
 typedef struct vlWorldInstance {
   uint32_t group;
   bool mirrored;
-  float from_group[12], to_group[12]; /* of a moving instance: at the world's time 0 */
-  uint32_t keys;                      /* of path, at equal steps of the world's time; 0: at rest */
-  const float *path;                  /* 12 floats per key */
+  float from_group[12], to_group[12]; /* world from group, and its inverse; if moving, at the world's time 0 */
+  uint32_t keys;                      /* number of poses in path, at equal steps of the world's time; 0: at rest */
+  const float *path;                  /* pose (world from group) of each key, 12 floats */
   float doubt[4];                     /* bound of the rounding error of an interpolated matrix, by column; 0 at rest */
 } vlWorldInstance;
 
 /* ---- materials --------------------------------------------------------------------------------------------------- */
 
-/* The principled material's inputs: float nodes and spectrum nodes. A lobe whose weight is always 0 has its flag
- * unset. */
+/* Inputs of the principled material, as indices of float nodes and spectrum nodes. The flags has_* are false for lobes
+ * whose weight is always 0. */
 typedef struct vlWorldPrincipled {
   int32_t metallic, roughness, anisotropy, anisotropy_rotation, specular, transmission, diffuse_transmission;
   int32_t clearcoat, clearcoat_roughness, sheen_roughness, iridescence, iridescence_thickness;
@@ -92,32 +96,36 @@ typedef struct vlWorldPrincipled {
   bool has_coat, has_sheen, has_film, has_anisotropy, has_transmission;
 } vlWorldPrincipled;
 
-/* A coat over metal, or a scattering coat over a diffuse base, evaluated by random walks. Spectrum and float nodes. */
+/* Inputs of layered materials that are evaluated by random walks: a coat over metal or over a diffuse base. Numbers of
+ * type int32_t are indices of spectrum or float nodes. */
 typedef struct vlWorldLayers {
   bool metal;
   int32_t albedo, thickness, g;
-  int32_t coat_u, coat_v; /* of metal; else the coat has the material's own roughness */
+  int32_t coat_u, coat_v; /* roughness of a coat over metal; a coat over a diffuse base has the material's u_roughness
+                             and v_roughness */
   uint32_t depth, walks;
 } vlWorldLayers;
 
-/* Hair: spectrum nodes of the alternative colour parameters (-1: not given), float nodes. */
+/* Inputs of hair. The first three are spectrum nodes, alternative parameters of the colour (-1: not given). The others
+ * are float nodes. */
 typedef struct vlWorldHair {
   int32_t sigma_a, eumelanin, pheomelanin;
   int32_t eumelanin_share, pheomelanin_share, eta, beta_m, beta_n, alpha;
 } vlWorldHair;
 
-/* Subsurface scattering: spectrum nodes. mfp is set if the material is given by reflectance and mean free path. The
- * material's scale multiplies the sigmas, or mfp. */
+/* Inputs of subsurface scattering, as spectrum nodes. mfp, the mean free path, is used if the material is described by
+ * its reflectance and mean free path; sigma_a and sigma_s otherwise. The material's scale multiplies mfp or the
+ * sigmas. */
 typedef struct vlWorldSubsurface {
   int32_t sigma_a, sigma_s, mfp;
   const struct vlBssrdfTable *table;
 } vlWorldSubsurface;
 
-/* When all scattering of a material is specular (delta). */
+/* Says when all scattering of a material is specular (a delta distribution). */
 typedef enum vlSmooth {
   VL_SMOOTH_NEVER,
-  VL_SMOOTH_BY_ALPHA,          /* if its alphas are small */
-  VL_SMOOTH_BY_ALPHA_OR_INDEX, /* also if its relative index of refraction is 1 */
+  VL_SMOOTH_BY_ALPHA,          /* if its roughness alphas are small */
+  VL_SMOOTH_BY_ALPHA_OR_INDEX, /* if its roughness alphas are small or its relative index of refraction is 1 */
   VL_SMOOTH_ALWAYS
 } vlSmooth;
 
@@ -125,46 +133,48 @@ typedef struct vlWorldMaterial {
   vlMaterialKind kind;
   vlBsdfKind bsdf;
   vlSmooth smooth;
-  uint32_t traits; /* of the kind: VL_MATERIAL_OPAQUE and so on */
+  uint32_t traits; /* bits of the kind, such as VL_MATERIAL_OPAQUE */
   const void *own; /* data of this kind alone (vlWorldLayers, vlWorldHair, ...): a block owned by the world */
-  bool no_cosine;  /* throughput has no cosine factor */
+  bool no_cosine;  /* the path throughput is not multiplied by the cosine */
   int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
   int32_t u_roughness, v_roughness, amount; /* float nodes */
   uint32_t mix[2];
-  bool absent[2]; /* parts of a mix that are interfaces: shapes use the other part, with a coverage (shapes.c) */
+  bool absent[2]; /* true for a part of a mix that is an interface: shapes use the other part, with an alpha (shapes.c)
+                   */
   bool remap, use_reflectance;
-  bool dispersive;                     /* dielectrics: eta depends on wavelength */
-  float eta_s;                         /* dielectrics with one eta */
-  int32_t displacement;                /* float node, -1 */
-  int32_t normal_map;                  /* image index, -1 */
-  const vlCoatTable *coat;             /* may be shared; the world frees them */
-  const vlCoatTable *widened;          /* the table of the coat widened by vlBuildDef.regularize, else null */
+  bool dispersive;                     /* for dielectrics: eta depends on the wavelength */
+  float eta_s;                         /* for dielectrics whose eta does not depend on the wavelength */
+  int32_t displacement;                /* float node, -1: none */
+  int32_t normal_map;                  /* image index, -1: none */
+  const vlCoatTable *coat;             /* may be shared with other materials; the world frees it */
+  const vlCoatTable *widened;          /* the same for the roughness that vlBuildDef.regularize gives; else null */
   const vlWorldPrincipled *principled; /* null for other kinds */
-  int32_t transmittance; /* diffuse transmission: spectrum node; scale multiplies reflectance and transmittance */
+  int32_t transmittance; /* for diffuse transmission: spectrum node; scale multiplies reflectance and transmittance */
   float scale;
-  const vlMeasured *measured; /* may be shared; the world frees it */
+  const vlMeasured *measured; /* may be shared with other materials; the world frees it */
   const vlWorldSubsurface *subsurface;
-  bool has_subsurface; /* the material has subsurface scattering, or a part of the mix has */
+  bool has_subsurface; /* the material, or a part of the mix, has subsurface scattering */
 } vlWorldMaterial;
 
-/* Coats with equal parameters share a table. */
+/* Table of a coat. Materials whose coats have equal parameters share one table. */
 typedef struct vlWorldCoat {
   vlCoatTable *table;
-  uint32_t depth; /* max_depth of the material */
+  uint32_t depth; /* max_depth of the materials that share the table */
 } vlWorldCoat;
 
 /* ---- lights ------------------------------------------------------------------------------------------------------ */
 
 typedef struct vlEmitted {
   vlSpectral spectrum; /* normalised and scaled */
-  int32_t image;       /* over uv (area) or directions (infinite), multiplied by spectrum (the illuminant); -1: none */
-  int32_t node;        /* 1 + index of the image node over uv that reads image; 0: none */
+  int32_t image;       /* index of an image over uv (area lights) or over directions (infinite lights); spectrum, the
+                          illuminant, multiplies it; -1: none */
+  int32_t node;        /* 1 + index of the texture node that reads image at uv; 0: none */
   float image_scale;
   vlColorSpace space;
   bool two_sided;
 } vlEmitted;
 
-/* The scene's kinds, with the same numbers, and faces of emissive shapes. X(NAME, name). */
+/* The kinds of light of the scene, with the same numbers, and AREA: a face of an emissive shape. X(NAME, name). */
 #define VL_WORLD_LIGHT_KINDS(X) VL_LIGHT_KINDS(X) X(AREA, area)
 #define VL_WORLD_LIGHT_KIND(K, k) VL_WL_##K,
 typedef enum vlWorldLightKind { VL_WORLD_LIGHT_KINDS(VL_WORLD_LIGHT_KIND) } vlWorldLightKind;
@@ -173,34 +183,36 @@ typedef enum vlWorldLightKind { VL_WORLD_LIGHT_KINDS(VL_WORLD_LIGHT_KIND) } vlWo
 typedef struct vlWorldLight {
   vlWorldLightKind kind;
   uint32_t emitted;         /* index into emitted */
-  uint32_t shape, prim;     /* area; else shape is VL_NONE */
-  float area;               /* area: of the primitive, world space */
-  float position[3];        /* point, spot */
-  float direction[3];       /* spot: axis away from the light; distant: towards the light */
-  float cos_start, cos_end; /* spot: full intensity within start, none beyond end */
-  bool cone_squared;        /* falloff between them is t^2; else smooth */
-  bool has_cone;            /* emits only into the outer cone about its direction */
-  bool at_point;            /* all its light starts at its position */
+  uint32_t shape, prim;     /* of an area light; for other lights shape is VL_NONE */
+  float area;               /* of an area light: area of the primitive in world space */
+  float position[3];        /* of lights at a point, world space */
+  float direction[3];       /* of a spot light: its axis, away from the light; of a distant light: towards the light */
+  float cos_start, cos_end; /* of a spot light: full intensity within the angle `start`, none beyond `end` */
+  bool cone_squared;        /* the falloff between start and end is t^2; otherwise it is smooth */
+  bool has_cone;            /* emits only into the cone of cos_end about its direction */
+  bool at_point;            /* all light starts at `position` */
   bool far;                 /* infinitely far away */
-  uint32_t environment;     /* infinite with an image: index; VL_NONE: uniform */
-  float power;              /* for light selection: radiant flux in luminance units */
-  /* an invisible full sphere: light paths start only on its outside, see light.hot.c */
+  uint32_t environment;     /* of an infinite light with an image: index into environments; VL_NONE: uniform radiance */
+  float power;              /* emitted flux in units of luminance, for light selection */
+  /* the light is an invisible full sphere: light paths start only on its outside (light.hot.c) */
   bool outer_side;
-  /* area light of a shape with alpha 0 throughout: rays do not hit it, but it emits light (as in pbrt) */
+  /* the shape of the area light has alpha 0 everywhere: rays do not hit the shape, but it emits light, as in pbrt */
   bool invisible;
   bool delta;     /* no ray can hit it */
-  uint32_t image; /* goniometric, projection: image index; corners hold the rotation from world to light directions */
-  float image_extent[2]; /* projection: half the image's sides at distance 1 */
-  /* Area: corners of a triangle; of a plain sphere the centre, the radius, and 1, or -1 if it emits inwards. */
+  uint32_t image; /* of goniometric and projection lights: image index; their `corners` hold the rotation from world to
+                     light directions */
+  float image_extent[2]; /* of a projection light: half the width and height of the image at distance 1 */
+  /* Of an area light that is a triangle: its corners. Of a plain sphere: its centre, its radius, and 1 if it emits
+   * outwards or -1 if it emits inwards. */
   float corners[9];
-  bool one_sided_normals; /* direction is the normal of the emitting side at every point */
-  bool plain_triangle;    /* a triangle with such a normal, */
-  bool plain_sphere;      /* or a whole sphere: opaque, with the same emission everywhere */
+  bool one_sided_normals; /* `direction` is the normal of the emitting side at every point of the light */
+  bool plain_triangle;    /* a triangle with one_sided_normals, opaque, with the same emission everywhere */
+  bool plain_sphere;      /* a whole sphere, opaque, with the same emission everywhere */
 } vlWorldLight;
 
 #include "world/light/light_tree.h"
 
-/* Where an id comes from, for reports (origins.c). */
+/* Name and source location of an object in the scene, for reports (origins.c). */
 typedef struct vlWorldOrigin {
   const char *name; /* may be null */
   vlSource source;
@@ -212,27 +224,27 @@ struct vlWorld {
   vlContext *context;
   vlBuildDef def;
   VL_ARRAY(vlWorldShape) shapes;
-  VL_ARRAY(vlWorldGroup) groups; /* 0: the world itself */
+  VL_ARRAY(vlWorldGroup) groups; /* element 0 holds the shapes outside of groups */
   VL_ARRAY(vlWorldInstance) instances;
   VL_ARRAY(vlWorldMaterial) materials;
   VL_ARRAY(vlTextureNode) nodes;
   VL_ARRAY(vlWorldImage) images;
   VL_ARRAY(vlEmitted) emitted;
   VL_ARRAY(vlWorldLight) lights;
-  VL_ARRAY(uint32_t) infinite_lights; /* indices of lights that rays hit when they miss all surfaces */
+  VL_ARRAY(uint32_t) infinite_lights; /* indices of the lights that a ray hits if it misses all surfaces */
   VL_ARRAY(vlEnvironment) environments;
   VL_ARRAY(vlMeasured *) measured;
   VL_ARRAY(vlWorldCoat) coats;
-  VL_ARRAY(vlWorldMedium) media;       /* media in use */
-  VL_ARRAY(void *) blocks;             /* memory owned by the world: dense spectra and others */
-  int32_t *texture_memo;               /* during the build: scene texture and role -> node */
-  uint32_t *rank;                      /* of materials, sorted so that those of one kind are adjacent */
+  VL_ARRAY(vlWorldMedium) media; /* media in use */
+  VL_ARRAY(void *) blocks;       /* memory blocks owned by the world, such as dense spectra */
+  int32_t *texture_memo;         /* used during the build only: maps scene texture and role to the node */
+  uint32_t *rank; /* per material: its position in an order in which materials of one kind are adjacent */
   bool has_interfaces, has_subsurface; /* a material is an interface; a shape has subsurface scattering */
-  bool absorbs_by_channel;             /* a medium does: vlWorldMedium.by_channel */
+  bool absorbs_by_channel;             /* at least one medium has vlWorldMedium.by_channel */
   uint32_t camera_medium;              /* index into media, VL_NONE: vacuum */
-  bool moves;                          /* something moves; else rays need no time */
-  double time_open, time_close;        /* seconds at the world's times 0 and 1; outside of them nothing moves */
-  vlWorldOrigin *shape_origins, *material_origins, *instance_origins; /* one per element of those arrays */
+  bool moves;                          /* something moves; if false, rays need no time */
+  double time_open, time_close;        /* the world's times 0 and 1 in seconds; nothing moves before or after */
+  vlWorldOrigin *shape_origins, *material_origins, *instance_origins; /* one per shape, material and instance */
   vlSpectral white;                                                   /* radiance that is displayed as white */
   vlLightTree tree;
   vlAccel accel;
@@ -247,25 +259,27 @@ vlResult vl_world_spectrum_node(vlWorld *world, const struct vlScene *scene, vlS
                                 int32_t *node, vlError *error);
 /* Interpolates between two float nodes by a third. */
 vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node, vlError *error);
-/* Reads an image (or uses the given one). encoding null: the file's own. Returns its index, or -1 with the error
- * set. */
+/* Reads an image (or uses the given one). encoding null: the file's own. pyramid: also makes the smaller levels of the
+ * MIP map. Returns the image's index, or -1 with the error set. */
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
                            float gamma, bool pyramid, vlError *error);
-/* Reads the scene's images on all workers. Errors are ignored here: the user of the image reports them. */
+/* Reads the scene's images on all workers. Errors of an image are ignored here: the code that uses the image reports
+ * them. */
 vlResult vl_world_preload_images(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_materials(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_shapes(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_lights(vlWorld *world, const struct vlScene *scene, vlError *error);
 vlResult vl_world_add_origins(vlWorld *world, const struct vlScene *scene, vlError *error);
 
-/* Area of one primitive in the space of its vertices (times from_group if an instance places it). */
+/* Area of one primitive in the space of its vertices: world space for shapes outside of groups, else group space. */
 float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim);
 void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3], float high[3]);
 /* Returns r. Adds the source location to an error that has none. */
 vlResult vl_world_placed(vlSource source, vlError *error, vlResult r);
 /* A new block owned by the world, or null. */
 void *vl_world_block(vlWorld *world, size_t count, size_t size);
-/* *to: such a block with a copy of the numbers; unchanged where from is null. False: out of memory. */
+/* Sets *to to a new block owned by the world, with a copy of the numbers; leaves *to unchanged if from is null. False:
+ * out of memory. */
 bool vl_world_copy_floats(vlWorld *world, const float *from, size_t count, float **to);
 
 #endif

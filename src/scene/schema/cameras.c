@@ -1,4 +1,4 @@
-/* scene/schema/cameras.c: what files call cameras: pbrt's own, calibrated lenses, and one per projection. */
+/* scene/schema/cameras.c: rows of the cameras in files: those of pbrt, calibrated lenses, and one per projection. */
 #include "scene/schema/schema.h"
 #include "velo/camera.h"
 
@@ -11,7 +11,7 @@
 #define BLOCK(name, member, type, line) PARAMETER(BLOCK, name, member, line, .text = type, .flags = VL_PARAMETER_RULE)
 #define VECTOR(name, member, line, more, ...) \
   PARAMETER(DOUBLE3, name, member, line, VL_DEFAULT(__VA_ARGS__), .flags = more)
-/* Words that set members by a rule of the importer. */
+/* A name in files that sets members by a rule of the importer. */
 #define WORD(file_name, TYPE, member_path, line, ...)                                                  \
   {                                                                                                    \
     .name = file_name, .type = VL_PARAMETER_##TYPE, .member = #member_path,                            \

@@ -1,4 +1,4 @@
-/* scene/schema/films.c: pbrt's films. A row describes members of vlSceneDefs. */
+/* scene/schema/films.c: rows of the films, which are those of pbrt. A row describes members of vlSceneDefs. */
 #include <math.h>
 
 #include "scene/schema/schema.h"
@@ -6,7 +6,7 @@
 
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlSceneDefs, __VA_ARGS__)
 #define RULE VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND
-/* Parameters whose product is develop.exposure. */
+/* A parameter that is one factor of develop.exposure. */
 #define EXPOSURE(file_name, usual, text)                                                                     \
   {                                                                                                          \
     .name = file_name, .member = "develop.exposure", .type = VL_PARAMETER_DOUBLE, .flags = RULE,             \

@@ -1,4 +1,5 @@
-/* scene/schema/filters.c: the pixel filters. Their sizes are pbrt-v4's; Blackman-Harris is not one of pbrt's. */
+/* scene/schema/filters.c: rows of the pixel filters. Their sizes are pbrt-v4's; Blackman-Harris is not one of
+ * pbrt's. */
 #include "scene/schema/schema.h"
 
 #define PARAMETER(name, member, text, ...) VL_PARAMETER(FLOAT, vlPixelFilter, name, member, text, __VA_ARGS__)

@@ -1,4 +1,4 @@
-/* scene/schema/lights.c: the lights, and what shapes emit. Names and defaults are pbrt-v4's. */
+/* scene/schema/lights.c: rows of the lights, and of the emission of shapes. Names and defaults are pbrt-v4's. */
 #include <math.h>
 
 #include "base/cookie.h"
@@ -23,7 +23,7 @@
   PARAMETER(DOUBLE, "illuminance", illuminance, "of a surface that faces the light, times scale; in place of its own", \
             .unit = "lx", .flags = VL_PARAMETER_UNSET)
 #define FROM(text) PARAMETER(FLOAT3, "from", from, text, .unit = NULL)
-/* Of kinds that files place by their transform alone. */
+/* The position of kinds that files place by their transform alone. */
 #define POSITION PARAMETER(FLOAT3, NULL, from, "position", .unit = NULL)
 #define TO(text) PARAMETER(FLOAT3, "to", to, text, VL_DEFAULT(0, 0, 1))
 #define IMAGE(line)                                                                        \

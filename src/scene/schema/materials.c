@@ -1,4 +1,4 @@
-/* scene/schema/materials.c: the materials. Names in files and defaults are those of pbrt-v4; the principled
+/* scene/schema/materials.c: rows of the materials. Names in files and defaults are those of pbrt-v4; the principled
  * material's are those of glTF. */
 #include "scene/schema/schema.h"
 
@@ -17,7 +17,7 @@
 #define UNBOUNDED VL_FROM(0), .role = VL_PARAMETER_UNBOUNDED
 #define SHARE CLAMPED(0, 1)
 
-/* Parameters of several kinds. */
+/* Parameters that several kinds share. */
 #define BUMPS                                                                                 \
   INPUT("displacement", displacement, "height of a bump map, in the scene's unit of length"), \
       FILE_NAME("normalmap", normal_map, "an image of normals, in tangent space and linear")

@@ -1,4 +1,4 @@
-/* scene/schema/media.c: participating media. Names and defaults are pbrt-v4's. */
+/* scene/schema/media.c: rows of the participating media. Names and defaults are pbrt-v4's. */
 #include "base/cookie.h"
 #include "scene/schema/schema.h"
 

@@ -1,11 +1,11 @@
-/* scene/schema/samplers.c: the samplers. A row describes members of vlSceneDefs. */
+/* scene/schema/samplers.c: rows of the samplers. A row describes members of vlSceneDefs. */
 #include "scene/schema/schema.h"
 #include "velo/render.h"
 
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlSceneDefs, __VA_ARGS__)
 #define SAMPLES(count) \
   PARAMETER(COUNT, "pixelsamples", render.spp, "samples of each pixel", VL_DEFAULT(count), VL_FROM(1)), SEED
-/* Read by the importer, which tells how files spell it. */
+/* Flags of a parameter that the importer reads by a rule of its own. */
 #define RULE VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND
 #define SEED PARAMETER(COUNT, "seed", render.seed, "another number, other noise", .flags = RULE)
 #define SIDE(name) PARAMETER(COUNT, name, render.spp, "cells of the pixel along one axis", .flags = RULE, VL_FROM(1))

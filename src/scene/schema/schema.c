@@ -144,7 +144,7 @@ static bool same_spectrum(const vlSpectrum *a, const vlSpectrum *b) {
     case VL_SPECTRUM_CONSTANT: return a->value == b->value;
     case VL_SPECTRUM_RGB: return a->space == b->space && memcmp(a->rgb, b->rgb, sizeof a->rgb) == 0;
     case VL_SPECTRUM_BLACKBODY: return a->kelvin == b->kelvin;
-    case VL_SPECTRUM_SAMPLED: return false; /* no default is sampled */
+    case VL_SPECTRUM_SAMPLED: return false; /* no default is a sampled spectrum */
     case VL_SPECTRUM_NAMED: return strcmp(a->name, b->name) == 0;
   }
   return false;

@@ -1,5 +1,6 @@
-/* scene/schema/schema.h: the rows of all families, and what reads a def through its row. The rows of a family are in a
- * file of its name beside this one. */
+/* scene/schema/schema.h: the rows of all families of kinds, and functions that access a def through its row. A row
+ * describes one kind and its parameters. The rows of each family are in a file of this folder with the family's
+ * name. */
 #ifndef SCENE_SCHEMA_SCHEMA_H
 #define SCENE_SCHEMA_SCHEMA_H
 
@@ -10,8 +11,9 @@
  * Each writes, per kind, an array `NAME_parameters` and VL_KIND_ROW(NAME, ...); the list of kinds then makes the table,
  * so that a kind without a row does not compile. */
 
-/* A parameter of VL_PARAMETER_##TYPE at member `path` of Def; file_name may be NULL. VL_DEFAULT, VL_RANGE or VL_FROM
- * and further initialisers may follow. A member of another C type is a warning at compile time. */
+/* Initialises a parameter of type VL_PARAMETER_##TYPE, stored in the member `path` of Def. file_name may be NULL.
+ * VL_DEFAULT, VL_RANGE or VL_FROM and further initialisers may follow. The compiler warns if the member has another C
+ * type. */
 #define VL_PARAMETER(TYPE, Def, file_name, path, text_line, ...)                                        \
   {                                                                                                     \
     .type = VL_PARAMETER_##TYPE, .name = file_name, .member = #path,                                    \
@@ -42,15 +44,16 @@
 #define VL_POINTER_TEXTURE const vlTextureId *
 #define VL_POINTER_BLOCK const void *
 
-/* The row of kind `kind` with `kind`_parameters; further initialisers (.name, .traits) may follow. */
+/* Defines the row of `kind`, whose parameters are in the array `kind`_parameters. Further initialisers (.name, .traits)
+ * may follow. */
 #define VL_KIND_ROW(kind, ...)                                                                                  \
   static const vlKindRow kind##_row = {.parameters = kind##_parameters,                                         \
                                        .parameter_count = sizeof kind##_parameters / sizeof *kind##_parameters, \
                                        __VA_ARGS__};
-/* For kinds without parameters. */
+/* Defines the row of a kind without parameters. */
 #define VL_KIND_ROW_EMPTY(kind, ...) static const vlKindRow kind##_row = {__VA_ARGS__};
 
-/* The family, from its list of kinds; ROW(NAME, name): `[VL_..._##NAME] = &name##_row,`. */
+/* Defines a family from its list of kinds. ROW(NAME, name) expands to `[VL_..._##NAME] = &name##_row,`. */
 #define VL_KIND_FAMILY(variable, KINDS, ROW, family_name, thing_name, directive_name)            \
   static const vlKindRow *const variable##_rows[] = {KINDS(ROW)};                                \
   static const char *const variable##_constants[] = {KINDS(VL_KIND_CONSTANT)};                   \
@@ -62,20 +65,20 @@
                                  .rows = variable##_rows};
 #define VL_KIND_CONSTANT(NAME, name) #NAME,
 
-/* The size of a table with an entry per kind: `0 VL_MATERIAL_KINDS(VL_COUNT_KIND)`. */
+/* For the size of a table with one entry per kind: `0 VL_MATERIAL_KINDS(VL_COUNT_KIND)`. */
 #define VL_COUNT_KIND(NAME, name) +1
 
 /* ---- families ---------------------------------------------------------------------------------------------------- */
 
 extern const vlKindFamily vl_material_family, vl_texture_family, vl_pixel_filter_family;
 extern const vlKindFamily vl_light_family;    /* vlLightDef */
-extern const vlKindFamily vl_emission_family; /* vlEmissionDef: one kind */
+extern const vlKindFamily vl_emission_family; /* vlEmissionDef; it has one kind */
 extern const vlKindFamily vl_shape_family;    /* vlShapeDef */
 extern const vlKindFamily vl_medium_family;   /* vlMediumDef */
-/* vlSceneDefs: */
+/* The def of these families is vlSceneDefs: */
 extern const vlKindFamily vl_sampler_family, vl_tracer_family, vl_film_family;
 
-/* What files call cameras (vlCameraDef): those of this list, then one per projection. */
+/* The kinds of camera in files (vlCameraDef): those of this list, then one per projection. */
 #define VL_CAMERA_KINDS(X)                \
   X(PBRT_PERSPECTIVE, pbrt_perspective)   \
   X(PBRT_ORTHOGRAPHIC, pbrt_orthographic) \
@@ -95,47 +98,48 @@ typedef enum vlCameraKind {
 } vlCameraKind;
 extern const vlKindFamily vl_camera_family;
 
-/* Power of a light of that def, as pbrt counts it: luminance is that of its colour, scale and
- * included; radius: of a sphere round the scene. NaN: an image decides. */
+/* Power of a light, by pbrt's definition. luminance: of the light's colour, with its scale. radius: of a sphere around
+ * the scene. NaN: the power depends on an image. */
 double vl_light_power(const vlLightDef *def, double luminance, double radius);
 
-/* The box of a shape in its own space, without regard to `centers`; of curves, that of their control points. Empty
- * (low > high): it has no vertices. */
+/* Bounding box of a shape in shape space; `centers` is ignored. For curves it is the box of the control points. If the
+ * shape has no vertices, the box is empty (low > high). */
 void vl_shape_own_box(const vlShapeDef *def, double low[3], double high[3]);
-/* Has the kind vertices and faces (VL_SHAPE_TRAIT_MESH)? */
+/* Whether shapes of this kind have vertices and faces (VL_SHAPE_TRAIT_MESH). */
 bool vl_shape_is_mesh(vlShapeKind kind);
 
-/* The row of a kind; null when the family has no such kind. */
+/* The row of a kind. Null: the family has no such kind. */
 const vlKindRow *vl_kind_row(const vlKindFamily *family, int kind);
-/* The kind with this name or alias in files; -1: none. */
+/* The kind that has this name or alias in files. -1: none. */
 int vl_kind_find(const vlKindFamily *family, const char *name);
-/* Names (not aliases) in files of all kinds that have one, for "did you mean"; returns how many, at most `most`. */
+/* Gives the names that kinds have in files, without aliases, for "did you mean" messages. Returns the number of names,
+ * at most `most`. */
 size_t vl_kind_names(const vlKindFamily *family, const char **names, size_t most);
-/* The parameter of that name or alias; null: none. */
+/* The parameter that has this name or alias in files. Null: none. */
 const vlParameter *vl_row_find(const vlKindRow *row, const char *name);
 
 /* ---- defs -------------------------------------------------------------------------------------------------------- */
 
-/* Gives the members that the row names their defaults; leaves the others alone. */
+/* Sets the members that the row describes to their defaults. Other members are unchanged. */
 void vl_row_set_defaults(const vlKindRow *row, void *def);
-/* Gives all members that any row of the family names their defaults, those of `kind` last: a def may change its kind.
- */
+/* Sets all members that any row of the family describes to their defaults, because a def may change its kind. The
+ * defaults of `kind` are set last and take precedence. */
 void vl_family_set_defaults(const vlKindFamily *family, int kind, void *def);
-/* Copies the members that the row names; what they point at is shared. */
+/* Copies the members that the row describes. Pointers are copied, not what they point at. */
 void vl_row_copy_members(const vlKindRow *row, const void *from, void *to);
-/* Checks the members that the row names (ranges, finite numbers, textures that exist and have the right type, choices)
- * and replaces what they point at with copies owned by the scene. spectrum: of EITHER_INPUT, the half that is read.
- * false after vl_scene_fail with a message that names `what`, the parameter, its value and range. BLOCKs are left to
- * the caller. */
+/* Checks the members that the row describes: ranges, finite numbers, choices, existence and type of textures. Then
+ * replaces what they point at with copies owned by the scene, except for parameters of type BLOCK, which the caller
+ * copies. spectrum: whether a parameter of type EITHER_INPUT is read as a spectrum or as a number. On an error it calls
+ * vl_scene_fail with a message that names `what`, the parameter, its value and range, and returns false. */
 bool vl_row_take(struct vlScene *scene, const vlKindRow *row, void *def, bool spectrum, vlSource source,
                  const char *what);
-/* Checks the member's own value: finite, in range, a known choice, there where it is required. message: filled when
- * false. */
+/* Checks the value of a parameter: it must be finite, in range and a known choice, and must not be missing if it is
+ * required. If the result is false, message holds the reason. */
 bool vl_parameter_check(const vlParameter *parameter, const void *def, const char *what, char message[200]);
-/* As a number: counts, floats, doubles, choices, bools, inputs without texture that hold one number. false: it is none.
- */
+/* Gives the value of a parameter as a number. This works for counts, floats, doubles, choices, bools, and inputs
+ * without texture that hold one number. False: the parameter is of another type. */
 bool vl_parameter_number(const vlParameter *parameter, const void *def, double *number);
-/* Is the value the default? */
+/* Whether the value of a parameter is its default. */
 bool vl_parameter_is_default(const vlParameter *parameter, const void *def, bool spectrum);
 
 #endif

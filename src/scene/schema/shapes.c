@@ -1,5 +1,5 @@
-/* scene/schema/shapes.c: the shapes. Names and defaults are those of pbrt-v4. Its shapes "plymesh" and "loopsubdiv"
- * become triangles. */
+/* scene/schema/shapes.c: rows of the shapes. Names and defaults are those of pbrt-v4. Its shapes "plymesh" and
+ * "loopsubdiv" become triangles. */
 #include <math.h>
 
 #include "base/cookie.h"
@@ -10,7 +10,7 @@
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlShapeDef, __VA_ARGS__)
 #define ARRAY(name, member, type_in_files, line) PARAMETER(BLOCK, name, member, line, .text = type_in_files)
 #define LENGTH(name, member, text, ...) PARAMETER(FLOAT, name, member, text, .unit = "length", VL_DEFAULT(__VA_ARGS__))
-/* Parameters in files from which arrays of the def are computed. */
+/* A parameter in files from which an array of the def is computed. */
 #define IN_FILES(TYPE, file_name, place, text, ...)                                                          \
   {                                                                                                          \
     .type = VL_PARAMETER_##TYPE, .name = file_name, .member = #place, .offset = offsetof(vlShapeDef, place), \

@@ -18,7 +18,7 @@ static bool in_range(const vlParameter *p, double x) {
   return p->flags & VL_PARAMETER_BELOW_HIGH ? x < p->high : x <= p->high;
 }
 
-/* "above 0 and at most 64" */
+/* Writes a range in words, such as "above 0 and at most 64". */
 static void put_range(const vlParameter *p, char *text, size_t size) {
   const char *low = p->flags & VL_PARAMETER_ABOVE_LOW ? "above" : "at least";
   const char *high = p->flags & VL_PARAMETER_BELOW_HIGH ? "below" : "at most";
@@ -137,7 +137,7 @@ static bool take_member(const Take *t, const vlParameter *p, void *at) {
 }
 
 static bool take_parameter(const Take *t, const vlParameter *p, char *def, bool spectrum) {
-  if (p->type == VL_PARAMETER_EITHER_INPUT) { /* of number and spectrum only one is read; the other is set to 0 */
+  if (p->type == VL_PARAMETER_EITHER_INPUT) { /* only the number or the spectrum is read; the other is set to 0 */
     if (!spectrum) {
       *(vlSpectrumInput *)(void *)(def + p->second) = (vlSpectrumInput){0};
     } else {

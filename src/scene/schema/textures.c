@@ -1,4 +1,4 @@
-/* scene/schema/textures.c: the textures. Names in files and defaults are pbrt-v4's. */
+/* scene/schema/textures.c: rows of the textures. Names in files and defaults are pbrt-v4's. */
 #include "scene/schema/schema.h"
 
 #define BOOL(...) VL_PARAMETER(BOOL, vlTextureDef, __VA_ARGS__)
@@ -20,7 +20,7 @@ static const char *const wraps[] = {"repeat", "black", "clamp", "octahedralspher
 static const char *const filters[] = {"point", "bilinear", "trilinear", "ewa", NULL};
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1", NULL};
 
-/* What several kinds have. */
+/* Parameters that several kinds share. */
 #define PLACE BLOCK(NULL, texture_from_world, "4x4 matrix, row by row: places in the world to those of the texture")
 #define MAPPING                                                                                      \
   CHOICE("mapping", mapping, "how (s, t) comes from the surface", .choices = mappings),              \
@@ -37,7 +37,7 @@ static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1", 
   COUNT("octaves", octaves, "how many sizes of noise are summed", VL_DEFAULT(8), VL_RANGE(0, 64), \
         .flags = VL_PARAMETER_CLAMPED),                                                           \
       FLOAT("roughness", omega, "each size is so much weaker than the one before", VL_DEFAULT(0.5)), PLACE
-/* After filter, scale and invert. */
+/* The parameters that follow filter, scale and invert. */
 #define CHANNELS                                                                                                      \
   BLOCK(NULL, tint, "factors on the four channels"), BOOL(NULL, colors, "times the colours of the shape's vertices"), \
       BLOCK(NULL, channel, "a float texture reads it: 0 to 3, or -1: grey, mean or coverage, by the image"),          \

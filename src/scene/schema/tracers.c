@@ -1,4 +1,4 @@
-/* scene/schema/tracers.c: the tracers, pbrt's integrators. A row describes members of vlSceneDefs. */
+/* scene/schema/tracers.c: rows of the tracers, which pbrt calls integrators. A row describes members of vlSceneDefs. */
 #include <math.h>
 
 #include "scene/schema/schema.h"

@@ -1,5 +1,5 @@
-/* world/accel/accel.h: nearest-hit and occlusion queries. Only embree.c calls Embree. The results are ids alone: t,
- * u, v are recomputed in velo's own arithmetic, since Embree's differ between its instruction sets. */
+/* world/accel/accel.h: nearest-hit and occlusion queries. Only embree.c calls Embree. Queries return ids. velo
+ * recomputes t, u and v in its own arithmetic, because Embree's values differ between its instruction sets. */
 #ifndef WORLD_ACCEL_ACCEL_H
 #define WORLD_ACCEL_ACCEL_H
 
@@ -9,17 +9,19 @@
 
 struct vlWorld;
 
-/* World-space rays, structure of arrays. */
+/* Rays in world space, as a structure of arrays. o: origin, d: direction. */
 typedef struct vlRays {
   const float *ox, *oy, *oz, *dx, *dy, *dz;
-  const float *t_min, *t_max; /* null: 0, infinity */
+  const float *t_min, *t_max; /* interval of hits along the ray; null: 0 and infinity */
   const float *time;          /* in the world's time, 0 to 1 (world/shape/moving.h); null: 0 */
 } vlRays;
 
-/* For benchmarks: receives every batch of rays before it is traced. kind: 0 coherent closest, 1 closest, 2 occluded. */
+/* For benchmarks: receives every batch of rays before it is traced. kind: 0 for vl_accel_closest with coherent rays, 1
+ * with other rays, 2 for vl_accel_occluded. */
 typedef void vlRayLogFn(void *user, int kind, uint32_t n, const vlRays *rays);
 
-/* The quadrics of a group, combined into one geometry: primitive k is shape members[k]. members null: none. */
+/* The quadrics of a group, combined into one geometry: primitive k is shape members[k]. members is null if the group
+ * has no bundle. */
 typedef struct vlAccelBundle {
   uint32_t geometry, count;
   const uint32_t *members;
@@ -27,12 +29,12 @@ typedef struct vlAccelBundle {
 
 typedef struct vlAccel {
   void *device;  /* RTCDevice */
-  void *scene;   /* RTCScene: the world */
+  void *scene;   /* RTCScene of the whole world */
   void **groups; /* RTCScene of each group with index >= 1 */
   uint32_t group_count;
   void *user_data;        /* blocks of AccelGeometry */
   vlAccelBundle *bundles; /* one per group */
-  uint32_t *members;      /* of all bundles */
+  uint32_t *members;      /* memory of the members of all bundles */
   vlRayLogFn *log;        /* null except in benchmarks */
   void *log_user;
 } vlAccel;
@@ -44,15 +46,16 @@ const char *vl_accel_fast_set(void);
 void vl_accel_destroy(vlContext *context, vlAccel *accel);
 
 /* Ids of the nearest hit of rays [0, n); shape is VL_NONE for a miss. t: distance along the ray in units of its
- * direction. For shapes other than triangles, t is velo's own number and identifies which intersection was hit (the
- * nearest may be clipped or transparent). For triangles, t is Embree's, differs between instruction sets and must
- * not be used. coherent: neighbouring rays have similar directions (camera rays) and are traced in packets. */
+ * direction. For shapes other than triangles, t is computed by velo and tells which intersection with the shape was
+ * hit, because the first one may be clipped or transparent. For triangles, t is Embree's value, which differs between
+ * instruction sets; callers must not use it. coherent: neighbouring rays have similar directions (camera rays) and are
+ * traced in packets. */
 void vl_accel_closest(const struct vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
                       uint32_t *prim, uint32_t *instance, float *t);
 /* occluded[i] = 1 if ray i is blocked within (t_min, t_max). */
 void vl_accel_occluded(const struct vlWorld *world, uint32_t n, const vlRays *rays, uint8_t *occluded);
-/* Each thread calls this before it traces: sets flush-to-zero, as Embree requires. Returns the previous state, which
- * the caller restores. */
+/* Each thread calls this before it traces. It sets flush-to-zero mode, as Embree requires, and returns the previous
+ * state. The caller restores that state with vl_accel_leave. */
 unsigned vl_accel_enter(void);
 void vl_accel_leave(unsigned state);
 

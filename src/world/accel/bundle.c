@@ -1,5 +1,5 @@
 /* world/accel/bundle.c: two or more spheres, disks and cylinders of a group share one geometry of the accelerator,
- * because a geometry takes more memory than such a shape. */
+ * because Embree's data per geometry take more memory than such a shape. */
 #include "world/accel/bundle.h"
 
 #include "scene/schema/schema.h"

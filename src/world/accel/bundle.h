@@ -4,10 +4,10 @@
 
 #include "world/world.h"
 
-/* Whether this shape can be part of a bundle. Many spheres cannot: they are one geometry already. */
+/* Whether this shape can be part of a bundle. A shape of many spheres cannot, because it already is one geometry. */
 bool vl_accel_bundled(const vlWorldShape *shape);
-/* Finds the bundle of a group; its geometry id is that of its first shape. members: room for all shapes of the
- * group. Returns how many members were written. */
+/* Finds the shapes of a group that form its bundle. The geometry id of the bundle is that of its first shape. members:
+ * array with room for all shapes of the group. Returns the number of members written. */
 uint32_t vl_accel_find_bundle(const vlWorld *world, const vlWorldGroup *group, vlAccelBundle *bundle,
                               uint32_t *members);
 

@@ -1,11 +1,11 @@
 /* world/accel/embree.c: the one file that calls Embree (3.13 or 4). Triangles are Embree's own geometry; other shapes
- * are user geometry, intersected by surface_point.c. Filters decide alpha and interface surfaces by a hash of ray and
- * primitive, so that the result does not depend on the order of traversal. Inside instances Embree passes the ray in
- * the group's space, transformed by its own arithmetic, which differs between instruction sets. The callbacks therefore
- * read the world-space ray by its id and transform it themselves.
+ * are user geometry, intersected by surface_point.c. Filters decide by a hash of ray and primitive whether a ray passes
+ * because of alpha, so that the result does not depend on the order of traversal. Shadow rays pass interface surfaces.
+ * Inside instances Embree gives callbacks the ray in the group's space. Embree's transformation of the ray differs
+ * between instruction sets; the callbacks therefore read the world-space ray by its id and transform it themselves.
  *
- * Reproducible results (docs/decisions/0013-the-bits-of-embree.md): Embree runs an instruction set without fused
- * multiply-add, and a filter decides which of several hits is the nearest (nearest.h). */
+ * For reproducible results (docs/decisions/0013-the-bits-of-embree.md): Embree runs with an instruction set without
+ * fused multiply-add, and a filter decides which of several hits is the nearest (nearest.h). */
 #include "world/accel/accel.h"
 
 #include <math.h>
@@ -29,8 +29,8 @@
 #include <embree3/rtcore.h>
 #endif
 
-/* Embree's accessors for packets of any size are C++ only. This is the layout that its manual gives: row k of N
- * values. */
+/* Embree's accessors for packets of any size exist in C++ only. These are the rows of a packet of N rays in the layout
+ * of Embree's manual: row k holds N values. */
 enum {
   ORIGIN = 0,
   TNEAR = 3,
@@ -54,7 +54,7 @@ static inline unsigned *hit_row(void *hit, unsigned n, int row, unsigned i) {
 typedef struct AccelGeometry {
   const vlWorld *world;
   const vlWorldShape *shape;
-  const uint32_t *members; /* of a bundle: shape index of each primitive; else null */
+  const uint32_t *members; /* for a bundle: shape index of each primitive; otherwise null */
 } AccelGeometry;
 
 /* The shape that contains a primitive. *prim becomes the primitive's index within that shape. */
@@ -74,7 +74,7 @@ typedef struct RTCIntersectContext EmbreeContext;
 typedef struct Query {
   EmbreeContext context; /* first, because Embree passes its address to callbacks */
   const vlRays *rays;
-  vlNearest *nearest; /* of rays first, first + 1, ...; null: Embree's own nearest hit is used */
+  vlNearest *nearest; /* nearest hits so far of rays first, first + 1, ...; null: Embree decides */
   uint32_t first;
 } Query;
 
@@ -108,7 +108,7 @@ static bool filter_rejects(const AccelGeometry *g, const struct RTCFilterFunctio
   return g->shape->alpha >= 0 && vl_alpha_passes(g->world, g->shape, &r, prim, 0, &at);
 }
 
-/* The hit of ray i of n, as a filter gets it: the ray's t is that of the hit. */
+/* Reads the hit of ray i of n as Embree passes it to a filter; the t of the ray is then the t of the hit. */
 static inline __attribute__((always_inline)) void read_hit(const struct RTCFilterFunctionNArguments *args, unsigned n,
                                                            unsigned i, vlNearest *hit) {
   hit->t = *ray_row(args->ray, n, TFAR, i);
@@ -131,7 +131,8 @@ static __attribute__((noinline)) bool compare_hits(const struct RTCFilterFunctio
   return vl_nearest_offer(known, &hit);
 }
 
-/* Whether the hit of ray i of n is the nearest so far. Sets the largest t at which further hits matter. */
+/* Whether the hit of ray i of n is the nearest so far. Sets the ray's largest t, beyond which further hits do not
+ * matter. */
 static inline __attribute__((always_inline)) bool is_nearest(const struct RTCFilterFunctionNArguments *args, unsigned n,
                                                              unsigned i) {
   const Query *q = (const Query *)(const void *)args->context;
@@ -145,9 +146,9 @@ static inline __attribute__((always_inline)) bool is_nearest(const struct RTCFil
   return true;
 }
 
-/* Portable bits: of triangles that need no other filter. */
+/* The filter for VL_BITS_PORTABLE, for triangles that need no other filter. */
 static void filter_nearest(const struct RTCFilterFunctionNArguments *args) {
-  if (args->N == 1) { /* single rays: the compiler knows all places */
+  if (args->N == 1) { /* single rays, as constants: the compiler then knows all offsets */
     if (args->valid[0] == -1 && !is_nearest(args, 1, 0)) args->valid[0] = 0;
     return;
   }
@@ -194,7 +195,7 @@ static bool user_hit(const AccelGeometry *g, const EmbreeContext *context, void 
       vlTextureQuery at = {point.uv[0], point.uv[1], vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
                            vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
       if (vl_alpha_passes(g->world, shape, &r, prim, (float)hit.t, &at)) {
-        t_min = hit.t * (1 + 1e-12); /* some thousand roundings of a double */
+        t_min = hit.t * (1 + 1e-12); /* past this hit, by several thousand rounding errors of a double */
         continue;
       }
     }
@@ -243,7 +244,7 @@ static void make_user_geometry(RTCGeometry geometry, uint32_t count) {
   rtcSetGeometryOccludedFunction(geometry, user_occluded);
 }
 
-/* count: number of shapes of a bundle. */
+/* Adds a shape or a bundle to a scene. count: number of shapes in the bundle. */
 static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, AccelGeometry *g, uint32_t count,
                              vlError *error) {
   const vlWorldShape *s = g->shape;
@@ -295,7 +296,7 @@ static RTCScene new_scene(RTCDevice device) {
 }
 
 #if defined(__x86_64__)
-/* Embree's instruction sets. fused: uses fused multiply-add; its hits at edges differ from those of sets without. */
+/* Embree's instruction sets. fused: uses fused multiply-add; its hits at edges differ from those of the other sets. */
 typedef struct EmbreeSet {
   const char *name;
   bool there, fused;
@@ -310,8 +311,8 @@ static void list_sets(EmbreeSet sets[SETS]) {
   sets[3] = (EmbreeSet){"avx512", vl_isa_best() >= VL_ISA_V4, true};
 }
 
-/* The instruction set to force; null: Embree's own choice. Portable: the widest set without fused
- * multiply-add. The environment variable VELO_EMBREE overrides both. */
+/* Chooses the instruction set that Embree must use; null: Embree's own choice. For VL_BITS_PORTABLE it is the widest
+ * set without fused multiply-add. The environment variable VELO_EMBREE overrides both. */
 static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
   EmbreeSet sets[SETS];
   list_sets(sets);
@@ -356,8 +357,8 @@ const char *vl_accel_fast_set(void) {
 #endif
 
 /* Whether the address space has room for Embree's threads (their stacks and heaps). Embree's threads end the process
- * when they run out of memory during a build. The test reserves that much address space, which costs no memory, and
- * releases it. */
+ * when they run out of memory during a build. The test reserves that much address space, which takes no memory, and
+ * releases it again. */
 static bool has_room(const vlWorld *world) {
   size_t primitives = 0;
   for (size_t i = 0; i < world->shapes.count; i++) primitives += (size_t)world->shapes.items[i].faces + 1;
@@ -395,7 +396,7 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
   a->group_count = (uint32_t)world->groups.count;
   for (size_t i = 0; i < world->shapes.count; i++)
     geometries[i] = (AccelGeometry){world, &world->shapes.items[i], NULL};
-  for (size_t k = world->groups.count; k-- > 0;) { /* the world itself, group 0, comes last */
+  for (size_t k = world->groups.count; k-- > 0;) { /* group 0, the world itself, comes last: it refers to the others */
     const vlWorldGroup *group = &world->groups.items[k];
     RTCScene scene = new_scene(device);
     if (!scene) return vl_fail_memory(error);
@@ -405,7 +406,7 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
     bundled_count += vl_accel_find_bundle(world, group, bundle, a->members + bundled_count);
     for (uint32_t i = 0; r == VL_OK && i < group->count; i++) {
       AccelGeometry *g = &geometries[group->shapes[i]];
-      if (bundle->members && i > bundle->geometry && vl_accel_bundled(g->shape)) continue; /* part of the bundle */
+      if (bundle->members && i > bundle->geometry && vl_accel_bundled(g->shape)) continue; /* is in the bundle */
       if (bundle->members && i == bundle->geometry) g->members = bundle->members;
       r = attach_shape(device, scene, i, g, bundle->count, error);
     }
@@ -419,7 +420,7 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
   a->scene = a->groups[0];
   enum RTCError code = rtcGetDeviceError(device);
   if (code == RTC_ERROR_OUT_OF_MEMORY) return vl_fail_memory(error);
-  if (code == RTC_ERROR_UNKNOWN) /* what Embree's scheduler throws when memory is short */
+  if (code == RTC_ERROR_UNKNOWN) /* Embree's scheduler reports this error when memory is short */
     return vl_fail(error, VL_ERROR_MEMORY, "Embree cannot build the scene (error %d)", (int)code);
   if (code != RTC_ERROR_NONE) return vl_fail(error, VL_ERROR_SCENE, "Embree refuses the scene (error %d)", (int)code);
   return VL_OK;
@@ -438,7 +439,7 @@ void vl_accel_destroy(vlContext *context, vlAccel *a) {
 
 /* ---- tracing ----------------------------------------------------------------------------------------------------- */
 
-/* Issues a query, with the arguments that Embree 4 expects. */
+/* Macros that hide the difference between the queries of Embree 3 and 4. */
 #if VELO_EMBREE_MAJOR >= 4
 #define BEGIN_QUERY(query, r, coherent)                                                               \
   Query query;                                                                                        \
@@ -496,8 +497,8 @@ static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32
     int valid[16] __attribute__((aligned(64)));
     for (uint32_t k = 0; k < 16; k++) {
       uint32_t i = first + k < n ? first + k : n - 1;
-      /* Embree does not accept rays from beyond its range, nor NaN: such rays miss everything. Only cameras can be
-       * that far away; the extent of the world is limited (shapes.c). */
+      /* Embree accepts neither NaN nor origins beyond its range. Such rays miss everything. Only cameras can be that
+       * far away, because the extent of the world is limited (shapes.c). */
       bool near = fabsf(r->ox[i]) < 1.8e18f && fabsf(r->oy[i]) < 1.8e18f && fabsf(r->oz[i]) < 1.8e18f;
       valid[k] = first + k < n && near ? -1 : 0;
       q.ray.org_x[k] = r->ox[i], q.ray.org_y[k] = r->oy[i], q.ray.org_z[k] = r->oz[i];

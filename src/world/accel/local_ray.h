@@ -1,5 +1,5 @@
-/* world/accel/local_ray.h: rays transformed to the space of the group that they intersect, and the decisions made
- * there in velo's own arithmetic, for embree.c. Embree's own numbers differ between instruction sets. */
+/* world/accel/local_ray.h: rays transformed to the space of a group, and decisions about their hits, in velo's own
+ * arithmetic. embree.c uses them because Embree's own numbers differ between instruction sets. */
 #ifndef WORLD_ACCEL_LOCAL_RAY_H
 #define WORLD_ACCEL_LOCAL_RAY_H
 
@@ -14,17 +14,17 @@ typedef struct vlLocalRay {
   double o[3], d[3];
 } vlLocalRay;
 
-/* Ray i in the space of the instance's group; instance VL_NONE: world space. */
+/* Ray i in the space of the instance's group; If instance is VL_NONE, in world space. */
 vlLocalRay vl_local_ray(const vlWorld *world, const vlRays *rays, uint32_t i, uint32_t instance);
 
-/* Whether a ray passes through a shape by its alpha: decided by a hash of ray and primitive, so that the result does
- * not depend on the order of traversal. t: for shapes that a ray can intersect twice, so that each intersection is
- * decided separately; 0 for triangles. */
+/* Whether a ray passes through a shape because of the shape's alpha. A hash of ray and primitive decides, so that the
+ * result does not depend on the order of traversal. t: distance of the hit; it enters the hash for shapes that a ray
+ * can intersect twice, so that each hit is decided separately; 0 for triangles. at: the point of the hit. */
 bool vl_alpha_passes(const vlWorld *world, const vlWorldShape *shape, const vlLocalRay *ray, uint32_t prim, float t,
                      const vlTextureQuery *at);
 
-/* Where the ray intersects triangle prim: uv, position and normal (`at`, all but its corner), and the barycentric
- * weights of the corners. Returns true if the ray comes from behind. */
+/* Computes where the ray intersects triangle prim. `at` receives uv, position and normal (its member corner is not
+ * set); b receives the barycentric coordinates. Returns true if the ray comes from behind. */
 bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r, vlTextureQuery *at, float b[3]);
 
 #endif

@@ -1,7 +1,7 @@
 /* world/light/emissive_faces.c: see emissive_faces.h. Emission images are looked up at the finest level, bilinearly or
- * at the nearest texel (trace/light/light.hot.c). A triangle can read the texels whose centre is less than a texel away
- * from it in both directions. Per row of texels, the part of the triangle in the band that reaches the row gives a
- * range of columns. */
+ * at the nearest texel (trace/light/light.hot.c). A lookup in a triangle can read only texels whose centre is less than
+ * one texel away from the triangle along both axes. For each row of texels, the triangle is clipped to the band within
+ * one texel of the row; the clipped part gives the range of columns. */
 #include "world/light/emissive_faces.h"
 
 #include <math.h>
@@ -53,7 +53,7 @@ static bool row_emits(const vlEmissiveFaces *s, int32_t row, int32_t from, int32
   if (row < 0) return false;
   const uint64_t *bits = s->bits + (size_t)row * s->words;
   int32_t n = (int32_t)s->width;
-  if (to - from >= 2 * n) from = 0, to = n - 1; /* all columns, whatever the wrap mode */
+  if (to - from >= 2 * n) from = 0, to = n - 1; /* covers all columns in any wrap mode */
   if (from < 0 || to >= n) {
     bool emits = false;
     for (int32_t x = from; x <= to && !emits; x++) {
@@ -72,7 +72,7 @@ static bool row_emits(const vlEmissiveFaces *s, int32_t row, int32_t from, int32
   return sum != 0;
 }
 
-/* The x range of the triangle's part with low <= y <= high; empty: first > last. */
+/* Gives the x range of the part of a triangle with low <= y <= high. An empty range has first > last. */
 static void band(const double x[3], const double y[3], double low, double high, double *first, double *last) {
   *first = INFINITY, *last = -INFINITY;
   for (int k = 0; k < 3; k++) {

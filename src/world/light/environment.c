@@ -8,7 +8,8 @@
 
 _Static_assert(VL_ENVIRONMENT_CELLS <= VL_GUIDES && VL_GUIDES <= 65536, "cells are found from a guide of 16 bits");
 
-/* The weights of the cells, to their pdf: mean luminances. sum: of all; upper: of the upper half, times the cosine. */
+/* Sets the pdf of each cell to its weight, the mean luminance. sum: of all weights; upper: of the upper half of
+ * directions, times the cosine. */
 static vlResult cell_luminances(const vlMipmap *mip, vlEnvironment *env, uint32_t step, double *sum_all, double *upper,
                                 vlError *error) {
   uint32_t n = mip->levels[0].width, channels = mip->channels, size = env->size;
@@ -32,7 +33,8 @@ static vlResult cell_luminances(const vlMipmap *mip, vlEnvironment *env, uint32_
   return VL_OK;
 }
 
-/* Weights minus the mean of all, at least 0; 1 where all are equal. Returns their sum. */
+/* Subtracts the mean from all weights, limited to at least 0; if all weights are equal, they become 1. Returns their
+ * sum. */
 static double compensate(vlEnvironment *env, double mean) {
   uint32_t size = env->size;
   bool flat = true;
@@ -49,7 +51,8 @@ static double compensate(vlEnvironment *env, double mean) {
   return sum;
 }
 
-/* For each interval of u the last of n intervals that starts at or before it. from[i * stride]: start of interval i. */
+/* Makes a guide table: for each interval of u, the last of n intervals that starts at or before it. from[i * stride]:
+ * start of interval i. */
 static void make_guide(const float *from, size_t stride, uint32_t n, uint16_t *guide) {
   uint32_t i = 0;
   for (uint32_t k = 0; k < VL_GUIDES; k++) {
@@ -82,8 +85,8 @@ static void make_distribution(vlEnvironment *env, double sum_all) {
   make_guide(env->rows, 1, size, env->row_guide);
 }
 
-/* A distribution over cells: the mean luminance of each cell's texels minus the mean of all (MIS compensation,
- * Karlik et al. 2019), so that the uniform part is left to BSDF sampling. */
+/* The weight of a cell is the mean luminance of its texels minus the mean of all texels (MIS compensation, Karlik et
+ * al. 2019), so that the uniform part is left to BSDF sampling. */
 vlResult vl_world_build_environment(vlWorld *world, vlEnvironment *env, double *mean_luminance, double *illuminance,
                                     vlError *error) {
   const vlMipmap *mip = world->images.items[env->image].mipmap;

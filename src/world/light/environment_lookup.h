@@ -2,9 +2,9 @@
  * over its cells (pbrt book 12.5.2). environment.c builds it; the lookups are inline, for the hot loops.
  *
  * A cell is sampled by inverting the cumulative distribution, not by an alias table: well-distributed random numbers
- * stay well distributed. A table of first candidates (Chen and Asau 1974) replaces the binary search: it holds, for
- * each of VL_GUIDES equal intervals of the random number, the cell of the interval's start. From there 1 cell is passed
- * on average. */
+ * stay well distributed. A guide table (Chen and Asau 1974) replaces the binary search: for each of VL_GUIDES equal
+ * intervals of the random number it holds the cell that contains the start of the interval. A linear search from that
+ * cell passes 1 cell on average. */
 #ifndef WORLD_LIGHT_ENVIRONMENT_LOOKUP_H
 #define WORLD_LIGHT_ENVIRONMENT_LOOKUP_H
 
@@ -21,13 +21,14 @@ typedef struct vlEnvironmentCell {
 
 typedef struct vlEnvironment {
   int32_t image;
-  uint32_t size;                                  /* of the distribution: size x size cells */
-  vlEnvironmentCell *cells;                       /* size rows of size + 1; the last of a row has below 1 */
-  float *rows;                                    /* size + 1: cumulative distribution of the rows */
-  uint16_t *row_guide;                            /* VL_GUIDES: first candidates among the rows, */
-  uint16_t *cell_guide;                           /* size rows of VL_GUIDES: among the cells of a row */
+  uint32_t size;            /* of the distribution: size x size cells */
+  vlEnvironmentCell *cells; /* size rows of size + 1 cells; the last cell of a row only ends the distribution (its
+                               member below is 1) */
+  float *rows;              /* size + 1: cumulative distribution of the rows */
+  uint16_t *row_guide;      /* guide table of VL_GUIDES entries for the rows */
+  uint16_t *cell_guide;     /* a guide table of VL_GUIDES entries per row, for its cells */
   float light_from_world[9], world_from_light[9]; /* rotations, row-major */
-  const struct vlPortal *portal;                  /* the only opening to it (world/light/portal.h); null: none */
+  const struct vlPortal *portal; /* portal through which alone it is visible (world/light/portal.h); null: none */
 } vlEnvironment;
 
 static inline uint32_t vl_guide_index(float u) {
@@ -35,7 +36,8 @@ static inline uint32_t vl_guide_index(float u) {
   return i < VL_GUIDES ? i : VL_GUIDES - 1;
 }
 
-/* As vl_find_cell: the row, or the cell of row y, that contains u in [0, 1); *within: position in it, below 1. */
+/* Finds the row, or the cell of row y, that contains u in [0, 1), as vl_find_cell does. *within: position in the row or
+ * cell, in [0, 1). */
 static inline float vl_within_cell(float low, float high, float u) {
   float width = high - low;
   return width > 0.0f ? vl_clamp((u - low) / width, 0.0f, VL_ONE_MINUS_EPSILON) : 0.5f;

@@ -1,7 +1,7 @@
 /* world/light/goniometric.c: point lights whose intensity is given by an image: goniometric (by direction, in an
  * equal-area octahedral square) and projection. Conventions are pbrt-v4's (book 12.2): the axis of a goniometric
- * diagram is the light's y; a projection light's image is projected along its z with y up. Power is that of all
- * emitted light, as in pbrt. */
+ * diagram is the light's y; a projection light's image is projected along its z with y up. The power parameter is the
+ * power of all emitted light, as in pbrt. */
 #include <math.h>
 
 #include "base/error.h"
@@ -10,7 +10,7 @@
 #include "world/light/lights.h"
 #include "world/texture/texture_lookup.h"
 
-/* Rows of the rotation from world directions to the light's; `order` and `sign` permute and flip its axes. */
+/* Sets the rotation from world to light directions. `order` and `sign` permute and flip the axes of the light. */
 static bool set_frame(const vlLightDef *def, const int order[3], const float sign[3], vlWorldLight *light) {
   vlMat4 inverse;
   if (!vl_mat4_inverse(vl_mat4_load(def->world_from_light), &inverse)) return false;
@@ -86,7 +86,7 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   return VL_OK;
 }
 
-/* The light's image; null on error. */
+/* Adds the image of a light. Null on error. */
 static const vlMipmap *add_image(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlError *error) {
   int32_t image = vl_world_add_image(world, def->path, def->image, NULL, 1, false, error);
   light->image = (uint32_t)image;

@@ -1,7 +1,7 @@
-/* world/light/light_tree.h: chooses a light by a binary tree over all bounded lights. At each node a branch is
- * chosen by its importance for the point to be lit (Conty Estevez and Kulla 2018; pbrt book 12.6.3). Lights without
- * bounds (distant, infinite) have one slot each beside the tree. light_tree_build.c builds the tree; traversal is
- * inline, for the hot loops. */
+/* world/light/light_tree.h: chooses a light by a binary tree over all bounded lights. At each node, a branch is chosen
+ * in proportion to its importance for the point that receives light (Conty Estevez and Kulla 2018; pbrt book 12.6.3).
+ * Lights without bounds (distant, infinite) are outside the tree; each has one slot. light_tree_build.c builds the
+ * tree; traversal is inline, for the hot loops. */
 #ifndef WORLD_LIGHT_LIGHT_TREE_H
 #define WORLD_LIGHT_LIGHT_TREE_H
 
@@ -12,20 +12,20 @@
 typedef struct vlLightBounds {
   float low[3], high[3];
   float axis[3];
-  float cos_o; /* cosine of the cone of normals round axis */
-  float cos_e; /* cosine of the emission angle beyond the normals */
+  float cos_o; /* cosine of the half angle of the cone around axis that contains all normals */
+  float cos_e; /* cosine of the largest angle between a normal and an emitted direction */
   float power;
   bool two_sided;
 } vlLightBounds;
 
 typedef struct vlLightNode {
   float center[3];
-  float half_diagonal; /* of the bounds */
+  float half_diagonal; /* half the diagonal of the bounding box */
   float axis[3];
   float cos_o, sin_o, cos_e;
   float power;
   float two_sided; /* 1 or 0 */
-  uint32_t light;  /* leaf: index of the light; VL_INNER: children at left and left + 1 */
+  uint32_t light;  /* of a leaf: index of the light; VL_INNER: an inner node with children at left and left + 1 */
   uint32_t left;
   float low[3], high[3];
 } vlLightNode;
@@ -35,17 +35,17 @@ typedef struct vlLightTree {
   vlLightSampler kind;
   vlLightNode *nodes;
   uint32_t node_count;
-  uint64_t *trails; /* per light: left/right decisions from the root, lowest bit first */
+  uint64_t *trails; /* per light: the branches from the root to its leaf, one bit each, lowest bit first */
   uint32_t light_count;
   uint32_t *unbounded; /* lights outside the tree */
   uint32_t unbounded_count;
   uint32_t *slot; /* per light: index in unbounded, or VL_INNER */
-  float *cdf;     /* power and uniform selection: light_count + 1 */
+  float *cdf;     /* for selection by power and uniform selection: cumulative distribution, light_count + 1 values */
 } vlLightTree;
 
 vlResult vl_light_tree_build(struct vlWorld *world, vlError *error);
 
-/* What the importance of a node depends on, by value. Nodes are read as rows of floats, so that a batch can gather
+/* The members of a node on which its importance depends. Nodes are read as rows of floats, so that a batch can gather
  * them. */
 enum { VL_LIGHT_NODE_FLOATS = sizeof(vlLightNode) / sizeof(float) };
 typedef struct vlLightCluster {
@@ -62,12 +62,13 @@ static inline __attribute__((always_inline)) float vl_light_importance(vlLightCl
   vlVec3 to = vl_sub(p, vl_vec3(b.cx, b.cy, b.cz));
   float d2 = vl_length2(to);
   float r = b.half_diagonal;
-  float d2_limited = vl_max(d2, r); /* as in the book: at least half the diagonal */
+  float d2_limited = vl_max(d2, r); /* squared distance, limited from below as in the pbrt book */
   vlVec3 wi = vl_normalize(to);
   float cos_w = vl_dot(vl_vec3(b.ax, b.ay, b.az), wi);
   cos_w = b.two_sided > 0.0f ? vl_abs(cos_w) : cos_w;
   float sin_w = __builtin_sqrtf(vl_max(0.0f, 1.0f - cos_w * cos_w));
-  /* Angle that the bounds subtend at p: the full sphere if p is inside their bounding sphere. */
+  /* theta_b, the angle that the bounds subtend at p. It covers the full sphere if p is inside the bounding sphere of
+   * the bounds. */
   float inside = d2 > r * r ? 0.0f : 1.0f;
   float sin2_b = r * r / vl_max(d2, VL_MIN_NORMAL);
   float cos_b = __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2_b)), sin_b = __builtin_sqrtf(sin2_b);
@@ -94,12 +95,12 @@ static inline float vl_light_node_importance(const vlLightNode *node, vlVec3 p, 
 }
 
 typedef struct vlLightChoice {
-  uint32_t light; /* VL_INNER: none */
+  uint32_t light; /* index of the light; VL_INNER: no light */
   float pmf;
 } vlLightChoice;
 
 static inline vlLightChoice vl_light_choose_cdf(const vlLightTree *tree, float u) {
-  uint32_t low = 0, high = tree->light_count; /* cdf[low] <= u < cdf[high] */
+  uint32_t low = 0, high = tree->light_count; /* invariant: cdf[low] <= u < cdf[high] */
   while (high - low > 1) {
     uint32_t mid = (low + high) / 2;
     if (tree->cdf[mid] <= u)
@@ -110,8 +111,8 @@ static inline vlLightChoice vl_light_choose_cdf(const vlLightTree *tree, float u
   return (vlLightChoice){low, tree->cdf[low + 1] - tree->cdf[low]};
 }
 
-/* Traverses the tree from an inner node that was reached with probability pmf; u in [0,1) is rescaled and reused at
- * each level. */
+/* Traverses the tree from an inner node that was reached with probability pmf; the random number u in [0, 1) is
+ * rescaled and reused at each level. */
 static inline vlLightChoice vl_light_walk(const vlLightTree *tree, const vlLightNode *node, vlVec3 p, vlVec3 n, float u,
                                           float pmf) {
   while (node->light == VL_INNER) {

@@ -23,7 +23,7 @@ typedef struct Cone {
   bool empty;
 } Cone;
 
-/* The same bits everywhere, which acosf and cosf do not have. */
+/* acosf and cosf differ between C libraries; these functions give the same bits everywhere. */
 static float arccos(float x) {
   return (float)vl_acos_double((double)x);
 }
@@ -55,7 +55,8 @@ static Cone cone_union(Cone a, Cone b) {
   return (Cone){vl_normalize(w), cosine(to), false};
 }
 
-/* Extends a to bound both. In place and by comparisons, because most of the build's time is spent here. */
+/* Extends a to bound both a and b. It works in place and by comparisons, because most of the build's time is spent
+ * here. */
 static void absorb(vlLightBounds *a, const vlLightBounds *b) {
   if (b->power == 0) return;
   if (a->power == 0) {
@@ -66,7 +67,7 @@ static void absorb(vlLightBounds *a, const vlLightBounds *b) {
     a->low[i] = b->low[i] < a->low[i] ? b->low[i] : a->low[i];
     a->high[i] = b->high[i] > a->high[i] ? b->high[i] : a->high[i];
   }
-  if (a->cos_o > -1) { /* else a's cone is the whole sphere already */
+  if (a->cos_o > -1) { /* otherwise a's cone is the whole sphere already */
     Cone ca = {vl_vec3(a->axis[0], a->axis[1], a->axis[2]), a->cos_o, false};
     Cone cb = {vl_vec3(b->axis[0], b->axis[1], b->axis[2]), b->cos_o, false};
     Cone c = cone_union(ca, cb);
@@ -197,7 +198,7 @@ static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLigh
     for (int i = 0; i < 3; i++) b->axis[i] = light->direction[i];
     float to = arccos(light->cos_start), te = arccos(light->cos_end);
     b->cos_o = light->cos_start;
-    b->cos_e = fminf(cosine(te - to), 0.999f); /* a hard edge has no width, and rounding none to lose */
+    b->cos_e = fminf(cosine(te - to), 0.999f); /* 0.999 gives a hard edge some width, for rounding */
   }
   if (light->shape != VL_NONE) {
     const vlWorldShape *shape = &world->shapes.items[light->shape];

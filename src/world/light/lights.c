@@ -1,4 +1,4 @@
-/* world/light/lights.c: scene lights and emissive shapes -> world lights, with the sampling distributions of
+/* world/light/lights.c: compiles the lights and emissive shapes of a scene, with the sampling distributions of
  * environment images. Scales are pbrt-v4's (lights.cpp; book 12): spectra are divided by their own luminance, times
  * scale, or set by power or illuminance. */
 #include <math.h>
@@ -131,7 +131,7 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
   double from[3] = {def->from[0], def->from[1], def->from[2]}, to[3] = {def->to[0], def->to[1], def->to[2]}, a[3], b[3];
   vl_mat4_point(&m, from, a);
   vl_mat4_point(&m, to, b);
-  double l = 0, sign = row->traits & VL_LIGHT_TRAIT_FAR ? -1 : 1; /* far: the direction is towards the light */
+  double l = 0, sign = row->traits & VL_LIGHT_TRAIT_FAR ? -1 : 1; /* if far, the direction is to the light */
   for (int i = 0; i < 3; i++) l += (b[i] - a[i]) * (b[i] - a[i]);
   l = sqrt(l);
   if (!(l > 0) && (row->traits & VL_LIGHT_TRAIT_AIMS))
@@ -144,7 +144,7 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
   light->at_point = (row->traits & VL_LIGHT_TRAIT_AT_POINT) != 0;
   light->far = (row->traits & VL_LIGHT_TRAIT_FAR) != 0;
   light->delta = (row->traits & VL_LIGHT_TRAIT_DELTA) != 0;
-  if (!light->delta) { /* rays that miss all surfaces hit it */
+  if (!light->delta) { /* rays that miss all surfaces hit the light */
     uint32_t *slot = VL_PUSH(world->context, &world->infinite_lights);
     if (!slot) return vl_fail_memory(error);
     *slot = (uint32_t)world->lights.count - 1;

@@ -41,7 +41,7 @@ static float seen(const vlEnvironment *env, const vlMipmap *mip, vlVec3 d) {
   return y > 0.0f ? y : 0.0f;
 }
 
-/* Bounds on the sample points of a cell, per axis. */
+/* Smallest and largest number of sample points of a cell along each axis. */
 enum { COARSEST = 2, FINEST = 4 };
 
 typedef struct Filling {
@@ -49,7 +49,7 @@ typedef struct Filling {
   const vlMipmap *mip;
   vlPortal *portal;
   uint32_t fine;
-  double *tangents; /* of the points' angles: size * fine */
+  double *tangents; /* tangents of the sample points' angles, size * fine values */
   double *passes;   /* per row: light that passes through a unit of the portal's area */
 } Filling;
 
@@ -109,10 +109,10 @@ vlResult vl_world_add_portal(vlWorld *world, const vlLightDef *def, vlEnvironmen
   if (!fill(world->context, &filling, &total, &passes)) return vl_fail_memory(error);
   double mean = total / (2 * M_PI);
   *power = passes * (double)portal->width * (double)portal->height;
-  double *tangents = vl_alloc_array(world->context, n, sizeof *tangents); /* of the middles of columns, and of rows */
+  double *tangents = vl_alloc_array(world->context, n, sizeof *tangents); /* at the middles of columns, of rows */
   if (!tangents) return vl_fail_memory(error);
   for (uint32_t i = 0; i < n; i++) tangents[i] = vl_precise_tan(M_PI * ((i + 0.5) / n - 0.5));
-  if (!(mean > 0)) mean = 1; /* a black sky: any way of looking at it will do */
+  if (!(mean > 0)) mean = 1; /* a black image: any distribution will do */
   for (uint32_t j = 0; j < n; j++) {
     double row = 0;
     for (uint32_t i = 0; i < n; i++) {

@@ -1,10 +1,10 @@
 /* world/light/portal.h: a portal through which an environment image is visible: the rectified image, and light sampling
- * in the part of it that is visible from a point. pbrt book (4th ed.) 12.5.3; summed-area tables: A.5.6. portal.c
- * builds it; the lookups are inline, for the hot loops.
+ * in its part that is visible from a point. See the pbrt book (4th ed.), 12.5.3, and A.5.6 for summed-area tables.
+ * portal.c builds it; the lookups are inline, for the hot loops.
  *
- * In the portal's frame (x, y along its sides, z towards the environment) a direction w has the angles alpha =
- * atan(w.x / w.z), beta = atan(w.y / w.z). (u, v) are these angles, mapped from [-90, 90] degrees to [0, 1]. Lines
- * parallel to the sides stay straight, so that the visible part of the environment is a rectangle of the square. */
+ * In the portal's frame (x, y along its sides, z towards the environment) a direction w has the angles alpha = atan(w.x
+ * / w.z), beta = atan(w.y / w.z). (u, v) are these angles, mapped from [-90, 90] degrees to [0, 1]. Lines parallel to
+ * the sides stay straight, so that the visible part of the environment is a rectangle of the square. */
 #ifndef WORLD_LIGHT_PORTAL_H
 #define WORLD_LIGHT_PORTAL_H
 
@@ -12,14 +12,15 @@
 #include "math/vec.h"
 
 typedef struct vlPortal {
-  float frame[9];  /* rows x, y, z: portal from world */
-  float corner[3]; /* world space, where u and v are smallest */
+  float frame[9];  /* portal from world: the rows are the axes x, y, z of the portal */
+  float corner[3]; /* corner of the portal with the smallest u and v, world space */
   float width, height;
-  uint32_t size; /* cells of the square: size x size */
-  double *sums;  /* (size + 1)^2: light of the cells below and left of a corner, rows from v = 0 */
+  uint32_t size; /* the (u, v) square has size x size cells */
+  double *sums; /* summed-area table of (size + 1)^2 values: light of all cells below and left of a cell corner, in rows
+                   from v = 0 */
 } vlPortal;
 
-/* The rectangle of the square that is visible from a point, in cells. */
+/* The part of the (u, v) square that is visible from a point: a rectangle, in units of cells. */
 typedef struct vlPortalWindow {
   double x0, y0, x1, y1;
 } vlPortalWindow;
@@ -50,7 +51,7 @@ static inline double vl_portal_cell(const vlPortal *portal, float tangent) {
   return ((double)(vl_atan(tangent) * VL_INV_PI) + 0.5) * portal->size;
 }
 
-/* The window visible from o. False if nothing is visible: o is behind the portal or in its plane. */
+/* Computes the window that is visible from o. False if nothing is visible: o is behind the portal or in its plane. */
 static inline bool vl_portal_window(const vlPortal *portal, vlVec3 o, vlPortalWindow *window) {
   vlVec3 c = vl_portal_corner_from(portal, o);
   if (!(c.z > 0.0f)) return false;
@@ -69,13 +70,13 @@ static inline uint32_t vl_portal_index(const vlPortal *portal, double x) {
   uint32_t i = x > 0 ? (uint32_t)x : 0;
   return i < portal->size ? i : portal->size - 1;
 }
-/* Sum of the cells left of column i, up to row y. */
+/* Light of the cells left of column i and below row y. */
 static inline double vl_portal_below(const vlPortal *portal, uint32_t i, double y) {
   uint32_t j = vl_portal_index(portal, y);
   const double *at = portal->sums + (size_t)j * (portal->size + 1) + i;
   return at[0] + (at[portal->size + 1] - at[0]) * (y - j);
 }
-/* Sum of the cells left of column i, between the two rows of the window. */
+/* Light of the cells left of column i, between the lower and the upper edge of the window. */
 static inline double vl_portal_left(const vlPortal *portal, uint32_t i, const vlPortalWindow *w) {
   return vl_portal_below(portal, i, w->y1) - vl_portal_below(portal, i, w->y0);
 }
@@ -89,8 +90,8 @@ static inline double vl_portal_light(const vlPortal *portal, uint32_t x, uint32_
   return (high[1] - high[0]) - (low[1] - low[0]);
 }
 
-/* Solid angle per unit of the (u, v) square where the direction's tangents are x, y: pi^2 (1 - w.x^2) (1 - w.y^2) /
- * w.z, without cancellation. */
+/* Solid angle per unit area of the (u, v) square, for the direction with tan(alpha) = x and tan(beta) = y: pi^2 (1 -
+ * w.x^2) (1 - w.y^2) / w.z, without cancellation. */
 static inline double vl_portal_solid_angle(double x, double y) {
   double square = 1.0 + x * x + y * y;
   return 9.869604401089358 * (1.0 + x * x) * (1.0 + y * y) / (square * __builtin_sqrt(square));
@@ -115,7 +116,7 @@ static inline vlVec3 vl_portal_sample(const vlPortal *portal, const vlPortalWind
   if (!(to > from)) return vl_vec3(0, 0, 0);
   double wanted = from + (double)u * (to - from);
   uint32_t low = vl_portal_index(portal, w->x0), high = vl_portal_index(portal, w->x1);
-  while (low < high) { /* the first column whose right side is past the target */
+  while (low < high) { /* binary search for the first column whose right side is past the target */
     uint32_t middle = (low + high) / 2;
     if (vl_portal_left(portal, middle + 1, w) > wanted)
       high = middle;

@@ -1,4 +1,4 @@
-/* world/light/shape_lights.c: emissive shapes -> world lights, one per emitting face. */
+/* world/light/shape_lights.c: compiles emissive shapes into lights, one per emitting face. */
 #include <math.h>
 #include <string.h>
 
@@ -65,8 +65,8 @@ static float face_luminance(const vlWorld *world, const vlWorldShape *s, uint32_
   return e->image_scale * (isfinite(sum) ? sum : 0);
 }
 
-/* Corners and emitting side. The renderer flips the geometric normal to the side of the interpolated shading normal:
- * if the three vertex normals agree on the side, so do all points of the triangle. */
+/* Sets the corners and the emitting side of a light. The renderer flips the geometric normal to the side of the
+ * interpolated shading normal: if the three vertex normals agree on the side, so do all points of the triangle. */
 static void triangle_light(const vlWorldShape *s, uint32_t prim, vlWorldLight *light) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
   vlVec3 p[3];
@@ -144,11 +144,11 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
   if (meshed && (r = choose_faces(world, shape, first, &faces, error)) != VL_OK) return r;
   if (!VL_RESERVE(world->context, &world->lights, faces)) return vl_fail_memory(error);
   shape->first_light = faces ? (uint32_t)world->lights.count : VL_NONE;
-  float own = 0; /* luminance of the emission's spectrum */
+  float own = 0; /* luminance of the spectrum of the emission */
   for (uint32_t i = 0, k = 0; k < faces; i++) {
     if (vl_shape_light(shape, i) == VL_NONE) continue;
     float area = vl_world_prim_area(shape, i);
-    if (has_power) { /* power is per primitive, as in pbrt */
+    if (has_power) { /* the given power is per primitive, as in pbrt */
       if (k > 0) *shared = VL_NONE;
       if ((r = add_shape_emission(world, scene, emission, shared, error)) != VL_OK) return r;
       vlEmitted *e = &world->emitted.items[*shared];

@@ -4,16 +4,16 @@
 #ifndef WORLD_MATERIAL_BSDF_KIND_H
 #define WORLD_MATERIAL_BSDF_KIND_H
 
-#define VL_BSDF_KINDS(X)                                                                                       \
-  X(DIFFUSE, diffuse)                                                                                          \
-  X(CONDUCTOR, conductor)   /* eta, k; rough, or smooth per lane (both alphas < 1e-3) */                       \
-  X(DIELECTRIC, dielectric) /* eta_s > 0, interior over exterior; rough or smooth per lane */                  \
-  X(THIN_DIELECTRIC, thin)                                                                                     \
-  X(COATED_DIFFUSE, coat)   /* rough or smooth dielectric coat over a diffuse base; tabulated transmittance */ \
-  X(PRINCIPLED, principled) /* several layers: docs/principled.md */                                           \
-  X(DIFFUSE_TRANSMISSION, translucent)                                                                         \
-  X(LAYERED, layered) /* rough or smooth dielectric coat over metal or a diffuse base; random walks */         \
-  X(HAIR, hair)                                                                                                \
+#define VL_BSDF_KINDS(X)                                                                                               \
+  X(DIFFUSE, diffuse)                                                                                                  \
+  X(CONDUCTOR, conductor) /* metal of index eta + i k; each lane is rough, or smooth if both alphas are below 1e-3 */  \
+  X(DIELECTRIC, dielectric) /* eta_s > 0 is the index inside over the index outside; each lane is rough or smooth */   \
+  X(THIN_DIELECTRIC, thin)                                                                                             \
+  X(COATED_DIFFUSE, coat)   /* rough or smooth dielectric coat over a diffuse base, by a table of its transmittance */ \
+  X(PRINCIPLED, principled) /* the principled material, which has several layers (docs/principled.md) */               \
+  X(DIFFUSE_TRANSMISSION, translucent)                                                                                 \
+  X(LAYERED, layered) /* rough or smooth dielectric coat over metal or a diffuse base, by random walks */              \
+  X(HAIR, hair)                                                                                                        \
   X(MEASURED, measured)
 
 typedef enum vlBsdfKind {

@@ -10,8 +10,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* int Fr(c) c dc and int Fr(c) c^2 dc over cosines 0 to 1. eta: index on the incident side over the index on the
- * other side: 1.5 inside a solid of index 1.5. */
+/* Fresnel moments: int Fr(c) c dc and int Fr(c) c^2 dc over cosines c from 0 to 1. eta: index on the incident side over
+ * index on the other side, so 1.5 for light inside a solid of index 1.5. */
 static double moment1(double eta) {
   double e = eta;
   if (e < 1) return 0.45966 + e * (-1.73965 + e * (3.37668 + e * (-3.904945 + e * (2.49277 - 0.68441 * e))));
@@ -24,7 +24,7 @@ static double moment2(double eta) {
          e * (404.557 + e * (-189.519 + e * (54.9327 + e * (-9.00603 + 0.63942 * e))));
 }
 
-/* Fresnel reflectance at this cosine of light that leaves the solid. */
+/* Fresnel reflectance for light that leaves the solid at this cosine. */
 static double reflected_inside(double cosine, double eta) {
   double sin2 = eta * eta * (1 - cosine * cosine);
   if (sin2 >= 1) return 1;
@@ -105,7 +105,7 @@ static void fill_row(void *user, uint32_t row, uint32_t worker) {
     if (i + 1 == VL_BSSRDF_RADII) break;
     float f[4];
     for (uint32_t k = 0; k < 4; k++) {
-      uint32_t j = i + k; /* index plus one, so that it stays >= 0 */
+      uint32_t j = i + k; /* index plus one, so that it is never negative */
       f[k] = t->profile[row][j < 1 ? 0 : j > VL_BSSRDF_RADII ? VL_BSSRDF_RADII - 1 : j - 1];
     }
     vlSplinePiece p = vl_spline_piece(t->radius, VL_BSSRDF_RADII, i, f);
@@ -119,7 +119,7 @@ void vl_bssrdf_build(vlContext *context, float eta, float g, vlBssrdfTable *t) {
   t->leaves = (float)(1 - 2 * moment1(1 / (double)eta));
   t->radius[0] = 0.0f;
   for (uint32_t i = 1; i < VL_BSSRDF_RADII; i++) t->radius[i] = i > 1 ? t->radius[i - 1] * 1.2f : 2.5e-3f;
-  for (uint32_t i = 0; i < VL_BSSRDF_ALBEDOS; i++) /* closer together at high albedos */
+  for (uint32_t i = 0; i < VL_BSSRDF_ALBEDOS; i++) /* nodes are closer together at high albedos */
     t->albedo[i] = (float)((1 - vl_precise_exp(-8.0 * i / (VL_BSSRDF_ALBEDOS - 1))) / (1 - vl_precise_exp(-8.0)));
   vl_parallel_for(context, VL_BSSRDF_ALBEDOS, fill_row, t);
 }

@@ -1,9 +1,10 @@
 /* world/material/bssrdf.h: subsurface scattering in a homogeneous solid: a radially symmetric profile over the surface,
  * tabulated over albedo and optical radius, as in pbrt-v4's subsurface material. The model is photon beam diffusion
- * (Habel, Christensen and Jarosz 2013; pbrt book, 3rd edition, 11.4, 15.4, 15.5): a beam enters perpendicularly;
- * multiple scattering is a dipole per point of the beam, single scattering the integral along it.
+ * (Habel, Christensen and Jarosz 2013; pbrt book, 3rd edition, 11.4, 15.4, 15.5): a beam enters the solid
+ * perpendicularly. Multiple scattering is the integral over the beam of a dipole at each point; single scattering is an
+ * integral along the beam too.
  *
- * Radii are optical: 1 is a mean free path, 1 / (sigma_a + sigma_s). Catmull-Rom splines interpolate between the
+ * Radii are in units of the mean free path, 1 / (sigma_a + sigma_s). Catmull-Rom splines interpolate between the
  * table's nodes in both directions. The lookups are inlined by the hot files. */
 #ifndef WORLD_MATERIAL_BSSRDF_H
 #define WORLD_MATERIAL_BSSRDF_H
@@ -16,23 +17,24 @@ enum { VL_BSSRDF_ALBEDOS = 100, VL_BSSRDF_RADII = 64 };
 
 typedef struct vlBssrdfTable {
   float eta, g;
-  float leaves; /* share of cosine-weighted light that the surface transmits: 1 - 2 int Fr cos dcos */
+  float leaves; /* share of diffuse light that the surface transmits: 1 - 2 int Fr cos dcos */
   float albedo[VL_BSSRDF_ALBEDOS], radius[VL_BSSRDF_RADII];
-  /* 2 pi r R(r). R: light that leaves per optical area at distance r, per unit of light that entered. */
+  /* 2 pi r R(r). R(r) is the light that leaves per unit of area at distance r from the beam, per unit of light that
+   * entered. */
   float profile[VL_BSSRDF_ALBEDOS][VL_BSSRDF_RADII];
-  float cdf[VL_BSSRDF_ALBEDOS][VL_BSSRDF_RADII]; /* its integral from 0 */
-  float effective[VL_BSSRDF_ALBEDOS];            /* whole integral: share of light that leaves again */
+  float cdf[VL_BSSRDF_ALBEDOS][VL_BSSRDF_RADII]; /* integral of profile from 0 to the node's radius */
+  float effective[VL_BSSRDF_ALBEDOS]; /* integral of profile over all radii: share of the light that leaves again */
 } vlBssrdfTable;
 
-/* Fills a table, on all workers. eta > 0 (interior over exterior), -1 < g < 1 (mean cosine of scattering). */
+/* Fills a table, on all workers. eta > 0: index inside over index outside. -1 < g < 1: mean cosine of scattering. */
 void vl_bssrdf_build(vlContext *context, float eta, float g, vlBssrdfTable *table);
-/* R(r) of one albedo by direct integration with `samples` points along the beam (at most 1000). The table is built
+/* R(r) for one albedo by direct integration with `samples` points along the beam (at most 1000). The table is built
  * with 100. */
 double vl_bssrdf_profile(double albedo, double g, double eta, double r, int samples);
 
 /* ---- splines ----------------------------------------------------------------------------------------------------- */
 
-/* Weights of four nodes from `first` on; the weights of nodes that do not exist are zero. */
+/* Weights of the four nodes from `first` on. Nodes outside the table have weight zero. */
 typedef struct vlSpline {
   uint32_t first;
   float w[4];
@@ -42,7 +44,7 @@ typedef struct vlSpline {
 static inline vlSpline vl_spline_in(const float *nodes, uint32_t n, uint32_t i, float x) {
   float x0 = nodes[i], x1 = nodes[i + 1], width = x1 - x0;
   float t = (x - x0) / width, t2 = t * t, t3 = t2 * t;
-  /* Cubic Hermite basis. Slopes at both ends are central differences, one-sided at the border. */
+  /* Cubic Hermite basis. The slope at each node is a central difference; at the border of the table it is one-sided. */
   float begin = t3 - 2 * t2 + t, end = t3 - t2, w0 = 0, w1 = 2 * t3 - 3 * t2 + 1, w2 = 3 * t2 - 2 * t3, w3 = 0;
   if (i > 0) {
     float s = begin * width / (x1 - nodes[i - 1]);
@@ -65,7 +67,8 @@ static inline vlSpline vl_spline_at(const float *nodes, uint32_t n, float x) {
   return vl_spline_in(nodes, n, vl_find_interval(nodes, n - 1, x), x);
 }
 
-/* The cubic between two nodes that are `width` apart, for t = 0 to 1: value f, and F, its integral divided by width. */
+/* The cubic between two nodes at distance `width`, as a function of t from 0 to 1: f is its value, F its integral
+ * divided by width. */
 typedef struct vlSplinePiece {
   float f0, f1, d0, d1;
 } vlSplinePiece;
@@ -79,7 +82,8 @@ static inline float vl_spline_integral(vlSplinePiece p, float t) {
   return t * (p.f0 + t * (0.5f * p.d0 + t * ((p.f1 - p.f0 - (2 * p.d0 + p.d1) * (1.0f / 3.0f)) +
                                              t * (0.25f * (p.d0 + p.d1) + 0.5f * (p.f0 - p.f1)))));
 }
-/* Uses the slopes of vl_spline_at. f: values of the nodes i - 1 to i + 2, where they exist. */
+/* Makes the cubic of interval i, with the same slopes as vl_spline_at. f: values at the nodes i - 1 to i + 2; values
+ * outside the table are not read. */
 static inline vlSplinePiece vl_spline_piece(const float *nodes, uint32_t n, uint32_t i, const float f[4]) {
   float width = nodes[i + 1] - nodes[i];
   vlSplinePiece p = {f[1], f[2], f[2] - f[1], f[2] - f[1]};
@@ -87,13 +91,13 @@ static inline vlSplinePiece vl_spline_piece(const float *nodes, uint32_t n, uint
   if (i + 2 < n) p.d1 = width * (f[3] - f[1]) / (nodes[i + 2] - nodes[i]);
   return p;
 }
-/* t in [0, 1] where the value (or the integral) equals u, which lies between the values at both ends. Newton's
- * method, with bisection when a step leaves the bracket. */
+/* Finds t in [0, 1] where the value (or the integral) equals u; u lies between its values at both ends. It uses
+ * Newton's method, and bisects if a step leaves the bracket. */
 static inline float vl_spline_solve(vlSplinePiece p, float u, int integral, float tolerance) {
   float low = 0, high = 1, t = 0.5f;
   for (int k = 0; k < 40; k++) {
     float f = (integral ? vl_spline_integral(p, t) : vl_spline_value(p, t)) - u;
-    if ((f < 0 ? -f : f) <= tolerance || high - low < 1e-6f) break; /* some roundings of t */
+    if ((f < 0 ? -f : f) <= tolerance || high - low < 1e-6f) break; /* tolerance: a few rounding errors */
     if (f < 0)
       low = t;
     else
@@ -116,7 +120,8 @@ static inline float vl_bssrdf_mix(const vlSpline *a, const float *row0, uint32_t
 static inline float vl_bssrdf_effective(const vlBssrdfTable *table, const vlSpline *albedo) {
   return vl_bssrdf_mix(albedo, table->effective, 1);
 }
-/* Radii grow by a factor of 1.2 per node: a logarithm estimates the cell, comparison with the nodes corrects it. */
+/* Finds the interval of a radius. Radii grow by a factor of 1.2 per node, so a logarithm estimates the interval;
+ * comparison with the nodes corrects it. */
 static inline uint32_t vl_bssrdf_cell(const vlBssrdfTable *table, float r) {
   float guess = 1.0f + vl_ln(r * 400.0f + VL_MIN_POSITIVE) * 5.48481494f;
   uint32_t i = guess > 1.0f ? (uint32_t)guess : 0;
@@ -125,7 +130,7 @@ static inline uint32_t vl_bssrdf_cell(const vlBssrdfTable *table, float r) {
   i += i < VL_BSSRDF_RADII - 2 && r >= table->radius[i + 1];
   return i;
 }
-/* 2 pi r R(r); 0 beyond the table. */
+/* 2 pi r R(r); 0 for radii beyond the table. */
 static inline float vl_bssrdf_ring(const vlBssrdfTable *table, const vlSpline *albedo, float r) {
   if (!(r >= 0 && r <= table->radius[VL_BSSRDF_RADII - 1])) return 0;
   vlSpline s = vl_spline_in(table->radius, VL_BSSRDF_RADII, vl_bssrdf_cell(table, r), r);
@@ -134,13 +139,13 @@ static inline float vl_bssrdf_ring(const vlBssrdfTable *table, const vlSpline *a
     sum += s.w[k] * vl_bssrdf_mix(albedo, &table->profile[0][s.first + k], VL_BSSRDF_RADII);
   return sum > 0 ? sum : 0;
 }
-/* R(r). The ring profile is linear towards r = 0: the value at a small r is used there. */
+/* R(r). 2 pi r R(r) is linear near r = 0, so the value at a small radius is used there. */
 static inline float vl_bssrdf_at(const vlBssrdfTable *table, const vlSpline *albedo, float r) {
   const float near = 1e-4f;
   float x = r > near ? r : near;
   return vl_bssrdf_ring(table, albedo, x) / (6.28318530717958648f * x);
 }
-/* Samples a radius with density ring / effective from u in [0, 1). Negative if no light leaves. */
+/* Samples a radius from u in [0, 1), with density 2 pi r R(r) / effective. Negative if no light leaves. */
 static inline float vl_bssrdf_sample(const vlBssrdfTable *table, const vlSpline *albedo, float u) {
   float whole = vl_bssrdf_effective(table, albedo);
   if (!(whole > 0)) return -1;
@@ -162,7 +167,7 @@ static inline float vl_bssrdf_sample(const vlBssrdfTable *table, const vlSpline 
   vlSplinePiece p = vl_spline_piece(table->radius, VL_BSSRDF_RADII, low, f);
   return x0 + width * vl_spline_solve(p, within, 1, 1e-6f * vl_spline_integral(p, 1));
 }
-/* Inverts effective(albedo): the single-scattering albedo for a given reflectance of the solid. */
+/* Gives the single-scattering albedo for a given reflectance of the solid: the inverse of `effective`. */
 static inline float vl_bssrdf_invert(const vlBssrdfTable *table, float effective) {
   const uint32_t n = VL_BSSRDF_ALBEDOS;
   if (!(effective > table->effective[0])) return table->albedo[0];

@@ -1,6 +1,6 @@
-/* world/material/coat.c: the coat's tables by deterministic quadrature. Integrals over directions are integrals over
- * the unit square of visible-normal sampling, with weight G/G1, so that the nodes lie where the microfacets are for
- * any roughness. */
+/* world/material/coat.c: the coat's tables by deterministic quadrature. Integrals over directions are transformed to
+ * the unit square of visible-normal sampling, with weight G/G1. The nodes then follow the distribution of microfacets
+ * for any roughness. */
 #include "world/material/coat.h"
 
 #include <string.h>
@@ -9,8 +9,8 @@
 #include "math/fresnel.h"
 #include "math/ggx.h"
 
-/* Quadrature sizes. Azimuths: midpoint rule over half a turn (symmetric). Elevations: Gauss-Legendre with v = 1 -
- * s^2, denser at the long tail of grazing microfacets. R has a kink at the inner critical angle and needs more of
+/* Quadrature sizes. Azimuths: midpoint rule over half a turn (symmetric). Elevations: Gauss-Legendre with v = 1 - s^2,
+ * denser at the long tail of grazing microfacets. R has a kink at the inner critical angle and needs more nodes of
  * both. OUTER: cosines of the integral for R. */
 enum { TURNS = 12, HEIGHTS = 24, TURNS_BACK = 24, HEIGHTS_BACK = 40, GRID = TURNS_BACK * HEIGHTS_BACK, OUTER = 32 };
 
@@ -20,7 +20,7 @@ typedef struct {
   double weight[GRID];
 } Grid;
 typedef struct {
-  Grid out, back;            /* for T, for R */
+  Grid out, back;            /* nodes for T, and for R */
   double x[OUTER], w[OUTER]; /* Gauss-Legendre on [0, 1] */
 } Rules;
 
@@ -67,10 +67,9 @@ static inline float layer(float tau, float c) {
   return vl_exp(-tau / down);
 }
 
-/* Mean over the visible normals for direction cosine c: share of light that the rough interface transmits (transmit
- * != 0) or reflects, attenuated by the layer. eta: far side over near side. imitation (may be null) receives the
- * same mean with the sum of the two weights that pbrt-v4 gives a direction found by both of its samplers; see
- * coat.h. */
+/* Mean over the visible normals for direction cosine c: the share of light that the rough interface transmits (transmit
+ * != 0) or reflects, attenuated by the layer. eta: far side over near side. imitation (may be null) receives the same
+ * mean with the sum of the two weights that pbrt-v4 gives a direction found by both of its samplers; see coat.h. */
 static double interface_mean(const Grid *grid, int transmit, float c, float eta, float alpha, float tau,
                              double *imitation) {
   float part[GRID], excess[GRID];
@@ -204,7 +203,8 @@ vlResult vl_coat_build(vlContext *context, float eta, float tau, uint32_t max_de
   return VL_OK;
 }
 
-/* As escape_share, exact for what the cubics give between the nodes, kinks or not: midpoints of x = c^(1/4). */
+/* Like escape_share, but integrates the interpolated table by the midpoint rule over x = c^(1/4), so that it agrees
+ * with lookups. */
 static double escape_exactly(const float *t, float eta) {
   enum { CELLS = 16 * (VL_COAT_COS - 1) };
   double sum = 0.0;
@@ -230,8 +230,8 @@ static void conserve_row(const Rules *rules, vlCoatTable *table, uint32_t row) {
           c = x * x * x * x > VL_MIN_FRACTION ? x * x * x * x : VL_MIN_FRACTION;
     through[i] = (float)(1.0 - reflectance_outside(rules, c, eta, alpha));
     double clear = table->tau > 0.0f ? transmittance(rules, c, eta, alpha, 0.0f, &unused) : 0.0;
-    if (clear > 0.0) layers = (double)t[i] / clear; /* else as at the cosine above */
-    t[i] = (float)layers;                           /* what the layer leaves */
+    if (clear > 0.0) layers = (double)t[i] / clear; /* otherwise as at the previous cosine */
+    t[i] = (float)layers;                           /* share that the layer transmits */
   }
   double escape = escape_exactly(through, eta), limit = escape > 1.0 ? 1.0 / escape : 1.0;
   for (int i = 0; i < VL_COAT_COS; i++) table->imitation[row][i] = t[i] = (float)(limit * (double)(t[i] * through[i]));

@@ -11,7 +11,8 @@ typedef struct vlMaterialBuild {
   vlWorld *world;
   const vlScene *scene;
   const vlMaterialDef *def;
-  vlWorldMaterial *m; /* nodes are -1; all else is zero except kind, traits, remap and eta_s (1.5) */
+  vlWorldMaterial *m; /* the result; on entry nodes are -1, eta_s is 1.5, kind, traits and remap are set, and all other
+                         members are zero */
   vlError *error;
 } vlMaterialBuild;
 
@@ -23,7 +24,7 @@ VL_MATERIAL_KINDS(VL_DECLARE_COMPILE)
 static inline vlResult vl_material_float(const vlMaterialBuild *b, vlFloatInput input, int32_t *node) {
   return vl_world_float_node(b->world, b->scene, input, node, b->error);
 }
-/* The same for a member of the def; its row says which role the spectrum has. */
+/* Compiles a spectrum input, which is a member of the def. The row of the kind gives the role of the spectrum. */
 vlResult vl_material_spectrum(const vlMaterialBuild *b, const vlSpectrumInput *input, int32_t *node);
 typedef struct vlMaterialFloat {
   vlFloatInput input;
@@ -31,12 +32,12 @@ typedef struct vlMaterialFloat {
 } vlMaterialFloat;
 vlResult vl_material_floats(const vlMaterialBuild *b, const vlMaterialFloat *floats, size_t count);
 
-/* Inputs that several kinds share: u_roughness and v_roughness; a metal's reflectance, or its eta and k; a
- * dielectric's index of refraction, as one number or (if disperses) a spectrum. */
+/* Compile inputs that several kinds share. Roughness: u_roughness and v_roughness. Metal: reflectance, or eta and k.
+ * Dielectric: index of refraction, one number or, if it is dispersive, a spectrum. */
 vlResult vl_material_roughness(const vlMaterialBuild *b);
 vlResult vl_material_metal(const vlMaterialBuild *b);
 vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta, bool disperses);
-/* The layers of a coat that random walks evaluate. metal: of a coated conductor. */
+/* Compiles the inputs of a coat that random walks evaluate. metal: the base is a conductor. */
 vlResult vl_material_layers(const vlMaterialBuild *b, bool metal);
 vlResult vl_material_fail(const vlMaterialBuild *b, const char *what);
 

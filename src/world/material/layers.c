@@ -10,8 +10,8 @@ vlResult vl_material_layers(const vlMaterialBuild *b, bool metal) {
   b->m->own = l;
   l->metal = metal;
   l->coat_u = l->coat_v = -1;
-  /* Limits: a walk never takes more steps (Russian roulette ends it), and more walks per evaluation gain nothing
-   * over more image samples. */
+  /* Limits. No walk takes more steps, because Russian roulette ends it before. More walks per evaluation gain nothing
+   * over more samples per pixel. */
   l->depth = def->max_depth < 1000 ? def->max_depth : 1000;
   l->walks = def->samples < 256 ? def->samples : 256;
   const vlMaterialFloat floats[] = {{def->thickness, &l->thickness},

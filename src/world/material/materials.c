@@ -1,4 +1,5 @@
-/* world/material/materials.c: scene materials -> world materials. Index 0 is the default, a diffuse grey. */
+/* world/material/materials.c: compiles the materials of a scene. Material 0 of the world is the default material, a
+ * diffuse grey. */
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -25,7 +26,7 @@ static float alpha_of(float roughness, bool remap) {
   return remap ? sqrtf(roughness > 0 ? roughness : 0) : roughness;
 }
 
-/* The coat table for this range of alphas. */
+/* Gives the coat table for this range of alphas. Coats with equal parameters share a table. */
 static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWorldMaterial *m, float low, float high,
                            const vlCoatTable **table, vlError *error) {
   float thickness = def->thickness.value;
@@ -121,7 +122,8 @@ vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta,
     m->dispersive = true;
     return vl_material_spectrum(b, eta, &m->eta);
   }
-  /* A single number stands for a glass: its index at the sodium line, as catalogues give it. */
+  /* A dispersive index given as a single number stands for a glass: it is the index at the sodium line, as in
+   * catalogues. */
   float dense[VL_LAMBDA_COUNT];
   vlResult r = vl_spectrum_dense(&eta->value, VL_ROLE_UNBOUNDED, dense, b->error);
   if (r != VL_OK) return r;
@@ -182,7 +184,7 @@ vlResult vl_compile_measured_material(const vlMaterialBuild *b) {
   return measured_of(b->world, b->def, b->m, b->error);
 }
 
-/* Each hit takes the BSDF of one of the parts. */
+/* At each hit, a mix uses the BSDF of one of its parts. */
 vlResult vl_compile_mix_material(const vlMaterialBuild *b) {
   vlWorldMaterial *m = b->m;
   for (int i = 0; i < 2; i++) {
@@ -196,7 +198,7 @@ vlResult vl_compile_mix_material(const vlMaterialBuild *b) {
   return vl_material_float(b, b->def->amount, &m->amount);
 }
 
-/* Never shaded. */
+/* An interface is never shaded. */
 vlResult vl_compile_interface_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_DIFFUSE;
   return VL_OK;

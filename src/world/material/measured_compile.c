@@ -44,7 +44,7 @@ static vlResult find_field(Source *s, int which, vlError *error) {
     return vl_fail(error, VL_ERROR_SCENE, "%s: \"%s\" of the measured material should be %s of %u dimension%s", s->path,
                    name, wanted[which].type == VL_TENSOR_U8 ? "bytes" : "32-bit floats", wanted[which].rank,
                    wanted[which].rank == 1 ? "" : "s");
-  for (uint32_t i = 0; i < f->rank; i++) /* guards against overflow: from here on all values lie within the file */
+  for (uint32_t i = 0; i < f->rank; i++) /* guards against overflow; after this all values lie within the file */
     if (f->shape[i] > INT32_MAX) return vl_fail(error, VL_ERROR_SCENE, "%s: \"%s\" is too large", s->path, name);
   for (uint64_t i = 0; f->type == VL_TENSOR_F32 && i < f->count; i++)
     if (!isfinite(value_of(f, i)))
@@ -155,7 +155,7 @@ static void find_symmetry(vlMeasured *m) {
 /* ---- spectra ----------------------------------------------------------------------------------------------------- */
 
 /* Contribution of each measured wavelength to the channels of sRGB under daylight, 3 numbers each. The spectrum is
- * interpolated linearly between the measured wavelengths. A white surface has exactly 1. */
+ * interpolated linearly between the measured wavelengths. A white surface gets exactly 1 in each channel. */
 static void hat_rgb(const float *lambda, uint32_t n, double *weights) {
   const float *observer[3] = {vl_cie_x(), vl_cie_y(), vl_cie_z()}, *light = vl_space_illuminant(VL_SPACE_SRGB);
   float matrix[9];
@@ -192,7 +192,7 @@ static bool spectra_to_rgb(vlContext *context, vlMeasured *m, const vlTensorFiel
   return true;
 }
 
-/* The file's memory block is kept for the spectra, moved to its start and shrunk. */
+/* Moves the spectra to the start of the file's memory block, shrinks the block, and keeps it. */
 static void keep_spectra(vlContext *context, vlMeasured *m, Source *s) {
   const vlTensorField *f = s->fields[SPECTRA];
   size_t size = (size_t)f->count * sizeof(float);
@@ -214,7 +214,7 @@ static void find_albedo(vlMeasured *m, float *albedo) {
       for (uint32_t x = 0; x < t->width; x++) {
         double part = (x == 0 || x == t->width - 1 ? 0.5 : 1) * (y == 0 || y == t->height - 1 ? 0.5 : 1);
         double value = (double)t->values[k * size + (size_t)y * t->width + x];
-        if (!m->scaled) { /* the table holds f cos itself */
+        if (!m->scaled) { /* the table holds f cos w itself */
           float u = (float)x / (float)(t->width - 1), v = (float)y / (float)(t->height - 1);
           vlMeasuredPoint n = vl_measured_sample(&m->vndf, straight, u, v);
           float d = vl_measured_in(&m->ndf, m->ndf.values, vl_measured_cell(&m->ndf, n.x, n.y));

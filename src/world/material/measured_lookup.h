@@ -1,7 +1,8 @@
-/* world/material/measured_lookup.h: lookups in measured materials: functions that are bilinear over the unit square
- * and linear between the tabulated angles. They are evaluated, sampled by inversion (first the row, by its marginal,
- * then the position within it), and inverted. Between angles the density is a mixture: its integrals are mixed with
- * the same weights as its values. By value and inline, for the hot loops. */
+/* world/material/measured_lookup.h: lookups in measured materials: functions that are bilinear over the unit square and
+ * linear between the tabulated angles. This file evaluates them, samples them (first y by its marginal density, then x
+ * within the row), and inverts the sampling. Between tabulated angles the density is a mixture of slices, so its
+ * integrals are mixed with the same weights as its values. The functions are inline and take values, for the hot
+ * loops. */
 #ifndef WORLD_MATERIAL_MEASURED_LOOKUP_H
 #define WORLD_MATERIAL_MEASURED_LOOKUP_H
 
@@ -17,8 +18,8 @@ typedef struct vlMeasuredSlices {
   float weight[4];
 } vlMeasuredSlices;
 
-/* Interval [i, i + 1] of ascending knots that contains x, and the position t in it, clamped to [0, 1]. With one knot
- * both are 0. */
+/* The interval [i, i + 1] of ascending knots that contains x, and the position t of x in the interval, clamped to [0,
+ * 1]. If there is one knot, i and t are 0. */
 typedef struct vlMeasuredKnot {
   uint32_t i;
   float t;
@@ -42,16 +43,16 @@ static inline vlMeasuredSlices vl_measured_slices(const vlMeasured *m, float phi
   return s;
 }
 
-/* Element i of the mixture of the slices; each slice has `size` elements. */
+/* Element i of the mixture of slices. Each slice has `size` elements. */
 static inline float vl_measured_mix(const float *data, size_t size, vlMeasuredSlices s, size_t i) {
   float sum = 0.0f;
   for (uint32_t k = 0; k < s.count; k++) sum += s.weight[k] * data[s.slice[k] * size + i];
   return sum;
 }
 
-/* Cell of the grid that contains (x, y), and the position (s, t) in it. */
+/* The cell of the grid that contains the point (x, y), and the position (s, t) of the point in the cell. */
 typedef struct vlMeasuredCell {
-  size_t at; /* index of its first node within a slice */
+  size_t at; /* index of the cell's first node within a slice */
   uint32_t column, row;
   float s, t;
 } vlMeasuredCell;
@@ -68,12 +69,12 @@ static inline float vl_measured_between(float a, float b, float t) {
   return (1.0f - t) * a + t * b;
 }
 
-/* Value of one slice. */
+/* Value of one slice at a point. */
 static inline float vl_measured_in(const vlMeasuredTable *table, const float *slice, vlMeasuredCell c) {
   const float *a = slice + c.at, *b = a + table->width;
   return vl_measured_between(vl_measured_between(a[0], a[1], c.s), vl_measured_between(b[0], b[1], c.s), c.t);
 }
-/* Value of the mixture. */
+/* Value of the mixture of slices at a point. */
 static inline float vl_measured_at(const vlMeasuredTable *table, vlMeasuredSlices s, float x, float y) {
   vlMeasuredCell c = vl_measured_cell(table, x, y);
   size_t size = (size_t)table->width * table->height;
@@ -93,7 +94,7 @@ static inline float vl_measured_part(float a, float b, float t) {
   return t * (a + 0.5f * (b - a) * t);
 }
 
-/* The mixture along a line between two rows: start and weight of both rows of each slice. */
+/* A line of constant y between two rows of the mixture: for each slice, the start and the weight of both rows. */
 typedef struct vlMeasuredLine {
   uint32_t count;
   size_t at[8];
@@ -118,7 +119,7 @@ typedef struct vlMeasuredPoint {
   float x, y, pdf;
 } vlMeasuredPoint;
 
-/* Samples a point from (u, v), uniform in the unit square: v gives y, u gives x. */
+/* Samples a point from a random point (u, v) of the unit square: v gives y, and u gives x. */
 static inline vlMeasuredPoint vl_measured_sample(const vlMeasuredTable *table, vlMeasuredSlices slices, float u,
                                                  float v) {
   uint32_t w = table->width, h = table->height, low = 0, high = h - 1;
@@ -150,7 +151,7 @@ static inline vlMeasuredPoint vl_measured_sample(const vlMeasuredTable *table, v
                            vl_measured_between(a, b, s)};
 }
 
-/* Albedo at normal incidence, at a channel or wavelength (RGB: the channel itself). */
+/* Albedo at normal incidence at the wavelength of a channel; in RGB mode, of the channel. */
 static inline float vl_measured_albedo(const vlMeasured *m, int channel, float lambda) {
   if (!m->lambda) return channel < 3 ? m->albedo[channel] : 0.0f;
   vlMeasuredKnot k = vl_measured_knot(m->lambda, m->lambdas, lambda);

@@ -6,7 +6,8 @@
 
 #include "world/material/compile.h"
 
-/* Cauchy's n = a + b / lambda^2 (nm) through n_d with the Abbe number 20 / dispersion, at the lines d, F and C. */
+/* Coefficients of Cauchy's n = a + b / lambda^2 (lambda in nm), such that n is n_d at the line d, and the lines d, F
+ * and C give the Abbe number 20 / dispersion. */
 static void cauchy(float n, float dispersion, vlWorldPrincipled *p) {
   const double d = 587.6, f = 486.1, c = 656.3;
   double abbe = 20.0 / (double)dispersion;
@@ -35,8 +36,8 @@ static bool is_zero(vlFloatInput input) {
 #define NO_REFRACTION 1e-3f
 
 /* The base colour c of a solid that only transmits. Light crosses its boundary twice, so that white light leaves it as
- * c * c by the RGB law of importers (MTL's Tf, glTF's base colour). The product of two spectra of colour c has another
- * colour; so the spectrum is the root of that of c * c. */
+ * c * c by the RGB law of importers (MTL's Tf, glTF's base colour). The product of two spectra of colour c does not
+ * have the colour c * c. The compiled spectrum is therefore the square root of a spectrum of colour c * c. */
 static vlResult glass_color(const vlMaterialBuild *b, vlError *error) {
   const vlSpectrum *color = &b->def->reflectance.value;
   float dense[VL_LAMBDA_COUNT], wavelengths[VL_LAMBDA_COUNT];
@@ -71,8 +72,7 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   float ior;
   if (!vl_spectrum_is_constant(&def->eta.value, &ior) || !(ior >= 0.0f) || !isfinite(ior))
     return vl_fail(error, VL_ERROR_SCENE, "principled material: the index of refraction must be one number");
-  /* An index of 0 stands for infinity. Indices below 1 (a solid within a denser medium) are not modelled by the
-   * layers. */
+  /* An index of 0 stands for infinity. The layers do not model indices below 1 (a solid within a denser medium). */
   float root = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
   p->f0 = root * root;
   m->eta_s = ior > 0.0f ? ior : 1.5f;

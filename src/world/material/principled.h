@@ -1,13 +1,13 @@
-/* world/material/principled.h: directional albedo tables of the principled material: how much a rough layer reflects in
- * all directions together. The layers below receive the rest, so that energy is conserved.
+/* world/material/principled.h: directional albedo tables of the principled material: the share of light that a rough
+ * layer reflects into all directions. The layers below it receive the rest, so that energy is conserved.
  *
  *     specular  E(w) = F0 a(w) + F90 b(w): GGX with single scattering and Schlick's Fresnel term, split-sum form (Karis
  *     2013, "Real Shading in Unreal Engine 4"); a + b is E for F = 1
  *     sheen     the "Charlie" distribution with its shadowing (Estevez and Kulla 2017, "Production Friendly Microfacet
  *     Sheen BRDF")
- *     loss      share of the light incident on rough glass, from outside or inside, that single scattering (reflection
- *     and refraction together) loses (Walter et al. 2007 with the Schlick term of that index)
- * Means are over the cosine-weighted hemisphere: int E 2 cos dcos (Kulla and Conty 2017). */
+ *     loss      share of the light incident on rough glass, from outside or inside, that a single-scattering model of
+ *     reflection and refraction loses (Walter et al. 2007 with the Schlick term of that index)
+ * Means are cosine-weighted averages over the hemisphere: int E 2 cos dcos (Kulla and Conty 2017). */
 #ifndef WORLD_MATERIAL_PRINCIPLED_H
 #define WORLD_MATERIAL_PRINCIPLED_H
 
@@ -15,19 +15,21 @@
 #include "math/vec.h"
 
 enum { VL_ALBEDO_COS = 64, VL_ALBEDO_ALPHA = 32, VL_LOSS_COS = 32, VL_LOSS_ALPHA = 16, VL_LOSS_ETA = 16 };
-#define VL_LOSS_MOST_ROOT 0.5f /* largest (eta - 1) / (eta + 1): eta 3 */
+#define VL_LOSS_MOST_ROOT 0.5f /* largest tabulated (eta - 1) / (eta + 1), for eta = 3 */
 
-/* Row: sqrt(alpha) in equal steps over [0, 1]; column: sqrt(cos) likewise. Linear interpolation between. */
+/* Rows are equal steps of sqrt(alpha) over [0, 1], columns equal steps of sqrt(cos) over [0, 1]. Lookups interpolate
+ * linearly. */
 typedef struct vlPrincipledTables {
   float a[VL_ALBEDO_ALPHA][VL_ALBEDO_COS], b[VL_ALBEDO_ALPHA][VL_ALBEDO_COS];
   float a_mean[VL_ALBEDO_ALPHA], b_mean[VL_ALBEDO_ALPHA];
   float sheen[VL_ALBEDO_ALPHA][VL_ALBEDO_COS], sheen_mean[VL_ALBEDO_ALPHA];
-  /* Side (0 outside, 1 inside), then (eta - 1) / (eta + 1) in equal steps, then as above. */
+  /* First index: side (0 outside, 1 inside). Second index: (eta - 1) / (eta + 1) in equal steps. Then rows and columns
+   * as above. */
   float loss[2][VL_LOSS_ETA][VL_LOSS_ALPHA][VL_LOSS_COS], loss_mean[2][VL_LOSS_ETA][VL_LOSS_ALPHA];
 } vlPrincipledTables;
 
-/* tools/albedo_tables computes it when the library is built. The sheen's albedo exceeds 1 for narrow lobes at
- * grazing angles, where it must be scaled down; its mean is of min(E, 1). */
+/* tools/albedo_tables computes these tables when the library is built. The sheen's albedo exceeds 1 for narrow lobes at
+ * grazing angles, where lookups must scale it down; its mean is that of min(E, 1). */
 extern const vlPrincipledTables vl_principled_tables;
 
 /* Position of a value between two entries. */

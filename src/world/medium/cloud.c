@@ -18,7 +18,7 @@ vlResult vl_compile_medium_cloud(vlWorld *world, const vlMediumDef *def, vlWorld
   float *majorants = vl_medium_majorants(world, m, 1, SLABS, 1);
   if (!majorants) return vl_fail_memory(error);
   for (int i = 0; i < SLABS; i++) {
-    float y = m->low[1] + (m->high[1] - m->low[1]) * (float)i / SLABS - 1e-5f; /* lookups round y */
+    float y = m->low[1] + (m->high[1] - m->low[1]) * (float)i / SLABS - 1e-5f; /* margin: lookups round y */
     float d = vl_clamp((1 - y) * 4.5f * m->own[0] * 1.01f, 0, 1) + 2 * vl_max(0, 0.5f - y);
     majorants[i] = vl_clamp(d, 0, 1);
   }

@@ -1,4 +1,5 @@
-/* world/medium/cloud.h: the density of a cloud. vlWorldMedium.own: a factor on the noise, wispiness, frequency. */
+/* world/medium/cloud.h: the density of a cloud. vlWorldMedium.own holds its parameters: a factor of the noise,
+ * wispiness, frequency. */
 #ifndef WORLD_MEDIUM_CLOUD_H
 #define WORLD_MEDIUM_CLOUD_H
 

@@ -1,4 +1,5 @@
-/* world/medium/grid.c: media on dense grids: values in the layout for lookups, majorants (pbrt book 11.4). */
+/* world/medium/grid.c: media on dense grids: converts the values to the layout for lookups, and computes majorants
+ * (pbrt book 11.4). */
 #include <math.h>
 #include <string.h>
 
@@ -38,8 +39,8 @@ static bool copy_rgb_grid(vlWorld *world, const vlMediumDef *def, const float *f
   return true;
 }
 
-/* First and last cell of a grid that a lookup in [low, high] of the unit interval may read. Lookups compute in float:
- * their rounding, 6e-8 of up to 1000 cells, is within 1e-4 of a cell. */
+/* Gives the first and last cell of a grid, along one axis, that a lookup in [low, high] of the unit interval may read.
+ * Lookups compute in float: their rounding, 6e-8 of up to 1000 cells, is within 1e-4 of a cell. */
 static void reach(double low, double high, uint32_t n, uint32_t *first, uint32_t *last) {
   double a = floor(low * n - 0.5 - 1e-4), b = floor(high * n - 0.5 + 1e-4) + 1;
   *first = a > 0 ? (uint32_t)a : 0;
@@ -57,8 +58,8 @@ static float dense_bound(const vlDenseGrid *g, const uint32_t cells[3], const ui
       for (uint32_t x = a[0]; x <= b[0]; x++) {
         size_t k = ((size_t)z * n[1] + y) * n[0] + x;
         const float *v = g->values + 4 * k;
-        /* The scale of a sigmoid is twice the colour's maximum, so the scale alone would be a bound up to twice too
-         * large. The spectrum is sampled instead. */
+        /* The scale of a sigmoid spectrum is a bound, but up to twice too large, since it is twice the colour's
+         * maximum. The spectrum is therefore sampled. */
         float bound = rgb ? 0 : g->values[k];
         if (rgb && v[3] > 0)
           for (int l = VL_LAMBDA_MIN; l <= VL_LAMBDA_MAX; l += 5)

@@ -1,5 +1,5 @@
-/* world/medium/grid_lookup.h: values of dense and of sparse grids between their cells. Inline, by value, for the hot
- * files of trace. */
+/* world/medium/grid_lookup.h: interpolated lookups in dense and sparse grids. The functions are inline and take values,
+ * for the hot files of trace. */
 #ifndef WORLD_MEDIUM_GRID_LOOKUP_H
 #define WORLD_MEDIUM_GRID_LOOKUP_H
 
@@ -15,7 +15,7 @@ static inline vlVec3 vl_medium_vector(const float m[12], vlVec3 d) {
                  m[8] * d.x + m[9] * d.y + m[10] * d.z);
 }
 
-/* The eight neighbours of a point and their weights. */
+/* The eight cells around a point, and the weights of trilinear interpolation. */
 typedef struct vlTrilinear {
   int32_t x, y, z;
   float fx, fy, fz;
@@ -33,7 +33,7 @@ static inline size_t vl_dense_cell(const vlDenseGrid *g, vlTrilinear at, int k) 
   bool inside = x >= 0 && y >= 0 && z >= 0 && x < (int32_t)g->nx && y < (int32_t)g->ny && z < (int32_t)g->nz;
   return inside ? ((size_t)z * g->ny + (size_t)y) * g->nx + (size_t)x : (size_t)-1;
 }
-/* q: position in the unit cube. */
+/* q: position in the unit cube, which is the grid's box. */
 static inline vlTrilinear vl_dense_at_point(const vlDenseGrid *g, vlVec3 q) {
   return vl_trilinear(q.x * (float)g->nx - 0.5f, q.y * (float)g->ny - 0.5f, q.z * (float)g->nz - 0.5f);
 }
@@ -58,7 +58,7 @@ static inline float vl_sparse_value(const vlSparseGrid *g, int32_t x, int32_t y,
   if (brick & VL_SPARSE_TILE) return g->tiles[brick & ~VL_SPARSE_TILE];
   return g->values[(size_t)brick * VL_BRICK_VALUES + ((uz & 7) * 8 + (uy & 7)) * 8 + (ux & 7)];
 }
-/* p: medium space. */
+/* Trilinear lookup at p, in medium space. */
 static inline float vl_sparse_lookup(const vlSparseGrid *g, vlVec3 p) {
   vlVec3 q = vl_medium_point(g->index_from_medium, p);
   float limit = 1e9f;

@@ -1,5 +1,5 @@
-/* world/medium/media.c: scene media -> world media: spectra, and what each kind compiles (kinds.h). Only
- * media that are in use are compiled. */
+/* world/medium/media.c: compiles the media of a scene: spectra, and what each kind adds (kinds.h). Only media that are
+ * in use are compiled. */
 #include <string.h>
 
 #include "base/error.h"
@@ -118,7 +118,7 @@ static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m
   return compile_kind[def->kind](world, def, m, error);
 }
 
-/* Returns the index in world->media of a scene's medium, which is compiled at its first use. */
+/* Returns the index in world->media of a medium of the scene. The medium is compiled at its first use. */
 static vlResult use(vlWorld *world, const vlScene *scene, uint32_t *compiled, vlMediumId id, uint32_t *index,
                     vlError *error) {
   *index = VL_NONE;

@@ -1,5 +1,5 @@
-/* world/medium/medium_lookup.h: coefficients of a medium at a point, and traversal of its majorants by a ray.
- * Inline, by value, for the hot files of trace. pbrt book 11.4. */
+/* world/medium/medium_lookup.h: coefficients of a medium at a point, and traversal of its majorants by a ray. The
+ * functions are inline and take values, for the hot files of trace. pbrt book 11.4. */
 #ifndef WORLD_MEDIUM_MEDIUM_LOOKUP_H
 #define WORLD_MEDIUM_MEDIUM_LOOKUP_H
 
@@ -9,7 +9,7 @@
 
 /* ---- emission ---------------------------------------------------------------------------------------------------- */
 
-/* Planck's law divided by its maximum, as for black-body spectra (color/spectrum.c). lambda in nm, temperature in
+/* Planck's law divided by its maximum, as for blackbody spectra (color/spectrum.c). lambda in nm, temperature in
  * kelvin. */
 static inline float vl_blackbody_at(float lambda, float kelvin) {
   float x = 1.438776877e7f / (lambda * kelvin), r = x * (1.0f / 4.965114231744276f);
@@ -36,7 +36,7 @@ static inline void vl_medium_blackbody(const vlWorldMedium *m, const float lambd
 
 /* ---- the medium at a point --------------------------------------------------------------------------------------- */
 
-/* Adds a trilinear lookup in a grid of colours, each converted to a spectrum before interpolation. */
+/* Trilinear lookup in a grid of colours, times scale. Each colour is converted to a spectrum before interpolation. */
 static inline void vl_rgb_lookup(const vlWorldMedium *m, const vlDenseGrid *g, const float lambda[4], vlVec3 q,
                                  float scale, float out[4]) {
   vlTrilinear at = vl_dense_at_point(g, q);
@@ -52,8 +52,8 @@ static inline void vl_rgb_lookup(const vlWorldMedium *m, const vlDenseGrid *g, c
   }
 }
 
-/* Coefficients at 4 channels. vl_medium_coefficients gives the part that does not depend on position, once per
- * flight; vl_medium_at gives the coefficients at a point. */
+/* Coefficients at 4 channels. vl_medium_coefficients gives the part that does not depend on position and is called once
+ * per flight; vl_medium_at gives the coefficients at a point. */
 typedef struct vlMediumLight {
   float a[4], s[4], le[4];
 } vlMediumLight;
@@ -88,8 +88,8 @@ static inline float vl_medium_density_rgb_grid(const vlWorldMedium *m, vlVec3 p,
   return 1.0f;
 }
 
-/* Density factor on the coefficients at a point; 1 for kinds without one. p: medium space; q: 0 to 1 over the box. Each
- * kind has a function. */
+/* Density at a point, which multiplies the coefficients; 1 for kinds without a density. p: the point in medium space;
+ * q: the point relative to the box, 0 to 1. Each kind has its own function. */
 static inline float vl_medium_density(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
 #define VL_DENSITY(K, k) \
   case VL_MEDIUM_##K: return vl_medium_density_##k(m, p, q);
@@ -98,7 +98,7 @@ static inline float vl_medium_density(const vlWorldMedium *m, vlVec3 p, vlVec3 q
   return 1.0f;
 }
 
-/* Coefficients at a point (world space) of a medium that is not uniform. whole: from vl_medium_coefficients. */
+/* Coefficients at a point (world space) of a medium that is not uniform. whole: result of vl_medium_coefficients. */
 static inline vlMediumLight vl_medium_at(const vlWorldMedium *m, const vlMediumLight *whole, const float lambda[4],
                                          vlVec3 world_p, bool emission) {
   vlVec3 p = vl_medium_point(m->medium_from_world, world_p);
@@ -120,9 +120,9 @@ static inline vlMediumLight vl_medium_at(const vlWorldMedium *m, const vlMediumL
   return r;
 }
 
-/* Scalar extinction of a medium at a point (world space), > 0: the mean of sigma_t at three fixed wavelengths, or of
- * R, G, B. For weights that must not depend on a path's wavelengths. At least 1e-20: its reciprocal, a mean free path,
- * times 1e18 is finite. */
+/* Scalar extinction of a medium at a point (world space), > 0: the mean of sigma_t at three fixed wavelengths, or of R,
+ * G, B. It serves for weights that must not depend on a path's wavelengths. It is at least 1e-20, so that its
+ * reciprocal, a mean free path, times 1e18 is finite. */
 static inline float vl_extinction_of(const vlMediumLight *x) {
   return vl_max((x->a[0] + x->s[0] + x->a[1] + x->s[1] + x->a[2] + x->s[2]) * (1.0f / 3.0f), 1e-20f);
 }
@@ -144,11 +144,11 @@ static inline float vl_medium_extinction(const vlWorldMedium *m, vlVec3 p) {
 typedef struct vlMajorantWalk {
   const vlWorldMedium *medium;
   float t, end;
-  float next[3], step[3]; /* t at which the ray leaves its cell along each axis, and t between cells */
+  float next[3], step[3]; /* t at which the ray leaves its cell along each axis, and the step of t per cell */
   int32_t at[3], way[3];
 } vlMajorantWalk;
 
-/* o, d: world space. False if [t0, t1] misses the box. */
+/* Starts a traversal. o, d: ray in world space. False if the segment [t0, t1] misses the box. */
 static inline bool vl_majorant_start(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1,
                                      vlMajorantWalk *w) {
   vlVec3 po = vl_medium_point(m->medium_from_world, o), pd = vl_medium_vector(m->medium_from_world, d);
@@ -176,7 +176,7 @@ static inline bool vl_majorant_start(const vlWorldMedium *m, vlVec3 o, vlVec3 d,
   return true;
 }
 
-/* The next segment of the ray and its majorant; false at the end. */
+/* Gives the next segment of the ray and its majorant. False at the end of the ray. */
 static inline bool vl_majorant_next(vlMajorantWalk *w, float *t0, float *t1, float *majorant) {
   const vlWorldMedium *m = w->medium;
   if (!(w->t < w->end)) return false;
@@ -188,7 +188,7 @@ static inline bool vl_majorant_next(vlMajorantWalk *w, float *t0, float *t1, flo
   w->at[axis] += w->way[axis];
   w->next[axis] += w->step[axis];
   if (w->at[axis] < 0 || w->at[axis] >= (int32_t)m->cells[axis]) {
-    *t1 = w->end; /* rounding may leave a short rest */
+    *t1 = w->end; /* at the last cell rounding may leave a short rest */
     w->t = w->end;
   }
   return true;

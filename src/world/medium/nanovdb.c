@@ -1,5 +1,5 @@
-/* world/medium/nanovdb.c: converts a NanoVDB grid into the bricks that lookups read (world/medium/medium.h). The
- * only file that uses PNanoVDB.h. Its readers check every address; addresses outside of the grid read as zero. The
+/* world/medium/nanovdb.c: converts a NanoVDB grid into the bricks that lookups read (world/medium/medium.h). This is
+ * the only file that uses PNanoVDB.h. Its readers check every address; addresses outside of the grid read as zero. The
  * number of nodes is bounded by the grid's size in bytes, so that cyclic or shared nodes of a damaged file cannot
  * exhaust memory. */
 #include <math.h>
@@ -21,7 +21,7 @@ enum { MAX_TABLE = 1 << 24, MAX_BLOCKS = 1 << 20 };
 /* A block of 128^3 values: a lower node, or a constant value. */
 typedef struct Block {
   int32_t at[3]; /* in units of blocks */
-  uint64_t node; /* address; 0: constant value */
+  uint64_t node; /* address of the lower node; 0: the block has a constant value */
   float value;
 } Block;
 
@@ -176,7 +176,7 @@ static vlResult add_lower(Tree *t, uint64_t address, uint32_t *entry) {
   return VL_OK;
 }
 
-/* Builds the table over the box of all blocks, and its entries. */
+/* Builds the table over the box of all blocks and fills its entries. */
 static vlResult build_table(Tree *t, vlSparseGrid *g) {
   int32_t low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
   for (size_t i = 0; i < t->blocks.count; i++)

@@ -1,11 +1,12 @@
-/* world/medium/nanovdb.h: interface between nanovdb_file.c, which finds a grid in a file, and nanovdb.c, which
- * converts it. */
+/* world/medium/nanovdb.h: interface between nanovdb_file.c, which finds a grid in a file, and nanovdb.c, which converts
+ * the grid. */
 #ifndef WORLD_MEDIUM_NANOVDB_H
 #define WORLD_MEDIUM_NANOVDB_H
 
 #include "base/context.h"
 
-/* An unpacked grid, 8-byte aligned, in a block of the context. words null: the file has no grid of that name. */
+/* An unpacked grid in a memory block of the context, aligned to 8 bytes. words is null if the file has no grid of that
+ * name. */
 typedef struct vlNanoGrid {
   uint64_t *words;
   size_t size; /* bytes */

@@ -1,6 +1,6 @@
-/* world/medium/nanovdb_file.c: NanoVDB files: segments of a header, grid descriptions, and the grids, plain or
- * compressed by zlib. The layout is that of format version 32: header 16 bytes; description 176 bytes and a name;
- * then the grids in the same order. All sizes are checked against the file's size. */
+/* world/medium/nanovdb_file.c: reads NanoVDB files. A file consists of segments; a segment has a header, grid
+ * descriptions, and the grids, plain or compressed by zlib. The layout is that of format version 32: header 16 bytes;
+ * description 176 bytes and a name; then the grids in the same order. All sizes are checked against the file's size. */
 #include <stdio.h>
 #include <string.h>
 #include <zlib.h>
@@ -12,7 +12,7 @@
 enum { HEADER = 16, DESCRIPTION = 176, MAJOR = 32 };
 enum { CODEC_NONE = 0, CODEC_ZIP = 1, CODEC_BLOSC = 2 };
 
-static const char magic[7] = {'N', 'a', 'n', 'o', 'V', 'D', 'B'}; /* followed by a digit */
+static const char magic[7] = {'N', 'a', 'n', 'o', 'V', 'D', 'B'}; /* a digit follows */
 
 static uint64_t read_u64(const char *p) {
   uint64_t v;
@@ -74,7 +74,7 @@ static vlResult search_segment(vlContext *context, const char *path, const char 
                    version >> 21, version >> 10 & 0x7ff, MAJOR);
   uint16_t codec = read_u16(head + 14);
   size_t description = at + HEADER, body = description;
-  for (uint32_t i = 0; i < count; i++) { /* the grids follow the last description */
+  for (uint32_t i = 0; i < count; i++) { /* the data of the grids follow the last description */
     if (size - body < DESCRIPTION) return damaged(path, error);
     uint32_t length = read_u32(data + body + 136);
     if (size - body - DESCRIPTION < length) return damaged(path, error);

@@ -1,4 +1,4 @@
-/* world/medium/sparse.c: media from NanoVDB files: box and majorants of their grids. */
+/* world/medium/sparse.c: media from NanoVDB files: computes the box and the majorants of their grids. */
 #include <math.h>
 
 #include "base/error.h"
@@ -13,7 +13,7 @@ static void grow_box(const vlSparseGrid *g, vlWorldMedium *m) {
   }
 }
 
-/* Raises the majorants of all cells that a lookup near voxels [a, b] can fall into. */
+/* Raises the majorants of all cells in which a lookup can read one of the voxels [a, b]. */
 static void raise(const vlWorldMedium *m, float *majorants, const double medium_from_index[12], const int32_t a[3],
                   const int32_t b[3], float value) {
   int32_t first[3], last[3];
@@ -39,7 +39,7 @@ static void raise(const vlWorldMedium *m, float *majorants, const double medium_
       }
 }
 
-/* Bounds a brick in octants, for tighter majorants. */
+/* Raises the majorants by a brick, octant by octant, which gives tighter bounds. */
 static void raise_brick(const vlWorldMedium *m, float *majorants, const double medium_from_index[12],
                         const float *values, const int32_t corner[3]) {
   for (int part = 0; part < 8; part++) {

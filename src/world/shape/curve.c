@@ -1,10 +1,10 @@
 /* world/shape/curve.c: curves with a width: pieces of cubic Bezier segments. A ray is intersected at the point where it
  * comes nearest to the axis.
  *
- * Conventions are pbrt-v4's (book 6.7): a flat curve faces every ray; a cylinder differs from it by its normal
- * alone; a ribbon is narrower by the cosine between its normal and the ray. The hit point lies on the ray, at the
- * depth of the axis, so its error is up to the width: rays that leave start that far away. All in shape space unless
- * stated otherwise. */
+ * Conventions are pbrt-v4's (book 6.7): a flat curve faces every ray; a cylinder differs from a flat curve by its
+ * normal only; the visible width of a ribbon is multiplied by the cosine between its normal and the ray. The hit point
+ * lies on the ray, where the ray comes nearest to the axis. Its error is up to the width of the curve, so a ray that
+ * leaves the curve starts at that distance. Everything is in shape space unless stated otherwise. */
 #include <math.h>
 #include <string.h>
 
@@ -12,14 +12,14 @@
 #include "math/approx.h"
 #include "world/shape/kinds.h"
 
-/* Bezier control points in ray coordinates: x and y across, z along the ray. */
+/* Bezier control points in ray coordinates: x and y are perpendicular to the ray, z is along the ray. */
 typedef struct Cubic {
   double x[4], y[4], z[4];
 } Cubic;
 
 static bool copy_curves(vlWorld *world, const vlShapeDef *def, vlWorldShape *s) {
   size_t n = def->faces;
-  enum { MOST_PIECES = 1 << 23 }; /* a box takes more memory in Embree than the curve itself */
+  enum { MOST_PIECES = 1 << 23 }; /* pieces per shape, since Embree's box of a piece takes more memory than the curve */
   s->curve = def->curve;
   s->split = def->split_depth < 6 ? def->split_depth : 6;
   while (s->split && (n << s->split) > MOST_PIECES) s->split--;
@@ -51,7 +51,7 @@ static inline double mix(double a, double b, double t) {
   return (1 - t) * a + t * b;
 }
 
-/* The polar form: the blossom of c at three parameters. */
+/* The blossom (polar form) of the cubic with control points c, at three parameters. */
 static inline double blossom(const double c[4], double a, double b, double e) {
   double p0 = mix(c[0], c[1], a), p1 = mix(c[1], c[2], a), p2 = mix(c[2], c[3], a);
   return mix(mix(p0, p1, b), mix(p1, p2, b), e);
@@ -90,8 +90,8 @@ typedef struct Search {
   const vlWorldShape *shape;
   uint32_t segment;
   double d[3];         /* unit */
-  double z_min, z_max; /* range of z along the ray; every hit lowers z_max */
-  double flat;         /* largest deviation of a leaf from a straight line */
+  double z_min, z_max; /* range of z along the ray in which hits count; every hit lowers z_max */
+  double flat;         /* largest deviation of a leaf of the bisection from a straight line */
   double u, v;
   bool found;
 } Search;
@@ -103,7 +103,7 @@ static void ribbon_normal(const vlWorldShape *s, uint32_t segment, double u, dou
   vl_normalize3(from), vl_normalize3(to);
   float angle = vl_acos(vl_clamp((float)vl_dot3(from, to), -1, 1));
   double f = 1 - u, t = u;
-  /* Below 1e-3 linear interpolation is right to angle^2 / 8 = 1e-7, a float's rounding. */
+  /* For angles below 1e-3 linear interpolation has an error of angle^2 / 8 = 1e-7, the rounding error of a float. */
   if (angle > 1e-3f) f = vl_sincos((float)(1 - u) * angle).sin, t = vl_sincos((float)u * angle).sin;
   for (int i = 0; i < 3; i++) n[i] = f * from[i] + t * to[i];
   vl_normalize3(n);
@@ -136,7 +136,8 @@ static inline double bezier_bend(const double c[4], double w) {
   return 6 * ((1 - w) * (c[2] - 2 * c[1] + c[0]) + w * (c[3] - 2 * c[2] + c[1]));
 }
 
-/* Parameter at which the distance to the ray is smallest: half the squared distance has the derivative x x' + y y'. */
+/* Parameter at which the curve is nearest to the ray: the zero of x x' + y y', the derivative of half the squared
+ * distance. */
 static double find_foot(const Cubic *c, double w) {
   double low = 0, high = 1;
   for (int step = 0; step < 40; step++) {
@@ -149,15 +150,15 @@ static double find_foot(const Cubic *c, double w) {
       low = w;
     double next = slope > 0 ? w - f / slope : -1;
     if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-    if (fabs(next - w) < 1e-10) return next; /* well below a float's rounding of w */
+    if (fabs(next - w) < 1e-10) return next; /* well below the rounding error of w as a float */
     w = next;
   }
   return w;
 }
 
 static void leaf(Search *q, const Cubic *c, double u0, double u1, double half) {
-  /* The distance must decrease at the start and increase at the end. Otherwise the nearest point belongs to a
-   * neighbouring piece, or lies past the end of the curve, which is cut off perpendicularly. */
+  /* The distance between curve and ray must decrease at the start and increase at the end. Otherwise the nearest point
+   * belongs to a neighbouring piece, or lies beyond the end of the curve; the end is cut off perpendicularly. */
   if (c->x[0] * (c->x[1] - c->x[0]) + c->y[0] * (c->y[1] - c->y[0]) > 0) return;
   if (c->x[3] * (c->x[3] - c->x[2]) + c->y[3] * (c->y[3] - c->y[2]) < 0) return;
   double sx = c->x[3] - c->x[0], sy = c->y[3] - c->y[0], l2 = sx * sx + sy * sy;
@@ -203,7 +204,7 @@ static void search(Search *q, const Cubic *c, double u0, double u1, int depth) {
   search(q, &b, middle, u1, depth - 1);
 }
 
-/* Number of bisections after which leaves deviate from straight lines by less than a twentieth of the width (pbrt
+/* Number of bisections after which the parts deviate from straight lines by less than a twentieth of the width (pbrt
  * book 6.7.2). */
 static int depth_for(const Cubic *c, double width, double *flat) {
   double bend = 0;
@@ -226,7 +227,7 @@ static bool curve_intersect(const vlWorldShape *s, uint32_t prim, const double g
   vl_map_vector(s->to_shape, gd, q.d);
   double length = vl_normalize3(q.d);
   if (!(length > 0)) return false;
-  /* An orthonormal basis across the ray (Duff et al. 2017). */
+  /* An orthonormal basis perpendicular to the ray (Duff et al. 2017). */
   double sign = q.d[2] < 0 ? -1 : 1, a = -1 / (sign + q.d[2]), b = q.d[0] * q.d[1] * a;
   x[0] = 1 + sign * q.d[0] * q.d[0] * a, x[1] = sign * b, x[2] = -sign * q.d[0];
   y[0] = b, y[1] = sign + q.d[1] * q.d[1] * a, y[2] = -q.d[1];
@@ -265,9 +266,9 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
     double c[4] = {p[i], p[3 + i], p[6 + i], p[9 + i]};
     along[i] = bezier_slope(c, u);
     if (!(fabs(along[i]) > 0))
-      along[i] = (c[3] - c[0]) * 1e-6; /* if two control points coincide; only the direction counts */
+      along[i] = (c[3] - c[0]) * 1e-6; /* if control points coincide; only the direction counts */
   }
-  if (!(vl_dot3(along, along) > 0)) { /* a curve without length: any direction across the ray */
+  if (!(vl_dot3(along, along) > 0)) { /* for a curve without length: any direction perpendicular to the ray */
     double axis[3] = {fabs(hit->d[0]) < 0.6, fabs(hit->d[0]) >= 0.6, 0};
     vl_cross3(hit->d, axis, along);
   }
@@ -279,7 +280,7 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
     vl_cross3(hit->d, along, across);
     scale_to(across, width);
   }
-  if (s->curve == VL_CURVE_CYLINDER) { /* rotated about the curve by up to 90 degrees to each side */
+  if (s->curve == VL_CURVE_CYLINDER) { /* the normal is rotated about the curve by up to 90 degrees to each side */
     double axis[3] = {along[0], along[1], along[2]}, up[3];
     double dot = vl_dot3(along, hit->d), l2 = vl_dot3(along, along);
     for (int i = 0; i < 3; i++) axis[i] = along[i] - dot * hit->d[i]; /* component perpendicular to the ray */
@@ -307,7 +308,7 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
   point->uv[0] = (float)u, point->uv[1] = (float)v;
 }
 
-/* The middle of a piece, facing forward. Curves do not emit light, so no other samples are needed. */
+/* Gives the middle of a piece. Curves do not emit light, so no other samples are needed. */
 static void curve_sample(const vlWorldShape *s, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
   (void)u, (void)v, (void)pdf;
   const float *p = s->positions + 12 * (size_t)(prim >> s->split);

@@ -1,7 +1,7 @@
 /* world/shape/displace.c: subdivides meshes until every edge is short enough, and displaces the vertices along their
- * normals by a texture, as pbrt-v4 displaces PLY meshes. Every edge that is too long is halved, in both triangles at
- * the same vertex, so that no cracks appear; a triangle's longest edge is split first. Then the normals of the
- * displaced surface are computed. */
+ * normals by a texture, as pbrt-v4 displaces PLY meshes. Every edge that is too long is split at its middle, where both
+ * adjacent triangles use the same vertex, so that no cracks appear. The longest edge of a triangle is split first.
+ * After the displacement, the normals of the displaced surface are computed. */
 #include "world/shape/displace.h"
 
 #include <math.h>
@@ -9,10 +9,11 @@
 
 #include "base/error.h"
 
-enum { MOST_TRIANGLES = 1 << 22 }; /* about 600 MB with the BVH */
+enum { MOST_TRIANGLES = 1 << 22 }; /* take about 600 MB with their BVH */
 
 typedef struct Edge {
-  uint64_t key; /* lower vertex << 32 | higher; 0: free (no edge leads from 0 to 0) */
+  uint64_t key; /* an edge: its lower vertex index << 32 | its higher one; 0: the entry is free (no edge joins vertex 0
+                   to itself) */
   uint32_t middle;
 } Edge;
 
@@ -22,9 +23,9 @@ typedef struct Corners {
 
 typedef struct Cutter {
   vlContext *context;
-  const vlMat4 *m; /* edge lengths are measured in group space */
+  const vlMat4 *m; /* group from shape: edge lengths are measured in group space */
   double longest2;
-  VL_ARRAY(float) p; /* 3 per vertex, shape space */
+  VL_ARRAY(float) p; /* positions, 3 per vertex, shape space */
   VL_ARRAY(float) n;
   VL_ARRAY(float) uv;
   VL_ARRAY(uint32_t) indices;
@@ -84,7 +85,7 @@ static bool add_middle(Cutter *c, uint32_t a, uint32_t b, uint32_t *middle) {
   return true;
 }
 
-/* The vertex at the middle of an edge, created at first use. */
+/* Gives the vertex at the middle of an edge. The vertex is created at its first use. */
 static bool middle_of(Cutter *c, uint32_t a, uint32_t b, uint32_t *middle) {
   if (2 * (c->edge_count + 1) > c->edge_capacity && !grow_edges(c)) return false;
   uint64_t key = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
@@ -113,7 +114,7 @@ static bool push(Cutter *c, uint32_t a, uint32_t b, uint32_t d) {
   return top != NULL;
 }
 
-/* VL_ERROR_SCENE: too many triangles. */
+/* Subdivides a triangle. Error VL_ERROR_SCENE: too many triangles. */
 static vlResult cut(Cutter *c, Corners first) {
   if (!push(c, first.v[0], first.v[1], first.v[2])) return VL_ERROR_MEMORY;
   while (c->stack.count) {
@@ -137,21 +138,21 @@ static vlResult cut(Cutter *c, Corners first) {
   return VL_OK;
 }
 
-/* Lower bound of the number of triangles: no triangle with edges that short is larger than the equilateral one, and
- * every edge of a face is split. A far too fine subdivision thus fails at once. */
+/* Lower bound of the number of triangles after subdivision: no triangle is larger than the equilateral triangle with
+ * the longest allowed edge. The bound lets a far too fine subdivision fail at once. */
 static double least_triangles(const Cutter *c, const vlShapeDef *def) {
   double sum = 0;
   for (size_t f = 0; f < def->faces; f++) {
     const uint32_t *v = def->indices + 3 * f;
     double a = length2(c, v[0], v[1]), b = length2(c, v[1], v[2]), d = length2(c, v[2], v[0]);
-    double area2 = 2 * (a * b + b * d + d * a) - a * a - b * b - d * d; /* Heron: (4 area)^2 */
+    double area2 = 2 * (a * b + b * d + d * a) - a * a - b * b - d * d; /* Heron's formula: (4 area)^2 */
     double longest = fmax(a, fmax(b, d)) / c->longest2;
     sum += fmax(sqrt(fmax(0, area2)) / (1.7320508 * c->longest2), sqrt(longest));
   }
   return sum;
 }
 
-/* Vertex normals: area-weighted mean over the adjacent faces. */
+/* Computes vertex normals: area-weighted means of the normals of the adjacent faces. */
 static void find_normals(Cutter *c, const uint32_t *indices, size_t faces) {
   memset(c->n.items, 0, c->n.count * sizeof *c->n.items);
   for (size_t f = 0; f < faces; f++) {
@@ -202,7 +203,7 @@ static void move(Cutter *c, const vlWorld *world, int32_t node) {
   }
 }
 
-/* Takes ownership of an array: the def's pointers are const, but the caller owns the arrays. */
+/* Converts a pointer to const, as the members of a def are. The caller still owns the array. */
 static const void *take(void *items) {
   return items;
 }

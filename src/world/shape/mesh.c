@@ -1,5 +1,5 @@
-/* world/shape/mesh.c: vertices and faces of meshes, transformed to group space; the functions of triangles, which trace
- * intersects in batches. */
+/* world/shape/mesh.c: vertices and faces of meshes, transformed to group space; the shape functions of triangles. (The
+ * room trace intersects triangles in batches.) */
 #include "world/shape/mesh.h"
 
 #include <math.h>
@@ -43,13 +43,13 @@ static bool move_rows(const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inve
   return fine;
 }
 
-/* Interpolates the rows of a motion's two ends, stored in the first and the last of `steps` sets, into the sets
- * between. */
+/* Fills the sets of rows between the two ends of a motion by interpolation. On entry the ends are in the first and the
+ * last of `steps` sets. */
 static void spread(const vlWorld *world, const vlShapeDef *def, float *rows, uint32_t steps) {
   size_t n = 3 * (size_t)def->vertices;
   double span = world->time_close - world->time_open, first = (def->times[0] - world->time_open) / span,
          last = (def->times[1] - world->time_open) / span;
-  const double same = 1e-6; /* of the motion: as in vl_world_time_steps */
+  const double same = 1e-6; /* tolerance, relative to the motion, as in vl_world_time_steps */
   for (uint32_t k = 1; k + 1 < steps; k++) {
     double f = ((double)k / (steps - 1) - first) / (last - first);
     f = f > same ? (f < 1 - same ? f : 1) : 0;
@@ -107,7 +107,7 @@ vlResult vl_mesh_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *m,
                                           !vl_world_copy_floats(world, def->more_uvs[1], 2 * n, &s->more_uvs[1]) ||
                                           !vl_world_copy_floats(world, def->more_uvs[2], 2 * n, &s->more_uvs[2])))
     return vl_fail_memory(error);
-  bool mirrored = vl_mat4_determinant3(*m) < 0; /* a mirroring map flips n x t relative to the mapped n and t */
+  bool mirrored = vl_mat4_determinant3(*m) < 0; /* if m mirrors, it reverses n x t relative to the mapped n and t */
   for (size_t i = 0; mirrored && s->tangent_signs && i < n; i++) s->tangent_signs[i] = -s->tangent_signs[i];
   if (same) memcpy(s->positions, def->positions, 3 * n * sizeof(float));
   if (!same && !move_rows(def, m, inverse, (Rows){def->positions, false}, s->positions))

@@ -47,7 +47,7 @@ uint32_t vl_world_time_steps(const vlWorld *world, double from, double to) {
   double span = world->time_close - world->time_open;
   for (uint32_t steps = 1; steps <= MOST_STEPS; steps++) {
     double a = (from - world->time_open) / span * steps, b = (to - world->time_open) / span * steps;
-    const double same = 1e-6; /* of a step; times are given with a few decimals */
+    const double same = 1e-6; /* tolerance, relative to a step, since times are given with a few decimals */
     if (fabs(a - round(a)) < same && fabs(b - round(b)) < same) return steps;
   }
   return 0;
@@ -55,11 +55,11 @@ uint32_t vl_world_time_steps(const vlWorld *world, double from, double to) {
 
 /* ---- instances --------------------------------------------------------------------------------------------------- */
 
-/* The exact motion, in double: one segment between consecutive keys of the scene. */
+/* The exact motion in double precision: one segment between each pair of consecutive keys of the scene. */
 typedef struct Motion {
   const vlSceneInstance *source;
   vlMotion *between;
-  double open, span; /* world's time 0 and its length, seconds */
+  double open, span; /* the world's time 0 and the length of the world's time interval, in seconds */
 } Motion;
 
 static vlAffine true_pose(const Motion *motion, double time) {
@@ -77,7 +77,8 @@ static vlAffine true_pose(const Motion *motion, double time) {
   return vl_motion_between(&motion->between[k], f > 0 ? (f < 1 ? f : 1) : 0);
 }
 
-/* Squared largest distance of a corner of the box between pose `at` and the linear interpolation of a and b at f. */
+/* Transforms the corners of the box by the pose `at` and by the linear interpolation of a and b at f, and returns the
+ * largest squared distance between the two positions of a corner. */
 static double corner_distance(const vlAffine *at, const vlAffine *a, const vlAffine *b, double f, const float low[3],
                               const float high[3]) {
   double m[9], t[3], most = 0;
@@ -108,8 +109,9 @@ static double strayed(const Motion *motion, uint32_t steps, const float low[3], 
   return sqrt(most);
 }
 
-/* Allowed deviation, relative to the size of the moving object. Half a turn between two keys, the most that they can
- * express, deviates by 1e-4 of the radius at 128 steps; slower rotations meet this tolerance. */
+/* Allowed deviation, relative to the size of the moving object. A rotation by 180 degrees between two keys of the
+ * scene, the largest possible one, deviates by 1e-4 of the radius at 128 steps. Slower rotations meet this
+ * tolerance. */
 static const double tolerance = 1e-5;
 
 static uint32_t choose_steps(const Motion *motion, const float low[3], const float high[3]) {
@@ -121,7 +123,7 @@ static uint32_t choose_steps(const Motion *motion, const float low[3], const flo
     for (int j = 0; j < 3; j++) row += fabs(start.m[3 * i + j]) * (high[j] - low[j]);
     size = fmax(size, row);
   }
-  /* The deviation falls with the square of the number of steps: numbers that cannot suffice are skipped. */
+  /* The deviation is proportional to 1 / steps^2, so numbers of steps that are too small can be skipped. */
   double least = 1;
   for (size_t i = 0; i < sizeof tries; i++) {
     if (tries[i] < least && tries[i] < MOST_STEPS) continue;
@@ -132,8 +134,9 @@ static uint32_t choose_steps(const Motion *motion, const float low[3], const flo
   return MOST_STEPS;
 }
 
-/* Embree and velo both compute a (1 - f) + b f with f = time * steps minus its integer part: three roundings of the
- * sum, and f is off by one rounding of time * steps. The bound is doubled because both sides round. */
+/* Embree and velo both compute a (1 - f) + b f, where f is the fractional part of time * steps. The sum has three
+ * rounding errors, and f has the rounding error of time * steps. The bound is doubled because both Embree and velo
+ * round. */
 static void find_doubt(vlWorldInstance *q) {
   const float eps = 0x1p-24f;
   float steps = (float)(q->keys - 1);
@@ -232,7 +235,7 @@ static void map(const float m[12], const double p[3], double q[3]) {
     q[i] = (double)m[4 * i] * p[0] + (double)m[4 * i + 1] * p[1] + (double)m[4 * i + 2] * p[2] + (double)m[4 * i + 3];
 }
 
-/* The inverse map, not rounded to float as to_group is. */
+/* Applies the inverse of m in double precision; vlWorldInstance.to_group is rounded to float. */
 static void unmap(const float m[12], const double p[3], double q[3]) {
   double x[3], y[3], z[3], r[3], n[3];
   for (int i = 0; i < 3; i++)
@@ -254,7 +257,7 @@ static void corners(const vlWorldShape *s, uint32_t prim, float time, double c[3
   }
 }
 
-/* A point near a triangle keeps its barycentric coordinates. */
+/* Moves a point with a triangle: its barycentric coordinates stay the same. */
 static void follow_triangle(const vlWorldShape *s, uint32_t prim, float from, float to, double p[3]) {
   double c[3][3], a[3], b[3], r[3], n[3], x[3];
   corners(s, prim, from, c);

@@ -33,13 +33,14 @@ static void patch_derivatives(const Patch *q, double u, double v, double dpdu[3]
   }
 }
 
-/* Patches reach beyond their edges by this part of u and v, so that no ray passes between two: 10^4 roundings. */
+/* Intersection accepts u and v outside [0, 1] by this much, about 10^4 rounding errors, so that no ray passes between
+ * adjacent patches. */
 static const double overlap = 1e-12;
-/* Relative size of a determinant below which the directions of u and v on the texture are taken as parallel. */
+/* Relative size of the determinant below which the gradients of the two texture coordinates count as parallel. */
 static const double parallel = 1e-12;
 
-/* For a fixed u the patch is the line a(u) + v e(u); the ray meets it where the scalar triple product
- * (a(u) - o) . (d x e(u)) vanishes: a quadratic in u (Reshetov 2019, "Cool Patches"). */
+/* For a fixed u the patch is the line a(u) + v e(u); the ray meets it where the scalar triple product (a(u) - o) . (d x
+ * e(u)) is zero. This is a quadratic equation in u (Reshetov 2019, "Cool Patches"). */
 static bool patch_intersect(const vlWorldShape *s, uint32_t prim, const double o[3], const double d[3], double t_min,
                             double t_max, vlShapeHit *hit) {
   Patch q = load_patch(s, prim);
@@ -56,7 +57,7 @@ static bool patch_intersect(const vlWorldShape *s, uint32_t prim, const double o
   double roots[2];
   int count = 0;
   double scale = fabs(b) + fabs(c);
-  if (fabs(a) <= 1e-14 * scale) { /* linear: a is rounding of b and c, some 100 errors of 1e-16 */
+  if (fabs(a) <= 1e-14 * scale) { /* the equation is linear: a is only rounding error, about 100 times 1e-16 */
     if (b != 0) roots[count++] = -c / b;
   } else {
     double disc = b * b - 4 * a * c;
@@ -72,7 +73,7 @@ static bool patch_intersect(const vlWorldShape *s, uint32_t prim, const double o
     u = u < 0 ? 0 : u > 1 ? 1 : u;
     double base[3], e[3], x[3];
     for (int i = 0; i < 3; i++) base[i] = a0[i] + u * a1[i], e[i] = e0[i] + u * e1[i];
-    /* base + v e = t d: solve with the normal of the plane of d and e. */
+    /* Solves base + v e = t d with the normal of the plane that d and e span. */
     vl_cross3(d, e, x);
     double den = vl_dot3(x, x);
     if (!(den > 0)) continue;
@@ -182,7 +183,8 @@ static void patch_sample(const vlWorldShape *shape, uint32_t prim, float u, floa
 }
 
 static double patch_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]) {
-  /* Recovers the parameters by Gauss-Newton steps from the centre; the density varies slowly. */
+  /* Gauss-Newton steps from the centre of the patch recover the parameters. They need not be exact, since the density
+   * varies slowly. */
   Patch q = load_patch(shape, prim);
   double u = 0.5, v = 0.5;
   for (int step = 0; step < 20; step++) {
@@ -197,7 +199,7 @@ static double patch_pdf(const vlWorldShape *shape, uint32_t prim, const double a
     u += su, v += sv;
     u = u < 0 ? 0 : u > 1 ? 1 : u;
     v = v < 0 ? 0 : v > 1 ? 1 : v;
-    if (fabs(su) + fabs(sv) < 1e-9) break; /* Newton's next step would be about 1e-18 */
+    if (fabs(su) + fabs(sv) < 1e-9) break; /* the next step would be about 1e-18 */
   }
   return density(&q, u, v);
 }

@@ -1,5 +1,5 @@
-/* world/shape/quadric.c: sphere, disk and cylinder: intersection, surface at a point, sampling by area. In shape
- * space unless stated otherwise. */
+/* world/shape/quadric.c: sphere, disk and cylinder: intersection, surface at a point, sampling by area. Everything is
+ * in shape space unless stated otherwise. */
 #include <math.h>
 #include <string.h>
 
@@ -7,13 +7,13 @@
 #include "math/approx.h"
 #include "world/shape/kinds.h"
 
-/* One primitive of a shape in its own space: shape space; of many spheres, shape space moved so that this sphere is at
- * the origin. */
+/* One primitive of a shape in its own space. This is shape space; if the shape is many spheres, it is shape space
+ * translated so that this sphere is at the origin. */
 typedef struct Quadric {
   vlShapeKind kind;
   bool flip;
   float radius, inner_radius, z_min, z_max, phi_max, height;
-  const double *center; /* in shape space; null: the origin */
+  const double *center; /* centre in shape space; null: the origin */
   const double *from_shape, *to_shape;
 } Quadric;
 
@@ -60,7 +60,7 @@ static bool try_root(const Quadric *s, const double o[3], const double d[3], dou
                      vlShapeHit *hit) {
   if (!(t > t_min && t < t_max)) return false;
   double p[3] = {o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
-  /* Project the point onto the surface: removes the error that grows with t. */
+  /* Projects the point onto the surface, which removes the error that grows with t. */
   double r2 = p[0] * p[0] + p[1] * p[1] + (s->kind == VL_SHAPE_SPHERE ? p[2] * p[2] : 0);
   if (s->kind == VL_SHAPE_DISK) {
     p[2] = s->height;
@@ -87,8 +87,8 @@ static bool quadric_intersect(const vlWorldShape *shape, uint32_t prim, const do
   double a = d[0] * d[0] + d[1] * d[1] + (sphere ? d[2] * d[2] : 0);
   double half_b = o[0] * d[0] + o[1] * d[1] + (sphere ? o[2] * d[2] : 0);
   if (!(a > 0)) return false;
-  /* Discriminant from the vector between the axis and the nearest point of the ray (pbrt book 6.8.3), which avoids
-   * cancellation. */
+  /* Computes the discriminant from the vector between the axis (or centre) and the nearest point of the ray (pbrt book
+   * 6.8.3), which avoids cancellation. */
   double k = half_b / a, l2 = 0;
   for (int i = 0; i < (sphere ? 3 : 2); i++) {
     double e = o[i] - k * d[i];
@@ -121,7 +121,7 @@ static void quadric_derivatives(const Quadric *s, const double p[3], double dpdu
     double radial = sqrt(p[0] * p[0] + p[1] * p[1]);
     double cos_phi = radial > 0 ? p[0] / radial : 1, sin_phi = radial > 0 ? p[1] / radial : 0;
     if (!(radial > 0))
-      dpdu[0] = 0, dpdu[1] = s->phi_max * 1e-12; /* at the poles any direction is valid; its length is near 0 */
+      dpdu[0] = 0, dpdu[1] = s->phi_max * 1e-12; /* at the poles any direction of a length near 0 is valid */
     dpdv[0] = (high - low) * p[2] * cos_phi, dpdv[1] = (high - low) * p[2] * sin_phi, dpdv[2] = -(high - low) * radial;
   } else if (s->kind == VL_SHAPE_CYLINDER) {
     uv[1] = (float)((p[2] - s->z_min) / (s->z_max - s->z_min));
@@ -135,9 +135,9 @@ static void quadric_derivatives(const Quadric *s, const double p[3], double dpdu
   }
 }
 
-/* dpdu x dpdv in shape space. Mapped to group space (inverse transpose) it stays outside whatever the handedness.
- * flip (reverse orientation xor mirrored) reverses it afterwards, as in pbrt: a mirrored sphere without reverse
- * orientation has inward normals. */
+/* The direction of dpdu x dpdv in shape space. The inverse transpose maps it to group space, where it still points
+ * outside, whether the map mirrors or not. Then vlWorldShape.flip reverses it, as in pbrt: a mirrored sphere without
+ * reverse orientation has inward normals. */
 static void quadric_normal(const Quadric *s, const double p[3], double n[3]) {
   n[0] = s->kind == VL_SHAPE_DISK ? 0 : p[0] / s->radius;
   n[1] = s->kind == VL_SHAPE_DISK ? 0 : p[1] / s->radius;
@@ -227,7 +227,7 @@ static double quadric_pdf(const vlWorldShape *shape, uint32_t prim, const double
   return 1 / (shape_area(s) * area_stretch(s, n));
 }
 
-/* Many spheres: their centers and radii. */
+/* Copies the centres and radii of a shape of many spheres. */
 static vlResult copy_spheres(vlWorld *world, const vlShapeDef *def, vlWorldShape *s, vlError *error) {
   s->faces = def->faces;
   s->phi_max = 2.0f * 3.14159265358979f;

@@ -1,4 +1,4 @@
-/* world/shape/shapes.c: scene shapes -> world shapes: what all kinds have, groups and instances, bounds. */
+/* world/shape/shapes.c: compiles the shapes of a scene: members that all kinds have, groups and instances, bounds. */
 #include <math.h>
 #include <string.h>
 
@@ -26,8 +26,8 @@ static vlResult constant_node(vlWorld *world, const vlScene *scene, float value,
   return vl_world_float_node(world, scene, vl_float_input(value), node, error);
 }
 
-/* A mix of a material with an interface is that material with holes: the material's share multiplies the shape's
- * alpha. */
+/* A mix of a material with an interface is compiled as that material with holes: its share of the mix multiplies the
+ * shape's alpha. */
 static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShapeDef *def, vlWorldShape *s,
                               vlError *error) {
   const vlWorldMaterial *m = &world->materials.items[s->material];
@@ -40,7 +40,7 @@ static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShap
   int32_t share = m->amount, whole = s->alpha, none;
   vlResult r = constant_node(world, scene, 0.0f, &none, error);
   if (r == VL_OK && whole < 0) r = constant_node(world, scene, 1.0f, &whole, error);
-  /* amount is the share of the second part */
+  /* `amount` is the share of the second part of the mix */
   return r == VL_OK ? vl_world_mix_node(world, first ? none : whole, first ? whole : none, share, &s->alpha, error) : r;
 }
 
@@ -91,7 +91,7 @@ static void grow_bounds(float low[3], float high[3], const float p[3]) {
 }
 
 static void shape_bounds(const vlWorldShape *s, float low[3], float high[3]) {
-  if (vl_shape_is_mesh(s->kind)) { /* at all times */
+  if (vl_shape_is_mesh(s->kind)) { /* the box covers all time steps */
     for (size_t i = 0; i < (size_t)s->steps * s->vertices; i++) grow_bounds(low, high, s->positions + 3 * i);
     return;
   }
@@ -121,7 +121,7 @@ static void instance_bounds(const vlWorld *world, const vlWorldInstance *instanc
   }
 }
 
-/* Checks that the shape lies within 1e18, beyond which rays cannot be traced. */
+/* Checks that all coordinates are within 1e18 of 0; rays cannot be traced beyond. */
 static vlResult check_reach(const float low[3], const float high[3], const vlSource *source, vlError *error) {
   for (int i = 0; i < 3; i++)
     if (low[i] <= high[i] && !(low[i] > -1e18f && high[i] < 1e18f))
@@ -131,11 +131,12 @@ static vlResult check_reach(const float low[3], const float high[3], const vlSou
   return VL_OK;
 }
 
-/* With shorter edges, distances of near hits (a length times an area) are flushed to zero in Embree, and a triangle
- * shadows itself: an offset of 6e-7 edges times twice the area must stay above 2^-126 (docs/conventions.md). */
+/* If edges are shorter, Embree flushes distances of near hits (a length times an area) to zero, and a triangle shadows
+ * itself. The product of the ray offset, 6e-7 edge lengths, and twice the area must exceed 2^-126
+ * (docs/conventions.md). */
 #define SMALLEST_EDGE 1e-10f
 
-/* Warns of the first shape whose triangles are too small, estimated from its box. */
+/* Warns about the first shape whose triangles are too small. Their size is estimated from the shape's box. */
 static void check_edges(const vlWorld *world, const float low[3], const float high[3], uint64_t triangles,
                         const vlSource *source, bool *warned) {
   if (*warned || triangles == 0 || !(low[0] <= high[0])) return;

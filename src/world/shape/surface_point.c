@@ -1,4 +1,4 @@
-/* world/shape/surface_point.c: dispatches over the kinds of shapes (kinds.h); bounds and area. */
+/* world/shape/surface_point.c: calls the function of a shape's kind (kinds.h); bounds and area of primitives. */
 #include "world/shape/surface_point.h"
 
 #include <string.h>
@@ -58,7 +58,8 @@ float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim) {
     vl_cross3(a, b, n);
     return (float)(0.5 * sqrt(vl_dot3(n, n)));
   }
-  /* Mean of 1/pdf over a grid of parameters, exact for parallelograms; a single point if the density is constant. */
+  /* The area is the mean of 1/pdf over a grid of parameters, which is exact for parallelograms. A single point suffices
+   * if the density is constant. */
   double sum = 0, scale;
   bool even = shape->kind == VL_SHAPE_DISK ||
               ((shape->traits & VL_SHAPE_TRAIT_QUADRIC) && vl_is_similarity(shape->from_shape, &scale));
@@ -76,7 +77,7 @@ float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim) {
 void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3], float high[3]) {
   double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
   functions[shape->kind]->bounds(shape, prim, lo, hi);
-  for (int i = 0; i < 3; i++) { /* widened by one float step for rounding */
+  for (int i = 0; i < 3; i++) { /* the box grows by one float step because of rounding */
     low[i] = nextafterf((float)lo[i], -INFINITY);
     high[i] = nextafterf((float)hi[i], INFINITY);
   }

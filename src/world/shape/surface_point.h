@@ -1,4 +1,5 @@
-/* world/shape/surface_point.h: the surface of a shape of any kind (kinds.h). */
+/* world/shape/surface_point.h: surface points of shapes of any kind (kinds.h): intersection, evaluation and
+ * sampling. */
 #ifndef WORLD_SHAPE_SURFACE_POINT_H
 #define WORLD_SHAPE_SURFACE_POINT_H
 
@@ -7,7 +8,7 @@
 /* Transforms a world-space ray to the space of an instance's group; t is unchanged. */
 void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]);
 
-/* Fills what the kind alone has: to_group, from_group: the map of the def and its inverse. */
+/* Fills the members of *shape that only its kind has. to_group, from_group: the def's transform and its inverse. */
 vlResult vl_shape_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group, const vlMat4 *from_group,
                           vlWorldShape *shape, vlError *error);
 
@@ -15,10 +16,10 @@ vlResult vl_shape_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *t
 bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3], const double d[3], double t_min,
                         double t_max, vlShapeHit *hit);
 
-/* The surface at a hit. */
+/* Computes the surface at a hit of vl_shape_intersect. */
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point);
 
-/* Whether the map preserves angles. *scale: factor on lengths. */
+/* Whether the map preserves angles. *scale: the factor by which it multiplies lengths. */
 static inline bool vl_is_similarity(const double m[12], double *scale) {
   double l[3];
   for (int i = 0; i < 3; i++) l[i] = m[i] * m[i] + m[4 + i] * m[4 + i] + m[8 + i] * m[8 + i];
@@ -46,7 +47,7 @@ static inline bool vl_whole_sphere(const vlWorldShape *s, vlVec3 *center, float 
 
 /* Samples a point uniformly over the parameters, with its density per unit area in group space. */
 void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf);
-/* The density of vl_shape_sample at a given point. */
+/* The density with which vl_shape_sample gives this point. */
 double vl_shape_pdf(const vlWorldShape *shape, uint32_t prim, const vlSurfacePoint *point);
 
 #endif

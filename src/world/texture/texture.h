@@ -1,5 +1,6 @@
-/* world/texture/texture.h: compiled textures: a flat list of nodes with inputs by index (always lower than the
- * node's own). Spectra are compiled for their role: an RGB albedo becomes another spectrum than an RGB illuminant. */
+/* world/texture/texture.h: compiled textures: a flat list of nodes. A node refers to its inputs by index, and these
+ * indices are always lower than its own. Spectra are compiled for their role: an RGB colour gives different spectra as
+ * an albedo and as an illuminant. */
 #ifndef WORLD_TEXTURE_TEXTURE_H
 #define WORLD_TEXTURE_TEXTURE_H
 
@@ -15,13 +16,13 @@ typedef enum vlSpectralKind {
 } vlSpectralKind;
 typedef struct vlSpectral {
   vlSpectralKind kind;
-  float scale; /* factor on all kinds */
+  float scale; /* factor for spectra of all kinds */
   vlSigmoid sigmoid;
-  const float *dense; /* VL_LAMBDA_COUNT */
+  const float *dense; /* VL_LAMBDA_COUNT values, one per wavelength */
   float rgb[3];
 } vlSpectral;
 
-/* Value at one channel, whose wavelength is lambda (nm; not read in RGB mode). */
+/* Value of the spectrum at one channel. lambda: the channel's wavelength in nm; not read in RGB mode. */
 static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambda) {
   switch (s->kind) {
     case VL_SPECTRAL_SIGMOID: return s->scale * vl_sigmoid(s->sigmoid, lambda);
@@ -32,11 +33,12 @@ static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambd
   return s->scale;
 }
 
-/* Limits of the scratch rows for evaluating a texture over a batch (trace/texture/texture.hot.c), and of the number
- * of nodes visited (shared inputs are evaluated each time). They bound nesting. */
+/* Limits per texture, which bound the nesting of textures: the number of scratch rows for evaluation over a batch
+ * (trace/texture/texture.hot.c), and the number of nodes visited (a shared input counts each time it is evaluated). */
 enum { VL_NODE_ROWS = 64, VL_NODE_VISITS = 4096 };
 
-/* One node kind per kind of texture. A constant compiles to its input: a number or, for colours, a spectrum. */
+/* There is one kind of node per kind of texture, except for constants: a constant texture compiles to a number or, for
+ * colours, to a spectrum. */
 typedef enum vlNodeKind {
 #define VL_KIND(NAME, name) VL_NODE_##NAME,
   VL_TEXTURE_KINDS(VL_KIND)
@@ -48,46 +50,47 @@ typedef enum vlNodeKind {
 typedef struct vlTextureNode {
   vlNodeKind kind;
   bool is_spectrum;
-  uint8_t rows; /* scratch rows for evaluation, including its inputs */
+  uint8_t rows; /* number of scratch rows for evaluation of the node and its inputs */
   uint16_t visits;
   vlSpectrumRole role;
-  float value;                /* VL_NODE_FLOAT */
-  vlSpectral spectrum;        /* VL_NODE_SPECTRUM; VL_NODE_IMAGE: dense = illuminant of the space for that role */
-  int32_t a, b, c, d, amount; /* inputs, -1 none */
+  float value;         /* of VL_NODE_FLOAT */
+  vlSpectral spectrum; /* of VL_NODE_SPECTRUM; of VL_NODE_IMAGE for the role of an illuminant: dense is the colour
+                          space's illuminant */
+  int32_t a, b, c, d, amount; /* node indices of the inputs; -1: none */
   float direction[3];
   uint32_t dimension, octaves;
-  float omega, variation; /* noise */
+  float omega, variation; /* parameters of noise textures */
   int32_t image;
   vlWrap wrap, wrap_t;
   vlTextureFilter filter;
   float scale;
   bool invert;
-  /* plain: tint, bias, cutoff and vertex colours have no effect. Channel of a float texture; -1: chosen by the
-   * image. */
+  /* plain: tint, bias, cutoff and vertex colours have no effect. channel: the channel that a float texture reads; -1:
+   * the image's channels determine it. */
   bool plain, colors;
   int8_t channel;
   uint8_t uv_set;
-  float tint[4], bias, cutoff; /* cutoff NaN: none */
+  float tint[4], bias, cutoff; /* cutoff is NaN if there is none */
   vlColorSpace space;
   vlMapping mapping;
-  bool st_given; /* s, t from st instead of su, sv, du, dv */
+  bool st_given; /* the map st gives s and t, instead of su, sv, du, dv */
   float su, sv, du, dv;
-  float st[6], st_scale; /* st_scale: the largest factor from uv to st lengths */
+  float st[6], st_scale; /* map from uv to (s, t); st_scale: the largest factor by which it stretches a length */
   float v1[3], v2[3];
   float texture_from_world[12];
 } vlTextureNode;
 
 typedef struct vlWorldImage {
   vlMipmap *mipmap;
-  const char *path; /* with the choices that change the pixels, so that each file is read once; or */
-  const void *data; /* the file in memory */
+  const char *path; /* path and the options that change the pixels, so that each file is read once; or null */
+  const void *data; /* the image file in memory, if path is null */
   vlEncoding encoding;
   bool encoding_given;
   float gamma;
 } vlWorldImage;
 
 struct vlWorld;
-/* Returned by push when memory is exhausted. */
+/* What functions that add a node return when memory is exhausted. */
 enum { VL_TEXTURE_NO_MEMORY = -2 };
 /* Compiles a spectrum for its role; errors as for vl_spectrum_dense. */
 vlResult vl_spectral_compile(struct vlWorld *world, const vlSpectrum *spectrum, vlSpectrumRole role, vlSpectral *result,
@@ -98,16 +101,16 @@ typedef struct vlTextureCorner {
   uint32_t prim;
   float weights[3];
 } vlTextureCorner;
-/* A point at which a float texture is evaluated: the first uv set, position, geometric normal (any length, either
- * side), all in the space of the shape's group (world space for shapes outside of groups). corner: null if the shape
- * has no triangles. */
+/* A point at which a float texture is evaluated: its first uv set, position and geometric normal (of any length, on
+ * either side). Position and normal are in the space of the shape's group (world space for shapes outside of groups).
+ * corner is null if the shape has no triangles. */
 typedef struct vlTextureQuery {
   float u, v;
   vlVec3 p, n;
   const vlTextureCorner *corner;
 } vlTextureQuery;
-/* A float texture at one point: alpha, mix amount, displacement. Unfiltered; otherwise bit-identical to
- * vl_texture_float over a batch. */
+/* Evaluates a float texture at one point, for alpha, mix amounts and displacement. It does not filter images; apart
+ * from that it gives the same bits as vl_texture_float over a batch. */
 float vl_texture_float_at(const struct vlWorld *world, int32_t node, const vlTextureQuery *query);
 
 #endif

@@ -1,18 +1,19 @@
-/* world/texture/texture_lookup.h: one texture point: coordinates and filtered image lookup. Inline and by value. The
- * batch evaluator in trace and the single-point evaluator share it through texture_node.h. pbrt book 10.2-10.4. */
+/* world/texture/texture_lookup.h: texture coordinates and filtered image lookup at one point. The functions are inline
+ * and take values. The batch evaluator in trace and the single-point evaluator share it through texture_node.h. pbrt
+ * book 10.2-10.4. */
 #ifndef WORLD_TEXTURE_TEXTURE_LOOKUP_H
 #define WORLD_TEXTURE_TEXTURE_LOOKUP_H
 
 #include "world/world.h"
 
-/* A point at which a texture is evaluated: uv, world position and normal, and the footprint: the width of a pixel in
- * world units and, for images, the two axes of its ellipse in (s, t). color: interpolated vertex colour, read only
- * by nodes that use it. */
+/* A point at which a texture is evaluated: uv, position and normal in world space, and the footprint. The footprint has
+ * a width in world units and, for image lookups, the two axes of an ellipse in (s, t). color: interpolated vertex
+ * colour, read only by nodes that use it. */
 typedef struct vlTexturePoint {
   float u, v;
   vlVec3 p, n;
   float width;
-  float axes[4]; /* (s, t) of one axis, (s, t) of the other; full widths */
+  float axes[4]; /* (s, t) of the first axis, then of the second axis; full lengths */
   float color[4];
 } vlTexturePoint;
 
@@ -21,7 +22,7 @@ static inline bool vl_texture_needs_corner(const vlTextureNode *node) {
   return node->uv_set != 0 || node->colors;
 }
 
-/* Fills in the uv set and the vertex colour that the node reads, at a point of a triangle. */
+/* Sets the uv and vertex colour of a texture point on a triangle, as far as the node reads them. */
 static inline void vl_texture_at_corner(const vlTextureNode *node, const vlTextureCorner *where, vlTexturePoint *at) {
   for (int c = 0; c < 4; c++) at->color[c] = 1.0f;
   if (!where || where->shape->kind != VL_SHAPE_TRIANGLES) return;
@@ -64,7 +65,7 @@ static inline vlVec2 vl_texture_st(const vlTextureNode *node, vlTexturePoint at)
   return (vlVec2){vl_acos(vl_clamp(d.z, -1, 1)) * VL_INV_PI, phi * (0.5f * VL_INV_PI)};
 }
 
-/* Whether s, t are an affine map of the first uv set. */
+/* Whether (s, t) is an affine function of the first uv set. */
 static inline bool vl_texture_over_uv(const vlTextureNode *node) {
   return node->uv_set == 0 && (node->st_given || node->mapping == VL_MAPPING_UV);
 }
@@ -78,7 +79,7 @@ static inline void vl_texture_axes_of_uv(const vlTextureNode *node, const float 
 
 /* ---- images ---------------------------------------------------------------------------------------------------- */
 
-/* Maps an integer texel coordinate by the wrap mode; -1: outside (black). */
+/* Maps an integer texel coordinate into the image by the wrap mode. -1: outside the image (black). */
 static inline int32_t vl_wrap_index(int32_t i, int32_t n, vlWrap wrap) {
   if (i >= 0 && i < n) return i;
   if (wrap == VL_WRAP_CLAMP) return i < 0 ? 0 : n - 1;
@@ -123,14 +124,14 @@ static inline vlTexel vl_texel(const vlMipmap *mip, uint32_t level, int32_t x, i
   return vl_texel_2(mip, level, x, y, wrap, wrap);
 }
 
-static inline int32_t vl_to_index(float x) { /* floor, safe for any float */
+static inline int32_t vl_to_index(float x) { /* floor(x), defined for any float */
   float f = __builtin_floorf(x);
   f = f > 1e9f ? 1e9f : f;
   f = f < -1e9f ? -1e9f : f;
   return f == f ? (int32_t)f : 0;
 }
 
-/* s, t: (0, 0) is the top left corner of the image. */
+/* Bilinear lookup in one level. (s, t) = (0, 0) is the top left corner of the image. */
 static inline vlTexel vl_bilinear_2(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap, vlWrap wrap_t) {
   float x = s * (float)mip->levels[level].width - 0.5f, y = t * (float)mip->levels[level].height - 0.5f;
   int32_t xi = vl_to_index(x), yi = vl_to_index(y);
@@ -160,13 +161,13 @@ static inline float vl_log2_rough(float x) {
   return vl_ln(x) * 1.44269504f;
 }
 
-/* Filtering over an ellipse: the mip level matches its shorter axis (mip levels are isotropic), several taps cover
- * the longer one. */
+/* Filtering over the elliptic footprint: the MIP level matches the shorter axis, because MIP levels are isotropic.
+ * Several taps cover the longer axis. */
 enum { VL_FILTER_TAPS = 8 };
 typedef struct vlFilterPlan {
   float level; /* >= 0 */
   uint32_t taps;
-  float s, t; /* distance between the first and the last tap */
+  float s, t; /* from the first tap to the last */
 } vlFilterPlan;
 static inline vlFilterPlan vl_filter_plan(const vlMipmap *mip, const float axes[4]) {
   float w = (float)mip->levels[0].width, h = (float)mip->levels[0].height;
@@ -187,7 +188,7 @@ static inline vlFilterPlan vl_filter_plan(const vlMipmap *mip, const float axes[
   return plan;
 }
 
-/* One tap at a fractional level; blends two levels if the filter is trilinear. */
+/* One tap at a fractional level. A trilinear filter blends two levels. */
 static inline vlTexel vl_filter_tap(const vlTextureNode *node, const vlMipmap *mip, float level, bool both, float s,
                                     float t) {
   uint32_t l = (uint32_t)level;
@@ -199,21 +200,21 @@ static inline vlTexel vl_filter_tap(const vlTextureNode *node, const vlMipmap *m
   return a;
 }
 
-/* An image texture at a point: where it is read (t counts from the top) and how it is filtered. */
+/* A lookup in an image texture: where the image is read (t is measured from the top) and how it is filtered. */
 typedef struct vlImageLookup {
   float s, t;
   vlFilterPlan plan;
 } vlImageLookup;
 static inline vlImageLookup vl_image_lookup(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
-  vlVec2 st = vl_texture_st(node, at); /* t from the bottom */
+  vlVec2 st = vl_texture_st(node, at); /* t is measured from the bottom */
   return (vlImageLookup){st.x, 1.0f - st.y, vl_filter_plan(mip, at.axes)};
 }
 
-/* Requests the memory of the middle tap, as far as it lies within the image. */
+/* Prefetches the texels of the middle tap that lie within the image. */
 static inline void vl_image_request(const vlMipmap *mip, const vlImageLookup *at) {
   for (uint32_t level = (uint32_t)at->plan.level, k = 0; k < 2 && level < mip->level_count; k++, level++) {
     const vlMipLevel *l = &mip->levels[level];
-    float fs = at->s - __builtin_floorf(at->s), ft = at->t - __builtin_floorf(at->t); /* as if it repeats */
+    float fs = at->s - __builtin_floorf(at->s), ft = at->t - __builtin_floorf(at->t); /* as if the image repeats */
     float x = fs * (float)l->width - 0.5f, y = ft * (float)l->height - 0.5f;
     uint32_t i = x > 0.0f ? (uint32_t)(int32_t)x : 0, j = y > 0.0f ? (uint32_t)(int32_t)y : 0;
     for (uint32_t row = j; row < j + 2 && row < l->height && i < l->width; row++) {
@@ -223,8 +224,8 @@ static inline void vl_image_request(const vlMipmap *mip, const vlImageLookup *at
   }
 }
 
-/* Point reads a texel of the finer level, bilinear interpolates on it, trilinear (and EWA) blends two levels. The last
- * two take several taps. */
+/* A point filter reads one texel of the finer level. A bilinear filter interpolates on that level. A trilinear filter,
+ * which also serves for EWA, blends two levels. Bilinear and trilinear filters take several taps. */
 static inline vlTexel vl_image_value(const vlTextureNode *node, const vlMipmap *mip, const vlImageLookup *at) {
   float s = at->s, t = at->t;
   vlFilterPlan plan = at->plan;
@@ -255,8 +256,8 @@ static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap
   return vl_image_value(node, mip, &lookup);
 }
 
-/* All four channels, tinted: grey is copied to red, green and blue; coverage is 1 if the image has none. mip null:
- * the vertex colour alone. */
+/* Returns all four channels, multiplied by the tint. A grey value is copied to red, green and blue; coverage is 1 if
+ * the image has none. If mip is null, the value is the vertex colour. */
 static inline vlTexel vl_texture_rgba(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
   vlTexel t = {{1, 1, 1, 1}};
   if (mip) {

@@ -1,13 +1,14 @@
-/* world/texture/texture_node.h: the value of each kind of texture node at one point. Inline and by value. Two
- * evaluators share these functions and thus agree to the bit: trace/texture/texture.hot.c over a batch, textures.c at
- * a single point. Both switch over vlNodeKind without a default: a missing kind does not compile. */
+/* world/texture/texture_node.h: the value of each kind of texture node at one point. The functions are inline and take
+ * values. Two evaluators share these functions and thus agree to the bit: trace/texture/texture.hot.c over a batch,
+ * textures.c at a single point. Both switch over vlNodeKind without a default, so that a missing kind is a compile
+ * error. */
 #ifndef WORLD_TEXTURE_TEXTURE_NODE_H
 #define WORLD_TEXTURE_TEXTURE_NODE_H
 
 #include "world/texture/texture_noise.h"
 
-/* Kinds of nodes whose value is one function of the point, vl_node_NAME(node, at), by what that is. Both evaluators
- * take their cases from these lists; the other kinds have cases of their own. */
+/* Kinds of nodes whose value is one function of the point, vl_node_NAME(node, at), listed by the type of the value.
+ * Both evaluators take cases from these lists; they treat the other kinds separately. */
 /* A float. */
 #define VL_FLOAT_NODES(X) \
   X(FBM, fbm)             \
@@ -15,7 +16,7 @@
   X(WINDY, windy)
 /* A colour, linear RGB (vlVec3). */
 #define VL_COLOR_NODES(X) X(MARBLE, marble)
-/* The share of the second of two inputs, which are floats or spectra. */
+/* The weight of the second of two inputs, which are floats or spectra. */
 #define VL_SHARE_NODES(X)       \
   X(CHECKERBOARD, checkerboard) \
   X(DOTS, dots)                 \
@@ -28,13 +29,13 @@ static inline float vl_node_scale(float a, float amount) {
   return a * amount;
 }
 
-/* VL_NODE_MIX, VL_NODE_CHECKERBOARD, VL_NODE_DOTS and VL_NODE_DIRECTION_MIX. share: of the second input. */
+/* VL_NODE_MIX, VL_NODE_CHECKERBOARD, VL_NODE_DOTS and VL_NODE_DIRECTION_MIX. share: weight of the second input. */
 static inline float vl_node_mix(float a, float b, float share) {
   return (1 - share) * a + share * b;
 }
 
-/* VL_NODE_CHECKERBOARD: share of the second input, 0 or 1. Unfiltered: the samples of a pixel antialias it. (pbrt
- * filters it by ray differentials.) */
+/* VL_NODE_CHECKERBOARD: weight of the second input, 0 or 1. The pattern is not filtered; the samples of a pixel
+ * antialias it. (pbrt filters it by ray differentials.) */
 static inline float vl_node_checkerboard(const vlTextureNode *node, vlTexturePoint at) {
   if (node->dimension == 3) {
     vlVec3 q = vl_texture_space(node, at.p);
@@ -46,13 +47,14 @@ static inline float vl_node_checkerboard(const vlTextureNode *node, vlTexturePoi
   return sum & 1 ? 1.0f : 0.0f;
 }
 
-/* VL_NODE_DIRECTION_MIX: share of the second input. The share of the first is the cosine between the normal and the
+/* VL_NODE_DIRECTION_MIX: weight of the second input. The weight of the first is the cosine between the normal and the
  * node's direction. */
 static inline float vl_node_direction_mix(const vlTextureNode *node, vlTexturePoint at) {
   return 1.0f - vl_abs(vl_dot(at.n, vl_vec3(node->direction[0], node->direction[1], node->direction[2])));
 }
 
-/* VL_NODE_BILERP: weights of the four inputs a, b, c, d, which are summed in this order from 0. */
+/* VL_NODE_BILERP: weights of the four inputs a, b, c, d. The weighted inputs are added in this order, starting from
+ * 0. */
 typedef struct vlBilerpWeights {
   float w[4];
 } vlBilerpWeights;
@@ -66,8 +68,8 @@ static inline float vl_node_bilerp_add(float sum, float weight, float input) {
 
 /* ---- floats ------------------------------------------------------------------------------------------------------ */
 
-/* A float from red, green, blue and coverage: the channel that the node selects; by default coverage if the image
- * has it, else the mean of the colours. mip null: the vertex colour alone. */
+/* A float from red, green, blue and coverage: the channel that the node selects. If it selects none: the coverage if
+ * the image has it, otherwise the mean of the colours. mip is null for vertex colours alone. */
 static inline float vl_texture_channel(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
   vlTexel t = vl_texture_rgba(node, mip, at);
   float x = node->bias;
@@ -84,7 +86,8 @@ static inline float vl_plain_float(const vlMipmap *mip, vlTexel t) {
   return channels == 1 ? t.c[0] : channels == 4 ? t.c[3] : (t.c[0] + t.c[1] + t.c[2]) * (1.0f / 3.0f);
 }
 
-/* VL_NODE_IMAGE: grey as it is, colour by its mean, four channels by their alpha (pbrt's rule). */
+/* VL_NODE_IMAGE as a float, by pbrt's rule: the value of a grey image, the mean of three channels, the alpha of
+ * four. */
 static inline float vl_node_image_float(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
   if (!node->plain) return vl_texture_channel(node, mip, at);
   return vl_plain_float(mip, vl_texture_image(node, mip, at));

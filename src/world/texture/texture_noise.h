@@ -1,12 +1,13 @@
 /* world/texture/texture_noise.h: noise textures at one point: fbm, wrinkled, windy, marble, dots. Patterns and
- * constants are pbrt's (pbrt 3rd edition, 10.6; the fourth edition keeps them). */
+ * constants are those of pbrt (pbrt 3rd edition, 10.6; the fourth edition keeps them). */
 #ifndef WORLD_TEXTURE_TEXTURE_NOISE_H
 #define WORLD_TEXTURE_TEXTURE_NOISE_H
 
 #include "math/noise.h"
 #include "world/texture/texture_lookup.h"
 
-/* Width of the footprint in texture space, by the largest factor of the map from world to texture space. */
+/* Width of the footprint in texture space: its width in world units times the largest factor by which the map from
+ * world to texture space stretches a length. */
 static inline float vl_texture_space_width(const vlTextureNode *node, vlTexturePoint at) {
   const float *m = node->texture_from_world;
   float x = m[0] * m[0] + m[4] * m[4] + m[8] * m[8], y = m[1] * m[1] + m[5] * m[5] + m[9] * m[9];
@@ -29,7 +30,7 @@ static inline float vl_node_windy(const vlTextureNode *node, vlTexturePoint at) 
   return vl_abs(wind) * vl_fractal_noise(p, width, 0.5f, 6);
 }
 
-/* Colours along a vein, by a spline through nine. */
+/* Marble: the colour along a vein, from a spline over nine colours. */
 static inline vlVec3 vl_node_marble(const vlTextureNode *node, vlTexturePoint at) {
   static const float colors[9][3] = {{.58f, .58f, .6f}, {.58f, .58f, .6f}, {.58f, .58f, .6f},
                                      {.5f, .5f, .5f},   {.6f, .59f, .58f}, {.58f, .58f, .6f},
@@ -51,7 +52,8 @@ static inline vlVec3 vl_node_marble(const vlTextureNode *node, vlTexturePoint at
   return vl_vec3(out[0], out[1], out[2]);
 }
 
-/* 1 inside a dot, 0 outside. About half of the cells of a unit have one, of radius 0.35 and somewhere in it. */
+/* 1 inside a dot, 0 outside. Texture space is divided into unit cells. About half of them contain a dot of radius 0.35
+ * at a random place. */
 static inline float vl_node_dots(const vlTextureNode *node, vlTexturePoint at) {
   const float radius = 0.35f, shift = 0.5f - radius;
   vlVec2 st = vl_texture_st(node, at);

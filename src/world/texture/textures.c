@@ -1,5 +1,5 @@
-/* world/texture/textures.c: scene textures -> nodes; reads each image file once; evaluates a float texture at one
- * point (alpha, mix amounts, displacement). */
+/* world/texture/textures.c: compiles the textures of a scene into nodes; reads each image file once; evaluates a float
+ * texture at one point (alpha, mix amounts, displacement). */
 #include "world/texture/texture.h"
 
 #include <math.h>
@@ -11,8 +11,8 @@
 #include "world/texture/texture_node.h"
 #include "world/world.h"
 
-/* MAX_NESTING bounds recursion here. VL_NODE_ROWS bounds nesting by the scratch rows needed: no level may overwrite
- * another's. */
+/* MAX_NESTING bounds the recursion in this file. VL_NODE_ROWS bounds the nesting of textures by their scratch rows,
+ * since each level needs rows of its own. */
 enum { MAX_NESTING = 32, ROLES = 4, ROLE_FLOAT = 3 };
 
 /* ---- constant spectra -------------------------------------------------------------------------------------------- */
@@ -70,8 +70,8 @@ static bool is_covered(const vlImage *image, uint32_t alpha) {
   return true;
 }
 
-/* Selects colour channels and, unless it is 1 everywhere, alpha; a grey image has one channel. Selected by name,
- * because EXR sorts its channels. */
+/* Selects the colour channels (one for a grey image) and alpha, unless alpha is 1 everywhere. Channels are selected by
+ * name, because EXR sorts them. */
 static void choose_channels(const vlImage *image, bool keep_coverage, vlMipmapDef *mip) {
   int r = vl_image_find_channel(image, "R"), g = vl_image_find_channel(image, "G"),
       b = vl_image_find_channel(image, "B");
@@ -89,9 +89,9 @@ static void choose_channels(const vlImage *image, bool keep_coverage, vlMipmapDe
   memcpy(mip->channel, channels, sizeof channels);
 }
 
-/* Source of an image: a file, a file in memory, or an image in memory. */
+/* The source of an image: a file, a file in memory, or an image in memory. */
 typedef struct Image {
-  const char *name; /* for error messages, if there is no path */
+  const char *name; /* name for error messages if there is no path */
   const char *path;
   const void *data;
   size_t size;
@@ -151,7 +151,7 @@ static Image open_image(const vlTextureDef *def) {
                  def->gamma,     true,       def->data != NULL};
 }
 
-/* Records the path (or memory address) and the encoding by which the image is found again. */
+/* Stores the path (or memory address) and the encoding in an entry. Later requests find the image by them. */
 static bool name_image(vlWorld *world, vlWorldImage *entry, const vlTextureDef *def) {
   entry->encoding = def->encoding;
   entry->encoding_given = def->encoding_given;
@@ -290,8 +290,8 @@ static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f
 
 #define NODE_CASE(NAME, name) case VL_NODE_##NAME:
 
-/* Rows that a node takes for itself (as trace/texture/texture.hot.c takes them) and for the hungriest of its inputs;
- * nodes that are visited for it. false: too many. */
+/* Computes the scratch rows of a node, its own (as in trace/texture/texture.hot.c) and those of the input that needs
+ * most, and the number of nodes visited for it. False: too many. */
 static bool weigh(const vlWorld *world, vlTextureNode *node) {
   uint32_t own = 0, most = 0, visits = 1;
   switch (node->kind) {
@@ -322,7 +322,7 @@ static bool weigh(const vlWorld *world, vlTextureNode *node) {
   return true;
 }
 
-/* Colours that are brought to wavelengths where they are used. */
+/* The node kinds that give an RGB colour, which is converted to wavelengths where it is used. */
 #define GIVES_RGB(NAME, name) [VL_NODE_##NAME] = true,
 static const bool gives_rgb[VL_NODE_SPECTRUM + 1] = {
     [VL_NODE_IMAGE] = true, [VL_NODE_VERTEX_COLOR] = true, VL_COLOR_NODES(GIVES_RGB)};
@@ -353,7 +353,8 @@ static void fill_image_node(const vlTextureDef *def, vlTextureNode *node) {
   node->plain = !tinted && !node->colors && def->channel < 0 && def->bias == 0 && isnan(def->cutoff);
 }
 
-/* Compiles the inputs that the kind's row names, in its order: a, b, c, d; and the amount. Below 0: an error. */
+/* Compiles the inputs that the kind's row describes, in the order of the row, into a, b, c, d and the amount. A
+ * negative result is an error. */
 static int32_t compile_inputs(Compile *c, const vlTextureDef *def, int role, int nesting, vlTextureNode *node) {
   const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)def->kind);
   int32_t *slots[4] = {&node->a, &node->b, &node->c, &node->d}, n = 0;
@@ -418,7 +419,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   return n;
 }
 
-/* Compiles with a memo that lives as long as the build. */
+/* Compiles a texture with a memo of compiled textures that lives as long as the build. */
 static vlResult with_compile(vlWorld *world, const vlScene *scene, Compile *c, vlError *error) {
   if (!world->texture_memo) {
     world->texture_memo = vl_world_block(world, (scene->textures.count + 1) * ROLES, sizeof(int32_t));
